@@ -35,8 +35,8 @@ class KeptMarcher
 public:
   struct Found
   {
+    InputsKey key; ///< holds the device
     std::unique_ptr<PhotonMarcher> marcher;
-    InputsKey key;
     bool kept = false; ///< whether nothing had to be prepared
   };
 
@@ -51,8 +51,8 @@ public:
   void Forget() { this->Marcher.reset(); }
 
 private:
+  InputsKey Key; ///< holds the device
   std::unique_ptr<PhotonMarcher> Marcher;
-  InputsKey Key;
   vtkTimeStamp Made;
 };
 }

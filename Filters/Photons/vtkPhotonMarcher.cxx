@@ -1,5 +1,6 @@
 #include "vtkPhotonMarcher.h"
 
+#include "Common/DeviceBudget.h"
 #include "Common/ImageInput.h"
 #include "Common/LightTransportData.h"
 #include "Common/WholeImage.h"
@@ -215,8 +216,8 @@ vtkPhotonMarcher::Marched vtkPhotonMarcher::MarchAsPublished(
   settings.smooth = this->Smoothing;
   tyndall::PackingLoss loss;
   Marched marched;
-  marched.light = tyndall::MarchPublished(*tyndall::Device::Find(this->Device), read.input.medium, read.ior,
-    read.Levels(), photons, settings, &loss, tyndall::MonitorOf(this));
+  marched.light = tyndall::MarchPublished(*tyndall::FindWithin(this->Within, this->Device, this->MemoryBudget),
+    read.input.medium, read.ior, read.Levels(), photons, settings, &loss, tyndall::MonitorOf(this));
   marched.packingLoss = loss.Relative();
   return marched;
 }
@@ -237,8 +238,9 @@ vtkPhotonMarcher::Marched vtkPhotonMarcher::March(
       return marched;
     }
   }
-  tyndall::KeptMarcher::Found found = this->Kept->Find(this, tyndall::Device::Find(this->Device),
-    vtkImageData::GetData(inputs[MediumPort]), vtkImageData::GetData(inputs[OctreePort]), settings);
+  tyndall::KeptMarcher::Found found =
+    this->Kept->Find(this, tyndall::FindWithin(this->Within, this->Device, this->MemoryBudget),
+      vtkImageData::GetData(inputs[MediumPort]), vtkImageData::GetData(inputs[OctreePort]), settings);
   if (!published)
   {
     marched.light = found.marcher->March(photons, tyndall::MonitorOf(this));
@@ -330,6 +332,7 @@ void vtkPhotonMarcher::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "ErrorBatches: " << this->ErrorBatches << "\n";
   os << indent << "PathCount: " << this->PathCount << "\n";
   os << indent << "Smoothing: " << this->Smoothing << "\n";
+  os << indent << "MemoryBudget: " << this->MemoryBudget << "\n";
   os << indent << "Device: " << this->Device << "\n";
   os << indent << "Deposits: " << this->Deposits << "\n";
   os << indent << "Steps: " << this->Steps << "\n";

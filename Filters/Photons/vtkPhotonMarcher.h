@@ -12,6 +12,7 @@
 
 namespace tyndall
 {
+class Device;
 class KeptMarcher;
 struct Photon;
 struct PhotonLight;
@@ -178,6 +179,13 @@ public:
   ///@}
 
   ///@{
+  /// MiB of the device's memory that the filter may take, with what it keeps from update to update; what is needed
+  /// beyond is one error that says how much. Default 0: what the device has. Valid [0, 2^31).
+  tyndallSetRangeMacro(MemoryBudget, int, 0, VTK_INT_MAX);
+  vtkGetMacro(MemoryBudget, int);
+  ///@}
+
+  ///@{
   /// Part of the name of the OpenCL device to use, of any case. Default empty: what the variable TYNDALL_DEVICE names,
   /// or else PoCL's CPU device.
   vtkSetStdStringFromCharMacro(Device);
@@ -243,8 +251,10 @@ private:
   int ErrorBatches = 16;
   int PathCount = 0;
   bool Smoothing = true;
+  int MemoryBudget = 0;
   std::string Device;
 
+  std::shared_ptr<tyndall::Device> Within; ///< MemoryBudget, where there is one
   std::unique_ptr<tyndall::KeptMarcher> Kept;
 
   vtkIdType Deposits = 0;

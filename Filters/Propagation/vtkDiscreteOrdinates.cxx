@@ -1,5 +1,6 @@
 #include "vtkDiscreteOrdinates.h"
 
+#include "Common/DeviceBudget.h"
 #include "Common/LightTransportData.h"
 #include "Device/Device.h"
 #include "DiscreteOrdinates/DiscreteOrdinates.h"
@@ -77,9 +78,10 @@ int vtkDiscreteOrdinates::RequestData(
     this->WarnWhereDark(illumination, emits);
     const std::shared_ptr<tyndall::Device> device = tyndall::Device::Find(this->GetDevice());
     const tyndall::OrdinatesSettings settings = SettingsOf(this, input.medium, *device);
+    tyndall::Device within(*device, tyndall::BudgetOf(this->MemoryBudget, false));
     tyndall::KeptLight* const last = this->Last->Where(this->WarmStart && !this->Preview);
     const tyndall::SolveIn solve = [&](const tyndall::Medium& inside, const tyndall::Illumination& shining) {
-      return tyndall::SolveDiscreteOrdinates(*device, inside, shining, settings, tyndall::MonitorOf(this), last);
+      return tyndall::SolveDiscreteOrdinates(within, inside, shining, settings, tyndall::MonitorOf(this), last);
     };
     const tyndall::Grid coarse = tyndall::PreviewGrid(input.medium.grid);
     tyndall::LightField light = this->Preview ? tyndall::SolvePreview(input.medium, illumination, coarse, solve)

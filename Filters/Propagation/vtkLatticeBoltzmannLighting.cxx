@@ -1,5 +1,6 @@
 #include "vtkLatticeBoltzmannLighting.h"
 
+#include "Common/DeviceBudget.h"
 #include "Common/LightTransportData.h"
 #include "Device/Clock.h"
 #include "Device/Device.h"
@@ -18,6 +19,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -133,8 +135,10 @@ tyndall::LightField vtkLatticeBoltzmannLighting::SolveWithPhotons(
   tyndall::AddFaceAlbedo(illumination, this->FaceAlbedo, this->FaceAlbedoColor);
   const std::vector<tyndall::Photon> photons = tyndall::ReadPhotons(given);
   return Timed(this->Seconds, [&] {
-    return tyndall::SolveLatticeBoltzmann(*tyndall::Device::Find(this->GetDevice()), input.medium, ior, photons,
-      illumination, SettingsOf(this), tyndall::MonitorOf(this));
+    const std::shared_ptr<tyndall::Device> device = tyndall::Device::Find(this->GetDevice());
+    tyndall::Device within(*device, tyndall::BudgetOf(this->MemoryBudget, true));
+    return tyndall::SolveLatticeBoltzmann(
+      within, input.medium, ior, photons, illumination, SettingsOf(this), tyndall::MonitorOf(this));
   });
 }
 
@@ -153,8 +157,10 @@ tyndall::LightField vtkLatticeBoltzmannLighting::Solve(vtkInformationVector** in
   this->WarnWhereDark(shining.illumination, emits);
   const auto solve = [&](const tyndall::Medium& inside, const tyndall::Illumination& illumination,
                        const tyndall::Field& index) {
-    return tyndall::SolveLatticeBoltzmann(*tyndall::Device::Find(this->GetDevice()), inside, index, illumination,
-      SettingsOf(this), tyndall::MonitorOf(this));
+    const std::shared_ptr<tyndall::Device> device = tyndall::Device::Find(this->GetDevice());
+    tyndall::Device within(*device, tyndall::BudgetOf(this->MemoryBudget, true));
+    return tyndall::SolveLatticeBoltzmann(
+      within, inside, index, illumination, SettingsOf(this), tyndall::MonitorOf(this));
   };
   tyndall::LightField light = Timed(this->Seconds, [&] {
     // A preview of grids that cannot be halved to cubes has their own voxels.

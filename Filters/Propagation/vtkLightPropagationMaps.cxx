@@ -1,5 +1,6 @@
 #include "vtkLightPropagationMaps.h"
 
+#include "Common/DeviceBudget.h"
 #include "Common/LightTransportData.h"
 #include "Device/Device.h"
 #include "Device/Errors.h"
@@ -57,6 +58,7 @@ tyndall::PropagationSettings SettingsOf(vtkLightPropagationMaps* filter)
   settings.storedDirections = filter->GetStoredDirections();
   settings.netFlux = filter->GetNetFlux();
   settings.leaveOut = filter->GetLeaveOut();
+  settings.memoryBudget = static_cast<std::size_t>(filter->GetMemoryBudget()) << 20;
   return settings;
 }
 
@@ -93,6 +95,15 @@ tyndall::PropagationSettings OfPreview(tyndall::PropagationSettings settings)
   return settings;
 }
 
+/// What does not fit the budget is an error: this scheme keeps a volume a direction.
+tyndall::LightField SolvePublished(vtkLightPropagationMaps* filter, tyndall::Device& device,
+  const tyndall::Medium& medium, const tyndall::Illumination& illumination,
+  const tyndall::PropagationSettings& settings, const tyndall::Monitor& monitor, tyndall::KeptLight* kept)
+{
+  tyndall::Device within(device, tyndall::BudgetOf(filter->GetMemoryBudget(), false));
+  return tyndall::SolveParallel(within, medium, illumination, settings, monitor, 0, kept);
+}
+
 tyndall::LightField Solve(vtkLightPropagationMaps* filter, const tyndall::Medium& medium,
   const tyndall::Illumination& illumination, tyndall::KeptLight* last)
 {
@@ -107,7 +118,7 @@ tyndall::LightField Solve(vtkLightPropagationMaps* filter, const tyndall::Medium
                                              const tyndall::PropagationSettings& how, const tyndall::Monitor& watch) {
     tyndall::KeptLight* const kept = &inside == &medium ? last : nullptr; // not of coarser or divided ones
     return sequential ? tyndall::SolveSequential(inside, shining, how, watch)
-      : published     ? tyndall::SolveParallel(*device, inside, shining, how, watch, 0, kept)
+      : published     ? SolvePublished(filter, *device, inside, shining, how, watch, kept)
                       : tyndall::SolveConservative(*device, inside, shining, how, watch, kept);
   };
   tyndall::LightField light = filter->GetPreview()

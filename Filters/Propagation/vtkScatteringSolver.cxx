@@ -153,6 +153,7 @@ void vtkScatteringSolver::PrintSelf(ostream& os, vtkIndent indent)
   this->Superclass::PrintSelf(os, indent);
   os << indent << "Quality: " << this->Quality << "\n";
   os << indent << "Preview: " << this->Preview << "\n";
+  os << indent << "MemoryBudget: " << this->MemoryBudget << "\n";
   os << indent << "SettingsUsed: " << this->SettingsUsed << "\n";
   os << indent << "LitColor: " << this->LitColor << "\n";
   os << indent << "Exposure: " << this->Exposure << "\n";

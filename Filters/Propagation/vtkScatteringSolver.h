@@ -5,6 +5,7 @@
 #include "vtkTimeStamp.h"
 #include "vtkTyndallModule.h" // for export macro
 
+#include <cstddef>
 #include <functional>
 #include <memory>
 #include <string>
@@ -82,6 +83,17 @@ public:
   ///@}
 
   ///@{
+  /// MiB of the device's memory that a solve may take. Default 0: what the device has. vtkLightPropagationMaps keeps
+  /// arrays over all voxels that do not fit in host memory then, and streams them through the device slice by slice:
+  /// the same light, bit for bit, later; with 0 beyond nine tenths of the device. vtkLatticeBoltzmannLighting leaves
+  /// what does not fit in host memory, and of vtkDiscreteOrdinates it is an error. Where the device is a processor,
+  /// which works on host memory in place, it bounds what a solve takes beside these arrays. DeviceName and field data
+  /// `device` say how much lay where. Valid [0, 2^31).
+  tyndallSetRangeMacro(MemoryBudget, int, 0, VTK_INT_MAX);
+  vtkGetMacro(MemoryBudget, int);
+  ///@}
+
+  ///@{
   /// Whether to make `lit_color`. Default off. What is on is seen from every side alike: light is scattered evenly in
   /// it, whatever the phase function.
   void SetLitColor(bool make);
@@ -139,6 +151,7 @@ protected:
 
   int Quality = USUAL;
   bool Preview = false;
+  int MemoryBudget = 0;
   std::string SettingsUsed;
   bool LitColor = false;
   double Exposure = 0.0;

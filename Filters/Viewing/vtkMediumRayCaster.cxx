@@ -1,6 +1,7 @@
 #include "vtkMediumRayCaster.h"
 
 #include "AskedView.h"
+#include "Common/DeviceBudget.h"
 #include "Common/FiniteValues.h"
 #include "Common/InputsKey.h"
 #include "Common/LightTransportData.h"
@@ -267,7 +268,7 @@ int vtkMediumRayCaster::RequestUpdateExtent(
 tyndall::InputsKey vtkMediumRayCaster::KeyOf(vtkInformationVector** inputs, const tyndall::GridBlock* block)
 {
   tyndall::InputsKey key;
-  key.device = tyndall::Device::Find(this->Device);
+  key.device = tyndall::FindWithin(this->Within, this->Device, this->MemoryBudget);
   vtkImageData* const image = vtkImageData::GetData(inputs[MEDIUM]);
   key.Add(tyndall::GridOf(image));
   key.AddGhosts(image);
@@ -487,6 +488,7 @@ void vtkMediumRayCaster::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Seconds: " << this->Seconds << "\n";
   os << indent << "UsedExposure: " << this->UsedExposure << "\n";
   os << indent << "SceneKept: " << this->SceneKept << "\n";
+  os << indent << "MemoryBudget: " << this->MemoryBudget << "\n";
   os << indent << "DeviceName: " << this->DeviceName << "\n";
   os << indent << "LeftOut: " << this->LeftOut << "\n";
   os << indent << "SettingsUsed: " << this->SettingsUsed << "\n";

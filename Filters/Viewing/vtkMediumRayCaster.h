@@ -10,6 +10,7 @@
 
 namespace tyndall
 {
+class Device;
 struct AskedView;
 struct GridBlock;
 struct InputsKey;
@@ -259,6 +260,13 @@ public:
   ///@}
 
   ///@{
+  /// MiB of the device's memory that the filter may take, with what it keeps from update to update; what is needed
+  /// beyond is one error that says how much. Default 0: what the device has. Valid [0, 2^31).
+  tyndallSetRangeMacro(MemoryBudget, int, 0, VTK_INT_MAX);
+  vtkGetMacro(MemoryBudget, int);
+  ///@}
+
+  ///@{
   /// Whether to leave out what the scene does not need. Default on; off computes everything, for comparison: the same
   /// picture, later.
   vtkSetMacro(LeaveOut, bool);
@@ -362,8 +370,10 @@ private:
   double TableColor[3];
   double TableReflectance;
   bool LeaveOut;
+  int MemoryBudget = 0;
 
-  std::unique_ptr<Scene> Kept; ///< of the last picture, if it succeeded
+  std::shared_ptr<tyndall::Device> Within; ///< MemoryBudget, where there is one
+  std::unique_ptr<Scene> Kept;             ///< of the last picture, if it succeeded
 
   double Seconds = 0.0;
   double UsedExposure = 0.0;

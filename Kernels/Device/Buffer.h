@@ -15,10 +15,11 @@ public:
 
   /// @param what  what the array holds, for the message when it does not fit
   /// @throws DeviceError if it does not fit
-  Buffer(Device& device, std::size_t count, const char* what, cl_mem_flags flags = CL_MEM_READ_WRITE)
+  Buffer(Device& device, std::size_t count, const char* what, cl_mem_flags flags = CL_MEM_READ_WRITE,
+    Residence residence = Residence::AsBudgetSays)
     : Owner(&device)
     , Count(count)
-    , Memory(device.Allocate(this->Bytes(), flags, what))
+    , Memory(device.Allocate(this->Bytes(), flags, what, residence))
   {
   }
 
@@ -47,12 +48,12 @@ public:
   {
     if (this->Owner)
     {
-      this->Owner->Release(this->Bytes());
+      this->Owner->Release(this->Bytes(), this->Memory.onHost);
     }
   }
 
   std::size_t Size() const { return this->Count; }
-  const cl::Buffer& Handle() const { return this->Memory; }
+  const cl::Buffer& Handle() const { return this->Memory.memory; }
 
   /// Wait for the device and copy `Size()` values there or back.
   void Write(const T* values) { this->Write(values, this->Count); }
@@ -61,14 +62,14 @@ public:
     if (count > 0)
     {
       this->Owner->AwaitFirstRuns();
-      this->Owner->Queue().enqueueWriteBuffer(this->Memory, CL_TRUE, 0, count * sizeof(T), values);
+      this->Owner->Queue().enqueueWriteBuffer(this->Memory.memory, CL_TRUE, 0, count * sizeof(T), values);
     }
   }
   /// The same part of another.
   void CopyFrom(const Buffer& other, std::size_t first, std::size_t count) const
   {
     const std::size_t begin = first * sizeof(T);
-    this->Owner->Queue().enqueueCopyBuffer(other.Memory, this->Memory, begin, begin, count * sizeof(T));
+    this->Owner->Queue().enqueueCopyBuffer(other.Memory.memory, this->Memory.memory, begin, begin, count * sizeof(T));
   }
   void Read(T* values) const { this->Read(values, this->Count); }
   void Read(T* values, std::size_t count) const ///< the first `count` values
@@ -76,7 +77,7 @@ public:
     if (count > 0)
     {
       this->Owner->AwaitFirstRuns();
-      this->Owner->Queue().enqueueReadBuffer(this->Memory, CL_TRUE, 0, count * sizeof(T), values);
+      this->Owner->Queue().enqueueReadBuffer(this->Memory.memory, CL_TRUE, 0, count * sizeof(T), values);
     }
   }
   std::vector<T> Read() const
@@ -91,7 +92,7 @@ public:
   {
     if (count > 0)
     {
-      this->Owner->Queue().enqueueFillBuffer(this->Memory, value, first * sizeof(T), count * sizeof(T));
+      this->Owner->Queue().enqueueFillBuffer(this->Memory.memory, value, first * sizeof(T), count * sizeof(T));
     }
   }
 
@@ -108,7 +109,7 @@ private:
 
   Device* Owner = nullptr;
   std::size_t Count = 0;
-  cl::Buffer Memory;
+  Device::Allocation Memory;
 };
 
 namespace detail

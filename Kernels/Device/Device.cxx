@@ -193,6 +193,8 @@ Device::Device(const cl::Platform& platform, const cl::Device& device, std::stri
   , VectorWidth(static_cast<int>(device.getInfo<CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT>()))
   , LargestAllocation(device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>())
   , Memory(MemoryOf(device))
+  , OnHost(HostMemory() / 4 * 3)
+  , Programs(std::make_shared<KeptPrograms>())
 {
   try
   {
@@ -206,14 +208,35 @@ Device::Device(const cl::Platform& platform, const cl::Device& device, std::stri
   }
 }
 
-bool Device::HasExtension(const std::string& name) const
+Device::Device(Device& whole, const MemoryBudget& budget)
+  : TheDevice(whole.TheDevice)
+  , TheContext(whole.TheContext)
+  , TheQueue(whole.TheQueue)
+  , DeviceName(whole.DeviceName)
+  , Extensions(whole.Extensions)
+  , CacheFolder(whole.CacheFolder)
+  , Cpu(whole.Cpu)
+  , Units(whole.Units)
+  , VectorWidth(whole.VectorWidth)
+  , LargestAllocation(whole.LargestAllocation)
+  , Whole(&whole)
+  , Budget(budget)
+  , Memory(whole.Budget.spills ? budget.bytes : std::min(budget.bytes, whole.Memory.Limit()))
+  , OnHost(whole.OnHost.Limit())
+  , TheClock(whole.TheClock)
+  , Programs(whole.Programs)
+{
+}
+
+bool Device::IsHidden(const std::string& name)
 {
   const char* hidden = std::getenv("TYNDALL_WITHOUT");
-  if (hidden && (" " + std::string(hidden) + " ").find(" " + name + " ") != std::string::npos)
-  {
-    return false;
-  }
-  return (" " + this->Extensions + " ").find(" " + name + " ") != std::string::npos;
+  return hidden && (" " + std::string(hidden) + " ").find(" " + name + " ") != std::string::npos;
+}
+
+bool Device::HasExtension(const std::string& name) const
+{
+  return !IsHidden(name) && (" " + this->Extensions + " ").find(" " + name + " ") != std::string::npos;
 }
 
 cl::Kernel Device::Kernel(const char* name, std::string_view source, const std::string& options)
@@ -266,8 +289,8 @@ cl::Program Device::ProgramOf(const char* kernel, const std::string& text, const
 {
   std::shared_ptr<KeptProgram> kept;
   {
-    const std::lock_guard<std::mutex> lock(this->ProgramsGuard);
-    std::shared_ptr<KeptProgram>& known = this->Programs[options + '\n' + text];
+    const std::lock_guard<std::mutex> lock(this->Programs->Guard);
+    std::shared_ptr<KeptProgram>& known = this->Programs->All[options + '\n' + text];
     if (!known)
     {
       known = std::make_shared<KeptProgram>();
@@ -294,7 +317,7 @@ cl::Program Device::Build(const char* kernel, const std::string& text, const std
   {
     if (CallHeard([&] { program.build({ this->TheDevice }, options.c_str()); }))
     {
-      this->CompiledSince = true;
+      this->Programs->CompiledSince = true;
     }
   }
   catch (const cl::Error&)
@@ -335,31 +358,107 @@ cl::Buffer InHugePages(const cl::Context& context, cl_mem_flags flags, std::size
 }
 }
 
-cl::Buffer Device::Allocate(std::size_t bytes, cl_mem_flags flags, const char* what)
+void Device::Complain(const char* what, std::size_t bytes, const std::string& cause, const char* advice) const
 {
-  const auto complain = [&](const std::string& cause) {
-    throw DeviceError("Not enough memory on " + this->DeviceName + " for " + what + ": " + std::to_string(bytes) +
-      " bytes are needed, " + cause + ". Use a coarser grid, fewer directions, or a device with more memory.");
+  throw DeviceError("Not enough memory on " + this->DeviceName + " for " + what + ": " + std::to_string(bytes) +
+    " bytes are needed, " + cause + ". Use " + advice + ".");
+}
+
+Device::Allocation Device::Allocate(std::size_t bytes, cl_mem_flags flags, const char* what, Residence residence)
+{
+  constexpr const char* Advice = "a coarser grid, fewer directions, or a device with more memory";
+  const auto left = [this] {
+    return std::to_string(this->Memory.Left()) + " of " + std::to_string(this->Memory.Limit());
   };
+  if (this->Whole)
+  {
+    const bool streamed = bytes >= this->Budget.hostFrom && residence != Residence::Device;
+    if (streamed || !this->Memory.Take(bytes))
+    {
+      if (!streamed && !this->Budget.spills)
+      {
+        this->Complain(what, bytes, left() + " are left of the memory budget",
+          "a larger MemoryBudget, a coarser grid, or fewer directions");
+      }
+      return this->AllocateOnHost(bytes, flags, what);
+    }
+    try
+    {
+      Allocation allocation = this->Whole->Allocate(bytes, flags, what, residence);
+      if (allocation.onHost) // the whole is a part itself
+      {
+        this->Memory.GiveBack(bytes);
+        this->OnHost.Take(bytes);
+      }
+      return allocation;
+    }
+    catch (...)
+    {
+      this->Memory.GiveBack(bytes);
+      throw;
+    }
+  }
   if (bytes > this->LargestAllocation)
   {
-    complain("the largest single allocation is " + std::to_string(this->LargestAllocation));
+    this->Complain(what, bytes, "the largest single allocation is " + std::to_string(this->LargestAllocation), Advice);
   }
   if (!this->Memory.Take(bytes)) // before it is asked for: another thread must not count on the same bytes
   {
-    complain(std::to_string(this->Memory.Left()) + " of " + std::to_string(this->Memory.Limit()) + " are left");
+    this->Complain(what, bytes, left() + " are left", Advice);
   }
   try
   {
-    return this->Cpu && bytes >= HugePage ? InHugePages(this->TheContext, flags, bytes)
-                                          : cl::Buffer(this->TheContext, flags, bytes);
+    return { this->Cpu && bytes >= HugePage ? InHugePages(this->TheContext, flags, bytes)
+                                            : cl::Buffer(this->TheContext, flags, bytes) };
   }
   catch (const cl::Error& error)
   {
     this->Memory.GiveBack(bytes);
-    complain("the driver refused them (" + std::to_string(error.err()) + ")");
+    this->Complain(what, bytes, "the driver refused them (" + std::to_string(error.err()) + ")", Advice);
   }
-  return {};
+}
+
+/// Where kernels work on it in place it is memory like any other, and counts as the whole device's.
+Device::Allocation Device::AllocateOnHost(std::size_t bytes, cl_mem_flags flags, const char* what)
+{
+  constexpr const char* Advice = "a coarser grid or fewer directions";
+  if (!this->OnHost.Take(bytes))
+  {
+    this->Complain(what, bytes, std::to_string(this->OnHost.Left()) + " are left of this machine's memory", Advice);
+  }
+  try
+  {
+    if (this->Whole->Whole)
+    {
+      return this->Whole->AllocateOnHost(bytes, flags, what);
+    }
+    return { this->SharesHostMemory() ? this->Whole->Allocate(bytes, flags, what).memory
+                                      : cl::Buffer(this->TheContext, flags | CL_MEM_ALLOC_HOST_PTR, bytes),
+      true };
+  }
+  catch (const cl::Error& error)
+  {
+    this->OnHost.GiveBack(bytes);
+    this->Complain(what, bytes, "the driver refused them in host memory (" + std::to_string(error.err()) + ")", Advice);
+  }
+  catch (...)
+  {
+    this->OnHost.GiveBack(bytes);
+    throw;
+  }
+}
+
+void Device::Release(std::size_t bytes, bool onHost)
+{
+  (onHost ? this->OnHost : this->Memory).GiveBack(bytes);
+  if (this->Whole && this->Whole->Whole)
+  {
+    this->Whole->Release(bytes, onHost);
+  }
+  else if (this->Whole && (!onHost || this->SharesHostMemory()))
+  {
+    this->Whole->Release(bytes, false);
+  }
 }
 
 void Device::Finish()
@@ -372,7 +471,7 @@ void Device::Finish()
 void Device::AwaitFirstRuns()
 {
   const CompilationListener* listener = CompilationListener::OfThisThread();
-  if (!listener || !this->CompiledSince.exchange(false))
+  if (!listener || !this->Programs->CompiledSince.exchange(false))
   {
     return;
   }

@@ -2,6 +2,7 @@
 
 #include "Device/Clock.h"
 #include "Device/Errors.h"
+#include "Device/MemoryBudget.h"
 #include "Device/MemoryCount.h"
 #include "Device/OpenCL.h"
 
@@ -37,6 +38,9 @@ public:
 
   /// @param cacheFolder  where the platform writes what it compiles, if that is known: checked for room before it does
   Device(const cl::Platform& platform, const cl::Device& device, std::string cacheFolder = {});
+  /// The same device as a solve sees it: what it takes is part of what `whole`, which must stay, has, and within its
+  /// budget.
+  Device(Device& whole, const MemoryBudget& budget);
 
   const std::string& Name() const { return this->DeviceName; }
   bool IsCpu() const { return this->Cpu; }
@@ -56,6 +60,13 @@ public:
   /// machine's memory (PoCL reports only a part of what can be had).
   std::size_t MemoryLimit() const { return this->Memory.Limit(); }
   std::size_t AllocationLimit() const { return this->LargestAllocation; } ///< largest single buffer, bytes
+  /// Large arrays lie in host memory: sweeps are to stream them.
+  bool Streams() const { return this->Budget.hostFrom != MemoryBudget::NoLimit; }
+  /// Kernels work on host memory in place, so that copies would gain nothing. What TYNDALL_WITHOUT calls `host_memory`
+  /// is left out, as extensions are.
+  bool SharesHostMemory() const { return this->Cpu && !IsHidden("host_memory"); }
+  std::size_t HostBytes() const { return this->OnHost.InUse(); }    ///< of arrays in host memory
+  std::size_t PeakHostBytes() const { return this->OnHost.Peak(); } ///< largest of them
   std::size_t BytesInUse() const { return this->Memory.InUse(); }
   std::size_t PeakBytes() const { return this->Memory.Peak(); } ///< largest BytesInUse since ResetPeak
   void ResetPeak() { this->Memory.ResetPeak(); }
@@ -68,9 +79,16 @@ public:
   /// @throws DeviceError with the build log
   cl::Kernel Kernel(const char* name, std::string_view source, const std::string& options = {});
 
+  /// Memory of a buffer.
+  struct Allocation
+  {
+    cl::Buffer memory;
+    bool onHost = false; ///< in host memory, which no budget counts
+  };
   /// @throws DeviceError if `bytes` more do not fit; `what` says what they are for
-  cl::Buffer Allocate(std::size_t bytes, cl_mem_flags flags, const char* what);
-  void Release(std::size_t bytes) { this->Memory.GiveBack(bytes); }
+  Allocation Allocate(
+    std::size_t bytes, cl_mem_flags flags, const char* what, Residence residence = Residence::AsBudgetSays);
+  void Release(std::size_t bytes, bool onHost);
 
   const cl::Context& Context() const { return this->TheContext; }
   cl::CommandQueue& Queue() { return this->TheQueue; }
@@ -99,6 +117,17 @@ private:
     bool IsBuilt = false;
   };
 
+  /// What was built for the device, for all who see it.
+  struct KeptPrograms
+  {
+    std::mutex Guard; ///< of the map, not of what is in it
+    std::map<std::string, std::shared_ptr<KeptProgram>> All;
+    std::atomic<bool> CompiledSince{ false }; ///< the last wait for what was queued
+  };
+
+  static bool IsHidden(const std::string& name);
+  [[noreturn]] void Complain(const char* what, std::size_t bytes, const std::string& cause, const char* advice) const;
+  Allocation AllocateOnHost(std::size_t bytes, cl_mem_flags flags, const char* what);
   cl::Program ProgramOf(const char* kernel, const std::string& text, const std::string& options);
   cl::Program Build(const char* kernel, const std::string& text, const std::string& options);
 
@@ -112,11 +141,12 @@ private:
   int Units = 1;
   int VectorWidth = 1;
   std::size_t LargestAllocation = 0;
+  Device* Whole = nullptr; ///< null: this is the whole
+  MemoryBudget Budget;     ///< of a part
   MemoryCount Memory;
+  MemoryCount OnHost;
   std::atomic<double> SecondsQueued{ 0.0 };
   Clock TheClock = ClockSeconds;
-  std::mutex ProgramsGuard; ///< of the map, not of what is in it
-  std::map<std::string, std::shared_ptr<KeptProgram>> Programs;
-  std::atomic<bool> CompiledSince{ false }; ///< the last wait for what was queued
+  std::shared_ptr<KeptPrograms> Programs;
 };
 }

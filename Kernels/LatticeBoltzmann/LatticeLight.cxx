@@ -1,5 +1,6 @@
 #include "LatticeBoltzmann/LatticeLight.h"
 
+#include "Device/DeviceWords.h"
 #include "Device/Errors.h"
 #include "LatticeBoltzmann/CubicVoxels.h"
 #include "Light/LeftOut.h"
@@ -130,7 +131,7 @@ void FinishLight(LightField& light, const Device& device, const PropagationProbl
   std::transform(light.fluence.begin(), light.fluence.end(), light.scatteredRadiance.begin(),
     [](float fluence) { return static_cast<float>(fluence / (4.0 * Pi)); });
   light.storedDirections = { { 0.0, 0.0, 0.0 } };
-  light.device = device.Name();
+  light.device = NameWithStreaming(device);
   Describe(light, problem, settings, thickest);
   problem.Undo(light);
   Judge(light, illumination, settings);

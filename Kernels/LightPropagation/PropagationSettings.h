@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 
 namespace tyndall
 {
@@ -61,6 +62,9 @@ struct PropagationSettings
   /// along exact rays (EmissionRays.h), about: a twentieth of the voxels may be off by more; 0.005 costs five to ten
   /// times as much, and less than that gains nothing; 0: not followed
   double emissionError = 0.02;
+  /// Bytes of the device's memory that may be taken; 0: nine tenths of what it has. Where the arrays over all voxels do
+  /// not fit they lie in host memory, and are streamed: the same light, bit for bit.
+  std::size_t memoryBudget = 0;
   bool leaveOut = true; ///< what the scene does not need; false: all is computed, to see what leaving out saves
 };
 

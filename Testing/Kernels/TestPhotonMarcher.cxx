@@ -251,6 +251,22 @@ TEST_F(PhotonMarcherTest, TheSumsDoNotDependOnWhoAdds)
   }
 }
 
+TEST_F(PhotonMarcherTest, SharesSumsWhereTheBudgetHasNoRoomForPrivateOnes)
+{
+  PhotonScene scene({ 24, 20, 28 }, 0.1, 1.2, 0.2f, 0.4f);
+  const std::vector<Photon> photons = Beam(scene.medium.grid, { 0.1, 0.2, 1.0 }, 2000);
+  Device whole(this->GetDevice(), MemoryBudget{});
+  scene.settings.sums = MarchSettings::Sums::Shared;
+  const PhotonLight shared = scene.March(whole, photons);
+  const std::size_t needed = whole.PeakBytes() + 64;
+  scene.settings.sums = MarchSettings::Sums::Fitting;
+  Device part(this->GetDevice(), MemoryBudget{ needed });
+  EXPECT_EQ(scene.March(part, photons).light.fluence, shared.light.fluence);
+  EXPECT_LE(part.PeakBytes(), needed);
+  Device less(this->GetDevice(), MemoryBudget{ needed / 2 });
+  EXPECT_THROW(scene.March(less, photons), DeviceError);
+}
+
 TEST_F(PhotonMarcherTest, ColourIsCarriedWhereItMatters)
 {
   PhotonScene scene({ 6, 6, 6 }, 0.5, 1.5, 0.1f, 0.4f);

@@ -46,6 +46,12 @@ light.EstimateError = 0
 fluence(light)
 assert light.EstimatedError == 0
 
+# A budget changes where things lie, not the light.
+light.MemoryBudget = 1
+assert abs(fluence(light) - lit).max() == 0
+assert "in host memory" in light.DeviceName, light.DeviceName
+light.MemoryBudget = 0
+
 # Properties reach the solver.
 light.Source, light.Acceleration = "Constant (as published)", "None (as published)"
 assert abs(fluence(light) / lit - 1).max() < 0.05

@@ -1,10 +1,12 @@
 #include "LightPropagation/Conservative/ConservativePropagation.h"
 
+#include "Device/DeviceWords.h"
 #include "Device/Errors.h"
 #include "Device/HostThreads.h"
 #include "Light/LeftOut.h"
 #include "LightPropagation/Conservative/DiffusionAcceleration.h"
 #include "LightPropagation/Conservative/ShownLight.h"
+#include "LightPropagation/Conservative/SolveMemory.h"
 #include "LightPropagation/Conservative/SourceIteration.h"
 #include "LightPropagation/Convergence.h"
 #include "LightPropagation/PlaneParallel/IsPlaneParallel.h"
@@ -171,7 +173,7 @@ LightField LightOf(TransportParts& parts, IterationResult&& found)
   light.fluenceDirect = std::move(found.fluenceDirect);
   light.firstMoments = std::move(found.firstMoments);
   light.surfaceRadiance = std::move(found.surfaceRadiance);
-  light.device = parts.TheDevice.Name();
+  light.device = NameWithStreaming(parts.TheDevice);
   return light;
 }
 
@@ -180,7 +182,9 @@ LightField Solve(Device& device, const Medium& medium, const Illumination& illum
   const PropagationSettings& settings, const Monitor& monitor, KeptLight* kept)
 {
   const PropagationProblem problem(medium, illumination, settings, MemoryOf(device));
-  TransportParts parts(device, problem, HowOrdersAreAdded(problem));
+  const OrdersAdded how = HowOrdersAreAdded(problem);
+  Device ofSolve(device, BudgetOfSolve(device, problem, how));
+  TransportParts parts(ofSolve, problem, how);
   std::unique_ptr<Iteration> iteration;
   if (parts.How == OrdersAdded::ByBalance)
   {

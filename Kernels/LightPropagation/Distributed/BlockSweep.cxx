@@ -221,9 +221,9 @@ cl::Kernel BlockSweep::Kernel(const SweepVolume& volume)
 {
   const SweepPlan& plan = this->Plan;
   const bool shines = volume.source != nullptr;
-  std::string options = Define("SIDES", 1) + Define("REAL_WIDTH", plan.vector) + Define("CHANNELS", plan.channels) +
-    Define("ROW", plan.row) + Define("SOURCE", shines) + Define("BORDER", 0) + Define("NET_FLUX", plan.netFlux) +
-    Define("FACE_OUT", 0) + Define("FACE_SPREAD", 0) + Define("FACE_IN", 0) +
+  std::string options = Define("SIDES", 1) + Define("STREAMED", 0) + Define("REAL_WIDTH", plan.vector) +
+    Define("CHANNELS", plan.channels) + Define("ROW", plan.row) + Define("SOURCE", shines) + Define("BORDER", 0) +
+    Define("NET_FLUX", plan.netFlux) + Define("FACE_OUT", 0) + Define("FACE_SPREAD", 0) + Define("FACE_IN", 0) +
     Define("OCTANT_SOURCE", plan.octantSource && shines) + Define("CURRENTS", plan.partialCurrents) +
     Define("DEGREE", 0) + Define("BEAMS", 0) + Define("PERIODIC_P", 0) + Define("PERIODIC_U", 0) +
     Define("PERIODIC_V", 0);

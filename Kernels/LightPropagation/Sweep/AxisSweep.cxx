@@ -2,6 +2,7 @@
 
 #include "Device/Defines.h"
 #include "Device/GroupSize.h"
+#include "LightPropagation/Sweep/SliceStream.h"
 #include "LightPropagation/Sweep/SweepBorder.h"
 #include "LightPropagation/Sweep/SweepPlan.h"
 #include "Medium/BoxFaces.h"
@@ -78,8 +79,12 @@ struct AxisSweep::Implementation
   {
     const Buffer<cl_int2>& planes;
     int launches;
+    const SliceStream::Schedule& streamed; ///< the same, where there is a stream
   };
-  Schedule Rounds() const { return { this->RoundSchedule, static_cast<int>(this->Plan.units.size()) }; }
+  Schedule Rounds() const
+  {
+    return { this->RoundSchedule, static_cast<int>(this->Plan.units.size()), this->StreamedRounds };
+  }
   void Launch(cl::Kernel kernel, const SweepVolume& volume, const Buffer<CrossingInfo>& crossings,
     const Schedule& schedule, bool mapsEmpty, const Monitor& monitor);
   /// What the kernel is compiled for.
@@ -124,6 +129,8 @@ struct AxisSweep::Implementation
   Buffer<cl_int2> FirstSchedule, RoundSchedule;
   Buffer<CrossingInfo> FirstCrossings;
   Buffer<OwnLightInfo> FirstOwnLight;
+  std::unique_ptr<SliceStream> Stream; ///< of a volume in host memory; null: it is swept where it is
+  SliceStream::Schedule StreamedFirst, StreamedRounds;
 
   std::map<std::size_t, std::unique_ptr<SweepBorder>> Borders; ///< by a volume's first value
   bool SidesDark = false;                                      ///< Outside and Radiance are zero
@@ -140,8 +147,15 @@ void AxisSweep::Implementation::MakeBuffers()
     device, this->IsPeriodic() ? 0 : 2 * plan.mapsEachWay, plan.units.size() * plan.ScratchFloats());
   if (this->IsPeriodic())
   {
-    this->OwnMaps = Buffer<float>(device, 2 * plan.mapsEachWay, "the light propagation maps");
+    this->OwnMaps =
+      Buffer<float>(device, 2 * plan.mapsEachWay, "the light propagation maps", CL_MEM_READ_WRITE, Residence::Device);
     this->OwnMaps.Fill(0.0f);
+  }
+  this->Stream = SliceStream::Make(device, plan, this->Workspace);
+  if (this->Stream)
+  {
+    this->StreamedFirst = this->Stream->Cut(plan.schedule);
+    this->StreamedRounds = this->Stream->Cut(plan.roundSchedule);
   }
   this->Outside = Buffer<float>(device, 2 * plan.outsideEachWay, "the light that comes in sideways");
   this->Radiance = Buffer<float>(device, 2 * plan.radianceEachWay, "the light that comes in sideways");
@@ -209,7 +223,7 @@ void AxisSweep::Implementation::DarkenBeside()
 void AxisSweep::Implementation::CrossOnce(const SweepVolume& volume, const Entry& entry, const Monitor& monitor)
 {
   const Schedule schedule =
-    this->Plan.laps == 1 ? Schedule{ this->FirstSchedule, this->Plan.launches } : this->Rounds();
+    this->Plan.laps == 1 ? Schedule{ this->FirstSchedule, this->Plan.launches, this->StreamedFirst } : this->Rounds();
   const Deposit& to = volume.deposit;
   const Wanted wanted = { entry.source, entry.border, volume.faceIn != nullptr, to.flux != nullptr,
     to.faceOut != nullptr, to.spreadsAside };
@@ -267,15 +281,35 @@ void AxisSweep::Implementation::Launch(cl::Kernel kernel, const SweepVolume& vol
   info.packedMoments = plan.momentRow;
   info.sizeY = plan.grid.size[1];
   info.firstChannel = volume.firstChannel;
-  for (int launch = 0; launch < schedule.launches; ++launch)
+  if (this->Stream)
   {
+    this->Stream->Describe(info);
+  }
+  const auto in = [this](SlotArray array, const Buffer<float>& whole) -> const Buffer<float>& {
+    return this->Stream ? this->Stream->Slots(array) : whole;
+  };
+  const int launches = this->Stream ? static_cast<int>(schedule.streamed.pieces.size()) : schedule.launches;
+  const SliceStream::Launch start = [&](int launch, const std::vector<cl::Event>* after, cl::Event* done) {
     info.launch = launch;
-    With(kernel, info, *volume.sigma_t, source, *volume.deposit.path, lost, flux, partialCurrents, this->Maps(),
-      this->Outside, this->Radiance, this->Workspace.scratch, this->Units, this->Bundles, this->Coefficients, crossings,
-      this->FirstOwnLight, schedule.planes, this->Sideways, faceOut, faceIn, octantSource);
-    this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(plan.units.size()), cl::NDRange(1));
-    this->TheDevice.Queued(plan.secondsPerLaunch);
-    Report(monitor, (launch + 1.0) / schedule.launches);
+    With(kernel, info, in(SlotArray::SigmaT, *volume.sigma_t), in(SlotArray::Source, source),
+      in(SlotArray::Path, *volume.deposit.path), in(SlotArray::Lost, lost), in(SlotArray::Flux, flux),
+      in(SlotArray::PartialCurrents, partialCurrents), this->Maps(), this->Outside, this->Radiance,
+      this->Workspace.scratch, this->Units, this->Bundles, this->Coefficients, crossings, this->FirstOwnLight,
+      this->Stream ? schedule.streamed.rows : schedule.planes, this->Sideways, faceOut, faceIn,
+      in(SlotArray::OctantSource, octantSource));
+    this->TheDevice.Queue().enqueueNDRangeKernel(
+      kernel, cl::NullRange, cl::NDRange(plan.units.size()), cl::NDRange(1), after, done);
+    this->TheDevice.Queued(plan.secondsPerLaunch * schedule.launches / launches);
+    Report(monitor, (launch + 1.0) / launches);
+  };
+  if (this->Stream)
+  {
+    this->Stream->Cross(schedule.streamed, volume, start);
+    return;
+  }
+  for (int launch = 0; launch < launches; ++launch)
+  {
+    start(launch, nullptr, nullptr);
   }
 }
 
@@ -363,9 +397,10 @@ cl::Kernel AxisSweep::Implementation::SweepKernel(const Wanted& wanted)
   std::string options = Define("REAL_WIDTH", plan.vector) + Define("CHANNELS", plan.channels) +
     Define("ROW", plan.row) + Define("SOURCE", wanted.source) + Define("BORDER", wanted.border) +
     Define("NET_FLUX", wanted.flux) + Define("FACE_OUT", wanted.faceOut) + Define("FACE_SPREAD", wanted.spreadsAside) +
-    Define("FACE_IN", wanted.faceIn) + Define("OCTANT_SOURCE", plan.octantSource && wanted.source) +
-    Define("CURRENTS", plan.partialCurrents) + DefineMoments(plan) + Define("PERIODIC_P", this->IsPeriodic()) +
-    Define("PERIODIC_U", plan.periodic[plan.axes.u]) + Define("PERIODIC_V", plan.periodic[plan.axes.v]);
+    Define("FACE_IN", wanted.faceIn) + Define("STREAMED", this->Stream != nullptr) +
+    Define("OCTANT_SOURCE", plan.octantSource && wanted.source) + Define("CURRENTS", plan.partialCurrents) +
+    DefineMoments(plan) + Define("PERIODIC_P", this->IsPeriodic()) + Define("PERIODIC_U", plan.periodic[plan.axes.u]) +
+    Define("PERIODIC_V", plan.periodic[plan.axes.v]);
   for (int members = 1; members <= MaxMembers; members *= 2)
   {
     const auto has = [&](const BundleInfo& bundle) { return bundle.members == members; };

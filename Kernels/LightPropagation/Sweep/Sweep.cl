@@ -495,6 +495,25 @@ static void cross_bundles(sweep_state* state, __global float* maps, const __glob
 #endif
 }
 
+#if STREAMED
+// Of volumes that are streamed there are slices in slots (SliceStream.h): the steps of PlaneInfo are a slot's, and
+// plane `slot.y` of the box is the first one there.
+static void go_to_slot(SweepInfo* info, int2 slot, const __global float** sigma, const __global float** source,
+  __global float** path, __global float** lost, __global float** flux, __global float** currents,
+  const __global float** octants)
+{
+  info->planes.firstP = -slot.y;
+  const ulong voxels = slot.x * info->stride * CHANNELS;
+  *sigma += slot.x * info->stride;
+  *source += slot.x * info->sourceSlot;
+  *path += slot.x * info->pathSlot;
+  *lost += slot.x * info->pathSlot;
+  *flux += 3 * voxels;
+  *currents += 6 * voxels;
+  *octants += 8 * voxels;
+}
+#endif
+
 // sigma     1/length, [voxel]
 // source    W / (length^3 sr), with its angular moments and beams (MomentPlacesShared.h)
 // path      W length, with its angular moments, added to
@@ -507,7 +526,7 @@ static void cross_bundles(sweep_state* state, __global float* maps, const __glob
 // crossings [plane of the ray pattern][bundle]
 // own       [unit][plane from where rays start], see add_own_light
 // schedule  [launch][unit] first plane and end, counted from where rays start; beyond the last plane the axis begins
-//           anew
+//           anew; where STREAMED [launch][planes, slots][unit], see go_to_slot
 // tally     [plane from where rays start][unit][-u, +u, -v, +v][channel] W that left
 // octants   see SweepRequest::octantSource
 // face_out, face_in  see Deposit.h, SweepOperator.h; where FACE_OUT, FACE_IN; face_out [unit][channel][cell] where
@@ -530,7 +549,12 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
   const int u = get_global_id(0);
   const int unit_count = get_global_size(0);
   const UnitInfo unit = units[u];
-  const int2 range = schedule[info.launch * unit_count + u];
+  const int2 range = schedule[(STREAMED ? 2 : 1) * info.launch * unit_count + u];
+  const int first_plane = info.planes.firstP; // of the box, in the grid
+#if STREAMED
+  const int2 slot = schedule[(2 * info.launch + 1) * unit_count + u];
+  go_to_slot(&info, slot, &sigma, &source, &path, &lost, &flux, &currents, &octants);
+#endif
   const PlaneInfo layout = info.planes;
 
   sweep_state state;
@@ -628,7 +652,7 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
       state.planes = planes + (plane - first) * plane_floats(&layout);
       state.thin = thin + (plane - first) * layout.sizeV;
 #if FACE_OUT || FACE_IN
-      go_to_faces(&state, layout.firstP + plane);
+      go_to_faces(&state, first_plane + plane);
 #endif
 #if FACE_OUT
       state.facePlane = plane;

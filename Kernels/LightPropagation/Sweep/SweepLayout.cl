@@ -15,6 +15,7 @@
 //   BORDER    1 where light comes in through the faces that rays pass sideways
 //   PERIODIC_P  1 where rays go round the axis: planes are added to many times, and what rounding loses is kept
 //   PERIODIC_U, PERIODIC_V  1 where rays come back on the other side
+//   STREAMED  1 where slices of the volumes are in slots (SliceStream.h)
 //   FACE_OUT, FACE_IN  1 where light leaves and comes in by cells of the box's faces (SweepFaces.cl)
 //   SIDES     1 where the box is a block of a larger one (SweepSides.cl); may be left out
 //

@@ -140,8 +140,9 @@ typedef struct
   PlaneInfo planes;
   FaceInfo faces;
   MomentPlaces moments;
-  int sizeY;         ///< voxels of the grid along y
+  int sizeY;         ///< voxels of the grid along y, or of a slot
   int packedMoments; ///< floats of a packed row of moments
   int firstChannel;
+  ulong sourceSlot, pathSlot; ///< floats of a slot of source and of path, where volumes are streamed
 } SweepInfo;
 SHARED_END

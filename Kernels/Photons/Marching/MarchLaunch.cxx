@@ -16,9 +16,14 @@ constexpr double SecondsPerLaunch = 0.1;
 constexpr double EventsPerLaunch = 4e7; ///< of straight ways, which two cores follow in less
 constexpr double FirstBent = 16384;     ///< photons on bent ways in the first launch
 
+bool HasAtomics(const Device& device)
+{
+  return device.HasExtension("cl_khr_int64_base_atomics");
+}
+
 bool NeedAtomics(const Device& device, MarchSettings::Sums sums)
 {
-  const bool atomics = device.HasExtension("cl_khr_int64_base_atomics");
+  const bool atomics = HasAtomics(device);
   const bool few = device.IsCpu() && device.ComputeUnits() <= PrivateSumsAtMost;
   if (sums == MarchSettings::Sums::Shared && !atomics)
   {
@@ -101,7 +106,13 @@ MarchShares ShareSums(const MarchMedium& medium, std::size_t records, int number
   }
   const std::size_t bytes = records * static_cast<std::size_t>(numbers) * sizeof(cl_long);
   const std::size_t free = device.MemoryLimit() - std::min(device.MemoryLimit(), device.BytesInUse() - held);
-  const std::size_t fit = std::min(device.AllocationLimit(), free / (shares.atomics ? 1 : 2)) / bytes;
+  const auto fitting = [&] { return std::min(device.AllocationLimit(), free / (shares.atomics ? 1 : 2)) / bytes; };
+  const bool mayShare = medium.settings.sums == MarchSettings::Sums::Fitting && HasAtomics(device);
+  if (mayShare && fitting() < static_cast<std::size_t>(std::max(device.ComputeUnits(), batches)))
+  {
+    shares.atomics = true; // slower additions, but of all cores
+  }
+  const std::size_t fit = fitting();
   if (batches > 1 && fit < static_cast<std::size_t>(batches))
   {
     throw DeviceError("The sums of " + std::to_string(batches) + " batches of photons need " +

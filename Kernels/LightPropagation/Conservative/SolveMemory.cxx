@@ -1,0 +1,74 @@
+#include "LightPropagation/Conservative/SolveMemory.h"
+
+#include "Device/Sizes.h"
+#include "LightPropagation/Sweep/VolumeLayout.h"
+#include "LightPropagation/ThickVoxels/OctantSources.h"
+
+#include <algorithm>
+
+namespace tyndall
+{
+namespace
+{
+/// Values a voxel and channel of the medium and of the light that sweeps carry.
+std::size_t ArraysOfLight(const PropagationProblem& problem)
+{
+  const std::size_t degree = Count(problem.Scattering().Degree());
+  const std::size_t moments = (degree + 1) * (degree + 1);
+  const std::size_t medium = 2 + (degree > 0 ? degree + 2 : 0);
+  const std::size_t flux = problem.Settings().netFlux ? 3 : 0;
+  const std::size_t shown = degree > 0 && problem.Settings().storeMoments ? moments : 0;
+  const std::size_t beams = degree > 0 ? 5 : 0;
+  return medium + 2 * moments + 1 + flux + shown + beams + (problem.Settings().firstMoments ? 6 : 0);
+}
+
+/// The same of what adds up scattering orders.
+std::size_t ArraysOfOrders(const PropagationProblem& problem, OrdersAdded how)
+{
+  const std::size_t degree = Count(problem.Scattering().Degree());
+  const std::size_t moments = (degree + 1) * (degree + 1);
+  constexpr std::size_t OfOctants = 28, OfCells = 2, OfBalance = 34;
+  switch (how)
+  {
+    case OrdersAdded::ByBalance: return OfBalance + 2 * moments + (problem.Settings().netFlux ? 6 : 0);
+    case OrdersAdded::ByCells: return OfCells;
+    default: return OctantSources::Matter(problem, false) ? OfOctants : 0;
+  }
+}
+
+/// Rays of all bundles along an axis, both ways, and planes that are being crossed.
+std::size_t BytesOfSweep(const PropagationProblem& problem)
+{
+  const std::array<int, 3>& n = problem.TheGrid().size;
+  const std::size_t plane =
+    std::max({ Count(n[0]) * Count(n[1]), Count(n[1]) * Count(n[2]), Count(n[0]) * Count(n[2]) });
+  const std::size_t rays = Count(std::max(problem.Settings().directionsPerFace, 1)) * 2 + 16 * 4 * 16;
+  return 2 * sizeof(float) * Count(problem.Channels()) * plane * rays;
+}
+}
+
+std::size_t BytesOfSolve(const PropagationProblem& problem, OrdersAdded how)
+{
+  const VolumeLayout layout = { problem.TheGrid(), problem.Channels() };
+  return sizeof(float) * layout.Values() * (ArraysOfLight(problem) + ArraysOfOrders(problem, how)) +
+    BytesOfSweep(problem);
+}
+
+MemoryBudget BudgetOfSolve(const Device& device, const PropagationProblem& problem, OrdersAdded how)
+{
+  const std::size_t asked = problem.Settings().memoryBudget;
+  const std::size_t left = device.MemoryLimit() - std::min(device.BytesInUse(), device.MemoryLimit());
+  MemoryBudget budget;
+  budget.bytes = asked > 0 ? asked : left / 10 * 9;
+  if (asked == 0 && device.SharesHostMemory())
+  {
+    return {}; // host memory is all that there is
+  }
+  budget.spills = true;
+  if (BytesOfSolve(problem, how) > budget.bytes)
+  {
+    budget.hostFrom = sizeof(float) * problem.TheGrid().VoxelCount();
+  }
+  return budget;
+}
+}

@@ -1,0 +1,16 @@
+#pragma once
+
+#include "Device/Device.h"
+#include "Device/MemoryBudget.h"
+#include "LightPropagation/Problem/PropagationProblem.h"
+#include "LightPropagation/Problem/ScatteringOrders.h"
+
+namespace tyndall
+{
+/// Bytes that a solve takes of a device where nothing is streamed: at most, and about a quarter more than most solves.
+std::size_t BytesOfSolve(const PropagationProblem& problem, OrdersAdded how);
+
+/// What a solve may take of a device: the settings' budget, or nine tenths of what is left there. Where a whole solve
+/// is more than that, all arrays over voxels lie in host memory and are streamed.
+MemoryBudget BudgetOfSolve(const Device& device, const PropagationProblem& problem, OrdersAdded how);
+}

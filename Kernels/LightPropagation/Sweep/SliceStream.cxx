@@ -1,0 +1,368 @@
+#include "LightPropagation/Sweep/SliceStream.h"
+
+#include "Device/Sizes.h"
+
+#include <algorithm>
+
+namespace tyndall
+{
+namespace
+{
+constexpr int SliceThickness = 16;      ///< planes of a slot: as many as Gruson et al. take, if there is room
+constexpr std::size_t SlotsPerUnit = 2; ///< one that is crossed, and one whose slice comes or goes
+
+/// Floats of one voxel in all arrays.
+std::size_t FloatsOfVoxel(const SweepPlan& plan)
+{
+  const int light = plan.angular ? plan.moments.functions : 1;
+  const int beams = plan.angular ? plan.angular->Beams() : 0;
+  const int lost = plan.periodic[plan.axes.axis] ? light : 0;
+  return Count(1 +
+    plan.channels *
+      (2 * light + beams + lost + (plan.netFlux ? 3 : 0) + (plan.partialCurrents ? 6 : 0) +
+        (plan.octantSource ? 8 : 0)));
+}
+
+/// Planes of a slot, such that all slots fit what rays and scratch leave; one at the least.
+int ThicknessFor(const Device& device, const SweepPlan& plan, const SweepWorkspace& workspace)
+{
+  std::size_t left = device.MemoryLimit() - std::min(device.BytesInUse(), device.MemoryLimit());
+  for (const Buffer<float>& slot : workspace.slots) // of other axes: they are shared
+  {
+    left += slot.Size() * sizeof(float);
+  }
+  const std::size_t plane = Count(plan.plane.sizeU) * Count(plan.plane.sizeV) * FloatsOfVoxel(plan) * sizeof(float);
+  const std::size_t fit = left / 4 * 3 / (SlotsPerUnit * plan.units.size() * plane);
+  return static_cast<int>(std::clamp<std::size_t>(fit, 1, SliceThickness));
+}
+
+/// Whether units that are in work side by side never have to do with the same planes.
+bool IsApart(const std::vector<std::vector<SlicePiece>>& launches, int aligned)
+{
+  for (const std::vector<SlicePiece>& launch : launches)
+  {
+    for (std::size_t a = 0; a < launch.size(); ++a)
+    {
+      for (std::size_t b = 0; b < a; ++b)
+      {
+        if (Meet(launch[a], launch[b], aligned))
+        {
+          return false;
+        }
+      }
+    }
+  }
+  return true;
+}
+
+/// Whether a unit comes next to planes that one is at now.
+bool Follows(const std::vector<SlicePiece>& now, const std::vector<SlicePiece>& next, int aligned)
+{
+  return std::any_of(now.begin(), now.end(), [&](const SlicePiece& before) {
+    return std::any_of(next.begin(), next.end(), [&](const SlicePiece& after) { return Meet(before, after, aligned); });
+  });
+}
+}
+
+std::unique_ptr<SliceStream> SliceStream::Make(Device& device, const SweepPlan& plan, SweepWorkspace& workspace)
+{
+  if (!device.Streams() || device.SharesHostMemory())
+  {
+    return nullptr;
+  }
+  int thickness = std::min(ThicknessFor(device, plan, workspace), plan.Planes());
+  const bool byGroups = plan.angular && plan.axes.axis == 0;
+  if (byGroups)
+  {
+    thickness = MomentGroup;
+    if (plan.box.size[1] != plan.grid.size[1] ||
+      !IsApart(CutIntoPieces(plan, plan.schedule, thickness, MomentGroup), MomentGroup))
+    {
+      return nullptr;
+    }
+  }
+  return std::make_unique<SliceStream>(device, plan, workspace, thickness);
+}
+
+SliceStream::SliceStream(Device& device, const SweepPlan& plan, SweepWorkspace& workspace, int thickness)
+  : TheDevice(device)
+  , Plan(plan)
+  , Workspace(workspace)
+  , Transfers(device.AnotherQueue())
+  , Extent(plan.box.size)
+{
+  this->Extent[plan.axes.axis] = thickness;
+  this->LaySlots();
+}
+
+void SliceStream::LaySlots()
+{
+  const auto [x, y, z] = this->Extent;
+  const std::size_t channels = Count(this->Plan.channels);
+  this->Stride = RoundUp<std::size_t>(Count(x) * Count(y) * Count(z), SweepPadding);
+  this->Places = this->Plan.moments;
+  this->Places.channels = this->Plan.channels;
+  this->Places.groups = PartsOf<int>(x, MomentGroup);
+  this->Places.second = channels * this->Stride;
+  const std::size_t row = Count(this->Places.groups) * Count(this->Places.functions - 1) * MomentGroup;
+  this->Places.beams = this->Places.second + (this->HasMoments() ? channels * Count(y) * Count(z) * row : 0);
+  const bool goesRound = this->Plan.periodic[this->Plan.axes.axis];
+  SlotSizes sizes = {};
+  const auto want = [&](SlotArray array, bool wanted) {
+    sizes[static_cast<std::size_t>(array)] =
+      wanted ? SlotsPerUnit * this->Plan.units.size() * this->SlotFloats(array) + SweepPadding : 0;
+  };
+  want(SlotArray::SigmaT, true);
+  want(SlotArray::Source, true);
+  want(SlotArray::Path, true);
+  want(SlotArray::Lost, goesRound);
+  want(SlotArray::Flux, this->Plan.netFlux);
+  want(SlotArray::PartialCurrents, this->Plan.partialCurrents);
+  want(SlotArray::OctantSource, this->Plan.octantSource);
+  this->Workspace.ReserveSlots(this->TheDevice, sizes);
+}
+
+std::size_t SliceStream::SlotFloats(SlotArray array) const
+{
+  const std::size_t all = Count(this->Plan.channels) * this->Stride;
+  const std::size_t beams = this->HasMoments() ? Count(this->Plan.angular->Beams()) : 0;
+  switch (array)
+  {
+    case SlotArray::SigmaT: return this->Stride;
+    case SlotArray::Source: return this->Places.beams + beams * all;
+    case SlotArray::Flux: return 3 * all;
+    case SlotArray::PartialCurrents: return 6 * all;
+    case SlotArray::OctantSource: return 8 * all;
+    default: return this->Places.beams;
+  }
+}
+
+const Buffer<float>& SliceStream::Slots(SlotArray array) const
+{
+  const Buffer<float>& slots = this->Workspace.slots[static_cast<std::size_t>(array)];
+  return slots.Size() > 0 ? slots : this->Workspace.slots[static_cast<std::size_t>(SlotArray::Path)]; // not looked at
+}
+
+/// Planes of which the angular moments lie together.
+int SliceStream::Aligned() const
+{
+  return this->HasMoments() && this->Plan.axes.axis == 0 ? MomentGroup : 1;
+}
+
+int SliceStream::FirstOfSlot(const SlicePiece& piece) const
+{
+  return piece.begin / this->Aligned() * this->Aligned();
+}
+
+SliceStream::Schedule SliceStream::Cut(const std::vector<cl_int2>& schedule) const
+{
+  Schedule cut;
+  cut.pieces = CutIntoPieces(this->Plan, schedule, this->Thickness(), this->Aligned());
+  std::vector<cl_int2> rows;
+  for (std::size_t launch = 0; launch < cut.pieces.size(); ++launch)
+  {
+    for (const SlicePiece& piece : cut.pieces[launch])
+    {
+      rows.push_back(piece.range);
+    }
+    for (std::size_t u = 0; u < cut.pieces[launch].size(); ++u)
+    {
+      const std::size_t slot = SlotsPerUnit * u + launch % SlotsPerUnit;
+      rows.push_back({ { static_cast<cl_int>(slot), this->FirstOfSlot(cut.pieces[launch][u]) } });
+    }
+  }
+  cut.rows = Buffer<cl_int2>(this->TheDevice, rows, "the schedule");
+  return cut;
+}
+
+void SliceStream::Describe(SweepInfo& info) const
+{
+  const std::array<int, 3> step = { 1, this->Extent[0], this->Extent[0] * this->Extent[1] };
+  const PlaneAxes& axes = this->Plan.axes;
+  info.planes.firstU = 0;
+  info.planes.firstV = 0;
+  info.planes.stepU = step[axes.u];
+  info.planes.stepV = step[axes.v];
+  info.planes.stepP = step[axes.axis];
+  info.sigmaFirst = 0;
+  info.first = 0;
+  info.stride = this->Stride;
+  info.moments = this->Places;
+  info.firstChannel = 0;
+  info.sizeY = this->Extent[1];
+  info.sourceSlot = this->SlotFloats(SlotArray::Source);
+  info.pathSlot = this->SlotFloats(SlotArray::Path);
+}
+
+std::vector<SliceStream::Streamed> SliceStream::ArraysOf(const SweepVolume& volume) const
+{
+  const int channels = this->Plan.channels;
+  const int beams = this->HasMoments() ? this->Plan.angular->Beams() : -1;
+  const Deposit& to = volume.deposit;
+  std::vector<Streamed> arrays = { { volume.sigma_t, SlotArray::SigmaT, 1, volume.sigma_t_first, false },
+    { to.path, SlotArray::Path, channels, volume.first, true, this->HasMoments() ? 0 : -1 } };
+  if (volume.source)
+  {
+    arrays.push_back({ volume.source, SlotArray::Source, channels, volume.first, false, beams });
+  }
+  if (this->Plan.periodic[this->Plan.axes.axis])
+  {
+    arrays.push_back({ &this->Workspace.lost, SlotArray::Lost, channels, volume.first, true });
+  }
+  if (to.flux)
+  {
+    arrays.push_back({ to.flux, SlotArray::Flux, 3 * channels, 3 * volume.first, true });
+  }
+  if (to.partialCurrents)
+  {
+    arrays.push_back({ to.partialCurrents, SlotArray::PartialCurrents, 6 * channels, 6 * volume.first, true });
+  }
+  if (volume.octantSource)
+  {
+    arrays.push_back({ volume.octantSource, SlotArray::OctantSource, 8 * channels, 8 * volume.first, false });
+  }
+  return arrays;
+}
+
+/// Of one part of an array.
+SliceStream::Rows SliceStream::PlanarRows(const SlicePiece& piece) const
+{
+  const int axis = this->Plan.axes.axis;
+  const std::array<int, 3>& n = this->Plan.grid.size;
+  std::array<int, 3> first = this->Plan.box.first, size = this->Plan.box.size, inSlot = {};
+  first[axis] += piece.begin;
+  size[axis] = piece.end - piece.begin;
+  inSlot[axis] = piece.begin - this->FirstOfSlot(piece);
+  const auto place = [](const std::array<int, 3>& voxel, const std::array<int, 3>& extent) {
+    return Count(voxel[0]) + Count(extent[0]) * (Count(voxel[1]) + Count(extent[1]) * Count(voxel[2]));
+  };
+  return { { Count(size[0]), Count(size[1]), Count(size[2]) }, place(first, n), Count(n[0]), Count(n[0]) * Count(n[1]),
+    place(inSlot, this->Extent), Count(this->Extent[0]), Count(this->Extent[0]) * Count(this->Extent[1]) };
+}
+
+/// Of all angular functions but the first.
+SliceStream::Rows SliceStream::MomentRows(const SlicePiece& piece) const
+{
+  const MomentPlaces& host = this->Plan.moments;
+  const VoxelBox& box = this->Plan.box;
+  const int axis = this->Plan.axes.axis;
+  const std::size_t group = Count(host.functions - 1) * MomentGroup;
+  const std::size_t ofChannel = Count(host.groups) * group, line = Count(host.channels) * ofChannel;
+  const std::size_t slotChannel = Count(this->Places.groups) * group,
+                    slotLine = Count(this->Plan.channels) * slotChannel;
+  const std::size_t lines = Count(this->Plan.grid.size[1]);
+  if (axis == 0)
+  {
+    const std::size_t begin = Count(piece.begin / MomentGroup), end = Count(PartsOf<int>(piece.end, MomentGroup));
+    return { { (end - begin) * group, Count(this->Plan.channels), lines * Count(box.size[2]) },
+      host.second + begin * group + line * lines * Count(box.first[2]), ofChannel, line, this->Places.second,
+      slotChannel, slotLine };
+  }
+  std::array<int, 3> first = box.first, size = box.size;
+  first[axis] += piece.begin;
+  size[axis] = piece.end - piece.begin;
+  return { { slotLine, Count(size[1]), Count(size[2]) },
+    host.second + line * (Count(first[1]) + lines * Count(first[2])), line, line * lines, this->Places.second, slotLine,
+    slotLine * Count(this->Extent[1]) };
+}
+
+void SliceStream::CopyRows(const Streamed& array, const Rows& rows, std::size_t host, std::size_t slot, bool back)
+{
+  constexpr std::size_t Float = sizeof(float);
+  const cl::array<cl::size_type, 3> region = { rows.count[0] * Float, rows.count[1], rows.count[2] };
+  const cl::array<cl::size_type, 3> inHost = { (host + rows.hostFirst) * Float, 0, 0 };
+  const cl::array<cl::size_type, 3> inSlot = { (slot + rows.slotFirst) * Float, 0, 0 };
+  const std::vector<cl::Event>* after = this->Waiting.empty() ? nullptr : &this->Waiting;
+  const cl::Buffer& slots = this->Slots(array.slots).Handle();
+  if (back)
+  {
+    this->Transfers.enqueueCopyBufferRect(slots, array.host->Handle(), inSlot, inHost, region, rows.slotRow * Float,
+      rows.slotLayer * Float, rows.hostRow * Float, rows.hostLayer * Float, after, &this->Last);
+  }
+  else
+  {
+    this->Transfers.enqueueCopyBufferRect(array.host->Handle(), slots, inHost, inSlot, region, rows.hostRow * Float,
+      rows.hostLayer * Float, rows.slotRow * Float, rows.slotLayer * Float, after, &this->Last);
+  }
+  this->Waiting.clear(); // what follows in the queue waits for this one
+}
+
+/// Slices of a launch into its slots, or what was added to them back.
+void SliceStream::Copy(
+  const std::vector<Streamed>& arrays, const std::vector<SlicePiece>& launch, int parity, bool back)
+{
+  for (std::size_t u = 0; u < launch.size(); ++u)
+  {
+    for (const Streamed& array : arrays)
+    {
+      if (launch[u].begin < launch[u].end && (array.comesBack || !back))
+      {
+        const std::size_t slot = SlotsPerUnit * u + Count(parity);
+        this->CopyArray(array, launch[u], slot * this->SlotFloats(array.slots), back);
+      }
+    }
+  }
+}
+
+/// @param slot  where it begins
+void SliceStream::CopyArray(const Streamed& array, const SlicePiece& piece, std::size_t slot, bool back)
+{
+  const MomentPlaces& host = this->Plan.moments;
+  const std::size_t hostStride = host.second / Count(host.channels);
+  const Rows planar = this->PlanarRows(piece);
+  for (int part = 0; part < array.parts; ++part)
+  {
+    this->CopyRows(array, planar, array.first + Count(part) * hostStride, slot + Count(part) * this->Stride, back);
+  }
+  if (array.beams < 0)
+  {
+    return;
+  }
+  const std::size_t ofChannel = Count(host.groups) * Count(host.functions - 1) * MomentGroup;
+  this->CopyRows(array, this->MomentRows(piece), array.first / hostStride * ofChannel, slot, back);
+  for (int part = 0; part < array.beams * array.parts; ++part)
+  {
+    const int inHost = part / array.parts * host.channels + part % array.parts;
+    this->CopyRows(array, planar, host.beams + array.first + Count(inHost) * hostStride,
+      slot + this->Places.beams + Count(part) * this->Stride, back);
+  }
+}
+
+void SliceStream::Cross(const Schedule& schedule, const SweepVolume& volume, const Launch& launch)
+{
+  const std::vector<Streamed> arrays = this->ArraysOf(volume);
+  cl::CommandQueue& kernels = this->TheDevice.Queue();
+  cl::Event ready;
+  kernels.enqueueMarkerWithWaitList(nullptr, &ready);
+  kernels.flush();
+  this->Waiting = { ready };
+  const auto fetch = [&](std::size_t l) { this->Copy(arrays, schedule.pieces[l], static_cast<int>(l % 2), false); };
+  fetch(0);
+  cl::Event fetched = this->Last;
+  for (std::size_t l = 0; l < schedule.pieces.size(); ++l)
+  {
+    this->Transfers.flush();
+    const std::vector<cl::Event> after = { fetched };
+    cl::Event done;
+    launch(static_cast<int>(l), &after, &done);
+    kernels.flush();
+    const bool isLast = l + 1 == schedule.pieces.size();
+    const bool ahead = !isLast && !Follows(schedule.pieces[l], schedule.pieces[l + 1], this->Aligned());
+    if (ahead)
+    {
+      fetch(l + 1);
+      fetched = this->Last;
+    }
+    this->Waiting = { done };
+    this->Copy(arrays, schedule.pieces[l], static_cast<int>(l % 2), true);
+    if (!isLast && !ahead)
+    {
+      fetch(l + 1);
+      fetched = this->Last;
+    }
+  }
+  this->Transfers.flush();
+  const std::vector<cl::Event> all = { this->Last };
+  kernels.enqueueBarrierWithWaitList(&all);
+}
+}

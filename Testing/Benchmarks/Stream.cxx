@@ -1,0 +1,154 @@
+// Volumes that are streamed through a part of the device's memory, beside the same ones as a whole: seconds, bytes on
+// the device, and whether it is the same light (Gruson et al., section 4.2 and figure 7).
+//
+//   TyndallBenchStream [--quick] [edge, or "orders", or "converged", or budget=<MiB>...]
+//
+// With a budget the whole solve is left out. Kernels are compiled on the way: figures are those of a second run.
+
+#include "LpmScenes.h"
+#include "Measure.h"
+#include "Program.h"
+#include "Report.h"
+
+#include "LightPropagation/Conservative/ConservativePropagation.h"
+
+#include <cctype>
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+using namespace bench;
+using namespace tyndall;
+
+namespace
+{
+constexpr std::size_t MiB = std::size_t(1) << 20;
+constexpr std::size_t PartOfWhole = 4; ///< budget of streamed solves
+
+struct Asked
+{
+  std::vector<int> edges;
+  std::vector<std::string> cases;
+  std::size_t budget = 0; ///< 0: a part of what the whole takes
+};
+
+Asked Read(const Arguments& arguments)
+{
+  Asked asked;
+  for (const std::string& word : arguments.words)
+  {
+    if (word.rfind("budget=", 0) == 0)
+    {
+      asked.budget = std::stoul(word.substr(7)) * MiB;
+    }
+    else if (std::isdigit(static_cast<unsigned char>(word[0])))
+    {
+      asked.edges.push_back(std::stoi(word));
+    }
+    else
+    {
+      asked.cases.push_back(word);
+    }
+  }
+  if (asked.edges.empty())
+  {
+    asked.edges = arguments.quick ? std::vector<int>{ 16 } : std::vector<int>{ 64, 128, 256 };
+  }
+  if (asked.cases.empty())
+  {
+    asked.cases = { "orders", "converged" };
+  }
+  return asked;
+}
+
+struct Run
+{
+  std::string method;
+  double seconds = 0.0, core = 0.0;
+  std::size_t onDevice = 0;
+  double ofProcess = 0.0;
+  LightField light;
+};
+
+/// @param copies  the device is taken to have memory of its own
+Run Solve(Device& device, const Scene& scene, PropagationSettings settings, std::size_t budget, bool copies)
+{
+  settings.memoryBudget = budget;
+  if (copies)
+  {
+    setenv("TYNDALL_WITHOUT", "host_memory", 1);
+  }
+  const std::size_t before = device.BytesInUse();
+  device.ResetPeak();
+  const PeakMemory memory;
+  const double wall = WallSeconds(), core = CoreSeconds();
+  Run run;
+  run.method = budget == 0 ? "whole" : copies ? "streamed by copies" : "streamed in place";
+  run.light = SolveConservative(device, scene.medium, scene.light, settings);
+  run.seconds = WallSeconds() - wall;
+  run.core = CoreSeconds() - core;
+  run.onDevice = device.PeakBytes() - before;
+  run.ofProcess = memory.Bytes();
+  unsetenv("TYNDALL_WITHOUT");
+  return run;
+}
+
+void Tell(const Scene& scene, const std::string& which, const Run& run, const Run* whole, Table& table)
+{
+  JsonLine line;
+  line.Add("bench", "stream")
+    .Add("case", which)
+    .Add("method", run.method)
+    .Add("grid", scene.GridName())
+    .Add("seconds", run.seconds)
+    .Add("core_seconds", run.core)
+    .Add("peak_bytes", static_cast<double>(run.onDevice))
+    .Add("process_bytes", run.ofProcess)
+    .Add("iterations", static_cast<double>(run.light.convergence.size()))
+    .Add("balance", run.light.balance.RelativeError(run.light.channels))
+    .Add("device", run.light.device);
+  std::string same = "-";
+  if (whole)
+  {
+    same = run.light.fluence == whole->light.fluence ? "yes" : "NO";
+    line.Add("ratio", run.core / whole->core).Add("against", whole->method).Add("same_bits", same);
+  }
+  line.Print();
+  table.Add({ scene.GridName(), which, run.method, Text("%.2f", run.seconds), Text("%.2f", run.core),
+    Text("%.1f", static_cast<double>(run.onDevice) / MiB), Text("%.1f", run.ofProcess / MiB), same });
+}
+
+void RunAll(Device& device, const Arguments& arguments)
+{
+  const Asked asked = Read(arguments);
+  Table table({ "grid", "case", "method", "s", "core s", "device, MiB", "process, MiB", "same bits" });
+  for (const int edge : asked.edges)
+  {
+    const Scene scene = RandomScene(edge, 1);
+    for (const std::string& which : asked.cases)
+    {
+      PropagationSettings settings;
+      settings.maximumOrders = which == "orders" ? 3 : 0;
+      if (asked.budget > 0)
+      {
+        Tell(scene, which, Solve(device, scene, settings, asked.budget, false), nullptr, table);
+        continue;
+      }
+      const Run whole = Solve(device, scene, settings, 0, false);
+      Tell(scene, which, whole, nullptr, table);
+      const std::size_t budget = whole.onDevice / PartOfWhole;
+      Tell(scene, which, Solve(device, scene, settings, budget, true), &whole, table);
+      Tell(scene, which, Solve(device, scene, settings, budget, false), &whole, table);
+    }
+  }
+  table.Print(
+    "Volumes as a whole and streamed, grey, 25 directions a face, three orders and converged; what the device "
+    "takes (by\ncopies: of its own memory; in place: with the volumes in host memory), and the growth of the "
+    "process");
+}
+}
+
+int main(int argc, char* argv[])
+{
+  return RunOnDevice(argc, argv, RunAll);
+}
