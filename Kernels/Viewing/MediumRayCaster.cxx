@@ -1,5 +1,6 @@
 #include "Viewing/MediumRayCaster.h"
 
+#include "Device/Errors.h"
 #include "Light/LeftOut.h"
 #include "Numerics/Vectors.h"
 #include "Viewing/Rays/ViewInfos.h"
@@ -156,9 +157,14 @@ void MediumRayCaster::AddUnscattered(ViewInfo view, const Monitor& monitor, std:
   std::transform(radiance.begin(), radiance.end(), sharp.begin(), radiance.begin(), std::plus<float>());
 }
 
-Picture MediumRayCaster::Render(const Camera& camera, const Monitor& monitor, const std::vector<float>& ends)
+Picture MediumRayCaster::Render(
+  const Camera& camera, const Monitor& monitor, const std::vector<float>& ends, const GridBlock* block)
 {
-  ViewInfo view = this->Rays.ViewOf(camera, this->Settings);
+  if (block && !this->CastsBlocks())
+  {
+    throw InvalidInput("Rays that bend or meet a table cannot be cast through blocks of the medium one by one.");
+  }
+  ViewInfo view = this->Rays.ViewOf(camera, this->Settings, block);
   Report(monitor, 0.0);
   const bool prepares = !this->SourcesReady || this->Traits.sourcesDependOnCamera;
   if (prepares)
@@ -171,7 +177,7 @@ Picture MediumRayCaster::Render(const Camera& camera, const Monitor& monitor, co
   picture.width = this->Settings.imageSize[0];
   picture.height = this->Settings.imageSize[1];
   picture.farDepth = view.marching.s[2];
-  this->Rays.Reserve(this->Settings, ends);
+  this->Rays.Reserve(this->Settings, ends, block != nullptr);
   if (byMoments && !this->Behind.IsSky())
   {
     view.background = Float4(glm::dvec3(0.0), view.background.s[3]); // does not shine on the medium: see AddUnscattered
@@ -179,10 +185,12 @@ Picture MediumRayCaster::Render(const Camera& camera, const Monitor& monitor, co
   this->Rays.Cast(this->Settings, view, OpticsInfoOf(this->Settings, this->Traits),
     prepares && this->Traits.shadowRays ? 0.5 : 0.0, byMoments ? 0.8 : 1.0, monitor);
   picture.radiance = this->Rays.ReadRadiance();
+  picture.transmittance = this->Rays.ReadTransmittance();
   if (byMoments)
   {
     this->AddUnscattered(view, monitor, picture.radiance);
   }
+  picture.sceneTransmittance = byMoments ? this->Rays.ReadTransmittance() : picture.transmittance;
   picture.alpha = this->Rays.ReadAlpha();
   picture.depth = this->Rays.ReadDepth();
   return picture;

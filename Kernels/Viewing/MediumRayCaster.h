@@ -9,6 +9,7 @@
 #include "Viewing/Rays/RayCasting.h"
 #include "Viewing/Samples/PackedSamples.h"
 #include "Viewing/Scene/Camera.h"
+#include "Viewing/Scene/GridBlock.h"
 #include "Viewing/Scene/SceneOnDevice.h"
 #include "Viewing/Scene/SolvedLight.h"
 #include "Viewing/Scene/ViewSettings.h"
@@ -111,8 +112,15 @@ public:
   /// @param ends  where an opaque surface ends each pixel's ray, as a distance along the view axis, length; 1e30 where
   ///   none does; empty: nowhere. What the surface hides, the background with it, is not in the picture then: alpha is
   ///   1 - transmittance up to there. What is reflected or mirrored does not end.
+  /// @param block  of the larger grid of which the medium is a block; null: of none. The picture then has what the
+  ///   block adds to that of the whole (Blocks/BlockPixels.h), where CastsBlocks
   /// @throws InvalidInput for a camera that looks nowhere, or ends of another number than pixels; Aborted
-  Picture Render(const Camera& camera, const Monitor& monitor = {}, const std::vector<float>& ends = {});
+  Picture Render(const Camera& camera, const Monitor& monitor = {}, const std::vector<float>& ends = {},
+    const GridBlock* block = nullptr);
+
+  /// Whether pictures of blocks make up that of the whole: rays go straight on and meet no table. Shadow rays end at
+  /// the block's faces.
+  bool CastsBlocks() const { return this->Traits.OnlyStraight(); }
 
   /// What the scene did not need, in words.
   const std::vector<std::string>& LeftOut() const { return this->Omitted; }

@@ -152,6 +152,11 @@ double ExposedAs(double shown, ToneCurve curve)
   return curve == ToneCurve::Filmic ? FilmicInverse(linear) : linear;
 }
 
+float ShownValue(float exposed, ToneCurve curve)
+{
+  return std::min(ScreenValuesOf(curve)(exposed), 255.0f);
+}
+
 std::vector<std::uint8_t> ToneMap(
   const std::vector<float>& radiance, const std::vector<float>& alpha, const ToneMapping& settings)
 {

@@ -34,6 +34,10 @@ double AutomaticExposure(const std::vector<float>& radiance);
 /// @param shown  [0, 1], encoded as sRGB
 double ExposedAs(double shown, ToneCurve curve);
 
+/// What a screen shows of it, [0, 255], before it is rounded.
+/// @param exposed  radiance times exposure
+float ShownValue(float exposed, ToneCurve curve);
+
 /// Eight bits per channel, red, green, blue and alpha, for a screen that follows sRGB (IEC 61966-2-1). Colours are not
 /// multiplied by alpha: laid over black, the picture is what the radiance says.
 /// @param alpha  one per pixel in [0, 1]; empty: opaque

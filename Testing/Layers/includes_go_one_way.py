@@ -37,6 +37,7 @@ LAYERS = {
         ["Sources", "Backdrop"],
         ["Rays"],
         ["."],  # the ray caster, made of all of them
+        ["Blocks"],
     ],
     "Filters": [
         ["Common"],

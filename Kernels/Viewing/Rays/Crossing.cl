@@ -69,6 +69,17 @@ inline real most_left(light l)
 #endif
 }
 
+// What comes through of what other blocks have behind, `part` of it.
+inline rgb passed_of(light l, real part)
+{
+#if COLOURED
+  const rgb passed = { l.left.r * part, l.left.g * part, l.left.b * part };
+#else
+  const rgb passed = { l.left * part, l.left * part, l.left * part };
+#endif
+  return passed;
+}
+
 inline spectrum scaled(spectrum s, real factor)
 {
 #if COLOURED
@@ -113,18 +124,21 @@ inline void add_background(rgb behind, real part, light* l)
 }
 
 #if SURFACE_LIGHT
-// As much of the light at the surface (SurfaceLight.cl) as the ray has met of the medium.
-inline void add_surface_light(rgb missing, light* l)
+// As much of the light at the surface (SurfaceLight.cl) as the ray has met of the medium; all where it goes on in
+// another block, for behind thick voxels there is more.
+inline void add_surface_light(rgb missing, integer goes_on, light* l)
 {
 #if COLOURED
-#define ADD(c) l->radiance.c = greater(fma(missing.c, (real)1.0f - l->left.c, l->radiance.c), (real)0.0f);
+#define MET(c) (goes_on ? (real)1.0f : (real)1.0f - l->left.c)
 #else
-#define ADD(c) l->radiance.c = greater(fma(missing.c, (real)1.0f - l->left, l->radiance.c), (real)0.0f);
+#define MET(c) (goes_on ? (real)1.0f : (real)1.0f - l->left)
 #endif
+#define ADD(c) l->radiance.c = greater(fma(missing.c, MET(c), l->radiance.c), (real)0.0f);
   ADD(r)
   ADD(g)
   ADD(b)
 #undef ADD
+#undef MET
 }
 #endif
 

@@ -28,9 +28,9 @@ std::array<int, 2> PacketPixels(int width)
 }
 }
 
-ViewInfo RayCasting::ViewOf(const Camera& camera, const ViewSettings& settings) const
+ViewInfo RayCasting::ViewOf(const Camera& camera, const ViewSettings& settings, const GridBlock* block) const
 {
-  ViewInfo view = ViewInfoOf(camera, settings, this->Traits);
+  ViewInfo view = ViewInfoOf(camera, settings, this->Traits, block);
   const std::array<int, 2> environment = this->Behind.EnvironmentSize();
   view.background = Float4(Vector(this->Behind.Colour(settings)), settings.showBackground ? 1.0 : 0.0);
   view.bricks = Int4(this->Samples.BrickCount());
@@ -38,7 +38,7 @@ ViewInfo RayCasting::ViewOf(const Camera& camera, const ViewSettings& settings) 
   return view;
 }
 
-void RayCasting::Reserve(const ViewSettings& settings, const std::vector<float>& ends)
+void RayCasting::Reserve(const ViewSettings& settings, const std::vector<float>& ends, bool ofBlock)
 {
   const std::size_t pixels = static_cast<std::size_t>(settings.imageSize[0]) * settings.imageSize[1];
   if (this->Alpha.Size() != pixels)
@@ -49,6 +49,11 @@ void RayCasting::Reserve(const ViewSettings& settings, const std::vector<float>&
     this->Radiance.Swap(radiance); // all or none, where one does not fit
     this->Alpha.Swap(alpha);
     this->Depth.Swap(depth);
+  }
+  const std::size_t passed = ofBlock ? 3 * pixels : 0;
+  if (this->Passed.Size() != passed)
+  {
+    this->Passed = Buffer<float>(this->TheDevice, passed, "what the block lets through");
   }
   if (!ends.empty() && ends.size() != pixels)
   {
@@ -76,12 +81,12 @@ std::string RayCasting::Options(const ViewSettings& settings) const
     Define("ENDS", this->Ends.Size() > 0) + this->Samples.ShownOptions();
 }
 
-cl::Kernel RayCasting::Kernel(const ViewSettings& settings) const
+cl::Kernel RayCasting::Kernel(const ViewSettings& settings, bool ofBlock) const
 {
   if (this->Traits.OnlyStraight())
   {
     return this->TheDevice.Kernel("cast_rays", kernel_source::StraightView,
-      this->Options(settings) + Define("SURFACE_LIGHT", this->Behind.HasSurfaceLight()));
+      this->Options(settings) + Define("SURFACE_LIGHT", this->Behind.HasSurfaceLight()) + Define("BLOCK", ofBlock));
   }
   const int surface = this->Traits.Reflects(settings) ? static_cast<int>(settings.surfaceReflection) : 0;
   return this->TheDevice.Kernel("cast_bent_rays", kernel_source::BentView,
@@ -96,7 +101,7 @@ void RayCasting::Cast(
   const Backdrop& b = this->Behind;
   const Buffer<cl_float4>& environment = s.PackedFor() == Packing::Unscattered ? b.SharpEnvironment() : b.Environment();
   const std::array<int, 2> packet = PacketPixels(this->Traits.packetWidth);
-  cl::Kernel cast = this->Kernel(settings);
+  cl::Kernel cast = this->Kernel(settings, view.whole.s[0] > 0);
   // Batches of whole work-groups: else the last rows of one would be cast again by the next.
   const int group = 4;
   const std::size_t across = RoundUp<std::size_t>(view.picture.s[0], group * packet[0]) / (group * packet[0]);
@@ -108,7 +113,7 @@ void RayCasting::Cast(
     if (this->Traits.OnlyStraight())
     {
       With(cast, view, s.Samples(), s.Extinctions(), s.Flow(), s.Glow(), s.Cosines(), this->Scene.phaseRows, s.Bricks(),
-        environment, b.Ground(), b.SurfaceLight(), this->Ends, this->Radiance, this->Alpha, this->Depth);
+        environment, b.Ground(), b.SurfaceLight(), this->Ends, this->Radiance, this->Alpha, this->Depth, this->Passed);
     }
     else
     {

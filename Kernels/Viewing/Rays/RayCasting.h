@@ -6,6 +6,7 @@
 #include "Viewing/Rays/Picture.h"
 #include "Viewing/Samples/PackedSamples.h"
 #include "Viewing/Scene/Camera.h"
+#include "Viewing/Scene/GridBlock.h"
 #include "Viewing/Scene/SceneOnDevice.h"
 #include "Viewing/Scene/ViewSettings.h"
 #include "Viewing/Scene/ViewTraits.h"
@@ -27,18 +28,19 @@ public:
     , Samples(samples)
     , Behind(backdrop)
     , Traits(traits)
+    , Passed(device, 0, "what the block lets through")
     , Ends(device, 0, "where rays end")
   {
   }
 
   /// The picture and its camera as the kernels have them, seen against the backdrop.
   /// @throws InvalidInput for a camera that looks nowhere or is too far away
-  ViewInfo ViewOf(const Camera& camera, const ViewSettings& settings) const;
+  ViewInfo ViewOf(const Camera& camera, const ViewSettings& settings, const GridBlock* block) const;
 
   /// Takes the memory of a picture, and where its rays end (MediumRayCaster::Render); keeps it for the next of that
   /// size.
   /// @throws InvalidInput for ends of another number than pixels; DeviceError if it does not fit
-  void Reserve(const ViewSettings& settings, const std::vector<float>& ends);
+  void Reserve(const ViewSettings& settings, const std::vector<float>& ends, bool ofBlock);
 
   /// A picture of what was packed, and of what of the environment belongs to that.
   /// @param from, to  fractions done that are reported
@@ -50,16 +52,17 @@ public:
   std::vector<float> ReadRadiance() const { return this->Radiance.Read(); }
   std::vector<float> ReadAlpha() const { return this->Alpha.Read(); }
   std::vector<float> ReadDepth() const { return this->Depth.Read(); }
+  std::vector<float> ReadTransmittance() const { return this->Passed.Read(); }
 
 private:
   std::string Options(const ViewSettings& settings) const;
-  cl::Kernel Kernel(const ViewSettings& settings) const;
+  cl::Kernel Kernel(const ViewSettings& settings, bool ofBlock) const;
 
   Device& TheDevice;
   const SceneOnDevice& Scene;
   const PackedSamples& Samples;
   const Backdrop& Behind;
   const ViewTraits& Traits;
-  Buffer<float> Radiance, Alpha, Depth, Ends;
+  Buffer<float> Radiance, Alpha, Depth, Passed, Ends;
 };
 }

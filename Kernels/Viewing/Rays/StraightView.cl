@@ -2,10 +2,12 @@
 //
 // The host gives
 //   SKIP_BRICKS  1: rays leap over bricks in which nothing extinguishes or shines
+//   BLOCK        1: the medium is a block of a larger grid
 
 #include "Viewing/Backdrop/Background.cl"
 #include "Viewing/Backdrop/GroundLight.cl"
 #include "Viewing/Backdrop/SurfaceLight.cl"
+#include "Viewing/Rays/BlockRays.cl"
 #include "Viewing/Rays/Crossing.cl"
 #include "Viewing/Rays/View.cl"
 #include "Viewing/Samples/Sampling.cl"
@@ -16,7 +18,7 @@ __kernel void cast_rays(ViewInfo v, __global const float4* restrict samples,
   __global const float* restrict phase_rows, __global const char* restrict bricks,
   __global const float4* restrict environment, __global const float4* restrict ground,
   __global const float4* restrict surface, __global const float* restrict ends, __global float* restrict radiance,
-  __global float* restrict alpha, __global float* restrict depth)
+  __global float* restrict alpha, __global float* restrict depth, __global float* restrict passed)
 {
   const int column = (get_global_id(0) + v.picture.w) * PACKET_WIDTH;
   const int row = (get_global_id(1) + v.picture.z) * PACKET_HEIGHT;
@@ -36,7 +38,15 @@ __kernel void cast_rays(ViewInfo v, __global const float4* restrict samples,
   const integer open = (integer)-1;
 #endif
   real before;
+#if BLOCK
+  integer enters, leaves;
+  const rays packet = clip_to_block(seen.from, direction, end / seen.cosine, &v, &before, &enters, &leaves);
+  const integer sees_behind = open & leaves;
+#else
   const rays packet = clip_to_box(seen.from, direction, end / seen.cosine, v.size, &before);
+  const integer enters = (integer)-1, leaves = (integer)-1;
+  const integer sees_behind = open;
+#endif
 
   // The march.
   const real step = step_length(direction, v.marching.x);
@@ -84,15 +94,22 @@ __kernel void cast_rays(ViewInfo v, __global const float4* restrict samples,
   // What is behind, and the picture.
   const real left = mean_left(l);
 #if SURFACE_LIGHT
-  add_surface_light(surface_light(surface, packet, seen.d, before, v.size), &l);
+  add_surface_light(surface_light(surface, packet, seen.d, enters ? before : (real)0.0f, v.size), leaves == 0, &l);
 #endif
   rgb behind = look_behind(&v, seen.d, environment);
 #if GROUND
   behind =
     ground_or_behind(ground, along(packet, packet.length), direction, packet.length > (real)0.0f, v.size, behind);
 #endif
-  add_background(behind, open ? (real)v.background.w : (real)0.0f, &l);
+  add_background(behind, sees_behind ? (real)v.background.w : (real)0.0f, &l);
   const real where = left > (real)0.5f ? (real)v.marching.z : (distance_to_half(half_way) + before) * seen.cosine;
   const canvas picture = { radiance, alpha, depth };
+#if BLOCK
+  // Behind the background there is no other block.
+  const real kept = sees_behind ? (real)(1.0f - v.background.w) : (real)1.0f;
+  paint_passed(&v, passed, column, row, passed_of(l, kept));
+  paint(&v, picture, column, row, l.radiance, (real)1.0f - left * kept, where);
+#else
   paint(&v, picture, column, row, l.radiance, (real)1.0f - left, where);
+#endif
 }

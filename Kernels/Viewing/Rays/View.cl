@@ -89,6 +89,25 @@ typedef struct
   __global float* depth;
 } canvas;
 
+// 3 per pixel: what a block lets through.
+inline void paint_passed(const ViewInfo* v, __global float* passed, int column, int row, rgb part)
+{
+  const integer i = to_integer(ACROSS);
+  const integer j = to_integer(UPWARDS);
+  const integer pixel = (integer)(row * v->picture.x + column) + j * v->picture.x + i;
+  const integer inside = (i + column < (integer)v->picture.x) & (j + row < (integer)v->picture.y);
+#define PAINT(n)                         \
+  if (LANE(inside, n))                   \
+  {                                      \
+    const int p = LANE(pixel, n);        \
+    passed[3 * p] = LANE(part.r, n);     \
+    passed[3 * p + 1] = LANE(part.g, n); \
+    passed[3 * p + 2] = LANE(part.b, n); \
+  }
+  EACH_LANE(PAINT)
+#undef PAINT
+}
+
 inline void paint(const ViewInfo* v, canvas picture, int column, int row, rgb radiance, real opaque, real where)
 {
   const integer i = to_integer(ACROSS);

@@ -34,9 +34,10 @@ double FarDepth(const Grid& grid, const glm::dvec3& eye, const glm::dvec3& forwa
 }
 }
 
-ViewInfo ViewInfoOf(const Camera& camera, const ViewSettings& settings, const ViewTraits& traits)
+ViewInfo ViewInfoOf(
+  const Camera& camera, const ViewSettings& settings, const ViewTraits& traits, const GridBlock* block)
 {
-  const Grid& grid = traits.grid;
+  const Grid& grid = block ? block->whole : traits.grid;
   const auto axes = Axes(camera);
   CheckDistance(camera, grid);
   const glm::dvec3 inverseSpacing = 1.0 / Vector(grid.spacing);
@@ -53,7 +54,15 @@ ViewInfo ViewInfoOf(const Camera& camera, const ViewSettings& settings, const Vi
   view.inverseSpacing = Float4(inverseSpacing, 0.0);
   view.marching = Float4({ settings.stepSize, settings.minimumTransmittance, FarDepth(grid, eye, forward) }, 0.0);
   view.picture = Int4({ settings.imageSize[0], settings.imageSize[1], 0 });
-  view.size = Int4(grid.size);
+  view.size = Int4(traits.grid.size);
+  if (block)
+  {
+    view.whole = Int4(grid.size);
+    view.first = Int4(block->first);
+    view.first.s[3] = block->showsBackgroundBeside ? 1 : 0;
+    view.begin = Int4(block->begin);
+    view.end = Int4(block->end);
+  }
   view.phase = traits.phase.parameters;
   return view;
 }

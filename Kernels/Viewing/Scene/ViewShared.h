@@ -39,6 +39,10 @@ typedef struct
   int4 size;             ///< voxels
   int4 bricks;           ///< bricks
   int4 environment;      ///< width, height in pixels
+  // Of a block of a larger grid, see GridBlock; voxels.
+  int4 whole; ///< 0: this is no block
+  int4 first; ///< w: 1 it shows the background beside the whole
+  int4 begin, end;
   PhaseInfo phase;
 } ViewInfo;
 

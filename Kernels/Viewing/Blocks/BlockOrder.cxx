@@ -1,0 +1,49 @@
+#include "Viewing/Blocks/BlockOrder.h"
+
+#include <algorithm>
+#include <array>
+
+namespace tyndall
+{
+namespace
+{
+/// Whether a ray can come from block b into block a: every axis along which a plane is between them has to allow it.
+bool CanHide(const GridBlock& b, const GridBlock& a, const Camera& camera)
+{
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const bool below = a.end[axis] <= b.begin[axis];
+    const bool above = b.end[axis] <= a.begin[axis];
+    const double eye = (camera.position[axis] - a.whole.origin[axis]) / a.whole.spacing[axis];
+    const double forward = camera.focalPoint[axis] - camera.position[axis];
+    if ((below && (camera.parallelProjection ? forward >= 0.0 : eye <= b.begin[axis])) ||
+      (above && (camera.parallelProjection ? forward <= 0.0 : eye >= b.end[axis])))
+    {
+      return false;
+    }
+  }
+  return true;
+}
+}
+
+std::vector<int> FrontToBack(const std::vector<GridBlock>& blocks, const Camera& camera)
+{
+  std::vector<int> waiting, order;
+  for (std::size_t i = 0; i < blocks.size(); ++i)
+  {
+    waiting.push_back(static_cast<int>(i));
+  }
+  while (!waiting.empty())
+  {
+    const auto isHidden = [&](int a) {
+      return std::any_of(
+        waiting.begin(), waiting.end(), [&](int b) { return b != a && CanHide(blocks[b], blocks[a], camera); });
+    };
+    auto front = std::find_if_not(waiting.begin(), waiting.end(), isHidden);
+    front = front == waiting.end() ? waiting.begin() : front;
+    order.push_back(*front);
+    waiting.erase(front);
+  }
+  return order;
+}
+}

@@ -1,0 +1,64 @@
+// Rays through a block of a larger grid.
+//
+// A ray takes the steps that it would take through the whole, and each of them belongs to the block in which its middle
+// lies: samples are where they would be in the whole, and none is taken twice or not at all.
+
+#pragma once
+#include "Viewing/Samples/Sampling.cl"
+#include "Viewing/Scene/ViewShared.h"
+
+#define BEYOND 1e30f // a length that no ray has
+
+// Steps of a ray whose middles are nearer than `distance` to where it enters the whole.
+inline real steps_before(real distance, real step, real steps, real last_middle)
+{
+  const real nominal = ceil(distance / step - (real)0.5f);
+  const real full = lesser(greater(nominal, (real)0.0f), greater(steps - (real)1.0f, (real)0.0f));
+  const integer all = (steps > (real)0.0f) & (last_middle < distance);
+  return full + (all ? (real)1.0f : (real)0.0f);
+}
+
+// The part of each ray that lies in the block, in the block's voxels.
+//   from    in voxels of the whole
+//   before  length before the ray enters the block
+//   enters  whether that is where it enters the whole
+//   leaves  whether it leaves the whole from this block, or shows the background beside it here
+inline rays clip_to_block(
+  real3 from, real3 direction, real farthest, const ViewInfo* v, real* before, integer* enters, integer* leaves)
+{
+  const rays whole = clip_to_box(from, direction, farthest, v->whole, before);
+  const real step = step_length(direction, v->marching.x);
+  const real steps = ceil(whole.length / step);
+  const real last_middle = (real)0.5f * (whole.length + (steps - (real)1.0f) * step);
+
+  // From the entry to the planes between blocks: the same numbers on both sides of each.
+  real in = (real)-BEYOND, out = (real)BEYOND;
+#define CLIP(c)                                                                                            \
+  {                                                                                                        \
+    const real inverse = (real)1.0f / at_least_tiny(direction.c);                                          \
+    const real beyond = copysign((real)BEYOND, inverse);                                                   \
+    const real lower = v->begin.c > 0 ? ((real)(float)v->begin.c - whole.entry.c) * inverse : -beyond;     \
+    const real upper = v->end.c < v->whole.c ? ((real)(float)v->end.c - whole.entry.c) * inverse : beyond; \
+    in = greater(in, lesser(lower, upper));                                                                \
+    out = lesser(out, greater(lower, upper));                                                              \
+  }
+  CLIP(x)
+  CLIP(y)
+  CLIP(z)
+#undef CLIP
+  const real first = steps_before(in, step, steps, last_middle);
+  const real last = steps_before(out, step, steps, last_middle);
+  const integer crosses = last > first;
+  *enters = crosses & (first == (real)0.0f);
+  *leaves = (crosses & (last == steps)) | ((whole.length == (real)0.0f) & (integer)(v->first.w != 0 ? -1 : 0));
+
+  rays part;
+  const real skipped = first * step;
+  part.direction = direction;
+  part.length = crosses ? lesser(last * step, whole.length) - skipped : (real)0.0f;
+  part.entry.x = crosses ? fma(skipped, direction.x, whole.entry.x) - (real)(float)v->first.x : (real)0.0f;
+  part.entry.y = crosses ? fma(skipped, direction.y, whole.entry.y) - (real)(float)v->first.y : (real)0.0f;
+  part.entry.z = crosses ? fma(skipped, direction.z, whole.entry.z) - (real)(float)v->first.z : (real)0.0f;
+  *before = crosses ? *before + skipped : (real)0.0f;
+  return part;
+}
