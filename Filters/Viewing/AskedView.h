@@ -1,8 +1,10 @@
 #pragma once
 
 #include "Viewing/Scene/Camera.h"
+#include "Viewing/Scene/GridBlock.h"
 
 #include <array>
+#include <optional>
 #include <vector>
 
 namespace tyndall
@@ -14,5 +16,6 @@ struct AskedView
   std::array<int, 2> size = {}; ///< pixels, instead of ImageSize
   std::vector<float> ends;      ///< of rays, see MediumRayCaster::Render
   double exposure = 0.0; ///< with which the picture will be shown, for BackgroundColor's radiance; 0: none is known
+  std::optional<GridBlock> block; ///< of which the medium is a part, see MediumRayCaster::Render
 };
 }

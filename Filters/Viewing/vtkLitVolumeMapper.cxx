@@ -1,26 +1,33 @@
 #include "vtkLitVolumeMapper.h"
 
 #include "AskedView.h"
+#include "BlocksOfRanks.h"
 #include "Common/LightTransportData.h"
 #include "Device/Clock.h"
 #include "PictureOverlay.h"
 #include "RenderedCamera.h"
+#include "Viewing/Blocks/ShownBlock.h"
 #include "Viewing/Rays/Picture.h"
 #include "Viewing/ToneMapping.h"
 #include "vtkMediumRayCaster.h"
 
 #include "vtkAlgorithmOutput.h"
+#include "vtkCommunicator.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkMatrix4x4.h"
+#include "vtkMultiProcessController.h"
 #include "vtkObjectFactory.h"
 #include "vtkRenderer.h"
+#include "vtkTrivialProducer.h"
 #include "vtkVolume.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <exception>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -29,6 +36,7 @@ namespace
 constexpr double StillTime = 1.0;         ///< seconds that a renderer has for a frame where nothing moves
 constexpr double CoarsestRays = 8.0;      ///< pixels from ray to ray
 constexpr double StepsOfCoarseness = 4.0; ///< in a pixel, so that a picture's size does not change with every frame
+constexpr double FarAway = 1e4;           ///< diagonals of a piece
 constexpr int ExposedSize[2] = { 64, 48 };
 
 /// The corners of a tetrahedron: from these sides the scene is looked at for its exposure.
@@ -48,8 +56,8 @@ std::vector<std::uint8_t> PixelsOf(
   return pixels;
 }
 
-/// The same of a part, which is laid over others or under them: see IsPart.
-std::vector<std::uint8_t> PixelsOfPart(
+/// The same of a piece alone, which is laid over others or under them: see SetPiece.
+std::vector<std::uint8_t> PixelsOfPiece(
   tyndall::Picture picture, const std::vector<float>& ends, bool background, const tyndall::ToneMapping& tones)
 {
   for (std::size_t i = 0; i < picture.radiance.size(); ++i)
@@ -65,7 +73,73 @@ std::vector<std::uint8_t> PixelsOfPart(
   }
   return pixels;
 }
+
+std::vector<double> Words(const tyndall::Camera& camera)
+{
+  std::vector<double> words = { camera.viewAngle, camera.parallelProjection ? 1.0 : 0.0, camera.parallelScale,
+    camera.aspect, camera.shift[0], camera.shift[1] };
+  for (const auto& place : { camera.position, camera.focalPoint, camera.viewUp })
+  {
+    words.insert(words.end(), place.begin(), place.end());
+  }
+  return words;
 }
+
+/// Where the renderer looks from; none where the volume is stretched, which drawing says.
+std::optional<tyndall::Camera> CameraOf(vtkRenderer* renderer, vtkVolume* volume)
+{
+  try
+  {
+    return tyndall::RenderedCamera(renderer, volume->GetMatrix()).AsSeen();
+  }
+  catch (const std::exception&)
+  {
+    return std::nullopt;
+  }
+}
+
+/// The largest distance of rays that any rank asks for.
+/// @param alike  what has to be the same on all ranks
+/// @param apart  0: this rank cannot
+std::optional<double> AgreedRaysApart(vtkMultiProcessController* ranks, std::vector<double> alike, double apart)
+{
+  alike.push_back(apart);
+  const std::vector<double> said = tyndall::SaidByAll(ranks, alike);
+  double most = apart;
+  for (auto other = said.begin(); other != said.end(); other += static_cast<std::ptrdiff_t>(alike.size()))
+  {
+    const double asked = other[alike.size() - 1];
+    if (asked == 0.0 || !std::equal(alike.begin(), alike.end() - 1, other))
+    {
+      return std::nullopt;
+    }
+    most = std::max(most, asked);
+  }
+  return most;
+}
+
+/// One of the small pictures that the exposure is found from.
+tyndall::AskedView ExposedView(const tyndall::Grid& grid, const double from[3])
+{
+  tyndall::AskedView view;
+  view.size = { ExposedSize[0], ExposedSize[1] };
+  const double aspect = static_cast<double>(ExposedSize[0]) / ExposedSize[1];
+  view.camera = tyndall::FrameGrid(grid, aspect, 30.0, { from[0], from[1], from[2] });
+  return view;
+}
+}
+
+/// One of several pieces, and what was seen of them for the next frame.
+struct vtkLitVolumeMapper::Pieces
+{
+  vtkMultiProcessController* ranks = nullptr;
+  vtkNew<vtkTrivialProducer> surrounded;
+  std::optional<tyndall::AskedView> view; ///< none: each shows its piece alone
+  std::array<int, 2> drawn = {};          ///< the size of the frame
+  bool together = false;                  ///< the last frame was of all pieces
+  tyndall::ShownBlock shown;
+  double seconds = 0.0; ///< that took
+};
 
 vtkStandardNewMacro(vtkLitVolumeMapper);
 
@@ -87,17 +161,38 @@ vtkMTimeType vtkLitVolumeMapper::GetMTime()
   return std::max(this->Superclass::GetMTime(), this->RayCaster->GetMTime());
 }
 
+double* vtkLitVolumeMapper::GetBounds()
+{
+  double* const bounds = this->Superclass::GetBounds();
+  if (this->IsPiece() && this->Spread->view && this->Spread->view->block->showsBackgroundBeside &&
+    this->RayCaster->GetShowBackground())
+  {
+    const double far =
+      FarAway * std::hypot(bounds[1] - bounds[0], std::hypot(bounds[3] - bounds[2], bounds[5] - bounds[4]));
+    for (int side = 0; side < 6; ++side)
+    {
+      bounds[side] += side % 2 ? far : -far;
+    }
+  }
+  return bounds;
+}
+
 int vtkLitVolumeMapper::FillInputPortInformation(int, vtkInformation* information)
 {
   information->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
   return 1;
 }
 
+bool vtkLitVolumeMapper::IsPiece() const
+{
+  return this->Spread && this->Spread->ranks;
+}
+
 /// @return whether there is a medium
-bool vtkLitVolumeMapper::UpdateInputs()
+bool vtkLitVolumeMapper::UpdateInputs(vtkAlgorithmOutput* asked)
 {
   using Port = vtkMediumRayCaster::InputPorts;
-  this->RayCaster->SetInputConnection(Port::MEDIUM, this->GetInputConnection(0, 0));
+  this->RayCaster->SetInputConnection(Port::MEDIUM, asked);
   for (int port : { Port::MEDIUM, Port::LIGHTS, Port::ENVIRONMENT })
   {
     if (vtkAlgorithmOutput* const connection = this->RayCaster->GetInputConnection(port, 0))
@@ -109,9 +204,17 @@ bool vtkLitVolumeMapper::UpdateInputs()
   return medium && medium->GetNumberOfCells() > 0; // other ranks may have all of it
 }
 
+/// @return this rank's piece with its neighbours' cells, where it has one
+vtkImageData* vtkLitVolumeMapper::UpdateSurrounded()
+{
+  vtkTrivialProducer* const surrounded = this->Spread->surrounded;
+  auto* const image = vtkImageData::SafeDownCast(surrounded->GetOutputDataObject(0));
+  return image && this->UpdateInputs(surrounded->GetOutputPort()) ? image : nullptr;
+}
+
 double vtkLitVolumeMapper::EstimateExposure()
 {
-  if (!this->UpdateInputs())
+  if (this->GetNumberOfInputConnections(0) == 0 || !this->UpdateInputs(this->GetInputConnection(0, 0)))
   {
     return 0.0;
   }
@@ -119,14 +222,10 @@ double vtkLitVolumeMapper::EstimateExposure()
   try
   {
     const tyndall::Grid grid = tyndall::GridOf(vtkImageData::SafeDownCast(this->GetDataObjectInput()));
-    const double aspect = static_cast<double>(ExposedSize[0]) / ExposedSize[1];
     for (const auto& from : ExposedFrom)
     {
-      tyndall::AskedView view;
-      view.size = { ExposedSize[0], ExposedSize[1] };
-      view.camera = tyndall::FrameGrid(grid, aspect, 30.0, { from[0], from[1], from[2] });
       tyndall::Picture picture;
-      if (!this->RayCaster->See(view, picture))
+      if (!this->RayCaster->See(ExposedView(grid, from), picture))
       {
         return 0.0;
       }
@@ -138,6 +237,63 @@ double vtkLitVolumeMapper::EstimateExposure()
     return 0.0;
   }
   return tyndall::AutomaticExposure(radiance);
+}
+
+/// The same for all pieces together, from pictures of the whole. On all ranks.
+/// @return 0 where they cannot be seen together
+double vtkLitVolumeMapper::ExposureOfPieces()
+{
+  const tyndall::BlocksOfRanks blocks(this->Spread->ranks, this->UpdateSurrounded());
+  std::vector<float> radiance;
+  for (const auto& from : ExposedFrom)
+  {
+    if (!blocks.MakeUpTheWhole())
+    {
+      return 0.0;
+    }
+    tyndall::AskedView view = ExposedView(blocks.Whole(), from);
+    tyndall::Picture picture;
+    view.block = blocks.Own();
+    const bool seen = !blocks.HasOwn() || this->RayCaster->See(view, picture);
+    const tyndall::PixelRect all = { { 0, 0 }, view.size };
+    const auto pieces = blocks.Exchange(tyndall::SeenPart(picture), all, !seen, view.camera);
+    if (!pieces)
+    {
+      return 0.0;
+    }
+    const std::vector<float> found = tyndall::RadianceOfAll(pieces->frontToBack, all);
+    radiance.insert(radiance.end(), found.begin(), found.end());
+  }
+  return tyndall::AutomaticExposure(radiance);
+}
+
+void vtkLitVolumeMapper::SetPiece(vtkMultiProcessController* ranks, vtkImageData* surrounded)
+{
+  this->Spread = std::make_unique<Pieces>();
+  this->Spread->ranks = ranks;
+  this->Spread->surrounded->SetOutput(surrounded);
+}
+
+/// On any rank: how light is seen has changed. On all ranks.
+bool vtkLitVolumeMapper::IsExposureOld()
+{
+  const bool old = this->RayCaster->GetExposure() == 0.0 && this->RayCaster->GetMTime() > this->ExposureTime;
+  const std::vector<double> said = tyndall::SaidByAll(this->Spread->ranks, { old ? 1.0 : 0.0 });
+  return std::any_of(said.begin(), said.end(), [](double rank) { return rank > 0.0; });
+}
+
+void vtkLitVolumeMapper::AgreeOnExposure()
+{
+  this->CommonExposure = this->ExposureOfPieces();
+  if (this->CommonExposure == 0.0) // the logarithmic mean of what the ranks would choose for their pieces
+  {
+    const double own = this->EstimateExposure();
+    const double mine[2] = { own > 0.0 ? std::log(own) : 0.0, own > 0.0 ? 1.0 : 0.0 };
+    double all[2] = { 0.0, 0.0 };
+    this->Spread->ranks->AllReduce(mine, all, 2, vtkCommunicator::SUM_OP);
+    this->CommonExposure = all[1] > 0.0 ? std::exp(all[0] / all[1]) : 0.0;
+  }
+  this->ExposureTime.Modified();
 }
 
 /// Once for a scene, where it is to be chosen.
@@ -160,15 +316,20 @@ bool vtkLitVolumeMapper::FindExposure()
   return this->UsedExposure > 0.0;
 }
 
+/// Pixels from ray to ray.
 /// @param allowed  seconds that the renderer has for it
-void vtkLitVolumeMapper::ChooseCastSize(const int drawn[2], double allowed)
+double vtkLitVolumeMapper::RaysApart(const int drawn[2], double allowed) const
 {
-  double apart = 1.0; // pixels from ray to ray
-  if (allowed<StillTime&& this->SecondsOfRay> 0.0)
+  if (allowed >= StillTime || this->SecondsOfRay == 0.0)
   {
-    const double asked = std::sqrt(this->SecondsOfRay * drawn[0] * drawn[1] / std::min(this->FrameTime, allowed));
-    apart = std::clamp(std::ceil(asked * StepsOfCoarseness) / StepsOfCoarseness, 1.0, CoarsestRays);
+    return 1.0;
   }
+  const double asked = std::sqrt(this->SecondsOfRay * drawn[0] * drawn[1] / std::min(this->FrameTime, allowed));
+  return std::clamp(std::ceil(asked * StepsOfCoarseness) / StepsOfCoarseness, 1.0, CoarsestRays);
+}
+
+void vtkLitVolumeMapper::ChooseCastSize(const int drawn[2], double apart)
+{
   for (int axis = 0; axis < 2; ++axis)
   {
     this->CastSize[axis] = std::max(static_cast<int>(std::lround(drawn[axis] / apart)), 1);
@@ -187,21 +348,119 @@ bool vtkLitVolumeMapper::Cast(const tyndall::AskedView& view, tyndall::Picture& 
   return true;
 }
 
+tyndall::ToneMapping vtkLitVolumeMapper::Tones()
+{
+  tyndall::ToneMapping tones;
+  tones.exposure = this->UsedExposure;
+  tones.curve = static_cast<tyndall::ToneCurve>(this->RayCaster->GetToneCurve());
+  return tones;
+}
+
 bool vtkLitVolumeMapper::ShowsBackgroundColor()
 {
   const double* const color = this->RayCaster->GetBackgroundColor();
   return this->RayCaster->GetShowBackground() && std::any_of(color, color + 3, [](double c) { return c > 0.0; });
 }
 
+/// What a piece adds to a frame follows from what is before it, on other ranks: they are asked before the frame, in
+/// which not all of them may draw.
+void vtkLitVolumeMapper::SeePieces(vtkRenderer* renderer, vtkVolume* volume)
+{
+  if (!this->IsPiece())
+  {
+    return;
+  }
+  const double start = tyndall::ClockSeconds();
+  this->Spread->view.reset();
+  if (this->Spread->together && this->IsExposureOld())
+  {
+    this->AgreeOnExposure();
+  }
+  this->Spread->together = false;
+  const bool exposed = this->FindExposure();
+  const std::array<int, 2> drawn = tyndall::DrawnSize(renderer);
+  const std::optional<tyndall::Camera> camera = CameraOf(renderer, volume);
+  const tyndall::BlocksOfRanks blocks(this->Spread->ranks, this->UpdateSurrounded());
+  std::vector<double> alike = Words(camera.value_or(tyndall::Camera()));
+  alike.insert(alike.end(), { 1.0 * drawn[0], 1.0 * drawn[1], this->UsedExposure });
+  const bool able = exposed && camera && drawn[0] > 0 && drawn[1] > 0;
+  const auto apart = AgreedRaysApart(this->Spread->ranks, std::move(alike),
+    able ? this->RaysApart(drawn.data(), renderer->GetAllocatedRenderTime()) : 0.0);
+  if (!apart || !blocks.MakeUpTheWhole())
+  {
+    return;
+  }
+  this->ChooseCastSize(drawn.data(), *apart);
+  tyndall::AskedView view;
+  view.size = { this->CastSize[0], this->CastSize[1] };
+  view.camera = *camera;
+  view.exposure = this->UsedExposure;
+  view.block = blocks.Own();
+  tyndall::Picture picture;
+  const bool seen = !blocks.HasOwn() || this->Cast(view, picture);
+  const tyndall::BlockPixels own = tyndall::SeenPart(picture);
+  auto pieces = blocks.Exchange(own, own.rect, !seen, view.camera);
+  this->Spread->together = pieces.has_value();
+  if (pieces && blocks.HasOwn())
+  {
+    this->Spread->shown = { std::move(pieces->frontToBack), pieces->own, view.size, this->Tones() };
+    this->Spread->drawn = drawn;
+    this->Spread->view = view;
+  }
+  this->Spread->seconds = tyndall::ClockSeconds() - start;
+}
+
+/// @return false where pieces are not seen together, so that this one is to be shown alone
+bool vtkLitVolumeMapper::DrawPiece(vtkRenderer* renderer, vtkVolume* volume)
+{
+  const auto camera = CameraOf(renderer, volume);
+  if (!this->IsPiece() || !this->Spread->view || !camera || Words(*camera) != Words(this->Spread->view->camera) ||
+    this->Spread->drawn != tyndall::DrawnSize(renderer))
+  {
+    return false;
+  }
+  tyndall::AskedView view = *this->Spread->view;
+  view.ends = tyndall::RenderedCamera(renderer, volume->GetMatrix())
+                .EndsOf(tyndall::DrawnDepths(renderer), this->Spread->drawn, view.size);
+  std::vector<std::uint8_t> pixels;
+  if (view.ends.empty())
+  {
+    pixels = this->Spread->shown.Pixels();
+  }
+  else
+  {
+    tyndall::Picture ended;
+    if (!this->UpdateSurrounded() || !this->Cast(view, ended))
+    {
+      return true; // the ray caster has said why
+    }
+    std::vector<bool> isEnded(view.ends.size());
+    std::transform(
+      view.ends.begin(), view.ends.end(), isEnded.begin(), [](float end) { return end < tyndall::Endless; });
+    pixels = this->Spread->shown.Pixels(ended, isEnded);
+  }
+  this->Overlay->Draw(renderer, pixels, view.size);
+  return true;
+}
+
 void vtkLitVolumeMapper::Render(vtkRenderer* renderer, vtkVolume* volume)
 {
   const double start = tyndall::ClockSeconds();
   const auto size = tyndall::DrawnSize(renderer);
-  if (renderer->GetSelector() || size[0] <= 0 || size[1] <= 0 || !this->UpdateInputs())
+  if (renderer->GetSelector() || size[0] <= 0 || size[1] <= 0)
   {
     return; // a medium is not picked: it is everywhere
   }
-  this->ChooseCastSize(size.data(), volume->GetAllocatedRenderTime());
+  if (this->DrawPiece(renderer, volume))
+  {
+    this->Seconds = this->TimeToDraw = this->Spread->seconds + tyndall::ClockSeconds() - start;
+    return;
+  }
+  if (!this->UpdateInputs(this->GetInputConnection(0, 0)))
+  {
+    return;
+  }
+  this->ChooseCastSize(size.data(), this->RaysApart(size.data(), volume->GetAllocatedRenderTime()));
   tyndall::AskedView view;
   view.size = { this->CastSize[0], this->CastSize[1] };
   view.exposure = this->UsedExposure;
@@ -227,13 +486,11 @@ void vtkLitVolumeMapper::Render(vtkRenderer* renderer, vtkVolume* volume)
     view.exposure = this->UsedExposure;
     this->Cast(view, picture);
   }
-  tyndall::ToneMapping tones;
-  tones.exposure = this->UsedExposure;
-  tones.curve = static_cast<tyndall::ToneCurve>(this->RayCaster->GetToneCurve());
+  const tyndall::ToneMapping tones = this->Tones();
   const bool background = this->RayCaster->GetShowBackground();
   this->Overlay->Draw(renderer,
-    this->IsPart ? PixelsOfPart(std::move(picture), view.ends, background, tones)
-                 : PixelsOf(picture, view.ends, background, tones),
+    this->IsPiece() ? PixelsOfPiece(std::move(picture), view.ends, background, tones)
+                    : PixelsOf(picture, view.ends, background, tones),
     view.size);
   this->Seconds = this->TimeToDraw = tyndall::ClockSeconds() - start;
 }
@@ -249,7 +506,7 @@ void vtkLitVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
   this->Superclass::PrintSelf(os, indent);
   os << indent << "FrameTime: " << this->FrameTime << "\n";
   os << indent << "CommonExposure: " << this->CommonExposure << "\n";
-  os << indent << "IsPart: " << this->IsPart << "\n";
+  os << indent << "IsPiece: " << this->IsPiece() << "\n";
   os << indent << "UsedExposure: " << this->UsedExposure << "\n";
   os << indent << "CastSize: " << this->CastSize[0] << " " << this->CastSize[1] << "\n";
   os << indent << "Seconds: " << this->Seconds << "\n";

@@ -9,13 +9,17 @@
 
 #include <memory>
 
+class vtkAlgorithmOutput;
+class vtkImageData;
 class vtkMediumRayCaster;
+class vtkMultiProcessController;
 
 namespace tyndall
 {
 class PictureOverlay;
 struct AskedView;
 struct Picture;
+struct ToneMapping;
 }
 
 /**
@@ -55,23 +59,18 @@ public:
   vtkGetMacro(FrameTime, double);
   ///@}
 
-  /// The exposure that would be chosen for the input as it is; 0 where there is no medium, or rays cannot be cast.
-  double EstimateExposure();
-
   ///@{
-  /// What to take for Exposure 0 instead of choosing it, where several mappers show parts of one scene. Default 0:
-  /// choose. Valid [0, 1e30].
-  tyndallSetRangeMacro(CommonExposure, double, 0.0, 1e30);
-  vtkGetMacro(CommonExposure, double);
-  ///@}
-
-  ///@{
-  /// Whether other mappers show other parts of the medium, whose pixels will be laid over these or under them. Radiance
-  /// is then shown divided by alpha, and the screen's value multiplied by alpha, so that two parts look like the whole.
-  /// Default off: over black, the window shows what the ray caster's `color` is.
-  vtkSetMacro(IsPart, bool);
-  vtkGetMacro(IsPart, bool);
-  vtkBooleanMacro(IsPart, bool);
+  /// Where the medium is spread over ranks, each of which has a mapper for its piece, and lays what that draws over or
+  /// under what the others draw, in the order in which the pieces are seen: the ranks, and this rank's piece with a
+  /// layer of its neighbours' cells, flagged as duplicates; the input is the piece without that. Then all ranks have to
+  /// call AgreeOnExposure when the medium has changed, and SeePieces before each frame, also those that have no piece.
+  /// Together they show what one mapper would show of the whole.
+  ///
+  /// Where rays bend or meet a table, or pieces are no parts of one grid, they cannot: each mapper then shows its piece
+  /// alone, radiance divided by alpha, and multiplies the screen's value by alpha, so that there is no seam.
+  void SetPiece(vtkMultiProcessController* ranks, vtkImageData* surrounded);
+  void AgreeOnExposure();
+  void SeePieces(vtkRenderer* renderer, vtkVolume* volume);
   ///@}
 
   ///@{
@@ -79,6 +78,13 @@ public:
   vtkGetMacro(UsedExposure, double);
   vtkGetVector2Macro(CastSize, int);
   vtkGetMacro(Seconds, double);
+  ///@}
+
+  ///@{
+  /// The input's. Of the piece that shows the background beside the medium those of all that may be seen: IceT takes
+  /// nothing of a rank from outside of its bounds.
+  double* GetBounds() override;
+  using Superclass::GetBounds;
   ///@}
 
   /// That of this and of RayCaster.
@@ -97,16 +103,26 @@ private:
   vtkLitVolumeMapper(const vtkLitVolumeMapper&) = delete;
   void operator=(const vtkLitVolumeMapper&) = delete;
 
-  bool UpdateInputs();
+  struct Pieces;
+
+  bool UpdateInputs(vtkAlgorithmOutput* medium);
+  vtkImageData* UpdateSurrounded();
+  bool IsPiece() const;
+  double EstimateExposure();
+  double ExposureOfPieces();
+  bool IsExposureOld();
   bool FindExposure();
-  void ChooseCastSize(const int drawn[2], double allowed);
+  double RaysApart(const int drawn[2], double allowed) const;
+  void ChooseCastSize(const int drawn[2], double apart);
   bool Cast(const tyndall::AskedView& view, tyndall::Picture& picture);
+  tyndall::ToneMapping Tones();
   bool ShowsBackgroundColor();
+  bool DrawPiece(vtkRenderer* renderer, vtkVolume* volume);
 
   vtkNew<vtkMediumRayCaster> RayCaster;
   double FrameTime = 0.025;
-  double CommonExposure = 0.0;
-  bool IsPart = false;
+  double CommonExposure = 0.0; ///< of all pieces, for Exposure 0; 0: it is to be chosen
+  std::unique_ptr<Pieces> Spread;
 
   std::unique_ptr<tyndall::PictureOverlay> Overlay;
   double AutomaticExposure = 0.0;

@@ -10,6 +10,7 @@
 #include "Device/Clock.h"
 #include "Device/Device.h"
 #include "Medium/BoxFaces.h"
+#include "Viewing/Blocks/BlockFaces.h"
 #include "Viewing/MediumRayCaster.h"
 #include "Viewing/Scene/ViewQuality.h"
 #include "Viewing/ToneMapping.h"
@@ -133,18 +134,26 @@ FaceValues ReadFaces(vtkImageData* image, const char* name, std::size_t tuples, 
   return faces;
 }
 
-/// What light at the faces is seen: it belongs to the array that the solver wrote.
+/// What light at the faces is seen: it belongs to the array that the solver wrote. Ranks that have a block each know
+/// that of all faces.
 struct LightAtFaces
 {
   FaceValues surface, power, albedo;
 
   LightAtFaces() = default;
-  LightAtFaces(vtkImageData* image, const tyndall::Grid& grid)
-    : surface(ReadFaces(image, tyndall::SurfaceRadianceFact, tyndall::BoxFaceCellCount(grid),
+  LightAtFaces(vtkImageData* image, const tyndall::Grid& grid, const tyndall::GridBlock* block)
+    : surface(ReadFaces(image, tyndall::SurfaceRadianceFact, tyndall::BoxFaceCellCount(block ? block->whole : grid),
         static_cast<int>(tyndall::SurfaceCosines.size())))
-    , power(ReadFaces(image, tyndall::FacePowerFact, tyndall::BoxFaceCellCount(grid), 1))
+    , power(ReadFaces(image, tyndall::FacePowerFact, tyndall::BoxFaceCellCount(block ? block->whole : grid), 1))
     , albedo(ReadFaces(image, tyndall::FaceAlbedoFact, 6, 1))
   {
+    for (FaceValues* const faces : { &this->surface, &this->power })
+    {
+      if (block && !faces->values.empty())
+      {
+        faces->values = tyndall::FacesOfBlock(faces->values, faces->components, *block, grid.size);
+      }
+    }
   }
 
   void AddTo(tyndall::SolvedLight& light) const
@@ -255,13 +264,17 @@ int vtkMediumRayCaster::RequestUpdateExtent(
   return this->Superclass::RequestUpdateExtent(request, inputs, outputs);
 }
 
-tyndall::InputsKey vtkMediumRayCaster::KeyOf(vtkInformationVector** inputs)
+tyndall::InputsKey vtkMediumRayCaster::KeyOf(vtkInformationVector** inputs, const tyndall::GridBlock* block)
 {
   tyndall::InputsKey key;
   key.device = tyndall::Device::Find(this->Device);
   vtkImageData* const image = vtkImageData::GetData(inputs[MEDIUM]);
   key.Add(tyndall::GridOf(image));
   key.AddGhosts(image);
+  for (int axis = 0; block && axis < 3; ++axis)
+  {
+    key.Add({ 1.0 * block->first[axis], 1.0 * block->whole.size[axis] });
+  }
   tyndall::AddPhase(key, image);
   key.Add({ 1.0 * this->EnvironmentUp, this->EnvironmentAzimuth });
   for (int number = tyndall::SigmaA; number <= MeanDirection; ++number)
@@ -287,8 +300,8 @@ tyndall::InputsKey vtkMediumRayCaster::KeyOf(vtkInformationVector** inputs)
   return key;
 }
 
-std::unique_ptr<vtkMediumRayCaster::Scene> vtkMediumRayCaster::MakeScene(
-  vtkInformationVector** inputs, const tyndall::InputsKey& key, tyndall::ViewSettings settings)
+std::unique_ptr<vtkMediumRayCaster::Scene> vtkMediumRayCaster::MakeScene(vtkInformationVector** inputs,
+  const tyndall::InputsKey& key, tyndall::ViewSettings settings, const tyndall::GridBlock* block)
 {
   using tyndall::Need;
   vtkImageData* const image = vtkImageData::GetData(inputs[MEDIUM]);
@@ -304,7 +317,7 @@ std::unique_ptr<vtkMediumRayCaster::Scene> vtkMediumRayCaster::MakeScene(
   const bool asSolved = fluence.IsThere() &&
     tyndall::ChosenArray(this, Fluence, image, ArrayNames[Fluence]) == image->GetCellData()->GetArray("fluence");
   const tyndall::MomentsInput moments = asSolved ? tyndall::ReadMoments(image) : tyndall::MomentsInput();
-  const LightAtFaces faces = asSolved ? LightAtFaces(image, input.medium.grid) : LightAtFaces();
+  const LightAtFaces faces = asSolved ? LightAtFaces(image, input.medium.grid, block) : LightAtFaces();
   const tyndall::Illumination illumination = this->ReadIllumination(inputs);
   const bool sky = !illumination.environment.Empty() || illumination.sky != tyndall::Rgb{};
   if (!fluence.IsThere() && illumination.lights.empty() && !input.emission.IsThere() && !(sky && ior.IsThere()))
@@ -333,12 +346,12 @@ std::unique_ptr<vtkMediumRayCaster::Scene> vtkMediumRayCaster::MakeScene(
 }
 
 std::unique_ptr<vtkMediumRayCaster::Scene> vtkMediumRayCaster::FindScene(
-  vtkInformationVector** inputs, const tyndall::ViewSettings& settings)
+  vtkInformationVector** inputs, const tyndall::ViewSettings& settings, const tyndall::GridBlock* block)
 {
   this->SceneKept = false;
   this->ForgetOldScene();
   std::unique_ptr<Scene> kept = std::move(this->Kept); // it comes back after a good picture
-  const tyndall::InputsKey key = this->KeyOf(inputs);
+  const tyndall::InputsKey key = this->KeyOf(inputs, block);
   if (kept && kept->key == key)
   {
     tyndall::ViewSettings asked = settings;
@@ -350,7 +363,7 @@ std::unique_ptr<vtkMediumRayCaster::Scene> vtkMediumRayCaster::FindScene(
     return kept;
   }
   kept.reset(); // before the next one needs the memory
-  return this->MakeScene(inputs, key, settings);
+  return this->MakeScene(inputs, key, settings, block);
 }
 
 /// A picture of the filter's own camera.
@@ -430,10 +443,14 @@ bool vtkMediumRayCaster::See(const tyndall::AskedView& view, tyndall::Picture& p
   tyndall::Guarded(this, noOutputs, [&] {
     tyndall::ViewSettings settings = SettingsOf(this, view.exposure);
     settings.imageSize = view.size;
-    std::unique_ptr<Scene> scene = this->FindScene(this->GetExecutive()->GetInputInformation(), settings);
-    picture = scene->caster->Render(view.camera, {}, view.ends);
+    const tyndall::GridBlock* const block = view.block ? &*view.block : nullptr;
+    std::unique_ptr<Scene> scene = this->FindScene(this->GetExecutive()->GetInputInformation(), settings, block);
+    seen = !block || scene->caster->CastsBlocks();
+    if (seen)
+    {
+      picture = scene->caster->Render(view.camera, {}, view.ends, block);
+    }
     this->Kept = std::move(scene);
-    seen = true;
   });
   return seen;
 }

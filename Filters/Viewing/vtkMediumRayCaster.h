@@ -11,6 +11,7 @@
 namespace tyndall
 {
 struct AskedView;
+struct GridBlock;
 struct InputsKey;
 struct Picture;
 struct ViewSettings;
@@ -327,10 +328,12 @@ private:
 
   struct Scene;
   void ForgetOldScene();
-  tyndall::InputsKey KeyOf(vtkInformationVector** inputs);
-  std::unique_ptr<Scene> MakeScene(
-    vtkInformationVector** inputs, const tyndall::InputsKey& key, tyndall::ViewSettings settings);
-  std::unique_ptr<Scene> FindScene(vtkInformationVector** inputs, const tyndall::ViewSettings& settings);
+  /// @param block  of the larger image of which the medium is a block; null: of none
+  tyndall::InputsKey KeyOf(vtkInformationVector** inputs, const tyndall::GridBlock* block);
+  std::unique_ptr<Scene> MakeScene(vtkInformationVector** inputs, const tyndall::InputsKey& key,
+    tyndall::ViewSettings settings, const tyndall::GridBlock* block);
+  std::unique_ptr<Scene> FindScene(
+    vtkInformationVector** inputs, const tyndall::ViewSettings& settings, const tyndall::GridBlock* block = nullptr);
   tyndall::Picture Expose(Scene& scene, double& exposure);
 
   int Quality = USUAL;

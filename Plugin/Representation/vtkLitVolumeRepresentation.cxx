@@ -3,16 +3,18 @@
 #include "vtkLitVolumeMapper.h"
 #include "vtkMediumRayCaster.h"
 
-#include "vtkCommunicator.h"
+#include "vtkCommand.h"
 #include "vtkDataObject.h"
+#include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkMultiProcessController.h"
 #include "vtkObjectFactory.h"
 #include "vtkPVLODVolume.h"
+#include "vtkPVRenderView.h"
+#include "vtkRenderer.h"
 #include "vtkSmartPointer.h"
-
-#include <cmath>
+#include "vtkStreamingDemandDrivenPipeline.h"
 
 vtkStandardNewMacro(vtkLitVolumeRepresentation);
 
@@ -60,25 +62,68 @@ int vtkLitVolumeRepresentation::RequestData(
   rays->SetLightsData(CopyOf(inputs[vtkMediumRayCaster::LIGHTS]));
   rays->SetEnvironmentData(CopyOf(inputs[vtkMediumRayCaster::ENVIRONMENT]));
   const int done = this->Superclass::RequestData(request, inputs, outputs);
-  this->AgreeOnExposure();
+  this->SharePieces(CopyOf(inputs[vtkMediumRayCaster::MEDIUM]));
   return done;
 }
 
-/// The logarithmic mean of what the ranks would choose for their pieces.
-void vtkLitVolumeRepresentation::AgreeOnExposure()
+/// The superclass has given the mapper the piece without its neighbours' cells.
+void vtkLitVolumeRepresentation::SharePieces(vtkDataObject* surrounded)
 {
   vtkMultiProcessController* const ranks = vtkMultiProcessController::GetGlobalController();
-  if (!ranks || ranks->GetNumberOfProcesses() == 1)
+  if (ranks && ranks->GetNumberOfProcesses() > 1)
   {
-    return;
+    auto* const mapper = vtkLitVolumeMapper::SafeDownCast(this->VolumeMapper);
+    mapper->SetPiece(ranks, vtkImageData::SafeDownCast(surrounded));
+    mapper->AgreeOnExposure();
   }
-  auto* const mapper = vtkLitVolumeMapper::SafeDownCast(this->VolumeMapper);
-  mapper->IsPartOn();
-  const double own = mapper->GetNumberOfInputConnections(0) > 0 ? mapper->EstimateExposure() : 0.0;
-  const double mine[2] = { own > 0.0 ? std::log(own) : 0.0, own > 0.0 ? 1.0 : 0.0 };
-  double all[2] = { 0.0, 0.0 };
-  ranks->AllReduce(mine, all, 2, vtkCommunicator::SUM_OP);
-  mapper->SetCommonExposure(all[1] > 0.0 ? std::exp(all[0] / all[1]) : 0.0);
+}
+
+/// One layer of the neighbours' cells: light is interpolated between pieces.
+int vtkLitVolumeRepresentation::RequestUpdateExtent(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  const int done = this->Superclass::RequestUpdateExtent(request, inputs, outputs);
+  for (int i = 0; i < inputs[vtkMediumRayCaster::MEDIUM]->GetNumberOfInformationObjects(); ++i)
+  {
+    vtkInformation* const information = inputs[vtkMediumRayCaster::MEDIUM]->GetInformationObject(i);
+    if (information->Get(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_PIECES()) > 1)
+    {
+      information->Set(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 1);
+    }
+  }
+  return done;
+}
+
+/// Before a frame, when all ranks know its camera: vtkSynchronizedRenderers has heard of the same event before.
+void vtkLitVolumeRepresentation::BeforeFrame(vtkObject* renderer, unsigned long, void*)
+{
+  if (this->GetVisibility())
+  {
+    this->Actor->ComputeMatrix();
+    vtkLitVolumeMapper::SafeDownCast(this->VolumeMapper)->SeePieces(vtkRenderer::SafeDownCast(renderer), this->Actor);
+  }
+}
+
+bool vtkLitVolumeRepresentation::AddToView(vtkView* view)
+{
+  const bool added = this->Superclass::AddToView(view);
+  auto* const renderView = vtkPVRenderView::SafeDownCast(view);
+  if (added && renderView)
+  {
+    constexpr float afterOthers = -1.0f;
+    this->Observer = renderView->GetRenderer()->AddObserver(
+      vtkCommand::StartEvent, this, &vtkLitVolumeRepresentation::BeforeFrame, afterOthers);
+  }
+  return added;
+}
+
+bool vtkLitVolumeRepresentation::RemoveFromView(vtkView* view)
+{
+  if (auto* const renderView = vtkPVRenderView::SafeDownCast(view))
+  {
+    renderView->GetRenderer()->RemoveObserver(this->Observer);
+  }
+  return this->Superclass::RemoveFromView(view);
 }
 
 /// The mapper asks for no array and no transfer function.

@@ -14,7 +14,8 @@ class vtkMediumRayCaster;
  * server by the server, in pieces by several ranks. Input 1: lights, input 2: environment, both optional, as
  * vtkMediumRayCaster has them. The setters are those of vtkMediumRayCaster.
  *
- * With Exposure 0 several ranks agree on one when their data change.
+ * Several ranks show what one would show of the whole (vtkLitVolumeMapper::SetPiece): before each frame they tell each
+ * other what is seen of their pieces. With Exposure 0 they agree on one when their data change.
  *
  * Transfer functions and the other properties of the superclass that colour a volume are not used.
  */
@@ -62,14 +63,21 @@ protected:
 
   int FillInputPortInformation(int port, vtkInformation* information) override;
   int RequestData(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+  int RequestUpdateExtent(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
   void UpdateMapperParameters() override;
+  bool AddToView(vtkView* view) override;
+  bool RemoveFromView(vtkView* view) override;
 
 private:
   vtkLitVolumeRepresentation(const vtkLitVolumeRepresentation&) = delete;
   void operator=(const vtkLitVolumeRepresentation&) = delete;
 
   vtkMediumRayCaster* RayCaster();
-  void AgreeOnExposure();
+  void SharePieces(vtkDataObject* surrounded);
+  void BeforeFrame(vtkObject* renderer, unsigned long event, void* data);
+
+  unsigned long Observer = 0;
 };
 
 #endif

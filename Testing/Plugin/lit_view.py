@@ -35,11 +35,15 @@ def show_nothing_else(view):
 def make_black(view):
     view.ViewSize = SIZE
     show_nothing_else(view)
+    place_camera(view)
+    return view
+
+
+def place_camera(view):
     view.CameraPosition = [9, -40, 21]
     view.CameraFocalPoint = [1, 0.5, -1]
     view.CameraViewUp = [0, 0, 1]
     view.CameraViewAngle = 35
-    return view
 
 
 def black_view():

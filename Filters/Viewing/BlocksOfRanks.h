@@ -1,0 +1,58 @@
+#pragma once
+
+#include "Viewing/Blocks/BlockPixels.h"
+#include "Viewing/Scene/Camera.h"
+#include "Viewing/Scene/GridBlock.h"
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+class vtkImageData;
+class vtkMultiProcessController;
+
+namespace tyndall
+{
+/// What every rank says, one after the other. All ranks have to call it, with as many numbers.
+std::vector<double> SaidByAll(vtkMultiProcessController* ranks, const std::vector<double>& own);
+
+/// An image that is spread over ranks, each of which has a block of its voxels and, flagged as duplicates, a layer of
+/// its neighbours'. All ranks have to construct it and to call Exchange, also those that have no block.
+class BlocksOfRanks
+{
+public:
+  /// What is seen of blocks.
+  struct Seen
+  {
+    std::vector<BlockPixels> frontToBack;
+    std::size_t own = 0; ///< which of them is this rank's, where it has one
+  };
+
+  /// @param image  null or without cells: this rank has no block
+  BlocksOfRanks(vtkMultiProcessController* ranks, vtkImageData* image);
+
+  /// Whether the blocks are parts of one grid, and together each of its voxels once: the same on all ranks.
+  bool MakeUpTheWhole() const { return this->Tiled; }
+  bool HasOwn() const { return this->Blocks[this->Rank].OwnVoxels() > 0; }
+  const GridBlock& Own() const { return this->Blocks[this->Rank]; }
+  const Grid& Whole() const { return this->Own().whole; } ///< where MakeUpTheWhole
+
+  /// What other blocks show where this rank wants it: each rank sends to each only what that one wants of it.
+  /// @param own     this block's pixels; none where it is not seen, or there is none
+  /// @param wanted  pixels
+  /// @param failed  this rank has no picture, though it should
+  /// @return nothing, on all ranks, where one of them failed
+  std::optional<Seen> Exchange(
+    const BlockPixels& own, const PixelRect& wanted, bool failed, const Camera& camera) const;
+
+private:
+  void Swap(int partner, const std::vector<BlockPixel>& mine, std::vector<BlockPixel>& theirs) const;
+
+  Seen InOrder(const std::vector<std::size_t>& ranks, std::vector<BlockPixels> pixels, const Camera& camera) const;
+
+  vtkMultiProcessController* Ranks;
+  std::size_t Rank;
+  std::vector<GridBlock> Blocks; ///< by rank
+  bool Tiled = false;
+};
+}
