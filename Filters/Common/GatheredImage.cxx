@@ -313,17 +313,10 @@ void GatheredImage::MakeWhole(int first)
   });
 }
 
-/// Finds out where each value comes from, and which are hidden.
+/// Where the values of each piece are, and, where the whole is, their flags.
 /// @param own  flags of the own piece
-void GatheredImage::LayOut(Kind kind, const std::vector<unsigned char>& own)
+std::vector<PieceLayout::Piece> GatheredImage::ShareFlags(Kind kind, const std::vector<unsigned char>& own) const
 {
-  constexpr std::array<unsigned char, Kinds> duplicates = { Flags::DUPLICATECELL, Flags::DUPLICATEPOINT };
-  constexpr std::array<unsigned char, Kinds> hiddens = { Flags::HIDDENCELL, Flags::HIDDENPOINT };
-  if (this->Ranks == 1)
-  {
-    this->Hidden[kind] = Only(hiddens[kind], own);
-    return;
-  }
   std::vector<PieceLayout::Piece> pieces(this->Pieces.size());
   OnAllRanks(this->Controller, [&] {
     for (int rank = 0; rank < this->Ranks; ++rank)
@@ -346,6 +339,21 @@ void GatheredImage::LayOut(Kind kind, const std::vector<unsigned char>& own)
         static_cast<vtkIdType>(laid.values.Count()), rank);
     }
   }
+  return pieces;
+}
+
+/// Finds out where each value comes from, and which are hidden.
+/// @param own  flags of the own piece
+void GatheredImage::LayOut(Kind kind, const std::vector<unsigned char>& own)
+{
+  constexpr std::array<unsigned char, Kinds> duplicates = { Flags::DUPLICATECELL, Flags::DUPLICATEPOINT };
+  constexpr std::array<unsigned char, Kinds> hiddens = { Flags::HIDDENCELL, Flags::HIDDENPOINT };
+  if (this->Ranks == 1)
+  {
+    this->Hidden[kind] = Only(hiddens[kind], own);
+    return;
+  }
+  std::vector<PieceLayout::Piece> pieces = this->ShareFlags(kind, own);
   OnAllRanks(this->Controller, [&] {
     if (!this->IsHere())
     {

@@ -103,6 +103,7 @@ private:
   void CheckArrays(int first, int other, Kind kind) const;
   void Sort(Kind kind, const Piece& first);
   void MakeWhole(int first);
+  std::vector<PieceLayout::Piece> ShareFlags(Kind kind, const std::vector<unsigned char>& own) const;
   void LayOut(Kind kind, const std::vector<unsigned char>& own);
   void ShareFieldData(vtkImageData* piece, int from);
   vtkIdType CountOf(Kind kind, int rank) const;

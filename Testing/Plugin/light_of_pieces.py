@@ -126,6 +126,7 @@ def adaptive():
 def pvti():
     path = os.path.join(folder, "wavelet%d.pvti" % ranks)
     SaveData(path, proxy=Wavelet(WholeExtent=SIZE))
+    module.GetGlobalController().Barrier()  # the first rank writes what all read
     keep("pvti", solved(XMLPartitionedImageDataReader(FileName=[path]), ["POINTS", "RTData"]))
 
 
