@@ -171,9 +171,8 @@ double InnerSurface(const BlockPartition& partition)
   return most;
 }
 
-void CountSweeps(Device& device, const Arguments& arguments)
+void CountSweeps(Device& device, const Grid& grid)
 {
-  const Grid grid = Cube(arguments.quick ? 16 : 64);
   Table table(
     { "grid", "ranks", "s", "MB a rank", "MB sent a rank", "foretold", "floats a cell", "messages", "foretold" });
   const double inMemory = SecondsInMemory(device, grid);
@@ -257,7 +256,10 @@ void Run(Device& device, const Arguments& arguments)
 {
   if (arguments.Asks("counted"))
   {
-    CountSweeps(device, arguments);
+    for (const int edge : arguments.quick ? std::vector<int>{ 16 } : std::vector<int>{ 64, 128 })
+    {
+      CountSweeps(device, Cube(edge));
+    }
   }
   if (arguments.Asks("model"))
   {
