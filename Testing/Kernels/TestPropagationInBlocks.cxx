@@ -171,6 +171,37 @@ TEST_F(PropagationBlocks, GoOnBesideARankWithoutVoxels)
     SolveConservative(GetDevice(), whole.medium, LitFromOutside(), settings));
 }
 
+/// Thin voxels in which light is scattered many times: diffusion on cells goes with the sweeps, and does not change what
+/// they come to.
+TEST_F(PropagationBlocks, FindTheSameLightSoonerByCells)
+{
+  RandomMedium whole(Grid{ { 22, 19, 18 } }, 1, 0.5f, 5);
+  for (std::size_t i = 0; i < whole.absorption.size(); ++i)
+  {
+    const float both = whole.absorption[i] + whole.scattering[i];
+    whole.absorption[i] = 0.02f * both;
+    whole.scattering[i] = 0.98f * both;
+  }
+  whole.Emit(0.3f);
+  PropagationSettings settings = SettingsOf(0);
+  settings.tolerance = 1e-6;
+  const LightField plain = SolveConservative(GetDevice(), whole.medium, LitFromOutside(), settings);
+  settings.acceleration = PropagationAcceleration::Automatic;
+  const auto onRanks = [&](int ranks) {
+    return LightOfAll(GetDevice(), BlockPartition::Even(whole.medium.grid, ranks), whole, LitFromOutside(), settings);
+  };
+  const LightField alone = onRanks(1);
+  EXPECT_LT(2 * alone.convergence.size(), plain.convergence.size());
+  EXPECT_LT(RelativeRmse(alone.fluence, plain.fluence), 5e-6);
+  EXPECT_LT(RelativeRmse(alone.netFlux, plain.netFlux), 5e-6);
+  EXPECT_LT(alone.balance.RelativeError(1), 1e-6);
+  for (const int ranks : { 2, 3, 8 })
+  {
+    SCOPED_TRACE(std::to_string(ranks) + " ranks");
+    ExpectSame(onRanks(ranks), alone);
+  }
+}
+
 /// Whatever goes wrong on one rank is one error on each, and none waits for the others.
 class PropagationBlocksFail : public PropagationBlocks
 {

@@ -7,6 +7,7 @@
 #include "LightPropagation/Conservative/ConvergenceRecord.h"
 #include "LightPropagation/Conservative/EnergyLedger.h"
 #include "LightPropagation/Convergence.h"
+#include "LightPropagation/Distributed/CellsOverRanks.h"
 #include "LightPropagation/Distributed/SweepInBlocks.h"
 #include "LightPropagation/Problem/MediumOnDevice.h"
 #include "LightPropagation/Problem/PropagationProblem.h"
@@ -30,6 +31,10 @@ namespace tyndall
 namespace
 {
 constexpr int MostOrders = 100000;
+constexpr double CellAtMost = 1.0;  ///< optical width of cells where the medium is thickest
+constexpr int MostHalvings = 3;     ///< of voxels into cells
+constexpr double ManyOrders = 2.0;  ///< mean free paths through the box along its thinnest axis that pay for cells
+constexpr double FallByCells = 0.3; ///< of what is left over from order to order, at least so much in the forecast
 
 bool HasVoxels(const BlockPartition& partition, const Communicator& communicator)
 {
@@ -176,7 +181,11 @@ private:
   std::unique_ptr<SweepOperator> MakeSweep(const SweepRequest& request);
   void LoadEmission();
   void AddLamps(const Monitor& monitor);
+  std::array<int, 3> CellHalvings();
+  void MakeCells();
   void Scatter();
+  void ScatterByCells();
+  EnergyLedger WithOutOfCells() const;
   void EstimateResidual();
   bool Done() const;
   Deposit WholeDeposit() const
@@ -200,6 +209,8 @@ private:
   const BoundaryLight Boundary;
   Buffer<float> Source, Path, Flux, Fluence;
   BlockWorkspace Workspace;
+  std::vector<std::unique_ptr<CellsOverRanks>> Cells; ///< by channel; empty: orders are added up as they are
+  std::array<Rgb, 6> OutOfCells = {};                 ///< W, through faces, of all orders to come
 
   EnergyLedger Ledger;
   ConvergenceRecord Convergence;
@@ -299,9 +310,107 @@ void IterationInBlocks::AddLamps(const Monitor& monitor)
   }
 }
 
+/// How many voxels make a cell, 2^this along each axis; all 0: cells do not pay, or voxels are too thick for them.
+std::array<int, 3> IterationInBlocks::CellHalvings()
+{
+  if (this->Settings.acceleration != PropagationAcceleration::Automatic || this->Settings.maximumOrders > 0 ||
+    !this->Scene.traits.scatters)
+  {
+    return {};
+  }
+  double thickest = 0.0, sum = 0.0;
+  for (std::size_t i = 0; i < this->Layout.grid.VoxelCount(); ++i)
+  {
+    for (int c = 0; c < this->Layout.channels; ++c)
+    {
+      const double sigma = this->Scene.medium.TransportSigmaT(i, c);
+      thickest = std::max(thickest, sigma);
+      sum += sigma / this->Layout.channels;
+    }
+  }
+  const Grid& whole = this->Partition.whole;
+  thickest = this->Others.Largest({ thickest })[0];
+  const double mean = this->Others.Sum({ sum })[0] / static_cast<double>(whole.VoxelCount());
+  std::array<int, 3> halvings = {};
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    int& times = halvings[axis];
+    while (times < MostHalvings && thickest * whole.spacing[axis] * (2 << times) <= CellAtMost &&
+      whole.size[axis] > 1 << times)
+    {
+      ++times;
+    }
+    if (mean * whole.Length(axis) < ManyOrders || times == 0)
+    {
+      return {};
+    }
+  }
+  return halvings;
+}
+
+void IterationInBlocks::MakeCells()
+{
+  const std::array<int, 3> halvings = this->CellHalvings();
+  for (int c = 0; c < this->Layout.channels && halvings[0] > 0; ++c)
+  {
+    this->Cells.push_back(std::make_unique<CellsOverRanks>(
+      this->TheDevice, this->Others, this->Partition, this->Layout, c, this->OnDevice, halvings));
+    this->Rest[c].BeginWarm(FallByCells);
+  }
+}
+
+/// As SourceIteration does.
+void IterationInBlocks::ScatterByCells()
+{
+  this->Residual = 0.0;
+  this->Shining = false;
+  for (int c = 0; c < this->Layout.channels; ++c)
+  {
+    const CellsOverRanks::Powers powers = this->Cells[c]->ScatterOrder(this->Path, this->Fluence, this->Source);
+    this->Ledger.Absorb(c, powers.absorbed);
+    this->Ledger.LeaveOver(c, powers.left);
+    this->Scattered[c] = powers.scattered;
+    this->AllScattered[c] += powers.scattered;
+    this->Shining = this->Shining || powers.magnitude > 0.0;
+    if (powers.magnitude > 0.0 && this->AllScattered[c] > 0.0)
+    {
+      this->Residual = std::max(this->Residual, this->Rest[c].After(powers.magnitude, this->AllScattered[c]));
+    }
+    for (int face = 0; face < 6; ++face)
+    {
+      this->OutOfCells[face][c] = powers.out[face];
+    }
+  }
+  const double all = Sum(this->AllScattered);
+  this->Convergence.Add(this->Residual, all > 0.0 ? std::abs(Sum(this->Scattered)) / all : 0.0, this->WithOutOfCells());
+}
+
+/// With what leaves of the orders to come.
+EnergyLedger IterationInBlocks::WithOutOfCells() const
+{
+  EnergyLedger with = this->Ledger;
+  for (int face = 0; face < 6; ++face)
+  {
+    for (int c = 0; c < 3; ++c)
+    {
+      with.Escape(c, face, this->OutOfCells[face][c]);
+    }
+  }
+  return with;
+}
+
 /// One order: from the light that was swept to the next source, with the powers of all ranks.
 void IterationInBlocks::Scatter()
 {
+  if (this->Order == 0 && this->Has)
+  {
+    this->Direct = Interleaved(this->Layout, this->Path, 1.0 / this->Layout.grid.VoxelVolume());
+  }
+  if (!this->Cells.empty())
+  {
+    this->ScatterByCells();
+    return;
+  }
   std::vector<double> powers(6, 0.0);
   this->Others.Together([&] {
     if (!this->Has)
@@ -312,10 +421,6 @@ void IterationInBlocks::Scatter()
       this->Scattering.ScatterOrder(this->WholeDeposit(), this->Fluence, this->Source, { 0, this->Layout.Stride() });
     std::copy(own.absorbed.begin(), own.absorbed.end(), powers.begin());
     std::copy(own.scattered.begin(), own.scattered.end(), powers.begin() + 3);
-    if (this->Order == 0)
-    {
-      this->Direct = Interleaved(this->Layout, this->Fluence, 1.0);
-    }
   });
   powers = this->Others.Sum(powers);
   for (int c = 0; c < 3; ++c)
@@ -358,6 +463,7 @@ bool IterationInBlocks::Done() const
 LightField IterationInBlocks::Run(const Monitor& monitor)
 {
   this->LoadEmission();
+  this->MakeCells();
   const std::unique_ptr<SweepOperator> sweep = this->MakeSweep({ this->WholeDeposit(),
     { { 0, this->Directions.Along(0) }, { 1, this->Directions.Along(1) }, { 2, this->Directions.Along(2) } } });
   do
@@ -388,6 +494,10 @@ LightField IterationInBlocks::TakeLight()
   if (this->Has)
   {
     light.fluence = Interleaved(this->Layout, this->Fluence, 1.0);
+    for (float& fluence : light.fluence)
+    {
+      fluence = std::max(fluence, 0.0f); // what the last sweeps would have taken away
+    }
     if (this->Settings.netFlux)
     {
       light.netFlux = Interleaved(this->Layout, this->Flux, 1.0 / this->Layout.grid.VoxelVolume());
@@ -399,13 +509,19 @@ LightField IterationInBlocks::TakeLight()
     light.fluenceDirect = std::move(this->Direct);
   }
   light.storedDirections = { { 0.0, 0.0, 0.0 } };
-  light.balance = this->Ledger.Balance();
-  light.facePowerOut = this->Ledger.FacePowerOut();
+  const EnergyLedger ledger = this->WithOutOfCells();
+  light.balance = ledger.Balance();
+  light.facePowerOut = ledger.FacePowerOut();
   light.convergence = this->Convergence.All();
   light.directionsPerFace = this->Settings.directionsPerFace;
   light.halfRangeFlux = HalfRangeFlux(this->Directions.Set());
   light.device = this->TheDevice.Name();
-  light.leftOut = { "acceleration: the medium is spread over ranks" };
+  if (this->Cells.empty())
+  {
+    light.leftOut.emplace_back(
+      "acceleration: few scattering orders do, or voxels of a medium that is spread over ranks "
+      "are thick");
+  }
   if (this->Scene.traits.emits && this->Settings.emissionError > 0.0)
   {
     light.leftOut.emplace_back("exact rays of small bright emission: the medium is spread over ranks");
