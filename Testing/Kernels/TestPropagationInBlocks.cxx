@@ -151,13 +151,15 @@ TEST_F(PropagationBlocks, HaveTheLightOfTheWholeOnOneToEightRanks)
   }
 }
 
-TEST_F(PropagationBlocks, HaveTheLightOfTheWholeInColour)
+TEST_F(PropagationBlocks, HaveTheLightOfTheWholeInColourBySimilarity)
 {
   RandomMedium whole(Grid{ { 6, 7, 5 } }, 3, 0.8f, 6);
   whole.Emit(0.3f);
   Illumination shining = LitFromOutside();
   shining.lights[0].power = { 1.0, 0.0, 3.0 };
-  const PropagationSettings settings = SettingsOf(3);
+  whole.medium.phase = PhaseFunction::HenyeyGreenstein(0.4);
+  PropagationSettings settings = SettingsOf(3);
+  settings.angularDegree = 0;
   ExpectSame(LightOfAll(GetDevice(), BlockPartition::Even(whole.medium.grid, 3), whole, shining, settings),
     SolveConservative(GetDevice(), whole.medium, shining, settings));
 }
@@ -257,6 +259,10 @@ TEST_F(PropagationBlocksFail, TogetherWhereTheyDisagree)
     "disagree about the components", [](int rank, PartOf& part, Illumination&, PropagationSettings&, Monitor&) {
       part.medium.emission = rank == 2 ? Field() : part.medium.emission;
     });
+  ExpectErrors("disagree about g", [](int rank, PartOf& part, Illumination&, PropagationSettings& settings, Monitor&) {
+    part.medium.phase = PhaseFunction::HenyeyGreenstein(0.1 + 0.1 * rank);
+    settings.angularDegree = 0;
+  });
   ExpectErrors(
     "disagree about settings", [](int rank, PartOf&, Illumination&, PropagationSettings& settings, Monitor&) {
       settings.tolerance *= 1.0 + rank;

@@ -62,6 +62,24 @@ void RequireSame(Communicator& communicator, const char* what, bool has, std::ve
   }
 }
 
+/// The grid, and who has which part of it.
+void RequireSame(Communicator& communicator, const BlockPartition& partition)
+{
+  std::vector<double> numbers;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    numbers.push_back(partition.whole.size[axis]);
+    numbers.push_back(partition.whole.spacing[axis]);
+    numbers.push_back(partition.whole.origin[axis]);
+    for (const VoxelBox& block : partition.blocks)
+    {
+      numbers.push_back(block.first[axis]);
+      numbers.push_back(block.size[axis]);
+    }
+  }
+  RequireSame(communicator, "the grid or its blocks", true, numbers);
+}
+
 /// What all ranks must have alike.
 void RequireSame(Communicator& communicator, bool has, const Medium& medium, const Illumination& illumination,
   const PropagationSettings& settings)
@@ -69,6 +87,9 @@ void RequireSame(Communicator& communicator, bool has, const Medium& medium, con
   const auto components = [](const Field& field) { return field.values ? field.components : 0; };
   RequireSame(communicator, "the components of sigma_a, sigma_s or emission, or one has no emission", has,
     { 1.0 * components(medium.sigma_a), 1.0 * components(medium.sigma_s), 1.0 * components(medium.emission) });
+  const bool varies = has && medium.phase.Varies();
+  const auto cosine = [&](int c) { return has && !varies ? medium.phase.MeanCosine(0, c) : 0.0; };
+  RequireSame(communicator, "g", has, { varies ? 1.0 : 0.0, cosine(0), cosine(1), cosine(2) });
   RequireSame(communicator, "settings", true,
     { 1.0 * settings.directionsPerFace, 1.0 * settings.mapResolution, 1.0 * settings.maximumOrders, settings.tolerance,
       1.0 * settings.netFlux, 1.0 * settings.leaveOut, 1.0 * settings.staggeredRays });
@@ -574,6 +595,7 @@ LightField SolveInBlocks(Device& device, Communicator& communicator, const Block
   const bool has = HasVoxels(partition, communicator);
   communicator.Together([&] {
     partition.Check();
+    Require(static_cast<int>(partition.blocks.size()) == communicator.Ranks(), "There is not a block for each rank.");
     if (has)
     {
       Check(medium, illumination, settings);
@@ -583,6 +605,7 @@ LightField SolveInBlocks(Device& device, Communicator& communicator, const Block
     const std::string refused = NotInBlocks(medium, illumination, settings);
     Require(refused.empty(), "A medium that is spread over ranks is not solved with " + refused + ".");
   });
+  RequireSame(communicator, partition);
   RequireSame(communicator, has, medium, illumination, settings);
   Medium own = has ? medium : Medium();
   own.grid = partition.OwnGrid(communicator.Rank());
