@@ -3,8 +3,8 @@
 //
 //   TyndallBenchScaleModel [--quick] [counted] [model]
 //
-//   counted  1 to 8 ranks: bytes and messages a sweep and rank, beside those that the schedule foretells and the surface
-//            of the blocks; memory a rank; what cutting a sweep into octants costs a rank by itself
+//   counted  1 to 8 ranks: bytes and messages a sweep and rank, beside those that the schedule foretells and the
+//            surface of the blocks; memory a rank; what cutting a sweep into octants costs a rank by itself
 //   model    up to 1000 ranks, at the cost of a ray that was measured: how busy ranks are, and how long repeated sweeps
 //            of whole blocks (block-Jacobi) take until light has come through all of them
 

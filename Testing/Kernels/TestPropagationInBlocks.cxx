@@ -173,8 +173,8 @@ TEST_F(PropagationBlocks, GoOnBesideARankWithoutVoxels)
     SolveConservative(GetDevice(), whole.medium, LitFromOutside(), settings));
 }
 
-/// Thin voxels in which light is scattered many times: diffusion on cells goes with the sweeps, and does not change what
-/// they come to.
+/// Thin voxels in which light is scattered many times: diffusion on cells goes with the sweeps, and does not change
+/// what they come to.
 TEST_F(PropagationBlocks, FindTheSameLightSoonerByCells)
 {
   RandomMedium whole(Grid{ { 22, 19, 18 } }, 1, 0.5f, 5);
