@@ -1,5 +1,5 @@
-// A sweep of a grid that is spread over ranks by blocks: what it sends and keeps, counted on ranks that are threads; and
-// how it goes on with up to a thousand ranks, played through with the schedule that the sweep itself follows.
+// A sweep of a grid that is spread over ranks by blocks: what it sends and keeps, counted on ranks that are threads;
+// and how it goes on with up to a thousand ranks, played through with the schedule that the sweep itself follows.
 //
 //   TyndallBenchScaleModel [--quick] [counted] [model]
 //
