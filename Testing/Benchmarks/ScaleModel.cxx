@@ -1,10 +1,10 @@
-// A sweep of a grid that is spread over ranks by blocks: what it sends and keeps, counted on ranks that are threads; and
-// how it goes on with up to a thousand ranks, played through with the schedule that the sweep itself follows.
+// A sweep of a grid that is spread over ranks by blocks: what it sends and keeps, counted on ranks that are threads;
+// and how it goes on with up to a thousand ranks, played through with the schedule that the sweep itself follows.
 //
 //   TyndallBenchScaleModel [--quick] [counted] [model]
 //
-//   counted  1 to 8 ranks: bytes and messages a sweep and rank, beside those that the schedule foretells and the surface
-//            of the blocks; memory a rank; what cutting a sweep into octants costs a rank by itself
+//   counted  1 to 8 ranks: bytes and messages a sweep and rank, beside those that the schedule foretells and the
+//            surface of the blocks; memory a rank; what cutting a sweep into octants costs a rank by itself
 //   model    up to 1000 ranks, at the cost of a ray that was measured: how busy ranks are, and how long repeated sweeps
 //            of whole blocks (block-Jacobi) take until light has come through all of them
 
@@ -171,9 +171,8 @@ double InnerSurface(const BlockPartition& partition)
   return most;
 }
 
-void CountSweeps(Device& device, const Arguments& arguments)
+void CountSweeps(Device& device, const Grid& grid)
 {
-  const Grid grid = Cube(arguments.quick ? 16 : 64);
   Table table(
     { "grid", "ranks", "s", "MB a rank", "MB sent a rank", "foretold", "floats a cell", "messages", "foretold" });
   const double inMemory = SecondsInMemory(device, grid);
@@ -257,7 +256,10 @@ void Run(Device& device, const Arguments& arguments)
 {
   if (arguments.Asks("counted"))
   {
-    CountSweeps(device, arguments);
+    for (const int edge : arguments.quick ? std::vector<int>{ 16 } : std::vector<int>{ 64, 128 })
+    {
+      CountSweeps(device, Cube(edge));
+    }
   }
   if (arguments.Asks("model"))
   {

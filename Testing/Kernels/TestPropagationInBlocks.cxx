@@ -151,13 +151,15 @@ TEST_F(PropagationBlocks, HaveTheLightOfTheWholeOnOneToEightRanks)
   }
 }
 
-TEST_F(PropagationBlocks, HaveTheLightOfTheWholeInColour)
+TEST_F(PropagationBlocks, HaveTheLightOfTheWholeInColourBySimilarity)
 {
   RandomMedium whole(Grid{ { 6, 7, 5 } }, 3, 0.8f, 6);
   whole.Emit(0.3f);
   Illumination shining = LitFromOutside();
   shining.lights[0].power = { 1.0, 0.0, 3.0 };
-  const PropagationSettings settings = SettingsOf(3);
+  whole.medium.phase = PhaseFunction::HenyeyGreenstein(0.4);
+  PropagationSettings settings = SettingsOf(3);
+  settings.angularDegree = 0;
   ExpectSame(LightOfAll(GetDevice(), BlockPartition::Even(whole.medium.grid, 3), whole, shining, settings),
     SolveConservative(GetDevice(), whole.medium, shining, settings));
 }
@@ -169,6 +171,37 @@ TEST_F(PropagationBlocks, GoOnBesideARankWithoutVoxels)
   const PropagationSettings settings = SettingsOf(3);
   ExpectSame(LightOfAll(GetDevice(), BlockPartition::Even(whole.medium.grid, 4), whole, LitFromOutside(), settings),
     SolveConservative(GetDevice(), whole.medium, LitFromOutside(), settings));
+}
+
+/// Thin voxels in which light is scattered many times: diffusion on cells goes with the sweeps, and does not change
+/// what they come to.
+TEST_F(PropagationBlocks, FindTheSameLightSoonerByCells)
+{
+  RandomMedium whole(Grid{ { 22, 19, 18 } }, 1, 0.5f, 5);
+  for (std::size_t i = 0; i < whole.absorption.size(); ++i)
+  {
+    const float both = whole.absorption[i] + whole.scattering[i];
+    whole.absorption[i] = 0.02f * both;
+    whole.scattering[i] = 0.98f * both;
+  }
+  whole.Emit(0.3f);
+  PropagationSettings settings = SettingsOf(0);
+  settings.tolerance = 1e-6;
+  const LightField plain = SolveConservative(GetDevice(), whole.medium, LitFromOutside(), settings);
+  settings.acceleration = PropagationAcceleration::Automatic;
+  const auto onRanks = [&](int ranks) {
+    return LightOfAll(GetDevice(), BlockPartition::Even(whole.medium.grid, ranks), whole, LitFromOutside(), settings);
+  };
+  const LightField alone = onRanks(1);
+  EXPECT_LT(2 * alone.convergence.size(), plain.convergence.size());
+  EXPECT_LT(RelativeRmse(alone.fluence, plain.fluence), 5e-6);
+  EXPECT_LT(RelativeRmse(alone.netFlux, plain.netFlux), 5e-6);
+  EXPECT_LT(alone.balance.RelativeError(1), 1e-6);
+  for (const int ranks : { 2, 3, 8 })
+  {
+    SCOPED_TRACE(std::to_string(ranks) + " ranks");
+    ExpectSame(onRanks(ranks), alone);
+  }
 }
 
 /// Whatever goes wrong on one rank is one error on each, and none waits for the others.
@@ -226,6 +259,10 @@ TEST_F(PropagationBlocksFail, TogetherWhereTheyDisagree)
     "disagree about the components", [](int rank, PartOf& part, Illumination&, PropagationSettings&, Monitor&) {
       part.medium.emission = rank == 2 ? Field() : part.medium.emission;
     });
+  ExpectErrors("disagree about g", [](int rank, PartOf& part, Illumination&, PropagationSettings& settings, Monitor&) {
+    part.medium.phase = PhaseFunction::HenyeyGreenstein(0.1 + 0.1 * rank);
+    settings.angularDegree = 0;
+  });
   ExpectErrors(
     "disagree about settings", [](int rank, PartOf&, Illumination&, PropagationSettings& settings, Monitor&) {
       settings.tolerance *= 1.0 + rank;

@@ -16,6 +16,7 @@ LAYERS = {
         ["Device"],
         ["Numerics"],
         ["Medium", "PhaseFunction", "Lights", "Light"],
+        ["Distribution"],
         ["LightPropagation"],
         ["DiscreteOrdinates", "Refraction"],
         ["Photons"],
@@ -29,6 +30,7 @@ LAYERS = {
         ["Scattering", "Uncollided", "Diffusion", "PlaneParallel"],
         ["Emission", "ThickVoxels", "CoarseDiffusion"],
         ["Conservative", "Published"],
+        ["Distributed"],
         ["Accuracy"],
     ],
     "Kernels/Viewing": [

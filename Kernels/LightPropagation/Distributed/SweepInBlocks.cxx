@@ -47,7 +47,7 @@ SweepInBlocks::SweepInBlocks(Device& device, Communicator& communicator, const B
   , SigmaT(sigma_t)
   , To(request.deposit)
   , OctantSource(request.octantSource)
-  , Parts(SortByOctant(request.rays, mostRays))
+  , Parts(mostRays > 0 ? SortByOctant(request.rays, mostRays) : FastestParts(partition, request.rays))
   , TheSchedule(partition, this->Parts, {})
 {
   Require(!request.angular, "A grid that is spread over ranks is swept without angular moments.");

@@ -27,7 +27,7 @@ public:
   /// @param layout  of the rank's own block
   /// @param request  its box is not looked at: all is swept
   /// @param workspace  must stay; shared by sweeps that never run at the same time
-  /// @param mostRays  that go through a block at once: fewer keep more ranks busy, with more messages; 0: an octant's
+  /// @param mostRays  that go through a block at once; 0: as many as end the sweep soonest (FastestParts)
   /// @throws InvalidInput where the request has what this cannot do, or blocks wait for each other
   SweepInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition, const VolumeLayout& layout,
     const Buffer<float>& sigma_t, const SweepRequest& request, BlockWorkspace& workspace, int mostRays = 0);

@@ -42,4 +42,8 @@ private:
   double Makespan = 0.0, Work = 0.0;
   std::size_t Sent = 0, SentRays = 0;
 };
+
+/// The rays of a sweep as sets of parallel bundles, of as many rays each as bring it to its end soonest: fewer keep
+/// more ranks busy, and cost each of them and the network more often. The same on all ranks.
+std::vector<ParallelBundles> FastestParts(const BlockPartition& partition, const std::vector<AxisBundles>& rays);
 }

@@ -539,12 +539,7 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
   __global float* scratch, const __global UnitInfo* units, const __global BundleInfo* bundles,
   const __global float* coefficients, const __global CrossingInfo* crossings, const __global OwnLightInfo* own,
   const __global int2* schedule, __global float* tally, __global float* face_out, const __global float* face_in,
-  const __global float* octants
-#if SIDES
-  ,
-  const __global float* sides_in, __global float* sides_out, int outer_sides
-#endif
-)
+  const __global float* octants SIDES_ARGUMENTS)
 {
   const int u = get_global_id(0);
   const int unit_count = get_global_size(0);

@@ -42,8 +42,8 @@ static void take_across_u(
 }
 
 // What a member's row y holds of rays that go out at a move of (du, dv).
-static void give_sides(sweep_state* state, const __global BundleInfo* bundle, int member, const __global float* row,
-  int y, int du, int dv)
+static void give_sides(
+  sweep_state* state, const __global BundleInfo* bundle, int member, const __global float* row, int y, int du, int dv)
 {
   const bool across_v = (dv < 0 && y == 0) || (dv > 0 && y == state->sizeV - 1);
   for (int ray = member * CHANNELS; ray < (member + 1) * CHANNELS; ++ray)
@@ -61,8 +61,10 @@ static void give_sides(sweep_state* state, const __global BundleInfo* bundle, in
   }
 }
 
+#define SIDES_ARGUMENTS , const __global float *sides_in, __global float *sides_out, int outer_sides
 // Side 0 to 3 is the face -u, +u, -v, +v: light that goes through leaves the whole grid.
 #define LEAVES_GRID(state, side) (((state)->outerSides >> (side)) & 1)
 #else
+#define SIDES_ARGUMENTS
 #define LEAVES_GRID(state, side) true
 #endif

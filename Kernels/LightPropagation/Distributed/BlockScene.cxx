@@ -1,0 +1,142 @@
+#include "LightPropagation/Distributed/BlockScene.h"
+
+#include "Device/Errors.h"
+#include "Light/ChannelReduction.h"
+
+#include <algorithm>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace tyndall
+{
+namespace
+{
+/// A number on every rank, where ranks without voxels have none.
+/// @throws InvalidInput where they differ
+void RequireSame(Communicator& communicator, const char* what, bool has, std::vector<double> values)
+{
+  const std::size_t count = values.size();
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    values.push_back(-values[i]);
+  }
+  if (!has)
+  {
+    std::fill(values.begin(), values.end(), -std::numeric_limits<double>::infinity());
+  }
+  const std::vector<double> largest = communicator.Largest(values);
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    Require(largest[i] == -largest[count + i],
+      std::string("The ranks that share the medium disagree about ") + what + ": give every piece the same.");
+  }
+}
+
+/// Traits of the medium of all ranks.
+MediumTraits TraitsOfAll(Communicator& communicator, bool has, const Medium& medium)
+{
+  MediumTraits traits = has ? TraitsOf(medium, true) : MediumTraits();
+  const std::vector<double> any = communicator.Largest({ traits.absorbs ? 1.0 : 0.0, traits.scatters ? 1.0 : 0.0,
+    traits.emits ? 1.0 : 0.0, traits.grey ? 0.0 : 1.0, traits.greyExtinction ? 0.0 : 1.0 });
+  traits.absorbs = any[0] > 0.0;
+  traits.scatters = any[1] > 0.0;
+  traits.emits = any[2] > 0.0;
+  traits.grey = any[3] == 0.0;
+  traits.greyExtinction = any[4] == 0.0;
+  return traits;
+}
+}
+
+void RequireSame(Communicator& communicator, const BlockPartition& partition)
+{
+  std::vector<double> numbers;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    numbers.push_back(partition.whole.size[axis]);
+    numbers.push_back(partition.whole.spacing[axis]);
+    numbers.push_back(partition.whole.origin[axis]);
+    for (const VoxelBox& block : partition.blocks)
+    {
+      numbers.push_back(block.first[axis]);
+      numbers.push_back(block.size[axis]);
+    }
+  }
+  RequireSame(communicator, "the grid or its blocks", true, numbers);
+}
+
+void RequireSame(Communicator& communicator, bool has, const Medium& medium, const Illumination& illumination,
+  const PropagationSettings& settings)
+{
+  const auto components = [](const Field& field) { return field.values ? field.components : 0; };
+  RequireSame(communicator, "the components of sigma_a, sigma_s or emission, or one has no emission", has,
+    { 1.0 * components(medium.sigma_a), 1.0 * components(medium.sigma_s), 1.0 * components(medium.emission) });
+  const bool varies = has && medium.phase.Varies();
+  const auto cosine = [&](int c) { return has && !varies ? medium.phase.MeanCosine(0, c) : 0.0; };
+  RequireSame(communicator, "g", has, { varies ? 1.0 : 0.0, cosine(0), cosine(1), cosine(2) });
+  RequireSame(communicator, "settings", true,
+    { 1.0 * settings.directionsPerFace, 1.0 * settings.mapResolution, 1.0 * settings.maximumOrders, settings.tolerance,
+      1.0 * settings.netFlux, 1.0 * settings.leaveOut, 1.0 * settings.staggeredRays });
+  std::vector<double> light = { 1.0 * static_cast<double>(illumination.lights.size()), Sum(illumination.sky),
+    1.0 * illumination.environment.width, 1.0 * illumination.environment.height };
+  for (const Rgb& face : illumination.faces)
+  {
+    light.insert(light.end(), face.begin(), face.end());
+  }
+  RequireSame(communicator, "what shines on it", true, light);
+}
+
+BlockScene::BlockScene(Communicator& communicator, bool has, const Grid& whole, const Medium& ofBlock,
+  const Illumination& shining, const PropagationSettings& settings)
+  : medium(ofBlock)
+  , illumination(shining)
+  , traits(TraitsOfAll(communicator, has, ofBlock))
+  , lengthUnit(LengthUnitOf(whole))
+{
+  communicator.Together([&] {
+    if (has && this->lengthUnit != 1.0)
+    {
+      this->InLengths.emplace(this->medium, this->illumination, this->lengthUnit);
+      this->medium = this->InLengths->medium;
+      this->illumination = this->InLengths->illumination;
+    }
+  });
+  this->powerUnit = communicator.Largest({ has ? PowerUnitOf(this->medium, this->illumination) : 0.0 })[0];
+  if (has && this->powerUnit != 1.0)
+  {
+    this->InUnits.emplace(this->medium, this->illumination, this->powerUnit);
+    this->medium = this->InUnits->medium;
+    this->illumination = this->InUnits->illumination;
+  }
+  const SceneChannels reduction(this->medium, this->traits, this->illumination);
+  this->channels = static_cast<int>(communicator.Largest({ has ? 1.0 * reduction.given : 1.0 })[0]);
+  if (has && this->channels == 1)
+  {
+    const OneChannelScene one(this->medium, this->illumination, reduction);
+    this->medium = one.medium;
+    this->illumination = one.light;
+  }
+  this->sharedExtinction = this->channels == 1 || (settings.leaveOut && this->traits.greyExtinction);
+}
+Grid BlockScene::WholeOf(Grid grid) const
+{
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    grid.spacing[axis] /= this->lengthUnit;
+    grid.origin[axis] /= this->lengthUnit;
+  }
+  return grid;
+}
+
+void BlockScene::Undo(LightField& light) const
+{
+  if (this->powerUnit != 1.0)
+  {
+    ToWatts(light, this->powerUnit);
+  }
+  if (this->lengthUnit != 1.0)
+  {
+    MultiplyPowers(light, this->lengthUnit * this->lengthUnit);
+  }
+}
+}

@@ -1,0 +1,177 @@
+#include "LightPropagation/Distributed/CellsOverRanks.h"
+
+#include "LightPropagation/CoarseDiffusion/CoarseMatrix.h"
+#include "Medium/BoxFaces.h"
+#include "Numerics/Constants.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace tyndall
+{
+namespace
+{
+constexpr double Reduction = 0.02; ///< of the residual: sweeps take away less than that
+
+/// A channel of an array.
+std::vector<float> ChannelOf(const Buffer<float>& values, std::size_t first, std::size_t count)
+{
+  const std::vector<float> all = values.Read();
+  const auto begin = all.begin() + static_cast<std::ptrdiff_t>(first);
+  return { begin, begin + static_cast<std::ptrdiff_t>(count) };
+}
+
+void WriteChannel(Buffer<float>& values, std::size_t first, const std::vector<float>& ofChannel)
+{
+  std::vector<float> all = values.Read();
+  std::copy(ofChannel.begin(), ofChannel.end(), all.begin() + static_cast<std::ptrdiff_t>(first));
+  values.Write(all.data());
+}
+}
+
+CellsOverRanks::CellsOverRanks(Device& device, Communicator& communicator, const BlockPartition& partition,
+  const VolumeLayout& layout, int channel, const MediumOnDevice& medium, const std::array<int, 3>& halvings)
+  : TheDevice(device)
+  , Others(communicator)
+  , Partition(partition)
+  , Layout(layout)
+  , First(channel * layout.Stride())
+  , SigmaT(ChannelOf(medium.SigmaT(), layout.ExtinctionFirst(channel), layout.grid.VoxelCount()))
+  , SigmaS(ChannelOf(medium.SigmaS(), this->First, layout.grid.VoxelCount()))
+{
+  std::array<double, 3> edges = {};
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const int edge = 1 << halvings[axis];
+    this->Box.size[axis] = partition.whole.size[axis];
+    this->Box.spacing[axis] = static_cast<float>(partition.whole.spacing[axis]);
+    this->Box.halvings[axis] = halvings[axis];
+    this->Cells.size[axis] = (partition.whole.size[axis] + edge - 1) / edge;
+    edges[axis] = partition.whole.spacing[axis] * edge;
+  }
+  this->Box.cells = MultigridLevels(this->Cells.size, edges).front();
+  const std::vector<double> sigmaT = this->SumByCells(this->SigmaT), sigmaS = this->SumByCells(this->SigmaS);
+  CoarseMatrix matrix = FindCoarseMatrix(partition.whole, this->Box, this->Cells,
+    std::vector<float>(sigmaT.begin(), sigmaT.end()), std::vector<float>(sigmaS.begin(), sigmaS.end()));
+  this->Borders = std::move(matrix.borders);
+  communicator.Together([&] {
+    if (communicator.Rank() == 0)
+    {
+      this->Solver = std::make_unique<MultigridSolver>(device, this->Cells.size, edges);
+      this->Solver->Conductance().Write(matrix.conductance.data());
+      this->Solver->Loss().Write(matrix.loss.data());
+      this->Solver->Coarsen();
+      this->FoundOnDevice = ExactValues(device, this->Cells.VoxelCount(), "diffusion on cells");
+    }
+  });
+}
+
+/// Of all ranks.
+std::vector<double> CellsOverRanks::SumByCells(const Values& ofVoxels)
+{
+  std::vector<double> sums(this->Cells.VoxelCount(), 0.0);
+  const VoxelBox& block = this->Partition.blocks[this->Others.Rank()];
+  for (std::size_t i = 0; i < ofVoxels.size(); ++i)
+  {
+    std::array<int, 3> cell = this->Layout.grid.VoxelAt(i);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      cell[axis] = (cell[axis] + block.first[axis]) >> this->Box.halvings[axis];
+    }
+    sums[this->Cells.IndexOf(cell)] += ofVoxels[i];
+  }
+  return this->Others.Sum(sums);
+}
+
+/// Of what the last sweep scattered, W by voxel, all orders to come. @return W of all ranks
+double CellsOverRanks::Solve(const Values& scattered)
+{
+  const std::vector<double> byCells = this->SumByCells(scattered);
+  const auto magnitude = [](double sum, double value) { return sum + std::abs(value); };
+  const double all = std::accumulate(byCells.begin(), byCells.end(), 0.0, magnitude);
+  std::vector<double> found(byCells.size(), 0.0);
+  this->Others.Together([&] {
+    if (this->Solver && all > 0.0)
+    {
+      this->FoundOnDevice.Fill(0.0);
+      this->Solver->Right().Write(InRows(this->Box.cells, byCells).data());
+      this->Solver->Solve(this->FoundOnDevice, all / static_cast<double>(byCells.size()), Reduction);
+      found = this->FoundOnDevice.Read();
+    }
+  });
+  this->Found = this->Others.Sum(found); // the other ranks have zeros
+  return std::accumulate(byCells.begin(), byCells.end(), 0.0);
+}
+
+/// Linear between the cells' middles, and beyond the last ones as between the last two.
+double CellsOverRanks::FoundAt(const std::array<int, 3>& voxel) const
+{
+  std::array<int, 3> from = {}, to = {};
+  std::array<double, 3> way = {};
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const int edge = 1 << this->Box.halvings[axis], cells = this->Cells.size[axis];
+    const double place = (voxel[axis] + 0.5) / edge - 0.5;
+    from[axis] = std::clamp(static_cast<int>(std::floor(place)), 0, std::max(0, cells - 2));
+    to[axis] = std::min(from[axis] + 1, cells - 1);
+    way[axis] = place - from[axis];
+  }
+  double found = 0.0;
+  for (int corner = 0; corner < 8; ++corner)
+  {
+    std::array<int, 3> cell = {};
+    double part = 1.0;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const bool far = corner >> axis & 1;
+      cell[axis] = far ? to[axis] : from[axis];
+      part *= far ? way[axis] : 1.0 - way[axis];
+    }
+    found += part * this->Found[this->Cells.IndexOf(cell)];
+  }
+  return found;
+}
+
+CellsOverRanks::Powers CellsOverRanks::ScatterOrder(Buffer<float>& path, Buffer<float>& fluence, Buffer<float>& source)
+{
+  const std::size_t count = this->Layout.grid.VoxelCount();
+  const double volume = this->Layout.grid.VoxelVolume();
+  Values gathered = ChannelOf(path, this->First, count), light = ChannelOf(fluence, this->First, count);
+  Values shines(count);
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    shines[i] = this->SigmaS[i] * gathered[i]; // W
+  }
+  const double swept = this->Solve(shines);
+  const VoxelBox& block = this->Partition.blocks[this->Others.Rank()];
+  std::vector<double> sums(4, 0.0); // absorbed, of the solution, scattered, the same without signs
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    std::array<int, 3> voxel = this->Layout.grid.VoxelAt(i);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      voxel[axis] += block.first[axis];
+    }
+    const double ofFound = volume * this->FoundAt(voxel), all = gathered[i] + ofFound;
+    const double sigmaA = std::max(0.0f, this->SigmaT[i] - this->SigmaS[i]), scatters = this->SigmaS[i] * all;
+    light[i] = static_cast<float>(light[i] + all / volume);
+    gathered[i] = static_cast<float>(-ofFound);
+    shines[i] = static_cast<float>(scatters / (4.0 * Pi * volume));
+    const double terms[] = { sigmaA * all, sigmaA * ofFound, scatters, std::abs(scatters) };
+    std::transform(sums.begin(), sums.end(), terms, sums.begin(), std::plus<double>());
+  }
+  WriteChannel(path, this->First, gathered);
+  WriteChannel(fluence, this->First, light);
+  WriteChannel(source, this->First, shines);
+  sums = this->Others.Sum(sums);
+  Powers powers;
+  powers.absorbed = sums[0];
+  powers.scattered = sums[2];
+  powers.magnitude = sums[3];
+  ForBoxFaceCells(this->Cells,
+    [&](const BoxFaceCell& cell) { powers.out[cell.face] += this->Borders[cell.number] * this->Found[cell.voxel]; });
+  powers.left = swept - sums[1] - std::accumulate(powers.out.begin(), powers.out.end(), 0.0);
+  return powers;
+}
+}

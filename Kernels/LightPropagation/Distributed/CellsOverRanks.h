@@ -1,0 +1,64 @@
+#pragma once
+
+#include "Device/ExactValues.h"
+#include "Distribution/BlockPartition.h"
+#include "Distribution/Communicator.h"
+#include "LightPropagation/CoarseDiffusion/CoarseShared.h"
+#include "LightPropagation/Diffusion/MultigridSolver.h"
+#include "LightPropagation/Problem/MediumOnDevice.h"
+#include "LightPropagation/Sweep/VolumeLayout.h"
+
+#include <array>
+#include <memory>
+#include <vector>
+
+namespace tyndall
+{
+/// Diffusion of one channel on cells of voxels, as CoarseDiffusion.h has it for a source that is constant in voxels
+/// (numerics.md, section 7.13), of a grid that is spread over ranks: cells are those of the whole grid, whichever ranks
+/// have their voxels. The first rank solves the system; all hold values by cells, an eighth of the voxels at most.
+class CellsOverRanks
+{
+public:
+  /// @param communicator, partition, medium  must stay
+  /// @param layout  of the rank's block
+  /// @param halvings  along each axis; cells have 2^halvings voxels
+  CellsOverRanks(Device& device, Communicator& communicator, const BlockPartition& partition,
+    const VolumeLayout& layout, int channel, const MediumOnDevice& medium, const std::array<int, 3>& halvings);
+
+  /// W, of one order, of all ranks.
+  struct Powers
+  {
+    double absorbed = 0.0;          ///< of all light that is added
+    double scattered = 0.0;         ///< of it, the next source
+    double magnitude = 0.0;         ///< the same without signs
+    double left = 0.0;              ///< neither absorbed nor out, by the solution
+    std::array<double, 6> out = {}; ///< leaves through each face of the whole grid, by the solution
+  };
+
+  /// From the path integrals of a sweep to the next source, as CoarseDiffusion::ScatterOrder. All ranks call it.
+  /// @param path  W length, [channel][stride]; replaced by what the next sweep is to have less
+  /// @param fluence  W / length^2, added to
+  /// @param source  W / (length^3 sr), replaced
+  Powers ScatterOrder(Buffer<float>& path, Buffer<float>& fluence, Buffer<float>& source);
+
+private:
+  using Values = std::vector<float>;
+  std::vector<double> SumByCells(const Values& ofVoxels);
+  double Solve(const Values& scattered);
+  double FoundAt(const std::array<int, 3>& voxel) const;
+
+  Device& TheDevice;
+  Communicator& Others;
+  const BlockPartition& Partition;
+  VolumeLayout Layout;
+  Grid Cells;                              ///< their number alone
+  CoarseCells Box = {};                    ///< of the whole grid
+  std::size_t First;                       ///< of the channel
+  Values SigmaT, SigmaS;                   ///< of the block's voxels
+  std::unique_ptr<MultigridSolver> Solver; ///< of the first rank, else null
+  ExactValues FoundOnDevice;
+  std::vector<double> Borders; ///< as CoarseMatrix has them
+  std::vector<double> Found;   ///< W / length^2, by cells
+};
+}

@@ -1,0 +1,333 @@
+#include "LightPropagation/Distributed/IterationInBlocks.h"
+
+#include "Light/LeftOut.h"
+#include "LightPropagation/Uncollided/UncollidedLamp.h"
+#include "Medium/VoxelSums.h"
+#include "Numerics/Constants.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace tyndall
+{
+namespace
+{
+constexpr int MostOrders = 100000;
+constexpr double CellAtMost = 1.0;  ///< optical width of cells where the medium is thickest
+constexpr int MostHalvings = 3;     ///< of voxels into cells
+constexpr double ManyOrders = 2.0;  ///< mean free paths through the box along its thinnest axis that pay for cells
+constexpr double FallByCells = 0.3; ///< of what is left over from order to order, at least so much in the forecast
+}
+
+IterationInBlocks::IterationInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition,
+  const BlockScene& scene, const PropagationSettings& settings)
+  : TheDevice(device)
+  , Others(communicator)
+  , Partition(partition)
+  , Scene(scene)
+  , Settings(settings)
+  , Has(partition.blocks[communicator.Rank()].VoxelCount() > 0)
+  , Layout(this->LayoutOn(partition.OwnGrid(communicator.Rank())))
+  , WholeLayout(this->LayoutOn(partition.whole))
+  , Truncated(scene.medium, 0, scene.channels)
+  , OnDevice(device, scene.medium, this->Truncated, this->Layout, { true, false })
+  , Scattering(device, this->Layout, this->OnDevice, scene.traits.scatters)
+  , Directions(partition.whole, settings, DirectionsForVoxels(settings.directionsPerFace, partition.whole.spacing),
+      settings.staggeredRays ? RayStarts::Staggered : RayStarts::Middle)
+  , Far(Split(scene.illumination.environment, this->Directions.Set()))
+  , Boundary(partition.whole, settings, this->Directions, scene.illumination, this->Far.smooth)
+{
+  if (this->Boundary.Shines())
+  {
+    this->Boundary.CheckRays(scene.channels);
+  }
+  this->Source = Buffer<float>(device, this->Layout.Floats(), "the scattered light");
+  this->Path = Buffer<float>(device, this->Layout.Floats(), "the light gathered");
+  this->Fluence = Buffer<float>(device, this->Layout.Floats(), "fluence");
+  if (settings.netFlux)
+  {
+    this->Flux = Buffer<float>(device, this->Layout.Floats(3), "net_flux");
+    this->Flux.Fill(0.0f);
+  }
+  this->Source.Fill(0.0f);
+  this->Path.Fill(0.0f);
+  this->Fluence.Fill(0.0f);
+}
+
+std::unique_ptr<SweepOperator> IterationInBlocks::MakeSweep(const SweepRequest& request)
+{
+  std::unique_ptr<SweepOperator> sweep;
+  this->Others.Together([&] {
+    sweep = std::make_unique<SweepInBlocks>(
+      this->TheDevice, this->Others, this->Partition, this->Layout, this->OnDevice.SigmaT(), request, this->Workspace);
+  });
+  return sweep;
+}
+
+void IterationInBlocks::LoadEmission()
+{
+  if (!this->Scene.traits.emits)
+  {
+    return;
+  }
+  this->Shining = true;
+  std::vector<double> emitted(3, 0.0);
+  if (this->Has)
+  {
+    const Field& emission = this->Scene.medium.emission;
+    const std::vector<float> values =
+      Planar(this->Layout, this->Layout.channels, [&](std::size_t i, int c) { return emission.At(i, c); });
+    this->Source.Write(values.data(), values.size());
+    for (int c = 0; c < this->Layout.channels; ++c)
+    {
+      emitted[c] = 4.0 * Pi * this->Layout.grid.VoxelVolume() *
+        SumOverVoxels(this->Layout.grid, [&](std::size_t i) { return emission.At(i, c); });
+    }
+  }
+  emitted = this->Others.Sum(emitted);
+  for (int c = 0; c < 3; ++c)
+  {
+    this->Ledger.Emit(c, emitted[c]);
+  }
+}
+
+/// Directional lights and peaks of the environment, which are such.
+void IterationInBlocks::AddLamps(const Monitor& monitor)
+{
+  std::vector<Light> lamps = this->Scene.illumination.lights;
+  lamps.insert(lamps.end(), this->Far.peaks.begin(), this->Far.peaks.end());
+  const SweepMaker sweeps = [this](const SweepRequest& request) { return this->MakeSweep(request); };
+  // Rays of a beam are those through the whole box.
+  const UncollidedVolume volume = { this->TheDevice, this->WholeLayout, this->OnDevice.SigmaT(),
+    this->Settings.periodic, sweeps, this->WholeDeposit() };
+  for (std::size_t i = 0; i < lamps.size(); ++i)
+  {
+    const double all = static_cast<double>(lamps.size());
+    this->Ledger.Count(UncollidedLamp(lamps[i]).AddTo(volume, OfPart(monitor, i / all, (i + 1) / all)));
+  }
+}
+
+/// How many voxels make a cell, 2^this along each axis; all 0: cells do not pay, or voxels are too thick for them.
+std::array<int, 3> IterationInBlocks::CellHalvings()
+{
+  if (this->Settings.acceleration != PropagationAcceleration::Automatic || this->Settings.maximumOrders > 0 ||
+    !this->Scene.traits.scatters)
+  {
+    return {};
+  }
+  double thickest = 0.0, sum = 0.0;
+  for (std::size_t i = 0; i < this->Layout.grid.VoxelCount(); ++i)
+  {
+    for (int c = 0; c < this->Layout.channels; ++c)
+    {
+      const double sigma = this->Scene.medium.TransportSigmaT(i, c);
+      thickest = std::max(thickest, sigma);
+      sum += sigma / this->Layout.channels;
+    }
+  }
+  const Grid& whole = this->Partition.whole;
+  thickest = this->Others.Largest({ thickest })[0];
+  const double mean = this->Others.Sum({ sum })[0] / static_cast<double>(whole.VoxelCount());
+  std::array<int, 3> halvings = {};
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    int& times = halvings[axis];
+    while (times < MostHalvings && thickest * whole.spacing[axis] * (2 << times) <= CellAtMost &&
+      whole.size[axis] > 1 << times)
+    {
+      ++times;
+    }
+    if (mean * whole.Length(axis) < ManyOrders || times == 0)
+    {
+      return {};
+    }
+  }
+  return halvings;
+}
+
+void IterationInBlocks::MakeCells()
+{
+  const std::array<int, 3> halvings = this->CellHalvings();
+  for (int c = 0; c < this->Layout.channels && halvings[0] > 0; ++c)
+  {
+    this->Cells.push_back(std::make_unique<CellsOverRanks>(
+      this->TheDevice, this->Others, this->Partition, this->Layout, c, this->OnDevice, halvings));
+    this->Rest[c].BeginWarm(FallByCells);
+  }
+}
+
+/// As SourceIteration does.
+void IterationInBlocks::ScatterByCells()
+{
+  this->Residual = 0.0;
+  this->Shining = false;
+  for (int c = 0; c < this->Layout.channels; ++c)
+  {
+    const CellsOverRanks::Powers powers = this->Cells[c]->ScatterOrder(this->Path, this->Fluence, this->Source);
+    this->Ledger.Absorb(c, powers.absorbed);
+    this->Ledger.LeaveOver(c, powers.left);
+    this->Scattered[c] = powers.scattered;
+    this->AllScattered[c] += powers.scattered;
+    this->Shining = this->Shining || powers.magnitude > 0.0;
+    if (powers.magnitude > 0.0 && this->AllScattered[c] > 0.0)
+    {
+      this->Residual = std::max(this->Residual, this->Rest[c].After(powers.magnitude, this->AllScattered[c]));
+    }
+    for (int face = 0; face < 6; ++face)
+    {
+      this->OutOfCells[face][c] = powers.out[face];
+    }
+  }
+  const double all = Sum(this->AllScattered);
+  this->Convergence.Add(this->Residual, all > 0.0 ? std::abs(Sum(this->Scattered)) / all : 0.0, this->WithOutOfCells());
+}
+
+/// With what leaves of the orders to come.
+EnergyLedger IterationInBlocks::WithOutOfCells() const
+{
+  EnergyLedger with = this->Ledger;
+  for (int face = 0; face < 6; ++face)
+  {
+    for (int c = 0; c < 3; ++c)
+    {
+      with.Escape(c, face, this->OutOfCells[face][c]);
+    }
+  }
+  return with;
+}
+
+/// One order: from the light that was swept to the next source, with the powers of all ranks.
+void IterationInBlocks::Scatter()
+{
+  if (this->Order == 0 && this->Has)
+  {
+    this->Direct = Interleaved(this->Layout, this->Path, 1.0 / this->Layout.grid.VoxelVolume());
+  }
+  if (!this->Cells.empty())
+  {
+    this->ScatterByCells();
+    return;
+  }
+  std::vector<double> powers(6, 0.0);
+  this->Others.Together([&] {
+    if (!this->Has)
+    {
+      return;
+    }
+    const ScatteringOperator::Powers own =
+      this->Scattering.ScatterOrder(this->WholeDeposit(), this->Fluence, this->Source, { 0, this->Layout.Stride() });
+    std::copy(own.absorbed.begin(), own.absorbed.end(), powers.begin());
+    std::copy(own.scattered.begin(), own.scattered.end(), powers.begin() + 3);
+  });
+  powers = this->Others.Sum(powers);
+  for (int c = 0; c < 3; ++c)
+  {
+    this->Ledger.Absorb(c, powers[c]);
+    this->Scattered[c] = powers[3 + c];
+    this->Ledger.LeaveOver(c, this->Scattered[c]);
+  }
+  this->Shining = Sum(this->Scattered) > 0.0;
+  this->EstimateResidual();
+  const double all = Sum(this->AllScattered);
+  this->Convergence.Add(this->Residual, all > 0.0 ? Sum(this->Scattered) / all : 0.0, this->Ledger);
+}
+
+/// As SourceIteration does.
+void IterationInBlocks::EstimateResidual()
+{
+  this->Residual = 0.0;
+  for (int c = 0; c < this->Layout.channels; ++c)
+  {
+    const double now = this->Scattered[c];
+    this->AllScattered[c] += now;
+    if (now > 0.0)
+    {
+      this->Residual = std::max(this->Residual, this->Rest[c].After(now, this->AllScattered[c]));
+    }
+  }
+}
+
+bool IterationInBlocks::Done() const
+{
+  if (this->Residual == 0.0 || this->Order >= MostOrders)
+  {
+    return true;
+  }
+  return this->Settings.maximumOrders > 0 ? this->Order >= this->Settings.maximumOrders
+                                          : this->Order >= 3 && MeetsTolerance(this->Settings, this->Residual);
+}
+
+LightField IterationInBlocks::Run(const Monitor& monitor)
+{
+  this->LoadEmission();
+  this->MakeCells();
+  const std::unique_ptr<SweepOperator> sweep = this->MakeSweep({ this->WholeDeposit(),
+    { { 0, this->Directions.Along(0) }, { 1, this->Directions.Along(1) }, { 2, this->Directions.Along(2) } } });
+  do
+  {
+    const Monitor ofOrder =
+      OfPart(monitor, [this](double done) { return ProgressOf(this->Settings, this->Residual, this->Order + done); });
+    const bool first = this->Order == 0;
+    if (first)
+    {
+      this->AddLamps(OfPart(ofOrder, 0.0, UncollidedPart));
+    }
+    const SweepBoundary boundary = first && this->Boundary.Shines() ? this->Boundary.Boundary() : SweepBoundary();
+    if (this->Shining || boundary)
+    {
+      this->Ledger.Count(sweep->Apply(
+        this->Shining ? &this->Source : nullptr, boundary, OfPart(ofOrder, first ? UncollidedPart : 0.0, 1.0)));
+    }
+    this->Scatter();
+    ++this->Order;
+  } while (!this->Done());
+  return this->TakeLight();
+}
+
+LightField IterationInBlocks::TakeLight()
+{
+  LightField light;
+  light.channels = this->Layout.channels;
+  if (this->Has)
+  {
+    light.fluence = Interleaved(this->Layout, this->Fluence, 1.0);
+    for (float& fluence : light.fluence)
+    {
+      fluence = std::max(fluence, 0.0f); // what the last sweeps would have taken away
+    }
+    if (this->Settings.netFlux)
+    {
+      light.netFlux = Interleaved(this->Layout, this->Flux, 1.0 / this->Layout.grid.VoxelVolume());
+    }
+    for (const float fluence : light.fluence)
+    {
+      light.scatteredRadiance.push_back(static_cast<float>(fluence / (4.0 * Pi)));
+    }
+    light.fluenceDirect = std::move(this->Direct);
+  }
+  light.storedDirections = { { 0.0, 0.0, 0.0 } };
+  const EnergyLedger ledger = this->WithOutOfCells();
+  light.balance = ledger.Balance();
+  light.facePowerOut = ledger.FacePowerOut();
+  light.convergence = this->Convergence.All();
+  light.directionsPerFace = this->Settings.directionsPerFace;
+  light.halfRangeFlux = HalfRangeFlux(this->Directions.Set());
+  light.device = this->TheDevice.Name();
+  if (this->Cells.empty())
+  {
+    light.leftOut.emplace_back(
+      "acceleration: few scattering orders do, or voxels of a medium that is spread over ranks "
+      "are thick");
+  }
+  if (this->Scene.traits.emits && this->Settings.emissionError > 0.0)
+  {
+    light.leftOut.emplace_back("exact rays of small bright emission: the medium is spread over ranks");
+  }
+  if (!this->Settings.netFlux)
+  {
+    light.leftOut.emplace_back(left_out::NetFlux);
+  }
+  return light;
+}
+}
