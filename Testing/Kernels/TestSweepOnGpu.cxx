@@ -292,7 +292,7 @@ TEST_F(SweepOnGpuTest, SolvesAsTheOtherDoes)
       scene.settings.acceleration = acceleration;
       fluence[i] = scene.Solve(i == 0 ? this->GetDevice() : *asGpu).fluence;
     }
-    EXPECT_NE(fluence[0], fluence[1]); // bit for bit: another sweep it was
+    EXPECT_TRUE(fluence[0] != fluence[1] || !this->GetDevice().IsCpu()); // bit for bit: another sweep it was
     EXPECT_LT(RelativeDifference(fluence[1], fluence[0]), Same);
   }
 }
