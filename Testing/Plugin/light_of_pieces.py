@@ -6,6 +6,7 @@ Of the cases that give light each rank writes its pieces to FOLDER; those that m
 """
 import os
 import sys
+import time
 
 import numpy
 from paraview import servermanager
@@ -228,9 +229,13 @@ def killed():
     medium = ParticipatingMedium(Input=source_of(piece_of(parts(even_cuts())[rank])),
                                  DensityArray=["CELLS", "density"])
     light = LightPropagationMaps(Input=medium, SkyColor=[1, 1, 1], DirectionsPerFace=16)
+
+    def end(caller, event):
+        print("killed at %f" % time.time(), flush=True)
+        os.kill(os.getpid(), 9)
+
     if rank == ranks - 1:
-        light.GetClientSideObject().AddObserver("ProgressEvent", lambda caller, event: os.kill(os.getpid(), 9))
-    print("begins", flush=True)
+        light.GetClientSideObject().AddObserver("ProgressEvent", end)
     light.UpdatePipeline()
 
 
