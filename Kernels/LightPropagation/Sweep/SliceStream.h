@@ -14,7 +14,7 @@
 namespace tyndall
 {
 /// A volume in host memory that is swept through slots on the device (Gruson et al., section 4.2; numerics.md, section
-/// 4.8): while the units cross the slices in their slots, those that they crossed before go back and those that they
+/// 4.10): while the units cross the slices in their slots, those that they crossed before go back and those that they
 /// come to next are fetched, by a second queue. The rays stay on the device.
 ///
 /// Each unit has two slots. A slot holds a few planes of all arrays, each array [slot][part][z][y][x] with a slot's
