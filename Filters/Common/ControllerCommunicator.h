@@ -1,6 +1,7 @@
 #ifndef ControllerCommunicator_h
 #define ControllerCommunicator_h
 
+#include "Common/RankMeeting.h"
 #include "Distribution/Communicator.h"
 
 #include "vtkMPICommunicator.h"
@@ -18,7 +19,7 @@ class ControllerCommunicator : public Communicator
 public:
   /// @param controller  must stay
   /// @param patience  seconds that a rank waits for another that says nothing before it gives up: none hangs
-  explicit ControllerCommunicator(vtkMPIController* controller, double patience = 600.0);
+  explicit ControllerCommunicator(vtkMPIController* controller, double patience = SecondsToWait());
   /// Waits until what was sent is on its way.
   ~ControllerCommunicator() override;
 

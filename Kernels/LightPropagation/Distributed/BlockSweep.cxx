@@ -110,12 +110,11 @@ BlockSweep::Light BlockSweep::LightOf(const SweepBoundary& boundary, std::size_t
   return { through(axes.u), through(axes.v), through(axes.axis) };
 }
 
-RaysAtFaces BlockSweep::FromOutside(const SweepBoundary& boundary) const
+/// Calls act(light, the bundle's row, ray of the bundle, channel) for each ray of a voxel and each channel.
+template <class Act>
+void BlockSweep::ForRaysFrom(const SweepBoundary& boundary, const Act& act) const
 {
   const SweepPlan& plan = this->Plan;
-  RaysAtFaces rays;
-  rays.maps.assign(plan.mapsEachWay, 0.0f);
-  rays.sides.assign(this->RayCount * plan.Planes() * this->SideFloats, 0.0f);
   for (std::size_t b = 0; boundary && b < plan.bundles.size(); ++b)
   {
     const BundleInfo& bundle = plan.bundleRows[b];
@@ -124,17 +123,28 @@ RaysAtFaces BlockSweep::FromOutside(const SweepBoundary& boundary) const
       const Light light = this->LightOf(boundary, b, plan.bundles[b].members[m]);
       for (int c = 0; c < plan.channels; ++c)
       {
-        const std::size_t slot = static_cast<std::size_t>(m) * plan.channels + c;
-        this->FillSides(light, bundle.border + slot, c, rays);
-        for (int v = 0; this->IsOuter(plan.axes.axis, true) && v < plan.plane.sizeV; ++v)
-        {
-          float* row = rays.maps.data() + bundle.map + plan.vector +
-            (static_cast<std::size_t>(v) * bundle.members * plan.channels + slot) * plan.row;
-          std::fill(row, row + plan.plane.sizeU, static_cast<float>(light.along[c]));
-        }
+        act(light, bundle, static_cast<std::size_t>(m) * plan.channels + c, c);
       }
     }
   }
+}
+
+RaysAtFaces BlockSweep::FromOutside(const SweepBoundary& boundary) const
+{
+  const SweepPlan& plan = this->Plan;
+  RaysAtFaces rays;
+  rays.maps.assign(plan.mapsEachWay, 0.0f);
+  rays.sides.assign(this->RayCount * plan.Planes() * this->SideFloats, 0.0f);
+  const bool beginHere = this->IsOuter(plan.axes.axis, true);
+  this->ForRaysFrom(boundary, [&](const Light& light, const BundleInfo& bundle, std::size_t slot, int c) {
+    this->FillSides(light, bundle.border + slot, c, rays);
+    for (int v = 0; beginHere && v < plan.plane.sizeV; ++v)
+    {
+      float* row = rays.maps.data() + bundle.map + plan.vector +
+        (static_cast<std::size_t>(v) * bundle.members * plan.channels + slot) * plan.row;
+      std::fill(row, row + plan.plane.sizeU, static_cast<float>(light.along[c]));
+    }
+  });
   return rays;
 }
 
@@ -195,24 +205,14 @@ void BlockSweep::WriteBeyond(const SweepBoundary& boundary)
 {
   const SweepPlan& plan = this->Plan;
   std::vector<float> outside(plan.outsideEachWay, 0.0f), radiance(2 * plan.radianceEachWay, 0.0f);
-  for (std::size_t b = 0; boundary && b < plan.bundles.size(); ++b)
-  {
-    const BundleInfo& bundle = plan.bundleRows[b];
-    for (int m = 0; m < bundle.members; ++m)
+  this->ForRaysFrom(boundary, [&](const Light& light, const BundleInfo& bundle, std::size_t slot, int c) {
+    float* row = outside.data() + bundle.outside + slot * plan.row + plan.vector;
+    std::fill(row, row + plan.plane.sizeU, static_cast<float>(light.v[c]));
+    for (int way = 0; way < 2; ++way)
     {
-      const Light light = this->LightOf(boundary, b, plan.bundles[b].members[m]);
-      for (int c = 0; c < plan.channels; ++c)
-      {
-        const std::size_t slot = static_cast<std::size_t>(m) * plan.channels + c;
-        float* row = outside.data() + bundle.outside + slot * plan.row + plan.vector;
-        std::fill(row, row + plan.plane.sizeU, static_cast<float>(light.v[c]));
-        for (int way = 0; way < 2; ++way)
-        {
-          radiance[way * plan.radianceEachWay + bundle.border + slot] = static_cast<float>(light.u[c]);
-        }
-      }
+      radiance[way * plan.radianceEachWay + bundle.border + slot] = static_cast<float>(light.u[c]);
     }
-  }
+  });
   this->Outside.Write(outside.data());
   this->Radiance.Write(radiance.data());
 }

@@ -66,6 +66,8 @@ private:
   Light LightOf(const SweepBoundary& boundary, std::size_t bundle, const Member& member) const;
   int DirectionOf(const Member& member) const;
   bool IsOuter(int axis, bool entry) const; ///< the block's face where rays come in, or leave, is the grid's
+  template <class Act>
+  void ForRaysFrom(const SweepBoundary& boundary, const Act& act) const;
   void FillSides(const Light& light, std::size_t ray, int channel, RaysAtFaces& rays) const;
   void WriteBeyond(const SweepBoundary& boundary);
   void Launch(const SweepVolume& volume, const Monitor& monitor);

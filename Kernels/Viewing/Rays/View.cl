@@ -89,13 +89,21 @@ typedef struct
   __global float* depth;
 } canvas;
 
+// The pixels of a packet whose first is at (column, row), and which of them the picture has.
+inline integer pixels_of(const ViewInfo* v, int column, int row)
+{
+  return (integer)(row * v->picture.x + column) + to_integer(UPWARDS) * v->picture.x + to_integer(ACROSS);
+}
+
+inline integer in_picture(const ViewInfo* v, int column, int row)
+{
+  return (to_integer(ACROSS) + column < (integer)v->picture.x) & (to_integer(UPWARDS) + row < (integer)v->picture.y);
+}
+
 // 3 per pixel: what a block lets through.
 inline void paint_passed(const ViewInfo* v, __global float* passed, int column, int row, rgb part)
 {
-  const integer i = to_integer(ACROSS);
-  const integer j = to_integer(UPWARDS);
-  const integer pixel = (integer)(row * v->picture.x + column) + j * v->picture.x + i;
-  const integer inside = (i + column < (integer)v->picture.x) & (j + row < (integer)v->picture.y);
+  const integer pixel = pixels_of(v, column, row), inside = in_picture(v, column, row);
 #define PAINT(n)                         \
   if (LANE(inside, n))                   \
   {                                      \
@@ -110,10 +118,7 @@ inline void paint_passed(const ViewInfo* v, __global float* passed, int column, 
 
 inline void paint(const ViewInfo* v, canvas picture, int column, int row, rgb radiance, real opaque, real where)
 {
-  const integer i = to_integer(ACROSS);
-  const integer j = to_integer(UPWARDS);
-  const integer pixel = (integer)(row * v->picture.x + column) + j * v->picture.x + i;
-  const integer inside = (i + column < (integer)v->picture.x) & (j + row < (integer)v->picture.y);
+  const integer pixel = pixels_of(v, column, row), inside = in_picture(v, column, row);
 #define PAINT(n)                                       \
   if (LANE(inside, n))                                 \
   {                                                    \
