@@ -1,8 +1,8 @@
 #include "Common/LightTransportData.h"
 
 #include "Common/Failure.h"
+#include "Common/FilterBefore.h"
 #include "Common/GhostFlags.h"
-#include "Common/LastFailure.h"
 #include "Common/PhaseFunctionData.h"
 #include "Common/SameVoxels.h"
 #include "Device/HostThreads.h"
@@ -245,18 +245,6 @@ std::string NamesOf(vtkDataSetAttributes* attributes)
     names += (i > 0 ? ", " : "") + Quoted(name ? name : "");
   }
   return names.empty() ? "none" : names;
-}
-
-void StopWithFilterBefore(vtkDataObject* input)
-{
-  if (ReadFact(input, AbortedFact, 0.0) > 0.0)
-  {
-    throw Aborted();
-  }
-  if (ReadFact(input, FailedFact, 0.0) > 0.0)
-  {
-    throw InputFailed();
-  }
 }
 
 Grid GridOf(vtkImageData* image)

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "Common/GuardedWork.h"
 #include "Common/LightTransportWriting.h"
 #include "Device/Errors.h"
 #include "Lights/Lights.h"

@@ -3,6 +3,7 @@
 #include "Common/FiniteValues.h"
 #include "Common/LightTransportData.h"
 #include "IO/RadianceFile.h"
+#include "Work/GuardedWork.h"
 
 #include "vtkFloatArray.h"
 #include "vtkImageData.h"

@@ -7,6 +7,7 @@
 #include "IO/VDB/VDBFile.h"
 #include "IO/VDB/VDBGeometry.h"
 #include "IO/VDB/VDBMetadata.h"
+#include "Work/GuardedWork.h"
 
 #include "vtkCellData.h"
 #include "vtkDataArraySelection.h"

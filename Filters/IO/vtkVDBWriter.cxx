@@ -1,14 +1,14 @@
 #include "vtkVDBWriter.h"
 
-#include "Common/GatheredImage.h"
 #include "Common/ImageInput.h"
-#include "Common/Ranks.h"
 #include "Device/Errors.h"
 #include "IO/VDB/VDBCells.h"
 #include "IO/VDB/VDBFile.h"
 #include "IO/VDB/VDBGeometry.h"
 #include "IO/VDB/VDBMetadata.h"
 #include "IO/WholeFile.h"
+#include "Ranks/GatheredImage.h"
+#include "Ranks/Ranks.h"
 
 #include "vtkCellData.h"
 #include "vtkDataArray.h"

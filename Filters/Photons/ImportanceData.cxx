@@ -1,4 +1,5 @@
 #include "Photons/ImportanceData.h"
+#include "Common/FilterBefore.h"
 
 #include "Common/LightTransportData.h"
 

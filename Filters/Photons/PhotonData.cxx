@@ -1,4 +1,5 @@
 #include "Photons/PhotonData.h"
+#include "Common/FilterBefore.h"
 
 #include "Common/FiniteValues.h"
 #include "Common/GhostFlags.h"

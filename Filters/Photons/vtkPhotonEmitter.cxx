@@ -1,9 +1,10 @@
 #include "vtkPhotonEmitter.h"
 
 #include "Common/LightTransportData.h"
-#include "Common/WholeImage.h"
 #include "Photons/ImportanceData.h"
 #include "Photons/PhotonData.h"
+#include "Ranks/WholeImage.h"
+#include "Work/GuardedWork.h"
 
 #include "vtkDataObject.h"
 #include "vtkImageData.h"

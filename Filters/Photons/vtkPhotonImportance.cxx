@@ -1,11 +1,12 @@
 #include "vtkPhotonImportance.h"
 
 #include "Common/LightTransportData.h"
-#include "Common/WholeImage.h"
 #include "Device/Device.h"
 #include "Photons/ImportanceData.h"
 #include "Photons/PhotonData.h"
 #include "Photons/RefractiveInput.h"
+#include "Ranks/WholeImage.h"
+#include "Work/GuardedWork.h"
 
 #include "vtkImageData.h"
 #include "vtkInformation.h"

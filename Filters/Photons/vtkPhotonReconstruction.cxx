@@ -2,10 +2,11 @@
 
 #include "Common/ImageInput.h"
 #include "Common/LightTransportData.h"
-#include "Common/WholeImage.h"
 #include "Device/Device.h"
 #include "Device/HostThreads.h"
+#include "Ranks/WholeImage.h"
 #include "Reconstruction/PhotonReconstruction.h"
+#include "Work/GuardedWork.h"
 
 #include "vtkCellData.h"
 #include "vtkDataArray.h"

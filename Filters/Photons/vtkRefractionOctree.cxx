@@ -4,8 +4,9 @@
 #include "Common/ImageInput.h"
 #include "Common/LightTransportData.h"
 #include "Common/VectorArray.h"
-#include "Common/WholeImage.h"
 #include "Photons/OctreeNodes.h"
+#include "Ranks/WholeImage.h"
+#include "Work/GuardedWork.h"
 
 #include "vtkCellData.h"
 #include "vtkHyperTreeGrid.h"

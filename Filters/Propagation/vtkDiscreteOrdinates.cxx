@@ -5,6 +5,7 @@
 #include "Device/Device.h"
 #include "DiscreteOrdinates/DiscreteOrdinates.h"
 #include "DiscreteOrdinates/OrdinatesQuality.h"
+#include "Work/GuardedWork.h"
 
 #include "Propagation/LastLight.h"
 #include "Propagation/PreviewLight.h"

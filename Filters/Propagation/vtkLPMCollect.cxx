@@ -5,6 +5,7 @@
 #include "Device/Device.h"
 #include "LightPropagation/Published/ParallelPropagation.h"
 #include "Propagation/LPMBuffers.h"
+#include "Work/GuardedWork.h"
 
 #include "vtkCellData.h"
 #include "vtkDataArray.h"

@@ -1,10 +1,11 @@
 #include "vtkLPMPropagate.h"
 
 #include "Common/LightTransportData.h"
-#include "Common/WholeImage.h"
 #include "Device/Device.h"
 #include "LightPropagation/Published/ParallelPropagation.h"
 #include "Propagation/LPMBuffers.h"
+#include "Ranks/WholeImage.h"
+#include "Work/GuardedWork.h"
 
 #include "vtkImageData.h"
 #include "vtkInformation.h"

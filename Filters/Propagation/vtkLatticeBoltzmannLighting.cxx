@@ -9,6 +9,7 @@
 #include "Medium/Coarsening.h"
 #include "Photons/PhotonData.h"
 #include "Propagation/PreviewLight.h"
+#include "Work/GuardedWork.h"
 
 #include "vtkDataObject.h"
 #include "vtkImageData.h"

@@ -2,8 +2,8 @@
 
 #include "Common/ImageInput.h"
 #include "Common/LightTransportData.h"
-#include "Common/WholeImage.h"
 #include "Lights/Lights.h"
+#include "Ranks/WholeImage.h"
 
 #include "vtkImageData.h"
 #include "vtkInformation.h"

@@ -1,9 +1,10 @@
 #include "vtkScatteringSolver.h"
 
 #include "Common/LightTransportData.h"
-#include "Common/WholeImage.h"
 #include "Propagation/LastOutputs.h"
+#include "Ranks/WholeImage.h"
 #include "Viewing/LitColor.h"
+#include "Work/GuardedWork.h"
 
 #include "vtkCommand.h"
 #include "vtkDataObject.h"

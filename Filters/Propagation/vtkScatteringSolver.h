@@ -139,7 +139,7 @@ protected:
   tyndall::IlluminationInput ReadShining(vtkInformationVector** inputs, bool emits);
 
   /// RequestData: gives out the light of the last solve where that is asked for again, or solves. What fails is one
-  /// error (Common/GuardedWork.h).
+  /// error (Work/GuardedWork.h).
   /// @param forget  what is told on the panel; before solving, and where it failed
   /// @param solve   is given all inputs as wholes, by port; ends with WriteSolved
   int GiveOrSolve(vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs,

@@ -1,8 +1,8 @@
 #include "vtkSeparablePhaseFunction.h"
 
-#include "Common/GuardedWork.h"
 #include "LightPropagation/Angular/DirectionSet.h"
 #include "PhaseFunction/SeparablePhaseFunction.h"
+#include "Work/GuardedWork.h"
 
 #include "vtkDoubleArray.h"
 #include "vtkInformationVector.h"

@@ -1,11 +1,13 @@
 #include "vtkSolverComparison.h"
 
+#include "Common/FilterBefore.h"
 #include "Common/GhostFlags.h"
 #include "Common/LightTransportData.h"
-#include "Common/WholeImage.h"
 #include "Comparison/SolverComparison.h"
 #include "Device/Clock.h"
 #include "Photons/RefractiveInput.h"
+#include "Ranks/WholeImage.h"
+#include "Work/GuardedWork.h"
 
 #include "vtkDataObject.h"
 #include "vtkDoubleArray.h"

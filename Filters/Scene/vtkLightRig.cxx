@@ -1,9 +1,10 @@
 #include "vtkLightRig.h"
 
 #include "Common/LightTransportData.h"
-#include "Common/WholeImage.h"
 #include "Lights/Lights.h"
+#include "Ranks/WholeImage.h"
 #include "Scene/LightShapes.h"
+#include "Work/GuardedWork.h"
 
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"

@@ -1,11 +1,13 @@
 #include "vtkMeshVoxelizer.h"
 
+#include "Common/FilterBefore.h"
 #include "Common/LightTransportData.h"
 #include "Common/PhaseFunctionData.h"
-#include "Common/WholeImage.h"
 #include "Device/Device.h"
+#include "Ranks/WholeImage.h"
 #include "Refraction/Index/RefractiveMedium.h"
 #include "Scene/MeshSolids.h"
+#include "Work/GuardedWork.h"
 
 #include "vtkCellData.h"
 #include "vtkImageData.h"

@@ -5,10 +5,11 @@
 #include "Common/ImageInput.h"
 #include "Common/LightTransportData.h"
 #include "Common/PhaseFunctionData.h"
-#include "Common/WholeImage.h"
 #include "Device/HostThreads.h"
 #include "Medium/OpticalSize.h"
 #include "Medium/Presets.h"
+#include "Ranks/WholeImage.h"
+#include "Work/GuardedWork.h"
 
 #include "vtkImageData.h"
 #include "vtkInformation.h"

@@ -1,8 +1,8 @@
 #include "Comparison/PropagationRuns.h"
 
 #include "DiscreteOrdinates/DiscreteOrdinates.h"
+#include "LightPropagation/Accuracy/ErrorEstimate.h"
 #include "LightPropagation/Conservative/ConservativePropagation.h"
-#include "LightPropagation/Conservative/ErrorEstimate.h"
 #include "LightPropagation/Published/ParallelPropagation.h"
 #include "LightPropagation/Published/SequentialPropagation.h"
 

@@ -1,7 +1,7 @@
 // A medium that ParaView's extent translator spreads over MPI ranks, solved block by block, against the whole on one.
 // Run by mpiexec; a program by itself.
 
-#include "Common/ControllerCommunicator.h"
+#include "Ranks/ControllerCommunicator.h"
 
 #include "LightPropagation/Distributed/PropagationInBlocks.h"
 

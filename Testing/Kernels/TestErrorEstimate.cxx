@@ -1,7 +1,7 @@
 #include "DeviceTest.h"
 #include "MediumScene.h"
 
-#include "LightPropagation/Conservative/ErrorEstimate.h"
+#include "LightPropagation/Accuracy/ErrorEstimate.h"
 #include "Medium/Coarsening.h"
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 #include "DeviceTest.h"
 #include "Difference.h"
 #include "DiscreteOrdinates/DiscreteOrdinates.h"
-#include "LightPropagation/Conservative/ErrorEstimate.h"
+#include "LightPropagation/Accuracy/ErrorEstimate.h"
 #include "LightPropagation/Published/ParallelPropagation.h"
 #include "LightPropagation/Published/SequentialPropagation.h"
 #include "LightPropagation/Uncollided/GivenLight.h"

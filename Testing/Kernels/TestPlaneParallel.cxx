@@ -4,7 +4,7 @@
 #include "MediumScene.h"
 
 #include "Device/Errors.h"
-#include "LightPropagation/Conservative/ErrorEstimate.h"
+#include "LightPropagation/Accuracy/ErrorEstimate.h"
 #include "LightPropagation/PlaneParallel/IsPlaneParallel.h"
 #include "Medium/BoxFaces.h"
 #include "Numerics/Constants.h"

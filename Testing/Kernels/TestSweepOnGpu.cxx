@@ -7,8 +7,8 @@
 
 #include "LightPropagation/Angular/DirectionSet.h"
 #include "LightPropagation/Problem/MediumOnDevice.h"
+#include "LightPropagation/Sweep/OnGpu/SweepOnGpu.h"
 #include "LightPropagation/Sweep/SweepInMemory.h"
-#include "LightPropagation/Sweep/SweepOnGpu.h"
 
 #include <cmath>
 #include <cstdlib>

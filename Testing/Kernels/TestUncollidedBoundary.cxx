@@ -2,7 +2,7 @@
 #include "Difference.h"
 #include "MediumScene.h"
 
-#include "LightPropagation/Conservative/ErrorEstimate.h"
+#include "LightPropagation/Accuracy/ErrorEstimate.h"
 #include "Reference/CubeReference.h"
 #include "Reference/SlabReference.h"
 

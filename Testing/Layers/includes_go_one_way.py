@@ -43,6 +43,8 @@ LAYERS = {
     ],
     "Filters": [
         ["Common"],
+        ["Ranks"],
+        ["Work"],
         ["IO", "Scene", "Propagation", "Photons", "Viewing"],
     ],
 }

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "Light/LightField.h"
-#include "LightPropagation/Conservative/ErrorEstimate.h"
+#include "LightPropagation/Accuracy/ErrorEstimate.h"
 
 namespace tyndall
 {

@@ -4,7 +4,7 @@
 #include "Device/Errors.h"
 #include "Device/HostThreads.h"
 #include "Light/LeftOut.h"
-#include "LightPropagation/Conservative/DiffusionAcceleration.h"
+#include "LightPropagation/Conservative/Acceleration/DiffusionAcceleration.h"
 #include "LightPropagation/Conservative/ShownLight.h"
 #include "LightPropagation/Conservative/SolveMemory.h"
 #include "LightPropagation/Conservative/SourceIteration.h"

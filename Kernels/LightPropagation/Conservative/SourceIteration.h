@@ -1,8 +1,8 @@
 #pragma once
 
-#include "LightPropagation/Conservative/EscapeCorrection.h"
+#include "LightPropagation/Conservative/Acceleration/EscapeCorrection.h"
+#include "LightPropagation/Conservative/Acceleration/OrdersByCells.h"
 #include "LightPropagation/Conservative/Iteration.h"
-#include "LightPropagation/Conservative/OrdersByCells.h"
 #include "LightPropagation/Conservative/TransportParts.h"
 #include "LightPropagation/Conservative/WarmStart.h"
 #include "LightPropagation/Convergence.h"

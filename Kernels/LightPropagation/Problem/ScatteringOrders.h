@@ -19,7 +19,7 @@ enum class OrdersAdded
 {
   OneByOne,  ///< Conservative/SourceIteration.h
   ByCells,   ///< the same, each with what diffusion on cells of several voxels says of the rest: where voxels are thin
-  ByBalance, ///< between sweeps by the balance of each voxel, Conservative/DiffusionAcceleration.h
+  ByBalance, ///< between sweeps by the balance of each voxel, Conservative/Acceleration/DiffusionAcceleration.h
 };
 OrdersAdded HowOrdersAreAdded(const PropagationProblem& problem);
 

@@ -2,7 +2,7 @@
 
 #include "Device/Defines.h"
 #include "Device/GroupSize.h"
-#include "LightPropagation/Sweep/SliceStream.h"
+#include "LightPropagation/Sweep/Slices/SliceStream.h"
 #include "LightPropagation/Sweep/SweepBorder.h"
 #include "LightPropagation/Sweep/SweepPlan.h"
 #include "Medium/BoxFaces.h"

@@ -1,7 +1,7 @@
 #include "LightPropagation/Sweep/SweepOfDevice.h"
 
+#include "LightPropagation/Sweep/OnGpu/SweepOnGpu.h"
 #include "LightPropagation/Sweep/SweepInMemory.h"
-#include "LightPropagation/Sweep/SweepOnGpu.h"
 
 namespace tyndall
 {

@@ -1,7 +1,7 @@
-#include "Common/WholeImage.h"
+#include "Ranks/WholeImage.h"
 
-#include "Common/PieceLayout.h"
-#include "Common/Ranks.h"
+#include "Ranks/PieceLayout.h"
+#include "Ranks/Ranks.h"
 
 #include "vtkCellData.h"
 #include "vtkDataSetAttributes.h"

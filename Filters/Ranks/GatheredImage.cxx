@@ -1,9 +1,9 @@
-#include "Common/GatheredImage.h"
+#include "Ranks/GatheredImage.h"
 
 #include "Common/ContentKey.h"
 #include "Common/PhaseFunctionData.h"
-#include "Common/Ranks.h"
 #include "Device/Errors.h"
+#include "Ranks/Ranks.h"
 
 #include "vtkDataSetAttributes.h"
 #include "vtkFieldData.h"

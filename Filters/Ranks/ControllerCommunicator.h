@@ -1,8 +1,8 @@
 #ifndef ControllerCommunicator_h
 #define ControllerCommunicator_h
 
-#include "Common/RankMeeting.h"
 #include "Distribution/Communicator.h"
+#include "Ranks/RankMeeting.h"
 
 #include "vtkMPICommunicator.h"
 

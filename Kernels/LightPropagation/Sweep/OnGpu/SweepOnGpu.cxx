@@ -1,9 +1,9 @@
-#include "LightPropagation/Sweep/SweepOnGpu.h"
+#include "LightPropagation/Sweep/OnGpu/SweepOnGpu.h"
 
 #include "Device/Defines.h"
 #include "Device/Sizes.h"
+#include "LightPropagation/Sweep/OnGpu/SweepOnGpuShared.h"
 #include "LightPropagation/Sweep/SweepBorder.h"
-#include "LightPropagation/Sweep/SweepOnGpuShared.h"
 #include "LightPropagation/Sweep/SweepPlan.h"
 #include "LightPropagation/Sweep/SweepVolume.h"
 #include "TyndallKernelSources.h"

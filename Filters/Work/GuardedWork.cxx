@@ -1,17 +1,18 @@
-#include "Common/GuardedWork.h"
+#include "Work/GuardedWork.h"
+#include "Common/FilterBefore.h"
 
 // How filters do their work, report and fail: see LightTransportData.h.
 #include "Common/Failure.h"
 #include "Common/GhostFlags.h"
 #include "Common/ImageInput.h"
-#include "Common/LastFailure.h"
 #include "Common/LightTransportWriting.h"
-#include "Common/RankMeeting.h"
-#include "Common/Ranks.h"
-#include "Common/WholeInputs.h"
 #include "Device/CompilationListener.h"
 #include "Device/Device.h"
 #include "PropertyRange.h"
+#include "Ranks/RankMeeting.h"
+#include "Ranks/Ranks.h"
+#include "Work/LastFailure.h"
+#include "Work/WholeInputs.h"
 
 #include "vtkAlgorithm.h"
 #include "vtkCommunicator.h"

@@ -1,4 +1,4 @@
-#include "Common/ControllerCommunicator.h"
+#include "Ranks/ControllerCommunicator.h"
 
 #include "vtkMPIController.h"
 

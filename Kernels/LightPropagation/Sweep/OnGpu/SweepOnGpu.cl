@@ -8,7 +8,7 @@
 //   ADDS  1: lanes follow one another and add to what is there; 0: each writes arrays of its own
 
 #define REAL_WIDTH 1
-#include "LightPropagation/Sweep/SweepOnGpuShared.h"
+#include "LightPropagation/Sweep/OnGpu/SweepOnGpuShared.h"
 #include "Numerics/Numerics.cl"
 
 #if ADDS

@@ -1,4 +1,4 @@
-#include "Common/PieceLayout.h"
+#include "Ranks/PieceLayout.h"
 
 #include <algorithm>
 #include <cstring>

@@ -1,4 +1,4 @@
-#include "Common/Ranks.h"
+#include "Ranks/Ranks.h"
 
 #include "Common/Failure.h"
 

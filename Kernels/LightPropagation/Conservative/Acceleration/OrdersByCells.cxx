@@ -1,4 +1,4 @@
-#include "LightPropagation/Conservative/OrdersByCells.h"
+#include "LightPropagation/Conservative/Acceleration/OrdersByCells.h"
 
 #include "LightPropagation/Problem/ScatteringOrders.h"
 

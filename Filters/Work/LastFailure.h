@@ -16,12 +16,6 @@
 
 namespace tyndall
 {
-/// Field data of outputs that are empty because their filter was aborted, or failed.
-constexpr const char* AbortedFact = "aborted";
-constexpr const char* FailedFact = "failed";
-/// Beside FailedFact: because a rank did not come, so that it is not waited for again.
-constexpr const char* MissingFact = "rank_missing";
-
 /// When a filter's last run failed, and how. VTK runs a filter again with every update while its output does not cover
 /// the extent that was asked for, and that is so while the output is empty; ParaView makes several updates. This keeps
 /// them from reporting the same error each time.

@@ -1,4 +1,4 @@
-#include "LightPropagation/Sweep/SlicePieces.h"
+#include "LightPropagation/Sweep/Slices/SlicePieces.h"
 
 #include "Device/Sizes.h"
 

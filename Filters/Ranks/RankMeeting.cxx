@@ -1,4 +1,4 @@
-#include "Common/RankMeeting.h"
+#include "Ranks/RankMeeting.h"
 
 #ifdef TYNDALL_HAS_MPI
 #include "vtkMPIController.h"

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "Device/Buffer.h"
-#include "LightPropagation/Sweep/SlicePieces.h"
+#include "LightPropagation/Sweep/Slices/SlicePieces.h"
 #include "LightPropagation/Sweep/SweepPlan.h"
 #include "LightPropagation/Sweep/SweepVolume.h"
 #include "LightPropagation/Sweep/SweepWorkspace.h"

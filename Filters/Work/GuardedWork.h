@@ -5,17 +5,12 @@
 #include <functional>
 
 class vtkAlgorithm;
-class vtkDataObject;
 class vtkInformation;
 class vtkInformationVector;
 
 /// Work of a filter that may fail, be stopped, and tells how far it is.
 namespace tyndall
 {
-/// To be asked where an input is empty: ends the work of Guarded without an error where the filter before failed or was
-/// aborted.
-void StopWithFilterBefore(vtkDataObject* input);
-
 /// Reports to the filter's progress; says stop when the filter is asked to abort, on this rank or another.
 Monitor MonitorOf(vtkAlgorithm* filter);
 

@@ -1,4 +1,4 @@
-#include "LightPropagation/Conservative/DiffusionAcceleration.h"
+#include "LightPropagation/Conservative/Acceleration/DiffusionAcceleration.h"
 
 #include "LightPropagation/Conservative/SurfaceRadiance.h"
 #include "LightPropagation/Convergence.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "Common/PieceLayout.h"
+#include "Ranks/PieceLayout.h"
 
 #include "vtkSmartPointer.h"
 

@@ -1,4 +1,4 @@
-#include "LightPropagation/Conservative/ErrorEstimate.h"
+#include "LightPropagation/Accuracy/ErrorEstimate.h"
 
 #include "LightPropagation/Problem/CoarseScene.h"
 

@@ -1,11 +1,12 @@
-#include "Common/WholeInputs.h"
+#include "Work/WholeInputs.h"
+#include "Common/FilterBefore.h"
 
 #include "Common/ContentKey.h"
-#include "Common/GatheredImage.h"
-#include "Common/GuardedWork.h"
-#include "Common/Ranks.h"
-#include "Common/WholeImage.h"
 #include "Device/Errors.h"
+#include "Ranks/GatheredImage.h"
+#include "Ranks/Ranks.h"
+#include "Ranks/WholeImage.h"
+#include "Work/GuardedWork.h"
 
 #include "vtkAlgorithm.h"
 #include "vtkCellData.h"

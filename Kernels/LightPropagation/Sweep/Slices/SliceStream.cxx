@@ -1,4 +1,4 @@
-#include "LightPropagation/Sweep/SliceStream.h"
+#include "LightPropagation/Sweep/Slices/SliceStream.h"
 
 #include "Device/Sizes.h"
 

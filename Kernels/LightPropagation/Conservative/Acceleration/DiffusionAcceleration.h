@@ -1,6 +1,6 @@
 #pragma once
 
-#include "LightPropagation/Conservative/HostMixing.h"
+#include "LightPropagation/Conservative/Acceleration/HostMixing.h"
 #include "LightPropagation/Conservative/Iteration.h"
 #include "LightPropagation/Conservative/TransportParts.h"
 #include "LightPropagation/Conservative/UncollidedLight.h"

@@ -1,4 +1,4 @@
-#include "LightPropagation/Conservative/EscapeCorrection.h"
+#include "LightPropagation/Conservative/Acceleration/EscapeCorrection.h"
 
 #include "Device/Defines.h"
 #include "Device/GroupSize.h"

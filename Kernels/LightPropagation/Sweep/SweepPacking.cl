@@ -1,0 +1,187 @@
+// Planes out of the volume and back into it: the rows that rays cross lie one after the other, filled up to whole vectors,
+// however the axis lies in the volume.
+
+#pragma once
+#include "LightPropagation/Sweep/SweepLayout.cl"
+
+#if REAL_WIDTH == 16
+#define ROUNDS 4
+#elif REAL_WIDTH == 8
+#define ROUNDS 3
+#else
+#define ROUNDS 2
+#endif
+
+// Exchange rows and columns: interleave the halves as often as rows halve.
+static void transpose(real* rows)
+{
+#pragma unroll
+  for (int round = 0; round < ROUNDS; ++round)
+  {
+    real mixed[REAL_WIDTH];
+#pragma unroll
+    for (int i = 0; i < REAL_WIDTH / 2; ++i)
+    {
+      mixed[2 * i].even = rows[i].lo;
+      mixed[2 * i].odd = rows[i + REAL_WIDTH / 2].lo;
+      mixed[2 * i + 1].even = rows[i].hi;
+      mixed[2 * i + 1].odd = rows[i + REAL_WIDTH / 2].hi;
+    }
+#pragma unroll
+    for (int i = 0; i < REAL_WIDTH; ++i)
+    {
+      rows[i] = mixed[i];
+    }
+  }
+}
+
+// Where voxel (u, v) of a plane is.
+static ulong place_of(const PlaneInfo* layout, int u, int v, int plane)
+{
+  return (ulong)(layout->firstU + u) * layout->stepU + (ulong)(layout->firstV + v) * layout->stepV +
+    (ulong)(layout->firstP + plane) * layout->stepP;
+}
+
+// Of all quantities of a plane.
+static int plane_floats(const PlaneInfo* layout)
+{
+  return PLANES * layout->sizeV * ROW;
+}
+
+// Set floats, a multiple of a vector, to zero.
+static void clear(__global float* floats, int count)
+{
+  for (int i = 0; i < count; i += REAL_WIDTH)
+  {
+    store_real((real)0.0f, i, floats);
+  }
+}
+
+// A vector of rows, `step` floats apart, of a vector of planes: becomes as many vectors along the rows, `plane` floats
+// apart.
+// @param last  row that there is
+// @param count  planes that are wanted
+static inline __attribute__((always_inline)) void pack_block(
+  const __global float* from, ulong step, int last, integer beyond, __global float* to, int plane, int count)
+{
+  real columns[REAL_WIDTH];
+#pragma unroll
+  for (int i = 0; i < REAL_WIDTH; ++i)
+  {
+    columns[i] = load_real(min(i, last) * step, from);
+  }
+  transpose(columns);
+#pragma unroll
+  for (int j = 0; j < REAL_WIDTH; ++j)
+  {
+    if (j < count)
+    {
+      store_real(select(columns[j], (real)0.0f, beyond), j * plane, to);
+    }
+  }
+}
+
+// Copy one quantity of planes [first, first + count) into scratch, rows filled up with zeros. May read, not use, a
+// vector beyond the last voxel.
+static void pack(const PlaneInfo* layout, __global float* to, int first, int count, const __global float* volume)
+{
+  for (int v = 0; v < layout->sizeV; ++v)
+  {
+    for (int u = 0; u < layout->width; u += REAL_WIDTH)
+    {
+      const integer beyond = LANES >= layout->sizeU - u;
+      const __global float* from = volume + place_of(layout, u, v, first);
+      __global float* here = to + v * PLANES * ROW + u;
+      if (layout->block == 1)
+      {
+        store_real(select(load_real(0, from), (real)0.0f, beyond), 0, here);
+        continue;
+      }
+      pack_block(from, layout->stepU, layout->sizeU - 1 - u, beyond, here, plane_floats(layout), count);
+    }
+  }
+}
+
+// Add to sums; what rounding loses of them is kept in `lost` (Kahan) where there is one.
+static void add_real(real value, __global float* sum, __global float* lost)
+{
+  const real before = load_real(0, sum);
+  if (!lost)
+  {
+    store_real(before + value, 0, sum);
+    return;
+  }
+  const real y = value - load_real(0, lost);
+  const real t = before + y;
+  store_real((t - before) - y, 0, lost);
+  store_real(t, 0, sum);
+}
+
+static void add_one(float value, __global float* sum, __global float* lost)
+{
+  float total = *sum, rounding = lost ? *lost : 0.0f;
+  add_exactly(&total, &rounding, value);
+  *sum = total;
+  if (lost)
+  {
+    *lost = rounding;
+  }
+}
+
+// What pack_block did, undone: added to the volume with a sign.
+// @param used  rows that are there
+static inline __attribute__((always_inline)) void unpack_block(
+  const __global float* from, int plane, float sign, __global float* volume, __global float* lost, ulong step, int used)
+{
+  real rows[REAL_WIDTH];
+#pragma unroll
+  for (int j = 0; j < REAL_WIDTH; ++j)
+  {
+    rows[j] = sign * load_real(j * plane, from);
+  }
+  transpose(rows);
+#pragma unroll
+  for (int i = 0; i < REAL_WIDTH; ++i)
+  {
+    if (i < used)
+    {
+      add_real(rows[i], volume + i * step, lost ? lost + i * step : 0);
+    }
+  }
+}
+
+// Add one quantity of the planes, with a sign, to the volume; exactly their voxels are touched, as others may be in
+// work elsewhere.
+static void unpack(const PlaneInfo* layout, const __global float* from, int first, int count, float sign,
+  __global float* volume, __global float* lost)
+{
+  const int plane = plane_floats(layout);
+  for (int v = 0; v < layout->sizeV; ++v)
+  {
+    for (int u = 0; u < layout->sizeU; u += REAL_WIDTH)
+    {
+      const ulong at = place_of(layout, u, v, first);
+      const int used = min(REAL_WIDTH, layout->sizeU - u);
+      const __global float* here = from + v * PLANES * ROW + u;
+      if (layout->block == 1 && used == REAL_WIDTH)
+      {
+        add_real(sign * load_real(0, here), volume + at, lost ? lost + at : 0);
+      }
+      else if (layout->block > 1 && count == REAL_WIDTH)
+      {
+        unpack_block(here, plane, sign, volume + at, lost ? lost + at : 0, layout->stepU, used);
+      }
+      else
+      {
+        for (int i = 0; i < used; ++i)
+        {
+          for (int j = 0; j < count; ++j)
+          {
+            const ulong voxel = at + (ulong)i * layout->stepU + (ulong)j * layout->stepP;
+            add_one(sign * here[j * plane + i], volume + voxel, lost ? lost + voxel : 0);
+          }
+        }
+      }
+    }
+  }
+}
