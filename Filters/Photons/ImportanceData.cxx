@@ -1,6 +1,6 @@
 #include "Photons/ImportanceData.h"
-#include "Common/FilterBefore.h"
 
+#include "Common/FilterBefore.h"
 #include "Common/LightTransportData.h"
 
 #include "vtkCellData.h"

@@ -1,6 +1,6 @@
 #include "Photons/PhotonData.h"
-#include "Common/FilterBefore.h"
 
+#include "Common/FilterBefore.h"
 #include "Common/FiniteValues.h"
 #include "Common/GhostFlags.h"
 #include "Common/LightTransportData.h"

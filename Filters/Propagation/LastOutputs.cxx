@@ -64,6 +64,7 @@ bool LastOutputs::GiveBack(
 
 void LastOutputs::Keep(vtkInformationVector* outputs)
 {
+  this->Outputs.clear();
   for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
   {
     vtkDataObject* const made = vtkDataObject::GetData(outputs, port);

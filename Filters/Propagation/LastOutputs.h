@@ -26,6 +26,8 @@ public:
   /// In RequestData, once they are made.
   void Keep(vtkInformationVector* outputs);
 
+  void Forget() { this->Outputs.clear(); }
+
 private:
   using Key = std::vector<std::uint64_t>;
 

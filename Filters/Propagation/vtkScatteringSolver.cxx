@@ -2,6 +2,7 @@
 
 #include "Common/LightTransportData.h"
 #include "Propagation/LastOutputs.h"
+#include "Ranks/PieceBlocks.h"
 #include "Ranks/WholeImage.h"
 #include "Viewing/LitColor.h"
 #include "Work/GuardedWork.h"
@@ -101,7 +102,14 @@ int vtkScatteringSolver::GiveOrSolve(vtkInformation* request, vtkInformationVect
   vtkInformationVector* outputs, const std::function<void()>& forget,
   const std::function<void(vtkInformationVector** inputs)>& solve)
 {
-  const int done = tyndall::Guarded(this, request, given, outputs, [&](vtkInformationVector** inputs) {
+  return this->GiveOrSolve(request, given, outputs, forget, tyndall::WorkOnPieces(), solve);
+}
+
+int vtkScatteringSolver::GiveOrSolve(vtkInformation* request, vtkInformationVector** given,
+  vtkInformationVector* outputs, const std::function<void()>& forget, const tyndall::WorkOnPieces& onPieces,
+  const std::function<void(vtkInformationVector** inputs)>& solve)
+{
+  const int done = tyndall::Guarded(this, request, given, outputs, onPieces, [&](vtkInformationVector** inputs) {
     if (this->Solved->GiveBack(this->Superclass::GetMTime(), inputs, this->GetNumberOfInputPorts(), outputs))
     {
       this->HandOn(inputs, outputs);
@@ -115,6 +123,50 @@ int vtkScatteringSolver::GiveOrSolve(vtkInformation* request, vtkInformationVect
     forget();
   }
   return done;
+}
+
+bool vtkScatteringSolver::GivePiece(tyndall::Communicator& communicator, const tyndall::PieceBlocks& pieces,
+  vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  const bool kept =
+    this->Solved->GiveBack(this->Superclass::GetMTime(), inputs, this->GetNumberOfInputPorts(), outputs);
+  const vtkIdType cells = vtkImageData::GetData(outputs, 0)->GetNumberOfCells();
+  const bool same = kept && cells == static_cast<vtkIdType>(pieces.Held().VoxelCount());
+  const bool onAll = communicator.Largest({ same ? 0.0 : 1.0 })[0] == 0.0;
+  if (kept && !onAll)
+  {
+    this->Solved->Forget();
+  }
+  return onAll;
+}
+
+void vtkScatteringSolver::WritePiece(tyndall::Communicator& communicator, const tyndall::PieceBlocks& pieces,
+  tyndall::LightField&& light, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  const auto ofHeld = [&](std::vector<float>& values, int components) {
+    if (communicator.Largest({ values.empty() ? 0.0 : 1.0 })[0] > 0.0)
+    {
+      values = pieces.OfHeld(communicator, std::move(values), components);
+    }
+  };
+  ofHeld(light.fluence, light.channels);
+  ofHeld(light.fluenceDirect, light.channels);
+  ofHeld(light.netFlux, 3 * light.channels);
+  ofHeld(light.scatteredRadiance, light.channels);
+  tyndall::WriteConvergence(light.convergence, light.sweepsSaved, vtkTable::GetData(outputs, 1));
+  vtkImageData* const output = vtkImageData::GetData(outputs, 0);
+  tyndall::PassOn(vtkImageData::GetData(inputs[MEDIUM]), output);
+  pieces.KeepHeld(output);
+  const std::vector<std::string> doubts = light.doubts;
+  if (pieces.Held().VoxelCount() > 0)
+  {
+    tyndall::WriteLight(std::move(light), output);
+  }
+  for (const std::string& doubt : doubts)
+  {
+    vtkWarningMacro(<< doubt);
+  }
+  this->Solved->Keep(outputs);
 }
 
 void vtkScatteringSolver::WriteSolved(

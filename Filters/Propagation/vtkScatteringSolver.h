@@ -16,7 +16,10 @@ namespace tyndall
 {
 struct IlluminationInput;
 struct LightField;
+class Communicator;
 class LastOutputs;
+class PieceBlocks;
+struct WorkOnPieces;
 }
 
 /**
@@ -144,6 +147,18 @@ protected:
   /// @param solve   is given all inputs as wholes, by port; ends with WriteSolved
   int GiveOrSolve(vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs,
     const std::function<void()>& forget, const std::function<void(vtkInformationVector** inputs)>& solve);
+  /// @param onPieces  tried first: gives out by GivePiece, or ends with WritePiece
+  int GiveOrSolve(vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs,
+    const std::function<void()>& forget, const tyndall::WorkOnPieces& onPieces,
+    const std::function<void(vtkInformationVector** inputs)>& solve);
+
+  /// The last light of this rank's block, where on no rank anything has changed. All ranks call it.
+  /// @return whether the outputs are there
+  bool GivePiece(tyndall::Communicator& communicator, const tyndall::PieceBlocks& pieces, vtkInformationVector** inputs,
+    vtkInformationVector* outputs);
+  /// WriteSolved of the light of this rank's block. All ranks call it.
+  void WritePiece(tyndall::Communicator& communicator, const tyndall::PieceBlocks& pieces, tyndall::LightField&& light,
+    vtkInformationVector** inputs, vtkInformationVector* outputs);
 
   /// Last in RequestData: solved light on output 0 beside the arrays of the medium, its convergence on
   /// output 1; then a warning of each doubt. Kept for GiveOrSolve.

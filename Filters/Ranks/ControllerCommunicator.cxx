@@ -1,8 +1,13 @@
 #include "Ranks/ControllerCommunicator.h"
 
+#include "Device/Errors.h"
+
+#ifdef TYNDALL_HAS_MPI
 #include "vtkMPIController.h"
+#endif
 
 #include <chrono>
+#include <exception>
 #include <limits>
 #include <stdexcept>
 #include <string>
@@ -11,9 +16,27 @@
 
 namespace tyndall
 {
+#ifdef TYNDALL_HAS_MPI
 namespace
 {
-constexpr int FirstTag = 1000; ///< behind those that VTK uses itself
+constexpr int FirstOfAll = 1000;  ///< tags, behind those that VTK uses itself
+constexpr int TagsOfOne = 30010;  ///< as many as Communicator.h and Communicator.cxx have
+constexpr int Conversations = 20; ///< until tags come again; those of the other messages lie beyond
+
+int NextConversation()
+{
+  static int conversation = 0;
+  conversation = (conversation + 1) % Conversations;
+  return conversation;
+}
+
+/// What is still being sent when an error ends a conversation: MPI may read it for as long as the process lives.
+template <class Messages>
+void LeaveBehind(Messages& messages)
+{
+  static Messages left;
+  left.splice(left.end(), messages);
+}
 
 /// What an MPI call says that did not do what it should.
 void RequireSent(bool done, const char* what, int rank)
@@ -25,17 +48,29 @@ void RequireSent(bool done, const char* what, int rank)
 }
 }
 
-ControllerCommunicator::ControllerCommunicator(vtkMPIController* controller, double patience)
+ControllerCommunicator::ControllerCommunicator(
+  vtkMPIController* controller, double patience, std::function<bool()> stopped)
   : Controller(controller)
   , Patience(patience)
+  , Stopped(std::move(stopped))
+  , FirstTag(FirstOfAll + TagsOfOne * NextConversation())
 {
 }
 
 ControllerCommunicator::~ControllerCommunicator()
 {
-  for (Underway& message : this->Sending)
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point start = Clock::now();
+  double waited = 0.0;
+  for (this->ForgetSent(); !this->Sending.empty(); this->ForgetSent())
   {
-    message.request.Wait();
+    waited = std::chrono::duration<double>(Clock::now() - start).count();
+    if (std::uncaught_exceptions() > 0 || waited > this->Patience)
+    {
+      LeaveBehind(this->Sending);
+      return;
+    }
+    std::this_thread::sleep_for(std::chrono::microseconds(50));
   }
 }
 
@@ -62,7 +97,8 @@ void ControllerCommunicator::Give(int to, int tag, std::vector<char> bytes)
   this->Sending.push_back({ std::move(bytes), {} });
   Underway& message = this->Sending.back();
   const int length = static_cast<int>(message.bytes.size());
-  RequireSent(this->Controller->NoBlockSend(message.bytes.data(), length, to, FirstTag + tag, message.request) == 1,
+  RequireSent(
+    this->Controller->NoBlockSend(message.bytes.data(), length, to, this->FirstTag + tag, message.request) == 1,
     "Sending to", to);
 }
 
@@ -82,12 +118,13 @@ std::vector<char> ControllerCommunicator::Take(int from, int tag)
   {
     int isThere = 0, source = 0, length = 0;
     const char* type = nullptr;
-    RequireSent(this->Controller->Iprobe(from, FirstTag + tag, &isThere, &source, type, &length) == 1,
+    RequireSent(this->Controller->Iprobe(from, this->FirstTag + tag, &isThere, &source, type, &length) == 1,
       "Asking for a message of", from);
     if (isThere)
     {
       std::vector<char> bytes(static_cast<std::size_t>(length) + 1); // there is no array of nothing
-      RequireSent(this->Controller->Receive(bytes.data(), length, from, FirstTag + tag) == 1, "Receiving from", from);
+      RequireSent(
+        this->Controller->Receive(bytes.data(), length, from, this->FirstTag + tag) == 1, "Receiving from", from);
       bytes.resize(static_cast<std::size_t>(length));
       return bytes;
     }
@@ -97,8 +134,29 @@ std::vector<char> ControllerCommunicator::Take(int from, int tag)
       throw std::runtime_error("Nothing came from rank " + std::to_string(from) + " within " +
         std::to_string(static_cast<int>(this->Patience)) + " s: it may be gone.");
     }
+    if (this->Stopped && this->Stopped())
+    {
+      throw Aborted();
+    }
     this->ForgetSent();
     std::this_thread::sleep_for(std::chrono::microseconds(waited.count() < 1e-3 ? 0 : 50));
   }
+}
+#endif
+
+std::unique_ptr<Communicator> CommunicatorOf(vtkMultiProcessController* ranks, std::function<bool()> stopped)
+{
+  if (!ranks)
+  {
+    return std::make_unique<SingleRank>();
+  }
+#ifdef TYNDALL_HAS_MPI
+  if (auto* const mpi = vtkMPIController::SafeDownCast(ranks))
+  {
+    return std::make_unique<ControllerCommunicator>(mpi, SecondsToWait(), std::move(stopped));
+  }
+#endif
+  (void)stopped;
+  throw InvalidInput("Ranks that share a medium have to speak to each other by MPI, and VTK's controller does not.");
 }
 }

@@ -2,6 +2,11 @@
 #define ControllerCommunicator_h
 
 #include "Distribution/Communicator.h"
+
+#include <functional>
+#include <memory>
+
+#ifdef TYNDALL_HAS_MPI
 #include "Ranks/RankMeeting.h"
 
 #include "vtkMPICommunicator.h"
@@ -10,17 +15,27 @@
 #include <vector>
 
 class vtkMPIController;
+#endif
+
+class vtkMultiProcessController;
 
 namespace tyndall
 {
-/// What the ranks of a parallel pipeline say to each other, by VTK's controller of MPI.
+/// What the ranks that run a filter together say to each other. All of them make one, and end with it before another.
+/// @param ranks  must stay; null: this process is alone
+/// @param stopped  whether a rank that waits for another is to give up (Aborted)
+std::unique_ptr<Communicator> CommunicatorOf(vtkMultiProcessController* ranks, std::function<bool()> stopped = {});
+
+#ifdef TYNDALL_HAS_MPI
+/// By VTK's controller of MPI.
 class ControllerCommunicator : public Communicator
 {
 public:
   /// @param controller  must stay
   /// @param patience  seconds that a rank waits for another that says nothing before it gives up: none hangs
-  explicit ControllerCommunicator(vtkMPIController* controller, double patience = SecondsToWait());
-  /// Waits until what was sent is on its way.
+  explicit ControllerCommunicator(
+    vtkMPIController* controller, double patience = SecondsToWait(), std::function<bool()> stopped = {});
+  /// Waits until what was sent is on its way, but where an error ends all: then for nobody.
   ~ControllerCommunicator() override;
 
   int Rank() const override;
@@ -41,8 +56,11 @@ private:
 
   vtkMPIController* Controller;
   double Patience;
+  std::function<bool()> Stopped;
+  int FirstTag; ///< of this conversation: what one before left behind, as it ended by an error, is not taken for it
   std::list<Underway> Sending;
 };
+#endif
 }
 
 #endif

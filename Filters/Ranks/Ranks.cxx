@@ -1,6 +1,7 @@
 #include "Ranks/Ranks.h"
 
 #include "Common/Failure.h"
+#include "Ranks/WholeImage.h"
 
 #include "vtkAlgorithm.h"
 #include "vtkExecutive.h"
@@ -63,12 +64,17 @@ vtkInformationObjectBaseKey* WorkingRanks()
   return key;
 }
 
+int PiecesAsked(vtkInformation* request, vtkInformationVector* outputs)
+{
+  vtkInformation* const asking = AskingPort(request, outputs);
+  return asking ? std::max(1, asking->Get(Pipeline::UPDATE_NUMBER_OF_PIECES())) : 1;
+}
+
 /// Pieces that are asked for, or ranks that ask together; 1: neither.
 int Asking(vtkInformation* request, vtkInformationVector* outputs)
 {
-  const int port = std::max(request->Get(vtkExecutive::FROM_OUTPUT_PORT()), 0); // -1: no port, but the filter itself
-  vtkInformation* const asking = outputs->GetInformationObject(port);
-  return asking ? std::max({ 1, asking->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()), asking->Get(Together()) }) : 1;
+  vtkInformation* const asking = AskingPort(request, outputs);
+  return asking ? std::max(PiecesAsked(request, outputs), asking->Get(Together())) : 1;
 }
 
 /// What a rank tells the others of how its work ended.
@@ -228,6 +234,12 @@ vtkMultiProcessController* RanksTogether(vtkInformation* request, vtkInformation
 {
   vtkMultiProcessController* const all = vtkMultiProcessController::GetGlobalController();
   return !IsOne(all) && Asking(request, outputs) == all->GetNumberOfProcesses() ? all : nullptr;
+}
+
+bool EachAsksForItsPiece(vtkInformation* request, vtkInformationVector* outputs)
+{
+  vtkMultiProcessController* const all = vtkMultiProcessController::GetGlobalController();
+  return !IsOne(all) && PiecesAsked(request, outputs) == all->GetNumberOfProcesses();
 }
 
 void OnAllRanks(vtkMultiProcessController* controller, const std::function<void()>& act)

@@ -22,6 +22,9 @@ void AskTogether(vtkInformation* request, vtkInformationVector* outputs, vtkInfo
 /// @return of the ranks that run the filter together; null: this process runs it alone
 vtkMultiProcessController* RanksTogether(vtkInformation* request, vtkInformationVector* outputs);
 
+/// In RequestUpdateExtent or RequestData: whether each rank asks for a piece of its own, as many as there are ranks.
+bool EachAsksForItsPiece(vtkInformation* request, vtkInformationVector* outputs);
+
 /// Does something on each rank. All of them have to call it.
 /// @param controller  null: there is one rank
 /// @throws what it threw, on every rank, where it threw on any of them: InvalidInput with the same words; where those

@@ -163,6 +163,48 @@ void NotePartsOfRanks(vtkInformation* information, const std::vector<std::array<
   }
 }
 
+Extent PartOfExtent(const Extent& whole, int piece, int pieces, int ghostLevels)
+{
+  Extent part = whole;
+  vtkNew<vtkExtentTranslator> translator;
+  translator->SetWholeExtent(part.data());
+  translator->SetPiece(piece);
+  translator->SetNumberOfPieces(pieces);
+  translator->SetGhostLevel(ghostLevels);
+  if (!translator->PieceToExtent())
+  {
+    return AskedPiece().own;
+  }
+  translator->GetExtent(part.data());
+  return part;
+}
+
+AskedPiece AskedPieceOf(vtkInformation* information, const Extent& whole)
+{
+  const int pieces = information->Get(Pipeline::UPDATE_NUMBER_OF_PIECES());
+  if (pieces <= 1)
+  {
+    return { whole, whole };
+  }
+  const int piece = information->Get(Pipeline::UPDATE_PIECE_NUMBER());
+  return { PartOfExtent(whole, piece, pieces, information->Get(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS())),
+    PartOfExtent(whole, piece, pieces) };
+}
+
+void KeepPiece(const AskedPiece& piece, vtkImageData* output)
+{
+  if (piece.IsEmpty())
+  {
+    output->Initialize(); // more ranks than voxels
+    return;
+  }
+  output->Crop(piece.withGhosts.data());
+  if (piece.own != piece.withGhosts)
+  {
+    MarkDuplicates(output, piece.own);
+  }
+}
+
 void KeepWhatIsAskedFor(vtkInformation* information, vtkImageData* output)
 {
   const bool divided = information->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()) > 1;
@@ -174,34 +216,12 @@ void KeepWhatIsAskedFor(vtkInformation* information, vtkImageData* output)
     }
     return;
   }
-  Extent asked;
-  Extent own; // without ghost cells
-  bool ghosts = false;
-  information->Get(Pipeline::UPDATE_EXTENT(), asked.data());
-  if (divided)
+  Extent extent;
+  information->Get(Pipeline::UPDATE_EXTENT(), extent.data());
+  const AskedPiece asked = AskedPieceOf(information, extent);
+  if (divided || PointBoxOf(extent).Count() > 0)
   {
-    vtkNew<vtkExtentTranslator> translator;
-    translator->SetWholeExtent(asked.data());
-    translator->SetPiece(information->Get(Pipeline::UPDATE_PIECE_NUMBER()));
-    translator->SetNumberOfPieces(information->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()));
-    translator->SetGhostLevel(information->Get(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS()));
-    if (!translator->PieceToExtent())
-    {
-      output->Initialize(); // more ranks than voxels
-      return;
-    }
-    translator->GetExtent(asked.data());
-    translator->SetGhostLevel(0);
-    ghosts = information->Get(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS()) > 0 && translator->PieceToExtent();
-    translator->GetExtent(own.data());
-  }
-  if (PointBoxOf(asked).Count() > 0)
-  {
-    output->Crop(asked.data());
-  }
-  if (ghosts)
-  {
-    MarkDuplicates(output, own);
+    KeepPiece(asked, output);
   }
 }
 

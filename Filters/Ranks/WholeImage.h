@@ -28,6 +28,22 @@ bool IsFirstPiece(vtkInformation* request, vtkInformationVector* outputs);
 /// @param rank   this one
 void NotePartsOfRanks(vtkInformation* information, const std::vector<std::array<int, 6>>& parts, int rank);
 
+/// What is asked for of an image: a piece of its extent, with ghost cells and without; the same where it is not divided.
+/// Of no cells where there are more pieces than cells.
+struct AskedPiece
+{
+  std::array<int, 6> withGhosts = { 0, 0, 0, 0, 0, 0 };
+  std::array<int, 6> own = { 0, 0, 0, 0, 0, 0 };
+  bool IsEmpty() const { return this->withGhosts[0] == this->withGhosts[1]; }
+};
+AskedPiece AskedPieceOf(vtkInformation* information, const std::array<int, 6>& whole);
+
+/// The part of an extent that is piece number `piece` of as many; of no cells where there are more pieces than cells.
+std::array<int, 6> PartOfExtent(const std::array<int, 6>& whole, int piece, int pieces, int ghostLevels = 0);
+
+/// Crops an image to a piece of it, and marks its ghost cells (vtkGhostType); empties it where the piece is.
+void KeepPiece(const AskedPiece& piece, vtkImageData* output);
+
 /// In RequestData: crop the output to the extent, or the piece of it, that was asked for; other ranks hold the rest.
 /// Cells that a neighbouring piece has, too, are marked (vtkGhostType), so that sums over pieces have them once.
 void KeepWhatIsAskedFor(vtkInformation* information, vtkImageData* output);

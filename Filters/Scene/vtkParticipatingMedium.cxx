@@ -8,6 +8,9 @@
 #include "Device/HostThreads.h"
 #include "Medium/OpticalSize.h"
 #include "Medium/Presets.h"
+#include "Ranks/ControllerCommunicator.h"
+#include "Ranks/PieceBlocks.h"
+#include "Ranks/Ranks.h"
 #include "Ranks/WholeImage.h"
 #include "Work/GuardedWork.h"
 
@@ -20,6 +23,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -255,6 +259,34 @@ const tyndall::MediumPreset* PresetOf(int preset)
   const bool isThere = preset > vtkParticipatingMedium::CUSTOM && preset <= vtkParticipatingMedium::SKIN_2;
   return isThere ? &tyndall::MediumPresets()[preset - 1] : nullptr;
 }
+
+/// Makes an output of an input.
+/// @return the relative density of each voxel
+std::vector<float> MakeMedium(vtkParticipatingMedium* filter, const Recipe& recipe, vtkImageData* input,
+  vtkInformationVector* phaseTable, vtkImageData* output)
+{
+  const tyndall::PhaseDescription phase = DescriptionOf(filter, recipe.g, vtkTable::GetData(phaseTable));
+  const tyndall::FloatField density = tyndall::ReadChosenCells(filter, 0, input, "", tyndall::Need::Required, { 1 });
+  std::vector<float> relative =
+    RelativeDensity(density, tyndall::GridOf(input), filter->GetMinimumDensity(), filter->GetMaximumDensity());
+
+  EmptyHidden(input, relative);
+
+  tyndall::PassOn(input, output);
+  AddProduct(output, "sigma_a", relative, recipe.sigma_a);
+  AddProduct(output, "sigma_s", relative, recipe.sigma_s);
+  if (recipe.emission != Rgb{})
+  {
+    AddProduct(output, "emission", relative, recipe.emission);
+  }
+  tyndall::WritePhaseDescription(output, phase);
+  if (const tyndall::FloatField g = tyndall::ReadCells(output, "g", tyndall::Need::Optional, { 1, 3 }); g.IsThere())
+  {
+    const tyndall::FloatField sigma_s = tyndall::ReadCells(output, "sigma_s", tyndall::Need::Required);
+    tyndall::ReadPhase(output, g, sigma_s); // says what is wrong with the input's
+  }
+  return relative;
+}
 }
 
 vtkStandardNewMacro(vtkParticipatingMedium);
@@ -340,22 +372,27 @@ int vtkParticipatingMedium::RequestInformation(
   return this->Superclass::RequestInformation(request, inputs, outputs);
 }
 
-/// All of the density, whatever piece of the medium is asked for: its size is told of the whole.
+/// Where ranks each ask for their piece that of the density; else all of it, for the size is told of the whole.
 int vtkParticipatingMedium::RequestUpdateExtent(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   const int done = this->Superclass::RequestUpdateExtent(request, inputs, outputs);
-  tyndall::AskForAll(request, inputs[DENSITY], outputs);
+  if (tyndall::EachAsksForItsPiece(request, outputs))
+  {
+    tyndall::AskTogether(request, outputs, inputs[DENSITY]);
+  }
+  else
+  {
+    tyndall::AskForAll(request, inputs[DENSITY], outputs);
+  }
   tyndall::AskForAll(request, inputs[PHASE_TABLE], outputs);
   return done;
 }
 
-void vtkParticipatingMedium::NoteSize(
-  const tyndall::Grid& grid, const std::vector<float>& relativeDensity, double extinction)
+void vtkParticipatingMedium::NoteSize(const tyndall::Grid& grid, const tyndall::OpticalSize& size)
 {
   constexpr double thinnest = 0.01;
   constexpr double thickest = 1e6;
-  const tyndall::OpticalSize size = tyndall::OpticalSizeOf(relativeDensity.data(), grid, extinction);
   this->PhysicalExtent = ExtentInWords(grid, MillimetresOf(this));
   this->OpticalThickness = size.thickness;
   this->MeanFreePath = size.meanFreePath;
@@ -377,33 +414,49 @@ int vtkParticipatingMedium::RequestData(
   this->PhysicalExtent.clear();
   this->OpticalThickness = 0.0;
   this->MeanFreePath = 0.0;
-  return tyndall::Guarded(this, request, given, outputs, [&](vtkInformationVector** inputs) {
-    vtkImageData* input = vtkImageData::GetData(inputs[0]);
+  const tyndall::WorkOnPieces onPieces = { DENSITY,
+    [&](vtkMultiProcessController* ranks, vtkInformationVector** inputs) {
+      return ranks && tyndall::EachAsksForItsPiece(request, outputs) && this->MakePiece(ranks, inputs, outputs);
+    } };
+  return tyndall::Guarded(this, request, given, outputs, onPieces, [&](vtkInformationVector** inputs) {
+    vtkImageData* const input = vtkImageData::GetData(inputs[DENSITY]);
+    vtkImageData* const output = vtkImageData::GetData(outputs);
     const Recipe recipe = RecipeOf(this, this->ChannelMeanCosines);
-    const tyndall::PhaseDescription phase = DescriptionOf(this, recipe.g, vtkTable::GetData(inputs[PHASE_TABLE]));
-    const tyndall::FloatField density = tyndall::ReadChosenCells(this, 0, input, "", tyndall::Need::Required, { 1 });
+    const std::vector<float> relative = MakeMedium(this, recipe, input, inputs[PHASE_TABLE], output);
     const tyndall::Grid grid = tyndall::GridOf(input);
-    std::vector<float> relative = RelativeDensity(density, grid, this->MinimumDensity, this->MaximumDensity);
-
-    EmptyHidden(input, relative);
-
-    vtkImageData* output = vtkImageData::GetData(outputs);
-    tyndall::PassOn(input, output);
-    AddProduct(output, "sigma_a", relative, recipe.sigma_a);
-    AddProduct(output, "sigma_s", relative, recipe.sigma_s);
-    if (recipe.emission != Rgb{})
-    {
-      AddProduct(output, "emission", relative, recipe.emission);
-    }
-    tyndall::WritePhaseDescription(output, phase);
-    this->NoteSize(grid, relative, LargestExtinction(recipe));
-    if (const tyndall::FloatField g = tyndall::ReadCells(output, "g", tyndall::Need::Optional, { 1, 3 }); g.IsThere())
-    {
-      const tyndall::FloatField sigma_s = tyndall::ReadCells(output, "sigma_s", tyndall::Need::Required);
-      tyndall::ReadPhase(output, g, sigma_s); // says what is wrong with the input's
-    }
+    this->NoteSize(grid, tyndall::OpticalSizeOf(relative.data(), grid, LargestExtinction(recipe)));
     tyndall::KeepWhatIsAskedFor(outputs->GetInformationObject(0), output);
   });
+}
+
+/// This rank's piece of the medium, of its piece of the density; its size is that of all pieces.
+/// @return false, on all ranks, where pieces make no whole
+bool vtkParticipatingMedium::MakePiece(
+  vtkMultiProcessController* ranks, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  vtkImageData* const input = vtkImageData::GetData(inputs[DENSITY]);
+  vtkImageData* const output = vtkImageData::GetData(outputs);
+  const std::unique_ptr<tyndall::Communicator> communicator = tyndall::CommunicatorOf(ranks);
+  const tyndall::PieceBlocks pieces(*communicator, outputs->GetInformationObject(0), input);
+  if (!pieces.MakeUpTheWhole())
+  {
+    return false;
+  }
+  const tyndall::Grid& whole = pieces.Partition().whole;
+  Recipe recipe;
+  std::vector<double> sums;
+  tyndall::OnAllRanks(ranks, [&] {
+    recipe = RecipeOf(this, this->ChannelMeanCosines);
+    std::vector<float> relative;
+    if (pieces.HasOwn())
+    {
+      relative = pieces.OwnOf(input, MakeMedium(this, recipe, input, inputs[PHASE_TABLE], output));
+    }
+    sums = tyndall::OpticalSumsOf(relative.data(), pieces.Own(), whole);
+  });
+  this->NoteSize(whole, tyndall::OpticalSizeOf(communicator->Sum(sums), whole, LargestExtinction(recipe)));
+  pieces.KeepHeld(output);
+  return true;
 }
 
 void vtkParticipatingMedium::PrintSelf(ostream& os, vtkIndent indent)

@@ -8,9 +8,12 @@
 #include <string>
 #include <vector>
 
+class vtkMultiProcessController;
+
 namespace tyndall
 {
 struct Grid;
+struct OpticalSize;
 }
 
 /**
@@ -238,8 +241,8 @@ private:
   void operator=(const vtkParticipatingMedium&) = delete;
 
   /// Of the medium that was made; warns where it is too thin or too thick to be meant.
-  /// @param extinction  at relative density 1, 1/length
-  void NoteSize(const tyndall::Grid& grid, const std::vector<float>& relativeDensity, double extinction);
+  void NoteSize(const tyndall::Grid& grid, const tyndall::OpticalSize& size);
+  bool MakePiece(vtkMultiProcessController* ranks, vtkInformationVector** inputs, vtkInformationVector* outputs);
 
   int Preset = CUSTOM;
   double MinimumDensity = 0.0;

@@ -1,8 +1,8 @@
 #include "Work/GuardedWork.h"
-#include "Common/FilterBefore.h"
 
 // How filters do their work, report and fail: see LightTransportData.h.
 #include "Common/Failure.h"
+#include "Common/FilterBefore.h"
 #include "Common/GhostFlags.h"
 #include "Common/ImageInput.h"
 #include "Common/LightTransportWriting.h"
@@ -191,6 +191,12 @@ int Guarded(vtkAlgorithm* filter, vtkInformationVector* outputs, const std::func
 int Guarded(vtkAlgorithm* filter, vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs,
   const std::function<void(vtkInformationVector** inputs)>& work)
 {
+  return Guarded(filter, request, given, outputs, WorkOnPieces(), work);
+}
+
+int Guarded(vtkAlgorithm* filter, vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs,
+  const WorkOnPieces& onPieces, const std::function<void(vtkInformationVector** inputs)>& work)
+{
   vtkMultiProcessController* const ranks = RanksTogether(request, outputs);
   return GuardedOn(ranks, filter, outputs, [&] {
     OnAllRanks(ranks, [&] {
@@ -201,6 +207,14 @@ int Guarded(vtkAlgorithm* filter, vtkInformation* request, vtkInformationVector*
         CheckDuplicates(filter, outputs);
       }
     });
+    if (onPieces.work)
+    {
+      WholeInputs others(ranks, filter, given, outputs, onPieces.port);
+      if (onPieces.work(ranks, others.Vectors()))
+      {
+        return;
+      }
+    }
     WholeInputs whole(ranks, filter, given, outputs);
     work(whole.Vectors());
   });

@@ -7,6 +7,7 @@
 class vtkAlgorithm;
 class vtkInformation;
 class vtkInformationVector;
+class vtkMultiProcessController;
 
 /// Work of a filter that may fail, be stopped, and tells how far it is.
 namespace tyndall
@@ -32,6 +33,19 @@ int Guarded(vtkAlgorithm* filter, vtkInformationVector* outputs, const std::func
 /// @param work   is given them as wholes (WholeInputs.h), the same on all ranks
 int Guarded(vtkAlgorithm* filter, vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs,
   const std::function<void(vtkInformationVector** inputs)>& work);
+
+/// Work of a filter on the piece of an input that a rank has, without any rank having all of it.
+struct WorkOnPieces
+{
+  int port = 0; ///< the input of which ranks have pieces; the others are whole
+  /// Called first, on all ranks together. Its answer is the same on all: false where it does nothing.
+  /// @param ranks  null: this process is alone
+  std::function<bool(vtkMultiProcessController* ranks, vtkInformationVector** inputs)> work;
+};
+
+/// The same, where it may do with pieces; where not, `work` is given wholes.
+int Guarded(vtkAlgorithm* filter, vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs,
+  const WorkOnPieces& onPieces, const std::function<void(vtkInformationVector** inputs)>& work);
 
 /// After Guarded: whether outputs are empty because it failed, or was aborted.
 bool AreEmptied(vtkInformationVector* outputs);

@@ -1,7 +1,7 @@
 #include "Work/WholeInputs.h"
-#include "Common/FilterBefore.h"
 
 #include "Common/ContentKey.h"
+#include "Common/FilterBefore.h"
 #include "Device/Errors.h"
 #include "Ranks/GatheredImage.h"
 #include "Ranks/Ranks.h"
@@ -295,12 +295,12 @@ vtkSmartPointer<vtkDataObject> WholeOf(
 }
 
 /// Where one of several ranks looks at the whole alone, nobody can help it with what its source does not give it.
-void RequireAll(vtkAlgorithm* filter, vtkInformationVector** given)
+void RequireAll(vtkAlgorithm* filter, vtkInformationVector** given, int asGiven)
 {
   vtkMultiProcessController* const all = vtkMultiProcessController::GetGlobalController();
   for (int port = 0; all && all->GetNumberOfProcesses() > 1 && port < filter->GetNumberOfInputPorts(); ++port)
   {
-    for (int i = 0; i < given[port]->GetNumberOfInformationObjects(); ++i)
+    for (int i = 0; port != asGiven && i < given[port]->GetNumberOfInformationObjects(); ++i)
     {
       const Glance glance = GlanceAt(given[port]->GetInformationObject(i));
       ValueBox both = PointBoxOf(glance.extent);
@@ -314,7 +314,7 @@ void RequireAll(vtkAlgorithm* filter, vtkInformationVector** given)
   }
 }
 
-RankGlance GlanceAtAll(vtkAlgorithm* filter, vtkInformationVector** given, vtkInformationVector* outputs)
+RankGlance GlanceAtAll(vtkAlgorithm* filter, vtkInformationVector** given, vtkInformationVector* outputs, int asGiven)
 {
   RankGlance rank;
   for (int port = 0; port < filter->GetNumberOfInputPorts(); ++port)
@@ -324,7 +324,7 @@ RankGlance GlanceAtAll(vtkAlgorithm* filter, vtkInformationVector** given, vtkIn
     {
       vtkInformation* const connection = given[port]->GetInformationObject(i);
       rank.inputs.push_back(GlanceAt(connection));
-      rank.inputs.back().key = ContentKey(vtkDataObject::GetData(connection));
+      rank.inputs.back().key = port == asGiven ? 0 : ContentKey(vtkDataObject::GetData(connection));
     }
   }
   for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
@@ -366,19 +366,19 @@ void NoteParts(const std::vector<RankGlance>& all, int rank, vtkInformationVecto
 }
 }
 
-WholeInputs::WholeInputs(
-  vtkMultiProcessController* ranks, vtkAlgorithm* filter, vtkInformationVector** given, vtkInformationVector* outputs)
+WholeInputs::WholeInputs(vtkMultiProcessController* ranks, vtkAlgorithm* filter, vtkInformationVector** given,
+  vtkInformationVector* outputs, int asGiven)
 {
   const int ports = filter->GetNumberOfInputPorts();
   if (ranks == nullptr)
   {
-    RequireAll(filter, given);
+    RequireAll(filter, given, asGiven);
     NoteParts({}, 0, outputs);
     this->Ports.assign(given, given + ports);
     return;
   }
   RankGlance own;
-  OnAllRanks(ranks, [&] { own = GlanceAtAll(filter, given, outputs); });
+  OnAllRanks(ranks, [&] { own = GlanceAtAll(filter, given, outputs, asGiven); });
   const std::vector<RankGlance> all = Share(ranks, own);
   NoteParts(all, ranks->GetLocalProcessId(), outputs);
   std::size_t connection = 0;
@@ -392,7 +392,11 @@ WholeInputs::WholeInputs(
       std::for_each(all.begin(), all.end(), [&](const RankGlance& of) { glances.push_back(of.inputs[connection]); });
       vtkInformation* const information = given[port]->GetInformationObject(i);
       vtkDataObject* const data = vtkDataObject::GetData(information);
-      const vtkSmartPointer<vtkDataObject> whole = WholeOf(ranks, data, glances, Named(port));
+      vtkSmartPointer<vtkDataObject> whole = data;
+      if (port != asGiven)
+      {
+        whole = WholeOf(ranks, data, glances, Named(port));
+      }
       vtkNew<vtkInformation> replaced;
       replaced->Set(vtkDataObject::DATA_OBJECT(), whole);
       this->Ports.back()->Append(whole == data ? information : replaced.Get());

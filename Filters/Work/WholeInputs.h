@@ -26,10 +26,11 @@ class WholeInputs
 public:
   /// @param ranks  null: this process is alone, and has what it is given
   /// @param given  by port
+  /// @param asGiven  port that is left as it is; -1: none
   /// @param outputs  notes for KeepWhatIsAskedFor what each rank is asked for
   /// @throws InvalidInput on all ranks with the same words where pieces make no whole
   WholeInputs(vtkMultiProcessController* ranks, vtkAlgorithm* filter, vtkInformationVector** given,
-    vtkInformationVector* outputs);
+    vtkInformationVector* outputs, int asGiven = -1);
 
   /// By port.
   vtkInformationVector** Vectors() { return this->Ports.data(); }

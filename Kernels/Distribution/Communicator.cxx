@@ -114,41 +114,56 @@ std::vector<double> Communicator::Largest(const std::vector<double>& values)
   });
 }
 
+std::vector<char> Communicator::Agree(const std::vector<char>& own)
+{
+  constexpr char fine = static_cast<char>(Trouble::None);
+  if (this->Rank() > 0)
+  {
+    this->Send(0, AgreementTag, own);
+    return this->Receive<char>(0, AgreementTag);
+  }
+  std::vector<char> first = own;
+  int from = 0;
+  bool alike = true;
+  for (int rank = 1; rank < this->Ranks(); ++rank)
+  {
+    const std::vector<char> ofRank = this->Receive<char>(rank, AgreementTag);
+    alike = alike && ofRank == own;
+    if (first[0] == fine && ofRank[0] != fine)
+    {
+      first = ofRank;
+      from = rank;
+    }
+  }
+  if (!alike && first[0] != fine)
+  {
+    const std::string where = "On rank " + std::to_string(from) + ": ";
+    first.insert(first.begin() + 1, where.begin(), where.end());
+  }
+  for (int rank = 1; rank < this->Ranks(); ++rank)
+  {
+    this->Send(rank, AgreementTag, first);
+  }
+  return first;
+}
+
 void Communicator::Together(const std::function<void()>& work)
 {
   const Outcome own = Try(work);
-  std::vector<char> first = { static_cast<char>(own.trouble) };
-  first.insert(first.end(), own.words.begin(), own.words.end());
-  if (this->Rank() > 0)
+  if (this->Ranks() == 1)
   {
-    this->Send(0, AgreementTag, first);
-    first = this->Receive<char>(0, AgreementTag);
-  }
-  else
-  {
-    for (int rank = 1; rank < this->Ranks(); ++rank)
+    if (own.error)
     {
-      const std::vector<char> ofRank = this->Receive<char>(rank, AgreementTag);
-      if (first[0] == static_cast<char>(Trouble::None) && ofRank[0] != first[0])
-      {
-        const std::string where = "rank " + std::to_string(rank) + ": ";
-        first = { ofRank[0] };
-        first.insert(first.end(), where.begin(), where.end());
-        first.insert(first.end(), ofRank.begin() + 1, ofRank.end());
-      }
+      std::rethrow_exception(own.error);
     }
-    for (int rank = 1; rank < this->Ranks(); ++rank)
-    {
-      this->Send(rank, AgreementTag, first);
-    }
+    return;
   }
-  if (own.error)
+  std::vector<char> said = { static_cast<char>(own.trouble) };
+  said.insert(said.end(), own.words.begin(), own.words.end());
+  said = this->Agree(said);
+  if (said[0] != static_cast<char>(Trouble::None))
   {
-    std::rethrow_exception(own.error);
-  }
-  if (first[0] != static_cast<char>(Trouble::None))
-  {
-    Throw(static_cast<Trouble>(first[0]), std::string(first.begin() + 1, first.end()));
+    Throw(static_cast<Trouble>(said[0]), std::string(said.begin() + 1, said.end()));
   }
 }
 

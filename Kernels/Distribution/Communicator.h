@@ -53,8 +53,8 @@ public:
   std::vector<double> Sum(const std::vector<double>& values);
   std::vector<double> Largest(const std::vector<double>& values);
 
-  /// Runs `work` on every rank. Where it throws on one, it does on all: on those where nothing went wrong the error of
-  /// the first rank where something did, with its number. All ranks call it; what they send each other in `work` they
+  /// Runs `work` on every rank. Where it throws on one, it does on all, with the same words: those of the first rank
+  /// where something went wrong, with its number where it is not the same on all. All ranks call it; what they send each other in `work` they
   /// must send although something has gone wrong (SweepInBlocks.cxx does).
   /// @throws Aborted where a rank was, InvalidInput, DeviceError and others likewise
   void Together(const std::function<void()>& work);
@@ -68,6 +68,7 @@ protected:
 private:
   using Joined = std::function<void(std::vector<double>& all, const std::vector<double>& ofRank)>;
   std::vector<double> OverRanks(const std::vector<double>& values, const Joined& join);
+  std::vector<char> Agree(const std::vector<char>& own);
   void CountAndSend(int to, int tag, std::vector<char> bytes);
 
   Traffic Counted;

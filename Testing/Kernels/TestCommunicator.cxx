@@ -43,7 +43,16 @@ TEST(Communicator, ThrowsOnAllRanksWhatOneThrows)
     }
     catch (const InvalidInput& error)
     {
-      EXPECT_EQ(error.what(), ranks.Rank() == 1 ? std::string("no medium") : std::string("rank 1: no medium"));
+      EXPECT_EQ(error.what(), std::string("On rank 1: no medium"));
+    }
+    try
+    {
+      ranks.Together([&] { throw DeviceError("no device"); });
+      ADD_FAILURE() << "rank " << ranks.Rank() << " goes on";
+    }
+    catch (const DeviceError& error)
+    {
+      EXPECT_EQ(error.what(), std::string("no device")); // on all of them
     }
     EXPECT_THROW(ranks.Together([&] {
       if (ranks.Rank() == 2)

@@ -73,11 +73,21 @@ def source_of(piece):
     return producer
 
 
-def solved(density, array):
+def solved(density, array, **settings):
     medium = ParticipatingMedium(Input=density, DensityArray=array, ExtinctionScale=0.2, MinimumDensity=0,
                                  MaximumDensity=1, Albedo=[0.9, 0.9, 0.9])
-    light = LightPropagationMaps(Input=medium, SkyColor=[1, 1, 1], DirectionsPerFace=4)
+    light = LightPropagationMaps(Input=medium, SkyColor=[1, 1, 1], DirectionsPerFace=4, **settings)
     light.UpdatePipeline()
+    return light
+
+
+def by_blocks(density, array, **settings):
+    """The same where each rank solves its piece, of which alone it has the medium."""
+    light = solved(density, array, Decomposition="Blocks", **settings)
+    medium = light.Input.GetClientSideObject().GetOutputDataObject(0)
+    output = light.GetClientSideObject().GetOutputDataObject(0)
+    assert medium.GetExtent() == output.GetExtent(), (medium.GetExtent(), output.GetExtent())
+    print("rank %d of %d has %d cells" % (rank, ranks, medium.GetNumberOfCells()), flush=True)
     return light
 
 
@@ -131,8 +141,8 @@ def pvti():
     keep("pvti", solved(XMLPartitionedImageDataReader(FileName=[path]), ["POINTS", "RTData"]))
 
 
-def own_pieces(case, pieces):
-    keep(case, solved(source_of(pieces[rank]), ["CELLS", "density"]))
+def own_pieces(case, pieces, solve=solved):
+    keep(case, solve(source_of(pieces[rank]), ["CELLS", "density"]))
 
 
 def even():
@@ -145,16 +155,139 @@ def ghosts():
     own_pieces("ghosts", [piece_of([max(e[0] - 2, 0), min(e[1] + 2, 12)] + e[2:], own=e) for e in own])
 
 
-def uneven():
+def uneven_pieces():
     """Blocks of a voxel each before the last rank, which has the rest; the second rank has no data."""
     cuts = [0] + [max(r - 1, 1) if ranks > 2 else r for r in range(1, ranks)] + [12]
-    pieces = [piece_of(extent) if extent[1] > extent[0] else vtkImageData() for extent in parts(cuts)]
-    own_pieces("uneven", pieces)
+    return [piece_of(extent) if extent[1] > extent[0] else vtkImageData() for extent in parts(cuts)]
+
+
+def uneven():
+    own_pieces("uneven", uneven_pieces())
 
 
 def alone():
     """The last rank has all."""
     own_pieces("alone", [vtkImageData() for _ in range(ranks - 1)] + [piece_of([0, 12, 0, 5, 0, 4])])
+
+
+def wavelet(decomposition, **settings):
+    density = Wavelet(WholeExtent=SIZE)
+    solve = by_blocks if decomposition == "Blocks" else solved
+    return solve(density, ["POINTS", "RTData"], DirectionsPerFace=9, NetFlux=1, **settings)
+
+
+def blocks_wavelet():
+    """A source that gives each rank its piece; asked again it is not solved again, but where a property changed."""
+    light = wavelet("Blocks")
+    keep("blocks_wavelet", light)
+    lines = light.GetClientSideObject().GetOutputDataObject(1)
+    before = lines.GetMTime()
+    light.Input.Input.Modified()
+    light.UpdatePipeline()
+    light.Tolerance = 1e-2
+    light.UpdatePipeline()
+    assert lines.GetNumberOfRows() > 0 and before, "no rows"
+
+
+def blocks_plain():
+    """Orders one by one, to compare with one rank's solve of the whole."""
+    keep("blocks_plain", wavelet("Blocks", Acceleration="None (as published)"))
+
+
+def whole_plain():
+    light = wavelet("Whole on each rank", Acceleration="None (as published)", Source="Constant", EmissionError=0)
+    keep("whole_plain", light)
+
+
+def blocks_ghosts():
+    """The output is asked for with ghost cells: those of the neighbour's light, flagged."""
+    light = wavelet("Blocks")
+    filter = light.GetClientSideObject()
+    filter.UpdatePiece(rank, ranks, 2)
+    keep("blocks_ghosts", light)
+    output = filter.GetOutputDataObject(0)
+    flags = vtk_to_numpy(output.GetCellData().GetArray("vtkGhostType")) if ranks > 1 else numpy.zeros(1)
+    fluence = vtk_to_numpy(output.GetCellData().GetArray("fluence"))
+    assert ranks == 1 or flags.any()
+    assert numpy.isfinite(fluence).all() and fluence.min() > 0
+    numpy.savez(os.path.join(folder, "ghost_cells.%d.npz" % rank), extent=output.GetExtent(), fluence=fluence)
+
+
+def blocks_given_all():
+    """A source that gives every rank all of the image, whatever it is asked for."""
+    own_pieces("blocks_given_all", [piece_of([0, 12, 0, 5, 0, 4])] * ranks, solve=given_all)
+
+
+def given_all(density, array):
+    return solved(density, array, Decomposition="Blocks")
+
+
+def blocks_even():
+    own_pieces("blocks_even", [piece_of(extent) for extent in parts(even_cuts())], solve=by_blocks)
+
+
+def blocks_uneven():
+    own_pieces("blocks_uneven", uneven_pieces(), solve=by_blocks)
+
+
+def blocks_errors():
+    """What cannot be solved by pieces is one error that names it; what one rank lacks, on all of them."""
+    lights = PointLight(Position=[0, 0, 20])
+    medium = ParticipatingMedium(Input=Wavelet(WholeExtent=SIZE), DensityArray=["POINTS", "RTData"])
+    for named, settings in (("a point, spot or rectangle light", {"Lights": lights}),
+                            ("a periodic axis", {"PeriodicX": 1}), ("WarmStart", {"WarmStart": 1})):
+        light = LightPropagationMaps(Input=medium, SkyColor=[1, 1, 1], Decomposition="Blocks", **settings)
+        errors = errors_of(light)
+        light.UpdatePipeline()
+        light.UpdatePipeline()
+        assert len(errors) == 1 and named in errors[0] and "blocks" in errors[0], (rank, named, errors)
+        assert light.GetClientSideObject().GetOutputDataObject(0).GetNumberOfCells() == 0
+    odd = rank == ranks - 1
+    piece = piece_of(parts(even_cuts())[rank], name="smoke" if odd else "density")
+    light = LightPropagationMaps(Input=ParticipatingMedium(Input=source_of(piece), DensityArray=["CELLS", "density"]),
+                                 Decomposition="Blocks", SkyColor=[1, 1, 1])
+    errors = errors_of(light.Input)
+    light.UpdatePipeline()
+    assert len(errors) == 1 and "On rank %d: " % (ranks - 1) in errors[0], (rank, errors)
+
+
+def blocks_abort():
+    """What one rank aborts ends on all, and can be solved after that."""
+    light = by_blocks_slow()
+    solver = light.GetClientSideObject()
+    if odd_rank():
+        solver.AddObserver("ProgressEvent", lambda caller, event: caller.SetAbortExecute(1))
+    errors = errors_of(light)
+    light.UpdatePipeline()
+    output = solver.GetOutputDataObject(0)
+    assert not errors and output.GetNumberOfCells() == 0 and output.GetFieldData().HasArray("aborted"), errors
+    solver.RemoveObservers("ProgressEvent")
+    light.Tolerance = 1e-3
+    light.UpdatePipeline()
+    assert solver.GetOutputDataObject(0).GetNumberOfCells() > 0 and not errors, errors
+
+
+def blocks_killed():
+    light = by_blocks_slow()
+
+    def end(caller, event):
+        print("killed at %f" % time.time(), flush=True)
+        os.kill(os.getpid(), 9)
+
+    if odd_rank():
+        light.GetClientSideObject().AddObserver("ProgressEvent", end)
+    light.UpdatePipeline()
+
+
+def odd_rank():
+    return rank == ranks - 1
+
+
+def by_blocks_slow():
+    medium = ParticipatingMedium(Input=Wavelet(WholeExtent=SIZE), DensityArray=["POINTS", "RTData"],
+                                 ExtinctionScale=0.2, MinimumDensity=0, MaximumDensity=300)
+    return LightPropagationMaps(Input=medium, SkyColor=[1, 1, 1], DirectionsPerFace=16, Tolerance=1e-7,
+                                Decomposition="Blocks")
 
 
 def fails(case, piece, said, filters=(lambda density: ParticipatingMedium(Input=density,

@@ -1,0 +1,267 @@
+#include "Ranks/PieceBlocks.h"
+
+#include "Distribution/BoxExchange.h"
+#include "Ranks/WholeImage.h"
+
+#include "vtkCellData.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkImageData.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+namespace tyndall
+{
+namespace
+{
+using Extent = std::array<int, 6>;
+constexpr Extent Nothing = { 0, 0, 0, 0, 0, 0 };
+
+/// What a rank says of what it is given.
+struct Piece
+{
+  Extent given = Nothing;
+  Extent own = Nothing; ///< without duplicates
+  AskedPiece asked;
+  std::array<double, 6> place = {}; ///< origin, spacing
+};
+constexpr std::size_t WordsOfPiece = 4 * 6 + 6;
+
+std::size_t CellsOf(const Extent& extent)
+{
+  std::size_t cells = 1;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    cells *= static_cast<std::size_t>(std::max(0, extent[2 * axis + 1] - extent[2 * axis]));
+  }
+  return cells;
+}
+
+/// The least extent of the cells that are no duplicates.
+Extent OwnExtentOf(vtkImageData* image, const Extent& all)
+{
+  vtkUnsignedCharArray* const ghosts = image->GetCellGhostArray();
+  if (!ghosts)
+  {
+    return all;
+  }
+  Extent own = { all[1], all[0], all[3], all[2], all[5], all[4] };
+  vtkIdType cell = 0;
+  std::array<int, 3> at;
+  for (at[2] = all[4]; at[2] < all[5]; ++at[2])
+  {
+    for (at[1] = all[2]; at[1] < all[3]; ++at[1])
+    {
+      for (at[0] = all[0]; at[0] < all[1]; ++at[0], ++cell)
+      {
+        for (int axis = 0; axis < 3 && !(ghosts->GetValue(cell) & vtkDataSetAttributes::DUPLICATECELL); ++axis)
+        {
+          own[2 * axis] = std::min(own[2 * axis], at[axis]);
+          own[2 * axis + 1] = std::max(own[2 * axis + 1], at[axis] + 1);
+        }
+      }
+    }
+  }
+  return CellsOf(own) > 0 ? own : Nothing;
+}
+
+/// Where ranks are all asked for the whole, each has its part of the work.
+AskedPiece AskedOf(vtkInformation* asked, const Extent& given, int rank, int ranks)
+{
+  AskedPiece piece = AskedPieceOf(asked, given);
+  if (piece.own == given && ranks > 1)
+  {
+    piece.own = PartOfExtent(given, rank, ranks);
+  }
+  return piece;
+}
+
+Piece PieceOf(vtkInformation* asked, vtkImageData* image, int rank, int ranks)
+{
+  Piece piece;
+  if (image && image->GetNumberOfCells() > 0)
+  {
+    image->GetExtent(piece.given.data());
+    piece.own = OwnExtentOf(image, piece.given);
+    std::copy_n(image->GetOrigin(), 3, piece.place.begin());
+    std::copy_n(image->GetSpacing(), 3, piece.place.begin() + 3);
+    piece.asked = AskedOf(asked, piece.given, rank, ranks);
+  }
+  return piece;
+}
+
+/// In the place of the rank, among those of all.
+std::vector<double> WordsOf(const Piece& piece, int rank, int ranks)
+{
+  std::vector<double> words(WordsOfPiece * static_cast<std::size_t>(ranks), 0.0);
+  auto to = words.begin() + static_cast<std::ptrdiff_t>(WordsOfPiece) * rank;
+  for (const Extent* extent : { &piece.given, &piece.own, &piece.asked.own, &piece.asked.withGhosts })
+  {
+    to = std::copy(extent->begin(), extent->end(), to);
+  }
+  std::copy(piece.place.begin(), piece.place.end(), to);
+  return words;
+}
+
+Piece PieceIn(const double* words)
+{
+  Piece piece;
+  for (Extent* extent : { &piece.given, &piece.own, &piece.asked.own, &piece.asked.withGhosts })
+  {
+    std::transform(words, words + 6, extent->begin(), [](double word) { return static_cast<int>(word); });
+    words += 6;
+  }
+  std::copy_n(words, 6, piece.place.begin());
+  return piece;
+}
+
+/// To rounding.
+bool OfOneGrid(const Piece& a, const Piece& b)
+{
+  bool same = true;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double spacing = a.place[3 + axis];
+    same = same && std::abs(spacing - b.place[3 + axis]) <= 1e-6 * spacing &&
+      std::abs(a.place[axis] - b.place[axis]) <= 1e-6 * (spacing + std::abs(a.place[axis]));
+  }
+  return same;
+}
+
+VoxelBox BoxOf(const Extent& extent, const std::array<int, 3>& base)
+{
+  VoxelBox box;
+  for (int axis = 0; axis < 3 && CellsOf(extent) > 0; ++axis)
+  {
+    box.first[axis] = extent[2 * axis] - base[axis];
+    box.size[axis] = extent[2 * axis + 1] - extent[2 * axis];
+  }
+  return box;
+}
+
+/// Voxels of blocks are as many as those of the grid, and no two have one in common.
+bool Tile(const BlockPartition& partition)
+{
+  std::size_t voxels = 0;
+  bool apart = true;
+  for (std::size_t a = 0; a < partition.blocks.size(); ++a)
+  {
+    voxels += partition.blocks[a].VoxelCount();
+    for (std::size_t b = 0; b < a; ++b)
+    {
+      apart = apart && Common(partition.blocks[a], partition.blocks[b]).VoxelCount() == 0;
+    }
+  }
+  return apart && voxels == partition.whole.VoxelCount();
+}
+
+Grid GridFrom(const Extent& whole, const Piece& piece)
+{
+  Grid grid;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    grid.size[axis] = whole[2 * axis + 1] - whole[2 * axis];
+    grid.spacing[axis] = piece.place[3 + axis];
+    grid.origin[axis] = piece.place[axis] + whole[2 * axis] * piece.place[3 + axis];
+  }
+  return grid;
+}
+}
+
+PieceBlocks::PieceBlocks(Communicator& communicator, vtkInformation* asked, vtkImageData* given)
+  : Rank(communicator.Rank())
+{
+  const int ranks = communicator.Ranks();
+  const std::vector<double> said =
+    communicator.Sum(WordsOf(PieceOf(asked, given, this->Rank, ranks), this->Rank, ranks));
+  std::vector<Piece> pieces;
+  for (std::size_t at = 0; at < said.size(); at += WordsOfPiece)
+  {
+    pieces.push_back(PieceIn(said.data() + at));
+  }
+  const auto isThere = [](const Piece& piece) { return CellsOf(piece.given) > 0; };
+  const auto first = std::find_if(pieces.begin(), pieces.end(), isThere);
+  if (first == pieces.end())
+  {
+    return;
+  }
+  Extent whole = first->own;
+  bool oneGrid = true, alike = true;
+  for (const Piece& piece : pieces)
+  {
+    oneGrid = oneGrid && (!isThere(piece) || OfOneGrid(*first, piece));
+    alike = alike && piece.given == first->given && piece.own == piece.given;
+    for (int axis = 0; axis < 3 && CellsOf(piece.own) > 0; ++axis)
+    {
+      whole[2 * axis] = std::min(whole[2 * axis], piece.own[2 * axis]);
+      whole[2 * axis + 1] = std::max(whole[2 * axis + 1], piece.own[2 * axis + 1]);
+    }
+  }
+  this->GivenAll = alike && pieces.size() > 1;
+  this->Base = { whole[0], whole[2], whole[4] };
+  this->Blocks.whole = GridFrom(whole, *first);
+  for (const Piece& piece : pieces)
+  {
+    this->Blocks.blocks.push_back(BoxOf(this->GivenAll ? piece.asked.own : piece.own, this->Base));
+    this->OfOutputs.push_back(BoxOf(this->GivenAll ? piece.asked.withGhosts : piece.given, this->Base));
+  }
+  const VoxelBox all = { { 0, 0, 0 }, this->Blocks.whole.size };
+  const bool within = std::all_of(this->OfOutputs.begin(), this->OfOutputs.end(),
+    [&](const VoxelBox& box) { return Common(box, all).VoxelCount() == box.VoxelCount(); });
+  this->Tiled = oneGrid && within && Tile(this->Blocks);
+}
+
+std::array<int, 6> PieceBlocks::ExtentOf(const VoxelBox& box) const
+{
+  Extent extent;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    extent[2 * axis] = box.first[axis] + this->Base[axis];
+    extent[2 * axis + 1] = extent[2 * axis] + box.size[axis];
+  }
+  return extent;
+}
+
+vtkSmartPointer<vtkImageData> PieceBlocks::OwnImage(vtkImageData* given) const
+{
+  if (given->GetNumberOfCells() == static_cast<vtkIdType>(this->Own().VoxelCount()))
+  {
+    return given;
+  }
+  const auto own = vtkSmartPointer<vtkImageData>::New();
+  own->ShallowCopy(given);
+  own->Crop(this->ExtentOf(this->Own()).data());
+  return own;
+}
+
+std::vector<float> PieceBlocks::OwnOf(vtkImageData* given, std::vector<float>&& values) const
+{
+  Extent extent;
+  given->GetExtent(extent.data());
+  const VoxelBox all = BoxOf(extent, this->Base);
+  return all.VoxelCount() == this->Own().VoxelCount() ? std::move(values) : PartOf(values, all, this->Own(), 1);
+}
+
+void PieceBlocks::KeepHeld(vtkImageData* output) const
+{
+  if (this->GivenAll)
+  {
+    KeepPiece(
+      this->HasOwn() ? AskedPiece{ this->ExtentOf(this->Held()), this->ExtentOf(this->Own()) } : AskedPiece(), output);
+  }
+}
+
+std::vector<float> PieceBlocks::OfHeld(Communicator& communicator, std::vector<float>&& own, int components) const
+{
+  const auto voxels = [](const std::vector<VoxelBox>& boxes) {
+    return std::accumulate(boxes.begin(), boxes.end(), std::size_t{ 0 },
+      [](std::size_t sum, const VoxelBox& box) { return sum + box.VoxelCount(); });
+  };
+  return voxels(this->OfOutputs) == voxels(this->Blocks.blocks)
+    ? std::move(own)
+    : ValuesInBox(communicator, this->Blocks, this->OfOutputs, own, components);
+}
+}

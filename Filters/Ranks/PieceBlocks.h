@@ -1,0 +1,60 @@
+#pragma once
+
+#include "Distribution/BlockPartition.h"
+#include "Distribution/Communicator.h"
+#include "Medium/VoxelBox.h"
+
+#include "vtkSmartPointer.h"
+
+#include <array>
+#include <vector>
+
+class vtkImageData;
+class vtkInformation;
+
+namespace tyndall
+{
+/// The blocks of one grid that ranks have of an image, for filters that work on pieces of it. All ranks make one.
+///
+/// Each rank is given a piece, in which cells that it has of its neighbours are flagged as duplicates (vtkGhostType); or
+/// each is given all of it by a source that knows no pieces, and its block is what it is asked for.
+class PieceBlocks
+{
+public:
+  /// @param asked  the output that is made
+  /// @param given  null or without cells: this rank has no block
+  PieceBlocks(Communicator& communicator, vtkInformation* asked, vtkImageData* given);
+
+  /// Whether the blocks are parts of one grid, and together each of its voxels once. The same on all ranks; if not,
+  /// nothing else is to be asked.
+  bool MakeUpTheWhole() const { return this->Tiled; }
+
+  const BlockPartition& Partition() const { return this->Blocks; }
+  const VoxelBox& Own() const { return this->Blocks.blocks[this->Rank]; }
+  bool HasOwn() const { return this->Own().VoxelCount() > 0; }
+  /// What the output is to have: the block, and what is asked for of others.
+  const VoxelBox& Held() const { return this->OfOutputs[this->Rank]; }
+
+  /// Of what this rank is given its own voxels, with their arrays; itself where it is no more. Not where it has none.
+  vtkSmartPointer<vtkImageData> OwnImage(vtkImageData* given) const;
+
+  /// Of values of each voxel that this rank is given those of its own.
+  std::vector<float> OwnOf(vtkImageData* given, std::vector<float>&& values) const;
+
+  /// Crops an output with the arrays of what is given to what the output is to have.
+  void KeepHeld(vtkImageData* output) const;
+
+  /// Of values of each own voxel those of each voxel that the output is to have. All ranks call it.
+  /// @param components  of a voxel, the same on all ranks
+  std::vector<float> OfHeld(Communicator& communicator, std::vector<float>&& own, int components) const;
+
+private:
+  std::array<int, 6> ExtentOf(const VoxelBox& box) const;
+
+  int Rank;
+  BlockPartition Blocks;
+  std::vector<VoxelBox> OfOutputs; ///< by rank
+  std::array<int, 3> Base = {};    ///< where the whole begins, in the numbers of extents
+  bool Tiled = false, GivenAll = false;
+};
+}

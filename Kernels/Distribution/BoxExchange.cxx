@@ -1,0 +1,74 @@
+#include "Distribution/BoxExchange.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace tyndall
+{
+namespace
+{
+constexpr int ValuesTag = 29999; ///< the last of those that Communicator.h leaves to others
+
+/// Calls act(place) with the number of the first value of each row along x of a part, in an array over a box.
+template <class Act>
+void ForRows(const VoxelBox& box, const VoxelBox& part, int components, const Act& act)
+{
+  for (int z = part.first[2]; z < EndOf(part, 2); ++z)
+  {
+    for (int y = part.first[1]; y < EndOf(part, 1); ++y)
+    {
+      const std::size_t row = static_cast<std::size_t>(z - box.first[2]) * box.size[1] + (y - box.first[1]);
+      act((row * box.size[0] + (part.first[0] - box.first[0])) * components);
+    }
+  }
+}
+
+void Put(const std::vector<float>& taken, std::vector<float>& values, const VoxelBox& box, const VoxelBox& part,
+  int components)
+{
+  const std::ptrdiff_t width = static_cast<std::ptrdiff_t>(part.size[0]) * components;
+  auto from = taken.begin();
+  ForRows(box, part, components, [&](std::size_t place) {
+    std::copy_n(from, width, values.begin() + static_cast<std::ptrdiff_t>(place));
+    from += width;
+  });
+}
+}
+
+std::vector<float> PartOf(const std::vector<float>& values, const VoxelBox& box, const VoxelBox& part, int components)
+{
+  std::vector<float> taken;
+  taken.reserve(part.VoxelCount() * components);
+  const auto width = static_cast<std::ptrdiff_t>(part.size[0]) * components;
+  ForRows(box, part, components, [&](std::size_t place) {
+    const auto from = values.begin() + static_cast<std::ptrdiff_t>(place);
+    taken.insert(taken.end(), from, from + width);
+  });
+  return taken;
+}
+
+std::vector<float> ValuesInBox(Communicator& communicator, const BlockPartition& partition,
+  const std::vector<VoxelBox>& wanted, const std::vector<float>& own, int components)
+{
+  const int self = communicator.Rank();
+  const VoxelBox& block = partition.blocks.at(self);
+  const VoxelBox& box = wanted.at(self);
+  for (int rank = 0; rank < communicator.Ranks(); ++rank)
+  {
+    if (const VoxelBox theirs = Common(block, wanted[rank]); rank != self && theirs.VoxelCount() > 0)
+    {
+      communicator.Send(rank, ValuesTag, PartOf(own, block, theirs, components));
+    }
+  }
+  std::vector<float> values(box.VoxelCount() * components);
+  for (int rank = 0; rank < communicator.Ranks(); ++rank)
+  {
+    if (const VoxelBox mine = Common(partition.blocks[rank], box); mine.VoxelCount() > 0)
+    {
+      Put(rank == self ? PartOf(own, block, mine, components) : communicator.Receive<float>(rank, ValuesTag), values,
+        box, mine, components);
+    }
+  }
+  return values;
+}
+}

@@ -1,0 +1,57 @@
+"""Ranks that each solve their piece (Decomposition: blocks): the light of one rank, of which none has more than its part.
+
+    python3 BlocksOverRanks.py
+"""
+import glob
+import os
+import re
+import time
+
+import numpy
+from pieces_of_ranks import Runs
+
+runs = Runs("BlocksOverRanks")
+CASES = ["blocks_wavelet", "blocks_plain", "blocks_ghosts", "blocks_given_all", "blocks_even", "blocks_uneven"]
+
+
+def difference(light, expected):
+    assert light.shape == expected.shape, (light.shape, expected.shape)
+    return abs(light - expected).max() / abs(expected).max()
+
+
+def ghost_cells_are_the_neighbours(ranks):
+    """Flagged cells have the light of the cells of the same place."""
+    found, _ = runs.whole(ranks, "blocks_ghosts", "light")
+    for file in glob.glob(os.path.join(runs.output, str(ranks), "ghost_cells.*.npz")):
+        piece = numpy.load(file)
+        low = numpy.array([-8, -7, -6])
+        begin, end = piece["extent"][::2] - low, piece["extent"][1::2] - low
+        there = found[begin[2]:end[2], begin[1]:end[1], begin[0]:end[0]].ravel()
+        assert (there == piece["fluence"].astype(there.dtype)).all(), (ranks, file)
+
+
+for ranks in (1, 2, 3, 4, 8):
+    more = ["whole_plain"] if ranks == 1 else ["blocks_errors", "blocks_abort"] if ranks == 3 else []
+    code, said = runs.run(ranks, *CASES, *more)
+    assert code == 0 and said.count("is done") == ranks, said
+    ghost_cells_are_the_neighbours(ranks)
+    for case in CASES:
+        light, balance = runs.whole(ranks, case, "light")
+        like = "blocks_wavelet" if case == "blocks_ghosts" else "blocks_even" if "wavelet" not in case else case
+        like = case if case == "blocks_plain" else like
+        expected, wanted = runs.whole(1, like, "light")
+        error = difference(light, expected)
+        print("%d ranks, %s: fluence differs by %.1e" % (ranks, case, error), flush=True)
+        assert error < 1e-6, (ranks, case, error)
+        assert abs(balance - wanted).max() < 1e-6 * wanted[0], (ranks, case, balance, wanted)
+        assert abs(balance[0] + balance[1] - balance[2:].sum()) < 1e-5 * wanted[0], (ranks, case, balance)
+
+blocks, whole = runs.whole(1, "blocks_plain", "light")[0], runs.whole(1, "whole_plain", "light")[0]
+print("blocks and the whole, order by order: %.1e" % difference(blocks, whole))
+assert difference(blocks, whole) < 1e-5
+
+code, said = runs.run(3, "blocks_killed")
+end = time.time() - float(re.search(r"killed at ([0-9.]+)", said)[1])
+assert code != 0 and "is done" not in said, (code, said)
+print("a killed rank: all ended after %.1f s, with code %d" % (end, code))
+assert end < 30, end
