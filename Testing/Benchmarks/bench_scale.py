@@ -1,10 +1,12 @@
 """Time, memory and messages of a solve as the grid grows and as it is spread over ranks.
 
-    ./run bench scale [--grids 64 128 256 512] [--ranks 1 2 4 8] [--orders 3 0] [--repeats 3] [--quick]
+    ./run bench scale [--grids 64 128 256 512] [--ranks 1 2 4 8] [--orders 3 0] [--decompositions whole blocks]
+                      [--repeats 3] [--quick]
 
 Each case is a run of its own of pvbatch --symmetric under mpiexec, on as many ranks as it says, of ParaView's Wavelet as a cloud of
 optical thickness 20 under a sun and a sky, by Light Propagation Maps: three orders of scattering, or (orders 0) until it converges. The
-machine's cores are shared out among the ranks. Grids first, on one rank; then ranks, on the second grid.
+machine's cores are shared out among the ranks. Grids first, on one rank; then ranks, on the second grid, where each rank solves the whole
+(decomposition whole) or its piece (blocks; on one rank as well, whose light is that of all others then).
 
   seconds          of the solver (its property Seconds) on the slowest rank, median of the repeats
   ns_per_voxel     that, for each voxel of the whole grid;  ratio: over that of the second grid (128^3), same orders; goal 1.3
@@ -27,6 +29,7 @@ import tempfile
 
 WORKER = "TYNDALL_BENCH_SCALE"  # for what runs on each rank: its arguments, as JSON
 GOAL, MOST_COMPARED = 1.3, 128
+WORDS = {"whole": "Whole on each rank", "blocks": "Blocks"}
 
 
 def report(**values):
@@ -40,7 +43,7 @@ def peak_bytes():
                 return 1024 * int(line.split()[1])
 
 
-def work(folder, grid, orders, repeats):
+def work(folder, grid, orders, repeats, decomposition):
     """What each rank runs; its figures go to a file of its own."""
     import numpy
     from paraview import servermanager, simple
@@ -52,7 +55,8 @@ def work(folder, grid, orders, repeats):
     low = -(grid // 2)
     wavelet = simple.Wavelet(WholeExtent=[low, low + grid] * 3)
     medium = ParticipatingMedium(Input=wavelet, MinimumDensity=37, MaximumDensity=277, ExtinctionScale=20.0 / grid)
-    light = LightPropagationMaps(Input=medium, Lights=LightRig(), SkyColor=[0.1, 0.15, 0.2], MaximumOrders=orders)
+    light = LightPropagationMaps(Input=medium, Lights=LightRig(), SkyColor=[0.1, 0.15, 0.2], MaximumOrders=orders,
+                                 Decomposition=WORDS[decomposition])
     seconds = []
     for i in range(repeats):
         light.SkyColor = [0.1, 0.15, 0.2 + 1e-4 * (repeats - 1 - i)]
@@ -79,7 +83,7 @@ def sent_by_ranks(folder):
     return sent
 
 
-def run(grid, ranks, orders, repeats):
+def run(grid, ranks, orders, repeats, decomposition):
     """@return what each rank found; the whole fluence; bytes and messages of the rank that sent most"""
     import numpy
 
@@ -87,7 +91,8 @@ def run(grid, ranks, orders, repeats):
     import a_server
 
     with tempfile.TemporaryDirectory() as folder:
-        environment = {**a_server.without_mpi(), WORKER: json.dumps({"folder": folder, "grid": grid, "orders": orders, "repeats": repeats}),
+        what = {"folder": folder, "grid": grid, "orders": orders, "repeats": repeats, "decomposition": decomposition}
+        environment = {**a_server.without_mpi(), WORKER: json.dumps(what),
                        "POCL_MAX_PTHREAD_COUNT": str(max(1, (os.cpu_count() or 1) // ranks)), "TYNDALL_PREPARE": "0"}
         command = ["mpiexec", "--allow-run-as-root", "--oversubscribe", "-n", str(ranks), "--mca", "pml_monitoring_enable", "2", "--mca",
                    "pml_monitoring_enable_output", "3", "--mca", "pml_monitoring_filename", os.path.join(folder, "sent"), "pvbatch",
@@ -118,7 +123,7 @@ class Bench:
 
     def fits(self, grid, ranks, orders):
         """Whether the memory is there, as far as a smaller grid tells."""
-        known = [(n, of) for (n, o), of in self.alone.items() if o == orders]
+        known = [(n, of) for (n, o, d), of in self.alone.items() if o == orders and d == "whole"]
         if not known:
             return True
         smaller, of = max(known)
@@ -130,17 +135,17 @@ class Bench:
                    bytes_there=there)
         return needed <= 0.9 * there
 
-    def measure(self, case, grid, ranks, orders):
+    def measure(self, case, grid, ranks, orders, decomposition="whole"):
         if not self.fits(grid, ranks, orders):
             return
-        found, fluence, (sent, messages) = run(grid, ranks, orders, self.repeats)
+        found, fluence, (sent, messages) = run(grid, ranks, orders, self.repeats, decomposition)
         seconds = statistics.median(max(of_ranks) for of_ranks in zip(*(one["seconds"] for one in found)))
         peak = max(one["peak_bytes"] for one in found)
         row = {"ns_per_voxel": 1e9 * seconds / grid**3, "balance": max(one["balance"] for one in found)}
         if ranks == 1:
-            self.alone[grid, orders] = {"peak_bytes": peak, "fluence": fluence, "seconds": seconds}
+            self.alone[grid, orders, decomposition] = {"peak_bytes": peak, "fluence": fluence, "seconds": seconds}
         else:
-            alone = self.alone.get((grid, orders))
+            alone = self.alone.get((grid, orders, decomposition))
             row.update(bytes_sent=sent, messages=messages)
             if alone:
                 row.update(peak_of_one=peak / alone["peak_bytes"], speedup=alone["seconds"] / seconds)
@@ -150,20 +155,21 @@ class Bench:
             against = self.costs.get(orders)
             if against:
                 row.update(ratio=seconds / grid**3 / against, against="%d^3" % self.middle, goal=GOAL, met=seconds / grid**3 <= GOAL * against)
-        report(case=case, method="maps", grid="%dx%dx%d" % ((grid,) * 3), ranks=ranks, orders=orders, seconds=seconds, peak_bytes=peak,
+        report(case=case, method="maps", grid="%dx%dx%d" % ((grid,) * 3), ranks=ranks, decomposition=decomposition, orders=orders,
+               seconds=seconds, peak_bytes=peak,
                bytes_per_voxel=peak / grid**3, **row)
         return seconds / grid**3
 
-    def run(self, grids, ranks, orders):
+    def run(self, grids, ranks, orders, decompositions):
         middle = self.middle = grids[min(1, len(grids) - 1)]
         for order in orders:
             self.costs[order] = self.measure("grids", middle, 1, order)
             for grid in grids:
                 if grid != middle:
                     self.measure("grids", grid, 1, order)
-            for count in ranks:
-                if count > 1:
-                    self.measure("ranks", middle, count, order)
+            for decomposition in decompositions:
+                for count in ranks if decomposition == "blocks" else [count for count in ranks if count > 1]:
+                    self.measure("ranks", middle, count, order, decomposition)
 
 
 def main():
@@ -172,13 +178,14 @@ def main():
     parser.add_argument("--grids", type=int, nargs="+")
     parser.add_argument("--ranks", type=int, nargs="+")
     parser.add_argument("--orders", type=int, nargs="+", help="of scattering; 0: until the light converges")
+    parser.add_argument("--decompositions", nargs="+", choices=list(WORDS), default=list(WORDS))
     parser.add_argument("--repeats", type=int)
     parser.add_argument("--quick", action="store_true", default=quick)
     given = parser.parse_args()
     quick = given.quick
     bench = Bench(given.repeats or (1 if quick else 3))
-    bench.run(given.grids or ([8, 16] if quick else [64, 128, 256, 512]), given.ranks or ([2] if quick else [1, 2, 4, 8]),
-              given.orders or ([2] if quick else [3, 0]))
+    bench.run(given.grids or ([8, 16] if quick else [64, 128, 256, 512]), given.ranks or ([1, 2] if quick else [1, 2, 4, 8]),
+              given.orders or ([2] if quick else [3, 0]), given.decompositions)
 
 
 if WORKER in os.environ:
