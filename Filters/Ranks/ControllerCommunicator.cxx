@@ -19,16 +19,12 @@ namespace tyndall
 #ifdef TYNDALL_HAS_MPI
 namespace
 {
-constexpr int FirstOfAll = 1000;  ///< tags, behind those that VTK uses itself
-constexpr int TagsOfOne = 30010;  ///< as many as Communicator.h and Communicator.cxx have
-constexpr int Conversations = 20; ///< until tags come again; those of the other messages lie beyond
+constexpr int FirstOfAll = 1000;              ///< tags, behind those that VTK uses itself
+constexpr int TagsOfOne = 30010;              ///< as many as Communicator.h and Communicator.cxx have
+constexpr int Conversations = 64, Works = 16; ///< until tags come again
+constexpr double Grace = 1.0; ///< seconds in which what others have sent before they stopped still arrives
 
-int NextConversation()
-{
-  static int conversation = 0;
-  conversation = (conversation + 1) % Conversations;
-  return conversation;
-}
+int Work = 0, Conversation = 0;
 
 /// What is still being sent when an error ends a conversation: MPI may read it for as long as the process lives.
 template <class Messages>
@@ -49,11 +45,11 @@ void RequireSent(bool done, const char* what, int rank)
 }
 
 ControllerCommunicator::ControllerCommunicator(
-  vtkMPIController* controller, double patience, std::function<bool()> stopped)
+  vtkMPIController* controller, double patience, std::function<bool()> stopped, int conversation)
   : Controller(controller)
   , Patience(patience)
   , Stopped(std::move(stopped))
-  , FirstTag(FirstOfAll + TagsOfOne * NextConversation())
+  , FirstTag(FirstOfAll + TagsOfOne * conversation)
 {
 }
 
@@ -114,6 +110,7 @@ std::vector<char> ControllerCommunicator::Take(int from, int tag)
 {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point start = Clock::now();
+  double stoppedAt = -1.0;
   for (;;)
   {
     int isThere = 0, source = 0, length = 0;
@@ -134,7 +131,11 @@ std::vector<char> ControllerCommunicator::Take(int from, int tag)
       throw std::runtime_error("Nothing came from rank " + std::to_string(from) + " within " +
         std::to_string(static_cast<int>(this->Patience)) + " s: it may be gone.");
     }
-    if (this->Stopped && this->Stopped())
+    if (stoppedAt < 0.0 && this->Stopped && this->Stopped())
+    {
+      stoppedAt = waited.count();
+    }
+    if (stoppedAt >= 0.0 && waited.count() > stoppedAt + Grace)
     {
       throw Aborted();
     }
@@ -144,7 +145,10 @@ std::vector<char> ControllerCommunicator::Take(int from, int tag)
 }
 #endif
 
-std::unique_ptr<Communicator> CommunicatorOf(vtkMultiProcessController* ranks, std::function<bool()> stopped)
+namespace
+{
+std::unique_ptr<Communicator> Make(
+  vtkMultiProcessController* ranks, [[maybe_unused]] std::function<bool()> stopped, [[maybe_unused]] bool isLast)
 {
   if (!ranks)
   {
@@ -153,10 +157,30 @@ std::unique_ptr<Communicator> CommunicatorOf(vtkMultiProcessController* ranks, s
 #ifdef TYNDALL_HAS_MPI
   if (auto* const mpi = vtkMPIController::SafeDownCast(ranks))
   {
-    return std::make_unique<ControllerCommunicator>(mpi, SecondsToWait(), std::move(stopped));
+    Conversation = isLast ? 0 : Conversation % (Conversations - 1) + 1;
+    return std::make_unique<ControllerCommunicator>(
+      mpi, SecondsToWait(), std::move(stopped), Work * Conversations + Conversation);
   }
 #endif
-  (void)stopped;
-  throw InvalidInput("Ranks that share a medium have to speak to each other by MPI, and VTK's controller does not.");
+  throw InvalidInput("Ranks that work together have to speak to each other by MPI, and VTK's controller does not.");
+}
+}
+
+void BeginConversations()
+{
+#ifdef TYNDALL_HAS_MPI
+  Work = (Work + 1) % Works;
+  Conversation = 0;
+#endif
+}
+
+std::unique_ptr<Communicator> CommunicatorOf(vtkMultiProcessController* ranks, std::function<bool()> stopped)
+{
+  return Make(ranks, std::move(stopped), false);
+}
+
+std::unique_ptr<Communicator> CommunicatorAtEnd(vtkMultiProcessController* ranks)
+{
+  return Make(ranks, {}, true);
 }
 }

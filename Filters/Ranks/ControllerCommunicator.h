@@ -21,10 +21,16 @@ class vtkMultiProcessController;
 
 namespace tyndall
 {
-/// What the ranks that run a filter together say to each other. All of them make one, and end with it before another.
+/// Ranks begin to work together (WorkOnAllRanks): what communicators of earlier work left behind is not taken for theirs.
+void BeginConversations();
+
+/// What the ranks that work together say to each other. All of them make the same ones, one after the other.
 /// @param ranks  must stay; null: this process is alone
-/// @param stopped  whether a rank that waits for another is to give up (Aborted)
+/// @param stopped  whether a rank that waits for another is to give up (Aborted), a second later
 std::unique_ptr<Communicator> CommunicatorOf(vtkMultiProcessController* ranks, std::function<bool()> stopped = {});
+
+/// The last one of the work, however many a rank made before something went wrong.
+std::unique_ptr<Communicator> CommunicatorAtEnd(vtkMultiProcessController* ranks);
 
 #ifdef TYNDALL_HAS_MPI
 /// By VTK's controller of MPI.
@@ -33,8 +39,9 @@ class ControllerCommunicator : public Communicator
 public:
   /// @param controller  must stay
   /// @param patience  seconds that a rank waits for another that says nothing before it gives up: none hangs
-  explicit ControllerCommunicator(
-    vtkMPIController* controller, double patience = SecondsToWait(), std::function<bool()> stopped = {});
+  /// @param conversation  the same on all ranks, from 0 on; messages of another are not received
+  explicit ControllerCommunicator(vtkMPIController* controller, double patience = SecondsToWait(),
+    std::function<bool()> stopped = {}, int conversation = 0);
   /// Waits until what was sent is on its way, but where an error ends all: then for nobody.
   ~ControllerCommunicator() override;
 
@@ -57,7 +64,7 @@ private:
   vtkMPIController* Controller;
   double Patience;
   std::function<bool()> Stopped;
-  int FirstTag; ///< of this conversation: what one before left behind, as it ended by an error, is not taken for it
+  int FirstTag;
   std::list<Underway> Sending;
 };
 #endif

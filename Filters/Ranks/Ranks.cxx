@@ -1,6 +1,8 @@
 #include "Ranks/Ranks.h"
 
 #include "Common/Failure.h"
+#include "Device/Errors.h"
+#include "Ranks/ControllerCommunicator.h"
 #include "Ranks/WholeImage.h"
 
 #include "vtkAlgorithm.h"
@@ -17,10 +19,8 @@
 #endif
 
 #include <algorithm>
-#include <array>
 #include <functional>
-#include <numeric>
-#include <string>
+#include <memory>
 #include <vector>
 
 namespace tyndall
@@ -77,59 +77,24 @@ int Asking(vtkInformation* request, vtkInformationVector* outputs)
   return asking ? std::max(PiecesAsked(request, outputs), asking->Get(Together())) : 1;
 }
 
-/// What a rank tells the others of how its work ended.
-struct Told
+/// Makes how one rank ended that of all.
+void EndTogether(Communicator& communicator, const Ending& own)
 {
-  int kind = Ending::Done;
-  int length = 0; ///< of the words
-  int words = 0;  ///< a number that other words hardly have, too
-  int sent = 0;   ///< whether it told the others to stop
-};
-
-std::vector<Told> TellAll(vtkMultiProcessController* controller, const Ending& own, bool sent)
-{
-  const std::array<int, 4> mine = { own.kind, static_cast<int>(own.why.size()),
-    static_cast<int>(std::hash<std::string>()(own.why)), sent };
-  std::vector<int> numbers(4 * static_cast<std::size_t>(controller->GetNumberOfProcesses()));
-  controller->AllGather(mine.data(), numbers.data(), 4);
-  std::vector<Told> all;
-  for (std::size_t i = 0; i < numbers.size(); i += 4)
+  try
   {
-    all.push_back({ numbers[i], numbers[i + 1], numbers[i + 2], numbers[i + 3] });
+    communicator.Together([&] {
+      Require(own.kind != Ending::InputFailed, "The filter before failed, and says why there.");
+      Throw(own);
+    });
   }
-  return all;
-}
-
-/// The words of one rank, on all of them.
-std::string Words(vtkMultiProcessController* controller, const Ending& own, const std::vector<Told>& all, int rank)
-{
-  const Told& told = all[static_cast<std::size_t>(rank)];
-  std::string words = own.why;
-  words.resize(static_cast<std::size_t>(told.length));
-  controller->Broadcast(words.data(), told.length, rank);
-  const bool alike = std::all_of(
-    all.begin(), all.end(), [&](const Told& other) { return other.kind == told.kind && other.words == told.words; });
-  return alike ? words : "On rank " + std::to_string(rank) + ": " + words;
-}
-
-/// @return how the work of all ranks together ended: as the worst of them
-Ending Agreed(vtkMultiProcessController* controller, const Ending& own, const std::vector<Told>& all)
-{
-  const auto worst =
-    std::max_element(all.begin(), all.end(), [](const Told& a, const Told& b) { return a.kind < b.kind; });
-  const int rank = static_cast<int>(worst - all.begin());
-  Ending ending;
-  ending.kind = static_cast<Ending::Kind>(worst->kind);
-  if (ending.kind == Ending::Failed)
+  catch (const InvalidInput&)
   {
-    ending.why = Words(controller, own, all, rank);
+    if (own.kind == Ending::InputFailed)
+    {
+      throw InputFailed(); // which is no error of this filter here
+    }
+    throw;
   }
-  else if (ending.kind == Ending::InputFailed && own.kind != Ending::InputFailed)
-  {
-    ending.kind = Ending::Failed;
-    ending.why = "The filter before failed on rank " + std::to_string(rank) + ", which says why.";
-  }
-  return ending;
 }
 
 bool IsOne(vtkMultiProcessController* controller)
@@ -180,13 +145,14 @@ public:
   }
 
   /// Receives those that other ranks sent.
-  void Receive(const std::vector<Told>& all)
+  /// @param senders  by rank, greater than 0 where it did
+  void Receive(const std::vector<double>& senders)
   {
 #ifdef TYNDALL_HAS_MPI
     if (this->Controller)
     {
       this->ForOthers([&](int rank) {
-        if (int stop = 0; all[static_cast<std::size_t>(rank)].sent)
+        if (int stop = 0; senders[static_cast<std::size_t>(rank)] > 0.0)
         {
           this->Controller->Receive(&stop, 1, rank, StopTag);
         }
@@ -197,7 +163,7 @@ public:
       }
     }
 #endif
-    (void)all;
+    (void)senders;
   }
 
 private:
@@ -245,7 +211,8 @@ bool EachAsksForItsPiece(vtkInformation* request, vtkInformationVector* outputs)
 void OnAllRanks(vtkMultiProcessController* controller, const std::function<void()>& act)
 {
   const Ending own = EndingOf(act);
-  Throw(IsOne(controller) ? own : Agreed(controller, own, TellAll(controller, own, false)));
+  const auto stopped = [controller] { return StopMessages(controller).Waits(); };
+  EndTogether(*CommunicatorOf(IsOne(controller) ? nullptr : controller, stopped), own);
 }
 
 void WorkOnAllRanks(vtkMultiProcessController* controller, vtkAlgorithm* filter, const std::function<void()>& work)
@@ -256,13 +223,16 @@ void WorkOnAllRanks(vtkMultiProcessController* controller, vtkAlgorithm* filter,
     return;
   }
   StopMessages messages(controller);
+  BeginConversations();
   filter->GetInformation()->Set(WorkingRanks(), controller);
   const Ending own = EndingOf(work);
   filter->GetInformation()->Remove(WorkingRanks());
   const bool sent = own.kind != Ending::Done && !messages.Waits() && messages.Send();
-  const std::vector<Told> all = TellAll(controller, own, sent);
-  messages.Receive(all);
-  Throw(Agreed(controller, own, all));
+  const std::unique_ptr<Communicator> communicator = CommunicatorAtEnd(controller);
+  std::vector<double> senders(static_cast<std::size_t>(communicator->Ranks()), 0.0);
+  senders[static_cast<std::size_t>(communicator->Rank())] = sent ? 1.0 : 0.0;
+  messages.Receive(communicator->Sum(senders));
+  EndTogether(*communicator, own);
 }
 
 bool IsStoppedByOthers(vtkAlgorithm* filter)

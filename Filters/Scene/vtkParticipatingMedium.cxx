@@ -436,7 +436,8 @@ bool vtkParticipatingMedium::MakePiece(
 {
   vtkImageData* const input = vtkImageData::GetData(inputs[DENSITY]);
   vtkImageData* const output = vtkImageData::GetData(outputs);
-  const std::unique_ptr<tyndall::Communicator> communicator = tyndall::CommunicatorOf(ranks);
+  const std::unique_ptr<tyndall::Communicator> communicator =
+    tyndall::CommunicatorOf(ranks, [this] { return tyndall::IsStoppedByOthers(this); });
   const tyndall::PieceBlocks pieces(*communicator, outputs->GetInformationObject(0), input);
   if (!pieces.MakeUpTheWhole())
   {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <new>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -16,13 +17,14 @@ namespace
 constexpr int SumTag = 30000;
 constexpr int AgreementTag = 30001;
 
-/// What can go wrong, as ranks tell each other.
+/// What can go wrong, as ranks tell each other. What stands later is told before what stands earlier.
 enum class Trouble : char
 {
   None,
   Stopped, ///< Aborted
   OfInput, ///< InvalidInput
   OfDevice,
+  OfMemory,
   Other
 };
 
@@ -53,6 +55,10 @@ Outcome Try(const std::function<void()>& work)
   {
     outcome = { Trouble::OfDevice, error.what(), std::current_exception() };
   }
+  catch (const std::bad_alloc& error)
+  {
+    outcome = { Trouble::OfMemory, error.what(), std::current_exception() };
+  }
   catch (const std::exception& error)
   {
     outcome = { Trouble::Other, error.what(), std::current_exception() };
@@ -67,6 +73,7 @@ Outcome Try(const std::function<void()>& work)
     case Trouble::Stopped: throw Aborted();
     case Trouble::OfInput: throw InvalidInput(words);
     case Trouble::OfDevice: throw DeviceError(words);
+    case Trouble::OfMemory: throw std::bad_alloc();
     default: throw std::runtime_error(words);
   }
 }
@@ -116,35 +123,35 @@ std::vector<double> Communicator::Largest(const std::vector<double>& values)
 
 std::vector<char> Communicator::Agree(const std::vector<char>& own)
 {
-  constexpr char fine = static_cast<char>(Trouble::None);
   if (this->Rank() > 0)
   {
     this->Send(0, AgreementTag, own);
     return this->Receive<char>(0, AgreementTag);
   }
-  std::vector<char> first = own;
+  std::vector<char> worst = own;
   int from = 0;
   bool alike = true;
   for (int rank = 1; rank < this->Ranks(); ++rank)
   {
     const std::vector<char> ofRank = this->Receive<char>(rank, AgreementTag);
     alike = alike && ofRank == own;
-    if (first[0] == fine && ofRank[0] != fine)
+    if (ofRank[0] > worst[0])
     {
-      first = ofRank;
+      worst = ofRank;
       from = rank;
     }
   }
-  if (!alike && first[0] != fine)
+  const std::string words(worst.begin() + 1, worst.end());
+  if (!alike && words.rfind("On rank ", 0) != 0) // else ranks have agreed on it before
   {
     const std::string where = "On rank " + std::to_string(from) + ": ";
-    first.insert(first.begin() + 1, where.begin(), where.end());
+    worst.insert(worst.begin() + 1, where.begin(), where.end());
   }
   for (int rank = 1; rank < this->Ranks(); ++rank)
   {
-    this->Send(rank, AgreementTag, first);
+    this->Send(rank, AgreementTag, worst);
   }
-  return first;
+  return worst;
 }
 
 void Communicator::Together(const std::function<void()>& work)
