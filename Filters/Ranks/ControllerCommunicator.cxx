@@ -19,7 +19,7 @@ namespace tyndall
 #ifdef TYNDALL_HAS_MPI
 namespace
 {
-constexpr int FirstOfAll = 1000;              ///< tags, behind those that VTK uses itself
+constexpr int FirstOfAll = 1000000;           ///< tags, behind those of VTK and of the other messages of ranks
 constexpr int TagsOfOne = 30010;              ///< as many as Communicator.h and Communicator.cxx have
 constexpr int Conversations = 64, Works = 16; ///< until tags come again
 constexpr double Grace = 1.0; ///< seconds in which what others have sent before they stopped still arrives
