@@ -11,6 +11,7 @@ import numpy
 from pieces_of_ranks import Runs
 
 runs = Runs("BlocksOverRanks")
+WRONG = ["arrays", "components", "spacing", "g", "gap"]
 CASES = ["blocks_wavelet", "blocks_plain", "blocks_ghosts", "blocks_given_all", "blocks_even", "blocks_uneven"]
 
 
@@ -31,10 +32,14 @@ def ghost_cells_are_the_neighbours(ranks):
 
 
 for ranks in (1, 2, 3, 4, 8):
-    more = ["whole_plain"] if ranks == 1 else ["blocks_errors", "blocks_abort"] if ranks == 3 else []
+    more = ["whole_plain"] if ranks == 1 else ["blocks_errors", "blocks_of_wrong_pieces", "blocks_abort"] if ranks == 3 else []
     code, said = runs.run(ranks, *CASES, *more)
     assert code == 0 and said.count("is done") == ranks, said
     ghost_cells_are_the_neighbours(ranks)
+    for case in WRONG if ranks == 3 else []:
+        words = {open(file).read() for file in glob.glob(os.path.join(runs.output, "3", "error.%s.*" % case))}
+        assert len(words) == 1, (case, words)
+        print("%s: %s" % (case, words.pop()))
     for case in CASES:
         light, balance = runs.whole(ranks, case, "light")
         like = "blocks_wavelet" if case == "blocks_ghosts" else "blocks_even" if "wavelet" not in case else case

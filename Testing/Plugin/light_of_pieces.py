@@ -306,20 +306,49 @@ def fails(case, piece, said, filters=(lambda density: ParticipatingMedium(Input=
     print("%s: %s" % (case, errors[0].split("): ")[-1].strip()), flush=True)
 
 
-def errors():
+def wrong_pieces():
+    """@return (name, this rank's piece, what the error says) of pieces that make no whole"""
     odd = rank == ranks - 1
     whole = parts(even_cuts())[rank]
-    fails("arrays", piece_of(whole, name="smoke" if odd else "density"), '"density" is on rank 0 and not on rank')
-    fails("components", piece_of(whole, components=3 if odd else 1), "other components or another type")
-    fails("spacing", piece_of(whole, spacing=2.0 if odd else 1.0), "different origins, spacings or directions")
-    fails("g", piece_of(whole, g=0.5 if odd else 0.2), "say different things of the phase function (g 0.2; g 0.5)")
-    gap = [whole[0] + odd, whole[1] + odd] + whole[2:]
-    fails("gap", piece_of(gap), "which make no whole")
+    yield "arrays", piece_of(whole, name="smoke" if odd else "density"), '"density" is on rank 0 and not on rank'
+    yield "components", piece_of(whole, components=3 if odd else 1), "other components or another type"
+    yield "spacing", piece_of(whole, spacing=2.0 if odd else 1.0), "different origins, spacings or directions"
+    yield "g", piece_of(whole, g=0.5 if odd else 0.2), "say different things of the phase function (g 0.2; g 0.5)"
+    yield "gap", piece_of([whole[0] + odd, whole[1] + odd] + whole[2:]), "which make no whole"
     mine = piece_of([0, 12, 0, 5, 0, 4])
     vtk_to_numpy(mine.GetCellData().GetArray("density"))[7] += rank
-    fails("overlap", mine, 'cell array "density" has different values')
-    fails("one rank", piece_of(whole), "On rank %d: " % (ranks - 1),
+    yield "overlap", mine, 'cell array "density" has different values'
+
+
+def errors():
+    for name, piece, said in wrong_pieces():
+        fails(name, piece, said)
+    odd = rank == ranks - 1
+    fails("one rank", piece_of(parts(even_cuts())[rank]), "On rank %d: " % (ranks - 1),
           [lambda density: ParticipatingMedium(Input=density, DensityArray=["CELLS", "none" if odd else "density"])])
+
+
+def blocks_of_wrong_pieces():
+    """One error, by the first filter that sees what is wrong, and with the same words on all ranks."""
+    for name, piece, said in wrong_pieces():
+        if name == "overlap":
+            continue  # where each rank has the whole it is its piece of that
+        medium = ParticipatingMedium(Input=source_of(piece), DensityArray=["CELLS", "density"])
+        if name == "g":  # which ParticipatingMedium would replace by its own
+            array = piece.GetCellData().GetArray("density")
+            array.SetName("sigma_s")
+            absorption = numpy_to_vtk(vtk_to_numpy(array), deep=True)
+            absorption.SetName("sigma_a")
+            piece.GetCellData().AddArray(absorption)
+            medium = source_of(piece)
+        light = LightPropagationMaps(Input=medium, SkyColor=[1, 1, 1], AngularDegree=0, Decomposition="Blocks")
+        errors, later = errors_of(medium), errors_of(light)
+        light.UpdatePipeline()
+        light.UpdatePipeline()
+        assert len(errors + later) == 1, (name, rank, errors, later)
+        assert light.GetClientSideObject().GetOutputDataObject(0).GetNumberOfCells() == 0, name
+        with open(os.path.join(folder, "error.%s.%d" % (name, rank)), "w") as file:
+            file.write((errors + later)[0].split("): ")[-1].strip())
 
 
 def abort():
