@@ -244,9 +244,10 @@ void WorkOnAllRanks(vtkMultiProcessController* controller, vtkAlgorithm* filter,
     return;
   }
   StopMessages messages(controller);
+  vtkObjectBase* const before = filter->GetInformation()->Get(WorkingRanks()); // of work of which this is a part
   filter->GetInformation()->Set(WorkingRanks(), controller);
   const Ending own = EndingOf(work);
-  filter->GetInformation()->Remove(WorkingRanks());
+  filter->GetInformation()->Set(WorkingRanks(), before);
   const bool sent = own.kind != Ending::Done && !messages.Waits() && messages.Send();
   const std::vector<Told> all = TellAll(controller, own, sent);
   messages.Receive(all);

@@ -12,6 +12,7 @@
 #include "vtkInformationIntegerKey.h"
 #include "vtkInformationIntegerVectorKey.h"
 #include "vtkInformationVector.h"
+#include "vtkMultiProcessController.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
@@ -88,35 +89,76 @@ void MarkDuplicates(vtkImageData* image, const Extent& own)
     [&](const auto& point) { return !IsIn(PointBoxOf(own), point); });
 }
 
-/// The part of this rank. Cells that ranks before it are asked for, too, are their duplicates.
-void KeepPart(const int* parts, int ranks, vtkImageData* output)
+/// Of parts that ranks are asked for.
+Extent PartOfRank(vtkInformation* information, int rank)
 {
-  const auto partOf = [parts](int rank) {
-    Extent extent;
-    std::copy_n(parts + 1 + 6 * rank, 6, extent.begin());
-    return extent;
-  };
-  const int rank = parts[0];
-  Extent own = partOf(rank);
-  if (PointBoxOf(own).Count() == 0)
-  {
-    output->Initialize();
-    return;
-  }
-  output->Crop(own.data());
-  own = ExtentOf(output);
+  Extent extent;
+  std::copy_n(information->Get(PartsOfRanks()) + 1 + 6 * rank, 6, extent.begin());
+  return extent;
+}
+
+/// Flags cells that ranks before this one are asked for, too, as their duplicates.
+void MarkThoseBefore(vtkInformation* information, vtkImageData* output)
+{
+  const int rank = information->Get(PartsOfRanks())[0];
+  const int ranks = information->Length(PartsOfRanks()) / 6;
   const auto isBefore = [&](const std::array<int, 3>& cell) {
     bool before = false;
     for (int other = 0; other < std::min(rank, ranks); ++other)
     {
-      before = before || (PointBoxOf(partOf(other)).Count() > 0 && IsIn(CellBoxOf(partOf(other)), cell));
+      const Extent part = PartOfRank(information, other);
+      before = before || (PointBoxOf(part).Count() > 0 && IsIn(CellBoxOf(part), cell));
     }
     return before;
   };
   if (rank > 0)
   {
-    Mark(output->GetCellData(), CellBoxOf(own), vtkDataSetAttributes::DUPLICATECELL, isBefore);
+    Mark(output->GetCellData(), CellBoxOf(ExtentOf(output)), vtkDataSetAttributes::DUPLICATECELL, isBefore);
   }
+}
+
+constexpr Extent Nothing = { 0, -1, 0, -1, 0, -1 };
+
+/// What of an output is asked for.
+struct Part
+{
+  bool isNothing = false;
+  bool isOfRank = false; ///< see NotePartsOfRanks
+  bool ghosts = false;
+  Extent all = Nothing; ///< empty: all that there is
+  Extent own = Nothing; ///< without ghost cells
+};
+
+Part PartAskedFor(vtkInformation* information)
+{
+  const bool divided = information->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()) > 1;
+  Part part;
+  if (const int* const parts = information->Get(PartsOfRanks()))
+  {
+    part.isOfRank = divided; // else each rank is asked for all
+    part.all = divided ? PartOfRank(information, parts[0]) : Nothing;
+    part.isNothing = divided && PointBoxOf(part.all).Count() == 0;
+    return part;
+  }
+  information->Get(Pipeline::UPDATE_EXTENT(), part.all.data());
+  if (divided)
+  {
+    vtkNew<vtkExtentTranslator> translator;
+    translator->SetWholeExtent(part.all.data());
+    translator->SetPiece(information->Get(Pipeline::UPDATE_PIECE_NUMBER()));
+    translator->SetNumberOfPieces(information->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()));
+    translator->SetGhostLevel(information->Get(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS()));
+    if (!translator->PieceToExtent())
+    {
+      part.isNothing = true; // more ranks than voxels
+      return part;
+    }
+    translator->GetExtent(part.all.data());
+    translator->SetGhostLevel(0);
+    part.ghosts = information->Get(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS()) > 0 && translator->PieceToExtent();
+    translator->GetExtent(part.own.data());
+  }
+  return part;
 }
 }
 
@@ -136,6 +178,19 @@ void AskForAll(vtkInformation* request, vtkInformationVector* inputs, vtkInforma
     information->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
   }
   AskTogether(request, outputs, inputs);
+}
+
+void AskForPiece(vtkInformation* request, vtkInformationVector* inputs, vtkInformationVector* outputs)
+{
+  AskForAll(request, inputs, outputs);
+  vtkMultiProcessController* const ranks = RanksTogether(request, outputs);
+  for (int i = 0; ranks && i < inputs->GetNumberOfInformationObjects(); ++i)
+  {
+    vtkInformation* const information = inputs->GetInformationObject(i);
+    information->Set(Pipeline::UPDATE_PIECE_NUMBER(), ranks->GetLocalProcessId());
+    information->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), ranks->GetNumberOfProcesses());
+    information->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 1);
+  }
 }
 
 vtkInformation* AskingPort(vtkInformation* request, vtkInformationVector* outputs)
@@ -163,45 +218,42 @@ void NotePartsOfRanks(vtkInformation* information, const std::vector<std::array<
   }
 }
 
+std::array<int, 6> ExtentAskedFor(vtkInformation* information, const std::array<int, 6>& image)
+{
+  const Part part = PartAskedFor(information);
+  if (part.isNothing)
+  {
+    return Nothing;
+  }
+  Extent extent = image;
+  for (int axis = 0; axis < 3 && PointBoxOf(part.all).Count() > 0; ++axis)
+  {
+    extent[2 * axis] = std::max(part.all[2 * axis], image[2 * axis]);
+    extent[2 * axis + 1] = std::min(part.all[2 * axis + 1], image[2 * axis + 1]);
+  }
+  return extent;
+}
+
 void KeepWhatIsAskedFor(vtkInformation* information, vtkImageData* output)
 {
-  const bool divided = information->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()) > 1;
-  if (const int* const parts = information->Get(PartsOfRanks()))
+  const Part part = PartAskedFor(information);
+  if (part.isNothing)
   {
-    if (divided) // else each rank is asked for all
-    {
-      KeepPart(parts, information->Length(PartsOfRanks()) / 6, output);
-    }
+    output->Initialize();
     return;
   }
-  Extent asked;
-  Extent own; // without ghost cells
-  bool ghosts = false;
-  information->Get(Pipeline::UPDATE_EXTENT(), asked.data());
-  if (divided)
+  if (PointBoxOf(part.all).Count() > 0)
   {
-    vtkNew<vtkExtentTranslator> translator;
-    translator->SetWholeExtent(asked.data());
-    translator->SetPiece(information->Get(Pipeline::UPDATE_PIECE_NUMBER()));
-    translator->SetNumberOfPieces(information->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()));
-    translator->SetGhostLevel(information->Get(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS()));
-    if (!translator->PieceToExtent())
-    {
-      output->Initialize(); // more ranks than voxels
-      return;
-    }
-    translator->GetExtent(asked.data());
-    translator->SetGhostLevel(0);
-    ghosts = information->Get(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS()) > 0 && translator->PieceToExtent();
-    translator->GetExtent(own.data());
-  }
-  if (PointBoxOf(asked).Count() > 0)
-  {
+    Extent asked = part.all;
     output->Crop(asked.data());
   }
-  if (ghosts)
+  if (part.isOfRank)
   {
-    MarkDuplicates(output, own);
+    MarkThoseBefore(information, output);
+  }
+  else if (part.ghosts)
+  {
+    MarkDuplicates(output, part.own);
   }
 }
 

@@ -15,6 +15,10 @@ namespace tyndall
 /// @param request, outputs  as RequestUpdateExtent is given them
 void AskForAll(vtkInformation* request, vtkInformationVector* inputs, vtkInformationVector* outputs);
 
+/// The same for this rank's piece, with a layer of its neighbours' cells, where ranks run the filter together; else for
+/// all.
+void AskForPiece(vtkInformation* request, vtkInformationVector* inputs, vtkInformationVector* outputs);
+
 /// In RequestData: the output port that asks.
 vtkInformation* AskingPort(vtkInformation* request, vtkInformationVector* outputs);
 
@@ -27,6 +31,10 @@ bool IsFirstPiece(vtkInformation* request, vtkInformationVector* outputs);
 /// @param parts  an extent for each rank; none: they are pieces
 /// @param rank   this one
 void NotePartsOfRanks(vtkInformation* information, const std::vector<std::array<int, 6>>& parts, int rank);
+
+/// In RequestData: what KeepWhatIsAskedFor leaves of an image; its last bounds are less than its first ones where that
+/// is nothing.
+std::array<int, 6> ExtentAskedFor(vtkInformation* information, const std::array<int, 6>& image);
 
 /// In RequestData: crop the output to the extent, or the piece of it, that was asked for; other ranks hold the rest.
 /// Cells that a neighbouring piece has, too, are marked (vtkGhostType), so that sums over pieces have them once.

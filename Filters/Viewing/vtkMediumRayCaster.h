@@ -5,8 +5,13 @@
 #include "vtkLitImageAlgorithm.h"
 #include "vtkTyndallModule.h" // for export macro
 
+#include <array>
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
+
+class vtkMultiProcessController;
 
 namespace tyndall
 {
@@ -342,7 +347,16 @@ private:
     tyndall::ViewSettings settings, const tyndall::GridBlock* block);
   std::unique_ptr<Scene> FindScene(
     vtkInformationVector** inputs, const tyndall::ViewSettings& settings, const tyndall::GridBlock* block = nullptr);
-  tyndall::Picture Expose(Scene& scene, double& exposure);
+  void SayDoubts(Scene& scene);
+
+  struct Shot;
+  struct Taking;
+  void Expose(const Taking& taking, Shot& shot);
+  Shot SeeWhole(vtkInformationVector** inputs, double exposure);
+  std::vector<double> PropertiesAsNumbers();
+  std::optional<Shot> SeeBlocks(vtkMultiProcessController* ranks, vtkInformationVector** inputs, double exposure,
+    const std::array<int, 6>& all, const std::array<int, 6>& asked);
+  void HandOn(Shot&& shot, vtkInformationVector* outputs);
 
   int Quality = USUAL;
   int ImageSize[2];
@@ -371,6 +385,7 @@ private:
   double TableReflectance;
   bool LeaveOut;
   int MemoryBudget = 0;
+  bool NeedsWhole = false; ///< what was seen last cannot be seen piece by piece
 
   std::shared_ptr<tyndall::Device> Within; ///< MemoryBudget, where there is one
   std::unique_ptr<Scene> Kept;             ///< of the last picture, if it succeeded

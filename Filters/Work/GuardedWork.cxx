@@ -191,6 +191,14 @@ int Guarded(vtkAlgorithm* filter, vtkInformationVector* outputs, const std::func
 int Guarded(vtkAlgorithm* filter, vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs,
   const std::function<void(vtkInformationVector** inputs)>& work)
 {
+  return GuardedInPieces(filter, request, given, outputs, WholeInputs::NoPort,
+    [&](vtkMultiProcessController*, WholeInputs& inputs) { work(inputs.Vectors()); });
+}
+
+int GuardedInPieces(vtkAlgorithm* filter, vtkInformation* request, vtkInformationVector** given,
+  vtkInformationVector* outputs, int port,
+  const std::function<void(vtkMultiProcessController* ranks, WholeInputs& inputs)>& work)
+{
   vtkMultiProcessController* const ranks = RanksTogether(request, outputs);
   return GuardedOn(ranks, filter, outputs, [&] {
     OnAllRanks(ranks, [&] {
@@ -201,8 +209,8 @@ int Guarded(vtkAlgorithm* filter, vtkInformation* request, vtkInformationVector*
         CheckDuplicates(filter, outputs);
       }
     });
-    WholeInputs whole(ranks, filter, given, outputs);
-    work(whole.Vectors());
+    WholeInputs inputs(ranks, filter, given, outputs, port);
+    work(ranks, inputs);
   });
 }
 

@@ -7,10 +7,13 @@
 class vtkAlgorithm;
 class vtkInformation;
 class vtkInformationVector;
+class vtkMultiProcessController;
 
 /// Work of a filter that may fail, be stopped, and tells how far it is.
 namespace tyndall
 {
+class WholeInputs;
+
 /// Reports to the filter's progress; says stop when the filter is asked to abort, on this rank or another.
 Monitor MonitorOf(vtkAlgorithm* filter);
 
@@ -32,6 +35,14 @@ int Guarded(vtkAlgorithm* filter, vtkInformationVector* outputs, const std::func
 /// @param work   is given them as wholes (WholeInputs.h), the same on all ranks
 int Guarded(vtkAlgorithm* filter, vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs,
   const std::function<void(vtkInformationVector** inputs)>& work);
+
+/// The same of a filter that may do with pieces of one of its inputs where ranks run it together.
+/// @param port  of that
+/// @param work  is given the ranks (null: there is one) and the inputs, those of that port as they are: it may make
+///   them whole
+int GuardedInPieces(vtkAlgorithm* filter, vtkInformation* request, vtkInformationVector** given,
+  vtkInformationVector* outputs, int port,
+  const std::function<void(vtkMultiProcessController* ranks, WholeInputs& inputs)>& work);
 
 /// After Guarded: whether outputs are empty because it failed, or was aborted.
 bool AreEmptied(vtkInformationVector* outputs);

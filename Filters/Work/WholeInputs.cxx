@@ -25,7 +25,9 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
+#include <numeric>
 #include <string>
+#include <utility>
 
 namespace tyndall
 {
@@ -366,37 +368,70 @@ void NoteParts(const std::vector<RankGlance>& all, int rank, vtkInformationVecto
 }
 }
 
-WholeInputs::WholeInputs(
-  vtkMultiProcessController* ranks, vtkAlgorithm* filter, vtkInformationVector** given, vtkInformationVector* outputs)
+struct WholeInputs::Seen
+{
+  vtkMultiProcessController* ranks;
+  vtkInformationVector** given;
+  int inPieces;
+  std::vector<RankGlance> all;
+};
+
+WholeInputs::WholeInputs(vtkMultiProcessController* ranks, vtkAlgorithm* filter, vtkInformationVector** given,
+  vtkInformationVector* outputs, int inPieces)
 {
   const int ports = filter->GetNumberOfInputPorts();
+  this->Ports.assign(given, given + ports);
+  this->Kept.resize(static_cast<std::size_t>(ports));
   if (ranks == nullptr)
   {
     RequireAll(filter, given);
     NoteParts({}, 0, outputs);
-    this->Ports.assign(given, given + ports);
     return;
   }
   RankGlance own;
   OnAllRanks(ranks, [&] { own = GlanceAtAll(filter, given, outputs); });
-  const std::vector<RankGlance> all = Share(ranks, own);
-  NoteParts(all, ranks->GetLocalProcessId(), outputs);
-  std::size_t connection = 0;
+  this->AllSeen = std::make_unique<Seen>(Seen{ ranks, given, inPieces, Share(ranks, own) });
+  NoteParts(this->AllSeen->all, ranks->GetLocalProcessId(), outputs);
   for (int port = 0; port < ports; ++port)
   {
-    this->Kept.push_back(vtkSmartPointer<vtkInformationVector>::New());
-    this->Ports.push_back(this->Kept.back());
-    for (int i = 0; i < given[port]->GetNumberOfInformationObjects(); ++i, ++connection)
+    if (port != inPieces)
     {
-      OnRanks glances;
-      std::for_each(all.begin(), all.end(), [&](const RankGlance& of) { glances.push_back(of.inputs[connection]); });
-      vtkInformation* const information = given[port]->GetInformationObject(i);
-      vtkDataObject* const data = vtkDataObject::GetData(information);
-      const vtkSmartPointer<vtkDataObject> whole = WholeOf(ranks, data, glances, Named(port));
-      vtkNew<vtkInformation> replaced;
-      replaced->Set(vtkDataObject::DATA_OBJECT(), whole);
-      this->Ports.back()->Append(whole == data ? information : replaced.Get());
+      this->MakeWhole(port);
     }
+  }
+}
+
+WholeInputs::~WholeInputs() = default;
+
+void WholeInputs::MakeWhole()
+{
+  if (this->AllSeen && this->AllSeen->inPieces != NoPort)
+  {
+    this->MakeWhole(std::exchange(this->AllSeen->inPieces, NoPort));
+  }
+}
+
+void WholeInputs::MakeWhole(int port)
+{
+  const Seen& seen = *this->AllSeen;
+  const std::vector<int>& connections = seen.all[0].connections;
+  const auto number = static_cast<std::size_t>(port);
+  const int before = std::accumulate(connections.begin(), connections.begin() + port, 0);
+  this->Kept[number] = vtkSmartPointer<vtkInformationVector>::New();
+  this->Ports[number] = this->Kept[number];
+  for (int i = 0; i < connections[number]; ++i)
+  {
+    OnRanks glances;
+    for (const RankGlance& of : seen.all)
+    {
+      glances.push_back(of.inputs[static_cast<std::size_t>(before + i)]);
+    }
+    vtkInformation* const information = seen.given[port]->GetInformationObject(i);
+    vtkDataObject* const data = vtkDataObject::GetData(information);
+    const vtkSmartPointer<vtkDataObject> whole = WholeOf(seen.ranks, data, glances, Named(port));
+    vtkNew<vtkInformation> replaced;
+    replaced->Set(vtkDataObject::DATA_OBJECT(), whole);
+    this->Kept[number]->Append(whole == data ? information : replaced.Get());
   }
 }
 }

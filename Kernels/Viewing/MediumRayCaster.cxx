@@ -200,4 +200,35 @@ Picture MediumRayCaster::Render(
   picture.depth = this->Rays.ReadDepth();
   return picture;
 }
+
+bool MediumRayCaster::CastsBlocksExactly() const
+{
+  return this->CastsBlocks() && !this->Traits.shadowRays && !this->Traits.ShowsMoments() &&
+    !this->Behind.LooksAtSurface();
+}
+
+MediumRayCaster::SharedNumbers MediumRayCaster::SharedByBlocks() const
+{
+  const ViewedPhase& phase = this->Traits.phase;
+  SharedNumbers shared = { this->Traits.index.least, this->Traits.index.largest, 1.0 * phase.formula,
+    1.0 * phase.channels, phase.varies ? 1.0 : 0.0, this->Traits.knowsFlow ? 1.0 : 0.0 };
+  auto next = shared.begin() + 6;
+  for (const cl_float4& parameter : { phase.parameters.first, phase.parameters.second, phase.parameters.part })
+  {
+    for (int c = 0; c < 3; ++c)
+    {
+      *next++ = phase.varies ? 0.0 : parameter.s[c];
+    }
+  }
+  return shared;
+}
+
+std::vector<float> MediumRayCaster::DepthBehind(
+  const Camera& camera, const GridBlock& block, const std::vector<float>& starts, const Monitor& monitor)
+{
+  this->Rays.Reserve(this->Settings, {}, true, starts);
+  this->Rays.Cast(this->Settings, this->Rays.ViewOf(camera, this->Settings, &block),
+    OpticsInfoOf(this->Settings, this->Traits), 0.0, 1.0, monitor);
+  return this->Rays.ReadDepth();
+}
 }

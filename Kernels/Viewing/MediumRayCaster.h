@@ -17,6 +17,7 @@
 #include "Viewing/Scene/ViewTraits.h"
 #include "Viewing/Sources/SeenSources.h"
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -122,6 +123,21 @@ public:
   /// Whether pictures of blocks make up that of the whole: rays go straight on and meet no table. Shadow rays end at
   /// the block's faces.
   bool CastsBlocks() const { return this->Traits.OnlyStraight(); }
+
+  /// Whether they do to rounding: no lamp throws shadows from block to block, and nothing is shown that takes more than
+  /// a ray's own steps (light at the surface of thick voxels, what comes from behind beside angular moments).
+  bool CastsBlocksExactly() const;
+
+  /// What has to be the same of all blocks of a grid where they are cast one by one: refractive index and phase
+  /// function.
+  using SharedNumbers = std::array<double, 15>;
+  SharedNumbers SharedByBlocks() const;
+
+  /// After Render of a block from the same camera: the picture's depth where other blocks are before this one.
+  /// @param starts  what comes through them of what is behind, 3 per pixel; where that is 0 the depth is not looked for
+  /// @throws Aborted
+  std::vector<float> DepthBehind(
+    const Camera& camera, const GridBlock& block, const std::vector<float>& starts, const Monitor& monitor = {});
 
   /// What the scene did not need, in words.
   const std::vector<std::string>& LeftOut() const { return this->Omitted; }

@@ -24,6 +24,8 @@ BlockPixel PixelOf(const Picture& picture, std::size_t pixel)
     found.transmittance[c] = picture.transmittance[3 * pixel + c];
     found.seen[c] = picture.sceneTransmittance[3 * pixel + c];
   }
+  found.open = picture.alpha[pixel] < 1.0f ? 1.0f : 0.0f;
+  found.depth = picture.depth[pixel];
   return found;
 }
 
@@ -71,10 +73,43 @@ BlockPixels PartIn(const PixelRect& rect, const BlockPixels& pixels)
   return part;
 }
 
-std::vector<float> RadianceOfAll(const std::vector<BlockPixels>& frontToBack, const PixelRect& rect)
+std::vector<float> StartsOfDepth(
+  const std::vector<BlockPixels>& frontToBack, std::size_t own, const std::array<int, 2>& size)
 {
-  std::vector<float> radiance;
-  radiance.reserve(3 * rect.Count());
+  constexpr float half = 0.5f;
+  std::vector<float> starts;
+  const PixelRect& rect = frontToBack[own].rect;
+  for (int row = rect.begin[1]; row < rect.end[1]; ++row)
+  {
+    for (int column = rect.begin[0]; column < rect.end[0]; ++column)
+    {
+      BlockPixel before;
+      for (std::size_t i = 0; i < own; ++i)
+      {
+        before.LayBefore(frontToBack[i].At(column, row));
+      }
+      BlockPixel behind = before;
+      behind.LayBefore(frontToBack[own].At(column, row));
+      if (before.Left() < 1.0f && before.Left() > half && behind.Left() <= half)
+      {
+        starts.resize(3 * static_cast<std::size_t>(size[0]) * size[1], 0.0f);
+        std::copy(before.seen.begin(), before.seen.end(),
+          starts.begin() + 3 * (static_cast<std::ptrdiff_t>(row) * size[0] + column));
+      }
+    }
+  }
+  return starts;
+}
+
+Picture PictureOfAll(const std::vector<BlockPixels>& frontToBack, const PixelRect& rect, float farDepth)
+{
+  Picture picture;
+  picture.width = rect.IsEmpty() ? 0 : rect.end[0] - rect.begin[0];
+  picture.height = rect.IsEmpty() ? 0 : rect.end[1] - rect.begin[1];
+  picture.farDepth = farDepth;
+  picture.radiance.reserve(3 * rect.Count());
+  picture.alpha.reserve(rect.Count());
+  picture.depth.reserve(rect.Count());
   for (int row = rect.begin[1]; row < rect.end[1]; ++row)
   {
     for (int column = rect.begin[0]; column < rect.end[0]; ++column)
@@ -84,9 +119,16 @@ std::vector<float> RadianceOfAll(const std::vector<BlockPixels>& frontToBack, co
       {
         all.LayBefore(block.At(column, row));
       }
-      radiance.insert(radiance.end(), all.radiance.begin(), all.radiance.end());
+      picture.radiance.insert(picture.radiance.end(), all.radiance.begin(), all.radiance.end());
+      picture.alpha.push_back(1.0f - all.Left());
+      picture.depth.push_back(std::min(all.depth, farDepth));
     }
   }
-  return radiance;
+  return picture;
+}
+
+std::vector<float> RadianceOfAll(const std::vector<BlockPixels>& frontToBack, const PixelRect& rect)
+{
+  return PictureOfAll(frontToBack, rect, BlockPixel::FarAway).radiance;
 }
 }

@@ -69,16 +69,36 @@ inline real most_left(light l)
 #endif
 }
 
-// What comes through of what other blocks have behind, `part` of it.
-inline rgb passed_of(light l, real part)
+// What comes through of what other blocks have behind.
+inline rgb passed_of(light l)
 {
 #if COLOURED
-  const rgb passed = { l.left.r * part, l.left.g * part, l.left.b * part };
+  return l.left;
 #else
-  const rgb passed = { l.left * part, l.left * part, l.left * part };
-#endif
+  const rgb passed = { l.left, l.left, l.left };
   return passed;
+#endif
 }
+
+#if STARTS
+// What other blocks before let through.
+inline spectrum starts_of(const ViewInfo* v, __global const float* starts, int column, int row)
+{
+  const integer pixel = nearest_pixels(v, column, row);
+  rgb part;
+#define FETCH(n)                                    \
+  LANE(part.r, n) = starts[3 * LANE(pixel, n)];     \
+  LANE(part.g, n) = starts[3 * LANE(pixel, n) + 1]; \
+  LANE(part.b, n) = starts[3 * LANE(pixel, n) + 2];
+  EACH_LANE(FETCH)
+#undef FETCH
+#if COLOURED
+  return part;
+#else
+  return (part.r + part.g + part.b) * (real)(1.0f / 3.0f);
+#endif
+}
+#endif
 
 inline spectrum scaled(spectrum s, real factor)
 {
