@@ -56,7 +56,7 @@ Backdrop::Backdrop(Device& device, const Medium& medium, const SolvedLight& ligh
     device, this->GroundBits != 0 ? GroundLight(traits.grid, light) : std::vector<cl_float4>(), "light on the ground");
   this->SeesSurface = ShowsSurface(light, traits);
   this->SurfaceCells = Buffer<cl_float4>(device,
-    this->SeesSurface ? SurfaceLight(medium, light, settings.stepSize) : std::vector<cl_float4>(),
+    this->SeesSurface ? tyndall::SurfaceLight(medium, light, settings.stepSize) : std::vector<cl_float4>(),
     "light at the surface");
 }
 }
