@@ -61,29 +61,18 @@ BlockPixels PictureOfBlocks::CastOwn(MediumRayCaster* caster, double& farDepth) 
   return own;
 }
 
-/// Where other blocks are before this one, which nobody knew when it was cast.
-void PictureOfBlocks::FindDepth(MediumRayCaster* caster, BlockPixels& own) const
+/// What other blocks before this one change of it, which nobody knew when it was cast.
+void PictureOfBlocks::LookAgain(MediumRayCaster* caster, BlockPixels& own) const
 {
   const auto seen = this->Blocks.Exchange(own, own.rect, false, this->TheCamera);
   WorkOnAllRanks(this->Ranks, this->Filter, [&] {
-    const std::vector<float> starts =
-      caster ? StartsOfDepth(seen->frontToBack, seen->own, this->Size) : std::vector<float>();
-    if (starts.empty())
+    const std::vector<float> starts = caster
+      ? StartsBehind(seen->frontToBack, seen->own, this->Size, caster->MinimumTransmittance())
+      : std::vector<float>();
+    if (!starts.empty())
     {
-      return;
-    }
-    const std::vector<float> depth =
-      caster->DepthBehind(this->TheCamera, this->Blocks.Own(), starts, MonitorOf(this->Filter));
-    std::size_t number = 0;
-    for (int row = own.rect.begin[1]; row < own.rect.end[1]; ++row)
-    {
-      for (int column = own.rect.begin[0]; column < own.rect.end[0]; ++column, ++number)
-      {
-        const std::size_t pixel = static_cast<std::size_t>(row) * this->Size[0] + column;
-        const float* const start = starts.data() + 3 * pixel;
-        own.pixels[number].depth =
-          start[0] + start[1] + start[2] > 0.0f ? depth[pixel] : own.pixels[number].depth;
-      }
+      TakeFrom(
+        caster->RenderBehind(this->TheCamera, this->Blocks.Own(), starts, MonitorOf(this->Filter)), starts, own);
     }
   });
 }
@@ -92,7 +81,7 @@ Picture PictureOfBlocks::Take(MediumRayCaster* caster) const
 {
   double farDepth = 0.0;
   BlockPixels own = this->CastOwn(caster, farDepth);
-  this->FindDepth(caster, own);
+  this->LookAgain(caster, own);
   const std::vector<double> depths = SaidByAll(this->Ranks, { farDepth });
   const auto seen = this->Blocks.Exchange(own, this->Part, false, this->TheCamera);
   return PictureOfAll(

@@ -49,7 +49,7 @@ public:
 
 private:
   BlockPixels CastOwn(MediumRayCaster* caster, double& farDepth) const;
-  void FindDepth(MediumRayCaster* caster, BlockPixels& own) const;
+  void LookAgain(MediumRayCaster* caster, BlockPixels& own) const;
 
   vtkMultiProcessController* Ranks;
   vtkAlgorithm* Filter;

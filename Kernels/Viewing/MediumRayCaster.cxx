@@ -178,10 +178,6 @@ Picture MediumRayCaster::Render(
   }
 
   const bool byMoments = this->Traits.ShowsMoments();
-  Picture picture;
-  picture.width = this->Settings.imageSize[0];
-  picture.height = this->Settings.imageSize[1];
-  picture.farDepth = view.marching.s[2];
   this->Rays.Reserve(this->Settings, ends, block != nullptr);
   if (byMoments && !this->Behind.IsSky())
   {
@@ -189,13 +185,27 @@ Picture MediumRayCaster::Render(
   }
   this->Rays.Cast(this->Settings, view, OpticsInfoOf(this->Settings, this->Traits),
     prepares && this->Traits.shadowRays ? 0.5 : 0.0, byMoments ? 0.8 : 1.0, monitor);
-  picture.radiance = this->Rays.ReadRadiance();
-  picture.transmittance = this->Rays.ReadTransmittance();
+  Picture picture = this->Read(view);
   if (byMoments)
   {
     this->AddUnscattered(view, monitor, picture.radiance);
+    picture.sceneTransmittance = this->Rays.ReadTransmittance();
+    picture.alpha = this->Rays.ReadAlpha();
+    picture.depth = this->Rays.ReadDepth();
   }
-  picture.sceneTransmittance = byMoments ? this->Rays.ReadTransmittance() : picture.transmittance;
+  return picture;
+}
+
+/// What was cast.
+Picture MediumRayCaster::Read(const ViewInfo& view) const
+{
+  Picture picture;
+  picture.width = this->Settings.imageSize[0];
+  picture.height = this->Settings.imageSize[1];
+  picture.farDepth = view.marching.s[2];
+  picture.radiance = this->Rays.ReadRadiance();
+  picture.transmittance = this->Rays.ReadTransmittance();
+  picture.sceneTransmittance = picture.transmittance;
   picture.alpha = this->Rays.ReadAlpha();
   picture.depth = this->Rays.ReadDepth();
   return picture;
@@ -223,12 +233,12 @@ MediumRayCaster::SharedNumbers MediumRayCaster::SharedByBlocks() const
   return shared;
 }
 
-std::vector<float> MediumRayCaster::DepthBehind(
+Picture MediumRayCaster::RenderBehind(
   const Camera& camera, const GridBlock& block, const std::vector<float>& starts, const Monitor& monitor)
 {
+  const ViewInfo view = this->Rays.ViewOf(camera, this->Settings, &block);
   this->Rays.Reserve(this->Settings, {}, true, starts);
-  this->Rays.Cast(this->Settings, this->Rays.ViewOf(camera, this->Settings, &block),
-    OpticsInfoOf(this->Settings, this->Traits), 0.0, 1.0, monitor);
-  return this->Rays.ReadDepth();
+  this->Rays.Cast(this->Settings, view, OpticsInfoOf(this->Settings, this->Traits), 0.0, 1.0, monitor);
+  return this->Read(view);
 }
 }

@@ -133,11 +133,15 @@ public:
   using SharedNumbers = std::array<double, 15>;
   SharedNumbers SharedByBlocks() const;
 
-  /// After Render of a block from the same camera: the picture's depth where other blocks are before this one.
-  /// @param starts  what comes through them of what is behind, 3 per pixel; where that is 0 the depth is not looked for
+  /// After Render of a block from the same camera, where CastsBlocksExactly: its picture behind other blocks. Rays end
+  /// where little light is left of all that they have lost, and depth is where half of that is.
+  /// @param starts  what comes through blocks before, 3 per pixel; where that is 0 nothing is looked for
   /// @throws Aborted
-  std::vector<float> DepthBehind(
+  Picture RenderBehind(
     const Camera& camera, const GridBlock& block, const std::vector<float>& starts, const Monitor& monitor = {});
+
+  /// At which rays end.
+  double MinimumTransmittance() const { return this->Settings.minimumTransmittance; }
 
   /// What the scene did not need, in words.
   const std::vector<std::string>& LeftOut() const { return this->Omitted; }
@@ -148,6 +152,7 @@ public:
 private:
   std::vector<std::string> LeftOutNow() const;
   void PrepareSources(const Camera& camera, const Monitor& monitor);
+  Picture Read(const ViewInfo& view) const;
   void AddUnscattered(ViewInfo view, const Monitor& monitor, std::vector<float>& radiance);
 
   bool LampsShine = false;

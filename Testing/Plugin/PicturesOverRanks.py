@@ -14,7 +14,7 @@ here = os.path.dirname(os.path.abspath(__file__))
 output = os.path.join(os.environ["TYNDALL_TEST_OUTPUT"], "PicturesOverRanks")
 shutil.rmtree(output, ignore_errors=True)
 pieces = ["even", "coloured", "inside", "uneven", "alone", "phase", "ground", "reader"]
-wholes = ["bare", "glass", "two_glasses", "shadows", "table", "surface"]
+wholes = ["bare", "glass", "shadows", "table", "surface"]
 
 
 def run(ranks, *cases, timeout=240):

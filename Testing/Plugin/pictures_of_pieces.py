@@ -67,7 +67,9 @@ def medium_of(extent, own=None, coloured=False):
     shades = [1, 0.7, 0.4] if coloured else [1]
     add(image, "sigma_a", *(0.05 * wave * shade for shade in shades))
     add(image, "sigma_s", *(0.3 * wave * shade for shade in shades))
-    add(image, "fluence", *((1 + 0.3 * numpy.cos(0.5 * x + 0.8 * z)) * shade for shade in shades))
+    light = 1 + 0.3 * numpy.cos(0.5 * x + 0.8 * z)
+    add(image, "fluence", *(light * shade for shade in shades))
+    add(image, "fluence_direct", 0.4 * light)
     if own:
         ghost = numpy.zeros(len(x), bool)
         for a, at in enumerate((x, y, z)):
@@ -96,8 +98,18 @@ def boxes():
 
 
 def piece(**more):
+    """With an array that the first rank has alone: where pieces are put together that is an error."""
     own = boxes()[rank]
-    return medium_of(with_layers(own), own, **more)
+    image = medium_of(with_layers(own), own, **more)
+    if rank == 0:
+        add(image, "only_here", cells_of(image.GetExtent())[0])
+    return image
+
+
+def plain_piece():
+    image = piece()
+    image.GetCellData().RemoveArray("only_here")
+    return image
 
 
 def cast(source, **more):
@@ -181,7 +193,7 @@ def bare():
 
 def glass():
     """Rays that bend: put together."""
-    image = piece()
+    image = plain_piece()
     add(image, "ior", 1 + 0.02 * cells_of(image.GetExtent())[2])
     caster = cast(image)
     keep("glass", caster)
@@ -189,29 +201,18 @@ def glass():
     caster.UpdatePipeline()  # the whole is asked for from now on
 
 
-def two_glasses():
-    """The index is the same on each rank, and another one on others: put together."""
-    image = piece()
-    own = boxes()
-    outer = with_layers(own[rank])
-    z, y, x = cells_of(outer)
-    cut = own[0][1] if own[0][1] < SIZE[0] else SIZE[0]
-    add(image, "ior", numpy.where(x < cut, 1.0, 1.3))
-    keep("two_glasses", cast(image))
-
-
 def shadows():
     """Lamps throw shadows across pieces: put together."""
-    keep("shadows", cast(piece(), Lights=LightRig(SunElevation=20), ShadowRays=1))
+    keep("shadows", cast(plain_piece(), Lights=LightRig(SunElevation=20), ShadowRays=1))
 
 
 def table():
-    keep("table", cast(piece(), TableFace="-z"))
+    keep("table", cast(plain_piece(), TableFace="-z"))
 
 
 def surface():
     """Light at the surface of thick voxels takes several of them: put together."""
-    image = piece()
+    image = plain_piece()
     for name in ("sigma_a", "sigma_s"):
         vtk_to_numpy(image.GetCellData().GetArray(name))[:] *= 20
     cells = 2 * (SIZE[0] * SIZE[1] + SIZE[1] * SIZE[2] + SIZE[2] * SIZE[0])
@@ -234,7 +235,7 @@ def reader():
 def properties():
     """Each rank has the picture that it asks for, though not all ask for the same."""
     more = dict(CameraViewAngle=35, Exposure=2, BackgroundColor=[0, 0, 0]) if rank == ranks - 1 else {}
-    caster = cast(piece(), **more)
+    caster = cast(plain_piece(), **more)
     found = caster.GetClientSideObject().GetOutputDataObject(0)
     assert found.GetNumberOfPoints() > 0
     if rank == ranks - 1:
@@ -257,24 +258,24 @@ def fails(case, image, said, **more):
 
 def errors():
     odd = rank == ranks - 1
-    image = piece()
+    image = plain_piece()
     if odd:
         image.GetCellData().RemoveArray("fluence")
     fails("arrays", image, '"fluence" is on rank 0 and not on rank')
-    image = piece()
+    image = plain_piece()
     add_fact(image, "g", [0.5 if odd else 0.2])
     fails("g", image, "say different things of the phase function (g 0.2; g 0.5)")
-    image = piece()
+    image = plain_piece()
     vtk_to_numpy(image.GetCellData().GetArray("sigma_s"))[:3] = -1 if odd else 1
     fails("values", image, "sigma_s")
     fails("gap", medium_of([0, 3] + WHOLE[2:] if odd else [4, 13] + WHOLE[2:]), "which make no whole")
-    fails("device", piece(), "On rank %d: " % (ranks - 1), Device="none of these" if odd else "")
+    fails("device", plain_piece(), "On rank %d: " % (ranks - 1), Device="none of these" if odd else "")
 
 
 def abort():
     """What one rank aborts ends on all."""
     producer = servermanager.sources.PVTrivialProducer()
-    producer.GetClientSideObject().SetOutput(piece())
+    producer.GetClientSideObject().SetOutput(plain_piece())
     caster = MediumRayCaster(Input=producer, ImageSize=[800, 600])
     algorithm = caster.GetClientSideObject()
     if rank == ranks - 1:

@@ -4,6 +4,23 @@
 
 namespace tyndall
 {
+namespace
+{
+/// Calls act(column, row, number) for each pixel of a rectangle.
+template <class Act>
+void ForPixels(const PixelRect& rect, const Act& act)
+{
+  std::size_t number = 0;
+  for (int row = rect.begin[1]; row < rect.end[1]; ++row)
+  {
+    for (int column = rect.begin[0]; column < rect.end[0]; ++column, ++number)
+    {
+      act(column, row, number);
+    }
+  }
+}
+}
+
 PixelRect Overlap(const PixelRect& a, const PixelRect& b)
 {
   PixelRect common;
@@ -48,13 +65,9 @@ BlockPixels SeenPart(const Picture& picture)
   BlockPixels seen;
   seen.rect = rect.IsEmpty() ? PixelRect() : rect;
   seen.pixels.reserve(seen.rect.Count());
-  for (int row = seen.rect.begin[1]; row < seen.rect.end[1]; ++row)
-  {
-    for (int column = seen.rect.begin[0]; column < seen.rect.end[0]; ++column)
-    {
-      seen.pixels.push_back(PixelOf(picture, static_cast<std::size_t>(row) * picture.width + column));
-    }
-  }
+  ForPixels(seen.rect, [&](int column, int row, std::size_t) {
+    seen.pixels.push_back(PixelOf(picture, static_cast<std::size_t>(row) * picture.width + column));
+  });
   return seen;
 }
 
@@ -63,42 +76,45 @@ BlockPixels PartIn(const PixelRect& rect, const BlockPixels& pixels)
   BlockPixels part;
   part.rect = Overlap(rect, pixels.rect);
   part.pixels.reserve(part.rect.Count());
-  for (int row = part.rect.begin[1]; row < part.rect.end[1]; ++row)
-  {
-    for (int column = part.rect.begin[0]; column < part.rect.end[0]; ++column)
-    {
-      part.pixels.push_back(pixels.At(column, row));
-    }
-  }
+  ForPixels(
+    part.rect, [&](int column, int row, std::size_t) { part.pixels.push_back(pixels.At(column, row)); });
   return part;
 }
 
-std::vector<float> StartsOfDepth(
-  const std::vector<BlockPixels>& frontToBack, std::size_t own, const std::array<int, 2>& size)
+std::vector<float> StartsBehind(const std::vector<BlockPixels>& frontToBack, std::size_t own,
+  const std::array<int, 2>& size, double minimum)
 {
   constexpr float half = 0.5f;
   std::vector<float> starts;
-  const PixelRect& rect = frontToBack[own].rect;
-  for (int row = rect.begin[1]; row < rect.end[1]; ++row)
-  {
-    for (int column = rect.begin[0]; column < rect.end[0]; ++column)
+  ForPixels(frontToBack[own].rect, [&](int column, int row, std::size_t) {
+    BlockPixel before;
+    for (std::size_t i = 0; i < own; ++i)
     {
-      BlockPixel before;
-      for (std::size_t i = 0; i < own; ++i)
-      {
-        before.LayBefore(frontToBack[i].At(column, row));
-      }
-      BlockPixel behind = before;
-      behind.LayBefore(frontToBack[own].At(column, row));
-      if (before.Left() < 1.0f && before.Left() > half && behind.Left() <= half)
-      {
-        starts.resize(3 * static_cast<std::size_t>(size[0]) * size[1], 0.0f);
-        std::copy(before.seen.begin(), before.seen.end(),
-          starts.begin() + 3 * (static_cast<std::ptrdiff_t>(row) * size[0] + column));
-      }
+      before.LayBefore(frontToBack[i].At(column, row));
     }
-  }
+    BlockPixel behind = before;
+    behind.LayBefore(frontToBack[own].At(column, row));
+    const bool losesHalf = before.Left() > half && behind.Left() <= half;
+    if (before.Left() < 1.0f && (losesHalf || behind.MostLeft() <= minimum))
+    {
+      starts.resize(3 * static_cast<std::size_t>(size[0]) * size[1], 0.0f);
+      std::copy(before.seen.begin(), before.seen.end(),
+        starts.begin() + 3 * (static_cast<std::ptrdiff_t>(row) * size[0] + column));
+    }
+  });
   return starts;
+}
+
+void TakeFrom(const Picture& again, const std::vector<float>& starts, BlockPixels& pixels)
+{
+  ForPixels(pixels.rect, [&](int column, int row, std::size_t number) {
+    const std::size_t pixel = static_cast<std::size_t>(row) * again.width + column;
+    const float* const start = starts.data() + 3 * pixel;
+    if (start[0] + start[1] + start[2] > 0.0f)
+    {
+      pixels.pixels[number] = PixelOf(again, pixel);
+    }
+  });
 }
 
 Picture PictureOfAll(const std::vector<BlockPixels>& frontToBack, const PixelRect& rect, float farDepth)
@@ -110,20 +126,16 @@ Picture PictureOfAll(const std::vector<BlockPixels>& frontToBack, const PixelRec
   picture.radiance.reserve(3 * rect.Count());
   picture.alpha.reserve(rect.Count());
   picture.depth.reserve(rect.Count());
-  for (int row = rect.begin[1]; row < rect.end[1]; ++row)
-  {
-    for (int column = rect.begin[0]; column < rect.end[0]; ++column)
+  ForPixels(rect, [&](int column, int row, std::size_t) {
+    BlockPixel all;
+    for (const BlockPixels& block : frontToBack)
     {
-      BlockPixel all;
-      for (const BlockPixels& block : frontToBack)
-      {
-        all.LayBefore(block.At(column, row));
-      }
-      picture.radiance.insert(picture.radiance.end(), all.radiance.begin(), all.radiance.end());
-      picture.alpha.push_back(1.0f - all.Left());
-      picture.depth.push_back(std::min(all.depth, farDepth));
+      all.LayBefore(block.At(column, row));
     }
-  }
+    picture.radiance.insert(picture.radiance.end(), all.radiance.begin(), all.radiance.end());
+    picture.alpha.push_back(1.0f - all.Left());
+    picture.depth.push_back(std::min(all.depth, farDepth));
+  });
   return picture;
 }
 

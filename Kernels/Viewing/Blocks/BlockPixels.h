@@ -42,6 +42,8 @@ struct BlockPixel
   /// Part of what is behind that the medium lets through.
   float Left() const { return (this->seen[0] + this->seen[1] + this->seen[2]) / 3.0f; }
 
+  float MostLeft() const { return std::max({ this->seen[0], this->seen[1], this->seen[2] }); } ///< of any channel
+
   /// Part of the scene behind that is not seen, background and all.
   float Hidden() const { return 1.0f - this->open * this->Left(); }
 
@@ -84,12 +86,17 @@ BlockPixels SeenPart(const Picture& picture);
 /// Their common part.
 BlockPixels PartIn(const PixelRect& rect, const BlockPixels& pixels);
 
-/// What comes through the blocks before one where rays lose half of their light in it, but not in it alone, so that its
-/// own depth is not theirs: 3 per pixel of the picture, 0 elsewhere. Empty: nowhere.
-/// @param own   which of the blocks it is
-/// @param size  of the picture, pixels
-std::vector<float> StartsOfDepth(
-  const std::vector<BlockPixels>& frontToBack, std::size_t own, const std::array<int, 2>& size);
+/// Where a block has to be looked at again, because of those before it: where rays lose half of their light in it but not
+/// in it alone (its own depth is not theirs), and where in it, or before, they have lost so much that they end.
+/// @param own      which of the blocks it is
+/// @param size     of the picture, pixels
+/// @param minimum  part of their light at which rays end
+/// @return what comes through the blocks before, 3 per pixel of the picture, there, and else 0. Empty: nowhere
+std::vector<float> StartsBehind(const std::vector<BlockPixels>& frontToBack, std::size_t own,
+  const std::array<int, 2>& size, double minimum);
+
+/// Takes those pixels from a picture that was made so.
+void TakeFrom(const Picture& again, const std::vector<float>& starts, BlockPixels& pixels);
 
 /// What all blocks show in a rectangle: radiance, alpha (of the medium, without the background) and depth.
 /// @param farDepth  of the pictures of blocks

@@ -59,7 +59,7 @@ __kernel void cast_rays(ViewInfo v, __global const float4* restrict samples,
 #endif
   light l = unlit((real)1.0f);
 #if STARTS
-  l.left = starts_of(&v, starts, column, row);
+  l.before = starts_of(&v, starts, column, row);
 #endif
   crossed half_way = { (real)0.0f, (real)0.0f, (real)1.0f, (real)1.0f };
   for (int n = 0; n < steps;)
