@@ -14,12 +14,13 @@
 #include "Device/Clock.h"
 #include "Device/Device.h"
 #include "Medium/BoxFaces.h"
+#include "Ranks/NeighbourLayer.h"
+#include "Ranks/Ranks.h"
 #include "Ranks/WholeImage.h"
 #include "Viewing/Blocks/BlockFaces.h"
 #include "Viewing/MediumRayCaster.h"
 #include "Viewing/Scene/ViewQuality.h"
 #include "Viewing/ToneMapping.h"
-#include "Ranks/Ranks.h"
 #include "Work/GuardedWork.h"
 #include "Work/WholeInputs.h"
 
@@ -38,6 +39,7 @@
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
+#include "vtkSmartPointer.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkTimeStamp.h"
 #include "vtkUnsignedCharArray.h"
@@ -184,6 +186,27 @@ struct LightAtFaces
 tyndall::PixelRect RectOf(const std::array<int, 6>& extent)
 {
   return { { extent[0], extent[2] }, { extent[1] + 1, extent[3] + 1 } };
+}
+
+std::array<int, 6> WholePicture(vtkMediumRayCaster* filter)
+{
+  return { 0, filter->GetImageSize()[0] - 1, 0, filter->GetImageSize()[1] - 1, 0, 0 };
+}
+
+/// The medium's pieces, with their neighbours' cells where those can be had.
+tyndall::BlocksOfRanks SurroundedBlocks(vtkMultiProcessController* ranks, tyndall::WholeInputs& inputs)
+{
+  const auto given = [&] { return vtkImageData::GetData(inputs.Vectors()[vtkMediumRayCaster::MEDIUM]); };
+  tyndall::BlocksOfRanks blocks(ranks, given());
+  if (blocks.MakeUpTheWhole() && !blocks.HaveLayers())
+  {
+    if (const vtkSmartPointer<vtkImageData> surrounded = tyndall::WithNeighbourLayer(ranks, given()))
+    {
+      inputs.Replace(surrounded);
+      return { ranks, surrounded };
+    }
+  }
+  return blocks;
 }
 
 /// Pixels that are this rank's alone, of a picture that is divided among all.
@@ -581,10 +604,10 @@ std::vector<double> vtkMediumRayCaster::PropertiesAsNumbers()
 /// @param asked   pixels of the picture that are asked for of this rank
 /// @return the part with them; none, on all ranks, where the whole is needed
 std::optional<vtkMediumRayCaster::Shot> vtkMediumRayCaster::SeeBlocks(vtkMultiProcessController* ranks,
-  vtkInformationVector** inputs, double exposure, const std::array<int, 6>& all, const std::array<int, 6>& asked)
+  tyndall::WholeInputs& inputs, double exposure, const std::array<int, 6>& asked)
 {
-  vtkImageData* const image = vtkImageData::GetData(inputs[MEDIUM]);
-  const tyndall::BlocksOfRanks blocks(ranks, image);
+  const tyndall::BlocksOfRanks blocks = SurroundedBlocks(ranks, inputs);
+  vtkImageData* const image = vtkImageData::GetData(inputs.Vectors()[MEDIUM]);
   Shot shot;
   shot.exposure = exposure;
   tyndall::BlockToCast own;
@@ -595,7 +618,7 @@ std::optional<vtkMediumRayCaster::Shot> vtkMediumRayCaster::SeeBlocks(vtkMultiPr
     // What is wrong with it will be said of the whole.
     const tyndall::Ending found = tyndall::EndingOf([&] {
       own.ofArrays = ArraysInANumber(this, image);
-      shot.scene = this->FindScene(inputs, SettingsOf(this, exposure), &blocks.Own());
+      shot.scene = this->FindScene(inputs.Vectors(), SettingsOf(this, exposure), &blocks.Own());
       own.ofBlocks = shot.scene->caster->SharedByBlocks();
     });
     own.able = found.kind == tyndall::Ending::Done && shot.scene->caster->CastsBlocksExactly();
@@ -608,7 +631,7 @@ std::optional<vtkMediumRayCaster::Shot> vtkMediumRayCaster::SeeBlocks(vtkMultiPr
   {
     this->SayDoubts(*shot.scene);
   }
-  const tyndall::PixelRect counted = OwnPixels(ranks, all);
+  const tyndall::PixelRect counted = OwnPixels(ranks, WholePicture(this));
   const tyndall::PixelRect part = Around(RectOf(asked), counted);
   const tyndall::PictureOfBlocks picture(ranks, this, blocks, CameraOf(this, blocks.Whole()),
     { this->ImageSize[0], this->ImageSize[1] }, part, counted);
@@ -663,12 +686,11 @@ int vtkMediumRayCaster::RequestData(
   const auto work = [&](vtkMultiProcessController* ranks, tyndall::WholeInputs& inputs) {
     const bool automatic = this->Exposure == 0.0;
     const double exposure = automatic && this->AutoExposure == FIRST_PICTURE ? this->FirstExposure : this->Exposure;
-    const std::array<int, 6> all = { 0, this->ImageSize[0] - 1, 0, this->ImageSize[1] - 1, 0, 0 };
-    const std::array<int, 6> asked = tyndall::ExtentAskedFor(outputs->GetInformationObject(0), all);
+    const std::array<int, 6> asked = tyndall::ExtentAskedFor(outputs->GetInformationObject(0), WholePicture(this));
     std::optional<Shot> shot;
     if (ranks)
     {
-      shot = this->SeeBlocks(ranks, inputs.Vectors(), exposure, all, asked);
+      shot = this->SeeBlocks(ranks, inputs, exposure, asked);
     }
     if (!shot)
     {

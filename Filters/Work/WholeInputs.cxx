@@ -403,6 +403,16 @@ WholeInputs::WholeInputs(vtkMultiProcessController* ranks, vtkAlgorithm* filter,
 
 WholeInputs::~WholeInputs() = default;
 
+void WholeInputs::Replace(vtkDataObject* data)
+{
+  const auto port = static_cast<std::size_t>(this->AllSeen->inPieces);
+  vtkNew<vtkInformation> information;
+  information->Set(vtkDataObject::DATA_OBJECT(), data);
+  this->Kept[port] = vtkSmartPointer<vtkInformationVector>::New();
+  this->Kept[port]->Append(information);
+  this->Ports[port] = this->Kept[port];
+}
+
 void WholeInputs::MakeWhole()
 {
   if (this->AllSeen && this->AllSeen->inPieces != NoPort)

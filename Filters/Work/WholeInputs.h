@@ -7,6 +7,7 @@
 #include <vector>
 
 class vtkAlgorithm;
+class vtkDataObject;
 class vtkInformation;
 class vtkInformationVector;
 class vtkMultiProcessController;
@@ -38,6 +39,9 @@ public:
 
   /// By port.
   vtkInformationVector** Vectors() { return this->Ports.data(); }
+
+  /// Data instead of those of the port that was left in pieces; until MakeWhole.
+  void Replace(vtkDataObject* data);
 
   /// Of the port that was left in pieces. All ranks have to call it.
   /// @throws InvalidInput as the constructor

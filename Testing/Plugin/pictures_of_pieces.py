@@ -41,10 +41,10 @@ def cells_of(extent):
     return [axis.ravel() for axis in numpy.meshgrid(z, y, x, indexing="ij")]
 
 
-def add(image, name, *components):
+def add(image, name, *components, to=None):
     array = numpy_to_vtk(numpy.stack(components, axis=-1).astype(numpy.float32), deep=True)
     array.SetName(name)
-    image.GetCellData().AddArray(array)
+    (to or image.GetCellData()).AddArray(array)
 
 
 def add_fact(image, name, values, components=1):
@@ -187,8 +187,33 @@ def ground():
 
 
 def bare():
-    """Pieces without their neighbours' cells: put together."""
+    """Pieces without their neighbours' cells."""
     keep("bare", cast(medium_of(boxes()[rank])))
+
+
+def bare_uneven():
+    """Such pieces of two voxels and one, a rank without."""
+    cuts = {1: [0, 13], 2: [0, 1, 13], 3: [0, 0, 2, 13], 4: [0, 2, 3, 3, 13]}[ranks]
+    own = [cuts[rank], cuts[rank + 1]] + WHOLE[2:]
+    keep("bare_uneven", cast(vtkImageData() if own[0] == own[1] else medium_of(own)))
+
+
+def bare_points():
+    """Such pieces with data of points, as Resample To Image makes them: those outside of its input are hidden."""
+    extent = boxes()[rank]
+    image = medium_of(extent)
+    for name in ("sigma_a", "sigma_s", "fluence", "fluence_direct"):
+        image.GetCellData().RemoveArray(name)
+    x, y, z = (numpy.arange(extent[2 * a], extent[2 * a + 1] + 1) for a in range(3))
+    z, y, x = (axis.ravel() for axis in numpy.meshgrid(z, y, x, indexing="ij"))
+    hidden = x + y < 6
+    wave = numpy.where(hidden, numpy.nan, 1 + numpy.sin(0.7 * x) * numpy.cos(0.9 * y + 0.3 * z))
+    for name, scale in (("sigma_a", 0.1), ("sigma_s", 0.3), ("fluence", 1)):
+        add(image, name, scale * wave, to=image.GetPointData())
+    flags = numpy_to_vtk((2 * hidden).astype(numpy.uint8), deep=True)
+    flags.SetName("vtkGhostType")
+    image.GetPointData().AddArray(flags)
+    keep("bare_points", cast(image))
 
 
 def glass():

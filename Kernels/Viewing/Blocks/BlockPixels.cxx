@@ -6,6 +6,8 @@ namespace tyndall
 {
 namespace
 {
+constexpr float Half = 0.5f; ///< of the light: where it is lost is the depth
+
 /// Calls act(column, row, number) for each pixel of a rectangle.
 template <class Act>
 void ForPixels(const PixelRect& rect, const Act& act)
@@ -84,7 +86,6 @@ BlockPixels PartIn(const PixelRect& rect, const BlockPixels& pixels)
 std::vector<float> StartsBehind(const std::vector<BlockPixels>& frontToBack, std::size_t own,
   const std::array<int, 2>& size, double minimum)
 {
-  constexpr float half = 0.5f;
   std::vector<float> starts;
   ForPixels(frontToBack[own].rect, [&](int column, int row, std::size_t) {
     BlockPixel before;
@@ -94,7 +95,7 @@ std::vector<float> StartsBehind(const std::vector<BlockPixels>& frontToBack, std
     }
     BlockPixel behind = before;
     behind.LayBefore(frontToBack[own].At(column, row));
-    const bool losesHalf = before.Left() > half && behind.Left() <= half;
+    const bool losesHalf = before.Left() > Half && behind.Left() <= Half;
     if (before.Left() < 1.0f && (losesHalf || behind.MostLeft() <= minimum))
     {
       starts.resize(3 * static_cast<std::size_t>(size[0]) * size[1], 0.0f);
@@ -110,9 +111,14 @@ void TakeFrom(const Picture& again, const std::vector<float>& starts, BlockPixel
   ForPixels(pixels.rect, [&](int column, int row, std::size_t number) {
     const std::size_t pixel = static_cast<std::size_t>(row) * again.width + column;
     const float* const start = starts.data() + 3 * pixel;
-    if (start[0] + start[1] + start[2] > 0.0f)
+    const float before = (start[0] + start[1] + start[2]) / 3.0f;
+    if (before > 0.0f)
     {
       pixels.pixels[number] = PixelOf(again, pixel);
+      if (before <= Half)
+      {
+        pixels.pixels[number].depth = BlockPixel::FarAway; // that is in a block before
+      }
     }
   });
 }
