@@ -13,8 +13,9 @@ import numpy
 here = os.path.dirname(os.path.abspath(__file__))
 output = os.path.join(os.environ["TYNDALL_TEST_OUTPUT"], "PicturesOverRanks")
 shutil.rmtree(output, ignore_errors=True)
-pieces = ["even", "coloured", "inside", "uneven", "alone", "phase", "ground", "reader"]
-wholes = ["bare", "glass", "shadows", "table", "surface"]
+pieces = ["even", "coloured", "inside", "uneven", "alone", "bare", "bare_uneven", "bare_points", "phase", "ground", "reader"]
+wholes = ["glass", "shadows", "table", "surface"]
+of_even = ["uneven", "alone", "bare", "bare_uneven"]  # other pieces of the same
 
 
 def run(ranks, *cases, timeout=240):
@@ -63,7 +64,7 @@ for ranks in (1, 2, 3, 4):
     code, said = run(ranks, *pieces, *wholes, *more)
     assert code == 0 and said.count("is done") == ranks, said
     for case in pieces + wholes:
-        expected, alone = whole(1, "even" if case in ("uneven", "alone", "bare") else case)
+        expected, alone = whole(1, "even" if case in of_even else case)
         assert expected["color"].std() > 5, (case, "there is nothing to compare")
         parts = check(ranks, case, expected)
         if case == "reader":

@@ -291,7 +291,7 @@ def errors():
     add_fact(image, "g", [0.5 if odd else 0.2])
     fails("g", image, "say different things of the phase function (g 0.2; g 0.5)")
     image = plain_piece()
-    vtk_to_numpy(image.GetCellData().GetArray("sigma_s"))[:3] = -1 if odd else 1
+    vtk_to_numpy(image.GetCellData().GetArray("sigma_s"))[:] *= -1 if odd else 1
     fails("values", image, "sigma_s")
     fails("gap", medium_of([0, 3] + WHOLE[2:] if odd else [4, 13] + WHOLE[2:]), "which make no whole")
     fails("device", plain_piece(), "On rank %d: " % (ranks - 1), Device="none of these" if odd else "")
