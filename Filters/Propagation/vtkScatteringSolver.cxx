@@ -102,7 +102,8 @@ int vtkScatteringSolver::GiveOrSolve(vtkInformation* request, vtkInformationVect
   vtkInformationVector* outputs, const std::function<void()>& forget,
   const std::function<void(vtkInformationVector** inputs)>& solve)
 {
-  return this->GiveOrSolve(request, given, outputs, forget, tyndall::WorkOnPieces(), solve);
+  const auto never = [](vtkMultiProcessController*, vtkInformationVector**) { return false; };
+  return this->GiveOrSolve(request, given, outputs, forget, { MEDIUM, never }, solve);
 }
 
 int vtkScatteringSolver::GiveOrSolve(vtkInformation* request, vtkInformationVector** given,

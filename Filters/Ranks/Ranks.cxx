@@ -224,9 +224,10 @@ void WorkOnAllRanks(vtkMultiProcessController* controller, vtkAlgorithm* filter,
   }
   StopMessages messages(controller);
   BeginConversations();
+  vtkObjectBase* const before = filter->GetInformation()->Get(WorkingRanks()); // of work of which this is a part
   filter->GetInformation()->Set(WorkingRanks(), controller);
   const Ending own = EndingOf(work);
-  filter->GetInformation()->Remove(WorkingRanks());
+  filter->GetInformation()->Set(WorkingRanks(), before);
   const bool sent = own.kind != Ending::Done && !messages.Waits() && messages.Send();
   const std::unique_ptr<Communicator> communicator = CommunicatorAtEnd(controller);
   std::vector<double> senders(static_cast<std::size_t>(communicator->Ranks()), 0.0);

@@ -33,7 +33,7 @@ bool EachAsksForItsPiece(vtkInformation* request, vtkInformationVector* outputs)
 void OnAllRanks(vtkMultiProcessController* controller, const std::function<void()>& act);
 
 /// The same of long work that can be stopped: where it ends early on one rank, the Monitor of the filter (MonitorOf)
-/// stops it on the others.
+/// stops it on the others. A part of it may be such work itself.
 void WorkOnAllRanks(vtkMultiProcessController* controller, vtkAlgorithm* filter, const std::function<void()>& work);
 
 /// Whether other ranks want a filter's work to stop, which is in WorkOnAllRanks.

@@ -12,6 +12,7 @@
 #include "vtkInformationIntegerKey.h"
 #include "vtkInformationIntegerVectorKey.h"
 #include "vtkInformationVector.h"
+#include "vtkMultiProcessController.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
@@ -88,35 +89,57 @@ void MarkDuplicates(vtkImageData* image, const Extent& own)
     [&](const auto& point) { return !IsIn(PointBoxOf(own), point); });
 }
 
-/// The part of this rank. Cells that ranks before it are asked for, too, are their duplicates.
-void KeepPart(const int* parts, int ranks, vtkImageData* output)
+/// Of parts that ranks are asked for.
+Extent PartOfRank(vtkInformation* information, int rank)
 {
-  const auto partOf = [parts](int rank) {
-    Extent extent;
-    std::copy_n(parts + 1 + 6 * rank, 6, extent.begin());
-    return extent;
-  };
-  const int rank = parts[0];
-  Extent own = partOf(rank);
-  if (PointBoxOf(own).Count() == 0)
-  {
-    output->Initialize();
-    return;
-  }
-  output->Crop(own.data());
-  own = ExtentOf(output);
+  Extent extent;
+  std::copy_n(information->Get(PartsOfRanks()) + 1 + 6 * rank, 6, extent.begin());
+  return extent;
+}
+
+/// Flags cells that ranks before this one are asked for, too, as their duplicates.
+void MarkThoseBefore(vtkInformation* information, vtkImageData* output)
+{
+  const int rank = information->Get(PartsOfRanks())[0];
+  const int ranks = information->Length(PartsOfRanks()) / 6;
   const auto isBefore = [&](const std::array<int, 3>& cell) {
     bool before = false;
     for (int other = 0; other < std::min(rank, ranks); ++other)
     {
-      before = before || (PointBoxOf(partOf(other)).Count() > 0 && IsIn(CellBoxOf(partOf(other)), cell));
+      const Extent part = PartOfRank(information, other);
+      before = before || (PointBoxOf(part).Count() > 0 && IsIn(CellBoxOf(part), cell));
     }
     return before;
   };
   if (rank > 0)
   {
-    Mark(output->GetCellData(), CellBoxOf(own), vtkDataSetAttributes::DUPLICATECELL, isBefore);
+    Mark(output->GetCellData(), CellBoxOf(ExtentOf(output)), vtkDataSetAttributes::DUPLICATECELL, isBefore);
   }
+}
+
+/// What of an output is asked for.
+struct Part
+{
+  bool isOfRank = false; ///< see NotePartsOfRanks
+  bool divided = false;
+  AskedPiece piece; ///< empty: nothing, or where it is not divided all that there is
+};
+
+Part PartAskedFor(vtkInformation* information)
+{
+  Part part;
+  part.divided = information->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()) > 1;
+  if (const int* const parts = information->Get(PartsOfRanks()))
+  {
+    part.isOfRank = part.divided; // else each rank is asked for all
+    const Extent own = part.divided ? PartOfRank(information, parts[0]) : AskedPiece::Nothing;
+    part.piece = { own, own };
+    return part;
+  }
+  Extent update;
+  information->Get(Pipeline::UPDATE_EXTENT(), update.data());
+  part.piece = AskedPieceOf(information, update);
+  return part;
 }
 }
 
@@ -136,6 +159,19 @@ void AskForAll(vtkInformation* request, vtkInformationVector* inputs, vtkInforma
     information->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
   }
   AskTogether(request, outputs, inputs);
+}
+
+void AskForPiece(vtkInformation* request, vtkInformationVector* inputs, vtkInformationVector* outputs)
+{
+  AskForAll(request, inputs, outputs);
+  vtkMultiProcessController* const ranks = RanksTogether(request, outputs);
+  for (int i = 0; ranks && i < inputs->GetNumberOfInformationObjects(); ++i)
+  {
+    vtkInformation* const information = inputs->GetInformationObject(i);
+    information->Set(Pipeline::UPDATE_PIECE_NUMBER(), ranks->GetLocalProcessId());
+    information->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), ranks->GetNumberOfProcesses());
+    information->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 1);
+  }
 }
 
 vtkInformation* AskingPort(vtkInformation* request, vtkInformationVector* outputs)
@@ -173,7 +209,7 @@ Extent PartOfExtent(const Extent& whole, int piece, int pieces, int ghostLevels)
   translator->SetGhostLevel(ghostLevels);
   if (!translator->PieceToExtent())
   {
-    return AskedPiece().own;
+    return AskedPiece::Nothing;
   }
   translator->GetExtent(part.data());
   return part;
@@ -198,30 +234,40 @@ void KeepPiece(const AskedPiece& piece, vtkImageData* output)
     output->Initialize(); // more ranks than voxels
     return;
   }
-  output->Crop(piece.withGhosts.data());
+  Extent extent = piece.withGhosts;
+  output->Crop(extent.data());
   if (piece.own != piece.withGhosts)
   {
     MarkDuplicates(output, piece.own);
   }
 }
 
+std::array<int, 6> ExtentAskedFor(vtkInformation* information, const std::array<int, 6>& image)
+{
+  const Part part = PartAskedFor(information);
+  if (part.piece.IsEmpty())
+  {
+    return part.divided ? AskedPiece::Nothing : image;
+  }
+  Extent extent = image;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    extent[2 * axis] = std::max(part.piece.withGhosts[2 * axis], image[2 * axis]);
+    extent[2 * axis + 1] = std::min(part.piece.withGhosts[2 * axis + 1], image[2 * axis + 1]);
+  }
+  return extent;
+}
+
 void KeepWhatIsAskedFor(vtkInformation* information, vtkImageData* output)
 {
-  const bool divided = information->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()) > 1;
-  if (const int* const parts = information->Get(PartsOfRanks()))
+  const Part part = PartAskedFor(information);
+  if (part.divided || !part.piece.IsEmpty())
   {
-    if (divided) // else each rank is asked for all
-    {
-      KeepPart(parts, information->Length(PartsOfRanks()) / 6, output);
-    }
-    return;
+    KeepPiece(part.piece, output);
   }
-  Extent extent;
-  information->Get(Pipeline::UPDATE_EXTENT(), extent.data());
-  const AskedPiece asked = AskedPieceOf(information, extent);
-  if (divided || PointBoxOf(extent).Count() > 0)
+  if (part.isOfRank && !part.piece.IsEmpty())
   {
-    KeepPiece(asked, output);
+    MarkThoseBefore(information, output);
   }
 }
 

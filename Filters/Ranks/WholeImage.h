@@ -15,6 +15,10 @@ namespace tyndall
 /// @param request, outputs  as RequestUpdateExtent is given them
 void AskForAll(vtkInformation* request, vtkInformationVector* inputs, vtkInformationVector* outputs);
 
+/// The same for this rank's piece, with a layer of its neighbours' cells, where ranks run the filter together; else for
+/// all.
+void AskForPiece(vtkInformation* request, vtkInformationVector* inputs, vtkInformationVector* outputs);
+
 /// In RequestData: the output port that asks.
 vtkInformation* AskingPort(vtkInformation* request, vtkInformationVector* outputs);
 
@@ -29,20 +33,30 @@ bool IsFirstPiece(vtkInformation* request, vtkInformationVector* outputs);
 void NotePartsOfRanks(vtkInformation* information, const std::vector<std::array<int, 6>>& parts, int rank);
 
 /// What is asked for of an image: a piece of its extent, with ghost cells and without; the same where it is not divided.
-/// Of no cells where there are more pieces than cells.
+/// Empty where there are more pieces than cells.
 struct AskedPiece
 {
-  std::array<int, 6> withGhosts = { 0, 0, 0, 0, 0, 0 };
-  std::array<int, 6> own = { 0, 0, 0, 0, 0, 0 };
-  bool IsEmpty() const { return this->withGhosts[0] == this->withGhosts[1]; }
+  static constexpr std::array<int, 6> Nothing = { 0, -1, 0, -1, 0, -1 };
+
+  std::array<int, 6> withGhosts = Nothing;
+  std::array<int, 6> own = Nothing;
+  bool IsEmpty() const
+  {
+    const std::array<int, 6>& extent = this->withGhosts;
+    return extent[0] > extent[1] || extent[2] > extent[3] || extent[4] > extent[5];
+  }
 };
 AskedPiece AskedPieceOf(vtkInformation* information, const std::array<int, 6>& whole);
 
-/// The part of an extent that is piece number `piece` of as many; of no cells where there are more pieces than cells.
+/// The part of an extent that is piece number `piece` of as many; empty where there are more pieces than cells.
 std::array<int, 6> PartOfExtent(const std::array<int, 6>& whole, int piece, int pieces, int ghostLevels = 0);
 
 /// Crops an image to a piece of it, and marks its ghost cells (vtkGhostType); empties it where the piece is.
 void KeepPiece(const AskedPiece& piece, vtkImageData* output);
+
+/// In RequestData: what KeepWhatIsAskedFor leaves of an image; its last bounds are less than its first ones where that
+/// is nothing.
+std::array<int, 6> ExtentAskedFor(vtkInformation* information, const std::array<int, 6>& image);
 
 /// In RequestData: crop the output to the extent, or the piece of it, that was asked for; other ranks hold the rest.
 /// Cells that a neighbouring piece has, too, are marked (vtkGhostType), so that sums over pieces have them once.

@@ -59,8 +59,8 @@ Voxels OwnVoxelsOf(vtkImageData* image)
   return own.begin[0] < own.end[0] ? own : Voxels();
 }
 
-/// What a rank says of its block: own voxels, origin and spacing.
-constexpr std::size_t WordsOfBlock = 12;
+/// What a rank says of its block: own voxels, origin and spacing, all voxels.
+constexpr std::size_t WordsOfBlock = 18;
 
 std::vector<double> Words(vtkImageData* image)
 {
@@ -72,6 +72,9 @@ std::vector<double> Words(vtkImageData* image)
     std::copy(own.end.begin(), own.end.end(), words.begin() + 3);
     std::copy_n(image->GetOrigin(), 3, words.begin() + 6);
     std::copy_n(image->GetSpacing(), 3, words.begin() + 9);
+    const Voxels all = VoxelsOf(image);
+    std::copy(all.begin.begin(), all.begin.end(), words.begin() + 12);
+    std::copy(all.end.begin(), all.end.end(), words.begin() + 15);
   }
   return words;
 }
@@ -114,6 +117,20 @@ Grid GridOfVoxels(const Voxels& voxels, const double* words)
   return grid;
 }
 
+/// Whether a block's arrays hold a layer around its own voxels, as far as there are any.
+/// @param whole  all voxels of the grid
+bool HasLayer(const double* words, const Voxels& whole)
+{
+  const Voxels own = VoxelsIn(words), all = VoxelsIn(words + 12);
+  bool has = true;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    has &= all.begin[axis] <= std::max(own.begin[axis] - 1, whole.begin[axis]) &&
+      all.end[axis] >= std::min(own.end[axis] + 1, whole.end[axis]);
+  }
+  return has;
+}
+
 /// To rounding.
 bool OfOneGrid(const double* a, const double* b)
 {
@@ -133,6 +150,12 @@ std::vector<double> SaidByAll(vtkMultiProcessController* ranks, const std::vecto
   std::vector<double> all(own.size() * ranks->GetNumberOfProcesses());
   ranks->AllGather(own.data(), all.data(), static_cast<vtkIdType>(own.size()));
   return all;
+}
+
+bool OnAnyRank(vtkMultiProcessController* ranks, bool own)
+{
+  const std::vector<double> said = SaidByAll(ranks, { own ? 1.0 : 0.0 });
+  return std::any_of(said.begin(), said.end(), [](double rank) { return rank > 0.0; });
 }
 
 BlocksOfRanks::BlocksOfRanks(vtkMultiProcessController* ranks, vtkImageData* image)
@@ -161,6 +184,11 @@ BlocksOfRanks::BlocksOfRanks(vtkMultiProcessController* ranks, vtkImageData* ima
       voxels += block.OwnVoxels();
     }
   }
+  this->Surrounded = true;
+  for (std::size_t rank = 0; rank < this->Blocks.size(); ++rank)
+  {
+    this->Surrounded &= this->Blocks[rank].OwnVoxels() == 0 || HasLayer(said.data() + WordsOfBlock * rank, all);
+  }
   const Grid whole = first ? GridOfVoxels(all, first) : Grid();
   for (GridBlock& block : this->Blocks)
   {
@@ -180,7 +208,7 @@ BlocksOfRanks::BlocksOfRanks(vtkMultiProcessController* ranks, vtkImageData* ima
 void BlocksOfRanks::Swap(int partner, const std::vector<BlockPixel>& mine, std::vector<BlockPixel>& theirs) const
 {
   constexpr std::size_t floats = sizeof(BlockPixel) / sizeof(float);
-  static_assert(floats == 9, "pixels are sent as floats");
+  static_assert(floats == 11, "pixels are sent as floats");
   const auto send = [&] {
     if (!mine.empty())
     {

@@ -16,6 +16,9 @@ namespace tyndall
 /// What every rank says, one after the other. All ranks have to call it, with as many numbers.
 std::vector<double> SaidByAll(vtkMultiProcessController* ranks, const std::vector<double>& own);
 
+/// Whether it is so on any rank. All of them have to call it.
+bool OnAnyRank(vtkMultiProcessController* ranks, bool own);
+
 /// An image that is spread over ranks, each of which has a block of its voxels and, flagged as duplicates, a layer of
 /// its neighbours'. All ranks have to construct it and to call Exchange, also those that have no block.
 class BlocksOfRanks
@@ -33,6 +36,8 @@ public:
 
   /// Whether the blocks are parts of one grid, and together each of its voxels once: the same on all ranks.
   bool MakeUpTheWhole() const { return this->Tiled; }
+  /// Whether each has its layer of neighbours' voxels: the same on all ranks.
+  bool HaveLayers() const { return this->Surrounded; }
   bool HasOwn() const { return this->Blocks[this->Rank].OwnVoxels() > 0; }
   const GridBlock& Own() const { return this->Blocks[this->Rank]; }
   const Grid& Whole() const { return this->Own().whole; } ///< where MakeUpTheWhole
@@ -53,6 +58,6 @@ private:
   vtkMultiProcessController* Ranks;
   std::size_t Rank;
   std::vector<GridBlock> Blocks; ///< by rank
-  bool Tiled = false;
+  bool Tiled = false, Surrounded = false;
 };
 }

@@ -278,8 +278,7 @@ void vtkLitVolumeMapper::SetPiece(vtkMultiProcessController* ranks, vtkImageData
 bool vtkLitVolumeMapper::IsExposureOld()
 {
   const bool old = this->RayCaster->GetExposure() == 0.0 && this->RayCaster->GetMTime() > this->ExposureTime;
-  const std::vector<double> said = tyndall::SaidByAll(this->Spread->ranks, { old ? 1.0 : 0.0 });
-  return std::any_of(said.begin(), said.end(), [](double rank) { return rank > 0.0; });
+  return tyndall::OnAnyRank(this->Spread->ranks, old);
 }
 
 void vtkLitVolumeMapper::AgreeOnExposure()

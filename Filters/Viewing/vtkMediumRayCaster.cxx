@@ -1,7 +1,10 @@
 #include "vtkMediumRayCaster.h"
 
 #include "AskedView.h"
+#include "BlocksOfRanks.h"
+#include "Common/ContentKey.h"
 #include "Common/DeviceBudget.h"
+#include "Common/Failure.h"
 #include "Common/FiniteValues.h"
 #include "Common/InputsKey.h"
 #include "Common/LightTransportData.h"
@@ -10,32 +13,43 @@
 #include "Device/Clock.h"
 #include "Device/Device.h"
 #include "Medium/BoxFaces.h"
+#include "PictureOfBlocks.h"
+#include "Ranks/NeighbourLayer.h"
+#include "Ranks/Ranks.h"
 #include "Ranks/WholeImage.h"
 #include "Viewing/Blocks/BlockFaces.h"
 #include "Viewing/MediumRayCaster.h"
 #include "Viewing/Scene/ViewQuality.h"
 #include "Viewing/ToneMapping.h"
 #include "Work/GuardedWork.h"
+#include "Work/WholeInputs.h"
 
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkDataObject.h"
 #include "vtkExecutive.h"
+#include "vtkExtentTranslator.h"
 #include "vtkFieldData.h"
 #include "vtkFloatArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkMultiProcessController.h"
+#include "vtkMultiProcessStream.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
+#include "vtkSmartPointer.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkTimeStamp.h"
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -169,17 +183,137 @@ struct LightAtFaces
   }
 };
 
-void WritePicture(tyndall::Picture&& picture, std::vector<std::uint8_t>&& color, vtkImageData* output)
+tyndall::PixelRect RectOf(const std::array<int, 6>& extent)
 {
-  output->SetExtent(0, picture.width - 1, 0, picture.height - 1, 0, 0);
+  return { { extent[0], extent[2] }, { extent[1] + 1, extent[3] + 1 } };
+}
+
+std::array<int, 6> WholePicture(vtkMediumRayCaster* filter)
+{
+  return { 0, filter->GetImageSize()[0] - 1, 0, filter->GetImageSize()[1] - 1, 0, 0 };
+}
+
+/// The medium's pieces, with their neighbours' cells where those can be had.
+tyndall::BlocksOfRanks SurroundedBlocks(vtkMultiProcessController* ranks, tyndall::WholeInputs& inputs)
+{
+  const auto given = [&] { return vtkImageData::GetData(inputs.Vectors()[vtkMediumRayCaster::MEDIUM]); };
+  tyndall::BlocksOfRanks blocks(ranks, given());
+  if (blocks.MakeUpTheWhole() && !blocks.HaveLayers())
+  {
+    if (const vtkSmartPointer<vtkImageData> surrounded = tyndall::WithNeighbourLayer(ranks, given()))
+    {
+      inputs.Replace(surrounded);
+      return { ranks, surrounded };
+    }
+  }
+  return blocks;
+}
+
+/// Pixels that are this rank's alone, of a picture that is divided among all.
+tyndall::PixelRect OwnPixels(vtkMultiProcessController* ranks, const std::array<int, 6>& all)
+{
+  std::array<int, 6> whole = all;
+  std::array<int, 6> own = { 0, -1, 0, -1, 0, -1 };
+  vtkNew<vtkExtentTranslator> translator;
+  translator->SetWholeExtent(whole.data());
+  translator->SetPiece(ranks->GetLocalProcessId());
+  translator->SetNumberOfPieces(ranks->GetNumberOfProcesses());
+  if (translator->PieceToExtent())
+  {
+    translator->GetExtent(own.data());
+    for (int last : { 1, 3 }) // pieces have their borders in common
+    {
+      own[last] -= own[last] < all[last] ? 1 : 0;
+    }
+  }
+  return RectOf(own);
+}
+
+/// The least rectangle around both.
+tyndall::PixelRect Around(const tyndall::PixelRect& a, const tyndall::PixelRect& b)
+{
+  if (a.IsEmpty() || b.IsEmpty())
+  {
+    return a.IsEmpty() ? b : a;
+  }
+  tyndall::PixelRect around;
+  for (int axis = 0; axis < 2; ++axis)
+  {
+    around.begin[axis] = std::min(a.begin[axis], b.begin[axis]);
+    around.end[axis] = std::max(a.end[axis], b.end[axis]);
+  }
+  return around;
+}
+
+/// A number for which arrays a rank's block has, and for what is used of field data.
+double ArraysInANumber(vtkMediumRayCaster* filter, vtkImageData* image)
+{
+  std::string words = tyndall::PhaseInWords(image);
+  const auto add = [&](vtkDataArray* array) {
+    words += array ? "," + std::to_string(array->GetNumberOfComponents()) : ",";
+  };
+  for (int number = tyndall::SigmaA; number <= MeanDirection; ++number)
+  {
+    add(tyndall::ChosenArray(filter, number, image, ArrayNames[number]));
+  }
+  for (const char* name : { "g", tyndall::MomentsArray, tyndall::StraightOnArray })
+  {
+    add(image->GetCellData()->GetArray(name));
+  }
+  vtkNew<vtkImageData> facts;
+  for (const char* name : { tyndall::SurfaceRadianceFact, tyndall::FacePowerFact, tyndall::FaceAlbedoFact })
+  {
+    if (vtkDataArray* const fact = image->GetFieldData()->GetArray(name))
+    {
+      facts->GetFieldData()->AddArray(fact);
+    }
+  }
+  const std::uint64_t number = tyndall::ContentKey(facts) ^ std::hash<std::string>()(words);
+  return static_cast<double>(number >> 11); // a double's digits
+}
+
+/// What is on all lists that say anything, in the order of the first: ranks without a block say nothing.
+std::vector<std::string> OnAllLists(vtkMultiProcessController* ranks, const std::vector<std::string>& own, bool says)
+{
+  vtkMultiProcessStream stream;
+  stream << (says ? static_cast<int>(own.size()) : -1);
+  std::for_each(own.begin(), own.end(), [&](const std::string& line) { stream << line; });
+  std::vector<vtkMultiProcessStream> streams;
+  ranks->AllGather(stream, streams);
+  std::vector<std::string> common;
+  bool any = false;
+  for (vtkMultiProcessStream& from : streams)
+  {
+    int count = 0;
+    from >> count;
+    std::vector<std::string> list(static_cast<std::size_t>(std::max(count, 0)));
+    std::for_each(list.begin(), list.end(), [&](std::string& line) { from >> line; });
+    if (count >= 0 && any)
+    {
+      common.erase(std::remove_if(common.begin(), common.end(),
+                     [&](const std::string& line) { return std::find(list.begin(), list.end(), line) == list.end(); }),
+        common.end());
+    }
+    common = count >= 0 && !any ? list : common;
+    any = any || count >= 0;
+  }
+  return common;
+}
+
+/// @param first  column and row of the picture's first pixel
+void WritePicture(
+  tyndall::Picture&& picture, const std::array<int, 2>& first, std::vector<std::uint8_t>&& color, vtkImageData* output)
+{
+  output->SetExtent(first[0], first[0] + picture.width - 1, first[1], first[1] + picture.height - 1, 0, 0);
   output->SetOrigin(0.0, 0.0, 0.0);
   output->SetSpacing(1.0, 1.0, 1.0);
   vtkPointData* const pixels = output->GetPointData();
   const auto shown = tyndall::ArrayOf<vtkUnsignedCharArray>("color", std::move(color), 4);
   tyndall::LeaveRanges(shown);
   pixels->SetScalars(shown);
-  const auto pixelName = [width = static_cast<std::size_t>(picture.width)](std::size_t pixel) {
-    return "pixel (" + std::to_string(pixel % width) + ", " + std::to_string(pixel / width) + ") from below";
+  const auto pixelName = [&first, width = static_cast<std::size_t>(picture.width)](std::size_t pixel) {
+    return "pixel (" + std::to_string(first[0] + pixel % width) + ", " + std::to_string(first[1] + pixel / width) +
+      ") from below";
   };
   for (const auto& [name, values, components] : { std::tuple("radiance", &picture.radiance, 3),
          std::tuple("alpha", &picture.alpha, 1), std::tuple("depth", &picture.depth, 1) })
@@ -199,7 +333,8 @@ struct vtkMediumRayCaster::Scene
   tyndall::InputsKey key;
   vtkTimeStamp made;
   tyndall::Grid grid;
-  bool lightsAlone = false; ///< there is no fluence, so shadow rays are needed
+  bool lightsAlone = false;        ///< there is no fluence, so shadow rays are needed
+  std::vector<std::string> doubts; ///< not said yet
   std::unique_ptr<tyndall::MediumRayCaster> caster;
 };
 
@@ -258,12 +393,18 @@ void vtkMediumRayCaster::ForgetOldScene()
   }
 }
 
-/// The memory of an old scene is given back before the filters before run, which may need it.
+/// The memory of an old scene is given back before the filters before run, which may need it. Ranks together ask for
+/// their pieces of the medium, unless they are known to need the whole.
 int vtkMediumRayCaster::RequestUpdateExtent(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   this->ForgetOldScene();
-  return this->Superclass::RequestUpdateExtent(request, inputs, outputs);
+  const int done = this->Superclass::RequestUpdateExtent(request, inputs, outputs);
+  if (!this->NeedsWhole && this->TableFace < 0)
+  {
+    tyndall::AskForPiece(request, inputs[MEDIUM], outputs);
+  }
+  return done;
 }
 
 tyndall::InputsKey vtkMediumRayCaster::KeyOf(vtkInformationVector** inputs, const tyndall::GridBlock* block)
@@ -321,13 +462,13 @@ std::unique_ptr<vtkMediumRayCaster::Scene> vtkMediumRayCaster::MakeScene(vtkInfo
   const tyndall::MomentsInput moments = asSolved ? tyndall::ReadMoments(image) : tyndall::MomentsInput();
   const LightAtFaces faces = asSolved ? LightAtFaces(image, input.medium.grid, block) : LightAtFaces();
   const tyndall::Illumination illumination = this->ReadIllumination(inputs);
+  auto scene = std::make_unique<Scene>();
   const bool sky = !illumination.environment.Empty() || illumination.sky != tyndall::Rgb{};
   if (!fluence.IsThere() && illumination.lights.empty() && !input.emission.IsThere() && !(sky && ior.IsThere()))
   {
-    vtkWarningMacro("The medium is dark: it has no array fluence (a solver makes it, e.g. LightPropagationMaps), there "
-                    "are no Lights, and it does not emit.");
+    scene->doubts.emplace_back("The medium is dark: it has no array fluence (a solver makes it, e.g. "
+                               "LightPropagationMaps), there are no Lights, and it does not emit.");
   }
-  auto scene = std::make_unique<Scene>();
   scene->key = key;
   scene->grid = input.medium.grid;
   scene->lightsAlone = !fluence.IsThere() && !illumination.lights.empty();
@@ -339,10 +480,8 @@ std::unique_ptr<vtkMediumRayCaster::Scene> vtkMediumRayCaster::MakeScene(vtkInfo
   light.lampsApart = moments.lampsApart;
   scene->caster =
     std::make_unique<tyndall::MediumRayCaster>(*key.device, input.medium, light, illumination, settings, ior);
-  for (const std::string& doubt : scene->caster->Warnings())
-  {
-    vtkWarningMacro(<< doubt);
-  }
+  const std::vector<std::string>& warnings = scene->caster->Warnings();
+  scene->doubts.insert(scene->doubts.end(), warnings.begin(), warnings.end());
   scene->made.Modified();
   return scene;
 }
@@ -368,26 +507,172 @@ std::unique_ptr<vtkMediumRayCaster::Scene> vtkMediumRayCaster::FindScene(
   return this->MakeScene(inputs, key, settings, block);
 }
 
-/// A picture of the filter's own camera.
-/// @param exposure  what it will be shown with; where that is 0 it is chosen, from a picture without BackgroundColor
-tyndall::Picture vtkMediumRayCaster::Expose(Scene& scene, double& exposure)
+/// Once for a scene.
+void vtkMediumRayCaster::SayDoubts(Scene& scene)
 {
-  const tyndall::Camera camera = CameraOf(this, scene.grid);
-  const auto take = [&] { return scene.caster->Render(camera, tyndall::MonitorOf(this)); };
-  if (exposure > 0.0)
+  for (const std::string& doubt : std::exchange(scene.doubts, {}))
   {
-    return take();
+    vtkWarningMacro(<< doubt);
   }
-  tyndall::Picture picture = take();
-  exposure = tyndall::AutomaticExposure(picture.radiance);
-  tyndall::ViewSettings settings = SettingsOf(this, exposure);
-  if (scene.caster->ShowsBackgroundColor() && settings.backgroundColor != BackgroundOf(this, 0.0))
+}
+
+/// What comes of an update.
+struct vtkMediumRayCaster::Shot
+{
+  std::unique_ptr<Scene> scene;  ///< null where ranks have a block each, and this one has none
+  tyndall::Picture picture;      ///< or the part that is asked for
+  std::array<int, 2> first = {}; ///< column and row of its first pixel
+  double exposure = 0.0;
+  double seconds = 0.0;
+  std::vector<std::string> leftOut;
+};
+
+/// How pictures of the filter's own camera are made, on one rank or on several together.
+struct vtkMediumRayCaster::Taking
+{
+  std::function<tyndall::Picture()> take;
+  std::function<double(const tyndall::Picture&)> exposureOf;
+  std::function<bool(bool)> onAnyRank;
+};
+
+/// @param shot  its exposure is what the picture will be shown with; where that is 0 it is chosen, from a picture
+///   without BackgroundColor
+void vtkMediumRayCaster::Expose(const Taking& taking, Shot& shot)
+{
+  const double start = tyndall::ClockSeconds();
+  shot.picture = taking.take();
+  if (shot.exposure == 0.0)
   {
-    settings.shadowRays |= scene.lightsAlone;
-    scene.caster->Adopt(settings);
-    picture = take();
+    shot.exposure = taking.exposureOf(shot.picture);
+    tyndall::ViewSettings settings = SettingsOf(this, shot.exposure);
+    const bool shows =
+      shot.scene && shot.scene->caster->ShowsBackgroundColor() && settings.backgroundColor != BackgroundOf(this, 0.0);
+    if (taking.onAnyRank(shows))
+    {
+      if (shot.scene)
+      {
+        settings.shadowRays |= shot.scene->lightsAlone;
+        shot.scene->caster->Adopt(settings);
+      }
+      shot.picture = taking.take();
+    }
   }
-  return picture;
+  shot.seconds = tyndall::ClockSeconds() - start;
+}
+
+/// @param exposure  0: automatic
+vtkMediumRayCaster::Shot vtkMediumRayCaster::SeeWhole(vtkInformationVector** inputs, double exposure)
+{
+  Shot shot;
+  shot.exposure = exposure;
+  shot.scene = this->FindScene(inputs, SettingsOf(this, exposure));
+  this->SayDoubts(*shot.scene);
+  const tyndall::Camera camera = CameraOf(this, shot.scene->grid);
+  Taking taking;
+  taking.take = [&] { return shot.scene->caster->Render(camera, tyndall::MonitorOf(this)); };
+  taking.exposureOf = [](const tyndall::Picture& picture) { return tyndall::AutomaticExposure(picture.radiance); };
+  taking.onAnyRank = [](bool own) { return own; };
+  this->Expose(taking, shot);
+  shot.leftOut = shot.scene->caster->LeftOut();
+  this->NeedsWhole = !shot.scene->caster->CastsBlocksExactly();
+  return shot;
+}
+
+/// What has to be the same on all ranks that make a picture together.
+std::vector<double> vtkMediumRayCaster::PropertiesAsNumbers()
+{
+  std::vector<double> numbers = { this->CameraViewAngle, this->CameraParallelProjection ? 1.0 : 0.0,
+    this->CameraParallelScale, this->StepSize, this->SingleScatteringOnly ? 1.0 : 0.0, this->ShadowRays ? 1.0 : 0.0,
+    this->ShowBackground ? 1.0 : 0.0, this->Exposure, this->FirstExposure, this->SurfaceIndex, this->SurfaceReflectance,
+    this->TableReflectance, this->LeaveOut ? 1.0 : 0.0, this->EnvironmentAzimuth };
+  for (int number : { this->ImageSize[0], this->ImageSize[1], this->Quality, this->RectangleSamples, this->AutoExposure,
+         this->ToneCurve, this->SurfaceReflection, this->TableFace, this->EnvironmentUp })
+  {
+    numbers.push_back(number);
+  }
+  for (const double* triple : { this->CameraPosition, this->CameraFocalPoint, this->CameraViewUp, this->BackgroundColor,
+         this->BackgroundRadiance, this->TableColor })
+  {
+    numbers.insert(numbers.end(), triple, triple + 3);
+  }
+  return numbers;
+}
+
+/// The picture of ranks that have a piece of the medium each, with a layer of their neighbours' cells, where pictures of
+/// pieces make up that of the whole.
+/// @param inputs  the others are whole
+/// @param asked   pixels of the picture that are asked for of this rank
+/// @return the part with them; none, on all ranks, where the whole is needed
+std::optional<vtkMediumRayCaster::Shot> vtkMediumRayCaster::SeeBlocks(
+  vtkMultiProcessController* ranks, tyndall::WholeInputs& inputs, double exposure, const std::array<int, 6>& asked)
+{
+  const tyndall::BlocksOfRanks blocks = SurroundedBlocks(ranks, inputs);
+  vtkImageData* const image = vtkImageData::GetData(inputs.Vectors()[MEDIUM]);
+  Shot shot;
+  shot.exposure = exposure;
+  tyndall::BlockToCast own;
+  own.ofFilter = this->PropertiesAsNumbers();
+  own.able = true;
+  if (blocks.HasOwn() && blocks.MakeUpTheWhole() && blocks.HaveLayers())
+  {
+    // What is wrong with it will be said of the whole.
+    const tyndall::Ending found = tyndall::EndingOf([&] {
+      own.ofArrays = ArraysInANumber(this, image);
+      shot.scene = this->FindScene(inputs.Vectors(), SettingsOf(this, exposure), &blocks.Own());
+      own.ofBlocks = shot.scene->caster->SharedByBlocks();
+    });
+    own.able = found.kind == tyndall::Ending::Done && shot.scene->caster->CastsBlocksExactly();
+  }
+  if (!tyndall::CanCast(ranks, blocks, own))
+  {
+    return std::nullopt;
+  }
+  if (shot.scene)
+  {
+    this->SayDoubts(*shot.scene);
+  }
+  const tyndall::PixelRect counted = OwnPixels(ranks, WholePicture(this));
+  const tyndall::PixelRect part = Around(RectOf(asked), counted);
+  const tyndall::PictureOfBlocks picture(
+    ranks, this, blocks, CameraOf(this, blocks.Whole()), { this->ImageSize[0], this->ImageSize[1] }, part, counted);
+  Taking taking;
+  taking.take = [&] { return picture.Take(shot.scene ? shot.scene->caster.get() : nullptr); };
+  taking.exposureOf = [&](const tyndall::Picture& taken) { return picture.Exposure(taken); };
+  taking.onAnyRank = [&](bool here) { return tyndall::OnAnyRank(ranks, here); };
+  this->Expose(taking, shot);
+  shot.first = part.begin;
+  shot.leftOut =
+    OnAllLists(ranks, shot.scene ? shot.scene->caster->LeftOut() : std::vector<std::string>(), shot.scene != nullptr);
+  this->NeedsWhole = false;
+  return shot;
+}
+
+void vtkMediumRayCaster::HandOn(Shot&& shot, vtkInformationVector* outputs)
+{
+  tyndall::ToneMapping toneMapping;
+  toneMapping.exposure = shot.exposure;
+  toneMapping.curve = static_cast<tyndall::ToneCurve>(this->ToneCurve);
+  const std::vector<float> opaque;
+  auto color = tyndall::ToneMap(shot.picture.radiance, this->ShowBackground ? opaque : shot.picture.alpha, toneMapping);
+  vtkImageData* const output = vtkImageData::GetData(outputs);
+  if (shot.picture.width > 0) // else nothing is asked for of this rank
+  {
+    WritePicture(std::move(shot.picture), shot.first, std::move(color), output);
+  }
+  const std::string device = tyndall::FindWithin(this->Within, this->Device, this->MemoryBudget)->Name();
+  const std::vector<std::string> settings = tyndall::Words(SettingsOf(this, shot.exposure));
+  tyndall::AddFact(output, "exposure", std::vector<double>{ shot.exposure });
+  tyndall::AddFact(output, "left_out", shot.leftOut);
+  tyndall::AddFact(output, "settings_used", settings);
+  tyndall::AddFact(output, "device", std::vector<std::string>{ device });
+  tyndall::KeepWhatIsAskedFor(outputs->GetInformationObject(0), output);
+
+  this->UsedExposure = shot.exposure;
+  this->DeviceName = device;
+  this->LeftOut = tyndall::Lines(shot.leftOut);
+  this->SettingsUsed = tyndall::Lines(settings);
+  this->Kept = std::move(shot.scene);
+  this->Seconds = shot.seconds;
 }
 
 int vtkMediumRayCaster::RequestData(
@@ -398,45 +683,27 @@ int vtkMediumRayCaster::RequestData(
   this->DeviceName.clear();
   this->LeftOut.clear();
   this->SettingsUsed.clear();
-  return tyndall::Guarded(this, request, given, outputs, [&](vtkInformationVector** inputs) {
-    tyndall::ToneMapping toneMapping;
-    toneMapping.exposure = this->Exposure;
-    toneMapping.curve = static_cast<tyndall::ToneCurve>(this->ToneCurve);
-    tyndall::Check(toneMapping);
-    const bool automatic = toneMapping.exposure == 0.0;
-    if (automatic && this->AutoExposure == FIRST_PICTURE)
+  const auto work = [&](vtkMultiProcessController* ranks, tyndall::WholeInputs& inputs) {
+    const bool automatic = this->Exposure == 0.0;
+    const double exposure = automatic && this->AutoExposure == FIRST_PICTURE ? this->FirstExposure : this->Exposure;
+    const std::array<int, 6> asked = tyndall::ExtentAskedFor(outputs->GetInformationObject(0), WholePicture(this));
+    std::optional<Shot> shot;
+    if (ranks)
     {
-      toneMapping.exposure = this->FirstExposure;
+      shot = this->SeeBlocks(ranks, inputs, exposure, asked);
     }
-    std::unique_ptr<Scene> scene = this->FindScene(inputs, SettingsOf(this, toneMapping.exposure));
-    const double start = tyndall::ClockSeconds();
-    tyndall::Picture picture = this->Expose(*scene, toneMapping.exposure);
-    const double seconds = tyndall::ClockSeconds() - start;
+    if (!shot)
+    {
+      inputs.MakeWhole();
+      shot = this->SeeWhole(inputs.Vectors(), exposure);
+    }
     if (automatic || this->AutoExposure == EACH_PICTURE)
     {
-      this->FirstExposure = this->AutoExposure == FIRST_PICTURE ? toneMapping.exposure : 0.0;
+      this->FirstExposure = this->AutoExposure == FIRST_PICTURE ? shot->exposure : 0.0;
     }
-    const std::vector<float> opaque;
-    auto color = tyndall::ToneMap(picture.radiance, this->ShowBackground ? opaque : picture.alpha, toneMapping);
-
-    vtkImageData* output = vtkImageData::GetData(outputs);
-    WritePicture(std::move(picture), std::move(color), output);
-    const std::string device = scene->key.device->Name();
-    const std::vector<std::string>& leftOut = scene->caster->LeftOut();
-    tyndall::AddFact(output, "exposure", std::vector<double>{ toneMapping.exposure });
-    const std::vector<std::string> settings = tyndall::Words(SettingsOf(this, toneMapping.exposure));
-    tyndall::AddFact(output, "left_out", leftOut);
-    tyndall::AddFact(output, "settings_used", settings);
-    tyndall::AddFact(output, "device", std::vector<std::string>{ device });
-    tyndall::KeepWhatIsAskedFor(outputs->GetInformationObject(0), output);
-
-    this->UsedExposure = toneMapping.exposure;
-    this->DeviceName = device;
-    this->LeftOut = tyndall::Lines(leftOut);
-    this->SettingsUsed = tyndall::Lines(settings);
-    this->Kept = std::move(scene);
-    this->Seconds = seconds;
-  });
+    this->HandOn(std::move(*shot), outputs);
+  };
+  return tyndall::GuardedInPieces(this, request, given, outputs, MEDIUM, work);
 }
 
 bool vtkMediumRayCaster::See(const tyndall::AskedView& view, tyndall::Picture& picture)
@@ -448,6 +715,7 @@ bool vtkMediumRayCaster::See(const tyndall::AskedView& view, tyndall::Picture& p
     settings.imageSize = view.size;
     const tyndall::GridBlock* const block = view.block ? &*view.block : nullptr;
     std::unique_ptr<Scene> scene = this->FindScene(this->GetExecutive()->GetInputInformation(), settings, block);
+    this->SayDoubts(*scene);
     seen = !block || scene->caster->CastsBlocks();
     if (seen)
     {

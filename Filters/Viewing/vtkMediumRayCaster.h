@@ -5,8 +5,13 @@
 #include "vtkLitImageAlgorithm.h"
 #include "vtkTyndallModule.h" // for export macro
 
+#include <array>
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
+
+class vtkMultiProcessController;
 
 namespace tyndall
 {
@@ -16,6 +21,7 @@ struct GridBlock;
 struct InputsKey;
 struct Picture;
 struct ViewSettings;
+class WholeInputs;
 }
 
 /**
@@ -89,7 +95,10 @@ struct ViewSettings;
  * While CameraPosition and CameraFocalPoint are equal, as they are untouched, the camera frames the whole medium, from
  * above, z upwards.
  *
- * In a parallel pipeline every rank renders the whole picture and hands on the piece it was asked for.
+ * Where ranks of a parallel pipeline run it together each asks for its piece of the medium with a layer of its neighbours'
+ * cells, casts that, and hands on the part of the picture that it was asked for: that of the whole, to rounding. What
+ * rays of pieces do not find (bent rays, a table, shadow rays, angular moments, light at the surface of thick voxels) takes
+ * the whole on every rank, put together where a source gives pieces alone.
  *
  * @sa vtkLightPropagationMaps vtkPhotonMarcher vtkLightRig vtkEnvironmentReader
  * @par Thanks
@@ -342,7 +351,16 @@ private:
     tyndall::ViewSettings settings, const tyndall::GridBlock* block);
   std::unique_ptr<Scene> FindScene(
     vtkInformationVector** inputs, const tyndall::ViewSettings& settings, const tyndall::GridBlock* block = nullptr);
-  tyndall::Picture Expose(Scene& scene, double& exposure);
+  void SayDoubts(Scene& scene);
+
+  struct Shot;
+  struct Taking;
+  void Expose(const Taking& taking, Shot& shot);
+  Shot SeeWhole(vtkInformationVector** inputs, double exposure);
+  std::vector<double> PropertiesAsNumbers();
+  std::optional<Shot> SeeBlocks(
+    vtkMultiProcessController* ranks, tyndall::WholeInputs& inputs, double exposure, const std::array<int, 6>& asked);
+  void HandOn(Shot&& shot, vtkInformationVector* outputs);
 
   int Quality = USUAL;
   int ImageSize[2];
@@ -371,6 +389,7 @@ private:
   double TableReflectance;
   bool LeaveOut;
   int MemoryBudget = 0;
+  bool NeedsWhole = false; ///< what was seen last cannot be seen piece by piece
 
   std::shared_ptr<tyndall::Device> Within; ///< MemoryBudget, where there is one
   std::unique_ptr<Scene> Kept;             ///< of the last picture, if it succeeded

@@ -191,11 +191,13 @@ int Guarded(vtkAlgorithm* filter, vtkInformationVector* outputs, const std::func
 int Guarded(vtkAlgorithm* filter, vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs,
   const std::function<void(vtkInformationVector** inputs)>& work)
 {
-  return Guarded(filter, request, given, outputs, WorkOnPieces(), work);
+  return GuardedInPieces(filter, request, given, outputs, WholeInputs::NoPort,
+    [&](vtkMultiProcessController*, WholeInputs& inputs) { work(inputs.Vectors()); });
 }
 
-int Guarded(vtkAlgorithm* filter, vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs,
-  const WorkOnPieces& onPieces, const std::function<void(vtkInformationVector** inputs)>& work)
+int GuardedInPieces(vtkAlgorithm* filter, vtkInformation* request, vtkInformationVector** given,
+  vtkInformationVector* outputs, int port,
+  const std::function<void(vtkMultiProcessController* ranks, WholeInputs& inputs)>& work)
 {
   vtkMultiProcessController* const ranks = RanksTogether(request, outputs);
   return GuardedOn(ranks, filter, outputs, [&] {
@@ -207,17 +209,22 @@ int Guarded(vtkAlgorithm* filter, vtkInformation* request, vtkInformationVector*
         CheckDuplicates(filter, outputs);
       }
     });
-    if (onPieces.work)
-    {
-      WholeInputs others(ranks, filter, given, outputs, onPieces.port);
-      if (onPieces.work(ranks, others.Vectors()))
-      {
-        return;
-      }
-    }
-    WholeInputs whole(ranks, filter, given, outputs);
-    work(whole.Vectors());
+    WholeInputs inputs(ranks, filter, given, outputs, port);
+    work(ranks, inputs);
   });
+}
+
+int Guarded(vtkAlgorithm* filter, vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs,
+  const WorkOnPieces& onPieces, const std::function<void(vtkInformationVector** inputs)>& work)
+{
+  return GuardedInPieces(
+    filter, request, given, outputs, onPieces.port, [&](vtkMultiProcessController* ranks, WholeInputs& inputs) {
+      if (!onPieces.work(ranks, inputs.Vectors()))
+      {
+        inputs.MakeWhole();
+        work(inputs.Vectors());
+      }
+    });
 }
 
 bool AreEmptied(vtkInformationVector* outputs)

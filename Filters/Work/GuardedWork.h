@@ -12,6 +12,8 @@ class vtkMultiProcessController;
 /// Work of a filter that may fail, be stopped, and tells how far it is.
 namespace tyndall
 {
+class WholeInputs;
+
 /// Reports to the filter's progress; says stop when the filter is asked to abort, on this rank or another.
 Monitor MonitorOf(vtkAlgorithm* filter);
 
@@ -34,7 +36,15 @@ int Guarded(vtkAlgorithm* filter, vtkInformationVector* outputs, const std::func
 int Guarded(vtkAlgorithm* filter, vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs,
   const std::function<void(vtkInformationVector** inputs)>& work);
 
-/// Work of a filter on the piece of an input that a rank has, without any rank having all of it.
+/// The same of a filter that may do with pieces of one of its inputs where ranks run it together.
+/// @param port  of that
+/// @param work  is given the ranks (null: there is one) and the inputs, those of that port as they are: it may make
+///   them whole
+int GuardedInPieces(vtkAlgorithm* filter, vtkInformation* request, vtkInformationVector** given,
+  vtkInformationVector* outputs, int port,
+  const std::function<void(vtkMultiProcessController* ranks, WholeInputs& inputs)>& work);
+
+/// Work on the piece of an input that a rank has, without any rank having all of it.
 struct WorkOnPieces
 {
   int port = 0; ///< the input of which ranks have pieces; the others are whole

@@ -25,7 +25,9 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
+#include <numeric>
 #include <string>
+#include <utility>
 
 namespace tyndall
 {
@@ -295,12 +297,12 @@ vtkSmartPointer<vtkDataObject> WholeOf(
 }
 
 /// Where one of several ranks looks at the whole alone, nobody can help it with what its source does not give it.
-void RequireAll(vtkAlgorithm* filter, vtkInformationVector** given, int asGiven)
+void RequireAll(vtkAlgorithm* filter, vtkInformationVector** given)
 {
   vtkMultiProcessController* const all = vtkMultiProcessController::GetGlobalController();
   for (int port = 0; all && all->GetNumberOfProcesses() > 1 && port < filter->GetNumberOfInputPorts(); ++port)
   {
-    for (int i = 0; port != asGiven && i < given[port]->GetNumberOfInformationObjects(); ++i)
+    for (int i = 0; i < given[port]->GetNumberOfInformationObjects(); ++i)
     {
       const Glance glance = GlanceAt(given[port]->GetInformationObject(i));
       ValueBox both = PointBoxOf(glance.extent);
@@ -314,7 +316,7 @@ void RequireAll(vtkAlgorithm* filter, vtkInformationVector** given, int asGiven)
   }
 }
 
-RankGlance GlanceAtAll(vtkAlgorithm* filter, vtkInformationVector** given, vtkInformationVector* outputs, int asGiven)
+RankGlance GlanceAtAll(vtkAlgorithm* filter, vtkInformationVector** given, vtkInformationVector* outputs)
 {
   RankGlance rank;
   for (int port = 0; port < filter->GetNumberOfInputPorts(); ++port)
@@ -324,7 +326,7 @@ RankGlance GlanceAtAll(vtkAlgorithm* filter, vtkInformationVector** given, vtkIn
     {
       vtkInformation* const connection = given[port]->GetInformationObject(i);
       rank.inputs.push_back(GlanceAt(connection));
-      rank.inputs.back().key = port == asGiven ? 0 : ContentKey(vtkDataObject::GetData(connection));
+      rank.inputs.back().key = ContentKey(vtkDataObject::GetData(connection));
     }
   }
   for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
@@ -366,41 +368,80 @@ void NoteParts(const std::vector<RankGlance>& all, int rank, vtkInformationVecto
 }
 }
 
+struct WholeInputs::Seen
+{
+  vtkMultiProcessController* ranks;
+  vtkInformationVector** given;
+  int inPieces;
+  std::vector<RankGlance> all;
+};
+
 WholeInputs::WholeInputs(vtkMultiProcessController* ranks, vtkAlgorithm* filter, vtkInformationVector** given,
-  vtkInformationVector* outputs, int asGiven)
+  vtkInformationVector* outputs, int inPieces)
 {
   const int ports = filter->GetNumberOfInputPorts();
+  this->Ports.assign(given, given + ports);
+  this->Kept.resize(static_cast<std::size_t>(ports));
   if (ranks == nullptr)
   {
-    RequireAll(filter, given, asGiven);
+    RequireAll(filter, given);
     NoteParts({}, 0, outputs);
-    this->Ports.assign(given, given + ports);
     return;
   }
   RankGlance own;
-  OnAllRanks(ranks, [&] { own = GlanceAtAll(filter, given, outputs, asGiven); });
-  const std::vector<RankGlance> all = Share(ranks, own);
-  NoteParts(all, ranks->GetLocalProcessId(), outputs);
-  std::size_t connection = 0;
+  OnAllRanks(ranks, [&] { own = GlanceAtAll(filter, given, outputs); });
+  this->AllSeen = std::make_unique<Seen>(Seen{ ranks, given, inPieces, Share(ranks, own) });
+  NoteParts(this->AllSeen->all, ranks->GetLocalProcessId(), outputs);
   for (int port = 0; port < ports; ++port)
   {
-    this->Kept.push_back(vtkSmartPointer<vtkInformationVector>::New());
-    this->Ports.push_back(this->Kept.back());
-    for (int i = 0; i < given[port]->GetNumberOfInformationObjects(); ++i, ++connection)
+    if (port != inPieces)
     {
-      OnRanks glances;
-      std::for_each(all.begin(), all.end(), [&](const RankGlance& of) { glances.push_back(of.inputs[connection]); });
-      vtkInformation* const information = given[port]->GetInformationObject(i);
-      vtkDataObject* const data = vtkDataObject::GetData(information);
-      vtkSmartPointer<vtkDataObject> whole = data;
-      if (port != asGiven)
-      {
-        whole = WholeOf(ranks, data, glances, Named(port));
-      }
-      vtkNew<vtkInformation> replaced;
-      replaced->Set(vtkDataObject::DATA_OBJECT(), whole);
-      this->Ports.back()->Append(whole == data ? information : replaced.Get());
+      this->MakeWhole(port);
     }
+  }
+}
+
+WholeInputs::~WholeInputs() = default;
+
+void WholeInputs::Replace(vtkDataObject* data)
+{
+  const auto port = static_cast<std::size_t>(this->AllSeen->inPieces);
+  vtkNew<vtkInformation> information;
+  information->Set(vtkDataObject::DATA_OBJECT(), data);
+  this->Kept[port] = vtkSmartPointer<vtkInformationVector>::New();
+  this->Kept[port]->Append(information);
+  this->Ports[port] = this->Kept[port];
+}
+
+void WholeInputs::MakeWhole()
+{
+  if (this->AllSeen && this->AllSeen->inPieces != NoPort)
+  {
+    this->MakeWhole(std::exchange(this->AllSeen->inPieces, NoPort));
+  }
+}
+
+void WholeInputs::MakeWhole(int port)
+{
+  const Seen& seen = *this->AllSeen;
+  const std::vector<int>& connections = seen.all[0].connections;
+  const auto number = static_cast<std::size_t>(port);
+  const int before = std::accumulate(connections.begin(), connections.begin() + port, 0);
+  this->Kept[number] = vtkSmartPointer<vtkInformationVector>::New();
+  this->Ports[number] = this->Kept[number];
+  for (int i = 0; i < connections[number]; ++i)
+  {
+    OnRanks glances;
+    for (const RankGlance& of : seen.all)
+    {
+      glances.push_back(of.inputs[static_cast<std::size_t>(before + i)]);
+    }
+    vtkInformation* const information = seen.given[port]->GetInformationObject(i);
+    vtkDataObject* const data = vtkDataObject::GetData(information);
+    const vtkSmartPointer<vtkDataObject> whole = WholeOf(seen.ranks, data, glances, Named(port));
+    vtkNew<vtkInformation> replaced;
+    replaced->Set(vtkDataObject::DATA_OBJECT(), whole);
+    this->Kept[number]->Append(whole == data ? information : replaced.Get());
   }
 }
 }

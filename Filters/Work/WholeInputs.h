@@ -3,9 +3,11 @@
 #include "vtkNew.h"
 #include "vtkSmartPointer.h"
 
+#include <memory>
 #include <vector>
 
 class vtkAlgorithm;
+class vtkDataObject;
 class vtkInformation;
 class vtkInformationVector;
 class vtkMultiProcessController;
@@ -24,18 +26,32 @@ namespace tyndall
 class WholeInputs
 {
 public:
+  static constexpr int NoPort = -1;
+
   /// @param ranks  null: this process is alone, and has what it is given
   /// @param given  by port
-  /// @param asGiven  port that is left as it is; -1: none
   /// @param outputs  notes for KeepWhatIsAskedFor what each rank is asked for
+  /// @param inPieces  a port that stays as it is given until MakeWhole
   /// @throws InvalidInput on all ranks with the same words where pieces make no whole
   WholeInputs(vtkMultiProcessController* ranks, vtkAlgorithm* filter, vtkInformationVector** given,
-    vtkInformationVector* outputs, int asGiven = -1);
+    vtkInformationVector* outputs, int inPieces = NoPort);
+  ~WholeInputs();
 
   /// By port.
   vtkInformationVector** Vectors() { return this->Ports.data(); }
 
+  /// Data instead of those of the port that was left in pieces; until MakeWhole.
+  void Replace(vtkDataObject* data);
+
+  /// Of the port that was left in pieces. All ranks have to call it.
+  /// @throws InvalidInput as the constructor
+  void MakeWhole();
+
 private:
+  struct Seen; ///< of the inputs, on all ranks
+  void MakeWhole(int port);
+
+  std::unique_ptr<Seen> AllSeen; ///< null: this process is alone
   std::vector<vtkSmartPointer<vtkInformationVector>> Kept;
   std::vector<vtkInformationVector*> Ports;
 };

@@ -178,10 +178,6 @@ Picture MediumRayCaster::Render(
   }
 
   const bool byMoments = this->Traits.ShowsMoments();
-  Picture picture;
-  picture.width = this->Settings.imageSize[0];
-  picture.height = this->Settings.imageSize[1];
-  picture.farDepth = view.marching.s[2];
   this->Rays.Reserve(this->Settings, ends, block != nullptr);
   if (byMoments && !this->Behind.IsSky())
   {
@@ -189,15 +185,60 @@ Picture MediumRayCaster::Render(
   }
   this->Rays.Cast(this->Settings, view, OpticsInfoOf(this->Settings, this->Traits),
     prepares && this->Traits.shadowRays ? 0.5 : 0.0, byMoments ? 0.8 : 1.0, monitor);
-  picture.radiance = this->Rays.ReadRadiance();
-  picture.transmittance = this->Rays.ReadTransmittance();
+  Picture picture = this->Read(view);
   if (byMoments)
   {
     this->AddUnscattered(view, monitor, picture.radiance);
+    picture.sceneTransmittance = this->Rays.ReadTransmittance();
+    picture.alpha = this->Rays.ReadAlpha();
+    picture.depth = this->Rays.ReadDepth();
   }
-  picture.sceneTransmittance = byMoments ? this->Rays.ReadTransmittance() : picture.transmittance;
+  return picture;
+}
+
+/// What was cast.
+Picture MediumRayCaster::Read(const ViewInfo& view) const
+{
+  Picture picture;
+  picture.width = this->Settings.imageSize[0];
+  picture.height = this->Settings.imageSize[1];
+  picture.farDepth = view.marching.s[2];
+  picture.radiance = this->Rays.ReadRadiance();
+  picture.transmittance = this->Rays.ReadTransmittance();
+  picture.sceneTransmittance = picture.transmittance;
   picture.alpha = this->Rays.ReadAlpha();
   picture.depth = this->Rays.ReadDepth();
   return picture;
+}
+
+bool MediumRayCaster::CastsBlocksExactly() const
+{
+  return this->CastsBlocks() && !this->Traits.shadowRays && !this->Traits.ShowsMoments() &&
+    !this->Behind.LooksAtSurface();
+}
+
+MediumRayCaster::SharedNumbers MediumRayCaster::SharedByBlocks() const
+{
+  const ViewedPhase& phase = this->Traits.phase;
+  SharedNumbers shared = { this->Traits.index.least, this->Traits.index.largest, 1.0 * phase.formula,
+    1.0 * phase.channels, phase.varies ? 1.0 : 0.0, this->Traits.knowsFlow ? 1.0 : 0.0 };
+  auto next = shared.begin() + 6;
+  for (const cl_float4& parameter : { phase.parameters.first, phase.parameters.second, phase.parameters.part })
+  {
+    for (int c = 0; c < 3; ++c)
+    {
+      *next++ = phase.varies ? 0.0 : parameter.s[c];
+    }
+  }
+  return shared;
+}
+
+Picture MediumRayCaster::RenderBehind(
+  const Camera& camera, const GridBlock& block, const std::vector<float>& starts, const Monitor& monitor)
+{
+  const ViewInfo view = this->Rays.ViewOf(camera, this->Settings, &block);
+  this->Rays.Reserve(this->Settings, {}, true, starts);
+  this->Rays.Cast(this->Settings, view, OpticsInfoOf(this->Settings, this->Traits), 0.0, 1.0, monitor);
+  return this->Read(view);
 }
 }

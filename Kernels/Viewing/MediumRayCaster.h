@@ -17,6 +17,7 @@
 #include "Viewing/Scene/ViewTraits.h"
 #include "Viewing/Sources/SeenSources.h"
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -123,6 +124,25 @@ public:
   /// the block's faces.
   bool CastsBlocks() const { return this->Traits.OnlyStraight(); }
 
+  /// Whether they do to rounding: no lamp throws shadows from block to block, and nothing is shown that takes more than
+  /// a ray's own steps (light at the surface of thick voxels, what comes from behind beside angular moments).
+  bool CastsBlocksExactly() const;
+
+  /// What has to be the same of all blocks of a grid where they are cast one by one: refractive index and phase
+  /// function.
+  using SharedNumbers = std::array<double, 15>;
+  SharedNumbers SharedByBlocks() const;
+
+  /// After Render of a block from the same camera, where CastsBlocksExactly: its picture behind other blocks. Rays end
+  /// where little light is left of all that they have lost, and depth is where half of that is.
+  /// @param starts  what comes through blocks before, 3 per pixel; where that is 0 nothing is looked for
+  /// @throws Aborted
+  Picture RenderBehind(
+    const Camera& camera, const GridBlock& block, const std::vector<float>& starts, const Monitor& monitor = {});
+
+  /// At which rays end.
+  double MinimumTransmittance() const { return this->Settings.minimumTransmittance; }
+
   /// What the scene did not need, in words.
   const std::vector<std::string>& LeftOut() const { return this->Omitted; }
 
@@ -132,6 +152,7 @@ public:
 private:
   std::vector<std::string> LeftOutNow() const;
   void PrepareSources(const Camera& camera, const Monitor& monitor);
+  Picture Read(const ViewInfo& view) const;
   void AddUnscattered(ViewInfo view, const Monitor& monitor, std::vector<float>& radiance);
 
   bool LampsShine = false;

@@ -97,14 +97,13 @@ void Check(const ToneMapping& settings)
   }
 }
 
-double AutomaticExposure(const std::vector<float>& radiance)
+std::vector<int> LuminanceCounts(const std::vector<float>& radiance)
 {
-  // How many pixels have which luminance, by the leading bits of the float: 256 classes for every doubling.
-  constexpr int Shift = 23 - 8;
-  std::vector<std::uint32_t> count((1u << (31 - Shift)), 0);
+  constexpr int Shift = 23 - 8; // to the leading bits of a float
+  std::vector<int> count((1u << (31 - Shift)), 0);
   std::mutex mutex;
   InThreads(radiance.size() / 3, PixelsOfThread, [&](std::size_t begin, std::size_t end) {
-    std::vector<std::uint32_t> here(count.size(), 0);
+    std::vector<int> here(count.size(), 0);
     for (std::size_t i = 3 * begin; i < 3 * end; i += 3)
     {
       const float luminance = 0.2126f * radiance[i] + 0.7152f * radiance[i + 1] + 0.0722f * radiance[i + 2];
@@ -116,8 +115,13 @@ double AutomaticExposure(const std::vector<float>& radiance)
       }
     }
     const std::lock_guard<std::mutex> lock(mutex);
-    std::transform(here.begin(), here.end(), count.begin(), count.begin(), std::plus<std::uint32_t>());
+    std::transform(here.begin(), here.end(), count.begin(), count.begin(), std::plus<int>());
   });
+  return count;
+}
+
+double AutomaticExposure(const std::vector<int>& count)
+{
   const double lit = std::accumulate(count.begin(), count.end(), 0.0);
   const auto logarithm = [](std::size_t entry) { // of the class's middle
     return static_cast<double>(entry >> 8) - 127.0 + std::log2(1.0 + ((entry & 255) + 0.5) / 256.0);
@@ -144,6 +148,11 @@ double AutomaticExposure(const std::vector<float>& radiance)
     }
   }
   return counted > 0.0 ? 0.18 * std::exp2(-sum / counted) : 1.0;
+}
+
+double AutomaticExposure(const std::vector<float>& radiance)
+{
+  return AutomaticExposure(LuminanceCounts(radiance));
 }
 
 double ExposedAs(double shown, ToneCurve curve)

@@ -30,6 +30,13 @@ void Check(const ToneMapping& settings);
 /// @param radiance  3 per pixel, not negative
 double AutomaticExposure(const std::vector<float>& radiance);
 
+/// How many pixels have which luminance: 256 classes for every doubling. Of parts of a picture they add up.
+/// @param radiance  3 per pixel, not negative
+std::vector<int> LuminanceCounts(const std::vector<float>& radiance);
+
+/// The same exposure, of all that was counted.
+double AutomaticExposure(const std::vector<int>& luminanceCounts);
+
 /// The radiance times exposure that a screen shows as a channel of this value: ToneMap makes 255 times that of it.
 /// @param shown  [0, 1], encoded as sRGB
 double ExposedAs(double shown, ToneCurve curve);

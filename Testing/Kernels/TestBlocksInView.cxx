@@ -190,6 +190,78 @@ TEST_F(BlocksInView, ShowWhatIsBehindOnce)
   }
 }
 
+namespace
+{
+/// The picture that ranks make together: each looks again where what is before its block changes what it sees.
+Picture Together(Device& device, const Scene& scene, const std::vector<GridBlock>& blocks, std::size_t& lookedAgain)
+{
+  const Camera camera = scene.Framed();
+  const std::vector<int> order = FrontToBack(blocks, camera);
+  const std::vector<BlockPixels> first = SeenOf(device, scene, blocks, camera);
+  std::vector<BlockPixels> seen = first;
+  Picture own;
+  for (std::size_t i = 0; i < order.size(); ++i)
+  {
+    const GridBlock& block = blocks[order[i]];
+    MediumRayCaster caster = PartOf(scene, block).Caster(device);
+    own = caster.Render(camera, {}, {}, &block);
+    const std::vector<float> starts =
+      StartsBehind(first, i, { own.width, own.height }, scene.settings.minimumTransmittance);
+    if (!starts.empty())
+    {
+      TakeFrom(caster.RenderBehind(camera, block, starts), starts, seen[i]);
+    }
+    lookedAgain += std::count_if(starts.begin(), starts.end(), [](float start) { return start > 0.0f; });
+  }
+  return PictureOfAll(seen, { { 0, 0 }, { own.width, own.height } }, own.farDepth);
+}
+}
+
+TEST_F(BlocksInView, HaveTheAlphaAndDepthOfTheWhole)
+{
+  for (int components : { 1, 3 })
+  {
+    for (double minimum : { 0.0, 0.05 }) // rays end early: so do they in the whole
+    {
+      Scene scene = Cloud(components);
+      scene.settings.showBackground = components == 3;
+      scene.settings.minimumTransmittance = minimum;
+      const Picture whole = scene.Seen(this->GetDevice());
+      std::size_t lookedAgain = 0;
+      for (const auto& cuts : Cuts)
+      {
+        SCOPED_TRACE(testing::Message() << components << ", " << minimum << ", " << testing::PrintToString(cuts));
+        const Picture together = Together(this->GetDevice(), scene, Cut(scene.grid, cuts), lookedAgain);
+        EXPECT_EQ(together.farDepth, whole.farDepth);
+        EXPECT_LT(LargestDifference(together.radiance, whole.radiance), 1e-5);
+        EXPECT_LT(LargestDifference(together.alpha, whole.alpha), 1e-5);
+        EXPECT_LT(LargestDifference(together.depth, whole.depth), 1e-5 * whole.farDepth);
+      }
+      EXPECT_GT(lookedAgain, 100u);
+      const auto lost =
+        std::count_if(whole.depth.begin(), whole.depth.end(), [&](float depth) { return depth < whole.farDepth; });
+      EXPECT_GT(lost, 100);
+    }
+  }
+}
+
+TEST_F(BlocksInView, AreExactWhereNothingCrossesThem)
+{
+  Scene scene = Cloud(1);
+  EXPECT_TRUE(scene.Caster(this->GetDevice()).CastsBlocksExactly());
+  Scene lit = scene;
+  lit.illumination.lights.emplace_back();
+  lit.settings.shadowRays = true;
+  EXPECT_FALSE(lit.Caster(this->GetDevice()).CastsBlocksExactly());
+  Scene thick = scene;
+  thick.surface.resize(BoxFaceCellCount(scene.grid) * SurfaceCosines.size(), 0.2f);
+  EXPECT_FALSE(thick.Caster(this->GetDevice()).CastsBlocksExactly());
+  EXPECT_EQ(scene.Caster(this->GetDevice()).SharedByBlocks(), lit.Caster(this->GetDevice()).SharedByBlocks());
+  Scene other = scene;
+  other.ior = scene.Everywhere(1.5);
+  EXPECT_NE(scene.Caster(this->GetDevice()).SharedByBlocks(), other.Caster(this->GetDevice()).SharedByBlocks());
+}
+
 TEST_F(BlocksInView, EndWhereRaysEnd)
 {
   const Scene scene = Cloud(1);
@@ -251,8 +323,11 @@ std::vector<BlockPixels> PixelOfBlocks(const std::vector<BlockPixel>& frontToBac
 
 BlockPixel Grey(float radiance, float transmittance)
 {
-  return { { radiance, radiance, radiance }, { transmittance, transmittance, transmittance },
-    { transmittance, transmittance, transmittance } };
+  BlockPixel pixel;
+  pixel.radiance.fill(radiance);
+  pixel.transmittance.fill(transmittance);
+  pixel.seen.fill(transmittance);
+  return pixel;
 }
 
 /// As IceT lays pictures over each other.
@@ -330,6 +405,7 @@ TEST(ShownBlock, ShowsWhatIsBeforeAnOpaqueSurfaceInIt)
   picture.transmittance = { 0.6f, 0.6f, 0.6f };
   picture.sceneTransmittance = picture.transmittance;
   picture.alpha = { 0.4f };
+  picture.depth = { 1.0f };
   const auto blocks = PixelOfBlocks(column);
   const auto second = Over(ShownBlock(blocks, 1, { 1, 1 }, tones).Pixels(picture, { true }), surface);
   const auto found = Over(ShownBlock(blocks, 0, { 1, 1 }, tones).Pixels(), second);

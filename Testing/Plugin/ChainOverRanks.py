@@ -1,4 +1,5 @@
-"""A whole chain over two ranks: each has its pieces of the light and the picture, equal to those of the whole.
+"""A whole chain over two ranks: each has its pieces of the light and the picture, equal to those of the whole, the picture to
+rounding: each rank casts its piece of the medium.
 
     pvbatch --symmetric ChainOverRanks.py [MODULE]    the module that makes the chain; whole_chain if it is not said
 """
@@ -19,7 +20,8 @@ sky = os.path.join(os.environ["TYNDALL_TEST_OUTPUT"], "ChainOverRanks%d%s.hdr" %
 chain.write_sky(sky)
 
 
-def check(proxy, association, name):
+def check(proxy, association, name, tolerance):
+    """@param tolerance  of the largest value"""
     algorithm = proxy.GetClientSideObject()
     piece = vtkImageData()
     piece.DeepCopy(algorithm.GetOutputDataObject(0))
@@ -32,9 +34,11 @@ def check(proxy, association, name):
     found = piece.GetAttributes(association).GetArray(name)
     wanted = expected.GetAttributes(association).GetArray(name)
     assert found.GetNumberOfValues() == wanted.GetNumberOfValues() > 0
-    assert all(found.GetValue(i) == wanted.GetValue(i) for i in range(found.GetNumberOfValues())), name
+    apart = max(abs(found.GetValue(i) - wanted.GetValue(i)) for i in range(found.GetNumberOfValues()))
+    print(name, "differs by", apart, flush=True)
+    assert apart <= tolerance * wanted.GetMaxNorm(), (name, apart)
 
 
 light = chain.solve(sky)
-check(light, vtkImageData.CELL, "fluence")
-check(chain.render(light), vtkImageData.POINT, "radiance")
+check(light, vtkImageData.CELL, "fluence", 0)
+check(chain.render(light), vtkImageData.POINT, "radiance", 1e-5)

@@ -19,14 +19,12 @@ std::vector<cl_float4> LightOnTable(
     traits.bends ? ior : Field{}, settings.tableFace, fromBelow);
 }
 
-/// Empty where there is none, and where not all light is seen plainly.
-std::vector<cl_float4> LightAtSurface(
-  const Medium& medium, const SolvedLight& light, double stepSize, const ViewTraits& traits)
+/// Whether it is known, and all light is seen plainly.
+bool ShowsSurface(const SolvedLight& light, const ViewTraits& traits)
 {
   const bool plain = !traits.singleScatteringOnly && !traits.shadowRays && !traits.knowsFlow &&
     !traits.ShowsMoments() && traits.OnlyStraight();
-  return plain && light.surface.values && light.fluence.values ? SurfaceLight(medium, light, stepSize)
-                                                               : std::vector<cl_float4>();
+  return plain && light.surface.values && light.fluence.values;
 }
 }
 
@@ -56,7 +54,9 @@ Backdrop::Backdrop(Device& device, const Medium& medium, const SolvedLight& ligh
   this->GroundBits = settings.showBackground ? GroundFaces(light) : 0;
   this->GroundCells = Buffer<cl_float4>(
     device, this->GroundBits != 0 ? GroundLight(traits.grid, light) : std::vector<cl_float4>(), "light on the ground");
-  this->SurfaceCells =
-    Buffer<cl_float4>(device, LightAtSurface(medium, light, settings.stepSize, traits), "light at the surface");
+  this->SeesSurface = ShowsSurface(light, traits);
+  this->SurfaceCells = Buffer<cl_float4>(device,
+    this->SeesSurface ? tyndall::SurfaceLight(medium, light, settings.stepSize) : std::vector<cl_float4>(),
+    "light at the surface");
 }
 }

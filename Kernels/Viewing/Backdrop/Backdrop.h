@@ -33,11 +33,13 @@ public:
   int FacesOfGround() const { return this->GroundBits; }                ///< a bit for each
   const Buffer<cl_float4>& Ground() const { return this->GroundCells; } ///< see GroundLight.h
   const Buffer<cl_float4>& Table() const { return this->TableCells; }   ///< see TableLight.h
+  /// Whether light at the surface is looked for, though there may be none.
+  bool LooksAtSurface() const { return this->SeesSurface; }
   bool HasSurfaceLight() const { return this->SurfaceCells.Size() > 0; }
   const Buffer<cl_float4>& SurfaceLight() const { return this->SurfaceCells; } ///< see SurfaceLight.h
 
 private:
-  bool UnderSky = false;
+  bool UnderSky = false, SeesSurface = false;
   Rgb Sky = {};
   int Width = 0, Height = 0;
   Buffer<cl_float4> Pixels, SharpPixels, TableCells, GroundCells, SurfaceCells;

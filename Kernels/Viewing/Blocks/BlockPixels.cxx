@@ -4,6 +4,25 @@
 
 namespace tyndall
 {
+namespace
+{
+constexpr float Half = 0.5f; ///< of the light: where it is lost is the depth
+
+/// Calls act(column, row, number) for each pixel of a rectangle.
+template <class Act>
+void ForPixels(const PixelRect& rect, const Act& act)
+{
+  std::size_t number = 0;
+  for (int row = rect.begin[1]; row < rect.end[1]; ++row)
+  {
+    for (int column = rect.begin[0]; column < rect.end[0]; ++column, ++number)
+    {
+      act(column, row, number);
+    }
+  }
+}
+}
+
 PixelRect Overlap(const PixelRect& a, const PixelRect& b)
 {
   PixelRect common;
@@ -24,6 +43,8 @@ BlockPixel PixelOf(const Picture& picture, std::size_t pixel)
     found.transmittance[c] = picture.transmittance[3 * pixel + c];
     found.seen[c] = picture.sceneTransmittance[3 * pixel + c];
   }
+  found.open = picture.alpha[pixel] < 1.0f ? 1.0f : 0.0f;
+  found.depth = picture.depth[pixel];
   return found;
 }
 
@@ -46,13 +67,9 @@ BlockPixels SeenPart(const Picture& picture)
   BlockPixels seen;
   seen.rect = rect.IsEmpty() ? PixelRect() : rect;
   seen.pixels.reserve(seen.rect.Count());
-  for (int row = seen.rect.begin[1]; row < seen.rect.end[1]; ++row)
-  {
-    for (int column = seen.rect.begin[0]; column < seen.rect.end[0]; ++column)
-    {
-      seen.pixels.push_back(PixelOf(picture, static_cast<std::size_t>(row) * picture.width + column));
-    }
-  }
+  ForPixels(seen.rect, [&](int column, int row, std::size_t) {
+    seen.pixels.push_back(PixelOf(picture, static_cast<std::size_t>(row) * picture.width + column));
+  });
   return seen;
 }
 
@@ -61,32 +78,74 @@ BlockPixels PartIn(const PixelRect& rect, const BlockPixels& pixels)
   BlockPixels part;
   part.rect = Overlap(rect, pixels.rect);
   part.pixels.reserve(part.rect.Count());
-  for (int row = part.rect.begin[1]; row < part.rect.end[1]; ++row)
-  {
-    for (int column = part.rect.begin[0]; column < part.rect.end[0]; ++column)
-    {
-      part.pixels.push_back(pixels.At(column, row));
-    }
-  }
+  ForPixels(part.rect, [&](int column, int row, std::size_t) { part.pixels.push_back(pixels.At(column, row)); });
   return part;
+}
+
+std::vector<float> StartsBehind(
+  const std::vector<BlockPixels>& frontToBack, std::size_t own, const std::array<int, 2>& size, double minimum)
+{
+  std::vector<float> starts;
+  ForPixels(frontToBack[own].rect, [&](int column, int row, std::size_t) {
+    BlockPixel before;
+    for (std::size_t i = 0; i < own; ++i)
+    {
+      before.LayBefore(frontToBack[i].At(column, row));
+    }
+    BlockPixel behind = before;
+    behind.LayBefore(frontToBack[own].At(column, row));
+    const bool losesHalf = before.Left() > Half && behind.Left() <= Half;
+    if (before.Left() < 1.0f && (losesHalf || behind.MostLeft() <= minimum))
+    {
+      starts.resize(3 * static_cast<std::size_t>(size[0]) * size[1], 0.0f);
+      std::copy(before.seen.begin(), before.seen.end(),
+        starts.begin() + 3 * (static_cast<std::ptrdiff_t>(row) * size[0] + column));
+    }
+  });
+  return starts;
+}
+
+void TakeFrom(const Picture& again, const std::vector<float>& starts, BlockPixels& pixels)
+{
+  ForPixels(pixels.rect, [&](int column, int row, std::size_t number) {
+    const std::size_t pixel = static_cast<std::size_t>(row) * again.width + column;
+    const float* const start = starts.data() + 3 * pixel;
+    const float before = (start[0] + start[1] + start[2]) / 3.0f;
+    if (before > 0.0f)
+    {
+      pixels.pixels[number] = PixelOf(again, pixel);
+      if (before <= Half)
+      {
+        pixels.pixels[number].depth = BlockPixel::FarAway; // that is in a block before
+      }
+    }
+  });
+}
+
+Picture PictureOfAll(const std::vector<BlockPixels>& frontToBack, const PixelRect& rect, float farDepth)
+{
+  Picture picture;
+  picture.width = rect.IsEmpty() ? 0 : rect.end[0] - rect.begin[0];
+  picture.height = rect.IsEmpty() ? 0 : rect.end[1] - rect.begin[1];
+  picture.farDepth = farDepth;
+  picture.radiance.reserve(3 * rect.Count());
+  picture.alpha.reserve(rect.Count());
+  picture.depth.reserve(rect.Count());
+  ForPixels(rect, [&](int column, int row, std::size_t) {
+    BlockPixel all;
+    for (const BlockPixels& block : frontToBack)
+    {
+      all.LayBefore(block.At(column, row));
+    }
+    picture.radiance.insert(picture.radiance.end(), all.radiance.begin(), all.radiance.end());
+    picture.alpha.push_back(1.0f - all.Left());
+    picture.depth.push_back(std::min(all.depth, farDepth));
+  });
+  return picture;
 }
 
 std::vector<float> RadianceOfAll(const std::vector<BlockPixels>& frontToBack, const PixelRect& rect)
 {
-  std::vector<float> radiance;
-  radiance.reserve(3 * rect.Count());
-  for (int row = rect.begin[1]; row < rect.end[1]; ++row)
-  {
-    for (int column = rect.begin[0]; column < rect.end[0]; ++column)
-    {
-      BlockPixel all;
-      for (const BlockPixels& block : frontToBack)
-      {
-        all.LayBefore(block.At(column, row));
-      }
-      radiance.insert(radiance.end(), all.radiance.begin(), all.radiance.end());
-    }
-  }
-  return radiance;
+  return PictureOfAll(frontToBack, rect, BlockPixel::FarAway).radiance;
 }
 }

@@ -2,6 +2,7 @@
 
 #include "Viewing/Rays/Picture.h"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <vector>
@@ -32,10 +33,19 @@ struct BlockPixel
 {
   std::array<float, 3> radiance = {};                        ///< W / (length^2 sr)
   std::array<float, 3> transmittance = { 1.0f, 1.0f, 1.0f }; ///< of the radiance behind
-  std::array<float, 3> seen = { 1.0f, 1.0f, 1.0f };          ///< of the scene behind
+  std::array<float, 3> seen = { 1.0f, 1.0f, 1.0f };          ///< of the scene behind, through the medium
+  float open = 1.0f;                                         ///< 0 where the background is seen behind that
+  float depth = FarAway;                                     ///< as Picture::depth; there or farther: nowhere
 
-  /// Part of the scene behind that is not seen.
-  float Hidden() const { return 1.0f - (this->seen[0] + this->seen[1] + this->seen[2]) / 3.0f; }
+  static constexpr float FarAway = 1e30f;
+
+  /// Part of what is behind that the medium lets through.
+  float Left() const { return (this->seen[0] + this->seen[1] + this->seen[2]) / 3.0f; }
+
+  float MostLeft() const { return std::max({ this->seen[0], this->seen[1], this->seen[2] }); } ///< of any channel
+
+  /// Part of the scene behind that is not seen, background and all.
+  float Hidden() const { return 1.0f - this->open * this->Left(); }
 
   /// Adds what is behind this.
   void LayBefore(const BlockPixel& behind)
@@ -46,6 +56,8 @@ struct BlockPixel
       this->transmittance[c] *= behind.transmittance[c];
       this->seen[c] *= behind.seen[c];
     }
+    this->open *= behind.open;
+    this->depth = std::min(this->depth, behind.depth);
   }
 };
 
@@ -73,6 +85,22 @@ BlockPixels SeenPart(const Picture& picture);
 
 /// Their common part.
 BlockPixels PartIn(const PixelRect& rect, const BlockPixels& pixels);
+
+/// Where a block has to be looked at again, because of those before it: where rays lose half of their light in it but not
+/// in it alone (its own depth is not theirs), and where in it, or before, they have lost so much that they end.
+/// @param own      which of the blocks it is
+/// @param size     of the picture, pixels
+/// @param minimum  part of their light at which rays end
+/// @return what comes through the blocks before, 3 per pixel of the picture, there, and else 0. Empty: nowhere
+std::vector<float> StartsBehind(
+  const std::vector<BlockPixels>& frontToBack, std::size_t own, const std::array<int, 2>& size, double minimum);
+
+/// Takes those pixels from a picture that was made so.
+void TakeFrom(const Picture& again, const std::vector<float>& starts, BlockPixels& pixels);
+
+/// What all blocks show in a rectangle: radiance, alpha (of the medium, without the background) and depth.
+/// @param farDepth  of the pictures of blocks
+Picture PictureOfAll(const std::vector<BlockPixels>& frontToBack, const PixelRect& rect, float farDepth);
 
 /// The radiance of all blocks in a rectangle, 3 per pixel.
 std::vector<float> RadianceOfAll(const std::vector<BlockPixels>& frontToBack, const PixelRect& rect);

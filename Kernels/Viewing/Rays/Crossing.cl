@@ -49,12 +49,26 @@ typedef struct
   spectrum leftRest; // see add_to
   rgb radianceRest;
 #endif
+#if STARTS
+  rgb before; // what was left where the block begins
+#endif
 } light;
 
+inline real mean_of(rgb s)
+{
+  return (s.r + s.g + s.b) * (real)(1.0f / 3.0f);
+}
+
+// What is left since the ray came from the eye.
 inline real mean_left(light l)
 {
-#if COLOURED
-  return (l.left.r + l.left.g + l.left.b) * (real)(1.0f / 3.0f);
+#if STARTS && COLOURED
+  const rgb all = { l.before.r * l.left.r, l.before.g * l.left.g, l.before.b * l.left.b };
+  return mean_of(all);
+#elif STARTS
+  return mean_of(l.before) * l.left;
+#elif COLOURED
+  return mean_of(l.left);
 #else
   return l.left;
 #endif
@@ -62,23 +76,43 @@ inline real mean_left(light l)
 
 inline real most_left(light l)
 {
-#if COLOURED
+#if STARTS && COLOURED
+  return greater(greater(l.before.r * l.left.r, l.before.g * l.left.g), l.before.b * l.left.b);
+#elif STARTS
+  return greater(greater(l.before.r, l.before.g), l.before.b) * l.left;
+#elif COLOURED
   return greater(greater(l.left.r, l.left.g), l.left.b);
 #else
   return l.left;
 #endif
 }
 
-// What comes through of what other blocks have behind, `part` of it.
-inline rgb passed_of(light l, real part)
+// What comes through of what other blocks have behind.
+inline rgb passed_of(light l)
 {
 #if COLOURED
-  const rgb passed = { l.left.r * part, l.left.g * part, l.left.b * part };
+  return l.left;
 #else
-  const rgb passed = { l.left * part, l.left * part, l.left * part };
-#endif
+  const rgb passed = { l.left, l.left, l.left };
   return passed;
+#endif
 }
+
+#if STARTS
+// What blocks before this one let through.
+inline rgb starts_of(const ViewInfo* v, __global const float* starts, int column, int row)
+{
+  const integer pixel = nearest_pixels(v, column, row);
+  rgb part;
+#define FETCH(n)                                    \
+  LANE(part.r, n) = starts[3 * LANE(pixel, n)];     \
+  LANE(part.g, n) = starts[3 * LANE(pixel, n) + 1]; \
+  LANE(part.b, n) = starts[3 * LANE(pixel, n) + 2];
+  EACH_LANE(FETCH)
+#undef FETCH
+  return part;
+}
+#endif
 
 inline spectrum scaled(spectrum s, real factor)
 {

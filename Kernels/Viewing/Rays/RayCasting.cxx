@@ -38,7 +38,8 @@ ViewInfo RayCasting::ViewOf(const Camera& camera, const ViewSettings& settings, 
   return view;
 }
 
-void RayCasting::Reserve(const ViewSettings& settings, const std::vector<float>& ends, bool ofBlock)
+void RayCasting::Reserve(
+  const ViewSettings& settings, const std::vector<float>& ends, bool ofBlock, const std::vector<float>& starts)
 {
   const std::size_t pixels = static_cast<std::size_t>(settings.imageSize[0]) * settings.imageSize[1];
   if (this->Alpha.Size() != pixels)
@@ -65,6 +66,11 @@ void RayCasting::Reserve(const ViewSettings& settings, const std::vector<float>&
     this->Ends = Buffer<float>(this->TheDevice, ends.size(), "where rays end");
   }
   this->Ends.Write(ends.data());
+  if (this->Starts.Size() != starts.size())
+  {
+    this->Starts = Buffer<float>(this->TheDevice, starts.size(), "what comes through other blocks");
+  }
+  this->Starts.Write(starts.data());
 }
 
 std::string RayCasting::Options(const ViewSettings& settings) const
@@ -86,7 +92,8 @@ cl::Kernel RayCasting::Kernel(const ViewSettings& settings, bool ofBlock) const
   if (this->Traits.OnlyStraight())
   {
     return this->TheDevice.Kernel("cast_rays", kernel_source::StraightView,
-      this->Options(settings) + Define("SURFACE_LIGHT", this->Behind.HasSurfaceLight()) + Define("BLOCK", ofBlock));
+      this->Options(settings) + Define("SURFACE_LIGHT", this->Behind.HasSurfaceLight()) + Define("BLOCK", ofBlock) +
+        Define("STARTS", this->Starts.Size() > 0));
   }
   const int surface = this->Traits.Reflects(settings) ? static_cast<int>(settings.surfaceReflection) : 0;
   return this->TheDevice.Kernel("cast_bent_rays", kernel_source::BentView,
@@ -113,7 +120,8 @@ void RayCasting::Cast(
     if (this->Traits.OnlyStraight())
     {
       With(cast, view, s.Samples(), s.Extinctions(), s.Flow(), s.Glow(), s.Cosines(), this->Scene.phaseRows, s.Bricks(),
-        environment, b.Ground(), b.SurfaceLight(), this->Ends, this->Radiance, this->Alpha, this->Depth, this->Passed);
+        environment, b.Ground(), b.SurfaceLight(), this->Ends, this->Starts, this->Radiance, this->Alpha, this->Depth,
+        this->Passed);
     }
     else
     {

@@ -30,6 +30,7 @@ public:
     , Traits(traits)
     , Passed(device, 0, "what the block lets through")
     , Ends(device, 0, "where rays end")
+    , Starts(device, 0, "what comes through other blocks")
   {
   }
 
@@ -39,8 +40,10 @@ public:
 
   /// Takes the memory of a picture, and where its rays end (MediumRayCaster::Render); keeps it for the next of that
   /// size.
+  /// @param starts  of a block's rays: what comes through blocks before it, 3 per pixel; empty: all
   /// @throws InvalidInput for ends of another number than pixels; DeviceError if it does not fit
-  void Reserve(const ViewSettings& settings, const std::vector<float>& ends, bool ofBlock);
+  void Reserve(
+    const ViewSettings& settings, const std::vector<float>& ends, bool ofBlock, const std::vector<float>& starts = {});
 
   /// A picture of what was packed, and of what of the environment belongs to that.
   /// @param from, to  fractions done that are reported
@@ -63,6 +66,6 @@ private:
   const PackedSamples& Samples;
   const Backdrop& Behind;
   const ViewTraits& Traits;
-  Buffer<float> Radiance, Alpha, Depth, Passed, Ends;
+  Buffer<float> Radiance, Alpha, Depth, Passed, Ends, Starts;
 };
 }

@@ -3,6 +3,7 @@
 // The host gives
 //   SKIP_BRICKS  1: rays leap over bricks in which nothing extinguishes or shines
 //   BLOCK        1: the medium is a block of a larger grid
+//   STARTS       1: other blocks are before it, through which rays have come
 
 #include "Viewing/Backdrop/Background.cl"
 #include "Viewing/Backdrop/GroundLight.cl"
@@ -17,8 +18,9 @@ __kernel void cast_rays(ViewInfo v, __global const float4* restrict samples,
   __global const float4* restrict glow, __global const float4* restrict cosines,
   __global const float* restrict phase_rows, __global const char* restrict bricks,
   __global const float4* restrict environment, __global const float4* restrict ground,
-  __global const float4* restrict surface, __global const float* restrict ends, __global float* restrict radiance,
-  __global float* restrict alpha, __global float* restrict depth, __global float* restrict passed)
+  __global const float4* restrict surface, __global const float* restrict ends,
+  __global const float* restrict starts, __global float* restrict radiance, __global float* restrict alpha,
+  __global float* restrict depth, __global float* restrict passed)
 {
   const int column = (get_global_id(0) + v.picture.w) * PACKET_WIDTH;
   const int row = (get_global_id(1) + v.picture.z) * PACKET_HEIGHT;
@@ -56,6 +58,9 @@ __kernel void cast_rays(ViewInfo v, __global const float4* restrict samples,
   const real3 strides = strides_per_voxel(direction, step);
 #endif
   light l = unlit((real)1.0f);
+#if STARTS
+  l.before = starts_of(&v, starts, column, row);
+#endif
   crossed half_way = { (real)0.0f, (real)0.0f, (real)1.0f, (real)1.0f };
   for (int n = 0; n < steps;)
   {
@@ -105,9 +110,9 @@ __kernel void cast_rays(ViewInfo v, __global const float4* restrict samples,
   const real where = left > (real)0.5f ? (real)v.marching.z : (distance_to_half(half_way) + before) * seen.cosine;
   const canvas picture = { radiance, alpha, depth };
 #if BLOCK
-  // Behind the background there is no other block.
+  // Behind the background there is no other block: there alpha is 1.
   const real kept = sees_behind ? (real)(1.0f - v.background.w) : (real)1.0f;
-  paint_passed(&v, passed, column, row, passed_of(l, kept));
+  paint_passed(&v, passed, column, row, passed_of(l));
   paint(&v, picture, column, row, l.radiance, (real)1.0f - left * kept, where);
 #else
   paint(&v, picture, column, row, l.radiance, (real)1.0f - left, where);

@@ -63,13 +63,19 @@ inline camera_rays rays_through(const ViewInfo* v, int column, int row)
 
 #define ENDLESS 1e30f // a depth that no ray comes to
 
+// The pixels of a packet whose first is at (column, row); where the picture ends, its last ones.
+inline integer nearest_pixels(const ViewInfo* v, int column, int row)
+{
+  const integer i = to_integer(lesser(ACROSS + (real)(float)column, (real)(float)(v->picture.x - 1)));
+  const integer j = to_integer(lesser(UPWARDS + (real)(float)row, (real)(float)(v->picture.y - 1)));
+  return j * v->picture.x + i;
+}
+
 #if ENDS
 // Where a packet's rays end, along the view axis; ENDLESS where they do not.
 inline real ends_of(const ViewInfo* v, __global const float* ends, int column, int row)
 {
-  const integer i = to_integer(lesser(ACROSS + (real)(float)column, (real)(float)(v->picture.x - 1)));
-  const integer j = to_integer(lesser(UPWARDS + (real)(float)row, (real)(float)(v->picture.y - 1)));
-  const integer pixel = j * v->picture.x + i;
+  const integer pixel = nearest_pixels(v, column, row);
   real end;
 #define FETCH(n) LANE(end, n) = ends[LANE(pixel, n)];
   EACH_LANE(FETCH)

@@ -1,0 +1,75 @@
+"""Pictures of media of which each rank has only a piece: that of the whole, whatever the number of ranks, and no rank is
+given more than its piece where the picture can be made piece by piece.
+
+    python3 PicturesOverRanks.py
+"""
+import glob
+import os
+import shutil
+import subprocess
+
+import numpy
+
+here = os.path.dirname(os.path.abspath(__file__))
+output = os.path.join(os.environ["TYNDALL_TEST_OUTPUT"], "PicturesOverRanks")
+shutil.rmtree(output, ignore_errors=True)
+pieces = ["even", "coloured", "inside", "uneven", "alone", "bare", "bare_uneven", "bare_points", "phase", "ground", "reader"]
+wholes = ["glass", "shadows", "table", "surface"]
+of_even = ["uneven", "alone", "bare", "bare_uneven"]  # other pieces of the same
+
+
+def run(ranks, *cases, timeout=240):
+    """@return code and text of as many ranks, with what they wrote in a folder of their own"""
+    folder = os.path.join(output, str(ranks))
+    os.makedirs(folder, exist_ok=True)
+    done = subprocess.run(["mpiexec", "--allow-run-as-root", "--oversubscribe", "-n", str(ranks), "pvbatch",
+                           "--symmetric", os.path.join(here, "pictures_of_pieces.py"), folder, *cases],
+                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=timeout)
+    return done.returncode, done.stdout
+
+
+def whole(ranks, case):
+    """@return the arrays of the whole picture by name, with its facts, and what each rank was given"""
+    parts = [dict(numpy.load(file)) for file in sorted(glob.glob(os.path.join(output, str(ranks), case + ".*.npz")))]
+    seen = [part for part in parts if "extent" in part]
+    extents = numpy.array([part["extent"] for part in seen])
+    size = extents.max(axis=0)[[3, 1]] + 1
+    picture = {name: seen[0][name] for name in ("exposure", "left_out")}
+    for name in ("color", "radiance", "alpha", "depth"):
+        found = numpy.full([*size, seen[0][name].reshape(len(seen[0][name]), -1).shape[1]], numpy.nan)
+        for part, (x0, x1, y0, y1, _, _) in zip(seen, extents):
+            found[y0:y1 + 1, x0:x1 + 1] = part[name].reshape(y1 - y0 + 1, x1 - x0 + 1, -1)
+        assert not numpy.isnan(found).any(), (ranks, case, name, "has holes")
+        picture[name] = found
+    assert all((part["exposure"] == picture["exposure"]).all() for part in seen), (ranks, case, "exposure")
+    return picture, parts
+
+
+def check(ranks, case, expected):
+    picture, parts = whole(ranks, case)
+    apart = {name: abs(picture[name] - expected[name]).max() for name in ("color", "radiance", "alpha", "depth")}
+    bright = expected["radiance"].max()
+    print("%d ranks, %s: radiance differs by %.1e, alpha by %.1e, depth by %.1e, color by %d; bytes of ranks %s" % (
+        ranks, case, apart["radiance"] / bright, apart["alpha"], apart["depth"], apart["color"],
+        [int(part["bytes"]) for part in parts]), flush=True)
+    assert apart["radiance"] < 1e-5 * bright and apart["alpha"] < 1e-5 and apart["color"] <= 1, (ranks, case, apart)
+    assert apart["depth"] < 1e-5 * expected["depth"].max(), (ranks, case, apart)
+    assert abs(picture["exposure"] / expected["exposure"] - 1) < 1e-4, (ranks, case)
+    assert (picture["left_out"] == expected["left_out"]).all(), (ranks, case, picture["left_out"])
+    return parts
+
+
+for ranks in (1, 2, 3, 4):
+    more = ["properties", "errors", "abort"] if ranks == 3 else []
+    code, said = run(ranks, *pieces, *wholes, *more)
+    assert code == 0 and said.count("is done") == ranks, said
+    for case in pieces + wholes:
+        expected, alone = whole(1, "even" if case in of_even else case)
+        assert expected["color"].std() > 5, (case, "there is nothing to compare")
+        parts = check(ranks, case, expected)
+        if case == "reader":
+            largest = max(int(part["bytes"]) for part in parts) / int(alone[0]["bytes"])
+            print("%d ranks: one is given %.3f of the whole" % (ranks, largest), flush=True)
+            assert largest < 1.1 * (1 / ranks if ranks != 3 else 1 / 2) + 0.05, (ranks, largest)
+    if more:
+        print(said)
