@@ -88,7 +88,7 @@ Piece PieceOf(vtkInformation* asked, vtkImageData* image, int rank, int ranks)
     piece.own = OwnExtentOf(image, piece.given);
     std::copy_n(image->GetOrigin(), 3, piece.place.begin());
     std::copy_n(image->GetSpacing(), 3, piece.place.begin() + 3);
-    piece.asked = AskedOf(asked, piece.given, rank, ranks);
+    piece.asked = asked ? AskedOf(asked, piece.given, rank, ranks) : AskedPiece{ piece.given, piece.given };
   }
   return piece;
 }

@@ -21,7 +21,7 @@ namespace tyndall
 class PieceBlocks
 {
 public:
-  /// @param asked  the output that is made
+  /// @param asked  the output that is made; null: nothing is, and pieces are what ranks are given
   /// @param given  null or without cells: this rank has no block
   PieceBlocks(Communicator& communicator, vtkInformation* asked, vtkImageData* given);
 
@@ -34,6 +34,7 @@ public:
   bool HasOwn() const { return this->Own().VoxelCount() > 0; }
   /// What the output is to have: the block, and what is asked for of others.
   const VoxelBox& Held() const { return this->OfOutputs[this->Rank]; }
+  const std::vector<VoxelBox>& HeldByRanks() const { return this->OfOutputs; }
 
   /// Of what this rank is given its own voxels, with their arrays; itself where it is no more. Not where it has none.
   vtkSmartPointer<vtkImageData> OwnImage(vtkImageData* given) const;
