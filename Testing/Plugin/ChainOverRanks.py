@@ -41,4 +41,4 @@ def check(proxy, association, name, tolerance):
 
 light = chain.solve(sky)
 check(light, vtkImageData.CELL, "fluence", 0)
-check(chain.render(light), vtkImageData.POINT, "radiance", 1e-5)
+check(chain.render(light), vtkImageData.POINT, "radiance", 1e-6)
