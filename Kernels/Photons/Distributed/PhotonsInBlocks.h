@@ -24,7 +24,7 @@ struct PhotonTraffic
 /// whole. All ranks call it together.
 ///
 /// A photon that leaves a block is handed, as it is, to the rank whose block it enters, and goes on there
-/// (numerics.md, section 4.11): its way does not depend on the blocks, and what voxels gain is in fixed point.
+/// (numerics.md, section 12.6): its way does not depend on the blocks, and what voxels gain is in fixed point.
 /// The light is that of PhotonMarcher, bit for bit, whatever the number of ranks. No rank holds more of the medium than
 /// its block and, of the refractive index, some voxels round it.
 ///
