@@ -243,7 +243,7 @@ void RankOfMarch::Prepare(const Medium& medium, const Field& ior)
       ThoseIn(this->Own, whole, Pack(this->Photons, whole, coloured, MarchEventLimit(whole, this->Settings)));
     if (this->Has)
     {
-      const MarchBlock block = { whole, this->Own, this->KnownOf(this->Others.Rank(), bends) };
+      const MarchedPart block = { whole, this->Own, this->KnownOf(this->Others.Rank(), bends) };
       this->Through = std::make_unique<MarchMedium>(this->TheDevice, medium,
         Field{ index.empty() ? nullptr : index.data(), 1 }, this->Settings, this->Traits, block);
       this->Light = std::make_unique<MarchedLight>(*this->Through);

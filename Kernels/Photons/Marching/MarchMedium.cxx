@@ -58,7 +58,7 @@ int MarchEventLimit(const Grid& whole, const MarchSettings& settings)
 }
 
 MarchMedium::MarchMedium(Device& onDevice, const Medium& medium, const MarchSettings& with, const MarchTraits& ofAll,
-  const MarchBlock& ofGrid, bool haveLevels)
+  const MarchedPart& ofGrid, bool haveLevels)
   : device(onDevice)
   , grid(medium.grid)
   , block(ofGrid)
@@ -90,7 +90,7 @@ MarchMedium::MarchMedium(
 }
 
 MarchMedium::MarchMedium(Device& onDevice, const Medium& medium, const Field& ior, const MarchSettings& with,
-  const MarchTraits& ofAll, const MarchBlock& ofGrid)
+  const MarchTraits& ofAll, const MarchedPart& ofGrid)
   : MarchMedium(onDevice, medium, with, ofAll, ofGrid, false)
 {
   this->PackVoxels(medium, ior, nullptr);

@@ -28,7 +28,7 @@ struct MarchTraits : MediumTraits
 MarchTraits MarchTraitsOf(const Medium& medium, const Field& ior);
 
 /// The part of a grid that photons are marched through in one go.
-struct MarchBlock
+struct MarchedPart
 {
   Grid whole;
   VoxelBox own;   ///< of the medium
@@ -49,7 +49,7 @@ public:
   /// @param medium  of block.own
   /// @param ior     of block.known
   MarchMedium(Device& device, const Medium& medium, const Field& ior, const MarchSettings& settings,
-    const MarchTraits& traits, const MarchBlock& block);
+    const MarchTraits& traits, const MarchedPart& block);
 
   MarchInfo Describe() const;
   IndexGrid DescribeGrid() const;
@@ -76,7 +76,7 @@ public:
 
   Device& device;
   Grid grid;
-  MarchBlock block; ///< of the grid
+  MarchedPart block; ///< of the grid
   MarchSettings settings;
   MarchTraits traits;
   int channels; ///< of extinction, 1 or 3
@@ -95,7 +95,7 @@ private:
   static Size Padded(const std::array<int, 3>& size, int by);
   Size Padded(int by) const { return Padded(this->grid.size, by); }
   MarchMedium(Device& device, const Medium& medium, const MarchSettings& settings, const MarchTraits& traits,
-    const MarchBlock& block, bool hasLevels);
+    const MarchedPart& block, bool hasLevels);
   Buffer<float> Upload(const float* values, std::size_t voxels, int components, const char* what) const;
   cl::Kernel MediumKernel(const char* name) const;
   void FindRanges(Buffer<float>& low, Buffer<float>& high) const;
