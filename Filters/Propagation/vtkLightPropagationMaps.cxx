@@ -27,7 +27,6 @@
 #include "vtkInformationVector.h"
 #include "vtkObjectFactory.h"
 #include "vtkSmartPointer.h"
-#include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
 #include <iterator>
@@ -203,18 +202,7 @@ bool vtkLightPropagationMaps::WantsBlocks(
   {
     return this->Decomposition == BLOCKS;
   }
-  vtkInformation* const medium = inputs[MEDIUM]->GetInformationObject(0);
-  int whole[6] = { 0, -1, 0, -1, 0, -1 };
-  if (medium && medium->Has(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()))
-  {
-    medium->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), whole);
-  }
-  double bytes = BytesOfVoxel;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    bytes *= std::max(0, whole[2 * axis + 1] - whole[2 * axis]);
-  }
-  return tyndall::EachAsksForItsPiece(request, outputs) && !tyndall::FitsOnEach(tyndall::RanksOnThisMachine(), bytes);
+  return tyndall::NeedsPieces(request, inputs[MEDIUM], outputs, BytesOfVoxel);
 }
 
 int vtkLightPropagationMaps::RequestUpdateExtent(
