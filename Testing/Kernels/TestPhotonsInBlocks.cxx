@@ -166,7 +166,7 @@ class PhotonBlocks : public DeviceTest
 TEST_F(PhotonBlocks, HaveTheLightOfTheWholeBitForBit)
 {
   PhotonScene scene = SmallScene();
-  ExpectSameOnRanks(GetDevice(), scene, AnyPhotons(scene.medium.grid, 3000), { 1, 2, 3, 5, 8 });
+  ExpectSameOnRanks(GetDevice(), scene, AnyPhotons(scene.medium.grid, 20000), { 1, 2, 3, 5, 8 });
 }
 
 TEST_F(PhotonBlocks, HaveItWhereRaysBend)

@@ -13,6 +13,7 @@ namespace
 {
 constexpr double SecondsPerLaunch = 0.1;
 constexpr std::size_t FirstLaunch = 16384; ///< photons; how long they take says how many go next
+constexpr std::size_t MostAtOnce = 262144; ///< room for those that go into other blocks: 30 MiB
 }
 
 BlockMarch::BlockMarch(const MarchMedium& medium, const MarchSums& target, const PackedPhotons& packed)
@@ -54,27 +55,29 @@ BlockMarch::Outcome BlockMarch::March(const PhotonsOnDevice& photons, const Buff
   const MarchShares& shares = this->Target.shares;
   const std::size_t workers = static_cast<std::size_t>(shares.workers), width = Count(device.KernelWidth());
   const std::size_t stride = shares.copies > 1 ? this->Target.records * Count(this->Target.numbers) : 0;
-  const Buffer<PhotonOnItsWay> gone(device, count, "photons into other blocks");
-  Buffer<cl_int> goneCount(device, 1, "number of photons into other blocks"),
-    next(device, 1, "number of the next photon");
-  goneCount.Fill(0);
   Batches launches;
   launches.count = count;
   launches.first = FirstLaunch;
   launches.whole = Count(MarchBlock) * std::max<std::size_t>(workers, 1);
   launches.seconds = SecondsPerLaunch;
   launches.growth = 8.0;
+  launches.most = std::max(MostAtOnce, launches.whole);
+  const Buffer<PhotonOnItsWay> gone(device, std::min(count, launches.most), "photons into other blocks");
+  Buffer<cl_int> goneCount(device, 1, "number of photons into other blocks"),
+    next(device, 1, "number of the next photon");
   InBatches(device, launches, monitor, [&](std::size_t first, std::size_t size) {
+    goneCount.Fill(0);
     next.Fill(0);
     With(this->Kernel, this->Medium.Describe(), this->Medium.sigma, this->Medium.coefficients, this->Medium.nodes,
       photons.values, photons.marks, arrived, gone, goneCount, photons.ends, *this->Target.sums, cl_ulong(stride), next,
       cl_int(resumes), cl_int(first), cl_int(size));
     this->Medium.Launch(this->Kernel, cl::NDRange(workers > 0 ? workers : PartsOf(size, width)),
       workers > 0 ? cl::NDRange(1) : GroupOfLargeItems(device));
+    const std::size_t before = outcome.gone.size(), more = static_cast<std::size_t>(goneCount.Read().front());
+    outcome.gone.resize(before + more);
+    gone.Read(outcome.gone.data() + before, more);
   });
   outcome.ends = photons.ends.Read();
-  outcome.gone.resize(static_cast<std::size_t>(goneCount.Read().front()));
-  gone.Read(outcome.gone.data(), outcome.gone.size());
   return outcome;
 }
 }
