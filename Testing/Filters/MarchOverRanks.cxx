@@ -1,5 +1,5 @@
-// vtkPhotonMarcher in a pipeline that MPI ranks run together: with Decomposition BLOCKS each has its piece of the medium,
-// and of the light what it has where each has the whole, bit for bit. Run by mpiexec; a program by itself.
+// vtkPhotonMarcher in a pipeline that MPI ranks run together: with Decomposition BLOCKS each has its piece of the
+// medium, and of the light what it has where each has the whole, bit for bit. Run by mpiexec; a program by itself.
 
 #include "vtkPhotonMarcher.h"
 

@@ -1,7 +1,7 @@
 // Photons that go from one block of a grid into another: part of PhotonMarch.cl, with BLOCKS.
 //
-// What is handed on is all that a photon's way depends on, in coordinates of the whole grid: it goes on as it would have
-// if there were one block. It arrives with a voxel's wall behind it, and has not been attended to there yet.
+// What is handed on is all that a photon's way depends on, in coordinates of the whole grid: it goes on as it would
+// in one block. It arrives with a voxel's wall behind it, and has not been attended to there yet.
 
 #pragma once
 

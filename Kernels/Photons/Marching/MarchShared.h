@@ -13,7 +13,7 @@ enum
   Elsewhere = 8   ///< of one that goes on in another block of the grid
 };
 
-/// The medium, and how photons are marched through it. Places are those of the whole grid, of which arrays have a block.
+/// The medium, and how photons are marched through it. Places are those of the whole grid; arrays have a block of it.
 typedef struct
 {
   IndexGrid grid;    ///< the block: of extinction and sums
@@ -41,7 +41,7 @@ typedef struct
 } PhotonEnd;
 
 /// A photon that goes from one block of a grid into another: all that its way from there on depends on, so that it is
-/// the same, bit for bit, as in one block. Units are those of the kernels; no more channels are looked at than there are.
+/// the same, bit for bit, as in one block. Units are those of the kernels; only channels that there are count.
 typedef struct
 {
   ulong mark;     ///< by which it counts

@@ -27,8 +27,8 @@ public:
   /// Queued: the fluence so far, [voxel][channel]. The sums stay.
   cl::Kernel Show(
     const PackedPhotons& packed, const MarchSums& target, const LightField& light, const Buffer<float>& fluence) const;
-  /// Arrays of `result`, and what is absorbed and scattered, from the sums, which are zero afterwards. Its light has the
-  /// channels that it is to have.
+  /// Arrays of `result`, and what is absorbed and scattered, from the sums, which are zero afterwards. Its light says
+  /// how many channels it is to have.
   /// @param weightUnit  of photons that count (CountedPhotons)
   void Finish(const PackedPhotons& packed, const MarchSums& target, float weightUnit, PhotonLight& result) const;
 

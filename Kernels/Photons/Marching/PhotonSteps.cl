@@ -36,9 +36,9 @@ typedef struct
   const MarchInfo* info;
   const __global float* sigma; // [MEDIUM_CHANNELS][copy] extinction over a diagonal; its sign bit: the index varies
   const __global float* coefficients; // of n^2
-  const __global uchar*
-    nodes; // [padded known] 0: the index does not vary, 1: it does, in a single voxel, 1 + k: in an octree's node of 2^k
-  __global long* sums; // [copy][RECORD] fixed point
+  const __global uchar* nodes; // [padded known] 0: the index does not vary, 1: it does, in a single voxel, 1 + k: in
+                               // an octree's node of 2^k
+  __global long* sums;         // [copy][RECORD] fixed point
   __global PhotonEnd* ends;
   __global float4*
     vertices; // of a path: position in voxels, part of the power that is left; null: they are only counted
