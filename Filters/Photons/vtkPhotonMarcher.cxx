@@ -9,7 +9,6 @@
 #include "Photons/Marching/PublishedPhotons.h"
 #include "Photons/PhotonData.h"
 #include "Photons/RefractiveInput.h"
-#include "Ranks/ControllerCommunicator.h"
 #include "Ranks/PieceBlocks.h"
 #include "Ranks/RankMemory.h"
 #include "Ranks/Ranks.h"
@@ -26,6 +25,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -246,17 +246,7 @@ int vtkPhotonMarcher::RequestUpdateExtent(
 {
   this->Kept->ForgetIfRan(this, { MediumPort, OctreePort });
   const bool asPiece = tyndall::EachAsksForItsPiece(request, outputs) && this->WantsBlocks(request, inputs, outputs);
-  for (int port = 0; port < InputPortCount; ++port)
-  {
-    if (port == MediumPort && asPiece) // the pipeline has asked it for what the output is asked for
-    {
-      tyndall::AskTogether(request, outputs, inputs[port]);
-    }
-    else
-    {
-      tyndall::AskForAll(request, inputs[port], outputs);
-    }
-  }
+  tyndall::AskForAllBut(asPiece ? MediumPort : -1, request, inputs, InputPortCount, outputs);
   return 1;
 }
 
@@ -301,23 +291,15 @@ bool vtkPhotonMarcher::ReadPiece(tyndall::Communicator& communicator, const tynd
 bool vtkPhotonMarcher::MarchPiece(vtkInformation* request, vtkMultiProcessController* ranks,
   vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  const bool wanted = this->WantsBlocks(request, inputs, outputs);
-  if (!ranks && !wanted)
-  {
-    return false;
-  }
-  const std::unique_ptr<tyndall::Communicator> communicator =
-    tyndall::CommunicatorOf(ranks, [this] { return tyndall::IsStoppedByOthers(this); });
-  if (communicator->Largest({ wanted ? 1.0 : 0.0 })[0] == 0.0)
-  {
-    return false;
-  }
   vtkImageData* const image = vtkImageData::GetData(inputs[MediumPort]);
-  const tyndall::PieceBlocks pieces(*communicator, tyndall::AskingPort(request, outputs), image);
-  if (!pieces.MakeUpTheWhole())
+  const std::optional<tyndall::AgreedBlocks> agreed = tyndall::AgreeOnBlocks(
+    ranks, this, this->WantsBlocks(request, inputs, outputs), tyndall::AskingPort(request, outputs), image);
+  if (!agreed)
   {
     return false;
   }
+  tyndall::Communicator* const communicator = agreed->communicator.get();
+  const tyndall::PieceBlocks& pieces = *agreed->pieces;
   PieceOfMarch piece;
   if (!this->ReadPiece(*communicator, pieces, inputs, piece))
   {

@@ -11,7 +11,6 @@
 #include "LightPropagation/Problem/PropagationQuality.h"
 #include "LightPropagation/Published/ParallelPropagation.h"
 #include "LightPropagation/Published/SequentialPropagation.h"
-#include "Ranks/ControllerCommunicator.h"
 #include "Ranks/PieceBlocks.h"
 #include "Ranks/RankMemory.h"
 #include "Ranks/Ranks.h"
@@ -31,6 +30,7 @@
 #include <algorithm>
 #include <iterator>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -209,17 +209,7 @@ int vtkLightPropagationMaps::RequestUpdateExtent(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   const bool asPiece = tyndall::EachAsksForItsPiece(request, outputs) && this->WantsBlocks(request, inputs, outputs);
-  for (int port = 0; port < this->GetNumberOfInputPorts(); ++port)
-  {
-    if (port == MEDIUM && asPiece) // the pipeline has asked it for what the output is asked for
-    {
-      tyndall::AskTogether(request, outputs, inputs[port]);
-    }
-    else
-    {
-      tyndall::AskForAll(request, inputs[port], outputs);
-    }
-  }
+  tyndall::AskForAllBut(asPiece ? MEDIUM : -1, request, inputs, this->GetNumberOfInputPorts(), outputs);
   return 1;
 }
 
@@ -246,23 +236,15 @@ std::string vtkLightPropagationMaps::NotByBlocks(vtkInformationVector** inputs) 
 bool vtkLightPropagationMaps::SolvePiece(vtkInformation* request, vtkMultiProcessController* ranks,
   vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  const bool wanted = this->WantsBlocks(request, inputs, outputs);
-  if (!ranks && !wanted)
-  {
-    return false;
-  }
-  const std::unique_ptr<tyndall::Communicator> communicator =
-    tyndall::CommunicatorOf(ranks, [this] { return tyndall::IsStoppedByOthers(this); });
-  if (communicator->Largest({ wanted ? 1.0 : 0.0 })[0] == 0.0)
-  {
-    return false;
-  }
   vtkImageData* const image = vtkImageData::GetData(inputs[MEDIUM]);
-  const tyndall::PieceBlocks pieces(*communicator, tyndall::AskingPort(request, outputs), image);
-  if (!pieces.MakeUpTheWhole())
+  const std::optional<tyndall::AgreedBlocks> agreed = tyndall::AgreeOnBlocks(
+    ranks, this, this->WantsBlocks(request, inputs, outputs), tyndall::AskingPort(request, outputs), image);
+  if (!agreed)
   {
     return false;
   }
+  tyndall::Communicator* const communicator = agreed->communicator.get();
+  const tyndall::PieceBlocks& pieces = *agreed->pieces;
   if (this->GivePiece(*communicator, pieces, inputs, outputs))
   {
     return true;
