@@ -192,7 +192,15 @@ TEST_F(PhotonBlocks, HaveItWhereEveryVoxelHasAnIndexOfItsOwn)
   std::mt19937 random(7);
   std::uniform_real_distribution<double> uniform(1.0, 1.6);
   scene.SetIndex([&](double, double, double) { return uniform(random); });
-  ExpectSameOnRanks(GetDevice(), scene, AnyPhotons(scene.medium.grid, 1000), { 1, 3, 8 });
+  const std::vector<Photon> photons = AnyPhotons(scene.medium.grid, 1000);
+  ExpectSameOnRanks(GetDevice(), scene, photons, { 1, 3, 8 });
+  scene.SetIndex([&](double, double, double) { return uniform(random) < 1.3 ? 1.0 : 4.0; });
+  for (const int order : { 1, 2, 4 })
+  {
+    SCOPED_TRACE("order " + std::to_string(order));
+    scene.settings.order = order;
+    ExpectSameOnRanks(GetDevice(), scene, photons, { 8 });
+  }
 }
 
 TEST_F(PhotonBlocks, HaveItInColourAndCountAndByEitherKindOfSums)

@@ -19,12 +19,13 @@ namespace
 {
 constexpr int PhotonsTag = 29998; ///< not one of those that BoxExchange.cxx takes
 
-/// Voxels round a block whose index has a part in the ways of photons in it: three of each spline's and, of the places
-/// that the integrator looks at before it goes there, as many as a step that a jump of the index has made three times
-/// as long as it was to be. Beyond, the index counts as constant.
+/// Voxels round a block whose index has a part in the ways of photons in it (numerics.md, Eq. (99f)): three of each
+/// spline's, and those of the places that the integrator looks at before it goes there, where a jump of the index may
+/// have made a photon some times as fast as its step was meant for. Beyond, the index counts as constant.
 int ReachOfIndex(const MarchSettings& settings)
 {
-  return 3 + static_cast<int>(std::ceil(1.5 * settings.stepSize));
+  const double ahead = settings.order == 1 ? 0.0 : settings.order == 2 ? 1.5 : 3.0; // steps
+  return 3 + static_cast<int>(std::ceil(ahead * settings.stepSize));
 }
 
 VoxelBox Grown(VoxelBox box, int by, const Grid& whole)
