@@ -5,9 +5,13 @@
 #include "Common/LightTransportData.h"
 #include "Device/Device.h"
 #include "Numerics/ChooseEvenly.h"
+#include "Photons/Distributed/PhotonsInBlocks.h"
 #include "Photons/Marching/PublishedPhotons.h"
 #include "Photons/PhotonData.h"
 #include "Photons/RefractiveInput.h"
+#include "Ranks/PieceBlocks.h"
+#include "Ranks/RankMemory.h"
+#include "Ranks/Ranks.h"
 #include "Ranks/WholeImage.h"
 #include "Work/GuardedWork.h"
 
@@ -16,10 +20,12 @@
 #include "vtkInformationVector.h"
 #include "vtkObjectFactory.h"
 #include "vtkPolyData.h"
+#include "vtkSmartPointer.h"
 
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -39,11 +45,15 @@ enum InputPort
 bool ByBricks(vtkPhotonMarcher* filter, vtkImageData* medium)
 {
   constexpr double mostActive = 0.25;
-  const bool sparse = tyndall::ReadFact(medium, tyndall::ActivePartFact, 1.0) <= mostActive;
+  const bool sparse = medium && tyndall::ReadFact(medium, tyndall::ActivePartFact, 1.0) <= mostActive;
   return filter->GetEmptySpace() == vtkPhotonMarcher::BY_BRICK ||
     (filter->GetEmptySpace() == vtkPhotonMarcher::AS_READ && sparse);
 }
 
+/// Of a rank that marches through the whole: the medium's arrays, its spline of the index, sums and light.
+constexpr double BytesOfVoxel = 96.0;
+
+/// @param medium  null: this rank has nothing of it
 tyndall::MarchSettings SettingsOf(
   vtkPhotonMarcher* filter, vtkImageData* medium, const std::vector<tyndall::Photon>& photons)
 {
@@ -77,6 +87,22 @@ tyndall::MarchSettings SettingsOf(
   return settings;
 }
 
+/// The light of a rank's block as that of the voxels that the output is to have. All ranks call it.
+void SpreadToHeld(
+  tyndall::Communicator& communicator, const tyndall::PieceBlocks& pieces, tyndall::PhotonLight& photons)
+{
+  const auto ofHeld = [&](std::vector<float>& values, int components) {
+    if (communicator.Largest({ values.empty() ? 0.0 : 1.0 })[0] > 0.0)
+    {
+      values = pieces.OfHeld(communicator, std::move(values), components);
+    }
+  };
+  ofHeld(photons.light.fluence, photons.light.channels);
+  ofHeld(photons.meanDirection, 3);
+  ofHeld(photons.photonCount, 1);
+  ofHeld(photons.photonWeight, 1);
+}
+
 void Write(tyndall::PhotonLight&& photons, vtkImageData* output)
 {
   const int channels = photons.light.channels;
@@ -107,6 +133,15 @@ void Write(tyndall::PhotonLight&& photons, vtkImageData* output)
 }
 
 }
+
+/// What a rank marches photons through, and which.
+struct vtkPhotonMarcher::PieceOfMarch
+{
+  vtkSmartPointer<vtkImageData> image; ///< whose arrays the medium has; null: this rank has nothing of it
+  tyndall::RefractiveInput read;
+  tyndall::MarchSettings settings;
+  std::vector<tyndall::Photon> photons; ///< all of them
+};
 
 /// Light, of the published scheme what its packing lost, and, of the conservative scheme's integrator, paths.
 struct vtkPhotonMarcher::Marched
@@ -196,16 +231,97 @@ int vtkPhotonMarcher::RequestInformation(vtkInformation*, vtkInformationVector**
   return 1;
 }
 
+/// Without WHOLE, whether this rank would have each march through its piece; ranks may differ in it.
+bool vtkPhotonMarcher::WantsBlocks(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) const
+{
+  return this->Decomposition == AUTOMATIC_DECOMPOSITION
+    ? tyndall::NeedsPieces(request, inputs[MediumPort], outputs, BytesOfVoxel)
+    : this->Decomposition == BLOCKS;
+}
+
 /// The memory of an old medium is given back before the filters before run, which may need it.
 int vtkPhotonMarcher::RequestUpdateExtent(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   this->Kept->ForgetIfRan(this, { MediumPort, OctreePort });
-  for (int port = 0; port < InputPortCount; ++port)
-  {
-    tyndall::AskForAll(request, inputs[port], outputs);
-  }
+  const bool asPiece = tyndall::EachAsksForItsPiece(request, outputs) && this->WantsBlocks(request, inputs, outputs);
+  tyndall::AskForAllBut(asPiece ? MediumPort : -1, request, inputs, InputPortCount, outputs);
   return 1;
+}
+
+/// What keeps ranks from marching through their pieces, in words; empty: nothing does.
+/// @param octree  whether the medium's piece has one
+std::string vtkPhotonMarcher::NotByBlocks(
+  vtkInformationVector** inputs, const tyndall::MarchSettings& settings, bool octree) const
+{
+  if (this->Scheme == PUBLISHED)
+  {
+    return "the published Scheme";
+  }
+  if (this->PathCount > 0)
+  {
+    return "paths (PathCount)";
+  }
+  return tyndall::NotInBlocks(settings, octree || inputs[OctreePort]->GetNumberOfInformationObjects() > 0);
+}
+
+/// @return false, on all ranks, where photons cannot be marched through pieces, and need not
+bool vtkPhotonMarcher::ReadPiece(tyndall::Communicator& communicator, const tyndall::PieceBlocks& pieces,
+  vtkInformationVector** inputs, PieceOfMarch& piece)
+{
+  std::string refused;
+  communicator.Together([&] {
+    piece.photons = tyndall::ReadPhotons(vtkPolyData::GetData(inputs[PhotonsPort]));
+    if (pieces.HasOwn())
+    {
+      piece.image = pieces.OwnImage(vtkImageData::GetData(inputs[MediumPort]));
+      piece.read = tyndall::ReadRefractiveMedium(this, piece.image);
+    }
+    piece.settings = SettingsOf(this, piece.image, piece.photons);
+    refused = this->NotByBlocks(inputs, piece.settings, piece.read.Levels() != nullptr);
+    tyndall::Require(refused.empty() || this->Decomposition != BLOCKS,
+      "Ranks cannot march photons through their pieces (Decomposition: blocks) with " + refused +
+        ". Leave it out, or let each rank have the whole.");
+  });
+  return communicator.Largest({ refused.empty() ? 0.0 : 1.0 })[0] == 0.0;
+}
+
+/// @return false, on all ranks, where each is to march through the whole
+bool vtkPhotonMarcher::MarchPiece(vtkInformation* request, vtkMultiProcessController* ranks,
+  vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  vtkImageData* const image = vtkImageData::GetData(inputs[MediumPort]);
+  const std::optional<tyndall::AgreedBlocks> agreed = tyndall::AgreeOnBlocks(
+    ranks, this, this->WantsBlocks(request, inputs, outputs), tyndall::AskingPort(request, outputs), image);
+  if (!agreed)
+  {
+    return false;
+  }
+  tyndall::Communicator* const communicator = agreed->communicator.get();
+  const tyndall::PieceBlocks& pieces = *agreed->pieces;
+  PieceOfMarch piece;
+  if (!this->ReadPiece(*communicator, pieces, inputs, piece))
+  {
+    return false;
+  }
+  this->Kept->Forget();
+  std::shared_ptr<tyndall::Device> device;
+  communicator->Together([&] { device = tyndall::FindWithin(this->Within, this->Device, this->MemoryBudget); });
+  tyndall::PhotonLight light = tyndall::MarchInBlocks(*device, *communicator, pieces.Partition(),
+    piece.read.input.medium, piece.read.ior, piece.settings, piece.photons, tyndall::MonitorOf(this));
+  this->WarnOfBox(inputs, pieces.Partition().whole);
+  this->Note(light);
+  this->Warn(light, piece.photons.size());
+  SpreadToHeld(*communicator, pieces, light);
+  vtkImageData* const output = vtkImageData::GetData(outputs, 0);
+  tyndall::PassOn(image, output);
+  pieces.KeepHeld(output);
+  if (pieces.Held().VoxelCount() > 0)
+  {
+    Write(std::move(light), output);
+  }
+  return true;
 }
 
 vtkPhotonMarcher::Marched vtkPhotonMarcher::MarchAsPublished(
@@ -258,14 +374,18 @@ int vtkPhotonMarcher::RequestData(vtkInformation* request, vtkInformationVector*
   this->Note({});
   this->PackingLoss = 0.0;
   this->MediumKept = false;
-  return tyndall::Guarded(this, request, given, outputs, [&](vtkInformationVector** inputs) {
-    vtkPolyData* const given = vtkPolyData::GetData(inputs[PhotonsPort]);
-    const std::vector<tyndall::Photon> photons = tyndall::ReadPhotons(given);
-    const std::string doubt = tyndall::DoubtOfBox(given, tyndall::GridOf(vtkImageData::GetData(inputs[MediumPort])));
-    if (!doubt.empty())
-    {
-      vtkWarningMacro(<< doubt);
-    }
+  const tyndall::WorkOnPieces onPieces = { MediumPort,
+    [&](vtkMultiProcessController* ranks, vtkInformationVector** inputs) {
+      const bool marched = this->MarchPiece(request, ranks, inputs, outputs);
+      if (marched && !ranks)
+      {
+        tyndall::KeepWhatIsAskedFor(outputs->GetInformationObject(0), vtkImageData::GetData(outputs, 0));
+      }
+      return marched;
+    } };
+  return tyndall::Guarded(this, request, given, outputs, onPieces, [&](vtkInformationVector** inputs) {
+    const std::vector<tyndall::Photon> photons = tyndall::ReadPhotons(vtkPolyData::GetData(inputs[PhotonsPort]));
+    this->WarnOfBox(inputs, tyndall::GridOf(vtkImageData::GetData(inputs[MediumPort])));
     Marched marched = this->March(inputs, photons);
 
     this->Note(marched.light);
@@ -284,6 +404,15 @@ int vtkPhotonMarcher::RequestData(vtkInformation* request, vtkInformationVector*
       tyndall::WritePaths(marched.paths, vtkPolyData::GetData(outputs, 1));
     }
   });
+}
+
+void vtkPhotonMarcher::WarnOfBox(vtkInformationVector** inputs, const tyndall::Grid& medium)
+{
+  const std::string doubt = tyndall::DoubtOfBox(vtkPolyData::GetData(inputs[PhotonsPort]), medium);
+  if (!doubt.empty())
+  {
+    vtkWarningMacro(<< doubt);
+  }
 }
 
 void vtkPhotonMarcher::Note(const tyndall::PhotonLight& light)
@@ -327,6 +456,7 @@ void vtkPhotonMarcher::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "StepSize: " << this->StepSize << "\n";
   os << indent << "LeaveOut: " << this->LeaveOut << "\n";
   os << indent << "EmptySpace: " << this->EmptySpace << "\n";
+  os << indent << "Decomposition: " << this->Decomposition << "\n";
   os << indent << "PhotonCounts: " << this->PhotonCounts << "\n";
   os << indent << "MaximumOrders: " << this->MaximumOrders << "\n";
   os << indent << "Seed: " << this->Seed << "\n";

@@ -12,11 +12,17 @@
 
 namespace tyndall
 {
+class Communicator;
 class Device;
 class KeptMarcher;
+class PieceBlocks;
+struct Grid;
+struct MarchSettings;
 struct Photon;
 struct PhotonLight;
 }
+
+class vtkMultiProcessController;
 
 /**
  * @class vtkPhotonMarcher
@@ -56,7 +62,8 @@ struct PhotonLight;
  * The medium stays prepared on the device, so that new light or other photons only cost their march: until the medium
  * or the octree changes, another one is connected, a setting needs it, the device is another one, or the filter goes.
  *
- * In a parallel pipeline every rank marches all photons and hands on its piece; the paths are on the first.
+ * In a parallel pipeline every rank marches all photons and hands on its piece, and the paths are on the first; or,
+ * with Decomposition, marches photons through its piece, and photons go from rank to rank.
  *
  * Cells that are hidden by `vtkGhostType` are empty.
  *
@@ -93,6 +100,24 @@ public:
   /// How to compute: PUBLISHED, or CONSERVATIVE (default).
   tyndallSetRangeMacro(Scheme, int, PUBLISHED, CONSERVATIVE);
   vtkGetMacro(Scheme, int);
+  ///@}
+
+  enum Decompositions
+  {
+    AUTOMATIC_DECOMPOSITION = 0, ///< into blocks where the whole does not fit in each rank's memory
+    WHOLE = 1,                   ///< none: each rank marches all photons through the whole
+    BLOCKS = 2                   ///< each rank has its piece of the medium
+  };
+
+  ///@{
+  /// What each of several ranks of MPI holds. With WHOLE all of the medium. With BLOCKS its piece, and of the index some
+  /// voxels round it: a photon that leaves the piece is handed on as it stands (numerics.md, section 12.6), and light is
+  /// that of one rank bit for bit. All ranks are given all photons. An error names what blocks cannot do: MaximumOrders
+  /// other than 1, an octree, photons of several batches, PathCount and the published scheme. AUTOMATIC_DECOMPOSITION
+  /// (default): BLOCKS where the whole, once for each rank of a machine, is more than the memory that it has available,
+  /// and the scene can be marched through so; else WHOLE.
+  tyndallSetRangeMacro(Decomposition, int, AUTOMATIC_DECOMPOSITION, BLOCKS);
+  vtkGetMacro(Decomposition, int);
   ///@}
 
   ///@{
@@ -237,6 +262,14 @@ private:
   struct Marched;
   Marched March(vtkInformationVector** inputs, const std::vector<tyndall::Photon>& photons);
   Marched MarchAsPublished(vtkInformationVector** inputs, const std::vector<tyndall::Photon>& photons);
+  bool WantsBlocks(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) const;
+  std::string NotByBlocks(vtkInformationVector** inputs, const tyndall::MarchSettings& settings, bool octree) const;
+  struct PieceOfMarch;
+  bool ReadPiece(tyndall::Communicator& communicator, const tyndall::PieceBlocks& pieces, vtkInformationVector** inputs,
+    PieceOfMarch& piece);
+  bool MarchPiece(vtkInformation* request, vtkMultiProcessController* ranks, vtkInformationVector** inputs,
+    vtkInformationVector* outputs);
+  void WarnOfBox(vtkInformationVector** inputs, const tyndall::Grid& medium);
   void Note(const tyndall::PhotonLight& light);
   void Warn(const tyndall::PhotonLight& light, std::size_t photons);
 
@@ -246,6 +279,7 @@ private:
   bool PhotonCounts;
   bool LeaveOut;
   int EmptySpace = AS_READ;
+  int Decomposition = AUTOMATIC_DECOMPOSITION;
   int MaximumOrders;
   int Seed = 1;
   int ErrorBatches = 16;

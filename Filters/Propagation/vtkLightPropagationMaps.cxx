@@ -11,7 +11,6 @@
 #include "LightPropagation/Problem/PropagationQuality.h"
 #include "LightPropagation/Published/ParallelPropagation.h"
 #include "LightPropagation/Published/SequentialPropagation.h"
-#include "Ranks/ControllerCommunicator.h"
 #include "Ranks/PieceBlocks.h"
 #include "Ranks/RankMemory.h"
 #include "Ranks/Ranks.h"
@@ -27,11 +26,11 @@
 #include "vtkInformationVector.h"
 #include "vtkObjectFactory.h"
 #include "vtkSmartPointer.h"
-#include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
 #include <iterator>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -203,35 +202,14 @@ bool vtkLightPropagationMaps::WantsBlocks(
   {
     return this->Decomposition == BLOCKS;
   }
-  vtkInformation* const medium = inputs[MEDIUM]->GetInformationObject(0);
-  int whole[6] = { 0, -1, 0, -1, 0, -1 };
-  if (medium && medium->Has(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()))
-  {
-    medium->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), whole);
-  }
-  double bytes = BytesOfVoxel;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    bytes *= std::max(0, whole[2 * axis + 1] - whole[2 * axis]);
-  }
-  return tyndall::EachAsksForItsPiece(request, outputs) && !tyndall::FitsOnEach(tyndall::RanksOnThisMachine(), bytes);
+  return tyndall::NeedsPieces(request, inputs[MEDIUM], outputs, BytesOfVoxel);
 }
 
 int vtkLightPropagationMaps::RequestUpdateExtent(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   const bool asPiece = tyndall::EachAsksForItsPiece(request, outputs) && this->WantsBlocks(request, inputs, outputs);
-  for (int port = 0; port < this->GetNumberOfInputPorts(); ++port)
-  {
-    if (port == MEDIUM && asPiece) // the pipeline has asked it for what the output is asked for
-    {
-      tyndall::AskTogether(request, outputs, inputs[port]);
-    }
-    else
-    {
-      tyndall::AskForAll(request, inputs[port], outputs);
-    }
-  }
+  tyndall::AskForAllBut(asPiece ? MEDIUM : -1, request, inputs, this->GetNumberOfInputPorts(), outputs);
   return 1;
 }
 
@@ -258,23 +236,15 @@ std::string vtkLightPropagationMaps::NotByBlocks(vtkInformationVector** inputs) 
 bool vtkLightPropagationMaps::SolvePiece(vtkInformation* request, vtkMultiProcessController* ranks,
   vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  const bool wanted = this->WantsBlocks(request, inputs, outputs);
-  if (!ranks && !wanted)
-  {
-    return false;
-  }
-  const std::unique_ptr<tyndall::Communicator> communicator =
-    tyndall::CommunicatorOf(ranks, [this] { return tyndall::IsStoppedByOthers(this); });
-  if (communicator->Largest({ wanted ? 1.0 : 0.0 })[0] == 0.0)
-  {
-    return false;
-  }
   vtkImageData* const image = vtkImageData::GetData(inputs[MEDIUM]);
-  const tyndall::PieceBlocks pieces(*communicator, tyndall::AskingPort(request, outputs), image);
-  if (!pieces.MakeUpTheWhole())
+  const std::optional<tyndall::AgreedBlocks> agreed = tyndall::AgreeOnBlocks(
+    ranks, this, this->WantsBlocks(request, inputs, outputs), tyndall::AskingPort(request, outputs), image);
+  if (!agreed)
   {
     return false;
   }
+  tyndall::Communicator* const communicator = agreed->communicator.get();
+  const tyndall::PieceBlocks& pieces = *agreed->pieces;
   if (this->GivePiece(*communicator, pieces, inputs, outputs))
   {
     return true;

@@ -1,6 +1,8 @@
 #include "Ranks/PieceBlocks.h"
 
 #include "Distribution/BoxExchange.h"
+#include "Ranks/ControllerCommunicator.h"
+#include "Ranks/Ranks.h"
 #include "Ranks/WholeImage.h"
 
 #include "vtkCellData.h"
@@ -263,5 +265,22 @@ std::vector<float> PieceBlocks::OfHeld(Communicator& communicator, std::vector<f
   return voxels(this->OfOutputs) == voxels(this->Blocks.blocks)
     ? std::move(own)
     : ValuesInBox(communicator, this->Blocks, this->OfOutputs, own, components);
+}
+
+std::optional<AgreedBlocks> AgreeOnBlocks(
+  vtkMultiProcessController* ranks, vtkAlgorithm* filter, bool wanted, vtkInformation* asked, vtkImageData* given)
+{
+  if (!ranks && !wanted)
+  {
+    return {};
+  }
+  AgreedBlocks agreed;
+  agreed.communicator = CommunicatorOf(ranks, [filter] { return IsStoppedByOthers(filter); });
+  if (agreed.communicator->Largest({ wanted ? 1.0 : 0.0 })[0] == 0.0)
+  {
+    return {};
+  }
+  agreed.pieces = std::make_unique<PieceBlocks>(*agreed.communicator, asked, given);
+  return agreed.pieces->MakeUpTheWhole() ? std::optional<AgreedBlocks>(std::move(agreed)) : std::nullopt;
 }
 }

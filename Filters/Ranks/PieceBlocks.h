@@ -7,10 +7,14 @@
 #include "vtkSmartPointer.h"
 
 #include <array>
+#include <memory>
+#include <optional>
 #include <vector>
 
+class vtkAlgorithm;
 class vtkImageData;
 class vtkInformation;
+class vtkMultiProcessController;
 
 namespace tyndall
 {
@@ -58,4 +62,18 @@ private:
   std::array<int, 3> Base = {};    ///< where the whole begins, in the numbers of extents
   bool Tiled = false, GivenAll = false;
 };
+
+/// Blocks that ranks, each with its piece, have agreed to work on.
+struct AgreedBlocks
+{
+  std::unique_ptr<Communicator> communicator;
+  std::unique_ptr<PieceBlocks> pieces;
+};
+
+/// All ranks that run a filter together call it.
+/// @param ranks   null: this process is alone
+/// @param wanted  whether this rank would work so: one is enough
+/// @return where none would, or pieces make no whole, on all ranks nothing
+std::optional<AgreedBlocks> AgreeOnBlocks(
+  vtkMultiProcessController* ranks, vtkAlgorithm* filter, bool wanted, vtkInformation* asked, vtkImageData* given);
 }

@@ -1,9 +1,14 @@
 #include "Ranks/RankMemory.h"
 
 #include "Common/AvailableMemory.h"
+#include "Ranks/Ranks.h"
 
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
 #include "vtkMultiProcessController.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
 
+#include <algorithm>
 #include <cstdlib>
 
 namespace tyndall
@@ -24,5 +29,22 @@ int RanksOnThisMachine()
 bool FitsOnEach(int processes, double bytes)
 {
   return processes * bytes <= AvailableMemory();
+}
+
+bool NeedsPieces(
+  vtkInformation* request, vtkInformationVector* image, vtkInformationVector* outputs, double bytesOfVoxel)
+{
+  vtkInformation* const input = image->GetInformationObject(0);
+  int whole[6] = { 0, -1, 0, -1, 0, -1 };
+  if (input && input->Has(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()))
+  {
+    input->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), whole);
+  }
+  double bytes = bytesOfVoxel;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    bytes *= std::max(0, whole[2 * axis + 1] - whole[2 * axis]);
+  }
+  return EachAsksForItsPiece(request, outputs) && !FitsOnEach(RanksOnThisMachine(), bytes);
 }
 }

@@ -174,6 +174,22 @@ void AskForPiece(vtkInformation* request, vtkInformationVector* inputs, vtkInfor
   }
 }
 
+void AskForAllBut(
+  int piece, vtkInformation* request, vtkInformationVector** inputs, int ports, vtkInformationVector* outputs)
+{
+  for (int port = 0; port < ports; ++port)
+  {
+    if (port == piece) // the pipeline has asked it for what the output is asked for
+    {
+      AskTogether(request, outputs, inputs[port]);
+    }
+    else
+    {
+      AskForAll(request, inputs[port], outputs);
+    }
+  }
+}
+
 vtkInformation* AskingPort(vtkInformation* request, vtkInformationVector* outputs)
 {
   const int port = std::max(request->Get(vtkExecutive::FROM_OUTPUT_PORT()), 0); // -1: no port, but the filter itself

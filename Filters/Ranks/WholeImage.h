@@ -14,6 +14,11 @@ namespace tyndall
 /// In RequestUpdateExtent: ask the inputs of a port for all of their image, or all pieces of their polydata.
 /// @param request, outputs  as RequestUpdateExtent is given them
 void AskForAll(vtkInformation* request, vtkInformationVector* inputs, vtkInformationVector* outputs);
+/// The same of all ports but one, of which each rank is to have what its output is asked for.
+/// @param ports  their number
+/// @param piece  that one; -1: there is none
+void AskForAllBut(
+  int piece, vtkInformation* request, vtkInformationVector** inputs, int ports, vtkInformationVector* outputs);
 
 /// The same for this rank's piece, with a layer of its neighbours' cells, where ranks run the filter together; else for
 /// all.

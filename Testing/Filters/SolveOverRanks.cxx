@@ -1,9 +1,10 @@
-// A medium that ParaView's extent translator spreads over MPI ranks, solved block by block, against the whole on one.
-// Run by mpiexec; a program by itself.
+// A medium that ParaView's extent translator spreads over MPI ranks, solved block by block, and marched through by
+// photons, against the whole on one. Run by mpiexec; a program by itself.
 
 #include "Ranks/ControllerCommunicator.h"
 
 #include "LightPropagation/Distributed/PropagationInBlocks.h"
+#include "Photons/Distributed/PhotonsInBlocks.h"
 
 #include "vtkExtentTranslator.h"
 #include "vtkMPIController.h"
@@ -58,6 +59,7 @@ struct Waves
         std::sin(0.9 * (at[2] + block.first[2]));
       absorption.push_back(static_cast<float>(0.1 * (1.0 + wave)));
       scattering.push_back(static_cast<float>(0.4 * (1.0 - wave)));
+      index.push_back(static_cast<float>(1.2 + 0.1 * wave));
     }
     medium.sigma_a = { absorption.data() };
     medium.sigma_s = { scattering.data() };
@@ -66,7 +68,7 @@ struct Waves
   Waves& operator=(const Waves&) = delete;
 
   Medium medium;
-  std::vector<float> absorption, scattering;
+  std::vector<float> absorption, scattering, index;
 };
 
 /// The largest difference from the light of the whole, over its largest value; of rank 0, else 0.
@@ -124,6 +126,50 @@ bool Solve(Communicator& communicator)
   }
   return difference < 1e-6 && light.balance.RelativeError(1) < 1e-6;
 }
+
+/// From the middle of each voxel of a face, aslant.
+std::vector<Photon> PhotonsInto(const Grid& grid)
+{
+  std::vector<Photon> photons;
+  for (int i = 0; i < grid.size[1] * grid.size[2]; ++i)
+  {
+    Photon photon;
+    photon.position = { 0.0, i % grid.size[1] + 0.5, i / grid.size[1] + 0.5 };
+    photon.direction = { 0.8f, 0.6f * (i % 2 == 0 ? 1.0f : -1.0f), 0.0f };
+    photon.power = { 1.0f, 1.0f, 1.0f };
+    photons.push_back(photon);
+  }
+  return photons;
+}
+
+/// Bit for bit.
+bool March(Communicator& communicator)
+{
+  Grid grid;
+  grid.size = { 17, 12, 9 };
+  const BlockPartition partition = PartitionOf(grid, communicator.Ranks());
+  const std::shared_ptr<Device> device = Device::Find();
+  const std::vector<Photon> photons = PhotonsInto(grid);
+  PhotonTraffic traffic;
+  const auto march = [&](Communicator& ranks, const BlockPartition& blocks) {
+    const Waves block(blocks, ranks.Rank());
+    return MarchInBlocks(
+      *device, ranks, blocks, block.medium, { block.index.data(), 1 }, MarchSettings(), photons, {}, &traffic);
+  };
+  const PhotonLight light = march(communicator, partition);
+  const PhotonTraffic ofRank = traffic;
+  const double difference = DifferenceFromWhole(communicator, partition, light.light, [&] {
+    SingleRank single;
+    return march(single, { grid, { { { 0, 0, 0 }, grid.size } } }).light;
+  });
+  if (communicator.Rank() == 0)
+  {
+    std::cout << photons.size() << " photons, " << ofRank.photons << " handed on by rank 0 in " << ofRank.rounds
+              << " rounds; light differs by " << difference << ", balance off by "
+              << light.light.balance.RelativeError(1) << "\n";
+  }
+  return difference == 0.0 && light.light.balance.RelativeError(1) < 1e-6;
+}
 }
 
 int main(int argc, char* argv[])
@@ -134,7 +180,7 @@ int main(int argc, char* argv[])
   try
   {
     ControllerCommunicator communicator(controller, 60.0);
-    right = Solve(communicator);
+    right = Solve(communicator) && March(communicator);
   }
   catch (const DeviceError& error)
   {

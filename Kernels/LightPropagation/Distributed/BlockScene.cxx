@@ -1,70 +1,14 @@
 #include "LightPropagation/Distributed/BlockScene.h"
 
-#include "Device/Errors.h"
+#include "Distribution/SharedMedium.h"
 #include "Light/ChannelReduction.h"
 
 #include <algorithm>
-#include <limits>
 #include <string>
 #include <vector>
 
 namespace tyndall
 {
-namespace
-{
-/// A number on every rank, where ranks without voxels have none.
-/// @throws InvalidInput where they differ
-void RequireSame(Communicator& communicator, const char* what, bool has, std::vector<double> values)
-{
-  const std::size_t count = values.size();
-  for (std::size_t i = 0; i < count; ++i)
-  {
-    values.push_back(-values[i]);
-  }
-  if (!has)
-  {
-    std::fill(values.begin(), values.end(), -std::numeric_limits<double>::infinity());
-  }
-  const std::vector<double> largest = communicator.Largest(values);
-  for (std::size_t i = 0; i < count; ++i)
-  {
-    Require(largest[i] == -largest[count + i],
-      std::string("The ranks that share the medium disagree about ") + what + ": give every piece the same.");
-  }
-}
-
-/// Traits of the medium of all ranks.
-MediumTraits TraitsOfAll(Communicator& communicator, bool has, const Medium& medium)
-{
-  MediumTraits traits = has ? TraitsOf(medium, true) : MediumTraits();
-  const std::vector<double> any = communicator.Largest({ traits.absorbs ? 1.0 : 0.0, traits.scatters ? 1.0 : 0.0,
-    traits.emits ? 1.0 : 0.0, traits.grey ? 0.0 : 1.0, traits.greyExtinction ? 0.0 : 1.0 });
-  traits.absorbs = any[0] > 0.0;
-  traits.scatters = any[1] > 0.0;
-  traits.emits = any[2] > 0.0;
-  traits.grey = any[3] == 0.0;
-  traits.greyExtinction = any[4] == 0.0;
-  return traits;
-}
-}
-
-void RequireSame(Communicator& communicator, const BlockPartition& partition)
-{
-  std::vector<double> numbers;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    numbers.push_back(partition.whole.size[axis]);
-    numbers.push_back(partition.whole.spacing[axis]);
-    numbers.push_back(partition.whole.origin[axis]);
-    for (const VoxelBox& block : partition.blocks)
-    {
-      numbers.push_back(block.first[axis]);
-      numbers.push_back(block.size[axis]);
-    }
-  }
-  RequireSame(communicator, "the grid or its blocks", true, numbers);
-}
-
 void RequireSame(Communicator& communicator, bool has, const Medium& medium, const Illumination& illumination,
   const PropagationSettings& settings)
 {
@@ -90,7 +34,7 @@ BlockScene::BlockScene(Communicator& communicator, bool has, const Grid& whole, 
   const Illumination& shining, const PropagationSettings& settings)
   : medium(ofBlock)
   , illumination(shining)
-  , traits(TraitsOfAll(communicator, has, ofBlock))
+  , traits(TraitsOfAll(communicator, has ? TraitsOf(ofBlock, true) : MediumTraits()))
   , lengthUnit(LengthUnitOf(whole))
 {
   communicator.Together([&] {

@@ -13,10 +13,8 @@
 
 namespace tyndall
 {
-/// All ranks call these together.
-/// @throws InvalidInput  on each, where they differ in the grid and who has which part of it, or in what all must have
-/// alike of a scene
-void RequireSame(Communicator& communicator, const BlockPartition& partition);
+/// All ranks call it together.
+/// @throws InvalidInput  on each, where they differ in what all must have alike of a scene
 /// @param has  voxels; without any the medium is not looked at
 void RequireSame(Communicator& communicator, bool has, const Medium& medium, const Illumination& illumination,
   const PropagationSettings& settings);

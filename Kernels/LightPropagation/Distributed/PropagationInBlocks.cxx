@@ -1,6 +1,7 @@
 #include "LightPropagation/Distributed/PropagationInBlocks.h"
 
 #include "Device/Errors.h"
+#include "Distribution/SharedMedium.h"
 #include "LightPropagation/Convergence.h"
 #include "LightPropagation/Distributed/IterationInBlocks.h"
 #include "LightPropagation/Problem/PropagationProblem.h"

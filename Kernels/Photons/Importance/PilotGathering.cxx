@@ -143,7 +143,7 @@ PilotLight PilotGathering::Gather(const std::vector<Photon>& photons, const std:
   {
     light.grid.spacing[a] = medium.grid.Length(a) / cells[a];
   }
-  light.channels = medium.ColoursOf(packed);
+  light.channels = medium.traits.ColoursOf(packed);
   const std::size_t count = light.grid.VoxelCount();
   light.fluence.resize(count * static_cast<std::size_t>(light.channels));
   light.count.resize(count);

@@ -21,6 +21,11 @@ int ComponentsOf(const Field& field, bool needed)
   return field.values && needed ? field.components : 0;
 }
 
+IndexGrid SizeOf(const std::array<int, 3>& size)
+{
+  return { { size[0], size[1], size[2] } };
+}
+
 /// None where light is to be kept voxel by voxel.
 PhotonBricks BricksOf(Device& device, const Medium& medium, const MarchSettings& settings, bool bends, bool scatters)
 {
@@ -35,19 +40,42 @@ PhotonBricks BricksOf(Device& device, const Medium& medium, const MarchSettings&
 }
 }
 
-MarchMedium::MarchMedium(
-  Device& onDevice, const Medium& medium, const Field& ior, const MarchSettings& with, const std::uint8_t* levels)
+int MarchTraits::Channels(const MarchSettings& settings) const
+{
+  return settings.leaveOut && this->grey ? 1 : 3;
+}
+
+MarchTraits MarchTraitsOf(const Medium& medium, const Field& ior)
+{
+  return { { TraitsOf(medium) }, medium.sigma_a.HasColour() || medium.sigma_s.HasColour(),
+    IndexRangeOf(ior, medium.grid) };
+}
+
+int MarchEventLimit(const Grid& whole, const MarchSettings& settings)
+{
+  const double edges = 1.0 * whole.size[0] + whole.size[1] + whole.size[2];
+  return static_cast<int>(std::min(1e9, RoundsAtMost * edges * std::max(1.0, 1.0 / settings.stepSize)));
+}
+
+MarchMedium::MarchMedium(Device& onDevice, const Medium& medium, const MarchSettings& with, const MarchTraits& ofAll,
+  const MarchedPart& ofGrid, bool haveLevels)
   : device(onDevice)
   , grid(medium.grid)
+  , block(ofGrid)
   , settings(with)
-  , traits(TraitsOf(medium))
-  , channels(with.leaveOut && this->traits.grey ? 1 : 3)
-  , coloured(medium.sigma_a.HasColour() || medium.sigma_s.HasColour())
-  , index(IndexRangeOf(ior, medium.grid))
-  , bends(!with.leaveOut || this->index.Varies())
-  , hasLevels(levels && this->bends)
+  , traits(ofAll)
+  , channels(ofAll.Channels(with))
+  , bends(!with.leaveOut || ofAll.index.Varies())
+  , hasLevels(haveLevels && this->bends)
   , AComponents(ComponentsOf(medium.sigma_a, !with.leaveOut || this->traits.absorbs))
   , SComponents(ComponentsOf(medium.sigma_s, !with.leaveOut || this->traits.scatters))
+{
+}
+
+MarchMedium::MarchMedium(
+  Device& onDevice, const Medium& medium, const Field& ior, const MarchSettings& with, const std::uint8_t* levels)
+  : MarchMedium(onDevice, medium, with, MarchTraitsOf(medium, ior),
+      { medium.grid, { { 0, 0, 0 }, medium.grid.size }, { { 0, 0, 0 }, medium.grid.size } }, levels != nullptr)
 {
   this->bricks = BricksOf(this->device, medium, with, this->bends, this->traits.scatters);
   if (this->bricks.AreThere())
@@ -59,6 +87,13 @@ MarchMedium::MarchMedium(
     this->PackVoxels(medium, ior, levels);
   }
   this->device.Finish();
+}
+
+MarchMedium::MarchMedium(Device& onDevice, const Medium& medium, const Field& ior, const MarchSettings& with,
+  const MarchTraits& ofAll, const MarchedPart& ofGrid)
+  : MarchMedium(onDevice, medium, with, ofAll, ofGrid, false)
+{
+  this->PackVoxels(medium, ior, nullptr);
 }
 
 void MarchMedium::PackBricks(const Medium& medium)
@@ -79,34 +114,50 @@ void MarchMedium::PackBricks(const Medium& medium)
 
 void MarchMedium::PackVoxels(const Medium& medium, const Field& ior, const std::uint8_t* levels)
 {
-  this->sigmaA = this->Upload(medium.sigma_a.values, this->AComponents, "sigma_a");
-  this->sigmaS = this->Upload(medium.sigma_s.values, this->SComponents, "sigma_s");
-  Buffer<float> low(this->device, this->bends ? Count(this->Padded(4)) : 0, "range of the index");
-  Buffer<float> high(this->device, this->bends ? Count(this->Padded(4)) : 0, "range of the index");
+  const std::size_t voxels = this->grid.VoxelCount(), known = this->block.known.VoxelCount();
+  this->sigmaA = this->Upload(medium.sigma_a.values, voxels, this->AComponents, "sigma_a");
+  this->sigmaS = this->Upload(medium.sigma_s.values, voxels, this->SComponents, "sigma_s");
+  const std::size_t padded = this->bends ? Count(Padded(this->block.known.size, 4)) : 0;
+  Buffer<float> low(this->device, padded, "range of the index");
+  Buffer<float> high(this->device, padded, "range of the index");
   this->coefficients = Buffer<float>(this->device, 0, "squared index");
+  this->nodes = Buffer<cl_uchar>(this->device, 0, "octree nodes");
   if (this->bends)
   {
-    const std::vector<float> even(ior.values ? 0 : this->grid.VoxelCount(), 1.0f);
-    this->coefficients =
-      SquaredIndexCoefficients(this->device, this->grid, this->Upload(ior.values ? ior.values : even.data(), 1, "ior"));
+    const std::vector<float> even(ior.values ? 0 : known, 1.0f);
+    Grid ofIndex = this->grid;
+    ofIndex.size = this->block.known.size;
+    this->coefficients = SquaredIndexCoefficients(
+      this->device, ofIndex, this->Upload(ior.values ? ior.values : even.data(), known, 1, "ior"));
     this->FindRanges(low, high);
+    this->PackNodes(low, high, levels);
   }
   this->sigma =
     Buffer<float>(this->device, this->PaddedCount() * static_cast<std::size_t>(this->channels), "extinction");
-  this->nodes = Buffer<cl_uchar>(this->device, this->bends ? this->PaddedCount() : 0, "octree nodes");
-  const Buffer<cl_uchar> given = this->hasLevels
-    ? Buffer<cl_uchar>(this->device, levels, this->grid.VoxelCount(), "octree levels")
-    : Buffer<cl_uchar>(this->device, 0, "octree levels");
+  const auto before = [this](int axis) { return cl_int(this->block.own.first[axis] - this->block.known.first[axis]); };
   cl::Kernel pack = this->MediumKernel("pack_extinction");
-  With(pack, this->DescribeGrid(), static_cast<float>(this->Diagonal()), this->sigmaA, this->sigmaS, low, high, given,
-    this->sigma, this->nodes);
+  With(pack, this->DescribeGrid(), SizeOf(this->block.known.size), before(0), before(1), before(2),
+    static_cast<float>(this->Diagonal()), this->sigmaA, this->sigmaS, low, high, this->sigma);
   this->Launch(pack, Range(this->Padded(2)));
   this->device.Finish(); // before what is local goes
 }
 
+void MarchMedium::PackNodes(const Buffer<float>& low, const Buffer<float>& high, const std::uint8_t* levels)
+{
+  const Size padded = Padded(this->block.known.size, 2);
+  this->nodes = Buffer<cl_uchar>(this->device, Count(padded), "octree nodes");
+  const Buffer<cl_uchar> given = this->hasLevels
+    ? Buffer<cl_uchar>(this->device, levels, this->grid.VoxelCount(), "octree levels")
+    : Buffer<cl_uchar>(this->device, 0, "octree levels");
+  cl::Kernel pack = this->MediumKernel("pack_nodes");
+  With(pack, SizeOf(this->block.known.size), low, high, given, this->nodes);
+  this->Launch(pack, Range(padded));
+  this->device.Finish(); // before the levels go
+}
+
 void MarchMedium::FindRanges(Buffer<float>& low, Buffer<float>& high) const
 {
-  const Size size = this->Padded(4);
+  const Size size = Padded(this->block.known.size, 4);
   Buffer<float> low2(this->device, Count(size), "range of the index");
   Buffer<float> high2(this->device, Count(size), "range of the index");
   cl::Kernel widen = this->MediumKernel("widen_range");
@@ -125,19 +176,19 @@ void MarchMedium::FindRanges(Buffer<float>& low, Buffer<float>& high) const
   this->device.Finish();
 }
 
-MarchMedium::Size MarchMedium::Padded(int by) const
+MarchMedium::Size MarchMedium::Padded(const std::array<int, 3>& size, int by)
 {
-  Size size;
+  Size padded;
   for (int a = 0; a < 3; ++a)
   {
-    size[a] = static_cast<std::size_t>(this->grid.size[a] + by);
+    padded[a] = static_cast<std::size_t>(size[a] + by);
   }
-  return size;
+  return padded;
 }
 
-Buffer<float> MarchMedium::Upload(const float* values, int components, const char* what) const
+Buffer<float> MarchMedium::Upload(const float* values, std::size_t voxels, int components, const char* what) const
 {
-  const std::size_t count = this->grid.VoxelCount() * static_cast<std::size_t>(components);
+  const std::size_t count = voxels * static_cast<std::size_t>(components);
   return count > 0 ? Buffer<float>(this->device, values, count, what) : Buffer<float>(this->device, 0, what);
 }
 
@@ -148,7 +199,7 @@ void MarchMedium::Launch(const cl::Kernel& kernel, const cl::NDRange& range, con
 
 IndexGrid MarchMedium::DescribeGrid() const
 {
-  return { { this->grid.size[0], this->grid.size[1], this->grid.size[2] } };
+  return SizeOf(this->grid.size);
 }
 
 LightSumsInfo MarchMedium::DescribeSums(const PackedPhotons& packed, float weightUnit) const
@@ -168,22 +219,20 @@ double MarchMedium::Diagonal() const
   return std::hypot(this->grid.spacing[0], this->grid.spacing[1], this->grid.spacing[2]);
 }
 
-int MarchMedium::EventLimit() const
-{
-  const double edges = 1.0 * this->grid.size[0] + this->grid.size[1] + this->grid.size[2];
-  return static_cast<int>(std::min(1e9, RoundsAtMost * edges * std::max(1.0, 1.0 / this->settings.stepSize)));
-}
-
 MarchInfo MarchMedium::Describe() const
 {
   MarchInfo info = {};
   info.grid = this->DescribeGrid();
+  info.whole = SizeOf(this->block.whole.size);
+  info.known = SizeOf(this->block.known.size);
   for (int a = 0; a < 3; ++a)
   {
+    info.first[a] = this->block.own.first[a];
+    info.knownFirst[a] = this->block.known.first[a];
     info.spacing[a] = static_cast<float>(this->grid.spacing[a] / this->Diagonal());
   }
   info.stepSize = static_cast<float>(this->settings.stepSize);
-  info.slowest = 0.5f * this->index.least / *std::max_element(info.spacing, info.spacing + 3);
+  info.slowest = 0.5f * this->traits.index.least / *std::max_element(info.spacing, info.spacing + 3);
   info.darkness = DarkUnits;
   info.eventLimit = this->EventLimit();
   info.copy = this->Records();

@@ -3,6 +3,7 @@
 #include "Device/Buffer.h"
 #include "Medium/Medium.h"
 #include "Medium/Traits.h"
+#include "Medium/VoxelBox.h"
 #include "Photons/Marching/MarchShared.h"
 #include "Photons/Marching/PhotonBricks.h"
 #include "Photons/Marching/PhotonPacking.h"
@@ -14,6 +15,29 @@
 
 namespace tyndall
 {
+/// What decides how photons are marched through a medium, all of it: blocks of one grid have it alike.
+struct MarchTraits : MediumTraits
+{
+  bool coloured = false; ///< coefficients have three components, as data
+  IndexRange index;
+
+  int Channels(const MarchSettings& settings) const; ///< of extinction, 1 or 3
+  /// Channels of the light that so many photons leave.
+  int ColoursOf(const PackedPhotons& packed) const { return packed.grey && !this->coloured ? 1 : 3; }
+};
+MarchTraits MarchTraitsOf(const Medium& medium, const Field& ior);
+
+/// The part of a grid that photons are marched through in one go.
+struct MarchedPart
+{
+  Grid whole;
+  VoxelBox own;   ///< of the medium
+  VoxelBox known; ///< of the refractive index: own, and the voxels round it that photons in it are bent by
+};
+
+/// Walls and turns of a photon at most.
+int MarchEventLimit(const Grid& whole, const MarchSettings& settings);
+
 /// A refractive medium on its device, as photons are marched through it, and what kernels need to know of it.
 class MarchMedium
 {
@@ -21,13 +45,18 @@ public:
   /// @param ior, levels  as PhotonMarcher has them, and checked
   MarchMedium(
     Device& device, const Medium& medium, const Field& ior, const MarchSettings& settings, const std::uint8_t* levels);
+  /// Of a block of the whole grid. Voxel by voxel, and without an octree.
+  /// @param medium  of block.own
+  /// @param ior     of block.known
+  MarchMedium(Device& device, const Medium& medium, const Field& ior, const MarchSettings& settings,
+    const MarchTraits& traits, const MarchedPart& block);
 
   MarchInfo Describe() const;
   IndexGrid DescribeGrid() const;
   /// How the sums of these photons become light.
   /// @param weightUnit  weight of one of the units that voxels sum up, where photons count
   LightSumsInfo DescribeSums(const PackedPhotons& packed, float weightUnit = 0.0f) const;
-  int EventLimit() const;  ///< walls and turns of a photon at most
+  int EventLimit() const { return MarchEventLimit(this->block.whole, this->settings); }
   double Diagonal() const; ///< of a voxel
   /// Voxels, with one more at either end of each axis.
   std::size_t PaddedCount() const { return Count(this->Padded(2)); }
@@ -47,16 +76,13 @@ public:
 
   Device& device;
   Grid grid;
+  MarchedPart block; ///< of the grid
   MarchSettings settings;
-  MediumTraits traits;
-  int channels;  ///< of extinction, 1 or 3
-  bool coloured; ///< coefficients have three components, as data
-  IndexRange index;
+  MarchTraits traits;
+  int channels; ///< of extinction, 1 or 3
   bool bends, hasLevels;
   PhotonBricks bricks; ///< where all arrays stand by bricks
 
-  /// Channels of the light that so many photons leave.
-  int ColoursOf(const PackedPhotons& packed) const { return packed.grey && !this->coloured ? 1 : 3; }
   Buffer<float> sigmaA, sigmaS;
   Buffer<float> sigma;        ///< PhotonMedium.cl, pack_extinction; or PhotonBricks.h
   Buffer<float> coefficients; ///< SquaredIndex.cl
@@ -66,11 +92,15 @@ private:
   using Size = std::array<std::size_t, 3>;
   static std::size_t Count(const Size& size) { return size[0] * size[1] * size[2]; }
   static cl::NDRange Range(const Size& size) { return { size[0], size[1], size[2] }; }
-  Size Padded(int by) const;
-  Buffer<float> Upload(const float* values, int components, const char* what) const;
+  static Size Padded(const std::array<int, 3>& size, int by);
+  Size Padded(int by) const { return Padded(this->grid.size, by); }
+  MarchMedium(Device& device, const Medium& medium, const MarchSettings& settings, const MarchTraits& traits,
+    const MarchedPart& block, bool hasLevels);
+  Buffer<float> Upload(const float* values, std::size_t voxels, int components, const char* what) const;
   cl::Kernel MediumKernel(const char* name) const;
   void FindRanges(Buffer<float>& low, Buffer<float>& high) const;
   void PackVoxels(const Medium& medium, const Field& ior, const std::uint8_t* levels);
+  void PackNodes(const Buffer<float>& low, const Buffer<float>& high, const std::uint8_t* levels);
   void PackBricks(const Medium& medium);
 
   int AComponents, SComponents;

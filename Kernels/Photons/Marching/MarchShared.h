@@ -9,19 +9,24 @@ enum
 {
   EndWords = 3,   ///< integers of a PhotonEnd, before its powers
   StillGoing = 6, ///< face of a photon that has not come to its end; this and above: not a face of the volume
-  Dark = 7        ///< of one of which nothing is left
+  Dark = 7,       ///< of one of which nothing is left
+  Elsewhere = 8   ///< of one that goes on in another block of the grid
 };
 
-/// The medium, and how photons are marched through it.
+/// The medium, and how photons are marched through it. Places are those of the whole grid; arrays have a block of it.
 typedef struct
 {
-  IndexGrid grid;
-  float spacing[3]; ///< over the voxel's diagonal
-  float stepSize;   ///< voxels, of a step where the octree has single voxels
-  float slowest;    ///< voxels per time that a photon keeps to wherever n is its least; steps are no longer than for it
-  float darkness;   ///< power below which nothing is left of a photon
-  int eventLimit;   ///< walls and turns of a photon at most
-  ulong copy;       ///< voxels of the padded grid
+  IndexGrid grid;    ///< the block: of extinction and sums
+  IndexGrid whole;   ///< all voxels
+  IndexGrid known;   ///< of the refractive index: the block and what photons in it are bent by
+  int first[3];      ///< voxel of the block, in the whole
+  int knownFirst[3]; ///< voxel of `known`
+  float spacing[3];  ///< over the voxel's diagonal
+  float stepSize;    ///< voxels, of a step where the octree has single voxels
+  float slowest;  ///< voxels per time that a photon keeps to wherever n is its least; steps are no longer than for it
+  float darkness; ///< power below which nothing is left of a photon
+  int eventLimit; ///< walls and turns of a photon at most
+  ulong copy;     ///< voxels of the padded grid
 } MarchInfo;
 
 /// What became of a photon. In kernels the power of each channel that is left of it follows.
@@ -34,4 +39,24 @@ typedef struct
   float power[CHANNELS];
 #endif
 } PhotonEnd;
+
+/// A photon that goes from one block of a grid into another: all that its way from there on depends on, so that it is
+/// the same, bit for bit, as in one block. Units are those of the kernels; only channels that there are count.
+typedef struct
+{
+  ulong mark;     ///< by which it counts
+  int voxel[3];   ///< of the whole grid, that it comes to
+  int crossings;  ///< stretches that were deposited
+  int steps;      ///< of the integrator
+  float wall[3];  ///< time of the next one along each axis
+  float now;      ///< time since the step began
+  float turn;     ///< time when it ends
+  float settled;  ///< time until which the last turn holds
+  float step;     ///< time of the step under way
+  float start[3]; ///< of the step
+  float velocity[3];
+  float momentum[3];
+  float power[3];
+  float owed[3]; ///< what rounding has left of what voxels were to take
+} PhotonOnItsWay;
 SHARED_END

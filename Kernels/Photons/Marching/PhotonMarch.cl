@@ -10,6 +10,8 @@
 //   PATHS            1: nothing is summed, vertices are written
 //   BRICKS           1: the medium, and the sums, stand by bricks (PhotonBricks.cl), without COUNTS and CELLS
 //   TURNS            1: photons march in turns, and are kept between them; one batch, without PATHS
+//   BLOCKS           1: photons march as far as their block of the grid goes (PhotonBlocks.cl); one batch, without
+//                    PATHS, CELLS, BRICKS and TURNS
 //
 // A step is followed from voxel wall to voxel wall (Amanatides and Woo 1987). In a voxel whose extinction over a
 // diagonal is s, with b = max(s, 1), the sums gain (numerics.md, Eqs. (35), (97))
@@ -214,6 +216,10 @@ static void ask_ahead(const march_arrays* arrays, const photon_lanes* lanes, int
 #endif
 }
 
+#if BLOCKS
+#include "Photons/Distributed/PhotonBlocks.cl"
+#endif
+
 // What the photons leave over `length` in the voxels where they are.
 static void leave_light(const march_arrays* arrays, photon_flight* flight, real length, photon_gain* gain)
 {
@@ -258,14 +264,25 @@ static real brightest(const photon_flight* flight)
   return most;
 }
 
+#if BENDS
+// The photons that have come to a turn.
+static integer to_turn(const photon_lanes* lanes, const photon_flight* flight)
+{
+  const real turn = VECTOR(lanes->turn);
+  return truth(turn <= flight->now) |
+    (truth(as_integer(flight->sigma) < 0) & truth(turn == (real)NEVER) & truth(flight->now >= VECTOR(lanes->settled)));
+}
+#endif
+
 // The photons that have come to an end or to a turn.
 static integer to_attend(const march_arrays* arrays, const photon_lanes* lanes, const photon_flight* flight)
 {
   integer special = truth(flight->sigma == (real)OUTSIDE) | truth(brightest(flight) < (real)arrays->info->darkness);
 #if BENDS
-  const real turn = VECTOR(lanes->turn);
-  special |= truth(turn <= flight->now) |
-    (truth(as_integer(flight->sigma) < 0) & truth(turn == (real)NEVER) & truth(flight->now >= VECTOR(lanes->settled)));
+  special |= to_turn(lanes, flight);
+#endif
+#if BLOCKS
+  special |= spent(arrays, flight); // they have not come as far as each other
 #endif
   return special & flight->alive;
 }
@@ -307,19 +324,36 @@ static void attend(
   if (anywhere(ended))
   {
     const int beyond = bits_of(outside);
+#if BLOCKS
+    keep_owed(lanes, flight);
+#endif
     FOR_LANES(k, ended)
     {
       const int face = beyond >> k & 1 ? face_left(arrays->info, lanes, k) : Dark;
+#if BLOCKS
+      if (face == Elsewhere)
+      {
+        hand_on(arrays, lanes, k);
+      }
+#endif
       end_photon(lanes, k, face, arrays->ends + first + k);
       rest(lanes, k);
     }
   }
 #if BENDS
-  const integer turning = mask & ~ended;
+  const integer turning = mask & ~ended & to_turn(lanes, flight);
   if (anywhere(turning))
   {
     take_turns(arrays, lanes, turning);
     give_up_lost(arrays, lanes, turning, first);
+  }
+#endif
+#if BLOCKS
+  const integer given_up = mask & INTEGERS(lanes->alive) & spent(arrays, flight);
+  FOR_LANES(k, given_up)
+  {
+    end_photon(lanes, k, StillGoing, arrays->ends + first + k);
+    rest(lanes, k);
   }
 #endif
 }
@@ -570,6 +604,66 @@ __kernel void march_turn(MarchInfo info, const __global float* sigma, const __gl
   {
     atomic_add(left, still);
   }
+}
+#elif BLOCKS
+// Photons that have come from other blocks, as load_packet those that set off.
+static void resume_packet(const march_arrays* arrays, const __global PhotonOnItsWay* arrived, int first, int end,
+  photon_lanes* lanes, photon_flight* flight)
+{
+  take_over(arrays, arrived, first, end, lanes, flight);
+  take_off(arrays, lanes, flight);
+  const integer special = to_attend(arrays, lanes, flight);
+  if (anywhere(special))
+  {
+    land(flight, lanes);
+    attend(arrays, lanes, flight, special, first);
+    take_off(arrays, lanes, flight);
+  }
+}
+
+static void march_packet_in_block(const march_arrays* arrays, const __global float* photons,
+  const __global PhotonOnItsWay* arrived, int resumes, int first, int end)
+{
+  photon_lanes lanes;
+  photon_flight flight;
+  if (resumes)
+  {
+    resume_packet(arrays, arrived, first, end, &lanes, &flight);
+  }
+  else
+  {
+    load_packet(arrays, photons, first, end, &lanes, &flight);
+  }
+  int vertices = 0;
+  if (anywhere(flight.alive))
+  {
+    follow(arrays, &lanes, &flight, first, arrays->info->eventLimit, 0.0f, &vertices);
+  }
+}
+
+// Photons `first` to `first + count`, to their ends or into another block: of `photons`, which set off, or with
+// `resumes` of `arrived`. Those that go on elsewhere are put into `gone`, whose number gone_count is, in any order.
+__kernel void march_block(MarchInfo info, const __global float* sigma, const __global float* coefficients,
+  const __global uchar* nodes, const __global float* photons, const __global ulong* marks,
+  const __global PhotonOnItsWay* arrived, __global PhotonOnItsWay* gone, volatile __global int* gone_count,
+  __global PhotonEnd* ends, __global long* sums, ulong copyStride, volatile __global int* next, int resumes, int first,
+  int count)
+{
+  const int end = first + count;
+#if WORKERS > 0
+  const march_arrays arrays = { &info, sigma, coefficients, nodes, sums + get_global_id(0) * copyStride, ends, 0, marks,
+    0, gone, gone_count };
+  for (int block = atomic_add(next, BLOCK); block < count; block = atomic_add(next, BLOCK))
+  {
+    for (int i = first + block; i < first + min(block + BLOCK, count); i += REAL_WIDTH)
+    {
+      march_packet_in_block(&arrays, photons, arrived, resumes, i, end);
+    }
+  }
+#else
+  const march_arrays arrays = { &info, sigma, coefficients, nodes, sums, ends, 0, marks, 0, gone, gone_count };
+  march_packet_in_block(&arrays, photons, arrived, resumes, first + get_global_id(0) * REAL_WIDTH, end);
+#endif
 }
 #else
 // Of each batch, photons `first` to `first + count`: those of batch b begin at batch_begin[b], and end where the next

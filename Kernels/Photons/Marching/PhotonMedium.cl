@@ -10,24 +10,27 @@
 #define component(values, count, voxel, c) \
   ((count) == 0 ? 0.0f : (values)[(voxel) * (count) + ((count) == 3 ? (c) : 0)])
 
+// Whether n^2 varies within the reach of interpolation in a voxel (low, high: the range of coefficients, in their
+// padding).
+static bool index_varies(
+  const IndexGrid* known, const __global float* low, const __global float* high, int x, int y, int z)
+{
+  const size_t i = ((size_t)(z + 2) * (known->size[1] + 4) + y + 2) * (known->size[0] + 4) + x + 2;
+  return high[i] - low[i] > FLAT * high[i];
+}
+
 // sigma  [MEDIUM_CHANNELS][padded] extinction over `diagonal`, OUTSIDE in the padding; its sign bit says that n^2
-//        varies within the reach of interpolation (low, high: the range of coefficients, in their padding)
-// nodes  [padded] 0: it does not vary; else 1 + the voxel's octree level
-__kernel void pack_extinction(IndexGrid grid, float diagonal, const __global float* sigma_a,
-  const __global float* sigma_s, const __global float* low, const __global float* high, const __global uchar* levels,
-  __global float* sigma, __global uchar* nodes)
+//        varies. x0, y0, z0: the first voxel, among those whose index is known
+__kernel void pack_extinction(IndexGrid grid, IndexGrid known, int x0, int y0, int z0, float diagonal,
+  const __global float* sigma_a, const __global float* sigma_s, const __global float* low, const __global float* high,
+  __global float* sigma)
 {
   const int x = get_global_id(0), y = get_global_id(1), z = get_global_id(2);
   const int row = grid.size[0] + 2, layer = row * (grid.size[1] + 2);
   const size_t copy = (size_t)layer * (grid.size[2] + 2), at = (size_t)z * layer + y * row + x;
   const bool inside = x > 0 && x <= grid.size[0] && y > 0 && y <= grid.size[1] && z > 0 && z <= grid.size[2];
   const size_t voxel = ((size_t)(z - 1) * grid.size[1] + y - 1) * grid.size[0] + x - 1;
-  bool varies = false;
-#if BENDS
-  const size_t i = ((size_t)(z + 1) * (grid.size[1] + 4) + y + 1) * (grid.size[0] + 4) + x + 1;
-  varies = inside && high[i] - low[i] > FLAT * high[i];
-  nodes[at] = varies ? 1 + (LEVELS ? levels[voxel] : 0) : 0;
-#endif
+  const bool varies = BENDS && inside && index_varies(&known, low, high, x0 + x - 1, y0 + y - 1, z0 + z - 1);
   for (int c = 0; c < MEDIUM_CHANNELS; ++c)
   {
     float s = OUTSIDE;
@@ -39,6 +42,18 @@ __kernel void pack_extinction(IndexGrid grid, float diagonal, const __global flo
     }
     sigma[c * copy + at] = s;
   }
+}
+
+// nodes  [padded known] 0: n^2 does not vary; else 1 + the voxel's octree level
+__kernel void pack_nodes(IndexGrid known, const __global float* low, const __global float* high,
+  const __global uchar* levels, __global uchar* nodes)
+{
+  const int x = get_global_id(0), y = get_global_id(1), z = get_global_id(2);
+  const int nx = known.size[0], ny = known.size[1];
+  const bool inside = x > 0 && x <= nx && y > 0 && y <= ny && z > 0 && z <= known.size[2];
+  const bool varies = inside && index_varies(&known, low, high, x - 1, y - 1, z - 1);
+  const size_t voxel = ((size_t)(z - 1) * ny + y - 1) * nx + x - 1;
+  nodes[((size_t)z * (ny + 2) + y) * (nx + 2) + x] = varies ? 1 + (LEVELS ? levels[voxel] : 0) : 0;
 }
 
 // [padded] the coarse cell of each voxel, of cells[0] times cells[1] times cells[2]; 0 in the padding.

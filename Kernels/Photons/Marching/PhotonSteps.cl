@@ -5,6 +5,7 @@
 //   DIRECTIONS  1: directions are asked for
 //   COUNTS, CELLS  1: photons bear marks (PhotonMarch.cl)
 //   BRICKS      1: the medium stands by bricks (PhotonBricks.cl); places are records, and [copy] of them
+//   BLOCKS      1: photons may go into other blocks of the grid (PhotonBlocks.cl)
 //
 // A path obeys dr/dt = T, dT/dt = grad(n^2) / 2 with dt = ds / n (numerics.md, Eq. (90)). It becomes steps, straight
 // lines of constant velocity:
@@ -35,14 +36,18 @@ typedef struct
   const MarchInfo* info;
   const __global float* sigma; // [MEDIUM_CHANNELS][copy] extinction over a diagonal; its sign bit: the index varies
   const __global float* coefficients; // of n^2
-  const __global uchar*
-    nodes; // [copy] 0: the index does not vary, 1: it does, in a single voxel, 1 + k: in an octree's node of 2^k
-  __global long* sums; // [copy][RECORD] fixed point
+  const __global uchar* nodes; // [padded known] 0: the index does not vary, 1: it does, in a single voxel, 1 + k: in
+                               // an octree's node of 2^k
+  __global long* sums;         // [copy][RECORD] fixed point
   __global PhotonEnd* ends;
   __global float4*
     vertices; // of a path: position in voxels, part of the power that is left; null: they are only counted
   const __global ulong* marks; // of photons, with COUNTS or CELLS
   const __global int* cells;   // [copy] of voxels, with CELLS; with BRICKS of bricks: PhotonBricks.h
+#if BLOCKS
+  __global PhotonOnItsWay* gone; // into other blocks
+  volatile __global int* gone_count;
+#endif
 } march_arrays;
 
 // The state of REAL_WIDTH photons.
@@ -69,6 +74,9 @@ typedef struct
 #if COUNTS || CELLS
   LANES(ulong, mark);
 #endif
+#if BLOCKS
+  float owed[CHANNELS][REAL_WIDTH] __attribute__((aligned(64))); // of those that land to go on elsewhere
+#endif
 #if BRICKS
   LANES_3(int, voxel);
   LANES(int, last);        // of the voxels that a step crosses, along an edge: PhotonBricks.cl
@@ -80,20 +88,15 @@ typedef struct
 #include "Photons/Marching/PhotonBricks.cl"
 #endif
 
-static int3 size_of(const MarchInfo* info)
-{
-  return (int3)(info->grid.size[0], info->grid.size[1], info->grid.size[2]);
-}
-
 static int3 voxel_of(const MarchInfo* info, int at)
 {
   const int row = info->grid.size[0] + 2, layer = row * (info->grid.size[1] + 2);
   const int z = at / layer;
   const int y = (at - z * layer) / row;
-  return (int3)(at - z * layer - y * row - 1, y - 1, z - 1);
+  return (int3)(at - z * layer - y * row - 1, y - 1, z - 1) + vload3(0, info->first);
 }
 
-// The face through which photon k came to where it is, beyond the grid.
+// The face of the whole grid through which photon k came to where it is, beyond the block.
 static int face_left(const MarchInfo* info, const photon_lanes* lanes, int k)
 {
 #if BRICKS
@@ -101,14 +104,26 @@ static int face_left(const MarchInfo* info, const photon_lanes* lanes, int k)
 #else
   const int3 voxel = voxel_of(info, lanes->at[k]);
 #endif
-  const int3 size = size_of(info);
-  return voxel.x < 0 ? 0 : voxel.x >= size.x ? 1 : voxel.y < 0 ? 2 : voxel.y >= size.y ? 3 : voxel.z < 0 ? 4 : 5;
+  const int3 size = vload3(0, info->whole.size);
+  return voxel.x < 0    ? 0
+    : voxel.x >= size.x ? 1
+    : voxel.y < 0       ? 2
+    : voxel.y >= size.y ? 3
+    : voxel.z < 0       ? 4
+    : voxel.z >= size.z ? 5
+                        : Elsewhere;
+}
+
+// The place of a voxel in an array of a part of the grid that is `by` longer at either end of each axis.
+static integer place_in(const IndexGrid* part, const int* first, int by, const integer* voxel)
+{
+  const int row = part->size[0] + 2 * by, layer = row * (part->size[1] + 2 * by);
+  return (voxel[2] + (by - first[2])) * layer + (voxel[1] + (by - first[1])) * row + voxel[0] + (by - first[0]);
 }
 
 static integer padded(const MarchInfo* info, const integer* voxel)
 {
-  const int row = info->grid.size[0] + 2, layer = row * (info->grid.size[1] + 2);
-  return voxel[2] * layer + voxel[1] * row + voxel[0] + (layer + row + 1);
+  return place_in(&info->grid, info->first, 1, voxel);
 }
 
 // The voxels of the photons of a mask: of their place p, but on a wall, where rounding would decide, that of `at`.
@@ -149,30 +164,25 @@ static real time_to_wall(real p, real low, real high, real u, real inverse)
   return u == (real)0.0f ? (real)NEVER : greater(time, (real)0.0f);
 }
 
-// Steps of the photons of a mask from p in `voxel`, with velocity u; 1 / u is known.
-static void begin_steps(const MarchInfo* info, photon_lanes* lanes, integer mask, const integer* voxel, const real* p,
-  const real* u, const real* inverse)
+// The photons of a mask have velocity u from now on; 1 / u is known.
+static void aim(const MarchInfo* info, photon_lanes* lanes, integer mask, const real* u, const real* inverse)
 {
   const int strides[3] = { 1, info->grid.size[0] + 2, (info->grid.size[0] + 2) * (info->grid.size[1] + 2) };
   real way[3], squares = 0.0f, fastest = 0.0f;
   integer ahead = 0;
   FOR_AXES(a)
   {
-    const real low = to_real(voxel[a]);
     const integer stride = u[a] > (real)0.0f ? (integer)strides[a] : (integer)-strides[a];
     const real speed = fabs(u[a]);
     ahead = speed > fastest ? stride : ahead;
     fastest = greater(speed, fastest);
     way[a] = u[a] * info->spacing[a];
     squares += way[a] * way[a];
-    PUT_WHERE(mask, lanes->start[a], p[a]);
     PUT_WHERE(mask, lanes->velocity[a], u[a]);
-    PUT_WHERE(mask, lanes->wall[a], time_to_wall(p[a], low, low + (real)1.0f, u[a], inverse[a]));
     PUT_WHERE(mask, lanes->across[a], u[a] == (real)0.0f ? (real)0.0f : fabs(inverse[a]));
     PUT_INTEGERS_WHERE(mask, lanes->stride[a], stride);
   }
   const real pace = sqrt(squares);
-  PUT_WHERE(mask, lanes->now, (real)0.0f);
   PUT_WHERE(mask, lanes->pace, pace);
   PUT_INTEGERS_WHERE(mask, lanes->ahead, AHEAD * ahead);
 #if DIRECTIONS
@@ -188,19 +198,32 @@ static void begin_steps(const MarchInfo* info, photon_lanes* lanes, integer mask
 #endif
 }
 
+// Steps of the photons of a mask from p in `voxel`, with velocity u; 1 / u is known.
+static void begin_steps(const MarchInfo* info, photon_lanes* lanes, integer mask, const integer* voxel, const real* p,
+  const real* u, const real* inverse)
+{
+  FOR_AXES(a)
+  {
+    const real low = to_real(voxel[a]);
+    PUT_WHERE(mask, lanes->start[a], p[a]);
+    PUT_WHERE(mask, lanes->wall[a], time_to_wall(p[a], low, low + (real)1.0f, u[a], inverse[a]));
+  }
+  PUT_WHERE(mask, lanes->now, (real)0.0f);
+  aim(info, lanes, mask, u, inverse);
+}
+
 #if BENDS
 // Of a voxel.
 static integer coefficient_of(const MarchInfo* info, const integer* voxel)
 {
-  const int row = info->grid.size[0] + 4, layer = row * (info->grid.size[1] + 4);
-  return (voxel[2] + 2) * layer + (voxel[1] + 2) * row + voxel[0] + 2;
+  return place_in(&info->known, info->knownFirst, 2, voxel);
 }
 
 // n^2 and its gradient where the photons of a mask are.
 static void squared_index_at(const march_arrays* arrays, integer mask, const real* p, real* squared, real* gradient)
 {
-  const IndexGrid* grid = &arrays->info->grid;
-  const int row = grid->size[0] + 4, layer = row * (grid->size[1] + 4);
+  const IndexGrid* known = &arrays->info->known;
+  const int row = known->size[0] + 4, layer = row * (known->size[1] + 4);
   const int strides[3] = { 1, row, layer };
   LANES(int, first); // of the coefficients
   LANES_3(float, fraction);
@@ -210,8 +233,9 @@ static void squared_index_at(const march_arrays* arrays, integer mask, const rea
   FOR_AXES(a)
   {
     const real q = p[a] - (real)0.5f;
-    const integer base = clamp(to_integer(q + (real)1.0f) - 1, (integer)-1, (integer)(grid->size[a] - 1));
-    before += (base + 1) * strides[a];
+    const int least = arrays->info->knownFirst[a] - 1;
+    const integer base = clamp(to_integer(q + (real)1.0f) - 1, (integer)least, (integer)(least + known->size[a]));
+    before += (base - least) * strides[a];
     PUT(fraction[a], q - to_real(base));
     PUT(slopes[a], (real)0.0f);
   }
@@ -233,12 +257,13 @@ static void squared_index_at(const march_arrays* arrays, integer mask, const rea
   }
 }
 
-// The voxels of places anywhere; beyond the grid those of the padding.
+// The voxels of places anywhere; beyond those whose index is known, those of the padding.
 static void voxels_of_places(const MarchInfo* info, const real* p, integer* voxel)
 {
   FOR_AXES(a)
   {
-    voxel[a] = clamp(to_integer(p[a] + (real)1.0f) - 1, (integer)-1, (integer)info->grid.size[a]);
+    const int least = info->knownFirst[a] - 1;
+    voxel[a] = clamp(to_integer(p[a] + (real)1.0f) - 1, (integer)least, (integer)(least + info->known.size[a] + 1));
   }
 }
 
@@ -247,7 +272,7 @@ static real times_of_steps(
   const march_arrays* arrays, integer mask, const integer* voxel, const real* p, const real* u, const real* inverse)
 {
   const MarchInfo* info = arrays->info;
-  const integer at = mask & padded(info, voxel); // the others are in the padding
+  const integer at = mask & place_in(&info->known, info->knownFirst, 1, voxel); // the others are in the padding
   const integer node = to_integer(gather(uchar, arrays->nodes, at));
   // Where n jumps within a step a kick may leave a photon almost without velocity.
   const real shortest =
@@ -262,7 +287,7 @@ static real times_of_steps(
     FOR_AXES(a)
     {
       const integer low = (voxel[a] >> level) << level;
-      const integer high = min(low + ((integer)1 << level), info->grid.size[a]);
+      const integer high = min(low + ((integer)1 << level), info->whole.size[a]);
       const real wall = time_to_wall(p[a], to_real(low), to_real(high), u[a], inverse[a]);
       out = lesser(out, wall);
     }
@@ -426,7 +451,7 @@ static void set_off(const march_arrays* arrays, photon_lanes* lanes, real* p, re
   real inverse[3];
   FOR_AXES(a)
   {
-    voxel[a] = clamp(to_integer(p[a]), (integer)0, (integer)(info->grid.size[a] - 1));
+    voxel[a] = clamp(to_integer(p[a]), (integer)0, (integer)(info->whole.size[a] - 1));
     u[a] /= info->spacing[a];
   }
   PUT_INTEGERS(lanes->at, padded(info, voxel));

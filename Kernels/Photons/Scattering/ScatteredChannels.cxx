@@ -61,7 +61,7 @@ ScatteredChannels::ScatteredChannels(
   Device& device, const MarchMedium& through, const Medium& medium, const Field& ior, const std::uint8_t* levels)
   : Through(through)
 {
-  const bool coloured = through.coloured || medium.phase.HasColour();
+  const bool coloured = through.traits.coloured || medium.phase.HasColour();
   for (int c = 0; c < (coloured ? 3 : 1); ++c)
   {
     const OneChannelMedium one(medium, c);

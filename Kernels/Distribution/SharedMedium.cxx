@@ -1,0 +1,58 @@
+#include "Distribution/SharedMedium.h"
+
+#include "Device/Errors.h"
+
+#include <algorithm>
+#include <limits>
+#include <string>
+
+namespace tyndall
+{
+void RequireSame(Communicator& communicator, const char* what, bool has, std::vector<double> values)
+{
+  const std::size_t count = values.size();
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    values.push_back(-values[i]);
+  }
+  if (!has)
+  {
+    std::fill(values.begin(), values.end(), -std::numeric_limits<double>::infinity());
+  }
+  const std::vector<double> largest = communicator.Largest(values);
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    Require(largest[i] == -largest[count + i],
+      std::string("The ranks that share the medium disagree about ") + what + ": give every piece the same.");
+  }
+}
+
+void RequireSame(Communicator& communicator, const BlockPartition& partition)
+{
+  std::vector<double> numbers;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    numbers.push_back(partition.whole.size[axis]);
+    numbers.push_back(partition.whole.spacing[axis]);
+    numbers.push_back(partition.whole.origin[axis]);
+    for (const VoxelBox& block : partition.blocks)
+    {
+      numbers.push_back(block.first[axis]);
+      numbers.push_back(block.size[axis]);
+    }
+  }
+  RequireSame(communicator, "the grid or its blocks", true, numbers);
+}
+
+MediumTraits TraitsOfAll(Communicator& communicator, MediumTraits traits)
+{
+  const std::vector<double> any = communicator.Largest({ traits.absorbs ? 1.0 : 0.0, traits.scatters ? 1.0 : 0.0,
+    traits.emits ? 1.0 : 0.0, traits.grey ? 0.0 : 1.0, traits.greyExtinction ? 0.0 : 1.0 });
+  traits.absorbs = any[0] > 0.0;
+  traits.scatters = any[1] > 0.0;
+  traits.emits = any[2] > 0.0;
+  traits.grey = any[3] == 0.0;
+  traits.greyExtinction = any[4] == 0.0;
+  return traits;
+}
+}

@@ -1,0 +1,41 @@
+#pragma once
+
+#include "Device/Monitor.h"
+#include "Photons/Marching/MarchLaunch.h"
+#include "Photons/Marching/MarchShared.h"
+
+#include <vector>
+
+namespace tyndall
+{
+/// Marches photons through one block of a grid, as far as the block goes.
+class BlockMarch
+{
+public:
+  /// @param medium, target  must stay
+  /// @param packed  its channels are those of all photons
+  BlockMarch(const MarchMedium& medium, const MarchSums& target, const PackedPhotons& packed);
+
+  /// What became of photons.
+  struct Outcome
+  {
+    std::vector<cl_int> ends;         ///< PhotonEnd and powers of each (Tally)
+    std::vector<PhotonOnItsWay> gone; ///< into other blocks, in any order
+  };
+  /// Of photons that set off in the block.
+  /// @param marks  by which they count, or none
+  /// @throws Aborted: the sums are of a part of the photons then
+  Outcome Start(const PackedPhotons& photons, const std::vector<cl_ulong>& marks, const Monitor& monitor);
+  /// Of photons that have come from other blocks. @throws Aborted
+  Outcome Resume(const std::vector<PhotonOnItsWay>& arrived, const Monitor& monitor);
+
+private:
+  Outcome March(const PhotonsOnDevice& photons, const Buffer<PhotonOnItsWay>& arrived, std::size_t count, bool resumes,
+    const Monitor& monitor);
+
+  const MarchMedium& Medium;
+  const MarchSums& Target;
+  int Channels;
+  cl::Kernel Kernel;
+};
+}

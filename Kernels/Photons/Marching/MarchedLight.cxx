@@ -1,0 +1,284 @@
+#include "Photons/Marching/MarchedLight.h"
+
+#include "Device/Clock.h"
+#include "Device/Defines.h"
+#include "Device/HostMappedBuffer.h"
+#include "Device/HostMemory.h"
+#include "Device/Sizes.h"
+#include "Light/ChannelReduction.h"
+#include "Light/LeftOut.h"
+
+#include <algorithm>
+#include <cstring>
+#include <string>
+
+namespace tyndall
+{
+namespace
+{
+// A voxel's count of photons stands above the sum of their weights, in the same 64 bits.
+constexpr int CountShift = 40;
+constexpr std::size_t CountedAtMost = (std::size_t(1) << (64 - CountShift)) - 1;
+constexpr double WeightUnits = 65536.0; ///< of the largest weight
+
+/// Tallies of the one channel, for the three that it stands for.
+void Colour(const Rgb& colour, PhotonLight& result)
+{
+  EnergyBalance& balance = result.light.balance;
+  const auto spread = [&](Rgb& watts) { watts = { watts[0] * colour[0], watts[0] * colour[1], watts[0] * colour[2] }; };
+  for (Rgb* watts : { &balance.entered, &balance.absorbed, &balance.escaped, &balance.leftOver, &result.scattered })
+  {
+    spread(*watts);
+  }
+  std::for_each(result.light.facePowerOut.begin(), result.light.facePowerOut.end(), spread);
+}
+
+/// Weight of one of the units that voxels sum up.
+float WeightUnit(const std::vector<Photon>& photons)
+{
+  float largest = 0.0f;
+  for (const Photon& photon : photons)
+  {
+    largest = std::max(largest, photon.weight);
+  }
+  return static_cast<float>(largest / WeightUnits);
+}
+
+/// One photon and its weight, of each.
+std::vector<cl_ulong> Marks(const std::vector<Photon>& photons, const PackedPhotons& packed, float unit)
+{
+  std::vector<cl_ulong> marks;
+  marks.reserve(packed.Count());
+  for (const std::size_t number : packed.numbers)
+  {
+    const double units = unit > 0.0f ? photons[number].weight / static_cast<double>(unit) : 0.0;
+    marks.push_back((cl_ulong(1) << CountShift) + static_cast<cl_ulong>(std::min(units + 0.5, WeightUnits)));
+  }
+  return marks;
+}
+
+void CheckCounted(std::size_t photons)
+{
+  if (photons > CountedAtMost)
+  {
+    throw InvalidInput("There are " + std::to_string(photons) + " photons; voxels can count up to " +
+      std::to_string(CountedAtMost) + ". March fewer at a time, or without counts.");
+  }
+}
+}
+
+MarchedLight::MarchedLight(const MarchMedium& medium)
+  : Medium(medium)
+{
+}
+
+MarchShares MarchedLight::Share(int numbers, int batches) const
+{
+  return ShareSums(this->Medium, this->Medium.Records(), numbers, batches, this->Sums.Size() * sizeof(cl_long));
+}
+
+MarchSums MarchedLight::Prepare(const PackedPhotons& packed)
+{
+  const MarchSettings& settings = this->Medium.settings;
+  MarchSums target;
+  target.records = this->Medium.Records();
+  target.directions = settings.meanDirection;
+  target.counts = settings.counts;
+  target.numbers = packed.channels + (settings.meanDirection ? 3 : 0) + (settings.counts ? 1 : 0);
+  target.shares = this->Share(target.numbers, packed.Batches());
+  const std::size_t needed =
+    target.records * static_cast<std::size_t>(target.numbers) * static_cast<std::size_t>(target.shares.copies);
+  if (this->Sums.Size() != needed)
+  {
+    this->Sums = Buffer<cl_long>();
+    this->Sums = Buffer<cl_long>(this->Medium.device, needed, "sums of the photons' light");
+    this->Sums.Fill(0);
+  }
+  target.sums = &this->Sums;
+  return target;
+}
+
+cl::Kernel MarchedLight::SumsKernel(
+  const char* name, const PackedPhotons& packed, const MarchSums& target, const LightField& light) const
+{
+  return this->Medium.SumsKernel(name, packed.channels,
+    Define("DIRECTIONS", target.directions) + Define("COUNTS", target.counts) + Define("COUNT_SHIFT", CountShift) +
+      Define("COLOURS", light.channels) + Define("COPIES", target.shares.copies) +
+      Define("BATCHES", target.shares.batches));
+}
+
+cl::Kernel MarchedLight::Show(
+  const PackedPhotons& packed, const MarchSums& target, const LightField& light, const Buffer<float>& fluence) const
+{
+  cl::Kernel show = this->SumsKernel("show_light", packed, target, light);
+  return With(show, this->Medium.DescribeSums(packed), this->Medium.sigmaA, this->Medium.sigmaS, this->Sums,
+    cl_ulong(target.records * static_cast<std::size_t>(target.numbers)), fluence);
+}
+
+void MarchedLight::FinishVoxels(const PackedPhotons& packed, const MarchSums& target, float weightUnit,
+  PhotonLight& result, const Buffer<cl_long>& taken) const
+{
+  LightField& light = result.light;
+  Device& device = this->Medium.device;
+  const Grid& grid = this->Medium.grid;
+  const std::size_t voxels = grid.VoxelCount(), rows = voxels / static_cast<std::size_t>(grid.size[0]);
+  const std::size_t batches = static_cast<std::size_t>(target.shares.batches);
+  const std::size_t colours = static_cast<std::size_t>(light.channels);
+  MakeZeros({ { &light.fluence, voxels * colours }, { &result.meanDirection, target.directions ? 3 * voxels : 0 },
+    { &result.photonCount, target.counts ? voxels : 0 }, { &result.photonWeight, target.counts ? voxels : 0 },
+    { &result.batchFluence, batches > 1 ? batches * voxels * colours : 0 } });
+  const auto lend = [&](std::vector<float>& values, const char* what) {
+    return HostMappedBuffer<float>(device, values.data(), values.size(), what);
+  };
+  const HostMappedBuffer<float> fluence = lend(light.fluence, "fluence");
+  const HostMappedBuffer<float> direction = lend(result.meanDirection, "mean direction");
+  const HostMappedBuffer<float> count = lend(result.photonCount, "photon count");
+  const HostMappedBuffer<float> weight = lend(result.photonWeight, "photon weight");
+  const HostMappedBuffer<float> batchFluence = lend(result.batchFluence, "fluence by batches");
+
+  const LightSumsInfo info = this->Medium.DescribeSums(packed, weightUnit);
+  cl::Kernel finish = this->SumsKernel("finish_light", packed, target, light);
+  With(finish, info, this->Medium.sigmaA, this->Medium.sigmaS, this->Sums,
+    cl_ulong(target.records * static_cast<std::size_t>(target.numbers)), fluence.Handle(), direction.Handle(),
+    count.Handle(), weight.Handle(), batchFluence.Handle(), taken);
+  this->Medium.Launch(finish, cl::NDRange(rows));
+  for (const HostMappedBuffer<float>* array : { &fluence, &direction, &count, &weight, &batchFluence })
+  {
+    array->Fetch();
+  }
+}
+
+void MarchedLight::FinishBricks(
+  const PackedPhotons& packed, const MarchSums& target, PhotonLight& result, const Buffer<cl_long>& taken) const
+{
+  LightField& light = result.light;
+  const MarchMedium& through = this->Medium;
+  Device& device = through.device;
+  const Grid& grid = through.grid;
+  const std::size_t colours = static_cast<std::size_t>(light.channels), voxels = grid.VoxelCount();
+  const Buffer<float> ofRecords(device, target.records * colours, "fluence of bricks");
+  const Buffer<float> directions(device, target.directions ? 3 * target.records : 0, "mean direction of bricks");
+  const LightSumsInfo info = through.DescribeSums(packed);
+  cl::Kernel finish = this->SumsKernel("finish_bricks", packed, target, light);
+  With(finish, info, through.bricks.First(), through.sigmaA, through.sigmaS, this->Sums,
+    cl_ulong(target.records * static_cast<std::size_t>(target.numbers)), ofRecords, directions, taken);
+  through.Launch(finish, cl::NDRange(through.bricks.Count()));
+  MakeZeros({ { &light.fluence, voxels * colours }, { &result.meanDirection, target.directions ? 3 * voxels : 0 } });
+  const HostMappedBuffer<float> fluence(device, light.fluence.data(), light.fluence.size(), "fluence");
+  const HostMappedBuffer<float> direction(
+    device, result.meanDirection.data(), result.meanDirection.size(), "mean direction");
+  cl::Kernel spread = this->SumsKernel("spread_bricks", packed, target, light);
+  With(spread, info, through.bricks.First(), ofRecords, directions, fluence.Handle(), direction.Handle());
+  through.Launch(spread, cl::NDRange(Count(grid.size[1]), Count(grid.size[2])));
+  fluence.Fetch();
+  direction.Fetch();
+}
+
+void MarchedLight::Finish(
+  const PackedPhotons& packed, const MarchSums& target, float weightUnit, PhotonLight& result) const
+{
+  LightField& light = result.light;
+  const bool byBricks = this->Medium.bricks.AreThere();
+  const std::size_t channels = static_cast<std::size_t>(packed.channels);
+  const std::size_t rows = this->Medium.grid.VoxelCount() / Count(this->Medium.grid.size[0]);
+  const Buffer<cl_long> taken(
+    this->Medium.device, (byBricks ? this->Medium.bricks.Count() : rows) * 2 * channels, "tallies");
+  if (byBricks)
+  {
+    this->FinishBricks(packed, target, result, taken);
+  }
+  else
+  {
+    this->FinishVoxels(packed, target, weightUnit, result, taken);
+  }
+  result.secondsMarching += ClockSeconds();
+
+  const std::vector<cl_long> units = taken.Read();
+  for (std::size_t i = 0; i < units.size(); ++i)
+  {
+    const double watts = units[i] * packed.unit;
+    light.balance.absorbed[i % channels] += watts;
+    result.scattered[i % channels] += i / channels % 2 == 1 ? watts : 0.0;
+  }
+}
+
+CountedPhotons::CountedPhotons(const std::vector<Photon>& photons, const PackedPhotons& packed, bool counts)
+{
+  if (counts)
+  {
+    CheckCounted(photons.size() - packed.missed);
+    this->weightUnit = WeightUnit(photons);
+    this->marks = Marks(photons, packed, this->weightUnit);
+  }
+}
+
+void Tally(const PackedPhotons& packed, const std::vector<cl_int>& ends, PhotonLight& result)
+{
+  EnergyBalance& balance = result.light.balance;
+  const std::size_t words = EndWords + static_cast<std::size_t>(packed.channels);
+  std::array<std::array<std::int64_t, 3>, StillGoing + 1> out = {};
+  for (std::size_t i = 0; i < ends.size() / words; ++i)
+  {
+    PhotonEnd end;
+    std::memcpy(&end, ends.data() + i * words, sizeof(end));
+    if (end.face == Elsewhere)
+    {
+      continue;
+    }
+    result.deposits += static_cast<std::size_t>(end.crossings);
+    result.steps += static_cast<std::size_t>(end.steps);
+    for (int c = 0; c < packed.channels; ++c)
+    {
+      cl_float units;
+      std::memcpy(&units, ends.data() + i * words + EndWords + c, sizeof(units));
+      out[std::min<int>(end.face, StillGoing)][c] += WholeUnits(units); // almost nothing of those that are dark
+    }
+  }
+  for (int c = 0; c < 3; ++c)
+  {
+    for (int face = 0; face < StillGoing; ++face)
+    {
+      const double watts = static_cast<double>(out[face][c]) * packed.unit;
+      result.light.facePowerOut[face][c] += watts;
+      balance.escaped[c] += watts;
+    }
+    balance.leftOver[c] += static_cast<double>(out[StillGoing][c]) * packed.unit;
+  }
+}
+
+void PutIntoColours(const PackedPhotons& packed, int colours, PhotonLight& result)
+{
+  if (packed.channels == 1 && result.light.channels == 3)
+  {
+    Colour(packed.colour, result);
+  }
+  if (colours < result.light.channels)
+  {
+    KeepOneChannel(result.light);
+    KeepOneChannel(result.batchFluence);
+    result.scattered = { result.scattered[0], 0.0, 0.0 };
+  }
+}
+
+void SayWhatIsLeftOut(const MarchMedium& through, const PackedPhotons& packed, LightField& light)
+{
+  const auto say = [&](bool condition, const char* text) {
+    if (condition)
+    {
+      light.leftOut.push_back(text);
+    }
+  };
+  say(through.settings.maximumOrders == 1,
+    "scattered light: fluence is what comes from the lights without being scattered");
+  const bool leaveOut = through.settings.leaveOut;
+  say(through.traits.emits, "emission: photons carry the light of lights only");
+  say(!through.bends, left_out::ConstantIndex);
+  say(through.bends && !through.hasLevels, "octree: none was given, paths go by steps of the same length");
+  say(packed.channels == 1, packed.grey ? left_out::Grey : left_out::OneColour);
+  say(packed.channels == 3 && through.channels == 1, left_out::GreyExtinction);
+  say(leaveOut && !through.traits.scatters, left_out::NoScattering);
+  say(leaveOut && !through.traits.absorbs, left_out::NoAbsorption);
+  say(through.bricks.AreThere(), "light voxel by voxel in empty space: it is kept by bricks of 8x8x8 voxels there");
+  say(!through.settings.meanDirection, "mean direction: it was not asked for");
+}
+}

@@ -1,0 +1,460 @@
+// Photons through a medium that is spread over ranks, against those through the whole on one.
+
+#include "DeviceTest.h"
+#include "PhotonScene.h"
+#include "PhotonWays.h"
+
+#include "Distribution/BoxExchange.h"
+#include "Distribution/RanksInThreads.h"
+#include "Photons/Distributed/PhotonsInBlocks.h"
+#include "Photons/Marching/MarchShared.h"
+
+#include <functional>
+#include <limits>
+#include <mutex>
+#include <random>
+#include <string>
+#include <vector>
+
+using namespace tyndall;
+
+namespace
+{
+/// The arrays of a box of a scene.
+struct BlockOfScene
+{
+  BlockOfScene(const PhotonScene& scene, const VoxelBox& box)
+    : medium(scene.medium)
+  {
+    const VoxelBox whole = { { 0, 0, 0 }, scene.medium.grid.size };
+    const auto part = [&](const std::vector<float>& values) {
+      return PartOf(values, whole, box, scene.ComponentsOf(values));
+    };
+    this->sigma_a = part(scene.sigma_a);
+    this->sigma_s = part(scene.sigma_s);
+    this->ior = scene.ior.empty() ? scene.ior : part(scene.ior);
+    this->medium.grid.size = box.size;
+    this->medium.sigma_a = { this->sigma_a.data(), scene.ComponentsOf(scene.sigma_a) };
+    this->medium.sigma_s = { this->sigma_s.data(), scene.ComponentsOf(scene.sigma_s) };
+    for (std::size_t i = 0; i < box.VoxelCount(); ++i)
+    {
+      std::array<int, 3> voxel = this->medium.grid.VoxelAt(i);
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        voxel[axis] += box.first[axis];
+      }
+      this->places.push_back(scene.medium.grid.IndexOf(voxel));
+    }
+  }
+  BlockOfScene(const BlockOfScene&) = delete;
+  BlockOfScene& operator=(const BlockOfScene&) = delete;
+
+  Field Index() const { return { this->ior.empty() ? nullptr : this->ior.data(), 1 }; }
+  /// Values of the box to those of the whole.
+  void Put(const std::vector<float>& from, std::vector<float>& to, std::size_t voxels) const
+  {
+    const std::size_t width = this->places.empty() ? 0 : from.size() / this->places.size();
+    to.resize(std::max(to.size(), voxels * width));
+    for (std::size_t i = 0; i < from.size(); ++i)
+    {
+      to[this->places[i / width] * width + i % width] = from[i];
+    }
+  }
+
+  Medium medium;
+  std::vector<float> sigma_a, sigma_s, ior;
+  std::vector<std::size_t> places; ///< in the whole
+};
+
+/// Arrays of the blocks put together; all else must be the same on all ranks.
+PhotonLight LightOfAll(Device& device, const PhotonScene& scene, const BlockPartition& partition,
+  const std::vector<Photon>& photons, std::vector<PhotonTraffic>* traffic = nullptr)
+{
+  const int ranks = static_cast<int>(partition.blocks.size());
+  std::vector<PhotonLight> found(ranks);
+  std::vector<PhotonTraffic> handed(ranks);
+  RunInThreads(ranks, [&](Communicator& communicator) {
+    const int rank = communicator.Rank();
+    const BlockOfScene part(scene, partition.blocks[rank]);
+    found[rank] = MarchInBlocks(
+      device, communicator, partition, part.medium, part.Index(), scene.settings, photons, {}, &handed[rank]);
+  });
+  PhotonLight all = found[0];
+  const std::size_t voxels = scene.medium.grid.VoxelCount();
+  all.light.fluence.clear();
+  for (std::vector<float>* array : { &all.meanDirection, &all.photonCount, &all.photonWeight })
+  {
+    array->clear();
+  }
+  for (int rank = 0; rank < ranks; ++rank)
+  {
+    const BlockOfScene part(scene, partition.blocks[rank]);
+    part.Put(found[rank].light.fluence, all.light.fluence, voxels);
+    part.Put(found[rank].meanDirection, all.meanDirection, voxels);
+    part.Put(found[rank].photonCount, all.photonCount, voxels);
+    part.Put(found[rank].photonWeight, all.photonWeight, voxels);
+    EXPECT_EQ(found[rank].light.facePowerOut, all.light.facePowerOut);
+    EXPECT_EQ(found[rank].light.balance.absorbed, all.light.balance.absorbed);
+    EXPECT_EQ(found[rank].light.channels, all.light.channels);
+    EXPECT_EQ(handed[rank].rounds, handed[0].rounds);
+  }
+  if (traffic)
+  {
+    *traffic = handed;
+  }
+  return all;
+}
+
+void ExpectLightOfTheWhole(const PhotonLight& found, const PhotonLight& expected)
+{
+  ExpectSameLight(found, expected);
+  EXPECT_EQ(found.photonCount, expected.photonCount);
+  EXPECT_EQ(found.photonWeight, expected.photonWeight);
+  EXPECT_EQ(found.missed, expected.missed);
+  EXPECT_LT(found.light.balance.RelativeError(found.light.channels), 1e-6);
+}
+
+void ExpectSameOnRanks(
+  Device& device, PhotonScene& scene, const std::vector<Photon>& photons, const std::vector<int>& ranks)
+{
+  const PhotonLight expected = scene.March(device, photons);
+  for (const int number : ranks)
+  {
+    SCOPED_TRACE(std::to_string(number) + " ranks");
+    ExpectLightOfTheWhole(
+      LightOfAll(device, scene, BlockPartition::Even(scene.medium.grid, number), photons), expected);
+  }
+}
+
+/// Extinction from 0.01 to 1 a voxel's edge, `components` of it.
+void Randomise(PhotonScene& scene, std::size_t components)
+{
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> exponent(-2.0, 0.0);
+  for (std::vector<float>* values : { &scene.sigma_a, &scene.sigma_s })
+  {
+    values->resize(scene.medium.grid.VoxelCount() * components);
+    for (float& value : *values)
+    {
+      value = static_cast<float>(0.5 / scene.medium.grid.spacing[0] * std::pow(10.0, exponent(random)));
+    }
+  }
+}
+
+/// 12 x 9 x 7 voxels of some absorption and scattering.
+PhotonScene SmallScene(std::size_t components = 1)
+{
+  PhotonScene scene({ 12, 9, 7 }, 0.2, 0.9, 0.0f, 0.0f);
+  Randomise(scene, components);
+  return scene;
+}
+
+Photon PhotonFrom(std::array<double, 3> position, std::array<float, 3> direction)
+{
+  Photon photon;
+  photon.position = position;
+  photon.direction = direction;
+  photon.power = { 1.0f, 1.0f, 1.0f };
+  return photon;
+}
+}
+
+class PhotonBlocks : public DeviceTest
+{
+};
+
+TEST_F(PhotonBlocks, HaveTheLightOfTheWholeBitForBit)
+{
+  PhotonScene scene = SmallScene();
+  ExpectSameOnRanks(GetDevice(), scene, AnyPhotons(scene.medium.grid, 20000), { 1, 2, 3, 5, 8 });
+}
+
+TEST_F(PhotonBlocks, HaveItWhereRaysBend)
+{
+  PhotonScene scene = SmallScene();
+  scene.SetBall(0.6, 1.5, 1.0);
+  const std::vector<Photon> photons = AnyPhotons(scene.medium.grid, 1000);
+  for (const int order : { 1, 2, 4 })
+  {
+    for (const double step : { 0.3, 1.0, 3.0 })
+    {
+      SCOPED_TRACE("order " + std::to_string(order) + ", steps of " + std::to_string(step));
+      scene.settings.order = order;
+      scene.settings.stepSize = step;
+      ExpectSameOnRanks(GetDevice(), scene, photons, { 2, 5, 8 });
+    }
+  }
+}
+
+TEST_F(PhotonBlocks, HaveItWhereEveryVoxelHasAnIndexOfItsOwn)
+{
+  PhotonScene scene = SmallScene();
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> uniform(1.0, 1.6);
+  scene.SetIndex([&](double, double, double) { return uniform(random); });
+  const std::vector<Photon> photons = AnyPhotons(scene.medium.grid, 1000);
+  ExpectSameOnRanks(GetDevice(), scene, photons, { 1, 3, 8 });
+  scene.SetIndex([&](double, double, double) { return uniform(random) < 1.3 ? 1.0 : 4.0; });
+  for (const int order : { 1, 2, 4 })
+  {
+    SCOPED_TRACE("order " + std::to_string(order));
+    scene.settings.order = order;
+    ExpectSameOnRanks(GetDevice(), scene, photons, { 8 });
+  }
+}
+
+TEST_F(PhotonBlocks, HaveItInColourAndCountAndByEitherKindOfSums)
+{
+  PhotonScene scene = SmallScene(3);
+  scene.SetBall(0.6, 1.4, 1.0);
+  scene.settings.counts = true;
+  std::vector<Photon> photons = AnyPhotons(scene.medium.grid, 1000);
+  for (std::size_t i = 0; i < photons.size(); ++i)
+  {
+    photons[i].power[i % 3] *= 3.0f;
+  }
+  for (const MarchSettings::Sums sums : { MarchSettings::Sums::Private, MarchSettings::Sums::Shared })
+  {
+    scene.settings.sums = sums;
+    ExpectSameOnRanks(GetDevice(), scene, photons, { 2, 5 });
+  }
+}
+
+/// One channel stands for three in the whole and on a rank whose own voxels could say otherwise.
+TEST_F(PhotonBlocks, AgreeOnColour)
+{
+  PhotonScene scene = SmallScene();
+  std::vector<Photon> orange = AnyPhotons(scene.medium.grid, 500);
+  for (Photon& photon : orange)
+  {
+    photon.power = { 2.0f * photon.power[0], photon.power[0], 0.5f * photon.power[0] };
+  }
+  ExpectSameOnRanks(GetDevice(), scene, orange, { 3 });
+
+  PhotonScene corner({ 6, 5, 4 }, 0.2, 0.5, 0.0f, 0.0f);
+  corner.sigma_a.assign(3 * corner.medium.grid.VoxelCount(), 0.4f);
+  corner.sigma_a[0] = 2.0f; // the red of one voxel
+  corner.sigma_s.assign(corner.medium.grid.VoxelCount(), 0.0f);
+  ExpectSameOnRanks(GetDevice(), corner, AnyPhotons(corner.medium.grid, 500), { 4 });
+}
+
+TEST_F(PhotonBlocks, MayBeUnevenEmptyOrOneVoxel)
+{
+  PhotonScene scene = SmallScene();
+  scene.SetBall(0.6, 1.5, 1.0);
+  const std::vector<Photon> photons = AnyPhotons(scene.medium.grid, 1000);
+  const PhotonLight expected = scene.March(GetDevice(), photons);
+  BlockPartition uneven = { scene.medium.grid,
+    { { { 1, 0, 0 }, { 11, 9, 7 } }, {}, { { 0, 1, 0 }, { 1, 8, 7 } }, { { 0, 0, 1 }, { 1, 1, 6 } },
+      { { 0, 0, 0 }, { 1, 1, 1 } } } };
+  ExpectLightOfTheWhole(LightOfAll(GetDevice(), scene, uneven, photons), expected);
+
+  PhotonScene tiny({ 3, 2, 2 }, 0.5, 0.5, 0.3f, 0.2f);
+  tiny.SetBall(0.5, 1.5, 1.0);
+  ExpectSameOnRanks(GetDevice(), tiny, AnyPhotons(tiny.medium.grid, 500), { 12, 13 });
+}
+
+/// Along faces, edges and corners of blocks: none is lost or taken twice.
+TEST_F(PhotonBlocks, ShareWhatRunsAlongTheirFaces)
+{
+  PhotonScene scene({ 8, 8, 8 }, 1.0, 4.0, 0.05f, 0.02f);
+  std::vector<Photon> photons;
+  const float s = std::sqrt(0.5f), t = std::sqrt(1.0f / 3.0f);
+  for (const double y : { -4.0, -1.0, 0.0, 1e-9, -1e-9, 2.0, 4.0 })
+  {
+    for (const double z : { -4.0, 0.0, 1.0, 4.0 })
+    {
+      photons.push_back(PhotonFrom({ -4.0, y, z }, { 1.0f, 0.0f, 0.0f }));
+      photons.push_back(PhotonFrom({ 4.0, y, z }, { -1.0f, 0.0f, 0.0f }));
+      photons.push_back(PhotonFrom({ y, -4.0, z }, { 0.0f, 1.0f, 0.0f }));
+      photons.push_back(PhotonFrom({ z, y, 4.0 }, { 0.0f, 0.0f, -1.0f }));
+      photons.push_back(PhotonFrom({ -4.0, -4.0, z }, { s, s, 0.0f })); // through edges
+      photons.push_back(PhotonFrom({ z, 4.0, -4.0 }, { 0.0f, -s, s }));
+    }
+  }
+  for (const float x : { -t, t })
+  {
+    for (const float y : { -t, t })
+    {
+      photons.push_back(PhotonFrom({ 0.0, 0.0, 0.0 }, { x, y, t })); // from a corner, and through it
+      photons.push_back(PhotonFrom({ -4.0 * std::copysign(1.0, x), -4.0 * std::copysign(1.0, y), -4.0 }, { x, y, t }));
+    }
+  }
+  ExpectSameOnRanks(GetDevice(), scene, photons, { 2, 4, 8, 64 });
+  scene.SetIndex([](double x, double y, double z) { return 1.4 - 0.02 * (x * x + y * y + z * z) / 16.0; });
+  ExpectSameOnRanks(GetDevice(), scene, photons, { 2, 4, 8 });
+}
+
+TEST_F(PhotonBlocks, GiveUpWhatGoesRoundForEverAsTheWholeDoes)
+{
+  PhotonScene scene(16, 2.0);
+  scene.SetIndex([](double x, double y, double z) { return fisheye::Index(x, y, z); });
+  std::vector<Photon> photons;
+  for (const double radius : { 0.6, 0.8, 1.0, 1.2 })
+  {
+    photons.push_back(PhotonFrom({ radius, 0.1, 0.0 }, { 0.0f, 1.0f, 0.0f }));
+  }
+  const PhotonLight expected = scene.March(GetDevice(), photons);
+  EXPECT_GT(expected.light.balance.leftOver[0], 0.0);
+  std::vector<PhotonTraffic> traffic;
+  ExpectLightOfTheWhole(
+    LightOfAll(GetDevice(), scene, BlockPartition::Even(scene.medium.grid, 4), photons, &traffic), expected);
+  EXPECT_GT(traffic[0].rounds, 50);
+}
+
+/// Each photon is handed on where it crosses into another block, and costs its 120 bytes.
+TEST_F(PhotonBlocks, HandOnWhatCrosses)
+{
+  PhotonScene scene({ 12, 4, 4 }, 1.0, 6.0, 0.01f, 0.0f);
+  scene.medium.grid.origin = { 0.0, 0.0, 0.0 };
+  std::vector<Photon> photons;
+  for (int i = 0; i < 100; ++i)
+  {
+    photons.push_back(PhotonFrom({ 0.0, 0.04 * i + 0.01, 1.7 }, { 1.0f, 0.0f, 0.0f }));
+  }
+  BlockPartition slabs = { scene.medium.grid, {} };
+  for (int x = 0; x < 12; x += 3)
+  {
+    slabs.blocks.push_back({ { x, 0, 0 }, { 3, 4, 4 } });
+  }
+  std::vector<PhotonTraffic> traffic;
+  ExpectLightOfTheWhole(LightOfAll(GetDevice(), scene, slabs, photons, &traffic), scene.March(GetDevice(), photons));
+  EXPECT_EQ(sizeof(PhotonOnItsWay), 120u);
+  for (int rank = 0; rank < 4; ++rank)
+  {
+    EXPECT_EQ(traffic[rank].photons, rank < 3 ? 100u : 0u) << rank;
+    EXPECT_EQ(traffic[rank].bytes, rank < 3 ? 12000u : 0u) << rank;
+    EXPECT_EQ(traffic[rank].rounds, 4) << rank;
+  }
+}
+
+/// As many as the paths cross from block to block.
+TEST_F(PhotonBlocks, HandOnAsOftenAsPathsCross)
+{
+  PhotonScene scene = SmallScene();
+  scene.SetBall(0.6, 1.5, 1.0);
+  const std::vector<Photon> photons = AnyPhotons(scene.medium.grid, 300);
+  const BlockPartition partition = BlockPartition::Even(scene.medium.grid, 8);
+  std::vector<int> blockOf(scene.medium.grid.VoxelCount());
+  for (int rank = 0; rank < 8; ++rank)
+  {
+    for (const std::size_t place : BlockOfScene(scene, partition.blocks[rank]).places)
+    {
+      blockOf[place] = rank;
+    }
+  }
+  PhotonMarcher marcher = scene.Marcher(GetDevice());
+  double crossings = 0.0;
+  for (const PhotonPath& path : AllPaths(marcher, photons))
+  {
+    const std::vector<std::size_t> voxels = VoxelsCrossed(path, scene.medium.grid);
+    for (std::size_t i = 1; i < voxels.size(); ++i)
+    {
+      crossings += blockOf[voxels[i]] != blockOf[voxels[i - 1]] ? 1.0 : 0.0;
+    }
+  }
+  std::vector<PhotonTraffic> traffic;
+  LightOfAll(GetDevice(), scene, partition, photons, &traffic);
+  double handed = 0.0;
+  for (const PhotonTraffic& ofRank : traffic)
+  {
+    handed += static_cast<double>(ofRank.photons);
+  }
+  EXPECT_NEAR(handed, crossings, 0.005 * crossings); // paths are cut at walls to float's precision
+}
+
+TEST_F(PhotonBlocks, AreDarkWithoutPhotons)
+{
+  PhotonScene scene = SmallScene();
+  ExpectSameOnRanks(GetDevice(), scene, {}, { 3 });
+}
+
+/// Whatever goes wrong on one rank is one error on each, and none waits for the others.
+class PhotonBlocksFail : public PhotonBlocks
+{
+protected:
+  struct Given
+  {
+    BlockOfScene& part;
+    BlockPartition& partition;
+    MarchSettings& settings;
+    std::vector<Photon>& photons;
+    Monitor& monitor;
+  };
+  using Change = std::function<void(int rank, Given given)>;
+
+  void ExpectErrors(const std::string& words, const Change& change)
+  {
+    PhotonScene scene = SmallScene();
+    scene.SetBall(0.6, 1.5, 1.0);
+    const BlockPartition partition = BlockPartition::Even(scene.medium.grid, 3);
+    std::vector<std::string> errors(3);
+    RunInThreads(3, [&](Communicator& communicator) {
+      const int rank = communicator.Rank();
+      BlockOfScene part(scene, partition.blocks[rank]);
+      BlockPartition given = partition;
+      MarchSettings settings = scene.settings;
+      std::vector<Photon> photons = AnyPhotons(scene.medium.grid, 100);
+      Monitor monitor;
+      change(rank, { part, given, settings, photons, monitor });
+      try
+      {
+        MarchInBlocks(GetDevice(), communicator, given, part.medium, part.Index(), settings, photons, monitor);
+      }
+      catch (const std::exception& error)
+      {
+        errors[rank] = error.what();
+      }
+    });
+    for (const std::string& error : errors)
+    {
+      EXPECT_NE(error.find(words), std::string::npos) << '"' << error << "\" is not about " << words;
+    }
+  }
+};
+
+TEST_F(PhotonBlocksFail, TogetherWhereOneHasBadInput)
+{
+  ExpectErrors("On rank 1: ", [](int rank, Given given) { given.part.sigma_a[0] = rank == 1 ? -1.0f : 0.1f; });
+  ExpectErrors("On rank 2: ", [](int rank, Given given) { given.part.ior[0] = rank == 2 ? 0.0f : 1.0f; });
+  ExpectErrors("Photon 7", [](int rank, Given given) {
+    given.photons[7].power[0] = rank == 0 ? std::numeric_limits<float>::quiet_NaN() : 1.0f;
+  });
+  ExpectErrors("does not have the size", [](int rank, Given given) {
+    if (rank == 1)
+    {
+      --given.part.medium.grid.size[2];
+    }
+  });
+  ExpectErrors("not a block for each rank", [](int, Given given) {
+    given.partition = BlockPartition::Even(given.partition.whole, 2);
+    given.part.medium.grid.size = given.partition.blocks[0].size;
+  });
+}
+
+TEST_F(PhotonBlocksFail, TogetherWhereTheyDisagree)
+{
+  ExpectErrors("disagree about settings", [](int rank, Given given) { given.settings.stepSize = 1.0 + rank; });
+  ExpectErrors("disagree about the photons", [](int rank, Given given) { given.photons[5].direction[0] += rank; });
+  ExpectErrors("disagree about the photons", [](int rank, Given given) { given.photons.resize(100 - rank); });
+  ExpectErrors("disagree about the grid", [](int rank, Given given) { given.partition.whole.origin[0] += rank; });
+}
+
+TEST_F(PhotonBlocksFail, TogetherWhereOneIsStopped)
+{
+  ExpectErrors("aborted", [](int rank, Given given) {
+    if (rank == 1)
+    {
+      given.monitor = [](double done) { return done < 0.6; };
+    }
+  });
+}
+
+TEST_F(PhotonBlocksFail, WithWordsOnWhatIsNotCarriedFromRankToRank)
+{
+  ExpectErrors("scattered photons", [](int, Given given) { given.settings.maximumOrders = 0; });
+  ExpectErrors("batches", [](int, Given given) { given.settings.errorBatches = 8; });
+  ExpectErrors("Unsafe", [](int, Given given) { given.settings.sums = MarchSettings::Sums::Unsafe; });
+  EXPECT_NE(NotInBlocks({}, true).find("octree"), std::string::npos);
+  EXPECT_EQ(NotInBlocks({}, false), "");
+}
