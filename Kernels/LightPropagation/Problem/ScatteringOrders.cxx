@@ -37,7 +37,9 @@ constexpr AcceleratedTime InSlab = { 3.0, 5.0, 1.0 };
 /// Rows are as many as CellRows has.
 constexpr AcceleratedTime InCells = { 3.0, 0.0, 0.4 };
 constexpr double CellFall = 0.3;   ///< of what is left, from row to row, times the albedo: 5 rows at 0.5, 7 at 0.9 to 1
-constexpr double CellAtMost = 1.0; ///< optical width where the medium is thickest
+constexpr double CellAtMost = 1.0; ///< optical width where the medium is thickest; but of cells of two voxels
+constexpr double CellOfTwoAtMost = 2.0;  ///< for the balance of each voxel takes up to twice the time
+constexpr double FallInThickCells = 0.4; ///< as CellFall, in these: 8 rows at 0.9, 10 at 1
 constexpr int MostHalvings = 3;
 constexpr double PlainSetUp = 0.8; ///< of orders one after the other: measured 0.8 in 100^3 voxels, 2 in 40^3
 
@@ -211,7 +213,15 @@ double CellRows(const PropagationProblem& problem)
   {
     albedo = std::max(albedo, AlbedoOf(problem, c));
   }
-  return albedo > 0.0 ? std::log(UsualTolerance) / std::log(CellFall * albedo) : 0.0;
+  const std::array<int, 3> halvings = CellHalvings(problem);
+  double widest = 0.0; // cell, optical width
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double edge = problem.TheGrid().spacing[axis] * (1 << halvings[axis]);
+    widest = halvings[axis] > 0 ? std::max(widest, ThickestExtinction(problem) * edge) : widest;
+  }
+  const double fall = widest > CellAtMost ? FallInThickCells : CellFall;
+  return albedo > 0.0 ? std::log(UsualTolerance) / std::log(fall * albedo) : 0.0;
 }
 
 AcceleratedTime AcceleratedTimeOf(const PropagationProblem& problem, const std::vector<Lines>& lines)
@@ -257,15 +267,21 @@ bool ScatteredManyTimes(const PropagationProblem& problem)
 
 std::array<int, 3> CellHalvings(const PropagationProblem& problem)
 {
-  const double thickest = ThickestExtinction(problem);
+  return CellHalvings(problem.TheGrid(), ThickestExtinction(problem));
+}
+
+std::array<int, 3> CellHalvings(const Grid& grid, double thickest)
+{
   std::array<int, 3> halvings = {};
   for (int axis = 0; axis < 3; ++axis)
   {
-    const double tau = thickest * problem.TheGrid().spacing[axis];
-    int& times = halvings[axis];
-    while (times < MostHalvings && tau * (2 << times) <= CellAtMost && problem.TheGrid().size[axis] > 1 << times)
+    const double tau = thickest * grid.spacing[axis];
+    const auto fits = [&](int times) {
+      return tau * (1 << times) <= (times == 1 ? CellOfTwoAtMost : CellAtMost) && grid.size[axis] > 1 << (times - 1);
+    };
+    while (halvings[axis] < MostHalvings && fits(halvings[axis] + 1))
     {
-      ++times;
+      ++halvings[axis];
     }
   }
   return halvings;
