@@ -192,6 +192,17 @@ TEST_F(DiffusionOnCells, CrossesGapsInFewSweeps)
   }
 }
 
+/// In voxels above half a mean free path: where they absorb more, the balance of voxels is nearer to what is right, and
+/// where few orders do, sources by octant.
+TEST_F(DiffusionOnCells, AreNotForThickerVoxelsThatAbsorb)
+{
+  EXPECT_EQ(How(Cloudlets(0.95, 0.99)), OrdersAdded::ByCells);
+  EXPECT_EQ(How(Blocks(0.9, 0.97)), OrdersAdded::ByCells);
+  EXPECT_EQ(How(Blocks(0.9, 0.9)), OrdersAdded::ByBalance);
+  EXPECT_EQ(How(Blocks(0.9, 0.5)), OrdersAdded::OneByOne);
+  EXPECT_EQ(How(Blocks(0.45, 0.9)), OrdersAdded::ByCells);
+}
+
 TEST(CellsOfVoxels, AreAboutAMeanFreePathWideAtMost)
 {
   Grid grid;
