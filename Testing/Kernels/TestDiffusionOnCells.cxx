@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 using namespace tyndall;
 
@@ -66,6 +67,45 @@ OrdersAdded How(Scene scene)
 {
   scene.Attach();
   return HowOrdersAreAdded(PropagationProblem(scene.medium, scene.light, scene.settings, {}));
+}
+
+/// Cubes of eight voxels, each a hundred times as thick as the next one or as thin.
+/// @param tau  of a voxel of the thick ones
+Scene Blocks(double tau, double albedo)
+{
+  constexpr int Edge = 24, Block = 8;
+  Scene scene({ Edge, Edge, Edge });
+  for (std::size_t i = 0; i < scene.sigma_s.size(); ++i)
+  {
+    const std::array<int, 3> at = scene.medium.grid.VoxelAt(i);
+    const bool thick = (at[0] / Block + at[1] / Block + at[2] / Block) % 2 == 0;
+    scene.sigma_s[i] = static_cast<float>(albedo * (thick ? tau : 0.01 * tau));
+    scene.sigma_a[i] = static_cast<float>((1.0 - albedo) * (thick ? tau : 0.01 * tau));
+  }
+  scene.light.faces[4] = { 1.0, 1.0, 1.0 };
+  return scene;
+}
+
+/// Two balls apart from each other, with nothing around them.
+/// @param tau  of a voxel in their middles
+Scene Cloudlets(double tau, double albedo)
+{
+  Scene scene({ 32, 32, 32 });
+  const std::array<std::array<double, 3>, 2> middles = { { { 10.0, 11.0, 9.0 }, { 22.0, 20.0, 24.0 } } };
+  for (std::size_t i = 0; i < scene.sigma_s.size(); ++i)
+  {
+    const std::array<int, 3> at = scene.medium.grid.VoxelAt(i);
+    double density = 0.0;
+    for (const std::array<double, 3>& middle : middles)
+    {
+      const double away = std::hypot(at[0] + 0.5 - middle[0], at[1] + 0.5 - middle[1], at[2] + 0.5 - middle[2]);
+      density = std::max(density, std::clamp(3.0 * (1.0 - away / 8.0), 0.0, 1.0));
+    }
+    scene.sigma_s[i] = static_cast<float>(albedo * tau * density);
+    scene.sigma_a[i] = static_cast<float>((1.0 - albedo) * tau * density);
+  }
+  scene.ShineAlong({ -0.5, 0.4, -0.8 }, 1.0);
+  return scene;
 }
 
 Scene Plain(Scene scene)
@@ -132,6 +172,48 @@ TEST_F(DiffusionOnCells, TellsItsErrorAndCountsItsPower)
       EXPECT_LT(std::abs(light.balance.leftOver[0]), 1e-4 * light.balance.entered[0]) << tau << ' ' << albedo;
     }
   }
+}
+
+/// Light goes through gaps as thin cells let it, neither faster nor slower: else what is left swings or creeps.
+TEST_F(DiffusionOnCells, CrossesGapsInFewSweeps)
+{
+  const std::array<std::pair<Scene, std::size_t>, 4> cases = { { { Blocks(0.3, 1.0), 7 }, { Blocks(0.62, 1.0), 9 },
+    { Cloudlets(0.45, 0.99), 8 }, { Cloudlets(0.95, 0.99), 10 } } };
+  for (std::size_t i = 0; i < cases.size(); ++i)
+  {
+    Scene scene = cases[i].first;
+    scene.settings.source = PropagationSource::Constant;
+    scene.settings.uncollidedDirections = 0;
+    ASSERT_EQ(How(scene), OrdersAdded::ByCells) << i;
+    const LightField light = scene.Solve(this->GetDevice());
+    EXPECT_LE(light.convergence.size(), cases[i].second) << i;
+    scene.settings.tolerance = 1e-6;
+    EXPECT_LT(Difference(light.fluence, Plain(scene).Solve(this->GetDevice()).fluence), 1e-4) << i;
+  }
+}
+
+/// In voxels above half a mean free path: where they absorb more, the balance of voxels is nearer to what is right, and
+/// where few orders do, sources by octant.
+TEST_F(DiffusionOnCells, AreNotForThickerVoxelsThatAbsorb)
+{
+  EXPECT_EQ(How(Cloudlets(0.95, 0.99)), OrdersAdded::ByCells);
+  EXPECT_EQ(How(Blocks(0.9, 0.97)), OrdersAdded::ByCells);
+  EXPECT_EQ(How(Blocks(0.9, 0.9)), OrdersAdded::ByBalance);
+  EXPECT_EQ(How(Blocks(0.9, 0.5)), OrdersAdded::OneByOne);
+  EXPECT_EQ(How(Blocks(0.45, 0.9)), OrdersAdded::ByCells);
+}
+
+TEST(CellsOfVoxels, AreAboutAMeanFreePathWideAtMost)
+{
+  Grid grid;
+  grid.size = { 16, 16, 16 };
+  EXPECT_EQ(CellHalvings(grid, 0.12), (std::array<int, 3>{ 3, 3, 3 }));
+  EXPECT_EQ(CellHalvings(grid, 0.24), (std::array<int, 3>{ 2, 2, 2 }));
+  EXPECT_EQ(CellHalvings(grid, 0.49), (std::array<int, 3>{ 1, 1, 1 }));
+  EXPECT_EQ(CellHalvings(grid, 0.99), (std::array<int, 3>{ 1, 1, 1 })); // two mean free paths, of two voxels
+  EXPECT_EQ(CellHalvings(grid, 1.01), (std::array<int, 3>{ 0, 0, 0 }));
+  grid.size = { 1, 3, 16 };
+  EXPECT_EQ(CellHalvings(grid, 0.12), (std::array<int, 3>{ 0, 2, 3 }));
 }
 
 /// Which is a solution of its own. Light that is right is that of voxels a third as wide.

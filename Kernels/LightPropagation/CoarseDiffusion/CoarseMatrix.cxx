@@ -4,14 +4,14 @@
 #include "Medium/BoxFaces.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace tyndall
 {
 namespace
 {
-constexpr double MeanFreePath = 1.0; ///< optical width of the box whose mean extinction light diffuses with
-constexpr double Floor = 0.05;       ///< optical length between cells that pass light as if it were that long
-constexpr double Marshak = 2.0;      ///< resistance of a face of the box, over its area
+constexpr double Floor = 0.05;  ///< optical length between cells that pass light as if it were that long
+constexpr double Marshak = 2.0; ///< resistance of a face of the box, over its area
 
 /// Cells of a coarser and coarser grid: mean extinctions and edges.
 struct Level
@@ -22,6 +22,10 @@ struct Level
 
   std::size_t At(int x, int y, int z) const { return (std::size_t(z) * size[1] + y) * size[0] + x; }
   double Volume(int x, int y, int z) const { return this->widths[0][x] * this->widths[1][y] * this->widths[2][z]; }
+  double Longest(int x, int y, int z) const
+  {
+    return std::max({ this->widths[0][x], this->widths[1][y], this->widths[2][z] });
+  }
 };
 
 template <class Call>
@@ -77,9 +81,18 @@ Level Coarser(const Level& fine)
   return level;
 }
 
-/// With which light diffuses: a cell thinner than a mean free path sends it on into those around, and is as dense as
-/// the smallest box around it that is as thick. 1 / (3 sigma_t) of thin cells alone would let light pass as it never
-/// does over so short a way.
+/// Edge of the box around a place that is one mean free path thick, of one that is thinner and one that is not.
+/// @param thin, thick  optical width over edge
+double EdgeOfMeanFreePath(double edge, double thin, double wide, double thick)
+{
+  constexpr double Vacuum = 1e-9;
+  const double tau = std::max(edge * thin, Vacuum);
+  return edge * std::pow(wide / edge, -std::log(tau) / std::log(wide * thick / tau));
+}
+
+/// With which light diffuses, 1/length: a cell thinner than a mean free path sends it on into those around, as far as
+/// light gets there, which is about the edge of the box around it that is as thick as one. 1 / (3 sigma_t) of thin
+/// cells alone would let light pass as it never does over so short a way (numerics.md, Eq. (76h)).
 std::vector<double> Diffusing(const Level& level)
 {
   if (level.sigmaT.size() == 1)
@@ -91,15 +104,20 @@ std::vector<double> Diffusing(const Level& level)
   Level coarser;
   ForCells(level.size, [&](int x, int y, int z) {
     double& here = sigma[level.At(x, y, z)];
-    if (here * std::max({ level.widths[0][x], level.widths[1][y], level.widths[2][z] }) < MeanFreePath)
+    const double edge = level.Longest(x, y, z);
+    if (here * edge >= 1.0)
     {
-      if (around.empty())
-      {
-        coarser = Coarser(level);
-        around = Diffusing(coarser);
-      }
-      here = around[coarser.At(x / 2, y / 2, z / 2)];
+      return;
     }
+    if (around.empty())
+    {
+      coarser = Coarser(level);
+      around = Diffusing(coarser);
+    }
+    const std::size_t outer = coarser.At(x / 2, y / 2, z / 2);
+    const double wide = coarser.Longest(x / 2, y / 2, z / 2);
+    const bool isThick = coarser.sigmaT[outer] * wide >= 1.0;
+    here = std::max(here, isThick ? 1.0 / EdgeOfMeanFreePath(edge, here, wide, coarser.sigmaT[outer]) : around[outer]);
   });
   return sigma;
 }

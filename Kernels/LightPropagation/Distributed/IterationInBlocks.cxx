@@ -1,6 +1,7 @@
 #include "LightPropagation/Distributed/IterationInBlocks.h"
 
 #include "Light/LeftOut.h"
+#include "LightPropagation/Problem/ScatteringOrders.h"
 #include "LightPropagation/Uncollided/UncollidedLamp.h"
 #include "Medium/VoxelSums.h"
 #include "Numerics/Constants.h"
@@ -14,8 +15,6 @@ namespace tyndall
 namespace
 {
 constexpr int MostOrders = 100000;
-constexpr double CellAtMost = 1.0;  ///< optical width of cells where the medium is thickest
-constexpr int MostHalvings = 3;     ///< of voxels into cells
 constexpr double ManyOrders = 2.0;  ///< mean free paths through the box along its thinnest axis that pay for cells
 constexpr double FallByCells = 0.3; ///< of what is left over from order to order, at least so much in the forecast
 }
@@ -129,16 +128,10 @@ std::array<int, 3> IterationInBlocks::CellHalvings()
   const Grid& whole = this->Partition.whole;
   thickest = this->Others.Largest({ thickest })[0];
   const double mean = this->Others.Sum({ sum })[0] / static_cast<double>(whole.VoxelCount());
-  std::array<int, 3> halvings = {};
+  const std::array<int, 3> halvings = tyndall::CellHalvings(whole, thickest);
   for (int axis = 0; axis < 3; ++axis)
   {
-    int& times = halvings[axis];
-    while (times < MostHalvings && thickest * whole.spacing[axis] * (2 << times) <= CellAtMost &&
-      whole.size[axis] > 1 << times)
-    {
-      ++times;
-    }
-    if (mean * whole.Length(axis) < ManyOrders || times == 0)
+    if (mean * whole.Length(axis) < ManyOrders || halvings[axis] == 0)
     {
       return {};
     }
