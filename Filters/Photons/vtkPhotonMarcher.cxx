@@ -91,16 +91,10 @@ tyndall::MarchSettings SettingsOf(
 void SpreadToHeld(
   tyndall::Communicator& communicator, const tyndall::PieceBlocks& pieces, tyndall::PhotonLight& photons)
 {
-  const auto ofHeld = [&](std::vector<float>& values, int components) {
-    if (communicator.Largest({ values.empty() ? 0.0 : 1.0 })[0] > 0.0)
-    {
-      values = pieces.OfHeld(communicator, std::move(values), components);
-    }
-  };
-  ofHeld(photons.light.fluence, photons.light.channels);
-  ofHeld(photons.meanDirection, 3);
-  ofHeld(photons.photonCount, 1);
-  ofHeld(photons.photonWeight, 1);
+  pieces.SpreadToHeld(communicator, photons.light.fluence, photons.light.channels);
+  pieces.SpreadToHeld(communicator, photons.meanDirection, 3);
+  pieces.SpreadToHeld(communicator, photons.photonCount, 1);
+  pieces.SpreadToHeld(communicator, photons.photonWeight, 1);
 }
 
 void Write(tyndall::PhotonLight&& photons, vtkImageData* output)

@@ -144,16 +144,10 @@ bool vtkScatteringSolver::GivePiece(tyndall::Communicator& communicator, const t
 void vtkScatteringSolver::WritePiece(tyndall::Communicator& communicator, const tyndall::PieceBlocks& pieces,
   tyndall::LightField&& light, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  const auto ofHeld = [&](std::vector<float>& values, int components) {
-    if (communicator.Largest({ values.empty() ? 0.0 : 1.0 })[0] > 0.0)
-    {
-      values = pieces.OfHeld(communicator, std::move(values), components);
-    }
-  };
-  ofHeld(light.fluence, light.channels);
-  ofHeld(light.fluenceDirect, light.channels);
-  ofHeld(light.netFlux, 3 * light.channels);
-  ofHeld(light.scatteredRadiance, light.channels);
+  pieces.SpreadToHeld(communicator, light.fluence, light.channels);
+  pieces.SpreadToHeld(communicator, light.fluenceDirect, light.channels);
+  pieces.SpreadToHeld(communicator, light.netFlux, 3 * light.channels);
+  pieces.SpreadToHeld(communicator, light.scatteredRadiance, light.channels);
   tyndall::WriteConvergence(light.convergence, light.sweepsSaved, vtkTable::GetData(outputs, 1));
   vtkImageData* const output = vtkImageData::GetData(outputs, 0);
   tyndall::PassOn(vtkImageData::GetData(inputs[MEDIUM]), output);

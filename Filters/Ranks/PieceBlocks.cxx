@@ -256,15 +256,17 @@ void PieceBlocks::KeepHeld(vtkImageData* output) const
   }
 }
 
-std::vector<float> PieceBlocks::OfHeld(Communicator& communicator, std::vector<float>&& own, int components) const
+void PieceBlocks::SpreadToHeld(Communicator& communicator, std::vector<float>& values, int components) const
 {
   const auto voxels = [](const std::vector<VoxelBox>& boxes) {
     return std::accumulate(boxes.begin(), boxes.end(), std::size_t{ 0 },
       [](std::size_t sum, const VoxelBox& box) { return sum + box.VoxelCount(); });
   };
-  return voxels(this->OfOutputs) == voxels(this->Blocks.blocks)
-    ? std::move(own)
-    : ValuesInBox(communicator, this->Blocks, this->OfOutputs, own, components);
+  const bool more = voxels(this->OfOutputs) != voxels(this->Blocks.blocks);
+  if (more && communicator.Largest({ values.empty() ? 0.0 : 1.0 })[0] > 0.0)
+  {
+    values = ValuesInBox(communicator, this->Blocks, this->OfOutputs, values, components);
+  }
 }
 
 std::optional<AgreedBlocks> AgreeOnBlocks(

@@ -49,9 +49,10 @@ public:
   /// Crops an output with the arrays of what is given to what the output is to have.
   void KeepHeld(vtkImageData* output) const;
 
-  /// Of values of each own voxel those of each voxel that the output is to have. All ranks call it.
+  /// Values of each own voxel become those of each voxel that the output is to have; none stay none, where no rank has
+  /// any. All ranks call it.
   /// @param components  of a voxel, the same on all ranks
-  std::vector<float> OfHeld(Communicator& communicator, std::vector<float>&& own, int components) const;
+  void SpreadToHeld(Communicator& communicator, std::vector<float>& values, int components) const;
 
 private:
   std::array<int, 6> ExtentOf(const VoxelBox& box) const;
