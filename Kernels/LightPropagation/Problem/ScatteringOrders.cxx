@@ -39,7 +39,7 @@ constexpr AcceleratedTime InCells = { 3.0, 0.0, 0.4 };
 constexpr double CellFall = 0.3;   ///< of what is left, from row to row, times the albedo: 5 rows at 0.5, 7 at 0.9 to 1
 constexpr double CellAtMost = 1.0; ///< optical width where the medium is thickest; but of cells of two voxels
 constexpr double CellOfTwoAtMost = 2.0; ///< for the balance of each voxel takes up to twice the time
-constexpr double WideCellAlbedo = 0.95; ///< from which on their light is as right as that of the balance
+constexpr double WideCellAlbedo = 0.95; ///< from which on their light is about as right as that of the balance
 constexpr int MostHalvings = 3;
 constexpr double PlainSetUp = 0.8; ///< of orders one after the other: measured 0.8 in 100^3 voxels, 2 in 40^3
 
@@ -198,7 +198,7 @@ bool HasThickVoxels(const PropagationProblem& problem)
 }
 
 /// Voxels are above half a mean free path. There cells take the place of the balance of voxels alone, where their light
-/// is as right: orders one after the other shine by octant, which is better where few of them do.
+/// is about as right: orders one after the other shine by octant, which is better where few of them do.
 bool HasWideCells(const PropagationProblem& problem)
 {
   const Grid& grid = problem.TheGrid();
