@@ -71,8 +71,7 @@ void PictureOfBlocks::LookAgain(MediumRayCaster* caster, BlockPixels& own) const
       : std::vector<float>();
     if (!starts.empty())
     {
-      TakeFrom(
-        caster->RenderBehind(this->TheCamera, this->Blocks.Own(), starts, MonitorOf(this->Filter)), starts, own);
+      TakeFrom(caster->RenderBehind(this->TheCamera, this->Blocks.Own(), starts, MonitorOf(this->Filter)), starts, own);
     }
   });
 }

@@ -18,10 +18,10 @@ namespace tyndall
 /// What a rank says of its block before ranks cast theirs one by one.
 struct BlockToCast
 {
-  bool able = false;                             ///< it is known how; also where there is no block
-  std::vector<double> ofFilter;                  ///< its properties
-  double ofArrays = 0.0;                         ///< a number for which arrays there are, and what of field data is used
-  MediumRayCaster::SharedNumbers ofBlocks = {};  ///< MediumRayCaster::SharedByBlocks
+  bool able = false;                            ///< it is known how; also where there is no block
+  std::vector<double> ofFilter;                 ///< its properties
+  double ofArrays = 0.0;                        ///< a number for which arrays there are, and what of field data is used
+  MediumRayCaster::SharedNumbers ofBlocks = {}; ///< MediumRayCaster::SharedByBlocks
 };
 
 /// Whether all ranks are able to, and say the same: the same on all ranks, which all have to ask.

@@ -10,10 +10,10 @@
 #include "Common/LightTransportData.h"
 #include "Common/PhaseFunctionData.h"
 #include "Common/VectorArray.h"
-#include "PictureOfBlocks.h"
 #include "Device/Clock.h"
 #include "Device/Device.h"
 #include "Medium/BoxFaces.h"
+#include "PictureOfBlocks.h"
 #include "Ranks/NeighbourLayer.h"
 #include "Ranks/Ranks.h"
 #include "Ranks/WholeImage.h"
@@ -28,11 +28,11 @@
 #include "vtkDataArray.h"
 #include "vtkDataObject.h"
 #include "vtkExecutive.h"
+#include "vtkExtentTranslator.h"
 #include "vtkFieldData.h"
 #include "vtkFloatArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
-#include "vtkExtentTranslator.h"
 #include "vtkInformationVector.h"
 #include "vtkMultiProcessController.h"
 #include "vtkMultiProcessStream.h"
@@ -301,8 +301,8 @@ std::vector<std::string> OnAllLists(vtkMultiProcessController* ranks, const std:
 }
 
 /// @param first  column and row of the picture's first pixel
-void WritePicture(tyndall::Picture&& picture, const std::array<int, 2>& first, std::vector<std::uint8_t>&& color,
-  vtkImageData* output)
+void WritePicture(
+  tyndall::Picture&& picture, const std::array<int, 2>& first, std::vector<std::uint8_t>&& color, vtkImageData* output)
 {
   output->SetExtent(first[0], first[0] + picture.width - 1, first[1], first[1] + picture.height - 1, 0, 0);
   output->SetOrigin(0.0, 0.0, 0.0);
@@ -333,7 +333,7 @@ struct vtkMediumRayCaster::Scene
   tyndall::InputsKey key;
   vtkTimeStamp made;
   tyndall::Grid grid;
-  bool lightsAlone = false; ///< there is no fluence, so shadow rays are needed
+  bool lightsAlone = false;        ///< there is no fluence, so shadow rays are needed
   std::vector<std::string> doubts; ///< not said yet
   std::unique_ptr<tyndall::MediumRayCaster> caster;
 };
@@ -519,8 +519,8 @@ void vtkMediumRayCaster::SayDoubts(Scene& scene)
 /// What comes of an update.
 struct vtkMediumRayCaster::Shot
 {
-  std::unique_ptr<Scene> scene; ///< null where ranks have a block each, and this one has none
-  tyndall::Picture picture;     ///< or the part that is asked for
+  std::unique_ptr<Scene> scene;  ///< null where ranks have a block each, and this one has none
+  tyndall::Picture picture;      ///< or the part that is asked for
   std::array<int, 2> first = {}; ///< column and row of its first pixel
   double exposure = 0.0;
   double seconds = 0.0;
@@ -545,8 +545,8 @@ void vtkMediumRayCaster::Expose(const Taking& taking, Shot& shot)
   {
     shot.exposure = taking.exposureOf(shot.picture);
     tyndall::ViewSettings settings = SettingsOf(this, shot.exposure);
-    const bool shows = shot.scene && shot.scene->caster->ShowsBackgroundColor() &&
-      settings.backgroundColor != BackgroundOf(this, 0.0);
+    const bool shows =
+      shot.scene && shot.scene->caster->ShowsBackgroundColor() && settings.backgroundColor != BackgroundOf(this, 0.0);
     if (taking.onAnyRank(shows))
     {
       if (shot.scene)
@@ -583,15 +583,15 @@ std::vector<double> vtkMediumRayCaster::PropertiesAsNumbers()
 {
   std::vector<double> numbers = { this->CameraViewAngle, this->CameraParallelProjection ? 1.0 : 0.0,
     this->CameraParallelScale, this->StepSize, this->SingleScatteringOnly ? 1.0 : 0.0, this->ShadowRays ? 1.0 : 0.0,
-    this->ShowBackground ? 1.0 : 0.0, this->Exposure, this->FirstExposure, this->SurfaceIndex,
-    this->SurfaceReflectance, this->TableReflectance, this->LeaveOut ? 1.0 : 0.0, this->EnvironmentAzimuth };
-  for (int number : { this->ImageSize[0], this->ImageSize[1], this->Quality, this->RectangleSamples,
-         this->AutoExposure, this->ToneCurve, this->SurfaceReflection, this->TableFace, this->EnvironmentUp })
+    this->ShowBackground ? 1.0 : 0.0, this->Exposure, this->FirstExposure, this->SurfaceIndex, this->SurfaceReflectance,
+    this->TableReflectance, this->LeaveOut ? 1.0 : 0.0, this->EnvironmentAzimuth };
+  for (int number : { this->ImageSize[0], this->ImageSize[1], this->Quality, this->RectangleSamples, this->AutoExposure,
+         this->ToneCurve, this->SurfaceReflection, this->TableFace, this->EnvironmentUp })
   {
     numbers.push_back(number);
   }
-  for (const double* triple : { this->CameraPosition, this->CameraFocalPoint, this->CameraViewUp,
-         this->BackgroundColor, this->BackgroundRadiance, this->TableColor })
+  for (const double* triple : { this->CameraPosition, this->CameraFocalPoint, this->CameraViewUp, this->BackgroundColor,
+         this->BackgroundRadiance, this->TableColor })
   {
     numbers.insert(numbers.end(), triple, triple + 3);
   }
@@ -603,8 +603,8 @@ std::vector<double> vtkMediumRayCaster::PropertiesAsNumbers()
 /// @param inputs  the others are whole
 /// @param asked   pixels of the picture that are asked for of this rank
 /// @return the part with them; none, on all ranks, where the whole is needed
-std::optional<vtkMediumRayCaster::Shot> vtkMediumRayCaster::SeeBlocks(vtkMultiProcessController* ranks,
-  tyndall::WholeInputs& inputs, double exposure, const std::array<int, 6>& asked)
+std::optional<vtkMediumRayCaster::Shot> vtkMediumRayCaster::SeeBlocks(
+  vtkMultiProcessController* ranks, tyndall::WholeInputs& inputs, double exposure, const std::array<int, 6>& asked)
 {
   const tyndall::BlocksOfRanks blocks = SurroundedBlocks(ranks, inputs);
   vtkImageData* const image = vtkImageData::GetData(inputs.Vectors()[MEDIUM]);
@@ -633,16 +633,16 @@ std::optional<vtkMediumRayCaster::Shot> vtkMediumRayCaster::SeeBlocks(vtkMultiPr
   }
   const tyndall::PixelRect counted = OwnPixels(ranks, WholePicture(this));
   const tyndall::PixelRect part = Around(RectOf(asked), counted);
-  const tyndall::PictureOfBlocks picture(ranks, this, blocks, CameraOf(this, blocks.Whole()),
-    { this->ImageSize[0], this->ImageSize[1] }, part, counted);
+  const tyndall::PictureOfBlocks picture(
+    ranks, this, blocks, CameraOf(this, blocks.Whole()), { this->ImageSize[0], this->ImageSize[1] }, part, counted);
   Taking taking;
   taking.take = [&] { return picture.Take(shot.scene ? shot.scene->caster.get() : nullptr); };
   taking.exposureOf = [&](const tyndall::Picture& taken) { return picture.Exposure(taken); };
   taking.onAnyRank = [&](bool here) { return tyndall::OnAnyRank(ranks, here); };
   this->Expose(taking, shot);
   shot.first = part.begin;
-  shot.leftOut = OnAllLists(
-    ranks, shot.scene ? shot.scene->caster->LeftOut() : std::vector<std::string>(), shot.scene != nullptr);
+  shot.leftOut =
+    OnAllLists(ranks, shot.scene ? shot.scene->caster->LeftOut() : std::vector<std::string>(), shot.scene != nullptr);
   this->NeedsWhole = false;
   return shot;
 }

@@ -358,8 +358,8 @@ private:
   void Expose(const Taking& taking, Shot& shot);
   Shot SeeWhole(vtkInformationVector** inputs, double exposure);
   std::vector<double> PropertiesAsNumbers();
-  std::optional<Shot> SeeBlocks(vtkMultiProcessController* ranks, tyndall::WholeInputs& inputs, double exposure,
-    const std::array<int, 6>& asked);
+  std::optional<Shot> SeeBlocks(
+    vtkMultiProcessController* ranks, tyndall::WholeInputs& inputs, double exposure, const std::array<int, 6>& asked);
   void HandOn(Shot&& shot, vtkInformationVector* outputs);
 
   int Quality = USUAL;

@@ -78,13 +78,12 @@ BlockPixels PartIn(const PixelRect& rect, const BlockPixels& pixels)
   BlockPixels part;
   part.rect = Overlap(rect, pixels.rect);
   part.pixels.reserve(part.rect.Count());
-  ForPixels(
-    part.rect, [&](int column, int row, std::size_t) { part.pixels.push_back(pixels.At(column, row)); });
+  ForPixels(part.rect, [&](int column, int row, std::size_t) { part.pixels.push_back(pixels.At(column, row)); });
   return part;
 }
 
-std::vector<float> StartsBehind(const std::vector<BlockPixels>& frontToBack, std::size_t own,
-  const std::array<int, 2>& size, double minimum)
+std::vector<float> StartsBehind(
+  const std::vector<BlockPixels>& frontToBack, std::size_t own, const std::array<int, 2>& size, double minimum)
 {
   std::vector<float> starts;
   ForPixels(frontToBack[own].rect, [&](int column, int row, std::size_t) {

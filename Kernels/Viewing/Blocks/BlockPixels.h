@@ -92,8 +92,8 @@ BlockPixels PartIn(const PixelRect& rect, const BlockPixels& pixels);
 /// @param size     of the picture, pixels
 /// @param minimum  part of their light at which rays end
 /// @return what comes through the blocks before, 3 per pixel of the picture, there, and else 0. Empty: nowhere
-std::vector<float> StartsBehind(const std::vector<BlockPixels>& frontToBack, std::size_t own,
-  const std::array<int, 2>& size, double minimum);
+std::vector<float> StartsBehind(
+  const std::vector<BlockPixels>& frontToBack, std::size_t own, const std::array<int, 2>& size, double minimum);
 
 /// Takes those pixels from a picture that was made so.
 void TakeFrom(const Picture& again, const std::vector<float>& starts, BlockPixels& pixels);

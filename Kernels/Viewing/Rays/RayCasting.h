@@ -42,8 +42,8 @@ public:
   /// size.
   /// @param starts  of a block's rays: what comes through blocks before it, 3 per pixel; empty: all
   /// @throws InvalidInput for ends of another number than pixels; DeviceError if it does not fit
-  void Reserve(const ViewSettings& settings, const std::vector<float>& ends, bool ofBlock,
-    const std::vector<float>& starts = {});
+  void Reserve(
+    const ViewSettings& settings, const std::vector<float>& ends, bool ofBlock, const std::vector<float>& starts = {});
 
   /// A picture of what was packed, and of what of the environment belongs to that.
   /// @param from, to  fractions done that are reported

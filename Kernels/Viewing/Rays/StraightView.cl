@@ -18,9 +18,9 @@ __kernel void cast_rays(ViewInfo v, __global const float4* restrict samples,
   __global const float4* restrict glow, __global const float4* restrict cosines,
   __global const float* restrict phase_rows, __global const char* restrict bricks,
   __global const float4* restrict environment, __global const float4* restrict ground,
-  __global const float4* restrict surface, __global const float* restrict ends,
-  __global const float* restrict starts, __global float* restrict radiance, __global float* restrict alpha,
-  __global float* restrict depth, __global float* restrict passed)
+  __global const float4* restrict surface, __global const float* restrict ends, __global const float* restrict starts,
+  __global float* restrict radiance, __global float* restrict alpha, __global float* restrict depth,
+  __global float* restrict passed)
 {
   const int column = (get_global_id(0) + v.picture.w) * PACKET_WIDTH;
   const int row = (get_global_id(1) + v.picture.z) * PACKET_HEIGHT;
