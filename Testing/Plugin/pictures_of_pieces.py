@@ -257,6 +257,12 @@ def reader():
     keep("reader", cast(XMLImageDataReader(FileName=[path])))
 
 
+def solved():
+    """Light of a solver, of which each rank is given its piece."""
+    medium = ParticipatingMedium(Input=Wavelet(WholeExtent=[-10, 10, -9, 9, -8, 8]), ExtinctionScale=0.001)
+    keep("solved", cast(LightPropagationMaps(Input=medium, SkyColor=[1, 1, 1], DirectionsPerFace=4)))
+
+
 def properties():
     """Each rank has the picture that it asks for, though not all ask for the same."""
     more = dict(CameraViewAngle=35, Exposure=2, BackgroundColor=[0, 0, 0]) if rank == ranks - 1 else {}
