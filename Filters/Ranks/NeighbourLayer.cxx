@@ -72,8 +72,8 @@ vtkUnsignedCharArray* Bytes(vtkDataSetAttributes* of, const char* name)
   return vtkArrayDownCast<vtkUnsignedCharArray>(of->GetAbstractArray(name));
 }
 
-/// Flags of what is hidden, as an array like others: vtkGhostCellsGenerator of VTK 9.2 forgets those of points that come
-/// from a rank across an edge.
+/// Flags of what is hidden, as an array like others: vtkGhostCellsGenerator of VTK 9.2 forgets those of points that
+/// come from a rank across an edge.
 void AddHidden(vtkDataSetAttributes* of, vtkIdType values, unsigned char flag)
 {
   vtkUnsignedCharArray* const flags = Bytes(of, vtkDataSetAttributes::GhostArrayName());
