@@ -12,6 +12,7 @@
 #include "vtkMultiProcessStream.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
+#include "vtkUnsignedCharArray.h"
 
 #include <string>
 #include <vector>
@@ -63,6 +64,38 @@ bool AreAlike(vtkMultiProcessController* ranks, vtkImageData* piece)
   }
   return alike;
 }
+
+constexpr const char* HiddenName = "tyndall_hidden";
+
+vtkUnsignedCharArray* Bytes(vtkDataSetAttributes* of, const char* name)
+{
+  return vtkArrayDownCast<vtkUnsignedCharArray>(of->GetAbstractArray(name));
+}
+
+/// Flags of what is hidden, as an array like others: vtkGhostCellsGenerator of VTK 9.2 forgets those of points that
+/// come from a rank across an edge.
+void AddHidden(vtkDataSetAttributes* of, vtkIdType values, unsigned char flag)
+{
+  vtkUnsignedCharArray* const flags = Bytes(of, vtkDataSetAttributes::GhostArrayName());
+  vtkNew<vtkUnsignedCharArray> hidden;
+  hidden->SetName(HiddenName);
+  for (vtkIdType i = 0; i < values; ++i)
+  {
+    hidden->InsertNextValue(flags ? flags->GetValue(i) & flag : 0);
+  }
+  of->AddArray(hidden);
+}
+
+void TakeHidden(vtkDataSetAttributes* of)
+{
+  vtkUnsignedCharArray* const flags = Bytes(of, vtkDataSetAttributes::GhostArrayName());
+  vtkUnsignedCharArray* const hidden = Bytes(of, HiddenName);
+  for (vtkIdType i = 0; flags && hidden && i < hidden->GetNumberOfValues(); ++i)
+  {
+    flags->SetValue(i, flags->GetValue(i) | hidden->GetValue(i));
+  }
+  of->RemoveArray(HiddenName);
+}
 }
 
 vtkSmartPointer<vtkImageData> WithNeighbourLayer(vtkMultiProcessController* ranks, vtkImageData* piece)
@@ -72,9 +105,11 @@ vtkSmartPointer<vtkImageData> WithNeighbourLayer(vtkMultiProcessController* rank
     return nullptr;
   }
   vtkNew<vtkImageData> own;
-  if (piece)
+  if (piece && piece->GetNumberOfCells() > 0)
   {
     own->ShallowCopy(piece);
+    AddHidden(own->GetCellData(), own->GetNumberOfCells(), vtkDataSetAttributes::HIDDENCELL);
+    AddHidden(own->GetPointData(), own->GetNumberOfPoints(), vtkDataSetAttributes::HIDDENPOINT);
   }
   vtkSmartPointer<vtkImageData> surrounded;
   OnAllRanks(ranks, [&] {
@@ -85,6 +120,8 @@ vtkSmartPointer<vtkImageData> WithNeighbourLayer(vtkMultiProcessController* rank
     generator->SetNumberOfGhostLayers(1);
     generator->Update();
     surrounded = vtkImageData::SafeDownCast(generator->GetOutputDataObject(0));
+    TakeHidden(surrounded->GetCellData());
+    TakeHidden(surrounded->GetPointData());
   });
   return surrounded;
 }

@@ -27,9 +27,9 @@ struct BlockToCast
 /// Whether all ranks are able to, and say the same: the same on all ranks, which all have to ask.
 bool CanCast(vtkMultiProcessController* ranks, const BlocksOfRanks& blocks, const BlockToCast& own);
 
-/// A picture of a medium that is spread over ranks, of which each casts its block and gets a part: that of one rank with
-/// the whole, to rounding (numerics.md, section 14.9). All ranks have to construct it and to call its functions in the
-/// same order; what fails on one throws on all, and so does an abort.
+/// A picture of a medium that is spread over ranks, of which each casts its block and gets a part: that of one rank
+/// with the whole, to rounding (numerics.md, section 14.9). All ranks have to construct it and to call its functions in
+/// the same order; what fails on one throws on all, and so does an abort.
 class PictureOfBlocks
 {
 public:

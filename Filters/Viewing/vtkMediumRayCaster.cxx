@@ -598,8 +598,8 @@ std::vector<double> vtkMediumRayCaster::PropertiesAsNumbers()
   return numbers;
 }
 
-/// The picture of ranks that have a piece of the medium each, with a layer of their neighbours' cells, where pictures of
-/// pieces make up that of the whole.
+/// The picture of ranks that have a piece of the medium each, with a layer of their neighbours' cells, where pictures
+/// of pieces make up that of the whole.
 /// @param inputs  the others are whole
 /// @param asked   pixels of the picture that are asked for of this rank
 /// @return the part with them; none, on all ranks, where the whole is needed

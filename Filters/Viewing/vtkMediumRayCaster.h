@@ -95,10 +95,10 @@ class WholeInputs;
  * While CameraPosition and CameraFocalPoint are equal, as they are untouched, the camera frames the whole medium, from
  * above, z upwards.
  *
- * Where ranks of a parallel pipeline run it together each asks for its piece of the medium with a layer of its neighbours'
- * cells, casts that, and hands on the part of the picture that it was asked for: that of the whole, to rounding. What
- * rays of pieces do not find (bent rays, a table, shadow rays, angular moments, light at the surface of thick voxels) takes
- * the whole on every rank, put together where a source gives pieces alone.
+ * Where ranks of a parallel pipeline run it together each asks for its piece of the medium with a layer of its
+ * neighbours' cells, casts that, and hands on the part of the picture that it was asked for: that of the whole, to
+ * rounding. What rays of pieces do not find (bent rays, a table, shadow rays, angular moments, light at the surface of
+ * thick voxels) takes the whole on every rank, put together where a source gives pieces alone.
  *
  * @sa vtkLightPropagationMaps vtkPhotonMarcher vtkLightRig vtkEnvironmentReader
  * @par Thanks

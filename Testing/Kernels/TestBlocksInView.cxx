@@ -252,6 +252,7 @@ TEST_F(BlocksInView, AreExactWhereNothingCrossesThem)
   Scene lit = scene;
   lit.illumination.lights.emplace_back();
   lit.settings.shadowRays = true;
+  lit.fluenceDirect = scene.Everywhere(0.1);
   EXPECT_FALSE(lit.Caster(this->GetDevice()).CastsBlocksExactly());
   Scene thick = scene;
   thick.surface.resize(BoxFaceCellCount(scene.grid) * SurfaceCosines.size(), 0.2f);

@@ -206,8 +206,8 @@ def bare_points():
         image.GetCellData().RemoveArray(name)
     x, y, z = (numpy.arange(extent[2 * a], extent[2 * a + 1] + 1) for a in range(3))
     z, y, x = (axis.ravel() for axis in numpy.meshgrid(z, y, x, indexing="ij"))
-    hidden = x + y < 6
-    wave = numpy.where(hidden, numpy.nan, 1 + numpy.sin(0.7 * x) * numpy.cos(0.9 * y + 0.3 * z))
+    hidden = x + y < 9
+    wave = numpy.where(hidden, 9, 1 + numpy.sin(0.7 * x) * numpy.cos(0.9 * y + 0.3 * z))
     for name, scale in (("sigma_a", 0.1), ("sigma_s", 0.3), ("fluence", 1)):
         add(image, name, scale * wave, to=image.GetPointData())
     flags = numpy_to_vtk((2 * hidden).astype(numpy.uint8), deep=True)
@@ -255,6 +255,12 @@ def reader():
         writer.Write()
     module.GetGlobalController().Barrier()
     keep("reader", cast(XMLImageDataReader(FileName=[path])))
+
+
+def solved():
+    """Light of a solver, of which each rank is given its piece."""
+    medium = ParticipatingMedium(Input=Wavelet(WholeExtent=[-10, 10, -9, 9, -8, 8]), ExtinctionScale=0.001)
+    keep("solved", cast(LightPropagationMaps(Input=medium, SkyColor=[1, 1, 1], DirectionsPerFace=4)))
 
 
 def properties():

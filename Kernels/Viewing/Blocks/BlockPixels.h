@@ -86,8 +86,8 @@ BlockPixels SeenPart(const Picture& picture);
 /// Their common part.
 BlockPixels PartIn(const PixelRect& rect, const BlockPixels& pixels);
 
-/// Where a block has to be looked at again, because of those before it: where rays lose half of their light in it but not
-/// in it alone (its own depth is not theirs), and where in it, or before, they have lost so much that they end.
+/// Where a block has to be looked at again, because of those before it: where rays lose half of their light in it but
+/// not in it alone (its own depth is not theirs), and where in it, or before, they have lost so much that they end.
 /// @param own      which of the blocks it is
 /// @param size     of the picture, pixels
 /// @param minimum  part of their light at which rays end

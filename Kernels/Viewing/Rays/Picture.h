@@ -20,7 +20,8 @@ struct Picture
   /// Of a block of a larger grid only, 3 per pixel: the part of the radiance behind the block that comes through.
   std::vector<float> transmittance;
   /// Likewise, the part of the scene behind that is seen through it, which is not scattered light: the same but where
-  /// the light has angular moments. Its mean is 1 - alpha, but where the background is seen: there a block's alpha is 1.
+  /// the light has angular moments. Its mean is 1 - alpha, but where the background is seen: there a block's alpha is
+  /// 1.
   std::vector<float> sceneTransmittance;
 };
 }
