@@ -101,6 +101,6 @@ double PictureOfBlocks::Exposure(const Picture& part) const
   const std::vector<int> own = LuminanceCounts(radiance);
   std::vector<int> all(own.size());
   this->Ranks->AllReduce(own.data(), all.data(), static_cast<vtkIdType>(own.size()), vtkCommunicator::SUM_OP);
-  return AutomaticExposure(all);
+  return ExposureOfCounts(all);
 }
 }

@@ -120,7 +120,7 @@ std::vector<int> LuminanceCounts(const std::vector<float>& radiance)
   return count;
 }
 
-double AutomaticExposure(const std::vector<int>& count)
+double ExposureOfCounts(const std::vector<int>& count)
 {
   const double lit = std::accumulate(count.begin(), count.end(), 0.0);
   const auto logarithm = [](std::size_t entry) { // of the class's middle
@@ -152,7 +152,7 @@ double AutomaticExposure(const std::vector<int>& count)
 
 double AutomaticExposure(const std::vector<float>& radiance)
 {
-  return AutomaticExposure(LuminanceCounts(radiance));
+  return ExposureOfCounts(LuminanceCounts(radiance));
 }
 
 double ExposedAs(double shown, ToneCurve curve)

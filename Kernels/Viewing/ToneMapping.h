@@ -35,7 +35,7 @@ double AutomaticExposure(const std::vector<float>& radiance);
 std::vector<int> LuminanceCounts(const std::vector<float>& radiance);
 
 /// The same exposure, of all that was counted.
-double AutomaticExposure(const std::vector<int>& luminanceCounts);
+double ExposureOfCounts(const std::vector<int>& luminanceCounts);
 
 /// The radiance times exposure that a screen shows as a channel of this value: ToneMap makes 255 times that of it.
 /// @param shown  [0, 1], encoded as sRGB

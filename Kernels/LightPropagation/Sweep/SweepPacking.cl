@@ -1,5 +1,5 @@
-// Planes out of the volume and back into it: the rows that rays cross lie one after the other, filled up to whole vectors,
-// however the axis lies in the volume.
+// Planes out of the volume and back into it: the rows that rays cross lie one after the other, filled up to whole
+// vectors, however the axis lies in the volume.
 
 #pragma once
 #include "LightPropagation/Sweep/SweepLayout.cl"
