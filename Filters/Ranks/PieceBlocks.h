@@ -20,8 +20,8 @@ namespace tyndall
 {
 /// The blocks of one grid that ranks have of an image, for filters that work on pieces of it. All ranks make one.
 ///
-/// Each rank is given a piece, in which cells that it has of its neighbours are flagged as duplicates (vtkGhostType); or
-/// each is given all of it by a source that knows no pieces, and its block is what it is asked for.
+/// Each rank is given a piece, in which cells that it has of its neighbours are flagged as duplicates (vtkGhostType);
+/// or each is given all of it by a source that knows no pieces, and its block is what it is asked for.
 class PieceBlocks
 {
 public:

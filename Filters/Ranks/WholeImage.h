@@ -37,7 +37,8 @@ bool IsFirstPiece(vtkInformation* request, vtkInformationVector* outputs);
 /// @param rank   this one
 void NotePartsOfRanks(vtkInformation* information, const std::vector<std::array<int, 6>>& parts, int rank);
 
-/// What is asked for of an image: a piece of its extent, with ghost cells and without; the same where it is not divided.
+/// What is asked for of an image: a piece of its extent, with ghost cells and without; the same where it is not
+/// divided.
 /// Empty where there are more pieces than cells.
 struct AskedPiece
 {

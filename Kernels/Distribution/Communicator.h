@@ -54,8 +54,8 @@ public:
   std::vector<double> Largest(const std::vector<double>& values);
 
   /// Runs `work` on every rank. Where it throws on one, it does on all, with the same words: those of the first rank
-  /// where the worst went wrong (an abort is no error), with its number where it is not the same on all. All ranks call it; what they send each other in `work` they
-  /// must send although something has gone wrong (SweepInBlocks.cxx does).
+  /// where the worst went wrong (an abort is no error), with its number where it is not the same on all. All ranks call
+  /// it; what they send each other in `work` they must send although something has gone wrong (SweepInBlocks.cxx does).
   /// @throws Aborted where a rank was, InvalidInput, DeviceError and others likewise
   void Together(const std::function<void()>& work);
 
