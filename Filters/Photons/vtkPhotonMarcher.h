@@ -110,12 +110,12 @@ public:
   };
 
   ///@{
-  /// What each of several ranks of MPI holds. With WHOLE all of the medium. With BLOCKS its piece, and of the index some
-  /// voxels round it: a photon that leaves the piece is handed on as it stands (numerics.md, section 12.6), and light is
-  /// that of one rank bit for bit. All ranks are given all photons. An error names what blocks cannot do: MaximumOrders
-  /// other than 1, an octree, photons of several batches, PathCount and the published scheme. AUTOMATIC_DECOMPOSITION
-  /// (default): BLOCKS where the whole, once for each rank of a machine, is more than the memory that it has available,
-  /// and the scene can be marched through so; else WHOLE.
+  /// What each of several ranks of MPI holds. With WHOLE all of the medium. With BLOCKS its piece, and of the index
+  /// some voxels round it: a photon that leaves the piece is handed on as it stands (numerics.md, section 12.6), and
+  /// light is that of one rank bit for bit. All ranks are given all photons. An error names what blocks cannot do:
+  /// MaximumOrders other than 1, an octree, photons of several batches, PathCount and the published scheme.
+  /// AUTOMATIC_DECOMPOSITION (default): BLOCKS where the whole, once for each rank of a machine, is more than the
+  /// memory that it has available, and the scene can be marched through so; else WHOLE.
   tyndallSetRangeMacro(Decomposition, int, AUTOMATIC_DECOMPOSITION, BLOCKS);
   vtkGetMacro(Decomposition, int);
   ///@}

@@ -21,7 +21,8 @@ class vtkMultiProcessController;
 
 namespace tyndall
 {
-/// Ranks begin to work together (WorkOnAllRanks): what communicators of earlier work left behind is not taken for theirs.
+/// Ranks begin to work together (WorkOnAllRanks): what communicators of earlier work left behind is not taken for
+/// theirs.
 void BeginConversations();
 
 /// What the ranks that work together say to each other. All of them make the same ones, one after the other.
