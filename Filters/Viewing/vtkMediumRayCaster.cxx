@@ -28,7 +28,6 @@
 #include "vtkDataArray.h"
 #include "vtkDataObject.h"
 #include "vtkExecutive.h"
-#include "vtkExtentTranslator.h"
 #include "vtkFieldData.h"
 #include "vtkFloatArray.h"
 #include "vtkImageData.h"
@@ -212,19 +211,10 @@ tyndall::BlocksOfRanks SurroundedBlocks(vtkMultiProcessController* ranks, tyndal
 /// Pixels that are this rank's alone, of a picture that is divided among all.
 tyndall::PixelRect OwnPixels(vtkMultiProcessController* ranks, const std::array<int, 6>& all)
 {
-  std::array<int, 6> whole = all;
-  std::array<int, 6> own = { 0, -1, 0, -1, 0, -1 };
-  vtkNew<vtkExtentTranslator> translator;
-  translator->SetWholeExtent(whole.data());
-  translator->SetPiece(ranks->GetLocalProcessId());
-  translator->SetNumberOfPieces(ranks->GetNumberOfProcesses());
-  if (translator->PieceToExtent())
+  std::array<int, 6> own = tyndall::PartOfExtent(all, ranks->GetLocalProcessId(), ranks->GetNumberOfProcesses());
+  for (int last : { 1, 3 }) // pieces have their borders in common
   {
-    translator->GetExtent(own.data());
-    for (int last : { 1, 3 }) // pieces have their borders in common
-    {
-      own[last] -= own[last] < all[last] ? 1 : 0;
-    }
+    own[last] -= own[last] < all[last] ? 1 : 0;
   }
   return RectOf(own);
 }

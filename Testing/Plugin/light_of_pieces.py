@@ -190,6 +190,26 @@ def blocks_wavelet():
     assert lines.GetNumberOfRows() > 0 and before, "no rows"
 
 
+def photons(decomposition):
+    """Photons that bend; the emitter has the whole."""
+    density = Calculator(Input=Wavelet(WholeExtent=SIZE), ResultArrayName="ior",
+                         Function="1.2 + 0.1*sin(0.4*coordsX) + 0.1*cos(0.5*coordsY + 0.3*coordsZ)")
+    medium = ParticipatingMedium(Input=density, DensityArray=["POINTS", "RTData"], ExtinctionScale=0.05, MinimumDensity=0,
+                                 MaximumDensity=277)
+    emitter = PhotonEmitter(Input=medium, Lights=LightRig(SunElevation=50), PhotonCount=20000)
+    light = PhotonMarcher(Input=medium, Photons=emitter, PhotonCounts=1, Decomposition=decomposition)
+    light.UpdatePipeline()
+    return light
+
+
+def blocks_photons():
+    keep("blocks_photons", photons("Blocks"))
+
+
+def whole_photons():
+    keep("whole_photons", photons("Whole on each rank"))
+
+
 def blocks_plain():
     """Orders one by one, to compare with one rank's solve of the whole."""
     keep("blocks_plain", wavelet("Blocks", Acceleration="None (as published)"))
