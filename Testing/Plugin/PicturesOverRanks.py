@@ -5,33 +5,20 @@ given more than its piece where the picture can be made piece by piece.
 """
 import glob
 import os
-import shutil
-import subprocess
 
 import numpy
+from pieces_of_ranks import Runs
 
-here = os.path.dirname(os.path.abspath(__file__))
-output = os.path.join(os.environ["TYNDALL_TEST_OUTPUT"], "PicturesOverRanks")
-shutil.rmtree(output, ignore_errors=True)
+runs = Runs("PicturesOverRanks", "pictures_of_pieces.py")
 pieces = ["even", "coloured", "inside", "uneven", "alone", "bare", "bare_uneven", "bare_points", "phase", "ground", "reader",
           "solved"]
 wholes = ["glass", "shadows", "table", "surface"]
 of_even = ["uneven", "alone", "bare", "bare_uneven"]  # other pieces of the same
 
 
-def run(ranks, *cases, timeout=240):
-    """@return code and text of as many ranks, with what they wrote in a folder of their own"""
-    folder = os.path.join(output, str(ranks))
-    os.makedirs(folder, exist_ok=True)
-    done = subprocess.run(["mpiexec", "--allow-run-as-root", "--oversubscribe", "-n", str(ranks), "pvbatch",
-                           "--symmetric", os.path.join(here, "pictures_of_pieces.py"), folder, *cases],
-                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=timeout)
-    return done.returncode, done.stdout
-
-
 def whole(ranks, case):
     """@return the arrays of the whole picture by name, with its facts, and what each rank was given"""
-    parts = [dict(numpy.load(file)) for file in sorted(glob.glob(os.path.join(output, str(ranks), case + ".*.npz")))]
+    parts = [dict(numpy.load(file)) for file in sorted(glob.glob(os.path.join(runs.output, str(ranks), case + ".*.npz")))]
     seen = [part for part in parts if "extent" in part]
     extents = numpy.array([part["extent"] for part in seen])
     size = extents.max(axis=0)[[3, 1]] + 1
@@ -62,7 +49,7 @@ def check(ranks, case, expected):
 
 for ranks in (1, 2, 3, 4):
     more = ["properties", "errors", "abort"] if ranks == 3 else []
-    code, said = run(ranks, *pieces, *wholes, *more)
+    code, said = runs.run(ranks, *pieces, *wholes, *more)
     assert code == 0 and said.count("is done") == ranks, said
     for case in pieces + wholes:
         expected, alone = whole(1, "even" if case in of_even else case)

@@ -13,6 +13,7 @@ from paraview import servermanager
 from paraview.simple import *
 from paraview.vtk import vtkDoubleArray, vtkImageData
 from paraview.vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from pieces import errors_of, flag_duplicates, source_of
 from vtkmodules.vtkIOXML import vtkXMLImageDataWriter
 
 folder = sys.argv[1]
@@ -21,18 +22,6 @@ module = servermanager.vtkProcessModule.GetProcessModule()
 rank, ranks = module.GetPartitionId(), module.GetNumberOfLocalPartitions()
 SIZE = [-8, 8, -7, 7, -6, 6]
 same = {"UseInputBounds": 0, "SamplingBounds": SIZE, "SamplingDimensions": [17, 15, 13]}
-
-
-def errors_of(proxy):
-    """@return the texts of the errors that the proxy's filter makes from now on"""
-    texts = []
-
-    def note(caller, event, text):
-        texts.append(text)
-
-    note.CallDataType = "string0"
-    proxy.GetClientSideObject().AddObserver("ErrorEvent", note)
-    return texts
 
 
 def density_of(extent):
@@ -49,13 +38,7 @@ def piece_of(extent, own=None, name="density", components=1, spacing=1.0, g=None
     image.SetSpacing(spacing, spacing, spacing)
     values = density_of(extent)
     if own:
-        x, y, z = (numpy.arange(extent[2 * a], extent[2 * a + 1]) for a in range(3))
-        inside = [(n >= own[2 * a]) & (n < own[2 * a + 1]) for a, n in enumerate((x, y, z))]
-        ghost = ~(inside[2][:, None, None] & inside[1][None, :, None] & inside[0][None, None, :]).ravel()
-        values[ghost] = 99
-        flags = numpy_to_vtk(ghost.astype(numpy.uint8), deep=True)
-        flags.SetName("vtkGhostType")
-        image.GetCellData().AddArray(flags)
+        values[flag_duplicates(image, own)] = 99
     array = numpy_to_vtk(numpy.repeat(values, components).reshape(-1, components), deep=True)
     array.SetName(name)
     image.GetCellData().AddArray(array)
@@ -65,12 +48,6 @@ def piece_of(extent, own=None, name="density", components=1, spacing=1.0, g=None
         fact.InsertNextValue(g)
         image.GetFieldData().AddArray(fact)
     return image
-
-
-def source_of(piece):
-    producer = servermanager.sources.PVTrivialProducer()
-    producer.GetClientSideObject().SetOutput(piece)
-    return producer
 
 
 def solved(density, array, full=1, **settings):

@@ -13,6 +13,7 @@ from paraview import servermanager
 from paraview.simple import *
 from paraview.vtk import vtkDoubleArray, vtkExtentTranslator, vtkImageData
 from paraview.vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from pieces import errors_of, flag_duplicates, source_of
 from vtkmodules.vtkIOXML import vtkXMLImageDataWriter
 
 folder = sys.argv[1]
@@ -21,18 +22,6 @@ module = servermanager.vtkProcessModule.GetProcessModule()
 rank, ranks = module.GetPartitionId(), module.GetNumberOfLocalPartitions()
 SIZE = [13, 9, 11]  # cells
 WHOLE = [0, SIZE[0], 0, SIZE[1], 0, SIZE[2]]
-
-
-def errors_of(proxy):
-    """@return the texts of the errors that the proxy's filter makes from now on"""
-    texts = []
-
-    def note(caller, event, text):
-        texts.append(text)
-
-    note.CallDataType = "string0"
-    proxy.GetClientSideObject().AddObserver("ErrorEvent", note)
-    return texts
 
 
 def cells_of(extent):
@@ -71,12 +60,7 @@ def medium_of(extent, own=None, coloured=False):
     add(image, "fluence", *(light * shade for shade in shades))
     add(image, "fluence_direct", 0.4 * light)
     if own:
-        ghost = numpy.zeros(len(x), bool)
-        for a, at in enumerate((x, y, z)):
-            ghost |= (at < own[2 * a]) | (at > own[2 * a + 1])
-        flags = numpy_to_vtk(ghost.astype(numpy.uint8), deep=True)
-        flags.SetName("vtkGhostType")
-        image.GetCellData().AddArray(flags)
+        flag_duplicates(image, own)
     return image
 
 
@@ -115,9 +99,7 @@ def plain_piece():
 def cast(source, **more):
     """@return a caster of what a rank has, updated"""
     if isinstance(source, vtkImageData):
-        producer = servermanager.sources.PVTrivialProducer()
-        producer.GetClientSideObject().SetOutput(source)
-        source = producer
+        source = source_of(source)
     caster = MediumRayCaster(Input=source, **{**dict(ImageSize=[61, 47], BackgroundColor=[0.1, 0.1, 0.2]), **more})
     caster.UpdatePipeline()
     return caster
@@ -275,9 +257,7 @@ def properties():
 
 def fails(case, image, said, **more):
     """One error, with the same words on every rank, and an empty output."""
-    producer = servermanager.sources.PVTrivialProducer()
-    producer.GetClientSideObject().SetOutput(image)
-    caster = MediumRayCaster(Input=producer, ImageSize=[61, 47], **more)
+    caster = MediumRayCaster(Input=source_of(image), ImageSize=[61, 47], **more)
     errors = errors_of(caster)
     caster.UpdatePipeline()
     assert len(errors) == 1 and said in errors[0], (case, rank, errors)
@@ -305,9 +285,7 @@ def errors():
 
 def abort():
     """What one rank aborts ends on all."""
-    producer = servermanager.sources.PVTrivialProducer()
-    producer.GetClientSideObject().SetOutput(plain_piece())
-    caster = MediumRayCaster(Input=producer, ImageSize=[800, 600])
+    caster = MediumRayCaster(Input=source_of(plain_piece()), ImageSize=[800, 600])
     algorithm = caster.GetClientSideObject()
     if rank == ranks - 1:
         algorithm.AddObserver("ProgressEvent", lambda caller, event: caller.SetAbortExecute(1))

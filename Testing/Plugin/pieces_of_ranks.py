@@ -1,4 +1,4 @@
-"""Runs light_of_pieces.py over ranks, and puts together what they wrote."""
+"""Runs scripts of pieces over ranks, and puts together what they wrote."""
 import glob
 import os
 import shutil
@@ -12,7 +12,8 @@ here = os.path.dirname(os.path.abspath(__file__))
 class Runs:
     """Of one test, in a folder of its own, which begins empty."""
 
-    def __init__(self, test):
+    def __init__(self, test, script="light_of_pieces.py"):
+        self.script = os.path.join(here, script)
         self.output = os.path.join(os.environ["TYNDALL_TEST_OUTPUT"], test)
         shutil.rmtree(self.output, ignore_errors=True)
 
@@ -21,7 +22,7 @@ class Runs:
         folder = os.path.join(self.output, str(ranks))
         os.makedirs(folder, exist_ok=True)
         done = subprocess.run(["mpiexec", "--allow-run-as-root", "--oversubscribe", "-n", str(ranks), "pvbatch",
-                               "--symmetric", os.path.join(here, "light_of_pieces.py"), folder, *cases],
+                               "--symmetric", self.script, folder, *cases],
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=timeout)
         return done.returncode, done.stdout
 
