@@ -10,7 +10,7 @@
 namespace tyndall
 {
 /// Diffusion of one channel on cells of 2, 4 or 8 voxels along each axis (numerics.md, section 7.13): what the orders
-/// to come will add, about, to the light that a sweep found. Cells are at most one or two mean free paths wide, so that
+/// to come will add, about, to the light that a sweep found. Cells are at most about a mean free path wide, so that
 /// what they do not see falls off fast in sweeps. A guess only: it is taken away again from what the next sweep finds
 /// of it, so that it changes how fast the light converges and not what it converges to.
 ///

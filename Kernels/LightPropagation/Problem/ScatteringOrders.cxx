@@ -37,9 +37,7 @@ constexpr AcceleratedTime InSlab = { 3.0, 5.0, 1.0 };
 /// Rows are as many as CellRows has.
 constexpr AcceleratedTime InCells = { 3.0, 0.0, 0.4 };
 constexpr double CellFall = 0.3;   ///< of what is left, from row to row, times the albedo: 5 rows at 0.5, 7 at 0.9 to 1
-constexpr double CellAtMost = 1.0; ///< optical width where the medium is thickest; but of cells of two voxels
-constexpr double CellOfTwoAtMost = 2.0; ///< for the balance of each voxel takes up to twice the time
-constexpr double WideCellAlbedo = 0.95; ///< from which on their light is about as right as that of the balance
+constexpr double CellAtMost = 1.0; ///< optical width where the medium is thickest
 constexpr int MostHalvings = 3;
 constexpr double PlainSetUp = 0.8; ///< of orders one after the other: measured 0.8 in 100^3 voxels, 2 in 40^3
 
@@ -144,16 +142,6 @@ double AlbedoOf(const PropagationProblem& problem, int channel)
   return scattering > 0.0 ? albedo / scattering : 0.0;
 }
 
-double LeastAlbedo(const PropagationProblem& problem)
-{
-  double least = 1.0;
-  for (int c = 0; c < problem.Channels(); ++c)
-  {
-    least = std::min(least, AlbedoOf(problem, c));
-  }
-  return least;
-}
-
 /// What leaks out along axes that are not periodic, of the slowest mode, over what is extinguished (numerics.md,
 /// Eq. (86)).
 /// @param longest  lines as light diffuses, of the channel
@@ -197,30 +185,11 @@ bool HasThickVoxels(const PropagationProblem& problem)
   return longest * ThickestExtinction(problem) > ThickVoxel;
 }
 
-/// Voxels are above half a mean free path. There cells take the place of the balance of voxels alone, where their light
-/// is about as right: orders one after the other shine by octant, which is better where few of them do.
-bool HasWideCells(const PropagationProblem& problem)
-{
-  const Grid& grid = problem.TheGrid();
-  const std::array<int, 3> halvings = CellHalvings(problem);
-  const double thickest = ThickestExtinction(problem);
-  bool wide = false;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    wide = wide || (halvings[axis] > 0 && thickest * grid.spacing[axis] * (1 << halvings[axis]) > CellAtMost);
-  }
-  return wide;
-}
-
 /// Light is scattered alike into all directions, no voxel is so thick that diffusion has to tell what leaves it, and
 /// nothing comes back through the box's faces, which cells would have to forecast.
 bool CanUseCells(const PropagationProblem& problem)
 {
   if (problem.Scattering().Degree() > 0 || problem.IsSlab() || Reflects(problem.Shining()))
-  {
-    return false;
-  }
-  if (HasWideCells(problem) && LeastAlbedo(problem) < WideCellAlbedo)
   {
     return false;
   }
@@ -247,7 +216,7 @@ double CellRows(const PropagationProblem& problem)
 
 AcceleratedTime AcceleratedTimeOf(const PropagationProblem& problem, const std::vector<Lines>& lines)
 {
-  if (CanUseCells(problem) && !HasWideCells(problem))
+  if (CanUseCells(problem))
   {
     return { InCells.setUp, CellRows(problem), InCells.correction };
   }
@@ -297,12 +266,10 @@ std::array<int, 3> CellHalvings(const Grid& grid, double thickest)
   for (int axis = 0; axis < 3; ++axis)
   {
     const double tau = thickest * grid.spacing[axis];
-    const auto fits = [&](int times) {
-      return tau * (1 << times) <= (times == 1 ? CellOfTwoAtMost : CellAtMost) && grid.size[axis] > 1 << (times - 1);
-    };
-    while (halvings[axis] < MostHalvings && fits(halvings[axis] + 1))
+    int& times = halvings[axis];
+    while (times < MostHalvings && tau * (2 << times) <= CellAtMost && grid.size[axis] > 1 << times)
     {
-      ++halvings[axis];
+      ++times;
     }
   }
   return halvings;

@@ -24,7 +24,7 @@ enum class OrdersAdded
 OrdersAdded HowOrdersAreAdded(const PropagationProblem& problem);
 
 /// Of how many voxels cells are to be along each axis, 2^this, for these to be about a mean free path wide at most
-/// where the medium is thickest, or two where a cell has two voxels; all 0: voxels are too thick for cells of several.
+/// where the medium is thickest; all 0: voxels are too thick for cells of several.
 std::array<int, 3> CellHalvings(const PropagationProblem& problem);
 /// @param thickest  the largest extinction, 1/length
 std::array<int, 3> CellHalvings(const Grid& grid, double thickest);
