@@ -370,12 +370,7 @@ int vtkPhotonMarcher::RequestData(vtkInformation* request, vtkInformationVector*
   this->MediumKept = false;
   const tyndall::WorkOnPieces onPieces = { MediumPort,
     [&](vtkMultiProcessController* ranks, vtkInformationVector** inputs) {
-      const bool marched = this->MarchPiece(request, ranks, inputs, outputs);
-      if (marched && !ranks)
-      {
-        tyndall::KeepWhatIsAskedFor(outputs->GetInformationObject(0), vtkImageData::GetData(outputs, 0));
-      }
-      return marched;
+      return this->MarchPiece(request, ranks, inputs, outputs);
     } };
   return tyndall::Guarded(this, request, given, outputs, onPieces, [&](vtkInformationVector** inputs) {
     const std::vector<tyndall::Photon> photons = tyndall::ReadPhotons(vtkPolyData::GetData(inputs[PhotonsPort]));

@@ -285,12 +285,7 @@ int vtkLightPropagationMaps::RequestData(
   const auto forget = [this] { this->Note({}); };
   const tyndall::WorkOnPieces onPieces = { MEDIUM,
     [&](vtkMultiProcessController* ranks, vtkInformationVector** inputs) {
-      const bool solved = this->SolvePiece(request, ranks, inputs, outputs);
-      if (solved && !ranks)
-      {
-        tyndall::KeepWhatIsAskedFor(outputs->GetInformationObject(0), vtkImageData::GetData(outputs, 0));
-      }
-      return solved;
+      return this->SolvePiece(request, ranks, inputs, outputs);
     } };
   return this->GiveOrSolve(request, given, outputs, forget, onPieces, [&](vtkInformationVector** inputs) {
     vtkImageData* image = vtkImageData::GetData(inputs[MEDIUM]);

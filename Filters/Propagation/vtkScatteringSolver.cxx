@@ -18,6 +18,30 @@
 #include <utility>
 #include <vector>
 
+namespace
+{
+/// Light beside the arrays of the medium, and its convergence.
+/// @param pieces  of which the light is this rank's; null: it is the whole
+/// @return its doubts
+std::vector<std::string> Write(
+  tyndall::LightField&& light, vtkImageData* medium, vtkInformationVector* outputs, const tyndall::PieceBlocks* pieces)
+{
+  std::vector<std::string> doubts = light.doubts;
+  tyndall::WriteConvergence(light.convergence, light.sweepsSaved, vtkTable::GetData(outputs, 1));
+  vtkImageData* const output = vtkImageData::GetData(outputs, 0);
+  tyndall::PassOn(medium, output);
+  if (pieces)
+  {
+    pieces->KeepHeld(output);
+  }
+  if (!pieces || pieces->Held().VoxelCount() > 0)
+  {
+    tyndall::WriteLight(std::move(light), output); // light that is not finite is an error, with no warnings before
+  }
+  return doubts;
+}
+}
+
 vtkScatteringSolver::vtkScatteringSolver()
   : Solved(std::make_unique<tyndall::LastOutputs>())
 {
@@ -148,16 +172,7 @@ void vtkScatteringSolver::WritePiece(tyndall::Communicator& communicator, const 
   pieces.SpreadToHeld(communicator, light.fluenceDirect, light.channels);
   pieces.SpreadToHeld(communicator, light.netFlux, 3 * light.channels);
   pieces.SpreadToHeld(communicator, light.scatteredRadiance, light.channels);
-  tyndall::WriteConvergence(light.convergence, light.sweepsSaved, vtkTable::GetData(outputs, 1));
-  vtkImageData* const output = vtkImageData::GetData(outputs, 0);
-  tyndall::PassOn(vtkImageData::GetData(inputs[MEDIUM]), output);
-  pieces.KeepHeld(output);
-  const std::vector<std::string> doubts = light.doubts;
-  if (pieces.Held().VoxelCount() > 0)
-  {
-    tyndall::WriteLight(std::move(light), output);
-  }
-  for (const std::string& doubt : doubts)
+  for (const std::string& doubt : Write(std::move(light), vtkImageData::GetData(inputs[MEDIUM]), outputs, &pieces))
   {
     vtkWarningMacro(<< doubt);
   }
@@ -167,12 +182,7 @@ void vtkScatteringSolver::WritePiece(tyndall::Communicator& communicator, const 
 void vtkScatteringSolver::WriteSolved(
   tyndall::LightField&& light, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  const std::vector<std::string> doubts = light.doubts;
-  tyndall::WriteConvergence(light.convergence, light.sweepsSaved, vtkTable::GetData(outputs, 1));
-  vtkImageData* const output = vtkImageData::GetData(outputs, 0);
-  tyndall::PassOn(vtkImageData::GetData(inputs[MEDIUM]), output);
-  tyndall::WriteLight(std::move(light), output); // light that is not finite is an error, with no warnings before
-  for (const std::string& doubt : doubts)
+  for (const std::string& doubt : Write(std::move(light), vtkImageData::GetData(inputs[MEDIUM]), outputs, nullptr))
   {
     vtkWarningMacro(<< doubt);
   }

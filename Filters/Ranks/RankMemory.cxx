@@ -13,6 +13,9 @@
 
 namespace tyndall
 {
+namespace
+{
+/// Processes of this MPI run, as its launcher says; where it does not, those of VTK's global controller.
 int RanksOnThisMachine()
 {
   for (const char* said : { "OMPI_COMM_WORLD_LOCAL_SIZE", "MPI_LOCALNRANKS", "PMI_LOCAL_SIZE" }) // Open MPI, MPICH, PMI
@@ -26,9 +29,6 @@ int RanksOnThisMachine()
   return all ? all->GetNumberOfProcesses() : 1;
 }
 
-bool FitsOnEach(int processes, double bytes)
-{
-  return processes * bytes <= AvailableMemory();
 }
 
 bool NeedsPieces(
@@ -45,6 +45,6 @@ bool NeedsPieces(
   {
     bytes *= std::max(0, whole[2 * axis + 1] - whole[2 * axis]);
   }
-  return EachAsksForItsPiece(request, outputs) && !FitsOnEach(RanksOnThisMachine(), bytes);
+  return EachAsksForItsPiece(request, outputs) && RanksOnThisMachine() * bytes > AvailableMemory();
 }
 }

@@ -11,6 +11,7 @@
 #include "PropertyRange.h"
 #include "Ranks/RankMeeting.h"
 #include "Ranks/Ranks.h"
+#include "Ranks/WholeImage.h"
 #include "Work/LastFailure.h"
 #include "Work/WholeInputs.h"
 
@@ -18,6 +19,7 @@
 #include "vtkCommunicator.h"
 #include "vtkDataObject.h"
 #include "vtkFieldData.h"
+#include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkMultiProcessController.h"
@@ -223,6 +225,10 @@ int Guarded(vtkAlgorithm* filter, vtkInformation* request, vtkInformationVector*
       {
         inputs.MakeWhole();
         work(inputs.Vectors());
+      }
+      else if (!ranks)
+      {
+        KeepWhatIsAskedFor(outputs->GetInformationObject(0), vtkImageData::GetData(outputs, 0));
       }
     });
 }

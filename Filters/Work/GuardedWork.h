@@ -49,7 +49,7 @@ struct WorkOnPieces
 {
   int port = 0; ///< the input of which ranks have pieces; the others are whole
   /// Called first, on all ranks together. Its answer is the same on all: false where it does nothing.
-  /// @param ranks  null: this process is alone
+  /// @param ranks  null: this process is alone; output 0 is then cut to what was asked for
   std::function<bool(vtkMultiProcessController* ranks, vtkInformationVector** inputs)> work;
 };
 
