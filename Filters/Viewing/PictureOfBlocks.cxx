@@ -1,11 +1,13 @@
 #include "PictureOfBlocks.h"
 
 #include "Ranks/Ranks.h"
+#include "Ranks/WholeImage.h"
 #include "Viewing/ToneMapping.h"
 #include "Work/GuardedWork.h"
 
 #include "vtkCommunicator.h"
 #include "vtkMultiProcessController.h"
+#include "vtkMultiProcessStream.h"
 
 #include <algorithm>
 
@@ -102,5 +104,62 @@ double PictureOfBlocks::Exposure(const Picture& part) const
   std::vector<int> all(own.size());
   this->Ranks->AllReduce(own.data(), all.data(), static_cast<vtkIdType>(own.size()), vtkCommunicator::SUM_OP);
   return ExposureOfCounts(all);
+}
+
+PixelRect RectOf(const std::array<int, 6>& extent)
+{
+  return { { extent[0], extent[2] }, { extent[1] + 1, extent[3] + 1 } };
+}
+
+PixelRect OwnPixels(vtkMultiProcessController* ranks, const std::array<int, 6>& all)
+{
+  std::array<int, 6> own = PartOfExtent(all, ranks->GetLocalProcessId(), ranks->GetNumberOfProcesses());
+  for (int last : { 1, 3 }) // pieces have their borders in common
+  {
+    own[last] -= own[last] < all[last] ? 1 : 0;
+  }
+  return RectOf(own);
+}
+
+PixelRect Around(const PixelRect& a, const PixelRect& b)
+{
+  if (a.IsEmpty() || b.IsEmpty())
+  {
+    return a.IsEmpty() ? b : a;
+  }
+  PixelRect around;
+  for (int axis = 0; axis < 2; ++axis)
+  {
+    around.begin[axis] = std::min(a.begin[axis], b.begin[axis]);
+    around.end[axis] = std::max(a.end[axis], b.end[axis]);
+  }
+  return around;
+}
+
+std::vector<std::string> OnAllLists(vtkMultiProcessController* ranks, const std::vector<std::string>& own, bool says)
+{
+  vtkMultiProcessStream stream;
+  stream << (says ? static_cast<int>(own.size()) : -1);
+  std::for_each(own.begin(), own.end(), [&](const std::string& line) { stream << line; });
+  std::vector<vtkMultiProcessStream> streams;
+  ranks->AllGather(stream, streams);
+  std::vector<std::string> common;
+  bool any = false;
+  for (vtkMultiProcessStream& from : streams)
+  {
+    int count = 0;
+    from >> count;
+    std::vector<std::string> list(static_cast<std::size_t>(std::max(count, 0)));
+    std::for_each(list.begin(), list.end(), [&](std::string& line) { from >> line; });
+    if (count >= 0 && any)
+    {
+      common.erase(std::remove_if(common.begin(), common.end(),
+                     [&](const std::string& line) { return std::find(list.begin(), list.end(), line) == list.end(); }),
+        common.end());
+    }
+    common = count >= 0 && !any ? list : common;
+    any = any || count >= 0;
+  }
+  return common;
 }
 }

@@ -8,6 +8,7 @@
 #include "Viewing/Scene/Camera.h"
 
 #include <array>
+#include <string>
 #include <vector>
 
 class vtkAlgorithm;
@@ -58,4 +59,17 @@ private:
   std::array<int, 2> Size;
   PixelRect Part, Counted;
 };
+
+/// The pixels of a picture's extent.
+PixelRect RectOf(const std::array<int, 6>& extent);
+
+/// Pixels that are this rank's alone, of a picture that is divided among all.
+PixelRect OwnPixels(vtkMultiProcessController* ranks, const std::array<int, 6>& all);
+
+/// The least rectangle around both.
+PixelRect Around(const PixelRect& a, const PixelRect& b);
+
+/// What is on all lists that say anything, in the order of the first: ranks without a block say nothing. All ranks call
+/// it.
+std::vector<std::string> OnAllLists(vtkMultiProcessController* ranks, const std::vector<std::string>& own, bool says);
 }

@@ -182,11 +182,6 @@ struct LightAtFaces
   }
 };
 
-tyndall::PixelRect RectOf(const std::array<int, 6>& extent)
-{
-  return { { extent[0], extent[2] }, { extent[1] + 1, extent[3] + 1 } };
-}
-
 std::array<int, 6> WholePicture(vtkMediumRayCaster* filter)
 {
   return { 0, filter->GetImageSize()[0] - 1, 0, filter->GetImageSize()[1] - 1, 0, 0 };
@@ -206,33 +201,6 @@ tyndall::BlocksOfRanks SurroundedBlocks(vtkMultiProcessController* ranks, tyndal
     }
   }
   return blocks;
-}
-
-/// Pixels that are this rank's alone, of a picture that is divided among all.
-tyndall::PixelRect OwnPixels(vtkMultiProcessController* ranks, const std::array<int, 6>& all)
-{
-  std::array<int, 6> own = tyndall::PartOfExtent(all, ranks->GetLocalProcessId(), ranks->GetNumberOfProcesses());
-  for (int last : { 1, 3 }) // pieces have their borders in common
-  {
-    own[last] -= own[last] < all[last] ? 1 : 0;
-  }
-  return RectOf(own);
-}
-
-/// The least rectangle around both.
-tyndall::PixelRect Around(const tyndall::PixelRect& a, const tyndall::PixelRect& b)
-{
-  if (a.IsEmpty() || b.IsEmpty())
-  {
-    return a.IsEmpty() ? b : a;
-  }
-  tyndall::PixelRect around;
-  for (int axis = 0; axis < 2; ++axis)
-  {
-    around.begin[axis] = std::min(a.begin[axis], b.begin[axis]);
-    around.end[axis] = std::max(a.end[axis], b.end[axis]);
-  }
-  return around;
 }
 
 /// A number for which arrays a rank's block has, and for what is used of field data.
@@ -260,34 +228,6 @@ double ArraysInANumber(vtkMediumRayCaster* filter, vtkImageData* image)
   }
   const std::uint64_t number = tyndall::ContentKey(facts) ^ std::hash<std::string>()(words);
   return static_cast<double>(number >> 11); // a double's digits
-}
-
-/// What is on all lists that say anything, in the order of the first: ranks without a block say nothing.
-std::vector<std::string> OnAllLists(vtkMultiProcessController* ranks, const std::vector<std::string>& own, bool says)
-{
-  vtkMultiProcessStream stream;
-  stream << (says ? static_cast<int>(own.size()) : -1);
-  std::for_each(own.begin(), own.end(), [&](const std::string& line) { stream << line; });
-  std::vector<vtkMultiProcessStream> streams;
-  ranks->AllGather(stream, streams);
-  std::vector<std::string> common;
-  bool any = false;
-  for (vtkMultiProcessStream& from : streams)
-  {
-    int count = 0;
-    from >> count;
-    std::vector<std::string> list(static_cast<std::size_t>(std::max(count, 0)));
-    std::for_each(list.begin(), list.end(), [&](std::string& line) { from >> line; });
-    if (count >= 0 && any)
-    {
-      common.erase(std::remove_if(common.begin(), common.end(),
-                     [&](const std::string& line) { return std::find(list.begin(), list.end(), line) == list.end(); }),
-        common.end());
-    }
-    common = count >= 0 && !any ? list : common;
-    any = any || count >= 0;
-  }
-  return common;
 }
 
 /// @param first  column and row of the picture's first pixel
@@ -621,8 +561,8 @@ std::optional<vtkMediumRayCaster::Shot> vtkMediumRayCaster::SeeBlocks(
   {
     this->SayDoubts(*shot.scene);
   }
-  const tyndall::PixelRect counted = OwnPixels(ranks, WholePicture(this));
-  const tyndall::PixelRect part = Around(RectOf(asked), counted);
+  const tyndall::PixelRect counted = tyndall::OwnPixels(ranks, WholePicture(this));
+  const tyndall::PixelRect part = tyndall::Around(tyndall::RectOf(asked), counted);
   const tyndall::PictureOfBlocks picture(
     ranks, this, blocks, CameraOf(this, blocks.Whole()), { this->ImageSize[0], this->ImageSize[1] }, part, counted);
   Taking taking;
@@ -631,8 +571,8 @@ std::optional<vtkMediumRayCaster::Shot> vtkMediumRayCaster::SeeBlocks(
   taking.onAnyRank = [&](bool here) { return tyndall::OnAnyRank(ranks, here); };
   this->Expose(taking, shot);
   shot.first = part.begin;
-  shot.leftOut =
-    OnAllLists(ranks, shot.scene ? shot.scene->caster->LeftOut() : std::vector<std::string>(), shot.scene != nullptr);
+  shot.leftOut = tyndall::OnAllLists(
+    ranks, shot.scene ? shot.scene->caster->LeftOut() : std::vector<std::string>(), shot.scene != nullptr);
   this->NeedsWhole = false;
   return shot;
 }
