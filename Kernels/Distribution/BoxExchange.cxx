@@ -23,6 +23,20 @@ void ForRows(const VoxelBox& box, const VoxelBox& part, int components, const Ac
   }
 }
 
+/// Values of a box, those of a part of it.
+template <class T>
+std::vector<T> TakeFrom(const std::vector<T>& values, const VoxelBox& box, const VoxelBox& part, int components)
+{
+  std::vector<T> taken;
+  taken.reserve(part.VoxelCount() * components);
+  const auto width = static_cast<std::ptrdiff_t>(part.size[0]) * components;
+  ForRows(box, part, components, [&](std::size_t place) {
+    const auto from = values.begin() + static_cast<std::ptrdiff_t>(place);
+    taken.insert(taken.end(), from, from + width);
+  });
+  return taken;
+}
+
 void Put(const std::vector<float>& taken, std::vector<float>& values, const VoxelBox& box, const VoxelBox& part,
   int components)
 {
@@ -37,14 +51,7 @@ void Put(const std::vector<float>& taken, std::vector<float>& values, const Voxe
 
 std::vector<float> PartOf(const std::vector<float>& values, const VoxelBox& box, const VoxelBox& part, int components)
 {
-  std::vector<float> taken;
-  taken.reserve(part.VoxelCount() * components);
-  const auto width = static_cast<std::ptrdiff_t>(part.size[0]) * components;
-  ForRows(box, part, components, [&](std::size_t place) {
-    const auto from = values.begin() + static_cast<std::ptrdiff_t>(place);
-    taken.insert(taken.end(), from, from + width);
-  });
-  return taken;
+  return TakeFrom(values, box, part, components);
 }
 
 std::vector<float> ValuesInBox(Communicator& communicator, const BlockPartition& partition,
@@ -70,5 +77,38 @@ std::vector<float> ValuesInBox(Communicator& communicator, const BlockPartition&
     }
   }
   return values;
+}
+
+std::vector<std::int64_t> SumsInBlock(Communicator& communicator, const BlockPartition& partition,
+  const std::vector<VoxelBox>& found, const std::vector<std::int64_t>& values)
+{
+  const int self = communicator.Rank();
+  const VoxelBox& block = partition.blocks.at(self);
+  for (int rank = 0; rank < communicator.Ranks(); ++rank)
+  {
+    if (const VoxelBox theirs = Common(found[self], partition.blocks[rank]); rank != self && theirs.VoxelCount() > 0)
+    {
+      communicator.Send(rank, ValuesTag, TakeFrom(values, found[self], theirs, 1));
+    }
+  }
+  std::vector<std::int64_t> sums(block.VoxelCount(), 0);
+  for (int rank = 0; rank < communicator.Ranks(); ++rank)
+  {
+    const VoxelBox mine = Common(found[rank], block);
+    if (mine.VoxelCount() == 0)
+    {
+      continue;
+    }
+    const std::vector<std::int64_t> taken =
+      rank == self ? TakeFrom(values, found[self], mine, 1) : communicator.Receive<std::int64_t>(rank, ValuesTag);
+    auto from = taken.begin();
+    ForRows(block, mine, 1, [&](std::size_t place) {
+      for (int x = 0; x < mine.size[0]; ++x)
+      {
+        sums[place + x] += *from++;
+      }
+    });
+  }
+  return sums;
 }
 }

@@ -173,6 +173,82 @@ TEST_F(PropagationBlocks, GoOnBesideARankWithoutVoxels)
     SolveConservative(GetDevice(), whole.medium, LitFromOutside(), settings));
 }
 
+namespace
+{
+/// Lamps in the medium and beside it, each of its own kind.
+std::vector<Light> NearLamps()
+{
+  std::vector<Light> lamps(4);
+  const LightType types[] = { LightType::Point, LightType::Spot, LightType::Rectangle, LightType::Point };
+  const std::array<double, 3> positions[] = { { 5.3, 4.1, 3.2 }, { 13.5, -2.0, 9.0 }, { 3.0, 10.5, 4.0 },
+    { -1.0, 4.4, -2.5 } };
+  const std::array<double, 3> directions[] = { { 0.0, 0.0, 1.0 }, { -0.7, 0.6, -0.5 }, { 0.1, -1.0, 0.2 },
+    { 0.0, 0.0, 1.0 } };
+  for (std::size_t i = 0; i < lamps.size(); ++i)
+  {
+    lamps[i].type = types[i];
+    lamps[i].position = positions[i];
+    lamps[i].direction = directions[i];
+    lamps[i].power = { 10.0, 4.0, 1.0 };
+    lamps[i].angle = 50.0;
+    lamps[i].size = { 3.0, 2.0 };
+  }
+  return lamps;
+}
+
+/// Blocks of no common plane, one of them of one voxel's width, one without any.
+BlockPartition UnevenBlocks(const Grid& grid)
+{
+  const std::array<int, 3>& n = grid.size;
+  return { grid,
+    { { { 0, 0, 0 }, { 5, n[1], n[2] } }, { { 5, 0, 0 }, { n[0] - 5, 1, n[2] } }, {},
+      { { 5, 1, 0 }, { n[0] - 5, n[1] - 1, 4 } }, { { 5, 1, 4 }, { n[0] - 5, n[1] - 1, n[2] - 4 } } } };
+}
+}
+
+/// Point, spot and rectangle lamps: beams go on from block to block, and lie over two of them.
+TEST_F(PropagationBlocks, HaveTheLightOfLampsNearby)
+{
+  RandomMedium whole(Grid{ { 12, 9, 7 }, { 1.0, 0.8, 1.3 } }, 3, 0.8f, 7);
+  const PropagationSettings settings = SettingsOf(3);
+  for (const Light& lamp : NearLamps())
+  {
+    Illumination shining;
+    shining.lights = { lamp };
+    const LightField expected = SolveConservative(GetDevice(), whole.medium, shining, settings);
+    std::vector<BlockPartition> partitions = { UnevenBlocks(whole.medium.grid) };
+    for (const int ranks : { 1, 2, 8 })
+    {
+      partitions.push_back(BlockPartition::Even(whole.medium.grid, ranks));
+    }
+    for (const BlockPartition& partition : partitions)
+    {
+      SCOPED_TRACE(std::to_string(static_cast<int>(lamp.type)) + " at " + std::to_string(lamp.position[0]) + ", " +
+        std::to_string(partition.blocks.size()) + " ranks");
+      const LightField found = LightOfAll(GetDevice(), partition, whole, shining, settings);
+      ExpectSame(found, expected);
+      EXPECT_LT(found.balance.RelativeError(3), 1e-6);
+    }
+  }
+}
+
+/// What beams put down is in fixed point: it does not matter on which rank.
+TEST_F(PropagationBlocks, HaveTheUncollidedLightOfALampBesideThemBitForBit)
+{
+  RandomMedium whole(Grid{ { 4, 3, 2 } }, 1, 0.8f, 9);
+  Illumination shining;
+  shining.lights = { NearLamps()[3] };
+  const LightField expected = SolveConservative(GetDevice(), whole.medium, shining, SettingsOf(2));
+  for (const int ranks : { 3, 24, 26 }) // blocks of one voxel, and none
+  {
+    SCOPED_TRACE(std::to_string(ranks) + " ranks");
+    const LightField found =
+      LightOfAll(GetDevice(), BlockPartition::Even(whole.medium.grid, ranks), whole, shining, SettingsOf(2));
+    EXPECT_EQ(found.fluenceDirect, expected.fluenceDirect);
+    ExpectSame(found, expected);
+  }
+}
+
 /// Thin voxels in which light is scattered many times: diffusion on cells goes with the sweeps, and does not change
 /// what they come to.
 TEST_F(PropagationBlocks, FindTheSameLightSoonerByCells)
@@ -285,7 +361,4 @@ TEST_F(PropagationBlocksFail, WithWordsOnWhatIsNotCarriedFromRankToRank)
 {
   ExpectErrors("periodic",
     [](int, PartOf&, Illumination&, PropagationSettings& settings, Monitor&) { settings.periodic[1] = true; });
-  ExpectErrors("point, spot or rectangle", [](int, PartOf&, Illumination& shining, PropagationSettings&, Monitor&) {
-    shining.lights[0].type = LightType::Point;
-  });
 }

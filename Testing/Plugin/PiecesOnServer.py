@@ -1,5 +1,10 @@
-"""A server of three ranks, each of which has only a piece of the medium: the client gets the light that it would compute itself. Then
-a rank is killed amid its work: the server ends, and the client lives and is told."""
+"""Servers of many ranks, each of which has only a piece of the medium: the client gets the light that it would compute itself. Then
+a rank of the last one is killed amid its work: the server ends, and the client lives and is told.
+
+    pvpython PiecesOnServer.py DECOMPOSITION RANKS...
+
+With Blocks each rank solves its piece, else all solve the whole.
+"""
 import os
 import subprocess
 import sys
@@ -15,7 +20,8 @@ from paraview.simple import *
 from paraview.vtk import vtkDataObject
 from paraview.vtk.util.numpy_support import vtk_to_numpy
 
-log = os.path.join(os.environ["TYNDALL_TEST_OUTPUT"], "PiecesOnServer.log")
+decomposition, counts = sys.argv[1], [int(count) for count in sys.argv[2:]]
+log = os.path.join(os.environ["TYNDALL_TEST_OUTPUT"], "PiecesOnServer.%s.log" % decomposition[:5])
 SIZE = [-8, 8, -7, 7, -6, 6]
 
 
@@ -26,10 +32,14 @@ def medium_of_tetrahedra():
                                MaximumDensity=300)
 
 
+def solver(medium, **settings):
+    return LightPropagationMaps(Input=medium, SkyColor=[1, 1, 1], Lights=LightRig(), Decomposition=decomposition, **settings)
+
+
 def light_and_picture():
     """@return fluence, balance and radiance, at the client"""
     LoadPlugin(os.environ["TYNDALL_PLUGIN"], remote=True, ns=globals())
-    light = LightPropagationMaps(Input=medium_of_tetrahedra(), SkyColor=[1, 1, 1], DirectionsPerFace=4)
+    light = solver(medium_of_tetrahedra(), DirectionsPerFace=4)
     picture = MediumRayCaster(Input=light, CameraPosition=[30, 20, 10], CameraFocalPoint=[0, 0, 0], ImageSize=[24, 18])
     light.UpdatePipeline()
     picture.UpdatePipeline()
@@ -44,17 +54,11 @@ def ranks_of(server):
             subprocess.run(["ps", "-o", "pid=", "--ppid", str(server.pid)], stdout=subprocess.PIPE, text=True).stdout.split()]
 
 
-expected = light_and_picture()
-with a_server.started(3, log) as (port, server):
-    Connect("localhost", port)
-    assert servermanager.ActiveConnection.GetNumberOfDataPartitions() == 3
-    for found, wanted in zip(light_and_picture(), expected):
-        assert abs(found - wanted).max() < 1e-6 * abs(wanted).max(), (found, wanted)
-
+def kill_one(server, count):
+    """The server has ended when this returns."""
     ranks = ranks_of(server)
-    assert len(ranks) == 3, ranks
-    endless = LightPropagationMaps(Input=medium_of_tetrahedra(), SkyColor=[1, 1, 1], DirectionsPerFace=64, Acceleration=0,
-                                   MaximumOrders=1000000, Tolerance=1e-12)
+    assert len(ranks) == count, ranks
+    endless = solver(medium_of_tetrahedra(), DirectionsPerFace=64, Acceleration=0, MaximumOrders=1000000, Tolerance=1e-12)
     killer = subprocess.Popen(["sh", "-c", "sleep 3; kill -9 %d" % ranks[-1]])
     start = time.time()
     try:
@@ -70,4 +74,19 @@ with a_server.started(3, log) as (port, server):
         count = 0
     assert count == 0, "the server is gone"
     print("the client lives")
+
+
+expected = light_and_picture()
+for count in counts:
+    with a_server.started(count, log) as (port, server):
+        Connect("localhost", port)
+        assert servermanager.ActiveConnection.GetNumberOfDataPartitions() == count
+        for found, wanted in zip(light_and_picture(), expected):
+            error = abs(found - wanted).max() / abs(wanted).max()
+            print("%d ranks: %.1e" % (count, error), flush=True)
+            assert error < 1e-6, (count, found, wanted)
+        if count == counts[-1]:
+            kill_one(server, count)
+        else:
+            Disconnect()
 os._exit(0)  # without talking to the server once more

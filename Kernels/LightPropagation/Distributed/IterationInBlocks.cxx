@@ -1,6 +1,7 @@
 #include "LightPropagation/Distributed/IterationInBlocks.h"
 
 #include "Light/LeftOut.h"
+#include "LightPropagation/Distributed/LampsInBlocks.h"
 #include "LightPropagation/Problem/ScatteringOrders.h"
 #include "LightPropagation/Uncollided/UncollidedLamp.h"
 #include "Medium/VoxelSums.h"
@@ -91,17 +92,27 @@ void IterationInBlocks::LoadEmission()
   }
 }
 
-/// Directional lights and peaks of the environment, which are such.
+/// Those that are given, and peaks of the environment.
 void IterationInBlocks::AddLamps(const Monitor& monitor)
 {
   std::vector<Light> lamps = this->Scene.illumination.lights;
   lamps.insert(lamps.end(), this->Far.peaks.begin(), this->Far.peaks.end());
   const SweepMaker sweeps = [this](const SweepRequest& request) { return this->MakeSweep(request); };
-  // Rays of a beam are those through the whole box.
-  const UncollidedVolume volume = { this->TheDevice, this->WholeLayout, this->OnDevice.SigmaT(),
-    this->Settings.periodic, sweeps, this->WholeDeposit() };
+  std::unique_ptr<LampsInBlocks> near;
   for (std::size_t i = 0; i < lamps.size(); ++i)
   {
+    const bool parallel = lamps[i].type == LightType::Directional;
+    if (!parallel && !near)
+    {
+      near = std::make_unique<LampsInBlocks>(
+        this->TheDevice, this->Others, this->Partition, this->Layout, this->OnDevice.SigmaT());
+    }
+    // Rays of a parallel beam are those through the whole box.
+    UncollidedVolume volume = { this->TheDevice, parallel ? this->WholeLayout : this->Layout, this->OnDevice.SigmaT(),
+      this->Settings.periodic, sweeps, this->WholeDeposit() };
+    volume.followLamp = [&near](const SweepVolume& ofChannels, const Light& lamp, const Monitor& ofLamp) {
+      return near->Deposit(ofChannels, lamp, ofLamp);
+    };
     const double all = static_cast<double>(lamps.size());
     this->Ledger.Count(UncollidedLamp(lamps[i]).AddTo(volume, OfPart(monitor, i / all, (i + 1) / all)));
   }

@@ -21,11 +21,6 @@ std::string NotInBlocks(const Medium& medium, const Illumination& illumination, 
   {
     return "a face that gives back light (FaceAlbedo)";
   }
-  const auto isNear = [](const Light& light) { return light.type != LightType::Directional; };
-  if (std::any_of(illumination.lights.begin(), illumination.lights.end(), isNear))
-  {
-    return "a point, spot or rectangle light";
-  }
   if (illumination.uncollided.IsThere())
   {
     return "light of another solver (UncollidedLight)";

@@ -5,6 +5,7 @@
 //   NET_FLUX    1: net flux is wanted
 //   FACE_OUT    1: the power that leaves through each cell of the box's faces is wanted
 //   THIN        optical length below which light counts as lost evenly
+//   IN_BLOCK    1: beams are followed in a block of the grid, and wait where they leave it; may be left out
 //
 // Space around the lamp is six pyramids, one for each way along an axis; in a pyramid beams lie on a grid of tangents,
 // so fine that a beam is at most a voxel wide where it leaves the box. It is followed layer by layer; where its square
@@ -12,6 +13,7 @@
 // parts of the lamp's power: its colours share sigma_t.
 
 #include "LightPropagation/Uncollided/LampBeamsShared.h"
+#include "LightPropagation/Uncollided/LampUnits.cl"
 #include "Numerics/FixedPoint.cl"
 #include "Numerics/Numerics.cl"
 
@@ -63,6 +65,12 @@ static int place(const LampInfo* lamp, int axis, float tangent, int* i)
   return (*i < 0) == (tangent < 0.0f) ? AFTER : BEFORE;
 }
 
+static ulong place_in_arrays(const LampInfo* lamp, const int* voxel)
+{
+  const ulong line = (ulong)(voxel[2] - lamp->first[2]) * lamp->stored[1] + (voxel[1] - lamp->first[1]);
+  return line * lamp->stored[0] + (voxel[0] - lamp->first[0]);
+}
+
 typedef struct
 {
   float entered, escaped[6], stranded;
@@ -88,12 +96,6 @@ static void leave_box(const LampInfo* lamp, int face, const int* voxel, float po
   }
   add_units(tally->cells + cell, convert_long_sat_rte(power * LampPowerUnits));
 #endif
-}
-
-// Factor of a path in a voxel in fixed point (numerics.md, Eq. (35)): light goes little path through what is thick.
-static float units_of(float sigma, float diagonal)
-{
-  return fmax(sigma * diagonal, 1.0f);
 }
 
 // The first voxel under a cross-section from low to low + width, and the part of it that lies there.
@@ -126,8 +128,6 @@ static void add_moments(const LampInfo* lamp, const BeamRow* row, const int* vox
   }
 }
 #endif
-
-#define FIRST_OF_FLUX (1 + 3 * MOMENTS) // of the sums in fixed point
 
 #if NET_FLUX
 // Path times direction, along x, y, z, of a step from way.x to way.y layers from the lamp.
@@ -206,7 +206,7 @@ static void step_beam(const LampInfo* lamp, const BeamRow* row, int layer, bool 
     ulong index = 0;
     if (!outside)
     {
-      index = ((ulong)voxel[2] * lamp->size[1] + voxel[1]) * lamp->size[0] + voxel[0];
+      index = place_in_arrays(lamp, voxel);
       const float tau = sigma[index] * length;
       lost = extinguished(tau, &through);
       mean_length = tau > 1e-20f ? lost / sigma[index] : length;
@@ -289,9 +289,37 @@ static void leave_end(const LampInfo* lamp, const BeamRow* row, float2 tangent, 
 #endif
 }
 
-// One beam from where it comes into the box's layers to where it leaves them.
-static void follow_beam(const LampInfo* lamp, const BeamRow* row, float2 tangent, float power,
-  const __global float* sigma, __global long* path, ulong stride, lamp_tally* tally)
+// Where a beam is between two steps.
+typedef struct
+{
+  int layer, step;
+  float left, rest;
+#if IN_BLOCK
+  int voxel[3];
+#endif
+} beam_state;
+
+#if IN_BLOCK
+// The voxel that the middle of a beam is in, or the nearest of the grid; whether beams are followed there.
+static bool is_followed(const LampInfo* lamp, const BeamRow* row, int layer, float2 middle, int* voxel)
+{
+  voxel[row->axis] = layer;
+  voxel[(row->axis + 1) % 3] = (int)floor(middle.x);
+  voxel[(row->axis + 2) % 3] = (int)floor(middle.y);
+  bool followed = true;
+  for (int a = 0; a < 3; ++a)
+  {
+    voxel[a] = clamp(voxel[a], 0, lamp->size[a] - 1);
+    followed = followed && voxel[a] >= lamp->followed[a] && voxel[a] < lamp->followedEnd[a];
+  }
+  return followed;
+}
+#endif
+
+// One beam from where it comes into the box's layers, or from where it was, to where it leaves them.
+// @return whether it has; else, where IN_BLOCK, it has come to where beams are not followed, as `beam` says
+static bool follow_beam(const LampInfo* lamp, const BeamRow* row, float2 tangent, float power,
+  const __global float* sigma, __global long* path, ulong stride, beam_state* beam, lamp_tally* tally)
 {
   const int n = lamp->size[row->axis];
   const int u = (row->axis + 1) % 3;
@@ -305,16 +333,19 @@ static void follow_beam(const LampInfo* lamp, const BeamRow* row, float2 tangent
   const int all = lamp->periodic[row->axis] ? row->layers : layers;
   const bool sideways = lamp->position[u] < 0.0f || lamp->position[u] > lamp->size[u] || lamp->position[v] < 0.0f ||
     lamp->position[v] > lamp->size[v];
-  float left = power, rest = 0.0f;
-  float now = row->begin;
   // Where an axis is periodic beams go on until next to nothing is left; others leave.
   const float least = lamp->periodic[row->axis] ? 1e-7f * power : 0.0f;
-  for (int k = 0; k < all && left > least; ++k)
+  const int before = beam->layer;
+  float now = before == 0 ? row->begin : row->up ? first + before - start : start - (first - (before - 1));
+#if IN_BLOCK
+  bool follows = true;
+#endif
+  for (int k = before; k < all && beam->left > least; ++k)
   {
     tally->counts = k >= row->skipped;
     const int layer = row->up ? (first + k) % n : ((first - k) % n + n) % n;
     const float end = row->up ? first + k + 1 - start : start - (first - k);
-    for (int s = 0; s < STEPS; ++s)
+    for (int s = k == before ? beam->step : 0; s < STEPS; ++s)
     {
       const float t0 = now + (end - now) * s / STEPS;
       const float t1 = now + (end - now) * (s + 1) / STEPS;
@@ -324,21 +355,33 @@ static void follow_beam(const LampInfo* lamp, const BeamRow* row, float2 tangent
       const bool last_step = k == all - 1 && s == STEPS - 1;
       const float t = first_step && row->begin > 0.0f ? t0 : last_step && sideways ? t1 : 0.5f * (t0 + t1);
       const float2 middle = (float2)(lamp->position[u] + tangent.x * t, lamp->position[v] + tangent.y * t);
+#if IN_BLOCK
+      // Whoever was given it takes its first step: it gets on wherever rounding sees it.
+      if (!is_followed(lamp, row, layer, middle, beam->voxel) && !follows)
+      {
+        beam->layer = k;
+        beam->step = s;
+        tally->counts = true;
+        return false;
+      }
+      follows = false;
+#endif
       step_beam(lamp, row, layer, first_step, last_step, tangent, middle,
         clamp((float2)(row->widthU, row->widthV) * t, 1e-4f, 1.0f), (float2)(t0, t1), (t1 - t0) * per_layer, sigma,
-        path, stride, &left, &rest, tally);
+        path, stride, &beam->left, &beam->rest, tally);
     }
     now = end;
   }
   tally->counts = true;
   if (lamp->periodic[row->axis])
   {
-    tally->stranded += left;
+    tally->stranded += beam->left;
   }
   else
   {
-    leave_end(lamp, row, tangent, now, left, tally);
+    leave_end(lamp, row, tangent, now, beam->left, tally);
   }
+  return true;
 }
 
 #if LAMBERT || CONE
@@ -370,49 +413,77 @@ static float part_in_cone(const LampInfo* lamp, const BeamRow* row, float2 tange
 }
 #endif
 
+static float2 tangent_of(const BeamRow* row, int beam)
+{
+  return (float2)(row->tangentU + beam * row->widthU, row->tangentV);
+}
+
+// Of the lamp's, that a beam sets off with.
+static float power_of_beam(const LampInfo* lamp, const BeamRow* row, float2 tangent)
+{
+  const float hu = lamp->spacing[(row->axis + 1) % 3], hv = lamp->spacing[(row->axis + 2) % 3];
+  const float2 half_width = 0.5f * (float2)(row->widthU, row->widthV);
+  float angle = solid_angle((tangent.x - half_width.x) * hu, (tangent.x + half_width.x) * hu,
+    (tangent.y - half_width.y) * hv, (tangent.y + half_width.y) * hv, lamp->spacing[row->axis]);
+#if LAMBERT
+  angle *= fmax(cosine_at(lamp, row, tangent), 0.0f);
+#elif CONE
+  angle *= part_in_cone(lamp, row, tangent, half_width);
+#endif
+  return angle > 0.0f ? lamp->intensity * angle : 0.0f;
+}
+
+static void clear_tally(lamp_tally* tally, __global long* cells)
+{
+  tally->entered = 0.0f;
+  tally->stranded = 0.0f;
+  tally->counts = true;
+  for (int face = 0; face < 6; ++face)
+  {
+    tally->escaped[face] = 0.0f;
+  }
+#if FACE_OUT
+  tally->cells = cells;
+#endif
+}
+
+// [entered, escaped through -x to +z, stranded, shone in the beams' directions], parts of the power
+static void write_sums(const lamp_tally* tally, float shone, __global float* sums)
+{
+  sums[0] = tally->entered;
+  for (int face = 0; face < 6; ++face)
+  {
+    sums[1 + face] = tally->escaped[face];
+  }
+  sums[7] = tally->stranded;
+  sums[8] = shone;
+}
+
 static void follow_row(const LampInfo* lamp, const BeamRow* row, const __global float* sigma, __global long* path,
   ulong stride, __global long* cells, __global float* sums)
 {
-  const int u = (row->axis + 1) % 3;
-  const int v = (row->axis + 2) % 3;
-  const float hu = lamp->spacing[u], hv = lamp->spacing[v], hp = lamp->spacing[row->axis];
   float shone = 0.0f;
-  lamp_tally tally = { 0.0f, { 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f }, 0.0f, true };
-#if FACE_OUT
-  tally.cells = cells;
-#endif
+  lamp_tally tally;
+  clear_tally(&tally, cells);
   for (int i = 0; i < row->count; ++i)
   {
-    const float2 tangent = (float2)(row->tangentU + i * row->widthU, row->tangentV);
-    const float2 half_width = 0.5f * (float2)(row->widthU, row->widthV);
-    float angle = solid_angle((tangent.x - half_width.x) * hu, (tangent.x + half_width.x) * hu,
-      (tangent.y - half_width.y) * hv, (tangent.y + half_width.y) * hv, hp);
-#if LAMBERT
-    angle *= fmax(cosine_at(lamp, row, tangent), 0.0f);
-#elif CONE
-    angle *= part_in_cone(lamp, row, tangent, half_width);
-#endif
-    if (angle > 0.0f)
+    const float2 tangent = tangent_of(row, i);
+    const float power = power_of_beam(lamp, row, tangent);
+    if (power > 0.0f)
     {
-      const float power = lamp->intensity * angle;
+      beam_state beam = { 0, 0, power, 0.0f };
       tally.entered += row->skipped > 0 ? 0.0f : power;
       shone += power;
-      follow_beam(lamp, row, tangent, power, sigma, path, stride, &tally);
+      follow_beam(lamp, row, tangent, power, sigma, path, stride, &beam, &tally);
     }
   }
-  sums[0] = tally.entered;
-  for (int face = 0; face < 6; ++face)
-  {
-    sums[1 + face] = tally.escaped[face];
-  }
-  sums[7] = tally.stranded;
-  sums[8] = shone;
+  write_sums(&tally, shone, sums);
 }
 
 // path  part of the power times length, in fixed point, [voxel], added to; MOMENTS: [path, times distance along x, y,
 //       z][stride]; NET_FLUX: behind that times direction, [x, y, z][stride]
 // cells power that leaves through the box's faces, in fixed point, [cell]; where FACE_OUT
-// sums  [row][entered, escaped through -x to +z, stranded, shone in the row's directions], parts of the power
+// sums  [row], as write_sums has them
 __kernel void follow_lamp(LampInfo lamp, const __global float* sigma, ulong sigma_first, __global long* path,
   ulong stride, __global long* cells, const __global BeamRow* rows, int row_count, int first_row, __global float* sums)
 {
@@ -425,73 +496,4 @@ __kernel void follow_lamp(LampInfo lamp, const __global float* sigma, ulong sigm
     const BeamRow row = rows[r];
     follow_row(&lamp, &row, sigma + sigma_first, path, stride, cells, sums + r * LampRowSums);
   }
-}
-
-// path   W length, [channel][stride], added to
-// units  [channel] W length of a fixed point unit
-// sigma  1/length, shared by the channels
-__kernel void add_fixed(const __global long* fixed_path, __global float* path, ulong first, ulong stride, float4 units,
-  const __global float* sigma, ulong sigma_first, float diagonal)
-{
-  const ulong i = get_global_id(0);
-  const int channel = get_global_id(1);
-  const float unit = channel == 0 ? units.x : channel == 1 ? units.y : units.z;
-  path[first + channel * stride + i] += (float)fixed_path[i] * unit / units_of(sigma[sigma_first + i], diagonal);
-}
-
-#if FACE_OUT
-// cells     as in follow_lamp
-// face_out  W, [channel][cell], added to
-// watts     [channel] of the lamp
-__kernel void add_fixed_cells(
-  const __global long* cells, __global float* face_out, ulong first, ulong stride, float4 watts)
-{
-  const ulong i = get_global_id(0);
-  const int channel = get_global_id(1);
-  const float unit = (channel == 0 ? watts.x : channel == 1 ? watts.y : watts.z) / LampPowerUnits;
-  face_out[first + channel * stride + i] += (float)cells[i] * unit;
-}
-#endif
-
-#if NET_FLUX
-// fixed_path  as in follow_lamp
-// flux  W length, [channel][x, y, z][stride], added to
-__kernel void add_fixed_flux(const __global long* fixed_path, __global float* flux, ulong first, ulong stride,
-  float4 units, const __global float* sigma, ulong sigma_first, float diagonal)
-{
-  const ulong i = get_global_id(0);
-  const int channel = get_global_id(1);
-  const float unit = channel == 0 ? units.x : channel == 1 ? units.y : units.z;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    flux[3 * (first + channel * stride) + axis * stride + i] +=
-      (float)fixed_path[(FIRST_OF_FLUX + axis) * stride + i] * unit / units_of(sigma[sigma_first + i], diagonal);
-  }
-}
-#endif
-
-#if MOMENTS
-// fixed_path  as in follow_lamp
-// first_moments  W length, [channel][-x, +x, -y, +y, -z, +z][stride], added to
-__kernel void add_fixed_moments(const __global long* fixed_path, __global float* first_moments, ulong first,
-  ulong stride, float4 units, const __global float* sigma, ulong sigma_first, float diagonal)
-{
-  const ulong i = get_global_id(0);
-  const int channel = get_global_id(1);
-  const float unit = channel == 0 ? units.x : channel == 1 ? units.y : units.z;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    const float towards =
-      (float)fixed_path[(1 + axis) * stride + i] * unit / units_of(sigma[sigma_first + i], diagonal);
-    __global float* of_axis = first_moments + 6 * (first + channel * stride) + 2 * axis * stride + i;
-    of_axis[0] += fmax(-towards, 0.0f);
-    of_axis[stride] += fmax(towards, 0.0f);
-  }
-}
-#endif
-
-// The same path, W length, in every voxel.
-__kernel void add_evenly(__global float* path, ulong first, float each)
-{
-  path[first + get_global_id(0)] += each;
 }

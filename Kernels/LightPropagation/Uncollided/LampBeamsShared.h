@@ -16,6 +16,8 @@ enum
 typedef struct
 {
   int size[3];
+  int first[3], stored[3];          ///< the voxels that arrays hold: all, or those of a block and some beside it
+  int followed[3], followedEnd[3];  ///< and those in which beams are followed (LampInBlock.cl)
   int periodic[3];
   float spacing[3];
   float position[3];                ///< of the lamp, from the box's corner
@@ -38,4 +40,15 @@ typedef struct
   int skipped;              ///< layers that they go before anything is counted and put down
   int layers;               ///< that they go in all where the axis is periodic
 } BeamRow;
+
+/// A beam between two of its steps, on its way from one block of a grid to another.
+typedef struct
+{
+  int row, beam;   ///< which it is
+  int layer, step; ///< that comes next, counted from its first layer
+  float left;      ///< of its power; less than 0: it has not set off
+  float rest;      ///< too small to be seen in it
+  int voxel[3];    ///< that its middle is in then, or the nearest of the grid
+  int ended;       ///< 1: it has left the grid
+} BeamOnItsWay;
 SHARED_END

@@ -52,8 +52,12 @@ SweepTally UncollidedLamp::Put(const UncollidedVolume& volume, const Monitor& mo
   const auto add = [this, &volume](const SweepVolume& ofChannels, int first, const Monitor& ofGroup) {
     Light light = this->Lamp;
     light.power = OfGroup(this->Lamp.power, first);
-    return Sum(light.power) > 0.0 ? DepositLamp(volume.device, ofChannels, light, volume.periodic, ofGroup)
-                                  : SweepTally();
+    if (Sum(light.power) == 0.0)
+    {
+      return SweepTally();
+    }
+    return volume.followLamp ? volume.followLamp(ofChannels, light, ofGroup)
+                             : DepositLamp(volume.device, ofChannels, light, volume.periodic, ofGroup);
   };
   return AddByGroups(volume, monitor, add);
 }

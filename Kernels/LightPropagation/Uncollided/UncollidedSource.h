@@ -5,6 +5,9 @@
 #include "LightPropagation/Angular/AngularBasis.h"
 #include "LightPropagation/Sweep/SweepOperator.h"
 #include "LightPropagation/Sweep/SweepVolume.h"
+#include "Lights/Lights.h"
+
+#include <functional>
 
 namespace tyndall
 {
@@ -21,6 +24,8 @@ struct UncollidedVolume
   const AngularBasis* basis = nullptr;
   /// Of a parallel beam whose own path integrals, W length, [channel][stride], are asked for too; else null.
   const Buffer<float>* beamPath = nullptr;
+  /// Follows the light of a point, spot or rectangle lamp; empty: DepositLamp (LampBeams.h).
+  std::function<SweepTally(const SweepVolume& ofChannels, const Light& lamp, const Monitor& monitor)> followLamp = {};
 };
 
 /// Light up to where it first meets the medium: the uncollided flux of one lamp, of all that shines through the box's

@@ -28,31 +28,10 @@ int ReachOfIndex(const MarchSettings& settings)
   return 3 + static_cast<int>(std::ceil(ahead * settings.stepSize));
 }
 
-VoxelBox Grown(VoxelBox box, int by, const Grid& whole)
-{
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    const int end = std::min(EndOf(box, axis) + by, whole.size[axis]);
-    box.first[axis] = std::max(box.first[axis] - by, 0);
-    box.size[axis] = end - box.first[axis];
-  }
-  return box;
-}
-
 /// None where there are fewer blocks than ranks, which is yet to be refused.
 VoxelBox BlockOf(const BlockPartition& partition, int rank)
 {
   return rank < static_cast<int>(partition.blocks.size()) ? partition.blocks[rank] : VoxelBox();
-}
-
-bool Holds(const VoxelBox& box, const int* voxel)
-{
-  bool holds = true;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    holds = holds && voxel[axis] >= box.first[axis] && voxel[axis] < EndOf(box, axis);
-  }
-  return holds;
 }
 
 /// Of the packed photons those that set off in a block, by the voxel that kernels take them to be in.

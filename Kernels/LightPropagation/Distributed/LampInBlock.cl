@@ -1,0 +1,52 @@
+// Beams of a lamp through one block of a grid: those that set off in it, and those that come from other blocks. The
+// host gives what LampBeams.cl asks for.
+
+#define IN_BLOCK 1
+#include "LightPropagation/Uncollided/LampBeams.cl"
+
+static void follow_in_block(const LampInfo* lamp, const BeamRow* row, BeamOnItsWay* beam, const __global float* sigma,
+  __global long* path, ulong stride, __global long* cells, __global float* sums)
+{
+  const float2 tangent = tangent_of(row, beam->beam);
+  lamp_tally tally;
+  clear_tally(&tally, cells);
+  beam_state state = { beam->layer, beam->step, beam->left, beam->rest };
+  float shone = 0.0f;
+  if (state.left < 0.0f)
+  {
+    shone = power_of_beam(lamp, row, tangent);
+    tally.entered = shone;
+    state.left = shone;
+  }
+  beam->ended =
+    state.left > 0.0f ? follow_beam(lamp, row, tangent, state.left, sigma, path, stride, &state, &tally) : true;
+  beam->layer = state.layer;
+  beam->step = state.step;
+  beam->left = state.left;
+  beam->rest = state.rest;
+  for (int a = 0; a < 3 && !beam->ended; ++a)
+  {
+    beam->voxel[a] = state.voxel[a];
+  }
+  write_sums(&tally, shone, sums);
+}
+
+// sigma, path, stride, cells, rows  as in follow_lamp, of the voxels that LampInfo has as stored
+// beams  what they are when they have left the block
+// sums   [beam], as write_sums has them
+__kernel void follow_lamp_in_block(LampInfo lamp, const __global float* sigma, ulong sigma_first, __global long* path,
+  ulong stride, __global long* cells, const __global BeamRow* rows, __global BeamOnItsWay* beams, int count,
+  __global float* sums)
+{
+#if ATOMICS
+  const int b = get_global_id(0);
+#else
+  for (int b = 0; b < count; ++b)
+#endif
+  {
+    BeamOnItsWay beam = beams[b];
+    const BeamRow row = rows[beam.row];
+    follow_in_block(&lamp, &row, &beam, sigma + sigma_first, path, stride, cells, sums + b * LampRowSums);
+    beams[b] = beam;
+  }
+}

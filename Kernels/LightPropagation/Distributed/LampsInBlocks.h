@@ -1,0 +1,51 @@
+#pragma once
+
+#include "Device/Monitor.h"
+#include "Distribution/BlockPartition.h"
+#include "Distribution/Communicator.h"
+#include "LightPropagation/Sweep/SweepTally.h"
+#include "LightPropagation/Sweep/SweepVolume.h"
+#include "Lights/Lights.h"
+
+#include <cstddef>
+#include <vector>
+
+namespace tyndall
+{
+/// Follows the light of point, spot and rectangle lamps through a grid that is spread over ranks, as DepositLamp
+/// (LampBeams.h) does in one memory, with the same beams: those that leave a block are handed to the rank whose block
+/// they come to (numerics.md, section 4.9). A beam lies over up to four voxels, some of which may be another rank's:
+/// each rank knows sigma_t of two voxels round its block, and gives what its beams put down there to their owners, in
+/// fixed point, so that deposits are those of DepositLamp bit for bit but for the last correction of the power, whose
+/// sum has another order. No axis is periodic.
+class LampsInBlocks
+{
+public:
+  /// All ranks make one together.
+  /// @param communicator, partition  must stay
+  /// @param layout  of the rank's block
+  LampsInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition, const VolumeLayout& layout,
+    const Buffer<float>& sigma_t);
+
+  /// As DepositLamp. All ranks call it.
+  /// @param volume  the rank's block; its deposit asks for no cells of faces
+  /// @return of all ranks together
+  SweepTally Deposit(const SweepVolume& volume, const Light& light, const Monitor& monitor);
+
+  std::size_t HandedOn() const { return this->Handed; } ///< beams, by this rank, each time that one was
+
+private:
+  class Beams;
+  bool Has() const { return this->Own.VoxelCount() > 0; }
+
+  Device& TheDevice;
+  Communicator& Others;
+  const BlockPartition& Partition;
+  VoxelBox Own;
+  std::vector<VoxelBox> Stored; ///< by rank: its block and what its beams may reach beside it
+  std::vector<int> Neighbours;
+  std::size_t OwnStride;        ///< of an extinction of the block in its layout, and
+  Buffer<float> SigmaT;         ///< 1/length, of the stored voxels, one extinction after the other
+  std::size_t Handed = 0;
+};
+}

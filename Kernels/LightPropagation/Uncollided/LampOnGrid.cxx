@@ -1,0 +1,133 @@
+#include "LightPropagation/Uncollided/LampOnGrid.h"
+
+#include "Device/Defines.h"
+#include "Medium/BoxFaces.h"
+#include "Numerics/Constants.h"
+#include "Numerics/Vectors.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace tyndall
+{
+namespace
+{
+constexpr int PointsPerEdge = 4;  ///< of a rectangle
+constexpr double BeamWidth = 0.5; ///< of a lamp's beams where they leave the box, voxels; a rectangle's: twice
+constexpr int RoundsAtMost = 64;  ///< that all power may go through one voxel, in fixed point
+}
+
+LampOnGrid::LampOnGrid(const Light& light, const Grid& grid, const std::array<bool, 3>& periodic)
+  : Lamp(light)
+  , TheGrid(grid)
+  , Periodic(periodic)
+{
+}
+
+glm::dvec3 LampOnGrid::PlaceOf(const glm::dvec3& point) const
+{
+  glm::dvec3 place;
+  for (int a = 0; a < 3; ++a)
+  {
+    place[a] = (point[a] - this->TheGrid.origin[a]) / this->TheGrid.spacing[a];
+  }
+  return place;
+}
+
+glm::dvec3 LampOnGrid::Middle() const
+{
+  return this->PlaceOf(Vector(this->Lamp.position));
+}
+
+std::vector<glm::dvec3> LampOnGrid::Points() const
+{
+  if (this->Lamp.type != LightType::Rectangle)
+  {
+    return { this->Middle() };
+  }
+  const std::array<std::array<double, 3>, 2> edges = RectangleEdges(this->Lamp);
+  std::vector<glm::dvec3> points;
+  for (int j = 0; j < PointsPerEdge; ++j)
+  {
+    for (int i = 0; i < PointsPerEdge; ++i)
+    {
+      points.push_back(
+        this->PlaceOf(Vector(this->Lamp.position) + Vector(edges[0]) * ((i + 0.5) / PointsPerEdge - 0.5) +
+          Vector(edges[1]) * ((j + 0.5) / PointsPerEdge - 0.5)));
+    }
+  }
+  return points;
+}
+
+bool LampOnGrid::IsInside(const glm::dvec3& point) const
+{
+  bool inside = true;
+  for (int a = 0; a < 3; ++a)
+  {
+    inside = inside && point[a] >= 0.0 && point[a] <= this->TheGrid.size[a];
+  }
+  return inside;
+}
+
+std::vector<BeamRow> LampOnGrid::Rows(const glm::dvec3& point, const Pass& pass) const
+{
+  const double width = this->Lamp.type == LightType::Rectangle ? 2.0 * BeamWidth : BeamWidth;
+  return Beams(this->TheGrid, this->Periodic, this->Lamp, point, width, pass);
+}
+
+LampInfo LampOnGrid::Describe(
+  const glm::dvec3& point, double part, const VoxelBox& stored, const VoxelBox& followed) const
+{
+  LampInfo info = {};
+  const Grid& grid = this->TheGrid;
+  const glm::dvec3 direction = this->Lamp.type == LightType::Point ? glm::dvec3(0.0, 0.0, 1.0)
+                                                                   : glm::normalize(Vector(this->Lamp.direction));
+  for (int a = 0; a < 3; ++a)
+  {
+    info.size[a] = grid.size[a];
+    info.first[a] = stored.first[a];
+    info.stored[a] = stored.size[a];
+    info.followed[a] = followed.first[a];
+    info.followedEnd[a] = followed.first[a] + followed.size[a];
+    info.periodic[a] = this->Periodic[a];
+    info.spacing[a] = static_cast<float>(grid.spacing[a]);
+    info.position[a] = static_cast<float>(point[a]);
+    info.direction[a] = static_cast<float>(direction[a]);
+  }
+  info.intensity = static_cast<float>(AxialIntensity(this->Lamp) * part);
+  info.cosine = static_cast<float>(std::cos(0.5 * this->Lamp.angle * Pi / 180.0));
+  info.scale = static_cast<float>(this->UnitsPerLength());
+  info.diagonal = static_cast<float>(this->Diagonal());
+  for (int face = 0; face < 6; ++face)
+  {
+    const BoxFaceLayout layout = LayoutOfFace(grid, face);
+    info.faceFirst[face] = static_cast<cl_int>(layout.first);
+    std::copy(layout.step.begin(), layout.step.end(), info.faceStep[face / 2]);
+  }
+  return info;
+}
+
+/// No voxel can gather more than all power along its diagonal, once a round.
+double LampOnGrid::UnitsPerLength() const
+{
+  return std::exp2(std::floor(std::log2(0x1p60 / (this->Diagonal() * RoundsAtMost))));
+}
+
+double LampOnGrid::Diagonal() const
+{
+  const std::array<double, 3>& h = this->TheGrid.spacing;
+  return std::sqrt(h[0] * h[0] + h[1] * h[1] + h[2] * h[2]);
+}
+
+cl::Kernel LampOnGrid::Kernel(
+  Device& device, const char* name, std::string_view source, const Deposit& deposit) const
+{
+  return device.Kernel(name, source,
+    Define("ATOMICS", HasAtomics(device)) + Define("LAMBERT", this->Lamp.type == LightType::Rectangle) +
+      Define("CONE", this->Lamp.type == LightType::Spot) + Define("MOMENTS", deposit.firstMoments != nullptr) +
+      Define("NET_FLUX", deposit.flux != nullptr) + Define("FACE_OUT", deposit.faceOut != nullptr) +
+      DefineFloat("THIN", ThinForFirstMoments));
+}
+}

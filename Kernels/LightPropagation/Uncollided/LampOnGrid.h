@@ -1,0 +1,56 @@
+#pragma once
+
+#include "Device/Device.h"
+#include "LightPropagation/Sweep/Deposit.h"
+#include "LightPropagation/Uncollided/LampBeamsShared.h"
+#include "LightPropagation/Uncollided/LampPyramids.h"
+#include "Lights/Lights.h"
+#include "Medium/Grid.h"
+#include "Medium/VoxelBox.h"
+
+#include <glm/vec3.hpp>
+
+#include <array>
+#include <string_view>
+#include <vector>
+
+namespace tyndall
+{
+/// A point, spot or rectangle lamp beside or in a grid, as the kernels of its beams see it (numerics.md, sections 5.4
+/// and 5.5).
+class LampOnGrid
+{
+public:
+  /// @param grid  the whole; must stay, as the light
+  LampOnGrid(const Light& light, const Grid& grid, const std::array<bool, 3>& periodic);
+
+  const Light& TheLight() const { return this->Lamp; }
+
+  /// What stands for the lamp: a point, or the middles of a rectangle's parts; voxels from the grid's corner.
+  std::vector<glm::dvec3> Points() const;
+  glm::dvec3 Middle() const; ///< the same, of the lamp's position
+  bool IsInside(const glm::dvec3& point) const;
+
+  /// The beams from one of its points.
+  std::vector<BeamRow> Rows(const glm::dvec3& point, const Pass& pass) const;
+
+  /// @param part  of the lamp's power that the point has
+  /// @param stored  the voxels that arrays hold; and of them those in which beams are followed
+  LampInfo Describe(const glm::dvec3& point, double part, const VoxelBox& stored, const VoxelBox& followed) const;
+
+  /// Fixed point units per length (numerics.md, Eq. (36)).
+  double UnitsPerLength() const;
+  double Diagonal() const; ///< of a voxel
+
+  /// @param source  of LampBeams.cl, or of what includes it
+  cl::Kernel Kernel(Device& device, const char* name, std::string_view source, const Deposit& deposit) const;
+  static bool HasAtomics(Device& device) { return device.HasExtension("cl_khr_int64_base_atomics"); }
+
+private:
+  glm::dvec3 PlaceOf(const glm::dvec3& point) const;
+
+  const Light& Lamp;
+  const Grid& TheGrid;
+  std::array<bool, 3> Periodic;
+};
+}
