@@ -18,7 +18,7 @@ namespace tyndall
 namespace
 {
 constexpr int BeamsTag = 29997;
-constexpr int Reach = 2;                       ///< voxels beside a block that beams in it may lie over, and one for rounding
+constexpr int Reach = 2; ///< voxels beside a block that beams in it may lie over, and one for rounding
 constexpr std::size_t BeamsPerLaunch = 1 << 14; ///< keeps a launch well below a tenth of a second
 
 /// Where a beam sets off, the nearest voxel of the grid; about: whoever has it takes its first step.
@@ -89,8 +89,8 @@ public:
       {
         this->Sums = std::make_unique<LampSums>(lamps.TheDevice, volume.deposit, this->Box.VoxelCount());
         this->Cells = Buffer<cl_long>(lamps.TheDevice, 1, "the light of a lamp");
-        this->Kernel = this->Lamp.Kernel(
-          lamps.TheDevice, "follow_lamp_in_block", kernel_source::LampInBlock, volume.deposit);
+        this->Kernel =
+          this->Lamp.Kernel(lamps.TheDevice, "follow_lamp_in_block", kernel_source::LampInBlock, volume.deposit);
       }
     });
   }
@@ -168,7 +168,7 @@ std::vector<BeamOnItsWay> LampsInBlocks::Beams::SettingOff(
     {
       if (Holds(this->All.Own, FirstVoxel(rows[r], b, point, this->All.Partition.whole).data()))
       {
-        own.push_back({ static_cast<cl_int>(r), b, 0, 0, -1.0f, 0.0f, {}, 0 });
+        own.push_back({ static_cast<cl_int>(r), b, 0, 0, 0, 0.0f, 0.0f, {}, 0 });
       }
     }
   }
@@ -190,8 +190,8 @@ std::vector<BeamOnItsWay> LampsInBlocks::Beams::FollowInBlock(const std::vector<
     const Buffer<float> sums(device, count * LampRowSums, "sums");
     With(this->Kernel, info, this->All.SigmaT, cl_ulong(this->SigmaFirst), this->Sums->Sums(),
       cl_ulong(this->Sums->Stride()), this->Cells, rowBuffer, onDevice, cl_int(count), sums);
-    device.Queue().enqueueNDRangeKernel(this->Kernel, cl::NullRange,
-      cl::NDRange(LampOnGrid::HasAtomics(device) ? count : 1), GroupOfLargeItems(device));
+    device.Queue().enqueueNDRangeKernel(
+      this->Kernel, cl::NullRange, cl::NDRange(LampOnGrid::HasAtomics(device) ? count : 1), GroupOfLargeItems(device));
     device.Finish();
     const std::vector<BeamOnItsWay> after = onDevice.Read();
     const std::vector<float> found = sums.Read();

@@ -44,8 +44,8 @@ private:
   VoxelBox Own;
   std::vector<VoxelBox> Stored; ///< by rank: its block and what its beams may reach beside it
   std::vector<int> Neighbours;
-  std::size_t OwnStride;        ///< of an extinction of the block in its layout, and
-  Buffer<float> SigmaT;         ///< 1/length, of the stored voxels, one extinction after the other
+  std::size_t OwnStride; ///< of an extinction of the block in its layout, and
+  Buffer<float> SigmaT;  ///< 1/length, of the stored voxels, one extinction after the other
   std::size_t Handed = 0;
 };
 }

@@ -159,8 +159,8 @@ private:
       count = std::min<std::size_t>(this->RowsTogether(rows[first]), rows.size() - first);
       With(kernel, info, *this->Volume.sigma_t, cl_ulong(this->Volume.sigma_t_first), this->Sums.Sums(),
         cl_ulong(this->Volume.stride), this->Cells, rowBuffer, cl_int(count), cl_int(first), sums);
-      this->TheDevice.Queue().enqueueNDRangeKernel(
-        kernel, cl::NullRange, cl::NDRange(LampOnGrid::HasAtomics(this->TheDevice) ? count : 1), GroupOfLargeItems(this->TheDevice));
+      this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange,
+        cl::NDRange(LampOnGrid::HasAtomics(this->TheDevice) ? count : 1), GroupOfLargeItems(this->TheDevice));
       this->TheDevice.Finish();
       report(static_cast<double>(first + count) / rows.size());
     }

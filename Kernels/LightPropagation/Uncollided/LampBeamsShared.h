@@ -16,8 +16,8 @@ enum
 typedef struct
 {
   int size[3];
-  int first[3], stored[3];          ///< the voxels that arrays hold: all, or those of a block and some beside it
-  int followed[3], followedEnd[3];  ///< and those in which beams are followed (LampInBlock.cl)
+  int first[3], stored[3];         ///< the voxels that arrays hold: all, or those of a block and some beside it
+  int followed[3], followedEnd[3]; ///< and those in which beams are followed (LampInBlock.cl)
   int periodic[3];
   float spacing[3];
   float position[3];                ///< of the lamp, from the box's corner
@@ -46,7 +46,8 @@ typedef struct
 {
   int row, beam;   ///< which it is
   int layer, step; ///< that comes next, counted from its first layer
-  float left;      ///< of its power; less than 0: it has not set off
+  int begun;       ///< 0: it has not set off
+  float left;      ///< of its power
   float rest;      ///< too small to be seen in it
   int voxel[3];    ///< that its middle is in then, or the nearest of the grid
   int ended;       ///< 1: it has left the grid

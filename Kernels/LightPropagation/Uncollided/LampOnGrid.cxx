@@ -53,9 +53,8 @@ std::vector<glm::dvec3> LampOnGrid::Points() const
   {
     for (int i = 0; i < PointsPerEdge; ++i)
     {
-      points.push_back(
-        this->PlaceOf(Vector(this->Lamp.position) + Vector(edges[0]) * ((i + 0.5) / PointsPerEdge - 0.5) +
-          Vector(edges[1]) * ((j + 0.5) / PointsPerEdge - 0.5)));
+      points.push_back(this->PlaceOf(Vector(this->Lamp.position) +
+        Vector(edges[0]) * ((i + 0.5) / PointsPerEdge - 0.5) + Vector(edges[1]) * ((j + 0.5) / PointsPerEdge - 0.5)));
     }
   }
   return points;
@@ -82,8 +81,8 @@ LampInfo LampOnGrid::Describe(
 {
   LampInfo info = {};
   const Grid& grid = this->TheGrid;
-  const glm::dvec3 direction = this->Lamp.type == LightType::Point ? glm::dvec3(0.0, 0.0, 1.0)
-                                                                   : glm::normalize(Vector(this->Lamp.direction));
+  const glm::dvec3 direction =
+    this->Lamp.type == LightType::Point ? glm::dvec3(0.0, 0.0, 1.0) : glm::normalize(Vector(this->Lamp.direction));
   for (int a = 0; a < 3; ++a)
   {
     info.size[a] = grid.size[a];
@@ -121,8 +120,7 @@ double LampOnGrid::Diagonal() const
   return std::sqrt(h[0] * h[0] + h[1] * h[1] + h[2] * h[2]);
 }
 
-cl::Kernel LampOnGrid::Kernel(
-  Device& device, const char* name, std::string_view source, const Deposit& deposit) const
+cl::Kernel LampOnGrid::Kernel(Device& device, const char* name, std::string_view source, const Deposit& deposit) const
 {
   return device.Kernel(name, source,
     Define("ATOMICS", HasAtomics(device)) + Define("LAMBERT", this->Lamp.type == LightType::Rectangle) +
