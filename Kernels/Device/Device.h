@@ -65,6 +65,9 @@ public:
   /// Kernels work on host memory in place, so that copies would gain nothing. What TYNDALL_WITHOUT calls `host_memory`
   /// is left out, as extensions are.
   bool SharesHostMemory() const { return this->Cpu && !IsHidden("host_memory"); }
+  /// Of a core, about: what its own caches hold, and its part of those that all share. None where TYNDALL_WITHOUT names
+  /// `cache`.
+  std::size_t CacheBytes() const { return IsHidden("cache") ? 0 : std::size_t{ 2 } << 20; }
   std::size_t HostBytes() const { return this->OnHost.InUse(); }    ///< of arrays in host memory
   std::size_t PeakHostBytes() const { return this->OnHost.Peak(); } ///< largest of them
   std::size_t BytesInUse() const { return this->Memory.InUse(); }

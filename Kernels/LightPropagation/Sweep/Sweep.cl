@@ -12,7 +12,23 @@
 #include "LightPropagation/Sweep/SweepPartialCurrents.cl"
 #include "LightPropagation/Sweep/SweepSides.cl"
 
-// One bundle through one plane, once for each number of members.
+// To one of the planes that are crossed one behind the other.
+static void go_to_plane(sweep_state* state, int k)
+{
+  const struct plane_place* place = state->places + k;
+  state->planes = place->planes;
+  state->thin = place->thin;
+  state->escaped = place->escaped;
+  state->rounding = place->rounding;
+#if FACE_OUT || FACE_IN
+  go_to_faces(state, state->firstPlane + place->plane);
+#endif
+#if FACE_OUT
+  state->facePlane = place->plane;
+#endif
+}
+
+// One bundle through planes, once for each number of members.
 #ifdef MEMBERS_1
 #define MEMBERS 1
 #include "LightPropagation/Sweep/SweepBundle.cl"
@@ -159,15 +175,16 @@ static void end_planes(const SweepInfo* info, __global float* planes, int first,
   }
 }
 
-static void cross_plane(sweep_state* state, __global float* maps, const __global float* outside,
-  const __global float* radiance, const __global BundleInfo* bundle, const __global CrossingInfo* crossing,
-  const __global float* all_coefficients, int first_row, int end_row)
+static void cross_planes(sweep_state* state, int planes, __global float* maps, const __global float* outside,
+  const __global float* radiance, const __global BundleInfo* bundle, const __global CrossingInfo* crossings,
+  int all_bundles, const __global float* all_coefficients, int first_row, int end_row)
 {
   __global float* map = maps + bundle->map;
   const __global float* rows = outside + bundle->outside;
   const __global float* values = radiance + bundle->border;
   const __global float* coefficients = all_coefficients + bundle->coefficients;
-#define CROSS(n) cross_plane_##n(state, map, rows, values, bundle, crossing, coefficients, first_row, end_row)
+#define CROSS(n) \
+  cross_planes_##n(state, planes, map, rows, values, bundle, crossings, all_bundles, coefficients, first_row, end_row)
   switch (bundle->members)
   {
 #ifdef MEMBERS_1
@@ -186,11 +203,12 @@ static void cross_plane(sweep_state* state, __global float* maps, const __global
 #undef CROSS
 }
 
-// Rays of some bundles through a plane.
-// @param crossings, coefficients  of the first of them
-static void cross_bundles(sweep_state* state, __global float* maps, const __global float* outside,
+// Rays of some bundles through planes one behind the other.
+// @param planes  1 where CHAINED is 0
+// @param crossings, coefficients  of the first of the bundles
+static void cross_bundles(sweep_state* state, int planes, __global float* maps, const __global float* outside,
   const __global float* radiance, const __global BundleInfo* bundles, int count, const __global CrossingInfo* crossings,
-  const __global float* coefficients)
+  int all_bundles, const __global float* coefficients)
 {
 #if DEGREE
   // A plane has many moments: tile by tile, so that those of a tile stay in the cache for all bundles.
@@ -200,19 +218,36 @@ static void cross_bundles(sweep_state* state, __global float* maps, const __glob
     for (int b = 0; b < count; ++b)
     {
       state->ring = kept + b * BUNDLE_FLOATS(CHANNELS, ROW);
-      state->sources = state->ring + 2 * RingRows * RAYS_OF_ROW;
+      state->sources = state->ring + state->rings * RingRows * RAYS_OF_ROW;
       state->paths = state->sources + MomentRows * RAYS_OF_ROW;
       state->ownPath = state->paths + MomentRows * RAYS_OF_ROW;
-      cross_plane(state, maps, outside, radiance, bundles + b, crossings + b, coefficients, row, row + TILE);
+      cross_planes(
+        state, planes, maps, outside, radiance, bundles + b, crossings + b, all_bundles, coefficients, row, row + TILE);
     }
   }
   state->ring = kept;
 #else
   for (int b = 0; b < count; ++b)
   {
-    cross_plane(state, maps, outside, radiance, bundles + b, crossings + b, coefficients, FirstRow, INT_MAX);
+    cross_planes(
+      state, planes, maps, outside, radiance, bundles + b, crossings + b, all_bundles, coefficients, FirstRow, INT_MAX);
   }
 #endif
+}
+
+static void clear_tallies(float (*escaped)[4][CHANNELS], float (*rounding)[4][CHANNELS])
+{
+  for (int i = 0; i < PLANES_TOGETHER; ++i)
+  {
+    for (int side = 0; side < 4; ++side)
+    {
+      for (int c = 0; c < CHANNELS; ++c)
+      {
+        escaped[i][side][c] = 0.0f;
+        rounding[i][side][c] = 0.0f;
+      }
+    }
+  }
 }
 
 // sigma     1/length, [voxel]
@@ -258,18 +293,20 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
   state.sizeV = layout.sizeV;
   state.width = layout.width;
   state.ring = scratch + unit.scratch;
+  state.rings = RINGS_OF(layout.chained);
 #if DEGREE
   const int together = min(unit.bundles, (int)BundlesTogether);
   const int rings = together * BUNDLE_FLOATS(CHANNELS, ROW);
 #else
   const int together = unit.bundles;
-  const int rings = 2 * RingRows * RAYS_OF_ROW;
+  const int rings = state.rings * RingRows * RAYS_OF_ROW;
 #endif
   state.moving = state.ring + rings;
   __global float* planes = state.moving + RAYS_OF_ROW + PAD; // past the last row's border
 #if FACE_OUT || FACE_IN
   const FaceInfo faces = info.faces;
   state.faces = &faces;
+  state.firstPlane = first_plane;
 #endif
 #if FACE_OUT
   state.faceOut = face_out + u * faces.unit;
@@ -285,7 +322,8 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
 #if SIDES
   state.outerSides = outer_sides;
 #endif
-  __global int* thin = (__global int*)(planes + layout.block * plane_floats(&layout));
+  __global int* thin = (__global int*)(planes + layout.together * plane_floats(&layout));
+  float escaped[PLANES_TOGETHER][4][CHANNELS], rounding[PLANES_TOGETHER][4][CHANNELS];
 #if DEGREE
   const ulong channel = (ulong)info.moments.groups * GROUP;
   const ulong higher = info.moments.second + info.firstChannel * channel;
@@ -294,8 +332,8 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
   const __global float* beams = source + info.moments.beams + info.first;
 #if !MOMENTS_IN_PLACE
   const int moment_plane = layout.sizeV * info.packedMoments;
-  __global float* packed_source = (__global float*)thin + layout.block * layout.sizeV + REAL_WIDTH;
-  __global float* packed_path = packed_source + layout.block * moment_plane;
+  __global float* packed_source = (__global float*)thin + layout.together * layout.sizeV + REAL_WIDTH;
+  __global float* packed_path = packed_source + layout.together * moment_plane;
 #endif
 #else
   const __global float* beams = source;
@@ -330,7 +368,7 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
   for (int begin = range.x, count; begin < range.y; begin += count)
   {
     const int lap = begin / layout.sizeP * layout.sizeP; // planes already marched when the axis began anew
-    count = min(min(layout.block, range.y - begin), lap + layout.sizeP - begin);
+    count = min(min(layout.together, range.y - begin), lap + layout.sizeP - begin);
 #if DEGREE && !MOMENTS_IN_PLACE
     count = min(count, of_one_group(&layout, begin - lap, unit.backward));
 #endif
@@ -342,23 +380,30 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
 #endif
     clear(packed_path, count * moment_plane);
 #endif
+    clear_tallies(escaped, rounding);
+    struct plane_place places[PLANES_TOGETHER];
     for (int k = begin; k < begin + count; ++k)
     {
       const int plane = unit.backward ? layout.sizeP - 1 - (k - lap) : k - lap;
-      state.planes = planes + (plane - first) * plane_floats(&layout);
-      state.thin = thin + (plane - first) * layout.sizeV;
-#if FACE_OUT || FACE_IN
-      go_to_faces(&state, first_plane + plane);
-#endif
-#if FACE_OUT
-      state.facePlane = plane;
-#endif
+      struct plane_place* place = places + (k - begin);
+      place->planes = planes + (plane - first) * plane_floats(&layout);
+      place->thin = thin + (plane - first) * layout.sizeV;
+      place->escaped = escaped[k - begin];
+      place->rounding = rounding[k - begin];
+      place->plane = plane;
+    }
+    for (int k = begin, chained; k < begin + count; k += chained)
+    {
+      chained = min(min(layout.chained, PLANES_CHAINED), begin + count - k);
+      state.places = places + (k - begin);
 #if SIDES
       const ulong sides_of_plane = (ulong)k * info.radianceEachWay * SIDE_FLOATS(&state);
       state.sidesIn = sides_in + sides_of_plane;
       state.sidesOut = sides_out + sides_of_plane;
 #endif
-#if DEGREE && MOMENTS_IN_PLACE
+#if DEGREE
+      const int plane = state.places->plane;
+#if MOMENTS_IN_PLACE
       const ulong line = info.moments.channels * channel;
       const ulong across = info.axis == 2 ? 1 : info.sizeY; // lines from one row of the plane to the next
       const ulong along = info.axis == 2 ? info.sizeY : 1;
@@ -367,31 +412,28 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
       state.momentPath = higher_path + here;
       state.momentStep = line * across;
       state.momentChannel = channel;
-#elif DEGREE
+#else
       state.momentSource = packed_source + (plane - first) * moment_plane;
       state.momentPath = packed_path + (plane - first) * moment_plane;
       state.momentStep = info.packedMoments;
       state.momentChannel = info.packedMoments / CHANNELS;
 #endif
-      for (int side = 0; side < 4; ++side)
-      {
-        for (int c = 0; c < CHANNELS; ++c)
-        {
-          state.escaped[side][c] = 0.0f;
-          state.rounding[side][c] = 0.0f;
-        }
-      }
+#endif
       const __global CrossingInfo* of_plane = crossings + (unit.planesBefore + k) * info.bundles;
       for (int b = unit.firstBundle; b < unit.firstBundle + unit.bundles; b += together)
       {
         const int some = min(together, unit.firstBundle + unit.bundles - b);
-        cross_bundles(&state, maps, outside, radiance, bundles + b, some, of_plane + b, coefficients);
+        cross_bundles(
+          &state, chained, maps, outside, radiance, bundles + b, some, of_plane + b, info.bundles, coefficients);
       }
+    }
+    for (int k = 0; k < count; ++k)
+    {
       for (int side = 0; side < 4; ++side)
       {
         for (int c = 0; c < CHANNELS; ++c)
         {
-          tally[((k * unit_count + u) * 4 + side) * CHANNELS + c] = state.escaped[side][c];
+          tally[(((begin + k) * unit_count + u) * 4 + side) * CHANNELS + c] = escaped[k][side][c];
         }
       }
     }

@@ -10,7 +10,9 @@
 #define STAGE_ROW NAME_OF(stage_row_, MEMBERS)
 #define COUNT_ESCAPED NAME_OF(count_escaped_, MEMBERS)
 #define FILL_BORDER NAME_OF(fill_border_, MEMBERS)
-#define CROSS_PLANE NAME_OF(cross_plane_, MEMBERS)
+#define CROSS_PLANES NAME_OF(cross_planes_, MEMBERS)
+#define TAKE_ROW NAME_OF(take_row_, MEMBERS)
+#define ENTER_ROW NAME_OF(enter_row_, MEMBERS)
 #define COUNT_CURRENTS NAME_OF(count_currents_, MEMBERS)
 #define MOVE_PART NAME_OF(move_part_, MEMBERS)
 #define CROSS_MOMENTS NAME_OF(cross_moments_, MEMBERS)
@@ -266,7 +268,7 @@ static void FILL_BORDER(sweep_state* state, const __global float* radiance)
 {
   for (int i = 0; i < MEMBERS * CHANNELS; ++i)
   {
-    for (int r = 0; r < 2 * RingRows; ++r)
+    for (int r = 0; r < state->rings * RingRows; ++r)
     {
       __global float* row = state->ring + r * RAYS_OF_ROW + i * ROW + PAD;
       row[-1] = radiance[i];
@@ -385,14 +387,75 @@ static void COUNT_CURRENTS(sweep_state* state, int y, bool first, const __global
 }
 #endif
 
+// A row of rays where a stage of a plane takes them from, for each member: `in`. Rays that leave the box are counted.
+// @param own     the row itself as the stage before left it; null: rays come from the map, and do not move
+static void TAKE_ROW(sweep_state* state, int y, bool inside, int s, const __global float* map,
+  const __global float* ring, const __global float* own, const __global float* beside, const __global float* outside,
+  const __global float* radiance, const __global BundleInfo* bundle, const __global CrossingInfo* crossing,
+  const __global float** in)
+{
+  const int height = state->sizeV;
+#pragma unroll
+  for (int m = 0; m < MEMBERS; ++m)
+  {
+    const int du = bundle->move[m][0] * crossing->moveU[s] + bundle->move[m][1] * crossing->moveV[s];
+    const int dv = bundle->move[m][2] * crossing->moveU[s] + bundle->move[m][3] * crossing->moveV[s];
+    const int from = y - dv;
+    const __global float* row;
+    if (!own)
+    {
+      row = map + (from < 0 ? (from % height + height) % height : from) * BLOCK;
+    }
+    else
+    {
+      row = ring + (from & (RingRows - 1)) * RAYS_OF_ROW;
+      if (inside && (du != 0 || dv != 0))
+      {
+#if SIDES
+        give_sides(state, bundle, m, own, y, du, dv);
+#endif
+        COUNT_ESCAPED(state, own, y, m, du, dv, crossing->part[s], bundle, radiance, outside);
+      }
+    }
+    if (!PERIODIC_V && (from < 0 || from >= height))
+    {
+      row = beside;
+    }
+    in[m] = row + FIRST(m, 0) - du;
+  }
+}
+
+// What comes in beside a row within a plane, before stage s.
+static void ENTER_ROW(sweep_state* state, int y, int s, const __global float* radiance,
+  const __global BundleInfo* bundle, const __global CrossingInfo* crossing, __global float* out)
+{
+#if FACE_IN && !PERIODIC_U
+  ENTER_ASIDE(state, y, radiance, bundle, crossing->moveU[s], crossing->moveV[s], out);
+#elif SIDES
+  for (int m = 0; m < MEMBERS; ++m)
+  {
+    const int du = bundle->move[m][0] * crossing->moveU[s] + bundle->move[m][1] * crossing->moveV[s];
+    if (du != 0)
+    {
+      take_across_u(state, bundle, m, y, du, out);
+    }
+  }
+#endif
+}
+
+// A bundle through planes one behind the other, all stages of all of them row by row: rays leave the cache for the
+// map, and come from it, once.
+//
+// @param planes   how many; 1 where CHAINED is 0
 // @param map      rays of the bundle, [row][member][channel][ROW], two rows more than the plane has
 // @param outside  a row of rays that come in through the faces across v, [member][channel][ROW]
 // @param radiance of rays that come in through the faces across u, [member][channel]
+// @param crossings  of the first plane, and of each next one `bundles` further
 // @param coefficients  of the bundle's angular functions
-// @param first_row, end_row  of its first stage, that are crossed in this call: in turn, from FirstRow on
-static void CROSS_PLANE(sweep_state* state, __global float* map, const __global float* outside,
-  const __global float* radiance, const __global BundleInfo* bundle, const __global CrossingInfo* crossing,
-  const __global float* coefficients, int first_row, int end_row)
+// @param first_row, end_row  of the first stage, that are crossed in this call: in turn, from FirstRow on
+static void CROSS_PLANES(sweep_state* state, int planes, __global float* map, const __global float* outside,
+  const __global float* radiance, const __global BundleInfo* bundle, const __global CrossingInfo* crossings,
+  int bundles, const __global float* coefficients, int first_row, int end_row)
 {
   const bool begins = first_row <= FirstRow;
 #if BORDER
@@ -401,10 +464,20 @@ static void CROSS_PLANE(sweep_state* state, __global float* map, const __global 
     FILL_BORDER(state, radiance);
   }
 #endif
-  const int stages = crossing->stages;
+  stage_of_chain chain[STAGES];
+  int stages = 0;
+  for (int k = 0; k < planes; ++k)
+  {
+    for (int s = 0; s < crossings[k * bundles].stages; ++s)
+    {
+      chain[stages].plane = k;
+      chain[stages++].stage = s;
+    }
+  }
+  go_to_plane(state, 0);
   const int height = state->sizeV;
 #if FACE_IN
-  FILL_OUTSIDE(state, outside, radiance, bundle, crossing);
+  FILL_OUTSIDE(state, outside, radiance, bundle, crossings);
   const __global float* const beside = state->outside;
 #elif SIDES
   if (stages > 1)
@@ -429,11 +502,11 @@ static void CROSS_PLANE(sweep_state* state, __global float* map, const __global 
   const int end = min(height + beyond + LAG * (stages - 1), end_row);
   for (int r = max(-beyond, first_row); r < end; ++r)
   {
-    for (int s = 0; s < stages; ++s)
+    for (int g = 0; g < stages; ++g)
     {
-      const int y = r - LAG * s;
+      const int y = r - LAG * g;
 #if PERIODIC_V
-      const int reach = stages - 1 - s;
+      const int reach = stages - 1 - g;
 #else
       const int reach = 0;
 #endif
@@ -443,50 +516,26 @@ static void CROSS_PLANE(sweep_state* state, __global float* map, const __global 
       }
       const bool inside = y >= 0 && y < height;
       const int wrapped = inside ? y : (y % height + height) % height;
-      const float part = crossing->part[s];
-      const __global float* before = state->ring + ((s - 1) & 1) * (RingRows * RAYS_OF_ROW);
-      const __global float* own = before + (y & (RingRows - 1)) * RAYS_OF_ROW; // where s > 0
-      const __global float* in[MEMBERS];
-#pragma unroll
-      for (int m = 0; m < MEMBERS; ++m)
-      {
-        const int du = bundle->move[m][0] * crossing->moveU[s] + bundle->move[m][1] * crossing->moveV[s];
-        const int dv = bundle->move[m][2] * crossing->moveU[s] + bundle->move[m][3] * crossing->moveV[s];
-        const int from = y - dv;
-        const __global float* row;
-        if (s == 0)
-        {
-          row = map + (from < 0 ? (from % height + height) % height : from) * BLOCK;
-        }
-        else
-        {
-          row = before + (from & (RingRows - 1)) * RAYS_OF_ROW;
-          if (inside && (du != 0 || dv != 0))
-          {
-#if SIDES
-            give_sides(state, bundle, m, own, y, du, dv);
+      const int s = chain[g].stage;
+      const __global CrossingInfo* crossing = crossings + chain[g].plane * bundles;
+#if CHAINED
+      go_to_plane(state, chain[g].plane);
 #endif
-            COUNT_ESCAPED(state, own, y, m, du, dv, part, bundle, radiance, outside);
-          }
-        }
-        if (!PERIODIC_V && (from < 0 || from >= height))
-        {
-          row = beside;
-        }
-        in[m] = row + FIRST(m, 0) - du;
-      }
-      __global float* out = s == stages - 1
-        ? map + y * BLOCK
-        : state->ring + (s & 1) * (RingRows * RAYS_OF_ROW) + (y & (RingRows - 1)) * RAYS_OF_ROW;
+      const __global float* ring = state->ring + (g - 1) * (RingRows * RAYS_OF_ROW); // of the stage before
+      const __global float* own = g > 0 ? ring + (y & (RingRows - 1)) * RAYS_OF_ROW : 0;
+      const __global float* in[MEMBERS];
+      TAKE_ROW(state, y, inside, s, map, ring, own, beside, outside, radiance, bundle, crossing, in);
+      __global float* out =
+        g == stages - 1 ? map + y * BLOCK : state->ring + (g * RingRows + (y & (RingRows - 1))) * RAYS_OF_ROW;
 #if CURRENTS
       if (inside && (DEGREE || s > 0)) // else where voxels are crossed
       {
-        COUNT_CURRENTS(state, y, s == 0, in, own, bundle, crossing->moveU[s], crossing->moveV[s], part);
+        COUNT_CURRENTS(state, y, s == 0, in, own, bundle, crossing->moveU[s], crossing->moveV[s], crossing->part[s]);
       }
 #endif
-      if (part < 1.0f)
+      if (crossing->part[s] < 1.0f)
       {
-        MOVE_PART(state, part, own, in);
+        MOVE_PART(state, crossing->part[s], own, in);
       }
       const int slot = y & (MomentRows - 1);
 #if DEGREE && SOURCE
@@ -496,21 +545,10 @@ static void CROSS_PLANE(sweep_state* state, __global float* map, const __global 
       }
 #endif
       STAGE_ROW(state, wrapped, slot, s == 0, inside, in, out, crossing->length[s], bundle);
-#if FACE_IN && !PERIODIC_U
-      if (s < stages - 1)
+      if (s < crossing->stages - 1)
       {
-        ENTER_ASIDE(state, wrapped, radiance, bundle, crossing->moveU[s + 1], crossing->moveV[s + 1], out);
+        ENTER_ROW(state, wrapped, s + 1, radiance, bundle, crossing, out);
       }
-#elif SIDES
-      for (int m = 0; s < stages - 1 && m < MEMBERS; ++m)
-      {
-        const int du = bundle->move[m][0] * crossing->moveU[s + 1] + bundle->move[m][1] * crossing->moveV[s + 1];
-        if (du != 0)
-        {
-          take_across_u(state, bundle, m, wrapped, du, out);
-        }
-      }
-#endif
 #if DEGREE
       if (inside && s == stages - 1)
       {
@@ -521,6 +559,8 @@ static void CROSS_PLANE(sweep_state* state, __global float* map, const __global 
   }
 }
 
+#undef ENTER_ROW
+#undef TAKE_ROW
 #undef ENTER_ASIDE
 #undef FILL_OUTSIDE
 #undef FOR_FRAMES
@@ -531,7 +571,7 @@ static void CROSS_PLANE(sweep_state* state, __global float* map, const __global 
 #undef BLOCK
 #undef COUNT_CURRENTS
 #undef MOVE_PART
-#undef CROSS_PLANE
+#undef CROSS_PLANES
 #undef FILL_BORDER
 #undef COUNT_ESCAPED
 #undef STAGE_ROW

@@ -26,8 +26,12 @@
 #include "LightPropagation/Sweep/SweepShared.h"
 #include "Numerics/Numerics.cl"
 
+#ifndef SIDES
+#define SIDES 0
+#endif
 #define PAD REAL_WIDTH
 #define LAG 2 // rows a stage stays behind the one before
+#define PLANES_TOGETHER (REAL_WIDTH > MostChained ? REAL_WIDTH : MostChained) // at most
 #define FLUX (NET_FLUX ? 3 : 0)
 
 // The quantities of one plane, behind those of SweepShared.h.
@@ -50,15 +54,37 @@
 static __constant int function_order[MOMENTS] = { FUNCTION_ORDER };
 #endif
 
+// Whether planes may be crossed row by row one behind the other, up to PLANES_CHAINED: not where what comes in or goes out
+// beside rows is kept by plane, or rows come from the other side.
+#define CHAINED (!DEGREE && !FACE_IN && !FACE_OUT && !SIDES && !PERIODIC_U && !PERIODIC_V)
+#define PLANES_CHAINED (CHAINED ? MostChained : 1)
+#define STAGES (3 * PLANES_CHAINED)
+typedef struct
+{
+  int plane, stage; // of the plane
+} stage_of_chain;
+
+// A plane that is crossed.
+struct plane_place
+{
+  __global float* planes;
+  __global int* thin;
+  float (*escaped)[CHANNELS];
+  float (*rounding)[CHANNELS];
+  int plane; // of the box
+};
+
 // Where a work-item is: its planes, its rows, its buffers.
 typedef struct
 {
-  int sizeU, sizeV;       // voxels of the plane
-  int width;              // sizeU rounded up to whole vectors
-  __global float* planes; // of the plane that is being crossed
-  __global int* thin;     // [row] of it, 1 where all voxels are thin
+  int sizeU, sizeV;                 // voxels of the plane
+  int width;                        // sizeU rounded up to whole vectors
+  const struct plane_place* places; // of planes that are crossed one behind the other
+  __global float* planes;           // of the plane that is being crossed
+  __global int* thin;               // [row] of it, 1 where all voxels are thin
   float meanLength[MeanLengthTerms];
-  __global float* ring; // 2 rings of RingRows rows of RAYS_OF_ROW floats
+  int rings;            // one behind each stage but the last
+  __global float* ring; // so many of RingRows rows of RAYS_OF_ROW floats
 #if DEGREE
   __global float* sources; // MomentRows rows of RAYS_OF_ROW floats: W / (length^3 sr) in the members' directions
   __global float* paths;   // the same: W length, of the members
@@ -69,11 +95,12 @@ typedef struct
   ulong momentStep, momentChannel;
 #endif
   __global float* moving;     // the rays of a row of which a part moves
-  float escaped[4][CHANNELS]; // through -u, +u, -v, +v, W; with the rounding errors
-  float rounding[4][CHANNELS];
+  float (*escaped)[CHANNELS]; // of the plane, through -u, +u, -v, +v, W; with the rounding errors
+  float (*rounding)[CHANNELS];
 #if FACE_OUT || FACE_IN
   const FaceInfo* faces;
   ulong faceFirst[4]; // of the plane that is being crossed, first channel
+  int firstPlane;     // of the box, in the grid
 #endif
 #if FACE_OUT
   __global float* faceOut;   // the unit's own

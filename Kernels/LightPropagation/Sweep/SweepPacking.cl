@@ -94,7 +94,11 @@ static void pack(const PlaneInfo* layout, __global float* to, int first, int cou
       __global float* here = to + v * PLANES * ROW + u;
       if (layout->block == 1)
       {
-        store_real(select(load_real(0, from), (real)0.0f, beyond), 0, here);
+        for (int j = 0; j < count; ++j)
+        {
+          const real values = load_real(0, from + (ulong)j * layout->stepP);
+          store_real(select(values, (real)0.0f, beyond), j * plane_floats(layout), here);
+        }
         continue;
       }
       pack_block(from, layout->stepU, layout->sizeU - 1 - u, beyond, here, plane_floats(layout), count);
@@ -165,7 +169,11 @@ static void unpack(const PlaneInfo* layout, const __global float* from, int firs
       const __global float* here = from + v * PLANES * ROW + u;
       if (layout->block == 1 && used == REAL_WIDTH)
       {
-        add_real(sign * load_real(0, here), volume + at, lost ? lost + at : 0);
+        for (int j = 0; j < count; ++j)
+        {
+          const ulong voxel = at + (ulong)j * layout->stepP;
+          add_real(sign * load_real(j * plane, here), volume + voxel, lost ? lost + voxel : 0);
+        }
       }
       else if (layout->block > 1 && count == REAL_WIDTH)
       {

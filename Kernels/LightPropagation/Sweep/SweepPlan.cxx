@@ -151,11 +151,31 @@ void SweepPlan::LayPlane(const Device& device)
   const std::array<int, 3> step = { 1, this->grid.size[0], this->grid.size[0] * this->grid.size[1] };
   const int width = RoundUp(n[this->axes.u], this->vector);
   this->row = RowFloats(width, this->vector);
-  this->plane = { n[this->axes.u], n[this->axes.v], n[this->axes.axis], first[this->axes.u], first[this->axes.v],
-    first[this->axes.axis], step[this->axes.u], step[this->axes.v], step[this->axes.axis], width,
-    this->axes.u == 0 ? 1 : this->vector, static_cast<float>(std::max(1e-30 / LongestWay(this->bundles), 1e-37)),
-    static_cast<float>(Thin / this->LongestSegment()), {} };
+  this->plane.sizeU = n[this->axes.u];
+  this->plane.sizeV = n[this->axes.v];
+  this->plane.sizeP = n[this->axes.axis];
+  this->plane.firstU = first[this->axes.u];
+  this->plane.firstV = first[this->axes.v];
+  this->plane.firstP = first[this->axes.axis];
+  this->plane.stepU = step[this->axes.u];
+  this->plane.stepV = step[this->axes.v];
+  this->plane.stepP = step[this->axes.axis];
+  this->plane.width = width;
+  this->plane.block = this->axes.u == 0 ? 1 : this->vector;
+  this->plane.chained = this->PlanesChained(device);
+  this->plane.together = std::max(this->plane.block, this->plane.chained);
+  this->plane.vacuum = static_cast<float>(std::max(1e-30 / LongestWay(this->bundles), 1e-37));
+  this->plane.thin = static_cast<float>(Thin / this->LongestSegment());
   std::copy(MeanLength, MeanLength + MeanLengthTerms, this->plane.meanLength);
+}
+
+/// Bundles whose rays in a plane are more than a core's cache holds cross some planes together, row by row, so that rays
+/// come from memory and go there once for all of these.
+int SweepPlan::PlanesChained(const Device& device) const
+{
+  const std::size_t rays = static_cast<std::size_t>(MaxMembers) * this->channels * this->row * this->plane.sizeV;
+  const bool alone = this->angular || this->faceIn || this->periodic[this->axes.u] || this->periodic[this->axes.v];
+  return !alone && sizeof(float) * rays > device.CacheBytes() ? MostChained : 1;
 }
 
 void SweepPlan::LayMoments()
@@ -354,14 +374,15 @@ std::size_t SweepPlan::ScratchFloats() const
   // Two rings, or what each bundle keeps, and the rays of a row of which a part moves.
   const std::size_t raysOfRow = static_cast<std::size_t>(MaxMembers) * this->channels * this->row;
   const std::size_t together = std::min<std::size_t>(this->bundles.size(), BundlesTogether);
-  const std::size_t kept =
-    this->angular ? together * BUNDLE_FLOATS(this->channels, this->row) : std::size_t{ 2 } * RingRows * raysOfRow;
+  const std::size_t kept = this->angular
+    ? together * BUNDLE_FLOATS(this->channels, this->row)
+    : RINGS_OF(static_cast<std::size_t>(this->plane.chained)) * RingRows * raysOfRow;
   // Behind those the row of rays that come in by cells of the box's faces.
   const std::size_t ring = kept + (this->faceIn ? 2 : 1) * (raysOfRow + this->vector);
   const int beams = this->angular ? this->angular->Beams() : 0;
   const std::size_t quantities =
     PLANE_COUNT(this->channels, beams, this->netFlux, this->partialCurrents, this->octantSource);
-  const std::size_t rows = static_cast<std::size_t>(this->plane.block) * this->plane.sizeV;
+  const std::size_t rows = static_cast<std::size_t>(this->plane.together) * this->plane.sizeV;
   const std::size_t planes = quantities * rows * this->row;
   const std::size_t packed = this->momentsInPlace ? 0 : 2 * rows * this->momentRow; // source and path
   return ring + planes + rows + packed + 3 * this->vector;

@@ -77,6 +77,7 @@ struct SweepPlan
 private:
   void LayLaps();
   void LayPlane(const Device& device);
+  int PlanesChained(const Device& device) const;
   void LayMoments();
   void LayBundles();
   BundleInfo Describe(const Bundle& bundle) const;

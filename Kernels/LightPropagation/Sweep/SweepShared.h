@@ -13,6 +13,7 @@ enum
   MeanLengthTerms = 5,  ///< of (1 - exp(-t)) / t = 1 + t (m0 + t (m1 + ...)) for thin voxels, see SweepPlan.cxx
   BundlesTogether = 16, ///< that cross a plane tile by tile, where light has angular moments
   MomentRows = 8,       ///< of which a bundle's sources are kept: of the rows that its stages are at
+  MostChained = 4,      ///< planes that a bundle crosses row by row one behind the other
   FirstRow = -2,        ///< of a plane: that a first stage may begin at, and
   RowsBehind = 6        ///< those beyond its last one that it may end at
 };
@@ -49,10 +50,13 @@ enum
   (PlaneSource +                                                 \
     (2 + (beams) + ((netFlux) ? 3 : 0) + ((currents) ? CurrentFaces : 0) + ((octants) ? WaysAside : 0)) * (channels))
 
+/// Rings of rows between the stages of so many planes that are crossed one behind the other: three stages at most each.
+#define RINGS_OF(planes) (3 * (planes)-1)
+
 /// Floats that a bundle keeps from one tile of rows to the next: two rings, and of MomentRows rows the members' sources
 /// and paths, and the path of a source of 1 in its own voxel.
 #define BUNDLE_FLOATS(channels, row) \
-  ((2 * RingRows + 2 * MomentRows) * MaxMembers * (channels) * (row) + MomentRows * (row))
+  ((RINGS_OF(1) * RingRows + 2 * MomentRows) * MaxMembers * (channels) * (row) + MomentRows * (row))
 
 typedef struct
 {
@@ -100,7 +104,9 @@ typedef struct
   int firstU, firstV, firstP;
   int stepU, stepV, stepP;
   int width;
-  int block;    ///< planes packed together: 1 where rows are contiguous in memory, else a vector's worth
+  int block;    ///< planes packed at once: 1 where rows are contiguous in memory, else a vector's worth
+  int together; ///< planes packed before any of them is crossed: a multiple of those
+  int chained;  ///< of them, that a bundle crosses row by row one behind the other
   float vacuum; ///< 1/length, least sigma_t, in place of 0: exp(-tau) is 1 in float
   float thin;   ///< 1/length, below which meanLength holds on all segments
   float meanLength[MeanLengthTerms];
