@@ -1,7 +1,7 @@
 #include "LightPropagation/Distributed/IterationInBlocks.h"
 
 #include "Light/LeftOut.h"
-#include "LightPropagation/Problem/ScatteringOrders.h"
+#include "LightPropagation/Distributed/AccelerationInBlocks.h"
 #include "LightPropagation/Uncollided/UncollidedLamp.h"
 #include "Medium/VoxelSums.h"
 #include "Numerics/Constants.h"
@@ -15,7 +15,6 @@ namespace tyndall
 namespace
 {
 constexpr int MostOrders = 100000;
-constexpr double ManyOrders = 2.0;  ///< mean free paths through the box along its thinnest axis that pay for cells
 constexpr double FallByCells = 0.3; ///< of what is left over from order to order, at least so much in the forecast
 }
 
@@ -107,45 +106,12 @@ void IterationInBlocks::AddLamps(const Monitor& monitor)
   }
 }
 
-/// How many voxels make a cell, 2^this along each axis; all 0: cells do not pay, or voxels are too thick for them.
-std::array<int, 3> IterationInBlocks::CellHalvings()
-{
-  if (this->Settings.acceleration != PropagationAcceleration::Automatic || this->Settings.maximumOrders > 0 ||
-    !this->Scene.traits.scatters)
-  {
-    return {};
-  }
-  double thickest = 0.0, sum = 0.0;
-  for (std::size_t i = 0; i < this->Layout.grid.VoxelCount(); ++i)
-  {
-    for (int c = 0; c < this->Layout.channels; ++c)
-    {
-      const double sigma = this->Scene.medium.TransportSigmaT(i, c);
-      thickest = std::max(thickest, sigma);
-      sum += sigma / this->Layout.channels;
-    }
-  }
-  const Grid& whole = this->Partition.whole;
-  thickest = this->Others.Largest({ thickest })[0];
-  const double mean = this->Others.Sum({ sum })[0] / static_cast<double>(whole.VoxelCount());
-  const std::array<int, 3> halvings = tyndall::CellHalvings(whole, thickest);
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    if (mean * whole.Length(axis) < ManyOrders || halvings[axis] == 0)
-    {
-      return {};
-    }
-  }
-  return halvings;
-}
-
 void IterationInBlocks::MakeCells()
 {
-  const std::array<int, 3> halvings = this->CellHalvings();
-  for (int c = 0; c < this->Layout.channels && halvings[0] > 0; ++c)
+  for (int c = 0; c < this->Layout.channels && this->Orders.how == OrdersAdded::ByCells; ++c)
   {
     this->Cells.push_back(std::make_unique<CellsOverRanks>(
-      this->TheDevice, this->Others, this->Partition, this->Layout, c, this->OnDevice, halvings));
+      this->TheDevice, this->Others, this->Partition, this->Layout, c, this->OnDevice, this->Orders.halvings));
     this->Rest[c].BeginWarm(FallByCells);
   }
 }
@@ -254,6 +220,12 @@ bool IterationInBlocks::Done() const
 LightField IterationInBlocks::Run(const Monitor& monitor)
 {
   this->LoadEmission();
+  this->Orders = HowOrdersAreAdded(this->Others, this->Partition, this->Scene, this->Settings);
+  if (this->Orders.how == OrdersAdded::ByBalance)
+  {
+    this->RunByBalance(monitor);
+    return this->TakeLight();
+  }
   this->MakeCells();
   const std::unique_ptr<SweepOperator> sweep = this->MakeSweep({ this->WholeDeposit(),
     { { 0, this->Directions.Along(0) }, { 1, this->Directions.Along(1) }, { 2, this->Directions.Along(2) } } });
@@ -276,6 +248,19 @@ LightField IterationInBlocks::Run(const Monitor& monitor)
     ++this->Order;
   } while (!this->Done());
   return this->TakeLight();
+}
+
+/// Light of lamps goes ahead, and what of it is scattered is given to the sweeps.
+void IterationInBlocks::RunByBalance(const Monitor& monitor)
+{
+  this->AddLamps(OfPart(
+    monitor, [this](double done) { return ProgressOf(this->Settings, 1.0, UncollidedPart * done); }));
+  AccelerationInBlocks acceleration({ this->TheDevice, this->Others, this->Partition, this->Scene, this->Settings,
+    this->Layout, this->OnDevice, this->Directions, this->Boundary,
+    [this](const SweepRequest& request) { return this->MakeSweep(request); }, this->Source, this->Path, this->Fluence,
+    this->Flux, this->Ledger });
+  this->Rows = acceleration.Run(monitor);
+  this->Direct = acceleration.Direct();
 }
 
 LightField IterationInBlocks::TakeLight()
@@ -303,15 +288,13 @@ LightField IterationInBlocks::TakeLight()
   const EnergyLedger ledger = this->WithOutOfCells();
   light.balance = ledger.Balance();
   light.facePowerOut = ledger.FacePowerOut();
-  light.convergence = this->Convergence.All();
+  light.convergence = this->Orders.how == OrdersAdded::ByBalance ? this->Rows : this->Convergence.All();
   light.directionsPerFace = this->Settings.directionsPerFace;
   light.halfRangeFlux = HalfRangeFlux(this->Directions.Set());
   light.device = this->TheDevice.Name();
-  if (this->Cells.empty())
+  if (this->Orders.how == OrdersAdded::OneByOne)
   {
-    light.leftOut.emplace_back(
-      "acceleration: few scattering orders do, or voxels of a medium that is spread over ranks "
-      "are thick");
+    light.leftOut.emplace_back("acceleration: few scattering orders do");
   }
   if (this->Scene.traits.emits && this->Settings.emissionError > 0.0)
   {

@@ -11,6 +11,7 @@
 #include "LightPropagation/Convergence.h"
 #include "LightPropagation/Distributed/BlockScene.h"
 #include "LightPropagation/Distributed/CellsOverRanks.h"
+#include "LightPropagation/Distributed/OrdersOverRanks.h"
 #include "LightPropagation/Distributed/SweepInBlocks.h"
 #include "LightPropagation/Problem/MediumOnDevice.h"
 #include "LightPropagation/Problem/TruncatedScattering.h"
@@ -37,8 +38,8 @@ private:
   std::unique_ptr<SweepOperator> MakeSweep(const SweepRequest& request);
   void LoadEmission();
   void AddLamps(const Monitor& monitor);
-  std::array<int, 3> CellHalvings();
   void MakeCells();
+  void RunByBalance(const Monitor& monitor);
   void Scatter();
   void ScatterByCells();
   EnergyLedger WithOutOfCells() const;
@@ -68,8 +69,10 @@ private:
   std::vector<std::unique_ptr<CellsOverRanks>> Cells; ///< by channel; empty: orders are added up as they are
   std::array<Rgb, 6> OutOfCells = {};                 ///< W, through faces, of all orders to come
 
+  OrdersOverRanks Orders;
   EnergyLedger Ledger;
   ConvergenceRecord Convergence;
+  std::vector<ConvergenceRow> Rows; ///< where orders are added up by the balance of voxels
   std::vector<float> Direct;
   std::array<RestOfOrders, 3> Rest;
   Rgb Scattered = {}, AllScattered = {};
