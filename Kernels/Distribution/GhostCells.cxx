@@ -60,7 +60,7 @@ GhostCells::GhostCells(Communicator& communicator, const std::vector<VoxelBox>& 
 }
 
 template <class Value>
-void GhostCells::Fill(Value* values, int arrays, std::size_t stride) const
+void GhostCells::Exchange(Value* values, int arrays, std::size_t stride) const
 {
   for (const Shared& owned : this->Owned)
   {
@@ -88,8 +88,8 @@ void GhostCells::Fill(Value* values, int arrays, std::size_t stride) const
   }
 }
 
-template void GhostCells::Fill(double*, int, std::size_t) const;
-template void GhostCells::Fill(float*, int, std::size_t) const;
+template void GhostCells::Exchange(double*, int, std::size_t) const;
+template void GhostCells::Exchange(float*, int, std::size_t) const;
 
 void GhostCells::AddToOwners(std::vector<double>& values) const
 {

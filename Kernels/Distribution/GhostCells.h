@@ -20,8 +20,8 @@ public:
 
   /// Ghosts from those who own them. All ranks call these together, of as many values.
   /// @param values  of several arrays over the box, one after the other, `stride` apart
-  void Fill(std::vector<double>& values) const { this->Fill<double>(values.data(), 1, 0); }
-  void Fill(float* values, int arrays, std::size_t stride) const { this->Fill<float>(values, arrays, stride); }
+  void Fill(std::vector<double>& values) const { this->Exchange(values.data(), 1, 0); }
+  void Fill(float* values, int arrays, std::size_t stride) const { this->Exchange(values, arrays, stride); }
 
   /// Adds what this rank has in its ghosts to the owners' values, rank by rank.
   void AddToOwners(std::vector<double>& values) const;
@@ -34,7 +34,7 @@ private:
     std::vector<std::size_t> places; ///< in the box
   };
   template <class Value>
-  void Fill(Value* values, int arrays, std::size_t stride) const;
+  void Exchange(Value* values, int arrays, std::size_t stride) const;
 
   Communicator& Others;
   std::vector<Shared> Owned;  ///< of this rank's own cells, those that are ghosts of another

@@ -7,6 +7,8 @@
 #include "LightPropagation/Conservative/ConservativePropagation.h"
 #include "LightPropagation/Distributed/PropagationInBlocks.h"
 
+#include <algorithm>
+#include <cmath>
 #include <functional>
 #include <mutex>
 #include <string>
@@ -202,6 +204,107 @@ TEST_F(PropagationBlocks, FindTheSameLightSoonerByCells)
     SCOPED_TRACE(std::to_string(ranks) + " ranks");
     ExpectSame(onRanks(ranks), alone);
   }
+}
+
+/// Voxels of several mean free paths, which absorb little or nothing: the balance of voxels goes with the sweeps.
+class ThickPropagationBlocks : public PropagationBlocks
+{
+protected:
+  static PropagationSettings Accelerated()
+  {
+    PropagationSettings settings = SettingsOf(0);
+    settings.acceleration = PropagationAcceleration::Automatic;
+    settings.source = PropagationSource::Automatic;
+    return settings;
+  }
+  static Illumination Diffuse()
+  {
+    Illumination shining = LitFromOutside();
+    shining.lights.clear();
+    return shining;
+  }
+
+  /// As the solver in one memory, and the same on any ranks: to 1e-6 of the largest fluence.
+  void ExpectTheLightOfTheWhole(const RandomMedium& whole, const Illumination& shining,
+    const PropagationSettings& settings, const std::vector<BlockPartition>& partitions, double tolerance)
+  {
+    const LightField expected = SolveConservative(GetDevice(), whole.medium, shining, settings);
+    const LightField alone =
+      LightOfAll(GetDevice(), BlockPartition::Even(whole.medium.grid, 1), whole, shining, settings);
+    EXPECT_TRUE(alone.converged);
+    EXPECT_LE(alone.convergence.size(), expected.convergence.size() + 1);
+    EXPECT_LT(LargestDifference(alone.fluence, expected.fluence), tolerance);
+    EXPECT_LT(RelativeRmse(alone.netFlux, expected.netFlux), 2.0 * tolerance);
+    EXPECT_LT(RelativeRmse(alone.fluenceDirect, expected.fluenceDirect), 1e-6);
+    ExpectEnergyKept(alone);
+    for (std::size_t i = 0; i < partitions.size(); ++i)
+    {
+      SCOPED_TRACE("partition " + std::to_string(i));
+      const LightField found = LightOfAll(GetDevice(), partitions[i], whole, shining, settings);
+      EXPECT_EQ(found.convergence.size(), alone.convergence.size());
+      EXPECT_LT(LargestDifference(found.fluence, alone.fluence), 1e-6);
+      EXPECT_LT(RelativeRmse(found.netFlux, alone.netFlux), 1e-5);
+      ExpectEnergyKept(found);
+    }
+  }
+  static void ExpectEnergyKept(const LightField& light)
+  {
+    EXPECT_LT(light.balance.RelativeError(light.channels), 1e-5);
+  }
+  /// Over the largest value.
+  static double LargestDifference(const std::vector<float>& found, const std::vector<float>& expected)
+  {
+    double largest = 0.0, difference = found.size() == expected.size() ? 0.0 : HUGE_VAL;
+    for (std::size_t i = 0; i < expected.size(); ++i)
+    {
+      largest = std::max<double>(largest, std::abs(expected[i]));
+      difference = std::max<double>(difference, std::abs(found[i] - expected[i]));
+    }
+    return difference / largest;
+  }
+  static std::vector<BlockPartition> OnRanks(const Grid& grid, const std::vector<int>& ranks)
+  {
+    std::vector<BlockPartition> partitions;
+    for (const int count : ranks)
+    {
+      partitions.push_back(BlockPartition::Even(grid, count));
+    }
+    return partitions;
+  }
+};
+
+TEST_F(ThickPropagationBlocks, ConvergeInAWhiteCube)
+{
+  for (const float perVoxel : { 4.0f, 10.0f })
+  {
+    SCOPED_TRACE(std::to_string(perVoxel) + " a voxel");
+    RandomMedium whole(Grid{ { 16, 16, 16 } }, 1, 1.0f);
+    std::fill(whole.absorption.begin(), whole.absorption.end(), 0.0f);
+    std::fill(whole.scattering.begin(), whole.scattering.end(), perVoxel);
+    ExpectTheLightOfTheWhole(whole, Diffuse(), Accelerated(), OnRanks(whole.medium.grid, { 2, 3, 8 }), 1e-4);
+  }
+}
+
+/// Blocks that end anywhere, of one voxel, and none; voxels of all thicknesses beside each other, void too.
+TEST_F(ThickPropagationBlocks, HaveTheLightOfTheWholeInUnevenBlocksOfAnyMedium)
+{
+  RandomMedium whole(Grid{ { 9, 7, 6 } }, 3, 12.0f, 3);
+  whole.Emit(0.3f);
+  PropagationSettings settings = Accelerated();
+  settings.source = PropagationSource::Linear;
+  const BlockPartition uneven = { whole.medium.grid,
+    { { { 0, 0, 0 }, { 3, 7, 6 } }, {}, { { 3, 0, 0 }, { 1, 7, 6 } }, { { 4, 0, 0 }, { 5, 1, 1 } },
+      { { 4, 0, 1 }, { 5, 1, 5 } }, { { 4, 1, 0 }, { 5, 6, 6 } } } };
+  ExpectTheLightOfTheWhole(whole, Diffuse(), settings, { uneven, BlockPartition::Even(whole.medium.grid, 4) }, 1e-4);
+}
+
+TEST_F(ThickPropagationBlocks, GoOnInBlocksOfOneVoxelBesideRanksWithout)
+{
+  RandomMedium whole(Grid{ { 2, 2, 1 } }, 1, 12.0f, 6);
+  whole.Emit(0.3f);
+  PropagationSettings settings = Accelerated();
+  settings.source = PropagationSource::Linear;
+  ExpectTheLightOfTheWhole(whole, Diffuse(), settings, OnRanks(whole.medium.grid, { 6 }), 1e-4);
 }
 
 /// Whatever goes wrong on one rank is one error on each, and none waits for the others.

@@ -11,6 +11,7 @@
 #include "LightPropagation/Distributed/BlockWithGhosts.h"
 #include "LightPropagation/Problem/MediumOnDevice.h"
 #include "LightPropagation/PropagationSettings.h"
+#include "LightPropagation/Sweep/SweepOperator.h"
 #include "LightPropagation/Uncollided/BoundaryLight.h"
 
 #include <memory>
