@@ -3,6 +3,8 @@
 #include "Device/HostThreads.h"
 #include "LightPropagation/Diffusion/CrossingPattern.h"
 #include "LightPropagation/Diffusion/FluxLimit.h"
+#include "LightPropagation/Diffusion/LampPassing.h"
+#include "LightPropagation/Uncollided/UncollidedLamp.h"
 #include "Medium/VoxelSums.h"
 #include "Numerics/Constants.h"
 
@@ -50,6 +52,43 @@ void AccelerationInBlocks::SpreadMedium()
   this->Block.SpreadWithGhosts(sigmaT, own.sharedExtinction ? 1 : own.channels, this->SigmaT);
   this->Block.SpreadWithGhosts(sigmaA, own.channels, this->SigmaA);
   this->Block.Spread(this->OwnSigmaS, own.channels, this->CountedSigmaS, Elsewhere);
+}
+
+/// In thick voxels it matters where lamps' light is first scattered.
+bool AccelerationInBlocks::NeedsFirstMoments() const
+{
+  const bool own = this->Block.Has() && AnyVoxelIsThickerThan(ThickForFirstMoments, this->The.scene.medium);
+  return this->The.others.Largest({ own ? 1.0 : 0.0 })[0] > 0.0 && this->LinearSource;
+}
+
+void AccelerationInBlocks::AddBeams(const std::vector<Light>& lamps, const Monitor& monitor)
+{
+  if (lamps.empty())
+  {
+    return;
+  }
+  const Buffer<float>* const flux = this->The.flux.Size() > 0 ? &this->The.flux : nullptr;
+  const VolumeLayout whole = { this->The.partition.whole, this->The.layout.channels, this->The.layout.sharedExtinction };
+  if (this->NeedsFirstMoments())
+  {
+    this->Beams = std::make_unique<BeamsInThickBlocks>(this->The.device, this->The.others, this->Block, whole,
+      BeamsInThickBlocks::Coefficients{ this->SigmaT, this->SigmaA, this->CountedSigmaS });
+  }
+  const std::array<bool, 3> periodic = {};
+  const UncollidedVolume volume = { this->The.device, whole, this->SigmaT, periodic, this->The.makeSweep,
+    { &this->The.path, flux, nullptr, nullptr } };
+  for (std::size_t i = 0; i < lamps.size(); ++i)
+  {
+    const double all = static_cast<double>(lamps.size());
+    const Monitor ofLamp = OfPart(monitor, i / all, (i + 1) / all);
+    this->The.ledger.Count(this->Beams
+        ? this->Beams->Add(lamps[i], this->The.makeSweep, this->The.path, flux, ofLamp)
+        : UncollidedLamp(lamps[i]).AddTo(volume, ofLamp));
+  }
+  if (this->Beams)
+  {
+    this->Beams->Finish();
+  }
 }
 
 std::vector<ConvergenceRow> AccelerationInBlocks::Run(const Monitor& monitor)
@@ -138,7 +177,8 @@ void AccelerationInBlocks::MakeSystems()
     }
     const DiffusionSystem::Arrays arrays = { held.Stride(), held.ExtinctionFirst(c), c * held.Stride(), &this->SigmaT,
       &this->SigmaT, &this->SigmaA, &this->CountedSigmaS, &this->Given, held.Places(1), c, nullptr, &this->Source,
-      &this->Path, &this->PartialCurrents, nullptr, nullptr };
+      &this->Path, &this->PartialCurrents,
+      this->Beams ? &this->Beams->Passed() : nullptr, this->Beams ? &this->Beams->OfLamps() : nullptr };
     this->Systems.push_back(std::make_unique<BalanceOverRanks>(this->The.device, this->The.others, this->The.partition,
       this->Block, directions.Set(), pattern, arrays, ofChannel, this->LinearSource));
   }

@@ -7,6 +7,7 @@
 #include "LightPropagation/Conservative/EnergyLedger.h"
 #include "LightPropagation/Convergence.h"
 #include "LightPropagation/Distributed/BalanceOverRanks.h"
+#include "LightPropagation/Distributed/BeamsInThickBlocks.h"
 #include "LightPropagation/Distributed/BlockScene.h"
 #include "LightPropagation/Distributed/BlockWithGhosts.h"
 #include "LightPropagation/Problem/MediumOnDevice.h"
@@ -47,6 +48,9 @@ public:
   /// All ranks make one together.
   explicit AccelerationInBlocks(const Parts& parts);
 
+  /// Adds the uncollided light of directional lamps to path, flux and ledger. All ranks call it, before Run.
+  void AddBeams(const std::vector<Light>& lamps, const Monitor& monitor);
+
   /// @return the rows of `convergence`
   std::vector<ConvergenceRow> Run(const Monitor& monitor);
   const std::vector<float>& Direct() const { return this->FluenceDirect; } ///< unscattered, channels interleaved
@@ -54,6 +58,7 @@ public:
 
 private:
   void SpreadMedium();
+  bool NeedsFirstMoments() const;
   void GiveFirstScattered();
   void MakeSystems();
   void ScatterFound();
@@ -72,6 +77,7 @@ private:
   Buffer<float> SigmaT, SigmaA, CountedSigmaS, Given, Source, Path, PartialCurrents;
   Buffer<float> OwnCurrents;                                ///< of the block
   std::vector<float> OwnSigmaS, OwnGiven, UncollidedFluence; ///< of the block, [channel][stride]
+  std::unique_ptr<BeamsInThickBlocks> Beams; ///< null: there are none, or it does not matter where they are scattered
   std::unique_ptr<SweepOperator> Swept;
   std::vector<std::unique_ptr<BalanceOverRanks>> Systems; ///< by channel
   std::vector<float> FluenceDirect;

@@ -91,10 +91,16 @@ void IterationInBlocks::LoadEmission()
 }
 
 /// Directional lights and peaks of the environment, which are such.
-void IterationInBlocks::AddLamps(const Monitor& monitor)
+std::vector<Light> IterationInBlocks::Lamps() const
 {
   std::vector<Light> lamps = this->Scene.illumination.lights;
   lamps.insert(lamps.end(), this->Far.peaks.begin(), this->Far.peaks.end());
+  return lamps;
+}
+
+void IterationInBlocks::AddLamps(const Monitor& monitor)
+{
+  const std::vector<Light> lamps = this->Lamps();
   const SweepMaker sweeps = [this](const SweepRequest& request) { return this->MakeSweep(request); };
   // Rays of a beam are those through the whole box.
   const UncollidedVolume volume = { this->TheDevice, this->WholeLayout, this->OnDevice.SigmaT(),
@@ -253,12 +259,13 @@ LightField IterationInBlocks::Run(const Monitor& monitor)
 /// Light of lamps goes ahead, and what of it is scattered is given to the sweeps.
 void IterationInBlocks::RunByBalance(const Monitor& monitor)
 {
-  this->AddLamps(OfPart(
-    monitor, [this](double done) { return ProgressOf(this->Settings, 1.0, UncollidedPart * done); }));
   AccelerationInBlocks acceleration({ this->TheDevice, this->Others, this->Partition, this->Scene, this->Settings,
     this->Layout, this->OnDevice, this->Directions, this->Boundary,
     [this](const SweepRequest& request) { return this->MakeSweep(request); }, this->Source, this->Path, this->Fluence,
     this->Flux, this->Ledger });
+  acceleration.AddBeams(this->Lamps(), OfPart(monitor, [this](double done) {
+    return ProgressOf(this->Settings, 1.0, UncollidedPart * done);
+  }));
   this->Rows = acceleration.Run(monitor);
   this->Direct = acceleration.Direct();
 }

@@ -37,6 +37,7 @@ private:
   VolumeLayout LayoutOn(const Grid& grid) const { return { grid, this->Scene.channels, this->Scene.sharedExtinction }; }
   std::unique_ptr<SweepOperator> MakeSweep(const SweepRequest& request);
   void LoadEmission();
+  std::vector<Light> Lamps() const;
   void AddLamps(const Monitor& monitor);
   void MakeCells();
   void RunByBalance(const Monitor& monitor);
