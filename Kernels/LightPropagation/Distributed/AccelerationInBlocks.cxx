@@ -4,7 +4,6 @@
 #include "LightPropagation/Diffusion/CrossingPattern.h"
 #include "LightPropagation/Diffusion/FluxLimit.h"
 #include "LightPropagation/Diffusion/LampPassing.h"
-#include "LightPropagation/Uncollided/UncollidedLamp.h"
 #include "Medium/VoxelSums.h"
 #include "Numerics/Constants.h"
 
@@ -63,32 +62,17 @@ bool AccelerationInBlocks::NeedsFirstMoments() const
 
 void AccelerationInBlocks::AddBeams(const std::vector<Light>& lamps, const Monitor& monitor)
 {
-  if (lamps.empty())
-  {
-    return;
-  }
   const Buffer<float>* const flux = this->The.flux.Size() > 0 ? &this->The.flux : nullptr;
   const VolumeLayout whole = { this->The.partition.whole, this->The.layout.channels, this->The.layout.sharedExtinction };
-  if (this->NeedsFirstMoments())
-  {
-    this->Beams = std::make_unique<BeamsInThickBlocks>(this->The.device, this->The.others, this->Block, whole,
-      BeamsInThickBlocks::Coefficients{ this->SigmaT, this->SigmaA, this->CountedSigmaS });
-  }
-  const std::array<bool, 3> periodic = {};
-  const UncollidedVolume volume = { this->The.device, whole, this->SigmaT, periodic, this->The.makeSweep,
-    { &this->The.path, flux, nullptr, nullptr } };
+  this->Beams = std::make_unique<BeamsInThickBlocks>(this->The.device, this->The.others, this->Block, whole,
+    BeamsInThickBlocks::Coefficients{ this->SigmaT, this->SigmaA, this->CountedSigmaS });
   for (std::size_t i = 0; i < lamps.size(); ++i)
   {
     const double all = static_cast<double>(lamps.size());
-    const Monitor ofLamp = OfPart(monitor, i / all, (i + 1) / all);
-    this->The.ledger.Count(this->Beams
-        ? this->Beams->Add(lamps[i], this->The.makeSweep, this->The.path, flux, ofLamp)
-        : UncollidedLamp(lamps[i]).AddTo(volume, ofLamp));
+    this->The.ledger.Count(this->Beams->Add(
+      lamps[i], this->The.makeSweep, this->The.path, flux, OfPart(monitor, i / all, (i + 1) / all)));
   }
-  if (this->Beams)
-  {
-    this->Beams->Finish();
-  }
+  this->Beams->Finish();
 }
 
 std::vector<ConvergenceRow> AccelerationInBlocks::Run(const Monitor& monitor)

@@ -48,7 +48,9 @@ public:
   /// All ranks make one together.
   explicit AccelerationInBlocks(const Parts& parts);
 
-  /// Adds the uncollided light of directional lamps to path, flux and ledger. All ranks call it, before Run.
+  /// In thick voxels it matters where lamps' light is first scattered. The same on all ranks, which ask together.
+  bool NeedsFirstMoments() const;
+  /// If it does: adds the uncollided light of directional lamps to path, flux and ledger. All ranks call it, before Run.
   void AddBeams(const std::vector<Light>& lamps, const Monitor& monitor);
 
   /// @return the rows of `convergence`
@@ -58,7 +60,6 @@ public:
 
 private:
   void SpreadMedium();
-  bool NeedsFirstMoments() const;
   void GiveFirstScattered();
   void MakeSystems();
   void ScatterFound();
@@ -77,7 +78,7 @@ private:
   Buffer<float> SigmaT, SigmaA, CountedSigmaS, Given, Source, Path, PartialCurrents;
   Buffer<float> OwnCurrents;                                ///< of the block
   std::vector<float> OwnSigmaS, OwnGiven, UncollidedFluence; ///< of the block, [channel][stride]
-  std::unique_ptr<BeamsInThickBlocks> Beams; ///< null: there are none, or it does not matter where they are scattered
+  std::unique_ptr<BeamsInThickBlocks> Beams; ///< null: not added
   std::unique_ptr<SweepOperator> Swept;
   std::vector<std::unique_ptr<BalanceOverRanks>> Systems; ///< by channel
   std::vector<float> FluenceDirect;

@@ -263,9 +263,17 @@ void IterationInBlocks::RunByBalance(const Monitor& monitor)
     this->Layout, this->OnDevice, this->Directions, this->Boundary,
     [this](const SweepRequest& request) { return this->MakeSweep(request); }, this->Source, this->Path, this->Fluence,
     this->Flux, this->Ledger });
-  acceleration.AddBeams(this->Lamps(), OfPart(monitor, [this](double done) {
-    return ProgressOf(this->Settings, 1.0, UncollidedPart * done);
-  }));
+  const Monitor ofLamps =
+    OfPart(monitor, [this](double done) { return ProgressOf(this->Settings, 1.0, UncollidedPart * done); });
+  const std::vector<Light> lamps = this->Lamps();
+  if (!lamps.empty() && acceleration.NeedsFirstMoments())
+  {
+    acceleration.AddBeams(lamps, ofLamps);
+  }
+  else
+  {
+    this->AddLamps(ofLamps);
+  }
   this->Rows = acceleration.Run(monitor);
   this->Direct = acceleration.Direct();
 }
