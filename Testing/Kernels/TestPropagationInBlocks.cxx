@@ -281,6 +281,7 @@ TEST_F(ThickPropagationBlocks, ConvergeInAWhiteCube)
     RandomMedium whole(Grid{ { 16, 16, 16 } }, 1, 1.0f);
     std::fill(whole.absorption.begin(), whole.absorption.end(), 0.0f);
     std::fill(whole.scattering.begin(), whole.scattering.end(), perVoxel);
+    whole.Emit(0.0f);
     ExpectTheLightOfTheWhole(whole, Diffuse(), Accelerated(), OnRanks(whole.medium.grid, { 2, 3, 8 }), 1e-4);
   }
 }
