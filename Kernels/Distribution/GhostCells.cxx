@@ -96,8 +96,8 @@ void GhostCells::AddToOwners(std::vector<double>& values) const
   for (const Shared& copied : this->Copied)
   {
     std::vector<double> message(copied.places.size());
-    std::transform(copied.places.begin(), copied.places.end(), message.begin(),
-      [&](std::size_t place) { return values[place]; });
+    std::transform(
+      copied.places.begin(), copied.places.end(), message.begin(), [&](std::size_t place) { return values[place]; });
     this->Others.Send(copied.rank, GhostTag, message);
   }
   for (const Shared& owned : this->Owned)

@@ -9,9 +9,9 @@ namespace tyndall
 {
 namespace
 {
-constexpr double WarmMargin = 1.5;    ///< the error of a guess does not fall evenly
+constexpr double WarmMargin = 1.5;      ///< the error of a guess does not fall evenly
 constexpr double MarginOfChanges = 1.5; ///< of the estimated error: changes do not fall off evenly
-constexpr double MuchLeftOver = 0.01; ///< of the power, with the usual tolerance
+constexpr double MuchLeftOver = 0.01;   ///< of the power, with the usual tolerance
 
 /// Of all power, what the solver gave up.
 double LeftOver(const EnergyBalance& balance)

@@ -308,6 +308,22 @@ TEST_F(ThickPropagationBlocks, GoOnInBlocksOfOneVoxelBesideRanksWithout)
   ExpectTheLightOfTheWhole(whole, Diffuse(), settings, OnRanks(whole.medium.grid, { 6 }), 1e-4);
 }
 
+/// A beam that slants through voxels of all thicknesses, in colour: it is first scattered near the faces it comes through.
+TEST_F(ThickPropagationBlocks, HaveTheLightOfLampsThatIsScatteredNearFaces)
+{
+  RandomMedium whole(Grid{ { 8, 7, 9 } }, 3, 8.0f, 4);
+  whole.Emit(0.0f);
+  for (std::size_t i = 0; i < whole.absorption.size(); ++i)
+  {
+    const float both = whole.absorption[i] + whole.scattering[i];
+    whole.absorption[i] = 0.001f * both;
+    whole.scattering[i] = 0.999f * both;
+  }
+  Illumination shining = LitFromOutside();
+  shining.lights[0].power = { 1.0, 0.0, 3.0 };
+  ExpectTheLightOfTheWhole(whole, shining, Accelerated(), OnRanks(whole.medium.grid, { 3, 8 }), 1e-4);
+}
+
 /// Whatever goes wrong on one rank is one error on each, and none waits for the others.
 class PropagationBlocksFail : public PropagationBlocks
 {

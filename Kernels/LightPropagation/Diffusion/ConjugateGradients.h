@@ -7,10 +7,10 @@ namespace tyndall
 /// The steps of conjugate gradients on a residual (Hestenes and Stiefel 1952), whoever holds it.
 struct GradientSteps
 {
-  std::function<double()> precondition;        ///< @return the residual's norm in that of the preconditioner, squared
-  std::function<void(double part)> turn;       ///< the next direction: what that found, and `part` of the last one
-  std::function<double()> curvature;           ///< of the direction p: p A p
-  std::function<double(double length)> goOn;   ///< so far along it. @return the square of what is left
+  std::function<double()> precondition;      ///< @return the residual's norm in that of the preconditioner, squared
+  std::function<void(double part)> turn;     ///< the next direction: what that found, and `part` of the last one
+  std::function<double()> curvature;         ///< of the direction p: p A p
+  std::function<double(double length)> goOn; ///< so far along it. @return the square of what is left
 };
 
 /// When to end.

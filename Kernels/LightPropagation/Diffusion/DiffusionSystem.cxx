@@ -317,9 +317,8 @@ std::array<double, 6> DiffusionSystem::OutflowBy(
   const double left = std::accumulate(ofSweep.begin(), ofSweep.end(), 0.0);
   for (int face = 0; face < 6 && sums.shared > 0.0 && left > 0.0; ++face)
   {
-    outflow[face] += periodic[face / 2]
-      ? 0.0
-      : sums.transportWeight / sums.shared * (missing[face] - all * ofSweep[face] / left);
+    outflow[face] +=
+      periodic[face / 2] ? 0.0 : sums.transportWeight / sums.shared * (missing[face] - all * ofSweep[face] / left);
   }
   return NotNegative(outflow);
 }

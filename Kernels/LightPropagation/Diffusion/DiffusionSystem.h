@@ -87,15 +87,15 @@ public:
   // voxels around its own (Distributed/BalanceOverRanks.h): between them values go from rank to rank. `sigma_s` of the
   // others' voxels is below 0: they are counted where they are at home.
 
-  void FindModel();                                        ///< of the fluence that the sweep is compared with
-  Buffer<float>& TheModel() { return this->Model; }        ///< W / length^2, [voxel]
-  void Balance();                                          ///< of each voxel: the right-hand side, from the model
-  MultigridSolver& Matrix() { return this->Solver; }       ///< and right-hand side
-  static double ReductionAfter(int corrections);           ///< of the residual, in the next solution
+  void FindModel();                                  ///< of the fluence that the sweep is compared with
+  Buffer<float>& TheModel() { return this->Model; }  ///< W / length^2, [voxel]
+  void Balance();                                    ///< of each voxel: the right-hand side, from the model
+  MultigridSolver& Matrix() { return this->Solver; } ///< and right-hand side
+  static double ReductionAfter(int corrections);     ///< of the residual, in the next solution
   void SetFound(const std::vector<double>& fluence) { this->Solution.Write(fluence); }
   static constexpr double RefinedBy = 0.1, RefinedTo = 1e-6; ///< what Refine asks for, of the residual and in units
-  AndersonMixing::Sums SumsOfChange() const;               ///< once the solution is there
-  double MixBy(const AndersonMixing::Sums& sums);          ///< @return as Correct
+  AndersonMixing::Sums SumsOfChange() const;                 ///< once the solution is there
+  double MixBy(const AndersonMixing::Sums& sums);            ///< @return as Correct
 
   /// Sums over cells of the box's faces: those of which the last correction finds what leaves, W.
   struct BorderSums

@@ -63,14 +63,15 @@ bool AccelerationInBlocks::NeedsFirstMoments() const
 void AccelerationInBlocks::AddBeams(const std::vector<Light>& lamps, const Monitor& monitor)
 {
   const Buffer<float>* const flux = this->The.flux.Size() > 0 ? &this->The.flux : nullptr;
-  const VolumeLayout whole = { this->The.partition.whole, this->The.layout.channels, this->The.layout.sharedExtinction };
+  const VolumeLayout whole = { this->The.partition.whole, this->The.layout.channels,
+    this->The.layout.sharedExtinction };
   this->Beams = std::make_unique<BeamsInThickBlocks>(this->The.device, this->The.others, this->Block, whole,
     BeamsInThickBlocks::Coefficients{ this->SigmaT, this->SigmaA, this->CountedSigmaS });
   for (std::size_t i = 0; i < lamps.size(); ++i)
   {
     const double all = static_cast<double>(lamps.size());
-    this->The.ledger.Count(this->Beams->Add(
-      lamps[i], this->The.makeSweep, this->The.path, flux, OfPart(monitor, i / all, (i + 1) / all)));
+    this->The.ledger.Count(
+      this->Beams->Add(lamps[i], this->The.makeSweep, this->The.path, flux, OfPart(monitor, i / all, (i + 1) / all)));
   }
   this->Beams->Finish();
 }
@@ -161,8 +162,8 @@ void AccelerationInBlocks::MakeSystems()
     }
     const DiffusionSystem::Arrays arrays = { held.Stride(), held.ExtinctionFirst(c), c * held.Stride(), &this->SigmaT,
       &this->SigmaT, &this->SigmaA, &this->CountedSigmaS, &this->Given, held.Places(1), c, nullptr, &this->Source,
-      &this->Path, &this->PartialCurrents,
-      this->Beams ? &this->Beams->Passed() : nullptr, this->Beams ? &this->Beams->OfLamps() : nullptr };
+      &this->Path, &this->PartialCurrents, this->Beams ? &this->Beams->Passed() : nullptr,
+      this->Beams ? &this->Beams->OfLamps() : nullptr };
     this->Systems.push_back(std::make_unique<BalanceOverRanks>(this->The.device, this->The.others, this->The.partition,
       this->Block, directions.Set(), pattern, arrays, ofChannel, this->LinearSource));
   }

@@ -76,9 +76,9 @@ private:
   const BlockWithGhosts Block;
   // With ghosts, as DiffusionSystem::Arrays has them; of sigma_s, source, path and given those of the block alone.
   Buffer<float> SigmaT, SigmaA, CountedSigmaS, Given, Source, Path, PartialCurrents;
-  Buffer<float> OwnCurrents;                                ///< of the block
+  Buffer<float> OwnCurrents;                                 ///< of the block
   std::vector<float> OwnSigmaS, OwnGiven, UncollidedFluence; ///< of the block, [channel][stride]
-  std::unique_ptr<BeamsInThickBlocks> Beams; ///< null: not added
+  std::unique_ptr<BeamsInThickBlocks> Beams;                 ///< null: not added
   std::unique_ptr<SweepOperator> Swept;
   std::vector<std::unique_ptr<BalanceOverRanks>> Systems; ///< by channel
   std::vector<float> FluenceDirect;

@@ -101,8 +101,7 @@ double BalanceOverRanks::Correct(double unit)
 
 void BalanceOverRanks::Refine(double unit)
 {
-  this->Solved +=
-    this->Solver->GoOn(this->Fluence, unit, DiffusionSystem::RefinedBy, DiffusionSystem::RefinedTo);
+  this->Solved += this->Solver->GoOn(this->Fluence, unit, DiffusionSystem::RefinedBy, DiffusionSystem::RefinedTo);
   this->Others.Together([&] {
     if (this->System)
     {

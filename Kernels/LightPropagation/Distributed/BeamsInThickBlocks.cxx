@@ -51,7 +51,8 @@ SweepTally BeamsInThickBlocks::Add(const Light& lamp, const SweepMaker& makeSwee
   this->OwnPath.Fill(0.0f);
   this->OwnCurrents.Fill(0.0f);
   const Deposit ofBeam = { &this->OwnPath, flux, &this->OwnCurrents, nullptr };
-  const UncollidedVolume rays = { this->TheDevice, this->Whole, this->TheMedium.sigma_t, NoneIsPeriodic, makeSweep, {} };
+  const UncollidedVolume rays = { this->TheDevice, this->Whole, this->TheMedium.sigma_t, NoneIsPeriodic, makeSweep,
+    {} };
   const SweepTally tally = SweepBeam(rays, lamp, true, ofBeam, monitor);
   std::vector<float> lengths, currents;
   this->Others.Together([&] {

@@ -47,8 +47,8 @@ private:
   const BlockWithGhosts& Block;
   const VolumeLayout Whole;
   Coefficients TheMedium;
-  Buffer<float> OwnPath, OwnCurrents;                                 ///< of a beam, over the block
-  Buffer<float> Path, Currents, BeamPath, FirstMoments;               ///< the same, with ghosts
-  Buffer<float> PathOfAll, ThroughFaces, InVoxels;                    ///< of all, with ghosts
+  Buffer<float> OwnPath, OwnCurrents;                   ///< of a beam, over the block
+  Buffer<float> Path, Currents, BeamPath, FirstMoments; ///< the same, with ghosts
+  Buffer<float> PathOfAll, ThroughFaces, InVoxels;      ///< of all, with ghosts
 };
 }

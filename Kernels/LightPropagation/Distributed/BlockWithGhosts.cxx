@@ -104,8 +104,8 @@ std::vector<float> BlockWithGhosts::TakeOwn(const Buffer<float>& held, int parts
     for (int row = 0; row < n[1] * n[2]; ++row)
     {
       const std::size_t first = static_cast<std::size_t>(row) * n[0];
-      std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(part * this->OfBox.Stride() + this->PlaceOf(first)), n[0],
-        own.begin() + static_cast<std::ptrdiff_t>(part * this->OfBlock.Stride() + first));
+      std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(part * this->OfBox.Stride() + this->PlaceOf(first)),
+        n[0], own.begin() + static_cast<std::ptrdiff_t>(part * this->OfBlock.Stride() + first));
     }
   }
   return own;

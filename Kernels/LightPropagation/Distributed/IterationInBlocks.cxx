@@ -259,10 +259,10 @@ LightField IterationInBlocks::Run(const Monitor& monitor)
 /// Light of lamps goes ahead, and what of it is scattered is given to the sweeps.
 void IterationInBlocks::RunByBalance(const Monitor& monitor)
 {
-  AccelerationInBlocks acceleration({ this->TheDevice, this->Others, this->Partition, this->Scene, this->Settings,
-    this->Layout, this->OnDevice, this->Directions, this->Boundary,
-    [this](const SweepRequest& request) { return this->MakeSweep(request); }, this->Source, this->Path, this->Fluence,
-    this->Flux, this->Ledger });
+  AccelerationInBlocks acceleration(
+    { this->TheDevice, this->Others, this->Partition, this->Scene, this->Settings, this->Layout, this->OnDevice,
+      this->Directions, this->Boundary, [this](const SweepRequest& request) { return this->MakeSweep(request); },
+      this->Source, this->Path, this->Fluence, this->Flux, this->Ledger });
   const Monitor ofLamps =
     OfPart(monitor, [this](double done) { return ProgressOf(this->Settings, 1.0, UncollidedPart * done); });
   const std::vector<Light> lamps = this->Lamps();

@@ -134,7 +134,8 @@ void MultigridOverRanks::AddLevel(const std::array<int, 3>& size, const std::arr
 MultigridOverRanks::Row MultigridOverRanks::RowOf(const Level& level, int y, int z)
 {
   const VoxelBox& own = level.own;
-  const auto strideY = static_cast<std::ptrdiff_t>(level.Stride(1)), strideZ = static_cast<std::ptrdiff_t>(level.Stride(2));
+  const auto strideY = static_cast<std::ptrdiff_t>(level.Stride(1)),
+             strideZ = static_cast<std::ptrdiff_t>(level.Stride(2));
   Row row;
   row.first = (z - level.held.first[2]) * level.Stride(2) + (y - level.held.first[1]) * level.Stride(1) +
     (own.first[0] - level.held.first[0]);
@@ -217,8 +218,8 @@ void MultigridOverRanks::ForParents(const Level& fine, const Level& coarse, cons
     for (int y = own.first[1]; y < EndOf(own, 1); ++y)
     {
       const Row row = RowOf(fine, y, z);
-      const std::size_t parents = (of(2, z) - coarse.held.first[2]) * coarse.Stride(2) +
-        (of(1, y) - coarse.held.first[1]) * coarse.Stride(1);
+      const std::size_t parents =
+        (of(2, z) - coarse.held.first[2]) * coarse.Stride(2) + (of(1, y) - coarse.held.first[1]) * coarse.Stride(1);
       for (int x = 0; x < row.count; ++x)
       {
         const int place = own.first[0] + x;
@@ -229,8 +230,7 @@ void MultigridOverRanks::ForParents(const Level& fine, const Level& coarse, cons
   }
 }
 
-void MultigridOverRanks::SetMatrix(
-  const std::array<std::vector<float>, 3>& conductance, const std::vector<float>& loss)
+void MultigridOverRanks::SetMatrix(const std::array<std::vector<float>, 3>& conductance, const std::vector<float>& loss)
 {
   Level& finest = this->Levels.front();
   for (int axis = 0; axis < 3; ++axis)
@@ -288,9 +288,8 @@ void MultigridOverRanks::Restrict(Level& fine, Level& coarse) const
     }
   });
   std::fill(coarse.right.begin(), coarse.right.end(), 0.0);
-  ForParents(fine, coarse, [&](std::size_t i, std::size_t parent, const std::array<bool, 3>&) {
-    coarse.right[parent] += fine.better[i];
-  });
+  ForParents(fine, coarse,
+    [&](std::size_t i, std::size_t parent, const std::array<bool, 3>&) { coarse.right[parent] += fine.better[i]; });
   coarse.ghosts->AddToOwners(coarse.right);
   ForRows(coarse, [&](const Row& row) {
     for (std::size_t i = row.first; i < row.first + row.count; ++i)

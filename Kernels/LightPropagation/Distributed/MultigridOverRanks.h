@@ -23,8 +23,7 @@ class MultigridOverRanks
 public:
   /// @param communicator  must stay
   /// @param gatherAtMost  cells of a level that the first rank has alone; of the finest none is gathered
-  MultigridOverRanks(
-    Communicator& communicator, const BlockPartition& partition, std::size_t gatherAtMost = FewCells);
+  MultigridOverRanks(Communicator& communicator, const BlockPartition& partition, std::size_t gatherAtMost = FewCells);
 
   /// The rank's block and the layer of voxels beside it: what arrays are over, x fastest. Of none where the block is.
   const VoxelBox& Held() const { return this->Levels.front().held; }

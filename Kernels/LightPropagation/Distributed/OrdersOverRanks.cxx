@@ -10,8 +10,7 @@ namespace tyndall
 namespace
 {
 /// Of all ranks, lines through the whole grid: as many values as its surface has, no more.
-ThickLines LinesOfAll(
-  Communicator& communicator, const BlockPartition& partition, const Medium& medium, int channel)
+ThickLines LinesOfAll(Communicator& communicator, const BlockPartition& partition, const Medium& medium, int channel)
 {
   const VoxelBox& block = partition.blocks[communicator.Rank()];
   LineSums all;
@@ -82,14 +81,13 @@ OrdersOverRanks HowOrdersAreAdded(Communicator& communicator, const BlockPartiti
   {
     return orders;
   }
-  orders.halvings =
-    CellHalvings(partition.whole, ThickestOfAll(communicator, scene.medium, scene.channels));
+  orders.halvings = CellHalvings(partition.whole, ThickestOfAll(communicator, scene.medium, scene.channels));
   const bool inCells = AreThinEnough(partition.whole, orders.halvings);
   std::vector<IsotropicChannel> channels;
   for (int c = 0; c < scene.channels; ++c)
   {
-    channels.push_back({ LinesOfAll(communicator, partition, scene.medium, c),
-      AlbedoOfAll(communicator, scene.medium, c) });
+    channels.push_back(
+      { LinesOfAll(communicator, partition, scene.medium, c), AlbedoOfAll(communicator, scene.medium, c) });
   }
   if (ScatteredManyTimes(channels, inCells))
   {

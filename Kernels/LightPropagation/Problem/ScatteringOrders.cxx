@@ -94,8 +94,9 @@ double Leak(const PropagationProblem& problem, int channel, const std::array<dou
   // Light diffuses as far as transport has it, but is scattered more often: each order does less.
   const bool inMoments = problem.Scattering().Degree() > 0;
   const std::array<double, 3> scattered = inMoments
-    ? ThickLines(grid,
-        SumAlongLines(grid, [&](std::size_t i) { return double(problem.Scattering().SigmaT(i, channel)); })).along
+    ? ThickLines(
+        grid, SumAlongLines(grid, [&](std::size_t i) { return double(problem.Scattering().SigmaT(i, channel)); }))
+        .along
     : longest;
   double leak = 0.0;
   for (int axis = 0; axis < 3; ++axis)
@@ -170,7 +171,8 @@ AcceleratedTime AcceleratedTimeOf(const PropagationProblem& problem, const std::
   {
     return HasThickVoxels(problem) ? InMomentsOfThickVoxels : InMoments;
   }
-  const bool uneven = std::any_of(lines.begin(), lines.end(), [](const ThickLines& ofChannel) { return ofChannel.uneven; });
+  const bool uneven =
+    std::any_of(lines.begin(), lines.end(), [](const ThickLines& ofChannel) { return ofChannel.uneven; });
   return uneven ? InUnevenMedia : InEvenMedia;
 }
 
