@@ -347,14 +347,4 @@ void AccelerationInBlocks::WriteFluence()
     }
   });
 }
-
-int AccelerationInBlocks::SolverIterations() const
-{
-  int iterations = 0;
-  for (const std::unique_ptr<BalanceOverRanks>& system : this->Systems)
-  {
-    iterations += system->Iterations();
-  }
-  return iterations;
-}
 }

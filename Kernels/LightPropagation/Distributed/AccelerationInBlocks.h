@@ -56,7 +56,6 @@ public:
   /// @return the rows of `convergence`
   std::vector<ConvergenceRow> Run(const Monitor& monitor);
   const std::vector<float>& Direct() const { return this->FluenceDirect; } ///< unscattered, channels interleaved
-  int SolverIterations() const;
 
 private:
   void SpreadMedium();

@@ -79,7 +79,7 @@ double BalanceOverRanks::Correct(double unit)
     }
   });
   const double reduction = DiffusionSystem::ReductionAfter(this->Corrections++);
-  this->Solved += this->Solver->Solve(this->Fluence, right, unit, reduction);
+  this->Solver->Solve(this->Fluence, right, unit, reduction);
   AndersonMixing::Sums sums = {};
   this->Others.Together([&] {
     if (this->System)
@@ -101,7 +101,7 @@ double BalanceOverRanks::Correct(double unit)
 
 void BalanceOverRanks::Refine(double unit)
 {
-  this->Solved += this->Solver->GoOn(this->Fluence, unit, DiffusionSystem::RefinedBy, DiffusionSystem::RefinedTo);
+  this->Solver->GoOn(this->Fluence, unit, DiffusionSystem::RefinedBy, DiffusionSystem::RefinedTo);
   this->Others.Together([&] {
     if (this->System)
     {

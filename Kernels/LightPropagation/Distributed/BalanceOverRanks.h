@@ -42,8 +42,6 @@ public:
   void ShapeSource();
   void AddFlux(const Buffer<float>& flux); ///< with ghosts, which are not those of the others
 
-  int Iterations() const { return this->Solved; } ///< of the linear solver, so far
-
 private:
   std::vector<double> OwnOf(const std::vector<double>& held) const;
 
@@ -54,6 +52,6 @@ private:
   std::unique_ptr<DiffusionSystem> System; ///< of the block with ghosts; null without voxels
   std::unique_ptr<MultigridOverRanks> Solver;
   std::vector<double> Fluence; ///< that was solved for, with ghosts
-  int Corrections = 0, Solved = 0;
+  int Corrections = 0;
 };
 }

@@ -28,21 +28,20 @@ VoxelBox Joined(const VoxelBox& box, const std::array<int, 3>& halved, bool owne
   return joined;
 }
 
-/// What a rank needs of cells that others own: those beside its own, for the matrix, and those that have some of its
-/// finer cells. These lie below its own, if it has any.
-std::vector<VoxelBox> GhostsOf(const VoxelBox& own, const VoxelBox& touched, const std::array<int, 3>& size)
+/// Of the cells that have some of a rank's finer ones, those that others own: below its own, if it has any.
+std::vector<VoxelBox> TouchedOfOthers(const VoxelBox& own, const VoxelBox& touched)
 {
   if (own.VoxelCount() == 0)
   {
     return { touched };
   }
-  std::vector<VoxelBox> ghosts = LayersBeside(own, size);
-  for (const int edge : { 3, 5, 6, 7 }) // along several axes at once
+  std::vector<VoxelBox> boxes;
+  for (int below = 1; below < 8; ++below) // along which axes
   {
     VoxelBox box = own;
     for (int axis = 0; axis < 3; ++axis)
     {
-      if (edge >> axis & 1)
+      if (below >> axis & 1)
       {
         box.first[axis] = touched.first[axis];
         box.size[axis] = own.first[axis] - touched.first[axis];
@@ -50,10 +49,10 @@ std::vector<VoxelBox> GhostsOf(const VoxelBox& own, const VoxelBox& touched, con
     }
     if (box.VoxelCount() > 0)
     {
-      ghosts.push_back(box);
+      boxes.push_back(box);
     }
   }
-  return ghosts;
+  return boxes;
 }
 
 std::size_t CellsOf(const std::array<int, 3>& size)
@@ -107,18 +106,20 @@ MultigridOverRanks::MultigridOverRanks(
 void MultigridOverRanks::AddLevel(const std::array<int, 3>& size, const std::array<int, 3>& halved,
   std::vector<VoxelBox> own, const std::vector<VoxelBox>& touched)
 {
-  std::vector<std::vector<VoxelBox>> ghosts;
+  std::vector<std::vector<VoxelBox>> beside, ofOthers;
   for (std::size_t rank = 0; rank < own.size(); ++rank)
   {
-    ghosts.push_back(GhostsOf(own[rank], touched[rank], size));
+    beside.push_back(LayersBeside(own[rank], size));
+    ofOthers.push_back(TouchedOfOthers(own[rank], touched[rank]));
   }
   const auto self = static_cast<std::size_t>(this->Others.Rank());
   Level level;
   level.size = size;
   level.halved = halved;
   level.own = own[self];
-  level.held = Hull(own[self], ghosts[self]);
-  level.ghosts = std::make_unique<GhostCells>(this->Others, own, ghosts, level.held);
+  level.held = Hull(Hull(own[self], beside[self]), ofOthers[self]);
+  level.beside = std::make_unique<GhostCells>(this->Others, own, beside, level.held);
+  level.shared = std::make_unique<GhostCells>(this->Others, own, ofOthers, level.held);
   const std::size_t count = level.held.VoxelCount();
   for (std::vector<double>& ofAxis : level.conductance)
   {
@@ -259,11 +260,11 @@ void MultigridOverRanks::CoarsenMatrix(const Level& fine, Level& coarse) const
       coarse.conductance[axis][parent] += part * fine.conductance[axis][i];
     }
   });
-  coarse.ghosts->AddToOwners(coarse.loss);
+  coarse.shared->AddToOwners(coarse.loss);
   for (std::vector<double>& ofAxis : coarse.conductance)
   {
-    coarse.ghosts->AddToOwners(ofAxis);
-    coarse.ghosts->Fill(ofAxis);
+    coarse.shared->AddToOwners(ofAxis);
+    coarse.beside->Fill(ofAxis);
   }
 }
 
@@ -280,7 +281,7 @@ void MultigridOverRanks::InvertDiagonal(Level& level) const
 
 void MultigridOverRanks::Restrict(Level& fine, Level& coarse) const
 {
-  fine.ghosts->Fill(fine.guess);
+  fine.beside->Fill(fine.guess);
   ForRows(fine, [&](const Row& row) {
     for (int x = 0; x < row.count; ++x)
     {
@@ -290,7 +291,7 @@ void MultigridOverRanks::Restrict(Level& fine, Level& coarse) const
   std::fill(coarse.right.begin(), coarse.right.end(), 0.0);
   ForParents(fine, coarse,
     [&](std::size_t i, std::size_t parent, const std::array<bool, 3>&) { coarse.right[parent] += fine.better[i]; });
-  coarse.ghosts->AddToOwners(coarse.right);
+  coarse.shared->AddToOwners(coarse.right);
   ForRows(coarse, [&](const Row& row) {
     for (std::size_t i = row.first; i < row.first + row.count; ++i)
     {
@@ -301,10 +302,10 @@ void MultigridOverRanks::Restrict(Level& fine, Level& coarse) const
 
 void MultigridOverRanks::Correct(Level& fine, Level& coarse) const
 {
-  coarse.ghosts->Fill(coarse.better);
+  coarse.shared->Fill(coarse.better);
   ForParents(fine, coarse,
     [&](std::size_t i, std::size_t parent, const std::array<bool, 3>&) { fine.guess[i] += coarse.better[parent]; });
-  fine.ghosts->Fill(fine.guess);
+  fine.beside->Fill(fine.guess);
   ForRows(fine, [&](const Row& row) {
     for (int x = 0; x < row.count; ++x)
     {
@@ -339,7 +340,7 @@ void MultigridOverRanks::VisitTwice(std::size_t l)
 {
   Level& level = this->Levels[l];
   this->Visit(l);
-  level.ghosts->Fill(level.better);
+  level.beside->Fill(level.better);
   level.kept = level.better;
   ForRows(level, [&](const Row& row) {
     for (int x = 0; x < row.count; ++x)
@@ -403,7 +404,7 @@ double MultigridOverRanks::Precondition()
 double MultigridOverRanks::Begin(std::vector<double>& values, const std::vector<float>& right, double unit)
 {
   Level& finest = this->Levels.front();
-  finest.ghosts->Fill(values);
+  finest.beside->Fill(values);
   std::fill(this->Direction.begin(), this->Direction.end(), 0.0);
   return this->SumOfAll(SumOverRows(finest, [&](const Row& row) {
     double sum = 0.0;
@@ -454,7 +455,7 @@ int MultigridOverRanks::Iterate(
         this->Direction[i] = finest.better[i] + part * this->Direction[i];
       }
     });
-    finest.ghosts->Fill(this->Direction);
+    finest.beside->Fill(this->Direction);
   };
   const auto curvature = [&] {
     return this->SumOfAll(SumOverRows(finest, [&](const Row& row) {
@@ -472,7 +473,7 @@ int MultigridOverRanks::Iterate(
     [&](double length) { return this->GoAlong(values, length, unit); } };
   const auto count = static_cast<double>(CellsOf(finest.size));
   const int iterations = GoDown(steps, left, { reduction, leftAtMost, count }, this->FirstResidual);
-  finest.ghosts->Fill(values);
+  finest.beside->Fill(values);
   return iterations;
 }
 }

@@ -44,10 +44,10 @@ private:
   static constexpr std::size_t FewCells = 32768;
   struct Level
   {
-    std::array<int, 3> size = {};   ///< of the whole
-    std::array<int, 3> halved = {}; ///< to the next coarser level
-    VoxelBox own, held;             ///< of this rank
-    std::unique_ptr<GhostCells> ghosts;
+    std::array<int, 3> size = {};               ///< of the whole
+    std::array<int, 3> halved = {};             ///< to the next coarser level
+    VoxelBox own, held;                         ///< of this rank
+    std::unique_ptr<GhostCells> beside, shared; ///< cells beside own ones; others' that have finer cells of this rank
     std::array<std::vector<double>, 3> conductance;
     /// As MultigridSolver has them, over `held`.
     std::vector<double> loss, inverse, right, guess, better, kept;
