@@ -387,6 +387,10 @@ TEST_F(PropagationBlocksFail, TogetherWhereTheyDisagree)
     "disagree about settings", [](int rank, PartOf&, Illumination&, PropagationSettings& settings, Monitor&) {
       settings.tolerance *= 1.0 + rank;
     });
+  ExpectErrors(
+    "disagree about settings", [](int rank, PartOf&, Illumination&, PropagationSettings& settings, Monitor&) {
+      settings.source = rank == 1 ? PropagationSource::Linear : PropagationSource::Constant;
+    });
   ExpectErrors("disagree about what shines",
     [](int rank, PartOf&, Illumination& shining, PropagationSettings&, Monitor&) { shining.faces[3][0] += rank; });
 }
@@ -399,6 +403,20 @@ TEST_F(PropagationBlocksFail, TogetherWhereOneIsStopped)
       monitor = [](double done) { return done < 0.5; };
     }
   });
+  const auto isBalanced = [](PropagationSettings& settings) {
+    settings.source = PropagationSource::Linear;
+    settings.maximumOrders = 0;
+  };
+  for (const double until : { 0.1, 0.7 }) // in the light of the lamp, and of the sweeps
+  {
+    ExpectErrors("aborted", [&](int rank, PartOf&, Illumination&, PropagationSettings& settings, Monitor& monitor) {
+      isBalanced(settings);
+      if (rank == 2)
+      {
+        monitor = [until](double done) { return done < until; };
+      }
+    });
+  }
 }
 
 TEST_F(PropagationBlocksFail, WithWordsOnWhatIsNotCarriedFromRankToRank)
