@@ -9,35 +9,63 @@ namespace tyndall
 {
 namespace
 {
-/// Of all ranks, lines through the whole grid: as many values as its surface has, no more.
-ThickLines LinesOfAll(Communicator& communicator, const BlockPartition& partition, const Medium& medium, int channel)
+constexpr int LinesTag = 29996; ///< not one of those that others take (GhostCells.cxx)
+
+/// Adds what a block has of the whole grid's lines.
+void AddLines(const BlockPartition& partition, int rank, const std::vector<double>& ofBlock, LineSums& all)
 {
-  const VoxelBox& block = partition.blocks[communicator.Rank()];
-  LineSums all;
+  const VoxelBox& block = partition.blocks[rank];
+  auto next = ofBlock.begin();
   for (int axis = 0; axis < 3; ++axis)
   {
-    all[axis].assign(partition.whole.VoxelCount() / static_cast<std::size_t>(partition.whole.size[axis]), 0.0);
-  }
-  if (block.VoxelCount() > 0)
-  {
-    const LineSums own =
-      SumAlongLines(medium.grid, [&](std::size_t i) { return double(medium.TransportSigmaT(i, channel)); });
-    for (int axis = 0; axis < 3; ++axis)
+    const PlaneAxes axes = AcrossAxis(axis);
+    for (int v = 0; v < block.size[axes.v] && next != ofBlock.end(); ++v)
     {
-      const PlaneAxes axes = AcrossAxis(axis);
-      for (std::size_t i = 0; i < own[axis].size(); ++i)
+      const std::size_t row = static_cast<std::size_t>(block.first[axes.v] + v) * partition.whole.size[axes.u];
+      for (int u = 0; u < block.size[axes.u]; ++u)
       {
-        const std::size_t width = block.size[axes.u];
-        const std::size_t u = block.first[axes.u] + i % width, v = block.first[axes.v] + i / width;
-        all[axis][v * partition.whole.size[axes.u] + u] = own[axis][i];
+        all[axis][row + block.first[axes.u] + u] += *next++;
       }
     }
   }
-  for (std::vector<double>& ofAxis : all)
+}
+
+/// Of all ranks. The first one has the sums along lines through the whole grid: as many as its surface has cells.
+ThickLines LinesOfAll(Communicator& communicator, const BlockPartition& partition, const Medium& medium, int channel)
+{
+  std::vector<double> own;
+  communicator.Together([&] {
+    const LineSums sums =
+      SumAlongLines(medium.grid, [&](std::size_t i) { return double(medium.TransportSigmaT(i, channel)); });
+    for (const std::vector<double>& ofAxis : sums)
+    {
+      own.insert(own.end(), ofAxis.begin(), ofAxis.end());
+    }
+  });
+  ThickLines lines;
+  if (communicator.Rank() > 0)
   {
-    ofAxis = communicator.Sum(ofAxis);
+    communicator.Send(0, LinesTag, own);
   }
-  return { partition.whole, all };
+  else
+  {
+    LineSums all;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      all[axis].assign(partition.whole.VoxelCount() / static_cast<std::size_t>(partition.whole.size[axis]), 0.0);
+    }
+    AddLines(partition, 0, own, all);
+    for (int rank = 1; rank < communicator.Ranks(); ++rank)
+    {
+      AddLines(partition, rank, communicator.Receive<double>(rank, LinesTag), all);
+    }
+    lines = ThickLines(partition.whole, all);
+  }
+  const std::vector<double> found = communicator.Sum(
+    { lines.along[0], lines.along[1], lines.along[2], lines.uneven ? 1.0 : 0.0 }); // the other ranks have zeros
+  std::copy_n(found.begin(), 3, lines.along.begin());
+  lines.uneven = found[3] > 0.0;
+  return lines;
 }
 
 /// Of what is scattered, in the mean.

@@ -58,6 +58,7 @@ LineSums SumAlongLines(const Grid& grid, const Value& value)
 /// up to three times too many (numerics.md, Eq. (86a)).
 struct ThickLines
 {
+  ThickLines() = default; ///< of vacuum
   /// @param sigma_t  1/length, added up
   ThickLines(const Grid& grid, const LineSums& sigma_t);
 
