@@ -389,6 +389,7 @@ TEST_F(PropagationBlocksFail, TogetherWhereTheyDisagree)
     });
   ExpectErrors(
     "disagree about settings", [](int rank, PartOf&, Illumination&, PropagationSettings& settings, Monitor&) {
+      settings.acceleration = PropagationAcceleration::Automatic;
       settings.source = rank == 1 ? PropagationSource::Linear : PropagationSource::Constant;
     });
   ExpectErrors("disagree about what shines",
@@ -404,6 +405,7 @@ TEST_F(PropagationBlocksFail, TogetherWhereOneIsStopped)
     }
   });
   const auto isBalanced = [](PropagationSettings& settings) {
+    settings.acceleration = PropagationAcceleration::Automatic;
     settings.source = PropagationSource::Linear;
     settings.maximumOrders = 0;
   };
