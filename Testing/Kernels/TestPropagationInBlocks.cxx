@@ -308,7 +308,7 @@ TEST_F(ThickPropagationBlocks, GoOnInBlocksOfOneVoxelBesideRanksWithout)
   ExpectTheLightOfTheWhole(whole, Diffuse(), settings, OnRanks(whole.medium.grid, { 6 }), 1e-4);
 }
 
-/// A beam that slants through voxels of all thicknesses, in colour: it is first scattered near the faces it comes through.
+/// A beam that slants through voxels of all thicknesses, in colour: it is scattered near the faces it comes through.
 TEST_F(ThickPropagationBlocks, HaveTheLightOfLampsThatIsScatteredNearFaces)
 {
   RandomMedium whole(Grid{ { 8, 7, 9 } }, 3, 8.0f, 4);
