@@ -50,7 +50,7 @@ public:
 
   /// In thick voxels it matters where lamps' light is first scattered. The same on all ranks, which ask together.
   bool NeedsFirstMoments() const;
-  /// If it does: adds the uncollided light of directional lamps to path, flux and ledger. All ranks call it, before Run.
+  /// If it does: adds the uncollided light of directional lamps to path, flux and ledger. All ranks call it before Run.
   void AddBeams(const std::vector<Light>& lamps, const Monitor& monitor);
 
   /// @return the rows of `convergence`

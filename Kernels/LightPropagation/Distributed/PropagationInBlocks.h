@@ -23,11 +23,11 @@ namespace tyndall
 /// thicker by their balance (AccelerationInBlocks.h), with the source that the settings ask for. The source of the
 /// former two is constant in voxels.
 ///
-/// Carried are light that comes in through the box's faces, from the sky and the environment, of directional lights, and
-/// emission, all of it along the usual directions; scattering is isotropic, or by the similarity relation where
+/// Carried are light that comes in through the box's faces, from the sky and the environment, of directional lights,
+/// and emission, all of it along the usual directions; scattering is isotropic, or by the similarity relation where
 /// settings.angularDegree is 0. The light is that of SolveConservative with emissionError and uncollidedDirections 0,
-/// and a constant source where voxels are not balanced: to rounding where neither is accelerated, else to the tolerance.
-/// It does not depend on the number of ranks, but for rounding.
+/// and a constant source where voxels are not balanced: to rounding where neither is accelerated, else to the
+/// tolerance. It does not depend on the number of ranks, but for rounding.
 ///
 /// @param medium  of the rank's block, with the grid that partition.OwnGrid() has; looked at by nobody where that has
 ///   no voxels

@@ -8,7 +8,7 @@
 
 namespace tyndall
 {
-/// Sums of a value over each line of voxels along an axis, by axis and place along the other two, the lower one fastest.
+/// Sums of a value over each line of voxels along an axis, by axis and place along the others, the lower one fastest.
 using LineSums = std::array<std::vector<double>, 3>;
 
 /// @param value  value(voxel); called from several threads

@@ -19,8 +19,8 @@ SweepTally DepositBeam(const UncollidedVolume& volume, const Light& light, const
 SweepTally SweepBeam(const UncollidedVolume& volume, const Light& light, bool firstMoments, const Deposit& deposit,
   const Monitor& monitor);
 
-/// Adds what a beam deposited to path and first moments of the volume's deposit. These are found from the powers through
-/// the voxels' faces, so those that enter the voxels beside are looked at.
+/// Adds what a beam deposited to path and first moments of the volume's deposit. These are found from the powers
+/// through the voxels' faces, so those that enter the voxels beside are looked at.
 /// @param ofBeam  path and partial currents
 void AddWithFirstMoments(const UncollidedVolume& volume, const Light& light, const Deposit& ofBeam);
 }
