@@ -289,7 +289,7 @@ TEST_F(ThickPropagationBlocks, ConvergeInAWhiteCube)
 /// Blocks that end anywhere, of one voxel, and none; voxels of all thicknesses beside each other, void too.
 TEST_F(ThickPropagationBlocks, HaveTheLightOfTheWholeInUnevenBlocksOfAnyMedium)
 {
-  RandomMedium whole(Grid{ { 9, 7, 6 } }, 3, 12.0f, 3);
+  RandomMedium whole(Grid{ { 9, 7, 6 }, { 1.0, 0.7, 1.6 } }, 3, 12.0f, 3);
   whole.Emit(0.3f);
   PropagationSettings settings = Accelerated();
   settings.source = PropagationSource::Linear;
