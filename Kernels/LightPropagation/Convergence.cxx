@@ -9,8 +9,9 @@ namespace tyndall
 {
 namespace
 {
-constexpr double WarmMargin = 1.5;    ///< the error of a guess does not fall evenly
-constexpr double MuchLeftOver = 0.01; ///< of the power, with the usual tolerance
+constexpr double WarmMargin = 1.5;      ///< the error of a guess does not fall evenly
+constexpr double MarginOfChanges = 1.5; ///< of the estimated error: changes do not fall off evenly
+constexpr double MuchLeftOver = 0.01;   ///< of the power, with the usual tolerance
 
 /// Of all power, what the solver gave up.
 double LeftOver(const EnergyBalance& balance)
@@ -43,6 +44,18 @@ double RestOfOrders::After(double now, double all)
   this->Compares = true;
   ++this->Orders;
   return this->Orders == 1 ? std::min(rest, 1.0) : rest;
+}
+
+double RestOfChanges::After(double change, double guessedRatio)
+{
+  const double measured = this->Changes > 0 && this->Last > 0.0 ? change / this->Last : 1.0;
+  const double ratio = guessedRatio > 0.0 ? guessedRatio : measured;
+  const double fall = std::clamp(this->Changes > 1 ? std::max(ratio, this->LastRatio) : ratio, 0.5, 0.95);
+  const bool first = this->Changes == 0;
+  ++this->Changes;
+  this->LastRatio = ratio;
+  this->Last = change;
+  return first && change != 0.0 ? 1.0 : MarginOfChanges * change * fall / (1.0 - fall);
 }
 
 double ProgressOf(const PropagationSettings& settings, double residual, double iterations)

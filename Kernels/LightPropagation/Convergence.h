@@ -31,6 +31,21 @@ private:
   double Last = 0.0, LastRatio = 0.0, Least = 0.0;
 };
 
+/// What is still to come where each iteration corrects the one before (numerics.md, Eq. (73)).
+class RestOfChanges
+{
+public:
+  /// @param change  relative, of an iteration
+  /// @param guessedRatio  of it to the one before, where that is known otherwise; 0: it is not
+  /// @return estimate of the relative error; 1 after the first iteration, which does not show how fast changes fall
+  double After(double change, double guessedRatio = 0.0);
+  double Ratio() const { return this->LastRatio; } ///< of the last change to the one before
+
+private:
+  int Changes = 0;
+  double Last = 1.0, LastRatio = 1.0;
+};
+
 /// Of a solve, [0, 1]: orders of those asked for, else how far the logarithm of the residual has come, and a little
 /// more with each iteration.
 /// @param residual  of the last iteration, 1 before there is one

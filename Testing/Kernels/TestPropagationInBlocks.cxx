@@ -7,6 +7,8 @@
 #include "LightPropagation/Conservative/ConservativePropagation.h"
 #include "LightPropagation/Distributed/PropagationInBlocks.h"
 
+#include <algorithm>
+#include <cmath>
 #include <functional>
 #include <mutex>
 #include <string>
@@ -285,6 +287,130 @@ TEST_F(PropagationBlocks, FindTheSameLightSoonerByCells)
   }
 }
 
+/// Voxels of several mean free paths, which absorb little or nothing: the balance of voxels goes with the sweeps.
+class ThickPropagationBlocks : public PropagationBlocks
+{
+protected:
+  static PropagationSettings Accelerated()
+  {
+    PropagationSettings settings = SettingsOf(0);
+    settings.acceleration = PropagationAcceleration::Automatic;
+    settings.source = PropagationSource::Automatic;
+    return settings;
+  }
+  static Illumination Diffuse()
+  {
+    Illumination shining = LitFromOutside();
+    shining.lights.clear();
+    return shining;
+  }
+
+  /// As the solver in one memory, and the same on any ranks: to 1e-6 of the largest fluence.
+  void ExpectTheLightOfTheWhole(const RandomMedium& whole, const Illumination& shining,
+    const PropagationSettings& settings, const std::vector<BlockPartition>& partitions, double tolerance)
+  {
+    const LightField expected = SolveConservative(GetDevice(), whole.medium, shining, settings);
+    const LightField alone =
+      LightOfAll(GetDevice(), BlockPartition::Even(whole.medium.grid, 1), whole, shining, settings);
+    EXPECT_TRUE(alone.converged);
+    EXPECT_LE(alone.convergence.size(), expected.convergence.size() + 1);
+    EXPECT_LT(LargestDifference(alone.fluence, expected.fluence), tolerance);
+    EXPECT_LT(RelativeRmse(alone.netFlux, expected.netFlux), 2.0 * tolerance);
+    EXPECT_LT(RelativeRmse(alone.fluenceDirect, expected.fluenceDirect), 1e-6);
+    ExpectEnergyKept(alone);
+    for (std::size_t i = 0; i < partitions.size(); ++i)
+    {
+      SCOPED_TRACE("partition " + std::to_string(i));
+      const LightField found = LightOfAll(GetDevice(), partitions[i], whole, shining, settings);
+      EXPECT_EQ(found.convergence.size(), alone.convergence.size());
+      EXPECT_LT(LargestDifference(found.fluence, alone.fluence), 1e-6);
+      EXPECT_LT(RelativeRmse(found.netFlux, alone.netFlux), 1e-5);
+      ExpectEnergyKept(found);
+    }
+  }
+  static void ExpectEnergyKept(const LightField& light)
+  {
+    EXPECT_LT(light.balance.RelativeError(light.channels), 1e-5);
+  }
+  /// Over the largest value.
+  static double LargestDifference(const std::vector<float>& found, const std::vector<float>& expected)
+  {
+    double largest = 0.0, difference = found.size() == expected.size() ? 0.0 : HUGE_VAL;
+    for (std::size_t i = 0; i < expected.size(); ++i)
+    {
+      largest = std::max<double>(largest, std::abs(expected[i]));
+      difference = std::max<double>(difference, std::abs(found[i] - expected[i]));
+    }
+    return difference / largest;
+  }
+  static std::vector<BlockPartition> OnRanks(const Grid& grid, const std::vector<int>& ranks)
+  {
+    std::vector<BlockPartition> partitions;
+    for (const int count : ranks)
+    {
+      partitions.push_back(BlockPartition::Even(grid, count));
+    }
+    return partitions;
+  }
+};
+
+TEST_F(ThickPropagationBlocks, ConvergeInAWhiteCube)
+{
+  for (const float perVoxel : { 4.0f, 10.0f })
+  {
+    SCOPED_TRACE(std::to_string(perVoxel) + " a voxel");
+    RandomMedium whole(Grid{ { 16, 16, 16 } }, 1, 1.0f);
+    std::fill(whole.absorption.begin(), whole.absorption.end(), 0.0f);
+    std::fill(whole.scattering.begin(), whole.scattering.end(), perVoxel);
+    whole.Emit(0.0f);
+    ExpectTheLightOfTheWhole(whole, Diffuse(), Accelerated(), OnRanks(whole.medium.grid, { 2, 3, 8 }), 1e-4);
+  }
+}
+
+/// Blocks that end anywhere, of one voxel, and none; voxels of all thicknesses beside each other, void too.
+TEST_F(ThickPropagationBlocks, HaveTheLightOfTheWholeInUnevenBlocksOfAnyMedium)
+{
+  RandomMedium whole(Grid{ { 9, 7, 6 }, { 1.0, 0.7, 1.6 } }, 3, 12.0f, 3);
+  whole.Emit(0.3f);
+  PropagationSettings settings = Accelerated();
+  settings.source = PropagationSource::Linear;
+  const BlockPartition uneven = { whole.medium.grid,
+    { { { 0, 0, 0 }, { 3, 7, 6 } }, {}, { { 3, 0, 0 }, { 1, 7, 6 } }, { { 4, 0, 0 }, { 5, 1, 1 } },
+      { { 4, 0, 1 }, { 5, 1, 5 } }, { { 4, 1, 0 }, { 5, 6, 6 } } } };
+  ExpectTheLightOfTheWhole(whole, Diffuse(), settings, { uneven, BlockPartition::Even(whole.medium.grid, 4) }, 1e-4);
+}
+
+TEST_F(ThickPropagationBlocks, GoOnInBlocksOfOneVoxelBesideRanksWithout)
+{
+  RandomMedium whole(Grid{ { 2, 2, 1 } }, 1, 12.0f, 6);
+  whole.Emit(0.3f);
+  PropagationSettings settings = Accelerated();
+  settings.source = PropagationSource::Linear;
+  ExpectTheLightOfTheWhole(whole, Diffuse(), settings, OnRanks(whole.medium.grid, { 6 }), 1e-4);
+}
+
+/// A beam that slants through voxels of all thicknesses, in colour: it is scattered near the faces it comes through.
+TEST_F(ThickPropagationBlocks, HaveTheLightOfLampsThatIsScatteredNearFaces)
+{
+  RandomMedium whole(Grid{ { 8, 7, 9 } }, 3, 8.0f, 4);
+  whole.Emit(0.0f);
+  for (std::size_t i = 0; i < whole.absorption.size(); ++i)
+  {
+    const float both = whole.absorption[i] + whole.scattering[i];
+    whole.absorption[i] = 0.001f * both;
+    whole.scattering[i] = 0.999f * both;
+  }
+  Illumination shining = LitFromOutside();
+  shining.lights[0].power = { 1.0, 0.0, 3.0 };
+  ExpectTheLightOfTheWhole(whole, shining, Accelerated(), OnRanks(whole.medium.grid, { 3, 8 }), 1e-4);
+  for (const Light& lamp : NearLamps())
+  {
+    SCOPED_TRACE("a lamp at " + std::to_string(lamp.position[0]));
+    shining.lights = { lamp };
+    ExpectTheLightOfTheWhole(whole, shining, Accelerated(), OnRanks(whole.medium.grid, { 8 }), 1e-4);
+  }
+}
+
 /// Whatever goes wrong on one rank is one error on each, and none waits for the others.
 class PropagationBlocksFail : public PropagationBlocks
 {
@@ -348,6 +474,11 @@ TEST_F(PropagationBlocksFail, TogetherWhereTheyDisagree)
     "disagree about settings", [](int rank, PartOf&, Illumination&, PropagationSettings& settings, Monitor&) {
       settings.tolerance *= 1.0 + rank;
     });
+  ExpectErrors(
+    "disagree about settings", [](int rank, PartOf&, Illumination&, PropagationSettings& settings, Monitor&) {
+      settings.acceleration = PropagationAcceleration::Automatic;
+      settings.source = rank == 1 ? PropagationSource::Linear : PropagationSource::Constant;
+    });
   ExpectErrors("disagree about what shines",
     [](int rank, PartOf&, Illumination& shining, PropagationSettings&, Monitor&) { shining.faces[3][0] += rank; });
 }
@@ -360,6 +491,21 @@ TEST_F(PropagationBlocksFail, TogetherWhereOneIsStopped)
       monitor = [](double done) { return done < 0.5; };
     }
   });
+  const auto isBalanced = [](PropagationSettings& settings) {
+    settings.acceleration = PropagationAcceleration::Automatic;
+    settings.source = PropagationSource::Linear;
+    settings.maximumOrders = 0;
+  };
+  for (const double until : { 0.1, 0.7 }) // in the light of the lamp, and of the sweeps
+  {
+    ExpectErrors("aborted", [&](int rank, PartOf&, Illumination&, PropagationSettings& settings, Monitor& monitor) {
+      isBalanced(settings);
+      if (rank == 2)
+      {
+        monitor = [until](double done) { return done < until; };
+      }
+    });
+  }
 }
 
 TEST_F(PropagationBlocksFail, WithWordsOnWhatIsNotCarriedFromRankToRank)

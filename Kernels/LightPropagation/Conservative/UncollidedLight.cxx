@@ -13,8 +13,6 @@ namespace tyndall
 {
 namespace
 {
-constexpr double ThickForFirstMoments = 0.1; ///< mean free paths a voxel
-
 double Ratio(double of, double to)
 {
   return to > 0.0 ? of / to : 1.0;

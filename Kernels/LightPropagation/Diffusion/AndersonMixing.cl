@@ -14,10 +14,14 @@ __kernel void anderson_sums(const __global exact* given, const __global exact* f
   exact sum[AndersonSums] = { 0, 0, 0, 0, 0, 0, 0, 0 };
   for (int i = begin; i < end; ++i)
   {
+    const exact tau = i < voxels ? sigma_s[first + i] * length : 0;
+    if (tau < 0)
+    {
+      continue; // counted elsewhere
+    }
     const exact f = found[i] - given[i];
     const exact d1 = f - change1[i];
     const exact d2 = f - change2[i];
-    const exact tau = i < voxels ? sigma_s[first + i] * length : 0;
     const exact weight = tau / (1 + tau);
     sum[0] += weight * f * f;
     sum[1] += weight * found[i] * found[i];

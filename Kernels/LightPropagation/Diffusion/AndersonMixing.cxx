@@ -1,7 +1,5 @@
 #include "LightPropagation/Diffusion/AndersonMixing.h"
 
-#include "LightPropagation/Diffusion/DiffusionShared.h"
-
 #include "Device/GroupSize.h"
 #include "Device/Sizes.h"
 
@@ -16,7 +14,7 @@ AndersonMixing::AndersonMixing(Device& device, std::size_t voxels, std::size_t c
   : TheDevice(device)
   , Voxels(voxels)
   , Count(count)
-  , Sums(device, AndersonSums * PartsOf<std::size_t>(count, DiffusionChunk), "sums")
+  , OfChunks(device, AndersonSums * PartsOf<std::size_t>(count, DiffusionChunk), "sums")
 {
   for (int i = 0; i < 2; ++i)
   {
@@ -27,10 +25,9 @@ AndersonMixing::AndersonMixing(Device& device, std::size_t voxels, std::size_t c
   }
 }
 
-double AndersonMixing::Mix(const ExactValues& given, const ExactValues& found, const Weighting& weighting)
+double AndersonMixing::Mix(const ExactValues& given, const ExactValues& found, const Sums& sums)
 {
-  double change = 0.0;
-  const std::array<double, 2> weights = this->Weights(given, found, weighting, &change);
+  const std::array<double, 2> weights = this->WeightsBy(sums);
   cl::Kernel step =
     this->TheDevice.Kernel("anderson_step", kernel_source::AndersonMixing, ExactOption(this->TheDevice));
   std::swap(this->FoundBefore[0], this->FoundBefore[1]);
@@ -40,28 +37,37 @@ double AndersonMixing::Mix(const ExactValues& given, const ExactValues& found, c
     static_cast<float>(weights[0]), static_cast<float>(weights[1]));
   this->TheDevice.Queue().enqueueNDRangeKernel(step, cl::NullRange, cl::NDRange(this->Count), cl::NullRange);
   ++this->Mixes;
-  return change;
+  return ChangeBy(sums);
 }
 
-/// Weights of the two iterations before in the mix: least squares of the change (numerics.md, Eq. (71)).
-std::array<double, 2> AndersonMixing::Weights(
-  const ExactValues& given, const ExactValues& found, const Weighting& weighting, double* change)
+double AndersonMixing::ChangeBy(const Sums& sums)
+{
+  return sums[1] > 0.0 ? std::sqrt(sums[0] / sums[1]) : 0.0;
+}
+
+AndersonMixing::Sums AndersonMixing::SumsOf(
+  const ExactValues& given, const ExactValues& found, const Weighting& weighting) const
 {
   cl::Kernel kernel =
     this->TheDevice.Kernel("anderson_sums", kernel_source::AndersonMixing, ExactOption(this->TheDevice));
   With(kernel, given.Handle(), found.Handle(), this->ChangeBefore[0], this->ChangeBefore[1], *weighting.sigma_s,
-    cl_int(weighting.first), weighting.length, cl_int(this->Voxels), cl_int(this->Count), this->Sums.Handle());
+    cl_int(weighting.first), weighting.length, cl_int(this->Voxels), cl_int(this->Count), this->OfChunks.Handle());
   const std::size_t chunks = PartsOf<std::size_t>(this->Count, DiffusionChunk);
   this->TheDevice.Queue().enqueueNDRangeKernel(
     kernel, cl::NullRange, cl::NDRange(chunks), GroupOfLargeItems(this->TheDevice));
-  std::array<double, AndersonSums> sums = {};
-  const std::vector<double> parts = this->Sums.Read();
+  Sums sums = {};
+  const std::vector<double> parts = this->OfChunks.Read();
   for (std::size_t i = 0; i < parts.size(); ++i)
   {
     sums[i % AndersonSums] += parts[i];
   }
+  return sums;
+}
+
+/// Weights of the two iterations before in the mix: least squares of the change (numerics.md, Eq. (71)).
+std::array<double, 2> AndersonMixing::WeightsBy(const Sums& sums) const
+{
   const auto& [ff, all, aa, ab, bb, af, bf, unused] = sums;
-  *change = all > 0.0 ? std::sqrt(ff / all) : 0.0;
   const double determinant = aa * bb - ab * ab;
   if (this->Mixes >= 2 && determinant > 1e-8 * aa * bb)
   {

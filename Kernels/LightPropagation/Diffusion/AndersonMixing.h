@@ -1,6 +1,7 @@
 #pragma once
 
 #include "Device/ExactValues.h"
+#include "LightPropagation/Diffusion/DiffusionShared.h"
 
 #include <array>
 
@@ -19,22 +20,31 @@ public:
   /// which scatters nothing.
   struct Weighting
   {
-    const Buffer<float>* sigma_s; ///< 1/length
+    const Buffer<float>* sigma_s; ///< 1/length; below 0: the voxel is counted elsewhere, on the rank that it is of
     std::size_t first;            ///< where the coefficients of these values begin
     float length;
   };
 
+  using Sums = std::array<double, AndersonSums>;
+
   /// @param given  what `found` was found with; becomes what to go on with
   /// @return |found - given| / |found| of each voxel's first value, weighted (numerics.md, Eq. (72))
-  double Mix(const ExactValues& given, const ExactValues& found, const Weighting& weighting);
+  double Mix(const ExactValues& given, const ExactValues& found, const Weighting& weighting)
+  {
+    return this->Mix(given, found, this->SumsOf(given, found, weighting));
+  }
+
+  // The same in two steps, where values are spread over ranks: sums of all ranks lie between them.
+  Sums SumsOf(const ExactValues& given, const ExactValues& found, const Weighting& weighting) const;
+  double Mix(const ExactValues& given, const ExactValues& found, const Sums& sums);
+  static double ChangeBy(const Sums& sums); ///< what Mix returns
 
 private:
-  std::array<double, 2> Weights(
-    const ExactValues& given, const ExactValues& found, const Weighting& weighting, double* change);
+  std::array<double, 2> WeightsBy(const Sums& sums) const;
 
   Device& TheDevice;
   std::size_t Voxels, Count;
-  ExactValues Sums;
+  ExactValues OfChunks;
   std::array<Buffer<float>, 2> FoundBefore, ChangeBefore; ///< of the last mix and the one before
   int Mixes = 0;
 };

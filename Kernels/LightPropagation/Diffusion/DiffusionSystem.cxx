@@ -205,23 +205,42 @@ double DiffusionSystem::Correct(double unit)
 {
   this->FindModel();
   this->Balance();
-  this->Solver.Solve(this->Solution, unit, this->Corrections < Several ? Reduction : SlowReduction);
-  ++this->Corrections;
+  this->Solver.Solve(this->Solution, unit, ReductionAfter(this->Corrections));
   if (this->HasMoments())
   {
     cl::Kernel flux =
       this->OnArrays("diffusion_found_flux", this->The.moments, cl_int(this->The.channel), this->Solution.Handle());
     this->Run(flux);
   }
+  return this->MixBy(this->SumsOfChange());
+}
 
+double DiffusionSystem::ReductionAfter(int corrections)
+{
+  return corrections < Several ? Reduction : SlowReduction;
+}
+
+AndersonMixing::Weighting DiffusionSystem::WeightingOfChange() const
+{
   const auto& h = this->Layout.spacing;
   const float edge = std::cbrt(h[0] * h[1] * h[2]); // the same whichever axis is which
-  return this->Mixing.Mix(this->Next, this->Solution, { this->The.sigma_s, this->The.first, edge });
+  return { this->The.sigma_s, this->The.first, edge };
+}
+
+AndersonMixing::Sums DiffusionSystem::SumsOfChange() const
+{
+  return this->Mixing.SumsOf(this->Next, this->Solution, this->WeightingOfChange());
+}
+
+double DiffusionSystem::MixBy(const AndersonMixing::Sums& sums)
+{
+  ++this->Corrections;
+  return this->Mixing.Mix(this->Next, this->Solution, sums);
 }
 
 void DiffusionSystem::Refine(double unit)
 {
-  this->Solver.GoOn(this->Solution, unit, 0.1, 1e-6);
+  this->Solver.GoOn(this->Solution, unit, RefinedBy, RefinedTo);
 }
 
 double DiffusionSystem::Absorbed() const
@@ -248,39 +267,58 @@ std::vector<double> DiffusionSystem::Found() const
 
 std::array<double, 6> DiffusionSystem::Outflow(double entered, const std::array<double, 6>& ofSweep)
 {
+  BorderSums sums = this->SumBorders([](int, int, int) { return true; });
+  sums.shared = this->The.faces ? 0.0 : sums.shared; // known by cells
+  const auto& periodic = this->Layout.periodic;
+  return OutflowBy(sums, entered, ofSweep, { periodic[0] != 0, periodic[1] != 0, periodic[2] != 0 });
+}
+
+DiffusionSystem::BorderSums DiffusionSystem::SumBorders(const std::function<bool(int face, int u, int v)>& counts)
+{
   cl::Kernel kernel = this->OnArrays("diffusion_outflow", this->Solution.Handle(), this->Borders.Handle());
   this->RunBorder(kernel);
   const std::vector<double> borders = this->Borders.Read();
-  std::array<double, 6> outflow = {};
-  std::array<double, 6> missing = ofSweep; // of what seems to leave
-  std::array<double, 6> came = {};
-  double transport_weight = 0.0, shared = 0.0;
+  BorderSums sums;
   std::size_t at = 0;
   for (int face = 0; face < 6; ++face)
   {
     const PlaneAxes axes = AcrossAxis(face / 2);
-    for (int i = 0; i < this->Layout.size[axes.u] * this->Layout.size[axes.v]; ++i, at += BorderValues)
+    const int width = this->Layout.size[axes.u];
+    for (int i = 0; i < width * this->Layout.size[axes.v]; ++i, at += BorderValues)
     {
-      outflow[face] += borders[at + BorderNet] + borders[at + BorderShare];
-      came[face] += borders[at + BorderCame];
-      missing[face] -= borders[at + BorderSeeming];
+      if (!counts(face, i % width, i / width))
+      {
+        continue;
+      }
+      sums.out[face] += borders[at + BorderNet] + borders[at + BorderShare];
+      sums.came[face] += borders[at + BorderCame];
+      sums.seeming[face] += borders[at + BorderSeeming];
       const bool several = borders[at + BorderWeight] > 0.0;
-      transport_weight += several ? borders[at + BorderWeight] : 0.0;
-      shared += several ? 1.0 : 0.0;
+      sums.transportWeight += several ? borders[at + BorderWeight] : 0.0;
+      sums.shared += several ? 1.0 : 0.0;
     }
   }
+  return sums;
+}
+
+std::array<double, 6> DiffusionSystem::OutflowBy(
+  const BorderSums& sums, double entered, const std::array<double, 6>& ofSweep, const std::array<bool, 3>& periodic)
+{
+  std::array<double, 6> outflow = sums.out;
+  std::array<double, 6> missing = ofSweep; // of what seems to leave
   // Thousands of rays through one cell, added in floats, are off by 1e-5.
-  const double allCame = std::accumulate(came.begin(), came.end(), 0.0);
+  const double allCame = std::accumulate(sums.came.begin(), sums.came.end(), 0.0);
   for (int face = 0; face < 6; ++face)
   {
-    outflow[face] += allCame > 0.0 ? came[face] * (entered / allCame) : 0.0;
+    missing[face] -= sums.seeming[face];
+    outflow[face] += allCame > 0.0 ? sums.came[face] * (entered / allCame) : 0.0;
   }
   const double all = std::accumulate(missing.begin(), missing.end(), 0.0);
   const double left = std::accumulate(ofSweep.begin(), ofSweep.end(), 0.0);
-  for (int face = 0; face < 6 && shared > 0.0 && left > 0.0 && !this->The.faces; ++face)
+  for (int face = 0; face < 6 && sums.shared > 0.0 && left > 0.0; ++face)
   {
     outflow[face] +=
-      this->Layout.periodic[face / 2] ? 0.0 : transport_weight / shared * (missing[face] - all * ofSweep[face] / left);
+      periodic[face / 2] ? 0.0 : sums.transportWeight / sums.shared * (missing[face] - all * ofSweep[face] / left);
   }
   return NotNegative(outflow);
 }

@@ -10,6 +10,7 @@
 #include "Medium/Grid.h"
 
 #include <array>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -82,6 +83,32 @@ public:
   /// @return |found - given| / |found|
   double Correct(double unit);
 
+  // The steps of Correct, where the system is one part of one that is spread over ranks, with a layer of the others'
+  // voxels around its own (Distributed/BalanceOverRanks.h): between them values go from rank to rank. `sigma_s` of the
+  // others' voxels is below 0: they are counted where they are at home.
+
+  void FindModel();                                  ///< of the fluence that the sweep is compared with
+  Buffer<float>& TheModel() { return this->Model; }  ///< W / length^2, [voxel]
+  void Balance();                                    ///< of each voxel: the right-hand side, from the model
+  MultigridSolver& Matrix() { return this->Solver; } ///< and right-hand side
+  static double ReductionAfter(int corrections);     ///< of the residual, in the next solution
+  void SetFound(const std::vector<double>& fluence) { this->Solution.Write(fluence); }
+  static constexpr double RefinedBy = 0.1, RefinedTo = 1e-6; ///< what Refine asks for, of the residual and in units
+  AndersonMixing::Sums SumsOfChange() const;                 ///< once the solution is there
+  double MixBy(const AndersonMixing::Sums& sums);            ///< @return as Correct
+
+  /// Sums over cells of the box's faces: those of which the last correction finds what leaves, W.
+  struct BorderSums
+  {
+    std::array<double, 6> out = {}, seeming = {}, came = {}; ///< by face
+    double transportWeight = 0.0, shared = 0.0;              ///< of voxels with several faces, and how many cells
+  };
+  /// @param counts  whether a cell of a face (by face, and place along the other two axes in order) does
+  BorderSums SumBorders(const std::function<bool(int face, int u, int v)>& counts);
+  /// As Outflow, from the sums of all.
+  static std::array<double, 6> OutflowBy(const BorderSums& sums, double entered, const std::array<double, 6>& ofSweep,
+    const std::array<bool, 3>& periodic = {});
+
   /// Solve on, for what the last correction found to more digits.
   void Refine(double unit);
 
@@ -113,8 +140,7 @@ private:
   const Buffer<float>& Passed() const { return this->The.passed ? *this->The.passed : this->Model; }
   void FindSkins();
   const Buffer<float>& ExtinctionInRows();
-  void FindModel();
-  void Balance();
+  AndersonMixing::Weighting WeightingOfChange() const;
   std::string Options() const;
   cl::Kernel Kernel(const char* name) const;
   cl::Kernel RowsKernel(const char* name) const; ///< that walks along rows

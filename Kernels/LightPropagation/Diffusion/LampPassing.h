@@ -7,6 +7,9 @@
 
 namespace tyndall
 {
+/// Mean free paths of the thickest voxel above which it matters where in voxels lamps' light is first scattered.
+constexpr double ThickForFirstMoments = 0.1;
+
 /// A lamp's light in thick voxels, and the sums over all lamps that it is added to. Arrays as DiffusionSystem::Arrays
 /// has them.
 struct LampLight

@@ -1,5 +1,8 @@
 #include "LightPropagation/Diffusion/MultigridSolver.h"
 
+#include "LightPropagation/Diffusion/ConjugateGradients.h"
+#include "LightPropagation/Diffusion/MultigridCycle.h"
+
 #include "Device/Defines.h"
 #include "Device/GroupSize.h"
 #include "Device/Sizes.h"
@@ -7,47 +10,9 @@
 #include "TyndallKernelSources.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace tyndall
 {
-namespace
-{
-constexpr int FinishRounds = 12; ///< on the coarsest level
-constexpr int MostIterations = 300;
-constexpr int Patience = 12;     ///< iterations in which a residual has to halve, or is left as it is
-constexpr float Damping = 0.87f; ///< of Jacobi's method, about the best: 0.8 takes 8% more iterations, 0.95 as many
-constexpr std::size_t VisitedTwice = 2; ///< coarser levels, the finest of them: more visits save no iterations
-/// Of what each of two visits finds that is taken: so that two of them stay positive where one overshoots up to 2.5
-/// times, which joined voxels of unequal ones make it do.
-constexpr float PartOfVisit = 0.8f;
-constexpr double Looser = 10.0;      ///< root mean square of a residual, than its norm in that of the preconditioner
-constexpr double Negligible = 1e-12; ///< residual, of the first one
-
-/// Whether a residual is above a bound and has not stopped falling. Asked once an iteration.
-class StillTooLarge
-{
-public:
-  explicit StillTooLarge(double most)
-    : Most(most)
-  {
-  }
-
-  /// @param square  of the residual
-  bool operator()(double square)
-  {
-    this->SinceHalved = square < 0.25 * this->Smallest ? 0 : this->SinceHalved + 1;
-    this->Smallest = this->SinceHalved == 0 ? square : this->Smallest;
-    return square > this->Most && this->SinceHalved < Patience;
-  }
-
-private:
-  double Most; ///< squared
-  double Smallest = std::numeric_limits<double>::infinity();
-  int SinceHalved = 0; ///< iterations
-};
-}
-
 MultigridSolver::MultigridSolver(Device& device, const std::array<int, 3>& size, const std::array<double, 3>& spacing)
   : TheDevice(device)
 {
@@ -256,30 +221,9 @@ int MultigridSolver::GoOn(const ExactValues& values, double unit, double reducti
 /// @param left  square of the residual, in units
 int MultigridSolver::Iterate(const ExactValues& values, double left, double unit, double reduction, double leftAtMost)
 {
-  double rz = this->Precondition();
-  this->FirstResidual = std::max(this->FirstResidual, rz);
-  const double enough = std::max(rz * reduction * reduction, this->FirstResidual * Negligible * Negligible);
+  const GradientSteps steps = { [&] { return this->Precondition(); }, [&](double part) { this->Turn(part); },
+    [&] { return this->Curvature(); }, [&](double length) { return this->Step(values, length, unit); } };
   const auto voxels = static_cast<double>(this->Rows().size[0]) * this->Rows().size[1] * this->Rows().size[2];
-  const double least = Looser * reduction;
-  StillTooLarge tooLarge(std::min(leftAtMost * leftAtMost * voxels, least * least * left));
-  bool tooMuchLeft = tooLarge(left);
-  double part = 0.0;
-  int iteration = 0;
-  while (iteration < MostIterations && rz > 0.0 && std::isfinite(rz) && (rz > enough || tooMuchLeft))
-  {
-    this->Turn(part);
-    const double curvature = this->Curvature();
-    if (!(curvature > 0.0))
-    {
-      break;
-    }
-    left = this->Step(values, rz / curvature, unit);
-    tooMuchLeft = tooLarge(left);
-    const double next = this->Precondition();
-    part = next / rz;
-    rz = next;
-    ++iteration;
-  }
-  return iteration;
+  return GoDown(steps, left, { reduction, leftAtMost, voxels }, this->FirstResidual);
 }
 }

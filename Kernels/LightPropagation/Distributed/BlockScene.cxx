@@ -20,7 +20,8 @@ void RequireSame(Communicator& communicator, bool has, const Medium& medium, con
   RequireSame(communicator, "g", has, { varies ? 1.0 : 0.0, cosine(0), cosine(1), cosine(2) });
   RequireSame(communicator, "settings", true,
     { 1.0 * settings.directionsPerFace, 1.0 * settings.mapResolution, 1.0 * settings.maximumOrders, settings.tolerance,
-      1.0 * settings.netFlux, 1.0 * settings.leaveOut, 1.0 * settings.staggeredRays });
+      1.0 * settings.netFlux, 1.0 * settings.leaveOut, 1.0 * settings.staggeredRays,
+      1.0 * static_cast<int>(settings.source), 1.0 * static_cast<int>(settings.acceleration) });
   std::vector<double> light = { 1.0 * static_cast<double>(illumination.lights.size()), Sum(illumination.sky),
     1.0 * illumination.environment.width, 1.0 * illumination.environment.height };
   for (const Rgb& face : illumination.faces)

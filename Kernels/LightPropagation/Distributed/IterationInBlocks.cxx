@@ -1,8 +1,7 @@
 #include "LightPropagation/Distributed/IterationInBlocks.h"
 
 #include "Light/LeftOut.h"
-#include "LightPropagation/Distributed/LampsInBlocks.h"
-#include "LightPropagation/Problem/ScatteringOrders.h"
+#include "LightPropagation/Distributed/AccelerationInBlocks.h"
 #include "LightPropagation/Uncollided/UncollidedLamp.h"
 #include "Medium/VoxelSums.h"
 #include "Numerics/Constants.h"
@@ -16,7 +15,6 @@ namespace tyndall
 namespace
 {
 constexpr int MostOrders = 100000;
-constexpr double ManyOrders = 2.0;  ///< mean free paths through the box along its thinnest axis that pay for cells
 constexpr double FallByCells = 0.3; ///< of what is left over from order to order, at least so much in the forecast
 }
 
@@ -93,70 +91,51 @@ void IterationInBlocks::LoadEmission()
 }
 
 /// Those that are given, and peaks of the environment.
-void IterationInBlocks::AddLamps(const Monitor& monitor)
+std::vector<Light> IterationInBlocks::Lamps() const
 {
   std::vector<Light> lamps = this->Scene.illumination.lights;
   lamps.insert(lamps.end(), this->Far.peaks.begin(), this->Far.peaks.end());
-  const SweepMaker sweeps = [this](const SweepRequest& request) { return this->MakeSweep(request); };
-  std::unique_ptr<LampsInBlocks> near;
-  for (std::size_t i = 0; i < lamps.size(); ++i)
-  {
-    const bool parallel = lamps[i].type == LightType::Directional;
-    if (!parallel && !near)
-    {
-      near = std::make_unique<LampsInBlocks>(
-        this->TheDevice, this->Others, this->Partition, this->Layout, this->OnDevice.SigmaT());
-    }
-    // Rays of a parallel beam are those through the whole box.
-    UncollidedVolume volume = { this->TheDevice, parallel ? this->WholeLayout : this->Layout, this->OnDevice.SigmaT(),
-      this->Settings.periodic, sweeps, this->WholeDeposit() };
-    volume.followLamp = [&near](const SweepVolume& ofChannels, const Light& lamp, const Monitor& ofLamp) {
-      return near->Deposit(ofChannels, lamp, ofLamp);
-    };
-    const double all = static_cast<double>(lamps.size());
-    this->Ledger.Count(UncollidedLamp(lamps[i]).AddTo(volume, OfPart(monitor, i / all, (i + 1) / all)));
-  }
+  return lamps;
 }
 
-/// How many voxels make a cell, 2^this along each axis; all 0: cells do not pay, or voxels are too thick for them.
-std::array<int, 3> IterationInBlocks::CellHalvings()
+/// A point, spot or rectangle lamp.
+SweepTally IterationInBlocks::AddNearLamp(const Light& lamp, const Deposit& to, const Monitor& monitor)
 {
-  if (this->Settings.acceleration != PropagationAcceleration::Automatic || this->Settings.maximumOrders > 0 ||
-    !this->Scene.traits.scatters)
+  if (!this->NearLamps)
   {
-    return {};
+    this->NearLamps = std::make_unique<LampsInBlocks>(
+      this->TheDevice, this->Others, this->Partition, this->Layout, this->OnDevice.SigmaT());
   }
-  double thickest = 0.0, sum = 0.0;
-  for (std::size_t i = 0; i < this->Layout.grid.VoxelCount(); ++i)
+  UncollidedVolume volume = { this->TheDevice, this->Layout, this->OnDevice.SigmaT(), this->Settings.periodic, {}, to };
+  volume.followLamp = [this](const SweepVolume& ofChannels, const Light& light, const Monitor& ofLamp) {
+    return this->NearLamps->Deposit(ofChannels, light, ofLamp);
+  };
+  return UncollidedLamp(lamp).AddTo(volume, monitor);
+}
+
+void IterationInBlocks::AddLamps(const Monitor& monitor)
+{
+  const std::vector<Light> lamps = this->Lamps();
+  const SweepMaker sweeps = [this](const SweepRequest& request) { return this->MakeSweep(request); };
+  // Rays of a parallel beam are those through the whole box.
+  const UncollidedVolume beams = { this->TheDevice, this->WholeLayout, this->OnDevice.SigmaT(), this->Settings.periodic,
+    sweeps, this->WholeDeposit() };
+  for (std::size_t i = 0; i < lamps.size(); ++i)
   {
-    for (int c = 0; c < this->Layout.channels; ++c)
-    {
-      const double sigma = this->Scene.medium.TransportSigmaT(i, c);
-      thickest = std::max(thickest, sigma);
-      sum += sigma / this->Layout.channels;
-    }
+    const double all = static_cast<double>(lamps.size());
+    const Monitor ofLamp = OfPart(monitor, i / all, (i + 1) / all);
+    this->Ledger.Count(lamps[i].type == LightType::Directional
+        ? UncollidedLamp(lamps[i]).AddTo(beams, ofLamp)
+        : this->AddNearLamp(lamps[i], this->WholeDeposit(), ofLamp));
   }
-  const Grid& whole = this->Partition.whole;
-  thickest = this->Others.Largest({ thickest })[0];
-  const double mean = this->Others.Sum({ sum })[0] / static_cast<double>(whole.VoxelCount());
-  const std::array<int, 3> halvings = tyndall::CellHalvings(whole, thickest);
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    if (mean * whole.Length(axis) < ManyOrders || halvings[axis] == 0)
-    {
-      return {};
-    }
-  }
-  return halvings;
 }
 
 void IterationInBlocks::MakeCells()
 {
-  const std::array<int, 3> halvings = this->CellHalvings();
-  for (int c = 0; c < this->Layout.channels && halvings[0] > 0; ++c)
+  for (int c = 0; c < this->Layout.channels && this->Orders.how == OrdersAdded::ByCells; ++c)
   {
     this->Cells.push_back(std::make_unique<CellsOverRanks>(
-      this->TheDevice, this->Others, this->Partition, this->Layout, c, this->OnDevice, halvings));
+      this->TheDevice, this->Others, this->Partition, this->Layout, c, this->OnDevice, this->Orders.halvings));
     this->Rest[c].BeginWarm(FallByCells);
   }
 }
@@ -265,6 +244,12 @@ bool IterationInBlocks::Done() const
 LightField IterationInBlocks::Run(const Monitor& monitor)
 {
   this->LoadEmission();
+  this->Orders = HowOrdersAreAdded(this->Others, this->Partition, this->Scene, this->Settings);
+  if (this->Orders.how == OrdersAdded::ByBalance)
+  {
+    this->RunByBalance(monitor);
+    return this->TakeLight();
+  }
   this->MakeCells();
   const std::unique_ptr<SweepOperator> sweep = this->MakeSweep({ this->WholeDeposit(),
     { { 0, this->Directions.Along(0) }, { 1, this->Directions.Along(1) }, { 2, this->Directions.Along(2) } } });
@@ -287,6 +272,29 @@ LightField IterationInBlocks::Run(const Monitor& monitor)
     ++this->Order;
   } while (!this->Done());
   return this->TakeLight();
+}
+
+/// Light of lamps goes ahead, and what of it is scattered is given to the sweeps.
+void IterationInBlocks::RunByBalance(const Monitor& monitor)
+{
+  AccelerationInBlocks acceleration({ this->TheDevice, this->Others, this->Partition, this->Scene, this->Settings,
+    this->Layout, this->OnDevice, this->Directions, this->Boundary,
+    [this](const SweepRequest& request) { return this->MakeSweep(request); },
+    [this](const Light& lamp, const Deposit& to, const Monitor& ofLamp) { return this->AddNearLamp(lamp, to, ofLamp); },
+    this->Source, this->Path, this->Fluence, this->Flux, this->Ledger });
+  const Monitor ofLamps =
+    OfPart(monitor, [this](double done) { return ProgressOf(this->Settings, 1.0, UncollidedPart * done); });
+  const std::vector<Light> lamps = this->Lamps();
+  if (!lamps.empty() && acceleration.NeedsFirstMoments())
+  {
+    acceleration.AddBeams(lamps, ofLamps);
+  }
+  else
+  {
+    this->AddLamps(ofLamps);
+  }
+  this->Rows = acceleration.Run(monitor);
+  this->Direct = acceleration.Direct();
 }
 
 LightField IterationInBlocks::TakeLight()
@@ -314,15 +322,13 @@ LightField IterationInBlocks::TakeLight()
   const EnergyLedger ledger = this->WithOutOfCells();
   light.balance = ledger.Balance();
   light.facePowerOut = ledger.FacePowerOut();
-  light.convergence = this->Convergence.All();
+  light.convergence = this->Orders.how == OrdersAdded::ByBalance ? this->Rows : this->Convergence.All();
   light.directionsPerFace = this->Settings.directionsPerFace;
   light.halfRangeFlux = HalfRangeFlux(this->Directions.Set());
   light.device = this->TheDevice.Name();
-  if (this->Cells.empty())
+  if (this->Orders.how == OrdersAdded::OneByOne)
   {
-    light.leftOut.emplace_back(
-      "acceleration: few scattering orders do, or voxels of a medium that is spread over ranks "
-      "are thick");
+    light.leftOut.emplace_back("acceleration: few scattering orders do");
   }
   if (this->Scene.traits.emits && this->Settings.emissionError > 0.0)
   {

@@ -11,6 +11,8 @@
 #include "LightPropagation/Convergence.h"
 #include "LightPropagation/Distributed/BlockScene.h"
 #include "LightPropagation/Distributed/CellsOverRanks.h"
+#include "LightPropagation/Distributed/LampsInBlocks.h"
+#include "LightPropagation/Distributed/OrdersOverRanks.h"
 #include "LightPropagation/Distributed/SweepInBlocks.h"
 #include "LightPropagation/Problem/MediumOnDevice.h"
 #include "LightPropagation/Problem/TruncatedScattering.h"
@@ -36,9 +38,11 @@ private:
   VolumeLayout LayoutOn(const Grid& grid) const { return { grid, this->Scene.channels, this->Scene.sharedExtinction }; }
   std::unique_ptr<SweepOperator> MakeSweep(const SweepRequest& request);
   void LoadEmission();
+  std::vector<Light> Lamps() const;
+  SweepTally AddNearLamp(const Light& lamp, const Deposit& to, const Monitor& monitor);
   void AddLamps(const Monitor& monitor);
-  std::array<int, 3> CellHalvings();
   void MakeCells();
+  void RunByBalance(const Monitor& monitor);
   void Scatter();
   void ScatterByCells();
   EnergyLedger WithOutOfCells() const;
@@ -65,11 +69,14 @@ private:
   const BoundaryLight Boundary;
   Buffer<float> Source, Path, Flux, Fluence;
   BlockWorkspace Workspace;
+  std::unique_ptr<LampsInBlocks> NearLamps;           ///< null until there is one
   std::vector<std::unique_ptr<CellsOverRanks>> Cells; ///< by channel; empty: orders are added up as they are
   std::array<Rgb, 6> OutOfCells = {};                 ///< W, through faces, of all orders to come
 
+  OrdersOverRanks Orders;
   EnergyLedger Ledger;
   ConvergenceRecord Convergence;
+  std::vector<ConvergenceRow> Rows; ///< where orders are added up by the balance of voxels
   std::vector<float> Direct;
   std::array<RestOfOrders, 3> Rest;
   Rgb Scattered = {}, AllScattered = {};

@@ -29,9 +29,9 @@ std::string NotInBlocks(const Medium& medium, const Illumination& illumination, 
   {
     return "scattering that is not isotropic (g; with AngularDegree 0 it is solved by the similarity relation)";
   }
-  if (settings.source == PropagationSource::Linear || settings.source == PropagationSource::Octants)
+  if (settings.source == PropagationSource::Octants)
   {
-    return "a source that is not constant in voxels";
+    return "a source by octants of directions";
   }
   if (settings.uncollidedDirections > 0)
   {

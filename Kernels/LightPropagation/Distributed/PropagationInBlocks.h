@@ -18,13 +18,16 @@ namespace tyndall
 /// end is the same on all. No rank holds more than its block, and values by cells of several voxels. All ranks call
 /// it together.
 ///
-/// Scattering orders are added up one by one, or, where voxels are thin and settings.acceleration is automatic,
-/// each with what diffusion on cells of the whole grid says of the rest (CellsOverRanks.h). Carried are light that
-/// comes in through the box's faces, from the sky and the environment, of directional lights, and emission, all of
-/// it along the usual directions; scattering is isotropic, or by the similarity relation where
-/// settings.angularDegree is 0. The light is that of SolveConservative with emissionError, uncollidedDirections 0
-/// and a constant source, to rounding where neither is accelerated, else to the tolerance. It does not depend on
-/// the number of ranks, but for rounding.
+/// Orders are added up as HowOrdersAreAdded has it of the whole: one by one; where voxels are thin and light is
+/// scattered many times each with what diffusion on cells says of the rest (CellsOverRanks.h); where voxels are
+/// thicker by their balance (AccelerationInBlocks.h), with the source that the settings ask for. The source of the
+/// former two is constant in voxels.
+///
+/// Carried are light that comes in through the box's faces, from the sky and the environment, of directional lights,
+/// and emission, all of it along the usual directions; scattering is isotropic, or by the similarity relation where
+/// settings.angularDegree is 0. The light is that of SolveConservative with emissionError and uncollidedDirections 0,
+/// and a constant source where voxels are not balanced: to rounding where neither is accelerated, else to the
+/// tolerance. It does not depend on the number of ranks, but for rounding.
 ///
 /// @param medium  of the rank's block, with the grid that partition.OwnGrid() has; looked at by nobody where that has
 ///   no voxels

@@ -29,7 +29,6 @@ struct AcceleratedTime
 };
 constexpr AcceleratedTime InEvenMedia = { 7.0, 6.0, 3.0 };
 constexpr AcceleratedTime InUnevenMedia = { 7.0, 7.0, 3.0 };
-constexpr double Uneven = 1.5; ///< the thickest line over the mean of all, each as much as lies in it
 /// Sweeps are dear in moments, and a slab's diffusion system is small: of these the sums alone were measured.
 constexpr AcceleratedTime InMoments = { 5.0, 8.0, 1.0 };
 constexpr AcceleratedTime InMomentsOfThickVoxels = { 8.0, 8.0, 3.0 };
@@ -41,80 +40,24 @@ constexpr double CellAtMost = 1.0; ///< optical width where the medium is thicke
 constexpr int MostHalvings = 3;
 constexpr double PlainSetUp = 0.8; ///< of orders one after the other: measured 0.8 in 100^3 voxels, 2 in 40^3
 
-/// Optical thickness of lines of voxels along each axis. Light stays longest in the thickest ones, but leaks out of
-/// them into those beside: a mean of the thickest line (a third) and of all, each as much as lies in it (two thirds),
-/// forecasts the orders of log-normal media of tau 1 to 12, albedo 0.8 to 0.98 within two thirds; the thickest alone
-/// up to three times too many (numerics.md, Eq. (86a)).
-struct Lines
-{
-  std::array<double, 3> along;
-  bool uneven = false;
-};
-/// @param sigma_t  of a voxel
-template <class Extinction>
-Lines ThickLines(const Grid& grid, const Extinction& sigma_t)
-{
-  const std::array<int, 3>& n = grid.size;
-  std::array<std::vector<double>, 3> lines;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    lines[axis].assign(grid.VoxelCount() / static_cast<std::size_t>(n[axis]), 0.0);
-  }
-  const auto addRows = [&](int y, int z, double* alongX, double* alongOther) {
-    std::size_t i = grid.IndexOf({ 0, y, z });
-    for (int x = 0; x < n[0]; ++x, ++i)
-    {
-      const double tau = sigma_t(i);
-      *alongX += tau;
-      alongOther[x] += tau;
-    }
-  };
-  InThreads(n[2], 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t z = begin; z < end; ++z)
-    {
-      for (int y = 0; y < n[1]; ++y)
-      {
-        addRows(y, static_cast<int>(z), &lines[0][z * n[1] + y], lines[1].data() + z * n[0]);
-      }
-    }
-  });
-  InThreads(n[1], 1, [&](std::size_t begin, std::size_t end) { // lines along z end in other planes
-    for (std::size_t y = begin; y < end; ++y)
-    {
-      for (int z = 0; z < n[2]; ++z)
-      {
-        double unused = 0.0;
-        addRows(static_cast<int>(y), z, &unused, lines[2].data() + y * n[0]);
-      }
-    }
-  });
-  Lines thick;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    double all = 0.0, squares = 0.0;
-    for (const double line : lines[axis])
-    {
-      all += line;
-      squares += line * line;
-    }
-    const double thickest = *std::max_element(lines[axis].begin(), lines[axis].end());
-    const double mean = all > 0.0 ? squares / all : 0.0;
-    thick.along[axis] = grid.spacing[axis] * std::cbrt(mean * mean * thickest);
-    thick.uneven = thick.uneven || thickest > Uneven * mean;
-  }
-  return thick;
-}
-
 /// Of each channel, as light diffuses.
-std::vector<Lines> DiffusingLines(const PropagationProblem& problem)
+std::vector<ThickLines> DiffusingLines(const PropagationProblem& problem)
 {
-  std::vector<Lines> lines;
+  const Grid& grid = problem.TheGrid();
+  std::vector<ThickLines> lines;
   for (int c = 0; c < problem.Channels(); ++c)
   {
-    lines.push_back(
-      ThickLines(problem.TheGrid(), [&](std::size_t i) { return double(problem.TheMedium().TransportSigmaT(i, c)); }));
+    const auto sigma_t = [&](std::size_t i) { return double(problem.TheMedium().TransportSigmaT(i, c)); };
+    lines.emplace_back(grid, SumAlongLines(grid, sigma_t));
   }
   return lines;
+}
+
+/// What leaks out along an axis.
+double LeakAlong(double longest, double extrapolations)
+{
+  const double extrapolated = longest + extrapolations;
+  return Pi * Pi / 3.0 / (extrapolated * extrapolated);
 }
 
 /// Of both faces across an axis. A face that reflects sends light back as if the medium went on there, at most as a
@@ -151,13 +94,14 @@ double Leak(const PropagationProblem& problem, int channel, const std::array<dou
   // Light diffuses as far as transport has it, but is scattered more often: each order does less.
   const bool inMoments = problem.Scattering().Degree() > 0;
   const std::array<double, 3> scattered = inMoments
-    ? ThickLines(grid, [&](std::size_t i) { return double(problem.Scattering().SigmaT(i, channel)); }).along
+    ? ThickLines(
+        grid, SumAlongLines(grid, [&](std::size_t i) { return double(problem.Scattering().SigmaT(i, channel)); }))
+        .along
     : longest;
   double leak = 0.0;
   for (int axis = 0; axis < 3; ++axis)
   {
-    const double extrapolated = longest[axis] + BothExtrapolations(problem, axis, channel, longest[axis]);
-    const double along = Pi * Pi / 3.0 / (extrapolated * extrapolated);
+    const double along = LeakAlong(longest[axis], BothExtrapolations(problem, axis, channel, longest[axis]));
     const double part = inMoments && longest[axis] > 0.0 ? longest[axis] / scattered[axis] : 1.0;
     leak += problem.Settings().periodic[axis] ? 0.0 : along * part;
   }
@@ -193,32 +137,31 @@ bool CanUseCells(const PropagationProblem& problem)
   {
     return false;
   }
-  const std::array<int, 3> halvings = CellHalvings(problem);
-  bool thin = true, any = false;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    thin = thin && (halvings[axis] > 0 || problem.TheGrid().size[axis] == 1);
-    any = any || halvings[axis] > 0;
-  }
-  return thin && any;
+  return AreThinEnough(problem.TheGrid(), CellHalvings(problem));
 }
 
 /// Rows of diffusion on cells: it corrects what is scattered, so the less that is, the faster it converges.
-double CellRows(const PropagationProblem& problem)
+AcceleratedTime TimeInCells(double albedo)
 {
-  double albedo = 0.0;
-  for (int c = 0; c < problem.Channels(); ++c)
-  {
-    albedo = std::max(albedo, AlbedoOf(problem, c));
-  }
-  return albedo > 0.0 ? std::log(UsualTolerance) / std::log(CellFall * albedo) : 0.0;
+  const double rows = albedo > 0.0 ? std::log(UsualTolerance) / std::log(CellFall * albedo) : 0.0;
+  return { InCells.setUp, rows, InCells.correction };
 }
 
-AcceleratedTime AcceleratedTimeOf(const PropagationProblem& problem, const std::vector<Lines>& lines)
+double OrdersUntilDone(double ratio)
+{
+  return ratio <= 0.0 ? 0.0 : ratio >= 1.0 ? 1e30 : std::log(UsualTolerance) / std::log(ratio);
+}
+
+AcceleratedTime AcceleratedTimeOf(const PropagationProblem& problem, const std::vector<ThickLines>& lines)
 {
   if (CanUseCells(problem))
   {
-    return { InCells.setUp, CellRows(problem), InCells.correction };
+    double albedo = 0.0;
+    for (int c = 0; c < problem.Channels(); ++c)
+    {
+      albedo = std::max(albedo, AlbedoOf(problem, c));
+    }
+    return TimeInCells(albedo);
   }
   if (problem.IsSlab())
   {
@@ -228,20 +171,20 @@ AcceleratedTime AcceleratedTimeOf(const PropagationProblem& problem, const std::
   {
     return HasThickVoxels(problem) ? InMomentsOfThickVoxels : InMoments;
   }
-  const bool uneven = std::any_of(lines.begin(), lines.end(), [](const Lines& ofChannel) { return ofChannel.uneven; });
+  const bool uneven =
+    std::any_of(lines.begin(), lines.end(), [](const ThickLines& ofChannel) { return ofChannel.uneven; });
   return uneven ? InUnevenMedia : InEvenMedia;
 }
 
-double OrdersAlong(const PropagationProblem& problem, const std::vector<Lines>& lines)
+double OrdersAlong(const PropagationProblem& problem, const std::vector<ThickLines>& lines)
 {
   double slowest = 0.0;
   for (int c = 0; c < problem.Channels(); ++c)
   {
     slowest = std::max(slowest, AlbedoOf(problem, c) / (1.0 + Leak(problem, c, lines[c].along)));
   }
-  return slowest <= 0.0 ? 0.0 : slowest >= 1.0 ? 1e30 : std::log(UsualTolerance) / std::log(slowest);
+  return OrdersUntilDone(slowest);
 }
-
 }
 
 double OrdersNeeded(const PropagationProblem& problem)
@@ -251,8 +194,38 @@ double OrdersNeeded(const PropagationProblem& problem)
 
 bool ScatteredManyTimes(const PropagationProblem& problem)
 {
-  const std::vector<Lines> lines = DiffusingLines(problem);
+  const std::vector<ThickLines> lines = DiffusingLines(problem);
   return PlainSetUp + OrdersAlong(problem, lines) > AcceleratedTimeOf(problem, lines).InOrders();
+}
+
+bool ScatteredManyTimes(const std::vector<IsotropicChannel>& channels, bool inCells)
+{
+  double slowest = 0.0, albedo = 0.0;
+  bool uneven = false;
+  for (const IsotropicChannel& channel : channels)
+  {
+    double leak = 0.0;
+    for (const double along : channel.lines.along)
+    {
+      leak += LeakAlong(along, 2.0 * Extrapolation);
+    }
+    slowest = std::max(slowest, channel.albedo / (1.0 + leak));
+    albedo = std::max(albedo, channel.albedo);
+    uneven = uneven || channel.lines.uneven;
+  }
+  const AcceleratedTime time = inCells ? TimeInCells(albedo) : uneven ? InUnevenMedia : InEvenMedia;
+  return PlainSetUp + OrdersUntilDone(slowest) > time.InOrders();
+}
+
+bool AreThinEnough(const Grid& grid, const std::array<int, 3>& halvings)
+{
+  bool thin = true, any = false;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    thin = thin && (halvings[axis] > 0 || grid.size[axis] == 1);
+    any = any || halvings[axis] > 0;
+  }
+  return thin && any;
 }
 
 std::array<int, 3> CellHalvings(const PropagationProblem& problem)

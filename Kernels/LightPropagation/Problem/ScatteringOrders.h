@@ -1,8 +1,10 @@
 #pragma once
 
 #include "LightPropagation/Problem/PropagationProblem.h"
+#include "LightPropagation/Problem/ThickLines.h"
 
 #include <array>
+#include <vector>
 
 namespace tyndall
 {
@@ -13,6 +15,15 @@ double OrdersNeeded(const PropagationProblem& problem);
 /// So many that adding them up one by one is forecast to take longer than acceleration: both in orders, by what set-up,
 /// sweeps and corrections were measured to take (`./run bench thick`).
 bool ScatteredManyTimes(const PropagationProblem& problem);
+
+/// The same of isotropic scattering in a box none of whose axes is periodic and none of whose faces reflects.
+struct IsotropicChannel
+{
+  ThickLines lines;
+  double albedo = 0.0; ///< mean over what is scattered
+};
+/// @param inCells  acceleration goes by cells, see AreThinEnough
+bool ScatteredManyTimes(const std::vector<IsotropicChannel>& channels, bool inCells);
 
 /// How scattering orders are added up.
 enum class OrdersAdded
@@ -28,4 +39,6 @@ OrdersAdded HowOrdersAreAdded(const PropagationProblem& problem);
 std::array<int, 3> CellHalvings(const PropagationProblem& problem);
 /// @param thickest  the largest extinction, 1/length
 std::array<int, 3> CellHalvings(const Grid& grid, double thickest);
+/// Whether cells have several voxels along each axis that the grid has several along.
+bool AreThinEnough(const Grid& grid, const std::array<int, 3>& halvings);
 }

@@ -20,9 +20,42 @@ constexpr int RaysPerEdge = 2; ///< of a voxel
 /// and into those beside through another, and each seems to be lit from its own side.
 constexpr int RaysPerThickEdge = 8;
 
-/// Adds what a beam deposited, and its first moments, which are found from the powers through the voxels' faces.
-void AddWithFirstMoments(const UncollidedVolume& volume, const std::array<double, 3>& omega, const Deposit& ofBeam)
+std::array<double, 3> Along(const Light& light)
 {
+  const glm::dvec3 along = glm::normalize(Vector(light.direction));
+  return { along.x, along.y, along.z };
+}
+}
+
+SweepTally SweepBeam(
+  const UncollidedVolume& volume, const Light& light, bool firstMoments, const Deposit& deposit, const Monitor& monitor)
+{
+  const Grid& grid = volume.layout.grid;
+  const std::array<double, 3> omega = Along(light);
+  const std::vector<int> axes = MarchingAxes(grid, omega);
+  Rgb power = light.power; // each of the axes carries its part of the beam
+  for (double& ofChannel : power)
+  {
+    ofChannel /= static_cast<double>(axes.size());
+  }
+  const int raysPerEdge = firstMoments ? RaysPerThickEdge : RaysPerEdge;
+  SweepTally tally;
+  for (std::size_t a = 0; a < axes.size(); ++a)
+  {
+    const SweepRequest request = { deposit,
+      { { axes[a], BeamAlong(axes[a], grid, volume.periodic, omega, raysPerEdge) } } };
+    const double all = static_cast<double>(axes.size());
+    const Monitor ofAxis = OfPart(monitor, a / all, (a + 1) / all);
+    Add(tally,
+      volume.makeSweep(request)->Apply(
+        nullptr, [&](int, int) { return power; }, ofAxis));
+  }
+  return tally;
+}
+
+void AddWithFirstMoments(const UncollidedVolume& volume, const Light& light, const Deposit& ofBeam)
+{
+  const std::array<double, 3> omega = Along(light);
   const Grid& grid = volume.layout.grid;
   BeamInfo info = {};
   for (int a = 0; a < 3; ++a)
@@ -45,47 +78,23 @@ void AddWithFirstMoments(const UncollidedVolume& volume, const std::array<double
   }
   volume.device.Finish(); // the beam's arrays go
 }
-}
 
 SweepTally DepositBeam(const UncollidedVolume& volume, const Light& light, const Monitor& monitor)
 {
-  const Grid& grid = volume.layout.grid;
-  const glm::dvec3 along = glm::normalize(Vector(light.direction));
-  const std::array<double, 3> omega = { along.x, along.y, along.z };
+  if (!volume.deposit.firstMoments)
+  {
+    return SweepBeam(volume, light, false, volume.deposit, monitor);
+  }
+  Buffer<float> path(volume.device, volume.layout.Floats(), "the light of a beam");
+  Buffer<float> partialCurrents(volume.device, volume.layout.Floats(6), "the light of a beam");
+  path.Fill(0.0f);
+  partialCurrents.Fill(0.0f);
   Deposit deposit = volume.deposit;
   deposit.firstMoments = nullptr;
-  Buffer<float> path, partialCurrents;
-  if (volume.deposit.firstMoments)
-  {
-    path = Buffer<float>(volume.device, volume.layout.Floats(), "the light of a beam");
-    partialCurrents = Buffer<float>(volume.device, volume.layout.Floats(6), "the light of a beam");
-    path.Fill(0.0f);
-    partialCurrents.Fill(0.0f);
-    deposit.path = &path;
-    deposit.partialCurrents = &partialCurrents;
-  }
-  const std::vector<int> axes = MarchingAxes(grid, omega);
-  Rgb power = light.power; // each of the axes carries its part of the beam
-  for (double& ofChannel : power)
-  {
-    ofChannel /= static_cast<double>(axes.size());
-  }
-  const int raysPerEdge = volume.deposit.firstMoments ? RaysPerThickEdge : RaysPerEdge;
-  SweepTally tally;
-  for (std::size_t a = 0; a < axes.size(); ++a)
-  {
-    const SweepRequest request = { deposit,
-      { { axes[a], BeamAlong(axes[a], grid, volume.periodic, omega, raysPerEdge) } } };
-    const double all = static_cast<double>(axes.size());
-    const Monitor ofAxis = OfPart(monitor, a / all, (a + 1) / all);
-    Add(tally,
-      volume.makeSweep(request)->Apply(
-        nullptr, [&](int, int) { return power; }, ofAxis));
-  }
-  if (volume.deposit.firstMoments)
-  {
-    AddWithFirstMoments(volume, omega, deposit);
-  }
+  deposit.path = &path;
+  deposit.partialCurrents = &partialCurrents;
+  const SweepTally tally = SweepBeam(volume, light, true, deposit, monitor);
+  AddWithFirstMoments(volume, light, deposit);
   return tally;
 }
 }

@@ -2,6 +2,7 @@
 
 #include "LightPropagation/Conservative/SurfaceRadiance.h"
 #include "LightPropagation/Convergence.h"
+#include "LightPropagation/Diffusion/FluxLimit.h"
 #include "LightPropagation/Scattering/MomentScattering.h"
 #include "Medium/BoxFaces.h"
 #include "Medium/VoxelSums.h"
@@ -15,7 +16,6 @@ namespace tyndall
 namespace
 {
 constexpr int MostSweeps = 200;
-constexpr double Margin = 1.5; ///< of the estimated error: changes do not fall off evenly
 }
 
 DiffusionAcceleration::DiffusionAcceleration(TransportParts& parts, const KeptLight* kept)
@@ -377,11 +377,7 @@ void DiffusionAcceleration::Correct(int iteration)
     change = std::max(change, this->ReflectFound(iteration));
   }
   const bool guessed = iteration == 1 && this->Warm.Begins() && this->Warm.Rate(0) > 0.0;
-  const double ratio = guessed ? this->Warm.Rate(0) : iteration > 0 && this->Change > 0.0 ? change / this->Change : 1.0;
-  const double fall = std::clamp(iteration > 1 ? std::max(ratio, this->LastRatio) : ratio, 0.5, 0.95);
-  this->Residual = iteration > 0 || change == 0.0 ? Margin * change * fall / (1.0 - fall) : 1.0;
-  this->LastRatio = ratio;
-  this->Change = change;
+  this->Residual = this->Rest.After(change, guessed ? this->Warm.Rate(0) : 0.0);
   this->Result.convergence.Add(this->Residual, change, this->Result.ledger);
 }
 
@@ -501,7 +497,7 @@ void DiffusionAcceleration::Leave()
   {
     moments[i] -= this->FirstMoments[i];
   }
-  const double rate = std::clamp(this->LastRatio, 0.5, 0.95);
+  const double rate = std::clamp(this->Rest.Ratio(), 0.5, 0.95);
   this->Result.warm = this->Warm.Begins();
   this->Result.kept = this->Warm.Leave(this->First, moments, { rate, rate, rate });
 }
@@ -545,7 +541,7 @@ void DiffusionAcceleration::WriteFluence()
     {
       AddFluxOfMoments(parts.TheDevice, parts.Layout, parts.Functions(), parts.Path, parts.Flux);
     }
-    this->LimitFlux(fluence);
+    LimitFlux(parts.Layout, fluence, parts.Flux);
   }
 }
 
@@ -564,32 +560,5 @@ void DiffusionAcceleration::FindSurfaceRadiance()
     powers[c].lamps = lamps.empty() ? nullptr : lamps.data() + c * this->Parts.Layout.Stride();
   }
   this->Result.surfaceRadiance = SurfaceRadiance(this->TheMedium, this->Settings.periodic, this->Parts.Lamps, powers);
-}
-
-/// Where light is absorbed within a voxel, the mean of the powers through its faces is more than its net flux, which is
-/// cut to the fluence.
-void DiffusionAcceleration::LimitFlux(const std::vector<float>& fluence)
-{
-  const std::size_t stride = this->Parts.Layout.Stride();
-  std::vector<float> flux = this->Parts.Flux.Read();
-  const double volume = this->Parts.Layout.grid.VoxelVolume();
-  for (int c = 0; c < this->Parts.Layout.channels; ++c)
-  {
-    InThreads(this->Parts.Layout.grid.VoxelCount(), 16384, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i)
-      {
-        float* const x = flux.data() + 3 * c * stride + i;
-        float* const y = x + stride;
-        float* const z = y + stride;
-        const double most = fluence[c * stride + i] * volume;
-        const double flows = std::hypot(*x, *y, *z);
-        const auto part = static_cast<float>(flows > most ? most / flows : 1.0);
-        *x *= part;
-        *y *= part;
-        *z *= part;
-      }
-    });
-  }
-  this->Parts.Flux.Write(flux.data());
 }
 }

@@ -5,6 +5,7 @@
 #include "LightPropagation/Conservative/TransportParts.h"
 #include "LightPropagation/Conservative/UncollidedLight.h"
 #include "LightPropagation/Conservative/WarmStart.h"
+#include "LightPropagation/Convergence.h"
 #include "LightPropagation/Diffusion/DiffusionSystem.h"
 
 #include <memory>
@@ -48,7 +49,6 @@ private:
   std::vector<float> SweptFluence() const;
   void Leave();
   void WriteFluence();
-  void LimitFlux(const std::vector<float>& fluence);
   void FindSurfaceRadiance();
 
   TransportParts& Parts;
@@ -70,7 +70,8 @@ private:
   std::vector<HostMixing> BackMixing;                      ///< of CameBack, by channel
   SweepTally Tally;                                        ///< of the last sweep
   Rgb GivenPower = {}, PowerIn = {};                       ///< W, emitted or first scattered; through faces
-  double Change = 1.0, LastRatio = 1.0, Residual = 1.0;
+  RestOfChanges Rest;
+  double Residual = 1.0;
 
   WarmStart Warm;
   std::vector<float> First, FirstMoments; ///< of the first iteration, as WarmStart has them, where light is to be kept

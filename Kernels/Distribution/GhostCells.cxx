@@ -1,0 +1,150 @@
+#include "Distribution/GhostCells.h"
+
+#include "Distribution/BlockPartition.h"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+namespace tyndall
+{
+namespace
+{
+constexpr int GhostTag = 29997; ///< beside those of BoxExchange.cxx and PhotonsInBlocks.cxx
+
+/// Adds the places of a part's cells in an array over a box.
+void AddPlaces(const VoxelBox& box, const VoxelBox& part, std::vector<std::size_t>& places)
+{
+  for (int z = part.first[2]; z < EndOf(part, 2); ++z)
+  {
+    for (int y = part.first[1]; y < EndOf(part, 1); ++y)
+    {
+      const std::size_t row = static_cast<std::size_t>(z - box.first[2]) * box.size[1] + (y - box.first[1]);
+      for (int x = part.first[0]; x < EndOf(part, 0); ++x)
+      {
+        places.push_back(row * box.size[0] + (x - box.first[0]));
+      }
+    }
+  }
+}
+}
+
+GhostCells::GhostCells(Communicator& communicator, const std::vector<VoxelBox>& own,
+  const std::vector<std::vector<VoxelBox>>& ghosts, const VoxelBox& held)
+  : Others(communicator)
+{
+  const int self = communicator.Rank();
+  const auto shared = [&](int owner, int holder, int other) {
+    Shared cells = { other, {} };
+    for (const VoxelBox& box : ghosts[holder])
+    {
+      AddPlaces(held, Common(box, own[owner]), cells.places);
+    }
+    return cells;
+  };
+  for (int rank = 0; rank < communicator.Ranks(); ++rank)
+  {
+    if (rank == self)
+    {
+      continue;
+    }
+    if (Shared owned = shared(self, rank, rank); !owned.places.empty())
+    {
+      this->Owned.push_back(std::move(owned));
+    }
+    if (Shared copied = shared(rank, self, rank); !copied.places.empty())
+    {
+      this->Copied.push_back(std::move(copied));
+    }
+  }
+}
+
+template <class Value>
+void GhostCells::Exchange(Value* values, int arrays, std::size_t stride) const
+{
+  for (const Shared& owned : this->Owned)
+  {
+    std::vector<Value> message;
+    message.reserve(owned.places.size() * arrays);
+    for (int array = 0; array < arrays; ++array)
+    {
+      const Value* const from = values + array * stride;
+      std::transform(owned.places.begin(), owned.places.end(), std::back_inserter(message),
+        [from](std::size_t place) { return from[place]; });
+    }
+    this->Others.Send(owned.rank, GhostTag, message);
+  }
+  for (const Shared& copied : this->Copied)
+  {
+    const std::vector<Value> message = this->Others.Receive<Value>(copied.rank, GhostTag);
+    auto next = message.begin();
+    for (int array = 0; array < arrays; ++array)
+    {
+      for (const std::size_t place : copied.places)
+      {
+        values[array * stride + place] = *next++;
+      }
+    }
+  }
+}
+
+template void GhostCells::Exchange(double*, int, std::size_t) const;
+template void GhostCells::Exchange(float*, int, std::size_t) const;
+
+void GhostCells::AddToOwners(std::vector<double>& values) const
+{
+  for (const Shared& copied : this->Copied)
+  {
+    std::vector<double> message(copied.places.size());
+    std::transform(
+      copied.places.begin(), copied.places.end(), message.begin(), [&](std::size_t place) { return values[place]; });
+    this->Others.Send(copied.rank, GhostTag, message);
+  }
+  for (const Shared& owned : this->Owned)
+  {
+    const std::vector<double> message = this->Others.Receive<double>(owned.rank, GhostTag);
+    for (std::size_t i = 0; i < message.size(); ++i)
+    {
+      values[owned.places[i]] += message[i];
+    }
+  }
+}
+
+std::vector<VoxelBox> LayersBeside(const VoxelBox& own, const std::array<int, 3>& gridSize)
+{
+  std::vector<VoxelBox> layers;
+  for (int face = 0; face < 6 && own.VoxelCount() > 0; ++face)
+  {
+    const int axis = face / 2;
+    const int place = face % 2 ? EndOf(own, axis) : own.first[axis] - 1;
+    if (place >= 0 && place < gridSize[axis])
+    {
+      layers.push_back(own);
+      layers.back().first[axis] = place;
+      layers.back().size[axis] = 1;
+    }
+  }
+  return layers;
+}
+
+VoxelBox Hull(const VoxelBox& own, const std::vector<VoxelBox>& others)
+{
+  VoxelBox hull = own;
+  for (const VoxelBox& other : others)
+  {
+    if (other.VoxelCount() == 0)
+    {
+      continue;
+    }
+    const VoxelBox before = hull;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const bool any = before.VoxelCount() > 0;
+      const int end = any ? std::max(EndOf(before, axis), EndOf(other, axis)) : EndOf(other, axis);
+      hull.first[axis] = any ? std::min(before.first[axis], other.first[axis]) : other.first[axis];
+      hull.size[axis] = end - hull.first[axis];
+    }
+  }
+  return hull;
+}
+}

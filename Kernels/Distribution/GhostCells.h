@@ -1,0 +1,49 @@
+#pragma once
+
+#include "Distribution/Communicator.h"
+#include "Medium/VoxelBox.h"
+
+#include <vector>
+
+namespace tyndall
+{
+/// Values of a grid's cells each of which one rank owns, and of which others hold copies: ghosts.
+class GhostCells
+{
+public:
+  /// @param communicator  must stay
+  /// @param own  the box of each rank, none with a cell in common; may be empty
+  /// @param ghosts  the boxes of each rank's ghosts, cells that others own
+  /// @param held  a box that has this rank's own cells and its ghosts: arrays are over it, x fastest
+  GhostCells(Communicator& communicator, const std::vector<VoxelBox>& own,
+    const std::vector<std::vector<VoxelBox>>& ghosts, const VoxelBox& held);
+
+  /// Ghosts from those who own them. All ranks call these together, of as many values.
+  /// @param values  of several arrays over the box, one after the other, `stride` apart
+  void Fill(std::vector<double>& values) const { this->Exchange(values.data(), 1, 0); }
+  void Fill(float* values, int arrays, std::size_t stride) const { this->Exchange(values, arrays, stride); }
+
+  /// Adds what this rank has in its ghosts to the owners' values, rank by rank.
+  void AddToOwners(std::vector<double>& values) const;
+
+private:
+  /// What goes between this rank and another.
+  struct Shared
+  {
+    int rank;
+    std::vector<std::size_t> places; ///< in the box
+  };
+  template <class Value>
+  void Exchange(Value* values, int arrays, std::size_t stride) const;
+
+  Communicator& Others;
+  std::vector<Shared> Owned;  ///< of this rank's own cells, those that are ghosts of another
+  std::vector<Shared> Copied; ///< of this rank's ghosts, those that another owns
+};
+
+/// Of a box of a grid the layers of cells beyond its faces, as far as the grid goes; none of an empty box.
+std::vector<VoxelBox> LayersBeside(const VoxelBox& own, const std::array<int, 3>& gridSize);
+
+/// The box and these, in one.
+VoxelBox Hull(const VoxelBox& own, const std::vector<VoxelBox>& others);
+}

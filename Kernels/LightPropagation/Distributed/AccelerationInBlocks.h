@@ -1,0 +1,93 @@
+#pragma once
+
+#include "Device/Buffer.h"
+#include "Device/Monitor.h"
+#include "LightPropagation/Angular/SweptDirections.h"
+#include "LightPropagation/Conservative/ConvergenceRecord.h"
+#include "LightPropagation/Conservative/EnergyLedger.h"
+#include "LightPropagation/Convergence.h"
+#include "LightPropagation/Distributed/BalanceOverRanks.h"
+#include "LightPropagation/Distributed/BeamsInThickBlocks.h"
+#include "LightPropagation/Distributed/BlockScene.h"
+#include "LightPropagation/Distributed/BlockWithGhosts.h"
+#include "LightPropagation/Problem/MediumOnDevice.h"
+#include "LightPropagation/PropagationSettings.h"
+#include "LightPropagation/Sweep/SweepOperator.h"
+#include "LightPropagation/Uncollided/BoundaryLight.h"
+
+#include <memory>
+#include <vector>
+
+namespace tyndall
+{
+/// Iteration with diffusion acceleration (numerics.md, section 7) on one rank's block, in step with the others: as
+/// DiffusionAcceleration.h, of isotropic scattering, without faces that reflect and without a first guess.
+class AccelerationInBlocks
+{
+public:
+  /// What it works on, of the rank's block; must stay.
+  struct Parts
+  {
+    Device& device;
+    Communicator& others;
+    const BlockPartition& partition;
+    const BlockScene& scene;
+    const PropagationSettings& settings;
+    const VolumeLayout& layout;
+    const MediumOnDevice& medium;
+    const SweptDirections& directions;
+    const BoundaryLight& boundary; ///< of the whole grid
+    SweepMaker makeSweep;
+    NearLampAdder addNearLamp;
+
+    Buffer<float>& source;  ///< W / (length^3 sr), emission; used up
+    Buffer<float>& path;    ///< W length, of lamps' uncollided light; used up
+    Buffer<float>& fluence; ///< W / length^2, becomes the light
+    Buffer<float>& flux;    ///< of lamps, is added to; empty: not wanted
+    EnergyLedger& ledger;   ///< of emission and of what lamps let in and out, is added to
+  };
+  /// All ranks make one together.
+  explicit AccelerationInBlocks(const Parts& parts);
+
+  /// In thick voxels it matters where lamps' light is first scattered. The same on all ranks, which ask together.
+  bool NeedsFirstMoments() const;
+  /// If it does: adds the uncollided light of lamps to path, flux and ledger. All ranks call it before Run.
+  void AddBeams(const std::vector<Light>& lamps, const Monitor& monitor);
+
+  /// @return the rows of `convergence`
+  std::vector<ConvergenceRow> Run(const Monitor& monitor);
+  const std::vector<float>& Direct() const { return this->FluenceDirect; } ///< unscattered, channels interleaved
+
+private:
+  void SpreadMedium();
+  void GiveFirstScattered();
+  void MakeSystems();
+  void ScatterFound();
+  void Sweep(bool first, const Monitor& monitor);
+  void TakeDirect();
+  void Correct();
+  void CountLight();
+  double VoxelPower(int channel) const;
+  bool Done(int iterations) const;
+  void WriteFluence();
+
+  Parts The;
+  const bool LinearSource;
+  const BlockWithGhosts Block;
+  // With ghosts, as DiffusionSystem::Arrays has them; of sigma_s, source, path and given those of the block alone.
+  Buffer<float> SigmaT, SigmaA, CountedSigmaS, Given, Source, Path, PartialCurrents;
+  Buffer<float> OwnCurrents;                                 ///< of the block
+  std::vector<float> OwnSigmaS, OwnGiven, UncollidedFluence; ///< of the block, [channel][stride]
+  std::unique_ptr<BeamsInThickBlocks> Beams;                 ///< null: not added
+  std::unique_ptr<SweepOperator> Swept;
+  std::vector<std::unique_ptr<BalanceOverRanks>> Systems; ///< by channel
+  std::vector<float> FluenceDirect;
+
+  EnergyLedger OfUncollided;
+  SweepTally Tally; ///< of the last sweep
+  Rgb GivenPower = {}, PowerIn = {};
+  RestOfChanges Rest;
+  double Residual = 1.0;
+  ConvergenceRecord Convergence;
+};
+}

@@ -1,0 +1,57 @@
+#pragma once
+
+#include "Distribution/BlockPartition.h"
+#include "Distribution/Communicator.h"
+#include "LightPropagation/Diffusion/DiffusionSystem.h"
+#include "LightPropagation/Distributed/BlockWithGhosts.h"
+#include "LightPropagation/Distributed/MultigridOverRanks.h"
+
+#include <array>
+#include <memory>
+#include <vector>
+
+namespace tyndall
+{
+/// The diffusion system of one channel (DiffusionSystem.h, numerics.md, section 7) of a grid that is spread over ranks:
+/// each has the balance of its own voxels, from the values of those beside them, and all solve it together. The same
+/// solution as that of the whole grid, but for rounding and what the linear solver leaves, whatever the blocks.
+///
+/// All ranks make one and call it together, those without voxels too. What goes wrong on one rank throws on all.
+class BalanceOverRanks
+{
+public:
+  /// @param communicator, block  must stay
+  /// @param arrays  with ghosts: sigma_t, sigma_a, partialCurrents and passed have the others' values there, sigma_s is
+  ///   below 0 there; what the others are is never looked at
+  /// @param pattern  of the whole grid
+  /// @param incoming  W / length^2 through the faces of the whole grid, but that of lights
+  BalanceOverRanks(Device& device, Communicator& communicator, const BlockPartition& partition,
+    const BlockWithGhosts& block, const DirectionSet& directions, const CrossingPattern& pattern,
+    const DiffusionSystem::Arrays& arrays, const std::array<double, 6>& incoming, bool linear);
+
+  /// As those of DiffusionSystem, of all ranks.
+  double Correct(double unit);
+  void Refine(double unit);
+  double Absorbed() const;
+  std::array<double, 6> Outflow(double entered, const std::array<double, 6>& ofSweep);
+
+  // Of this rank alone.
+  std::vector<double> Found() const; ///< W / length^2, by voxel of the block
+  /// The same, on which the next sweep's source is to be built, with ghosts; empty where the block is.
+  std::vector<double> NextFluence() const;
+  void ShapeSource();
+  void AddFlux(const Buffer<float>& flux); ///< with ghosts, which are not those of the others
+
+private:
+  std::vector<double> OwnOf(const std::vector<double>& held) const;
+
+  Communicator& Others;
+  const BlockWithGhosts& Block;
+  const Buffer<float>* SigmaA;
+  std::size_t First;
+  std::unique_ptr<DiffusionSystem> System; ///< of the block with ghosts; null without voxels
+  std::unique_ptr<MultigridOverRanks> Solver;
+  std::vector<double> Fluence; ///< that was solved for, with ghosts
+  int Corrections = 0;
+};
+}
