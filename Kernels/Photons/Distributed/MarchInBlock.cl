@@ -37,18 +37,19 @@ static void march_packet_in_block(const march_arrays* arrays, const __global flo
   }
 }
 
-// Photons `first` to `first + count`, to their ends or into another block: of `photons`, which set off, or with
-// `resumes` of `arrived`. Those that go on elsewhere are put into `gone`, whose number gone_count is, in any order.
+// Photons `first` to `first + count`, of one batch, to their ends or into another block: of `photons`, which set off, or
+// with `resumes` of `arrived`. Those that go on elsewhere are put into `gone`, whose number gone_count is, in any order.
+// Copies of the batch's sums begin at `copyBegin` and are `copyStride` apart.
 __kernel void march_block(MarchInfo info, const __global float* sigma, const __global float* coefficients,
   const __global uchar* nodes, const __global float* photons, const __global ulong* marks,
   const __global PhotonOnItsWay* arrived, __global PhotonOnItsWay* gone, volatile __global int* gone_count,
-  __global PhotonEnd* ends, __global long* sums, ulong copyStride, volatile __global int* next, int resumes, int first,
-  int count)
+  __global PhotonEnd* ends, __global long* sums, ulong copyBegin, ulong copyStride, volatile __global int* next, int resumes,
+  int first, int count)
 {
   const int end = first + count;
 #if WORKERS > 0
-  const march_arrays arrays = { &info, sigma, coefficients, nodes, sums + get_global_id(0) * copyStride, ends, 0, marks,
-    0, gone, gone_count };
+  const march_arrays arrays = { &info, sigma, coefficients, nodes,
+    sums + copyBegin + get_global_id(0) * copyStride, ends, 0, marks, 0, gone, gone_count };
   for (int block = atomic_add(next, BLOCK); block < count; block = atomic_add(next, BLOCK))
   {
     for (int i = first + block; i < first + min(block + BLOCK, count); i += REAL_WIDTH)
@@ -57,7 +58,8 @@ __kernel void march_block(MarchInfo info, const __global float* sigma, const __g
     }
   }
 #else
-  const march_arrays arrays = { &info, sigma, coefficients, nodes, sums, ends, 0, marks, 0, gone, gone_count };
+  const march_arrays arrays = { &info, sigma, coefficients, nodes, sums + copyBegin, ends, 0, marks, 0, gone,
+    gone_count };
   march_packet_in_block(&arrays, photons, arrived, resumes, first + get_global_id(0) * REAL_WIDTH, end);
 #endif
 }

@@ -5,6 +5,7 @@
 #include "Distribution/BlockPartition.h"
 #include "Distribution/Communicator.h"
 #include "Medium/Medium.h"
+#include "Photons/Distributed/PhotonRounds.h"
 #include "Photons/Photons.h"
 
 #include <string>
@@ -12,20 +13,13 @@
 
 namespace tyndall
 {
-/// What ranks handed to each other.
-struct PhotonTraffic
-{
-  std::size_t photons = 0; ///< that this rank handed on; one counts each time that it goes into another block
-  std::size_t bytes = 0;   ///< of them
-  int rounds = 0;          ///< of marching and handing on, until none was left anywhere
-};
-
 /// Marches photons through a medium that is spread over ranks by blocks, as PhotonMarcher marches them through the
 /// whole. All ranks call it together.
 ///
 /// A photon that leaves a block is handed, as it is, to the rank whose block it enters, and goes on there
-/// (numerics.md, section 12.6): its way does not depend on the blocks, and what voxels gain is in fixed point.
-/// The light is that of PhotonMarcher, bit for bit, whatever the number of ranks. No rank holds more of the medium than
+/// (numerics.md, section 12.6), with the random numbers that it has drawn where it is scattered: its way does not depend
+/// on the blocks, and what voxels gain is in fixed point. The light is that of PhotonMarcher, bit for bit, whatever the
+/// number of ranks; tallies of scattered light, which are sums of floats, to 1e-12. No rank holds more of the medium than
 /// its block and, of the refractive index, some voxels round it.
 ///
 /// @param medium  of the rank's block, with the grid that partition.OwnGrid() has; looked at by nobody where that has

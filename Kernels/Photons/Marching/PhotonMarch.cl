@@ -10,8 +10,8 @@
 //   PATHS            1: nothing is summed, vertices are written
 //   BRICKS           1: the medium, and the sums, stand by bricks (PhotonBricks.cl), without COUNTS and CELLS
 //   TURNS            1: photons march in turns, and are kept between them; one batch, without PATHS
-//   BLOCKS           1: photons march as far as their block of the grid goes (PhotonBlocks.cl); one batch, without
-//                    PATHS, CELLS, BRICKS and TURNS
+//   BLOCKS           1: photons march as far as their block of the grid goes (PhotonBlocks.cl), without CELLS, BRICKS
+//                    and TURNS
 //
 // A step is followed from voxel wall to voxel wall (Amanatides and Woo 1987). In a voxel whose extinction over a
 // diagonal is s, with b = max(s, 1), the sums gain (numerics.md, Eqs. (35), (97))
@@ -20,6 +20,8 @@
 //
 // A photon counts where it enters a voxel (a cell), however many stretches it crosses it in; once more where it comes
 // back.
+
+#define MARKS (COUNTS || CELLS || (BLOCKS && PATHS))
 
 #include "Numerics/FixedPoint.cl"
 #include "Numerics/Numerics.cl"
@@ -376,7 +378,7 @@ static void load_packet(const march_arrays* arrays, const __global float* photon
     {
       lanes->power[c][k] = there ? photon[6 + c] : 0.0f;
     }
-#if COUNTS || CELLS
+#if MARKS
     lanes->mark[k] = there ? arrays->marks[first + k] : 0;
 #endif
   }

@@ -3,9 +3,9 @@
 //   BENDS       1: the index varies; ORDER of the integrator then: 1, 2 or 4
 //   LEVELS      1: there are octree levels
 //   DIRECTIONS  1: directions are asked for
-//   COUNTS, CELLS  1: photons bear marks (PhotonMarch.cl)
+//   MARKS       1: photons bear marks (PhotonMarch.cl)
 //   BRICKS      1: the medium stands by bricks (PhotonBricks.cl); places are records, and [copy] of them
-//   BLOCKS      1: photons may go into other blocks of the grid (PhotonBlocks.cl)
+//   BLOCKS      1: photons may go into other blocks of the grid (WaysOnward.cl)
 //
 // A path obeys dr/dt = T, dT/dt = grad(n^2) / 2 with dt = ds / n (numerics.md, Eq. (90)). It becomes steps, straight
 // lines of constant velocity:
@@ -42,7 +42,7 @@ typedef struct
   __global PhotonEnd* ends;
   __global float4*
     vertices; // of a path: position in voxels, part of the power that is left; null: they are only counted
-  const __global ulong* marks; // of photons, with COUNTS or CELLS
+  const __global ulong* marks; // of photons, with MARKS
   const __global int* cells;   // [copy] of voxels, with CELLS; with BRICKS of bricks: PhotonBricks.h
 #if BLOCKS
   __global PhotonOnItsWay* gone; // into other blocks
@@ -71,7 +71,7 @@ typedef struct
   LANES_3(float, velocity);     // along it
   LANES_3(float, momentum);     // T; v of Euler; order 2 has it as the velocity
   float4 direction[REAL_WIDTH]; // 1, and the direction in space
-#if COUNTS || CELLS
+#if MARKS
   LANES(ulong, mark);
 #endif
 #if BLOCKS
@@ -442,6 +442,15 @@ static void rest(photon_lanes* lanes, int k)
   lanes->turn[k] = NEVER;
 }
 
+// The voxels that photons set off in from p (voxels).
+static void voxels_of_starts(const MarchInfo* info, const real* p, integer* voxel)
+{
+  FOR_AXES(a)
+  {
+    voxel[a] = clamp(to_integer(p[a]), (integer)0, (integer)(info->whole.size[a] - 1));
+  }
+}
+
 // Photons set off from p (voxels) in unit directions u.
 static void set_off(const march_arrays* arrays, photon_lanes* lanes, real* p, real* u)
 {
@@ -449,9 +458,9 @@ static void set_off(const march_arrays* arrays, photon_lanes* lanes, real* p, re
   const integer all = (integer)-1;
   integer voxel[3];
   real inverse[3];
+  voxels_of_starts(info, p, voxel);
   FOR_AXES(a)
   {
-    voxel[a] = clamp(to_integer(p[a]), (integer)0, (integer)(info->whole.size[a] - 1));
     u[a] /= info->spacing[a];
   }
   PUT_INTEGERS(lanes->at, padded(info, voxel));
