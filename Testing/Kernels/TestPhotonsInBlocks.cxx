@@ -1,10 +1,9 @@
 // Photons through a medium that is spread over ranks, against those through the whole on one.
 
+#include "BlocksOfScene.h"
 #include "DeviceTest.h"
-#include "PhotonScene.h"
 #include "PhotonWays.h"
 
-#include "Distribution/BoxExchange.h"
 #include "Distribution/RanksInThreads.h"
 #include "Photons/Distributed/PhotonsInBlocks.h"
 #include "Photons/Marching/MarchShared.h"
@@ -20,96 +19,12 @@ using namespace tyndall;
 
 namespace
 {
-/// The arrays of a box of a scene.
-struct BlockOfScene
-{
-  BlockOfScene(const PhotonScene& scene, const VoxelBox& box)
-    : medium(scene.medium)
-  {
-    const VoxelBox whole = { { 0, 0, 0 }, scene.medium.grid.size };
-    const auto part = [&](const std::vector<float>& values) {
-      return PartOf(values, whole, box, scene.ComponentsOf(values));
-    };
-    this->sigma_a = part(scene.sigma_a);
-    this->sigma_s = part(scene.sigma_s);
-    this->ior = scene.ior.empty() ? scene.ior : part(scene.ior);
-    this->medium.grid.size = box.size;
-    this->medium.sigma_a = { this->sigma_a.data(), scene.ComponentsOf(scene.sigma_a) };
-    this->medium.sigma_s = { this->sigma_s.data(), scene.ComponentsOf(scene.sigma_s) };
-    for (std::size_t i = 0; i < box.VoxelCount(); ++i)
-    {
-      std::array<int, 3> voxel = this->medium.grid.VoxelAt(i);
-      for (int axis = 0; axis < 3; ++axis)
-      {
-        voxel[axis] += box.first[axis];
-      }
-      this->places.push_back(scene.medium.grid.IndexOf(voxel));
-    }
-  }
-  BlockOfScene(const BlockOfScene&) = delete;
-  BlockOfScene& operator=(const BlockOfScene&) = delete;
-
-  Field Index() const { return { this->ior.empty() ? nullptr : this->ior.data(), 1 }; }
-  /// Values of the box to those of the whole.
-  void Put(const std::vector<float>& from, std::vector<float>& to, std::size_t voxels) const
-  {
-    const std::size_t width = this->places.empty() ? 0 : from.size() / this->places.size();
-    to.resize(std::max(to.size(), voxels * width));
-    for (std::size_t i = 0; i < from.size(); ++i)
-    {
-      to[this->places[i / width] * width + i % width] = from[i];
-    }
-  }
-
-  Medium medium;
-  std::vector<float> sigma_a, sigma_s, ior;
-  std::vector<std::size_t> places; ///< in the whole
-};
-
-/// Arrays of the blocks put together; all else must be the same on all ranks.
-PhotonLight LightOfAll(Device& device, const PhotonScene& scene, const BlockPartition& partition,
-  const std::vector<Photon>& photons, std::vector<PhotonTraffic>* traffic = nullptr)
-{
-  const int ranks = static_cast<int>(partition.blocks.size());
-  std::vector<PhotonLight> found(ranks);
-  std::vector<PhotonTraffic> handed(ranks);
-  RunInThreads(ranks, [&](Communicator& communicator) {
-    const int rank = communicator.Rank();
-    const BlockOfScene part(scene, partition.blocks[rank]);
-    found[rank] = MarchInBlocks(
-      device, communicator, partition, part.medium, part.Index(), scene.settings, photons, {}, &handed[rank]);
-  });
-  PhotonLight all = found[0];
-  const std::size_t voxels = scene.medium.grid.VoxelCount();
-  all.light.fluence.clear();
-  for (std::vector<float>* array : { &all.meanDirection, &all.photonCount, &all.photonWeight })
-  {
-    array->clear();
-  }
-  for (int rank = 0; rank < ranks; ++rank)
-  {
-    const BlockOfScene part(scene, partition.blocks[rank]);
-    part.Put(found[rank].light.fluence, all.light.fluence, voxels);
-    part.Put(found[rank].meanDirection, all.meanDirection, voxels);
-    part.Put(found[rank].photonCount, all.photonCount, voxels);
-    part.Put(found[rank].photonWeight, all.photonWeight, voxels);
-    EXPECT_EQ(found[rank].light.facePowerOut, all.light.facePowerOut);
-    EXPECT_EQ(found[rank].light.balance.absorbed, all.light.balance.absorbed);
-    EXPECT_EQ(found[rank].light.channels, all.light.channels);
-    EXPECT_EQ(handed[rank].rounds, handed[0].rounds);
-  }
-  if (traffic)
-  {
-    *traffic = handed;
-  }
-  return all;
-}
-
 void ExpectLightOfTheWhole(const PhotonLight& found, const PhotonLight& expected)
 {
   ExpectSameLight(found, expected);
   EXPECT_EQ(found.photonCount, expected.photonCount);
   EXPECT_EQ(found.photonWeight, expected.photonWeight);
+  EXPECT_EQ(found.batchFluence, expected.batchFluence);
   EXPECT_EQ(found.missed, expected.missed);
   EXPECT_LT(found.light.balance.RelativeError(found.light.channels), 1e-6);
 }
@@ -124,29 +39,6 @@ void ExpectSameOnRanks(
     ExpectLightOfTheWhole(
       LightOfAll(device, scene, BlockPartition::Even(scene.medium.grid, number), photons), expected);
   }
-}
-
-/// Extinction from 0.01 to 1 a voxel's edge, `components` of it.
-void Randomise(PhotonScene& scene, std::size_t components)
-{
-  std::mt19937 random(3);
-  std::uniform_real_distribution<double> exponent(-2.0, 0.0);
-  for (std::vector<float>* values : { &scene.sigma_a, &scene.sigma_s })
-  {
-    values->resize(scene.medium.grid.VoxelCount() * components);
-    for (float& value : *values)
-    {
-      value = static_cast<float>(0.5 / scene.medium.grid.spacing[0] * std::pow(10.0, exponent(random)));
-    }
-  }
-}
-
-/// 12 x 9 x 7 voxels of some absorption and scattering.
-PhotonScene SmallScene(std::size_t components = 1)
-{
-  PhotonScene scene({ 12, 9, 7 }, 0.2, 0.9, 0.0f, 0.0f);
-  Randomise(scene, components);
-  return scene;
 }
 
 Photon PhotonFrom(std::array<double, 3> position, std::array<float, 3> direction)
@@ -363,6 +255,24 @@ TEST_F(PhotonBlocks, HandOnAsOftenAsPathsCross)
   EXPECT_NEAR(handed, crossings, 0.005 * crossings); // paths are cut at walls to float's precision
 }
 
+TEST_F(PhotonBlocks, KeepTheLightOfEachBatchApart)
+{
+  PhotonScene scene = SmallScene();
+  scene.SetBall(0.6, 1.5, 1.0);
+  scene.settings.batches = true;
+  std::vector<Photon> photons = AnyPhotons(scene.medium.grid, 1000);
+  for (std::size_t i = 0; i < photons.size(); ++i)
+  {
+    photons[i].batch = static_cast<std::int32_t>(i * i % 5);
+  }
+  for (const MarchSettings::Sums sums : { MarchSettings::Sums::Private, MarchSettings::Sums::Shared })
+  {
+    scene.settings.sums = sums;
+    ExpectSameOnRanks(GetDevice(), scene, photons, { 1, 2, 5 });
+  }
+  EXPECT_EQ(scene.March(GetDevice(), photons).batchFluence.size(), 5 * scene.medium.grid.VoxelCount());
+}
+
 TEST_F(PhotonBlocks, AreDarkWithoutPhotons)
 {
   PhotonScene scene = SmallScene();
@@ -452,8 +362,6 @@ TEST_F(PhotonBlocksFail, TogetherWhereOneIsStopped)
 
 TEST_F(PhotonBlocksFail, WithWordsOnWhatIsNotCarriedFromRankToRank)
 {
-  ExpectErrors("scattered photons", [](int, Given given) { given.settings.maximumOrders = 0; });
-  ExpectErrors("batches", [](int, Given given) { given.settings.errorBatches = 8; });
   ExpectErrors("Unsafe", [](int, Given given) { given.settings.sums = MarchSettings::Sums::Unsafe; });
   EXPECT_NE(NotInBlocks({}, true).find("octree"), std::string::npos);
   EXPECT_EQ(NotInBlocks({}, false), "");
