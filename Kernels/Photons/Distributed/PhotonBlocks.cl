@@ -3,12 +3,6 @@
 #pragma once
 #include "Photons/Distributed/WaysOnward.cl"
 
-// Those that have been as often at walls and turns as photons may.
-static integer spent(const march_arrays* arrays, const photon_flight* flight)
-{
-  return truth(flight->crossings >= (integer)arrays->info->eventLimit);
-}
-
 static void keep_owed(photon_lanes* lanes, const photon_flight* flight)
 {
   FOR_CHANNELS(c)
