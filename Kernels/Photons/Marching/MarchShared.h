@@ -13,6 +13,14 @@ enum
   Elsewhere = 8   ///< of one that goes on in another block of the grid
 };
 
+/// Halves of steps, along each axis, that the integrator looks ahead at most: more than twice what it does where n is
+/// smooth.
+enum
+{
+  LeapfrogLooksAhead = 3, ///< which looks half a step ahead there
+  YoshidaLooksAhead = 6   ///< 1.35 steps
+};
+
 /// The medium, and how photons are marched through it. Places are those of the whole grid; arrays have a block of it.
 typedef struct
 {

@@ -12,6 +12,11 @@
 //   order 2  from kick to kick of the leapfrog, Eq. (91): its polygon is the path itself
 //   order 4  from step end to step end, each step of Yoshida's three leapfrogs
 //   order 1  explicit Euler, Eq. (92), as in Pfeuti 2009, Eq. 2.10 and 2.11: dx/ds = v / n, dv/ds = grad n
+//
+// The integrator looks at places before a photon gets there, but no farther ahead than by so many steps (MarchShared.h):
+// a jump of n that makes a photon many times as fast as its step was meant for would have it look anywhere, and a block
+// of a grid knows the index no farther than that (numerics.md, Eq. (99f)). An octree's steps are longer.
+//
 // Where n does not vary within the reach of interpolation nothing is evaluated, and a step is as long as that is so.
 //
 // Positions and velocities are in voxels, lengths in voxel diagonals.
@@ -257,6 +262,17 @@ static void squared_index_at(const march_arrays* arrays, integer mask, const rea
   }
 }
 
+// A way from where a photon is, in voxels, as far as the integrator looks.
+static real looked_ahead(const MarchInfo* info, real way)
+{
+#if LEVELS
+  return way;
+#else
+  const float most = 0.5f * (ORDER == 4 ? YoshidaLooksAhead : LeapfrogLooksAhead) * info->stepSize;
+  return lesser(greater(way, (real)-most), (real)most);
+#endif
+}
+
 // The voxels of places anywhere; beyond those whose index is known, those of the padding.
 static void voxels_of_places(const MarchInfo* info, const real* p, integer* voxel)
 {
@@ -350,7 +366,7 @@ static real take_step(
     FOR_AXES(a)
     {
       moved[a] += (real)0.5f * dt * u[a];
-      place[a] = p[a] + moved[a];
+      place[a] = p[a] + looked_ahead(arrays->info, moved[a]);
     }
     pull(arrays, moving, place, change);
     FOR_AXES(a)
@@ -385,16 +401,18 @@ static void take_turns(const march_arrays* arrays, photon_lanes* lanes, integer 
   // Those that enter drift for half a step; the others are kicked, and drift for halves of two steps.
   const integer kicked = mask & truth(VECTOR(lanes->turn) <= now);
   const real step = VECTOR(lanes->step);
-  real change[3], end[3];
+  real change[3], end[3], seen[3];
   integer last[3];
   pull(arrays, kicked, p, change);
   FOR_AXES(a)
   {
     u[a] += masked(kicked, step * change[a]);
     inverse[a] = (real)1.0f / u[a];
-    end[a] = kicked ? p[a] + (real)0.5f * step * u[a] : p[a];
+    const real way = masked(kicked, (real)0.5f * step * u[a]);
+    end[a] = p[a] + way;
+    seen[a] = p[a] + looked_ahead(info, way);
   }
-  voxels_of_places(info, end, last);
+  voxels_of_places(info, seen, last);
   FOR_AXES(a)
   {
     last[a] = kicked ? last[a] : voxel[a];
