@@ -4,7 +4,10 @@
 #include "Device/Errors.h"
 #include "Distribution/BoxExchange.h"
 #include "Distribution/SharedMedium.h"
+#include "Numerics/ChooseEvenly.h"
 #include "Photons/Distributed/BlockMarch.h"
+#include "Photons/Distributed/PathsInBlocks.h"
+#include "Photons/Distributed/PhotonShares.h"
 #include "Photons/Marching/MarchedBatches.h"
 #include "Photons/Marching/MarchedLight.h"
 #include "Photons/Scattering/ScatteredChannels.h"
@@ -24,12 +27,17 @@ namespace tyndall
 namespace
 {
 /// Voxels round a block whose index has a part in the ways of photons in it (numerics.md, Eq. (99f)): three of each
-/// spline's, and those of the places that the integrator looks at before it goes there, where a jump of the index may
-/// have made a photon some times as fast as its step was meant for. Beyond, the index counts as constant.
+/// spline's, and those of the places that the integrator looks at before it goes there. Beyond, the index counts as
+/// constant.
 int ReachOfIndex(const MarchSettings& settings)
 {
-  const double ahead = settings.order == 1 ? 0.0 : settings.order == 2 ? 1.5 : 3.0; // steps
-  return 3 + static_cast<int>(std::ceil(ahead * settings.stepSize));
+  constexpr int OfSpline = 3;
+  if (settings.order == 1)
+  {
+    return OfSpline;
+  }
+  const double ahead = 0.5 * (settings.order == 2 ? LeapfrogLooksAhead : YoshidaLooksAhead) * settings.stepSize;
+  return OfSpline + 1 + static_cast<int>(ahead); // also from a voxel's upper wall
 }
 
 /// None where there are fewer blocks than ranks, which is yet to be refused.
@@ -38,60 +46,12 @@ VoxelBox BlockOf(const BlockPartition& partition, int rank)
   return rank < static_cast<int>(partition.blocks.size()) ? partition.blocks[rank] : VoxelBox();
 }
 
-/// Of the packed photons those that set off in a block, by the voxel that kernels take them to be in.
-PackedPhotons ThoseIn(const VoxelBox& block, const Grid& whole, const PackedPhotons& packed)
-{
-  PackedPhotons own = packed;
-  own.values.clear();
-  own.numbers.clear();
-  own.batchBegin.assign(packed.batchBegin.size(), 0);
-  const auto each = static_cast<std::ptrdiff_t>(packed.FloatsEach());
-  auto values = packed.values.begin();
-  std::size_t batch = 0;
-  for (std::size_t i = 0; i < packed.Count(); ++i, values += each)
-  {
-    while (static_cast<int>(i) >= packed.batchBegin[batch + 1])
-    {
-      ++batch;
-    }
-    int voxel[3];
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      voxel[axis] = std::clamp(static_cast<int>(values[axis]), 0, whole.size[axis] - 1);
-    }
-    if (Holds(block, voxel))
-    {
-      own.values.insert(own.values.end(), values, values + each);
-      own.numbers.push_back(packed.numbers[i]);
-      ++own.batchBegin[batch + 1];
-    }
-  }
-  std::partial_sum(own.batchBegin.begin(), own.batchBegin.end(), own.batchBegin.begin());
-  return own;
-}
-
 void RequireSame(Communicator& communicator, const MarchSettings& settings)
 {
   tyndall::RequireSame(communicator, "settings", true,
     { 1.0 * settings.order, settings.stepSize, 1.0 * settings.meanDirection, 1.0 * settings.counts,
       1.0 * settings.maximumOrders, 1.0 * settings.leaveOut, static_cast<double>(settings.seed),
       1.0 * settings.errorBatches, 1.0 * settings.batches });
-}
-
-void RequireSame(Communicator& communicator, const std::vector<Photon>& photons)
-{
-  std::vector<double> sums(10, 0.0);
-  sums[0] = static_cast<double>(photons.size());
-  for (const Photon& photon : photons)
-  {
-    for (int i = 0; i < 3; ++i)
-    {
-      sums[1 + i] += photon.position[i];
-      sums[4 + i] += photon.direction[i];
-      sums[7 + i] += photon.power[i];
-    }
-  }
-  tyndall::RequireSame(communicator, "the photons", true, sums);
 }
 }
 
@@ -104,14 +64,11 @@ std::string NotInBlocks(const MarchSettings& settings, bool octree)
   return settings.sums == MarchSettings::Sums::Unsafe ? "Unsafe sums" : std::string();
 }
 
-namespace
-{
 /// One rank's part of a march.
-class RankOfMarch
+class PhotonMarcherInBlocks::Rank
 {
 public:
-  RankOfMarch(
-    Device& device, Communicator& communicator, const BlockPartition& partition, const MarchSettings& settings)
+  Rank(Device& device, Communicator& communicator, const BlockPartition& partition, const MarchSettings& settings)
     : TheDevice(device)
     , Others(communicator)
     , Partition(partition)
@@ -123,20 +80,22 @@ public:
 
   void CheckInput(const Medium& medium, const Field& ior) const;
   void Prepare(const Medium& medium, const Field& ior);
-  PhotonLight March(const std::vector<Photon>& photons, const PhotonNumbers& numbers, const Monitor& monitor);
-  PhotonLight MarchInBatches(const std::vector<Photon>& photons, const Monitor& monitor);
-  const PhotonTraffic& Traffic() const { return this->Rounds->Traffic(); }
+  PhotonLight March(const std::vector<Photon>& share, const Monitor& monitor);
+  std::vector<PhotonPath> Paths(const std::vector<Photon>& share, std::size_t count);
+
+  PhotonTraffic Handed; ///< of the last march
 
 private:
   MarchTraits TraitsOfAllRanks(const Medium& medium, const Field& ior);
   VoxelBox KnownOf(int rank, bool bends) const;
   std::vector<float> IndexAround(const Field& ior, bool bends);
   void PrepareScattering(const Medium& medium, const Field& index);
-  void Pack(const std::vector<Photon>& photons);
-  void Follow(const CountedPhotons& counted, PhotonLight& result, const Monitor& monitor);
+  PhotonLight MarchThese(const std::vector<Photon>& share, const PhotonNumbers& numbers, const Monitor& monitor);
+  PhotonLight MarchInBatches(const std::vector<Photon>& share, const PlaceOfShare& place, const Monitor& monitor);
+  void Follow(const StartingPhotons& starting, PhotonLight& result, const Monitor& monitor);
+  void AddScattered(const PackedPhotons& packed, PhotonLight& result, const Monitor& monitor);
   ScatteredPhotons FollowScattered(const PhotonScattering* in, PackedPhotons photons,
     const PhotonScattering::Settings& settings, const Monitor& monitor);
-  void AddScattered(PhotonLight& result, const PhotonNumbers& numbers, const Monitor& monitor);
   void SumUp(const std::vector<Rgb*>& powers, const std::vector<double*>& numbers);
   void AddUp(PhotonLight& result);
   void AddUpScattered(PhotonLight& result);
@@ -144,19 +103,17 @@ private:
   Device& TheDevice;
   Communicator& Others;
   const BlockPartition& Partition;
-  const MarchSettings& Settings;
+  const MarchSettings Settings;
   const VoxelBox Own;
   const bool Has; ///< voxels
-  std::unique_ptr<PhotonRounds> Rounds;
   MarchTraits Traits;
-  PackedPhotons Packed;                          ///< those that set off here, in units and channels of all
+  std::unique_ptr<PhotonRounds> Rounds;          ///< of a march
   std::unique_ptr<MarchMedium> Through;          ///< null without voxels
   std::unique_ptr<MarchedLight> Light;           ///< likewise
   std::unique_ptr<ScatteredChannels> Scattering; ///< null: photons are followed to where they are first scattered
-  MarchSums Target;
 };
 
-void RankOfMarch::CheckInput(const Medium& medium, const Field& ior) const
+void PhotonMarcherInBlocks::Rank::CheckInput(const Medium& medium, const Field& ior) const
 {
   this->Partition.Check();
   Require(
@@ -173,7 +130,7 @@ void RankOfMarch::CheckInput(const Medium& medium, const Field& ior) const
   Require(refused.empty(), "A medium that is spread over ranks is not marched through with " + refused + ".");
 }
 
-MarchTraits RankOfMarch::TraitsOfAllRanks(const Medium& medium, const Field& ior)
+MarchTraits PhotonMarcherInBlocks::Rank::TraitsOfAllRanks(const Medium& medium, const Field& ior)
 {
   MarchTraits traits = this->Has ? MarchTraitsOf(medium, ior) : MarchTraits();
   static_cast<MediumTraits&>(traits) = TraitsOfAll(this->Others, traits);
@@ -186,14 +143,14 @@ MarchTraits RankOfMarch::TraitsOfAllRanks(const Medium& medium, const Field& ior
 }
 
 /// The voxels whose index a rank needs.
-VoxelBox RankOfMarch::KnownOf(int rank, bool bends) const
+VoxelBox PhotonMarcherInBlocks::Rank::KnownOf(int rank, bool bends) const
 {
   const VoxelBox& block = this->Partition.blocks[rank];
   return bends && block.VoxelCount() > 0 ? Grown(block, ReachOfIndex(this->Settings), this->Partition.whole) : block;
 }
 
 /// The index of these, from all ranks. Empty where it is 1 everywhere, or constant.
-std::vector<float> RankOfMarch::IndexAround(const Field& ior, bool bends)
+std::vector<float> PhotonMarcherInBlocks::Rank::IndexAround(const Field& ior, bool bends)
 {
   if (!bends)
   {
@@ -212,9 +169,8 @@ std::vector<float> RankOfMarch::IndexAround(const Field& ior, bool bends)
   return ValuesInBox(this->Others, this->Partition, known, own, 1);
 }
 
-void RankOfMarch::Prepare(const Medium& medium, const Field& ior)
+void PhotonMarcherInBlocks::Rank::Prepare(const Medium& medium, const Field& ior)
 {
-  this->Rounds = std::make_unique<PhotonRounds>(this->Others, this->Partition);
   this->Traits = this->TraitsOfAllRanks(medium, ior);
   const bool bends = !this->Settings.leaveOut || this->Traits.index.Varies();
   const std::vector<float> index = this->IndexAround(ior, bends);
@@ -234,7 +190,7 @@ void RankOfMarch::Prepare(const Medium& medium, const Field& ior)
   }
 }
 
-void RankOfMarch::PrepareScattering(const Medium& medium, const Field& index)
+void PhotonMarcherInBlocks::Rank::PrepareScattering(const Medium& medium, const Field& index)
 {
   const bool varies = this->Has && medium.phase.Varies();
   const auto cosine = [&](int c) { return this->Has && !varies ? medium.phase.MeanCosine(0, c) : 0.0; };
@@ -250,46 +206,41 @@ void RankOfMarch::PrepareScattering(const Medium& medium, const Field& index)
   });
 }
 
-/// Those that set off here, and where their light goes.
-void RankOfMarch::Pack(const std::vector<Photon>& photons)
-{
-  this->Others.Together([&] {
-    const Grid& whole = this->Partition.whole;
-    const bool coloured = this->Traits.Channels(this->Settings) == 3;
-    this->Packed = ThoseIn(this->Own, whole,
-      tyndall::Pack(
-        photons, whole, coloured, MarchEventLimit(whole, this->Settings), this->Settings.batches));
-    if (this->Light)
-    {
-      this->Target = this->Light->Prepare(this->Packed);
-    }
-  });
-}
-
 /// Up to where they are first scattered.
-void RankOfMarch::Follow(const CountedPhotons& counted, PhotonLight& result, const Monitor& monitor)
+void PhotonMarcherInBlocks::Rank::Follow(const StartingPhotons& starting, PhotonLight& result, const Monitor& monitor)
 {
+  const PackedPhotons& packed = starting.packed;
+  MarchSums target;
   std::unique_ptr<BlockMarch> march;
   this->Rounds->UntilAllEnd<PhotonOnItsWay>(
     [&](int round, std::vector<PhotonOnItsWay>&& arrived, const Monitor& ofRound) {
       BlockMarch::Outcome outcome;
       if (this->Has && round == 0)
       {
-        march = std::make_unique<BlockMarch>(*this->Through, this->Target, this->Packed);
-        outcome = march->Start(this->Packed, counted.marks, ofRound);
+        target = this->Light->Prepare(packed);
+        march = std::make_unique<BlockMarch>(*this->Through, target, packed);
+        outcome = march->Start(packed, starting.marks, ofRound);
       }
       else if (this->Has)
       {
         outcome = march->Resume(std::move(arrived), ofRound);
       }
-      Tally(this->Packed, outcome.ends, result);
+      Tally(packed, outcome.ends, result);
       return std::move(outcome.gone);
     },
     monitor);
+  this->Others.Together([&] {
+    if (this->Has)
+    {
+      this->Light->Finish(packed, target, starting.weightUnit, result);
+      SayWhatIsLeftOut(*this->Through, packed, result.light);
+    }
+  });
+  this->AddUp(result);
 }
 
 /// This rank's share of one channel's scattered light and tallies.
-ScatteredPhotons RankOfMarch::FollowScattered(const PhotonScattering* in, PackedPhotons photons,
+ScatteredPhotons PhotonMarcherInBlocks::Rank::FollowScattered(const PhotonScattering* in, PackedPhotons photons,
   const PhotonScattering::Settings& settings, const Monitor& monitor)
 {
   std::unique_ptr<ScatteringRun> run;
@@ -309,7 +260,7 @@ ScatteredPhotons RankOfMarch::FollowScattered(const PhotonScattering* in, Packed
 }
 
 /// Powers and numbers of this rank to the sums of all.
-void RankOfMarch::SumUp(const std::vector<Rgb*>& powers, const std::vector<double*>& numbers)
+void PhotonMarcherInBlocks::Rank::SumUp(const std::vector<Rgb*>& powers, const std::vector<double*>& numbers)
 {
   std::vector<double> values;
   for (const Rgb* power : powers)
@@ -330,7 +281,7 @@ void RankOfMarch::SumUp(const std::vector<Rgb*>& powers, const std::vector<doubl
   }
 }
 
-void RankOfMarch::AddUp(PhotonLight& result)
+void PhotonMarcherInBlocks::Rank::AddUp(PhotonLight& result)
 {
   EnergyBalance& balance = result.light.balance;
   std::vector<Rgb*> powers = { &balance.absorbed, &balance.escaped, &balance.leftOver, &result.scattered };
@@ -344,7 +295,7 @@ void RankOfMarch::AddUp(PhotonLight& result)
   result.steps = static_cast<std::size_t>(steps);
 }
 
-void RankOfMarch::AddUpScattered(PhotonLight& result)
+void PhotonMarcherInBlocks::Rank::AddUpScattered(PhotonLight& result)
 {
   EnergyBalance& balance = result.light.balance;
   std::vector<Rgb*> powers = { &balance.entered, &balance.absorbed, &balance.escaped, &balance.leftOver,
@@ -358,45 +309,13 @@ void RankOfMarch::AddUpScattered(PhotonLight& result)
   result.scatterings = static_cast<std::uint64_t>(scatterings);
 }
 
-PhotonLight RankOfMarch::March(
-  const std::vector<Photon>& photons, const PhotonNumbers& numbers, const Monitor& monitor)
-{
-  this->Pack(photons);
-  PhotonLight result;
-  const int colours =
-    this->Scattering && this->Scattering->HasColour() ? 3 : this->Traits.ColoursOf(this->Packed);
-  result.light.channels = std::max(this->Packed.channels, colours);
-  result.light.device = this->TheDevice.Name();
-  result.light.balance.entered = this->Packed.entered;
-  result.missed = this->Packed.missed;
-  result.batches = BatchesOf(photons);
-  CountedPhotons counted;
-  this->Others.Together([&] { counted = CountedPhotons(photons, this->Packed, this->Settings.counts); });
-  result.secondsMarching = -ClockSeconds();
-  this->Follow(counted, result, this->Scattering ? OfPart(monitor, 0.0, 0.05) : monitor);
-  this->Others.Together([&] {
-    if (this->Has)
-    {
-      this->Light->Finish(this->Packed, this->Target, counted.weightUnit, result);
-      SayWhatIsLeftOut(*this->Through, this->Packed, result.light);
-    }
-  });
-  this->AddUp(result);
-  PutIntoColours(this->Packed, colours, result);
-  this->AddScattered(result, numbers, OfPart(monitor, 0.05, 1.0));
-  if (this->Settings.batches && this->Packed.Batches() == 1)
-  {
-    result.batchFluence = result.light.fluence;
-  }
-  return result;
-}
-
 /// What more orders than one ask for.
-void RankOfMarch::AddScattered(PhotonLight& result, const PhotonNumbers& numbers, const Monitor& monitor)
+void PhotonMarcherInBlocks::Rank::AddScattered(
+  const PackedPhotons& packed, PhotonLight& result, const Monitor& monitor)
 {
   if (this->Scattering)
   {
-    this->Scattering->AddTo(result, this->Packed, numbers, monitor,
+    this->Scattering->AddTo(result, packed, {}, monitor,
       [this](const PhotonScattering* in, PackedPhotons photons, const PhotonScattering::Settings& settings,
         const Monitor& ofRun) { return this->FollowScattered(in, std::move(photons), settings, ofRun); });
     this->AddUpScattered(result);
@@ -407,43 +326,106 @@ void RankOfMarch::AddScattered(PhotonLight& result, const PhotonNumbers& numbers
   }
 }
 
-PhotonLight RankOfMarch::MarchInBatches(const std::vector<Photon>& photons, const Monitor& monitor)
+/// @param numbers  of the photons among all
+PhotonLight PhotonMarcherInBlocks::Rank::MarchThese(
+  const std::vector<Photon>& share, const PhotonNumbers& numbers, const Monitor& monitor)
+{
+  const StartingPhotons starting =
+    SendToTheirBlocks(this->Others, this->Partition, share, numbers, this->Traits, this->Settings);
+  const PackedPhotons& packed = starting.packed;
+  PhotonLight result;
+  const int colours = this->Scattering && this->Scattering->HasColour() ? 3 : this->Traits.ColoursOf(packed);
+  result.light.channels = std::max(packed.channels, colours);
+  result.light.device = this->TheDevice.Name();
+  result.light.balance.entered = packed.entered;
+  result.missed = packed.missed;
+  result.batches = static_cast<int>(this->Others.Largest({ 1.0 * BatchesOf(share) })[0]);
+  result.secondsMarching = -ClockSeconds();
+  this->Follow(starting, result, this->Scattering ? OfPart(monitor, 0.0, 0.05) : monitor);
+  PutIntoColours(packed, colours, result);
+  this->AddScattered(packed, result, OfPart(monitor, 0.05, 1.0));
+  if (this->Settings.batches && packed.Batches() == 1)
+  {
+    result.batchFluence = result.light.fluence;
+  }
+  return result;
+}
+
+PhotonLight PhotonMarcherInBlocks::Rank::MarchInBatches(
+  const std::vector<Photon>& share, const PlaceOfShare& place, const Monitor& monitor)
 {
   const auto batches = static_cast<std::size_t>(this->Settings.errorBatches);
   MarchedBatches all;
   for (std::size_t b = 0; b < batches; ++b)
   {
-    const PhotonNumbers numbers = NumbersOfBatch(photons.size(), b, batches);
+    PhotonNumbers numbers = NumbersOfBatch(place.all, b, batches);
+    const auto begin = std::lower_bound(numbers.begin(), numbers.end(), place.first);
+    const PhotonNumbers own(begin, std::lower_bound(begin, numbers.end(), place.first + share.size()));
     std::vector<Photon> some;
-    for (const std::size_t number : numbers)
+    for (const std::size_t number : own)
     {
-      some.push_back(photons[number]);
+      some.push_back(share[number - place.first]);
     }
     const double parts = static_cast<double>(batches);
-    all.Add(this->March(some, numbers, OfPart(monitor, b / parts, (b + 1) / parts)));
+    all.Add(this->MarchThese(some, own, OfPart(monitor, b / parts, (b + 1) / parts)));
   }
   return std::move(all).Sum();
 }
-}
 
-PhotonLight MarchInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition,
-  const Medium& medium, const Field& ior, const MarchSettings& settings, const std::vector<Photon>& photons,
-  const Monitor& monitor, PhotonTraffic* traffic)
+PhotonLight PhotonMarcherInBlocks::Rank::March(const std::vector<Photon>& share, const Monitor& monitor)
 {
   const double start = ClockSeconds();
-  RankOfMarch rank(device, communicator, partition, settings);
-  communicator.Together([&] { rank.CheckInput(medium, ior); });
+  this->Rounds = std::make_unique<PhotonRounds>(this->Others, this->Partition);
+  const PlaceOfShare place = PlaceAmong(this->Others, share.size());
+  PhotonLight result;
+  if (this->Settings.errorBatches > 0)
+  {
+    result = this->MarchInBatches(share, place, monitor);
+  }
+  else
+  {
+    PhotonNumbers numbers(share.size());
+    std::iota(numbers.begin(), numbers.end(), place.first);
+    result = this->MarchThese(share, numbers, monitor);
+  }
+  this->Handed = this->Rounds->Traffic();
+  result.seconds = ClockSeconds() - start;
+  return result;
+}
+
+std::vector<PhotonPath> PhotonMarcherInBlocks::Rank::Paths(const std::vector<Photon>& share, std::size_t count)
+{
+  const PlaceOfShare place = PlaceAmong(this->Others, share.size());
+  const std::vector<std::size_t> chosen = ChooseEvenly(place.all, count);
+  const std::vector<Photon> some = ChosenOnEachRank(this->Others, share, place, chosen);
+  PathsInBlocks paths(this->Others, this->Partition, this->Through.get());
+  return paths.Trace(some, chosen, MarchEventLimit(this->Partition.whole, this->Settings));
+}
+
+PhotonMarcherInBlocks::PhotonMarcherInBlocks(Device& device, Communicator& communicator,
+  const BlockPartition& partition, const Medium& medium, const Field& ior, const MarchSettings& settings)
+  : Inside(std::make_unique<Rank>(device, communicator, partition, settings))
+{
+  communicator.Together([&] { this->Inside->CheckInput(medium, ior); });
   RequireSame(communicator, partition);
   RequireSame(communicator, settings);
-  RequireSame(communicator, photons);
-  rank.Prepare(medium, ior);
-  PhotonLight result =
-    settings.errorBatches > 0 ? rank.MarchInBatches(photons, monitor) : rank.March(photons, {}, monitor);
-  result.seconds = ClockSeconds() - start;
-  if (traffic)
-  {
-    *traffic = rank.Traffic();
-  }
-  return result;
+  this->Inside->Prepare(medium, ior);
+}
+
+PhotonMarcherInBlocks::~PhotonMarcherInBlocks() = default;
+
+PhotonLight PhotonMarcherInBlocks::March(const std::vector<Photon>& share, const Monitor& monitor)
+{
+  return this->Inside->March(share, monitor);
+}
+
+std::vector<PhotonPath> PhotonMarcherInBlocks::Paths(const std::vector<Photon>& share, std::size_t count)
+{
+  return this->Inside->Paths(share, count);
+}
+
+const PhotonTraffic& PhotonMarcherInBlocks::Traffic() const
+{
+  return this->Inside->Handed;
 }
 }
