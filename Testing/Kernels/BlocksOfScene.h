@@ -73,9 +73,19 @@ inline std::vector<std::vector<float>*> ArraysOf(tyndall::PhotonLight& light)
     &light.photonCount, &light.photonWeight, &light.batchFluence };
 }
 
+/// What a rank has of photons: the more, the higher its number.
+inline std::vector<tyndall::Photon> ShareOf(const std::vector<tyndall::Photon>& photons, int rank, int ranks)
+{
+  const auto cut = [&](int r) {
+    return photons.begin() + static_cast<std::ptrdiff_t>(photons.size()) * r * r / (ranks * ranks);
+  };
+  return { cut(rank), cut(rank + 1) };
+}
+
 /// Arrays of the blocks put together; all else must be the same on all ranks.
-inline tyndall::PhotonLight LightOfAll(tyndall::Device& device, const PhotonScene& scene, const tyndall::BlockPartition& partition,
-  const std::vector<tyndall::Photon>& photons, std::vector<tyndall::PhotonTraffic>* traffic = nullptr)
+inline tyndall::PhotonLight LightOfAll(tyndall::Device& device, const PhotonScene& scene,
+  const tyndall::BlockPartition& partition, const std::vector<tyndall::Photon>& photons,
+  std::vector<tyndall::PhotonTraffic>* traffic = nullptr)
 {
   const int ranks = static_cast<int>(partition.blocks.size());
   std::vector<tyndall::PhotonLight> found(ranks);
@@ -83,8 +93,10 @@ inline tyndall::PhotonLight LightOfAll(tyndall::Device& device, const PhotonScen
   tyndall::RunInThreads(ranks, [&](tyndall::Communicator& communicator) {
     const int rank = communicator.Rank();
     const BlockOfScene part(scene, partition.blocks[rank]);
-    found[rank] = tyndall::MarchInBlocks(
-      device, communicator, partition, part.medium, part.Index(), scene.settings, photons, {}, &handed[rank]);
+    tyndall::PhotonMarcherInBlocks marcher(
+      device, communicator, partition, part.medium, part.Index(), scene.settings);
+    found[rank] = marcher.March(ShareOf(photons, rank, ranks));
+    handed[rank] = marcher.Traffic();
   });
   tyndall::PhotonLight all = found[0];
   const std::size_t voxels = scene.medium.grid.VoxelCount();

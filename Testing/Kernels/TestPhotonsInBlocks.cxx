@@ -53,6 +53,41 @@ Photon PhotonFrom(std::array<double, 3> position, std::array<float, 3> direction
 
 class PhotonBlocks : public DeviceTest
 {
+protected:
+  /// Those of all ranks, which are to be rank 0's.
+  std::vector<PhotonPath> PathsOfAll(
+    const PhotonScene& scene, const BlockPartition& partition, const std::vector<Photon>& photons, std::size_t count)
+  {
+    const int ranks = static_cast<int>(partition.blocks.size());
+    std::vector<std::vector<PhotonPath>> found(ranks);
+    RunInThreads(ranks, [&](Communicator& communicator) {
+      const int rank = communicator.Rank();
+      const BlockOfScene part(scene, partition.blocks[rank]);
+      PhotonMarcherInBlocks marcher(
+        GetDevice(), communicator, partition, part.medium, part.Index(), scene.settings);
+      found[rank] = marcher.Paths(ShareOf(photons, rank, ranks), count);
+    });
+    for (int rank = 1; rank < ranks; ++rank)
+    {
+      EXPECT_TRUE(found[rank].empty());
+    }
+    return found[0];
+  }
+
+  void ExpectSamePaths(
+    PhotonScene& scene, const BlockPartition& partition, const std::vector<Photon>& photons, std::size_t count)
+  {
+    const std::vector<PhotonPath> expected =
+      scene.Marcher(GetDevice()).Paths(photons, ChooseEvenly(photons.size(), count));
+    const std::vector<PhotonPath> found = this->PathsOfAll(scene, partition, photons, count);
+    ASSERT_EQ(found.size(), expected.size());
+    for (std::size_t i = 0; i < found.size(); ++i)
+    {
+      EXPECT_EQ(found[i].photon, expected[i].photon);
+      EXPECT_EQ(found[i].points, expected[i].points) << "of photon " << found[i].photon;
+      EXPECT_EQ(found[i].left, expected[i].left) << "of photon " << found[i].photon;
+    }
+  }
 };
 
 TEST_F(PhotonBlocks, HaveTheLightOfTheWholeBitForBit)
@@ -84,14 +119,32 @@ TEST_F(PhotonBlocks, HaveItWhereEveryVoxelHasAnIndexOfItsOwn)
   std::mt19937 random(7);
   std::uniform_real_distribution<double> uniform(1.0, 1.6);
   scene.SetIndex([&](double, double, double) { return uniform(random); });
+  ExpectSameOnRanks(GetDevice(), scene, AnyPhotons(scene.medium.grid, 1000), { 1, 3, 8 });
+}
+
+/// A jump makes photons many times as fast as their steps were meant for, and the integrator looks far ahead.
+TEST_F(PhotonBlocks, HaveItWhereTheIndexJumps)
+{
+  PhotonScene scene({ 24, 9, 7 }, 0.2, 0.9, 0.0f, 0.0f);
+  Randomise(scene, 1);
   const std::vector<Photon> photons = AnyPhotons(scene.medium.grid, 1000);
-  ExpectSameOnRanks(GetDevice(), scene, photons, { 1, 3, 8 });
-  scene.SetIndex([&](double, double, double) { return uniform(random) < 1.3 ? 1.0 : 4.0; });
-  for (const int order : { 1, 2, 4 })
+  for (const double most : { 4.0, 20.0 })
   {
-    SCOPED_TRACE("order " + std::to_string(order));
-    scene.settings.order = order;
-    ExpectSameOnRanks(GetDevice(), scene, photons, { 8 });
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> uniform(0.0, 1.0);
+    scene.SetIndex([&](double, double, double) {
+      return most < 20.0 ? (uniform(random) < 0.5 ? 1.0 : most) : 0.05 * std::pow(400.0, uniform(random));
+    });
+    for (const int order : { 1, 2, 4 })
+    {
+      for (const double step : { 1.0, 2.0 })
+      {
+        SCOPED_TRACE("order " + std::to_string(order) + ", steps of " + std::to_string(step));
+        scene.settings.order = order;
+        scene.settings.stepSize = step;
+        ExpectSameOnRanks(GetDevice(), scene, photons, { 8 });
+      }
+    }
   }
 }
 
@@ -273,6 +326,38 @@ TEST_F(PhotonBlocks, KeepTheLightOfEachBatchApart)
   EXPECT_EQ(scene.March(GetDevice(), photons).batchFluence.size(), 5 * scene.medium.grid.VoxelCount());
 }
 
+/// Corner by corner, whoever marched them where.
+TEST_F(PhotonBlocks, HaveThePathsOfTheWhole)
+{
+  PhotonScene scene = SmallScene();
+  std::vector<Photon> photons = AnyPhotons(scene.medium.grid, 300);
+  photons[7].position = { -50.0, 0.0, 0.0 }; // misses the volume
+  photons[7].direction = { 0.0f, 1.0f, 0.0f };
+  for (const bool bends : { false, true })
+  {
+    if (bends)
+    {
+      scene.SetBall(0.6, 1.5, 1.0);
+    }
+    for (const int ranks : { 1, 3, 8, 20 })
+    {
+      SCOPED_TRACE(std::to_string(ranks) + " ranks");
+      this->ExpectSamePaths(scene, BlockPartition::Even(scene.medium.grid, ranks), photons, 100);
+    }
+  }
+  this->ExpectSamePaths(scene, BlockPartition::Even(scene.medium.grid, 2), photons, 300);
+  this->ExpectSamePaths(scene, BlockPartition::Even(scene.medium.grid, 2), photons, 0);
+}
+
+/// A path that is given up has no corner there.
+TEST_F(PhotonBlocks, HaveThePathsOfWhatGoesRoundForEver)
+{
+  PhotonScene scene(16, 2.0);
+  scene.SetIndex([](double x, double y, double z) { return fisheye::Index(x, y, z); });
+  const std::vector<Photon> photons = { PhotonFrom({ 0.8, 0.1, 0.0 }, { 0.0f, 1.0f, 0.0f }) };
+  this->ExpectSamePaths(scene, BlockPartition::Even(scene.medium.grid, 4), photons, 1);
+}
+
 TEST_F(PhotonBlocks, AreDarkWithoutPhotons)
 {
   PhotonScene scene = SmallScene();
@@ -309,7 +394,8 @@ protected:
       change(rank, { part, given, settings, photons, monitor });
       try
       {
-        MarchInBlocks(GetDevice(), communicator, given, part.medium, part.Index(), settings, photons, monitor);
+        PhotonMarcherInBlocks(GetDevice(), communicator, given, part.medium, part.Index(), settings)
+          .March(photons, monitor);
       }
       catch (const std::exception& error)
       {
@@ -345,8 +431,7 @@ TEST_F(PhotonBlocksFail, TogetherWhereOneHasBadInput)
 TEST_F(PhotonBlocksFail, TogetherWhereTheyDisagree)
 {
   ExpectErrors("disagree about settings", [](int rank, Given given) { given.settings.stepSize = 1.0 + rank; });
-  ExpectErrors("disagree about the photons", [](int rank, Given given) { given.photons[5].direction[0] += rank; });
-  ExpectErrors("disagree about the photons", [](int rank, Given given) { given.photons.resize(100 - rank); });
+  ExpectErrors("disagree about settings", [](int rank, Given given) { given.settings.seed = 1 + rank; });
   ExpectErrors("disagree about the grid", [](int rank, Given given) { given.partition.whole.origin[0] += rank; });
 }
 

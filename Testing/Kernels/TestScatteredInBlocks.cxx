@@ -225,8 +225,8 @@ TEST_F(ScatteredBlocks, SayOnEachWhatGoesWrongOnOne)
       const Monitor monitor = [&](double done) { return !(stops && rank == 1 && done > 0.1); };
       try
       {
-        MarchInBlocks(
-          GetDevice(), communicator, partition, part.medium, part.Index(), scene.settings, photons, monitor);
+        PhotonMarcherInBlocks(GetDevice(), communicator, partition, part.medium, part.Index(), scene.settings)
+          .March(ShareOf(photons, rank, 3), monitor);
       }
       catch (const std::exception& error)
       {
