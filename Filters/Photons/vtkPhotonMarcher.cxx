@@ -62,8 +62,7 @@ bool IsOfLaterBatch(const tyndall::Photon& photon)
 
 /// @param medium  null: this rank has nothing of it
 /// @param batches  photons are of several
-tyndall::MarchSettings SettingsOf(
-  vtkPhotonMarcher* filter, vtkImageData* medium, bool batches)
+tyndall::MarchSettings SettingsOf(vtkPhotonMarcher* filter, vtkImageData* medium, bool batches)
 {
   const bool published = filter->GetScheme() == vtkPhotonMarcher::PUBLISHED;
   if (published && filter->GetMaximumOrders() != 1)
@@ -291,7 +290,8 @@ std::vector<tyndall::Photon> ShareOfPhotons(tyndall::Communicator& communicator,
   const std::vector<double> largest = communicator.Largest({ high, -high, low, -low });
   if (largest[0] == -largest[1] && largest[2] == -largest[3])
   {
-    const auto ranks = static_cast<std::size_t>(communicator.Ranks()), rank = static_cast<std::size_t>(communicator.Rank());
+    const auto ranks = static_cast<std::size_t>(communicator.Ranks()),
+               rank = static_cast<std::size_t>(communicator.Rank());
     const auto cut = [&](std::size_t part) {
       return photons.begin() + static_cast<std::ptrdiff_t>(photons.size() * part / ranks);
     };
@@ -313,8 +313,7 @@ bool vtkPhotonMarcher::ReadPiece(tyndall::Communicator& communicator, const tynd
   vtkInformationVector** inputs, PieceOfMarch& piece)
 {
   std::string refused;
-  std::vector<tyndall::Photon> photons =
-    ShareOfPhotons(communicator, vtkPolyData::GetData(inputs[PhotonsPort]));
+  std::vector<tyndall::Photon> photons = ShareOfPhotons(communicator, vtkPolyData::GetData(inputs[PhotonsPort]));
   const bool batches = HaveBatches(communicator, photons);
   communicator.Together([&] {
     piece.photons = std::move(photons);
@@ -356,8 +355,9 @@ bool vtkPhotonMarcher::MarchPiece(vtkInformation* request, vtkMultiProcessContro
   tyndall::PhotonMarcherInBlocks marcher(
     *device, *communicator, pieces.Partition(), piece.read.input.medium, piece.read.ior, piece.settings);
   tyndall::PhotonLight light = marcher.March(piece.photons, tyndall::MonitorOf(this));
-  const std::vector<tyndall::PhotonPath> paths =
-    this->PathCount > 0 ? marcher.Paths(piece.photons, static_cast<std::size_t>(this->PathCount)) : std::vector<tyndall::PhotonPath>();
+  const std::vector<tyndall::PhotonPath> paths = this->PathCount > 0
+    ? marcher.Paths(piece.photons, static_cast<std::size_t>(this->PathCount))
+    : std::vector<tyndall::PhotonPath>();
   this->WarnOfBox(inputs, pieces.Partition().whole);
   this->Note(light);
   this->Warn(light, tyndall::PlaceAmong(*communicator, piece.photons.size()).all);
@@ -395,8 +395,8 @@ vtkPhotonMarcher::Marched vtkPhotonMarcher::March(
   vtkInformationVector** inputs, const std::vector<tyndall::Photon>& photons)
 {
   this->Kept->ForgetIfRan(this, { MediumPort, OctreePort });
-  const tyndall::MarchSettings settings = SettingsOf(this, vtkImageData::GetData(inputs[MediumPort]),
-    std::any_of(photons.begin(), photons.end(), IsOfLaterBatch));
+  const tyndall::MarchSettings settings = SettingsOf(
+    this, vtkImageData::GetData(inputs[MediumPort]), std::any_of(photons.begin(), photons.end(), IsOfLaterBatch));
   const bool published = this->Scheme == PUBLISHED;
   Marched marched;
   if (published)

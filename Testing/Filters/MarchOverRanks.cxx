@@ -1,6 +1,6 @@
-// vtkPhotonEmitter and vtkPhotonMarcher in a pipeline that MPI ranks run together: with Decomposition BLOCKS each has its
-// piece of the medium and its share of the photons, and of the light what it has where each has the whole, bit for bit.
-// Run by mpiexec; a program by itself.
+// vtkPhotonEmitter and vtkPhotonMarcher in a pipeline that MPI ranks run together: with Decomposition BLOCKS each has
+// its piece of the medium and its share of the photons, and of the light what it has where each has the whole, bit for
+// bit. Run by mpiexec; a program by itself.
 
 #include "vtkPhotonEmitter.h"
 #include "vtkPhotonMarcher.h"
@@ -121,7 +121,7 @@ struct Asked
 {
   const char* name;
   int orders = 1, ghosts = 0, paths = 0, batches = 1;
-  bool emits = false; ///< photons are vtkPhotonEmitter's; else all ranks have the same
+  bool emits = false;     ///< photons are vtkPhotonEmitter's; else all ranks have the same
   double precision = 0.0; ///< of powers, over what entered
 };
 
@@ -148,9 +148,8 @@ std::vector<double> ValuesOf(vtkDataArray* array)
 std::vector<double> ValuesOf(vtkPolyData* paths)
 {
   std::vector<double> values;
-  for (vtkDataArray* array :
-    { paths->GetLines()->GetOffsetsArray(), paths->GetCellData()->GetArray("photon"),
-      paths->GetPoints() ? paths->GetPoints()->GetData() : nullptr, paths->GetPointData()->GetArray("power_left") })
+  for (vtkDataArray* array : { paths->GetLines()->GetOffsetsArray(), paths->GetCellData()->GetArray("photon"),
+         paths->GetPoints() ? paths->GetPoints()->GetData() : nullptr, paths->GetPointData()->GetArray("power_left") })
   {
     const std::vector<double> more = ValuesOf(array);
     values.insert(values.end(), more.begin(), more.end());
@@ -241,7 +240,8 @@ bool HasTheSameLight(vtkMPIController* controller, const Asked& asked)
     right = Expect(block.arrays.at(array) == values, name + ": another " + array, rank) && right;
   }
   right = Expect(asked.orders == 1 || !whole.arrays.at("fluence_error").empty(), name + ": no error", rank) && right;
-  right = Expect(asked.batches == 1 || !whole.arrays.at("fluence_batches").empty(), name + ": no batches", rank) && right;
+  right =
+    Expect(asked.batches == 1 || !whole.arrays.at("fluence_batches").empty(), name + ": no batches", rank) && right;
   right = Expect(!block.balance.empty() && Same(block.balance, whole.balance, asked.precision),
             name + ": another energy_balance", rank) &&
     right;
@@ -256,7 +256,9 @@ bool HasTheSameLight(vtkMPIController* controller, const Asked& asked)
   {
     long own = static_cast<long>(block.photons), sum = 0;
     controller->AllReduce(&own, &sum, 1, vtkCommunicator::SUM_OP);
-    right = Expect(sum == whole.photons && own <= whole.photons / ranks + 2, name + ": no share of the photons", rank) && right;
+    right =
+      Expect(sum == whole.photons && own <= whole.photons / ranks + 2, name + ": no share of the photons", rank) &&
+      right;
   }
   std::cout << "rank " << rank << " of " << ranks << ", " << name << ": " << block.cellsOfMedium
             << " cells of the medium instead of " << whole.cellsOfMedium << std::endl;

@@ -93,8 +93,7 @@ inline tyndall::PhotonLight LightOfAll(tyndall::Device& device, const PhotonScen
   tyndall::RunInThreads(ranks, [&](tyndall::Communicator& communicator) {
     const int rank = communicator.Rank();
     const BlockOfScene part(scene, partition.blocks[rank]);
-    tyndall::PhotonMarcherInBlocks marcher(
-      device, communicator, partition, part.medium, part.Index(), scene.settings);
+    tyndall::PhotonMarcherInBlocks marcher(device, communicator, partition, part.medium, part.Index(), scene.settings);
     found[rank] = marcher.March(ShareOf(photons, rank, ranks));
     handed[rank] = marcher.Traffic();
   });
@@ -145,4 +144,3 @@ inline PhotonScene SmallScene(std::size_t components = 1)
   Randomise(scene, components);
   return scene;
 }
-

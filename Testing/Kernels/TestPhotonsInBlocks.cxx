@@ -63,8 +63,7 @@ protected:
     RunInThreads(ranks, [&](Communicator& communicator) {
       const int rank = communicator.Rank();
       const BlockOfScene part(scene, partition.blocks[rank]);
-      PhotonMarcherInBlocks marcher(
-        GetDevice(), communicator, partition, part.medium, part.Index(), scene.settings);
+      PhotonMarcherInBlocks marcher(GetDevice(), communicator, partition, part.medium, part.Index(), scene.settings);
       found[rank] = marcher.Paths(ShareOf(photons, rank, ranks), count);
     });
     for (int rank = 1; rank < ranks; ++rank)

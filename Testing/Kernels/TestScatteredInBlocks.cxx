@@ -14,7 +14,7 @@ using namespace tyndall;
 
 namespace
 {
-/// Sums of floats in another order; what each row of voxels absorbs is in whole units, of which rows of blocks are more.
+/// Sums of floats in another order; what each row of voxels absorbs is in whole units, and blocks have more rows.
 void ExpectSamePower(const Rgb& found, const Rgb& expected, double all, const char* what)
 {
   for (std::size_t c = 0; c < 3; ++c)

@@ -49,22 +49,22 @@ BlockMarch::Outcome BlockMarch::Start(
   const PackedPhotons& photons, const std::vector<cl_ulong>& marks, const Monitor& monitor)
 {
   Device& device = this->Medium.device;
-  return this->March({ PhotonsOnDevice(device, photons, marks),
-                       Buffer<PhotonOnItsWay>(device, 0, "photons from other blocks"), false },
+  return this->March(
+    { PhotonsOnDevice(device, photons, marks), Buffer<PhotonOnItsWay>(device, 0, "photons from other blocks"), false },
     photons.batchBegin, monitor);
 }
 
 BlockMarch::Outcome BlockMarch::Resume(std::vector<PhotonOnItsWay> arrived, const Monitor& monitor)
 {
-  std::stable_sort(arrived.begin(), arrived.end(),
-    [](const PhotonOnItsWay& a, const PhotonOnItsWay& b) { return a.batch < b.batch; });
+  std::stable_sort(
+    arrived.begin(), arrived.end(), [](const PhotonOnItsWay& a, const PhotonOnItsWay& b) { return a.batch < b.batch; });
   PackedPhotons none;
   none.channels = this->Channels;
   none.batchBegin = { 0, 0 };
   none.numbers.resize(arrived.size()); // for as many ends
   Device& device = this->Medium.device;
-  return this->March({ PhotonsOnDevice(device, none),
-                       Buffer<PhotonOnItsWay>(device, arrived, "photons from other blocks"), true },
+  return this->March(
+    { PhotonsOnDevice(device, none), Buffer<PhotonOnItsWay>(device, arrived, "photons from other blocks"), true },
     BeginsOf(arrived, this->Target.shares.batches), monitor);
 }
 
@@ -94,8 +94,8 @@ void BlockMarch::MarchBatch(const Marched& photons, int batch, std::size_t begin
   const std::size_t width = Count(device.KernelWidth());
   // Copies of a batch are so many apart; each has a worker of its own.
   const std::size_t stride = shares.copies > 1 ? this->Target.records * Count(this->Target.numbers) : 0;
-  const auto workers = static_cast<std::size_t>(
-    shares.workers > 0 ? (shares.copies - batch + shares.batches - 1) / shares.batches : 0);
+  const auto workers =
+    static_cast<std::size_t>(shares.workers > 0 ? (shares.copies - batch + shares.batches - 1) / shares.batches : 0);
   Batches launches;
   launches.count = end - begin;
   launches.first = FirstLaunch;
@@ -111,8 +111,8 @@ void BlockMarch::MarchBatch(const Marched& photons, int batch, std::size_t begin
     next.Fill(0);
     With(this->Kernel, this->Medium.Describe(), this->Medium.sigma, this->Medium.coefficients, this->Medium.nodes,
       photons.starting.values, photons.starting.marks, photons.arrived, elsewhere.Room(), elsewhere.Number(),
-      photons.starting.ends, *this->Target.sums, cl_ulong(Count(batch) * stride), cl_ulong(Count(shares.batches) * stride),
-      next, cl_int(photons.resumes), cl_int(begin + first), cl_int(size));
+      photons.starting.ends, *this->Target.sums, cl_ulong(Count(batch) * stride),
+      cl_ulong(Count(shares.batches) * stride), next, cl_int(photons.resumes), cl_int(begin + first), cl_int(size));
     this->Medium.Launch(this->Kernel, cl::NDRange(workers > 0 ? workers : PartsOf(size, width)),
       workers > 0 ? cl::NDRange(1) : GroupOfLargeItems(device));
     elsewhere.AppendTo(gone);

@@ -34,9 +34,8 @@ std::vector<PhotonOnItsWay> BlockPaths::Resume(const std::vector<PhotonOnItsWay>
   return this->Trace(none, arrived, marks, true, parts);
 }
 
-std::vector<PhotonOnItsWay> BlockPaths::Trace(const PackedPhotons& photons,
-  const std::vector<PhotonOnItsWay>& arrived, const std::vector<cl_ulong>& marks, bool resumes,
-  std::vector<Part>& parts)
+std::vector<PhotonOnItsWay> BlockPaths::Trace(const PackedPhotons& photons, const std::vector<PhotonOnItsWay>& arrived,
+  const std::vector<cl_ulong>& marks, bool resumes, std::vector<Part>& parts)
 {
   std::vector<PhotonOnItsWay> into;
   if (marks.empty())

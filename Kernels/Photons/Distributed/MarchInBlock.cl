@@ -64,9 +64,9 @@ __kernel void trace_in_block(MarchInfo info, const __global float* sigma, const 
   counts[i] = march_packet_in_block(&arrays, photons, arrived, resumes, i, i + 1);
 }
 #else
-// Photons `first` to `first + count`, of one batch, to their ends or into another block: of `photons`, which set off, or
-// with `resumes` of `arrived`. Those that go on elsewhere are put into `gone`, whose number gone_count is, in any order.
-// Copies of the batch's sums begin at `copyBegin` and are `copyStride` apart.
+// Photons `first` to `first + count`, of one batch, to their ends or into another block: of `photons`, which set off,
+// or with `resumes` of `arrived`. Those that go on elsewhere are put into `gone`, whose number gone_count is, in any
+// order. Copies of the batch's sums begin at `copyBegin` and are `copyStride` apart.
 __kernel void march_block(MarchInfo info, const __global float* sigma, const __global float* coefficients,
   const __global uchar* nodes, const __global float* photons, const __global ulong* marks,
   const __global PhotonOnItsWay* arrived, __global PhotonOnItsWay* gone, volatile __global int* gone_count,

@@ -45,8 +45,7 @@ struct PathsInBlocks::Parts
   }
 };
 
-PathsInBlocks::PathsInBlocks(
-  Communicator& communicator, const BlockPartition& partition, const MarchMedium* through)
+PathsInBlocks::PathsInBlocks(Communicator& communicator, const BlockPartition& partition, const MarchMedium* through)
   : Others(communicator)
   , Partition(partition)
   , Through(through)

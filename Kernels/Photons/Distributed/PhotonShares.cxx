@@ -29,8 +29,8 @@ std::vector<std::int64_t> SumExactly(Communicator& communicator, const std::vect
   std::vector<std::int64_t> sums;
   for (std::size_t i = 0; i < numbers.size(); ++i)
   {
-    sums.push_back(
-      static_cast<std::int64_t>(halves[2 * i]) * static_cast<std::int64_t>(Half) + static_cast<std::int64_t>(halves[2 * i + 1]));
+    sums.push_back(static_cast<std::int64_t>(halves[2 * i]) * static_cast<std::int64_t>(Half) +
+      static_cast<std::int64_t>(halves[2 * i + 1]));
   }
   return sums;
 }
@@ -149,6 +149,25 @@ struct Parcel
   }
 };
 
+/// Those for each rank become those from each.
+void Exchange(Communicator& communicator, std::vector<Parcel>& parcels)
+{
+  for (int rank = 0; rank < communicator.Ranks(); ++rank)
+  {
+    if (rank != communicator.Rank())
+    {
+      parcels[static_cast<std::size_t>(rank)].Send(communicator, rank);
+    }
+  }
+  for (int rank = 0; rank < communicator.Ranks(); ++rank)
+  {
+    if (rank != communicator.Rank())
+    {
+      parcels[static_cast<std::size_t>(rank)] = Parcel::Receive(communicator, rank);
+    }
+  }
+}
+
 /// What has come, batch by batch.
 void Join(const std::vector<Parcel>& parcels, StartingPhotons& starting)
 {
@@ -197,47 +216,32 @@ StartingPhotons SendToTheirBlocks(Communicator& communicator, const BlockPartiti
 {
   communicator.Together([&] { CheckPhotons(share, settings.batches); });
   const PhotonTotals totals = TotalsOf(communicator, share, settings.batches);
-  const double largestWeight = communicator.Largest({ CountedPhotons::LargestWeight(share) })[0];
+  const auto largestWeight = static_cast<float>(communicator.Largest({ CountedPhotons::LargestWeight(share) })[0]);
   StartingPhotons starting;
   communicator.Together([&] {
-    starting.packed =
-      PackingOf(totals, traits.Channels(settings) == 3, MarchEventLimit(partition.whole, settings));
+    starting.packed = PackingOf(totals, traits.Channels(settings) == 3, MarchEventLimit(partition.whole, settings));
     FillPacking(starting.packed, share, partition.whole);
   });
-  const std::size_t met = starting.packed.Count();
   AddUpEntered(communicator, starting.packed);
-  const PlaceOfShare place = PlaceAmong(communicator, met);
-  std::vector<Parcel> parcels(static_cast<std::size_t>(communicator.Ranks()));
+  const std::size_t met = PlaceAmong(communicator, starting.packed.Count()).all;
+  std::vector<Parcel> parcels;
   communicator.Together([&] {
     CountedPhotons counted;
     if (settings.counts)
     {
-      counted = CountedPhotons(share, starting.packed, static_cast<float>(largestWeight), place.all);
+      counted = CountedPhotons(share, starting.packed, largestWeight, met);
     }
     starting.weightUnit = counted.weightUnit;
     for (std::size_t& number : starting.packed.numbers)
     {
       number = numbers[number];
     }
-    const std::vector<std::vector<PlacedPhoton>> byRank = ByBlocks(partition, starting.packed);
-    std::transform(byRank.begin(), byRank.end(), parcels.begin(), [&](const std::vector<PlacedPhoton>& some) {
-      return Parcel(starting.packed, counted.marks, some);
-    });
+    for (const std::vector<PlacedPhoton>& some : ByBlocks(partition, starting.packed))
+    {
+      parcels.emplace_back(starting.packed, counted.marks, some);
+    }
   });
-  for (int rank = 0; rank < communicator.Ranks(); ++rank)
-  {
-    if (rank != communicator.Rank())
-    {
-      parcels[static_cast<std::size_t>(rank)].Send(communicator, rank);
-    }
-  }
-  for (int rank = 0; rank < communicator.Ranks(); ++rank)
-  {
-    if (rank != communicator.Rank())
-    {
-      parcels[static_cast<std::size_t>(rank)] = Parcel::Receive(communicator, rank);
-    }
-  }
+  Exchange(communicator, parcels);
   Join(parcels, starting);
   return starting;
 }

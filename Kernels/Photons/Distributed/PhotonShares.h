@@ -23,7 +23,7 @@ PlaceOfShare PlaceAmong(Communicator& communicator, std::size_t share);
 /// Photons that set off in a rank's block.
 struct StartingPhotons
 {
-  PackedPhotons packed; ///< numbers are those among all; `entered` and `missed` are of all
+  PackedPhotons packed;        ///< numbers are those among all; `entered` and `missed` are of all
   std::vector<cl_ulong> marks; ///< of each, where they count (CountedPhotons)
   float weightUnit = 0.0f;
 };

@@ -194,8 +194,7 @@ void PhotonMarcherInBlocks::Rank::PrepareScattering(const Medium& medium, const 
 {
   const bool varies = this->Has && medium.phase.Varies();
   const auto cosine = [&](int c) { return this->Has && !varies ? medium.phase.MeanCosine(0, c) : 0.0; };
-  tyndall::RequireSame(
-    this->Others, "g", this->Has, { varies ? 1.0 : 0.0, cosine(0), cosine(1), cosine(2) });
+  tyndall::RequireSame(this->Others, "g", this->Has, { varies ? 1.0 : 0.0, cosine(0), cosine(1), cosine(2) });
   const double part = this->Through ? ScatteringStepPart(index, this->Through->block.known.size) : 1.0;
   const std::vector<double> largest =
     this->Others.Largest({ -part, this->Has && medium.phase.HasColour() ? 1.0 : 0.0 });
@@ -240,8 +239,8 @@ void PhotonMarcherInBlocks::Rank::Follow(const StartingPhotons& starting, Photon
 }
 
 /// This rank's share of one channel's scattered light and tallies.
-ScatteredPhotons PhotonMarcherInBlocks::Rank::FollowScattered(const PhotonScattering* in, PackedPhotons photons,
-  const PhotonScattering::Settings& settings, const Monitor& monitor)
+ScatteredPhotons PhotonMarcherInBlocks::Rank::FollowScattered(
+  const PhotonScattering* in, PackedPhotons photons, const PhotonScattering::Settings& settings, const Monitor& monitor)
 {
   std::unique_ptr<ScatteringRun> run;
   this->Rounds->UntilAllEnd<ScatteredOnItsWay>(
@@ -267,7 +266,8 @@ void PhotonMarcherInBlocks::Rank::SumUp(const std::vector<Rgb*>& powers, const s
   {
     values.insert(values.end(), power->begin(), power->end());
   }
-  std::transform(numbers.begin(), numbers.end(), std::back_inserter(values), [](const double* number) { return *number; });
+  std::transform(
+    numbers.begin(), numbers.end(), std::back_inserter(values), [](const double* number) { return *number; });
   values = this->Others.Sum(values);
   auto value = values.cbegin();
   for (Rgb* power : powers)
@@ -310,8 +310,7 @@ void PhotonMarcherInBlocks::Rank::AddUpScattered(PhotonLight& result)
 }
 
 /// What more orders than one ask for.
-void PhotonMarcherInBlocks::Rank::AddScattered(
-  const PackedPhotons& packed, PhotonLight& result, const Monitor& monitor)
+void PhotonMarcherInBlocks::Rank::AddScattered(const PackedPhotons& packed, PhotonLight& result, const Monitor& monitor)
 {
   if (this->Scattering)
   {

@@ -17,11 +17,11 @@ namespace tyndall
 /// Marches photons through a medium that is spread over ranks by blocks, as PhotonMarcher marches them through the
 /// whole. All ranks make one and call it together.
 ///
-/// A photon that leaves a block is handed, as it is, to the rank whose block it enters, and goes on there
-/// (numerics.md, section 12.6), with the random numbers that it has drawn where it is scattered: its way does not depend
-/// on the blocks, and what voxels gain is in fixed point. The light is that of PhotonMarcher, bit for bit, whatever the
-/// number of ranks; powers of scattered light, which are sums of floats, to 1e-9. No rank holds more of the medium than
-/// its block and, of the refractive index, some voxels round it.
+/// A photon that leaves a block is handed, as it is, to the rank whose block it enters, and goes on there (numerics.md,
+/// section 12.6), with the random numbers that it has drawn where it is scattered: its way does not depend on the
+/// blocks, and what voxels gain is in fixed point. The light is that of PhotonMarcher, bit for bit, whatever the number
+/// of ranks; powers of scattered light, which are sums of floats, to 1e-9. No rank holds more of the medium than its
+/// block and, of the refractive index, some voxels round it.
 class PhotonMarcherInBlocks
 {
 public:

@@ -45,7 +45,7 @@ __kernel void scatter_in_block(MarchInfo info, ScatterInfo how, const __global f
   const __global float* coefficients, const __global uchar* nodes, const __global float2* optical,
   const __global float* phase, const __global float* photons, const __global ulong* numbers,
   const __global ScatteredOnItsWay* arrived, __global ScatteredOnItsWay* gone, volatile __global int* gone_count,
-  __global ScatterEnd* ends, __global long* sums, ulong copyStride, volatile __global int* next, int resumes, int first,
+  int resumes, __global ScatterEnd* ends, __global long* sums, ulong copyStride, volatile __global int* next, int first,
   int count)
 {
   const scattering medium = { optical, phase };

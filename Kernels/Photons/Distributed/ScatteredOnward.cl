@@ -30,8 +30,8 @@ static bool sets_off_elsewhere(const march_arrays* arrays, photon_lanes* lanes, 
   return elsewhere;
 }
 
-static void hand_on(const march_arrays* arrays, const photon_lanes* lanes, const scattered_flight* flight,
-  __global ScatteredOnItsWay* to)
+static void hand_on(
+  const march_arrays* arrays, const photon_lanes* lanes, const scattered_flight* flight, __global ScatteredOnItsWay* to)
 {
   hand_way_on(arrays, lanes, 0, &to->way);
   to->number = flight->random.stream;

@@ -203,8 +203,8 @@ std::vector<Tries> TriesOf(const std::vector<Tried>& tried, const EmissionSettin
     if (shares[s] > 0)
     {
       // Every batch has a photon of every light, or it would not be all the light.
-      tries[s].all = std::max(static_cast<std::size_t>(std::lround(shares[s] / tried[s].hits)),
-        static_cast<std::size_t>(settings.batches));
+      tries[s].all = std::max(
+        static_cast<std::size_t>(std::lround(shares[s] / tried[s].hits)), static_cast<std::size_t>(settings.batches));
     }
     all += tries[s].all;
   }

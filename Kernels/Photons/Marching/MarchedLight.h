@@ -53,8 +53,7 @@ struct CountedPhotons
   /// @throws InvalidInput where there are more than voxels can count
   CountedPhotons(const std::vector<Photon>& photons, const PackedPhotons& packed, bool counts);
   /// The same of some of them. @param largestWeight, count  of all
-  CountedPhotons(
-    const std::vector<Photon>& some, const PackedPhotons& packed, float largestWeight, std::size_t count);
+  CountedPhotons(const std::vector<Photon>& some, const PackedPhotons& packed, float largestWeight, std::size_t count);
   static float LargestWeight(const std::vector<Photon>& photons);
 
   std::vector<cl_ulong> marks; ///< of each as packed: one photon, and its weight

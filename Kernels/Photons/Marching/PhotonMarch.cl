@@ -438,8 +438,7 @@ static bool goes_on_elsewhere(const march_arrays* arrays, const photon_lanes* la
 }
 
 // Where the photon has landed.
-static void add_vertex(
-  const march_arrays* arrays, const photon_lanes* lanes, const photon_flight* flight, int* count)
+static void add_vertex(const march_arrays* arrays, const photon_lanes* lanes, const photon_flight* flight, int* count)
 {
   if (arrays->vertices)
   {

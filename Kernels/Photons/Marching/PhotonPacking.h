@@ -22,7 +22,7 @@ struct PackedPhotons
   std::vector<int> batchBegin;      ///< place of the first photon of each batch, and beyond the last one
   Rgb entered = {};                 ///< W, by channel
   std::array<std::int64_t, 3> enteredUnits = {}; ///< the same in units
-  std::size_t missed = 0;           ///< photons that do not meet the volume
+  std::size_t missed = 0;                        ///< photons that do not meet the volume
 
   std::size_t Count() const { return this->numbers.size(); }
   int FloatsEach() const { return 6 + this->channels; }

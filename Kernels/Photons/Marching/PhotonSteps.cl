@@ -13,9 +13,10 @@
 //   order 4  from step end to step end, each step of Yoshida's three leapfrogs
 //   order 1  explicit Euler, Eq. (92), as in Pfeuti 2009, Eq. 2.10 and 2.11: dx/ds = v / n, dv/ds = grad n
 //
-// The integrator looks at places before a photon gets there, but no farther ahead than by so many steps (MarchShared.h):
-// a jump of n that makes a photon many times as fast as its step was meant for would have it look anywhere, and a block
-// of a grid knows the index no farther than that (numerics.md, Eq. (99f)). An octree's steps are longer.
+// The integrator looks at places before a photon gets there, but no farther ahead than by so many steps
+// (MarchShared.h): a jump of n that makes a photon many times as fast as its step was meant for would have it look
+// anywhere, and a block of a grid knows the index no farther than that (numerics.md, Eq. (99f)). An octree's steps are
+// longer.
 //
 // Where n does not vary within the reach of interpolation nothing is evaluated, and a step is as long as that is so.
 //

@@ -62,8 +62,7 @@ PhotonScattering::PhotonScattering(const MarchMedium& through, const Medium& med
 {
 }
 
-ScatteredPhotons PhotonScattering::Follow(
-  PackedPhotons photons, const Settings& settings, const Monitor& monitor) const
+ScatteredPhotons PhotonScattering::Follow(PackedPhotons photons, const Settings& settings, const Monitor& monitor) const
 {
   ScatteringRun run(*this, std::move(photons), settings);
   run.Start(monitor);

@@ -32,8 +32,8 @@ typedef struct
   int drawn;   ///< numbers of the last one that are left
   int events;  ///< walls and turns since it was scattered last; 0: it sets off anew, in the direction `way.velocity`
   int scatterings;
-  float depth; ///< optical, to the next scattering
-  float dim;   ///< power below which Russian roulette is played
+  float depth;                             ///< optical, to the next scattering
+  float dim;                               ///< power below which Russian roulette is played
   float power, absorbedAtFirst, exchanged; ///< as of ScatterEnd
 } ScatteredOnItsWay;
 SHARED_END

@@ -94,14 +94,15 @@ ScatteredChannels::ScatteredChannels(Device& device, const Block& block)
         channel.own =
           std::make_unique<const MarchMedium>(device, one.seen, block.ior, block.settings, traits, through->block);
       }
-      channel.photons = std::make_unique<PhotonScattering>(block.coloured ? *channel.own : *through, one.seen, block.stepPart);
+      channel.photons =
+        std::make_unique<PhotonScattering>(block.coloured ? *channel.own : *through, one.seen, block.stepPart);
     }
     this->Channels.push_back(std::move(channel));
   }
 }
 
-ScatteredPhotons ScatteredChannels::FollowToTheEnd(const PhotonScattering* in, PackedPhotons photons,
-  const PhotonScattering::Settings& settings, const Monitor& monitor)
+ScatteredPhotons ScatteredChannels::FollowToTheEnd(
+  const PhotonScattering* in, PackedPhotons photons, const PhotonScattering::Settings& settings, const Monitor& monitor)
 {
   return in->Follow(std::move(photons), settings, monitor);
 }

@@ -1,9 +1,9 @@
 #include "Photons/Scattering/ScatteringRun.h"
 
-#include "Device/Batches.h"
 #include "Device/Defines.h"
 #include "Device/HostMappedBuffer.h"
 #include "Device/HostMemory.h"
+#include "Device/Sizes.h"
 #include "Photons/Distributed/GonePhotons.h"
 #include "TyndallKernelSources.h"
 
@@ -76,6 +76,20 @@ std::vector<ScatteredOnItsWay> ScatteringRun::Resume(
   return this->Launch(onDevice, arrived.size(), true, monitor);
 }
 
+Batches ScatteringRun::LaunchesOf(std::size_t photons) const
+{
+  Batches launches;
+  launches.count = photons;
+  launches.first = launches.whole = static_cast<std::size_t>(Block) * Count(std::max(this->Workers(), 1));
+  launches.seconds = SecondsPerLaunch;
+  launches.growth = 8.0;
+  if (this->In.Through.IsBlock())
+  {
+    launches.most = std::max(MarchedBetweenBlocks, launches.whole);
+  }
+  return launches;
+}
+
 std::vector<ScatteredOnItsWay> ScatteringRun::Launch(
   const Buffer<ScatteredOnItsWay>& arrived, std::size_t all, bool resumes, const Monitor& monitor)
 {
@@ -85,43 +99,31 @@ std::vector<ScatteredOnItsWay> ScatteringRun::Launch(
     return into;
   }
   const MarchMedium& through = this->In.Through;
-  Device& device = through.device;
   MarchInfo info = through.Describe();
   info.stepSize *= static_cast<float>(this->In.StepPart);
   info.eventLimit = static_cast<int>(std::min(1e9, info.eventLimit / this->In.StepPart));
   const ScatterInfo how = { this->Settings.seed, this->Settings.mostScatterings };
-  const auto workers = static_cast<std::size_t>(this->Workers());
-  Batches launches;
-  launches.count = all;
-  launches.first = launches.whole = static_cast<std::size_t>(Block) * std::max<std::size_t>(workers, 1);
-  launches.seconds = SecondsPerLaunch;
-  launches.growth = 8.0;
-  launches.most = through.IsBlock() ? std::max(MarchedBetweenBlocks, launches.whole) : launches.most;
-  const cl_ulong stride = through.PaddedCount() * static_cast<std::size_t>(this->Numbers);
-  const Buffer<ScatterEnd> ends(device, all, "ends of photons");
-  GonePhotons<ScatteredOnItsWay> gone(device, through.IsBlock() ? std::min(all, launches.most) : 0);
-  Buffer<cl_int> next(device, 1, "number of the next photon");
-  InBatches(device, launches, monitor, [&](std::size_t first, std::size_t count) {
+  const cl_ulong stride = through.PaddedCount() * Count(this->Numbers);
+  const Batches launches = this->LaunchesOf(all);
+  const Buffer<ScatterEnd> ends(through.device, all, "ends of photons");
+  GonePhotons<ScatteredOnItsWay> gone(through.device, through.IsBlock() ? std::min(all, launches.most) : 0);
+  Buffer<cl_int> next(through.device, 1, "number of the next photon");
+  InBatches(through.device, launches, monitor, [&](std::size_t first, std::size_t count) {
     next.Fill(0);
+    gone.Empty();
+    cl_uint argument = 9;
+    SetFrom(this->Kernel, 0, info, how, through.sigma, through.coefficients, through.nodes, this->In.Optical,
+      this->In.Phase.Values(), this->Photons, this->Streams);
     if (through.IsBlock())
     {
-      gone.Empty();
-      With(this->Kernel, info, how, through.sigma, through.coefficients, through.nodes, this->In.Optical,
-        this->In.Phase.Values(), this->Photons, this->Streams, arrived, gone.Room(), gone.Number(), ends, this->Sums, stride, next,
-        cl_int(resumes), cl_int(first), cl_int(count));
+      SetFrom(this->Kernel, argument, arrived, gone.Room(), gone.Number(), cl_int(resumes));
+      argument += 4;
     }
-    else
-    {
-      With(this->Kernel, info, how, through.sigma, through.coefficients, through.nodes, this->In.Optical,
-        this->In.Phase.Values(), this->Photons, this->Streams, ends, this->Sums, stride, next, cl_int(first),
-        cl_int(count));
-    }
+    SetFrom(this->Kernel, argument, ends, this->Sums, stride, next, cl_int(first), cl_int(count));
+    const auto workers = static_cast<std::size_t>(this->Workers());
     through.Launch(
       this->Kernel, cl::NDRange(workers > 0 ? workers : count), workers > 0 ? cl::NDRange(1) : cl::NullRange);
-    if (through.IsBlock())
-    {
-      gone.AppendTo(into);
-    }
+    gone.AppendTo(into);
   });
   this->TakeEnds(ends.Read());
   return into;
@@ -151,8 +153,8 @@ void ScatteringRun::TakeLight()
     Define("DIRECTIONS", directions) + Define("COUNTS", 0) + Define("COUNT_SHIFT", 0) + Define("COLOURS", 1) +
       Define("COPIES", this->Shares.copies) + Define("BATCHES", 1) + Define("CARRIES", 1));
   With(finish, through.DescribeSums(this->Packed), through.sigmaA, through.sigmaS, this->Sums,
-    cl_ulong(through.PaddedCount() * static_cast<std::size_t>(this->Numbers)), toFluence.Handle(),
-    toDirection.Handle(), none, none, none, taken);
+    cl_ulong(through.PaddedCount() * static_cast<std::size_t>(this->Numbers)), toFluence.Handle(), toDirection.Handle(),
+    none, none, none, taken);
   through.Launch(finish, cl::NDRange(rows));
   toFluence.Fetch();
   toDirection.Fetch();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "Device/Batches.h"
 #include "Photons/Marching/MarchLaunch.h"
 #include "Photons/Scattering/PhotonScattering.h"
 #include "Photons/Scattering/ScatterShared.h"
@@ -29,6 +30,7 @@ private:
   std::vector<ScatteredOnItsWay> Launch(
     const Buffer<ScatteredOnItsWay>& arrived, std::size_t count, bool resumes, const Monitor& monitor);
   cl::Kernel MakeKernel() const;
+  Batches LaunchesOf(std::size_t photons) const;
   int Workers() const;
   void TakeLight();
   void TakeEnds(const std::vector<ScatterEnd>& ends);
