@@ -144,3 +144,11 @@ inline PhotonScene SmallScene(std::size_t components = 1)
   Randomise(scene, components);
   return scene;
 }
+
+/// Five blocks of that, of which one is empty and one a voxel.
+inline tyndall::BlockPartition UnevenBlocks(const PhotonScene& scene)
+{
+  return { scene.medium.grid,
+    { { { 1, 0, 0 }, { 11, 9, 7 } }, {}, { { 0, 1, 0 }, { 1, 8, 7 } }, { { 0, 0, 1 }, { 1, 1, 6 } },
+      { { 0, 0, 0 }, { 1, 1, 1 } } } };
+}

@@ -188,10 +188,7 @@ TEST_F(PhotonBlocks, MayBeUnevenEmptyOrOneVoxel)
   scene.SetBall(0.6, 1.5, 1.0);
   const std::vector<Photon> photons = AnyPhotons(scene.medium.grid, 1000);
   const PhotonLight expected = scene.March(GetDevice(), photons);
-  BlockPartition uneven = { scene.medium.grid,
-    { { { 1, 0, 0 }, { 11, 9, 7 } }, {}, { { 0, 1, 0 }, { 1, 8, 7 } }, { { 0, 0, 1 }, { 1, 1, 6 } },
-      { { 0, 0, 0 }, { 1, 1, 1 } } } };
-  ExpectLightOfTheWhole(LightOfAll(GetDevice(), scene, uneven, photons), expected);
+  ExpectLightOfTheWhole(LightOfAll(GetDevice(), scene, UnevenBlocks(scene), photons), expected);
 
   PhotonScene tiny({ 3, 2, 2 }, 0.5, 0.5, 0.3f, 0.2f);
   tiny.SetBall(0.5, 1.5, 1.0);

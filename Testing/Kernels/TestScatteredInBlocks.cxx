@@ -171,10 +171,7 @@ TEST_F(ScatteredBlocks, MayBeUnevenEmptyOrOneVoxel)
   scene.SetBall(0.6, 1.5, 1.0);
   const std::vector<Photon> photons = AnyPhotons(scene.medium.grid, 500);
   const PhotonLight expected = scene.March(GetDevice(), photons);
-  const BlockPartition uneven = { scene.medium.grid,
-    { { { 1, 0, 0 }, { 11, 9, 7 } }, {}, { { 0, 1, 0 }, { 1, 8, 7 } }, { { 0, 0, 1 }, { 1, 1, 6 } },
-      { { 0, 0, 0 }, { 1, 1, 1 } } } };
-  ExpectScatteredLightOfTheWhole(LightOfAll(GetDevice(), scene, uneven, photons), expected);
+  ExpectScatteredLightOfTheWhole(LightOfAll(GetDevice(), scene, UnevenBlocks(scene), photons), expected);
 
   PhotonScene tiny({ 3, 2, 2 }, 0.5, 0.5, 0.3f, 4.0f);
   tiny.settings.maximumOrders = 0;
