@@ -9,10 +9,12 @@
 #include "Work/GuardedWork.h"
 #include "Work/WholeInputs.h"
 
+#include "vtkCommunicator.h"
 #include "vtkDataObject.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkMultiProcessController.h"
 #include "vtkObjectFactory.h"
 #include "vtkPolyData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
@@ -85,6 +87,14 @@ tyndall::Grid WholeGrid(vtkAlgorithm* filter, vtkMultiProcessController* ranks, 
   return tyndall::GridOf(vtkImageData::GetData(inputs.Vectors()[port]));
 }
 
+template <class Number>
+Number SumOver(vtkMultiProcessController* ranks, Number own)
+{
+  Number sum = own;
+  ranks->AllReduce(&own, &sum, 1, vtkCommunicator::SUM_OP);
+  return sum;
+}
+
 /// Each piece has its part of the photons.
 void TellPart(vtkInformation* asking, tyndall::EmissionSettings& settings)
 {
@@ -122,12 +132,19 @@ int vtkPhotonEmitter::RequestData(vtkInformation* request, vtkInformationVector*
     settings.batches = this->Batches != 0 ? this->Batches : mapped ? 2 : 1;
     settings.map = &map;
     settings.densestAtMost = this->MaximumDensity;
-    const tyndall::EmittedPhotons emitted =
-      tyndall::EmitPhotons(grid, illumination, settings, tyndall::MonitorOf(this));
-    tyndall::WritePhotons(emitted, grid, vtkPolyData::GetData(outputs));
-    this->Photons = static_cast<vtkIdType>(emitted.photons.size());
-    this->Power = emitted.power[0] + emitted.power[1] + emitted.power[2];
-    this->Seconds = emitted.seconds;
+    tyndall::WorkOnAllRanks(ranks, this, [&] {
+      const tyndall::EmittedPhotons emitted =
+        tyndall::EmitPhotons(grid, illumination, settings, tyndall::MonitorOf(this));
+      tyndall::WritePhotons(emitted, grid, vtkPolyData::GetData(outputs));
+      this->Photons = static_cast<vtkIdType>(emitted.photons.size());
+      this->Power = tyndall::Sum(emitted.power);
+      this->Seconds = emitted.seconds;
+    });
+    if (ranks && settings.parts > 1)
+    {
+      this->Photons = SumOver(ranks, this->Photons);
+      this->Power = SumOver(ranks, this->Power);
+    }
   };
   return tyndall::GuardedInPieces(this, request, given, outputs, MEDIUM, work);
 }

@@ -115,7 +115,8 @@ public:
   ///@}
 
   ///@{
-  /// What came of the last update: photons made (of this piece), their power (W, channels summed), seconds.
+  /// What came of the last update: photons made, their power (W, channels summed), seconds. Of all ranks where
+  /// they run it together.
   vtkGetMacro(Photons, vtkIdType);
   vtkGetMacro(Power, double);
   vtkGetMacro(Seconds, double);

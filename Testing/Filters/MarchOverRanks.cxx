@@ -146,7 +146,7 @@ struct Piece
   std::array<int, 6> extent = {};
   std::map<std::string, std::vector<double>> arrays;
   std::vector<double> balance, paths;
-  vtkIdType cellsOfMedium = 0, photons = 0;
+  vtkIdType cellsOfMedium = 0, photons = 0, photonsOfAll = 0;
 };
 
 std::vector<double> ValuesOf(vtkDataArray* array)
@@ -225,7 +225,8 @@ Piece March(vtkMPIController* controller, const Asked& asked, int decomposition)
   piece.balance = ValuesOf(light->GetFieldData()->GetArray("energy_balance"));
   piece.paths = ValuesOf(vtkPolyData::SafeDownCast(scene.Marcher->GetOutputDataObject(1)));
   piece.cellsOfMedium = std::max(scene.Medium->CellsMade, scene.Box->CellsMade);
-  piece.photons = scene.Emitter->GetPhotons();
+  piece.photons = scene.Emitter->GetOutput()->GetNumberOfPoints();
+  piece.photonsOfAll = scene.Emitter->GetPhotons();
   return piece;
 }
 
@@ -275,8 +276,8 @@ bool HasTheSameLight(vtkMPIController* controller, const Asked& asked)
   {
     long own = static_cast<long>(block.photons), sum = 0;
     controller->AllReduce(&own, &sum, 1, vtkCommunicator::SUM_OP);
-    right =
-      Expect(sum == whole.photons && own <= whole.photons / ranks + 2, name + ": no share of the photons", rank) &&
+    right = Expect(sum == whole.photons && own <= whole.photons / ranks + 2 && block.photonsOfAll == sum,
+              name + ": no share of the photons", rank) &&
       right;
   }
   std::cout << "rank " << rank << " of " << ranks << ", " << name << ": " << block.cellsOfMedium
