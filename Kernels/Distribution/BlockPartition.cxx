@@ -78,4 +78,44 @@ VoxelBox Common(const VoxelBox& a, const VoxelBox& b)
   }
   return common;
 }
+
+bool Holds(const VoxelBox& box, const int* voxel)
+{
+  bool holds = true;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    holds = holds && voxel[axis] >= box.first[axis] && voxel[axis] < EndOf(box, axis);
+  }
+  return holds;
+}
+
+VoxelBox Grown(const VoxelBox& box, int by, const Grid& whole)
+{
+  VoxelBox grown = box;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const int end = std::min(EndOf(box, axis) + by, whole.size[axis]);
+    grown.first[axis] = std::max(box.first[axis] - by, 0);
+    grown.size[axis] = end - grown.first[axis];
+  }
+  return grown;
+}
+
+std::vector<int> NeighboursOf(const BlockPartition& partition, int rank)
+{
+  std::vector<int> neighbours;
+  if (partition.blocks.at(rank).VoxelCount() == 0)
+  {
+    return neighbours;
+  }
+  const VoxelBox touched = Grown(partition.blocks[rank], 1, partition.whole);
+  for (int other = 0; other < static_cast<int>(partition.blocks.size()); ++other)
+  {
+    if (other != rank && Common(partition.blocks[other], touched).VoxelCount() > 0)
+    {
+      neighbours.push_back(other);
+    }
+  }
+  return neighbours;
+}
 }

@@ -31,6 +31,15 @@ inline int EndOf(const VoxelBox& box, int axis)
   return box.first[axis] + box.size[axis];
 }
 
+/// Whether a voxel, three numbers, is in a box.
+bool Holds(const VoxelBox& box, const int* voxel);
+
+/// A box and so many voxels round it, as far as the grid goes.
+VoxelBox Grown(const VoxelBox& box, int by, const Grid& whole);
+
+/// The ranks whose blocks touch that of one, at a face, an edge or a corner.
+std::vector<int> NeighboursOf(const BlockPartition& partition, int rank);
+
 /// The voxels that two boxes share; without any its size is 0 along some axis.
 VoxelBox Common(const VoxelBox& a, const VoxelBox& b);
 }

@@ -95,8 +95,4 @@ private:
   std::vector<int> Neighbours; ///< ranks
   PhotonTraffic Handed;
 };
-
-/// The voxels of a box and `by` more on each side, within the grid.
-VoxelBox Grown(VoxelBox box, int by, const Grid& whole);
-bool Holds(const VoxelBox& box, const int* voxel);
 }
