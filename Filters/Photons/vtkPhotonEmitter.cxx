@@ -3,17 +3,24 @@
 #include "Common/LightTransportData.h"
 #include "Photons/ImportanceData.h"
 #include "Photons/PhotonData.h"
+#include "Ranks/PieceBlocks.h"
+#include "Ranks/Ranks.h"
 #include "Ranks/WholeImage.h"
 #include "Work/GuardedWork.h"
+#include "Work/WholeInputs.h"
 
+#include "vtkCommunicator.h"
 #include "vtkDataObject.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkMultiProcessController.h"
 #include "vtkObjectFactory.h"
 #include "vtkPolyData.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
+#include <optional>
 
 vtkStandardNewMacro(vtkPhotonEmitter);
 
@@ -52,13 +59,62 @@ int vtkPhotonEmitter::FillOutputPortInformation(int, vtkInformation* information
   return 1;
 }
 
+/// Of the medium only the box counts, which pieces tell.
+int vtkPhotonEmitter::RequestUpdateExtent(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  const bool inPieces = tyndall::EachAsksForItsPiece(request, outputs);
+  tyndall::AskForAllBut(inPieces ? MEDIUM : -1, request, inputs, this->GetNumberOfInputPorts(), outputs);
+  return 1;
+}
+
+namespace
+{
+/// All ranks call it.
+tyndall::Grid WholeGrid(vtkAlgorithm* filter, vtkMultiProcessController* ranks, tyndall::WholeInputs& inputs)
+{
+  const int port = vtkPhotonEmitter::MEDIUM;
+  if (ranks)
+  {
+    const std::optional<tyndall::AgreedBlocks> agreed =
+      tyndall::AgreeOnBlocks(ranks, filter, true, nullptr, vtkImageData::GetData(inputs.Vectors()[port]));
+    if (agreed)
+    {
+      return agreed->pieces->Partition().whole;
+    }
+  }
+  inputs.MakeWhole();
+  return tyndall::GridOf(vtkImageData::GetData(inputs.Vectors()[port]));
+}
+
+template <class Number>
+Number SumOver(vtkMultiProcessController* ranks, Number own)
+{
+  Number sum = own;
+  ranks->AllReduce(&own, &sum, 1, vtkCommunicator::SUM_OP);
+  return sum;
+}
+
+/// Each piece has its part of the photons.
+void TellPart(vtkInformation* asking, tyndall::EmissionSettings& settings)
+{
+  using Pipeline = vtkStreamingDemandDrivenPipeline;
+  if (asking->Has(Pipeline::UPDATE_PIECE_NUMBER()) && asking->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()) > 1)
+  {
+    settings.part = asking->Get(Pipeline::UPDATE_PIECE_NUMBER());
+    settings.parts = asking->Get(Pipeline::UPDATE_NUMBER_OF_PIECES());
+  }
+}
+}
+
 int vtkPhotonEmitter::RequestData(vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs)
 {
   this->Photons = 0;
   this->Power = 0.0;
   this->Seconds = 0.0;
-  return tyndall::Guarded(this, request, given, outputs, [&](vtkInformationVector** inputs) {
-    const tyndall::Grid grid = tyndall::GridOf(vtkImageData::GetData(inputs[MEDIUM]));
+  const auto work = [&](vtkMultiProcessController* ranks, tyndall::WholeInputs& all) {
+    const tyndall::Grid grid = WholeGrid(this, ranks, all);
+    vtkInformationVector** const inputs = all.Vectors();
     tyndall::Illumination illumination = this->ReadIllumination(inputs);
     std::copy_n(this->SkyColor, 3, illumination.sky.begin());
     if (tyndall::NothingShines(illumination))
@@ -68,24 +124,29 @@ int vtkPhotonEmitter::RequestData(vtkInformation* request, vtkInformationVector*
     }
     vtkImageData* const mapped = vtkImageData::GetData(inputs[IMPORTANCE_MAP]);
     const tyndall::ImportanceMap map = tyndall::ReadImportanceMap(mapped, illumination);
-    if (!tyndall::IsFirstPiece(request, outputs))
-    {
-      return;
-    }
     tyndall::EmissionSettings settings;
+    TellPart(tyndall::AskingPort(request, outputs), settings);
     settings.photonCount = static_cast<std::size_t>(this->PhotonCount);
     settings.sampler = static_cast<tyndall::Sampler>(this->Sampler);
     settings.seed = static_cast<std::uint64_t>(this->Seed);
     settings.batches = this->Batches != 0 ? this->Batches : mapped ? 2 : 1;
     settings.map = &map;
     settings.densestAtMost = this->MaximumDensity;
-    const tyndall::EmittedPhotons emitted =
-      tyndall::EmitPhotons(grid, illumination, settings, tyndall::MonitorOf(this));
-    tyndall::WritePhotons(emitted, grid, vtkPolyData::GetData(outputs));
-    this->Photons = static_cast<vtkIdType>(emitted.photons.size());
-    this->Power = emitted.power[0] + emitted.power[1] + emitted.power[2];
-    this->Seconds = emitted.seconds;
-  });
+    tyndall::WorkOnAllRanks(ranks, this, [&] {
+      const tyndall::EmittedPhotons emitted =
+        tyndall::EmitPhotons(grid, illumination, settings, tyndall::MonitorOf(this));
+      tyndall::WritePhotons(emitted, grid, vtkPolyData::GetData(outputs));
+      this->Photons = static_cast<vtkIdType>(emitted.photons.size());
+      this->Power = tyndall::Sum(emitted.power);
+      this->Seconds = emitted.seconds;
+    });
+    if (ranks && settings.parts > 1)
+    {
+      this->Photons = SumOver(ranks, this->Photons);
+      this->Power = SumOver(ranks, this->Power);
+    }
+  };
+  return tyndall::GuardedInPieces(this, request, given, outputs, MEDIUM, work);
 }
 
 void vtkPhotonEmitter::PrintSelf(ostream& os, vtkIndent indent)

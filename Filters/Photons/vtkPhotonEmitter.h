@@ -36,8 +36,9 @@ class vtkPolyData;
  * and field data `photon_box`, the bounds of the box that they were made for (6 numbers): vtkPhotonMarcher warns where
  * its medium fills another one.
  *
- * Without lights, environment and SkyColor there are no photons, with a warning. In a parallel pipeline the first piece
- * has all photons.
+ * Without lights, environment and SkyColor there are no photons, with a warning. In a parallel pipeline each piece has
+ * its part of the photons: one after the other, pieces have all of them in their order. Of the medium each rank then
+ * needs a piece only.
  *
  * @sa vtkLightRig vtkEnvironmentReader vtkPhotonImportance vtkPhotonMarcher
  * @par Thanks
@@ -114,7 +115,8 @@ public:
   ///@}
 
   ///@{
-  /// What came of the last update: photons made, their power (W, channels summed), seconds.
+  /// What came of the last update: photons made, their power (W, channels summed), seconds. Of all ranks where
+  /// they run it together.
   vtkGetMacro(Photons, vtkIdType);
   vtkGetMacro(Power, double);
   vtkGetMacro(Seconds, double);
@@ -125,6 +127,8 @@ protected:
   ~vtkPhotonEmitter() override;
 
   int FillOutputPortInformation(int port, vtkInformation* information) override;
+  int RequestUpdateExtent(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
   int RequestData(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
 
 private:

@@ -1,10 +1,12 @@
 #include "vtkPhotonMarcher.h"
 
+#include "Common/ContentKey.h"
 #include "Common/DeviceBudget.h"
 #include "Common/ImageInput.h"
 #include "Common/LightTransportData.h"
 #include "Device/Device.h"
 #include "Numerics/ChooseEvenly.h"
+#include "Photons/Distributed/PhotonShares.h"
 #include "Photons/Distributed/PhotonsInBlocks.h"
 #include "Photons/Marching/PublishedPhotons.h"
 #include "Photons/PhotonData.h"
@@ -53,9 +55,14 @@ bool ByBricks(vtkPhotonMarcher* filter, vtkImageData* medium)
 /// Of a rank that marches through the whole: the medium's arrays, its spline of the index, sums and light.
 constexpr double BytesOfVoxel = 96.0;
 
+bool IsOfLaterBatch(const tyndall::Photon& photon)
+{
+  return photon.batch > 0;
+}
+
 /// @param medium  null: this rank has nothing of it
-tyndall::MarchSettings SettingsOf(
-  vtkPhotonMarcher* filter, vtkImageData* medium, const std::vector<tyndall::Photon>& photons)
+/// @param batches  photons are of several
+tyndall::MarchSettings SettingsOf(vtkPhotonMarcher* filter, vtkImageData* medium, bool batches)
 {
   const bool published = filter->GetScheme() == vtkPhotonMarcher::PUBLISHED;
   if (published && filter->GetMaximumOrders() != 1)
@@ -82,8 +89,7 @@ tyndall::MarchSettings SettingsOf(
     settings.errorBatches = settings.counts ? 0 : filter->GetErrorBatches();
     return settings;
   }
-  settings.batches = !published &&
-    std::any_of(photons.begin(), photons.end(), [](const tyndall::Photon& photon) { return photon.batch > 0; });
+  settings.batches = !published && batches;
   return settings;
 }
 
@@ -92,6 +98,9 @@ void SpreadToHeld(
   tyndall::Communicator& communicator, const tyndall::PieceBlocks& pieces, tyndall::PhotonLight& photons)
 {
   pieces.SpreadToHeld(communicator, photons.light.fluence, photons.light.channels);
+  pieces.SpreadToHeld(communicator, photons.light.fluenceDirect, photons.light.channels);
+  pieces.SpreadToHeld(communicator, photons.light.fluenceError, photons.light.channels);
+  pieces.SpreadToHeld(communicator, photons.batchFluence, photons.light.channels * photons.batches);
   pieces.SpreadToHeld(communicator, photons.meanDirection, 3);
   pieces.SpreadToHeld(communicator, photons.photonCount, 1);
   pieces.SpreadToHeld(communicator, photons.photonWeight, 1);
@@ -134,7 +143,7 @@ struct vtkPhotonMarcher::PieceOfMarch
   vtkSmartPointer<vtkImageData> image; ///< whose arrays the medium has; null: this rank has nothing of it
   tyndall::RefractiveInput read;
   tyndall::MarchSettings settings;
-  std::vector<tyndall::Photon> photons; ///< all of them
+  std::vector<tyndall::Photon> photons; ///< this rank's share
 };
 
 /// Light, of the published scheme what its packing lost, and, of the conservative scheme's integrator, paths.
@@ -240,7 +249,17 @@ int vtkPhotonMarcher::RequestUpdateExtent(
 {
   this->Kept->ForgetIfRan(this, { MediumPort, OctreePort });
   const bool asPiece = tyndall::EachAsksForItsPiece(request, outputs) && this->WantsBlocks(request, inputs, outputs);
-  tyndall::AskForAllBut(asPiece ? MediumPort : -1, request, inputs, InputPortCount, outputs);
+  for (int port = 0; port < InputPortCount; ++port)
+  {
+    if (asPiece && port != OctreePort) // the pipeline has asked it for what the output is asked for
+    {
+      tyndall::AskTogether(request, outputs, inputs[port]);
+    }
+    else
+    {
+      tyndall::AskForAll(request, inputs[port], outputs);
+    }
+  }
   return 1;
 }
 
@@ -253,11 +272,40 @@ std::string vtkPhotonMarcher::NotByBlocks(
   {
     return "the published Scheme";
   }
-  if (this->PathCount > 0)
-  {
-    return "paths (PathCount)";
-  }
   return tyndall::NotInBlocks(settings, octree || inputs[OctreePort]->GetNumberOfInformationObjects() > 0);
+}
+
+namespace
+{
+/// Photons of which each rank has some. Where all have all of them, each takes a part. All ranks call it.
+std::vector<tyndall::Photon> ShareOfPhotons(tyndall::Communicator& communicator, vtkPolyData* given)
+{
+  std::vector<tyndall::Photon> photons;
+  std::uint64_t key = 0;
+  communicator.Together([&] {
+    photons = tyndall::ReadPhotons(given);
+    key = tyndall::ContentKey(given);
+  });
+  const double high = static_cast<double>(key >> 32), low = static_cast<double>(key & 0xFFFFFFFFu);
+  const std::vector<double> largest = communicator.Largest({ high, -high, low, -low });
+  if (largest[0] == -largest[1] && largest[2] == -largest[3])
+  {
+    const auto ranks = static_cast<std::size_t>(communicator.Ranks()),
+               rank = static_cast<std::size_t>(communicator.Rank());
+    const auto cut = [&](std::size_t part) {
+      return photons.begin() + static_cast<std::ptrdiff_t>(photons.size() * part / ranks);
+    };
+    return { cut(rank), cut(rank + 1) };
+  }
+  return photons;
+}
+
+/// Whether photons of any rank are of several batches.
+bool HaveBatches(tyndall::Communicator& communicator, const std::vector<tyndall::Photon>& photons)
+{
+  const bool own = std::any_of(photons.begin(), photons.end(), IsOfLaterBatch);
+  return communicator.Largest({ own ? 1.0 : 0.0 })[0] > 0.0;
+}
 }
 
 /// @return false, on all ranks, where photons cannot be marched through pieces, and need not
@@ -265,14 +313,16 @@ bool vtkPhotonMarcher::ReadPiece(tyndall::Communicator& communicator, const tynd
   vtkInformationVector** inputs, PieceOfMarch& piece)
 {
   std::string refused;
+  std::vector<tyndall::Photon> photons = ShareOfPhotons(communicator, vtkPolyData::GetData(inputs[PhotonsPort]));
+  const bool batches = HaveBatches(communicator, photons);
   communicator.Together([&] {
-    piece.photons = tyndall::ReadPhotons(vtkPolyData::GetData(inputs[PhotonsPort]));
+    piece.photons = std::move(photons);
     if (pieces.HasOwn())
     {
       piece.image = pieces.OwnImage(vtkImageData::GetData(inputs[MediumPort]));
       piece.read = tyndall::ReadRefractiveMedium(this, piece.image);
     }
-    piece.settings = SettingsOf(this, piece.image, piece.photons);
+    piece.settings = SettingsOf(this, piece.image, batches);
     refused = this->NotByBlocks(inputs, piece.settings, piece.read.Levels() != nullptr);
     tyndall::Require(refused.empty() || this->Decomposition != BLOCKS,
       "Ranks cannot march photons through their pieces (Decomposition: blocks) with " + refused +
@@ -302,11 +352,15 @@ bool vtkPhotonMarcher::MarchPiece(vtkInformation* request, vtkMultiProcessContro
   this->Kept->Forget();
   std::shared_ptr<tyndall::Device> device;
   communicator->Together([&] { device = tyndall::FindWithin(this->Within, this->Device, this->MemoryBudget); });
-  tyndall::PhotonLight light = tyndall::MarchInBlocks(*device, *communicator, pieces.Partition(),
-    piece.read.input.medium, piece.read.ior, piece.settings, piece.photons, tyndall::MonitorOf(this));
+  tyndall::PhotonMarcherInBlocks marcher(
+    *device, *communicator, pieces.Partition(), piece.read.input.medium, piece.read.ior, piece.settings);
+  tyndall::PhotonLight light = marcher.March(piece.photons, tyndall::MonitorOf(this));
+  const std::vector<tyndall::PhotonPath> paths = this->PathCount > 0
+    ? marcher.Paths(piece.photons, static_cast<std::size_t>(this->PathCount))
+    : std::vector<tyndall::PhotonPath>();
   this->WarnOfBox(inputs, pieces.Partition().whole);
   this->Note(light);
-  this->Warn(light, piece.photons.size());
+  this->Warn(light, tyndall::PlaceAmong(*communicator, piece.photons.size()).all);
   SpreadToHeld(*communicator, pieces, light);
   vtkImageData* const output = vtkImageData::GetData(outputs, 0);
   tyndall::PassOn(image, output);
@@ -314,6 +368,10 @@ bool vtkPhotonMarcher::MarchPiece(vtkInformation* request, vtkMultiProcessContro
   if (pieces.Held().VoxelCount() > 0)
   {
     Write(std::move(light), output);
+  }
+  if (communicator->Rank() == 0)
+  {
+    tyndall::WritePaths(paths, vtkPolyData::GetData(outputs, 1));
   }
   return true;
 }
@@ -337,7 +395,8 @@ vtkPhotonMarcher::Marched vtkPhotonMarcher::March(
   vtkInformationVector** inputs, const std::vector<tyndall::Photon>& photons)
 {
   this->Kept->ForgetIfRan(this, { MediumPort, OctreePort });
-  const tyndall::MarchSettings settings = SettingsOf(this, vtkImageData::GetData(inputs[MediumPort]), photons);
+  const tyndall::MarchSettings settings = SettingsOf(
+    this, vtkImageData::GetData(inputs[MediumPort]), std::any_of(photons.begin(), photons.end(), IsOfLaterBatch));
   const bool published = this->Scheme == PUBLISHED;
   Marched marched;
   if (published)
@@ -371,7 +430,8 @@ int vtkPhotonMarcher::RequestData(vtkInformation* request, vtkInformationVector*
   const tyndall::WorkOnPieces onPieces = { MediumPort,
     [&](vtkMultiProcessController* ranks, vtkInformationVector** inputs) {
       return this->MarchPiece(request, ranks, inputs, outputs);
-    } };
+    },
+    PhotonsPort };
   return tyndall::Guarded(this, request, given, outputs, onPieces, [&](vtkInformationVector** inputs) {
     const std::vector<tyndall::Photon> photons = tyndall::ReadPhotons(vtkPolyData::GetData(inputs[PhotonsPort]));
     this->WarnOfBox(inputs, tyndall::GridOf(vtkImageData::GetData(inputs[MediumPort])));

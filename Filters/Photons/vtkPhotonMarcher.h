@@ -62,8 +62,8 @@ class vtkMultiProcessController;
  * The medium stays prepared on the device, so that new light or other photons only cost their march: until the medium
  * or the octree changes, another one is connected, a setting needs it, the device is another one, or the filter goes.
  *
- * In a parallel pipeline every rank marches all photons and hands on its piece, and the paths are on the first; or,
- * with Decomposition, marches photons through its piece, and photons go from rank to rank.
+ * In a parallel pipeline every rank marches all photons and hands on its piece; or, with Decomposition, marches
+ * photons through its piece, and photons go from rank to rank. The paths are on the first rank, each in one piece.
  *
  * Cells that are hidden by `vtkGhostType` are empty.
  *
@@ -110,10 +110,11 @@ public:
   };
 
   ///@{
-  /// What each of several ranks of MPI holds. With WHOLE all of the medium. With BLOCKS its piece, and of the index
-  /// some voxels round it: a photon that leaves the piece is handed on as it stands (numerics.md, section 12.6), and
-  /// light is that of one rank bit for bit. All ranks are given all photons. An error names what blocks cannot do:
-  /// MaximumOrders other than 1, an octree, photons of several batches, PathCount and the published scheme.
+  /// What each of several ranks of MPI holds. With WHOLE all of the medium and all photons. With BLOCKS its piece, and
+  /// of the index some voxels round it, and its share of the photons: a photon that leaves the piece is handed on as it
+  /// stands (numerics.md, section 12.6), scattered ones too, and light is that of one rank bit for bit. Where ranks are
+  /// given the same photons each takes a part of them, else all are those of rank 0, then of rank 1, and so on. An
+  /// error names what blocks cannot do: an octree and the published scheme.
   /// AUTOMATIC_DECOMPOSITION (default): BLOCKS where the whole, once for each rank of a machine, is more than the
   /// memory that it has available, and the scene can be marched through so; else WHOLE.
   tyndallSetRangeMacro(Decomposition, int, AUTOMATIC_DECOMPOSITION, BLOCKS);

@@ -199,7 +199,7 @@ int Guarded(vtkAlgorithm* filter, vtkInformation* request, vtkInformationVector*
 
 int GuardedInPieces(vtkAlgorithm* filter, vtkInformation* request, vtkInformationVector** given,
   vtkInformationVector* outputs, int port,
-  const std::function<void(vtkMultiProcessController* ranks, WholeInputs& inputs)>& work)
+  const std::function<void(vtkMultiProcessController* ranks, WholeInputs& inputs)>& work, int shares)
 {
   vtkMultiProcessController* const ranks = RanksTogether(request, outputs);
   return GuardedOn(ranks, filter, outputs, [&] {
@@ -211,7 +211,7 @@ int GuardedInPieces(vtkAlgorithm* filter, vtkInformation* request, vtkInformatio
         CheckDuplicates(filter, outputs);
       }
     });
-    WholeInputs inputs(ranks, filter, given, outputs, port);
+    WholeInputs inputs(ranks, filter, given, outputs, port, shares);
     work(ranks, inputs);
   });
 }
@@ -220,7 +220,8 @@ int Guarded(vtkAlgorithm* filter, vtkInformation* request, vtkInformationVector*
   const WorkOnPieces& onPieces, const std::function<void(vtkInformationVector** inputs)>& work)
 {
   return GuardedInPieces(
-    filter, request, given, outputs, onPieces.port, [&](vtkMultiProcessController* ranks, WholeInputs& inputs) {
+    filter, request, given, outputs, onPieces.port,
+    [&](vtkMultiProcessController* ranks, WholeInputs& inputs) {
       if (!onPieces.work(ranks, inputs.Vectors()))
       {
         inputs.MakeWhole();
@@ -230,7 +231,8 @@ int Guarded(vtkAlgorithm* filter, vtkInformation* request, vtkInformationVector*
       {
         KeepWhatIsAskedFor(outputs->GetInformationObject(0), vtkImageData::GetData(outputs, 0));
       }
-    });
+    },
+    onPieces.shares);
 }
 
 bool AreEmptied(vtkInformationVector* outputs)

@@ -9,6 +9,7 @@
 #include "Work/GuardedWork.h"
 
 #include "vtkAlgorithm.h"
+#include "vtkAppendPolyData.h"
 #include "vtkCellData.h"
 #include "vtkDataObject.h"
 #include "vtkDataSetAttributes.h"
@@ -18,6 +19,7 @@
 #include "vtkMultiProcessController.h"
 #include "vtkMultiProcessStream.h"
 #include "vtkPointData.h"
+#include "vtkPolyData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkUnsignedCharArray.h"
 
@@ -277,6 +279,34 @@ vtkSmartPointer<vtkDataObject> FromOneRank(
   return all;
 }
 
+/// Points of all ranks, one rank's after the other's; those that all have alike once.
+vtkSmartPointer<vtkDataObject> AllShares(vtkMultiProcessController* ranks, vtkDataObject* own, const OnRanks& glances)
+{
+  if (!own || Alike(glances))
+  {
+    return own;
+  }
+  vtkNew<vtkAppendPolyData> all;
+  for (int rank = 0; rank < static_cast<int>(glances.size()); ++rank)
+  {
+    vtkNew<vtkPolyData> share;
+    if (rank == ranks->GetLocalProcessId())
+    {
+      share->ShallowCopy(own);
+    }
+    ranks->Broadcast(share, rank);
+    if (share->GetNumberOfPoints() > 0)
+    {
+      all->AddInputData(share);
+    }
+  }
+  all->Update();
+  const auto together = vtkSmartPointer<vtkDataObject>::Take(own->NewInstance());
+  together->ShallowCopy(all->GetOutput());
+  together->SetFieldData(own->GetFieldData());
+  return together;
+}
+
 vtkSmartPointer<vtkDataObject> WholeOf(
   vtkMultiProcessController* ranks, vtkDataObject* own, const OnRanks& glances, const std::string& named)
 {
@@ -372,12 +402,12 @@ struct WholeInputs::Seen
 {
   vtkMultiProcessController* ranks;
   vtkInformationVector** given;
-  int inPieces;
+  int inPieces, inShares;
   std::vector<RankGlance> all;
 };
 
 WholeInputs::WholeInputs(vtkMultiProcessController* ranks, vtkAlgorithm* filter, vtkInformationVector** given,
-  vtkInformationVector* outputs, int inPieces)
+  vtkInformationVector* outputs, int inPieces, int inShares)
 {
   const int ports = filter->GetNumberOfInputPorts();
   this->Ports.assign(given, given + ports);
@@ -390,11 +420,11 @@ WholeInputs::WholeInputs(vtkMultiProcessController* ranks, vtkAlgorithm* filter,
   }
   RankGlance own;
   OnAllRanks(ranks, [&] { own = GlanceAtAll(filter, given, outputs); });
-  this->AllSeen = std::make_unique<Seen>(Seen{ ranks, given, inPieces, Share(ranks, own) });
+  this->AllSeen = std::make_unique<Seen>(Seen{ ranks, given, inPieces, inShares, Share(ranks, own) });
   NoteParts(this->AllSeen->all, ranks->GetLocalProcessId(), outputs);
   for (int port = 0; port < ports; ++port)
   {
-    if (port != inPieces)
+    if (port != inPieces && port != inShares)
     {
       this->MakeWhole(port);
     }
@@ -419,6 +449,10 @@ void WholeInputs::MakeWhole()
   {
     this->MakeWhole(std::exchange(this->AllSeen->inPieces, NoPort));
   }
+  if (this->AllSeen && this->AllSeen->inShares != NoPort)
+  {
+    this->MakeWhole(this->AllSeen->inShares);
+  }
 }
 
 void WholeInputs::MakeWhole(int port)
@@ -438,7 +472,8 @@ void WholeInputs::MakeWhole(int port)
     }
     vtkInformation* const information = seen.given[port]->GetInformationObject(i);
     vtkDataObject* const data = vtkDataObject::GetData(information);
-    const vtkSmartPointer<vtkDataObject> whole = WholeOf(seen.ranks, data, glances, Named(port));
+    const vtkSmartPointer<vtkDataObject> whole =
+      port == seen.inShares ? AllShares(seen.ranks, data, glances) : WholeOf(seen.ranks, data, glances, Named(port));
     vtkNew<vtkInformation> replaced;
     replaced->Set(vtkDataObject::DATA_OBJECT(), whole);
     this->Kept[number]->Append(whole == data ? information : replaced.Get());

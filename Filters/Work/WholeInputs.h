@@ -21,6 +21,7 @@ namespace tyndall
 /// only what lies on their rank: Resample To Image, a source of pieces of one's own, a file's reader where the file is
 /// on one rank alone. Then each rank gets all of it: pieces of an image are put together (GatheredImage.h), with cell
 /// and point arrays, ghost cells once; of other data, as tables and lights, what one rank alone has goes to all.
+/// Points in shares are put one after the other, by rank.
 ///
 /// Memory of each rank: the whole image, and one piece of one array.
 class WholeInputs
@@ -32,9 +33,10 @@ public:
   /// @param given  by port
   /// @param outputs  notes for KeepWhatIsAskedFor what each rank is asked for
   /// @param inPieces  a port that stays as it is given until MakeWhole
+  /// @param inShares  another, of points of which ranks may have some each (photons): together they are all
   /// @throws InvalidInput on all ranks with the same words where pieces make no whole
   WholeInputs(vtkMultiProcessController* ranks, vtkAlgorithm* filter, vtkInformationVector** given,
-    vtkInformationVector* outputs, int inPieces = NoPort);
+    vtkInformationVector* outputs, int inPieces = NoPort, int inShares = NoPort);
   ~WholeInputs();
 
   /// By port.
@@ -43,7 +45,7 @@ public:
   /// Data instead of those of the port that was left in pieces; until MakeWhole.
   void Replace(vtkDataObject* data);
 
-  /// Of the port that was left in pieces. All ranks have to call it.
+  /// Of the ports that were left as they are given. All ranks have to call it.
   /// @throws InvalidInput as the constructor
   void MakeWhole();
 

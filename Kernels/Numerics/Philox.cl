@@ -31,6 +31,19 @@ static random_numbers random_of(ulong seed, ulong stream)
   return random;
 }
 
+// Of a photon that has drawn from so many blocks, of whose last one so many are left.
+static random_numbers random_after(ulong seed, ulong stream, uint blocks, int left)
+{
+  random_numbers random = random_of(seed, stream);
+  random.block = blocks;
+  random.left = left;
+  if (left > 0)
+  {
+    vstore4(philox((uint4)((uint)stream, (uint)(stream >> 32), blocks - 1, 0), random.key), 0, random.values);
+  }
+  return random;
+}
+
 // In (0, 1), multiples of 2^-24 and a half of that.
 static float draw(random_numbers* random)
 {

@@ -1,13 +1,17 @@
-// vtkPhotonMarcher in a pipeline that MPI ranks run together: with Decomposition BLOCKS each has its piece of the
-// medium, and of the light what it has where each has the whole, bit for bit. Run by mpiexec; a program by itself.
+// vtkPhotonEmitter and vtkPhotonMarcher in a pipeline that MPI ranks run together: with Decomposition BLOCKS each has
+// its piece of the medium and its share of the photons, and of the light what it has where each has the whole, bit for
+// bit. Run by mpiexec; a program by itself.
 
+#include "vtkPhotonEmitter.h"
 #include "vtkPhotonMarcher.h"
 
 #include "Device/Device.h"
 #include "Device/Errors.h"
 
+#include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkCommand.h"
+#include "vtkCommunicator.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkFieldData.h"
 #include "vtkFloatArray.h"
@@ -29,6 +33,7 @@
 #include <cstdlib>
 #include <exception>
 #include <iostream>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -111,12 +116,37 @@ vtkSmartPointer<vtkPolyData> Photons()
   return photons;
 }
 
-/// Light of a rank's piece.
+/// Of single voxels.
+vtkSmartPointer<vtkImageData> Octree()
+{
+  vtkNew<vtkImageData> octree;
+  octree->SetDimensions(Size[0] + 1, Size[1] + 1, Size[2] + 1);
+  vtkNew<vtkFloatArray> levels;
+  levels->SetName("octree_level");
+  levels->SetNumberOfTuples(octree->GetNumberOfCells());
+  levels->Fill(0.0);
+  octree->GetCellData()->AddArray(levels);
+  return octree;
+}
+
+/// How photons are marched.
+struct Asked
+{
+  const char* name;
+  int orders = 1, ghosts = 0, paths = 0, batches = 1;
+  bool emits = false;                           ///< photons are vtkPhotonEmitter's; else all ranks have the same
+  double precision = 0.0;                       ///< of powers, over what entered
+  int decomposition = vtkPhotonMarcher::BLOCKS; ///< that is compared with the whole
+  bool octree = false;                          ///< which cannot be had in blocks
+};
+
+/// What a rank has of the light.
 struct Piece
 {
   std::array<int, 6> extent = {};
-  std::vector<double> fluence, direction, balance;
-  vtkIdType cellsOfMedium = 0;
+  std::map<std::string, std::vector<double>> arrays;
+  std::vector<double> balance, paths;
+  vtkIdType cellsOfMedium = 0, photons = 0, photonsOfAll = 0;
 };
 
 std::vector<double> ValuesOf(vtkDataArray* array)
@@ -129,25 +159,78 @@ std::vector<double> ValuesOf(vtkDataArray* array)
   return values;
 }
 
-Piece March(vtkMPIController* controller, int decomposition, int ghosts)
+/// Ends, numbers of photons, and corners with what is left there.
+std::vector<double> ValuesOf(vtkPolyData* paths)
 {
-  vtkNew<Waves> medium;
-  vtkNew<vtkPhotonMarcher> marcher;
-  marcher->SetInputConnection(medium->GetOutputPort());
-  marcher->SetPhotonsData(Photons());
-  marcher->SetDecomposition(decomposition);
-  marcher->UpdatePiece(controller->GetLocalProcessId(), controller->GetNumberOfProcesses(), ghosts);
-  vtkImageData* const light = vtkImageData::SafeDownCast(marcher->GetOutputDataObject(0));
+  std::vector<double> values;
+  for (vtkDataArray* array : { paths->GetLines()->GetOffsetsArray(), paths->GetCellData()->GetArray("photon"),
+         paths->GetPoints() ? paths->GetPoints()->GetData() : nullptr, paths->GetPointData()->GetArray("power_left") })
+  {
+    const std::vector<double> more = ValuesOf(array);
+    values.insert(values.end(), more.begin(), more.end());
+  }
+  return values;
+}
+
+/// Where photons are marched through a medium of its own for the emitter, so that each is asked for what it needs.
+struct Scene
+{
+  Scene(vtkMPIController* ranks, const Asked& asked, int decomposition)
+    : Ranks(ranks)
+  {
+    if (asked.emits)
+    {
+      this->Emitter->SetInputConnection(this->Box->GetOutputPort());
+      this->Emitter->SetSkyColor(1.0, 2.0, 0.5);
+      this->Emitter->SetPhotonCount(999);
+      this->Emitter->SetBatches(asked.batches);
+      this->Marcher->SetPhotonsConnection(this->Emitter->GetOutputPort());
+    }
+    else
+    {
+      this->Marcher->SetPhotonsData(Photons());
+    }
+    if (asked.octree)
+    {
+      this->Marcher->SetOctreeData(Octree());
+    }
+    this->Marcher->SetInputConnection(this->Medium->GetOutputPort());
+    this->Marcher->SetDecomposition(decomposition);
+    this->Marcher->SetMaximumOrders(asked.orders);
+    this->Marcher->SetErrorBatches(4);
+    this->Marcher->SetPathCount(asked.paths);
+  }
+  vtkImageData* Update(int ghosts = 0)
+  {
+    this->Marcher->UpdatePiece(this->Ranks->GetLocalProcessId(), this->Ranks->GetNumberOfProcesses(), ghosts);
+    return vtkImageData::SafeDownCast(this->Marcher->GetOutputDataObject(0));
+  }
+
+  vtkMPIController* Ranks;
+  vtkNew<Waves> Medium, Box;
+  vtkNew<vtkPhotonEmitter> Emitter;
+  vtkNew<vtkPhotonMarcher> Marcher;
+};
+
+Piece March(vtkMPIController* controller, const Asked& asked, int decomposition)
+{
+  Scene scene(controller, asked, decomposition);
+  vtkImageData* const light = scene.Update(asked.ghosts);
   Piece piece;
   std::copy_n(light->GetExtent(), 6, piece.extent.begin());
-  piece.fluence = ValuesOf(light->GetCellData()->GetArray("fluence"));
-  piece.direction = ValuesOf(light->GetCellData()->GetArray("mean_direction"));
+  for (const char* name : { "fluence", "fluence_direct", "fluence_error", "fluence_batches", "mean_direction" })
+  {
+    piece.arrays[name] = ValuesOf(light->GetCellData()->GetArray(name));
+  }
   piece.balance = ValuesOf(light->GetFieldData()->GetArray("energy_balance"));
-  piece.cellsOfMedium = medium->CellsMade;
+  piece.paths = ValuesOf(vtkPolyData::SafeDownCast(scene.Marcher->GetOutputDataObject(1)));
+  piece.cellsOfMedium = std::max(scene.Medium->CellsMade, scene.Box->CellsMade);
+  piece.photons = scene.Emitter->GetOutput()->GetNumberOfPoints();
+  piece.photonsOfAll = scene.Emitter->GetPhotons();
   return piece;
 }
 
-bool Expect(bool holds, const char* what, int rank)
+bool Expect(bool holds, const std::string& what, int rank)
 {
   if (!holds)
   {
@@ -156,22 +239,48 @@ bool Expect(bool holds, const char* what, int rank)
   return holds;
 }
 
-bool HasTheSameLight(vtkMPIController* controller, int ghosts)
+/// Bit for bit, or so precise.
+bool Same(const std::vector<double>& found, const std::vector<double>& wanted, double precision)
+{
+  const auto near = [&](double a, double b) { return std::abs(a - b) <= precision * wanted[0]; };
+  return found.size() == wanted.size() && std::equal(found.begin(), found.end(), wanted.begin(), near);
+}
+
+bool HasTheSameLight(vtkMPIController* controller, const Asked& asked)
 {
   const int rank = controller->GetLocalProcessId(), ranks = controller->GetNumberOfProcesses();
-  const Piece whole = March(controller, vtkPhotonMarcher::WHOLE, ghosts);
-  const Piece block = March(controller, vtkPhotonMarcher::BLOCKS, ghosts);
+  const Piece whole = March(controller, asked, vtkPhotonMarcher::WHOLE);
+  const Piece block = March(controller, asked, asked.decomposition);
   const vtkIdType all = vtkIdType(1) * Size[0] * Size[1] * Size[2];
-  bool right = Expect(!whole.fluence.empty(), "no light", rank);
-  right = Expect(block.extent == whole.extent, "another piece", rank) && right;
-  right = Expect(block.fluence == whole.fluence, "another fluence", rank) && right;
-  right = Expect(block.direction == whole.direction, "another mean_direction", rank) && right;
-  right = Expect(block.balance == whole.balance && !block.balance.empty(), "another energy_balance", rank) && right;
-  right = Expect(whole.cellsOfMedium == all, "had not the whole", rank) && right;
-  right = Expect(ranks == 1 || ghosts > 0 || 2 * block.cellsOfMedium <= all + Size[1] * Size[2],
-            "had more of the medium than its piece", rank) &&
+  const std::string name = asked.name;
+  bool right = Expect(!whole.arrays.at("fluence").empty(), name + ": no light", rank);
+  right = Expect(block.extent == whole.extent, name + ": another piece", rank) && right;
+  for (const auto& [array, values] : whole.arrays)
+  {
+    right = Expect(block.arrays.at(array) == values, name + ": another " + array, rank) && right;
+  }
+  right = Expect(asked.orders == 1 || !whole.arrays.at("fluence_error").empty(), name + ": no error", rank) && right;
+  right =
+    Expect(asked.batches == 1 || !whole.arrays.at("fluence_batches").empty(), name + ": no batches", rank) && right;
+  right = Expect(!block.balance.empty() && Same(block.balance, whole.balance, asked.precision),
+            name + ": another energy_balance", rank) &&
     right;
-  std::cout << "rank " << rank << " of " << ranks << ", " << ghosts << " ghost layers: " << block.cellsOfMedium
+  right = Expect(block.paths == whole.paths && (rank > 0 || asked.paths == 0 || block.paths.size() > 20),
+            name + ": other paths", rank) &&
+    right;
+  right = Expect(whole.cellsOfMedium == all, name + ": had not the whole", rank) && right;
+  right = Expect(ranks == 1 || asked.ghosts > 0 || asked.octree || 2 * block.cellsOfMedium <= all + Size[1] * Size[2],
+            name + ": had more of the medium than its piece", rank) &&
+    right;
+  if (asked.emits)
+  {
+    long own = static_cast<long>(block.photons), sum = 0;
+    controller->AllReduce(&own, &sum, 1, vtkCommunicator::SUM_OP);
+    right = Expect(sum == whole.photons && own <= whole.photons / ranks + 2 && block.photonsOfAll == sum,
+              name + ": no share of the photons", rank) &&
+      right;
+  }
+  std::cout << "rank " << rank << " of " << ranks << ", " << name << ": " << block.cellsOfMedium
             << " cells of the medium instead of " << whole.cellsOfMedium << std::endl;
   return right;
 }
@@ -186,18 +295,42 @@ bool NamesWhatItCannot(vtkMPIController* controller)
     std::string said;
   };
   vtkNew<Note> errors;
-  vtkNew<Waves> medium;
-  vtkNew<vtkPhotonMarcher> marcher;
-  marcher->AddObserver(vtkCommand::ErrorEvent, errors);
-  marcher->SetInputConnection(medium->GetOutputPort());
-  marcher->SetPhotonsData(Photons());
-  marcher->SetDecomposition(vtkPhotonMarcher::BLOCKS);
-  marcher->SetMaximumOrders(0);
-  marcher->UpdatePiece(controller->GetLocalProcessId(), controller->GetNumberOfProcesses(), 0);
-  return Expect(errors->said.find("scattered photons") != std::string::npos, errors->said.c_str(),
-           controller->GetLocalProcessId()) &&
-    Expect(vtkImageData::SafeDownCast(marcher->GetOutputDataObject(0))->GetNumberOfCells() == 0, "light",
-      controller->GetLocalProcessId());
+  Scene scene(controller, { "errors" }, vtkPhotonMarcher::BLOCKS);
+  scene.Marcher->AddObserver(vtkCommand::ErrorEvent, errors);
+  scene.Marcher->SetScheme(vtkPhotonMarcher::PUBLISHED);
+  vtkImageData* const light = scene.Update();
+  const int rank = controller->GetLocalProcessId();
+  return Expect(errors->said.find("the published Scheme") != std::string::npos, errors->said, rank) &&
+    Expect(light->GetNumberOfCells() == 0, "light", rank);
+}
+
+/// What the last rank stops while photons are scattered ends on all, without an error, and can be marched after that.
+bool EndsTogether(vtkMPIController* controller)
+{
+  struct Stop : vtkCommand
+  {
+    static Stop* New() { return new Stop; }
+    void Execute(vtkObject* caller, unsigned long, void* data) override
+    {
+      if (*static_cast<double*>(data) > 0.1) // scattered photons are on their way
+      {
+        static_cast<vtkAlgorithm*>(caller)->SetAbortExecute(1);
+      }
+    }
+  };
+  const int rank = controller->GetLocalProcessId();
+  Scene scene(controller, { "abort", 0 }, vtkPhotonMarcher::BLOCKS);
+  vtkNew<Stop> stop;
+  if (rank == controller->GetNumberOfProcesses() - 1)
+  {
+    scene.Marcher->AddObserver(vtkCommand::ProgressEvent, stop);
+  }
+  bool right = Expect(scene.Update()->GetFieldData()->HasArray("aborted") != 0, "was not stopped", rank);
+  right = Expect(scene.Update()->GetNumberOfCells() == 0, "light of a march that was stopped", rank) && right;
+  scene.Marcher->RemoveObserver(stop);
+  scene.Marcher->SetAbortExecute(0);
+  scene.Marcher->SetSeed(2);
+  return Expect(scene.Update()->GetNumberOfCells() > 0, "no light after that", rank) && right;
 }
 }
 
@@ -210,7 +343,20 @@ int main(int argc, char* argv[])
   try
   {
     tyndall::Device::Find();
-    const bool right = HasTheSameLight(controller, 0) & HasTheSameLight(controller, 1) & NamesWhatItCannot(controller);
+    bool right = true;
+    const int automatic = vtkPhotonMarcher::AUTOMATIC_DECOMPOSITION;
+    const Asked all[] = { { "photons that all have" }, { "with a ghost layer", 1, 1 }, { "with paths", 1, 0, 9 },
+      { "scattered", 0, 1, 0, 1, false, 1e-9 }, { "emitted", 1, 0, 5, 1, true },
+      { "emitted in batches", 1, 1, 0, 3, true }, { "emitted, scattered", 3, 0, 5, 1, true, 1e-9 },
+      { "too large for each", 1, 0, 5, 1, true, 0.0, automatic },
+      { "too large, but with an octree", 1, 0, 5, 1, true, 0.0, automatic, true } };
+    setenv("OMPI_COMM_WORLD_LOCAL_SIZE", "2000000000", 1); // so many ranks on a machine: none has room for the whole
+    for (const Asked& asked : all)
+    {
+      right = HasTheSameLight(controller, asked) && right;
+    }
+    right = NamesWhatItCannot(controller) && right;
+    right = EndsTogether(controller) && right;
     end = right ? EXIT_SUCCESS : EXIT_FAILURE;
   }
   catch (const tyndall::DeviceError& error)

@@ -426,3 +426,40 @@ TEST(SampleSequence, CellsHaveOnePointEachForAnyCount)
     EXPECT_NEAR(mean, 0.5, 1e-9);
   }
 }
+
+/// Parts, one after the other, are all photons in their order.
+TEST(PhotonEmitter, PartsOfThePhotonsAreAllOfThem)
+{
+  const Grid grid = Box();
+  Illumination light;
+  light.sky = { 1.0, 0.5, 0.2 };
+  light.lights = { Lamp(LightType::Directional, {}), Lamp(LightType::Spot, { 0.0, 2.5, 12.0 }) };
+  for (const Sampler sampler : { Sampler::Hammersley, Sampler::Jittered, Sampler::Random })
+  {
+    EmissionSettings settings;
+    settings.photonCount = 1000;
+    settings.sampler = sampler;
+    settings.batches = 3;
+    const EmittedPhotons all = EmitPhotons(grid, light, settings);
+    for (const int parts : { 1, 2, 7, 2000 })
+    {
+      settings.parts = parts;
+      std::size_t made = 0;
+      for (settings.part = 0; settings.part < parts; ++settings.part)
+      {
+        const EmittedPhotons some = EmitPhotons(grid, light, settings);
+        for (std::size_t i = 0; i < some.photons.size(); ++i, ++made)
+        {
+          ASSERT_LT(made, all.photons.size());
+          ASSERT_EQ(some.photons[i].position, all.photons[made].position) << parts << " parts, photon " << made;
+          ASSERT_EQ(some.photons[i].power, all.photons[made].power);
+          ASSERT_EQ(some.photons[i].batch, all.photons[made].batch);
+          ASSERT_EQ(some.lights[i], all.lights[made]);
+        }
+      }
+      EXPECT_EQ(made, all.photons.size()) << parts << " parts";
+      settings.part = 0;
+    }
+    settings.parts = 1;
+  }
+}

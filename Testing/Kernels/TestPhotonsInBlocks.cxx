@@ -1,10 +1,9 @@
 // Photons through a medium that is spread over ranks, against those through the whole on one.
 
+#include "BlocksOfScene.h"
 #include "DeviceTest.h"
-#include "PhotonScene.h"
 #include "PhotonWays.h"
 
-#include "Distribution/BoxExchange.h"
 #include "Distribution/RanksInThreads.h"
 #include "Photons/Distributed/PhotonsInBlocks.h"
 #include "Photons/Marching/MarchShared.h"
@@ -20,96 +19,12 @@ using namespace tyndall;
 
 namespace
 {
-/// The arrays of a box of a scene.
-struct BlockOfScene
-{
-  BlockOfScene(const PhotonScene& scene, const VoxelBox& box)
-    : medium(scene.medium)
-  {
-    const VoxelBox whole = { { 0, 0, 0 }, scene.medium.grid.size };
-    const auto part = [&](const std::vector<float>& values) {
-      return PartOf(values, whole, box, scene.ComponentsOf(values));
-    };
-    this->sigma_a = part(scene.sigma_a);
-    this->sigma_s = part(scene.sigma_s);
-    this->ior = scene.ior.empty() ? scene.ior : part(scene.ior);
-    this->medium.grid.size = box.size;
-    this->medium.sigma_a = { this->sigma_a.data(), scene.ComponentsOf(scene.sigma_a) };
-    this->medium.sigma_s = { this->sigma_s.data(), scene.ComponentsOf(scene.sigma_s) };
-    for (std::size_t i = 0; i < box.VoxelCount(); ++i)
-    {
-      std::array<int, 3> voxel = this->medium.grid.VoxelAt(i);
-      for (int axis = 0; axis < 3; ++axis)
-      {
-        voxel[axis] += box.first[axis];
-      }
-      this->places.push_back(scene.medium.grid.IndexOf(voxel));
-    }
-  }
-  BlockOfScene(const BlockOfScene&) = delete;
-  BlockOfScene& operator=(const BlockOfScene&) = delete;
-
-  Field Index() const { return { this->ior.empty() ? nullptr : this->ior.data(), 1 }; }
-  /// Values of the box to those of the whole.
-  void Put(const std::vector<float>& from, std::vector<float>& to, std::size_t voxels) const
-  {
-    const std::size_t width = this->places.empty() ? 0 : from.size() / this->places.size();
-    to.resize(std::max(to.size(), voxels * width));
-    for (std::size_t i = 0; i < from.size(); ++i)
-    {
-      to[this->places[i / width] * width + i % width] = from[i];
-    }
-  }
-
-  Medium medium;
-  std::vector<float> sigma_a, sigma_s, ior;
-  std::vector<std::size_t> places; ///< in the whole
-};
-
-/// Arrays of the blocks put together; all else must be the same on all ranks.
-PhotonLight LightOfAll(Device& device, const PhotonScene& scene, const BlockPartition& partition,
-  const std::vector<Photon>& photons, std::vector<PhotonTraffic>* traffic = nullptr)
-{
-  const int ranks = static_cast<int>(partition.blocks.size());
-  std::vector<PhotonLight> found(ranks);
-  std::vector<PhotonTraffic> handed(ranks);
-  RunInThreads(ranks, [&](Communicator& communicator) {
-    const int rank = communicator.Rank();
-    const BlockOfScene part(scene, partition.blocks[rank]);
-    found[rank] = MarchInBlocks(
-      device, communicator, partition, part.medium, part.Index(), scene.settings, photons, {}, &handed[rank]);
-  });
-  PhotonLight all = found[0];
-  const std::size_t voxels = scene.medium.grid.VoxelCount();
-  all.light.fluence.clear();
-  for (std::vector<float>* array : { &all.meanDirection, &all.photonCount, &all.photonWeight })
-  {
-    array->clear();
-  }
-  for (int rank = 0; rank < ranks; ++rank)
-  {
-    const BlockOfScene part(scene, partition.blocks[rank]);
-    part.Put(found[rank].light.fluence, all.light.fluence, voxels);
-    part.Put(found[rank].meanDirection, all.meanDirection, voxels);
-    part.Put(found[rank].photonCount, all.photonCount, voxels);
-    part.Put(found[rank].photonWeight, all.photonWeight, voxels);
-    EXPECT_EQ(found[rank].light.facePowerOut, all.light.facePowerOut);
-    EXPECT_EQ(found[rank].light.balance.absorbed, all.light.balance.absorbed);
-    EXPECT_EQ(found[rank].light.channels, all.light.channels);
-    EXPECT_EQ(handed[rank].rounds, handed[0].rounds);
-  }
-  if (traffic)
-  {
-    *traffic = handed;
-  }
-  return all;
-}
-
 void ExpectLightOfTheWhole(const PhotonLight& found, const PhotonLight& expected)
 {
   ExpectSameLight(found, expected);
   EXPECT_EQ(found.photonCount, expected.photonCount);
   EXPECT_EQ(found.photonWeight, expected.photonWeight);
+  EXPECT_EQ(found.batchFluence, expected.batchFluence);
   EXPECT_EQ(found.missed, expected.missed);
   EXPECT_LT(found.light.balance.RelativeError(found.light.channels), 1e-6);
 }
@@ -126,29 +41,6 @@ void ExpectSameOnRanks(
   }
 }
 
-/// Extinction from 0.01 to 1 a voxel's edge, `components` of it.
-void Randomise(PhotonScene& scene, std::size_t components)
-{
-  std::mt19937 random(3);
-  std::uniform_real_distribution<double> exponent(-2.0, 0.0);
-  for (std::vector<float>* values : { &scene.sigma_a, &scene.sigma_s })
-  {
-    values->resize(scene.medium.grid.VoxelCount() * components);
-    for (float& value : *values)
-    {
-      value = static_cast<float>(0.5 / scene.medium.grid.spacing[0] * std::pow(10.0, exponent(random)));
-    }
-  }
-}
-
-/// 12 x 9 x 7 voxels of some absorption and scattering.
-PhotonScene SmallScene(std::size_t components = 1)
-{
-  PhotonScene scene({ 12, 9, 7 }, 0.2, 0.9, 0.0f, 0.0f);
-  Randomise(scene, components);
-  return scene;
-}
-
 Photon PhotonFrom(std::array<double, 3> position, std::array<float, 3> direction)
 {
   Photon photon;
@@ -161,6 +53,40 @@ Photon PhotonFrom(std::array<double, 3> position, std::array<float, 3> direction
 
 class PhotonBlocks : public DeviceTest
 {
+protected:
+  /// Those of all ranks, which are to be rank 0's.
+  std::vector<PhotonPath> PathsOfAll(
+    const PhotonScene& scene, const BlockPartition& partition, const std::vector<Photon>& photons, std::size_t count)
+  {
+    const int ranks = static_cast<int>(partition.blocks.size());
+    std::vector<std::vector<PhotonPath>> found(ranks);
+    RunInThreads(ranks, [&](Communicator& communicator) {
+      const int rank = communicator.Rank();
+      const BlockOfScene part(scene, partition.blocks[rank]);
+      PhotonMarcherInBlocks marcher(GetDevice(), communicator, partition, part.medium, part.Index(), scene.settings);
+      found[rank] = marcher.Paths(ShareOf(photons, rank, ranks), count);
+    });
+    for (int rank = 1; rank < ranks; ++rank)
+    {
+      EXPECT_TRUE(found[rank].empty());
+    }
+    return found[0];
+  }
+
+  void ExpectSamePaths(
+    PhotonScene& scene, const BlockPartition& partition, const std::vector<Photon>& photons, std::size_t count)
+  {
+    const std::vector<PhotonPath> expected =
+      scene.Marcher(GetDevice()).Paths(photons, ChooseEvenly(photons.size(), count));
+    const std::vector<PhotonPath> found = this->PathsOfAll(scene, partition, photons, count);
+    ASSERT_EQ(found.size(), expected.size());
+    for (std::size_t i = 0; i < found.size(); ++i)
+    {
+      EXPECT_EQ(found[i].photon, expected[i].photon);
+      EXPECT_EQ(found[i].points, expected[i].points) << "of photon " << found[i].photon;
+      EXPECT_EQ(found[i].left, expected[i].left) << "of photon " << found[i].photon;
+    }
+  }
 };
 
 TEST_F(PhotonBlocks, HaveTheLightOfTheWholeBitForBit)
@@ -192,14 +118,32 @@ TEST_F(PhotonBlocks, HaveItWhereEveryVoxelHasAnIndexOfItsOwn)
   std::mt19937 random(7);
   std::uniform_real_distribution<double> uniform(1.0, 1.6);
   scene.SetIndex([&](double, double, double) { return uniform(random); });
+  ExpectSameOnRanks(GetDevice(), scene, AnyPhotons(scene.medium.grid, 1000), { 1, 3, 8 });
+}
+
+/// A jump makes photons many times as fast as their steps were meant for, and the integrator looks far ahead.
+TEST_F(PhotonBlocks, HaveItWhereTheIndexJumps)
+{
+  PhotonScene scene({ 24, 9, 7 }, 0.2, 0.9, 0.0f, 0.0f);
+  Randomise(scene, 1);
   const std::vector<Photon> photons = AnyPhotons(scene.medium.grid, 1000);
-  ExpectSameOnRanks(GetDevice(), scene, photons, { 1, 3, 8 });
-  scene.SetIndex([&](double, double, double) { return uniform(random) < 1.3 ? 1.0 : 4.0; });
-  for (const int order : { 1, 2, 4 })
+  for (const double most : { 4.0, 20.0 })
   {
-    SCOPED_TRACE("order " + std::to_string(order));
-    scene.settings.order = order;
-    ExpectSameOnRanks(GetDevice(), scene, photons, { 8 });
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> uniform(0.0, 1.0);
+    scene.SetIndex([&](double, double, double) {
+      return most < 20.0 ? (uniform(random) < 0.5 ? 1.0 : most) : 0.05 * std::pow(400.0, uniform(random));
+    });
+    for (const int order : { 1, 2, 4 })
+    {
+      for (const double step : { 1.0, 2.0 })
+      {
+        SCOPED_TRACE("order " + std::to_string(order) + ", steps of " + std::to_string(step));
+        scene.settings.order = order;
+        scene.settings.stepSize = step;
+        ExpectSameOnRanks(GetDevice(), scene, photons, { 8 });
+      }
+    }
   }
 }
 
@@ -244,10 +188,7 @@ TEST_F(PhotonBlocks, MayBeUnevenEmptyOrOneVoxel)
   scene.SetBall(0.6, 1.5, 1.0);
   const std::vector<Photon> photons = AnyPhotons(scene.medium.grid, 1000);
   const PhotonLight expected = scene.March(GetDevice(), photons);
-  BlockPartition uneven = { scene.medium.grid,
-    { { { 1, 0, 0 }, { 11, 9, 7 } }, {}, { { 0, 1, 0 }, { 1, 8, 7 } }, { { 0, 0, 1 }, { 1, 1, 6 } },
-      { { 0, 0, 0 }, { 1, 1, 1 } } } };
-  ExpectLightOfTheWhole(LightOfAll(GetDevice(), scene, uneven, photons), expected);
+  ExpectLightOfTheWhole(LightOfAll(GetDevice(), scene, UnevenBlocks(scene), photons), expected);
 
   PhotonScene tiny({ 3, 2, 2 }, 0.5, 0.5, 0.3f, 0.2f);
   tiny.SetBall(0.5, 1.5, 1.0);
@@ -363,6 +304,56 @@ TEST_F(PhotonBlocks, HandOnAsOftenAsPathsCross)
   EXPECT_NEAR(handed, crossings, 0.005 * crossings); // paths are cut at walls to float's precision
 }
 
+TEST_F(PhotonBlocks, KeepTheLightOfEachBatchApart)
+{
+  PhotonScene scene = SmallScene();
+  scene.SetBall(0.6, 1.5, 1.0);
+  scene.settings.batches = true;
+  std::vector<Photon> photons = AnyPhotons(scene.medium.grid, 1000);
+  for (std::size_t i = 0; i < photons.size(); ++i)
+  {
+    photons[i].batch = static_cast<std::int32_t>(i * i % 5);
+  }
+  for (const MarchSettings::Sums sums : { MarchSettings::Sums::Private, MarchSettings::Sums::Shared })
+  {
+    scene.settings.sums = sums;
+    ExpectSameOnRanks(GetDevice(), scene, photons, { 1, 2, 5 });
+  }
+  EXPECT_EQ(scene.March(GetDevice(), photons).batchFluence.size(), 5 * scene.medium.grid.VoxelCount());
+}
+
+/// Corner by corner, whoever marched them where.
+TEST_F(PhotonBlocks, HaveThePathsOfTheWhole)
+{
+  PhotonScene scene = SmallScene();
+  std::vector<Photon> photons = AnyPhotons(scene.medium.grid, 300);
+  photons[7].position = { -50.0, 0.0, 0.0 }; // misses the volume
+  photons[7].direction = { 0.0f, 1.0f, 0.0f };
+  for (const bool bends : { false, true })
+  {
+    if (bends)
+    {
+      scene.SetBall(0.6, 1.5, 1.0);
+    }
+    for (const int ranks : { 1, 3, 8, 20 })
+    {
+      SCOPED_TRACE(std::to_string(ranks) + " ranks");
+      this->ExpectSamePaths(scene, BlockPartition::Even(scene.medium.grid, ranks), photons, 100);
+    }
+  }
+  this->ExpectSamePaths(scene, BlockPartition::Even(scene.medium.grid, 2), photons, 300);
+  this->ExpectSamePaths(scene, BlockPartition::Even(scene.medium.grid, 2), photons, 0);
+}
+
+/// A path that is given up has no corner there.
+TEST_F(PhotonBlocks, HaveThePathsOfWhatGoesRoundForEver)
+{
+  PhotonScene scene(16, 2.0);
+  scene.SetIndex([](double x, double y, double z) { return fisheye::Index(x, y, z); });
+  const std::vector<Photon> photons = { PhotonFrom({ 0.8, 0.1, 0.0 }, { 0.0f, 1.0f, 0.0f }) };
+  this->ExpectSamePaths(scene, BlockPartition::Even(scene.medium.grid, 4), photons, 1);
+}
+
 TEST_F(PhotonBlocks, AreDarkWithoutPhotons)
 {
   PhotonScene scene = SmallScene();
@@ -399,7 +390,8 @@ protected:
       change(rank, { part, given, settings, photons, monitor });
       try
       {
-        MarchInBlocks(GetDevice(), communicator, given, part.medium, part.Index(), settings, photons, monitor);
+        PhotonMarcherInBlocks(GetDevice(), communicator, given, part.medium, part.Index(), settings)
+          .March(photons, monitor);
       }
       catch (const std::exception& error)
       {
@@ -435,8 +427,7 @@ TEST_F(PhotonBlocksFail, TogetherWhereOneHasBadInput)
 TEST_F(PhotonBlocksFail, TogetherWhereTheyDisagree)
 {
   ExpectErrors("disagree about settings", [](int rank, Given given) { given.settings.stepSize = 1.0 + rank; });
-  ExpectErrors("disagree about the photons", [](int rank, Given given) { given.photons[5].direction[0] += rank; });
-  ExpectErrors("disagree about the photons", [](int rank, Given given) { given.photons.resize(100 - rank); });
+  ExpectErrors("disagree about settings", [](int rank, Given given) { given.settings.seed = 1 + rank; });
   ExpectErrors("disagree about the grid", [](int rank, Given given) { given.partition.whole.origin[0] += rank; });
 }
 
@@ -452,8 +443,6 @@ TEST_F(PhotonBlocksFail, TogetherWhereOneIsStopped)
 
 TEST_F(PhotonBlocksFail, WithWordsOnWhatIsNotCarriedFromRankToRank)
 {
-  ExpectErrors("scattered photons", [](int, Given given) { given.settings.maximumOrders = 0; });
-  ExpectErrors("batches", [](int, Given given) { given.settings.errorBatches = 8; });
   ExpectErrors("Unsafe", [](int, Given given) { given.settings.sums = MarchSettings::Sums::Unsafe; });
   EXPECT_NE(NotInBlocks({}, true).find("octree"), std::string::npos);
   EXPECT_EQ(NotInBlocks({}, false), "");

@@ -12,7 +12,7 @@ from pieces_of_ranks import Runs
 
 runs = Runs("BlocksOverRanks")
 WRONG = ["arrays", "components", "spacing", "g", "gap"]
-CASES = ["blocks_wavelet", "blocks_photons", "blocks_plain", "blocks_ghosts", "blocks_given_all", "blocks_even", "blocks_uneven"]
+CASES = ["blocks_wavelet", "blocks_photons", "blocks_scattered", "blocks_plain", "blocks_ghosts", "blocks_given_all", "blocks_even", "blocks_uneven"]
 LIKE = {"blocks_ghosts": "blocks_wavelet", "blocks_given_all": "blocks_even", "blocks_uneven": "blocks_even"}
 
 
@@ -33,7 +33,7 @@ def ghost_cells_are_the_neighbours(ranks):
 
 
 for ranks in (1, 2, 3, 4, 8):
-    more = ["whole_plain", "whole_photons"] if ranks == 1 else ["blocks_errors", "blocks_of_wrong_pieces", "blocks_abort"] if ranks == 3 else []
+    more = ["whole_plain", "whole_photons", "whole_scattered"] if ranks == 1 else ["blocks_errors", "blocks_of_wrong_pieces", "blocks_abort", "photons_abort"] if ranks == 3 else []
     code, said = runs.run(ranks, *CASES, *more)
     assert code == 0 and said.count("is done") == ranks, said
     ghost_cells_are_the_neighbours(ranks)
@@ -46,18 +46,20 @@ for ranks in (1, 2, 3, 4, 8):
         expected, wanted = runs.whole(1, LIKE.get(case, case), "light")
         error = difference(light, expected)
         print("%d ranks, %s: fluence differs by %.1e" % (ranks, case, error), flush=True)
-        assert error < 1e-6 and (error == 0 or case != "blocks_photons"), (ranks, case, error)
+        assert error < 1e-6 and (error == 0 or case not in ("blocks_photons", "blocks_scattered")), (ranks, case, error)
         assert abs(balance - wanted).max() < 1e-6 * wanted[0], (ranks, case, balance, wanted)
         assert abs(balance[0] + balance[1] - balance[2:].sum()) < 1e-5 * wanted[0], (ranks, case, balance)
 
 blocks, whole = runs.whole(1, "blocks_plain", "light")[0], runs.whole(1, "whole_plain", "light")[0]
 print("blocks and the whole, order by order: %.1e" % difference(blocks, whole))
 assert difference(blocks, whole) < 1e-5
-marched = runs.whole(1, "blocks_photons", "light")[0]
-assert marched.max() > 0 and difference(marched, runs.whole(1, "whole_photons", "light")[0]) == 0
+for what in ("photons", "scattered"):
+    marched = runs.whole(1, "blocks_" + what, "light")[0]
+    assert marched.max() > 0 and difference(marched, runs.whole(1, "whole_" + what, "light")[0]) == 0, what
 
-code, said = runs.run(3, "blocks_killed")
-end = time.time() - float(re.search(r"killed at ([0-9.]+)", said)[1])
-assert code != 0 and "is done" not in said, (code, said)
-print("a killed rank: all ended after %.1f s, with code %d" % (end, code))
-assert end < 30, end
+for case in ("blocks_killed", "photons_killed"):
+    code, said = runs.run(3, case)
+    end = time.time() - float(re.search(r"killed at ([0-9.]+)", said)[1])
+    assert code != 0 and "is done" not in said, (case, code, said)
+    print("%s, a killed rank: all ended after %.1f s, with code %d" % (case, end, code))
+    assert end < 30, (case, end)

@@ -57,7 +57,6 @@ AT_THE_END = {
     "TimeBudget",  # no time for a row
     "PhaseFunction",  # the last one needs a table
     "Terms",  # as many as there are directions at most
-    "PhotonMarcher.Decomposition",  # blocks need photons of one batch
 }
 NARROWER = {"RefractionOctree.Tolerance", "VDBWriter.Tolerance"}
 
@@ -281,7 +280,7 @@ def check(name, proxy):
             refused = try_value(worker, prop, value, component, must_be_refused, what) or refused
             tried += 1
         for values in ends(prop):
-            if not {prop.get("name"), "%s.%s" % (name, prop.get("name"))} & AT_THE_END:
+            if prop.get("name") not in AT_THE_END:
                 try_end(worker, prop, values, "%s.%s = %s" % (name, prop.get("name"), values))
                 tried += 1
         if refused:

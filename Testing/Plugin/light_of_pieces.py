@@ -167,24 +167,65 @@ def blocks_wavelet():
     assert lines.GetNumberOfRows() > 0 and before, "no rows"
 
 
-def photons(decomposition):
-    """Photons that bend; the emitter has the whole."""
+def photons(decomposition, **settings):
+    """Photons that bend."""
     density = Calculator(Input=Wavelet(WholeExtent=SIZE), ResultArrayName="ior",
                          Function="1.2 + 0.1*sin(0.4*coordsX) + 0.1*cos(0.5*coordsY + 0.3*coordsZ)")
     medium = ParticipatingMedium(Input=density, DensityArray=["POINTS", "RTData"], ExtinctionScale=0.05, MinimumDensity=0,
                                  MaximumDensity=277)
     emitter = PhotonEmitter(Input=medium, Lights=LightRig(SunElevation=50), PhotonCount=20000)
-    light = PhotonMarcher(Input=medium, Photons=emitter, PhotonCounts=1, Decomposition=decomposition)
+    light = PhotonMarcher(Input=medium, Photons=emitter, PhotonCounts=1, Decomposition=decomposition,
+                          **settings)
     light.UpdatePipeline()
     return light
 
 
 def blocks_photons():
-    keep("blocks_photons", photons("Blocks"))
+    light = photons("Blocks")
+    keep("blocks_photons", light)
+    made = light.Photons.GetClientSideObject().GetOutputDataObject(0).GetNumberOfPoints()
+    assert made <= 20000 / ranks + 2, (rank, made, "photons")
 
 
 def whole_photons():
     keep("whole_photons", photons("Whole on each rank"))
+
+
+def blocks_scattered():
+    keep("blocks_scattered", photons("Blocks", MaximumOrders=0))
+
+
+def whole_scattered():
+    keep("whole_scattered", photons("Whole on each rank", MaximumOrders=0))
+
+
+def photons_abort():
+    """What one rank aborts while photons are scattered ends on all, and can be marched after that."""
+    light = PhotonMarcher(Input=fog(), Photons=PhotonEmitter(Input=fog(), SkyColor=[1, 1, 1], PhotonCount=20000),
+                          MaximumOrders=0, Decomposition="Blocks")
+    filter = light.GetClientSideObject()
+    if odd_rank():
+        filter.AddObserver("ProgressEvent", lambda caller, event: caller.GetProgress() > 0.1 and caller.SetAbortExecute(1))
+    errors = errors_of(light)
+    light.UpdatePipeline()
+    output = filter.GetOutputDataObject(0)
+    assert not errors and output.GetNumberOfCells() == 0 and output.GetFieldData().HasArray("aborted"), errors
+    filter.RemoveObservers("ProgressEvent")
+    filter.SetAbortExecute(0)
+    light.Seed = 2
+    light.UpdatePipeline()
+    assert filter.GetOutputDataObject(0).GetNumberOfCells() > 0 and not errors, errors
+
+
+def photons_killed():
+    light = PhotonMarcher(Input=fog(), Photons=PhotonEmitter(Input=fog(), SkyColor=[1, 1, 1], PhotonCount=200000),
+                          MaximumOrders=0, Decomposition="Blocks")
+    killed_amid(light, 0.1)  # scattered photons are on their way
+
+
+def fog():
+    return ParticipatingMedium(Input=Wavelet(WholeExtent=SIZE), DensityArray=["POINTS", "RTData"], ExtinctionScale=1,
+                               MinimumDensity=0, MaximumDensity=300, Albedo=[0.99, 0.99, 0.99])
 
 
 def blocks_plain():
@@ -267,11 +308,15 @@ def blocks_abort():
 
 
 def blocks_killed():
-    light = by_blocks_slow()
+    killed_amid(by_blocks_slow())
 
+
+def killed_amid(light, after=0.0):
+    """The last rank is killed when so much is done."""
     def end(caller, event):
-        print("killed at %f" % time.time(), flush=True)
-        os.kill(os.getpid(), 9)
+        if caller.GetProgress() >= after:
+            print("killed at %f" % time.time(), flush=True)
+            os.kill(os.getpid(), 9)
 
     if odd_rank():
         light.GetClientSideObject().AddObserver("ProgressEvent", end)

@@ -4,8 +4,10 @@
 #include "Device/Defines.h"
 #include "Device/GroupSize.h"
 #include "Device/Sizes.h"
+#include "Photons/Distributed/GonePhotons.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace tyndall
 {
@@ -13,8 +15,27 @@ namespace
 {
 constexpr double SecondsPerLaunch = 0.1;
 constexpr std::size_t FirstLaunch = 16384; ///< photons; how long they take says how many go next
-constexpr std::size_t MostAtOnce = 262144; ///< room for those that go into other blocks: 30 MiB
+
+/// Places of the first of each batch, and beyond the last one, of photons in the order of their batches.
+std::vector<int> BeginsOf(const std::vector<PhotonOnItsWay>& photons, int batches)
+{
+  std::vector<int> begins(static_cast<std::size_t>(batches) + 1, 0);
+  for (const PhotonOnItsWay& photon : photons)
+  {
+    ++begins[static_cast<std::size_t>(photon.batch) + 1];
+  }
+  std::partial_sum(begins.begin(), begins.end(), begins.begin());
+  return begins;
 }
+}
+
+/// Photons of one round.
+struct BlockMarch::Marched
+{
+  PhotonsOnDevice starting;
+  Buffer<PhotonOnItsWay> arrived;
+  bool resumes; ///< those that arrived march, else those that start
+};
 
 BlockMarch::BlockMarch(const MarchMedium& medium, const MarchSums& target, const PackedPhotons& packed)
   : Medium(medium)
@@ -27,57 +48,78 @@ BlockMarch::BlockMarch(const MarchMedium& medium, const MarchSums& target, const
 BlockMarch::Outcome BlockMarch::Start(
   const PackedPhotons& photons, const std::vector<cl_ulong>& marks, const Monitor& monitor)
 {
-  const PhotonsOnDevice onDevice(this->Medium.device, photons, marks);
-  const Buffer<PhotonOnItsWay> none(this->Medium.device, 0, "photons from other blocks");
-  return this->March(onDevice, none, photons.Count(), false, monitor);
+  Device& device = this->Medium.device;
+  return this->March(
+    { PhotonsOnDevice(device, photons, marks), Buffer<PhotonOnItsWay>(device, 0, "photons from other blocks"), false },
+    photons.batchBegin, monitor);
 }
 
-BlockMarch::Outcome BlockMarch::Resume(const std::vector<PhotonOnItsWay>& arrived, const Monitor& monitor)
+BlockMarch::Outcome BlockMarch::Resume(std::vector<PhotonOnItsWay> arrived, const Monitor& monitor)
 {
+  std::stable_sort(
+    arrived.begin(), arrived.end(), [](const PhotonOnItsWay& a, const PhotonOnItsWay& b) { return a.batch < b.batch; });
   PackedPhotons none;
   none.channels = this->Channels;
   none.batchBegin = { 0, 0 };
   none.numbers.resize(arrived.size()); // for as many ends
-  const PhotonsOnDevice onDevice(this->Medium.device, none);
-  return this->March(onDevice, Buffer<PhotonOnItsWay>(this->Medium.device, arrived, "photons from other blocks"),
-    arrived.size(), true, monitor);
+  Device& device = this->Medium.device;
+  return this->March(
+    { PhotonsOnDevice(device, none), Buffer<PhotonOnItsWay>(device, arrived, "photons from other blocks"), true },
+    BeginsOf(arrived, this->Target.shares.batches), monitor);
 }
 
-BlockMarch::Outcome BlockMarch::March(const PhotonsOnDevice& photons, const Buffer<PhotonOnItsWay>& arrived,
-  std::size_t count, bool resumes, const Monitor& monitor)
+BlockMarch::Outcome BlockMarch::March(
+  const Marched& photons, const std::vector<int>& batchBegin, const Monitor& monitor)
 {
   Outcome outcome;
-  if (count == 0)
+  const double all = batchBegin.back();
+  for (std::size_t batch = 0; batch + 1 < batchBegin.size(); ++batch)
   {
-    return outcome;
+    if (const auto begin = batchBegin[batch], end = batchBegin[batch + 1]; begin < end)
+    {
+      this->MarchBatch(photons, static_cast<int>(batch), static_cast<std::size_t>(begin), static_cast<std::size_t>(end),
+        OfPart(monitor, begin / all, end / all), outcome.gone);
+    }
   }
+  outcome.ends = photons.starting.ends.Read();
+  return outcome;
+}
+
+/// Photons `begin` to `end`, which are of one batch.
+void BlockMarch::MarchBatch(const Marched& photons, int batch, std::size_t begin, std::size_t end,
+  const Monitor& monitor, std::vector<PhotonOnItsWay>& gone)
+{
   Device& device = this->Medium.device;
   const MarchShares& shares = this->Target.shares;
-  const std::size_t workers = static_cast<std::size_t>(shares.workers), width = Count(device.KernelWidth());
+  const std::size_t width = Count(device.KernelWidth());
+  // Copies of a batch are so many apart; each has a worker of its own.
   const std::size_t stride = shares.copies > 1 ? this->Target.records * Count(this->Target.numbers) : 0;
+  const auto workers =
+    static_cast<std::size_t>(shares.workers > 0 ? (shares.copies - batch + shares.batches - 1) / shares.batches : 0);
   Batches launches;
-  launches.count = count;
+  launches.count = end - begin;
   launches.first = FirstLaunch;
   launches.whole = Count(MarchBlock) * std::max<std::size_t>(workers, 1);
   launches.seconds = SecondsPerLaunch;
   launches.growth = 8.0;
-  launches.most = std::max(MostAtOnce, launches.whole);
-  const Buffer<PhotonOnItsWay> gone(device, std::min(count, launches.most), "photons into other blocks");
-  Buffer<cl_int> goneCount(device, 1, "number of photons into other blocks"),
-    next(device, 1, "number of the next photon");
+  launches.most = std::max(MarchedBetweenBlocks, launches.whole);
+  GonePhotons<PhotonOnItsWay> elsewhere(device, std::min(launches.count, launches.most));
+  Buffer<cl_int> next(device, 1, "number of the next photon");
+  const std::size_t before = gone.size();
   InBatches(device, launches, monitor, [&](std::size_t first, std::size_t size) {
-    goneCount.Fill(0);
+    elsewhere.Empty();
     next.Fill(0);
     With(this->Kernel, this->Medium.Describe(), this->Medium.sigma, this->Medium.coefficients, this->Medium.nodes,
-      photons.values, photons.marks, arrived, gone, goneCount, photons.ends, *this->Target.sums, cl_ulong(stride), next,
-      cl_int(resumes), cl_int(first), cl_int(size));
+      photons.starting.values, photons.starting.marks, photons.arrived, elsewhere.Room(), elsewhere.Number(),
+      photons.starting.ends, *this->Target.sums, cl_ulong(Count(batch) * stride),
+      cl_ulong(Count(shares.batches) * stride), next, cl_int(photons.resumes), cl_int(begin + first), cl_int(size));
     this->Medium.Launch(this->Kernel, cl::NDRange(workers > 0 ? workers : PartsOf(size, width)),
       workers > 0 ? cl::NDRange(1) : GroupOfLargeItems(device));
-    const std::size_t before = outcome.gone.size(), more = static_cast<std::size_t>(goneCount.Read().front());
-    outcome.gone.resize(before + more);
-    gone.Read(outcome.gone.data() + before, more);
+    elsewhere.AppendTo(gone);
   });
-  outcome.ends = photons.ends.Read();
-  return outcome;
+  for (std::size_t i = before; i < gone.size(); ++i)
+  {
+    gone[i].batch = batch;
+  }
 }
 }

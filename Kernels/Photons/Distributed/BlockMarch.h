@@ -27,11 +27,13 @@ public:
   /// @throws Aborted: the sums are of a part of the photons then
   Outcome Start(const PackedPhotons& photons, const std::vector<cl_ulong>& marks, const Monitor& monitor);
   /// Of photons that have come from other blocks. @throws Aborted
-  Outcome Resume(const std::vector<PhotonOnItsWay>& arrived, const Monitor& monitor);
+  Outcome Resume(std::vector<PhotonOnItsWay> arrived, const Monitor& monitor);
 
 private:
-  Outcome March(const PhotonsOnDevice& photons, const Buffer<PhotonOnItsWay>& arrived, std::size_t count, bool resumes,
-    const Monitor& monitor);
+  struct Marched;
+  Outcome March(const Marched& photons, const std::vector<int>& batchBegin, const Monitor& monitor);
+  void MarchBatch(const Marched& photons, int batch, std::size_t begin, std::size_t end, const Monitor& monitor,
+    std::vector<PhotonOnItsWay>& gone);
 
   const MarchMedium& Medium;
   const MarchSums& Target;

@@ -4,28 +4,40 @@
 #include "Device/Errors.h"
 #include "Distribution/BoxExchange.h"
 #include "Distribution/SharedMedium.h"
+#include "Numerics/ChooseEvenly.h"
 #include "Photons/Distributed/BlockMarch.h"
+#include "Photons/Distributed/PathsInBlocks.h"
+#include "Photons/Distributed/PhotonShares.h"
+#include "Photons/Marching/MarchedBatches.h"
 #include "Photons/Marching/MarchedLight.h"
+#include "Photons/Scattering/ScatteredChannels.h"
+#include "Photons/Scattering/ScatteringRun.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <iterator>
 #include <limits>
 #include <memory>
+#include <numeric>
 #include <utility>
 
 namespace tyndall
 {
 namespace
 {
-constexpr int PhotonsTag = 29998; ///< not one of those that BoxExchange.cxx takes
-
 /// Voxels round a block whose index has a part in the ways of photons in it (numerics.md, Eq. (99f)): three of each
-/// spline's, and those of the places that the integrator looks at before it goes there, where a jump of the index may
-/// have made a photon some times as fast as its step was meant for. Beyond, the index counts as constant.
+/// spline's, and those of the places that the integrator looks at before it goes there. Beyond, the index counts as
+/// constant.
 int ReachOfIndex(const MarchSettings& settings)
 {
-  const double ahead = settings.order == 1 ? 0.0 : settings.order == 2 ? 1.5 : 3.0; // steps
-  return 3 + static_cast<int>(std::ceil(ahead * settings.stepSize));
+  constexpr int OfSpline = 3;
+  if (settings.order == 1)
+  {
+    return OfSpline;
+  }
+  const double ahead = 0.5 * (settings.order == 2 ? LeapfrogLooksAhead : YoshidaLooksAhead) * settings.stepSize;
+  return OfSpline + 1 + static_cast<int>(ahead); // also from a voxel's upper wall
 }
 
 /// None where there are fewer blocks than ranks, which is yet to be refused.
@@ -34,128 +46,74 @@ VoxelBox BlockOf(const BlockPartition& partition, int rank)
   return rank < static_cast<int>(partition.blocks.size()) ? partition.blocks[rank] : VoxelBox();
 }
 
-/// Of the packed photons those that set off in a block, by the voxel that kernels take them to be in.
-PackedPhotons ThoseIn(const VoxelBox& block, const Grid& whole, const PackedPhotons& packed)
-{
-  PackedPhotons own = packed;
-  own.values.clear();
-  own.numbers.clear();
-  const auto each = static_cast<std::ptrdiff_t>(packed.FloatsEach());
-  auto values = packed.values.begin();
-  for (std::size_t i = 0; i < packed.Count(); ++i, values += each)
-  {
-    int voxel[3];
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      voxel[axis] = std::clamp(static_cast<int>(values[axis]), 0, whole.size[axis] - 1);
-    }
-    if (Holds(block, voxel))
-    {
-      own.values.insert(own.values.end(), values, values + each);
-      own.numbers.push_back(packed.numbers[i]);
-    }
-  }
-  own.batchBegin = { 0, static_cast<int>(own.Count()) };
-  return own;
-}
-
 void RequireSame(Communicator& communicator, const MarchSettings& settings)
 {
   tyndall::RequireSame(communicator, "settings", true,
     { 1.0 * settings.order, settings.stepSize, 1.0 * settings.meanDirection, 1.0 * settings.counts,
-      1.0 * settings.maximumOrders, 1.0 * settings.leaveOut });
-}
-
-void RequireSame(Communicator& communicator, const std::vector<Photon>& photons)
-{
-  std::vector<double> sums(10, 0.0);
-  sums[0] = static_cast<double>(photons.size());
-  for (const Photon& photon : photons)
-  {
-    for (int i = 0; i < 3; ++i)
-    {
-      sums[1 + i] += photon.position[i];
-      sums[4 + i] += photon.direction[i];
-      sums[7 + i] += photon.power[i];
-    }
-  }
-  tyndall::RequireSame(communicator, "the photons", true, sums);
+      1.0 * settings.maximumOrders, 1.0 * settings.leaveOut, static_cast<double>(settings.seed),
+      1.0 * settings.errorBatches, 1.0 * settings.batches });
 }
 }
 
 std::string NotInBlocks(const MarchSettings& settings, bool octree)
 {
-  if (settings.maximumOrders != 1)
-  {
-    return "scattered photons (MaximumOrders other than 1)";
-  }
   if (octree)
   {
     return "the steps of an octree";
   }
-  if (settings.batches || settings.errorBatches > 0)
-  {
-    return "light by batches of photons (standard errors)";
-  }
   return settings.sums == MarchSettings::Sums::Unsafe ? "Unsafe sums" : std::string();
 }
 
-namespace
-{
 /// One rank's part of a march.
-class RankOfMarch
+class PhotonMarcherInBlocks::Rank
 {
 public:
-  RankOfMarch(Device& device, Communicator& communicator, const BlockPartition& partition,
-    const MarchSettings& settings, const std::vector<Photon>& photons)
+  Rank(Device& device, Communicator& communicator, const BlockPartition& partition, const MarchSettings& settings)
     : TheDevice(device)
     , Others(communicator)
     , Partition(partition)
     , Settings(settings)
-    , Photons(photons)
     , Own(BlockOf(partition, communicator.Rank()))
     , Has(this->Own.VoxelCount() > 0)
   {
-    const VoxelBox touched = Grown(this->Own, 1, partition.whole);
-    for (int rank = 0; rank < static_cast<int>(partition.blocks.size()) && this->Has; ++rank)
-    {
-      if (rank != communicator.Rank() && Common(partition.blocks[rank], touched).VoxelCount() > 0)
-      {
-        this->Neighbours.push_back(rank);
-      }
-    }
   }
 
   void CheckInput(const Medium& medium, const Field& ior) const;
   void Prepare(const Medium& medium, const Field& ior);
-  PhotonLight March(const Monitor& monitor);
-  const PhotonTraffic& Traffic() const { return this->Handed; }
+  PhotonLight March(const std::vector<Photon>& share, const Monitor& monitor);
+  std::vector<PhotonPath> Paths(const std::vector<Photon>& share, std::size_t count);
+
+  PhotonTraffic Handed; ///< of the last march
 
 private:
   MarchTraits TraitsOfAllRanks(const Medium& medium, const Field& ior);
   VoxelBox KnownOf(int rank, bool bends) const;
   std::vector<float> IndexAround(const Field& ior, bool bends);
-  std::vector<PhotonOnItsWay> HandOn(const std::vector<PhotonOnItsWay>& gone);
-  void Follow(const CountedPhotons& counted, PhotonLight& result, const Monitor& monitor);
+  void PrepareScattering(const Medium& medium, const Field& index);
+  PhotonLight MarchThese(const std::vector<Photon>& share, const PhotonNumbers& numbers, const Monitor& monitor);
+  PhotonLight MarchInBatches(const std::vector<Photon>& share, const PlaceOfShare& place, const Monitor& monitor);
+  void Follow(const StartingPhotons& starting, PhotonLight& result, const Monitor& monitor);
+  void AddScattered(const PackedPhotons& packed, PhotonLight& result, const Monitor& monitor);
+  ScatteredPhotons FollowScattered(const PhotonScattering* in, PackedPhotons photons,
+    const PhotonScattering::Settings& settings, const Monitor& monitor);
+  void SumUp(const std::vector<Rgb*>& powers, const std::vector<double*>& numbers);
   void AddUp(PhotonLight& result);
+  void AddUpScattered(PhotonLight& result);
 
   Device& TheDevice;
   Communicator& Others;
   const BlockPartition& Partition;
-  const MarchSettings& Settings;
-  const std::vector<Photon>& Photons;
+  const MarchSettings Settings;
   const VoxelBox Own;
   const bool Has; ///< voxels
-  std::vector<int> Neighbours;
   MarchTraits Traits;
-  PackedPhotons Packed;                 ///< those that set off here, in units and channels of all
-  std::unique_ptr<MarchMedium> Through; ///< null without voxels
-  std::unique_ptr<MarchedLight> Light;  ///< likewise
-  MarchSums Target;
-  PhotonTraffic Handed;
+  std::unique_ptr<PhotonRounds> Rounds;          ///< of a march
+  std::unique_ptr<MarchMedium> Through;          ///< null without voxels
+  std::unique_ptr<MarchedLight> Light;           ///< likewise
+  std::unique_ptr<ScatteredChannels> Scattering; ///< null: photons are followed to where they are first scattered
 };
 
-void RankOfMarch::CheckInput(const Medium& medium, const Field& ior) const
+void PhotonMarcherInBlocks::Rank::CheckInput(const Medium& medium, const Field& ior) const
 {
   this->Partition.Check();
   Require(
@@ -172,7 +130,7 @@ void RankOfMarch::CheckInput(const Medium& medium, const Field& ior) const
   Require(refused.empty(), "A medium that is spread over ranks is not marched through with " + refused + ".");
 }
 
-MarchTraits RankOfMarch::TraitsOfAllRanks(const Medium& medium, const Field& ior)
+MarchTraits PhotonMarcherInBlocks::Rank::TraitsOfAllRanks(const Medium& medium, const Field& ior)
 {
   MarchTraits traits = this->Has ? MarchTraitsOf(medium, ior) : MarchTraits();
   static_cast<MediumTraits&>(traits) = TraitsOfAll(this->Others, traits);
@@ -185,14 +143,14 @@ MarchTraits RankOfMarch::TraitsOfAllRanks(const Medium& medium, const Field& ior
 }
 
 /// The voxels whose index a rank needs.
-VoxelBox RankOfMarch::KnownOf(int rank, bool bends) const
+VoxelBox PhotonMarcherInBlocks::Rank::KnownOf(int rank, bool bends) const
 {
   const VoxelBox& block = this->Partition.blocks[rank];
   return bends && block.VoxelCount() > 0 ? Grown(block, ReachOfIndex(this->Settings), this->Partition.whole) : block;
 }
 
 /// The index of these, from all ranks. Empty where it is 1 everywhere, or constant.
-std::vector<float> RankOfMarch::IndexAround(const Field& ior, bool bends)
+std::vector<float> PhotonMarcherInBlocks::Rank::IndexAround(const Field& ior, bool bends)
 {
   if (!bends)
   {
@@ -211,83 +169,119 @@ std::vector<float> RankOfMarch::IndexAround(const Field& ior, bool bends)
   return ValuesInBox(this->Others, this->Partition, known, own, 1);
 }
 
-void RankOfMarch::Prepare(const Medium& medium, const Field& ior)
+void PhotonMarcherInBlocks::Rank::Prepare(const Medium& medium, const Field& ior)
 {
   this->Traits = this->TraitsOfAllRanks(medium, ior);
   const bool bends = !this->Settings.leaveOut || this->Traits.index.Varies();
   const std::vector<float> index = this->IndexAround(ior, bends);
+  const Field known = { index.empty() ? nullptr : index.data(), 1 };
   this->Others.Together([&] {
-    const Grid& whole = this->Partition.whole;
-    const bool coloured = this->Traits.Channels(this->Settings) == 3;
-    this->Packed =
-      ThoseIn(this->Own, whole, Pack(this->Photons, whole, coloured, MarchEventLimit(whole, this->Settings)));
     if (this->Has)
     {
-      const MarchedPart block = { whole, this->Own, this->KnownOf(this->Others.Rank(), bends) };
-      this->Through = std::make_unique<MarchMedium>(this->TheDevice, medium,
-        Field{ index.empty() ? nullptr : index.data(), 1 }, this->Settings, this->Traits, block);
+      const MarchedPart block = { this->Partition.whole, this->Own, this->KnownOf(this->Others.Rank(), bends) };
+      this->Through =
+        std::make_unique<MarchMedium>(this->TheDevice, medium, known, this->Settings, this->Traits, block);
       this->Light = std::make_unique<MarchedLight>(*this->Through);
-      this->Target = this->Light->Prepare(this->Packed);
     }
   });
-  RequireSame(this->Others, this->Photons);
+  if (this->Settings.maximumOrders != 1 && this->Traits.scatters)
+  {
+    this->PrepareScattering(medium, known);
+  }
 }
 
-/// Those that have come, for those that have gone.
-std::vector<PhotonOnItsWay> RankOfMarch::HandOn(const std::vector<PhotonOnItsWay>& gone)
+void PhotonMarcherInBlocks::Rank::PrepareScattering(const Medium& medium, const Field& index)
 {
-  std::vector<std::vector<PhotonOnItsWay>> parcels(this->Neighbours.size());
-  for (const PhotonOnItsWay& photon : gone)
-  {
-    const auto holds = [&](int rank) { return Holds(this->Partition.blocks[rank], photon.voxel); };
-    const auto to = std::find_if(this->Neighbours.begin(), this->Neighbours.end(), holds);
-    parcels.at(static_cast<std::size_t>(to - this->Neighbours.begin())).push_back(photon);
-  }
-  for (std::size_t i = 0; i < parcels.size(); ++i)
-  {
-    this->Others.Send(this->Neighbours[i], PhotonsTag, parcels[i]);
-  }
-  this->Handed.photons += gone.size();
-  this->Handed.bytes += gone.size() * sizeof(PhotonOnItsWay);
-  std::vector<PhotonOnItsWay> arrived;
-  for (const int rank : this->Neighbours)
-  {
-    const std::vector<PhotonOnItsWay> parcel = this->Others.Receive<PhotonOnItsWay>(rank, PhotonsTag);
-    arrived.insert(arrived.end(), parcel.begin(), parcel.end());
-  }
-  return arrived;
+  const bool varies = this->Has && medium.phase.Varies();
+  const auto cosine = [&](int c) { return this->Has && !varies ? medium.phase.MeanCosine(0, c) : 0.0; };
+  tyndall::RequireSame(this->Others, "g", this->Has, { varies ? 1.0 : 0.0, cosine(0), cosine(1), cosine(2) });
+  const double part = this->Through ? ScatteringStepPart(index, this->Through->block.known.size) : 1.0;
+  const std::vector<double> largest =
+    this->Others.Largest({ -part, this->Has && medium.phase.HasColour() ? 1.0 : 0.0 });
+  const bool coloured = this->Traits.coloured || largest[1] > 0.0;
+  this->Others.Together([&] {
+    this->Scattering = std::make_unique<ScatteredChannels>(this->TheDevice,
+      ScatteredChannels::Block{ this->Through.get(), medium, index, this->Settings, -largest[0], coloured });
+  });
 }
 
-/// Until no photon is left anywhere.
-void RankOfMarch::Follow(const CountedPhotons& counted, PhotonLight& result, const Monitor& monitor)
+/// Up to where they are first scattered.
+void PhotonMarcherInBlocks::Rank::Follow(const StartingPhotons& starting, PhotonLight& result, const Monitor& monitor)
 {
+  const PackedPhotons& packed = starting.packed;
+  MarchSums target;
   std::unique_ptr<BlockMarch> march;
-  std::vector<PhotonOnItsWay> arrived;
-  double done = 0.0;
-  for (bool left = true; left; ++this->Handed.rounds)
-  {
-    BlockMarch::Outcome outcome;
-    this->Others.Together([&] {
-      const Monitor ofRound = OfPart(monitor, done, 0.5 * (1.0 + done));
-      if (this->Has && this->Handed.rounds == 0)
+  this->Rounds->UntilAllEnd<PhotonOnItsWay>(
+    [&](int round, std::vector<PhotonOnItsWay>&& arrived, const Monitor& ofRound) {
+      BlockMarch::Outcome outcome;
+      if (this->Has && round == 0)
       {
-        march = std::make_unique<BlockMarch>(*this->Through, this->Target, this->Packed);
-        outcome = march->Start(this->Packed, counted.marks, ofRound);
+        target = this->Light->Prepare(packed);
+        march = std::make_unique<BlockMarch>(*this->Through, target, packed);
+        outcome = march->Start(packed, starting.marks, ofRound);
       }
       else if (this->Has)
       {
-        outcome = march->Resume(arrived, ofRound);
+        outcome = march->Resume(std::move(arrived), ofRound);
       }
-      Report(monitor, done = 0.5 * (1.0 + done));
-    });
-    Tally(this->Packed, outcome.ends, result);
-    arrived = this->HandOn(outcome.gone);
-    left = this->Others.Largest({ arrived.empty() ? 0.0 : 1.0 })[0] > 0.0;
+      Tally(packed, outcome.ends, result);
+      return std::move(outcome.gone);
+    },
+    monitor);
+  this->Others.Together([&] {
+    if (this->Has)
+    {
+      this->Light->Finish(packed, target, starting.weightUnit, result);
+      SayWhatIsLeftOut(*this->Through, packed, result.light);
+    }
+  });
+  this->AddUp(result);
+}
+
+/// This rank's share of one channel's scattered light and tallies.
+ScatteredPhotons PhotonMarcherInBlocks::Rank::FollowScattered(
+  const PhotonScattering* in, PackedPhotons photons, const PhotonScattering::Settings& settings, const Monitor& monitor)
+{
+  std::unique_ptr<ScatteringRun> run;
+  this->Rounds->UntilAllEnd<ScatteredOnItsWay>(
+    [&](int round, std::vector<ScatteredOnItsWay>&& arrived, const Monitor& ofRound) {
+      if (in && round == 0)
+      {
+        run = std::make_unique<ScatteringRun>(*in, std::move(photons), settings);
+        return run->Start(ofRound);
+      }
+      return in ? run->Resume(arrived, ofRound) : std::vector<ScatteredOnItsWay>();
+    },
+    monitor);
+  ScatteredPhotons found;
+  this->Others.Together([&] { found = run ? run->Finish() : found; });
+  return found;
+}
+
+/// Powers and numbers of this rank to the sums of all.
+void PhotonMarcherInBlocks::Rank::SumUp(const std::vector<Rgb*>& powers, const std::vector<double*>& numbers)
+{
+  std::vector<double> values;
+  for (const Rgb* power : powers)
+  {
+    values.insert(values.end(), power->begin(), power->end());
+  }
+  std::transform(
+    numbers.begin(), numbers.end(), std::back_inserter(values), [](const double* number) { return *number; });
+  values = this->Others.Sum(values);
+  auto value = values.cbegin();
+  for (Rgb* power : powers)
+  {
+    std::copy_n(value, 3, power->begin());
+    value += 3;
+  }
+  for (double* number : numbers)
+  {
+    *number = *value++;
   }
 }
 
-/// Tallies of this rank to those of all.
-void RankOfMarch::AddUp(PhotonLight& result)
+void PhotonMarcherInBlocks::Rank::AddUp(PhotonLight& result)
 {
   EnergyBalance& balance = result.light.balance;
   std::vector<Rgb*> powers = { &balance.absorbed, &balance.escaped, &balance.leftOver, &result.scattered };
@@ -295,64 +289,142 @@ void RankOfMarch::AddUp(PhotonLight& result)
   {
     powers.push_back(&face);
   }
-  std::vector<double> values = { static_cast<double>(result.deposits), static_cast<double>(result.steps) };
-  for (const Rgb* power : powers)
+  double deposits = static_cast<double>(result.deposits), steps = static_cast<double>(result.steps);
+  this->SumUp(powers, { &deposits, &steps });
+  result.deposits = static_cast<std::size_t>(deposits);
+  result.steps = static_cast<std::size_t>(steps);
+}
+
+void PhotonMarcherInBlocks::Rank::AddUpScattered(PhotonLight& result)
+{
+  EnergyBalance& balance = result.light.balance;
+  std::vector<Rgb*> powers = { &balance.entered, &balance.absorbed, &balance.escaped, &balance.leftOver,
+    &result.exchanged };
+  for (Rgb& face : result.light.facePowerOut)
   {
-    values.insert(values.end(), power->begin(), power->end());
+    powers.push_back(&face);
   }
-  values = this->Others.Sum(values);
-  result.deposits = static_cast<std::size_t>(values[0]);
-  result.steps = static_cast<std::size_t>(values[1]);
-  auto value = values.cbegin() + 2;
-  for (Rgb* power : powers)
+  double scatterings = static_cast<double>(result.scatterings);
+  this->SumUp(powers, { &scatterings });
+  result.scatterings = static_cast<std::uint64_t>(scatterings);
+}
+
+/// What more orders than one ask for.
+void PhotonMarcherInBlocks::Rank::AddScattered(const PackedPhotons& packed, PhotonLight& result, const Monitor& monitor)
+{
+  if (this->Scattering)
   {
-    std::copy_n(value, 3, power->begin());
-    value += 3;
+    this->Scattering->AddTo(result, packed, {}, monitor,
+      [this](const PhotonScattering* in, PackedPhotons photons, const PhotonScattering::Settings& settings,
+        const Monitor& ofRun) { return this->FollowScattered(in, std::move(photons), settings, ofRun); });
+    this->AddUpScattered(result);
+  }
+  else if (this->Settings.maximumOrders != 1)
+  {
+    result.light.fluenceDirect = result.light.fluence; // nothing scatters
   }
 }
 
-PhotonLight RankOfMarch::March(const Monitor& monitor)
+/// @param numbers  of the photons among all
+PhotonLight PhotonMarcherInBlocks::Rank::MarchThese(
+  const std::vector<Photon>& share, const PhotonNumbers& numbers, const Monitor& monitor)
 {
+  const StartingPhotons starting =
+    SendToTheirBlocks(this->Others, this->Partition, share, numbers, this->Traits, this->Settings);
+  const PackedPhotons& packed = starting.packed;
   PhotonLight result;
-  const int colours = this->Traits.ColoursOf(this->Packed);
-  result.light.channels = std::max(this->Packed.channels, colours);
+  const int colours = this->Scattering && this->Scattering->HasColour() ? 3 : this->Traits.ColoursOf(packed);
+  result.light.channels = std::max(packed.channels, colours);
   result.light.device = this->TheDevice.Name();
-  result.light.balance.entered = this->Packed.entered;
-  result.missed = this->Packed.missed;
-  result.batches = BatchesOf(this->Photons);
-  CountedPhotons counted;
-  this->Others.Together([&] { counted = CountedPhotons(this->Photons, this->Packed, this->Settings.counts); });
+  result.light.balance.entered = packed.entered;
+  result.missed = packed.missed;
+  result.batches = static_cast<int>(this->Others.Largest({ 1.0 * BatchesOf(share) })[0]);
   result.secondsMarching = -ClockSeconds();
-  this->Follow(counted, result, monitor);
-  this->Others.Together([&] {
-    if (this->Has)
-    {
-      this->Light->Finish(this->Packed, this->Target, counted.weightUnit, result);
-      SayWhatIsLeftOut(*this->Through, this->Packed, result.light);
-    }
-  });
-  this->AddUp(result);
-  PutIntoColours(this->Packed, colours, result);
+  this->Follow(starting, result, this->Scattering ? OfPart(monitor, 0.0, 0.05) : monitor);
+  PutIntoColours(packed, colours, result);
+  this->AddScattered(packed, result, OfPart(monitor, 0.05, 1.0));
+  if (this->Settings.batches && packed.Batches() == 1)
+  {
+    result.batchFluence = result.light.fluence;
+  }
   return result;
 }
+
+PhotonLight PhotonMarcherInBlocks::Rank::MarchInBatches(
+  const std::vector<Photon>& share, const PlaceOfShare& place, const Monitor& monitor)
+{
+  const auto batches = static_cast<std::size_t>(this->Settings.errorBatches);
+  MarchedBatches all;
+  for (std::size_t b = 0; b < batches; ++b)
+  {
+    PhotonNumbers numbers = NumbersOfBatch(place.all, b, batches);
+    const auto begin = std::lower_bound(numbers.begin(), numbers.end(), place.first);
+    const PhotonNumbers own(begin, std::lower_bound(begin, numbers.end(), place.first + share.size()));
+    std::vector<Photon> some;
+    for (const std::size_t number : own)
+    {
+      some.push_back(share[number - place.first]);
+    }
+    const double parts = static_cast<double>(batches);
+    all.Add(this->MarchThese(some, own, OfPart(monitor, b / parts, (b + 1) / parts)));
+  }
+  return std::move(all).Sum();
 }
 
-PhotonLight MarchInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition,
-  const Medium& medium, const Field& ior, const MarchSettings& settings, const std::vector<Photon>& photons,
-  const Monitor& monitor, PhotonTraffic* traffic)
+PhotonLight PhotonMarcherInBlocks::Rank::March(const std::vector<Photon>& share, const Monitor& monitor)
 {
   const double start = ClockSeconds();
-  RankOfMarch rank(device, communicator, partition, settings, photons);
-  communicator.Together([&] { rank.CheckInput(medium, ior); });
+  this->Rounds = std::make_unique<PhotonRounds>(this->Others, this->Partition);
+  const PlaceOfShare place = PlaceAmong(this->Others, share.size());
+  PhotonLight result;
+  if (this->Settings.errorBatches > 0)
+  {
+    result = this->MarchInBatches(share, place, monitor);
+  }
+  else
+  {
+    PhotonNumbers numbers(share.size());
+    std::iota(numbers.begin(), numbers.end(), place.first);
+    result = this->MarchThese(share, numbers, monitor);
+  }
+  this->Handed = this->Rounds->Traffic();
+  result.seconds = ClockSeconds() - start;
+  return result;
+}
+
+std::vector<PhotonPath> PhotonMarcherInBlocks::Rank::Paths(const std::vector<Photon>& share, std::size_t count)
+{
+  const PlaceOfShare place = PlaceAmong(this->Others, share.size());
+  const std::vector<std::size_t> chosen = ChooseEvenly(place.all, count);
+  const std::vector<Photon> some = ChosenOnEachRank(this->Others, share, place, chosen);
+  PathsInBlocks paths(this->Others, this->Partition, this->Through.get());
+  return paths.Trace(some, chosen, MarchEventLimit(this->Partition.whole, this->Settings));
+}
+
+PhotonMarcherInBlocks::PhotonMarcherInBlocks(Device& device, Communicator& communicator,
+  const BlockPartition& partition, const Medium& medium, const Field& ior, const MarchSettings& settings)
+  : Inside(std::make_unique<Rank>(device, communicator, partition, settings))
+{
+  communicator.Together([&] { this->Inside->CheckInput(medium, ior); });
   RequireSame(communicator, partition);
   RequireSame(communicator, settings);
-  rank.Prepare(medium, ior);
-  PhotonLight result = rank.March(monitor);
-  result.seconds = ClockSeconds() - start;
-  if (traffic)
-  {
-    *traffic = rank.Traffic();
-  }
-  return result;
+  this->Inside->Prepare(medium, ior);
+}
+
+PhotonMarcherInBlocks::~PhotonMarcherInBlocks() = default;
+
+PhotonLight PhotonMarcherInBlocks::March(const std::vector<Photon>& share, const Monitor& monitor)
+{
+  return this->Inside->March(share, monitor);
+}
+
+std::vector<PhotonPath> PhotonMarcherInBlocks::Paths(const std::vector<Photon>& share, std::size_t count)
+{
+  return this->Inside->Paths(share, count);
+}
+
+const PhotonTraffic& PhotonMarcherInBlocks::Traffic() const
+{
+  return this->Inside->Handed;
 }
 }

@@ -123,7 +123,8 @@ std::optional<Photon> PhotonOf(const Grid& grid, const std::optional<Shot>& shot
 }
 
 /// Photons are floats: their power must be one that is not 0, nor endless, nor so small that digits are lost.
-void CheckPowers(const EmittedPhotons& emitted)
+/// @param parts  of a part of so many only too much is: the others may be brighter
+void CheckPowers(const EmittedPhotons& emitted, int parts)
 {
   float largest = 0.0f;
   std::size_t brightest = 0;
@@ -138,7 +139,7 @@ void CheckPowers(const EmittedPhotons& emitted)
     }
   }
   const bool tooLarge = std::isinf(largest);
-  if (emitted.photons.empty() || (!tooLarge && largest >= std::numeric_limits<float>::min()))
+  if (emitted.photons.empty() || (!tooLarge && (parts > 1 || largest >= std::numeric_limits<float>::min())))
   {
     return;
   }
@@ -163,6 +164,11 @@ void Check(const EmissionSettings& settings)
     throw InvalidInput("The number of batches is " + std::to_string(settings.batches) + "; it must be 1 to " +
       std::to_string(EmittedBatchesAtMost) + ".");
   }
+  if (settings.part < 0 || settings.part >= settings.parts)
+  {
+    throw InvalidInput("There is no part " + std::to_string(settings.part) + " of " + std::to_string(settings.parts) +
+      " of the photons.");
+  }
   if (!(settings.densestAtMost >= 1.0))
   {
     throw InvalidInput("The density of photons at most is " + std::to_string(settings.densestAtMost) +
@@ -173,21 +179,58 @@ void Check(const EmissionSettings& settings)
     Check(*settings.map);
   }
   constexpr std::size_t bytesEach = sizeof(Photon) + sizeof(int);
-  RequireHostMemory(static_cast<double>(settings.photonCount) * bytesEach,
-    std::to_string(settings.photonCount) + " photons of " + std::to_string(bytesEach) + " bytes each: that",
+  const std::size_t made = settings.photonCount / static_cast<std::size_t>(settings.parts);
+  RequireHostMemory(static_cast<double>(made) * bytesEach,
+    std::to_string(made) + " photons of " + std::to_string(bytesEach) + " bytes each: that",
     "Ask for fewer photons (PhotonCount).");
 }
 
+/// Samples of a light.
+struct Tries
+{
+  std::size_t all = 0;            ///< of the light
+  std::size_t begin = 0, end = 0; ///< of these the part's
+};
+
+/// Of each light.
+std::vector<Tries> TriesOf(const std::vector<Tried>& tried, const EmissionSettings& settings)
+{
+  const std::vector<std::size_t> shares = Shares(tried, settings.photonCount);
+  std::vector<Tries> tries(tried.size());
+  std::size_t all = 0;
+  for (std::size_t s = 0; s < tried.size(); ++s)
+  {
+    if (shares[s] > 0)
+    {
+      // Every batch has a photon of every light, or it would not be all the light.
+      tries[s].all = std::max(
+        static_cast<std::size_t>(std::lround(shares[s] / tried[s].hits)), static_cast<std::size_t>(settings.batches));
+    }
+    all += tries[s].all;
+  }
+  const auto part = static_cast<std::size_t>(settings.part), parts = static_cast<std::size_t>(settings.parts);
+  const std::size_t begin = all * part / parts, end = all * (part + 1) / parts;
+  std::size_t before = 0;
+  for (Tries& ofLight : tries)
+  {
+    ofLight.begin = std::clamp(begin, before, before + ofLight.all) - before;
+    ofLight.end = std::clamp(end, before, before + ofLight.all) - before;
+    before += ofLight.all;
+  }
+  return tries;
+}
+
 /// Makes the photons of one light, batch by batch.
-void EmitFrom(const Grid& grid, const SpreadSource& light, std::size_t tries, std::uint64_t seed,
+void EmitFrom(const Grid& grid, const SpreadSource& light, const Tries& tries, std::uint64_t seed,
   const EmissionSettings& settings, const Monitor& monitor, EmittedPhotons& emitted)
 {
   const auto batches = static_cast<std::size_t>(settings.batches);
   for (std::size_t b = 0; b < batches; ++b)
   {
-    const std::size_t count = (b + 1) * tries / batches - b * tries / batches;
+    const std::size_t first = b * tries.all / batches, count = (b + 1) * tries.all / batches - first;
     const SampleSequence samples(settings.sampler, count, seed, settings.batches > 1 ? static_cast<int>(b) : 0);
-    for (std::size_t i = 0; i < count; ++i)
+    const std::size_t end = std::min(count, std::max(tries.end, first) - first);
+    for (std::size_t i = std::max(tries.begin, first) - first; i < end; ++i)
     {
       double weight;
       const std::optional<Shot> shot = light.Shoot(samples[i], weight);
@@ -202,9 +245,10 @@ void EmitFrom(const Grid& grid, const SpreadSource& light, std::size_t tries, st
         emitted.photons.push_back(*photon);
         emitted.lights.push_back(light.source.light);
       }
-      if ((b * tries / batches + i) % ReportEvery == ReportEvery - 1)
+      if ((first + i) % ReportEvery == ReportEvery - 1)
       {
-        Report(monitor, std::min(1.0, static_cast<double>(emitted.photons.size()) / settings.photonCount));
+        const double made = static_cast<double>(emitted.photons.size()) * settings.parts;
+        Report(monitor, std::min(1.0, made / static_cast<double>(settings.photonCount)));
       }
     }
   }
@@ -224,21 +268,17 @@ EmittedPhotons EmitPhotons(
   {
     tried.push_back(Try(grid, light));
   }
-  const std::vector<std::size_t> shares = Shares(tried, settings.photonCount);
-
+  const std::vector<Tries> tries = TriesOf(tried, settings);
   EmittedPhotons emitted;
-  emitted.photons.reserve(settings.photonCount);
+  emitted.photons.reserve(settings.photonCount / static_cast<std::size_t>(settings.parts) + 1);
   for (std::size_t s = 0; s < lights.size(); ++s)
   {
-    if (shares[s] > 0)
+    if (tries[s].begin < tries[s].end)
     {
-      // Every batch has a photon of every light, or it would not be all the light.
-      const auto tries = static_cast<std::size_t>(std::lround(shares[s] / tried[s].hits));
-      EmitFrom(grid, lights[s], std::max(tries, static_cast<std::size_t>(settings.batches)),
-        settings.seed == 0 ? 0 : settings.seed + s, settings, monitor, emitted);
+      EmitFrom(grid, lights[s], tries[s], settings.seed == 0 ? 0 : settings.seed + s, settings, monitor, emitted);
     }
   }
-  CheckPowers(emitted);
+  CheckPowers(emitted, settings.parts);
   emitted.seconds = ClockSeconds() - start;
   return emitted;
 }

@@ -27,6 +27,8 @@ struct EmissionSettings
   const ImportanceMap* map = nullptr;
   /// Largest density that the map may ask for, over that of photons spread evenly; at least 1.
   double densestAtMost = 8.0;
+  /// Which of so many parts of the photons are made: one after the other, they are all of them in their order.
+  int part = 0, parts = 1;
 };
 
 /// Photons of all lights, where they enter the volume (those of a lamp in the volume: at the lamp), and the number of
@@ -36,7 +38,7 @@ struct EmittedPhotons
 {
   std::vector<Photon> photons;
   std::vector<int> lights;
-  Rgb power = {};       ///< W, of all photons
+  Rgb power = {};       ///< W, of these photons
   double seconds = 0.0; ///< that it took
 };
 

@@ -57,7 +57,8 @@ public:
   /// @param weightUnit  weight of one of the units that voxels sum up, where photons count
   LightSumsInfo DescribeSums(const PackedPhotons& packed, float weightUnit = 0.0f) const;
   int EventLimit() const { return MarchEventLimit(this->block.whole, this->settings); }
-  double Diagonal() const; ///< of a voxel
+  double Diagonal() const;                                                        ///< of a voxel
+  bool IsBlock() const { return this->block.own.size != this->block.whole.size; } ///< of a larger grid
   /// Voxels, with one more at either end of each axis.
   std::size_t PaddedCount() const { return Count(this->Padded(2)); }
   /// Of extinction and of sums: those of bricks, or the voxels of the padded grid.

@@ -13,6 +13,14 @@ enum
   Elsewhere = 8   ///< of one that goes on in another block of the grid
 };
 
+/// Halves of steps, along each axis, that the integrator looks ahead at most: more than twice what it does where n is
+/// smooth.
+enum
+{
+  LeapfrogLooksAhead = 3, ///< which looks half a step ahead there
+  YoshidaLooksAhead = 6   ///< 1.35 steps
+};
+
 /// The medium, and how photons are marched through it. Places are those of the whole grid; arrays have a block of it.
 typedef struct
 {
@@ -40,14 +48,11 @@ typedef struct
 #endif
 } PhotonEnd;
 
-/// A photon that goes from one block of a grid into another: all that its way from there on depends on, so that it is
-/// the same, bit for bit, as in one block. Units are those of the kernels; only channels that there are count.
+/// The way of a photon that goes from one block of a grid into another: all that it depends on from there on, so that
+/// it is the same, bit for bit, as in one block. Units are those of the kernels.
 typedef struct
 {
-  ulong mark;     ///< by which it counts
   int voxel[3];   ///< of the whole grid, that it comes to
-  int crossings;  ///< stretches that were deposited
-  int steps;      ///< of the integrator
   float wall[3];  ///< time of the next one along each axis
   float now;      ///< time since the step began
   float turn;     ///< time when it ends
@@ -56,6 +61,16 @@ typedef struct
   float start[3]; ///< of the step
   float velocity[3];
   float momentum[3];
+} WayOnward;
+
+/// A photon that goes from one block of a grid into another. Only channels that there are count.
+typedef struct
+{
+  ulong mark; ///< by which it counts
+  WayOnward way;
+  int batch;     ///< that it is of; the host knows
+  int crossings; ///< stretches that were deposited
+  int steps;     ///< of the integrator
   float power[3];
   float owed[3]; ///< what rounding has left of what voxels were to take
 } PhotonOnItsWay;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 #include <utility>
 
 namespace tyndall
@@ -64,6 +65,23 @@ void Widen(std::vector<double>& values)
   }
   values.swap(three);
 }
+}
+
+// Not every so manieth: samplers spread photons by the digits of their numbers (every sixteenth has the same four last
+// binary ones, which are Hammersley's first), and all of a batch would be of one part of the light.
+PhotonNumbers NumbersOfBatch(std::size_t photons, std::size_t batch, std::size_t batches)
+{
+  std::mt19937 random; // the same whatever the batch
+  PhotonNumbers numbers;
+  for (std::size_t row = 0; row < photons; row += batches)
+  {
+    const std::size_t number = row + (batch + random()) % batches;
+    if (number < photons)
+    {
+      numbers.push_back(number);
+    }
+  }
+  return numbers;
 }
 
 void MarchedBatches::Add(PhotonLight&& part)

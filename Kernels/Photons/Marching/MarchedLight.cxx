@@ -33,17 +33,6 @@ void Colour(const Rgb& colour, PhotonLight& result)
   std::for_each(result.light.facePowerOut.begin(), result.light.facePowerOut.end(), spread);
 }
 
-/// Weight of one of the units that voxels sum up.
-float WeightUnit(const std::vector<Photon>& photons)
-{
-  float largest = 0.0f;
-  for (const Photon& photon : photons)
-  {
-    largest = std::max(largest, photon.weight);
-  }
-  return static_cast<float>(largest / WeightUnits);
-}
-
 /// One photon and its weight, of each.
 std::vector<cl_ulong> Marks(const std::vector<Photon>& photons, const PackedPhotons& packed, float unit)
 {
@@ -206,10 +195,26 @@ CountedPhotons::CountedPhotons(const std::vector<Photon>& photons, const PackedP
 {
   if (counts)
   {
-    CheckCounted(photons.size() - packed.missed);
-    this->weightUnit = WeightUnit(photons);
-    this->marks = Marks(photons, packed, this->weightUnit);
+    *this = CountedPhotons(photons, packed, LargestWeight(photons), photons.size() - packed.missed);
   }
+}
+
+CountedPhotons::CountedPhotons(
+  const std::vector<Photon>& some, const PackedPhotons& packed, float largestWeight, std::size_t count)
+{
+  CheckCounted(count);
+  this->weightUnit = static_cast<float>(largestWeight / WeightUnits);
+  this->marks = Marks(some, packed, this->weightUnit);
+}
+
+float CountedPhotons::LargestWeight(const std::vector<Photon>& photons)
+{
+  float largest = 0.0f;
+  for (const Photon& photon : photons)
+  {
+    largest = std::max(largest, photon.weight);
+  }
+  return largest;
 }
 
 void Tally(const PackedPhotons& packed, const std::vector<cl_int>& ends, PhotonLight& result)

@@ -52,6 +52,9 @@ struct CountedPhotons
   /// @param counts  whether they do; else there are no marks
   /// @throws InvalidInput where there are more than voxels can count
   CountedPhotons(const std::vector<Photon>& photons, const PackedPhotons& packed, bool counts);
+  /// The same of some of them. @param largestWeight, count  of all
+  CountedPhotons(const std::vector<Photon>& some, const PackedPhotons& packed, float largestWeight, std::size_t count);
+  static float LargestWeight(const std::vector<Photon>& photons);
 
   std::vector<cl_ulong> marks; ///< of each as packed: one photon, and its weight
   float weightUnit = 0.0f;     ///< weight of one of the units that voxels sum up

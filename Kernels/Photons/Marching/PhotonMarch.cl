@@ -10,8 +10,8 @@
 //   PATHS            1: nothing is summed, vertices are written
 //   BRICKS           1: the medium, and the sums, stand by bricks (PhotonBricks.cl), without COUNTS and CELLS
 //   TURNS            1: photons march in turns, and are kept between them; one batch, without PATHS
-//   BLOCKS           1: photons march as far as their block of the grid goes (PhotonBlocks.cl); one batch, without
-//                    PATHS, CELLS, BRICKS and TURNS
+//   BLOCKS           1: photons march as far as their block of the grid goes (PhotonBlocks.cl), without CELLS, BRICKS
+//                    and TURNS
 //
 // A step is followed from voxel wall to voxel wall (Amanatides and Woo 1987). In a voxel whose extinction over a
 // diagonal is s, with b = max(s, 1), the sums gain (numerics.md, Eqs. (35), (97))
@@ -20,6 +20,8 @@
 //
 // A photon counts where it enters a voxel (a cell), however many stretches it crosses it in; once more where it comes
 // back.
+
+#define MARKS (COUNTS || CELLS || (BLOCKS && PATHS))
 
 #include "Numerics/FixedPoint.cl"
 #include "Numerics/Numerics.cl"
@@ -281,10 +283,17 @@ static integer to_attend(const march_arrays* arrays, const photon_lanes* lanes, 
 #if BENDS
   special |= to_turn(lanes, flight);
 #endif
-#if BLOCKS
-  special |= spent(arrays, flight); // they have not come as far as each other
-#endif
   return special & flight->alive;
+}
+
+// Those that have been at as many walls and turns as photons may: in a block they have not come as far as each other.
+static integer given_up(const march_arrays* arrays, const photon_flight* flight)
+{
+#if BLOCKS
+  return flight->alive & truth(flight->crossings >= (integer)arrays->info->eventLimit);
+#else
+  return (integer)0;
+#endif
 }
 
 static void end_photon(const photon_lanes* lanes, int k, int face, __global PhotonEnd* end)
@@ -349,8 +358,8 @@ static void attend(
   }
 #endif
 #if BLOCKS
-  const integer given_up = mask & INTEGERS(lanes->alive) & spent(arrays, flight);
-  FOR_LANES(k, given_up)
+  const integer spent = mask & INTEGERS(lanes->alive) & given_up(arrays, flight);
+  FOR_LANES(k, spent)
   {
     end_photon(lanes, k, StillGoing, arrays->ends + first + k);
     rest(lanes, k);
@@ -376,7 +385,7 @@ static void load_packet(const march_arrays* arrays, const __global float* photon
     {
       lanes->power[c][k] = there ? photon[6 + c] : 0.0f;
     }
-#if COUNTS || CELLS
+#if MARKS
     lanes->mark[k] = there ? arrays->marks[first + k] : 0;
 #endif
   }
@@ -418,23 +427,33 @@ static float total_power(const photon_flight* flight)
   return sum;
 }
 
-static void add_vertex(const march_arrays* arrays, const photon_lanes* lanes, float now, float left, int* count)
+// The way goes on straight into another block, whose path has no corner there.
+static bool goes_on_elsewhere(const march_arrays* arrays, const photon_lanes* lanes, const photon_flight* flight)
+{
+#if BLOCKS
+  return flight->sigma == OUTSIDE && face_left(arrays->info, lanes, 0) == Elsewhere;
+#else
+  return false;
+#endif
+}
+
+// Where the photon has landed.
+static void add_vertex(const march_arrays* arrays, const photon_lanes* lanes, const photon_flight* flight, int* count)
 {
   if (arrays->vertices)
   {
     const float3 start = (float3)(lanes->start[0][0], lanes->start[1][0], lanes->start[2][0]);
     const float3 velocity = (float3)(lanes->velocity[0][0], lanes->velocity[1][0], lanes->velocity[2][0]);
-    arrays->vertices[*count] = (float4)(start + velocity * now, left);
+    arrays->vertices[*count] = (float4)(start + velocity * lanes->now[0], total_power(flight));
   }
   ++*count;
 }
 #endif
 
 // Follow a packet of photons, of which some are still on their way, over `events` walls and turns at most, or to their
-// ends. True where some are on their way still. With PATHS, `vertices` of the path are counted, whose photon had power
-// `whole`.
-static bool follow(const march_arrays* arrays, photon_lanes* lanes, photon_flight* flight, int first, int events,
-  float whole, int* vertices)
+// ends. True where some are on their way still. With PATHS, `vertices` of the path are counted.
+static bool follow(
+  const march_arrays* arrays, photon_lanes* lanes, photon_flight* flight, int first, int events, int* vertices)
 {
   // What voxels gain is deposited a stretch later, while that one's extinction is on its way from memory.
   photon_gain gain;
@@ -456,7 +475,8 @@ static bool follow(const march_arrays* arrays, photon_lanes* lanes, photon_fligh
     flight->crossings -= flight->alive;
     owed = true;
     cross_walls(arrays, lanes, flight, next);
-    const integer special = to_attend(arrays, lanes, flight);
+    const integer corner = to_attend(arrays, lanes, flight);
+    const integer special = corner | given_up(arrays, flight);
     if (anywhere(special))
     {
 #if !PATHS
@@ -465,7 +485,10 @@ static bool follow(const march_arrays* arrays, photon_lanes* lanes, photon_fligh
 #endif
       land(flight, lanes);
 #if PATHS
-      add_vertex(arrays, lanes, next, whole > 0.0f ? total_power(flight) / whole : 1.0f, vertices);
+      if (corner && !goes_on_elsewhere(arrays, lanes, flight))
+      {
+        add_vertex(arrays, lanes, flight, vertices);
+      }
 #endif
       attend(arrays, lanes, flight, special, first);
       take_off(arrays, lanes, flight);
@@ -505,19 +528,19 @@ static int march_packet(const march_arrays* arrays, const __global float* photon
   photon_flight flight;
   load_packet(arrays, photons, first, end, &lanes, &flight);
   int vertices = 0;
-  float whole = 0.0f;
 #if PATHS
-  whole = total_power(&flight);
-  add_vertex(arrays, &lanes, 0.0f, 1.0f, &vertices);
+  add_vertex(arrays, &lanes, &flight, &vertices);
 #endif
-  if (anywhere(flight.alive) && follow(arrays, &lanes, &flight, first, arrays->info->eventLimit, whole, &vertices))
+  if (anywhere(flight.alive) && follow(arrays, &lanes, &flight, first, arrays->info->eventLimit, &vertices))
   {
     give_up_all(arrays, &lanes, &flight, first);
   }
   return vertices;
 }
 
-#if PATHS
+#if BLOCKS
+#include "Photons/Distributed/MarchInBlock.cl"
+#elif PATHS
 // The path of photon i, a work-item each. Its `counts[i]` vertices go to vertices + offsets[i]; with `counting` they
 // are only counted.
 __kernel void trace_paths(MarchInfo info, const __global float* sigma, const __global float* coefficients,
@@ -558,7 +581,7 @@ static void take_turn(const march_arrays* arrays, const __global float* photons,
   }
   int vertices = 0;
   bool goes = anywhere(here.flight.alive);
-  goes = goes && follow(arrays, &here.lanes, &here.flight, first, events, 0.0f, &vertices);
+  goes = goes && follow(arrays, &here.lanes, &here.flight, first, events, &vertices);
   if (goes && last)
   {
     give_up_all(arrays, &here.lanes, &here.flight, first);
@@ -605,8 +628,6 @@ __kernel void march_turn(MarchInfo info, const __global float* sigma, const __gl
     atomic_add(left, still);
   }
 }
-#elif BLOCKS
-#include "Photons/Distributed/MarchInBlock.cl"
 #else
 // Of each batch, photons `first` to `first + count`: those of batch b begin at batch_begin[b], and end where the next
 // ones begin. There are `copies` of the sums, at least as many as batches; copy c is for batch c modulo their number.

@@ -9,7 +9,6 @@
 #include "Photons/Scattering/ScatteredChannels.h"
 
 #include <algorithm>
-#include <random>
 #include <string>
 
 namespace tyndall
@@ -81,27 +80,6 @@ void PhotonMarcher::Implementation::MarchTo(const MarchSums& target, const Packe
       return fluence;
     },
     monitor);
-}
-
-namespace
-{
-/// Of each row of so many photons one, by chance. Not every so manieth: samplers spread photons by the digits of their
-/// numbers (every sixteenth has the same four last binary ones, which are Hammersley's first), and all of a batch would
-/// be of one part of the light.
-PhotonNumbers NumbersOfBatch(std::size_t photons, std::size_t batch, std::size_t batches)
-{
-  std::mt19937 random; // the same whatever the batch, and on every machine
-  PhotonNumbers numbers;
-  for (std::size_t row = 0; row < photons; row += batches)
-  {
-    const std::size_t number = row + (batch + random()) % batches;
-    if (number < photons)
-    {
-      numbers.push_back(number);
-    }
-  }
-  return numbers;
-}
 }
 
 PhotonLight PhotonMarcher::Implementation::MarchInBatches(const std::vector<Photon>& photons, const Monitor& monitor)

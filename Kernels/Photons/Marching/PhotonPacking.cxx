@@ -45,23 +45,6 @@ void CheckPhoton(const Photon& photon, std::size_t number)
   }
 }
 
-/// The colour that all photons have, with mean 1.
-bool HaveOneColour(const std::vector<Photon>& photons, Rgb& colour)
-{
-  CommonColour common;
-  for (std::size_t i = 0; i < photons.size() && common.IsOne(); ++i)
-  {
-    common.Add(photons[i].power.data(), 1);
-  }
-  const Rgb relative = common.Relative();
-  for (int c = 0; c < 3; ++c)
-  {
-    colour[c] = 3.0 * relative[c] / Sum(relative);
-    colour[c] = std::abs(colour[c] - 1.0) < SameColour ? 1.0 : colour[c];
-  }
-  return common.IsOne();
-}
-
 /// Positions and directions in voxels, of those that meet the grid.
 struct Ray
 {
@@ -124,10 +107,10 @@ std::vector<std::uint32_t> Order(const std::vector<Ray>& rays)
 
 /// Those of a batch together, in the order that they have; `begin` becomes the place of each batch's first, and beyond.
 std::vector<std::uint32_t> ByBatch(const std::vector<std::uint32_t>& order, const std::vector<Photon>& photons,
-  const std::vector<std::size_t>& numbers, std::vector<int>& begin)
+  const std::vector<std::size_t>& numbers, int batches, std::vector<int>& begin)
 {
   const auto batch = [&](std::uint32_t i) { return static_cast<std::size_t>(photons[numbers[i]].batch); };
-  begin.assign(static_cast<std::size_t>(BatchesOf(photons)) + 1, 0);
+  begin.assign(static_cast<std::size_t>(batches) + 1, 0);
   for (const std::uint32_t i : order)
   {
     ++begin[batch(i) + 1];
@@ -151,15 +134,15 @@ void CheckBatch(const Photon& photon, std::size_t number)
   }
 }
 
-/// The largest total of a channel, or of all where one stands for them.
-double Brightness(const std::vector<Photon>& photons)
+Rgb PowerOf(const Photon& photon)
 {
-  double sum = 0.0;
-  for (const Photon& photon : photons)
-  {
-    sum += double(photon.power[0]) + photon.power[1] + photon.power[2];
-  }
-  return sum;
+  return { photon.power[0], photon.power[1], photon.power[2] };
+}
+
+/// In units of which there are 2^31 in the brightest one: whole ones, whose sum does not depend on who adds up what.
+double UnitOfPower(double brightest)
+{
+  return brightest > 0.0 ? std::exp2(std::ceil(std::log2(brightest)) - 31.0) : 1.0;
 }
 
 /// Photons that meet the grid.
@@ -169,19 +152,13 @@ struct MetPhotons
   std::vector<std::size_t> numbers; ///< which of the photons given each is
 };
 
-/// @param batches  whether they are asked for, and checked
-MetPhotons ThoseThatMeet(const Grid& grid, const std::vector<Photon>& photons, bool batches)
+MetPhotons ThoseThatMeet(const Grid& grid, const std::vector<Photon>& photons)
 {
   MetPhotons met;
   met.rays.reserve(photons.size());
   met.numbers.reserve(photons.size());
   for (std::size_t i = 0; i < photons.size(); ++i)
   {
-    CheckPhoton(photons[i], i);
-    if (batches)
-    {
-      CheckBatch(photons[i], i);
-    }
     std::array<double, 3> position, direction;
     for (int a = 0; a < 3; ++a)
     {
@@ -197,21 +174,8 @@ MetPhotons ThoseThatMeet(const Grid& grid, const std::vector<Photon>& photons, b
   return met;
 }
 
-/// Colour, channels and unit of power of all photons.
-PackedPhotons WithUnits(const std::vector<Photon>& photons, bool coloured, double depositsAtMost)
-{
-  PackedPhotons packed;
-  const bool oneColour = HaveOneColour(photons, packed.colour);
-  packed.grey = oneColour && packed.colour == Rgb{ 1.0, 1.0, 1.0 };
-  packed.channels = oneColour && !coloured ? 1 : 3;
-  packed.colour = packed.channels == 3 ? Rgb{ 1.0, 1.0, 1.0 } : packed.colour;
-  const double total = Brightness(photons);
-  packed.unit = total > 0.0 ? std::exp2(std::ceil(std::log2(total * depositsAtMost / 0x1p62))) : 1.0;
-  return packed;
-}
-
 /// Put the photons into `packed`, in this order, and add up what enters.
-void Fill(PackedPhotons& packed, const std::vector<Photon>& photons, const MetPhotons& met,
+void FillInOrder(PackedPhotons& packed, const std::vector<Photon>& photons, const MetPhotons& met,
   const std::vector<std::uint32_t>& order)
 {
   packed.numbers.resize(met.rays.size());
@@ -232,6 +196,7 @@ void Fill(PackedPhotons& packed, const std::vector<Photon>& photons, const MetPh
       entered[c] += WholeUnits(*values++);
     }
   }
+  packed.enteredUnits = entered;
   for (int c = 0; c < 3; ++c)
   {
     packed.entered[c] = static_cast<double>(entered[c]) * packed.unit;
@@ -287,19 +252,105 @@ std::size_t PackedPhotons::LargestBatch() const
   return static_cast<std::size_t>(largest);
 }
 
+double BrightestOf(const std::vector<Photon>& photons)
+{
+  double brightest = 0.0;
+  for (const Photon& photon : photons)
+  {
+    brightest = std::max(brightest, Sum(PowerOf(photon)));
+  }
+  return brightest;
+}
+
+std::int64_t PowerUnitsOf(const std::vector<Photon>& photons, double brightest)
+{
+  const double unit = UnitOfPower(brightest);
+  std::int64_t sum = 0;
+  for (const Photon& photon : photons)
+  {
+    sum += static_cast<std::int64_t>(std::ceil(Sum(PowerOf(photon)) / unit));
+  }
+  return sum;
+}
+
+Rgb FirstColourOf(const std::vector<Photon>& photons)
+{
+  const auto first =
+    std::find_if(photons.begin(), photons.end(), [](const Photon& photon) { return PowerOf(photon) != Rgb{}; });
+  return first == photons.end() ? Rgb{} : PowerOf(*first);
+}
+
+bool HaveColour(const std::vector<Photon>& photons, const Rgb& first)
+{
+  CommonColour common;
+  common.Add(first);
+  for (std::size_t i = 0; i < photons.size() && common.IsOne(); ++i)
+  {
+    common.Add(PowerOf(photons[i]));
+  }
+  return common.IsOne();
+}
+
+PackedPhotons PackingOf(const PhotonTotals& all, bool coloured, double depositsAtMost)
+{
+  PackedPhotons packed;
+  CommonColour common;
+  common.Add(all.firstColour);
+  const Rgb relative = common.Relative();
+  for (int c = 0; c < 3; ++c)
+  {
+    const double part = 3.0 * relative[c] / Sum(relative);
+    packed.colour[c] = std::abs(part - 1.0) < SameColour ? 1.0 : part;
+  }
+  packed.grey = all.oneColour && packed.colour == Rgb{ 1.0, 1.0, 1.0 };
+  packed.channels = all.oneColour && !coloured ? 1 : 3;
+  packed.colour = packed.channels == 3 ? Rgb{ 1.0, 1.0, 1.0 } : packed.colour;
+  const double total = static_cast<double>(all.powerUnits) * UnitOfPower(all.brightest);
+  packed.unit = total > 0.0 ? std::exp2(std::ceil(std::log2(total * depositsAtMost / 0x1p62))) : 1.0;
+  packed.batchBegin.assign(static_cast<std::size_t>(all.batches) + 1, 0);
+  return packed;
+}
+
+void CheckPhotons(const std::vector<Photon>& photons, bool batches)
+{
+  for (std::size_t i = 0; i < photons.size(); ++i)
+  {
+    CheckPhoton(photons[i], i);
+    if (batches)
+    {
+      CheckBatch(photons[i], i);
+    }
+  }
+}
+
+void FillPacking(PackedPhotons& packed, const std::vector<Photon>& photons, const Grid& grid)
+{
+  const MetPhotons met = ThoseThatMeet(grid, photons);
+  packed.missed = photons.size() - met.numbers.size();
+  std::vector<std::uint32_t> order = Order(met.rays);
+  if (packed.Batches() > 1)
+  {
+    order = ByBatch(order, photons, met.numbers, packed.Batches(), packed.batchBegin);
+  }
+  else
+  {
+    packed.batchBegin = { 0, static_cast<int>(met.rays.size()) };
+  }
+  FillInOrder(packed, photons, met, order);
+}
+
 PackedPhotons Pack(
   const std::vector<Photon>& photons, const Grid& grid, bool coloured, double depositsAtMost, bool batches)
 {
-  PackedPhotons packed = WithUnits(photons, coloured, depositsAtMost);
-  const MetPhotons met = ThoseThatMeet(grid, photons, batches);
-  packed.missed = photons.size() - met.numbers.size();
-  std::vector<std::uint32_t> order = Order(met.rays);
-  packed.batchBegin = { 0, static_cast<int>(met.rays.size()) };
-  if (batches && BatchesOf(photons) > 1)
-  {
-    order = ByBatch(order, photons, met.numbers, packed.batchBegin);
-  }
-  Fill(packed, photons, met, order);
+  CheckPhotons(photons, batches);
+  PhotonTotals all;
+  all.brightest = BrightestOf(photons);
+  all.powerUnits = PowerUnitsOf(photons, all.brightest);
+  all.firstColour = FirstColourOf(photons);
+  all.oneColour = HaveColour(photons, all.firstColour);
+  all.batches = batches ? BatchesOf(photons) : 1;
+  PackedPhotons packed = PackingOf(all, coloured, depositsAtMost);
+  FillPacking(packed, photons, grid);
   return packed;
 }
 

@@ -3,6 +3,10 @@
 #include "Medium/Grid.h"
 #include "Photons/Photons.h"
 
+#include <array>
+#include <cstdint>
+#include <vector>
+
 namespace tyndall
 {
 /// Photons as the kernels read them: in the volume or where they enter it, in voxels, neighbours in space next to each
@@ -17,7 +21,8 @@ struct PackedPhotons
   std::vector<std::size_t> numbers; ///< which of the photons given it is
   std::vector<int> batchBegin;      ///< place of the first photon of each batch, and beyond the last one
   Rgb entered = {};                 ///< W, by channel
-  std::size_t missed = 0;           ///< photons that do not meet the volume
+  std::array<std::int64_t, 3> enteredUnits = {}; ///< the same in units
+  std::size_t missed = 0;                        ///< photons that do not meet the volume
 
   std::size_t Count() const { return this->numbers.size(); }
   int FloatsEach() const { return 6 + this->channels; }
@@ -39,6 +44,29 @@ int BatchesOf(const std::vector<Photon>& photons);
 ///   power or weight negative, or its batch (if asked for) not 0 to 63
 PackedPhotons Pack(
   const std::vector<Photon>& photons, const Grid& grid, bool coloured, double depositsAtMost, bool batches = false);
+
+// What Pack does, in parts, for photons of which each of several ranks has some.
+
+/// What of all photons decides how each is packed.
+struct PhotonTotals
+{
+  double brightest = 0.0;      ///< W, of any: BrightestOf
+  std::int64_t powerUnits = 0; ///< sum of PowerUnitsOf
+  Rgb firstColour = {};        ///< of the first one that has any power
+  bool oneColour = true;       ///< all have that
+  int batches = 1;             ///< that are kept apart
+};
+double BrightestOf(const std::vector<Photon>& photons); ///< W, channels summed
+/// Their power, rounded up to units of at most 2^-30 of the brightest of all.
+std::int64_t PowerUnitsOf(const std::vector<Photon>& photons, double brightest);
+Rgb FirstColourOf(const std::vector<Photon>& photons); ///< black: none has power
+bool HaveColour(const std::vector<Photon>& photons, const Rgb& first);
+/// @throws InvalidInput as Pack
+void CheckPhotons(const std::vector<Photon>& photons, bool batches);
+
+PackedPhotons PackingOf(const PhotonTotals& all, bool coloured, double depositsAtMost); ///< without photons
+/// Adds photons to such a packing.
+void FillPacking(PackedPhotons& packed, const std::vector<Photon>& photons, const Grid& grid);
 
 /// The same photons in one channel.
 /// @param channel  of those that are packed

@@ -9,29 +9,52 @@
 
 namespace tyndall
 {
-namespace
+CornersOfWays TraceCorners(const MarchMedium& medium, std::size_t ways,
+  const std::function<void(bool counting, const Buffer<cl_int>& offsets, const Buffer<cl_float4>& corners,
+    const Buffer<cl_int>& counts)>& queue)
 {
-std::vector<PhotonPath> Unpack(const Grid& grid, const PackedPhotons& packed, const std::vector<std::size_t>& chosen,
-  const std::vector<cl_float4>& vertices, const std::vector<cl_int>& begin)
-{
-  std::vector<PhotonPath> paths(packed.Count());
-  for (std::size_t i = 0; i < paths.size(); ++i)
+  Device& device = medium.device;
+  Buffer<cl_int> offsets(device, ways, "offsets of paths");
+  const Buffer<cl_int> counts(device, ways, "lengths of paths");
+  queue(true, offsets, Buffer<cl_float4>(device, 0, "paths"), counts);
+  const std::vector<cl_int> lengths = counts.Read();
+  std::vector<cl_int> begin(lengths.size() + 1, 0);
+  std::partial_sum(lengths.begin(), lengths.end(), begin.begin() + 1);
+  offsets.Write(begin.data());
+  const Buffer<cl_float4> corners(device, static_cast<std::size_t>(begin.back()), "paths");
+  queue(false, offsets, corners, counts);
+  const std::vector<cl_float4> all = corners.Read();
+  CornersOfWays ofWays;
+  for (std::size_t i = 0; i < ways; ++i)
   {
-    paths[i].photon = chosen[packed.numbers[i]];
-    for (cl_int v = begin[i]; v < begin[i + 1]; ++v)
-    {
-      std::array<double, 3> point;
-      for (int a = 0; a < 3; ++a)
-      {
-        point[a] = grid.origin[a] + vertices[v].s[a] * grid.spacing[a];
-      }
-      paths[i].points.push_back(point);
-      paths[i].left.push_back(vertices[v].s[3]);
-    }
+    ofWays.emplace_back(all.begin() + begin[i], all.begin() + begin[i + 1]);
   }
-  std::sort(paths.begin(), paths.end(), [](const PhotonPath& a, const PhotonPath& b) { return a.photon < b.photon; });
-  return paths;
+  return ofWays;
 }
+
+std::string PathOptions()
+{
+  return Define("REAL_WIDTH", 1) + Define("ATOMICS", 0) + Define("WORKERS", 0) + Define("PATHS", 1) +
+    Define("COUNTS", 0) + Define("CELLS", 0);
+}
+
+PhotonPath PathOf(const Grid& grid, const PackedPhotons& packed, std::size_t i, const std::vector<cl_float4>& corners)
+{
+  const float* const power = packed.values.data() + i * static_cast<std::size_t>(packed.FloatsEach()) + 6;
+  const float whole = std::accumulate(power, power + packed.channels, 0.0f);
+  PhotonPath path;
+  path.photon = packed.numbers[i];
+  for (const cl_float4& corner : corners)
+  {
+    std::array<double, 3> point;
+    for (int a = 0; a < 3; ++a)
+    {
+      point[a] = grid.origin[a] + corner.s[a] * grid.spacing[a];
+    }
+    path.points.push_back(point);
+    path.left.push_back(whole > 0.0f ? corner.s[3] / whole : 1.0f);
+  }
+  return path;
 }
 
 std::vector<PhotonPath> TracePaths(
@@ -47,28 +70,24 @@ std::vector<PhotonPath> TracePaths(
   {
     return {};
   }
-  cl::Kernel trace = medium.MarchKernel("trace_paths", packed.channels, false,
-    Define("REAL_WIDTH", 1) + Define("ATOMICS", 0) + Define("WORKERS", 0) + Define("PATHS", 1) + Define("COUNTS", 0) +
-      Define("CELLS", 0));
+  cl::Kernel trace = medium.MarchKernel("trace_paths", packed.channels, false, PathOptions());
   Device& device = medium.device;
   const PhotonsOnDevice onDevice(device, packed);
   const Buffer<cl_int> none(device, 0, "cells of the voxels");
   const Buffer<cl_int>& cells = medium.bricks.AreThere() ? medium.bricks.First() : none;
-  Buffer<cl_int> offsets(device, packed.Count(), "offsets of paths");
-  const Buffer<cl_int> counts(device, packed.Count(), "lengths of paths");
-  const auto run = [&](bool counting, const Buffer<cl_float4>& vertices) {
-    With(trace, medium.Describe(), medium.sigma, medium.coefficients, medium.nodes, onDevice.values, cells,
-      onDevice.ends, cl_int(counting), offsets, vertices, counts);
-    medium.Launch(trace, cl::NDRange(packed.Count()), GroupOfLargeItems(device));
-    device.Finish();
-  };
-  run(true, Buffer<cl_float4>(device, 0, "paths"));
-  const std::vector<cl_int> lengths = counts.Read();
-  std::vector<cl_int> begin(lengths.size() + 1, 0);
-  std::partial_sum(lengths.begin(), lengths.end(), begin.begin() + 1);
-  offsets.Write(begin.data());
-  const Buffer<cl_float4> vertices(device, static_cast<std::size_t>(begin.back()), "paths");
-  run(false, vertices);
-  return Unpack(medium.grid, packed, chosen, vertices.Read(), begin);
+  const CornersOfWays corners = TraceCorners(medium, packed.Count(),
+    [&](bool counting, const Buffer<cl_int>& offsets, const Buffer<cl_float4>& to, const Buffer<cl_int>& counts) {
+      With(trace, medium.Describe(), medium.sigma, medium.coefficients, medium.nodes, onDevice.values, cells,
+        onDevice.ends, cl_int(counting), offsets, to, counts);
+      medium.Launch(trace, cl::NDRange(packed.Count()), GroupOfLargeItems(device));
+    });
+  std::vector<PhotonPath> paths;
+  for (std::size_t i = 0; i < packed.Count(); ++i)
+  {
+    paths.push_back(PathOf(medium.grid, packed, i, corners[i]));
+    paths.back().photon = chosen[paths.back().photon];
+  }
+  std::sort(paths.begin(), paths.end(), [](const PhotonPath& a, const PhotonPath& b) { return a.photon < b.photon; });
+  return paths;
 }
 }

@@ -3,15 +3,21 @@
 //   BENDS       1: the index varies; ORDER of the integrator then: 1, 2 or 4
 //   LEVELS      1: there are octree levels
 //   DIRECTIONS  1: directions are asked for
-//   COUNTS, CELLS  1: photons bear marks (PhotonMarch.cl)
+//   MARKS       1: photons bear marks (PhotonMarch.cl)
 //   BRICKS      1: the medium stands by bricks (PhotonBricks.cl); places are records, and [copy] of them
-//   BLOCKS      1: photons may go into other blocks of the grid (PhotonBlocks.cl)
+//   BLOCKS      1: photons may go into other blocks of the grid (WaysOnward.cl)
 //
 // A path obeys dr/dt = T, dT/dt = grad(n^2) / 2 with dt = ds / n (numerics.md, Eq. (90)). It becomes steps, straight
 // lines of constant velocity:
 //   order 2  from kick to kick of the leapfrog, Eq. (91): its polygon is the path itself
 //   order 4  from step end to step end, each step of Yoshida's three leapfrogs
 //   order 1  explicit Euler, Eq. (92), as in Pfeuti 2009, Eq. 2.10 and 2.11: dx/ds = v / n, dv/ds = grad n
+//
+// The integrator looks at places before a photon gets there, but no farther ahead than by so many steps
+// (MarchShared.h): a jump of n that makes a photon many times as fast as its step was meant for would have it look
+// anywhere, and a block of a grid knows the index no farther than that (numerics.md, Eq. (99f)). An octree's steps are
+// longer.
+//
 // Where n does not vary within the reach of interpolation nothing is evaluated, and a step is as long as that is so.
 //
 // Positions and velocities are in voxels, lengths in voxel diagonals.
@@ -42,7 +48,7 @@ typedef struct
   __global PhotonEnd* ends;
   __global float4*
     vertices; // of a path: position in voxels, part of the power that is left; null: they are only counted
-  const __global ulong* marks; // of photons, with COUNTS or CELLS
+  const __global ulong* marks; // of photons, with MARKS
   const __global int* cells;   // [copy] of voxels, with CELLS; with BRICKS of bricks: PhotonBricks.h
 #if BLOCKS
   __global PhotonOnItsWay* gone; // into other blocks
@@ -71,7 +77,7 @@ typedef struct
   LANES_3(float, velocity);     // along it
   LANES_3(float, momentum);     // T; v of Euler; order 2 has it as the velocity
   float4 direction[REAL_WIDTH]; // 1, and the direction in space
-#if COUNTS || CELLS
+#if MARKS
   LANES(ulong, mark);
 #endif
 #if BLOCKS
@@ -257,6 +263,17 @@ static void squared_index_at(const march_arrays* arrays, integer mask, const rea
   }
 }
 
+// A way from where a photon is, in voxels, as far as the integrator looks.
+static real looked_ahead(const MarchInfo* info, real way)
+{
+#if LEVELS
+  return way;
+#else
+  const float most = 0.5f * (ORDER == 4 ? YoshidaLooksAhead : LeapfrogLooksAhead) * info->stepSize;
+  return lesser(greater(way, (real)-most), (real)most);
+#endif
+}
+
 // The voxels of places anywhere; beyond those whose index is known, those of the padding.
 static void voxels_of_places(const MarchInfo* info, const real* p, integer* voxel)
 {
@@ -350,7 +367,7 @@ static real take_step(
     FOR_AXES(a)
     {
       moved[a] += (real)0.5f * dt * u[a];
-      place[a] = p[a] + moved[a];
+      place[a] = p[a] + looked_ahead(arrays->info, moved[a]);
     }
     pull(arrays, moving, place, change);
     FOR_AXES(a)
@@ -385,16 +402,18 @@ static void take_turns(const march_arrays* arrays, photon_lanes* lanes, integer 
   // Those that enter drift for half a step; the others are kicked, and drift for halves of two steps.
   const integer kicked = mask & truth(VECTOR(lanes->turn) <= now);
   const real step = VECTOR(lanes->step);
-  real change[3], end[3];
+  real change[3], end[3], seen[3];
   integer last[3];
   pull(arrays, kicked, p, change);
   FOR_AXES(a)
   {
     u[a] += masked(kicked, step * change[a]);
     inverse[a] = (real)1.0f / u[a];
-    end[a] = kicked ? p[a] + (real)0.5f * step * u[a] : p[a];
+    const real way = masked(kicked, (real)0.5f * step * u[a]);
+    end[a] = p[a] + way;
+    seen[a] = p[a] + looked_ahead(info, way);
   }
-  voxels_of_places(info, end, last);
+  voxels_of_places(info, seen, last);
   FOR_AXES(a)
   {
     last[a] = kicked ? last[a] : voxel[a];
@@ -442,6 +461,15 @@ static void rest(photon_lanes* lanes, int k)
   lanes->turn[k] = NEVER;
 }
 
+// The voxels that photons set off in from p (voxels).
+static void voxels_of_starts(const MarchInfo* info, const real* p, integer* voxel)
+{
+  FOR_AXES(a)
+  {
+    voxel[a] = clamp(to_integer(p[a]), (integer)0, (integer)(info->whole.size[a] - 1));
+  }
+}
+
 // Photons set off from p (voxels) in unit directions u.
 static void set_off(const march_arrays* arrays, photon_lanes* lanes, real* p, real* u)
 {
@@ -449,9 +477,9 @@ static void set_off(const march_arrays* arrays, photon_lanes* lanes, real* p, re
   const integer all = (integer)-1;
   integer voxel[3];
   real inverse[3];
+  voxels_of_starts(info, p, voxel);
   FOR_AXES(a)
   {
-    voxel[a] = clamp(to_integer(p[a]), (integer)0, (integer)(info->whole.size[a] - 1));
     u[a] /= info->spacing[a];
   }
   PUT_INTEGERS(lanes->at, padded(info, voxel));

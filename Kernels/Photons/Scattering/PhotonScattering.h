@@ -31,9 +31,10 @@ struct ScatteredPhotons
 class PhotonScattering
 {
 public:
-  /// @param through  as photons march through it, of one channel; must stay
-  /// @param medium, ior   the same, as data; read here only
-  PhotonScattering(const MarchMedium& through, const Medium& medium, const Field& ior);
+  /// @param through   as photons march through it, of one channel; must stay
+  /// @param medium    the same, as data; read here only
+  /// @param stepPart  of the settings' step size, that a step has: ScatteringStepPart of all of the index
+  PhotonScattering(const MarchMedium& through, const Medium& medium, double stepPart);
 
   struct Settings
   {
@@ -43,20 +44,21 @@ public:
   };
   /// @param photons  of one channel, in units of DepositsPerEvent times those of uncollided light
   /// @throws DeviceError where sums do not fit; Aborted
-  ScatteredPhotons Follow(PackedPhotons photons, const Settings& settings, const Monitor& monitor);
+  ScatteredPhotons Follow(PackedPhotons photons, const Settings& settings, const Monitor& monitor) const;
 
   /// Of a photon, which may come back to a voxel: power is scaled such that no sum of so many can exceed 2^62.
   static constexpr double DepositsPerEvent = 4096.0;
 
 private:
-  struct Work;
-  void FollowAll(Work& work, const Monitor& monitor);
-  void TakeLight(Work& work);
-  static void TakeEnds(Work& work);
+  friend class ScatteringRun;
 
   const MarchMedium& Through;
-  double StepPart; ///< of the settings' step size: shorter where the index jumps
+  double StepPart;
   Buffer<float> Optical;
   SampledPhase Phase;
 };
+
+/// Steps across a jump of n^2 that are too long lose photons in the denser side: the part of the usual step that is
+/// short enough for this index (numerics.md, Eq. (99d)), 0.1 to 1. Null values: 1.
+double ScatteringStepPart(const Field& ior, const std::array<int, 3>& size);
 }

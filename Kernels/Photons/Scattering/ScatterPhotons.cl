@@ -6,6 +6,7 @@
 //   PHASE     how light is scattered: 0 isotropic, 1 Henyey and Greenstein's, 2 Schlick's, 3 by a table of cosines
 //   VARIES    1: the parameter of these two is by voxel
 //   COSINES   of the table, less one
+//   BLOCKS    1: photons go as far as their block of the grid (ScatterInBlock.cl)
 //
 // The optical depth of the next scattering is drawn, and spent along the path; what is absorbed on the way is taken
 // from the photon's power, and what is left of that is deposited times its path, from the first scattering on: a mean
@@ -60,10 +61,10 @@ static float3 turned(float3 way, float cosine, float turn)
   return normalize(sine * (around * first + along * second) + cosine * way);
 }
 
-// The voxel of a place in the padded grid.
+// The voxel of a place in the padded grid, among those of the medium.
 static ulong voxel_number(const MarchInfo* info, int at)
 {
-  const int3 voxel = voxel_of(info, at);
+  const int3 voxel = voxel_of(info, at) - vload3(0, info->first);
   return ((ulong)voxel.z * info->grid.size[1] + voxel.y) * info->grid.size[0] + voxel.x;
 }
 
@@ -89,23 +90,48 @@ static bool moves(const photon_lanes* lanes)
   return lanes->pace[0] > SLOWEST_PACE && lanes->pace[0] < FASTEST_PACE;
 }
 
+// A photon between two scatterings, besides its way.
+typedef struct
+{
+  ScatterEnd end; // so far
+  random_numbers random;
+  float dim;   // power below which Russian roulette is played
+  float depth; // optical, to the next scattering
+  int events;  // walls and turns since it was scattered last
+} scattered_flight;
+
+#if BLOCKS
+#include "Photons/Distributed/ScatteredOnward.cl"
+#endif
+
 // The photon, `way` diagonals on, is scattered.
 static void scatter(
-  const march_arrays* arrays, const scattering* medium, photon_lanes* lanes, float way, random_numbers* random)
+  const march_arrays* arrays, const scattering* medium, photon_lanes* lanes, float way, scattered_flight* flight)
 {
   const float time = lanes->now[0] + way / lanes->pace[0];
   const float3 start = (float3)(lanes->start[0][0], lanes->start[1][0], lanes->start[2][0]);
   const float3 velocity = (float3)(lanes->velocity[0][0], lanes->velocity[1][0], lanes->velocity[2][0]);
-  const float cosine = cosine_of(medium, PHASE && VARIES ? voxel_number(arrays->info, lanes->at[0]) : 0, draw(random));
-  begin(arrays, lanes, start + velocity * time, turned(lanes->direction[0].yzw, cosine, draw(random)));
+  const float cosine =
+    cosine_of(medium, PHASE && VARIES ? voxel_number(arrays->info, lanes->at[0]) : 0, draw(&flight->random));
+  const float3 place = start + velocity * time;
+  const float3 direction = turned(lanes->direction[0].yzw, cosine, draw(&flight->random));
+#if BLOCKS
+  if (sets_off_elsewhere(arrays, lanes, place, direction))
+  {
+    flight->end.face = flight->end.face < 0 ? Elsewhere : flight->end.face;
+    return;
+  }
+#endif
+  begin(arrays, lanes, place, direction);
 }
 
 // Russian roulette: what is dim becomes brighter or nothing; the mean stays.
-static void roulette(ScatterEnd* end, float dim, random_numbers* random)
+static void roulette(scattered_flight* flight)
 {
-  if (end->power < dim)
+  ScatterEnd* end = &flight->end;
+  if (end->power < flight->dim)
   {
-    const float after = draw(random) * 2.0f * dim < end->power ? 2.0f * dim : 0.0f;
+    const float after = draw(&flight->random) * 2.0f * flight->dim < end->power ? 2.0f * flight->dim : 0.0f;
     end->exchanged += after - end->power;
     end->power = after;
     end->face = after > 0.0f ? end->face : Dark;
@@ -124,75 +150,119 @@ static void move_on(const march_arrays* arrays, photon_lanes* lanes, float next)
   lanes->now[0] = next;
 }
 
-static ScatterEnd follow(const march_arrays* arrays, const scattering* medium, const ScatterInfo* how,
+// The photon has come to where it is now: beyond its grid, or to a turn.
+static void arrive(const march_arrays* arrays, photon_lanes* lanes, ScatterEnd* end)
+{
+  const float there = arrays->sigma[lanes->at[0]], now = lanes->now[0];
+  if (there == OUTSIDE)
+  {
+    end->face = face_left(arrays->info, lanes, 0);
+  }
+#if BENDS
+  else if (lanes->turn[0] <= now || (as_int(there) < 0 && lanes->turn[0] == NEVER && now >= lanes->settled[0]))
+  {
+    take_turns(arrays, lanes, -1);
+  }
+#endif
+}
+
+// What a stretch of the photon, of `way` diagonals, leaves where it is.
+//   sigma  scattering and absorption there
+static void leave_stretch(
+  const march_arrays* arrays, const photon_lanes* lanes, float2 sigma, float way, ScatterEnd* end)
+{
+  float remains;
+  const float tau = sigma.y * way, lost = extinguished(tau, &remains);
+  if (end->scatterings > 0)
+  {
+    const float mean = tau > TINY ? lost / tau : 1.0f;
+    leave(arrays->sums + (ulong)lanes->at[0] * RECORD, end->power * mean * way * fmax(sigma.x + sigma.y, 1.0f),
+      lanes->direction[0]);
+  }
+  else
+  {
+    end->absorbedAtFirst += end->power * lost;
+  }
+  end->power = tau > 0.5f ? end->power * remains : end->power - end->power * lost;
+}
+
+// The photon comes to its next wall or turn, or is scattered before.
+static void go_on(const march_arrays* arrays, const scattering* medium, const ScatterInfo* how, photon_lanes* lanes,
+  scattered_flight* flight)
+{
+  ScatterEnd* end = &flight->end;
+  float next = fmin(fmin(lanes->wall[0][0], lanes->wall[1][0]), lanes->wall[2][0]);
+#if BENDS
+  next = fmin(next, lanes->turn[0]);
+#endif
+  const float2 sigma = medium->optical[lanes->at[0]];
+  const float length = fmax(next - lanes->now[0], 0.0f) * lanes->pace[0], spent = sigma.x * length;
+  const bool collides = spent >= flight->depth;
+  const float way = collides ? fmin(flight->depth / sigma.x, length) : length;
+  leave_stretch(arrays, lanes, sigma, way, end);
+  if (!collides)
+  {
+    flight->depth -= spent;
+    move_on(arrays, lanes, next);
+    ++flight->events;
+    arrive(arrays, lanes, end);
+  }
+  else if (end->scatterings == how->mostScatterings)
+  {
+    end->face = StillGoing;
+  }
+  else
+  {
+    ++end->scatterings;
+    flight->events = 0;
+    roulette(flight);
+    scatter(arrays, medium, lanes, way, flight);
+    flight->depth = -log(draw(&flight->random));
+  }
+}
+
+// A photon of a number, which its random numbers belong to.
+static void set_out(const march_arrays* arrays, const ScatterInfo* how, const __global float* photon, ulong number,
+  photon_lanes* lanes, scattered_flight* flight)
+{
+  const ScatterEnd end = { -1, 0, photon[6], 0.0f, 0.0f };
+  flight->end = end;
+  flight->random = random_of(how->seed, number);
+  flight->dim = DIM * end.power;
+  flight->events = 0;
+  begin(arrays, lanes, vload3(0, photon), vload3(1, photon));
+  flight->depth = -log(draw(&flight->random));
+}
+
+// To its end, or into another block.
+static void follow(const march_arrays* arrays, const scattering* medium, const ScatterInfo* how, photon_lanes* lanes,
+  scattered_flight* flight)
+{
+  while (flight->end.face < 0)
+  {
+    if (flight->events >= arrays->info->eventLimit || !moves(lanes))
+    {
+      flight->end.face = StillGoing;
+      break;
+    }
+    go_on(arrays, medium, how, lanes, flight);
+  }
+}
+
+#if BLOCKS
+#include "Photons/Distributed/ScatterInBlock.cl"
+#else
+static ScatterEnd end_of(const march_arrays* arrays, const scattering* medium, const ScatterInfo* how,
   const __global float* photon, ulong number)
 {
   photon_lanes lanes;
-  random_numbers random = random_of(how->seed, number);
-  begin(arrays, &lanes, vload3(0, photon), vload3(1, photon));
-  ScatterEnd end = { -1, 0, photon[6], 0.0f, 0.0f };
-  const float dim = DIM * end.power;
-  float left = -log(draw(&random)); // of the optical depth to the next scattering
-  for (int event = 0; end.face < 0; ++event)
-  {
-    if (event >= arrays->info->eventLimit || !moves(&lanes))
-    {
-      end.face = StillGoing;
-      break;
-    }
-    float next = fmin(fmin(lanes.wall[0][0], lanes.wall[1][0]), lanes.wall[2][0]);
-#if BENDS
-    next = fmin(next, lanes.turn[0]);
-#endif
-    const float2 sigma = medium->optical[lanes.at[0]];
-    const float length = fmax(next - lanes.now[0], 0.0f) * lanes.pace[0], spent = sigma.x * length;
-    const bool collides = spent >= left;
-    const float way = collides ? fmin(left / sigma.x, length) : length;
-    float remains;
-    const float tau = sigma.y * way, lost = extinguished(tau, &remains);
-    if (end.scatterings > 0)
-    {
-      const float mean = tau > TINY ? lost / tau : 1.0f;
-      leave(arrays->sums + (ulong)lanes.at[0] * RECORD, end.power * mean * way * fmax(sigma.x + sigma.y, 1.0f),
-        lanes.direction[0]);
-    }
-    else
-    {
-      end.absorbedAtFirst += end.power * lost;
-    }
-    end.power = tau > 0.5f ? end.power * remains : end.power - end.power * lost;
-    if (collides)
-    {
-      if (end.scatterings == how->mostScatterings)
-      {
-        end.face = StillGoing;
-        break;
-      }
-      ++end.scatterings;
-      roulette(&end, dim, &random);
-      scatter(arrays, medium, &lanes, way, &random);
-      left = -log(draw(&random));
-      event = 0;
-      continue;
-    }
-    left -= spent;
-    move_on(arrays, &lanes, next);
-    const float there = arrays->sigma[lanes.at[0]];
-    if (there == OUTSIDE)
-    {
-      end.face = face_left(arrays->info, &lanes, 0);
-    }
-#if BENDS
-    else if (lanes.turn[0] <= next || (as_int(there) < 0 && lanes.turn[0] == NEVER && next >= lanes.settled[0]))
-    {
-      take_turns(arrays, &lanes, -1);
-    }
-#endif
-  }
-  return end;
+  scattered_flight flight;
+  set_out(arrays, how, photon, number, &lanes, &flight);
+  follow(arrays, medium, how, &lanes, &flight);
+  return flight.end;
 }
 
-// Photons `first` to `first + count` of those from `begin` on.
+// Photons `first` to `first + count`.
 //   optical, phase  of the medium (scattering)
 //   photons         position (voxels), unit direction, power (units)
 //   numbers         of each, which its random numbers belong to
@@ -209,12 +279,13 @@ __kernel void scatter_photons(MarchInfo info, ScatterInfo how, const __global fl
   {
     for (int i = first + block; i < first + min(block + BLOCK, count); ++i)
     {
-      ends[i] = follow(&arrays, &medium, &how, photons + (ulong)i * PHOTON_FLOATS, numbers[i]);
+      ends[i] = end_of(&arrays, &medium, &how, photons + (ulong)i * PHOTON_FLOATS, numbers[i]);
     }
   }
 #else
   const march_arrays arrays = { &info, sigma, coefficients, nodes, sums, 0, 0, 0, 0 };
   const int i = first + get_global_id(0);
-  ends[i] = follow(&arrays, &medium, &how, photons + (ulong)i * PHOTON_FLOATS, numbers[i]);
+  ends[i] = end_of(&arrays, &medium, &how, photons + (ulong)i * PHOTON_FLOATS, numbers[i]);
 #endif
 }
+#endif

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace tyndall
 {
@@ -59,9 +60,10 @@ void AddRun(const ScatteredPhotons& found, const Rgb& colour, PhotonLight& light
 
 ScatteredChannels::ScatteredChannels(
   Device& device, const MarchMedium& through, const Medium& medium, const Field& ior, const std::uint8_t* levels)
-  : Through(through)
+  : Settings(through.settings)
 {
   const bool coloured = through.traits.coloured || medium.phase.HasColour();
+  const double stepPart = ScatteringStepPart(ior, medium.grid.size);
   for (int c = 0; c < (coloured ? 3 : 1); ++c)
   {
     const OneChannelMedium one(medium, c);
@@ -70,9 +72,39 @@ ScatteredChannels::ScatteredChannels(
     {
       channel.own = std::make_unique<const MarchMedium>(device, one.seen, ior, through.settings, levels);
     }
-    channel.photons = std::make_unique<PhotonScattering>(coloured ? *channel.own : through, one.seen, ior);
+    channel.photons = std::make_unique<PhotonScattering>(coloured ? *channel.own : through, one.seen, stepPart);
     this->Channels.push_back(std::move(channel));
   }
+}
+
+ScatteredChannels::ScatteredChannels(Device& device, const Block& block)
+  : Settings(block.settings)
+{
+  for (int c = 0; c < (block.coloured ? 3 : 1); ++c)
+  {
+    Channel channel;
+    if (const MarchMedium* const through = block.through)
+    {
+      const OneChannelMedium one(block.medium, c);
+      if (block.coloured)
+      {
+        MarchTraits traits = through->traits;
+        traits.coloured = false;
+        traits.grey = traits.greyExtinction = true;
+        channel.own =
+          std::make_unique<const MarchMedium>(device, one.seen, block.ior, block.settings, traits, through->block);
+      }
+      channel.photons =
+        std::make_unique<PhotonScattering>(block.coloured ? *channel.own : *through, one.seen, block.stepPart);
+    }
+    this->Channels.push_back(std::move(channel));
+  }
+}
+
+ScatteredPhotons ScatteredChannels::FollowToTheEnd(
+  const PhotonScattering* in, PackedPhotons photons, const PhotonScattering::Settings& settings, const Monitor& monitor)
+{
+  return in->Follow(std::move(photons), settings, monitor);
 }
 
 /// What one unit of a run's light is in each channel.
@@ -83,10 +115,10 @@ Rgb ScatteredChannels::ColourOfRun(const PackedPhotons& packed, bool oneRun, int
   return oneRun ? packed.colour : colour;
 }
 
-void ScatteredChannels::AddTo(
-  PhotonLight& light, const PackedPhotons& packed, const PhotonNumbers& numbers, const Monitor& monitor)
+void ScatteredChannels::AddTo(PhotonLight& light, const PackedPhotons& packed, const PhotonNumbers& numbers,
+  const Monitor& monitor, const Follower& follow) const
 {
-  const MarchSettings& march = this->Through.settings;
+  const MarchSettings& march = this->Settings;
   PhotonScattering::Settings settings;
   settings.seed = march.seed;
   settings.mostScatterings = march.maximumOrders == 0 ? settings.mostScatterings : march.maximumOrders - 1;
@@ -102,7 +134,7 @@ void ScatteredChannels::AddTo(
     const double all = runs;
     const std::size_t of = this->Channels.size() == 1 ? 0 : static_cast<std::size_t>(run);
     const double power = oneRun || packed.channels == 3 ? 1.0 : packed.colour[static_cast<std::size_t>(run)];
-    const ScatteredPhotons found = this->Channels[of].photons->Follow(
+    const ScatteredPhotons found = follow(this->Channels[of].photons.get(),
       OneChannel(packed, packed.channels == 3 ? run : 0, power, PhotonScattering::DepositsPerEvent), settings,
       OfPart(monitor, run / all, (run + 1) / all));
     const Rgb colour = ColourOfRun(packed, oneRun, run);

@@ -1,0 +1,98 @@
+#pragma once
+
+#include "Device/Monitor.h"
+#include "Distribution/BlockPartition.h"
+#include "Distribution/Communicator.h"
+
+#include <cstddef>
+#include <functional>
+#include <vector>
+
+namespace tyndall
+{
+/// What ranks handed to each other.
+struct PhotonTraffic
+{
+  std::size_t photons = 0; ///< that this rank handed on; one counts each time that it goes into another block
+  std::size_t bytes = 0;   ///< of them
+  int rounds = 0;          ///< of marching and handing on, until none was left anywhere
+};
+
+/// Photons go from rank to rank in rounds: each rank marches those that it has as far as its block goes, and hands them
+/// on to the ranks whose blocks touch it.
+class PhotonRounds
+{
+public:
+  /// @param communicator, partition  must stay; as many blocks as ranks
+  PhotonRounds(Communicator& communicator, const BlockPartition& partition);
+
+  /// Marches those that have come (in the first round: that set off here), and gives back those that go on elsewhere.
+  template <class OnItsWay>
+  using March =
+    std::function<std::vector<OnItsWay>(int round, std::vector<OnItsWay>&& arrived, const Monitor& monitor)>;
+
+  /// Until no photon is left anywhere. All ranks call it.
+  /// @throws  on every rank, what `march` throws on one of them
+  template <class OnItsWay>
+  void UntilAllEnd(const March<OnItsWay>& march, const Monitor& monitor)
+  {
+    std::vector<OnItsWay> arrived;
+    int round = 0;
+    double done = 0.0;
+    for (bool left = true; left; ++round)
+    {
+      std::vector<std::vector<OnItsWay>> parcels;
+      this->Others.Together([&] {
+        parcels = this->Sorted(march(round, std::move(arrived), OfPart(monitor, done, 0.5 * (1.0 + done))));
+        Report(monitor, done = 0.5 * (1.0 + done));
+      });
+      arrived = this->Exchange(parcels);
+      left = this->Others.Largest({ arrived.empty() ? 0.0 : 1.0 })[0] > 0.0;
+    }
+    this->Handed.rounds += round;
+  }
+
+  const PhotonTraffic& Traffic() const { return this->Handed; }
+
+private:
+  /// By the neighbours whose blocks they go into.
+  template <class OnItsWay>
+  std::vector<std::vector<OnItsWay>> Sorted(const std::vector<OnItsWay>& gone)
+  {
+    std::vector<std::vector<OnItsWay>> parcels(this->Neighbours.size());
+    for (const OnItsWay& photon : gone)
+    {
+      parcels[this->NeighbourWith(photon.way.voxel)].push_back(photon);
+    }
+    this->Handed.photons += gone.size();
+    this->Handed.bytes += gone.size() * sizeof(OnItsWay);
+    return parcels;
+  }
+
+  /// Those that have come, for those that have gone.
+  template <class OnItsWay>
+  std::vector<OnItsWay> Exchange(const std::vector<std::vector<OnItsWay>>& parcels)
+  {
+    for (std::size_t i = 0; i < parcels.size(); ++i)
+    {
+      this->Others.Send(this->Neighbours[i], Tag, parcels[i]);
+    }
+    std::vector<OnItsWay> arrived;
+    for (const int rank : this->Neighbours)
+    {
+      const std::vector<OnItsWay> parcel = this->Others.Receive<OnItsWay>(rank, Tag);
+      arrived.insert(arrived.end(), parcel.begin(), parcel.end());
+    }
+    return arrived;
+  }
+
+  std::size_t NeighbourWith(const int* voxel) const;
+
+  static constexpr int Tag = 29998; ///< not one of those that BoxExchange.cxx takes
+
+  Communicator& Others;
+  const BlockPartition& Partition;
+  std::vector<int> Neighbours; ///< ranks
+  PhotonTraffic Handed;
+};
+}

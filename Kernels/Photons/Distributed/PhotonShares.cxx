@@ -1,0 +1,284 @@
+#include "Photons/Distributed/PhotonShares.h"
+
+#include "Photons/Distributed/PhotonRounds.h"
+#include "Photons/Marching/MarchedLight.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace tyndall
+{
+namespace
+{
+constexpr int SharesTag = 29997; ///< not one of those that PhotonRounds.h takes
+
+/// Whole numbers as doubles, whose sums are whole: a high and a low half.
+constexpr double Half = 0x1p31;
+
+std::vector<std::int64_t> SumExactly(Communicator& communicator, const std::vector<std::int64_t>& numbers)
+{
+  std::vector<double> halves;
+  for (const std::int64_t number : numbers)
+  {
+    const std::int64_t low = number % static_cast<std::int64_t>(Half);
+    halves.push_back(static_cast<double>((number - low) / static_cast<std::int64_t>(Half)));
+    halves.push_back(static_cast<double>(low));
+  }
+  halves = communicator.Sum(halves);
+  std::vector<std::int64_t> sums;
+  for (std::size_t i = 0; i < numbers.size(); ++i)
+  {
+    sums.push_back(static_cast<std::int64_t>(halves[2 * i]) * static_cast<std::int64_t>(Half) +
+      static_cast<std::int64_t>(halves[2 * i + 1]));
+  }
+  return sums;
+}
+
+/// Of the first rank that has any.
+Rgb FirstOfAll(Communicator& communicator, const Rgb& own)
+{
+  std::vector<double> colours(3 * static_cast<std::size_t>(communicator.Ranks()), 0.0);
+  std::copy(own.begin(), own.end(), colours.begin() + 3 * communicator.Rank());
+  colours = communicator.Sum(colours);
+  const auto first = std::find_if(colours.begin(), colours.end(), [](double power) { return power != 0.0; });
+  Rgb colour = {};
+  if (first != colours.end())
+  {
+    std::copy_n(colours.begin() + (first - colours.begin()) / 3 * 3, 3, colour.begin());
+  }
+  return colour;
+}
+
+/// Checked photons of each rank.
+PhotonTotals TotalsOf(Communicator& communicator, const std::vector<Photon>& share, bool batches)
+{
+  PhotonTotals all;
+  const std::vector<double> largest =
+    communicator.Largest({ BrightestOf(share), batches ? 1.0 * BatchesOf(share) : 1.0 });
+  all.brightest = largest[0];
+  all.batches = static_cast<int>(largest[1]);
+  all.powerUnits = SumExactly(communicator, { PowerUnitsOf(share, all.brightest) })[0];
+  all.firstColour = FirstOfAll(communicator, FirstColourOf(share));
+  all.oneColour = communicator.Largest({ HaveColour(share, all.firstColour) ? 0.0 : 1.0 })[0] == 0.0;
+  return all;
+}
+
+void AddUpEntered(Communicator& communicator, PackedPhotons& packed)
+{
+  std::vector<std::int64_t> numbers(packed.enteredUnits.begin(), packed.enteredUnits.end());
+  numbers.push_back(static_cast<std::int64_t>(packed.missed));
+  numbers = SumExactly(communicator, numbers);
+  packed.missed = static_cast<std::size_t>(numbers.back());
+  for (std::size_t c = 0; c < 3; ++c)
+  {
+    packed.enteredUnits[c] = numbers[c];
+    packed.entered[c] = static_cast<double>(numbers[c]) * packed.unit;
+  }
+}
+
+/// One of a packing's photons.
+struct PlacedPhoton
+{
+  std::size_t place = 0;
+  int batch = 0;
+};
+
+/// Where each photon sets off.
+std::vector<std::vector<PlacedPhoton>> ByBlocks(const BlockPartition& partition, const PackedPhotons& packed)
+{
+  std::vector<std::vector<PlacedPhoton>> byRank(partition.blocks.size());
+  int batch = 0;
+  for (std::size_t i = 0; i < packed.Count(); ++i)
+  {
+    while (static_cast<int>(i) >= packed.batchBegin[static_cast<std::size_t>(batch) + 1])
+    {
+      ++batch;
+    }
+    const float* const position = packed.values.data() + i * static_cast<std::size_t>(packed.FloatsEach());
+    int voxel[3];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      voxel[axis] = std::clamp(static_cast<int>(position[axis]), 0, partition.whole.size[axis] - 1);
+    }
+    const auto holds = [&](const VoxelBox& block) { return Holds(block, voxel); };
+    const auto block = std::find_if(partition.blocks.begin(), partition.blocks.end(), holds);
+    byRank[static_cast<std::size_t>(block - partition.blocks.begin())].push_back({ i, batch });
+  }
+  return byRank;
+}
+
+/// Photons for one rank, as they are sent.
+struct Parcel
+{
+  std::vector<float> values;
+  std::vector<cl_ulong> numbers, marks;
+  std::vector<int> batches;
+
+  Parcel() = default;
+  Parcel(const PackedPhotons& packed, const std::vector<cl_ulong>& marksOfAll, const std::vector<PlacedPhoton>& some)
+  {
+    const auto each = static_cast<std::ptrdiff_t>(packed.FloatsEach());
+    for (const PlacedPhoton& photon : some)
+    {
+      const auto from = packed.values.begin() + static_cast<std::ptrdiff_t>(photon.place) * each;
+      this->values.insert(this->values.end(), from, from + each);
+      this->numbers.push_back(packed.numbers[photon.place]);
+      this->batches.push_back(photon.batch);
+      if (!marksOfAll.empty())
+      {
+        this->marks.push_back(marksOfAll[photon.place]);
+      }
+    }
+  }
+  void Send(Communicator& communicator, int to) const
+  {
+    communicator.Send(to, SharesTag, this->values);
+    communicator.Send(to, SharesTag, this->numbers);
+    communicator.Send(to, SharesTag, this->marks);
+    communicator.Send(to, SharesTag, this->batches);
+  }
+  static Parcel Receive(Communicator& communicator, int from)
+  {
+    Parcel parcel;
+    parcel.values = communicator.Receive<float>(from, SharesTag);
+    parcel.numbers = communicator.Receive<cl_ulong>(from, SharesTag);
+    parcel.marks = communicator.Receive<cl_ulong>(from, SharesTag);
+    parcel.batches = communicator.Receive<int>(from, SharesTag);
+    return parcel;
+  }
+};
+
+/// Those for each rank become those from each.
+void Exchange(Communicator& communicator, std::vector<Parcel>& parcels)
+{
+  for (int rank = 0; rank < communicator.Ranks(); ++rank)
+  {
+    if (rank != communicator.Rank())
+    {
+      parcels[static_cast<std::size_t>(rank)].Send(communicator, rank);
+    }
+  }
+  for (int rank = 0; rank < communicator.Ranks(); ++rank)
+  {
+    if (rank != communicator.Rank())
+    {
+      parcels[static_cast<std::size_t>(rank)] = Parcel::Receive(communicator, rank);
+    }
+  }
+}
+
+/// What has come, batch by batch.
+void Join(const std::vector<Parcel>& parcels, StartingPhotons& starting)
+{
+  PackedPhotons& packed = starting.packed;
+  const auto each = static_cast<std::ptrdiff_t>(packed.FloatsEach());
+  packed.values.clear();
+  packed.numbers.clear();
+  for (int batch = 0; batch < packed.Batches(); ++batch)
+  {
+    packed.batchBegin[static_cast<std::size_t>(batch)] = static_cast<int>(packed.numbers.size());
+    for (const Parcel& parcel : parcels)
+    {
+      for (std::size_t i = 0; i < parcel.numbers.size(); ++i)
+      {
+        if (parcel.batches[i] != batch)
+        {
+          continue;
+        }
+        const auto from = parcel.values.begin() + static_cast<std::ptrdiff_t>(i) * each;
+        packed.values.insert(packed.values.end(), from, from + each);
+        packed.numbers.push_back(parcel.numbers[i]);
+        if (!parcel.marks.empty())
+        {
+          starting.marks.push_back(parcel.marks[i]);
+        }
+      }
+    }
+  }
+  packed.batchBegin.back() = static_cast<int>(packed.numbers.size());
+}
+}
+
+PlaceOfShare PlaceAmong(Communicator& communicator, std::size_t share)
+{
+  std::vector<double> counts(static_cast<std::size_t>(communicator.Ranks()), 0.0);
+  counts[static_cast<std::size_t>(communicator.Rank())] = static_cast<double>(share);
+  counts = communicator.Sum(counts);
+  const auto begin = counts.begin();
+  return { static_cast<std::size_t>(std::accumulate(begin, begin + communicator.Rank(), 0.0)),
+    static_cast<std::size_t>(std::accumulate(begin, counts.end(), 0.0)) };
+}
+
+StartingPhotons SendToTheirBlocks(Communicator& communicator, const BlockPartition& partition,
+  const std::vector<Photon>& share, const PhotonNumbers& numbers, const MarchTraits& traits,
+  const MarchSettings& settings)
+{
+  communicator.Together([&] { CheckPhotons(share, settings.batches); });
+  const PhotonTotals totals = TotalsOf(communicator, share, settings.batches);
+  const auto largestWeight = static_cast<float>(communicator.Largest({ CountedPhotons::LargestWeight(share) })[0]);
+  StartingPhotons starting;
+  communicator.Together([&] {
+    starting.packed = PackingOf(totals, traits.Channels(settings) == 3, MarchEventLimit(partition.whole, settings));
+    FillPacking(starting.packed, share, partition.whole);
+  });
+  AddUpEntered(communicator, starting.packed);
+  const std::size_t met = PlaceAmong(communicator, starting.packed.Count()).all;
+  std::vector<Parcel> parcels;
+  communicator.Together([&] {
+    CountedPhotons counted;
+    if (settings.counts)
+    {
+      counted = CountedPhotons(share, starting.packed, largestWeight, met);
+    }
+    starting.weightUnit = counted.weightUnit;
+    for (std::size_t& number : starting.packed.numbers)
+    {
+      number = numbers[number];
+    }
+    for (const std::vector<PlacedPhoton>& some : ByBlocks(partition, starting.packed))
+    {
+      parcels.emplace_back(starting.packed, counted.marks, some);
+    }
+  });
+  Exchange(communicator, parcels);
+  Join(parcels, starting);
+  return starting;
+}
+
+std::vector<Photon> ChosenOnEachRank(Communicator& communicator, const std::vector<Photon>& share,
+  const PlaceOfShare& place, const std::vector<std::size_t>& chosen)
+{
+  std::vector<Photon> own;
+  for (const std::size_t number : chosen)
+  {
+    if (number >= place.first && number < place.first + share.size())
+    {
+      own.push_back(share[number - place.first]);
+    }
+  }
+  for (int rank = 0; rank < communicator.Ranks(); ++rank)
+  {
+    if (rank != communicator.Rank())
+    {
+      communicator.Send(rank, SharesTag, own);
+    }
+  }
+  std::vector<Photon> all;
+  for (int rank = 0; rank < communicator.Ranks(); ++rank)
+  {
+    const std::vector<Photon> some = rank == communicator.Rank() ? own : communicator.Receive<Photon>(rank, SharesTag);
+    all.insert(all.end(), some.begin(), some.end());
+  }
+  return all;
+}
+
+PackedPhotons ThoseIn(const VoxelBox& block, const Grid& whole, const PackedPhotons& packed)
+{
+  std::vector<PlacedPhoton> own = ByBlocks({ whole, { block, { { 0, 0, 0 }, whole.size } } }, packed)[0];
+  StartingPhotons starting;
+  starting.packed = packed;
+  Join({ Parcel(packed, {}, own) }, starting);
+  return starting.packed;
+}
+}

@@ -1,0 +1,154 @@
+#pragma once
+
+#include "PhotonScene.h"
+
+#include "Distribution/BoxExchange.h"
+#include "Distribution/RanksInThreads.h"
+#include "Photons/Distributed/PhotonsInBlocks.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+// Scenes in blocks, one a rank, whose ranks are threads.
+
+/// The arrays of a box of a scene.
+struct BlockOfScene
+{
+  BlockOfScene(const PhotonScene& scene, const tyndall::VoxelBox& box)
+    : medium(scene.medium)
+  {
+    const tyndall::VoxelBox whole = { { 0, 0, 0 }, scene.medium.grid.size };
+    const auto part = [&](const std::vector<float>& values) {
+      return tyndall::PartOf(values, whole, box, scene.ComponentsOf(values));
+    };
+    this->sigma_a = part(scene.sigma_a);
+    this->sigma_s = part(scene.sigma_s);
+    this->ior = scene.ior.empty() ? scene.ior : part(scene.ior);
+    if (scene.medium.phase.Varies())
+    {
+      const tyndall::Field& g = scene.medium.phase.G();
+      this->g = part({ g.values, g.values + scene.medium.grid.VoxelCount() * static_cast<std::size_t>(g.components) });
+      this->medium.phase = scene.medium.phase.WithG({ this->g.data(), g.components });
+    }
+    this->medium.grid.size = box.size;
+    this->medium.sigma_a = { this->sigma_a.data(), scene.ComponentsOf(scene.sigma_a) };
+    this->medium.sigma_s = { this->sigma_s.data(), scene.ComponentsOf(scene.sigma_s) };
+    for (std::size_t i = 0; i < box.VoxelCount(); ++i)
+    {
+      std::array<int, 3> voxel = this->medium.grid.VoxelAt(i);
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        voxel[axis] += box.first[axis];
+      }
+      this->places.push_back(scene.medium.grid.IndexOf(voxel));
+    }
+  }
+  BlockOfScene(const BlockOfScene&) = delete;
+  BlockOfScene& operator=(const BlockOfScene&) = delete;
+
+  tyndall::Field Index() const { return { this->ior.empty() ? nullptr : this->ior.data(), 1 }; }
+  /// Values of the box to those of the whole.
+  void Put(const std::vector<float>& from, std::vector<float>& to, std::size_t voxels) const
+  {
+    const std::size_t width = this->places.empty() ? 0 : from.size() / this->places.size();
+    to.resize(std::max(to.size(), voxels * width));
+    for (std::size_t i = 0; i < from.size(); ++i)
+    {
+      to[this->places[i / width] * width + i % width] = from[i];
+    }
+  }
+
+  tyndall::Medium medium;
+  std::vector<float> sigma_a, sigma_s, ior, g;
+  std::vector<std::size_t> places; ///< in the whole
+};
+
+inline std::vector<std::vector<float>*> ArraysOf(tyndall::PhotonLight& light)
+{
+  return { &light.light.fluence, &light.light.fluenceDirect, &light.light.fluenceError, &light.meanDirection,
+    &light.photonCount, &light.photonWeight, &light.batchFluence };
+}
+
+/// What a rank has of photons: the more, the higher its number.
+inline std::vector<tyndall::Photon> ShareOf(const std::vector<tyndall::Photon>& photons, int rank, int ranks)
+{
+  const auto cut = [&](int r) {
+    return photons.begin() + static_cast<std::ptrdiff_t>(photons.size()) * r * r / (ranks * ranks);
+  };
+  return { cut(rank), cut(rank + 1) };
+}
+
+/// Arrays of the blocks put together; all else must be the same on all ranks.
+inline tyndall::PhotonLight LightOfAll(tyndall::Device& device, const PhotonScene& scene,
+  const tyndall::BlockPartition& partition, const std::vector<tyndall::Photon>& photons,
+  std::vector<tyndall::PhotonTraffic>* traffic = nullptr)
+{
+  const int ranks = static_cast<int>(partition.blocks.size());
+  std::vector<tyndall::PhotonLight> found(ranks);
+  std::vector<tyndall::PhotonTraffic> handed(ranks);
+  tyndall::RunInThreads(ranks, [&](tyndall::Communicator& communicator) {
+    const int rank = communicator.Rank();
+    const BlockOfScene part(scene, partition.blocks[rank]);
+    tyndall::PhotonMarcherInBlocks marcher(device, communicator, partition, part.medium, part.Index(), scene.settings);
+    found[rank] = marcher.March(ShareOf(photons, rank, ranks));
+    handed[rank] = marcher.Traffic();
+  });
+  tyndall::PhotonLight all = found[0];
+  const std::size_t voxels = scene.medium.grid.VoxelCount();
+  for (std::vector<float>* array : ArraysOf(all))
+  {
+    array->clear();
+  }
+  for (int rank = 0; rank < ranks; ++rank)
+  {
+    const BlockOfScene part(scene, partition.blocks[rank]);
+    for (std::size_t i = 0; i < ArraysOf(all).size(); ++i)
+    {
+      part.Put(*ArraysOf(found[rank])[i], *ArraysOf(all)[i], voxels);
+    }
+    EXPECT_EQ(found[rank].light.facePowerOut, all.light.facePowerOut);
+    EXPECT_EQ(found[rank].light.balance.absorbed, all.light.balance.absorbed);
+    EXPECT_EQ(found[rank].light.channels, all.light.channels);
+    EXPECT_EQ(handed[rank].rounds, handed[0].rounds);
+  }
+  if (traffic)
+  {
+    *traffic = handed;
+  }
+  return all;
+}
+
+/// Extinction from 0.01 to 1 a voxel's edge, `components` of it.
+inline void Randomise(PhotonScene& scene, std::size_t components)
+{
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> exponent(-2.0, 0.0);
+  for (std::vector<float>* values : { &scene.sigma_a, &scene.sigma_s })
+  {
+    values->resize(scene.medium.grid.VoxelCount() * components);
+    for (float& value : *values)
+    {
+      value = static_cast<float>(0.5 / scene.medium.grid.spacing[0] * std::pow(10.0, exponent(random)));
+    }
+  }
+}
+
+/// 12 x 9 x 7 voxels of some absorption and scattering.
+inline PhotonScene SmallScene(std::size_t components = 1)
+{
+  PhotonScene scene({ 12, 9, 7 }, 0.2, 0.9, 0.0f, 0.0f);
+  Randomise(scene, components);
+  return scene;
+}
+
+/// Five blocks of that, of which one is empty and one a voxel.
+inline tyndall::BlockPartition UnevenBlocks(const PhotonScene& scene)
+{
+  return { scene.medium.grid,
+    { { { 1, 0, 0 }, { 11, 9, 7 } }, {}, { { 0, 1, 0 }, { 1, 8, 7 } }, { { 0, 0, 1 }, { 1, 1, 6 } },
+      { { 0, 0, 0 }, { 1, 1, 1 } } } };
+}
