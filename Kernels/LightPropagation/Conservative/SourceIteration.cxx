@@ -271,12 +271,14 @@ void SourceIteration::SweepOrder(const Monitor& monitor)
   }
   const Buffer<float>* const source = this->Shining ? &this->Parts.Source : nullptr;
   SweepOperator& sweep = this->InFilledPart() ? *this->Filled : this->Lit ? *this->Lit : *this->Whole;
-  const SweepTally tally = sweep.Apply(source, boundary, monitor);
-  this->OnTheWay = tally.onTheWay;
-  if (this->Order > 0)
+  BeamsInSource beams = this->Parts.BeamsOfSource();
+  if (this->Order == 0)
   {
-    this->Parts.DarkenBeams(); // they are first scattered once
+    beams.Hold();
   }
+  const SweepTally tally = sweep.Apply(source, boundary, monitor);
+  beams.GoOn();
+  this->OnTheWay = tally.onTheWay;
   if (!this->InFilledPart())
   {
     this->Result.ledger.Count(tally);
@@ -390,7 +392,7 @@ void SourceIteration::ScatterOrder()
       this->Order == 0 ? -1.0f : 1.0f);
     if (this->Order == 0 && parts.Given)
     {
-      parts.Given->AddStraightOn(parts.TheDevice, parts.Layout, parts.Basis.get(), this->Result.shown);
+      parts.Given->AddStraightOn(parts.TheDevice, parts.Layout, parts.Basis, this->Result.shown);
     }
   }
   this->Scattered = powers.scattered;

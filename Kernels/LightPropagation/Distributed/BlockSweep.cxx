@@ -1,6 +1,7 @@
 #include "LightPropagation/Distributed/BlockSweep.h"
 
 #include "Device/Defines.h"
+#include "LightPropagation/Sweep/SweepDefines.h"
 #include "Medium/BoxFaces.h"
 #include "TyndallKernelSources.h"
 
@@ -17,7 +18,7 @@ SweepPlan PlanOf(
   Device& device, const BlockPartition& partition, int rank, const ParallelBundles& rays, const SweepVolume& volume)
 {
   SweepPlan plan(device, partition.whole, partition.blocks[rank], rays.axis, rays.bundles, volume.channels,
-    { false, false, false }, volume.deposit.flux != nullptr, volume.deposit.partialCurrents != nullptr, nullptr,
+    { false, false, false }, volume.deposit.flux != nullptr, volume.deposit.partialCurrents != nullptr, volume.angular,
     volume.moments, true, volume.octantSource != nullptr);
   const std::array<int, 3>& n = partition.blocks[rank].size;
   const std::array<int, 3> step = { 1, n[0], n[0] * n[1] };
@@ -76,7 +77,8 @@ BlockSweep::BlockSweep(Device& device, const BlockPartition& partition, int rank
   this->Radiance = Buffer<float>(device, 2 * plan.radianceEachWay, "the light that comes in sideways");
   this->Sideways =
     Buffer<float>(device, plan.units.size() * plan.Planes() * 4 * plan.channels, "the power that leaves sideways");
-  this->Coefficients = Buffer<float>(device, std::vector<float>{ 0.0f }, "the angular functions");
+  this->Coefficients = Buffer<float>(
+    device, plan.coefficients.empty() ? std::vector<float>{ 0.0f } : plan.coefficients, "the angular functions");
   this->BundlesOnDevice = Buffer<BundleInfo>(device, plan.bundleRows, "the bundles of rays");
   this->Units = Buffer<UnitInfo>(device, plan.units, "the units of work");
   this->Schedule = Buffer<cl_int2>(device, plan.schedule, "the schedule");
@@ -221,20 +223,10 @@ cl::Kernel BlockSweep::Kernel(const SweepVolume& volume)
 {
   const SweepPlan& plan = this->Plan;
   const bool shines = volume.source != nullptr;
-  std::string options = Define("SIDES", 1) + Define("STREAMED", 0) + Define("REAL_WIDTH", plan.vector) +
-    Define("CHANNELS", plan.channels) + Define("ROW", plan.row) + Define("SOURCE", shines) + Define("BORDER", 0) +
-    Define("NET_FLUX", plan.netFlux) + Define("FACE_OUT", 0) + Define("FACE_SPREAD", 0) + Define("FACE_IN", 0) +
-    Define("OCTANT_SOURCE", plan.octantSource && shines) + Define("CURRENTS", plan.partialCurrents) +
-    Define("DEGREE", 0) + Define("BEAMS", 0) + Define("PERIODIC_P", 0) + Define("PERIODIC_U", 0) +
-    Define("PERIODIC_V", 0);
-  for (int members = 1; members <= MaxMembers; members *= 2)
-  {
-    const auto has = [&](const BundleInfo& bundle) { return bundle.members == members; };
-    if (std::any_of(plan.bundleRows.begin(), plan.bundleRows.end(), has))
-    {
-      options += Define(("MEMBERS_" + std::to_string(members)).c_str(), 1);
-    }
-  }
+  const std::string options = DefinesOf(plan) + Define("SIDES", 1) + Define("STREAMED", 0) + Define("SOURCE", shines) +
+    Define("BORDER", 0) + Define("NET_FLUX", plan.netFlux) + Define("FACE_OUT", 0) + Define("FACE_SPREAD", 0) +
+    Define("FACE_IN", 0) + Define("OCTANT_SOURCE", plan.octantSource && shines) + Define("PERIODIC_P", 0) +
+    Define("PERIODIC_U", 0) + Define("PERIODIC_V", 0);
   return this->TheDevice.Kernel("sweep", kernel_source::Sweep, options);
 }
 
@@ -251,11 +243,13 @@ void BlockSweep::Launch(const SweepVolume& volume, const Monitor& monitor)
   info.first = volume.first;
   info.stride = volume.stride;
   info.radianceEachWay = static_cast<uint>(plan.radianceEachWay); // the other buffers hold one way alone
+  info.coefficientsEachWay = static_cast<uint>(plan.coefficientsEachWay);
   info.bundles = static_cast<int>(plan.bundles.size());
   info.patternPlanes = plan.PatternPlanes();
   info.axis = plan.axes.axis;
   info.planes = plan.plane;
   info.moments = plan.moments;
+  info.packedMoments = plan.momentRow;
   info.sizeY = this->Block.size[1];
   info.firstChannel = volume.firstChannel;
   cl_int outer = 0;

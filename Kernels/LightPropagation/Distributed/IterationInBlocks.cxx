@@ -1,13 +1,17 @@
 #include "LightPropagation/Distributed/IterationInBlocks.h"
 
 #include "Light/LeftOut.h"
+#include "LightPropagation/Conservative/ShownLight.h"
 #include "LightPropagation/Problem/ScatteringOrders.h"
+#include "LightPropagation/Scattering/BeamsInSource.h"
+#include "LightPropagation/Scattering/MomentScattering.h"
 #include "LightPropagation/Uncollided/UncollidedLamp.h"
 #include "Medium/VoxelSums.h"
 #include "Numerics/Constants.h"
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <utility>
 
 namespace tyndall
@@ -29,29 +33,56 @@ IterationInBlocks::IterationInBlocks(Device& device, Communicator& communicator,
   , Has(partition.blocks[communicator.Rank()].VoxelCount() > 0)
   , Layout(this->LayoutOn(partition.OwnGrid(communicator.Rank())))
   , WholeLayout(this->LayoutOn(partition.whole))
-  , Truncated(scene.medium, 0, scene.channels)
-  , OnDevice(device, scene.medium, this->Truncated, this->Layout, { true, false })
-  , Scattering(device, this->Layout, this->OnDevice, scene.traits.scatters)
+  , OnDevice(device, scene.medium, scene.Scattering(), this->Layout, { true, false })
+  , Scattering(MakeScattering(device, this->Layout, this->OnDevice, scene.Scattering().Degree(), scene.traits.scatters))
   , Directions(partition.whole, settings, DirectionsForVoxels(settings.directionsPerFace, partition.whole.spacing),
       settings.staggeredRays ? RayStarts::Staggered : RayStarts::Middle)
   , Far(Split(scene.illumination.environment, this->Directions.Set()))
   , Boundary(partition.whole, settings, this->Directions, scene.illumination, this->Far.smooth)
+  , Lamps(this->LampsOf(scene.illumination))
 {
   if (this->Boundary.Shines())
   {
     this->Boundary.CheckRays(scene.channels);
   }
-  this->Source = Buffer<float>(device, this->Layout.Floats(), "the scattered light");
-  this->Path = Buffer<float>(device, this->Layout.Floats(), "the light gathered");
+  if (scene.Scattering().Degree() > 0 && this->Has)
+  {
+    this->Angular =
+      std::make_unique<SweptMoments>(this->Directions, scene.medium.phase, scene.Scattering(), this->Lamps);
+    this->OfLamp = Buffer<float>(device, this->Layout.Floats(), "the light of a lamp");
+  }
+  const std::size_t moments = this->Layout.MomentFloats(this->Functions());
+  const int beams = this->Angular ? this->Angular->Beams() : 0;
+  this->Source = Buffer<float>(device, this->Layout.MomentFloats(this->Functions(), beams), "the scattered light");
+  this->Path = Buffer<float>(device, moments, "the light gathered");
   this->Fluence = Buffer<float>(device, this->Layout.Floats(), "fluence");
   if (settings.netFlux)
   {
     this->Flux = Buffer<float>(device, this->Layout.Floats(3), "net_flux");
     this->Flux.Fill(0.0f);
   }
+  if (this->StoresMoments())
+  {
+    this->Shown = Buffer<float>(device, moments, "the light shown");
+    this->Shown.Fill(0.0f);
+  }
   this->Source.Fill(0.0f);
   this->Path.Fill(0.0f);
   this->Fluence.Fill(0.0f);
+}
+
+int IterationInBlocks::Functions() const
+{
+  const int degree = this->Scene.Scattering().Degree();
+  return (degree + 1) * (degree + 1);
+}
+
+std::vector<Light> IterationInBlocks::LampsOf(const Illumination& shining) const
+{
+  const SplitEnvironment far = Split(shining.environment, this->Directions.Set());
+  std::vector<Light> lamps = shining.lights;
+  lamps.insert(lamps.end(), far.peaks.begin(), far.peaks.end());
+  return lamps;
 }
 
 std::unique_ptr<SweepOperator> IterationInBlocks::MakeSweep(const SweepRequest& request)
@@ -77,7 +108,7 @@ void IterationInBlocks::LoadEmission()
     const Field& emission = this->Scene.medium.emission;
     const std::vector<float> values =
       Planar(this->Layout, this->Layout.channels, [&](std::size_t i, int c) { return emission.At(i, c); });
-    this->Source.Write(values.data(), values.size());
+    this->Source.Write(values.data(), values.size() - SweepPadding);
     for (int c = 0; c < this->Layout.channels; ++c)
     {
       emitted[c] = 4.0 * Pi * this->Layout.grid.VoxelVolume() *
@@ -94,24 +125,59 @@ void IterationInBlocks::LoadEmission()
 /// Directional lights and peaks of the environment, which are such.
 void IterationInBlocks::AddLamps(const Monitor& monitor)
 {
-  std::vector<Light> lamps = this->Scene.illumination.lights;
-  lamps.insert(lamps.end(), this->Far.peaks.begin(), this->Far.peaks.end());
-  const SweepMaker sweeps = [this](const SweepRequest& request) { return this->MakeSweep(request); };
-  // Rays of a beam are those through the whole box.
-  const UncollidedVolume volume = { this->TheDevice, this->WholeLayout, this->OnDevice.SigmaT(),
-    this->Settings.periodic, sweeps, this->WholeDeposit() };
-  for (std::size_t i = 0; i < lamps.size(); ++i)
+  for (std::size_t i = 0; i < this->Lamps.size(); ++i)
   {
-    const double all = static_cast<double>(lamps.size());
-    this->Ledger.Count(UncollidedLamp(lamps[i]).AddTo(volume, OfPart(monitor, i / all, (i + 1) / all)));
+    const double all = static_cast<double>(this->Lamps.size());
+    SweepTally tally;
+    std::exception_ptr error;
+    try
+    {
+      tally = this->AddLamp(i, OfPart(monitor, i / all, (i + 1) / all));
+    }
+    catch (...)
+    {
+      error = std::current_exception();
+    }
+    this->Others.Together([&] {
+      if (error)
+      {
+        std::rethrow_exception(error);
+      }
+    });
+    this->Ledger.Count(tally);
   }
+  if (this->Has && this->StoresMoments())
+  {
+    this->Scattering->AddFirstScattered(this->WholeDeposit(), this->Shown);
+  }
+}
+
+SweepTally IterationInBlocks::AddLamp(std::size_t lamp, const Monitor& monitor)
+{
+  const SweepMaker sweeps = [this](const SweepRequest& request) { return this->MakeSweep(request); };
+  UncollidedVolume volume = { this->TheDevice, this->Layout, this->OnDevice.SigmaT(), this->Settings.periodic, sweeps,
+    this->WholeDeposit() };
+  volume.whole = &this->Partition.whole;
+  if (this->Angular)
+  {
+    this->OfLamp.Fill(0.0f);
+    volume.basis = &this->Angular->Basis();
+    volume.beamPath = &this->OfLamp;
+  }
+  const SweepTally tally = UncollidedLamp(this->Lamps[lamp]).AddTo(volume, monitor);
+  const int beam = this->Angular ? this->Angular->BeamOf(lamp) : -1;
+  if (beam >= 0)
+  {
+    this->Scattering->AddBeam(this->OfLamp, this->Source, beam);
+  }
+  return tally;
 }
 
 /// How many voxels make a cell, 2^this along each axis; all 0: cells do not pay, or voxels are too thick for them.
 std::array<int, 3> IterationInBlocks::CellHalvings()
 {
   if (this->Settings.acceleration != PropagationAcceleration::Automatic || this->Settings.maximumOrders > 0 ||
-    !this->Scene.traits.scatters)
+    !this->Scene.traits.scatters || this->Scene.Scattering().Degree() > 0)
   {
     return {};
   }
@@ -190,15 +256,21 @@ EnergyLedger IterationInBlocks::WithOutOfCells() const
   return with;
 }
 
-/// One order: from the light that was swept to the next source, with the powers of all ranks.
-void IterationInBlocks::Scatter()
+/// @param scale  to W / length^2
+void IterationInBlocks::TakeDirect(const Buffer<float>& fluence, double scale)
 {
   if (this->Order == 0 && this->Has)
   {
-    this->Direct = Interleaved(this->Layout, this->Path, 1.0 / this->Layout.grid.VoxelVolume());
+    this->Direct = Interleaved(this->Layout, fluence, scale);
   }
+}
+
+/// One order: from the light that was swept to the next source, with the powers of all ranks.
+void IterationInBlocks::Scatter()
+{
   if (!this->Cells.empty())
   {
+    this->TakeDirect(this->Path, 1.0 / this->Layout.grid.VoxelVolume());
     this->ScatterByCells();
     return;
   }
@@ -209,10 +281,17 @@ void IterationInBlocks::Scatter()
       return;
     }
     const ScatteringOperator::Powers own =
-      this->Scattering.ScatterOrder(this->WholeDeposit(), this->Fluence, this->Source, { 0, this->Layout.Stride() });
+      this->Scattering->ScatterOrder(this->WholeDeposit(), this->Fluence, this->Source, { 0, this->Layout.Stride() });
     std::copy(own.absorbed.begin(), own.absorbed.end(), powers.begin());
     std::copy(own.scattered.begin(), own.scattered.end(), powers.begin() + 3);
+    if (this->StoresMoments())
+    {
+      // What is shown holds lamps' light alone before the first order.
+      const std::size_t values = this->Layout.Places(this->Functions()).beams;
+      AddToShown(this->TheDevice, values, this->Source, this->Shown, this->Order == 0 ? -1.0f : 1.0f);
+    }
   });
+  this->TakeDirect(this->Fluence, 1.0);
   powers = this->Others.Sum(powers);
   for (int c = 0; c < 3; ++c)
   {
@@ -255,8 +334,12 @@ LightField IterationInBlocks::Run(const Monitor& monitor)
 {
   this->LoadEmission();
   this->MakeCells();
-  const std::unique_ptr<SweepOperator> sweep = this->MakeSweep({ this->WholeDeposit(),
-    { { 0, this->Directions.Along(0) }, { 1, this->Directions.Along(1) }, { 2, this->Directions.Along(2) } } });
+  SweepRequest request = { this->WholeDeposit(),
+    { { 0, this->Directions.Along(0) }, { 1, this->Directions.Along(1) }, { 2, this->Directions.Along(2) } } };
+  request.angular = this->Angular ? &this->Angular->Values() : nullptr;
+  const std::unique_ptr<SweepOperator> sweep = this->MakeSweep(request);
+  const std::size_t ofBeams = this->Angular ? this->Angular->Beams() * this->Layout.Values() : 0;
+  BeamsInSource beams(this->TheDevice, this->Source, this->Layout.Places(this->Functions()).beams, ofBeams);
   do
   {
     const Monitor ofOrder =
@@ -269,13 +352,40 @@ LightField IterationInBlocks::Run(const Monitor& monitor)
     const SweepBoundary boundary = first && this->Boundary.Shines() ? this->Boundary.Boundary() : SweepBoundary();
     if (this->Shining || boundary)
     {
+      if (first)
+      {
+        beams.Hold();
+      }
       this->Ledger.Count(sweep->Apply(
         this->Shining ? &this->Source : nullptr, boundary, OfPart(ofOrder, first ? UncollidedPart : 0.0, 1.0)));
+      beams.GoOn();
     }
     this->Scatter();
     ++this->Order;
   } while (!this->Done());
   return this->TakeLight();
+}
+
+/// What is shown of scattered light, in the same form on all ranks.
+void IterationInBlocks::AddShown(LightField& light)
+{
+  std::unique_ptr<ShownLight> shown;
+  if (this->Angular)
+  {
+    std::size_t most = 0;
+    for (const VoxelBox& block : this->Partition.blocks)
+    {
+      most = std::max(most, this->Layout.channels * block.VoxelCount());
+    }
+    shown = std::make_unique<ShownLight>(
+      this->Scene.medium, this->Scene.Scattering(), this->Angular->Basis(), this->Layout, most);
+  }
+  const bool coloured = this->Others.Largest({ shown && shown->HasColour() ? 1.0 : 0.0 })[0] > 0.0;
+  if (shown)
+  {
+    shown->TakeColour(coloured);
+    shown->AddTo(light, this->TheDevice, this->Shown, this->Path);
+  }
 }
 
 LightField IterationInBlocks::TakeLight()
@@ -300,6 +410,18 @@ LightField IterationInBlocks::TakeLight()
     light.fluenceDirect = std::move(this->Direct);
   }
   light.storedDirections = { { 0.0, 0.0, 0.0 } };
+  if (this->Scene.traits.scatters)
+  {
+    light.leftOut = this->Scene.Scattering().LeftOut();
+  }
+  if (this->StoresMoments())
+  {
+    this->AddShown(light);
+  }
+  else if (this->Scene.Scattering().Degree() > 0)
+  {
+    light.leftOut.emplace_back(left_out::MomentsForPictures);
+  }
   const EnergyLedger ledger = this->WithOutOfCells();
   light.balance = ledger.Balance();
   light.facePowerOut = ledger.FacePowerOut();

@@ -13,8 +13,8 @@
 #include "LightPropagation/Distributed/CellsOverRanks.h"
 #include "LightPropagation/Distributed/SweepInBlocks.h"
 #include "LightPropagation/Problem/MediumOnDevice.h"
-#include "LightPropagation/Problem/TruncatedScattering.h"
-#include "LightPropagation/Scattering/IsotropicScattering.h"
+#include "LightPropagation/Scattering/ScatteringOperator.h"
+#include "LightPropagation/Scattering/SweptMoments.h"
 #include "LightPropagation/Uncollided/BoundaryLight.h"
 #include "LightPropagation/Uncollided/EnvironmentPeaks.h"
 
@@ -32,14 +32,21 @@ public:
     const BlockScene& scene, const PropagationSettings& settings);
   LightField Run(const Monitor& monitor);
 
+  bool StoresMoments() const { return this->Scene.Scattering().Degree() > 0 && this->Settings.storeMoments; }
+  /// Lamps of what shines on all, and those that stand for peaks of its environment, in its own units.
+  std::vector<Light> LampsOf(const Illumination& shining) const;
+
 private:
   VolumeLayout LayoutOn(const Grid& grid) const { return { grid, this->Scene.channels, this->Scene.sharedExtinction }; }
   std::unique_ptr<SweepOperator> MakeSweep(const SweepRequest& request);
+  int Functions() const; ///< of angular moments
   void LoadEmission();
   void AddLamps(const Monitor& monitor);
+  SweepTally AddLamp(std::size_t lamp, const Monitor& monitor);
   std::array<int, 3> CellHalvings();
   void MakeCells();
   void Scatter();
+  void TakeDirect(const Buffer<float>& fluence, double scale);
   void ScatterByCells();
   EnergyLedger WithOutOfCells() const;
   void EstimateResidual();
@@ -48,6 +55,7 @@ private:
   {
     return { &this->Path, this->Flux.Size() > 0 ? &this->Flux : nullptr, nullptr, nullptr };
   }
+  void AddShown(LightField& light);
   LightField TakeLight();
 
   Device& TheDevice;
@@ -57,13 +65,16 @@ private:
   const PropagationSettings& Settings;
   const bool Has; ///< voxels
   const VolumeLayout Layout, WholeLayout;
-  const TruncatedScattering Truncated;
   const MediumOnDevice OnDevice;
-  const IsotropicScattering Scattering;
+  const std::unique_ptr<const ScatteringOperator> Scattering;
   const SweptDirections Directions;
   const SplitEnvironment Far;
   const BoundaryLight Boundary;
+  std::vector<Light> Lamps;
+  std::unique_ptr<const SweptMoments> Angular; ///< null: all is isotropic, or there are no voxels
   Buffer<float> Source, Path, Flux, Fluence;
+  Buffer<float> OfLamp; ///< path integrals of one lamp's light, where it goes into angular moments
+  Buffer<float> Shown;  ///< as IterationResult has it; empty: not asked for
   BlockWorkspace Workspace;
   std::vector<std::unique_ptr<CellsOverRanks>> Cells; ///< by channel; empty: orders are added up as they are
   std::array<Rgb, 6> OutOfCells = {};                 ///< W, through faces, of all orders to come

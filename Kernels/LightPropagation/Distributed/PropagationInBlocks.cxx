@@ -11,7 +11,7 @@
 
 namespace tyndall
 {
-std::string NotInBlocks(const Medium& medium, const Illumination& illumination, const PropagationSettings& settings)
+std::string NotInBlocks(const Medium&, const Illumination& illumination, const PropagationSettings& settings)
 {
   if (settings.periodic[0] || settings.periodic[1] || settings.periodic[2])
   {
@@ -29,10 +29,6 @@ std::string NotInBlocks(const Medium& medium, const Illumination& illumination, 
   if (illumination.uncollided.IsThere())
   {
     return "light of another solver (UncollidedLight)";
-  }
-  if (!medium.phase.IsIsotropic() && settings.angularDegree != 0)
-  {
-    return "scattering that is not isotropic (g; with AngularDegree 0 it is solved by the similarity relation)";
   }
   if (settings.source == PropagationSource::Linear || settings.source == PropagationSource::Octants)
   {
@@ -65,7 +61,7 @@ LightField SolveInBlocks(Device& device, Communicator& communicator, const Block
   RequireSame(communicator, has, medium, illumination, settings);
   Medium own = has ? medium : Medium();
   own.grid = partition.OwnGrid(communicator.Rank());
-  const BlockScene scene(communicator, has, partition.whole, own, illumination, settings);
+  const BlockScene scene(communicator, has, partition, own, illumination, settings, MemoryOf(device));
   BlockPartition inUnits = partition;
   inUnits.whole = scene.WholeOf(partition.whole);
   std::unique_ptr<IterationInBlocks> iteration;
@@ -73,6 +69,10 @@ LightField SolveInBlocks(Device& device, Communicator& communicator, const Block
     [&] { iteration = std::make_unique<IterationInBlocks>(device, communicator, inUnits, scene, settings); });
   LightField light = iteration->Run(monitor);
   communicator.Together([&] { scene.Undo(light); });
+  if (iteration->StoresMoments())
+  {
+    light.lampsApart = iteration->LampsOf(illumination);
+  }
   JudgeConvergence(settings, light);
   return light;
 }

@@ -46,11 +46,11 @@ SweepInBlocks::SweepInBlocks(Device& device, Communicator& communicator, const B
   , Layout(layout)
   , SigmaT(sigma_t)
   , To(request.deposit)
+  , Angular(request.angular)
   , OctantSource(request.octantSource)
   , Parts(mostRays > 0 ? SortByOctant(request.rays, mostRays) : FastestParts(partition, request.rays))
   , TheSchedule(partition, this->Parts, {})
 {
-  Require(!request.angular, "A grid that is spread over ranks is swept without angular moments.");
   Require(!request.faceIn && !request.deposit.faceOut,
     "Light by cells of the box's faces is not swept in a grid that is spread over ranks.");
   if (partition.blocks[communicator.Rank()].VoxelCount() > 0)
@@ -89,7 +89,9 @@ SweepVolume SweepInBlocks::VolumeOf(const ChannelGroup& group, const Buffer<floa
   SweepVolume volume = GroupVolume(this->Layout, group, this->SigmaT, this->To);
   volume.source = source;
   volume.octantSource = this->OctantSource;
-  volume.moments = this->Layout.Places(1);
+  volume.angular = this->Angular;
+  volume.moments = this->Layout.Places(this->Angular ? this->Angular->Functions() : 1);
+  volume.deposit.flux = this->Angular ? nullptr : volume.deposit.flux; // it is among the moments
   return volume;
 }
 

@@ -18,14 +18,14 @@ namespace tyndall
 /// (numerics.md, section 4.9; Koch, Baker and Alcouffe 1992). The same light as that of SweepInMemory in the whole
 /// grid, but for the order of sums.
 ///
-/// All ranks make one, of the same rays, and apply it together. No axis is periodic; light has no angular moments and
-/// comes in alike through all cells of a face.
+/// All ranks make one, of the same rays, and apply it together. No axis is periodic; light comes in alike through all
+/// cells of a face.
 class SweepInBlocks : public SweepOperator
 {
 public:
   /// @param communicator, partition, sigma_t  must stay
   /// @param layout  of the rank's own block
-  /// @param request  its box is not looked at: all is swept
+  /// @param request  its box is not looked at: all is swept. Ranks without voxels need no angular values
   /// @param workspace  must stay; shared by sweeps that never run at the same time
   /// @param mostRays  that go through a block at once; 0: as many as end the sweep soonest (FastestParts)
   /// @throws InvalidInput where the request has what this cannot do, or blocks wait for each other
@@ -66,6 +66,7 @@ private:
   VolumeLayout Layout;
   const Buffer<float>& SigmaT;
   Deposit To;
+  const AngularValues* Angular;
   const Buffer<float>* OctantSource;
   std::vector<ParallelBundles> Parts;
   SweepSchedule TheSchedule;

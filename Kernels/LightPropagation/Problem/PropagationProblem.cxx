@@ -70,19 +70,23 @@ PropagationProblem::PropagationProblem(const Medium& medium, const Illumination&
     this->Solved = scene.medium;
     this->SolvedLight = scene.light;
   }
-  const int degree = AngularDegreeFor(this->Solved, this->TheSettings, this->IsSlab(), memory);
-  this->Truncate(this->TheTraits.scatters ? degree : 0);
+  this->Truncate(memory);
   // The traits know of extinction by the similarity relation alone.
   this->TheTraits.greyExtinction =
     this->TheTraits.grey || (this->TheTraits.greyExtinction && this->Truncated->Degree() == 0);
 }
 
-void PropagationProblem::Truncate(int degree)
+void PropagationProblem::Truncate(const DeviceMemory& memory)
 {
+  const Grid& grid = this->TheGrid();
+  const AngularDetail detail = AngularDetailOf(this->Solved, this->ChannelCount);
+  const int degree = this->TheTraits.scatters
+    ? AngularDegreeFor(detail, grid, this->TheSettings, this->IsSlab(), grid.VoxelCount(), memory)
+    : 0;
   std::optional<DirectionKernel> kernel;
-  if (degree > 0 && IsMuchThinnerAlongOneAxis(this->Solved, this->ChannelCount, this->TheSettings.periodic))
+  if (degree > 0 && IsMuchThinnerAlongOneAxis(detail, grid, this->ChannelCount, this->TheSettings.periodic))
   {
-    kernel.emplace(DirectionsForVoxels(this->TheSettings.directionsPerFace, this->TheGrid().spacing), degree);
+    kernel.emplace(DirectionsForVoxels(this->TheSettings.directionsPerFace, grid.spacing), degree);
   }
   this->Truncated.emplace(this->Solved, degree, this->ChannelCount, kernel ? &*kernel : nullptr);
 }

@@ -51,7 +51,7 @@ public:
 
 private:
   void TakeUnits(const Medium& wide, const Illumination& illumination);
-  void Truncate(int degree);
+  void Truncate(const DeviceMemory& memory);
 
   UnvaryingAxes Unvarying;
   PropagationSettings TheSettings;

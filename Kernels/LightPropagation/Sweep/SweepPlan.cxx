@@ -160,7 +160,7 @@ void SweepPlan::LayPlane(const Device& device)
 
 void SweepPlan::LayMoments()
 {
-  if (this->box.size[0] != this->grid.size[0])
+  if (this->box.size[0] != this->moments.sizeX)
   {
     throw std::logic_error("angular moments are swept in whole rows");
   }

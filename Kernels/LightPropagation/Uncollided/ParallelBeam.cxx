@@ -49,7 +49,7 @@ void AddWithFirstMoments(const UncollidedVolume& volume, const std::array<double
 
 SweepTally DepositBeam(const UncollidedVolume& volume, const Light& light, const Monitor& monitor)
 {
-  const Grid& grid = volume.layout.grid;
+  const Grid& grid = volume.Whole();
   const glm::dvec3 along = glm::normalize(Vector(light.direction));
   const std::array<double, 3> omega = { along.x, along.y, along.z };
   Deposit deposit = volume.deposit;

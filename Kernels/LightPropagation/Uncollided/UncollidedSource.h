@@ -21,6 +21,10 @@ struct UncollidedVolume
   const AngularBasis* basis = nullptr;
   /// Of a parallel beam whose own path integrals, W length, [channel][stride], are asked for too; else null.
   const Buffer<float>* beamPath = nullptr;
+  /// The grid that rays go through, where the medium here is a block of it (`makeSweep` knows of the others); null: the
+  /// layout's.
+  const Grid* whole = nullptr;
+  const Grid& Whole() const { return this->whole ? *this->whole : this->layout.grid; }
 };
 
 /// Light up to where it first meets the medium: the uncollided flux of one lamp, of all that shines through the box's
