@@ -159,8 +159,9 @@ TEST_F(PropagationBlocksFail, TogetherWhereOneIsStopped)
 
 TEST_F(PropagationBlocksFail, WithWordsOnWhatIsNotCarriedFromRankToRank)
 {
-  ExpectErrors("periodic",
-    [](int, PartOf&, Illumination&, PropagationSettings& settings, Monitor&) { settings.periodic[1] = true; });
+  ExpectErrors("not constant in voxels", [](int, PartOf&, Illumination&, PropagationSettings& settings, Monitor&) {
+    settings.source = PropagationSource::Linear;
+  });
   ExpectErrors("point, spot or rectangle", [](int, PartOf&, Illumination& shining, PropagationSettings&, Monitor&) {
     shining.lights[0].type = LightType::Point;
   });

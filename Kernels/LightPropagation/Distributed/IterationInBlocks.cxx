@@ -19,6 +19,7 @@ namespace tyndall
 namespace
 {
 constexpr int MostOrders = 100000;
+constexpr int FewPlanes = 256;      ///< as SourceIteration has it
 constexpr double ManyOrders = 2.0;  ///< mean free paths through the box along its thinnest axis that pay for cells
 constexpr double FallByCells = 0.3; ///< of what is left over from order to order, at least so much in the forecast
 }
@@ -61,6 +62,12 @@ IterationInBlocks::IterationInBlocks(Device& device, Communicator& communicator,
     this->Flux = Buffer<float>(device, this->Layout.Floats(3), "net_flux");
     this->Flux.Fill(0.0f);
   }
+  if (Reflects(scene.illumination) || settings.facePower)
+  {
+    const bool spreads = !Reflects(scene.illumination);
+    this->Faces = std::make_unique<FaceLight>(device, partition.whole, scene.channels,
+      SweptPowerIn(partition.whole, settings.periodic, this->Directions, spreads), scene.illumination.faceAlbedo);
+  }
   if (this->StoresMoments())
   {
     this->Shown = Buffer<float>(device, moments, "the light shown");
@@ -69,6 +76,12 @@ IterationInBlocks::IterationInBlocks(Device& device, Communicator& communicator,
   this->Source.Fill(0.0f);
   this->Path.Fill(0.0f);
   this->Fluence.Fill(0.0f);
+}
+
+Deposit IterationInBlocks::WholeDeposit() const
+{
+  return { &this->Path, this->Flux.Size() > 0 ? &this->Flux : nullptr, nullptr, nullptr,
+    this->Faces ? &this->Faces->Out() : nullptr, this->Faces && !this->Faces->Reflects() };
 }
 
 int IterationInBlocks::Functions() const
@@ -90,7 +103,8 @@ std::unique_ptr<SweepOperator> IterationInBlocks::MakeSweep(const SweepRequest& 
   std::unique_ptr<SweepOperator> sweep;
   this->Others.Together([&] {
     sweep = std::make_unique<SweepInBlocks>(
-      this->TheDevice, this->Others, this->Partition, this->Layout, this->OnDevice.SigmaT(), request, this->Workspace);
+      this->TheDevice, this->Others, this->Partition, this->Layout, this->OnDevice.SigmaT(), this->Settings.periodic,
+      request, this->Workspace);
   });
   return sweep;
 }
@@ -145,6 +159,14 @@ void IterationInBlocks::AddLamps(const Monitor& monitor)
       }
     });
     this->Ledger.Count(tally);
+    for (int c = 0; c < 3; ++c)
+    {
+      this->Stranded[c] += tally.onTheWay[c];
+    }
+  }
+  if (this->Faces)
+  {
+    this->Faces->TakeUncollided();
   }
   if (this->Has && this->StoresMoments())
   {
@@ -177,7 +199,8 @@ SweepTally IterationInBlocks::AddLamp(std::size_t lamp, const Monitor& monitor)
 std::array<int, 3> IterationInBlocks::CellHalvings()
 {
   if (this->Settings.acceleration != PropagationAcceleration::Automatic || this->Settings.maximumOrders > 0 ||
-    !this->Scene.traits.scatters || this->Scene.Scattering().Degree() > 0)
+    !this->Scene.traits.scatters || this->Scene.Scattering().Degree() > 0 || Reflects(this->Scene.illumination) ||
+    this->Settings.periodic[0] || this->Settings.periodic[1] || this->Settings.periodic[2])
   {
     return {};
   }
@@ -256,6 +279,25 @@ EnergyLedger IterationInBlocks::WithOutOfCells() const
   return with;
 }
 
+/// What faces give back of the light that left in this order has not left.
+void IterationInBlocks::Reflect()
+{
+  this->Reflected = {};
+  if (!this->Faces)
+  {
+    return;
+  }
+  const std::array<Rgb, 6> back = this->Faces->Reflect();
+  for (int face = 0; face < 6; ++face)
+  {
+    for (int c = 0; c < 3; ++c)
+    {
+      this->Reflected[c] += back[face][c];
+      this->Ledger.Escape(c, face, -back[face][c]);
+    }
+  }
+}
+
 /// @param scale  to W / length^2
 void IterationInBlocks::TakeDirect(const Buffer<float>& fluence, double scale)
 {
@@ -297,7 +339,7 @@ void IterationInBlocks::Scatter()
   {
     this->Ledger.Absorb(c, powers[c]);
     this->Scattered[c] = powers[3 + c];
-    this->Ledger.LeaveOver(c, this->Scattered[c]);
+    this->Ledger.LeaveOver(c, this->Scattered[c] + this->OnTheWay[c] + this->Reflected[c] + this->Stranded[c]);
   }
   this->Shining = Sum(this->Scattered) > 0.0;
   this->EstimateResidual();
@@ -311,7 +353,7 @@ void IterationInBlocks::EstimateResidual()
   this->Residual = 0.0;
   for (int c = 0; c < this->Layout.channels; ++c)
   {
-    const double now = this->Scattered[c];
+    const double now = this->Scattered[c] + this->OnTheWay[c] + this->Reflected[c];
     this->AllScattered[c] += now;
     if (now > 0.0)
     {
@@ -337,6 +379,8 @@ LightField IterationInBlocks::Run(const Monitor& monitor)
   SweepRequest request = { this->WholeDeposit(),
     { { 0, this->Directions.Along(0) }, { 1, this->Directions.Along(1) }, { 2, this->Directions.Along(2) } } };
   request.angular = this->Angular ? &this->Angular->Values() : nullptr;
+  request.mostPlanes = this->Settings.maximumOrders > 0 ? MostPlanesAround : FewPlanes;
+  request.faceIn = this->Faces && this->Faces->Reflects() ? &this->Faces->In() : nullptr;
   const std::unique_ptr<SweepOperator> sweep = this->MakeSweep(request);
   const std::size_t ofBeams = this->Angular ? this->Angular->Beams() * this->Layout.Values() : 0;
   BeamsInSource beams(this->TheDevice, this->Source, this->Layout.Places(this->Functions()).beams, ofBeams);
@@ -350,16 +394,21 @@ LightField IterationInBlocks::Run(const Monitor& monitor)
       this->AddLamps(OfPart(ofOrder, 0.0, UncollidedPart));
     }
     const SweepBoundary boundary = first && this->Boundary.Shines() ? this->Boundary.Boundary() : SweepBoundary();
-    if (this->Shining || boundary)
+    const bool goesOn = Sum(this->OnTheWay) > 0.0 || Sum(this->Reflected) > 0.0;
+    this->OnTheWay = {};
+    if (this->Shining || boundary || goesOn)
     {
       if (first)
       {
         beams.Hold();
       }
-      this->Ledger.Count(sweep->Apply(
-        this->Shining ? &this->Source : nullptr, boundary, OfPart(ofOrder, first ? UncollidedPart : 0.0, 1.0)));
+      const SweepTally tally = sweep->Apply(
+        this->Shining ? &this->Source : nullptr, boundary, OfPart(ofOrder, first ? UncollidedPart : 0.0, 1.0));
+      this->Ledger.Count(tally);
+      this->OnTheWay = tally.onTheWay;
       beams.GoOn();
     }
+    this->Reflect();
     this->Scatter();
     ++this->Order;
   } while (!this->Done());
@@ -425,6 +474,11 @@ LightField IterationInBlocks::TakeLight()
   const EnergyLedger ledger = this->WithOutOfCells();
   light.balance = ledger.Balance();
   light.facePowerOut = ledger.FacePowerOut();
+  if (this->Faces)
+  {
+    const std::vector<double> left = this->Faces->LeftInAll();
+    light.facePower = this->Faces->PerArea(this->Cells.empty() ? left : this->Faces->ScaledTo(left, light.facePowerOut));
+  }
   light.convergence = this->Convergence.All();
   light.directionsPerFace = this->Settings.directionsPerFace;
   light.halfRangeFlux = HalfRangeFlux(this->Directions.Set());

@@ -8,6 +8,7 @@
 #include "LightPropagation/Angular/SweptDirections.h"
 #include "LightPropagation/Conservative/ConvergenceRecord.h"
 #include "LightPropagation/Conservative/EnergyLedger.h"
+#include "LightPropagation/Conservative/FaceLight.h"
 #include "LightPropagation/Convergence.h"
 #include "LightPropagation/Distributed/BlockScene.h"
 #include "LightPropagation/Distributed/CellsOverRanks.h"
@@ -45,16 +46,14 @@ private:
   SweepTally AddLamp(std::size_t lamp, const Monitor& monitor);
   std::array<int, 3> CellHalvings();
   void MakeCells();
+  void Reflect();
   void Scatter();
   void TakeDirect(const Buffer<float>& fluence, double scale);
   void ScatterByCells();
   EnergyLedger WithOutOfCells() const;
   void EstimateResidual();
   bool Done() const;
-  Deposit WholeDeposit() const
-  {
-    return { &this->Path, this->Flux.Size() > 0 ? &this->Flux : nullptr, nullptr, nullptr };
-  }
+  Deposit WholeDeposit() const;
   void AddShown(LightField& light);
   LightField TakeLight();
 
@@ -74,6 +73,7 @@ private:
   std::unique_ptr<const SweptMoments> Angular; ///< null: all is isotropic, or there are no voxels
   Buffer<float> Source, Path, Flux, Fluence;
   Buffer<float> OfLamp; ///< path integrals of one lamp's light, where it goes into angular moments
+  std::unique_ptr<FaceLight> Faces; ///< of the whole grid; where they reflect, or face power is asked for; else null
   Buffer<float> Shown;  ///< as IterationResult has it; empty: not asked for
   BlockWorkspace Workspace;
   std::vector<std::unique_ptr<CellsOverRanks>> Cells; ///< by channel; empty: orders are added up as they are
@@ -83,7 +83,8 @@ private:
   ConvergenceRecord Convergence;
   std::vector<float> Direct;
   std::array<RestOfOrders, 3> Rest;
-  Rgb Scattered = {}, AllScattered = {};
+  Rgb Scattered = {}, Reflected = {}, AllScattered = {};
+  Rgb OnTheWay = {}, Stranded = {}; ///< round periodic axes, as SourceIteration has them
   double Residual = 1.0;
   int Order = 0;
   bool Shining = false;

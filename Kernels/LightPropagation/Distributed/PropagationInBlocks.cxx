@@ -7,20 +7,14 @@
 #include "LightPropagation/Problem/PropagationProblem.h"
 
 #include <algorithm>
+#include <array>
 #include <memory>
+#include <vector>
 
 namespace tyndall
 {
 std::string NotInBlocks(const Medium&, const Illumination& illumination, const PropagationSettings& settings)
 {
-  if (settings.periodic[0] || settings.periodic[1] || settings.periodic[2])
-  {
-    return "a periodic axis";
-  }
-  if (Reflects(illumination))
-  {
-    return "a face that gives back light (FaceAlbedo)";
-  }
   const auto isNear = [](const Light& light) { return light.type != LightType::Directional; };
   if (std::any_of(illumination.lights.begin(), illumination.lights.end(), isNear))
   {
@@ -38,7 +32,18 @@ std::string NotInBlocks(const Medium&, const Illumination& illumination, const P
   {
     return "directions of unscattered light of its own (UncollidedDirections)";
   }
-  return settings.facePower ? "the power that leaves through cells of the faces" : std::string();
+  return {};
+}
+
+namespace
+{
+/// By channel.
+std::array<bool, 3> AbsorbsOnAny(Communicator& communicator, bool has, const Medium& medium)
+{
+  const std::array<bool, 3> own = has ? ChannelsThatAbsorb(medium) : std::array<bool, 3>{};
+  const std::vector<double> any = communicator.Largest({ own[0] * 1.0, own[1] * 1.0, own[2] * 1.0 });
+  return { any[0] > 0.0, any[1] > 0.0, any[2] > 0.0 };
+}
 }
 
 LightField SolveInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition,
@@ -50,7 +55,7 @@ LightField SolveInBlocks(Device& device, Communicator& communicator, const Block
     Require(static_cast<int>(partition.blocks.size()) == communicator.Ranks(), "There is not a block for each rank.");
     if (has)
     {
-      Check(medium, illumination, settings);
+      CheckBlock(medium, illumination, settings);
       Require(medium.grid.size == partition.OwnGrid(communicator.Rank()).size,
         "The medium of rank " + std::to_string(communicator.Rank()) + " does not have the size of its block.");
     }
@@ -59,6 +64,7 @@ LightField SolveInBlocks(Device& device, Communicator& communicator, const Block
   });
   RequireSame(communicator, partition);
   RequireSame(communicator, has, medium, illumination, settings);
+  CheckLightHasAnEnd(AbsorbsOnAny(communicator, has, medium), illumination, settings.periodic);
   Medium own = has ? medium : Medium();
   own.grid = partition.OwnGrid(communicator.Rank());
   const BlockScene scene(communicator, has, partition, own, illumination, settings, MemoryOf(device));
@@ -73,6 +79,7 @@ LightField SolveInBlocks(Device& device, Communicator& communicator, const Block
   {
     light.lampsApart = iteration->LampsOf(illumination);
   }
+  light.faceAlbedo = illumination.faceAlbedo;
   JudgeConvergence(settings, light);
   return light;
 }

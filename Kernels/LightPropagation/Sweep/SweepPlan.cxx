@@ -467,14 +467,19 @@ std::vector<CrossingInfo> SweepPlan::Crossings(int firstPlane, int planes) const
   return rows;
 }
 
-std::vector<OwnLightInfo> SweepPlan::OwnLight() const
+void SweepPlan::LetRaysGoOn()
+{
+  this->plane.thin = static_cast<float>(Thin / LongestWay(this->bundles));
+}
+
+std::vector<OwnLightInfo> SweepPlan::OwnLight(int lapPlanes) const
 {
   std::vector<OwnLightInfo> rows;
   for (const UnitInfo& unit : this->units)
   {
     for (int k = 0; k < this->PatternPlanes(); ++k)
     {
-      rows.push_back(this->OwnLightOf(unit, unit.planesBefore + k));
+      rows.push_back(this->OwnLightOf(unit, lapPlanes + unit.planesBefore + k));
     }
   }
   return rows;
