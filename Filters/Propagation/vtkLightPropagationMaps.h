@@ -115,8 +115,7 @@ public:
   /// piece: rays are handed on from rank to rank (numerics.md, section 4.9), and no rank holds another's voxels; one
   /// rank alone solves the same way then, so that light does not depend on their number, but for rounding. The source
   /// is constant in voxels, so that voxels thicker than about 1 need the whole, or more voxels. An error names what
-  /// blocks cannot do: point, spot and rectangle lights, anisotropic scattering other than with AngularDegree 0,
-  /// periodic axes, FaceAlbedo, UncollidedDirections, UncollidedLight, a Quality other than USUAL, Preview,
+  /// blocks cannot do: point, spot and rectangle lights, UncollidedLight, a Quality other than USUAL, Preview,
   /// EstimateError, TargetError, WarmStart, MemoryBudget, LitColor and the published scheme. AUTOMATIC_DECOMPOSITION
   /// (default): BLOCKS where the arrays of the whole, once for each rank of a machine, are more than the memory that it
   /// has available, and the scene can be solved so; else WHOLE.

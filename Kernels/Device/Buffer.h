@@ -68,13 +68,8 @@ public:
   /// The same part of another.
   void CopyFrom(const Buffer& other, std::size_t first, std::size_t count) const
   {
-    this->CopyFrom(other, first, count, first);
-  }
-  /// A part of another, to the place `to`.
-  void CopyFrom(const Buffer& other, std::size_t first, std::size_t count, std::size_t to) const
-  {
-    this->Owner->Queue().enqueueCopyBuffer(
-      other.Memory.memory, this->Memory.memory, first * sizeof(T), to * sizeof(T), count * sizeof(T));
+    const std::size_t begin = first * sizeof(T);
+    this->Owner->Queue().enqueueCopyBuffer(other.Memory.memory, this->Memory.memory, begin, begin, count * sizeof(T));
   }
   void Read(T* values) const { this->Read(values, this->Count); }
   void Read(T* values, std::size_t count) const ///< the first `count` values

@@ -11,6 +11,7 @@
 #include "LightPropagation/Distributed/PropagationInBlocks.h"
 
 #include <mutex>
+#include <string>
 #include <vector>
 
 namespace blocks_of_light
@@ -157,6 +158,8 @@ inline void ExpectSame(const LightField& found, const LightField& expected)
   EXPECT_LT(RelativeRmse(found.scatteredMoments, expected.scatteredMoments), 1e-6);
   EXPECT_EQ(found.straightOn, expected.straightOn);
   EXPECT_EQ(found.lampsApart.size(), expected.lampsApart.size());
+  EXPECT_LT(RelativeRmse(found.facePower, expected.facePower), 1e-6);
+  EXPECT_EQ(found.faceAlbedo, expected.faceAlbedo);
   EXPECT_EQ(found.convergence.size(), expected.convergence.size());
   EXPECT_LT(found.balance.RelativeError(expected.channels), 1e-6);
   for (int c = 0; c < expected.channels; ++c)
@@ -167,6 +170,20 @@ inline void ExpectSame(const LightField& found, const LightField& expected)
     {
       EXPECT_NEAR(found.facePowerOut[face][c], expected.facePowerOut[face][c], 1e-6 * expected.facePowerOut[face][c]);
     }
+  }
+}
+
+/// In blocks of all kinds.
+inline void ExpectTheLightOfTheWhole(
+  Device& device, const RandomMedium& whole, const Illumination& shining, const PropagationSettings& settings)
+{
+  const LightField expected = SolveConservative(device, whole.medium, shining, settings);
+  const Grid& grid = whole.medium.grid;
+  for (const BlockPartition& partition :
+    { BlockPartition::Even(grid, 1), BlockPartition::Even(grid, 2), BlockPartition::Even(grid, 8), Uneven(grid) })
+  {
+    SCOPED_TRACE(std::to_string(partition.blocks.size()) + " ranks");
+    ExpectSame(LightOfAll(device, partition, whole, shining, settings), expected);
   }
 }
 }

@@ -4,29 +4,11 @@
 #include "BlocksOfLight.h"
 
 #include <string>
-#include <vector>
 
 using namespace blocks_of_light;
 
 namespace
 {
-/// Whether the light is that of the whole in blocks of all kinds.
-void ExpectTheLightOfTheWhole(
-  Device& device, const RandomMedium& whole, const Illumination& shining, const PropagationSettings& settings)
-{
-  const LightField expected = SolveConservative(device, whole.medium, shining, settings);
-  const Grid& grid = whole.medium.grid;
-  for (const BlockPartition& partition :
-    { BlockPartition::Even(grid, 1), BlockPartition::Even(grid, 2), BlockPartition::Even(grid, 8), Uneven(grid) })
-  {
-    SCOPED_TRACE(std::to_string(partition.blocks.size()) + " ranks");
-    const LightField found = LightOfAll(device, partition, whole, shining, settings);
-    ExpectSame(found, expected);
-    EXPECT_LT(RelativeRmse(found.facePower, expected.facePower), 1e-6);
-    EXPECT_EQ(found.faceAlbedo, expected.faceAlbedo);
-  }
-}
-
 Illumination BetweenBrightFaces()
 {
   Illumination shining = LitFromOutside();

@@ -12,21 +12,6 @@ using namespace blocks_of_light;
 
 namespace
 {
-/// Whether the light has moments, and is that of the whole in blocks of all kinds.
-void ExpectTheLightOfTheWhole(
-  Device& device, const RandomMedium& whole, const Illumination& shining, const PropagationSettings& settings)
-{
-  const LightField expected = SolveConservative(device, whole.medium, shining, settings);
-  EXPECT_EQ(expected.scatteredMoments.empty(), !settings.storeMoments);
-  const Grid& grid = whole.medium.grid;
-  for (const BlockPartition& partition :
-    { BlockPartition::Even(grid, 1), BlockPartition::Even(grid, 2), BlockPartition::Even(grid, 8), Uneven(grid) })
-  {
-    SCOPED_TRACE(std::to_string(partition.blocks.size()) + " ranks");
-    ExpectSame(LightOfAll(device, partition, whole, shining, settings), expected);
-  }
-}
-
 /// From -0.3 to 0.9, a value for each voxel and channel.
 std::vector<float> Cosines(const RandomMedium& medium)
 {

@@ -49,6 +49,21 @@ TEST_F(PropagationBlocks, GoOnBesideARankWithoutVoxels)
     SolveConservative(GetDevice(), whole.medium, LitFromOutside(), settings));
 }
 
+/// Unscattered light along directions of its own, and what scattered light lets out otherwise.
+TEST_F(PropagationBlocks, HaveTheLightOfTheWholeAlongFinerDirectionsFromOutside)
+{
+  RandomMedium whole(Grid{ { 9, 7, 8 } }, 1, 0.6f, 7);
+  whole.Emit(0.3f);
+  PropagationSettings settings = SettingsOf(4);
+  settings.uncollidedDirections = 36;
+  ExpectTheLightOfTheWhole(GetDevice(), whole, LitFromOutside(), settings);
+  Illumination shining = LitFromOutside();
+  shining.faceAlbedo[2] = { 0.6, 0.6, 0.6 };
+  ExpectTheLightOfTheWhole(GetDevice(), whole, shining, settings);
+  whole.medium.phase = PhaseFunction::HenyeyGreenstein(0.8);
+  ExpectTheLightOfTheWhole(GetDevice(), whole, LitFromOutside(), settings);
+}
+
 /// Thin voxels in which light is scattered many times: diffusion on cells goes with the sweeps, and does not change
 /// what they come to.
 TEST_F(PropagationBlocks, FindTheSameLightSoonerByCells)

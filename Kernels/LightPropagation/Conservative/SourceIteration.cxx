@@ -71,7 +71,7 @@ IterationResult SourceIteration::Run(const Monitor& monitor)
     this->SweepOrder(OfPart(ofOrder, uncollided, 1.0));
     if (this->Escaping && scatteredShines)
     {
-      const Rgb escaped = this->Escaping->Apply();
+      const Rgb escaped = this->Escaping->Apply(this->Parts.Path, this->Parts.Source);
       for (int c = 0; c < 3; ++c)
       {
         this->Escaped[c] += escaped[c];
@@ -238,7 +238,10 @@ void SourceIteration::AddUncollided(const Monitor& monitor)
   }
   if (escapes)
   {
-    this->Escaping.emplace(this->Parts, OfPart(monitor, sources.size() / all, 1.0)); // whatever shines: lights add up
+    // Whatever shines: lights add up.
+    const TransportParts::EvenSky sky = this->Parts.FindEvenSky(OfPart(monitor, sources.size() / all, 1.0));
+    this->Escaping.emplace(this->Parts.TheDevice, this->Parts.Layout, this->Parts.Problem.Scattering(),
+      this->Parts.OnDevice.SigmaT(), sky.fine.path, sky.usual.path);
   }
 }
 

@@ -139,9 +139,7 @@ void TransportParts::FindBoundaryLight()
   this->CorrectsEscape = finer.correctsEscape && this->Problem.Traits().scatters && !Reflects(shining);
   if (finer.perFace > 0)
   {
-    DirectionSet set = FittedDirections(finer.perFace, "UncollidedDirections");
-    const RayStarts starts = this->ByBalance() || !set.orbits.empty() ? StartsOf(settings) : RayStarts::Staggered;
-    this->Fine = std::make_unique<SweptDirections>(grid, settings, std::move(set), starts);
+    this->Fine = FinerDirections(grid, settings, finer.perFace, this->ByBalance());
   }
   const SplitEnvironment environment = Split(shining.environment, (this->Fine ? *this->Fine : this->Usual).Set());
   this->Lamps = shining.lights;

@@ -3,8 +3,10 @@
 #include "Light/LeftOut.h"
 #include "LightPropagation/Conservative/ShownLight.h"
 #include "LightPropagation/Problem/ScatteringOrders.h"
+#include "LightPropagation/Problem/UncollidedDirections.h"
 #include "LightPropagation/Scattering/BeamsInSource.h"
 #include "LightPropagation/Scattering/MomentScattering.h"
+#include "LightPropagation/Uncollided/UncollidedBoundary.h"
 #include "LightPropagation/Uncollided/UncollidedLamp.h"
 #include "Medium/VoxelSums.h"
 #include "Numerics/Constants.h"
@@ -38,11 +40,20 @@ IterationInBlocks::IterationInBlocks(Device& device, Communicator& communicator,
   , Scattering(MakeScattering(device, this->Layout, this->OnDevice, scene.Scattering().Degree(), scene.traits.scatters))
   , Directions(partition.whole, settings, DirectionsForVoxels(settings.directionsPerFace, partition.whole.spacing),
       settings.staggeredRays ? RayStarts::Staggered : RayStarts::Middle)
-  , Far(Split(scene.illumination.environment, this->Directions.Set()))
+  , Fine(settings.uncollidedDirections > 0
+        ? FinerDirections(partition.whole, settings, settings.uncollidedDirections, false)
+        : nullptr)
+  , Far(Split(scene.illumination.environment, this->DirectionsOfBoundary().Set()))
   , Boundary(partition.whole, settings, this->Directions, scene.illumination, this->Far.smooth)
   , Lamps(this->LampsOf(scene.illumination))
 {
-  if (this->Boundary.Shines())
+  if (this->Fine && this->Boundary.Shines())
+  {
+    this->FineBoundary =
+      std::make_unique<BoundaryLight>(partition.whole, settings, *this->Fine, scene.illumination, this->Far.smooth);
+    this->FineBoundary->CheckRays(scene.channels);
+  }
+  else if (this->Boundary.Shines())
   {
     this->Boundary.CheckRays(scene.channels);
   }
@@ -92,7 +103,7 @@ int IterationInBlocks::Functions() const
 
 std::vector<Light> IterationInBlocks::LampsOf(const Illumination& shining) const
 {
-  const SplitEnvironment far = Split(shining.environment, this->Directions.Set());
+  const SplitEnvironment far = Split(shining.environment, this->DirectionsOfBoundary().Set());
   std::vector<Light> lamps = shining.lights;
   lamps.insert(lamps.end(), far.peaks.begin(), far.peaks.end());
   return lamps;
@@ -136,54 +147,78 @@ void IterationInBlocks::LoadEmission()
   }
 }
 
-/// Directional lights and peaks of the environment, which are such.
-void IterationInBlocks::AddLamps(const Monitor& monitor)
+/// Of lamps, and peaks of the environment, which are such, then of what comes in along directions of its own.
+void IterationInBlocks::AddUncollided(const Monitor& monitor)
 {
+  const bool corrects = this->Fine && this->Scene.traits.scatters && !Reflects(this->Scene.illumination);
+  const double all = static_cast<double>(this->Lamps.size() + (this->FineBoundary ? 1 : 0) + (corrects ? 1 : 0));
+  SweepTally tally;
   for (std::size_t i = 0; i < this->Lamps.size(); ++i)
   {
-    const double all = static_cast<double>(this->Lamps.size());
-    SweepTally tally;
-    std::exception_ptr error;
-    try
-    {
-      tally = this->AddLamp(i, OfPart(monitor, i / all, (i + 1) / all));
-    }
-    catch (...)
-    {
-      error = std::current_exception();
-    }
-    this->Others.Together([&] {
-      if (error)
-      {
-        std::rethrow_exception(error);
-      }
-    });
-    this->Ledger.Count(tally);
-    for (int c = 0; c < 3; ++c)
-    {
-      this->Stranded[c] += tally.onTheWay[c];
-    }
-  }
-  if (this->Faces)
-  {
-    this->Faces->TakeUncollided();
+    const Monitor ofLamp = OfPart(monitor, i / all, (i + 1) / all);
+    Add(tally, this->AddOnAllRanks([&] { return this->AddLamp(i, ofLamp); }));
   }
   if (this->Has && this->StoresMoments())
   {
     this->Scattering->AddFirstScattered(this->WholeDeposit(), this->Shown);
   }
+  if (this->FineBoundary)
+  {
+    const double before = static_cast<double>(this->Lamps.size());
+    const Monitor ofBoundary = OfPart(monitor, before / all, (before + 1) / all);
+    const UncollidedBoundary boundary(this->Settings, *this->FineBoundary);
+    Add(tally, this->AddOnAllRanks([&] { return boundary.AddTo(this->VolumeOf(this->WholeDeposit()), ofBoundary); }));
+  }
+  this->Ledger.Count(tally);
+  this->Stranded = tally.onTheWay;
+  if (this->Faces)
+  {
+    this->Faces->TakeUncollided();
+  }
+  if (corrects)
+  {
+    this->FindEscaping(OfPart(monitor, (all - 1.0) / all, 1.0));
+  }
+}
+
+/// What goes wrong on one rank does on all: light is swept by all together.
+SweepTally IterationInBlocks::AddOnAllRanks(const std::function<SweepTally()>& add)
+{
+  SweepTally tally;
+  std::exception_ptr error;
+  try
+  {
+    tally = add();
+  }
+  catch (...)
+  {
+    error = std::current_exception();
+  }
+  this->Others.Together([&] {
+    if (error)
+    {
+      std::rethrow_exception(error);
+    }
+  });
+  return tally;
+}
+
+UncollidedVolume IterationInBlocks::VolumeOf(const Deposit& deposit)
+{
+  const SweepMaker sweeps = [this](const SweepRequest& request) { return this->MakeSweep(request); };
+  UncollidedVolume volume = { this->TheDevice, this->Layout, this->OnDevice.SigmaT(), this->Settings.periodic, sweeps,
+    deposit };
+  volume.whole = &this->Partition.whole;
+  volume.basis = this->Angular ? &this->Angular->Basis() : nullptr;
+  return volume;
 }
 
 SweepTally IterationInBlocks::AddLamp(std::size_t lamp, const Monitor& monitor)
 {
-  const SweepMaker sweeps = [this](const SweepRequest& request) { return this->MakeSweep(request); };
-  UncollidedVolume volume = { this->TheDevice, this->Layout, this->OnDevice.SigmaT(), this->Settings.periodic, sweeps,
-    this->WholeDeposit() };
-  volume.whole = &this->Partition.whole;
+  UncollidedVolume volume = this->VolumeOf(this->WholeDeposit());
   if (this->Angular)
   {
     this->OfLamp.Fill(0.0f);
-    volume.basis = &this->Angular->Basis();
     volume.beamPath = &this->OfLamp;
   }
   const SweepTally tally = UncollidedLamp(this->Lamps[lamp]).AddTo(volume, monitor);
@@ -193,6 +228,43 @@ SweepTally IterationInBlocks::AddLamp(std::size_t lamp, const Monitor& monitor)
     this->Scattering->AddBeam(this->OfLamp, this->Source, beam);
   }
   return tally;
+}
+
+/// By an even sky along the finer directions and the usual ones, whatever shines: lights add up.
+void IterationInBlocks::FindEscaping(const Monitor& monitor)
+{
+  Illumination evenly;
+  evenly.sky = { 1.0, 1.0, 1.0 };
+  const auto along = [&](const SweptDirections& directions, const Monitor& ofThese) {
+    Buffer<float> path;
+    this->Others.Together([&] {
+      path = Buffer<float>(this->TheDevice, this->Layout.MomentFloats(this->Functions()), "uncollided light");
+      path.Fill(0.0f);
+    });
+    const BoundaryLight light(this->Partition.whole, this->Settings, directions, evenly, {});
+    const UncollidedBoundary boundary(this->Settings, light);
+    this->AddOnAllRanks([&] { return boundary.AddTo(this->VolumeOf({ &path }), ofThese); });
+    return path.Read();
+  };
+  const std::vector<float> fine = along(*this->Fine, OfPart(monitor, 0.0, 0.8));
+  const std::vector<float> usual = along(this->Directions, OfPart(monitor, 0.8, 1.0));
+  this->Others.Together([&] {
+    this->Escaping.emplace(
+      this->TheDevice, this->Layout, this->Scene.Scattering(), this->OnDevice.SigmaT(), fine, usual);
+  });
+}
+
+/// Of what was scattered and just swept.
+void IterationInBlocks::LetEscape()
+{
+  Rgb own = {};
+  this->Others.Together([&] { own = this->Has ? this->Escaping->Apply(this->Path, this->Source) : Rgb{}; });
+  const std::vector<double> all = this->Others.Sum({ own[0], own[1], own[2] });
+  for (int c = 0; c < 3; ++c)
+  {
+    this->Escaped[c] += all[c];
+    this->Ledger.Escape(c, all[c]);
+  }
 }
 
 /// How many voxels make a cell, 2^this along each axis; all 0: cells do not pay, or voxels are too thick for them.
@@ -391,9 +463,10 @@ LightField IterationInBlocks::Run(const Monitor& monitor)
     const bool first = this->Order == 0;
     if (first)
     {
-      this->AddLamps(OfPart(ofOrder, 0.0, UncollidedPart));
+      this->AddUncollided(OfPart(ofOrder, 0.0, UncollidedPart));
     }
-    const SweepBoundary boundary = first && this->Boundary.Shines() ? this->Boundary.Boundary() : SweepBoundary();
+    const bool lit = first && this->Boundary.Shines() && !this->FineBoundary;
+    const SweepBoundary boundary = lit ? this->Boundary.Boundary() : SweepBoundary();
     const bool goesOn = Sum(this->OnTheWay) > 0.0 || Sum(this->Reflected) > 0.0;
     this->OnTheWay = {};
     if (this->Shining || boundary || goesOn)
@@ -408,10 +481,15 @@ LightField IterationInBlocks::Run(const Monitor& monitor)
       this->OnTheWay = tally.onTheWay;
       beams.GoOn();
     }
+    if (this->Escaping && this->Shining && !first)
+    {
+      this->LetEscape();
+    }
     this->Reflect();
     this->Scatter();
     ++this->Order;
   } while (!this->Done());
+  this->Ledger.ShareEscaped(this->Escaped);
   return this->TakeLight();
 }
 
@@ -481,7 +559,8 @@ LightField IterationInBlocks::TakeLight()
   }
   light.convergence = this->Convergence.All();
   light.directionsPerFace = this->Settings.directionsPerFace;
-  light.halfRangeFlux = HalfRangeFlux(this->Directions.Set());
+  light.halfRangeFlux = HalfRangeFlux((this->FineBoundary ? *this->Fine : this->Directions).Set());
+  light.uncollidedDirections = this->FineBoundary ? this->Fine->Set().PerFace() : 0;
   light.device = this->TheDevice.Name();
   if (this->Cells.empty())
   {

@@ -6,6 +6,7 @@
 #include "Distribution/Communicator.h"
 #include "Light/LightField.h"
 #include "LightPropagation/Angular/SweptDirections.h"
+#include "LightPropagation/Conservative/Acceleration/EscapeCorrection.h"
 #include "LightPropagation/Conservative/ConvergenceRecord.h"
 #include "LightPropagation/Conservative/EnergyLedger.h"
 #include "LightPropagation/Conservative/FaceLight.h"
@@ -18,9 +19,12 @@
 #include "LightPropagation/Scattering/SweptMoments.h"
 #include "LightPropagation/Uncollided/BoundaryLight.h"
 #include "LightPropagation/Uncollided/EnvironmentPeaks.h"
+#include "LightPropagation/Uncollided/UncollidedSource.h"
 
 #include <array>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace tyndall
@@ -41,9 +45,14 @@ private:
   VolumeLayout LayoutOn(const Grid& grid) const { return { grid, this->Scene.channels, this->Scene.sharedExtinction }; }
   std::unique_ptr<SweepOperator> MakeSweep(const SweepRequest& request);
   int Functions() const; ///< of angular moments
+  const SweptDirections& DirectionsOfBoundary() const { return this->Fine ? *this->Fine : this->Directions; }
   void LoadEmission();
-  void AddLamps(const Monitor& monitor);
+  void AddUncollided(const Monitor& monitor);
+  SweepTally AddOnAllRanks(const std::function<SweepTally()>& add);
   SweepTally AddLamp(std::size_t lamp, const Monitor& monitor);
+  UncollidedVolume VolumeOf(const Deposit& deposit);
+  void FindEscaping(const Monitor& monitor);
+  void LetEscape();
   std::array<int, 3> CellHalvings();
   void MakeCells();
   void Reflect();
@@ -67,12 +76,15 @@ private:
   const MediumOnDevice OnDevice;
   const std::unique_ptr<const ScatteringOperator> Scattering;
   const SweptDirections Directions;
+  const std::unique_ptr<const SweptDirections> Fine; ///< of unscattered light from outside; null: the same
   const SplitEnvironment Far;
   const BoundaryLight Boundary;
+  std::unique_ptr<const BoundaryLight> FineBoundary; ///< in its place; null where it is dark
   std::vector<Light> Lamps;
   std::unique_ptr<const SweptMoments> Angular; ///< null: all is isotropic, or there are no voxels
   Buffer<float> Source, Path, Flux, Fluence;
   Buffer<float> OfLamp; ///< path integrals of one lamp's light, where it goes into angular moments
+  std::optional<EscapeCorrection> Escaping;
   std::unique_ptr<FaceLight> Faces; ///< of the whole grid; where they reflect, or face power is asked for; else null
   Buffer<float> Shown;  ///< as IterationResult has it; empty: not asked for
   BlockWorkspace Workspace;
@@ -84,6 +96,7 @@ private:
   std::vector<float> Direct;
   std::array<RestOfOrders, 3> Rest;
   Rgb Scattered = {}, Reflected = {}, AllScattered = {};
+  Rgb Escaped = {};                 ///< W, by the correction
   Rgb OnTheWay = {}, Stranded = {}; ///< round periodic axes, as SourceIteration has them
   double Residual = 1.0;
   int Order = 0;

@@ -2,9 +2,11 @@
 
 #include "Device/Errors.h"
 #include "Distribution/SharedMedium.h"
+#include "Light/LeftOut.h"
 #include "LightPropagation/Convergence.h"
 #include "LightPropagation/Distributed/IterationInBlocks.h"
 #include "LightPropagation/Problem/PropagationProblem.h"
+#include "LightPropagation/Problem/UnvaryingAxes.h"
 
 #include <algorithm>
 #include <array>
@@ -27,10 +29,6 @@ std::string NotInBlocks(const Medium&, const Illumination& illumination, const P
   if (settings.source == PropagationSource::Linear || settings.source == PropagationSource::Octants)
   {
     return "a source that is not constant in voxels";
-  }
-  if (settings.uncollidedDirections > 0)
-  {
-    return "directions of unscattered light of its own (UncollidedDirections)";
   }
   return {};
 }
@@ -65,19 +63,31 @@ LightField SolveInBlocks(Device& device, Communicator& communicator, const Block
   RequireSame(communicator, partition);
   RequireSame(communicator, has, medium, illumination, settings);
   CheckLightHasAnEnd(AbsorbsOnAny(communicator, has, medium), illumination, settings.periodic);
+  const UnvaryingAxes unvarying(partition.whole, illumination, settings);
+  BlockPartition wide = partition;
+  wide.whole = unvarying.Widened(partition.whole);
+  PropagationSettings solved = settings;
+  solved.directionsPerFace = DirectionsPerFaceFor(settings, unvarying);
   Medium own = has ? medium : Medium();
-  own.grid = partition.OwnGrid(communicator.Rank());
-  const BlockScene scene(communicator, has, partition, own, illumination, settings, MemoryOf(device));
-  BlockPartition inUnits = partition;
-  inUnits.whole = scene.WholeOf(partition.whole);
+  own.grid = wide.OwnGrid(communicator.Rank());
+  const BlockScene scene(communicator, has, wide, own, illumination, solved, MemoryOf(device));
+  BlockPartition inUnits = wide;
+  inUnits.whole = scene.WholeOf(wide.whole);
   std::unique_ptr<IterationInBlocks> iteration;
   communicator.Together(
-    [&] { iteration = std::make_unique<IterationInBlocks>(device, communicator, inUnits, scene, settings); });
+    [&] { iteration = std::make_unique<IterationInBlocks>(device, communicator, inUnits, scene, solved); });
   LightField light = iteration->Run(monitor);
-  communicator.Together([&] { scene.Undo(light); });
+  communicator.Together([&] {
+    scene.Undo(light);
+    MultiplyPowers(light, partition.whole.VoxelVolume() / wide.whole.VoxelVolume());
+  });
   if (iteration->StoresMoments())
   {
     light.lampsApart = iteration->LampsOf(illumination);
+  }
+  if (solved.directionsPerFace != settings.directionsPerFace)
+  {
+    light.leftOut.push_back(left_out::DirectionsAlongSlab(solved.directionsPerFace));
   }
   light.faceAlbedo = illumination.faceAlbedo;
   JudgeConvergence(settings, light);

@@ -7,7 +7,8 @@ void BeamsInSource::Hold()
   if (this->Count > 0)
   {
     this->Held = Buffer<float>(this->TheDevice, this->Count, "the light of beams");
-    this->Held.CopyFrom(this->Source, this->First, this->Count, 0);
+    this->TheDevice.Queue().enqueueCopyBuffer(
+      this->Source.Handle(), this->Held.Handle(), this->First * sizeof(float), 0, this->Count * sizeof(float));
     this->Source.Fill(0.0f, this->First, this->Count);
   }
 }
@@ -16,7 +17,8 @@ void BeamsInSource::GoOn()
 {
   if (this->Held.Size() > 0)
   {
-    this->Source.CopyFrom(this->Held, 0, this->Count, this->First);
+    this->TheDevice.Queue().enqueueCopyBuffer(
+      this->Held.Handle(), this->Source.Handle(), 0, this->First * sizeof(float), this->Count * sizeof(float));
     this->Held = {};
   }
   else
