@@ -61,7 +61,8 @@ std::vector<float> ShownLight::StraightOn() const
   return part;
 }
 
-void ShownLight::AddTo(LightField& light, Device& device, const Buffer<float>& shown, const Buffer<float>& scratch) const
+void ShownLight::AddTo(
+  LightField& light, Device& device, const Buffer<float>& shown, const Buffer<float>& scratch) const
 {
   const int functions = this->Basis.Count();
   const std::vector<double> matrix = this->Basis.Matrix();
@@ -71,8 +72,8 @@ void ShownLight::AddTo(LightField& light, Device& device, const Buffer<float>& s
   for (int c = 0; c < this->Layout.channels; ++c)
   {
     cl::Kernel kernel = device.Kernel("to_harmonics", kernel_source::MomentScattering);
-    With(kernel, this->Layout.Places(functions), cl_int(c), basis, shown, scale, cl_ulong(this->Layout.Stride()),
-      scratch);
+    With(
+      kernel, this->Layout.Places(functions), cl_int(c), basis, shown, scale, cl_ulong(this->Layout.Stride()), scratch);
     device.Queue().enqueueNDRangeKernel(
       kernel, cl::NullRange, cl::NDRange(size[0], static_cast<std::size_t>(size[1]) * size[2], this->Harmonics));
   }

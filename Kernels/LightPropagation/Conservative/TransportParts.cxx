@@ -69,8 +69,8 @@ TransportParts::TransportParts(Device& device, const PropagationProblem& problem
   , Layout(LayoutOf(problem))
   , OnDevice(device, problem.TheMedium(), problem.Scattering(), this->Layout,
       NeedsOf(problem, this->Layout, this->ByBalance()))
-  , Scattering(MakeScattering(
-      device, this->Layout, this->OnDevice, problem.Scattering().Degree(), problem.ComputesScattering()))
+  , Scattering(
+      MakeScattering(device, this->Layout, this->OnDevice, problem.Scattering().Degree(), problem.ComputesScattering()))
   , Usual(problem.TheGrid(), problem.Settings(),
       DirectionsForVoxels(problem.Settings().directionsPerFace, problem.TheGrid().spacing),
       StartsOf(problem.Settings()))
@@ -84,8 +84,8 @@ TransportParts::TransportParts(Device& device, const PropagationProblem& problem
   this->FindFaceLight();
   if (problem.Scattering().Degree() > 0)
   {
-    this->Angular = std::make_unique<SweptMoments>(
-      this->Usual, problem.TheMedium().phase, problem.Scattering(), this->Lamps);
+    this->Angular =
+      std::make_unique<SweptMoments>(this->Usual, problem.TheMedium().phase, problem.Scattering(), this->Lamps);
     this->Basis = &this->Angular->Basis();
   }
   const MediumTraits& traits = problem.Traits();

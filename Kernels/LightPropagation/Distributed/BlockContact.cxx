@@ -4,8 +4,8 @@
 
 namespace tyndall
 {
-std::vector<BlockContact> ContactsBetween(const BlockPartition& partition, const ParallelBundles& rays, int from,
-  int to, const std::array<bool, 3>& periodic)
+std::vector<BlockContact> ContactsBetween(
+  const BlockPartition& partition, const ParallelBundles& rays, int from, int to, const std::array<bool, 3>& periodic)
 {
   const VoxelBox& source = partition.blocks[from];
   const VoxelBox& target = partition.blocks[to];

@@ -29,18 +29,16 @@ void RequireSame(Communicator& communicator, bool has, const Medium& medium, con
   std::vector<double> scatters = { varies ? 1.0 : 0.0, cosine(0), cosine(1), cosine(2) };
   for (int c = 0; c < 3; ++c)
   {
-    const std::vector<double> moments =
-      varies ? medium.phase.OfChannel(c).WithMeanCosine(0.5).Moments(MomentsLookedAt)
-             : medium.phase.OfChannel(c).Moments(MomentsLookedAt);
+    const std::vector<double> moments = varies ? medium.phase.OfChannel(c).WithMeanCosine(0.5).Moments(MomentsLookedAt)
+                                               : medium.phase.OfChannel(c).Moments(MomentsLookedAt);
     scatters.insert(scatters.end(), moments.begin(), moments.end());
   }
   RequireSame(communicator, "g, or the phase function", has, scatters);
   RequireSame(communicator, "settings", true,
     { 1.0 * settings.directionsPerFace, 1.0 * settings.mapResolution, 1.0 * settings.maximumOrders, settings.tolerance,
       1.0 * settings.netFlux, 1.0 * settings.leaveOut, 1.0 * settings.staggeredRays, 1.0 * settings.angularDegree,
-      1.0 * settings.storeMoments,
-      1.0 * settings.uncollidedDirections, 1.0 * settings.facePower, 1.0 * settings.periodic[0], 1.0 * settings.periodic[1],
-      1.0 * settings.periodic[2] });
+      1.0 * settings.storeMoments, 1.0 * settings.uncollidedDirections, 1.0 * settings.facePower,
+      1.0 * settings.periodic[0], 1.0 * settings.periodic[1], 1.0 * settings.periodic[2] });
   std::vector<double> light = { 1.0 * static_cast<double>(illumination.lights.size()), Sum(illumination.sky),
     1.0 * illumination.environment.width, 1.0 * illumination.environment.height };
   for (const Rgb& face : illumination.faces)
@@ -86,8 +84,7 @@ BlockScene::BlockScene(Communicator& communicator, bool has, const BlockPartitio
   }
   this->Truncate(communicator, partition, settings, memory);
   // The traits know of extinction by the similarity relation alone.
-  this->traits.greyExtinction =
-    this->traits.grey || (this->traits.greyExtinction && this->Truncated->Degree() == 0);
+  this->traits.greyExtinction = this->traits.grey || (this->traits.greyExtinction && this->Truncated->Degree() == 0);
   this->sharedExtinction = this->channels == 1 || (settings.leaveOut && this->traits.greyExtinction);
 }
 
@@ -107,9 +104,8 @@ void BlockScene::Truncate(Communicator& communicator, const BlockPartition& part
     most = std::max(most, block.VoxelCount());
   }
   int degree = 0;
-  communicator.Together([&] {
-    degree = this->traits.scatters ? AngularDegreeFor(detail, whole, settings, false, most, memory) : 0;
-  });
+  communicator.Together(
+    [&] { degree = this->traits.scatters ? AngularDegreeFor(detail, whole, settings, false, most, memory) : 0; });
   degree = -static_cast<int>(communicator.Largest({ -1.0 * degree })[0]); // that fits all
   communicator.Together([&] {
     std::optional<DirectionKernel> kernel;

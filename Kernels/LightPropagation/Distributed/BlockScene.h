@@ -33,8 +33,8 @@ struct BlockScene
   BlockScene(const BlockScene&) = delete;
   BlockScene& operator=(const BlockScene&) = delete;
 
-  Grid WholeOf(Grid grid) const;      ///< the grid of all, in the unit of length
-  void Undo(LightField& light) const; ///< to W and the unit that it was given in
+  Grid WholeOf(Grid grid) const;                                             ///< the grid of all, in the unit of length
+  void Undo(LightField& light) const;                                        ///< to W and the unit that it was given in
   const TruncatedScattering& Scattering() const { return *this->Truncated; } ///< as sweeps carry it
 
   Medium medium;

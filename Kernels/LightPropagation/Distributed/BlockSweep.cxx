@@ -251,8 +251,8 @@ cl::Kernel BlockSweep::Kernel(const SweepVolume& volume)
   const bool shines = volume.source != nullptr;
   const std::string options = DefinesOf(plan) + Define("SIDES", 1) + Define("STREAMED", 0) + Define("SOURCE", shines) +
     Define("BORDER", 0) + Define("NET_FLUX", plan.netFlux) + Define("FACE_OUT", 0) + Define("FACE_SPREAD", 0) +
-    Define("FACE_IN", 0) + Define("OCTANT_SOURCE", plan.octantSource && shines) + Define("PERIODIC_P", this->Periodic[plan.axes.axis]) +
-    Define("PERIODIC_U", 0) + Define("PERIODIC_V", 0);
+    Define("FACE_IN", 0) + Define("OCTANT_SOURCE", plan.octantSource && shines) +
+    Define("PERIODIC_P", this->Periodic[plan.axes.axis]) + Define("PERIODIC_U", 0) + Define("PERIODIC_V", 0);
   return this->TheDevice.Kernel("sweep", kernel_source::Sweep, options);
 }
 
@@ -349,8 +349,7 @@ void BlockSweep::ForEachPlace(const BlockContact& contact, bool out, const Visit
       {
         for (int slot = 0; slot < slots; ++slot)
         {
-          const std::size_t row =
-            bundle.map + (static_cast<std::size_t>(v) * slots + slot) * plan.row + plan.vector;
+          const std::size_t row = bundle.map + (static_cast<std::size_t>(v) * slots + slot) * plan.row + plan.vector;
           for (int u = firstU; u < endU; ++u)
           {
             visit(false, row + u);
@@ -405,8 +404,8 @@ void BlockSweep::ForEachPlace(const BlockContact& contact, bool out, const Visit
 
 void BlockSweep::Pack(const BlockContact& contact, const RaysAtFaces& out, std::vector<float>& message) const
 {
-  this->ForEachPlace(contact, true,
-    [&](bool aside, std::size_t place) { message.push_back((aside ? out.sides : out.maps)[place]); });
+  this->ForEachPlace(
+    contact, true, [&](bool aside, std::size_t place) { message.push_back((aside ? out.sides : out.maps)[place]); });
 }
 
 void BlockSweep::Unpack(

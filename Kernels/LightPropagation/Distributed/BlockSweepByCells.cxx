@@ -120,9 +120,8 @@ double BlockSweep::ByCells::MeanLight(int face, const Voxel& voxel, int aside, i
   there[aside] = place(voxel[aside]);
   beside[aside] = place(voxel[aside] + move);
   const double here = this->LightOf(face, there, channel);
-  return move == 0 || beside[aside] < 0 || beside[aside] >= size
-    ? here
-    : 0.5 * (here + this->LightOf(face, beside, channel));
+  return move == 0 || beside[aside] < 0 || beside[aside] >= size ? here
+                                                                 : 0.5 * (here + this->LightOf(face, beside, channel));
 }
 
 void BlockSweep::ByCells::Enter(RaysAtFaces& in) const
@@ -132,8 +131,7 @@ void BlockSweep::ByCells::Enter(RaysAtFaces& in) const
   {
     const int face = this->EntryFaceOf(axes.axis);
     this->ForEnds([&](const BundleInfo& bundle, int channel, std::size_t place, int u, int v) {
-      in.maps[place] +=
-        static_cast<float>(bundle.power * this->LightOf(face, this->VoxelAt(Aside{}, u, v), channel));
+      in.maps[place] += static_cast<float>(bundle.power * this->LightOf(face, this->VoxelAt(Aside{}, u, v), channel));
     });
   }
   this->ForAside([&](const Aside& ray) { this->EnterAside(ray, in); });

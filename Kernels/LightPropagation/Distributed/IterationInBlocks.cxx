@@ -113,9 +113,8 @@ std::unique_ptr<SweepOperator> IterationInBlocks::MakeSweep(const SweepRequest& 
 {
   std::unique_ptr<SweepOperator> sweep;
   this->Others.Together([&] {
-    sweep = std::make_unique<SweepInBlocks>(
-      this->TheDevice, this->Others, this->Partition, this->Layout, this->OnDevice.SigmaT(), this->Settings.periodic,
-      request, this->Workspace);
+    sweep = std::make_unique<SweepInBlocks>(this->TheDevice, this->Others, this->Partition, this->Layout,
+      this->OnDevice.SigmaT(), this->Settings.periodic, request, this->Workspace);
   });
   return sweep;
 }
@@ -555,7 +554,8 @@ LightField IterationInBlocks::TakeLight()
   if (this->Faces)
   {
     const std::vector<double> left = this->Faces->LeftInAll();
-    light.facePower = this->Faces->PerArea(this->Cells.empty() ? left : this->Faces->ScaledTo(left, light.facePowerOut));
+    light.facePower =
+      this->Faces->PerArea(this->Cells.empty() ? left : this->Faces->ScaledTo(left, light.facePowerOut));
   }
   light.convergence = this->Convergence.All();
   light.directionsPerFace = this->Settings.directionsPerFace;

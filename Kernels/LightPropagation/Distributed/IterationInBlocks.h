@@ -86,7 +86,7 @@ private:
   Buffer<float> OfLamp; ///< path integrals of one lamp's light, where it goes into angular moments
   std::optional<EscapeCorrection> Escaping;
   std::unique_ptr<FaceLight> Faces; ///< of the whole grid; where they reflect, or face power is asked for; else null
-  Buffer<float> Shown;  ///< as IterationResult has it; empty: not asked for
+  Buffer<float> Shown;              ///< as IterationResult has it; empty: not asked for
   BlockWorkspace Workspace;
   std::vector<std::unique_ptr<CellsOverRanks>> Cells; ///< by channel; empty: orders are added up as they are
   std::array<Rgb, 6> OutOfCells = {};                 ///< W, through faces, of all orders to come

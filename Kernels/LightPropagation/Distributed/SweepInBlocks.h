@@ -52,14 +52,14 @@ private:
   struct Around
   {
     Contacts aside, ahead;
-    std::vector<float> rays;                ///< aside, that come in with the next pass
+    std::vector<float> rays;                 ///< aside, that come in with the next pass
     std::vector<std::vector<float>> waiting; ///< ahead, that come in with the next lap, by group of channels
   };
   struct Task
   {
     std::unique_ptr<BlockSweep> sweep;
-    std::vector<Contacts> senders, receivers;       ///< one list for each rank there is contact with
-    std::vector<Around> aroundFrom;                 ///< the same, round periodic axes
+    std::vector<Contacts> senders, receivers;      ///< one list for each rank there is contact with
+    std::vector<Around> aroundFrom;                ///< the same, round periodic axes
     std::vector<std::array<Contacts, 2>> aroundTo; ///< aside and ahead
   };
   enum class State
@@ -88,8 +88,8 @@ private:
   bool SweepLap(Sweeping& sweeping, std::exception_ptr& error, const Monitor& monitor);
   bool SweepPass(Sweeping& sweeping, std::exception_ptr& error, const Monitor& monitor);
   void SweepTask(int number, Sweeping& sweeping, std::exception_ptr& error, const Monitor& monitor);
-  State Enter(Task& task, const std::vector<std::vector<float>>& messages, const Sweeping& sweeping,
-    RaysAtFaces& rays) const;
+  State Enter(
+    Task& task, const std::vector<std::vector<float>>& messages, const Sweeping& sweeping, RaysAtFaces& rays) const;
   State EnterFromAround(Task& task, const Sweeping& sweeping, RaysAtFaces& rays) const;
   void SendOn(int number, State state, const RaysAtFaces& rays);
   bool TakeFromAround(const Sweeping& sweeping, std::exception_ptr& error);

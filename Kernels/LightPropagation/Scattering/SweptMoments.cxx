@@ -43,8 +43,8 @@ SweptMoments::SweptMoments(const SweptDirections& directions, const PhaseOfMediu
   {
     const glm::dvec3 along = glm::normalize(Vector(lamps[lamp].direction));
     const auto beyond = scattering.IsNowhereNegative() ? BeyondSmoothMoments : BeyondMoments;
-    ofBeams.push_back(beyond(phase.OfChannel(0), scattering.OfThinVoxels(), directions.Set(), this->TheBasis,
-      { along.x, along.y, along.z }));
+    ofBeams.push_back(beyond(
+      phase.OfChannel(0), scattering.OfThinVoxels(), directions.Set(), this->TheBasis, { along.x, along.y, along.z }));
   }
   for (std::size_t d = 0; d < directions.Set().directions.size(); ++d)
   {
