@@ -35,7 +35,6 @@ IterationInBlocks::IterationInBlocks(Device& device, Communicator& communicator,
   , Settings(settings)
   , Has(partition.blocks[communicator.Rank()].VoxelCount() > 0)
   , Layout(this->LayoutOn(partition.OwnGrid(communicator.Rank())))
-  , WholeLayout(this->LayoutOn(partition.whole))
   , OnDevice(device, scene.medium, scene.Scattering(), this->Layout, { true, false })
   , Scattering(MakeScattering(device, this->Layout, this->OnDevice, scene.Scattering().Degree(), scene.traits.scatters))
   , Directions(partition.whole, settings, DirectionsForVoxels(settings.directionsPerFace, partition.whole.spacing),

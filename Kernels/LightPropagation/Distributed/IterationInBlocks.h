@@ -72,7 +72,7 @@ private:
   const BlockScene& Scene;
   const PropagationSettings& Settings;
   const bool Has; ///< voxels
-  const VolumeLayout Layout, WholeLayout;
+  const VolumeLayout Layout;
   const MediumOnDevice OnDevice;
   const std::unique_ptr<const ScatteringOperator> Scattering;
   const SweptDirections Directions;
