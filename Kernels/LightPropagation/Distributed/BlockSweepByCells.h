@@ -11,8 +11,8 @@ namespace tyndall
 /// Of a member that moves as the bundle's crossing has it in a stage: voxels along u and v.
 std::array<int, 2> MoveOf(const BundleInfo& bundle, int member, const CrossingInfo& crossing, int stage);
 
-/// The cells of the whole grid's faces in a block's sweep: what comes in through each, and what leaves. As SweepFaces.cl
-/// and SweepMaps.cl have it of a whole grid, on the host, where a block's rays at faces are.
+/// The cells of the whole grid's faces in a block's sweep: what comes in through each, and what leaves. As
+/// SweepFaces.cl and SweepMaps.cl have it of a whole grid, on the host, where a block's rays at faces are.
 class BlockSweep::ByCells
 {
 public:

@@ -22,8 +22,8 @@ DeviceMemory MemoryOf(const Device& device);
 /// Mean free paths through the box, in the mean of its voxels and edges.
 double MeanThickness(const Medium& medium);
 
-/// What of a medium tells in how many angular moments its light is to be scattered. Of one in several parts, the largest
-/// moments and the sums over all of them.
+/// What of a medium tells in how many angular moments its light is to be scattered. Of one in several parts, the
+/// largest moments and the sums over all of them.
 struct AngularDetail
 {
   std::vector<double> moments; ///< by degree: the largest magnitude of any of its phase functions
