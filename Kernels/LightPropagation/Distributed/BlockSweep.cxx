@@ -329,8 +329,8 @@ void BlockSweep::CountLeft(const RaysAtFaces& out, SweepTally& tally) const
   }
 }
 
-/// visit(whether it is in sides, else in maps, place) for each ray that goes through a contact, in the order of the whole
-/// grid's cells, so that sender and receiver agree.
+/// visit(whether it is in sides, else in maps, place) for each ray that goes through a contact, in the order of the
+/// whole grid's cells, so that sender and receiver agree.
 /// @param out  places are those of rays that go out, else of those that come in
 template <class Visit>
 void BlockSweep::ForEachPlace(const BlockContact& contact, bool out, const Visit& visit) const
