@@ -175,7 +175,7 @@ TEST_F(PropagationBlocksFail, TogetherWhereOneIsStopped)
 TEST_F(PropagationBlocksFail, WithWordsOnWhatIsNotCarriedFromRankToRank)
 {
   ExpectErrors("not constant in voxels", [](int, PartOf&, Illumination&, PropagationSettings& settings, Monitor&) {
-    settings.source = PropagationSource::Linear;
+    settings.source = PropagationSource::Octants;
   });
   ExpectErrors("point, spot or rectangle", [](int, PartOf&, Illumination& shining, PropagationSettings&, Monitor&) {
     shining.lights[0].type = LightType::Point;
