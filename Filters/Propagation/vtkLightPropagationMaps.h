@@ -114,10 +114,10 @@ public:
   /// What each of several ranks of MPI solves. With WHOLE all of the medium, which each then holds. With BLOCKS its
   /// piece: rays are handed on from rank to rank (numerics.md, section 4.9), and no rank holds another's voxels; one
   /// rank alone solves the same way then, so that light does not depend on their number, but for rounding. Orders
-  /// are accelerated as in the whole; where they are added up one by one the source is constant in voxels, so that
-  /// voxels thicker than about 1 need the whole, or more voxels. An error names what blocks cannot do: point,
-  /// spot and rectangle lights, anisotropic scattering other than with AngularDegree 0, Source OCTANTS, periodic axes,
-  /// FaceAlbedo, UncollidedDirections, UncollidedLight, a Quality other than USUAL, Preview,
+  /// are accelerated as in the whole where scattering is isotropic, axes are open and faces dark; where they are added up
+  /// one by one the source is constant in voxels, so that voxels thicker than about 1 need the whole, or more voxels.
+  /// An error names what blocks cannot do: point, spot and rectangle lights beside a periodic axis, Source OCTANTS, LINEAR
+  /// where orders are not accelerated, UncollidedLight, a Quality other than USUAL, Preview,
   /// EstimateError, TargetError, WarmStart, MemoryBudget, LitColor and the published scheme. AUTOMATIC_DECOMPOSITION
   /// (default): BLOCKS where the arrays of the whole, once for each rank of a machine, are more than the memory that it
   /// has available, and the scene can be solved so; else WHOLE.

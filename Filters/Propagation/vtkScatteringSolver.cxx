@@ -172,6 +172,12 @@ void vtkScatteringSolver::WritePiece(tyndall::Communicator& communicator, const 
   pieces.SpreadToHeld(communicator, light.fluenceDirect, light.channels);
   pieces.SpreadToHeld(communicator, light.netFlux, 3 * light.channels);
   pieces.SpreadToHeld(communicator, light.scatteredRadiance, light.channels);
+  const std::size_t voxels = std::max<std::size_t>(pieces.Own().VoxelCount(), 1);
+  const std::vector<double> ofMoments =
+    communicator.Largest({ 1.0 * static_cast<double>(light.scatteredMoments.size() / voxels),
+      1.0 * static_cast<double>(light.straightOn.size() / voxels) }); // a rank without voxels does not know
+  pieces.SpreadToHeld(communicator, light.scatteredMoments, static_cast<int>(ofMoments[0]));
+  pieces.SpreadToHeld(communicator, light.straightOn, static_cast<int>(ofMoments[1]));
   for (const std::string& doubt : Write(std::move(light), vtkImageData::GetData(inputs[MEDIUM]), outputs, &pieces))
   {
     vtkWarningMacro(<< doubt);

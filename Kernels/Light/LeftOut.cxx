@@ -13,6 +13,7 @@ const char* const NoScattering = "scattering: sigma_s is zero";
 const char* const NoAbsorption = "absorption: sigma_a is zero";
 const char* const NoEmission = "emission: the medium does not shine";
 const char* const OneOrder = "scattering orders after the first: nothing is scattered";
+const char* const MomentsForPictures = "angular moments for pictures: not asked for";
 const char* const NetFlux = "net_flux: not asked for";
 const char* const Isotropic = "anisotropy: light is scattered evenly";
 const char* const ConstantIndex = "refraction: the refractive index is constant, rays are straight";

@@ -18,6 +18,7 @@ extern const char* const NoAbsorption;
 extern const char* const NoEmission;
 extern const char* const OneOrder; ///< nothing is scattered though the medium could
 extern const char* const NetFlux;
+extern const char* const MomentsForPictures; ///< what is scattered, by direction
 extern const char* const Isotropic;
 extern const char* const ConstantIndex;
 extern const char* const EmptyBricks;

@@ -120,8 +120,9 @@ Counted SweepOverRanks(Device& device, const Grid& grid, int ranks)
       const std::lock_guard<std::mutex> lock(guard);
       const std::size_t before = device.BytesInUse();
       volume = std::make_unique<Volume>(device, partition.OwnGrid(rank));
+      const std::array<bool, 3> open = {};
       sweep = std::make_unique<SweepInBlocks>(
-        device, communicator, partition, volume->layout, volume->sigma_t, volume->Request(grid), workspace);
+        device, communicator, partition, volume->layout, volume->sigma_t, open, volume->Request(grid), workspace);
       counted.ranks[rank].memory = static_cast<double>(device.BytesInUse() - before + sweep->FaceBytes());
     }
     sweep->Apply(&volume->source, {}, {}); // compiles

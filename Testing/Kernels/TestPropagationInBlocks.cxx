@@ -1,141 +1,15 @@
 // The light of a medium that is spread over ranks, against that of the whole on one.
 
-#include "DeviceTest.h"
-#include "RandomMedium.h"
-
-#include "Distribution/RanksInThreads.h"
-#include "LightPropagation/Conservative/ConservativePropagation.h"
-#include "LightPropagation/Distributed/PropagationInBlocks.h"
+#include "BlocksOfLight.h"
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <mutex>
 #include <string>
 #include <vector>
 
+using namespace blocks_of_light;
 using namespace tyndall;
-
-namespace
-{
-/// Such that one rank and many do the same.
-PropagationSettings SettingsOf(int orders)
-{
-  PropagationSettings settings;
-  settings.directionsPerFace = 9;
-  settings.maximumOrders = orders;
-  settings.netFlux = true;
-  settings.acceleration = PropagationAcceleration::None;
-  settings.source = PropagationSource::Constant;
-  settings.uncollidedDirections = 0;
-  settings.emissionError = 0.0;
-  return settings;
-}
-
-Illumination LitFromOutside()
-{
-  Illumination shining;
-  shining.faces[0] = { 1.0, 1.0, 1.0 };
-  shining.sky = { 0.2, 0.2, 0.2 };
-  Light sun;
-  sun.direction = { 0.3, -0.5, -0.9 };
-  sun.power = { 2.0, 2.0, 2.0 };
-  shining.lights = { sun };
-  return shining;
-}
-
-/// The arrays of a box of a medium.
-struct PartOf
-{
-  PartOf(const RandomMedium& whole, const VoxelBox& box)
-    : medium(whole.medium)
-    , components(static_cast<std::size_t>(whole.medium.sigma_a.components))
-  {
-    medium.grid.size = box.size;
-    for (std::size_t i = 0; i < box.VoxelCount(); ++i)
-    {
-      std::array<int, 3> voxel = medium.grid.VoxelAt(i);
-      for (int axis = 0; axis < 3; ++axis)
-      {
-        voxel[axis] += box.first[axis];
-      }
-      places.push_back(whole.medium.grid.IndexOf(voxel));
-      for (std::size_t c = 0; c < components; ++c)
-      {
-        absorption.push_back(whole.absorption[places.back() * components + c]);
-        scattering.push_back(whole.scattering[places.back() * components + c]);
-        if (!whole.emission.empty())
-        {
-          emission.push_back(whole.emission[places.back() * components + c]);
-        }
-      }
-    }
-    medium.sigma_a.values = absorption.data();
-    medium.sigma_s.values = scattering.data();
-    medium.emission.values = emission.empty() ? nullptr : emission.data();
-  }
-  PartOf(const PartOf&) = delete;
-  PartOf& operator=(const PartOf&) = delete;
-
-  Medium medium;
-  std::size_t components;
-  std::vector<std::size_t> places; ///< in the whole
-  std::vector<float> absorption, scattering, emission;
-};
-
-/// Arrays of the blocks put together; all else of rank 0, which must be that of all.
-LightField LightOfAll(Device& device, const BlockPartition& partition, const RandomMedium& whole,
-  const Illumination& shining, const PropagationSettings& settings)
-{
-  LightField all;
-  std::mutex guard;
-  RunInThreads(static_cast<int>(partition.blocks.size()), [&](Communicator& communicator) {
-    const PartOf part(whole, partition.blocks[communicator.Rank()]);
-    const LightField light = SolveInBlocks(device, communicator, partition, part.medium, shining, settings);
-    const std::lock_guard<std::mutex> lock(guard);
-    const std::size_t channels = static_cast<std::size_t>(light.channels);
-    const std::size_t values = whole.medium.grid.VoxelCount() * channels;
-    if (all.fluence.empty())
-    {
-      all = light;
-      all.fluence.assign(values, 0.0f);
-      all.fluenceDirect.assign(values, 0.0f);
-      all.netFlux.assign(3 * values, 0.0f);
-    }
-    EXPECT_EQ(light.facePowerOut, all.facePowerOut);
-    EXPECT_EQ(light.balance.absorbed, all.balance.absorbed);
-    EXPECT_EQ(light.convergence.size(), all.convergence.size());
-    const auto put = [&](const std::vector<float>& from, std::vector<float>& to, std::size_t width) {
-      for (std::size_t i = 0; i < part.places.size() * width; ++i)
-      {
-        to[part.places[i / width] * width + i % width] = from[i];
-      }
-    };
-    put(light.fluence, all.fluence, channels);
-    put(light.fluenceDirect, all.fluenceDirect, channels);
-    put(light.netFlux, all.netFlux, 3 * channels);
-  });
-  return all;
-}
-
-void ExpectSame(const LightField& found, const LightField& expected)
-{
-  EXPECT_LT(RelativeRmse(found.fluence, expected.fluence), 1e-6);
-  EXPECT_LT(RelativeRmse(found.fluenceDirect, expected.fluenceDirect), 1e-6);
-  EXPECT_LT(RelativeRmse(found.netFlux, expected.netFlux), 1e-6);
-  EXPECT_EQ(found.convergence.size(), expected.convergence.size());
-  EXPECT_LT(found.balance.RelativeError(expected.channels), 1e-6);
-  for (int c = 0; c < expected.channels; ++c)
-  {
-    EXPECT_NEAR(found.balance.absorbed[c], expected.balance.absorbed[c], 1e-6 * expected.balance.absorbed[c]);
-    EXPECT_NEAR(found.balance.entered[c], expected.balance.entered[c], 1e-6 * expected.balance.entered[c]);
-    for (int face = 0; face < 6; ++face)
-    {
-      EXPECT_NEAR(found.facePowerOut[face][c], expected.facePowerOut[face][c], 1e-6 * expected.facePowerOut[face][c]);
-    }
-  }
-}
-}
 
 class PropagationBlocks : public DeviceTest
 {
@@ -237,6 +111,23 @@ TEST_F(PropagationBlocks, HaveTheLightOfLampsNearby)
   }
 }
 
+/// The same in angular moments, between faces that give back light, and with what leaves by cells of faces.
+TEST_F(PropagationBlocks, HaveTheLightOfLampsNearbyInMomentsAndBetweenFaces)
+{
+  RandomMedium whole(Grid{ { 7, 8, 6 } }, 1, 0.7f, 11);
+  Illumination shining;
+  shining.lights = { NearLamps()[0], NearLamps()[3] };
+  shining.faceAlbedo[4] = { 0.7, 0.7, 0.7 };
+  PropagationSettings settings = SettingsOf(3);
+  ExpectTheLightOfTheWhole(GetDevice(), whole, shining, settings);
+  shining.faceAlbedo = {};
+  settings.facePower = true;
+  ExpectTheLightOfTheWhole(GetDevice(), whole, shining, settings);
+  settings.facePower = false;
+  whole.medium.phase = PhaseFunction::HenyeyGreenstein(0.7);
+  ExpectTheLightOfTheWhole(GetDevice(), whole, shining, settings);
+}
+
 /// What beams put down is in fixed point: it does not matter on which rank.
 TEST_F(PropagationBlocks, HaveTheUncollidedLightOfALampBesideThemBitForBit)
 {
@@ -254,6 +145,21 @@ TEST_F(PropagationBlocks, HaveTheUncollidedLightOfALampBesideThemBitForBit)
     EXPECT_EQ(found.fluenceDirect, expected.fluenceDirect);
     ExpectSame(found, expected);
   }
+}
+
+/// Unscattered light along directions of its own, and what scattered light lets out otherwise.
+TEST_F(PropagationBlocks, HaveTheLightOfTheWholeAlongFinerDirectionsFromOutside)
+{
+  RandomMedium whole(Grid{ { 9, 7, 8 } }, 1, 0.6f, 7);
+  whole.Emit(0.3f);
+  PropagationSettings settings = SettingsOf(4);
+  settings.uncollidedDirections = 36;
+  ExpectTheLightOfTheWhole(GetDevice(), whole, LitFromOutside(), settings);
+  Illumination shining = LitFromOutside();
+  shining.faceAlbedo[2] = { 0.6, 0.6, 0.6 };
+  ExpectTheLightOfTheWhole(GetDevice(), whole, shining, settings);
+  whole.medium.phase = PhaseFunction::HenyeyGreenstein(0.8);
+  ExpectTheLightOfTheWhole(GetDevice(), whole, LitFromOutside(), settings);
 }
 
 /// Thin voxels in which light is scattered many times: diffusion on cells goes with the sweeps, and does not change
@@ -510,6 +416,16 @@ TEST_F(PropagationBlocksFail, TogetherWhereOneIsStopped)
 
 TEST_F(PropagationBlocksFail, WithWordsOnWhatIsNotCarriedFromRankToRank)
 {
-  ExpectErrors("periodic",
-    [](int, PartOf&, Illumination&, PropagationSettings& settings, Monitor&) { settings.periodic[1] = true; });
+  ExpectErrors("by octants", [](int, PartOf&, Illumination&, PropagationSettings& settings, Monitor&) {
+    settings.source = PropagationSource::Octants;
+  });
+  ExpectErrors("a linear source besides", [](int, PartOf&, Illumination&, PropagationSettings& settings, Monitor&) {
+    settings.source = PropagationSource::Linear;
+    settings.periodic[1] = true;
+  });
+  ExpectErrors(
+    "point, spot or rectangle", [](int, PartOf&, Illumination& shining, PropagationSettings& settings, Monitor&) {
+      shining.lights[0].type = LightType::Point;
+      settings.periodic[1] = true;
+    });
 }

@@ -155,7 +155,7 @@ struct BlockScene
       const Found found = Sweep(
         Part(box), wants, [&](const VolumeLayout& layout, const Buffer<float>& sigma_t, const SweepRequest& request) {
           return std::make_unique<SweepInBlocks>(
-            theDevice, communicator, partition, layout, sigma_t, request, workspace, mostRays);
+            theDevice, communicator, partition, layout, sigma_t, open, request, workspace, mostRays);
         });
       const std::lock_guard<std::mutex> lock(guard);
       PutInto(all.path, found.path, box);

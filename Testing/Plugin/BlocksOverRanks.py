@@ -12,7 +12,8 @@ from pieces_of_ranks import Runs
 
 runs = Runs("BlocksOverRanks")
 WRONG = ["arrays", "components", "spacing", "g", "gap"]
-CASES = ["blocks_wavelet", "blocks_photons", "blocks_scattered", "blocks_plain", "blocks_ghosts", "blocks_given_all", "blocks_even", "blocks_uneven"]
+CASES = ["blocks_wavelet", "blocks_photons", "blocks_scattered", "blocks_plain", "blocks_turbid", "blocks_ghosts", "blocks_given_all", "blocks_even",
+         "blocks_uneven"]
 LIKE = {"blocks_ghosts": "blocks_wavelet", "blocks_given_all": "blocks_even", "blocks_uneven": "blocks_even"}
 
 
@@ -33,7 +34,8 @@ def ghost_cells_are_the_neighbours(ranks):
 
 
 for ranks in (1, 2, 3, 4, 8):
-    more = ["whole_plain", "whole_photons", "whole_scattered"] if ranks == 1 else ["blocks_errors", "blocks_of_wrong_pieces", "blocks_abort", "photons_abort"] if ranks == 3 else []
+    more = ["whole_plain", "whole_turbid", "whole_photons", "whole_scattered"] if ranks == 1 else \
+        ["blocks_errors", "blocks_of_wrong_pieces", "blocks_abort", "photons_abort"] if ranks == 3 else []
     code, said = runs.run(ranks, *CASES, *more)
     assert code == 0 and said.count("is done") == ranks, said
     ghost_cells_are_the_neighbours(ranks)
@@ -52,6 +54,9 @@ for ranks in (1, 2, 3, 4, 8):
 
 blocks, whole = runs.whole(1, "blocks_plain", "light")[0], runs.whole(1, "whole_plain", "light")[0]
 print("blocks and the whole, order by order: %.1e" % difference(blocks, whole))
+assert difference(blocks, whole) < 1e-5
+blocks, whole = runs.whole(1, "blocks_turbid", "light")[0], runs.whole(1, "whole_turbid", "light")[0]
+print("blocks and the whole, of moments, round an axis, before a bright face: %.1e" % difference(blocks, whole))
 assert difference(blocks, whole) < 1e-5
 for what in ("photons", "scattered"):
     marched = runs.whole(1, "blocks_" + what, "light")[0]

@@ -238,6 +238,28 @@ def whole_plain():
     keep("whole_plain", light)
 
 
+def turbid(decomposition, **settings):
+    """Scattering forwards, in colour, round a periodic axis and before a bright face."""
+    medium = ParticipatingMedium(Input=Wavelet(WholeExtent=SIZE), DensityArray=["POINTS", "RTData"], ExtinctionScale=0.2, MinimumDensity=0,
+                                 MaximumDensity=277, Albedo=[0.9, 0.8, 0.7], PhaseFunction="Henyey-Greenstein", MeanCosine=0.85)
+    light = LightPropagationMaps(Input=medium, SkyColor=[1, 1, 1], DirectionsPerFace=9, PeriodicY=1, FaceAlbedo=[0, 0.6, 0, 0, 0, 0.3],
+                                 Decomposition=decomposition, NetFlux=1, **settings)
+    light.UpdatePipeline()
+    return light
+
+
+def blocks_turbid():
+    light = turbid("Blocks")
+    cells = light.GetClientSideObject().GetOutputDataObject(0).GetCellData()
+    assert cells.GetNumberOfTuples() == 0 or cells.GetArray("scattered_moments"), "no moments"
+    keep("blocks_turbid", light)
+
+
+def whole_turbid():
+    keep("whole_turbid", turbid("Whole on each rank", Acceleration="None (as published)", Source="Constant (as published)",
+                                EmissionError=0, UncollidedDirections=0))
+
+
 def blocks_ghosts():
     """The output is asked for with ghost cells: those of the neighbour's light, flagged."""
     light = wavelet("Blocks")
@@ -274,7 +296,7 @@ def blocks_errors():
     lights = PointLight(Position=[0, 0, 20], Power=[9, 9, 9])
     medium = ParticipatingMedium(Input=Wavelet(WholeExtent=SIZE), DensityArray=["POINTS", "RTData"])
     for named, settings in (("a point, spot or rectangle light", {"Lights": lights}),
-                            ("a periodic axis", {"PeriodicX": 1}), ("WarmStart", {"WarmStart": 1})):
+                            ("a source that is not constant", {"Source": 1}), ("WarmStart", {"WarmStart": 1})):
         light = LightPropagationMaps(Input=medium, SkyColor=[1, 1, 1], Decomposition="Blocks", **settings)
         errors = errors_of(light)
         light.UpdatePipeline()

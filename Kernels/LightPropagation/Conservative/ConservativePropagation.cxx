@@ -92,23 +92,10 @@ std::vector<std::string> LeftOutOf(const TransportParts& parts, const IterationR
 std::vector<std::string> Words(const TransportParts& parts, const IterationResult& found)
 {
   std::vector<std::string> words;
-  const PhaseOfMedium& phase = parts.Problem.TheMedium().phase;
-  const int degree = parts.Problem.Scattering().Degree();
-  if (degree > 0)
+  const TruncatedScattering& scattering = parts.Problem.Scattering();
+  if (parts.Problem.Traits().scatters)
   {
-    words.push_back("angular moments above degree " + std::to_string(degree) +
-      ": what is scattered beyond them goes straight on (delta-M)");
-    if (parts.Problem.Scattering().IsNowhereNegative())
-    {
-      words.emplace_back("detail within these moments: smoothed such that no source is negative, in a box that is thin "
-                         "along one axis and long along another");
-    }
-  }
-  else if (!phase.IsIsotropic() && parts.Problem.Traits().scatters)
-  {
-    words.push_back("anisotropy: solved as isotropic scattering with sigma_s (1 - g), g = " +
-      (phase.Varies() ? std::string("that of each voxel") : std::to_string(phase.MeanCosine(0, 0))) +
-      " (similarity relation)");
+    words = scattering.LeftOut();
   }
   if (parts.Given)
   {
@@ -131,9 +118,9 @@ std::vector<std::string> Words(const TransportParts& parts, const IterationResul
   {
     words.emplace_back(left_out::NetFlux);
   }
-  if (degree > 0 && !parts.StoresMoments())
+  if (scattering.Degree() > 0 && !parts.StoresMoments())
   {
-    words.emplace_back("angular moments for pictures: not asked for");
+    words.emplace_back(left_out::MomentsForPictures);
   }
   return words;
 }
@@ -158,7 +145,9 @@ LightField LightOf(TransportParts& parts, IterationResult&& found)
   light.leftOut = Words(parts, found);
   if (parts.StoresMoments())
   {
-    AddShownLight(parts, found.shown, light);
+    const ShownLight shown(
+      parts.Problem.TheMedium(), parts.Problem.Scattering(), *parts.Basis, parts.Layout, parts.Layout.Values());
+    shown.AddTo(light, parts.TheDevice, found.shown, parts.Path);
   }
   light.halfRangeFlux =
     HalfRangeFlux((parts.FineBoundary && parts.How != OrdersAdded::ByBalance ? *parts.Fine : parts.Usual).Set());

@@ -1,5 +1,6 @@
 #include "LightPropagation/Conservative/FaceLight.h"
 
+#include "LightPropagation/Sweep/SpreadAside.h"
 #include "Medium/BoxFaces.h"
 
 #include <algorithm>
@@ -18,33 +19,17 @@ using ByPlane = std::array<std::vector<double>, 6>;
 struct Aside
 {
   PlaneAxes axes;
-  int size;      ///< planes
-  bool periodic; ///< around them
-  bool spreads;  ///< Deposit::spreadsAside
+  AsidePlanes planes;
 };
-
-/// Adds power to the plane where rays move aside, or to all planes up to where the next ones do, as SweepFaces.cl.
-void AddSpread(const Aside& aside, double tangent, int plane, double power, std::vector<double>& to)
-{
-  if (!aside.spreads)
-  {
-    to[plane] += power;
-    return;
-  }
-  const double planes = tangent * aside.size > 1.0 ? 1.0 / tangent : aside.size, middle = plane + 0.5;
-  const double begin = aside.periodic ? middle - 0.5 * planes : std::max(middle - 0.5 * planes, 0.0);
-  const double end = aside.periodic ? middle + 0.5 * planes : std::min(middle + 0.5 * planes, 1.0 * aside.size);
-  for (int p = static_cast<int>(std::floor(begin)); p < end; ++p)
-  {
-    to[(p + aside.size) % aside.size] += power * (std::min(end, p + 1.0) - std::max(begin, 1.0 * p)) / (end - begin);
-  }
-}
 
 /// The moves aside of a bundle's rays, as SweepBorder has them; of a short periodic axis in laps (SweepPlan::LayLaps).
 void AddAside(const Bundle& bundle, const Aside& aside, ByPlane& power)
 {
   const PlaneAxes& axes = aside.axes;
-  const int size = aside.size, planes = PlanesOfPattern(size, aside.periodic);
+  const int size = aside.planes.size, planes = PlanesOfPattern(size, aside.planes.periodic);
+  const auto addSpread = [&](double tangent, int plane, double ofRay, std::vector<double>& to) {
+    ForPlanesPassed(aside.planes, tangent, plane, [&](int p, double part) { to[p] += ofRay * part; });
+  };
   const double ofLap = bundle.power * size / planes;
   for (int k = 0; k < planes; ++k)
   {
@@ -63,12 +48,12 @@ void AddAside(const Bundle& bundle, const Aside& aside, ByPlane& power)
           if (du != 0 && goes)
           {
             const double tangent = member.uFromU != 0 ? bundle.tangentU : bundle.tangentV;
-            AddSpread(aside, tangent, plane, ofLap * segment.part, power[EntryFace(axes.u, du > 0)]);
+            addSpread(tangent, plane, ofLap * segment.part, power[EntryFace(axes.u, du > 0)]);
           }
           if (dv != 0 && goes)
           {
             const double tangent = member.vFromU != 0 ? bundle.tangentU : bundle.tangentV;
-            AddSpread(aside, tangent, plane, ofLap * segment.part, power[EntryFace(axes.v, dv > 0)]);
+            addSpread(tangent, plane, ofLap * segment.part, power[EntryFace(axes.v, dv > 0)]);
           }
         }
       }
@@ -95,9 +80,9 @@ std::vector<double> SweptPowerIn(
   std::vector<double> power(BoxFaceCellCount(grid), 0.0);
   for (int axis = 0; axis < 3; ++axis)
   {
-    const Aside aside = { AcrossAxis(axis), grid.size[axis], periodic[axis], spreads };
+    const Aside aside = { AcrossAxis(axis), { grid.size[axis], periodic[axis], spreads } };
     ByPlane byPlane;
-    byPlane.fill(std::vector<double>(aside.size, 0.0));
+    byPlane.fill(std::vector<double>(aside.planes.size, 0.0));
     std::array<double, 2> ahead = {}; // through the low face, and the high one
     for (const Bundle& bundle : directions.Along(axis))
     {

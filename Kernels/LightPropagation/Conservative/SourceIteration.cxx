@@ -71,7 +71,7 @@ IterationResult SourceIteration::Run(const Monitor& monitor)
     this->SweepOrder(OfPart(ofOrder, uncollided, 1.0));
     if (this->Escaping && scatteredShines)
     {
-      const Rgb escaped = this->Escaping->Apply();
+      const Rgb escaped = this->Escaping->Apply(this->Parts.Path, this->Parts.Source);
       for (int c = 0; c < 3; ++c)
       {
         this->Escaped[c] += escaped[c];
@@ -238,7 +238,10 @@ void SourceIteration::AddUncollided(const Monitor& monitor)
   }
   if (escapes)
   {
-    this->Escaping.emplace(this->Parts, OfPart(monitor, sources.size() / all, 1.0)); // whatever shines: lights add up
+    // Whatever shines: lights add up.
+    const TransportParts::EvenSky sky = this->Parts.FindEvenSky(OfPart(monitor, sources.size() / all, 1.0));
+    this->Escaping.emplace(this->Parts.TheDevice, this->Parts.Layout, this->Parts.Problem.Scattering(),
+      this->Parts.OnDevice.SigmaT(), sky.fine.path, sky.usual.path);
   }
 }
 
@@ -271,12 +274,14 @@ void SourceIteration::SweepOrder(const Monitor& monitor)
   }
   const Buffer<float>* const source = this->Shining ? &this->Parts.Source : nullptr;
   SweepOperator& sweep = this->InFilledPart() ? *this->Filled : this->Lit ? *this->Lit : *this->Whole;
-  const SweepTally tally = sweep.Apply(source, boundary, monitor);
-  this->OnTheWay = tally.onTheWay;
-  if (this->Order > 0)
+  BeamsInSource beams = this->Parts.BeamsOfSource();
+  if (this->Order == 0)
   {
-    this->Parts.DarkenBeams(); // they are first scattered once
+    beams.Hold();
   }
+  const SweepTally tally = sweep.Apply(source, boundary, monitor);
+  beams.GoOn();
+  this->OnTheWay = tally.onTheWay;
   if (!this->InFilledPart())
   {
     this->Result.ledger.Count(tally);
@@ -390,7 +395,7 @@ void SourceIteration::ScatterOrder()
       this->Order == 0 ? -1.0f : 1.0f);
     if (this->Order == 0 && parts.Given)
     {
-      parts.Given->AddStraightOn(parts.TheDevice, parts.Layout, parts.Basis.get(), this->Result.shown);
+      parts.Given->AddStraightOn(parts.TheDevice, parts.Layout, parts.Basis, this->Result.shown);
     }
   }
   this->Scattered = powers.scattered;

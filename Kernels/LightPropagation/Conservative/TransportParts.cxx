@@ -2,8 +2,6 @@
 
 #include "LightPropagation/Emission/UncollidedEmission.h"
 #include "LightPropagation/Problem/UncollidedDirections.h"
-#include "LightPropagation/Scattering/BeamScattering.h"
-#include "LightPropagation/Scattering/IsotropicScattering.h"
 #include "LightPropagation/Scattering/MomentScattering.h"
 #include "LightPropagation/Sweep/SweepOfDevice.h"
 #include "LightPropagation/Uncollided/EnvironmentPeaks.h"
@@ -11,10 +9,6 @@
 #include "LightPropagation/Uncollided/UncollidedLamp.h"
 #include "Medium/VoxelSums.h"
 #include "Numerics/Constants.h"
-#include "Numerics/Vectors.h"
-
-#include <glm/geometric.hpp>
-#include <glm/vec3.hpp>
 
 #include <algorithm>
 #include <utility>
@@ -23,8 +17,6 @@ namespace tyndall
 {
 namespace
 {
-constexpr std::size_t MostBeams = 4; ///< whose first scattering is exact in angle
-
 RayStarts StartsOf(const PropagationSettings& settings)
 {
   return settings.staggeredRays ? RayStarts::Staggered : RayStarts::Middle;
@@ -77,7 +69,8 @@ TransportParts::TransportParts(Device& device, const PropagationProblem& problem
   , Layout(LayoutOf(problem))
   , OnDevice(device, problem.TheMedium(), problem.Scattering(), this->Layout,
       NeedsOf(problem, this->Layout, this->ByBalance()))
-  , Scattering(this->MakeScattering())
+  , Scattering(
+      MakeScattering(device, this->Layout, this->OnDevice, problem.Scattering().Degree(), problem.ComputesScattering()))
   , Usual(problem.TheGrid(), problem.Settings(),
       DirectionsForVoxels(problem.Settings().directionsPerFace, problem.TheGrid().spacing),
       StartsOf(problem.Settings()))
@@ -89,10 +82,15 @@ TransportParts::TransportParts(Device& device, const PropagationProblem& problem
   this->FindBoundaryLight();
   this->Emission = EmissionOf(problem, *this->UsualBoundary);
   this->FindFaceLight();
-  this->FindAngularValues();
+  if (problem.Scattering().Degree() > 0)
+  {
+    this->Angular =
+      std::make_unique<SweptMoments>(this->Usual, problem.TheMedium().phase, problem.Scattering(), this->Lamps);
+    this->Basis = &this->Angular->Basis();
+  }
   const MediumTraits& traits = problem.Traits();
   const bool needsSource = problem.ComputesScattering() || traits.emits || this->ByBalance();
-  const int beams = static_cast<int>(this->Beams.size());
+  const int beams = this->Angular ? this->Angular->Beams() : 0;
   this->Source = Buffer<float>(
     device, needsSource ? this->Layout.MomentFloats(this->Functions(), beams) : SweepPadding, "the scattered light");
   this->Path = Buffer<float>(device, this->Layout.MomentFloats(this->Functions()), "the light gathered");
@@ -113,7 +111,7 @@ void TransportParts::LoadSource()
   this->MediumShines = this->LoadEmission(this->Source) || !this->Problem.Settings().leaveOut;
   if (this->Given && this->Problem.ComputesScattering())
   {
-    const bool more = this->Given->AddStraightOn(this->TheDevice, this->Layout, this->Basis.get(), this->Source);
+    const bool more = this->Given->AddStraightOn(this->TheDevice, this->Layout, this->Basis, this->Source);
     this->MediumShines = this->MediumShines || more;
   }
 }
@@ -141,9 +139,7 @@ void TransportParts::FindBoundaryLight()
   this->CorrectsEscape = finer.correctsEscape && this->Problem.Traits().scatters && !Reflects(shining);
   if (finer.perFace > 0)
   {
-    DirectionSet set = FittedDirections(finer.perFace, "UncollidedDirections");
-    const RayStarts starts = this->ByBalance() || !set.orbits.empty() ? StartsOf(settings) : RayStarts::Staggered;
-    this->Fine = std::make_unique<SweptDirections>(grid, settings, std::move(set), starts);
+    this->Fine = FinerDirections(grid, settings, finer.perFace, this->ByBalance());
   }
   const SplitEnvironment environment = Split(shining.environment, (this->Fine ? *this->Fine : this->Usual).Set());
   this->Lamps = shining.lights;
@@ -211,16 +207,6 @@ std::unique_ptr<SweepOperator> TransportParts::MakeSweep(const SweepRequest& req
     request, this->Workspace);
 }
 
-std::unique_ptr<const ScatteringOperator> TransportParts::MakeScattering() const
-{
-  if (const int degree = this->Problem.Scattering().Degree(); degree > 0)
-  {
-    return std::make_unique<MomentScattering>(this->TheDevice, this->Layout, this->OnDevice, degree);
-  }
-  return std::make_unique<IsotropicScattering>(
-    this->TheDevice, this->Layout, this->OnDevice, this->Problem.ComputesScattering());
-}
-
 std::vector<Light> TransportParts::LampsOf(const Illumination& illumination) const
 {
   const SplitEnvironment environment = Split(illumination.environment, (this->Fine ? *this->Fine : this->Usual).Set());
@@ -275,7 +261,7 @@ SweepTally TransportParts::AddUncollided(const UncollidedSource& source, const D
   const SweepMaker sweeps = [this](const SweepRequest& request) { return this->MakeSweep(request); };
   const std::array<bool, 3>& periodic = this->Problem.Settings().periodic;
   UncollidedVolume volume = { this->TheDevice, this->Layout, this->OnDevice.SigmaT(), periodic, sweeps, deposit,
-    this->Basis.get(), nullptr };
+    this->Basis, nullptr };
   const int beam = this->SlotOf(source);
   if (beam < 0)
   {
@@ -293,11 +279,11 @@ SweepTally TransportParts::AddUncollided(const UncollidedSource& source, const D
 int TransportParts::SlotOf(const UncollidedSource& source) const
 {
   const auto* lamp = dynamic_cast<const UncollidedLamp*>(&source);
-  for (std::size_t b = 0; lamp && b < this->Beams.size(); ++b)
+  for (std::size_t i = 0; lamp && this->Angular && i < this->Lamps.size(); ++i)
   {
-    if (&lamp->TheLight() == &this->Lamps[this->Beams[b]])
+    if (&lamp->TheLight() == &this->Lamps[i])
     {
-      return static_cast<int>(b);
+      return this->Angular->BeamOf(i);
     }
   }
   return -1;
@@ -305,67 +291,23 @@ int TransportParts::SlotOf(const UncollidedSource& source) const
 
 void TransportParts::DarkenBeams()
 {
-  if (!this->Beams.empty())
+  if (this->BeamValues() > 0)
   {
     this->Source.Fill(0.0f, this->Layout.Places(this->Functions()).beams, this->BeamValues());
   }
 }
 
+BeamsInSource TransportParts::BeamsOfSource()
+{
+  return { this->TheDevice, this->Source, this->Layout.Places(this->Functions()).beams, this->BeamValues() };
+}
+
 void TransportParts::LightBeams(const Buffer<float>& given) const
 {
-  if (!this->Beams.empty())
+  if (this->BeamValues() > 0)
   {
     this->Source.CopyFrom(given, this->Layout.Places(this->Functions()).beams, this->BeamValues());
   }
-}
-
-/// Angular functions along the directions, and the distributions of what is first scattered of the brightest beams.
-void TransportParts::FindAngularValues()
-{
-  const TruncatedScattering& scattering = this->Problem.Scattering();
-  if (scattering.Degree() == 0)
-  {
-    return;
-  }
-  this->Basis = std::make_unique<AngularBasis>(this->Usual.Set(), scattering.Degree());
-  AngularValues values = this->Usual.Values(*this->Basis);
-  this->Beams = this->BrightestBeams();
-  std::vector<std::vector<double>> ofBeams;
-  for (int beam : this->Beams)
-  {
-    const glm::dvec3 along = glm::normalize(Vector(this->Lamps[beam].direction));
-    const auto beyond = scattering.IsNowhereNegative() ? BeyondSmoothMoments : BeyondMoments;
-    ofBeams.push_back(beyond(this->Problem.TheMedium().phase.OfChannel(0), scattering.OfThinVoxels(), this->Usual.Set(),
-      *this->Basis, { along.x, along.y, along.z }));
-  }
-  for (std::size_t d = 0; d < this->Usual.Set().directions.size(); ++d)
-  {
-    values.beams.emplace_back();
-    for (const std::vector<double>& ofBeam : ofBeams)
-    {
-      values.beams.back().push_back(this->Usual.Mean(static_cast<int>(d), ofBeam));
-    }
-  }
-  this->OfUsual = std::make_unique<AngularValues>(std::move(values));
-}
-
-/// Which lamps; none where the phase function varies.
-std::vector<int> TransportParts::BrightestBeams() const
-{
-  std::vector<int> beams;
-  for (std::size_t i = 0; i < this->Lamps.size() && !this->Problem.TheMedium().phase.Varies() &&
-       !this->Problem.TheMedium().phase.HasColour();
-       ++i)
-  {
-    if (this->Lamps[i].type == LightType::Directional && Sum(this->Lamps[i].power) > 0.0)
-    {
-      beams.push_back(static_cast<int>(i));
-    }
-  }
-  const auto brighter = [this](int a, int b) { return Sum(this->Lamps[a].power) > Sum(this->Lamps[b].power); };
-  std::stable_sort(beams.begin(), beams.end(), brighter);
-  beams.resize(std::min<std::size_t>(beams.size(), MostBeams));
-  return beams;
 }
 
 TransportParts::UncollidedPath TransportParts::FindUncollidedPath(

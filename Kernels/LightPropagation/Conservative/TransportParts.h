@@ -9,7 +9,9 @@
 #include "LightPropagation/Problem/MediumOnDevice.h"
 #include "LightPropagation/Problem/PropagationProblem.h"
 #include "LightPropagation/Problem/ScatteringOrders.h"
+#include "LightPropagation/Scattering/BeamsInSource.h"
 #include "LightPropagation/Scattering/ScatteringOperator.h"
+#include "LightPropagation/Scattering/SweptMoments.h"
 #include "LightPropagation/Sweep/SweepOperator.h"
 #include "LightPropagation/Sweep/SweepWorkspace.h"
 #include "LightPropagation/Sweep/VolumeLayout.h"
@@ -44,7 +46,7 @@ public:
 
   /// Along the directions of scattered light.
   const SweptDirections Usual;
-  std::unique_ptr<const AngularBasis> Basis; ///< of the moments in which light is scattered; null: all is isotropic
+  const AngularBasis* Basis = nullptr; ///< of the moments in which light is scattered; null: all is isotropic
   /// Along directions of its own until it meets the medium, where they were asked for and differ from the usual ones.
   std::unique_ptr<const SweptDirections> Fine;
   bool CorrectsEscape = false; ///< EscapeCorrection.h, where orders are added up one by one
@@ -110,10 +112,11 @@ public:
   Deposit WholeDeposit() const;             ///< path, and flux where it is asked for
   std::vector<AxisBundles> AllRays() const; ///< of the usual directions
   /// Of the usual directions, for SweepRequest::angular; null: all is isotropic.
-  const AngularValues* UsualValues() const { return this->OfUsual.get(); }
+  const AngularValues* UsualValues() const { return this->Angular ? &this->Angular->Values() : nullptr; }
   void DarkenBeams();                                ///< in Source
+  BeamsInSource BeamsOfSource();                     ///< where orders are added up one by one
   void LightBeams(const Buffer<float>& given) const; ///< in Source, as they are in another one
-  std::size_t BeamValues() const { return this->Beams.size() * this->Layout.channels * this->Layout.Stride(); }
+  std::size_t BeamValues() const { return this->Angular ? this->Angular->Beams() * this->Layout.Values() : 0; }
   /// What is scattered is handed out in angular moments.
   bool StoresMoments() const { return this->Basis && this->Problem.Settings().storeMoments; }
   int Functions() const { return this->Basis ? this->Basis->Count() : 1; }
@@ -122,17 +125,12 @@ public:
 
 private:
   bool ByBalance() const { return this->How == OrdersAdded::ByBalance; }
-  /// The one place where a scattering operator is chosen.
-  std::unique_ptr<const ScatteringOperator> MakeScattering() const;
   void LoadSource();
   void FindBoundaryLight();
   void FindFaceLight();
-  void FindAngularValues();
-  std::vector<int> BrightestBeams() const;
   int SlotOf(const UncollidedSource& source) const;
 
   bool MediumShines = false;
-  std::unique_ptr<const AngularValues> OfUsual;
-  std::vector<int> Beams; ///< which of the lamps have an angular distribution of their own
+  std::unique_ptr<const SweptMoments> Angular; ///< null: all is isotropic
 };
 }

@@ -1,39 +1,49 @@
 #include "LightPropagation/Distributed/BlockContact.h"
 
+#include <initializer_list>
+
 namespace tyndall
 {
 std::vector<BlockContact> ContactsBetween(
-  const BlockPartition& partition, const ParallelBundles& rays, int from, int to)
+  const BlockPartition& partition, const ParallelBundles& rays, int from, int to, const std::array<bool, 3>& periodic)
 {
   const VoxelBox& source = partition.blocks[from];
   const VoxelBox& target = partition.blocks[to];
-  if (from == to || source.VoxelCount() == 0 || target.VoxelCount() == 0)
+  if (source.VoxelCount() == 0 || target.VoxelCount() == 0)
   {
     return {};
   }
   const PlaneAxes axes = AcrossAxis(rays.axis);
   // The layers of cells before the target, along any of the axes.
-  const auto before = [&](std::initializer_list<int> along) {
-    VoxelBox cells = target;
+  const auto contact = [&](BlockContact::Kind kind, std::initializer_list<int> along) {
+    BlockContact found = { from, to, kind, target, false };
     for (const int axis : along)
     {
-      cells.first[axis] = rays.signs[axis] > 0 ? target.first[axis] - 1 : EndOf(target, axis);
-      cells.size[axis] = 1;
+      const int size = partition.whole.size[axis];
+      int& first = found.cells.first[axis];
+      first = rays.signs[axis] > 0 ? target.first[axis] - 1 : EndOf(target, axis);
+      found.cells.size[axis] = 1;
+      if (periodic[axis] && (first < 0 || first >= size))
+      {
+        first = first < 0 ? size - 1 : 0;
+        found.around = true;
+      }
     }
-    return Common(cells, source);
+    found.cells = Common(found.cells, source);
+    return found;
   };
-  std::vector<BlockContact> contacts = { { from, to, BlockContact::Along, before({ axes.axis }) },
-    { from, to, BlockContact::AsideU, before({ axes.u }) }, { from, to, BlockContact::AsideV, before({ axes.v }) } };
+  std::vector<BlockContact> contacts = { contact(BlockContact::Along, { axes.axis }),
+    contact(BlockContact::AsideU, { axes.u }), contact(BlockContact::AsideV, { axes.v }) };
   if (rays.goThroughEdges)
   {
-    contacts.push_back({ from, to, BlockContact::Edge, before({ axes.u, axes.v }) });
+    contacts.push_back(contact(BlockContact::Edge, { axes.u, axes.v }));
   }
   std::vector<BlockContact> there;
-  for (const BlockContact& contact : contacts)
+  for (const BlockContact& one : contacts)
   {
-    if (contact.cells.VoxelCount() > 0)
+    if (one.cells.VoxelCount() > 0)
     {
-      there.push_back(contact);
+      there.push_back(one);
     }
   }
   return there;

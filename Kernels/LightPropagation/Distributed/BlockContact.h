@@ -3,6 +3,7 @@
 #include "Distribution/BlockPartition.h"
 #include "LightPropagation/Distributed/ParallelBundles.h"
 
+#include <array>
 #include <vector>
 
 namespace tyndall
@@ -19,10 +20,12 @@ struct BlockContact
   };
   int from = 0, to = 0;
   Kind kind = Along;
-  VoxelBox cells; ///< that they come from, in voxels of the whole grid
+  VoxelBox cells;      ///< that they come from, in voxels of the whole grid
+  bool around = false; ///< past the end of a periodic axis, from the other side
 };
 
-/// All contacts of one block with another, none or one of most kinds, in the order of these.
-std::vector<BlockContact> ContactsBetween(
-  const BlockPartition& partition, const ParallelBundles& rays, int from, int to);
+/// All contacts of one block with another, or round periodic axes with itself, none or one of most kinds, in the order
+/// of these.
+std::vector<BlockContact> ContactsBetween(const BlockPartition& partition, const ParallelBundles& rays, int from,
+  int to, const std::array<bool, 3>& periodic = {});
 }

@@ -2,13 +2,22 @@
 
 #include "Distribution/SharedMedium.h"
 #include "Light/ChannelReduction.h"
+#include "LightPropagation/Angular/DirectionSet.h"
+#include "LightPropagation/Problem/DirectionKernel.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace tyndall
 {
+namespace
+{
+constexpr int MomentsLookedAt = 8; ///< of phase functions, to tell whether they are the same
+}
+
 void RequireSame(Communicator& communicator, bool has, const Medium& medium, const Illumination& illumination,
   const PropagationSettings& settings)
 {
@@ -17,10 +26,19 @@ void RequireSame(Communicator& communicator, bool has, const Medium& medium, con
     { 1.0 * components(medium.sigma_a), 1.0 * components(medium.sigma_s), 1.0 * components(medium.emission) });
   const bool varies = has && medium.phase.Varies();
   const auto cosine = [&](int c) { return has && !varies ? medium.phase.MeanCosine(0, c) : 0.0; };
-  RequireSame(communicator, "g", has, { varies ? 1.0 : 0.0, cosine(0), cosine(1), cosine(2) });
+  std::vector<double> scatters = { varies ? 1.0 : 0.0, cosine(0), cosine(1), cosine(2) };
+  for (int c = 0; c < 3; ++c)
+  {
+    const std::vector<double> moments = varies ? medium.phase.OfChannel(c).WithMeanCosine(0.5).Moments(MomentsLookedAt)
+                                               : medium.phase.OfChannel(c).Moments(MomentsLookedAt);
+    scatters.insert(scatters.end(), moments.begin(), moments.end());
+  }
+  RequireSame(communicator, "g, or the phase function", has, scatters);
   RequireSame(communicator, "settings", true,
     { 1.0 * settings.directionsPerFace, 1.0 * settings.mapResolution, 1.0 * settings.maximumOrders, settings.tolerance,
-      1.0 * settings.netFlux, 1.0 * settings.leaveOut, 1.0 * settings.staggeredRays,
+      1.0 * settings.netFlux, 1.0 * settings.leaveOut, 1.0 * settings.staggeredRays, 1.0 * settings.angularDegree,
+      1.0 * settings.storeMoments, 1.0 * settings.uncollidedDirections, 1.0 * settings.facePower,
+      1.0 * settings.periodic[0], 1.0 * settings.periodic[1], 1.0 * settings.periodic[2],
       1.0 * static_cast<int>(settings.source), 1.0 * static_cast<int>(settings.acceleration) });
   std::vector<double> light = { 1.0 * static_cast<double>(illumination.lights.size()), Sum(illumination.sky),
     1.0 * illumination.environment.width, 1.0 * illumination.environment.height };
@@ -28,15 +46,19 @@ void RequireSame(Communicator& communicator, bool has, const Medium& medium, con
   {
     light.insert(light.end(), face.begin(), face.end());
   }
+  for (const Rgb& albedo : illumination.faceAlbedo)
+  {
+    light.insert(light.end(), albedo.begin(), albedo.end());
+  }
   RequireSame(communicator, "what shines on it", true, light);
 }
 
-BlockScene::BlockScene(Communicator& communicator, bool has, const Grid& whole, const Medium& ofBlock,
-  const Illumination& shining, const PropagationSettings& settings)
+BlockScene::BlockScene(Communicator& communicator, bool has, const BlockPartition& partition, const Medium& ofBlock,
+  const Illumination& shining, const PropagationSettings& settings, const DeviceMemory& memory)
   : medium(ofBlock)
   , illumination(shining)
   , traits(TraitsOfAll(communicator, has ? TraitsOf(ofBlock, true) : MediumTraits()))
-  , lengthUnit(LengthUnitOf(whole))
+  , lengthUnit(LengthUnitOf(partition.whole))
 {
   communicator.Together([&] {
     if (has && this->lengthUnit != 1.0)
@@ -61,8 +83,42 @@ BlockScene::BlockScene(Communicator& communicator, bool has, const Grid& whole, 
     this->medium = one.medium;
     this->illumination = one.light;
   }
+  this->Truncate(communicator, partition, settings, memory);
+  // The traits know of extinction by the similarity relation alone.
+  this->traits.greyExtinction = this->traits.grey || (this->traits.greyExtinction && this->Truncated->Degree() == 0);
   this->sharedExtinction = this->channels == 1 || (settings.leaveOut && this->traits.greyExtinction);
 }
+
+/// As PropagationProblem does, by what all ranks have together.
+void BlockScene::Truncate(Communicator& communicator, const BlockPartition& partition,
+  const PropagationSettings& settings, const DeviceMemory& memory)
+{
+  const Grid whole = this->WholeOf(partition.whole);
+  AngularDetail detail = AngularDetailOf(this->medium, this->channels);
+  detail.moments = communicator.Largest(detail.moments);
+  const std::vector<double> extinction =
+    communicator.Sum({ detail.extinction[0], detail.extinction[1], detail.extinction[2] });
+  std::copy(extinction.begin(), extinction.end(), detail.extinction.begin());
+  std::size_t most = 0;
+  for (const VoxelBox& block : partition.blocks)
+  {
+    most = std::max(most, block.VoxelCount());
+  }
+  int degree = 0;
+  communicator.Together(
+    [&] { degree = this->traits.scatters ? AngularDegreeFor(detail, whole, settings, false, most, memory) : 0; });
+  degree = -static_cast<int>(communicator.Largest({ -1.0 * degree })[0]); // that fits all
+  communicator.Together([&] {
+    std::optional<DirectionKernel> kernel;
+    if (degree > 0 && IsMuchThinnerAlongOneAxis(detail, whole, this->channels, settings.periodic))
+    {
+      kernel.emplace(DirectionsForVoxels(settings.directionsPerFace, whole.spacing), degree);
+    }
+    this->Truncated.emplace(this->medium, degree, this->channels, kernel ? &*kernel : nullptr);
+  });
+  this->Truncated->RaiseDegree(static_cast<int>(communicator.Largest({ 1.0 * this->Truncated->Degree() })[0]));
+}
+
 Grid BlockScene::WholeOf(Grid grid) const
 {
   for (int axis = 0; axis < 3; ++axis)

@@ -3,7 +3,9 @@
 #include "Distribution/BlockPartition.h"
 #include "Distribution/Communicator.h"
 #include "Light/LightField.h"
+#include "LightPropagation/Problem/AngularDegree.h"
 #include "LightPropagation/Problem/SceneUnits.h"
+#include "LightPropagation/Problem/TruncatedScattering.h"
 #include "LightPropagation/PropagationSettings.h"
 #include "Lights/Lights.h"
 #include "Medium/Medium.h"
@@ -24,15 +26,16 @@ struct BlockScene
 {
   /// All ranks make one together.
   /// @param has  voxels; without any the medium is not looked at
-  /// @param whole  the grid of all
   /// @param medium, illumination  their arrays must stay
-  BlockScene(Communicator& communicator, bool has, const Grid& whole, const Medium& medium,
-    const Illumination& illumination, const PropagationSettings& settings);
+  /// @param memory  of this rank, for angular moments, where the settings leave open how many
+  BlockScene(Communicator& communicator, bool has, const BlockPartition& partition, const Medium& medium,
+    const Illumination& illumination, const PropagationSettings& settings, const DeviceMemory& memory);
   BlockScene(const BlockScene&) = delete;
   BlockScene& operator=(const BlockScene&) = delete;
 
-  Grid WholeOf(Grid grid) const;      ///< the grid of all, in the unit of length
-  void Undo(LightField& light) const; ///< to W and the unit that it was given in
+  Grid WholeOf(Grid grid) const;                                             ///< the grid of all, in the unit of length
+  void Undo(LightField& light) const;                                        ///< to W and the unit that it was given in
+  const TruncatedScattering& Scattering() const { return *this->Truncated; } ///< as sweeps carry it
 
   Medium medium;
   Illumination illumination;
@@ -42,7 +45,11 @@ struct BlockScene
   bool sharedExtinction = true;
 
 private:
+  void Truncate(Communicator& communicator, const BlockPartition& partition, const PropagationSettings& settings,
+    const DeviceMemory& memory);
+
   std::optional<SceneInLengths> InLengths;
   std::optional<SceneInUnits> InUnits;
+  std::optional<TruncatedScattering> Truncated;
 };
 }

@@ -1,6 +1,8 @@
 #include "LightPropagation/Distributed/BlockSweep.h"
 
 #include "Device/Defines.h"
+#include "LightPropagation/Distributed/BlockSweepByCells.h"
+#include "LightPropagation/Sweep/SweepDefines.h"
 #include "Medium/BoxFaces.h"
 #include "TyndallKernelSources.h"
 
@@ -17,7 +19,7 @@ SweepPlan PlanOf(
   Device& device, const BlockPartition& partition, int rank, const ParallelBundles& rays, const SweepVolume& volume)
 {
   SweepPlan plan(device, partition.whole, partition.blocks[rank], rays.axis, rays.bundles, volume.channels,
-    { false, false, false }, volume.deposit.flux != nullptr, volume.deposit.partialCurrents != nullptr, nullptr,
+    { false, false, false }, volume.deposit.flux != nullptr, volume.deposit.partialCurrents != nullptr, volume.angular,
     volume.moments, true, volume.octantSource != nullptr);
   const std::array<int, 3>& n = partition.blocks[rank].size;
   const std::array<int, 3> step = { 1, n[0], n[0] * n[1] };
@@ -28,43 +30,25 @@ SweepPlan PlanOf(
   plane.stepP = step[plan.axes.axis];
   return plan;
 }
-
-/// Of a member that moves as the bundle's crossing has it in a stage.
-std::array<int, 2> MoveOf(const BundleInfo& bundle, int member, const CrossingInfo& crossing, int stage)
-{
-  const cl_int* move = bundle.move[member];
-  return { move[0] * crossing.moveU[stage] + move[1] * crossing.moveV[stage],
-    move[2] * crossing.moveU[stage] + move[3] * crossing.moveV[stage] };
-}
 }
 
 BlockSweep::BlockSweep(Device& device, const BlockPartition& partition, int rank, const ParallelBundles& rays,
-  const SweepVolume& volume, BlockWorkspace& workspace)
+  const std::array<bool, 3>& periodic, const SweepVolume& volume, BlockWorkspace& workspace)
   : TheDevice(device)
   , Bundles(rays)
+  , Periodic(periodic)
   , Whole(partition.whole)
   , Block(partition.blocks[rank])
   , Workspace(workspace)
   , Plan(PlanOf(device, partition, rank, rays, volume))
-  , Crossings(this->Plan.Crossings(this->Plan.PlanesBefore(rays.way), this->Plan.Planes()))
   , SideFloats(static_cast<std::size_t>(this->Plan.plane.sizeU) + this->Plan.plane.sizeV + 1)
   , RayCount(this->Plan.radianceEachWay)
 {
-  const SweepPlan& plan = this->Plan;
-  for (const Bundle& bundle : plan.bundles)
+  if (periodic[rays.axis])
   {
-    std::array<double, 2> moves = {};
-    for (int k = 0; k < this->Whole.size[rays.axis]; ++k)
-    {
-      const PlaneCrossing crossing = bundle.Crossing(k);
-      for (int s = 1; s < crossing.count; ++s)
-      {
-        moves[0] += crossing.segments[s].part * crossing.segments[s].moveU;
-        moves[1] += crossing.segments[s].part * crossing.segments[s].moveV;
-      }
-    }
-    this->Moves.push_back(moves);
+    this->Plan.LetRaysGoOn();
   }
+  const SweepPlan& plan = this->Plan;
   workspace.sweep.Reserve(device, plan.mapsEachWay, plan.units.size() * plan.ScratchFloats());
   const std::size_t sides = this->RayCount * plan.Planes() * this->SideFloats;
   if (workspace.sidesIn.Size() < sides)
@@ -76,12 +60,46 @@ BlockSweep::BlockSweep(Device& device, const BlockPartition& partition, int rank
   this->Radiance = Buffer<float>(device, 2 * plan.radianceEachWay, "the light that comes in sideways");
   this->Sideways =
     Buffer<float>(device, plan.units.size() * plan.Planes() * 4 * plan.channels, "the power that leaves sideways");
-  this->Coefficients = Buffer<float>(device, std::vector<float>{ 0.0f }, "the angular functions");
+  this->Coefficients = Buffer<float>(
+    device, plan.coefficients.empty() ? std::vector<float>{ 0.0f } : plan.coefficients, "the angular functions");
   this->BundlesOnDevice = Buffer<BundleInfo>(device, plan.bundleRows, "the bundles of rays");
   this->Units = Buffer<UnitInfo>(device, plan.units, "the units of work");
   this->Schedule = Buffer<cl_int2>(device, plan.schedule, "the schedule");
-  this->CrossingsOnDevice = Buffer<CrossingInfo>(device, plan.Crossings(0, plan.CrossingPlanes()), "the ray pattern");
-  this->OwnLight = Buffer<OwnLightInfo>(device, plan.OwnLight(), "the ray pattern");
+  this->LayPattern();
+}
+
+void BlockSweep::BeginLap(int planes)
+{
+  if (planes != this->LapPlanes)
+  {
+    this->LapPlanes = planes;
+    this->LayPattern();
+  }
+}
+
+/// How rays cross planes in this lap.
+void BlockSweep::LayPattern()
+{
+  const SweepPlan& plan = this->Plan;
+  this->Crossings = plan.Crossings(this->LapPlanes + plan.PlanesBefore(this->Bundles.way), plan.Planes());
+  this->Moves.clear();
+  for (const Bundle& bundle : plan.bundles)
+  {
+    std::array<double, 2> moves = {};
+    for (int k = 0; k < this->Whole.size[plan.axes.axis]; ++k)
+    {
+      const PlaneCrossing crossing = bundle.Crossing(this->LapPlanes + k);
+      for (int s = 1; s < crossing.count; ++s)
+      {
+        moves[0] += crossing.segments[s].part * crossing.segments[s].moveU;
+        moves[1] += crossing.segments[s].part * crossing.segments[s].moveV;
+      }
+    }
+    this->Moves.push_back(moves);
+  }
+  this->CrossingsOnDevice =
+    Buffer<CrossingInfo>(this->TheDevice, plan.Crossings(this->LapPlanes, plan.CrossingPlanes()), "the ray pattern");
+  this->OwnLight = Buffer<OwnLightInfo>(this->TheDevice, plan.OwnLight(this->LapPlanes), "the ray pattern");
 }
 
 int BlockSweep::DirectionOf(const Member& member) const
@@ -89,7 +107,7 @@ int BlockSweep::DirectionOf(const Member& member) const
   return this->Bundles.way == 0 ? member.direction : member.opposite;
 }
 
-bool BlockSweep::IsOuter(int axis, bool entry) const
+bool BlockSweep::IsAtEnd(int axis, bool entry) const
 {
   const bool low = (this->Bundles.signs[axis] > 0) == entry;
   return low ? this->Block.first[axis] == 0 : EndOf(this->Block, axis) == this->Whole.size[axis];
@@ -100,7 +118,9 @@ BlockSweep::Light BlockSweep::LightOf(const SweepBoundary& boundary, std::size_t
   const PlaneAxes& axes = this->Plan.axes;
   const float power = static_cast<float>(this->Plan.bundles[b].power);
   const auto through = [&](int axis) {
-    Rgb light = boundary ? boundary(this->DirectionOf(member), EntryFace(axis, this->Bundles.signs[axis] > 0)) : Rgb{};
+    Rgb light = boundary && !this->Periodic[axis]
+      ? boundary(this->DirectionOf(member), EntryFace(axis, this->Bundles.signs[axis] > 0))
+      : Rgb{};
     for (double& value : light)
     {
       value = static_cast<float>(value * power);
@@ -129,7 +149,7 @@ void BlockSweep::ForRaysFrom(const SweepBoundary& boundary, const Act& act) cons
   }
 }
 
-RaysAtFaces BlockSweep::FromOutside(const SweepBoundary& boundary) const
+RaysAtFaces BlockSweep::FromOutside(const SweepBoundary& boundary, const LightByCells& cells) const
 {
   const SweepPlan& plan = this->Plan;
   RaysAtFaces rays;
@@ -145,6 +165,10 @@ RaysAtFaces BlockSweep::FromOutside(const SweepBoundary& boundary) const
       std::fill(row, row + plan.plane.sizeU, static_cast<float>(light.along[c]));
     }
   });
+  if (cells.in)
+  {
+    ByCells(*this, cells).Enter(rays);
+  }
   return rays;
 }
 
@@ -187,8 +211,8 @@ std::array<Rgb, 6> BlockSweep::PowerIn(const SweepBoundary& boundary) const
   return power;
 }
 
-RaysAtFaces BlockSweep::Cross(
-  const SweepVolume& volume, RaysAtFaces in, const SweepBoundary& boundary, SweepTally& tally, const Monitor& monitor)
+RaysAtFaces BlockSweep::Cross(const SweepVolume& volume, RaysAtFaces in, const SweepBoundary& boundary,
+  const LightByCells& cells, SweepTally& tally, const Monitor& monitor)
 {
   this->WriteBeyond(boundary);
   this->Workspace.sweep.maps.Write(in.maps.data(), in.maps.size());
@@ -197,6 +221,10 @@ RaysAtFaces BlockSweep::Cross(
   this->Workspace.sweep.maps.Read(in.maps.data(), in.maps.size());
   this->Workspace.sidesOut.Read(in.sides.data(), in.sides.size());
   this->CountLeft(in, tally);
+  if (cells.in || cells.left)
+  {
+    ByCells(*this, cells).Leave(in, boundary, tally);
+  }
   return in;
 }
 
@@ -221,20 +249,10 @@ cl::Kernel BlockSweep::Kernel(const SweepVolume& volume)
 {
   const SweepPlan& plan = this->Plan;
   const bool shines = volume.source != nullptr;
-  std::string options = Define("SIDES", 1) + Define("STREAMED", 0) + Define("REAL_WIDTH", plan.vector) +
-    Define("CHANNELS", plan.channels) + Define("ROW", plan.row) + Define("SOURCE", shines) + Define("BORDER", 0) +
-    Define("NET_FLUX", plan.netFlux) + Define("FACE_OUT", 0) + Define("FACE_SPREAD", 0) + Define("FACE_IN", 0) +
-    Define("OCTANT_SOURCE", plan.octantSource && shines) + Define("CURRENTS", plan.partialCurrents) +
-    Define("DEGREE", 0) + Define("BEAMS", 0) + Define("PERIODIC_P", 0) + Define("PERIODIC_U", 0) +
-    Define("PERIODIC_V", 0);
-  for (int members = 1; members <= MaxMembers; members *= 2)
-  {
-    const auto has = [&](const BundleInfo& bundle) { return bundle.members == members; };
-    if (std::any_of(plan.bundleRows.begin(), plan.bundleRows.end(), has))
-    {
-      options += Define(("MEMBERS_" + std::to_string(members)).c_str(), 1);
-    }
-  }
+  const std::string options = DefinesOf(plan) + Define("SIDES", 1) + Define("STREAMED", 0) + Define("SOURCE", shines) +
+    Define("BORDER", 0) + Define("NET_FLUX", plan.netFlux) + Define("FACE_OUT", 0) + Define("FACE_SPREAD", 0) +
+    Define("FACE_IN", 0) + Define("OCTANT_SOURCE", plan.octantSource && shines) +
+    Define("PERIODIC_P", this->Periodic[plan.axes.axis]) + Define("PERIODIC_U", 0) + Define("PERIODIC_V", 0);
   return this->TheDevice.Kernel("sweep", kernel_source::Sweep, options);
 }
 
@@ -245,17 +263,20 @@ void BlockSweep::Launch(const SweepVolume& volume, const Monitor& monitor)
   const Buffer<float>& flux = volume.deposit.flux ? *volume.deposit.flux : path;
   const Buffer<float>& currents = volume.deposit.partialCurrents ? *volume.deposit.partialCurrents : path;
   const Buffer<float>& source = volume.source ? *volume.source : path;
+  const Buffer<float>& lost = this->Periodic[plan.axes.axis] ? this->Workspace.sweep.lost : path;
   const Buffer<float>& octants = volume.octantSource ? *volume.octantSource : path;
   SweepInfo info = {};
   info.sigmaFirst = volume.sigma_t_first;
   info.first = volume.first;
   info.stride = volume.stride;
   info.radianceEachWay = static_cast<uint>(plan.radianceEachWay); // the other buffers hold one way alone
+  info.coefficientsEachWay = static_cast<uint>(plan.coefficientsEachWay);
   info.bundles = static_cast<int>(plan.bundles.size());
   info.patternPlanes = plan.PatternPlanes();
   info.axis = plan.axes.axis;
   info.planes = plan.plane;
   info.moments = plan.moments;
+  info.packedMoments = plan.momentRow;
   info.sizeY = this->Block.size[1];
   info.firstChannel = volume.firstChannel;
   cl_int outer = 0;
@@ -269,7 +290,7 @@ void BlockSweep::Launch(const SweepVolume& volume, const Monitor& monitor)
   for (int launch = 0; launch < plan.launches; ++launch)
   {
     info.launch = launch;
-    With(kernel, info, *volume.sigma_t, source, path, path, flux, currents, this->Workspace.sweep.maps, this->Outside,
+    With(kernel, info, *volume.sigma_t, source, path, lost, flux, currents, this->Workspace.sweep.maps, this->Outside,
       this->Radiance, this->Workspace.sweep.scratch, this->Units, this->BundlesOnDevice, this->Coefficients,
       this->CrossingsOnDevice, this->OwnLight, this->Schedule, this->Sideways, path, path, octants,
       this->Workspace.sidesIn, this->Workspace.sidesOut, outer);
@@ -289,16 +310,17 @@ void BlockSweep::CountLeft(const RaysAtFaces& out, SweepTally& tally) const
   {
     tally.out[faces[i / plan.channels % 4]][i % plan.channels] += left[i];
   }
-  if (!this->IsOuter(axes.axis, false))
+  if (!this->IsAtEnd(axes.axis, false))
   {
     return;
   }
+  Rgb& ahead = this->Periodic[axes.axis] ? tally.onTheWay : tally.out[2 * axes.axis + 1 - this->Bundles.way];
   for (const BundleInfo& bundle : plan.bundleRows)
   {
     for (int row = 0; row < plan.plane.sizeV * bundle.members * plan.channels; ++row)
     {
       const float* rays = out.maps.data() + bundle.map + static_cast<std::size_t>(row) * plan.row + plan.vector;
-      double& sum = tally.out[2 * axes.axis + 1 - this->Bundles.way][row % plan.channels];
+      double& sum = ahead[row % plan.channels];
       for (int u = 0; u < plan.plane.sizeU; ++u)
       {
         sum += rays[u];
@@ -307,11 +329,11 @@ void BlockSweep::CountLeft(const RaysAtFaces& out, SweepTally& tally) const
   }
 }
 
-/// visit(value) for each place of a ray that goes through a contact, in the order of the whole grid's cells, so that
-/// sender and receiver agree.
+/// visit(whether it is in sides, else in maps, place) for each ray that goes through a contact, in the order of the
+/// whole grid's cells, so that sender and receiver agree.
 /// @param out  places are those of rays that go out, else of those that come in
-template <class AtFaces, class Visit>
-void BlockSweep::ForEachRay(const BlockContact& contact, bool out, AtFaces& rays, const Visit& visit) const
+template <class Visit>
+void BlockSweep::ForEachPlace(const BlockContact& contact, bool out, const Visit& visit) const
 {
   const SweepPlan& plan = this->Plan;
   const PlaneAxes& axes = plan.axes;
@@ -327,9 +349,11 @@ void BlockSweep::ForEachRay(const BlockContact& contact, bool out, AtFaces& rays
       {
         for (int slot = 0; slot < slots; ++slot)
         {
-          auto* row =
-            rays.maps.data() + bundle.map + (static_cast<std::size_t>(v) * slots + slot) * plan.row + plan.vector;
-          std::for_each(row + firstU, row + endU, visit);
+          const std::size_t row = bundle.map + (static_cast<std::size_t>(v) * slots + slot) * plan.row + plan.vector;
+          for (int u = firstU; u < endU; ++u)
+          {
+            visit(false, row + u);
+          }
         }
       }
     }
@@ -359,19 +383,19 @@ void BlockSweep::ForEachRay(const BlockContact& contact, bool out, AtFaces& rays
         {
           continue;
         }
-        auto* acrossV = rays.sides.data() + (k * this->RayCount + bundle.border + slot) * this->SideFloats;
-        auto* acrossU = acrossV + plan.plane.sizeU;
-        if (contact.kind == BlockContact::AsideU)
+        const std::size_t acrossV = (k * this->RayCount + bundle.border + slot) * this->SideFloats;
+        const std::size_t acrossU = acrossV + plan.plane.sizeU;
+        for (int v = firstV; contact.kind == BlockContact::AsideU && v < endV; ++v)
         {
-          std::for_each(acrossU + firstV, acrossU + endV, visit);
+          visit(true, acrossU + v);
         }
-        else if (contact.kind == BlockContact::AsideV)
+        for (int u = firstU; contact.kind == BlockContact::AsideV && u < endU; ++u)
         {
-          std::for_each(acrossV + firstU, acrossV + endU, visit);
+          visit(true, acrossV + u);
         }
-        else
+        if (contact.kind == BlockContact::Edge)
         {
-          visit(!out ? acrossU[plan.plane.sizeV] : firstU == edgeU ? acrossU[firstV] : acrossV[firstU]);
+          visit(true, !out ? acrossU + plan.plane.sizeV : firstU == edgeU ? acrossU + firstV : acrossV + firstU);
         }
       }
     }
@@ -380,13 +404,25 @@ void BlockSweep::ForEachRay(const BlockContact& contact, bool out, AtFaces& rays
 
 void BlockSweep::Pack(const BlockContact& contact, const RaysAtFaces& out, std::vector<float>& message) const
 {
-  this->ForEachRay(contact, true, out, [&](float ray) { message.push_back(ray); });
+  this->ForEachPlace(
+    contact, true, [&](bool aside, std::size_t place) { message.push_back((aside ? out.sides : out.maps)[place]); });
 }
 
 void BlockSweep::Unpack(
   const BlockContact& contact, const std::vector<float>& message, std::size_t& at, RaysAtFaces& in) const
 {
-  this->ForEachRay(contact, false, in, [&](float& ray) { ray = message.at(at++); });
+  this->ForEachPlace(
+    contact, false, [&](bool aside, std::size_t place) { (aside ? in.sides : in.maps)[place] = message.at(at++); });
+}
+
+std::size_t BlockSweep::Values(const std::vector<BlockContact>& contacts) const
+{
+  std::size_t values = 0;
+  for (const BlockContact& contact : contacts)
+  {
+    this->ForEachPlace(contact, false, [&](bool, std::size_t) { ++values; });
+  }
+  return values;
 }
 
 std::size_t BlockSweep::Bytes() const

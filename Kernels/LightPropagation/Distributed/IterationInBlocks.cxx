@@ -1,13 +1,19 @@
 #include "LightPropagation/Distributed/IterationInBlocks.h"
 
 #include "Light/LeftOut.h"
+#include "LightPropagation/Conservative/ShownLight.h"
 #include "LightPropagation/Distributed/AccelerationInBlocks.h"
+#include "LightPropagation/Problem/UncollidedDirections.h"
+#include "LightPropagation/Scattering/BeamsInSource.h"
+#include "LightPropagation/Scattering/MomentScattering.h"
+#include "LightPropagation/Uncollided/UncollidedBoundary.h"
 #include "LightPropagation/Uncollided/UncollidedLamp.h"
 #include "Medium/VoxelSums.h"
 #include "Numerics/Constants.h"
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <utility>
 
 namespace tyndall
@@ -15,6 +21,7 @@ namespace tyndall
 namespace
 {
 constexpr int MostOrders = 100000;
+constexpr int FewPlanes = 256;      ///< as SourceIteration has it
 constexpr double FallByCells = 0.3; ///< of what is left over from order to order, at least so much in the forecast
 }
 
@@ -27,38 +34,85 @@ IterationInBlocks::IterationInBlocks(Device& device, Communicator& communicator,
   , Settings(settings)
   , Has(partition.blocks[communicator.Rank()].VoxelCount() > 0)
   , Layout(this->LayoutOn(partition.OwnGrid(communicator.Rank())))
-  , WholeLayout(this->LayoutOn(partition.whole))
-  , Truncated(scene.medium, 0, scene.channels)
-  , OnDevice(device, scene.medium, this->Truncated, this->Layout, { true, false })
-  , Scattering(device, this->Layout, this->OnDevice, scene.traits.scatters)
+  , OnDevice(device, scene.medium, scene.Scattering(), this->Layout, { true, false })
+  , Scattering(MakeScattering(device, this->Layout, this->OnDevice, scene.Scattering().Degree(), scene.traits.scatters))
   , Directions(partition.whole, settings, DirectionsForVoxels(settings.directionsPerFace, partition.whole.spacing),
       settings.staggeredRays ? RayStarts::Staggered : RayStarts::Middle)
-  , Far(Split(scene.illumination.environment, this->Directions.Set()))
+  , Fine(settings.uncollidedDirections > 0
+        ? FinerDirections(partition.whole, settings, settings.uncollidedDirections, false)
+        : nullptr)
+  , Far(Split(scene.illumination.environment, this->DirectionsOfBoundary().Set()))
   , Boundary(partition.whole, settings, this->Directions, scene.illumination, this->Far.smooth)
+  , Lamps(this->LampsOf(scene.illumination))
 {
-  if (this->Boundary.Shines())
+  if (this->Fine && this->Boundary.Shines())
+  {
+    this->FineBoundary =
+      std::make_unique<BoundaryLight>(partition.whole, settings, *this->Fine, scene.illumination, this->Far.smooth);
+    this->FineBoundary->CheckRays(scene.channels);
+  }
+  else if (this->Boundary.Shines())
   {
     this->Boundary.CheckRays(scene.channels);
   }
-  this->Source = Buffer<float>(device, this->Layout.Floats(), "the scattered light");
-  this->Path = Buffer<float>(device, this->Layout.Floats(), "the light gathered");
+  if (scene.Scattering().Degree() > 0 && this->Has)
+  {
+    this->Angular =
+      std::make_unique<SweptMoments>(this->Directions, scene.medium.phase, scene.Scattering(), this->Lamps);
+    this->OfLamp = Buffer<float>(device, this->Layout.Floats(), "the light of a lamp");
+  }
+  const std::size_t moments = this->Layout.MomentFloats(this->Functions());
+  const int beams = this->Angular ? this->Angular->Beams() : 0;
+  this->Source = Buffer<float>(device, this->Layout.MomentFloats(this->Functions(), beams), "the scattered light");
+  this->Path = Buffer<float>(device, moments, "the light gathered");
   this->Fluence = Buffer<float>(device, this->Layout.Floats(), "fluence");
   if (settings.netFlux)
   {
     this->Flux = Buffer<float>(device, this->Layout.Floats(3), "net_flux");
     this->Flux.Fill(0.0f);
   }
+  if (Reflects(scene.illumination) || settings.facePower)
+  {
+    const bool spreads = !Reflects(scene.illumination);
+    this->Faces = std::make_unique<FaceLight>(device, partition.whole, scene.channels,
+      SweptPowerIn(partition.whole, settings.periodic, this->Directions, spreads), scene.illumination.faceAlbedo);
+  }
+  if (this->StoresMoments())
+  {
+    this->Shown = Buffer<float>(device, moments, "the light shown");
+    this->Shown.Fill(0.0f);
+  }
   this->Source.Fill(0.0f);
   this->Path.Fill(0.0f);
   this->Fluence.Fill(0.0f);
+}
+
+Deposit IterationInBlocks::WholeDeposit() const
+{
+  return { &this->Path, this->Flux.Size() > 0 ? &this->Flux : nullptr, nullptr, nullptr,
+    this->Faces ? &this->Faces->Out() : nullptr, this->Faces && !this->Faces->Reflects() };
+}
+
+int IterationInBlocks::Functions() const
+{
+  const int degree = this->Scene.Scattering().Degree();
+  return (degree + 1) * (degree + 1);
+}
+
+std::vector<Light> IterationInBlocks::LampsOf(const Illumination& shining) const
+{
+  const SplitEnvironment far = Split(shining.environment, this->DirectionsOfBoundary().Set());
+  std::vector<Light> lamps = shining.lights;
+  lamps.insert(lamps.end(), far.peaks.begin(), far.peaks.end());
+  return lamps;
 }
 
 std::unique_ptr<SweepOperator> IterationInBlocks::MakeSweep(const SweepRequest& request)
 {
   std::unique_ptr<SweepOperator> sweep;
   this->Others.Together([&] {
-    sweep = std::make_unique<SweepInBlocks>(
-      this->TheDevice, this->Others, this->Partition, this->Layout, this->OnDevice.SigmaT(), request, this->Workspace);
+    sweep = std::make_unique<SweepInBlocks>(this->TheDevice, this->Others, this->Partition, this->Layout,
+      this->OnDevice.SigmaT(), this->Settings.periodic, request, this->Workspace);
   });
   return sweep;
 }
@@ -76,7 +130,7 @@ void IterationInBlocks::LoadEmission()
     const Field& emission = this->Scene.medium.emission;
     const std::vector<float> values =
       Planar(this->Layout, this->Layout.channels, [&](std::size_t i, int c) { return emission.At(i, c); });
-    this->Source.Write(values.data(), values.size());
+    this->Source.Write(values.data(), values.size() - SweepPadding);
     for (int c = 0; c < this->Layout.channels; ++c)
     {
       emitted[c] = 4.0 * Pi * this->Layout.grid.VoxelVolume() *
@@ -90,43 +144,131 @@ void IterationInBlocks::LoadEmission()
   }
 }
 
-/// Those that are given, and peaks of the environment.
-std::vector<Light> IterationInBlocks::Lamps() const
+/// Of lamps, and peaks of the environment, which are such, then of what comes in along directions of its own.
+void IterationInBlocks::AddUncollided(const Monitor& monitor)
 {
-  std::vector<Light> lamps = this->Scene.illumination.lights;
-  lamps.insert(lamps.end(), this->Far.peaks.begin(), this->Far.peaks.end());
-  return lamps;
-}
-
-/// A point, spot or rectangle lamp.
-SweepTally IterationInBlocks::AddNearLamp(const Light& lamp, const Deposit& to, const Monitor& monitor)
-{
-  if (!this->NearLamps)
+  const bool corrects = this->Fine && this->Scene.traits.scatters && !Reflects(this->Scene.illumination);
+  const double all = static_cast<double>(this->Lamps.size() + (this->FineBoundary ? 1 : 0) + (corrects ? 1 : 0));
+  SweepTally tally;
+  for (std::size_t i = 0; i < this->Lamps.size(); ++i)
   {
-    this->NearLamps = std::make_unique<LampsInBlocks>(
-      this->TheDevice, this->Others, this->Partition, this->Layout, this->OnDevice.SigmaT());
-  }
-  UncollidedVolume volume = { this->TheDevice, this->Layout, this->OnDevice.SigmaT(), this->Settings.periodic, {}, to };
-  volume.followLamp = [this](const SweepVolume& ofChannels, const Light& light, const Monitor& ofLamp) {
-    return this->NearLamps->Deposit(ofChannels, light, ofLamp);
-  };
-  return UncollidedLamp(lamp).AddTo(volume, monitor);
-}
-
-void IterationInBlocks::AddLamps(const Monitor& monitor)
-{
-  const std::vector<Light> lamps = this->Lamps();
-  const SweepMaker sweeps = [this](const SweepRequest& request) { return this->MakeSweep(request); };
-  // Rays of a parallel beam are those through the whole box.
-  const UncollidedVolume beams = { this->TheDevice, this->WholeLayout, this->OnDevice.SigmaT(), this->Settings.periodic,
-    sweeps, this->WholeDeposit() };
-  for (std::size_t i = 0; i < lamps.size(); ++i)
-  {
-    const double all = static_cast<double>(lamps.size());
     const Monitor ofLamp = OfPart(monitor, i / all, (i + 1) / all);
-    this->Ledger.Count(lamps[i].type == LightType::Directional
-        ? UncollidedLamp(lamps[i]).AddTo(beams, ofLamp)
-        : this->AddNearLamp(lamps[i], this->WholeDeposit(), ofLamp));
+    Add(tally, this->AddOnAllRanks([&] { return this->AddLamp(i, ofLamp); }));
+  }
+  if (this->Has && this->StoresMoments())
+  {
+    this->Scattering->AddFirstScattered(this->WholeDeposit(), this->Shown);
+  }
+  if (this->FineBoundary)
+  {
+    const double before = static_cast<double>(this->Lamps.size());
+    const Monitor ofBoundary = OfPart(monitor, before / all, (before + 1) / all);
+    const UncollidedBoundary boundary(this->Settings, *this->FineBoundary);
+    Add(tally, this->AddOnAllRanks([&] { return boundary.AddTo(this->VolumeOf(this->WholeDeposit()), ofBoundary); }));
+  }
+  this->Ledger.Count(tally);
+  this->Stranded = tally.onTheWay;
+  if (this->Faces)
+  {
+    this->Faces->TakeUncollided();
+  }
+  if (corrects)
+  {
+    this->FindEscaping(OfPart(monitor, (all - 1.0) / all, 1.0));
+  }
+}
+
+/// What goes wrong on one rank does on all: light is swept by all together.
+SweepTally IterationInBlocks::AddOnAllRanks(const std::function<SweepTally()>& add)
+{
+  SweepTally tally;
+  std::exception_ptr error;
+  try
+  {
+    tally = add();
+  }
+  catch (...)
+  {
+    error = std::current_exception();
+  }
+  this->Others.Together([&] {
+    if (error)
+    {
+      std::rethrow_exception(error);
+    }
+  });
+  return tally;
+}
+
+UncollidedVolume IterationInBlocks::VolumeOf(const Deposit& deposit)
+{
+  const SweepMaker sweeps = [this](const SweepRequest& request) { return this->MakeSweep(request); };
+  UncollidedVolume volume = { this->TheDevice, this->Layout, this->OnDevice.SigmaT(), this->Settings.periodic, sweeps,
+    deposit };
+  volume.whole = &this->Partition.whole;
+  volume.basis = this->Angular ? &this->Angular->Basis() : nullptr;
+  volume.followLamp = [this](const SweepVolume& ofChannels, const Light& lamp, const Monitor& ofLamp) {
+    if (!this->NearLamps)
+    {
+      this->NearLamps = std::make_unique<LampsInBlocks>(
+        this->TheDevice, this->Others, this->Partition, this->Layout, this->OnDevice.SigmaT());
+    }
+    return this->NearLamps->Deposit(ofChannels, lamp, ofLamp);
+  };
+  return volume;
+}
+
+SweepTally IterationInBlocks::AddLamp(std::size_t lamp, const Monitor& monitor)
+{
+  UncollidedVolume volume = this->VolumeOf(this->WholeDeposit());
+  if (this->Angular)
+  {
+    this->OfLamp.Fill(0.0f);
+    volume.beamPath = &this->OfLamp;
+  }
+  const SweepTally tally = UncollidedLamp(this->Lamps[lamp]).AddTo(volume, monitor);
+  const int beam = this->Angular ? this->Angular->BeamOf(lamp) : -1;
+  if (beam >= 0)
+  {
+    this->Scattering->AddBeam(this->OfLamp, this->Source, beam);
+  }
+  return tally;
+}
+
+/// By an even sky along the finer directions and the usual ones, whatever shines: lights add up.
+void IterationInBlocks::FindEscaping(const Monitor& monitor)
+{
+  Illumination evenly;
+  evenly.sky = { 1.0, 1.0, 1.0 };
+  const auto along = [&](const SweptDirections& directions, const Monitor& ofThese) {
+    Buffer<float> path;
+    this->Others.Together([&] {
+      path = Buffer<float>(this->TheDevice, this->Layout.MomentFloats(this->Functions()), "uncollided light");
+      path.Fill(0.0f);
+    });
+    const BoundaryLight light(this->Partition.whole, this->Settings, directions, evenly, {});
+    const UncollidedBoundary boundary(this->Settings, light);
+    this->AddOnAllRanks([&] { return boundary.AddTo(this->VolumeOf({ &path }), ofThese); });
+    return path.Read();
+  };
+  const std::vector<float> fine = along(*this->Fine, OfPart(monitor, 0.0, 0.8));
+  const std::vector<float> usual = along(this->Directions, OfPart(monitor, 0.8, 1.0));
+  this->Others.Together([&] {
+    this->Escaping.emplace(
+      this->TheDevice, this->Layout, this->Scene.Scattering(), this->OnDevice.SigmaT(), fine, usual);
+  });
+}
+
+/// Of what was scattered and just swept.
+void IterationInBlocks::LetEscape()
+{
+  Rgb own = {};
+  this->Others.Together([&] { own = this->Has ? this->Escaping->Apply(this->Path, this->Source) : Rgb{}; });
+  const std::vector<double> all = this->Others.Sum({ own[0], own[1], own[2] });
+  for (int c = 0; c < 3; ++c)
+  {
+    this->Escaped[c] += all[c];
+    this->Ledger.Escape(c, all[c]);
   }
 }
 
@@ -180,15 +322,40 @@ EnergyLedger IterationInBlocks::WithOutOfCells() const
   return with;
 }
 
-/// One order: from the light that was swept to the next source, with the powers of all ranks.
-void IterationInBlocks::Scatter()
+/// What faces give back of the light that left in this order has not left.
+void IterationInBlocks::Reflect()
+{
+  this->Reflected = {};
+  if (!this->Faces)
+  {
+    return;
+  }
+  const std::array<Rgb, 6> back = this->Faces->Reflect();
+  for (int face = 0; face < 6; ++face)
+  {
+    for (int c = 0; c < 3; ++c)
+    {
+      this->Reflected[c] += back[face][c];
+      this->Ledger.Escape(c, face, -back[face][c]);
+    }
+  }
+}
+
+/// @param scale  to W / length^2
+void IterationInBlocks::TakeDirect(const Buffer<float>& fluence, double scale)
 {
   if (this->Order == 0 && this->Has)
   {
-    this->Direct = Interleaved(this->Layout, this->Path, 1.0 / this->Layout.grid.VoxelVolume());
+    this->Direct = Interleaved(this->Layout, fluence, scale);
   }
+}
+
+/// One order: from the light that was swept to the next source, with the powers of all ranks.
+void IterationInBlocks::Scatter()
+{
   if (!this->Cells.empty())
   {
+    this->TakeDirect(this->Path, 1.0 / this->Layout.grid.VoxelVolume());
     this->ScatterByCells();
     return;
   }
@@ -199,16 +366,23 @@ void IterationInBlocks::Scatter()
       return;
     }
     const ScatteringOperator::Powers own =
-      this->Scattering.ScatterOrder(this->WholeDeposit(), this->Fluence, this->Source, { 0, this->Layout.Stride() });
+      this->Scattering->ScatterOrder(this->WholeDeposit(), this->Fluence, this->Source, { 0, this->Layout.Stride() });
     std::copy(own.absorbed.begin(), own.absorbed.end(), powers.begin());
     std::copy(own.scattered.begin(), own.scattered.end(), powers.begin() + 3);
+    if (this->StoresMoments())
+    {
+      // What is shown holds lamps' light alone before the first order.
+      const std::size_t values = this->Layout.Places(this->Functions()).beams;
+      AddToShown(this->TheDevice, values, this->Source, this->Shown, this->Order == 0 ? -1.0f : 1.0f);
+    }
   });
+  this->TakeDirect(this->Fluence, 1.0);
   powers = this->Others.Sum(powers);
   for (int c = 0; c < 3; ++c)
   {
     this->Ledger.Absorb(c, powers[c]);
     this->Scattered[c] = powers[3 + c];
-    this->Ledger.LeaveOver(c, this->Scattered[c]);
+    this->Ledger.LeaveOver(c, this->Scattered[c] + this->OnTheWay[c] + this->Reflected[c] + this->Stranded[c]);
   }
   this->Shining = Sum(this->Scattered) > 0.0;
   this->EstimateResidual();
@@ -222,7 +396,7 @@ void IterationInBlocks::EstimateResidual()
   this->Residual = 0.0;
   for (int c = 0; c < this->Layout.channels; ++c)
   {
-    const double now = this->Scattered[c];
+    const double now = this->Scattered[c] + this->OnTheWay[c] + this->Reflected[c];
     this->AllScattered[c] += now;
     if (now > 0.0)
     {
@@ -251,8 +425,14 @@ LightField IterationInBlocks::Run(const Monitor& monitor)
     return this->TakeLight();
   }
   this->MakeCells();
-  const std::unique_ptr<SweepOperator> sweep = this->MakeSweep({ this->WholeDeposit(),
-    { { 0, this->Directions.Along(0) }, { 1, this->Directions.Along(1) }, { 2, this->Directions.Along(2) } } });
+  SweepRequest request = { this->WholeDeposit(),
+    { { 0, this->Directions.Along(0) }, { 1, this->Directions.Along(1) }, { 2, this->Directions.Along(2) } } };
+  request.angular = this->Angular ? &this->Angular->Values() : nullptr;
+  request.mostPlanes = this->Settings.maximumOrders > 0 ? MostPlanesAround : FewPlanes;
+  request.faceIn = this->Faces && this->Faces->Reflects() ? &this->Faces->In() : nullptr;
+  const std::unique_ptr<SweepOperator> sweep = this->MakeSweep(request);
+  const std::size_t ofBeams = this->Angular ? this->Angular->Beams() * this->Layout.Values() : 0;
+  BeamsInSource beams(this->TheDevice, this->Source, this->Layout.Places(this->Functions()).beams, ofBeams);
   do
   {
     const Monitor ofOrder =
@@ -260,41 +440,80 @@ LightField IterationInBlocks::Run(const Monitor& monitor)
     const bool first = this->Order == 0;
     if (first)
     {
-      this->AddLamps(OfPart(ofOrder, 0.0, UncollidedPart));
+      this->AddUncollided(OfPart(ofOrder, 0.0, UncollidedPart));
     }
-    const SweepBoundary boundary = first && this->Boundary.Shines() ? this->Boundary.Boundary() : SweepBoundary();
-    if (this->Shining || boundary)
+    const bool lit = first && this->Boundary.Shines() && !this->FineBoundary;
+    const SweepBoundary boundary = lit ? this->Boundary.Boundary() : SweepBoundary();
+    const bool goesOn = Sum(this->OnTheWay) > 0.0 || Sum(this->Reflected) > 0.0;
+    this->OnTheWay = {};
+    if (this->Shining || boundary || goesOn)
     {
-      this->Ledger.Count(sweep->Apply(
-        this->Shining ? &this->Source : nullptr, boundary, OfPart(ofOrder, first ? UncollidedPart : 0.0, 1.0)));
+      if (first)
+      {
+        beams.Hold();
+      }
+      const SweepTally tally = sweep->Apply(
+        this->Shining ? &this->Source : nullptr, boundary, OfPart(ofOrder, first ? UncollidedPart : 0.0, 1.0));
+      this->Ledger.Count(tally);
+      this->OnTheWay = tally.onTheWay;
+      beams.GoOn();
     }
+    if (this->Escaping && this->Shining && !first)
+    {
+      this->LetEscape();
+    }
+    this->Reflect();
     this->Scatter();
     ++this->Order;
   } while (!this->Done());
+  this->Ledger.ShareEscaped(this->Escaped);
   return this->TakeLight();
 }
 
 /// Light of lamps goes ahead, and what of it is scattered is given to the sweeps.
 void IterationInBlocks::RunByBalance(const Monitor& monitor)
 {
-  AccelerationInBlocks acceleration({ this->TheDevice, this->Others, this->Partition, this->Scene, this->Settings,
-    this->Layout, this->OnDevice, this->Directions, this->Boundary,
-    [this](const SweepRequest& request) { return this->MakeSweep(request); },
-    [this](const Light& lamp, const Deposit& to, const Monitor& ofLamp) { return this->AddNearLamp(lamp, to, ofLamp); },
-    this->Source, this->Path, this->Fluence, this->Flux, this->Ledger });
+  AccelerationInBlocks acceleration(
+    { this->TheDevice, this->Others, this->Partition, this->Scene, this->Settings, this->Layout, this->OnDevice,
+      this->Directions, this->Boundary, [this](const SweepRequest& request) { return this->MakeSweep(request); },
+      [this](const Light& lamp, const Deposit& to, const Monitor& ofLamp) {
+        return UncollidedLamp(lamp).AddTo(this->VolumeOf(to), ofLamp);
+      },
+      this->Source, this->Path, this->Fluence, this->Flux, this->Ledger });
   const Monitor ofLamps =
     OfPart(monitor, [this](double done) { return ProgressOf(this->Settings, 1.0, UncollidedPart * done); });
-  const std::vector<Light> lamps = this->Lamps();
-  if (!lamps.empty() && acceleration.NeedsFirstMoments())
+  if (!this->Lamps.empty() && acceleration.NeedsFirstMoments())
   {
-    acceleration.AddBeams(lamps, ofLamps);
+    acceleration.AddBeams(this->Lamps, ofLamps);
   }
   else
   {
-    this->AddLamps(ofLamps);
+    this->AddUncollided(ofLamps);
   }
   this->Rows = acceleration.Run(monitor);
   this->Direct = acceleration.Direct();
+}
+
+/// What is shown of scattered light, in the same form on all ranks.
+void IterationInBlocks::AddShown(LightField& light)
+{
+  std::unique_ptr<ShownLight> shown;
+  if (this->Angular)
+  {
+    std::size_t most = 0;
+    for (const VoxelBox& block : this->Partition.blocks)
+    {
+      most = std::max(most, this->Layout.channels * block.VoxelCount());
+    }
+    shown = std::make_unique<ShownLight>(
+      this->Scene.medium, this->Scene.Scattering(), this->Angular->Basis(), this->Layout, most);
+  }
+  const bool coloured = this->Others.Largest({ shown && shown->HasColour() ? 1.0 : 0.0 })[0] > 0.0;
+  if (shown)
+  {
+    shown->TakeColour(coloured);
+    shown->AddTo(light, this->TheDevice, this->Shown, this->Path);
+  }
 }
 
 LightField IterationInBlocks::TakeLight()
@@ -319,12 +538,31 @@ LightField IterationInBlocks::TakeLight()
     light.fluenceDirect = std::move(this->Direct);
   }
   light.storedDirections = { { 0.0, 0.0, 0.0 } };
+  if (this->Scene.traits.scatters)
+  {
+    light.leftOut = this->Scene.Scattering().LeftOut();
+  }
+  if (this->StoresMoments())
+  {
+    this->AddShown(light);
+  }
+  else if (this->Scene.Scattering().Degree() > 0)
+  {
+    light.leftOut.emplace_back(left_out::MomentsForPictures);
+  }
   const EnergyLedger ledger = this->WithOutOfCells();
   light.balance = ledger.Balance();
   light.facePowerOut = ledger.FacePowerOut();
+  if (this->Faces)
+  {
+    const std::vector<double> left = this->Faces->LeftInAll();
+    light.facePower =
+      this->Faces->PerArea(this->Cells.empty() ? left : this->Faces->ScaledTo(left, light.facePowerOut));
+  }
   light.convergence = this->Orders.how == OrdersAdded::ByBalance ? this->Rows : this->Convergence.All();
   light.directionsPerFace = this->Settings.directionsPerFace;
-  light.halfRangeFlux = HalfRangeFlux(this->Directions.Set());
+  light.halfRangeFlux = HalfRangeFlux((this->FineBoundary ? *this->Fine : this->Directions).Set());
+  light.uncollidedDirections = this->FineBoundary ? this->Fine->Set().PerFace() : 0;
   light.device = this->TheDevice.Name();
   if (this->Orders.how == OrdersAdded::OneByOne)
   {

@@ -6,8 +6,10 @@
 #include "Distribution/Communicator.h"
 #include "Light/LightField.h"
 #include "LightPropagation/Angular/SweptDirections.h"
+#include "LightPropagation/Conservative/Acceleration/EscapeCorrection.h"
 #include "LightPropagation/Conservative/ConvergenceRecord.h"
 #include "LightPropagation/Conservative/EnergyLedger.h"
+#include "LightPropagation/Conservative/FaceLight.h"
 #include "LightPropagation/Convergence.h"
 #include "LightPropagation/Distributed/BlockScene.h"
 #include "LightPropagation/Distributed/CellsOverRanks.h"
@@ -15,13 +17,16 @@
 #include "LightPropagation/Distributed/OrdersOverRanks.h"
 #include "LightPropagation/Distributed/SweepInBlocks.h"
 #include "LightPropagation/Problem/MediumOnDevice.h"
-#include "LightPropagation/Problem/TruncatedScattering.h"
-#include "LightPropagation/Scattering/IsotropicScattering.h"
+#include "LightPropagation/Scattering/ScatteringOperator.h"
+#include "LightPropagation/Scattering/SweptMoments.h"
 #include "LightPropagation/Uncollided/BoundaryLight.h"
 #include "LightPropagation/Uncollided/EnvironmentPeaks.h"
+#include "LightPropagation/Uncollided/UncollidedSource.h"
 
 #include <array>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace tyndall
@@ -34,24 +39,33 @@ public:
     const BlockScene& scene, const PropagationSettings& settings);
   LightField Run(const Monitor& monitor);
 
+  bool StoresMoments() const { return this->Scene.Scattering().Degree() > 0 && this->Settings.storeMoments; }
+  /// Lamps of what shines on all, and those that stand for peaks of its environment, in its own units.
+  std::vector<Light> LampsOf(const Illumination& shining) const;
+
 private:
   VolumeLayout LayoutOn(const Grid& grid) const { return { grid, this->Scene.channels, this->Scene.sharedExtinction }; }
   std::unique_ptr<SweepOperator> MakeSweep(const SweepRequest& request);
+  int Functions() const; ///< of angular moments
+  const SweptDirections& DirectionsOfBoundary() const { return this->Fine ? *this->Fine : this->Directions; }
   void LoadEmission();
-  std::vector<Light> Lamps() const;
-  SweepTally AddNearLamp(const Light& lamp, const Deposit& to, const Monitor& monitor);
-  void AddLamps(const Monitor& monitor);
+  void AddUncollided(const Monitor& monitor);
+  SweepTally AddOnAllRanks(const std::function<SweepTally()>& add);
+  SweepTally AddLamp(std::size_t lamp, const Monitor& monitor);
+  UncollidedVolume VolumeOf(const Deposit& deposit);
+  void FindEscaping(const Monitor& monitor);
+  void LetEscape();
   void MakeCells();
   void RunByBalance(const Monitor& monitor);
+  void Reflect();
   void Scatter();
+  void TakeDirect(const Buffer<float>& fluence, double scale);
   void ScatterByCells();
   EnergyLedger WithOutOfCells() const;
   void EstimateResidual();
   bool Done() const;
-  Deposit WholeDeposit() const
-  {
-    return { &this->Path, this->Flux.Size() > 0 ? &this->Flux : nullptr, nullptr, nullptr };
-  }
+  Deposit WholeDeposit() const;
+  void AddShown(LightField& light);
   LightField TakeLight();
 
   Device& TheDevice;
@@ -60,14 +74,21 @@ private:
   const BlockScene& Scene;
   const PropagationSettings& Settings;
   const bool Has; ///< voxels
-  const VolumeLayout Layout, WholeLayout;
-  const TruncatedScattering Truncated;
+  const VolumeLayout Layout;
   const MediumOnDevice OnDevice;
-  const IsotropicScattering Scattering;
+  const std::unique_ptr<const ScatteringOperator> Scattering;
   const SweptDirections Directions;
+  const std::unique_ptr<const SweptDirections> Fine; ///< of unscattered light from outside; null: the same
   const SplitEnvironment Far;
   const BoundaryLight Boundary;
+  std::unique_ptr<const BoundaryLight> FineBoundary; ///< in its place; null where it is dark
+  std::vector<Light> Lamps;
+  std::unique_ptr<const SweptMoments> Angular; ///< null: all is isotropic, or there are no voxels
   Buffer<float> Source, Path, Flux, Fluence;
+  Buffer<float> OfLamp; ///< path integrals of one lamp's light, where it goes into angular moments
+  std::optional<EscapeCorrection> Escaping;
+  std::unique_ptr<FaceLight> Faces; ///< of the whole grid; where they reflect, or face power is asked for; else null
+  Buffer<float> Shown;              ///< as IterationResult has it; empty: not asked for
   BlockWorkspace Workspace;
   std::unique_ptr<LampsInBlocks> NearLamps;           ///< null until there is one
   std::vector<std::unique_ptr<CellsOverRanks>> Cells; ///< by channel; empty: orders are added up as they are
@@ -79,7 +100,9 @@ private:
   std::vector<ConvergenceRow> Rows; ///< where orders are added up by the balance of voxels
   std::vector<float> Direct;
   std::array<RestOfOrders, 3> Rest;
-  Rgb Scattered = {}, AllScattered = {};
+  Rgb Scattered = {}, Reflected = {}, AllScattered = {};
+  Rgb Escaped = {};                 ///< W, by the correction
+  Rgb OnTheWay = {}, Stranded = {}; ///< round periodic axes, as SourceIteration has them
   double Residual = 1.0;
   int Order = 0;
   bool Shining = false;

@@ -5,6 +5,7 @@
 #include "LightPropagation/Uncollided/LampOnGrid.h"
 #include "LightPropagation/Uncollided/LampShares.h"
 #include "LightPropagation/Uncollided/LampSums.h"
+#include "Medium/BoxFaces.h"
 #include "TyndallKernelSources.h"
 
 #include <algorithm>
@@ -87,8 +88,8 @@ public:
     lamps.Others.Together([&] {
       if (lamps.Has())
       {
-        this->Sums = std::make_unique<LampSums>(lamps.TheDevice, volume.deposit, this->Box.VoxelCount());
-        this->Cells = Buffer<cl_long>(lamps.TheDevice, 1, "the light of a lamp");
+        this->Sums =
+          std::make_unique<LampSums>(lamps.TheDevice, volume.deposit, this->Box.VoxelCount(), lamps.Partition.whole);
         this->Kernel =
           this->Lamp.Kernel(lamps.TheDevice, "follow_lamp_in_block", kernel_source::LampInBlock, volume.deposit);
       }
@@ -124,7 +125,6 @@ private:
   const VoxelBox& Box;
   std::size_t SigmaFirst;
   std::unique_ptr<LampSums> Sums; ///< of the stored voxels; null without any
-  Buffer<cl_long> Cells;          ///< none
   cl::Kernel Kernel;
   LampShares Shares;
   bool AllInside = true;
@@ -189,7 +189,7 @@ std::vector<BeamOnItsWay> LampsInBlocks::Beams::FollowInBlock(const std::vector<
     const Buffer<BeamOnItsWay> onDevice(device, some, "beams");
     const Buffer<float> sums(device, count * LampRowSums, "sums");
     With(this->Kernel, info, this->All.SigmaT, cl_ulong(this->SigmaFirst), this->Sums->Sums(),
-      cl_ulong(this->Sums->Stride()), this->Cells, rowBuffer, onDevice, cl_int(count), sums);
+      cl_ulong(this->Sums->Stride()), this->Sums->Cells(), rowBuffer, onDevice, cl_int(count), sums);
     device.Queue().enqueueNDRangeKernel(
       this->Kernel, cl::NullRange, cl::NDRange(LampOnGrid::HasAtomics(device) ? count : 1), GroupOfLargeItems(device));
     device.Finish();
@@ -226,7 +226,10 @@ void LampsInBlocks::Beams::PutDown(double correction)
   const LampsInBlocks& all = this->All;
   const std::vector<cl_long> found = this->Sums ? this->Sums->Sums().Read() : std::vector<cl_long>();
   std::vector<cl_long> own;
-  for (int part = 0; part < LampSums::Parts(this->Volume.deposit); ++part)
+  // A rank without voxels may not know what the others want.
+  const int parts =
+    static_cast<int>(all.Others.Largest({ static_cast<double>(LampSums::Parts(this->Volume.deposit)) })[0]);
+  for (int part = 0; part < parts; ++part)
   {
     const std::size_t count = this->Box.VoxelCount();
     const auto begin = found.begin() + static_cast<std::ptrdiff_t>(part * count);
@@ -238,9 +241,14 @@ void LampsInBlocks::Beams::PutDown(double correction)
   all.Others.Together([&] {
     if (all.Has())
     {
-      LampSums sums(all.TheDevice, this->Volume.deposit, this->Volume.stride);
+      LampSums sums(all.TheDevice, this->Volume.deposit, this->Volume.stride, all.Partition.whole);
       sums.Sums().Write(own.data());
       sums.AddTo(this->Volume, this->Lamp, correction);
+      if (this->Volume.deposit.faceOut)
+      {
+        const std::size_t faceFirst = this->Volume.firstChannel * BoxFaceCellCount(all.Partition.whole);
+        this->Sums->AddCellsTo(this->Volume, faceFirst, this->Lamp, correction);
+      }
       all.TheDevice.Finish(); // the sums go
     }
   });

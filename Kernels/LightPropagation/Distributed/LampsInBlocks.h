@@ -28,7 +28,7 @@ public:
     const Buffer<float>& sigma_t);
 
   /// As DepositLamp. All ranks call it.
-  /// @param volume  the rank's block; its deposit asks for no cells of faces
+  /// @param volume  the rank's block; of its deposit cells of faces are those of the whole grid
   /// @return of all ranks together
   SweepTally Deposit(const SweepVolume& volume, const Light& light, const Monitor& monitor);
 

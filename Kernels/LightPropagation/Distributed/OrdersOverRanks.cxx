@@ -95,10 +95,26 @@ double ThickestOfAll(Communicator& communicator, const Medium& medium, int chann
 }
 }
 
+namespace
+{
+/// What neither cells nor the balance of voxels carry from rank to rank.
+bool IsBeyondBoth(Communicator& communicator, const BlockScene& scene, const PropagationSettings& settings)
+{
+  const bool own = scene.Scattering().Degree() > 0 || Reflects(scene.illumination) || settings.periodic[0] ||
+    settings.periodic[1] || settings.periodic[2];
+  return communicator.Largest({ own ? 1.0 : 0.0 })[0] > 0.0; // a rank without voxels scatters evenly
+}
+}
+
 OrdersOverRanks HowOrdersAreAdded(Communicator& communicator, const BlockPartition& partition, const BlockScene& scene,
   const PropagationSettings& settings)
 {
   OrdersOverRanks orders;
+  if (IsBeyondBoth(communicator, scene, settings))
+  {
+    return orders;
+  }
+  const bool balances = !settings.facePower && settings.uncollidedDirections <= 0;
   if (settings.source == PropagationSource::Linear)
   {
     orders.how = OrdersAdded::ByBalance; // the source of orders and of cells is constant here
@@ -119,7 +135,7 @@ OrdersOverRanks HowOrdersAreAdded(Communicator& communicator, const BlockPartiti
   }
   if (ScatteredManyTimes(channels, inCells))
   {
-    orders.how = inCells ? OrdersAdded::ByCells : OrdersAdded::ByBalance;
+    orders.how = inCells ? OrdersAdded::ByCells : balances ? OrdersAdded::ByBalance : OrdersAdded::OneByOne;
   }
   return orders;
 }

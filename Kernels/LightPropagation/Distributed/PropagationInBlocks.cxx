@@ -2,42 +2,55 @@
 
 #include "Device/Errors.h"
 #include "Distribution/SharedMedium.h"
+#include "Light/LeftOut.h"
 #include "LightPropagation/Convergence.h"
 #include "LightPropagation/Distributed/IterationInBlocks.h"
 #include "LightPropagation/Problem/PropagationProblem.h"
+#include "LightPropagation/Problem/UnvaryingAxes.h"
 
 #include <algorithm>
+#include <array>
 #include <memory>
+#include <vector>
 
 namespace tyndall
 {
 std::string NotInBlocks(const Medium& medium, const Illumination& illumination, const PropagationSettings& settings)
 {
-  if (settings.periodic[0] || settings.periodic[1] || settings.periodic[2])
+  const bool goesRound = settings.periodic[0] || settings.periodic[1] || settings.periodic[2];
+  const auto isNear = [](const Light& light) { return light.type != LightType::Directional; };
+  if (goesRound && std::any_of(illumination.lights.begin(), illumination.lights.end(), isNear))
   {
-    return "a periodic axis";
-  }
-  if (Reflects(illumination))
-  {
-    return "a face that gives back light (FaceAlbedo)";
+    return "a point, spot or rectangle light beside a periodic axis";
   }
   if (illumination.uncollided.IsThere())
   {
     return "light of another solver (UncollidedLight)";
   }
-  if (!medium.phase.IsIsotropic() && settings.angularDegree != 0)
-  {
-    return "scattering that is not isotropic (g; with AngularDegree 0 it is solved by the similarity relation)";
-  }
   if (settings.source == PropagationSource::Octants)
   {
     return "a source by octants of directions";
   }
-  if (settings.uncollidedDirections > 0)
+  const bool isAngular = !medium.phase.IsIsotropic() && settings.angularDegree != 0;
+  if (settings.source == PropagationSource::Linear &&
+    (isAngular || goesRound || Reflects(illumination) || settings.facePower || settings.uncollidedDirections > 0))
   {
-    return "directions of unscattered light of its own (UncollidedDirections)";
+    return "a linear source besides anisotropic scattering, periodic axes, FaceAlbedo, UncollidedDirections or power "
+           "by "
+           "cells of faces";
   }
-  return settings.facePower ? "the power that leaves through cells of the faces" : std::string();
+  return {};
+}
+
+namespace
+{
+/// By channel.
+std::array<bool, 3> AbsorbsOnAny(Communicator& communicator, bool has, const Medium& medium)
+{
+  const std::array<bool, 3> own = has ? ChannelsThatAbsorb(medium) : std::array<bool, 3>{};
+  const std::vector<double> any = communicator.Largest({ own[0] * 1.0, own[1] * 1.0, own[2] * 1.0 });
+  return { any[0] > 0.0, any[1] > 0.0, any[2] > 0.0 };
+}
 }
 
 LightField SolveInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition,
@@ -49,7 +62,7 @@ LightField SolveInBlocks(Device& device, Communicator& communicator, const Block
     Require(static_cast<int>(partition.blocks.size()) == communicator.Ranks(), "There is not a block for each rank.");
     if (has)
     {
-      Check(medium, illumination, settings);
+      CheckBlock(medium, illumination, settings);
       Require(medium.grid.size == partition.OwnGrid(communicator.Rank()).size,
         "The medium of rank " + std::to_string(communicator.Rank()) + " does not have the size of its block.");
     }
@@ -58,16 +71,34 @@ LightField SolveInBlocks(Device& device, Communicator& communicator, const Block
   });
   RequireSame(communicator, partition);
   RequireSame(communicator, has, medium, illumination, settings);
+  CheckLightHasAnEnd(AbsorbsOnAny(communicator, has, medium), illumination, settings.periodic);
+  const UnvaryingAxes unvarying(partition.whole, illumination, settings);
+  BlockPartition wide = partition;
+  wide.whole = unvarying.Widened(partition.whole);
+  PropagationSettings solved = settings;
+  solved.directionsPerFace = DirectionsPerFaceFor(settings, unvarying);
   Medium own = has ? medium : Medium();
-  own.grid = partition.OwnGrid(communicator.Rank());
-  const BlockScene scene(communicator, has, partition.whole, own, illumination, settings);
-  BlockPartition inUnits = partition;
-  inUnits.whole = scene.WholeOf(partition.whole);
+  own.grid = wide.OwnGrid(communicator.Rank());
+  const BlockScene scene(communicator, has, wide, own, illumination, solved, MemoryOf(device));
+  BlockPartition inUnits = wide;
+  inUnits.whole = scene.WholeOf(wide.whole);
   std::unique_ptr<IterationInBlocks> iteration;
   communicator.Together(
-    [&] { iteration = std::make_unique<IterationInBlocks>(device, communicator, inUnits, scene, settings); });
+    [&] { iteration = std::make_unique<IterationInBlocks>(device, communicator, inUnits, scene, solved); });
   LightField light = iteration->Run(monitor);
-  communicator.Together([&] { scene.Undo(light); });
+  communicator.Together([&] {
+    scene.Undo(light);
+    MultiplyPowers(light, partition.whole.VoxelVolume() / wide.whole.VoxelVolume());
+  });
+  if (iteration->StoresMoments())
+  {
+    light.lampsApart = iteration->LampsOf(illumination);
+  }
+  if (solved.directionsPerFace != settings.directionsPerFace)
+  {
+    light.leftOut.push_back(left_out::DirectionsAlongSlab(solved.directionsPerFace));
+  }
+  light.faceAlbedo = illumination.faceAlbedo;
   JudgeConvergence(settings, light);
   return light;
 }

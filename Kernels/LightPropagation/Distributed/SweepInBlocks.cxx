@@ -1,15 +1,19 @@
 #include "LightPropagation/Distributed/SweepInBlocks.h"
 
-#include "Device/Errors.h"
+#include "Medium/BoxFaces.h"
 
 #include <algorithm>
 #include <exception>
+#include <functional>
+#include <initializer_list>
 #include <utility>
 
 namespace tyndall
 {
 namespace
 {
+constexpr double NothingLeft = 1e-7; ///< as AxisSweep has it
+
 /// Sums of all ranks, of what each counted.
 void AddUp(Communicator& communicator, std::array<Rgb, 6>& power)
 {
@@ -38,23 +42,36 @@ void AddTo(std::array<Rgb, 6>& sum, const std::array<Rgb, 6>& power)
 }
 
 SweepInBlocks::SweepInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition,
-  const VolumeLayout& layout, const Buffer<float>& sigma_t, const SweepRequest& request, BlockWorkspace& workspace,
-  int mostRays)
+  const VolumeLayout& layout, const Buffer<float>& sigma_t, const std::array<bool, 3>& periodic,
+  const SweepRequest& request, BlockWorkspace& workspace, int mostRays)
   : TheDevice(device)
   , Others(communicator)
   , Partition(partition)
   , Layout(layout)
   , SigmaT(sigma_t)
+  , Periodic(periodic)
+  , Workspace(workspace)
+  , MostPlanes(request.mostPlanes)
   , To(request.deposit)
+  , Angular(request.angular)
   , OctantSource(request.octantSource)
+  , FaceIn(request.faceIn)
   , Parts(mostRays > 0 ? SortByOctant(request.rays, mostRays) : FastestParts(partition, request.rays))
   , TheSchedule(partition, this->Parts, {})
 {
-  Require(!request.angular, "A grid that is spread over ranks is swept without angular moments.");
-  Require(!request.faceIn && !request.deposit.faceOut,
-    "Light by cells of the box's faces is not swept in a grid that is spread over ranks.");
+  for (ParallelBundles& part : this->Parts)
+  {
+    for (Bundle& bundle : part.bundles)
+    {
+      bundle.power /= this->Laps(part.axis);
+    }
+  }
   if (partition.blocks[communicator.Rank()].VoxelCount() > 0)
   {
+    if (this->IsAnyPeriodic())
+    {
+      workspace.sweep.ReserveLost(device, this->To.path->Size());
+    }
     for (const ParallelBundles& part : this->Parts)
     {
       this->Tasks.push_back(this->MakeTask(part, workspace));
@@ -62,16 +79,32 @@ SweepInBlocks::SweepInBlocks(Device& device, Communicator& communicator, const B
   }
 }
 
-SweepInBlocks::Task SweepInBlocks::MakeTask(const ParallelBundles& rays, BlockWorkspace& workspace)
+int SweepInBlocks::Laps(int axis) const
+{
+  const int size = this->Partition.whole.size[axis];
+  return PlanesOfPattern(size, this->Periodic[axis]) / size;
+}
+
+SweepInBlocks::Task SweepInBlocks::MakeTask(const ParallelBundles& rays, BlockWorkspace& workspace) const
 {
   const int own = this->Others.Rank();
   Task task;
   const SweepVolume volume = this->VolumeOf(this->Layout.Groups()[0], nullptr);
-  task.sweep = std::make_unique<BlockSweep>(this->TheDevice, this->Partition, own, rays, volume, workspace);
+  task.sweep =
+    std::make_unique<BlockSweep>(this->TheDevice, this->Partition, own, rays, this->Periodic, volume, workspace);
+  /// Those that go straight, and of those that go round sideways and ahead.
+  const auto sorted = [&](int from, int to) {
+    std::array<Contacts, 3> found;
+    for (const BlockContact& contact : ContactsBetween(this->Partition, rays, from, to, this->Periodic))
+    {
+      found[!contact.around ? 0 : contact.kind == BlockContact::Along ? 2 : 1].push_back(contact);
+    }
+    return found;
+  };
   for (int rank = 0; rank < this->Others.Ranks(); ++rank)
   {
-    std::vector<BlockContact> from = ContactsBetween(this->Partition, rays, rank, own);
-    std::vector<BlockContact> to = ContactsBetween(this->Partition, rays, own, rank);
+    auto [from, asideFrom, aheadFrom] = sorted(rank, own);
+    auto [to, asideTo, aheadTo] = sorted(own, rank);
     if (!from.empty())
     {
       task.senders.push_back(std::move(from));
@@ -80,8 +113,31 @@ SweepInBlocks::Task SweepInBlocks::MakeTask(const ParallelBundles& rays, BlockWo
     {
       task.receivers.push_back(std::move(to));
     }
+    if (!asideFrom.empty() || !aheadFrom.empty())
+    {
+      task.aroundFrom.push_back({ std::move(asideFrom), std::move(aheadFrom), {}, {} });
+      task.aroundFrom.back().waiting.resize(this->Layout.Groups().size());
+    }
+    if (!asideTo.empty() || !aheadTo.empty())
+    {
+      task.aroundTo.push_back({ std::move(asideTo), std::move(aheadTo) });
+    }
   }
   return task;
+}
+
+void SweepInBlocks::Forget()
+{
+  for (Task& task : this->Tasks)
+  {
+    for (Around& around : task.aroundFrom)
+    {
+      for (std::vector<float>& rays : around.waiting)
+      {
+        rays.clear();
+      }
+    }
+  }
 }
 
 SweepVolume SweepInBlocks::VolumeOf(const ChannelGroup& group, const Buffer<float>* source) const
@@ -89,7 +145,9 @@ SweepVolume SweepInBlocks::VolumeOf(const ChannelGroup& group, const Buffer<floa
   SweepVolume volume = GroupVolume(this->Layout, group, this->SigmaT, this->To);
   volume.source = source;
   volume.octantSource = this->OctantSource;
-  volume.moments = this->Layout.Places(1);
+  volume.angular = this->Angular;
+  volume.moments = this->Layout.Places(this->Angular ? this->Angular->Functions() : 1);
+  volume.deposit.flux = this->Angular ? nullptr : volume.deposit.flux; // it is among the moments
   return volume;
 }
 
@@ -99,22 +157,26 @@ SweepTally SweepInBlocks::Apply(const Buffer<float>* source, const SweepBoundary
   SweepTally tally;
   std::exception_ptr error;
   const std::vector<ChannelGroup> groups = this->Layout.Groups();
-  const std::vector<int>& order = this->TheSchedule.OrderOf(this->Others.Rank());
-  const double all = static_cast<double>(groups.size() * std::max<std::size_t>(order.size(), 1));
+  const std::vector<float> faceIn = this->FaceIn ? this->FaceIn->Read() : std::vector<float>();
+  const bool faceLit = std::any_of(faceIn.begin(), faceIn.end(), [](float value) { return value != 0.0f; });
+  std::vector<double> left(this->To.faceOut ? this->To.faceOut->Size() : 0, 0.0);
   for (std::size_t g = 0; g < groups.size(); ++g)
   {
     const int first = groups[g].first;
-    const SweepBoundary ofChannels = boundary && first > 0
-      ? SweepBoundary([&](int direction, int face) { return OfGroup(boundary(direction, face), first); })
-      : boundary;
-    SweepTally ofGroup;
-    for (std::size_t t = 0; t < order.size(); ++t)
+    Sweeping sweeping;
+    sweeping.volume = this->VolumeOf(groups[g], source);
+    sweeping.boundary = boundary;
+    sweeping.group = g;
+    if (boundary && first > 0)
     {
-      const double before = static_cast<double>(g * order.size() + t);
-      this->SweepTask(order[t], this->VolumeOf(groups[g], source), ofChannels, ofGroup, error,
-        OfPart(monitor, before / all, (before + 1.0) / all));
+      sweeping.boundary = [&](int direction, int face) { return OfGroup(boundary(direction, face), first); };
     }
-    Add(tally, ofGroup, first);
+    const std::size_t ofFaces = first * BoxFaceCellCount(this->Partition.whole);
+    sweeping.cells = { faceLit ? faceIn.data() + ofFaces : nullptr, left.empty() ? nullptr : left.data() + ofFaces,
+      this->To.spreadsAside };
+    const double all = static_cast<double>(groups.size());
+    this->SweepGroup(sweeping, error, OfPart(monitor, g / all, (g + 1) / all));
+    Add(tally, sweeping.tally, first);
   }
   this->Others.Together([&] {
     if (error)
@@ -124,7 +186,108 @@ SweepTally SweepInBlocks::Apply(const Buffer<float>* source, const SweepBoundary
   });
   AddUp(this->Others, tally.in);
   AddUp(this->Others, tally.out);
+  this->AddToFaces(left);
   return tally;
+}
+
+/// Axes that are open in one lap; others until next to nothing is on the way, as AxisSweep does.
+void SweepInBlocks::SweepGroup(Sweeping& sweeping, std::exception_ptr& error, const Monitor& monitor)
+{
+  if (this->IsAnyPeriodic() && !this->Tasks.empty())
+  {
+    this->Workspace.sweep.lost.Fill(0.0f);
+  }
+  std::array<double, 3> atFirst = {};
+  sweeping.goesOn = { true, true, true };
+  for (bool any = true; any; ++sweeping.lap)
+  {
+    if (!this->SweepLap(sweeping, error, sweeping.lap == 0 ? monitor : OfPart(monitor, 1.0, 1.0)))
+    {
+      return;
+    }
+    any = false;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const int laps = this->Laps(axis), gone = sweeping.lap + 1;
+      const double onTheWay = Sum(sweeping.ahead[axis]);
+      atFirst[axis] = gone == laps ? onTheWay : atFirst[axis];
+      const bool far = gone % laps == 0 &&
+        (gone * this->Partition.whole.size[axis] >= this->MostPlanes || onTheWay <= NothingLeft * atFirst[axis]);
+      const bool goesOn = this->Periodic[axis] && sweeping.goesOn[axis] && !far;
+      for (int c = 0; c < 3 && sweeping.goesOn[axis] && !goesOn; ++c)
+      {
+        sweeping.tally.onTheWay[c] += sweeping.ahead[axis][c];
+      }
+      sweeping.goesOn[axis] = goesOn;
+      any = any || goesOn;
+    }
+  }
+}
+
+/// What comes in and shines, where rays still start; then what goes round sideways alone, until nothing does.
+/// @return false: something has gone wrong on any rank
+bool SweepInBlocks::SweepLap(Sweeping& sweeping, std::exception_ptr& error, const Monitor& monitor)
+{
+  sweeping.ahead = {};
+  sweeping.again = false;
+  bool more = this->SweepPass(sweeping, error, monitor);
+  while (this->IsAnyPeriodic())
+  {
+    std::vector<double> flags = { more ? 1.0 : 0.0, error ? 1.0 : 0.0 };
+    flags = this->Others.Largest(flags);
+    if (flags[1] > 0.0)
+    {
+      return false;
+    }
+    if (flags[0] == 0.0)
+    {
+      break;
+    }
+    sweeping.again = true;
+    more = this->SweepPass(sweeping, error, OfPart(monitor, 1.0, 1.0));
+  }
+  std::vector<double> ahead;
+  for (const Rgb& power : sweeping.ahead)
+  {
+    ahead.insert(ahead.end(), power.begin(), power.end());
+  }
+  ahead = this->IsAnyPeriodic() ? this->Others.Sum(ahead) : ahead;
+  for (std::size_t i = 0; i < ahead.size(); ++i)
+  {
+    sweeping.ahead[i / 3][i % 3] = ahead[i];
+  }
+  return true;
+}
+
+/// All blocks, along all rays of the lap.
+/// @return any rays have come round sideways to this rank
+bool SweepInBlocks::SweepPass(Sweeping& sweeping, std::exception_ptr& error, const Monitor& monitor)
+{
+  const std::vector<int>& order = this->TheSchedule.OrderOf(this->Others.Rank());
+  const double all = static_cast<double>(order.size());
+  for (std::size_t t = 0; t < order.size(); ++t)
+  {
+    if (sweeping.goesOn[this->Parts[order[t]].axis])
+    {
+      this->SweepTask(order[t], sweeping, error, OfPart(monitor, t / all, (t + 1) / all));
+    }
+  }
+  return this->IsAnyPeriodic() && this->TakeFromAround(sweeping, error);
+}
+
+/// What left by cells on any rank.
+void SweepInBlocks::AddToFaces(const std::vector<double>& left) const
+{
+  if (!this->To.faceOut)
+  {
+    return;
+  }
+  const std::vector<double> ofAll = this->Others.Sum(left);
+  std::vector<float> out = this->To.faceOut->Read();
+  std::transform(out.begin(), out.end(), ofAll.begin(), out.begin(),
+    [](float before, double more) { return static_cast<float>(before + more); });
+  this->To.faceOut->CopyFrom(Buffer<float>(this->TheDevice, out, "the light that leaves by cells"), 0, out.size());
+  this->TheDevice.Finish(); // the buffer goes
 }
 
 /// Whether this rank says what comes in: all know it, but those without voxels.
@@ -135,12 +298,13 @@ bool SweepInBlocks::CountsPowerIn() const
   return std::find_if(blocks.begin(), blocks.end(), hasVoxels) - blocks.begin() == this->Others.Rank();
 }
 
-void SweepInBlocks::SweepTask(int number, const SweepVolume& volume, const SweepBoundary& boundary, SweepTally& tally,
-  std::exception_ptr& error, const Monitor& monitor)
+void SweepInBlocks::SweepTask(int number, Sweeping& sweeping, std::exception_ptr& error, const Monitor& monitor)
 {
-  const Task& task = this->Tasks[number];
+  Task& task = this->Tasks[number];
+  const int axis = this->Parts[number].axis;
+  const bool starts = !sweeping.again && sweeping.lap < this->Laps(axis);
   std::vector<std::vector<float>> messages;
-  for (const std::vector<BlockContact>& sender : task.senders)
+  for (const Contacts& sender : task.senders)
   {
     messages.push_back(this->Others.Receive<float>(sender.front().from, number));
   }
@@ -150,15 +314,26 @@ void SweepInBlocks::SweepTask(int number, const SweepVolume& volume, const Sweep
   {
     if (!error)
     {
-      state = this->Enter(task, messages, boundary, rays);
+      task.sweep->BeginLap(sweeping.lap * this->Partition.whole.size[axis]);
+      state = this->Enter(task, messages, sweeping, rays);
     }
+    const SweepBoundary boundary = starts ? sweeping.boundary : SweepBoundary();
     if (state != State::Failed && this->CountsPowerIn())
     {
-      AddTo(tally.in, task.sweep->PowerIn(boundary));
+      AddTo(sweeping.tally.in, task.sweep->PowerIn(boundary));
     }
+    SweepVolume volume = sweeping.volume;
+    volume.source = starts ? volume.source : nullptr;
     if (state == State::Lit || (state == State::Dark && volume.source))
     {
-      rays = task.sweep->Cross(volume, std::move(rays), boundary, tally, monitor);
+      const LightByCells cells = { starts ? sweeping.cells.in : nullptr, sweeping.cells.left, sweeping.cells.spreads };
+      SweepTally tally;
+      rays = task.sweep->Cross(volume, std::move(rays), boundary, cells, tally, monitor);
+      for (int c = 0; c < 3; ++c)
+      {
+        sweeping.ahead[axis][c] += std::exchange(tally.onTheWay[c], 0.0);
+      }
+      Add(sweeping.tally, tally);
       state = State::Lit;
     }
   }
@@ -167,29 +342,84 @@ void SweepInBlocks::SweepTask(int number, const SweepVolume& volume, const Sweep
     error = std::current_exception();
     state = State::Failed;
   }
-  for (const std::vector<BlockContact>& receiver : task.receivers)
-  {
+  this->SendOn(number, state, rays);
+}
+
+/// To ranks downwind, and round periodic axes.
+void SweepInBlocks::SendOn(int number, State state, const RaysAtFaces& rays)
+{
+  const Task& task = this->Tasks[number];
+  const auto send = [&](int to, std::initializer_list<const Contacts*> groups) {
     std::vector<float> message = { static_cast<float>(state) };
-    for (const BlockContact& contact : receiver)
+    for (const Contacts* contacts : groups)
     {
-      if (state == State::Lit)
+      for (const BlockContact& contact : *contacts)
       {
-        task.sweep->Pack(contact, rays, message);
+        if (state == State::Lit)
+        {
+          task.sweep->Pack(contact, rays, message);
+        }
       }
     }
-    this->Others.Send(receiver.front().to, number, message);
+    this->Others.Send(to, number, message);
+  };
+  for (const Contacts& receiver : task.receivers)
+  {
+    send(receiver.front().to, { &receiver });
+  }
+  for (const auto& [aside, ahead] : task.aroundTo)
+  {
+    send((aside.empty() ? ahead : aside).front().to, { &aside, &ahead });
   }
 }
 
-/// The rays that come in, from outside and from other ranks.
-SweepInBlocks::State SweepInBlocks::Enter(const Task& task, const std::vector<std::vector<float>>& messages,
-  const SweepBoundary& boundary, RaysAtFaces& rays) const
+/// What this pass of all ranks has sent round, once it is through here.
+/// @return any of it goes on in another pass
+bool SweepInBlocks::TakeFromAround(const Sweeping& sweeping, std::exception_ptr& error)
 {
-  rays = task.sweep->FromOutside(boundary);
+  const auto isLit = [](float value) { return value != 0.0f; };
+  bool any = false;
+  for (std::size_t number = 0; number < this->Tasks.size(); ++number)
+  {
+    for (Around& around : this->Tasks[number].aroundFrom)
+    {
+      if (!sweeping.goesOn[this->Parts[number].axis])
+      {
+        continue;
+      }
+      const int from = (around.aside.empty() ? around.ahead : around.aside).front().from;
+      const std::vector<float> message = this->Others.Receive<float>(from, static_cast<int>(number));
+      const State state = static_cast<State>(static_cast<int>(message.at(0)));
+      around.rays.clear();
+      if (state != State::Lit || error)
+      {
+        continue;
+      }
+      const std::size_t aside = this->Tasks[number].sweep->Values(around.aside);
+      around.rays.assign(message.begin() + 1, message.begin() + 1 + static_cast<std::ptrdiff_t>(aside));
+      any = any || std::any_of(around.rays.begin(), around.rays.end(), isLit);
+      std::vector<float>& waiting = around.waiting[sweeping.group];
+      waiting.resize(message.size() - 1 - aside, 0.0f);
+      std::transform(waiting.begin(), waiting.end(), message.begin() + 1 + static_cast<std::ptrdiff_t>(aside),
+        waiting.begin(), std::plus<>());
+    }
+  }
+  return any;
+}
+
+/// The rays that come in, from outside and from other ranks.
+SweepInBlocks::State SweepInBlocks::Enter(
+  Task& task, const std::vector<std::vector<float>>& messages, const Sweeping& sweeping, RaysAtFaces& rays) const
+{
+  const bool starts = !sweeping.again && sweeping.lap < this->Laps(task.sweep->Axis());
+  const SweepBoundary boundary = starts ? sweeping.boundary : SweepBoundary();
+  LightByCells cells = sweeping.cells;
+  cells.in = starts ? cells.in : nullptr;
+  rays = task.sweep->FromOutside(boundary, cells);
   const auto isLit = [](const std::vector<float>& values) {
     return std::any_of(values.begin(), values.end(), [](float value) { return value != 0.0f; });
   };
-  State state = boundary && (isLit(rays.maps) || isLit(rays.sides)) ? State::Lit : State::Dark;
+  State state = (boundary || cells.in) && (isLit(rays.maps) || isLit(rays.sides)) ? State::Lit : State::Dark;
   for (std::size_t i = 0; i < messages.size(); ++i)
   {
     const State ofSender = static_cast<State>(static_cast<int>(messages[i].at(0)));
@@ -205,6 +435,36 @@ SweepInBlocks::State SweepInBlocks::Enter(const Task& task, const std::vector<st
         task.sweep->Unpack(contact, messages[i], at, rays);
         state = State::Lit;
       }
+    }
+  }
+  return this->EnterFromAround(task, sweeping, rays) == State::Lit ? State::Lit : state;
+}
+
+/// Those that wait: aside for each pass but the first of a lap, ahead for that one.
+SweepInBlocks::State SweepInBlocks::EnterFromAround(Task& task, const Sweeping& sweeping, RaysAtFaces& rays) const
+{
+  State state = State::Dark;
+  const auto enter = [&](const Contacts& contacts, std::vector<float>& waiting) {
+    std::size_t at = 0;
+    for (const BlockContact& contact : contacts)
+    {
+      if (!waiting.empty())
+      {
+        task.sweep->Unpack(contact, waiting, at, rays);
+        state = State::Lit;
+      }
+    }
+    waiting.clear();
+  };
+  for (Around& around : task.aroundFrom)
+  {
+    if (sweeping.again)
+    {
+      enter(around.aside, around.rays);
+    }
+    else
+    {
+      enter(around.ahead, around.waiting[sweeping.group]);
     }
   }
   return state;

@@ -43,11 +43,11 @@ std::vector<double> LargestMoments(const Medium& medium)
 }
 
 /// Up to `degree`, such that half of the memory is left for all else.
-int HighestThatFits(const Grid& grid, int degree, const DeviceMemory& memory)
+int HighestThatFits(std::size_t voxels, int degree, const DeviceMemory& memory)
 {
   constexpr std::size_t MostChannels = 3;
   const auto fits = [&](int l) {
-    const std::size_t array = grid.VoxelCount() * MostChannels * sizeof(float) * (l + 1) * (l + 1);
+    const std::size_t array = voxels * MostChannels * sizeof(float) * (l + 1) * (l + 1);
     return array <= memory.one && ArraysOfMoments * array <= memory.all / 2;
   };
   while (degree > 0 && !fits(degree))
@@ -56,16 +56,38 @@ int HighestThatFits(const Grid& grid, int degree, const DeviceMemory& memory)
   }
   return degree;
 }
-}
 
-double MeanThickness(const Medium& medium)
+/// Of all voxels, 1/length.
+double SumOfExtinction(const Medium& medium, int channel)
 {
   double sum = 0.0;
   for (std::size_t i = 0; i < medium.grid.VoxelCount(); ++i)
   {
-    sum += medium.sigma_a.At(i, 0) + medium.sigma_s.At(i, 0);
+    sum += medium.sigma_a.At(i, channel) + medium.sigma_s.At(i, channel);
   }
-  return sum * medium.grid.VoxelVolume() / std::cbrt(std::pow(medium.grid.VoxelCount() * medium.grid.VoxelVolume(), 2));
+  return sum;
+}
+
+double MeanThickness(const Grid& grid, double extinction)
+{
+  return extinction * grid.VoxelVolume() / std::cbrt(std::pow(grid.VoxelCount() * grid.VoxelVolume(), 2));
+}
+
+/// The last one that is more; 0: none is.
+int LastAbove(const std::vector<double>& moments, double negligible)
+{
+  int last = 0;
+  for (int l = 1; l <= MostMoments; ++l)
+  {
+    last = moments[l] > negligible ? l : last;
+  }
+  return last;
+}
+}
+
+double MeanThickness(const Medium& medium)
+{
+  return MeanThickness(medium.grid, SumOfExtinction(medium, 0));
 }
 
 DeviceMemory MemoryOf(const Device& device)
@@ -74,38 +96,36 @@ DeviceMemory MemoryOf(const Device& device)
   return { device.MemoryLimit() - inUse, device.AllocationLimit() };
 }
 
-int AngularDegreeFor(const Medium& medium, const PropagationSettings& settings, bool slab, const DeviceMemory& memory)
+AngularDetail AngularDetailOf(const Medium& medium, int channels)
 {
-  const std::vector<double> moments = LargestMoments(medium);
-  const auto lastAbove = [&](double negligible) {
-    int last = 0;
-    for (int l = 1; l <= MostMoments; ++l)
-    {
-      last = moments[l] > negligible ? l : last;
-    }
-    return last;
-  };
-  // Of thin media the first scattering counts: there a narrower part of the peak is to go straight on.
-  const bool thin = moments[1] > SomewhatForward && MeanThickness(medium) < Thick;
-  const int usual = HighestThatFits(medium.grid, slab ? DegreeOfSlabs : thin ? DegreeOfThin : DegreeOfOthers, memory);
-  const int wanted = settings.angularDegree >= 0 ? settings.angularDegree
-                                                 : std::min(usual, lastAbove(std::max(Negligible, settings.tolerance)));
-  return wanted == 0 || lastAbove(Negligible) == 0
-    ? 0
-    : MostDegree(DirectionsForVoxels(settings.directionsPerFace, medium.grid.spacing), wanted);
+  AngularDetail detail = { LargestMoments(medium), {} };
+  for (int c = 0; c < channels && !medium.phase.IsIsotropic(); ++c)
+  {
+    detail.extinction[c] = SumOfExtinction(medium, c);
+  }
+  return detail;
 }
 
-bool IsMuchThinnerAlongOneAxis(const Medium& medium, int channels, const std::array<bool, 3>& periodic)
+int AngularDegreeFor(const AngularDetail& detail, const Grid& grid, const PropagationSettings& settings, bool slab,
+  std::size_t voxels, const DeviceMemory& memory)
 {
-  const Grid& grid = medium.grid;
+  // Of thin media the first scattering counts: there a narrower part of the peak is to go straight on.
+  const bool thin = detail.moments[1] > SomewhatForward && MeanThickness(grid, detail.extinction[0]) < Thick;
+  const int usual = HighestThatFits(voxels, slab ? DegreeOfSlabs : thin ? DegreeOfThin : DegreeOfOthers, memory);
+  const int wanted = settings.angularDegree >= 0
+    ? settings.angularDegree
+    : std::min(usual, LastAbove(detail.moments, std::max(Negligible, settings.tolerance)));
+  return wanted == 0 || LastAbove(detail.moments, Negligible) == 0
+    ? 0
+    : MostDegree(DirectionsForVoxels(settings.directionsPerFace, grid.spacing), wanted);
+}
+
+bool IsMuchThinnerAlongOneAxis(
+  const AngularDetail& detail, const Grid& grid, int channels, const std::array<bool, 3>& periodic)
+{
   for (int c = 0; c < channels; ++c)
   {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < grid.VoxelCount(); ++i)
-    {
-      sum += medium.sigma_a.At(i, c) + medium.sigma_s.At(i, c);
-    }
-    const double sigma_t = sum / static_cast<double>(grid.VoxelCount());
+    const double sigma_t = detail.extinction[c] / static_cast<double>(grid.VoxelCount());
     double shortest = std::numeric_limits<double>::max(), longest = 0.0;
     for (int axis = 0; axis < 3; ++axis)
     {

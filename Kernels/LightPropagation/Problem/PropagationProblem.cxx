@@ -7,8 +7,29 @@ namespace tyndall
 {
 namespace
 {
-/// @throws InvalidInput where light can neither leave the box nor be absorbed
-void CheckLightHasAnEnd(const Medium& medium, const Illumination& illumination, const std::array<bool, 3>& periodic)
+/// So that the first member of a problem is made of what has been looked at.
+const Grid& Checked(const Medium& medium, const Illumination& illumination, const PropagationSettings& settings)
+{
+  Check(medium, illumination, settings);
+  return medium.grid;
+}
+}
+
+std::array<bool, 3> ChannelsThatAbsorb(const Medium& medium)
+{
+  std::array<bool, 3> absorbs = {};
+  for (int c = 0; c < 3; ++c)
+  {
+    for (std::size_t i = 0; i < medium.grid.VoxelCount() && !absorbs[c]; ++i)
+    {
+      absorbs[c] = medium.sigma_a.At(i, medium.sigma_a.components == 3 ? c : 0) > 0.0f;
+    }
+  }
+  return absorbs;
+}
+
+void CheckLightHasAnEnd(
+  const std::array<bool, 3>& absorbs, const Illumination& illumination, const std::array<bool, 3>& periodic)
 {
   bool anyFace = false;
   for (int c = 0; c < 3; ++c)
@@ -19,12 +40,7 @@ void CheckLightHasAnEnd(const Medium& medium, const Illumination& illumination, 
       closed = closed && (periodic[face / 2] || illumination.faceAlbedo[face][c] >= 1.0);
       anyFace = anyFace || !periodic[face / 2];
     }
-    bool absorbs = false;
-    for (std::size_t i = 0; i < medium.grid.VoxelCount() && closed && !absorbs; ++i)
-    {
-      absorbs = medium.sigma_a.At(i, medium.sigma_a.components == 3 ? c : 0) > 0.0f;
-    }
-    if (closed && anyFace && !absorbs)
+    if (closed && anyFace && !absorbs[c])
     {
       throw InvalidInput("Every face gives back all light (FaceAlbedo 1) and the medium absorbs none: light would grow "
                          "without end. Give a face an albedo below 1, or the medium some sigma_a.");
@@ -32,22 +48,19 @@ void CheckLightHasAnEnd(const Medium& medium, const Illumination& illumination, 
   }
 }
 
-/// So that the first member of a problem is made of what has been looked at.
-const Grid& Checked(const Medium& medium, const Illumination& illumination, const PropagationSettings& settings)
-{
-  Check(medium, illumination, settings);
-  return medium.grid;
-}
-}
-
-void Check(const Medium& medium, const Illumination& illumination, const PropagationSettings& settings)
+void CheckBlock(const Medium& medium, const Illumination& illumination, const PropagationSettings& settings)
 {
   Check(medium);
   Check(illumination);
   Check(illumination.uncollided, medium);
   Check(settings);
   CheckFaceAlbedo(illumination, settings.periodic);
-  CheckLightHasAnEnd(medium, illumination, settings.periodic);
+}
+
+void Check(const Medium& medium, const Illumination& illumination, const PropagationSettings& settings)
+{
+  CheckBlock(medium, illumination, settings);
+  CheckLightHasAnEnd(ChannelsThatAbsorb(medium), illumination, settings.periodic);
 }
 
 PropagationProblem::PropagationProblem(const Medium& medium, const Illumination& illumination,
@@ -70,19 +83,23 @@ PropagationProblem::PropagationProblem(const Medium& medium, const Illumination&
     this->Solved = scene.medium;
     this->SolvedLight = scene.light;
   }
-  const int degree = AngularDegreeFor(this->Solved, this->TheSettings, this->IsSlab(), memory);
-  this->Truncate(this->TheTraits.scatters ? degree : 0);
+  this->Truncate(memory);
   // The traits know of extinction by the similarity relation alone.
   this->TheTraits.greyExtinction =
     this->TheTraits.grey || (this->TheTraits.greyExtinction && this->Truncated->Degree() == 0);
 }
 
-void PropagationProblem::Truncate(int degree)
+void PropagationProblem::Truncate(const DeviceMemory& memory)
 {
+  const Grid& grid = this->TheGrid();
+  const AngularDetail detail = AngularDetailOf(this->Solved, this->ChannelCount);
+  const int degree = this->TheTraits.scatters
+    ? AngularDegreeFor(detail, grid, this->TheSettings, this->IsSlab(), grid.VoxelCount(), memory)
+    : 0;
   std::optional<DirectionKernel> kernel;
-  if (degree > 0 && IsMuchThinnerAlongOneAxis(this->Solved, this->ChannelCount, this->TheSettings.periodic))
+  if (degree > 0 && IsMuchThinnerAlongOneAxis(detail, grid, this->ChannelCount, this->TheSettings.periodic))
   {
-    kernel.emplace(DirectionsForVoxels(this->TheSettings.directionsPerFace, this->TheGrid().spacing), degree);
+    kernel.emplace(DirectionsForVoxels(this->TheSettings.directionsPerFace, grid.spacing), degree);
   }
   this->Truncated.emplace(this->Solved, degree, this->ChannelCount, kernel ? &*kernel : nullptr);
 }

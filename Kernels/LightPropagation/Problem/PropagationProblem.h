@@ -11,6 +11,7 @@
 #include "Medium/Medium.h"
 #include "Medium/Traits.h"
 
+#include <array>
 #include <optional>
 
 namespace tyndall
@@ -18,6 +19,14 @@ namespace tyndall
 /// @throws InvalidInput what Check() of the three throw, where a face that gives back light lies across a periodic
 ///   axis, and where light could not end: all faces give back all of it and nothing absorbs
 void Check(const Medium& medium, const Illumination& illumination, const PropagationSettings& settings);
+
+/// The same of a medium that is one of several blocks, but for what only all of them tell: whether light ends.
+void CheckBlock(const Medium& medium, const Illumination& illumination, const PropagationSettings& settings);
+/// @param absorbs  by channel, any voxel
+/// @throws InvalidInput where light can neither leave the box nor be absorbed
+void CheckLightHasAnEnd(
+  const std::array<bool, 3>& absorbs, const Illumination& illumination, const std::array<bool, 3>& periodic);
+std::array<bool, 3> ChannelsThatAbsorb(const Medium& medium);
 
 /// A scene as it is solved: in units of length and of power that floats hold well, wide along axes on which nothing
 /// changes, with as many channels as it needs. Made once from what the user gave; Undo() turns the light that was found
@@ -51,7 +60,7 @@ public:
 
 private:
   void TakeUnits(const Medium& wide, const Illumination& illumination);
-  void Truncate(int degree);
+  void Truncate(const DeviceMemory& memory);
 
   UnvaryingAxes Unvarying;
   PropagationSettings TheSettings;

@@ -56,6 +56,27 @@ TruncatedScattering::TruncatedScattering(
   }
 }
 
+std::vector<std::string> TruncatedScattering::LeftOut() const
+{
+  const PhaseOfMedium& phase = this->TheMedium.phase;
+  if (this->MostDegree == 0)
+  {
+    const std::string g = phase.Varies() ? "that of each voxel" : std::to_string(phase.MeanCosine(0, 0));
+    return phase.IsIsotropic()
+      ? std::vector<std::string>()
+      : std::vector<std::string>{ "anisotropy: solved as isotropic scattering with sigma_s (1 - g), g = " + g +
+          " (similarity relation)" };
+  }
+  std::vector<std::string> words = { "angular moments above degree " + std::to_string(this->MostDegree) +
+    ": what is scattered beyond them goes straight on (delta-M)" };
+  if (this->IsNowhereNegative())
+  {
+    words.emplace_back("detail within these moments: smoothed such that no source is negative, in a box that is thin "
+                       "along one axis and long along another");
+  }
+  return words;
+}
+
 /// The highest degree at which the voxel is not thick.
 int TruncatedScattering::FittingDegree(std::size_t voxel, int channel, double shortest) const
 {

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace tyndall
@@ -23,6 +24,10 @@ public:
   TruncatedScattering(const Medium& medium, int degree, int channels, const DirectionKernel* nowhereNegative = nullptr);
 
   int Degree() const { return this->MostDegree; } ///< the highest of any voxel
+  /// Of a block of a larger medium, whose highest degree is this one: at least its own, at most that which it was made
+  /// with.
+  void RaiseDegree(int degree) { this->MostDegree = degree; }
+  std::vector<std::string> LeftOut() const; ///< of the medium's scattering, in words, where it does
   bool IsNowhereNegative() const { return this->NowhereNegative && this->MostDegree > 0; }
 
   float SigmaS(std::size_t voxel, int channel) const;

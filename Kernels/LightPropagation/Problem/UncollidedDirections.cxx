@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <iterator>
+#include <utility>
 
 namespace tyndall
 {
@@ -104,5 +105,14 @@ UncollidedDirections UncollidedDirectionsFor(
     }
   }
   return found;
+}
+
+std::unique_ptr<const SweptDirections> FinerDirections(
+  const Grid& grid, const PropagationSettings& settings, int perFace, bool accelerated)
+{
+  DirectionSet set = FittedDirections(perFace, "UncollidedDirections");
+  const bool asAsked = accelerated || !set.orbits.empty();
+  const RayStarts starts = settings.staggeredRays || !asAsked ? RayStarts::Staggered : RayStarts::Middle;
+  return std::make_unique<SweptDirections>(grid, settings, std::move(set), starts);
 }
 }

@@ -1,8 +1,11 @@
 #pragma once
 
 #include "LightPropagation/Angular/DirectionSet.h"
+#include "LightPropagation/Angular/SweptDirections.h"
 #include "LightPropagation/Problem/PropagationProblem.h"
 #include "LightPropagation/Problem/ScatteringOrders.h"
+
+#include <memory>
 
 namespace tyndall
 {
@@ -21,4 +24,9 @@ struct UncollidedDirections
 /// @param usual  directions of scattered light; only beside fitted ones more of them gain by themselves
 UncollidedDirections UncollidedDirectionsFor(
   const PropagationProblem& problem, const DirectionSet& usual, OrdersAdded how);
+
+/// Along which that light is swept.
+/// @param accelerated  by the whole balance: beside the usual directions, and as they are
+std::unique_ptr<const SweptDirections> FinerDirections(
+  const Grid& grid, const PropagationSettings& settings, int perFace, bool accelerated);
 }

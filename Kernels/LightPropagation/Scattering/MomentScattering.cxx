@@ -84,6 +84,16 @@ void MomentScattering::ScatterFluence(int channel, const Deposit& swept, const E
     cl_ulong(this->Layout.Stride()), this->PerPath());
 }
 
+std::unique_ptr<const ScatteringOperator> MakeScattering(
+  Device& device, const VolumeLayout& layout, const MediumOnDevice& medium, int degree, bool scatters)
+{
+  if (degree > 0)
+  {
+    return std::make_unique<MomentScattering>(device, layout, medium, degree);
+  }
+  return std::make_unique<IsotropicScattering>(device, layout, medium, scatters);
+}
+
 void AddMoments(
   Device& device, const VolumeLayout& layout, int functions, const Buffer<float>& path, const Buffer<float>& to)
 {

@@ -2,6 +2,8 @@
 
 #include "LightPropagation/Scattering/IsotropicScattering.h"
 
+#include <memory>
+
 namespace tyndall
 {
 /// Scattering in angular moments (AngularBasis.h): of each moment of degree l its part of sigma_s goes on (numerics.md,
@@ -34,6 +36,11 @@ private:
   int Degree;
   int Functions;
 };
+
+/// In moments of a degree, or where that is 0 alike into all directions.
+/// @param scatters  as IsotropicScattering has it
+std::unique_ptr<const ScatteringOperator> MakeScattering(
+  Device& device, const VolumeLayout& layout, const MediumOnDevice& medium, int degree, bool scatters);
 
 /// Adds the moments of one path to those of another, but for the first, which is the path itself.
 void AddMoments(

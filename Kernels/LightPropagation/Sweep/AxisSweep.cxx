@@ -4,6 +4,7 @@
 #include "Device/GroupSize.h"
 #include "LightPropagation/Sweep/Slices/SliceStream.h"
 #include "LightPropagation/Sweep/SweepBorder.h"
+#include "LightPropagation/Sweep/SweepDefines.h"
 #include "LightPropagation/Sweep/SweepPlan.h"
 #include "Medium/BoxFaces.h"
 #include "TyndallKernelSources.h"
@@ -18,8 +19,6 @@ namespace
 {
 constexpr double NothingLeft = 1e-7; ///< of what was on the way after the first time: not worth going round again
 
-constexpr int RowsTogether = 8; ///< of a plane with many moments: they stay in the cache for all bundles
-
 using BundleMaps = cl_int2; ///< for map_power: members, first float of the maps
 
 std::vector<BundleMaps> MapsOf(const SweepPlan& plan)
@@ -31,19 +30,6 @@ std::vector<BundleMaps> MapsOf(const SweepPlan& plan)
   }
   return maps;
 }
-}
-
-std::string DefineMoments(const SweepPlan& plan)
-{
-  if (!plan.angular)
-  {
-    return Define("DEGREE", 0) + Define("BEAMS", 0);
-  }
-  const auto [evenEven, oddEven, evenOdd, oddOdd] = plan.order.counts;
-  return Define("DEGREE", plan.angular->degree) + Define("BEAMS", plan.angular->Beams()) +
-    Define("EVEN_EVEN", evenEven) + Define("ODD_EVEN", oddEven) + Define("EVEN_ODD", evenOdd) +
-    Define("ODD_ODD", oddOdd) + Define("FUNCTION_ORDER", plan.order.functions) +
-    Define("MOMENTS_IN_PLACE", plan.momentsInPlace) + Define("TILE", RowsTogether);
 }
 
 struct AxisSweep::Implementation
@@ -394,21 +380,11 @@ void AxisSweep::Implementation::LeaveByCells(const SweepVolume& volume)
 cl::Kernel AxisSweep::Implementation::SweepKernel(const Wanted& wanted)
 {
   const SweepPlan& plan = this->Plan;
-  std::string options = Define("REAL_WIDTH", plan.vector) + Define("CHANNELS", plan.channels) +
-    Define("ROW", plan.row) + Define("SOURCE", wanted.source) + Define("BORDER", wanted.border) +
+  const std::string options = DefinesOf(plan) + Define("SOURCE", wanted.source) + Define("BORDER", wanted.border) +
     Define("NET_FLUX", wanted.flux) + Define("FACE_OUT", wanted.faceOut) + Define("FACE_SPREAD", wanted.spreadsAside) +
     Define("FACE_IN", wanted.faceIn) + Define("STREAMED", this->Stream != nullptr) +
-    Define("OCTANT_SOURCE", plan.octantSource && wanted.source) + Define("CURRENTS", plan.partialCurrents) +
-    DefineMoments(plan) + Define("PERIODIC_P", this->IsPeriodic()) + Define("PERIODIC_U", plan.periodic[plan.axes.u]) +
-    Define("PERIODIC_V", plan.periodic[plan.axes.v]);
-  for (int members = 1; members <= MaxMembers; members *= 2)
-  {
-    const auto has = [&](const BundleInfo& bundle) { return bundle.members == members; };
-    if (std::any_of(plan.bundleRows.begin(), plan.bundleRows.end(), has))
-    {
-      options += Define(("MEMBERS_" + std::to_string(members)).c_str(), 1);
-    }
-  }
+    Define("OCTANT_SOURCE", plan.octantSource && wanted.source) + Define("PERIODIC_P", this->IsPeriodic()) +
+    Define("PERIODIC_U", plan.periodic[plan.axes.u]) + Define("PERIODIC_V", plan.periodic[plan.axes.v]);
   return this->TheDevice.Kernel("sweep", kernel_source::Sweep, options);
 }
 

@@ -180,7 +180,7 @@ int SweepPlan::PlanesChained(const Device& device) const
 
 void SweepPlan::LayMoments()
 {
-  if (this->box.size[0] != this->grid.size[0])
+  if (this->box.size[0] != this->moments.sizeX)
   {
     throw std::logic_error("angular moments are swept in whole rows");
   }
@@ -488,14 +488,19 @@ std::vector<CrossingInfo> SweepPlan::Crossings(int firstPlane, int planes) const
   return rows;
 }
 
-std::vector<OwnLightInfo> SweepPlan::OwnLight() const
+void SweepPlan::LetRaysGoOn()
+{
+  this->plane.thin = static_cast<float>(Thin / LongestWay(this->bundles));
+}
+
+std::vector<OwnLightInfo> SweepPlan::OwnLight(int lapPlanes) const
 {
   std::vector<OwnLightInfo> rows;
   for (const UnitInfo& unit : this->units)
   {
     for (int k = 0; k < this->PatternPlanes(); ++k)
     {
-      rows.push_back(this->OwnLightOf(unit, unit.planesBefore + k));
+      rows.push_back(this->OwnLightOf(unit, lapPlanes + unit.planesBefore + k));
     }
   }
   return rows;

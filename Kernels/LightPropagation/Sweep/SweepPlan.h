@@ -72,7 +72,10 @@ struct SweepPlan
   /// [plane][bundle], planes counted on from `firstPlane`.
   std::vector<CrossingInfo> Crossings(int firstPlane, int planes) const;
   /// [unit][plane] how the medium's own light gets out of the voxel where it starts.
-  std::vector<OwnLightInfo> OwnLight() const;
+  /// @param lapPlanes  that rays had crossed when they began this lap
+  std::vector<OwnLightInfo> OwnLight(int lapPlanes = 0) const;
+  /// Rays go on from the end of the grid in planes of the pattern beyond those of its own; before OwnLight().
+  void LetRaysGoOn();
 
 private:
   void LayLaps();

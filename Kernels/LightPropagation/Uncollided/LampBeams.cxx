@@ -5,7 +5,6 @@
 #include "LightPropagation/Uncollided/LampPyramids.h"
 #include "LightPropagation/Uncollided/LampShares.h"
 #include "LightPropagation/Uncollided/LampSums.h"
-#include "Medium/BoxFaces.h"
 #include "TyndallKernelSources.h"
 
 #include <glm/vec3.hpp>
@@ -34,10 +33,8 @@ public:
     , Volume(volume)
     , Lamp(light, volume.grid, periodic)
     , Periodic(periodic)
-    , Cells(device, volume.deposit.faceOut ? BoxFaceCellCount(volume.grid) : 1, "the light of a lamp")
-    , Sums(device, volume.deposit, volume.stride)
+    , Sums(device, volume.deposit, volume.stride, volume.grid)
   {
-    this->Cells.Fill(0);
   }
 
   SweepTally Run(const Monitor& monitor)
@@ -48,7 +45,7 @@ public:
     this->Sums.AddTo(this->Volume, this->Lamp, correction);
     if (this->Volume.deposit.faceOut)
     {
-      this->AddCells(correction);
+      this->Sums.AddCellsTo(this->Volume, this->Volume.faceFirst, this->Lamp, correction);
     }
     if (this->Even > 0.0)
     {
@@ -121,21 +118,6 @@ private:
     }
   }
 
-  void AddCells(double factor)
-  {
-    cl_float4 watts = {};
-    for (int c = 0; c < 3; ++c)
-    {
-      watts.s[c] = static_cast<float>(this->Lamp.TheLight().power[c] * factor);
-    }
-    const std::size_t cells = BoxFaceCellCount(this->Volume.grid);
-    cl::Kernel add = this->Kernel("add_fixed_cells", kernel_source::LampSums);
-    With(add, this->Cells, *this->Volume.deposit.faceOut, cl_ulong(this->Volume.faceFirst), cl_ulong(cells), watts);
-    this->TheDevice.Queue().enqueueNDRangeKernel(
-      add, cl::NullRange, cl::NDRange(cells, this->Volume.channels), cl::NullRange);
-    this->TheDevice.Finish(); // the cells go
-  }
-
   cl::Kernel Kernel(const char* name, std::string_view source)
   {
     return this->Lamp.Kernel(this->TheDevice, name, source, this->Volume.deposit);
@@ -158,7 +140,7 @@ private:
     {
       count = std::min<std::size_t>(this->RowsTogether(rows[first]), rows.size() - first);
       With(kernel, info, *this->Volume.sigma_t, cl_ulong(this->Volume.sigma_t_first), this->Sums.Sums(),
-        cl_ulong(this->Volume.stride), this->Cells, rowBuffer, cl_int(count), cl_int(first), sums);
+        cl_ulong(this->Volume.stride), this->Sums.Cells(), rowBuffer, cl_int(count), cl_int(first), sums);
       this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange,
         cl::NDRange(LampOnGrid::HasAtomics(this->TheDevice) ? count : 1), GroupOfLargeItems(this->TheDevice));
       this->TheDevice.Finish();
@@ -182,7 +164,6 @@ private:
   const SweepVolume& Volume;
   LampOnGrid Lamp;
   std::array<bool, 3> Periodic;
-  Buffer<cl_long> Cells;
   LampSums Sums;
   LampShares Shares;
   double Even = 0.0; ///< of the power, to be spread over the whole box

@@ -1,15 +1,18 @@
 #include "LightPropagation/Uncollided/LampSums.h"
 
+#include "Medium/BoxFaces.h"
 #include "TyndallKernelSources.h"
 
 namespace tyndall
 {
-LampSums::LampSums(Device& device, const Deposit& deposit, std::size_t stride)
+LampSums::LampSums(Device& device, const Deposit& deposit, std::size_t stride, const Grid& grid)
   : TheDevice(device)
   , Fixed(device, Parts(deposit) * stride, "the light of a lamp")
+  , OfCells(device, deposit.faceOut ? BoxFaceCellCount(grid) : 1, "the light of a lamp")
   , TheStride(stride)
 {
   this->Fixed.Fill(0);
+  this->OfCells.Fill(0);
 }
 
 void LampSums::AddTo(const SweepVolume& volume, const LampOnGrid& lamp, double factor) const
@@ -33,5 +36,19 @@ void LampSums::AddTo(const SweepVolume& volume, const LampOnGrid& lamp, double f
   add("add_fixed", volume.deposit.path);
   add("add_fixed_moments", volume.deposit.firstMoments);
   add("add_fixed_flux", volume.deposit.flux);
+}
+
+void LampSums::AddCellsTo(const SweepVolume& volume, std::size_t faceFirst, const LampOnGrid& lamp, double factor) const
+{
+  cl_float4 watts = {};
+  for (int c = 0; c < 3; ++c)
+  {
+    watts.s[c] = static_cast<float>(lamp.TheLight().power[c] * factor);
+  }
+  const std::size_t cells = this->OfCells.Size();
+  cl::Kernel add = lamp.Kernel(this->TheDevice, "add_fixed_cells", kernel_source::LampSums, volume.deposit);
+  With(add, this->OfCells, *volume.deposit.faceOut, cl_ulong(faceFirst), cl_ulong(cells), watts);
+  this->TheDevice.Queue().enqueueNDRangeKernel(add, cl::NullRange, cl::NDRange(cells, volume.channels), cl::NullRange);
+  this->TheDevice.Finish(); // the cells may go
 }
 }

@@ -7,26 +7,30 @@ namespace tyndall
 {
 /// What a lamp's beams put down, parts of its power in 64-bit fixed point, so that sums do not depend on the order of
 /// their terms (numerics.md, Eq. (35)): path times length, and behind it first moments and net flux where a deposit
-/// asks for them, [path, 3 first moments, 3 of flux][stride].
+/// asks for them, [path, 3 first moments, 3 of flux][stride]; and what leaves by cells of the grid's faces, where it does.
 class LampSums
 {
 public:
   /// @param stride  voxels of an array
-  LampSums(Device& device, const Deposit& deposit, std::size_t stride);
+  /// @param grid  the whole, whose faces have the cells that a deposit asks for
+  LampSums(Device& device, const Deposit& deposit, std::size_t stride, const Grid& grid);
 
   static int Parts(const Deposit& deposit) { return 1 + (deposit.firstMoments ? 3 : 0) + (deposit.flux ? 3 : 0); }
 
   Buffer<cl_long>& Sums() { return this->Fixed; }
+  Buffer<cl_long>& Cells() { return this->OfCells; } ///< BoxFaces.h, in units of LampPowerUnits; or one value
   std::size_t Stride() const { return this->TheStride; }
 
   /// Adds what is there, times the lamp's power, to the deposit's arrays.
   /// @param volume  its stride is that of the sums
   /// @param factor  of the lamp's power
   void AddTo(const SweepVolume& volume, const LampOnGrid& lamp, double factor) const;
+  /// The same of the cells, to the deposit's that begin at `faceFirst`.
+  void AddCellsTo(const SweepVolume& volume, std::size_t faceFirst, const LampOnGrid& lamp, double factor) const;
 
 private:
   Device& TheDevice;
-  Buffer<cl_long> Fixed;
+  Buffer<cl_long> Fixed, OfCells;
   std::size_t TheStride;
 };
 }

@@ -30,7 +30,7 @@ std::array<double, 3> Along(const Light& light)
 SweepTally SweepBeam(
   const UncollidedVolume& volume, const Light& light, bool firstMoments, const Deposit& deposit, const Monitor& monitor)
 {
-  const Grid& grid = volume.layout.grid;
+  const Grid& grid = volume.Whole();
   const std::array<double, 3> omega = Along(light);
   const std::vector<int> axes = MarchingAxes(grid, omega);
   Rgb power = light.power; // each of the axes carries its part of the beam

@@ -19,7 +19,7 @@ UncollidedBoundary::UncollidedBoundary(const PropagationSettings& settings, cons
 
 SweepTally UncollidedBoundary::AddTo(const UncollidedVolume& volume, const Monitor& monitor) const
 {
-  const Grid& grid = volume.layout.grid;
+  const Grid& grid = volume.Whole();
   const int channels = volume.layout.Groups().front().count; // that are swept at once
   const SweepBoundary incoming = this->Light.Boundary();
   const auto isLit = [&](int direction) { return !this->Settings.leaveOut || this->Light.IsLit(direction); };

@@ -26,6 +26,10 @@ struct UncollidedVolume
   const Buffer<float>* beamPath = nullptr;
   /// Follows the light of a point, spot or rectangle lamp; empty: DepositLamp (LampBeams.h).
   std::function<SweepTally(const SweepVolume& ofChannels, const Light& lamp, const Monitor& monitor)> followLamp = {};
+  /// The grid that rays go through, where the medium here is a block of it (`makeSweep` knows of the others); null: the
+  /// layout's.
+  const Grid* whole = nullptr;
+  const Grid& Whole() const { return this->whole ? *this->whole : this->layout.grid; }
 };
 
 /// Light up to where it first meets the medium: the uncollided flux of one lamp, of all that shines through the box's

@@ -1,6 +1,11 @@
 #pragma once
 
-#include "LightPropagation/Conservative/TransportParts.h"
+#include "Device/Buffer.h"
+#include "LightPropagation/Problem/TruncatedScattering.h"
+#include "LightPropagation/Sweep/VolumeLayout.h"
+#include "Lights/Lights.h"
+
+#include <vector>
 
 namespace tyndall
 {
@@ -10,16 +15,21 @@ namespace tyndall
 class EscapeCorrection
 {
 public:
-  /// @param parts  must stay; it has finer directions
-  EscapeCorrection(TransportParts& parts, const Monitor& monitor);
+  /// @param layout, scattering, sigma_t  of the medium, must stay
+  /// @param fine, usual  path integrals of a sky of radiance 1 along the finer directions and the usual ones
+  ///   (TransportParts::FindEvenSky), W length, [channel][stride]
+  EscapeCorrection(Device& device, const VolumeLayout& layout, const TruncatedScattering& scattering,
+    const Buffer<float>& sigma_t, const std::vector<float>& fine, const std::vector<float>& usual);
 
   /// Subtracts from the path integrals of a sweep the light that would also have escaped along the finer directions.
   /// Only scattered light is corrected: emission may come from voxels too thin to subtract from.
   /// @return W, by channel
-  Rgb Apply();
+  Rgb Apply(const Buffer<float>& path, const Buffer<float>& source);
 
 private:
-  TransportParts& Parts;
+  Device& TheDevice;
+  const VolumeLayout& Layout;
+  const Buffer<float>& SigmaT;
   Buffer<float> Extra; ///< of a source of 1, W length
 };
 }

@@ -1,0 +1,41 @@
+#include "LightPropagation/Sweep/SweepDefines.h"
+
+#include "Device/Defines.h"
+
+#include <algorithm>
+
+namespace tyndall
+{
+namespace
+{
+constexpr int RowsTogether = 8; ///< of a plane with many moments: they stay in the cache for all bundles
+
+std::string DefineMoments(const SweepPlan& plan)
+{
+  if (!plan.angular)
+  {
+    return Define("DEGREE", 0) + Define("BEAMS", 0);
+  }
+  const auto [evenEven, oddEven, evenOdd, oddOdd] = plan.order.counts;
+  return Define("DEGREE", plan.angular->degree) + Define("BEAMS", plan.angular->Beams()) +
+    Define("EVEN_EVEN", evenEven) + Define("ODD_EVEN", oddEven) + Define("EVEN_ODD", evenOdd) +
+    Define("ODD_ODD", oddOdd) + Define("FUNCTION_ORDER", plan.order.functions) +
+    Define("MOMENTS_IN_PLACE", plan.momentsInPlace) + Define("TILE", RowsTogether);
+}
+}
+
+std::string DefinesOf(const SweepPlan& plan)
+{
+  std::string options = Define("REAL_WIDTH", plan.vector) + Define("CHANNELS", plan.channels) +
+    Define("ROW", plan.row) + Define("CURRENTS", plan.partialCurrents) + DefineMoments(plan);
+  for (int members = 1; members <= MaxMembers; members *= 2)
+  {
+    const auto has = [&](const BundleInfo& bundle) { return bundle.members == members; };
+    if (std::any_of(plan.bundleRows.begin(), plan.bundleRows.end(), has))
+    {
+      options += Define(("MEMBERS_" + std::to_string(members)).c_str(), 1);
+    }
+  }
+  return options;
+}
+}
