@@ -4,7 +4,6 @@
 #include "Distribution/Communicator.h"
 #include "Medium/VoxelBox.h"
 
-#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -27,32 +26,4 @@ std::vector<float> ValuesInBox(Communicator& communicator, const BlockPartition&
 /// @return one for each voxel of this rank's block
 std::vector<std::int64_t> SumsInBlock(Communicator& communicator, const BlockPartition& partition,
   const std::vector<VoxelBox>& found, const std::vector<std::int64_t>& values);
-
-/// What each rank has for others, by the voxel where it is to go, handed to whoever has that voxel. All ranks call it.
-/// @param neighbours  as NeighboursOf() has them
-/// @param gone  with `int voxel[3]` in the block of one of the neighbours
-/// @return what has come, by rank
-template <class T>
-std::vector<T> HandOn(Communicator& communicator, const BlockPartition& partition, const std::vector<int>& neighbours,
-  const std::vector<T>& gone, int tag)
-{
-  std::vector<std::vector<T>> parcels(neighbours.size());
-  for (const T& one : gone)
-  {
-    const auto holds = [&](int rank) { return Holds(partition.blocks[rank], one.voxel); };
-    const auto to = std::find_if(neighbours.begin(), neighbours.end(), holds);
-    parcels.at(static_cast<std::size_t>(to - neighbours.begin())).push_back(one);
-  }
-  for (std::size_t i = 0; i < parcels.size(); ++i)
-  {
-    communicator.Send(neighbours[i], tag, parcels[i]);
-  }
-  std::vector<T> arrived;
-  for (const int rank : neighbours)
-  {
-    const std::vector<T> parcel = communicator.Receive<T>(rank, tag);
-    arrived.insert(arrived.end(), parcel.begin(), parcel.end());
-  }
-  return arrived;
-}
 }

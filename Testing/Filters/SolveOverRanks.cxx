@@ -150,7 +150,7 @@ bool March(Communicator& communicator)
   const BlockPartition partition = PartitionOf(grid, communicator.Ranks());
   const std::shared_ptr<Device> device = Device::Find();
   const std::vector<Photon> photons = PhotonsInto(grid);
-  PhotonTraffic traffic;
+  RoundsTraffic traffic;
   const auto march = [&](Communicator& ranks, const BlockPartition& blocks) {
     const Waves block(blocks, ranks.Rank());
     MarchSettings settings;
@@ -161,14 +161,14 @@ bool March(Communicator& communicator)
     return light;
   };
   const PhotonLight light = march(communicator, partition);
-  const PhotonTraffic ofRank = traffic;
+  const RoundsTraffic ofRank = traffic;
   const double difference = DifferenceFromWhole(communicator, partition, light.light, [&] {
     SingleRank single;
     return march(single, { grid, { { { 0, 0, 0 }, grid.size } } }).light;
   });
   if (communicator.Rank() == 0)
   {
-    std::cout << photons.size() << " photons, " << ofRank.photons << " handed on by rank 0 in " << ofRank.rounds
+    std::cout << photons.size() << " photons, " << ofRank.handed << " handed on by rank 0 in " << ofRank.rounds
               << " rounds; light differs by " << difference << ", balance off by "
               << light.light.balance.RelativeError(1) << "\n";
   }

@@ -85,11 +85,11 @@ inline std::vector<tyndall::Photon> ShareOf(const std::vector<tyndall::Photon>& 
 /// Arrays of the blocks put together; all else must be the same on all ranks.
 inline tyndall::PhotonLight LightOfAll(tyndall::Device& device, const PhotonScene& scene,
   const tyndall::BlockPartition& partition, const std::vector<tyndall::Photon>& photons,
-  std::vector<tyndall::PhotonTraffic>* traffic = nullptr)
+  std::vector<tyndall::RoundsTraffic>* traffic = nullptr)
 {
   const int ranks = static_cast<int>(partition.blocks.size());
   std::vector<tyndall::PhotonLight> found(ranks);
-  std::vector<tyndall::PhotonTraffic> handed(ranks);
+  std::vector<tyndall::RoundsTraffic> handed(ranks);
   tyndall::RunInThreads(ranks, [&](tyndall::Communicator& communicator) {
     const int rank = communicator.Rank();
     const BlockOfScene part(scene, partition.blocks[rank]);

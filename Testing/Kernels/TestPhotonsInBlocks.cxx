@@ -237,7 +237,7 @@ TEST_F(PhotonBlocks, GiveUpWhatGoesRoundForEverAsTheWholeDoes)
   }
   const PhotonLight expected = scene.March(GetDevice(), photons);
   EXPECT_GT(expected.light.balance.leftOver[0], 0.0);
-  std::vector<PhotonTraffic> traffic;
+  std::vector<RoundsTraffic> traffic;
   ExpectLightOfTheWhole(
     LightOfAll(GetDevice(), scene, BlockPartition::Even(scene.medium.grid, 4), photons, &traffic), expected);
   EXPECT_GT(traffic[0].rounds, 50);
@@ -258,12 +258,12 @@ TEST_F(PhotonBlocks, HandOnWhatCrosses)
   {
     slabs.blocks.push_back({ { x, 0, 0 }, { 3, 4, 4 } });
   }
-  std::vector<PhotonTraffic> traffic;
+  std::vector<RoundsTraffic> traffic;
   ExpectLightOfTheWhole(LightOfAll(GetDevice(), scene, slabs, photons, &traffic), scene.March(GetDevice(), photons));
   EXPECT_EQ(sizeof(PhotonOnItsWay), 120u);
   for (int rank = 0; rank < 4; ++rank)
   {
-    EXPECT_EQ(traffic[rank].photons, rank < 3 ? 100u : 0u) << rank;
+    EXPECT_EQ(traffic[rank].handed, rank < 3 ? 100u : 0u) << rank;
     EXPECT_EQ(traffic[rank].bytes, rank < 3 ? 12000u : 0u) << rank;
     EXPECT_EQ(traffic[rank].rounds, 4) << rank;
   }
@@ -294,12 +294,12 @@ TEST_F(PhotonBlocks, HandOnAsOftenAsPathsCross)
       crossings += blockOf[voxels[i]] != blockOf[voxels[i - 1]] ? 1.0 : 0.0;
     }
   }
-  std::vector<PhotonTraffic> traffic;
+  std::vector<RoundsTraffic> traffic;
   LightOfAll(GetDevice(), scene, partition, photons, &traffic);
   double handed = 0.0;
-  for (const PhotonTraffic& ofRank : traffic)
+  for (const RoundsTraffic& ofRank : traffic)
   {
-    handed += static_cast<double>(ofRank.photons);
+    handed += static_cast<double>(ofRank.handed);
   }
   EXPECT_NEAR(handed, crossings, 0.005 * crossings); // paths are cut at walls to float's precision
 }

@@ -16,9 +16,13 @@
 
 namespace tyndall
 {
+static const int* WhereIs(const BeamOnItsWay& beam)
+{
+  return beam.voxel;
+}
+
 namespace
 {
-constexpr int BeamsTag = 29997;
 constexpr int Reach = 2; ///< voxels beside a block that beams in it may lie over, and one for rounding
 constexpr std::size_t BeamsPerLaunch = 1 << 14; ///< keeps a launch well below a tenth of a second
 
@@ -49,7 +53,7 @@ LampsInBlocks::LampsInBlocks(Device& device, Communicator& communicator, const B
   , Others(communicator)
   , Partition(partition)
   , Own(partition.blocks[communicator.Rank()])
-  , Neighbours(NeighboursOf(partition, communicator.Rank()))
+  , Rounds(communicator, partition)
   , OwnStride(layout.Stride())
 {
   for (const VoxelBox& block : partition.blocks)
@@ -135,27 +139,19 @@ void LampsInBlocks::Beams::Follow(const glm::dvec3& point, double part, const Mo
 {
   this->AllInside = this->AllInside && this->Lamp.IsInside(point);
   std::vector<BeamRow> rows;
-  std::vector<BeamOnItsWay> beams;
   Buffer<BeamRow> rowBuffer;
   const LampInfo info = this->Lamp.Describe(point, part, this->Box, this->All.Own);
-  double done = 0.0;
-  for (bool left = true, first = true; left; first = false)
-  {
-    std::vector<BeamOnItsWay> gone;
-    this->All.Others.Together([&] {
-      if (first)
+  this->All.Rounds.UntilAllEnd<BeamOnItsWay>(
+    [&](int round, std::vector<BeamOnItsWay>&& arrived, const Monitor& ofRound) {
+      if (round == 0)
       {
         rows = this->Lamp.Rows(point, FirstPass(this->All.Partition.whole));
-        beams = this->SettingOff(rows, point);
+        arrived = this->SettingOff(rows, point);
         rowBuffer = Buffer<BeamRow>(this->All.TheDevice, rows.empty() ? std::vector<BeamRow>(1) : rows, "beams");
       }
-      gone = this->FollowInBlock(rows, info, rowBuffer, beams, OfPart(monitor, done, 0.5 * (1.0 + done)));
-      Report(monitor, done = 0.5 * (1.0 + done));
-    });
-    this->All.Handed += gone.size();
-    beams = HandOn(this->All.Others, this->All.Partition, this->All.Neighbours, gone, BeamsTag);
-    left = this->All.Others.Largest({ beams.empty() ? 0.0 : 1.0 })[0] > 0.0;
-  }
+      return this->FollowInBlock(rows, info, rowBuffer, arrived, ofRound);
+    },
+    monitor);
 }
 
 std::vector<BeamOnItsWay> LampsInBlocks::Beams::SettingOff(

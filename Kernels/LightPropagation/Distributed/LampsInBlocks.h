@@ -3,6 +3,7 @@
 #include "Device/Monitor.h"
 #include "Distribution/BlockPartition.h"
 #include "Distribution/Communicator.h"
+#include "Distribution/Rounds.h"
 #include "LightPropagation/Sweep/SweepTally.h"
 #include "LightPropagation/Sweep/SweepVolume.h"
 #include "Lights/Lights.h"
@@ -32,8 +33,6 @@ public:
   /// @return of all ranks together
   SweepTally Deposit(const SweepVolume& volume, const Light& light, const Monitor& monitor);
 
-  std::size_t HandedOn() const { return this->Handed; } ///< beams, by this rank, each time that one was
-
 private:
   class Beams;
   bool Has() const { return this->Own.VoxelCount() > 0; }
@@ -43,9 +42,8 @@ private:
   const BlockPartition& Partition;
   VoxelBox Own;
   std::vector<VoxelBox> Stored; ///< by rank: its block and what its beams may reach beside it
-  std::vector<int> Neighbours;
+  tyndall::Rounds Rounds;
   std::size_t OwnStride; ///< of an extinction of the block in its layout, and
   Buffer<float> SigmaT;  ///< 1/length, of the stored voxels, one extinction after the other
-  std::size_t Handed = 0;
 };
 }

@@ -8,6 +8,11 @@
 
 namespace tyndall
 {
+inline const int* WhereIs(const PhotonOnItsWay& photon)
+{
+  return photon.way.voxel;
+}
+
 /// Marches photons through one block of a grid, as far as the block goes.
 class BlockMarch
 {

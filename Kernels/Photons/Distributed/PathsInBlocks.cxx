@@ -1,5 +1,7 @@
 #include "Photons/Distributed/PathsInBlocks.h"
 
+#include "Photons/Distributed/BlockMarch.h"
+
 #include "Photons/Distributed/PhotonShares.h"
 
 #include <algorithm>
@@ -58,7 +60,7 @@ PathsInBlocks::Parts PathsInBlocks::TraceParts(const PackedPhotons& packed)
   const VoxelBox& own = this->Partition.blocks[static_cast<std::size_t>(this->Others.Rank())];
   Parts found;
   std::unique_ptr<BlockPaths> block;
-  PhotonRounds rounds(this->Others, this->Partition);
+  Rounds rounds(this->Others, this->Partition);
   rounds.UntilAllEnd<PhotonOnItsWay>(
     [&](int round, std::vector<PhotonOnItsWay>&& arrived, const Monitor&) {
       std::vector<PhotonOnItsWay> gone;

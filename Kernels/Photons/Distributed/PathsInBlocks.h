@@ -1,7 +1,7 @@
 #pragma once
 
+#include "Distribution/Rounds.h"
 #include "Photons/Distributed/BlockPaths.h"
-#include "Photons/Distributed/PhotonRounds.h"
 
 #include <vector>
 

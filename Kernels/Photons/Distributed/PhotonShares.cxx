@@ -1,6 +1,6 @@
 #include "Photons/Distributed/PhotonShares.h"
 
-#include "Photons/Distributed/PhotonRounds.h"
+#include "Distribution/Rounds.h"
 #include "Photons/Marching/MarchedLight.h"
 
 #include <algorithm>
@@ -11,7 +11,7 @@ namespace tyndall
 {
 namespace
 {
-constexpr int SharesTag = 29997; ///< not one of those that PhotonRounds.h takes
+constexpr int SharesTag = 29997; ///< not one of those that Rounds.h takes
 
 /// Whole numbers as doubles, whose sums are whole: a high and a low half.
 constexpr double Half = 0x1p31;

@@ -83,7 +83,7 @@ public:
   PhotonLight March(const std::vector<Photon>& share, const Monitor& monitor);
   std::vector<PhotonPath> Paths(const std::vector<Photon>& share, std::size_t count);
 
-  PhotonTraffic Handed; ///< of the last march
+  RoundsTraffic Handed; ///< of the last march
 
 private:
   MarchTraits TraitsOfAllRanks(const Medium& medium, const Field& ior);
@@ -107,7 +107,7 @@ private:
   const VoxelBox Own;
   const bool Has; ///< voxels
   MarchTraits Traits;
-  std::unique_ptr<PhotonRounds> Rounds;          ///< of a march
+  std::unique_ptr<tyndall::Rounds> Rounds;       ///< of a march
   std::unique_ptr<MarchMedium> Through;          ///< null without voxels
   std::unique_ptr<MarchedLight> Light;           ///< likewise
   std::unique_ptr<ScatteredChannels> Scattering; ///< null: photons are followed to where they are first scattered
@@ -374,7 +374,7 @@ PhotonLight PhotonMarcherInBlocks::Rank::MarchInBatches(
 PhotonLight PhotonMarcherInBlocks::Rank::March(const std::vector<Photon>& share, const Monitor& monitor)
 {
   const double start = ClockSeconds();
-  this->Rounds = std::make_unique<PhotonRounds>(this->Others, this->Partition);
+  this->Rounds = std::make_unique<tyndall::Rounds>(this->Others, this->Partition);
   const PlaceOfShare place = PlaceAmong(this->Others, share.size());
   PhotonLight result;
   if (this->Settings.errorBatches > 0)
@@ -423,7 +423,7 @@ std::vector<PhotonPath> PhotonMarcherInBlocks::Paths(const std::vector<Photon>& 
   return this->Inside->Paths(share, count);
 }
 
-const PhotonTraffic& PhotonMarcherInBlocks::Traffic() const
+const RoundsTraffic& PhotonMarcherInBlocks::Traffic() const
 {
   return this->Inside->Handed;
 }

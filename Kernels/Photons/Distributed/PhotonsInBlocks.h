@@ -4,8 +4,8 @@
 #include "Device/Monitor.h"
 #include "Distribution/BlockPartition.h"
 #include "Distribution/Communicator.h"
+#include "Distribution/Rounds.h"
 #include "Medium/Medium.h"
-#include "Photons/Distributed/PhotonRounds.h"
 #include "Photons/Photons.h"
 
 #include <memory>
@@ -47,7 +47,7 @@ public:
   /// @return of rank 0 all of them, of the others none
   std::vector<PhotonPath> Paths(const std::vector<Photon>& share, std::size_t count);
 
-  const PhotonTraffic& Traffic() const; ///< of the last march, of this rank
+  const RoundsTraffic& Traffic() const; ///< of the last march, of this rank
 
 private:
   class Rank;

@@ -9,6 +9,11 @@
 
 namespace tyndall
 {
+inline const int* WhereIs(const ScatteredOnItsWay& photon)
+{
+  return photon.way.voxel;
+}
+
 /// Photons that are followed through scattering after scattering, as far as their medium goes: to their ends or, where
 /// it is a block of a grid, into other blocks. What PhotonScattering::Follow does, in parts.
 class ScatteringRun

@@ -11,30 +11,33 @@
 namespace tyndall
 {
 /// What ranks handed to each other.
-struct PhotonTraffic
+struct RoundsTraffic
 {
-  std::size_t photons = 0; ///< that this rank handed on; one counts each time that it goes into another block
-  std::size_t bytes = 0;   ///< of them
-  int rounds = 0;          ///< of marching and handing on, until none was left anywhere
+  std::size_t handed = 0; ///< travellers, by this rank; one counts each time that it goes into another block
+  std::size_t bytes = 0;  ///< of them
+  int rounds = 0;         ///< of following and handing on, until none was left anywhere
 };
 
-/// Photons go from rank to rank in rounds: each rank marches those that it has as far as its block goes, and hands them
-/// on to the ranks whose blocks touch it.
-class PhotonRounds
+/// Photons, or beams of a lamp, go from rank to rank in rounds: each rank follows those that it has as far as its block
+/// goes, and hands them on to the ranks whose blocks touch it.
+///
+/// A type of traveller has a function `const int* WhereIs(const Traveller&)` beside it: the voxel of the whole grid that
+/// it goes on in.
+class Rounds
 {
 public:
   /// @param communicator, partition  must stay; as many blocks as ranks
-  PhotonRounds(Communicator& communicator, const BlockPartition& partition);
+  Rounds(Communicator& communicator, const BlockPartition& partition);
 
-  /// Marches those that have come (in the first round: that set off here), and gives back those that go on elsewhere.
+  /// Follows those that have come (in the first round: that set off here), and gives back those that go on elsewhere.
   template <class OnItsWay>
-  using March =
+  using Follow =
     std::function<std::vector<OnItsWay>(int round, std::vector<OnItsWay>&& arrived, const Monitor& monitor)>;
 
-  /// Until no photon is left anywhere. All ranks call it.
-  /// @throws  on every rank, what `march` throws on one of them
+  /// Until none is left anywhere. All ranks call it.
+  /// @throws  on every rank, what `follow` throws on one of them
   template <class OnItsWay>
-  void UntilAllEnd(const March<OnItsWay>& march, const Monitor& monitor)
+  void UntilAllEnd(const Follow<OnItsWay>& follow, const Monitor& monitor)
   {
     std::vector<OnItsWay> arrived;
     int round = 0;
@@ -43,7 +46,7 @@ public:
     {
       std::vector<std::vector<OnItsWay>> parcels;
       this->Others.Together([&] {
-        parcels = this->Sorted(march(round, std::move(arrived), OfPart(monitor, done, 0.5 * (1.0 + done))));
+        parcels = this->Sorted(follow(round, std::move(arrived), OfPart(monitor, done, 0.5 * (1.0 + done))));
         Report(monitor, done = 0.5 * (1.0 + done));
       });
       arrived = this->Exchange(parcels);
@@ -52,7 +55,7 @@ public:
     this->Handed.rounds += round;
   }
 
-  const PhotonTraffic& Traffic() const { return this->Handed; }
+  const RoundsTraffic& Traffic() const { return this->Handed; }
 
 private:
   /// By the neighbours whose blocks they go into.
@@ -60,11 +63,11 @@ private:
   std::vector<std::vector<OnItsWay>> Sorted(const std::vector<OnItsWay>& gone)
   {
     std::vector<std::vector<OnItsWay>> parcels(this->Neighbours.size());
-    for (const OnItsWay& photon : gone)
+    for (const OnItsWay& one : gone)
     {
-      parcels[this->NeighbourWith(photon.way.voxel)].push_back(photon);
+      parcels[this->NeighbourWith(WhereIs(one))].push_back(one);
     }
-    this->Handed.photons += gone.size();
+    this->Handed.handed += gone.size();
     this->Handed.bytes += gone.size() * sizeof(OnItsWay);
     return parcels;
   }
@@ -93,6 +96,6 @@ private:
   Communicator& Others;
   const BlockPartition& Partition;
   std::vector<int> Neighbours; ///< ranks
-  PhotonTraffic Handed;
+  RoundsTraffic Handed;
 };
 }
