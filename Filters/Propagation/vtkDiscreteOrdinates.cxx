@@ -66,11 +66,20 @@ vtkDiscreteOrdinates::vtkDiscreteOrdinates()
 
 vtkDiscreteOrdinates::~vtkDiscreteOrdinates() = default;
 
+double vtkDiscreteOrdinates::BytesOfVoxel() const
+{
+  return 64.0 + 2.0 * sizeof(float) * 6.0 * this->DirectionsPerFace;
+}
+
+std::string vtkDiscreteOrdinates::NotByBlocks(vtkInformationVector**) const
+{
+  return "discrete ordinates";
+}
+
 int vtkDiscreteOrdinates::RequestData(
   vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs)
 {
-  const auto forget = [this] { this->Note({}); };
-  return this->GiveOrSolve(request, given, outputs, forget, [&](vtkInformationVector** inputs) {
+  return this->GiveOrSolve(request, given, outputs, [&](vtkInformationVector** inputs) {
     vtkImageData* image = vtkImageData::GetData(inputs[MEDIUM]);
     const tyndall::MediumInput input = tyndall::ReadMedium(this, image);
     const bool emits = input.Emits();

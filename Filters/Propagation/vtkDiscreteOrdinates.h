@@ -161,12 +161,14 @@ protected:
   ~vtkDiscreteOrdinates() override;
 
   int RequestData(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+  void Note(const tyndall::LightField& light) override;
+  double BytesOfVoxel() const override;
+  std::string NotByBlocks(vtkInformationVector** inputs) const override;
 
 private:
   vtkDiscreteOrdinates(const vtkDiscreteOrdinates&) = delete;
   void operator=(const vtkDiscreteOrdinates&) = delete;
 
-  void Note(const tyndall::LightField& light);
 
   int Scheme = CONSERVATIVE;
   int Scattering = SPHERICAL_HARMONICS;

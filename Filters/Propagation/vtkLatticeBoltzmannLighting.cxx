@@ -182,14 +182,20 @@ tyndall::LightField vtkLatticeBoltzmannLighting::Solve(vtkInformationVector** in
   return light;
 }
 
+double vtkLatticeBoltzmannLighting::BytesOfVoxel() const
+{
+  return 128.0 + 2.0 * sizeof(float) * this->Lattice;
+}
+
+std::string vtkLatticeBoltzmannLighting::NotByBlocks(vtkInformationVector**) const
+{
+  return "a lattice";
+}
+
 int vtkLatticeBoltzmannLighting::RequestData(
   vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs)
 {
-  const auto forget = [this] {
-    this->Note({});
-    this->Seconds = 0.0;
-  };
-  return this->GiveOrSolve(request, given, outputs, forget, [&](vtkInformationVector** inputs) {
+  return this->GiveOrSolve(request, given, outputs, [&](vtkInformationVector** inputs) {
     tyndall::LightField light = this->Solve(inputs);
     light.settingsUsed = tyndall::Words(SettingsOf(this));
     this->Note(light);
@@ -206,6 +212,7 @@ void vtkLatticeBoltzmannLighting::Note(const tyndall::LightField& light)
   this->DeviceName = light.device;
   this->LeftOut = tyndall::Lines(light.leftOut);
   this->SettingsUsed = tyndall::Lines(light.settingsUsed);
+  this->Seconds = any ? this->Seconds : 0.0;
 }
 
 void vtkLatticeBoltzmannLighting::PrintSelf(ostream& os, vtkIndent indent)

@@ -166,12 +166,14 @@ protected:
 
   int FillInputPortInformation(int port, vtkInformation* information) override;
   int RequestData(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+  void Note(const tyndall::LightField& light) override;
+  double BytesOfVoxel() const override;
+  std::string NotByBlocks(vtkInformationVector** inputs) const override;
 
 private:
   vtkLatticeBoltzmannLighting(const vtkLatticeBoltzmannLighting&) = delete;
   void operator=(const vtkLatticeBoltzmannLighting&) = delete;
 
-  void Note(const tyndall::LightField& light);
   tyndall::LightField Solve(vtkInformationVector** inputs);
   tyndall::LightField SolveWithPhotons(
     vtkInformationVector** inputs, const tyndall::MediumInput& input, const tyndall::FloatField& ior);
