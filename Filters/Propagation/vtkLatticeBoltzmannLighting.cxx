@@ -4,11 +4,14 @@
 #include "Common/LightTransportData.h"
 #include "Device/Clock.h"
 #include "Device/Device.h"
+#include "LatticeBoltzmann/Distributed/LatticeInBlocks.h"
 #include "LatticeBoltzmann/LatticeBoltzmann.h"
 #include "LatticeBoltzmann/LatticeQuality.h"
 #include "Medium/Coarsening.h"
 #include "Photons/PhotonData.h"
+#include "Propagation/PieceOfMedium.h"
 #include "Propagation/PreviewLight.h"
+#include "Ranks/PieceBlocks.h"
 #include "Work/GuardedWork.h"
 
 #include "vtkDataObject.h"
@@ -187,9 +190,37 @@ double vtkLatticeBoltzmannLighting::BytesOfVoxel() const
   return 128.0 + 2.0 * sizeof(float) * this->Lattice;
 }
 
-std::string vtkLatticeBoltzmannLighting::NotByBlocks(vtkInformationVector**) const
+std::string vtkLatticeBoltzmannLighting::NotByBlocks(vtkInformationVector** inputs) const
 {
-  return "a lattice";
+  return inputs[PHOTONS]->GetNumberOfInformationObjects() > 0 ? "Photons" : "";
+}
+
+std::string vtkLatticeBoltzmannLighting::NotInBlocks(
+  const tyndall::PieceOfMedium&, const tyndall::IlluminationInput& shining)
+{
+  return tyndall::NotInBlocks(shining.illumination, SettingsOf(this));
+}
+
+tyndall::LightField vtkLatticeBoltzmannLighting::SolvePiece(tyndall::Communicator& communicator,
+  const tyndall::PieceBlocks& pieces, const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining)
+{
+  const tyndall::LatticeSettings settings = SettingsOf(this);
+  tyndall::FloatField ior;
+  std::shared_ptr<tyndall::Device> device;
+  communicator.Together([&] {
+    device = tyndall::Device::Find(this->GetDevice());
+    if (piece.image)
+    {
+      ior = tyndall::ReadChosenCells(
+        this, tyndall::RefractiveIndex, piece.image, "ior", tyndall::Need::Optional, { 1 });
+    }
+  });
+  tyndall::LightField light = Timed(this->Seconds, [&] {
+    return tyndall::SolveLatticeInBlocks(*device, communicator, pieces.Partition(), piece.medium, ior,
+      shining.illumination, settings, tyndall::MonitorOf(this));
+  });
+  light.settingsUsed = tyndall::Words(settings);
+  return light;
 }
 
 int vtkLatticeBoltzmannLighting::RequestData(

@@ -60,8 +60,8 @@ class LastLight;
  *
  * With Decomposition BLOCKS rays go from rank to rank (numerics.md, section 4.9). The source is constant in voxels then,
  * so that voxels thicker than about 1 need the whole, or more voxels. Blocks cannot do, beside what no solver can: point,
- * spot and rectangle lights, anisotropic scattering other than with AngularDegree 0, UncollidedDirections, TargetError,
- * WarmStart and the published scheme.
+ * spot and rectangle lights, anisotropic scattering other than with AngularDegree 0, FaceAlbedo, UncollidedDirections,
+ * TargetError, WarmStart and the published scheme.
  *
  * @sa vtkParticipatingMedium vtkLightRig vtkEnvironmentReader vtkMediumRayCaster
  * @par Thanks

@@ -82,8 +82,8 @@ public:
   /// What each of several ranks of MPI solves. With WHOLE all of the medium, which each then holds. With BLOCKS its
   /// piece: light is handed on from rank to rank, and no rank holds another's voxels but for a layer or two; one rank
   /// alone solves the same way then, so that light does not depend on their number, but for rounding. An error names
-  /// what blocks cannot do; of all solvers these are FaceAlbedo, periodic axes, UncollidedLight, a Quality other than
-  /// USUAL, Preview, EstimateError, MemoryBudget and LitColor; the subclass says what else.
+  /// what blocks cannot do; of all solvers these are periodic axes, UncollidedLight, a Quality other than USUAL,
+  /// Preview, EstimateError, MemoryBudget and LitColor; the subclass says what else.
   /// AUTOMATIC_DECOMPOSITION (default): BLOCKS where the arrays of the whole, once for each rank of a machine, are more
   /// than the memory that it has available, and the scene can be solved so; else WHOLE.
   tyndallSetRangeMacro(Decomposition, int, AUTOMATIC_DECOMPOSITION, BLOCKS);

@@ -20,10 +20,17 @@ constexpr int RaysPerEdge = 2; ///< of a voxel
 /// and into those beside through another, and each seems to be lit from its own side.
 constexpr int RaysPerThickEdge = 8;
 
-/// Adds what a beam deposited, and its first moments, which are found from the powers through the voxels' faces.
-void AddWithFirstMoments(const UncollidedVolume& volume, const std::array<double, 3>& omega, const Deposit& ofBeam)
+std::array<double, 3> Along(const Light& light)
+{
+  const glm::dvec3 along = glm::normalize(Vector(light.direction));
+  return { along.x, along.y, along.z };
+}
+}
+
+void AddWithFirstMoments(const UncollidedVolume& volume, const Light& light, const Deposit& ofBeam)
 {
   const Grid& grid = volume.layout.grid;
+  const std::array<double, 3> omega = Along(light);
   BeamInfo info = {};
   for (int a = 0; a < 3; ++a)
   {
@@ -45,36 +52,23 @@ void AddWithFirstMoments(const UncollidedVolume& volume, const std::array<double
   }
   volume.device.Finish(); // the beam's arrays go
 }
-}
 
-SweepTally DepositBeam(const UncollidedVolume& volume, const Light& light, const Monitor& monitor)
+SweepTally SweepBeam(
+  const UncollidedVolume& volume, const Deposit& ofBeam, const Light& light, bool finely, const Monitor& monitor)
 {
   const Grid& grid = volume.layout.grid;
-  const glm::dvec3 along = glm::normalize(Vector(light.direction));
-  const std::array<double, 3> omega = { along.x, along.y, along.z };
-  Deposit deposit = volume.deposit;
-  deposit.firstMoments = nullptr;
-  Buffer<float> path, partialCurrents;
-  if (volume.deposit.firstMoments)
-  {
-    path = Buffer<float>(volume.device, volume.layout.Floats(), "the light of a beam");
-    partialCurrents = Buffer<float>(volume.device, volume.layout.Floats(6), "the light of a beam");
-    path.Fill(0.0f);
-    partialCurrents.Fill(0.0f);
-    deposit.path = &path;
-    deposit.partialCurrents = &partialCurrents;
-  }
+  const std::array<double, 3> omega = Along(light);
   const std::vector<int> axes = MarchingAxes(grid, omega);
   Rgb power = light.power; // each of the axes carries its part of the beam
   for (double& ofChannel : power)
   {
     ofChannel /= static_cast<double>(axes.size());
   }
-  const int raysPerEdge = volume.deposit.firstMoments ? RaysPerThickEdge : RaysPerEdge;
+  const int raysPerEdge = finely ? RaysPerThickEdge : RaysPerEdge;
   SweepTally tally;
   for (std::size_t a = 0; a < axes.size(); ++a)
   {
-    const SweepRequest request = { deposit,
+    const SweepRequest request = { ofBeam,
       { { axes[a], BeamAlong(axes[a], grid, volume.periodic, omega, raysPerEdge) } } };
     const double all = static_cast<double>(axes.size());
     const Monitor ofAxis = OfPart(monitor, a / all, (a + 1) / all);
@@ -82,10 +76,25 @@ SweepTally DepositBeam(const UncollidedVolume& volume, const Light& light, const
       volume.makeSweep(request)->Apply(
         nullptr, [&](int, int) { return power; }, ofAxis));
   }
-  if (volume.deposit.firstMoments)
+  return tally;
+}
+
+SweepTally DepositBeam(const UncollidedVolume& volume, const Light& light, const Monitor& monitor)
+{
+  if (!volume.deposit.firstMoments)
   {
-    AddWithFirstMoments(volume, omega, deposit);
+    return SweepBeam(volume, volume.deposit, light, false, monitor);
   }
+  const Buffer<float> path(volume.device, volume.layout.Floats(), "the light of a beam");
+  const Buffer<float> partialCurrents(volume.device, volume.layout.Floats(6), "the light of a beam");
+  path.Fill(0.0f);
+  partialCurrents.Fill(0.0f);
+  Deposit deposit = volume.deposit;
+  deposit.firstMoments = nullptr;
+  deposit.path = &path;
+  deposit.partialCurrents = &partialCurrents;
+  const SweepTally tally = SweepBeam(volume, deposit, light, true, monitor);
+  AddWithFirstMoments(volume, light, deposit);
   return tally;
 }
 }
