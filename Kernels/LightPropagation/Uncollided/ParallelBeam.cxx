@@ -85,8 +85,8 @@ SweepTally DepositBeam(const UncollidedVolume& volume, const Light& light, const
   {
     return SweepBeam(volume, volume.deposit, light, false, monitor);
   }
-  const Buffer<float> path(volume.device, volume.layout.Floats(), "the light of a beam");
-  const Buffer<float> partialCurrents(volume.device, volume.layout.Floats(6), "the light of a beam");
+  Buffer<float> path(volume.device, volume.layout.Floats(), "the light of a beam");
+  Buffer<float> partialCurrents(volume.device, volume.layout.Floats(6), "the light of a beam");
   path.Fill(0.0f);
   partialCurrents.Fill(0.0f);
   Deposit deposit = volume.deposit;
