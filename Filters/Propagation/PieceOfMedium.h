@@ -22,7 +22,7 @@ struct PieceOfMedium
 
   vtkSmartPointer<vtkImageData> image; ///< whose arrays the medium has; null where the block is empty
   MediumInput input;
-  Medium medium; ///< empty where the block is
+  Medium medium;      ///< empty where the block is
   bool emits = false; ///< the medium of any rank
 };
 }

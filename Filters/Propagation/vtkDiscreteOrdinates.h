@@ -169,7 +169,6 @@ private:
   vtkDiscreteOrdinates(const vtkDiscreteOrdinates&) = delete;
   void operator=(const vtkDiscreteOrdinates&) = delete;
 
-
   int Scheme = CONSERVATIVE;
   int Scattering = SPHERICAL_HARMONICS;
   int DirectionsPerFace;

@@ -211,8 +211,8 @@ tyndall::LightField vtkLatticeBoltzmannLighting::SolvePiece(tyndall::Communicato
     device = tyndall::Device::Find(this->GetDevice());
     if (piece.image)
     {
-      ior = tyndall::ReadChosenCells(
-        this, tyndall::RefractiveIndex, piece.image, "ior", tyndall::Need::Optional, { 1 });
+      ior =
+        tyndall::ReadChosenCells(this, tyndall::RefractiveIndex, piece.image, "ior", tyndall::Need::Optional, { 1 });
     }
   });
   tyndall::LightField light = Timed(this->Seconds, [&] {

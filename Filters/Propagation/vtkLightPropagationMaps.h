@@ -58,10 +58,10 @@ class LastLight;
  *
  * Without lights, environment, SkyColor, FaceRadiance and emission the result is dark, with a warning.
  *
- * With Decomposition BLOCKS rays go from rank to rank (numerics.md, section 4.9). The source is constant in voxels then,
- * so that voxels thicker than about 1 need the whole, or more voxels. Blocks cannot do, beside what no solver can: point,
- * spot and rectangle lights, anisotropic scattering other than with AngularDegree 0, FaceAlbedo, UncollidedDirections,
- * TargetError, WarmStart and the published scheme.
+ * With Decomposition BLOCKS rays go from rank to rank (numerics.md, section 4.9). The source is constant in voxels
+ * then, so that voxels thicker than about 1 need the whole, or more voxels. Blocks cannot do, beside what no solver
+ * can: point, spot and rectangle lights, anisotropic scattering other than with AngularDegree 0, FaceAlbedo,
+ * UncollidedDirections, TargetError, WarmStart and the published scheme.
  *
  * @sa vtkParticipatingMedium vtkLightRig vtkEnvironmentReader vtkMediumRayCaster
  * @par Thanks

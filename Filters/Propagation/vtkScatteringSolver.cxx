@@ -156,10 +156,9 @@ int vtkScatteringSolver::GiveOrSolve(vtkInformation* request, vtkInformationVect
 bool vtkScatteringSolver::WantsBlocks(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) const
 {
-  return this->Decomposition == AUTOMATIC_DECOMPOSITION
-    ? this->NotByAnyBlocks(inputs).empty() &&
+  return this->Decomposition == AUTOMATIC_DECOMPOSITION ? this->NotByAnyBlocks(inputs).empty() &&
       tyndall::NeedsPieces(request, inputs[MEDIUM], outputs, this->BytesOfVoxel())
-    : this->Decomposition == BLOCKS;
+                                                        : this->Decomposition == BLOCKS;
 }
 
 int vtkScatteringSolver::RequestUpdateExtent(
@@ -192,8 +191,8 @@ std::string vtkScatteringSolver::NotInBlocks(const tyndall::PieceOfMedium&, cons
   return {};
 }
 
-tyndall::LightField vtkScatteringSolver::SolvePiece(tyndall::Communicator&, const tyndall::PieceBlocks&,
-  const tyndall::PieceOfMedium&, const tyndall::IlluminationInput&)
+tyndall::LightField vtkScatteringSolver::SolvePiece(
+  tyndall::Communicator&, const tyndall::PieceBlocks&, const tyndall::PieceOfMedium&, const tyndall::IlluminationInput&)
 {
   return {};
 }

@@ -80,8 +80,8 @@ void InterleavedLattice::Begin(const PackedPhotons& packed, int channels)
   for (int c = 0; c < all; ++c)
   {
     Channel channel;
-    channel.lattice =
-      std::make_unique<LatticeChannel>(this->TheDevice, SceneOf(*this->Problem), this->Index, this->Settings, this->Light, c);
+    channel.lattice = std::make_unique<LatticeChannel>(
+      this->TheDevice, SceneOf(*this->Problem), this->Index, this->Settings, this->Light, c);
     const auto power = all == 1 ? brightest - this->StandInEscaped[0].begin() : c;
     channel.from = channels == 1 ? 0 : static_cast<int>(power);
     const double given = this->StandIn[channel.from], escaped = this->StandInEscaped[0][power];

@@ -24,8 +24,7 @@ cl::NDRange WholeBlocks(const std::array<int, 3>& size, int edge)
 }
 }
 
-Lattice::Lattice(
-  Device& device, const LatticeBox& box, const LatticeSettings& settings, const LatticeVoxels& voxels)
+Lattice::Lattice(Device& device, const LatticeBox& box, const LatticeSettings& settings, const LatticeVoxels& voxels)
   : TheDevice(device)
   , Queue(device.Queue())
   , Box(box)

@@ -54,8 +54,8 @@ void LatticeChannel::Shine()
 
 void LatticeChannel::AddTo(LightField& light)
 {
-  LatticeAccount(this->Scene, this->Box, this->Settings, this->Direct, this->Voxels, this->Photons,
-    static_cast<int>(this->Channel))
+  LatticeAccount(
+    this->Scene, this->Box, this->Settings, this->Direct, this->Voxels, this->Photons, static_cast<int>(this->Channel))
     .AddTo(light, this->Fluence);
   EnergyBalance& balance = light.balance;
   const std::size_t c = this->Channel;

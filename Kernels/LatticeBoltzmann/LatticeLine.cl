@@ -1,5 +1,5 @@
-// One line of links, as sweep_lines and the lines of blocks go along it (numerics.md, Eqs. (L7) to (L10)). The host gives
-// what LatticeLink.cl and Numerics/Exact.cl want.
+// One line of links, as sweep_lines and the lines of blocks go along it (numerics.md, Eqs. (L7) to (L10)). The host
+// gives what LatticeLink.cl and Numerics/Exact.cl want.
 #pragma once
 #include "LatticeBoltzmann/LatticeLink.cl"
 #include "Numerics/Exact.cl"
@@ -153,8 +153,7 @@ static Behind pass_voxel(exact straight, exact source, exact arrived, exact back
 static Behind cross_up(Link link, Behind here)
 {
   const exact again = 1 / (1 - here.returns * (1 - link.up));
-  const Behind next = { link.up * here.sends * again,
-    1 - link.down + link.up * link.down * here.returns * again };
+  const Behind next = { link.up * here.sends * again, 1 - link.down + link.up * link.down * here.returns * again };
   return next;
 }
 

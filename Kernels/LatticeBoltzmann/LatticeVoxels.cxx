@@ -63,8 +63,8 @@ double LatticeSquares(int directions)
   return directions == 6 ? 1.0 / 3.0 : 0.5;
 }
 
-LatticeVoxels::LatticeVoxels(const LatticeScene& scene, const Field& ior, const LatticeSettings& settings,
-  const Uncollided& direct, int channel)
+LatticeVoxels::LatticeVoxels(
+  const LatticeScene& scene, const Field& ior, const LatticeSettings& settings, const Uncollided& direct, int channel)
   : Directions(settings.directions)
   , Periodic(settings.periodic)
 {

@@ -70,8 +70,8 @@ SteadyLattice::Values SteadyLattice::Residual(const Values& scaled, const Monito
   for (std::size_t i = 0; i < this->Count; ++i)
   {
     const std::size_t known = this->Box.Known(i);
-    residual[i] = this->Turns(known) *
-      (residual[i] + 0.5 * this->Voxels.source[known] - this->Voxels.squared[known] * scaled[i]);
+    residual[i] =
+      this->Turns(known) * (residual[i] + 0.5 * this->Voxels.source[known] - this->Voxels.squared[known] * scaled[i]);
   }
   return residual;
 }
@@ -136,8 +136,8 @@ std::vector<float> SteadyLattice::Solve(const Monitor& monitor, std::vector<Conv
     Add(scaled, length, direction);
     Add(residual, -length, applied);
     better = this->Preconditioned(residual);
-    const Values sums = this->System.Sum({ SumOfMagnitudes(scaled), SumOfMagnitudes(better),
-      SumOfMagnitudes(direction), SumOfMagnitudes(residual) });
+    const Values sums = this->System.Sum(
+      { SumOfMagnitudes(scaled), SumOfMagnitudes(better), SumOfMagnitudes(direction), SumOfMagnitudes(residual) });
     const double estimate = sums[1] / sums[0], imbalance = sums[3] / power;
     change = length * sums[2] / sums[0];
     this->Note(estimate, change, iteration, rows);

@@ -141,8 +141,8 @@ protected:
       const VoxelBox& block = partition.blocks[communicator.Rank()];
       LatticeMedium part = medium.Part(block);
       part.Attach();
-      const LightField light = SolveLatticeInBlocks(this->GetDevice(), communicator, partition, part.scene.medium,
-        part.Index(), part.scene.light, settings);
+      const LightField light = SolveLatticeInBlocks(
+        this->GetDevice(), communicator, partition, part.scene.medium, part.Index(), part.scene.light, settings);
       const std::lock_guard<std::mutex> lock(guard);
       const std::size_t channels = static_cast<std::size_t>(light.channels);
       if (all.convergence.empty())
@@ -229,8 +229,8 @@ protected:
     return errors;
   }
 
-  void ExpectErrors(const std::string& words,
-    const std::function<void(int rank, LatticeMedium&, LatticeSettings&, Monitor&)>& change)
+  void ExpectErrors(
+    const std::string& words, const std::function<void(int rank, LatticeMedium&, LatticeSettings&, Monitor&)>& change)
   {
     const std::vector<std::string> errors = this->Errors(change);
     for (const std::string& error : errors)
@@ -376,16 +376,15 @@ TEST_F(LatticeBlocks, FailTogether)
 
 TEST_F(LatticeBlocks, SayWhatIsNotCarriedFromRankToRank)
 {
-  ExpectErrors("periodic", [](int, LatticeMedium&, LatticeSettings& settings, Monitor&) { settings.periodic[1] = true; });
-  ExpectErrors("point, spot or rectangle", [](int, LatticeMedium& part, LatticeSettings&, Monitor&) {
-    part.scene.light.lights[0].type = LightType::Point;
-  });
+  ExpectErrors(
+    "periodic", [](int, LatticeMedium&, LatticeSettings& settings, Monitor&) { settings.periodic[1] = true; });
+  ExpectErrors("point, spot or rectangle",
+    [](int, LatticeMedium& part, LatticeSettings&, Monitor&) { part.scene.light.lights[0].type = LightType::Point; });
   ExpectErrors(
     "MaximumOrders", [](int, LatticeMedium&, LatticeSettings& settings, Monitor&) { settings.maximumSteps = 3; });
   ExpectErrors("BlockSize", [](int, LatticeMedium&, LatticeSettings& settings, Monitor&) { settings.blockSize = 4; });
-  ExpectErrors("published Scheme", [](int, LatticeMedium&, LatticeSettings& settings, Monitor&) {
-    settings.scheme = LatticeScheme::Published;
-  });
+  ExpectErrors("published Scheme",
+    [](int, LatticeMedium&, LatticeSettings& settings, Monitor&) { settings.scheme = LatticeScheme::Published; });
   ExpectErrors("all give back all", [](int, LatticeMedium& part, LatticeSettings&, Monitor&) {
     part.scene.light.faceAlbedo.fill({ 1.0, 1.0, 1.0 });
   });

@@ -14,7 +14,7 @@ namespace
 constexpr double Reduction = 0.1;        ///< of the residual, in the norm of the preconditioner
 constexpr double ReductionOfCells = 0.1; ///< the same on cells
 constexpr int MostIterations = 20;
-constexpr double Damping = 0.7; ///< of Jacobi's steps
+constexpr double Damping = 0.7;                                            ///< of Jacobi's steps
 constexpr std::size_t MostCells = std::size_t{ 1 } << 18, LeastVoxels = 8; ///< of a cell, where there are as many
 
 /// Every axis of more than one voxel, and the longest ones until cells are few enough.
@@ -32,9 +32,7 @@ std::array<int, 3> HalvingsFor(const Grid& grid)
       halve(axis);
     }
   }
-  const auto all = [](const std::array<int, 3>& of) {
-    return std::size_t{ 1 } * of[0] * of[1] * of[2];
-  };
+  const auto all = [](const std::array<int, 3>& of) { return std::size_t{ 1 } * of[0] * of[1] * of[2]; };
   while ((1 << (halvings[0] + halvings[1] + halvings[2]) < static_cast<int>(LeastVoxels) || all(cells) > MostCells) &&
     all(cells) > 1)
   {
@@ -100,7 +98,8 @@ void DiffusionInBlocks::LoadVoxels(const LatticeSettings& settings, const Lattic
   }
 }
 
-/// The matrix on cells, as that of a coarser level of multigrid: centres lie farther apart by as much as axes are halved.
+/// The matrix on cells, as that of a coarser level of multigrid: centres lie farther apart by as much as axes are
+/// halved.
 void DiffusionInBlocks::LoadCells()
 {
   std::array<double, 3> edges = {};

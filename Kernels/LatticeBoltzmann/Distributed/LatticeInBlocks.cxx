@@ -149,9 +149,9 @@ private:
   {
     const bool has = this->Box.Count() > 0;
     const auto ends = std::minmax_element(voxels.squared.begin(), voxels.squared.end());
-    const std::vector<double> all = this->Others.Largest({ voxels.passesAll ? 0.0 : 1.0,
-      has ? static_cast<double>(*ends.second) : 0.0, has ? 1.0 / static_cast<double>(*ends.first) : 0.0,
-      voxels.thickest });
+    const std::vector<double> all =
+      this->Others.Largest({ voxels.passesAll ? 0.0 : 1.0, has ? static_cast<double>(*ends.second) : 0.0,
+        has ? 1.0 / static_cast<double>(*ends.first) : 0.0, voxels.thickest });
     voxels.passesAll = all[0] == 0.0;
     voxels.bends = static_cast<float>(all[1]) != static_cast<float>(1.0 / all[2]);
     voxels.thickest = all[3];

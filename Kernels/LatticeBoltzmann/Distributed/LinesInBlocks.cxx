@@ -49,8 +49,8 @@ void CheckOrder(const BlockPartition& partition, int pair)
         [&](std::size_t other) { return Entered(partition, pair, other, block).VoxelCount() > 0; });
     };
     const auto end = std::stable_partition(left.begin(), left.end(), waits);
-    Require(end != left.end(),
-      "Blocks of ranks wait for each other's light: cut the grid by planes, one after the other.");
+    Require(
+      end != left.end(), "Blocks of ranks wait for each other's light: cut the grid by planes, one after the other.");
     left.erase(end, left.end());
   }
 }
@@ -165,9 +165,9 @@ void LinesInBlocks::Load()
   const auto values = [&](std::size_t number) { return ExactValues(this->TheDevice, number, what); };
   for (int slot = 0; slot < std::min<int>(PairsAtOnce, static_cast<int>(this->Pairs.size())); ++slot)
   {
-    this->Slots.push_back({ values(2 * count), values(SaysOfLast * this->MostLines),
-      values(SaysOfLast * this->MostLines), values(SaysOfFirst * this->MostLines),
-      values(SaysOfFirst * this->MostLines) });
+    this->Slots.push_back(
+      { values(2 * count), values(SaysOfLast * this->MostLines), values(SaysOfLast * this->MostLines),
+        values(SaysOfFirst * this->MostLines), values(SaysOfFirst * this->MostLines) });
   }
 }
 

@@ -16,9 +16,9 @@
 
 namespace tyndall
 {
-/// Lines of links through a grid whose blocks lie on several ranks: each follows its part of them up, when it knows what
-/// comes from the blocks before, and down, when it knows what comes from those behind (numerics.md, section 10 c). The
-/// same sums as in one memory, to rounding; three pairs of directions are under way at a time.
+/// Lines of links through a grid whose blocks lie on several ranks: each follows its part of them up, when it knows
+/// what comes from the blocks before, and down, when it knows what comes from those behind (numerics.md, section 10 c).
+/// The same sums as in one memory, to rounding; three pairs of directions are under way at a time.
 class LinesInBlocks
 {
 public:
@@ -30,8 +30,7 @@ public:
 
   /// As SteadySystem has it, of the rank's own voxels. All ranks call it.
   /// @throws on every rank what any of them throws
-  SteadySystem::Values Sweep(
-    const SteadySystem::Values& even, double shines, bool writes, const Monitor& monitor);
+  SteadySystem::Values Sweep(const SteadySystem::Values& even, double shines, bool writes, const Monitor& monitor);
 
 private:
   using Values = std::vector<double>;
