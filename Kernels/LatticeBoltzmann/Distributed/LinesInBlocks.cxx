@@ -220,6 +220,17 @@ void LinesInBlocks::GiveTo(const std::vector<Contact>& contacts, int tag, int va
   }
 }
 
+/// With its first arguments, up to `shines`.
+cl::Kernel LinesInBlocks::Kernel(const char* name, int pair, double shines) const
+{
+  cl::Kernel lines = this->TheDevice.Kernel(
+    name, kernel_source::BlockLines, OptionsOfLines(this->TheDevice, this->Settings, this->Voxels));
+  With(lines, this->Densities->Info(), this->Straight.Handle(), this->Passes, this->Squared, this->Even.Handle(),
+    cl_int(pair));
+  SetExact(this->TheDevice, lines, 6, shines);
+  return lines;
+}
+
 void LinesInBlocks::Run(cl::Kernel& kernel, int pair)
 {
   const std::array<std::size_t, 2>& range = this->Pairs[pair].range;
@@ -234,11 +245,7 @@ void LinesInBlocks::GoUp(int pair, Slot& slot, double shines)
   Values last;
   this->Attempt([&] {
     slot.before.Write(before);
-    cl::Kernel up = this->TheDevice.Kernel(
-      "lines_up", kernel_source::BlockLines, OptionsOfLines(this->TheDevice, this->Settings, this->Voxels));
-    With(up, this->Densities->Info(), this->Straight.Handle(), this->Passes, this->Squared, this->Even.Handle(),
-      cl_int(pair));
-    SetExact(this->TheDevice, up, 6, shines);
+    cl::Kernel up = this->Kernel("lines_up", pair, shines);
     SetFrom(up, 7, slot.before.Handle(), slot.behind.Handle(), slot.last.Handle());
     this->Run(up, pair);
     last = slot.last.Read();
@@ -253,11 +260,7 @@ void LinesInBlocks::GoDown(int pair, Slot& slot, double shines, bool writes)
   Values first;
   this->Attempt([&] {
     slot.after.Write(after);
-    cl::Kernel down = this->TheDevice.Kernel(
-      "lines_down", kernel_source::BlockLines, OptionsOfLines(this->TheDevice, this->Settings, this->Voxels));
-    With(down, this->Densities->Info(), this->Straight.Handle(), this->Passes, this->Squared, this->Even.Handle(),
-      cl_int(pair));
-    SetExact(this->TheDevice, down, 6, shines);
+    cl::Kernel down = this->Kernel("lines_down", pair, shines);
     SetFrom(down, 7, slot.before.Handle(), slot.behind.Handle(), slot.after.Handle(), slot.first.Handle(),
       this->Arriving.Handle(), this->Densities->Densities(), cl_int(writes));
     this->Run(down, pair);

@@ -57,6 +57,7 @@ private:
   void GiveTo(const std::vector<Contact>& contacts, int tag, int values, const Values& ofLines);
   void GoUp(int pair, Slot& slot, double shines);
   void GoDown(int pair, Slot& slot, double shines, bool writes);
+  cl::Kernel Kernel(const char* name, int pair, double shines) const;
   void Run(cl::Kernel& kernel, int pair);
 
   Device& TheDevice;
