@@ -186,17 +186,6 @@ std::string vtkScatteringSolver::NotByAnyBlocks(vtkInformationVector** inputs) c
   return !ofSolver.empty() || found == std::end(reasons) ? ofSolver : found->second;
 }
 
-std::string vtkScatteringSolver::NotInBlocks(const tyndall::PieceOfMedium&, const tyndall::IlluminationInput&)
-{
-  return {};
-}
-
-tyndall::LightField vtkScatteringSolver::SolvePiece(
-  tyndall::Communicator&, const tyndall::PieceBlocks&, const tyndall::PieceOfMedium&, const tyndall::IlluminationInput&)
-{
-  return {};
-}
-
 /// @return false, on all ranks, where each is to solve the whole
 bool vtkScatteringSolver::GiveOrSolvePiece(vtkInformation* request, vtkMultiProcessController* ranks,
   vtkInformationVector** inputs, vtkInformationVector* outputs)

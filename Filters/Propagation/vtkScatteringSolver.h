@@ -182,11 +182,11 @@ protected:
   /// for an error; empty: nothing does.
   virtual std::string NotByBlocks(vtkInformationVector** inputs) const = 0;
   /// The same of a scene that was read.
-  virtual std::string NotInBlocks(const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining);
+  virtual std::string NotInBlocks(const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining) = 0;
   /// Solves this rank's piece. All ranks call it; none has been refused.
   /// @return the light of the rank's own voxels
   virtual tyndall::LightField SolvePiece(tyndall::Communicator& communicator, const tyndall::PieceBlocks& pieces,
-    const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining);
+    const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining) = 0;
 
   /// Last in RequestData: solved light on output 0 beside the arrays of the medium, its convergence on
   /// output 1; then a warning of each doubt. Kept for GiveOrSolve.

@@ -270,6 +270,31 @@ def lattice_uneven():
     own_pieces("lattice_uneven", uneven_pieces(), solve=lattice_by_blocks)
 
 
+def by_ordinates(density, array, **settings):
+    medium = ParticipatingMedium(Input=density, DensityArray=array, ExtinctionScale=0.5, MinimumDensity=0, MaximumDensity=1,
+                                 Albedo=[0.9, 0.8, 0.7], MeanCosine=0.5)
+    light = DiscreteOrdinates(Input=medium, Lights=LightRig(SunElevation=50), SkyColor=[0.1, 0.1, 0.2], NetFlux=1,
+                              DirectionsPerFace=9, Terms=16, **settings)
+    light.UpdatePipeline()
+    return light
+
+
+def ordinates_by_blocks(density, array):
+    return by_blocks(density, array, solve=by_ordinates)
+
+
+def ordinates_even():
+    own_pieces("ordinates_even", [piece_of(extent) for extent in parts(even_cuts())], solve=ordinates_by_blocks)
+
+
+def ordinates_uneven():
+    own_pieces("ordinates_uneven", uneven_pieces(), solve=ordinates_by_blocks)
+
+
+def ordinates_whole():
+    own_pieces("ordinates_whole", [piece_of([0, 12, 0, 5, 0, 4])], solve=by_ordinates)
+
+
 def lattice_errors():
     """What a lattice cannot do by pieces is one error that names it; where ranks decide by themselves they solve the whole."""
     medium = ParticipatingMedium(Input=Wavelet(WholeExtent=SIZE), DensityArray=["POINTS", "RTData"])
