@@ -4,10 +4,13 @@
 #include "Common/LightTransportData.h"
 #include "Device/Device.h"
 #include "DiscreteOrdinates/DiscreteOrdinates.h"
+#include "DiscreteOrdinates/Distributed/OrdinatesInBlocks.h"
 #include "DiscreteOrdinates/OrdinatesQuality.h"
+#include "Ranks/PieceBlocks.h"
 #include "Work/GuardedWork.h"
 
 #include "Propagation/LastLight.h"
+#include "Propagation/PieceOfMedium.h"
 #include "Propagation/PreviewLight.h"
 
 #include "vtkDataObject.h"
@@ -21,8 +24,8 @@
 
 namespace
 {
-tyndall::OrdinatesSettings SettingsOf(
-  vtkDiscreteOrdinates* filter, const tyndall::Medium& medium, const tyndall::Device& device)
+/// As the properties stand.
+tyndall::OrdinatesSettings GivenSettings(vtkDiscreteOrdinates* filter)
 {
   tyndall::OrdinatesSettings settings;
   settings.scheme = static_cast<tyndall::OrdinatesScheme>(filter->GetScheme());
@@ -35,6 +38,13 @@ tyndall::OrdinatesSettings SettingsOf(
   settings.periodic = { filter->GetPeriodicX(), filter->GetPeriodicY(), filter->GetPeriodicZ() };
   settings.netFlux = filter->GetNetFlux();
   settings.leaveOut = filter->GetLeaveOut();
+  return settings;
+}
+
+tyndall::OrdinatesSettings SettingsOf(
+  vtkDiscreteOrdinates* filter, const tyndall::Medium& medium, const tyndall::Device& device)
+{
+  tyndall::OrdinatesSettings settings = GivenSettings(filter);
   if (filter->GetPreview())
   {
     settings.directionsPerFace = std::min(settings.directionsPerFace, tyndall::PreviewDirections);
@@ -66,11 +76,39 @@ vtkDiscreteOrdinates::vtkDiscreteOrdinates()
 
 vtkDiscreteOrdinates::~vtkDiscreteOrdinates() = default;
 
+double vtkDiscreteOrdinates::BytesOfVoxel() const
+{
+  return 64.0 + 2.0 * sizeof(float) * 6.0 * this->DirectionsPerFace;
+}
+
+std::string vtkDiscreteOrdinates::NotByBlocks(vtkInformationVector**) const
+{
+  return this->WarmStart ? "WarmStart" : "";
+}
+
+std::string vtkDiscreteOrdinates::NotInBlocks(
+  const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining)
+{
+  return tyndall::NotInBlocks(piece.medium, shining.illumination, GivenSettings(this));
+}
+
+tyndall::LightField vtkDiscreteOrdinates::SolvePiece(tyndall::Communicator& communicator,
+  const tyndall::PieceBlocks& pieces, const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining)
+{
+  this->Last->Where(false);
+  std::shared_ptr<tyndall::Device> device;
+  communicator.Together([&] { device = tyndall::Device::Find(this->GetDevice()); });
+  const tyndall::OrdinatesSettings settings = GivenSettings(this);
+  tyndall::LightField light = tyndall::SolveOrdinatesInBlocks(
+    *device, communicator, pieces.Partition(), piece.medium, shining.illumination, settings, tyndall::MonitorOf(this));
+  light.settingsUsed = tyndall::Words(settings);
+  return light;
+}
+
 int vtkDiscreteOrdinates::RequestData(
   vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs)
 {
-  const auto forget = [this] { this->Note({}); };
-  return this->GiveOrSolve(request, given, outputs, forget, [&](vtkInformationVector** inputs) {
+  return this->GiveOrSolve(request, given, outputs, [&](vtkInformationVector** inputs) {
     vtkImageData* image = vtkImageData::GetData(inputs[MEDIUM]);
     const tyndall::MediumInput input = tyndall::ReadMedium(this, image);
     const bool emits = input.Emits();

@@ -53,6 +53,10 @@ class LastLight;
  * Orders are not accelerated: for thick media that absorb little, vtkLightPropagationMaps is faster. The radiance of
  * all directions has to fit the device: what it takes is said before any is taken. EstimateError is not used.
  *
+ * With Decomposition BLOCKS radiance goes from rank to rank (numerics.md, section 10 b): the same light, order by
+ * order. Blocks cannot do, beside what no solver can: point, spot and rectangle lights, FaceAlbedo, cells g, WarmStart
+ * and the published scheme.
+ *
  * @sa vtkSeparablePhaseFunction vtkLightPropagationMaps vtkParticipatingMedium vtkLightRig
  * @par Thanks
  * Z. Gong, Z. Ren, Z. Wang, Q. Peng: Interactive Rendering of Multiple Scattering in Participating Media Using
@@ -161,12 +165,16 @@ protected:
   ~vtkDiscreteOrdinates() override;
 
   int RequestData(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+  void Note(const tyndall::LightField& light) override;
+  double BytesOfVoxel() const override;
+  std::string NotByBlocks(vtkInformationVector** inputs) const override;
+  std::string NotInBlocks(const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining) override;
+  tyndall::LightField SolvePiece(tyndall::Communicator& communicator, const tyndall::PieceBlocks& pieces,
+    const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining) override;
 
 private:
   vtkDiscreteOrdinates(const vtkDiscreteOrdinates&) = delete;
   void operator=(const vtkDiscreteOrdinates&) = delete;
-
-  void Note(const tyndall::LightField& light);
 
   int Scheme = CONSERVATIVE;
   int Scattering = SPHERICAL_HARMONICS;

@@ -4,11 +4,14 @@
 #include "Common/LightTransportData.h"
 #include "Device/Clock.h"
 #include "Device/Device.h"
+#include "LatticeBoltzmann/Distributed/LatticeInBlocks.h"
 #include "LatticeBoltzmann/LatticeBoltzmann.h"
 #include "LatticeBoltzmann/LatticeQuality.h"
 #include "Medium/Coarsening.h"
 #include "Photons/PhotonData.h"
+#include "Propagation/PieceOfMedium.h"
 #include "Propagation/PreviewLight.h"
+#include "Ranks/PieceBlocks.h"
 #include "Work/GuardedWork.h"
 
 #include "vtkDataObject.h"
@@ -182,14 +185,48 @@ tyndall::LightField vtkLatticeBoltzmannLighting::Solve(vtkInformationVector** in
   return light;
 }
 
+double vtkLatticeBoltzmannLighting::BytesOfVoxel() const
+{
+  return 128.0 + 2.0 * sizeof(float) * this->Lattice;
+}
+
+std::string vtkLatticeBoltzmannLighting::NotByBlocks(vtkInformationVector** inputs) const
+{
+  return inputs[PHOTONS]->GetNumberOfInformationObjects() > 0 ? "Photons" : "";
+}
+
+std::string vtkLatticeBoltzmannLighting::NotInBlocks(
+  const tyndall::PieceOfMedium&, const tyndall::IlluminationInput& shining)
+{
+  return tyndall::NotInBlocks(shining.illumination, SettingsOf(this));
+}
+
+tyndall::LightField vtkLatticeBoltzmannLighting::SolvePiece(tyndall::Communicator& communicator,
+  const tyndall::PieceBlocks& pieces, const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining)
+{
+  const tyndall::LatticeSettings settings = SettingsOf(this);
+  tyndall::FloatField ior;
+  std::shared_ptr<tyndall::Device> device;
+  communicator.Together([&] {
+    device = tyndall::Device::Find(this->GetDevice());
+    if (piece.image)
+    {
+      ior =
+        tyndall::ReadChosenCells(this, tyndall::RefractiveIndex, piece.image, "ior", tyndall::Need::Optional, { 1 });
+    }
+  });
+  tyndall::LightField light = Timed(this->Seconds, [&] {
+    return tyndall::SolveLatticeInBlocks(*device, communicator, pieces.Partition(), piece.medium, ior,
+      shining.illumination, settings, tyndall::MonitorOf(this));
+  });
+  light.settingsUsed = tyndall::Words(settings);
+  return light;
+}
+
 int vtkLatticeBoltzmannLighting::RequestData(
   vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs)
 {
-  const auto forget = [this] {
-    this->Note({});
-    this->Seconds = 0.0;
-  };
-  return this->GiveOrSolve(request, given, outputs, forget, [&](vtkInformationVector** inputs) {
+  return this->GiveOrSolve(request, given, outputs, [&](vtkInformationVector** inputs) {
     tyndall::LightField light = this->Solve(inputs);
     light.settingsUsed = tyndall::Words(SettingsOf(this));
     this->Note(light);
@@ -206,6 +243,7 @@ void vtkLatticeBoltzmannLighting::Note(const tyndall::LightField& light)
   this->DeviceName = light.device;
   this->LeftOut = tyndall::Lines(light.leftOut);
   this->SettingsUsed = tyndall::Lines(light.settingsUsed);
+  this->Seconds = any ? this->Seconds : 0.0;
 }
 
 void vtkLatticeBoltzmannLighting::PrintSelf(ostream& os, vtkIndent indent)

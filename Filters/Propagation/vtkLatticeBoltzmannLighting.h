@@ -56,6 +56,10 @@ struct MediumInput;
  * +x, -y, +y, -z, +z), `left_out` (what the scene did not need), `device`, `stored_directions`.
  * Output 1: vtkTable, one row an iteration (of steps: every 16 or so): `iteration`, `seconds`, `residual`, `change`.
  *
+ * With Decomposition BLOCKS lines of links go on from rank to rank (numerics.md, section 10 c). Blocks do what the
+ * conservative scheme's steady light does, refraction and FaceAlbedo included, but, beside what no solver can do by
+ * blocks, not point, spot and rectangle lights, Photons, BlockSize and MaximumOrders.
+ *
  * EstimateError is not used.
  *
  * @sa vtkLightPropagationMaps vtkDiscreteOrdinates vtkPhotonMarcher vtkParticipatingMedium vtkLightRig
@@ -166,12 +170,17 @@ protected:
 
   int FillInputPortInformation(int port, vtkInformation* information) override;
   int RequestData(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+  void Note(const tyndall::LightField& light) override;
+  double BytesOfVoxel() const override;
+  std::string NotByBlocks(vtkInformationVector** inputs) const override;
+  std::string NotInBlocks(const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining) override;
+  tyndall::LightField SolvePiece(tyndall::Communicator& communicator, const tyndall::PieceBlocks& pieces,
+    const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining) override;
 
 private:
   vtkLatticeBoltzmannLighting(const vtkLatticeBoltzmannLighting&) = delete;
   void operator=(const vtkLatticeBoltzmannLighting&) = delete;
 
-  void Note(const tyndall::LightField& light);
   tyndall::LightField Solve(vtkInformationVector** inputs);
   tyndall::LightField SolveWithPhotons(
     vtkInformationVector** inputs, const tyndall::MediumInput& input, const tyndall::FloatField& ior);

@@ -12,12 +12,10 @@
 #include "LightPropagation/Published/ParallelPropagation.h"
 #include "LightPropagation/Published/SequentialPropagation.h"
 #include "Ranks/PieceBlocks.h"
-#include "Ranks/RankMemory.h"
-#include "Ranks/Ranks.h"
-#include "Ranks/WholeImage.h"
 #include "Work/GuardedWork.h"
 
 #include "Propagation/LastLight.h"
+#include "Propagation/PieceOfMedium.h"
 #include "Propagation/PreviewLight.h"
 
 #include "vtkDataObject.h"
@@ -25,12 +23,10 @@
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkObjectFactory.h"
-#include "vtkSmartPointer.h"
 
 #include <algorithm>
 #include <iterator>
 #include <memory>
-#include <optional>
 #include <string>
 #include <utility>
 
@@ -89,33 +85,6 @@ tyndall::LightField SolveToTarget(vtkLightPropagationMaps* filter, const tyndall
   found.light.secondsOfAll = found.seconds;
   return std::move(found.light);
 }
-
-/// Of a rank that solves the whole: the medium's arrays, the solver's, and those of the light, of one channel.
-constexpr double BytesOfVoxel = 64.0;
-
-/// The medium of a rank's block.
-struct PieceOfMedium
-{
-  /// All ranks make one together.
-  PieceOfMedium(
-    tyndall::Communicator& communicator, const tyndall::PieceBlocks& pieces, vtkAlgorithm* filter, vtkImageData* given)
-  {
-    communicator.Together([&] {
-      if (pieces.HasOwn())
-      {
-        this->image = pieces.OwnImage(given);
-        this->input = tyndall::ReadMedium(filter, this->image);
-        this->medium = this->input.medium;
-      }
-    });
-    this->emits = communicator.Largest({ pieces.HasOwn() && this->input.Emits() ? 1.0 : 0.0 })[0] > 0.0;
-  }
-
-  vtkSmartPointer<vtkImageData> image; ///< whose arrays the medium has
-  tyndall::MediumInput input;
-  tyndall::Medium medium; ///< empty where the block is
-  bool emits = false;     ///< the medium of any rank
-};
 
 tyndall::PropagationSettings OfPreview(tyndall::PropagationSettings settings)
 {
@@ -194,100 +163,45 @@ vtkLightPropagationMaps::vtkLightPropagationMaps()
 
 vtkLightPropagationMaps::~vtkLightPropagationMaps() = default;
 
-/// Without WHOLE, whether this rank would have each solve its piece; ranks may differ in it.
-bool vtkLightPropagationMaps::WantsBlocks(
-  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) const
+double vtkLightPropagationMaps::BytesOfVoxel() const
 {
-  if (this->Decomposition != AUTOMATIC_DECOMPOSITION)
-  {
-    return this->Decomposition == BLOCKS;
-  }
-  return tyndall::NeedsPieces(request, inputs[MEDIUM], outputs, BytesOfVoxel);
+  return 64.0;
 }
 
-int vtkLightPropagationMaps::RequestUpdateExtent(
-  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
-{
-  const bool asPiece = tyndall::EachAsksForItsPiece(request, outputs) && this->WantsBlocks(request, inputs, outputs);
-  tyndall::AskForAllBut(asPiece ? MEDIUM : -1, request, inputs, this->GetNumberOfInputPorts(), outputs);
-  return 1;
-}
-
-/// What among properties and inputs keeps ranks from solving their pieces, in words; empty: nothing does.
-std::string vtkLightPropagationMaps::NotByBlocks(vtkInformationVector** inputs) const
+std::string vtkLightPropagationMaps::NotByBlocks(vtkInformationVector**) const
 {
   const std::pair<bool, const char*> reasons[] = {
     { this->Scheme == PUBLISHED, "the published Scheme" },
-    { this->Quality != USUAL, "a Quality that chooses settings from the whole medium" },
-    { this->Preview, "Preview" },
-    { this->EstimateError, "EstimateError" },
     { this->TargetError > 0.0, "TargetError" },
     { this->WarmStart, "WarmStart" },
-    { this->MemoryBudget > 0, "MemoryBudget" },
-    { this->LitColor, "LitColor" },
-    { inputs[UNCOLLIDED]->GetNumberOfInformationObjects() > 0, "UncollidedLight" },
   };
   const auto found =
     std::find_if(std::begin(reasons), std::end(reasons), [](const auto& reason) { return reason.first; });
   return found == std::end(reasons) ? std::string() : found->second;
 }
 
-/// @return false, on all ranks, where each is to solve the whole
-bool vtkLightPropagationMaps::SolvePiece(vtkInformation* request, vtkMultiProcessController* ranks,
-  vtkInformationVector** inputs, vtkInformationVector* outputs)
+std::string vtkLightPropagationMaps::NotInBlocks(
+  const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining)
 {
-  vtkImageData* const image = vtkImageData::GetData(inputs[MEDIUM]);
-  const std::optional<tyndall::AgreedBlocks> agreed = tyndall::AgreeOnBlocks(
-    ranks, this, this->WantsBlocks(request, inputs, outputs), tyndall::AskingPort(request, outputs), image);
-  if (!agreed)
-  {
-    return false;
-  }
-  tyndall::Communicator* const communicator = agreed->communicator.get();
-  const tyndall::PieceBlocks& pieces = *agreed->pieces;
-  if (this->GivePiece(*communicator, pieces, inputs, outputs))
-  {
-    return true;
-  }
-  this->Note({});
-  const PieceOfMedium piece(*communicator, pieces, this, image);
-  tyndall::IlluminationInput shining;
-  std::string refused;
-  communicator->Together([&] {
-    refused = this->NotByBlocks(inputs);
-    shining = this->ReadAllIllumination(inputs, piece.emits);
-    const std::string ofScene = tyndall::NotInBlocks(piece.medium, shining.illumination, SettingsOf(this));
-    refused = refused.empty() ? ofScene : refused;
-    tyndall::Require(refused.empty() || this->Decomposition != BLOCKS,
-      "Ranks cannot solve their pieces (Decomposition: blocks) with " + refused +
-        ". Leave it out, or let each rank solve the whole.");
-  });
-  if (communicator->Largest({ refused.empty() ? 0.0 : 1.0 })[0] > 0.0)
-  {
-    return false;
-  }
+  return tyndall::NotInBlocks(piece.medium, shining.illumination, SettingsOf(this));
+}
+
+tyndall::LightField vtkLightPropagationMaps::SolvePiece(tyndall::Communicator& communicator,
+  const tyndall::PieceBlocks& pieces, const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining)
+{
   this->Last->Where(false);
-  this->WarnWhereDark(shining.illumination, piece.emits);
   std::shared_ptr<tyndall::Device> device;
-  communicator->Together([&] { device = tyndall::Device::Find(this->GetDevice()); });
-  tyndall::LightField light = tyndall::SolveInBlocks(*device, *communicator, pieces.Partition(), piece.medium,
+  communicator.Together([&] { device = tyndall::Device::Find(this->GetDevice()); });
+  tyndall::LightField light = tyndall::SolveInBlocks(*device, communicator, pieces.Partition(), piece.medium,
     shining.illumination, SettingsOf(this), tyndall::MonitorOf(this));
   light.settingsUsed = tyndall::Words(SettingsOf(this));
-  TellOfDefaultSky(shining, light.leftOut);
-  this->Note(light);
-  this->WritePiece(*communicator, pieces, std::move(light), inputs, outputs);
-  return true;
+  return light;
 }
 
 int vtkLightPropagationMaps::RequestData(
   vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs)
 {
-  const auto forget = [this] { this->Note({}); };
-  const tyndall::WorkOnPieces onPieces = { MEDIUM,
-    [&](vtkMultiProcessController* ranks, vtkInformationVector** inputs) {
-      return this->SolvePiece(request, ranks, inputs, outputs);
-    } };
-  return this->GiveOrSolve(request, given, outputs, forget, onPieces, [&](vtkInformationVector** inputs) {
+  return this->GiveOrSolve(request, given, outputs, [&](vtkInformationVector** inputs) {
     vtkImageData* image = vtkImageData::GetData(inputs[MEDIUM]);
     const tyndall::MediumInput input = tyndall::ReadMedium(this, image);
     const bool emits = input.Emits();
@@ -326,7 +240,6 @@ void vtkLightPropagationMaps::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Algorithm: " << (this->Algorithm == SEQUENTIAL ? "sequential" : "parallel") << "\n";
   os << indent << "Source: " << this->Source << "\n";
   os << indent << "Acceleration: " << this->Acceleration << "\n";
-  os << indent << "Decomposition: " << this->Decomposition << "\n";
   os << indent << "DirectionsPerFace: " << this->DirectionsPerFace << "\n";
   os << indent << "UncollidedDirections: " << this->UncollidedDirections << "\n";
   os << indent << "AngularDegree: " << this->AngularDegree << "\n";

@@ -8,12 +8,9 @@
 #include <memory>
 #include <string>
 
-class vtkMultiProcessController;
-
 namespace tyndall
 {
 class LastLight;
-struct LightField;
 }
 
 /**
@@ -61,8 +58,11 @@ struct LightField;
  *
  * Without lights, environment, SkyColor, FaceRadiance and emission the result is dark, with a warning.
  *
- * In a parallel pipeline light crosses the borders of pieces: every rank asks for the whole extent and solves it, and
- * hands on the piece it was asked for; or, with Decomposition, solves its piece, and rays go from rank to rank.
+ * With Decomposition BLOCKS rays go from rank to rank (numerics.md, section 4.9). Orders are accelerated as in the whole
+ * where scattering is isotropic, axes are open and faces dark; where they are added up one by one the source is constant
+ * in voxels, so that voxels thicker than about 1 need the whole, or more voxels. Blocks cannot do, beside what no solver
+ * can: point, spot and rectangle lights beside a periodic axis, Source OCTANTS, LINEAR where orders are not accelerated,
+ * TargetError, WarmStart and the published scheme. UncollidedDirections are as many as are asked for, with -1 none.
  *
  * @sa vtkParticipatingMedium vtkLightRig vtkEnvironmentReader vtkMediumRayCaster
  * @par Thanks
@@ -97,33 +97,11 @@ public:
     AUTOMATIC_ACCELERATION = 1 ///< a diffusion system between sweeps where orders would be many
   };
 
-  enum Decompositions
-  {
-    AUTOMATIC_DECOMPOSITION = 0, ///< into blocks where the whole does not fit in each rank's memory
-    WHOLE = 1,                   ///< none: each rank solves the whole
-    BLOCKS = 2                   ///< each rank solves its piece
-  };
-
   enum Algorithms
   {
     SEQUENTIAL = 0, ///< Algorithm 1: one ray after the other, on one core of the host
     PARALLEL = 1    ///< Algorithm 2: propagation and collection on the device
   };
-
-  ///@{
-  /// What each of several ranks of MPI solves. With WHOLE all of the medium, which each then holds. With BLOCKS its
-  /// piece: rays are handed on from rank to rank (numerics.md, section 4.9), and no rank holds another's voxels; one
-  /// rank alone solves the same way then, so that light does not depend on their number, but for rounding. Orders
-  /// are accelerated as in the whole where scattering is isotropic, axes are open and faces dark; where they are added up
-  /// one by one the source is constant in voxels, so that voxels thicker than about 1 need the whole, or more voxels.
-  /// An error names what blocks cannot do: point, spot and rectangle lights beside a periodic axis, Source OCTANTS, LINEAR
-  /// where orders are not accelerated, UncollidedLight, a Quality other than USUAL, Preview,
-  /// EstimateError, TargetError, WarmStart, MemoryBudget, LitColor and the published scheme. AUTOMATIC_DECOMPOSITION
-  /// (default): BLOCKS where the arrays of the whole, once for each rank of a machine, are more than the memory that it
-  /// has available, and the scene can be solved so; else WHOLE.
-  tyndallSetRangeMacro(Decomposition, int, AUTOMATIC_DECOMPOSITION, BLOCKS);
-  vtkGetMacro(Decomposition, int);
-  ///@}
 
   ///@{
   /// How to compute: PUBLISHED, or CONSERVATIVE (default).
@@ -278,25 +256,22 @@ protected:
   vtkLightPropagationMaps();
   ~vtkLightPropagationMaps() override;
 
-  int RequestUpdateExtent(
-    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
   int RequestData(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+  void Note(const tyndall::LightField& light) override;
+  double BytesOfVoxel() const override;
+  std::string NotByBlocks(vtkInformationVector** inputs) const override;
+  std::string NotInBlocks(const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining) override;
+  tyndall::LightField SolvePiece(tyndall::Communicator& communicator, const tyndall::PieceBlocks& pieces,
+    const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining) override;
 
 private:
   vtkLightPropagationMaps(const vtkLightPropagationMaps&) = delete;
   void operator=(const vtkLightPropagationMaps&) = delete;
 
-  void Note(const tyndall::LightField& light);
-  bool WantsBlocks(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) const;
-  std::string NotByBlocks(vtkInformationVector** inputs) const;
-  bool SolvePiece(vtkInformation* request, vtkMultiProcessController* ranks, vtkInformationVector** inputs,
-    vtkInformationVector* outputs);
-
   int Scheme = CONSERVATIVE;
   int Algorithm = PARALLEL;
   int Source = AUTOMATIC_SOURCE;
   int Acceleration = AUTOMATIC_ACCELERATION;
-  int Decomposition = AUTOMATIC_DECOMPOSITION;
   int DirectionsPerFace;
   int UncollidedDirections;
   int AngularDegree;

@@ -1,8 +1,13 @@
 #include "vtkScatteringSolver.h"
 
 #include "Common/LightTransportData.h"
+#include "Device/Errors.h"
+#include "Lights/Lights.h"
 #include "Propagation/LastOutputs.h"
+#include "Propagation/PieceOfMedium.h"
 #include "Ranks/PieceBlocks.h"
+#include "Ranks/RankMemory.h"
+#include "Ranks/Ranks.h"
 #include "Ranks/WholeImage.h"
 #include "Viewing/LitColor.h"
 #include "Work/GuardedWork.h"
@@ -15,6 +20,8 @@
 #include "vtkTable.h"
 
 #include <algorithm>
+#include <iterator>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -123,33 +130,106 @@ vtkMTimeType vtkScatteringSolver::GetMTime()
 }
 
 int vtkScatteringSolver::GiveOrSolve(vtkInformation* request, vtkInformationVector** given,
-  vtkInformationVector* outputs, const std::function<void()>& forget,
-  const std::function<void(vtkInformationVector** inputs)>& solve)
+  vtkInformationVector* outputs, const std::function<void(vtkInformationVector** inputs)>& solve)
 {
-  const auto never = [](vtkMultiProcessController*, vtkInformationVector**) { return false; };
-  return this->GiveOrSolve(request, given, outputs, forget, { MEDIUM, never }, solve);
-}
-
-int vtkScatteringSolver::GiveOrSolve(vtkInformation* request, vtkInformationVector** given,
-  vtkInformationVector* outputs, const std::function<void()>& forget, const tyndall::WorkOnPieces& onPieces,
-  const std::function<void(vtkInformationVector** inputs)>& solve)
-{
+  const tyndall::WorkOnPieces onPieces = { MEDIUM,
+    [&](vtkMultiProcessController* ranks, vtkInformationVector** inputs) {
+      return this->GiveOrSolvePiece(request, ranks, inputs, outputs);
+    } };
   const int done = tyndall::Guarded(this, request, given, outputs, onPieces, [&](vtkInformationVector** inputs) {
     if (this->Solved->GiveBack(this->Superclass::GetMTime(), inputs, this->GetNumberOfInputPorts(), outputs))
     {
       this->HandOn(inputs, outputs);
       return;
     }
-    forget();
+    this->Note({});
     solve(inputs);
   });
   if (tyndall::AreEmptied(outputs))
   {
-    forget();
+    this->Note({});
   }
   return done;
 }
 
+/// Without WHOLE, whether this rank would have each solve its piece; ranks may differ in it.
+bool vtkScatteringSolver::WantsBlocks(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) const
+{
+  return this->Decomposition == AUTOMATIC_DECOMPOSITION ? this->NotByAnyBlocks(inputs).empty() &&
+      tyndall::NeedsPieces(request, inputs[MEDIUM], outputs, this->BytesOfVoxel())
+                                                        : this->Decomposition == BLOCKS;
+}
+
+int vtkScatteringSolver::RequestUpdateExtent(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  const bool asPiece = tyndall::EachAsksForItsPiece(request, outputs) && this->WantsBlocks(request, inputs, outputs);
+  tyndall::AskForAllBut(asPiece ? MEDIUM : -1, request, inputs, this->GetNumberOfInputPorts(), outputs);
+  return 1;
+}
+
+/// What keeps solvers of all kinds from solving pieces, or this one.
+std::string vtkScatteringSolver::NotByAnyBlocks(vtkInformationVector** inputs) const
+{
+  const std::pair<bool, const char*> reasons[] = {
+    { this->Quality != USUAL, "a Quality that chooses settings from the whole medium" },
+    { this->Preview, "Preview" },
+    { this->EstimateError, "EstimateError" },
+    { this->MemoryBudget > 0, "MemoryBudget" },
+    { this->LitColor, "LitColor" },
+    { inputs[UNCOLLIDED]->GetNumberOfInformationObjects() > 0, "UncollidedLight" },
+  };
+  const auto found =
+    std::find_if(std::begin(reasons), std::end(reasons), [](const auto& reason) { return reason.first; });
+  const std::string ofSolver = this->NotByBlocks(inputs);
+  return !ofSolver.empty() || found == std::end(reasons) ? ofSolver : found->second;
+}
+
+/// @return false, on all ranks, where each is to solve the whole
+bool vtkScatteringSolver::GiveOrSolvePiece(vtkInformation* request, vtkMultiProcessController* ranks,
+  vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  vtkImageData* const image = vtkImageData::GetData(inputs[MEDIUM]);
+  const std::optional<tyndall::AgreedBlocks> agreed = tyndall::AgreeOnBlocks(
+    ranks, this, this->WantsBlocks(request, inputs, outputs), tyndall::AskingPort(request, outputs), image);
+  if (!agreed)
+  {
+    return false;
+  }
+  tyndall::Communicator& communicator = *agreed->communicator;
+  const tyndall::PieceBlocks& pieces = *agreed->pieces;
+  if (this->GivePiece(communicator, pieces, inputs, outputs))
+  {
+    return true;
+  }
+  this->Note({});
+  const tyndall::PieceOfMedium piece(communicator, pieces, this, image);
+  tyndall::IlluminationInput shining;
+  std::string refused;
+  communicator.Together([&] {
+    refused = this->NotByAnyBlocks(inputs);
+    shining = this->ReadAllIllumination(inputs, piece.emits);
+    const std::string ofScene = this->NotInBlocks(piece, shining);
+    refused = refused.empty() ? ofScene : refused;
+    tyndall::Require(refused.empty() || this->Decomposition != BLOCKS,
+      "Ranks cannot solve their pieces (Decomposition: blocks) with " + refused +
+        ". Leave it out, or let each rank solve the whole.");
+  });
+  if (communicator.Largest({ refused.empty() ? 0.0 : 1.0 })[0] > 0.0)
+  {
+    return false;
+  }
+  this->WarnWhereDark(shining.illumination, piece.emits);
+  tyndall::LightField light = this->SolvePiece(communicator, pieces, piece, shining);
+  TellOfDefaultSky(shining, light.leftOut);
+  this->Note(light);
+  this->WritePiece(communicator, pieces, std::move(light), inputs, outputs);
+  return true;
+}
+
+/// The last light of this rank's block, where on no rank anything has changed. All ranks call it.
+/// @return whether the outputs are there
 bool vtkScatteringSolver::GivePiece(tyndall::Communicator& communicator, const tyndall::PieceBlocks& pieces,
   vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
@@ -165,6 +245,7 @@ bool vtkScatteringSolver::GivePiece(tyndall::Communicator& communicator, const t
   return onAll;
 }
 
+/// WriteSolved of the light of this rank's block. All ranks call it.
 void vtkScatteringSolver::WritePiece(tyndall::Communicator& communicator, const tyndall::PieceBlocks& pieces,
   tyndall::LightField&& light, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
@@ -215,6 +296,7 @@ void vtkScatteringSolver::HandOn(vtkInformationVector** inputs, vtkInformationVe
 void vtkScatteringSolver::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
+  os << indent << "Decomposition: " << this->Decomposition << "\n";
   os << indent << "Quality: " << this->Quality << "\n";
   os << indent << "Preview: " << this->Preview << "\n";
   os << indent << "MemoryBudget: " << this->MemoryBudget << "\n";

@@ -1,6 +1,7 @@
 #ifndef vtkScatteringSolver_h
 #define vtkScatteringSolver_h
 
+#include "PropertyRange.h"
 #include "vtkPropagationAlgorithm.h"
 #include "vtkTimeStamp.h"
 #include "vtkTyndallModule.h" // for export macro
@@ -10,7 +11,7 @@
 #include <memory>
 #include <string>
 
-class vtkImageData;
+class vtkMultiProcessController;
 
 namespace tyndall
 {
@@ -19,7 +20,7 @@ struct LightField;
 class Communicator;
 class LastOutputs;
 class PieceBlocks;
-struct WorkOnPieces;
+struct PieceOfMedium;
 }
 
 /**
@@ -37,7 +38,10 @@ struct WorkOnPieces;
  *
  * Asked again for the light of the same medium under the same light, even where filters before have made them anew,
  * it gives out the light that it has; so it does where another piece is asked for, or LitColor, Exposure or ToneCurve
- * has changed. Each rank keeps the light of the whole image for that.
+ * has changed. Each rank keeps the light of the whole image for that, or with blocks that of its piece.
+ *
+ * In a parallel pipeline light crosses the borders of pieces: every rank asks for the whole extent and solves it, and
+ * hands on the piece it was asked for; or, with Decomposition, solves its piece, and light goes from rank to rank.
  *
  * With LitColor output 0 has the cell array `lit_color` too, unsigned char, 4 components: what each voxel sends to the
  * eye as a screen shows it, red, green, blue, not multiplied by alpha, and an opacity. A volume mapper that takes them
@@ -66,6 +70,25 @@ public:
     FINE = 2,
     REFERENCE = 3 ///< to compare others with
   };
+
+  enum Decompositions
+  {
+    AUTOMATIC_DECOMPOSITION = 0, ///< into blocks where the whole does not fit in each rank's memory
+    WHOLE = 1,                   ///< none: each rank solves the whole
+    BLOCKS = 2                   ///< each rank solves its piece
+  };
+
+  ///@{
+  /// What each of several ranks of MPI solves. With WHOLE all of the medium, which each then holds. With BLOCKS its
+  /// piece: light is handed on from rank to rank, and no rank holds another's voxels but for a layer or two; one rank
+  /// alone solves the same way then, so that light does not depend on their number, but for rounding. An error names
+  /// what blocks cannot do; of all solvers these are UncollidedLight, a Quality other than USUAL, Preview,
+  /// EstimateError, MemoryBudget and LitColor; the subclass says what else.
+  /// AUTOMATIC_DECOMPOSITION (default): BLOCKS where the arrays of the whole, once for each rank of a machine, are more
+  /// than the memory that it has available, and the scene can be solved so; else WHOLE.
+  tyndallSetRangeMacro(Decomposition, int, AUTOMATIC_DECOMPOSITION, BLOCKS);
+  vtkGetMacro(Decomposition, int);
+  ///@}
 
   ///@{
   /// How exact the light is to be: chooses, from the scene, those of the properties below that have their default
@@ -135,35 +158,41 @@ protected:
   ~vtkScatteringSolver() override;
 
   int FillOutputPortInformation(int port, vtkInformation* information) override;
+  int RequestUpdateExtent(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
 
   /// All that shines: uncollided light, or else lights, environment, the sky and what comes in through the faces, or
   /// the default sky. Checked.
   /// @param emits  whether the medium does
   tyndall::IlluminationInput ReadShining(vtkInformationVector** inputs, bool emits);
 
-  /// RequestData: gives out the light of the last solve where that is asked for again, or solves. What fails is one
-  /// error (Work/GuardedWork.h).
-  /// @param forget  what is told on the panel; before solving, and where it failed
-  /// @param solve   is given all inputs as wholes, by port; ends with WriteSolved
+  /// RequestData: gives out the light of the last solve where that is asked for again, or solves, the pieces that ranks
+  /// have (Decomposition) or the whole. What fails is one error (Work/GuardedWork.h).
+  /// @param solve  is given all inputs as wholes, by port; ends with WriteSolved
   int GiveOrSolve(vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs,
-    const std::function<void()>& forget, const std::function<void(vtkInformationVector** inputs)>& solve);
-  /// @param onPieces  tried first: gives out by GivePiece, or ends with WritePiece
-  int GiveOrSolve(vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs,
-    const std::function<void()>& forget, const tyndall::WorkOnPieces& onPieces,
     const std::function<void(vtkInformationVector** inputs)>& solve);
 
-  /// The last light of this rank's block, where on no rank anything has changed. All ranks call it.
-  /// @return whether the outputs are there
-  bool GivePiece(tyndall::Communicator& communicator, const tyndall::PieceBlocks& pieces, vtkInformationVector** inputs,
-    vtkInformationVector* outputs);
-  /// WriteSolved of the light of this rank's block. All ranks call it.
-  void WritePiece(tyndall::Communicator& communicator, const tyndall::PieceBlocks& pieces, tyndall::LightField&& light,
-    vtkInformationVector** inputs, vtkInformationVector* outputs);
+  /// What of a solve is told on the panel; of an empty one before solving, and where it failed.
+  virtual void Note(const tyndall::LightField& light) = 0;
+
+  /// Of a rank that solves the whole: the arrays of medium, solver and light, of one channel.
+  virtual double BytesOfVoxel() const = 0;
+
+  /// What among properties and inputs keeps this solver from solving pieces, beside what keeps all of them, in words
+  /// for an error; empty: nothing does.
+  virtual std::string NotByBlocks(vtkInformationVector** inputs) const = 0;
+  /// The same of a scene that was read.
+  virtual std::string NotInBlocks(const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining) = 0;
+  /// Solves this rank's piece. All ranks call it; none has been refused.
+  /// @return the light of the rank's own voxels
+  virtual tyndall::LightField SolvePiece(tyndall::Communicator& communicator, const tyndall::PieceBlocks& pieces,
+    const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining) = 0;
 
   /// Last in RequestData: solved light on output 0 beside the arrays of the medium, its convergence on
   /// output 1; then a warning of each doubt. Kept for GiveOrSolve.
   void WriteSolved(tyndall::LightField&& light, vtkInformationVector** inputs, vtkInformationVector* outputs);
 
+  int Decomposition = AUTOMATIC_DECOMPOSITION;
   int Quality = USUAL;
   bool Preview = false;
   int MemoryBudget = 0;
@@ -177,6 +206,14 @@ private:
   void operator=(const vtkScatteringSolver&) = delete;
 
   void ColorsModified();
+  bool WantsBlocks(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) const;
+  std::string NotByAnyBlocks(vtkInformationVector** inputs) const;
+  bool GiveOrSolvePiece(vtkInformation* request, vtkMultiProcessController* ranks, vtkInformationVector** inputs,
+    vtkInformationVector* outputs);
+  bool GivePiece(tyndall::Communicator& communicator, const tyndall::PieceBlocks& pieces, vtkInformationVector** inputs,
+    vtkInformationVector* outputs);
+  void WritePiece(tyndall::Communicator& communicator, const tyndall::PieceBlocks& pieces, tyndall::LightField&& light,
+    vtkInformationVector** inputs, vtkInformationVector* outputs);
   void HandOn(vtkInformationVector** inputs, vtkInformationVector* outputs);
 
   std::unique_ptr<tyndall::LastOutputs> Solved;

@@ -30,6 +30,9 @@ ChannelArrays::ChannelArrays(Device& device, const OrdinatesScene& scene, const 
     this->AnyScattering = this->AnyScattering || this->Scattering.back() > 0.0f;
     this->AnyEmission = this->AnyEmission || scene.medium.emission.At(i, scene.channel) > 0.0f;
   }
+  const std::vector<double> any = scene.Sum({ this->AnyScattering ? 1.0 : 0.0, this->AnyEmission ? 1.0 : 0.0 });
+  this->AnyScattering = any[0] > 0.0;
+  this->AnyEmission = any[1] > 0.0;
   this->SigmaT = this->Load("sigma_t", 1.0, this->ScatteredAway);
   this->SigmaS = this->Load("sigma_s", 0.0, this->ScatteredAway);
   this->Scale = Buffer<float>(device, this->Voxels, "the sources");
@@ -67,24 +70,41 @@ void ChannelArrays::AddLamps(
   }
   const LampScattering scattering(this->TheDevice, this->Layout.grid, this->Angles.groups, this->Angles.function);
   const Buffer<float> sigma_t = this->Load("sigma_t", 1.0, 1.0), sigma_s = this->Load("sigma_s", 0.0, 1.0);
-  const SweepMaker sweeps = [&](const SweepRequest& request) {
-    return SweepOfDevice(this->TheDevice, this->Layout, sigma_t, periodic, request, this->Workspace);
-  };
+  const SweepMaker sweeps = [&](const SweepRequest& request) { return this->SweepOf(sigma_t, periodic, request); };
+  // Rays of a beam are those through the whole grid.
+  const VolumeLayout whole = { this->Scene.ranks ? this->Scene.ranks->partition.whole : this->Layout.grid, 1, true };
   Buffer<float> path(this->TheDevice, this->Layout.Floats(), "the light of a lamp");
   const double all = static_cast<double>(this->Scene.lamps.size());
   for (std::size_t i = 0; i < this->Scene.lamps.size(); ++i)
   {
     path.Fill(0.0f);
-    const UncollidedVolume volume = { this->TheDevice, this->Layout, sigma_t, periodic, sweeps,
+    const UncollidedVolume volume = { this->TheDevice, whole, sigma_t, periodic, sweeps,
       { &path, nullptr, nullptr, nullptr, this->Faces ? &this->Faces->Out() : nullptr } };
     const Monitor ofLamp = OfPart(monitor, i / all, (i + 1) / all);
     this->CountLamp(UncollidedLamp(this->Scene.lamps[i]).AddTo(volume, ofLamp), result.ledger);
-    scattering.Add(this->Scene.lamps[i], path, sigma_s, { source, this->Scale, this->Direct, this->Light });
+    this->Scene.Together([&] {
+      scattering.Add(this->Scene.lamps[i], path, sigma_s, { source, this->Scale, this->Direct, this->Light });
+    });
   }
   if (this->Scene.uncollided.IsThere())
   {
     this->AddGiven(scattering, sigma_s, source, result);
   }
+}
+
+std::unique_ptr<SweepOperator> ChannelArrays::SweepOf(
+  const Buffer<float>& sigma_t, const std::array<bool, 3>& periodic, const SweepRequest& request)
+{
+  if (!this->Scene.ranks)
+  {
+    return SweepOfDevice(this->TheDevice, this->Layout, sigma_t, periodic, request, this->Workspace);
+  }
+  std::unique_ptr<SweepOperator> sweep;
+  this->Scene.Together([&] {
+    sweep = std::make_unique<SweepInBlocks>(this->TheDevice, this->Scene.ranks->others, this->Scene.ranks->partition,
+      this->Layout, sigma_t, request, this->BlocksWorkspace);
+  });
+  return sweep;
 }
 
 /// Light that another solver found.
@@ -126,7 +146,9 @@ ChannelArrays::Powers ChannelArrays::PowersOf(const std::vector<float>& values, 
     powers.scattered += static_cast<double>(values[i]) * this->Scattering[i];
   }
   const double volume = this->Layout.grid.VoxelVolume();
-  return { powers.absorbed * volume, powers.scattered * volume * (lamps ? 1.0 : this->ScatteredAway) };
+  const std::vector<double> sums =
+    this->Scene.Sum({ powers.absorbed * volume, powers.scattered * volume * (lamps ? 1.0 : this->ScatteredAway) });
+  return { sums[0], sums[1] };
 }
 
 double ChannelArrays::MagnitudeOf(const std::vector<float>& values, const std::vector<float>& others) const
@@ -164,7 +186,7 @@ void ChannelArrays::EmitEvenly(const Buffer<float>& source, EnergyLedger& ledger
     emission[i] = this->TheMedium.emission.At(i, this->Scene.channel);
     sum += emission[i];
   }
-  ledger.Emit(0, 4.0 * Pi * sum * this->Layout.grid.VoxelVolume());
+  ledger.Emit(0, 4.0 * Pi * this->Scene.Sum({ sum * this->Layout.grid.VoxelVolume() })[0]);
   const Buffer<float> values(this->TheDevice, emission, "emission");
   cl::Kernel even = this->TheDevice.Kernel("even_source", kernel_source::UpwindSweep, Define("REAL_WIDTH", 8));
   With(even, source, values, cl_ulong(OrdinateStride(this->Voxels)));

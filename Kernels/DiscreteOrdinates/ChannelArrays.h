@@ -3,6 +3,7 @@
 #include "DiscreteOrdinates/AngularScattering.h"
 #include "DiscreteOrdinates/LampScattering.h"
 #include "DiscreteOrdinates/OrdinatesScene.h"
+#include "LightPropagation/Distributed/SweepInBlocks.h"
 #include "LightPropagation/Sweep/SweepWorkspace.h"
 #include "LightPropagation/Sweep/VolumeLayout.h"
 
@@ -60,6 +61,8 @@ public:
 
 private:
   Buffer<float> Load(const char* what, double absorbed, double scattered) const;
+  std::unique_ptr<SweepOperator> SweepOf(
+    const Buffer<float>& sigma_t, const std::array<bool, 3>& periodic, const SweepRequest& request);
   void AddGiven(const LampScattering& scattering, const Buffer<float>& sigma_s, const Buffer<float>& source,
     OrdinatesResult& result);
   void CountLamp(const SweepTally& tally, EnergyLedger& ledger);
@@ -72,5 +75,6 @@ private:
   bool AnyEmission = false, AnyScattering = false;
   double GoingRound = 0.0;
   SweepWorkspace Workspace;
+  BlockWorkspace BlocksWorkspace;
 };
 }

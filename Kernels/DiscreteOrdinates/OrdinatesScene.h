@@ -2,6 +2,8 @@
 
 #include "DiscreteOrdinates/OrdinateGroups.h"
 #include "DiscreteOrdinates/UpwindSweep.h"
+#include "Distribution/BlockPartition.h"
+#include "Distribution/Communicator.h"
 #include "Light/LightField.h"
 #include "LightPropagation/Conservative/EnergyLedger.h"
 #include "LightPropagation/Conservative/FaceLight.h"
@@ -12,6 +14,7 @@
 
 #include "Device/Clock.h"
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -26,6 +29,15 @@ struct OrdinatesGuess
   double rate = 0.0;
 };
 
+/// Ranks among which a grid is spread by blocks.
+struct OrdinatesRanks
+{
+  Communicator& others;
+  const BlockPartition& partition;
+
+  bool Has() const { return this->partition.blocks[this->others.Rank()].VoxelCount() > 0; }
+};
+
 /// One channel of a scene as discrete ordinates see it: what is solved.
 struct OrdinatesScene
 {
@@ -36,6 +48,15 @@ struct OrdinatesScene
   std::array<Rgb, 6> faceAlbedo = {}; ///< of the channel in all three
   UncollidedImage uncollided;         ///< the channel's alone
   OrdinatesGuess guess;
+  const OrdinatesRanks* ranks = nullptr; ///< of which the medium is this one's block; null: it is the whole
+
+  /// Sums over ranks of what each has of them.
+  std::vector<double> Sum(const std::vector<double>& own) const
+  {
+    return this->ranks ? this->ranks->others.Sum(own) : own;
+  }
+  /// What may fail on one rank (Communicator.h).
+  void Together(const std::function<void()>& work) const { this->ranks ? this->ranks->others.Together(work) : work(); }
 };
 
 /// Directions and how light is scattered between them.

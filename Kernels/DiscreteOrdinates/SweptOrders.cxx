@@ -1,9 +1,11 @@
 #include "DiscreteOrdinates/SweptOrders.h"
 
+#include "DiscreteOrdinates/Distributed/UpwindSweepInBlocks.h"
 #include "DiscreteOrdinates/UpwindSweep.h"
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 namespace tyndall
 {
@@ -23,6 +25,17 @@ bool CanBeNegative(const OrdinatesAngles& angles, const OrdinatesSettings& setti
   return SumsOf(settings) == PairSums::Matrix || angles.phase.Terms() > 1;
 }
 
+std::unique_ptr<OrdinateSweep> SweepOf(Device& device, const OrdinatesScene& scene, const OrdinatesAngles& angles,
+  const OrdinatesSettings& settings, const FaceLight* reflecting)
+{
+  const Grid& grid = scene.medium.grid;
+  if (scene.ranks)
+  {
+    return std::make_unique<UpwindSweepInBlocks>(device, *scene.ranks, grid, angles.groups);
+  }
+  return std::make_unique<UpwindSweep>(device, grid, angles.groups, settings.periodic, reflecting);
+}
+
 class SweptOrders
 {
 public:
@@ -31,7 +44,7 @@ public:
     : Scene(scene)
     , Settings(settings)
     , Arrays(device, scene, angles, settings.netFlux)
-    , Sweep(device, scene.medium.grid, angles.groups, settings.periodic, this->Arrays.Faces.get())
+    , Sweep(SweepOf(device, scene, angles, settings, this->Arrays.Faces.get()))
     , Scattering(device, angles.groups, angles.phase, SumsOf(settings), CanBeNegative(angles, settings),
         settings.netFlux, this->Arrays.Voxels)
     , Radiance(device, AngularScattering::Floats(angles.groups, this->Arrays.Voxels), "radiance of all directions")
@@ -48,7 +61,7 @@ public:
       const double done = this->Settings.maximumOrders > 0
         ? static_cast<double>(this->Record.All().size()) / this->Settings.maximumOrders
         : std::log(residual) / std::log(std::min(this->Settings.tolerance, 0.5));
-      Report(monitor, std::clamp(0.1 + 0.9 * done, 0.1, 0.99));
+      this->Scene.Together([&] { Report(monitor, std::clamp(0.1 + 0.9 * done, 0.1, 0.99)); });
       this->Order(
         monitor ? Monitor([&](double) { return monitor(std::clamp(0.1 + 0.9 * done, 0.1, 0.99)); }) : Monitor());
     }
@@ -73,7 +86,7 @@ private:
     this->Radiance.Fill(0.0f);
     if (this->Arrays.Emits())
     {
-      this->Arrays.EmitEvenly(this->Radiance, this->Result.ledger);
+      this->Scene.Together([&] { this->Arrays.EmitEvenly(this->Radiance, this->Result.ledger); });
     }
     if (swept)
     {
@@ -178,7 +191,7 @@ private:
   {
     this->Radiance.Swap(this->Source.Size() > 0 && !this->Record.All().empty() ? this->Source : this->Radiance);
     const FacePowers powers =
-      this->Sweep.Apply(this->Radiance, this->Arrays.SigmaT, this->Arrays.Scale, incoming, monitor);
+      this->Sweep->Apply(this->Radiance, this->Arrays.SigmaT, this->Arrays.Scale, incoming, monitor);
     for (int face = 0; face < 6; ++face)
     {
       this->Result.ledger.Enter(0, powers.in[face]);
@@ -187,11 +200,13 @@ private:
     this->OnTheWay = powers.onTheWay;
     if (this->Arrays.Scatters() || !this->Settings.leaveOut)
     {
-      this->Scattering.Scatter(
-        this->Radiance, this->Arrays.SigmaS, this->Out(), this->Arrays.Scale, this->Arrays.Light, monitor);
+      this->Scene.Together([&] {
+        this->Scattering.Scatter(
+          this->Radiance, this->Arrays.SigmaS, this->Out(), this->Arrays.Scale, this->Arrays.Light, monitor);
+      });
       return;
     }
-    this->Scattering.Gather(this->Radiance, this->Arrays.Light, monitor);
+    this->Scene.Together([&] { this->Scattering.Gather(this->Radiance, this->Arrays.Light, monitor); });
     this->Radiance.Fill(0.0f); // only what goes round periodic axes is left
     this->Source.Fill(0.0f);
   }
@@ -236,7 +251,7 @@ private:
   const OrdinatesScene& Scene;
   const OrdinatesSettings& Settings;
   ChannelArrays Arrays;
-  UpwindSweep Sweep;
+  std::unique_ptr<OrdinateSweep> Sweep;
   AngularScattering Scattering;
   Buffer<float> Radiance, Source; ///< Source: empty where scattering works in place
   OrdinatesRecord Record;
@@ -254,7 +269,9 @@ bool CanBeginWarm(const OrdinatesAngles& angles, const OrdinatesSettings& settin
 OrdinatesResult SolveSweptOrders(Device& device, const OrdinatesScene& scene, const OrdinatesAngles& angles,
   const OrdinatesSettings& settings, const Monitor& monitor)
 {
-  return SweptOrders(device, scene, angles, settings).Run(monitor);
+  std::unique_ptr<SweptOrders> orders;
+  scene.Together([&] { orders = std::make_unique<SweptOrders>(device, scene, angles, settings); });
+  return orders->Run(monitor);
 }
 
 std::size_t BytesOfSweptOrders(const Grid& grid, const OrdinatesAngles& angles, const OrdinatesSettings& settings)

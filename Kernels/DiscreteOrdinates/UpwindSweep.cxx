@@ -27,12 +27,13 @@ double FaceArea(const Grid& grid, int axis)
 }
 
 UpwindSweep::UpwindSweep(Device& device, const Grid& grid, const OrdinateGroups& groups,
-  const std::array<bool, 3>& periodic, const FaceLight* reflecting)
+  const std::array<bool, 3>& periodic, const FaceLight* reflecting, int inner)
   : TheDevice(device)
   , TheGrid(grid)
   , Groups(groups)
   , Periodic(periodic)
   , Reflecting(reflecting)
+  , InnerFaces(inner)
 {
   for (int axis = 0; axis < 3; ++axis)
   {
@@ -109,6 +110,18 @@ FacePowers UpwindSweep::Apply(const Buffer<float>& radiance, const Buffer<float>
 {
   FacePowers powers;
   this->LetIn(incoming, powers);
+  this->SweepGroups(0, this->Groups.Count(), radiance, sigma_t, scale, monitor);
+  this->Count(powers);
+  if (this->Reflecting)
+  {
+    this->LeaveByCells();
+  }
+  return powers;
+}
+
+void UpwindSweep::SweepGroups(int first, int count, const Buffer<float>& radiance, const Buffer<float>& sigma_t,
+  const Buffer<float>& scale, const Monitor& monitor)
+{
   const int width = this->TheDevice.IsCpu() ? OrdinateLanes : 1;
   cl::Kernel sweep = this->Kernel("sweep_upwind", width);
   const std::array<int, 3>& n = this->TheGrid.size;
@@ -117,15 +130,26 @@ FacePowers UpwindSweep::Apply(const Buffer<float>& radiance, const Buffer<float>
   InBatches(this->TheDevice, batches, monitor, [&](std::size_t begin, std::size_t size) {
     With(sweep, radiance, sigma_t, scale, this->Shares, this->Up, this->Faces[0], this->Faces[1], this->Faces[2], n[0],
       n[1], n[2], cl_ulong(OrdinateStride(this->TheGrid.VoxelCount())), cl_int(begin), cl_int(begin + size));
+    const std::size_t items = OrdinateLanes / static_cast<std::size_t>(width);
     this->TheDevice.Queue().enqueueNDRangeKernel(
-      sweep, cl::NullRange, cl::NDRange(this->Groups.Lanes() / width), GroupOfLargeItems(this->TheDevice));
+      sweep, cl::NDRange(first * items), cl::NDRange(count * items), GroupOfLargeItems(this->TheDevice));
   });
-  this->Count(powers);
-  if (this->Reflecting)
-  {
-    this->LeaveByCells();
-  }
-  return powers;
+}
+
+std::vector<float> UpwindSweep::ReadFace(int axis, int firstGroup, int groups) const
+{
+  const std::size_t ofGroup = OrdinateLanes * FaceVoxels(this->TheGrid, axis);
+  std::vector<float> values(groups * ofGroup);
+  this->TheDevice.Queue().enqueueReadBuffer(this->Faces[axis].Handle(), CL_TRUE, firstGroup * ofGroup * sizeof(float),
+    values.size() * sizeof(float), values.data());
+  return values;
+}
+
+void UpwindSweep::WriteFace(int axis, int firstGroup, const std::vector<float>& values)
+{
+  const std::size_t ofGroup = OrdinateLanes * FaceVoxels(this->TheGrid, axis);
+  this->TheDevice.Queue().enqueueWriteBuffer(this->Faces[axis].Handle(), CL_TRUE, firstGroup * ofGroup * sizeof(float),
+    values.size() * sizeof(float), values.data());
 }
 
 void UpwindSweep::EnterByCells(int axis) const
@@ -187,8 +211,9 @@ void UpwindSweep::FillFace(int axis, const IncomingRadiance& incoming, FacePower
   {
     const int g = static_cast<int>(i / OrdinateLanes), lane = i % OrdinateLanes;
     const double across = this->Groups.Weight(g, lane) * std::abs(this->Groups.Of(g, lane).omega[axis]);
-    powers.in[2 * axis + (this->Groups.All()[g].up[axis] ? 0 : 1)] +=
-      across * values[i] * FaceArea(this->TheGrid, axis) * static_cast<double>(voxels);
+    const int face = 2 * axis + (this->Groups.All()[g].up[axis] ? 0 : 1);
+    powers.in[face] +=
+      this->IsCounted(face) ? across * values[i] * FaceArea(this->TheGrid, axis) * static_cast<double>(voxels) : 0.0;
   }
   const Buffer<float> table(this->TheDevice, values, "light through the faces");
   cl::Kernel fill = this->Kernel("fill_face");
@@ -214,9 +239,9 @@ void UpwindSweep::Count(FacePowers& powers) const
     {
       const int g = static_cast<int>(i / OrdinateLanes / size[0]), lane = i % OrdinateLanes;
       const double across = this->Groups.Weight(g, lane) * std::abs(this->Groups.Of(g, lane).omega[axis]);
-      const double watts = across * sums[i] * FaceArea(this->TheGrid, axis);
-      (this->Periodic[axis] ? powers.onTheWay : powers.out[2 * axis + (this->Groups.All()[g].up[axis] ? 1 : 0)]) +=
-        watts;
+      const int face = 2 * axis + (this->Groups.All()[g].up[axis] ? 1 : 0);
+      const double watts = this->IsCounted(face) ? across * sums[i] * FaceArea(this->TheGrid, axis) : 0.0;
+      (this->Periodic[axis] ? powers.onTheWay : powers.out[face]) += watts;
     }
   }
 }

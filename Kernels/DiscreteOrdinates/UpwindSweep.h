@@ -22,40 +22,62 @@ struct FacePowers
   double onTheWay = 0.0; ///< left through a periodic face, comes in on the other side in the next sweep
 };
 
+/// Carries light once along all directions through the grid.
+class OrdinateSweep
+{
+public:
+  virtual ~OrdinateSweep() = default;
+
+  /// @param radiance  source over `scale`, W / (length^3 sr); becomes the mean radiance, W / (length^2 sr)
+  /// @param incoming  empty: nothing but what faces give back
+  /// @return what leaves, before faces give back their part, and what comes in beside that
+  virtual FacePowers Apply(const Buffer<float>& radiance, const Buffer<float>& sigma_t, const Buffer<float>& scale,
+    const IncomingRadiance& incoming, const Monitor& monitor) = 0;
+};
+
 /// Carries light once along all directions through a box of voxels, upwind (numerics.md, Eqs. (D9) to (D11)).
 ///
 /// Each voxel is crossed by the direction's mean chord, and light is attenuated along it by an exponential: it is
 /// stable and positive for every optical thickness, and exact along an axis. What leaves a voxel enters the next ones
 /// in equal radiance, so the power is kept to rounding; light spreads aside, so it is of first order in the voxels'
 /// edges where it goes askew.
-class UpwindSweep
+class UpwindSweep : public OrdinateSweep
 {
 public:
   /// @param periodic  light that leaves along an axis comes in on the other side in the next sweep. Along periodic axes
   /// of one voxel nothing changes, and none is carried.
   /// @param reflecting  where what leaves is added to by cell, and what is given back comes from; null: no face gives
   /// back light
+  /// @param inner  bits of the faces -x, +x, ... +z that are no faces of the whole grid: their power is not counted
   UpwindSweep(Device& device, const Grid& grid, const OrdinateGroups& groups, const std::array<bool, 3>& periodic,
-    const FaceLight* reflecting);
+    const FaceLight* reflecting, int inner = 0);
 
   /// Bytes that the faces take on the device.
   static std::size_t Bytes(const Grid& grid, const OrdinateGroups& groups);
 
-  /// @param radiance  source over `scale`, W / (length^3 sr); becomes the mean radiance, W / (length^2 sr)
-  /// @param incoming  empty: nothing but what faces give back
-  /// @return what leaves, before faces give back their part, and what comes in beside that
   FacePowers Apply(const Buffer<float>& radiance, const Buffer<float>& sigma_t, const Buffer<float>& scale,
-    const IncomingRadiance& incoming, const Monitor& monitor);
+    const IncomingRadiance& incoming, const Monitor& monitor) override;
+
+  // Its steps, for those who have light from elsewhere between them: what comes in from outside; some of the groups
+  // after the others; what has left.
+  void LetIn(const IncomingRadiance& incoming, FacePowers& powers);
+  void SweepGroups(int first, int count, const Buffer<float>& radiance, const Buffer<float>& sigma_t,
+    const Buffer<float>& scale, const Monitor& monitor);
+  void Count(FacePowers& powers) const;
+
+  /// Radiance through the faces across an axis, [group][row][voxel of the row][8]: of a group what comes in until it is
+  /// swept, what leaves after that. Across z rows are along y, else along z.
+  std::vector<float> ReadFace(int axis, int firstGroup, int groups) const;
+  void WriteFace(int axis, int firstGroup, const std::vector<float>& values);
 
 private:
   bool IsCarried(int axis) const { return !(this->Periodic[axis] && this->TheGrid.size[axis] == 1); }
   std::array<int, 2> FaceSize(int axis) const; ///< rows of a group, voxels of a row
   void LoadDirections();
-  void LetIn(const IncomingRadiance& incoming, FacePowers& powers);
+  bool IsCounted(int face) const { return !(this->InnerFaces >> face & 1); }
   void FillFace(int axis, const IncomingRadiance& incoming, FacePowers& powers);
   void EnterByCells(int axis) const;
   void LeaveByCells() const;
-  void Count(FacePowers& powers) const;
   cl::Kernel Kernel(const char* name, int width = 8) const;
 
   Device& TheDevice;
@@ -63,6 +85,7 @@ private:
   const OrdinateGroups& Groups;
   std::array<bool, 3> Periodic;
   const FaceLight* Reflecting;
+  int InnerFaces;
   Buffer<float> Shares, Across;
   Buffer<cl_int> Up;
   std::array<Buffer<float>, 3> Faces, Sums;

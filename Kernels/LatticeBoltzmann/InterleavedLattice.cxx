@@ -80,8 +80,8 @@ void InterleavedLattice::Begin(const PackedPhotons& packed, int channels)
   for (int c = 0; c < all; ++c)
   {
     Channel channel;
-    channel.lattice =
-      std::make_unique<LatticeChannel>(this->TheDevice, *this->Problem, this->Index, this->Settings, this->Light, c);
+    channel.lattice = std::make_unique<LatticeChannel>(
+      this->TheDevice, SceneOf(*this->Problem), this->Index, this->Settings, this->Light, c);
     const auto power = all == 1 ? brightest - this->StandInEscaped[0].begin() : c;
     channel.from = channels == 1 ? 0 : static_cast<int>(power);
     const double given = this->StandIn[channel.from], escaped = this->StandInEscaped[0][power];
@@ -184,7 +184,7 @@ LightField InterleavedLattice::Solve(PhotonMarcher& marcher, const std::vector<P
   const PhotonLight found = marcher.MarchByTurns(photons, turns, times, OfPart(monitor, 0.0, 0.3));
   this->TakeAll(found);
   const double marched = (ClockSeconds() - start) / static_cast<double>(this->Channels.size()); // rows add them up
-  LightField light = BeginLight(*this->Problem, this->Settings);
+  LightField light = BeginLight(this->TheMedium.grid.VoxelCount(), this->Problem->Channels(), this->Settings);
   double thickest = 0.0;
   for (std::size_t c = 0; c < this->Channels.size(); ++c)
   {

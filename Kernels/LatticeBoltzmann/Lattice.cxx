@@ -24,10 +24,11 @@ cl::NDRange WholeBlocks(const std::array<int, 3>& size, int edge)
 }
 }
 
-Lattice::Lattice(Device& device, const Grid& grid, const LatticeSettings& settings, const LatticeVoxels& voxels)
+Lattice::Lattice(Device& device, const LatticeBox& box, const LatticeSettings& settings, const LatticeVoxels& voxels)
   : TheDevice(device)
   , Queue(device.Queue())
-  , Size(grid.size)
+  , Box(box)
+  , Size(box.own.size)
   , Settings(settings)
 {
   this->LayOut(voxels);
@@ -38,7 +39,7 @@ Lattice::Lattice(Device& device, const Grid& grid, const LatticeSettings& settin
   this->Options += Define("STREAMS", device.IsCpu() && bytes > Cached);
   this->Load(voxels);
   this->FillDensities();
-  this->Shown = Buffer<float>(device, grid.VoxelCount(), "fluence");
+  this->Shown = Buffer<float>(device, box.Count(), "fluence");
   this->Shown.Fill(0.0f);
 }
 
@@ -53,6 +54,7 @@ void Lattice::LayOut(const LatticeVoxels& voxels)
   }
   const std::array<bool, 3>& periodic = this->Settings.periodic;
   this->TheInfo.periodic = periodic[0] + 2 * periodic[1] + 4 * periodic[2];
+  this->TheInfo.inner = this->Box.innerFaces;
   std::copy(voxels.albedo.begin(), voxels.albedo.end(), this->TheInfo.albedo);
   std::copy(voxels.incoming.begin(), voxels.incoming.end(), this->TheInfo.incoming);
   // Vectors that begin in the last row may be read whole.
@@ -75,19 +77,18 @@ std::vector<float> Lattice::Arrange(const Inside& inside, const Outside& outside
         std::array<int, 3> near = at;
         for (int a = 0; a < 3; ++a)
         {
-          const bool beyond = at[a] < 0 || at[a] >= this->Size[a];
+          const int face = 2 * a + (at[a] < 0 ? 0 : 1);
+          const bool beyond = (at[a] < 0 || at[a] >= this->Size[a]) && !(this->Box.innerFaces >> face & 1);
           if (beyond && !this->Settings.periodic[a])
           {
-            beyondThem += outside(2 * a + (at[a] < 0 ? 0 : 1));
+            beyondThem += outside(face);
             ++faces;
           }
           near[a] = beyond ? (at[a] + this->Size[a]) % this->Size[a] : at[a];
         }
-        const std::size_t voxel =
-          (static_cast<std::size_t>(near[2]) * this->Size[1] + near[1]) * this->Size[0] + near[0];
         const std::size_t place = static_cast<std::size_t>(at[2] + 1) * this->TheInfo.layer +
           static_cast<std::size_t>(at[1] + 1) * this->TheInfo.row + static_cast<std::size_t>(at[0] + LatticeFirst);
-        values[place] = faces == 0 ? inside(voxel) : beyondThem / static_cast<float>(faces);
+        values[place] = faces == 0 ? inside(this->Box.Known(near)) : beyondThem / static_cast<float>(faces);
       }
     }
   }

@@ -1,10 +1,10 @@
 #pragma once
 
 #include "Device/Buffer.h"
+#include "LatticeBoltzmann/LatticeBox.h"
 #include "LatticeBoltzmann/LatticeSettings.h"
 #include "LatticeBoltzmann/LatticeShared.h"
 #include "LatticeBoltzmann/LatticeVoxels.h"
-#include "Medium/Grid.h"
 
 #include <array>
 #include <string>
@@ -16,7 +16,8 @@ namespace tyndall
 class Lattice
 {
 public:
-  Lattice(Device& device, const Grid& grid, const LatticeSettings& settings, const LatticeVoxels& voxels);
+  /// @param voxels  the known ones of the box
+  Lattice(Device& device, const LatticeBox& box, const LatticeSettings& settings, const LatticeVoxels& voxels);
 
   /// So many steps, dark before the first but for what comes in. Queued, not waited for.
   /// @param writes  fluence of the last of them is to be there
@@ -27,7 +28,7 @@ public:
 
   /// Steps are queued here from now on, and not on the device's own queue.
   void StepOn(const cl::CommandQueue& queue) { this->Queue = queue; }
-  void Shine(const std::vector<float>& source); ///< by voxel, as LatticeVoxels has it
+  void Shine(const std::vector<float>& source); ///< by known voxel, as LatticeVoxels has it
   /// Light that has its fluence on the device is scattered, beside what the medium emits. Queued.
   /// @param scatters  by place of the lattice: part of the fluence that a step's way through a voxel scatters, times
   ///   what its units are in the lattice's
@@ -37,7 +38,6 @@ public:
     const Buffer<float>& scatters, const Buffer<float>& glows, const Buffer<float>& fluence, int channels, int channel);
 
   /// Densities as a solver found them, [direction][voxel], for what leaves and flows.
-  /// @param directions  two at a time, from `first` on
   const Buffer<float>& Densities() const { return this->Now; }
   const LatticeInfo& Info() const { return this->TheInfo; }
 
@@ -49,9 +49,9 @@ public:
   /// W / length^2, [x, y, z][voxel].
   std::vector<float> NetFlux();
 
-  /// Values by voxel on the device, by place of the lattice; 0 outside.
+  /// Values by known voxel on the device, by place of the lattice; 0 outside.
   Buffer<float> Placed(const std::vector<float>& values, const char* what) const;
-  /// A value of each place of the lattice: inside(voxel), or outside(face).
+  /// A value of each place of the lattice: inside(known voxel), or outside(face).
   template <class Inside, class Outside>
   std::vector<float> Arrange(const Inside& inside, const Outside& outside) const;
 
@@ -67,6 +67,7 @@ private:
 
   Device& TheDevice;
   cl::CommandQueue Queue; ///< of steps
+  const LatticeBox Box;
   const std::array<int, 3> Size;
   const LatticeSettings& Settings;
   LatticeInfo TheInfo = {};

@@ -74,11 +74,11 @@ LightField SolveLatticeBoltzmann(Device& device, const Medium& medium, const Fie
   CheckLattice(medium, ior, settings);
   const PropagationProblem problem(medium, illumination, AsPropagation(settings));
   const Uncollided uncollided = FindUncollided(device, problem, settings, OfPart(monitor, 0.0, 0.1));
-  LightField light = BeginLight(problem, settings);
+  LightField light = BeginLight(problem.TheGrid().VoxelCount(), problem.Channels(), settings);
   double thickest = 0.0;
   for (int c = 0; c < light.channels; ++c)
   {
-    LatticeChannel channel(device, problem, ior, settings, uncollided, c);
+    LatticeChannel channel(device, SceneOf(problem), ior, settings, uncollided, c);
     const double all = light.channels;
     channel.Solve(OfPart(monitor, 0.1 + 0.9 * c / all, 0.1 + 0.9 * (c + 1) / all));
     channel.AddTo(light);

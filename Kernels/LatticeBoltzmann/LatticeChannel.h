@@ -2,6 +2,8 @@
 
 #include "Device/Monitor.h"
 #include "LatticeBoltzmann/Lattice.h"
+#include "LatticeBoltzmann/LatticeBox.h"
+#include "LatticeBoltzmann/LatticeScene.h"
 #include "LatticeBoltzmann/Settling.h"
 #include "Light/LightField.h"
 
@@ -16,14 +18,15 @@ std::vector<float> NetFluxOf(const UncollidedImage& image, const Grid& grid, int
 class LatticeChannel
 {
 public:
-  LatticeChannel(Device& device, const PropagationProblem& problem, const Field& ior, const LatticeSettings& settings,
+  LatticeChannel(Device& device, const LatticeScene& scene, const Field& ior, const LatticeSettings& settings,
     const Uncollided& direct, int channel)
     : TheDevice(device)
-    , Problem(problem)
+    , Scene(scene)
+    , Box(scene.medium.grid)
     , Settings(settings)
     , Direct(direct)
-    , Voxels(problem, ior, settings, direct, channel)
-    , Photons(device, problem.TheGrid(), settings, this->Voxels)
+    , Voxels(scene, ior, settings, direct, channel)
+    , Photons(device, this->Box, settings, this->Voxels)
     , Channel(static_cast<std::size_t>(channel))
   {
   }
@@ -36,17 +39,13 @@ public:
   void Shine();
   /// Steps on, from densities that other steps have left.
   void Settle(const StepsBefore& before, const Monitor& monitor);
+  /// Scattered light beside the uncollided one, and where all power went.
   void AddTo(LightField& light);
 
 private:
-  double CountVoxels(LightField& light) const;
-  double CountFaces(LightField& light);
-  void AddFlux(LightField& light);
-  void AddCrossing(LightField& light) const;
-  void AddRows(LightField& light) const;
-
   Device& TheDevice;
-  const PropagationProblem& Problem;
+  const LatticeScene Scene;
+  const LatticeBox Box;
   const LatticeSettings& Settings;
   const Uncollided& Direct;
   LatticeVoxels Voxels;

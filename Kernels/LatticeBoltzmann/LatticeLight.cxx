@@ -45,40 +45,6 @@ void CheckThickness(const Medium& medium)
   }
 }
 
-/// What is said of the light beside its numbers.
-void Describe(LightField& light, const PropagationProblem& problem, const LatticeSettings& settings, double thickest)
-{
-  if (!problem.TheMedium().phase.IsIsotropic() && problem.Traits().scatters)
-  {
-    light.leftOut.emplace_back(
-      "anisotropy: diffuses as isotropic scattering with sigma_s (1 - g) (similarity relation)");
-  }
-  if (!settings.netFlux)
-  {
-    light.leftOut.emplace_back(left_out::NetFlux);
-  }
-  if (settings.scheme == LatticeScheme::Published && thickest > 1.0)
-  {
-    light.doubts.push_back(
-      "As published, collisions are positive only where sigma_t times a voxel's edge is at most 1; "
-      "here it is up to " +
-      Text("%.3g", thickest) + ", and light may swing and grow. Choose the conservative scheme, or smaller voxels.");
-  }
-}
-
-void Judge(LightField& light, const Illumination& illumination, const LatticeSettings& settings)
-{
-  PropagationSettings judged = AsPropagation(settings);
-  judged.maximumOrders = settings.maximumSteps;
-  judged.tolerance = settings.tolerance;
-  JudgeConvergence(judged, light);
-  if (Reflects(illumination))
-  {
-    light.doubts.emplace_back(
-      "FaceAlbedo gives back diffuse light only, not what leaves without having been scattered.");
-  }
-  light.faceAlbedo = illumination.faceAlbedo;
-}
 }
 
 void CheckLattice(const Medium& medium, const Field& ior, const LatticeSettings& settings)
@@ -114,26 +80,62 @@ UncollidedImage ImageOf(const PhotonLight& photons)
   return image;
 }
 
-LightField BeginLight(const PropagationProblem& problem, const LatticeSettings& settings)
+LightField BeginLight(std::size_t voxels, int channels, const LatticeSettings& settings)
 {
   LightField light;
-  light.channels = problem.Channels();
-  light.fluence.resize(problem.TheGrid().VoxelCount() * static_cast<std::size_t>(light.channels));
+  light.channels = channels;
+  light.fluence.resize(voxels * static_cast<std::size_t>(channels));
   light.fluenceDirect = light.fluence;
   light.netFlux.resize(settings.netFlux ? 3 * light.fluence.size() : 0);
   return light;
 }
 
-void FinishLight(LightField& light, const Device& device, const PropagationProblem& problem,
-  const Illumination& illumination, const LatticeSettings& settings, double thickest)
+void DescribeLight(
+  LightField& light, const Device& device, bool anisotropic, const LatticeSettings& settings, double thickest)
 {
   light.scatteredRadiance.resize(light.fluence.size());
   std::transform(light.fluence.begin(), light.fluence.end(), light.scatteredRadiance.begin(),
     [](float fluence) { return static_cast<float>(fluence / (4.0 * Pi)); });
   light.storedDirections = { { 0.0, 0.0, 0.0 } };
   light.device = NameWithStreaming(device);
-  Describe(light, problem, settings, thickest);
+  if (anisotropic)
+  {
+    light.leftOut.emplace_back(
+      "anisotropy: diffuses as isotropic scattering with sigma_s (1 - g) (similarity relation)");
+  }
+  if (!settings.netFlux)
+  {
+    light.leftOut.emplace_back(left_out::NetFlux);
+  }
+  if (settings.scheme == LatticeScheme::Published && thickest > 1.0)
+  {
+    light.doubts.push_back(
+      "As published, collisions are positive only where sigma_t times a voxel's edge is at most 1; "
+      "here it is up to " +
+      Text("%.3g", thickest) + ", and light may swing and grow. Choose the conservative scheme, or smaller voxels.");
+  }
+}
+
+void JudgeLight(LightField& light, const Illumination& illumination, const LatticeSettings& settings)
+{
+  PropagationSettings judged = AsPropagation(settings);
+  judged.maximumOrders = settings.maximumSteps;
+  judged.tolerance = settings.tolerance;
+  JudgeConvergence(judged, light);
+  if (Reflects(illumination))
+  {
+    light.doubts.emplace_back(
+      "FaceAlbedo gives back diffuse light only, not what leaves without having been scattered.");
+  }
+  light.faceAlbedo = illumination.faceAlbedo;
+}
+
+void FinishLight(LightField& light, const Device& device, const PropagationProblem& problem,
+  const Illumination& illumination, const LatticeSettings& settings, double thickest)
+{
+  const bool anisotropic = !problem.TheMedium().phase.IsIsotropic() && problem.Traits().scatters;
+  DescribeLight(light, device, anisotropic, settings, thickest);
   problem.Undo(light);
-  Judge(light, illumination, settings);
+  JudgeLight(light, illumination, settings);
 }
 }

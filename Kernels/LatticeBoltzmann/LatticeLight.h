@@ -25,7 +25,16 @@ PropagationSettings AsPropagation(const LatticeSettings& settings);
 UncollidedImage ImageOf(const PhotonLight& photons);
 
 /// Dark, in the channels that are solved.
-LightField BeginLight(const PropagationProblem& problem, const LatticeSettings& settings);
+LightField BeginLight(std::size_t voxels, int channels, const LatticeSettings& settings);
+
+/// What light has beside fluence and balance, in the units of the solve.
+/// @param anisotropic  the medium scatters, and unevenly
+/// @param thickest  sigma_t h, of all voxels
+void DescribeLight(
+  LightField& light, const Device& device, bool anisotropic, const LatticeSettings& settings, double thickest);
+
+/// Whether it has converged, and what else is to be said of light in the user's units.
+void JudgeLight(LightField& light, const Illumination& illumination, const LatticeSettings& settings);
 
 /// What light has beside fluence and balance once all channels have been added: to the user's units, with what is to be
 /// said of it.

@@ -4,137 +4,7 @@
 // Along a line light goes both ways, for links give back a part. What lies behind a voxel is known by what it sends
 // whatever happens ahead, U, and by what it gives back of what comes from ahead, R: two numbers a voxel, found on the
 // way up; densities follow on the way down. All terms are positive, so that no digit is lost.
-#include "LatticeBoltzmann/LatticeLink.cl"
-#include "Numerics/Exact.cl"
-
-// Of floats, which add up to 1 only to 1e-8, thick voxels would gain or lose as much in every collision.
-#define EXACT_WEIGHT(i) (DIRECTIONS == 6 ? (exact)1 / 6 : (i) < 6 ? (exact)1 / 12 : (exact)1 / 24)
-
-// By voxel: part of the density that goes straight on, part that links let through, n^2, and W / length^2 that each
-// collision makes even.
-#define MEDIUM                                                                                 \
-  const __global exact *straight, const __global float *passes, const __global float *squared, \
-    const __global exact *even
-
-typedef struct
-{
-  int at[3];
-  int face;  // of the box that was passed, -1: none. Then `at` is the last voxel
-  int other; // of a corner the second one, else the same
-} Place;
-
-// Parts of light that pass a link up the line and down it.
-typedef struct
-{
-  exact up, down;
-} Link;
-
-static ulong voxel_at(LatticeInfo lattice, const int* at)
-{
-  return ((ulong)at[2] * lattice.size[1] + at[1]) * lattice.size[0] + at[0];
-}
-
-static Place next_along(LatticeInfo lattice, Place place, int i)
-{
-  Place next = place;
-  for (int a = 0; a < 3; ++a)
-  {
-    const int size = lattice.size[a], to = place.at[a] + Ways[i][a];
-    const bool beyond = to < 0 || to >= size, periodic = lattice.periodic >> a & 1;
-    next.other = beyond && !periodic ? 2 * a + (to < 0 ? 0 : 1) : next.other;
-    next.face = next.face < 0 ? next.other : next.face;
-    next.at[a] = beyond ? (to + size) % size : to;
-  }
-  if (next.face >= 0)
-  {
-    for (int a = 0; a < 3; ++a)
-    {
-      next.at[a] = place.at[a];
-    }
-  }
-  return next;
-}
-
-static Link link_between(MEDIUM, ulong a, ulong b)
-{
-  const exact own = 1 / (exact)passes[a], other = 1 / (exact)passes[b];
-  const exact by_a = BENDS ? 1 / (exact)squared[a] : 1, by_b = BENDS ? 1 / (exact)squared[b] : 1;
-  const exact both = 2 / (own * by_a + other * by_b + fabs(by_a - by_b));
-  const Link link = { fmin(both * by_a, (exact)1), fmin(both * by_b, (exact)1) };
-  return link;
-}
-
-// Of a face, or the mean of a corner's two: what it lets in of what shines on it, and the part of what meets it from
-// inside that comes back.
-typedef struct
-{
-  exact in, back;
-} Border;
-
-static Border border_at(LatticeInfo lattice, MEDIUM, ulong voxel, Place past, exact shines, int i)
-{
-  const exact incoming = 0.5f * (lattice.incoming[past.face] + lattice.incoming[past.other]);
-  const exact albedo = 0.5f * (lattice.albedo[past.face] + lattice.albedo[past.other]);
-  const exact passing = 2 / (1 / (exact)passes[voxel] + 1);
-  const Border border = { passing * shines * EXACT_WEIGHT(i) * incoming * (BENDS ? squared[voxel] : 1.0f),
-    1 - passing * (1 - albedo) };
-  return border;
-}
-
-// Where the work-item's line begins, and whether there is one: of an axis' links by the two other coordinates, of
-// diagonal ones by the coordinate along the third axis and a number along the first rows of the plane.
-static bool begin_line(LatticeInfo lattice, int i, Place* place, bool* closed)
-{
-  const int u = get_global_id(0), v = get_global_id(1);
-  int moving[2] = { -1, -1 }, moves = 0, still[2], stills = 0;
-  for (int a = 0; a < 3; ++a)
-  {
-    if (Ways[i][a] != 0)
-    {
-      moving[moves++] = a;
-    }
-    else
-    {
-      still[stills++] = a;
-    }
-  }
-  place->face = place->other = -1;
-  const int a = moving[0], b = moving[1];
-  const bool round_a = lattice.periodic >> a & 1, round_b = moves > 1 ? lattice.periodic >> b & 1 : true;
-  const int first_a = Ways[i][a] > 0 ? 0 : lattice.size[a] - 1;
-  *closed = round_a && round_b;
-  if (moves == 1)
-  {
-    place->at[still[0]] = u;
-    place->at[still[1]] = v;
-    place->at[a] = first_a;
-    return true;
-  }
-  const int size_a = lattice.size[a], size_b = lattice.size[b], first_b = Ways[i][b] > 0 ? 0 : size_b - 1;
-  place->at[still[0]] = v;
-  if (*closed)
-  {
-    int x = size_a, y = size_b;
-    while (y > 0)
-    {
-      const int rest = x % y;
-      x = y;
-      y = rest;
-    }
-    place->at[a] = u;
-    place->at[b] = 0;
-    return u < x;
-  }
-  place->at[a] = u < size_a ? u : first_a;
-  place->at[b] = u < size_a ? first_b : u - size_a;
-  return u < size_a ? !round_b : !round_a && (round_b || u - size_a != first_b);
-}
-
-// What the way up knows of a voxel: U and R.
-typedef struct
-{
-  exact sends, returns;
-} Behind;
+#include "LatticeBoltzmann/LatticeLine.cl"
 
 // What comes down to where a closed line is cut, by what goes round up it, x, and what comes from ahead, B: sent +
 // round x + gives_back B.
@@ -142,13 +12,6 @@ typedef struct
 {
   exact sent, round, gives_back;
 } Cut;
-
-// One voxel up: what arrives there from behind is arrived + back times what it sends down.
-static Behind pass_voxel(exact straight, exact source, exact arrived, exact back)
-{
-  const Behind behind = { straight * (arrived + back * source) + source, straight * straight * back };
-  return behind;
-}
 
 // Lines of a pair of directions, 2 pair and 2 pair + 1. A work-item a line.
 //   shines    1, or 0: nothing comes in through the faces
@@ -207,17 +70,18 @@ __kernel void sweep_lines(LatticeInfo lattice, MEDIUM, int pair, exact shines, _
       break;
     }
     link = link_between(straight, passes, squared, even, voxel, ahead);
-    const exact again = 1 / (1 - here.returns * (1 - link.up));
     if (closed)
     {
+      const exact again = 1 / (1 - here.returns * (1 - link.up));
       const exact down = cut.gives_back * again;
       cut.sent += down * (link.down * weight * even[ahead] + (1 - link.up) * here.sends);
       cut.round += down * (1 - link.up) * part;
       cut.gives_back = down * link.down * straight[ahead];
       part *= link.up * again;
     }
-    arrived = link.up * here.sends * again;
-    back = 1 - link.down + link.up * link.down * here.returns * again;
+    const Behind beyond = cross_up(link, here);
+    arrived = beyond.sends;
+    back = beyond.returns;
     place = next;
     voxel = ahead;
     ++voxels;
@@ -250,19 +114,17 @@ __kernel void sweep_lines(LatticeInfo lattice, MEDIUM, int pair, exact shines, _
       const Place below = next_along(lattice, place, i + 1);
       const ulong other = voxel_at(lattice, below.at);
       link = link_between(straight, passes, squared, even, other, voxel);
-      const exact sent = behind[2 * other] + (closed ? share[other] * round : 0), gives = behind[2 * other + 1];
-      const exact up = (sent + gives * link.down * down) / (1 - gives * (1 - link.up));
-      up_arrives = link.up * up + (1 - link.down) * down;
-      const exact lower = link.down * down + (1 - link.up) * up;
+      const Behind of_other = { behind[2 * other] + (closed ? share[other] * round : 0), behind[2 * other + 1] };
+      const Crossed crossed = cross_down(link, of_other, down);
+      up_arrives = crossed.up_arrives;
       sum[voxel] += up_arrives + comes;
       if (writes)
       {
-        const ulong at = (ulong)(place.at[2] + 1) * lattice.layer + (ulong)(place.at[1] + 1) * lattice.row +
-          place.at[0] + LatticeFirst;
+        const ulong at = density_at(lattice, place.at);
         densities[i * lattice.stride + at] = straight[voxel] * up_arrives + source;
         densities[(i + 1) * lattice.stride + at] = down;
       }
-      comes = lower;
+      comes = crossed.lower;
       place = below;
       voxel = other;
     }
@@ -272,8 +134,7 @@ __kernel void sweep_lines(LatticeInfo lattice, MEDIUM, int pair, exact shines, _
       sum[voxel] += up_arrives + comes;
       if (writes)
       {
-        const ulong at = (ulong)(first.at[2] + 1) * lattice.layer + (ulong)(first.at[1] + 1) * lattice.row +
-          first.at[0] + LatticeFirst;
+        const ulong at = density_at(lattice, first.at);
         densities[i * lattice.stride + at] = straight[voxel] * up_arrives + source;
         densities[(i + 1) * lattice.stride + at] = down;
       }

@@ -17,7 +17,8 @@
 SHARED_BEGIN
 enum
 {
-  LatticeFirst = 16 ///< place of a row's first voxel, so that rows are aligned as vectors are
+  LatticeFirst = 16, ///< place of a row's first voxel, so that rows are aligned as vectors are
+  OtherBlock = 6     ///< in place of a face of the grid: behind it another block's voxels lie
 };
 
 /// A lattice in memory: voxels with one more round them, rows of `row` values, the first voxel at LatticeFirst.
@@ -26,6 +27,7 @@ typedef struct
   int size[3]; ///< voxels
   int row, layer;
   int periodic;      ///< bits of the axes
+  int inner;         ///< bits of the faces -x, +x, ... +z that are no faces of the grid: another block lies behind
   int offset[18];    ///< from a voxel to the one that a direction leads to
   float albedo[6];   ///< part of what leaves through -x, +x, ... +z that comes back
   float incoming[6]; ///< W / length^2: fluence, over n^2, of the diffuse light outside each face

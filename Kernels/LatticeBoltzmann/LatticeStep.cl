@@ -167,9 +167,10 @@ __kernel void leave_lattice(
     for (int a = 0; a < 3; ++a)
     {
       const int next = at[a] + Ways[i][a];
-      if (!(lattice.periodic >> a & 1) && (next < 0 || next >= lattice.size[a]))
+      const int face = 2 * a + (next < 0 ? 0 : 1);
+      if (!(lattice.periodic >> a & 1) && !(lattice.inner >> face & 1) && (next < 0 || next >= lattice.size[a]))
       {
-        second = 2 * a + (next < 0 ? 0 : 1);
+        second = face;
         first = first < 0 ? second : first;
       }
     }

@@ -63,12 +63,12 @@ double LatticeSquares(int directions)
   return directions == 6 ? 1.0 / 3.0 : 0.5;
 }
 
-LatticeVoxels::LatticeVoxels(const PropagationProblem& problem, const Field& ior, const LatticeSettings& settings,
-  const Uncollided& direct, int channel)
+LatticeVoxels::LatticeVoxels(
+  const LatticeScene& scene, const Field& ior, const LatticeSettings& settings, const Uncollided& direct, int channel)
   : Directions(settings.directions)
   , Periodic(settings.periodic)
 {
-  const Medium& medium = problem.TheMedium();
+  const Medium& medium = scene.medium;
   const double edge = medium.grid.spacing[0];
   const bool published = settings.scheme == LatticeScheme::Published;
   // Thickness of which every collision is even, and links pass all.
@@ -88,20 +88,24 @@ LatticeVoxels::LatticeVoxels(const PropagationProblem& problem, const Field& ior
     this->passesAll = this->passesAll && this->passes.back() == 1.0f;
     this->bends = this->bends || this->squared.back() != this->squared.front();
   }
+  this->TakeOutside(scene.shining, channel);
+  this->Shine(scene, direct, channel);
+}
+
+void LatticeVoxels::TakeOutside(const Illumination& shining, int channel)
+{
   const auto c = static_cast<std::size_t>(channel);
-  const double even = this->bends ? 1.0 : this->squared.front();
+  const double even = this->bends || this->squared.empty() ? 1.0 : this->squared.front();
   for (std::size_t face = 0; face < 6; ++face)
   {
-    const Illumination& shining = problem.Shining();
     this->incoming[face] = 4.0 * Pi * (shining.sky[c] + shining.faces[face][c]) * even;
     this->albedo[face] = shining.faceAlbedo[face][c];
   }
-  this->Shine(problem, direct, channel);
 }
 
-void LatticeVoxels::Shine(const PropagationProblem& problem, const Uncollided& direct, int channel)
+void LatticeVoxels::Shine(const LatticeScene& scene, const Uncollided& direct, int channel)
 {
-  const Medium& medium = problem.TheMedium();
+  const Medium& medium = scene.medium;
   const double edge = medium.grid.spacing[0];
   std::vector<double> begin(medium.grid.VoxelCount());
   for (std::size_t i = 0; i < begin.size(); ++i)
@@ -109,7 +113,6 @@ void LatticeVoxels::Shine(const PropagationProblem& problem, const Uncollided& d
     begin[i] = edge * medium.sigma_s.At(i, channel) * direct.image.fluence.At(i, channel);
   }
   this->crossing.clear();
-  this->leaves = {};
   if (!direct.firstMoments.empty())
   {
     this->CrossFaces(medium, direct, channel, begin);
@@ -151,7 +154,10 @@ void LatticeVoxels::CrossFaces(const Medium& medium, const Uncollided& direct, i
       const std::size_t beyond = VoxelBeyond(medium.grid, this->Periodic, i, face);
       this->crossing[6 * i + face] = static_cast<float>(crosses);
       begin[i] = std::max(begin[i] - crosses, 0.0);
-      (beyond == Outside ? this->leaves[face] : begin[beyond]) += crosses;
+      if (beyond != Outside)
+      {
+        begin[beyond] += crosses;
+      }
     }
   }
 }

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "LatticeBoltzmann/LatticeScene.h"
 #include "LatticeBoltzmann/LatticeSettings.h"
-#include "LightPropagation/Problem/PropagationProblem.h"
 #include "Lights/UncollidedImage.h"
 #include "Medium/Field.h"
 
@@ -44,7 +44,6 @@ struct LatticeVoxels
   /// W / length^2 of uncollided light, by voxel and face, that is scattered first so near to the face that it begins on
   /// its other side (Eq. (L13)): no part of `source` there. Empty: none.
   std::vector<float> crossing;
-  std::array<double, 6> leaves{};   ///< W / length^2 of them through the box's faces, all voxels added up
   std::vector<double> begins;       ///< part of what begins in a voxel that is not absorbed in the same step, Eq. (L4a)
   bool bends = false;               ///< n^2 varies
   bool passesAll = true;            ///< no link gives back light
@@ -53,11 +52,13 @@ struct LatticeVoxels
   std::array<double, 6> albedo{};   ///< of the faces
 
   /// @param ior  null: 1
-  LatticeVoxels(const PropagationProblem& problem, const Field& ior, const LatticeSettings& settings,
-    const Uncollided& direct, int channel);
+  LatticeVoxels(const LatticeScene& scene, const Field& ior, const LatticeSettings& settings, const Uncollided& direct,
+    int channel);
 
   /// Source of uncollided light, and of what the medium emits.
-  void Shine(const PropagationProblem& problem, const Uncollided& direct, int channel);
+  void Shine(const LatticeScene& scene, const Uncollided& direct, int channel);
+  /// What comes in from outside and what faces give back. To be called again where `bends` was changed.
+  void TakeOutside(const Illumination& shining, int channel);
 
   bool Reflects() const; ///< some face gives back light
   double Given() const;  ///< above 0: something shines

@@ -1,11 +1,11 @@
 #pragma once
 
-#include "Device/ExactValues.h"
 #include "Device/Monitor.h"
-#include "LatticeBoltzmann/Lattice.h"
+#include "LatticeBoltzmann/LatticeBox.h"
+#include "LatticeBoltzmann/LatticeSettings.h"
+#include "LatticeBoltzmann/LatticeVoxels.h"
+#include "LatticeBoltzmann/SteadySystem.h"
 #include "Light/LightField.h"
-#include "LightPropagation/Diffusion/MultigridSolver.h"
-#include "Medium/Grid.h"
 
 #include <vector>
 
@@ -15,40 +15,36 @@ namespace tyndall
 ///
 /// Unknown is what collisions make even, by voxel. Between collisions light goes along lines of links, which are solved
 /// at once; the rest is symmetric and positive definite, and solved by conjugate gradients whose preconditioner is the
-/// diffusion of the same lattice (MultigridSolver). So the work hardly grows with thickness, albedo and voxels.
+/// diffusion of the same lattice. So the work hardly grows with thickness, albedo and voxels.
 class SteadyLattice
 {
 public:
-  /// @param lattice  whose densities Solve() writes
-  SteadyLattice(Device& device, const Grid& grid, const LatticeSettings& settings, const LatticeVoxels& voxels,
-    const Lattice& lattice);
+  /// @param voxels  the known ones of the box
+  /// @param system  of the same; Solve() has it write densities
+  SteadyLattice(
+    const LatticeBox& box, const LatticeSettings& settings, const LatticeVoxels& voxels, SteadySystem& system);
 
   /// Fluence of the steady lattice, W / length^2 by voxel, never negative; densities to the lattice.
   /// @param rows  of convergence, one an iteration
   std::vector<float> Solve(const Monitor& monitor, std::vector<ConvergenceRow>& rows);
 
 private:
-  using Values = std::vector<double>;
+  using Values = SteadySystem::Values;
 
-  void Load();
-  void LoadDiffusion();
-  double Turns(std::size_t voxel) const; ///< part of a density that is made even and not absorbed
-  Values Sweep(const Values& even, double shines, bool writes, const Monitor& monitor);
+  double Turns(std::size_t known) const; ///< part of a density that is made even and not absorbed
+  double Dot(const Values& a, const Values& b) const;
   Values EvenOf(const Values& scaled, bool withSources) const;
   Values Residual(const Values& scaled, const Monitor& monitor);
   Values Applied(const Values& scaled, const Monitor& monitor);
   Values Preconditioned(const Values& residual);
-  void Note(double estimate, double imbalance, int iteration, std::vector<ConvergenceRow>& rows) const;
+  void Note(double estimate, double change, int iteration, std::vector<ConvergenceRow>& rows) const;
 
-  Device& TheDevice;
-  const Grid TheGrid;
+  const LatticeBox& Box;
   const LatticeSettings& Settings;
   const LatticeVoxels& Voxels;
-  const Lattice& Densities;
-  std::size_t Count;
-  ExactValues Straight, Even, Behind, Share, Sum, Correction;
-  Buffer<float> Passes, Squared;
-  MultigridSolver Diffusion;
-  double Start, Work = 0.0;
+  SteadySystem& System;
+  const std::size_t Count;
+  const double CountOfAll;
+  double Start;
 };
 }

@@ -8,18 +8,13 @@ import re
 import time
 
 import numpy
-from pieces_of_ranks import Runs
+from pieces_of_ranks import Runs, difference
 
 runs = Runs("BlocksOverRanks")
 WRONG = ["arrays", "components", "spacing", "g", "gap"]
 CASES = ["blocks_wavelet", "blocks_photons", "blocks_scattered", "blocks_plain", "blocks_turbid", "blocks_ghosts", "blocks_given_all", "blocks_even",
          "blocks_uneven"]
 LIKE = {"blocks_ghosts": "blocks_wavelet", "blocks_given_all": "blocks_even", "blocks_uneven": "blocks_even"}
-
-
-def difference(light, expected):
-    assert light.shape == expected.shape, (light.shape, expected.shape)
-    return abs(light - expected).max() / abs(expected).max()
 
 
 def ghost_cells_are_the_neighbours(ranks):

@@ -59,9 +59,9 @@ def solved(density, array, full=1, **settings):
     return light
 
 
-def by_blocks(density, array, **settings):
+def by_blocks(density, array, solve=solved, **settings):
     """The same where each rank solves its piece, of which alone it has the medium."""
-    light = solved(density, array, Decomposition="Blocks", **settings)
+    light = solve(density, array, Decomposition="Blocks", **settings)
     medium = light.Input.GetClientSideObject().GetOutputDataObject(0)
     output = light.GetClientSideObject().GetOutputDataObject(0)
     assert medium.GetExtent() == output.GetExtent(), (medium.GetExtent(), output.GetExtent())
@@ -289,6 +289,89 @@ def blocks_even():
 
 def blocks_uneven():
     own_pieces("blocks_uneven", uneven_pieces(), solve=by_blocks)
+
+
+def on_lattice(density, array, full=1, **settings):
+    """Thick voxels in colour under a sun and a sky, by a lattice."""
+    medium = ParticipatingMedium(Input=density, DensityArray=array, ExtinctionScale=2, MinimumDensity=0,
+                                 MaximumDensity=full, Albedo=[0.99, 0.9, 0.7])
+    light = LatticeBoltzmannLighting(Input=medium, Lights=LightRig(SunElevation=50), SkyColor=[0.1, 0.1, 0.2], NetFlux=1,
+                                     FaceAlbedo=[0, 0, 0, 0, 0.3, 0], **settings)
+    light.UpdatePipeline()
+    return light
+
+
+def lattice_by_blocks(density, array, **settings):
+    return by_blocks(density, array, solve=on_lattice, **settings)
+
+
+def lattice_wavelet():
+    """Asked again it is not solved again, but where a property changed."""
+    light = lattice_by_blocks(Wavelet(WholeExtent=SIZE), ["POINTS", "RTData"], full=277)
+    keep("lattice_wavelet", light)
+    steps = light.GetClientSideObject().GetOutputDataObject(1)
+    before = steps.GetMTime()
+    light.Input.Input.Modified()
+    light.UpdatePipeline()
+    assert steps.GetNumberOfRows() > 0 and steps.GetMTime() >= before
+
+
+def lattice_exact():
+    keep("lattice_exact", lattice_by_blocks(Wavelet(WholeExtent=SIZE), ["POINTS", "RTData"], full=277, Tolerance=1e-7))
+
+
+def lattice_whole():
+    settings = {"Decomposition": "Whole on each rank", "Tolerance": 1e-7}
+    keep("lattice_whole", on_lattice(Wavelet(WholeExtent=SIZE), ["POINTS", "RTData"], full=277, **settings))
+
+
+def lattice_even():
+    own_pieces("lattice_even", [piece_of(extent) for extent in parts(even_cuts())], solve=lattice_by_blocks)
+
+
+def lattice_uneven():
+    own_pieces("lattice_uneven", uneven_pieces(), solve=lattice_by_blocks)
+
+
+def by_ordinates(density, array, **settings):
+    medium = ParticipatingMedium(Input=density, DensityArray=array, ExtinctionScale=0.5, MinimumDensity=0, MaximumDensity=1,
+                                 Albedo=[0.9, 0.8, 0.7], MeanCosine=0.5)
+    light = DiscreteOrdinates(Input=medium, Lights=LightRig(SunElevation=50), SkyColor=[0.1, 0.1, 0.2], NetFlux=1,
+                              DirectionsPerFace=9, Terms=16, **settings)
+    light.UpdatePipeline()
+    return light
+
+
+def ordinates_by_blocks(density, array):
+    return by_blocks(density, array, solve=by_ordinates)
+
+
+def ordinates_even():
+    own_pieces("ordinates_even", [piece_of(extent) for extent in parts(even_cuts())], solve=ordinates_by_blocks)
+
+
+def ordinates_uneven():
+    own_pieces("ordinates_uneven", uneven_pieces(), solve=ordinates_by_blocks)
+
+
+def ordinates_whole():
+    own_pieces("ordinates_whole", [piece_of([0, 12, 0, 5, 0, 4])], solve=by_ordinates)
+
+
+def lattice_errors():
+    """What a lattice cannot do by pieces is one error that names it; where ranks decide by themselves they solve the whole."""
+    medium = ParticipatingMedium(Input=Wavelet(WholeExtent=SIZE), DensityArray=["POINTS", "RTData"])
+    for named, settings in (("a point, spot or rectangle light", {"Lights": PointLight(Position=[0, 0, 20], Power=[9, 9, 9])}),
+                            ("MaximumOrders", {"MaximumOrders": 4}), ("LitColor", {"LitColor": 1})):
+        light = LatticeBoltzmannLighting(Input=medium, SkyColor=[1, 1, 1], Decomposition="Blocks", **settings)
+        errors = errors_of(light)
+        light.UpdatePipeline()
+        light.UpdatePipeline()
+        assert len(errors) == 1 and named in errors[0] and "blocks" in errors[0], (rank, named, errors)
+        assert light.GetClientSideObject().GetOutputDataObject(0).GetNumberOfCells() == 0
+        light.Decomposition = "Automatic"
+        light.UpdatePipeline()
+        assert len(errors) == 1 and light.GetClientSideObject().GetOutputDataObject(0).GetNumberOfCells() > 0, errors
 
 
 def blocks_errors():

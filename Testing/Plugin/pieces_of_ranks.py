@@ -9,6 +9,12 @@ import numpy
 here = os.path.dirname(os.path.abspath(__file__))
 
 
+def difference(light, expected):
+    """@return the largest, over the largest value"""
+    assert light.shape == expected.shape, (light.shape, expected.shape)
+    return abs(light - expected).max() / abs(expected).max()
+
+
 class Runs:
     """Of one test, in a folder of its own, which begins empty."""
 

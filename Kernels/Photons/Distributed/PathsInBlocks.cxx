@@ -1,7 +1,6 @@
 #include "Photons/Distributed/PathsInBlocks.h"
 
 #include "Photons/Distributed/BlockMarch.h"
-
 #include "Photons/Distributed/PhotonShares.h"
 
 #include <algorithm>

@@ -1,0 +1,22 @@
+#include "Propagation/PieceOfMedium.h"
+
+#include "Ranks/PieceBlocks.h"
+
+#include "vtkImageData.h"
+
+namespace tyndall
+{
+PieceOfMedium::PieceOfMedium(
+  Communicator& communicator, const PieceBlocks& pieces, vtkAlgorithm* filter, vtkImageData* given)
+{
+  communicator.Together([&] {
+    if (pieces.HasOwn())
+    {
+      this->image = pieces.OwnImage(given);
+      this->input = ReadMedium(filter, this->image);
+      this->medium = this->input.medium;
+    }
+  });
+  this->emits = communicator.Largest({ pieces.HasOwn() && this->input.Emits() ? 1.0 : 0.0 })[0] > 0.0;
+}
+}

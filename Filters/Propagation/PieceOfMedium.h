@@ -1,0 +1,28 @@
+#pragma once
+
+#include "Common/LightTransportData.h"
+#include "Distribution/Communicator.h"
+#include "Medium/Medium.h"
+
+#include "vtkSmartPointer.h"
+
+class vtkAlgorithm;
+class vtkImageData;
+
+namespace tyndall
+{
+class PieceBlocks;
+
+/// The medium of a rank's block.
+struct PieceOfMedium
+{
+  /// All ranks make one together.
+  /// @throws InvalidInput on each what ReadMedium says on one
+  PieceOfMedium(Communicator& communicator, const PieceBlocks& pieces, vtkAlgorithm* filter, vtkImageData* given);
+
+  vtkSmartPointer<vtkImageData> image; ///< whose arrays the medium has; null where the block is empty
+  MediumInput input;
+  Medium medium;      ///< empty where the block is
+  bool emits = false; ///< the medium of any rank
+};
+}

@@ -1,0 +1,53 @@
+#pragma once
+
+#include "DiscreteOrdinates/OrdinatesScene.h"
+#include "DiscreteOrdinates/UpwindSweep.h"
+#include "LightPropagation/Distributed/BlockContact.h"
+#include "LightPropagation/Distributed/SweepSchedule.h"
+
+#include <array>
+#include <exception>
+#include <functional>
+#include <vector>
+
+namespace tyndall
+{
+/// The upwind sweep of a grid whose blocks lie on several ranks: directions of an octant go from block to block in the
+/// order that light does, those of some octants while others are under way elsewhere. What leaves a block's voxels
+/// through a face enters those of the next block as it would in one memory: the same radiance bit for bit.
+class UpwindSweepInBlocks : public OrdinateSweep
+{
+public:
+  /// All ranks make one together, and all of it must stay.
+  /// @param grid  of this rank's block, or of one voxel where it has none: that is swept alone
+  /// @throws InvalidInput on each where blocks wait for each other
+  UpwindSweepInBlocks(Device& device, const OrdinatesRanks& ranks, const Grid& grid, const OrdinateGroups& groups);
+
+  /// All ranks call it.
+  /// @return of all ranks
+  /// @throws on every rank what any of them throws
+  FacePowers Apply(const Buffer<float>& radiance, const Buffer<float>& sigma_t, const Buffer<float>& scale,
+    const IncomingRadiance& incoming, const Monitor& monitor) override;
+
+private:
+  struct Octant
+  {
+    ParallelBundles way; ///< without rays
+    int first = 0, groups = 0;
+    std::vector<BlockContact> senders, receivers;
+  };
+  void Attempt(const std::function<void()>& work);
+  void TakeFrom(const Octant& octant, int number);
+  void GiveTo(const Octant& octant, int number);
+  template <class Visit>
+  void ForFace(const Octant& octant, const BlockContact& contact, const VoxelBox& cells, const Visit& visit) const;
+
+  const OrdinatesRanks& Ranks;
+  const Grid TheGrid;
+  std::vector<Octant> Octants;
+  std::vector<int> Order; ///< of this rank
+  UpwindSweep Sweep;
+  bool Broken = false; ///< during a sweep: something has gone wrong here, or before here
+  std::exception_ptr Error;
+};
+}

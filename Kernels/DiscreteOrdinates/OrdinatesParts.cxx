@@ -1,0 +1,223 @@
+#include "DiscreteOrdinates/OrdinatesParts.h"
+
+#include "Device/Errors.h"
+#include "DiscreteOrdinates/PublishedOrders.h"
+#include "DiscreteOrdinates/SweptOrders.h"
+#include "LightPropagation/Angular/DirectionSet.h"
+#include "LightPropagation/Uncollided/EnvironmentPeaks.h"
+#include "Numerics/Constants.h"
+#include "Numerics/NumberText.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace tyndall
+{
+namespace
+{
+constexpr int FacesPeaksAreSoughtFor = 25; ///< directions per face, where directions are on a spiral
+
+void TakePowers(LightField& light, const EnergyLedger& ledger, int channel)
+{
+  const EnergyBalance& balance = ledger.Balance();
+  light.balance.entered[channel] = balance.entered[0];
+  light.balance.emitted[channel] = balance.emitted[0];
+  light.balance.absorbed[channel] = balance.absorbed[0];
+  light.balance.escaped[channel] = balance.escaped[0];
+  light.balance.leftOver[channel] = balance.leftOver[0];
+  for (int face = 0; face < 6; ++face)
+  {
+    light.facePowerOut[face][channel] = ledger.FacePowerOut()[face][0];
+  }
+}
+
+/// A row of all channels: one that is done stays as it is.
+void AddRows(std::vector<ConvergenceRow>& sum, const std::vector<ConvergenceRow>& rows, bool first)
+{
+  const ConvergenceRow last = sum.empty() ? ConvergenceRow() : sum.back();
+  const std::size_t count = std::max(sum.size(), rows.size());
+  while (sum.size() < count)
+  {
+    sum.push_back(last);
+    sum.back().iteration = static_cast<int>(sum.size()) - 1;
+  }
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    const ConvergenceRow& row = rows[std::min(i, rows.size() - 1)];
+    sum[i].seconds += row.seconds;
+    sum[i].residual = first ? row.residual : std::max(sum[i].residual, row.residual);
+    sum[i].change = first ? row.change : std::max(sum[i].change, row.change);
+    sum[i].absorbed += row.absorbed;
+    sum[i].escaped += row.escaped;
+    sum[i].leftOver += row.leftOver;
+  }
+}
+}
+
+bool IsPublished(const OrdinatesSettings& settings)
+{
+  return settings.scheme == OrdinatesScheme::Published;
+}
+
+PropagationSettings AsPropagation(const OrdinatesSettings& settings)
+{
+  PropagationSettings as;
+  as.directionsPerFace = settings.directionsPerFace;
+  as.adaptDirections = !IsPublished(settings) && settings.spiralDirections == 0;
+  as.source = IsPublished(settings) ? PropagationSource::Constant : PropagationSource::Automatic;
+  as.maximumOrders = settings.maximumOrders;
+  as.tolerance = settings.tolerance;
+  as.periodic = settings.periodic;
+  as.netFlux = settings.netFlux;
+  as.leaveOut = settings.leaveOut;
+  as.angularDegree = 0; // scatters by direction, not in moments
+  return as;
+}
+
+FarLight FarLightOf(const Illumination& shining, int perFace, const OrdinatesSettings& settings)
+{
+  const bool spiral = settings.spiralDirections > 0;
+  const DirectionSet cube = spiral ? EquiangularDirections(FacesPeaksAreSoughtFor)
+    : IsPublished(settings)        ? PublishedDirections(perFace)
+                                   : EquiangularDirections(perFace);
+  const SplitEnvironment environment = Split(shining.environment, cube);
+  FarLight far = { cube.directions, {}, environment.peaks };
+  if (!spiral)
+  {
+    far.radiance = BoundaryRadiance(cube, environment.smooth, shining.sky);
+    return far;
+  }
+  far.directions = IsPublished(settings) ? SpiralDirections(settings.spiralDirections)
+                                         : WeightedSpiralDirections(settings.spiralDirections);
+  for (const Direction& direction : far.directions)
+  {
+    const std::array<double, 3>& omega = direction.omega;
+    const Rgb seen =
+      environment.smooth.Empty() ? Rgb{} : Lookup(environment.smooth, { -omega[0], -omega[1], -omega[2] });
+    far.radiance.push_back({ seen[0] + shining.sky[0], seen[1] + shining.sky[1], seen[2] + shining.sky[2] });
+  }
+  return far;
+}
+
+SeparablePhaseFunction SeparableOf(
+  const PhaseFunction& function, const std::vector<Direction>& directions, const OrdinatesSettings& settings)
+{
+  const bool matrix = settings.scattering == OrdinatesScattering::Matrix;
+  SeparableSettings separable;
+  separable.factorisation = settings.scattering == OrdinatesScattering::SphericalHarmonics
+    ? PhaseFactorisation::SphericalHarmonics
+    : PhaseFactorisation::SingularValues;
+  separable.terms = matrix ? static_cast<int>(directions.size()) : settings.terms;
+  separable.repaired = !IsPublished(settings);
+  separable.sampling = IsPublished(settings) ? PhaseSampling::PointValues : PhaseSampling::CellMeans;
+  separable.truncatesPeak = !IsPublished(settings) && !matrix;
+  return { function, directions, separable };
+}
+
+void CheckMemory(Device& device, const Grid& grid, const OrdinatesAngles& angles, const OrdinatesSettings& settings)
+{
+  const std::size_t bytes =
+    IsPublished(settings) ? BytesOfPublishedOrders(grid, angles, settings) : BytesOfSweptOrders(grid, angles, settings);
+  const std::size_t radiance = sizeof(float) * AngularScattering::Floats(angles.groups, grid.VoxelCount());
+  const std::size_t free = device.MemoryLimit() - device.BytesInUse();
+  if (bytes <= free && radiance <= device.AllocationLimit())
+  {
+    return;
+  }
+  const auto mebibytes = [](std::size_t count) { return Text("%.0f", std::ceil(count / 1048576.0)) + " MiB"; };
+  throw DeviceError("Discrete ordinates with " + std::to_string(angles.phase.DirectionCount()) + " directions need " +
+    mebibytes(bytes) + " for this grid, " + mebibytes(radiance) +
+    " of them in one piece, the radiance along all directions; " + device.Name() + " has " + mebibytes(free) +
+    " left, " + mebibytes(device.AllocationLimit()) +
+    " in one piece. Choose fewer directions, a coarser grid, or Light Propagation Maps.");
+}
+
+IncomingRadiance IncomingOf(const FarLight& far, const Illumination& shining, int channel)
+{
+  bool any = false;
+  for (const Rgb& face : shining.faces)
+  {
+    any = any || face[channel] > 0.0;
+  }
+  for (const Rgb& radiance : far.radiance)
+  {
+    any = any || radiance[channel] > 0.0;
+  }
+  if (!any)
+  {
+    return {};
+  }
+  return [&far, &shining, channel](
+           int direction, int face) { return far.radiance[direction][channel] + shining.faces[face][channel]; };
+}
+
+std::vector<Light> LampsOf(const FarLight& far, const Illumination& shining, int channel)
+{
+  std::vector<Light> lamps;
+  for (const std::vector<Light>* of : { &shining.lights, &far.peaks })
+  {
+    for (Light lamp : *of)
+    {
+      lamp.power = { lamp.power[channel], lamp.power[channel], lamp.power[channel] };
+      if (lamp.power[0] > 0.0)
+      {
+        lamps.push_back(lamp);
+      }
+    }
+  }
+  return lamps;
+}
+
+void TakeChannel(LightField& light, const OrdinatesResult& found, int channel)
+{
+  const std::size_t voxels = found.fluence.size();
+  light.fluence.resize(voxels * light.channels);
+  light.fluenceDirect.resize(voxels * light.channels);
+  light.netFlux.resize(found.flux.size() * light.channels);
+  for (std::size_t i = 0; i < voxels; ++i)
+  {
+    light.fluence[i * light.channels + channel] = found.fluence[i];
+    light.fluenceDirect[i * light.channels + channel] = found.direct[i];
+    for (std::size_t a = 0; a < 3 && !found.flux.empty(); ++a)
+    {
+      light.netFlux[(i * light.channels + channel) * 3 + a] = found.flux[a * voxels + i];
+    }
+  }
+  light.facePower.resize(std::max(light.facePower.size(), found.facePower.size() * light.channels), 0.0f);
+  for (std::size_t cell = 0; cell < found.facePower.size(); ++cell)
+  {
+    light.facePower[cell * light.channels + channel] = found.facePower[cell];
+  }
+  TakePowers(light, found.ledger, channel);
+  AddRows(light.convergence, found.convergence, channel == 0);
+}
+
+void DescribeLight(LightField& light, const Device& device, const FarLight& far)
+{
+  light.scatteredRadiance.resize(light.fluence.size());
+  std::transform(light.fluence.begin(), light.fluence.end(), light.scatteredRadiance.begin(),
+    [](float fluence) { return static_cast<float>(fluence / (4.0 * Pi)); });
+  light.storedDirections = { { 0.0, 0.0, 0.0 } };
+  light.halfRangeFlux = HalfRangeFlux({ 0, false, far.directions });
+  light.device = device.Name();
+}
+
+void Judge(const OrdinatesSettings& settings, bool diverged, LightField& light)
+{
+  const double residual = light.convergence.empty() ? 0.0 : light.convergence.back().residual;
+  const bool isAsked = settings.maximumOrders > 0 || (settings.seriesAfter > 0 && !IsPublished(settings));
+  light.converged = !diverged && (isAsked || residual <= settings.tolerance);
+  if (diverged)
+  {
+    light.doubts.push_back("The light grows without end and was stopped after " +
+      std::to_string(light.convergence.size()) + " steps: it has no meaning.");
+  }
+  else if (!light.converged)
+  {
+    light.doubts.push_back("The light has not converged: after " + std::to_string(light.convergence.size()) +
+      " orders its estimated relative error is " + Text("%.3g", residual) + ", Tolerance is " +
+      Text("%.3g", settings.tolerance) + ". Light Propagation Maps accelerate such media.");
+  }
+}
+}

@@ -1,0 +1,53 @@
+#pragma once
+
+#include "Device/Device.h"
+#include "DiscreteOrdinates/OrdinatesScene.h"
+#include "DiscreteOrdinates/OrdinatesSettings.h"
+#include "Light/LightField.h"
+#include "LightPropagation/PropagationSettings.h"
+#include "Lights/Lights.h"
+#include "PhaseFunction/SeparablePhaseFunction.h"
+
+#include <vector>
+
+namespace tyndall
+{
+// What solves of the whole and of blocks have alike: from a scene to its channels, and from these to light.
+
+bool IsPublished(const OrdinatesSettings& settings);
+
+/// What light propagation maps would be told of the same scene: units, channels and axes are found alike.
+PropagationSettings AsPropagation(const OrdinatesSettings& settings);
+
+/// Directions of one solve, and what comes along them from far away.
+struct FarLight
+{
+  std::vector<Direction> directions;
+  std::vector<Rgb> radiance; ///< by direction, W / (length^2 sr)
+  std::vector<Light> peaks;  ///< of the environment
+};
+
+/// @param perFace  directions per face of a cube, as they are solved with
+FarLight FarLightOf(const Illumination& shining, int perFace, const OrdinatesSettings& settings);
+
+SeparablePhaseFunction SeparableOf(
+  const PhaseFunction& function, const std::vector<Direction>& directions, const OrdinatesSettings& settings);
+
+/// @throws DeviceError that says what is needed
+void CheckMemory(Device& device, const Grid& grid, const OrdinatesAngles& angles, const OrdinatesSettings& settings);
+
+/// Sees `far` and `shining`, which must stay. Empty: nothing comes in.
+IncomingRadiance IncomingOf(const FarLight& far, const Illumination& shining, int channel);
+
+/// Of the scene and of the environment, power of the channel in all three.
+std::vector<Light> LampsOf(const FarLight& far, const Illumination& shining, int channel);
+
+/// Puts the light of a channel beside that of the others.
+void TakeChannel(LightField& light, const OrdinatesResult& found, int channel);
+
+/// What light has beside fluence, before it is in the user's units.
+void DescribeLight(LightField& light, const Device& device, const FarLight& far);
+
+/// Whether it has converged.
+void Judge(const OrdinatesSettings& settings, bool diverged, LightField& light);
+}

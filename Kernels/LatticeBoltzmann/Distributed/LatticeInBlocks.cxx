@@ -1,0 +1,258 @@
+#include "LatticeBoltzmann/Distributed/LatticeInBlocks.h"
+
+#include "Device/Errors.h"
+#include "Distribution/SharedMedium.h"
+#include "LatticeBoltzmann/Distributed/DiffusionInBlocks.h"
+#include "LatticeBoltzmann/Distributed/LinesInBlocks.h"
+#include "LatticeBoltzmann/Distributed/UncollidedInBlocks.h"
+#include "LatticeBoltzmann/Distributed/VoxelsAround.h"
+#include "LatticeBoltzmann/LatticeAccount.h"
+#include "LatticeBoltzmann/LatticeLight.h"
+#include "LatticeBoltzmann/SteadyLattice.h"
+#include "LightPropagation/Distributed/BlockScene.h"
+#include "LightPropagation/Problem/AngularDegree.h"
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+
+namespace tyndall
+{
+namespace
+{
+/// That what lamps' light does in voxels depends on those next to the next ones.
+constexpr int Layers = 2;
+
+bool AllIsGivenBack(const Illumination& illumination)
+{
+  for (std::size_t c = 0; c < 3; ++c)
+  {
+    if (std::all_of(illumination.faceAlbedo.begin(), illumination.faceAlbedo.end(),
+          [c](const Rgb& albedo) { return albedo[c] >= 1.0; }))
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+void RequireSameLattice(
+  Communicator& communicator, bool has, const Field& ior, const Illumination& shining, const LatticeSettings& settings)
+{
+  std::vector<double> numbers = { 1.0 * settings.directions };
+  for (const Rgb& face : shining.faceAlbedo)
+  {
+    numbers.insert(numbers.end(), face.begin(), face.end());
+  }
+  RequireSame(communicator, "settings of the lattice", true, numbers);
+  RequireSame(communicator, "whether there is a refractive index", has, { ior.values ? 1.0 : 0.0 });
+}
+
+/// Sums over ranks of what each counted.
+void AddUp(Communicator& communicator, LightField& light)
+{
+  EnergyBalance& balance = light.balance;
+  std::vector<Rgb*> counted = { &balance.entered, &balance.emitted, &balance.absorbed, &balance.escaped };
+  for (Rgb& face : light.facePowerOut)
+  {
+    counted.push_back(&face);
+  }
+  std::vector<double> values;
+  for (const Rgb* rgb : counted)
+  {
+    values.insert(values.end(), rgb->begin(), rgb->end());
+  }
+  values = communicator.Sum(values);
+  for (std::size_t i = 0; i < values.size(); ++i)
+  {
+    (*counted[i / 3])[i % 3] = values[i];
+  }
+  for (std::size_t c = 0; c < 3; ++c)
+  {
+    balance.leftOver[c] = balance.entered[c] + balance.emitted[c] - balance.absorbed[c] - balance.escaped[c];
+  }
+}
+
+/// The equations of a steady lattice whose blocks lie on several ranks.
+class SteadyInBlocks : public SteadySystem
+{
+public:
+  SteadyInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition, const LatticeBox& box,
+    const LatticeSettings& settings, const LatticeVoxels& voxels, const Lattice* lattice)
+    : Others(communicator)
+    , Lines(device, communicator, partition, box, settings, voxels, lattice)
+    , Diffusion(device, communicator, partition, box, settings, voxels)
+  {
+  }
+
+  Values Sweep(const Values& even, double shines, bool writes, const Monitor& monitor) override
+  {
+    return this->Lines.Sweep(even, shines, writes, monitor);
+  }
+  Values Diffuse(const Values& residual, double) override { return this->Diffusion.Solve(residual); }
+  Values Sum(const Values& ofRank) override { return this->Others.Sum(ofRank); }
+
+private:
+  Communicator& Others;
+  LinesInBlocks Lines;
+  DiffusionInBlocks Diffusion;
+};
+
+/// The channels of one rank's block, solved in step with the other ranks.
+class ChannelsInBlocks
+{
+public:
+  ChannelsInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition, const LatticeBox& box,
+    const LatticeScene& scene, const Field& index, const LatticeSettings& settings, const Uncollided& direct)
+    : TheDevice(device)
+    , Others(communicator)
+    , Partition(partition)
+    , Box(box)
+    , Scene(scene)
+    , Index(index)
+    , Settings(settings)
+    , Direct(direct)
+  {
+  }
+
+  void AddTo(LightField& light, int channel, const Monitor& monitor) const
+  {
+    LatticeVoxels voxels(this->Scene, this->Index, this->Settings, this->Direct, channel);
+    this->TakeWhatIsOfAll(voxels, channel);
+    std::optional<Lattice> lattice;
+    this->Others.Together([&] {
+      if (this->Box.Count() > 0)
+      {
+        lattice.emplace(this->TheDevice, this->Box, this->Settings, voxels);
+      }
+    });
+    std::vector<float> fluence(this->Box.Count(), 0.0f);
+    std::vector<ConvergenceRow> rows;
+    if (this->Others.Sum({ voxels.Given() })[0] > 0.0)
+    {
+      SteadyInBlocks system(this->TheDevice, this->Others, this->Partition, this->Box, this->Settings, voxels,
+        lattice ? &*lattice : nullptr);
+      fluence = SteadyLattice(this->Box, this->Settings, voxels, system).Solve(monitor, rows);
+    }
+    this->Others.Together([&] {
+      if (lattice)
+      {
+        LatticeAccount(this->Scene, this->Box, this->Settings, this->Direct, voxels, *lattice, channel)
+          .AddTo(light, fluence);
+      }
+    });
+    AddRows(rows, light);
+  }
+
+private:
+  /// What kernels leave out they do for all voxels of the grid, and what comes in depends on it.
+  void TakeWhatIsOfAll(LatticeVoxels& voxels, int channel) const
+  {
+    const bool has = this->Box.Count() > 0;
+    const auto ends = std::minmax_element(voxels.squared.begin(), voxels.squared.end());
+    const std::vector<double> all =
+      this->Others.Largest({ voxels.passesAll ? 0.0 : 1.0, has ? static_cast<double>(*ends.second) : 0.0,
+        has ? 1.0 / static_cast<double>(*ends.first) : 0.0, voxels.thickest });
+    voxels.passesAll = all[0] == 0.0;
+    voxels.bends = static_cast<float>(all[1]) != static_cast<float>(1.0 / all[2]);
+    voxels.thickest = all[3];
+    voxels.TakeOutside(this->Scene.shining, channel);
+  }
+
+  Device& TheDevice;
+  Communicator& Others;
+  const BlockPartition& Partition;
+  const LatticeBox& Box;
+  const LatticeScene Scene;
+  const Field Index;
+  const LatticeSettings& Settings;
+  const Uncollided& Direct;
+};
+}
+
+std::string NotInBlocks(const Illumination& illumination, const LatticeSettings& settings)
+{
+  if (settings.periodic[0] || settings.periodic[1] || settings.periodic[2])
+  {
+    return "a periodic axis";
+  }
+  const auto isNear = [](const Light& light) { return light.type != LightType::Directional; };
+  if (std::any_of(illumination.lights.begin(), illumination.lights.end(), isNear))
+  {
+    return "a point, spot or rectangle light";
+  }
+  if (illumination.uncollided.IsThere())
+  {
+    return "light of another solver (UncollidedLight)";
+  }
+  if (AllIsGivenBack(illumination))
+  {
+    return "faces that all give back all light (FaceAlbedo)";
+  }
+  if (settings.scheme == LatticeScheme::Published)
+  {
+    return "the published Scheme";
+  }
+  if (settings.blockSize > 0)
+  {
+    return "blocks of voxels that step by themselves (BlockSize)";
+  }
+  return settings.Solves() ? std::string() : "steps that are counted (MaximumOrders, Interleaved)";
+}
+
+LightField SolveLatticeInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition,
+  const Medium& medium, const Field& ior, const Illumination& illumination, const LatticeSettings& settings,
+  const Monitor& monitor)
+{
+  const bool has = partition.blocks.at(communicator.Rank()).VoxelCount() > 0;
+  communicator.Together([&] {
+    partition.Check();
+    Require(static_cast<int>(partition.blocks.size()) == communicator.Ranks(), "There is not a block for each rank.");
+    Check(settings);
+    Check(illumination);
+    const std::string refused = NotInBlocks(illumination, settings);
+    Require(refused.empty(), "A medium that is spread over ranks is not solved on a lattice with " + refused + ".");
+    if (has)
+    {
+      CheckLattice(medium, ior, settings);
+      Require(medium.grid.size == partition.OwnGrid(communicator.Rank()).size,
+        "The medium of rank " + std::to_string(communicator.Rank()) + " does not have the size of its block.");
+    }
+  });
+  PropagationSettings asPropagation = AsPropagation(settings);
+  asPropagation.angularDegree = 0; // light diffuses
+  RequireSame(communicator, partition);
+  RequireSame(communicator, has, medium, illumination, asPropagation);
+  RequireSameLattice(communicator, has, ior, illumination, settings);
+
+  Medium own = has ? medium : Medium();
+  own.grid = partition.OwnGrid(communicator.Rank());
+  const VoxelsAround around(communicator, partition, Layers);
+  const MediumAround known(around, own, has ? ior : Field());
+  const BlockScene scene(communicator, has, partition, known.medium, illumination, asPropagation, MemoryOf(device));
+  BlockPartition inUnits = partition;
+  inUnits.whole = scene.WholeOf(partition.whole);
+  const LatticeScene solved = { scene.medium, scene.illumination, scene.channels };
+  const LatticeBox box(scene.medium.grid, around.Box().own, around.Box().innerFaces);
+
+  const bool moments = communicator.Largest({ has && NeedsFirstMoments(scene.medium, settings) ? 1.0 : 0.0 })[0] > 0.0;
+  const Uncollided direct = UncollidedInBlocks(device, communicator, inUnits, around, solved, settings, moments)
+                              .Find(OfPart(monitor, 0.0, 0.1));
+  LightField light = BeginLight(box.Count(), scene.channels, settings);
+  const ChannelsInBlocks channels(device, communicator, inUnits, box, solved, known.index, settings, direct);
+  for (int c = 0; c < light.channels; ++c)
+  {
+    const double all = light.channels;
+    channels.AddTo(light, c, OfPart(monitor, 0.1 + 0.9 * c / all, 0.1 + 0.9 * (c + 1) / all));
+  }
+  AddUp(communicator, light);
+  const bool anisotropic =
+    communicator.Largest({ has && !scene.medium.phase.IsIsotropic() ? 1.0 : 0.0 })[0] > 0.0 && scene.traits.scatters;
+  communicator.Together([&] {
+    DescribeLight(light, device, anisotropic, settings, 0.0);
+    scene.Undo(light);
+    JudgeLight(light, illumination, settings);
+  });
+  return light;
+}
+}

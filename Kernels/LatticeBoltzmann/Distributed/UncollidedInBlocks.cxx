@@ -1,0 +1,204 @@
+#include "LatticeBoltzmann/Distributed/UncollidedInBlocks.h"
+
+#include "Distribution/SharedMedium.h"
+#include "LatticeBoltzmann/LatticeLight.h"
+#include "LightPropagation/Angular/SweptDirections.h"
+#include "LightPropagation/Uncollided/BoundaryLight.h"
+#include "LightPropagation/Uncollided/EnvironmentPeaks.h"
+#include "LightPropagation/Uncollided/ParallelBeam.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace tyndall
+{
+namespace
+{
+/// Whether light falls off alike in all channels.
+bool SharesExtinction(Communicator& communicator, const LatticeScene& scene)
+{
+  Medium dark = scene.medium;
+  dark.phase = PhaseFunction();
+  const bool has = dark.grid.VoxelCount() > 0;
+  return TraitsOfAll(communicator, has ? TraitsOf(dark) : MediumTraits()).greyExtinction || scene.channels == 1;
+}
+}
+
+UncollidedInBlocks::UncollidedInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition,
+  const VoxelsAround& around, const LatticeScene& scene, const LatticeSettings& settings, bool firstMoments)
+  : TheDevice(device)
+  , Others(communicator)
+  , Partition(partition)
+  , Around(around)
+  , Scene(scene)
+  , Settings(settings)
+  , FirstMoments(firstMoments)
+  , SharedExtinction(SharesExtinction(communicator, scene))
+  , Layout(this->LayoutOn(partition.OwnGrid(communicator.Rank())))
+  , KnownLayout(this->LayoutOn(scene.medium.grid))
+  , WholeLayout(this->LayoutOn(partition.whole))
+  , Lamps(scene.shining.lights)
+{
+  communicator.Together([&] {
+    const LatticeBox box = around.Box();
+    this->SigmaT = this->SigmaTOf(this->Layout, box);
+    this->Path = this->Zeros(this->Layout, 1, "the light gathered");
+    if (settings.netFlux)
+    {
+      this->Flux = this->Zeros(this->Layout, 3, "net_flux");
+    }
+    if (firstMoments)
+    {
+      this->KnownSigmaT = this->SigmaTOf(this->KnownLayout, LatticeBox(box.known));
+      this->KnownMoments = this->Zeros(this->KnownLayout, 6, "where light is lost");
+    }
+  });
+}
+
+Buffer<float> UncollidedInBlocks::SigmaTOf(const VolumeLayout& layout, const LatticeBox& box) const
+{
+  const Medium& medium = this->Scene.medium;
+  const auto sigmaT = [&](std::size_t i, int c) {
+    const std::size_t known = box.Known(i);
+    return medium.sigma_a.At(known, c) + medium.sigma_s.At(known, c);
+  };
+  return { this->TheDevice, Planar(layout, layout.sharedExtinction ? 1 : layout.channels, sigmaT), "extinction" };
+}
+
+Buffer<float> UncollidedInBlocks::Zeros(const VolumeLayout& layout, int parts, const char* what) const
+{
+  Buffer<float> values(this->TheDevice, layout.Floats(parts), what);
+  values.Fill(0.0f);
+  return values;
+}
+
+/// Of values of the block those of the known voxels, times `scale`, side by side.
+std::vector<float> UncollidedInBlocks::Known(const Buffer<float>& planar, double scale, int components) const
+{
+  const std::vector<float> own =
+    this->Around.Own().VoxelCount() > 0 ? Interleaved(this->Layout, planar, scale) : std::vector<float>();
+  return this->Around.Spread(own, components);
+}
+
+std::unique_ptr<SweepOperator> UncollidedInBlocks::MakeSweep(const SweepRequest& request)
+{
+  std::unique_ptr<SweepOperator> sweep;
+  this->Others.Together([&] {
+    sweep = std::make_unique<SweepInBlocks>(this->TheDevice, this->Others, this->Partition, this->Layout, this->SigmaT,
+      this->Settings.periodic, request, this->Workspace);
+  });
+  return sweep;
+}
+
+void UncollidedInBlocks::AddEnvironment(const Monitor& monitor)
+{
+  const Environment& environment = this->Scene.shining.environment;
+  if (environment.Empty())
+  {
+    return;
+  }
+  const PropagationSettings settings = AsPropagation(this->Settings);
+  const Grid& whole = this->Partition.whole;
+  const SweptDirections directions(
+    whole, settings, DirectionsForVoxels(settings.directionsPerFace, whole.spacing), RayStarts::Middle);
+  const SplitEnvironment far = Split(environment, directions.Set());
+  this->Lamps.insert(this->Lamps.end(), far.peaks.begin(), far.peaks.end());
+  const BoundaryLight boundary(whole, settings, directions, this->Scene.shining, far.smooth);
+  if (!boundary.Shines())
+  {
+    return;
+  }
+  boundary.CheckRays(this->Scene.channels);
+  const SweepRequest request = { this->ToOwn(),
+    { { 0, directions.Along(0) }, { 1, directions.Along(1) }, { 2, directions.Along(2) } } };
+  Add(this->Tally, this->MakeSweep(request)->Apply(nullptr, boundary.Boundary(), monitor));
+}
+
+/// Rays of a beam are those through the whole box.
+void UncollidedInBlocks::AddLamp(const Light& lamp, const Monitor& monitor)
+{
+  if (Sum(lamp.power) == 0.0)
+  {
+    return;
+  }
+  const SweepMaker sweeps = [this](const SweepRequest& request) { return this->MakeSweep(request); };
+  const UncollidedVolume volume = { this->TheDevice, this->WholeLayout, this->SigmaT, this->Settings.periodic, sweeps,
+    this->ToOwn() };
+  if (!this->FirstMoments)
+  {
+    Add(this->Tally, DepositBeam(volume, lamp, monitor));
+    return;
+  }
+  Buffer<float> path, currents;
+  this->Others.Together([&] {
+    path = this->Zeros(this->Layout, 1, "the light of a beam");
+    currents = this->Zeros(this->Layout, 6, "the light of a beam");
+  });
+  Deposit ofBeam = this->ToOwn();
+  ofBeam.path = &path;
+  ofBeam.partialCurrents = &currents;
+  Add(this->Tally, SweepBeam(volume, lamp, true, ofBeam, monitor));
+  this->AddMoments(lamp, path, currents);
+}
+
+/// What goes from a voxel into the next is known where that is: also of the next blocks' voxels.
+void UncollidedInBlocks::AddMoments(const Light& lamp, const Buffer<float>& path, const Buffer<float>& currents)
+{
+  const int channels = this->Scene.channels;
+  const std::vector<float> knownPath = this->Known(path, 1.0, channels);
+  const std::vector<float> knownCurrents = this->Known(currents, 1.0, 6 * channels);
+  this->Others.Together([&] {
+    if (this->Around.Own().VoxelCount() == 0)
+    {
+      return;
+    }
+    const auto onDevice = [&](const std::vector<float>& values, int components) {
+      const auto at = [&](std::size_t i, int c) { return values[i * components + c]; };
+      return Buffer<float>(this->TheDevice, Planar(this->KnownLayout, components, at), "the light of a beam");
+    };
+    const Buffer<float> alone = onDevice(knownPath, channels), through = onDevice(knownCurrents, 6 * channels);
+    const Buffer<float> ignored = this->Zeros(this->KnownLayout, 1, "the light of a beam");
+    Deposit to, ofBeam;
+    to.path = &ignored;
+    to.firstMoments = &this->KnownMoments;
+    ofBeam.path = &alone;
+    ofBeam.partialCurrents = &through;
+    AddWithFirstMoments(
+      { this->TheDevice, this->KnownLayout, this->KnownSigmaT, this->Settings.periodic, {}, to }, lamp, ofBeam);
+    std::vector<float> sum = this->Path.Read(), added = path.Read();
+    std::transform(sum.begin(), sum.end(), added.begin(), sum.begin(), std::plus<float>());
+    this->Path.Write(sum.data());
+  });
+}
+
+Uncollided UncollidedInBlocks::Find(const Monitor& monitor)
+{
+  this->AddEnvironment(OfPart(monitor, 0.0, 0.5));
+  for (std::size_t i = 0; i < this->Lamps.size(); ++i)
+  {
+    const double all = static_cast<double>(this->Lamps.size());
+    this->AddLamp(this->Lamps[i], OfPart(monitor, 0.5 + 0.5 * i / all, 0.5 + 0.5 * (i + 1) / all));
+  }
+  const int channels = this->Scene.channels;
+  const double inverse = 1.0 / this->Partition.whole.VoxelVolume();
+  Uncollided found;
+  found.fluence = this->Known(this->Path, inverse, channels);
+  found.image.fluence = { found.fluence.data(), channels };
+  if (this->Settings.netFlux)
+  {
+    found.netFlux = this->Known(this->Flux, inverse, 3 * channels);
+  }
+  if (this->FirstMoments && this->Around.Own().VoxelCount() > 0)
+  {
+    found.firstMoments = Interleaved(this->KnownLayout, this->KnownMoments, inverse);
+  }
+  const std::vector<VoxelBox>& blocks = this->Partition.blocks;
+  const auto first =
+    std::find_if(blocks.begin(), blocks.end(), [](const VoxelBox& block) { return block.VoxelCount() > 0; });
+  if (first - blocks.begin() == this->Others.Rank())
+  {
+    found.image.escaped = this->Tally.out;
+  }
+  return found;
+}
+}

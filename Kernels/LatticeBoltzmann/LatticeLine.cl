@@ -1,0 +1,178 @@
+// One line of links, as sweep_lines and the lines of blocks go along it (numerics.md, Eqs. (L7) to (L10)). The host
+// gives what LatticeLink.cl and Numerics/Exact.cl want.
+#pragma once
+#include "LatticeBoltzmann/LatticeLink.cl"
+#include "Numerics/Exact.cl"
+
+// Of floats, which add up to 1 only to 1e-8, thick voxels would gain or lose as much in every collision.
+#define EXACT_WEIGHT(i) (DIRECTIONS == 6 ? (exact)1 / 6 : (i) < 6 ? (exact)1 / 12 : (exact)1 / 24)
+
+// By voxel: part of the density that goes straight on, part that links let through, n^2, and W / length^2 that each
+// collision makes even.
+#define MEDIUM                                                                                 \
+  const __global exact *straight, const __global float *passes, const __global float *squared, \
+    const __global exact *even
+
+typedef struct
+{
+  int at[3];
+  int face;  // of the grid that was passed, -1: none. Then `at` is the last voxel; OtherBlock: the line goes on there
+  int other; // of a corner the second one, else the same
+} Place;
+
+// Parts of light that pass a link up the line and down it.
+typedef struct
+{
+  exact up, down;
+} Link;
+
+static ulong voxel_at(LatticeInfo lattice, const int* at)
+{
+  return ((ulong)at[2] * lattice.size[1] + at[1]) * lattice.size[0] + at[0];
+}
+
+static Place next_along(LatticeInfo lattice, Place place, int i)
+{
+  Place next = place;
+  bool leaves_block = false;
+  for (int a = 0; a < 3; ++a)
+  {
+    const int size = lattice.size[a], to = place.at[a] + Ways[i][a], face = 2 * a + (to < 0 ? 0 : 1);
+    const bool beyond = to < 0 || to >= size, inner = lattice.inner >> face & 1, periodic = lattice.periodic >> a & 1;
+    leaves_block = leaves_block || (beyond && inner);
+    next.other = beyond && !inner && !periodic ? face : next.other;
+    next.face = next.face < 0 ? next.other : next.face;
+    next.at[a] = beyond ? (to + size) % size : to;
+  }
+  next.face = next.face < 0 && leaves_block ? OtherBlock : next.face;
+  if (next.face >= 0)
+  {
+    for (int a = 0; a < 3; ++a)
+    {
+      next.at[a] = place.at[a];
+    }
+  }
+  return next;
+}
+
+// Of two voxels: what links let through, and n^2.
+static Link link_of(exact passes_a, exact passes_b, exact squared_a, exact squared_b)
+{
+  const exact own = 1 / passes_a, other = 1 / passes_b;
+  const exact by_a = BENDS ? 1 / squared_a : 1, by_b = BENDS ? 1 / squared_b : 1;
+  const exact both = 2 / (own * by_a + other * by_b + fabs(by_a - by_b));
+  const Link link = { fmin(both * by_a, (exact)1), fmin(both * by_b, (exact)1) };
+  return link;
+}
+
+static Link link_between(MEDIUM, ulong a, ulong b)
+{
+  return link_of(passes[a], passes[b], BENDS ? squared[a] : 1, BENDS ? squared[b] : 1);
+}
+
+// Of a face, or the mean of a corner's two: what it lets in of what shines on it, and the part of what meets it from
+// inside that comes back.
+typedef struct
+{
+  exact in, back;
+} Border;
+
+static Border border_at(LatticeInfo lattice, MEDIUM, ulong voxel, Place past, exact shines, int i)
+{
+  const exact incoming = 0.5f * (lattice.incoming[past.face] + lattice.incoming[past.other]);
+  const exact albedo = 0.5f * (lattice.albedo[past.face] + lattice.albedo[past.other]);
+  const exact passing = 2 / (1 / (exact)passes[voxel] + 1);
+  const Border border = { passing * shines * EXACT_WEIGHT(i) * incoming * (BENDS ? squared[voxel] : 1.0f),
+    1 - passing * (1 - albedo) };
+  return border;
+}
+
+// Where the work-item's line begins, and whether there is one: of an axis' links by the two other coordinates, of
+// diagonal ones by the coordinate along the third axis and a number along the first rows of the plane.
+static bool begin_line(LatticeInfo lattice, int i, Place* place, bool* closed)
+{
+  const int u = get_global_id(0), v = get_global_id(1);
+  int moving[2] = { -1, -1 }, moves = 0, still[2], stills = 0;
+  for (int a = 0; a < 3; ++a)
+  {
+    if (Ways[i][a] != 0)
+    {
+      moving[moves++] = a;
+    }
+    else
+    {
+      still[stills++] = a;
+    }
+  }
+  place->face = place->other = -1;
+  const int a = moving[0], b = moving[1];
+  const bool round_a = lattice.periodic >> a & 1, round_b = moves > 1 ? lattice.periodic >> b & 1 : true;
+  const int first_a = Ways[i][a] > 0 ? 0 : lattice.size[a] - 1;
+  *closed = round_a && round_b;
+  if (moves == 1)
+  {
+    place->at[still[0]] = u;
+    place->at[still[1]] = v;
+    place->at[a] = first_a;
+    return true;
+  }
+  const int size_a = lattice.size[a], size_b = lattice.size[b], first_b = Ways[i][b] > 0 ? 0 : size_b - 1;
+  place->at[still[0]] = v;
+  if (*closed)
+  {
+    int x = size_a, y = size_b;
+    while (y > 0)
+    {
+      const int rest = x % y;
+      x = y;
+      y = rest;
+    }
+    place->at[a] = u;
+    place->at[b] = 0;
+    return u < x;
+  }
+  place->at[a] = u < size_a ? u : first_a;
+  place->at[b] = u < size_a ? first_b : u - size_a;
+  return u < size_a ? !round_b : !round_a && (round_b || u - size_a != first_b);
+}
+
+// What the way up knows of a voxel: U and R.
+typedef struct
+{
+  exact sends, returns;
+} Behind;
+
+// One voxel up: what arrives there from behind is arrived + back times what it sends down.
+static Behind pass_voxel(exact straight, exact source, exact arrived, exact back)
+{
+  const Behind behind = { straight * (arrived + back * source) + source, straight * straight * back };
+  return behind;
+}
+
+// What comes to the next voxel up: what arrives there, and the part of what it sends down that comes back.
+static Behind cross_up(Link link, Behind here)
+{
+  const exact again = 1 / (1 - here.returns * (1 - link.up));
+  const Behind next = { link.up * here.sends * again, 1 - link.down + link.up * link.down * here.returns * again };
+  return next;
+}
+
+// A link, where what is sent down it is known: what arrives above and below it, and what is sent up.
+typedef struct
+{
+  exact up_arrives, lower, up;
+} Crossed;
+
+// @param below  of the voxel below: what it sends up, and gives back of what comes down
+static Crossed cross_down(Link link, Behind below, exact down)
+{
+  const exact up = (below.sends + below.returns * link.down * down) / (1 - below.returns * (1 - link.up));
+  const Crossed crossed = { link.up * up + (1 - link.down) * down, link.down * down + (1 - link.up) * up, up };
+  return crossed;
+}
+
+// Densities of a voxel along a line's two directions, as step_lattice has them, [direction][stride].
+static ulong density_at(LatticeInfo lattice, const int* at)
+{
+  return (ulong)(at[2] + 1) * lattice.layer + (ulong)(at[1] + 1) * lattice.row + at[0] + LatticeFirst;
+}

@@ -1,0 +1,265 @@
+// The steady light of a lattice in a medium that is spread over ranks, against that of one rank and of the whole.
+
+#include "LatticeScene.h"
+#include "MediumInBlocks.h"
+
+#include "LatticeBoltzmann/Distributed/LatticeInBlocks.h"
+
+#include <algorithm>
+#include <functional>
+#include <string>
+#include <vector>
+
+using namespace tyndall;
+
+namespace
+{
+/// With all that shines, thick voxels beside thin ones, faces that give back light, and an index that varies.
+MediumToCut Everything(std::array<int, 3> size)
+{
+  MediumToCut medium(size);
+  Scene& scene = medium.scene;
+  scene.Randomise(4.0, 2.0, 0.9, 11);
+  scene.emission = RandomValues(scene.sigma_s.size(), 0.0, 0.2, 3);
+  scene.ShineAlong({ 0.3, -0.5, -0.9 });
+  scene.ShineAlong({ -0.6, 0.2, 0.1 }, 0.4);
+  scene.ShineFromEverywhere(0.1);
+  for (std::size_t face = 0; face < 6; ++face)
+  {
+    const double of = 0.1 * static_cast<double>(face);
+    scene.light.faces[face] = { of, of, of };
+    scene.light.faceAlbedo[face] = { of, of, of };
+  }
+  medium.ior = RandomValues(scene.sigma_s.size(), 1.0, 1.6, 5);
+  return medium;
+}
+
+LatticeSettings SettingsOf(double tolerance = 1e-4)
+{
+  LatticeSettings settings;
+  settings.tolerance = tolerance;
+  settings.netFlux = true;
+  return settings;
+}
+
+}
+
+class LatticeBlocks : public LatticeTest
+{
+protected:
+  LightField Whole(MediumToCut& medium, const LatticeSettings& settings)
+  {
+    medium.Attach();
+    return this->Solve(medium.scene, settings, medium.ior);
+  }
+
+  LightField OfBlocks(const BlockPartition& partition, const MediumToCut& medium, const LatticeSettings& settings)
+  {
+    return LightOfBlocks(partition, medium, [&](Communicator& communicator, MediumToCut& part) {
+      return SolveLatticeInBlocks(
+        this->GetDevice(), communicator, partition, part.scene.medium, part.Index(), part.scene.light, settings);
+    });
+  }
+
+  LightField OnRanks(int ranks, const MediumToCut& medium, const LatticeSettings& settings)
+  {
+    return this->OfBlocks(BlockPartition::Even(medium.scene.medium.grid, ranks), medium, settings);
+  }
+
+  static void ExpectSame(const LightField& found, const LightField& expected, double tolerance)
+  {
+    ExpectSameLight(found, expected, tolerance);
+    EXPECT_TRUE(found.converged);
+    for (std::size_t c = 0; c < static_cast<std::size_t>(expected.channels); ++c)
+    {
+      const double all = expected.balance.entered[c] + expected.balance.emitted[c];
+      EXPECT_LT(std::abs(found.balance.leftOver[c]), 1e-5 * all);
+    }
+  }
+
+  /// The errors of three ranks, of which one is given something else than the others.
+  std::vector<std::string> Errors(const std::function<void(int rank, MediumToCut&, LatticeSettings&, Monitor&)>& change,
+    const BlockPartition* blocks = nullptr)
+  {
+    const MediumToCut medium = Everything({ 6, 5, 4 });
+    const BlockPartition partition = blocks ? *blocks : BlockPartition::Even(medium.scene.medium.grid, 3);
+    std::vector<std::string> errors(partition.blocks.size());
+    RunInThreads(static_cast<int>(errors.size()), [&](Communicator& communicator) {
+      const int rank = communicator.Rank();
+      MediumToCut part = medium.Part(partition.blocks[rank]);
+      part.Attach();
+      LatticeSettings settings = SettingsOf();
+      Monitor monitor;
+      change(rank, part, settings, monitor);
+      try
+      {
+        SolveLatticeInBlocks(this->GetDevice(), communicator, partition, part.scene.medium, part.Index(),
+          part.scene.light, settings, monitor);
+      }
+      catch (const std::exception& error)
+      {
+        errors[rank] = error.what();
+      }
+    });
+    return errors;
+  }
+
+  void ExpectErrors(
+    const std::string& words, const std::function<void(int rank, MediumToCut&, LatticeSettings&, Monitor&)>& change)
+  {
+    const std::vector<std::string> errors = this->Errors(change);
+    for (const std::string& error : errors)
+    {
+      EXPECT_NE(error.find(words), std::string::npos) << error;
+      EXPECT_EQ(error, errors.front());
+    }
+  }
+};
+
+TEST_F(LatticeBlocks, HaveTheLightOfTheWhole)
+{
+  MediumToCut medium = Everything({ 12, 9, 7 });
+  for (const int directions : { 18, 6 })
+  {
+    SCOPED_TRACE(std::to_string(directions) + " directions");
+    LatticeSettings settings = SettingsOf(1e-7);
+    settings.directions = directions;
+    ExpectSame(this->OnRanks(3, medium, settings), this->Whole(medium, settings), 2e-6);
+  }
+}
+
+/// Whatever the tolerance: all ranks do the same steps.
+TEST_F(LatticeBlocks, HaveTheLightOfOneRankOnAnyNumber)
+{
+  const MediumToCut medium = Everything({ 12, 9, 7 });
+  const LightField alone = this->OnRanks(1, medium, SettingsOf());
+  for (const int ranks : { 2, 3, 4, 8 })
+  {
+    SCOPED_TRACE(std::to_string(ranks) + " ranks");
+    const LightField light = this->OnRanks(ranks, medium, SettingsOf());
+    ExpectSame(light, alone, 1e-6);
+    EXPECT_EQ(light.convergence.size(), alone.convergence.size());
+  }
+}
+
+TEST_F(LatticeBlocks, MayBeUnevenEmptyOrSingleVoxels)
+{
+  const MediumToCut medium = Everything({ 9, 4, 5 });
+  const Grid& grid = medium.scene.medium.grid;
+  const LightField alone = this->OnRanks(1, medium, SettingsOf());
+  ExpectSame(this->OfBlocks(Slices(grid, { 1, 1, 2, 8 }), medium, SettingsOf()), alone, 1e-6);
+  ExpectSame(this->OfBlocks(Slices(grid, { 0, 9 }), medium, SettingsOf()), alone, 1e-6);
+  // About a middle one, such that no plane cuts the grid through.
+  const BlockPartition wheel = { Grid{ { 3, 3, 2 } },
+    { { { 0, 0, 0 }, { 2, 1, 2 } }, { { 2, 0, 0 }, { 1, 2, 2 } }, { { 1, 2, 0 }, { 2, 1, 2 } },
+      { { 0, 1, 0 }, { 1, 2, 2 } }, { { 1, 1, 0 }, { 1, 1, 2 } } } };
+  const MediumToCut turning = Everything(wheel.whole.size);
+  ExpectSame(this->OfBlocks(wheel, turning, SettingsOf()), this->OnRanks(1, turning, SettingsOf()), 1e-6);
+  const MediumToCut small = Everything({ 3, 2, 2 });
+  ExpectSame(this->OfBlocks(SingleVoxels(small.scene.medium.grid), small, SettingsOf()),
+    this->OnRanks(1, small, SettingsOf()), 1e-6);
+}
+
+TEST_F(LatticeBlocks, HaveTheColoursAndTheAnisotropyOfTheWhole)
+{
+  MediumToCut medium = Everything({ 8, 7, 6 });
+  Scene& scene = medium.scene;
+  scene.sigma_s = RandomValues(3 * scene.sigma_a.size(), 0.0, 2.0, 9);
+  scene.light.lights[0].power = { 1.0, 0.0, 3.0 };
+  medium.g = RandomValues(scene.sigma_a.size(), -0.7, 0.7, 13);
+  const LatticeSettings settings = SettingsOf(1e-7);
+  const LightField whole = this->Whole(medium, settings);
+  ASSERT_EQ(whole.channels, 3);
+  ExpectSame(this->OnRanks(4, medium, settings), whole, 2e-6);
+}
+
+/// Thin voxels, of which first moments do not matter, under an environment with a peak.
+TEST_F(LatticeBlocks, HaveTheEnvironmentOfTheWhole)
+{
+  MediumToCut medium({ 10, 9, 8 });
+  Scene& scene = medium.scene;
+  scene.Randomise(0.09, 1.0, 0.99, 4);
+  Environment& environment = scene.light.environment;
+  environment.width = 16;
+  environment.height = 8;
+  environment.radiance = RandomValues(3 * 16 * 8, 0.1, 0.3, 2);
+  environment.radiance[3 * 37] = 90.0f;
+  const LatticeSettings settings = SettingsOf(1e-7);
+  ExpectSame(this->OnRanks(4, medium, settings), this->Whole(medium, settings), 2e-6);
+}
+
+/// Flat grids have long cells.
+TEST_F(LatticeBlocks, SolvePlanesAndRows)
+{
+  for (const std::array<int, 3>& size : { std::array<int, 3>{ 12, 9, 1 }, { 1, 17, 1 }, { 1, 1, 1 } })
+  {
+    SCOPED_TRACE(std::to_string(size[0]) + " x " + std::to_string(size[1]));
+    MediumToCut medium = Everything(size);
+    ExpectSame(this->OnRanks(3, medium, SettingsOf(1e-7)), this->Whole(medium, SettingsOf(1e-7)), 2e-6);
+  }
+}
+
+/// White, up to a hundred mean free paths a voxel: what diffusion on one rank's cells saves.
+TEST_F(LatticeBlocks, NeedFewIterationsWhateverTheThickness)
+{
+  for (const double thickest : { 1e-2, 1.0, 1e2 })
+  {
+    SCOPED_TRACE(std::to_string(thickest));
+    MediumToCut medium({ 24, 22, 20 });
+    medium.scene.Randomise(thickest, 1.0, 1.0, 5);
+    medium.scene.ShineFromEverywhere(0.3);
+    medium.scene.ShineAlong({ 0.3, -0.2, -0.9 });
+    const LightField whole = this->Whole(medium, SettingsOf());
+    const LightField light = this->OnRanks(2, medium, SettingsOf());
+    std::printf("thickness %g: %zu iterations by blocks, %zu of the whole\n", thickest, light.convergence.size(),
+      whole.convergence.size());
+    EXPECT_LE(light.convergence.size(), whole.convergence.size() + 4);
+    ExpectSame(light, whole, 5e-4);
+  }
+}
+
+TEST_F(LatticeBlocks, AreDarkWhereNothingShines)
+{
+  MediumToCut medium({ 4, 3, 2 });
+  medium.scene.Randomise(1.0, 1.0, 0.9);
+  const LightField light = this->OnRanks(3, medium, SettingsOf());
+  EXPECT_EQ(*std::max_element(light.fluence.begin(), light.fluence.end()), 0.0f);
+}
+
+/// Whatever goes wrong on one rank is one error on each, and none waits for the others.
+TEST_F(LatticeBlocks, FailTogether)
+{
+  ExpectErrors("sigma_a", [](int rank, MediumToCut& part, LatticeSettings&, Monitor&) {
+    part.scene.sigma_a[0] = rank == 1 ? -1.0f : part.scene.sigma_a[0];
+  });
+  ExpectErrors("disagree about settings",
+    [](int rank, MediumToCut&, LatticeSettings& settings, Monitor&) { settings.directions = rank == 2 ? 6 : 18; });
+  ExpectErrors(
+    "disagree about whether there is a refractive index", [](int rank, MediumToCut& part, LatticeSettings&, Monitor&) {
+      if (rank == 1)
+      {
+        part.ior.clear();
+      }
+    });
+  ExpectErrors("aborted", [](int rank, MediumToCut&, LatticeSettings&, Monitor& monitor) {
+    if (rank == 1)
+    {
+      monitor = [](double done) { return done < 0.2; };
+    }
+  });
+}
+
+TEST_F(LatticeBlocks, SayWhatIsNotCarriedFromRankToRank)
+{
+  ExpectErrors("periodic", [](int, MediumToCut&, LatticeSettings& settings, Monitor&) { settings.periodic[1] = true; });
+  ExpectErrors("point, spot or rectangle",
+    [](int, MediumToCut& part, LatticeSettings&, Monitor&) { part.scene.light.lights[0].type = LightType::Point; });
+  ExpectErrors(
+    "MaximumOrders", [](int, MediumToCut&, LatticeSettings& settings, Monitor&) { settings.maximumSteps = 3; });
+  ExpectErrors("BlockSize", [](int, MediumToCut&, LatticeSettings& settings, Monitor&) { settings.blockSize = 4; });
+  ExpectErrors("published Scheme",
+    [](int, MediumToCut&, LatticeSettings& settings, Monitor&) { settings.scheme = LatticeScheme::Published; });
+  ExpectErrors("all give back all", [](int, MediumToCut& part, LatticeSettings&, Monitor&) {
+    part.scene.light.faceAlbedo.fill({ 1.0, 1.0, 1.0 });
+  });
+}

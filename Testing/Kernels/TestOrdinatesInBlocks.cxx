@@ -1,0 +1,151 @@
+// Discrete ordinates in a medium that is spread over ranks, against those of the whole.
+
+#include "DeviceTest.h"
+#include "MediumInBlocks.h"
+
+#include "DiscreteOrdinates/DiscreteOrdinates.h"
+#include "DiscreteOrdinates/Distributed/OrdinatesInBlocks.h"
+
+#include <string>
+#include <vector>
+
+using namespace tyndall;
+
+namespace
+{
+/// With all that blocks carry.
+MediumToCut Everything(std::array<int, 3> size)
+{
+  MediumToCut medium(size);
+  Scene& scene = medium.scene;
+  scene.Randomise(2.0, 2.0, 0.8, 11);
+  scene.emission = RandomValues(scene.sigma_s.size(), 0.0, 0.2, 3);
+  scene.medium.phase = PhaseFunction::HenyeyGreenstein(0.6);
+  scene.ShineAlong({ 0.3, -0.5, -0.9 });
+  scene.ShineFromEverywhere(0.1);
+  for (std::size_t face = 0; face < 6; ++face)
+  {
+    scene.light.faces[face].fill(0.1 * static_cast<double>(face));
+  }
+  return medium;
+}
+
+OrdinatesSettings SettingsOf(int orders = 0)
+{
+  OrdinatesSettings settings;
+  settings.directionsPerFace = 9;
+  settings.terms = 16;
+  settings.netFlux = true;
+  settings.maximumOrders = orders;
+  return settings;
+}
+}
+
+class OrdinatesBlocks : public DeviceTest
+{
+protected:
+  LightField Whole(MediumToCut& medium, const OrdinatesSettings& settings)
+  {
+    medium.Attach();
+    return SolveDiscreteOrdinates(this->GetDevice(), medium.scene.medium, medium.scene.light, settings);
+  }
+
+  LightField OfBlocks(const BlockPartition& partition, const MediumToCut& medium, const OrdinatesSettings& settings)
+  {
+    return LightOfBlocks(partition, medium, [&](Communicator& communicator, MediumToCut& part) {
+      return SolveOrdinatesInBlocks(
+        this->GetDevice(), communicator, partition, part.scene.medium, part.scene.light, settings);
+    });
+  }
+
+  static void ExpectSame(const LightField& found, const LightField& expected)
+  {
+    ExpectSameLight(found, expected, 1e-6);
+    EXPECT_EQ(found.convergence.size(), expected.convergence.size());
+    EXPECT_LT(found.balance.RelativeError(expected.channels), 1e-5);
+  }
+};
+
+TEST_F(OrdinatesBlocks, HaveTheLightOfTheWholeOnOneToEightRanks)
+{
+  MediumToCut medium = Everything({ 11, 9, 7 });
+  const LightField whole = this->Whole(medium, SettingsOf());
+  for (const int ranks : { 1, 2, 3, 8 })
+  {
+    SCOPED_TRACE(std::to_string(ranks) + " ranks");
+    ExpectSame(this->OfBlocks(BlockPartition::Even(medium.scene.medium.grid, ranks), medium, SettingsOf()), whole);
+  }
+}
+
+TEST_F(OrdinatesBlocks, MayBeUnevenEmptyOrSingleVoxels)
+{
+  MediumToCut medium = Everything({ 9, 4, 5 });
+  const LightField whole = this->Whole(medium, SettingsOf());
+  ExpectSame(this->OfBlocks(Slices(medium.scene.medium.grid, { 1, 1, 2, 8 }), medium, SettingsOf()), whole);
+  ExpectSame(this->OfBlocks(Slices(medium.scene.medium.grid, { 0, 9 }), medium, SettingsOf()), whole);
+  MediumToCut small = Everything({ 3, 2, 2 });
+  ExpectSame(
+    this->OfBlocks(SingleVoxels(small.scene.medium.grid), small, SettingsOf()), this->Whole(small, SettingsOf()));
+}
+
+/// By every pair of directions, on a spiral, and in few orders; one colour alone shines on the last.
+TEST_F(OrdinatesBlocks, HaveTheColoursAndTheScatteringOfTheWhole)
+{
+  MediumToCut medium = Everything({ 6, 7, 5 });
+  medium.scene.sigma_s = RandomValues(3 * medium.scene.sigma_a.size(), 0.0, 1.0, 9);
+  medium.scene.light.lights[0].power = { 1.0, 0.0, 3.0 };
+  OrdinatesSettings settings = SettingsOf(3);
+  settings.scattering = OrdinatesScattering::Matrix;
+  settings.spiralDirections = 40;
+  const BlockPartition partition = BlockPartition::Even(medium.scene.medium.grid, 3);
+  ExpectSame(this->OfBlocks(partition, medium, settings), this->Whole(medium, settings));
+  MediumToCut green({ 4, 1, 1 });
+  green.scene.Randomise(1.0, 1.0, 0.9);
+  green.scene.light.lights = medium.scene.light.lights;
+  green.scene.light.lights[0].power = { 0.0, 2.0, 0.0 };
+  green.scene.light.sky = { 0.0, 0.3, 0.0 };
+  ExpectSame(this->OfBlocks(BlockPartition::Even(green.scene.medium.grid, 6), green, SettingsOf()),
+    this->Whole(green, SettingsOf()));
+}
+
+TEST_F(OrdinatesBlocks, FailTogetherWithWordsOnWhatIsNotCarried)
+{
+  const MediumToCut medium = Everything({ 6, 5, 4 });
+  const BlockPartition partition = BlockPartition::Even(medium.scene.medium.grid, 3);
+  const auto expectErrors = [&](const std::string& words, const auto& change) {
+    RunInThreads(3, [&](Communicator& communicator) {
+      MediumToCut part = medium.Part(partition.blocks[communicator.Rank()]);
+      part.Attach();
+      OrdinatesSettings settings = SettingsOf();
+      Monitor monitor;
+      change(communicator.Rank(), part, settings, monitor);
+      std::string said;
+      try
+      {
+        SolveOrdinatesInBlocks(
+          this->GetDevice(), communicator, partition, part.scene.medium, part.scene.light, settings, monitor);
+      }
+      catch (const std::exception& error)
+      {
+        said = error.what();
+      }
+      EXPECT_NE(said.find(words), std::string::npos) << said;
+    });
+  };
+  expectErrors("sigma_a", [](int rank, MediumToCut& part, OrdinatesSettings&, Monitor&) {
+    part.scene.sigma_a[0] = rank == 1 ? -1.0f : part.scene.sigma_a[0];
+  });
+  expectErrors("disagree about settings",
+    [](int rank, MediumToCut&, OrdinatesSettings& settings, Monitor&) { settings.terms = rank == 2 ? 9 : 16; });
+  expectErrors("aborted", [](int rank, MediumToCut&, OrdinatesSettings&, Monitor& monitor) {
+    if (rank == 1)
+    {
+      monitor = [](double done) { return done < 0.3; };
+    }
+  });
+  expectErrors(
+    "periodic", [](int, MediumToCut&, OrdinatesSettings& settings, Monitor&) { settings.periodic[1] = true; });
+  expectErrors("FaceAlbedo", [](int, MediumToCut& part, OrdinatesSettings&, Monitor&) {
+    part.scene.light.faceAlbedo[2] = { 0.5, 0.5, 0.5 };
+  });
+}

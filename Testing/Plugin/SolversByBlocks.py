@@ -1,0 +1,29 @@
+"""Ranks that each solve their piece of a lattice, or by discrete ordinates (Decomposition: blocks): the light of one rank,
+and of the whole.
+
+    python3 SolversByBlocks.py
+"""
+from pieces_of_ranks import Runs, difference
+
+runs = Runs("SolversByBlocks")
+CASES = ["lattice_wavelet", "lattice_even", "lattice_uneven", "ordinates_even", "ordinates_uneven"]
+LIKE = {"lattice_uneven": "lattice_even", "ordinates_uneven": "ordinates_even"}
+
+for ranks in (1, 2, 3, 8):
+    more = ["lattice_exact", "lattice_whole", "ordinates_whole"] if ranks == 1 else ["lattice_errors"] if ranks == 2 else []
+    code, said = runs.run(ranks, *CASES, *more)
+    assert code == 0 and said.count("is done") == ranks, said
+    for case in CASES:
+        light, balance = runs.whole(ranks, case, "light")
+        expected, wanted = runs.whole(1, LIKE.get(case, case), "light")
+        error = difference(light, expected)
+        print("%d ranks, %s: fluence differs by %.1e" % (ranks, case, error), flush=True)
+        assert error < 1e-6, (ranks, case, error)
+        assert abs(balance - wanted).max() < 1e-6 * wanted.max(), (ranks, case, balance, wanted)
+
+blocks, whole = runs.whole(1, "lattice_exact", "light")[0], runs.whole(1, "lattice_whole", "light")[0]
+print("blocks and the whole: %.1e" % difference(blocks, whole))
+assert difference(blocks, whole) < 2e-6
+ordinates, whole = runs.whole(1, "ordinates_even", "light")[0], runs.whole(1, "ordinates_whole", "light")[0]
+print("ordinates in blocks and in the whole: %.1e" % difference(ordinates, whole))
+assert difference(ordinates, whole) < 1e-6
