@@ -102,7 +102,7 @@ std::unique_ptr<SweepOperator> ChannelArrays::SweepOf(
   std::unique_ptr<SweepOperator> sweep;
   this->Scene.Together([&] {
     sweep = std::make_unique<SweepInBlocks>(this->TheDevice, this->Scene.ranks->others, this->Scene.ranks->partition,
-      this->Layout, sigma_t, request, this->BlocksWorkspace);
+      this->Layout, sigma_t, periodic, request, this->BlocksWorkspace);
   });
   return sweep;
 }

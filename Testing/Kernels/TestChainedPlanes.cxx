@@ -1,5 +1,5 @@
-// Planes that a sweep crosses row by row one behind the other, as it does where they are larger than a core's cache: the
-// light is the same, bit for bit, as plane by plane.
+// Planes that a sweep crosses row by row one behind the other, as it does where they are larger than a core's cache:
+// the light is the same, bit for bit, as plane by plane.
 
 #include "DeviceTest.h"
 #include "MediumScene.h"

@@ -19,15 +19,15 @@ namespace tyndall
 /// reflect or face power is asked for those of the cells of the box's faces. All ranks call it together.
 ///
 /// Orders are added up as HowOrdersAreAdded (OrdersOverRanks.h) has it: one by one; where voxels are thin and light is
-/// scattered many times each with what diffusion on cells says of the rest (CellsOverRanks.h); where voxels are thicker by
-/// their balance (AccelerationInBlocks.h), with the source that the settings ask for. The source of the former two is
+/// scattered many times each with what diffusion on cells says of the rest (CellsOverRanks.h); where voxels are thicker
+/// by their balance (AccelerationInBlocks.h), with the source that the settings ask for. The source of the former two is
 /// constant in voxels. Cells and the balance are for isotropic scattering in an open box without faces that reflect.
 ///
-/// Carried are light that comes in through the box's faces, from the sky and the environment, of all kinds of lights, and
-/// emission; scattering in angular moments; light that faces give back and that goes round periodic axes. The light is
-/// that of SolveConservative with emissionError 0, uncollidedDirections not left open (here -1 is 0) and a constant source
-/// where voxels are not balanced: to rounding where neither is accelerated, else to the tolerance. It does not depend on
-/// the number of ranks, but for rounding.
+/// Carried are light that comes in through the box's faces, from the sky and the environment, of all kinds of lights,
+/// and emission; scattering in angular moments; light that faces give back and that goes round periodic axes. The light
+/// is that of SolveConservative with emissionError 0, uncollidedDirections not left open (here -1 is 0) and a constant
+/// source where voxels are not balanced: to rounding where neither is accelerated, else to the tolerance. It does not
+/// depend on the number of ranks, but for rounding.
 ///
 /// @param medium  of the rank's block, with the grid that partition.OwnGrid() has; looked at by nobody where that has
 ///   no voxels

@@ -54,8 +54,8 @@
 static __constant int function_order[MOMENTS] = { FUNCTION_ORDER };
 #endif
 
-// Whether planes may be crossed row by row one behind the other, up to PLANES_CHAINED: not where what comes in or goes out
-// beside rows is kept by plane, or rows come from the other side.
+// Whether planes may be crossed row by row one behind the other, up to PLANES_CHAINED: not where what comes in or goes
+// out beside rows is kept by plane, or rows come from the other side.
 #define CHAINED (!DEGREE && !FACE_IN && !FACE_OUT && !SIDES && !PERIODIC_U && !PERIODIC_V)
 #define PLANES_CHAINED (CHAINED ? MostChained : 1)
 #define STAGES (3 * PLANES_CHAINED)

@@ -169,8 +169,8 @@ void SweepPlan::LayPlane(const Device& device)
   std::copy(MeanLength, MeanLength + MeanLengthTerms, this->plane.meanLength);
 }
 
-/// Bundles whose rays in a plane are more than a core's cache holds cross some planes together, row by row, so that rays
-/// come from memory and go there once for all of these.
+/// Bundles whose rays in a plane are more than a core's cache holds cross some planes together, row by row, so that
+/// rays come from memory and go there once for all of these.
 int SweepPlan::PlanesChained(const Device& device) const
 {
   const std::size_t rays = static_cast<std::size_t>(MaxMembers) * this->channels * this->row * this->plane.sizeV;

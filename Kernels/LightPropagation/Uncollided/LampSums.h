@@ -7,7 +7,8 @@ namespace tyndall
 {
 /// What a lamp's beams put down, parts of its power in 64-bit fixed point, so that sums do not depend on the order of
 /// their terms (numerics.md, Eq. (35)): path times length, and behind it first moments and net flux where a deposit
-/// asks for them, [path, 3 first moments, 3 of flux][stride]; and what leaves by cells of the grid's faces, where it does.
+/// asks for them, [path, 3 first moments, 3 of flux][stride]; and what leaves by cells of the grid's faces, where it
+/// does.
 class LampSums
 {
 public:
