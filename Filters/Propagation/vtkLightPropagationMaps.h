@@ -58,11 +58,12 @@ class LastLight;
  *
  * Without lights, environment, SkyColor, FaceRadiance and emission the result is dark, with a warning.
  *
- * With Decomposition BLOCKS rays go from rank to rank (numerics.md, section 4.9). Orders are accelerated as in the whole
- * where scattering is isotropic, axes are open and faces dark; where they are added up one by one the source is constant
- * in voxels, so that voxels thicker than about 1 need the whole, or more voxels. Blocks cannot do, beside what no solver
- * can: point, spot and rectangle lights beside a periodic axis, Source OCTANTS, LINEAR where orders are not accelerated,
- * TargetError, WarmStart and the published scheme. UncollidedDirections are as many as are asked for, with -1 none.
+ * With Decomposition BLOCKS rays go from rank to rank (numerics.md, section 4.9). Orders are accelerated as in the
+ * whole where scattering is isotropic, axes are open and faces dark; where they are added up one by one the source is
+ * constant in voxels, so that voxels thicker than about 1 need the whole, or more voxels. Blocks cannot do, beside what
+ * no solver can: point, spot and rectangle lights beside a periodic axis, Source OCTANTS, LINEAR where orders are not
+ * accelerated, TargetError, WarmStart and the published scheme. UncollidedDirections are as many as are asked for, with
+ * -1 none.
  *
  * @sa vtkParticipatingMedium vtkLightRig vtkEnvironmentReader vtkMediumRayCaster
  * @par Thanks

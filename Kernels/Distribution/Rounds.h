@@ -21,8 +21,8 @@ struct RoundsTraffic
 /// Photons, or beams of a lamp, go from rank to rank in rounds: each rank follows those that it has as far as its block
 /// goes, and hands them on to the ranks whose blocks touch it.
 ///
-/// A type of traveller has a function `const int* WhereIs(const Traveller&)` beside it: the voxel of the whole grid that
-/// it goes on in.
+/// A type of traveller has a function `const int* WhereIs(const Traveller&)` beside it: the voxel of the whole grid in
+/// which it goes on.
 class Rounds
 {
 public:

@@ -78,8 +78,8 @@ void TimeStep(Device& device, bool quick, Table& table, const StepCase& of)
   Uncollided uncollided;
   uncollided.image.fluence = { direct.data(), 1 };
   const PropagationProblem problem(box.medium, box.light, PropagationSettings());
-  const LatticeVoxels voxels(problem, { of.bends ? ior.data() : nullptr, 1 }, settings, uncollided, 0);
-  Lattice lattice(device, problem.TheGrid(), settings, voxels);
+  const LatticeVoxels voxels(SceneOf(problem), { of.bends ? ior.data() : nullptr, 1 }, settings, uncollided, 0);
+  Lattice lattice(device, LatticeBox(problem.TheGrid()), settings, voxels);
   const double bytes = BytesOfStep(voxels, of.directions, count);
   std::vector<double> seconds, ratios, bandwidths;
   for (int i = -1; i < repetitions; ++i) // the first compiles
