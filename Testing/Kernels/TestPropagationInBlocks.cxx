@@ -421,6 +421,7 @@ TEST_F(PropagationBlocksFail, WithWordsOnWhatIsNotCarriedFromRankToRank)
   });
   ExpectErrors("a linear source besides", [](int, PartOf&, Illumination&, PropagationSettings& settings, Monitor&) {
     settings.source = PropagationSource::Linear;
+    settings.acceleration = PropagationAcceleration::Automatic;
     settings.periodic[1] = true;
   });
   ExpectErrors(

@@ -121,6 +121,7 @@ private:
   std::vector<BeamOnItsWay> FollowInBlock(const std::vector<BeamRow>& rows, const LampInfo& info,
     const Buffer<BeamRow>& rowBuffer, const std::vector<BeamOnItsWay>& beams, const Monitor& monitor);
   void ShareSums();
+  std::vector<cl_long> CellsOfAll();
   void PutDown(double correction);
 
   LampsInBlocks& All;
@@ -234,20 +235,39 @@ void LampsInBlocks::Beams::PutDown(double correction)
     own.insert(own.end(), inBlock.begin(), inBlock.end());
     own.resize((part + 1) * this->Volume.stride, 0);
   }
+  const std::vector<cl_long> cells = this->CellsOfAll();
   all.Others.Together([&] {
+    LampSums sums(all.TheDevice, this->Volume.deposit, this->Volume.stride, all.Partition.whole);
     if (all.Has())
     {
-      LampSums sums(all.TheDevice, this->Volume.deposit, this->Volume.stride, all.Partition.whole);
       sums.Sums().Write(own.data());
       sums.AddTo(this->Volume, this->Lamp, correction);
-      if (this->Volume.deposit.faceOut)
-      {
-        const std::size_t faceFirst = this->Volume.firstChannel * BoxFaceCellCount(all.Partition.whole);
-        this->Sums->AddCellsTo(this->Volume, faceFirst, this->Lamp, correction);
-      }
-      all.TheDevice.Finish(); // the sums go
     }
+    if (!cells.empty())
+    {
+      const std::size_t faceFirst = this->Volume.firstChannel * BoxFaceCellCount(all.Partition.whole);
+      sums.Cells().Write(cells.data());
+      sums.AddCellsTo(this->Volume, faceFirst, this->Lamp, correction);
+    }
+    all.TheDevice.Finish(); // the sums go
   });
+}
+
+/// What leaves by cells of the whole grid's faces, which each rank knows; empty where nobody asks.
+std::vector<cl_long> LampsInBlocks::Beams::CellsOfAll()
+{
+  if (!this->Volume.deposit.faceOut)
+  {
+    return {};
+  }
+  std::vector<double> values(BoxFaceCellCount(this->All.Partition.whole), 0.0);
+  if (this->Sums)
+  {
+    const std::vector<cl_long> own = this->Sums->Cells().Read();
+    std::copy(own.begin(), own.end(), values.begin());
+  }
+  values = this->All.Others.Sum(values);
+  return { values.begin(), values.end() };
 }
 
 SweepTally LampsInBlocks::Deposit(const SweepVolume& volume, const Light& light, const Monitor& monitor)
