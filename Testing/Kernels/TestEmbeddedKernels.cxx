@@ -52,7 +52,7 @@ TEST(EmbeddedKernels, HoldATextAsOftenAsItIsMeant)
 {
   const std::string_view text = tyndall::kernel_source::Sweep;
   EXPECT_EQ(CountOf("#define MEMBERS ", text), 4);
-  EXPECT_EQ(CountOf("static void CROSS_PLANE(", text), 4);
+  EXPECT_EQ(CountOf("static void CROSS_PLANES(", text), 4);
 }
 
 TEST(EmbeddedKernels, KeepWhatIsLongerThanOneLiteral)
