@@ -81,9 +81,27 @@ Outcome Try(const std::function<void()>& work)
 
 void Communicator::CountAndSend(int to, int tag, std::vector<char> bytes)
 {
+  if (to == this->Rank())
+  {
+    this->ToItself[tag].push_back(std::move(bytes));
+    return;
+  }
   ++this->Counted.messages;
   this->Counted.bytes += bytes.size();
   this->Give(to, tag, std::move(bytes));
+}
+
+/// What was sent first.
+std::vector<char> Communicator::TakeOwn(int tag)
+{
+  std::deque<std::vector<char>>& sent = this->ToItself[tag];
+  if (sent.empty())
+  {
+    throw std::logic_error("a rank waits for what it has not sent to itself");
+  }
+  std::vector<char> bytes = std::move(sent.front());
+  sent.pop_front();
+  return bytes;
 }
 
 /// Rank 0 joins what the others have, one after the other, and tells them.

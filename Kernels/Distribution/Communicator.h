@@ -2,7 +2,9 @@
 
 #include <cstddef>
 #include <cstring>
+#include <deque>
 #include <functional>
+#include <map>
 #include <vector>
 
 namespace tyndall
@@ -23,7 +25,7 @@ public:
   virtual int Rank() const = 0;
   virtual int Ranks() const = 0;
 
-  /// Does not wait for the other rank.
+  /// Does not wait for the other rank. A rank may send to itself: light comes round a periodic axis.
   /// @param tag  0 to 29999
   template <class T>
   void Send(int to, int tag, const std::vector<T>& values)
@@ -39,7 +41,7 @@ public:
   template <class T>
   std::vector<T> Receive(int from, int tag)
   {
-    const std::vector<char> bytes = this->Take(from, tag);
+    const std::vector<char> bytes = from == this->Rank() ? this->TakeOwn(tag) : this->Take(from, tag);
     std::vector<T> values(bytes.size() / sizeof(T));
     if (!bytes.empty())
     {
@@ -70,8 +72,10 @@ private:
   std::vector<double> OverRanks(const std::vector<double>& values, const Joined& join);
   std::vector<char> Agree(const std::vector<char>& own);
   void CountAndSend(int to, int tag, std::vector<char> bytes);
+  std::vector<char> TakeOwn(int tag);
 
   Traffic Counted;
+  std::map<int, std::deque<std::vector<char>>> ToItself; ///< by tag
 };
 
 /// A computation's only rank.

@@ -23,6 +23,20 @@ TEST(Communicator, DeliversMessagesOfATagInTheirOrder)
   });
 }
 
+TEST(Communicator, DeliversWhatARankSendsToItself)
+{
+  const auto sendToItself = [](Communicator& ranks) {
+    ranks.Send(ranks.Rank(), 7, std::vector<float>{ 1.0f, 2.0f });
+    ranks.Send(ranks.Rank(), 7, std::vector<float>{ 3.0f });
+    EXPECT_EQ(ranks.Receive<float>(ranks.Rank(), 7), (std::vector<float>{ 1.0f, 2.0f }));
+    EXPECT_EQ(ranks.Receive<float>(ranks.Rank(), 7), std::vector<float>{ 3.0f });
+    EXPECT_EQ(ranks.Sent().messages, 0u);
+  };
+  SingleRank alone;
+  sendToItself(alone);
+  RunInThreads(2, sendToItself);
+}
+
 TEST(Communicator, GivesAllRanksTheSameSumsAndLargestValues)
 {
   RunInThreads(4, [](Communicator& ranks) {
