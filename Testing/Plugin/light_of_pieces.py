@@ -378,8 +378,8 @@ def blocks_errors():
     """What cannot be solved by pieces is one error that names it; what one rank lacks, on all of them."""
     lights = PointLight(Position=[0, 0, 20], Power=[9, 9, 9])
     medium = ParticipatingMedium(Input=Wavelet(WholeExtent=SIZE), DensityArray=["POINTS", "RTData"])
-    for named, settings in (("a point, spot or rectangle light", {"Lights": lights}),
-                            ("a source that is not constant", {"Source": 1}), ("WarmStart", {"WarmStart": 1})):
+    for named, settings in (("a point, spot or rectangle light beside a periodic axis", {"Lights": lights, "PeriodicX": 1}),
+                            ("a source by octants", {"Source": 3}), ("WarmStart", {"WarmStart": 1})):
         light = LightPropagationMaps(Input=medium, SkyColor=[1, 1, 1], Decomposition="Blocks", **settings)
         errors = errors_of(light)
         light.UpdatePipeline()
