@@ -1,8 +1,8 @@
 #include "LatticeBoltzmann/LatticeChannel.h"
 
 #include "LatticeBoltzmann/LatticeAccount.h"
-#include "LatticeBoltzmann/SteadyInMemory.h"
-#include "LatticeBoltzmann/SteadyLattice.h"
+#include "LatticeBoltzmann/Steady/SteadyInMemory.h"
+#include "LatticeBoltzmann/Steady/SteadyLattice.h"
 
 namespace tyndall
 {

@@ -1,6 +1,6 @@
 // Lines of links through a rank's block: the way up and the way down of sweep_lines, between which other blocks' ways
 // are. Lines are open.
-#include "LatticeBoltzmann/LatticeLine.cl"
+#include "LatticeBoltzmann/Steady/LatticeLine.cl"
 
 #define LINE (get_global_id(1) * get_global_size(0) + get_global_id(0))
 

@@ -1,6 +1,6 @@
 #include "LatticeBoltzmann/Distributed/DiffusionInBlocks.h"
 
-#include "LatticeBoltzmann/LinesOfLinks.h"
+#include "LatticeBoltzmann/Steady/LinesOfLinks.h"
 #include "LightPropagation/Diffusion/MultigridLayout.h"
 
 #include <algorithm>

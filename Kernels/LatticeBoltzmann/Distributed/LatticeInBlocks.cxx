@@ -8,7 +8,7 @@
 #include "LatticeBoltzmann/Distributed/VoxelsAround.h"
 #include "LatticeBoltzmann/LatticeAccount.h"
 #include "LatticeBoltzmann/LatticeLight.h"
-#include "LatticeBoltzmann/SteadyLattice.h"
+#include "LatticeBoltzmann/Steady/SteadyLattice.h"
 #include "LightPropagation/Distributed/BlockScene.h"
 #include "LightPropagation/Problem/AngularDegree.h"
 

@@ -2,7 +2,7 @@
 
 #include "Device/Errors.h"
 #include "LatticeBoltzmann/LatticeShared.h"
-#include "LatticeBoltzmann/LinesOfLinks.h"
+#include "LatticeBoltzmann/Steady/LinesOfLinks.h"
 #include "TyndallKernelSources.h"
 
 #include <algorithm>

@@ -7,7 +7,7 @@
 #include "Distribution/Communicator.h"
 #include "LatticeBoltzmann/Lattice.h"
 #include "LatticeBoltzmann/LatticeBox.h"
-#include "LatticeBoltzmann/SteadySystem.h"
+#include "LatticeBoltzmann/Steady/SteadySystem.h"
 
 #include <array>
 #include <exception>

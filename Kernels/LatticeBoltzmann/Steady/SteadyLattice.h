@@ -4,7 +4,7 @@
 #include "LatticeBoltzmann/LatticeBox.h"
 #include "LatticeBoltzmann/LatticeSettings.h"
 #include "LatticeBoltzmann/LatticeVoxels.h"
-#include "LatticeBoltzmann/SteadySystem.h"
+#include "LatticeBoltzmann/Steady/SteadySystem.h"
 #include "Light/LightField.h"
 
 #include <vector>

@@ -2,7 +2,7 @@
 
 #include "Device/ExactValues.h"
 #include "LatticeBoltzmann/Lattice.h"
-#include "LatticeBoltzmann/SteadySystem.h"
+#include "LatticeBoltzmann/Steady/SteadySystem.h"
 #include "LightPropagation/Diffusion/MultigridSolver.h"
 #include "Medium/Grid.h"
 

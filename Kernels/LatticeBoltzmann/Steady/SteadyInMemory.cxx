@@ -1,6 +1,6 @@
-#include "LatticeBoltzmann/SteadyInMemory.h"
+#include "LatticeBoltzmann/Steady/SteadyInMemory.h"
 
-#include "LatticeBoltzmann/LinesOfLinks.h"
+#include "LatticeBoltzmann/Steady/LinesOfLinks.h"
 #include "TyndallKernelSources.h"
 
 namespace tyndall

@@ -4,7 +4,7 @@
 // Along a line light goes both ways, for links give back a part. What lies behind a voxel is known by what it sends
 // whatever happens ahead, U, and by what it gives back of what comes from ahead, R: two numbers a voxel, found on the
 // way up; densities follow on the way down. All terms are positive, so that no digit is lost.
-#include "LatticeBoltzmann/LatticeLine.cl"
+#include "LatticeBoltzmann/Steady/LatticeLine.cl"
 
 // What comes down to where a closed line is cut, by what goes round up it, x, and what comes from ahead, B: sent +
 // round x + gives_back B.

@@ -1,4 +1,4 @@
-#include "LatticeBoltzmann/SteadyLattice.h"
+#include "LatticeBoltzmann/Steady/SteadyLattice.h"
 
 #include "Device/Clock.h"
 

@@ -1,4 +1,4 @@
-#include "LatticeBoltzmann/LinesOfLinks.h"
+#include "LatticeBoltzmann/Steady/LinesOfLinks.h"
 
 #include "Device/Defines.h"
 #include "Device/ExactValues.h"
