@@ -3,7 +3,7 @@
 #include "DiscreteOrdinates/AngularScattering.h"
 #include "DiscreteOrdinates/LampScattering.h"
 #include "DiscreteOrdinates/OrdinatesScene.h"
-#include "LightPropagation/Distributed/SweepInBlocks.h"
+#include "LightPropagation/Distributed/Sweep/SweepInBlocks.h"
 #include "LightPropagation/Sweep/SweepWorkspace.h"
 #include "LightPropagation/Sweep/VolumeLayout.h"
 

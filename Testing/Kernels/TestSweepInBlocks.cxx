@@ -5,7 +5,7 @@
 
 #include "Distribution/RanksInThreads.h"
 #include "LightPropagation/Angular/DirectionSet.h"
-#include "LightPropagation/Distributed/SweepInBlocks.h"
+#include "LightPropagation/Distributed/Sweep/SweepInBlocks.h"
 #include "LightPropagation/Problem/MediumOnDevice.h"
 #include "LightPropagation/Sweep/SweepInMemory.h"
 

@@ -2,8 +2,8 @@
 
 #include "DiscreteOrdinates/OrdinatesScene.h"
 #include "DiscreteOrdinates/UpwindSweep.h"
-#include "LightPropagation/Distributed/BlockContact.h"
-#include "LightPropagation/Distributed/SweepSchedule.h"
+#include "LightPropagation/Distributed/Sweep/BlockContact.h"
+#include "LightPropagation/Distributed/Sweep/SweepSchedule.h"
 
 #include <array>
 #include <exception>

@@ -8,7 +8,7 @@
 #include "LatticeBoltzmann/LatticeScene.h"
 #include "LatticeBoltzmann/LatticeSettings.h"
 #include "LatticeBoltzmann/LatticeVoxels.h"
-#include "LightPropagation/Distributed/SweepInBlocks.h"
+#include "LightPropagation/Distributed/Sweep/SweepInBlocks.h"
 #include "LightPropagation/Sweep/VolumeLayout.h"
 #include "LightPropagation/Uncollided/UncollidedSource.h"
 

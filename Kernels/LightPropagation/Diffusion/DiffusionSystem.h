@@ -84,8 +84,8 @@ public:
   double Correct(double unit);
 
   // The steps of Correct, where the system is one part of one that is spread over ranks, with a layer of the others'
-  // voxels around its own (Distributed/BalanceOverRanks.h): between them values go from rank to rank. `sigma_s` of the
-  // others' voxels is below 0: they are counted where they are at home.
+  // voxels around its own (Distributed/Balance/BalanceOverRanks.h): between them values go from rank to rank. `sigma_s`
+  // of the others' voxels is below 0: they are counted where they are at home.
 
   void FindModel();                                  ///< of the fluence that the sweep is compared with
   Buffer<float>& TheModel() { return this->Model; }  ///< W / length^2, [voxel]

@@ -5,7 +5,7 @@
 namespace tyndall
 {
 // A cycle of multigrid that preconditions conjugate gradients, in one memory (MultigridSolver.h) and over ranks
-// (Distributed/MultigridOverRanks.h).
+// (Distributed/Balance/MultigridOverRanks.h).
 
 constexpr int FinishRounds = 12; ///< on the coarsest level
 constexpr float Damping = 0.87f; ///< of Jacobi's method, about the best: 0.8 takes 8% more iterations, 0.95 as many

@@ -2,7 +2,7 @@
 
 #include "Light/LeftOut.h"
 #include "LightPropagation/Conservative/ShownLight.h"
-#include "LightPropagation/Distributed/AccelerationInBlocks.h"
+#include "LightPropagation/Distributed/Balance/AccelerationInBlocks.h"
 #include "LightPropagation/Problem/UncollidedDirections.h"
 #include "LightPropagation/Scattering/BeamsInSource.h"
 #include "LightPropagation/Scattering/MomentScattering.h"

@@ -1,7 +1,7 @@
 // The slot a launch works in, where volumes are streamed (SliceStream.h).
 
 #pragma once
-#include "LightPropagation/Sweep/SweepLayout.cl"
+#include "LightPropagation/Sweep/OnCpu/SweepLayout.cl"
 
 #if STREAMED
 // Of volumes that are streamed there are slices in slots: the steps of PlaneInfo are a slot's, and

@@ -2,8 +2,8 @@
 
 #include "Distribution/BlockPartition.h"
 #include "Distribution/Communicator.h"
-#include "LightPropagation/Distributed/BlockSweep.h"
-#include "LightPropagation/Distributed/SweepSchedule.h"
+#include "LightPropagation/Distributed/Sweep/BlockSweep.h"
+#include "LightPropagation/Distributed/Sweep/SweepSchedule.h"
 #include "LightPropagation/Sweep/SweepOperator.h"
 #include "LightPropagation/Sweep/VolumeLayout.h"
 

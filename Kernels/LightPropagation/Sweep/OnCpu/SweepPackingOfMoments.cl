@@ -1,7 +1,7 @@
 // SweepPacking.cl of a source's angular moments and of sources by octant.
 
 #pragma once
-#include "LightPropagation/Sweep/SweepPacking.cl"
+#include "LightPropagation/Sweep/OnCpu/SweepPacking.cl"
 
 #if DEGREE && !MOMENTS_IN_PLACE
 // Of the functions from the second on, where planes from `first` on, all of one group, have row (u, v) of a channel.

@@ -1,4 +1,4 @@
-#include "LightPropagation/Distributed/ParallelBundles.h"
+#include "LightPropagation/Distributed/Sweep/ParallelBundles.h"
 
 namespace tyndall
 {

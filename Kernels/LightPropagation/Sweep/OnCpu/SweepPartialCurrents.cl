@@ -1,7 +1,7 @@
 // Power that enters voxels through their faces: what goes from one to the next, for the balance of a diffusion system.
 
 #pragma once
-#include "LightPropagation/Sweep/SweepLayout.cl"
+#include "LightPropagation/Sweep/OnCpu/SweepLayout.cl"
 
 #if CURRENTS
 // Part of some rays of row y that come through one kind of face. To be called with a constant count.

@@ -1,4 +1,4 @@
-#include "LightPropagation/Distributed/SweepInBlocks.h"
+#include "LightPropagation/Distributed/Sweep/SweepInBlocks.h"
 
 #include "Medium/BoxFaces.h"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "LightPropagation/Distributed/BlockSweep.h"
+#include "LightPropagation/Distributed/Sweep/BlockSweep.h"
 #include "Medium/BoxFaces.h"
 
 #include <array>

@@ -1,7 +1,7 @@
-#include "LightPropagation/Distributed/SweepSchedule.h"
+#include "LightPropagation/Distributed/Sweep/SweepSchedule.h"
 
 #include "Device/Errors.h"
-#include "LightPropagation/Distributed/BlockContact.h"
+#include "LightPropagation/Distributed/Sweep/BlockContact.h"
 
 #include <algorithm>
 #include <functional>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "Distribution/BlockPartition.h"
-#include "LightPropagation/Distributed/ParallelBundles.h"
+#include "LightPropagation/Distributed/Sweep/ParallelBundles.h"
 
 #include <array>
 #include <vector>

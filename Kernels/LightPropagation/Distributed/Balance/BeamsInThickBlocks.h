@@ -2,7 +2,7 @@
 
 #include "Device/Buffer.h"
 #include "Device/Monitor.h"
-#include "LightPropagation/Distributed/BlockWithGhosts.h"
+#include "LightPropagation/Distributed/Balance/BlockWithGhosts.h"
 #include "LightPropagation/Sweep/SweepOperator.h"
 #include "LightPropagation/Sweep/SweepTally.h"
 #include "Lights/Lights.h"

@@ -3,8 +3,8 @@
 #include "Distribution/BlockPartition.h"
 #include "Distribution/Communicator.h"
 #include "LightPropagation/Diffusion/DiffusionSystem.h"
-#include "LightPropagation/Distributed/BlockWithGhosts.h"
-#include "LightPropagation/Distributed/MultigridOverRanks.h"
+#include "LightPropagation/Distributed/Balance/BlockWithGhosts.h"
+#include "LightPropagation/Distributed/Balance/MultigridOverRanks.h"
 
 #include <array>
 #include <memory>

@@ -1,4 +1,4 @@
-#include "LightPropagation/Distributed/BlockWithGhosts.h"
+#include "LightPropagation/Distributed/Balance/BlockWithGhosts.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "LightPropagation/Distributed/BalanceOverRanks.h"
+#include "LightPropagation/Distributed/Balance/BalanceOverRanks.h"
 
 #include "Medium/VoxelSums.h"
 

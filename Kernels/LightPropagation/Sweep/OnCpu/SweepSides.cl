@@ -8,7 +8,7 @@
 // bundles' radiances are, [bundle][member][channel].
 
 #pragma once
-#include "LightPropagation/Sweep/SweepLayout.cl"
+#include "LightPropagation/Sweep/OnCpu/SweepLayout.cl"
 
 #if SIDES
 #define SIDE_FLOATS(state) ((state)->sizeU + (state)->sizeV + 1)

@@ -1,4 +1,4 @@
-#include "LightPropagation/Distributed/MultigridOverRanks.h"
+#include "LightPropagation/Distributed/Balance/MultigridOverRanks.h"
 
 #include "Device/HostThreads.h"
 #include "LightPropagation/Diffusion/ConjugateGradients.h"

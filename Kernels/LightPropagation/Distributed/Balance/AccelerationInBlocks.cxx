@@ -1,4 +1,4 @@
-#include "LightPropagation/Distributed/AccelerationInBlocks.h"
+#include "LightPropagation/Distributed/Balance/AccelerationInBlocks.h"
 
 #include "Device/HostThreads.h"
 #include "LightPropagation/Diffusion/CrossingPattern.h"

@@ -4,13 +4,13 @@
 //   MEMBERS_1, MEMBERS_2, MEMBERS_4, MEMBERS_8  defined for each number of members that bundles have
 // and what SweepLayout.cl asks for.
 
+#include "LightPropagation/Sweep/OnCpu/SweepCrossing.cl"
+#include "LightPropagation/Sweep/OnCpu/SweepFaces.cl"
+#include "LightPropagation/Sweep/OnCpu/SweepLayout.cl"
+#include "LightPropagation/Sweep/OnCpu/SweepPackingOfMoments.cl"
+#include "LightPropagation/Sweep/OnCpu/SweepPartialCurrents.cl"
+#include "LightPropagation/Sweep/OnCpu/SweepSides.cl"
 #include "LightPropagation/Sweep/Slices/SliceSlot.cl"
-#include "LightPropagation/Sweep/SweepCrossing.cl"
-#include "LightPropagation/Sweep/SweepFaces.cl"
-#include "LightPropagation/Sweep/SweepLayout.cl"
-#include "LightPropagation/Sweep/SweepPackingOfMoments.cl"
-#include "LightPropagation/Sweep/SweepPartialCurrents.cl"
-#include "LightPropagation/Sweep/SweepSides.cl"
 
 // To one of the planes that are crossed one behind the other.
 static void go_to_plane(sweep_state* state, int k)
@@ -31,22 +31,22 @@ static void go_to_plane(sweep_state* state, int k)
 // One bundle through planes, once for each number of members.
 #ifdef MEMBERS_1
 #define MEMBERS 1
-#include "LightPropagation/Sweep/SweepBundle.cl"
+#include "LightPropagation/Sweep/OnCpu/SweepBundle.cl"
 #undef MEMBERS
 #endif
 #ifdef MEMBERS_2
 #define MEMBERS 2
-#include "LightPropagation/Sweep/SweepBundle.cl"
+#include "LightPropagation/Sweep/OnCpu/SweepBundle.cl"
 #undef MEMBERS
 #endif
 #ifdef MEMBERS_4
 #define MEMBERS 4
-#include "LightPropagation/Sweep/SweepBundle.cl"
+#include "LightPropagation/Sweep/OnCpu/SweepBundle.cl"
 #undef MEMBERS
 #endif
 #ifdef MEMBERS_8
 #define MEMBERS 8
-#include "LightPropagation/Sweep/SweepBundle.cl"
+#include "LightPropagation/Sweep/OnCpu/SweepBundle.cl"
 #undef MEMBERS
 #endif
 

@@ -1,4 +1,4 @@
-#include "LightPropagation/Distributed/CellsOverRanks.h"
+#include "LightPropagation/Distributed/Balance/CellsOverRanks.h"
 
 #include "LightPropagation/CoarseDiffusion/CoarseMatrix.h"
 #include "Medium/BoxFaces.h"

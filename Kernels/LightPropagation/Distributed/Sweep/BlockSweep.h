@@ -1,8 +1,8 @@
 #pragma once
 
 #include "Distribution/BlockPartition.h"
-#include "LightPropagation/Distributed/BlockContact.h"
-#include "LightPropagation/Distributed/ParallelBundles.h"
+#include "LightPropagation/Distributed/Sweep/BlockContact.h"
+#include "LightPropagation/Distributed/Sweep/ParallelBundles.h"
 #include "LightPropagation/Sweep/SweepPlan.h"
 #include "LightPropagation/Sweep/SweepTally.h"
 #include "LightPropagation/Sweep/SweepVolume.h"

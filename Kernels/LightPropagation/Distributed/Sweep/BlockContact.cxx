@@ -1,4 +1,4 @@
-#include "LightPropagation/Distributed/BlockContact.h"
+#include "LightPropagation/Distributed/Sweep/BlockContact.h"
 
 #include <initializer_list>
 

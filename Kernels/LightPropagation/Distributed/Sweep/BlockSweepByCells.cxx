@@ -1,4 +1,4 @@
-#include "LightPropagation/Distributed/BlockSweepByCells.h"
+#include "LightPropagation/Distributed/Sweep/BlockSweepByCells.h"
 
 #include "LightPropagation/Sweep/SpreadAside.h"
 

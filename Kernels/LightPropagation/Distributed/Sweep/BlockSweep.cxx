@@ -1,7 +1,7 @@
-#include "LightPropagation/Distributed/BlockSweep.h"
+#include "LightPropagation/Distributed/Sweep/BlockSweep.h"
 
 #include "Device/Defines.h"
-#include "LightPropagation/Distributed/BlockSweepByCells.h"
+#include "LightPropagation/Distributed/Sweep/BlockSweepByCells.h"
 #include "LightPropagation/Sweep/SweepDefines.h"
 #include "Medium/BoxFaces.h"
 #include "TyndallKernelSources.h"

@@ -24,7 +24,7 @@
 #define FIRST(member, channel) (((member)*CHANNELS + (channel)) * ROW + PAD)
 
 #if DEGREE
-#include "LightPropagation/Sweep/SweepMoments.cl"
+#include "LightPropagation/Sweep/OnCpu/SweepMoments.cl"
 // A function for as many frames as the bundle has.
 #define FOR_FRAMES(FUNCTION, ...) \
   if (bundle->frames == 2)        \

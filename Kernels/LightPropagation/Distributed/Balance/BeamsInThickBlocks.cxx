@@ -1,4 +1,4 @@
-#include "LightPropagation/Distributed/BeamsInThickBlocks.h"
+#include "LightPropagation/Distributed/Balance/BeamsInThickBlocks.h"
 
 #include "LightPropagation/Diffusion/LampPassing.h"
 #include "LightPropagation/Uncollided/ParallelBeam.h"

@@ -1,7 +1,7 @@
 // What a segment of a ray does to its light, for a vector of voxels.
 
 #pragma once
-#include "LightPropagation/Sweep/SweepLayout.cl"
+#include "LightPropagation/Sweep/OnCpu/SweepLayout.cl"
 
 // Of rays with power P and a source of q: path += p1 P, P' = P - sigma p1 P + power q p1, p1 = (1 - exp(-tau)) / sigma
 // (numerics.md, Eqs. (23), (24)). For small tau P' is P less what it loses, for large tau it is P times what is left:

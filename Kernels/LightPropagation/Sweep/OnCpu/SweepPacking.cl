@@ -2,7 +2,7 @@
 // vectors, however the axis lies in the volume.
 
 #pragma once
-#include "LightPropagation/Sweep/SweepLayout.cl"
+#include "LightPropagation/Sweep/OnCpu/SweepLayout.cl"
 
 #if REAL_WIDTH == 16
 #define ROUNDS 4

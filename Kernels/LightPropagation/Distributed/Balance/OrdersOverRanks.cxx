@@ -1,4 +1,4 @@
-#include "LightPropagation/Distributed/OrdersOverRanks.h"
+#include "LightPropagation/Distributed/Balance/OrdersOverRanks.h"
 
 #include "Medium/VoxelSums.h"
 

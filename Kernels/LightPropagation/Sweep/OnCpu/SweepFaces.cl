@@ -5,7 +5,7 @@
 // Side 0 to 3 is the face -u, +u, -v, +v; cell i of a side is row i or column i of the plane that is crossed.
 
 #pragma once
-#include "LightPropagation/Sweep/SweepLayout.cl"
+#include "LightPropagation/Sweep/OnCpu/SweepLayout.cl"
 
 #if FACE_OUT || FACE_IN
 #define FACE_CELL(state, side, i, c) \
