@@ -65,23 +65,6 @@ UpwindSweepInBlocks::UpwindSweepInBlocks(
   this->Order = SweepSchedule(ranks.partition, ways, costs).OrderOf(self);
 }
 
-/// Others wait for what this rank sends although it has failed: it goes on, and sends nothing in each message.
-void UpwindSweepInBlocks::Attempt(const std::function<void()>& work)
-{
-  try
-  {
-    if (!this->Broken)
-    {
-      work();
-    }
-  }
-  catch (...)
-  {
-    this->Error = std::current_exception();
-    this->Broken = true;
-  }
-}
-
 /// visit(place in the octant's values of the face) for each group and cell of a contact, in an order that both ranks
 /// know.
 /// @param cells  of this block's layer at the face
@@ -112,8 +95,8 @@ void UpwindSweepInBlocks::TakeFrom(const Octant& octant, int number)
   for (const BlockContact& contact : octant.senders)
   {
     const std::vector<float> message = this->Ranks.others.Receive<float>(contact.from, number);
-    this->Broken = this->Broken || message.empty();
-    this->Attempt([&] {
+    this->Failure.broken = this->Failure.broken || message.empty();
+    this->Failure.Attempt([&] {
       const int axis = AxisOf(contact.kind);
       std::vector<float>& face = faces[axis];
       face = face.empty() ? this->Sweep.ReadFace(axis, octant.first, octant.groups) : std::move(face);
@@ -124,7 +107,7 @@ void UpwindSweepInBlocks::TakeFrom(const Octant& octant, int number)
       });
     });
   }
-  this->Attempt([&] {
+  this->Failure.Attempt([&] {
     for (int axis = 0; axis < 3; ++axis)
     {
       if (!faces[axis].empty())
@@ -141,7 +124,7 @@ void UpwindSweepInBlocks::GiveTo(const Octant& octant, int number)
   for (const BlockContact& contact : octant.receivers)
   {
     std::vector<float> message;
-    this->Attempt([&] {
+    this->Failure.Attempt([&] {
       const int axis = AxisOf(contact.kind);
       std::vector<float>& face = faces[axis];
       face = face.empty() ? this->Sweep.ReadFace(axis, octant.first, octant.groups) : std::move(face);
@@ -150,34 +133,33 @@ void UpwindSweepInBlocks::GiveTo(const Octant& octant, int number)
         message.insert(message.end(), from, from + OrdinateLanes);
       });
     });
-    this->Ranks.others.Send(contact.to, number, this->Broken ? std::vector<float>() : message);
+    this->Ranks.others.Send(contact.to, number, this->Failure.broken ? std::vector<float>() : message);
   }
 }
 
 FacePowers UpwindSweepInBlocks::Apply(const Buffer<float>& radiance, const Buffer<float>& sigma_t,
   const Buffer<float>& scale, const IncomingRadiance& incoming, const Monitor& monitor)
 {
-  this->Broken = false;
-  this->Error = nullptr;
+  this->Failure = {};
   FacePowers powers;
-  this->Attempt([&] { this->Sweep.LetIn(incoming, powers); });
+  this->Failure.Attempt([&] { this->Sweep.LetIn(incoming, powers); });
   for (std::size_t i = 0; i < this->Order.size(); ++i)
   {
     const Octant& octant = this->Octants[this->Order[i]];
     const double all = static_cast<double>(this->Order.size());
     this->TakeFrom(octant, this->Order[i]);
-    this->Attempt([&] {
+    this->Failure.Attempt([&] {
       this->Sweep.SweepGroups(
         octant.first, octant.groups, radiance, sigma_t, scale, OfPart(monitor, i / all, (i + 1) / all));
     });
     this->GiveTo(octant, this->Order[i]);
   }
   this->Ranks.others.Together([&] {
-    if (this->Error)
+    if (this->Failure.error)
     {
-      std::rethrow_exception(this->Error);
+      std::rethrow_exception(this->Failure.error);
     }
-    if (this->Ranks.Has() && !this->Broken)
+    if (this->Ranks.Has() && !this->Failure.broken)
     {
       this->Sweep.Count(powers);
     }

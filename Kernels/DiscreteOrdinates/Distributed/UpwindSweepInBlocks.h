@@ -2,11 +2,11 @@
 
 #include "DiscreteOrdinates/OrdinatesScene.h"
 #include "DiscreteOrdinates/UpwindSweep.h"
+#include "Distribution/HeldFailure.h"
 #include "LightPropagation/Distributed/Sweep/BlockContact.h"
 #include "LightPropagation/Distributed/Sweep/SweepSchedule.h"
 
 #include <array>
-#include <exception>
 #include <functional>
 #include <vector>
 
@@ -36,7 +36,6 @@ private:
     int first = 0, groups = 0;
     std::vector<BlockContact> senders, receivers;
   };
-  void Attempt(const std::function<void()>& work);
   void TakeFrom(const Octant& octant, int number);
   void GiveTo(const Octant& octant, int number);
   template <class Visit>
@@ -47,7 +46,6 @@ private:
   std::vector<Octant> Octants;
   std::vector<int> Order; ///< of this rank
   UpwindSweep Sweep;
-  bool Broken = false; ///< during a sweep: something has gone wrong here, or before here
-  std::exception_ptr Error;
+  HeldFailure Failure; ///< of a sweep
 };
 }

@@ -171,23 +171,6 @@ void LinesInBlocks::Load()
   }
 }
 
-/// Others wait for what this rank sends although it has failed: it goes on, and sends nothing in each message.
-void LinesInBlocks::Attempt(const std::function<void()>& work)
-{
-  try
-  {
-    if (!this->Broken)
-    {
-      work();
-    }
-  }
-  catch (...)
-  {
-    this->Error = std::current_exception();
-    this->Broken = true;
-  }
-}
-
 /// @param values  numbers of a line
 /// @return by line; 0 where none come
 LinesInBlocks::Values LinesInBlocks::TakeFrom(const std::vector<Contact>& contacts, int tag, int values)
@@ -196,8 +179,8 @@ LinesInBlocks::Values LinesInBlocks::TakeFrom(const std::vector<Contact>& contac
   for (const Contact& contact : contacts)
   {
     const Values message = this->Others.Receive<double>(contact.rank, tag);
-    this->Broken = this->Broken || message.size() != values * contact.lines.size();
-    for (std::size_t i = 0; i < contact.lines.size() && !this->Broken; ++i)
+    this->Failure.broken = this->Failure.broken || message.size() != values * contact.lines.size();
+    for (std::size_t i = 0; i < contact.lines.size() && !this->Failure.broken; ++i)
     {
       std::copy_n(message.begin() + static_cast<std::ptrdiff_t>(values * i), values,
         ofLines.begin() + static_cast<std::ptrdiff_t>(values * contact.lines[i]));
@@ -211,7 +194,7 @@ void LinesInBlocks::GiveTo(const std::vector<Contact>& contacts, int tag, int va
   for (const Contact& contact : contacts)
   {
     Values message;
-    for (std::size_t i = 0; i < contact.lines.size() && !this->Broken; ++i)
+    for (std::size_t i = 0; i < contact.lines.size() && !this->Failure.broken; ++i)
     {
       const auto first = ofLines.begin() + static_cast<std::ptrdiff_t>(values * contact.lines[i]);
       message.insert(message.end(), first, first + values);
@@ -243,7 +226,7 @@ void LinesInBlocks::GoUp(int pair, Slot& slot, double shines)
   const int tag = 2 * pair;
   const Values before = this->TakeFrom(this->Pairs[pair].before, tag, SaysOfLast);
   Values last;
-  this->Attempt([&] {
+  this->Failure.Attempt([&] {
     slot.before.Write(before);
     cl::Kernel up = this->Kernel("lines_up", pair, shines);
     SetFrom(up, 7, slot.before.Handle(), slot.behind.Handle(), slot.last.Handle());
@@ -258,7 +241,7 @@ void LinesInBlocks::GoDown(int pair, Slot& slot, double shines, bool writes)
   const int tag = 2 * pair + 1;
   const Values after = this->TakeFrom(this->Pairs[pair].behind, tag, SaysOfFirst);
   Values first;
-  this->Attempt([&] {
+  this->Failure.Attempt([&] {
     slot.after.Write(after);
     cl::Kernel down = this->Kernel("lines_down", pair, shines);
     SetFrom(down, 7, slot.before.Handle(), slot.behind.Handle(), slot.after.Handle(), slot.first.Handle(),
@@ -272,10 +255,9 @@ void LinesInBlocks::GoDown(int pair, Slot& slot, double shines, bool writes)
 SteadySystem::Values LinesInBlocks::Sweep(
   const SteadySystem::Values& even, double shines, bool writes, const Monitor& monitor)
 {
-  this->Broken = false;
-  this->Error = nullptr;
+  this->Failure = {};
   const int pairs = this->Box.Count() > 0 ? static_cast<int>(this->Pairs.size()) : 0;
-  this->Attempt([&] {
+  this->Failure.Attempt([&] {
     if (pairs > 0)
     {
       this->Even.Write(even);
@@ -294,15 +276,15 @@ SteadySystem::Values LinesInBlocks::Sweep(
       this->GoDown(pair, this->Slots[pair - begin], shines, writes);
     }
     this->Work += end - begin;
-    this->Attempt([&] { Report(monitor, 1.0 - 1.0 / (1.0 + 0.01 * this->Work)); }); // as SteadyInMemory does
+    this->Failure.Attempt([&] { Report(monitor, 1.0 - 1.0 / (1.0 + 0.01 * this->Work)); }); // as SteadyInMemory does
   }
   SteadySystem::Values arrives;
   this->Others.Together([&] {
-    if (this->Error)
+    if (this->Failure.error)
     {
-      std::rethrow_exception(this->Error);
+      std::rethrow_exception(this->Failure.error);
     }
-    if (pairs > 0 && !this->Broken)
+    if (pairs > 0 && !this->Failure.broken)
     {
       arrives = this->Arriving.Read();
     }

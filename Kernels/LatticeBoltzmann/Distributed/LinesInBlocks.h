@@ -5,12 +5,12 @@
 #include "Device/Monitor.h"
 #include "Distribution/BlockPartition.h"
 #include "Distribution/Communicator.h"
+#include "Distribution/HeldFailure.h"
 #include "LatticeBoltzmann/Lattice.h"
 #include "LatticeBoltzmann/LatticeBox.h"
 #include "LatticeBoltzmann/Steady/SteadySystem.h"
 
 #include <array>
-#include <exception>
 #include <functional>
 #include <vector>
 
@@ -52,7 +52,6 @@ private:
   Pair ContactsOf(int pair) const;
   std::size_t LineOf(int pair, std::array<int, 3> voxel) const;
   void Load();
-  void Attempt(const std::function<void()>& work);
   Values TakeFrom(const std::vector<Contact>& contacts, int tag, int values);
   void GiveTo(const std::vector<Contact>& contacts, int tag, int values, const Values& ofLines);
   void GoUp(int pair, Slot& slot, double shines);
@@ -72,8 +71,7 @@ private:
   std::size_t MostLines = 1;
   ExactValues Straight, Even, Arriving;
   Buffer<float> Passes, Squared;
-  bool Broken = false; ///< during a sweep: something has gone wrong here, or before here
-  std::exception_ptr Error;
+  HeldFailure Failure; ///< of a sweep
   double Work = 0.0;
 };
 }
