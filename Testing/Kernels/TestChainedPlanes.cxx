@@ -1,9 +1,13 @@
 // Planes that a sweep crosses row by row one behind the other, as it does where they are larger than a core's cache:
-// the light is the same, bit for bit, as plane by plane.
+// the light is the same as plane by plane, bit for bit where all rows of a plane are crossed in one turn, else but for the
+// order of sums; and bit for bit wherever ranges of planes begin.
 
 #include "DeviceTest.h"
 #include "MediumScene.h"
 #include "RandomMedium.h"
+
+#include "LightPropagation/Conservative/SolveMemory.h"
+#include "LightPropagation/Sweep/SweepShared.h"
 
 #include <cstdlib>
 
@@ -14,7 +18,8 @@ namespace
 /// As long as it lives all planes are larger than the cache.
 struct NoCache
 {
-  NoCache() { setenv("TYNDALL_WITHOUT", "cache", 1); }
+  /// @param more  that the device hides
+  explicit NoCache(const char* more = "") { setenv("TYNDALL_WITHOUT", (std::string("cache") + more).c_str(), 1); }
   ~NoCache() { unsetenv("TYNDALL_WITHOUT"); }
 };
 
@@ -51,11 +56,52 @@ protected:
 
 TEST_F(ChainedPlanes, HaveTheSameLight)
 {
-  for (const std::array<int, 3>& size : { std::array<int, 3>{ 21, 18, 37 }, { 3, 2, 5 }, { 17, 1, 1 }, { 1, 6, 33 } })
+  for (const std::array<int, 3>& size : { std::array<int, 3>{ 19, 18, 20 }, { 3, 2, 5 }, { 17, 1, 1 }, { 1, 6, 20 } })
   {
     SCOPED_TRACE(std::to_string(size[0]) + " x " + std::to_string(size[1]) + " x " + std::to_string(size[2]));
     Scene scene = RandomScene(size);
     ExpectSame(scene);
+  }
+}
+
+/// Of planes of more rows than bundles cross in turns sums have another order.
+TEST_F(ChainedPlanes, HaveTheSameLightInTilesOfRows)
+{
+  for (const std::array<int, 3>& size :
+    { std::array<int, 3>{ 11, 2 * RowsOfChain + 5, 9 }, { RowsOfChain + 1, 7, 3 * RowsOfChain } })
+  {
+    SCOPED_TRACE(std::to_string(size[0]) + " x " + std::to_string(size[1]) + " x " + std::to_string(size[2]));
+    Scene scene = RandomScene(size);
+    const LightField expected = scene.Solve(GetDevice());
+    const NoCache none;
+    const LightField found = scene.Solve(GetDevice());
+    EXPECT_LT(RelativeRmse(found.fluence, expected.fluence), 3e-7);
+    EXPECT_LT(RelativeRmse(found.netFlux, expected.netFlux), 1e-6);
+    EXPECT_NE(found.fluence, expected.fluence) << "the same order: there are no tiles";
+    for (int face = 0; face < 6; ++face)
+    {
+      EXPECT_NEAR(found.facePowerOut[face][0], expected.facePowerOut[face][0], 1e-6 * expected.facePowerOut[face][0]);
+    }
+  }
+}
+
+/// Slices that cut chains: their rows are crossed in the same order.
+TEST_F(ChainedPlanes, AreTheSameBitForBitWhereTheyAreStreamed)
+{
+  Scene scene = RandomScene({ 37, 2 * RowsOfChain + 5, 45 });
+  const NoCache none(" host_memory");
+  const LightField whole = scene.Solve(GetDevice());
+  const PropagationProblem problem(scene.medium, scene.light, scene.settings);
+  const std::size_t bytes = BytesOfSolve(problem, HowOrdersAreAdded(problem));
+  for (const int part : { 2, 5, 8 })
+  {
+    SCOPED_TRACE("within a part of " + std::to_string(part));
+    scene.settings.memoryBudget = bytes / part;
+    const LightField light = scene.Solve(GetDevice());
+    EXPECT_NE(light.device.find("streamed"), std::string::npos) << light.device;
+    EXPECT_EQ(light.fluence, whole.fluence);
+    EXPECT_EQ(light.netFlux, whole.netFlux);
+    EXPECT_EQ(light.facePowerOut, whole.facePowerOut);
   }
 }
 

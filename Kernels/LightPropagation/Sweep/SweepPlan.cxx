@@ -163,6 +163,7 @@ void SweepPlan::LayPlane(const Device& device)
   this->plane.width = width;
   this->plane.block = this->axes.u == 0 ? 1 : this->vector;
   this->plane.chained = this->PlanesChained(device);
+  this->plane.tile = this->plane.chained > 1 ? RowsOfChain : 0;
   this->plane.together = std::max(this->plane.block, this->plane.chained);
   this->plane.vacuum = static_cast<float>(std::max(1e-30 / LongestWay(this->bundles), 1e-37));
   this->plane.thin = static_cast<float>(Thin / this->LongestSegment());
@@ -376,7 +377,7 @@ std::size_t SweepPlan::ScratchFloats() const
   const std::size_t together = std::min<std::size_t>(this->bundles.size(), BundlesTogether);
   const std::size_t kept = this->angular
     ? together * BUNDLE_FLOATS(this->channels, this->row)
-    : RINGS_OF(static_cast<std::size_t>(this->plane.chained)) * RingRows * raysOfRow;
+    : together * RINGS_OF(static_cast<std::size_t>(this->plane.chained)) * RingRows * raysOfRow;
   // Behind those the row of rays that come in by cells of the box's faces.
   const std::size_t ring = kept + (this->faceIn ? 2 : 1) * (raysOfRow + this->vector);
   const int beams = this->angular ? this->angular->Beams() : 0;

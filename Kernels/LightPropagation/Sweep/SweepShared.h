@@ -13,9 +13,9 @@ enum
   MeanLengthTerms = 5,  ///< of (1 - exp(-t)) / t = 1 + t (m0 + t (m1 + ...)) for thin voxels, see SweepPlan.cxx
   BundlesTogether = 16, ///< that cross a plane tile by tile, where light has angular moments
   MomentRows = 8,       ///< of which a bundle's sources are kept: of the rows that its stages are at
-  MostChained = 4,      ///< planes that a bundle crosses row by row one behind the other
-  FirstRow = -2,        ///< of a plane: that a first stage may begin at, and
-  RowsBehind = 6        ///< those beyond its last one that it may end at
+  MostChained = 2,      ///< planes that a bundle crosses row by row one behind the other
+  RowsOfChain = 32,     ///< of those, that bundles cross in turns: the planes' rows stay in the cache for all of them
+  FirstRow = -2         ///< of a plane, that a first stage may begin at
 };
 
 /// The first quantities of a plane that is being crossed; behind them path, flux and partial currents (SweepLayout.cl).
@@ -107,6 +107,7 @@ typedef struct
   int block;    ///< planes packed at once: 1 where rows are contiguous in memory, else a vector's worth
   int together; ///< planes packed before any of them is crossed: a multiple of those
   int chained;  ///< of them, that a bundle crosses row by row one behind the other
+  int tile;     ///< rows of those that bundles cross in turns; 0: each crosses all of them
   float vacuum; ///< 1/length, least sigma_t, in place of 0: exp(-tau) is 1 in float
   float thin;   ///< 1/length, below which meanLength holds on all segments
   float meanLength[MeanLengthTerms];

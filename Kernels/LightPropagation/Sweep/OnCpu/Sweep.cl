@@ -203,36 +203,44 @@ static void cross_planes(sweep_state* state, int planes, __global float* maps, c
 #undef CROSS
 }
 
-// Rays of some bundles through planes one behind the other.
+// Rays of some bundles through planes one behind the other. Where the planes are many (their moments, or large ones that
+// are chained) tile by tile of rows, so that those of a tile stay in the cache for all bundles.
 // @param planes  1 where CHAINED is 0
 // @param crossings, coefficients  of the first of the bundles
 static void cross_bundles(sweep_state* state, int planes, __global float* maps, const __global float* outside,
   const __global float* radiance, const __global BundleInfo* bundles, int count, const __global CrossingInfo* crossings,
   int all_bundles, const __global float* coefficients)
 {
-#if DEGREE
-  // A plane has many moments: tile by tile, so that those of a tile stay in the cache for all bundles.
   __global float* const kept = state->ring;
-  for (int row = FirstRow; row < state->sizeV + RowsBehind; row += TILE)
+#if DEGREE
+  const int tile = TILE, floats_of_bundle = BUNDLE_FLOATS(CHANNELS, ROW);
+#else
+  const int tile = state->tile, floats_of_bundle = state->rings * RingRows * RAYS_OF_ROW;
+#endif
+  if (tile == 0)
   {
     for (int b = 0; b < count; ++b)
     {
-      state->ring = kept + b * BUNDLE_FLOATS(CHANNELS, ROW);
+      cross_planes(state, planes, maps, outside, radiance, bundles + b, crossings + b, all_bundles, coefficients,
+        FirstRow, INT_MAX);
+    }
+    return;
+  }
+  for (int row = FirstRow; row < state->sizeV + ROWS_BEHIND(state->chained_before + planes); row += tile)
+  {
+    for (int b = 0; b < count; ++b)
+    {
+      state->ring = kept + b * floats_of_bundle;
+#if DEGREE
       state->sources = state->ring + state->rings * RingRows * RAYS_OF_ROW;
       state->paths = state->sources + MomentRows * RAYS_OF_ROW;
       state->ownPath = state->paths + MomentRows * RAYS_OF_ROW;
+#endif
       cross_planes(
-        state, planes, maps, outside, radiance, bundles + b, crossings + b, all_bundles, coefficients, row, row + TILE);
+        state, planes, maps, outside, radiance, bundles + b, crossings + b, all_bundles, coefficients, row, row + tile);
     }
   }
   state->ring = kept;
-#else
-  for (int b = 0; b < count; ++b)
-  {
-    cross_planes(
-      state, planes, maps, outside, radiance, bundles + b, crossings + b, all_bundles, coefficients, FirstRow, INT_MAX);
-  }
-#endif
 }
 
 static void clear_tallies(float (*escaped)[4][CHANNELS], float (*rounding)[4][CHANNELS])
@@ -298,8 +306,9 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
   const int together = min(unit.bundles, (int)BundlesTogether);
   const int rings = together * BUNDLE_FLOATS(CHANNELS, ROW);
 #else
-  const int together = unit.bundles;
-  const int rings = state.rings * RingRows * RAYS_OF_ROW;
+  state.tile = CHAINED ? layout.tile : 0;
+  const int together = state.tile > 0 ? min(unit.bundles, (int)BundlesTogether) : unit.bundles;
+  const int rings = (state.tile > 0 ? together : 1) * state.rings * RingRows * RAYS_OF_ROW;
 #endif
   state.moving = state.ring + rings;
   __global float* planes = state.moving + RAYS_OF_ROW + PAD; // past the last row's border
@@ -394,7 +403,14 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
     }
     for (int k = begin, chained; k < begin + count; k += chained)
     {
-      chained = min(min(layout.chained, PLANES_CHAINED), begin + count - k);
+#if CHAINED
+      // Chains begin at the same planes wherever a range does: so rows, and sums, are crossed in the same order.
+      state.chained_before = (unit.planesBefore + k) % layout.chained;
+      chained = min(layout.chained - state.chained_before, begin + count - k);
+#else
+      state.chained_before = 0;
+      chained = 1;
+#endif
       state.places = places + (k - begin);
 #if SIDES
       const ulong sides_of_plane = (ulong)k * info.radianceEachWay * SIDE_FLOATS(&state);

@@ -465,7 +465,11 @@ static void CROSS_PLANES(sweep_state* state, int planes, __global float* map, co
   }
 #endif
   stage_of_chain chain[STAGES];
-  int stages = 0;
+  int stages = 0, before = 0; // of planes that the chain has without these, as if it was crossed from its first one on
+  for (int k = 1; k <= state->chained_before; ++k)
+  {
+    before += crossings[-k * bundles].stages;
+  }
   for (int k = 0; k < planes; ++k)
   {
     for (int s = 0; s < crossings[k * bundles].stages; ++s)
@@ -499,12 +503,12 @@ static void CROSS_PLANES(sweep_state* state, int planes, __global float* map, co
 #else
   const int beyond = 0;
 #endif
-  const int end = min(height + beyond + LAG * (stages - 1), end_row);
+  const int end = min(height + beyond + LAG * (before + stages - 1), end_row);
   for (int r = max(-beyond, first_row); r < end; ++r)
   {
     for (int g = 0; g < stages; ++g)
     {
-      const int y = r - LAG * g;
+      const int y = r - LAG * (before + g);
 #if PERIODIC_V
       const int reach = stages - 1 - g;
 #else

@@ -59,6 +59,7 @@ static __constant int function_order[MOMENTS] = { FUNCTION_ORDER };
 #define CHAINED (!DEGREE && !FACE_IN && !FACE_OUT && !SIDES && !PERIODIC_U && !PERIODIC_V)
 #define PLANES_CHAINED (CHAINED ? MostChained : 1)
 #define STAGES (3 * PLANES_CHAINED)
+#define ROWS_BEHIND(planes) (LAG * (3 * (planes)-1) + 2) // a plane, that a stage may end at at most
 typedef struct
 {
   int plane, stage; // of the plane
@@ -83,6 +84,8 @@ typedef struct
   __global float* planes;           // of the plane that is being crossed
   __global int* thin;               // [row] of it, 1 where all voxels are thin
   float meanLength[MeanLengthTerms];
+  int chained_before;   // planes of a chain that were crossed before those of `places`
+  int tile;             // rows that bundles cross in turns; 0: each crosses all of them
   int rings;            // one behind each stage but the last
   __global float* ring; // so many of RingRows rows of RAYS_OF_ROW floats
 #if DEGREE
