@@ -3,6 +3,7 @@
 #include "Ranks/ControllerCommunicator.h"
 #include "Ranks/PieceBlocks.h"
 #include "Viewing/Blocks/BlockOrder.h"
+#include "Viewing/Scene/BlockOfScene.h"
 
 #include "vtkImageData.h"
 #include "vtkMultiProcessController.h"
@@ -15,18 +16,6 @@ namespace tyndall
 namespace
 {
 constexpr int Tag = 745203; ///< of our messages
-
-/// Whether a block's arrays hold a layer around its own voxels, as far as there are any.
-bool HasLayer(const VoxelBox& own, const VoxelBox& held, const Grid& whole)
-{
-  bool has = true;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    has = has && held.first[axis] <= std::max(own.first[axis] - 1, 0) &&
-      EndOf(held, axis) >= std::min(EndOf(own, axis) + 1, whole.size[axis]);
-  }
-  return has;
-}
 }
 
 std::vector<double> SaidByAll(vtkMultiProcessController* ranks, const std::vector<double>& own)
@@ -49,7 +38,8 @@ BlocksOfRanks::BlocksOfRanks(vtkMultiProcessController* ranks, vtkImageData* ima
 {
   const PieceBlocks pieces(*CommunicatorOf(ranks), nullptr, image);
   this->Tiled = pieces.MakeUpTheWhole();
-  this->Surrounded = this->Tiled;
+  this->Parts = pieces.Partition();
+  this->OfPieces = pieces.HeldByRanks();
   bool isFirst = true;                                                        // of those that have a block
   for (std::size_t rank = 0; rank < pieces.Partition().blocks.size(); ++rank) // of none where no rank has cells
   {
@@ -64,16 +54,35 @@ BlocksOfRanks::BlocksOfRanks(vtkMultiProcessController* ranks, vtkImageData* ima
     {
       block.showsBackgroundBeside = isFirst;
       isFirst = false;
-      this->Surrounded = this->Surrounded && HasLayer(own, held, block.whole);
     }
   }
+}
+
+bool BlocksOfRanks::AreGiven(const std::vector<VoxelBox>& held) const
+{
+  return std::equal(held.begin(), held.end(), this->OfPieces.begin(), [](const VoxelBox& a, const VoxelBox& b) {
+    return (a.VoxelCount() == 0 && b.VoxelCount() == 0) || (a.first == b.first && a.size == b.size);
+  });
+}
+
+std::vector<VoxelBox> BlocksOfRanks::HeldFor(const ViewSettings& settings, bool moments, bool surface) const
+{
+  std::vector<VoxelBox> needed;
+  bool enough = true;
+  for (std::size_t rank = 0; rank < this->OfPieces.size(); ++rank)
+  {
+    const VoxelBox& own = this->Parts.blocks[rank];
+    needed.push_back(own.VoxelCount() > 0 ? HeldBox(own, this->Parts.whole, settings, moments, surface) : VoxelBox());
+    enough = enough && Common(needed[rank], this->OfPieces[rank]).VoxelCount() == needed[rank].VoxelCount();
+  }
+  return enough ? this->OfPieces : needed;
 }
 
 /// Sends pixels to a rank, and receives as many as there is room for from it.
 void BlocksOfRanks::Swap(int partner, const std::vector<BlockPixel>& mine, std::vector<BlockPixel>& theirs) const
 {
   constexpr std::size_t floats = sizeof(BlockPixel) / sizeof(float);
-  static_assert(floats == 11, "pixels are sent as floats");
+  static_assert(floats == 17, "pixels are sent as floats");
   const auto send = [&] {
     if (!mine.empty())
     {

@@ -1,8 +1,10 @@
 #pragma once
 
+#include "Distribution/BlockPartition.h"
 #include "Viewing/Blocks/BlockPixels.h"
 #include "Viewing/Scene/Camera.h"
 #include "Viewing/Scene/GridBlock.h"
+#include "Viewing/Scene/ViewSettings.h"
 
 #include <cstddef>
 #include <optional>
@@ -19,8 +21,8 @@ std::vector<double> SaidByAll(vtkMultiProcessController* ranks, const std::vecto
 /// Whether it is so on any rank. All of them have to call it.
 bool OnAnyRank(vtkMultiProcessController* ranks, bool own);
 
-/// An image that is spread over ranks, each of which has a block of its voxels and, flagged as duplicates, a layer of
-/// its neighbours'. All ranks have to construct it and to call Exchange, also those that have no block.
+/// An image that is spread over ranks, each of which has a block of its voxels, and may have some of its neighbours',
+/// flagged as duplicates. All ranks have to construct it and to call Exchange, also those that have no block.
 class BlocksOfRanks
 {
 public:
@@ -36,11 +38,17 @@ public:
 
   /// Whether the blocks are parts of one grid, and together each of its voxels once: the same on all ranks.
   bool MakeUpTheWhole() const { return this->Tiled; }
-  /// Whether each has its layer of neighbours' voxels: the same on all ranks.
-  bool HaveLayers() const { return this->Surrounded; }
   bool HasOwn() const { return this->Blocks[this->Rank].OwnVoxels() > 0; }
   const GridBlock& Own() const { return this->Blocks[this->Rank]; }
   const Grid& Whole() const { return this->Own().whole; } ///< where MakeUpTheWhole
+
+  // Where MakeUpTheWhole, in voxels of the whole.
+  const BlockPartition& Partition() const { return this->Parts; }
+  /// What ranks have been given, by rank: their blocks are in these.
+  const std::vector<VoxelBox>& Given() const { return this->OfPieces; }
+  /// What ranks need to see their blocks (HeldBox): what they have been given, where that is enough for all.
+  bool AreGiven(const std::vector<VoxelBox>& held) const;
+  std::vector<VoxelBox> HeldFor(const ViewSettings& settings, bool moments, bool surface) const;
 
   /// What other blocks show where this rank wants it: each rank sends to each only what that one wants of it.
   /// @param own     this block's pixels; none where it is not seen, or there is none
@@ -58,6 +66,8 @@ private:
   vtkMultiProcessController* Ranks;
   std::size_t Rank;
   std::vector<GridBlock> Blocks; ///< by rank
-  bool Tiled = false, Surrounded = false;
+  BlockPartition Parts;
+  std::vector<VoxelBox> OfPieces;
+  bool Tiled = false;
 };
 }

@@ -24,7 +24,7 @@ bool CanCast(vtkMultiProcessController* ranks, const BlocksOfRanks& blocks, cons
   const auto ofBlock = static_cast<std::ptrdiff_t>(flags + own.ofFilter.size());
   const std::vector<double> said = SaidByAll(ranks, words);
   const double* first = nullptr; // of those that have a block
-  bool can = blocks.MakeUpTheWhole() && blocks.HaveLayers();
+  bool can = blocks.MakeUpTheWhole();
   for (const double* rank = said.data(); rank < said.data() + said.size(); rank += count)
   {
     can = can && rank[0] > 0.0 && std::equal(rank + flags, rank + ofBlock, said.data() + flags);
@@ -37,11 +37,9 @@ bool CanCast(vtkMultiProcessController* ranks, const BlocksOfRanks& blocks, cons
   return can;
 }
 
-PictureOfBlocks::PictureOfBlocks(vtkMultiProcessController* ranks, vtkAlgorithm* filter, const BlocksOfRanks& blocks,
-  const Camera& camera, const std::array<int, 2>& size, const PixelRect& part, const PixelRect& counted)
-  : Ranks(ranks)
-  , Filter(filter)
-  , Blocks(blocks)
+PictureOfBlocks::PictureOfBlocks(const SeeingRanks& seen, const Camera& camera, const std::array<int, 2>& size,
+  const PixelRect& part, const PixelRect& counted)
+  : Seen(seen)
   , TheCamera(camera)
   , Size(size)
   , Part(part)
@@ -49,42 +47,43 @@ PictureOfBlocks::PictureOfBlocks(vtkMultiProcessController* ranks, vtkAlgorithm*
 {
 }
 
-BlockPixels PictureOfBlocks::CastOwn(MediumRayCaster* caster, double& farDepth) const
+BlockPixels PictureOfBlocks::CastOwn(double& farDepth) const
 {
   BlockPixels own;
-  WorkOnAllRanks(this->Ranks, this->Filter, [&] {
-    if (caster)
-    {
-      const Picture picture = caster->Render(this->TheCamera, MonitorOf(this->Filter), {}, &this->Blocks.Own());
-      farDepth = picture.farDepth;
-      own = SeenPart(picture);
-    }
+  WorkOnAllRanks(this->Seen.ranks, this->Seen.filter, [&] {
+    const Picture picture = this->Seen.ofBlock.Take(this->TheCamera, this->Size, MonitorOf(this->Seen.filter));
+    farDepth = picture.farDepth;
+    own = SeenPart(picture);
   });
   return own;
 }
 
 /// What other blocks before this one change of it, which nobody knew when it was cast.
-void PictureOfBlocks::LookAgain(MediumRayCaster* caster, BlockPixels& own) const
+void PictureOfBlocks::LookAgain(BlockPixels& own) const
 {
-  const auto seen = this->Blocks.Exchange(own, own.rect, false, this->TheCamera);
-  WorkOnAllRanks(this->Ranks, this->Filter, [&] {
-    const std::vector<float> starts = caster
-      ? StartsBehind(seen->frontToBack, seen->own, this->Size, caster->MinimumTransmittance())
-      : std::vector<float>();
-    if (!starts.empty())
+  MediumRayCaster* const caster = this->Seen.caster;
+  const auto seen = this->Seen.blocks.Exchange(own, own.rect, false, this->TheCamera);
+  WorkOnAllRanks(this->Seen.ranks, this->Seen.filter, [&] {
+    const Starts starts =
+      caster ? StartsBehind(seen->frontToBack, seen->own, this->Size, caster->MinimumTransmittance()) : Starts();
+    if (!starts.IsEmpty())
     {
-      TakeFrom(caster->RenderBehind(this->TheCamera, this->Blocks.Own(), starts, MonitorOf(this->Filter)), starts, own);
+      const GridBlock& block = caster->Block().block;
+      TakeFrom(caster->RenderBehind(this->TheCamera, block, starts, MonitorOf(this->Seen.filter)), starts, own);
     }
   });
 }
 
-Picture PictureOfBlocks::Take(MediumRayCaster* caster) const
+Picture PictureOfBlocks::Take() const
 {
   double farDepth = 0.0;
-  BlockPixels own = this->CastOwn(caster, farDepth);
-  this->LookAgain(caster, own);
-  const std::vector<double> depths = SaidByAll(this->Ranks, { farDepth });
-  const auto seen = this->Blocks.Exchange(own, this->Part, false, this->TheCamera);
+  BlockPixels own = this->CastOwn(farDepth);
+  if (!this->Seen.ofBlock.GoesInRounds())
+  {
+    this->LookAgain(own);
+  }
+  const std::vector<double> depths = SaidByAll(this->Seen.ranks, { farDepth });
+  const auto seen = this->Seen.blocks.Exchange(own, this->Part, false, this->TheCamera);
   return PictureOfAll(
     seen->frontToBack, this->Part, static_cast<float>(*std::max_element(depths.begin(), depths.end())));
 }
@@ -102,7 +101,7 @@ double PictureOfBlocks::Exposure(const Picture& part) const
   }
   const std::vector<int> own = LuminanceCounts(radiance);
   std::vector<int> all(own.size());
-  this->Ranks->AllReduce(own.data(), all.data(), static_cast<vtkIdType>(own.size()), vtkCommunicator::SUM_OP);
+  this->Seen.ranks->AllReduce(own.data(), all.data(), static_cast<vtkIdType>(own.size()), vtkCommunicator::SUM_OP);
   return ExposureOfCounts(all);
 }
 

@@ -4,6 +4,7 @@
 
 #include "Device/Monitor.h"
 #include "Viewing/Blocks/BlockPixels.h"
+#include "Viewing/Blocks/PictureInBlocks.h"
 #include "Viewing/MediumRayCaster.h"
 #include "Viewing/Scene/Camera.h"
 
@@ -28,33 +29,40 @@ struct BlockToCast
 /// Whether all ranks are able to, and say the same: the same on all ranks, which all have to ask.
 bool CanCast(vtkMultiProcessController* ranks, const BlocksOfRanks& blocks, const BlockToCast& own);
 
+/// Ranks that see a medium together.
+struct SeeingRanks
+{
+  vtkMultiProcessController* ranks;
+  vtkAlgorithm* filter; ///< says how far it is
+  const BlocksOfRanks& blocks;
+  PictureInBlocks& ofBlock;
+  MediumRayCaster* caster; ///< of this rank's block; null: it has none
+};
+
 /// A picture of a medium that is spread over ranks, of which each casts its block and gets a part: that of one rank
 /// with the whole, to rounding (numerics.md, section 14.9). All ranks have to construct it and to call its functions in
 /// the same order; what fails on one throws on all, and so does an abort.
 class PictureOfBlocks
 {
 public:
-  /// @param filter  says how far it is
+  /// @param seen    must stay
   /// @param part    pixels that this rank gets
   /// @param counted those of them that no other rank counts (Exposure)
-  PictureOfBlocks(vtkMultiProcessController* ranks, vtkAlgorithm* filter, const BlocksOfRanks& blocks,
-    const Camera& camera, const std::array<int, 2>& size, const PixelRect& part, const PixelRect& counted);
+  PictureOfBlocks(const SeeingRanks& seen, const Camera& camera, const std::array<int, 2>& size, const PixelRect& part,
+    const PixelRect& counted);
 
-  /// @param caster  of this rank's block; null: it has none
   /// @return the part
-  Picture Take(MediumRayCaster* caster) const;
+  Picture Take() const;
 
   /// AutomaticExposure of the whole picture.
   /// @param part  as Take made it
   double Exposure(const Picture& part) const;
 
 private:
-  BlockPixels CastOwn(MediumRayCaster* caster, double& farDepth) const;
-  void LookAgain(MediumRayCaster* caster, BlockPixels& own) const;
+  BlockPixels CastOwn(double& farDepth) const;
+  void LookAgain(BlockPixels& own) const;
 
-  vtkMultiProcessController* Ranks;
-  vtkAlgorithm* Filter;
-  const BlocksOfRanks& Blocks;
+  SeeingRanks Seen;
   Camera TheCamera;
   std::array<int, 2> Size;
   PixelRect Part, Counted;

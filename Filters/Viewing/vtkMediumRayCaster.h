@@ -17,10 +17,13 @@ namespace tyndall
 {
 class Device;
 struct AskedView;
+struct CasterScene;
 struct GridBlock;
 struct InputsKey;
 struct Picture;
+struct RankPieces;
 struct ViewSettings;
+struct VoxelBox;
 class WholeInputs;
 }
 
@@ -343,21 +346,27 @@ private:
   /// @return false where it failed: there was an error, and there is none again until something has changed
   bool See(const tyndall::AskedView& view, tyndall::Picture& picture);
 
-  struct Scene;
+  enum class Use
+  {
+    Whole,
+    Piece, ///< seen alone, or with others but for what goes from one to another
+    Block  ///< of ranks that see the whole together
+  };
   void ForgetOldScene();
   /// @param block  of the larger image of which the medium is a block; null: of none
-  tyndall::InputsKey KeyOf(vtkInformationVector** inputs, const tyndall::GridBlock* block);
-  std::unique_ptr<Scene> MakeScene(vtkInformationVector** inputs, const tyndall::InputsKey& key,
-    tyndall::ViewSettings settings, const tyndall::GridBlock* block);
-  std::unique_ptr<Scene> FindScene(
+  tyndall::InputsKey KeyOf(vtkInformationVector** inputs, Use use, const tyndall::GridBlock* block);
+  std::unique_ptr<tyndall::CasterScene> TakeKept(const tyndall::InputsKey& key, const tyndall::ViewSettings& settings);
+  std::unique_ptr<tyndall::CasterScene> FindScene(
     vtkInformationVector** inputs, const tyndall::ViewSettings& settings, const tyndall::GridBlock* block = nullptr);
-  void SayDoubts(Scene& scene);
+  void SayDoubts(tyndall::CasterScene& scene);
 
   struct Shot;
   struct Taking;
   void Expose(const Taking& taking, Shot& shot);
   Shot SeeWhole(vtkInformationVector** inputs, double exposure);
-  std::vector<double> PropertiesAsNumbers();
+  /// @param held  becomes, by rank, the voxels of the casters
+  std::unique_ptr<tyndall::CasterScene> FindSceneOfBlock(vtkMultiProcessController* ranks,
+    const tyndall::RankPieces& pieces, vtkInformationVector** inputs, std::vector<tyndall::VoxelBox>& held);
   std::optional<Shot> SeeBlocks(
     vtkMultiProcessController* ranks, tyndall::WholeInputs& inputs, double exposure, const std::array<int, 6>& asked);
   void HandOn(Shot&& shot, vtkInformationVector* outputs);
@@ -389,10 +398,9 @@ private:
   double TableReflectance;
   bool LeaveOut;
   int MemoryBudget = 0;
-  bool NeedsWhole = false; ///< what was seen last cannot be seen piece by piece
 
-  std::shared_ptr<tyndall::Device> Within; ///< MemoryBudget, where there is one
-  std::unique_ptr<Scene> Kept;             ///< of the last picture, if it succeeded
+  std::shared_ptr<tyndall::Device> Within;    ///< MemoryBudget, where there is one
+  std::unique_ptr<tyndall::CasterScene> Kept; ///< of the last picture, if it succeeded
 
   double Seconds = 0.0;
   double UsedExposure = 0.0;

@@ -101,14 +101,14 @@ VoxelBox Grown(const VoxelBox& box, int by, const Grid& whole)
   return grown;
 }
 
-std::vector<int> NeighboursOf(const BlockPartition& partition, int rank)
+std::vector<int> NeighboursOf(const BlockPartition& partition, int rank, int reach)
 {
   std::vector<int> neighbours;
   if (partition.blocks.at(rank).VoxelCount() == 0)
   {
     return neighbours;
   }
-  const VoxelBox touched = Grown(partition.blocks[rank], 1, partition.whole);
+  const VoxelBox touched = Grown(partition.blocks[rank], reach, partition.whole);
   for (int other = 0; other < static_cast<int>(partition.blocks.size()); ++other)
   {
     if (other != rank && Common(partition.blocks[other], touched).VoxelCount() > 0)

@@ -38,7 +38,8 @@ bool Holds(const VoxelBox& box, const int* voxel);
 VoxelBox Grown(const VoxelBox& box, int by, const Grid& whole);
 
 /// The ranks whose blocks touch that of one, at a face, an edge or a corner.
-std::vector<int> NeighboursOf(const BlockPartition& partition, int rank);
+/// @param reach  voxels: those too that are fewer than so many apart from it
+std::vector<int> NeighboursOf(const BlockPartition& partition, int rank, int reach = 1);
 
 /// The voxels that two boxes share; without any its size is 0 along some axis.
 VoxelBox Common(const VoxelBox& a, const VoxelBox& b);

@@ -5,10 +5,10 @@
 
 namespace tyndall
 {
-Rounds::Rounds(Communicator& communicator, const BlockPartition& partition)
+Rounds::Rounds(Communicator& communicator, const BlockPartition& partition, int reach)
   : Others(communicator)
   , Partition(partition)
-  , Neighbours(NeighboursOf(partition, communicator.Rank()))
+  , Neighbours(NeighboursOf(partition, communicator.Rank(), reach))
 {
 }
 

@@ -19,7 +19,7 @@ struct RoundsTraffic
 };
 
 /// Photons, or beams of a lamp, go from rank to rank in rounds: each rank follows those that it has as far as its block
-/// goes, and hands them on to the ranks whose blocks touch it.
+/// goes, and hands them on to the ranks whose blocks touch it, or are as near as it may go beyond.
 ///
 /// A type of traveller has a function `const int* WhereIs(const Traveller&)` beside it: the voxel of the whole grid in
 /// which it goes on.
@@ -27,7 +27,8 @@ class Rounds
 {
 public:
   /// @param communicator, partition  must stay; as many blocks as ranks
-  Rounds(Communicator& communicator, const BlockPartition& partition);
+  /// @param reach  voxels beyond its block that a traveller goes before it is handed on, the same on all ranks
+  Rounds(Communicator& communicator, const BlockPartition& partition, int reach = 1);
 
   /// Follows those that have come (in the first round: that set off here), and gives back those that go on elsewhere.
   template <class OnItsWay>

@@ -35,31 +35,36 @@ ViewSettings Needed(ViewSettings asked, bool showsMoments, bool lampsShine)
 
 /// @throws InvalidInput as the constructor
 ViewSettings Checked(const Medium& medium, const SolvedLight& light, const Illumination& illumination,
-  const ViewSettings& asked, const Field& ior, bool lampsShine)
+  const ViewSettings& asked, const Field& ior, const BlockOfScene* block, bool lampsShine)
 {
   Check(medium);
   Check(illumination);
   Check(asked);
   const ViewSettings settings = Needed(asked, ShownDegree(light, asked) >= 0, lampsShine);
   Check(light, medium.grid, settings);
-  CheckViewedIndex(ior, medium.grid);
+  Grid known = medium.grid;
+  known.size = block ? block->known.size : known.size;
+  CheckViewedIndex(ior, known);
   return settings;
 }
 }
 
 MediumRayCaster::MediumRayCaster(Device& device, const Medium& medium, const SolvedLight& light,
-  const Illumination& illumination, const ViewSettings& asked, const Field& ior)
-  : LampsShine(Shine(LampsOf(light, illumination, asked)))
+  const Illumination& illumination, const ViewSettings& asked, const Field& ior, const BlockOfScene* block)
+  : Part(block ? std::optional<BlockOfScene>(*block) : std::nullopt)
+  , LampsShine(Shine(LampsOf(light, illumination, asked)))
   , AskedForShadowRays(asked.shadowRays)
-  , Settings(Checked(medium, light, illumination, asked, ior, this->LampsShine))
-  , Traits(ViewTraitsOf(medium, light, ior, this->Settings, device.KernelWidth()))
-  , Scene(device, medium, light, ior, this->Traits)
-  , Samples(device, this->Scene, this->Traits)
-  , Sources(device, medium, light, LampsOf(light, illumination, asked), this->Settings.rectangleSamples, this->Traits)
-  , Behind(device, medium, light, illumination, ior, this->Settings, this->Traits)
+  , Settings(Checked(medium, light, illumination, asked, ior, block, this->LampsShine))
+  , Traits(ViewTraitsOf(medium, light, ior, this->Settings, device.KernelWidth(), block ? &block->shared : nullptr))
+  , Scene(device, medium, light, ior, this->Traits, block)
+  , Samples(device, this->Scene, this->Traits, block)
+  , Sources(device, medium, LampsOf(light, illumination, asked), this->Settings.rectangleSamples, this->Traits,
+      this->Part ? &*this->Part : nullptr)
+  , Behind(device, medium, light, illumination, ior, this->Settings, this->Traits, block)
   , Rays(device, this->Scene, this->Samples, this->Behind, this->Traits)
   , Omitted(this->LeftOutNow())
-  , Doubts(DoubtsAbout(this->Settings, light, this->Traits.bends ? ior : Field{}, this->Traits.index, medium.grid))
+  , Doubts(
+      DoubtsAbout(this->Settings, light, this->Traits.bends && !block ? ior : Field{}, this->Traits.index, medium.grid))
 {
   if (this->Traits.PacksOnce())
   {
@@ -125,21 +130,38 @@ bool MediumRayCaster::ShowsBackgroundColor() const
   return this->Settings.showBackground && !this->Behind.IsSky() && !this->Behind.HasEnvironment();
 }
 
+void MediumRayCaster::Pack(Packing what)
+{
+  this->Samples.Pack(what, this->Scene, this->Sources.Direct(), this->Sources.Diffuse());
+}
+
 void MediumRayCaster::PrepareSources(const Camera& camera, const Monitor& monitor)
 {
-  const auto pack = [this](Packing what) {
-    this->Samples.Pack(what, this->Scene, this->Sources.Direct(), this->Sources.Diffuse());
-  };
   if (this->Traits.shadowRays)
   {
-    pack(Packing::ForShadowRays);
+    this->PackForShadowRays();
     this->Sources.SeeLights(camera, this->Settings.stepSize, this->Scene, this->Samples, monitor);
   }
+  this->FinishSources(camera);
+}
+
+std::vector<float> MediumRayCaster::DepthsTowards(int light, const VoxelBox& asked, const Monitor& monitor)
+{
+  return this->Sources.DepthsTowards(light, asked, this->Settings.stepSize, this->Samples, monitor);
+}
+
+void MediumRayCaster::SeeLight(int light, const Camera& camera, const std::vector<float>& depths)
+{
+  this->Sources.SeeLight(light, camera, depths, this->Scene, this->Samples);
+}
+
+void MediumRayCaster::FinishSources(const Camera& camera)
+{
   if (this->Traits.ShowsMoments())
   {
     this->Sources.SeeMoments(camera, this->Scene);
   }
-  pack(Packing::Scattered);
+  this->Pack(Packing::Scattered);
   this->Omitted = this->LeftOutNow(); // now empty bricks are known
   this->SourcesReady = true;
   if (this->Traits.PacksOnce())
@@ -148,18 +170,47 @@ void MediumRayCaster::PrepareSources(const Camera& camera, const Monitor& monito
   }
 }
 
-/// What comes from behind without being scattered, which alone is sharp, and how much that is: the picture's alpha and
-/// depth (numerics.md, section 14.7).
-void MediumRayCaster::AddUnscattered(ViewInfo view, const Monitor& monitor, std::vector<float>& radiance)
+/// @param sharp  what comes from behind without being scattered, which alone is sharp, and how much that is: the
+///   picture's alpha and depth (numerics.md, section 14.7)
+MediumRayCaster::Pass MediumRayCaster::PassOf(const ViewInfo& view, bool sharp) const
 {
-  this->Samples.Pack(Packing::Unscattered, this->Scene, this->Sources.Direct(), this->Sources.Diffuse());
-  const glm::dvec3 behind = this->Behind.IsSky() ? glm::dvec3(0.0) : Vector(this->Behind.Colour(this->Settings));
-  view.background = Float4(behind, view.background.s[3]);
-  OpticsInfo optics = OpticsInfoOf(this->Settings, this->Traits);
-  optics.table.s[0] = optics.table.s[1] = optics.table.s[2] = 0.0f; // it is in the picture already
-  this->Rays.Cast(this->Settings, view, optics, 0.8, 1.0, monitor);
-  const std::vector<float> sharp = this->Rays.ReadRadiance();
-  std::transform(radiance.begin(), radiance.end(), sharp.begin(), radiance.begin(), std::plus<float>());
+  Pass pass = { view, OpticsInfoOf(this->Settings, this->Traits, this->Part ? &*this->Part : nullptr) };
+  if (this->Traits.ShowsMoments() && (sharp || !this->Behind.IsSky()))
+  {
+    // A background that is no sky does not shine on the medium.
+    const bool seen = sharp && !this->Behind.IsSky();
+    pass.view.background =
+      Float4(seen ? Vector(this->Behind.Colour(this->Settings)) : glm::dvec3(0.0), view.background.s[3]);
+  }
+  if (sharp)
+  {
+    pass.optics.table.s[0] = pass.optics.table.s[1] = pass.optics.table.s[2] = 0.0f; // it is in the picture already
+  }
+  return pass;
+}
+
+/// @param from  fraction done that is reported
+Picture MediumRayCaster::Cast(
+  const ViewInfo& view, const std::vector<float>& ends, const Starts& starts, double from, const Monitor& monitor)
+{
+  const bool byMoments = this->Traits.ShowsMoments();
+  const bool ofBlock = view.block.whole.s[0] > 0;
+  this->Rays.Reserve(this->Settings, ends, ofBlock, starts.transmittance);
+  const Pass first = this->PassOf(view, false);
+  this->Rays.Cast(this->Settings, first.view, first.optics, from, byMoments ? 0.8 : 1.0, monitor);
+  Picture picture = this->Read(view);
+  if (byMoments)
+  {
+    this->Pack(Packing::Unscattered);
+    this->Rays.Reserve(this->Settings, ends, ofBlock, starts.seen);
+    const Pass second = this->PassOf(view, true);
+    this->Rays.Cast(this->Settings, second.view, second.optics, 0.8, 1.0, monitor);
+    picture.sharp = this->Rays.ReadRadiance();
+    picture.sceneTransmittance = this->Rays.ReadTransmittance();
+    picture.alpha = this->Rays.ReadAlpha();
+    picture.depth = this->Rays.ReadDepth();
+  }
+  return picture;
 }
 
 Picture MediumRayCaster::Render(
@@ -169,29 +220,19 @@ Picture MediumRayCaster::Render(
   {
     throw InvalidInput("Rays that bend or meet a table cannot be cast through blocks of the medium one by one.");
   }
-  ViewInfo view = this->Rays.ViewOf(camera, this->Settings, block);
+  const ViewInfo view = this->Rays.ViewOf(camera, this->Settings, block);
   Report(monitor, 0.0);
-  const bool prepares = !this->SourcesReady || this->Traits.sourcesDependOnCamera;
+  const bool prepares = this->NeedsSources();
   if (prepares)
   {
     this->PrepareSources(camera, monitor);
   }
-
-  const bool byMoments = this->Traits.ShowsMoments();
-  this->Rays.Reserve(this->Settings, ends, block != nullptr);
-  if (byMoments && !this->Behind.IsSky())
+  Picture picture = this->Cast(view, ends, {}, prepares && this->Traits.shadowRays ? 0.5 : 0.0, monitor);
+  if (!block && !picture.sharp.empty())
   {
-    view.background = Float4(glm::dvec3(0.0), view.background.s[3]); // does not shine on the medium: see AddUnscattered
-  }
-  this->Rays.Cast(this->Settings, view, OpticsInfoOf(this->Settings, this->Traits),
-    prepares && this->Traits.shadowRays ? 0.5 : 0.0, byMoments ? 0.8 : 1.0, monitor);
-  Picture picture = this->Read(view);
-  if (byMoments)
-  {
-    this->AddUnscattered(view, monitor, picture.radiance);
-    picture.sceneTransmittance = this->Rays.ReadTransmittance();
-    picture.alpha = this->Rays.ReadAlpha();
-    picture.depth = this->Rays.ReadDepth();
+    std::transform(picture.radiance.begin(), picture.radiance.end(), picture.sharp.begin(), picture.radiance.begin(),
+      std::plus<float>());
+    picture.sharp.clear();
   }
   return picture;
 }
@@ -206,15 +247,10 @@ Picture MediumRayCaster::Read(const ViewInfo& view) const
   picture.radiance = this->Rays.ReadRadiance();
   picture.transmittance = this->Rays.ReadTransmittance();
   picture.sceneTransmittance = picture.transmittance;
+  picture.missing = this->Rays.ReadMissing();
   picture.alpha = this->Rays.ReadAlpha();
   picture.depth = this->Rays.ReadDepth();
   return picture;
-}
-
-bool MediumRayCaster::CastsBlocksExactly() const
-{
-  return this->CastsBlocks() && !this->Traits.shadowRays && !this->Traits.ShowsMoments() &&
-    !this->Behind.LooksAtSurface();
 }
 
 MediumRayCaster::SharedNumbers MediumRayCaster::SharedByBlocks() const
@@ -234,11 +270,40 @@ MediumRayCaster::SharedNumbers MediumRayCaster::SharedByBlocks() const
 }
 
 Picture MediumRayCaster::RenderBehind(
-  const Camera& camera, const GridBlock& block, const std::vector<float>& starts, const Monitor& monitor)
+  const Camera& camera, const GridBlock& block, const Starts& starts, const Monitor& monitor)
 {
-  const ViewInfo view = this->Rays.ViewOf(camera, this->Settings, &block);
-  this->Rays.Reserve(this->Settings, {}, true, starts);
-  this->Rays.Cast(this->Settings, view, OpticsInfoOf(this->Settings, this->Traits), 0.0, 1.0, monitor);
-  return this->Read(view);
+  if (this->Samples.PackedFor() != Packing::Scattered)
+  {
+    this->Pack(Packing::Scattered);
+  }
+  return this->Cast(this->Rays.ViewOf(camera, this->Settings, &block), {}, starts, 0.0, monitor);
+}
+
+Picture MediumRayCaster::CastStraight(const Camera& camera, const Monitor& monitor)
+{
+  return this->RenderBehind(camera, this->Part->block, {}, monitor);
+}
+
+MediumRayCaster::Pass MediumRayCaster::BeginPass(const Camera& camera, bool sharp)
+{
+  const Packing what = sharp ? Packing::Unscattered : Packing::Scattered;
+  if (this->Samples.PackedFor() != what)
+  {
+    this->Pack(what);
+  }
+  Pass pass = this->PassOf(this->Rays.ViewOf(camera, this->Settings, &this->Part->block), sharp);
+  RayCasting::OfRounds(pass.view);
+  return pass;
+}
+
+std::vector<RayOnItsWay> MediumRayCaster::StartRays(const Pass& pass) const
+{
+  return this->Rays.Start(this->Settings, pass.view, pass.optics);
+}
+
+std::vector<RayOnItsWay> MediumRayCaster::MarchRays(
+  const Pass& pass, std::vector<RayOnItsWay>& rays, const Monitor& monitor) const
+{
+  return this->Rays.March(this->Settings, pass.view, pass.optics, rays, monitor);
 }
 }

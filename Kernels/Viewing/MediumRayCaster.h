@@ -7,7 +7,9 @@
 #include "Viewing/Backdrop/Backdrop.h"
 #include "Viewing/Rays/Picture.h"
 #include "Viewing/Rays/RayCasting.h"
+#include "Viewing/Rays/Starts.h"
 #include "Viewing/Samples/PackedSamples.h"
+#include "Viewing/Scene/BlockOfScene.h"
 #include "Viewing/Scene/Camera.h"
 #include "Viewing/Scene/GridBlock.h"
 #include "Viewing/Scene/SceneOnDevice.h"
@@ -18,6 +20,7 @@
 #include "Viewing/Sources/SeenSources.h"
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -88,6 +91,8 @@ public:
   /// Brings medium and light to the device.
   /// @param illumination  its lights are used by shadow rays, environment and sky as background
   /// @param ior  refractive index, one component per voxel; null or constant: rays are straight
+  /// @param block  where the medium is one of several blocks of a grid whose pictures are to make up that of the whole
+  ///   (Blocks/PictureInBlocks.h): `ior` is of the voxels that it says. Null: of none
   /// @throws InvalidInput as Check(medium) and Check(illumination); for a light array that is not finite or has not 1
   ///   or 3 components (a direction 3); for an index that is not within [1e-3, 1e3] or has not one component; where
   ///   settings ask for an array that is not there; for a setting out of its range
@@ -96,7 +101,7 @@ public:
   ///   extinction, the light's direction, emission beside it, a coloured g by voxel, and a refractive index that
   ///   varies; with moments, these and 36 bytes more
   MediumRayCaster(Device& device, const Medium& medium, const SolvedLight& light, const Illumination& illumination,
-    const ViewSettings& settings, const Field& ior = {});
+    const ViewSettings& settings, const Field& ior = {}, const BlockOfScene* block = nullptr);
   MediumRayCaster(const MediumRayCaster&) = delete; // its parts see each other
   MediumRayCaster& operator=(const MediumRayCaster&) = delete;
 
@@ -120,25 +125,48 @@ public:
   Picture Render(const Camera& camera, const Monitor& monitor = {}, const std::vector<float>& ends = {},
     const GridBlock* block = nullptr);
 
-  /// Whether pictures of blocks make up that of the whole: rays go straight on and meet no table. Shadow rays end at
-  /// the block's faces.
+  /// Whether pictures of blocks that know nothing of each other make up that of the whole: rays go straight on and meet
+  /// no table. Shadow rays end at the block's faces.
   bool CastsBlocks() const { return this->Traits.OnlyStraight(); }
-
-  /// Whether they do to rounding: no lamp throws shadows from block to block, and nothing is shown that takes more than
-  /// a ray's own steps (light at the surface of thick voxels, what comes from behind beside angular moments).
-  bool CastsBlocksExactly() const;
 
   /// What has to be the same of all blocks of a grid where they are cast one by one: refractive index and phase
   /// function.
   using SharedNumbers = std::array<double, 15>;
   SharedNumbers SharedByBlocks() const;
 
-  /// After Render of a block from the same camera, where CastsBlocksExactly: its picture behind other blocks. Rays end
-  /// where little light is left of all that they have lost, and depth is where half of that is.
-  /// @param starts  what comes through blocks before, 3 per pixel; where that is 0 nothing is looked for
+  /// After Render of a block from the same camera: its picture behind other blocks. Rays end where little light is left
+  /// of all that they have lost, and depth is where half of that is.
   /// @throws Aborted
-  Picture RenderBehind(
-    const Camera& camera, const GridBlock& block, const std::vector<float>& starts, const Monitor& monitor = {});
+  Picture RenderBehind(const Camera& camera, const GridBlock& block, const Starts& starts, const Monitor& monitor = {});
+
+  // Steps of Render for blocks that are seen together (Blocks/PictureInBlocks.h), of a caster that has been given its
+  // block. What a step finds here, other blocks need for the next.
+
+  const BlockOfScene& Block() const { return *this->Part; }
+  double StepSize() const { return this->Settings.stepSize; }
+  bool ShowsMoments() const { return this->Traits.ShowsMoments(); }
+  bool NeedsSources() const { return !this->SourcesReady || this->Traits.sourcesDependOnCamera; }
+  int CountOfLights() const { return this->Sources.CountOfLights(); } ///< whose shadow rays are followed
+  void PackForShadowRays() { this->Pack(Packing::ForShadowRays); }
+  /// See SeenSources. @throws Aborted
+  std::vector<float> DepthsTowards(int light, const VoxelBox& asked, const Monitor& monitor);
+  void SeeLight(int light, const Camera& camera, const std::vector<float>& depths);
+  /// When all lights are seen.
+  void FinishSources(const Camera& camera);
+  /// Of rays that go straight on through the block.
+  Picture CastStraight(const Camera& camera, const Monitor& monitor);
+
+  /// What rays that go from block to block are cast with.
+  struct Pass
+  {
+    ViewInfo view;
+    OpticsInfo optics;
+  };
+  /// @param sharp  of what comes from behind without being scattered, after the other: where ShowsMoments
+  Pass BeginPass(const Camera& camera, bool sharp);
+  std::vector<RayOnItsWay> StartRays(const Pass& pass) const;
+  /// See RayCasting. @throws Aborted
+  std::vector<RayOnItsWay> MarchRays(const Pass& pass, std::vector<RayOnItsWay>& rays, const Monitor& monitor) const;
 
   /// At which rays end.
   double MinimumTransmittance() const { return this->Settings.minimumTransmittance; }
@@ -152,9 +180,13 @@ public:
 private:
   std::vector<std::string> LeftOutNow() const;
   void PrepareSources(const Camera& camera, const Monitor& monitor);
+  void Pack(Packing what);
+  Pass PassOf(const ViewInfo& view, bool sharp) const;
+  Picture Cast(
+    const ViewInfo& view, const std::vector<float>& ends, const Starts& starts, double from, const Monitor& monitor);
   Picture Read(const ViewInfo& view) const;
-  void AddUnscattered(ViewInfo view, const Monitor& monitor, std::vector<float>& radiance);
 
+  std::optional<BlockOfScene> Part; ///< of a whole
   bool LampsShine = false;
   bool AskedForShadowRays = false; ///< though there may be no lamp
   ViewSettings Settings;           ///< as far as the scene needs them

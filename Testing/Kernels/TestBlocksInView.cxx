@@ -1,8 +1,7 @@
 // Pictures of a medium that is spread over blocks: cast block by block, they are the picture of the whole.
 
-#include "ViewScene.h"
+#include "BlocksOfView.h"
 
-#include "Viewing/Blocks/BlockFaces.h"
 #include "Viewing/Blocks/BlockOrder.h"
 #include "Viewing/Blocks/BlockPixels.h"
 #include "Viewing/Blocks/ShownBlock.h"
@@ -11,90 +10,6 @@ using namespace viewing;
 
 namespace
 {
-/// Blocks of a grid that is cut at these voxels of each axis.
-std::vector<GridBlock> Cut(const Grid& whole, const std::array<std::vector<int>, 3>& cuts)
-{
-  std::array<std::vector<int>, 3> planes = cuts;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    planes[axis].insert(planes[axis].begin(), 0);
-    planes[axis].push_back(whole.size[axis]);
-  }
-  std::vector<GridBlock> blocks;
-  for (std::size_t k = 1; k < planes[2].size(); ++k)
-  {
-    for (std::size_t j = 1; j < planes[1].size(); ++j)
-    {
-      for (std::size_t i = 1; i < planes[0].size(); ++i)
-      {
-        GridBlock block;
-        block.whole = whole;
-        block.begin = { planes[0][i - 1], planes[1][j - 1], planes[2][k - 1] };
-        block.end = { planes[0][i], planes[1][j], planes[2][k] };
-        block.showsBackgroundBeside = blocks.empty();
-        for (int axis = 0; axis < 3; ++axis)
-        {
-          block.first[axis] = std::max(block.begin[axis] - 1, 0);
-        }
-        blocks.push_back(block);
-      }
-    }
-  }
-  return blocks;
-}
-
-/// The voxels of a block and a layer of its neighbours.
-Scene PartOf(const Scene& scene, const GridBlock& block)
-{
-  Scene part = scene;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    part.grid.size[axis] = std::min(block.end[axis] + 1, block.whole.size[axis]) - block.first[axis];
-    part.grid.origin[axis] = block.whole.origin[axis] + block.first[axis] * block.whole.spacing[axis];
-  }
-  for (std::vector<float> Scene::*field :
-    { &Scene::sigma_a, &Scene::sigma_s, &Scene::emission, &Scene::fluence, &Scene::meanDirection })
-  {
-    const std::vector<float>& from = scene.*field;
-    const std::size_t components = from.size() / scene.grid.VoxelCount();
-    (part.*field).resize(components * part.grid.VoxelCount());
-    for (std::size_t i = 0; i < (part.*field).size(); ++i)
-    {
-      std::array<int, 3> voxel = part.grid.VoxelAt(i / std::max<std::size_t>(components, 1));
-      std::transform(voxel.begin(), voxel.end(), block.first.begin(), voxel.begin(), std::plus<int>());
-      (part.*field)[i] = from[components * scene.grid.IndexOf(voxel) + i % components];
-    }
-  }
-  if (!scene.surface.empty())
-  {
-    const auto cosines = static_cast<int>(SurfaceCosines.size());
-    part.surface = FacesOfBlock(scene.surface, cosines, block, part.grid.size);
-  }
-  return part;
-}
-
-/// Uneven, coloured where that is asked for, with empty bricks.
-Scene Cloud(int components)
-{
-  Scene scene(GridOf(27, 22, 19, { 0.5, 0.4, 0.6 }, { -3.0, 2.0, 1.0 }));
-  std::mt19937 random(5);
-  std::uniform_real_distribution<float> some(0.0f, 1.0f);
-  scene.components = components;
-  scene.settings.showBackground = false;
-  for (std::size_t i = 0; i < components * scene.grid.VoxelCount(); ++i)
-  {
-    const bool empty = scene.grid.VoxelAt(i / components)[0] < 10;
-    scene.sigma_a.push_back(empty ? 0.0f : 0.2f * some(random));
-    scene.sigma_s.push_back(empty ? 0.0f : 0.5f * some(random));
-    scene.fluence.push_back(some(random));
-  }
-  for (std::size_t i = 0; i < scene.grid.VoxelCount(); ++i)
-  {
-    scene.emission.push_back(scene.grid.VoxelAt(i)[0] < 10 ? 0.0f : 0.1f * some(random));
-  }
-  return scene;
-}
-
 std::vector<BlockPixels> SeenOf(Device& device, const Scene& scene, const std::vector<GridBlock>& blocks,
   const Camera& camera, const std::vector<float>& ends = {})
 {
@@ -205,13 +120,12 @@ Picture Together(Device& device, const Scene& scene, const std::vector<GridBlock
     const GridBlock& block = blocks[order[i]];
     MediumRayCaster caster = PartOf(scene, block).Caster(device);
     own = caster.Render(camera, {}, {}, &block);
-    const std::vector<float> starts =
-      StartsBehind(first, i, { own.width, own.height }, scene.settings.minimumTransmittance);
-    if (!starts.empty())
+    const Starts starts = StartsBehind(first, i, { own.width, own.height }, scene.settings.minimumTransmittance);
+    if (!starts.IsEmpty())
     {
       TakeFrom(caster.RenderBehind(camera, block, starts), starts, seen[i]);
     }
-    lookedAgain += std::count_if(starts.begin(), starts.end(), [](float start) { return start > 0.0f; });
+    lookedAgain += std::count_if(starts.seen.begin(), starts.seen.end(), [](float start) { return start > 0.0f; });
   }
   return PictureOfAll(seen, { { 0, 0 }, { own.width, own.height } }, own.farDepth);
 }
@@ -245,18 +159,13 @@ TEST_F(BlocksInView, HaveTheAlphaAndDepthOfTheWhole)
   }
 }
 
-TEST_F(BlocksInView, AreExactWhereNothingCrossesThem)
+TEST_F(BlocksInView, HaveToBeOfOneIndex)
 {
-  Scene scene = Cloud(1);
-  EXPECT_TRUE(scene.Caster(this->GetDevice()).CastsBlocksExactly());
+  const Scene scene = Cloud(1);
   Scene lit = scene;
   lit.illumination.lights.emplace_back();
   lit.settings.shadowRays = true;
   lit.fluenceDirect = scene.Everywhere(0.1);
-  EXPECT_FALSE(lit.Caster(this->GetDevice()).CastsBlocksExactly());
-  Scene thick = scene;
-  thick.surface.resize(BoxFaceCellCount(scene.grid) * SurfaceCosines.size(), 0.2f);
-  EXPECT_FALSE(thick.Caster(this->GetDevice()).CastsBlocksExactly());
   EXPECT_EQ(scene.Caster(this->GetDevice()).SharedByBlocks(), lit.Caster(this->GetDevice()).SharedByBlocks());
   Scene other = scene;
   other.ior = scene.Everywhere(1.5);
@@ -276,24 +185,6 @@ TEST_F(BlocksInView, EndWhereRaysEnd)
   MediumRayCaster caster = scene.Caster(this->GetDevice());
   const Picture whole = caster.Render(camera, {}, ends);
   ExpectSame(whole, SeenOf(this->GetDevice(), scene, Cut(scene.grid, Cuts.back()), camera, ends), 1e-5);
-}
-
-TEST_F(BlocksInView, ShowLightAtTheSurfaceOfThickVoxels)
-{
-  Scene scene = Cloud(1);
-  std::fill(scene.sigma_s.begin(), scene.sigma_s.end(), 8.0f);
-  const Picture without = scene.Seen(this->GetDevice());
-  ForBoxFaceCells(scene.grid, [&](const BoxFaceCell& cell) {
-    scene.surface.insert(scene.surface.end(), SurfaceCosines.size(), 0.2f + 0.01f * (cell.u + cell.v));
-  });
-  const Picture whole = scene.Seen(this->GetDevice());
-  EXPECT_GT(LargestDifference(without.radiance, whole.radiance), 0.05);
-  for (const auto& cuts : Cuts)
-  {
-    const std::vector<BlockPixels> seen = SeenOf(this->GetDevice(), scene, Cut(scene.grid, cuts), scene.Framed());
-    const std::vector<float> radiance = RadianceOfAll(seen, { { 0, 0 }, { whole.width, whole.height } });
-    EXPECT_LT(LargestDifference(radiance, whole.radiance), 5e-3); // not all that is behind a thick block is thick
-  }
 }
 
 TEST_F(BlocksInView, DoNotBendRays)

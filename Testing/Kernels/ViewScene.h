@@ -24,7 +24,9 @@ using namespace tyndall;
 struct Scene
 {
   Grid grid;
-  std::vector<float> sigma_a, sigma_s, emission, fluence, fluenceDirect, meanDirection, ior, surface;
+  std::vector<float> sigma_a, sigma_s, emission, fluence, fluenceDirect, meanDirection, ior, surface, moments,
+    straightOn;
+  std::vector<Light> lampsApart;
   int components = 1; ///< of sigma_a and sigma_s
   double g = 0.0;
   std::optional<PhaseOfMedium> phase; ///< instead of Henyey and Greenstein's of g
@@ -48,7 +50,14 @@ struct Scene
     return { values.empty() ? nullptr : values.data(), components };
   }
 
-  MediumRayCaster Caster(Device& device) const
+  /// @param block  of which this is one
+  MediumRayCaster Caster(Device& device, const BlockOfScene* block = nullptr) const
+  {
+    return { device, this->MediumSeen(), this->LightSeen(), this->illumination, this->settings, See(this->ior, 1),
+      block };
+  }
+
+  Medium MediumSeen() const
   {
     Medium medium;
     medium.grid = this->grid;
@@ -56,12 +65,20 @@ struct Scene
     medium.sigma_s = See(this->sigma_s, this->components);
     medium.emission = See(this->emission, 1);
     medium.phase = this->phase ? *this->phase : PhaseOfMedium(PhaseFunction::HenyeyGreenstein(this->g));
+    return medium;
+  }
+
+  SolvedLight LightSeen() const
+  {
     const auto channels = static_cast<int>(this->fluence.size() / std::max<std::size_t>(this->grid.VoxelCount(), 1));
     const auto cosines = static_cast<int>(this->surface.size() / BoxFaceCellCount(this->grid));
-    return { device, medium,
-      { See(this->fluence, std::max(channels, 1)), See(this->fluenceDirect, 1), See(this->meanDirection, 3),
-        See(this->surface, cosines) },
-      this->illumination, this->settings, See(this->ior, 1) };
+    const auto harmonics = static_cast<int>(this->moments.size() / std::max<std::size_t>(this->grid.VoxelCount(), 1));
+    SolvedLight light = { See(this->fluence, std::max(channels, 1)), See(this->fluenceDirect, 1),
+      See(this->meanDirection, 3), See(this->surface, cosines) };
+    light.scatteredMoments = See(this->moments, harmonics);
+    light.straightOn = See(this->straightOn, 1);
+    light.lampsApart = this->lampsApart;
+    return light;
   }
 
   double Aspect() const { return static_cast<double>(this->settings.imageSize[0]) / this->settings.imageSize[1]; }

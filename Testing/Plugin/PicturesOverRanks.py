@@ -1,5 +1,5 @@
 """Pictures of media of which each rank has only a piece: that of the whole, whatever the number of ranks, and no rank is
-given more than its piece where the picture can be made piece by piece.
+given more than its piece.
 
     python3 PicturesOverRanks.py
 """
@@ -11,8 +11,7 @@ from pieces_of_ranks import Runs
 
 runs = Runs("PicturesOverRanks", "pictures_of_pieces.py")
 pieces = ["even", "coloured", "inside", "uneven", "alone", "bare", "bare_uneven", "bare_points", "phase", "ground", "reader",
-          "solved"]
-wholes = ["glass", "shadows", "table", "surface"]
+          "solved", "glass", "glass_coloured", "glass_bare", "mirror", "shadows", "table", "moments", "surface", "turned"]
 of_even = ["uneven", "alone", "bare", "bare_uneven"]  # other pieces of the same
 
 
@@ -49,9 +48,9 @@ def check(ranks, case, expected):
 
 for ranks in (1, 2, 3, 4):
     more = ["properties", "errors", "abort"] if ranks == 3 else []
-    code, said = runs.run(ranks, *pieces, *wholes, *more)
+    code, said = runs.run(ranks, *pieces, *more)
     assert code == 0 and said.count("is done") == ranks, said
-    for case in pieces + wholes:
+    for case in pieces:
         expected, alone = whole(1, "even" if case in of_even else case)
         assert expected["color"].std() > 5, (case, "there is nothing to compare")
         parts = check(ranks, case, expected)

@@ -198,33 +198,92 @@ def bare_points():
     keep("bare_points", cast(image))
 
 
+def bend(image):
+    """A lens."""
+    z, y, x = cells_of(image.GetExtent())
+    add(image, "ior", 1 + 0.3 * numpy.exp(-0.06 * ((x - 7) ** 2 + (y - 4) ** 2 + (z - 5) ** 2)))
+    return image
+
+
+def sky():
+    """An environment that tells directions apart."""
+    image = vtkImageData()
+    image.SetDimensions(64, 32, 1)
+    polar, turn = (axis.ravel() for axis in numpy.meshgrid(numpy.linspace(0, 3.1, 32), numpy.linspace(0, 6.2, 64), indexing="ij"))
+    add(image, "radiance", 1 + 0.3 * numpy.cos(turn), 1 + 0.3 * numpy.sin(turn), 1 + 0.3 * numpy.cos(polar), to=image.GetPointData())
+    return source_of(image)
+
+
 def glass():
-    """Rays that bend: put together."""
-    image = plain_piece()
-    add(image, "ior", 1 + 0.02 * cells_of(image.GetExtent())[2])
-    caster = cast(image)
-    keep("glass", caster)
-    caster.CameraViewAngle = 31
-    caster.UpdatePipeline()  # the whole is asked for from now on
+    """Rays that bend."""
+    keep("glass", cast(bend(piece()), Environment=sky()))
+
+
+def glass_coloured():
+    """The same through coloured smoke, from within."""
+    keep("glass_coloured", cast(bend(piece(coloured=True)), CameraPosition=[3.1, 2.2, 2.3], CameraFocalPoint=[0.5, 1, 0.2],
+                                CameraViewAngle=90))
+
+
+def glass_bare():
+    """Pieces without their neighbours' cells, of two voxels and one, a rank without."""
+    cuts = {1: [0, 13], 2: [0, 1, 13], 3: [0, 0, 2, 13], 4: [0, 2, 3, 3, 13]}[ranks]
+    own = [cuts[rank], cuts[rank + 1]] + WHOLE[2:]
+    keep("glass_bare", cast(vtkImageData() if own[0] == own[1] else bend(medium_of(own)), Environment=sky()))
+
+
+def mirror():
+    """A surface that reflects, and a table."""
+    image = piece()
+    z, y, x = cells_of(image.GetExtent())
+    radius = numpy.sqrt((x - 7) ** 2 + (y - 4) ** 2 + (z - 5) ** 2)
+    add(image, "ior", 1 + 0.25 * (1 - numpy.tanh(radius - 3)))
+    keep("mirror", cast(image, SurfaceReflection="Fresnel", TableFace="-z", TableReflectance=0.3, Environment=sky()))
 
 
 def shadows():
-    """Lamps throw shadows across pieces: put together."""
-    keep("shadows", cast(plain_piece(), Lights=LightRig(SunElevation=20), ShadowRays=1))
+    """Lamps throw shadows across pieces."""
+    keep("shadows", cast(piece(), Lights=LightRig(SunElevation=20), ShadowRays=1))
 
 
 def table():
-    keep("table", cast(plain_piece(), TableFace="-z"))
+    keep("table", cast(piece(), TableFace="-z"))
+
+
+def moments():
+    """Light in angular moments, and lamps' light apart, with shadows; some voxels do not scatter."""
+    image = piece(coloured=True)
+    z, y, x = cells_of(image.GetExtent())
+    add(image, "scattered_moments", 0.2 + 0.05 * numpy.cos(x), 0.05 * numpy.sin(y), 0.03 * numpy.cos(z), 0.04 * numpy.sin(x))
+    add(image, "straight_on", 0 * x + 0.25)
+    vtk_to_numpy(image.GetCellData().GetArray("sigma_s"))[x.astype(int) % 5 == 2] = 0
+    add_fact(image, "g", [0.5])
+    lamps = vtkDoubleArray()
+    lamps.SetName("lamps_apart")
+    lamps.SetNumberOfComponents(13)
+    lamps.InsertNextTuple([0, 0, 0, 0, 0.5, 0.3, -1, 3, 2, 1, 0, 0, 0])
+    lamps.InsertNextTuple([1, 1, -2, 3, 0, 0, -1, 60, 90, 120, 0, 0, 0])
+    image.GetFieldData().AddArray(lamps)
+    keep("moments", cast(image))
 
 
 def surface():
-    """Light at the surface of thick voxels takes several of them: put together."""
-    image = plain_piece()
+    """Light at the surface of thick voxels takes several of them."""
+    image = piece()
     for name in ("sigma_a", "sigma_s"):
         vtk_to_numpy(image.GetCellData().GetArray(name))[:] *= 20
     cells = 2 * (SIZE[0] * SIZE[1] + SIZE[1] * SIZE[2] + SIZE[2] * SIZE[0])
     add_fact(image, "surface_radiance", 0.2 + 0.1 * numpy.sin(0.1 * numpy.arange(cells)), 4)
     keep("surface", cast(image))
+
+
+def turned():
+    """A picture from another side, of what is kept on the ranks."""
+    caster = cast(bend(piece()), Environment=sky())
+    caster.CameraViewAngle = 31
+    caster.UpdatePipeline()
+    assert caster.GetClientSideObject().GetSceneKept()
+    keep("turned", caster)
 
 
 def reader():

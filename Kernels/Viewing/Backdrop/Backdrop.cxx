@@ -29,7 +29,7 @@ bool ShowsSurface(const SolvedLight& light, const ViewTraits& traits)
 }
 
 Backdrop::Backdrop(Device& device, const Medium& medium, const SolvedLight& light, const Illumination& illumination,
-  const Field& ior, const ViewSettings& settings, const ViewTraits& traits)
+  const Field& ior, const ViewSettings& settings, const ViewTraits& traits, const BlockOfScene* block)
 {
   const tyndall::Environment& environment = illumination.environment;
   this->UnderSky = !environment.Empty() || !IsBlack(illumination.sky);
@@ -48,15 +48,18 @@ Backdrop::Backdrop(Device& device, const Medium& medium, const SolvedLight& ligh
   this->Pixels = Buffer<cl_float4>(device, pixels.shown, "the environment");
   if (traits.hasTable)
   {
+    const std::vector<float> held = block ? HeldIndex(ior, *block, medium.grid.size) : std::vector<float>();
+    const Field index = block ? Field{ held.empty() ? nullptr : held.data(), 1 } : ior;
     this->TableCells =
-      Buffer<cl_float4>(device, LightOnTable(light, ior, settings, traits, this->UnderSky), "light on the table");
+      Buffer<cl_float4>(device, LightOnTable(light, index, settings, traits, this->UnderSky), "light on the table");
   }
   this->GroundBits = settings.showBackground ? GroundFaces(light) : 0;
   this->GroundCells = Buffer<cl_float4>(
     device, this->GroundBits != 0 ? GroundLight(traits.grid, light) : std::vector<cl_float4>(), "light on the ground");
-  this->SeesSurface = ShowsSurface(light, traits);
   this->SurfaceCells = Buffer<cl_float4>(device,
-    this->SeesSurface ? tyndall::SurfaceLight(medium, light, settings.stepSize) : std::vector<cl_float4>(),
+    ShowsSurface(light, traits)
+      ? tyndall::SurfaceLight(medium, light, settings.stepSize, block ? &block->block : nullptr)
+      : std::vector<cl_float4>(),
     "light at the surface");
 }
 }

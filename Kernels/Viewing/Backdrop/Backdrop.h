@@ -18,7 +18,7 @@ class Backdrop
 public:
   /// @throws DeviceError if it does not fit
   Backdrop(Device& device, const Medium& medium, const SolvedLight& light, const Illumination& illumination,
-    const Field& ior, const ViewSettings& settings, const ViewTraits& traits);
+    const Field& ior, const ViewSettings& settings, const ViewTraits& traits, const BlockOfScene* block = nullptr);
 
   /// Whether the background is the illumination's, not the settings'.
   bool IsSky() const { return this->UnderSky; }
@@ -33,13 +33,11 @@ public:
   int FacesOfGround() const { return this->GroundBits; }                ///< a bit for each
   const Buffer<cl_float4>& Ground() const { return this->GroundCells; } ///< see GroundLight.h
   const Buffer<cl_float4>& Table() const { return this->TableCells; }   ///< see TableLight.h
-  /// Whether light at the surface is looked for, though there may be none.
-  bool LooksAtSurface() const { return this->SeesSurface; }
   bool HasSurfaceLight() const { return this->SurfaceCells.Size() > 0; }
   const Buffer<cl_float4>& SurfaceLight() const { return this->SurfaceCells; } ///< see SurfaceLight.h
 
 private:
-  bool UnderSky = false, SeesSurface = false;
+  bool UnderSky = false;
   Rgb Sky = {};
   int Width = 0, Height = 0;
   Buffer<cl_float4> Pixels, SharpPixels, TableCells, GroundCells, SurfaceCells;

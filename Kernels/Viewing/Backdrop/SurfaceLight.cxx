@@ -3,6 +3,7 @@
 #include "Medium/BoxFaces.h"
 #include "Numerics/Constants.h"
 #include "Viewing/Backdrop/BoxFaceTables.h"
+#include "Viewing/Scene/BlockOfScene.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,7 +17,6 @@ constexpr double Translucent = 1.5, Opaque = 3.0; ///< mean free paths of what i
 constexpr double EnoughLeft = 1e-5;               ///< of a ray
 constexpr int MostSteps = 200;
 constexpr double FinestStep = 0.1; ///< voxels; smaller ones find the same
-constexpr int VoxelsBehind = 6;    ///< more than Opaque where one is ThickAtSurface
 
 /// Of one channel, as the march has them.
 struct Coefficients
@@ -53,7 +53,7 @@ double PartAt(const Medium& medium, const BoxFaceCell& cell, int channel)
   const double thick = Between(ThickAtSurface, AllOfIt * ThickAtSurface, first);
   double all = 0.0;
   const auto step = static_cast<std::ptrdiff_t>(cell.inward) - static_cast<std::ptrdiff_t>(cell.voxel);
-  for (int n = 0; thick > 0.0 && n < std::min(VoxelsBehind, medium.grid.size[axis]); ++n)
+  for (int n = 0; thick > 0.0 && n < std::min(VoxelsBehindSurface, medium.grid.size[axis]); ++n)
   {
     all += Thickness(medium, cell.voxel + n * step, channel, edge);
   }
@@ -134,13 +134,17 @@ std::array<double, 4> Missing(
 }
 }
 
-std::vector<cl_float4> SurfaceLight(const Medium& medium, const SolvedLight& light, double step)
+std::vector<cl_float4> SurfaceLight(const Medium& medium, const SolvedLight& light, double step, const GridBlock* block)
 {
   const Grid& grid = medium.grid;
   std::array<std::vector<cl_float4>, SurfaceCosines.size()> cells;
   cells.fill(std::vector<cl_float4>(BoxFaceCellCount(grid)));
   bool any = false;
   ForBoxFaceCells(grid, [&](const BoxFaceCell& cell) {
+    if (block && !IsOnFace(*block, grid.size, cell.face))
+    {
+      return;
+    }
     for (int c = 0; c < 3; ++c)
     {
       const std::array<double, 4> missing = Missing(medium, light, cell, c, step);

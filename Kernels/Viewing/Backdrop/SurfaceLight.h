@@ -1,6 +1,7 @@
 #pragma once
 
 #include "Device/OpenCL.h"
+#include "Viewing/Scene/GridBlock.h"
 #include "Viewing/Scene/SolvedLight.h"
 
 #include <vector>
@@ -15,6 +16,9 @@ namespace tyndall
 /// W / (length^2 sr), [cosine][face][row][cell of the row], each face with a border of one cell that repeats the
 /// outermost. Empty where there is nothing to add.
 ///
-/// @param step  of the march, voxels
-std::vector<cl_float4> SurfaceLight(const Medium& medium, const SolvedLight& light, double step);
+/// @param step   of the march, voxels
+/// @param block  of which the medium is one: only where it is at a face of the whole; null: of none. It has
+///   VoxelsBehindSurface from there on, or all of the whole's
+std::vector<cl_float4> SurfaceLight(
+  const Medium& medium, const SolvedLight& light, double step, const GridBlock* block = nullptr);
 }

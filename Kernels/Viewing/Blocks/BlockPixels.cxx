@@ -42,6 +42,8 @@ BlockPixel PixelOf(const Picture& picture, std::size_t pixel)
     found.radiance[c] = picture.radiance[3 * pixel + c];
     found.transmittance[c] = picture.transmittance[3 * pixel + c];
     found.seen[c] = picture.sceneTransmittance[3 * pixel + c];
+    found.sharp[c] = picture.sharp.empty() ? 0.0f : picture.sharp[3 * pixel + c];
+    found.missing[c] = picture.missing.empty() ? 0.0f : picture.missing[3 * pixel + c];
   }
   found.open = picture.alpha[pixel] < 1.0f ? 1.0f : 0.0f;
   found.depth = picture.depth[pixel];
@@ -53,8 +55,11 @@ BlockPixels SeenPart(const Picture& picture)
   PixelRect rect = { { picture.width, picture.height }, { 0, 0 } };
   for (std::size_t pixel = 0; pixel < picture.alpha.size(); ++pixel)
   {
-    const float* const radiance = picture.radiance.data() + 3 * pixel;
-    if (picture.alpha[pixel] > 0.0f || radiance[0] > 0.0f || radiance[1] > 0.0f || radiance[2] > 0.0f)
+    const BlockPixel there = PixelOf(picture, pixel);
+    const std::array<float, 3>& shines = there.radiance;
+    const std::array<float, 3>& sharp = there.sharp;
+    if (there.Hidden() > 0.0f || there.MostThrough() < 1.0f || std::max({ shines[0], shines[1], shines[2] }) > 0.0f ||
+      std::max({ sharp[0], sharp[1], sharp[2] }) > 0.0f)
     {
       const int at[2] = { static_cast<int>(pixel % picture.width), static_cast<int>(pixel / picture.width) };
       for (int axis = 0; axis < 2; ++axis)
@@ -82,10 +87,10 @@ BlockPixels PartIn(const PixelRect& rect, const BlockPixels& pixels)
   return part;
 }
 
-std::vector<float> StartsBehind(
+Starts StartsBehind(
   const std::vector<BlockPixels>& frontToBack, std::size_t own, const std::array<int, 2>& size, double minimum)
 {
-  std::vector<float> starts;
+  Starts starts;
   ForPixels(frontToBack[own].rect, [&](int column, int row, std::size_t) {
     BlockPixel before;
     for (std::size_t i = 0; i < own; ++i)
@@ -95,23 +100,27 @@ std::vector<float> StartsBehind(
     BlockPixel behind = before;
     behind.LayBefore(frontToBack[own].At(column, row));
     const bool losesHalf = before.Left() > Half && behind.Left() <= Half;
-    if (before.Left() < 1.0f && (losesHalf || behind.MostLeft() <= minimum))
+    const bool ends = behind.MostLeft() <= minimum || behind.MostThrough() <= minimum;
+    if (std::min(before.Left(), before.MostThrough()) < 1.0f && (losesHalf || ends))
     {
-      starts.resize(3 * static_cast<std::size_t>(size[0]) * size[1], 0.0f);
-      std::copy(before.seen.begin(), before.seen.end(),
-        starts.begin() + 3 * (static_cast<std::ptrdiff_t>(row) * size[0] + column));
+      const auto place = 3 * (static_cast<std::ptrdiff_t>(row) * size[0] + column);
+      starts.seen.resize(3 * static_cast<std::size_t>(size[0]) * size[1], 0.0f);
+      starts.transmittance.resize(starts.seen.size(), 0.0f);
+      std::copy(before.seen.begin(), before.seen.end(), starts.seen.begin() + place);
+      std::copy(before.transmittance.begin(), before.transmittance.end(), starts.transmittance.begin() + place);
     }
   });
   return starts;
 }
 
-void TakeFrom(const Picture& again, const std::vector<float>& starts, BlockPixels& pixels)
+void TakeFrom(const Picture& again, const Starts& starts, BlockPixels& pixels)
 {
   ForPixels(pixels.rect, [&](int column, int row, std::size_t number) {
     const std::size_t pixel = static_cast<std::size_t>(row) * again.width + column;
-    const float* const start = starts.data() + 3 * pixel;
+    const float* const start = starts.seen.data() + 3 * pixel;
     const float before = (start[0] + start[1] + start[2]) / 3.0f;
-    if (before > 0.0f)
+    const float* const through = starts.transmittance.data() + 3 * pixel;
+    if (before > 0.0f || std::max({ through[0], through[1], through[2] }) > 0.0f)
     {
       pixels.pixels[number] = PixelOf(again, pixel);
       if (before <= Half)
@@ -137,7 +146,8 @@ Picture PictureOfAll(const std::vector<BlockPixels>& frontToBack, const PixelRec
     {
       all.LayBefore(block.At(column, row));
     }
-    picture.radiance.insert(picture.radiance.end(), all.radiance.begin(), all.radiance.end());
+    const std::array<float, 3> radiance = all.All();
+    picture.radiance.insert(picture.radiance.end(), radiance.begin(), radiance.end());
     picture.alpha.push_back(1.0f - all.Left());
     picture.depth.push_back(std::min(all.depth, farDepth));
   });

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "Viewing/Rays/Picture.h"
+#include "Viewing/Rays/Starts.h"
 
 #include <algorithm>
 #include <array>
@@ -34,6 +35,8 @@ struct BlockPixel
   std::array<float, 3> radiance = {};                        ///< W / (length^2 sr)
   std::array<float, 3> transmittance = { 1.0f, 1.0f, 1.0f }; ///< of the radiance behind
   std::array<float, 3> seen = { 1.0f, 1.0f, 1.0f };          ///< of the scene behind, through the medium
+  std::array<float, 3> sharp = {};                           ///< radiance that is dimmed by `seen` of what is before
+  std::array<float, 3> missing = {};                         ///< see Picture
   float open = 1.0f;                                         ///< 0 where the background is seen behind that
   float depth = FarAway;                                     ///< as Picture::depth; there or farther: nowhere
 
@@ -43,6 +46,25 @@ struct BlockPixel
   float Left() const { return (this->seen[0] + this->seen[1] + this->seen[2]) / 3.0f; }
 
   float MostLeft() const { return std::max({ this->seen[0], this->seen[1], this->seen[2] }); } ///< of any channel
+  float MostThrough() const
+  {
+    return std::max({ this->transmittance[0], this->transmittance[1], this->transmittance[2] });
+  }
+
+  /// What is seen where nothing is before this.
+  std::array<float, 3> All() const
+  {
+    std::array<float, 3> all;
+    for (int c = 0; c < 3; ++c)
+    {
+      all[c] = this->radiance[c] + this->sharp[c];
+      if (this->missing[c] != 0.0f)
+      {
+        all[c] = std::max(all[c] + this->missing[c] * (1.0f - this->transmittance[c]), 0.0f);
+      }
+    }
+    return all;
+  }
 
   /// Part of the scene behind that is not seen, background and all.
   float Hidden() const { return 1.0f - this->open * this->Left(); }
@@ -54,6 +76,8 @@ struct BlockPixel
     {
       this->radiance[c] += this->transmittance[c] * behind.radiance[c];
       this->transmittance[c] *= behind.transmittance[c];
+      this->sharp[c] += this->seen[c] * behind.sharp[c];
+      this->missing[c] += behind.missing[c];
       this->seen[c] *= behind.seen[c];
     }
     this->open *= behind.open;
@@ -91,12 +115,11 @@ BlockPixels PartIn(const PixelRect& rect, const BlockPixels& pixels);
 /// @param own      which of the blocks it is
 /// @param size     of the picture, pixels
 /// @param minimum  part of their light at which rays end
-/// @return what comes through the blocks before, 3 per pixel of the picture, there, and else 0. Empty: nowhere
-std::vector<float> StartsBehind(
+Starts StartsBehind(
   const std::vector<BlockPixels>& frontToBack, std::size_t own, const std::array<int, 2>& size, double minimum);
 
 /// Takes those pixels from a picture that was made so.
-void TakeFrom(const Picture& again, const std::vector<float>& starts, BlockPixels& pixels);
+void TakeFrom(const Picture& again, const Starts& starts, BlockPixels& pixels);
 
 /// What all blocks show in a rectangle: radiance, alpha (of the medium, without the background) and depth.
 /// @param farDepth  of the pictures of blocks

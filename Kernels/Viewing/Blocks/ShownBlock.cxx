@@ -64,7 +64,7 @@ struct ShownBlock::Column
     for (const BlockPixels& block : blocks)
     {
       all.LayBefore(block.At(column, row));
-      this->shown.push_back(ShownOf(all.radiance, tones));
+      this->shown.push_back(ShownOf(all.All(), tones));
       this->open.push_back(1.0f - all.Hidden());
     }
     float brightest = 0.0f; // that is added behind
@@ -107,7 +107,7 @@ std::array<std::uint8_t, 4> ShownBlock::Share(Column& blocks, int column, int ro
     upToEnd.LayBefore(this->Blocks[i].At(column, row));
   }
   upToEnd.LayBefore(*ended);
-  return screen.Lay(ShownOf(upToEnd.radiance, this->Tones), 1.0f - upToEnd.Hidden());
+  return screen.Lay(ShownOf(upToEnd.All(), this->Tones), 1.0f - upToEnd.Hidden());
 }
 
 void ShownBlock::Fill(const PixelRect& rect, const Picture* ended, const std::vector<bool>& isEnded,

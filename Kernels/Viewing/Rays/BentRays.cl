@@ -28,6 +28,14 @@ inline integer leave(ray_packets* t, integer last, int4 size)
   return gone;
 }
 
+#if ROUNDS
+#define FETCH_AHEAD(s, p) fetch_ahead((s)->scene.samples, in_block(s, p), SAMPLES_SIZE(s));
+#else
+#define FETCH_AHEAD(s, p)                      \
+  fetch_ahead((s)->bending, p, INDEX_SIZE(s)); \
+  fetch_ahead((s)->scene.samples, p, SAMPLES_SIZE(s));
+#endif
+
 #if BENDS
 // A few steps by the leapfrog. Samples outside the box are never read.
 __attribute__((always_inline)) inline void bend(
@@ -42,22 +50,31 @@ __attribute__((always_inline)) inline void bend(
   // Most stretches lie so far inside that nothing can leave.
   const int may_leave = any_lane(moves & (room_around(t->at, size) < (real)(stride * (float)(steps + 1) + 1.0f)));
 #if SURFACE
-  if (w->forgotten)
+  const integer asks = moves & w->forgotten;
+  if (any_lane(asks))
   {
     real3 unused;
-    w->square = index_at(s, t->at, &unused);
-    w->since = (real)0.0f;
-    w->forgotten = 0;
+    const real there = index_at(s, t->at, &unused);
+    w->square = asks ? there : w->square;
+    w->since = asks ? (real)0.0f : w->since;
+    w->forgotten = asks ? (integer)0 : w->forgotten;
   }
 #endif
   real start = depth_of(t->at, s->v, spacing);
   for (int n = 0; n < steps; ++n)
   {
+#if ROUNDS
+    moves &= is_own(s, middle_of_next(s, t));
+    if (!any_lane(moves))
+    {
+      break;
+    }
+    t->steps += moves ? (integer)1 : (integer)0;
+#endif
     const real per_voxel = (real)1.0f / sqrt(greater(product(t->velocity, t->velocity), (real)1e-30f));
     real time = moves ? (real)stride * per_voxel : (real)0.0f;
     const real3 soon = further(t->at, (real)5.0f * per_voxel, t->velocity);
-    fetch_ahead(s->bending, soon, size);
-    fetch_ahead(s->scene.samples, soon, size);
+    FETCH_AHEAD(s, soon)
     integer last = (integer)0;
     if (may_leave)
     {
@@ -73,10 +90,10 @@ __attribute__((always_inline)) inline void bend(
     const real half_time = (real)0.5f * time;
     const real3 middle = kept_within(further(t->at, half_time, t->velocity), size);
     corners around;
-    find_corners(middle, size, &around);
+    corners_of_index(s, middle, &around);
     rgb xyz;
     real square;
-    gather(s->bending, &around, size, &xyz, &square);
+    gather(s->bending, &around, INDEX_SIZE(s), &xyz, &square);
     const real3 turn = { xyz.r, xyz.g, xyz.b };
 #if SURFACE
     const integer meets = moves & (w->met == 0) & (w->square < (real)s->o->surface.x) &
@@ -87,12 +104,15 @@ __attribute__((always_inline)) inline void bend(
       split_at_surface(s, &step, meets, l, half_way, &w->reflected);
       w->met |= meets;
     }
-    w->square = square;
-    w->since = half_time;
+    w->square = moves ? square : w->square;
+    w->since = moves ? half_time : w->since;
+#endif
+#if ROUNDS
+    corners_of_samples(s, middle, &around);
 #endif
     const real3 world = stretched(further(t->velocity, half_time, turn), spacing);
     const real pace = sqrt(product(world, world));
-    const sample met = take_sample(&s->scene, &around, size, divided(world, greater(pace, (real)1e-20f)));
+    const sample met = take_sample(&s->scene, &around, SAMPLES_SIZE(s), divided(world, greater(pace, (real)1e-20f)));
     t->velocity = further(t->velocity, time, turn);
     t->at = kept_within(further(middle, half_time, t->velocity), size);
     if (may_leave)
@@ -112,8 +132,9 @@ __attribute__((always_inline)) inline void bend(
 #endif
 
 // Steps through a region of constant index, or a leap. Returns how many.
+//   leaves  of the rays that go the packet's whole length: those that then are out of the box
 __attribute__((always_inline)) inline int go_straight(const surroundings* s, const rays* packet, real step,
-  stretch ahead, integer done, ray_packets* t, light* l, crossed* half_way)
+  stretch ahead, integer done, integer leaves, ray_packets* t, light* l, crossed* half_way)
 {
   const int4 size = s->v->size;
   const int steps = max(min(ahead.steps, (int)ceil(most_lanes(packet->length / step))), 1);
@@ -131,15 +152,19 @@ __attribute__((always_inline)) inline int go_straight(const surroundings* s, con
       const real so_far = step * (real)(float)n;
       const real length = lesser(greater(packet->length - so_far, (real)0.0f), step);
       corners at;
-      find_corners(along(*packet, fma(length, (real)0.5f, so_far)), size, &at);
-      const sample met = take_sample(&s->scene, &at, size, towards);
-      fetch_ahead(s->scene.samples, along(*packet, so_far + soon), size);
+      corners_of_samples(s, along(*packet, fma(length, (real)0.5f, so_far)), &at);
+      const sample met = take_sample(&s->scene, &at, SAMPLES_SIZE(s), towards);
+      fetch_ahead(s->scene.samples, in_block(s, along(*packet, so_far + soon)), SAMPLES_SIZE(s));
       cross_sample(met, length, fma(so_far, slope, start), length * slope, s->v->marching.y, l, half_way);
     }
   }
   const real end = step * (real)(float)steps;
-  t->inside = ((done == 0) & (end >= packet->length)) ? (integer)0 : t->inside;
+  t->inside = ((done == 0) & leaves & (end >= packet->length)) ? (integer)0 : t->inside;
   t->at = kept_within(along(*packet, end), size);
+#if ROUNDS
+  const integer taken = to_integer(lesser(ceil(packet->length / step), (real)(float)steps));
+  t->steps += done ? (integer)0 : taken;
+#endif
   return steps;
 }
 
@@ -152,7 +177,10 @@ __attribute__((always_inline)) inline void march(
   const float enough = v->marching.y;
   for (int n = 0; n < s->o->limits.x;)
   {
-    const integer done = (t->inside == 0) | (most_left(*l) <= (real)enough);
+    integer done = (t->inside == 0) | (most_left(*l) <= (real)enough);
+#if ROUNDS
+    done |= (t->steps >= (integer)s->o->limits.x) | (is_own(s, middle_of_next(s, t)) == 0);
+#endif
     if (all_lanes(done))
     {
       break;
@@ -168,8 +196,14 @@ __attribute__((always_inline)) inline void march(
     packet.length = lesser(packet.length, to_end);
 #endif
     const real step = step_length(packet.direction, v->marching.x);
-    const stretch ahead = stretch_ahead(
-      s->bricks, v->bricks, along(packet, (real)0.5f * step), strides_per_voxel(packet.direction, step), done);
+    integer leaves = (integer)-1;
+#if ROUNDS
+    const real own = done ? (real)0.0f : own_stretch(s, t->at, packet.direction, step);
+    leaves = packet.length <= own;
+    packet.length = lesser(packet.length, own);
+#endif
+    const stretch ahead = stretch_ahead(s->bricks, v->bricks, in_block(s, along(packet, (real)0.5f * step)),
+      strides_per_voxel(packet.direction, step), done);
 #if BENDS
     if (ahead.bends)
     {
@@ -179,9 +213,9 @@ __attribute__((always_inline)) inline void march(
     }
 #endif
 #if SURFACE
-    w->forgotten = 1;
+    w->forgotten = done ? w->forgotten : (integer)-1;
 #endif
-    n += go_straight(s, &packet, step, ahead, done, t, l, half_way);
+    n += go_straight(s, &packet, step, ahead, done, leaves, t, l, half_way);
 #if ENDS
     t->stopped |= stops & (t->inside == 0);
 #endif

@@ -158,14 +158,13 @@ inline void add_background(rgb behind, real part, light* l)
 }
 
 #if SURFACE_LIGHT
-// As much of the light at the surface (SurfaceLight.cl) as the ray has met of the medium; all where it goes on in
-// another block, for behind thick voxels there is more.
-inline void add_surface_light(rgb missing, integer goes_on, light* l)
+// As much of the light at the surface (SurfaceLight.cl) as the ray has met of the medium.
+inline void add_surface_light(rgb missing, light* l)
 {
 #if COLOURED
-#define MET(c) (goes_on ? (real)1.0f : (real)1.0f - l->left.c)
+#define MET(c) ((real)1.0f - l->left.c)
 #else
-#define MET(c) (goes_on ? (real)1.0f : (real)1.0f - l->left)
+#define MET(c) ((real)1.0f - l->left)
 #endif
 #define ADD(c) l->radiance.c = greater(fma(missing.c, MET(c), l->radiance.c), (real)0.0f);
   ADD(r)

@@ -23,5 +23,11 @@ struct Picture
   /// the light has angular moments. Its mean is 1 - alpha, but where the background is seen: there a block's alpha is
   /// 1.
   std::vector<float> sceneTransmittance;
+  /// Likewise of a block, or empty, 3 per pixel: radiance that comes through what is before the block without being
+  /// scattered, as sceneTransmittance says; it is not in `radiance` then.
+  std::vector<float> sharp;
+  /// Likewise: light at the surface where the ray enters the whole, of which so much is seen as the ray meets of the
+  /// medium.
+  std::vector<float> missing;
 };
 }

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <string>
 
 #include <glm/vec3.hpp>
@@ -18,6 +19,9 @@ namespace tyndall
 {
 namespace
 {
+constexpr std::size_t PixelsStartedAtOnce = 65536; ///< each takes 140 bytes
+constexpr std::size_t RaysMarchedFirst = 4096;     ///< how long they take says how many go next
+
 /// Columns and rows of pixels in a packet, as in View.cl.
 std::array<int, 2> PacketPixels(int width)
 {
@@ -56,6 +60,11 @@ void RayCasting::Reserve(
   {
     this->Passed = Buffer<float>(this->TheDevice, passed, "what the block lets through");
   }
+  const std::size_t missing = ofBlock && this->Behind.HasSurfaceLight() ? 3 * pixels : 0;
+  if (this->Missing.Size() != missing)
+  {
+    this->Missing = Buffer<float>(this->TheDevice, missing, "light at the surface");
+  }
   if (!ends.empty() && ends.size() != pixels)
   {
     throw InvalidInput("There are ends of " + std::to_string(ends.size()) + " rays for a picture of " +
@@ -84,21 +93,33 @@ std::string RayCasting::Options(const ViewSettings& settings) const
     Define("ENVIRONMENT", this->Behind.HasEnvironment()) + Define("GROUND", this->Behind.FacesOfGround()) +
     Define("THIN_STEPS", longest <= (traits.bends ? 1.5 : 2.0)) + Define("GLOW", traits.GlowsApart()) +
     traits.PhaseOptions(traits.knowsFlow) + StepOption(LongestSteps(traits.grid, settings.stepSize)) +
-    Define("ENDS", this->Ends.Size() > 0) + this->Samples.ShownOptions();
+    this->Samples.ShownOptions();
+}
+
+std::string RayCasting::BentOptions(const ViewSettings& settings) const
+{
+  const int surface = this->Traits.Reflects(settings) ? static_cast<int>(settings.surfaceReflection) : 0;
+  return this->Options(settings) + Define("BENDS", this->Traits.bends) + Define("SURFACE", surface) +
+    Define("TABLE", this->Traits.hasTable);
 }
 
 cl::Kernel RayCasting::Kernel(const ViewSettings& settings, bool ofBlock) const
 {
+  const std::string ends = Define("ENDS", this->Ends.Size() > 0);
   if (this->Traits.OnlyStraight())
   {
     return this->TheDevice.Kernel("cast_rays", kernel_source::StraightView,
-      this->Options(settings) + Define("SURFACE_LIGHT", this->Behind.HasSurfaceLight()) + Define("BLOCK", ofBlock) +
-        Define("STARTS", this->Starts.Size() > 0));
+      this->Options(settings) + ends + Define("SURFACE_LIGHT", this->Behind.HasSurfaceLight()) +
+        Define("BLOCK", ofBlock) + Define("STARTS", this->Starts.Size() > 0));
   }
-  const int surface = this->Traits.Reflects(settings) ? static_cast<int>(settings.surfaceReflection) : 0;
-  return this->TheDevice.Kernel("cast_bent_rays", kernel_source::BentView,
-    this->Options(settings) + Define("BENDS", this->Traits.bends) + Define("SURFACE", surface) +
-      Define("TABLE", this->Traits.hasTable));
+  return this->TheDevice.Kernel(
+    "cast_bent_rays", kernel_source::BentView, this->BentOptions(settings) + ends + Define("ROUNDS", 0));
+}
+
+const Buffer<cl_float4>& RayCasting::Environment() const
+{
+  return this->Samples.PackedFor() == Packing::Unscattered ? this->Behind.SharpEnvironment()
+                                                           : this->Behind.Environment();
 }
 
 void RayCasting::Cast(
@@ -106,9 +127,9 @@ void RayCasting::Cast(
 {
   const PackedSamples& s = this->Samples;
   const Backdrop& b = this->Behind;
-  const Buffer<cl_float4>& environment = s.PackedFor() == Packing::Unscattered ? b.SharpEnvironment() : b.Environment();
+  const Buffer<cl_float4>& environment = this->Environment();
   const std::array<int, 2> packet = PacketPixels(this->Traits.packetWidth);
-  cl::Kernel cast = this->Kernel(settings, view.whole.s[0] > 0);
+  cl::Kernel cast = this->Kernel(settings, view.block.whole.s[0] > 0);
   // Batches of whole work-groups: else the last rows of one would be cast again by the next.
   const int group = 4;
   const std::size_t across = RoundUp<std::size_t>(view.picture.s[0], group * packet[0]) / (group * packet[0]);
@@ -121,7 +142,7 @@ void RayCasting::Cast(
     {
       With(cast, view, s.Samples(), s.Extinctions(), s.Flow(), s.Glow(), s.Cosines(), this->Scene.phaseRows, s.Bricks(),
         environment, b.Ground(), b.SurfaceLight(), this->Ends, this->Starts, this->Radiance, this->Alpha, this->Depth,
-        this->Passed);
+        this->Passed, this->Missing);
     }
     else
     {
@@ -134,5 +155,67 @@ void RayCasting::Cast(
   };
   InBatches(this->TheDevice, BatchesOfRows(rows, across, samples, from, to), monitor,
     [&](std::size_t first, std::size_t count) { InPatches(first, count, across, launch); });
+}
+
+void RayCasting::OfRounds(ViewInfo& view)
+{
+  view.held = view.size;
+  view.size = view.block.whole;
+}
+
+std::vector<RayOnItsWay> RayCasting::Start(const ViewSettings& settings, ViewInfo view, const OpticsInfo& optics) const
+{
+  const std::array<int, 2> packet = PacketPixels(this->Traits.packetWidth);
+  cl::Kernel start = this->TheDevice.Kernel(
+    "start_rays", kernel_source::RayRounds, this->BentOptions(settings) + Define("ENDS", 0) + Define("ROUNDS", 1));
+  const std::size_t width = Count(view.picture.s[0]), height = Count(view.picture.s[1]);
+  const std::size_t rows =
+    RoundUp<std::size_t>(std::max<std::size_t>(PixelsStartedAtOnce / width, 1), Count(packet[1]));
+  Buffer<RayOnItsWay> started(this->TheDevice, std::min(rows, height) * width, "rays that set off");
+  std::vector<RayOnItsWay> ofRows(started.Size()), all;
+  for (std::size_t row = 0; row < height; row += rows)
+  {
+    const std::size_t count = std::min(rows, height - row);
+    view.picture.s[2] = static_cast<int>(row);
+    With(start, view, optics, this->Samples.Bending(), started);
+    this->TheDevice.Queue().enqueueNDRangeKernel(start, cl::NullRange,
+      cl::NDRange(RoundUp<std::size_t>(width, 4 * Count(packet[0])) / Count(packet[0]),
+        RoundUp<std::size_t>(count, Count(packet[1])) / Count(packet[1])),
+      cl::NDRange(4, 1));
+    started.Read(ofRows.data(), count * width);
+    std::copy_if(ofRows.begin(), ofRows.begin() + static_cast<std::ptrdiff_t>(count * width), std::back_inserter(all),
+      [](const RayOnItsWay& ray) { return ray.pixel >= 0; });
+  }
+  return all;
+}
+
+std::vector<RayOnItsWay> RayCasting::March(const ViewSettings& settings, const ViewInfo& view, const OpticsInfo& optics,
+  std::vector<RayOnItsWay>& rays, const Monitor& monitor) const
+{
+  const PackedSamples& s = this->Samples;
+  const Backdrop& b = this->Behind;
+  cl::Kernel march = this->TheDevice.Kernel(
+    "march_rays", kernel_source::RayRounds, this->BentOptions(settings) + Define("ENDS", 0) + Define("ROUNDS", 1));
+  const std::size_t split = (this->Traits.Reflects(settings) ? 1 : 0) + (this->Traits.hasTable ? 1 : 0);
+  const std::size_t width = Count(this->Traits.packetWidth);
+  const Buffer<RayOnItsWay> onDevice(this->TheDevice, rays, "rays on their way");
+  const Buffer<RayOnItsWay> born(this->TheDevice, split * rays.size(), "rays that are split off");
+  Batches batches;
+  batches.count = rays.size();
+  batches.whole = 4 * width;
+  batches.first = RaysMarchedFirst;
+  batches.growth = 8.0;
+  InBatches(this->TheDevice, batches, monitor, [&](std::size_t first, std::size_t count) {
+    With(march, view, optics, s.Samples(), s.Extinctions(), s.Flow(), s.Glow(), s.Cosines(), this->Scene.phaseRows,
+      s.Bending(), b.Table(), s.Bricks(), this->Environment(), b.Ground(), onDevice, born, cl_int(first),
+      cl_int(count));
+    this->TheDevice.Queue().enqueueNDRangeKernel(
+      march, cl::NullRange, cl::NDRange(RoundUp<std::size_t>(count, 4 * width) / width), cl::NDRange(4));
+  });
+  onDevice.Read(rays.data());
+  std::vector<RayOnItsWay> added = born.Read();
+  added.erase(
+    std::remove_if(added.begin(), added.end(), [](const RayOnItsWay& ray) { return ray.pixel < 0; }), added.end());
+  return added;
 }
 }

@@ -29,6 +29,7 @@ public:
     , Behind(backdrop)
     , Traits(traits)
     , Passed(device, 0, "what the block lets through")
+    , Missing(device, 0, "light at the surface")
     , Ends(device, 0, "where rays end")
     , Starts(device, 0, "what comes through other blocks")
   {
@@ -51,21 +52,35 @@ public:
   void Cast(const ViewSettings& settings, ViewInfo view, const OpticsInfo& optics, double from, double to,
     const Monitor& monitor);
 
+  // Rays that bend, or meet a table or a surface, through a block of a larger grid, where they go from block to block.
+  // A view and optics of OfRounds.
+  static void OfRounds(ViewInfo& view);
+  /// Those through pixels that enter the whole here, or show the background beside it.
+  std::vector<RayOnItsWay> Start(const ViewSettings& settings, ViewInfo view, const OpticsInfo& optics) const;
+  /// Takes each as far as the block goes, or to its end.
+  /// @return those that were split off on the way
+  /// @throws Aborted
+  std::vector<RayOnItsWay> March(const ViewSettings& settings, const ViewInfo& view, const OpticsInfo& optics,
+    std::vector<RayOnItsWay>& rays, const Monitor& monitor) const;
+
   // What was cast last, see Picture.
   std::vector<float> ReadRadiance() const { return this->Radiance.Read(); }
   std::vector<float> ReadAlpha() const { return this->Alpha.Read(); }
   std::vector<float> ReadDepth() const { return this->Depth.Read(); }
   std::vector<float> ReadTransmittance() const { return this->Passed.Read(); }
+  std::vector<float> ReadMissing() const { return this->Missing.Read(); }
 
 private:
   std::string Options(const ViewSettings& settings) const;
+  std::string BentOptions(const ViewSettings& settings) const;
   cl::Kernel Kernel(const ViewSettings& settings, bool ofBlock) const;
+  const Buffer<cl_float4>& Environment() const;
 
   Device& TheDevice;
   const SceneOnDevice& Scene;
   const PackedSamples& Samples;
   const Backdrop& Behind;
   const ViewTraits& Traits;
-  Buffer<float> Radiance, Alpha, Depth, Passed, Ends, Starts;
+  Buffer<float> Radiance, Alpha, Depth, Passed, Missing, Ends, Starts;
 };
 }

@@ -1,7 +1,8 @@
 // Rays on their way through a medium that bends them, and what they are given on it.
 //
 // The host gives
-//   BENDS  1: the index varies
+//   BENDS   1: the index varies
+//   ROUNDS  1: the medium is a block of a larger grid, and rays go on from block to block
 
 #pragma once
 #include "Viewing/Rays/Crossing.cl"
@@ -14,6 +15,9 @@ typedef struct
 {
   real3 at, velocity;
   integer inside;
+#if ROUNDS
+  integer steps; // taken
+#endif
 #if ENDS
   real end;        // depth at which they end
   integer stopped; // there
@@ -30,10 +34,10 @@ typedef struct
 // What primary rays remember of n^2, so that they see where they meet the surface, and what is reflected there.
 typedef struct
 {
-  integer met;   // it was met, or is not looked for
-  real square;   // n^2 in the middle of the last bent step
-  real since;    // time since then
-  int forgotten; // n^2 is to be asked for first
+  integer met;       // it was met, or is not looked for
+  real square;       // n^2 in the middle of the last bent step
+  real since;        // time since then
+  integer forgotten; // n^2 is to be asked for first
   waiting reflected;
 } watch;
 
@@ -57,6 +61,69 @@ inline real3 kept_within(real3 p, int4 size)
 {
   const real3 q = { within(p.x, size.x), within(p.y, size.y), within(p.z, size.z) };
   return q;
+}
+
+// Voxels of arrays, and the voxel of the whole at which they begin: of samples, and of how rays bend.
+#if ROUNDS
+#define SAMPLES_SIZE(s) (s)->v->held
+#define SAMPLES_FIRST(s) (s)->v->block.first
+#define INDEX_SIZE(s) (s)->o->knownSize
+#define INDEX_FIRST(s) (s)->o->knownFirst
+#else
+#define SAMPLES_SIZE(s) (s)->v->size
+#define INDEX_SIZE(s) (s)->v->size
+#endif
+
+#if ROUNDS
+// Rays that are in another block ask for nothing that is there.
+inline real3 kept_in_array(real3 p, int4 first, int4 size)
+{
+#define KEPT(c) lesser(greater(p.c, (real)(float)first.c), (real)(float)(first.c + size.c))
+  const real3 q = { KEPT(x), KEPT(y), KEPT(z) };
+#undef KEPT
+  return q;
+}
+
+// From voxels of the whole to those of the block's arrays.
+inline real3 in_block(const surroundings* s, real3 p)
+{
+  const int4 first = s->v->block.first;
+  const real3 kept = kept_in_array(p, first, s->v->held);
+  const real3 q = { kept.x - (real)(float)first.x, kept.y - (real)(float)first.y, kept.z - (real)(float)first.z };
+  return q;
+}
+
+// Places in the block's own voxels.
+inline integer is_own(const surroundings* s, real3 p)
+{
+  const BlockInfo* b = &s->v->block;
+#define OWN(c) \
+  ((p.c >= (real)(float)b->begin.c) & ((p.c < (real)(float)b->end.c) | (integer)(b->end.c == b->whole.c ? -1 : 0)))
+  return OWN(x) & OWN(y) & OWN(z);
+#undef OWN
+}
+#else
+#define in_block(s, p) (p)
+#endif
+
+inline void corners_of_samples(const surroundings* s, real3 p, corners* at)
+{
+#if ROUNDS
+  const int4 first = SAMPLES_FIRST(s), size = SAMPLES_SIZE(s);
+  find_corners_from(kept_in_array(p, first, size), first, size, at);
+#else
+  find_corners(p, SAMPLES_SIZE(s), at);
+#endif
+}
+
+inline void corners_of_index(const surroundings* s, real3 p, corners* at)
+{
+#if ROUNDS
+  const int4 first = INDEX_FIRST(s), size = INDEX_SIZE(s);
+  find_corners_from(kept_in_array(p, first, size), first, size, at);
+#else
+  find_corners(p, INDEX_SIZE(s), at);
+#endif
 }
 
 inline real3 stretched(real3 p, float4 by)
@@ -87,6 +154,36 @@ inline real time_to_face(real3 p, real3 velocity, int4 size)
 #undef TO_FACE
 }
 
+#if ROUNDS
+// In the middle of its next step a ray is in the block that takes it: one that bends or goes straight on, whose step is
+// as long.
+inline real3 middle_of_next(const surroundings* s, const ray_packets* t)
+{
+  const real per_voxel = (real)1.0f / sqrt(greater(product(t->velocity, t->velocity), (real)1e-30f));
+  const real time = lesser((real)s->v->marching.x * per_voxel, time_to_face(t->at, t->velocity, s->v->size));
+  return kept_within(further(t->at, (real)0.5f * time, t->velocity), s->v->size);
+}
+
+// How far rays go straight on by steps that have their middles in the block; one step at least.
+inline real own_stretch(const surroundings* s, real3 p, real3 direction, real step)
+{
+  const BlockInfo* b = &s->v->block;
+  real out = (real)ENDLESS;
+#define CLIP(c)                                                                                   \
+  {                                                                                               \
+    const real v = at_least_tiny(direction.c);                                                    \
+    const real upper = b->end.c < b->whole.c ? ((real)(float)b->end.c - p.c) / v : (real)ENDLESS; \
+    const real lower = b->begin.c > 0 ? ((real)(float)b->begin.c - p.c) / v : (real)ENDLESS;      \
+    out = lesser(out, v > (real)0.0f ? upper : lower);                                            \
+  }
+  CLIP(x)
+  CLIP(y)
+  CLIP(z)
+#undef CLIP
+  return greater(ceil(lesser(out / step, (real)1e7f) - (real)0.5f), (real)1.0f) * step;
+}
+#endif
+
 inline real depth_of(real3 p, const ViewInfo* v, float4 spacing)
 {
   const real3 from_eye = { p.x - (real)v->eye.x, p.y - (real)v->eye.y, p.z - (real)v->eye.z };
@@ -110,10 +207,10 @@ inline real time_to_end(const ray_packets* t, real3 velocity, const surroundings
 inline real index_at(const surroundings* s, real3 p, real3* bend)
 {
   corners at;
-  find_corners(p, s->v->size, &at);
+  corners_of_index(s, p, &at);
   rgb xyz;
   real square;
-  gather(s->bending, &at, s->v->size, &xyz, &square);
+  gather(s->bending, &at, INDEX_SIZE(s), &xyz, &square);
   bend->x = xyz.r;
   bend->y = xyz.g;
   bend->z = xyz.b;

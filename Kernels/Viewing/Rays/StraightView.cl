@@ -8,9 +8,9 @@
 #include "Viewing/Backdrop/Background.cl"
 #include "Viewing/Backdrop/GroundLight.cl"
 #include "Viewing/Backdrop/SurfaceLight.cl"
-#include "Viewing/Rays/BlockRays.cl"
 #include "Viewing/Rays/Crossing.cl"
 #include "Viewing/Rays/View.cl"
+#include "Viewing/Samples/BlockRays.cl"
 #include "Viewing/Samples/Sampling.cl"
 
 __kernel void cast_rays(ViewInfo v, __global const float4* restrict samples,
@@ -20,7 +20,7 @@ __kernel void cast_rays(ViewInfo v, __global const float4* restrict samples,
   __global const float4* restrict environment, __global const float4* restrict ground,
   __global const float4* restrict surface, __global const float* restrict ends, __global const float* restrict starts,
   __global float* restrict radiance, __global float* restrict alpha, __global float* restrict depth,
-  __global float* restrict passed)
+  __global float* restrict passed, __global float* restrict missing)
 {
   const int column = (get_global_id(0) + v.picture.w) * PACKET_WIDTH;
   const int row = (get_global_id(1) + v.picture.z) * PACKET_HEIGHT;
@@ -42,11 +42,11 @@ __kernel void cast_rays(ViewInfo v, __global const float4* restrict samples,
   real before;
 #if BLOCK
   integer enters, leaves;
-  const rays packet = clip_to_block(seen.from, direction, end / seen.cosine, &v, &before, &enters, &leaves);
+  const rays packet =
+    clip_to_block(seen.from, direction, end / seen.cosine, &v.block, v.marching.x, &before, &enters, &leaves);
   const integer sees_behind = open & leaves;
 #else
   const rays packet = clip_to_box(seen.from, direction, end / seen.cosine, v.size, &before);
-  const integer enters = (integer)-1, leaves = (integer)-1;
   const integer sees_behind = open;
 #endif
 
@@ -98,8 +98,11 @@ __kernel void cast_rays(ViewInfo v, __global const float4* restrict samples,
 
   // What is behind, and the picture.
   const real left = mean_left(l);
-#if SURFACE_LIGHT
-  add_surface_light(surface_light(surface, packet, seen.d, enters ? before : (real)0.0f, v.size), leaves == 0, &l);
+#if SURFACE_LIGHT && BLOCK
+  // How much of it is seen follows from all that the ray meets, in other blocks too.
+  paint_part(&v, missing, column, row, surface_light(surface, packet, seen.d, enters ? before : (real)0.0f, v.size));
+#elif SURFACE_LIGHT
+  add_surface_light(surface_light(surface, packet, seen.d, before, v.size), &l);
 #endif
   rgb behind = look_behind(&v, seen.d, environment);
 #if GROUND
@@ -112,7 +115,7 @@ __kernel void cast_rays(ViewInfo v, __global const float4* restrict samples,
 #if BLOCK
   // Behind the background there is no other block: there alpha is 1.
   const real kept = sees_behind ? (real)(1.0f - v.background.w) : (real)1.0f;
-  paint_passed(&v, passed, column, row, passed_of(l));
+  paint_part(&v, passed, column, row, passed_of(l));
   paint(&v, picture, column, row, l.radiance, (real)1.0f - left * kept, where);
 #else
   paint(&v, picture, column, row, l.radiance, (real)1.0f - left, where);

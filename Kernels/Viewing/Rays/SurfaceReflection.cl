@@ -72,12 +72,12 @@ inline void split_at_surface(
 
   // Light.
   corners around;
-  find_corners(at, size, &around);
+  corners_of_samples(s, at, &around);
   const real speed = sqrt(product(t, t));
   const real3 towards = { t.x / speed, t.y / speed, t.z / speed };
   const real3 until_there = stretched(step->velocity, spacing);
   const real way = fabs(after_start) * sqrt(product(until_there, until_there));
-  const sample there = take_sample(&s->scene, &around, size, towards);
+  const sample there = take_sample(&s->scene, &around, SAMPLES_SIZE(s), towards);
   const real whole = mean_left(*l);
   const integer behind = after_start >= (real)0.0f;
 #define SPLIT(sigma, left, later, EACH_SOURCE)                                  \

@@ -10,8 +10,9 @@
 #define REACH_OF_TABLE 2e-3f // voxels; what rounding leaves between a ray's end and the face
 
 // Radiance per reflectance of the table where rays meet it, between voxel centres.
-inline rgb table_light(const surroundings* s, __global const float4* lit, real3 p)
+inline rgb table_light(const surroundings* s, __global const float4* lit, real3 place)
 {
+  const real3 p = in_block(s, place);
   const int axis = s->o->face.x;
   const int row = s->o->face.z + 2;
   const real x = (axis == 0 ? p.y : p.x) + (real)0.5f;

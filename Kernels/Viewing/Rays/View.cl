@@ -106,17 +106,17 @@ inline integer in_picture(const ViewInfo* v, int column, int row)
   return (to_integer(ACROSS) + column < (integer)v->picture.x) & (to_integer(UPWARDS) + row < (integer)v->picture.y);
 }
 
-// 3 per pixel: what a block lets through.
-inline void paint_passed(const ViewInfo* v, __global float* passed, int column, int row, rgb part)
+// 3 per pixel: what a block lets through, and other things that are said of it.
+inline void paint_part(const ViewInfo* v, __global float* parts, int column, int row, rgb part)
 {
   const integer pixel = pixels_of(v, column, row), inside = in_picture(v, column, row);
-#define PAINT(n)                         \
-  if (LANE(inside, n))                   \
-  {                                      \
-    const int p = LANE(pixel, n);        \
-    passed[3 * p] = LANE(part.r, n);     \
-    passed[3 * p + 1] = LANE(part.g, n); \
-    passed[3 * p + 2] = LANE(part.b, n); \
+#define PAINT(n)                        \
+  if (LANE(inside, n))                  \
+  {                                     \
+    const int p = LANE(pixel, n);       \
+    parts[3 * p] = LANE(part.r, n);     \
+    parts[3 * p + 1] = LANE(part.g, n); \
+    parts[3 * p + 2] = LANE(part.b, n); \
   }
   EACH_LANE(PAINT)
 #undef PAINT

@@ -17,7 +17,6 @@ namespace
 {
 constexpr int RoundsAtMost = 16;            ///< of a ray through the volume, in sums of its edges
 constexpr double BentStretch = 4.0;         ///< voxels, before it is asked whether rays still bend
-constexpr double BesideSurface = 5.0;       ///< voxels from a surface, beyond its smoothing (9 voxels wide) by default
 constexpr double SurfacePrecision = 1.0e-3; ///< voxels
 
 /// Beyond every point of the box, along the view axis.
@@ -57,32 +56,34 @@ ViewInfo ViewInfoOf(
   view.size = Int4(traits.grid.size);
   if (block)
   {
-    view.whole = Int4(grid.size);
-    view.first = Int4(block->first);
-    view.first.s[3] = block->showsBackgroundBeside ? 1 : 0;
-    view.begin = Int4(block->begin);
-    view.end = Int4(block->end);
+    view.block = BlockInfoOf(*block);
   }
   view.phase = traits.phase.parameters;
   return view;
 }
 
-OpticsInfo OpticsInfoOf(const ViewSettings& settings, const ViewTraits& traits)
+OpticsInfo OpticsInfoOf(const ViewSettings& settings, const ViewTraits& traits, const BlockOfScene* ofWhole)
 {
   const Grid& grid = traits.grid;
   const double index = traits.SurfaceIndex(settings);
   const int face = std::max(settings.tableFace, 0);
-  const double edges = 1.0 * grid.size[0] + grid.size[1] + grid.size[2];
+  const std::array<int, 3>& size = ofWhole ? ofWhole->block.whole.size : grid.size;
+  const double edges = 1.0 * size[0] + size[1] + size[2];
   const double halvings = std::log2(settings.stepSize / SurfacePrecision);
-  OpticsInfo optics;
+  OpticsInfo optics = {};
   optics.spacing = Float4(Vector(grid.spacing), 0.0);
-  optics.surface = Float4({ index * index, settings.surfaceReflectance, BesideSurface }, 0.0);
+  optics.surface = Float4({ index * index, settings.surfaceReflectance, VoxelsBesideSurface }, 0.0);
   optics.table = Float4(Vector(settings.tableColor), settings.tableReflectance);
   optics.face = Int4({ face / 2, face % 2, FaceSize(grid, face)[0] });
   optics.flip = { { face / 2 == 0 ? -1.0f : 1.0f, face / 2 == 1 ? -1.0f : 1.0f, face / 2 == 2 ? -1.0f : 1.0f, 0.0f } };
   optics.limits = Int4({ static_cast<int>(std::min(1e9, std::ceil(RoundsAtMost * edges / settings.stepSize))),
     static_cast<int>(std::clamp(BentStretch / settings.stepSize, 1.0, 1e3)),
     static_cast<int>(std::ceil(std::max(halvings, 1.0))) });
+  if (ofWhole)
+  {
+    optics.knownFirst = Int4(ofWhole->known.first);
+    optics.knownSize = Int4(ofWhole->known.size);
+  }
   return optics;
 }
 }

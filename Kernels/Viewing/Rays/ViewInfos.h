@@ -1,5 +1,6 @@
 #pragma once
 
+#include "Viewing/Scene/BlockOfScene.h"
 #include "Viewing/Scene/Camera.h"
 #include "Viewing/Scene/GridBlock.h"
 #include "Viewing/Scene/ViewSettings.h"
@@ -16,5 +17,6 @@ ViewInfo ViewInfoOf(
   const Camera& camera, const ViewSettings& settings, const ViewTraits& traits, const GridBlock* block = nullptr);
 
 /// Surface and table, and how rays bend.
-OpticsInfo OpticsInfoOf(const ViewSettings& settings, const ViewTraits& traits);
+/// @param ofWhole  where rays go from block to block: the block
+OpticsInfo OpticsInfoOf(const ViewSettings& settings, const ViewTraits& traits, const BlockOfScene* ofWhole = nullptr);
 }

@@ -42,10 +42,12 @@ std::vector<cl_uchar> SeenGroups(const SeenBricks& bricks, const Grid& grid)
 }
 }
 
-PackedSamples::PackedSamples(Device& device, const SceneOnDevice& scene, const ViewTraits& traits)
+PackedSamples::PackedSamples(
+  Device& device, const SceneOnDevice& scene, const ViewTraits& traits, const BlockOfScene* block)
   : TheDevice(device)
   , Traits(traits)
   , Count(traits.bricks.count)
+  , KnownSize(block ? block->known.size : traits.grid.size)
 {
   const std::size_t count = PaddedCount(traits.grid);
   const auto samples = [&](bool needed, const char* what) {
@@ -56,7 +58,13 @@ PackedSamples::PackedSamples(Device& device, const SceneOnDevice& scene, const V
   this->Directions = samples(traits.knowsFlow || traits.ShowsBeams(), "the ray caster's directions of light");
   this->ColouredG = samples(traits.PacksCosines(), "the ray caster's mean cosines");
   this->Emission = samples(traits.GlowsApart(), "the ray caster's emission");
-  this->Gradients = Buffer<cl_float4>(device, traits.bends ? count : 0, "the ray caster's refraction");
+  Grid known = traits.grid;
+  known.size = this->KnownSize;
+  for (int axis = 0; block && axis < 3; ++axis)
+  {
+    this->KnownBefore[axis] = block->block.first[axis] - block->known.first[axis];
+  }
+  this->Gradients = Buffer<cl_float4>(device, traits.bends ? PaddedCount(known) : 0, "the ray caster's refraction");
   this->Distances = Buffer<cl_char>(
     device, static_cast<std::size_t>(this->Count[0]) * this->Count[1] * this->Count[2], "the ray caster's bricks");
   this->Seen = Buffer<cl_uchar>(device, traits.bricks.seen, "the bricks that rays see");
@@ -64,23 +72,21 @@ PackedSamples::PackedSamples(Device& device, const SceneOnDevice& scene, const V
     Buffer<cl_uchar>(device, tyndall::SeenGroups(traits.bricks, traits.grid), "the samples that rays see");
   if (traits.bends)
   {
-    this->PackBending(scene.ior);
+    this->PackBending(known, block ? scene.knownIor : scene.ior);
   }
 }
 
 /// Over all voxels with their border. Work-groups have fixed shapes throughout: PoCL compiles a kernel anew for every
 /// shape.
-void PackedSamples::Launch(cl::Kernel& kernel)
+void PackedSamples::Launch(cl::Kernel& kernel, const std::array<int, 3>& size)
 {
-  const std::array<int, 3>& size = this->Traits.grid.size;
   this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange,
     cl::NDRange(RoundUp<std::size_t>(size[0] + 2, PackedAlong), size[1] + 2, size[2] + 2),
     cl::NDRange(PackedAlong, 1, 1));
 }
 
-void PackedSamples::PackBending(const Buffer<float>& ior)
+void PackedSamples::PackBending(const Grid& grid, const Buffer<float>& ior)
 {
-  const Grid& grid = this->Traits.grid;
   struct
   {
     cl_int size[3];
@@ -88,7 +94,7 @@ void PackedSamples::PackBending(const Buffer<float>& ior)
   const Buffer<float> coefficients = SquaredIndexCoefficients(this->TheDevice, grid, ior);
   cl::Kernel pack = this->TheDevice.Kernel("pack_bending", kernel_source::BendingField);
   With(pack, size, Float4(1.0 / Vector(grid.spacing), 0.0), coefficients, this->Gradients);
-  this->Launch(pack);
+  this->Launch(pack, grid.size);
   this->TheDevice.Finish();
 }
 
@@ -120,7 +126,7 @@ void PackedSamples::PackSources(const SceneOnDevice& scene, const Buffer<float>&
     scene.arrays[1].Handle(), scene.arrays[2].Handle(), scene.arrays[3].Handle(), scene.arrays[4].Handle(), direct,
     scene.meanDirection.Handle(), scene.ior, scene.meanCosines, this->Samples(), this->Extinctions(), this->Flow(),
     this->Glow(), this->Cosines(), this->SeenGroups);
-  this->Launch(pack);
+  this->Launch(pack, traits.grid.size);
   this->FindBricks(options);
 }
 
@@ -143,7 +149,7 @@ void PackedSamples::PackShown(const SceneOnDevice& scene, const Buffer<float>& d
   With(pack, Int4(traits.grid.size), scene.arrays[0].Handle(), scene.arrays[1].Handle(), scene.arrays[2].Handle(),
     scene.straightOn, diffuse, direct, scene.ior, this->Samples(), this->Extinctions(), this->Flow(), this->Glow(),
     this->SeenGroups);
-  this->Launch(pack);
+  this->Launch(pack, traits.grid.size);
   this->FindBricks(options + Define("SHOWN", 1));
 }
 
@@ -151,8 +157,8 @@ void PackedSamples::FindBricks(const std::string& options)
 {
   const cl_int4 size = Int4(this->Traits.grid.size), bricks = Int4(this->Count);
   cl::Kernel find = this->TheDevice.Kernel("find_empty_bricks", kernel_source::ScatteredLight, options);
-  With(find, size, bricks, this->Samples(), this->Extinctions(), this->Glow(), this->Gradients, this->Seen,
-    this->Distances);
+  With(find, size, bricks, Int4(this->KnownSize), Int4(this->KnownBefore), this->Samples(), this->Extinctions(),
+    this->Glow(), this->Gradients, this->Seen, this->Distances);
   this->TheDevice.Queue().enqueueNDRangeKernel(find, cl::NullRange,
     cl::NDRange(RoundUp<std::size_t>(bricks.s[0], 4), bricks.s[1], bricks.s[2]), cl::NDRange(4, 1, 1));
   std::vector<cl_char> distances = this->Distances.Read();

@@ -26,8 +26,9 @@ class PackedSamples
 public:
   /// Takes the memory, and packs how rays bend.
   /// @param traits  must stay
+  /// @param block   of which the medium is one; null: of none
   /// @throws DeviceError if the samples do not fit
-  PackedSamples(Device& device, const SceneOnDevice& scene, const ViewTraits& traits);
+  PackedSamples(Device& device, const SceneOnDevice& scene, const ViewTraits& traits, const BlockOfScene* block);
 
   /// @param direct, diffuse  see SeenSources.h; read where `what` is for the camera's rays
   void Pack(Packing what, const SceneOnDevice& scene, const Buffer<float>& direct, const Buffer<float>& diffuse);
@@ -48,15 +49,17 @@ public:
   const std::array<int, 3>& BrickCount() const { return this->Count; }
 
 private:
-  void PackBending(const Buffer<float>& ior);
+  void PackBending(const Grid& known, const Buffer<float>& ior);
   void PackSources(const SceneOnDevice& scene, const Buffer<float>& direct);
   void PackShown(const SceneOnDevice& scene, const Buffer<float>& direct, const Buffer<float>& diffuse);
-  void Launch(cl::Kernel& kernel);
+  void Launch(cl::Kernel& kernel, const std::array<int, 3>& size);
   void FindBricks(const std::string& options);
 
   Device& TheDevice;
   const ViewTraits& Traits;
   std::array<int, 3> Count;
+  std::array<int, 3> KnownSize;        ///< voxels of which it is known how rays bend
+  std::array<int, 3> KnownBefore = {}; ///< how many of them are before the first of the samples
   Packing For = Packing::ForShadowRays;
   bool EmptyBricks = false;
   ZeroedBuffer<cl_float4> Sources, ColouredExtinctions, Directions, ColouredG, Emission;

@@ -170,7 +170,8 @@ typedef struct
 #endif
 } corners;
 
-__attribute__((always_inline)) inline void find_corners(real3 p, int4 size, corners* at)
+// @param first  the voxel at which the arrays begin, size their voxels
+__attribute__((always_inline)) inline void find_corners_from(real3 p, int4 first, int4 size, corners* at)
 {
   // Points of the box are at least half a voxel above the border's centres: cutting the fraction off is floor, of which
   // PoCL makes eleven instructions.
@@ -195,8 +196,13 @@ __attribute__((always_inline)) inline void find_corners(real3 p, int4 size, corn
   at->far = z;
 #endif
   // Rows are counted in floats, which hold whole numbers up to 16 million.
-  const integer row = to_integer(fma(k, (real)(float)(size.y + 2), j));
-  at->twiceFirst = (row * (size.x + 2) + i) * 2;
+  const integer row = to_integer(fma(k - (real)(float)first.z, (real)(float)(size.y + 2), j - (real)(float)first.y));
+  at->twiceFirst = (row * (size.x + 2) + (i - first.x)) * 2;
+}
+
+__attribute__((always_inline)) inline void find_corners(real3 p, int4 size, corners* at)
+{
+  find_corners_from(p, (int4)(0), size, at);
 }
 
 #if REAL_WIDTH > 1 && defined(__clang__)

@@ -133,9 +133,11 @@ __kernel void pack_samples(int4 size, int single, float g, __global const float*
 // Whether anything extinguishes or shines in a brick, or bends with BENDS, or does so close enough to be interpolated
 // into it (seen: SeenBricks.h; the others are empty):
 // 1 it is empty, -1 it is not, 0 rays bend.
-__kernel void find_empty_bricks(int4 size, int4 brick_count, __global const float4* restrict samples,
-  __global const float4* restrict extinctions, __global const float4* restrict glow,
-  __global const float4* restrict bending, __global const uchar* restrict seen, __global char* restrict bricks)
+//   known   voxels of `bending`, `before` of which lie before the first of the samples
+__kernel void find_empty_bricks(int4 size, int4 brick_count, int4 known, int4 before,
+  __global const float4* restrict samples, __global const float4* restrict extinctions,
+  __global const float4* restrict glow, __global const float4* restrict bending, __global const uchar* restrict seen,
+  __global char* restrict bricks)
 {
   const int i = get_global_id(0);
   const int j = get_global_id(1);
@@ -181,7 +183,8 @@ __kernel void find_empty_bricks(int4 size, int4 brick_count, __global const floa
         filled |= any(glow[place] != (float4)(0.0f));
 #endif
 #if BENDS
-        bends |= any(bending[place].xyz != (float3)(0.0f));
+        const int there = ((z + before.z) * (known.y + 2) + y + before.y) * (known.x + 2) + x + before.x;
+        bends |= any(bending[there].xyz != (float3)(0.0f));
 #endif
       }
     }

@@ -19,8 +19,8 @@ std::vector<float> MeanCosines(const PhaseOfMedium& phase, const ViewTraits& tra
 }
 }
 
-SceneOnDevice::SceneOnDevice(
-  Device& device, const Medium& medium, const SolvedLight& light, const Field& index, const ViewTraits& traits)
+SceneOnDevice::SceneOnDevice(Device& device, const Medium& medium, const SolvedLight& light, const Field& index,
+  const ViewTraits& traits, const BlockOfScene* block)
 {
   const std::size_t voxels = medium.grid.VoxelCount();
   if (traits.ShowsMoments())
@@ -42,8 +42,23 @@ SceneOnDevice::SceneOnDevice(
   this->phaseRows = Buffer<float>(device,
     traits.ReadsPhase() ? RowsOf(traits.phase, medium.phase) : std::vector<float>(), "the rows of the phase function");
   this->meanCosines = Buffer<float>(device, MeanCosines(medium.phase, traits), "g");
-  const std::vector<float> even(traits.bends && !index.values ? voxels : 0, 1.0f);
-  this->ior = Buffer<float>(device, index.values ? index.values : even.data(), traits.bends ? voxels : 0, "ior");
+  this->ior = Buffer<float>(device, 0, "ior");
+  if (!traits.bends)
+  {
+    return;
+  }
+  const std::size_t known = block ? block->known.VoxelCount() : voxels;
+  const std::vector<float> even(index.values ? 0 : known, 1.0f);
+  const Field given = { index.values ? index.values : even.data(), 1 };
+  if (block)
+  {
+    this->knownIor = Buffer<float>(device, given.values, known, "ior");
+    this->ior = Buffer<float>(device, HeldIndex(given, *block, medium.grid.size), "ior");
+  }
+  else
+  {
+    this->ior = Buffer<float>(device, given.values, known, "ior");
+  }
 }
 
 void SceneOnDevice::GiveBackWhatIsPacked()
@@ -52,5 +67,6 @@ void SceneOnDevice::GiveBackWhatIsPacked()
   this->meanDirection = {};
   this->meanCosines = {};
   this->ior = {};
+  this->knownIor = {};
 }
 }

@@ -16,8 +16,9 @@ struct SceneOnDevice
   /// Where samples are packed once (ViewTraits::PacksOnce) medium and light must stay until GiveBackWhatIsPacked: no
   /// copies are made of them.
   /// @throws DeviceError if they do not fit
-  SceneOnDevice(
-    Device& device, const Medium& medium, const SolvedLight& light, const Field& ior, const ViewTraits& traits);
+  /// @param block  of which the medium is one: `ior` is of the voxels that it says; null: of none
+  SceneOnDevice(Device& device, const Medium& medium, const SolvedLight& light, const Field& ior,
+    const ViewTraits& traits, const BlockOfScene* block);
 
   /// Gives back the memory of what is read only where samples are packed.
   void GiveBackWhatIsPacked();
@@ -28,5 +29,6 @@ struct SceneOnDevice
   Buffer<float> phaseRows;   ///< tables of the phase function, see Samples/PhaseFunction.cl
   Buffer<float> meanCosines; ///< g as all channels are seen
   Buffer<float> ior;         ///< 1 where rays could bend and it is not given
+  Buffer<float> knownIor;    ///< of a block: that of more voxels, by which rays bend
 };
 }

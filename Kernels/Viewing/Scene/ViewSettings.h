@@ -14,6 +14,9 @@ enum class SurfaceReflection
   Fixed = 2,
 };
 
+/// From a surface, beyond its smoothing (9 voxels wide) by default, to where Fresnel's equations take the indices.
+constexpr double VoxelsBesideSurface = 5.0;
+
 /// The names are those of the filter's properties.
 struct ViewSettings
 {

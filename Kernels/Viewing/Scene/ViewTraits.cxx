@@ -59,8 +59,8 @@ std::array<Field, 5> ViewedFields(const Medium& medium, const SolvedLight& light
   return { medium.sigma_a, medium.sigma_s, medium.emission, light.fluence, light.fluenceDirect };
 }
 
-ViewTraits ViewTraitsOf(
-  const Medium& medium, const SolvedLight& light, const Field& ior, const ViewSettings& settings, int kernelWidth)
+ViewTraits ViewTraitsOf(const Medium& medium, const SolvedLight& light, const Field& ior, const ViewSettings& settings,
+  int kernelWidth, const SharedScene* shared)
 {
   ViewTraits traits;
   traits.grid = medium.grid;
@@ -72,7 +72,7 @@ ViewTraits ViewTraitsOf(
   traits.medium = TraitsOf(medium);
   traits.largestSigmaT = ExtinctionBound(medium);
   traits.phase = ViewedPhaseOf(medium.phase);
-  traits.index = IndexRangeOf(ior, medium.grid);
+  traits.index = shared ? shared->index : IndexRangeOf(ior, medium.grid);
   traits.bends = !settings.leaveOut || traits.index.Varies();
   traits.bricks = SeenBricksOf(medium, traits.bends || !traits.SkipsBricks(settings));
   traits.momentDegree = ShownDegree(light, settings);
@@ -81,11 +81,16 @@ ViewTraits ViewTraitsOf(
   const bool anisotropic = traits.phase.formula != ViewedPhase::Even;
   traits.knowsFlow =
     anisotropic && light.meanDirection.values && light.fluence.values && !settings.shadowRays && !traits.ShowsMoments();
-  traits.coloured = !settings.leaveOut || !traits.medium.greyExtinction || traits.straightOnChannels == 3;
+  traits.coloured = !settings.leaveOut || !traits.medium.greyExtinction || traits.straightOnChannels == 3 ||
+    (shared && shared->coloured);
   // Beside directions of the light it does not pay to have sources by one channel.
   traits.grey = !traits.coloured && traits.medium.grey && !traits.knowsFlow && !traits.shadowRays &&
     !traits.ShowsMoments() && light.fluence.components == 1 && light.fluenceDirect.components == 1 &&
     (!traits.medium.emits || traits.medium.emission.IsGrey());
+  for (int c = 0; c < traits.aureoleChannels; ++c)
+  {
+    traits.straightOn[c] = shared ? shared->straightOn[c] : LeastStraightOn(medium, light, c);
+  }
   traits.sourcesDependOnCamera = (traits.shadowRays && anisotropic) || traits.ShowsMoments();
   traits.components = ComponentsRead(ViewedFields(medium, light), traits);
   return traits;

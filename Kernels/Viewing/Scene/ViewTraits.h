@@ -2,6 +2,7 @@
 
 #include "Medium/Traits.h"
 #include "Refraction/Index/IndexRange.h"
+#include "Viewing/Scene/BlockOfScene.h"
 #include "Viewing/Scene/SeenBricks.h"
 #include "Viewing/Scene/SolvedLight.h"
 #include "Viewing/Scene/ViewedPhase.h"
@@ -32,12 +33,13 @@ struct ViewTraits
 
   int momentDegree = -1; ///< of the light; -1: it is not shown by moments
   int momentChannels = 0, straightOnChannels = 0;
-  int aureoleChannels = 0;            ///< of light scattered forwards more than once; 0: it is not known
-  bool knowsFlow = false;             ///< the light's direction is known and scattering depends on it
-  bool coloured = false;              ///< extinction differs between channels
-  bool grey = false;                  ///< nor does the source
-  bool sourcesDependOnCamera = false; ///< what voxels shine towards it
-  std::array<int, 5> components = {}; ///< on the device, of ViewedFields; 0 for what is not read
+  int aureoleChannels = 0; ///< of light scattered forwards more than once; 0: it is not known
+  bool knowsFlow = false;  ///< the light's direction is known and scattering depends on it
+  bool coloured = false;   ///< extinction differs between channels
+  std::array<double, 3> straightOn = { 1.0, 1.0, 1.0 }; ///< least that goes straight on, of each channel
+  bool grey = false;                                    ///< nor does the source
+  bool sourcesDependOnCamera = false;                   ///< what voxels shine towards it
+  std::array<int, 5> components = {};                   ///< on the device, of ViewedFields; 0 for what is not read
 
   bool ShowsMoments() const { return this->momentDegree >= 0; }
   bool ShowsBeams() const { return this->ShowsMoments() && this->shadowRays; }
@@ -83,6 +85,7 @@ std::array<Field, 5> ViewedFields(const Medium& medium, const SolvedLight& light
 /// @param settings  with shadowRays only where lamps shine
 /// @param ior       null: constant
 /// @param kernelWidth  rays that the device marches together best
-ViewTraits ViewTraitsOf(
-  const Medium& medium, const SolvedLight& light, const Field& ior, const ViewSettings& settings, int kernelWidth);
+/// @param shared       where the medium is one of several blocks: what the whole has
+ViewTraits ViewTraitsOf(const Medium& medium, const SolvedLight& light, const Field& ior, const ViewSettings& settings,
+  int kernelWidth, const SharedScene* shared = nullptr);
 }

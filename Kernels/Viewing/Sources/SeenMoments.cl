@@ -22,7 +22,9 @@ __kernel void see_moments(ShadowInfo info, __global const float* restrict moment
     return;
   }
   const size_t voxel = ((size_t)k * info.size.y + j) * info.size.x + i;
-  const float3 place = (float3)((i + 0.5f) * info.spacing.x, (j + 0.5f) * info.spacing.y, (k + 0.5f) * info.spacing.z);
+  const int4 first = info.block.first;
+  const float3 place = (float3)((i + first.x + 0.5f) * info.spacing.x, (j + first.y + 0.5f) * info.spacing.y,
+    (k + first.z + 0.5f) * info.spacing.z);
   // Towards the eye: back along the view axis where rays are parallel.
   const float3 out = (1.0f - info.eye.w) * (info.eye.xyz - place) - info.eye.w * info.forward.xyz;
   float harmonics[HARMONICS];

@@ -5,8 +5,11 @@
 //   AUREOLE      tables of what is scattered forwards more than once: 0, 1, or 3 for red, green and blue
 //   BESIDE       1: also in voxels beside such that scatter
 //   ABSORPTION, STRAIGHT_ON  with AUREOLE: components of these arrays
+//   GIVEN        1: the medium is a block of a larger grid, and optical lengths towards a light are added up from what
+//                each block finds of them
 
 #include "Viewing/Samples/Beside.cl"
+#include "Viewing/Samples/BlockRays.cl"
 #include "Viewing/Samples/PhaseFunction.cl"
 #include "Viewing/Samples/Sampling.cl"
 #include "Viewing/Samples/VoxelChannels.cl"
@@ -44,13 +47,20 @@ inline way_to_light towards(const SmallLight* light, real3 place, real scatters,
 #define PASS(sigma, sum, rest) sum = fma(sigma, length, sum);
 #endif
 // Optical length of the medium on the way, by channel where COLOURED, else in `r`; 30 and more is as good as any.
+//   centre  of voxels; with GIVEN of the whole, and only what of the way lies in the block counts
 inline rgb depths_on_the_way(const ShadowInfo* info, const way_to_light* way, real3 centre,
   __global const float4* samples, __global const float4* extinctions, __global const char* bricks)
 {
   const real3 direction = { way->d.x / (real)info->spacing.x, way->d.y / (real)info->spacing.y,
     way->d.z / (real)info->spacing.z };
   real before;
+#if GIVEN
+  integer enters, leaves;
+  const rays packet =
+    clip_to_block(centre, direction, way->distance, &info->block, info->step, &before, &enters, &leaves);
+#else
   const rays packet = clip_to_box(centre, direction, way->distance, info->size, &before);
+#endif
   const real stride = step_length(direction, info->step);
   const real3 strides = strides_per_voxel(direction, stride);
   const int steps = (int)ceil(most_lanes(way->arriving > (real)0.0f ? packet.length / stride : (real)0.0f));
@@ -193,15 +203,66 @@ inline integer packet_along_x(int first, int size)
 #endif
 }
 
+// Three numbers of each of a packet's voxels.
+inline rgb triples_of(__global const float* values, integer voxel, int stride, int first)
+{
+  rgb found;
+#define READ(n)                                                   \
+  LANE(found.r, n) = values[stride * LANE(voxel, n) + first];     \
+  LANE(found.g, n) = values[stride * LANE(voxel, n) + first + 1]; \
+  LANE(found.b, n) = values[stride * LANE(voxel, n) + first + 2];
+  EACH_LANE(READ)
+#undef READ
+  return found;
+}
+
+#if GIVEN
+// What the block adds to the optical lengths between the voxels of a box of the whole and the light `firstLight`.
+// Work-items by packets of a slice.
+//   depths  3 per voxel, see depths_on_the_way
+__kernel void find_depths(ShadowInfo info, __global const SmallLight* restrict lights,
+  __global const float4* restrict samples, __global const float4* restrict extinctions,
+  __global const char* restrict bricks, __global float* restrict depths)
+{
+  const int first = get_global_id(0) * REAL_WIDTH;
+  const int j = get_global_id(1) + info.firstRow;
+  const int k = get_global_id(2) + info.firstSlice;
+  if (first >= info.askedSize.x || j >= info.askedSize.y)
+  {
+    return;
+  }
+  const integer i = packet_along_x(first, info.askedSize.x);
+  const real3 centre = { to_real(i + info.asked.x) + (real)0.5f, (real)((float)(j + info.asked.y) + 0.5f),
+    (real)((float)(k + info.asked.z) + 0.5f) };
+  const real3 place = { centre.x * (real)info.spacing.x, centre.y * (real)info.spacing.y,
+    centre.z * (real)info.spacing.z };
+  const SmallLight light = lights[info.firstLight];
+  const way_to_light way = towards(&light, place, (real)1.0f, info.nearestSquare);
+  const rgb found = depths_on_the_way(&info, &way, centre, samples, extinctions, bricks);
+  const integer voxel = i + (k * info.askedSize.y + j) * info.askedSize.x;
+#define KEEP(n)                                         \
+  {                                                     \
+    __global float* kept = depths + 3 * LANE(voxel, n); \
+    kept[0] = LANE(found.r, n);                         \
+    kept[1] = LANE(found.g, n);                         \
+    kept[2] = LANE(found.b, n);                         \
+  }
+  EACH_LANE(KEEP)
+#undef KEEP
+}
+#endif
+
 // Scatters towards the eye what the lights send straight to each voxel's centre. Work-items by packets of a slice.
 //   direct  6 per voxel: sum of irradiance times phase function, W / (length^2 sr), and sum of irradiance, W /
-//           length^2; with AUREOLE instead what scattering forwards more than once adds, W / (length^2 sr)
+//           length^2; with AUREOLE instead what scattering forwards more than once adds, W / (length^2 sr). Added to
+//           what is there where firstLight is not the first
+//   given   with GIVEN: 3 per voxel, optical lengths towards the only light
 __kernel void see_lights(ShadowInfo info, __global const SmallLight* restrict lights,
   __global const float* restrict scattering, __global const float* restrict mean_cosines,
   __global const float* restrict phase_rows, __global const float4* restrict samples,
   __global const float4* restrict extinctions, __global const char* restrict bricks,
   __global const float* restrict absorption, __global const float* restrict straight_on,
-  __global const float* restrict aureole, __global float* restrict direct)
+  __global const float* restrict aureole, __global const float* restrict given, __global float* restrict direct)
 {
   const int first = get_global_id(0) * REAL_WIDTH;
   const int j = get_global_id(1) + info.firstRow;
@@ -227,7 +288,9 @@ __kernel void see_lights(ShadowInfo info, __global const SmallLight* restrict li
   EACH_LANE(SCATTERS_BESIDE)
 #undef SCATTERS_BESIDE
 #endif
-  const real3 centre = { to_real(i) + (real)0.5f, (real)((float)j + 0.5f), (real)((float)k + 0.5f) };
+  const int4 begin = info.block.first;
+  const real3 centre = { to_real(i + begin.x) + (real)0.5f, (real)((float)(j + begin.y) + 0.5f),
+    (real)((float)(k + begin.z) + 0.5f) }; // in the whole
   const real3 place = { centre.x * (real)info.spacing.x, centre.y * (real)info.spacing.y,
     centre.z * (real)info.spacing.z };
   // Towards the eye: back along the view axis where rays are parallel.
@@ -240,7 +303,12 @@ __kernel void see_lights(ShadowInfo info, __global const SmallLight* restrict li
   const phase_parameters scatters_by = phases_of(&info, voxel, mean_cosines);
   rgb towards_eye = { (real)0.0f, (real)0.0f, (real)0.0f };
   rgb irradiance = towards_eye;
-  for (int n = 0; n < info.lights && any_lane(scatters > (real)0.0f); ++n)
+  if (info.firstLight > 0)
+  {
+    towards_eye = triples_of(direct, voxel, 6, 0);
+    irradiance = triples_of(direct, voxel, 6, 3);
+  }
+  for (int n = info.firstLight; n < info.lights && any_lane(scatters > (real)0.0f); ++n)
   {
     const SmallLight light = lights[n];
     const way_to_light way = towards(&light, place, scatters, info.nearestSquare);
@@ -248,7 +316,11 @@ __kernel void see_lights(ShadowInfo info, __global const SmallLight* restrict li
     {
       continue;
     }
+#if GIVEN
+    const rgb depths = triples_of(given, voxel, 3, 0);
+#else
     const rgb depths = depths_on_the_way(&info, &way, centre, samples, extinctions, bricks);
+#endif
     const rgb arrived = arriving_through(&light, way.arriving, depths);
     // The light travels along -d.
     const real cosine = -(fma(way.d.x, out.x, fma(way.d.y, out.y, way.d.z * out.z))) * out_scale;

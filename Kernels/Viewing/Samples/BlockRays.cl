@@ -20,14 +20,15 @@ inline real steps_before(real distance, real step, real steps, real last_middle)
 
 // The part of each ray that lies in the block, in the block's voxels.
 //   from    in voxels of the whole
+//   stride  voxels that a step advances
 //   before  length before the ray enters the block
 //   enters  whether that is where it enters the whole
 //   leaves  whether it leaves the whole from this block, or shows the background beside it here
-inline rays clip_to_block(
-  real3 from, real3 direction, real farthest, const ViewInfo* v, real* before, integer* enters, integer* leaves)
+inline rays clip_to_block(real3 from, real3 direction, real farthest, const BlockInfo* b, float stride, real* before,
+  integer* enters, integer* leaves)
 {
-  const rays whole = clip_to_box(from, direction, farthest, v->whole, before);
-  const real step = step_length(direction, v->marching.x);
+  const rays whole = clip_to_box(from, direction, farthest, b->whole, before);
+  const real step = step_length(direction, stride);
   const real steps = ceil(whole.length / step);
   const real last_middle = (real)0.5f * (whole.length + (steps - (real)1.0f) * step);
 
@@ -37,8 +38,8 @@ inline rays clip_to_block(
   {                                                                                                        \
     const real inverse = (real)1.0f / at_least_tiny(direction.c);                                          \
     const real beyond = copysign((real)BEYOND, inverse);                                                   \
-    const real lower = v->begin.c > 0 ? ((real)(float)v->begin.c - whole.entry.c) * inverse : -beyond;     \
-    const real upper = v->end.c < v->whole.c ? ((real)(float)v->end.c - whole.entry.c) * inverse : beyond; \
+    const real lower = b->begin.c > 0 ? ((real)(float)b->begin.c - whole.entry.c) * inverse : -beyond;     \
+    const real upper = b->end.c < b->whole.c ? ((real)(float)b->end.c - whole.entry.c) * inverse : beyond; \
     in = greater(in, lesser(lower, upper));                                                                \
     out = lesser(out, greater(lower, upper));                                                              \
   }
@@ -50,15 +51,15 @@ inline rays clip_to_block(
   const real last = steps_before(out, step, steps, last_middle);
   const integer crosses = last > first;
   *enters = crosses & (first == (real)0.0f);
-  *leaves = (crosses & (last == steps)) | ((whole.length == (real)0.0f) & (integer)(v->first.w != 0 ? -1 : 0));
+  *leaves = (crosses & (last == steps)) | ((whole.length == (real)0.0f) & (integer)(b->first.w != 0 ? -1 : 0));
 
   rays part;
   const real skipped = first * step;
   part.direction = direction;
   part.length = crosses ? lesser(last * step, whole.length) - skipped : (real)0.0f;
-  part.entry.x = crosses ? fma(skipped, direction.x, whole.entry.x) - (real)(float)v->first.x : (real)0.0f;
-  part.entry.y = crosses ? fma(skipped, direction.y, whole.entry.y) - (real)(float)v->first.y : (real)0.0f;
-  part.entry.z = crosses ? fma(skipped, direction.z, whole.entry.z) - (real)(float)v->first.z : (real)0.0f;
+  part.entry.x = crosses ? fma(skipped, direction.x, whole.entry.x) - (real)(float)b->first.x : (real)0.0f;
+  part.entry.y = crosses ? fma(skipped, direction.y, whole.entry.y) - (real)(float)b->first.y : (real)0.0f;
+  part.entry.z = crosses ? fma(skipped, direction.z, whole.entry.z) - (real)(float)b->first.z : (real)0.0f;
   *before = crosses ? *before + skipped : (real)0.0f;
   return part;
 }

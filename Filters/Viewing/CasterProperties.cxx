@@ -1,0 +1,81 @@
+#include "CasterProperties.h"
+
+#include "Common/LightTransportData.h"
+#include "Viewing/Scene/ViewQuality.h"
+#include "Viewing/ToneMapping.h"
+#include "vtkMediumRayCaster.h"
+
+#include <algorithm>
+
+namespace tyndall
+{
+Rgb BackgroundOf(vtkMediumRayCaster* filter, double exposure)
+{
+  Rgb background = Triple(filter->GetBackgroundRadiance());
+  if (background == Rgb{} && exposure > 0.0)
+  {
+    const auto curve = static_cast<ToneCurve>(filter->GetToneCurve());
+    std::transform(filter->GetBackgroundColor(), filter->GetBackgroundColor() + 3, background.begin(),
+      [&](double shown) { return ExposedAs(shown, curve) / exposure; });
+  }
+  return background;
+}
+
+ViewSettings SettingsOf(vtkMediumRayCaster* filter, double exposure)
+{
+  ViewSettings settings;
+  std::copy_n(filter->GetImageSize(), 2, settings.imageSize.begin());
+  settings.stepSize = filter->GetStepSize();
+  settings.singleScatteringOnly = filter->GetSingleScatteringOnly();
+  settings.shadowRays = filter->GetShadowRays();
+  settings.rectangleSamples = filter->GetRectangleSamples();
+  settings.showBackground = filter->GetShowBackground();
+  settings.backgroundColor = BackgroundOf(filter, exposure);
+  settings.surfaceReflection = static_cast<SurfaceReflection>(filter->GetSurfaceReflection());
+  settings.surfaceIndex = filter->GetSurfaceIndex();
+  settings.surfaceReflectance = filter->GetSurfaceReflectance();
+  settings.tableFace = filter->GetTableFace();
+  settings.tableColor = Triple(filter->GetTableColor());
+  settings.tableReflectance = filter->GetTableReflectance();
+  settings.leaveOut = filter->GetLeaveOut();
+  return AtQuality(static_cast<Quality>(filter->GetQuality()), settings);
+}
+
+Camera CameraOf(vtkMediumRayCaster* filter, const Grid& grid)
+{
+  Camera camera;
+  camera.position = Triple(filter->GetCameraPosition());
+  camera.focalPoint = Triple(filter->GetCameraFocalPoint());
+  camera.viewUp = Triple(filter->GetCameraViewUp());
+  camera.viewAngle = filter->GetCameraViewAngle();
+  camera.parallelScale = filter->GetCameraParallelScale();
+  if (camera.position == camera.focalPoint)
+  {
+    const double aspect = static_cast<double>(filter->GetImageSize()[0]) / filter->GetImageSize()[1];
+    camera = FrameGrid(grid, aspect, camera.viewAngle, ThreeQuarterView(camera.viewUp), camera.viewUp);
+  }
+  camera.parallelProjection = filter->GetCameraParallelProjection();
+  return camera;
+}
+
+std::vector<double> PropertiesAsNumbers(vtkMediumRayCaster* filter)
+{
+  std::vector<double> numbers = { filter->GetCameraViewAngle(), filter->GetCameraParallelProjection() ? 1.0 : 0.0,
+    filter->GetCameraParallelScale(), filter->GetStepSize(), filter->GetSingleScatteringOnly() ? 1.0 : 0.0,
+    filter->GetShadowRays() ? 1.0 : 0.0, filter->GetShowBackground() ? 1.0 : 0.0, filter->GetExposure(),
+    filter->GetSurfaceIndex(), filter->GetSurfaceReflectance(), filter->GetTableReflectance(),
+    filter->GetLeaveOut() ? 1.0 : 0.0, filter->GetEnvironmentAzimuth() };
+  for (int number : { filter->GetImageSize()[0], filter->GetImageSize()[1], filter->GetQuality(),
+         filter->GetRectangleSamples(), filter->GetAutoExposure(), filter->GetToneCurve(),
+         filter->GetSurfaceReflection(), filter->GetTableFace(), filter->GetEnvironmentUp() })
+  {
+    numbers.push_back(number);
+  }
+  for (const double* triple : { filter->GetCameraPosition(), filter->GetCameraFocalPoint(), filter->GetCameraViewUp(),
+         filter->GetBackgroundColor(), filter->GetBackgroundRadiance(), filter->GetTableColor() })
+  {
+    numbers.insert(numbers.end(), triple, triple + 3);
+  }
+  return numbers;
+}
+}

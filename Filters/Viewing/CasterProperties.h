@@ -1,0 +1,26 @@
+#pragma once
+
+#include "Lights/Lights.h"
+#include "Medium/Grid.h"
+#include "Viewing/Scene/Camera.h"
+#include "Viewing/Scene/ViewSettings.h"
+
+#include <vector>
+
+class vtkMediumRayCaster;
+
+/// What the properties of a ray caster mean to the kernels.
+namespace tyndall
+{
+/// What is behind the medium in a picture that is shown with this exposure, radiance.
+/// @param exposure  0: it is not known yet
+Rgb BackgroundOf(vtkMediumRayCaster* filter, double exposure);
+
+ViewSettings SettingsOf(vtkMediumRayCaster* filter, double exposure);
+
+/// @param grid  of the whole medium, which is looked at where the filter has no camera of its own
+Camera CameraOf(vtkMediumRayCaster* filter, const Grid& grid);
+
+/// What has to be the same on all ranks that make a picture together.
+std::vector<double> PropertiesAsNumbers(vtkMediumRayCaster* filter);
+}

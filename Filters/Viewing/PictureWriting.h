@@ -1,0 +1,18 @@
+#pragma once
+
+#include "Viewing/Rays/Picture.h"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+class vtkImageData;
+
+namespace tyndall
+{
+/// Makes an image of a picture: point data `color` (red, green, blue, alpha), `radiance`, `alpha`, `depth`.
+/// @param first  column and row of the picture's first pixel
+/// @throws InvalidInput naming a pixel that is not finite
+void WritePicture(
+  Picture&& picture, const std::array<int, 2>& first, std::vector<std::uint8_t>&& color, vtkImageData* output);
+}

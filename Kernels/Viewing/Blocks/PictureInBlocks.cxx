@@ -1,0 +1,229 @@
+#include "Viewing/Blocks/PictureInBlocks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tuple>
+#include <utility>
+
+namespace tyndall
+{
+namespace
+{
+constexpr int DepthsTag = 29997; ///< not one of those that Rounds.h and BoxExchange.cxx take
+constexpr int TileEdge = 4;      ///< pixels of rays that are marched side by side
+
+/// Nothing: what a block shows that is nowhere seen.
+Picture Nothing(const std::array<int, 2>& size)
+{
+  const std::size_t pixels = static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(size[1]);
+  Picture picture;
+  picture.width = size[0];
+  picture.height = size[1];
+  picture.radiance.assign(3 * pixels, 0.0f);
+  picture.transmittance.assign(3 * pixels, 1.0f);
+  picture.sceneTransmittance = picture.transmittance;
+  picture.alpha.assign(pixels, 0.0f);
+  picture.depth.assign(pixels, std::numeric_limits<float>::max());
+  return picture;
+}
+
+/// Adds what a ray that has ended has found.
+/// @param tells  whether how much comes through, and where half is lost, are those of these rays
+void Add(const RayOnItsWay& ray, bool tells, Picture& picture)
+{
+  const auto pixel = static_cast<std::size_t>(ray.pixel);
+  for (std::size_t c = 0; c < 3; ++c)
+  {
+    picture.radiance[3 * pixel + c] += ray.radiance[c] * ray.entrySquare;
+  }
+  if (tells && ray.kind == RayIsPrimary)
+  {
+    picture.alpha[pixel] = 1.0f - ray.seen;
+    picture.depth[pixel] = ray.depth;
+    std::fill_n(picture.sceneTransmittance.begin() + static_cast<std::ptrdiff_t>(3 * pixel), 3, ray.seen);
+  }
+}
+}
+
+SharedScene PictureInBlocks::Shared(Communicator& communicator, const SharedScene* own)
+{
+  constexpr double Nowhere = -std::numeric_limits<double>::infinity();
+  std::vector<double> said(6, Nowhere);
+  if (own)
+  {
+    said = { -own->index.least, own->index.largest, own->coloured ? 1.0 : 0.0, -own->straightOn[0], -own->straightOn[1],
+      -own->straightOn[2] };
+  }
+  const std::vector<double> largest = communicator.Largest(said);
+  SharedScene all;
+  if (largest[0] > Nowhere)
+  {
+    all.index = { static_cast<float>(-largest[0]), static_cast<float>(largest[1]) };
+    all.coloured = largest[2] > 0.0;
+    all.straightOn = { -largest[3], -largest[4], -largest[5] };
+  }
+  return all;
+}
+
+PictureInBlocks::PictureInBlocks(
+  Communicator& communicator, const BlockPartition& partition, const std::vector<VoxelBox>& held, MediumRayCaster* own)
+  : Others(communicator)
+  , Partition(partition)
+  , Held(held)
+  , Own(own)
+{
+  const std::vector<double> any = this->Others.Largest({ own && !own->CastsBlocks() ? 1.0 : 0.0,
+    own && own->ShowsMoments() ? 1.0 : 0.0, own ? 1.0 * own->CountOfLights() : 0.0, own ? own->StepSize() : 0.0 });
+  this->InRounds = any[0] > 0.0;
+  this->ByMoments = any[1] > 0.0;
+  this->Lights = static_cast<int>(any[2]);
+  this->Between.emplace(communicator, partition, 1 + static_cast<int>(std::ceil(any[3])));
+}
+
+/// What light comes straight from a light to each voxel of this block, and what is scattered of it towards the eye.
+void PictureInBlocks::FollowLight(int light, const Camera& camera, const Monitor& monitor)
+{
+  std::vector<std::vector<float>> found(this->Held.size());
+  this->Others.Together([&] {
+    for (std::size_t rank = 0; this->Own && rank < found.size(); ++rank)
+    {
+      found[rank] = this->Own->DepthsTowards(light, this->Held[rank], monitor);
+    }
+  });
+  for (std::size_t rank = 0; rank < found.size(); ++rank)
+  {
+    this->Others.Send(static_cast<int>(rank), DepthsTag, std::exchange(found[rank], {}));
+  }
+  std::vector<float> depths(3 * this->Held[static_cast<std::size_t>(this->Others.Rank())].VoxelCount(), 0.0f);
+  for (int rank = 0; rank < this->Others.Ranks(); ++rank)
+  {
+    const std::vector<float> part = this->Others.Receive<float>(rank, DepthsTag);
+    for (std::size_t i = 0; i < part.size(); ++i)
+    {
+      depths[i] += part[i];
+    }
+  }
+  this->Others.Together([&] {
+    if (this->Own)
+    {
+      this->Own->SeeLight(light, camera, depths);
+    }
+  });
+}
+
+void PictureInBlocks::FindSources(const Camera& camera, const Monitor& monitor)
+{
+  if (this->Others.Largest({ this->Own && this->Own->NeedsSources() ? 1.0 : 0.0 })[0] == 0.0)
+  {
+    return;
+  }
+  if (this->Lights > 0)
+  {
+    this->Others.Together([&] {
+      if (this->Own)
+      {
+        this->Own->PackForShadowRays();
+      }
+    });
+  }
+  for (int light = 0; light < this->Lights; ++light)
+  {
+    this->FollowLight(light, camera, OfPart(monitor, 1.0 * light / this->Lights, (light + 1.0) / this->Lights));
+  }
+  this->Others.Together([&] {
+    if (this->Own)
+    {
+      this->Own->FinishSources(camera);
+    }
+  });
+}
+
+/// Neighbouring pixels side by side.
+std::vector<RayOnItsWay> PictureInBlocks::InOrder(std::vector<RayOnItsWay> rays, int width) const
+{
+  const auto place = [width](const RayOnItsWay& ray) {
+    const int column = ray.pixel % width, row = ray.pixel / width;
+    return std::tuple(ray.kind, row / TileEdge, column / TileEdge, ray.pixel);
+  };
+  std::sort(rays.begin(), rays.end(), [&](const RayOnItsWay& a, const RayOnItsWay& b) { return place(a) < place(b); });
+  return rays;
+}
+
+/// Until they have ended or are in other blocks.
+/// @return the latter
+std::vector<RayOnItsWay> PictureInBlocks::Follow(const MediumRayCaster::Pass& pass, std::vector<RayOnItsWay> rays,
+  bool sharp, Picture& picture, const Monitor& monitor)
+{
+  const VoxelBox& own = this->Partition.blocks[static_cast<std::size_t>(this->Others.Rank())];
+  std::vector<RayOnItsWay> gone;
+  while (!rays.empty())
+  {
+    rays = this->InOrder(std::move(rays), picture.width);
+    std::vector<RayOnItsWay> born = this->Own->MarchRays(pass, rays, monitor);
+    rays.insert(rays.end(), born.begin(), born.end());
+    std::vector<RayOnItsWay> here;
+    for (RayOnItsWay& ray : rays)
+    {
+      for (int axis = 0; axis < 3; ++axis) // at the upper face of the whole
+      {
+        ray.where[axis] = std::clamp(ray.where[axis], 0, this->Partition.whole.size[axis] - 1);
+      }
+      if (ray.state == RayHasEnded)
+      {
+        Add(ray, sharp || !this->ByMoments, picture);
+      }
+      else
+      {
+        (Holds(own, ray.where) ? here : gone).push_back(ray);
+      }
+    }
+    rays = std::move(here);
+  }
+  return gone;
+}
+
+void PictureInBlocks::CastInRounds(const Camera& camera, bool sharp, Picture& picture, const Monitor& monitor)
+{
+  MediumRayCaster::Pass pass = {};
+  this->Between->UntilAllEnd<RayOnItsWay>(
+    [&](int round, std::vector<RayOnItsWay>&& arrived, const Monitor& ofRound) {
+      if (!this->Own)
+      {
+        return std::vector<RayOnItsWay>();
+      }
+      if (round == 0)
+      {
+        pass = this->Own->BeginPass(camera, sharp);
+        picture.farDepth = pass.view.marching.s[2];
+        arrived = this->Own->StartRays(pass);
+      }
+      return this->Follow(pass, std::move(arrived), sharp, picture, ofRound);
+    },
+    monitor);
+}
+
+Picture PictureInBlocks::Take(const Camera& camera, const std::array<int, 2>& size, const Monitor& monitor)
+{
+  const double seen = this->Lights > 0 ? 0.5 : 0.0;
+  this->FindSources(camera, OfPart(monitor, 0.0, seen));
+  Picture picture = Nothing(size);
+  if (this->InRounds)
+  {
+    const double scattered = this->ByMoments ? 0.8 : 1.0;
+    this->CastInRounds(camera, false, picture, OfPart(monitor, seen, scattered));
+    if (this->ByMoments)
+    {
+      this->CastInRounds(camera, true, picture, OfPart(monitor, scattered, 1.0));
+    }
+    return picture;
+  }
+  this->Others.Together([&] {
+    if (this->Own)
+    {
+      picture = this->Own->CastStraight(camera, OfPart(monitor, seen, 1.0));
+    }
+  });
+  return picture;
+}
+}

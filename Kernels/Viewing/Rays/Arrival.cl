@@ -1,0 +1,114 @@
+// Where rays enter the box and what they come to: part of BentView.cl and RayRounds.cl.
+//
+// Along a bent ray L / n^2 is conserved but for what the medium does (numerics.md, Eq. (109)): sources and backgrounds
+// are divided by n^2 of their place, and the picture is multiplied by n^2 where the ray enters.
+
+#pragma once
+#include "Viewing/Backdrop/Background.cl"
+#include "Viewing/Backdrop/GroundLight.cl"
+#include "Viewing/Rays/BentRays.cl"
+#include "Viewing/Rays/Crossing.cl"
+#include "Viewing/Rays/RayPackets.cl"
+#include "Viewing/Rays/SurfaceReflection.cl"
+#include "Viewing/Rays/Table.cl"
+#include "Viewing/Rays/View.cl"
+#include "Viewing/Samples/Sampling.cl"
+
+// What all marches gather together: light with n^2 divided out, and transmittance and depth along the camera's own ray.
+typedef struct
+{
+  light l;
+  real entrySquare; // n^2 where the ray enters
+  real left, depth;
+  waiting mirrored;
+} seeing;
+
+// Rays from the camera where they enter the box, as fast as the index there has it.
+//   end  depth at which they end
+inline ray_packets enter(const surroundings* s, camera_rays seen, real end, real* entry_square)
+{
+  const real3 direction = stretched(seen.d, s->v->inverseSpacing);
+  real before;
+  const rays packet = clip_to_box(seen.from, direction, end / seen.cosine, s->v->size, &before);
+  ray_packets t = { packet.entry, direction, packet.length > (real)0.0f };
+#if ENDS
+  t.end = end;
+  t.stopped = (integer)0;
+#endif
+  *entry_square = (real)1.0f;
+#if BENDS
+  real3 unused;
+  const real square = index_at(s, t.at, &unused);
+  *entry_square = t.inside ? square : (real)1.0f;
+  const real3 still = { (real)0.0f, (real)0.0f, (real)0.0f };
+  t.velocity = further(still, sqrt(*entry_square), direction);
+#endif
+  return t;
+}
+
+#if TABLE
+inline spectrum mirrored_part(integer mirrors, spectrum now, spectrum before)
+{
+#if COLOURED
+  const spectrum left = { mirrors ? now.r : before.r, mirrors ? now.g : before.g, mirrors ? now.b : before.b };
+  return left;
+#else
+  return mirrors ? now : before;
+#endif
+}
+#endif
+
+// What a march comes to: background, or table. Rays that did not find out see the background as if the index were there
+// what it is at their entry.
+//   ends_here  rays that have come to it; nothing happens to others
+//   set_off    those of them that were in the box
+//   primary    those that come from the camera
+inline void arrive(const surroundings* s, const ray_packets* t, integer ends_here, integer set_off, integer primary,
+  __global const float4* lit, __global const float4* environment, __global const float4* ground, crossed* half_way,
+  seeing* to)
+{
+  integer out = ends_here & set_off & (t->inside == 0);
+#if ENDS
+  out &= t->stopped == 0;
+#endif
+  const real3 world = stretched(t->velocity, s->o->spacing);
+  real3 towards = divided(world, sqrt(greater(product(world, world), (real)1e-30f)));
+  real square = to->entrySquare;
+#if BENDS
+  real3 unused;
+  const real there = index_at(s, t->at, &unused);
+  square = out ? there : square;
+#endif
+#if ENDS
+  real part = t->end < (real)ENDLESS ? (real)0.0f : (real)1.0f;
+#else
+  real part = (real)1.0f;
+#endif
+  real left = mean_left(to->l);
+  integer ends = (integer)0;
+#if TABLE
+  ends = meet_table(s, t, out);
+  if (any_lane(ends))
+  {
+    end_on_table(s, lit, t->at, ends, &to->l, &towards);
+    part = ends ? (real)s->o->table.w : part;
+    const integer mirrors = ends & primary;
+    to->mirrored.at = chosen(mirrors, t->at, to->mirrored.at);
+    to->mirrored.velocity = chosen(mirrors, stretched(t->velocity, s->o->flip), to->mirrored.velocity);
+    to->mirrored.left = mirrored_part(mirrors, scaled(to->l.left, part), to->mirrored.left);
+    part = mirrors ? (real)0.0f : part;
+    lose_half(mirrors & (left > (real)0.5f), depth_of(t->at, s->v, s->o->spacing), half_way);
+    left = mirrors ? (real)0.0f : left;
+  }
+#endif
+  const integer seen = ends_here & primary;
+  to->left = seen ? left : to->left;
+  const real where = left > (real)0.5f ? (real)s->v->marching.z : distance_to_half(*half_way);
+  to->depth = seen ? where : to->depth;
+  rgb behind = look_behind(s->v, towards, environment);
+#if GROUND
+  behind = ground_or_behind(ground, in_block(s, t->at), t->velocity, out & (ends == 0), SAMPLES_SIZE(s), behind);
+#endif
+  part = ends_here ? part : (real)0.0f;
+  add_background(behind, part * (real)s->v->background.w / square, &to->l);
+}

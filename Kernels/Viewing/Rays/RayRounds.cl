@@ -1,0 +1,251 @@
+// Rays that bend, are reflected by a surface or mirrored by a table, through one block of a larger grid: each as far as
+// the block goes. What happens at a place, the entry, the middle of a step, the exit, happens in the block that has the
+// place as its own. Places are in voxels of the whole, so that a block finds the numbers that the whole would.
+//
+// The host gives
+//   ROUNDS  1
+
+#include "Viewing/Rays/Arrival.cl"
+#include "Viewing/Rays/BentRays.cl"
+#include "Viewing/Rays/View.cl"
+#include "Viewing/Samples/Sampling.cl"
+
+#define BORN ((SURFACE > 0) + TABLE) // rays that one can leave behind
+
+// The rays through pixels that enter the whole in this block, or miss it and show the background here; of other pixels
+// none (pixel -1). A work-item is a packet of pixels of a picture's rows from v.picture.z on.
+//   rays  of each pixel of these rows
+__kernel void start_rays(
+  ViewInfo v, OpticsInfo o, __global const float4* restrict bending, __global RayOnItsWay* restrict rays)
+{
+  const int column = get_global_id(0) * PACKET_WIDTH;
+  const int row = get_global_id(1) * PACKET_HEIGHT + v.picture.z;
+  if (column >= v.picture.x || row >= v.picture.y)
+  {
+    return;
+  }
+  const surroundings s = { &v, &o, { 0, 0, 0, 0, 0, 0, v.phase }, bending, 0 };
+  real entry_square;
+  const ray_packets t = enter(&s, rays_through(&v, column, row), (real)ENDLESS, &entry_square);
+  const integer enters = t.inside != (integer)0;
+  const integer own = enters ? is_own(&s, t.at) : (integer)(v.block.first.w != 0 ? -1 : 0);
+  const integer pixel = pixels_of(&v, column, row), inside = in_picture(&v, column, row);
+#define START(n)                                                                     \
+  if (LANE(inside, n))                                                               \
+  {                                                                                  \
+    __global RayOnItsWay* ray = rays + (LANE(pixel, n) - v.picture.z * v.picture.x); \
+    ray->pixel = LANE(own, n) ? LANE(pixel, n) : -1;                                 \
+    ray->kind = RayIsPrimary;                                                        \
+    ray->state = LANE(enters, n) ? RayGoesOn : RayMisses;                            \
+    ray->steps = 0;                                                                  \
+    ray->met = 0;                                                                    \
+    ray->where[0] = (int)LANE(t.at.x, n);                                            \
+    ray->where[1] = (int)LANE(t.at.y, n);                                            \
+    ray->where[2] = (int)LANE(t.at.z, n);                                            \
+    ray->at[0] = LANE(t.at.x, n);                                                    \
+    ray->at[1] = LANE(t.at.y, n);                                                    \
+    ray->at[2] = LANE(t.at.z, n);                                                    \
+    ray->velocity[0] = LANE(t.velocity.x, n);                                        \
+    ray->velocity[1] = LANE(t.velocity.y, n);                                        \
+    ray->velocity[2] = LANE(t.velocity.z, n);                                        \
+    ray->left[0] = ray->left[1] = ray->left[2] = 1.0f;                               \
+    ray->radiance[0] = ray->radiance[1] = ray->radiance[2] = 0.0f;                   \
+    ray->halfWay[0] = ray->halfWay[1] = 0.0f;                                        \
+    ray->halfWay[2] = ray->halfWay[3] = 1.0f;                                        \
+    ray->square = 0.0f;                                                              \
+    ray->since = -1.0f;                                                              \
+    ray->entrySquare = LANE(entry_square, n);                                        \
+    ray->seen = 1.0f;                                                                \
+    ray->depth = v.marching.z;                                                       \
+  }
+  EACH_LANE(START)
+#undef START
+}
+
+// A packet of rays that have come here.
+typedef struct
+{
+  integer pixel, kind, state;
+  ray_packets t;
+  crossed half_way;
+  watch w;
+  seeing to;
+} arrivals;
+
+#if COLOURED
+#define LOAD_LEFT(n)                     \
+  LANE(a.to.l.left.r, n) = ray->left[0]; \
+  LANE(a.to.l.left.g, n) = ray->left[1]; \
+  LANE(a.to.l.left.b, n) = ray->left[2];
+#define STORE_SPECTRUM(s, n)   \
+  ray->left[0] = LANE(s.r, n); \
+  ray->left[1] = LANE(s.g, n); \
+  ray->left[2] = LANE(s.b, n);
+#else
+#define LOAD_LEFT(n) LANE(a.to.l.left, n) = ray->left[0];
+#define STORE_SPECTRUM(s, n) ray->left[0] = ray->left[1] = ray->left[2] = LANE(s, n);
+#endif
+
+// Beyond the last of `count` rays its lane rests.
+inline arrivals load(__global const RayOnItsWay* rays, int first, int count)
+{
+  arrivals a;
+  a.to.l = unlit((real)1.0f);
+#define LOAD(n)                                                             \
+  {                                                                         \
+    __global const RayOnItsWay* ray = rays + min(first + 0x##n, count - 1); \
+    LANE(a.pixel, n) = ray->pixel;                                          \
+    LANE(a.kind, n) = ray->kind;                                            \
+    LANE(a.state, n) = first + 0x##n < count ? ray->state : RayHasEnded;    \
+    LANE(a.t.at.x, n) = ray->at[0];                                         \
+    LANE(a.t.at.y, n) = ray->at[1];                                         \
+    LANE(a.t.at.z, n) = ray->at[2];                                         \
+    LANE(a.t.velocity.x, n) = ray->velocity[0];                             \
+    LANE(a.t.velocity.y, n) = ray->velocity[1];                             \
+    LANE(a.t.velocity.z, n) = ray->velocity[2];                             \
+    LANE(a.t.steps, n) = ray->steps;                                        \
+    LOAD_LEFT(n)                                                            \
+    LANE(a.to.l.radiance.r, n) = ray->radiance[0];                          \
+    LANE(a.to.l.radiance.g, n) = ray->radiance[1];                          \
+    LANE(a.to.l.radiance.b, n) = ray->radiance[2];                          \
+    LANE(a.half_way.start, n) = ray->halfWay[0];                            \
+    LANE(a.half_way.length, n) = ray->halfWay[1];                           \
+    LANE(a.half_way.before, n) = ray->halfWay[2];                           \
+    LANE(a.half_way.after, n) = ray->halfWay[3];                            \
+    LANE(a.w.met, n) = ray->met;                                            \
+    LANE(a.w.square, n) = ray->square;                                      \
+    LANE(a.w.since, n) = ray->since;                                        \
+    LANE(a.to.entrySquare, n) = ray->entrySquare;                           \
+    LANE(a.to.left, n) = ray->seen;                                         \
+    LANE(a.to.depth, n) = ray->depth;                                       \
+  }
+  EACH_LANE(LOAD)
+#undef LOAD
+  a.t.inside = a.state == (integer)RayGoesOn;
+  a.w.forgotten = a.w.since < (real)0.0f;
+  const waiting nothing = { a.t.at, a.t.velocity, unlit((real)0.0f).left };
+  a.w.reflected = a.to.mirrored = nothing;
+  return a;
+}
+
+// Back to where they were loaded from.
+//   middle  of the next step of those that go on
+inline void store(const arrivals* a, real3 middle, __global RayOnItsWay* rays, int first, int count)
+{
+  const integer goes_on = a->state == (integer)RayGoesOn;
+  const real3 where = chosen(goes_on, middle, a->t.at);
+#define STORE(n)                                                        \
+  if (first + 0x##n < count)                                            \
+  {                                                                     \
+    __global RayOnItsWay* ray = rays + first + 0x##n;                   \
+    ray->state = LANE(a->state, n);                                     \
+    ray->steps = LANE(a->t.steps, n);                                   \
+    ray->where[0] = (int)LANE(where.x, n);                              \
+    ray->where[1] = (int)LANE(where.y, n);                              \
+    ray->where[2] = (int)LANE(where.z, n);                              \
+    ray->met = LANE(a->w.met, n);                                       \
+    ray->at[0] = LANE(a->t.at.x, n);                                    \
+    ray->at[1] = LANE(a->t.at.y, n);                                    \
+    ray->at[2] = LANE(a->t.at.z, n);                                    \
+    ray->velocity[0] = LANE(a->t.velocity.x, n);                        \
+    ray->velocity[1] = LANE(a->t.velocity.y, n);                        \
+    ray->velocity[2] = LANE(a->t.velocity.z, n);                        \
+    STORE_SPECTRUM(a->to.l.left, n)                                     \
+    ray->radiance[0] = LANE(a->to.l.radiance.r, n);                     \
+    ray->radiance[1] = LANE(a->to.l.radiance.g, n);                     \
+    ray->radiance[2] = LANE(a->to.l.radiance.b, n);                     \
+    ray->halfWay[0] = LANE(a->half_way.start, n);                       \
+    ray->halfWay[1] = LANE(a->half_way.length, n);                      \
+    ray->halfWay[2] = LANE(a->half_way.before, n);                      \
+    ray->halfWay[3] = LANE(a->half_way.after, n);                       \
+    ray->square = LANE(a->w.square, n);                                 \
+    ray->since = LANE(a->w.forgotten, n) ? -1.0f : LANE(a->w.since, n); \
+    ray->seen = LANE(a->to.left, n);                                    \
+    ray->depth = LANE(a->to.depth, n);                                  \
+  }
+  EACH_LANE(STORE)
+#undef STORE
+}
+
+#if BORN
+// Rays that set off where others were split in two; none (pixel -1) where nothing is left of their light.
+//   slot  among BORN of each ray
+inline void store_born(const surroundings* s, const arrivals* a, const waiting* born, int kind, int slot,
+  __global RayOnItsWay* rays, int first, int count)
+{
+  ray_packets t;
+  t.at = born->at;
+  t.velocity = born->velocity;
+  light l = unlit((real)0.0f);
+  l.left = born->left;
+  const integer shines = most_left(l) > (real)0.0f;
+  const real3 where = middle_of_next(s, &t);
+#define STORE(n)                                                      \
+  if (first + 0x##n < count)                                          \
+  {                                                                   \
+    __global RayOnItsWay* ray = rays + BORN * (first + 0x##n) + slot; \
+    ray->pixel = LANE(shines, n) ? LANE(a->pixel, n) : -1;            \
+    ray->kind = kind;                                                 \
+    ray->state = RayGoesOn;                                           \
+    ray->steps = 0;                                                   \
+    ray->met = -1;                                                    \
+    ray->where[0] = (int)LANE(where.x, n);                            \
+    ray->where[1] = (int)LANE(where.y, n);                            \
+    ray->where[2] = (int)LANE(where.z, n);                            \
+    ray->at[0] = LANE(born->at.x, n);                                 \
+    ray->at[1] = LANE(born->at.y, n);                                 \
+    ray->at[2] = LANE(born->at.z, n);                                 \
+    ray->velocity[0] = LANE(born->velocity.x, n);                     \
+    ray->velocity[1] = LANE(born->velocity.y, n);                     \
+    ray->velocity[2] = LANE(born->velocity.z, n);                     \
+    STORE_SPECTRUM(born->left, n)                                     \
+    ray->radiance[0] = ray->radiance[1] = ray->radiance[2] = 0.0f;    \
+    ray->halfWay[0] = ray->halfWay[1] = 0.0f;                         \
+    ray->halfWay[2] = ray->halfWay[3] = 1.0f;                         \
+    ray->square = 0.0f;                                               \
+    ray->since = -1.0f;                                               \
+    ray->entrySquare = LANE(a->to.entrySquare, n);                    \
+    ray->seen = 1.0f;                                                 \
+    ray->depth = s->v->marching.z;                                    \
+  }
+  EACH_LANE(STORE)
+#undef STORE
+}
+#endif
+
+// Rays first to first + count, as far as the block goes or to their ends. A work-item is a packet of them.
+//   born  BORN a ray, see store_born
+__kernel void march_rays(ViewInfo v, OpticsInfo o, __global const float4* restrict samples,
+  __global const float4* restrict extinctions, __global const float4* restrict flow,
+  __global const float4* restrict glow, __global const float4* restrict cosines,
+  __global const float* restrict phase_rows, __global const float4* restrict bending,
+  __global const float4* restrict lit, __global const char* restrict bricks,
+  __global const float4* restrict environment, __global const float4* restrict ground,
+  __global RayOnItsWay* restrict rays, __global RayOnItsWay* restrict born, int first, int count)
+{
+  const int own = first + get_global_id(0) * REAL_WIDTH;
+  if (own >= first + count)
+  {
+    return;
+  }
+  const surroundings s = { &v, &o, { samples, extinctions, flow, glow, cosines, phase_rows, v.phase }, bending,
+    bricks };
+  arrivals a = load(rays, own, first + count);
+  const integer set_off = (a.state == (integer)RayGoesOn) | (a.state == (integer)RayIsOut);
+  const integer misses = a.state == (integer)RayMisses;
+  march(&s, &a.t, &a.to.l, &a.half_way, &a.w);
+
+  const integer spent = a.t.inside & ((most_left(a.to.l) <= (real)v.marching.y) | (a.t.steps >= (integer)o.limits.x));
+  const integer out = set_off & (a.t.inside == 0);
+  const integer ends = spent | (out & is_own(&s, a.t.at)) | misses;
+  arrive(&s, &a.t, ends, set_off, a.kind == (integer)RayIsPrimary, lit, environment, ground, &a.half_way, &a.to);
+  const integer ended = ends | (a.state == (integer)RayHasEnded);
+  a.state = ended ? (integer)RayHasEnded : out ? (integer)RayIsOut : (integer)RayGoesOn;
+  store(&a, middle_of_next(&s, &a.t), rays, own, first + count);
+#if SURFACE
+  store_born(&s, &a, &a.w.reflected, RayIsReflected, 0, born, own, first + count);
+#endif
+#if TABLE
+  store_born(&s, &a, &a.to.mirrored, RayIsMirrored, BORN - 1, born, own, first + count);
+#endif
+}

@@ -1,0 +1,326 @@
+// Pictures of a medium that is spread over ranks, which see it together: those of the whole.
+
+#include "BlocksOfView.h"
+
+#include "Distribution/RanksInThreads.h"
+#include "Viewing/Blocks/BlockOrder.h"
+#include "Viewing/Blocks/BlockPixels.h"
+#include "Viewing/Blocks/PictureInBlocks.h"
+
+#include <memory>
+#include <mutex>
+#include <numeric>
+
+using namespace viewing;
+
+namespace
+{
+using Cuts = std::array<std::vector<int>, 3>;
+
+/// Two blocks, three that are uneven, eight, and slices of a voxel.
+const std::vector<Cuts> SomeCuts = { { { { 13 }, {}, {} } }, { { {}, { 5, 16 }, {} } }, { { { 14 }, { 3 }, { 9 } } },
+  { { { 10, 11, 12 }, {}, { 1 } } } };
+
+struct Spread
+{
+  BlockPartition partition;
+  std::vector<GridBlock> blocks;
+  std::vector<VoxelBox> held, known;
+};
+
+/// @param nothing  a rank without voxels besides, the first
+Spread SpreadOver(const Scene& scene, const Cuts& cuts, bool nothing)
+{
+  Spread spread;
+  spread.partition.whole = scene.grid;
+  spread.blocks = Cut(scene.grid, cuts);
+  if (nothing)
+  {
+    GridBlock none;
+    none.whole = scene.grid;
+    spread.blocks.insert(spread.blocks.begin(), none);
+  }
+  for (GridBlock& block : spread.blocks)
+  {
+    VoxelBox own = { block.begin, {} };
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      own.size[axis] = block.end[axis] - block.begin[axis];
+    }
+    const bool empty = own.VoxelCount() == 0;
+    const bool surface = !scene.surface.empty();
+    spread.partition.blocks.push_back(own);
+    spread.held.push_back(empty ? own : HeldBox(own, scene.grid, scene.settings, !scene.moments.empty(), surface));
+    spread.known.push_back(empty ? own : KnownBox(own, spread.held.back(), scene.grid, scene.settings));
+    block.first = spread.held.back().first;
+  }
+  return spread;
+}
+
+/// The picture that ranks make together.
+Picture SeenBy(
+  Device& device, const Scene& scene, const Spread& spread, const Camera& camera, std::size_t* handed = nullptr)
+{
+  const auto ranks = static_cast<int>(spread.blocks.size());
+  std::vector<BlockPixels> seen(spread.blocks.size());
+  std::vector<std::size_t> traffic(spread.blocks.size());
+  bool inRounds = false;
+  float farDepth = 0.0f;
+  std::vector<std::unique_ptr<MediumRayCaster>> casters(spread.blocks.size());
+  std::mutex one;
+  RunInThreads(ranks, [&](Communicator& communicator) {
+    const auto rank = static_cast<std::size_t>(communicator.Rank());
+    const GridBlock& block = spread.blocks[rank];
+    BlockOfScene ofScene = { block, spread.known[rank], {} };
+    Scene part;
+    SharedScene own;
+    const bool has = block.OwnVoxels() > 0;
+    if (has)
+    {
+      part = PartOf(scene, block, spread.held[rank], spread.known[rank]);
+      Scene held = PartOf(scene, block, spread.held[rank], spread.held[rank]);
+      own = SharedSceneOf(held.MediumSeen(), held.LightSeen(), Scene::See(held.ior, 1), scene.settings);
+    }
+    ofScene.shared = PictureInBlocks::Shared(communicator, has ? &own : nullptr);
+    communicator.Together([&] {
+      const std::lock_guard<std::mutex> lock(one);
+      casters[rank].reset(has ? new MediumRayCaster(part.Caster(device, &ofScene)) : nullptr);
+    });
+    PictureInBlocks picture(communicator, spread.partition, spread.held, casters[rank].get());
+    const Picture taken = picture.Take(camera, scene.settings.imageSize);
+    seen[rank] = SeenPart(taken);
+    traffic[rank] = picture.Traffic().handed;
+    inRounds = picture.GoesInRounds();
+    farDepth = has ? taken.farDepth : farDepth;
+  });
+  if (handed)
+  {
+    *handed = std::accumulate(traffic.begin(), traffic.end(), std::size_t{ 0 });
+  }
+  std::vector<BlockPixels> frontToBack;
+  const std::vector<int> order = FrontToBack(spread.blocks, camera);
+  for (int number : order)
+  {
+    frontToBack.push_back(seen[static_cast<std::size_t>(number)]);
+  }
+  if (!inRounds)
+  {
+    for (std::size_t i = 0; i < order.size(); ++i)
+    {
+      MediumRayCaster* const caster = casters[static_cast<std::size_t>(order[i])].get();
+      const Starts starts =
+        caster ? StartsBehind(frontToBack, i, scene.settings.imageSize, scene.settings.minimumTransmittance) : Starts();
+      if (!starts.IsEmpty())
+      {
+        const GridBlock& block = spread.blocks[static_cast<std::size_t>(order[i])];
+        TakeFrom(caster->RenderBehind(camera, block, starts), starts, seen[static_cast<std::size_t>(order[i])]);
+      }
+    }
+    for (std::size_t i = 0; i < order.size(); ++i)
+    {
+      frontToBack[i] = seen[static_cast<std::size_t>(order[i])];
+    }
+  }
+  return PictureOfAll(frontToBack, { { 0, 0 }, scene.settings.imageSize }, farDepth);
+}
+
+void ExpectSame(const Picture& found, const Picture& whole)
+{
+  const double bright = Largest(whole.radiance);
+  const double radiance = LargestDifference(found.radiance, whole.radiance) / bright;
+  const double alpha = LargestDifference(found.alpha, whole.alpha);
+  const double depth = LargestDifference(found.depth, whole.depth) / whole.farDepth;
+  EXPECT_EQ(found.farDepth, whole.farDepth);
+  EXPECT_LT(radiance, 1e-5);
+  EXPECT_LT(alpha, 1e-5);
+  EXPECT_LT(depth, 1e-5);
+  EXPECT_GT(bright, 0.05);
+  EXPECT_GT(Largest(whole.alpha), 0.3) << "there is nothing to compare";
+}
+
+std::vector<Camera> CamerasOf(const Scene& scene)
+{
+  Camera inside = scene.Framed();
+  inside.position = { 2.0, 5.5, 6.0 };
+  Camera along = FrameGrid(scene.grid, scene.Aspect(), 30.0, { 0.3, -1.0, 0.1 });
+  along.parallelProjection = true;
+  along.parallelScale = 6.0;
+  return { scene.Framed(), inside, along };
+}
+
+/// Seen by ranks of each cut, as by one with the whole.
+/// @return rays that were handed on
+std::size_t ExpectPicturesOfWhole(Device& device, const Scene& scene, const char* what)
+{
+  std::size_t all = 0;
+  int number = 0;
+  for (const Camera& camera : CamerasOf(scene))
+  {
+    const Picture whole = scene.Seen(device, camera);
+    for (const Cuts& cuts : SomeCuts)
+    {
+      SCOPED_TRACE(testing::Message() << what << ", from " << testing::PrintToString(camera.position) << ", cut at "
+                                      << testing::PrintToString(cuts));
+      std::size_t handed = 0;
+      ExpectSame(SeenBy(device, scene, SpreadOver(scene, cuts, number++ % 3 == 1), camera, &handed), whole);
+      all += handed;
+    }
+  }
+  return all;
+}
+
+/// A lens in the cloud.
+Scene Glass(int components)
+{
+  Scene scene = Cloud(components);
+  scene.ior = AtCentres(scene.grid, [](double x, double y, double z) {
+    return 1.0 + 0.4 * std::exp(-8.0 * ((x - 0.55) * (x - 0.55) + (y - 0.5) * (y - 0.5) + (z - 0.45) * (z - 0.45)));
+  });
+  scene.settings.showBackground = true;
+  scene.illumination.environment = SmoothEnvironment();
+  return scene;
+}
+
+std::vector<Light> Lamps()
+{
+  Light sun, bulb, panel;
+  sun.type = LightType::Directional;
+  sun.direction = { 0.4, 0.3, -1.0 };
+  sun.power = { 3.0, 2.0, 1.0 };
+  bulb.type = LightType::Point;
+  bulb.position = { 3.0, 6.0, 7.0 }; // within
+  bulb.power = { 20.0, 30.0, 60.0 };
+  panel.type = LightType::Rectangle;
+  panel.position = { -6.0, 4.0, 6.0 };
+  panel.direction = { 1.0, 0.1, 0.0 };
+  panel.size = { 2.0, 3.0 };
+  panel.power = { 100.0, 100.0, 50.0 };
+  return { sun, bulb, panel };
+}
+
+Scene ByMoments()
+{
+  Scene scene = Cloud(3);
+  scene.phase.reset();
+  scene.g = 0.7;
+  const std::size_t voxels = scene.grid.VoxelCount();
+  for (std::size_t i = 0; i < voxels; ++i)
+  {
+    const float x = 0.1f * static_cast<float>(i % 37);
+    scene.moments.insert(scene.moments.end(), { 2.0f + x, 0.3f * x, -0.2f, 0.5f });
+    scene.straightOn.push_back(0.49f);
+    if (scene.grid.VoxelAt(i)[1] % 7 == 3) // some that absorb only, or do nothing
+    {
+      for (std::size_t c = 0; c < 3; ++c)
+      {
+        scene.sigma_s[3 * i + c] = 0.0f;
+        scene.sigma_a[3 * i + c] *= i % 2 == 0 ? 1.0f : 0.0f;
+      }
+    }
+  }
+  scene.lampsApart = Lamps();
+  scene.settings.showBackground = true;
+  scene.settings.backgroundColor = { 0.1, 0.2, 0.3 };
+  return scene;
+}
+}
+
+class PicturesInBlocks : public DeviceTest
+{
+};
+
+TEST_F(PicturesInBlocks, FollowRaysThatBend)
+{
+  for (int components : { 1, 3 })
+  {
+    EXPECT_GT(ExpectPicturesOfWhole(this->GetDevice(), Glass(components), "glass"), 10000u);
+  }
+}
+
+TEST_F(PicturesInBlocks, FollowRaysByLongSteps)
+{
+  Scene scene = Glass(1);
+  scene.settings.stepSize = 1.7;
+  ExpectPicturesOfWhole(this->GetDevice(), scene, "long steps");
+}
+
+TEST_F(PicturesInBlocks, FollowWhatASurfaceReflects)
+{
+  Scene scene = Glass(3);
+  scene.ior = Ball(scene.grid, 0.3, 1.5);
+  scene.settings.surfaceReflection = SurfaceReflection::Fresnel;
+  ExpectPicturesOfWhole(this->GetDevice(), scene, "surface");
+}
+
+TEST_F(PicturesInBlocks, FollowWhatATableMirrors)
+{
+  for (const bool bends : { false, true })
+  {
+    Scene scene = Glass(1);
+    scene.ior = bends ? scene.ior : std::vector<float>();
+    scene.settings.tableFace = 4;
+    scene.settings.tableReflectance = 0.3;
+    ExpectPicturesOfWhole(this->GetDevice(), scene, "table");
+  }
+}
+
+TEST_F(PicturesInBlocks, ThrowShadowsOnEachOther)
+{
+  for (int components : { 1, 3 })
+  {
+    Scene scene = Cloud(components);
+    scene.g = 0.4;
+    scene.illumination.lights = Lamps();
+    scene.settings.shadowRays = true;
+    scene.fluenceDirect = scene.Everywhere(0.05);
+    ExpectPicturesOfWhole(this->GetDevice(), scene, "shadows");
+  }
+}
+
+TEST_F(PicturesInBlocks, ShowLightByItsMoments)
+{
+  Scene scene = ByMoments();
+  ExpectPicturesOfWhole(this->GetDevice(), scene, "moments");
+  scene.settings.minimumTransmittance = 0.05;
+  ExpectPicturesOfWhole(this->GetDevice(), scene, "moments of rays that end early");
+  scene.ior = Glass(1).ior;
+  scene.settings.minimumTransmittance = 0.0;
+  ExpectPicturesOfWhole(this->GetDevice(), scene, "moments in glass");
+}
+
+TEST_F(PicturesInBlocks, ShowLightAtTheSurfaceOfThickVoxels)
+{
+  Scene scene = Cloud(1);
+  std::fill(scene.sigma_s.begin(), scene.sigma_s.end(), 8.0f);
+  const Picture without = scene.Seen(this->GetDevice());
+  ForBoxFaceCells(scene.grid, [&](const BoxFaceCell& cell) {
+    scene.surface.insert(scene.surface.end(), SurfaceCosines.size(), 0.2f + 0.01f * (cell.u + cell.v));
+  });
+  EXPECT_GT(LargestDifference(without.radiance, scene.Seen(this->GetDevice()).radiance), 0.05);
+  ExpectPicturesOfWhole(this->GetDevice(), scene, "surface light");
+}
+
+TEST_F(PicturesInBlocks, FailTogether)
+{
+  const Scene scene = Glass(1);
+  const Spread spread = SpreadOver(scene, SomeCuts[1], false);
+  std::vector<int> aborted(3);
+  RunInThreads(3, [&](Communicator& communicator) {
+    const auto rank = static_cast<std::size_t>(communicator.Rank());
+    const Scene held = PartOf(scene, spread.blocks[rank], spread.held[rank], spread.held[rank]);
+    const SharedScene own = SharedSceneOf(held.MediumSeen(), held.LightSeen(), Scene::See(held.ior, 1), scene.settings);
+    const BlockOfScene block = { spread.blocks[rank], spread.known[rank], PictureInBlocks::Shared(communicator, &own) };
+    MediumRayCaster caster =
+      PartOf(scene, spread.blocks[rank], spread.held[rank], spread.known[rank]).Caster(this->GetDevice(), &block);
+    PictureInBlocks picture(communicator, spread.partition, spread.held, &caster);
+    try
+    {
+      picture.Take(scene.Framed(), scene.settings.imageSize, [&](double) { return rank != 1; });
+    }
+    catch (const Aborted&)
+    {
+      aborted[rank] = 1;
+    }
+  });
+  EXPECT_EQ(aborted, std::vector<int>({ 1, 1, 1 }));
+}
