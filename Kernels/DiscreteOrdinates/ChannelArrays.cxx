@@ -71,15 +71,18 @@ void ChannelArrays::AddLamps(
   const LampScattering scattering(this->TheDevice, this->Layout.grid, this->Angles.groups, this->Angles.function);
   const Buffer<float> sigma_t = this->Load("sigma_t", 1.0, 1.0), sigma_s = this->Load("sigma_s", 0.0, 1.0);
   const SweepMaker sweeps = [&](const SweepRequest& request) { return this->SweepOf(sigma_t, periodic, request); };
-  // Rays of a beam are those through the whole grid.
-  const VolumeLayout whole = { this->Scene.ranks ? this->Scene.ranks->partition.whole : this->Layout.grid, 1, true };
+  std::unique_ptr<LampsInBlocks> nearLamps;
   Buffer<float> path(this->TheDevice, this->Layout.Floats(), "the light of a lamp");
   const double all = static_cast<double>(this->Scene.lamps.size());
   for (std::size_t i = 0; i < this->Scene.lamps.size(); ++i)
   {
     path.Fill(0.0f);
-    const UncollidedVolume volume = { this->TheDevice, whole, sigma_t, periodic, sweeps,
+    UncollidedVolume volume = { this->TheDevice, this->Layout, sigma_t, periodic, sweeps,
       { &path, nullptr, nullptr, nullptr, this->Faces ? &this->Faces->Out() : nullptr } };
+    if (this->Scene.ranks)
+    {
+      this->SpreadOverRanks(volume, nearLamps);
+    }
     const Monitor ofLamp = OfPart(monitor, i / all, (i + 1) / all);
     this->CountLamp(UncollidedLamp(this->Scene.lamps[i]).AddTo(volume, ofLamp), result.ledger);
     this->Scene.Together([&] {
@@ -105,6 +108,23 @@ std::unique_ptr<SweepOperator> ChannelArrays::SweepOf(
       this->Layout, sigma_t, periodic, request, this->BlocksWorkspace);
   });
   return sweep;
+}
+
+/// Rays are those through the whole grid, and beams of lamps are handed on from rank to rank.
+/// @param nearLamps  of the volume's sigma_t: made where a lamp asks for them
+void ChannelArrays::SpreadOverRanks(UncollidedVolume& volume, std::unique_ptr<LampsInBlocks>& nearLamps) const
+{
+  const OrdinatesRanks& ranks = *this->Scene.ranks;
+  volume.whole = &ranks.partition.whole;
+  volume.followLamp = [this, &ranks, &nearLamps, &sigma_t = volume.sigma_t](
+                        const SweepVolume& ofChannels, const tyndall::Light& lamp, const Monitor& monitor) {
+    if (!nearLamps)
+    {
+      nearLamps =
+        std::make_unique<LampsInBlocks>(this->TheDevice, ranks.others, ranks.partition, this->Layout, sigma_t);
+    }
+    return ranks.OfOneThatHas(nearLamps->Deposit(ofChannels, lamp, monitor));
+  };
 }
 
 /// Light that another solver found.

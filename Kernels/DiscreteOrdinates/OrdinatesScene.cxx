@@ -31,6 +31,34 @@ std::unique_ptr<FaceLight> FaceLightOf(Device& device, const OrdinatesScene& sce
   return std::make_unique<FaceLight>(device, grid, 1, std::move(ofCells), scene.faceAlbedo);
 }
 
+SweepTally OrdinatesRanks::OfOneThatHas(const SweepTally& tally) const
+{
+  const std::vector<VoxelBox>& blocks = this->partition.blocks;
+  const auto has = [](const VoxelBox& block) { return block.VoxelCount() > 0; };
+  const bool isFirst = std::find_if(blocks.begin(), blocks.end(), has) - blocks.begin() == this->others.Rank();
+  std::vector<double> values(39, 0.0); // in, out and onTheWay, three channels each
+  const auto forEach = [&values](auto& of, const auto& act) {
+    std::size_t next = 0;
+    for (std::size_t c = 0; c < 3; ++c)
+    {
+      for (std::size_t face = 0; face < 6; ++face)
+      {
+        act(values[next++], of.in[face][c]);
+        act(values[next++], of.out[face][c]);
+      }
+      act(values[next++], of.onTheWay[c]);
+    }
+  };
+  if (isFirst)
+  {
+    forEach(tally, [](double& value, double of) { value = of; });
+  }
+  values = this->others.Sum(values);
+  SweepTally found;
+  forEach(found, [](double value, double& of) { of = value; });
+  return found;
+}
+
 void OrdinatesRecord::Add(double goesOn, double more, const EnergyLedger& ledger)
 {
   const EnergyBalance& balance = ledger.Balance();

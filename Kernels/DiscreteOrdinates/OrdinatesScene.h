@@ -8,6 +8,7 @@
 #include "LightPropagation/Conservative/EnergyLedger.h"
 #include "LightPropagation/Conservative/FaceLight.h"
 #include "LightPropagation/Convergence.h"
+#include "LightPropagation/Sweep/SweepTally.h"
 #include "Lights/Lights.h"
 #include "Medium/Medium.h"
 #include "PhaseFunction/SeparablePhaseFunction.h"
@@ -36,6 +37,8 @@ struct OrdinatesRanks
   const BlockPartition& partition;
 
   bool Has() const { return this->partition.blocks[this->others.Rank()].VoxelCount() > 0; }
+  /// That of the first rank that has voxels; one without may not know units and colours. All ranks call it.
+  SweepTally OfOneThatHas(const SweepTally& tally) const;
 };
 
 /// One channel of a scene as discrete ordinates see it: what is solved.

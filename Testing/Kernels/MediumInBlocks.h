@@ -70,6 +70,33 @@ inline std::vector<float> RandomValues(std::size_t count, double least, double m
   return values;
 }
 
+/// A point, a spot that shines in from beside the box, and a rectangle.
+inline void AddNearLamps(Scene& scene)
+{
+  const auto place = [&scene](double x, double y, double z) {
+    const tyndall::Grid& grid = scene.medium.grid;
+    return std::array<double, 3>{ x * grid.Length(0), y * grid.Length(1), z * grid.Length(2) };
+  };
+  tyndall::Light point;
+  point.type = tyndall::LightType::Point;
+  point.position = place(0.35, 0.6, 0.45);
+  point.power = { 3.0, 3.0, 3.0 };
+  tyndall::Light spot = point;
+  spot.type = tyndall::LightType::Spot;
+  spot.position = place(-0.5, 0.4, 1.2);
+  spot.direction = { 0.9, 0.1, -0.6 };
+  spot.angle = 40.0;
+  tyndall::Light rectangle = point;
+  rectangle.type = tyndall::LightType::Rectangle;
+  rectangle.position = place(0.7, 1.1, 0.5);
+  rectangle.direction = { -0.2, -0.9, 0.3 };
+  rectangle.size = { 1.3, 0.7 };
+  for (const tyndall::Light& lamp : { point, spot, rectangle })
+  {
+    scene.light.lights.push_back(lamp);
+  }
+}
+
 /// Cut by planes across x at these voxels; 0 before and the end behind them.
 inline tyndall::BlockPartition Slices(const tyndall::Grid& grid, std::vector<int> cuts)
 {

@@ -188,6 +188,45 @@ TEST_F(LatticeBlocks, HaveTheEnvironmentOfTheWhole)
   ExpectSame(this->OnRanks(4, medium, settings), this->Whole(medium, settings), 2e-6);
 }
 
+/// Points, spots and rectangles, in thick voxels, too, and in units in which a float holds no area.
+TEST_F(LatticeBlocks, HaveTheNearLampsOfTheWhole)
+{
+  for (const double spacing : { 1.0, 1e8 })
+  {
+    SCOPED_TRACE(std::to_string(spacing));
+    MediumToCut medium = Everything({ 7, 11, 6 });
+    Scene& scene = medium.scene;
+    scene.medium.grid.spacing.fill(spacing);
+    scene.medium.grid.origin = { -2.0 * spacing, 3.0 * spacing, 0.5 * spacing };
+    AddNearLamps(scene);
+    for (std::vector<float>* perLength : { &scene.sigma_a, &scene.sigma_s, &scene.emission })
+    {
+      std::for_each(
+        perLength->begin(), perLength->end(), [&](float& value) { value = static_cast<float>(value / spacing); });
+    }
+    const LightField alone = this->OnRanks(1, medium, SettingsOf(1e-7));
+    ExpectSame(alone, this->Whole(medium, SettingsOf(1e-7)), 2e-6);
+    for (const int ranks : { 2, 3, 8 })
+    {
+      SCOPED_TRACE(std::to_string(ranks) + " ranks");
+      ExpectSame(this->OnRanks(ranks, medium, SettingsOf(1e-7)), alone, 1e-6);
+    }
+    ExpectSame(this->OfBlocks(Slices(scene.medium.grid, { 1, 1, 2 }), medium, SettingsOf(1e-7)), alone, 1e-6);
+  }
+}
+
+TEST_F(LatticeBlocks, HaveNearLampsOfColourInSingleVoxels)
+{
+  MediumToCut medium = Everything({ 2, 3, 3 });
+  Scene& scene = medium.scene;
+  scene.sigma_s = RandomValues(3 * scene.sigma_a.size(), 0.0, 2.0, 9);
+  scene.light.lights.clear();
+  AddNearLamps(scene);
+  scene.light.lights[0].power = { 1.0, 0.0, 3.0 };
+  ExpectSame(this->OfBlocks(SingleVoxels(scene.medium.grid), medium, SettingsOf(1e-7)),
+    this->Whole(medium, SettingsOf(1e-7)), 2e-6);
+}
+
 /// Flat grids have long cells.
 TEST_F(LatticeBlocks, SolvePlanesAndRows)
 {
@@ -252,8 +291,6 @@ TEST_F(LatticeBlocks, FailTogether)
 TEST_F(LatticeBlocks, SayWhatIsNotCarriedFromRankToRank)
 {
   ExpectErrors("periodic", [](int, MediumToCut&, LatticeSettings& settings, Monitor&) { settings.periodic[1] = true; });
-  ExpectErrors("point, spot or rectangle",
-    [](int, MediumToCut& part, LatticeSettings&, Monitor&) { part.scene.light.lights[0].type = LightType::Point; });
   ExpectErrors(
     "MaximumOrders", [](int, MediumToCut&, LatticeSettings& settings, Monitor&) { settings.maximumSteps = 3; });
   ExpectErrors("BlockSize", [](int, MediumToCut&, LatticeSettings& settings, Monitor&) { settings.blockSize = 4; });

@@ -6,6 +6,7 @@
 #include "DiscreteOrdinates/DiscreteOrdinates.h"
 #include "DiscreteOrdinates/Distributed/OrdinatesInBlocks.h"
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -84,6 +85,41 @@ TEST_F(OrdinatesBlocks, MayBeUnevenEmptyOrSingleVoxels)
   ExpectSame(this->OfBlocks(Slices(medium.scene.medium.grid, { 1, 1, 2, 8 }), medium, SettingsOf()), whole);
   ExpectSame(this->OfBlocks(Slices(medium.scene.medium.grid, { 0, 9 }), medium, SettingsOf()), whole);
   MediumToCut small = Everything({ 3, 2, 2 });
+  ExpectSame(
+    this->OfBlocks(SingleVoxels(small.scene.medium.grid), small, SettingsOf()), this->Whole(small, SettingsOf()));
+}
+
+/// Points, spots and rectangles; in units in which a float holds no area, too, and of one colour.
+TEST_F(OrdinatesBlocks, HaveTheNearLampsOfTheWhole)
+{
+  for (const double spacing : { 1.0, 1e8 })
+  {
+    SCOPED_TRACE(std::to_string(spacing));
+    MediumToCut medium = Everything({ 5, 9, 7 });
+    Scene& scene = medium.scene;
+    scene.medium.grid.spacing = { spacing, 0.7 * spacing, 1.2 * spacing };
+    scene.medium.grid.origin = { -2.0 * spacing, 3.0 * spacing, 0.5 * spacing };
+    AddNearLamps(scene);
+    for (std::vector<float>* perLength : { &scene.sigma_a, &scene.sigma_s, &scene.emission })
+    {
+      std::for_each(
+        perLength->begin(), perLength->end(), [&](float& value) { value = static_cast<float>(value / spacing); });
+    }
+    for (Light& lamp : scene.light.lights)
+    {
+      lamp.power = spacing > 1.0 ? Rgb{ 0.0, 2.0, 0.0 } : lamp.power;
+    }
+    const LightField whole = this->Whole(medium, SettingsOf());
+    for (const int ranks : { 1, 2, 3, 8 })
+    {
+      SCOPED_TRACE(std::to_string(ranks) + " ranks");
+      ExpectSame(this->OfBlocks(BlockPartition::Even(scene.medium.grid, ranks), medium, SettingsOf()), whole);
+    }
+    ExpectSame(this->OfBlocks(Slices(scene.medium.grid, { 1, 1, 2 }), medium, SettingsOf()), whole);
+  }
+  MediumToCut small = Everything({ 3, 2, 2 });
+  AddNearLamps(small.scene);
+  small.scene.light.lights[2].power = { 0.5, 2.0, 0.0 };
   ExpectSame(
     this->OfBlocks(SingleVoxels(small.scene.medium.grid), small, SettingsOf()), this->Whole(small, SettingsOf()));
 }

@@ -38,17 +38,6 @@ Illumination White(Illumination light)
   }
   return light;
 }
-
-/// A voxel of vacuum, for a rank whose block has none: what it finds there counts nowhere.
-Medium Vacuum(const Grid& whole)
-{
-  static const float nothing = 0.0f;
-  Medium vacuum;
-  vacuum.grid = whole;
-  vacuum.grid.size = { 1, 1, 1 };
-  vacuum.sigma_a = vacuum.sigma_s = { &nothing, 1 };
-  return vacuum;
-}
 }
 
 std::string NotInBlocks(const Medium& medium, const Illumination& illumination, const OrdinatesSettings& settings)
@@ -60,11 +49,6 @@ std::string NotInBlocks(const Medium& medium, const Illumination& illumination, 
   if (Reflects(illumination))
   {
     return "a face that gives back light (FaceAlbedo)";
-  }
-  const auto isNear = [](const Light& light) { return light.type != LightType::Directional; };
-  if (std::any_of(illumination.lights.begin(), illumination.lights.end(), isNear))
-  {
-    return "a point, spot or rectangle light";
   }
   if (illumination.uncollided.IsThere())
   {
@@ -104,7 +88,7 @@ LightField SolveOrdinatesInBlocks(Device& device, Communicator& communicator, co
   const BlockScene scene(communicator, has, partition, own, illumination, asPropagation, MemoryOf(device));
   BlockPartition inUnits = partition;
   inUnits.whole = scene.WholeOf(partition.whole);
-  const Medium solved = has ? scene.medium : Vacuum(inUnits.whole);
+  const Medium solved = has ? scene.medium : VoxelOfVacuum(inUnits.whole);
   const OrdinatesRanks ranks = { communicator, inUnits };
   const Illumination shining = has || scene.channels == 3 ? scene.illumination : White(scene.illumination);
   const FarLight far = FarLightOf(shining, settings.directionsPerFace, settings);

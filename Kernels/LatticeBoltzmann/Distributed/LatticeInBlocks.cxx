@@ -176,11 +176,6 @@ std::string NotInBlocks(const Illumination& illumination, const LatticeSettings&
   {
     return "a periodic axis";
   }
-  const auto isNear = [](const Light& light) { return light.type != LightType::Directional; };
-  if (std::any_of(illumination.lights.begin(), illumination.lights.end(), isNear))
-  {
-    return "a point, spot or rectangle light";
-  }
   if (illumination.uncollided.IsThere())
   {
     return "light of another solver (UncollidedLight)";

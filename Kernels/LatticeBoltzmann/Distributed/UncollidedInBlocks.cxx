@@ -6,6 +6,7 @@
 #include "LightPropagation/Uncollided/BoundaryLight.h"
 #include "LightPropagation/Uncollided/EnvironmentPeaks.h"
 #include "LightPropagation/Uncollided/ParallelBeam.h"
+#include "LightPropagation/Uncollided/UncollidedLamp.h"
 
 #include <algorithm>
 #include <utility>
@@ -36,7 +37,6 @@ UncollidedInBlocks::UncollidedInBlocks(Device& device, Communicator& communicato
   , SharedExtinction(SharesExtinction(communicator, scene))
   , Layout(this->LayoutOn(partition.OwnGrid(communicator.Rank())))
   , KnownLayout(this->LayoutOn(scene.medium.grid))
-  , WholeLayout(this->LayoutOn(partition.whole))
   , Lamps(scene.shining.lights)
 {
   communicator.Together([&] {
@@ -51,6 +51,7 @@ UncollidedInBlocks::UncollidedInBlocks(Device& device, Communicator& communicato
     {
       this->KnownSigmaT = this->SigmaTOf(this->KnownLayout, LatticeBox(box.known));
       this->KnownMoments = this->Zeros(this->KnownLayout, 6, "where light is lost");
+      this->OwnMoments = this->Zeros(this->Layout, 6, "where light is lost");
     }
   });
 }
@@ -114,19 +115,35 @@ void UncollidedInBlocks::AddEnvironment(const Monitor& monitor)
   Add(this->Tally, this->MakeSweep(request)->Apply(nullptr, boundary.Boundary(), monitor));
 }
 
-/// Rays of a beam are those through the whole box.
+/// Of the block; rays are those through the whole grid.
+UncollidedVolume UncollidedInBlocks::Volume()
+{
+  const SweepMaker sweeps = [this](const SweepRequest& request) { return this->MakeSweep(request); };
+  UncollidedVolume volume = { this->TheDevice, this->Layout, this->SigmaT, this->Settings.periodic, sweeps,
+    this->ToOwn() };
+  volume.whole = &this->Partition.whole;
+  volume.followLamp = [this](const SweepVolume& ofChannels, const Light& lamp, const Monitor& monitor) {
+    if (!this->NearLamps)
+    {
+      this->NearLamps =
+        std::make_unique<LampsInBlocks>(this->TheDevice, this->Others, this->Partition, this->Layout, this->SigmaT);
+    }
+    return this->NearLamps->Deposit(ofChannels, lamp, monitor);
+  };
+  return volume;
+}
+
 void UncollidedInBlocks::AddLamp(const Light& lamp, const Monitor& monitor)
 {
   if (Sum(lamp.power) == 0.0)
   {
     return;
   }
-  const SweepMaker sweeps = [this](const SweepRequest& request) { return this->MakeSweep(request); };
-  const UncollidedVolume volume = { this->TheDevice, this->WholeLayout, this->SigmaT, this->Settings.periodic, sweeps,
-    this->ToOwn() };
-  if (!this->FirstMoments)
+  UncollidedVolume volume = this->Volume();
+  if (!this->FirstMoments || lamp.type != LightType::Directional)
   {
-    Add(this->Tally, DepositBeam(volume, lamp, monitor));
+    volume.deposit.firstMoments = this->FirstMoments ? &this->OwnMoments : nullptr;
+    Add(this->Tally, UncollidedLamp(lamp).AddTo(volume, monitor));
     return;
   }
   Buffer<float> path, currents;
@@ -171,6 +188,18 @@ void UncollidedInBlocks::AddMoments(const Light& lamp, const Buffer<float>& path
   });
 }
 
+/// Beams' are found for each known voxel, those of near lamps with the light of the block.
+std::vector<float> UncollidedInBlocks::FoundMoments(double scale) const
+{
+  std::vector<float> moments = this->Known(this->OwnMoments, scale, 6 * this->Scene.channels);
+  if (!moments.empty())
+  {
+    const std::vector<float> ofBeams = Interleaved(this->KnownLayout, this->KnownMoments, scale);
+    std::transform(moments.begin(), moments.end(), ofBeams.begin(), moments.begin(), std::plus<float>());
+  }
+  return moments;
+}
+
 Uncollided UncollidedInBlocks::Find(const Monitor& monitor)
 {
   this->AddEnvironment(OfPart(monitor, 0.0, 0.5));
@@ -188,9 +217,9 @@ Uncollided UncollidedInBlocks::Find(const Monitor& monitor)
   {
     found.netFlux = this->Known(this->Flux, inverse, 3 * channels);
   }
-  if (this->FirstMoments && this->Around.Own().VoxelCount() > 0)
+  if (this->FirstMoments)
   {
-    found.firstMoments = Interleaved(this->KnownLayout, this->KnownMoments, inverse);
+    found.firstMoments = this->FoundMoments(inverse);
   }
   const std::vector<VoxelBox>& blocks = this->Partition.blocks;
   const auto first =

@@ -8,6 +8,7 @@
 #include "LatticeBoltzmann/LatticeScene.h"
 #include "LatticeBoltzmann/LatticeSettings.h"
 #include "LatticeBoltzmann/LatticeVoxels.h"
+#include "LightPropagation/Distributed/LampsInBlocks.h"
 #include "LightPropagation/Distributed/Sweep/SweepInBlocks.h"
 #include "LightPropagation/Sweep/VolumeLayout.h"
 #include "LightPropagation/Uncollided/UncollidedSource.h"
@@ -17,8 +18,8 @@
 
 namespace tyndall
 {
-/// Uncollided light of directional lamps and of the environment in a medium that is spread over ranks, along the maps'
-/// rays, as FindUncollided has it of the whole.
+/// Uncollided light of lamps and of the environment in a medium that is spread over ranks, along the maps' rays, as
+/// FindUncollided has it of the whole.
 class UncollidedInBlocks
 {
 public:
@@ -37,6 +38,8 @@ private:
   void AddEnvironment(const Monitor& monitor);
   void AddLamp(const Light& lamp, const Monitor& monitor);
   void AddMoments(const Light& lamp, const Buffer<float>& path, const Buffer<float>& currents);
+  UncollidedVolume Volume();
+  std::vector<float> FoundMoments(double scale) const;
   VolumeLayout LayoutOn(const Grid& grid) const { return { grid, this->Scene.channels, this->SharedExtinction }; }
   Buffer<float> SigmaTOf(const VolumeLayout& layout, const LatticeBox& box) const;
   Buffer<float> Zeros(const VolumeLayout& layout, int parts, const char* what) const;
@@ -50,9 +53,10 @@ private:
   const LatticeScene Scene;
   const LatticeSettings& Settings;
   const bool FirstMoments, SharedExtinction;
-  const VolumeLayout Layout, KnownLayout, WholeLayout;
+  const VolumeLayout Layout, KnownLayout;
   Buffer<float> SigmaT, KnownSigmaT, Path, Flux;
-  Buffer<float> KnownMoments; ///< empty: not asked for
+  Buffer<float> KnownMoments, OwnMoments;   ///< of beams, and of near lamps; empty: not asked for
+  std::unique_ptr<LampsInBlocks> NearLamps; ///< null until there is one
   BlockWorkspace Workspace;
   std::vector<Light> Lamps;
   SweepTally Tally;

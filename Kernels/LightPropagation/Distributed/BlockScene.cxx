@@ -53,6 +53,16 @@ void RequireSame(Communicator& communicator, bool has, const Medium& medium, con
   RequireSame(communicator, "what shines on it", true, light);
 }
 
+Medium VoxelOfVacuum(const Grid& whole)
+{
+  static const float nothing = 0.0f;
+  Medium vacuum;
+  vacuum.grid = whole;
+  vacuum.grid.size = { 1, 1, 1 };
+  vacuum.sigma_a = vacuum.sigma_s = { &nothing, 1 };
+  return vacuum;
+}
+
 BlockScene::BlockScene(Communicator& communicator, bool has, const BlockPartition& partition, const Medium& ofBlock,
   const Illumination& shining, const PropagationSettings& settings, const DeviceMemory& memory)
   : medium(ofBlock)
@@ -61,15 +71,16 @@ BlockScene::BlockScene(Communicator& communicator, bool has, const BlockPartitio
   , lengthUnit(LengthUnitOf(partition.whole))
 {
   communicator.Together([&] {
-    if (has && this->lengthUnit != 1.0)
+    if (this->lengthUnit != 1.0)
     {
-      this->InLengths.emplace(this->medium, this->illumination, this->lengthUnit);
-      this->medium = this->InLengths->medium;
+      // Lamps have places on every rank: all follow their light.
+      this->InLengths.emplace(has ? this->medium : VoxelOfVacuum(partition.whole), this->illumination, this->lengthUnit);
+      this->medium = has ? this->InLengths->medium : this->medium;
       this->illumination = this->InLengths->illumination;
     }
   });
   this->powerUnit = communicator.Largest({ has ? PowerUnitOf(this->medium, this->illumination) : 0.0 })[0];
-  if (has && this->powerUnit != 1.0)
+  if (this->powerUnit != 1.0)
   {
     this->InUnits.emplace(this->medium, this->illumination, this->powerUnit);
     this->medium = this->InUnits->medium;

@@ -21,6 +21,9 @@ namespace tyndall
 void RequireSame(Communicator& communicator, bool has, const Medium& medium, const Illumination& illumination,
   const PropagationSettings& settings);
 
+/// A medium for a rank whose block has no voxels: what is found there counts nowhere.
+Medium VoxelOfVacuum(const Grid& whole);
+
 /// A block's scene in the units and channels of all.
 struct BlockScene
 {
