@@ -1,6 +1,7 @@
 #include "DiscreteOrdinates/ChannelArrays.h"
 
 #include "Device/Defines.h"
+#include "Distribution/SharedMedium.h"
 #include "LightPropagation/Sweep/SweepOfDevice.h"
 #include "LightPropagation/Uncollided/GivenLight.h"
 #include "LightPropagation/Uncollided/UncollidedLamp.h"
@@ -123,7 +124,9 @@ void ChannelArrays::SpreadOverRanks(UncollidedVolume& volume, std::unique_ptr<La
       nearLamps =
         std::make_unique<LampsInBlocks>(this->TheDevice, ranks.others, ranks.partition, this->Layout, sigma_t);
     }
-    return ranks.OfOneThatHas(nearLamps->Deposit(ofChannels, lamp, monitor));
+    const SweepTally tally = nearLamps->Deposit(ofChannels, lamp, monitor);
+    // Of all already; a rank without voxels may not know the channel's power.
+    return ranks.Sum(IsFirstThatHas(ranks.others, ranks.partition) ? tally : SweepTally());
   };
 }
 
@@ -131,7 +134,7 @@ void ChannelArrays::SpreadOverRanks(UncollidedVolume& volume, std::unique_ptr<La
 void ChannelArrays::AddGiven(
   const LampScattering& scattering, const Buffer<float>& sigma_s, const Buffer<float>& source, OrdinatesResult& result)
 {
-  const UncollidedImage& image = this->Scene.uncollided;
+  UncollidedImage image = this->Scene.uncollided;
   const double size = this->Layout.grid.VoxelVolume();
   const Buffer<float> path(this->TheDevice,
     Planar(this->Layout, 1,
@@ -142,9 +145,16 @@ void ChannelArrays::AddGiven(
   {
     std::copy_n(image.meanDirection.values, 3 * this->Voxels, ways.begin());
   }
-  scattering.AddAlong(Buffer<float>(this->TheDevice, ways, "mean directions"), path, sigma_s,
-    { source, this->Scale, this->Direct, this->Light });
-  this->CountLamp(TallyOf(image, this->TheMedium, this->Scene.channel, 1), result.ledger);
+  this->Scene.Together([&] {
+    scattering.AddAlong(Buffer<float>(this->TheDevice, ways, "mean directions"), path, sigma_s,
+      { source, this->Scale, this->Direct, this->Light });
+  });
+  if (this->Scene.ranks && !IsFirstThatHas(this->Scene.ranks->others, this->Scene.ranks->partition))
+  {
+    image.escaped = {}; // all ranks have that of the whole
+  }
+  const SweepTally tally = TallyOf(image, this->TheMedium, this->Scene.channel, 1);
+  this->CountLamp(this->Scene.ranks ? this->Scene.ranks->Sum(tally) : tally, result.ledger);
 }
 
 void ChannelArrays::CountLamp(const SweepTally& tally, EnergyLedger& ledger)

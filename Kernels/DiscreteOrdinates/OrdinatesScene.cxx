@@ -13,7 +13,7 @@ std::unique_ptr<FaceLight> FaceLightOf(Device& device, const OrdinatesScene& sce
   {
     return nullptr;
   }
-  const Grid& grid = scene.medium.grid;
+  const Grid& grid = scene.WholeGrid();
   std::array<double, 6> powerIn = {};
   for (int g = 0; g < groups.Count(); ++g)
   {
@@ -31,32 +31,26 @@ std::unique_ptr<FaceLight> FaceLightOf(Device& device, const OrdinatesScene& sce
   return std::make_unique<FaceLight>(device, grid, 1, std::move(ofCells), scene.faceAlbedo);
 }
 
-SweepTally OrdinatesRanks::OfOneThatHas(const SweepTally& tally) const
+SweepTally OrdinatesRanks::Sum(const SweepTally& own) const
 {
-  const std::vector<VoxelBox>& blocks = this->partition.blocks;
-  const auto has = [](const VoxelBox& block) { return block.VoxelCount() > 0; };
-  const bool isFirst = std::find_if(blocks.begin(), blocks.end(), has) - blocks.begin() == this->others.Rank();
-  std::vector<double> values(39, 0.0); // in, out and onTheWay, three channels each
-  const auto forEach = [&values](auto& of, const auto& act) {
-    std::size_t next = 0;
-    for (std::size_t c = 0; c < 3; ++c)
-    {
-      for (std::size_t face = 0; face < 6; ++face)
-      {
-        act(values[next++], of.in[face][c]);
-        act(values[next++], of.out[face][c]);
-      }
-      act(values[next++], of.onTheWay[c]);
-    }
-  };
-  if (isFirst)
+  SweepTally sum = own;
+  std::vector<Rgb*> powers = { &sum.onTheWay };
+  for (std::size_t face = 0; face < 6; ++face)
   {
-    forEach(tally, [](double& value, double of) { value = of; });
+    powers.push_back(&sum.in[face]);
+    powers.push_back(&sum.out[face]);
+  }
+  std::vector<double> values;
+  for (const Rgb* power : powers)
+  {
+    values.insert(values.end(), power->begin(), power->end());
   }
   values = this->others.Sum(values);
-  SweepTally found;
-  forEach(found, [](double value, double& of) { of = value; });
-  return found;
+  for (std::size_t i = 0; i < values.size(); ++i)
+  {
+    (*powers[i / 3])[i % 3] = values[i];
+  }
+  return sum;
 }
 
 void OrdinatesRecord::Add(double goesOn, double more, const EnergyLedger& ledger)

@@ -37,8 +37,8 @@ struct OrdinatesRanks
   const BlockPartition& partition;
 
   bool Has() const { return this->partition.blocks[this->others.Rank()].VoxelCount() > 0; }
-  /// That of the first rank that has voxels; one without may not know units and colours. All ranks call it.
-  SweepTally OfOneThatHas(const SweepTally& tally) const;
+  /// Of all ranks, channel by channel. All ranks call it.
+  SweepTally Sum(const SweepTally& own) const;
 };
 
 /// One channel of a scene as discrete ordinates see it: what is solved.
@@ -53,6 +53,7 @@ struct OrdinatesScene
   OrdinatesGuess guess;
   const OrdinatesRanks* ranks = nullptr; ///< of which the medium is this one's block; null: it is the whole
 
+  const Grid& WholeGrid() const { return this->ranks ? this->ranks->partition.whole : this->medium.grid; }
   /// Sums over ranks of what each has of them.
   std::vector<double> Sum(const std::vector<double>& own) const
   {

@@ -46,8 +46,9 @@ DiffusionInBlocks::DiffusionInBlocks(Device& device, Communicator& communicator,
   const LatticeBox& box, const LatticeSettings& settings, const LatticeVoxels& voxels)
   : TheDevice(device)
   , Others(communicator)
-  , Around(communicator, partition, 1)
+  , Around(communicator, partition, settings.periodic, 1)
   , Whole(partition.whole)
+  , Periodic(settings.periodic)
   , Box(box)
   , Halvings(HalvingsFor(partition.whole))
 {
@@ -67,10 +68,16 @@ std::array<int, 3> DiffusionInBlocks::InWhole(std::size_t voxel) const
   return at;
 }
 
+/// @param voxel  of the whole grid, or one layer beyond a periodic end
 std::size_t DiffusionInBlocks::CellOf(const std::array<int, 3>& voxel) const
 {
-  return this->Cells.IndexOf(
-    { voxel[0] >> this->Halvings[0], voxel[1] >> this->Halvings[1], voxel[2] >> this->Halvings[2] });
+  std::array<int, 3> cell;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const int size = this->Whole.size[axis];
+    cell[axis] = (voxel[axis] + size) % size >> this->Halvings[axis];
+  }
+  return this->Cells.IndexOf(cell);
 }
 
 void DiffusionInBlocks::LoadVoxels(const LatticeSettings& settings, const LatticeVoxels& voxels)
@@ -83,6 +90,10 @@ void DiffusionInBlocks::LoadVoxels(const LatticeSettings& settings, const Lattic
     double loss = voxels.lost[known] * voxels.squared[known], all = 0.0;
     for (std::size_t face = 0; face < 6; ++face)
     {
+      if (this->Periodic[face / 2] && this->Whole.size[face / 2] == 1)
+      {
+        continue; // beyond it lies the voxel itself
+      }
       const std::size_t beyond = VoxelBeyond(this->Box.known, {}, known, face);
       if (beyond == Outside)
       {
@@ -117,7 +128,8 @@ void DiffusionInBlocks::LoadCells()
     sums[3 * cells + cell] += this->Loss[i];
     for (std::size_t axis = 0; axis < 3; ++axis)
     {
-      if (at[axis] > 0 && at[axis] % (1 << this->Halvings[axis]) == 0)
+      const bool hasLower = at[axis] > 0 || (this->Periodic[axis] && this->Cells.size[axis] > 1);
+      if (hasLower && at[axis] % (1 << this->Halvings[axis]) == 0)
       {
         sums[axis * cells + cell] += this->Conductance[i][2 * axis] / (1 << this->Halvings[axis]);
       }
