@@ -52,7 +52,7 @@ DiffusionInBlocks::DiffusionInBlocks(Device& device, Communicator& communicator,
   , Box(box)
   , Halvings(HalvingsFor(partition.whole))
 {
-  this->LoadVoxels(settings, voxels);
+  communicator.Together([&] { this->LoadVoxels(settings, voxels); });
   this->LoadCells();
 }
 
@@ -200,17 +200,38 @@ DiffusionInBlocks::Values DiffusionInBlocks::ByCells(const Values& residual)
 /// In float, as ranks tell each other, so that it is the same whoever has which voxel.
 std::vector<float> DiffusionInBlocks::Preconditioned(const Values& residual)
 {
-  std::vector<float> own(residual.size());
+  std::vector<float> own;
   const auto jacobi = [&](std::size_t i, double left) { return Damping * left / this->Diagonal[i]; };
-  for (std::size_t i = 0; i < own.size(); ++i)
-  {
-    own[i] = static_cast<float>(jacobi(i, residual[i]));
-  }
+  this->Others.Together([&] {
+    own.resize(residual.size());
+    for (std::size_t i = 0; i < own.size(); ++i)
+    {
+      own[i] = static_cast<float>(jacobi(i, residual[i]));
+    }
+  });
   std::vector<float> around = this->Around.Spread(own, 1);
-  const Values applied = this->Applied(around);
-  Values left = residual;
-  std::transform(left.begin(), left.end(), applied.begin(), left.begin(), std::minus<double>());
+  Values left;
+  this->Others.Together([&] {
+    left = residual;
+    const Values applied = this->Applied(around);
+    std::transform(left.begin(), left.end(), applied.begin(), left.begin(), std::minus<double>());
+  });
   const Values byCells = this->ByCells(left);
+  this->Others.Together([&] {
+    this->AddCells(byCells, around);
+    const Values corrected = this->Applied(around);
+    const LatticeBox box = this->Around.Box();
+    for (std::size_t i = 0; i < own.size(); ++i)
+    {
+      own[i] = static_cast<float>(around[box.Known(i)] + jacobi(i, residual[i] - corrected[i]));
+    }
+  });
+  return own;
+}
+
+/// Those of cells to their voxels, and those of the layer around.
+void DiffusionInBlocks::AddCells(const Values& byCells, std::vector<float>& around) const
+{
   const Grid known = this->Around.KnownGrid();
   for (std::size_t i = 0; i < around.size(); ++i)
   {
@@ -221,13 +242,6 @@ std::vector<float> DiffusionInBlocks::Preconditioned(const Values& residual)
     }
     around[i] = static_cast<float>(around[i] + byCells[this->CellOf(at)]);
   }
-  const Values corrected = this->Applied(around);
-  const LatticeBox box = this->Around.Box();
-  for (std::size_t i = 0; i < own.size(); ++i)
-  {
-    own[i] = static_cast<float>(around[box.Known(i)] + jacobi(i, residual[i] - corrected[i]));
-  }
-  return own;
 }
 
 /// Of all ranks.
@@ -238,13 +252,20 @@ double DiffusionInBlocks::Dot(const Values& a, const std::vector<float>& b)
 
 DiffusionInBlocks::Values DiffusionInBlocks::Solve(const Values& residual)
 {
-  Values left = residual, found(residual.size(), 0.0);
-  std::vector<float> better = this->Preconditioned(left), direction = better;
+  Values left, found;
+  this->Others.Together([&] {
+    left = residual;
+    found.assign(residual.size(), 0.0);
+  });
+  std::vector<float> better = this->Preconditioned(left), direction;
+  this->Others.Together([&] { direction = better; });
   double norm = this->Dot(left, better);
   const double first = norm;
   for (int iteration = 0; iteration < MostIterations && norm > Reduction * Reduction * first; ++iteration)
   {
-    const Values applied = this->Applied(this->Around.Spread(direction, 1));
+    const std::vector<float> around = this->Around.Spread(direction, 1);
+    Values applied;
+    this->Others.Together([&] { applied = this->Applied(around); });
     const double curvature = this->Dot(applied, direction);
     if (!(curvature > 0.0))
     {

@@ -39,6 +39,7 @@ private:
   std::array<int, 3> InWhole(std::size_t voxel) const;
   Values Applied(const std::vector<float>& around) const;
   Values ByCells(const Values& residual);
+  void AddCells(const Values& byCells, std::vector<float>& around) const;
   std::vector<float> Preconditioned(const Values& residual);
   double Dot(const Values& a, const std::vector<float>& b);
 

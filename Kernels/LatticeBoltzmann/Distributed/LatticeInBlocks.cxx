@@ -15,6 +15,7 @@
 #include "Photons/Distributed/PhotonsInBlocks.h"
 
 #include <algorithm>
+#include <functional>
 #include <memory>
 #include <optional>
 
@@ -86,6 +87,7 @@ public:
     return this->Lines.Sweep(even, shines, writes, monitor);
   }
   Values Diffuse(const Values& residual, double) override { return this->Diffusion.Solve(residual); }
+  void Alone(const std::function<void()>& work) override { this->Others.Together(work); }
   Values Sum(const Values& ofRank) override { return this->Others.Sum(ofRank); }
 
 private:
@@ -114,7 +116,9 @@ public:
 
   void AddTo(LightField& light, int channel, const Monitor& monitor) const
   {
-    LatticeVoxels voxels(this->Scene, this->Index, this->OfKnown, this->Direct, channel);
+    std::optional<LatticeVoxels> made;
+    this->Others.Together([&] { made.emplace(this->Scene, this->Index, this->OfKnown, this->Direct, channel); });
+    LatticeVoxels& voxels = *made;
     this->TakeWhatIsOfAll(voxels, channel);
     std::optional<Lattice> lattice;
     this->Others.Together([&] {
