@@ -86,10 +86,9 @@ std::string vtkDiscreteOrdinates::NotByBlocks(vtkInformationVector**) const
   return this->WarmStart ? "WarmStart" : "";
 }
 
-std::string vtkDiscreteOrdinates::NotInBlocks(
-  const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining)
+std::string vtkDiscreteOrdinates::NotInBlocks(const tyndall::PieceOfMedium&, const tyndall::IlluminationInput& shining)
 {
-  return tyndall::NotInBlocks(piece.medium, shining.illumination, GivenSettings(this));
+  return tyndall::NotInBlocks(shining.illumination, GivenSettings(this));
 }
 
 tyndall::LightField vtkDiscreteOrdinates::SolvePiece(tyndall::Communicator& communicator,

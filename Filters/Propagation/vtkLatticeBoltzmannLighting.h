@@ -58,7 +58,7 @@ struct MediumInput;
  *
  * With Decomposition BLOCKS lines of links go on from rank to rank (numerics.md, section 10 c). Blocks do what the
  * conservative scheme's steady light does, refraction and FaceAlbedo included, but, beside what no solver can do by
- * blocks, not point, spot and rectangle lights, Photons, BlockSize and MaximumOrders.
+ * blocks, not Photons, BlockSize, MaximumOrders, and point, spot and rectangle lights beside periodic axes.
  *
  * EstimateError is not used.
  *

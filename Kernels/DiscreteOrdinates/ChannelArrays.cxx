@@ -1,6 +1,7 @@
 #include "DiscreteOrdinates/ChannelArrays.h"
 
 #include "Device/Defines.h"
+#include "Distribution/SharedMedium.h"
 #include "LightPropagation/Sweep/SweepOfDevice.h"
 #include "LightPropagation/Uncollided/GivenLight.h"
 #include "LightPropagation/Uncollided/UncollidedLamp.h"
@@ -71,15 +72,18 @@ void ChannelArrays::AddLamps(
   const LampScattering scattering(this->TheDevice, this->Layout.grid, this->Angles.groups, this->Angles.function);
   const Buffer<float> sigma_t = this->Load("sigma_t", 1.0, 1.0), sigma_s = this->Load("sigma_s", 0.0, 1.0);
   const SweepMaker sweeps = [&](const SweepRequest& request) { return this->SweepOf(sigma_t, periodic, request); };
-  // Rays of a beam are those through the whole grid.
-  const VolumeLayout whole = { this->Scene.ranks ? this->Scene.ranks->partition.whole : this->Layout.grid, 1, true };
+  std::unique_ptr<LampsInBlocks> nearLamps;
   Buffer<float> path(this->TheDevice, this->Layout.Floats(), "the light of a lamp");
   const double all = static_cast<double>(this->Scene.lamps.size());
   for (std::size_t i = 0; i < this->Scene.lamps.size(); ++i)
   {
     path.Fill(0.0f);
-    const UncollidedVolume volume = { this->TheDevice, whole, sigma_t, periodic, sweeps,
+    UncollidedVolume volume = { this->TheDevice, this->Layout, sigma_t, periodic, sweeps,
       { &path, nullptr, nullptr, nullptr, this->Faces ? &this->Faces->Out() : nullptr } };
+    if (this->Scene.ranks)
+    {
+      this->SpreadOverRanks(volume, nearLamps);
+    }
     const Monitor ofLamp = OfPart(monitor, i / all, (i + 1) / all);
     this->CountLamp(UncollidedLamp(this->Scene.lamps[i]).AddTo(volume, ofLamp), result.ledger);
     this->Scene.Together([&] {
@@ -107,11 +111,30 @@ std::unique_ptr<SweepOperator> ChannelArrays::SweepOf(
   return sweep;
 }
 
+/// Rays are those through the whole grid, and beams of lamps are handed on from rank to rank.
+/// @param nearLamps  of the volume's sigma_t: made where a lamp asks for them
+void ChannelArrays::SpreadOverRanks(UncollidedVolume& volume, std::unique_ptr<LampsInBlocks>& nearLamps) const
+{
+  const OrdinatesRanks& ranks = *this->Scene.ranks;
+  volume.whole = &ranks.partition.whole;
+  volume.followLamp = [this, &ranks, &nearLamps, &sigma_t = volume.sigma_t](
+                        const SweepVolume& ofChannels, const tyndall::Light& lamp, const Monitor& monitor) {
+    if (!nearLamps)
+    {
+      nearLamps =
+        std::make_unique<LampsInBlocks>(this->TheDevice, ranks.others, ranks.partition, this->Layout, sigma_t);
+    }
+    const SweepTally tally = nearLamps->Deposit(ofChannels, lamp, monitor);
+    // Of all already; a rank without voxels may not know the channel's power.
+    return ranks.Sum(IsFirstThatHas(ranks.others, ranks.partition) ? tally : SweepTally());
+  };
+}
+
 /// Light that another solver found.
 void ChannelArrays::AddGiven(
   const LampScattering& scattering, const Buffer<float>& sigma_s, const Buffer<float>& source, OrdinatesResult& result)
 {
-  const UncollidedImage& image = this->Scene.uncollided;
+  UncollidedImage image = this->Scene.uncollided;
   const double size = this->Layout.grid.VoxelVolume();
   const Buffer<float> path(this->TheDevice,
     Planar(this->Layout, 1,
@@ -122,9 +145,16 @@ void ChannelArrays::AddGiven(
   {
     std::copy_n(image.meanDirection.values, 3 * this->Voxels, ways.begin());
   }
-  scattering.AddAlong(Buffer<float>(this->TheDevice, ways, "mean directions"), path, sigma_s,
-    { source, this->Scale, this->Direct, this->Light });
-  this->CountLamp(TallyOf(image, this->TheMedium, this->Scene.channel, 1), result.ledger);
+  this->Scene.Together([&] {
+    scattering.AddAlong(Buffer<float>(this->TheDevice, ways, "mean directions"), path, sigma_s,
+      { source, this->Scale, this->Direct, this->Light });
+  });
+  if (this->Scene.ranks && !IsFirstThatHas(this->Scene.ranks->others, this->Scene.ranks->partition))
+  {
+    image.escaped = {}; // all ranks have that of the whole
+  }
+  const SweepTally tally = TallyOf(image, this->TheMedium, this->Scene.channel, 1);
+  this->CountLamp(this->Scene.ranks ? this->Scene.ranks->Sum(tally) : tally, result.ledger);
 }
 
 void ChannelArrays::CountLamp(const SweepTally& tally, EnergyLedger& ledger)

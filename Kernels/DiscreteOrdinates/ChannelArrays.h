@@ -3,9 +3,11 @@
 #include "DiscreteOrdinates/AngularScattering.h"
 #include "DiscreteOrdinates/LampScattering.h"
 #include "DiscreteOrdinates/OrdinatesScene.h"
+#include "LightPropagation/Distributed/LampsInBlocks.h"
 #include "LightPropagation/Distributed/Sweep/SweepInBlocks.h"
 #include "LightPropagation/Sweep/SweepWorkspace.h"
 #include "LightPropagation/Sweep/VolumeLayout.h"
+#include "LightPropagation/Uncollided/UncollidedSource.h"
 
 #include "Device/Monitor.h"
 
@@ -63,6 +65,7 @@ private:
   Buffer<float> Load(const char* what, double absorbed, double scattered) const;
   std::unique_ptr<SweepOperator> SweepOf(
     const Buffer<float>& sigma_t, const std::array<bool, 3>& periodic, const SweepRequest& request);
+  void SpreadOverRanks(UncollidedVolume& volume, std::unique_ptr<LampsInBlocks>& nearLamps) const;
   void AddGiven(const LampScattering& scattering, const Buffer<float>& sigma_s, const Buffer<float>& source,
     OrdinatesResult& result);
   void CountLamp(const SweepTally& tally, EnergyLedger& ledger);

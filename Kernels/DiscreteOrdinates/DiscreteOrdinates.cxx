@@ -18,43 +18,6 @@ namespace
 {
 constexpr double SlowestRate = 1.0 - 1e-6; ///< of orders, that is told the next solve
 
-/// Of a mean cosine that varies by voxel the mean, weighted by what is scattered with it.
-PhaseFunction FunctionOf(const Medium& medium, int channel)
-{
-  if (!medium.phase.Varies())
-  {
-    return medium.phase.OfChannel(channel);
-  }
-  double scattered = 0.0, forwards = 0.0;
-  for (std::size_t i = 0; i < medium.grid.VoxelCount(); ++i)
-  {
-    scattered += medium.sigma_s.At(i, channel);
-    forwards += static_cast<double>(medium.sigma_s.At(i, channel)) * medium.phase.MeanCosine(i, channel);
-  }
-  return medium.phase.OfChannel(channel).WithMeanCosine(scattered > 0.0 ? forwards / scattered : 0.0);
-}
-
-std::array<Rgb, 6> FaceAlbedoOf(const Illumination& shining, int channel)
-{
-  std::array<Rgb, 6> albedo = {};
-  for (int face = 0; face < 6; ++face)
-  {
-    albedo[face].fill(shining.faceAlbedo[face][channel]);
-  }
-  return albedo;
-}
-
-UncollidedImage UncollidedOf(const Illumination& shining, int channel)
-{
-  UncollidedImage image = shining.uncollided;
-  image.fluence.standsForAll = image.fluence.HasColour() ? channel : image.fluence.standsForAll;
-  for (Rgb& face : image.escaped)
-  {
-    face.fill(face[channel]);
-  }
-  return image;
-}
-
 std::vector<std::string> Words(const PropagationProblem& problem, const FarLight& far, const OrdinatesAngles& angles)
 {
   std::vector<std::string> words;
@@ -100,8 +63,7 @@ std::vector<std::string> DoubtsOf(const PropagationProblem& problem, const Ordin
   }
   if (problem.TheMedium().phase.Varies())
   {
-    doubts.push_back("The mean cosine g varies by voxel; discrete ordinates are solved with its mean, weighted by "
-                     "sigma_s. Light Propagation Maps tell voxels apart.");
+    doubts.emplace_back(DoubtOfVaryingCosine);
   }
   return doubts;
 }
@@ -163,7 +125,7 @@ LightField SolveDiscreteOrdinates(Device& device, const Medium& medium, const Il
   KeptLight left;
   for (int c = 0; c < light.channels; ++c)
   {
-    const PhaseFunction function = FunctionOf(problem.TheMedium(), c);
+    const PhaseFunction function = FunctionOf(problem.TheMedium(), c, nullptr);
     const OrdinatesAngles angles = { OrdinateGroups(far.directions), SeparableOf(function, far.directions, settings),
       function };
     CheckMemory(device, problem.TheGrid(), angles, settings);

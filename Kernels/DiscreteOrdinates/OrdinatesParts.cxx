@@ -100,6 +100,40 @@ FarLight FarLightOf(const Illumination& shining, int perFace, const OrdinatesSet
   return far;
 }
 
+PhaseFunction FunctionOf(const Medium& medium, int channel, const OrdinatesRanks* ranks)
+{
+  std::vector<double> sums = { 0.0, 0.0 }; // scattered, forwards
+  for (std::size_t i = 0; medium.phase.Varies() && i < medium.grid.VoxelCount(); ++i)
+  {
+    sums[0] += medium.sigma_s.At(i, channel);
+    sums[1] += static_cast<double>(medium.sigma_s.At(i, channel)) * medium.phase.MeanCosine(i, channel);
+  }
+  sums = ranks ? ranks->others.Sum(sums) : sums;
+  const PhaseFunction function = medium.phase.OfChannel(channel);
+  return medium.phase.Varies() ? function.WithMeanCosine(sums[0] > 0.0 ? sums[1] / sums[0] : 0.0) : function;
+}
+
+std::array<Rgb, 6> FaceAlbedoOf(const Illumination& shining, int channel)
+{
+  std::array<Rgb, 6> albedo = {};
+  for (int face = 0; face < 6; ++face)
+  {
+    albedo[face].fill(shining.faceAlbedo[face][channel]);
+  }
+  return albedo;
+}
+
+UncollidedImage UncollidedOf(const Illumination& shining, int channel)
+{
+  UncollidedImage image = shining.uncollided;
+  image.fluence.standsForAll = image.fluence.HasColour() ? channel : image.fluence.standsForAll;
+  for (Rgb& face : image.escaped)
+  {
+    face.fill(face[channel]);
+  }
+  return image;
+}
+
 SeparablePhaseFunction SeparableOf(
   const PhaseFunction& function, const std::vector<Direction>& directions, const OrdinatesSettings& settings)
 {

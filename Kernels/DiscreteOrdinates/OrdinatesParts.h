@@ -8,6 +8,7 @@
 #include "Lights/Lights.h"
 #include "PhaseFunction/SeparablePhaseFunction.h"
 
+#include <array>
 #include <vector>
 
 namespace tyndall
@@ -29,6 +30,18 @@ struct FarLight
 
 /// @param perFace  directions per face of a cube, as they are solved with
 FarLight FarLightOf(const Illumination& shining, int perFace, const OrdinatesSettings& settings);
+
+/// Of a mean cosine that varies by voxel the mean, weighted by what is scattered with it.
+/// @param ranks  of all of which; all call it. Null: the medium is the whole
+PhaseFunction FunctionOf(const Medium& medium, int channel, const OrdinatesRanks* ranks);
+
+constexpr auto DoubtOfVaryingCosine =
+  "The mean cosine g varies by voxel; discrete ordinates are solved with its mean, weighted by sigma_s. Light "
+  "Propagation Maps tell voxels apart.";
+
+/// Those of a channel in all three.
+std::array<Rgb, 6> FaceAlbedoOf(const Illumination& shining, int channel);
+UncollidedImage UncollidedOf(const Illumination& shining, int channel);
 
 SeparablePhaseFunction SeparableOf(
   const PhaseFunction& function, const std::vector<Direction>& directions, const OrdinatesSettings& settings);

@@ -13,7 +13,7 @@ std::unique_ptr<FaceLight> FaceLightOf(Device& device, const OrdinatesScene& sce
   {
     return nullptr;
   }
-  const Grid& grid = scene.medium.grid;
+  const Grid& grid = scene.WholeGrid();
   std::array<double, 6> powerIn = {};
   for (int g = 0; g < groups.Count(); ++g)
   {
@@ -29,6 +29,28 @@ std::unique_ptr<FaceLight> FaceLightOf(Device& device, const OrdinatesScene& sce
   std::vector<double> ofCells;
   ForBoxFaceCells(grid, [&](const BoxFaceCell& cell) { ofCells.push_back(powerIn[cell.face]); });
   return std::make_unique<FaceLight>(device, grid, 1, std::move(ofCells), scene.faceAlbedo);
+}
+
+SweepTally OrdinatesRanks::Sum(const SweepTally& own) const
+{
+  SweepTally sum = own;
+  std::vector<Rgb*> powers = { &sum.onTheWay };
+  for (std::size_t face = 0; face < 6; ++face)
+  {
+    powers.push_back(&sum.in[face]);
+    powers.push_back(&sum.out[face]);
+  }
+  std::vector<double> values;
+  for (const Rgb* power : powers)
+  {
+    values.insert(values.end(), power->begin(), power->end());
+  }
+  values = this->others.Sum(values);
+  for (std::size_t i = 0; i < values.size(); ++i)
+  {
+    (*powers[i / 3])[i % 3] = values[i];
+  }
+  return sum;
 }
 
 void OrdinatesRecord::Add(double goesOn, double more, const EnergyLedger& ledger)

@@ -8,6 +8,7 @@
 #include "LightPropagation/Conservative/EnergyLedger.h"
 #include "LightPropagation/Conservative/FaceLight.h"
 #include "LightPropagation/Convergence.h"
+#include "LightPropagation/Sweep/SweepTally.h"
 #include "Lights/Lights.h"
 #include "Medium/Medium.h"
 #include "PhaseFunction/SeparablePhaseFunction.h"
@@ -36,6 +37,8 @@ struct OrdinatesRanks
   const BlockPartition& partition;
 
   bool Has() const { return this->partition.blocks[this->others.Rank()].VoxelCount() > 0; }
+  /// Of all ranks, channel by channel. All ranks call it.
+  SweepTally Sum(const SweepTally& own) const;
 };
 
 /// One channel of a scene as discrete ordinates see it: what is solved.
@@ -50,6 +53,7 @@ struct OrdinatesScene
   OrdinatesGuess guess;
   const OrdinatesRanks* ranks = nullptr; ///< of which the medium is this one's block; null: it is the whole
 
+  const Grid& WholeGrid() const { return this->ranks ? this->ranks->partition.whole : this->medium.grid; }
   /// Sums over ranks of what each has of them.
   std::vector<double> Sum(const std::vector<double>& own) const
   {

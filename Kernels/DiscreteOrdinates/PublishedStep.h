@@ -3,6 +3,7 @@
 #include "Device/Buffer.h"
 #include "DiscreteOrdinates/OrdinateGroups.h"
 #include "DiscreteOrdinates/UpwindSweep.h"
+#include "LightPropagation/Conservative/FaceLight.h"
 #include "Medium/Grid.h"
 
 #include <array>

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 
 namespace tyndall
 {
@@ -25,15 +26,22 @@ bool CanBeNegative(const OrdinatesAngles& angles, const OrdinatesSettings& setti
   return SumsOf(settings) == PairSums::Matrix || angles.phase.Terms() > 1;
 }
 
-std::unique_ptr<OrdinateSweep> SweepOf(Device& device, const OrdinatesScene& scene, const OrdinatesAngles& angles,
-  const OrdinatesSettings& settings, const FaceLight* reflecting)
+/// Whoever sweeps with faces that give back light sees these.
+std::optional<LightOfCells> CellsOf(const FaceLight* faces)
 {
+  return faces ? std::optional<LightOfCells>({ faces->Out(), faces->In() }) : std::nullopt;
+}
+
+std::unique_ptr<OrdinateSweep> SweepOf(Device& device, const OrdinatesScene& scene, const OrdinatesAngles& angles,
+  const OrdinatesSettings& settings, const LightOfCells* reflecting)
+{
+  const SweptFaces faces = SweptFaces::Of(scene.WholeGrid(), settings.periodic, reflecting);
   const Grid& grid = scene.medium.grid;
   if (scene.ranks)
   {
-    return std::make_unique<UpwindSweepInBlocks>(device, *scene.ranks, grid, angles.groups);
+    return std::make_unique<UpwindSweepInBlocks>(device, *scene.ranks, grid, angles.groups, faces);
   }
-  return std::make_unique<UpwindSweep>(device, grid, angles.groups, settings.periodic, reflecting);
+  return std::make_unique<UpwindSweep>(device, grid, angles.groups, faces);
 }
 
 class SweptOrders
@@ -44,7 +52,8 @@ public:
     : Scene(scene)
     , Settings(settings)
     , Arrays(device, scene, angles, settings.netFlux)
-    , Sweep(SweepOf(device, scene, angles, settings, this->Arrays.Faces.get()))
+    , Cells(CellsOf(this->Arrays.Faces.get()))
+    , Sweep(SweepOf(device, scene, angles, settings, this->Cells ? &*this->Cells : nullptr))
     , Scattering(device, angles.groups, angles.phase, SumsOf(settings), CanBeNegative(angles, settings),
         settings.netFlux, this->Arrays.Voxels)
     , Radiance(device, AngularScattering::Floats(angles.groups, this->Arrays.Voxels), "radiance of all directions")
@@ -251,6 +260,7 @@ private:
   const OrdinatesScene& Scene;
   const OrdinatesSettings& Settings;
   ChannelArrays Arrays;
+  const std::optional<LightOfCells> Cells;
   std::unique_ptr<OrdinateSweep> Sweep;
   AngularScattering Scattering;
   Buffer<float> Radiance, Source; ///< Source: empty where scattering works in place

@@ -26,14 +26,21 @@ double FaceArea(const Grid& grid, int axis)
 }
 }
 
-UpwindSweep::UpwindSweep(Device& device, const Grid& grid, const OrdinateGroups& groups,
-  const std::array<bool, 3>& periodic, const FaceLight* reflecting, int inner)
+SweptFaces SweptFaces::Of(const Grid& grid, const std::array<bool, 3>& periodic, const LightOfCells* reflecting)
+{
+  SweptFaces faces = { periodic, {}, reflecting, 0 };
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    faces.unvarying[axis] = periodic[axis] && grid.size[axis] == 1;
+  }
+  return faces;
+}
+
+UpwindSweep::UpwindSweep(Device& device, const Grid& grid, const OrdinateGroups& groups, const SweptFaces& faces)
   : TheDevice(device)
   , TheGrid(grid)
   , Groups(groups)
-  , Periodic(periodic)
-  , Reflecting(reflecting)
-  , InnerFaces(inner)
+  , At(faces)
 {
   for (int axis = 0; axis < 3; ++axis)
   {
@@ -112,10 +119,7 @@ FacePowers UpwindSweep::Apply(const Buffer<float>& radiance, const Buffer<float>
   this->LetIn(incoming, powers);
   this->SweepGroups(0, this->Groups.Count(), radiance, sigma_t, scale, monitor);
   this->Count(powers);
-  if (this->Reflecting)
-  {
-    this->LeaveByCells();
-  }
+  this->LeaveByCells();
   return powers;
 }
 
@@ -156,7 +160,7 @@ void UpwindSweep::EnterByCells(int axis) const
 {
   cl::Kernel enter = this->Kernel("enter_by_cells");
   const std::size_t cells = FaceVoxels(this->TheGrid, axis);
-  With(enter, this->Faces[axis], this->Reflecting->In(), this->Up, axis,
+  With(enter, this->Faces[axis], this->At.reflecting->in, this->Up, axis,
     cl_ulong(LayoutOfFace(this->TheGrid, 2 * axis).first), cl_ulong(LayoutOfFace(this->TheGrid, 2 * axis + 1).first));
   this->TheDevice.Queue().enqueueNDRangeKernel(enter, cl::NullRange, cl::NDRange(cells, this->Groups.Count()));
 }
@@ -164,13 +168,13 @@ void UpwindSweep::EnterByCells(int axis) const
 void UpwindSweep::LeaveByCells() const
 {
   cl::Kernel leave = this->Kernel("leave_by_cells");
-  for (int axis = 0; axis < 3; ++axis)
+  for (int axis = 0; axis < 3 && this->At.reflecting; ++axis)
   {
-    if (this->Periodic[axis])
+    if (this->At.periodic[axis])
     {
       continue;
     }
-    With(leave, this->Faces[axis], this->Reflecting->Out(), this->Across, this->Up, axis, this->Groups.Count(),
+    With(leave, this->Faces[axis], this->At.reflecting->out, this->Across, this->Up, axis, this->Groups.Count(),
       cl_ulong(LayoutOfFace(this->TheGrid, 2 * axis).first), cl_ulong(LayoutOfFace(this->TheGrid, 2 * axis + 1).first));
     this->TheDevice.Queue().enqueueNDRangeKernel(leave, cl::NullRange, cl::NDRange(FaceVoxels(this->TheGrid, axis)));
   }
@@ -181,7 +185,7 @@ void UpwindSweep::LetIn(const IncomingRadiance& incoming, FacePowers& powers)
 {
   for (int axis = 0; axis < 3; ++axis)
   {
-    if (this->Periodic[axis])
+    if (this->At.periodic[axis])
     {
       continue;
     }
@@ -193,7 +197,7 @@ void UpwindSweep::LetIn(const IncomingRadiance& incoming, FacePowers& powers)
     {
       this->Faces[axis].Fill(0.0f);
     }
-    if (this->Reflecting)
+    if (this->At.reflecting)
     {
       this->EnterByCells(axis);
     }
@@ -241,7 +245,7 @@ void UpwindSweep::Count(FacePowers& powers) const
       const double across = this->Groups.Weight(g, lane) * std::abs(this->Groups.Of(g, lane).omega[axis]);
       const int face = 2 * axis + (this->Groups.All()[g].up[axis] ? 1 : 0);
       const double watts = this->IsCounted(face) ? across * sums[i] * FaceArea(this->TheGrid, axis) : 0.0;
-      (this->Periodic[axis] ? powers.onTheWay : powers.out[face]) += watts;
+      (this->At.periodic[axis] ? powers.onTheWay : powers.out[face]) += watts;
     }
   }
 }

@@ -3,7 +3,6 @@
 #include "Device/Buffer.h"
 #include "Device/Monitor.h"
 #include "DiscreteOrdinates/OrdinateGroups.h"
-#include "LightPropagation/Conservative/FaceLight.h"
 #include "Medium/Grid.h"
 
 #include <array>
@@ -35,6 +34,28 @@ public:
     const IncomingRadiance& incoming, const Monitor& monitor) = 0;
 };
 
+/// Light by cells of a box's faces, as FaceLight has it of one channel.
+struct LightOfCells
+{
+  const Buffer<float>& out; ///< W that leave are added to
+  const Buffer<float>& in;  ///< radiance that comes in
+};
+
+/// What lies at the faces of a box that is swept.
+struct SweptFaces
+{
+  /// Axes: light that leaves comes in on the other side in the next sweep.
+  std::array<bool, 3> periodic = {};
+  /// Those of one voxel in the whole grid: nothing changes along them, and no light is carried.
+  std::array<bool, 3> unvarying = {};
+  const LightOfCells* reflecting = nullptr; ///< null: no face gives back light
+  /// Bits of the faces -x, +x, ... +z that are no faces of the whole grid: their power is not counted.
+  int inner = 0;
+
+  /// Of a box that is the whole grid. Must stay: `reflecting`.
+  static SweptFaces Of(const Grid& grid, const std::array<bool, 3>& periodic, const LightOfCells* reflecting);
+};
+
 /// Carries light once along all directions through a box of voxels, upwind (numerics.md, Eqs. (D9) to (D11)).
 ///
 /// Each voxel is crossed by the direction's mean chord, and light is attenuated along it by an exponential: it is
@@ -44,13 +65,7 @@ public:
 class UpwindSweep : public OrdinateSweep
 {
 public:
-  /// @param periodic  light that leaves along an axis comes in on the other side in the next sweep. Along periodic axes
-  /// of one voxel nothing changes, and none is carried.
-  /// @param reflecting  where what leaves is added to by cell, and what is given back comes from; null: no face gives
-  /// back light
-  /// @param inner  bits of the faces -x, +x, ... +z that are no faces of the whole grid: their power is not counted
-  UpwindSweep(Device& device, const Grid& grid, const OrdinateGroups& groups, const std::array<bool, 3>& periodic,
-    const FaceLight* reflecting, int inner = 0);
+  UpwindSweep(Device& device, const Grid& grid, const OrdinateGroups& groups, const SweptFaces& faces);
 
   /// Bytes that the faces take on the device.
   static std::size_t Bytes(const Grid& grid, const OrdinateGroups& groups);
@@ -64,6 +79,7 @@ public:
   void SweepGroups(int first, int count, const Buffer<float>& radiance, const Buffer<float>& sigma_t,
     const Buffer<float>& scale, const Monitor& monitor);
   void Count(FacePowers& powers) const;
+  void LeaveByCells() const; ///< nothing where no face gives back light
 
   /// Radiance through the faces across an axis, [group][row][voxel of the row][8]: of a group what comes in until it is
   /// swept, what leaves after that. Across z rows are along y, else along z.
@@ -71,21 +87,18 @@ public:
   void WriteFace(int axis, int firstGroup, const std::vector<float>& values);
 
 private:
-  bool IsCarried(int axis) const { return !(this->Periodic[axis] && this->TheGrid.size[axis] == 1); }
+  bool IsCarried(int axis) const { return !this->At.unvarying[axis]; }
   std::array<int, 2> FaceSize(int axis) const; ///< rows of a group, voxels of a row
   void LoadDirections();
-  bool IsCounted(int face) const { return !(this->InnerFaces >> face & 1); }
+  bool IsCounted(int face) const { return !(this->At.inner >> face & 1); }
   void FillFace(int axis, const IncomingRadiance& incoming, FacePowers& powers);
   void EnterByCells(int axis) const;
-  void LeaveByCells() const;
   cl::Kernel Kernel(const char* name, int width = 8) const;
 
   Device& TheDevice;
   Grid TheGrid;
   const OrdinateGroups& Groups;
-  std::array<bool, 3> Periodic;
-  const FaceLight* Reflecting;
-  int InnerFaces;
+  const SweptFaces At;
   Buffer<float> Shares, Across;
   Buffer<cl_int> Up;
   std::array<Buffer<float>, 3> Faces, Sums;

@@ -37,7 +37,9 @@ std::vector<T> TakeFrom(const std::vector<T>& values, const VoxelBox& box, const
   return taken;
 }
 
-void Put(const std::vector<float>& taken, std::vector<float>& values, const VoxelBox& box, const VoxelBox& part,
+}
+
+void PutPart(const std::vector<float>& taken, std::vector<float>& values, const VoxelBox& box, const VoxelBox& part,
   int components)
 {
   const std::ptrdiff_t width = static_cast<std::ptrdiff_t>(part.size[0]) * components;
@@ -46,7 +48,6 @@ void Put(const std::vector<float>& taken, std::vector<float>& values, const Voxe
     std::copy_n(from, width, values.begin() + static_cast<std::ptrdiff_t>(place));
     from += width;
   });
-}
 }
 
 std::vector<float> PartOf(const std::vector<float>& values, const VoxelBox& box, const VoxelBox& part, int components)
@@ -72,8 +73,8 @@ std::vector<float> ValuesInBox(Communicator& communicator, const BlockPartition&
   {
     if (const VoxelBox mine = Common(partition.blocks[rank], box); mine.VoxelCount() > 0)
     {
-      Put(rank == self ? PartOf(own, block, mine, components) : communicator.Receive<float>(rank, ValuesTag), values,
-        box, mine, components);
+      PutPart(rank == self ? PartOf(own, block, mine, components) : communicator.Receive<float>(rank, ValuesTag),
+        values, box, mine, components);
     }
   }
   return values;

@@ -12,6 +12,10 @@ namespace tyndall
 /// Of values of a box those of a part of it, `components` a voxel, x fastest.
 std::vector<float> PartOf(const std::vector<float>& values, const VoxelBox& box, const VoxelBox& part, int components);
 
+/// The other way round.
+void PutPart(const std::vector<float>& taken, std::vector<float>& values, const VoxelBox& box, const VoxelBox& part,
+  int components);
+
 /// Values of the voxels of a box that each rank wants, which may reach into the blocks of others. All ranks call it.
 /// @param wanted  by rank, within the grid; of no voxels where a rank wants none
 /// @param own  `components` for each voxel of this rank's block, x fastest

@@ -26,6 +26,15 @@ struct HeldFailure
     }
   }
 
+  /// In the end, within Communicator::Together.
+  void Throw() const
+  {
+    if (this->error)
+    {
+      std::rethrow_exception(this->error);
+    }
+  }
+
   bool broken = false; ///< something has gone wrong here, or on a rank before here
   std::exception_ptr error;
 };

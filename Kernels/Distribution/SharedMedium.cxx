@@ -44,6 +44,13 @@ void RequireSame(Communicator& communicator, const BlockPartition& partition)
   RequireSame(communicator, "the grid or its blocks", true, numbers);
 }
 
+bool IsFirstThatHas(const Communicator& communicator, const BlockPartition& partition)
+{
+  const auto has = [](const VoxelBox& block) { return block.VoxelCount() > 0; };
+  const std::vector<VoxelBox>& blocks = partition.blocks;
+  return std::find_if(blocks.begin(), blocks.end(), has) - blocks.begin() == communicator.Rank();
+}
+
 MediumTraits TraitsOfAll(Communicator& communicator, MediumTraits traits)
 {
   const std::vector<double> any = communicator.Largest({ traits.absorbs ? 1.0 : 0.0, traits.scatters ? 1.0 : 0.0,

@@ -18,6 +18,9 @@ void RequireSame(Communicator& communicator, const char* what, bool has, std::ve
 /// @throws InvalidInput  on each, where they differ in the grid and who has which part of it
 void RequireSame(Communicator& communicator, const BlockPartition& partition);
 
+/// Whether a rank is the first that has voxels: who counts what all know but ranks without voxels. No message is sent.
+bool IsFirstThatHas(const Communicator& communicator, const BlockPartition& partition);
+
 /// Of the medium of all ranks, as far as solvers leave things out: absorbs, scatters, emits, grey and greyExtinction.
 /// @param ofBlock  the others of it are kept
 MediumTraits TraitsOfAll(Communicator& communicator, MediumTraits ofBlock);

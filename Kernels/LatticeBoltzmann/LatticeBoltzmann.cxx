@@ -93,11 +93,7 @@ LightField SolveLatticeBoltzmann(Device& device, const Medium& medium, const Fie
   const Monitor& monitor)
 {
   CheckLattice(medium, ior, settings);
-  if (settings.periodic[0] || settings.periodic[1] || settings.periodic[2])
-  {
-    throw InvalidInput("Photons do not come back across periodic axes. Switch PeriodicX, PeriodicY and PeriodicZ off, "
-                       "or light the lattice by lights.");
-  }
+  CheckPhotonsGoNotRound(settings);
   MarchSettings march;
   march.meanDirection = settings.netFlux || NeedsFirstMoments(medium, settings);
   PhotonMarcher marcher(device, medium, ior, march);

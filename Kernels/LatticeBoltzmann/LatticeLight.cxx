@@ -71,6 +71,15 @@ PropagationSettings AsPropagation(const LatticeSettings& settings)
   return of;
 }
 
+void CheckPhotonsGoNotRound(const LatticeSettings& settings)
+{
+  if (settings.periodic[0] || settings.periodic[1] || settings.periodic[2])
+  {
+    throw InvalidInput("Photons do not come back across periodic axes. Switch PeriodicX, PeriodicY and PeriodicZ off, "
+                       "or light the lattice by lights.");
+  }
+}
+
 UncollidedImage ImageOf(const PhotonLight& photons)
 {
   UncollidedImage image;

@@ -21,6 +21,9 @@ bool NeedsFirstMoments(const Medium& medium, const LatticeSettings& settings);
 /// As the parts of other solvers that serve the lattice are asked for.
 PropagationSettings AsPropagation(const LatticeSettings& settings);
 
+/// @throws InvalidInput where an axis is periodic
+void CheckPhotonsGoNotRound(const LatticeSettings& settings);
+
 /// Photons' light as uncollided light; its arrays are theirs.
 UncollidedImage ImageOf(const PhotonLight& photons);
 

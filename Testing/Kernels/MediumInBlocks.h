@@ -32,6 +32,11 @@ struct MediumToCut
       return; // the part of a rank that has none
     }
     this->scene.Attach();
+    if (!this->given.empty())
+    {
+      this->scene.light.uncollided.fluence = { this->given.data(), this->scene.ComponentsOf(this->given) };
+      this->scene.light.uncollided.meanDirection = { this->ways.data(), 3 };
+    }
     if (!this->g.empty())
     {
       this->scene.medium.phase = tyndall::PhaseOfMedium(
@@ -54,11 +59,14 @@ struct MediumToCut
     part.scene.medium.phase = this->scene.medium.phase;
     part.ior = cut(this->ior);
     part.g = cut(this->g);
+    part.given = cut(this->given);
+    part.ways = cut(this->ways);
     return part;
   }
 
   Scene scene;
   std::vector<float> ior, g;
+  std::vector<float> given, ways; ///< uncollided light and its mean directions; empty: none is given
 };
 
 inline std::vector<float> RandomValues(std::size_t count, double least, double most, unsigned seed)
@@ -68,6 +76,48 @@ inline std::vector<float> RandomValues(std::size_t count, double least, double m
   std::vector<float> values(count);
   std::generate(values.begin(), values.end(), [&] { return static_cast<float>(value(random)); });
   return values;
+}
+
+/// A point, a spot that shines in from beside the box, and a rectangle.
+inline void AddNearLamps(Scene& scene)
+{
+  const auto place = [&scene](double x, double y, double z) {
+    const tyndall::Grid& grid = scene.medium.grid;
+    return std::array<double, 3>{ x * grid.Length(0), y * grid.Length(1), z * grid.Length(2) };
+  };
+  tyndall::Light point;
+  point.type = tyndall::LightType::Point;
+  point.position = place(0.35, 0.6, 0.45);
+  point.power = { 3.0, 3.0, 3.0 };
+  tyndall::Light spot = point;
+  spot.type = tyndall::LightType::Spot;
+  spot.position = place(-0.5, 0.4, 1.2);
+  spot.direction = { 0.9, 0.1, -0.6 };
+  spot.angle = 40.0;
+  tyndall::Light rectangle = point;
+  rectangle.type = tyndall::LightType::Rectangle;
+  rectangle.position = place(0.7, 1.1, 0.5);
+  rectangle.direction = { -0.2, -0.9, 0.3 };
+  rectangle.size = { 1.3, 0.7 };
+  for (const tyndall::Light& lamp : { point, spot, rectangle })
+  {
+    scene.light.lights.push_back(lamp);
+  }
+}
+
+/// Light of another solver instead of that of lamps.
+inline void GiveLight(MediumToCut& medium, bool colour)
+{
+  const std::size_t voxels = medium.scene.medium.grid.VoxelCount();
+  medium.given = RandomValues((colour ? 3 : 1) * voxels, 0.1, 2.0, 7);
+  medium.ways = RandomValues(3 * voxels, -0.57, 0.57, 8);
+  medium.scene.light.lights.clear();
+  medium.scene.light.sky = {};
+  medium.scene.light.faces = {};
+  for (std::size_t face = 0; face < 6; ++face)
+  {
+    medium.scene.light.uncollided.escaped[face].fill(0.5 * static_cast<double>(face));
+  }
 }
 
 /// Cut by planes across x at these voxels; 0 before and the end behind them.

@@ -5,8 +5,12 @@
 
 #include "LatticeBoltzmann/Distributed/LatticeInBlocks.h"
 
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+
 #include <algorithm>
 #include <functional>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -188,6 +192,168 @@ TEST_F(LatticeBlocks, HaveTheEnvironmentOfTheWhole)
   ExpectSame(this->OnRanks(4, medium, settings), this->Whole(medium, settings), 2e-6);
 }
 
+/// Points, spots and rectangles, in thick voxels, too, and in units in which a float holds no area.
+TEST_F(LatticeBlocks, HaveTheNearLampsOfTheWhole)
+{
+  for (const double spacing : { 1.0, 1e8 })
+  {
+    SCOPED_TRACE(std::to_string(spacing));
+    MediumToCut medium = Everything({ 7, 11, 6 });
+    Scene& scene = medium.scene;
+    scene.medium.grid.spacing.fill(spacing);
+    scene.medium.grid.origin = { -2.0 * spacing, 3.0 * spacing, 0.5 * spacing };
+    AddNearLamps(scene);
+    for (std::vector<float>* perLength : { &scene.sigma_a, &scene.sigma_s, &scene.emission })
+    {
+      std::for_each(
+        perLength->begin(), perLength->end(), [&](float& value) { value = static_cast<float>(value / spacing); });
+    }
+    const LightField whole = this->Whole(medium, SettingsOf(1e-7));
+    const LightField slices = this->OfBlocks(Slices(scene.medium.grid, { 1, 1, 2 }), medium, SettingsOf(1e-7));
+    ExpectSame(slices, whole, 2e-6);
+    for (const int ranks : spacing > 1.0 ? std::vector<int>() : std::vector<int>{ 1, 2, 3, 8 })
+    {
+      SCOPED_TRACE(std::to_string(ranks) + " ranks");
+      ExpectSame(this->OnRanks(ranks, medium, SettingsOf(1e-7)), slices, 1e-6);
+    }
+  }
+}
+
+TEST_F(LatticeBlocks, HaveNearLampsOfColourInSingleVoxels)
+{
+  MediumToCut medium = Everything({ 2, 3, 3 });
+  Scene& scene = medium.scene;
+  scene.sigma_s = RandomValues(3 * scene.sigma_a.size(), 0.0, 2.0, 9);
+  scene.light.lights.clear();
+  AddNearLamps(scene);
+  scene.light.lights[0].power = { 1.0, 0.0, 3.0 };
+  ExpectSame(this->OfBlocks(SingleVoxels(scene.medium.grid), medium, SettingsOf(1e-7)),
+    this->Whole(medium, SettingsOf(1e-7)), 2e-6);
+}
+
+/// Lines close, or come through blocks again and again; the more so where edges have a common divisor.
+TEST_F(LatticeBlocks, HaveTheLightThatGoesRoundPeriodicAxes)
+{
+  const std::array<bool, 3> some[] = { { true, false, false }, { false, true, true }, { true, true, true } };
+  for (const std::array<bool, 3>& periodic : some)
+  {
+    SCOPED_TRACE(std::to_string(periodic[0]) + std::to_string(periodic[1]) + std::to_string(periodic[2]));
+    MediumToCut medium = Everything({ 6, 3, 4 });
+    for (std::size_t face = 0; face < 6; ++face)
+    {
+      medium.scene.light.faceAlbedo[face].fill(periodic[face / 2] ? 0.0 : 0.1 * static_cast<double>(face));
+    }
+    LatticeSettings settings = SettingsOf(1e-7);
+    settings.periodic = periodic;
+    const LightField alone = this->OnRanks(1, medium, settings);
+    ExpectSame(alone, this->Whole(medium, settings), 2e-6);
+    for (const int ranks : { 2, 3, 8 })
+    {
+      SCOPED_TRACE(std::to_string(ranks) + " ranks");
+      ExpectSame(this->OnRanks(ranks, medium, settings), alone, 1e-6);
+    }
+    ExpectSame(this->OfBlocks(Slices(medium.scene.medium.grid, { 1, 1, 4 }), medium, settings), alone, 1e-6);
+  }
+}
+
+/// Instead of that of lamps, by voxel, with its mean direction, from which it is told where in voxels it is lost.
+TEST_F(LatticeBlocks, HaveTheLightThatIsGivenToTheWhole)
+{
+  for (const bool colour : { false, true })
+  {
+    SCOPED_TRACE(colour);
+    MediumToCut medium = Everything({ 7, 5, 6 });
+    GiveLight(medium, colour);
+    LatticeSettings settings = SettingsOf(1e-7);
+    settings.periodic = { false, colour, false };
+    medium.scene.light.faceAlbedo[2] = medium.scene.light.faceAlbedo[3] = {};
+    const LightField whole = this->Whole(medium, settings);
+    for (const int ranks : { 1, 3, 8 })
+    {
+      SCOPED_TRACE(std::to_string(ranks) + " ranks");
+      ExpectSame(this->OnRanks(ranks, medium, settings), whole, 2e-6);
+    }
+    ExpectSame(this->OfBlocks(Slices(medium.scene.medium.grid, { 0, 1, 1 }), medium, settings), whole, 2e-6);
+  }
+}
+
+/// Of photons that bend, of which each rank has some, and of what the medium emits.
+TEST_F(LatticeBlocks, HaveThePhotonsOfTheWhole)
+{
+  MediumToCut medium = Everything({ 8, 7, 5 });
+  Scene& scene = medium.scene;
+  scene.light.lights.clear();
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> place(0.5, 4.5);
+  std::vector<Photon> photons(300);
+  for (Photon& photon : photons)
+  {
+    photon.position = { place(random), place(random), place(random) };
+    const glm::dvec3 along = glm::normalize(glm::dvec3(place(random) - 2.5, place(random) - 2.5, place(random) - 2.5));
+    photon.direction = { static_cast<float>(along.x), static_cast<float>(along.y), static_cast<float>(along.z) };
+    photon.power = { 0.01f, 0.02f, 0.03f };
+  }
+  const LatticeSettings settings = SettingsOf(1e-7);
+  medium.Attach();
+  const LightField whole =
+    SolveLatticeBoltzmann(this->GetDevice(), scene.medium, medium.Index(), photons, scene.light, settings);
+  for (const BlockPartition& partition : { BlockPartition::Even(scene.medium.grid, 1),
+         BlockPartition::Even(scene.medium.grid, 3), Slices(scene.medium.grid, { 0, 1 }) })
+  {
+    SCOPED_TRACE(std::to_string(partition.blocks.size()) + " ranks");
+    const LightField light = LightOfBlocks(partition, medium, [&](Communicator& communicator, MediumToCut& part) {
+      const std::size_t rank = static_cast<std::size_t>(communicator.Rank()), ranks = partition.blocks.size();
+      const std::vector<Photon> share(photons.begin() + static_cast<std::ptrdiff_t>(photons.size() * rank / ranks),
+        photons.begin() + static_cast<std::ptrdiff_t>(photons.size() * (rank + 1) / ranks));
+      return SolveLatticeInBlocks(
+        this->GetDevice(), communicator, partition, part.scene.medium, part.Index(), share, part.scene.light, settings);
+    });
+    ExpectSame(light, whole, 2e-6);
+  }
+}
+
+/// Between faces that all give back all light the medium takes it in the end; where none does that is an error.
+TEST_F(LatticeBlocks, MayBeBetweenFacesThatGiveBackAllLight)
+{
+  MediumToCut medium = Everything({ 5, 6, 4 });
+  medium.scene.light.faceAlbedo.fill({ 1.0, 1.0, 1.0 });
+  const LightField whole = this->Whole(medium, SettingsOf(1e-7));
+  for (const int ranks : { 1, 3, 8 })
+  {
+    SCOPED_TRACE(std::to_string(ranks) + " ranks");
+    ExpectSame(this->OnRanks(ranks, medium, SettingsOf(1e-7)), whole, 2e-6);
+  }
+  ExpectErrors("grow without end", [](int, MediumToCut& part, LatticeSettings&, Monitor&) {
+    part.scene.light.faceAlbedo.fill({ 1.0, 1.0, 1.0 });
+    std::fill(part.scene.sigma_a.begin(), part.scene.sigma_a.end(), 0.0f);
+  });
+}
+
+/// Who has light that others have not is told.
+TEST_F(LatticeBlocks, AgreeOnTheLightThatIsGiven)
+{
+  static const std::vector<float> given(6 * 5 * 4, 1.0f);
+  ExpectErrors("UncollidedLight", [](int rank, MediumToCut& part, LatticeSettings&, Monitor&) {
+    part.scene.light.uncollided.fluence = { rank == 1 ? given.data() : nullptr, 1 };
+  });
+}
+
+/// Of one voxel, which lies beside itself, or of two, which lie on both sides of each other.
+TEST_F(LatticeBlocks, HaveTheLightThatGoesRoundShortAxes)
+{
+  for (const std::array<int, 3>& size : { std::array<int, 3>{ 1, 1, 7 }, { 2, 3, 1 }, { 1, 1, 1 } })
+  {
+    SCOPED_TRACE(std::to_string(size[0]) + " x " + std::to_string(size[1]) + " x " + std::to_string(size[2]));
+    MediumToCut medium = Everything(size);
+    medium.scene.light.faceAlbedo = {};
+    LatticeSettings settings = SettingsOf(1e-7);
+    settings.periodic = { true, true, false };
+    const LightField whole = this->Whole(medium, settings);
+    ExpectSame(this->OnRanks(2, medium, settings), whole, 2e-6);
+    ExpectSame(this->OfBlocks(SingleVoxels(medium.scene.medium.grid), medium, settings), whole, 2e-6);
+  }
+}
+
 /// Flat grids have long cells.
 TEST_F(LatticeBlocks, SolvePlanesAndRows)
 {
@@ -251,15 +417,14 @@ TEST_F(LatticeBlocks, FailTogether)
 
 TEST_F(LatticeBlocks, SayWhatIsNotCarriedFromRankToRank)
 {
-  ExpectErrors("periodic", [](int, MediumToCut&, LatticeSettings& settings, Monitor&) { settings.periodic[1] = true; });
-  ExpectErrors("point, spot or rectangle",
-    [](int, MediumToCut& part, LatticeSettings&, Monitor&) { part.scene.light.lights[0].type = LightType::Point; });
+  ExpectErrors("beside a periodic axis", [](int, MediumToCut& part, LatticeSettings& settings, Monitor&) {
+    part.scene.light.lights[0].type = LightType::Point;
+    part.scene.light.faceAlbedo = {};
+    settings.periodic[1] = true;
+  });
   ExpectErrors(
     "MaximumOrders", [](int, MediumToCut&, LatticeSettings& settings, Monitor&) { settings.maximumSteps = 3; });
   ExpectErrors("BlockSize", [](int, MediumToCut&, LatticeSettings& settings, Monitor&) { settings.blockSize = 4; });
   ExpectErrors("published Scheme",
     [](int, MediumToCut&, LatticeSettings& settings, Monitor&) { settings.scheme = LatticeScheme::Published; });
-  ExpectErrors("all give back all", [](int, MediumToCut& part, LatticeSettings&, Monitor&) {
-    part.scene.light.faceAlbedo.fill({ 1.0, 1.0, 1.0 });
-  });
 }

@@ -6,6 +6,7 @@
 #include "DiscreteOrdinates/DiscreteOrdinates.h"
 #include "DiscreteOrdinates/Distributed/OrdinatesInBlocks.h"
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -88,6 +89,140 @@ TEST_F(OrdinatesBlocks, MayBeUnevenEmptyOrSingleVoxels)
     this->OfBlocks(SingleVoxels(small.scene.medium.grid), small, SettingsOf()), this->Whole(small, SettingsOf()));
 }
 
+/// Points, spots and rectangles; in units in which a float holds no area, too, and of one colour.
+TEST_F(OrdinatesBlocks, HaveTheNearLampsOfTheWhole)
+{
+  for (const double spacing : { 1.0, 1e8 })
+  {
+    SCOPED_TRACE(std::to_string(spacing));
+    MediumToCut medium = Everything({ 5, 9, 7 });
+    Scene& scene = medium.scene;
+    scene.medium.grid.spacing = { spacing, 0.7 * spacing, 1.2 * spacing };
+    scene.medium.grid.origin = { -2.0 * spacing, 3.0 * spacing, 0.5 * spacing };
+    AddNearLamps(scene);
+    for (std::vector<float>* perLength : { &scene.sigma_a, &scene.sigma_s, &scene.emission })
+    {
+      std::for_each(
+        perLength->begin(), perLength->end(), [&](float& value) { value = static_cast<float>(value / spacing); });
+    }
+    for (Light& lamp : scene.light.lights)
+    {
+      lamp.power = spacing > 1.0 ? Rgb{ 0.0, 2.0, 0.0 } : lamp.power;
+    }
+    const LightField whole = this->Whole(medium, SettingsOf());
+    for (const int ranks : { 1, 2, 3, 8 })
+    {
+      SCOPED_TRACE(std::to_string(ranks) + " ranks");
+      ExpectSame(this->OfBlocks(BlockPartition::Even(scene.medium.grid, ranks), medium, SettingsOf()), whole);
+    }
+    ExpectSame(this->OfBlocks(Slices(scene.medium.grid, { 1, 1, 2 }), medium, SettingsOf()), whole);
+  }
+  MediumToCut small = Everything({ 3, 2, 2 });
+  AddNearLamps(small.scene);
+  small.scene.light.lights[2].power = { 0.5, 2.0, 0.0 };
+  ExpectSame(
+    this->OfBlocks(SingleVoxels(small.scene.medium.grid), small, SettingsOf()), this->Whole(small, SettingsOf()));
+}
+
+/// What leaves through an end comes in on the other side in the next order; along a single voxel nothing changes.
+TEST_F(OrdinatesBlocks, HaveTheLightThatGoesRoundPeriodicAxes)
+{
+  const std::array<bool, 3> some[] = { { true, false, false }, { false, true, true }, { true, true, true } };
+  for (const std::array<int, 3>& size : { std::array<int, 3>{ 5, 7, 3 }, { 1, 6, 1 }, { 2, 1, 1 } })
+  {
+    for (const std::array<bool, 3>& periodic : some)
+    {
+      SCOPED_TRACE(std::to_string(periodic[0]) + std::to_string(periodic[1]) + std::to_string(periodic[2]));
+      MediumToCut medium = Everything(size);
+      medium.scene.medium.grid.spacing = { 1.0, 0.7, 1.2 };
+      OrdinatesSettings settings = SettingsOf(9);
+      settings.periodic = periodic;
+      const LightField whole = this->Whole(medium, settings);
+      for (const int ranks : { 1, 2, 5 })
+      {
+        SCOPED_TRACE(std::to_string(ranks) + " ranks");
+        ExpectSame(this->OfBlocks(BlockPartition::Even(medium.scene.medium.grid, ranks), medium, settings), whole);
+      }
+    }
+  }
+  MediumToCut small = Everything({ 3, 2, 2 });
+  OrdinatesSettings settings = SettingsOf();
+  settings.periodic = { false, true, true };
+  ExpectSame(this->OfBlocks(SingleVoxels(small.scene.medium.grid), small, settings), this->Whole(small, settings));
+}
+
+/// Instead of that of lamps, by voxel, with its mean direction.
+TEST_F(OrdinatesBlocks, HaveTheLightThatIsGivenToTheWhole)
+{
+  for (const bool colour : { false, true })
+  {
+    SCOPED_TRACE(colour);
+    MediumToCut medium = Everything({ 7, 5, 6 });
+    GiveLight(medium, colour);
+    const LightField whole = this->Whole(medium, SettingsOf());
+    for (const int ranks : { 1, 3, 8 })
+    {
+      SCOPED_TRACE(std::to_string(ranks) + " ranks");
+      ExpectSame(this->OfBlocks(BlockPartition::Even(medium.scene.medium.grid, ranks), medium, SettingsOf()), whole);
+    }
+    ExpectSame(this->OfBlocks(Slices(medium.scene.medium.grid, { 0, 1, 1 }), medium, SettingsOf()), whole);
+  }
+}
+
+/// A slab between faces that give back light, and in more directions than asked for.
+TEST_F(OrdinatesBlocks, HaveTheSlabOfTheWhole)
+{
+  MediumToCut medium = Everything({ 1, 1, 9 });
+  medium.scene.light.faceAlbedo[4] = { 0.3, 0.3, 0.3 };
+  OrdinatesSettings settings = SettingsOf();
+  settings.periodic = { true, true, false };
+  const LightField whole = this->Whole(medium, settings);
+  const LightField light = this->OfBlocks(BlockPartition::Even(medium.scene.medium.grid, 3), medium, settings);
+  ExpectSame(light, whole);
+  EXPECT_EQ(light.directionsPerFace, whole.directionsPerFace);
+}
+
+/// Of swept light, of beams and of near lamps, cell by cell.
+TEST_F(OrdinatesBlocks, HaveTheLightThatFacesGiveBack)
+{
+  MediumToCut medium = Everything({ 6, 8, 5 });
+  Scene& scene = medium.scene;
+  AddNearLamps(scene);
+  for (std::size_t face = 0; face < 6; ++face)
+  {
+    const double of = 0.15 * static_cast<double>(face);
+    scene.light.faceAlbedo[face] = { of, 0.5 * of, of };
+  }
+  const LightField whole = this->Whole(medium, SettingsOf());
+  for (const int ranks : { 1, 2, 3, 8 })
+  {
+    SCOPED_TRACE(std::to_string(ranks) + " ranks");
+    const LightField light = this->OfBlocks(BlockPartition::Even(scene.medium.grid, ranks), medium, SettingsOf());
+    ExpectSame(light, whole);
+    EXPECT_LT(RelativeDifference(light.facePower, whole.facePower), 1e-6);
+    EXPECT_EQ(light.faceAlbedo, whole.faceAlbedo);
+  }
+  ExpectSame(this->OfBlocks(Slices(scene.medium.grid, { 0, 1, 2 }), medium, SettingsOf()), whole);
+}
+
+/// By its mean over all ranks, weighted by what is scattered.
+TEST_F(OrdinatesBlocks, HaveTheMeanOfAMeanCosineThatVaries)
+{
+  MediumToCut medium = Everything({ 4, 7, 5 });
+  medium.scene.sigma_s = RandomValues(3 * medium.scene.sigma_a.size(), 0.0, 1.0, 9);
+  medium.g = RandomValues(medium.scene.sigma_a.size(), -0.7, 0.7, 13);
+  std::fill_n(medium.g.begin(), medium.g.size() / 2, 0.6f);
+  const LightField whole = this->Whole(medium, SettingsOf());
+  for (const int ranks : { 1, 3 })
+  {
+    const LightField light =
+      this->OfBlocks(BlockPartition::Even(medium.scene.medium.grid, ranks), medium, SettingsOf());
+    ExpectSame(light, whole);
+    EXPECT_EQ(light.doubts, whole.doubts);
+  }
+  ExpectSame(this->OfBlocks(Slices(medium.scene.medium.grid, { 0, 1 }), medium, SettingsOf()), whole);
+}
+
 /// By every pair of directions, on a spiral, and in few orders; one colour alone shines on the last.
 TEST_F(OrdinatesBlocks, HaveTheColoursAndTheScatteringOfTheWhole)
 {
@@ -143,9 +278,8 @@ TEST_F(OrdinatesBlocks, FailTogetherWithWordsOnWhatIsNotCarried)
       monitor = [](double done) { return done < 0.3; };
     }
   });
-  expectErrors(
-    "periodic", [](int, MediumToCut&, OrdinatesSettings& settings, Monitor&) { settings.periodic[1] = true; });
-  expectErrors("FaceAlbedo", [](int, MediumToCut& part, OrdinatesSettings&, Monitor&) {
-    part.scene.light.faceAlbedo[2] = { 0.5, 0.5, 0.5 };
+  expectErrors("beside a periodic axis", [](int, MediumToCut& part, OrdinatesSettings& settings, Monitor&) {
+    part.scene.light.lights[0].type = LightType::Point;
+    settings.periodic[1] = true;
   });
 }

@@ -6,11 +6,12 @@ and of the whole.
 from pieces_of_ranks import Runs, difference
 
 runs = Runs("SolversByBlocks")
-CASES = ["lattice_wavelet", "lattice_even", "lattice_uneven", "ordinates_even", "ordinates_uneven"]
+CASES = ["lattice_wavelet", "lattice_even", "lattice_uneven", "lattice_lamps", "lattice_around", "ordinates_even",
+         "ordinates_uneven", "ordinates_faces", "ordinates_around"]
 LIKE = {"lattice_uneven": "lattice_even", "ordinates_uneven": "ordinates_even"}
 
 for ranks in (1, 2, 3, 8):
-    more = ["lattice_exact", "lattice_whole", "ordinates_whole"] if ranks == 1 else ["lattice_errors"] if ranks == 2 else []
+    more = ["lattice_exact", "lattice_whole", "ordinates_whole", "ordinates_faces_whole"] if ranks == 1 else ["lattice_errors"] if ranks == 2 else []
     code, said = runs.run(ranks, *CASES, *more)
     assert code == 0 and said.count("is done") == ranks, said
     for case in CASES:
@@ -24,6 +25,7 @@ for ranks in (1, 2, 3, 8):
 blocks, whole = runs.whole(1, "lattice_exact", "light")[0], runs.whole(1, "lattice_whole", "light")[0]
 print("blocks and the whole: %.1e" % difference(blocks, whole))
 assert difference(blocks, whole) < 2e-6
-ordinates, whole = runs.whole(1, "ordinates_even", "light")[0], runs.whole(1, "ordinates_whole", "light")[0]
-print("ordinates in blocks and in the whole: %.1e" % difference(ordinates, whole))
-assert difference(ordinates, whole) < 1e-6
+for case, of_whole in (("ordinates_even", "ordinates_whole"), ("ordinates_faces", "ordinates_faces_whole")):
+    ordinates, whole = runs.whole(1, case, "light")[0], runs.whole(1, of_whole, "light")[0]
+    print("%s in blocks and in the whole: %.1e" % (case, difference(ordinates, whole)))
+    assert difference(ordinates, whole) < 1e-6

@@ -295,7 +295,8 @@ def on_lattice(density, array, full=1, **settings):
     """Thick voxels in colour under a sun and a sky, by a lattice."""
     medium = ParticipatingMedium(Input=density, DensityArray=array, ExtinctionScale=2, MinimumDensity=0,
                                  MaximumDensity=full, Albedo=[0.99, 0.9, 0.7])
-    light = LatticeBoltzmannLighting(Input=medium, Lights=LightRig(SunElevation=50), SkyColor=[0.1, 0.1, 0.2], NetFlux=1,
+    lights = settings.pop("Lights", None) or LightRig(SunElevation=50)
+    light = LatticeBoltzmannLighting(Input=medium, Lights=lights, SkyColor=[0.1, 0.1, 0.2], NetFlux=1,
                                      FaceAlbedo=[0, 0, 0, 0, 0.3, 0], **settings)
     light.UpdatePipeline()
     return light
@@ -333,17 +334,50 @@ def lattice_uneven():
     own_pieces("lattice_uneven", uneven_pieces(), solve=lattice_by_blocks)
 
 
+def near_lamp():
+    return PointLight(Position=[7, 2, 6], Power=[9, 5, 9])
+
+
+def lattice_lamps():
+    own_pieces("lattice_lamps", uneven_pieces(),
+               solve=lambda density, array: lattice_by_blocks(density, array, Lights=near_lamp()))
+
+
+def lattice_around():
+    own_pieces("lattice_around", uneven_pieces(),
+               solve=lambda density, array: lattice_by_blocks(density, array, PeriodicX=1, PeriodicY=1))
+
+
 def by_ordinates(density, array, **settings):
     medium = ParticipatingMedium(Input=density, DensityArray=array, ExtinctionScale=0.5, MinimumDensity=0, MaximumDensity=1,
                                  Albedo=[0.9, 0.8, 0.7], MeanCosine=0.5)
-    light = DiscreteOrdinates(Input=medium, Lights=LightRig(SunElevation=50), SkyColor=[0.1, 0.1, 0.2], NetFlux=1,
+    lights = settings.pop("Lights", None) or LightRig(SunElevation=50)
+    light = DiscreteOrdinates(Input=medium, Lights=lights, SkyColor=[0.1, 0.1, 0.2], NetFlux=1,
                               DirectionsPerFace=9, Terms=16, **settings)
     light.UpdatePipeline()
     return light
 
 
-def ordinates_by_blocks(density, array):
-    return by_blocks(density, array, solve=by_ordinates)
+def ordinates_by_blocks(density, array, **settings):
+    return by_blocks(density, array, solve=by_ordinates, **settings)
+
+
+FACES = {"FaceAlbedo": [0, 0.4, 0, 0, 0.3, 0]}
+
+
+def ordinates_faces():
+    own_pieces("ordinates_faces", uneven_pieces(),
+               solve=lambda density, array: ordinates_by_blocks(density, array, Lights=near_lamp(), **FACES))
+
+
+def ordinates_faces_whole():
+    own_pieces("ordinates_faces_whole", [piece_of([0, 12, 0, 5, 0, 4])],
+               solve=lambda density, array: by_ordinates(density, array, Lights=near_lamp(), **FACES))
+
+
+def ordinates_around():
+    own_pieces("ordinates_around", uneven_pieces(),
+               solve=lambda density, array: ordinates_by_blocks(density, array, PeriodicX=1, FaceAlbedo=[0, 0, 0, 0, 0.3, 0]))
 
 
 def ordinates_even():
@@ -361,7 +395,8 @@ def ordinates_whole():
 def lattice_errors():
     """What a lattice cannot do by pieces is one error that names it; where ranks decide by themselves they solve the whole."""
     medium = ParticipatingMedium(Input=Wavelet(WholeExtent=SIZE), DensityArray=["POINTS", "RTData"])
-    for named, settings in (("a point, spot or rectangle light", {"Lights": PointLight(Position=[0, 0, 20], Power=[9, 9, 9])}),
+    lights = PointLight(Position=[0, 0, 20], Power=[9, 9, 9])
+    for named, settings in (("a point, spot or rectangle light beside a periodic axis", {"Lights": lights, "PeriodicX": 1}),
                             ("MaximumOrders", {"MaximumOrders": 4}), ("LitColor", {"LitColor": 1})):
         light = LatticeBoltzmannLighting(Input=medium, SkyColor=[1, 1, 1], Decomposition="Blocks", **settings)
         errors = errors_of(light)

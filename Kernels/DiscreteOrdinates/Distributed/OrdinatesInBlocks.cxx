@@ -5,9 +5,11 @@
 #include "DiscreteOrdinates/SweptOrders.h"
 #include "Distribution/SharedMedium.h"
 #include "Light/LeftOut.h"
+#include "LightPropagation/Convergence.h"
 #include "LightPropagation/Distributed/BlockScene.h"
 #include "LightPropagation/Problem/AngularDegree.h"
 #include "LightPropagation/Problem/PropagationProblem.h"
+#include "LightPropagation/Problem/UnvaryingAxes.h"
 
 #include <algorithm>
 
@@ -38,41 +40,112 @@ Illumination White(Illumination light)
   }
   return light;
 }
-
-/// A voxel of vacuum, for a rank whose block has none: what it finds there counts nowhere.
-Medium Vacuum(const Grid& whole)
-{
-  static const float nothing = 0.0f;
-  Medium vacuum;
-  vacuum.grid = whole;
-  vacuum.grid.size = { 1, 1, 1 };
-  vacuum.sigma_a = vacuum.sigma_s = { &nothing, 1 };
-  return vacuum;
-}
 }
 
-std::string NotInBlocks(const Medium& medium, const Illumination& illumination, const OrdinatesSettings& settings)
+namespace
 {
-  if (settings.periodic[0] || settings.periodic[1] || settings.periodic[2])
+/// A scene of blocks as it is solved: in the units and channels of all.
+class OrdinatesOfBlock
+{
+public:
+  /// What is given must stay.
+  OrdinatesOfBlock(Device& device, Communicator& communicator, const BlockPartition& partition, bool has,
+    const PropagationSettings& asPropagation, const OrdinatesSettings& settings)
+    : TheDevice(device)
+    , Others(communicator)
+    , Partition(partition)
+    , Has(has)
+    , AsSolved(asPropagation)
+    , Settings(settings)
   {
-    return "a periodic axis";
   }
-  if (Reflects(illumination))
+
+  /// In the user's units.
+  LightField Solve(const Medium& medium, const Illumination& illumination, const Monitor& monitor) const
   {
-    return "a face that gives back light (FaceAlbedo)";
+    Medium own = this->Has ? medium : Medium();
+    own.grid = this->Partition.OwnGrid(this->Others.Rank());
+    Illumination known = illumination;
+    known.uncollided = this->UncollidedKnown(illumination.uncollided);
+    const BlockScene scene(
+      this->Others, this->Has, this->Partition, own, known, this->AsSolved, MemoryOf(this->TheDevice));
+    const Illumination shining = this->Has || scene.channels == 3 ? scene.illumination : White(scene.illumination);
+    const FarLight far = FarLightOf(shining, this->AsSolved.directionsPerFace, this->Settings);
+    LightField light;
+    light.channels = scene.channels;
+    for (int c = 0; c < light.channels; ++c)
+    {
+      const double all = light.channels;
+      this->SolveChannel(light, c, scene, shining, far, OfPart(monitor, c / all, (c + 1) / all));
+    }
+    if (!this->Has)
+    {
+      light.fluence.clear();
+      light.fluenceDirect.clear();
+      light.netFlux.clear();
+    }
+    this->Describe(light, medium, far);
+    this->Others.Together([&] { scene.Undo(light); });
+    return light;
   }
+
+private:
+  void SolveChannel(LightField& light, int channel, const BlockScene& scene, const Illumination& shining,
+    const FarLight& far, const Monitor& monitor) const
+  {
+    BlockPartition inUnits = this->Partition;
+    inUnits.whole = scene.WholeOf(this->Partition.whole);
+    const Medium solved = this->Has ? scene.medium : VoxelOfVacuum(inUnits.whole);
+    const OrdinatesRanks ranks = { this->Others, inUnits };
+    const PhaseFunction function = FunctionOf(solved, channel, &ranks);
+    const OrdinatesAngles angles = { OrdinateGroups(far.directions),
+      SeparableOf(function, far.directions, this->Settings), function };
+    this->Others.Together([&] { CheckMemory(this->TheDevice, solved.grid, angles, this->Settings); });
+    const OrdinatesScene ofChannel = { solved, channel, LampsOf(far, shining, channel),
+      IncomingOf(far, shining, channel), FaceAlbedoOf(shining, channel), UncollidedOf(shining, channel), {}, &ranks };
+    TakeChannel(light, SolveSweptOrders(this->TheDevice, ofChannel, angles, this->Settings, monitor), channel);
+  }
+
+  /// A rank without voxels takes part in what the others do with light that is given.
+  UncollidedImage UncollidedKnown(const UncollidedImage& own) const
+  {
+    static const float nothing = 0.0f;
+    const bool any = this->Others.Largest({ this->Has && own.IsThere() ? 1.0 : 0.0 })[0] > 0.0;
+    UncollidedImage image;
+    image.fluence = any ? Field{ &nothing, 1 } : Field();
+    return this->Has ? own : image;
+  }
+
+  void Describe(LightField& light, const Medium& medium, const FarLight& far) const
+  {
+    DescribeLight(light, this->TheDevice, far);
+    if (!this->Settings.netFlux)
+    {
+      light.leftOut.emplace_back(left_out::NetFlux);
+    }
+    if (this->Others.Largest({ this->Has && medium.phase.Varies() ? 1.0 : 0.0 })[0] > 0.0)
+    {
+      light.doubts.emplace_back(DoubtOfVaryingCosine);
+    }
+    light.directionsPerFace = this->AsSolved.directionsPerFace;
+  }
+
+  Device& TheDevice;
+  Communicator& Others;
+  const BlockPartition& Partition;
+  const bool Has;
+  const PropagationSettings& AsSolved;
+  const OrdinatesSettings& Settings;
+};
+}
+
+std::string NotInBlocks(const Illumination& illumination, const OrdinatesSettings& settings)
+{
   const auto isNear = [](const Light& light) { return light.type != LightType::Directional; };
-  if (std::any_of(illumination.lights.begin(), illumination.lights.end(), isNear))
+  if ((settings.periodic[0] || settings.periodic[1] || settings.periodic[2]) &&
+    std::any_of(illumination.lights.begin(), illumination.lights.end(), isNear))
   {
-    return "a point, spot or rectangle light";
-  }
-  if (illumination.uncollided.IsThere())
-  {
-    return "light of another solver (UncollidedLight)";
-  }
-  if (medium.phase.Varies())
-  {
-    return "a mean cosine that varies by voxel (cells g)";
+    return "a point, spot or rectangle light beside a periodic axis";
   }
   return IsPublished(settings) ? "the published Scheme" : std::string();
 }
@@ -81,17 +154,17 @@ LightField SolveOrdinatesInBlocks(Device& device, Communicator& communicator, co
   const Medium& medium, const Illumination& illumination, const OrdinatesSettings& settings, const Monitor& monitor)
 {
   const bool has = partition.blocks.at(communicator.Rank()).VoxelCount() > 0;
-  const PropagationSettings asPropagation = AsPropagation(settings);
+  PropagationSettings asPropagation = AsPropagation(settings);
   communicator.Together([&] {
     partition.Check();
     Require(static_cast<int>(partition.blocks.size()) == communicator.Ranks(), "There is not a block for each rank.");
     Check(settings);
-    const std::string refused = NotInBlocks(medium, illumination, settings);
+    const std::string refused = NotInBlocks(illumination, settings);
     Require(
       refused.empty(), "A medium that is spread over ranks is not solved by discrete ordinates with " + refused + ".");
     if (has)
     {
-      Check(medium, illumination, asPropagation);
+      CheckBlock(medium, illumination, asPropagation);
       Require(medium.grid.size == partition.OwnGrid(communicator.Rank()).size,
         "The medium of rank " + std::to_string(communicator.Rank()) + " does not have the size of its block.");
     }
@@ -99,43 +172,27 @@ LightField SolveOrdinatesInBlocks(Device& device, Communicator& communicator, co
   RequireSame(communicator, partition);
   RequireSame(communicator, has, medium, illumination, asPropagation);
   RequireSameOrdinates(communicator, settings);
-  Medium own = has ? medium : Medium();
-  own.grid = partition.OwnGrid(communicator.Rank());
-  const BlockScene scene(communicator, has, partition, own, illumination, asPropagation, MemoryOf(device));
-  BlockPartition inUnits = partition;
-  inUnits.whole = scene.WholeOf(partition.whole);
-  const Medium solved = has ? scene.medium : Vacuum(inUnits.whole);
-  const OrdinatesRanks ranks = { communicator, inUnits };
-  const Illumination shining = has || scene.channels == 3 ? scene.illumination : White(scene.illumination);
-  const FarLight far = FarLightOf(shining, settings.directionsPerFace, settings);
-  LightField light;
-  light.channels = scene.channels;
-  for (int c = 0; c < light.channels; ++c)
+  CheckLightHasAnEnd(AbsorbsOnAny(communicator, has, medium), illumination, settings.periodic);
+  const UnvaryingAxes unvarying(partition.whole, illumination, asPropagation);
+  BlockPartition wide = partition;
+  wide.whole = unvarying.Widened(partition.whole);
+  asPropagation.directionsPerFace = DirectionsPerFaceFor(asPropagation, unvarying);
+  const double narrowing = partition.whole.VoxelVolume() / wide.whole.VoxelVolume();
+  Illumination shining = illumination;
+  for (Rgb& face : shining.uncollided.escaped)
   {
-    const PhaseFunction function = solved.phase.OfChannel(c);
-    const OrdinatesAngles angles = { OrdinateGroups(far.directions), SeparableOf(function, far.directions, settings),
-      function };
-    communicator.Together([&] { CheckMemory(device, solved.grid, angles, settings); });
-    const OrdinatesScene ofChannel = { solved, c, LampsOf(far, shining, c), IncomingOf(far, shining, c), {}, {}, {},
-      &ranks };
-    const double all = light.channels;
-    TakeChannel(
-      light, SolveSweptOrders(device, ofChannel, angles, settings, OfPart(monitor, c / all, (c + 1) / all)), c);
+    face = Times(face, 1.0 / narrowing);
   }
-  if (!has)
+  LightField light =
+    OrdinatesOfBlock(device, communicator, wide, has, asPropagation, settings).Solve(medium, shining, monitor);
+  MultiplyPowers(light, narrowing);
+  if (asPropagation.directionsPerFace != settings.directionsPerFace)
   {
-    light.fluence.clear();
-    light.fluenceDirect.clear();
-    light.netFlux.clear();
+    light.leftOut.push_back(left_out::DirectionsAlongSlab(asPropagation.directionsPerFace));
   }
-  DescribeLight(light, device, far);
-  if (!settings.netFlux)
-  {
-    light.leftOut.emplace_back(left_out::NetFlux);
-  }
-  light.directionsPerFace = settings.directionsPerFace;
-  communicator.Together([&] { scene.Undo(light); });
+  light.faceAlbedo = illumination.faceAlbedo;
   Judge(settings, false, light);
+  DoubtGivenLight(illumination, light);
   return light;
 }
 }

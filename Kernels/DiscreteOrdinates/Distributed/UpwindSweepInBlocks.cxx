@@ -1,5 +1,8 @@
 #include "DiscreteOrdinates/Distributed/UpwindSweepInBlocks.h"
 
+#include "LightPropagation/Distributed/Sweep/SweepInBlocks.h"
+#include "Medium/BoxFaces.h"
+
 #include <algorithm>
 #include <utility>
 
@@ -30,10 +33,12 @@ int AxisOf(BlockContact::Kind kind)
 }
 
 UpwindSweepInBlocks::UpwindSweepInBlocks(
-  Device& device, const OrdinatesRanks& ranks, const Grid& grid, const OrdinateGroups& groups)
-  : Ranks(ranks)
+  Device& device, const OrdinatesRanks& ranks, const Grid& grid, const OrdinateGroups& groups, const SweptFaces& faces)
+  : TheDevice(device)
+  , Ranks(ranks)
   , TheGrid(grid)
-  , Sweep(device, grid, groups, {}, nullptr, InnerFacesOf(ranks))
+  , OfWhole(faces.reflecting)
+  , Sweep(device, grid, groups, this->FacesOfBlock(device, faces))
 {
   for (int g = 0; g < groups.Count(); ++g)
   {
@@ -47,22 +52,106 @@ UpwindSweepInBlocks::UpwindSweepInBlocks(
     }
     ++this->Octants.back().groups;
   }
-  const int self = ranks.others.Rank();
   std::vector<ParallelBundles> ways;
   for (Octant& octant : this->Octants)
   {
-    for (int rank = 0; rank < ranks.others.Ranks(); ++rank)
-    {
-      const std::vector<BlockContact> from = ContactsBetween(ranks.partition, octant.way, rank, self);
-      const std::vector<BlockContact> to = ContactsBetween(ranks.partition, octant.way, self, rank);
-      octant.senders.insert(octant.senders.end(), from.begin(), from.end());
-      octant.receivers.insert(octant.receivers.end(), to.begin(), to.end());
-    }
+    this->FindContacts(octant, faces);
     ways.push_back(octant.way);
   }
   SweepCosts costs;
   costs.ofTask = 1.0;
-  this->Order = SweepSchedule(ranks.partition, ways, costs).OrderOf(self);
+  this->Order = SweepSchedule(ranks.partition, ways, costs).OrderOf(ranks.others.Rank());
+}
+
+void UpwindSweepInBlocks::FindContacts(Octant& octant, const SweptFaces& faces) const
+{
+  const int self = this->Ranks.others.Rank();
+  const auto add = [&](int from, int to, std::vector<BlockContact>& straight, std::vector<BlockContact>& around) {
+    for (const BlockContact& contact : ContactsBetween(this->Ranks.partition, octant.way, from, to, faces.periodic))
+    {
+      if (!faces.unvarying[AxisOf(contact.kind)])
+      {
+        (contact.around ? around : straight).push_back(contact);
+      }
+    }
+  };
+  for (int rank = 0; rank < this->Ranks.others.Ranks(); ++rank)
+  {
+    add(rank, self, octant.senders, octant.aroundFrom);
+    add(self, rank, octant.receivers, octant.aroundTo);
+  }
+  octant.waiting.resize(octant.aroundFrom.size());
+}
+
+/// With cells of its own, where some of the whole grid's give back light.
+SweptFaces UpwindSweepInBlocks::FacesOfBlock(Device& device, const SweptFaces& ofWhole)
+{
+  SweptFaces faces = ofWhole;
+  faces.inner = InnerFacesOf(this->Ranks);
+  if (!ofWhole.reflecting)
+  {
+    return faces;
+  }
+  const Grid& whole = this->Ranks.partition.whole;
+  const VoxelBox& block = this->Ranks.partition.blocks[this->Ranks.others.Rank()];
+  ForBoxFaceCells(this->TheGrid, [&](const BoxFaceCell& cell) {
+    if (!(faces.inner >> cell.face & 1) && !faces.periodic[cell.face / 2])
+    {
+      const std::array<int, 3> at = this->TheGrid.VoxelAt(cell.voxel);
+      const BoxFaceLayout layout = LayoutOfFace(whole, cell.face);
+      std::size_t there = layout.first;
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        there += static_cast<std::size_t>(block.first[axis] + at[axis]) * layout.step[axis];
+      }
+      this->OfBlock.places.push_back({ cell.number, there });
+    }
+  });
+  const std::size_t count = BoxFaceCellCount(this->TheGrid);
+  this->OfBlock.out = Buffer<float>(device, count, "the light that leaves by cells");
+  this->OfBlock.in = Buffer<float>(device, count, "the light that faces give back");
+  this->Seen.emplace(LightOfCells{ this->OfBlock.out, this->OfBlock.in });
+  faces.reflecting = &*this->Seen;
+  return faces;
+}
+
+/// What comes in through cells of the block.
+void UpwindSweepInBlocks::LetCellsIn()
+{
+  if (!this->OfWhole)
+  {
+    return;
+  }
+  this->Failure.Attempt([&] {
+    const std::vector<float> ofWhole = this->OfWhole->in.Read();
+    std::vector<float> in(this->OfBlock.in.Size(), 0.0f);
+    for (const auto& [here, there] : this->OfBlock.places)
+    {
+      in[here] = ofWhole[there];
+    }
+    this->OfBlock.in.Write(in.data());
+    this->OfBlock.out.Fill(0.0f);
+  });
+}
+
+/// What leaves through those of all ranks. All call it.
+void UpwindSweepInBlocks::LetCellsOut()
+{
+  if (!this->OfWhole)
+  {
+    return;
+  }
+  std::vector<double> left;
+  this->Ranks.others.Together([&] {
+    left.resize(this->OfWhole->out.Size(), 0.0);
+    this->Sweep.LeaveByCells();
+    const std::vector<float> out = this->OfBlock.out.Read();
+    for (const auto& [here, there] : this->OfBlock.places)
+    {
+      left[there] = out[here];
+    }
+  });
+  AddOverRanks(this->TheDevice, this->Ranks.others, left, this->OfWhole->out);
 }
 
 /// visit(place in the octant's values of the face) for each group and cell of a contact, in an order that both ranks
@@ -89,25 +178,37 @@ void UpwindSweepInBlocks::ForFace(
   }
 }
 
+/// What has come through a contact, to the light through the block's faces, which is read when it is wanted first.
+void UpwindSweepInBlocks::Enter(
+  const Octant& octant, const BlockContact& contact, const std::vector<float>& message, Faces& faces) const
+{
+  const int axis = AxisOf(contact.kind);
+  std::vector<float>& face = faces[axis];
+  face = face.empty() ? this->Sweep.ReadFace(axis, octant.first, octant.groups) : std::move(face);
+  auto from = message.begin();
+  this->ForFace(octant, contact, contact.cells, [&](std::size_t place) {
+    std::copy_n(from, OrdinateLanes, face.begin() + static_cast<std::ptrdiff_t>(place));
+    from += OrdinateLanes;
+  });
+}
+
 void UpwindSweepInBlocks::TakeFrom(const Octant& octant, int number)
 {
-  std::array<std::vector<float>, 3> faces;
+  Faces faces;
   for (const BlockContact& contact : octant.senders)
   {
     const std::vector<float> message = this->Ranks.others.Receive<float>(contact.from, number);
     this->Failure.broken = this->Failure.broken || message.empty();
-    this->Failure.Attempt([&] {
-      const int axis = AxisOf(contact.kind);
-      std::vector<float>& face = faces[axis];
-      face = face.empty() ? this->Sweep.ReadFace(axis, octant.first, octant.groups) : std::move(face);
-      auto from = message.begin();
-      this->ForFace(octant, contact, contact.cells, [&](std::size_t place) {
-        std::copy_n(from, OrdinateLanes, face.begin() + static_cast<std::ptrdiff_t>(place));
-        from += OrdinateLanes;
-      });
-    });
+    this->Failure.Attempt([&] { this->Enter(octant, contact, message, faces); });
   }
   this->Failure.Attempt([&] {
+    for (std::size_t i = 0; i < octant.aroundFrom.size(); ++i)
+    {
+      if (!octant.waiting[i].empty())
+      {
+        this->Enter(octant, octant.aroundFrom[i], octant.waiting[i], faces);
+      }
+    }
     for (int axis = 0; axis < 3; ++axis)
     {
       if (!faces[axis].empty())
@@ -118,11 +219,24 @@ void UpwindSweepInBlocks::TakeFrom(const Octant& octant, int number)
   });
 }
 
+/// What has left through the ends of periodic axes, when all octants are through.
+void UpwindSweepInBlocks::TakeFromAround()
+{
+  for (const int number : this->Order)
+  {
+    Octant& octant = this->Octants[number];
+    for (std::size_t i = 0; i < octant.aroundFrom.size(); ++i)
+    {
+      octant.waiting[i] = this->Ranks.others.Receive<float>(octant.aroundFrom[i].from, number);
+      this->Failure.broken = this->Failure.broken || octant.waiting[i].empty();
+    }
+  }
+}
+
 void UpwindSweepInBlocks::GiveTo(const Octant& octant, int number)
 {
-  std::array<std::vector<float>, 3> faces;
-  for (const BlockContact& contact : octant.receivers)
-  {
+  Faces faces;
+  const auto give = [&](const BlockContact& contact) {
     std::vector<float> message;
     this->Failure.Attempt([&] {
       const int axis = AxisOf(contact.kind);
@@ -134,7 +248,9 @@ void UpwindSweepInBlocks::GiveTo(const Octant& octant, int number)
       });
     });
     this->Ranks.others.Send(contact.to, number, this->Failure.broken ? std::vector<float>() : message);
-  }
+  };
+  std::for_each(octant.receivers.begin(), octant.receivers.end(), give);
+  std::for_each(octant.aroundTo.begin(), octant.aroundTo.end(), give);
 }
 
 FacePowers UpwindSweepInBlocks::Apply(const Buffer<float>& radiance, const Buffer<float>& sigma_t,
@@ -142,6 +258,7 @@ FacePowers UpwindSweepInBlocks::Apply(const Buffer<float>& radiance, const Buffe
 {
   this->Failure = {};
   FacePowers powers;
+  this->LetCellsIn();
   this->Failure.Attempt([&] { this->Sweep.LetIn(incoming, powers); });
   for (std::size_t i = 0; i < this->Order.size(); ++i)
   {
@@ -154,11 +271,9 @@ FacePowers UpwindSweepInBlocks::Apply(const Buffer<float>& radiance, const Buffe
     });
     this->GiveTo(octant, this->Order[i]);
   }
+  this->TakeFromAround();
   this->Ranks.others.Together([&] {
-    if (this->Failure.error)
-    {
-      std::rethrow_exception(this->Failure.error);
-    }
+    this->Failure.Throw();
     if (this->Ranks.Has() && !this->Failure.broken)
     {
       this->Sweep.Count(powers);
@@ -166,9 +281,12 @@ FacePowers UpwindSweepInBlocks::Apply(const Buffer<float>& radiance, const Buffe
   });
   std::vector<double> sums(powers.in.begin(), powers.in.end());
   sums.insert(sums.end(), powers.out.begin(), powers.out.end());
+  sums.push_back(powers.onTheWay);
   sums = this->Ranks.others.Sum(sums);
   std::copy_n(sums.begin(), 6, powers.in.begin());
   std::copy_n(sums.begin() + 6, 6, powers.out.begin());
+  powers.onTheWay = sums.back();
+  this->LetCellsOut();
   return powers;
 }
 }

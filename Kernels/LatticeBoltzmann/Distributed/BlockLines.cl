@@ -1,83 +1,46 @@
-// Lines of links through a rank's block: the way up and the way down of sweep_lines, between which other blocks' ways
-// are. Lines are open.
+// Lines of links through a rank's block: pieces of lines, of which others lie in other blocks, or in this one again
+// where an axis is periodic. What a piece does to light, and what it sends by itself, is found on its way up; when all
+// pieces of a line have been joined (JoinedLines.h), densities follow on its way down.
 #include "LatticeBoltzmann/Steady/LatticeLine.cl"
 
-#define LINE (get_global_id(1) * get_global_size(0) + get_global_id(0))
+#define PIECE (get_global_id(1) * get_global_size(0) + get_global_id(0))
 
-// What the block before says of its last voxel on a line: U, R, what links let through, n^2.
-static Link link_to_block(MEDIUM, const __global exact* before, ulong line, ulong voxel)
+typedef struct
 {
-  return link_of(before[4 * line + 2], passes[voxel], before[4 * line + 3], BENDS ? squared[voxel] : 1);
-}
+  Place place; // the first voxel
+  bool is_cut; // behind it lies another block
+  Link link;   // to that
+  Border low;  // or the grid's face
+} Piece;
 
-// Up the lines of a pair of directions. A work-item a line; arrays as of sweep_lines, and
-//   before  [line][4], see above, where the line comes from another block
-//   last    the same of this block's last voxels
-__kernel void lines_up(LatticeInfo lattice, MEDIUM, int pair, exact shines, const __global exact* before,
-  __global exact* behind, __global exact* last)
+// below  [piece][2], of the voxel behind it: part that links let through, n^2
+static bool begin_piece(LatticeInfo lattice, MEDIUM, int pair, exact shines, const __global exact* below, Piece* piece)
 {
   const int i = 2 * pair;
-  const exact weight = EXACT_WEIGHT(i);
-  Place place;
   bool closed;
-  if (!begin_line(lattice, i, &place, &closed))
+  if (!begin_line(lattice, i, &piece->place, &closed))
   {
-    return;
+    return false;
   }
-  const ulong line = LINE;
-  const Place low = next_along(lattice, place, i + 1);
-  ulong voxel = voxel_at(lattice, place.at);
-  Behind arrives, here;
-  if (low.face == OtherBlock)
+  const Place before = next_along(lattice, piece->place, i + 1);
+  const ulong voxel = voxel_at(lattice, piece->place.at);
+  piece->is_cut = before.face == OtherBlock;
+  piece->link.up = piece->link.down = piece->low.in = piece->low.back = 0;
+  if (piece->is_cut)
   {
-    const Behind there = { before[4 * line], before[4 * line + 1] };
-    arrives = cross_up(link_to_block(straight, passes, squared, even, before, line, voxel), there);
+    const exact own = BENDS ? squared[voxel] : 1, other = BENDS ? below[2 * PIECE + 1] : 1;
+    piece->link = link_of(below[2 * PIECE], passes[voxel], other, own);
   }
   else
   {
-    const Border border = border_at(lattice, straight, passes, squared, even, voxel, low, shines, i);
-    arrives.sends = border.in;
-    arrives.returns = border.back;
+    piece->low = border_at(lattice, straight, passes, squared, even, voxel, before, shines, i);
   }
-  for (;;)
-  {
-    here = pass_voxel(straight[voxel], weight * even[voxel], arrives.sends, arrives.returns);
-    behind[2 * voxel] = here.sends;
-    behind[2 * voxel + 1] = here.returns;
-    const Place next = next_along(lattice, place, i);
-    if (next.face >= 0)
-    {
-      break;
-    }
-    const ulong ahead = voxel_at(lattice, next.at);
-    arrives = cross_up(link_between(straight, passes, squared, even, voxel, ahead), here);
-    place = next;
-    voxel = ahead;
-  }
-  last[4 * line] = here.sends;
-  last[4 * line + 1] = here.returns;
-  last[4 * line + 2] = passes[voxel];
-  last[4 * line + 3] = BENDS ? squared[voxel] : 1;
+  return true;
 }
 
-// Down them, after lines_up.
-//   after  [line][2], what comes down to the block's last voxel, and what the one beyond sends, where that is another
-//          block's
-//   first  the same for the block before
-//   densities  those of the voxels beyond, too, on the way to these
-__kernel void lines_down(LatticeInfo lattice, MEDIUM, int pair, exact shines, const __global exact* before,
-  const __global exact* behind, const __global exact* after, __global exact* first, __global exact* sum,
-  __global float* densities, int writes)
+// The last voxel of a piece.
+static Top last_of_piece(LatticeInfo lattice, Place place, int i)
 {
-  const int i = 2 * pair;
-  const exact weight = EXACT_WEIGHT(i);
-  Place place;
-  bool closed;
-  if (!begin_line(lattice, i, &place, &closed))
-  {
-    return;
-  }
-  const ulong line = LINE;
   int ways = INT_MAX;
   for (int a = 0; a < 3; ++a)
   {
@@ -88,61 +51,87 @@ __kernel void lines_down(LatticeInfo lattice, MEDIUM, int pair, exact shines, co
   {
     place.at[a] += ways * Ways[i][a];
   }
-  ulong voxel = voxel_at(lattice, place.at);
-  const Place high = next_along(lattice, place, i);
-  exact comes;
-  if (high.face == OtherBlock)
+  const Top top = { place, voxel_at(lattice, place.at), ways + 1, 0, { 0, 0, 0 } };
+  return top;
+}
+
+// Up the pieces of a pair of directions. A work-item a piece; arrays as of sweep_lines, and
+//   says  [piece][8], of x that goes up the cut behind it and B that comes down to its last voxel (PieceOfLine): what
+//         the last voxel sends up, 0 + 2 x + 3 B; what the first sends down, 1 + 4 x + 5 B; parts that the link behind
+//         lets up and down
+__kernel void pieces_up(LatticeInfo lattice, MEDIUM, int pair, exact shines, const __global exact* below,
+  __global exact* behind, __global exact* share, __global exact* says)
+{
+  Piece piece;
+  if (!begin_piece(lattice, straight, passes, squared, even, pair, shines, below, &piece))
   {
-    comes = after[2 * line];
+    return;
+  }
+  const int i = 2 * pair;
+  const Beginning begin = piece.is_cut ? begin_at_cut(piece.link) : begin_at_border(piece.low);
+  Top top = go_up(lattice, straight, passes, squared, even, piece.place, i, begin, piece.is_cut, behind, share);
+  const exact sends = behind[2 * top.voxel], returns = behind[2 * top.voxel + 1];
+  const Place past = next_along(lattice, top.place, i);
+  if (past.face != OtherBlock)
+  {
+    const Border high = border_at(lattice, straight, passes, squared, even, top.voxel, past, shines, i);
+    const exact rest = 1 - high.back * returns;
+    const exact again = rest > 0 ? top.cut.gives_back / rest : 0;
+    top.cut.sent += again * (high.in + high.back * sends);
+    top.cut.round += again * high.back * top.part;
+    top.cut.gives_back = 0;
+  }
+  __global exact* of = says + 8 * PIECE;
+  of[0] = sends;
+  of[1] = top.cut.sent;
+  of[2] = top.part;
+  of[3] = returns;
+  of[4] = top.cut.round;
+  of[5] = top.cut.gives_back;
+  of[6] = piece.link.up;
+  of[7] = piece.link.down;
+}
+
+// Down them, after pieces_up.
+//   joined  [piece][3]: x, B, and what the first voxel of the piece beyond sends down
+//   densities  those of the voxels behind and beyond, too, on the way to these
+__kernel void pieces_down(LatticeInfo lattice, MEDIUM, int pair, exact shines, const __global exact* below,
+  const __global exact* behind, const __global exact* share, const __global exact* joined, __global exact* sum,
+  __global float* densities, int writes)
+{
+  Piece piece;
+  if (!begin_piece(lattice, straight, passes, squared, even, pair, shines, below, &piece))
+  {
+    return;
+  }
+  const int i = 2 * pair;
+  const ulong first_at = density_at(lattice, piece.place.at);
+  const Top top = last_of_piece(lattice, piece.place, i);
+  const ulong last_at = density_at(lattice, top.place.at);
+  const __global exact* of = joined + 3 * PIECE;
+  const exact round = piece.is_cut ? of[0] : 0;
+  exact comes = of[1];
+  const Place past = next_along(lattice, top.place, i);
+  if (past.face != OtherBlock)
+  {
+    const Border high = border_at(lattice, straight, passes, squared, even, top.voxel, past, shines, i);
+    const exact sends = behind[2 * top.voxel] + (piece.is_cut ? share[top.voxel] * round : 0);
+    const exact rest = 1 - high.back * behind[2 * top.voxel + 1];
+    comes = rest > 0 ? (high.in + high.back * sends) / rest : 0;
+  }
+  else if (writes)
+  {
+    densities[(i + 1) * lattice.stride + last_at + lattice.offset[i]] = of[2];
+  }
+  if (piece.is_cut)
+  {
+    piece.low.in = piece.link.up * round;
+    piece.low.back = 1 - piece.link.down;
     if (writes)
     {
-      densities[(i + 1) * lattice.stride + density_at(lattice, place.at) + lattice.offset[i]] = after[2 * line + 1];
+      densities[i * lattice.stride + first_at - lattice.offset[i]] = round;
     }
   }
-  else
-  {
-    const Border border = border_at(lattice, straight, passes, squared, even, voxel, high, shines, i);
-    const exact rest = 1 - border.back * behind[2 * voxel + 1];
-    comes = rest > 0 ? (border.in + border.back * behind[2 * voxel]) / rest : 0;
-  }
-  for (bool ends = false; !ends;)
-  {
-    const exact source = weight * even[voxel], down = straight[voxel] * comes + source;
-    const Place low = next_along(lattice, place, i + 1);
-    ulong other = voxel;
-    Crossed crossed = { 0, 0, 0 };
-    ends = low.face >= 0;
-    if (!ends)
-    {
-      other = voxel_at(lattice, low.at);
-      const Behind below = { behind[2 * other], behind[2 * other + 1] };
-      crossed = cross_down(link_between(straight, passes, squared, even, other, voxel), below, down);
-    }
-    else if (low.face == OtherBlock)
-    {
-      const Behind below = { before[4 * line], before[4 * line + 1] };
-      crossed = cross_down(link_to_block(straight, passes, squared, even, before, line, voxel), below, down);
-      first[2 * line] = crossed.lower;
-      first[2 * line + 1] = down;
-    }
-    else
-    {
-      const Border border = border_at(lattice, straight, passes, squared, even, voxel, low, shines, i);
-      crossed.up_arrives = border.in + border.back * down;
-    }
-    sum[voxel] += crossed.up_arrives + comes;
-    if (writes)
-    {
-      const ulong at = density_at(lattice, place.at);
-      densities[i * lattice.stride + at] = straight[voxel] * crossed.up_arrives + source;
-      densities[(i + 1) * lattice.stride + at] = down;
-      if (low.face == OtherBlock)
-      {
-        densities[i * lattice.stride + at - lattice.offset[i]] = crossed.up;
-      }
-    }
-    comes = crossed.lower;
-    place = low;
-    voxel = other;
-  }
+  go_down(lattice, straight, passes, squared, even, top, i, comes, round, piece.low, piece.is_cut, behind, share, sum,
+    densities, writes);
 }

@@ -46,12 +46,13 @@ DiffusionInBlocks::DiffusionInBlocks(Device& device, Communicator& communicator,
   const LatticeBox& box, const LatticeSettings& settings, const LatticeVoxels& voxels)
   : TheDevice(device)
   , Others(communicator)
-  , Around(communicator, partition, 1)
+  , Around(communicator, partition, settings.periodic, 1)
   , Whole(partition.whole)
+  , Periodic(settings.periodic)
   , Box(box)
   , Halvings(HalvingsFor(partition.whole))
 {
-  this->LoadVoxels(settings, voxels);
+  communicator.Together([&] { this->LoadVoxels(settings, voxels); });
   this->LoadCells();
 }
 
@@ -67,10 +68,16 @@ std::array<int, 3> DiffusionInBlocks::InWhole(std::size_t voxel) const
   return at;
 }
 
+/// @param voxel  of the whole grid, or one layer beyond a periodic end
 std::size_t DiffusionInBlocks::CellOf(const std::array<int, 3>& voxel) const
 {
-  return this->Cells.IndexOf(
-    { voxel[0] >> this->Halvings[0], voxel[1] >> this->Halvings[1], voxel[2] >> this->Halvings[2] });
+  std::array<int, 3> cell;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const int size = this->Whole.size[axis];
+    cell[axis] = (voxel[axis] + size) % size >> this->Halvings[axis];
+  }
+  return this->Cells.IndexOf(cell);
 }
 
 void DiffusionInBlocks::LoadVoxels(const LatticeSettings& settings, const LatticeVoxels& voxels)
@@ -83,6 +90,10 @@ void DiffusionInBlocks::LoadVoxels(const LatticeSettings& settings, const Lattic
     double loss = voxels.lost[known] * voxels.squared[known], all = 0.0;
     for (std::size_t face = 0; face < 6; ++face)
     {
+      if (this->Periodic[face / 2] && this->Whole.size[face / 2] == 1)
+      {
+        continue; // beyond it lies the voxel itself
+      }
       const std::size_t beyond = VoxelBeyond(this->Box.known, {}, known, face);
       if (beyond == Outside)
       {
@@ -117,7 +128,8 @@ void DiffusionInBlocks::LoadCells()
     sums[3 * cells + cell] += this->Loss[i];
     for (std::size_t axis = 0; axis < 3; ++axis)
     {
-      if (at[axis] > 0 && at[axis] % (1 << this->Halvings[axis]) == 0)
+      const bool hasLower = at[axis] > 0 || (this->Periodic[axis] && this->Cells.size[axis] > 1);
+      if (hasLower && at[axis] % (1 << this->Halvings[axis]) == 0)
       {
         sums[axis * cells + cell] += this->Conductance[i][2 * axis] / (1 << this->Halvings[axis]);
       }
@@ -188,17 +200,38 @@ DiffusionInBlocks::Values DiffusionInBlocks::ByCells(const Values& residual)
 /// In float, as ranks tell each other, so that it is the same whoever has which voxel.
 std::vector<float> DiffusionInBlocks::Preconditioned(const Values& residual)
 {
-  std::vector<float> own(residual.size());
+  std::vector<float> own;
   const auto jacobi = [&](std::size_t i, double left) { return Damping * left / this->Diagonal[i]; };
-  for (std::size_t i = 0; i < own.size(); ++i)
-  {
-    own[i] = static_cast<float>(jacobi(i, residual[i]));
-  }
+  this->Others.Together([&] {
+    own.resize(residual.size());
+    for (std::size_t i = 0; i < own.size(); ++i)
+    {
+      own[i] = static_cast<float>(jacobi(i, residual[i]));
+    }
+  });
   std::vector<float> around = this->Around.Spread(own, 1);
-  const Values applied = this->Applied(around);
-  Values left = residual;
-  std::transform(left.begin(), left.end(), applied.begin(), left.begin(), std::minus<double>());
+  Values left;
+  this->Others.Together([&] {
+    left = residual;
+    const Values applied = this->Applied(around);
+    std::transform(left.begin(), left.end(), applied.begin(), left.begin(), std::minus<double>());
+  });
   const Values byCells = this->ByCells(left);
+  this->Others.Together([&] {
+    this->AddCells(byCells, around);
+    const Values corrected = this->Applied(around);
+    const LatticeBox box = this->Around.Box();
+    for (std::size_t i = 0; i < own.size(); ++i)
+    {
+      own[i] = static_cast<float>(around[box.Known(i)] + jacobi(i, residual[i] - corrected[i]));
+    }
+  });
+  return own;
+}
+
+/// Those of cells to their voxels, and those of the layer around.
+void DiffusionInBlocks::AddCells(const Values& byCells, std::vector<float>& around) const
+{
   const Grid known = this->Around.KnownGrid();
   for (std::size_t i = 0; i < around.size(); ++i)
   {
@@ -209,13 +242,6 @@ std::vector<float> DiffusionInBlocks::Preconditioned(const Values& residual)
     }
     around[i] = static_cast<float>(around[i] + byCells[this->CellOf(at)]);
   }
-  const Values corrected = this->Applied(around);
-  const LatticeBox box = this->Around.Box();
-  for (std::size_t i = 0; i < own.size(); ++i)
-  {
-    own[i] = static_cast<float>(around[box.Known(i)] + jacobi(i, residual[i] - corrected[i]));
-  }
-  return own;
 }
 
 /// Of all ranks.
@@ -226,13 +252,20 @@ double DiffusionInBlocks::Dot(const Values& a, const std::vector<float>& b)
 
 DiffusionInBlocks::Values DiffusionInBlocks::Solve(const Values& residual)
 {
-  Values left = residual, found(residual.size(), 0.0);
-  std::vector<float> better = this->Preconditioned(left), direction = better;
+  Values left, found;
+  this->Others.Together([&] {
+    left = residual;
+    found.assign(residual.size(), 0.0);
+  });
+  std::vector<float> better = this->Preconditioned(left), direction;
+  this->Others.Together([&] { direction = better; });
   double norm = this->Dot(left, better);
   const double first = norm;
   for (int iteration = 0; iteration < MostIterations && norm > Reduction * Reduction * first; ++iteration)
   {
-    const Values applied = this->Applied(this->Around.Spread(direction, 1));
+    const std::vector<float> around = this->Around.Spread(direction, 1);
+    Values applied;
+    this->Others.Together([&] { applied = this->Applied(around); });
     const double curvature = this->Dot(applied, direction);
     if (!(curvature > 0.0))
     {

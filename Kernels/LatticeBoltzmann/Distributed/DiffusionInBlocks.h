@@ -25,6 +25,7 @@ public:
   using Values = std::vector<double>;
 
   /// All ranks make one together, and all of it must stay.
+  /// @param settings  with the axes that are periodic in the whole grid
   DiffusionInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition, const LatticeBox& box,
     const LatticeSettings& settings, const LatticeVoxels& voxels);
 
@@ -38,6 +39,7 @@ private:
   std::array<int, 3> InWhole(std::size_t voxel) const;
   Values Applied(const std::vector<float>& around) const;
   Values ByCells(const Values& residual);
+  void AddCells(const Values& byCells, std::vector<float>& around) const;
   std::vector<float> Preconditioned(const Values& residual);
   double Dot(const Values& a, const std::vector<float>& b);
 
@@ -45,6 +47,7 @@ private:
   Communicator& Others;
   const VoxelsAround Around; ///< one layer
   const Grid Whole;
+  const std::array<bool, 3> Periodic;
   const LatticeBox& Box;
   std::vector<std::array<float, 6>> Conductance; ///< to the voxel beyond each face; 0: there is none
   std::vector<float> Loss;

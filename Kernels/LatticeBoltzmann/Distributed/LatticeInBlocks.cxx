@@ -11,8 +11,11 @@
 #include "LatticeBoltzmann/Steady/SteadyLattice.h"
 #include "LightPropagation/Distributed/BlockScene.h"
 #include "LightPropagation/Problem/AngularDegree.h"
+#include "LightPropagation/Problem/PropagationProblem.h"
+#include "Photons/Distributed/PhotonsInBlocks.h"
 
 #include <algorithm>
+#include <functional>
 #include <memory>
 #include <optional>
 
@@ -22,19 +25,6 @@ namespace
 {
 /// That what lamps' light does in voxels depends on those next to the next ones.
 constexpr int Layers = 2;
-
-bool AllIsGivenBack(const Illumination& illumination)
-{
-  for (std::size_t c = 0; c < 3; ++c)
-  {
-    if (std::all_of(illumination.faceAlbedo.begin(), illumination.faceAlbedo.end(),
-          [c](const Rgb& albedo) { return albedo[c] >= 1.0; }))
-    {
-      return true;
-    }
-  }
-  return false;
-}
 
 void RequireSameLattice(
   Communicator& communicator, bool has, const Field& ior, const Illumination& shining, const LatticeSettings& settings)
@@ -73,6 +63,13 @@ void AddUp(Communicator& communicator, LightField& light)
   }
 }
 
+/// As they are for a block and the voxels around it, which go on beyond periodic ends: none is seen from there.
+LatticeSettings InKnownVoxels(LatticeSettings settings)
+{
+  settings.periodic = {};
+  return settings;
+}
+
 /// The equations of a steady lattice whose blocks lie on several ranks.
 class SteadyInBlocks : public SteadySystem
 {
@@ -90,6 +87,7 @@ public:
     return this->Lines.Sweep(even, shines, writes, monitor);
   }
   Values Diffuse(const Values& residual, double) override { return this->Diffusion.Solve(residual); }
+  void Alone(const std::function<void()>& work) override { this->Others.Together(work); }
   Values Sum(const Values& ofRank) override { return this->Others.Sum(ofRank); }
 
 private:
@@ -111,19 +109,22 @@ public:
     , Scene(scene)
     , Index(index)
     , Settings(settings)
+    , OfKnown(InKnownVoxels(settings))
     , Direct(direct)
   {
   }
 
   void AddTo(LightField& light, int channel, const Monitor& monitor) const
   {
-    LatticeVoxels voxels(this->Scene, this->Index, this->Settings, this->Direct, channel);
+    std::optional<LatticeVoxels> made;
+    this->Others.Together([&] { made.emplace(this->Scene, this->Index, this->OfKnown, this->Direct, channel); });
+    LatticeVoxels& voxels = *made;
     this->TakeWhatIsOfAll(voxels, channel);
     std::optional<Lattice> lattice;
     this->Others.Together([&] {
       if (this->Box.Count() > 0)
       {
-        lattice.emplace(this->TheDevice, this->Box, this->Settings, voxels);
+        lattice.emplace(this->TheDevice, this->Box, this->OfKnown, voxels);
       }
     });
     std::vector<float> fluence(this->Box.Count(), 0.0f);
@@ -137,7 +138,7 @@ public:
     this->Others.Together([&] {
       if (lattice)
       {
-        LatticeAccount(this->Scene, this->Box, this->Settings, this->Direct, voxels, *lattice, channel)
+        LatticeAccount(this->Scene, this->Box, this->OfKnown, this->Direct, voxels, *lattice, channel)
           .AddTo(light, fluence);
       }
     });
@@ -166,28 +167,18 @@ private:
   const LatticeScene Scene;
   const Field Index;
   const LatticeSettings& Settings;
+  const LatticeSettings OfKnown;
   const Uncollided& Direct;
 };
 }
 
 std::string NotInBlocks(const Illumination& illumination, const LatticeSettings& settings)
 {
-  if (settings.periodic[0] || settings.periodic[1] || settings.periodic[2])
-  {
-    return "a periodic axis";
-  }
   const auto isNear = [](const Light& light) { return light.type != LightType::Directional; };
-  if (std::any_of(illumination.lights.begin(), illumination.lights.end(), isNear))
+  if ((settings.periodic[0] || settings.periodic[1] || settings.periodic[2]) &&
+    std::any_of(illumination.lights.begin(), illumination.lights.end(), isNear))
   {
-    return "a point, spot or rectangle light";
-  }
-  if (illumination.uncollided.IsThere())
-  {
-    return "light of another solver (UncollidedLight)";
-  }
-  if (AllIsGivenBack(illumination))
-  {
-    return "faces that all give back all light (FaceAlbedo)";
+    return "a point, spot or rectangle light beside a periodic axis";
   }
   if (settings.scheme == LatticeScheme::Published)
   {
@@ -200,36 +191,68 @@ std::string NotInBlocks(const Illumination& illumination, const LatticeSettings&
   return settings.Solves() ? std::string() : "steps that are counted (MaximumOrders, Interleaved)";
 }
 
-LightField SolveLatticeInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition,
-  const Medium& medium, const Field& ior, const Illumination& illumination, const LatticeSettings& settings,
-  const Monitor& monitor)
+namespace
 {
-  const bool has = partition.blocks.at(communicator.Rank()).VoxelCount() > 0;
+/// What a rank can tell of its own input. All ranks call it.
+void CheckInBlocks(Communicator& communicator, const BlockPartition& partition, const Medium& medium, const Field& ior,
+  const Illumination& illumination, const LatticeSettings& settings)
+{
   communicator.Together([&] {
     partition.Check();
     Require(static_cast<int>(partition.blocks.size()) == communicator.Ranks(), "There is not a block for each rank.");
     Check(settings);
     Check(illumination);
+    CheckFaceAlbedo(illumination, settings.periodic);
     const std::string refused = NotInBlocks(illumination, settings);
     Require(refused.empty(), "A medium that is spread over ranks is not solved on a lattice with " + refused + ".");
-    if (has)
+    if (partition.blocks[communicator.Rank()].VoxelCount() > 0)
     {
       CheckLattice(medium, ior, settings);
+      Check(illumination.uncollided, medium);
       Require(medium.grid.size == partition.OwnGrid(communicator.Rank()).size,
         "The medium of rank " + std::to_string(communicator.Rank()) + " does not have the size of its block.");
     }
   });
+}
+}
+
+LightField SolveLatticeInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition,
+  const Medium& medium, const Field& ior, const std::vector<Photon>& share, const Illumination& illumination,
+  const LatticeSettings& settings, const Monitor& monitor)
+{
+  CheckInBlocks(communicator, partition, medium, ior, illumination, settings);
+  communicator.Together([&] { CheckPhotonsGoNotRound(settings); });
+  const bool has = partition.blocks[communicator.Rank()].VoxelCount() > 0;
+  MarchSettings march;
+  march.meanDirection =
+    settings.netFlux || communicator.Largest({ has && NeedsFirstMoments(medium, settings) ? 1.0 : 0.0 })[0] > 0.0;
+  const PhotonLight found =
+    PhotonMarcherInBlocks(device, communicator, partition, medium, ior, march).March(share, OfPart(monitor, 0.0, 0.5));
+  Illumination lit = illumination;
+  lit.uncollided = has ? ImageOf(found) : UncollidedImage();
+  return SolveLatticeInBlocks(device, communicator, partition, medium, ior, lit, settings, OfPart(monitor, 0.5, 1.0));
+}
+
+LightField SolveLatticeInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition,
+  const Medium& medium, const Field& ior, const Illumination& illumination, const LatticeSettings& settings,
+  const Monitor& monitor)
+{
+  const bool has = partition.blocks.at(communicator.Rank()).VoxelCount() > 0;
+  CheckInBlocks(communicator, partition, medium, ior, illumination, settings);
   PropagationSettings asPropagation = AsPropagation(settings);
   asPropagation.angularDegree = 0; // light diffuses
   RequireSame(communicator, partition);
   RequireSame(communicator, has, medium, illumination, asPropagation);
   RequireSameLattice(communicator, has, ior, illumination, settings);
+  CheckLightHasAnEnd(AbsorbsOnAny(communicator, has, medium), illumination, settings.periodic);
 
   Medium own = has ? medium : Medium();
   own.grid = partition.OwnGrid(communicator.Rank());
-  const VoxelsAround around(communicator, partition, Layers);
-  const MediumAround known(around, own, has ? ior : Field());
-  const BlockScene scene(communicator, has, partition, known.medium, illumination, asPropagation, MemoryOf(device));
+  const VoxelsAround around(communicator, partition, settings.periodic, Layers);
+  const MediumAround known(around, own, has ? ior : Field(), has ? illumination.uncollided : UncollidedImage());
+  Illumination shining = illumination;
+  shining.uncollided = known.uncollided;
+  const BlockScene scene(communicator, has, partition, known.medium, shining, asPropagation, MemoryOf(device));
   BlockPartition inUnits = partition;
   inUnits.whole = scene.WholeOf(partition.whole);
   const LatticeScene solved = { scene.medium, scene.illumination, scene.channels };

@@ -9,8 +9,10 @@
 #include "Lights/Lights.h"
 #include "Medium/Field.h"
 #include "Medium/Medium.h"
+#include "Photons/Photons.h"
 
 #include <string>
+#include <vector>
 
 namespace tyndall
 {
@@ -19,8 +21,9 @@ namespace tyndall
 /// preconditions, is solved on cells of several voxels on the first rank (numerics.md, section 10 c). All ranks call it
 /// together.
 ///
-/// The light is that of SolveLatticeBoltzmann to the tolerance, with its refraction, colours, faces' albedo, first
-/// moments of lamps' light and net flux, and does not depend on the number of ranks, but for rounding.
+/// The light is that of SolveLatticeBoltzmann to the tolerance, with its refraction, colours, faces' albedo, periodic
+/// axes, first moments of lamps' light or of light that is given, and net flux. It does not depend on the number of
+/// ranks, but for rounding.
 ///
 /// @param medium, ior  of the rank's block, with the grid that partition.OwnGrid() has; looked at by nobody where that
 ///   has no voxels
@@ -33,6 +36,14 @@ namespace tyndall
 LightField SolveLatticeInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition,
   const Medium& medium, const Field& ior, const Illumination& illumination, const LatticeSettings& settings,
   const Monitor& monitor = {});
+
+/// The same of the light of photons, as SolveLatticeBoltzmann has it of the whole: they march to their ends, handed on
+/// from rank to rank (PhotonMarcherInBlocks), before their light diffuses.
+/// @param share  of this rank: all photons are those of rank 0, then those of rank 1, and so on
+/// @throws InvalidInput  also where an axis is periodic, or what PhotonMarcherInBlocks says
+LightField SolveLatticeInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition,
+  const Medium& medium, const Field& ior, const std::vector<Photon>& share, const Illumination& illumination,
+  const LatticeSettings& settings, const Monitor& monitor = {});
 
 /// What of a scene keeps SolveLatticeInBlocks from it, in words for an error; empty: nothing does.
 std::string NotInBlocks(const Illumination& illumination, const LatticeSettings& settings);

@@ -1,12 +1,10 @@
 #include "LatticeBoltzmann/Distributed/LinesInBlocks.h"
 
-#include "Device/Errors.h"
 #include "LatticeBoltzmann/LatticeShared.h"
 #include "LatticeBoltzmann/Steady/LinesOfLinks.h"
 #include "TyndallKernelSources.h"
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 namespace tyndall
@@ -15,45 +13,8 @@ namespace
 {
 constexpr int Ways[18][3] = LATTICE_WAYS;
 constexpr int PairsAtOnce = 3;
-constexpr int SaysOfLast = 4, SaysOfFirst = 2; ///< numbers of a line, as BlockLines.cl has them
-
-VoxelBox Moved(VoxelBox box, int pair)
-{
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    box.first[axis] += Ways[2 * pair][axis];
-  }
-  return box;
-}
-
-/// Voxels of block `to` that lines of the pair come into from block `from`.
-VoxelBox Entered(const BlockPartition& partition, int pair, std::size_t from, std::size_t to)
-{
-  const bool both = partition.blocks[from].VoxelCount() > 0 && partition.blocks[to].VoxelCount() > 0;
-  return both && from != to ? Common(Moved(partition.blocks[from], pair), partition.blocks[to]) : VoxelBox();
-}
-
-/// Takes away the blocks that wait for no other one, again and again.
-/// @throws InvalidInput where some are left that wait for each other
-void CheckOrder(const BlockPartition& partition, int pair)
-{
-  std::vector<std::size_t> left;
-  for (std::size_t block = 0; block < partition.blocks.size(); ++block)
-  {
-    left.push_back(block);
-  }
-  while (!left.empty())
-  {
-    const auto waits = [&](std::size_t block) {
-      return std::any_of(left.begin(), left.end(),
-        [&](std::size_t other) { return Entered(partition, pair, other, block).VoxelCount() > 0; });
-    };
-    const auto end = std::stable_partition(left.begin(), left.end(), waits);
-    Require(
-      end != left.end(), "Blocks of ranks wait for each other's light: cut the grid by planes, one after the other.");
-    left.erase(end, left.end());
-  }
-}
+constexpr int FirstTag = 36;                                ///< beyond those of pairs
+constexpr std::size_t Says = 8, Hears = 3, SaysOfSweep = 2; ///< numbers of a piece, as BlockLines.cl has them
 
 /// Floats of the block's voxels.
 std::vector<float> OwnOf(const LatticeBox& box, const std::vector<float>& known)
@@ -71,139 +32,217 @@ LinesInBlocks::LinesInBlocks(Device& device, Communicator& communicator, const B
   const LatticeBox& box, const LatticeSettings& settings, const LatticeVoxels& voxels, const Lattice* lattice)
   : TheDevice(device)
   , Others(communicator)
-  , Partition(partition)
   , Box(box)
   , Settings(settings)
   , Voxels(voxels)
   , Densities(lattice)
 {
   communicator.Together([&] {
-    for (int pair = 0; pair < settings.directions / 2; ++pair)
-    {
-      CheckOrder(partition, pair);
-      this->Pairs.push_back(this->ContactsOf(pair));
-      this->MostLines = std::max(this->MostLines, this->Pairs.back().range[0] * this->Pairs.back().range[1]);
-    }
     if (box.Count() > 0)
     {
-      this->Load();
+      this->FindLines(partition, settings.periodic);
+      this->Load(partition, settings.periodic);
     }
   });
+  this->TellWhoJoins(partition);
+  this->LearnParts();
 }
 
-/// The work-item that follows the line through a voxel of the block.
-std::size_t LinesInBlocks::LineOf(int pair, std::array<int, 3> voxel) const
+void LinesInBlocks::FindLines(const BlockPartition& partition, const std::array<bool, 3>& periodic)
 {
-  const int* way = Ways[2 * pair];
-  const std::array<int, 3>& size = this->Box.own.size;
-  std::vector<int> moving, still;
-  int back = std::numeric_limits<int>::max();
-  for (int a = 0; a < 3; ++a)
+  for (int pair = 0; pair < this->Settings.directions / 2; ++pair)
   {
-    (way[a] != 0 ? moving : still).push_back(a);
-    back = way[a] == 0 ? back : std::min(back, way[a] > 0 ? voxel[a] : size[a] - 1 - voxel[a]);
+    this->Pairs.push_back(this->LinesFrom(PiecesOfLines(partition, periodic, pair)));
+    this->MostPieces = std::max(this->MostPieces, this->Pairs.back().range[0] * this->Pairs.back().range[1]);
   }
-  for (const int a : moving)
-  {
-    voxel[a] -= back * way[a];
-  }
-  const std::size_t range = LinesOfPair(size, pair)[0];
-  if (moving.size() == 1)
-  {
-    return voxel[still[1]] * range + voxel[still[0]];
-  }
-  const int a = moving[0], b = moving[1], firstB = way[b] > 0 ? 0 : size[b] - 1;
-  return voxel[still[0]] * range + (voxel[b] == firstB ? voxel[a] : size[a] + voxel[b]);
 }
 
-LinesInBlocks::Pair LinesInBlocks::ContactsOf(int number) const
+/// Those that this rank joins.
+LinesInBlocks::Pair LinesInBlocks::LinesFrom(const PiecesOfLines& pieces) const
 {
-  const std::size_t self = static_cast<std::size_t>(this->Others.Rank());
-  const VoxelBox& block = this->Partition.blocks[self];
   Pair pair;
-  pair.range = LinesOfPair(this->Box.own.size, number);
-  // Both count the voxels that are entered; of the block before they are one way further on.
-  const auto contact = [&](std::size_t rank, const VoxelBox& entered, bool isBefore) {
-    Contact found = { static_cast<int>(rank), {} };
-    Grid grid;
-    grid.size = entered.size;
-    for (std::size_t i = 0; i < entered.VoxelCount(); ++i)
-    {
-      std::array<int, 3> voxel = grid.VoxelAt(i);
-      for (int a = 0; a < 3; ++a)
-      {
-        voxel[a] += entered.first[a] - block.first[a] - (isBefore ? 0 : Ways[2 * number][a]);
-      }
-      found.lines.push_back(this->LineOf(number, voxel));
-    }
-    return found;
-  };
-  for (std::size_t rank = 0; rank < this->Partition.blocks.size(); ++rank)
+  pair.range = pieces.Range(this->Others.Rank());
+  const std::vector<PiecesOfLines::Line> lines = pieces.LinesFrom(this->Others.Rank());
+  std::vector<Shared> byRank(this->Others.Ranks());
+  for (const PiecesOfLines::Line& line : lines)
   {
-    if (const VoxelBox here = Entered(this->Partition, number, rank, self); here.VoxelCount() > 0)
+    for (const PiecesOfLines::Piece& piece : line.pieces)
     {
-      pair.before.push_back(contact(rank, here, true));
+      byRank[piece.rank].pieces.push_back(piece.number);
     }
-    if (const VoxelBox there = Entered(this->Partition, number, self, rank); there.VoxelCount() > 0)
+  }
+  std::vector<std::size_t> next; // place of the first piece of a rank that is not placed yet
+  std::size_t all = 0;
+  for (std::size_t rank = 0; rank < byRank.size(); ++rank)
+  {
+    next.push_back(all);
+    all += byRank[rank].pieces.size();
+    if (!byRank[rank].pieces.empty())
     {
-      pair.behind.push_back(contact(rank, there, false));
+      pair.heardOf.push_back({ static_cast<int>(rank), std::move(byRank[rank].pieces) });
+    }
+  }
+  for (const PiecesOfLines::Line& line : lines)
+  {
+    pair.lines.push_back({ {}, line.closed });
+    for (const PiecesOfLines::Piece& piece : line.pieces)
+    {
+      pair.lines.back().places.push_back(next[piece.rank]++);
     }
   }
   return pair;
 }
 
-void LinesInBlocks::Load()
+/// Which of its pieces a rank has to tell whom about.
+void LinesInBlocks::TellWhoJoins(const BlockPartition& partition)
+{
+  if (this->Box.Count() == 0)
+  {
+    return;
+  }
+  const auto forOthers = [&](const auto& act) {
+    for (int rank = 0; rank < this->Others.Ranks(); ++rank)
+    {
+      if (partition.blocks[rank].VoxelCount() > 0)
+      {
+        act(rank);
+      }
+    }
+  };
+  forOthers([&](int rank) {
+    std::vector<std::size_t> message;
+    for (const Pair& pair : this->Pairs)
+    {
+      const auto of = std::find_if(
+        pair.heardOf.begin(), pair.heardOf.end(), [&](const Shared& shared) { return shared.rank == rank; });
+      const std::vector<std::size_t> pieces = of == pair.heardOf.end() ? std::vector<std::size_t>() : of->pieces;
+      message.push_back(pieces.size());
+      message.insert(message.end(), pieces.begin(), pieces.end());
+    }
+    this->Others.Send(rank, FirstTag, message);
+  });
+  forOthers([&](int rank) {
+    const std::vector<std::size_t> message = this->Others.Receive<std::size_t>(rank, FirstTag);
+    auto next = message.begin();
+    for (Pair& pair : this->Pairs)
+    {
+      const auto first = next + 1;
+      next = first + static_cast<std::ptrdiff_t>(*next);
+      if (first != next)
+      {
+        pair.joinedBy.push_back({ rank, { first, next } });
+      }
+    }
+  });
+}
+
+void LinesInBlocks::Load(const BlockPartition& partition, const std::array<bool, 3>& periodic)
 {
   const char* what = "lines of the lattice";
   const std::size_t count = this->Box.Count();
-  this->Straight = ExactValues(this->TheDevice, count, what);
-  this->Even = ExactValues(this->TheDevice, count, what);
-  this->Arriving = ExactValues(this->TheDevice, count, what);
+  const auto values = [&](std::size_t number) { return ExactValues(this->TheDevice, number, what); };
+  this->Straight = values(count);
+  this->Even = values(count);
+  this->Arriving = values(count);
   this->Straight.Write(GoesStraight(this->Box, this->Voxels));
   this->Passes = Buffer<float>(this->TheDevice, OwnOf(this->Box, this->Voxels.passes), "how links pass light");
   this->Squared = Buffer<float>(this->TheDevice, OwnOf(this->Box, this->Voxels.squared), "n^2");
-  const auto values = [&](std::size_t number) { return ExactValues(this->TheDevice, number, what); };
-  for (int slot = 0; slot < std::min<int>(PairsAtOnce, static_cast<int>(this->Pairs.size())); ++slot)
+  const int pairs = static_cast<int>(this->Pairs.size());
+  for (int slot = 0; slot < std::min(PairsAtOnce, pairs); ++slot)
   {
     this->Slots.push_back(
-      { values(2 * count), values(SaysOfLast * this->MostLines), values(SaysOfLast * this->MostLines),
-        values(SaysOfFirst * this->MostLines), values(SaysOfFirst * this->MostLines) });
+      { values(2 * count), values(count), values(Says * this->MostPieces), values(Hears * this->MostPieces) });
   }
-}
-
-/// @param values  numbers of a line
-/// @return by line; 0 where none come
-LinesInBlocks::Values LinesInBlocks::TakeFrom(const std::vector<Contact>& contacts, int tag, int values)
-{
-  Values ofLines(values * this->MostLines, 0.0);
-  for (const Contact& contact : contacts)
+  for (int pair = 0; pair < pairs; ++pair)
   {
-    const Values message = this->Others.Receive<double>(contact.rank, tag);
-    this->Failure.broken = this->Failure.broken || message.size() != values * contact.lines.size();
-    for (std::size_t i = 0; i < contact.lines.size() && !this->Failure.broken; ++i)
-    {
-      std::copy_n(message.begin() + static_cast<std::ptrdiff_t>(values * i), values,
-        ofLines.begin() + static_cast<std::ptrdiff_t>(values * contact.lines[i]));
-    }
+    Pair& of = this->Pairs[pair];
+    of.below = values(2 * of.range[0] * of.range[1]);
+    of.below.Write(this->Below(PiecesOfLines(partition, periodic, pair), partition.blocks[this->Others.Rank()], pair));
   }
-  return ofLines;
 }
 
-void LinesInBlocks::GiveTo(const std::vector<Contact>& contacts, int tag, int values, const Values& ofLines)
+/// As BlockLines.cl has it; 1 where a piece begins at a face of the grid.
+LinesInBlocks::Values LinesInBlocks::Below(const PiecesOfLines& pieces, const VoxelBox& block, int pair) const
 {
-  for (const Contact& contact : contacts)
+  const std::array<std::size_t, 2>& range = this->Pairs[pair].range;
+  Values below(2 * range[0] * range[1], 1.0);
+  pieces.ForPieces(this->Others.Rank(), [&](std::size_t piece, std::array<int, 3> voxel) {
+    bool isFace = false;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      voxel[axis] -= block.first[axis] + Ways[2 * pair][axis];
+      const bool isOut = voxel[axis] < 0 || voxel[axis] >= block.size[axis];
+      isFace = isFace || (isOut && !(this->Box.innerFaces >> (2 * axis + (voxel[axis] < 0 ? 0 : 1)) & 1));
+    }
+    if (!isFace)
+    {
+      const std::size_t known = this->Box.Known(voxel);
+      below[2 * piece] = this->Voxels.passes[known];
+      below[2 * piece + 1] = this->Voxels.squared[known];
+    }
+  });
+  return below;
+}
+
+/// What pieces do to light, to those who join them. It does not change from sweep to sweep.
+void LinesInBlocks::LearnParts()
+{
+  this->Failure = {};
+  const int pairs = static_cast<int>(this->Pairs.size());
+  if (pairs > 0)
+  {
+    this->Failure.Attempt([&] { this->Even.Fill(0.0); });
+  }
+  for (int pair = 0; pair < pairs; ++pair)
+  {
+    this->GoUp(pair, this->Slots.front(), 0.0, { SaysOfSweep, Says - SaysOfSweep, Says });
+    const Values heard = this->Take(this->Pairs[pair].heardOf, 2 * pair, Says - SaysOfSweep);
+    this->Failure.Attempt([&] {
+      for (auto next = heard.begin(); next != heard.end(); next += Says - SaysOfSweep)
+      {
+        this->Pairs[pair].parts.push_back({ next[0], next[1], next[2], next[3], next[4], next[5] });
+      }
+    });
+  }
+  this->Others.Together([&] { this->Failure.Throw(); });
+}
+
+/// Numbers of the pieces that others are to know of; nothing where something has gone wrong.
+/// @param values  side by side: of all of this rank's pieces, by number; or where `part.of` is 0 of those that go to
+///   others, in that order
+void LinesInBlocks::Give(const std::vector<Shared>& to, int tag, Part part, const Values& values)
+{
+  auto next = values.begin();
+  for (const Shared& other : to)
   {
     Values message;
-    for (std::size_t i = 0; i < contact.lines.size() && !this->Failure.broken; ++i)
-    {
-      const auto first = ofLines.begin() + static_cast<std::ptrdiff_t>(values * contact.lines[i]);
-      message.insert(message.end(), first, first + values);
-    }
-    this->Others.Send(contact.rank, tag, message);
+    this->Failure.Attempt([&] {
+      for (const std::size_t piece : other.pieces)
+      {
+        const auto first =
+          part.of > 0 ? values.begin() + static_cast<std::ptrdiff_t>(piece * part.of + part.first) : next;
+        next = first + static_cast<std::ptrdiff_t>(part.count);
+        message.insert(message.end(), first, next);
+      }
+    });
+    this->Others.Send(other.rank, tag, this->Failure.broken ? Values() : message);
   }
 }
 
-/// With its first arguments, up to `shines`.
+/// @return `width` numbers of each piece, side by side; of no use where something has gone wrong
+LinesInBlocks::Values LinesInBlocks::Take(const std::vector<Shared>& from, int tag, std::size_t width)
+{
+  Values all;
+  for (const Shared& other : from)
+  {
+    const Values message = this->Others.Receive<double>(other.rank, tag);
+    this->Failure.broken = this->Failure.broken || message.size() != width * other.pieces.size();
+    this->Failure.Attempt([&] { all.insert(all.end(), message.begin(), message.end()); });
+  }
+  return all;
+}
+
+/// With its first arguments, up to `below`.
 cl::Kernel LinesInBlocks::Kernel(const char* name, int pair, double shines) const
 {
   cl::Kernel lines = this->TheDevice.Kernel(
@@ -211,6 +250,7 @@ cl::Kernel LinesInBlocks::Kernel(const char* name, int pair, double shines) cons
   With(lines, this->Densities->Info(), this->Straight.Handle(), this->Passes, this->Squared, this->Even.Handle(),
     cl_int(pair));
   SetExact(this->TheDevice, lines, 6, shines);
+  SetFrom(lines, 7, this->Pairs[pair].below.Handle());
   return lines;
 }
 
@@ -221,42 +261,77 @@ void LinesInBlocks::Run(cl::Kernel& kernel, int pair)
   this->TheDevice.Finish();
 }
 
-void LinesInBlocks::GoUp(int pair, Slot& slot, double shines)
+void LinesInBlocks::GoUp(int pair, Slot& slot, double shines, Part says)
 {
-  const int tag = 2 * pair;
-  const Values before = this->TakeFrom(this->Pairs[pair].before, tag, SaysOfLast);
-  Values last;
+  const std::vector<Shared>& joinedBy = this->Pairs[pair].joinedBy;
+  Values said;
   this->Failure.Attempt([&] {
-    slot.before.Write(before);
-    cl::Kernel up = this->Kernel("lines_up", pair, shines);
-    SetFrom(up, 7, slot.before.Handle(), slot.behind.Handle(), slot.last.Handle());
+    cl::Kernel up = this->Kernel("pieces_up", pair, shines);
+    SetFrom(up, 8, slot.behind.Handle(), slot.share.Handle(), slot.says.Handle());
     this->Run(up, pair);
-    last = slot.last.Read();
+    said = joinedBy.empty() ? Values() : slot.says.Read();
   });
-  this->GiveTo(this->Pairs[pair].behind, tag, SaysOfLast, last);
+  this->Give(joinedBy, 2 * pair, says, said);
+}
+
+/// The lines that begin here, or are cut here.
+void LinesInBlocks::Join(int pair)
+{
+  const Pair& of = this->Pairs[pair];
+  const Values heard = this->Take(of.heardOf, 2 * pair, SaysOfSweep);
+  Values joined;
+  this->Failure.Attempt([&] {
+    joined.resize(heard.size() / SaysOfSweep * Hears);
+    for (const Line& line : of.lines)
+    {
+      std::vector<PieceOfLine> parts;
+      std::vector<SentByPiece> sent;
+      for (const std::size_t place : line.places)
+      {
+        parts.push_back(of.parts[place]);
+        sent.push_back({ heard[SaysOfSweep * place], heard[SaysOfSweep * place + 1] });
+      }
+      const std::vector<ComesToPiece> comes = JoinLine(parts, sent, line.closed);
+      for (std::size_t k = 0; k < comes.size(); ++k)
+      {
+        const auto to = joined.begin() + static_cast<std::ptrdiff_t>(Hears * line.places[k]);
+        to[0] = comes[k].up;
+        to[1] = comes[k].down;
+        to[2] = comes[k].sentBeyond;
+      }
+    }
+  });
+  this->Give(of.heardOf, 2 * pair + 1, { 0, Hears, 0 }, joined);
 }
 
 void LinesInBlocks::GoDown(int pair, Slot& slot, double shines, bool writes)
 {
-  const int tag = 2 * pair + 1;
-  const Values after = this->TakeFrom(this->Pairs[pair].behind, tag, SaysOfFirst);
-  Values first;
+  const std::vector<Shared>& joinedBy = this->Pairs[pair].joinedBy;
+  const Values heard = this->Take(joinedBy, 2 * pair + 1, Hears);
   this->Failure.Attempt([&] {
-    slot.after.Write(after);
-    cl::Kernel down = this->Kernel("lines_down", pair, shines);
-    SetFrom(down, 7, slot.before.Handle(), slot.behind.Handle(), slot.after.Handle(), slot.first.Handle(),
-      this->Arriving.Handle(), this->Densities->Densities(), cl_int(writes));
+    Values joined(Hears * this->MostPieces, 0.0);
+    auto next = heard.begin();
+    for (const Shared& other : joinedBy)
+    {
+      for (const std::size_t piece : other.pieces)
+      {
+        std::copy_n(next, Hears, joined.begin() + static_cast<std::ptrdiff_t>(Hears * piece));
+        next += Hears;
+      }
+    }
+    slot.joined.Write(joined);
+    cl::Kernel down = this->Kernel("pieces_down", pair, shines);
+    SetFrom(down, 8, slot.behind.Handle(), slot.share.Handle(), slot.joined.Handle(), this->Arriving.Handle(),
+      this->Densities->Densities(), cl_int(writes));
     this->Run(down, pair);
-    first = slot.first.Read();
   });
-  this->GiveTo(this->Pairs[pair].before, tag, SaysOfFirst, first);
 }
 
 SteadySystem::Values LinesInBlocks::Sweep(
   const SteadySystem::Values& even, double shines, bool writes, const Monitor& monitor)
 {
   this->Failure = {};
-  const int pairs = this->Box.Count() > 0 ? static_cast<int>(this->Pairs.size()) : 0;
+  const int pairs = static_cast<int>(this->Pairs.size());
   this->Failure.Attempt([&] {
     if (pairs > 0)
     {
@@ -269,7 +344,11 @@ SteadySystem::Values LinesInBlocks::Sweep(
     const int end = std::min(begin + PairsAtOnce, pairs);
     for (int pair = begin; pair < end; ++pair)
     {
-      this->GoUp(pair, this->Slots[pair - begin], shines);
+      this->GoUp(pair, this->Slots[pair - begin], shines, { 0, SaysOfSweep, Says });
+    }
+    for (int pair = begin; pair < end; ++pair)
+    {
+      this->Join(pair);
     }
     for (int pair = begin; pair < end; ++pair)
     {
@@ -280,10 +359,7 @@ SteadySystem::Values LinesInBlocks::Sweep(
   }
   SteadySystem::Values arrives;
   this->Others.Together([&] {
-    if (this->Failure.error)
-    {
-      std::rethrow_exception(this->Failure.error);
-    }
+    this->Failure.Throw();
     if (pairs > 0 && !this->Failure.broken)
     {
       arrives = this->Arriving.Read();

@@ -6,25 +6,28 @@
 #include "Distribution/BlockPartition.h"
 #include "Distribution/Communicator.h"
 #include "Distribution/HeldFailure.h"
+#include "LatticeBoltzmann/Distributed/JoinedLine.h"
+#include "LatticeBoltzmann/Distributed/PiecesOfLines.h"
 #include "LatticeBoltzmann/Lattice.h"
 #include "LatticeBoltzmann/LatticeBox.h"
 #include "LatticeBoltzmann/Steady/SteadySystem.h"
 
 #include <array>
-#include <functional>
+#include <cstddef>
 #include <vector>
 
 namespace tyndall
 {
-/// Lines of links through a grid whose blocks lie on several ranks: each follows its part of them up, when it knows
-/// what comes from the blocks before, and down, when it knows what comes from those behind (numerics.md, section 10 c).
-/// The same sums as in one memory, to rounding; three pairs of directions are under way at a time.
+/// Lines of links through a grid whose blocks lie on several ranks, round periodic axes too (numerics.md, section 10
+/// c): each rank follows its pieces of them up, all at once; who has the beginning of a line joins its pieces, and each
+/// then follows its own down. The same sums as in one memory, to rounding.
 class LinesInBlocks
 {
 public:
   /// All ranks make one together, and all of it must stay.
+  /// @param settings  with the axes that are periodic in the whole grid
   /// @param lattice  of the rank's block, whose densities are written, those beyond its faces too; null: it has none
-  /// @throws InvalidInput on each where blocks wait for each other: no planes cut them apart one after the other
+  /// @throws on every rank what any of them throws
   LinesInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition, const LatticeBox& box,
     const LatticeSettings& settings, const LatticeVoxels& voxels, const Lattice* lattice);
 
@@ -34,41 +37,60 @@ public:
 
 private:
   using Values = std::vector<double>;
-  struct Contact ///< lines go from one block to another
+  /// Pieces about which this rank and another talk, in an order that both know.
+  struct Shared
   {
     int rank = 0;
-    std::vector<std::size_t> lines; ///< of this block, in an order that both know
+    std::vector<std::size_t> pieces;
+  };
+  /// A line that this rank joins: of each piece the place among those of all ranks that it hears of.
+  struct Line
+  {
+    std::vector<std::size_t> places;
+    bool closed = false;
   };
   struct Pair
   {
     std::array<std::size_t, 2> range = {}; ///< of work-items
-    std::vector<Contact> before, behind;
+    std::vector<Shared> joinedBy;          ///< this rank's pieces, by the rank that joins their lines
+    std::vector<Shared> heardOf;           ///< pieces of the lines that this rank joins, by the rank that has them
+    std::vector<Line> lines;
+    std::vector<PieceOfLine> parts; ///< of the pieces heard of, side by side
+    ExactValues below;
+  };
+  /// Of a piece's numbers some.
+  struct Part
+  {
+    std::size_t first = 0, count = 0, of = 0;
   };
   struct Slot ///< what a pair needs that is under way, as BlockLines.cl has it
   {
-    ExactValues behind, before, last, after, first;
+    ExactValues behind, share, says, joined;
   };
 
-  Pair ContactsOf(int pair) const;
-  std::size_t LineOf(int pair, std::array<int, 3> voxel) const;
-  void Load();
-  Values TakeFrom(const std::vector<Contact>& contacts, int tag, int values);
-  void GiveTo(const std::vector<Contact>& contacts, int tag, int values, const Values& ofLines);
-  void GoUp(int pair, Slot& slot, double shines);
+  void FindLines(const BlockPartition& partition, const std::array<bool, 3>& periodic);
+  Pair LinesFrom(const PiecesOfLines& pieces) const;
+  void TellWhoJoins(const BlockPartition& partition);
+  void Load(const BlockPartition& partition, const std::array<bool, 3>& periodic);
+  Values Below(const PiecesOfLines& pieces, const VoxelBox& block, int pair) const;
+  void LearnParts();
+  void Give(const std::vector<Shared>& to, int tag, Part part, const Values& values);
+  Values Take(const std::vector<Shared>& from, int tag, std::size_t width);
+  void GoUp(int pair, Slot& slot, double shines, Part says);
+  void Join(int pair);
   void GoDown(int pair, Slot& slot, double shines, bool writes);
   cl::Kernel Kernel(const char* name, int pair, double shines) const;
   void Run(cl::Kernel& kernel, int pair);
 
   Device& TheDevice;
   Communicator& Others;
-  const BlockPartition& Partition;
   const LatticeBox& Box;
   const LatticeSettings& Settings;
   const LatticeVoxels& Voxels;
   const Lattice* Densities;
   std::vector<Pair> Pairs;
   std::vector<Slot> Slots;
-  std::size_t MostLines = 1;
+  std::size_t MostPieces = 1;
   ExactValues Straight, Even, Arriving;
   Buffer<float> Passes, Squared;
   HeldFailure Failure; ///< of a sweep

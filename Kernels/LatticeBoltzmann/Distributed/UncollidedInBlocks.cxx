@@ -1,11 +1,14 @@
 #include "LatticeBoltzmann/Distributed/UncollidedInBlocks.h"
 
 #include "Distribution/SharedMedium.h"
+#include "LatticeBoltzmann/LatticeChannel.h"
 #include "LatticeBoltzmann/LatticeLight.h"
+#include "LatticeBoltzmann/WhereLightIsLost.h"
 #include "LightPropagation/Angular/SweptDirections.h"
 #include "LightPropagation/Uncollided/BoundaryLight.h"
 #include "LightPropagation/Uncollided/EnvironmentPeaks.h"
 #include "LightPropagation/Uncollided/ParallelBeam.h"
+#include "LightPropagation/Uncollided/UncollidedLamp.h"
 
 #include <algorithm>
 #include <utility>
@@ -24,21 +27,44 @@ bool SharesExtinction(Communicator& communicator, const LatticeScene& scene)
 }
 }
 
+namespace
+{
+/// As it is found of the whole: axes along which nothing changes are wide, and directions are adapted to them.
+PropagationSettings AsOfWhole(const LatticeSettings& settings)
+{
+  PropagationSettings of = AsPropagation(settings);
+  of.source = PropagationSource::Automatic;
+  return of;
+}
+
+BlockPartition Widened(BlockPartition partition, const UnvaryingAxes& unvarying)
+{
+  partition.whole = unvarying.Widened(partition.whole);
+  return partition;
+}
+}
+
 UncollidedInBlocks::UncollidedInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition,
   const VoxelsAround& around, const LatticeScene& scene, const LatticeSettings& settings, bool firstMoments)
   : TheDevice(device)
   , Others(communicator)
-  , Partition(partition)
+  , Unvarying(partition.whole, scene.shining, AsOfWhole(settings))
+  , Partition(Widened(partition, this->Unvarying))
+  , Narrowing(partition.whole.VoxelVolume() / this->Partition.whole.VoxelVolume())
   , Around(around)
   , Scene(scene)
   , Settings(settings)
   , FirstMoments(firstMoments)
   , SharedExtinction(SharesExtinction(communicator, scene))
-  , Layout(this->LayoutOn(partition.OwnGrid(communicator.Rank())))
-  , KnownLayout(this->LayoutOn(scene.medium.grid))
-  , WholeLayout(this->LayoutOn(partition.whole))
+  , Layout(this->LayoutOn(this->Partition.OwnGrid(communicator.Rank())))
+  , KnownLayout(this->LayoutOn(this->Unvarying.Widened(scene.medium.grid)))
   , Lamps(scene.shining.lights)
+  , IsGiven(communicator.Largest({ scene.shining.uncollided.IsThere() ? 1.0 : 0.0 })[0] > 0.0)
 {
+  if (this->IsGiven)
+  {
+    return;
+  }
   communicator.Together([&] {
     const LatticeBox box = around.Box();
     this->SigmaT = this->SigmaTOf(this->Layout, box);
@@ -51,6 +77,7 @@ UncollidedInBlocks::UncollidedInBlocks(Device& device, Communicator& communicato
     {
       this->KnownSigmaT = this->SigmaTOf(this->KnownLayout, LatticeBox(box.known));
       this->KnownMoments = this->Zeros(this->KnownLayout, 6, "where light is lost");
+      this->OwnMoments = this->Zeros(this->Layout, 6, "where light is lost");
     }
   });
 }
@@ -97,7 +124,8 @@ void UncollidedInBlocks::AddEnvironment(const Monitor& monitor)
   {
     return;
   }
-  const PropagationSettings settings = AsPropagation(this->Settings);
+  PropagationSettings settings = AsOfWhole(this->Settings);
+  settings.directionsPerFace = DirectionsPerFaceFor(settings, this->Unvarying);
   const Grid& whole = this->Partition.whole;
   const SweptDirections directions(
     whole, settings, DirectionsForVoxels(settings.directionsPerFace, whole.spacing), RayStarts::Middle);
@@ -114,19 +142,35 @@ void UncollidedInBlocks::AddEnvironment(const Monitor& monitor)
   Add(this->Tally, this->MakeSweep(request)->Apply(nullptr, boundary.Boundary(), monitor));
 }
 
-/// Rays of a beam are those through the whole box.
+/// Of the block; rays are those through the whole grid.
+UncollidedVolume UncollidedInBlocks::Volume()
+{
+  const SweepMaker sweeps = [this](const SweepRequest& request) { return this->MakeSweep(request); };
+  UncollidedVolume volume = { this->TheDevice, this->Layout, this->SigmaT, this->Settings.periodic, sweeps,
+    this->ToOwn() };
+  volume.whole = &this->Partition.whole;
+  volume.followLamp = [this](const SweepVolume& ofChannels, const Light& lamp, const Monitor& monitor) {
+    if (!this->NearLamps)
+    {
+      this->NearLamps =
+        std::make_unique<LampsInBlocks>(this->TheDevice, this->Others, this->Partition, this->Layout, this->SigmaT);
+    }
+    return this->NearLamps->Deposit(ofChannels, lamp, monitor);
+  };
+  return volume;
+}
+
 void UncollidedInBlocks::AddLamp(const Light& lamp, const Monitor& monitor)
 {
   if (Sum(lamp.power) == 0.0)
   {
     return;
   }
-  const SweepMaker sweeps = [this](const SweepRequest& request) { return this->MakeSweep(request); };
-  const UncollidedVolume volume = { this->TheDevice, this->WholeLayout, this->SigmaT, this->Settings.periodic, sweeps,
-    this->ToOwn() };
-  if (!this->FirstMoments)
+  UncollidedVolume volume = this->Volume();
+  if (!this->FirstMoments || lamp.type != LightType::Directional)
   {
-    Add(this->Tally, DepositBeam(volume, lamp, monitor));
+    volume.deposit.firstMoments = this->FirstMoments ? &this->OwnMoments : nullptr;
+    Add(this->Tally, UncollidedLamp(lamp).AddTo(volume, monitor));
     return;
   }
   Buffer<float> path, currents;
@@ -163,16 +207,66 @@ void UncollidedInBlocks::AddMoments(const Light& lamp, const Buffer<float>& path
     to.firstMoments = &this->KnownMoments;
     ofBeam.path = &alone;
     ofBeam.partialCurrents = &through;
-    AddWithFirstMoments(
-      { this->TheDevice, this->KnownLayout, this->KnownSigmaT, this->Settings.periodic, {}, to }, lamp, ofBeam);
+    const std::array<bool, 3> open = {}; // the known voxels go on beyond periodic ends
+    AddWithFirstMoments({ this->TheDevice, this->KnownLayout, this->KnownSigmaT, open, {}, to }, lamp, ofBeam);
     std::vector<float> sum = this->Path.Read(), added = path.Read();
     std::transform(sum.begin(), sum.end(), added.begin(), sum.begin(), std::plus<float>());
     this->Path.Write(sum.data());
   });
 }
 
+/// Beams' are found for each known voxel, those of near lamps with the light of the block.
+std::vector<float> UncollidedInBlocks::FoundMoments(double scale) const
+{
+  std::vector<float> moments = this->Known(this->OwnMoments, scale, 6 * this->Scene.channels);
+  if (!moments.empty())
+  {
+    const std::vector<float> ofBeams = Interleaved(this->KnownLayout, this->KnownMoments, scale);
+    std::transform(moments.begin(), moments.end(), ofBeams.begin(), moments.begin(), std::plus<float>());
+  }
+  this->LeaveAlone(moments);
+  return moments;
+}
+
+/// That which is given, by known voxel.
+Uncollided UncollidedInBlocks::Given() const
+{
+  Uncollided found;
+  found.image = this->Scene.shining.uncollided;
+  if (!IsFirstThatHas(this->Others, this->Partition))
+  {
+    found.image.escaped = {}; // all ranks have that of the whole
+  }
+  const Medium& medium = this->Scene.medium;
+  if (this->Settings.netFlux)
+  {
+    found.netFlux = NetFluxOf(found.image, medium.grid, this->Scene.channels);
+  }
+  if (this->FirstMoments)
+  {
+    found.firstMoments = EstimatedFirstMoments(found.image, medium, {});
+    this->LeaveAlone(found.firstMoments);
+  }
+  return found;
+}
+
+/// Beyond the face of a single voxel of a periodic axis lies that itself: nothing crosses it.
+void UncollidedInBlocks::LeaveAlone(std::vector<float>& moments) const
+{
+  for (std::size_t i = 0; i < moments.size(); ++i)
+  {
+    const std::size_t axis = i % 6 / 2;
+    const bool isAlone = this->Settings.periodic[axis] && this->Partition.whole.size[axis] == 1;
+    moments[i] = isAlone ? 0.0f : moments[i];
+  }
+}
+
 Uncollided UncollidedInBlocks::Find(const Monitor& monitor)
 {
+  if (this->IsGiven)
+  {
+    return this->Given();
+  }
   this->AddEnvironment(OfPart(monitor, 0.0, 0.5));
   for (std::size_t i = 0; i < this->Lamps.size(); ++i)
   {
@@ -188,16 +282,17 @@ Uncollided UncollidedInBlocks::Find(const Monitor& monitor)
   {
     found.netFlux = this->Known(this->Flux, inverse, 3 * channels);
   }
-  if (this->FirstMoments && this->Around.Own().VoxelCount() > 0)
+  if (this->FirstMoments)
   {
-    found.firstMoments = Interleaved(this->KnownLayout, this->KnownMoments, inverse);
+    found.firstMoments = this->FoundMoments(inverse);
   }
-  const std::vector<VoxelBox>& blocks = this->Partition.blocks;
-  const auto first =
-    std::find_if(blocks.begin(), blocks.end(), [](const VoxelBox& block) { return block.VoxelCount() > 0; });
-  if (first - blocks.begin() == this->Others.Rank())
+  if (IsFirstThatHas(this->Others, this->Partition))
   {
     found.image.escaped = this->Tally.out;
+    for (Rgb& face : found.image.escaped)
+    {
+      face = Times(face, this->Narrowing);
+    }
   }
   return found;
 }

@@ -8,7 +8,9 @@
 #include "LatticeBoltzmann/LatticeScene.h"
 #include "LatticeBoltzmann/LatticeSettings.h"
 #include "LatticeBoltzmann/LatticeVoxels.h"
+#include "LightPropagation/Distributed/LampsInBlocks.h"
 #include "LightPropagation/Distributed/Sweep/SweepInBlocks.h"
+#include "LightPropagation/Problem/UnvaryingAxes.h"
 #include "LightPropagation/Sweep/VolumeLayout.h"
 #include "LightPropagation/Uncollided/UncollidedSource.h"
 
@@ -17,8 +19,8 @@
 
 namespace tyndall
 {
-/// Uncollided light of directional lamps and of the environment in a medium that is spread over ranks, along the maps'
-/// rays, as FindUncollided has it of the whole.
+/// Uncollided light of lamps and of the environment in a medium that is spread over ranks, along the maps' rays, as
+/// FindUncollided has it of the whole; or that which is given.
 class UncollidedInBlocks
 {
 public:
@@ -37,6 +39,10 @@ private:
   void AddEnvironment(const Monitor& monitor);
   void AddLamp(const Light& lamp, const Monitor& monitor);
   void AddMoments(const Light& lamp, const Buffer<float>& path, const Buffer<float>& currents);
+  UncollidedVolume Volume();
+  Uncollided Given() const;
+  void LeaveAlone(std::vector<float>& moments) const;
+  std::vector<float> FoundMoments(double scale) const;
   VolumeLayout LayoutOn(const Grid& grid) const { return { grid, this->Scene.channels, this->SharedExtinction }; }
   Buffer<float> SigmaTOf(const VolumeLayout& layout, const LatticeBox& box) const;
   Buffer<float> Zeros(const VolumeLayout& layout, int parts, const char* what) const;
@@ -45,16 +51,20 @@ private:
 
   Device& TheDevice;
   Communicator& Others;
-  const BlockPartition& Partition;
+  const UnvaryingAxes Unvarying;
+  const BlockPartition Partition; ///< as rays go through it: wide along axes on which nothing changes
+  const double Narrowing;         ///< volume of a voxel over that
   const VoxelsAround& Around;
   const LatticeScene Scene;
   const LatticeSettings& Settings;
   const bool FirstMoments, SharedExtinction;
-  const VolumeLayout Layout, KnownLayout, WholeLayout;
+  const VolumeLayout Layout, KnownLayout;
   Buffer<float> SigmaT, KnownSigmaT, Path, Flux;
-  Buffer<float> KnownMoments; ///< empty: not asked for
+  Buffer<float> KnownMoments, OwnMoments;   ///< of beams, and of near lamps; empty: not asked for
+  std::unique_ptr<LampsInBlocks> NearLamps; ///< null until there is one
   BlockWorkspace Workspace;
   std::vector<Light> Lamps;
+  const bool IsGiven; ///< light of another solver, on any rank
   SweepTally Tally;
 };
 }

@@ -171,8 +171,127 @@ static Crossed cross_down(Link link, Behind below, exact down)
   return crossed;
 }
 
+// Where a line or a piece of one begins: what arrives in its first voxel from behind, the part of what that sends down
+// that comes back, and the part of what goes up the cut behind it, of one that is cut there.
+typedef struct
+{
+  exact arrived, back, part;
+} Beginning;
+
+// Behind a grid's face; and behind a cut, of which it is not known yet what goes up it.
+static Beginning begin_at_border(Border low)
+{
+  const Beginning begin = { low.in, low.back, 0 };
+  return begin;
+}
+static Beginning begin_at_cut(Link link)
+{
+  const Beginning begin = { 0, 1 - link.down, link.up };
+  return begin;
+}
+
+// What comes down to where a line is cut, by what goes up there, x, and what comes from ahead, B: sent + round x +
+// gives_back B.
+typedef struct
+{
+  exact sent, round, gives_back;
+} Cut;
+
+// The last voxel of a line; of one that is cut, how much more that sends by what goes up the cut.
+typedef struct
+{
+  Place place;
+  ulong voxel;
+  int voxels;
+  exact part;
+  Cut cut;
+} Top;
+
+// The way up.
+//   is_cut  1: behind the first voxel
+//   behind  [voxel][2], U and R
+//   share   [voxel], of a line that is cut: how much more a voxel sends by what goes up the cut, T
+static Top go_up(LatticeInfo lattice, MEDIUM, Place place, int i, Beginning begin, bool is_cut, __global exact* behind,
+  __global exact* share)
+{
+  const exact weight = EXACT_WEIGHT(i);
+  const ulong first_voxel = voxel_at(lattice, place.at);
+  Top top = { place, first_voxel, 1, begin.part, { weight * even[first_voxel], 0, straight[first_voxel] } };
+  exact arrived = begin.arrived, back = begin.back;
+  for (;;)
+  {
+    const Behind here = pass_voxel(straight[top.voxel], weight * even[top.voxel], arrived, back);
+    behind[2 * top.voxel] = here.sends;
+    behind[2 * top.voxel + 1] = here.returns;
+    if (is_cut)
+    {
+      top.part *= straight[top.voxel];
+      share[top.voxel] = top.part;
+    }
+    const Place next = next_along(lattice, top.place, i);
+    const ulong ahead = voxel_at(lattice, next.at);
+    if (next.face >= 0 || ahead == first_voxel)
+    {
+      return top;
+    }
+    const Link link = link_between(straight, passes, squared, even, top.voxel, ahead);
+    if (is_cut)
+    {
+      const exact again = 1 / (1 - here.returns * (1 - link.up));
+      const exact down = top.cut.gives_back * again;
+      top.cut.sent += down * (link.down * weight * even[ahead] + (1 - link.up) * here.sends);
+      top.cut.round += down * (1 - link.up) * top.part;
+      top.cut.gives_back = down * link.down * straight[ahead];
+      top.part *= link.up * again;
+    }
+    const Behind beyond = cross_up(link, here);
+    arrived = beyond.sends;
+    back = beyond.returns;
+    top.place = next;
+    top.voxel = ahead;
+    ++top.voxels;
+  }
+}
+
 // Densities of a voxel along a line's two directions, as step_lattice has them, [direction][stride].
 static ulong density_at(LatticeInfo lattice, const int* at)
 {
   return (ulong)(at[2] + 1) * lattice.layer + (ulong)(at[1] + 1) * lattice.row + at[0] + LatticeFirst;
+}
+
+// The way down.
+//   comes     down to the last voxel
+//   round     what goes up the cut, of a line that is cut; else 0
+//   first     what arrives in the first voxel from behind, and what comes back of what that sends down
+//   sum       [voxel], W / length^2: what arrives is added
+//   writes    1: densities are written, too, as step_lattice has them
+static void go_down(LatticeInfo lattice, MEDIUM, Top top, int i, exact comes, exact round, Border first, bool is_cut,
+  const __global exact* behind, const __global exact* share, __global exact* sum, __global float* densities, int writes)
+{
+  const exact weight = EXACT_WEIGHT(i);
+  for (; top.voxels > 0; --top.voxels)
+  {
+    const exact source = weight * even[top.voxel], down = straight[top.voxel] * comes + source;
+    Place below = top.place;
+    ulong other = top.voxel;
+    Crossed crossed = { first.in + first.back * down, 0, 0 };
+    if (top.voxels > 1)
+    {
+      below = next_along(lattice, top.place, i + 1);
+      other = voxel_at(lattice, below.at);
+      const Link link = link_between(straight, passes, squared, even, other, top.voxel);
+      const Behind of_other = { behind[2 * other] + (is_cut ? share[other] * round : 0), behind[2 * other + 1] };
+      crossed = cross_down(link, of_other, down);
+    }
+    sum[top.voxel] += crossed.up_arrives + comes;
+    if (writes)
+    {
+      const ulong at = density_at(lattice, top.place.at);
+      densities[i * lattice.stride + at] = straight[top.voxel] * crossed.up_arrives + source;
+      densities[(i + 1) * lattice.stride + at] = down;
+    }
+    comes = crossed.lower;
+    top.place = below;
+    top.voxel = other;
+  }
 }

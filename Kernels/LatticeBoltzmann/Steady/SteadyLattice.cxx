@@ -63,10 +63,19 @@ SteadyLattice::Values SteadyLattice::EvenOf(const Values& scaled, bool withSourc
   return even;
 }
 
+/// Of a sweep, with or without all that shines.
+SteadyLattice::Values SteadyLattice::Arriving(
+  const Values& scaled, bool withSources, bool writes, const Monitor& monitor)
+{
+  Values even;
+  this->System.Alone([&] { even = this->EvenOf(scaled, withSources); });
+  return this->System.Sweep(even, withSources ? 1.0 : 0.0, writes, monitor);
+}
+
 /// W / length^2 that collisions would make even, less what they were taken to.
 SteadyLattice::Values SteadyLattice::Residual(const Values& scaled, const Monitor& monitor)
 {
-  Values residual = this->System.Sweep(this->EvenOf(scaled, true), 1.0, false, monitor);
+  Values residual = this->Arriving(scaled, true, false, monitor);
   for (std::size_t i = 0; i < this->Count; ++i)
   {
     const std::size_t known = this->Box.Known(i);
@@ -79,7 +88,7 @@ SteadyLattice::Values SteadyLattice::Residual(const Values& scaled, const Monito
 /// The system's matrix times fluence over n^2, Eq. (L9).
 SteadyLattice::Values SteadyLattice::Applied(const Values& scaled, const Monitor& monitor)
 {
-  Values applied = this->System.Sweep(this->EvenOf(scaled, false), 0.0, false, monitor);
+  Values applied = this->Arriving(scaled, false, false, monitor);
   for (std::size_t i = 0; i < this->Count; ++i)
   {
     const std::size_t known = this->Box.Known(i);
@@ -118,10 +127,12 @@ void SteadyLattice::Note(double estimate, double change, int iteration, std::vec
 
 std::vector<float> SteadyLattice::Solve(const Monitor& monitor, std::vector<ConvergenceRow>& rows)
 {
-  Values scaled(this->Count, 0.0);
+  Values scaled;
+  this->System.Alone([&] { scaled.assign(this->Count, 0.0); });
   Values residual = this->Residual(scaled, monitor);
   const double power = this->System.Sum({ SumOfMagnitudes(residual) })[0];
-  Values better = this->Preconditioned(residual), direction = better;
+  Values better = this->Preconditioned(residual), direction;
+  this->System.Alone([&] { direction = better; });
   double rz = this->Dot(residual, better), smallest = 1.0, change = 1.0;
   int sinceBetter = 0;
   for (int iteration = 1; iteration <= MostIterations && power > 0.0 && rz > 0.0; ++iteration)
@@ -158,12 +169,14 @@ std::vector<float> SteadyLattice::Solve(const Monitor& monitor, std::vector<Conv
       [&](double z, double p) { return z + part * p; });
   }
   std::transform(scaled.begin(), scaled.end(), scaled.begin(), [](double x) { return std::max(x, 0.0); });
-  const Values arrives = this->System.Sweep(this->EvenOf(scaled, true), 1.0, true, monitor);
+  const Values arrives = this->Arriving(scaled, true, true, monitor);
   std::vector<float> fluence;
-  for (std::size_t i = 0; i < this->Count; ++i)
-  {
-    fluence.push_back(static_cast<float>(arrives[i] + 0.5 * this->Voxels.source[this->Box.Known(i)]));
-  }
+  this->System.Alone([&] {
+    for (std::size_t i = 0; i < this->Count; ++i)
+    {
+      fluence.push_back(static_cast<float>(arrives[i] + 0.5 * this->Voxels.source[this->Box.Known(i)]));
+    }
+  });
   if (rows.empty()) // nothing collides: one sweep is all
   {
     this->Note(0.0, power > 0.0 ? change : 0.0, 1, rows);

@@ -34,6 +34,7 @@ private:
   double Turns(std::size_t known) const; ///< part of a density that is made even and not absorbed
   double Dot(const Values& a, const Values& b) const;
   Values EvenOf(const Values& scaled, bool withSources) const;
+  Values Arriving(const Values& scaled, bool withSources, bool writes, const Monitor& monitor);
   Values Residual(const Values& scaled, const Monitor& monitor);
   Values Applied(const Values& scaled, const Monitor& monitor);
   Values Preconditioned(const Values& residual);

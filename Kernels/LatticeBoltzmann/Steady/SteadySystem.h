@@ -2,6 +2,7 @@
 
 #include "Device/Monitor.h"
 
+#include <functional>
 #include <vector>
 
 namespace tyndall
@@ -24,6 +25,9 @@ public:
   /// A^-1 of Eq. (L12), to about a tenth.
   /// @param unit  root mean square of all of `residual`, above 0
   virtual Values Diffuse(const Values& residual, double unit) = 0;
+
+  /// What a rank does by itself: where it fails on one, it does on all, and none waits for that.
+  virtual void Alone(const std::function<void()>& work) { work(); }
 
   /// Sums over ranks of what each has of them.
   virtual std::vector<double> Sum(const std::vector<double>& ofRank) { return ofRank; }

@@ -4,6 +4,7 @@
 #include "Light/ChannelReduction.h"
 #include "LightPropagation/Angular/DirectionSet.h"
 #include "LightPropagation/Problem/DirectionKernel.h"
+#include "LightPropagation/Problem/PropagationProblem.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -24,6 +25,14 @@ void RequireSame(Communicator& communicator, bool has, const Medium& medium, con
   const auto components = [](const Field& field) { return field.values ? field.components : 0; };
   RequireSame(communicator, "the components of sigma_a, sigma_s or emission, or one has no emission", has,
     { 1.0 * components(medium.sigma_a), 1.0 * components(medium.sigma_s), 1.0 * components(medium.emission) });
+  RequireSame(communicator, "the components of UncollidedLight, or one has none", has,
+    { 1.0 * components(illumination.uncollided.fluence), 1.0 * components(illumination.uncollided.meanDirection) });
+  std::vector<double> escaped;
+  for (const Rgb& face : illumination.uncollided.escaped)
+  {
+    escaped.insert(escaped.end(), face.begin(), face.end());
+  }
+  RequireSame(communicator, "what left of UncollidedLight", has, escaped);
   const bool varies = has && medium.phase.Varies();
   const auto cosine = [&](int c) { return has && !varies ? medium.phase.MeanCosine(0, c) : 0.0; };
   std::vector<double> scatters = { varies ? 1.0 : 0.0, cosine(0), cosine(1), cosine(2) };
@@ -53,6 +62,23 @@ void RequireSame(Communicator& communicator, bool has, const Medium& medium, con
   RequireSame(communicator, "what shines on it", true, light);
 }
 
+std::array<bool, 3> AbsorbsOnAny(Communicator& communicator, bool has, const Medium& medium)
+{
+  const std::array<bool, 3> own = has ? ChannelsThatAbsorb(medium) : std::array<bool, 3>{};
+  const std::vector<double> any = communicator.Largest({ own[0] * 1.0, own[1] * 1.0, own[2] * 1.0 });
+  return { any[0] > 0.0, any[1] > 0.0, any[2] > 0.0 };
+}
+
+Medium VoxelOfVacuum(const Grid& whole)
+{
+  static const float nothing = 0.0f;
+  Medium vacuum;
+  vacuum.grid = whole;
+  vacuum.grid.size = { 1, 1, 1 };
+  vacuum.sigma_a = vacuum.sigma_s = { &nothing, 1 };
+  return vacuum;
+}
+
 BlockScene::BlockScene(Communicator& communicator, bool has, const BlockPartition& partition, const Medium& ofBlock,
   const Illumination& shining, const PropagationSettings& settings, const DeviceMemory& memory)
   : medium(ofBlock)
@@ -61,15 +87,17 @@ BlockScene::BlockScene(Communicator& communicator, bool has, const BlockPartitio
   , lengthUnit(LengthUnitOf(partition.whole))
 {
   communicator.Together([&] {
-    if (has && this->lengthUnit != 1.0)
+    if (this->lengthUnit != 1.0)
     {
-      this->InLengths.emplace(this->medium, this->illumination, this->lengthUnit);
-      this->medium = this->InLengths->medium;
+      // Lamps have places on every rank: all follow their light.
+      this->InLengths.emplace(
+        has ? this->medium : VoxelOfVacuum(partition.whole), this->illumination, this->lengthUnit);
+      this->medium = has ? this->InLengths->medium : this->medium;
       this->illumination = this->InLengths->illumination;
     }
   });
   this->powerUnit = communicator.Largest({ has ? PowerUnitOf(this->medium, this->illumination) : 0.0 })[0];
-  if (has && this->powerUnit != 1.0)
+  if (this->powerUnit != 1.0)
   {
     this->InUnits.emplace(this->medium, this->illumination, this->powerUnit);
     this->medium = this->InUnits->medium;

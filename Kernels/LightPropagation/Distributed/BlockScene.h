@@ -11,6 +11,7 @@
 #include "Medium/Medium.h"
 #include "Medium/Traits.h"
 
+#include <array>
 #include <optional>
 
 namespace tyndall
@@ -20,6 +21,12 @@ namespace tyndall
 /// @param has  voxels; without any the medium is not looked at
 void RequireSame(Communicator& communicator, bool has, const Medium& medium, const Illumination& illumination,
   const PropagationSettings& settings);
+
+/// Whether any rank's medium absorbs, by channel. All ranks call it together.
+std::array<bool, 3> AbsorbsOnAny(Communicator& communicator, bool has, const Medium& medium);
+
+/// A medium for a rank whose block has no voxels: what is found there counts nowhere.
+Medium VoxelOfVacuum(const Grid& whole);
 
 /// A block's scene in the units and channels of all.
 struct BlockScene

@@ -42,17 +42,6 @@ std::string NotInBlocks(const Medium& medium, const Illumination& illumination, 
   return {};
 }
 
-namespace
-{
-/// By channel.
-std::array<bool, 3> AbsorbsOnAny(Communicator& communicator, bool has, const Medium& medium)
-{
-  const std::array<bool, 3> own = has ? ChannelsThatAbsorb(medium) : std::array<bool, 3>{};
-  const std::vector<double> any = communicator.Largest({ own[0] * 1.0, own[1] * 1.0, own[2] * 1.0 });
-  return { any[0] > 0.0, any[1] > 0.0, any[2] > 0.0 };
-}
-}
-
 LightField SolveInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition,
   const Medium& medium, const Illumination& illumination, const PropagationSettings& settings, const Monitor& monitor)
 {

@@ -1,5 +1,6 @@
 #include "LightPropagation/Distributed/Sweep/SweepInBlocks.h"
 
+#include "Distribution/SharedMedium.h"
 #include "Medium/BoxFaces.h"
 
 #include <algorithm>
@@ -275,6 +276,16 @@ bool SweepInBlocks::SweepPass(Sweeping& sweeping, std::exception_ptr& error, con
   return this->IsAnyPeriodic() && this->TakeFromAround(sweeping, error);
 }
 
+void AddOverRanks(Device& device, Communicator& communicator, const std::vector<double>& left, const Buffer<float>& to)
+{
+  const std::vector<double> ofAll = communicator.Sum(left);
+  std::vector<float> out = to.Read();
+  std::transform(out.begin(), out.end(), ofAll.begin(), out.begin(),
+    [](float before, double more) { return static_cast<float>(before + more); });
+  to.CopyFrom(Buffer<float>(device, out, "the light that leaves by cells"), 0, out.size());
+  device.Finish(); // the buffer goes
+}
+
 /// What left by cells on any rank.
 void SweepInBlocks::AddToFaces(const std::vector<double>& left) const
 {
@@ -282,20 +293,13 @@ void SweepInBlocks::AddToFaces(const std::vector<double>& left) const
   {
     return;
   }
-  const std::vector<double> ofAll = this->Others.Sum(left);
-  std::vector<float> out = this->To.faceOut->Read();
-  std::transform(out.begin(), out.end(), ofAll.begin(), out.begin(),
-    [](float before, double more) { return static_cast<float>(before + more); });
-  this->To.faceOut->CopyFrom(Buffer<float>(this->TheDevice, out, "the light that leaves by cells"), 0, out.size());
-  this->TheDevice.Finish(); // the buffer goes
+  AddOverRanks(this->TheDevice, this->Others, left, *this->To.faceOut);
 }
 
 /// Whether this rank says what comes in: all know it, but those without voxels.
 bool SweepInBlocks::CountsPowerIn() const
 {
-  const auto hasVoxels = [](const VoxelBox& block) { return block.VoxelCount() > 0; };
-  const std::vector<VoxelBox>& blocks = this->Partition.blocks;
-  return std::find_if(blocks.begin(), blocks.end(), hasVoxels) - blocks.begin() == this->Others.Rank();
+  return IsFirstThatHas(this->Others, this->Partition);
 }
 
 void SweepInBlocks::SweepTask(int number, Sweeping& sweeping, std::exception_ptr& error, const Monitor& monitor)

@@ -14,6 +14,10 @@
 
 namespace tyndall
 {
+/// Adds what left through each cell of the whole grid's faces on any rank, W, to an array that all ranks have. All call
+/// it.
+void AddOverRanks(Device& device, Communicator& communicator, const std::vector<double>& left, const Buffer<float>& to);
+
 /// The sweep of a grid whose blocks lie on several ranks, each in one device's memory: no rank holds more than its own.
 /// Rays go from block to block in the order that light does, along some bundles while others are under way elsewhere
 /// (numerics.md, section 4.9; Koch, Baker and Alcouffe 1992). The same light as that of SweepInMemory in the whole

@@ -1,0 +1,152 @@
+#include "LatticeBoltzmann/Distributed/PiecesOfLines.h"
+
+#include "LatticeBoltzmann/LatticeShared.h"
+#include "LatticeBoltzmann/Steady/LinesOfLinks.h"
+
+#include <algorithm>
+#include <functional>
+#include <limits>
+#include <numeric>
+
+namespace tyndall
+{
+namespace
+{
+constexpr int Ways[18][3] = LATTICE_WAYS;
+}
+
+PiecesOfLines::PiecesOfLines(const BlockPartition& partition, const std::array<bool, 3>& periodic, int pair)
+  : Partition(partition)
+  , Periodic(periodic)
+  , Pair(pair)
+  , Way({ Ways[2 * pair][0], Ways[2 * pair][1], Ways[2 * pair][2] })
+{
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    (this->Way[axis] != 0 ? this->Moving : this->Still).push_back(axis);
+  }
+}
+
+std::array<std::size_t, 2> PiecesOfLines::Range(int rank) const
+{
+  return LinesOfPair(this->Partition.blocks[rank].size, this->Pair);
+}
+
+int PiecesOfLines::RankAt(const Voxel& voxel) const
+{
+  const std::vector<VoxelBox>& blocks = this->Partition.blocks;
+  const auto holds = [&](const VoxelBox& block) { return Holds(block, voxel.data()); };
+  return static_cast<int>(std::find_if(blocks.begin(), blocks.end(), holds) - blocks.begin());
+}
+
+/// @param first  its first voxel
+PiecesOfLines::Piece PiecesOfLines::PieceAt(int rank, const Voxel& first) const
+{
+  const VoxelBox& block = this->Partition.blocks[rank];
+  const std::size_t range = this->Range(rank)[0];
+  const auto at = [&](int axis) { return static_cast<std::size_t>(first[axis] - block.first[axis]); };
+  if (this->Moving.size() == 1)
+  {
+    return { rank, at(this->Still[1]) * range + at(this->Still[0]) };
+  }
+  const int a = this->Moving[0], b = this->Moving[1];
+  const std::size_t size = static_cast<std::size_t>(block.size[a]);
+  return { rank, at(this->Still[0]) * range + (first[b] == this->Entry(block, b) ? at(a) : size + at(b)) };
+}
+
+/// From the first voxel of a piece to that of the next one.
+/// @return whether there is one
+bool PiecesOfLines::MoveOn(int rank, Voxel& voxel) const
+{
+  const VoxelBox& block = this->Partition.blocks[rank];
+  int ways = std::numeric_limits<int>::max();
+  for (const int axis : this->Moving)
+  {
+    ways = std::min(ways, this->Way[axis] > 0 ? EndOf(block, axis) - voxel[axis] : voxel[axis] - block.first[axis] + 1);
+  }
+  for (const int axis : this->Moving)
+  {
+    const int size = this->Partition.whole.size[axis];
+    voxel[axis] += ways * this->Way[axis];
+    if (voxel[axis] < 0 || voxel[axis] >= size)
+    {
+      if (!this->Periodic[axis])
+      {
+        return false;
+      }
+      voxel[axis] = (voxel[axis] + size) % size;
+    }
+  }
+  return true;
+}
+
+PiecesOfLines::Line PiecesOfLines::Follow(const Voxel& first, bool closed) const
+{
+  Line line = { {}, closed };
+  Voxel voxel = first;
+  bool goesOn = true;
+  for (int rank = this->RankAt(voxel); goesOn; rank = goesOn ? this->RankAt(voxel) : rank)
+  {
+    line.pieces.push_back(this->PieceAt(rank, voxel));
+    goesOn = this->MoveOn(rank, voxel) && voxel != first;
+  }
+  return line;
+}
+
+bool PiecesOfLines::Closes() const
+{
+  return std::all_of(this->Moving.begin(), this->Moving.end(), [&](int axis) { return this->Periodic[axis]; });
+}
+
+/// Where lines through a box begin, as begin_line has it; of closed ones in a plane that they all cross.
+std::vector<PiecesOfLines::Voxel> PiecesOfLines::FirstVoxels(
+  const VoxelBox& box, const std::array<bool, 3>& periodic) const
+{
+  const int a = this->Moving.front(), b = this->Moving.back();
+  std::vector<Voxel> found;
+  // Of the plane in which lines enter along an axis, those that begin there.
+  const auto addFrom = [&](int axis, const auto& begins) {
+    VoxelBox plane = box;
+    plane.first[axis] = this->Entry(box, axis);
+    plane.size[axis] = 1;
+    Grid grid;
+    grid.size = plane.size;
+    for (std::size_t i = 0; i < plane.VoxelCount(); ++i)
+    {
+      Voxel voxel = grid.VoxelAt(i);
+      std::transform(voxel.begin(), voxel.end(), plane.first.begin(), voxel.begin(), std::plus<int>());
+      if (begins(voxel))
+      {
+        found.push_back(voxel);
+      }
+    }
+  };
+  if (a == b)
+  {
+    addFrom(a, [](const Voxel&) { return true; });
+    return found;
+  }
+  const int period = periodic[a] && periodic[b] ? std::gcd(box.size[a], box.size[b]) : 0;
+  addFrom(b, [&](const Voxel& voxel) { return !periodic[b] || voxel[a] - box.first[a] < period; });
+  addFrom(a, [&](const Voxel& voxel) { return !periodic[a] && (periodic[b] || voxel[b] != this->Entry(box, b)); });
+  return found;
+}
+
+std::vector<PiecesOfLines::Line> PiecesOfLines::LinesFrom(int rank) const
+{
+  const VoxelBox whole = { { 0, 0, 0 }, this->Partition.whole.size };
+  std::vector<Line> lines;
+  for (const Voxel& first : this->FirstVoxels(whole, this->Periodic))
+  {
+    if (Holds(this->Partition.blocks[rank], first.data()))
+    {
+      Line line = this->Follow(first, this->Closes());
+      if (line.closed || line.pieces.size() > 1)
+      {
+        lines.push_back(std::move(line));
+      }
+    }
+  }
+  return lines;
+}
+}
