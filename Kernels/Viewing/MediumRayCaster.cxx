@@ -33,11 +33,11 @@ ViewSettings Needed(ViewSettings asked, bool showsMoments, bool lampsShine)
   return asked;
 }
 
+/// All but the medium's own values.
 /// @throws InvalidInput as the constructor
 ViewSettings Checked(const Medium& medium, const SolvedLight& light, const Illumination& illumination,
   const ViewSettings& asked, const Field& ior, bool lampsShine)
 {
-  Check(medium);
   Check(illumination);
   Check(asked);
   const ViewSettings settings = Needed(asked, ShownDegree(light, asked) >= 0, lampsShine);
@@ -49,12 +49,18 @@ ViewSettings Checked(const Medium& medium, const SolvedLight& light, const Illum
 
 MediumRayCaster::MediumRayCaster(Device& device, const Medium& medium, const SolvedLight& light,
   const Illumination& illumination, const ViewSettings& asked, const Field& ior)
+  : MediumRayCaster(device, medium, CheckedBricks(medium), light, illumination, asked, ior)
+{
+}
+
+MediumRayCaster::MediumRayCaster(Device& device, const Medium& medium, const FilledBricks& filled,
+  const SolvedLight& light, const Illumination& illumination, const ViewSettings& asked, const Field& ior)
   : LampsShine(Shine(LampsOf(light, illumination, asked)))
   , AskedForShadowRays(asked.shadowRays)
   , Settings(Checked(medium, light, illumination, asked, ior, this->LampsShine))
-  , Traits(ViewTraitsOf(medium, light, ior, this->Settings, device.KernelWidth()))
+  , Traits(ViewTraitsOf(medium, filled, light, ior, this->Settings, device.KernelWidth()))
   , Scene(device, medium, light, ior, this->Traits)
-  , Samples(device, this->Scene, this->Traits)
+  , Samples(device, filled, this->Scene, this->Traits)
   , Sources(device, medium, light, LampsOf(light, illumination, asked), this->Settings.rectangleSamples, this->Traits)
   , Behind(device, medium, light, illumination, ior, this->Settings, this->Traits)
   , Rays(device, this->Scene, this->Samples, this->Behind, this->Traits)

@@ -2,6 +2,7 @@
 
 #include "Device/Buffer.h"
 #include "Device/ZeroedBuffer.h"
+#include "Viewing/Samples/SampleBricks.h"
 #include "Viewing/Scene/SceneOnDevice.h"
 #include "Viewing/Scene/ViewTraits.h"
 
@@ -27,7 +28,7 @@ public:
   /// Takes the memory, and packs how rays bend.
   /// @param traits  must stay
   /// @throws DeviceError if the samples do not fit
-  PackedSamples(Device& device, const SceneOnDevice& scene, const ViewTraits& traits);
+  PackedSamples(Device& device, const FilledBricks& filled, const SceneOnDevice& scene, const ViewTraits& traits);
 
   /// @param direct, diffuse  see SeenSources.h; read where `what` is for the camera's rays
   void Pack(Packing what, const SceneOnDevice& scene, const Buffer<float>& direct, const Buffer<float>& diffuse);
@@ -45,6 +46,7 @@ public:
   const cl::Buffer& Cosines() const { return this->ColouredG.Handle(); } ///< coloured g by voxel
   const Buffer<cl_float4>& Bending() const { return this->Gradients; }   ///< gradient of n^2, and n^2
   const Buffer<cl_char>& Bricks() const { return this->Distances; }      ///< see Bricks.h
+  const Buffer<cl_int>& Records() const { return this->First; }          ///< SampleBricks::first
   const std::array<int, 3>& BrickCount() const { return this->Count; }
 
 private:
@@ -57,12 +59,14 @@ private:
   Device& TheDevice;
   const ViewTraits& Traits;
   std::array<int, 3> Count;
+  SampleBricks InBricks; ///< where ViewTraits::bricked
   Packing For = Packing::ForShadowRays;
   bool EmptyBricks = false;
   ZeroedBuffer<cl_float4> Sources, ColouredExtinctions, Directions, ColouredG, Emission;
   Buffer<cl_float4> Gradients;
   Buffer<cl_char> Distances;
-  Buffer<cl_uchar> Seen;       ///< SeenBricks::seen
-  Buffer<cl_uchar> SeenGroups; ///< Border.cl
+  Buffer<cl_uchar> Seen;                 ///< SeenBricks::seen
+  Buffer<cl_uchar> SeenGroups;           ///< Border.cl
+  Buffer<cl_int> First, BricksOfRecords; ///< of InBricks
 };
 }
