@@ -1,7 +1,7 @@
 #include "vtkPhotonImportance.h"
 
+#include "Common/DeviceBudget.h"
 #include "Common/LightTransportData.h"
-#include "Device/Device.h"
 #include "Photons/ImportanceData.h"
 #include "Photons/PhotonData.h"
 #include "Photons/RefractiveInput.h"
@@ -132,8 +132,8 @@ tyndall::Importance vtkPhotonImportance::Find(vtkInformationVector** inputs)
       "Nothing shines on the volume, so there is no map. Connect Lights or an Environment, or set SkyColor.");
     return {};
   }
-  tyndall::KeptMarcher::Found found =
-    this->Kept->Find(this, tyndall::Device::Find(this->Device), image, nullptr, tyndall::MarchSettings{});
+  tyndall::KeptMarcher::Found found = this->Kept->Find(this,
+    tyndall::FindWithin(this->Within, this->Device, this->MemoryBudget), image, nullptr, tyndall::MarchSettings{});
   tyndall::Importance importance =
     tyndall::FindImportance(*found.marcher, grid, illumination, SettingsOf(this), tyndall::MonitorOf(this));
   this->DeviceName = found.key.device->Name();
@@ -192,6 +192,7 @@ void vtkPhotonImportance::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Background: " << this->Background << "\n";
   os << indent << "Seed: " << this->Seed << "\n";
   PrintNumbers(os, indent, "SkyColor", this->SkyColor, 3);
+  os << indent << "MemoryBudget: " << this->MemoryBudget << "\n";
   os << indent << "Even: " << this->Even << "\n";
   os << indent << "UsedGradientThreshold: " << this->UsedGradientThreshold << "\n";
   os << indent << "UsedLuminanceThreshold: " << this->UsedLuminanceThreshold << "\n";

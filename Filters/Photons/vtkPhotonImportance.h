@@ -10,6 +10,7 @@
 
 namespace tyndall
 {
+class Device;
 class KeptMarcher;
 struct Importance;
 }
@@ -116,6 +117,13 @@ public:
   ///@}
 
   ///@{
+  /// MiB of the device's memory that the filter may take, with what it keeps from update to update; what is needed
+  /// beyond is one error that says how much. Default 0: what the device has. Valid [0, 2^31).
+  tyndallSetRangeMacro(MemoryBudget, int, 0, VTK_INT_MAX);
+  vtkGetMacro(MemoryBudget, int);
+  ///@}
+
+  ///@{
   /// What came of the last update: whether the light is even, the thresholds that were used (W/length^2), seconds, the
   /// device's name, and what the scene did not need, one per line.
   vtkGetMacro(Even, bool);
@@ -158,6 +166,9 @@ private:
   int Seed = 0;
   double SkyColor[3] = { 0.0, 0.0, 0.0 };
 
+  int MemoryBudget = 0;
+
+  std::shared_ptr<tyndall::Device> Within; ///< MemoryBudget, where there is one; stays longer than what is kept on it
   std::unique_ptr<tyndall::KeptMarcher> Kept;
 
   bool Even = false;

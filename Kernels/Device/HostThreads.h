@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <functional>
 
@@ -19,4 +20,24 @@ void InThreads(
 /// @param piece  elements of a piece, but perhaps of the last
 double SumInThreads(
   std::size_t count, std::size_t piece, const std::function<double(std::size_t begin, std::size_t end)>& term);
+
+/// Whether is(i) for any i of [0, count): quick where none is, as a rule. To find which one takes another pass.
+/// @param is  no branches, so that many are asked at a time
+template <class Is>
+bool AnyInThreads(std::size_t count, const Is& is)
+{
+  std::atomic<bool> any(false);
+  InThreads(count, 1 << 18, [&](std::size_t begin, std::size_t end) {
+    int here = 0;
+    for (std::size_t i = begin; i < end; ++i)
+    {
+      here |= is(i) ? 1 : 0;
+    }
+    if (here != 0)
+    {
+      any = true;
+    }
+  });
+  return any;
+}
 }

@@ -4,64 +4,155 @@
 #include "Device/Sizes.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <limits>
 
 namespace tyndall
 {
 namespace
 {
-/// Whether any of `count` values is not zero; they are not negative, and all of them are read: no branch a value.
-bool AnyOf(const float* values, int count)
+std::int32_t BitsOf(float value)
 {
-  float most = 0.0f;
-  for (int i = 0; i < count; ++i)
-  {
-    most = std::max(most, values[i]);
-  }
-  return most > 0.0f;
+  std::int32_t bits;
+  std::memcpy(&bits, &value, sizeof(bits));
+  return bits;
 }
 
-/// Marks the bricks of one row of voxels.
-void MarkRow(const Field& field, std::size_t first, int size, unsigned char* bricks)
+/// One field in a row of bricks along x. Floats as integers: bits of those that are not negative are in the order of
+/// their values, with all that is not finite above, and integers take no branch a value.
+class RowOfBricks
+{
+public:
+  RowOfBricks(const Field& field, const Grid& grid)
+    : Of(field)
+    , TheGrid(grid)
+    , Bits(Count(grid.size[0]) * Count(field.components))
+  {
+  }
+
+  /// Marks bricks in which any value is not zero, and widens what is known of all values.
+  void Mark(int row, int layer, unsigned char* bricks, FilledBricks::Values& all)
+  {
+    this->Collect(row, layer);
+    const std::size_t ofBrick = Count(BrickEdge) * Count(this->Of.components);
+    std::int32_t largest = 0, signs = 0;
+    for (std::size_t begin = 0, brick = 0; begin < this->Bits.size(); begin += ofBrick, ++brick)
+    {
+      const std::size_t end = std::min(begin + ofBrick, this->Bits.size());
+      std::int32_t here = 0;
+      for (std::size_t i = begin; i < end; ++i)
+      {
+        here |= this->Bits[i];
+      }
+      if (here != 0)
+      {
+        signs |= here;
+        const std::int32_t most = this->LargestIn(row, layer, begin, end);
+        largest = std::max(largest, most);
+        bricks[brick] |= most > 0 ? 1 : 0;
+      }
+    }
+    float value;
+    std::memcpy(&value, &largest, sizeof(value));
+    all.sound = all.sound && signs >= 0 && value <= std::numeric_limits<float>::max(); // NaN is not
+    all.largest = std::max(all.largest, value);
+  }
+
+private:
+  template <class Act>
+  void ForRows(int row, int layer, const Act& act) const
+  {
+    const std::array<int, 3>& size = this->TheGrid.size;
+    for (int z = layer * BrickEdge; z < std::min((layer + 1) * BrickEdge, size[2]); ++z)
+    {
+      for (int y = row * BrickEdge; y < std::min((row + 1) * BrickEdge, size[1]); ++y)
+      {
+        act(this->Of.values + this->TheGrid.IndexOf({ 0, y, z }) * Count(this->Of.components));
+      }
+    }
+  }
+
+  /// All bits of values that stand one above the other.
+  void Collect(int row, int layer)
+  {
+    std::fill(this->Bits.begin(), this->Bits.end(), 0);
+    std::int32_t* const bits = this->Bits.data();
+    const std::size_t count = this->Bits.size();
+    this->ForRows(row, layer, [&](const float* values) {
+      for (std::size_t i = 0; i < count; ++i)
+      {
+        bits[i] |= BitsOf(values[i]);
+      }
+    });
+  }
+
+  std::int32_t LargestIn(int row, int layer, std::size_t begin, std::size_t end) const
+  {
+    std::int32_t largest = 0;
+    this->ForRows(row, layer, [&](const float* values) {
+      for (std::size_t i = begin; i < end; ++i)
+      {
+        largest = std::max(largest, BitsOf(values[i]));
+      }
+    });
+    return largest;
+  }
+
+  const Field& Of;
+  const Grid& TheGrid;
+  std::vector<std::int32_t> Bits;
+};
+
+void Widen(FilledBricks::Values& all, const FilledBricks::Values& part)
+{
+  all.largest = std::max(all.largest, part.largest);
+  all.sound = all.sound && part.sound;
+}
+
+/// What a layer of bricks along z has of one field.
+void MarkLayer(const Field& field, const Grid& grid, int layer, FilledBricks& bricks, FilledBricks::Values& values)
 {
   if (!field.values)
   {
     return;
   }
-  const float* row = field.values + first * static_cast<std::size_t>(field.components);
-  for (int x = 0, brick = 0; x < size; x += BrickEdge, ++brick)
+  RowOfBricks bricksOfRow(field, grid);
+  for (int row = 0; row < bricks.count[1]; ++row)
   {
-    const int voxels = std::min<int>(BrickEdge, size - x);
-    bricks[brick] |= AnyOf(row + x * field.components, voxels * field.components) ? 1 : 0;
+    bricksOfRow.Mark(row, layer, &bricks.filled[Count(layer * bricks.count[1] + row) * Count(bricks.count[0])], values);
   }
 }
 }
 
 FilledBricks FindFilledBricks(const Medium& medium)
 {
-  const std::array<int, 3>& size = medium.grid.size;
   FilledBricks bricks;
   for (int axis = 0; axis < 3; ++axis)
   {
-    bricks.count[axis] = PartsOf<int>(size[axis], BrickEdge);
+    bricks.count[axis] = PartsOf<int>(medium.grid.size[axis], BrickEdge);
   }
-  const std::array<int, 3>& count = bricks.count;
-  const std::size_t layer = static_cast<std::size_t>(count[0]) * static_cast<std::size_t>(count[1]);
-  bricks.filled.assign(layer * static_cast<std::size_t>(count[2]), 0);
-  InThreads(static_cast<std::size_t>(count[2]), 1, [&](std::size_t begin, std::size_t end) {
-    const int last = std::min(static_cast<int>(end) * BrickEdge, size[2]);
-    for (int z = static_cast<int>(begin) * BrickEdge; z < last; ++z)
+  const std::size_t layers = Count(bricks.count[2]);
+  bricks.filled.assign(Count(bricks.count[0]) * Count(bricks.count[1]) * layers, 0);
+  const std::array<const Field*, 3> fields = { &medium.sigma_a, &medium.sigma_s, &medium.emission };
+  const std::array<FilledBricks::Values*, 3> found = { &bricks.absorption, &bricks.scattering, &bricks.emission };
+  std::vector<std::array<FilledBricks::Values, 3>> ofLayers(layers);
+  InThreads(layers, 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t layer = begin; layer < end; ++layer)
     {
-      for (int y = 0; y < size[1]; ++y)
+      for (std::size_t f = 0; f < fields.size(); ++f)
       {
-        unsigned char* row = &bricks.filled[static_cast<std::size_t>(z / BrickEdge) * layer +
-          static_cast<std::size_t>(y / BrickEdge) * static_cast<std::size_t>(count[0])];
-        for (const Field* field : { &medium.sigma_a, &medium.sigma_s, &medium.emission })
-        {
-          MarkRow(*field, medium.grid.IndexOf({ 0, y, z }), size[0], row);
-        }
+        MarkLayer(*fields[f], medium.grid, static_cast<int>(layer), bricks, ofLayers[layer][f]);
       }
     }
   });
+  for (const std::array<FilledBricks::Values, 3>& layer : ofLayers)
+  {
+    for (std::size_t f = 0; f < fields.size(); ++f)
+    {
+      Widen(*found[f], layer[f]);
+    }
+  }
   bricks.filledCount = static_cast<std::size_t>(std::count(bricks.filled.begin(), bricks.filled.end(), 1));
   return bricks;
 }

@@ -2,12 +2,12 @@
 
 #include "Device/Errors.h"
 #include "Device/HostThreads.h"
+#include "Medium/FilledBricks.h"
 #include "Numerics/NumberText.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <limits>
+#include <utility>
 
 namespace tyndall
 {
@@ -46,40 +46,12 @@ void CheckComponents(const Field& field, const char* name)
 namespace
 {
 constexpr double LongestSpacing = 1e30; ///< and the shortest is its inverse: products of several areas stay doubles
-constexpr float LargestFloat = std::numeric_limits<float>::max();
-constexpr double MostUnequal = 1e9; ///< longest spacing over shortest
+constexpr double MostUnequal = 1e9;     ///< longest spacing over shortest
 
-/// Whether any of [0, count) is as `is` says, on all cores: to find which one it is, is for those few that need it.
-template <class Is>
-bool AnyOf(std::size_t count, const Is& is)
+/// Which value is not sound, where any is.
+void CheckField(const Field& field, const FilledBricks::Values& found, const char* name, const Grid& grid)
 {
-  std::atomic<bool> any(false);
-  InThreads(count, 1 << 18, [&](std::size_t begin, std::size_t end) {
-    int here = 0;
-    for (std::size_t i = begin; i < end; ++i) // without a branch: many at a time
-    {
-      here |= is(i) ? 1 : 0;
-    }
-    if (here != 0)
-    {
-      any = true;
-    }
-  });
-  return any;
-}
-
-void CheckField(const Field& field, const char* name, const Grid& grid)
-{
-  if (!field.values)
-  {
-    return;
-  }
-  CheckComponents(field, name);
-  const std::size_t count = grid.VoxelCount() * static_cast<std::size_t>(field.components);
-  if (!AnyOf(count, [&](std::size_t i) { return !(field.values[i] >= 0.0f && field.values[i] <= LargestFloat); }))
-  {
-    return;
-  }
+  const std::size_t count = found.sound ? 0 : grid.VoxelCount() * static_cast<std::size_t>(field.components);
   for (std::size_t i = 0; i < count; ++i)
   {
     if (!(field.values[i] >= 0.0f) || std::isinf(field.values[i]))
@@ -100,6 +72,10 @@ void CheckMeanCosines(const Medium& medium)
   }
   CheckComponents(g, "g");
   const std::size_t count = medium.grid.VoxelCount() * static_cast<std::size_t>(g.components);
+  if (!AnyInThreads(count, [&](std::size_t i) { return !(std::abs(g.values[i]) < 1.0f); }))
+  {
+    return;
+  }
   for (std::size_t i = 0; i < count; ++i)
   {
     if (!(std::abs(g.values[i]) < 1.0f))
@@ -112,7 +88,7 @@ void CheckMeanCosines(const Medium& medium)
 }
 
 /// Their sum is what dims light; floats end at 3.4e38.
-void CheckExtinction(const Medium& medium)
+void CheckExtinction(const Medium& medium, const FilledBricks& bricks)
 {
   if (!medium.sigma_a.values && !medium.sigma_s.values)
   {
@@ -123,12 +99,8 @@ void CheckExtinction(const Medium& medium)
     const double g = std::abs(medium.phase.MeanCosine(i, c));
     return medium.sigma_a.At(i, c) + (1.0 + g) * medium.sigma_s.At(i, c);
   };
-  const auto mayBeTooMuch = [&](const Field& field) {
-    constexpr float little = static_cast<float>(LargestExtinction / 4.0); // 1 + g is 2 at most
-    const std::size_t count = medium.grid.VoxelCount() * static_cast<std::size_t>(field.components);
-    return field.values && AnyOf(count, [&](std::size_t i) { return field.values[i] > little; });
-  };
-  if (!mayBeTooMuch(medium.sigma_a) && !mayBeTooMuch(medium.sigma_s))
+  constexpr float little = static_cast<float>(LargestExtinction / 4.0); // 1 + g is 2 at most
+  if (bricks.absorption.largest <= little && bricks.scattering.largest <= little)
   {
     return;
   }
@@ -172,13 +144,45 @@ void Check(const Grid& grid)
   }
 }
 
-void Check(const Medium& medium)
+namespace
+{
+/// Its shape: what is needed to look at its values.
+void CheckShape(const Medium& medium)
 {
   Check(medium.grid);
-  CheckField(medium.sigma_a, "sigma_a", medium.grid);
-  CheckField(medium.sigma_s, "sigma_s", medium.grid);
+  for (const auto& [field, name] : { std::pair(&medium.sigma_a, "sigma_a"), std::pair(&medium.sigma_s, "sigma_s"),
+         std::pair(&medium.emission, "emission") })
+  {
+    if (field->values)
+    {
+      CheckComponents(*field, name);
+    }
+  }
+}
+
+void CheckValues(const Medium& medium, const FilledBricks& bricks)
+{
+  CheckField(medium.sigma_a, bricks.absorption, "sigma_a", medium.grid);
+  CheckField(medium.sigma_s, bricks.scattering, "sigma_s", medium.grid);
   CheckMeanCosines(medium);
-  CheckExtinction(medium);
-  CheckField(medium.emission, "emission", medium.grid);
+  CheckExtinction(medium, bricks);
+  CheckField(medium.emission, bricks.emission, "emission", medium.grid);
+}
+}
+
+void Check(const Medium& medium)
+{
+  CheckShape(medium);
+  const bool values = medium.sigma_a.values || medium.sigma_s.values || medium.emission.values;
+  CheckValues(
+    medium, values ? FindFilledBricks(medium) : FilledBricks()); // none: voxels may be more than can be counted
+}
+
+FilledBricks CheckedBricks(const Medium& medium)
+{
+  CheckShape(medium);
+  FilledBricks bricks = FindFilledBricks(medium);
+  CheckValues(medium, bricks);
+  return bricks;
 }
 }

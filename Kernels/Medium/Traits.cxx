@@ -9,7 +9,7 @@ namespace
 {
 constexpr float SameExtinction = 2e-7f; ///< relative: what rounding to float leaves of equal sums
 
-/// One row of voxels, along x.
+/// Voxels of one brick in a row along x.
 struct Row
 {
   const Medium& medium;
@@ -17,32 +17,12 @@ struct Row
   std::size_t first;
   int size;
 
-  /// The largest of a field in the row, all channels; fields are not negative.
-  float Largest(const Field& field) const
+  /// Whether any value of a field is not zero, in any component; fields are not negative.
+  bool Has(const Field& field) const
   {
-    if (!field.values)
-    {
-      return 0.0f;
-    }
     const float* begin = field.values + this->first * field.components;
-    const int count = this->size * field.components;
-    float largest = 0.0f;
-    for (int i = 0; i < count; ++i)
-    {
-      largest = std::max(largest, begin[i]);
-    }
-    return largest;
-  }
-
-  bool IsEmptyAt(int x) const
-  {
-    float most = 0.0f;
-    for (int c = 0; c < 3; ++c)
-    {
-      most = std::max({ most, this->medium.sigma_a.At(this->first + x, c), this->medium.sigma_s.At(this->first + x, c),
-        this->medium.emission.At(this->first + x, c) });
-    }
-    return most == 0.0f;
+    return field.values &&
+      std::any_of(begin, begin + this->size * field.components, [](float value) { return value > 0.0f; });
   }
 
   bool IsGrey(const Field& field) const
@@ -76,32 +56,56 @@ struct Row
   }
 };
 
-/// The box of what is not empty, row by row.
+/// Calls act(row) for the rows of filled bricks, in the order of voxels.
+template <class Act>
+void ForFilledRows(const Medium& medium, const FilledBricks& bricks, bool similarity, const Act& act)
+{
+  const std::array<int, 3>& n = medium.grid.size;
+  for (int z = 0; z < n[2]; ++z)
+  {
+    for (int y = 0; y < n[1]; ++y)
+    {
+      const unsigned char* const filled = bricks.RowOf(y, z);
+      for (int brick = 0; brick < bricks.count[0]; ++brick)
+      {
+        if (filled[brick])
+        {
+          const std::array<int, 3> at = { brick * BrickEdge, y, z };
+          act(Row{ medium, similarity, medium.grid.IndexOf(at), std::min<int>(BrickEdge, n[0] - at[0]) });
+        }
+      }
+    }
+  }
+}
+
+/// The box of what is not empty.
 class FilledBox
 {
 public:
-  explicit FilledBox(const Grid& grid)
-    : Lower(grid.size)
+  explicit FilledBox(const Medium& medium)
+    : Of(medium)
+    , Lower(medium.grid.size)
     , Upper({ 0, 0, 0 })
   {
   }
 
-  void Add(const Row& row, int y, int z)
+  /// Only bricks at its sides tell where they are: what is in the others is between them.
+  void Find(const FilledBricks& bricks)
   {
-    this->Widen(1, y);
-    this->Widen(2, z);
-    int x = 0;
-    while (x < this->Lower[0] && row.IsEmptyAt(x))
+    const FilledBox ofBricks = this->BoxOf(bricks);
+    for (int k = ofBricks.Lower[2]; k < ofBricks.Upper[2]; ++k)
     {
-      ++x;
+      for (int j = ofBricks.Lower[1]; j < ofBricks.Upper[1]; ++j)
+      {
+        for (int i = ofBricks.Lower[0]; i < ofBricks.Upper[0]; ++i)
+        {
+          if (ofBricks.IsAtSide({ i, j, k }) && bricks.RowOf(j * BrickEdge, k * BrickEdge)[i])
+          {
+            this->AddBrick({ i * BrickEdge, j * BrickEdge, k * BrickEdge });
+          }
+        }
+      }
     }
-    this->Lower[0] = std::min(this->Lower[0], x);
-    x = row.size;
-    while (x > this->Upper[0] && row.IsEmptyAt(x - 1))
-    {
-      --x;
-    }
-    this->Upper[0] = std::max(this->Upper[0], x);
   }
 
   VoxelBox Box() const
@@ -116,52 +120,106 @@ public:
   }
 
 private:
-  void Widen(int axis, int to)
+  FilledBox BoxOf(const FilledBricks& bricks) const
   {
-    this->Lower[axis] = std::min(this->Lower[axis], to);
-    this->Upper[axis] = std::max(this->Upper[axis], to + 1);
+    FilledBox box(this->Of);
+    for (std::size_t brick = 0; brick < bricks.filled.size(); ++brick)
+    {
+      if (bricks.filled[brick])
+      {
+        const int n = static_cast<int>(brick), nx = bricks.count[0], ny = bricks.count[1];
+        box.Widen({ n % nx, n / nx % ny, n / (nx * ny) });
+      }
+    }
+    return box;
   }
 
+  void Widen(const std::array<int, 3>& at)
+  {
+    for (int a = 0; a < 3; ++a)
+    {
+      this->Lower[a] = std::min(this->Lower[a], at[a]);
+      this->Upper[a] = std::max(this->Upper[a], at[a] + 1);
+    }
+  }
+
+  bool IsAtSide(const std::array<int, 3>& at) const
+  {
+    bool side = false;
+    for (int a = 0; a < 3; ++a)
+    {
+      side = side || at[a] == this->Lower[a] || at[a] + 1 == this->Upper[a];
+    }
+    return side;
+  }
+
+  void AddBrick(const std::array<int, 3>& first)
+  {
+    const std::array<int, 3>& n = this->Of.grid.size;
+    for (int z = first[2]; z < std::min(first[2] + BrickEdge, n[2]); ++z)
+    {
+      for (int y = first[1]; y < std::min(first[1] + BrickEdge, n[1]); ++y)
+      {
+        for (int x = first[0]; x < std::min(first[0] + BrickEdge, n[0]); ++x)
+        {
+          const Row voxel = { this->Of, false, this->Of.grid.IndexOf({ x, y, z }), 1 };
+          if (voxel.Has(this->Of.sigma_a) || voxel.Has(this->Of.sigma_s) || voxel.Has(this->Of.emission))
+          {
+            this->Widen({ x, y, z });
+          }
+        }
+      }
+    }
+  }
+
+  const Medium& Of;
   std::array<int, 3> Lower, Upper;
 };
+
+bool HasThree(const Field& field)
+{
+  return field.values && field.components == 3;
+}
+
+void AddGrey(const Row& row, MediumTraits& traits)
+{
+  traits.grey = traits.grey && row.IsGrey(row.medium.sigma_a) && row.IsGrey(row.medium.sigma_s);
+  traits.greyExtinction = traits.greyExtinction && (traits.grey || row.IsGreyExtinction());
+}
+
 }
 
 MediumTraits TraitsOf(const Medium& medium, bool similarity)
 {
+  return TraitsOf(medium, FindFilledBricks(medium), similarity);
+}
+
+MediumTraits TraitsOf(const Medium& medium, const FilledBricks& bricks, bool similarity)
+{
   MediumTraits traits;
-  FilledBox filled(medium.grid);
-  const std::array<int, 3>& n = medium.grid.size;
-  for (int z = 0; z < n[2]; ++z)
+  traits.absorbs = bricks.absorption.largest > 0.0f;
+  traits.scatters = bricks.scattering.largest > 0.0f;
+  traits.emits = bricks.emission.largest > 0.0f;
+  traits.grey = !medium.phase.HasColour() || bricks.filledCount == 0;
+  const bool coloursEmit = traits.emits && HasThree(medium.emission);
+  if (traits.emits && !coloursEmit)
   {
-    for (int y = 0; y < n[1]; ++y)
-    {
-      const Row row = { medium, similarity, medium.grid.IndexOf({ 0, y, z }), n[0] };
-      const bool absorbs = row.Largest(medium.sigma_a) > 0.0f;
-      const bool scatters = row.Largest(medium.sigma_s) > 0.0f;
-      const bool emits = row.Largest(medium.emission) > 0.0f;
-      if (!absorbs && !scatters && !emits)
-      {
-        continue;
-      }
-      traits.absorbs = traits.absorbs || absorbs;
-      traits.scatters = traits.scatters || scatters;
-      traits.emits = traits.emits || emits;
-      traits.grey =
-        traits.grey && !medium.phase.HasColour() && row.IsGrey(medium.sigma_a) && row.IsGrey(medium.sigma_s);
-      traits.greyExtinction = traits.greyExtinction && (traits.grey || row.IsGreyExtinction());
-      if (emits && medium.emission.components == 3)
+    traits.emission.Add(Rgb{ 1.0, 1.0, 1.0 });
+  }
+  if (coloursEmit || HasThree(medium.sigma_a) || HasThree(medium.sigma_s) || medium.phase.HasColour())
+  {
+    ForFilledRows(medium, bricks, similarity, [&](const Row& row) {
+      AddGrey(row, traits);
+      if (coloursEmit && row.Has(medium.emission))
       {
         traits.emission.Add(medium.emission.values + 3 * row.first, static_cast<std::size_t>(row.size));
       }
-      else if (emits)
-      {
-        traits.emission.Add(Rgb{ 1.0, 1.0, 1.0 });
-      }
-      filled.Add(row, y, z);
-    }
+    });
   }
-  traits.isotropic = medium.phase.IsIsotropic() || !traits.scatters;
+  FilledBox filled(medium);
+  filled.Find(bricks);
   traits.filled = filled.Box();
+  traits.isotropic = medium.phase.IsIsotropic() || !traits.scatters;
   return traits;
 }
 }

@@ -1,13 +1,14 @@
 #pragma once
 
 #include "Light/CommonColour.h"
+#include "Medium/FilledBricks.h"
 #include "Medium/Medium.h"
 #include "Medium/VoxelBox.h"
 
 namespace tyndall
 {
 /// What a medium does not do, so that solvers can leave it out. Found in one scan of its arrays (some milliseconds for
-/// 128^3 voxels).
+/// 128^3 voxels), or, where it is known which bricks are filled, of those bricks, and only where there is colour.
 struct MediumTraits
 {
   bool absorbs = false;       ///< sigma_a is not zero everywhere
@@ -22,4 +23,5 @@ struct MediumTraits
 
 /// @param similarity  sigma_s (1 - g) stands for sigma_s in sigma_t
 MediumTraits TraitsOf(const Medium& medium, bool similarity = false);
+MediumTraits TraitsOf(const Medium& medium, const FilledBricks& bricks, bool similarity = false);
 }

@@ -33,11 +33,11 @@ ViewSettings Needed(ViewSettings asked, bool showsMoments, bool lampsShine)
   return asked;
 }
 
+/// All but the medium's own values.
 /// @throws InvalidInput as the constructor
 ViewSettings Checked(const Medium& medium, const SolvedLight& light, const Illumination& illumination,
   const ViewSettings& asked, const Field& ior, const BlockOfScene* block, bool lampsShine)
 {
-  Check(medium);
   Check(illumination);
   Check(asked);
   const ViewSettings settings = Needed(asked, ShownDegree(light, asked) >= 0, lampsShine);
@@ -51,13 +51,21 @@ ViewSettings Checked(const Medium& medium, const SolvedLight& light, const Illum
 
 MediumRayCaster::MediumRayCaster(Device& device, const Medium& medium, const SolvedLight& light,
   const Illumination& illumination, const ViewSettings& asked, const Field& ior, const BlockOfScene* block)
+  : MediumRayCaster(device, medium, CheckedBricks(medium), light, illumination, asked, ior, block)
+{
+}
+
+MediumRayCaster::MediumRayCaster(Device& device, const Medium& medium, const FilledBricks& filled,
+  const SolvedLight& light, const Illumination& illumination, const ViewSettings& asked, const Field& ior,
+  const BlockOfScene* block)
   : Part(block ? std::optional<BlockOfScene>(*block) : std::nullopt)
   , LampsShine(Shine(LampsOf(light, illumination, asked)))
   , AskedForShadowRays(asked.shadowRays)
   , Settings(Checked(medium, light, illumination, asked, ior, block, this->LampsShine))
-  , Traits(ViewTraitsOf(medium, light, ior, this->Settings, device.KernelWidth(), block ? &block->shared : nullptr))
+  , Traits(
+      ViewTraitsOf(medium, filled, light, ior, this->Settings, device.KernelWidth(), block ? &block->shared : nullptr))
   , Scene(device, medium, light, ior, this->Traits, block)
-  , Samples(device, this->Scene, this->Traits, block)
+  , Samples(device, filled, this->Scene, this->Traits, block)
   , Sources(device, medium, LampsOf(light, illumination, asked), this->Settings.rectangleSamples, this->Traits,
       this->Part ? &*this->Part : nullptr)
   , Behind(device, medium, light, illumination, ior, this->Settings, this->Traits, block)

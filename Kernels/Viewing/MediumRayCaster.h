@@ -178,6 +178,8 @@ public:
   const std::vector<std::string>& Warnings() const { return this->Doubts; }
 
 private:
+  MediumRayCaster(Device& device, const Medium& medium, const FilledBricks& filled, const SolvedLight& light,
+    const Illumination& illumination, const ViewSettings& settings, const Field& ior, const BlockOfScene* block);
   std::vector<std::string> LeftOutNow() const;
   void PrepareSources(const Camera& camera, const Monitor& monitor);
   void Pack(Packing what);

@@ -218,6 +218,11 @@ void vtkLitVolumeRepresentation::SetToneCurve(int curve)
   this->RayCaster()->SetToneCurve(curve);
 }
 
+void vtkLitVolumeRepresentation::SetMemoryBudget(int mebibytes)
+{
+  this->RayCaster()->SetMemoryBudget(mebibytes);
+}
+
 void vtkLitVolumeRepresentation::SetDevice(const char* name)
 {
   this->RayCaster()->SetDevice(name);

@@ -45,6 +45,7 @@ public:
   void SetEnvironmentAzimuth(double degrees);
   void SetExposure(double exposure);
   void SetToneCurve(int curve);
+  void SetMemoryBudget(int mebibytes);
   void SetDevice(const char* name);
   ///@}
 

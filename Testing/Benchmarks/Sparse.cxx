@@ -1,12 +1,16 @@
 // A medium that is mostly empty against one that fills its box.
 //
-//   TyndallBenchSparse [photons] [view] [maps] [EDGE...]   by default all of them, at 128 and 256 voxels an edge
+//   TyndallBenchSparse [streaks] [photons] [scattered] [view] [inside] [maps] [EDGE...]   by default all but scattered
+//                                                                          and inside, at 128 and 256 voxels an edge
 //
 // Fourteen cloudlets, apart from each other, of which 5% of the voxels are filled, and a haze of the same mean
 // extinction over the whole box: from constructing a solver on arrays in memory to its light, or to a picture. `again`:
 // once more, of a solver that keeps its medium (other photons, another camera). `by voxel`: the cloudlets as if they
 // filled the box. `seconds` is the shorter of two, as large grids take long; kernels were compiled on a small one.
 // `peak_bytes` is beyond the scene's own arrays.
+//   streaks    instead of cloudlets, long ones with a sun along them, which nobody had in mind when the code was made
+//   scattered  a twentieth of the photons, followed through all their scatterings
+//   inside     pictures from the middle of the box
 
 #include "Measure.h"
 #include "Program.h"
@@ -44,6 +48,7 @@ constexpr double Unknown = std::numeric_limits<double>::quiet_NaN();
 struct Scene
 {
   std::string name;
+  std::array<double, 3> sun = { -0.5, 0.4, -0.8 }; ///< where its light goes
   Grid grid;
   std::vector<float> sigma_a, sigma_s, fluence;
 
@@ -80,31 +85,59 @@ void Fill(Scene& scene, std::vector<float>&& density)
   }
 }
 
+/// Adds a cloudlet that is densest in its middle.
+void AddCloudlet(const Grid& grid, const std::array<double, 3>& middle, const std::array<double, 3>& radii,
+  std::vector<float>& density)
+{
+  const int edge = grid.size[0];
+  const auto low = [&](int a) { return std::max(0, static_cast<int>((middle[a] - radii[a]) * edge)); };
+  const auto high = [&](int a) { return std::min(edge, static_cast<int>((middle[a] + radii[a]) * edge) + 1); };
+  for (int k = low(2); k < high(2); ++k)
+  {
+    for (int j = low(1); j < high(1); ++j)
+    {
+      for (int i = low(0); i < high(0); ++i)
+      {
+        const double x = (i + 0.5) / edge, y = (j + 0.5) / edge, z = (k + 0.5) / edge;
+        const double away =
+          std::hypot((x - middle[0]) / radii[0], (y - middle[1]) / radii[1], (z - middle[2]) / radii[2]);
+        float& here = density[grid.IndexOf({ i, j, k })];
+        here = std::max(here, static_cast<float>(std::clamp(3.0 * (1.0 - away), 0.0, 1.0)));
+      }
+    }
+  }
+}
+
 Scene Cloudlets(int edge)
 {
   Scene scene = EmptyScene("cloudlets", edge);
   std::vector<float> density(scene.grid.VoxelCount(), 0.0f);
   std::mt19937 random(7);
   const auto place = [&] { return 0.1 + 0.8 * static_cast<double>(random()) / 4294967296.0; };
-  constexpr double Radius = 0.1;
   for (int cloudlet = 0; cloudlet < 14; ++cloudlet)
   {
     const std::array<double, 3> middle = { place(), place(), place() };
-    const auto low = [&](int a) { return std::max(0, static_cast<int>((middle[a] - Radius) * edge)); };
-    const auto high = [&](int a) { return std::min(edge, static_cast<int>((middle[a] + Radius) * edge) + 1); };
-    for (int k = low(2); k < high(2); ++k)
-    {
-      for (int j = low(1); j < high(1); ++j)
-      {
-        for (int i = low(0); i < high(0); ++i)
-        {
-          const double x = (i + 0.5) / edge, y = (j + 0.5) / edge, z = (k + 0.5) / edge;
-          const double away = std::hypot(x - middle[0], y - middle[1], z - middle[2]);
-          float& here = density[scene.grid.IndexOf({ i, j, k })];
-          here = std::max(here, static_cast<float>(std::clamp(3.0 * (1.0 - away / Radius), 0.0, 1.0)));
-        }
-      }
-    }
+    AddCloudlet(scene.grid, middle, { 0.1, 0.1, 0.1 }, density);
+  }
+  Fill(scene, std::move(density));
+  return scene;
+}
+
+/// A hundred, of a fifth of the box by 1/30 of it at most.
+Scene Streaks(int edge)
+{
+  Scene scene = EmptyScene("streaks", edge);
+  scene.sun = { 1.0, 0.05, -0.2 };
+  std::vector<float> density(scene.grid.VoxelCount(), 0.0f);
+  std::mt19937 random(2026);
+  const auto between = [&](double low, double high) {
+    return low + (high - low) * static_cast<double>(random()) / 4294967296.0;
+  };
+  for (int streak = 0; streak < 100; ++streak)
+  {
+    const std::array<double, 3> middle = { between(0.0, 1.0), between(0.0, 1.0), between(0.0, 1.0) };
+    const std::array<double, 3> radii = { between(0.1, 0.2), between(0.015, 0.035), between(0.015, 0.035) };
+    AddCloudlet(scene.grid, middle, radii, density);
   }
   Fill(scene, std::move(density));
   return scene;
@@ -120,9 +153,10 @@ double MeanDensity(const Scene& scene)
   return mean;
 }
 
-Scene Haze(int edge, double mean)
+Scene Haze(int edge, double mean, const std::array<double, 3>& sun)
 {
   Scene scene = EmptyScene("haze", edge);
+  scene.sun = sun;
   std::vector<float> density(scene.grid.VoxelCount());
   for (std::size_t voxel = 0; voxel < density.size(); ++voxel)
   {
@@ -183,7 +217,8 @@ Run Measured(const std::string& method, const Scene& scene, const std::function<
 /// The last of them is that of the medium that fills its box, against which the others are.
 void PrintRuns(const char* what, int edge, double filledBricks, const std::vector<Run>& runs)
 {
-  bench::Table table({ "method", "medium", "s", "of dense", "again, s", "of dense", "cores, s", "MiB", "of dense" });
+  bench::Table table(
+    { "method", "medium", "s", "of dense", "again, s", "of dense", "cores, s", "of dense", "MiB", "of dense" });
   const Run& dense = runs.back();
   for (const Run& run : runs)
   {
@@ -197,6 +232,7 @@ void PrintRuns(const char* what, int edge, double filledBricks, const std::vecto
       .Add("seconds_again", run.again)
       .Add("peak_bytes", run.peak)
       .Add("ratio", run.seconds / dense.seconds)
+      .Add("ratio_core", run.cores / dense.cores)
       .Add("ratio_again", run.again / dense.again)
       .Add("ratio_memory", run.peak / dense.peak)
       .Add("against", dense.scene)
@@ -206,21 +242,24 @@ void PrintRuns(const char* what, int edge, double filledBricks, const std::vecto
     table.Add(
       { run.method, run.scene, bench::Text("%.2f", run.seconds), bench::Text("%.2f", run.seconds / dense.seconds),
         bench::Text("%.2f", run.again), bench::Text("%.2f", run.again / dense.again), bench::Text("%.2f", run.cores),
-        bench::Text("%.0f", run.peak / (1 << 20)), bench::Text("%.2f", run.peak / dense.peak) });
+        bench::Text("%.2f", run.cores / dense.cores), bench::Text("%.0f", run.peak / (1 << 20)),
+        bench::Text("%.2f", run.peak / dense.peak) });
   }
   table.Print(std::string(what) + ", " + bench::GridText(edge));
 }
 
-Run MarchOf(Device& device, const Scene& scene, bool byBricks)
+/// @param orders  1: photons are followed to where they are first scattered; 0: to their ends, a twentieth of them
+Run MarchOf(Device& device, const Scene& scene, bool byBricks, int orders)
 {
   Illumination illumination;
   Light sun;
-  sun.direction = { -0.5, 0.4, -0.8 };
+  sun.direction = scene.sun;
   illumination.lights = { sun };
-  const std::vector<Photon> photons =
-    EmitPhotons(scene.grid, illumination, { PhotonCount, Sampler::Hammersley, 0 }).photons;
+  const std::size_t count = orders == 1 ? PhotonCount : PhotonCount / 20;
+  const std::vector<Photon> photons = EmitPhotons(scene.grid, illumination, { count, Sampler::Hammersley, 0 }).photons;
   MarchSettings settings;
   settings.byBricks = byBricks;
+  settings.maximumOrders = orders;
   std::unique_ptr<PhotonMarcher> marcher;
   PhotonLight light;
   return Measured(
@@ -237,13 +276,20 @@ Run MarchOf(Device& device, const Scene& scene, bool byBricks)
     });
 }
 
-Camera CameraOf(const Scene& scene, int view)
+Camera CameraOf(const Scene& scene, int view, bool inside)
 {
   const double angle = 0.5 + 0.05 * view;
-  return FrameGrid(scene.grid, 4.0 / 3.0, 30.0, { std::sin(angle), -std::cos(angle), 0.45 });
+  const std::array<double, 3> from = { std::sin(angle), -std::cos(angle), 0.45 };
+  Camera camera = FrameGrid(scene.grid, 4.0 / 3.0, inside ? 90.0 : 30.0, from);
+  if (inside)
+  {
+    camera.position = { 0.5, 0.5, 0.5 };
+    camera.focalPoint = { 0.5 - from[0], 0.5 - from[1], 0.5 - from[2] };
+  }
+  return camera;
 }
 
-Run ViewOf(Device& device, const Scene& scene)
+Run ViewOf(Device& device, const Scene& scene, bool inside)
 {
   ViewSettings settings;
   settings.imageSize = { 800, 600 };
@@ -255,9 +301,9 @@ Run ViewOf(Device& device, const Scene& scene)
     [&] {
       caster.reset();
       caster = std::make_unique<MediumRayCaster>(device, scene.SeenMedium(), light, Illumination(), settings);
-      caster->Render(CameraOf(scene, 0));
+      caster->Render(CameraOf(scene, 0, inside));
     },
-    [&] { caster->Render(CameraOf(scene, 1)); });
+    [&] { caster->Render(CameraOf(scene, 1, inside)); });
 }
 
 Run MapsOf(Device& device, const Scene& scene, int orders)
@@ -265,7 +311,7 @@ Run MapsOf(Device& device, const Scene& scene, int orders)
   Illumination illumination;
   illumination.sky = { 0.1, 0.1, 0.1 };
   Light sun;
-  sun.direction = { -0.5, 0.4, -0.8 };
+  sun.direction = scene.sun;
   illumination.lights = { sun };
   PropagationSettings settings;
   settings.maximumOrders = orders;
@@ -273,50 +319,75 @@ Run MapsOf(Device& device, const Scene& scene, int orders)
     [&] { SolveConservative(device, scene.SeenMedium(), illumination, settings, {}); });
 }
 
+/// What is run of each scene, and what is found.
+struct Case
+{
+  const char* name;
+  const char* word; ///< that asks for it
+  bool byDefault;
+  std::function<Run(const Scene& scene, bool byBricks)> run;
+  bool hasBricks = false; ///< sparse scenes run by bricks, too
+  std::vector<Run> runs;
+};
+
+std::vector<Case> CasesOf(Device& device)
+{
+  const auto march = [&device](int orders) {
+    return [&device, orders](const Scene& scene, bool byBricks) { return MarchOf(device, scene, byBricks, orders); };
+  };
+  const auto view = [&device](bool inside) {
+    return [&device, inside](const Scene& scene, bool) { return ViewOf(device, scene, inside); };
+  };
+  const auto maps = [&device](int orders) {
+    return [&device, orders](const Scene& scene, bool) { return MapsOf(device, scene, orders); };
+  };
+  return { { "photons", "photons", true, march(1), true, {} },
+    { "photons that are scattered", "scattered", false, march(0), false, {} },
+    { "view", "view", true, view(false), false, {} }, { "view from inside", "inside", false, view(true), false, {} },
+    { "maps, 3 orders", "maps", true, maps(3), false, {} }, { "maps, converged", "maps", true, maps(0), false, {} } };
+}
+
+bool Asks(const bench::Arguments& arguments, const Case& what)
+{
+  const std::vector<std::string>& words = arguments.words;
+  const bool named = std::any_of(words.begin(), words.end(),
+    [](const std::string& word) { return std::atoi(word.c_str()) == 0 && word != "streaks"; });
+  return named ? std::find(words.begin(), words.end(), what.word) != words.end() : what.byDefault;
+}
+
 /// Scenes are there one after the other: at 512^3 each takes gigabytes.
 void RunAll(Device& device, const bench::Arguments& arguments, int edge, bool print)
 {
-  const auto asks = [&](const char* word) {
-    const std::vector<std::string>& words = arguments.words;
-    const bool named =
-      std::any_of(words.begin(), words.end(), [](const std::string& other) { return std::atoi(other.c_str()) == 0; });
-    return !named || std::find(words.begin(), words.end(), word) != words.end();
-  };
-  std::vector<Run> photons, views, maps, converged;
+  std::vector<Case> cases = CasesOf(device);
   const auto run = [&](const Scene& scene, bool dense) {
-    if (asks("photons"))
+    for (Case& one : cases)
     {
-      if (!dense)
+      for (const bool byBricks : { true, false })
       {
-        photons.push_back(MarchOf(device, scene, true));
+        if (Asks(arguments, one) && (!byBricks || (one.hasBricks && !dense)))
+        {
+          one.runs.push_back(one.run(scene, byBricks));
+        }
       }
-      photons.push_back(MarchOf(device, scene, false));
-    }
-    if (asks("view"))
-    {
-      views.push_back(ViewOf(device, scene));
-    }
-    if (asks("maps"))
-    {
-      maps.push_back(MapsOf(device, scene, 3));
-      converged.push_back(MapsOf(device, scene, 0));
     }
   };
+  const std::vector<std::string>& words = arguments.words;
+  const bool streaks = std::find(words.begin(), words.end(), "streaks") != words.end();
   double mean = 0.0, filledBricks = 0.0;
+  std::array<double, 3> sun;
   {
-    const Scene sparse = Cloudlets(edge);
+    const Scene sparse = streaks ? Streaks(edge) : Cloudlets(edge);
     mean = MeanDensity(sparse);
+    sun = sparse.sun;
     filledBricks = FindFilledBricks(sparse.SeenMedium()).FilledPart();
     run(sparse, false);
   }
-  run(Haze(edge, mean), true);
-  const std::array<std::pair<const char*, const std::vector<Run>*>, 4> all = { { { "photons", &photons },
-    { "view", &views }, { "maps, 3 orders", &maps }, { "maps, converged", &converged } } };
-  for (const auto& [what, runs] : all)
+  run(Haze(edge, mean, sun), true);
+  for (const Case& one : cases)
   {
-    if (print && !runs->empty())
+    if (print && !one.runs.empty())
     {
-      PrintRuns(what, edge, filledBricks, *runs);
+      PrintRuns(one.name, edge, filledBricks, one.runs);
     }
   }
 }

@@ -1,9 +1,12 @@
 // Volumes that are streamed through a part of the device's memory, beside the same ones as a whole: seconds, bytes on
 // the device, and whether it is the same light (Gruson et al., section 4.2 and figure 7).
 //
-//   TyndallBenchStream [--quick] [edge, or "orders", or "converged", or budget=<MiB>...]
+//   TyndallBenchStream [--quick] [edge, or "orders", "converged", "photons", or budget=<MiB>...]
 //
 // With a budget the whole solve is left out. Kernels are compiled on the way: figures are those of a second run.
+//
+// photons: each core's own sums, and one sum that all add to by atomics, which is what a budget leaves room for that is
+// a twentieth less than what the former take. Both in turns; medians of five and the ratio of each pair's times.
 
 #include "LpmScenes.h"
 #include "Measure.h"
@@ -11,10 +14,14 @@
 #include "Report.h"
 
 #include "LightPropagation/Conservative/ConservativePropagation.h"
+#include "Photons/Emission/PhotonEmitter.h"
+#include "Photons/Marching/PhotonMarcher.h"
 
 #include <cctype>
 #include <cstdlib>
+#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 using namespace bench;
@@ -56,7 +63,7 @@ Asked Read(const Arguments& arguments)
   }
   if (asked.cases.empty())
   {
-    asked.cases = { "orders", "converged" };
+    asked.cases = { "orders", "converged", "photons" };
   }
   return asked;
 }
@@ -118,6 +125,91 @@ void Tell(const Scene& scene, const std::string& which, const Run& run, const Ru
     Text("%.1f", static_cast<double>(run.onDevice) / MiB), Text("%.1f", run.ofProcess / MiB), same });
 }
 
+std::vector<Photon> SunOn(const Grid& grid)
+{
+  constexpr std::size_t PhotonCount = 122000;
+  Illumination illumination;
+  Light sun;
+  sun.direction = { -0.5, 0.4, -0.8 };
+  illumination.lights = { sun };
+  return EmitPhotons(grid, illumination, { PhotonCount, Sampler::Hammersley, 0 }).photons;
+}
+
+/// Of a marcher that has its sums already.
+struct MarchTimes
+{
+  std::size_t onDevice = 0;
+  std::vector<double> wall, core;
+  std::vector<float> fluence;
+
+  void Add(PhotonMarcher& marcher, const std::vector<Photon>& photons)
+  {
+    const double start = WallSeconds(), cores = CoreSeconds();
+    PhotonLight light = marcher.March(photons);
+    this->wall.push_back(WallSeconds() - start);
+    this->core.push_back(CoreSeconds() - cores);
+    this->fluence = std::move(light.light.fluence);
+  }
+};
+
+std::vector<double> Ratios(const std::vector<double>& values, const std::vector<double>& to)
+{
+  std::vector<double> ratios;
+  for (std::size_t i = 0; i < values.size(); ++i)
+  {
+    ratios.push_back(values[i] / to[i]);
+  }
+  return ratios;
+}
+
+/// Photons with and without a budget, in turns.
+void MarchWithin(Device& device, const Scene& scene, Table& table)
+{
+  constexpr int Times = 5;
+  const std::vector<Photon> photons = SunOn(scene.medium.grid);
+  const auto marched = [&](Device& on, MarchTimes& times) {
+    const std::size_t before = on.BytesInUse();
+    on.ResetPeak();
+    auto marcher = std::make_unique<PhotonMarcher>(on, scene.medium, Field{}, MarchSettings{});
+    marcher->March(photons);
+    times.onDevice = on.PeakBytes() - before;
+    return marcher;
+  };
+  MarchTimes whole, tight;
+  const auto first = marched(device, whole);
+  Device within(device, { whole.onDevice - whole.onDevice / 20, false, MemoryBudget::NoLimit });
+  const auto second = marched(within, tight);
+  for (int time = 0; time < Times; ++time)
+  {
+    whole.Add(*first, photons);
+    tight.Add(*second, photons);
+  }
+  for (const MarchTimes* times : { &whole, &tight })
+  {
+    const bool isWhole = times == &whole;
+    const std::string same = isWhole ? "-" : tight.fluence == whole.fluence ? "yes" : "NO";
+    const char* const method = isWhole ? "a sum for each core" : "one sum, within a budget";
+    JsonLine line;
+    line.Add("bench", "stream")
+      .Add("case", "photons")
+      .Add("method", method)
+      .Add("grid", scene.GridName())
+      .Add("seconds", Median(times->wall))
+      .Add("core_seconds", Median(times->core))
+      .Add("peak_bytes", static_cast<double>(times->onDevice));
+    if (!isWhole)
+    {
+      line.Add("ratio", Median(Ratios(tight.core, whole.core)))
+        .Add("ratio_wall", Median(Ratios(tight.wall, whole.wall)))
+        .Add("against", "a sum for each core")
+        .Add("same_bits", same);
+    }
+    line.Print();
+    table.Add({ scene.GridName(), "photons", method, Text("%.2f", Median(times->wall)),
+      Text("%.2f", Median(times->core)), Text("%.1f", static_cast<double>(times->onDevice) / MiB), "-", same });
+  }
+}
+
 void RunAll(Device& device, const Arguments& arguments)
 {
   const Asked asked = Read(arguments);
@@ -127,6 +219,11 @@ void RunAll(Device& device, const Arguments& arguments)
     const Scene scene = RandomScene(edge, 1);
     for (const std::string& which : asked.cases)
     {
+      if (which == "photons")
+      {
+        MarchWithin(device, scene, table);
+        continue;
+      }
       PropagationSettings settings;
       settings.maximumOrders = which == "orders" ? 3 : 0;
       if (asked.budget > 0)

@@ -8,6 +8,7 @@
 #include "vtkLightRig.h"
 #include "vtkMediumRayCaster.h"
 #include "vtkPhotonEmitter.h"
+#include "vtkPhotonImportance.h"
 #include "vtkPhotonMarcher.h"
 
 #include <string>
@@ -93,6 +94,12 @@ int TestMemoryBudget(int, char*[])
   marcher->SetInputDataObject(medium);
   marcher->SetPhotonsConnection(emitter->GetOutputPort());
   SaysWhatIsMissing(claims, marcher.GetPointer(), "photons", "of the memory budget");
+
+  vtkNew<vtkPhotonImportance> importance;
+  importance->SetInputDataObject(medium);
+  importance->SetLightsConnection(rig->GetOutputPort());
+  importance->SetPilotCount(256);
+  SaysWhatIsMissing(claims, importance.GetPointer(), "importance", "of the memory budget");
 
   test::AddCells(medium, "fluence", 1.0);
   vtkNew<vtkMediumRayCaster> caster;

@@ -5,6 +5,7 @@
 #include "Photons/Emission/PhotonEmitter.h"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 
 using namespace tyndall;
@@ -134,6 +135,27 @@ TEST_F(PhotonsByBricksTest, BricksAreFilledWhereThereIsAnyMedium)
   emission[3 * grid.IndexOf({ 8, 0, 7 }) + 2] = 1.0f;
   scene.medium.emission = { emission.data(), 3 };
   EXPECT_EQ(FindFilledBricks(scene.Medium()).filled, (std::vector<unsigned char>{ 1, 1, 0, 0, 0, 1 }));
+}
+
+TEST_F(PhotonsByBricksTest, BricksTellWhatValuesThereAre)
+{
+  PhotonScene scene({ 17, 8, 9 }, 1.0, 0.0, 0.5f, 0.0f);
+  const auto scattering = [&](float value) {
+    scene.sigma_s[scene.medium.grid.IndexOf({ 16, 3, 8 })] = value;
+    return FindFilledBricks(scene.Medium()).scattering;
+  };
+  const float largest = std::numeric_limits<float>::max(), infinity = std::numeric_limits<float>::infinity();
+  EXPECT_EQ(scattering(0.25f).largest, 0.25f);
+  EXPECT_EQ(FindFilledBricks(scene.Medium()).absorption.largest, 0.5f);
+  EXPECT_TRUE(scattering(largest).sound);
+  EXPECT_EQ(scattering(largest).largest, largest);
+  for (const float wrong : { infinity, -infinity, -1e-40f, std::numeric_limits<float>::quiet_NaN() })
+  {
+    EXPECT_FALSE(scattering(wrong).sound) << wrong;
+    EXPECT_THROW(CheckedBricks(scene.Medium()), InvalidInput) << wrong;
+  }
+  scattering(-0.0f);
+  EXPECT_NO_THROW(CheckedBricks(scene.Medium()));
 }
 
 TEST_F(PhotonsByBricksTest, LightIsTheSameFromEverySide)

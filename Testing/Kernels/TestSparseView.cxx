@@ -1,5 +1,6 @@
 #include "ViewScene.h"
 
+#include "Viewing/Samples/SampleBricks.h"
 #include "Viewing/Scene/SeenBricks.h"
 
 #include <cstdlib>
@@ -78,14 +79,30 @@ TEST_F(SparseViewTest, BricksBesideFilledOnesAreSeen)
   medium.grid.size = { 41, 8, 16 };
   std::vector<float> values(medium.grid.VoxelCount(), 0.0f);
   medium.sigma_s = { values.data(), 1 };
-  EXPECT_FALSE(SeenBricksOf(medium, false).all);
+  EXPECT_FALSE(SeenBricksOf(FindFilledBricks(medium), false).all);
   values[medium.grid.IndexOf({ 40, 0, 15 })] = 1.0f;
-  const SeenBricks bricks = SeenBricksOf(medium, false);
+  const SeenBricks bricks = SeenBricksOf(FindFilledBricks(medium), false);
   EXPECT_EQ(bricks.count, (std::array<int, 3>{ 6, 1, 2 }));
   EXPECT_EQ(bricks.seen, (std::vector<unsigned char>{ 0, 0, 0, 0, 1, 1, 0, 0, 0, 0, 1, 1 }));
   EXPECT_FALSE(bricks.all);
-  EXPECT_TRUE(SeenBricksOf(medium, true).all);
-  EXPECT_EQ(SeenBricksOf(medium, true).seen, std::vector<unsigned char>(12, 1));
+  EXPECT_TRUE(SeenBricksOf(FindFilledBricks(medium), true).all);
+  EXPECT_EQ(SeenBricksOf(FindFilledBricks(medium), true).seen, std::vector<unsigned char>(12, 1));
+}
+
+TEST_F(SparseViewTest, RecordsAreOfCellsThatTouchFilledBricks)
+{
+  Medium medium;
+  medium.grid.size = { 41, 8, 16 };
+  std::vector<float> values(medium.grid.VoxelCount(), 0.0f);
+  medium.sigma_s = { values.data(), 1 };
+  values[medium.grid.IndexOf({ 9, 0, 3 })] = 1.0f;
+  const SampleBricks bricks = SampleBricksOf(FindFilledBricks(medium), medium.grid, false);
+  EXPECT_EQ(bricks.count, (std::array<int, 3>{ 6, 2, 3 }));
+  EXPECT_EQ(bricks.bricks, (std::vector<cl_int>{ -1, 1, 2, 7, 8, 13, 14, 19, 20 })); // and the next along each axis
+  EXPECT_EQ(bricks.SamplesEach(), 729u);
+  EXPECT_EQ(bricks.first[0], 0);
+  EXPECT_EQ(bricks.first[20], 8 * 729);
+  EXPECT_EQ(SampleBricksOf(FindFilledBricks(medium), medium.grid, true).SampleCount(), 9u * 648u);
 }
 
 TEST_F(SparseViewTest, PicturesAreTheSameToTheLastBit)

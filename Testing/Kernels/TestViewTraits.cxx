@@ -40,7 +40,7 @@ protected:
 
   ViewTraits Found(const Field& ior = {}) const
   {
-    return ViewTraitsOf(this->medium, this->light, ior, this->settings, 8);
+    return ViewTraitsOf(this->medium, FindFilledBricks(this->medium), this->light, ior, this->settings, 8);
   }
 
   std::vector<float> absorption, scattering, coloured, fluence, direction;

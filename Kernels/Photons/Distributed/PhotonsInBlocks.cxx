@@ -132,7 +132,7 @@ void PhotonMarcherInBlocks::Rank::CheckInput(const Medium& medium, const Field& 
 
 MarchTraits PhotonMarcherInBlocks::Rank::TraitsOfAllRanks(const Medium& medium, const Field& ior)
 {
-  MarchTraits traits = this->Has ? MarchTraitsOf(medium, ior) : MarchTraits();
+  MarchTraits traits = this->Has ? MarchTraitsOf(medium, ior, FindFilledBricks(medium)) : MarchTraits();
   static_cast<MediumTraits&>(traits) = TraitsOfAll(this->Others, traits);
   const float endless = std::numeric_limits<float>::infinity();
   const std::vector<double> largest = this->Others.Largest({ traits.coloured ? 1.0 : 0.0,

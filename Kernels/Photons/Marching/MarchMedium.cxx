@@ -27,7 +27,8 @@ IndexGrid SizeOf(const std::array<int, 3>& size)
 }
 
 /// None where light is to be kept voxel by voxel.
-PhotonBricks BricksOf(Device& device, const Medium& medium, const MarchSettings& settings, bool bends, bool scatters)
+PhotonBricks BricksOf(Device& device, const Grid& grid, const FilledBricks& filled, const MarchSettings& settings,
+  bool bends, bool scatters)
 {
   const bool oneOrder = settings.maximumOrders == 1 || !scatters;
   if (!settings.byBricks || bends || !oneOrder || settings.counts || settings.batches ||
@@ -35,8 +36,7 @@ PhotonBricks BricksOf(Device& device, const Medium& medium, const MarchSettings&
   {
     return {};
   }
-  const FilledBricks bricks = FindFilledBricks(medium);
-  return bricks.FilledPart() > FilledAtMost ? PhotonBricks() : PhotonBricks(device, bricks, medium.grid);
+  return filled.FilledPart() > FilledAtMost ? PhotonBricks() : PhotonBricks(device, filled, grid);
 }
 }
 
@@ -45,9 +45,9 @@ int MarchTraits::Channels(const MarchSettings& settings) const
   return settings.leaveOut && this->grey ? 1 : 3;
 }
 
-MarchTraits MarchTraitsOf(const Medium& medium, const Field& ior)
+MarchTraits MarchTraitsOf(const Medium& medium, const Field& ior, const FilledBricks& filled)
 {
-  return { { TraitsOf(medium) }, medium.sigma_a.HasColour() || medium.sigma_s.HasColour(),
+  return { { TraitsOf(medium, filled) }, medium.sigma_a.HasColour() || medium.sigma_s.HasColour(),
     IndexRangeOf(ior, medium.grid) };
 }
 
@@ -72,12 +72,12 @@ MarchMedium::MarchMedium(Device& onDevice, const Medium& medium, const MarchSett
 {
 }
 
-MarchMedium::MarchMedium(
-  Device& onDevice, const Medium& medium, const Field& ior, const MarchSettings& with, const std::uint8_t* levels)
-  : MarchMedium(onDevice, medium, with, MarchTraitsOf(medium, ior),
+MarchMedium::MarchMedium(Device& onDevice, const Medium& medium, const Field& ior, const MarchSettings& with,
+  const FilledBricks& filled, const std::uint8_t* levels)
+  : MarchMedium(onDevice, medium, with, MarchTraitsOf(medium, ior, filled),
       { medium.grid, { { 0, 0, 0 }, medium.grid.size }, { { 0, 0, 0 }, medium.grid.size } }, levels != nullptr)
 {
-  this->bricks = BricksOf(this->device, medium, with, this->bends, this->traits.scatters);
+  this->bricks = BricksOf(this->device, medium.grid, filled, with, this->bends, this->traits.scatters);
   if (this->bricks.AreThere())
   {
     this->PackBricks(medium);

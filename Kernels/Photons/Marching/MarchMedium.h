@@ -25,7 +25,7 @@ struct MarchTraits : MediumTraits
   /// Channels of the light that so many photons leave.
   int ColoursOf(const PackedPhotons& packed) const { return packed.grey && !this->coloured ? 1 : 3; }
 };
-MarchTraits MarchTraitsOf(const Medium& medium, const Field& ior);
+MarchTraits MarchTraitsOf(const Medium& medium, const Field& ior, const FilledBricks& filled);
 
 /// The part of a grid that photons are marched through in one go.
 struct MarchedPart
@@ -43,8 +43,9 @@ class MarchMedium
 {
 public:
   /// @param ior, levels  as PhotonMarcher has them, and checked
-  MarchMedium(
-    Device& device, const Medium& medium, const Field& ior, const MarchSettings& settings, const std::uint8_t* levels);
+  /// @param filled       the medium's bricks
+  MarchMedium(Device& device, const Medium& medium, const Field& ior, const MarchSettings& settings,
+    const FilledBricks& filled, const std::uint8_t* levels);
   /// Of a block of the whole grid. Voxel by voxel, and without an octree.
   /// @param medium  of block.own
   /// @param ior     of block.known

@@ -145,20 +145,14 @@ void MarchedLight::FinishBricks(
   Device& device = through.device;
   const Grid& grid = through.grid;
   const std::size_t colours = static_cast<std::size_t>(light.channels), voxels = grid.VoxelCount();
-  const Buffer<float> ofRecords(device, target.records * colours, "fluence of bricks");
-  const Buffer<float> directions(device, target.directions ? 3 * target.records : 0, "mean direction of bricks");
-  const LightSumsInfo info = through.DescribeSums(packed);
-  cl::Kernel finish = this->SumsKernel("finish_bricks", packed, target, light);
-  With(finish, info, through.bricks.First(), through.sigmaA, through.sigmaS, this->Sums,
-    cl_ulong(target.records * static_cast<std::size_t>(target.numbers)), ofRecords, directions, taken);
-  through.Launch(finish, cl::NDRange(through.bricks.Count()));
   MakeZeros({ { &light.fluence, voxels * colours }, { &result.meanDirection, target.directions ? 3 * voxels : 0 } });
   const HostMappedBuffer<float> fluence(device, light.fluence.data(), light.fluence.size(), "fluence");
   const HostMappedBuffer<float> direction(
     device, result.meanDirection.data(), result.meanDirection.size(), "mean direction");
-  cl::Kernel spread = this->SumsKernel("spread_bricks", packed, target, light);
-  With(spread, info, through.bricks.First(), ofRecords, directions, fluence.Handle(), direction.Handle());
-  through.Launch(spread, cl::NDRange(Count(grid.size[1]), Count(grid.size[2])));
+  cl::Kernel finish = this->SumsKernel("finish_bricks", packed, target, light);
+  With(finish, through.DescribeSums(packed), through.bricks.First(), through.sigmaA, through.sigmaS, this->Sums,
+    cl_ulong(target.records * static_cast<std::size_t>(target.numbers)), fluence.Handle(), direction.Handle(), taken);
+  through.Launch(finish, cl::NDRange(through.bricks.Count()));
   fluence.Fetch();
   direction.Fetch();
 }

@@ -1,5 +1,6 @@
 #include "Photons/Marching/PhotonBricks.h"
 
+#include "Device/HostMemory.h"
 #include "Device/HostThreads.h"
 
 #include <algorithm>
@@ -65,7 +66,7 @@ void PhotonBricks::ForFilled(const Act& act) const
 
 std::vector<float> PhotonBricks::Extinction(const Medium& medium, double diagonal, int channels) const
 {
-  std::vector<float> sigma(this->RecordCount * static_cast<std::size_t>(channels), 0.0f);
+  std::vector<float> sigma = Zeros(this->RecordCount * static_cast<std::size_t>(channels));
   for (int c = 0; c < channels; ++c)
   {
     float* const values = sigma.data() + static_cast<std::size_t>(c) * this->RecordCount;
@@ -82,7 +83,7 @@ std::vector<float> PhotonBricks::Extinction(const Medium& medium, double diagona
 std::vector<float> PhotonBricks::Coefficient(const Field& field, int components) const
 {
   const auto each = static_cast<std::size_t>(components);
-  std::vector<float> values(this->RecordCount * each, 0.0f);
+  std::vector<float> values = Zeros(this->RecordCount * each);
   this->ForFilled([&](std::size_t record, std::size_t voxel) {
     std::copy_n(field.values + voxel * each, each, values.begin() + static_cast<std::ptrdiff_t>(record * each));
   });

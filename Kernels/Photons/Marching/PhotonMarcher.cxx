@@ -16,9 +16,9 @@ namespace tyndall
 class PhotonMarcher::Implementation
 {
 public:
-  Implementation(
-    Device& device, const Medium& medium, const Field& ior, const MarchSettings& settings, const std::uint8_t* levels)
-    : medium(device, medium, ior, settings, levels)
+  Implementation(Device& device, const Medium& medium, const FilledBricks& filled, const Field& ior,
+    const MarchSettings& settings, const std::uint8_t* levels)
+    : medium(device, medium, ior, settings, filled, levels)
     , pilots(this->medium)
     , Sums(this->medium)
   {
@@ -152,11 +152,11 @@ PhotonLight PhotonMarcher::Implementation::March(
 PhotonMarcher::PhotonMarcher(
   Device& device, const Medium& medium, const Field& ior, const MarchSettings& settings, const std::uint8_t* levels)
 {
-  tyndall::Check(medium);
+  const FilledBricks filled = CheckedBricks(medium);
   tyndall::Check(settings);
   CheckIndex(ior, medium.grid);
   CheckLevels(levels, medium.grid);
-  this->Inside = std::make_unique<Implementation>(device, medium, ior, settings, levels);
+  this->Inside = std::make_unique<Implementation>(device, medium, filled, ior, settings, levels);
 }
 
 PhotonMarcher::~PhotonMarcher() = default;

@@ -170,9 +170,31 @@ __kernel void finish_light(LightSumsInfo info, const __global float* sigma_a, co
 }
 
 #if BRICKS
+// Gives voxels in a row the light of one, which may be among them.
+static void fill_row(
+  const size_t first, int size, const size_t from, __global float* fluence, __global float* mean_direction)
+{
+  float light[COLOURS];
+  for (int c = 0; c < COLOURS; ++c)
+  {
+    light[c] = fluence[from * COLOURS + c];
+  }
+  for (int i = 0; i < size * COLOURS; ++i)
+  {
+    fluence[first * COLOURS + i] = light[i % COLOURS];
+  }
+#if DIRECTIONS
+  const float3 direction = vload3(from, mean_direction);
+  for (int x = 0; x < size; ++x)
+  {
+    vstore3(direction, first + x, mean_direction);
+  }
+#endif
+}
+
 // Brick by brick: as finish_light, of records (PhotonBricks.h). One batch, and no counts.
 //   sigma_a, sigma_s  by records
-//   fluence, mean_direction  by records; of an empty brick the mean over its voxels
+//   fluence, mean_direction  by voxels; all of an empty brick have the mean over it
 //   taken             [brick][absorbed, scattered][CHANNELS] units of power
 __kernel void finish_bricks(LightSumsInfo info, const __global int* bricks, const __global float* sigma_a,
   const __global float* sigma_s, __global long* sums, ulong copyStride, __global float* fluence,
@@ -181,64 +203,53 @@ __kernel void finish_bricks(LightSumsInfo info, const __global int* bricks, cons
   const int brick = get_global_id(0), first = bricks[brick];
   const int nx = (info.grid.size[0] + BrickEdge - 1) / BrickEdge, ny = (info.grid.size[1] + BrickEdge - 1) / BrickEdge;
   const int place[3] = { brick % nx, brick / nx % ny, brick / (nx * ny) };
-  float voxels = 1.0f;
+  int size[3];
   for (int a = 0; a < 3; ++a)
   {
-    voxels *= first < 0 ? min((int)BrickEdge, info.grid.size[a] - place[a] * BrickEdge) : 1;
+    size[a] = min((int)BrickEdge, info.grid.size[a] - place[a] * BrickEdge);
   }
+  const float voxels = first < 0 ? size[0] * size[1] * size[2] : 1;
+  const size_t strideY = info.grid.size[0], strideZ = strideY * info.grid.size[1];
+  const size_t low = place[2] * BrickEdge * strideZ + place[1] * BrickEdge * strideY + place[0] * BrickEdge;
   long absorbed[CHANNELS], scattered[CHANNELS];
   for (int c = 0; c < CHANNELS; ++c)
   {
     absorbed[c] = scattered[c] = 0;
   }
-  for (int i = 0; i < (first < 0 ? 1 : BrickVoxels); ++i)
+  for (int z = 0; z < (first < 0 ? 1 : size[2]); ++z)
   {
-    const size_t record = first < 0 ? -first : first + i;
-    long sum[RECORD];
-    take_batch(sums + record * RECORD, copyStride, 0, sum);
-    float total = 0.0f;
-    for (int c = 0; c < CHANNELS; ++c)
+    for (int y = 0; y < (first < 0 ? 1 : size[1]); ++y)
     {
-      const float a = component(sigma_a, A_CHANNELS, record, c), s = component(sigma_s, S_CHANNELS, record, c);
-      total += sum[c];
-      put_fluence(&info, fluence + record * COLOURS, c, (float)sum[c] / (fmax(info.diagonal * (a + s), 1.0f) * voxels));
-      absorbed[c] += taken_by(&info, sum[c], a, a + s, 0);
-      scattered[c] += taken_by(&info, sum[c], s, a + s, 0);
-    }
+      for (int x = 0; x < (first < 0 ? 1 : size[0]); ++x)
+      {
+        const size_t voxel = low + z * strideZ + y * strideY + x;
+        const size_t record = first < 0 ? -first : first + (z * BrickEdge + y) * BrickEdge + x;
+        long sum[RECORD];
+        take_batch(sums + record * RECORD, copyStride, 0, sum);
+        float total = 0.0f;
+        for (int c = 0; c < CHANNELS; ++c)
+        {
+          const float a = component(sigma_a, A_CHANNELS, record, c), s = component(sigma_s, S_CHANNELS, record, c);
+          total += sum[c];
+          put_fluence(
+            &info, fluence + voxel * COLOURS, c, (float)sum[c] / (fmax(info.diagonal * (a + s), 1.0f) * voxels));
+          absorbed[c] += taken_by(&info, sum[c], a, a + s, 0);
+          scattered[c] += taken_by(&info, sum[c], s, a + s, 0);
+        }
 #if DIRECTIONS
-    put_direction(mean_direction + record * 3, sum, total);
+        put_direction(mean_direction + voxel * 3, sum, total);
 #endif
+      }
+    }
+  }
+  for (int row = 0; first < 0 && row < size[1] * size[2]; ++row)
+  {
+    fill_row(low + row / size[1] * strideZ + row % size[1] * strideY, size[0], low, fluence, mean_direction);
   }
   for (int c = 0; c < CHANNELS; ++c)
   {
     taken[(brick * 2 + 0) * CHANNELS + c] = absorbed[c];
     taken[(brick * 2 + 1) * CHANNELS + c] = scattered[c];
-  }
-}
-
-// Row by row: voxels have what their records have.
-__kernel void spread_bricks(LightSumsInfo info, const __global int* bricks, const __global float* of_records,
-  const __global float* directions, __global float* fluence, __global float* mean_direction)
-{
-  const int y = get_global_id(0), z = get_global_id(1);
-  const int nx = (info.grid.size[0] + BrickEdge - 1) / BrickEdge, ny = (info.grid.size[1] + BrickEdge - 1) / BrickEdge;
-  const int within = BrickEdge - 1, row = ((z & within) * BrickEdge + (y & within)) * BrickEdge;
-  const __global int* here = bricks + ((z >> BrickBits) * ny + (y >> BrickBits)) * nx;
-  for (int x = 0; x < info.grid.size[0]; ++x)
-  {
-    const int first = here[x >> BrickBits];
-    const size_t record = first < 0 ? -first : first + row + (x & within);
-    const size_t voxel = ((size_t)z * info.grid.size[1] + y) * info.grid.size[0] + x;
-    for (int c = 0; c < COLOURS; ++c)
-    {
-      fluence[voxel * COLOURS + c] = of_records[record * COLOURS + c];
-    }
-#if DIRECTIONS
-    for (int a = 0; a < 3; ++a)
-    {
-      mean_direction[voxel * 3 + a] = directions[record * 3 + a];
-    }
-#endif
   }
 }
 #endif

@@ -70,7 +70,8 @@ ScatteredChannels::ScatteredChannels(
     Channel channel;
     if (coloured)
     {
-      channel.own = std::make_unique<const MarchMedium>(device, one.seen, ior, through.settings, levels);
+      channel.own = std::make_unique<const MarchMedium>(
+        device, one.seen, ior, through.settings, FindFilledBricks(one.seen), levels);
     }
     channel.photons = std::make_unique<PhotonScattering>(coloured ? *channel.own : through, one.seen, stepPart);
     this->Channels.push_back(std::move(channel));

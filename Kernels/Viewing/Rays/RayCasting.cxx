@@ -141,8 +141,8 @@ void RayCasting::Cast(
     if (this->Traits.OnlyStraight())
     {
       With(cast, view, s.Samples(), s.Extinctions(), s.Flow(), s.Glow(), s.Cosines(), this->Scene.phaseRows, s.Bricks(),
-        environment, b.Ground(), b.SurfaceLight(), this->Ends, this->Starts, this->Radiance, this->Alpha, this->Depth,
-        this->Passed, this->Missing);
+        s.Records(), environment, b.Ground(), b.SurfaceLight(), this->Ends, this->Starts, this->Radiance, this->Alpha,
+        this->Depth, this->Passed, this->Missing);
     }
     else
     {

@@ -16,7 +16,7 @@
 __kernel void cast_rays(ViewInfo v, __global const float4* restrict samples,
   __global const float4* restrict extinctions, __global const float4* restrict flow,
   __global const float4* restrict glow, __global const float4* restrict cosines,
-  __global const float* restrict phase_rows, __global const char* restrict bricks,
+  __global const float* restrict phase_rows, __global const char* restrict bricks, __global const int* restrict records,
   __global const float4* restrict environment, __global const float4* restrict ground,
   __global const float4* restrict surface, __global const float* restrict ends, __global const float* restrict starts,
   __global float* restrict radiance, __global float* restrict alpha, __global float* restrict depth,
@@ -52,7 +52,9 @@ __kernel void cast_rays(ViewInfo v, __global const float4* restrict samples,
 
   // The march.
   const real step = step_length(direction, v.marching.x);
+#if !BRICKED
   const real soon = step_length(direction, 5.0f);
+#endif
   const int steps = (int)ceil(most_lanes(packet.length / step));
 #if SKIP_BRICKS
   const real3 strides = strides_per_voxel(direction, step);
@@ -89,9 +91,15 @@ __kernel void cast_rays(ViewInfo v, __global const float4* restrict samples,
       const real start = step * (real)(float)n;
       const real length = lesser(greater(packet.length - start, (real)0.0f), step);
       corners at;
+#if BRICKED
+      find_corners_in_bricks(along(packet, fma(length, (real)0.5f, start)), v.size, records, &at);
+#else
       find_corners(along(packet, fma(length, (real)0.5f, start)), v.size, &at);
+#endif
       const sample s = take_sample(&scene, &at, v.size, seen.d);
+#if !BRICKED
       fetch_ahead(samples, along(packet, start + soon), v.size);
+#endif
       cross_sample(s, length, start, length, v.marching.y, &l, &half_way);
     }
   }

@@ -3,17 +3,27 @@
 
 #pragma once
 #include "Medium/BrickShared.h"
+#include "Viewing/Samples/SamplePlaces.cl"
 
 inline int padded_index(int4 size)
 {
   return ((int)get_global_id(2) * (size.y + 2) + (int)get_global_id(1)) * (size.x + 2) + (int)get_global_id(0);
 }
+// @param sample  of the grid with its border
+inline int voxel_of(int3 sample, int4 size)
+{
+  const int i = clamp(sample.x - 1, 0, size.x - 1);
+  const int j = clamp(sample.y - 1, 0, size.y - 1);
+  const int k = clamp(sample.z - 1, 0, size.z - 1);
+  return (k * size.y + j) * size.x + i;
+}
+inline int3 sample_of_item()
+{
+  return (int3)((int)get_global_id(0), (int)get_global_id(1), (int)get_global_id(2));
+}
 inline int voxel_index(int4 size)
 {
-  const int i = clamp((int)get_global_id(0) - 1, 0, size.x - 1);
-  const int j = clamp((int)get_global_id(1) - 1, 0, size.y - 1);
-  const int k = clamp((int)get_global_id(2) - 1, 0, size.z - 1);
-  return (k * size.y + j) * size.x + i;
+  return voxel_of(sample_of_item(), size);
 }
 // Whether rays have to look at voxels of this work-group, which is PackedAlong voxels of a row.
 // @param seen  of such groups in 8 x 8 rows, which are one brick across (PackedSamples.cxx)
@@ -24,3 +34,23 @@ inline int is_seen(__global const uchar* seen, int4 size)
   const int ny = (size.y + BrickEdge - 1) / BrickEdge;
   return seen[(k * ny + j) * (int)get_num_groups(0) + (int)get_group_id(0)];
 }
+
+#if BRICKED
+// Work-items are samples of records: SampleEdge of a row, rows of a slice, slices of one record after the other.
+inline int place_in_records()
+{
+  return ((int)get_global_id(2) * SAMPLE_ROWS + (int)get_global_id(1)) * SampleEdge + (int)get_global_id(0);
+}
+// The sample that stands there. @param bricks  of each record
+// @return false: it belongs to no brick, and is zero
+inline int find_sample_in_brick(__global const int* bricks, int4 size, int3* sample)
+{
+  const int record = (int)get_global_id(2) / SampleEdge;
+  const int brick = bricks[record];
+  const int nx = size.x / BrickEdge + 1, ny = size.y / BrickEdge + 1;
+  sample->x = brick % nx * BrickEdge + (int)get_global_id(0);
+  sample->y = brick / nx % ny * BrickEdge + (int)get_global_id(1);
+  sample->z = brick / (nx * ny) * BrickEdge + (int)get_global_id(2) - record * SampleEdge;
+  return brick >= 0;
+}
+#endif

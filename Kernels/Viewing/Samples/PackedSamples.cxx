@@ -42,17 +42,23 @@ std::vector<cl_uchar> SeenGroups(const SeenBricks& bricks, const Grid& grid)
 }
 }
 
-PackedSamples::PackedSamples(
-  Device& device, const SceneOnDevice& scene, const ViewTraits& traits, const BlockOfScene* block)
+PackedSamples::PackedSamples(Device& device, const FilledBricks& filled, const SceneOnDevice& scene,
+  const ViewTraits& traits, const BlockOfScene* block)
   : TheDevice(device)
   , Traits(traits)
   , Count(traits.bricks.count)
   , KnownSize(block ? block->known.size : traits.grid.size)
 {
-  const std::size_t count = PaddedCount(traits.grid);
+  if (traits.bricked)
+  {
+    this->InBricks = SampleBricksOf(filled, traits.grid, traits.grey);
+  }
+  const std::size_t count = traits.bricked ? this->InBricks.SampleCount() : PaddedCount(traits.grid);
   const auto samples = [&](bool needed, const char* what) {
-    return ZeroedBuffer<cl_float4>(device, needed ? count : 0, traits.bricks.all, what);
+    return ZeroedBuffer<cl_float4>(device, needed ? count : 0, traits.bricked || traits.bricks.all, what);
   };
+  this->First = Buffer<cl_int>(device, this->InBricks.first, "the records of bricks");
+  this->BricksOfRecords = Buffer<cl_int>(device, this->InBricks.bricks, "the bricks of records");
   this->Sources = samples(true, "the ray caster's samples");
   this->ColouredExtinctions = samples(traits.coloured, "the ray caster's coloured extinction");
   this->Directions = samples(traits.knowsFlow || traits.ShowsBeams(), "the ray caster's directions of light");
@@ -76,10 +82,18 @@ PackedSamples::PackedSamples(
   }
 }
 
-/// Over all voxels with their border. Work-groups have fixed shapes throughout: PoCL compiles a kernel anew for every
-/// shape.
+/// Over all voxels with their border, or all samples of records. Work-groups have fixed shapes throughout: PoCL
+/// compiles a kernel anew for every shape.
 void PackedSamples::Launch(cl::Kernel& kernel, const std::array<int, 3>& size)
 {
+  if (this->Traits.bricked)
+  {
+    const std::array<int, 3>& edges = this->InBricks.edges;
+    const auto x = static_cast<std::size_t>(edges[0]), y = static_cast<std::size_t>(edges[1]);
+    this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange,
+      cl::NDRange(x, y, this->InBricks.bricks.size() * static_cast<std::size_t>(edges[2])), cl::NDRange(x, y, 1));
+    return;
+  }
   this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange,
     cl::NDRange(RoundUp<std::size_t>(size[0] + 2, PackedAlong), size[1] + 2, size[2] + 2),
     cl::NDRange(PackedAlong, 1, 1));
@@ -125,7 +139,7 @@ void PackedSamples::PackSources(const SceneOnDevice& scene, const Buffer<float>&
   With(pack, Int4(traits.grid.size), single, traits.phase.parameters.first.s[0], scene.arrays[0].Handle(),
     scene.arrays[1].Handle(), scene.arrays[2].Handle(), scene.arrays[3].Handle(), scene.arrays[4].Handle(), direct,
     scene.meanDirection.Handle(), scene.ior, scene.meanCosines, this->Samples(), this->Extinctions(), this->Flow(),
-    this->Glow(), this->Cosines(), this->SeenGroups);
+    this->Glow(), this->Cosines(), this->SeenGroups, this->BricksOfRecords);
   this->Launch(pack, traits.grid.size);
   this->FindBricks(options);
 }
@@ -158,7 +172,7 @@ void PackedSamples::FindBricks(const std::string& options)
   const cl_int4 size = Int4(this->Traits.grid.size), bricks = Int4(this->Count);
   cl::Kernel find = this->TheDevice.Kernel("find_empty_bricks", kernel_source::ScatteredLight, options);
   With(find, size, bricks, Int4(this->KnownSize), Int4(this->KnownBefore), this->Samples(), this->Extinctions(),
-    this->Glow(), this->Gradients, this->Seen, this->Distances);
+    this->Glow(), this->Gradients, this->Seen, this->First, this->Distances);
   this->TheDevice.Queue().enqueueNDRangeKernel(find, cl::NullRange,
     cl::NDRange(RoundUp<std::size_t>(bricks.s[0], 4), bricks.s[1], bricks.s[2]), cl::NDRange(4, 1, 1));
   std::vector<cl_char> distances = this->Distances.Read();

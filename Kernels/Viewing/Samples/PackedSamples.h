@@ -2,6 +2,7 @@
 
 #include "Device/Buffer.h"
 #include "Device/ZeroedBuffer.h"
+#include "Viewing/Samples/SampleBricks.h"
 #include "Viewing/Scene/SceneOnDevice.h"
 #include "Viewing/Scene/ViewTraits.h"
 
@@ -28,7 +29,8 @@ public:
   /// @param traits  must stay
   /// @param block   of which the medium is one; null: of none
   /// @throws DeviceError if the samples do not fit
-  PackedSamples(Device& device, const SceneOnDevice& scene, const ViewTraits& traits, const BlockOfScene* block);
+  PackedSamples(Device& device, const FilledBricks& filled, const SceneOnDevice& scene, const ViewTraits& traits,
+    const BlockOfScene* block);
 
   /// @param direct, diffuse  see SeenSources.h; read where `what` is for the camera's rays
   void Pack(Packing what, const SceneOnDevice& scene, const Buffer<float>& direct, const Buffer<float>& diffuse);
@@ -46,6 +48,7 @@ public:
   const cl::Buffer& Cosines() const { return this->ColouredG.Handle(); } ///< coloured g by voxel
   const Buffer<cl_float4>& Bending() const { return this->Gradients; }   ///< gradient of n^2, and n^2
   const Buffer<cl_char>& Bricks() const { return this->Distances; }      ///< see Bricks.h
+  const Buffer<cl_int>& Records() const { return this->First; }          ///< SampleBricks::first
   const std::array<int, 3>& BrickCount() const { return this->Count; }
 
 private:
@@ -60,12 +63,14 @@ private:
   std::array<int, 3> Count;
   std::array<int, 3> KnownSize;        ///< voxels of which it is known how rays bend
   std::array<int, 3> KnownBefore = {}; ///< how many of them are before the first of the samples
+  SampleBricks InBricks; ///< where ViewTraits::bricked
   Packing For = Packing::ForShadowRays;
   bool EmptyBricks = false;
   ZeroedBuffer<cl_float4> Sources, ColouredExtinctions, Directions, ColouredG, Emission;
   Buffer<cl_float4> Gradients;
   Buffer<cl_char> Distances;
-  Buffer<cl_uchar> Seen;       ///< SeenBricks::seen
-  Buffer<cl_uchar> SeenGroups; ///< Border.cl
+  Buffer<cl_uchar> Seen;                 ///< SeenBricks::seen
+  Buffer<cl_uchar> SeenGroups;           ///< Border.cl
+  Buffer<cl_int> First, BricksOfRecords; ///< of InBricks
 };
 }

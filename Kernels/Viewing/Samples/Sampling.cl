@@ -4,6 +4,7 @@
 //   COLOURED  1: extinction differs between red, green and blue; 0: one extinction serves all three
 //   GREY      1: so do sources; `samples` then hold source and extinction of a voxel, and those of the next one along y
 //
+//   BRICKED   1: samples stand by bricks (SampleBricks.h); else in the order of voxels
 //   MANY_STEPS 1: rays take so many steps that what rounding loses in each adds up
 //
 // Every result is rounded as written: else the compiler fuses multiply and add here but not there, and two variants of
@@ -15,6 +16,7 @@
 
 #pragma once
 #include "Numerics/Numerics.cl"
+#include "Viewing/Samples/SamplePlaces.cl"
 #include "Viewing/Scene/ViewShared.h"
 
 #pragma OPENCL FP_CONTRACT OFF
@@ -170,8 +172,8 @@ typedef struct
 #endif
 } corners;
 
-// @param first  the voxel at which the arrays begin, size their voxels
-__attribute__((always_inline)) inline void find_corners_from(real3 p, int4 first, int4 size, corners* at)
+// The weights, and the first centre itself: j and k are whole numbers.
+__attribute__((always_inline)) inline void weigh_corners(real3 p, corners* at, integer* first_i, real* j, real* k)
 {
   // Points of the box are at least half a voxel above the border's centres: cutting the fraction off is floor, of which
   // PoCL makes eleven instructions.
@@ -179,10 +181,11 @@ __attribute__((always_inline)) inline void find_corners_from(real3 p, int4 first
   const real py = p.y + (real)0.5f;
   const real pz = p.z + (real)0.5f;
   const integer i = to_integer(px);
-  const real j = to_real(to_integer(py));
-  const real k = to_real(to_integer(pz));
-  const real y = py - j;
-  const real z = pz - k;
+  *first_i = i;
+  *j = to_real(to_integer(py));
+  *k = to_real(to_integer(pz));
+  const real y = py - *j;
+  const real z = pz - *k;
   const real both = y * z;
   const real z_only = z - both;
   at->x = px - to_real(i);
@@ -195,6 +198,14 @@ __attribute__((always_inline)) inline void find_corners_from(real3 p, int4 first
   at->near = (real)1.0f - z;
   at->far = z;
 #endif
+}
+
+// @param first  the voxel at which the arrays begin, size their voxels
+__attribute__((always_inline)) inline void find_corners_from(real3 p, int4 first, int4 size, corners* at)
+{
+  integer i;
+  real j, k;
+  weigh_corners(p, at, &i, &j, &k);
   // Rows are counted in floats, which hold whole numbers up to 16 million.
   const integer row = to_integer(fma(k - (real)(float)first.z, (real)(float)(size.y + 2), j - (real)(float)first.y));
   at->twiceFirst = (row * (size.x + 2) + (i - first.x)) * 2;
@@ -204,6 +215,29 @@ __attribute__((always_inline)) inline void find_corners(real3 p, int4 size, corn
 {
   find_corners_from(p, (int4)(0), size, at);
 }
+
+#if BRICKED
+// As find_corners. @param records  of each brick of cells: where its samples begin
+__attribute__((always_inline)) inline void find_corners_in_bricks(
+  real3 p, int4 size, __global const int* records, corners* at)
+{
+  integer i;
+  real y, z;
+  weigh_corners(p, at, &i, &y, &z);
+  const integer j = to_integer(y), k = to_integer(z);
+  const integer brick =
+    ((k >> BrickBits) * (size.y / BrickEdge + 1) + (j >> BrickBits)) * (size.x / BrickEdge + 1) + (i >> BrickBits);
+  integer first = (integer)records[LANE(brick, 0)];
+  if (any_lane(brick != (integer)LANE(brick, 0))) // neighbouring rays are mostly in the same brick
+  {
+#define RECORD(n) LANE(first, n) = records[LANE(brick, n)];
+    EACH_LANE(RECORD)
+#undef RECORD
+  }
+  const integer within = (integer)(BrickEdge - 1);
+  at->twiceFirst = (first + ((k & within) * SAMPLE_ROWS + (j & within)) * SampleEdge + (i & within)) * 2;
+}
+#endif
 
 #if REAL_WIDTH > 1 && defined(__clang__)
 // Asks for the rows of samples around a point that a packet will come to, before they are needed. May be anything.
@@ -256,9 +290,9 @@ __attribute__((always_inline)) inline void gather_values(
   __global const float4* values, const corners* at, int4 size, const int paired, rgb* colour, real* w)
 {
   __global const float2* near_low = (__global const float2*)values;
-  __global const float2* near_high = near_low + 2 * (size.x + 2);
-  __global const float2* far_low = near_low + 2 * (size.x + 2) * (size.y + 2);
-  __global const float2* far_high = far_low + 2 * (size.x + 2);
+  __global const float2* near_high = near_low + 2 * ROW_LENGTH(size);
+  __global const float2* far_low = near_low + 2 * SLICE_LENGTH(size);
+  __global const float2* far_high = far_low + 2 * ROW_LENGTH(size);
 #define FIRST(n) ((const uint*)&at->twiceFirst)[0x##n + size.w]
 #define WEIGHT(part, n) (((const float*)&at->part)[0x##n + size.w])
 #define FETCH_FOUR(n)                                                               \

@@ -9,6 +9,7 @@
 //   VARIED_G     1: g by voxel is packed apart
 //   GLOW         1: emission is packed apart
 //   BENDS        1: the refractive index varies
+//   BRICKED      1: samples stand by bricks
 //   SHOWN        of what ShownSamples.cl packed: only the extinction tells what is empty
 
 #include "Viewing/Samples/Border.cl"
@@ -73,8 +74,29 @@ inline float4 source_of(const ingredients* from, int voxel, int single, float4* 
   return source;
 }
 
+#if BRICKED
+static void put_nothing(int place, __global float4* samples, __global float4* extinctions, __global float4* flow,
+  __global float4* glow, __global float4* cosines)
+{
+  samples[place] = (float4)(0.0f);
+#if COLOURED
+  extinctions[place] = (float4)(0.0f);
+#endif
+#if FLOW
+  flow[place] = (float4)(0.0f);
+#endif
+#if VARIED_G
+  cosines[place] = (float4)(0.0f);
+#endif
+#if GLOW
+  glow[place] = (float4)(0.0f);
+#endif
+}
+#endif
+
 // Of voxels that rays do not see (SeenBricks.h) nothing is packed.
 //
+// bricks   with BRICKED: of each record (SampleBricks.h)
 // single   1: only light that scatters once
 // samples  red, green, blue of the source, and grey extinction; with GREY source and extinction here and at the next
 //          voxel along y
@@ -88,19 +110,30 @@ __kernel void pack_samples(int4 size, int single, float g, __global const float*
   __global const float* restrict direct, __global const float* restrict direction, __global const float* restrict ior,
   __global const float* restrict mean_cosines, __global float4* restrict samples, __global float4* restrict extinctions,
   __global float4* restrict flow, __global float4* restrict glow, __global float4* restrict cosines,
-  __global const uchar* restrict seen)
+  __global const uchar* restrict seen, __global const int* restrict bricks)
 {
+#if BRICKED
+  int3 sample;
+  const int place = place_in_records();
+  if (!find_sample_in_brick(bricks, size, &sample))
+  {
+    put_nothing(place, samples, extinctions, flow, glow, cosines);
+    return;
+  }
+#else
   if (get_global_id(0) >= size.x + 2 || !is_seen(seen, size))
   {
     return;
   }
-  const int voxel = voxel_index(size);
+  const int3 sample = sample_of_item();
   const int place = padded_index(size);
+#endif
+  const int voxel = voxel_of(sample, size);
   const ingredients from = { absorption, scattering, emission, fluence, unscattered, direct, ior };
   float4 sigma_t, emitted;
   const float4 source = source_of(&from, voxel, single, &sigma_t, &emitted);
 #if GREY
-  const int row = get_global_id(1);
+  const int row = sample.y;
   float4 unused, also_unused;
   const float4 next = source_of(&from, row > 0 && row < size.y ? voxel + size.x : voxel, single, &unused, &also_unused);
   samples[place] = (float4)(source.x, source.w, next.x, next.w);
@@ -130,14 +163,67 @@ __kernel void pack_samples(int4 size, int single, float g, __global const float*
 #endif
 }
 
+// Whether a sample extinguishes or shines.
+static int is_filled(
+  int place, __global const float4* samples, __global const float4* extinctions, __global const float4* glow)
+{
+#if GREY
+  int filled = any(samples[place].xy != (float2)(0.0f));
+#else
+  int filled = SHOWN ? samples[place].w != 0.0f : any(samples[place] != (float4)(0.0f));
+#endif
+#if COLOURED
+  filled |= any(extinctions[place] != (float4)(0.0f));
+#endif
+#if GLOW
+  filled |= any(glow[place] != (float4)(0.0f));
+#endif
+  return filled;
+}
+
 // Whether anything extinguishes or shines in a brick, or bends with BENDS, or does so close enough to be interpolated
 // into it (seen: SeenBricks.h; the others are empty):
 // 1 it is empty, -1 it is not, 0 rays bend.
 //   known   voxels of `bending`, `before` of which lie before the first of the samples
+#if BRICKED
+// The same of samples that stand by bricks. Those around a brick of voxels are in the record of its number, and the
+// first two along an axis of the next one.
 __kernel void find_empty_bricks(int4 size, int4 brick_count, int4 known, int4 before,
   __global const float4* restrict samples, __global const float4* restrict extinctions,
   __global const float4* restrict glow, __global const float4* restrict bending, __global const uchar* restrict seen,
-  __global char* restrict bricks)
+  __global const int* restrict records, __global char* restrict bricks)
+{
+  const int i = get_global_id(0), j = get_global_id(1), k = get_global_id(2);
+  if (i >= brick_count.x)
+  {
+    return;
+  }
+  const int brick = (k * brick_count.y + j) * brick_count.x + i;
+  const int nx = size.x / BrickEdge + 1, ny = size.y / BrickEdge + 1, nz = size.z / BrickEdge + 1;
+  int filled = 0;
+  for (int corner = 0; corner < 8 && seen[brick] && !filled; ++corner)
+  {
+    const int dx = corner & 1, dy = corner >> 1 & 1, dz = corner >> 2;
+    const bool isThere = i + dx < nx && j + dy < ny && k + dz < nz;
+    const int first = isThere ? records[((k + dz) * ny + j + dy) * nx + i + dx] : 0;
+    for (int z = 0; z < (dz ? 2 : SampleEdge) && first != 0 && !filled; ++z)
+    {
+      for (int y = 0; y < (dy ? 2 : SAMPLE_ROWS) && !filled; ++y)
+      {
+        for (int x = 0; x < (dx ? 2 : SampleEdge); ++x)
+        {
+          filled |= is_filled(first + (z * SAMPLE_ROWS + y) * SampleEdge + x, samples, extinctions, glow);
+        }
+      }
+    }
+  }
+  bricks[brick] = filled ? -1 : 1;
+}
+#else
+__kernel void find_empty_bricks(int4 size, int4 brick_count, int4 known, int4 before,
+  __global const float4* restrict samples, __global const float4* restrict extinctions,
+  __global const float4* restrict glow, __global const float4* restrict bending, __global const uchar* restrict seen,
+  __global const int* restrict records, __global char* restrict bricks)
 {
   const int i = get_global_id(0);
   const int j = get_global_id(1);
@@ -171,17 +257,7 @@ __kernel void find_empty_bricks(int4 size, int4 brick_count, int4 known, int4 be
       for (int x = x0; x <= x1; ++x)
       {
         const int place = z * slice + y * row + x;
-#if GREY
-        filled |= any(samples[place].xy != (float2)(0.0f));
-#else
-        filled |= SHOWN ? samples[place].w != 0.0f : any(samples[place] != (float4)(0.0f));
-#endif
-#if COLOURED
-        filled |= any(extinctions[place] != (float4)(0.0f));
-#endif
-#if GLOW
-        filled |= any(glow[place] != (float4)(0.0f));
-#endif
+        filled |= is_filled(place, samples, extinctions, glow);
 #if BENDS
         const int there = ((z + before.z) * (known.y + 2) + y + before.y) * (known.x + 2) + x + before.x;
         bends |= any(bending[there].xyz != (float3)(0.0f));
@@ -192,3 +268,4 @@ __kernel void find_empty_bricks(int4 size, int4 brick_count, int4 known, int4 be
 #undef LOOK_ON
   bricks[brick] = bends ? 0 : filled ? -1 : 1;
 }
+#endif

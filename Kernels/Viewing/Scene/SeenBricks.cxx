@@ -23,9 +23,8 @@ std::vector<unsigned char> Widened(const std::vector<unsigned char>& bricks, con
 }
 }
 
-SeenBricks SeenBricksOf(const Medium& medium, bool everywhere)
+SeenBricks SeenBricksOf(const FilledBricks& filled, bool everywhere)
 {
-  const FilledBricks filled = FindFilledBricks(medium);
   SeenBricks bricks;
   bricks.count = filled.count;
   if (everywhere)

@@ -17,5 +17,5 @@ struct SeenBricks
 };
 
 /// @param everywhere  rays do not leap over empty bricks: all are seen
-SeenBricks SeenBricksOf(const Medium& medium, bool everywhere);
+SeenBricks SeenBricksOf(const FilledBricks& filled, bool everywhere);
 }

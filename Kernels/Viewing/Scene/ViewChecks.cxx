@@ -1,11 +1,13 @@
 #include "Viewing/Scene/ViewChecks.h"
 
 #include "Device/Errors.h"
+#include "Device/HostThreads.h"
 #include "Medium/BoxFaces.h"
 #include "Numerics/NumberText.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace tyndall
 {
@@ -18,6 +20,7 @@ constexpr double LargestRadiance = 1e37;               ///< W / (length^2 sr); s
 constexpr double FarthestCamera = 1e15;                ///< lengths, voxels: their squares are still floats
 constexpr double MostPixels = 7e8;                     ///< three numbers each: indices end at 2^31
 constexpr int MostMomentDegree = 15;
+constexpr float LargestFloat = std::numeric_limits<float>::max();
 constexpr float FacesAlike = 1e-3f; ///< relative; what smoothing leaves of a border nearby
 
 IndexRange RangeOnFaces(const Field& ior, const Grid& grid)
@@ -43,7 +46,12 @@ IndexRange RangeOnFaces(const Field& ior, const Grid& grid)
 
 void CheckFinite(const Field& field, const char* name, const Grid& grid)
 {
-  for (std::size_t i = 0; i < grid.VoxelCount() * field.components; ++i)
+  const std::size_t count = grid.VoxelCount() * static_cast<std::size_t>(field.components);
+  if (!AnyInThreads(count, [&](std::size_t i) { return !(std::abs(field.values[i]) <= LargestFloat); }))
+  {
+    return;
+  }
+  for (std::size_t i = 0; i < count; ++i)
   {
     if (!std::isfinite(field.values[i]))
     {

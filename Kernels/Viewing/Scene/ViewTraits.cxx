@@ -9,17 +9,7 @@ namespace tyndall
 {
 namespace
 {
-/// A bound of sigma_t over voxels and channels, 1/length.
-double ExtinctionBound(const Medium& medium)
-{
-  double sum = 0.0;
-  for (const Field& field : { medium.sigma_a, medium.sigma_s })
-  {
-    const std::size_t count = field.values ? medium.grid.VoxelCount() * field.components : 0;
-    sum += count > 0 ? *std::max_element(field.values, field.values + count) : 0.0f;
-  }
-  return sum;
-}
+constexpr double FilledAtMost = 0.25; ///< of bricks: samples at their faces are there twice, and take memory, too
 
 void FindMoments(const PhaseOfMedium& phase, const SolvedLight& light, ViewTraits& traits)
 {
@@ -59,8 +49,8 @@ std::array<Field, 5> ViewedFields(const Medium& medium, const SolvedLight& light
   return { medium.sigma_a, medium.sigma_s, medium.emission, light.fluence, light.fluenceDirect };
 }
 
-ViewTraits ViewTraitsOf(const Medium& medium, const SolvedLight& light, const Field& ior, const ViewSettings& settings,
-  int kernelWidth, const SharedScene* shared)
+ViewTraits ViewTraitsOf(const Medium& medium, const FilledBricks& filled, const SolvedLight& light, const Field& ior,
+  const ViewSettings& settings, int kernelWidth, const SharedScene* shared)
 {
   ViewTraits traits;
   traits.grid = medium.grid;
@@ -69,12 +59,12 @@ ViewTraits ViewTraitsOf(const Medium& medium, const SolvedLight& light, const Fi
   traits.singleScatteringOnly = settings.singleScatteringOnly;
   traits.shadowRays = settings.shadowRays;
   traits.hasTable = settings.tableFace >= 0;
-  traits.medium = TraitsOf(medium);
-  traits.largestSigmaT = ExtinctionBound(medium);
+  traits.medium = TraitsOf(medium, filled);
+  traits.largestSigmaT = static_cast<double>(filled.absorption.largest) + filled.scattering.largest;
   traits.phase = ViewedPhaseOf(medium.phase);
   traits.index = shared ? shared->index : IndexRangeOf(ior, medium.grid);
   traits.bends = !settings.leaveOut || traits.index.Varies();
-  traits.bricks = SeenBricksOf(medium, traits.bends || !traits.SkipsBricks(settings));
+  traits.bricks = SeenBricksOf(filled, traits.bends || !traits.SkipsBricks(settings));
   traits.momentDegree = ShownDegree(light, settings);
   FindMoments(medium.phase, light, traits);
 
@@ -93,6 +83,9 @@ ViewTraits ViewTraitsOf(const Medium& medium, const SolvedLight& light, const Fi
   }
   traits.sourcesDependOnCamera = (traits.shadowRays && anisotropic) || traits.ShowsMoments();
   traits.components = ComponentsRead(ViewedFields(medium, light), traits);
+  // Not for shadow rays, nor for moments: what is found of these has the order of voxels.
+  traits.bricked =
+    !shared && traits.OnlyStraight() && traits.PacksOnce() && !traits.bricks.all && filled.FilledPart() <= FilledAtMost;
   return traits;
 }
 
@@ -104,7 +97,8 @@ bool ViewTraits::Reflects(const ViewSettings& settings) const
 
 std::string ViewTraits::PacketOptions() const
 {
-  return Define("REAL_WIDTH", this->packetWidth) + Define("COLOURED", this->coloured) + Define("GREY", this->grey);
+  return Define("REAL_WIDTH", this->packetWidth) + Define("COLOURED", this->coloured) + Define("GREY", this->grey) +
+    Define("BRICKED", this->bricked);
 }
 
 std::string ViewTraits::PackingOptions() const

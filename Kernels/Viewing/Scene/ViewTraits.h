@@ -26,6 +26,7 @@ struct ViewTraits
 
   MediumTraits medium;
   SeenBricks bricks;
+  bool bricked = false;       ///< samples stand by bricks: few are filled
   double largestSigmaT = 0.0; ///< at least the largest sigma_t, 1/length
   ViewedPhase phase;
   IndexRange index;
@@ -82,10 +83,11 @@ int ShownDegree(const SolvedLight& light, const ViewSettings& settings);
 /// Absorption, scattering, emission, fluence and fluenceDirect: what ViewTraits::components counts.
 std::array<Field, 5> ViewedFields(const Medium& medium, const SolvedLight& light);
 
+/// @param filled    the medium's bricks
 /// @param settings  with shadowRays only where lamps shine
 /// @param ior       null: constant
 /// @param kernelWidth  rays that the device marches together best
 /// @param shared       where the medium is one of several blocks: what the whole has
-ViewTraits ViewTraitsOf(const Medium& medium, const SolvedLight& light, const Field& ior, const ViewSettings& settings,
-  int kernelWidth, const SharedScene* shared = nullptr);
+ViewTraits ViewTraitsOf(const Medium& medium, const FilledBricks& filled, const SolvedLight& light, const Field& ior,
+  const ViewSettings& settings, int kernelWidth, const SharedScene* shared = nullptr);
 }

@@ -1,0 +1,11 @@
+// Shared by C++ and the kernels that pack samples, or take them, by bricks.
+#pragma once
+
+#include "Medium/BrickShared.h"
+
+SHARED_BEGIN
+enum
+{
+  SampleEdge = BrickEdge + 1 ///< samples along an edge of a brick of cells
+};
+SHARED_END
