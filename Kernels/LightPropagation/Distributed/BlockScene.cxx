@@ -24,6 +24,14 @@ void RequireSame(Communicator& communicator, bool has, const Medium& medium, con
   const auto components = [](const Field& field) { return field.values ? field.components : 0; };
   RequireSame(communicator, "the components of sigma_a, sigma_s or emission, or one has no emission", has,
     { 1.0 * components(medium.sigma_a), 1.0 * components(medium.sigma_s), 1.0 * components(medium.emission) });
+  RequireSame(communicator, "the components of UncollidedLight, or one has none", has,
+    { 1.0 * components(illumination.uncollided.fluence), 1.0 * components(illumination.uncollided.meanDirection) });
+  std::vector<double> escaped;
+  for (const Rgb& face : illumination.uncollided.escaped)
+  {
+    escaped.insert(escaped.end(), face.begin(), face.end());
+  }
+  RequireSame(communicator, "what left of UncollidedLight", has, escaped);
   const bool varies = has && medium.phase.Varies();
   const auto cosine = [&](int c) { return has && !varies ? medium.phase.MeanCosine(0, c) : 0.0; };
   std::vector<double> scatters = { varies ? 1.0 : 0.0, cosine(0), cosine(1), cosine(2) };
@@ -83,6 +91,7 @@ BlockScene::BlockScene(Communicator& communicator, bool has, const BlockPartitio
     this->medium = one.medium;
     this->illumination = one.light;
   }
+  this->given = communicator.Largest({ has && shining.uncollided.IsThere() ? 1.0 : 0.0 })[0] > 0.0;
   this->Truncate(communicator, partition, settings, memory);
   // The traits know of extinction by the similarity relation alone.
   this->traits.greyExtinction = this->traits.grey || (this->traits.greyExtinction && this->Truncated->Degree() == 0);

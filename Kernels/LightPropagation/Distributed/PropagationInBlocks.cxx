@@ -6,6 +6,7 @@
 #include "LightPropagation/Convergence.h"
 #include "LightPropagation/Distributed/IterationInBlocks.h"
 #include "LightPropagation/Problem/PropagationProblem.h"
+#include "LightPropagation/Problem/UncollidedDirections.h"
 #include "LightPropagation/Problem/UnvaryingAxes.h"
 
 #include <algorithm>
@@ -22,10 +23,6 @@ std::string NotInBlocks(const Medium& medium, const Illumination& illumination, 
   if (goesRound && std::any_of(illumination.lights.begin(), illumination.lights.end(), isNear))
   {
     return "a point, spot or rectangle light beside a periodic axis";
-  }
-  if (illumination.uncollided.IsThere())
-  {
-    return "light of another solver (UncollidedLight)";
   }
   if (settings.source == PropagationSource::Octants)
   {
@@ -50,6 +47,36 @@ std::array<bool, 3> AbsorbsOnAny(Communicator& communicator, bool has, const Med
   const std::array<bool, 3> own = has ? ChannelsThatAbsorb(medium) : std::array<bool, 3>{};
   const std::vector<double> any = communicator.Largest({ own[0] * 1.0, own[1] * 1.0, own[2] * 1.0 });
   return { any[0] > 0.0, any[1] > 0.0, any[2] > 0.0 };
+}
+}
+
+namespace
+{
+/// Of unscattered light from outside, as the whole would have them where it added up orders like this.
+UncollidedDirections FinerDirectionsFor(Communicator& communicator, const BlockPartition& partition, bool has,
+  const BlockScene& scene, const PropagationSettings& settings, const OrdersOverRanks& orders, OrdersAdded how)
+{
+  const DirectionSet usual = DirectionsForVoxels(settings.directionsPerFace, partition.whole.spacing);
+  const UncollidedDirections own = UncollidedDirectionsFor({ settings, scene.illumination, false, scene.traits.scatters,
+                                                             scene.Scattering().Degree(), [&] { return orders.needed; } },
+    usual, how);
+  // A rank without voxels has another idea of what shines: it does not know its channels.
+  const std::vector<double> all =
+    communicator.Largest({ has ? 1.0 * own.perFace : 0.0, has && own.correctsEscape ? 1.0 : 0.0 });
+  return { static_cast<int>(all[0]), all[1] > 0.0 };
+}
+
+WayInBlocks WayOf(Communicator& communicator, const BlockPartition& partition, bool has, const BlockScene& scene,
+  const PropagationSettings& settings)
+{
+  WayInBlocks way;
+  way.orders = HowOrdersAreAdded(communicator, partition, scene, settings);
+  if (way.orders.how != OrdersAdded::ByBalance)
+  {
+    way.finer =
+      FinerDirectionsFor(communicator, partition, has, scene, settings, way.orders, way.orders.how);
+  }
+  return way;
 }
 }
 
@@ -79,12 +106,18 @@ LightField SolveInBlocks(Device& device, Communicator& communicator, const Block
   solved.directionsPerFace = DirectionsPerFaceFor(settings, unvarying);
   Medium own = has ? medium : Medium();
   own.grid = wide.OwnGrid(communicator.Rank());
-  const BlockScene scene(communicator, has, wide, own, illumination, solved, MemoryOf(device));
+  Illumination shining = illumination;
+  for (Rgb& face : shining.uncollided.escaped)
+  {
+    face = Times(face, wide.whole.VoxelVolume() / partition.whole.VoxelVolume());
+  }
+  const BlockScene scene(communicator, has, wide, own, shining, solved, MemoryOf(device));
   BlockPartition inUnits = wide;
   inUnits.whole = scene.WholeOf(wide.whole);
+  const WayInBlocks way = WayOf(communicator, inUnits, has, scene, solved);
   std::unique_ptr<IterationInBlocks> iteration;
   communicator.Together(
-    [&] { iteration = std::make_unique<IterationInBlocks>(device, communicator, inUnits, scene, solved); });
+    [&] { iteration = std::make_unique<IterationInBlocks>(device, communicator, inUnits, scene, solved, way); });
   LightField light = iteration->Run(monitor);
   communicator.Together([&] {
     scene.Undo(light);
@@ -100,6 +133,7 @@ LightField SolveInBlocks(Device& device, Communicator& communicator, const Block
   }
   light.faceAlbedo = illumination.faceAlbedo;
   JudgeConvergence(settings, light);
+  DoubtGivenLight(illumination, light);
   return light;
 }
 }
