@@ -2,7 +2,12 @@
 
 #include "BlocksOfLight.h"
 
+#include "LightPropagation/Emission/EmissionPeaks.h"
+#include "LightPropagation/Problem/PropagationQuality.h"
+
+#include <algorithm>
 #include <cmath>
+#include <string>
 #include <vector>
 
 using namespace blocks_of_light;
@@ -30,6 +35,26 @@ TEST_F(ChoicesInBlocks, TakeAsManyDirectionsOfUnscatteredLightAsTheWhole)
       LightOfAll(GetDevice(), BlockPartition::Even(whole.medium.grid, ranks), whole, shining, settings);
     EXPECT_EQ(found.uncollidedDirections, expected.uncollidedDirections);
     ExpectSame(found, expected);
+  }
+}
+
+/// Blocks of which the first alone is thick, the last alone scatters: what matters is the whole.
+TEST_F(ChoicesInBlocks, TakeTheSettingsThatAQualityHasForTheWhole)
+{
+  for (const float thick : { 0.5f, 3.0f })
+  {
+    RandomMedium whole(Grid{ { 16, 12, 12 } }, 1, 0.01f, 7);
+    std::fill_n(whole.absorption.begin(), 16 * 12 * 6, thick);
+    std::fill_n(whole.scattering.begin(), 16 * 12 * 11, 0.0f);
+    const PropagationSettings expected = AtQuality(Quality::Fine, {}, whole.medium, LitFromOutside());
+    const BlockPartition partition = BlockPartition::Even(whole.medium.grid, 3);
+    RunInThreads(3, [&](Communicator& communicator) {
+      const PartOf part(whole, partition.blocks[communicator.Rank()]);
+      const PropagationSettings found =
+        AtQualityInBlocks(communicator, partition, Quality::Fine, {}, part.medium, LitFromOutside());
+      EXPECT_EQ(Words(found), Words(expected));
+    });
+    EXPECT_EQ(expected.directionsPerFace, thick > 1.0f ? 49 : 64);
   }
 }
 
@@ -105,4 +130,93 @@ TEST_F(LightGivenInBlocks, GoesWithTheBalanceOfThickVoxels)
     EXPECT_NEAR(found.balance.entered[0], expected.balance.entered[0], 1e-6 * expected.balance.entered[0]);
     EXPECT_LT(found.balance.RelativeError(1), 1e-5);
   }
+}
+
+/// What the whole has beyond blocks is told, the same on all ranks, whatever the blocks.
+class BetterAsWholeInBlocks : public DeviceTest
+{
+protected:
+  std::string Told(
+    const RandomMedium& whole, const Illumination& shining, const PropagationSettings& settings, int ranks)
+  {
+    const BlockPartition partition = BlockPartition::Even(whole.medium.grid, ranks);
+    std::vector<std::string> told(ranks);
+    RunInThreads(ranks, [&](Communicator& communicator) {
+      const int rank = communicator.Rank();
+      PartOf part(whole, partition.blocks[rank]);
+      told[rank] = BetterAsWhole(GetDevice(), communicator, partition, part.medium, part.Of(shining), settings);
+    });
+    EXPECT_EQ(std::count(told.begin(), told.end(), told[0]), ranks);
+    return told[0];
+  }
+  void ExpectTold(const RandomMedium& whole, const Illumination& shining, const PropagationSettings& settings,
+    const std::string& words)
+  {
+    for (const int ranks : { 1, 3, 8 })
+    {
+      const std::string told = this->Told(whole, shining, settings, ranks);
+      EXPECT_EQ(told.substr(0, words.size()), words) << ranks;
+      EXPECT_EQ(told.empty(), words.empty()) << ranks;
+    }
+  }
+  /// As users have it.
+  static PropagationSettings Untouched() { return {}; }
+};
+
+TEST_F(BetterAsWholeInBlocks, IsNotAThinMediumOrAThickOneThatHardlyAbsorbs)
+{
+  RandomMedium thin(Grid{ { 12, 9, 7 } }, 1, 0.1f, 5);
+  ExpectTold(thin, LitFromOutside(), Untouched(), "");
+  RandomMedium white(Grid{ { 12, 11, 13 } }, 1, 1.0f);
+  std::fill(white.absorption.begin(), white.absorption.end(), 0.001f);
+  std::fill(white.scattering.begin(), white.scattering.end(), 4.0f);
+  Illumination shining;
+  shining.sky = { 1.0, 1.0, 1.0 };
+  ExpectTold(white, shining, Untouched(), "");
+}
+
+TEST_F(BetterAsWholeInBlocks, AreThickVoxelsThatAbsorbMuch)
+{
+  RandomMedium whole(Grid{ { 12, 9, 7 } }, 1, 3.0f, 5);
+  for (std::size_t i = 0; i < whole.absorption.size(); ++i)
+  {
+    std::swap(whole.absorption[i], whole.scattering[i]);
+    whole.absorption[i] += 2.0f;
+  }
+  ExpectTold(whole, LitFromOutside(), Untouched(), "thick voxels");
+}
+
+TEST_F(BetterAsWholeInBlocks, AreOrdersThatItAccelerates)
+{
+  RandomMedium whole(Grid{ { 12, 11, 13 } }, 1, 1.0f);
+  std::fill(whole.absorption.begin(), whole.absorption.end(), 0.001f);
+  std::fill(whole.scattering.begin(), whole.scattering.end(), 4.0f);
+  Illumination shining;
+  shining.sky = { 1.0, 1.0, 1.0 };
+  shining.faceAlbedo[0] = { 0.5, 0.5, 0.5 };
+  ExpectTold(whole, shining, Untouched(), "many scattering orders");
+}
+
+TEST_F(BetterAsWholeInBlocks, AreLayers)
+{
+  RandomMedium whole(Grid{ { 4, 5, 6 } }, 1, 1.0f);
+  std::fill(whole.absorption.begin(), whole.absorption.end(), 0.1f);
+  std::fill(whole.scattering.begin(), whole.scattering.end(), 0.1f);
+  PropagationSettings settings = Untouched();
+  settings.periodic = { true, false, true };
+  Illumination shining;
+  shining.sky = { 1.0, 1.0, 1.0 };
+  ExpectTold(whole, shining, settings, "layers");
+  whole.absorption[7] = 0.2f;
+  EXPECT_EQ(this->Told(whole, shining, settings, 3), "");
+}
+
+TEST_F(BetterAsWholeInBlocks, IsASmallBrightEmitter)
+{
+  RandomMedium whole(Grid{ { 12, 11, 13 } }, 1, 0.1f);
+  whole.Emit(0.01f);
+  ExpectTold(whole, {}, Untouched(), "");
+  whole.emission[whole.medium.grid.IndexOf({ 6, 5, 6 })] = 100.0f;
+  ASSERT_FALSE(Split(whole.medium).peaks.empty());
+  ExpectTold(whole, {}, Untouched(), "small bright emission");
 }
