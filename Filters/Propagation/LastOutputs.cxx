@@ -62,6 +62,13 @@ bool LastOutputs::GiveBack(
   return true;
 }
 
+void LastOutputs::Keep(
+  vtkMTimeType settings, vtkInformationVector** inputs, int ports, vtkInformationVector* outputs)
+{
+  this->MadeOf = KeyOf(settings, inputs, ports);
+  this->Keep(outputs);
+}
+
 void LastOutputs::Keep(vtkInformationVector* outputs)
 {
   this->Outputs.clear();

@@ -25,6 +25,8 @@ public:
 
   /// In RequestData, once they are made.
   void Keep(vtkInformationVector* outputs);
+  /// The same where GiveBack was not asked for them.
+  void Keep(vtkMTimeType settings, vtkInformationVector** inputs, int ports, vtkInformationVector* outputs);
 
   void Forget() { this->Outputs.clear(); }
 

@@ -21,6 +21,7 @@ struct PieceOfMedium
   PieceOfMedium(Communicator& communicator, const PieceBlocks& pieces, vtkAlgorithm* filter, vtkImageData* given);
 
   vtkSmartPointer<vtkImageData> image; ///< whose arrays the medium has; null where the block is empty
+  vtkSmartPointer<vtkImageData> uncollided; ///< the same of the light of another filter; null: none, or not read
   MediumInput input;
   Medium medium;      ///< empty where the block is
   bool emits = false; ///< the medium of any rank

@@ -76,11 +76,6 @@ vtkDiscreteOrdinates::vtkDiscreteOrdinates()
 
 vtkDiscreteOrdinates::~vtkDiscreteOrdinates() = default;
 
-double vtkDiscreteOrdinates::BytesOfVoxel() const
-{
-  return 64.0 + 2.0 * sizeof(float) * 6.0 * this->DirectionsPerFace;
-}
-
 std::string vtkDiscreteOrdinates::NotByBlocks(vtkInformationVector**) const
 {
   return this->WarmStart ? "WarmStart" : "";
@@ -126,7 +121,6 @@ int vtkDiscreteOrdinates::RequestData(
                                               : solve(input.medium, illumination);
     light.settingsUsed = tyndall::Words(settings);
     TellOfDefaultSky(shining, light.leftOut);
-    this->Note(light);
     this->WriteSolved(std::move(light), inputs, outputs);
   });
 }

@@ -185,11 +185,6 @@ tyndall::LightField vtkLatticeBoltzmannLighting::Solve(vtkInformationVector** in
   return light;
 }
 
-double vtkLatticeBoltzmannLighting::BytesOfVoxel() const
-{
-  return 128.0 + 2.0 * sizeof(float) * this->Lattice;
-}
-
 std::string vtkLatticeBoltzmannLighting::NotByBlocks(vtkInformationVector** inputs) const
 {
   return inputs[PHOTONS]->GetNumberOfInformationObjects() > 0 ? "Photons" : "";
@@ -229,7 +224,6 @@ int vtkLatticeBoltzmannLighting::RequestData(
   return this->GiveOrSolve(request, given, outputs, [&](vtkInformationVector** inputs) {
     tyndall::LightField light = this->Solve(inputs);
     light.settingsUsed = tyndall::Words(SettingsOf(this));
-    this->Note(light);
     this->WriteSolved(std::move(light), inputs, outputs);
   });
 }

@@ -142,6 +142,24 @@ tyndall::LightField Solve(vtkLightPropagationMaps* filter, const tyndall::Medium
 }
 }
 
+namespace
+{
+std::shared_ptr<tyndall::Device> DeviceOnAll(vtkLightPropagationMaps* filter, tyndall::Communicator& communicator)
+{
+  std::shared_ptr<tyndall::Device> device;
+  communicator.Together([&] { device = tyndall::Device::Find(filter->GetDevice()); });
+  return device;
+}
+
+/// As Quality has them for the medium of all ranks.
+tyndall::PropagationSettings SettingsOn(vtkLightPropagationMaps* filter, tyndall::Communicator& communicator,
+  const tyndall::PieceBlocks& pieces, const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining)
+{
+  return tyndall::AtQualityInBlocks(communicator, pieces.Partition(),
+    static_cast<tyndall::Quality>(filter->GetQuality()), SettingsOf(filter), piece.medium, shining.illumination);
+}
+}
+
 vtkStandardNewMacro(vtkLightPropagationMaps);
 
 vtkLightPropagationMaps::vtkLightPropagationMaps()
@@ -159,14 +177,10 @@ vtkLightPropagationMaps::vtkLightPropagationMaps()
   this->LeaveOut = defaults.leaveOut;
   this->StoredDirections = defaults.storedDirections;
   this->Last = std::make_unique<tyndall::LastLight>();
+  this->QualityByBlocks = true;
 }
 
 vtkLightPropagationMaps::~vtkLightPropagationMaps() = default;
-
-double vtkLightPropagationMaps::BytesOfVoxel() const
-{
-  return 64.0;
-}
 
 std::string vtkLightPropagationMaps::NotByBlocks(vtkInformationVector**) const
 {
@@ -186,15 +200,23 @@ std::string vtkLightPropagationMaps::NotInBlocks(
   return tyndall::NotInBlocks(piece.medium, shining.illumination, SettingsOf(this));
 }
 
+std::string vtkLightPropagationMaps::BetterAsWhole(tyndall::Communicator& communicator,
+  const tyndall::PieceBlocks& pieces, const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining)
+{
+  const std::shared_ptr<tyndall::Device> device = DeviceOnAll(this, communicator);
+  return tyndall::BetterAsWhole(*device, communicator, pieces.Partition(), piece.medium, shining.illumination,
+    SettingsOn(this, communicator, pieces, piece, shining));
+}
+
 tyndall::LightField vtkLightPropagationMaps::SolvePiece(tyndall::Communicator& communicator,
   const tyndall::PieceBlocks& pieces, const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining)
 {
   this->Last->Where(false);
-  std::shared_ptr<tyndall::Device> device;
-  communicator.Together([&] { device = tyndall::Device::Find(this->GetDevice()); });
-  tyndall::LightField light = tyndall::SolveInBlocks(*device, communicator, pieces.Partition(), piece.medium,
-    shining.illumination, SettingsOf(this), tyndall::MonitorOf(this));
-  light.settingsUsed = tyndall::Words(SettingsOf(this));
+  const std::shared_ptr<tyndall::Device> device = DeviceOnAll(this, communicator);
+  const tyndall::PropagationSettings settings = SettingsOn(this, communicator, pieces, piece, shining);
+  tyndall::LightField light = tyndall::SolveInBlocks(
+    *device, communicator, pieces.Partition(), piece.medium, shining.illumination, settings, tyndall::MonitorOf(this));
+  light.settingsUsed = tyndall::Words(settings);
   return light;
 }
 
@@ -212,7 +234,6 @@ int vtkLightPropagationMaps::RequestData(
     tyndall::LightField light = Solve(this, input.medium, illumination, this->Last->Where(this->WarmStart));
 
     TellOfDefaultSky(shining, light.leftOut);
-    this->Note(light);
     this->WriteSolved(std::move(light), inputs, outputs);
   });
 }

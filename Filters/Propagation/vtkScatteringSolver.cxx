@@ -2,11 +2,11 @@
 
 #include "Common/LightTransportData.h"
 #include "Device/Errors.h"
+#include "Distribution/SharedMedium.h"
 #include "Lights/Lights.h"
 #include "Propagation/LastOutputs.h"
 #include "Propagation/PieceOfMedium.h"
 #include "Ranks/PieceBlocks.h"
-#include "Ranks/RankMemory.h"
 #include "Ranks/Ranks.h"
 #include "Ranks/WholeImage.h"
 #include "Viewing/LitColor.h"
@@ -93,6 +93,26 @@ tyndall::IlluminationInput vtkScatteringSolver::ReadShining(vtkInformationVector
   return input;
 }
 
+/// The same of this rank's piece.
+tyndall::IlluminationInput vtkScatteringSolver::ReadShiningOn(
+  const tyndall::PieceBlocks& pieces, tyndall::PieceOfMedium& piece, vtkInformationVector** inputs)
+{
+  vtkImageData* const given = vtkImageData::GetData(inputs[UNCOLLIDED]);
+  if (inputs[UNCOLLIDED]->GetNumberOfInformationObjects() == 0)
+  {
+    return this->ReadAllIllumination(inputs, piece.emits);
+  }
+  tyndall::IlluminationInput input;
+  if (piece.image)
+  {
+    piece.uncollided = pieces.OwnImage(given);
+    input.uncollided = tyndall::ReadUncollided(piece.uncollided, tyndall::GridOf(piece.image));
+    input.illumination.uncollided = input.uncollided.image;
+  }
+  tyndall::AddFaceAlbedo(input.illumination, this->FaceAlbedo, this->FaceAlbedoColor);
+  return input;
+}
+
 void vtkScatteringSolver::ColorsModified()
 {
   this->ColorsTime.Modified();
@@ -132,11 +152,17 @@ vtkMTimeType vtkScatteringSolver::GetMTime()
 int vtkScatteringSolver::GiveOrSolve(vtkInformation* request, vtkInformationVector** given,
   vtkInformationVector* outputs, const std::function<void(vtkInformationVector** inputs)>& solve)
 {
-  const tyndall::WorkOnPieces onPieces = { MEDIUM,
-    [&](vtkMultiProcessController* ranks, vtkInformationVector** inputs) {
-      return this->GiveOrSolvePiece(request, ranks, inputs, outputs);
-    } };
+  this->WholeFor.clear();
+  tyndall::WorkOnPieces onPieces = { MEDIUM, [&](vtkMultiProcessController* ranks, vtkInformationVector** inputs) {
+                                      this->OverRanks = ranks != nullptr;
+                                      return this->GiveOrSolvePiece(request, ranks, inputs, outputs);
+                                    } };
+  onPieces.besides = UNCOLLIDED;
   const int done = tyndall::Guarded(this, request, given, outputs, onPieces, [&](vtkInformationVector** inputs) {
+    if (std::exchange(this->SolvedInPieces, false))
+    {
+      this->Solved->Forget();
+    }
     if (this->Solved->GiveBack(this->Superclass::GetMTime(), inputs, this->GetNumberOfInputPorts(), outputs))
     {
       this->HandOn(inputs, outputs);
@@ -156,16 +182,17 @@ int vtkScatteringSolver::GiveOrSolve(vtkInformation* request, vtkInformationVect
 bool vtkScatteringSolver::WantsBlocks(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) const
 {
-  return this->Decomposition == AUTOMATIC_DECOMPOSITION ? this->NotByAnyBlocks(inputs).empty() &&
-      tyndall::NeedsPieces(request, inputs[MEDIUM], outputs, this->BytesOfVoxel())
-                                                        : this->Decomposition == BLOCKS;
+  return this->Decomposition == AUTOMATIC_DECOMPOSITION
+    ? tyndall::EachAsksForItsPiece(request, outputs) && this->NotByAnyBlocks(inputs).empty()
+    : this->Decomposition == BLOCKS;
 }
 
 int vtkScatteringSolver::RequestUpdateExtent(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   const bool asPiece = tyndall::EachAsksForItsPiece(request, outputs) && this->WantsBlocks(request, inputs, outputs);
-  tyndall::AskForAllBut(asPiece ? MEDIUM : -1, request, inputs, this->GetNumberOfInputPorts(), outputs);
+  const int ports = this->GetNumberOfInputPorts();
+  tyndall::AskForAllBut(asPiece ? MEDIUM : -1, request, inputs, ports, outputs, asPiece ? UNCOLLIDED : -1);
   return 1;
 }
 
@@ -173,17 +200,39 @@ int vtkScatteringSolver::RequestUpdateExtent(
 std::string vtkScatteringSolver::NotByAnyBlocks(vtkInformationVector** inputs) const
 {
   const std::pair<bool, const char*> reasons[] = {
-    { this->Quality != USUAL, "a Quality that chooses settings from the whole medium" },
+    { this->Quality != USUAL && !this->QualityByBlocks, "a Quality that chooses settings from the whole medium" },
     { this->Preview, "Preview" },
-    { this->EstimateError, "EstimateError" },
+    { this->EstimateError && !this->ErrorByBlocks, "EstimateError" },
     { this->MemoryBudget > 0, "MemoryBudget" },
-    { this->LitColor, "LitColor" },
-    { inputs[UNCOLLIDED]->GetNumberOfInformationObjects() > 0, "UncollidedLight" },
   };
   const auto found =
     std::find_if(std::begin(reasons), std::end(reasons), [](const auto& reason) { return reason.first; });
   const std::string ofSolver = this->NotByBlocks(inputs);
   return !ofSolver.empty() || found == std::end(reasons) ? ofSolver : found->second;
+}
+
+/// What keeps this rank from solving its piece, in words; empty: nothing, and what shines on it is read.
+std::string vtkScatteringSolver::NotOnPiece(const tyndall::PieceBlocks& pieces, tyndall::PieceOfMedium& piece,
+  tyndall::IlluminationInput& shining, vtkInformationVector** inputs)
+{
+  std::string refused = this->NotByAnyBlocks(inputs);
+  vtkImageData* const given = vtkImageData::GetData(inputs[UNCOLLIDED]);
+  if (refused.empty() && given && !pieces.HasOwnOf(given))
+  {
+    refused = "UncollidedLight in other pieces than the medium";
+  }
+  if (refused.empty())
+  {
+    shining = this->ReadShiningOn(pieces, piece, inputs);
+    refused = this->NotInBlocks(piece, shining);
+  }
+  return refused;
+}
+
+std::string vtkScatteringSolver::BetterAsWhole(tyndall::Communicator&, const tyndall::PieceBlocks&,
+  const tyndall::PieceOfMedium&, const tyndall::IlluminationInput&)
+{
+  return {};
 }
 
 /// @return false, on all ranks, where each is to solve the whole
@@ -195,36 +244,45 @@ bool vtkScatteringSolver::GiveOrSolvePiece(vtkInformation* request, vtkMultiProc
     ranks, this, this->WantsBlocks(request, inputs, outputs), tyndall::AskingPort(request, outputs), image);
   if (!agreed)
   {
+    const bool asked = this->Decomposition == AUTOMATIC_DECOMPOSITION && tyndall::EachAsksForItsPiece(request, outputs);
+    const std::string refused = this->NotByAnyBlocks(inputs);
+    this->WholeFor = !asked ? "" : refused.empty() ? "pieces that are not parts of one grid" : refused;
     return false;
   }
   tyndall::Communicator& communicator = *agreed->communicator;
   const tyndall::PieceBlocks& pieces = *agreed->pieces;
   if (this->GivePiece(communicator, pieces, inputs, outputs))
   {
+    this->ColorPiece(communicator, pieces, inputs, outputs);
     return true;
   }
-  this->Note({});
-  const tyndall::PieceOfMedium piece(communicator, pieces, this, image);
+  tyndall::PieceOfMedium piece(communicator, pieces, this, image);
   tyndall::IlluminationInput shining;
   std::string refused;
   communicator.Together([&] {
-    refused = this->NotByAnyBlocks(inputs);
-    shining = this->ReadAllIllumination(inputs, piece.emits);
-    const std::string ofScene = this->NotInBlocks(piece, shining);
-    refused = refused.empty() ? ofScene : refused;
+    refused = this->NotOnPiece(pieces, piece, shining, inputs);
     tyndall::Require(refused.empty() || this->Decomposition != BLOCKS,
       "Ranks cannot solve their pieces (Decomposition: blocks) with " + refused +
         ". Leave it out, or let each rank solve the whole.");
   });
-  if (communicator.Largest({ refused.empty() ? 0.0 : 1.0 })[0] > 0.0)
+  this->WholeFor = tyndall::WordsOfAny(communicator, refused);
+  const bool chooses = communicator.Largest({ this->Decomposition == BLOCKS ? 1.0 : 0.0 })[0] == 0.0;
+  if (this->WholeFor.empty() && chooses)
+  {
+    this->WholeFor = this->BetterAsWhole(communicator, pieces, piece, shining);
+  }
+  if (!this->WholeFor.empty())
   {
     return false;
   }
+  this->Note({});
   this->WarnWhereDark(shining.illumination, piece.emits);
   tyndall::LightField light = this->SolvePiece(communicator, pieces, piece, shining);
   TellOfDefaultSky(shining, light.leftOut);
+  this->TellOfPieces(light, true);
   this->Note(light);
   this->WritePiece(communicator, pieces, std::move(light), inputs, outputs);
+  this->ColorPiece(communicator, pieces, inputs, outputs);
   return true;
 }
 
@@ -233,7 +291,7 @@ bool vtkScatteringSolver::GiveOrSolvePiece(vtkInformation* request, vtkMultiProc
 bool vtkScatteringSolver::GivePiece(tyndall::Communicator& communicator, const tyndall::PieceBlocks& pieces,
   vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  const bool kept =
+  const bool kept = this->SolvedInPieces &&
     this->Solved->GiveBack(this->Superclass::GetMTime(), inputs, this->GetNumberOfInputPorts(), outputs);
   const vtkIdType cells = vtkImageData::GetData(outputs, 0)->GetNumberOfCells();
   const bool same = kept && cells == static_cast<vtkIdType>(pieces.Held().VoxelCount());
@@ -243,6 +301,19 @@ bool vtkScatteringSolver::GivePiece(tyndall::Communicator& communicator, const t
     this->Solved->Forget();
   }
   return onAll;
+}
+
+/// That over several ranks, and why each solved the whole, where they were to choose.
+void vtkScatteringSolver::TellOfPieces(tyndall::LightField& light, bool inBlocks) const
+{
+  if (this->OverRanks || inBlocks)
+  {
+    light.settingsUsed.push_back("Decomposition = " + std::to_string(inBlocks ? BLOCKS : WHOLE));
+  }
+  if (this->OverRanks && !this->WholeFor.empty())
+  {
+    light.leftOut.push_back("pieces: each rank solved the whole, for " + this->WholeFor);
+  }
 }
 
 /// WriteSolved of the light of this rank's block. All ranks call it.
@@ -263,18 +334,61 @@ void vtkScatteringSolver::WritePiece(tyndall::Communicator& communicator, const 
   {
     vtkWarningMacro(<< doubt);
   }
-  this->Solved->Keep(outputs);
+  this->Solved->Keep(this->Superclass::GetMTime(), inputs, this->GetNumberOfInputPorts(), outputs);
+  this->SolvedInPieces = true;
 }
 
 void vtkScatteringSolver::WriteSolved(
   tyndall::LightField&& light, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
+  this->TellOfPieces(light, false);
+  this->Note(light);
   for (const std::string& doubt : Write(std::move(light), vtkImageData::GetData(inputs[MEDIUM]), outputs, nullptr))
   {
     vtkWarningMacro(<< doubt);
   }
   this->Solved->Keep(outputs);
   this->HandOn(inputs, outputs);
+}
+
+tyndall::ToneMapping vtkScatteringSolver::Tones() const
+{
+  tyndall::ToneMapping tones;
+  tones.exposure = this->Exposure;
+  tones.curve = static_cast<tyndall::ToneCurve>(this->ToneCurve);
+  return tones;
+}
+
+/// What is made of the light of this rank's piece. All ranks call it.
+void vtkScatteringSolver::ColorPiece(tyndall::Communicator& communicator, const tyndall::PieceBlocks& pieces,
+  vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  tyndall::RequireSame(communicator, "LitColor, Exposure or ToneCurve", true,
+    { this->LitColor ? 1.0 : 0.0, this->Exposure, 1.0 * this->ToneCurve });
+  if (!this->LitColor)
+  {
+    return;
+  }
+  vtkImageData* const output = vtkImageData::GetData(outputs, 0);
+  const tyndall::PieceOfMedium piece(communicator, pieces, this, vtkImageData::GetData(inputs[MEDIUM]));
+  vtkSmartPointer<vtkImageData> own; // whose array the fluence may be
+  tyndall::FloatField fluence;
+  communicator.Together([&] {
+    if (pieces.HasOwn())
+    {
+      own = pieces.OwnImage(output);
+      fluence = tyndall::ReadCells(own, "fluence", tyndall::Need::Required);
+    }
+  });
+  tyndall::LitColor lit =
+    tyndall::ColorLitMediumInBlocks(communicator, pieces.Partition(), piece.medium, fluence, this->Tones());
+  std::vector<float> rgba(lit.rgba.begin(), lit.rgba.end());
+  pieces.SpreadToHeld(communicator, rgba, 4);
+  lit.rgba.assign(rgba.begin(), rgba.end());
+  if (pieces.Held().VoxelCount() > 0)
+  {
+    tyndall::WriteLitColor(std::move(lit), output);
+  }
 }
 
 /// What is made of the light of the whole image, and the piece that was asked for.
@@ -285,10 +399,7 @@ void vtkScatteringSolver::HandOn(vtkInformationVector** inputs, vtkInformationVe
   {
     const tyndall::MediumInput input = tyndall::ReadMedium(this, vtkImageData::GetData(inputs[MEDIUM]));
     const tyndall::FloatField fluence = tyndall::ReadCells(output, "fluence", tyndall::Need::Required);
-    tyndall::ToneMapping tones;
-    tones.exposure = this->Exposure;
-    tones.curve = static_cast<tyndall::ToneCurve>(this->ToneCurve);
-    tyndall::WriteLitColor(tyndall::ColorLitMedium(input.medium, fluence, tones), output);
+    tyndall::WriteLitColor(tyndall::ColorLitMedium(input.medium, fluence, this->Tones()), output);
   }
   tyndall::KeepWhatIsAskedFor(outputs->GetInformationObject(0), output);
 }

@@ -21,6 +21,7 @@ class Communicator;
 class LastOutputs;
 class PieceBlocks;
 struct PieceOfMedium;
+struct ToneMapping;
 }
 
 /**
@@ -40,8 +41,9 @@ struct PieceOfMedium;
  * it gives out the light that it has; so it does where another piece is asked for, or LitColor, Exposure or ToneCurve
  * has changed. Each rank keeps the light of the whole image for that, or with blocks that of its piece.
  *
- * In a parallel pipeline light crosses the borders of pieces: every rank asks for the whole extent and solves it, and
- * hands on the piece it was asked for; or, with Decomposition, solves its piece, and light goes from rank to rank.
+ * In a parallel pipeline light crosses the borders of pieces: each rank solves its piece, and light goes from rank to
+ * rank; or, by Decomposition or where that is better, every rank solves the whole and hands on the piece it was asked
+ * for.
  *
  * With LitColor output 0 has the cell array `lit_color` too, unsigned char, 4 components: what each voxel sends to the
  * eye as a screen shows it, red, green, blue, not multiplied by alpha, and an opacity. A volume mapper that takes them
@@ -50,7 +52,9 @@ struct PieceOfMedium;
  * (numerics.md, section 14.8). d is field data `lit_color_distance`, length; field data `lit_color_exposure` is what
  * radiance was multiplied by.
  *
- * Field data `settings_used` of output 0: "Name = value" of each property that Quality chooses, as it was used.
+ * Field data `settings_used` of output 0: "Name = value" of each property that Quality chooses, as it was used, and
+ * over several ranks of Decomposition. Where that was left to choose and each rank solved the whole, `left_out` says
+ * why.
  *
  * @sa vtkLightPropagationMaps vtkDiscreteOrdinates vtkPhotonMarcher
  */
@@ -73,7 +77,7 @@ public:
 
   enum Decompositions
   {
-    AUTOMATIC_DECOMPOSITION = 0, ///< into blocks where the whole does not fit in each rank's memory
+    AUTOMATIC_DECOMPOSITION = 0, ///< into blocks wherever they do as well
     WHOLE = 1,                   ///< none: each rank solves the whole
     BLOCKS = 2                   ///< each rank solves its piece
   };
@@ -82,10 +86,9 @@ public:
   /// What each of several ranks of MPI solves. With WHOLE all of the medium, which each then holds. With BLOCKS its
   /// piece: light is handed on from rank to rank, and no rank holds another's voxels but for a layer or two; one rank
   /// alone solves the same way then, so that light does not depend on their number, but for rounding. An error names
-  /// what blocks cannot do; of all solvers these are UncollidedLight, a Quality other than USUAL, Preview,
-  /// EstimateError, MemoryBudget and LitColor; the subclass says what else.
-  /// AUTOMATIC_DECOMPOSITION (default): BLOCKS where the arrays of the whole, once for each rank of a machine, are more
-  /// than the memory that it has available, and the scene can be solved so; else WHOLE.
+  /// what blocks cannot do; of all solvers these are Preview and MemoryBudget; the subclass says what else.
+  /// AUTOMATIC_DECOMPOSITION (default): BLOCKS where each of several ranks is asked for its piece, the scene can be
+  /// solved so, and the whole would not be solved more exactly or much sooner; else WHOLE.
   tyndallSetRangeMacro(Decomposition, int, AUTOMATIC_DECOMPOSITION, BLOCKS);
   vtkGetMacro(Decomposition, int);
   ///@}
@@ -175,21 +178,22 @@ protected:
   /// What of a solve is told on the panel; of an empty one before solving, and where it failed.
   virtual void Note(const tyndall::LightField& light) = 0;
 
-  /// Of a rank that solves the whole: the arrays of medium, solver and light, of one channel.
-  virtual double BytesOfVoxel() const = 0;
-
   /// What among properties and inputs keeps this solver from solving pieces, beside what keeps all of them, in words
   /// for an error; empty: nothing does.
   virtual std::string NotByBlocks(vtkInformationVector** inputs) const = 0;
   /// The same of a scene that was read.
   virtual std::string NotInBlocks(const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining) = 0;
+  /// What of a scene that pieces can be solved of the whole is solved more exactly or much sooner for, in words that
+  /// follow "better for"; empty: nothing is. All ranks call it, and are told the same.
+  virtual std::string BetterAsWhole(tyndall::Communicator& communicator, const tyndall::PieceBlocks& pieces,
+    const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining);
   /// Solves this rank's piece. All ranks call it; none has been refused.
   /// @return the light of the rank's own voxels
   virtual tyndall::LightField SolvePiece(tyndall::Communicator& communicator, const tyndall::PieceBlocks& pieces,
     const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining) = 0;
 
   /// Last in RequestData: solved light on output 0 beside the arrays of the medium, its convergence on
-  /// output 1; then a warning of each doubt. Kept for GiveOrSolve.
+  /// output 1; it is noted, and a warning of each doubt. Kept for GiveOrSolve.
   void WriteSolved(tyndall::LightField&& light, vtkInformationVector** inputs, vtkInformationVector* outputs);
 
   int Decomposition = AUTOMATIC_DECOMPOSITION;
@@ -200,12 +204,19 @@ protected:
   bool LitColor = false;
   double Exposure = 0.0;
   int ToneCurve = 1;
+  /// Of the solver: whether pieces can be solved with a Quality other than USUAL, and with EstimateError.
+  bool QualityByBlocks = false, ErrorByBlocks = false;
 
 private:
   vtkScatteringSolver(const vtkScatteringSolver&) = delete;
   void operator=(const vtkScatteringSolver&) = delete;
 
   void ColorsModified();
+  tyndall::IlluminationInput ReadShiningOn(
+    const tyndall::PieceBlocks& pieces, tyndall::PieceOfMedium& piece, vtkInformationVector** inputs);
+  std::string NotOnPiece(const tyndall::PieceBlocks& pieces, tyndall::PieceOfMedium& piece,
+    tyndall::IlluminationInput& shining, vtkInformationVector** inputs);
+  void TellOfPieces(tyndall::LightField& light, bool inBlocks) const;
   bool WantsBlocks(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) const;
   std::string NotByAnyBlocks(vtkInformationVector** inputs) const;
   bool GiveOrSolvePiece(vtkInformation* request, vtkMultiProcessController* ranks, vtkInformationVector** inputs,
@@ -214,9 +225,15 @@ private:
     vtkInformationVector* outputs);
   void WritePiece(tyndall::Communicator& communicator, const tyndall::PieceBlocks& pieces, tyndall::LightField&& light,
     vtkInformationVector** inputs, vtkInformationVector* outputs);
+  void ColorPiece(tyndall::Communicator& communicator, const tyndall::PieceBlocks& pieces,
+    vtkInformationVector** inputs, vtkInformationVector* outputs);
+  tyndall::ToneMapping Tones() const;
   void HandOn(vtkInformationVector** inputs, vtkInformationVector* outputs);
 
   std::unique_ptr<tyndall::LastOutputs> Solved;
+  bool SolvedInPieces = false; ///< that is of this rank's piece
+  bool OverRanks = false;      ///< of the light that is being made: several ranks make it together
+  std::string WholeFor;        ///< the same: why each solves the whole, though it was left to choose
   vtkTimeStamp ColorsTime; ///< of LitColor, Exposure, ToneCurve: they do not change the light
 };
 

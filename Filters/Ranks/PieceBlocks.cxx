@@ -227,6 +227,13 @@ std::array<int, 6> PieceBlocks::ExtentOf(const VoxelBox& box) const
   return extent;
 }
 
+bool PieceBlocks::HasOwnOf(vtkImageData* image) const
+{
+  Extent extent;
+  image->GetExtent(extent.data());
+  return Common(BoxOf(extent, this->Base), this->Own()).VoxelCount() == this->Own().VoxelCount();
+}
+
 vtkSmartPointer<vtkImageData> PieceBlocks::OwnImage(vtkImageData* given) const
 {
   if (given->GetNumberOfCells() == static_cast<vtkIdType>(this->Own().VoxelCount()))

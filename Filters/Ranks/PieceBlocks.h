@@ -40,6 +40,9 @@ public:
   const VoxelBox& Held() const { return this->OfOutputs[this->Rank]; }
   const std::vector<VoxelBox>& HeldByRanks() const { return this->OfOutputs; }
 
+  /// Whether this rank's own voxels are among those of an image; true where it has none.
+  bool HasOwnOf(vtkImageData* image) const;
+
   /// Of what this rank is given its own voxels, with their arrays; itself where it is no more. Not where it has none.
   vtkSmartPointer<vtkImageData> OwnImage(vtkImageData* given) const;
 

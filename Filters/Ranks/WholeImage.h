@@ -17,8 +17,9 @@ void AskForAll(vtkInformation* request, vtkInformationVector* inputs, vtkInforma
 /// The same of all ports but one, of which each rank is to have what its output is asked for.
 /// @param ports  their number
 /// @param piece  that one; -1: there is none
-void AskForAllBut(
-  int piece, vtkInformation* request, vtkInformationVector** inputs, int ports, vtkInformationVector* outputs);
+/// @param besides  another; the same
+void AskForAllBut(int piece, vtkInformation* request, vtkInformationVector** inputs, int ports,
+  vtkInformationVector* outputs, int besides = -1);
 
 /// The same for this rank's piece, with a layer of its neighbours' cells, where ranks run the filter together; else for
 /// all.

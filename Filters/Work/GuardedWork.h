@@ -41,9 +41,11 @@ int Guarded(vtkAlgorithm* filter, vtkInformation* request, vtkInformationVector*
 /// @param work  is given the ranks (null: there is one) and the inputs, those of that port as they are: it may make
 ///   them whole
 /// @param shares  another port, of points of which ranks may have some each (WholeInputs.h); -1: none
+/// @param besides  another, like port; -1: none
 int GuardedInPieces(vtkAlgorithm* filter, vtkInformation* request, vtkInformationVector** given,
   vtkInformationVector* outputs, int port,
-  const std::function<void(vtkMultiProcessController* ranks, WholeInputs& inputs)>& work, int shares = -1);
+  const std::function<void(vtkMultiProcessController* ranks, WholeInputs& inputs)>& work, int shares = -1,
+  int besides = -1);
 
 /// Work on the piece of an input that a rank has, without any rank having all of it.
 struct WorkOnPieces
@@ -53,6 +55,7 @@ struct WorkOnPieces
   /// @param ranks  null: this process is alone; output 0 is then cut to what was asked for
   std::function<bool(vtkMultiProcessController* ranks, vtkInformationVector** inputs)> work;
   int shares = -1; ///< an input of points of which ranks may have some each, as they are given; -1: none
+  int besides = -1; ///< another input of which ranks have pieces; -1: none
 };
 
 /// The same, where it may do with pieces; where not, `work` is given wholes.

@@ -402,12 +402,13 @@ struct WholeInputs::Seen
 {
   vtkMultiProcessController* ranks;
   vtkInformationVector** given;
-  int inPieces, inShares;
+  std::array<int, 2> inPieces;
+  int inShares;
   std::vector<RankGlance> all;
 };
 
 WholeInputs::WholeInputs(vtkMultiProcessController* ranks, vtkAlgorithm* filter, vtkInformationVector** given,
-  vtkInformationVector* outputs, int inPieces, int inShares)
+  vtkInformationVector* outputs, const std::array<int, 2>& inPieces, int inShares)
 {
   const int ports = filter->GetNumberOfInputPorts();
   this->Ports.assign(given, given + ports);
@@ -424,7 +425,7 @@ WholeInputs::WholeInputs(vtkMultiProcessController* ranks, vtkAlgorithm* filter,
   NoteParts(this->AllSeen->all, ranks->GetLocalProcessId(), outputs);
   for (int port = 0; port < ports; ++port)
   {
-    if (port != inPieces && port != inShares)
+    if (port != inPieces[0] && port != inPieces[1] && port != inShares)
     {
       this->MakeWhole(port);
     }
@@ -435,7 +436,7 @@ WholeInputs::~WholeInputs() = default;
 
 void WholeInputs::Replace(vtkDataObject* data)
 {
-  const auto port = static_cast<std::size_t>(this->AllSeen->inPieces);
+  const auto port = static_cast<std::size_t>(this->AllSeen->inPieces[0]);
   vtkNew<vtkInformation> information;
   information->Set(vtkDataObject::DATA_OBJECT(), data);
   this->Kept[port] = vtkSmartPointer<vtkInformationVector>::New();
@@ -445,11 +446,18 @@ void WholeInputs::Replace(vtkDataObject* data)
 
 void WholeInputs::MakeWhole()
 {
-  if (this->AllSeen && this->AllSeen->inPieces != NoPort)
+  if (!this->AllSeen)
   {
-    this->MakeWhole(std::exchange(this->AllSeen->inPieces, NoPort));
+    return;
   }
-  if (this->AllSeen && this->AllSeen->inShares != NoPort)
+  for (int& port : this->AllSeen->inPieces)
+  {
+    if (port != NoPort)
+    {
+      this->MakeWhole(std::exchange(port, NoPort));
+    }
+  }
+  if (this->AllSeen->inShares != NoPort)
   {
     this->MakeWhole(this->AllSeen->inShares);
   }

@@ -3,6 +3,7 @@
 #include "vtkNew.h"
 #include "vtkSmartPointer.h"
 
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -32,17 +33,17 @@ public:
   /// @param ranks  null: this process is alone, and has what it is given
   /// @param given  by port
   /// @param outputs  notes for KeepWhatIsAskedFor what each rank is asked for
-  /// @param inPieces  a port that stays as it is given until MakeWhole
+  /// @param inPieces  ports that stay as they are given until MakeWhole
   /// @param inShares  another, of points of which ranks may have some each (photons): together they are all
   /// @throws InvalidInput on all ranks with the same words where pieces make no whole
   WholeInputs(vtkMultiProcessController* ranks, vtkAlgorithm* filter, vtkInformationVector** given,
-    vtkInformationVector* outputs, int inPieces = NoPort, int inShares = NoPort);
+    vtkInformationVector* outputs, const std::array<int, 2>& inPieces = { NoPort, NoPort }, int inShares = NoPort);
   ~WholeInputs();
 
   /// By port.
   vtkInformationVector** Vectors() { return this->Ports.data(); }
 
-  /// Data instead of those of the port that was left in pieces; until MakeWhole.
+  /// Data instead of those of the first port that was left in pieces; until MakeWhole.
   void Replace(vtkDataObject* data);
 
   /// Of the ports that were left as they are given. All ranks have to call it.

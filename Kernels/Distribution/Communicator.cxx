@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <iterator>
 #include <new>
 #include <stdexcept>
 #include <string>
@@ -200,5 +201,23 @@ void SingleRank::Give(int, int, std::vector<char>)
 std::vector<char> SingleRank::Take(int, int)
 {
   throw std::logic_error("a single rank has nobody to hear from");
+}
+
+std::string WordsOfAny(Communicator& communicator, const std::string& own)
+{
+  const double none = communicator.Ranks();
+  const double first = -communicator.Largest({ -(own.empty() ? none : communicator.Rank()) })[0];
+  const bool says = communicator.Rank() == first;
+  std::vector<double> letters(
+    static_cast<std::size_t>(communicator.Largest({ says ? 1.0 * static_cast<double>(own.size()) : 0.0 })[0]), 0.0);
+  if (says)
+  {
+    std::copy(own.begin(), own.end(), letters.begin());
+  }
+  letters = communicator.Sum(letters);
+  std::string words;
+  std::transform(
+    letters.begin(), letters.end(), std::back_inserter(words), [](double letter) { return static_cast<char>(letter); });
+  return words;
 }
 }

@@ -5,6 +5,7 @@
 #include <deque>
 #include <functional>
 #include <map>
+#include <string>
 #include <vector>
 
 namespace tyndall
@@ -77,6 +78,9 @@ private:
   Traffic Counted;
   std::map<int, std::deque<std::vector<char>>> ToItself; ///< by tag
 };
+
+/// The words of the first rank that has any, on each; empty: none has. All ranks call it.
+std::string WordsOfAny(Communicator& communicator, const std::string& own);
 
 /// A computation's only rank.
 class SingleRank : public Communicator

@@ -1,13 +1,16 @@
 #include "Viewing/LitColor.h"
 
 #include "Device/HostThreads.h"
+#include "Distribution/BoxExchange.h"
 #include "Numerics/Constants.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <map>
 #include <mutex>
+#include <numeric>
 
 namespace tyndall
 {
@@ -18,6 +21,7 @@ constexpr int ColumnsOfView = 64;             ///< along each edge of a view, at
 constexpr double ResolvedDepth = 2.0;         ///< k sigma_t distance of the most opaque voxel, at least
 constexpr double PartOfVeil = 0.25;           ///< of the most light of a ray, where what is shown is right as well
 constexpr double Opaque = 0.95;               ///< opacities above are as good as 1
+constexpr int ColumnsTag = 29995;             ///< of messages; not one of those that others take
 
 /// What voxels send to the eye.
 struct SourceFunction
@@ -67,53 +71,155 @@ SourceFunction SourceFunctionOf(const Medium& medium, const Field& fluence)
   return found;
 }
 
-/// Adds radiance that comes out of a column of voxels, seen from its first one.
-void AddColumn(const SourceFunction& source, double edge, std::size_t first, std::ptrdiff_t step, int count,
-  std::vector<float>& seen)
+/// The ranks among which a lit medium is spread; one alone has all of it.
+struct Spread
 {
-  std::array<double, 3> sum = {};
+  Communicator& others;
+  const BlockPartition& partition;
+
+  const VoxelBox& Own() const { return this->partition.blocks[this->others.Rank()]; }
+  Grid OwnGrid() const { return this->partition.OwnGrid(this->others.Rank()); }
+};
+
+/// What a column of voxels, or a part of it, shows and lets through.
+struct SeenColumn
+{
+  std::array<double, 3> radiance = {};
   double transmittance = 1.0;
-  std::size_t voxel = first;
-  for (int i = 0; i < count && transmittance > 1e-3; ++i, voxel += static_cast<std::size_t>(step))
+
+  void GoOn(const SeenColumn& behind)
   {
-    const double opacity = -std::expm1(-source.extinction[voxel] * edge);
     for (std::size_t c = 0; c < 3; ++c)
     {
-      sum[c] += transmittance * opacity * source.radiance[3 * voxel + c];
+      this->radiance[c] += this->transmittance * behind.radiance[c];
     }
-    transmittance *= 1.0 - opacity;
+    this->transmittance *= behind.transmittance;
   }
-  seen.insert(seen.end(), sum.begin(), sum.end());
+};
+
+SeenColumn LookAlong(
+  const SourceFunction& source, double edge, std::size_t first, std::ptrdiff_t step, int count)
+{
+  SeenColumn seen;
+  std::size_t voxel = first;
+  for (int i = 0; i < count; ++i, voxel += static_cast<std::size_t>(step))
+  {
+    const double opacity = -std::expm1(-source.extinction[voxel] * edge);
+    SeenColumn here;
+    for (std::size_t c = 0; c < 3; ++c)
+    {
+      here.radiance[c] = opacity * source.radiance[3 * voxel + c];
+    }
+    here.transmittance = 1.0 - opacity;
+    seen.GoOn(here);
+  }
+  return seen;
 }
 
-/// Radiance of views along the axes from both sides: every few columns.
-std::vector<float> SeenAlongAxes(const Grid& grid, const SourceFunction& source)
+/// Calls act(u, v) for every few columns along an axis of a grid, those that a box has of them.
+template <class Act>
+void ForColumnsOfView(const Grid& whole, int axis, const VoxelBox& box, const Act& act)
 {
-  const std::array<std::size_t, 3> stride = grid.Strides();
-  std::vector<float> seen;
-  for (int axis = 0; axis < 3; ++axis)
+  const PlaneAxes plane = AcrossAxis(axis);
+  const int every = std::max({ 1, whole.size[plane.u] / ColumnsOfView, whole.size[plane.v] / ColumnsOfView });
+  for (int v = every / 2; v < whole.size[plane.v]; v += every)
   {
-    const PlaneAxes plane = AcrossAxis(axis);
-    const int every = std::max({ 1, grid.size[plane.u] / ColumnsOfView, grid.size[plane.v] / ColumnsOfView });
-    const auto along = static_cast<std::ptrdiff_t>(stride[axis]);
-    for (int v = every / 2; v < grid.size[plane.v]; v += every)
+    for (int u = every / 2; u < whole.size[plane.u]; u += every)
     {
-      for (int u = every / 2; u < grid.size[plane.u]; u += every)
+      const bool has = u >= box.first[plane.u] && u < EndOf(box, plane.u) && v >= box.first[plane.v] &&
+        v < EndOf(box, plane.v);
+      if (has)
       {
-        const std::size_t near = u * stride[plane.u] + v * stride[plane.v];
-        const std::size_t far = near + (grid.size[axis] - 1) * stride[axis];
-        AddColumn(source, grid.spacing[axis], near, along, grid.size[axis], seen);
-        AddColumn(source, grid.spacing[axis], far, -along, grid.size[axis], seen);
+        act(u, v);
       }
+    }
+  }
+}
+
+/// Of the columns along an axis that a block has of the views, from below and from above.
+std::vector<SeenColumn> SeenInBlock(const Spread& spread, int axis, const SourceFunction& source)
+{
+  const Grid grid = spread.OwnGrid();
+  const std::array<std::size_t, 3> stride = grid.Strides();
+  const PlaneAxes plane = AcrossAxis(axis);
+  const VoxelBox& own = spread.Own();
+  const auto along = static_cast<std::ptrdiff_t>(stride[axis]);
+  std::vector<SeenColumn> seen;
+  ForColumnsOfView(spread.partition.whole, axis, own, [&](int u, int v) {
+    const std::size_t near =
+      (u - own.first[plane.u]) * stride[plane.u] + (v - own.first[plane.v]) * stride[plane.v];
+    const std::size_t far = near + (grid.size[axis] - 1) * stride[axis];
+    seen.push_back(LookAlong(source, grid.spacing[axis], near, along, grid.size[axis]));
+    seen.push_back(LookAlong(source, grid.spacing[axis], far, -along, grid.size[axis]));
+  });
+  return seen;
+}
+
+/// Lays the columns of all blocks behind each other.
+/// @param byRank  of each block, as SeenInBlock has them
+std::vector<float> BehindEachOther(
+  const BlockPartition& partition, int axis, const std::vector<std::vector<SeenColumn>>& byRank)
+{
+  std::vector<std::size_t> order(byRank.size());
+  std::iota(order.begin(), order.end(), std::size_t{ 0 });
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return partition.blocks[a].first[axis] < partition.blocks[b].first[axis];
+  });
+  const std::size_t width = static_cast<std::size_t>(partition.whole.size[AcrossAxis(axis).u]);
+  std::map<std::size_t, std::array<SeenColumn, 2>> columns; // by place
+  for (int side = 0; side < 2; ++side)
+  {
+    for (const std::size_t rank : order)
+    {
+      auto next = byRank[rank].begin() + side;
+      ForColumnsOfView(partition.whole, axis, partition.blocks[rank], [&](int u, int v) {
+        columns[v * width + u][side].GoOn(*next);
+        next += 2;
+      });
+    }
+    std::reverse(order.begin(), order.end());
+  }
+  std::vector<float> seen;
+  for (const auto& [place, sides] : columns)
+  {
+    for (const SeenColumn& column : sides)
+    {
+      seen.insert(seen.end(), column.radiance.begin(), column.radiance.end());
     }
   }
   return seen;
 }
 
-/// Gives an empty voxel the mean of its neighbours' radiance, each as much as it is dense.
-void FillFromNeighbours(const Grid& grid, std::size_t voxel, SourceFunction& source)
+/// As AutomaticExposure has it of parallel views along the axes from both sides, by every few columns. The first rank
+/// lays them together.
+double ExposureAlongAxes(const Spread& spread, const SourceFunction& source)
 {
-  const std::array<int, 3> place = grid.VoxelAt(voxel);
+  Communicator& others = spread.others;
+  std::vector<float> seen;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    std::vector<std::vector<SeenColumn>> byRank = { SeenInBlock(spread, axis, source) };
+    if (others.Rank() > 0)
+    {
+      others.Send(0, ColumnsTag, byRank[0]);
+      continue;
+    }
+    for (int rank = 1; rank < others.Ranks(); ++rank)
+    {
+      byRank.push_back(others.Receive<SeenColumn>(rank, ColumnsTag));
+    }
+    const std::vector<float> ofAxis = BehindEachOther(spread.partition, axis, byRank);
+    seen.insert(seen.end(), ofAxis.begin(), ofAxis.end());
+  }
+  return others.Sum({ others.Rank() == 0 ? AutomaticExposure(seen) : 0.0 })[0];
+}
+
+/// Gives an empty voxel the mean of its neighbours' radiance, each as much as it is dense.
+/// @param place   the voxel
+/// @param around  of a grid that has it and its neighbours
+void FillFromNeighbours(
+  const Grid& grid, const std::array<int, 3>& place, const SourceFunction& around, float* radiance)
+{
   std::array<int, 3> low, high;
   for (int axis = 0; axis < 3; ++axis)
   {
@@ -129,64 +235,95 @@ void FillFromNeighbours(const Grid& grid, std::size_t voxel, SourceFunction& sou
       for (int i = low[0]; i <= high[0]; ++i)
       {
         const std::size_t neighbour = grid.IndexOf({ i, j, k });
-        const double weight = source.extinction[neighbour]; // 0 of other empty ones
+        const double weight = around.extinction[neighbour]; // 0 of other empty ones
         weights += weight;
         for (std::size_t c = 0; c < 3 && weight > 0.0; ++c)
         {
-          sum[c] += weight * source.radiance[3 * neighbour + c];
+          sum[c] += weight * around.radiance[3 * neighbour + c];
         }
       }
     }
   }
   for (std::size_t c = 0; c < 3 && weights > 0.0; ++c)
   {
-    source.radiance[3 * voxel + c] = static_cast<float>(sum[c] / weights);
+    radiance[c] = static_cast<float>(sum[c] / weights);
   }
 }
 
-void FillEmptyVoxels(const Grid& grid, SourceFunction& source)
+/// A block's and that of the voxels beside it. All ranks call it.
+SourceFunction WithNeighbours(const Spread& spread, const SourceFunction& own)
 {
+  std::vector<VoxelBox> wanted;
+  for (const VoxelBox& block : spread.partition.blocks)
+  {
+    wanted.push_back(block.VoxelCount() > 0 ? Grown(block, 1, spread.partition.whole) : VoxelBox());
+  }
+  return { ValuesInBox(spread.others, spread.partition, wanted, own.radiance, 3),
+    ValuesInBox(spread.others, spread.partition, wanted, own.extinction, 1) };
+}
+
+void FillEmptyVoxels(const Spread& spread, SourceFunction& source)
+{
+  const bool alone = spread.others.Ranks() == 1;
+  const SourceFunction others = alone ? SourceFunction() : WithNeighbours(spread, source);
+  const SourceFunction& around = alone ? source : others; // what is read of it is not written
+  const VoxelBox& own = spread.Own();
+  const VoxelBox box = alone ? own : Grown(own, 1, spread.partition.whole);
+  Grid grid = spread.partition.whole;
+  grid.size = box.size;
+  const Grid ofBlock = spread.OwnGrid();
   InThreads(source.extinction.size(), VoxelsOfThread, [&](std::size_t begin, std::size_t end) {
     for (std::size_t voxel = begin; voxel < end; ++voxel)
     {
       if (source.extinction[voxel] == 0.0f)
       {
-        FillFromNeighbours(grid, voxel, source);
+        std::array<int, 3> place = ofBlock.VoxelAt(voxel);
+        for (int axis = 0; axis < 3; ++axis)
+        {
+          place[axis] += own.first[axis] - box.first[axis];
+        }
+        FillFromNeighbours(grid, place, around, &source.radiance[3 * voxel]);
       }
     }
   });
 }
 
-/// Optical depths of the columns along an axis, by the rows that they stand on.
-std::vector<float> ColumnDepths(const Grid& grid, int axis, const std::vector<float>& extinction)
+/// Optical depths of the columns of the whole grid along an axis, by the rows that they stand on.
+std::vector<double> ColumnDepths(const Spread& spread, int axis, const std::vector<float>& extinction)
 {
   const PlaneAxes plane = AcrossAxis(axis);
-  const std::array<std::size_t, 3> stride = grid.Strides();
-  const auto row = static_cast<std::size_t>(grid.size[plane.u]);
-  std::vector<float> depths(row * static_cast<std::size_t>(grid.size[plane.v]));
-  InThreads(depths.size(), 64, [&](std::size_t begin, std::size_t end) {
+  const Grid& whole = spread.partition.whole;
+  const VoxelBox& own = spread.Own();
+  const std::array<std::size_t, 3> stride = spread.OwnGrid().Strides();
+  const auto row = static_cast<std::size_t>(whole.size[plane.u]);
+  const auto columns = static_cast<std::size_t>(own.VoxelCount() > 0 ? own.size[plane.u] * own.size[plane.v] : 0);
+  std::vector<double> depths(row * static_cast<std::size_t>(whole.size[plane.v]), 0.0);
+  InThreads(columns, 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t column = begin; column < end; ++column)
     {
-      std::size_t voxel = column % row * stride[plane.u] + column / row * stride[plane.v];
+      const std::size_t u = column % own.size[plane.u], v = column / own.size[plane.u];
+      std::size_t voxel = u * stride[plane.u] + v * stride[plane.v];
       double sum = 0.0;
-      for (int i = 0; i < grid.size[axis]; ++i, voxel += stride[axis])
+      for (int i = 0; i < own.size[axis]; ++i, voxel += stride[axis])
       {
         sum += extinction[voxel];
       }
-      depths[column] = static_cast<float>(sum * grid.spacing[axis]);
+      depths[(own.first[plane.v] + v) * row + own.first[plane.u] + u] = sum * whole.spacing[axis];
     }
   });
-  return depths;
+  return spread.others.Sum(depths);
 }
 
 /// The opacity of the densest of the three columns through each voxel: about the most that rays see of the medium.
-std::vector<float> LargestOpacities(const Grid& grid, const std::vector<float>& extinction)
+std::vector<float> LargestOpacities(const Spread& spread, const std::vector<float>& extinction)
 {
-  std::array<std::vector<float>, 3> depths;
+  std::array<std::vector<double>, 3> depths;
   for (int axis = 0; axis < 3; ++axis)
   {
-    depths[axis] = ColumnDepths(grid, axis, extinction);
+    depths[axis] = ColumnDepths(spread, axis, extinction);
   }
+  const Grid grid = spread.OwnGrid();
+  const VoxelBox& own = spread.Own();
   std::vector<float> opacities(extinction.size());
   InThreads(extinction.size(), VoxelsOfThread, [&](std::size_t begin, std::size_t end) {
     for (std::size_t voxel = begin; voxel < end; ++voxel)
@@ -196,9 +333,10 @@ std::vector<float> LargestOpacities(const Grid& grid, const std::vector<float>& 
       for (int axis = 0; axis < 3; ++axis)
       {
         const PlaneAxes plane = AcrossAxis(axis);
-        const auto column = static_cast<std::size_t>(place[plane.u]) +
-          static_cast<std::size_t>(place[plane.v]) * static_cast<std::size_t>(grid.size[plane.u]);
-        most = std::max(most, depths[axis][column]);
+        const auto column = static_cast<std::size_t>(own.first[plane.u] + place[plane.u]) +
+          static_cast<std::size_t>(own.first[plane.v] + place[plane.v]) *
+            static_cast<std::size_t>(spread.partition.whole.size[plane.u]);
+        most = std::max(most, static_cast<float>(depths[axis][column]));
       }
       opacities[voxel] = std::min(static_cast<float>(-std::expm1(-most) / Opaque), 1.0f);
     }
@@ -260,20 +398,32 @@ double LargestProduct(const std::vector<float>& a, const std::vector<float>& b)
 
 LitColor ColorLitMedium(const Medium& medium, const Field& fluence, const ToneMapping& tones)
 {
-  Check(tones);
-  SourceFunction source = SourceFunctionOf(medium, fluence);
+  SingleRank alone;
+  return ColorLitMediumInBlocks(
+    alone, { medium.grid, { { { 0, 0, 0 }, medium.grid.size } } }, medium, fluence, tones);
+}
+
+LitColor ColorLitMediumInBlocks(Communicator& communicator, const BlockPartition& partition, const Medium& medium,
+  const Field& fluence, const ToneMapping& tones)
+{
+  const Spread spread = { communicator, partition };
+  SourceFunction source;
+  communicator.Together([&] {
+    Check(tones);
+    source = spread.Own().VoxelCount() > 0 ? SourceFunctionOf(medium, fluence) : SourceFunction();
+  });
   ToneMapping used = tones;
-  used.exposure = tones.exposure > 0.0 ? tones.exposure : AutomaticExposure(SeenAlongAxes(medium.grid, source));
-  const std::vector<float> most = LargestOpacities(medium.grid, source.extinction);
+  used.exposure = tones.exposure > 0.0 ? tones.exposure : ExposureAlongAxes(spread, source);
+  const std::vector<float> most = LargestOpacities(spread, source.extinction);
   Dim(most, source.radiance);
-  FillEmptyVoxels(medium.grid, source);
+  FillEmptyVoxels(spread, source);
 
   LitColor lit;
   lit.exposure = used.exposure;
   lit.rgba = ToneMap(source.radiance, {}, used);
   const std::vector<float> factors = VeilFactors(source.radiance, lit.rgba, most, used);
-  const double densest = LargestProduct(factors, source.extinction);
-  const double edge = ShortestEdge(medium.grid);
+  const double densest = communicator.Largest({ LargestProduct(factors, source.extinction) })[0];
+  const double edge = ShortestEdge(partition.whole);
   lit.distance = densest > 0.0 ? std::max(edge, ResolvedDepth / densest) : edge;
   InThreads(factors.size(), VoxelsOfThread, [&](std::size_t begin, std::size_t end) {
     for (std::size_t voxel = begin; voxel < end; ++voxel)

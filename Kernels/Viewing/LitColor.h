@@ -1,5 +1,7 @@
 #pragma once
 
+#include "Distribution/BlockPartition.h"
+#include "Distribution/Communicator.h"
 #include "Medium/Medium.h"
 #include "Viewing/ToneMapping.h"
 
@@ -35,4 +37,12 @@ struct LitColor
 /// @param tones  exposure 0 chooses it as AutomaticExposure does, of parallel views along the axes, from both sides
 /// @throws InvalidInput for an exposure out of its range
 LitColor ColorLitMedium(const Medium& medium, const Field& fluence, const ToneMapping& tones);
+
+/// The same of a medium that is spread over ranks by blocks: each has the colours of its own voxels, with the exposure
+/// and the distance of all. No rank has more than a layer of the others' voxels, depths of the whole grid's columns,
+/// and the first one what columns show. All ranks call it.
+/// @param medium, fluence  of the rank's block; not looked at without voxels
+/// @param tones  the same on all
+LitColor ColorLitMediumInBlocks(Communicator& communicator, const BlockPartition& partition, const Medium& medium,
+  const Field& fluence, const ToneMapping& tones);
 }

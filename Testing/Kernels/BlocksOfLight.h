@@ -88,10 +88,29 @@ struct PartOf
   PartOf(const PartOf&) = delete;
   PartOf& operator=(const PartOf&) = delete;
 
+  /// What shines on it: of light that is given by voxel that of its own.
+  Illumination Of(const Illumination& shining)
+  {
+    Illumination own = shining;
+    const auto take = [this](Field& field, std::vector<float>& values) {
+      for (const std::size_t place : field.values ? this->places : std::vector<std::size_t>())
+      {
+        for (int c = 0; c < field.components; ++c)
+        {
+          values.push_back(field.At(place, c));
+        }
+      }
+      field.values = field.values ? values.data() : nullptr;
+    };
+    take(own.uncollided.fluence, this->given);
+    take(own.uncollided.meanDirection, this->directions);
+    return own;
+  }
+
   Medium medium;
   std::size_t components;
   std::vector<std::size_t> places; ///< in the whole
-  std::vector<float> absorption, scattering, emission, g;
+  std::vector<float> absorption, scattering, emission, g, given, directions;
 };
 
 /// Arrays of the blocks put together; all else of rank 0, which must be that of all.
@@ -101,8 +120,9 @@ inline LightField LightOfAll(Device& device, const BlockPartition& partition, co
   LightField all, arrays;
   std::mutex guard;
   RunInThreads(static_cast<int>(partition.blocks.size()), [&](Communicator& communicator) {
-    const PartOf part(whole, partition.blocks[communicator.Rank()]);
-    const LightField light = SolveInBlocks(device, communicator, partition, part.medium, shining, settings);
+    PartOf part(whole, partition.blocks[communicator.Rank()]);
+    const LightField light =
+      SolveInBlocks(device, communicator, partition, part.medium, part.Of(shining), settings);
     const std::lock_guard<std::mutex> lock(guard);
     if (all.convergence.empty())
     {
@@ -111,6 +131,7 @@ inline LightField LightOfAll(Device& device, const BlockPartition& partition, co
     EXPECT_EQ(light.facePowerOut, all.facePowerOut);
     EXPECT_EQ(light.balance.absorbed, all.balance.absorbed);
     EXPECT_EQ(light.convergence.size(), all.convergence.size());
+    EXPECT_EQ(light.surfaceRadiance, all.surfaceRadiance);
     const auto put = [&](std::vector<float> LightField::*array) {
       const std::vector<float>& from = light.*array;
       const std::size_t width = part.places.empty() ? 0 : from.size() / part.places.size();

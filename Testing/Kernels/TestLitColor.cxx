@@ -1,5 +1,7 @@
 #include "Viewing/LitColor.h"
 
+#include "Distribution/BoxExchange.h"
+#include "Distribution/RanksInThreads.h"
 #include "Numerics/Constants.h"
 
 #include <gtest/gtest.h>
@@ -169,4 +171,47 @@ TEST(LitColor, VacuumAndDarknessAreBlack)
   const LitColor night = dark.Color({});
   EXPECT_EQ((std::vector<std::uint8_t>{ 0, 0, 0, 255 }), night.rgba);
 }
+}
+
+/// Blocks of any sizes, one of them empty: the colours, the exposure and the distance of the whole.
+TEST(LitColor, IsTheSameInBlocks)
+{
+  LitBox box({ 7, 9, 8 }, 0.0f, 0.0f, 0.0f);
+  const std::size_t voxels = box.medium.grid.VoxelCount();
+  for (std::size_t i = 0; i < voxels; ++i)
+  {
+    const bool empty = i % 3 == 0 || i % 7 == 0; // coloured by their neighbours
+    box.sigma_a[i] = empty ? 0.0f : static_cast<float>(0.1 + 0.1 * std::sin(0.1 * i));
+    box.sigma_s[i] = empty ? 0.0f : static_cast<float>(0.4 + 0.3 * std::cos(0.3 * i));
+    box.fluence[i] = static_cast<float>(1.0 + std::sin(0.05 * i));
+  }
+  const ToneMapping tones = Exposed(0.0);
+  const LitColor expected = box.Color(tones);
+  const Grid& grid = box.medium.grid;
+  const VoxelBox all = { { 0, 0, 0 }, grid.size };
+  const BlockPartition uneven = { grid,
+    { { { 2, 0, 0 }, { 5, 9, 8 } }, {}, { { 0, 0, 0 }, { 2, 1, 8 } }, { { 0, 1, 0 }, { 2, 8, 8 } } } };
+  for (const BlockPartition& partition : { BlockPartition::Even(grid, 1), BlockPartition::Even(grid, 8), uneven })
+  {
+    const int ranks = static_cast<int>(partition.blocks.size());
+    RunInThreads(ranks, [&](Communicator& communicator) {
+      const VoxelBox& own = partition.blocks[communicator.Rank()];
+      const std::vector<float> sigma_a = PartOf(box.sigma_a, all, own, 1), sigma_s = PartOf(box.sigma_s, all, own, 1);
+      const std::vector<float> fluence = PartOf(box.fluence, all, own, 1);
+      Medium medium = box.medium;
+      medium.grid = partition.OwnGrid(communicator.Rank());
+      medium.sigma_a = { sigma_a.data(), 1 };
+      medium.sigma_s = { sigma_s.data(), 1 };
+      const LitColor lit = ColorLitMediumInBlocks(communicator, partition, medium, { fluence.data(), 1 }, tones);
+      EXPECT_NEAR(lit.exposure, expected.exposure, 1e-6 * expected.exposure);
+      EXPECT_NEAR(lit.distance, expected.distance, 1e-5 * expected.distance);
+      const std::vector<float> rgba(expected.rgba.begin(), expected.rgba.end());
+      const std::vector<float> wanted = PartOf(rgba, all, own, 4);
+      ASSERT_EQ(lit.rgba.size(), wanted.size());
+      for (std::size_t i = 0; i < wanted.size(); ++i)
+      {
+        EXPECT_NEAR(lit.rgba[i], wanted[i], 1.0); // where rounding falls
+      }
+    });
+  }
 }

@@ -223,6 +223,7 @@ protected:
     EXPECT_LT(LargestDifference(alone.fluence, expected.fluence), tolerance);
     EXPECT_LT(RelativeRmse(alone.netFlux, expected.netFlux), 2.0 * tolerance);
     EXPECT_LT(RelativeRmse(alone.fluenceDirect, expected.fluenceDirect), 1e-6);
+    ExpectTheSurface(alone, expected, tolerance);
     ExpectEnergyKept(alone);
     for (std::size_t i = 0; i < partitions.size(); ++i)
     {
@@ -231,8 +232,15 @@ protected:
       EXPECT_EQ(found.convergence.size(), alone.convergence.size());
       EXPECT_LT(LargestDifference(found.fluence, alone.fluence), 1e-6);
       EXPECT_LT(RelativeRmse(found.netFlux, alone.netFlux), 1e-5);
+      ExpectTheSurface(found, alone, 1e-6);
       ExpectEnergyKept(found);
     }
+  }
+  /// What leaves thick voxels at the box's faces.
+  static void ExpectTheSurface(const LightField& found, const LightField& expected, double tolerance)
+  {
+    EXPECT_EQ(found.surfaceRadiance.empty(), expected.surfaceRadiance.empty());
+    EXPECT_LE(LargestDifference(found.surfaceRadiance, expected.surfaceRadiance), tolerance);
   }
   static void ExpectEnergyKept(const LightField& light)
   {
@@ -247,7 +255,7 @@ protected:
       largest = std::max<double>(largest, std::abs(expected[i]));
       difference = std::max<double>(difference, std::abs(found[i] - expected[i]));
     }
-    return difference / largest;
+    return largest > 0.0 ? difference / largest : difference;
   }
   static std::vector<BlockPartition> OnRanks(const Grid& grid, const std::vector<int>& ranks)
   {

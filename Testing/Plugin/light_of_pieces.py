@@ -69,14 +69,14 @@ def by_blocks(density, array, solve=solved, **settings):
     return light
 
 
-def keep(case, light, picture=None):
+def keep(case, light, picture=None, array="fluence"):
     """Writes the rank's piece of the light, and of a picture, with where it lies."""
     kept = {}
     for name, proxy, arrays in (("light", light, "CellData"), ("picture", picture, "PointData")):
         output = proxy.GetClientSideObject().GetOutputDataObject(0) if proxy else None
         if output and output.GetNumberOfCells() > 0:
             attributes = getattr(output, "Get" + arrays)()
-            values = vtk_to_numpy(attributes.GetArray("fluence" if name == "light" else "radiance"))
+            values = vtk_to_numpy(attributes.GetArray(array if name == "light" else "radiance"))
             ghosts = attributes.GetArray("vtkGhostType")
             kept[name] = values
             kept[name + "_extent"] = output.GetExtent()
@@ -260,6 +260,104 @@ def whole_turbid():
                                 EmissionError=0, UncollidedDirections=0))
 
 
+def facts_of(light, name):
+    """@return the strings of field data, joined; none on a rank without voxels"""
+    array = light.GetClientSideObject().GetOutputDataObject(0).GetFieldData().GetAbstractArray(name)
+    return "\n".join(array.GetValue(i) for i in range(array.GetNumberOfValues())) if array else ""
+
+
+def untouched(density, array, solve=solved, **settings):
+    """With Decomposition as it stands ranks solve their pieces, of which alone each has the medium; one rank is told to."""
+    light = solve(density, array, **({"Decomposition": "Blocks"} if ranks == 1 else {}), **settings)
+    medium = light.Input.GetClientSideObject().GetOutputDataObject(0)
+    output = light.GetClientSideObject().GetOutputDataObject(0)
+    assert medium.GetExtent() == output.GetExtent(), (medium.GetExtent(), output.GetExtent())
+    used = facts_of(light, "settings_used")
+    assert output.GetNumberOfCells() == 0 or "Decomposition = 2" in used, (rank, used)
+    return light
+
+
+def untouched_even():
+    own_pieces("untouched_even", [piece_of(extent) for extent in parts(even_cuts())], solve=untouched)
+
+
+def untouched_uneven():
+    own_pieces("untouched_uneven", uneven_pieces(), solve=untouched)
+
+
+def untouched_lit():
+    """Colours of the screen, of which the exposure is that of all; another one, and another quality, are made anew."""
+    light = untouched(Wavelet(WholeExtent=SIZE), ["POINTS", "RTData"], full=277, Quality="Fine", LitColor=1)
+    seconds = light.GetClientSideObject().GetSeconds()
+    light.ToneCurve = "Linear"
+    light.UpdatePipeline()
+    assert light.GetClientSideObject().GetSeconds() == seconds, "solved again for a colour"
+    keep("untouched_lit", light, array="lit_color")
+    facts = light.GetClientSideObject().GetOutputDataObject(0).GetFieldData()
+    told = [facts.GetArray(name).GetValue(0) for name in ("lit_color_exposure", "lit_color_distance")]
+    numpy.savez(os.path.join(folder, "lit_facts.%d.npz" % rank), facts=told)
+    assert "DirectionsPerFace = 64" in facts_of(light, "settings_used"), facts_of(light, "settings_used")
+
+
+def thick(density, array, full=1, **settings):
+    """White voxels of several mean free paths."""
+    medium = ParticipatingMedium(Input=density, DensityArray=array, ExtinctionScale=4, MinimumDensity=0,
+                                 MaximumDensity=full, Albedo=[0.999, 0.999, 0.999])
+    light = LightPropagationMaps(Input=medium, SkyColor=[1, 1, 1], Lights=LightRig(SunElevation=50), DirectionsPerFace=9,
+                                 **settings)
+    light.UpdatePipeline()
+    return light
+
+
+def untouched_thick():
+    """What leaves thick voxels at the box's faces is told by each rank, of all faces."""
+    light = untouched(Wavelet(WholeExtent=SIZE), ["POINTS", "RTData"], solve=thick, full=277)
+    keep("untouched_thick", light)
+    surface = light.GetClientSideObject().GetOutputDataObject(0).GetFieldData().GetArray("surface_radiance")
+    numpy.savez(os.path.join(folder, "surface.%d.npz" % rank), facts=vtk_to_numpy(surface))
+
+
+def whole_thick():
+    keep("whole_thick", thick(Wavelet(WholeExtent=SIZE), ["POINTS", "RTData"], full=277))
+
+
+def untouched_given():
+    """Uncollided light of photons, of which each rank has that of its piece."""
+    medium = ParticipatingMedium(Input=Wavelet(WholeExtent=SIZE), DensityArray=["POINTS", "RTData"], ExtinctionScale=0.3,
+                                 MinimumDensity=0, MaximumDensity=277, MeanCosine=0.6)
+    emitter = PhotonEmitter(Input=medium, Lights=LightRig(SunElevation=50), PhotonCount=20000)
+    photons = PhotonMarcher(Input=medium, Photons=emitter, Decomposition="Blocks")
+    light = LightPropagationMaps(Input=medium, UncollidedLight=photons, DirectionsPerFace=9, MaximumOrders=6,
+                                 **({"Decomposition": "Blocks"} if ranks == 1 else {}))
+    light.UpdatePipeline()
+    given, output = (proxy.GetClientSideObject().GetOutputDataObject(0) for proxy in (photons, light))
+    assert given.GetExtent() == output.GetExtent(), (rank, given.GetExtent(), output.GetExtent())
+    assert "Decomposition = 2" in facts_of(light, "settings_used")
+    keep("untouched_given", light)
+
+
+def whole_where_better():
+    """What pieces cannot do, or not as well, each rank solves as a whole, says why, and does not solve again."""
+    medium = ParticipatingMedium(Input=Wavelet(WholeExtent=SIZE), DensityArray=["POINTS", "RTData"])
+    for why, settings in (("Preview", {"Preview": 1}), ("WarmStart", {"WarmStart": 1}),
+                          ("a source by octants of directions", {"Source": 3}),
+                          ("many scattering orders", {"FaceAlbedo": [0.9] * 6}),
+                          ("thick voxels", {"Input": ParticipatingMedium(
+                              Input=Wavelet(WholeExtent=SIZE), DensityArray=["POINTS", "RTData"], ExtinctionScale=2,
+                              MinimumDensity=0, MaximumDensity=277, Albedo=[0.2, 0.2, 0.2])})):
+        light = LightPropagationMaps(**{**dict(Input=medium, SkyColor=[1, 1, 1], DirectionsPerFace=4), **settings})
+        errors = errors_of(light)
+        light.UpdatePipeline()
+        used, left = facts_of(light, "settings_used"), facts_of(light, "left_out")
+        assert "Decomposition = 1" in used and "pieces: each rank solved the whole, for " + why in left, (why, used, left)
+        seconds = light.GetClientSideObject().GetSeconds()
+        light.LitColor = 1
+        light.UpdatePipeline()
+        output = light.GetClientSideObject().GetOutputDataObject(0)
+        assert light.GetClientSideObject().GetSeconds() == seconds and output.GetCellData().HasArray("lit_color"), why
+        assert not errors and output.GetNumberOfCells() < 16 * 14 * 12, (why, errors)
+
+
 def blocks_ghosts():
     """The output is asked for with ghost cells: those of the neighbour's light, flagged."""
     light = wavelet("Blocks")
@@ -397,7 +495,7 @@ def lattice_errors():
     medium = ParticipatingMedium(Input=Wavelet(WholeExtent=SIZE), DensityArray=["POINTS", "RTData"])
     lights = PointLight(Position=[0, 0, 20], Power=[9, 9, 9])
     for named, settings in (("a point, spot or rectangle light beside a periodic axis", {"Lights": lights, "PeriodicX": 1}),
-                            ("MaximumOrders", {"MaximumOrders": 4}), ("LitColor", {"LitColor": 1})):
+                            ("MaximumOrders", {"MaximumOrders": 4}), ("Preview", {"Preview": 1})):
         light = LatticeBoltzmannLighting(Input=medium, SkyColor=[1, 1, 1], Decomposition="Blocks", **settings)
         errors = errors_of(light)
         light.UpdatePipeline()
@@ -478,7 +576,7 @@ def fails(case, piece, said, filters=(lambda density: ParticipatingMedium(Input=
                                                                           DensityArray=["CELLS", "density"]),)):
     """One error, with the same words on every rank, and an empty output; that of the filter after it is empty, too."""
     medium = filters[0](source_of(piece))
-    light = LightPropagationMaps(Input=medium, SkyColor=[1, 1, 1], DirectionsPerFace=4)
+    light = LightPropagationMaps(Input=medium, SkyColor=[1, 1, 1], DirectionsPerFace=4, Decomposition="Whole on each rank")
     errors, later = errors_of(medium), errors_of(light)
     light.UpdatePipeline()
     assert len(errors) == 1 and said in errors[0] and not later, (case, rank, errors, later)
@@ -523,7 +621,7 @@ def blocks_of_wrong_pieces():
             absorption.SetName("sigma_a")
             piece.GetCellData().AddArray(absorption)
             medium = source_of(piece)
-        light = LightPropagationMaps(Input=medium, SkyColor=[1, 1, 1], AngularDegree=0, Decomposition="Blocks")
+        light = LightPropagationMaps(Input=medium, SkyColor=[1, 1, 1], AngularDegree=0)
         errors, later = errors_of(medium), errors_of(light)
         light.UpdatePipeline()
         light.UpdatePipeline()

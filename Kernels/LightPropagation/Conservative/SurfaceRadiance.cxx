@@ -135,7 +135,7 @@ std::array<double, 4> Leaving(const Surface& s)
 }
 
 /// What a voxel takes of lamps' light, over what the beams through its faces at the box's should leave there.
-double Brought(const Medium& medium, const std::array<bool, 3>& periodic, const std::vector<Light>& lamps,
+double Brought(const Medium& medium, const std::array<bool, 6>& faces, const std::vector<Light>& lamps,
   const BoxFaceCell& cell, int channel, double fluence)
 {
   const Grid& grid = medium.grid;
@@ -147,7 +147,7 @@ double Brought(const Medium& medium, const std::array<bool, 3>& periodic, const 
   for (int face = 0; face < 6; ++face)
   {
     const int axis = face / 2;
-    if (periodic[axis] || at[axis] != (face % 2 ? grid.size[axis] - 1 : 0))
+    if (!faces[face] || at[axis] != (face % 2 ? grid.size[axis] - 1 : 0))
     {
       continue;
     }
@@ -163,18 +163,19 @@ double Brought(const Medium& medium, const std::array<bool, 3>& periodic, const 
   return expected > 0.0 ? std::clamp(sigma * fluence / expected, 1.0 / MostUneven, MostUneven) : 1.0;
 }
 
-bool ThickAnywhere(const Medium& medium, const std::array<bool, 3>& periodic, int channels)
+}
+
+bool IsThickAtFaces(const Medium& medium, const std::array<bool, 6>& faces, int channels)
 {
   bool thick = false;
   ForBoxFaceCells(medium.grid, [&](const BoxFaceCell& cell) {
-    for (int c = 0; c < channels && !periodic[cell.face / 2]; ++c)
+    for (int c = 0; c < channels && faces[cell.face]; ++c)
     {
       const double sigma = medium.TransportSigmaT(cell.voxel, c);
       thick |= sigma * medium.grid.spacing[cell.face / 2] > ThickAtSurface;
     }
   });
   return thick;
-}
 }
 
 double HalfSpaceH(double albedo, double mu)
@@ -188,21 +189,16 @@ double HalfSpaceH(double albedo, double mu)
   return 1.0 / (1.0 - albedo * mu * (r + 0.5 * (1.0 - 2.0 * r * mu) * std::log1p(1.0 / mu)));
 }
 
-std::vector<float> SurfaceRadiance(const Medium& medium, const std::array<bool, 3>& periodic,
+std::vector<float> SurfaceRadiance(const Medium& medium, const std::array<bool, 6>& faces,
   const std::vector<Light>& lamps, const std::vector<SurfacePowers>& powers)
 {
   const Grid& grid = medium.grid;
   const int channels = static_cast<int>(powers.size());
-  if (!ThickAnywhere(medium, periodic, channels))
-  {
-    return {};
-  }
   std::vector<float> radiance(BoxFaceCellCount(grid) * SurfaceCosines.size() * channels, 0.0f);
   ForBoxFaceCells(grid, [&](const BoxFaceCell& cell) {
-    const int axis = cell.face / 2;
     for (int c = 0; c < channels; ++c)
     {
-      if (periodic[axis] || powers[c].net.empty())
+      if (!faces[cell.face] || powers[c].net.empty())
       {
         continue;
       }
@@ -225,7 +221,7 @@ std::vector<float> SurfaceRadiance(const Medium& medium, const std::array<bool, 
       }
       if (!s.beams.empty() && powers[c].lamps)
       {
-        s.brought = Brought(medium, periodic, lamps, cell, c, powers[c].lamps[cell.voxel]);
+        s.brought = Brought(medium, faces, lamps, cell, c, powers[c].lamps[cell.voxel]);
       }
       const std::array<double, 4> leaves = Leaving(s);
       for (std::size_t n = 0; n < leaves.size(); ++n)

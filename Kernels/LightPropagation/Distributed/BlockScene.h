@@ -50,6 +50,7 @@ struct BlockScene
   double lengthUnit, powerUnit = 1.0;
   int channels = 1;
   bool sharedExtinction = true;
+  bool given = false; ///< uncollided light is, on any rank, by illumination.uncollided
 
 private:
   void Truncate(Communicator& communicator, const BlockPartition& partition, const PropagationSettings& settings,

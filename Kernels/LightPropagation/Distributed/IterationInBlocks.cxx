@@ -26,34 +26,28 @@ constexpr double FallByCells = 0.3; ///< of what is left over from order to orde
 }
 
 IterationInBlocks::IterationInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition,
-  const BlockScene& scene, const PropagationSettings& settings)
+  const BlockScene& scene, const PropagationSettings& settings, const WayInBlocks& way)
   : TheDevice(device)
   , Others(communicator)
   , Partition(partition)
   , Scene(scene)
   , Settings(settings)
+  , Way(way)
   , Has(partition.blocks[communicator.Rank()].VoxelCount() > 0)
   , Layout(this->LayoutOn(partition.OwnGrid(communicator.Rank())))
   , OnDevice(device, scene.medium, scene.Scattering(), this->Layout, { true, false })
   , Scattering(MakeScattering(device, this->Layout, this->OnDevice, scene.Scattering().Degree(), scene.traits.scatters))
   , Directions(partition.whole, settings, DirectionsForVoxels(settings.directionsPerFace, partition.whole.spacing),
       settings.staggeredRays ? RayStarts::Staggered : RayStarts::Middle)
-  , Fine(settings.uncollidedDirections > 0
-        ? FinerDirections(partition.whole, settings, settings.uncollidedDirections, false)
-        : nullptr)
+  , Fine(way.finer.perFace > 0 ? FinerDirections(partition.whole, settings, way.finer.perFace, false) : nullptr)
   , Far(Split(scene.illumination.environment, this->DirectionsOfBoundary().Set()))
   , Boundary(partition.whole, settings, this->Directions, scene.illumination, this->Far.smooth)
   , Lamps(this->LampsOf(scene.illumination))
 {
-  if (this->Fine && this->Boundary.Shines())
+  this->MakeFineBoundary();
+  if (scene.given && this->Has)
   {
-    this->FineBoundary =
-      std::make_unique<BoundaryLight>(partition.whole, settings, *this->Fine, scene.illumination, this->Far.smooth);
-    this->FineBoundary->CheckRays(scene.channels);
-  }
-  else if (this->Boundary.Shines())
-  {
-    this->Boundary.CheckRays(scene.channels);
+    this->Given = std::make_unique<GivenLight>(scene.illumination.uncollided, scene.medium, scene.Scattering());
   }
   if (scene.Scattering().Degree() > 0 && this->Has)
   {
@@ -85,6 +79,30 @@ IterationInBlocks::IterationInBlocks(Device& device, Communicator& communicator,
   this->Source.Fill(0.0f);
   this->Path.Fill(0.0f);
   this->Fluence.Fill(0.0f);
+}
+
+/// As TransportParts does.
+void IterationInBlocks::MakeFineBoundary()
+{
+  const int channels = this->Scene.channels;
+  if (this->Fine && this->Boundary.Shines())
+  {
+    this->FineBoundary = std::make_unique<BoundaryLight>(
+      this->Partition.whole, this->Settings, *this->Fine, this->Scene.illumination, this->Far.smooth);
+    const bool asked = this->Settings.uncollidedDirections >= 0;
+    if (asked)
+    {
+      this->FineBoundary->CheckRays(channels);
+    }
+    else if (!this->FineBoundary->HasEnoughRays(channels))
+    {
+      this->FineBoundary.reset();
+    }
+  }
+  if (!this->FineBoundary && this->Boundary.Shines())
+  {
+    this->Boundary.CheckRays(channels);
+  }
 }
 
 Deposit IterationInBlocks::WholeDeposit() const
@@ -144,10 +162,24 @@ void IterationInBlocks::LoadEmission()
   }
 }
 
-/// Of lamps, and peaks of the environment, which are such, then of what comes in along directions of its own.
+/// What of the light that is given goes straight on.
+void IterationInBlocks::LoadStraightOn()
+{
+  bool any = false;
+  this->Others.Together([&] {
+    any = this->Given &&
+      this->Given->AddStraightOn(
+        this->TheDevice, this->Layout, this->Angular ? &this->Angular->Basis() : nullptr, this->Source);
+  });
+  this->Shining = this->Others.Largest({ any || this->Shining ? 1.0 : 0.0 })[0] > 0.0;
+}
+
+/// Of lamps, and peaks of the environment, which are such, then of what comes in along directions of its own, and what
+/// is given.
 void IterationInBlocks::AddUncollided(const Monitor& monitor)
 {
-  const bool corrects = this->Fine && this->Scene.traits.scatters && !Reflects(this->Scene.illumination);
+  const bool corrects =
+    this->Way.finer.correctsEscape && this->Scene.traits.scatters && !Reflects(this->Scene.illumination);
   const double all = static_cast<double>(this->Lamps.size() + (this->FineBoundary ? 1 : 0) + (corrects ? 1 : 0));
   SweepTally tally;
   for (std::size_t i = 0; i < this->Lamps.size(); ++i)
@@ -165,6 +197,10 @@ void IterationInBlocks::AddUncollided(const Monitor& monitor)
     const Monitor ofBoundary = OfPart(monitor, before / all, (before + 1) / all);
     const UncollidedBoundary boundary(this->Settings, *this->FineBoundary);
     Add(tally, this->AddOnAllRanks([&] { return boundary.AddTo(this->VolumeOf(this->WholeDeposit()), ofBoundary); }));
+  }
+  if (this->Scene.given)
+  {
+    Add(tally, this->AddGiven(monitor));
   }
   this->Ledger.Count(tally);
   this->Stranded = tally.onTheWay;
@@ -235,6 +271,41 @@ SweepTally IterationInBlocks::AddLamp(std::size_t lamp, const Monitor& monitor)
   return tally;
 }
 
+/// What came in is what all ranks' voxels take and what left, which each is told.
+SweepTally IterationInBlocks::AddGiven(const Monitor& monitor)
+{
+  SweepTally own;
+  this->Others.Together([&] {
+    if (this->Given)
+    {
+      own = this->Given->AddTo(this->VolumeOf(this->WholeDeposit()), monitor);
+    }
+  });
+  SweepTally all;
+  std::vector<double> taken, left;
+  for (int c = 0; c < 3; ++c)
+  {
+    taken.push_back(own.in[0][c]);
+    for (int face = 0; face < 6; ++face)
+    {
+      taken.back() -= own.out[face][c];
+      left.push_back(own.out[face][c]);
+    }
+  }
+  taken = this->Others.Sum(taken);
+  left = this->Others.Largest(left);
+  for (int c = 0; c < 3; ++c)
+  {
+    all.in[0][c] = taken[c];
+    for (int face = 0; face < 6; ++face)
+    {
+      all.out[face][c] = left[6 * c + face];
+      all.in[0][c] += all.out[face][c];
+    }
+  }
+  return all;
+}
+
 /// By an even sky along the finer directions and the usual ones, whatever shines: lights add up.
 void IterationInBlocks::FindEscaping(const Monitor& monitor)
 {
@@ -274,10 +345,10 @@ void IterationInBlocks::LetEscape()
 
 void IterationInBlocks::MakeCells()
 {
-  for (int c = 0; c < this->Layout.channels && this->Orders.how == OrdersAdded::ByCells; ++c)
+  for (int c = 0; c < this->Layout.channels && this->Way.orders.how == OrdersAdded::ByCells; ++c)
   {
     this->Cells.push_back(std::make_unique<CellsOverRanks>(
-      this->TheDevice, this->Others, this->Partition, this->Layout, c, this->OnDevice, this->Orders.halvings));
+      this->TheDevice, this->Others, this->Partition, this->Layout, c, this->OnDevice, this->Way.orders.halvings));
     this->Rest[c].BeginWarm(FallByCells);
   }
 }
@@ -374,6 +445,10 @@ void IterationInBlocks::Scatter()
       // What is shown holds lamps' light alone before the first order.
       const std::size_t values = this->Layout.Places(this->Functions()).beams;
       AddToShown(this->TheDevice, values, this->Source, this->Shown, this->Order == 0 ? -1.0f : 1.0f);
+      if (this->Order == 0 && this->Given)
+      {
+        this->Given->AddStraightOn(this->TheDevice, this->Layout, &this->Angular->Basis(), this->Shown);
+      }
     }
   });
   this->TakeDirect(this->Fluence, 1.0);
@@ -418,8 +493,11 @@ bool IterationInBlocks::Done() const
 LightField IterationInBlocks::Run(const Monitor& monitor)
 {
   this->LoadEmission();
-  this->Orders = HowOrdersAreAdded(this->Others, this->Partition, this->Scene, this->Settings);
-  if (this->Orders.how == OrdersAdded::ByBalance)
+  if (this->Scene.given)
+  {
+    this->LoadStraightOn();
+  }
+  if (this->Way.orders.how == OrdersAdded::ByBalance)
   {
     this->RunByBalance(monitor);
     return this->TakeLight();
@@ -475,16 +553,17 @@ void IterationInBlocks::RunByBalance(const Monitor& monitor)
 {
   AccelerationInBlocks acceleration(
     { this->TheDevice, this->Others, this->Partition, this->Scene, this->Settings, this->Layout, this->OnDevice,
-      this->Directions, this->Boundary, [this](const SweepRequest& request) { return this->MakeSweep(request); },
+      this->Directions, this->Boundary, this->Lamps,
+      [this](const SweepRequest& request) { return this->MakeSweep(request); },
       [this](const Light& lamp, const Deposit& to, const Monitor& ofLamp) {
         return UncollidedLamp(lamp).AddTo(this->VolumeOf(to), ofLamp);
       },
-      this->Source, this->Path, this->Fluence, this->Flux, this->Ledger });
+      this->Source, this->Path, this->Fluence, this->Flux, this->Ledger, this->Shining });
   const Monitor ofLamps =
     OfPart(monitor, [this](double done) { return ProgressOf(this->Settings, 1.0, UncollidedPart * done); });
   if (!this->Lamps.empty() && acceleration.NeedsFirstMoments())
   {
-    acceleration.AddBeams(this->Lamps, ofLamps);
+    acceleration.AddBeams(ofLamps);
   }
   else
   {
@@ -492,6 +571,7 @@ void IterationInBlocks::RunByBalance(const Monitor& monitor)
   }
   this->Rows = acceleration.Run(monitor);
   this->Direct = acceleration.Direct();
+  this->SurfaceRadiance = acceleration.FindSurfaceRadiance();
 }
 
 /// What is shown of scattered light, in the same form on all ranks.
@@ -542,6 +622,10 @@ LightField IterationInBlocks::TakeLight()
   {
     light.leftOut = this->Scene.Scattering().LeftOut();
   }
+  if (this->Scene.given)
+  {
+    light.leftOut.emplace_back(left_out::OwnUncollided);
+  }
   if (this->StoresMoments())
   {
     this->AddShown(light);
@@ -559,12 +643,13 @@ LightField IterationInBlocks::TakeLight()
     light.facePower =
       this->Faces->PerArea(this->Cells.empty() ? left : this->Faces->ScaledTo(left, light.facePowerOut));
   }
-  light.convergence = this->Orders.how == OrdersAdded::ByBalance ? this->Rows : this->Convergence.All();
+  light.surfaceRadiance = std::move(this->SurfaceRadiance);
+  light.convergence = this->Way.orders.how == OrdersAdded::ByBalance ? this->Rows : this->Convergence.All();
   light.directionsPerFace = this->Settings.directionsPerFace;
   light.halfRangeFlux = HalfRangeFlux((this->FineBoundary ? *this->Fine : this->Directions).Set());
   light.uncollidedDirections = this->FineBoundary ? this->Fine->Set().PerFace() : 0;
   light.device = this->TheDevice.Name();
-  if (this->Orders.how == OrdersAdded::OneByOne)
+  if (this->Way.orders.how == OrdersAdded::OneByOne)
   {
     light.leftOut.emplace_back("acceleration: few scattering orders do");
   }

@@ -17,10 +17,12 @@
 #include "LightPropagation/Distributed/LampsInBlocks.h"
 #include "LightPropagation/Distributed/Sweep/SweepInBlocks.h"
 #include "LightPropagation/Problem/MediumOnDevice.h"
+#include "LightPropagation/Problem/UncollidedDirections.h"
 #include "LightPropagation/Scattering/ScatteringOperator.h"
 #include "LightPropagation/Scattering/SweptMoments.h"
 #include "LightPropagation/Uncollided/BoundaryLight.h"
 #include "LightPropagation/Uncollided/EnvironmentPeaks.h"
+#include "LightPropagation/Uncollided/GivenLight.h"
 #include "LightPropagation/Uncollided/UncollidedSource.h"
 
 #include <array>
@@ -31,12 +33,19 @@
 
 namespace tyndall
 {
+/// How light is found, as all ranks decided.
+struct WayInBlocks
+{
+  OrdersOverRanks orders;
+  UncollidedDirections finer; ///< none where orders are added up by the balance of voxels
+};
+
 /// Source iteration on one rank's block, in step with the others.
 class IterationInBlocks
 {
 public:
   IterationInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition,
-    const BlockScene& scene, const PropagationSettings& settings);
+    const BlockScene& scene, const PropagationSettings& settings, const WayInBlocks& way);
   LightField Run(const Monitor& monitor);
 
   bool StoresMoments() const { return this->Scene.Scattering().Degree() > 0 && this->Settings.storeMoments; }
@@ -48,10 +57,13 @@ private:
   std::unique_ptr<SweepOperator> MakeSweep(const SweepRequest& request);
   int Functions() const; ///< of angular moments
   const SweptDirections& DirectionsOfBoundary() const { return this->Fine ? *this->Fine : this->Directions; }
+  void MakeFineBoundary();
   void LoadEmission();
+  void LoadStraightOn();
   void AddUncollided(const Monitor& monitor);
   SweepTally AddOnAllRanks(const std::function<SweepTally()>& add);
   SweepTally AddLamp(std::size_t lamp, const Monitor& monitor);
+  SweepTally AddGiven(const Monitor& monitor);
   UncollidedVolume VolumeOf(const Deposit& deposit);
   void FindEscaping(const Monitor& monitor);
   void LetEscape();
@@ -73,6 +85,7 @@ private:
   const BlockPartition& Partition;
   const BlockScene& Scene;
   const PropagationSettings& Settings;
+  const WayInBlocks Way;
   const bool Has; ///< voxels
   const VolumeLayout Layout;
   const MediumOnDevice OnDevice;
@@ -83,6 +96,7 @@ private:
   const BoundaryLight Boundary;
   std::unique_ptr<const BoundaryLight> FineBoundary; ///< in its place; null where it is dark
   std::vector<Light> Lamps;
+  std::unique_ptr<const GivenLight> Given; ///< null: none is, or there are no voxels
   std::unique_ptr<const SweptMoments> Angular; ///< null: all is isotropic, or there are no voxels
   Buffer<float> Source, Path, Flux, Fluence;
   Buffer<float> OfLamp; ///< path integrals of one lamp's light, where it goes into angular moments
@@ -94,11 +108,10 @@ private:
   std::vector<std::unique_ptr<CellsOverRanks>> Cells; ///< by channel; empty: orders are added up as they are
   std::array<Rgb, 6> OutOfCells = {};                 ///< W, through faces, of all orders to come
 
-  OrdersOverRanks Orders;
   EnergyLedger Ledger;
   ConvergenceRecord Convergence;
   std::vector<ConvergenceRow> Rows; ///< where orders are added up by the balance of voxels
-  std::vector<float> Direct;
+  std::vector<float> Direct, SurfaceRadiance;
   std::array<RestOfOrders, 3> Rest;
   Rgb Scattered = {}, Reflected = {}, AllScattered = {};
   Rgb Escaped = {};                 ///< W, by the correction

@@ -4,13 +4,19 @@
 #include "Distribution/SharedMedium.h"
 #include "Light/LeftOut.h"
 #include "LightPropagation/Convergence.h"
+#include "LightPropagation/Distributed/Balance/WhatWholeHas.h"
 #include "LightPropagation/Distributed/IterationInBlocks.h"
+#include "LightPropagation/PlaneParallel/IsPlaneParallel.h"
+#include "LightPropagation/Problem/AngularDegree.h"
 #include "LightPropagation/Problem/PropagationProblem.h"
+#include "LightPropagation/Problem/PropagationQuality.h"
+#include "LightPropagation/Problem/UncollidedDirections.h"
 #include "LightPropagation/Problem/UnvaryingAxes.h"
 
 #include <algorithm>
 #include <array>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace tyndall
@@ -22,10 +28,6 @@ std::string NotInBlocks(const Medium& medium, const Illumination& illumination, 
   if (goesRound && std::any_of(illumination.lights.begin(), illumination.lights.end(), isNear))
   {
     return "a point, spot or rectangle light beside a periodic axis";
-  }
-  if (illumination.uncollided.IsThere())
-  {
-    return "light of another solver (UncollidedLight)";
   }
   if (settings.source == PropagationSource::Octants)
   {
@@ -42,18 +44,23 @@ std::string NotInBlocks(const Medium& medium, const Illumination& illumination, 
   return {};
 }
 
-LightField SolveInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition,
-  const Medium& medium, const Illumination& illumination, const PropagationSettings& settings, const Monitor& monitor)
+namespace
 {
-  const bool has = partition.blocks.at(communicator.Rank()).VoxelCount() > 0;
+/// What all ranks are given, checked.
+const BlockPartition& Checked(Communicator& communicator, const BlockPartition& partition, const Medium& medium,
+  const Illumination& illumination, const PropagationSettings& settings)
+{
+  const int rank = communicator.Rank();
+  bool has = false;
   communicator.Together([&] {
     partition.Check();
     Require(static_cast<int>(partition.blocks.size()) == communicator.Ranks(), "There is not a block for each rank.");
+    has = partition.blocks[rank].VoxelCount() > 0;
     if (has)
     {
       CheckBlock(medium, illumination, settings);
-      Require(medium.grid.size == partition.OwnGrid(communicator.Rank()).size,
-        "The medium of rank " + std::to_string(communicator.Rank()) + " does not have the size of its block.");
+      Require(medium.grid.size == partition.OwnGrid(rank).size,
+        "The medium of rank " + std::to_string(rank) + " does not have the size of its block.");
     }
     const std::string refused = NotInBlocks(medium, illumination, settings);
     Require(refused.empty(), "A medium that is spread over ranks is not solved with " + refused + ".");
@@ -61,34 +68,163 @@ LightField SolveInBlocks(Device& device, Communicator& communicator, const Block
   RequireSame(communicator, partition);
   RequireSame(communicator, has, medium, illumination, settings);
   CheckLightHasAnEnd(AbsorbsOnAny(communicator, has, medium), illumination, settings.periodic);
-  const UnvaryingAxes unvarying(partition.whole, illumination, settings);
-  BlockPartition wide = partition;
-  wide.whole = unvarying.Widened(partition.whole);
-  PropagationSettings solved = settings;
-  solved.directionsPerFace = DirectionsPerFaceFor(settings, unvarying);
-  Medium own = has ? medium : Medium();
-  own.grid = wide.OwnGrid(communicator.Rank());
-  const BlockScene scene(communicator, has, wide, own, illumination, solved, MemoryOf(device));
-  BlockPartition inUnits = wide;
-  inUnits.whole = scene.WholeOf(wide.whole);
+  return partition;
+}
+
+/// A scene in blocks as it is solved, as PropagationProblem is of the whole.
+class ProblemInBlocks
+{
+public:
+  /// All ranks make one together.
+  ProblemInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition, const Medium& medium,
+    const Illumination& illumination, const PropagationSettings& settings)
+    : Others(communicator)
+    , Given(Checked(communicator, partition, medium, illumination, settings))
+    , Has(partition.blocks[communicator.Rank()].VoxelCount() > 0)
+    , Unvarying(partition.whole, illumination, settings)
+    , Settings(settings)
+    , Blocks(partition)
+    , Shining(illumination)
+  {
+    this->Settings.directionsPerFace = DirectionsPerFaceFor(settings, this->Unvarying);
+    this->Blocks.whole = this->Unvarying.Widened(partition.whole);
+    Medium own = this->Has ? medium : Medium();
+    own.grid = this->Blocks.OwnGrid(communicator.Rank());
+    for (Rgb& face : this->Shining.uncollided.escaped)
+    {
+      face = Times(face, 1.0 / this->Narrowing());
+    }
+    this->Scene.emplace(communicator, this->Has, this->Blocks, own, this->Shining, this->Settings, MemoryOf(device));
+    this->Blocks.whole = this->Scene->WholeOf(this->Blocks.whole);
+    this->Orders = HowOrdersAreAdded(communicator, this->Blocks, *this->Scene, this->Settings);
+  }
+  ProblemInBlocks(const ProblemInBlocks&) = delete; // the scene sees its light
+  ProblemInBlocks& operator=(const ProblemInBlocks&) = delete;
+
+  LightField Solve(Device& device, const Illumination& illumination, const Monitor& monitor);
+  std::string BetterAsWhole(const Medium& medium, const Illumination& illumination) const;
+
+private:
+  /// Volume of a voxel over that which is solved.
+  double Narrowing() const
+  {
+    return this->Given.whole.VoxelVolume() / this->Unvarying.Widened(this->Given.whole).VoxelVolume();
+  }
+  UncollidedDirections FinerDirections(OrdersAdded how) const;
+  bool IsInLayers(const Medium& medium, const Illumination& illumination) const;
+
+  Communicator& Others;
+  const BlockPartition& Given;
+  const bool Has; ///< voxels
+  const UnvaryingAxes Unvarying;
+  PropagationSettings Settings;
+  BlockPartition Blocks; ///< in the scene's units
+  Illumination Shining;
+  std::optional<BlockScene> Scene;
+  OrdersOverRanks Orders;
+};
+
+/// Of unscattered light from outside, as the whole would have them where it added up orders like this.
+UncollidedDirections ProblemInBlocks::FinerDirections(OrdersAdded how) const
+{
+  const BlockScene& scene = *this->Scene;
+  const DirectionSet usual = DirectionsForVoxels(this->Settings.directionsPerFace, this->Blocks.whole.spacing);
+  const UncollidedDirections own =
+    UncollidedDirectionsFor({ this->Settings, scene.illumination, this->Unvarying.IsSlab(), scene.traits.scatters,
+                              scene.Scattering().Degree(), [this] { return this->Orders.needed; } },
+      usual, how);
+  // A rank without voxels has another idea of what shines: it does not know its channels.
+  const std::vector<double> all =
+    this->Others.Largest({ this->Has ? 1.0 * own.perFace : 0.0, this->Has && own.correctsEscape ? 1.0 : 0.0 });
+  return { static_cast<int>(all[0]), all[1] > 0.0 };
+}
+
+LightField ProblemInBlocks::Solve(Device& device, const Illumination& illumination, const Monitor& monitor)
+{
+  const WayInBlocks way = { this->Orders,
+    this->Orders.how == OrdersAdded::ByBalance ? UncollidedDirections() : this->FinerDirections(this->Orders.how) };
   std::unique_ptr<IterationInBlocks> iteration;
-  communicator.Together(
-    [&] { iteration = std::make_unique<IterationInBlocks>(device, communicator, inUnits, scene, solved); });
+  this->Others.Together([&] {
+    iteration =
+      std::make_unique<IterationInBlocks>(device, this->Others, this->Blocks, *this->Scene, this->Settings, way);
+  });
   LightField light = iteration->Run(monitor);
-  communicator.Together([&] {
-    scene.Undo(light);
-    MultiplyPowers(light, partition.whole.VoxelVolume() / wide.whole.VoxelVolume());
+  this->Others.Together([&] {
+    this->Scene->Undo(light);
+    MultiplyPowers(light, this->Narrowing());
   });
   if (iteration->StoresMoments())
   {
     light.lampsApart = iteration->LampsOf(illumination);
   }
-  if (solved.directionsPerFace != settings.directionsPerFace)
+  return light;
+}
+
+/// Where these are not the same in all blocks, the whole is solved in vain along all rays.
+bool ProblemInBlocks::IsInLayers(const Medium& medium, const Illumination& illumination) const
+{
+  const bool varies = this->Has && !IsPlaneParallel(medium, illumination, this->Settings);
+  return this->Unvarying.IsSlab() || this->Others.Largest({ varies ? 1.0 : 0.0 })[0] == 0.0;
+}
+
+std::string ProblemInBlocks::BetterAsWhole(const Medium& medium, const Illumination& illumination) const
+{
+  const BlockScene& scene = *this->Scene;
+  const bool oneByOne = this->Orders.how == OrdersAdded::OneByOne;
+  if (this->IsInLayers(medium, illumination))
   {
-    light.leftOut.push_back(left_out::DirectionsAlongSlab(solved.directionsPerFace));
+    return "layers, which it solves in the cosine alone";
+  }
+  if (oneByOne && this->Orders.ofWhole != OrdersAdded::OneByOne)
+  {
+    return "many scattering orders, anisotropic, round a periodic axis or between faces that reflect, which it "
+           "accelerates";
+  }
+  if (oneByOne && OctantSourcesMatter(this->Others, scene, this->Settings))
+  {
+    return "thick voxels, whose source it has by octant";
+  }
+  if (this->Orders.how == OrdersAdded::ByBalance && this->FinerDirections(this->Orders.how).perFace > 0)
+  {
+    return "faces that shine unevenly, whose light it has along finer directions";
+  }
+  if (MayHaveEmissionPeaks(this->Others, this->Has, scene, this->Settings))
+  {
+    return "small bright emission, whose light it has along exact rays";
+  }
+  return {};
+}
+}
+
+LightField SolveInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition,
+  const Medium& medium, const Illumination& illumination, const PropagationSettings& settings, const Monitor& monitor)
+{
+  ProblemInBlocks problem(device, communicator, partition, medium, illumination, settings);
+  LightField light = problem.Solve(device, illumination, monitor);
+  if (light.directionsPerFace != settings.directionsPerFace)
+  {
+    light.leftOut.push_back(left_out::DirectionsAlongSlab(light.directionsPerFace));
   }
   light.faceAlbedo = illumination.faceAlbedo;
   JudgeConvergence(settings, light);
+  DoubtGivenLight(illumination, light);
   return light;
+}
+
+PropagationSettings AtQualityInBlocks(Communicator& communicator, const BlockPartition& partition, Quality quality,
+  const PropagationSettings& settings, const Medium& medium, const Illumination& illumination)
+{
+  const bool has = partition.blocks.at(communicator.Rank()).VoxelCount() > 0;
+  const double extinction = communicator.Sum({ has ? SumOfExtinction(medium, 0) : 0.0 })[0];
+  const bool scatters = communicator.Largest({ has && Scatters(medium) ? 1.0 : 0.0 })[0] > 0.0;
+  return AtQuality(
+    quality, settings, { ShinesThroughFaces(illumination), scatters, MeanThickness(partition.whole, extinction) });
+}
+
+std::string BetterAsWhole(Device& device, Communicator& communicator, const BlockPartition& partition,
+  const Medium& medium, const Illumination& illumination, const PropagationSettings& settings)
+{
+  return ProblemInBlocks(device, communicator, partition, medium, illumination, settings)
+    .BetterAsWhole(medium, illumination);
 }
 }

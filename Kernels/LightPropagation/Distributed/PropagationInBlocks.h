@@ -5,6 +5,7 @@
 #include "Distribution/BlockPartition.h"
 #include "Distribution/Communicator.h"
 #include "Light/LightField.h"
+#include "Light/Quality.h"
 #include "LightPropagation/PropagationSettings.h"
 #include "Lights/Lights.h"
 #include "Medium/Medium.h"
@@ -43,4 +44,15 @@ LightField SolveInBlocks(Device& device, Communicator& communicator, const Block
 
 /// What of a scene keeps SolveInBlocks from it, in words for an error; empty: nothing does.
 std::string NotInBlocks(const Medium& medium, const Illumination& illumination, const PropagationSettings& settings);
+
+/// AtQuality (PropagationQuality.h), as of the whole medium. All ranks call it.
+PropagationSettings AtQualityInBlocks(Communicator& communicator, const BlockPartition& partition, Quality quality,
+  const PropagationSettings& settings, const Medium& medium, const Illumination& illumination);
+
+/// What of a scene that SolveInBlocks can solve SolveConservative solves more exactly or much sooner, in words that
+/// follow "the whole is better for"; empty: nothing, the light is the same to the tolerance. All ranks call it, and
+/// are told the same.
+/// @throws as SolveInBlocks
+std::string BetterAsWhole(Device& device, Communicator& communicator, const BlockPartition& partition,
+  const Medium& medium, const Illumination& illumination, const PropagationSettings& settings);
 }

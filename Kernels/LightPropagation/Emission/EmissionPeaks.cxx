@@ -8,11 +8,8 @@ namespace tyndall
 {
 namespace
 {
-constexpr std::size_t BrightPart = 64; ///< one voxel in so many may be part of a peak
-constexpr double Outshines = 4.0;      ///< times the mean of the rest
-constexpr double Hides = 2.0;          ///< emission over what is absorbed of the light that comes in
-constexpr double PartOfAll = 0.5;      ///< that all peaks carry, at least
-constexpr double PartOfOne = 0.01;     ///< that each carries, at least
+constexpr double Hides = 2.0;      ///< emission over what is absorbed of the light that comes in
+constexpr double PartOfOne = 0.01; ///< that each carries, at least
 constexpr std::size_t MostPeaks = 16;
 constexpr double Widest = 0.125; ///< of the box's longest edge
 constexpr double Hidden = 4.6;   ///< mean free paths beyond which a peak is not seen: 1% is left
@@ -33,25 +30,20 @@ std::size_t IndexOf(const Grid& grid, const Voxel& v)
   return (static_cast<std::size_t>(v[2]) * grid.size[1] + v[1]) * grid.size[0] + v[0];
 }
 
-double Brightness(const Field& emission, std::size_t voxel)
-{
-  return (static_cast<double>(emission.At(voxel, 0)) + emission.At(voxel, 1) + emission.At(voxel, 2)) / 3.0;
-}
-
 /// Voxels far brighter than the mean of the others.
 struct BrightVoxels
 {
   std::vector<std::size_t> voxels; ///< in order
   double limit = 0.0;              ///< what is above it stands out
   double all = 0.0;                ///< sum of all voxels' brightness
-  double Above(const Field& emission, std::size_t voxel) const { return Brightness(emission, voxel) - this->limit; }
+  double Above(const Field& emission, std::size_t voxel) const { return EmissionBrightness(emission, voxel) - this->limit; }
 };
 
 BrightVoxels FindBright(const Medium& medium)
 {
   BrightVoxels bright;
   const std::size_t voxels = medium.grid.VoxelCount();
-  const std::size_t most = voxels / BrightPart;
+  const std::size_t most = voxels / EmissionBrightPart;
   if (!medium.emission.values || most == 0)
   {
     return bright;
@@ -59,7 +51,7 @@ BrightVoxels FindBright(const Medium& medium)
   std::vector<double> sorted(voxels);
   for (std::size_t i = 0; i < voxels; ++i)
   {
-    sorted[i] = Brightness(medium.emission, i);
+    sorted[i] = EmissionBrightness(medium.emission, i);
     bright.all += sorted[i];
   }
   std::nth_element(sorted.begin(), sorted.begin() + most, sorted.end(), std::greater<double>());
@@ -69,13 +61,13 @@ BrightVoxels FindBright(const Medium& medium)
   {
     rest += sorted[i];
   }
-  bright.limit = std::max(next, Outshines * rest / static_cast<double>(voxels - most));
+  bright.limit = std::max(next, EmissionOutshines * rest / static_cast<double>(voxels - most));
   double above = 0.0;
   for (std::size_t i = 0; i < most; ++i)
   {
     above += std::max(0.0, sorted[i] - bright.limit);
   }
-  if (above < PartOfAll * bright.all || above == 0.0)
+  if (above < EmissionPartOfAll * bright.all || above == 0.0)
   {
     return bright;
   }
@@ -272,7 +264,7 @@ void Take(const Medium& medium, const BrightVoxels& bright, const std::vector<st
     const std::size_t place =
       (static_cast<std::size_t>(at[2] - peak.first[2]) * peak.size[1] + at[1] - peak.first[1]) * peak.size[0] + at[0] -
       peak.first[0];
-    const double kept = bright.limit / Brightness(emission, voxel);
+    const double kept = bright.limit / EmissionBrightness(emission, voxel);
     for (int c = 0; c < 3; ++c)
     {
       const float all = emission.At(voxel, c);
@@ -285,6 +277,11 @@ void Take(const Medium& medium, const BrightVoxels& bright, const std::vector<st
     }
   }
 }
+}
+
+double EmissionBrightness(const Field& emission, std::size_t voxel)
+{
+  return (static_cast<double>(emission.At(voxel, 0)) + emission.At(voxel, 1) + emission.At(voxel, 2)) / 3.0;
 }
 
 SplitEmission Split(const Medium& medium, const Rgb& comesIn)
@@ -324,7 +321,7 @@ SplitEmission Split(const Medium& medium, const Rgb& comesIn)
     power += candidate.power;
   }
   SplitEmission split;
-  if (candidates.empty() || power < PartOfAll * bright.all)
+  if (candidates.empty() || power < EmissionPartOfAll * bright.all)
   {
     return split;
   }

@@ -46,4 +46,12 @@ struct SplitEmission
 /// both go along the same directions. The limits: numerics.md, section 5.6.
 /// @param comesIn  mean radiance through the box's faces, W / (length^2 sr)
 SplitEmission Split(const Medium& medium, const Rgb& comesIn = {});
+
+// Of these limits, those that tell from how bright voxels are alone whether there may be peaks.
+constexpr std::size_t EmissionBrightPart = 64; ///< one voxel in so many may be part of a peak
+constexpr double EmissionOutshines = 4.0;      ///< times the mean of the rest
+constexpr double EmissionPartOfAll = 0.5;      ///< that all peaks carry, at least
+
+/// Mean of the channels.
+double EmissionBrightness(const Field& emission, std::size_t voxel);
 }

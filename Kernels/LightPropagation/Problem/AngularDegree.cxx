@@ -57,7 +57,18 @@ int HighestThatFits(std::size_t voxels, int degree, const DeviceMemory& memory)
   return degree;
 }
 
-/// Of all voxels, 1/length.
+/// The last one that is more; 0: none is.
+int LastAbove(const std::vector<double>& moments, double negligible)
+{
+  int last = 0;
+  for (int l = 1; l <= MostMoments; ++l)
+  {
+    last = moments[l] > negligible ? l : last;
+  }
+  return last;
+}
+}
+
 double SumOfExtinction(const Medium& medium, int channel)
 {
   double sum = 0.0;
@@ -71,23 +82,6 @@ double SumOfExtinction(const Medium& medium, int channel)
 double MeanThickness(const Grid& grid, double extinction)
 {
   return extinction * grid.VoxelVolume() / std::cbrt(std::pow(grid.VoxelCount() * grid.VoxelVolume(), 2));
-}
-
-/// The last one that is more; 0: none is.
-int LastAbove(const std::vector<double>& moments, double negligible)
-{
-  int last = 0;
-  for (int l = 1; l <= MostMoments; ++l)
-  {
-    last = moments[l] > negligible ? l : last;
-  }
-  return last;
-}
-}
-
-double MeanThickness(const Medium& medium)
-{
-  return MeanThickness(medium.grid, SumOfExtinction(medium, 0));
 }
 
 DeviceMemory MemoryOf(const Device& device)

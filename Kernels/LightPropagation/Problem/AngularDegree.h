@@ -20,7 +20,11 @@ struct DeviceMemory
 DeviceMemory MemoryOf(const Device& device);
 
 /// Mean free paths through the box, in the mean of its voxels and edges.
-double MeanThickness(const Medium& medium);
+/// @param grid  of all of the medium
+/// @param extinction  1/length, added up over its voxels
+double MeanThickness(const Grid& grid, double extinction);
+/// Of all voxels, 1/length.
+double SumOfExtinction(const Medium& medium, int channel);
 
 /// What of a medium tells in how many angular moments its light is to be scattered. Of one in several parts, the
 /// largest moments and the sums over all of them.

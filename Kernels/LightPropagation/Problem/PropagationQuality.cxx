@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+
 namespace tyndall
 {
 namespace
@@ -24,19 +25,11 @@ constexpr Level Fine = { 64, 49, 400, 1e-4, 0.01 };
 constexpr Level Reference = { 256, 144, 1600, 1e-5, 0.005 };
 constexpr int Staggered = 144; ///< directions from which on rays of each in a place of their own halve the error
 
-bool Scatters(const Medium& medium)
-{
-  const std::size_t count = medium.grid.VoxelCount() * medium.sigma_s.components;
-  return medium.sigma_s.values &&
-    std::any_of(medium.sigma_s.values, medium.sigma_s.values + count, [](float value) { return value > 0.0f; });
-}
-
-void SetLevel(const Level& level, PropagationSettings& settings, const Medium& medium, const Illumination& illumination)
+void SetLevel(const Level& level, PropagationSettings& settings, const SceneOfQuality& scene)
 {
   const PropagationSettings byDefault;
-  const bool lit = ShinesThroughFaces(illumination);
-  const bool scatters = Scatters(medium);
-  const int ofScattered = MeanThickness(medium) < ThickBox ? level.directions : level.directionsInThickBox;
+  const bool lit = scene.isLit, scatters = scene.scatters;
+  const int ofScattered = scene.thickness < ThickBox ? level.directions : level.directionsInThickBox;
   const int directions = scatters || !lit ? ofScattered : std::max(ofScattered, level.uncollidedDirections);
   SetUnlessChosen(settings.directionsPerFace, byDefault.directionsPerFace, directions);
   SetUnlessChosen(settings.uncollidedDirections, byDefault.uncollidedDirections,
@@ -47,15 +40,32 @@ void SetLevel(const Level& level, PropagationSettings& settings, const Medium& m
 }
 }
 
+bool Scatters(const Medium& medium)
+{
+  const std::size_t count = medium.grid.VoxelCount() * medium.sigma_s.components;
+  return medium.sigma_s.values &&
+    std::any_of(medium.sigma_s.values, medium.sigma_s.values + count, [](float value) { return value > 0.0f; });
+}
+
 PropagationSettings AtQuality(
   Quality quality, PropagationSettings settings, const Medium& medium, const Illumination& illumination)
 {
+  if (quality == Quality::Default)
+  {
+    return settings;
+  }
+  return AtQuality(quality, settings,
+    { ShinesThroughFaces(illumination), Scatters(medium), MeanThickness(medium.grid, SumOfExtinction(medium, 0)) });
+}
+
+PropagationSettings AtQuality(Quality quality, PropagationSettings settings, const SceneOfQuality& scene)
+{
   switch (quality)
   {
-    case Quality::Draft: SetLevel(Draft, settings, medium, illumination); break;
+    case Quality::Draft: SetLevel(Draft, settings, scene); break;
     case Quality::Default: break;
-    case Quality::Fine: SetLevel(Fine, settings, medium, illumination); break;
-    case Quality::Reference: SetLevel(Reference, settings, medium, illumination); break;
+    case Quality::Fine: SetLevel(Fine, settings, scene); break;
+    case Quality::Reference: SetLevel(Reference, settings, scene); break;
   }
   return settings;
 }

@@ -20,6 +20,16 @@ namespace tyndall
 PropagationSettings AtQuality(
   Quality quality, PropagationSettings settings, const Medium& medium, const Illumination& illumination);
 
+/// What of a scene that matters for.
+struct SceneOfQuality
+{
+  bool isLit = false;    ///< through the box's faces
+  bool scatters = false; ///< the medium does
+  double thickness = 0.0; ///< mean free paths across the box, in the mean
+};
+PropagationSettings AtQuality(Quality quality, PropagationSettings settings, const SceneOfQuality& scene);
+bool Scatters(const Medium& medium); ///< in any voxel
+
 /// "Name = value" of each setting that a quality may choose.
 std::vector<std::string> Words(const PropagationSettings& settings);
 }

@@ -40,19 +40,6 @@ constexpr double CellAtMost = 1.0; ///< optical width where the medium is thicke
 constexpr int MostHalvings = 3;
 constexpr double PlainSetUp = 0.8; ///< of orders one after the other: measured 0.8 in 100^3 voxels, 2 in 40^3
 
-/// Of each channel, as light diffuses.
-std::vector<ThickLines> DiffusingLines(const PropagationProblem& problem)
-{
-  const Grid& grid = problem.TheGrid();
-  std::vector<ThickLines> lines;
-  for (int c = 0; c < problem.Channels(); ++c)
-  {
-    const auto sigma_t = [&](std::size_t i) { return double(problem.TheMedium().TransportSigmaT(i, c)); };
-    lines.emplace_back(grid, SumAlongLines(grid, sigma_t));
-  }
-  return lines;
-}
-
 /// What leaks out along an axis.
 double LeakAlong(double longest, double extrapolations)
 {
@@ -62,10 +49,10 @@ double LeakAlong(double longest, double extrapolations)
 
 /// Of both faces across an axis. A face that reflects sends light back as if the medium went on there, at most as a
 /// mirror image of all that there is.
-double BothExtrapolations(const PropagationProblem& problem, int axis, int channel, double longest)
+double BothExtrapolations(const ScatteringOfScene& scene, int axis, int channel, double longest)
 {
   const auto beyond = [&](int face) {
-    const double albedo = problem.Shining().faceAlbedo[2 * axis + face][channel];
+    const double albedo = scene.faceAlbedo[2 * axis + face][channel];
     return albedo > 0.0 ? Extrapolation * (1.0 + albedo) / (1.0 - albedo) : Extrapolation;
   };
   const double low = beyond(0), high = beyond(1);
@@ -87,23 +74,18 @@ double AlbedoOf(const PropagationProblem& problem, int channel)
 
 /// What leaks out along axes that are not periodic, of the slowest mode, over what is extinguished (numerics.md,
 /// Eq. (86)).
-/// @param longest  lines as light diffuses, of the channel
-double Leak(const PropagationProblem& problem, int channel, const std::array<double, 3>& longest)
+double Leak(const ScatteringOfScene& scene, int channel)
 {
-  const Grid& grid = problem.TheMedium().grid;
+  const std::array<double, 3>& longest = scene.channels[channel].diffusing.along;
   // Light diffuses as far as transport has it, but is scattered more often: each order does less.
-  const bool inMoments = problem.Scattering().Degree() > 0;
-  const std::array<double, 3> scattered = inMoments
-    ? ThickLines(
-        grid, SumAlongLines(grid, [&](std::size_t i) { return double(problem.Scattering().SigmaT(i, channel)); }))
-        .along
-    : longest;
+  const bool inMoments = scene.degree > 0;
+  const std::array<double, 3>& scattered = scene.channels[channel].swept.along;
   double leak = 0.0;
   for (int axis = 0; axis < 3; ++axis)
   {
-    const double along = LeakAlong(longest[axis], BothExtrapolations(problem, axis, channel, longest[axis]));
+    const double along = LeakAlong(longest[axis], BothExtrapolations(scene, axis, channel, longest[axis]));
     const double part = inMoments && longest[axis] > 0.0 ? longest[axis] / scattered[axis] : 1.0;
-    leak += problem.Settings().periodic[axis] ? 0.0 : along * part;
+    leak += scene.periodic[axis] ? 0.0 : along * part;
   }
   return leak;
 }
@@ -122,22 +104,22 @@ double ThickestExtinction(const PropagationProblem& problem)
   return largest;
 }
 
-bool HasThickVoxels(const PropagationProblem& problem)
+bool HasThickVoxels(const ScatteringOfScene& scene)
 {
-  const Grid& grid = problem.TheGrid();
-  const double longest = *std::max_element(grid.spacing.begin(), grid.spacing.end());
-  return longest * ThickestExtinction(problem) > ThickVoxel;
+  return *std::max_element(scene.grid.spacing.begin(), scene.grid.spacing.end()) * scene.thickest > ThickVoxel;
+}
+
+bool Reflects(const ScatteringOfScene& scene)
+{
+  return std::any_of(scene.faceAlbedo.begin(), scene.faceAlbedo.end(), [](const Rgb& face) { return Sum(face) > 0.0; });
 }
 
 /// Light is scattered alike into all directions, no voxel is so thick that diffusion has to tell what leaves it, and
 /// nothing comes back through the box's faces, which cells would have to forecast.
-bool CanUseCells(const PropagationProblem& problem)
+bool CanUseCells(const ScatteringOfScene& scene)
 {
-  if (problem.Scattering().Degree() > 0 || problem.IsSlab() || Reflects(problem.Shining()))
-  {
-    return false;
-  }
-  return AreThinEnough(problem.TheGrid(), CellHalvings(problem));
+  return scene.degree == 0 && !scene.isSlab && !Reflects(scene) &&
+    AreThinEnough(scene.grid, CellHalvings(scene.grid, scene.thickest));
 }
 
 /// Rows of diffusion on cells: it corrects what is scattered, so the less that is, the faster it converges.
@@ -152,69 +134,76 @@ double OrdersUntilDone(double ratio)
   return ratio <= 0.0 ? 0.0 : ratio >= 1.0 ? 1e30 : std::log(UsualTolerance) / std::log(ratio);
 }
 
-AcceleratedTime AcceleratedTimeOf(const PropagationProblem& problem, const std::vector<ThickLines>& lines)
+AcceleratedTime AcceleratedTimeOf(const ScatteringOfScene& scene)
 {
-  if (CanUseCells(problem))
+  if (CanUseCells(scene))
   {
     double albedo = 0.0;
-    for (int c = 0; c < problem.Channels(); ++c)
+    for (const ScatteringOfChannel& channel : scene.channels)
     {
-      albedo = std::max(albedo, AlbedoOf(problem, c));
+      albedo = std::max(albedo, channel.albedo);
     }
     return TimeInCells(albedo);
   }
-  if (problem.IsSlab())
+  if (scene.isSlab)
   {
     return InSlab;
   }
-  if (problem.Scattering().Degree() > 0)
+  if (scene.degree > 0)
   {
-    return HasThickVoxels(problem) ? InMomentsOfThickVoxels : InMoments;
+    return HasThickVoxels(scene) ? InMomentsOfThickVoxels : InMoments;
   }
-  const bool uneven =
-    std::any_of(lines.begin(), lines.end(), [](const ThickLines& ofChannel) { return ofChannel.uneven; });
+  const bool uneven = std::any_of(scene.channels.begin(), scene.channels.end(),
+    [](const ScatteringOfChannel& channel) { return channel.diffusing.uneven; });
   return uneven ? InUnevenMedia : InEvenMedia;
 }
+}
 
-double OrdersAlong(const PropagationProblem& problem, const std::vector<ThickLines>& lines)
+ScatteringOfScene ScatteringOf(const PropagationProblem& problem)
 {
-  double slowest = 0.0;
+  const Grid& grid = problem.TheGrid();
+  const TruncatedScattering& swept = problem.Scattering();
+  ScatteringOfScene scene = { grid, problem.Settings().periodic, problem.Shining().faceAlbedo, swept.Degree(),
+    problem.IsSlab(), ThickestExtinction(problem), {} };
   for (int c = 0; c < problem.Channels(); ++c)
   {
-    slowest = std::max(slowest, AlbedoOf(problem, c) / (1.0 + Leak(problem, c, lines[c].along)));
+    ScatteringOfChannel channel;
+    channel.diffusing = ThickLines(
+      grid, SumAlongLines(grid, [&](std::size_t i) { return double(problem.TheMedium().TransportSigmaT(i, c)); }));
+    if (scene.degree > 0)
+    {
+      channel.swept =
+        ThickLines(grid, SumAlongLines(grid, [&](std::size_t i) { return double(swept.SigmaT(i, c)); }));
+    }
+    channel.albedo = AlbedoOf(problem, c);
+    scene.channels.push_back(channel);
+  }
+  return scene;
+}
+
+double OrdersNeeded(const ScatteringOfScene& scene)
+{
+  double slowest = 0.0;
+  for (std::size_t c = 0; c < scene.channels.size(); ++c)
+  {
+    slowest = std::max(slowest, scene.channels[c].albedo / (1.0 + Leak(scene, static_cast<int>(c))));
   }
   return OrdersUntilDone(slowest);
-}
 }
 
 double OrdersNeeded(const PropagationProblem& problem)
 {
-  return OrdersAlong(problem, DiffusingLines(problem));
+  return OrdersNeeded(ScatteringOf(problem));
+}
+
+bool ScatteredManyTimes(const ScatteringOfScene& scene)
+{
+  return PlainSetUp + OrdersNeeded(scene) > AcceleratedTimeOf(scene).InOrders();
 }
 
 bool ScatteredManyTimes(const PropagationProblem& problem)
 {
-  const std::vector<ThickLines> lines = DiffusingLines(problem);
-  return PlainSetUp + OrdersAlong(problem, lines) > AcceleratedTimeOf(problem, lines).InOrders();
-}
-
-bool ScatteredManyTimes(const std::vector<IsotropicChannel>& channels, bool inCells)
-{
-  double slowest = 0.0, albedo = 0.0;
-  bool uneven = false;
-  for (const IsotropicChannel& channel : channels)
-  {
-    double leak = 0.0;
-    for (const double along : channel.lines.along)
-    {
-      leak += LeakAlong(along, 2.0 * Extrapolation);
-    }
-    slowest = std::max(slowest, channel.albedo / (1.0 + leak));
-    albedo = std::max(albedo, channel.albedo);
-    uneven = uneven || channel.lines.uneven;
-  }
-  const AcceleratedTime time = inCells ? TimeInCells(albedo) : uneven ? InUnevenMedia : InEvenMedia;
-  return PlainSetUp + OrdersUntilDone(slowest) > time.InOrders();
+  return ScatteredManyTimes(ScatteringOf(problem));
 }
 
 bool AreThinEnough(const Grid& grid, const std::array<int, 3>& halvings)
@@ -248,12 +237,27 @@ std::array<int, 3> CellHalvings(const Grid& grid, double thickest)
   return halvings;
 }
 
+bool MayBeAccelerated(const PropagationSettings& settings, bool scatters)
+{
+  return settings.source == PropagationSource::Linear ||
+    (settings.acceleration == PropagationAcceleration::Automatic && settings.maximumOrders == 0 && scatters);
+}
+
+OrdersAdded HowOrdersAreAdded(const PropagationSettings& settings, bool scatters, const ScatteringOfScene& scene)
+{
+  if (!MayBeAccelerated(settings, scatters) ||
+    (settings.source != PropagationSource::Linear && !ScatteredManyTimes(scene)))
+  {
+    return OrdersAdded::OneByOne;
+  }
+  return CanUseCells(scene) ? OrdersAdded::ByCells : OrdersAdded::ByBalance;
+}
+
 OrdersAdded HowOrdersAreAdded(const PropagationProblem& problem)
 {
-  const PropagationSettings& settings = problem.Settings();
-  const bool accelerated = settings.source == PropagationSource::Linear ||
-    (settings.acceleration == PropagationAcceleration::Automatic && settings.maximumOrders == 0 &&
-      problem.Traits().scatters && ScatteredManyTimes(problem));
-  return !accelerated ? OrdersAdded::OneByOne : CanUseCells(problem) ? OrdersAdded::ByCells : OrdersAdded::ByBalance;
+  const bool scatters = problem.Traits().scatters;
+  return MayBeAccelerated(problem.Settings(), scatters)
+    ? HowOrdersAreAdded(problem.Settings(), scatters, ScatteringOf(problem))
+    : OrdersAdded::OneByOne;
 }
 }

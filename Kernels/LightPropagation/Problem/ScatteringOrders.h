@@ -8,22 +8,36 @@
 
 namespace tyndall
 {
+/// What tells how often the light of one channel is scattered.
+struct ScatteringOfChannel
+{
+  ThickLines diffusing;    ///< as light diffuses
+  ThickLines swept;        ///< as sweeps carry it; not looked at without angular moments
+  double albedo = 0.0;     ///< of what is scattered as sweeps carry it, in the mean
+};
+
+/// The same of a whole scene, which may be spread over ranks.
+struct ScatteringOfScene
+{
+  Grid grid;
+  std::array<bool, 3> periodic = {};
+  std::array<Rgb, 6> faceAlbedo = {};
+  int degree = 0; ///< of angular moments
+  bool isSlab = false;
+  double thickest = 0.0; ///< extinction of a voxel as sweeps carry light, 1/length, of all channels
+  std::vector<ScatteringOfChannel> channels;
+};
+ScatteringOfScene ScatteringOf(const PropagationProblem& problem);
+
 /// Scattering orders, as sweeps carry them, until 1e-4 is left, about: those of diffusion in a slab with extrapolated
 /// borders (numerics.md, Eq. (86)); thick lines of voxels stand for the slab.
+double OrdersNeeded(const ScatteringOfScene& scene);
 double OrdersNeeded(const PropagationProblem& problem);
 
 /// So many that adding them up one by one is forecast to take longer than acceleration: both in orders, by what set-up,
 /// sweeps and corrections were measured to take (`./run bench thick`).
+bool ScatteredManyTimes(const ScatteringOfScene& scene);
 bool ScatteredManyTimes(const PropagationProblem& problem);
-
-/// The same of isotropic scattering in a box none of whose axes is periodic and none of whose faces reflects.
-struct IsotropicChannel
-{
-  ThickLines lines;
-  double albedo = 0.0; ///< mean over what is scattered
-};
-/// @param inCells  acceleration goes by cells, see AreThinEnough
-bool ScatteredManyTimes(const std::vector<IsotropicChannel>& channels, bool inCells);
 
 /// How scattering orders are added up.
 enum class OrdersAdded
@@ -33,6 +47,10 @@ enum class OrdersAdded
   ByBalance, ///< between sweeps by the balance of each voxel, Conservative/Acceleration/DiffusionAcceleration.h
 };
 OrdersAdded HowOrdersAreAdded(const PropagationProblem& problem);
+/// @param scene  not looked at unless MayBeAccelerated
+OrdersAdded HowOrdersAreAdded(const PropagationSettings& settings, bool scatters, const ScatteringOfScene& scene);
+/// Whether settings let it depend on the scene, or ask for acceleration.
+bool MayBeAccelerated(const PropagationSettings& settings, bool scatters);
 
 /// Of how many voxels cells are to be along each axis, 2^this, for these to be about a mean free path wide at most
 /// where the medium is thickest; all 0: voxels are too thick for cells of several.

@@ -57,16 +57,16 @@ double LitPart(const Illumination& light, const std::array<bool, 3>& periodic)
 }
 
 /// In orders along all usual directions: a solve's, but for its first sweep.
-double TimeOfLaterOrders(const PropagationProblem& problem, OrdersAdded how)
+double TimeOfLaterOrders(const ShiningScene& scene, OrdersAdded how)
 {
-  const int most = problem.Settings().maximumOrders;
+  const int most = scene.settings.maximumOrders;
   switch (how)
   {
     case OrdersAdded::ByBalance: return AcceleratedOrders - 1.0;
     case OrdersAdded::ByCells: return OrdersByCells - 1.0;
     case OrdersAdded::OneByOne: break;
   }
-  const double orders = std::max(OrdersNeeded(problem), LeastOrders);
+  const double orders = std::max(scene.ordersNeeded(), LeastOrders);
   return SetUp + (most > 0 ? std::min<double>(orders, most) : orders) - 1.0;
 }
 }
@@ -74,24 +74,31 @@ double TimeOfLaterOrders(const PropagationProblem& problem, OrdersAdded how)
 UncollidedDirections UncollidedDirectionsFor(
   const PropagationProblem& problem, const DirectionSet& usual, OrdersAdded how)
 {
+  return UncollidedDirectionsFor({ problem.Settings(), problem.Shining(), problem.IsSlab(), problem.Traits().scatters,
+                                   problem.Scattering().Degree(), [&] { return OrdersNeeded(problem); } },
+    usual, how);
+}
+
+UncollidedDirections UncollidedDirectionsFor(const ShiningScene& scene, const DirectionSet& usual, OrdersAdded how)
+{
   const bool oneByOne = how == OrdersAdded::OneByOne;
   const bool besideUsual = how == OrdersAdded::ByBalance; // else the finer directions take the place of the usual ones
-  const PropagationSettings& settings = problem.Settings();
+  const PropagationSettings& settings = scene.settings;
   if (settings.uncollidedDirections >= 0)
   {
     return { settings.uncollidedDirections, settings.uncollidedDirections > 0 };
   }
-  if (usual.orbits.empty() || problem.IsSlab() || !problem.Traits().scatters || Reflects(problem.Shining()) ||
-    !FacesShineUnevenly(problem.Shining(), settings.periodic))
+  if (usual.orbits.empty() || scene.isSlab || !scene.scatters || Reflects(scene.shining) ||
+    !FacesShineUnevenly(scene.shining, settings.periodic))
   {
     return {};
   }
-  if (besideUsual && problem.Scattering().Degree() > 0)
+  if (besideUsual && scene.degree > 0)
   {
     return {}; // all moments of four lights would be kept at once: hundreds of bytes a voxel
   }
-  const double lit = LitPart(problem.Shining(), settings.periodic), before = settings.directionsPerFace;
-  const double affordable = More * (TimeOfLaterOrders(problem, how) + lit) * before;
+  const double lit = LitPart(scene.shining, settings.periodic), before = settings.directionsPerFace;
+  const double affordable = More * (TimeOfLaterOrders(scene, how) + lit) * before;
   UncollidedDirections found;
   for (int choice : Choices)
   {

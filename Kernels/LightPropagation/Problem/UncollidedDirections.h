@@ -5,6 +5,7 @@
 #include "LightPropagation/Problem/PropagationProblem.h"
 #include "LightPropagation/Problem/ScatteringOrders.h"
 
+#include <functional>
 #include <memory>
 
 namespace tyndall
@@ -24,6 +25,17 @@ struct UncollidedDirections
 /// @param usual  directions of scattered light; only beside fitted ones more of them gain by themselves
 UncollidedDirections UncollidedDirectionsFor(
   const PropagationProblem& problem, const DirectionSet& usual, OrdersAdded how);
+
+/// What that depends on, of a scene that may be spread over ranks.
+struct ShiningScene
+{
+  const PropagationSettings& settings;
+  const Illumination& shining;
+  bool isSlab, scatters;
+  int degree;                           ///< of angular moments
+  std::function<double()> ordersNeeded; ///< ScatteringOrders.h; asked for orders that are added up one by one
+};
+UncollidedDirections UncollidedDirectionsFor(const ShiningScene& scene, const DirectionSet& usual, OrdersAdded how);
 
 /// Along which that light is swept.
 /// @param accelerated  by the whole balance: beside the usual directions, and as they are

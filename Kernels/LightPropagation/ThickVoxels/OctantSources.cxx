@@ -20,29 +20,12 @@ constexpr double Many = 0.25; ///< of the voxels that scatter: few are walls, an
 /// floats do not tell it.
 constexpr double Opaque = 1e4;
 
-/// Of the voxels that scatter, the part that is thick; of all channels.
-double ThickPart(const PropagationProblem& problem)
-{
-  const Grid& grid = problem.TheGrid();
-  const double longest = *std::max_element(grid.spacing.begin(), grid.spacing.end());
-  double all = 0.0, thick = 0.0;
-  for (int c = 0; c < problem.Channels(); ++c)
-  {
-    const auto scatters = [&](std::size_t i) { return problem.Scattering().SigmaS(i, c) > 0.0f; };
-    all += SumOverVoxels(grid, [&](std::size_t i) { return scatters(i) ? 1.0 : 0.0; });
-    thick += SumOverVoxels(grid, [&](std::size_t i) {
-      return scatters(i) && problem.Scattering().SigmaT(i, c) * longest > ThickUnasked ? 1.0 : 0.0;
-    });
-  }
-  return all > 0.0 ? thick / all : 0.0;
-}
-
 /// Whether an automatic source is to be by octant.
-bool MatterUnasked(const PropagationProblem& problem)
+bool MatterUnasked(const OctantSources::Voxels& voxels, const PropagationSettings& settings)
 {
-  const PropagationSettings& settings = problem.Settings();
   return settings.source == PropagationSource::Automatic && settings.maximumOrders == 0 &&
-    settings.acceleration == PropagationAcceleration::Automatic && ThickPart(problem) >= Many;
+    settings.acceleration == PropagationAcceleration::Automatic && voxels.scattering > 0.0 &&
+    voxels.thick >= Many * voxels.scattering;
 }
 }
 
@@ -51,12 +34,38 @@ bool OctantSources::AreThick(const PropagationProblem& problem)
   return AnyVoxelIsThickerThan(Thick, problem.TheMedium());
 }
 
+OctantSources::Voxels OctantSources::Count(const Medium& medium, const TruncatedScattering& scattering, int channels)
+{
+  const Grid& grid = medium.grid;
+  const double longest = *std::max_element(grid.spacing.begin(), grid.spacing.end());
+  Voxels voxels;
+  for (int c = 0; c < channels; ++c)
+  {
+    const auto scatters = [&](std::size_t i) { return scattering.SigmaS(i, c) > 0.0f; };
+    voxels.scattering += SumOverVoxels(grid, [&](std::size_t i) { return scatters(i) ? 1.0 : 0.0; });
+    voxels.thick += SumOverVoxels(
+      grid, [&](std::size_t i) { return scatters(i) && scattering.SigmaT(i, c) * longest > ThickUnasked ? 1.0 : 0.0; });
+    for (std::size_t i = 0; i < grid.VoxelCount(); ++i)
+    {
+      voxels.thickest = std::max(voxels.thickest, longest * medium.TransportSigmaT(i, c));
+    }
+  }
+  return voxels;
+}
+
+bool OctantSources::Matter(
+  const Voxels& voxels, const PropagationSettings& settings, bool scatters, int degree, bool otherSources)
+{
+  const bool wanted = settings.source == PropagationSource::Octants ? voxels.thickest > Thick
+                                                                    : MatterUnasked(voxels, settings);
+  return wanted && scatters && degree == 0 && !otherSources && !settings.firstMoments && settings.maximumOrders != 1 &&
+    voxels.thickest <= Opaque;
+}
+
 bool OctantSources::Matter(const PropagationProblem& problem, bool otherSources)
 {
-  const PropagationSettings& settings = problem.Settings();
-  const bool wanted = settings.source == PropagationSource::Octants ? AreThick(problem) : MatterUnasked(problem);
-  return wanted && problem.Traits().scatters && problem.Scattering().Degree() == 0 && !otherSources &&
-    !settings.firstMoments && settings.maximumOrders != 1 && !AnyVoxelIsThickerThan(Opaque, problem.TheMedium());
+  return Matter(Count(problem.TheMedium(), problem.Scattering(), problem.Channels()), problem.Settings(),
+    problem.Traits().scatters, problem.Scattering().Degree(), otherSources);
 }
 
 OctantSources::OctantSources(Device& device, const PropagationProblem& problem, const VolumeLayout& layout,

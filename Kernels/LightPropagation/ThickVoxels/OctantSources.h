@@ -26,6 +26,16 @@ public:
   /// that scatter are thick or more, and the orders are as many as the tolerance asks for.
   static bool Matter(const PropagationProblem& problem, bool otherSources);
 
+  /// What of a medium's voxels, or those of a block, decides it; of all channels.
+  struct Voxels
+  {
+    double scattering = 0.0, thick = 0.0; ///< how many scatter, and of these are thick
+    double thickest = 0.0;                ///< mean free paths of transport along a voxel's longest edge
+  };
+  static Voxels Count(const Medium& medium, const TruncatedScattering& scattering, int channels);
+  static bool Matter(
+    const Voxels& voxels, const PropagationSettings& settings, bool scatters, int degree, bool otherSources);
+
   /// @param medium  on the device; must stay
   /// @param lamps  there are some
   OctantSources(Device& device, const PropagationProblem& problem, const VolumeLayout& layout,

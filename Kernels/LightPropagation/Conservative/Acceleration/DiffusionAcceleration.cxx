@@ -548,17 +548,24 @@ void DiffusionAcceleration::WriteFluence()
 /// Of thick voxels, from the powers of the system.
 void DiffusionAcceleration::FindSurfaceRadiance()
 {
+  const std::array<bool, 3>& periodic = this->Settings.periodic;
+  const std::array<bool, 6> open = { !periodic[0], !periodic[0], !periodic[1], !periodic[1], !periodic[2],
+    !periodic[2] };
+  if (!this->LinearSource || !IsThickAtFaces(this->TheMedium, open, this->Parts.Layout.channels))
+  {
+    return;
+  }
   std::vector<float> lamps = this->Uncollided->PathOfLamps();
   for (float& fluence : lamps)
   {
     fluence = static_cast<float>(fluence / this->Parts.Layout.grid.VoxelVolume());
   }
-  std::vector<SurfacePowers> powers(this->LinearSource ? this->Parts.Layout.channels : 0);
+  std::vector<SurfacePowers> powers(this->Parts.Layout.channels);
   for (std::size_t c = 0; c < powers.size(); ++c)
   {
     powers[c] = this->VoxelPower(static_cast<int>(c)) > 0.0 ? this->Systems[c]->PowersAtSurface() : SurfacePowers();
     powers[c].lamps = lamps.empty() ? nullptr : lamps.data() + c * this->Parts.Layout.Stride();
   }
-  this->Result.surfaceRadiance = SurfaceRadiance(this->TheMedium, this->Settings.periodic, this->Parts.Lamps, powers);
+  this->Result.surfaceRadiance = SurfaceRadiance(this->TheMedium, open, this->Parts.Lamps, powers);
 }
 }

@@ -4,6 +4,7 @@
 #include "LightPropagation/Diffusion/CrossingPattern.h"
 #include "LightPropagation/Diffusion/FluxLimit.h"
 #include "LightPropagation/Diffusion/LampPassing.h"
+#include "LightPropagation/Distributed/Balance/SurfaceInBlocks.h"
 #include "Medium/VoxelSums.h"
 #include "Numerics/Constants.h"
 
@@ -60,8 +61,9 @@ bool AccelerationInBlocks::NeedsFirstMoments() const
   return this->The.others.Largest({ own ? 1.0 : 0.0 })[0] > 0.0 && this->LinearSource;
 }
 
-void AccelerationInBlocks::AddBeams(const std::vector<Light>& lamps, const Monitor& monitor)
+void AccelerationInBlocks::AddBeams(const Monitor& monitor)
 {
+  const std::vector<Light>& lamps = this->The.lamps;
   const Buffer<float>* const flux = this->The.flux.Size() > 0 ? &this->The.flux : nullptr;
   const VolumeLayout whole = { this->The.partition.whole, this->The.layout.channels,
     this->The.layout.sharedExtinction };
@@ -214,7 +216,7 @@ void AccelerationInBlocks::Sweep(bool first, const Monitor& monitor)
   }
   this->The.path.Fill(0.0f);
   this->OwnCurrents.Fill(0.0f);
-  const bool shines = !first || this->The.scene.traits.emits;
+  const bool shines = !first || this->The.shines;
   const SweepBoundary boundary = this->The.boundary.Shines() ? this->The.boundary.Boundary() : SweepBoundary();
   this->Tally = this->Swept->Apply(shines ? &this->The.source : nullptr, boundary, monitor);
   std::vector<float> source, path, currents;
@@ -346,5 +348,24 @@ void AccelerationInBlocks::WriteFluence()
       LimitFlux(own, fluence, this->The.flux);
     }
   });
+}
+
+std::vector<float> AccelerationInBlocks::FindSurfaceRadiance() const
+{
+  if (!this->LinearSource)
+  {
+    return {};
+  }
+  const VolumeLayout& own = this->The.layout;
+  std::vector<SurfacePowers> powers;
+  this->The.others.Together([&] {
+    for (int c = 0; c < own.channels && this->Block.Has(); ++c)
+    {
+      powers.push_back(this->VoxelPower(c) > 0.0 ? this->Systems[c]->PowersAtSurface() : SurfacePowers());
+      powers.back().lamps = this->The.lamps.empty() ? nullptr : this->UncollidedFluence.data() + c * own.Stride();
+    }
+  });
+  return SurfaceRadianceInBlocks(this->The.others, this->The.partition, this->The.scene.medium, own.channels,
+    this->The.lamps, powers);
 }
 }

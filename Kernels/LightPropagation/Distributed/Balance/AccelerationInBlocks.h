@@ -37,6 +37,7 @@ public:
     const MediumOnDevice& medium;
     const SweptDirections& directions;
     const BoundaryLight& boundary; ///< of the whole grid
+    const std::vector<Light>& lamps;
     SweepMaker makeSweep;
     NearLampAdder addNearLamp;
 
@@ -45,6 +46,7 @@ public:
     Buffer<float>& fluence; ///< W / length^2, becomes the light
     Buffer<float>& flux;    ///< of lamps, is added to; empty: not wanted
     EnergyLedger& ledger;   ///< of emission and of what lamps let in and out, is added to
+    bool shines;            ///< the source, on any rank
   };
   /// All ranks make one together.
   explicit AccelerationInBlocks(const Parts& parts);
@@ -52,11 +54,13 @@ public:
   /// In thick voxels it matters where lamps' light is first scattered. The same on all ranks, which ask together.
   bool NeedsFirstMoments() const;
   /// If it does: adds the uncollided light of lamps to path, flux and ledger. All ranks call it before Run.
-  void AddBeams(const std::vector<Light>& lamps, const Monitor& monitor);
+  void AddBeams(const Monitor& monitor);
 
   /// @return the rows of `convergence`
   std::vector<ConvergenceRow> Run(const Monitor& monitor);
   const std::vector<float>& Direct() const { return this->FluenceDirect; } ///< unscattered, channels interleaved
+  /// As LightField has it, after Run: of the faces of the whole box. All ranks call it.
+  std::vector<float> FindSurfaceRadiance() const;
 
 private:
   void SpreadMedium();

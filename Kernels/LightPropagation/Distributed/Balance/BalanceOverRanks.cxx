@@ -1,5 +1,6 @@
 #include "LightPropagation/Distributed/Balance/BalanceOverRanks.h"
 
+#include "Medium/BoxFaces.h"
 #include "Medium/VoxelSums.h"
 
 #include <algorithm>
@@ -187,6 +188,21 @@ void BalanceOverRanks::ShapeSource()
   {
     this->System->ShapeSource();
   }
+}
+
+SurfacePowers BalanceOverRanks::PowersAtSurface() const
+{
+  SurfacePowers powers = this->System->PowersAtSurface();
+  const std::vector<double> held = std::move(powers.net);
+  powers.net.clear();
+  const Grid& grid = this->Block.WithGhosts().grid;
+  ForBoxFaceCells(this->Block.Own().grid, [&](const BoxFaceCell& cell) {
+    const std::array<int, 3> voxel = grid.VoxelAt(this->Block.PlaceOf(cell.voxel));
+    const BoxFaceLayout layout = LayoutOfFace(grid, cell.face);
+    powers.net.push_back(
+      held[layout.first + voxel[0] * layout.step[0] + voxel[1] * layout.step[1] + voxel[2] * layout.step[2]]);
+  });
+  return powers;
 }
 
 void BalanceOverRanks::AddFlux(const Buffer<float>& flux)

@@ -41,6 +41,8 @@ public:
   std::vector<double> NextFluence() const;
   void ShapeSource();
   void AddFlux(const Buffer<float>& flux); ///< with ghosts, which are not those of the others
+  /// As that of DiffusionSystem, by cells of the block's faces; of those at the box's faces alone it is known.
+  SurfacePowers PowersAtSurface() const;
 
 private:
   std::vector<double> OwnOf(const std::vector<double>& held) const;

@@ -3,6 +3,8 @@
 #include "Medium/VoxelSums.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <functional>
 #include <vector>
 
 namespace tyndall
@@ -30,22 +32,25 @@ void AddLines(const BlockPartition& partition, int rank, const std::vector<doubl
   }
 }
 
+using VoxelValue = std::function<double(std::size_t voxel)>;
+
 /// Of all ranks. The first one has the sums along lines through the whole grid: as many as its surface has cells.
-ThickLines LinesOfAll(Communicator& communicator, const BlockPartition& partition, const Medium& medium, int channel)
+/// @param sigma_t  of the block's voxels
+ThickLines LinesOfAll(
+  Communicator& communicator, const BlockPartition& partition, const Grid& own, const VoxelValue& sigma_t)
 {
-  std::vector<double> own;
+  std::vector<double> ofBlock;
   communicator.Together([&] {
-    const LineSums sums =
-      SumAlongLines(medium.grid, [&](std::size_t i) { return double(medium.TransportSigmaT(i, channel)); });
+    const LineSums sums = SumAlongLines(own, sigma_t);
     for (const std::vector<double>& ofAxis : sums)
     {
-      own.insert(own.end(), ofAxis.begin(), ofAxis.end());
+      ofBlock.insert(ofBlock.end(), ofAxis.begin(), ofAxis.end());
     }
   });
   ThickLines lines;
   if (communicator.Rank() > 0)
   {
-    communicator.Send(0, LinesTag, own);
+    communicator.Send(0, LinesTag, ofBlock);
   }
   else
   {
@@ -54,7 +59,7 @@ ThickLines LinesOfAll(Communicator& communicator, const BlockPartition& partitio
     {
       all[axis].assign(partition.whole.VoxelCount() / static_cast<std::size_t>(partition.whole.size[axis]), 0.0);
     }
-    AddLines(partition, 0, own, all);
+    AddLines(partition, 0, ofBlock, all);
     for (int rank = 1; rank < communicator.Ranks(); ++rank)
     {
       AddLines(partition, rank, communicator.Receive<double>(rank, LinesTag), all);
@@ -68,41 +73,75 @@ ThickLines LinesOfAll(Communicator& communicator, const BlockPartition& partitio
   return lines;
 }
 
-/// Of what is scattered, in the mean.
-double AlbedoOfAll(Communicator& communicator, const Medium& medium, int channel)
+/// Of what is scattered as sweeps carry it, in the mean.
+double AlbedoOfAll(Communicator& communicator, const BlockScene& scene, int channel)
 {
-  const auto sigmaS = [&](std::size_t i) { return double(medium.TransportSigmaS(i, channel)); };
+  const auto sigmaS = [&](std::size_t i) { return double(scene.Scattering().SigmaS(i, channel)); };
   const auto albedo = [&](std::size_t i) {
     const double s = sigmaS(i);
-    return s > 0.0 ? s * s / (s + medium.sigma_a.At(i, channel)) : 0.0;
+    return s > 0.0 ? s * s / (s + scene.medium.sigma_a.At(i, channel)) : 0.0;
   };
-  const std::vector<double> sums =
-    communicator.Sum({ SumOverVoxels(medium.grid, sigmaS), SumOverVoxels(medium.grid, albedo) });
+  const Grid& grid = scene.medium.grid;
+  const std::vector<double> sums = communicator.Sum({ SumOverVoxels(grid, sigmaS), SumOverVoxels(grid, albedo) });
   return sums[0] > 0.0 ? sums[1] / sums[0] : 0.0;
 }
 
-double ThickestOfAll(Communicator& communicator, const Medium& medium, int channels)
+/// As sweeps carry light.
+double ThickestOfAll(Communicator& communicator, const BlockScene& scene)
 {
   double thickest = 0.0;
-  for (std::size_t i = 0; i < medium.grid.VoxelCount(); ++i)
+  for (std::size_t i = 0; i < scene.medium.grid.VoxelCount(); ++i)
   {
-    for (int c = 0; c < channels; ++c)
+    for (int c = 0; c < scene.channels; ++c)
     {
-      thickest = std::max<double>(thickest, medium.TransportSigmaT(i, c));
+      thickest = std::max<double>(thickest, scene.Scattering().SigmaT(i, c));
     }
   }
   return communicator.Largest({ thickest })[0];
 }
+
+ScatteringOfScene ScatteringOfAll(Communicator& communicator, const BlockPartition& partition, const BlockScene& scene,
+  const PropagationSettings& settings)
+{
+  const Grid& own = scene.medium.grid;
+  ScatteringOfScene all = { partition.whole, settings.periodic, scene.illumination.faceAlbedo,
+    scene.Scattering().Degree(), false, ThickestOfAll(communicator, scene), {} };
+  for (int c = 0; c < scene.channels; ++c)
+  {
+    ScatteringOfChannel channel;
+    channel.diffusing =
+      LinesOfAll(communicator, partition, own, [&](std::size_t i) { return scene.medium.TransportSigmaT(i, c); });
+    if (all.degree > 0)
+    {
+      channel.swept =
+        LinesOfAll(communicator, partition, own, [&](std::size_t i) { return scene.Scattering().SigmaT(i, c); });
+    }
+    channel.albedo = AlbedoOfAll(communicator, scene, c);
+    all.channels.push_back(channel);
+  }
+  return all;
 }
 
-namespace
-{
 /// What neither cells nor the balance of voxels carry from rank to rank.
-bool IsBeyondBoth(Communicator& communicator, const BlockScene& scene, const PropagationSettings& settings)
+bool IsBeyondBoth(const BlockScene& scene, const PropagationSettings& settings)
 {
-  const bool own = scene.Scattering().Degree() > 0 || Reflects(scene.illumination) || settings.periodic[0] ||
+  return scene.Scattering().Degree() > 0 || Reflects(scene.illumination) || settings.periodic[0] ||
     settings.periodic[1] || settings.periodic[2];
-  return communicator.Largest({ own ? 1.0 : 0.0 })[0] > 0.0; // a rank without voxels scatters evenly
+}
+
+/// How blocks do it: where orders are added up one by one, or by cells, the source is constant in voxels.
+OrdersAdded InBlocks(OrdersAdded ofWhole, const BlockScene& scene, const PropagationSettings& settings)
+{
+  if (IsBeyondBoth(scene, settings))
+  {
+    return OrdersAdded::OneByOne;
+  }
+  if (settings.source == PropagationSource::Linear)
+  {
+    return OrdersAdded::ByBalance;
+  }
+  const bool balances = !settings.facePower && settings.uncollidedDirections <= 0;
+  return ofWhole == OrdersAdded::ByBalance && !balances ? OrdersAdded::OneByOne : ofWhole;
 }
 }
 
@@ -110,33 +149,16 @@ OrdersOverRanks HowOrdersAreAdded(Communicator& communicator, const BlockPartiti
   const PropagationSettings& settings)
 {
   OrdersOverRanks orders;
-  if (IsBeyondBoth(communicator, scene, settings))
+  const bool accelerates = MayBeAccelerated(settings, scene.traits.scatters);
+  if (!accelerates && settings.uncollidedDirections >= 0)
   {
     return orders;
   }
-  const bool balances = !settings.facePower && settings.uncollidedDirections <= 0;
-  if (settings.source == PropagationSource::Linear)
-  {
-    orders.how = OrdersAdded::ByBalance; // the source of orders and of cells is constant here
-    return orders;
-  }
-  if (settings.acceleration != PropagationAcceleration::Automatic || settings.maximumOrders > 0 ||
-    !scene.traits.scatters)
-  {
-    return orders;
-  }
-  orders.halvings = CellHalvings(partition.whole, ThickestOfAll(communicator, scene.medium, scene.channels));
-  const bool inCells = AreThinEnough(partition.whole, orders.halvings);
-  std::vector<IsotropicChannel> channels;
-  for (int c = 0; c < scene.channels; ++c)
-  {
-    channels.push_back(
-      { LinesOfAll(communicator, partition, scene.medium, c), AlbedoOfAll(communicator, scene.medium, c) });
-  }
-  if (ScatteredManyTimes(channels, inCells))
-  {
-    orders.how = inCells ? OrdersAdded::ByCells : balances ? OrdersAdded::ByBalance : OrdersAdded::OneByOne;
-  }
+  const ScatteringOfScene all = ScatteringOfAll(communicator, partition, scene, settings);
+  orders.needed = OrdersNeeded(all);
+  orders.halvings = CellHalvings(all.grid, all.thickest);
+  orders.ofWhole = HowOrdersAreAdded(settings, scene.traits.scatters, all);
+  orders.how = InBlocks(orders.ofWhole, scene, settings);
   return orders;
 }
 }

@@ -14,10 +14,12 @@ namespace tyndall
 struct OrdersOverRanks
 {
   OrdersAdded how = OrdersAdded::OneByOne;
-  std::array<int, 3> halvings = {}; ///< of cells, where orders are added up by these
+  OrdersAdded ofWhole = OrdersAdded::OneByOne; ///< of the same medium in one memory
+  std::array<int, 3> halvings = {};            ///< of cells, where orders are added up by these
+  double needed = 0.0; ///< OrdersNeeded; 0 where neither acceleration nor uncollidedDirections are left open
 };
 
-/// As HowOrdersAreAdded has it of the whole, with isotropic scattering; the same on all ranks, which call it together.
+/// As HowOrdersAreAdded has it of the whole, as far as blocks can; the same on all ranks, which call it together.
 OrdersOverRanks HowOrdersAreAdded(Communicator& communicator, const BlockPartition& partition, const BlockScene& scene,
   const PropagationSettings& settings);
 }
