@@ -403,11 +403,12 @@ struct WholeInputs::Seen
   vtkMultiProcessController* ranks;
   vtkInformationVector** given;
   int inPieces, inShares;
+  std::vector<int> alsoInPieces;
   std::vector<RankGlance> all;
 };
 
 WholeInputs::WholeInputs(vtkMultiProcessController* ranks, vtkAlgorithm* filter, vtkInformationVector** given,
-  vtkInformationVector* outputs, int inPieces, int inShares)
+  vtkInformationVector* outputs, int inPieces, int inShares, const std::vector<int>& alsoInPieces)
 {
   const int ports = filter->GetNumberOfInputPorts();
   this->Ports.assign(given, given + ports);
@@ -420,11 +421,12 @@ WholeInputs::WholeInputs(vtkMultiProcessController* ranks, vtkAlgorithm* filter,
   }
   RankGlance own;
   OnAllRanks(ranks, [&] { own = GlanceAtAll(filter, given, outputs); });
-  this->AllSeen = std::make_unique<Seen>(Seen{ ranks, given, inPieces, inShares, Share(ranks, own) });
+  this->AllSeen = std::make_unique<Seen>(Seen{ ranks, given, inPieces, inShares, alsoInPieces, Share(ranks, own) });
   NoteParts(this->AllSeen->all, ranks->GetLocalProcessId(), outputs);
   for (int port = 0; port < ports; ++port)
   {
-    if (port != inPieces && port != inShares)
+    const bool also = std::find(alsoInPieces.begin(), alsoInPieces.end(), port) != alsoInPieces.end();
+    if (port != inPieces && port != inShares && !also)
     {
       this->MakeWhole(port);
     }
@@ -452,6 +454,10 @@ void WholeInputs::MakeWhole()
   if (this->AllSeen && this->AllSeen->inShares != NoPort)
   {
     this->MakeWhole(this->AllSeen->inShares);
+  }
+  for (const int port : this->AllSeen ? std::exchange(this->AllSeen->alsoInPieces, {}) : std::vector<int>())
+  {
+    this->MakeWhole(port);
   }
 }
 

@@ -32,11 +32,13 @@ public:
   /// @param ranks  null: this process is alone, and has what it is given
   /// @param given  by port
   /// @param outputs  notes for KeepWhatIsAskedFor what each rank is asked for
-  /// @param inPieces  a port that stays as it is given until MakeWhole
+  /// @param inPieces  a port that stays as it is given until MakeWhole, and which Replace is of
+  /// @param alsoInPieces  others that stay so, too
   /// @param inShares  another, of points of which ranks may have some each (photons): together they are all
   /// @throws InvalidInput on all ranks with the same words where pieces make no whole
   WholeInputs(vtkMultiProcessController* ranks, vtkAlgorithm* filter, vtkInformationVector** given,
-    vtkInformationVector* outputs, int inPieces = NoPort, int inShares = NoPort);
+    vtkInformationVector* outputs, int inPieces = NoPort, int inShares = NoPort,
+    const std::vector<int>& alsoInPieces = {});
   ~WholeInputs();
 
   /// By port.
