@@ -24,8 +24,9 @@ std::string Described(const Grid& grid)
   return std::to_string(size[0]) + " x " + std::to_string(size[1]) + " x " + std::to_string(size[2]) +
     " voxels of spacing " + Triple(grid.spacing) + " from origin " + Triple(grid.origin);
 }
+}
 
-bool Agree(const Grid& a, const Grid& b)
+bool AreSameVoxels(const Grid& a, const Grid& b)
 {
   constexpr double part = 1e-3; // of a voxel
   bool agree = a.size == b.size;
@@ -37,11 +38,10 @@ bool Agree(const Grid& a, const Grid& b)
   }
   return agree;
 }
-}
 
 void CheckSameVoxels(const Grid& grid, const Grid& medium, const std::string& whose, const std::string& remedy)
 {
-  if (!Agree(grid, medium))
+  if (!AreSameVoxels(grid, medium))
   {
     throw InvalidInput(whose + " has " + Described(grid) + ", the medium " + Described(medium) + ". " + remedy);
   }

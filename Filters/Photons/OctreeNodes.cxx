@@ -24,11 +24,30 @@ namespace
 {
 using Voxel = std::array<int, 3>;
 
-int RootLevel(const Octree& octree)
+/// Levels of voxels, one after the other.
+struct LevelsOfVoxels
 {
-  const int largest = *std::max_element(octree.levels.begin(), octree.levels.end());
-  return std::max(largest, octree.topLevel - 3);
-}
+  int At(const Voxel& voxel) const { return this->levels[this->grid.IndexOf(voxel)]; }
+  int Largest() const { return *std::max_element(this->levels.begin(), this->levels.end()); }
+
+  const Grid& grid;
+  const std::vector<std::uint8_t>& levels;
+};
+
+/// Levels in bricks.
+struct LevelsInBricks
+{
+  int At(const Voxel& voxel) const { return this->levels.At(voxel); }
+  int Largest() const
+  {
+    const std::vector<std::int32_t>& table = this->levels.Table();
+    const std::vector<std::uint8_t>& dense = this->levels.Dense();
+    const int even = *std::max_element(table.begin(), table.end());
+    return std::max<int>(even, dense.empty() ? 0 : *std::max_element(dense.begin(), dense.end()));
+  }
+
+  const BrickedBytes& levels;
+};
 
 /// Borders of the roots along an axis.
 vtkSmartPointer<vtkDoubleArray> Borders(const Grid& grid, int axis, int rootLevel)
@@ -52,12 +71,13 @@ struct Tree
   vtkIdType nodes = 0;
 };
 
+template <class Levels>
 class TreeDescriber
 {
 public:
-  TreeDescriber(const Grid& grid, const Octree& octree)
+  TreeDescriber(const Grid& grid, const Levels& levels)
     : TheGrid(grid)
-    , Levels(octree.levels.data())
+    , TheLevels(levels)
   {
   }
 
@@ -90,7 +110,7 @@ private:
     for (std::size_t i = 0; i < vertices.size() && level > 0; ++i) // most vertices are single voxels
     {
       const Voxel& vertex = vertices[i];
-      const bool divided = !tree.outside[firstOutside + i] && this->LevelAt(vertex) < level;
+      const bool divided = !tree.outside[firstOutside + i] && this->TheLevels.At(vertex) < level;
       tree.refined.push_back(divided);
       tree.nodes -= divided ? 1 : 0;
       for (int child = 0; child < 8 && divided; ++child)
@@ -109,17 +129,16 @@ private:
     return voxel[0] >= size[0] || voxel[1] >= size[1] || voxel[2] >= size[2];
   }
 
-  int LevelAt(const Voxel& voxel) const { return this->Levels[this->TheGrid.IndexOf(voxel)]; }
-
   const Grid& TheGrid;
-  const std::uint8_t* Levels;
+  const Levels& TheLevels;
 };
 
 /// Trees are apart from each other: each is described and built on some core.
-std::vector<Tree> Build(const Grid& grid, const Octree& octree, int rootLevel, vtkHyperTreeGrid* nodes)
+template <class Levels>
+std::vector<Tree> Build(const Grid& grid, const Levels& all, int rootLevel, vtkHyperTreeGrid* nodes)
 {
   const auto count = static_cast<std::size_t>(nodes->GetMaxNumberOfTrees());
-  const TreeDescriber describer(grid, octree);
+  const TreeDescriber<Levels> describer(grid, all);
   std::vector<Tree> trees(count);
   std::vector<vtkHyperTree*> built(count);
   for (std::size_t index = 0; index < count; ++index)
@@ -152,11 +171,11 @@ std::vector<Tree> Build(const Grid& grid, const Octree& octree, int rootLevel, v
   }
   return trees;
 }
-}
 
-vtkIdType FillWithNodes(const Grid& grid, const Octree& octree, vtkHyperTreeGrid* nodes)
+template <class Levels>
+vtkIdType FillFrom(const Grid& grid, int topLevel, const Levels& all, vtkHyperTreeGrid* nodes)
 {
-  const int rootLevel = RootLevel(octree);
+  const int rootLevel = std::max(all.Largest(), topLevel - 3);
   nodes->Initialize();
   nodes->SetBranchFactor(2);
   nodes->SetXCoordinates(Borders(grid, 0, rootLevel));
@@ -168,7 +187,7 @@ vtkIdType FillWithNodes(const Grid& grid, const Octree& octree, vtkHyperTreeGrid
 
   std::vector<unsigned char> levels, outside;
   vtkIdType count = 0;
-  for (const Tree& tree : Build(grid, octree, rootLevel, nodes))
+  for (const Tree& tree : Build(grid, all, rootLevel, nodes))
   {
     levels.insert(levels.end(), tree.levels.begin(), tree.levels.end());
     outside.insert(outside.end(), tree.outside.begin(), tree.outside.end());
@@ -188,5 +207,16 @@ vtkIdType FillWithNodes(const Grid& grid, const Octree& octree, vtkHyperTreeGrid
   LeaveRanges(levelOfVertices);
   nodes->GetCellData()->SetScalars(levelOfVertices);
   return count;
+}
+}
+
+vtkIdType FillWithNodes(const Grid& grid, const Octree& octree, vtkHyperTreeGrid* nodes)
+{
+  return FillFrom(grid, octree.topLevel, LevelsOfVoxels{ grid, octree.levels }, nodes);
+}
+
+vtkIdType FillWithNodes(const Grid& grid, int topLevel, const BrickedBytes& levels, vtkHyperTreeGrid* nodes)
+{
+  return FillFrom(grid, topLevel, LevelsInBricks{ levels }, nodes);
 }
 }

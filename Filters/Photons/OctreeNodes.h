@@ -1,5 +1,6 @@
 #pragma once
 
+#include "Distribution/BrickedBytes.h"
 #include "Refraction/Octree/RefractionOctree.h"
 
 #include "vtkType.h"
@@ -13,4 +14,6 @@ namespace tyndall
 /// of the grid little; leaves wholly outside of the grid are masked.
 /// @return the number of leaves that are not masked: the octree's nodes
 vtkIdType FillWithNodes(const Grid& grid, const Octree& octree, vtkHyperTreeGrid* nodes);
+/// The same of levels in bricks.
+vtkIdType FillWithNodes(const Grid& grid, int topLevel, const BrickedBytes& levels, vtkHyperTreeGrid* nodes);
 }

@@ -4,6 +4,7 @@
 #include "Common/DeviceBudget.h"
 #include "Common/ImageInput.h"
 #include "Common/LightTransportData.h"
+#include "Common/SameVoxels.h"
 #include "Device/Device.h"
 #include "Numerics/ChooseEvenly.h"
 #include "Photons/Distributed/PhotonShares.h"
@@ -142,6 +143,7 @@ struct vtkPhotonMarcher::PieceOfMarch
 {
   vtkSmartPointer<vtkImageData> image; ///< whose arrays the medium has; null: this rank has nothing of it
   tyndall::RefractiveInput read;
+  bool octreeElsewhere = false; ///< the octree given does not have these voxels
   tyndall::MarchSettings settings;
   std::vector<tyndall::Photon> photons; ///< this rank's share
 };
@@ -234,12 +236,11 @@ int vtkPhotonMarcher::RequestInformation(vtkInformation*, vtkInformationVector**
   return 1;
 }
 
-/// Without WHOLE, whether this rank would have each march through its piece; ranks may differ in it.
-bool vtkPhotonMarcher::WantsBlocks(
-  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) const
+/// Whether this rank would have each march through its piece, as far as that is known without the medium.
+bool vtkPhotonMarcher::WantsBlocks(vtkInformation* request, vtkInformationVector* outputs) const
 {
   return this->Decomposition == AUTOMATIC_DECOMPOSITION
-    ? tyndall::NeedsPieces(request, inputs[MediumPort], outputs, BytesOfVoxel)
+    ? tyndall::EachAsksForItsPiece(request, outputs) && this->Scheme != PUBLISHED
     : this->Decomposition == BLOCKS;
 }
 
@@ -248,10 +249,10 @@ int vtkPhotonMarcher::RequestUpdateExtent(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   this->Kept->ForgetIfRan(this, { MediumPort, OctreePort });
-  const bool asPiece = tyndall::EachAsksForItsPiece(request, outputs) && this->WantsBlocks(request, inputs, outputs);
+  const bool asPiece = tyndall::EachAsksForItsPiece(request, outputs) && this->WantsBlocks(request, outputs);
   for (int port = 0; port < InputPortCount; ++port)
   {
-    if (asPiece && port != OctreePort) // the pipeline has asked it for what the output is asked for
+    if (asPiece) // the pipeline has asked it for what the output is asked for
     {
       tyndall::AskTogether(request, outputs, inputs[port]);
     }
@@ -264,19 +265,32 @@ int vtkPhotonMarcher::RequestUpdateExtent(
 }
 
 /// What keeps ranks from marching through their pieces, in words; empty: nothing does.
-/// @param octree  whether the medium's piece has one
-std::string vtkPhotonMarcher::NotByBlocks(
-  vtkInformationVector** inputs, const tyndall::MarchSettings& settings, bool octree) const
+std::string vtkPhotonMarcher::NotByBlocks(const PieceOfMarch& piece) const
 {
   if (this->Scheme == PUBLISHED)
   {
     return "the published Scheme";
   }
-  return tyndall::NotInBlocks(settings, octree || inputs[OctreePort]->GetNumberOfInformationObjects() > 0);
+  if (piece.octreeElsewhere)
+  {
+    return "an octree that lies in other pieces on ranks than the medium";
+  }
+  return tyndall::NotInBlocks(piece.settings, piece.read.Levels() != nullptr);
 }
 
 namespace
 {
+/// The part of an octree's image that has the voxels of a piece of the medium; null where it has not.
+vtkSmartPointer<vtkImageData> OctreeOf(const tyndall::PieceBlocks& pieces, vtkImageData* octree, vtkImageData* medium)
+{
+  if (octree->GetNumberOfCells() == 0)
+  {
+    return nullptr;
+  }
+  const vtkSmartPointer<vtkImageData> own = pieces.OwnImage(octree);
+  return tyndall::AreSameVoxels(tyndall::GridOf(own), tyndall::GridOf(medium)) ? own : nullptr;
+}
+
 /// Photons of which each rank has some. Where all have all of them, each takes a part. All ranks call it.
 std::vector<tyndall::Photon> ShareOfPhotons(tyndall::Communicator& communicator, vtkPolyData* given)
 {
@@ -310,9 +324,10 @@ bool HaveBatches(tyndall::Communicator& communicator, const std::vector<tyndall:
 
 /// @return false, on all ranks, where photons cannot be marched through pieces, and need not
 bool vtkPhotonMarcher::ReadPiece(tyndall::Communicator& communicator, const tyndall::PieceBlocks& pieces,
-  vtkInformationVector** inputs, PieceOfMarch& piece)
+  vtkInformationVector** inputs, bool needsPieces, PieceOfMarch& piece)
 {
   std::string refused;
+  bool rather = false; // whole, though it can be marched through so
   std::vector<tyndall::Photon> photons = ShareOfPhotons(communicator, vtkPolyData::GetData(inputs[PhotonsPort]));
   const bool batches = HaveBatches(communicator, photons);
   communicator.Together([&] {
@@ -320,15 +335,19 @@ bool vtkPhotonMarcher::ReadPiece(tyndall::Communicator& communicator, const tynd
     if (pieces.HasOwn())
     {
       piece.image = pieces.OwnImage(vtkImageData::GetData(inputs[MediumPort]));
-      piece.read = tyndall::ReadRefractiveMedium(this, piece.image);
+      vtkImageData* const given = vtkImageData::GetData(inputs[OctreePort]);
+      const vtkSmartPointer<vtkImageData> octree = given ? OctreeOf(pieces, given, piece.image) : nullptr;
+      piece.octreeElsewhere = given && !octree;
+      piece.read = tyndall::ReadRefractiveMedium(this, piece.image, octree);
     }
     piece.settings = SettingsOf(this, piece.image, batches);
-    refused = this->NotByBlocks(inputs, piece.settings, piece.read.Levels() != nullptr);
+    rather = this->Decomposition == AUTOMATIC_DECOMPOSITION && piece.settings.byBricks && !needsPieces;
+    refused = this->NotByBlocks(piece);
     tyndall::Require(refused.empty() || this->Decomposition != BLOCKS,
       "Ranks cannot march photons through their pieces (Decomposition: blocks) with " + refused +
         ". Leave it out, or let each rank have the whole.");
   });
-  return communicator.Largest({ refused.empty() ? 0.0 : 1.0 })[0] == 0.0;
+  return communicator.Largest({ refused.empty() && !rather ? 0.0 : 1.0 })[0] == 0.0;
 }
 
 /// @return false, on all ranks, where each is to march through the whole
@@ -337,7 +356,7 @@ bool vtkPhotonMarcher::MarchPiece(vtkInformation* request, vtkMultiProcessContro
 {
   vtkImageData* const image = vtkImageData::GetData(inputs[MediumPort]);
   const std::optional<tyndall::AgreedBlocks> agreed = tyndall::AgreeOnBlocks(
-    ranks, this, this->WantsBlocks(request, inputs, outputs), tyndall::AskingPort(request, outputs), image);
+    ranks, this, this->WantsBlocks(request, outputs), tyndall::AskingPort(request, outputs), image);
   if (!agreed)
   {
     return false;
@@ -345,15 +364,16 @@ bool vtkPhotonMarcher::MarchPiece(vtkInformation* request, vtkMultiProcessContro
   tyndall::Communicator* const communicator = agreed->communicator.get();
   const tyndall::PieceBlocks& pieces = *agreed->pieces;
   PieceOfMarch piece;
-  if (!this->ReadPiece(*communicator, pieces, inputs, piece))
+  const bool needsPieces = tyndall::NeedsPieces(request, inputs[MediumPort], outputs, BytesOfVoxel);
+  if (!this->ReadPiece(*communicator, pieces, inputs, needsPieces, piece))
   {
     return false;
   }
   this->Kept->Forget();
   std::shared_ptr<tyndall::Device> device;
   communicator->Together([&] { device = tyndall::FindWithin(this->Within, this->Device, this->MemoryBudget); });
-  tyndall::PhotonMarcherInBlocks marcher(
-    *device, *communicator, pieces.Partition(), piece.read.input.medium, piece.read.ior, piece.settings);
+  tyndall::PhotonMarcherInBlocks marcher(*device, *communicator, pieces.Partition(), piece.read.input.medium,
+    piece.read.ior, piece.settings, piece.read.Levels());
   tyndall::PhotonLight light = marcher.March(piece.photons, tyndall::MonitorOf(this));
   const std::vector<tyndall::PhotonPath> paths = this->PathCount > 0
     ? marcher.Paths(piece.photons, static_cast<std::size_t>(this->PathCount))
@@ -431,7 +451,7 @@ int vtkPhotonMarcher::RequestData(vtkInformation* request, vtkInformationVector*
     [&](vtkMultiProcessController* ranks, vtkInformationVector** inputs) {
       return this->MarchPiece(request, ranks, inputs, outputs);
     },
-    PhotonsPort };
+    PhotonsPort, { OctreePort } };
   return tyndall::Guarded(this, request, given, outputs, onPieces, [&](vtkInformationVector** inputs) {
     const std::vector<tyndall::Photon> photons = tyndall::ReadPhotons(vtkPolyData::GetData(inputs[PhotonsPort]));
     this->WarnOfBox(inputs, tyndall::GridOf(vtkImageData::GetData(inputs[MediumPort])));

@@ -62,8 +62,8 @@ class vtkMultiProcessController;
  * The medium stays prepared on the device, so that new light or other photons only cost their march: until the medium
  * or the octree changes, another one is connected, a setting needs it, the device is another one, or the filter goes.
  *
- * In a parallel pipeline every rank marches all photons and hands on its piece; or, with Decomposition, marches
- * photons through its piece, and photons go from rank to rank. The paths are on the first rank, each in one piece.
+ * In a parallel pipeline every rank marches photons through its piece, and photons go from rank to rank; or, with
+ * Decomposition, each marches all photons and hands on its piece. The paths are on the first rank, each in one piece.
  *
  * Cells that are hidden by `vtkGhostType` are empty.
  *
@@ -104,7 +104,7 @@ public:
 
   enum Decompositions
   {
-    AUTOMATIC_DECOMPOSITION = 0, ///< into blocks where the whole does not fit in each rank's memory
+    AUTOMATIC_DECOMPOSITION = 0, ///< into blocks where several ranks can
     WHOLE = 1,                   ///< none: each rank marches all photons through the whole
     BLOCKS = 2                   ///< each rank has its piece of the medium
   };
@@ -114,9 +114,11 @@ public:
   /// of the index some voxels round it, and its share of the photons: a photon that leaves the piece is handed on as it
   /// stands (numerics.md, section 12.6), scattered ones too, and light is that of one rank bit for bit. Where ranks are
   /// given the same photons each takes a part of them, else all are those of rank 0, then of rank 1, and so on. An
-  /// error names what blocks cannot do: an octree and the published scheme.
-  /// AUTOMATIC_DECOMPOSITION (default): BLOCKS where the whole, once for each rank of a machine, is more than the
-  /// memory that it has available, and the scene can be marched through so; else WHOLE.
+  /// error names what blocks cannot do: the published scheme, an octree with IntegratorOrder 4, and one that lies on
+  /// ranks in other pieces than the medium. What EmptySpace keeps by bricks they keep voxel by voxel.
+  /// AUTOMATIC_DECOMPOSITION (default): BLOCKS where each of several ranks asks for its piece and the scene can be
+  /// marched through so; else WHOLE, and also where EmptySpace asks for bricks, unless the whole, once for each rank of
+  /// a machine, is more than the memory that it has available.
   tyndallSetRangeMacro(Decomposition, int, AUTOMATIC_DECOMPOSITION, BLOCKS);
   vtkGetMacro(Decomposition, int);
   ///@}
@@ -263,11 +265,11 @@ private:
   struct Marched;
   Marched March(vtkInformationVector** inputs, const std::vector<tyndall::Photon>& photons);
   Marched MarchAsPublished(vtkInformationVector** inputs, const std::vector<tyndall::Photon>& photons);
-  bool WantsBlocks(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) const;
-  std::string NotByBlocks(vtkInformationVector** inputs, const tyndall::MarchSettings& settings, bool octree) const;
+  bool WantsBlocks(vtkInformation* request, vtkInformationVector* outputs) const;
   struct PieceOfMarch;
+  std::string NotByBlocks(const PieceOfMarch& piece) const;
   bool ReadPiece(tyndall::Communicator& communicator, const tyndall::PieceBlocks& pieces, vtkInformationVector** inputs,
-    PieceOfMarch& piece);
+    bool needsPieces, PieceOfMarch& piece);
   bool MarchPiece(vtkInformation* request, vtkMultiProcessController* ranks, vtkInformationVector** inputs,
     vtkInformationVector* outputs);
   void WarnOfBox(vtkInformationVector** inputs, const tyndall::Grid& medium);

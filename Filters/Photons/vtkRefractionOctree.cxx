@@ -4,8 +4,12 @@
 #include "Common/ImageInput.h"
 #include "Common/LightTransportData.h"
 #include "Common/VectorArray.h"
+#include "Distribution/BrickedBytes.h"
 #include "Photons/OctreeNodes.h"
+#include "Ranks/PieceBlocks.h"
+#include "Ranks/Ranks.h"
 #include "Ranks/WholeImage.h"
+#include "Refraction/Octree/OctreeInBlocks.h"
 #include "Work/GuardedWork.h"
 
 #include "vtkCellData.h"
@@ -15,10 +19,12 @@
 #include "vtkInformationIntegerKey.h"
 #include "vtkInformationVector.h"
 #include "vtkObjectFactory.h"
+#include "vtkSmartPointer.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkUnsignedCharArray.h"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -45,20 +51,42 @@ tyndall::OctreeSettings SettingsOf(vtkRefractionOctree* filter)
   return settings;
 }
 
-tyndall::Octree Build(vtkRefractionOctree* filter, vtkImageData* image)
+/// What the octree is made of.
+struct Quantities
 {
-  const FloatField index = tyndall::ReadChosenCells(filter, RefractiveIndex, image, "ior", Need::Required, { 1 });
-  FloatField sigma_a, sigma_s;
+  FloatField index, sigma_a, sigma_s;
+  tyndall::Medium medium;
+};
+
+Quantities Read(vtkRefractionOctree* filter, vtkImageData* image)
+{
+  Quantities read;
+  read.index = tyndall::ReadChosenCells(filter, RefractiveIndex, image, "ior", Need::Required, { 1 });
   if (filter->GetIncludeExtinction())
   {
-    sigma_a = tyndall::ReadChosenCells(filter, Absorption, image, "sigma_a", Need::Required);
-    sigma_s = tyndall::ReadChosenCells(filter, Scattering, image, "sigma_s", Need::Required);
+    read.sigma_a = tyndall::ReadChosenCells(filter, Absorption, image, "sigma_a", Need::Required);
+    read.sigma_s = tyndall::ReadChosenCells(filter, Scattering, image, "sigma_s", Need::Required);
   }
-  tyndall::Medium medium;
-  medium.grid = tyndall::GridOf(image);
-  medium.sigma_a = sigma_a;
-  medium.sigma_s = sigma_s;
-  return tyndall::BuildOctree(medium, index, SettingsOf(filter), filter->GetDevice(), tyndall::MonitorOf(filter));
+  read.medium.grid = tyndall::GridOf(image);
+  read.medium.sigma_a = read.sigma_a;
+  read.medium.sigma_s = read.sigma_s;
+  return read;
+}
+
+tyndall::Octree Build(vtkRefractionOctree* filter, vtkImageData* image)
+{
+  const Quantities read = Read(filter, image);
+  return tyndall::BuildOctree(
+    read.medium, read.index, SettingsOf(filter), filter->GetDevice(), tyndall::MonitorOf(filter));
+}
+
+/// Levels of a rank's block as those of the voxels that its output is to have. All ranks call it.
+std::vector<std::uint8_t> SpreadToHeld(
+  tyndall::Communicator& communicator, const tyndall::PieceBlocks& pieces, const std::vector<std::uint8_t>& levels)
+{
+  std::vector<float> values(levels.begin(), levels.end());
+  pieces.SpreadToHeld(communicator, values, 1);
+  return std::vector<std::uint8_t>(values.begin(), values.end());
 }
 
 void AddLevels(vtkImageData* output, std::vector<std::uint8_t>&& levels)
@@ -105,8 +133,70 @@ int vtkRefractionOctree::RequestInformation(
 int vtkRefractionOctree::RequestUpdateExtent(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  tyndall::AskForAll(request, inputs[0], outputs);
+  const bool asPiece = tyndall::EachAsksForItsPiece(request, outputs);
+  tyndall::AskForAllBut(asPiece ? 0 : -1, request, inputs, 1, outputs);
   return 1;
+}
+
+void vtkRefractionOctree::Write(vtkInformationVector* outputs, tyndall::Octree&& octree)
+{
+  vtkImageData* const output = vtkImageData::GetData(outputs, 0);
+  if (!octree.levels.empty())
+  {
+    AddLevels(output, std::move(octree.levels));
+  }
+  tyndall::AddFact(output, "left_out", octree.leftOut);
+  tyndall::AddFact(output, "device", std::vector<std::string>{ octree.device });
+  this->Seconds = octree.seconds;
+  this->DeviceName = octree.device;
+  this->LeftOut = tyndall::Lines(octree.leftOut);
+}
+
+/// Each rank the levels of its piece.
+/// @return false, on all ranks, where each is to have the whole
+bool vtkRefractionOctree::BuildPiece(vtkInformation* request, vtkMultiProcessController* ranks,
+  vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  vtkImageData* const image = vtkImageData::GetData(inputs[0]);
+  vtkInformation* const asking = tyndall::AskingPort(request, outputs);
+  const std::optional<tyndall::AgreedBlocks> agreed =
+    tyndall::AgreeOnBlocks(ranks, this, tyndall::EachAsksForItsPiece(request, outputs), asking, image);
+  if (!agreed)
+  {
+    return false;
+  }
+  tyndall::Communicator& communicator = *agreed->communicator;
+  const tyndall::PieceBlocks& pieces = *agreed->pieces;
+  vtkSmartPointer<vtkImageData> own;
+  Quantities read;
+  communicator.Together([&] {
+    own = pieces.HasOwn() ? pieces.OwnImage(image) : nullptr;
+    if (own)
+    {
+      read = Read(this, own);
+    }
+  });
+  tyndall::Octree octree = tyndall::BuildOctreeInBlocks(
+    communicator, pieces.Partition(), read.medium, read.index, SettingsOf(this), tyndall::MonitorOf(this));
+  const tyndall::BrickedBytes all =
+    tyndall::BytesOfAll(communicator, pieces.Partition(), octree.levels, tyndall::Receivers::First);
+  octree.levels = SpreadToHeld(communicator, pieces, octree.levels);
+
+  vtkHyperTreeGrid* const nodes = vtkHyperTreeGrid::GetData(outputs, 1);
+  double count = 0.0;
+  communicator.Together([&] {
+    if (communicator.Rank() == 0)
+    {
+      count = static_cast<double>(tyndall::FillWithNodes(pieces.Partition().whole, octree.topLevel, all, nodes));
+    }
+  });
+  this->NodeCount = static_cast<vtkIdType>(communicator.Largest({ count })[0]);
+  tyndall::TellExtent(asking, outputs->GetInformationObject(1), nodes->GetExtent());
+  vtkImageData* const output = vtkImageData::GetData(outputs, 0);
+  tyndall::PassOn(image, output);
+  pieces.KeepHeld(output);
+  this->Write(outputs, std::move(octree));
+  return true;
 }
 
 int vtkRefractionOctree::RequestData(
@@ -116,7 +206,10 @@ int vtkRefractionOctree::RequestData(
   this->Seconds = 0.0;
   this->DeviceName.clear();
   this->LeftOut.clear();
-  return tyndall::Guarded(this, request, given, outputs, [&](vtkInformationVector** inputs) {
+  const tyndall::WorkOnPieces onPieces = { 0, [&](vtkMultiProcessController* ranks, vtkInformationVector** inputs) {
+                                            return this->BuildPiece(request, ranks, inputs, outputs);
+                                          } };
+  return tyndall::Guarded(this, request, given, outputs, onPieces, [&](vtkInformationVector** inputs) {
     vtkImageData* image = vtkImageData::GetData(inputs[0]);
     tyndall::Octree octree = Build(this, image);
 
@@ -128,14 +221,8 @@ int vtkRefractionOctree::RequestData(
     tyndall::TellExtent(tyndall::AskingPort(request, outputs), outputs->GetInformationObject(1), nodes->GetExtent());
     vtkImageData* output = vtkImageData::GetData(outputs, 0);
     tyndall::PassOn(image, output);
-    AddLevels(output, std::move(octree.levels));
-    tyndall::AddFact(output, "left_out", octree.leftOut);
-    tyndall::AddFact(output, "device", std::vector<std::string>{ octree.device });
+    this->Write(outputs, std::move(octree));
     tyndall::KeepWhatIsAskedFor(outputs->GetInformationObject(0), output);
-
-    this->Seconds = octree.seconds;
-    this->DeviceName = octree.device;
-    this->LeftOut = tyndall::Lines(octree.leftOut);
   });
 }
 

@@ -7,6 +7,13 @@
 
 #include <string>
 
+namespace tyndall
+{
+struct Octree;
+}
+
+class vtkMultiProcessController;
+
 /**
  * @class vtkRefractionOctree
  * @brief groups voxels of nearly equal refractive index, so that photons cross them in one step
@@ -32,8 +39,9 @@
  * A grid whose size is not a power of two is treated as if its last voxel were repeated: nodes at its upper faces may
  * stick out of it. In output 1 nodes wholly outside are masked.
  *
- * In a parallel pipeline nodes cross the borders of pieces, so every rank asks for the whole extent, and hands on the
- * piece of output 0 that it was asked for; output 1 is on the first rank.
+ * In a parallel pipeline every rank has its piece, and ranks tell each other of nodes that lie in several of them: the
+ * levels are those of the whole. Output 1 is on the first rank. Where pieces make up no whole each rank has all of it,
+ * and hands on the piece of output 0 that it was asked for.
  *
  * Cells that are hidden by `vtkGhostType` are empty.
  *
@@ -101,6 +109,10 @@ protected:
 private:
   vtkRefractionOctree(const vtkRefractionOctree&) = delete;
   void operator=(const vtkRefractionOctree&) = delete;
+
+  bool BuildPiece(vtkInformation* request, vtkMultiProcessController* ranks, vtkInformationVector** inputs,
+    vtkInformationVector* outputs);
+  void Write(vtkInformationVector* outputs, tyndall::Octree&& octree);
 
   double Tolerance;
   bool IncludeExtinction;

@@ -157,7 +157,7 @@ int vtkScatteringSolver::GiveOrSolve(vtkInformation* request, vtkInformationVect
                                       this->OverRanks = ranks != nullptr;
                                       return this->GiveOrSolvePiece(request, ranks, inputs, outputs);
                                     } };
-  onPieces.besides = UNCOLLIDED;
+  onPieces.others = { UNCOLLIDED };
   const int done = tyndall::Guarded(this, request, given, outputs, onPieces, [&](vtkInformationVector** inputs) {
     if (std::exchange(this->SolvedInPieces, false))
     {

@@ -4,6 +4,8 @@
 #include "Common/LightTransportData.h"
 #include "Common/PhaseFunctionData.h"
 #include "Device/Device.h"
+#include "Ranks/ControllerCommunicator.h"
+#include "Ranks/Ranks.h"
 #include "Ranks/WholeImage.h"
 #include "Refraction/Index/RefractiveMedium.h"
 #include "Scene/MeshSolids.h"
@@ -18,6 +20,7 @@
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <memory>
 #include <numeric>
@@ -27,6 +30,7 @@
 namespace
 {
 using tyndall::Material;
+using tyndall::RefractiveMedium;
 using tyndall::Rgb;
 using tyndall::Solid;
 using tyndall::Triple;
@@ -129,17 +133,58 @@ tyndall::RefractiveMediumSettings SettingsOf(vtkMeshVoxelizer* filter, const std
   return settings;
 }
 
-void Pack(const tyndall::RefractiveMediumSettings& settings, tyndall::RefractiveMedium&& medium, vtkImageData* output)
+/// What of the output is to be made.
+struct AskedVoxels
+{
+  tyndall::VoxelBox made; ///< with ghost cells; without voxels where there are more ranks
+  tyndall::VoxelBox own;
+  bool ofWhole = false; ///< those that all ranks are asked for make up the grid, or this is all of it
+};
+
+/// The voxels of an extent of points; a flat one has one layer of them.
+tyndall::VoxelBox VoxelsOf(const std::array<int, 6>& extent, const tyndall::Grid& grid)
+{
+  tyndall::VoxelBox box;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const int low = std::clamp(extent[2 * axis], 0, grid.size[axis] - 1);
+    box.first[axis] = low;
+    box.size[axis] = std::clamp(extent[2 * axis + 1], low + 1, grid.size[axis]) - low;
+  }
+  return box;
+}
+
+/// @param divided  whether each rank is asked for a piece of its own
+AskedVoxels VoxelsAskedFor(vtkInformation* output, const tyndall::Grid& grid, bool divided)
+{
+  using Pipeline = vtkStreamingDemandDrivenPipeline;
+  std::array<int, 6> update;
+  output->Get(Pipeline::UPDATE_EXTENT(), update.data());
+  const tyndall::AskedPiece piece = tyndall::AskedPieceOf(output, update);
+  AskedVoxels asked;
+  if (!piece.IsEmpty())
+  {
+    asked.made = VoxelsOf(piece.withGhosts, grid);
+    asked.own = VoxelsOf(piece.own, grid);
+  }
+  const bool all = VoxelsOf(update, grid).VoxelCount() == grid.VoxelCount();
+  asked.ofWhole = all && (divided || output->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()) <= 1);
+  return asked;
+}
+
+void Pack(const tyndall::RefractiveMediumSettings& settings, const tyndall::VoxelBox& box,
+  tyndall::RefractiveMedium&& medium, vtkImageData* output)
 {
   const tyndall::Grid& grid = settings.grid;
-  output->SetExtent(0, grid.size[0], 0, grid.size[1], 0, grid.size[2]);
+  const auto end = [&](int axis) { return box.first[axis] + box.size[axis]; };
+  output->SetExtent(box.first[0], end(0), box.first[1], end(1), box.first[2], end(2));
   output->SetOrigin(grid.origin.data());
   output->SetSpacing(grid.spacing.data());
   tyndall::AddCells(output, "occupancy", std::move(medium.occupancy), 1);
   const bool constant = medium.ior.empty();
   if (constant)
   {
-    medium.ior.assign(grid.VoxelCount(), static_cast<float>(settings.outside.n)); // who asks for n is told
+    medium.ior.assign(box.VoxelCount(), static_cast<float>(settings.outside.n)); // who asks for n is told
   }
   tyndall::AddCells(output, "ior", std::move(medium.ior), 1);
   if (!constant)
@@ -267,51 +312,73 @@ int vtkMeshVoxelizer::RequestUpdateExtent(
   return 1;
 }
 
+/// The solids of all meshes.
+std::vector<Solid> vtkMeshVoxelizer::ReadSolids(vtkInformationVector** inputs)
+{
+  this->Added->Check();
+  const Material inside = { this->InsideIndex, Triple(this->InsideAbsorption), Triple(this->InsideScattering),
+    this->InsideMeanCosine };
+  const auto materialOf = [&](int number) {
+    const auto& added = this->Added->InOrder;
+    const auto found =
+      std::find_if(added.rbegin(), added.rend(), [number](const auto& material) { return material.first == number; });
+    return found == added.rend() ? inside : found->second;
+  };
+  const std::vector<vtkPolyData*> meshes = MeshesOf(inputs[0]);
+  const std::string numbers = NumbersArray(this, meshes);
+  std::vector<Solid> solids;
+  for (std::size_t i = 0; i < meshes.size(); ++i)
+  {
+    const std::string name = meshes.size() == 1 ? "The mesh" : "Mesh " + std::to_string(i);
+    std::vector<Solid> ofMesh = tyndall::SolidsOf(meshes[i], name, numbers, static_cast<int>(i), materialOf);
+    std::move(ofMesh.begin(), ofMesh.end(), std::back_inserter(solids));
+  }
+  return solids;
+}
+
+void vtkMeshVoxelizer::Note(const RefractiveMedium& medium, double volume, const Rgb& outside)
+{
+  for (const std::string& warning : medium.warnings)
+  {
+    vtkWarningMacro(<< warning);
+  }
+  this->OccupiedVolume = volume;
+  std::copy_n(outside.begin(), 3, this->UsedOutsideScattering);
+  this->Seconds = medium.seconds;
+  this->DeviceName = medium.device;
+  this->LeftOut = tyndall::Lines(medium.leftOut);
+}
+
 int vtkMeshVoxelizer::RequestData(vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs)
 {
-  this->OccupiedVolume = 0.0;
-  std::fill_n(this->UsedOutsideScattering, 3, 0.0);
-  this->Seconds = 0.0;
-  this->DeviceName.clear();
-  this->LeftOut.clear();
+  this->Note({}, 0.0, {});
   return tyndall::Guarded(this, request, given, outputs, [&](vtkInformationVector** inputs) {
-    this->Added->Check();
-    const Material inside = { this->InsideIndex, Triple(this->InsideAbsorption), Triple(this->InsideScattering),
-      this->InsideMeanCosine };
-    const auto materialOf = [&](int number) {
-      const auto& added = this->Added->InOrder;
-      const auto found =
-        std::find_if(added.rbegin(), added.rend(), [number](const auto& material) { return material.first == number; });
-      return found == added.rend() ? inside : found->second;
-    };
-    const std::vector<vtkPolyData*> meshes = MeshesOf(inputs[0]);
-    const std::string numbers = NumbersArray(this, meshes);
+    const bool divided = tyndall::EachAsksForItsPiece(request, outputs);
+    const std::unique_ptr<tyndall::Communicator> communicator =
+      tyndall::CommunicatorOf(divided ? tyndall::RanksTogether(request, outputs) : nullptr,
+        [this] { return tyndall::IsStoppedByOthers(this); });
+    vtkInformation* const asking = outputs->GetInformationObject(0);
     std::vector<Solid> solids;
-    for (std::size_t i = 0; i < meshes.size(); ++i)
+    tyndall::RefractiveMediumSettings settings;
+    AskedVoxels asked;
+    tyndall::VoxelizedPart part;
+    communicator->Together([&] {
+      solids = this->ReadSolids(inputs);
+      settings = SettingsOf(this, solids);
+      asked = VoxelsAskedFor(asking, settings.grid, divided);
+      part = tyndall::VoxelizePart(
+        *tyndall::Device::Find(this->Device), solids, settings, { asked.made, asked.own }, tyndall::MonitorOf(this));
+    });
+    tyndall::VoxelFindings all = tyndall::FindingsOfAll(*communicator, part.findings);
+    all.empty = all.empty && asked.ofWhole;
+    tyndall::RefractiveMedium medium = tyndall::Concluded(std::move(part), all, solids, settings);
+    this->Note(medium, all.volume, settings.outside.sigma_s);
+    vtkImageData* const output = vtkImageData::GetData(outputs);
+    if (asked.made.VoxelCount() > 0)
     {
-      const std::string name = meshes.size() == 1 ? "The mesh" : "Mesh " + std::to_string(i);
-      std::vector<Solid> ofMesh = tyndall::SolidsOf(meshes[i], name, numbers, static_cast<int>(i), materialOf);
-      std::move(ofMesh.begin(), ofMesh.end(), std::back_inserter(solids));
+      Pack(settings, asked.made, std::move(medium), output);
     }
-
-    const tyndall::RefractiveMediumSettings settings = SettingsOf(this, solids);
-    const std::shared_ptr<tyndall::Device> device = tyndall::Device::Find(this->Device);
-    tyndall::RefractiveMedium medium =
-      tyndall::Voxelize(*device, std::move(solids), settings, tyndall::MonitorOf(this));
-    for (const std::string& warning : medium.warnings)
-    {
-      vtkWarningMacro(<< warning);
-    }
-    this->OccupiedVolume =
-      settings.grid.VoxelVolume() * std::accumulate(medium.occupancy.begin(), medium.occupancy.end(), 0.0);
-    std::copy_n(settings.outside.sigma_s.begin(), 3, this->UsedOutsideScattering);
-    this->Seconds = medium.seconds;
-    this->DeviceName = medium.device;
-    this->LeftOut = tyndall::Lines(medium.leftOut);
-
-    vtkImageData* output = vtkImageData::GetData(outputs);
-    Pack(settings, std::move(medium), output);
-    tyndall::KeepWhatIsAskedFor(outputs->GetInformationObject(0), output);
+    tyndall::KeepWhatIsAskedFor(asking, output);
   });
 }
 

@@ -5,8 +5,16 @@
 #include "vtkImageAlgorithm.h"
 #include "vtkTyndallModule.h" // for export macro
 
+#include <array>
 #include <memory>
 #include <string>
+#include <vector>
+
+namespace tyndall
+{
+struct RefractiveMedium;
+struct Solid;
+}
 
 /**
  * @class vtkMeshVoxelizer
@@ -48,7 +56,10 @@
  * which side is outside, or degenerate ones give a warning that says how many and where; inside is what is enclosed an
  * odd number of times.
  *
- * In a parallel pipeline every rank voxelises the whole box from all pieces of the meshes and keeps its part.
+ * Only what is asked for is voxelised, an extent or a piece, with the voxels round it that the filter reaches: the same
+ * values, bit for bit, as of the whole. In a parallel pipeline every rank has the meshes whole and makes its piece;
+ * OccupiedVolume, warnings and whether n is constant are those of the whole box. Where one process asks for a part
+ * alone, OccupiedVolume and warnings are of that.
  *
  * @sa vtkRefractionOctree vtkPhotonMarcher vtkMediumRayCaster
  * @par Thanks
@@ -217,6 +228,9 @@ private:
   int SupersamplingFactor;
   int FilterSize;
   std::string Device;
+
+  std::vector<tyndall::Solid> ReadSolids(vtkInformationVector** inputs);
+  void Note(const tyndall::RefractiveMedium& medium, double volume, const std::array<double, 3>& outside);
 
   struct AddedMaterials;
   const std::unique_ptr<AddedMaterials> Added;

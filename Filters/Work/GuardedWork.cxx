@@ -199,7 +199,8 @@ int Guarded(vtkAlgorithm* filter, vtkInformation* request, vtkInformationVector*
 
 int GuardedInPieces(vtkAlgorithm* filter, vtkInformation* request, vtkInformationVector** given,
   vtkInformationVector* outputs, int port,
-  const std::function<void(vtkMultiProcessController* ranks, WholeInputs& inputs)>& work, int shares, int besides)
+  const std::function<void(vtkMultiProcessController* ranks, WholeInputs& inputs)>& work, int shares,
+  const std::vector<int>& others)
 {
   vtkMultiProcessController* const ranks = RanksTogether(request, outputs);
   return GuardedOn(ranks, filter, outputs, [&] {
@@ -211,7 +212,7 @@ int GuardedInPieces(vtkAlgorithm* filter, vtkInformation* request, vtkInformatio
         CheckDuplicates(filter, outputs);
       }
     });
-    WholeInputs inputs(ranks, filter, given, outputs, { port, besides }, shares);
+    WholeInputs inputs(ranks, filter, given, outputs, port, shares, others);
     work(ranks, inputs);
   });
 }
@@ -232,7 +233,7 @@ int Guarded(vtkAlgorithm* filter, vtkInformation* request, vtkInformationVector*
         KeepWhatIsAskedFor(outputs->GetInformationObject(0), vtkImageData::GetData(outputs, 0));
       }
     },
-    onPieces.shares, onPieces.besides);
+    onPieces.shares, onPieces.others);
 }
 
 bool AreEmptied(vtkInformationVector* outputs)

@@ -3,6 +3,7 @@
 #include "Device/Monitor.h"
 
 #include <functional>
+#include <vector>
 
 class vtkAlgorithm;
 class vtkInformation;
@@ -41,11 +42,11 @@ int Guarded(vtkAlgorithm* filter, vtkInformation* request, vtkInformationVector*
 /// @param work  is given the ranks (null: there is one) and the inputs, those of that port as they are: it may make
 ///   them whole
 /// @param shares  another port, of points of which ranks may have some each (WholeInputs.h); -1: none
-/// @param besides  another, like port; -1: none
+/// @param others  ports that stay as they are, too
 int GuardedInPieces(vtkAlgorithm* filter, vtkInformation* request, vtkInformationVector** given,
   vtkInformationVector* outputs, int port,
   const std::function<void(vtkMultiProcessController* ranks, WholeInputs& inputs)>& work, int shares = -1,
-  int besides = -1);
+  const std::vector<int>& others = {});
 
 /// Work on the piece of an input that a rank has, without any rank having all of it.
 struct WorkOnPieces
@@ -54,8 +55,8 @@ struct WorkOnPieces
   /// Called first, on all ranks together. Its answer is the same on all: false where it does nothing.
   /// @param ranks  null: this process is alone; output 0 is then cut to what was asked for
   std::function<bool(vtkMultiProcessController* ranks, vtkInformationVector** inputs)> work;
-  int shares = -1; ///< an input of points of which ranks may have some each, as they are given; -1: none
-  int besides = -1; ///< another input of which ranks have pieces; -1: none
+  int shares = -1;              ///< an input of points of which ranks may have some each, as they are given; -1: none
+  std::vector<int> others = {}; ///< further inputs that stay in pieces
 };
 
 /// The same, where it may do with pieces; where not, `work` is given wholes.

@@ -402,13 +402,13 @@ struct WholeInputs::Seen
 {
   vtkMultiProcessController* ranks;
   vtkInformationVector** given;
-  std::array<int, 2> inPieces;
-  int inShares;
+  int inPieces, inShares;
+  std::vector<int> alsoInPieces;
   std::vector<RankGlance> all;
 };
 
 WholeInputs::WholeInputs(vtkMultiProcessController* ranks, vtkAlgorithm* filter, vtkInformationVector** given,
-  vtkInformationVector* outputs, const std::array<int, 2>& inPieces, int inShares)
+  vtkInformationVector* outputs, int inPieces, int inShares, const std::vector<int>& alsoInPieces)
 {
   const int ports = filter->GetNumberOfInputPorts();
   this->Ports.assign(given, given + ports);
@@ -421,11 +421,12 @@ WholeInputs::WholeInputs(vtkMultiProcessController* ranks, vtkAlgorithm* filter,
   }
   RankGlance own;
   OnAllRanks(ranks, [&] { own = GlanceAtAll(filter, given, outputs); });
-  this->AllSeen = std::make_unique<Seen>(Seen{ ranks, given, inPieces, inShares, Share(ranks, own) });
+  this->AllSeen = std::make_unique<Seen>(Seen{ ranks, given, inPieces, inShares, alsoInPieces, Share(ranks, own) });
   NoteParts(this->AllSeen->all, ranks->GetLocalProcessId(), outputs);
   for (int port = 0; port < ports; ++port)
   {
-    if (port != inPieces[0] && port != inPieces[1] && port != inShares)
+    const bool also = std::find(alsoInPieces.begin(), alsoInPieces.end(), port) != alsoInPieces.end();
+    if (port != inPieces && port != inShares && !also)
     {
       this->MakeWhole(port);
     }
@@ -436,7 +437,7 @@ WholeInputs::~WholeInputs() = default;
 
 void WholeInputs::Replace(vtkDataObject* data)
 {
-  const auto port = static_cast<std::size_t>(this->AllSeen->inPieces[0]);
+  const auto port = static_cast<std::size_t>(this->AllSeen->inPieces);
   vtkNew<vtkInformation> information;
   information->Set(vtkDataObject::DATA_OBJECT(), data);
   this->Kept[port] = vtkSmartPointer<vtkInformationVector>::New();
@@ -450,16 +451,17 @@ void WholeInputs::MakeWhole()
   {
     return;
   }
-  for (int& port : this->AllSeen->inPieces)
+  if (this->AllSeen->inPieces != NoPort)
   {
-    if (port != NoPort)
-    {
-      this->MakeWhole(std::exchange(port, NoPort));
-    }
+    this->MakeWhole(std::exchange(this->AllSeen->inPieces, NoPort));
   }
   if (this->AllSeen->inShares != NoPort)
   {
     this->MakeWhole(this->AllSeen->inShares);
+  }
+  for (const int port : std::exchange(this->AllSeen->alsoInPieces, {}))
+  {
+    this->MakeWhole(port);
   }
 }
 

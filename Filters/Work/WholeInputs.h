@@ -3,7 +3,6 @@
 #include "vtkNew.h"
 #include "vtkSmartPointer.h"
 
-#include <array>
 #include <memory>
 #include <vector>
 
@@ -33,11 +32,13 @@ public:
   /// @param ranks  null: this process is alone, and has what it is given
   /// @param given  by port
   /// @param outputs  notes for KeepWhatIsAskedFor what each rank is asked for
-  /// @param inPieces  ports that stay as they are given until MakeWhole
+  /// @param inPieces  a port that stays as it is given until MakeWhole, and which Replace is of
+  /// @param alsoInPieces  others that stay so, too
   /// @param inShares  another, of points of which ranks may have some each (photons): together they are all
   /// @throws InvalidInput on all ranks with the same words where pieces make no whole
   WholeInputs(vtkMultiProcessController* ranks, vtkAlgorithm* filter, vtkInformationVector** given,
-    vtkInformationVector* outputs, const std::array<int, 2>& inPieces = { NoPort, NoPort }, int inShares = NoPort);
+    vtkInformationVector* outputs, int inPieces = NoPort, int inShares = NoPort,
+    const std::vector<int>& alsoInPieces = {});
   ~WholeInputs();
 
   /// By port.

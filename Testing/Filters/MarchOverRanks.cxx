@@ -4,6 +4,7 @@
 
 #include "vtkPhotonEmitter.h"
 #include "vtkPhotonMarcher.h"
+#include "vtkRefractionOctree.h"
 
 #include "Device/Device.h"
 #include "Device/Errors.h"
@@ -116,18 +117,13 @@ vtkSmartPointer<vtkPolyData> Photons()
   return photons;
 }
 
-/// Of single voxels.
-vtkSmartPointer<vtkImageData> Octree()
+/// Where a scene's octree comes from.
+enum class Octree
 {
-  vtkNew<vtkImageData> octree;
-  octree->SetDimensions(Size[0] + 1, Size[1] + 1, Size[2] + 1);
-  vtkNew<vtkFloatArray> levels;
-  levels->SetName("octree_level");
-  levels->SetNumberOfTuples(octree->GetNumberOfCells());
-  levels->Fill(0.0);
-  octree->GetCellData()->AddArray(levels);
-  return octree;
-}
+  None,
+  InPieces, ///< a filter, of which each rank has its piece
+  Whole     ///< all of it, on each rank
+};
 
 /// How photons are marched.
 struct Asked
@@ -137,7 +133,7 @@ struct Asked
   bool emits = false;                           ///< photons are vtkPhotonEmitter's; else all ranks have the same
   double precision = 0.0;                       ///< of powers, over what entered
   int decomposition = vtkPhotonMarcher::BLOCKS; ///< that is compared with the whole
-  bool octree = false;                          ///< which cannot be had in blocks
+  Octree octree = Octree::None;
 };
 
 /// What a rank has of the light.
@@ -190,9 +186,19 @@ struct Scene
     {
       this->Marcher->SetPhotonsData(Photons());
     }
-    if (asked.octree)
+    this->Levels->SetInputConnection(this->Medium->GetOutputPort());
+    this->Levels->SetTolerance(0.1);
+    if (asked.octree == Octree::InPieces)
     {
-      this->Marcher->SetOctreeData(Octree());
+      this->Marcher->SetOctreeConnection(this->Levels->GetOutputPort());
+    }
+    if (asked.octree == Octree::Whole)
+    {
+      this->Levels->Update();
+      vtkNew<vtkImageData> levels;
+      levels->ShallowCopy(this->Levels->GetOutputDataObject(0));
+      this->Marcher->SetOctreeData(levels);
+      this->Medium->CellsMade = 0;
     }
     this->Marcher->SetInputConnection(this->Medium->GetOutputPort());
     this->Marcher->SetDecomposition(decomposition);
@@ -208,6 +214,7 @@ struct Scene
 
   vtkMPIController* Ranks;
   vtkNew<Waves> Medium, Box;
+  vtkNew<vtkRefractionOctree> Levels;
   vtkNew<vtkPhotonEmitter> Emitter;
   vtkNew<vtkPhotonMarcher> Marcher;
 };
@@ -269,7 +276,7 @@ bool HasTheSameLight(vtkMPIController* controller, const Asked& asked)
             name + ": other paths", rank) &&
     right;
   right = Expect(whole.cellsOfMedium == all, name + ": had not the whole", rank) && right;
-  right = Expect(ranks == 1 || asked.ghosts > 0 || asked.octree || 2 * block.cellsOfMedium <= all + Size[1] * Size[2],
+  right = Expect(ranks == 1 || asked.ghosts > 0 || 2 * block.cellsOfMedium <= all + Size[1] * Size[2],
             name + ": had more of the medium than its piece", rank) &&
     right;
   if (asked.emits)
@@ -348,9 +355,10 @@ int main(int argc, char* argv[])
     const Asked all[] = { { "photons that all have" }, { "with a ghost layer", 1, 1 }, { "with paths", 1, 0, 9 },
       { "scattered", 0, 1, 0, 1, false, 1e-9 }, { "emitted", 1, 0, 5, 1, true },
       { "emitted in batches", 1, 1, 0, 3, true }, { "emitted, scattered", 3, 0, 5, 1, true, 1e-9 },
-      { "too large for each", 1, 0, 5, 1, true, 0.0, automatic },
-      { "too large, but with an octree", 1, 0, 5, 1, true, 0.0, automatic, true } };
-    setenv("OMPI_COMM_WORLD_LOCAL_SIZE", "2000000000", 1); // so many ranks on a machine: none has room for the whole
+      { "automatic", 1, 0, 5, 1, true, 0.0, automatic },
+      { "automatic, with an octree", 1, 0, 5, 1, true, 0.0, automatic, Octree::InPieces },
+      { "with an octree that all have", 1, 1, 0, 1, true, 0.0, automatic, Octree::Whole },
+      { "scattered, with an octree", 0, 1, 0, 1, false, 1e-9, automatic, Octree::InPieces } };
     for (const Asked& asked : all)
     {
       right = HasTheSameLight(controller, asked) && right;

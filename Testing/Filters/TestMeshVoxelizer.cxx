@@ -315,6 +315,49 @@ void ConstantIndexIsLeftOut(test::Claims& claims)
     "left_out says so");
 }
 
+/// What is asked for, by an extent or a piece, has the values of the whole, and no more of it is made.
+void AskedForPartsAreMadeAlone(test::Claims& claims)
+{
+  vtkNew<vtkMeshVoxelizer> filter;
+  test::Errors errors(filter);
+  filter->SetInputDataObject(Ball(0.0, 1.0));
+  filter->SetSampleDimensions(20, 16, 18);
+  filter->SetIndexNoise(0.1);
+  filter->Update();
+  vtkNew<vtkImageData> whole;
+  whole->DeepCopy(filter->GetOutput());
+  const auto expect = [&](int cells, const std::string& what) {
+    vtkImageData* const part = filter->GetOutput();
+    claims.That(errors.None() && part->GetNumberOfCells() == cells, what + " is made alone");
+    vtkNew<vtkImageData> wanted;
+    wanted->ShallowCopy(whole);
+    wanted->Crop(part->GetExtent());
+    bool same = part->GetCellData()->HasArray("ior_gradient") != 0;
+    for (const char* name : { "occupancy", "ior", "ior_gradient", "sigma_a", "sigma_s" })
+    {
+      vtkDataArray *const found = part->GetCellData()->GetArray(name),
+                          *const there = wanted->GetCellData()->GetArray(name);
+      same = same && found && there && found->GetNumberOfValues() == there->GetNumberOfValues();
+      for (vtkIdType i = 0; same && i < found->GetNumberOfTuples(); ++i)
+      {
+        for (int c = 0; same && c < found->GetNumberOfComponents(); ++c)
+        {
+          same = found->GetComponent(i, c) == there->GetComponent(i, c);
+        }
+      }
+    }
+    claims.That(same, what + " has the values of the whole");
+  };
+  const int extent[6] = { 3, 9, 5, 6, 0, 18 };
+  filter->Modified();
+  filter->UpdateExtent(extent);
+  expect(6 * 1 * 18, "an extent");
+  claims.That(filter->GetOccupiedVolume() < 1.0, "OccupiedVolume is that of the part");
+  filter->Modified();
+  filter->UpdatePiece(1, 4, 0);
+  expect(20 * 16 * 18 / 4, "a piece");
+}
+
 void BadInputIsOneError(test::Claims& claims)
 {
   vtkNew<vtkMeshVoxelizer> filter;
@@ -409,6 +452,7 @@ int TestMeshVoxelizer(int, char*[])
   NumbersOfMaterialsAreWhole(claims);
   MaterialsAreChecked(claims);
   ConstantIndexIsLeftOut(claims);
+  AskedForPartsAreMadeAlone(claims);
   BadInputIsOneError(claims);
   return claims.Result();
 }

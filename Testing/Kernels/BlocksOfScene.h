@@ -5,6 +5,7 @@
 #include "Distribution/BoxExchange.h"
 #include "Distribution/RanksInThreads.h"
 #include "Photons/Distributed/PhotonsInBlocks.h"
+#include "Refraction/Octree/RefractionOctree.h"
 
 #include <gtest/gtest.h>
 
@@ -46,11 +47,16 @@ struct BlockOfScene
       }
       this->places.push_back(scene.medium.grid.IndexOf(voxel));
     }
+    for (std::size_t i = 0; i < this->places.size() && !scene.levels.empty(); ++i)
+    {
+      this->levels.push_back(scene.levels[this->places[i]]);
+    }
   }
   BlockOfScene(const BlockOfScene&) = delete;
   BlockOfScene& operator=(const BlockOfScene&) = delete;
 
   tyndall::Field Index() const { return { this->ior.empty() ? nullptr : this->ior.data(), 1 }; }
+  const std::uint8_t* Levels() const { return this->levels.empty() ? nullptr : this->levels.data(); }
   /// Values of the box to those of the whole.
   void Put(const std::vector<float>& from, std::vector<float>& to, std::size_t voxels) const
   {
@@ -64,6 +70,7 @@ struct BlockOfScene
 
   tyndall::Medium medium;
   std::vector<float> sigma_a, sigma_s, ior, g;
+  std::vector<std::uint8_t> levels;
   std::vector<std::size_t> places; ///< in the whole
 };
 
@@ -93,7 +100,8 @@ inline tyndall::PhotonLight LightOfAll(tyndall::Device& device, const PhotonScen
   tyndall::RunInThreads(ranks, [&](tyndall::Communicator& communicator) {
     const int rank = communicator.Rank();
     const BlockOfScene part(scene, partition.blocks[rank]);
-    tyndall::PhotonMarcherInBlocks marcher(device, communicator, partition, part.medium, part.Index(), scene.settings);
+    tyndall::PhotonMarcherInBlocks marcher(
+      device, communicator, partition, part.medium, part.Index(), scene.settings, part.Levels());
     found[rank] = marcher.March(ShareOf(photons, rank, ranks));
     handed[rank] = marcher.Traffic();
   });
@@ -142,6 +150,33 @@ inline PhotonScene SmallScene(std::size_t components = 1)
 {
   PhotonScene scene({ 12, 9, 7 }, 0.2, 0.9, 0.0f, 0.0f);
   Randomise(scene, components);
+  return scene;
+}
+
+/// Gives a scene the octree of its index.
+inline void SetOctree(PhotonScene& scene, double tolerance)
+{
+  tyndall::OctreeSettings settings;
+  settings.tolerance = tolerance;
+  scene.levels = tyndall::BuildOctree(scene.Medium(), scene.Index(), settings).levels;
+}
+
+/// A scene whose octree has nodes as large as blocks: waves, or a ball of glass.
+inline PhotonScene SceneOfNodes(bool glass, std::size_t components = 1)
+{
+  PhotonScene scene({ 21, 18, 17 }, 0.1, 0.9, 0.0f, 0.0f);
+  Randomise(scene, components);
+  if (glass)
+  {
+    scene.SetBall(0.6, 1.5, 1.0);
+  }
+  else
+  {
+    scene.SetIndex([](double x, double y, double z) {
+      return 1.2 + 0.05 * std::sin(2.0 * x + 1.0) * std::cos(y) * std::cos(2.0 * z + 0.5);
+    });
+  }
+  SetOctree(scene, glass ? 0.05 : 0.02);
   return scene;
 }
 

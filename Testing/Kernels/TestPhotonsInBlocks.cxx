@@ -63,7 +63,8 @@ protected:
     RunInThreads(ranks, [&](Communicator& communicator) {
       const int rank = communicator.Rank();
       const BlockOfScene part(scene, partition.blocks[rank]);
-      PhotonMarcherInBlocks marcher(GetDevice(), communicator, partition, part.medium, part.Index(), scene.settings);
+      PhotonMarcherInBlocks marcher(
+        GetDevice(), communicator, partition, part.medium, part.Index(), scene.settings, part.Levels());
       found[rank] = marcher.Paths(ShareOf(photons, rank, ranks), count);
     });
     for (int rank = 1; rank < ranks; ++rank)
@@ -360,6 +361,37 @@ TEST_F(PhotonBlocks, AreDarkWithoutPhotons)
   ExpectSameOnRanks(GetDevice(), scene, {}, { 3 });
 }
 
+/// Steps look into nodes that lie in other blocks.
+TEST_F(PhotonBlocks, HaveItByTheStepsOfAnOctree)
+{
+  for (const bool glass : { false, true })
+  {
+    PhotonScene scene = SceneOfNodes(glass);
+    const int largest = *std::max_element(scene.levels.begin(), scene.levels.end());
+    EXPECT_GE(largest, 3) << "no node as large as a block";
+    const std::vector<Photon> photons = AnyPhotons(scene.medium.grid, 2000);
+    for (const int order : { 1, 2 })
+    {
+      SCOPED_TRACE("order " + std::to_string(order) + (glass ? ", glass" : ", waves"));
+      scene.settings.order = order;
+      ExpectSameOnRanks(GetDevice(), scene, photons, { 1, 2, 3, 8 });
+    }
+    scene.settings.leaveOut = false;
+    ExpectSameOnRanks(GetDevice(), scene, photons, { 5 });
+  }
+}
+
+TEST_F(PhotonBlocks, HaveItByAnOctreeInUnevenBlocks)
+{
+  PhotonScene scene = SmallScene();
+  scene.SetBall(0.7, 1.4, 1.0);
+  SetOctree(scene, 0.2);
+  const std::vector<Photon> photons = AnyPhotons(scene.medium.grid, 1000);
+  const PhotonLight expected = scene.March(GetDevice(), photons);
+  ExpectLightOfTheWhole(LightOfAll(GetDevice(), scene, UnevenBlocks(scene), photons), expected);
+  ExpectSamePaths(scene, UnevenBlocks(scene), photons, 60);
+}
+
 /// Whatever goes wrong on one rank is one error on each, and none waits for the others.
 class PhotonBlocksFail : public PhotonBlocks
 {
@@ -390,7 +422,7 @@ protected:
       change(rank, { part, given, settings, photons, monitor });
       try
       {
-        PhotonMarcherInBlocks(GetDevice(), communicator, given, part.medium, part.Index(), settings)
+        PhotonMarcherInBlocks(GetDevice(), communicator, given, part.medium, part.Index(), settings, part.Levels())
           .March(photons, monitor);
       }
       catch (const std::exception& error)
@@ -428,6 +460,8 @@ TEST_F(PhotonBlocksFail, TogetherWhereTheyDisagree)
 {
   ExpectErrors("disagree about settings", [](int rank, Given given) { given.settings.stepSize = 1.0 + rank; });
   ExpectErrors("disagree about settings", [](int rank, Given given) { given.settings.seed = 1 + rank; });
+  ExpectErrors("has no octree levels",
+    [](int rank, Given given) { given.part.levels.assign(rank == 1 ? 0 : given.part.medium.grid.VoxelCount(), 0); });
   ExpectErrors("disagree about the grid", [](int rank, Given given) { given.partition.whole.origin[0] += rank; });
 }
 
@@ -444,6 +478,10 @@ TEST_F(PhotonBlocksFail, TogetherWhereOneIsStopped)
 TEST_F(PhotonBlocksFail, WithWordsOnWhatIsNotCarriedFromRankToRank)
 {
   ExpectErrors("Unsafe", [](int, Given given) { given.settings.sums = MarchSettings::Sums::Unsafe; });
-  EXPECT_NE(NotInBlocks({}, true).find("octree"), std::string::npos);
+  ExpectErrors("octree by the integrator of order 4", [](int, Given given) {
+    given.settings.order = 4;
+    given.part.levels.assign(given.part.medium.grid.VoxelCount(), 0);
+  });
+  EXPECT_EQ(NotInBlocks({}, true), "");
   EXPECT_EQ(NotInBlocks({}, false), "");
 }

@@ -111,6 +111,16 @@ TEST_F(ScatteredBlocks, HaveItWhereTheIndexJumpsInOneBlock)
   ExpectSameOnRanks(GetDevice(), scene, AnyPhotons(scene.medium.grid, 500), { 3, 8 });
 }
 
+TEST_F(ScatteredBlocks, HaveItByTheStepsOfAnOctree)
+{
+  for (const std::size_t components : { std::size_t(1), std::size_t(3) })
+  {
+    PhotonScene scene = SceneOfNodes(components == 1, components);
+    scene.settings.maximumOrders = 0;
+    ExpectSameOnRanks(GetDevice(), scene, AnyPhotons(scene.medium.grid, 500), { 1, 3, 8 });
+  }
+}
+
 TEST_F(ScatteredBlocks, HaveItByEachPhaseFunction)
 {
   PhotonScene scene = ScatteringScene();

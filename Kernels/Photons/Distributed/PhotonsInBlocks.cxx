@@ -57,9 +57,9 @@ void RequireSame(Communicator& communicator, const MarchSettings& settings)
 
 std::string NotInBlocks(const MarchSettings& settings, bool octree)
 {
-  if (octree)
+  if (octree && settings.order == 4)
   {
-    return "the steps of an octree";
+    return "the steps of an octree by the integrator of order 4, which looks at the index as far ahead as nodes reach";
   }
   return settings.sums == MarchSettings::Sums::Unsafe ? "Unsafe sums" : std::string();
 }
@@ -78,8 +78,9 @@ public:
   {
   }
 
-  void CheckInput(const Medium& medium, const Field& ior) const;
-  void Prepare(const Medium& medium, const Field& ior);
+  /// @param octree  whether any rank has levels
+  void CheckInput(const Medium& medium, const Field& ior, const std::uint8_t* levels, bool octree) const;
+  void Prepare(const Medium& medium, const Field& ior, const std::uint8_t* levels, bool octree);
   PhotonLight March(const std::vector<Photon>& share, const Monitor& monitor);
   std::vector<PhotonPath> Paths(const std::vector<Photon>& share, std::size_t count);
 
@@ -89,6 +90,7 @@ private:
   MarchTraits TraitsOfAllRanks(const Medium& medium, const Field& ior);
   VoxelBox KnownOf(int rank, bool bends) const;
   std::vector<float> IndexAround(const Field& ior, bool bends);
+  void ShareNodes(const std::uint8_t* levels);
   void PrepareScattering(const Medium& medium, const Field& index);
   PhotonLight MarchThese(const std::vector<Photon>& share, const PhotonNumbers& numbers, const Monitor& monitor);
   PhotonLight MarchInBatches(const std::vector<Photon>& share, const PlaceOfShare& place, const Monitor& monitor);
@@ -107,13 +109,15 @@ private:
   const VoxelBox Own;
   const bool Has; ///< voxels
   MarchTraits Traits;
+  std::unique_ptr<BrickedBytes> Nodes;           ///< of the whole octree; null: there is none
   std::unique_ptr<tyndall::Rounds> Rounds;       ///< of a march
   std::unique_ptr<MarchMedium> Through;          ///< null without voxels
   std::unique_ptr<MarchedLight> Light;           ///< likewise
   std::unique_ptr<ScatteredChannels> Scattering; ///< null: photons are followed to where they are first scattered
 };
 
-void PhotonMarcherInBlocks::Rank::CheckInput(const Medium& medium, const Field& ior) const
+void PhotonMarcherInBlocks::Rank::CheckInput(
+  const Medium& medium, const Field& ior, const std::uint8_t* levels, bool octree) const
 {
   this->Partition.Check();
   Require(
@@ -125,8 +129,12 @@ void PhotonMarcherInBlocks::Rank::CheckInput(const Medium& medium, const Field& 
     Require(medium.grid.size == this->Own.size,
       "The medium of rank " + std::to_string(this->Others.Rank()) + " does not have the size of its block.");
     CheckIndex(ior, medium.grid);
+    CheckLevels(levels, medium.grid, this->Partition.whole);
+    Require((levels != nullptr) == octree,
+      "The block of rank " + std::to_string(this->Others.Rank()) +
+        (levels ? " has octree levels and others have none." : " has no octree levels and others have."));
   }
-  const std::string refused = NotInBlocks(this->Settings, false);
+  const std::string refused = NotInBlocks(this->Settings, octree);
   Require(refused.empty(), "A medium that is spread over ranks is not marched through with " + refused + ".");
 }
 
@@ -169,7 +177,22 @@ std::vector<float> PhotonMarcherInBlocks::Rank::IndexAround(const Field& ior, bo
   return ValuesInBox(this->Others, this->Partition, known, own, 1);
 }
 
-void PhotonMarcherInBlocks::Rank::Prepare(const Medium& medium, const Field& ior)
+/// The nodes of all ranks' octree levels, on each.
+void PhotonMarcherInBlocks::Rank::ShareNodes(const std::uint8_t* levels)
+{
+  std::vector<std::uint8_t> own;
+  this->Others.Together([&] { own = this->Has ? this->Through->OwnNodes(levels) : own; });
+  this->Nodes = std::make_unique<BrickedBytes>(BytesOfAll(this->Others, this->Partition, own, Receivers::All));
+  this->Others.Together([&] {
+    if (this->Has)
+    {
+      this->Through->SetNodes(*this->Nodes);
+    }
+  });
+}
+
+void PhotonMarcherInBlocks::Rank::Prepare(
+  const Medium& medium, const Field& ior, const std::uint8_t* levels, bool octree)
 {
   this->Traits = this->TraitsOfAllRanks(medium, ior);
   const bool bends = !this->Settings.leaveOut || this->Traits.index.Varies();
@@ -180,10 +203,14 @@ void PhotonMarcherInBlocks::Rank::Prepare(const Medium& medium, const Field& ior
     {
       const MarchedPart block = { this->Partition.whole, this->Own, this->KnownOf(this->Others.Rank(), bends) };
       this->Through =
-        std::make_unique<MarchMedium>(this->TheDevice, medium, known, this->Settings, this->Traits, block);
-      this->Light = std::make_unique<MarchedLight>(*this->Through);
+        std::make_unique<MarchMedium>(this->TheDevice, medium, known, this->Settings, this->Traits, block, octree);
     }
   });
+  if (octree && bends)
+  {
+    this->ShareNodes(levels);
+  }
+  this->Others.Together([&] { this->Light = this->Has ? std::make_unique<MarchedLight>(*this->Through) : nullptr; });
   if (this->Settings.maximumOrders != 1 && this->Traits.scatters)
   {
     this->PrepareScattering(medium, known);
@@ -201,7 +228,8 @@ void PhotonMarcherInBlocks::Rank::PrepareScattering(const Medium& medium, const 
   const bool coloured = this->Traits.coloured || largest[1] > 0.0;
   this->Others.Together([&] {
     this->Scattering = std::make_unique<ScatteredChannels>(this->TheDevice,
-      ScatteredChannels::Block{ this->Through.get(), medium, index, this->Settings, -largest[0], coloured });
+      ScatteredChannels::Block{
+        this->Through.get(), medium, index, this->Settings, -largest[0], coloured, this->Nodes.get() });
   });
 }
 
@@ -402,13 +430,15 @@ std::vector<PhotonPath> PhotonMarcherInBlocks::Rank::Paths(const std::vector<Pho
 }
 
 PhotonMarcherInBlocks::PhotonMarcherInBlocks(Device& device, Communicator& communicator,
-  const BlockPartition& partition, const Medium& medium, const Field& ior, const MarchSettings& settings)
+  const BlockPartition& partition, const Medium& medium, const Field& ior, const MarchSettings& settings,
+  const std::uint8_t* levels)
   : Inside(std::make_unique<Rank>(device, communicator, partition, settings))
 {
-  communicator.Together([&] { this->Inside->CheckInput(medium, ior); });
+  const bool octree = communicator.Largest({ levels ? 1.0 : 0.0 })[0] > 0.0;
+  communicator.Together([&] { this->Inside->CheckInput(medium, ior, levels, octree); });
   RequireSame(communicator, partition);
   RequireSame(communicator, settings);
-  this->Inside->Prepare(medium, ior);
+  this->Inside->Prepare(medium, ior, levels, octree);
 }
 
 PhotonMarcherInBlocks::~PhotonMarcherInBlocks() = default;

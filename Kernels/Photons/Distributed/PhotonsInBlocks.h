@@ -8,6 +8,7 @@
 #include "Medium/Medium.h"
 #include "Photons/Photons.h"
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -21,7 +22,9 @@ namespace tyndall
 /// section 12.6), with the random numbers that it has drawn where it is scattered: its way does not depend on the
 /// blocks, and what voxels gain is in fixed point. The light is that of PhotonMarcher, bit for bit, whatever the number
 /// of ranks; powers of scattered light, which are sums of floats, to 1e-9. No rank holds more of the medium than its
-/// block and, of the refractive index, some voxels round it.
+/// block and, of the refractive index, some voxels round it. Of an octree each has the nodes of the whole grid, in
+/// bricks of 8^3 voxels, of which those that lie in one node take 4 bytes: steps look into the next node, which may lie
+/// anywhere.
 class PhotonMarcherInBlocks
 {
 public:
@@ -29,12 +32,13 @@ public:
   ///   no voxels. As all arrays, read in the constructor only.
   /// @param ior     of the block's voxels, one component; null values: 1
   /// @param communicator, partition  must stay
+  /// @param levels  of the octree of the whole grid, those of the block's voxels; null: there is none, on all ranks
   /// @param settings  the same on all ranks. `byBricks` does not matter: light is kept voxel by voxel
   /// @throws InvalidInput  on every rank, where one of them has an input that PhotonMarcher refuses, where they
   ///   disagree, or where something is asked for that is not carried from rank to rank: names it
   /// @throws DeviceError  on every rank what one of them throws
   PhotonMarcherInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition,
-    const Medium& medium, const Field& ior, const MarchSettings& settings);
+    const Medium& medium, const Field& ior, const MarchSettings& settings, const std::uint8_t* levels = nullptr);
   ~PhotonMarcherInBlocks();
 
   /// @param share  some of the photons: all of them are those of rank 0, then those of rank 1, and so on

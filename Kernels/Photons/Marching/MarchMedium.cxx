@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 namespace tyndall
 {
@@ -90,10 +91,40 @@ MarchMedium::MarchMedium(Device& onDevice, const Medium& medium, const Field& io
 }
 
 MarchMedium::MarchMedium(Device& onDevice, const Medium& medium, const Field& ior, const MarchSettings& with,
-  const MarchTraits& ofAll, const MarchedPart& ofGrid)
-  : MarchMedium(onDevice, medium, with, ofAll, ofGrid, false)
+  const MarchTraits& ofAll, const MarchedPart& ofGrid, bool octree)
+  : MarchMedium(onDevice, medium, with, ofAll, ofGrid, octree)
 {
-  this->PackVoxels(medium, ior, nullptr);
+  const std::vector<std::uint8_t> single(this->hasLevels ? this->block.known.VoxelCount() : 0, 0); // until SetNodes
+  this->PackVoxels(medium, ior, single.data());
+}
+
+std::vector<std::uint8_t> MarchMedium::OwnNodes(const std::uint8_t* levels) const
+{
+  const std::vector<cl_uchar> known = this->nodes.Read();
+  std::vector<std::uint8_t> own;
+  own.reserve(this->grid.VoxelCount());
+  const Size row = Padded(this->block.known.size, 2);
+  for (std::size_t i = 0; i < this->grid.VoxelCount(); ++i)
+  {
+    std::array<int, 3> at = this->grid.VoxelAt(i);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      at[axis] += this->block.own.first[axis] - this->block.known.first[axis] + 1;
+    }
+    const bool varies = known[(at[2] * row[1] + at[1]) * row[0] + at[0]] > 0;
+    own.push_back(static_cast<std::uint8_t>(varies ? 1 + levels[i] : 0));
+  }
+  return own;
+}
+
+void MarchMedium::SetNodes(const BrickedBytes& all)
+{
+  const std::vector<std::int32_t>& table = all.Table();
+  std::vector<cl_uchar> bytes(table.size() * sizeof(std::int32_t) + all.Dense().size());
+  std::memcpy(bytes.data(), table.data(), table.size() * sizeof(std::int32_t));
+  std::copy(all.Dense().begin(), all.Dense().end(), bytes.end() - static_cast<std::ptrdiff_t>(all.Dense().size()));
+  this->nodes = Buffer<cl_uchar>(this->device, bytes, "octree nodes");
+  this->nodesOfWhole = true;
 }
 
 void MarchMedium::PackBricks(const Medium& medium)
@@ -147,7 +178,7 @@ void MarchMedium::PackNodes(const Buffer<float>& low, const Buffer<float>& high,
   const Size padded = Padded(this->block.known.size, 2);
   this->nodes = Buffer<cl_uchar>(this->device, Count(padded), "octree nodes");
   const Buffer<cl_uchar> given = this->hasLevels
-    ? Buffer<cl_uchar>(this->device, levels, this->grid.VoxelCount(), "octree levels")
+    ? Buffer<cl_uchar>(this->device, levels, this->block.known.VoxelCount(), "octree levels")
     : Buffer<cl_uchar>(this->device, 0, "octree levels");
   cl::Kernel pack = this->MediumKernel("pack_nodes");
   With(pack, SizeOf(this->block.known.size), low, high, given, this->nodes);
@@ -242,7 +273,7 @@ MarchInfo MarchMedium::Describe() const
 std::string MarchMedium::Options() const
 {
   return Define("MEDIUM_CHANNELS", this->channels) + Define("BENDS", this->bends) + Define("LEVELS", this->hasLevels) +
-    Define("BRICKS", this->bricks.AreThere()) + " -cl-mad-enable";
+    Define("NODE_BRICKS", this->nodesOfWhole) + Define("BRICKS", this->bricks.AreThere()) + " -cl-mad-enable";
 }
 
 cl::Kernel MarchMedium::MediumKernel(const char* name) const

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "Device/Buffer.h"
+#include "Distribution/BrickedBytes.h"
 #include "Medium/Medium.h"
 #include "Medium/Traits.h"
 #include "Medium/VoxelBox.h"
@@ -11,7 +12,9 @@
 #include "Photons/Photons.h"
 #include "Refraction/Index/IndexRange.h"
 
+#include <cstdint>
 #include <string>
+#include <vector>
 
 namespace tyndall
 {
@@ -46,11 +49,18 @@ public:
   /// @param filled       the medium's bricks
   MarchMedium(Device& device, const Medium& medium, const Field& ior, const MarchSettings& settings,
     const FilledBricks& filled, const std::uint8_t* levels);
-  /// Of a block of the whole grid. Voxel by voxel, and without an octree.
+  /// Of a block of the whole grid. Voxel by voxel.
   /// @param medium  of block.own
   /// @param ior     of block.known
+  /// @param octree  whether steps are those of an octree: SetNodes is to follow
   MarchMedium(Device& device, const Medium& medium, const Field& ior, const MarchSettings& settings,
-    const MarchTraits& traits, const MarchedPart& block);
+    const MarchTraits& traits, const MarchedPart& block, bool octree = false);
+
+  /// Of a block: whether n varies in each of its voxels, and then in which node of the octree it is (PhotonSteps.cl).
+  /// @param levels  of the block's voxels
+  std::vector<std::uint8_t> OwnNodes(const std::uint8_t* levels) const;
+  /// @param all  OwnNodes of all blocks: steps look into nodes beyond the block
+  void SetNodes(const BrickedBytes& all);
 
   MarchInfo Describe() const;
   IndexGrid DescribeGrid() const;
@@ -83,7 +93,8 @@ public:
   MarchTraits traits;
   int channels; ///< of extinction, 1 or 3
   bool bends, hasLevels;
-  PhotonBricks bricks; ///< where all arrays stand by bricks
+  bool nodesOfWhole = false; ///< SetNodes
+  PhotonBricks bricks;       ///< where all arrays stand by bricks
 
   Buffer<float> sigmaA, sigmaS;
   Buffer<float> sigma;        ///< PhotonMedium.cl, pack_extinction; or PhotonBricks.h

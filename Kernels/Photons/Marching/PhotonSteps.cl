@@ -2,6 +2,7 @@
 //   REAL_WIDTH  photons side by side: 1 on a GPU, 4 to 16 on a CPU
 //   BENDS       1: the index varies; ORDER of the integrator then: 1, 2 or 4
 //   LEVELS      1: there are octree levels
+//   NODE_BRICKS 1: nodes are those of the whole grid, as BrickedBytes has them
 //   DIRECTIONS  1: directions are asked for
 //   MARKS       1: photons bear marks (PhotonMarch.cl)
 //   BRICKS      1: the medium stands by bricks (PhotonBricks.cl); places are records, and [copy] of them
@@ -43,7 +44,7 @@ typedef struct
   const __global float* sigma; // [MEDIUM_CHANNELS][copy] extinction over a diagonal; its sign bit: the index varies
   const __global float* coefficients; // of n^2
   const __global uchar* nodes; // [padded known] 0: the index does not vary, 1: it does, in a single voxel, 1 + k: in
-                               // an octree's node of 2^k
+                               // an octree's node of 2^k; with NODE_BRICKS a table of bricks, then bricks
   __global long* sums;         // [copy][RECORD] fixed point
   __global PhotonEnd* ends;
   __global float4*
@@ -279,9 +280,54 @@ static void voxels_of_places(const MarchInfo* info, const real* p, integer* voxe
 {
   FOR_AXES(a)
   {
-    const int least = info->knownFirst[a] - 1;
-    voxel[a] = clamp(to_integer(p[a] + (real)1.0f) - 1, (integer)least, (integer)(least + info->known.size[a] + 1));
+#if NODE_BRICKS
+    const int least = -1, size = info->whole.size[a];
+#else
+    const int least = info->knownFirst[a] - 1, size = info->known.size[a];
+#endif
+    voxel[a] = clamp(to_integer(p[a] + (real)1.0f) - 1, (integer)least, (integer)(least + size + 1));
   }
+}
+
+#if NODE_BRICKS
+#define NODE_BRICK 8 // voxels of an edge, BrickedBytes::Edge
+
+static int node_of_whole(const march_arrays* arrays, int3 voxel)
+{
+  const int3 size = vload3(0, arrays->info->whole.size);
+  if (any(voxel < 0) || any(voxel >= size))
+  {
+    return 0;
+  }
+  const int3 bricks = (size + (NODE_BRICK - 1)) / NODE_BRICK, at = voxel / NODE_BRICK, in = voxel % NODE_BRICK;
+  const int brick = ((const __global int*)arrays->nodes)[(at.z * bricks.y + at.y) * bricks.x + at.x];
+  const ulong uneven = (ulong)(-1 - brick) * (NODE_BRICK * NODE_BRICK * NODE_BRICK) +
+    (ulong)((in.z * NODE_BRICK + in.y) * NODE_BRICK + in.x);
+  return brick >= 0 ? brick : arrays->nodes[(ulong)bricks.x * bricks.y * bricks.z * sizeof(int) + uneven];
+}
+#endif
+
+// Of the voxels of the photons of a mask; 0 of the others.
+static integer nodes_of(const march_arrays* arrays, integer mask, const integer* voxel)
+{
+#if NODE_BRICKS
+  LANES(int, node);
+  LANES_3(int, place);
+  PUT_INTEGERS(node, (integer)0);
+  FOR_AXES(a)
+  {
+    PUT_INTEGERS(place[a], voxel[a]);
+  }
+  FOR_LANES(k, mask)
+  {
+    node[k] = node_of_whole(arrays, (int3)(place[0][k], place[1][k], place[2][k]));
+  }
+  return INTEGERS(node);
+#else
+  const MarchInfo* info = arrays->info;
+  const integer at = mask & place_in(&info->known, info->knownFirst, 1, voxel); // the others are in the padding
+  return to_integer(gather(uchar, arrays->nodes, at));
+#endif
 }
 
 // Times of steps of the photons of a mask from p in `voxel`, where the index varies; 0 where it does not.
@@ -289,8 +335,7 @@ static real times_of_steps(
   const march_arrays* arrays, integer mask, const integer* voxel, const real* p, const real* u, const real* inverse)
 {
   const MarchInfo* info = arrays->info;
-  const integer at = mask & place_in(&info->known, info->knownFirst, 1, voxel); // the others are in the padding
-  const integer node = to_integer(gather(uchar, arrays->nodes, at));
+  const integer node = nodes_of(arrays, mask, voxel);
   // Where n jumps within a step a kick may leave a photon almost without velocity.
   const real shortest =
     (real)info->stepSize / greater(sqrt(u[0] * u[0] + u[1] * u[1] + u[2] * u[2]), (real)info->slowest);

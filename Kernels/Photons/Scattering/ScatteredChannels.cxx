@@ -92,8 +92,13 @@ ScatteredChannels::ScatteredChannels(Device& device, const Block& block)
         MarchTraits traits = through->traits;
         traits.coloured = false;
         traits.grey = traits.greyExtinction = true;
-        channel.own =
-          std::make_unique<const MarchMedium>(device, one.seen, block.ior, block.settings, traits, through->block);
+        auto own = std::make_unique<MarchMedium>(
+          device, one.seen, block.ior, block.settings, traits, through->block, block.nodes != nullptr);
+        if (block.nodes)
+        {
+          own->SetNodes(*block.nodes);
+        }
+        channel.own = std::move(own);
       }
       channel.photons =
         std::make_unique<PhotonScattering>(block.coloured ? *channel.own : *through, one.seen, block.stepPart);

@@ -25,8 +25,9 @@ public:
     Field ior;                  ///< of the voxels whose index the block knows
     // Of all blocks alike.
     const MarchSettings& settings;
-    double stepPart; ///< ScatteringStepPart of all of the index
-    bool coloured;   ///< channels have coefficients or phase functions of their own
+    double stepPart;                     ///< ScatteringStepPart of all of the index
+    bool coloured;                       ///< channels have coefficients or phase functions of their own
+    const BrickedBytes* nodes = nullptr; ///< MarchMedium::SetNodes; null: there is no octree
   };
   ScatteredChannels(Device& device, const Block& block);
 

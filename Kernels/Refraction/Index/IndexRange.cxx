@@ -55,7 +55,12 @@ bool IndexVaries(const Field& ior, const Grid& grid)
 
 void CheckLevels(const std::uint8_t* levels, const Grid& grid)
 {
-  const int top = PyramidLayout(grid.size).Top();
+  CheckLevels(levels, grid, grid);
+}
+
+void CheckLevels(const std::uint8_t* levels, const Grid& grid, const Grid& whole)
+{
+  const int top = PyramidLayout(whole.size).Top();
   const std::size_t count = levels ? grid.VoxelCount() : 0;
   int highest = 0; // first of all: a loop that compilers vectorise
   for (std::size_t i = 0; i < count; ++i)

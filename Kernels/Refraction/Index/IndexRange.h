@@ -31,4 +31,6 @@ bool IndexVaries(const Field& ior, const Grid& grid);
 /// @throws InvalidInput where an octree level is above that of the one node that holds the grid, naming the first
 /// such voxel
 void CheckLevels(const std::uint8_t* levels, const Grid& grid);
+/// The same of the voxels of a part of a grid.
+void CheckLevels(const std::uint8_t* levels, const Grid& part, const Grid& whole);
 }

@@ -1,27 +1,25 @@
 #include "Refraction/Index/RefractiveMedium.h"
 
-#include "Device/Defines.h"
 #include "Device/HostMemory.h"
-#include "Device/Sizes.h"
+#include "Distribution/BlockPartition.h"
+#include "Distribution/BoxExchange.h"
 #include "Medium/Medium.h"
 #include "Numerics/NumberText.h"
-#include "Numerics/Vectors.h"
 #include "Refraction/Index/IndexField.h"
 #include "Refraction/Index/IndexRange.h"
-#include "Refraction/Voxelization/MaterialsShared.h"
+#include "Refraction/Index/MaterialMixer.h"
 #include "Refraction/Voxelization/MeshChecks.h"
-#include "TyndallKernelSources.h"
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <numeric>
 
 namespace tyndall
 {
 namespace
 {
-constexpr std::size_t WorkGroup = 256;
 constexpr double ShortestEdge = 1e-18; ///< of a voxel, length
 }
 
@@ -91,11 +89,12 @@ void CheckSettings(const RefractiveMediumSettings& settings, const std::vector<S
   CheckPerturbation(settings.perturbation, solids);
 }
 
+/// @param size          of the box that is voxelised
 /// @param coefficients  of a voxel: sigma_a, sigma_s and, where it varies, g
 /// @param indexVaries   whether there is an index to smooth and take the gradient of
-void CheckMemory(const Device& device, const RefractiveMediumSettings& settings, int coefficients, bool indexVaries)
+void CheckMemory(const Device& device, const RefractiveMediumSettings& settings, const std::array<int, 3>& size,
+  int coefficients, bool indexVaries)
 {
-  const std::array<int, 3>& size = settings.grid.size;
   const double voxels = static_cast<double>(size[0]) * size[1] * size[2];
   const int ofResult = static_cast<int>(sizeof(float)) * (1 + coefficients + (indexVaries ? 4 : 0));
   const int onDevice = static_cast<int>(sizeof(float)) * (indexVaries && settings.filterSize > 1 ? 2 : 1);
@@ -139,144 +138,6 @@ bool MeanCosineVaries(const std::vector<const Material*>& materials, double& g)
   return false;
 }
 
-/// Mixes the materials in each voxel, slab by slab.
-class Mixer
-{
-public:
-  /// @param variedG  whether materials that scatter have different mean cosines
-  /// @param index    filled with n, not smoothed
-  Mixer(Device& device, const std::vector<Solid>& solids, const RefractiveMediumSettings& settings, bool variedG,
-    Buffer<float>& index, RefractiveMedium& result)
-    : TheDevice(device)
-    , Solids(solids)
-    , Settings(settings)
-    , VariedG(variedG)
-    , Index(index)
-    , Result(result)
-  {
-    const bool noise = settings.perturbation.index > 0.0 || settings.perturbation.scattering > 0.0;
-    const std::string options =
-      Define("CHANNELS", result.components) + Define("NOISE", noise) + Define("VARIED_G", variedG);
-    this->AddObject = device.Kernel("add_object", kernel_source::Materials, options);
-    this->AddOutside = device.Kernel("add_outside", kernel_source::Materials, options);
-    const std::size_t voxels = settings.grid.VoxelCount();
-    result.occupancy.resize(voxels);
-    result.sigma_a.resize(voxels * result.components);
-    result.sigma_s.resize(voxels * result.components);
-    result.gByVoxel.resize(variedG ? voxels * result.components : 0);
-    index.Fill(0.0f);
-  }
-
-  /// What CountSamplesInside hands out.
-  void Take(const SamplesInside& inside)
-  {
-    if (inside.mesh + 1 == this->Solids.size())
-    {
-      this->Begin(inside.VoxelCount());
-    }
-    this->Add(inside);
-    if (inside.mesh == 0)
-    {
-      this->End(inside);
-    }
-  }
-
-private:
-  void Begin(std::size_t voxels)
-  {
-    if (this->Covered.Size() < voxels)
-    {
-      const std::size_t values = voxels * this->Result.components;
-      this->Covered = Buffer<float>(this->TheDevice, voxels, "occupancy");
-      this->SigmaA = Buffer<float>(this->TheDevice, values, "sigma_a");
-      this->SigmaS = Buffer<float>(this->TheDevice, values, "sigma_s");
-      this->G = Buffer<float>(this->TheDevice, this->VariedG ? values : 0, "g");
-    }
-    this->Covered.Fill(0.0f);
-    this->SigmaA.Fill(0.0f);
-    this->SigmaS.Fill(0.0f);
-    if (this->VariedG)
-    {
-      this->G.Fill(0.0f);
-    }
-  }
-
-  void Add(const SamplesInside& inside)
-  {
-    MaterialInfo material = MaterialOf(this->Solids[inside.mesh].material);
-    const Perturbation& noise = this->Settings.perturbation;
-    material.indexNoise = static_cast<float>(noise.index);
-    material.scatteringNoise = static_cast<float>(noise.scattering);
-    material.frequency = static_cast<float>(1.0 / noise.size);
-    material.seed = noise.seed;
-    With(this->AddObject, this->SlabOf(inside), material, inside.counts, this->Covered, this->Index, this->SigmaA,
-      this->SigmaS, this->G);
-    this->Launch(this->AddObject, inside);
-  }
-
-  void End(const SamplesInside& inside)
-  {
-    With(this->AddOutside, this->SlabOf(inside), MaterialOf(this->Settings.outside), this->Covered, this->Index,
-      this->SigmaA, this->SigmaS, this->G);
-    this->Launch(this->AddOutside, inside);
-    this->Copy(this->Covered, inside, 1, this->Result.occupancy);
-    this->Copy(this->SigmaA, inside, this->Result.components, this->Result.sigma_a);
-    this->Copy(this->SigmaS, inside, this->Result.components, this->Result.sigma_s);
-    if (this->VariedG)
-    {
-      this->Copy(this->G, inside, this->Result.components, this->Result.gByVoxel);
-    }
-  }
-
-  static MaterialInfo MaterialOf(const Material& material)
-  {
-    MaterialInfo info = {};
-    info.absorption = Float4(Vector(material.sigma_a));
-    info.scattering = Float4(Vector(material.sigma_s));
-    info.n = static_cast<float>(material.n);
-    info.g = static_cast<float>(material.g);
-    return info;
-  }
-
-  MaterialSlab SlabOf(const SamplesInside& inside) const
-  {
-    const Grid& grid = this->Settings.grid;
-    return { Float4(Vector(grid.origin)), Float4(Vector(grid.spacing)), inside.first, inside.length, inside.stride,
-      grid.size[0], grid.size[1], this->SamplesOfVoxel() };
-  }
-
-  float SamplesOfVoxel() const
-  {
-    const int edge = this->Settings.voxelization.samples;
-    return static_cast<float>(edge * edge * edge * UnitsOfSample(edge));
-  }
-
-  void Launch(cl::Kernel& kernel, const SamplesInside& inside)
-  {
-    this->TheDevice.Queue().enqueueNDRangeKernel(
-      kernel, cl::NullRange, cl::NDRange(RoundUp(inside.length, WorkGroup), inside.runs), cl::NDRange(WorkGroup, 1));
-  }
-
-  void Copy(const Buffer<float>& from, const SamplesInside& inside, int components, std::vector<float>& to)
-  {
-    const std::size_t bytes = inside.length * components * sizeof(float);
-    for (std::size_t run = 0; run < inside.runs; ++run)
-    {
-      this->TheDevice.Queue().enqueueReadBuffer(
-        from.Handle(), CL_TRUE, run * bytes, bytes, to.data() + (inside.first + run * inside.stride) * components);
-    }
-  }
-
-  Device& TheDevice;
-  const std::vector<Solid>& Solids;
-  const RefractiveMediumSettings& Settings;
-  const bool VariedG;
-  Buffer<float>& Index;
-  RefractiveMedium& Result;
-  Buffer<float> Covered, SigmaA, SigmaS, G; ///< of a slab
-  cl::Kernel AddObject, AddOutside;
-};
-
 /// Whether nothing inside differs in n from the outside.
 bool IndexIsEven(const std::vector<Solid>& solids, const RefractiveMediumSettings& settings)
 {
@@ -297,24 +158,14 @@ std::vector<MeshTopology> CheckMeshes(
   return topologies;
 }
 
-/// Voxelises the meshes into everything but what comes of the smoothed index.
-void FillVoxels(Device& device, const std::vector<Solid>& solids, const std::vector<MeshTopology>& topologies,
-  const RefractiveMediumSettings& settings, Mixer& mixer, const Monitor& monitor, RefractiveMedium& result)
+std::vector<OrientedMesh> Oriented(const std::vector<Solid>& solids, const std::vector<MeshTopology>& topologies)
 {
   std::vector<OrientedMesh> meshes;
   for (std::size_t s = 0; s < solids.size(); ++s)
   {
     meshes.push_back({ &solids[s].mesh, Orientation(topologies[s]) });
   }
-  const std::vector<WindingNumbers> windings = CountSamplesInside(
-    device, settings.grid, meshes, settings.voxelization, [&](const SamplesInside& inside) { mixer.Take(inside); },
-    monitor);
-  for (std::size_t s = 0; s < solids.size(); ++s)
-  {
-    const std::vector<std::string> odd =
-      Oddities(topologies[s], windings[s], solids[s].name, settings.grid, settings.voxelization.samples);
-    result.warnings.insert(result.warnings.end(), odd.begin(), odd.end());
-  }
+  return meshes;
 }
 
 void CheckPointsOf(const Solid& solid)
@@ -343,12 +194,86 @@ std::string WithoutExtent(const std::vector<Solid>& solids)
   return text;
 }
 
-void AddIndex(Device& device, Buffer<float>& index, const RefractiveMediumSettings& settings, const Monitor& monitor,
-  RefractiveMedium& result)
+/// What the materials alone say of a medium.
+struct Composition
 {
-  SmoothIndex(device, settings.grid, settings.filterSize, index);
-  result.ior = index.Read();
-  result.iorGradient = IndexGradient(device, settings.grid, index, monitor);
+  bool grey = true;
+  bool variedG = false; ///< those that scatter have different mean cosines
+  bool evenIndex = true;
+  double g = 0.0; ///< where they have not
+};
+
+Composition CompositionOf(const std::vector<Solid>& solids, const RefractiveMediumSettings& settings)
+{
+  std::vector<const Material*> materials = { &settings.outside };
+  for (const Solid& solid : solids)
+  {
+    materials.push_back(&solid.material);
+  }
+  Composition composition;
+  composition.variedG = MeanCosineVaries(materials, composition.g);
+  composition.grey = std::all_of(materials.begin(), materials.end(), [](const Material* m) { return IsGrey(*m); });
+  composition.evenIndex = IndexIsEven(solids, settings);
+  return composition;
+}
+
+/// Voxels round a part of the grid that its own depend on: those that the filter reaches, one that the gradient does,
+/// and one whose own counts are not exact where the box ends.
+VoxelBox BoxAround(const VoxelBox& part, const RefractiveMediumSettings& settings, bool evenIndex)
+{
+  return Grown(part, evenIndex ? 1 : settings.filterSize / 2 + 2, settings.grid);
+}
+
+/// Crops arrays of a box to those of a part of it.
+void Keep(const VoxelBox& part, const VoxelBox& box, RefractiveMedium& medium)
+{
+  if (part.VoxelCount() == box.VoxelCount())
+  {
+    return;
+  }
+  const auto keep = [&](std::vector<float>& values, int components) {
+    values = values.empty() ? std::vector<float>() : PartOf(values, box, part, components);
+  };
+  keep(medium.occupancy, 1);
+  keep(medium.ior, 1);
+  keep(medium.iorGradient, 3);
+  keep(medium.sigma_a, medium.components);
+  keep(medium.sigma_s, medium.components);
+  keep(medium.gByVoxel, medium.components);
+}
+
+double Sum(const std::vector<float>& occupancy, const PartOfBox& part)
+{
+  const bool all = part.own.VoxelCount() == part.made.VoxelCount();
+  const std::vector<float> own = all ? std::vector<float>() : PartOf(occupancy, part.made, part.own, 1);
+  const std::vector<float>& summed = all ? occupancy : own;
+  return std::accumulate(summed.begin(), summed.end(), 0.0);
+}
+
+/// Voxelises a part that has voxels.
+void Fill(Device& device, const std::vector<Solid>& solids, const RefractiveMediumSettings& settings,
+  const PartOfBox& part, const Composition& composition, const Monitor& monitor, VoxelizedPart& result)
+{
+  RefractiveMedium& medium = result.medium;
+  const VoxelBox box = BoxAround(part.made, settings, composition.evenIndex);
+  CheckMemory(device, settings, box.size, (composition.variedG ? 3 : 2) * medium.components, !composition.evenIndex);
+  Grid grid = settings.grid;
+  grid.size = box.size;
+  Buffer<float> index(device, grid.VoxelCount(), "ior");
+  MaterialMixer mixer(device, solids, settings, box, composition.variedG, index, medium);
+  result.findings.windings = CountSamplesInside(
+    device, settings.grid, { box, part.own }, Oriented(solids, result.topologies), settings.voxelization,
+    [&](const SamplesInside& inside) { mixer.Take(inside); }, OfPart(monitor, 0.0, 0.8));
+  if (!composition.evenIndex)
+  {
+    SmoothIndex(device, grid, settings.filterSize, index);
+    medium.ior = index.Read();
+    medium.iorGradient = IndexGradient(device, grid, index, OfPart(monitor, 0.8, 1.0));
+  }
+  Keep(part.made, box, medium);
+  const double inside = Sum(medium.occupancy, part);
+  result.findings.empty = inside == 0.0;
+  result.findings.volume = settings.grid.VoxelVolume() * inside;
 }
 }
 
@@ -400,46 +325,99 @@ Grid GridAround(const std::vector<Solid>& solids, const std::array<int, 3>& size
   return grid;
 }
 
-RefractiveMedium Voxelize(
-  Device& device, const std::vector<Solid>& solids, const RefractiveMediumSettings& settings, const Monitor& monitor)
+VoxelizedPart VoxelizePart(Device& device, const std::vector<Solid>& solids, const RefractiveMediumSettings& settings,
+  const PartOfBox& part, const Monitor& monitor)
 {
   const auto start = std::chrono::steady_clock::now();
   CheckSettings(settings, solids);
-  RefractiveMedium result;
-  result.device = device.Name();
-  std::vector<const Material*> materials = { &settings.outside };
-  for (const Solid& solid : solids)
+  VoxelizedPart result;
+  result.medium.device = device.Name();
+  const Composition composition = CompositionOf(solids, settings);
+  result.medium.g = composition.g;
+  result.medium.components = composition.grey ? 1 : 3;
+  result.topologies = CheckMeshes(solids, settings, OfPart(monitor, 0.0, 0.2));
+  result.findings.windings.resize(solids.size());
+  if (part.made.VoxelCount() > 0)
   {
-    materials.push_back(&solid.material);
+    Fill(device, solids, settings, part, composition, OfPart(monitor, 0.2, 1.0), result);
   }
-  const bool variedG = MeanCosineVaries(materials, result.g);
-  const bool grey = std::all_of(materials.begin(), materials.end(), [](const Material* m) { return IsGrey(*m); });
-  result.components = grey ? 1 : 3;
-  const bool even = IndexIsEven(solids, settings);
-  CheckMemory(device, settings, (variedG ? 3 : 2) * result.components, !even);
+  result.medium.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return result;
+}
 
-  const std::vector<MeshTopology> topologies = CheckMeshes(solids, settings, OfPart(monitor, 0.0, 0.2));
-  Buffer<float> index(device, settings.grid.VoxelCount(), "ior");
-  Mixer mixer(device, solids, settings, variedG, index, result);
-  FillVoxels(device, solids, topologies, settings, mixer, OfPart(monitor, 0.2, 0.8), result);
-
-  const bool empty =
-    std::all_of(result.occupancy.begin(), result.occupancy.end(), [](float part) { return part == 0.0f; });
-  if (empty)
+RefractiveMedium Concluded(VoxelizedPart&& part, const VoxelFindings& all, const std::vector<Solid>& solids,
+  const RefractiveMediumSettings& settings)
+{
+  RefractiveMedium medium = std::move(part.medium);
+  for (std::size_t s = 0; s < solids.size(); ++s)
   {
-    result.warnings.push_back("Nothing of the box is inside a mesh, or what is falls between its samples. Compare the "
+    const std::vector<std::string> odd =
+      Oddities(part.topologies[s], all.windings[s], solids[s].name, settings.grid, settings.voxelization.samples);
+    medium.warnings.insert(medium.warnings.end(), odd.begin(), odd.end());
+  }
+  if (all.empty)
+  {
+    medium.warnings.push_back("Nothing of the box is inside a mesh, or what is falls between its samples. Compare the "
                               "box with the meshes' bounds.");
   }
-  if (empty || even)
+  if (all.empty || IndexIsEven(solids, settings))
   {
-    result.leftOut.push_back(
+    medium.ior.clear();
+    medium.iorGradient.clear();
+    medium.leftOut.push_back(
       "smoothing of n, ior_gradient: the refractive index is " + std::to_string(settings.outside.n) + " everywhere");
   }
-  else
+  return medium;
+}
+
+RefractiveMedium Voxelize(
+  Device& device, const std::vector<Solid>& solids, const RefractiveMediumSettings& settings, const Monitor& monitor)
+{
+  const VoxelBox box = { {}, settings.grid.size };
+  VoxelizedPart all = VoxelizePart(device, solids, settings, { box, box }, monitor);
+  const VoxelFindings findings = all.findings;
+  return Concluded(std::move(all), findings, solids, settings);
+}
+
+VoxelFindings FindingsOfAll(Communicator& communicator, const VoxelFindings& own)
+{
+  constexpr std::size_t Words = 9;
+  const auto ranks = static_cast<std::size_t>(communicator.Ranks()),
+             rank = static_cast<std::size_t>(communicator.Rank());
+  const std::size_t ofRank = 2 + Words * own.windings.size();
+  std::vector<double> said(ofRank * ranks, 0.0);
+  double* to = said.data() + ofRank * rank;
+  *to++ = own.empty ? 1.0 : 0.0;
+  *to++ = own.volume;
+  for (const WindingNumbers& windings : own.windings)
   {
-    AddIndex(device, index, settings, OfPart(monitor, 0.8, 1.0), result);
+    *to++ = static_cast<double>(windings.oddSamples);
+    *to++ = windings.lowest;
+    *to++ = windings.highest;
+    to = std::copy(windings.firstOddSample.begin(), windings.firstOddSample.end(), to);
+    to = std::copy(windings.firstOddNumber.begin(), windings.firstOddNumber.end(), to);
   }
-  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  return result;
+  said = communicator.Sum(said);
+  VoxelFindings all;
+  all.windings.resize(own.windings.size());
+  const double* from = said.data();
+  for (std::size_t r = 0; r < ranks; ++r)
+  {
+    all.empty = *from++ != 0.0 && all.empty;
+    all.volume += *from++;
+    for (WindingNumbers& windings : all.windings)
+    {
+      WindingNumbers others;
+      others.oddSamples = static_cast<std::size_t>(*from++);
+      others.lowest = static_cast<int>(*from++);
+      others.highest = static_cast<int>(*from++);
+      std::copy_n(from, 3, others.firstOddSample.begin());
+      std::transform(
+        from + 3, from + 6, others.firstOddNumber.begin(), [](double number) { return static_cast<int>(number); });
+      from += 6;
+      windings.Add(others);
+    }
+  }
+  return all;
 }
 }

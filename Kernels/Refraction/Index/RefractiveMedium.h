@@ -2,8 +2,10 @@
 
 #include "Device/Device.h"
 #include "Device/Monitor.h"
+#include "Distribution/Communicator.h"
 #include "Lights/Lights.h"
 #include "Medium/Grid.h"
+#include "Medium/VoxelBox.h"
 #include "Refraction/Voxelization/TriangleMesh.h"
 #include "Refraction/Voxelization/Voxelization.h"
 
@@ -92,4 +94,42 @@ Grid GridAround(const std::vector<Solid>& solids, const std::array<int, 3>& size
 ///   device's (on a CPU the same memory); they do not grow with the number of solids
 RefractiveMedium Voxelize(Device& device, const std::vector<Solid>& solids, const RefractiveMediumSettings& settings,
   const Monitor& monitor = {});
+
+/// What is known of voxels only when all of the box are: of those of a part, or of all.
+struct VoxelFindings
+{
+  std::vector<WindingNumbers> windings; ///< one for each solid
+  bool empty = true;                    ///< nothing is inside a solid
+  double volume = 0.0;                  ///< inside solids, length^3
+};
+
+/// What of the box is made; without voxels: nothing.
+struct PartOfBox
+{
+  VoxelBox made;
+  VoxelBox own; ///< in it, what no other part has as its own
+};
+
+/// A part of the box, and what is to be said of all of it.
+struct VoxelizedPart
+{
+  RefractiveMedium medium; ///< of the voxels made; without warnings and leftOut
+  VoxelFindings findings;  ///< of the part's own
+  std::vector<MeshTopology> topologies;
+};
+
+/// Voxelize in two steps, of a part of the box, of which no voxels may be made: each voxel gets what it gets of the
+/// whole, bit for bit. So many voxels round the part as it depends on (half the filter and two) are voxelised with it.
+/// @throws as Voxelize, of the part
+VoxelizedPart VoxelizePart(Device& device, const std::vector<Solid>& solids, const RefractiveMediumSettings& settings,
+  const PartOfBox& part, const Monitor& monitor = {});
+
+/// The medium of a part of the box.
+/// @param all  what was found of all parts. Where that is not known, of this one, and `empty` false: then it is never
+///   said that nothing is inside solids, and the index is there in every part unless no solid has another one
+RefractiveMedium Concluded(VoxelizedPart&& part, const VoxelFindings& all, const std::vector<Solid>& solids,
+  const RefractiveMediumSettings& settings);
+
+/// Of ranks that have parts of their own. All call it.
+VoxelFindings FindingsOfAll(Communicator& communicator, const VoxelFindings& own);
 }

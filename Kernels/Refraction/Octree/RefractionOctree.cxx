@@ -1,12 +1,9 @@
 #include "Refraction/Octree/RefractionOctree.h"
 
-#include "Device/HostThreads.h"
 #include "Refraction/Octree/LevelPyramid.h"
+#include "Refraction/Octree/OctreeQuantities.h"
 
-#include <atomic>
 #include <chrono>
-#include <cmath>
-#include <limits>
 #include <memory>
 #include <utility>
 
@@ -14,50 +11,6 @@ namespace tyndall
 {
 namespace
 {
-void CheckSettings(const OctreeSettings& settings)
-{
-  if (!(settings.tolerance >= 0.0 && settings.tolerance <= 1.0))
-  {
-    throw InvalidInput("Tolerance is " + std::to_string(settings.tolerance) + "; it must lie in [0, 1].");
-  }
-  if (!(settings.extinctionTolerance >= 0.0) || std::isinf(settings.extinctionTolerance))
-  {
-    throw InvalidInput("ExtinctionTolerance is " + std::to_string(settings.extinctionTolerance) +
-      "; it must be finite and not negative.");
-  }
-}
-
-void CheckIndex(const Field& index, const Grid& grid)
-{
-  if (!index.values || index.components != 1)
-  {
-    throw InvalidInput("The refractive index must be given, with one component a voxel.");
-  }
-  const std::size_t count = grid.VoxelCount();
-  std::atomic<bool> good(true);
-  InThreads(count, 65536, [&](std::size_t begin, std::size_t end) {
-    bool all = true;
-    for (std::size_t i = begin; i < end; ++i)
-    {
-      all &= index.values[i] > 0.0f && index.values[i] <= std::numeric_limits<float>::max();
-    }
-    if (!all)
-    {
-      good = false;
-    }
-  });
-  for (std::size_t i = 0; !good && i < count; ++i)
-  {
-    if (!(index.values[i] > 0.0f) || std::isinf(index.values[i]))
-    {
-      throw InvalidInput("The refractive index is " + std::to_string(index.values[i]) + " in voxel " +
-        VoxelName(grid, i) +
-        " (the first such voxel); it must be finite and above 0. Clean the input, for example with a "
-        "Calculator.");
-    }
-  }
-}
-
 bool IsConstant(const float* values, std::size_t count)
 {
   std::size_t i = 0;
@@ -66,24 +19,6 @@ bool IsConstant(const float* values, std::size_t count)
     ++i;
   }
   return i == count;
-}
-
-/// Of sigma_t = sigma_a + sigma_s.
-std::vector<float> Extinction(const Medium& medium, int channel)
-{
-  std::vector<float> extinction(medium.grid.VoxelCount());
-  for (std::size_t i = 0; i < extinction.size(); ++i)
-  {
-    extinction[i] = medium.sigma_a.At(i, channel) + medium.sigma_s.At(i, channel);
-  }
-  return extinction;
-}
-
-/// The float for which float <= AsBound(bound) says the same as float <= bound.
-float AsBound(double bound)
-{
-  const float nearest = static_cast<float>(bound);
-  return nearest > bound ? std::nextafter(nearest, -std::numeric_limits<float>::infinity()) : nearest;
 }
 
 /// Builds on a device, which it looks for when the first quantity comes that is not constant.
@@ -131,18 +66,6 @@ private:
   std::shared_ptr<Device> TheDevice;
   std::unique_ptr<LevelPyramid> Levels;
 };
-
-/// Largest differences of sigma_t in the nodes of each level.
-std::vector<float> ExtinctionTolerances(const Grid& grid, int levelCount, double tolerance)
-{
-  const double diagonal = std::hypot(grid.spacing[0], grid.spacing[1], grid.spacing[2]);
-  std::vector<float> tolerances;
-  for (int level = 0; level < levelCount; ++level)
-  {
-    tolerances.push_back(AsBound(tolerance / std::ldexp(diagonal, level)));
-  }
-  return tolerances;
-}
 }
 
 Octree BuildOctree(const Medium& medium, const Field& index, const OctreeSettings& settings, const std::string& device,
@@ -150,22 +73,21 @@ Octree BuildOctree(const Medium& medium, const Field& index, const OctreeSetting
 {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point start = Clock::now();
-  CheckSettings(settings);
+  Check(settings);
   Check(medium);
-  CheckIndex(index, medium.grid);
+  CheckIndex(index, medium.grid, medium.grid, { 0, 0, 0 });
   Report(monitor, 0.0);
 
   const PyramidLayout layout(medium.grid.size);
   Octree octree;
   octree.topLevel = layout.Top();
   Builder builder(medium.grid, device);
-  const std::vector<float> tolerances(layout.LevelCount(), AsBound(settings.tolerance));
+  const std::vector<float> tolerances = IndexTolerances(layout.LevelCount(), settings.tolerance);
   if (!builder.Restrict(index.values, "the refractive index", tolerances))
   {
     octree.leftOut.emplace_back("the refractive index is constant: no pyramid of it");
   }
-  const bool coloured = medium.sigma_a.components == 3 || medium.sigma_s.components == 3;
-  const int channels = !settings.includeExtinction ? 0 : coloured ? 3 : 1;
+  const int channels = ExtinctionChannels(medium, settings);
   bool uneven = false;
   for (int channel = 0; channel < channels; ++channel)
   {

@@ -33,7 +33,7 @@ inline void add_material(float part, const MaterialInfo* material, ulong i, ulon
 // Adds one material to a slab's voxels. A voxel of one material alone has its very values.
 //   inside    samples of a voxel in the material, in parts of a sample: 0 to `samples`
 //   covered   samples in any material so far
-//   ior       of the whole grid; the other arrays are the slab's
+//   ior       of the whole box; the other arrays are the slab's
 __kernel void add_object(MaterialSlab slab, MaterialInfo given, __global const ushort* inside, __global float* covered,
   __global float* ior, __global float* sigma_a, __global float* sigma_s, __global float* g)
 {
@@ -49,7 +49,8 @@ __kernel void add_object(MaterialSlab slab, MaterialInfo given, __global const u
   if (number > 0.0f)
   {
     const ulong row = voxel / slab.nx;
-    const float3 index = (float3)(voxel % slab.nx, row % slab.ny, row / slab.ny);
+    const float3 index =
+      (float3)(slab.x0 + (int)(voxel % slab.nx), slab.y0 + (int)(row % slab.ny), slab.z0 + (int)(row / slab.ny));
     const float3 at = (slab.corner.xyz + (index + 0.5f) * slab.spacing.xyz) * material.frequency;
     const float noise = gradient_noise(at, material.seed);
     material.n += material.indexNoise * noise;

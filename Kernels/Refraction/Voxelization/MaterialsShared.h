@@ -4,13 +4,14 @@
 #include "Device/SharedTypes.h"
 
 SHARED_BEGIN
-/// Voxels of a slab: runs of `length` of the grid's, the first from `first` on, each `stride` further.
+/// Voxels of a slab: runs of `length` of the box's, the first from `first` on, each `stride` further.
 typedef struct
 {
-  float4 corner, spacing; ///< length: the grid's lower corner, edges of a voxel
-  ulong first, length, stride;
-  int nx, ny;    ///< voxels of the grid
-  float samples; ///< of a voxel
+  float4 corner, spacing;      ///< length: the whole grid's lower corner, edges of a voxel
+  ulong first, length, stride; ///< in the box of the grid that is voxelised
+  int nx, ny;                  ///< voxels of the box
+  int x0, y0, z0;              ///< voxel of the whole grid with which it begins
+  float samples;               ///< of a voxel
 } MaterialSlab;
 
 typedef struct

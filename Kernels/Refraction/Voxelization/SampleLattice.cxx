@@ -95,15 +95,23 @@ SampleLattice::SampleLattice(const Grid& grid, int samples, const std::vector<co
   }
 }
 
+SampleLattice SampleLattice::From(const std::array<int, 3>& voxel) const
+{
+  SampleLattice moved = *this;
+  moved.FirstVoxel = voxel;
+  return moved;
+}
+
 std::vector<SampleLattice::Point> SampleLattice::Rounded(const std::vector<std::array<double, 3>>& points) const
 {
   std::vector<Point> rounded(points.size());
+  const int unitsOfVoxel = this->SamplesOfVoxel * this->UnitsOfSample;
   for (std::size_t i = 0; i < points.size(); ++i)
   {
     for (int axis = 0; axis < 3; ++axis)
     {
       const double units = (points[i][axis] - this->Origin[axis]) * this->UnitsOfLength[axis];
-      rounded[i][axis] = static_cast<cl_int>(std::floor(units + 0.5));
+      rounded[i][axis] = static_cast<cl_int>(std::floor(units + 0.5)) - this->FirstVoxel[axis] * unitsOfVoxel;
     }
   }
   return rounded;

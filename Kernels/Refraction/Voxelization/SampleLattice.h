@@ -23,6 +23,10 @@ public:
   /// @throws InvalidInput where a mesh is so large beside the grid that the samples would not fit between the units
   SampleLattice(const Grid& grid, int samples, const std::vector<const TriangleMesh*>& meshes);
 
+  /// The same lattice, its origin moved to the lower corner of a voxel: what is found of a box of the grid is, to the
+  /// last bit, what is found of the whole.
+  SampleLattice From(const std::array<int, 3>& voxel) const;
+
   int Samples() const { return this->SamplesOfVoxel; } ///< fine voxels per edge of a voxel
   int Pitch() const { return this->UnitsOfSample; }    ///< units per edge of a fine voxel: a power of 2, at least 2
 
@@ -36,6 +40,7 @@ private:
   std::array<double, 3> UnitsOfLength;
   int SamplesOfVoxel;
   int UnitsOfSample = 2;
+  std::array<int, 3> FirstVoxel = { 0, 0, 0 };
 };
 
 /// Columns of samples along an axis, side by side in a grid: `count[0]` of them along the lower of the other two axes,

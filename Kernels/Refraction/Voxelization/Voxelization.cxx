@@ -34,6 +34,18 @@ std::vector<const TriangleMesh*> TrianglesOf(const std::vector<OrientedMesh>& me
   return triangles;
 }
 
+/// A box as a grid by itself.
+Grid GridOf(const VoxelBox& box, const Grid& whole)
+{
+  Grid grid = whole;
+  grid.size = box.size;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    grid.origin[axis] += box.first[axis] * whole.spacing[axis];
+  }
+  return grid;
+}
+
 std::size_t VoxelsOfRow(const SampleColumns& columns, const Grid& grid)
 {
   return grid.VoxelCount() / grid.size[columns.up];
@@ -51,27 +63,30 @@ int RowsOfSlab(const SampleColumns& columns, const Grid& grid, int words, std::s
 class Voxelization
 {
 public:
-  Voxelization(
-    Device& device, const Grid& grid, const std::vector<OrientedMesh>& meshes, const VoxelizationSettings& settings)
+  Voxelization(Device& device, const Grid& grid, const CountedVoxels& counted, const std::vector<OrientedMesh>& meshes,
+    const VoxelizationSettings& settings)
     : TheDevice(device)
-    , TheGrid(grid)
+    , Whole(grid)
+    , Counted(counted)
+    , TheGrid(GridOf(counted.box, grid))
     , Samples(settings.samples)
     , Lattice(grid, settings.samples, TrianglesOf(meshes))
-    , Columns(grid, settings.columnAxis, settings.samples, this->Lattice.Pitch())
-    , Words(WordsOf(grid, settings.columnAxis, 32 / settings.samples))
-    , Rows(RowsOfSlab(this->Columns, grid, this->Words, settings.slabBytes))
+    , Columns(TheGrid, settings.columnAxis, settings.samples, this->Lattice.Pitch())
+    , Words(WordsOf(TheGrid, settings.columnAxis, 32 / settings.samples))
+    , Rows(RowsOfSlab(this->Columns, TheGrid, this->Words, settings.slabBytes))
     , Options(CrossingOptions(settings.columnAxis, settings.samples, settings.fromAbove, false))
     , Marker(device, this->Columns, this->Words, this->Options)
     , Fill(device.Kernel("fill_columns", kernel_source::Voxelization, this->Options))
     , Count(device.Kernel("count_samples", kernel_source::Voxelization, this->Options))
     , Oriented(meshes)
-    , Odd(device, meshes.size() * grid.size[this->Columns.up], "rows of voxels with samples that a mesh encloses twice")
+    , Odd(device, meshes.size() * TheGrid.size[this->Columns.up],
+        "rows of voxels with samples that a mesh encloses twice")
   {
     for (const OrientedMesh& mesh : meshes)
     {
-      this->Meshes.emplace_back(device, this->Lattice, *mesh.mesh);
+      this->Meshes.emplace_back(device, this->Lattice.From(counted.box.first), *mesh.mesh);
     }
-    const std::size_t voxels = this->Rows * VoxelsOfRow(this->Columns, grid);
+    const std::size_t voxels = this->Rows * VoxelsOfRow(this->Columns, this->TheGrid);
     const auto columns =
       static_cast<std::size_t>(this->Columns.count[0]) * (this->Rows * this->Samples + 2 * RowsAround(settings));
     this->Bits = Buffer<cl_uint>(device, columns * this->Words, "a slab of the fine grid");
@@ -81,7 +96,7 @@ public:
     this->Counts = Buffer<cl_ushort>(device, voxels, "a slab of the voxels' samples inside");
     if (settings.fractions)
     {
-      this->Fractions.emplace(device, grid, this->Columns, this->Words, voxels, meshes.size() > 1);
+      this->Fractions.emplace(device, this->TheGrid, this->Columns, this->Words, voxels, meshes.size() > 1);
     }
     this->Odd.Fill(0);
   }
@@ -100,14 +115,13 @@ public:
   std::vector<WindingNumbers> Windings(const Monitor& monitor) const
   {
     const std::vector<cl_int> odd = this->Odd.Read();
+    const int up = this->Columns.up;
+    auto begin = odd.begin() + (this->Counted.own.first[up] - this->Counted.box.first[up]);
     std::vector<WindingNumbers> windings;
-    auto begin = odd.begin();
-    for (std::size_t m = 0; m < this->Meshes.size(); ++m)
+    for (const OrientedMesh& mesh : this->Oriented)
     {
-      const std::vector<cl_int> rows(begin, begin + this->TheGrid.size[this->Columns.up]);
-      begin += this->TheGrid.size[this->Columns.up];
-      windings.push_back(FindWindings(this->TheDevice, this->TheGrid, this->Meshes[m], this->Columns, rows,
-        this->Oriented[m].orientation < 0, monitor));
+      windings.push_back(this->WindingsOf(mesh, { begin, begin + this->Counted.own.size[up] }, monitor));
+      begin += this->TheGrid.size[up];
     }
     return windings;
   }
@@ -115,6 +129,19 @@ public:
 private:
   /// Of samples, on either side of a slab.
   static int RowsAround(const VoxelizationSettings& settings) { return settings.fractions ? 1 : 0; }
+
+  /// @param rows  of the own voxels: not 0 where some may be odd
+  WindingNumbers WindingsOf(const OrientedMesh& mesh, const std::vector<cl_int>& rows, const Monitor& monitor) const
+  {
+    const VoxelBox& own = this->Counted.own;
+    if (own.VoxelCount() == 0 || std::all_of(rows.begin(), rows.end(), [](cl_int row) { return row == 0; }))
+    {
+      return {};
+    }
+    const LatticeMesh onLattice(this->TheDevice, this->Lattice.From(own.first), *mesh.mesh);
+    const SampleColumns columns(GridOf(own, this->Whole), this->Columns.axis, this->Samples, this->Columns.pitch);
+    return FindWindings(this->TheDevice, this->Whole, own, onLattice, columns, rows, mesh.orientation < 0, monitor);
+  }
 
   SampleSlab RowsOf(int first, int end) const
   {
@@ -183,7 +210,9 @@ private:
   }
 
   Device& TheDevice;
-  const Grid& TheGrid;
+  const Grid& Whole;
+  const CountedVoxels Counted;
+  const Grid TheGrid; ///< the box that is counted
   int Samples;
   SampleLattice Lattice;
   SampleColumns Columns;
@@ -214,13 +243,20 @@ void Check(const VoxelizationSettings& settings)
   }
 }
 
-std::vector<WindingNumbers> CountSamplesInside(Device& device, const Grid& grid,
+std::vector<WindingNumbers> CountSamplesInside(Device& device, const Grid& grid, const CountedVoxels& counted,
   const std::vector<OrientedMesh>& meshes, const VoxelizationSettings& settings,
   const std::function<void(const SamplesInside&)>& take, const Monitor& monitor)
 {
   Check(settings);
-  Voxelization voxelization(device, grid, meshes, settings);
+  Voxelization voxelization(device, grid, counted, meshes, settings);
   voxelization.Run(take, monitor);
   return voxelization.Windings(monitor ? [&monitor](double) { return monitor(1.0); } : Monitor());
+}
+
+std::vector<WindingNumbers> CountSamplesInside(Device& device, const Grid& grid,
+  const std::vector<OrientedMesh>& meshes, const VoxelizationSettings& settings,
+  const std::function<void(const SamplesInside&)>& take, const Monitor& monitor)
+{
+  return CountSamplesInside(device, grid, CountedVoxels::All(grid), meshes, settings, take, monitor);
 }
 }

@@ -3,6 +3,7 @@
 #include "Device/Buffer.h"
 #include "Device/Monitor.h"
 #include "Medium/Grid.h"
+#include "Medium/VoxelBox.h"
 #include "Refraction/Voxelization/TriangleMesh.h"
 #include "Refraction/Voxelization/WindingNumbers.h"
 
@@ -53,10 +54,19 @@ struct SamplesInside
   /// A voxel 0 to samples^3 UnitsOfSample(samples), x fastest. Written again for the next mesh.
   const Buffer<cl_ushort>& counts;
 
-  /// The slab's voxels are `runs` runs of `length` of the grid's: the first begins at voxel `first`, the next `stride`
+  /// The slab's voxels are `runs` runs of `length` of the box's: the first begins at voxel `first`, the next `stride`
   /// later.
   std::size_t first, length, stride, runs;
   std::size_t VoxelCount() const { return this->length * this->runs; }
+};
+
+/// The part of a grid that is voxelised.
+struct CountedVoxels
+{
+  VoxelBox box; ///< whose samples are counted
+  VoxelBox own; ///< in it, those that winding numbers are of
+
+  static CountedVoxels All(const Grid& grid) { return { { {}, grid.size }, { {}, grid.size } }; }
 };
 
 /// Number of samples of each voxel that lie in each of several closed meshes. Where meshes overlap, the last of them
@@ -70,6 +80,10 @@ struct SamplesInside
 /// Then fractions of samples are added or taken away by where the surface crosses columns along x, y and z
 /// (SurfaceFraction); a voxel through which no surface goes is all inside or all outside.
 ///
+/// What is found of a voxel does not depend on which box of the grid is asked for, to the last bit, but for the
+/// outermost voxels of a box that ends within the grid: of what is thinner than a sample there, the sample beyond it
+/// would have told on which side it lies.
+///
 /// @param take  handed what is found slab by slab, and of each slab mesh by mesh from the last to the first, so that
 ///   what is on the device at a time does not grow with the grid or the number of meshes
 /// @return a mesh: whether it winds about all samples 0 times or once. Where it does not the samples inside are those
@@ -77,6 +91,10 @@ struct SamplesInside
 ///   closed mesh that is well oriented
 /// @throws InvalidInput   where a setting or a mesh's size has no meaning
 /// @throws DeviceError    if the meshes and a slab do not fit the device
+std::vector<WindingNumbers> CountSamplesInside(Device& device, const Grid& grid, const CountedVoxels& counted,
+  const std::vector<OrientedMesh>& meshes, const VoxelizationSettings& settings,
+  const std::function<void(const SamplesInside&)>& take, const Monitor& monitor = {});
+/// The same of all of the grid.
 std::vector<WindingNumbers> CountSamplesInside(Device& device, const Grid& grid,
   const std::vector<OrientedMesh>& meshes, const VoxelizationSettings& settings,
   const std::function<void(const SamplesInside&)>& take, const Monitor& monitor = {});

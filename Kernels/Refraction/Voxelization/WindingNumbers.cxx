@@ -17,8 +17,9 @@ constexpr std::size_t SlabBytes = std::size_t(16) << 20;
 class Sum
 {
 public:
-  Sum(const Grid& grid, const SampleColumns& columns)
+  Sum(const Grid& grid, const VoxelBox& box, const SampleColumns& columns)
     : TheGrid(grid)
+    , Box(box)
     , Columns(columns)
   {
   }
@@ -36,8 +37,10 @@ public:
       for (int axis = 0; axis < 3; ++axis)
       {
         const double pitch = this->TheGrid.spacing[axis] / this->Columns.samplesOfVoxel;
+        sample[axis] += this->Box.first[axis] * this->Columns.samplesOfVoxel;
         this->Windings.firstOddSample[axis] = this->TheGrid.origin[axis] + (sample[axis] + 0.5) * pitch;
       }
+      this->Windings.firstOddNumber = sample;
     }
     this->Windings.oddSamples += static_cast<std::size_t>(ofColumn.s[2]);
   }
@@ -46,12 +49,29 @@ public:
 
 private:
   const Grid& TheGrid;
+  const VoxelBox& Box;
   const SampleColumns& Columns;
 };
 }
 
-WindingNumbers FindWindings(Device& device, const Grid& grid, const LatticeMesh& mesh, const SampleColumns& columns,
-  const std::vector<cl_int>& rows, bool inverted, const Monitor& monitor)
+void WindingNumbers::Add(const WindingNumbers& others)
+{
+  const auto place = [](const std::array<int, 3>& number) {
+    return std::array<int, 3>{ number[2], number[1], number[0] };
+  };
+  const bool first = this->oddSamples == 0 || place(others.firstOddNumber) < place(this->firstOddNumber);
+  if (others.oddSamples > 0 && first)
+  {
+    this->firstOddSample = others.firstOddSample;
+    this->firstOddNumber = others.firstOddNumber;
+  }
+  this->oddSamples += others.oddSamples;
+  this->lowest = std::min(this->lowest, others.lowest);
+  this->highest = std::max(this->highest, others.highest);
+}
+
+WindingNumbers FindWindings(Device& device, const Grid& grid, const VoxelBox& box, const LatticeMesh& mesh,
+  const SampleColumns& columns, const std::vector<cl_int>& rows, bool inverted, const Monitor& monitor)
 {
   const int words = PartsOf(columns.samples, SamplesOfWord);
   const auto across = static_cast<std::size_t>(columns.count[0]);
@@ -65,7 +85,7 @@ WindingNumbers FindWindings(Device& device, const Grid& grid, const LatticeMesh&
   Buffer<cl_int4> found(device, across * atOnce, "winding numbers");
   std::vector<cl_int4> ofColumns(across * atOnce);
 
-  Sum sum(grid, columns);
+  Sum sum(grid, box, columns);
   for (int first = 0; first < columns.count[1]; first += atOnce)
   {
     const int end = std::min(first + atOnce, columns.count[1]);

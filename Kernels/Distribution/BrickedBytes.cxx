@@ -1,0 +1,127 @@
+#include "Distribution/BrickedBytes.h"
+
+#include <algorithm>
+
+namespace tyndall
+{
+namespace
+{
+constexpr std::int32_t NotYet = 256; ///< of a brick into which nothing was put
+constexpr int RunsTag = 29997;       ///< not one of BoxExchange.cxx or Rounds.h
+constexpr std::uint32_t LongestRun = 1u << 24;
+
+/// Numbers and, in the upper bits, one less than how often each comes.
+std::vector<std::uint32_t> RunsOf(const std::vector<std::uint8_t>& numbers)
+{
+  std::vector<std::uint32_t> runs;
+  for (std::size_t begin = 0; begin < numbers.size();)
+  {
+    std::size_t end = begin + 1;
+    while (end < numbers.size() && end - begin < LongestRun && numbers[end] == numbers[begin])
+    {
+      ++end;
+    }
+    runs.push_back(static_cast<std::uint32_t>(end - begin - 1) << 8 | numbers[begin]);
+    begin = end;
+  }
+  return runs;
+}
+
+std::vector<std::uint8_t> NumbersIn(const std::vector<std::uint32_t>& runs)
+{
+  std::vector<std::uint8_t> numbers;
+  for (const std::uint32_t run : runs)
+  {
+    numbers.insert(numbers.end(), (run >> 8) + 1, static_cast<std::uint8_t>(run & 0xff));
+  }
+  return numbers;
+}
+
+/// Calls act with the place of the first number of each row of a part, in an array over a box, and with the row.
+template <class Act>
+void ForRows(const VoxelBox& part, const VoxelBox& box, const Act& act)
+{
+  for (int z = part.first[2]; z < EndOf(part, 2); ++z)
+  {
+    for (int y = part.first[1]; y < EndOf(part, 1); ++y)
+    {
+      const std::size_t row = static_cast<std::size_t>(z - box.first[2]) * box.size[1] + (y - box.first[1]);
+      act(row * box.size[0] + (part.first[0] - box.first[0]), std::array<int, 3>{ part.first[0], y, z });
+    }
+  }
+}
+}
+
+BrickedBytes::BrickedBytes(const std::array<int, 3>& size)
+{
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    this->Count[axis] = static_cast<std::size_t>((size[axis] + Edge - 1) / Edge);
+  }
+  this->Bricks.assign(this->Count[0] * this->Count[1] * this->Count[2], NotYet);
+}
+
+void BrickedBytes::Put(const VoxelBox& box, const std::vector<std::uint8_t>& numbers)
+{
+  const auto begin = [&](int axis) { return box.first[axis] / Edge * Edge; };
+  for (int z = begin(2); z < EndOf(box, 2) && !numbers.empty(); z += Edge)
+  {
+    for (int y = begin(1); y < EndOf(box, 1); y += Edge)
+    {
+      for (int x = begin(0); x < EndOf(box, 0); x += Edge)
+      {
+        this->PutInBrick(Common({ { x, y, z }, { Edge, Edge, Edge } }, box), box, numbers);
+      }
+    }
+  }
+}
+
+void BrickedBytes::PutInBrick(const VoxelBox& part, const VoxelBox& box, const std::vector<std::uint8_t>& numbers)
+{
+  std::int32_t& brick = this->Bricks[this->BrickOf(part.first)];
+  bool even = true;
+  std::uint8_t first = 0;
+  const auto width = static_cast<std::size_t>(part.size[0]);
+  ForRows(part, box, [&](std::size_t place, const std::array<int, 3>& voxel) {
+    first = voxel == part.first ? numbers[place] : first;
+    const auto from = numbers.begin() + static_cast<std::ptrdiff_t>(place);
+    even = even && std::all_of(from, from + part.size[0], [&](std::uint8_t number) { return number == first; });
+  });
+  if (even && (brick == NotYet || brick == first))
+  {
+    brick = first;
+    return;
+  }
+  if (brick >= 0)
+  {
+    const auto fill = static_cast<std::uint8_t>(brick == NotYet ? first : brick);
+    brick = -1 - static_cast<std::int32_t>(this->Uneven.size() / Voxels);
+    this->Uneven.resize(this->Uneven.size() + Voxels, fill);
+  }
+  ForRows(part, box, [&](std::size_t place, const std::array<int, 3>& voxel) {
+    std::copy_n(numbers.begin() + static_cast<std::ptrdiff_t>(place), width,
+      this->Uneven.begin() + static_cast<std::ptrdiff_t>(Begin(brick) + Within(voxel)));
+  });
+}
+
+BrickedBytes BytesOfAll(Communicator& communicator, const BlockPartition& partition,
+  const std::vector<std::uint8_t>& own, Receivers receivers)
+{
+  const int self = communicator.Rank();
+  const auto gets = [&](int rank) { return receivers == Receivers::All || rank == 0; };
+  const std::vector<std::uint32_t> runs = RunsOf(own);
+  for (int rank = 0; rank < communicator.Ranks(); ++rank)
+  {
+    if (rank != self && gets(rank))
+    {
+      communicator.Send(rank, RunsTag, runs);
+    }
+  }
+  BrickedBytes all(partition.whole.size);
+  for (int rank = 0; rank < communicator.Ranks() && gets(self); ++rank)
+  {
+    all.Put(partition.blocks[rank], rank == self ? own : NumbersIn(communicator.Receive<std::uint32_t>(rank, RunsTag)));
+  }
+  return all;
+}
+}
