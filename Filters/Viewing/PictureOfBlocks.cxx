@@ -49,12 +49,10 @@ PictureOfBlocks::PictureOfBlocks(const SeeingRanks& seen, const Camera& camera, 
 
 BlockPixels PictureOfBlocks::CastOwn(double& farDepth) const
 {
+  const Picture picture = this->Seen.ofBlock.Take(this->TheCamera, this->Size, MonitorOf(this->Seen.filter));
+  farDepth = picture.farDepth;
   BlockPixels own;
-  WorkOnAllRanks(this->Seen.ranks, this->Seen.filter, [&] {
-    const Picture picture = this->Seen.ofBlock.Take(this->TheCamera, this->Size, MonitorOf(this->Seen.filter));
-    farDepth = picture.farDepth;
-    own = SeenPart(picture);
-  });
+  this->Seen.communicator.Together([&] { own = SeenPart(picture); });
   return own;
 }
 
@@ -63,7 +61,7 @@ void PictureOfBlocks::LookAgain(BlockPixels& own) const
 {
   MediumRayCaster* const caster = this->Seen.caster;
   const auto seen = this->Seen.blocks.Exchange(own, own.rect, false, this->TheCamera);
-  WorkOnAllRanks(this->Seen.ranks, this->Seen.filter, [&] {
+  this->Seen.communicator.Together([&] {
     const Starts starts =
       caster ? StartsBehind(seen->frontToBack, seen->own, this->Size, caster->MinimumTransmittance()) : Starts();
     if (!starts.IsEmpty())

@@ -33,7 +33,8 @@ bool CanCast(vtkMultiProcessController* ranks, const BlocksOfRanks& blocks, cons
 struct SeeingRanks
 {
   vtkMultiProcessController* ranks;
-  vtkAlgorithm* filter; ///< says how far it is
+  Communicator& communicator; ///< of the same
+  vtkAlgorithm* filter;       ///< says how far it is
   const BlocksOfRanks& blocks;
   PictureInBlocks& ofBlock;
   MediumRayCaster* caster; ///< of this rank's block; null: it has none

@@ -339,7 +339,7 @@ std::optional<vtkMediumRayCaster::Shot> vtkMediumRayCaster::SeeBlocks(
   const tyndall::PixelRect counted = tyndall::OwnPixels(ranks, WholePicture(this));
   const tyndall::PixelRect part = tyndall::Around(tyndall::RectOf(asked), counted);
   tyndall::PictureInBlocks ofBlock(*communicator, blocks.Partition(), held, caster);
-  const tyndall::PictureOfBlocks picture({ ranks, this, blocks, ofBlock, caster },
+  const tyndall::PictureOfBlocks picture({ ranks, *communicator, this, blocks, ofBlock, caster },
     tyndall::CameraOf(this, blocks.Whole()), { this->ImageSize[0], this->ImageSize[1] }, part, counted);
   Taking taking;
   taking.take = [&] { return picture.Take(); };

@@ -46,9 +46,14 @@ def check(ranks, case, expected):
     return parts
 
 
+def taken(ranks):
+    """@return bytes of the rank that takes most for its picture"""
+    return max(int(numpy.load(os.path.join(runs.output, str(ranks), "memory.%d.npz" % rank))["taken"]) for rank in range(ranks))
+
+
 for ranks in (1, 2, 3, 4):
     more = ["properties", "errors", "abort"] if ranks == 3 else []
-    code, said = runs.run(ranks, *pieces, *more)
+    code, said = runs.run(ranks, *pieces, "memory", *more, timeout=480)
     assert code == 0 and said.count("is done") == ranks, said
     for case in pieces:
         expected, alone = whole(1, "even" if case in of_even else case)
@@ -60,5 +65,8 @@ for ranks in (1, 2, 3, 4):
             print("%d ranks: one is given %.3f of the cells, %.3f of the bytes" % (
                 ranks, largest, max(int(part["bytes"]) for part in parts) / int(alone[0]["bytes"])), flush=True)
             assert largest < {1: 1.01, 2: 0.61, 3: 0.5, 4: 0.36}[ranks], (ranks, largest)
+    print("%d ranks: one takes %.0f MiB, %.2f of what one alone takes" % (ranks, taken(ranks) / 2**20, taken(ranks) / taken(1)),
+          flush=True)
+    assert taken(ranks) < {1: 1.01, 2: 0.7, 3: 0.55, 4: 0.45}[ranks] * taken(1), ranks
     if more:
         print(said)

@@ -68,12 +68,12 @@ def with_layers(own, layers=1):
     return [max(bound - layers, 0) if i % 2 == 0 else min(bound + layers, WHOLE[i]) for i, bound in enumerate(own)]
 
 
-def boxes():
+def boxes(whole=WHOLE):
     """@return the extent of each rank, as ParaView cuts"""
     extents = []
     for piece in range(ranks):
         translator = vtkExtentTranslator()
-        translator.SetWholeExtent(WHOLE)
+        translator.SetWholeExtent(whole)
         translator.SetNumberOfPieces(ranks)
         translator.SetPiece(piece)
         translator.PieceToExtent()
@@ -284,6 +284,23 @@ def turned():
     caster.UpdatePipeline()
     assert caster.GetClientSideObject().GetSceneKept()
     keep("turned", caster)
+
+
+def memory_of(field):
+    """@return bytes of this process: VmRSS now, VmHWM at most"""
+    with open("/proc/self/status") as status:
+        return 1024 * int(next(line for line in status if line.startswith(field)).split()[1])
+
+
+def memory():
+    """A larger lens, without layers: what a rank takes for its picture at most, beside its piece."""
+    source = source_of(bend(medium_of(boxes([0, 144, 0, 128, 0, 112])[rank])))
+    cast(bend(plain_piece()), Environment=sky())  # what any picture takes
+    with open("/proc/self/clear_refs", "w") as peak:
+        peak.write("5")
+    before = memory_of("VmRSS")
+    caster = cast(source, Environment=sky())
+    numpy.savez(os.path.join(folder, "memory.%d.npz" % rank), taken=memory_of("VmHWM") - before)
 
 
 def reader():
