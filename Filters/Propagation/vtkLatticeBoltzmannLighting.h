@@ -56,9 +56,9 @@ struct MediumInput;
  * +x, -y, +y, -z, +z), `left_out` (what the scene did not need), `device`, `stored_directions`.
  * Output 1: vtkTable, one row an iteration (of steps: every 16 or so): `iteration`, `seconds`, `residual`, `change`.
  *
- * With Decomposition BLOCKS lines of links go on from rank to rank (numerics.md, section 10 c). Blocks do what the
- * conservative scheme's steady light does, refraction and FaceAlbedo included, but, beside what no solver can do by
- * blocks, not Photons, BlockSize, MaximumOrders, and point, spot and rectangle lights beside periodic axes.
+ * With Decomposition BLOCKS lines of links go on from rank to rank, or what voxels send each other in a step
+ * (numerics.md, section 10 c): the steady light, and steps of both schemes. What blocks cannot do, beside what none of
+ * the solvers can, are Photons, BlockSize, and point, spot and rectangle lights beside periodic axes.
  *
  * EstimateError is not used.
  *

@@ -7,7 +7,8 @@ namespace tyndall
 {
 namespace
 {
-constexpr int ValuesTag = 29999; ///< the last of those that Communicator.h leaves to others
+constexpr int ValuesTag = 29999;  ///< the last of those that Communicator.h leaves to others
+constexpr int NumbersTag = 29996; ///< beside those of GhostCells.cxx and Rounds.h
 
 /// Calls act(place) with the number of the first value of each row along x of a part, in an array over a box.
 template <class Act>
@@ -53,6 +54,27 @@ void PutPart(const std::vector<float>& taken, std::vector<float>& values, const 
 std::vector<float> PartOf(const std::vector<float>& values, const VoxelBox& box, const VoxelBox& part, int components)
 {
   return TakeFrom(values, box, part, components);
+}
+
+std::vector<std::vector<std::size_t>> NumbersOfEach(
+  Communicator& communicator, const BlockPartition& partition, const std::vector<std::vector<std::size_t>>& toEach)
+{
+  std::vector<std::vector<std::size_t>> found(toEach.size());
+  for (int rank = 0; rank < communicator.Ranks(); ++rank)
+  {
+    if (partition.blocks[rank].VoxelCount() > 0)
+    {
+      communicator.Send(rank, NumbersTag, toEach[rank]);
+    }
+  }
+  for (int rank = 0; rank < communicator.Ranks(); ++rank)
+  {
+    if (partition.blocks[rank].VoxelCount() > 0)
+    {
+      found[rank] = communicator.Receive<std::size_t>(rank, NumbersTag);
+    }
+  }
+  return found;
 }
 
 std::vector<float> ValuesInBox(Communicator& communicator, const BlockPartition& partition,

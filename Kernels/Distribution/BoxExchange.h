@@ -4,6 +4,7 @@
 #include "Distribution/Communicator.h"
 #include "Medium/VoxelBox.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -15,6 +16,12 @@ std::vector<float> PartOf(const std::vector<float>& values, const VoxelBox& box,
 /// The other way round.
 void PutPart(const std::vector<float>& taken, std::vector<float>& values, const VoxelBox& box, const VoxelBox& part,
   int components);
+
+/// Numbers from each rank to each, this one as well; ranks without voxels neither send nor get any. All ranks that have
+/// voxels call it.
+/// @param toEach, return  by rank
+std::vector<std::vector<std::size_t>> NumbersOfEach(
+  Communicator& communicator, const BlockPartition& partition, const std::vector<std::vector<std::size_t>>& toEach);
 
 /// Values of the voxels of a box that each rank wants, which may reach into the blocks of others. All ranks call it.
 /// @param wanted  by rank, within the grid; of no voxels where a rank wants none

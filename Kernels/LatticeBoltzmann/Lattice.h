@@ -37,6 +37,10 @@ public:
   void ShineBy(
     const Buffer<float>& scatters, const Buffer<float>& glows, const Buffer<float>& fluence, int channels, int channel);
 
+  /// Densities at places of [direction][stride], and others to such places.
+  std::vector<float> DensitiesAt(const Buffer<cl_ulong>& places) const;
+  void PutDensities(const Buffer<cl_ulong>& places, const std::vector<float>& values);
+
   /// Densities as a solver found them, [direction][voxel], for what leaves and flows.
   const Buffer<float>& Densities() const { return this->Now; }
   const LatticeInfo& Info() const { return this->TheInfo; }

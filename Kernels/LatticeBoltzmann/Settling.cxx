@@ -17,56 +17,32 @@ constexpr int MostSteps = 200000;  ///< where the tolerance is not met
 constexpr double Slowest = 0.9999; ///< of changes from look to look: beyond, their rest is not known
 }
 
-Settling::Settling(Device& device, Lattice& lattice, const Grid& grid, const LatticeSettings& settings)
+std::vector<std::size_t> ProbesOf(const Grid& grid, const LatticeSettings& settings)
+{
+  const auto probes = static_cast<std::size_t>(settings.probes);
+  return probes > 0 && probes < grid.VoxelCount() ? ChooseEvenly(grid.VoxelCount(), probes)
+                                                  : std::vector<std::size_t>();
+}
+
+SteppedInMemory::SteppedInMemory(Device& device, Lattice& lattice, const Grid& grid, const LatticeSettings& settings)
   : TheDevice(device)
   , TheLattice(lattice)
   , Settings(settings)
 {
-  const auto probes = static_cast<std::size_t>(settings.probes);
-  if (probes > 0 && probes < grid.VoxelCount())
+  const std::vector<std::size_t> probes = ProbesOf(grid, settings);
+  if (!probes.empty())
   {
-    std::vector<cl_int> places;
-    for (const std::size_t voxel : ChooseEvenly(grid.VoxelCount(), probes))
-    {
-      places.push_back(static_cast<cl_int>(voxel));
-    }
-    this->Places = Buffer<cl_int>(device, places, "probes");
+    this->Places = Buffer<cl_int>(device, std::vector<cl_int>(probes.begin(), probes.end()), "probes");
   }
 }
 
-/// Of fluence at the probes since it was looked at last, relative.
-double Settling::Change()
+std::vector<float> SteppedInMemory::Probed() const
 {
-  const std::vector<float> now =
-    this->Places.Size() > 0 ? this->TheLattice.FluenceAt(this->Places) : this->TheLattice.Fluence();
-  this->Last.resize(now.size(), 0.0f);
-  double change = 0.0, all = 0.0;
-  for (std::size_t i = 0; i < now.size(); ++i)
-  {
-    change += std::abs(static_cast<double>(now[i]) - this->Last[i]);
-    all += std::abs(now[i]);
-  }
-  this->Last = now;
-  if (!std::isfinite(all))
-  {
-    throw InvalidInput(
-      "Steps as published have grown beyond all floats: sigma_t times a voxel's edge is above 1. Choose "
-      "the conservative scheme, or smaller voxels.");
-  }
-  return all > 0.0 ? change / all : 0.0;
-}
-
-/// What is still to come, from how changes fall.
-double Settling::Estimate(double change)
-{
-  const double ratio = this->LastChange > 0.0 ? std::min(change / this->LastChange, Slowest) : 1.0;
-  const bool compares = this->LastChange > 0.0;
-  this->LastChange = change;
-  return change == 0.0 ? 0.0 : compares ? std::min(change * ratio / (1.0 - ratio), 1.0) : 1.0;
+  return this->Places.Size() > 0 ? this->TheLattice.FluenceAt(this->Places) : this->TheLattice.Fluence();
 }
 
 /// Queued in parts of about 50 ms.
-void Settling::Step(int steps, double done, const Monitor& monitor)
+void SteppedInMemory::Step(int steps, double done, const Monitor& monitor)
 {
   Batches batches;
   batches.count = static_cast<std::size_t>(steps);
@@ -76,6 +52,39 @@ void Settling::Step(int steps, double done, const Monitor& monitor)
   InBatches(this->TheDevice, batches, monitor, [&](std::size_t begin, std::size_t size) {
     this->TheLattice.Step(static_cast<int>(size), static_cast<int>(begin + size) == steps);
   });
+}
+
+/// Of fluence at the probes since it was looked at last, relative.
+double Settling::Change()
+{
+  std::vector<double> sums = { 0.0, 0.0 }; // of changes, and of all
+  this->TheLattice.Alone([&] {
+    const std::vector<float> now = this->TheLattice.Probed();
+    this->Last.resize(now.size(), 0.0f);
+    for (std::size_t i = 0; i < now.size(); ++i)
+    {
+      sums[0] += std::abs(static_cast<double>(now[i]) - this->Last[i]);
+      sums[1] += std::abs(now[i]);
+    }
+    this->Last = now;
+  });
+  sums = this->TheLattice.Sum(sums);
+  if (!std::isfinite(sums[1]))
+  {
+    throw InvalidInput(
+      "Steps as published have grown beyond all floats: sigma_t times a voxel's edge is above 1. Choose "
+      "the conservative scheme, or smaller voxels.");
+  }
+  return sums[1] > 0.0 ? sums[0] / sums[1] : 0.0;
+}
+
+/// What is still to come, from how changes fall.
+double Settling::Estimate(double change)
+{
+  const double ratio = this->LastChange > 0.0 ? std::min(change / this->LastChange, Slowest) : 1.0;
+  const bool compares = this->LastChange > 0.0;
+  this->LastChange = change;
+  return change == 0.0 ? 0.0 : compares ? std::min(change * ratio / (1.0 - ratio), 1.0) : 1.0;
 }
 
 std::vector<float> Settling::Run(const StepsBefore& before, const Monitor& monitor, std::vector<ConvergenceRow>& rows)
@@ -94,7 +103,7 @@ std::vector<float> Settling::Run(const StepsBefore& before, const Monitor& monit
   for (int step = before.steps; step < most && (asked || residual > this->Settings.tolerance);)
   {
     const int steps = std::min(look, most - step);
-    this->Step(steps, done, monitor);
+    this->TheLattice.Step(steps, done, monitor);
     step += steps;
     ConvergenceRow row;
     row.change = this->Change();
@@ -106,7 +115,7 @@ std::vector<float> Settling::Run(const StepsBefore& before, const Monitor& monit
     done = asked
       ? static_cast<double>(step) / most
       : std::clamp(std::log(std::max(residual, 1e-30)) / std::log(std::min(this->Settings.tolerance, 0.9)), done, 1.0);
-    Report(monitor, done);
+    this->TheLattice.Alone([&] { Report(monitor, done); });
   }
   return this->TheLattice.Fluence();
 }

@@ -6,7 +6,8 @@ and of the whole.
 from pieces_of_ranks import Runs, difference
 
 runs = Runs("SolversByBlocks")
-CASES = ["lattice_wavelet", "lattice_even", "lattice_uneven", "lattice_lamps", "lattice_around", "ordinates_even",
+CASES = ["lattice_wavelet", "lattice_even", "lattice_uneven", "lattice_lamps", "lattice_around",
+         "lattice_steps", "ordinates_even",
          "ordinates_uneven", "ordinates_faces", "ordinates_around"]
 LIKE = {"lattice_uneven": "lattice_even", "ordinates_uneven": "ordinates_even"}
 

@@ -446,6 +446,10 @@ def lattice_around():
                solve=lambda density, array: lattice_by_blocks(density, array, PeriodicX=1, PeriodicY=1))
 
 
+def lattice_steps():
+    own_pieces("lattice_steps", uneven_pieces(), solve=lambda density, array: lattice_by_blocks(density, array, MaximumOrders=25))
+
+
 def by_ordinates(density, array, **settings):
     medium = ParticipatingMedium(Input=density, DensityArray=array, ExtinctionScale=0.5, MinimumDensity=0, MaximumDensity=1,
                                  Albedo=[0.9, 0.8, 0.7], MeanCosine=0.5)
@@ -495,7 +499,7 @@ def lattice_errors():
     medium = ParticipatingMedium(Input=Wavelet(WholeExtent=SIZE), DensityArray=["POINTS", "RTData"])
     lights = PointLight(Position=[0, 0, 20], Power=[9, 9, 9])
     for named, settings in (("a point, spot or rectangle light beside a periodic axis", {"Lights": lights, "PeriodicX": 1}),
-                            ("MaximumOrders", {"MaximumOrders": 4}), ("Preview", {"Preview": 1})):
+                            ("BlockSize", {"BlockSize": 4}), ("Preview", {"Preview": 1})):
         light = LatticeBoltzmannLighting(Input=medium, SkyColor=[1, 1, 1], Decomposition="Blocks", **settings)
         errors = errors_of(light)
         light.UpdatePipeline()

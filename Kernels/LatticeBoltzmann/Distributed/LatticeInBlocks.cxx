@@ -4,6 +4,7 @@
 #include "Distribution/SharedMedium.h"
 #include "LatticeBoltzmann/Distributed/DiffusionInBlocks.h"
 #include "LatticeBoltzmann/Distributed/LinesInBlocks.h"
+#include "LatticeBoltzmann/Distributed/SteppedInBlocks.h"
 #include "LatticeBoltzmann/Distributed/UncollidedInBlocks.h"
 #include "LatticeBoltzmann/Distributed/VoxelsAround.h"
 #include "LatticeBoltzmann/LatticeAccount.h"
@@ -29,7 +30,8 @@ constexpr int Layers = 2;
 void RequireSameLattice(
   Communicator& communicator, bool has, const Field& ior, const Illumination& shining, const LatticeSettings& settings)
 {
-  std::vector<double> numbers = { 1.0 * settings.directions };
+  std::vector<double> numbers = { 1.0 * settings.directions, 1.0 * static_cast<int>(settings.scheme),
+    1.0 * settings.maximumSteps, 1.0 * settings.solvesSteady, 1.0 * settings.probes, settings.tolerance };
   for (const Rgb& face : shining.faceAlbedo)
   {
     numbers.insert(numbers.end(), face.begin(), face.end());
@@ -114,7 +116,8 @@ public:
   {
   }
 
-  void AddTo(LightField& light, int channel, const Monitor& monitor) const
+  /// @return sigma_t h, of all voxels
+  double AddTo(LightField& light, int channel, const Monitor& monitor) const
   {
     std::optional<LatticeVoxels> made;
     this->Others.Together([&] { made.emplace(this->Scene, this->Index, this->OfKnown, this->Direct, channel); });
@@ -131,9 +134,7 @@ public:
     std::vector<ConvergenceRow> rows;
     if (this->Others.Sum({ voxels.Given() })[0] > 0.0)
     {
-      SteadyInBlocks system(this->TheDevice, this->Others, this->Partition, this->Box, this->Settings, voxels,
-        lattice ? &*lattice : nullptr);
-      fluence = SteadyLattice(this->Box, this->Settings, voxels, system).Solve(monitor, rows);
+      fluence = this->Fluence(voxels, lattice ? &*lattice : nullptr, monitor, rows);
     }
     this->Others.Together([&] {
       if (lattice)
@@ -143,9 +144,25 @@ public:
       }
     });
     AddRows(rows, light);
+    return voxels.thickest;
   }
 
 private:
+  /// Of the steady lattice, or of one that steps.
+  std::vector<float> Fluence(
+    const LatticeVoxels& voxels, Lattice* lattice, const Monitor& monitor, std::vector<ConvergenceRow>& rows) const
+  {
+    if (this->Settings.Solves())
+    {
+      SteadyInBlocks system(this->TheDevice, this->Others, this->Partition, this->Box, this->Settings, voxels, lattice);
+      return SteadyLattice(this->Box, this->Settings, voxels, system).Solve(monitor, rows);
+    }
+    SteppedInBlocks steps(this->TheDevice, this->Others, this->Partition, this->Settings, lattice);
+    std::vector<float> fluence = Settling(steps, this->Settings).Run({}, monitor, rows);
+    steps.FillAround(); // net flux is of what comes from there
+    return fluence;
+  }
+
   /// What kernels leave out they do for all voxels of the grid, and what comes in depends on it.
   void TakeWhatIsOfAll(LatticeVoxels& voxels, int channel) const
   {
@@ -180,15 +197,11 @@ std::string NotInBlocks(const Illumination& illumination, const LatticeSettings&
   {
     return "a point, spot or rectangle light beside a periodic axis";
   }
-  if (settings.scheme == LatticeScheme::Published)
-  {
-    return "the published Scheme";
-  }
   if (settings.blockSize > 0)
   {
     return "blocks of voxels that step by themselves (BlockSize)";
   }
-  return settings.Solves() ? std::string() : "steps that are counted (MaximumOrders, Interleaved)";
+  return settings.interleaves ? "photons that march while light diffuses (Interleaved)" : std::string();
 }
 
 namespace
@@ -263,16 +276,18 @@ LightField SolveLatticeInBlocks(Device& device, Communicator& communicator, cons
                               .Find(OfPart(monitor, 0.0, 0.1));
   LightField light = BeginLight(box.Count(), scene.channels, settings);
   const ChannelsInBlocks channels(device, communicator, inUnits, box, solved, known.index, settings, direct);
+  double thickest = 0.0;
   for (int c = 0; c < light.channels; ++c)
   {
     const double all = light.channels;
-    channels.AddTo(light, c, OfPart(monitor, 0.1 + 0.9 * c / all, 0.1 + 0.9 * (c + 1) / all));
+    const Monitor ofChannel = OfPart(monitor, 0.1 + 0.9 * c / all, 0.1 + 0.9 * (c + 1) / all);
+    thickest = std::max(thickest, channels.AddTo(light, c, ofChannel));
   }
   AddUp(communicator, light);
   const bool anisotropic =
     communicator.Largest({ has && !scene.medium.phase.IsIsotropic() ? 1.0 : 0.0 })[0] > 0.0 && scene.traits.scatters;
   communicator.Together([&] {
-    DescribeLight(light, device, anisotropic, settings, 0.0);
+    DescribeLight(light, device, anisotropic, settings, thickest);
     scene.Undo(light);
     JudgeLight(light, illumination, settings);
   });

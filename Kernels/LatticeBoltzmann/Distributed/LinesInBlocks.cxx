@@ -1,5 +1,6 @@
 #include "LatticeBoltzmann/Distributed/LinesInBlocks.h"
 
+#include "Distribution/BoxExchange.h"
 #include "LatticeBoltzmann/LatticeShared.h"
 #include "LatticeBoltzmann/Steady/LinesOfLinks.h"
 #include "TyndallKernelSources.h"
@@ -93,47 +94,41 @@ LinesInBlocks::Pair LinesInBlocks::LinesFrom(const PiecesOfLines& pieces) const
   return pair;
 }
 
-/// Which of its pieces a rank has to tell whom about.
+/// Which of its pieces a rank has to tell whom about: of each pair how many, and which.
 void LinesInBlocks::TellWhoJoins(const BlockPartition& partition)
 {
   if (this->Box.Count() == 0)
   {
     return;
   }
-  const auto forOthers = [&](const auto& act) {
-    for (int rank = 0; rank < this->Others.Ranks(); ++rank)
+  std::vector<std::vector<std::size_t>> toEach(this->Others.Ranks());
+  for (const Pair& pair : this->Pairs)
+  {
+    std::vector<std::vector<std::size_t>> ofPair(toEach.size());
+    for (const Shared& shared : pair.heardOf)
     {
-      if (partition.blocks[rank].VoxelCount() > 0)
-      {
-        act(rank);
-      }
+      ofPair[shared.rank] = shared.pieces;
     }
-  };
-  forOthers([&](int rank) {
-    std::vector<std::size_t> message;
-    for (const Pair& pair : this->Pairs)
+    for (std::size_t rank = 0; rank < toEach.size(); ++rank)
     {
-      const auto of = std::find_if(
-        pair.heardOf.begin(), pair.heardOf.end(), [&](const Shared& shared) { return shared.rank == rank; });
-      const std::vector<std::size_t> pieces = of == pair.heardOf.end() ? std::vector<std::size_t>() : of->pieces;
-      message.push_back(pieces.size());
-      message.insert(message.end(), pieces.begin(), pieces.end());
+      toEach[rank].push_back(ofPair[rank].size());
+      toEach[rank].insert(toEach[rank].end(), ofPair[rank].begin(), ofPair[rank].end());
     }
-    this->Others.Send(rank, FirstTag, message);
-  });
-  forOthers([&](int rank) {
-    const std::vector<std::size_t> message = this->Others.Receive<std::size_t>(rank, FirstTag);
-    auto next = message.begin();
-    for (Pair& pair : this->Pairs)
+  }
+  const std::vector<std::vector<std::size_t>> ofEach = NumbersOfEach(this->Others, partition, toEach);
+  for (std::size_t rank = 0; rank < ofEach.size(); ++rank)
+  {
+    auto next = ofEach[rank].begin();
+    for (auto pair = this->Pairs.begin(); pair != this->Pairs.end() && next != ofEach[rank].end(); ++pair)
     {
       const auto first = next + 1;
       next = first + static_cast<std::ptrdiff_t>(*next);
       if (first != next)
       {
-        pair.joinedBy.push_back({ rank, { first, next } });
+        pair->joinedBy.push_back({ static_cast<int>(rank), { first, next } });
       }
     }
-  });
+  }
 }
 
 void LinesInBlocks::Load(const BlockPartition& partition, const std::array<bool, 3>& periodic)
