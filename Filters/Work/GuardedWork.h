@@ -54,7 +54,7 @@ struct WorkOnPieces
   /// Called first, on all ranks together. Its answer is the same on all: false where it does nothing.
   /// @param ranks  null: this process is alone; output 0 is then cut to what was asked for
   std::function<bool(vtkMultiProcessController* ranks, vtkInformationVector** inputs)> work;
-  int shares = -1; ///< an input of points of which ranks may have some each, as they are given; -1: none
+  int shares = -1;  ///< an input of points of which ranks may have some each, as they are given; -1: none
   int besides = -1; ///< another input of which ranks have pieces; -1: none
 };
 
