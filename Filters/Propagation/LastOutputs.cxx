@@ -62,8 +62,7 @@ bool LastOutputs::GiveBack(
   return true;
 }
 
-void LastOutputs::Keep(
-  vtkMTimeType settings, vtkInformationVector** inputs, int ports, vtkInformationVector* outputs)
+void LastOutputs::Keep(vtkMTimeType settings, vtkInformationVector** inputs, int ports, vtkInformationVector* outputs)
 {
   this->MadeOf = KeyOf(settings, inputs, ports);
   this->Keep(outputs);

@@ -20,7 +20,7 @@ struct PieceOfMedium
   /// @throws InvalidInput on each what ReadMedium says on one
   PieceOfMedium(Communicator& communicator, const PieceBlocks& pieces, vtkAlgorithm* filter, vtkImageData* given);
 
-  vtkSmartPointer<vtkImageData> image; ///< whose arrays the medium has; null where the block is empty
+  vtkSmartPointer<vtkImageData> image;      ///< whose arrays the medium has; null where the block is empty
   vtkSmartPointer<vtkImageData> uncollided; ///< the same of the light of another filter; null: none, or not read
   MediumInput input;
   Medium medium;      ///< empty where the block is

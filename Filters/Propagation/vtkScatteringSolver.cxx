@@ -229,8 +229,8 @@ std::string vtkScatteringSolver::NotOnPiece(const tyndall::PieceBlocks& pieces, 
   return refused;
 }
 
-std::string vtkScatteringSolver::BetterAsWhole(tyndall::Communicator&, const tyndall::PieceBlocks&,
-  const tyndall::PieceOfMedium&, const tyndall::IlluminationInput&)
+std::string vtkScatteringSolver::BetterAsWhole(
+  tyndall::Communicator&, const tyndall::PieceBlocks&, const tyndall::PieceOfMedium&, const tyndall::IlluminationInput&)
 {
   return {};
 }

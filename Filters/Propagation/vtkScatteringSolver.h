@@ -234,7 +234,7 @@ private:
   bool SolvedInPieces = false; ///< that is of this rank's piece
   bool OverRanks = false;      ///< of the light that is being made: several ranks make it together
   std::string WholeFor;        ///< the same: why each solves the whole, though it was left to choose
-  vtkTimeStamp ColorsTime; ///< of LitColor, Exposure, ToneCurve: they do not change the light
+  vtkTimeStamp ColorsTime;     ///< of LitColor, Exposure, ToneCurve: they do not change the light
 };
 
 #endif

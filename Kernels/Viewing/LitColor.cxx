@@ -97,8 +97,7 @@ struct SeenColumn
   }
 };
 
-SeenColumn LookAlong(
-  const SourceFunction& source, double edge, std::size_t first, std::ptrdiff_t step, int count)
+SeenColumn LookAlong(const SourceFunction& source, double edge, std::size_t first, std::ptrdiff_t step, int count)
 {
   SeenColumn seen;
   std::size_t voxel = first;
@@ -126,8 +125,8 @@ void ForColumnsOfView(const Grid& whole, int axis, const VoxelBox& box, const Ac
   {
     for (int u = every / 2; u < whole.size[plane.u]; u += every)
     {
-      const bool has = u >= box.first[plane.u] && u < EndOf(box, plane.u) && v >= box.first[plane.v] &&
-        v < EndOf(box, plane.v);
+      const bool has =
+        u >= box.first[plane.u] && u < EndOf(box, plane.u) && v >= box.first[plane.v] && v < EndOf(box, plane.v);
       if (has)
       {
         act(u, v);
@@ -146,8 +145,7 @@ std::vector<SeenColumn> SeenInBlock(const Spread& spread, int axis, const Source
   const auto along = static_cast<std::ptrdiff_t>(stride[axis]);
   std::vector<SeenColumn> seen;
   ForColumnsOfView(spread.partition.whole, axis, own, [&](int u, int v) {
-    const std::size_t near =
-      (u - own.first[plane.u]) * stride[plane.u] + (v - own.first[plane.v]) * stride[plane.v];
+    const std::size_t near = (u - own.first[plane.u]) * stride[plane.u] + (v - own.first[plane.v]) * stride[plane.v];
     const std::size_t far = near + (grid.size[axis] - 1) * stride[axis];
     seen.push_back(LookAlong(source, grid.spacing[axis], near, along, grid.size[axis]));
     seen.push_back(LookAlong(source, grid.spacing[axis], far, -along, grid.size[axis]));
@@ -162,9 +160,8 @@ std::vector<float> BehindEachOther(
 {
   std::vector<std::size_t> order(byRank.size());
   std::iota(order.begin(), order.end(), std::size_t{ 0 });
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return partition.blocks[a].first[axis] < partition.blocks[b].first[axis];
-  });
+  std::sort(order.begin(), order.end(),
+    [&](std::size_t a, std::size_t b) { return partition.blocks[a].first[axis] < partition.blocks[b].first[axis]; });
   const std::size_t width = static_cast<std::size_t>(partition.whole.size[AcrossAxis(axis).u]);
   std::map<std::size_t, std::array<SeenColumn, 2>> columns; // by place
   for (int side = 0; side < 2; ++side)
@@ -399,8 +396,7 @@ double LargestProduct(const std::vector<float>& a, const std::vector<float>& b)
 LitColor ColorLitMedium(const Medium& medium, const Field& fluence, const ToneMapping& tones)
 {
   SingleRank alone;
-  return ColorLitMediumInBlocks(
-    alone, { medium.grid, { { { 0, 0, 0 }, medium.grid.size } } }, medium, fluence, tones);
+  return ColorLitMediumInBlocks(alone, { medium.grid, { { { 0, 0, 0 }, medium.grid.size } } }, medium, fluence, tones);
 }
 
 LitColor ColorLitMediumInBlocks(Communicator& communicator, const BlockPartition& partition, const Medium& medium,

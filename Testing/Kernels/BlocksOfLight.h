@@ -121,8 +121,7 @@ inline LightField LightOfAll(Device& device, const BlockPartition& partition, co
   std::mutex guard;
   RunInThreads(static_cast<int>(partition.blocks.size()), [&](Communicator& communicator) {
     PartOf part(whole, partition.blocks[communicator.Rank()]);
-    const LightField light =
-      SolveInBlocks(device, communicator, partition, part.medium, part.Of(shining), settings);
+    const LightField light = SolveInBlocks(device, communicator, partition, part.medium, part.Of(shining), settings);
     const std::lock_guard<std::mutex> lock(guard);
     if (all.convergence.empty())
     {

@@ -1,4 +1,4 @@
-// What a solve of a medium that is spread over ranks chooses as it would of the whole, and light that is given by voxel.
+// What a solve of a medium that is spread over ranks chooses as it would of the whole, and light given by voxel.
 
 #include "BlocksOfLight.h"
 

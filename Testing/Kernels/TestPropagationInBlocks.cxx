@@ -193,6 +193,42 @@ TEST_F(PropagationBlocks, FindTheSameLightSoonerByCells)
   }
 }
 
+/// As the whole has it by cells, of light that is linear across voxels, in blocks of any sizes.
+TEST_F(PropagationBlocks, HaveTheLightOfTheWholeByCells)
+{
+  RandomMedium whole(Grid{ { 22, 19, 18 }, { 1.0, 0.9, 1.1 } }, 3, 0.45f, 5);
+  for (std::size_t i = 0; i < whole.absorption.size(); ++i)
+  {
+    const float both = whole.absorption[i] + whole.scattering[i];
+    whole.absorption[i] = 0.02f * both;
+    whole.scattering[i] = 0.98f * both;
+  }
+  whole.Emit(0.3f);
+  PropagationSettings settings = SettingsOf(0);
+  settings.acceleration = PropagationAcceleration::Automatic;
+  settings.source = PropagationSource::Automatic;
+  settings.tolerance = 1e-5;
+  const LightField expected = SolveConservative(GetDevice(), whole.medium, LitFromOutside(), settings);
+  settings.source = PropagationSource::Constant;
+  const LightField constant = SolveConservative(GetDevice(), whole.medium, LitFromOutside(), settings);
+  EXPECT_GT(RelativeRmse(constant.fluence, expected.fluence), 1e-3);
+  settings.source = PropagationSource::Automatic;
+  const BlockPartition one = BlockPartition::Even(whole.medium.grid, 1);
+  const LightField alone = LightOfAll(GetDevice(), one, whole, LitFromOutside(), settings);
+  EXPECT_LT(RelativeRmse(alone.fluence, expected.fluence), 1e-5);
+  EXPECT_LT(RelativeRmse(alone.netFlux, expected.netFlux), 2e-5);
+  EXPECT_EQ(alone.convergence.size(), expected.convergence.size());
+  EXPECT_LT(alone.balance.RelativeError(3), 1e-6);
+  for (int face = 0; face < 6; ++face)
+  {
+    EXPECT_NEAR(alone.facePowerOut[face][0], expected.facePowerOut[face][0], 1e-5 * expected.facePowerOut[face][0]);
+  }
+  for (const BlockPartition& partition : { BlockPartition::Even(whole.medium.grid, 3), Uneven(whole.medium.grid) })
+  {
+    ExpectSame(LightOfAll(GetDevice(), partition, whole, LitFromOutside(), settings), alone);
+  }
+}
+
 /// Voxels of several mean free paths, which absorb little or nothing: the balance of voxels goes with the sweeps.
 class ThickPropagationBlocks : public PropagationBlocks
 {

@@ -347,8 +347,8 @@ void IterationInBlocks::MakeCells()
 {
   for (int c = 0; c < this->Layout.channels && this->Way.orders.how == OrdersAdded::ByCells; ++c)
   {
-    this->Cells.push_back(std::make_unique<CellsOverRanks>(
-      this->TheDevice, this->Others, this->Partition, this->Layout, c, this->OnDevice, this->Way.orders.halvings));
+    this->Cells.push_back(std::make_unique<CellsOverRanks>(this->TheDevice, this->Others, this->Partition, this->Layout,
+      c, this->OnDevice, this->Way.orders.halvings, this->Settings.source != PropagationSource::Constant));
     this->Rest[c].BeginWarm(FallByCells);
   }
 }
@@ -372,6 +372,8 @@ void IterationInBlocks::ScatterByCells()
     }
     for (int face = 0; face < 6; ++face)
     {
+      this->Ledger.Escape(c, face, -this->KeptByCells[face][c]); // that the sweep just done let out
+      this->KeptByCells[face][c] = powers.kept[face];
       this->OutOfCells[face][c] = powers.out[face];
     }
   }
@@ -551,14 +553,13 @@ LightField IterationInBlocks::Run(const Monitor& monitor)
 /// Light of lamps goes ahead, and what of it is scattered is given to the sweeps.
 void IterationInBlocks::RunByBalance(const Monitor& monitor)
 {
-  AccelerationInBlocks acceleration(
-    { this->TheDevice, this->Others, this->Partition, this->Scene, this->Settings, this->Layout, this->OnDevice,
-      this->Directions, this->Boundary, this->Lamps,
-      [this](const SweepRequest& request) { return this->MakeSweep(request); },
-      [this](const Light& lamp, const Deposit& to, const Monitor& ofLamp) {
-        return UncollidedLamp(lamp).AddTo(this->VolumeOf(to), ofLamp);
-      },
-      this->Source, this->Path, this->Fluence, this->Flux, this->Ledger, this->Shining });
+  AccelerationInBlocks acceleration({ this->TheDevice, this->Others, this->Partition, this->Scene, this->Settings,
+    this->Layout, this->OnDevice, this->Directions, this->Boundary, this->Lamps,
+    [this](const SweepRequest& request) { return this->MakeSweep(request); },
+    [this](const Light& lamp, const Deposit& to, const Monitor& ofLamp) {
+      return UncollidedLamp(lamp).AddTo(this->VolumeOf(to), ofLamp);
+    },
+    this->Source, this->Path, this->Fluence, this->Flux, this->Ledger, this->Shining });
   const Monitor ofLamps =
     OfPart(monitor, [this](double done) { return ProgressOf(this->Settings, 1.0, UncollidedPart * done); });
   if (!this->Lamps.empty() && acceleration.NeedsFirstMoments())

@@ -96,7 +96,7 @@ private:
   const BoundaryLight Boundary;
   std::unique_ptr<const BoundaryLight> FineBoundary; ///< in its place; null where it is dark
   std::vector<Light> Lamps;
-  std::unique_ptr<const GivenLight> Given; ///< null: none is, or there are no voxels
+  std::unique_ptr<const GivenLight> Given;     ///< null: none is, or there are no voxels
   std::unique_ptr<const SweptMoments> Angular; ///< null: all is isotropic, or there are no voxels
   Buffer<float> Source, Path, Flux, Fluence;
   Buffer<float> OfLamp; ///< path integrals of one lamp's light, where it goes into angular moments
@@ -107,6 +107,7 @@ private:
   std::unique_ptr<LampsInBlocks> NearLamps;           ///< null until there is one
   std::vector<std::unique_ptr<CellsOverRanks>> Cells; ///< by channel; empty: orders are added up as they are
   std::array<Rgb, 6> OutOfCells = {};                 ///< W, through faces, of all orders to come
+  std::array<Rgb, 6> KeptByCells = {};                ///< W that the next sweep will let out, and that stay
 
   EnergyLedger Ledger;
   ConvergenceRecord Convergence;

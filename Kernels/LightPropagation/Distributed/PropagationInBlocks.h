@@ -21,7 +21,7 @@ namespace tyndall
 ///
 /// Orders are added up as HowOrdersAreAdded (OrdersOverRanks.h) has it: one by one; where voxels are thin and light is
 /// scattered many times each with what diffusion on cells says of the rest (CellsOverRanks.h); where voxels are thicker
-/// by their balance (AccelerationInBlocks.h), with the source that the settings ask for. That of the former two is
+/// by their balance (AccelerationInBlocks.h), both with the source that the settings ask for. One by one it is
 /// constant in voxels. Cells and the balance are for isotropic scattering in an open box without faces that reflect.
 ///
 /// Carried are light that comes in through the box's faces, from the sky and the environment, of all kinds of lights,

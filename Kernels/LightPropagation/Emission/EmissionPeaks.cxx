@@ -36,7 +36,10 @@ struct BrightVoxels
   std::vector<std::size_t> voxels; ///< in order
   double limit = 0.0;              ///< what is above it stands out
   double all = 0.0;                ///< sum of all voxels' brightness
-  double Above(const Field& emission, std::size_t voxel) const { return EmissionBrightness(emission, voxel) - this->limit; }
+  double Above(const Field& emission, std::size_t voxel) const
+  {
+    return EmissionBrightness(emission, voxel) - this->limit;
+  }
 };
 
 BrightVoxels FindBright(const Medium& medium)

@@ -23,8 +23,8 @@ PropagationSettings AtQuality(
 /// What of a scene that matters for.
 struct SceneOfQuality
 {
-  bool isLit = false;    ///< through the box's faces
-  bool scatters = false; ///< the medium does
+  bool isLit = false;     ///< through the box's faces
+  bool scatters = false;  ///< the medium does
   double thickness = 0.0; ///< mean free paths across the box, in the mean
 };
 PropagationSettings AtQuality(Quality quality, PropagationSettings settings, const SceneOfQuality& scene);

@@ -172,8 +172,7 @@ ScatteringOfScene ScatteringOf(const PropagationProblem& problem)
       grid, SumAlongLines(grid, [&](std::size_t i) { return double(problem.TheMedium().TransportSigmaT(i, c)); }));
     if (scene.degree > 0)
     {
-      channel.swept =
-        ThickLines(grid, SumAlongLines(grid, [&](std::size_t i) { return double(swept.SigmaT(i, c)); }));
+      channel.swept = ThickLines(grid, SumAlongLines(grid, [&](std::size_t i) { return double(swept.SigmaT(i, c)); }));
     }
     channel.albedo = AlbedoOf(problem, c);
     scene.channels.push_back(channel);

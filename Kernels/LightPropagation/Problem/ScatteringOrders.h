@@ -11,9 +11,9 @@ namespace tyndall
 /// What tells how often the light of one channel is scattered.
 struct ScatteringOfChannel
 {
-  ThickLines diffusing;    ///< as light diffuses
-  ThickLines swept;        ///< as sweeps carry it; not looked at without angular moments
-  double albedo = 0.0;     ///< of what is scattered as sweeps carry it, in the mean
+  ThickLines diffusing; ///< as light diffuses
+  ThickLines swept;     ///< as sweeps carry it; not looked at without angular moments
+  double albedo = 0.0;  ///< of what is scattered as sweeps carry it, in the mean
 };
 
 /// The same of a whole scene, which may be spread over ranks.

@@ -56,8 +56,8 @@ OctantSources::Voxels OctantSources::Count(const Medium& medium, const Truncated
 bool OctantSources::Matter(
   const Voxels& voxels, const PropagationSettings& settings, bool scatters, int degree, bool otherSources)
 {
-  const bool wanted = settings.source == PropagationSource::Octants ? voxels.thickest > Thick
-                                                                    : MatterUnasked(voxels, settings);
+  const bool wanted =
+    settings.source == PropagationSource::Octants ? voxels.thickest > Thick : MatterUnasked(voxels, settings);
   return wanted && scatters && degree == 0 && !otherSources && !settings.firstMoments && settings.maximumOrders != 1 &&
     voxels.thickest <= Opaque;
 }

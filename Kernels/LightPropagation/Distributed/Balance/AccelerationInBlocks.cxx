@@ -365,7 +365,7 @@ std::vector<float> AccelerationInBlocks::FindSurfaceRadiance() const
       powers.back().lamps = this->The.lamps.empty() ? nullptr : this->UncollidedFluence.data() + c * own.Stride();
     }
   });
-  return SurfaceRadianceInBlocks(this->The.others, this->The.partition, this->The.scene.medium, own.channels,
-    this->The.lamps, powers);
+  return SurfaceRadianceInBlocks(
+    this->The.others, this->The.partition, this->The.scene.medium, own.channels, this->The.lamps, powers);
 }
 }

@@ -1,5 +1,6 @@
 #include "LightPropagation/Distributed/Balance/CellsOverRanks.h"
 
+#include "Distribution/BoxExchange.h"
 #include "LightPropagation/CoarseDiffusion/CoarseMatrix.h"
 #include "Medium/BoxFaces.h"
 #include "Numerics/Constants.h"
@@ -22,6 +23,24 @@ std::vector<float> ChannelOf(const Buffer<float>& values, std::size_t first, std
   return { begin, begin + static_cast<std::ptrdiff_t>(count) };
 }
 
+/// As part_of_first_term, sharpen and sharpen_at_face of CoarseDiffusion.cl.
+double PartOfFirstTerm(double tau)
+{
+  return 1.0 / (1.0 + tau * (0.183 + 0.0163 * tau));
+}
+
+double Sharpen(double own, double other, double t, double s, double otherT, double otherS, double spacing)
+{
+  const double both = t + otherT;
+  const double scattered = both > 0.0 ? (s * t + otherS * otherT) / both : 0.0;
+  return scattered * (own - other) * PartOfFirstTerm(0.5 * spacing * both) / 12.0;
+}
+
+double SharpenAtFace(double own, double inner, double t, double s, double spacing)
+{
+  return s * (inner - own) * PartOfFirstTerm(spacing * t) / 24.0;
+}
+
 void WriteChannel(Buffer<float>& values, std::size_t first, const std::vector<float>& ofChannel)
 {
   std::vector<float> all = values.Read();
@@ -31,12 +50,14 @@ void WriteChannel(Buffer<float>& values, std::size_t first, const std::vector<fl
 }
 
 CellsOverRanks::CellsOverRanks(Device& device, Communicator& communicator, const BlockPartition& partition,
-  const VolumeLayout& layout, int channel, const MediumOnDevice& medium, const std::array<int, 3>& halvings)
+  const VolumeLayout& layout, int channel, const MediumOnDevice& medium, const std::array<int, 3>& halvings,
+  bool linear)
   : TheDevice(device)
   , Others(communicator)
   , Partition(partition)
   , Layout(layout)
   , First(channel * layout.Stride())
+  , Linear(linear)
   , SigmaT(ChannelOf(medium.SigmaT(), layout.ExtinctionFirst(channel), layout.grid.VoxelCount()))
   , SigmaS(ChannelOf(medium.SigmaS(), this->First, layout.grid.VoxelCount()))
 {
@@ -52,6 +73,8 @@ CellsOverRanks::CellsOverRanks(Device& device, Communicator& communicator, const
   }
   this->Box.cells = MultigridLevels(this->Cells.size, edges).front();
   const std::vector<double> sigmaT = this->SumByCells(this->SigmaT), sigmaS = this->SumByCells(this->SigmaS);
+  this->SigmaT = this->WithNeighbours(this->SigmaT);
+  this->SigmaS = this->WithNeighbours(this->SigmaS);
   CoarseMatrix matrix = FindCoarseMatrix(partition.whole, this->Box, this->Cells,
     std::vector<float>(sigmaT.begin(), sigmaT.end()), std::vector<float>(sigmaS.begin(), sigmaS.end()));
   this->Borders = std::move(matrix.borders);
@@ -65,6 +88,31 @@ CellsOverRanks::CellsOverRanks(Device& device, Communicator& communicator, const
       this->FoundOnDevice = ExactValues(device, this->Cells.VoxelCount(), "diffusion on cells");
     }
   });
+}
+
+namespace
+{
+/// Of the whole grid, the one that is so many in a box.
+std::array<int, 3> VoxelIn(const VoxelBox& box, std::size_t number)
+{
+  Grid grid;
+  grid.size = box.size;
+  std::array<int, 3> voxel = grid.VoxelAt(number);
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    voxel[axis] += box.first[axis];
+  }
+  return voxel;
+}
+}
+
+/// Of a voxel of the whole grid, in arrays with neighbours.
+std::size_t CellsOverRanks::PlaceOf(const std::array<int, 3>& voxel) const
+{
+  Grid grid;
+  grid.size = this->Held.size;
+  return grid.IndexOf(
+    { voxel[0] - this->Held.first[0], voxel[1] - this->Held.first[1], voxel[2] - this->Held.first[2] });
 }
 
 /// Of all ranks.
@@ -133,37 +181,90 @@ double CellsOverRanks::FoundAt(const std::array<int, 3>& voxel) const
   return found;
 }
 
+/// Values of the block and, where light is linear across voxels, of those beside it. All ranks call it.
+CellsOverRanks::Values CellsOverRanks::WithNeighbours(const Values& own)
+{
+  if (!this->Linear)
+  {
+    this->Held = this->Partition.blocks[this->Others.Rank()];
+    return own;
+  }
+  std::vector<VoxelBox> wanted;
+  for (const VoxelBox& block : this->Partition.blocks)
+  {
+    wanted.push_back(block.VoxelCount() > 0 ? Grown(block, 1, this->Partition.whole) : VoxelBox());
+  }
+  this->Held = wanted[this->Others.Rank()];
+  return ValuesInBox(this->Others, this->Partition, wanted, own, 1);
+}
+
+/// W that a voxel scatters of light, W length, that its neighbours have too; as scatter_row of CoarseDiffusion.cl.
+/// @param voxel  of the whole grid
+/// @param kept  W that are not let out through each face of the box, added to
+double CellsOverRanks::ScatteredIn(
+  const std::array<int, 3>& voxel, const Values& light, std::array<double, 6>& kept) const
+{
+  const std::array<std::size_t, 3> step = { 1, static_cast<std::size_t>(this->Held.size[0]),
+    static_cast<std::size_t>(this->Held.size[0]) * this->Held.size[1] };
+  const std::size_t at = this->PlaceOf(voxel);
+  const double own = light[at], t = this->SigmaT[at], s = this->SigmaS[at];
+  double scattered = s * own;
+  for (int side = 0; side < 6 && this->Linear; ++side)
+  {
+    const int axis = side / 2, voxels = this->Partition.whole.size[axis];
+    const double spacing = this->Partition.whole.spacing[axis];
+    const std::size_t below = at - step[axis], above = at + step[axis];
+    if (voxel[axis] != (side % 2 ? voxels - 1 : 0))
+    {
+      const std::size_t other = side % 2 ? above : below;
+      scattered += Sharpen(own, light[other], t, s, this->SigmaT[other], this->SigmaS[other], spacing);
+    }
+    else if (voxels > 1)
+    {
+      const double more = SharpenAtFace(own, light[side % 2 ? below : above], t, s, spacing);
+      scattered += more;
+      kept[side] += more;
+    }
+  }
+  return scattered;
+}
+
 CellsOverRanks::Powers CellsOverRanks::ScatterOrder(Buffer<float>& path, Buffer<float>& fluence, Buffer<float>& source)
 {
   const std::size_t count = this->Layout.grid.VoxelCount();
   const double volume = this->Layout.grid.VoxelVolume();
   Values gathered = ChannelOf(path, this->First, count), light = ChannelOf(fluence, this->First, count);
-  Values shines(count);
+  Values all = this->WithNeighbours(gathered), shines(count);
+  const VoxelBox& block = this->Partition.blocks[this->Others.Rank()];
+  std::array<double, 6> keptOfSwept = {}, kept = {};
   for (std::size_t i = 0; i < count; ++i)
   {
-    shines[i] = this->SigmaS[i] * gathered[i]; // W
+    shines[i] = static_cast<float>(this->ScatteredIn(VoxelIn(block, i), all, keptOfSwept)); // W
   }
   const double swept = this->Solve(shines);
-  const VoxelBox& block = this->Partition.blocks[this->Others.Rank()];
-  std::vector<double> sums(4, 0.0); // absorbed, of the solution, scattered, the same without signs
+  for (std::size_t i = 0; i < all.size(); ++i)
+  {
+    all[i] += static_cast<float>(volume * this->FoundAt(VoxelIn(this->Held, i)));
+  }
+  std::vector<double> sums(16, 0.0); // absorbed, of the solution, scattered, the same without signs; then by face
   for (std::size_t i = 0; i < count; ++i)
   {
-    std::array<int, 3> voxel = this->Layout.grid.VoxelAt(i);
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      voxel[axis] += block.first[axis];
-    }
-    const double ofFound = volume * this->FoundAt(voxel), all = gathered[i] + ofFound;
-    const double sigmaA = std::max(0.0f, this->SigmaT[i] - this->SigmaS[i]), scatters = this->SigmaS[i] * all;
-    light[i] = static_cast<float>(light[i] + all / volume);
+    const std::array<int, 3> voxel = VoxelIn(block, i);
+    const std::size_t at = this->PlaceOf(voxel);
+    const double ofFound = static_cast<double>(all[at]) - gathered[i];
+    const double sigmaA = std::max(0.0f, this->SigmaT[at] - this->SigmaS[at]);
+    const double scatters = this->ScatteredIn(voxel, all, kept);
+    light[i] = static_cast<float>(light[i] + all[at] / volume);
     gathered[i] = static_cast<float>(-ofFound);
     shines[i] = static_cast<float>(scatters / (4.0 * Pi * volume));
-    const double terms[] = { sigmaA * all, sigmaA * ofFound, scatters, std::abs(scatters) };
-    std::transform(sums.begin(), sums.end(), terms, sums.begin(), std::plus<double>());
+    const double terms[] = { sigmaA * all[at], sigmaA * ofFound, scatters, std::abs(scatters) };
+    std::transform(sums.begin(), sums.begin() + 4, terms, sums.begin(), std::plus<double>());
   }
   WriteChannel(path, this->First, gathered);
   WriteChannel(fluence, this->First, light);
   WriteChannel(source, this->First, shines);
+  std::copy(keptOfSwept.begin(), keptOfSwept.end(), sums.begin() + 4);
+  std::copy(kept.begin(), kept.end(), sums.begin() + 10);
   sums = this->Others.Sum(sums);
   Powers powers;
   powers.absorbed = sums[0];
@@ -172,6 +273,11 @@ CellsOverRanks::Powers CellsOverRanks::ScatterOrder(Buffer<float>& path, Buffer<
   ForBoxFaceCells(this->Cells,
     [&](const BoxFaceCell& cell) { powers.out[cell.face] += this->Borders[cell.number] * this->Found[cell.voxel]; });
   powers.left = swept - sums[1] - std::accumulate(powers.out.begin(), powers.out.end(), 0.0);
+  for (int face = 0; face < 6; ++face)
+  {
+    powers.kept[face] = sums[10 + face];
+    powers.out[face] -= sums[4 + face];
+  }
   return powers;
 }
 }

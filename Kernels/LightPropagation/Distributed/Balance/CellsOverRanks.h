@@ -14,25 +14,29 @@
 
 namespace tyndall
 {
-/// Diffusion of one channel on cells of voxels, as CoarseDiffusion.h has it for a source that is constant in voxels
-/// (numerics.md, section 7.13), of a grid that is spread over ranks: cells are those of the whole grid, whichever ranks
-/// have their voxels. The first rank solves the system; all hold values by cells, an eighth of the voxels at most.
+/// Diffusion of one channel on cells of voxels, as CoarseDiffusion.h has it (numerics.md, section 7.13), of a grid that
+/// is spread over ranks, in an open box: cells are those of the whole grid, whichever ranks have their voxels. The first
+/// rank solves the system; all hold values by cells, an eighth of the voxels at most.
 class CellsOverRanks
 {
 public:
   /// @param communicator, partition, medium  must stay
   /// @param layout  of the rank's block
   /// @param halvings  along each axis; cells have 2^halvings voxels
+  /// @param linear  light is taken as linear across voxels, not as constant in each
   CellsOverRanks(Device& device, Communicator& communicator, const BlockPartition& partition,
-    const VolumeLayout& layout, int channel, const MediumOnDevice& medium, const std::array<int, 3>& halvings);
+    const VolumeLayout& layout, int channel, const MediumOnDevice& medium, const std::array<int, 3>& halvings,
+    bool linear);
 
   /// W, of one order, of all ranks.
   struct Powers
   {
-    double absorbed = 0.0;          ///< of all light that is added
-    double scattered = 0.0;         ///< of it, the next source
-    double magnitude = 0.0;         ///< the same without signs
-    double left = 0.0;              ///< neither absorbed nor out, by the solution
+    double absorbed = 0.0;  ///< of all light that is added
+    double scattered = 0.0; ///< of it, the next source
+    double magnitude = 0.0; ///< the same without signs
+    double left = 0.0;      ///< neither absorbed nor out, by the solution
+    /// Of the next source, what is to be let out less through each face of the box than the next sweep will.
+    std::array<double, 6> kept = {};
     std::array<double, 6> out = {}; ///< leaves through each face of the whole grid, by the solution
   };
 
@@ -47,15 +51,20 @@ private:
   std::vector<double> SumByCells(const Values& ofVoxels);
   double Solve(const Values& scattered);
   double FoundAt(const std::array<int, 3>& voxel) const;
+  Values WithNeighbours(const Values& own);
+  std::size_t PlaceOf(const std::array<int, 3>& voxel) const;
+  double ScatteredIn(const std::array<int, 3>& voxel, const Values& light, std::array<double, 6>& kept) const;
 
   Device& TheDevice;
   Communicator& Others;
   const BlockPartition& Partition;
   VolumeLayout Layout;
-  Grid Cells;                              ///< their number alone
-  CoarseCells Box = {};                    ///< of the whole grid
-  std::size_t First;                       ///< of the channel
-  Values SigmaT, SigmaS;                   ///< of the block's voxels
+  Grid Cells;           ///< their number alone
+  CoarseCells Box = {}; ///< of the whole grid
+  std::size_t First;    ///< of the channel
+  bool Linear;
+  VoxelBox Held;                           ///< the block and, where light is linear, the voxels beside it
+  Values SigmaT, SigmaS;                   ///< of these
   std::unique_ptr<MultigridSolver> Solver; ///< of the first rank, else null
   ExactValues FoundOnDevice;
   std::vector<double> Borders; ///< as CoarseMatrix has them

@@ -62,8 +62,7 @@ std::vector<float> SurfaceRadianceInBlocks(Communicator& communicator, const Blo
     all.assign(BoxFaceCellCount(partition.whole) * SurfaceCosines.size() * channels, 0.0);
     if (has)
     {
-      PutCells(
-        SurfaceRadiance(medium, faces, lamps, powers), block, faces, medium.grid, partition.whole, all);
+      PutCells(SurfaceRadiance(medium, faces, lamps, powers), block, faces, medium.grid, partition.whole, all);
     }
   });
   all = communicator.Sum(all);

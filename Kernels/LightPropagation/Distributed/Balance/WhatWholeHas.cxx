@@ -27,7 +27,7 @@ public:
       brightest = std::max(brightest, EmissionBrightness(medium.emission, i));
     }
     this->Brightest = communicator.Largest({ brightest })[0];
-    for (std::size_t i = 0; i < voxels && this->Brightest > 0.0; ++i)
+    for (std::size_t i = 0; i<voxels&& this->Brightest> 0.0; ++i)
     {
       const double brightness = EmissionBrightness(medium.emission, i);
       const std::size_t bin = this->BinOf(brightness);
@@ -88,8 +88,8 @@ bool OctantSourcesMatter(Communicator& communicator, const BlockScene& scene, co
   const OctantSources::Voxels own = OctantSources::Count(scene.medium, scene.Scattering(), scene.channels);
   const std::vector<double> counted = communicator.Sum({ own.scattering, own.thick });
   const std::vector<double> thickest = communicator.Largest({ own.thickest });
-  return OctantSources::Matter({ counted[0], counted[1], thickest[0] }, settings, scene.traits.scatters,
-    scene.Scattering().Degree(), scene.given);
+  return OctantSources::Matter(
+    { counted[0], counted[1], thickest[0] }, settings, scene.traits.scatters, scene.Scattering().Degree(), scene.given);
 }
 
 bool MayHaveEmissionPeaks(
