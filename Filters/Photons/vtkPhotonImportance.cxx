@@ -2,9 +2,13 @@
 
 #include "Common/DeviceBudget.h"
 #include "Common/LightTransportData.h"
+#include "Device/Device.h"
+#include "Photons/Distributed/PhotonsInBlocks.h"
 #include "Photons/ImportanceData.h"
 #include "Photons/PhotonData.h"
 #include "Photons/RefractiveInput.h"
+#include "Ranks/PieceBlocks.h"
+#include "Ranks/Ranks.h"
 #include "Ranks/WholeImage.h"
 #include "Work/GuardedWork.h"
 
@@ -12,10 +16,13 @@
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkObjectFactory.h"
+#include "vtkSmartPointer.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <optional>
 #include <utility>
 
 namespace
@@ -116,14 +123,17 @@ int vtkPhotonImportance::RequestUpdateExtent(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   this->Kept->ForgetIfRan(this, { MEDIUM });
-  return this->Superclass::RequestUpdateExtent(request, inputs, outputs);
+  const int done = this->Superclass::RequestUpdateExtent(request, inputs, outputs);
+  if (tyndall::EachAsksForItsPiece(request, outputs)) // of the map, whose extent says nothing of the medium's
+  {
+    tyndall::AskForPiece(request, inputs[MEDIUM], outputs);
+  }
+  return done;
 }
 
-tyndall::Importance vtkPhotonImportance::Find(vtkInformationVector** inputs)
+/// @return nothing where nothing shines, with a warning
+std::optional<tyndall::Illumination> vtkPhotonImportance::ReadLight(vtkInformationVector** inputs)
 {
-  this->Kept->ForgetIfRan(this, { MEDIUM });
-  vtkImageData* const image = vtkImageData::GetData(inputs[MEDIUM]);
-  const tyndall::Grid grid = tyndall::GridOf(image);
   tyndall::Illumination illumination = this->ReadIllumination(inputs);
   std::copy_n(this->SkyColor, 3, illumination.sky.begin());
   if (tyndall::NothingShines(illumination))
@@ -132,10 +142,67 @@ tyndall::Importance vtkPhotonImportance::Find(vtkInformationVector** inputs)
       "Nothing shines on the volume, so there is no map. Connect Lights or an Environment, or set SkyColor.");
     return {};
   }
+  return illumination;
+}
+
+/// By pilot photons that go from rank to rank, each of which has its piece of the medium.
+/// @return nothing, on all ranks, where each is to have the whole
+std::optional<tyndall::Importance> vtkPhotonImportance::FindInPieces(vtkInformation* request,
+  vtkMultiProcessController* ranks, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  vtkImageData* const image = vtkImageData::GetData(inputs[MEDIUM]);
+  const std::optional<tyndall::AgreedBlocks> agreed = tyndall::AgreeOnBlocks(
+    ranks, this, tyndall::EachAsksForItsPiece(request, outputs), inputs[MEDIUM]->GetInformationObject(0), image);
+  if (!agreed)
+  {
+    return {};
+  }
+  this->Kept->Forget();
+  tyndall::Communicator& communicator = *agreed->communicator;
+  const tyndall::PieceBlocks& pieces = *agreed->pieces;
+  std::optional<tyndall::Illumination> light;
+  vtkSmartPointer<vtkImageData> own;
+  tyndall::RefractiveInput read;
+  std::shared_ptr<tyndall::Device> device;
+  communicator.Together([&] {
+    light = this->ReadLight(inputs);
+    device = tyndall::FindWithin(this->Within, this->Device, this->MemoryBudget);
+    if (pieces.HasOwn())
+    {
+      own = pieces.OwnImage(image);
+      read = tyndall::ReadRefractiveMedium(this, own);
+    }
+  });
+  if (!light)
+  {
+    return tyndall::Importance();
+  }
+  tyndall::PhotonMarcherInBlocks marcher(
+    *device, communicator, pieces.Partition(), read.input.medium, read.ior, tyndall::MarchSettings{}, read.Levels());
+  const tyndall::Gatherer gather = [&](const auto& photons, const auto& origins, const auto& cells,
+                                     const tyndall::Monitor& monitor) {
+    return marcher.Gather(photons, origins, cells, monitor);
+  };
+  tyndall::Importance importance =
+    tyndall::FindImportance(gather, pieces.Partition().whole, *light, SettingsOf(this), tyndall::MonitorOf(this));
+  this->DeviceName = device->Name();
+  return importance;
+}
+
+tyndall::Importance vtkPhotonImportance::Find(vtkInformationVector** inputs)
+{
+  this->Kept->ForgetIfRan(this, { MEDIUM });
+  vtkImageData* const image = vtkImageData::GetData(inputs[MEDIUM]);
+  const tyndall::Grid grid = tyndall::GridOf(image);
+  const std::optional<tyndall::Illumination> light = this->ReadLight(inputs);
+  if (!light)
+  {
+    return {};
+  }
   tyndall::KeptMarcher::Found found = this->Kept->Find(this,
     tyndall::FindWithin(this->Within, this->Device, this->MemoryBudget), image, nullptr, tyndall::MarchSettings{});
   tyndall::Importance importance =
-    tyndall::FindImportance(*found.marcher, grid, illumination, SettingsOf(this), tyndall::MonitorOf(this));
+    tyndall::FindImportance(*found.marcher, grid, *light, SettingsOf(this), tyndall::MonitorOf(this));
   this->DeviceName = found.key.device->Name();
   this->Kept->Keep(std::move(found));
   return importance;
@@ -146,29 +213,42 @@ int vtkPhotonImportance::RequestData(
 {
   this->DeviceName.clear();
   this->Note({});
-  return tyndall::Guarded(this, request, given, outputs, [&](vtkInformationVector** inputs) {
-    tyndall::Importance importance = this->Find(inputs);
-    this->Note(importance);
-    vtkImageData* const map = vtkImageData::GetData(outputs, 0);
-    vtkImageData* const pilot = vtkImageData::GetData(outputs, 1);
-    tyndall::WriteImportanceMap(importance, map);
-    const std::vector<std::string> leftOut = importance.leftOut;
-    if (!importance.pilot.count.empty())
-    {
-      tyndall::WritePilotLight(std::move(importance), pilot);
-    }
-    vtkInformation* const asking = tyndall::AskingPort(request, outputs);
-    for (int port = 0; port < 2; ++port)
-    {
-      vtkImageData* const output = vtkImageData::GetData(outputs, port);
-      tyndall::AddFact(output, "left_out", leftOut);
-      tyndall::AddFact(output, "device", std::vector<std::string>{ this->DeviceName });
-      if (output->GetNumberOfCells() > 0) // else what was told before stands, and the next update asks for that
+  const tyndall::WorkOnPieces onPieces = { MEDIUM,
+    [&](vtkMultiProcessController* ranks, vtkInformationVector** inputs) {
+      std::optional<tyndall::Importance> importance = this->FindInPieces(request, ranks, inputs, outputs);
+      if (importance)
       {
-        tyndall::TellExtentAndKeepWhatIsAskedFor(asking, outputs->GetInformationObject(port), output);
+        this->Write(request, outputs, std::move(*importance));
       }
+      return importance.has_value();
+    } };
+  return tyndall::Guarded(this, request, given, outputs, onPieces,
+    [&](vtkInformationVector** inputs) { this->Write(request, outputs, this->Find(inputs)); });
+}
+
+void vtkPhotonImportance::Write(
+  vtkInformation* request, vtkInformationVector* outputs, tyndall::Importance&& importance)
+{
+  this->Note(importance);
+  vtkImageData* const map = vtkImageData::GetData(outputs, 0);
+  vtkImageData* const pilot = vtkImageData::GetData(outputs, 1);
+  tyndall::WriteImportanceMap(importance, map);
+  const std::vector<std::string> leftOut = importance.leftOut;
+  if (!importance.pilot.count.empty())
+  {
+    tyndall::WritePilotLight(std::move(importance), pilot);
+  }
+  vtkInformation* const asking = tyndall::AskingPort(request, outputs);
+  for (int port = 0; port < 2; ++port)
+  {
+    vtkImageData* const output = vtkImageData::GetData(outputs, port);
+    tyndall::AddFact(output, "left_out", leftOut);
+    tyndall::AddFact(output, "device", std::vector<std::string>{ this->DeviceName });
+    if (output->GetNumberOfCells() > 0) // else what was told before stands, and the next update asks for that
+    {
+      tyndall::TellExtentAndKeepWhatIsAskedFor(asking, outputs->GetInformationObject(port), output);
     }
-  });
+  }
 }
 
 void vtkPhotonImportance::Note(const tyndall::Importance& importance)

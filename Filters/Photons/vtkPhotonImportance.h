@@ -6,14 +6,18 @@
 #include "vtkTyndallModule.h" // for export macro
 
 #include <memory>
+#include <optional>
 #include <string>
 
 namespace tyndall
 {
 class Device;
 class KeptMarcher;
+struct Illumination;
 struct Importance;
 }
+
+class vtkMultiProcessController;
 
 /**
  * @class vtkPhotonImportance
@@ -50,7 +54,8 @@ struct Importance;
  * | `chosen`           | 1          | 1          | 1 where photons are to be dense                              |
  *
  * Both have field data `left_out` (what the scene did not need) and `device`. Without lights, environment and SkyColor
- * both are empty, with a warning. In a parallel pipeline every rank finds the whole and hands on its piece.
+ * both are empty, with a warning. In a parallel pipeline pilot photons go from rank to rank, each of
+ * which has its piece of the medium, finds the whole map and hands on its piece of that.
  *
  * @sa vtkPhotonEmitter vtkPhotonMarcher vtkPhotonReconstruction
  * @par Thanks
@@ -155,6 +160,10 @@ private:
   /// Reads the inputs and does the work.
   /// @return device and result; nothing where nothing shines
   tyndall::Importance Find(vtkInformationVector** inputs);
+  std::optional<tyndall::Importance> FindInPieces(vtkInformation* request, vtkMultiProcessController* ranks,
+    vtkInformationVector** inputs, vtkInformationVector* outputs);
+  std::optional<tyndall::Illumination> ReadLight(vtkInformationVector** inputs);
+  void Write(vtkInformation* request, vtkInformationVector* outputs, tyndall::Importance&& importance);
   void Note(const tyndall::Importance& importance);
 
   int PilotCount;

@@ -4,8 +4,11 @@
 #include "Common/LightTransportData.h"
 #include "Device/Device.h"
 #include "Device/HostThreads.h"
+#include "Ranks/PieceBlocks.h"
+#include "Ranks/Ranks.h"
 #include "Ranks/WholeImage.h"
 #include "Reconstruction/PhotonReconstruction.h"
+#include "Reconstruction/ReconstructionInBlocks.h"
 #include "Work/GuardedWork.h"
 
 #include "vtkCellData.h"
@@ -15,12 +18,15 @@
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkObjectFactory.h"
+#include "vtkSmartPointer.h"
 #include "vtkStringArray.h"
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <memory>
 #include <numeric>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -74,39 +80,53 @@ int BatchesOf(const FloatField& light, int channels)
   return components / channels;
 }
 
-tyndall::ReconstructedLight Reconstruct(vtkPhotonReconstruction* filter, vtkImageData* image)
+/// Light, with the arrays that it is of.
+struct LightOfImage
 {
+  FloatField fluence, direction, count, weight, batches;
+  std::vector<float> dark;
   tyndall::NoisyLight light;
+};
+
+LightOfImage Read(vtkPhotonReconstruction* filter, vtkImageData* image)
+{
+  LightOfImage of;
+  tyndall::NoisyLight& light = of.light;
   light.grid = tyndall::GridOf(image);
   const auto read = [&](int number, const char* name, tyndall::Components components) {
     const Need need = number == Fluence ? Need::Required : Need::Optional;
     return tyndall::ReadChosenCells(filter, number, image, name, need, components);
   };
-  const FloatField fluence = read(Fluence, "fluence", { 1, 3 });
-  const FloatField direction = read(MeanDirection, "mean_direction", { 3 });
-  const FloatField count = read(PhotonCount, "photon_count", { 1 });
-  const FloatField weight = read(PhotonWeight, "photon_weight", { 1 });
+  of.fluence = read(Fluence, "fluence", { 1, 3 });
+  of.direction = read(MeanDirection, "mean_direction", { 3 });
+  of.count = read(PhotonCount, "photon_count", { 1 });
+  of.weight = read(PhotonWeight, "photon_weight", { 1 });
   const bool conservative = filter->GetScheme() == vtkPhotonReconstruction::CONSERVATIVE;
-  const FloatField batches = conservative ? read(FluenceBatches, "fluence_batches", {}) : FloatField();
-  light.channels = fluence.Components();
-  std::vector<float> dark;
-  if (batches.IsThere())
+  of.batches = conservative ? read(FluenceBatches, "fluence_batches", {}) : FloatField();
+  light.channels = of.fluence.Components();
+  if (of.batches.IsThere())
   {
-    light.batches = BatchesOf(batches, light.channels);
-    light.batchFluence = batches.Values();
+    light.batches = BatchesOf(of.batches, light.channels);
+    light.batchFluence = of.batches.Values();
   }
   else if (conservative)
   {
     light.batches = 2;
-    dark = DarkBatches(fluence, light.grid.VoxelCount(), light.batches);
-    light.batchFluence = dark.empty() ? nullptr : dark.data();
+    of.dark = DarkBatches(of.fluence, light.grid.VoxelCount(), light.batches);
+    light.batchFluence = of.dark.empty() ? nullptr : of.dark.data();
   }
-  light.fluence = fluence.Values();
-  light.meanDirection = direction.Values();
-  light.photonCount = count.Values();
-  light.photonWeight = weight.Values();
+  light.fluence = of.fluence.Values();
+  light.meanDirection = of.direction.Values();
+  light.photonCount = of.count.Values();
+  light.photonWeight = of.weight.Values();
+  return of;
+}
+
+tyndall::ReconstructedLight Reconstruct(vtkPhotonReconstruction* filter, vtkImageData* image)
+{
+  const LightOfImage of = Read(filter, image);
   return tyndall::Reconstruct(
-    *tyndall::Device::Find(filter->GetDevice()), light, SettingsOf(filter), tyndall::MonitorOf(filter));
+    *tyndall::Device::Find(filter->GetDevice()), of.light, SettingsOf(filter), tyndall::MonitorOf(filter));
 }
 
 /// What was left out before, and here.
@@ -210,18 +230,71 @@ int vtkPhotonReconstruction::RequestInformation(
 int vtkPhotonReconstruction::RequestUpdateExtent(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  tyndall::AskForAll(request, inputs[0], outputs);
+  tyndall::AskForAllBut(this->WantsBlocks(request, outputs) ? 0 : -1, request, inputs, 1, outputs);
   return 1;
+}
+
+bool vtkPhotonReconstruction::WantsBlocks(vtkInformation* request, vtkInformationVector* outputs) const
+{
+  return this->Scheme == CONSERVATIVE && tyndall::EachAsksForItsPiece(request, outputs);
+}
+
+/// Each rank the light of its piece.
+/// @return false, on all ranks, where each is to have the whole
+bool vtkPhotonReconstruction::ReconstructPiece(vtkInformation* request, vtkMultiProcessController* ranks,
+  vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  vtkImageData* const image = vtkImageData::GetData(inputs[0]);
+  const std::optional<tyndall::AgreedBlocks> agreed = tyndall::AgreeOnBlocks(
+    ranks, this, this->WantsBlocks(request, outputs), tyndall::AskingPort(request, outputs), image);
+  if (!agreed)
+  {
+    return false;
+  }
+  tyndall::Communicator& communicator = *agreed->communicator;
+  const tyndall::PieceBlocks& pieces = *agreed->pieces;
+  vtkSmartPointer<vtkImageData> own;
+  LightOfImage of;
+  std::shared_ptr<tyndall::Device> device;
+  communicator.Together([&] {
+    if (pieces.HasOwn())
+    {
+      own = pieces.OwnImage(image);
+      of = Read(this, own);
+    }
+    device = tyndall::Device::Find(this->Device);
+  });
+  tyndall::ReconstructedLight light = tyndall::ReconstructInBlocks(
+    *device, communicator, pieces.Partition(), of.light, SettingsOf(this), tyndall::MonitorOf(this));
+  const std::vector<double> squares =
+    communicator.Sum({ SumOfSquares(light.fluence), SumOfSquares(light.fluenceError) });
+  this->Note(light, squares[0], squares[1]);
+  const int channels = static_cast<int>(communicator.Largest({ 1.0 * of.fluence.Components() })[0]);
+  pieces.SpreadToHeld(communicator, light.fluence, channels);
+  pieces.SpreadToHeld(communicator, light.fluenceError, channels);
+  pieces.SpreadToHeld(communicator, light.meanDirection, 3);
+  pieces.SpreadToHeld(communicator, light.mipLevel, 1);
+  vtkImageData* const output = vtkImageData::GetData(outputs);
+  tyndall::PassOn(image, output);
+  pieces.KeepHeld(output);
+  if (pieces.Held().VoxelCount() > 0)
+  {
+    Write(std::move(light), output);
+  }
+  return true;
 }
 
 int vtkPhotonReconstruction::RequestData(
   vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs)
 {
-  this->Note({});
-  return tyndall::Guarded(this, request, given, outputs, [&](vtkInformationVector** inputs) {
+  this->Note({}, 0.0, 0.0);
+  const tyndall::WorkOnPieces onPieces = { 0, [&](vtkMultiProcessController* ranks, vtkInformationVector** inputs) {
+                                            return this->ReconstructPiece(request, ranks, inputs, outputs);
+                                          } };
+  return tyndall::Guarded(this, request, given, outputs, onPieces, [&](vtkInformationVector** inputs) {
     vtkImageData* const image = vtkImageData::GetData(inputs[0]);
     tyndall::ReconstructedLight light = Reconstruct(this, image);
-    this->Note(light);
+    this->Note(light, SumOfSquares(light.fluence), SumOfSquares(light.fluenceError));
     vtkImageData* const output = vtkImageData::GetData(outputs);
     tyndall::PassOn(image, output);
     Write(std::move(light), output);
@@ -229,11 +302,11 @@ int vtkPhotonReconstruction::RequestData(
   });
 }
 
-void vtkPhotonReconstruction::Note(const tyndall::ReconstructedLight& light)
+/// @param squares, ofErrors  sums over the voxels of all ranks, of fluence and of its error
+void vtkPhotonReconstruction::Note(const tyndall::ReconstructedLight& light, double squares, double ofErrors)
 {
-  const double squares = SumOfSquares(light.fluence);
   this->Bias = light.bias;
-  this->MeanError = squares > 0.0 ? std::sqrt(SumOfSquares(light.fluenceError) / squares) : 0.0;
+  this->MeanError = squares > 0.0 ? std::sqrt(ofErrors / squares) : 0.0;
   this->Seconds = light.seconds;
   this->DeviceName = light.device;
   this->LeftOut = tyndall::Lines(light.leftOut);

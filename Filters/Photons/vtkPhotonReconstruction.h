@@ -12,6 +12,8 @@ namespace tyndall
 struct ReconstructedLight;
 }
 
+class vtkMultiProcessController;
+
 /**
  * @class vtkPhotonReconstruction
  * @brief smooth light of the noisy light that photons left, voxel by voxel as coarse as the noise asks for
@@ -40,7 +42,8 @@ struct ReconstructedLight;
  * | `fluence_error` | 1 or 3 | W/length^2 | standard error of fluence, of the conservative scheme |
  *
  * and field data `fluence_bias` (by which part the light of all voxels together was off before it was conserved);
- * `left_out` gains what was not needed here, `device` is the one that computed. In a parallel pipeline every rank works
+ * `left_out` gains what was not needed here, `device` is the one that computed. In a parallel pipeline every rank
+ * smooths its piece by CONSERVATIVE, and the light is that of the whole, to rounding; by the other schemes each works
  * on the whole and hands on its piece.
  *
  * Cells that are hidden by `vtkGhostType` are empty.
@@ -142,7 +145,10 @@ private:
   vtkPhotonReconstruction(const vtkPhotonReconstruction&) = delete;
   void operator=(const vtkPhotonReconstruction&) = delete;
 
-  void Note(const tyndall::ReconstructedLight& light);
+  bool WantsBlocks(vtkInformation* request, vtkInformationVector* outputs) const;
+  bool ReconstructPiece(vtkInformation* request, vtkMultiProcessController* ranks, vtkInformationVector** inputs,
+    vtkInformationVector* outputs);
+  void Note(const tyndall::ReconstructedLight& light, double squares, double ofErrors);
 
   int Scheme = CONSERVATIVE;
   int Levels;

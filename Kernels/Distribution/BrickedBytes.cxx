@@ -7,7 +7,7 @@ namespace tyndall
 namespace
 {
 constexpr std::int32_t NotYet = 256; ///< of a brick into which nothing was put
-constexpr int RunsTag = 29997;       ///< not one of BoxExchange.cxx or Rounds.h
+constexpr int RunsTag = 29995;       ///< not one of those that others take (PathsInBlocks.cxx)
 constexpr std::uint32_t LongestRun = 1u << 24;
 
 /// Numbers and, in the upper bits, one less than how often each comes.

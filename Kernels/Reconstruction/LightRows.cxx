@@ -16,10 +16,15 @@ namespace
 /// As layer_of and field_of in LightRows.cl. Rows of one place in all layers and quantities are used together; with
 /// strides that are multiples of 4 kB they would all want the same few places of the cache. So a
 /// layer ends with 3 and a quantity with 41 lines of 64 bytes that are not used.
-std::size_t FieldStride(const std::array<int, 3>& size, int stride)
+std::size_t LayerStride(const std::array<int, 3>& size, int stride)
 {
   const std::size_t layer = Count(size[1]) * Count(stride);
-  const std::size_t field = (layer < 1024 ? layer : layer + 48) * Count(size[2]);
+  return layer < 1024 ? layer : layer + 48;
+}
+
+std::size_t FieldStride(const std::array<int, 3>& size, int stride)
+{
+  const std::size_t field = LayerStride(size, stride) * Count(size[2]);
   return field < 1024 ? field : field + 656;
 }
 }
@@ -38,8 +43,60 @@ LightRows::LightRows(Device& device, const std::array<int, 3>& size, int fields,
   : Size(size)
   , FieldCount(fields)
   , Stride(LayoutOf(size, width).s[3])
+  , Width(width)
   , Memory(device, CountOf(size, fields, width), what)
 {
+}
+
+template <class Act>
+void LightRows::ForValues(const Act& act) const
+{
+  const std::size_t layer = LayerStride(this->Size, this->Stride), field = FieldStride(this->Size, this->Stride);
+  const int guard = this->Width > 1 ? this->Width : 2;
+  std::size_t cell = 0;
+  for (int z = 0; z < this->Size[2]; ++z)
+  {
+    for (int y = 0; y < this->Size[1]; ++y)
+    {
+      for (int x = 0; x < this->Size[0]; ++x, ++cell)
+      {
+        for (int f = 0; f < this->FieldCount; ++f)
+        {
+          act(cell, x, f, Count(f) * field + Count(z) * layer + Count(y) * Count(this->Stride) + Count(guard + x));
+        }
+      }
+    }
+  }
+}
+
+std::vector<float> LightRows::Read() const
+{
+  const std::vector<float> memory = this->Memory.Read();
+  std::vector<float> cells(
+    Count(this->Size[0]) * Count(this->Size[1]) * Count(this->Size[2]) * Count(this->FieldCount));
+  this->ForValues([&](std::size_t cell, int, int field, std::size_t place) {
+    cells[cell * Count(this->FieldCount) + Count(field)] = memory[place];
+  });
+  return cells;
+}
+
+void LightRows::Write(const std::vector<float>& cells)
+{
+  std::vector<float> memory(CountOf(this->Size, this->FieldCount, this->Width), 0.0f);
+  const int end = WholeVectors(this->Size[0], this->Width) + 2;
+  this->ForValues([&](std::size_t cell, int x, int field, std::size_t place) {
+    const float value = cells[cell * Count(this->FieldCount) + Count(field)];
+    memory[place] = value;
+    if (x == 0)
+    {
+      memory[place - 1] = memory[place - 2] = value;
+    }
+    for (int beyond = 1; x == this->Size[0] - 1 && x + beyond < end; ++beyond)
+    {
+      memory[place + Count(beyond)] = value;
+    }
+  });
+  this->Memory.Write(memory.data(), memory.size());
 }
 
 RowKernels::RowKernels(Device& device, int width, const std::string& options)

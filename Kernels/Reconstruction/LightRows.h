@@ -7,6 +7,7 @@
 #include <array>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace tyndall
 {
@@ -30,14 +31,23 @@ public:
   int Fields() const { return this->FieldCount; }
   const Buffer<float>& Values() const { return this->Memory; }
 
+  /// All cells on the host, x fastest, their fields side by side; and back, with what rows repeat of their ends.
+  std::vector<float> Read() const;
+  void Write(const std::vector<float>& cells);
+
   /// Cells and floats per row, as kernels take them; floats of all fields.
   static cl_int4 LayoutOf(const std::array<int, 3>& size, int width);
   static std::size_t CountOf(const std::array<int, 3>& size, int fields, int width);
 
 private:
+  /// Calls act with a cell's number, its x, a field, and the place of that in memory.
+  template <class Act>
+  void ForValues(const Act& act) const;
+
   std::array<int, 3> Size;
   int FieldCount;
   int Stride;
+  int Width;
   Buffer<float> Memory;
 };
 

@@ -2,14 +2,13 @@
 
 #include "Device/Clock.h"
 #include "Device/HostMemory.h"
-#include "Light/LeftOut.h"
 #include "Medium/Medium.h"
 #include "Medium/Traits.h"
 #include "Numerics/PyramidLayout.h"
 #include "Reconstruction/ConservativeReconstruction.h"
 #include "Reconstruction/LevelReconstruction.h"
-#include "Reconstruction/LightPyramidShared.h"
 #include "Reconstruction/LightRows.h"
+#include "Reconstruction/ReconstructionChecks.h"
 
 #include <algorithm>
 #include <cmath>
@@ -25,86 +24,6 @@ using Estimator = ReconstructionSettings::Estimator;
 constexpr float Most = std::numeric_limits<float>::max();
 constexpr float LongestDirection = 1.001f; // rounding may make a unit vector's component a little longer than 1
 
-const char* NameOf(Estimator estimator)
-{
-  switch (estimator)
-  {
-    case Estimator::Published: return "published";
-    case Estimator::Conservative: return "conservative";
-    case Estimator::ConstantRadius: return "constant radius";
-    default: return "nearest photons";
-  }
-}
-
-bool NeedsCounts(Estimator estimator)
-{
-  return estimator == Estimator::Published || estimator == Estimator::NearestPhotons;
-}
-
-void Check(const ReconstructionSettings& settings)
-{
-  const auto require = [](bool fits, const std::string& what, double value, const std::string& range) {
-    if (!fits)
-    {
-      throw InvalidInput(what + " is " + std::to_string(value) + "; it must be " + range + ".");
-    }
-  };
-  const std::string most = std::to_string(LevelsAtMost);
-  require(
-    settings.levels >= 1 && settings.levels <= LevelsAtMost, "The number of levels", settings.levels, "1 to " + most);
-  require(settings.level >= 0 && settings.level <= LevelsAtMost, "The level of the constant radius", settings.level,
-    "0 to " + most);
-  require(settings.nearest >= 1, "The number of nearest photons", settings.nearest, "at least 1");
-  require(settings.weightStep >= 0.0 && std::isfinite(settings.weightStep), "The weight of photons from level to level",
-    settings.weightStep, "a number of 0 (found from the photons) or more");
-}
-
-void RequireArray(const float* values, Estimator estimator, const char* what, const char* advice)
-{
-  if (!values)
-  {
-    throw InvalidInput(
-      "There is no " + std::string(what) + ", which the " + NameOf(estimator) + " estimator needs. " + advice);
-  }
-}
-
-/// That what the estimator needs is there.
-void CheckPresence(const NoisyLight& light, Estimator estimator)
-{
-  tyndall::Medium volume;
-  volume.grid = light.grid;
-  tyndall::Check(volume); // of its grid
-  if (light.channels != 1 && light.channels != 3)
-  {
-    throw InvalidInput(
-      "The light has " + std::to_string(light.channels) + " channels; it must have 1 (grey) or 3 (RGB).");
-  }
-  if (estimator == Estimator::Conservative)
-  {
-    const char* advice =
-      "Let PhotonEmitter make at least two Batches and PhotonMarcher's conservative scheme gather them, or "
-      "choose another estimator.";
-    RequireArray(light.batchFluence, estimator, "fluence_batches", advice);
-    if (light.batches < 2 || light.batches > ComparedBatchesAtMost)
-    {
-      throw InvalidInput("The photons are of " + std::to_string(light.batches) +
-        (light.batches == 1 ? " batch" : " batches") + "; the conservative estimator compares 2 to " +
-        std::to_string(ComparedBatchesAtMost) + " of them. " + advice);
-    }
-    return;
-  }
-  RequireArray(light.fluence, estimator, "fluence", "Give it the light of PhotonMarcher.");
-  const char* advice = "Switch on PhotonCounts of PhotonMarcher, or choose another estimator.";
-  if (NeedsCounts(estimator))
-  {
-    RequireArray(light.photonCount, estimator, "photon_count", advice);
-  }
-  if (estimator == Estimator::Published)
-  {
-    RequireArray(light.photonWeight, estimator, "photon_weight", advice);
-  }
-}
-
 /// What an array holds, once it is known that all of it means something.
 ArrayRange Checked(Device& device, const HostMappedBuffer<float>& array, const float* values, std::size_t count,
   int components, const Grid& grid, const char* name, float low, float high)
@@ -119,11 +38,6 @@ ArrayRange Checked(Device& device, const HostMappedBuffer<float>& array, const f
       (low < 0.0f ? "no longer than 1." : "not negative.") + " Clean the light, or march the photons anew.");
   }
   return range;
-}
-
-int LevelsOf(const Grid& grid, int levels)
-{
-  return std::max(std::min(levels, PyramidLayout(grid.size).Top()), 1); // above a single voxel: itself
 }
 
 /// Of the result and of what is made on the way, roughly.
@@ -151,18 +65,6 @@ double WeightStep(const NoisyLight& light, const ReconstructionSettings& setting
   const std::ptrdiff_t dark = std::count(light.photonWeight, light.photonWeight + voxels, 0.0f);
   const double lit = static_cast<double>(voxels) - static_cast<double>(dark);
   return total > 0.0 ? 0.999 * total / lit : 1.0;
-}
-
-void SayWhatIsLeftOut(const NoisyLight& light, ReconstructedLight& result)
-{
-  if (!light.meanDirection)
-  {
-    result.leftOut.push_back("mean direction: there is none");
-  }
-  if (light.channels == 1)
-  {
-    result.leftOut.push_back(left_out::Grey);
-  }
 }
 
 /// Whether the light is of one colour everywhere, so that its channels share their noise.
@@ -244,17 +146,6 @@ std::array<float, 3> Reconstruction::Conserve(const std::array<double, 3>& total
 
 namespace
 {
-ReconstructedLight MakeRoom(const NoisyLight& light, bool conservative)
-{
-  const std::size_t voxels = light.grid.VoxelCount();
-  const std::size_t values = voxels * static_cast<std::size_t>(light.channels);
-  ReconstructedLight result;
-  MakeZeros(
-    { { &result.fluence, values }, { &result.mipLevel, voxels }, { &result.fluenceError, conservative ? values : 0 },
-      { &result.meanDirection, light.meanDirection ? 3 * voxels : 0 } });
-  return result;
-}
-
 /// By the estimators that take each voxel's light from one level.
 void ReconstructFromLevels(const Reconstruction& task, ReconstructedLight& result)
 {

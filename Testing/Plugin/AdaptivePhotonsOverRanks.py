@@ -1,4 +1,4 @@
-"""Two ranks: each finds the whole map and smooths the whole light, and hands on its piece."""
+"""Two ranks: each finds the whole map, and marches photons through its piece, whose light it smooths to that of the whole."""
 import os
 
 from paraview import servermanager
@@ -27,8 +27,8 @@ def copies(algorithm):
     return images
 
 
-def check(proxy, names, sizes):
-    """Whether the rank's pieces are those of the whole: arrays and voxels of each port."""
+def check(proxy, names, sizes, precision=0):
+    """Whether the rank's pieces are those of the whole, to so much of the largest: arrays and voxels of each port."""
     proxy.UpdatePipeline()  # in pieces, as a view of ParaView asks for them
     algorithm = proxy.GetClientSideObject()
     pieces = copies(algorithm)
@@ -42,14 +42,15 @@ def check(proxy, names, sizes):
             what = names[port], pieces[port].GetExtent(), whole.GetExtent()
             assert [d - 1 for d in whole.GetDimensions()] == sizes[port], what
             assert 0 < pieces[port].GetNumberOfCells() < whole.GetNumberOfCells(), what
+            largest = {name: abs(vtk_to_numpy(whole.GetCellData().GetArray(name))).max() for name in names[port]}
             whole.Crop(pieces[port].GetExtent())
             for name in names[port]:
                 found, wanted = (vtk_to_numpy(image.GetCellData().GetArray(name)) for image in (pieces[port], whole))
-                assert found.size and (found == wanted).all(), (name, what)
+                assert found.size and (abs(found - wanted) <= precision * largest[name]).all(), (name, what)
 
 
 check(importance, [["importance"], ["fluence", "photon_count", "origin_mean", "chosen"]], [[32, 32, 2], [8, 8, 6]])
-check(light, [["fluence", "fluence_error", "mean_direction", "mip_level"]], [[20, 16, 12]])
+check(light, [["fluence", "fluence_error", "mean_direction", "mip_level"]], [[20, 16, 12]], 1e-6)
 own = emitter.GetClientSideObject().GetOutputDataObject(0).GetNumberOfPoints()
 assert own > 7900, own  # each rank's marcher asks for all
 light.UpdatePropertyInformation()

@@ -1,4 +1,4 @@
-"""Two ranks: each builds the octree of the whole and hands on its piece of the levels; the nodes are there once."""
+"""Two ranks: each has its piece of the levels, which are those of the whole; the nodes are there once."""
 import os
 
 from paraview import servermanager

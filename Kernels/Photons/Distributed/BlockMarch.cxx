@@ -103,6 +103,7 @@ void BlockMarch::MarchBatch(const Marched& photons, int batch, std::size_t begin
   launches.seconds = SecondsPerLaunch;
   launches.growth = 8.0;
   launches.most = std::max(MarchedBetweenBlocks, launches.whole);
+  const Buffer<cl_int> none(device, 0, "cells of the voxels");
   GonePhotons<PhotonOnItsWay> elsewhere(device, std::min(launches.count, launches.most));
   Buffer<cl_int> next(device, 1, "number of the next photon");
   const std::size_t before = gone.size();
@@ -112,7 +113,8 @@ void BlockMarch::MarchBatch(const Marched& photons, int batch, std::size_t begin
     With(this->Kernel, this->Medium.Describe(), this->Medium.sigma, this->Medium.coefficients, this->Medium.nodes,
       photons.starting.values, photons.starting.marks, photons.arrived, elsewhere.Room(), elsewhere.Number(),
       photons.starting.ends, *this->Target.sums, cl_ulong(Count(batch) * stride),
-      cl_ulong(Count(shares.batches) * stride), next, cl_int(photons.resumes), cl_int(begin + first), cl_int(size));
+      cl_ulong(Count(shares.batches) * stride), next, cl_int(photons.resumes), cl_int(begin + first), cl_int(size),
+      this->Target.cells ? *this->Target.cells : none);
     this->Medium.Launch(this->Kernel, cl::NDRange(workers > 0 ? workers : PartsOf(size, width)),
       workers > 0 ? cl::NDRange(1) : GroupOfLargeItems(device));
     elsewhere.AppendTo(gone);

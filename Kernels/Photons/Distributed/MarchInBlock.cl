@@ -71,12 +71,12 @@ __kernel void march_block(MarchInfo info, const __global float* sigma, const __g
   const __global uchar* nodes, const __global float* photons, const __global ulong* marks,
   const __global PhotonOnItsWay* arrived, __global PhotonOnItsWay* gone, volatile __global int* gone_count,
   __global PhotonEnd* ends, __global long* sums, ulong copyBegin, ulong copyStride, volatile __global int* next,
-  int resumes, int first, int count)
+  int resumes, int first, int count, const __global int* cells)
 {
   const int end = first + count;
 #if WORKERS > 0
   const march_arrays arrays = { &info, sigma, coefficients, nodes, sums + copyBegin + get_global_id(0) * copyStride,
-    ends, 0, marks, 0, gone, gone_count };
+    ends, 0, marks, cells, gone, gone_count };
   for (int block = atomic_add(next, BLOCK); block < count; block = atomic_add(next, BLOCK))
   {
     for (int i = first + block; i < first + min(block + BLOCK, count); i += REAL_WIDTH)
@@ -85,7 +85,7 @@ __kernel void march_block(MarchInfo info, const __global float* sigma, const __g
     }
   }
 #else
-  const march_arrays arrays = { &info, sigma, coefficients, nodes, sums + copyBegin, ends, 0, marks, 0, gone,
+  const march_arrays arrays = { &info, sigma, coefficients, nodes, sums + copyBegin, ends, 0, marks, cells, gone,
     gone_count };
   march_packet_in_block(&arrays, photons, arrived, resumes, first + get_global_id(0) * REAL_WIDTH, end);
 #endif

@@ -9,6 +9,9 @@ static void keep_owed(photon_lanes* lanes, const photon_flight* flight)
   {
     PUT(lanes->owed[c], flight->owed[c]);
   }
+#if CELLS
+  PUT_INTEGERS(lanes->counted, flight->counted);
+#endif
 }
 
 // Photon k has landed in another block's voxel.
@@ -23,6 +26,9 @@ static void hand_on(const march_arrays* arrays, const photon_lanes* lanes, int k
   }
   photon->crossings = lanes->crossings[k];
   photon->steps = lanes->steps[k];
+#if CELLS
+  photon->counted = lanes->counted[k];
+#endif
 #if MARKS
   photon->mark = lanes->mark[k];
 #endif
@@ -38,6 +44,9 @@ static void take_one_over(photon_lanes* lanes, int k, const __global PhotonOnIts
   }
   lanes->crossings[k] = photon->crossings;
   lanes->steps[k] = photon->steps;
+#if CELLS
+  lanes->counted[k] = photon->counted;
+#endif
 #if MARKS
   lanes->mark[k] = photon->mark;
 #endif
@@ -73,7 +82,9 @@ static void take_over(const march_arrays* arrays, const __global PhotonOnItsWay*
     flight->power[c] = VECTOR(lanes->power[c]);
     flight->owed[c] = VECTOR(lanes->owed[c]);
   }
-#if COUNTS
+#if CELLS // which may lie in several blocks
+  flight->counted = INTEGERS(lanes->counted);
+#elif COUNTS
   flight->counted = -1;
 #endif
 }

@@ -15,6 +15,7 @@ constexpr int SharesTag = 29997; ///< not one of those that Rounds.h takes
 
 /// Whole numbers as doubles, whose sums are whole: a high and a low half.
 constexpr double Half = 0x1p31;
+}
 
 std::vector<std::int64_t> SumExactly(Communicator& communicator, const std::vector<std::int64_t>& numbers)
 {
@@ -35,6 +36,8 @@ std::vector<std::int64_t> SumExactly(Communicator& communicator, const std::vect
   return sums;
 }
 
+namespace
+{
 /// Of the first rank that has any.
 Rgb FirstOfAll(Communicator& communicator, const Rgb& own)
 {

@@ -20,6 +20,9 @@ struct PlaceOfShare
 };
 PlaceOfShare PlaceAmong(Communicator& communicator, std::size_t share);
 
+/// Whole numbers of all ranks, added up without rounding.
+std::vector<std::int64_t> SumExactly(Communicator& communicator, const std::vector<std::int64_t>& numbers);
+
 /// Photons that set off in a rank's block.
 struct StartingPhotons
 {

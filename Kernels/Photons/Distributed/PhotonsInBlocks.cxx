@@ -8,6 +8,7 @@
 #include "Photons/Distributed/BlockMarch.h"
 #include "Photons/Distributed/PathsInBlocks.h"
 #include "Photons/Distributed/PhotonShares.h"
+#include "Photons/Distributed/PilotsInBlocks.h"
 #include "Photons/Marching/MarchedBatches.h"
 #include "Photons/Marching/MarchedLight.h"
 #include "Photons/Scattering/ScatteredChannels.h"
@@ -83,6 +84,8 @@ public:
   void Prepare(const Medium& medium, const Field& ior, const std::uint8_t* levels, bool octree);
   PhotonLight March(const std::vector<Photon>& share, const Monitor& monitor);
   std::vector<PhotonPath> Paths(const std::vector<Photon>& share, std::size_t count);
+  PilotLight Gather(const std::vector<Photon>& photons, const std::vector<std::array<int, 2>>& origins,
+    const std::array<int, 3>& cells, const Monitor& monitor);
 
   RoundsTraffic Handed; ///< of the last march
 
@@ -429,6 +432,13 @@ std::vector<PhotonPath> PhotonMarcherInBlocks::Rank::Paths(const std::vector<Pho
   return paths.Trace(some, chosen, MarchEventLimit(this->Partition.whole, this->Settings));
 }
 
+PilotLight PhotonMarcherInBlocks::Rank::Gather(const std::vector<Photon>& photons,
+  const std::vector<std::array<int, 2>>& origins, const std::array<int, 3>& cells, const Monitor& monitor)
+{
+  return GatherInBlocks({ this->Others, this->Partition, this->Through.get(), this->Traits, this->Settings }, photons,
+    origins, cells, monitor);
+}
+
 PhotonMarcherInBlocks::PhotonMarcherInBlocks(Device& device, Communicator& communicator,
   const BlockPartition& partition, const Medium& medium, const Field& ior, const MarchSettings& settings,
   const std::uint8_t* levels)
@@ -451,6 +461,12 @@ PhotonLight PhotonMarcherInBlocks::March(const std::vector<Photon>& share, const
 std::vector<PhotonPath> PhotonMarcherInBlocks::Paths(const std::vector<Photon>& share, std::size_t count)
 {
   return this->Inside->Paths(share, count);
+}
+
+PilotLight PhotonMarcherInBlocks::Gather(const std::vector<Photon>& photons,
+  const std::vector<std::array<int, 2>>& origins, const std::array<int, 3>& cells, const Monitor& monitor)
+{
+  return this->Inside->Gather(photons, origins, cells, monitor);
 }
 
 const RoundsTraffic& PhotonMarcherInBlocks::Traffic() const

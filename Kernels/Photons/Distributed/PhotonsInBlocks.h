@@ -6,6 +6,7 @@
 #include "Distribution/Communicator.h"
 #include "Distribution/Rounds.h"
 #include "Medium/Medium.h"
+#include "Photons/Importance/PilotLight.h"
 #include "Photons/Photons.h"
 
 #include <cstdint>
@@ -50,6 +51,10 @@ public:
   /// PhotonMarcher has them.
   /// @return of rank 0 all of them, of the others none
   std::vector<PhotonPath> Paths(const std::vector<Photon>& share, std::size_t count);
+
+  /// PhotonMarcher::Gather of photons that all ranks have alike: the light of the whole, on each rank.
+  PilotLight Gather(const std::vector<Photon>& photons, const std::vector<std::array<int, 2>>& origins,
+    const std::array<int, 3>& cells, const Monitor& monitor = {});
 
   const RoundsTraffic& Traffic() const; ///< of the last march, of this rank
 

@@ -4,6 +4,7 @@
 #include "Photons/Importance/ImportanceMap.h"
 #include "Photons/Marching/PhotonMarcher.h"
 
+#include <functional>
 #include <string>
 
 namespace tyndall
@@ -46,5 +47,11 @@ struct Importance
 /// @param marcher  of the medium
 /// @throws InvalidInput where a setting is out of its range; Aborted
 Importance FindImportance(PhotonMarcher& marcher, const Grid& grid, const Illumination& illumination,
+  const ImportanceSettings& settings = {}, const Monitor& monitor = {});
+
+/// How pilot photons are gathered: PhotonMarcher::Gather, or that of ranks (PilotsInBlocks.h).
+using Gatherer = std::function<PilotLight(const std::vector<Photon>& photons,
+  const std::vector<std::array<int, 2>>& origins, const std::array<int, 3>& cells, const Monitor& monitor)>;
+Importance FindImportance(const Gatherer& gather, const Grid& grid, const Illumination& illumination,
   const ImportanceSettings& settings = {}, const Monitor& monitor = {});
 }

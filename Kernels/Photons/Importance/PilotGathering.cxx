@@ -14,6 +14,37 @@ namespace
 constexpr int LargestOrigin = 65535;
 constexpr int OriginNumbers = 5; ///< of a cell's record: photons, sums of columns, rows, and squares of each
 
+std::array<int, 3> CellsOf(const std::array<int, 3>& asked, const Grid& grid)
+{
+  std::array<int, 3> cells;
+  for (int a = 0; a < 3; ++a)
+  {
+    if (asked[a] < 1)
+    {
+      throw InvalidInput("Pilot light is asked for in " + std::to_string(asked[0]) + " x " + std::to_string(asked[1]) +
+        " x " + std::to_string(asked[2]) + " cells; there must be at least one along each axis.");
+    }
+    cells[a] = std::min(asked[a], grid.size[a]);
+  }
+  return cells;
+}
+
+/// How many of `size` voxels are in cell `i`: voxel v is in cell v * cells / size.
+double VoxelsIn(int i, int cells, int size)
+{
+  const auto first = [&](std::int64_t cell) { return (cell * size + cells - 1) / cells; };
+  return static_cast<double>(first(i + 1) - first(i));
+}
+
+/// Mean and deviation of what a count, a sum and a sum of squares are of.
+void PutMoments(std::int64_t count, std::int64_t sum, std::int64_t squares, float& mean, float& deviation)
+{
+  const double n = static_cast<double>(std::max<std::int64_t>(count, 1)), s = static_cast<double>(sum);
+  mean = static_cast<float>(s / n);
+  deviation = static_cast<float>(std::sqrt(std::max((static_cast<double>(squares) - s * s / n) / n, 0.0)));
+}
+}
+
 void CheckOrigins(const std::vector<Photon>& photons, const std::vector<std::array<int, 2>>& origins)
 {
   if (origins.size() != photons.size())
@@ -34,23 +65,7 @@ void CheckOrigins(const std::vector<Photon>& photons, const std::vector<std::arr
   }
 }
 
-std::array<int, 3> CellsOf(const std::array<int, 3>& asked, const Grid& grid)
-{
-  std::array<int, 3> cells;
-  for (int a = 0; a < 3; ++a)
-  {
-    if (asked[a] < 1)
-    {
-      throw InvalidInput("Pilot light is asked for in " + std::to_string(asked[0]) + " x " + std::to_string(asked[1]) +
-        " x " + std::to_string(asked[2]) + " cells; there must be at least one along each axis.");
-    }
-    cells[a] = std::min(asked[a], grid.size[a]);
-  }
-  return cells;
-}
-
-/// Column and row that each photon set out from.
-std::vector<cl_ulong> Marks(const std::vector<std::array<int, 2>>& origins, const PackedPhotons& packed)
+std::vector<cl_ulong> MarksOfOrigins(const std::vector<std::array<int, 2>>& origins, const PackedPhotons& packed)
 {
   std::vector<cl_ulong> marks;
   marks.reserve(packed.Count());
@@ -61,18 +76,44 @@ std::vector<cl_ulong> Marks(const std::vector<std::array<int, 2>>& origins, cons
   return marks;
 }
 
-/// How many of `size` voxels are in cell `i`: voxel v is in cell v * cells / size.
-double VoxelsIn(int i, int cells, int size)
+PilotLight DarkPilotLight(const Grid& voxels, const std::array<int, 3>& cells, int channels)
 {
-  const auto first = [&](std::int64_t cell) { return (cell * size + cells - 1) / cells; };
-  return static_cast<double>(first(i + 1) - first(i));
+  PilotLight light;
+  light.grid.size = CellsOf(cells, voxels);
+  light.grid.origin = voxels.origin;
+  for (int a = 0; a < 3; ++a)
+  {
+    light.grid.spacing[a] = voxels.Length(a) / light.grid.size[a];
+  }
+  light.channels = channels;
+  const std::size_t count = light.grid.VoxelCount();
+  light.fluence.resize(count * static_cast<std::size_t>(light.channels));
+  light.count.resize(count);
+  light.originMean.resize(2 * count);
+  light.originDeviation.resize(2 * count);
+  return light;
 }
 
-/// The copies' sum. [cells][numbers]
-std::vector<cl_long> AddUp(const MarchSums& target)
+PilotSums::PilotSums(
+  const MarchMedium& medium, const PackedPhotons& packed, const Buffer<cl_int>& cellOfVoxel, std::size_t cells)
+  : Memory(medium.device, 0, "sums of the pilot photons' light")
 {
-  std::vector<cl_long> copies = target.sums->Read();
-  const std::size_t size = target.records * static_cast<std::size_t>(target.numbers);
+  this->Into.records = cells;
+  this->Into.numbers = packed.channels + OriginNumbers;
+  this->Into.cells = &cellOfVoxel;
+  this->Into.shares = ShareSums(medium, this->Into.records, this->Into.numbers, 1, 0);
+  this->Memory = Buffer<cl_long>(medium.device,
+    cells * static_cast<std::size_t>(this->Into.numbers) * static_cast<std::size_t>(this->Into.shares.copies),
+    "sums of the pilot photons' light");
+  this->Memory.Fill(0);
+  this->Into.sums = &this->Memory;
+}
+
+std::vector<std::int64_t> PilotSums::AddUp() const
+{
+  const std::vector<cl_long> read = this->Memory.Read();
+  std::vector<std::int64_t> copies(read.begin(), read.end());
+  const std::size_t size = this->Into.records * static_cast<std::size_t>(this->Into.numbers);
   for (std::size_t i = size; i < copies.size(); ++i)
   {
     copies[i % size] += copies[i];
@@ -81,24 +122,20 @@ std::vector<cl_long> AddUp(const MarchSums& target)
   return copies;
 }
 
-/// Mean and deviation of what a count, a sum and a sum of squares are of.
-void PutMoments(cl_long count, cl_long sum, cl_long squares, float& mean, float& deviation)
+std::size_t NumbersOfCell(const PackedPhotons& packed)
 {
-  const double n = static_cast<double>(std::max<cl_long>(count, 1)), s = static_cast<double>(sum);
-  mean = static_cast<float>(s / n);
-  deviation = static_cast<float>(std::sqrt(std::max((static_cast<double>(squares) - s * s / n) / n, 0.0)));
+  return static_cast<std::size_t>(packed.channels + OriginNumbers);
 }
 
-/// @param unit  W length, of one unit of power times path
-void PutCells(
-  const std::vector<cl_long>& sums, const Grid& voxels, const PackedPhotons& packed, double unit, PilotLight& light)
+void PutCells(const std::vector<std::int64_t>& sums, const Grid& voxels, const PackedPhotons& packed, double unit,
+  PilotLight& light)
 {
   const std::size_t numbers = static_cast<std::size_t>(packed.channels + OriginNumbers);
   const std::size_t colours = static_cast<std::size_t>(light.channels);
   const std::array<int, 3>& cells = light.grid.size;
   for (std::size_t i = 0; i < light.grid.VoxelCount(); ++i)
   {
-    const cl_long* record = sums.data() + i * numbers;
+    const std::int64_t* record = sums.data() + i * numbers;
     const int place[3] = { static_cast<int>(i) % cells[0], static_cast<int>(i) / cells[0] % cells[1],
       static_cast<int>(i) / cells[0] / cells[1] };
     double volume = voxels.VoxelVolume();
@@ -120,49 +157,24 @@ void PutCells(
     }
   }
 }
-}
 
 PilotLight PilotGathering::Gather(const std::vector<Photon>& photons, const std::vector<std::array<int, 2>>& origins,
-  std::array<int, 3> cells, const Monitor& monitor)
+  const std::array<int, 3>& cells, const Monitor& monitor)
 {
   const double start = ClockSeconds();
   const MarchMedium& medium = this->TheMedium;
   CheckOrigins(photons, origins);
-  cells = CellsOf(cells, medium.grid);
   const PackedPhotons packed = Pack(photons, medium.grid, medium.channels == 3, medium.EventLimit());
-  if (this->Cells != cells)
+  PilotLight light = DarkPilotLight(medium.grid, cells, medium.traits.ColoursOf(packed));
+  if (this->Cells != light.grid.size)
   {
-    this->CellOfVoxel = medium.Cells(cells);
-    this->Cells = cells;
+    this->CellOfVoxel = medium.Cells(light.grid.size);
+    this->Cells = light.grid.size;
   }
-
-  PilotLight light;
-  light.grid.size = cells;
-  light.grid.origin = medium.grid.origin;
-  for (int a = 0; a < 3; ++a)
-  {
-    light.grid.spacing[a] = medium.grid.Length(a) / cells[a];
-  }
-  light.channels = medium.traits.ColoursOf(packed);
-  const std::size_t count = light.grid.VoxelCount();
-  light.fluence.resize(count * static_cast<std::size_t>(light.channels));
-  light.count.resize(count);
-  light.originMean.resize(2 * count);
-  light.originDeviation.resize(2 * count);
-
-  MarchSums target;
-  target.records = count;
-  target.numbers = packed.channels + OriginNumbers;
-  target.cells = &this->CellOfVoxel;
-  target.shares = ShareSums(medium, target.records, target.numbers, 1, 0);
-  Buffer<cl_long> sums(medium.device,
-    count * static_cast<std::size_t>(target.numbers) * static_cast<std::size_t>(target.shares.copies),
-    "sums of the pilot photons' light");
-  sums.Fill(0);
-  target.sums = &sums;
-  const PhotonsOnDevice onDevice(medium.device, packed, Marks(origins, packed));
-  MarchPhotons(medium, packed, onDevice, target, monitor);
-  PutCells(AddUp(target), medium.grid, packed, packed.unit * medium.Diagonal(), light);
+  const PilotSums sums(medium, packed, this->CellOfVoxel, light.grid.VoxelCount());
+  const PhotonsOnDevice onDevice(medium.device, packed, MarksOfOrigins(origins, packed));
+  MarchPhotons(medium, packed, onDevice, sums.Target(), monitor);
+  PutCells(sums.AddUp(), medium.grid, packed, packed.unit * medium.Diagonal(), light);
   light.seconds = ClockSeconds() - start;
   return light;
 }

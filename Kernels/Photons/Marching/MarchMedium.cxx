@@ -301,7 +301,9 @@ Buffer<cl_int> MarchMedium::Cells(const std::array<int, 3>& cells) const
 {
   Buffer<cl_int> numbers(this->device, this->PaddedCount(), "cells of the voxels");
   cl::Kernel assign = this->MediumKernel("assign_cells");
-  With(assign, this->DescribeGrid(), IndexGrid{ { cells[0], cells[1], cells[2] } }, numbers);
+  const std::array<int, 3>& first = this->block.own.first;
+  With(assign, this->DescribeGrid(), SizeOf(this->block.whole.size), cl_int(first[0]), cl_int(first[1]),
+    cl_int(first[2]), IndexGrid{ { cells[0], cells[1], cells[2] } }, numbers);
   this->Launch(assign, Range(this->Padded(2)));
   this->device.Finish();
   return numbers;

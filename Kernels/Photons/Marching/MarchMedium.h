@@ -81,7 +81,7 @@ public:
   /// A kernel of PhotonSums.cl.
   cl::Kernel SumsKernel(const char* name, int channels, const std::string& options) const;
 
-  /// The coarse cell of each voxel of the padded grid. @param cells  along each axis, at most as many as voxels
+  /// The coarse cell of each voxel of the padded grid. @param cells  of the whole along each axis, no more than voxels
   Buffer<cl_int> Cells(const std::array<int, 3>& cells) const;
 
   void Launch(const cl::Kernel& kernel, const cl::NDRange& range, const cl::NDRange& local = cl::NullRange) const;

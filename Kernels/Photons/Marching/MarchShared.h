@@ -69,6 +69,7 @@ typedef struct
   ulong mark; ///< by which it counts
   WayOnward way;
   int batch;     ///< that it is of; the host knows
+  int counted;   ///< coarse cell that counted it last
   int crossings; ///< stretches that were deposited
   int steps;     ///< of the integrator
   float power[3];

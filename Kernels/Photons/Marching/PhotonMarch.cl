@@ -10,8 +10,8 @@
 //   PATHS            1: nothing is summed, vertices are written
 //   BRICKS           1: the medium, and the sums, stand by bricks (PhotonBricks.cl), without COUNTS and CELLS
 //   TURNS            1: photons march in turns, and are kept between them; one batch, without PATHS
-//   BLOCKS           1: photons march as far as their block of the grid goes (PhotonBlocks.cl), without CELLS, BRICKS
-//                    and TURNS
+//   BLOCKS           1: photons march as far as their block of the grid goes (PhotonBlocks.cl), without BRICKS and
+//                    TURNS
 //
 // A step is followed from voxel wall to voxel wall (Amanatides and Woo 1987). In a voxel whose extinction over a
 // diagonal is s, with b = max(s, 1), the sums gain (numerics.md, Eqs. (35), (97))

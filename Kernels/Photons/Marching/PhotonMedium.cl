@@ -57,13 +57,14 @@ __kernel void pack_nodes(IndexGrid known, const __global float* low, const __glo
 }
 
 // [padded] the coarse cell of each voxel, of cells[0] times cells[1] times cells[2]; 0 in the padding.
-__kernel void assign_cells(IndexGrid grid, IndexGrid cells, __global int* cell)
+// x0, y0, z0: the first voxel, of the whole grid.
+__kernel void assign_cells(IndexGrid grid, IndexGrid whole, int x0, int y0, int z0, IndexGrid cells, __global int* cell)
 {
   const int x = get_global_id(0), y = get_global_id(1), z = get_global_id(2);
   const bool inside = x > 0 && x <= grid.size[0] && y > 0 && y <= grid.size[1] && z > 0 && z <= grid.size[2];
-  const int i = (long)(x - 1) * cells.size[0] / grid.size[0];
-  const int j = (long)(y - 1) * cells.size[1] / grid.size[1];
-  const int k = (long)(z - 1) * cells.size[2] / grid.size[2];
+  const int i = (long)(x0 + x - 1) * cells.size[0] / whole.size[0];
+  const int j = (long)(y0 + y - 1) * cells.size[1] / whole.size[1];
+  const int k = (long)(z0 + z - 1) * cells.size[2] / whole.size[2];
   const size_t at = ((size_t)z * (grid.size[1] + 2) + y) * (grid.size[0] + 2) + x;
   cell[at] = inside ? (k * cells.size[1] + j) * cells.size[0] + i : 0;
 }

@@ -83,6 +83,9 @@ typedef struct
 #endif
 #if BLOCKS
   float owed[CHANNELS][REAL_WIDTH] __attribute__((aligned(64))); // of those that land to go on elsewhere
+#if CELLS
+  LANES(int, counted); // likewise: the cell that counted them last
+#endif
 #endif
 #if BRICKS
   LANES_3(int, voxel);
