@@ -96,10 +96,10 @@ public:
   /// @throws InvalidInput as Check(medium) and Check(illumination); for a light array that is not finite or has not 1
   ///   or 3 components (a direction 3); for an index that is not within [1e-3, 1e3] or has not one component; where
   ///   settings ask for an array that is not there; for a setting out of its range
-  /// @throws DeviceError if the samples do not fit: 16 bytes per voxel (on a CPU, of a medium that is mostly empty, of
-  ///   bricks in and around what is filled only), and as many again for each of coloured
-  ///   extinction, the light's direction, emission beside it, a coloured g by voxel, and a refractive index that
-  ///   varies; with moments, these and 36 bytes more
+  /// @throws DeviceError if the samples do not fit: 16 bytes per voxel (of a medium that is mostly empty, of bricks
+  ///   in and around what is filled only; on a GPU only where SampleBricks.h applies), and as many again for each of
+  ///   coloured extinction, the light's direction, emission beside it, a coloured g by voxel, and a refractive index
+  ///   that varies; with moments, these and 36 bytes more
   MediumRayCaster(Device& device, const Medium& medium, const SolvedLight& light, const Illumination& illumination,
     const ViewSettings& settings, const Field& ior = {}, const BlockOfScene* block = nullptr);
   MediumRayCaster(const MediumRayCaster&) = delete; // its parts see each other
