@@ -5,6 +5,7 @@
 Of the cases that give a picture each rank writes its part of it to FOLDER, with the extent of what it was given; those
 that must fail, and an abort, are checked here.
 """
+import ctypes
 import os
 import sys
 
@@ -199,9 +200,10 @@ def bare_points():
 
 
 def bend(image):
-    """A lens."""
+    """A lens, away from the faces."""
     z, y, x = cells_of(image.GetExtent())
-    add(image, "ior", 1 + 0.3 * numpy.exp(-0.06 * ((x - 7) ** 2 + (y - 4) ** 2 + (z - 5) ** 2)))
+    inside = numpy.maximum(1 - ((x - 6.5) ** 2 + (y - 4.5) ** 2 + (z - 5.5) ** 2) / 3.9 ** 2, 0)
+    add(image, "ior", 1 + 0.4 * inside ** 2)
     return image
 
 
@@ -282,7 +284,8 @@ def turned():
     caster = cast(bend(piece()), Environment=sky())
     caster.CameraViewAngle = 31
     caster.UpdatePipeline()
-    assert caster.GetClientSideObject().GetSceneKept()
+    caster.UpdatePropertyInformation()
+    assert caster.SceneKept
     keep("turned", caster)
 
 
@@ -294,8 +297,9 @@ def memory_of(field):
 
 def memory():
     """A larger lens, without layers: what a rank takes for its picture at most, beside its piece."""
-    source = source_of(bend(medium_of(boxes([0, 144, 0, 128, 0, 112])[rank])))
+    source = source_of(bend(medium_of(boxes([0, 192, 0, 160, 0, 128])[rank])))
     cast(bend(plain_piece()), Environment=sky())  # what any picture takes
+    ctypes.CDLL(None).malloc_trim(0)  # what numpy has given back
     with open("/proc/self/clear_refs", "w") as peak:
         peak.write("5")
     before = memory_of("VmRSS")
