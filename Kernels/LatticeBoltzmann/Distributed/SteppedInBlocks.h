@@ -16,7 +16,7 @@
 namespace tyndall
 {
 /// A lattice whose blocks lie on several ranks and step together: before each step a block gets what the voxels around
-/// it send into it, round periodic axes too. The same densities as in one memory, bit for bit.
+/// it send into it, round periodic axes too. Each step is that of one memory.
 class SteppedInBlocks : public SteppedLattice
 {
 public:
