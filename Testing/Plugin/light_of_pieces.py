@@ -658,14 +658,14 @@ def abort():
 
 
 def no_file():
-    """A file that only the first rank has: all have the light of it."""
+    """A file that only the first rank has: all have the light of it, where it is asked for all of it."""
     path = os.path.join(folder, "own%d.vti" % rank)
     if rank == 0:
         writer = vtkXMLImageDataWriter()
         writer.SetFileName(path)
         writer.SetInputData(piece_of([0, 12, 0, 5, 0, 4]))
         writer.Write()
-    keep("no_file", solved(XMLImageDataReader(FileName=[path]), ["CELLS", "density"]))
+    keep("no_file", solved(XMLImageDataReader(FileName=[path]), ["CELLS", "density"], Decomposition="Whole on each rank"))
 
 
 def missing():

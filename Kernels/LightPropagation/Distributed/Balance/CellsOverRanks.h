@@ -15,8 +15,8 @@
 namespace tyndall
 {
 /// Diffusion of one channel on cells of voxels, as CoarseDiffusion.h has it (numerics.md, section 7.13), of a grid that
-/// is spread over ranks, in an open box: cells are those of the whole grid, whichever ranks have their voxels. The first
-/// rank solves the system; all hold values by cells, an eighth of the voxels at most.
+/// is spread over ranks, in an open box: cells are those of the whole grid, whichever ranks have their voxels. The
+/// first rank solves the system; all hold values by cells, an eighth of the voxels at most.
 class CellsOverRanks
 {
 public:
