@@ -7,6 +7,7 @@
 #include "Photons/Distributed/PhotonsInBlocks.h"
 #include "Photons/Importance/PhotonImportance.h"
 
+#include <algorithm>
 #include <random>
 #include <string>
 
@@ -78,6 +79,9 @@ TEST_F(PilotBlocksTest, FindTheMapOfTheWhole)
   settings.pilotCount = 1024;
   settings.cells = { 8, 8, 8 };
   PhotonMarcher whole = scene.Marcher(GetDevice());
+  const std::vector<float> gradient = FindImportance(whole, scene.medium.grid, light, settings).gradient;
+  settings.automatic = false;
+  settings.gradientThreshold = 0.5 * *std::max_element(gradient.begin(), gradient.end());
   const Importance expected = FindImportance(whole, scene.medium.grid, light, settings);
   EXPECT_FALSE(expected.even);
   const BlockPartition partition = BlockPartition::Even(scene.medium.grid, 3);
