@@ -231,26 +231,45 @@ vtkSmartPointer<vtkDataObject> WholeImageOf(
   return whole;
 }
 
-/// All that the source says there is must be on some rank, where all ranks are told of one extent.
-void CheckExtent(vtkDataObject* data, const OnRanks& glances, const std::string& named)
+std::string Words(const Extent& extent)
 {
-  auto* const image = vtkImageData::SafeDownCast(data);
-  const Extent& told = glances[0].whole;
-  const bool oneExtent =
-    std::all_of(glances.begin(), glances.end(), [&](const Glance& glance) { return glance.whole == told; });
-  if (image && oneExtent && PointBoxOf(told).Count() > 0 && !std::equal(told.begin(), told.end(), image->GetExtent()))
+  std::string text;
+  for (int i = 0; i < 6; ++i)
   {
-    const auto words = [](const int* extent) {
-      std::string text;
-      for (int i = 0; i < 6; ++i)
-      {
-        text += (i > 0 ? " " : "") + std::to_string(extent[i]);
-      }
-      return text;
-    };
-    throw InvalidInput(named + " lies in pieces on several ranks, which together have the extent " +
-      words(image->GetExtent()) + " of " + words(told.data()) + ". Give the ranks all pieces.");
+    text += (i > 0 ? " " : "") + std::to_string(extent[i]);
   }
+  return text;
+}
+
+/// All that the source says there is must be on some rank, where all that have any are told of one extent. A file that
+/// one rank alone has gives it the piece that it is asked for, and nobody the others.
+void CheckExtent(const OnRanks& glances, const std::string& named)
+{
+  const auto isPiece = [](const Glance& glance) { return glance.isThere && glance.isImage; };
+  const auto first = std::find_if(glances.begin(), glances.end(), isPiece);
+  const bool oneExtent = std::all_of(glances.begin(), glances.end(),
+    [&](const Glance& glance) { return !isPiece(glance) || glance.whole == first->whole; });
+  if (first == glances.end() || !oneExtent || PointBoxOf(first->whole).Count() == 0)
+  {
+    return;
+  }
+  Extent all = first->extent;
+  std::string without;
+  for (std::size_t rank = 0; rank < glances.size(); ++rank)
+  {
+    without += isPiece(glances[rank]) ? "" : (without.empty() ? "" : ", ") + std::to_string(rank);
+    for (int i = 0; i < 6 && isPiece(glances[rank]); ++i)
+    {
+      all[i] = i % 2 == 0 ? std::min(all[i], glances[rank].extent[i]) : std::max(all[i], glances[rank].extent[i]);
+    }
+  }
+  Require(all == first->whole,
+    named + " lies in pieces on several ranks, which together have the extent " + Words(all) + " of " +
+      Words(first->whole) + ". Give the ranks all pieces." +
+      (without.empty() ? ""
+                       : " Of ranks " + without +
+            " no piece came: a file has to be there for every rank, or where the filter has a Decomposition, set it to "
+            "whole on each rank."));
 }
 
 /// Data that are no image: those of the one rank that has any.
@@ -321,9 +340,8 @@ vtkSmartPointer<vtkDataObject> WholeOf(
   {
     return FromOneRank(ranks, own, glances, named);
   }
-  const vtkSmartPointer<vtkDataObject> whole = WholeImageOf(ranks, vtkImageData::SafeDownCast(own), glances, named);
-  CheckExtent(whole, glances, named);
-  return whole;
+  CheckExtent(glances, named);
+  return WholeImageOf(ranks, vtkImageData::SafeDownCast(own), glances, named);
 }
 
 /// Where one of several ranks looks at the whole alone, nobody can help it with what its source does not give it.
@@ -382,6 +400,19 @@ std::vector<RankGlance> Share(vtkMultiProcessController* ranks, const RankGlance
   return all;
 }
 
+/// What ranks were given by one of a port's connections.
+OnRanks GlancesOf(const std::vector<RankGlance>& all, int port, int connection)
+{
+  const std::vector<int>& connections = all[0].connections;
+  const int before = std::accumulate(connections.begin(), connections.begin() + port, 0);
+  OnRanks glances;
+  for (const RankGlance& of : all)
+  {
+    glances.push_back(of.inputs[static_cast<std::size_t>(before + connection)]);
+  }
+  return glances;
+}
+
 /// Where ranks are asked for parts of their own, as those of sources that know no other.
 void NoteParts(const std::vector<RankGlance>& all, int rank, vtkInformationVector* outputs)
 {
@@ -429,6 +460,11 @@ WholeInputs::WholeInputs(vtkMultiProcessController* ranks, vtkAlgorithm* filter,
     if (port != inPieces && port != inShares && !also)
     {
       this->MakeWhole(port);
+      continue;
+    }
+    for (int i = 0; i < this->AllSeen->all[0].connections[static_cast<std::size_t>(port)]; ++i)
+    {
+      CheckExtent(GlancesOf(this->AllSeen->all, port, i), Named(port));
     }
   }
 }
@@ -468,18 +504,12 @@ void WholeInputs::MakeWhole()
 void WholeInputs::MakeWhole(int port)
 {
   const Seen& seen = *this->AllSeen;
-  const std::vector<int>& connections = seen.all[0].connections;
   const auto number = static_cast<std::size_t>(port);
-  const int before = std::accumulate(connections.begin(), connections.begin() + port, 0);
   this->Kept[number] = vtkSmartPointer<vtkInformationVector>::New();
   this->Ports[number] = this->Kept[number];
-  for (int i = 0; i < connections[number]; ++i)
+  for (int i = 0; i < seen.all[0].connections[number]; ++i)
   {
-    OnRanks glances;
-    for (const RankGlance& of : seen.all)
-    {
-      glances.push_back(of.inputs[static_cast<std::size_t>(before + i)]);
-    }
+    const OnRanks glances = GlancesOf(seen.all, port, i);
     vtkInformation* const information = seen.given[port]->GetInformationObject(i);
     vtkDataObject* const data = vtkDataObject::GetData(information);
     const vtkSmartPointer<vtkDataObject> whole =

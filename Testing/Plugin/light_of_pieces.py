@@ -658,7 +658,7 @@ def abort():
 
 
 def no_file():
-    """A file that only the first rank has: all have the light of it, where it is asked for all of it."""
+    """A file that only the first rank has: all have the light of it, where it is asked for all of it; asked for pieces, one error."""
     path = os.path.join(folder, "own%d.vti" % rank)
     if rank == 0:
         writer = vtkXMLImageDataWriter()
@@ -666,6 +666,14 @@ def no_file():
         writer.SetInputData(piece_of([0, 12, 0, 5, 0, 4]))
         writer.Write()
     keep("no_file", solved(XMLImageDataReader(FileName=[path]), ["CELLS", "density"], Decomposition="Whole on each rank"))
+    if ranks > 1:
+        medium = ParticipatingMedium(Input=XMLImageDataReader(FileName=[path]), DensityArray=["CELLS", "density"])
+        light = LightPropagationMaps(Input=medium, SkyColor=[1, 1, 1])
+        errors, before = errors_of(light), errors_of(medium)
+        light.UpdatePipeline()
+        errors += before
+        assert len(errors) == 1 and "of 0 12 0 5 0 4" in errors[0] and "no piece came" in errors[0], errors
+        assert light.GetClientSideObject().GetOutputDataObject(0).GetNumberOfCells() == 0
 
 
 def missing():
