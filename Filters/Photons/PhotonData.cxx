@@ -1,10 +1,12 @@
 #include "Photons/PhotonData.h"
 
+#include "Common/ContentKey.h"
 #include "Common/FilterBefore.h"
 #include "Common/FiniteValues.h"
 #include "Common/GhostFlags.h"
 #include "Common/LightTransportData.h"
 #include "Device/HostThreads.h"
+#include "Distribution/Communicator.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
@@ -277,5 +279,27 @@ std::vector<std::uint8_t> ReadLevels(vtkImageData* image)
     }
   });
   return levels;
+}
+
+std::vector<Photon> ShareOfPhotons(Communicator& communicator, vtkPolyData* given)
+{
+  std::vector<Photon> photons;
+  std::uint64_t key = 0;
+  communicator.Together([&] {
+    photons = ReadPhotons(given);
+    key = ContentKey(given);
+  });
+  const double high = static_cast<double>(key >> 32), low = static_cast<double>(key & 0xFFFFFFFFu);
+  const std::vector<double> largest = communicator.Largest({ high, -high, low, -low });
+  if (largest[0] == -largest[1] && largest[2] == -largest[3])
+  {
+    const auto ranks = static_cast<std::size_t>(communicator.Ranks()),
+               rank = static_cast<std::size_t>(communicator.Rank());
+    const auto cut = [&](std::size_t part) {
+      return photons.begin() + static_cast<std::ptrdiff_t>(photons.size() * part / ranks);
+    };
+    return { cut(rank), cut(rank + 1) };
+  }
+  return photons;
 }
 }

@@ -11,6 +11,8 @@ class vtkPolyData;
 /// How photons flow between filters.
 namespace tyndall
 {
+class Communicator;
+
 /// Photons as polydata: points (double), a vertex each, point data `direction` (3, unit), `power` (3, RGB, W), `weight`
 /// (1: its power over what it had if its light's photons were spread evenly), `light` (1: number of its light, -1 the
 /// environment or sky) and `batch` (1: of which of the independent sets it is). `direction` is the active vectors, so
@@ -25,6 +27,10 @@ std::string DoubtOfBox(vtkPolyData* photons, const Grid& medium);
 /// and `batch` (missing: 0). Hidden and duplicate points are left out.
 /// @throws InvalidInput where an array is missing or has another shape, or a batch is not a whole number of 0 to 63
 std::vector<Photon> ReadPhotons(vtkPolyData* photons);
+
+/// Photons of which each rank has some. Where all have all of them, each takes a part. All ranks call it.
+/// @throws InvalidInput as ReadPhotons, on all ranks
+std::vector<Photon> ShareOfPhotons(Communicator& communicator, vtkPolyData* given);
 
 /// Polylines with point data `power_left` (part of the photon's power that is left there) and cell data `photon` (its
 /// number).

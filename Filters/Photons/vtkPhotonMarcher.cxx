@@ -291,29 +291,6 @@ vtkSmartPointer<vtkImageData> OctreeOf(const tyndall::PieceBlocks& pieces, vtkIm
   return tyndall::AreSameVoxels(tyndall::GridOf(own), tyndall::GridOf(medium)) ? own : nullptr;
 }
 
-/// Photons of which each rank has some. Where all have all of them, each takes a part. All ranks call it.
-std::vector<tyndall::Photon> ShareOfPhotons(tyndall::Communicator& communicator, vtkPolyData* given)
-{
-  std::vector<tyndall::Photon> photons;
-  std::uint64_t key = 0;
-  communicator.Together([&] {
-    photons = tyndall::ReadPhotons(given);
-    key = tyndall::ContentKey(given);
-  });
-  const double high = static_cast<double>(key >> 32), low = static_cast<double>(key & 0xFFFFFFFFu);
-  const std::vector<double> largest = communicator.Largest({ high, -high, low, -low });
-  if (largest[0] == -largest[1] && largest[2] == -largest[3])
-  {
-    const auto ranks = static_cast<std::size_t>(communicator.Ranks()),
-               rank = static_cast<std::size_t>(communicator.Rank());
-    const auto cut = [&](std::size_t part) {
-      return photons.begin() + static_cast<std::ptrdiff_t>(photons.size() * part / ranks);
-    };
-    return { cut(rank), cut(rank + 1) };
-  }
-  return photons;
-}
-
 /// Whether photons of any rank are of several batches.
 bool HaveBatches(tyndall::Communicator& communicator, const std::vector<tyndall::Photon>& photons)
 {
@@ -328,7 +305,8 @@ bool vtkPhotonMarcher::ReadPiece(tyndall::Communicator& communicator, const tynd
 {
   std::string refused;
   bool rather = false; // whole, though it can be marched through so
-  std::vector<tyndall::Photon> photons = ShareOfPhotons(communicator, vtkPolyData::GetData(inputs[PhotonsPort]));
+  std::vector<tyndall::Photon> photons =
+    tyndall::ShareOfPhotons(communicator, vtkPolyData::GetData(inputs[PhotonsPort]));
   const bool batches = HaveBatches(communicator, photons);
   communicator.Together([&] {
     piece.photons = std::move(photons);

@@ -8,6 +8,7 @@
 
 class vtkAlgorithm;
 class vtkImageData;
+class vtkPolyData;
 
 namespace tyndall
 {
@@ -22,6 +23,7 @@ struct PieceOfMedium
 
   vtkSmartPointer<vtkImageData> image;      ///< whose arrays the medium has; null where the block is empty
   vtkSmartPointer<vtkImageData> uncollided; ///< the same of the light of another filter; null: none, or not read
+  vtkPolyData* share = nullptr; ///< points of which this rank has some, where the solver has an input of such
   MediumInput input;
   Medium medium;      ///< empty where the block is
   bool emits = false; ///< the medium of any rank

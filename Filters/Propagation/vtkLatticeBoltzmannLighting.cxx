@@ -187,7 +187,21 @@ tyndall::LightField vtkLatticeBoltzmannLighting::Solve(vtkInformationVector** in
 
 std::string vtkLatticeBoltzmannLighting::NotByBlocks(vtkInformationVector** inputs) const
 {
-  return inputs[PHOTONS]->GetNumberOfInformationObjects() > 0 ? "Photons" : "";
+  const bool both = inputs[PHOTONS]->GetNumberOfInformationObjects() > 0 &&
+    inputs[UNCOLLIDED]->GetNumberOfInformationObjects() > 0; // which is an error of the whole
+  return both ? "Photons beside UncollidedLight" : "";
+}
+
+tyndall::IlluminationInput vtkLatticeBoltzmannLighting::ReadShiningOn(
+  const tyndall::PieceBlocks& pieces, tyndall::PieceOfMedium& piece, vtkInformationVector** inputs)
+{
+  if (!piece.share)
+  {
+    return this->Superclass::ReadShiningOn(pieces, piece, inputs);
+  }
+  tyndall::IlluminationInput ofFaces;
+  tyndall::AddFaceAlbedo(ofFaces.illumination, this->FaceAlbedo, this->FaceAlbedoColor);
+  return ofFaces;
 }
 
 std::string vtkLatticeBoltzmannLighting::NotInBlocks(
@@ -210,9 +224,23 @@ tyndall::LightField vtkLatticeBoltzmannLighting::SolvePiece(tyndall::Communicato
         tyndall::ReadChosenCells(this, tyndall::RefractiveIndex, piece.image, "ior", tyndall::Need::Optional, { 1 });
     }
   });
+  std::vector<tyndall::Photon> photons;
+  if (piece.share)
+  {
+    photons = tyndall::ShareOfPhotons(communicator, piece.share);
+    const std::string doubt = tyndall::DoubtOfBox(piece.share, pieces.Partition().whole);
+    if (!doubt.empty() && communicator.Rank() == 0)
+    {
+      vtkWarningMacro(<< doubt);
+    }
+  }
   tyndall::LightField light = Timed(this->Seconds, [&] {
-    return tyndall::SolveLatticeInBlocks(*device, communicator, pieces.Partition(), piece.medium, ior,
-      shining.illumination, settings, tyndall::MonitorOf(this));
+    const tyndall::BlockPartition& blocks = pieces.Partition();
+    const tyndall::Monitor monitor = tyndall::MonitorOf(this);
+    return piece.share ? tyndall::SolveLatticeInBlocks(*device, communicator, blocks, piece.medium, ior, photons,
+                           shining.illumination, settings, monitor)
+                       : tyndall::SolveLatticeInBlocks(
+                           *device, communicator, blocks, piece.medium, ior, shining.illumination, settings, monitor);
   });
   light.settingsUsed = tyndall::Words(settings);
   return light;

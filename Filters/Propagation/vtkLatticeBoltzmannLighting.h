@@ -175,6 +175,9 @@ protected:
   std::string NotInBlocks(const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining) override;
   tyndall::LightField SolvePiece(tyndall::Communicator& communicator, const tyndall::PieceBlocks& pieces,
     const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining) override;
+  int PortOfShares() const override { return PHOTONS; }
+  tyndall::IlluminationInput ReadShiningOn(
+    const tyndall::PieceBlocks& pieces, tyndall::PieceOfMedium& piece, vtkInformationVector** inputs) override;
 
 private:
   vtkLatticeBoltzmannLighting(const vtkLatticeBoltzmannLighting&) = delete;

@@ -17,6 +17,7 @@
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkPolyData.h"
 #include "vtkTable.h"
 
 #include <algorithm>
@@ -157,6 +158,7 @@ int vtkScatteringSolver::GiveOrSolve(vtkInformation* request, vtkInformationVect
                                       this->OverRanks = ranks != nullptr;
                                       return this->GiveOrSolvePiece(request, ranks, inputs, outputs);
                                     } };
+  onPieces.shares = this->PortOfShares();
   onPieces.others = { UNCOLLIDED };
   const int done = tyndall::Guarded(this, request, given, outputs, onPieces, [&](vtkInformationVector** inputs) {
     if (std::exchange(this->SolvedInPieces, false))
@@ -191,8 +193,8 @@ int vtkScatteringSolver::RequestUpdateExtent(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   const bool asPiece = tyndall::EachAsksForItsPiece(request, outputs) && this->WantsBlocks(request, inputs, outputs);
-  const int ports = this->GetNumberOfInputPorts();
-  tyndall::AskForAllBut(asPiece ? MEDIUM : -1, request, inputs, ports, outputs, asPiece ? UNCOLLIDED : -1);
+  const std::vector<int> besides = asPiece ? std::vector<int>{ UNCOLLIDED, this->PortOfShares() } : std::vector<int>();
+  tyndall::AskForAllBut(asPiece ? MEDIUM : -1, request, inputs, this->GetNumberOfInputPorts(), outputs, besides);
   return 1;
 }
 
@@ -257,6 +259,7 @@ bool vtkScatteringSolver::GiveOrSolvePiece(vtkInformation* request, vtkMultiProc
     return true;
   }
   tyndall::PieceOfMedium piece(communicator, pieces, this, image);
+  piece.share = this->PortOfShares() < 0 ? nullptr : vtkPolyData::GetData(inputs[this->PortOfShares()]);
   tyndall::IlluminationInput shining;
   std::string refused;
   communicator.Together([&] {
@@ -276,7 +279,10 @@ bool vtkScatteringSolver::GiveOrSolvePiece(vtkInformation* request, vtkMultiProc
     return false;
   }
   this->Note({});
-  this->WarnWhereDark(shining.illumination, piece.emits);
+  if (!piece.share)
+  {
+    this->WarnWhereDark(shining.illumination, piece.emits);
+  }
   tyndall::LightField light = this->SolvePiece(communicator, pieces, piece, shining);
   TellOfDefaultSky(shining, light.leftOut);
   this->TellOfPieces(light, true);

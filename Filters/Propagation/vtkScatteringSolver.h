@@ -192,6 +192,12 @@ protected:
   virtual tyndall::LightField SolvePiece(tyndall::Communicator& communicator, const tyndall::PieceBlocks& pieces,
     const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining) = 0;
 
+  /// An input of points (photons) of which ranks have some each: PieceOfMedium::share; -1: there is none.
+  virtual int PortOfShares() const { return -1; }
+  /// What shines on this rank's piece. The frame's: UncollidedLight, or else all lights.
+  virtual tyndall::IlluminationInput ReadShiningOn(
+    const tyndall::PieceBlocks& pieces, tyndall::PieceOfMedium& piece, vtkInformationVector** inputs);
+
   /// Last in RequestData: solved light on output 0 beside the arrays of the medium, its convergence on
   /// output 1; it is noted, and a warning of each doubt. Kept for GiveOrSolve.
   void WriteSolved(tyndall::LightField&& light, vtkInformationVector** inputs, vtkInformationVector* outputs);
@@ -212,8 +218,6 @@ private:
   void operator=(const vtkScatteringSolver&) = delete;
 
   void ColorsModified();
-  tyndall::IlluminationInput ReadShiningOn(
-    const tyndall::PieceBlocks& pieces, tyndall::PieceOfMedium& piece, vtkInformationVector** inputs);
   std::string NotOnPiece(const tyndall::PieceBlocks& pieces, tyndall::PieceOfMedium& piece,
     tyndall::IlluminationInput& shining, vtkInformationVector** inputs);
   void TellOfPieces(tyndall::LightField& light, bool inBlocks) const;

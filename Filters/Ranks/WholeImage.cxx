@@ -175,11 +175,13 @@ void AskForPiece(vtkInformation* request, vtkInformationVector* inputs, vtkInfor
 }
 
 void AskForAllBut(int piece, vtkInformation* request, vtkInformationVector** inputs, int ports,
-  vtkInformationVector* outputs, int besides)
+  vtkInformationVector* outputs, const std::vector<int>& besides)
 {
   for (int port = 0; port < ports; ++port)
   {
-    if (port == piece || port == besides) // the pipeline has asked it for what the output is asked for
+    if (port == piece ||
+      std::find(besides.begin(), besides.end(), port) !=
+        besides.end()) // the pipeline has asked it for what the output is asked for
     {
       AskTogether(request, outputs, inputs[port]);
     }

@@ -17,9 +17,9 @@ void AskForAll(vtkInformation* request, vtkInformationVector* inputs, vtkInforma
 /// The same of all ports but one, of which each rank is to have what its output is asked for.
 /// @param ports  their number
 /// @param piece  that one; -1: there is none
-/// @param besides  another; the same
+/// @param besides  others; the same
 void AskForAllBut(int piece, vtkInformation* request, vtkInformationVector** inputs, int ports,
-  vtkInformationVector* outputs, int besides = -1);
+  vtkInformationVector* outputs, const std::vector<int>& besides = {});
 
 /// The same for this rank's piece, with a layer of its neighbours' cells, where ranks run the filter together; else for
 /// all.

@@ -1,6 +1,6 @@
 // Planes that a sweep crosses row by row one behind the other, as it does where they are larger than a core's cache:
-// the light is the same as plane by plane, bit for bit where all rows of a plane are crossed in one turn, else but for the
-// order of sums; and bit for bit wherever ranges of planes begin.
+// the light is the same as plane by plane, bit for bit where all rows of a plane are crossed in one turn, else but for
+// the order of sums; and bit for bit wherever ranges of planes begin.
 
 #include "DeviceTest.h"
 #include "MediumScene.h"

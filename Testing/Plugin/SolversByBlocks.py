@@ -7,12 +7,13 @@ from pieces_of_ranks import Runs, difference
 
 runs = Runs("SolversByBlocks")
 CASES = ["lattice_wavelet", "lattice_even", "lattice_uneven", "lattice_lamps", "lattice_around",
-         "lattice_steps", "ordinates_even",
+         "lattice_steps", "lattice_photons", "ordinates_even",
          "ordinates_uneven", "ordinates_faces", "ordinates_around"]
 LIKE = {"lattice_uneven": "lattice_even", "ordinates_uneven": "ordinates_even"}
 
 for ranks in (1, 2, 3, 8):
-    more = ["lattice_exact", "lattice_whole", "ordinates_whole", "ordinates_faces_whole"] if ranks == 1 else ["lattice_errors"] if ranks == 2 else []
+    more = ["lattice_exact", "lattice_whole", "lattice_photons_whole", "ordinates_whole", "ordinates_faces_whole"] if ranks == 1 else \
+        ["lattice_errors"] if ranks == 2 else []
     code, said = runs.run(ranks, *CASES, *more)
     assert code == 0 and said.count("is done") == ranks, said
     for case in CASES:
@@ -25,6 +26,9 @@ for ranks in (1, 2, 3, 8):
 
 blocks, whole = runs.whole(1, "lattice_exact", "light")[0], runs.whole(1, "lattice_whole", "light")[0]
 print("blocks and the whole: %.1e" % difference(blocks, whole))
+assert difference(blocks, whole) < 2e-6
+blocks, whole = runs.whole(3, "lattice_photons", "light")[0], runs.whole(1, "lattice_photons_whole", "light")[0]
+print("photons on a lattice in blocks and in the whole: %.1e" % difference(blocks, whole))
 assert difference(blocks, whole) < 2e-6
 for case, of_whole in (("ordinates_even", "ordinates_whole"), ("ordinates_faces", "ordinates_faces_whole")):
     ordinates, whole = runs.whole(1, case, "light")[0], runs.whole(1, of_whole, "light")[0]

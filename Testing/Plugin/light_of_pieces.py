@@ -453,6 +453,32 @@ def lattice_around():
                solve=lambda density, array: lattice_by_blocks(density, array, PeriodicX=1, PeriodicY=1))
 
 
+def lattice_of_photons(**settings):
+    """Of photons, which each rank makes and marches some of."""
+    medium = ParticipatingMedium(Input=source_of(uneven_pieces()[rank]), DensityArray=["CELLS", "density"], ExtinctionScale=2,
+                                 MinimumDensity=0, MaximumDensity=1, Albedo=[0.99, 0.9, 0.7])
+    emitter = PhotonEmitter(Input=medium, Lights=LightRig(SunElevation=50), PhotonCount=20000)
+    light = LatticeBoltzmannLighting(Input=medium, Photons=emitter, NetFlux=1, Tolerance=1e-7, **settings)
+    light.UpdatePipeline()
+    return light
+
+
+def lattice_photons():
+    light = lattice_of_photons()
+    keep("lattice_photons", light)
+    made = light.Photons.GetClientSideObject().GetOutputDataObject(0).GetNumberOfPoints()
+    assert made <= 20000 / ranks + 2, (rank, made, "photons")
+    output = light.GetClientSideObject().GetOutputDataObject(0)
+    if ranks > 1 and output.GetNumberOfCells() > 0:
+        used = output.GetFieldData().GetAbstractArray("settings_used")
+        said = [used.GetValue(i) for i in range(used.GetNumberOfValues())]
+        assert "Decomposition = 2" in said, said
+
+
+def lattice_photons_whole():
+    keep("lattice_photons_whole", lattice_of_photons(Decomposition="Whole on each rank"))
+
+
 def lattice_steps():
     own_pieces("lattice_steps", uneven_pieces(), solve=lambda density, array: lattice_by_blocks(density, array, MaximumOrders=25))
 

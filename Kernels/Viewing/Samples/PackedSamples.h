@@ -63,7 +63,7 @@ private:
   std::array<int, 3> Count;
   std::array<int, 3> KnownSize;        ///< voxels of which it is known how rays bend
   std::array<int, 3> KnownBefore = {}; ///< how many of them are before the first of the samples
-  SampleBricks InBricks; ///< where ViewTraits::bricked
+  SampleBricks InBricks;               ///< where ViewTraits::bricked
   Packing For = Packing::ForShadowRays;
   bool EmptyBricks = false;
   ZeroedBuffer<cl_float4> Sources, ColouredExtinctions, Directions, ColouredG, Emission;

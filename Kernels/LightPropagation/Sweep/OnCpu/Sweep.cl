@@ -203,8 +203,8 @@ static void cross_planes(sweep_state* state, int planes, __global float* maps, c
 #undef CROSS
 }
 
-// Rays of some bundles through planes one behind the other. Where the planes are many (their moments, or large ones that
-// are chained) tile by tile of rows, so that those of a tile stay in the cache for all bundles.
+// Rays of some bundles through planes one behind the other. Where the planes are many (their moments, or large ones
+// that are chained) tile by tile of rows, so that those of a tile stay in the cache for all bundles.
 // @param planes  1 where CHAINED is 0
 // @param crossings, coefficients  of the first of the bundles
 static void cross_bundles(sweep_state* state, int planes, __global float* maps, const __global float* outside,
