@@ -3,6 +3,7 @@
 #include "Common/DeviceBudget.h"
 #include "Common/LightTransportData.h"
 #include "Device/Device.h"
+#include "Distribution/SharedMedium.h"
 #include "Photons/Distributed/PhotonsInBlocks.h"
 #include "Photons/ImportanceData.h"
 #include "Photons/PhotonData.h"
@@ -124,10 +125,7 @@ int vtkPhotonImportance::RequestUpdateExtent(
 {
   this->Kept->ForgetIfRan(this, { MEDIUM });
   const int done = this->Superclass::RequestUpdateExtent(request, inputs, outputs);
-  if (tyndall::EachAsksForItsPiece(request, outputs)) // of the map, whose extent says nothing of the medium's
-  {
-    tyndall::AskForPiece(request, inputs[MEDIUM], outputs);
-  }
+  tyndall::AskForPiece(request, inputs[MEDIUM], outputs); // whatever of the map is asked for: a map is of all ranks
   return done;
 }
 
@@ -147,12 +145,12 @@ std::optional<tyndall::Illumination> vtkPhotonImportance::ReadLight(vtkInformati
 
 /// By pilot photons that go from rank to rank, each of which has its piece of the medium.
 /// @return nothing, on all ranks, where each is to have the whole
-std::optional<tyndall::Importance> vtkPhotonImportance::FindInPieces(vtkInformation* request,
-  vtkMultiProcessController* ranks, vtkInformationVector** inputs, vtkInformationVector* outputs)
+std::optional<tyndall::Importance> vtkPhotonImportance::FindInPieces(
+  vtkMultiProcessController* ranks, vtkInformationVector** inputs)
 {
   vtkImageData* const image = vtkImageData::GetData(inputs[MEDIUM]);
-  const std::optional<tyndall::AgreedBlocks> agreed = tyndall::AgreeOnBlocks(
-    ranks, this, tyndall::EachAsksForItsPiece(request, outputs), inputs[MEDIUM]->GetInformationObject(0), image);
+  const std::optional<tyndall::AgreedBlocks> agreed =
+    tyndall::AgreeOnBlocks(ranks, this, ranks != nullptr, inputs[MEDIUM]->GetInformationObject(0), image);
   if (!agreed)
   {
     return {};
@@ -173,6 +171,13 @@ std::optional<tyndall::Importance> vtkPhotonImportance::FindInPieces(vtkInformat
       read = tyndall::ReadRefractiveMedium(this, own);
     }
   });
+  const tyndall::ImportanceSettings settings = SettingsOf(this);
+  tyndall::RequireSame(communicator, "settings, or how many lights shine", true,
+    { light ? 1.0 * static_cast<double>(light->lights.size()) : -1.0, light ? tyndall::Sum(light->sky) : 0.0,
+      light ? 1.0 * light->environment.width : 0.0, 1.0 * static_cast<double>(settings.pilotCount),
+      1.0 * settings.cells[0], 1.0 * settings.cells[1], 1.0 * settings.cells[2],
+      1.0 * static_cast<double>(settings.seed), 1.0 * settings.automatic, settings.gradientThreshold,
+      settings.luminanceThreshold, settings.background });
   if (!light)
   {
     return tyndall::Importance();
@@ -184,7 +189,7 @@ std::optional<tyndall::Importance> vtkPhotonImportance::FindInPieces(vtkInformat
     return marcher.Gather(photons, origins, cells, monitor);
   };
   tyndall::Importance importance =
-    tyndall::FindImportance(gather, pieces.Partition().whole, *light, SettingsOf(this), tyndall::MonitorOf(this));
+    tyndall::FindImportance(gather, pieces.Partition().whole, *light, settings, tyndall::MonitorOf(this));
   this->DeviceName = device->Name();
   return importance;
 }
@@ -215,7 +220,7 @@ int vtkPhotonImportance::RequestData(
   this->Note({});
   const tyndall::WorkOnPieces onPieces = { MEDIUM,
     [&](vtkMultiProcessController* ranks, vtkInformationVector** inputs) {
-      std::optional<tyndall::Importance> importance = this->FindInPieces(request, ranks, inputs, outputs);
+      std::optional<tyndall::Importance> importance = this->FindInPieces(ranks, inputs);
       if (importance)
       {
         this->Write(request, outputs, std::move(*importance));

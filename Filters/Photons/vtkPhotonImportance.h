@@ -160,8 +160,7 @@ private:
   /// Reads the inputs and does the work.
   /// @return device and result; nothing where nothing shines
   tyndall::Importance Find(vtkInformationVector** inputs);
-  std::optional<tyndall::Importance> FindInPieces(vtkInformation* request, vtkMultiProcessController* ranks,
-    vtkInformationVector** inputs, vtkInformationVector* outputs);
+  std::optional<tyndall::Importance> FindInPieces(vtkMultiProcessController* ranks, vtkInformationVector** inputs);
   std::optional<tyndall::Illumination> ReadLight(vtkInformationVector** inputs);
   void Write(vtkInformation* request, vtkInformationVector* outputs, tyndall::Importance&& importance);
   void Note(const tyndall::Importance& importance);

@@ -237,11 +237,12 @@ int vtkPhotonMarcher::RequestInformation(vtkInformation*, vtkInformationVector**
 }
 
 /// Whether this rank would have each march through its piece, as far as that is known without the medium.
-bool vtkPhotonMarcher::WantsBlocks(vtkInformation* request, vtkInformationVector* outputs) const
+bool vtkPhotonMarcher::WantsBlocks(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) const
 {
-  return this->Decomposition == AUTOMATIC_DECOMPOSITION
-    ? tyndall::EachAsksForItsPiece(request, outputs) && this->Scheme != PUBLISHED
-    : this->Decomposition == BLOCKS;
+  return this->Decomposition == AUTOMATIC_DECOMPOSITION ? tyndall::EachAsksForItsPiece(request, outputs) &&
+      tyndall::IsWorthPieces(inputs[MediumPort]) && this->Scheme != PUBLISHED
+                                                        : this->Decomposition == BLOCKS;
 }
 
 /// The memory of an old medium is given back before the filters before run, which may need it.
@@ -249,7 +250,7 @@ int vtkPhotonMarcher::RequestUpdateExtent(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   this->Kept->ForgetIfRan(this, { MediumPort, OctreePort });
-  const bool asPiece = tyndall::EachAsksForItsPiece(request, outputs) && this->WantsBlocks(request, outputs);
+  const bool asPiece = tyndall::EachAsksForItsPiece(request, outputs) && this->WantsBlocks(request, inputs, outputs);
   for (int port = 0; port < InputPortCount; ++port)
   {
     if (asPiece) // the pipeline has asked it for what the output is asked for
@@ -334,7 +335,7 @@ bool vtkPhotonMarcher::MarchPiece(vtkInformation* request, vtkMultiProcessContro
 {
   vtkImageData* const image = vtkImageData::GetData(inputs[MediumPort]);
   const std::optional<tyndall::AgreedBlocks> agreed = tyndall::AgreeOnBlocks(
-    ranks, this, this->WantsBlocks(request, outputs), tyndall::AskingPort(request, outputs), image);
+    ranks, this, this->WantsBlocks(request, inputs, outputs), tyndall::AskingPort(request, outputs), image);
   if (!agreed)
   {
     return false;

@@ -265,7 +265,7 @@ private:
   struct Marched;
   Marched March(vtkInformationVector** inputs, const std::vector<tyndall::Photon>& photons);
   Marched MarchAsPublished(vtkInformationVector** inputs, const std::vector<tyndall::Photon>& photons);
-  bool WantsBlocks(vtkInformation* request, vtkInformationVector* outputs) const;
+  bool WantsBlocks(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) const;
   struct PieceOfMarch;
   std::string NotByBlocks(const PieceOfMarch& piece) const;
   bool ReadPiece(tyndall::Communicator& communicator, const tyndall::PieceBlocks& pieces, vtkInformationVector** inputs,

@@ -188,6 +188,7 @@ std::string vtkLightPropagationMaps::NotByBlocks(vtkInformationVector**) const
     { this->Scheme == PUBLISHED, "the published Scheme" },
     { this->TargetError > 0.0, "TargetError" },
     { this->WarmStart, "WarmStart" },
+    { this->EstimateError, "EstimateError" },
   };
   const auto found =
     std::find_if(std::begin(reasons), std::end(reasons), [](const auto& reason) { return reason.first; });

@@ -7,6 +7,7 @@
 #include "Propagation/LastOutputs.h"
 #include "Propagation/PieceOfMedium.h"
 #include "Ranks/PieceBlocks.h"
+#include "Ranks/RankMemory.h"
 #include "Ranks/Ranks.h"
 #include "Ranks/WholeImage.h"
 #include "Viewing/LitColor.h"
@@ -184,9 +185,9 @@ int vtkScatteringSolver::GiveOrSolve(vtkInformation* request, vtkInformationVect
 bool vtkScatteringSolver::WantsBlocks(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) const
 {
-  return this->Decomposition == AUTOMATIC_DECOMPOSITION
-    ? tyndall::EachAsksForItsPiece(request, outputs) && this->NotByAnyBlocks(inputs).empty()
-    : this->Decomposition == BLOCKS;
+  return this->Decomposition == AUTOMATIC_DECOMPOSITION ? tyndall::EachAsksForItsPiece(request, outputs) &&
+      tyndall::IsWorthPieces(inputs[MEDIUM]) && this->NotByAnyBlocks(inputs).empty()
+                                                        : this->Decomposition == BLOCKS;
 }
 
 int vtkScatteringSolver::RequestUpdateExtent(
@@ -204,7 +205,6 @@ std::string vtkScatteringSolver::NotByAnyBlocks(vtkInformationVector** inputs) c
   const std::pair<bool, const char*> reasons[] = {
     { this->Quality != USUAL && !this->QualityByBlocks, "a Quality that chooses settings from the whole medium" },
     { this->Preview, "Preview" },
-    { this->EstimateError && !this->ErrorByBlocks, "EstimateError" },
     { this->MemoryBudget > 0, "MemoryBudget" },
   };
   const auto found =
@@ -247,8 +247,13 @@ bool vtkScatteringSolver::GiveOrSolvePiece(vtkInformation* request, vtkMultiProc
   if (!agreed)
   {
     const bool asked = this->Decomposition == AUTOMATIC_DECOMPOSITION && tyndall::EachAsksForItsPiece(request, outputs);
-    const std::string refused = this->NotByAnyBlocks(inputs);
-    this->WholeFor = !asked ? "" : refused.empty() ? "pieces that are not parts of one grid" : refused;
+    std::string refused = this->NotByAnyBlocks(inputs);
+    if (refused.empty())
+    {
+      refused =
+        tyndall::IsWorthPieces(inputs[MEDIUM]) ? "pieces that are not parts of one grid" : "a medium of few voxels";
+    }
+    this->WholeFor = asked ? refused : "";
     return false;
   }
   tyndall::Communicator& communicator = *agreed->communicator;
@@ -336,7 +341,10 @@ void vtkScatteringSolver::WritePiece(tyndall::Communicator& communicator, const 
       1.0 * static_cast<double>(light.straightOn.size() / voxels) }); // a rank without voxels does not know
   pieces.SpreadToHeld(communicator, light.scatteredMoments, static_cast<int>(ofMoments[0]));
   pieces.SpreadToHeld(communicator, light.straightOn, static_cast<int>(ofMoments[1]));
-  for (const std::string& doubt : Write(std::move(light), vtkImageData::GetData(inputs[MEDIUM]), outputs, &pieces))
+  std::vector<std::string> doubts;
+  communicator.Together(
+    [&] { doubts = Write(std::move(light), vtkImageData::GetData(inputs[MEDIUM]), outputs, &pieces); });
+  for (const std::string& doubt : doubts)
   {
     vtkWarningMacro(<< doubt);
   }

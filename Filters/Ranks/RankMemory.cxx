@@ -15,6 +15,8 @@ namespace tyndall
 {
 namespace
 {
+constexpr double FewVoxels = 64.0 * 64.0 * 64.0;
+
 /// Processes of this MPI run, as its launcher says; where it does not, those of VTK's global controller.
 int RanksOnThisMachine()
 {
@@ -29,10 +31,8 @@ int RanksOnThisMachine()
   return all ? all->GetNumberOfProcesses() : 1;
 }
 
-}
-
-bool NeedsPieces(
-  vtkInformation* request, vtkInformationVector* image, vtkInformationVector* outputs, double bytesOfVoxel)
+/// That its source says there are.
+double VoxelsOf(vtkInformationVector* image)
 {
   vtkInformation* const input = image->GetInformationObject(0);
   int whole[6] = { 0, -1, 0, -1, 0, -1 };
@@ -40,11 +40,25 @@ bool NeedsPieces(
   {
     input->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), whole);
   }
-  double bytes = bytesOfVoxel;
+  double voxels = 1.0;
   for (int axis = 0; axis < 3; ++axis)
   {
-    bytes *= std::max(0, whole[2 * axis + 1] - whole[2 * axis]);
+    voxels *= std::max(0, whole[2 * axis + 1] - whole[2 * axis]);
   }
+  return voxels;
+}
+}
+
+bool IsWorthPieces(vtkInformationVector* image)
+{
+  const char* const said = std::getenv("TYNDALL_PIECES_FROM");
+  return VoxelsOf(image) > (said ? std::atof(said) : FewVoxels);
+}
+
+bool NeedsPieces(
+  vtkInformation* request, vtkInformationVector* image, vtkInformationVector* outputs, double bytesOfVoxel)
+{
+  const double bytes = bytesOfVoxel * VoxelsOf(image);
   return EachAsksForItsPiece(request, outputs) && RanksOnThisMachine() * bytes > AvailableMemory();
 }
 }

@@ -5,6 +5,11 @@ class vtkInformationVector;
 
 namespace tyndall
 {
+/// Whether ranks that choose work on pieces of an image: it has more voxels than 64^3. Less each rank has done sooner
+/// than ranks say to each other what crosses between them. The environment variable TYNDALL_PIECES_FROM is another
+/// number of voxels.
+bool IsWorthPieces(vtkInformationVector* image);
+
 /// In RequestUpdateExtent or RequestData: whether each rank asks for its piece, and the whole of an image, once for
 /// each rank of this machine, does not fit in what it has available now (AvailableMemory.h). Ranks may differ in it.
 /// @param image  of the input's port

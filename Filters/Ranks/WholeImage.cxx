@@ -179,9 +179,8 @@ void AskForAllBut(int piece, vtkInformation* request, vtkInformationVector** inp
 {
   for (int port = 0; port < ports; ++port)
   {
-    if (port == piece ||
-      std::find(besides.begin(), besides.end(), port) !=
-        besides.end()) // the pipeline has asked it for what the output is asked for
+    const bool isBeside = std::find(besides.begin(), besides.end(), port) != besides.end();
+    if (port == piece || isBeside) // the pipeline has asked it for what the output is asked for
     {
       AskTogether(request, outputs, inputs[port]);
     }

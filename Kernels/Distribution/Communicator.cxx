@@ -67,6 +67,15 @@ Outcome Try(const std::function<void()>& work)
   return outcome;
 }
 
+void RequireAsMany(std::size_t found, std::size_t expected)
+{
+  if (found != expected)
+  {
+    throw InvalidInput("Ranks do not have as many values to add up as each other: something that they were given "
+                       "differs. Give all ranks the same properties.");
+  }
+}
+
 [[noreturn]] void Throw(Trouble trouble, const std::string& words)
 {
   switch (trouble)
@@ -106,38 +115,46 @@ std::vector<char> Communicator::TakeOwn(int tag)
 }
 
 /// Rank 0 joins what the others have, one after the other, and tells them.
+/// Ranks that have not as many are at different places of a computation, or had other settings: an error on each.
 std::vector<double> Communicator::OverRanks(const std::vector<double>& values, const Joined& join)
 {
   if (this->Rank() > 0)
   {
     this->Send(0, SumTag, values);
-    return this->Receive<double>(0, SumTag);
+    const std::vector<double> all = this->Receive<double>(0, SumTag);
+    RequireAsMany(all.size(), values.size());
+    return all;
   }
   std::vector<double> all = values;
+  std::size_t most = all.size(), least = all.size();
   for (int rank = 1; rank < this->Ranks(); ++rank)
   {
-    join(all, this->Receive<double>(rank, SumTag));
+    const std::vector<double> ofRank = this->Receive<double>(rank, SumTag);
+    most = std::max(most, ofRank.size());
+    least = std::min(least, ofRank.size());
+    std::transform(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(std::min(all.size(), ofRank.size())),
+      ofRank.begin(), all.begin(), join);
+  }
+  if (least < most)
+  {
+    all.assign(most + 1, 0.0); // as many as no rank expects
   }
   for (int rank = 1; rank < this->Ranks(); ++rank)
   {
     this->Send(rank, SumTag, all);
   }
+  RequireAsMany(all.size(), values.size());
   return all;
 }
 
 std::vector<double> Communicator::Sum(const std::vector<double>& values)
 {
-  return this->OverRanks(values, [](std::vector<double>& all, const std::vector<double>& ofRank) {
-    std::transform(all.begin(), all.end(), ofRank.begin(), all.begin(), std::plus<double>());
-  });
+  return this->OverRanks(values, std::plus<double>());
 }
 
 std::vector<double> Communicator::Largest(const std::vector<double>& values)
 {
-  return this->OverRanks(values, [](std::vector<double>& all, const std::vector<double>& ofRank) {
-    std::transform(
-      all.begin(), all.end(), ofRank.begin(), all.begin(), [](double a, double b) { return std::max(a, b); });
-  });
+  return this->OverRanks(values, [](double a, double b) { return std::max(a, b); });
 }
 
 std::vector<char> Communicator::Agree(const std::vector<char>& own)

@@ -53,6 +53,7 @@ public:
 
   /// Added up over the ranks in their order, and the largest of all ranks: the same on each, value by value. All ranks
   /// call it.
+  /// @throws InvalidInput  on all ranks, where one has more values than another
   std::vector<double> Sum(const std::vector<double>& values);
   std::vector<double> Largest(const std::vector<double>& values);
 
@@ -69,7 +70,7 @@ protected:
   virtual std::vector<char> Take(int from, int tag) = 0;
 
 private:
-  using Joined = std::function<void(std::vector<double>& all, const std::vector<double>& ofRank)>;
+  using Joined = std::function<double(double, double)>;
   std::vector<double> OverRanks(const std::vector<double>& values, const Joined& join);
   std::vector<char> Agree(const std::vector<char>& own);
   void CountAndSend(int to, int tag, std::vector<char> bytes);

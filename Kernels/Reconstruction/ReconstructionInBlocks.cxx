@@ -348,6 +348,9 @@ ReconstructedLight ReconstructInBlocks(Device& device, Communicator& communicato
     }
     Report(monitor, 0.0);
   });
+  RequireSame(communicator, "settings", true,
+    { 1.0 * static_cast<int>(settings.estimator), 1.0 * settings.levels, settings.weightStep,
+      1.0 * settings.conserve });
   Described what = DescribedBy(communicator, light, has);
   const std::size_t width = static_cast<std::size_t>(what.batches) * static_cast<std::size_t>(what.channels);
   const std::vector<float> batches(light.batchFluence, light.batchFluence + voxels * width);

@@ -343,6 +343,18 @@ def untouched_given():
     keep("untouched_given", light)
 
 
+def whole_where_few():
+    """Ranks that choose solve a medium of few voxels as a whole."""
+    few, os.environ["TYNDALL_PIECES_FROM"] = os.environ["TYNDALL_PIECES_FROM"], "264"
+    for high, how in ((11, "Decomposition = 1"), (12, "Decomposition = 2")):  # 264 voxels, and 288
+        medium = ParticipatingMedium(Input=Wavelet(WholeExtent=[0, high, 0, 6, 0, 4]), DensityArray=["POINTS", "RTData"])
+        light = LightPropagationMaps(Input=medium, SkyColor=[1, 1, 1], DirectionsPerFace=4)
+        light.UpdatePipeline()
+        assert how in facts_of(light, "settings_used"), (high, facts_of(light, "settings_used"))
+        assert high == 12 or "pieces: each rank solved the whole, for a medium of few voxels" in facts_of(light, "left_out")
+    os.environ["TYNDALL_PIECES_FROM"] = few
+
+
 def whole_where_better():
     """What pieces cannot do, or not as well, each rank solves as a whole, says why, and does not solve again."""
     medium = ParticipatingMedium(Input=Wavelet(WholeExtent=SIZE), DensityArray=["POINTS", "RTData"])

@@ -237,8 +237,8 @@ LightField SolveLatticeInBlocks(Device& device, Communicator& communicator, cons
   communicator.Together([&] { CheckPhotonsGoNotRound(settings); });
   const bool has = partition.blocks[communicator.Rank()].VoxelCount() > 0;
   MarchSettings march;
-  march.meanDirection =
-    settings.netFlux || communicator.Largest({ has && NeedsFirstMoments(medium, settings) ? 1.0 : 0.0 })[0] > 0.0;
+  const bool needs = settings.netFlux || (has && NeedsFirstMoments(medium, settings));
+  march.meanDirection = communicator.Largest({ needs ? 1.0 : 0.0 })[0] > 0.0;
   const PhotonLight found =
     PhotonMarcherInBlocks(device, communicator, partition, medium, ior, march).March(share, OfPart(monitor, 0.0, 0.5));
   Illumination lit = illumination;

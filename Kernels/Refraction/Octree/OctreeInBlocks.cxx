@@ -1,7 +1,9 @@
 #include "Refraction/Octree/OctreeInBlocks.h"
+#include "Distribution/SharedMedium.h"
 
 #include "Device/Errors.h"
 #include "Distribution/BoxExchange.h"
+#include "Distribution/SharedMedium.h"
 #include "Numerics/PyramidLayout.h"
 #include "Refraction/Octree/OctreeQuantities.h"
 
@@ -230,6 +232,8 @@ Octree BuildOctreeInBlocks(Communicator& communicator, const BlockPartition& par
     }
     Report(monitor, 0.0);
   });
+  RequireSame(communicator, "settings", true,
+    { settings.tolerance, 1.0 * settings.includeExtinction, settings.extinctionTolerance });
   const PyramidInBlocks pyramid(communicator, partition);
   const std::size_t voxels = has ? medium.grid.VoxelCount() : 0;
   Octree octree;
