@@ -61,6 +61,7 @@ class vtkMultiProcessController;
  *
  * The medium stays prepared on the device, so that new light or other photons only cost their march: until the medium
  * or the octree changes, another one is connected, a setting needs it, the device is another one, or the filter goes.
+ * With BLOCKS it is prepared anew with every march.
  *
  * In a parallel pipeline every rank marches photons through its piece, and photons go from rank to rank; or, with
  * Decomposition, each marches all photons and hands on its piece. The paths are on the first rank, each in one piece.

@@ -51,11 +51,12 @@ class LastLight;
  * earlier than the last solve from darkness on did.
  *
  * Orders are not accelerated: for thick media that absorb little, vtkLightPropagationMaps is faster. The radiance of
- * all directions has to fit the device: what it takes is said before any is taken. EstimateError is not used.
+ * all directions has to fit the device: what it takes is said before any is taken. EstimateError is not used, and
+ * blocks refuse it.
  *
  * With Decomposition BLOCKS radiance goes from rank to rank (numerics.md, section 10 b): the same light, order by
- * order. Blocks cannot do, beside what no solver can: point, spot and rectangle lights, FaceAlbedo, cells g, WarmStart
- * and the published scheme.
+ * order. Blocks cannot do, beside what no solver can: point, spot and rectangle lights beside periodic axes, WarmStart,
+ * a Quality other than USUAL and the published scheme.
  *
  * @sa vtkSeparablePhaseFunction vtkLightPropagationMaps vtkParticipatingMedium vtkLightRig
  * @par Thanks

@@ -25,7 +25,9 @@ struct Illumination;
  * Cells of the medium that are hidden by `vtkGhostType` are empty, hidden pixels of the environment black.
  *
  * Light crosses the borders of pieces. In a parallel pipeline every rank therefore asks for all of each input and works
- * on the whole; RequestData of a subclass hands on the piece it was asked for.
+ * on the whole, and RequestData of a subclass hands on the piece it was asked for; but for subclasses in which light
+ * goes from rank to rank (vtkScatteringSolver, vtkMediumRayCaster, vtkPhotonImportance), or of the medium only the box
+ * counts (vtkPhotonEmitter): their ranks ask for their pieces of the medium.
  *
  * A subclass says the type of its outputs and implements RequestData, and reads there the lights and the environment by
  * ReadIllumination.

@@ -100,8 +100,10 @@ class WholeInputs;
  *
  * Where ranks of a parallel pipeline run it together each asks for its piece of the medium with a layer of its
  * neighbours' cells, casts that, and hands on the part of the picture that it was asked for: that of the whole, to
- * rounding. What rays of pieces do not find (bent rays, a table, shadow rays, angular moments, light at the surface of
- * thick voxels) takes the whole on every rank, put together where a source gives pieces alone.
+ * rounding. Rays that bend, are reflected or meet a table go from rank to rank, and lamps throw shadows from piece to
+ * piece; what a piece lacks beside it (for the index, angular moments, light at the surface of thick voxels) comes from
+ * the other ranks. The whole is put together on every rank where ranks have other properties than each other, pieces
+ * overlap without flags, or cells `g` are the same in all voxels of one piece and not in all of another.
  *
  * @sa vtkLightPropagationMaps vtkPhotonMarcher vtkLightRig vtkEnvironmentReader
  * @par Thanks

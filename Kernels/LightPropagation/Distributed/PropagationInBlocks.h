@@ -16,8 +16,9 @@ namespace tyndall
 {
 /// The light of a medium that is spread over ranks by blocks, by light propagation maps
 /// (ConservativePropagation.h): sweeps go from rank to rank (SweepInBlocks.h), what counts power and when orders
-/// end is the same on all. No rank holds more than its block, values by cells of several voxels, and where faces
-/// reflect or face power is asked for those of the cells of the box's faces. All ranks call it together.
+/// end is the same on all. No rank holds more than its block, a layer around it where the source is linear, values by
+/// cells of several voxels, and where faces reflect or face power is asked for those of the cells of the box's faces.
+/// All ranks call it together.
 ///
 /// Orders are added up as HowOrdersAreAdded (OrdersOverRanks.h) has it: one by one; where voxels are thin and light is
 /// scattered many times each with what diffusion on cells says of the rest (CellsOverRanks.h); where voxels are thicker
@@ -26,9 +27,9 @@ namespace tyndall
 ///
 /// Carried are light that comes in through the box's faces, from the sky and the environment, of all kinds of lights,
 /// and emission; scattering in angular moments; light that faces give back and that goes round periodic axes. The light
-/// is that of SolveConservative with emissionError 0, uncollidedDirections not left open (here -1 is 0) and a constant
-/// source where voxels are not balanced: to rounding where neither is accelerated, else to the tolerance. It does not
-/// depend on the number of ranks, but for rounding.
+/// is that of SolveConservative with emissionError 0, a constant source where orders are added up one by one, and where
+/// voxels are balanced uncollidedDirections 0 for -1 (else -1 chooses as there): to rounding where neither is
+/// accelerated, else to the tolerance. It does not depend on the number of ranks, but for rounding.
 ///
 /// @param medium  of the rank's block, with the grid that partition.OwnGrid() has; looked at by nobody where that has
 ///   no voxels
