@@ -4,8 +4,10 @@
 #include "Distribution/SharedMedium.h"
 #include "Light/LeftOut.h"
 #include "LightPropagation/Convergence.h"
+#include "LightPropagation/Distributed/Balance/IterationByBalance.h"
 #include "LightPropagation/Distributed/Balance/WhatWholeHas.h"
 #include "LightPropagation/Distributed/IterationInBlocks.h"
+#include "LightPropagation/Distributed/LightOfBlock.h"
 #include "LightPropagation/PlaneParallel/IsPlaneParallel.h"
 #include "LightPropagation/Problem/AngularDegree.h"
 #include "LightPropagation/Problem/PropagationProblem.h"
@@ -141,21 +143,35 @@ UncollidedDirections ProblemInBlocks::FinerDirections(OrdersAdded how) const
 
 LightField ProblemInBlocks::Solve(Device& device, const Illumination& illumination, const Monitor& monitor)
 {
-  const WayInBlocks way = { this->Orders,
-    this->Orders.how == OrdersAdded::ByBalance ? UncollidedDirections() : this->FinerDirections(this->Orders.how) };
-  std::unique_ptr<IterationInBlocks> iteration;
+  const BlockScene& scene = *this->Scene;
+  const bool byBalance = this->Orders.how == OrdersAdded::ByBalance;
+  const UncollidedDirections finer = byBalance ? UncollidedDirections() : this->FinerDirections(this->Orders.how);
+  std::optional<IncidentLight> incident;
+  std::optional<BlockOnDevice> block;
+  std::optional<UncollidedOverRanks> uncollided;
+  std::unique_ptr<Iteration> iteration;
   this->Others.Together([&] {
-    iteration =
-      std::make_unique<IterationInBlocks>(device, this->Others, this->Blocks, *this->Scene, this->Settings, way);
+    incident.emplace(
+      this->Blocks.whole, this->Settings, scene.illumination, finer, scene.channels, scene.traits.scatters);
+    block.emplace(device, this->Others, this->Blocks, scene, this->Settings, *incident);
+    uncollided.emplace(*block, *incident);
+    if (byBalance)
+    {
+      iteration = std::make_unique<IterationByBalance>(*block, *incident, *uncollided);
+    }
+    else
+    {
+      iteration = std::make_unique<IterationInBlocks>(*block, *incident, *uncollided, this->Orders);
+    }
   });
-  LightField light = iteration->Run(monitor);
+  LightField light = LightOfBlock(*block, *incident, iteration->Run(monitor), this->Orders.how);
   this->Others.Together([&] {
     this->Scene->Undo(light);
     MultiplyPowers(light, this->Narrowing());
   });
-  if (iteration->StoresMoments())
+  if (block->StoresMoments())
   {
-    light.lampsApart = iteration->LampsOf(illumination);
+    light.lampsApart = incident->LampsOf(illumination);
   }
   return light;
 }

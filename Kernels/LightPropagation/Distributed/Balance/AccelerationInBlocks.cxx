@@ -78,7 +78,7 @@ void AccelerationInBlocks::AddBeams(const Monitor& monitor)
   this->Beams->Finish();
 }
 
-std::vector<ConvergenceRow> AccelerationInBlocks::Run(const Monitor& monitor)
+ConvergenceRecord AccelerationInBlocks::Run(const Monitor& monitor)
 {
   this->GiveFirstScattered();
   const Deposit deposit = { &this->The.path, nullptr, &this->OwnCurrents, nullptr };
@@ -102,7 +102,7 @@ std::vector<ConvergenceRow> AccelerationInBlocks::Run(const Monitor& monitor)
     ++iteration;
   } while (!this->Done(iteration));
   this->WriteFluence();
-  return this->Convergence.All();
+  return this->Convergence;
 }
 
 /// What of lamps' light is scattered is a given source, like what the medium emits.

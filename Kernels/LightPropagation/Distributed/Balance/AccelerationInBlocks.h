@@ -56,8 +56,8 @@ public:
   /// If it does: adds the uncollided light of lamps to path, flux and ledger. All ranks call it before Run.
   void AddBeams(const Monitor& monitor);
 
-  /// @return the rows of `convergence`
-  std::vector<ConvergenceRow> Run(const Monitor& monitor);
+  /// All ranks call it.
+  ConvergenceRecord Run(const Monitor& monitor);
   const std::vector<float>& Direct() const { return this->FluenceDirect; } ///< unscattered, channels interleaved
   /// As LightField has it, after Run: of the faces of the whole box. All ranks call it.
   std::vector<float> FindSurfaceRadiance() const;

@@ -1,0 +1,47 @@
+#include "LightPropagation/Distributed/Balance/IterationByBalance.h"
+
+#include "LightPropagation/Convergence.h"
+#include "LightPropagation/Distributed/Balance/AccelerationInBlocks.h"
+
+namespace tyndall
+{
+IterationByBalance::IterationByBalance(
+  BlockOnDevice& block, const IncidentLight& incident, UncollidedOverRanks& uncollided)
+  : Block(block)
+  , Incident(incident)
+  , Uncollided(uncollided)
+{
+}
+
+IterationResult IterationByBalance::Run(const Monitor& monitor)
+{
+  BlockOnDevice& block = this->Block;
+  IterationResult result;
+  const bool shines = this->Uncollided.LoadSource(result.ledger);
+  AccelerationInBlocks acceleration({ block.TheDevice, block.Others, block.Partition, block.Scene, block.Settings,
+    block.Layout, block.OnDevice, this->Incident.Usual(), this->Incident.UsualBoundary(), this->Incident.Lamps(),
+    [&block](const SweepRequest& request) { return block.MakeSweep(request); },
+    [this](const Light& lamp, const Deposit& to, const Monitor& ofLamp) {
+      return this->Uncollided.AddLamp(lamp, to, ofLamp);
+    },
+    block.Source, block.Path, block.Fluence, block.Flux, result.ledger, shines });
+  const Monitor ofLamps =
+    OfPart(monitor, [&block](double done) { return ProgressOf(block.Settings, 1.0, UncollidedPart * done); });
+  if (!this->Incident.Lamps().empty() && acceleration.NeedsFirstMoments())
+  {
+    acceleration.AddBeams(ofLamps);
+  }
+  else
+  {
+    result.ledger.Count(this->Uncollided.AddAll(nullptr, ofLamps));
+  }
+  result.convergence = acceleration.Run(monitor);
+  result.fluenceDirect = acceleration.Direct();
+  result.surfaceRadiance = acceleration.FindSurfaceRadiance();
+  if (block.Faces)
+  {
+    result.leftByCell = block.Faces->LeftInAll();
+  }
+  return result;
+}
+}

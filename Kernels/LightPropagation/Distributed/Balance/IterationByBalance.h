@@ -1,0 +1,25 @@
+#pragma once
+
+#include "LightPropagation/Conservative/Iteration.h"
+#include "LightPropagation/Distributed/BlockOnDevice.h"
+#include "LightPropagation/Distributed/IncidentLight.h"
+#include "LightPropagation/Distributed/UncollidedOverRanks.h"
+
+namespace tyndall
+{
+/// Iteration with diffusion acceleration (AccelerationInBlocks.h) on one rank's block, in step with the others: light
+/// of lamps goes ahead, and what of it is scattered is given to the sweeps.
+class IterationByBalance : public Iteration
+{
+public:
+  /// @param block, incident, uncollided  must stay; of isotropic scattering, without finer directions
+  IterationByBalance(BlockOnDevice& block, const IncidentLight& incident, UncollidedOverRanks& uncollided);
+  /// All ranks call it.
+  IterationResult Run(const Monitor& monitor) override;
+
+private:
+  BlockOnDevice& Block;
+  const IncidentLight& Incident;
+  UncollidedOverRanks& Uncollided;
+};
+}

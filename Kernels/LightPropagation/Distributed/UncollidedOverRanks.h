@@ -1,0 +1,69 @@
+#pragma once
+
+#include "Device/Buffer.h"
+#include "Device/Monitor.h"
+#include "LightPropagation/Conservative/EnergyLedger.h"
+#include "LightPropagation/Distributed/BlockOnDevice.h"
+#include "LightPropagation/Distributed/IncidentLight.h"
+#include "LightPropagation/Distributed/LampsInBlocks.h"
+#include "LightPropagation/Uncollided/GivenLight.h"
+#include "LightPropagation/Uncollided/UncollidedSource.h"
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+namespace tyndall
+{
+/// What shines in a medium that is spread over ranks before any of it is scattered (numerics.md, section 5): of lamps,
+/// of faces and sky along directions of their own, what another solver found, and what the medium emits, which waits in
+/// the block's source for the first sweep. Knows nothing of scattering orders.
+class UncollidedOverRanks
+{
+public:
+  /// @param block, incident  must stay
+  /// @throws DeviceError if the array for a lamp's light does not fit
+  UncollidedOverRanks(BlockOnDevice& block, const IncidentLight& incident);
+
+  /// Writes what the medium emits, and what of given light goes straight on, to the block's source. All ranks call it.
+  /// @param ledger  emission is counted there
+  /// @return whether any of it shines, on any rank
+  bool LoadSource(EnergyLedger& ledger);
+  /// What of given light goes straight on, added to a source of this rank.
+  /// @return whether anything does
+  bool AddStraightOn(const Buffer<float>& source) const;
+
+  /// Adds the light of lamps, then of what comes in along directions of its own and what is given, to the block's
+  /// arrays; what parallel beams are first scattered, to its source. All ranks call it.
+  /// @param shown  what light of lamps is first scattered is added to it; null: not wanted
+  /// @return of all ranks
+  SweepTally AddAll(const Buffer<float>* shown, const Monitor& monitor);
+  std::size_t Count() const; ///< of lamps and sets of directions, for a share of a monitor
+
+  /// The light of one lamp alone. All ranks call it.
+  /// @return of all ranks
+  SweepTally AddLamp(const Light& lamp, const Deposit& deposit, const Monitor& monitor);
+
+  /// W length, [channel][stride], of a sky of radiance 1, as TransportParts::EvenSky.
+  struct EvenSky
+  {
+    std::vector<float> fine, usual;
+  };
+  /// Where there are finer directions. All ranks call it.
+  EvenSky FindEvenSky(const Monitor& monitor);
+
+private:
+  Rgb LoadEmission();
+  SweepTally OnAllRanks(const std::function<SweepTally()>& add);
+  SweepTally AddLampAt(std::size_t lamp, const Monitor& monitor);
+  SweepTally AddBoundary(const BoundaryLight& light, const Deposit& deposit, const Monitor& monitor);
+  SweepTally AddGiven(const Monitor& monitor);
+  UncollidedVolume VolumeOf(const Deposit& deposit);
+
+  BlockOnDevice& Block;
+  const IncidentLight& Incident;
+  std::unique_ptr<const GivenLight> Given;  ///< null: none is, or there are no voxels
+  std::unique_ptr<LampsInBlocks> NearLamps; ///< null until there is one
+  Buffer<float> OfLamp;                     ///< path integrals of one lamp's light, where it goes into angular moments
+};
+}
