@@ -416,7 +416,7 @@ int vtkParticipatingMedium::RequestData(
   this->MeanFreePath = 0.0;
   const tyndall::WorkOnPieces onPieces = { DENSITY,
     [&](vtkMultiProcessController* ranks, vtkInformationVector** inputs) {
-      return ranks && tyndall::EachAsksForItsPiece(request, outputs) && this->MakePiece(ranks, inputs, outputs);
+      return ranks && this->MakePiece(request, ranks, inputs, outputs);
     } };
   return tyndall::Guarded(this, request, given, outputs, onPieces, [&](vtkInformationVector** inputs) {
     vtkImageData* const input = vtkImageData::GetData(inputs[DENSITY]);
@@ -430,14 +430,18 @@ int vtkParticipatingMedium::RequestData(
 }
 
 /// This rank's piece of the medium, of its piece of the density; its size is that of all pieces.
-/// @return false, on all ranks, where pieces make no whole
-bool vtkParticipatingMedium::MakePiece(
-  vtkMultiProcessController* ranks, vtkInformationVector** inputs, vtkInformationVector* outputs)
+/// @return false, on all ranks, where one is asked for the whole, or pieces make none
+bool vtkParticipatingMedium::MakePiece(vtkInformation* request, vtkMultiProcessController* ranks,
+  vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   vtkImageData* const input = vtkImageData::GetData(inputs[DENSITY]);
   vtkImageData* const output = vtkImageData::GetData(outputs);
   const std::unique_ptr<tyndall::Communicator> communicator =
     tyndall::CommunicatorOf(ranks, [this] { return tyndall::IsStoppedByOthers(this); });
+  if (communicator->Largest({ tyndall::EachAsksForItsPiece(request, outputs) ? 0.0 : 1.0 })[0] > 0.0)
+  {
+    return false;
+  }
   const tyndall::PieceBlocks pieces(*communicator, outputs->GetInformationObject(0), input);
   if (!pieces.MakeUpTheWhole())
   {

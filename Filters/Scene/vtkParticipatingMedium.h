@@ -242,7 +242,8 @@ private:
 
   /// Of the medium that was made; warns where it is too thin or too thick to be meant.
   void NoteSize(const tyndall::Grid& grid, const tyndall::OpticalSize& size);
-  bool MakePiece(vtkMultiProcessController* ranks, vtkInformationVector** inputs, vtkInformationVector* outputs);
+  bool MakePiece(vtkInformation* request, vtkMultiProcessController* ranks, vtkInformationVector** inputs,
+    vtkInformationVector* outputs);
 
   int Preset = CUSTOM;
   double MinimumDensity = 0.0;
