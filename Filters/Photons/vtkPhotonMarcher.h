@@ -105,7 +105,7 @@ public:
 
   enum Decompositions
   {
-    AUTOMATIC_DECOMPOSITION = 0, ///< into blocks where several ranks can
+    AUTOMATIC_DECOMPOSITION = 0, ///< into blocks, of more than 64^3 voxels, where ranks can
     WHOLE = 1,                   ///< none: each rank marches all photons through the whole
     BLOCKS = 2                   ///< each rank has its piece of the medium
   };

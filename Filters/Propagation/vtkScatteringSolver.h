@@ -87,8 +87,8 @@ public:
   /// piece: light is handed on from rank to rank, and no rank holds another's voxels but for a layer or two; one rank
   /// alone solves the same way then, so that light does not depend on their number, but for rounding. An error names
   /// what blocks cannot do; of all solvers these are Preview and MemoryBudget; the subclass says what else.
-  /// AUTOMATIC_DECOMPOSITION (default): BLOCKS where each of several ranks is asked for its piece, the scene can be
-  /// solved so, and the whole would not be solved more exactly or much sooner; else WHOLE.
+  /// AUTOMATIC_DECOMPOSITION (default): BLOCKS where each of several ranks is asked for its piece of more than 64^3
+  /// voxels, the scene can be solved so, and the whole would not be solved more exactly or much sooner; else WHOLE.
   tyndallSetRangeMacro(Decomposition, int, AUTOMATIC_DECOMPOSITION, BLOCKS);
   vtkGetMacro(Decomposition, int);
   ///@}
