@@ -52,7 +52,8 @@ double VoxelsOf(vtkInformationVector* image)
 bool IsWorthPieces(vtkInformationVector* image)
 {
   const char* const said = std::getenv("TYNDALL_PIECES_FROM");
-  return VoxelsOf(image) > (said ? std::atof(said) : FewVoxels);
+  const double voxels = VoxelsOf(image);
+  return voxels == 0.0 || voxels > (said ? std::atof(said) : FewVoxels);
 }
 
 bool NeedsPieces(

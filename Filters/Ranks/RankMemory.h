@@ -7,7 +7,7 @@ namespace tyndall
 {
 /// Whether ranks that choose work on pieces of an image: it has more voxels than 64^3. Less each rank has done sooner
 /// than ranks say to each other what crosses between them. The environment variable TYNDALL_PIECES_FROM is another
-/// number of voxels.
+/// number of voxels. A rank that its source tells of no voxels holds none anyway, and leaves it to the others.
 bool IsWorthPieces(vtkInformationVector* image);
 
 /// In RequestUpdateExtent or RequestData: whether each rank asks for its piece, and the whole of an image, once for
