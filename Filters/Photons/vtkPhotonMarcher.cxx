@@ -1,6 +1,5 @@
 #include "vtkPhotonMarcher.h"
 
-#include "Common/ContentKey.h"
 #include "Common/DeviceBudget.h"
 #include "Common/ImageInput.h"
 #include "Common/LightTransportData.h"

@@ -20,6 +20,17 @@ namespace blocks_of_light
 {
 using namespace tyndall;
 
+/// Leaves extinction as it is, but so much of it in each voxel absorbs, and so much scatters.
+inline void Share(RandomMedium& whole, float absorbed, float scattered)
+{
+  for (std::size_t i = 0; i < whole.absorption.size(); ++i)
+  {
+    const float both = whole.absorption[i] + whole.scattering[i];
+    whole.absorption[i] = absorbed * both;
+    whole.scattering[i] = scattered * both;
+  }
+}
+
 /// Such that one rank and many do the same.
 inline PropagationSettings SettingsOf(int orders)
 {

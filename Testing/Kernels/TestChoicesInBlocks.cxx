@@ -108,12 +108,7 @@ TEST_F(LightGivenInBlocks, MayHaveColour)
 TEST_F(LightGivenInBlocks, GoesWithTheBalanceOfThickVoxels)
 {
   RandomMedium whole(Grid{ { 8, 7, 9 } }, 1, 8.0f, 4);
-  for (std::size_t i = 0; i < whole.absorption.size(); ++i)
-  {
-    const float both = whole.absorption[i] + whole.scattering[i];
-    whole.absorption[i] = 0.001f * both;
-    whole.scattering[i] = 0.999f * both;
-  }
+  Share(whole, 0.001f, 0.999f);
   this->Give(whole.medium.grid, 1);
   PropagationSettings settings = SettingsOf(0);
   settings.acceleration = PropagationAcceleration::Automatic;

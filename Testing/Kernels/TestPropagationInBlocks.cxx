@@ -167,12 +167,7 @@ TEST_F(PropagationBlocks, HaveTheLightOfTheWholeAlongFinerDirectionsFromOutside)
 TEST_F(PropagationBlocks, FindTheSameLightSoonerByCells)
 {
   RandomMedium whole(Grid{ { 22, 19, 18 } }, 1, 0.5f, 5);
-  for (std::size_t i = 0; i < whole.absorption.size(); ++i)
-  {
-    const float both = whole.absorption[i] + whole.scattering[i];
-    whole.absorption[i] = 0.02f * both;
-    whole.scattering[i] = 0.98f * both;
-  }
+  Share(whole, 0.02f, 0.98f);
   whole.Emit(0.3f);
   PropagationSettings settings = SettingsOf(0);
   settings.tolerance = 1e-6;
@@ -197,12 +192,7 @@ TEST_F(PropagationBlocks, FindTheSameLightSoonerByCells)
 TEST_F(PropagationBlocks, HaveTheLightOfTheWholeByCells)
 {
   RandomMedium whole(Grid{ { 22, 19, 18 }, { 1.0, 0.9, 1.1 } }, 3, 0.45f, 5);
-  for (std::size_t i = 0; i < whole.absorption.size(); ++i)
-  {
-    const float both = whole.absorption[i] + whole.scattering[i];
-    whole.absorption[i] = 0.02f * both;
-    whole.scattering[i] = 0.98f * both;
-  }
+  Share(whole, 0.02f, 0.98f);
   whole.Emit(0.3f);
   PropagationSettings settings = SettingsOf(0);
   settings.acceleration = PropagationAcceleration::Automatic;
@@ -344,12 +334,7 @@ TEST_F(ThickPropagationBlocks, HaveTheLightOfLampsThatIsScatteredNearFaces)
 {
   RandomMedium whole(Grid{ { 8, 7, 9 } }, 3, 8.0f, 4);
   whole.Emit(0.0f);
-  for (std::size_t i = 0; i < whole.absorption.size(); ++i)
-  {
-    const float both = whole.absorption[i] + whole.scattering[i];
-    whole.absorption[i] = 0.001f * both;
-    whole.scattering[i] = 0.999f * both;
-  }
+  Share(whole, 0.001f, 0.999f);
   Illumination shining = LitFromOutside();
   shining.lights[0].power = { 1.0, 0.0, 3.0 };
   ExpectTheLightOfTheWhole(whole, shining, Accelerated(), OnRanks(whole.medium.grid, { 3, 8 }), 1e-4);

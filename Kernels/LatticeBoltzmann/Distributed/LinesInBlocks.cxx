@@ -14,7 +14,6 @@ namespace
 {
 constexpr int Ways[18][3] = LATTICE_WAYS;
 constexpr int PairsAtOnce = 3;
-constexpr int FirstTag = 36;                                ///< beyond those of pairs
 constexpr std::size_t Says = 8, Hears = 3, SaysOfSweep = 2; ///< numbers of a piece, as BlockLines.cl has them
 
 /// Floats of the block's voxels.
