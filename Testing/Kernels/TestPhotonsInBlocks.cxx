@@ -244,7 +244,7 @@ TEST_F(PhotonBlocks, GiveUpWhatGoesRoundForEverAsTheWholeDoes)
   EXPECT_GT(traffic[0].rounds, 50);
 }
 
-/// Each photon is handed on where it crosses into another block, and costs its 120 bytes.
+/// Each photon is handed on where it crosses into another block, and costs its 128 bytes.
 TEST_F(PhotonBlocks, HandOnWhatCrosses)
 {
   PhotonScene scene({ 12, 4, 4 }, 1.0, 6.0, 0.01f, 0.0f);
@@ -261,11 +261,11 @@ TEST_F(PhotonBlocks, HandOnWhatCrosses)
   }
   std::vector<RoundsTraffic> traffic;
   ExpectLightOfTheWhole(LightOfAll(GetDevice(), scene, slabs, photons, &traffic), scene.March(GetDevice(), photons));
-  EXPECT_EQ(sizeof(PhotonOnItsWay), 120u);
+  EXPECT_EQ(sizeof(PhotonOnItsWay), 128u);
   for (int rank = 0; rank < 4; ++rank)
   {
     EXPECT_EQ(traffic[rank].handed, rank < 3 ? 100u : 0u) << rank;
-    EXPECT_EQ(traffic[rank].bytes, rank < 3 ? 12000u : 0u) << rank;
+    EXPECT_EQ(traffic[rank].bytes, rank < 3 ? 12800u : 0u) << rank;
     EXPECT_EQ(traffic[rank].rounds, 4) << rank;
   }
 }
