@@ -3,6 +3,8 @@
 #include "Numerics/Constants.h"
 
 #include <cmath>
+#include <cstddef>
+#include <utility>
 
 namespace tyndall
 {
@@ -18,6 +20,31 @@ std::vector<double> LegendrePolynomials(int degree, double x)
     p[l] = ((2 * l - 1) * x * p[l - 1] - (l - 1) * p[l - 2]) / l;
   }
   return p;
+}
+
+std::vector<double> LegendreSums(
+  const std::vector<double>& x, const std::vector<double>& scale, const std::vector<std::vector<double>>& factors)
+{
+  const std::size_t count = x.size();
+  std::vector<double> sums(count, 0.0), now(count, 1.0), before(count, 0.0);
+  for (std::size_t l = 0; l < scale.size(); ++l)
+  {
+    if (l > 0)
+    {
+      const double up = (2.0 * l - 1.0) / l, down = (l - 1.0) / l;
+      for (std::size_t k = 0; k < count; ++k)
+      {
+        before[k] = up * x[k] * now[k] - down * before[k];
+      }
+      std::swap(now, before);
+    }
+    const std::vector<double>& factor = factors[l];
+    for (std::size_t k = 0; k < count; ++k)
+    {
+      sums[k] += scale[l] * factor[k] * now[k];
+    }
+  }
+  return sums;
 }
 
 GaussLegendre::GaussLegendre(int count)

@@ -82,27 +82,55 @@ int DegreeOfMeans(const std::vector<Direction>& directions)
   return std::clamp(static_cast<int>(20.0 / std::sqrt(least / Pi)), 16, 512);
 }
 
+/// The moments of the cells' means, [degree][direction], as far as terms are not lost in rounding.
+std::vector<std::vector<double>> MeansByDegree(
+  const std::vector<double>& moments, const std::vector<Direction>& directions)
+{
+  constexpr double Lost = 1e-18;
+  std::vector<std::vector<double>> means(moments.size(), std::vector<double>(directions.size()));
+  for (std::size_t d = 0; d < directions.size(); ++d)
+  {
+    const std::vector<double> ofCell = CapMoments(directions[d].weight, static_cast<int>(moments.size()) - 1);
+    for (std::size_t l = 0; l < moments.size(); ++l)
+    {
+      means[l][d] = ofCell[l];
+    }
+  }
+  const auto isLost = [&](std::size_t l) {
+    double largest = 0.0;
+    for (const double mean : means[l])
+    {
+      largest = std::max(largest, mean * mean);
+    }
+    return (2.0 * l + 1.0) * std::abs(moments[l]) * largest < Lost;
+  };
+  while (means.size() > 1 && isLost(means.size() - 1))
+  {
+    means.pop_back();
+  }
+  return means;
+}
+
 std::vector<double> CellMeanMatrix(const PhaseFunction& function, const std::vector<Direction>& directions)
 {
-  const int degree = DegreeOfMeans(directions);
-  const std::vector<double> moments = function.Moments(degree);
-  std::vector<std::vector<double>> means; // of each direction's cell
-  for (const Direction& direction : directions)
-  {
-    means.push_back(CapMoments(direction.weight, degree));
-  }
-  std::vector<double> matrix(directions.size() * directions.size());
+  const std::vector<double> moments = function.Moments(DegreeOfMeans(directions));
+  const std::vector<std::vector<double>> means = MeansByDegree(moments, directions);
+  std::vector<double> matrix(directions.size() * directions.size()), scale(means.size());
   for (std::size_t i = 0; i < directions.size(); ++i)
   {
+    std::vector<double> cosines;
     for (std::size_t j = 0; j <= i; ++j)
     {
-      const std::vector<double> p = LegendrePolynomials(degree, Cosine(directions[i], directions[j]));
-      double sum = 0.0;
-      for (int l = 0; l <= degree; ++l)
-      {
-        sum += (2.0 * l + 1.0) / (4.0 * Pi) * moments[l] * means[i][l] * means[j][l] * p[l];
-      }
-      matrix[i * directions.size() + j] = matrix[j * directions.size() + i] = sum;
+      cosines.push_back(Cosine(directions[i], directions[j]));
+    }
+    for (std::size_t l = 0; l < means.size(); ++l)
+    {
+      scale[l] = (2.0 * l + 1.0) / (4.0 * Pi) * moments[l] * means[l][i];
+    }
+    const std::vector<double> row = LegendreSums(cosines, scale, means);
+    for (std::size_t j = 0; j <= i; ++j)
+    {
+      matrix[i * directions.size() + j] = matrix[j * directions.size() + i] = row[j];
     }
   }
   return matrix;

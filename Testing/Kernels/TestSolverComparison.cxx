@@ -342,7 +342,13 @@ TEST_F(ComparedMonteCarlo, MakesTheReferenceWhereItCanBeatTheMaps)
   SunlitCube fine(32);
   fine.settings.tried.photonCounts = { 5000 };
   fine.settings.tried.monteCarloReference = MonteCarloReference::WhereItCanBeat;
-  const ReferenceLight maps = ConvergedLight(this->GetDevice(), fine.scene, fine.settings.tried, 4.0);
+  ReferenceLight maps;
+  double seconds = 4.0; // more where others have the machine, so that maps are not there in a quarter of it
+  do
+  {
+    maps = ConvergedLight(this->GetDevice(), fine.scene, fine.settings.tried, seconds);
+    seconds *= 2.0;
+  } while (seconds < 100.0 && maps.text.find("maps take too long") != std::string::npos);
   EXPECT_NE(maps.text.find("not photons: their standard error would be"), std::string::npos) << maps.text;
   EXPECT_EQ(maps.text.find("light propagation maps"), 0u) << maps.text;
 }
