@@ -240,12 +240,14 @@ TEST_F(PicturesInBlocks, FollowRaysThatBend)
 TEST_F(PicturesInBlocks, FollowRaysByLongSteps)
 {
   Scene scene = Glass(1);
-  scene.settings.tableFace = 4; // is met far from the middle of the last step: in another block's part of it
-  for (const double step : { 1.7, 4.0 })
-  {
-    scene.settings.stepSize = step;
-    ExpectPicturesOfWhole(this->GetDevice(), scene, "long steps");
-  }
+  scene.settings.stepSize = 1.7;
+  scene.settings.tableFace = 4;
+  ExpectPicturesOfWhole(this->GetDevice(), scene, "long steps");
+  // Rays that go straight on meet the table as far from the middle of their last step as that is long; those that bend
+  // come to it by short ones. The block in which they do knows its light there.
+  scene.ior.clear();
+  scene.settings.stepSize = 4.0;
+  ExpectPicturesOfWhole(this->GetDevice(), scene, "longer steps");
 }
 
 TEST_F(PicturesInBlocks, FollowWhatASurfaceReflects)
