@@ -1,12 +1,10 @@
 #include "BlocksOfRanks.h"
 
-#include "Ranks/ControllerCommunicator.h"
 #include "Ranks/PieceBlocks.h"
 #include "Viewing/Blocks/BlockOrder.h"
 #include "Viewing/Scene/BlockOfScene.h"
 
 #include "vtkImageData.h"
-#include "vtkMultiProcessController.h"
 
 #include <algorithm>
 #include <utility>
@@ -15,28 +13,27 @@ namespace tyndall
 {
 namespace
 {
-constexpr int Tag = 745203; ///< of our messages
+constexpr int PixelsTag = 29993; ///< not one of those that ShadowsInBlocks.cxx takes
 }
 
-std::vector<double> SaidByAll(vtkMultiProcessController* ranks, const std::vector<double>& own)
+std::vector<double> SaidByAll(Communicator& communicator, const std::vector<double>& own)
 {
-  std::vector<double> all(own.size() * ranks->GetNumberOfProcesses());
-  ranks->AllGather(own.data(), all.data(), static_cast<vtkIdType>(own.size()));
-  return all;
+  std::vector<double> all(own.size() * static_cast<std::size_t>(communicator.Ranks()), 0.0);
+  std::copy(own.begin(), own.end(), all.begin() + static_cast<std::ptrdiff_t>(own.size()) * communicator.Rank());
+  return communicator.Sum(all);
 }
 
-bool OnAnyRank(vtkMultiProcessController* ranks, bool own)
+bool OnAnyRank(Communicator& communicator, bool own)
 {
-  const std::vector<double> said = SaidByAll(ranks, { own ? 1.0 : 0.0 });
-  return std::any_of(said.begin(), said.end(), [](double rank) { return rank > 0.0; });
+  return communicator.Largest({ own ? 1.0 : 0.0 })[0] > 0.0;
 }
 
-BlocksOfRanks::BlocksOfRanks(vtkMultiProcessController* ranks, vtkImageData* image)
-  : Ranks(ranks)
-  , Rank(static_cast<std::size_t>(ranks->GetLocalProcessId()))
-  , Blocks(static_cast<std::size_t>(ranks->GetNumberOfProcesses()))
+BlocksOfRanks::BlocksOfRanks(Communicator& communicator, vtkImageData* image)
+  : Others(communicator)
+  , Rank(static_cast<std::size_t>(communicator.Rank()))
+  , Blocks(static_cast<std::size_t>(communicator.Ranks()))
 {
-  const PieceBlocks pieces(*CommunicatorOf(ranks), nullptr, image);
+  const PieceBlocks pieces(communicator, nullptr, image);
   this->Tiled = pieces.MakeUpTheWhole();
   this->Parts = pieces.Partition();
   this->OfPieces = pieces.HeldByRanks();
@@ -78,34 +75,6 @@ std::vector<VoxelBox> BlocksOfRanks::HeldFor(const ViewSettings& settings, bool 
   return enough ? this->OfPieces : needed;
 }
 
-/// Sends pixels to a rank, and receives as many as there is room for from it.
-void BlocksOfRanks::Swap(int partner, const std::vector<BlockPixel>& mine, std::vector<BlockPixel>& theirs) const
-{
-  constexpr std::size_t floats = sizeof(BlockPixel) / sizeof(float);
-  static_assert(floats == 17, "pixels are sent as floats");
-  const auto send = [&] {
-    if (!mine.empty())
-    {
-      this->Ranks->Send(
-        reinterpret_cast<const float*>(mine.data()), static_cast<vtkIdType>(floats * mine.size()), partner, Tag);
-    }
-  };
-  const bool first = static_cast<int>(this->Rank) < partner; // else both would wait
-  if (first)
-  {
-    send();
-  }
-  if (!theirs.empty())
-  {
-    this->Ranks->Receive(
-      reinterpret_cast<float*>(theirs.data()), static_cast<vtkIdType>(floats * theirs.size()), partner, Tag);
-  }
-  if (!first)
-  {
-    send();
-  }
-}
-
 /// @param ranks  whose pixels these are
 BlocksOfRanks::Seen BlocksOfRanks::InOrder(
   const std::vector<std::size_t>& ranks, std::vector<BlockPixels> pixels, const Camera& camera) const
@@ -128,7 +97,7 @@ std::optional<BlocksOfRanks::Seen> BlocksOfRanks::Exchange(
   const BlockPixels& own, const PixelRect& wanted, bool failed, const Camera& camera) const
 {
   constexpr std::size_t words = 9;
-  const std::vector<double> said = SaidByAll(this->Ranks,
+  const std::vector<double> said = SaidByAll(this->Others,
     { failed ? 1.0 : 0.0, 1.0 * own.rect.begin[0], 1.0 * own.rect.begin[1], 1.0 * own.rect.end[0],
       1.0 * own.rect.end[1], 1.0 * wanted.begin[0], 1.0 * wanted.begin[1], 1.0 * wanted.end[0], 1.0 * wanted.end[1] });
   const auto rectOf = [&](std::size_t rank, std::size_t from) {
@@ -163,12 +132,16 @@ std::optional<BlocksOfRanks::Seen> BlocksOfRanks::Exchange(
     {
       continue;
     }
+    const BlockPixels mine = PartIn(rectOf(partner, 5), own);
+    if (!mine.rect.IsEmpty())
+    {
+      this->Others.Send(static_cast<int>(partner), PixelsTag, mine.pixels);
+    }
     BlockPixels theirs;
     theirs.rect = Overlap(wanted, rectOf(partner, 1));
-    theirs.pixels.resize(theirs.rect.Count());
-    this->Swap(static_cast<int>(partner), PartIn(rectOf(partner, 5), own).pixels, theirs.pixels);
     if (!theirs.rect.IsEmpty())
     {
+      theirs.pixels = this->Others.Receive<BlockPixel>(static_cast<int>(partner), PixelsTag);
       from.push_back(partner);
       pixels.push_back(std::move(theirs));
     }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "Distribution/BlockPartition.h"
+#include "Distribution/Communicator.h"
 #include "Viewing/Blocks/BlockPixels.h"
 #include "Viewing/Scene/Camera.h"
 #include "Viewing/Scene/GridBlock.h"
@@ -11,15 +12,15 @@
 #include <vector>
 
 class vtkImageData;
-class vtkMultiProcessController;
 
 namespace tyndall
 {
 /// What every rank says, one after the other. All ranks have to call it, with as many numbers.
-std::vector<double> SaidByAll(vtkMultiProcessController* ranks, const std::vector<double>& own);
+/// @throws InvalidInput  on all ranks, where one says more than another
+std::vector<double> SaidByAll(Communicator& communicator, const std::vector<double>& own);
 
 /// Whether it is so on any rank. All of them have to call it.
-bool OnAnyRank(vtkMultiProcessController* ranks, bool own);
+bool OnAnyRank(Communicator& communicator, bool own);
 
 /// An image that is spread over ranks, each of which has a block of its voxels, and may have some of its neighbours',
 /// flagged as duplicates. All ranks have to construct it and to call Exchange, also those that have no block.
@@ -33,8 +34,9 @@ public:
     std::size_t own = 0; ///< which of them is this rank's, where it has one
   };
 
+  /// @param communicator  must stay
   /// @param image  null or without cells: this rank has no block
-  BlocksOfRanks(vtkMultiProcessController* ranks, vtkImageData* image);
+  BlocksOfRanks(Communicator& communicator, vtkImageData* image);
 
   /// Whether the blocks are parts of one grid, and together each of its voxels once: the same on all ranks.
   bool MakeUpTheWhole() const { return this->Tiled; }
@@ -59,11 +61,9 @@ public:
     const BlockPixels& own, const PixelRect& wanted, bool failed, const Camera& camera) const;
 
 private:
-  void Swap(int partner, const std::vector<BlockPixel>& mine, std::vector<BlockPixel>& theirs) const;
-
   Seen InOrder(const std::vector<std::size_t>& ranks, std::vector<BlockPixels> pixels, const Camera& camera) const;
 
-  vtkMultiProcessController* Ranks;
+  Communicator& Others;
   std::size_t Rank;
   std::vector<GridBlock> Blocks; ///< by rank
   BlockPartition Parts;

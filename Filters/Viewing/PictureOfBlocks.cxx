@@ -5,15 +5,41 @@
 #include "Viewing/ToneMapping.h"
 #include "Work/GuardedWork.h"
 
-#include "vtkCommunicator.h"
-#include "vtkMultiProcessController.h"
-#include "vtkMultiProcessStream.h"
-
 #include <algorithm>
+#include <iterator>
 
 namespace tyndall
 {
-bool CanCast(vtkMultiProcessController* ranks, const BlocksOfRanks& blocks, const BlockToCast& own)
+namespace
+{
+constexpr int ListsTag = 29992; ///< not one of those that BlocksOfRanks.cxx takes
+
+std::string JoinedLines(const std::vector<std::string>& lines)
+{
+  std::string joined;
+  for (const std::string& line : lines)
+  {
+    joined += line + '\n';
+  }
+  return joined;
+}
+
+/// The other way round.
+template <class Text>
+std::vector<std::string> LinesOf(const Text& text)
+{
+  std::vector<std::string> lines;
+  for (auto from = text.begin(); from != text.end();)
+  {
+    const auto end = std::find(from, text.end(), '\n');
+    lines.emplace_back(from, end);
+    from = std::next(end);
+  }
+  return lines;
+}
+}
+
+bool CanCast(Communicator& communicator, const BlocksOfRanks& blocks, const BlockToCast& own)
 {
   constexpr std::size_t flags = 2; // able, has a block
   std::vector<double> words = { own.able ? 1.0 : 0.0, blocks.HasOwn() ? 1.0 : 0.0 };
@@ -22,7 +48,7 @@ bool CanCast(vtkMultiProcessController* ranks, const BlocksOfRanks& blocks, cons
   words.insert(words.end(), own.ofBlocks.begin(), own.ofBlocks.end());
   const auto count = static_cast<std::ptrdiff_t>(words.size());
   const auto ofBlock = static_cast<std::ptrdiff_t>(flags + own.ofFilter.size());
-  const std::vector<double> said = SaidByAll(ranks, words);
+  const std::vector<double> said = SaidByAll(communicator, words);
   const double* first = nullptr; // of those that have a block
   bool can = blocks.MakeUpTheWhole();
   for (const double* rank = said.data(); rank < said.data() + said.size(); rank += count)
@@ -80,10 +106,9 @@ Picture PictureOfBlocks::Take() const
   {
     this->LookAgain(own);
   }
-  const std::vector<double> depths = SaidByAll(this->Seen.ranks, { farDepth });
+  farDepth = this->Seen.communicator.Largest({ farDepth })[0];
   const auto seen = this->Seen.blocks.Exchange(own, this->Part, false, this->TheCamera);
-  return PictureOfAll(
-    seen->frontToBack, this->Part, static_cast<float>(*std::max_element(depths.begin(), depths.end())));
+  return PictureOfAll(seen->frontToBack, this->Part, static_cast<float>(farDepth));
 }
 
 double PictureOfBlocks::Exposure(const Picture& part) const
@@ -98,9 +123,8 @@ double PictureOfBlocks::Exposure(const Picture& part) const
     radiance.insert(radiance.end(), first, first + 3 * (this->Counted.end[0] - this->Counted.begin[0]));
   }
   const std::vector<int> own = LuminanceCounts(radiance);
-  std::vector<int> all(own.size());
-  this->Seen.ranks->AllReduce(own.data(), all.data(), static_cast<vtkIdType>(own.size()), vtkCommunicator::SUM_OP);
-  return ExposureOfCounts(all);
+  const std::vector<double> all = this->Seen.communicator.Sum({ own.begin(), own.end() });
+  return ExposureOfCounts({ all.begin(), all.end() });
 }
 
 PixelRect RectOf(const std::array<int, 6>& extent)
@@ -108,9 +132,9 @@ PixelRect RectOf(const std::array<int, 6>& extent)
   return { { extent[0], extent[2] }, { extent[1] + 1, extent[3] + 1 } };
 }
 
-PixelRect OwnPixels(vtkMultiProcessController* ranks, const std::array<int, 6>& all)
+PixelRect OwnPixels(const Communicator& communicator, const std::array<int, 6>& all)
 {
-  std::array<int, 6> own = PartOfExtent(all, ranks->GetLocalProcessId(), ranks->GetNumberOfProcesses());
+  std::array<int, 6> own = PartOfExtent(all, communicator.Rank(), communicator.Ranks());
   for (int last : { 1, 3 }) // pieces have their borders in common
   {
     own[last] -= own[last] < all[last] ? 1 : 0;
@@ -133,30 +157,26 @@ PixelRect Around(const PixelRect& a, const PixelRect& b)
   return around;
 }
 
-std::vector<std::string> OnAllLists(vtkMultiProcessController* ranks, const std::vector<std::string>& own, bool says)
+std::vector<std::string> OnAllLists(Communicator& communicator, const std::vector<std::string>& own, bool says)
 {
-  vtkMultiProcessStream stream;
-  stream << (says ? static_cast<int>(own.size()) : -1);
-  std::for_each(own.begin(), own.end(), [&](const std::string& line) { stream << line; });
-  std::vector<vtkMultiProcessStream> streams;
-  ranks->AllGather(stream, streams);
+  const std::string said = JoinedLines(own);
+  communicator.Send<char>(0, ListsTag, { said.begin(), said.end() });
+  communicator.Send<char>(0, ListsTag, { says ? '1' : '0' });
   std::vector<std::string> common;
   bool any = false;
-  for (vtkMultiProcessStream& from : streams)
+  for (int rank = 0; communicator.Rank() == 0 && rank < communicator.Ranks(); ++rank)
   {
-    int count = 0;
-    from >> count;
-    std::vector<std::string> list(static_cast<std::size_t>(std::max(count, 0)));
-    std::for_each(list.begin(), list.end(), [&](std::string& line) { from >> line; });
-    if (count >= 0 && any)
+    const std::vector<std::string> list = LinesOf(communicator.Receive<char>(rank, ListsTag));
+    if (communicator.Receive<char>(rank, ListsTag)[0] == '0')
     {
-      common.erase(std::remove_if(common.begin(), common.end(),
-                     [&](const std::string& line) { return std::find(list.begin(), list.end(), line) == list.end(); }),
-        common.end());
+      continue;
     }
-    common = count >= 0 && !any ? list : common;
-    any = any || count >= 0;
+    common.erase(std::remove_if(common.begin(), common.end(),
+                   [&](const std::string& line) { return std::find(list.begin(), list.end(), line) == list.end(); }),
+      common.end());
+    common = any ? common : list;
+    any = true;
   }
-  return common;
+  return LinesOf(WordsOfAny(communicator, JoinedLines(common)));
 }
 }

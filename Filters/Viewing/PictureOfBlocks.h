@@ -3,6 +3,7 @@
 #include "BlocksOfRanks.h"
 
 #include "Device/Monitor.h"
+#include "Distribution/Communicator.h"
 #include "Viewing/Blocks/BlockPixels.h"
 #include "Viewing/Blocks/PictureInBlocks.h"
 #include "Viewing/MediumRayCaster.h"
@@ -13,7 +14,6 @@
 #include <vector>
 
 class vtkAlgorithm;
-class vtkMultiProcessController;
 
 namespace tyndall
 {
@@ -27,14 +27,13 @@ struct BlockToCast
 };
 
 /// Whether all ranks are able to, and say the same: the same on all ranks, which all have to ask.
-bool CanCast(vtkMultiProcessController* ranks, const BlocksOfRanks& blocks, const BlockToCast& own);
+bool CanCast(Communicator& communicator, const BlocksOfRanks& blocks, const BlockToCast& own);
 
 /// Ranks that see a medium together.
 struct SeeingRanks
 {
-  vtkMultiProcessController* ranks;
-  Communicator& communicator; ///< of the same
-  vtkAlgorithm* filter;       ///< says how far it is
+  Communicator& communicator;
+  vtkAlgorithm* filter; ///< says how far it is
   const BlocksOfRanks& blocks;
   PictureInBlocks& ofBlock;
   MediumRayCaster* caster; ///< of this rank's block; null: it has none
@@ -73,12 +72,12 @@ private:
 PixelRect RectOf(const std::array<int, 6>& extent);
 
 /// Pixels that are this rank's alone, of a picture that is divided among all.
-PixelRect OwnPixels(vtkMultiProcessController* ranks, const std::array<int, 6>& all);
+PixelRect OwnPixels(const Communicator& communicator, const std::array<int, 6>& all);
 
 /// The least rectangle around both.
 PixelRect Around(const PixelRect& a, const PixelRect& b);
 
 /// What is on all lists that say anything, in the order of the first: ranks without a block say nothing. All ranks call
 /// it.
-std::vector<std::string> OnAllLists(vtkMultiProcessController* ranks, const std::vector<std::string>& own, bool says);
+std::vector<std::string> OnAllLists(Communicator& communicator, const std::vector<std::string>& own, bool says);
 }

@@ -5,6 +5,7 @@
 #include "Common/LightTransportData.h"
 #include "Device/Clock.h"
 #include "PictureOverlay.h"
+#include "Ranks/ControllerCommunicator.h"
 #include "RenderedCamera.h"
 #include "Viewing/Blocks/ShownBlock.h"
 #include "Viewing/Rays/Picture.h"
@@ -12,7 +13,6 @@
 #include "vtkMediumRayCaster.h"
 
 #include "vtkAlgorithmOutput.h"
-#include "vtkCommunicator.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkMatrix4x4.h"
@@ -101,10 +101,10 @@ std::optional<tyndall::Camera> CameraOf(vtkRenderer* renderer, vtkVolume* volume
 /// The largest distance of rays that any rank asks for.
 /// @param alike  what has to be the same on all ranks
 /// @param apart  0: this rank cannot
-std::optional<double> AgreedRaysApart(vtkMultiProcessController* ranks, std::vector<double> alike, double apart)
+std::optional<double> AgreedRaysApart(tyndall::Communicator& others, std::vector<double> alike, double apart)
 {
   alike.push_back(apart);
-  const std::vector<double> said = tyndall::SaidByAll(ranks, alike);
+  const std::vector<double> said = tyndall::SaidByAll(others, alike);
   double most = apart;
   for (auto other = said.begin(); other != said.end(); other += static_cast<std::ptrdiff_t>(alike.size()))
   {
@@ -241,9 +241,9 @@ double vtkLitVolumeMapper::EstimateExposure()
 
 /// The same for all pieces together, from pictures of the whole. On all ranks.
 /// @return 0 where they cannot be seen together
-double vtkLitVolumeMapper::ExposureOfPieces()
+double vtkLitVolumeMapper::ExposureOfPieces(tyndall::Communicator& others)
 {
-  const tyndall::BlocksOfRanks blocks(this->Spread->ranks, this->UpdateSurrounded());
+  const tyndall::BlocksOfRanks blocks(others, this->UpdateSurrounded());
   std::vector<float> radiance;
   for (const auto& from : ExposedFrom)
   {
@@ -275,21 +275,37 @@ void vtkLitVolumeMapper::SetPiece(vtkMultiProcessController* ranks, vtkImageData
 }
 
 /// On any rank: how light is seen has changed. On all ranks.
-bool vtkLitVolumeMapper::IsExposureOld()
+bool vtkLitVolumeMapper::IsExposureOld(tyndall::Communicator& others)
 {
   const bool old = this->RayCaster->GetExposure() == 0.0 && this->RayCaster->GetMTime() > this->ExposureTime;
-  return tyndall::OnAnyRank(this->Spread->ranks, old);
+  return tyndall::OnAnyRank(others, old);
+}
+
+/// What goes wrong, as a rank that is gone, is said on this rank: the frame then shows each piece alone.
+void vtkLitVolumeMapper::WithOthers(const std::function<void(tyndall::Communicator&)>& act)
+{
+  try
+  {
+    act(*tyndall::CommunicatorOf(this->Spread->ranks));
+  }
+  catch (const std::exception& error)
+  {
+    vtkErrorMacro(<< error.what());
+  }
 }
 
 void vtkLitVolumeMapper::AgreeOnExposure()
 {
-  this->CommonExposure = this->ExposureOfPieces();
+  this->WithOthers([this](tyndall::Communicator& others) { this->AgreeOnExposure(others); });
+}
+
+void vtkLitVolumeMapper::AgreeOnExposure(tyndall::Communicator& others)
+{
+  this->CommonExposure = this->ExposureOfPieces(others);
   if (this->CommonExposure == 0.0) // the logarithmic mean of what the ranks would choose for their pieces
   {
     const double own = this->EstimateExposure();
-    const double mine[2] = { own > 0.0 ? std::log(own) : 0.0, own > 0.0 ? 1.0 : 0.0 };
-    double all[2] = { 0.0, 0.0 };
-    this->Spread->ranks->AllReduce(mine, all, 2, vtkCommunicator::SUM_OP);
+    const std::vector<double> all = others.Sum({ own > 0.0 ? std::log(own) : 0.0, own > 0.0 ? 1.0 : 0.0 });
     this->CommonExposure = all[1] > 0.0 ? std::exp(all[0] / all[1]) : 0.0;
   }
   this->ExposureTime.Modified();
@@ -365,26 +381,30 @@ bool vtkLitVolumeMapper::ShowsBackgroundColor()
 /// which not all of them may draw.
 void vtkLitVolumeMapper::SeePieces(vtkRenderer* renderer, vtkVolume* volume)
 {
-  if (!this->IsPiece())
+  if (this->IsPiece())
   {
-    return;
+    this->WithOthers([&](tyndall::Communicator& others) { this->SeePieces(others, renderer, volume); });
   }
+}
+
+void vtkLitVolumeMapper::SeePieces(tyndall::Communicator& others, vtkRenderer* renderer, vtkVolume* volume)
+{
   const double start = tyndall::ClockSeconds();
   this->Spread->view.reset();
-  if (this->Spread->together && this->IsExposureOld())
+  if (this->Spread->together && this->IsExposureOld(others))
   {
-    this->AgreeOnExposure();
+    this->AgreeOnExposure(others);
   }
   this->Spread->together = false;
   const bool exposed = this->FindExposure();
   const std::array<int, 2> drawn = tyndall::DrawnSize(renderer);
   const std::optional<tyndall::Camera> camera = CameraOf(renderer, volume);
-  const tyndall::BlocksOfRanks blocks(this->Spread->ranks, this->UpdateSurrounded());
+  const tyndall::BlocksOfRanks blocks(others, this->UpdateSurrounded());
   std::vector<double> alike = Words(camera.value_or(tyndall::Camera()));
   alike.insert(alike.end(), { 1.0 * drawn[0], 1.0 * drawn[1], this->UsedExposure });
   const bool able = exposed && camera && drawn[0] > 0 && drawn[1] > 0;
-  const auto apart = AgreedRaysApart(this->Spread->ranks, std::move(alike),
-    able ? this->RaysApart(drawn.data(), renderer->GetAllocatedRenderTime()) : 0.0);
+  const auto apart = AgreedRaysApart(
+    others, std::move(alike), able ? this->RaysApart(drawn.data(), renderer->GetAllocatedRenderTime()) : 0.0);
   if (!apart || !blocks.MakeUpTheWhole())
   {
     return;

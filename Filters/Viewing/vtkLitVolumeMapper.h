@@ -7,6 +7,7 @@
 #include "vtkTyndallModule.h" // for export macro
 #include "vtkVolumeMapper.h"
 
+#include <functional>
 #include <memory>
 
 class vtkAlgorithmOutput;
@@ -16,6 +17,7 @@ class vtkMultiProcessController;
 
 namespace tyndall
 {
+class Communicator;
 class PictureOverlay;
 struct AskedView;
 struct Picture;
@@ -109,8 +111,11 @@ private:
   vtkImageData* UpdateSurrounded();
   bool IsPiece() const;
   double EstimateExposure();
-  double ExposureOfPieces();
-  bool IsExposureOld();
+  void WithOthers(const std::function<void(tyndall::Communicator&)>& act);
+  void SeePieces(tyndall::Communicator& others, vtkRenderer* renderer, vtkVolume* volume);
+  void AgreeOnExposure(tyndall::Communicator& others);
+  double ExposureOfPieces(tyndall::Communicator& others);
+  bool IsExposureOld(tyndall::Communicator& others);
   bool FindExposure();
   double RaysApart(const int drawn[2], double allowed) const;
   void ChooseCastSize(const int drawn[2], double apart);

@@ -266,7 +266,7 @@ vtkMediumRayCaster::Shot vtkMediumRayCaster::SeeWhole(vtkInformationVector** inp
 }
 
 /// Of all ranks, or of none, the scene of the last picture is kept.
-std::unique_ptr<tyndall::CasterScene> vtkMediumRayCaster::FindSceneOfBlock(vtkMultiProcessController* ranks,
+std::unique_ptr<tyndall::CasterScene> vtkMediumRayCaster::FindSceneOfBlock(
   const tyndall::RankPieces& pieces, vtkInformationVector** inputs, std::vector<tyndall::VoxelBox>& held)
 {
   this->SceneKept = false;
@@ -283,7 +283,7 @@ std::unique_ptr<tyndall::CasterScene> vtkMediumRayCaster::FindSceneOfBlock(vtkMu
       scene = this->TakeKept(key, pieces.settings);
     }
   });
-  if (tyndall::OnAnyRank(ranks, pieces.HasOwn() && !scene))
+  if (tyndall::OnAnyRank(pieces.communicator, pieces.HasOwn() && !scene))
   {
     scene.reset(); // before the next one needs the memory
     return tyndall::MakeSceneOfBlock(pieces, key, held);
@@ -301,7 +301,9 @@ std::optional<vtkMediumRayCaster::Shot> vtkMediumRayCaster::SeeBlocks(
   vtkMultiProcessController* ranks, tyndall::WholeInputs& inputs, double exposure, const std::array<int, 6>& asked)
 {
   vtkImageData* const image = vtkImageData::GetData(inputs.Vectors()[MEDIUM]);
-  const tyndall::BlocksOfRanks blocks(ranks, image);
+  const std::unique_ptr<tyndall::Communicator> communicator =
+    tyndall::CommunicatorOf(ranks, [this] { return tyndall::IsStoppedByOthers(this); });
+  const tyndall::BlocksOfRanks blocks(*communicator, image);
   Shot shot;
   shot.exposure = exposure;
   tyndall::BlockToCast own;
@@ -314,21 +316,19 @@ std::optional<vtkMediumRayCaster::Shot> vtkMediumRayCaster::SeeBlocks(
       own.ofArrays = tyndall::ArraysInANumber(this, image);
     }
   }).kind == tyndall::Ending::Done;
-  if (!tyndall::CanCast(ranks, blocks, own))
+  if (!tyndall::CanCast(*communicator, blocks, own))
   {
     return std::nullopt;
   }
-  const std::unique_ptr<tyndall::Communicator> communicator =
-    tyndall::CommunicatorOf(ranks, [this] { return tyndall::IsStoppedByOthers(this); });
   tyndall::Illumination illumination;
   communicator->Together([&] { illumination = this->ReadIllumination(inputs.Vectors()); });
   const tyndall::RankPieces pieces = { this, *communicator, blocks, image, illumination,
     tyndall::SettingsOf(this, exposure) };
   std::vector<tyndall::VoxelBox> held;
-  shot.scene = this->FindSceneOfBlock(ranks, pieces, inputs.Vectors(), held);
+  shot.scene = this->FindSceneOfBlock(pieces, inputs.Vectors(), held);
   tyndall::MediumRayCaster* const caster = shot.scene ? shot.scene->caster.get() : nullptr;
   own.ofBlocks = caster ? caster->SharedByBlocks() : own.ofBlocks;
-  if (!tyndall::CanCast(ranks, blocks, own))
+  if (!tyndall::CanCast(*communicator, blocks, own))
   {
     return std::nullopt;
   }
@@ -336,19 +336,19 @@ std::optional<vtkMediumRayCaster::Shot> vtkMediumRayCaster::SeeBlocks(
   {
     this->SayDoubts(*shot.scene);
   }
-  const tyndall::PixelRect counted = tyndall::OwnPixels(ranks, WholePicture(this));
+  const tyndall::PixelRect counted = tyndall::OwnPixels(*communicator, WholePicture(this));
   const tyndall::PixelRect part = tyndall::Around(tyndall::RectOf(asked), counted);
   tyndall::PictureInBlocks ofBlock(*communicator, blocks.Partition(), held, caster);
-  const tyndall::PictureOfBlocks picture({ ranks, *communicator, this, blocks, ofBlock, caster },
+  const tyndall::PictureOfBlocks picture({ *communicator, this, blocks, ofBlock, caster },
     tyndall::CameraOf(this, blocks.Whole()), { this->ImageSize[0], this->ImageSize[1] }, part, counted);
   Taking taking;
   taking.take = [&] { return picture.Take(); };
   taking.exposureOf = [&](const tyndall::Picture& taken) { return picture.Exposure(taken); };
-  taking.onAnyRank = [&](bool here) { return tyndall::OnAnyRank(ranks, here); };
+  taking.onAnyRank = [&](bool here) { return tyndall::OnAnyRank(*communicator, here); };
   this->Expose(taking, shot);
   shot.first = part.begin;
   shot.leftOut = tyndall::OnAllLists(
-    ranks, shot.scene ? shot.scene->caster->LeftOut() : std::vector<std::string>(), shot.scene != nullptr);
+    *communicator, shot.scene ? shot.scene->caster->LeftOut() : std::vector<std::string>(), shot.scene != nullptr);
   return shot;
 }
 

@@ -367,7 +367,7 @@ private:
   void Expose(const Taking& taking, Shot& shot);
   Shot SeeWhole(vtkInformationVector** inputs, double exposure);
   /// @param held  becomes, by rank, the voxels of the casters
-  std::unique_ptr<tyndall::CasterScene> FindSceneOfBlock(vtkMultiProcessController* ranks,
+  std::unique_ptr<tyndall::CasterScene> FindSceneOfBlock(
     const tyndall::RankPieces& pieces, vtkInformationVector** inputs, std::vector<tyndall::VoxelBox>& held);
   std::optional<Shot> SeeBlocks(
     vtkMultiProcessController* ranks, tyndall::WholeInputs& inputs, double exposure, const std::array<int, 6>& asked);

@@ -158,9 +158,9 @@ std::vector<float> MediumRayCaster::DepthsTowards(int light, const VoxelBox& ask
   return this->Sources.DepthsTowards(light, asked, this->Settings.stepSize, this->Samples, monitor);
 }
 
-void MediumRayCaster::SeeLight(int light, const Camera& camera, const std::vector<float>& depths)
+void MediumRayCaster::SeeLight(int light, const Camera& camera, const VoxelBox& part, const std::vector<float>& depths)
 {
-  this->Sources.SeeLight(light, camera, depths, this->Scene, this->Samples);
+  this->Sources.SeeLight(light, camera, part, depths, this->Scene, this->Samples);
 }
 
 void MediumRayCaster::FinishSources(const Camera& camera)
@@ -304,9 +304,9 @@ MediumRayCaster::Pass MediumRayCaster::BeginPass(const Camera& camera, bool shar
   return pass;
 }
 
-std::vector<RayOnItsWay> MediumRayCaster::StartRays(const Pass& pass) const
+std::vector<RayOnItsWay> MediumRayCaster::StartRays(const Pass& pass, const PixelRows& rows) const
 {
-  return this->Rays.Start(this->Settings, pass.view, pass.optics);
+  return this->Rays.Start(this->Settings, pass.view, pass.optics, rows);
 }
 
 std::vector<RayOnItsWay> MediumRayCaster::MarchRays(

@@ -20,6 +20,7 @@
 #include "Viewing/Sources/SeenSources.h"
 
 #include <array>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -146,11 +147,12 @@ public:
   double StepSize() const { return this->Settings.stepSize; }
   bool ShowsMoments() const { return this->Traits.ShowsMoments(); }
   bool NeedsSources() const { return !this->SourcesReady || this->Traits.sourcesDependOnCamera; }
-  int CountOfLights() const { return this->Sources.CountOfLights(); } ///< whose shadow rays are followed
+  /// Whose shadow rays are followed.
+  const std::vector<SmallLight>& LightsOfBlock() const { return this->Sources.LightsOfBlock(); }
   void PackForShadowRays() { this->Pack(Packing::ForShadowRays); }
   /// See SeenSources. @throws Aborted
   std::vector<float> DepthsTowards(int light, const VoxelBox& asked, const Monitor& monitor);
-  void SeeLight(int light, const Camera& camera, const std::vector<float>& depths);
+  void SeeLight(int light, const Camera& camera, const VoxelBox& part, const std::vector<float>& depths);
   /// When all lights are seen.
   void FinishSources(const Camera& camera);
   /// Of rays that go straight on through the block.
@@ -164,7 +166,8 @@ public:
   };
   /// @param sharp  of what comes from behind without being scattered, after the other: where ShowsMoments
   Pass BeginPass(const Camera& camera, bool sharp);
-  std::vector<RayOnItsWay> StartRays(const Pass& pass) const;
+  std::size_t RaysThatFit() const { return this->Rays.CountThatFits(this->Settings); }
+  std::vector<RayOnItsWay> StartRays(const Pass& pass, const PixelRows& rows) const;
   /// See RayCasting. @throws Aborted
   std::vector<RayOnItsWay> MarchRays(const Pass& pass, std::vector<RayOnItsWay>& rays, const Monitor& monitor) const;
 

@@ -58,8 +58,8 @@ Spread SpreadOver(const Scene& scene, const Cuts& cuts, bool nothing)
 }
 
 /// The picture that ranks make together.
-Picture SeenBy(
-  Device& device, const Scene& scene, const Spread& spread, const Camera& camera, std::size_t* handed = nullptr)
+Picture SeenBy(Device& device, const Scene& scene, const Spread& spread, const Camera& camera,
+  std::size_t* handed = nullptr, const WorkAtOnce& atOnce = {})
 {
   const auto ranks = static_cast<int>(spread.blocks.size());
   std::vector<BlockPixels> seen(spread.blocks.size());
@@ -86,7 +86,7 @@ Picture SeenBy(
       const std::lock_guard<std::mutex> lock(one);
       casters[rank].reset(has ? new MediumRayCaster(part.Caster(device, &ofScene)) : nullptr);
     });
-    PictureInBlocks picture(communicator, spread.partition, spread.held, casters[rank].get());
+    PictureInBlocks picture(communicator, spread.partition, spread.held, casters[rank].get(), atOnce);
     const Picture taken = picture.Take(camera, scene.settings.imageSize);
     seen[rank] = SeenPart(taken);
     traffic[rank] = picture.Traffic().handed;
@@ -241,8 +241,13 @@ TEST_F(PicturesInBlocks, FollowRaysByLongSteps)
 {
   Scene scene = Glass(1);
   scene.settings.stepSize = 1.7;
-  scene.settings.tableFace = 4; // is met far from the middle of the last step
+  scene.settings.tableFace = 4;
   ExpectPicturesOfWhole(this->GetDevice(), scene, "long steps");
+  // Rays that go straight on meet the table as far from the middle of their last step as that is long; those that bend
+  // come to it by short ones. The block in which they do knows its light there.
+  scene.ior.clear();
+  scene.settings.stepSize = 4.0;
+  ExpectPicturesOfWhole(this->GetDevice(), scene, "longer steps");
 }
 
 TEST_F(PicturesInBlocks, FollowWhatASurfaceReflects)
@@ -299,6 +304,76 @@ TEST_F(PicturesInBlocks, ShowLightAtTheSurfaceOfThickVoxels)
   });
   EXPECT_GT(LargestDifference(without.radiance, scene.Seen(this->GetDevice()).radiance), 0.05);
   ExpectPicturesOfWhole(this->GetDevice(), scene, "surface light");
+
+  // A thick skin: how opaque it is with what is behind follows from six voxels, which a block at a face has few of.
+  for (std::size_t i = 0; i < scene.grid.VoxelCount(); ++i)
+  {
+    const std::array<int, 3> voxel = scene.grid.VoxelAt(i);
+    bool skin = false;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      skin = skin || voxel[axis] == 0 || voxel[axis] == scene.grid.size[axis] - 1;
+    }
+    scene.sigma_a[i] = 0.0f;
+    scene.sigma_s[i] = skin ? 2.0f : 0.5f;
+  }
+  for (const Cuts& cuts : { Cuts{ { { 1 }, { 1 }, { 1 } } }, Cuts{ { { 26 }, { 21 }, { 18 } } } })
+  {
+    for (const Camera& camera : CamerasOf(scene))
+    {
+      ExpectSame(SeenBy(this->GetDevice(), scene, SpreadOver(scene, cuts, false), camera),
+        scene.Seen(this->GetDevice(), camera));
+    }
+  }
+}
+
+namespace
+{
+void ExpectEqual(const Picture& found, const Picture& expected)
+{
+  EXPECT_EQ(found.radiance, expected.radiance);
+  EXPECT_EQ(found.alpha, expected.alpha);
+  EXPECT_EQ(found.depth, expected.depth);
+  EXPECT_GT(Largest(expected.radiance), 0.05) << "there is nothing to compare";
+}
+}
+
+TEST_F(PicturesInBlocks, ThrowTheSameShadowsByPortions)
+{
+  Scene scene = Cloud(3);
+  scene.illumination.lights = { Lamps()[0], Lamps()[1] };
+  scene.settings.shadowRays = true;
+  scene.fluenceDirect = scene.Everywhere(0.05);
+  const Spread spread = SpreadOver(scene, SomeCuts[2], true);
+  const Picture atOnce = SeenBy(this->GetDevice(), scene, spread, scene.Framed());
+  for (const std::size_t voxels : { 1, 100, 700 }) // a row, some rows, some slices
+  {
+    WorkAtOnce portions;
+    portions.voxels = voxels;
+    SCOPED_TRACE(voxels);
+    ExpectEqual(SeenBy(this->GetDevice(), scene, spread, scene.Framed(), nullptr, portions), atOnce);
+  }
+}
+
+TEST_F(PicturesInBlocks, FollowRaysOfSomeRowsAtATime)
+{
+  Scene scene = Glass(1);
+  scene.ior = Ball(scene.grid, 0.3, 1.5);
+  scene.settings.surfaceReflection = SurfaceReflection::Fresnel;
+  scene.settings.tableFace = 4;
+  scene.settings.tableReflectance = 0.3;
+  for (const Cuts& cuts : SomeCuts)
+  {
+    const Spread spread = SpreadOver(scene, cuts, true);
+    const Picture atOnce = SeenBy(this->GetDevice(), scene, spread, scene.Framed());
+    for (const std::size_t rays : { 1, 700 })
+    {
+      WorkAtOnce portions;
+      portions.rays = rays;
+      SCOPED_TRACE(testing::Message() << rays << " rays, cut at " << testing::PrintToString(cuts));
+      ExpectEqual(SeenBy(this->GetDevice(), scene, spread, scene.Framed(), nullptr, portions), atOnce);
+    }
+  }
 }
 
 TEST_F(PicturesInBlocks, FailTogether)
@@ -324,4 +399,37 @@ TEST_F(PicturesInBlocks, FailTogether)
     }
   });
   EXPECT_EQ(aborted, std::vector<int>({ 1, 1, 1 }));
+}
+
+TEST_F(PicturesInBlocks, SayThatRanksHaveOtherLights)
+{
+  Scene scene = Cloud(1);
+  scene.settings.shadowRays = true;
+  scene.fluenceDirect = scene.Everywhere(0.05);
+  const Spread spread = SpreadOver(scene, SomeCuts[1], true);
+  std::vector<std::string> said(4);
+  RunInThreads(4, [&](Communicator& communicator) {
+    const auto rank = static_cast<std::size_t>(communicator.Rank());
+    std::optional<MediumRayCaster> caster;
+    if (rank > 0) // else it has no voxels
+    {
+      Scene part = PartOf(scene, spread.blocks[rank], spread.held[rank], spread.known[rank]);
+      part.illumination.lights.assign(rank == 2 ? 2 : 1, Lamps()[0]);
+      const BlockOfScene block = { spread.blocks[rank], spread.known[rank], {} };
+      caster.emplace(
+        this->GetDevice(), part.MediumSeen(), part.LightSeen(), part.illumination, part.settings, Field{}, &block);
+    }
+    try
+    {
+      PictureInBlocks picture(communicator, spread.partition, spread.held, caster ? &*caster : nullptr);
+    }
+    catch (const InvalidInput& error)
+    {
+      said[rank] = error.what();
+    }
+  });
+  for (const std::string& words : said)
+  {
+    EXPECT_NE(words.find("other lights"), std::string::npos) << words;
+  }
 }

@@ -295,16 +295,27 @@ def memory_of(field):
         return 1024 * int(next(line for line in status if line.startswith(field)).split()[1])
 
 
-def memory():
-    """A larger lens, without layers: what a rank takes for its picture at most, beside its piece."""
-    source = source_of(bend(medium_of(boxes([0, 192, 0, 160, 0, 128])[rank])))
-    cast(bend(plain_piece()), Environment=sky())  # what any picture takes
+def keep_memory(case, source, small, **more):
+    """What a rank takes for its picture at most, beside its piece.
+    @param small  what has been seen before is what any picture takes"""
+    cast(small, **more)
     ctypes.CDLL(None).malloc_trim(0)  # what numpy has given back
     with open("/proc/self/clear_refs", "w") as peak:
         peak.write("5")
     before = memory_of("VmRSS")
-    caster = cast(source, Environment=sky())
-    numpy.savez(os.path.join(folder, "memory.%d.npz" % rank), taken=memory_of("VmHWM") - before)
+    caster = cast(source, **more)
+    numpy.savez(os.path.join(folder, "%s.%d.npz" % (case, rank)), taken=memory_of("VmHWM") - before)
+
+
+def memory():
+    """A larger lens, without layers."""
+    keep_memory("memory", source_of(bend(medium_of(boxes([0, 192, 0, 160, 0, 128])[rank]))), bend(plain_piece()), Environment=sky())
+
+
+def memory_of_shadows():
+    """Pieces of which the first ones are in the others' shadow."""
+    keep_memory("memory_of_shadows", source_of(medium_of(boxes([0, 128, 0, 128, 0, 128])[rank])), plain_piece(),
+                Lights=LightRig(SunElevation=20), ShadowRays=1)
 
 
 def reader():

@@ -10,8 +10,7 @@ namespace tyndall
 {
 namespace
 {
-constexpr int DepthsTag = 29997; ///< not one of those that Rounds.h and BoxExchange.cxx take
-constexpr int TileEdge = 4;      ///< pixels of rays that are marched side by side
+constexpr int TileEdge = 4; ///< pixels of rays that are marched side by side
 
 /// Nothing: what a block shows that is nowhere seen.
 Picture Nothing(const std::array<int, 2>& size)
@@ -66,50 +65,19 @@ SharedScene PictureInBlocks::Shared(Communicator& communicator, const SharedScen
   return all;
 }
 
-PictureInBlocks::PictureInBlocks(
-  Communicator& communicator, const BlockPartition& partition, const std::vector<VoxelBox>& held, MediumRayCaster* own)
+PictureInBlocks::PictureInBlocks(Communicator& communicator, const BlockPartition& partition,
+  const std::vector<VoxelBox>& held, MediumRayCaster* own, const WorkAtOnce& atOnce)
   : Others(communicator)
   , Partition(partition)
-  , Held(held)
   , Own(own)
+  , Shadows(communicator, partition, held, own, atOnce.voxels)
+  , RaysAtOnce(atOnce.rays)
 {
-  const std::vector<double> any = this->Others.Largest({ own && !own->CastsBlocks() ? 1.0 : 0.0,
-    own && own->ShowsMoments() ? 1.0 : 0.0, own ? 1.0 * own->CountOfLights() : 0.0, own ? own->StepSize() : 0.0 });
+  const std::vector<double> any = this->Others.Largest(
+    { own && !own->CastsBlocks() ? 1.0 : 0.0, own && own->ShowsMoments() ? 1.0 : 0.0, own ? own->StepSize() : 0.0 });
   this->InRounds = any[0] > 0.0;
   this->ByMoments = any[1] > 0.0;
-  this->Lights = static_cast<int>(any[2]);
-  this->Between.emplace(communicator, partition, 1 + static_cast<int>(std::ceil(any[3])));
-}
-
-/// What light comes straight from a light to each voxel of this block, and what is scattered of it towards the eye.
-void PictureInBlocks::FollowLight(int light, const Camera& camera, const Monitor& monitor)
-{
-  std::vector<std::vector<float>> found(this->Held.size());
-  this->Others.Together([&] {
-    for (std::size_t rank = 0; this->Own && rank < found.size(); ++rank)
-    {
-      found[rank] = this->Own->DepthsTowards(light, this->Held[rank], monitor);
-    }
-  });
-  for (std::size_t rank = 0; rank < found.size(); ++rank)
-  {
-    this->Others.Send(static_cast<int>(rank), DepthsTag, std::exchange(found[rank], {}));
-  }
-  std::vector<float> depths(3 * this->Held[static_cast<std::size_t>(this->Others.Rank())].VoxelCount(), 0.0f);
-  for (int rank = 0; rank < this->Others.Ranks(); ++rank)
-  {
-    const std::vector<float> part = this->Others.Receive<float>(rank, DepthsTag);
-    for (std::size_t i = 0; i < part.size(); ++i)
-    {
-      depths[i] += part[i];
-    }
-  }
-  this->Others.Together([&] {
-    if (this->Own)
-    {
-      this->Own->SeeLight(light, camera, depths);
-    }
-  });
+  this->Between.emplace(communicator, partition, 1 + static_cast<int>(std::ceil(any[2])));
 }
 
 void PictureInBlocks::FindSources(const Camera& camera, const Monitor& monitor)
@@ -118,19 +86,7 @@ void PictureInBlocks::FindSources(const Camera& camera, const Monitor& monitor)
   {
     return;
   }
-  if (this->Lights > 0)
-  {
-    this->Others.Together([&] {
-      if (this->Own)
-      {
-        this->Own->PackForShadowRays();
-      }
-    });
-  }
-  for (int light = 0; light < this->Lights; ++light)
-  {
-    this->FollowLight(light, camera, OfPart(monitor, 1.0 * light / this->Lights, (light + 1.0) / this->Lights));
-  }
+  this->Shadows.Find(camera, monitor);
   this->Others.Together([&] {
     if (this->Own)
     {
@@ -183,29 +139,40 @@ std::vector<RayOnItsWay> PictureInBlocks::Follow(const MediumRayCaster::Pass& pa
   return gone;
 }
 
+/// Rows of pixels at a time: the rays of these are all that is on its way.
 void PictureInBlocks::CastInRounds(const Camera& camera, bool sharp, Picture& picture, const Monitor& monitor)
 {
   MediumRayCaster::Pass pass = {};
-  this->Between->UntilAllEnd<RayOnItsWay>(
-    [&](int round, std::vector<RayOnItsWay>&& arrived, const Monitor& ofRound) {
-      if (!this->Own)
-      {
-        return std::vector<RayOnItsWay>();
-      }
-      if (round == 0)
-      {
-        pass = this->Own->BeginPass(camera, sharp);
-        picture.farDepth = pass.view.marching.s[2];
-        arrived = this->Own->StartRays(pass);
-      }
-      return this->Follow(pass, std::move(arrived), sharp, picture, ofRound);
-    },
-    monitor);
+  auto rays = static_cast<double>(this->RaysAtOnce);
+  this->Others.Together([&] {
+    if (this->Own)
+    {
+      pass = this->Own->BeginPass(camera, sharp);
+      picture.farDepth = pass.view.marching.s[2];
+      rays = std::min(rays, static_cast<double>(this->Own->RaysThatFit()));
+    }
+  });
+  const double fit = -this->Others.Largest({ -rays })[0];
+  const int rows = TileEdge * std::max(static_cast<int>(fit / (1.0 * TileEdge * picture.width)), 1);
+  for (int begin = 0; begin < picture.height; begin += rows)
+  {
+    const PixelRows some = { begin, std::min(begin + rows, picture.height) };
+    this->Between->UntilAllEnd<RayOnItsWay>(
+      [&](int round, std::vector<RayOnItsWay>&& arrived, const Monitor& ofRound) {
+        if (!this->Own)
+        {
+          return std::vector<RayOnItsWay>();
+        }
+        return this->Follow(
+          pass, round == 0 ? this->Own->StartRays(pass, some) : std::move(arrived), sharp, picture, ofRound);
+      },
+      OfPart(monitor, 1.0 * some.begin / picture.height, 1.0 * some.end / picture.height));
+  }
 }
 
 Picture PictureInBlocks::Take(const Camera& camera, const std::array<int, 2>& size, const Monitor& monitor)
 {
-  const double seen = this->Lights > 0 ? 0.5 : 0.0;
+  const double seen = this->Shadows.AreThere() ? 0.5 : 0.0;
   this->FindSources(camera, OfPart(monitor, 0.0, seen));
   Picture picture = Nothing(size);
   if (this->InRounds)

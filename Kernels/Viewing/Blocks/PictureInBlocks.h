@@ -4,24 +4,37 @@
 #include "Distribution/BlockPartition.h"
 #include "Distribution/Communicator.h"
 #include "Distribution/Rounds.h"
+#include "Viewing/Blocks/ShadowsInBlocks.h"
 #include "Viewing/MediumRayCaster.h"
 #include "Viewing/Rays/Picture.h"
 #include "Viewing/Scene/Camera.h"
 
 #include <array>
+#include <cstddef>
 #include <optional>
 #include <vector>
 
 namespace tyndall
 {
+/// What ranks work on at once beside their blocks, at most: what that takes does not grow with the medium, the picture
+/// or the number of ranks.
+struct WorkAtOnce
+{
+  std::size_t voxels = ShadowsInBlocks::PortionVoxels; ///< of one block, to which shadow rays are followed
+  /// Of pixels, on all ranks together, that go from rank to rank, but at least those of four rows; fewer where a device
+  /// has no room for them. What is split off them comes besides. 140 bytes each.
+  std::size_t rays = 131072;
+};
+
 /// A rank's part of a picture of a medium that is spread over ranks by blocks (numerics.md, section 14.9). None holds
 /// another's voxels, but for layers round its own.
 ///
 ///  - Rays that go straight on: each rank casts its block, and pictures are laid over each other (BlockPixels.h).
-///  - Rays that bend, or meet a table: they go from rank to rank, in rounds, as photons do. A step is taken where its
-///    middle is, a ray begins where it enters the grid and ends where it leaves it: by the numbers that the whole has.
+///  - Rays that bend, or meet a table: they go from rank to rank, in rounds, as photons do, those of some rows
+///    after others. A step is taken where its middle is, a ray begins where it enters the grid and ends where
+///    it leaves it: by the numbers that the whole has.
 ///  - Shadow rays: each rank finds the optical length, in its block, of the ways from other blocks' voxels to a light;
-///    these are added up.
+///    these are added up (ShadowsInBlocks.h).
 ///
 /// All ranks construct it and call Take together, also one without voxels.
 class PictureInBlocks
@@ -34,8 +47,9 @@ public:
   /// @param communicator, partition, held  must stay
   /// @param held  by rank, the voxels that its arrays have
   /// @param own   of this rank's block, whose medium has its `held`; null: it has no voxels
+  /// @param atOnce  the same on all ranks
   PictureInBlocks(Communicator& communicator, const BlockPartition& partition, const std::vector<VoxelBox>& held,
-    MediumRayCaster* own);
+    MediumRayCaster* own, const WorkAtOnce& atOnce = {});
 
   /// Whether rays go from rank to rank: the same on all. What one shows is not dimmed by others then.
   bool GoesInRounds() const { return this->InRounds; }
@@ -50,7 +64,6 @@ public:
 
 private:
   void FindSources(const Camera& camera, const Monitor& monitor);
-  void FollowLight(int light, const Camera& camera, const Monitor& monitor);
   void CastInRounds(const Camera& camera, bool sharp, Picture& picture, const Monitor& monitor);
   std::vector<RayOnItsWay> Follow(
     const MediumRayCaster::Pass& pass, std::vector<RayOnItsWay> rays, bool sharp, Picture& picture, const Monitor& of);
@@ -58,11 +71,11 @@ private:
 
   Communicator& Others;
   const BlockPartition& Partition;
-  const std::vector<VoxelBox>& Held;
   MediumRayCaster* Own;
+  ShadowsInBlocks Shadows;
+  std::size_t RaysAtOnce;
   std::optional<Rounds> Between;
   bool InRounds = false, ByMoments = false;
-  int Lights = 0; ///< whose shadow rays are followed
 };
 
 inline const int* WhereIs(const RayOnItsWay& ray)

@@ -163,19 +163,34 @@ void RayCasting::OfRounds(ViewInfo& view)
   view.size = view.block.whole;
 }
 
-std::vector<RayOnItsWay> RayCasting::Start(const ViewSettings& settings, ViewInfo view, const OpticsInfo& optics) const
+/// Of each ray as long as it is in a block.
+std::size_t RayCasting::MostSplitOff(const ViewSettings& settings) const
+{
+  return (this->Traits.Reflects(settings) ? 1 : 0) + (this->Traits.hasTable ? 1 : 0);
+}
+
+std::size_t RayCasting::CountThatFits(const ViewSettings& settings) const
+{
+  const std::size_t limit = this->TheDevice.MemoryLimit(), taken = this->TheDevice.BytesInUse();
+  const std::size_t kinds =
+    1 + this->MostSplitOff(settings); // of rays of a pixel; each has room for all that it may split
+  return std::max<std::size_t>((limit - std::min(taken, limit)) / (4 * kinds * kinds * sizeof(RayOnItsWay)), 1);
+}
+
+std::vector<RayOnItsWay> RayCasting::Start(
+  const ViewSettings& settings, ViewInfo view, const OpticsInfo& optics, const PixelRows& asked) const
 {
   const std::array<int, 2> packet = PacketPixels(this->Traits.packetWidth);
   cl::Kernel start = this->TheDevice.Kernel(
     "start_rays", kernel_source::RayRounds, this->BentOptions(settings) + Define("ENDS", 0) + Define("ROUNDS", 1));
-  const std::size_t width = Count(view.picture.s[0]), height = Count(view.picture.s[1]);
+  const std::size_t width = Count(view.picture.s[0]), end = Count(asked.end);
   const std::size_t rows =
     RoundUp<std::size_t>(std::max<std::size_t>(PixelsStartedAtOnce / width, 1), Count(packet[1]));
-  Buffer<RayOnItsWay> started(this->TheDevice, std::min(rows, height) * width, "rays that set off");
+  Buffer<RayOnItsWay> started(this->TheDevice, std::min(rows, end - Count(asked.begin)) * width, "rays that set off");
   std::vector<RayOnItsWay> ofRows(started.Size()), all;
-  for (std::size_t row = 0; row < height; row += rows)
+  for (std::size_t row = Count(asked.begin); row < end; row += rows)
   {
-    const std::size_t count = std::min(rows, height - row);
+    const std::size_t count = std::min(rows, end - row);
     view.picture.s[2] = static_cast<int>(row);
     With(start, view, optics, this->Samples.Bending(), started);
     this->TheDevice.Queue().enqueueNDRangeKernel(start, cl::NullRange,
@@ -196,10 +211,10 @@ std::vector<RayOnItsWay> RayCasting::March(const ViewSettings& settings, const V
   const Backdrop& b = this->Behind;
   cl::Kernel march = this->TheDevice.Kernel(
     "march_rays", kernel_source::RayRounds, this->BentOptions(settings) + Define("ENDS", 0) + Define("ROUNDS", 1));
-  const std::size_t split = (this->Traits.Reflects(settings) ? 1 : 0) + (this->Traits.hasTable ? 1 : 0);
   const std::size_t width = Count(this->Traits.packetWidth);
   const Buffer<RayOnItsWay> onDevice(this->TheDevice, rays, "rays on their way");
-  const Buffer<RayOnItsWay> born(this->TheDevice, split * rays.size(), "rays that are split off");
+  const Buffer<RayOnItsWay> born(
+    this->TheDevice, this->MostSplitOff(settings) * rays.size(), "rays that are split off");
   Batches batches;
   batches.count = rays.size();
   batches.whole = 4 * width;

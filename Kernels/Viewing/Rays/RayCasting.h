@@ -11,11 +11,18 @@
 #include "Viewing/Scene/ViewSettings.h"
 #include "Viewing/Scene/ViewTraits.h"
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
 namespace tyndall
 {
+/// Rows of a picture: from begin on, before end.
+struct PixelRows
+{
+  int begin, end;
+};
+
 /// Rays through every pixel of a picture, straight or bent: they gather what samples shine and what is behind.
 class RayCasting
 {
@@ -55,8 +62,13 @@ public:
   // Rays that bend, or meet a table or a surface, through a block of a larger grid, where they go from block to block.
   // A view and optics of OfRounds.
   static void OfRounds(ViewInfo& view);
-  /// Those through pixels that enter the whole here, or show the background beside it.
-  std::vector<RayOnItsWay> Start(const ViewSettings& settings, ViewInfo view, const OpticsInfo& optics) const;
+  /// Rays of pixels that may be here at once, with all that may be split off them, for a quarter of the memory that the
+  /// device has left; at least one.
+  std::size_t CountThatFits(const ViewSettings& settings) const;
+  /// @param rows  to the picture's end, or multiples of four
+  /// @return those through their pixels that enter the whole here, or show the background beside it.
+  std::vector<RayOnItsWay> Start(
+    const ViewSettings& settings, ViewInfo view, const OpticsInfo& optics, const PixelRows& rows) const;
   /// Takes each as far as the block goes, or to its end.
   /// @return those that were split off on the way
   /// @throws Aborted
@@ -73,6 +85,7 @@ public:
 private:
   std::string Options(const ViewSettings& settings) const;
   std::string BentOptions(const ViewSettings& settings) const;
+  std::size_t MostSplitOff(const ViewSettings& settings) const;
   cl::Kernel Kernel(const ViewSettings& settings, bool ofBlock) const;
   const Buffer<cl_float4>& Environment() const;
 

@@ -107,37 +107,9 @@ void SeenSources::SeeLights(const Camera& camera, double stepSize, const SceneOn
     [&](std::size_t first, std::size_t count) { InPatches(first, count, rows, launch); });
 }
 
-/// Whether the box of all ways from these voxels to the light meets this block.
-bool SeenSources::MayBeOnTheWay(const SmallLight& light, const VoxelBox& asked) const
-{
-  const GridBlock& block = this->Block->block;
-  bool may = asked.VoxelCount() > 0;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    double low = asked.first[axis], high = low + asked.size[axis];
-    if (light.place.s[3] > 0.0f)
-    {
-      const double place = light.place.s[axis] / block.whole.spacing[axis];
-      low = std::min(low, place - 1.0); // rounding
-      high = std::max(high, place + 1.0);
-    }
-    else
-    {
-      low = light.axis.s[axis] > 0.0f ? 0.0 : low;
-      high = light.axis.s[axis] < 0.0f ? block.whole.size[axis] : high;
-    }
-    may = may && low < block.end[axis] && high > block.begin[axis];
-  }
-  return may;
-}
-
 std::vector<float> SeenSources::DepthsTowards(
   int light, const VoxelBox& asked, double stepSize, const PackedSamples& samples, const Monitor& monitor)
 {
-  if (!this->MayBeOnTheWay(this->Small[static_cast<std::size_t>(light)], asked))
-  {
-    return {};
-  }
   const std::array<int, 3>& size = asked.size;
   ShadowInfo info = this->InfoOfVoxels();
   info.bricks = Int4(samples.BrickCount());
@@ -163,14 +135,15 @@ std::vector<float> SeenSources::DepthsTowards(
   return depths.Read();
 }
 
-void SeenSources::SeeLight(int light, const Camera& camera, const std::vector<float>& depths,
+void SeenSources::SeeLight(int light, const Camera& camera, const VoxelBox& part, const std::vector<float>& depths,
   const SceneOnDevice& scene, const PackedSamples& samples)
 {
-  const std::array<int, 3>& size = this->Traits.grid.size;
   ShadowInfo info = this->MakeShadowInfo(camera);
   info.bricks = Int4(samples.BrickCount());
   info.firstLight = light;
   info.lights = light + 1;
+  info.firstSlice = part.first[2] - this->Block->block.first[2];
+  info.firstRow = part.first[1] - this->Block->block.first[1];
   cl::Kernel see = this->TheDevice.Kernel("see_lights", kernel_source::ShadowRays, this->Options(1.0, true));
   const Buffer<float> given(this->TheDevice, depths, "optical lengths towards a light");
   With(see, info, this->Lights, scene.arrays[1].Handle(), scene.meanCosines, scene.phaseRows, samples.Samples(),
@@ -178,7 +151,7 @@ void SeenSources::SeeLight(int light, const Camera& camera, const std::vector<fl
     this->OfLights);
   const int width = this->Traits.packetWidth;
   this->TheDevice.Queue().enqueueNDRangeKernel(see, cl::NullRange,
-    cl::NDRange(RoundUp<std::size_t>(size[0], 4 * width) / Count(width), Count(size[1]), Count(size[2])),
+    cl::NDRange(RoundUp<std::size_t>(part.size[0], 4 * width) / Count(width), Count(part.size[1]), Count(part.size[2])),
     cl::NDRange(4, 1, 1));
   this->TheDevice.Finish();
 }

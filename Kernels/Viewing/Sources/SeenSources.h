@@ -38,17 +38,18 @@ public:
     const Monitor& monitor);
   void SeeMoments(const Camera& camera, const SceneOnDevice& scene);
 
-  // The same as SeeLights light by light, where the medium is one of several blocks of a grid: what these find, each of
-  // its own part of the way, is added up in between.
-  int CountOfLights() const { return this->LightCount; }
-  /// Of a light: optical length in this block of the ways to it from voxels of the whole, 3 each. Empty: this block is
-  /// on none of them.
+  // The same as SeeLights light by light and part by part, where the medium is one of several blocks of a grid: what
+  // these find, each of its own part of the way, is added up in between.
+  const std::vector<SmallLight>& LightsOfBlock() const { return this->Small; }
+  /// Of a light: optical length in this block of the ways to it from voxels of the whole, 3 each.
   /// @throws Aborted
   std::vector<float> DepthsTowards(
     int light, const VoxelBox& asked, double stepSize, const PackedSamples& samples, const Monitor& monitor);
-  /// @param depths  towards the light from each voxel of the medium
-  void SeeLight(int light, const Camera& camera, const std::vector<float>& depths, const SceneOnDevice& scene,
-    const PackedSamples& samples);
+  /// @param part    voxels of the whole that follow each other in the medium: some of its rows along x in one slice, or
+  ///   some of its slices
+  /// @param depths  towards the light from each of them
+  void SeeLight(int light, const Camera& camera, const VoxelBox& part, const std::vector<float>& depths,
+    const SceneOnDevice& scene, const PackedSamples& samples);
 
   /// 6 per voxel: what the lights scatter towards the eye, and their irradiance.
   const Buffer<float>& Direct() const { return this->OfLights; }
@@ -59,14 +60,13 @@ private:
   ShadowInfo InfoOfVoxels() const;
   ShadowInfo MakeShadowInfo(const Camera& camera) const;
   std::string Options(double steps, bool given) const;
-  bool MayBeOnTheWay(const SmallLight& light, const VoxelBox& asked) const;
 
   Device& TheDevice;
   const ViewTraits& Traits;
   const BlockOfScene* Block;
   int LightCount = 0;
-  std::vector<SmallLight> Small; ///< of a block
-  Buffer<float> AureoleTables;   ///< where moments are shown and g does not vary
+  std::vector<SmallLight> Small;
+  Buffer<float> AureoleTables; ///< where moments are shown and g does not vary
   Buffer<float> OfLights, OfMoments;
   Buffer<SmallLight> Lights;
 };

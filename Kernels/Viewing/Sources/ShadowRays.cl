@@ -256,7 +256,7 @@ __kernel void find_depths(ShadowInfo info, __global const SmallLight* restrict l
 //   direct  6 per voxel: sum of irradiance times phase function, W / (length^2 sr), and sum of irradiance, W /
 //           length^2; with AUREOLE instead what scattering forwards more than once adds, W / (length^2 sr). Added to
 //           what is there where firstLight is not the first
-//   given   with GIVEN: 3 per voxel, optical lengths towards the only light
+//   given   with GIVEN: 3 for each voxel from the first row of the launch on, optical lengths towards the only light
 __kernel void see_lights(ShadowInfo info, __global const SmallLight* restrict lights,
   __global const float* restrict scattering, __global const float* restrict mean_cosines,
   __global const float* restrict phase_rows, __global const float4* restrict samples,
@@ -317,7 +317,8 @@ __kernel void see_lights(ShadowInfo info, __global const SmallLight* restrict li
       continue;
     }
 #if GIVEN
-    const rgb depths = triples_of(given, voxel, 3, 0);
+    const int before = info.size.x * (info.firstRow + info.size.y * info.firstSlice);
+    const rgb depths = triples_of(given, voxel - before, 3, 0);
 #else
     const rgb depths = depths_on_the_way(&info, &way, centre, samples, extinctions, bricks);
 #endif

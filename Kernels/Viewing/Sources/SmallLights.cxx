@@ -3,6 +3,7 @@
 #include "Numerics/Constants.h"
 #include "Numerics/Vectors.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <glm/geometric.hpp>
@@ -54,5 +55,27 @@ std::vector<SmallLight> SmallLights(const std::vector<Light>& lights, const Grid
     }
   }
   return small;
+}
+
+bool MayLeadThrough(const SmallLight& light, const Grid& grid, const VoxelBox& from, const VoxelBox& block)
+{
+  bool may = from.VoxelCount() > 0 && block.VoxelCount() > 0;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    double low = from.first[axis], high = low + from.size[axis];
+    if (light.place.s[3] > 0.0f)
+    {
+      const double place = light.place.s[axis] / grid.spacing[axis];
+      low = std::min(low, place - 1.0); // rounding
+      high = std::max(high, place + 1.0);
+    }
+    else
+    {
+      low = light.axis.s[axis] > 0.0f ? 0.0 : low;
+      high = light.axis.s[axis] < 0.0f ? grid.size[axis] : high;
+    }
+    may = may && low < block.first[axis] + block.size[axis] && high > block.first[axis];
+  }
+  return may;
 }
 }

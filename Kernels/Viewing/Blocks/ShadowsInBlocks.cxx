@@ -1,0 +1,187 @@
+#include "Viewing/Blocks/ShadowsInBlocks.h"
+
+#include "Device/Errors.h"
+#include "Viewing/Sources/SmallLights.h"
+
+#include <algorithm>
+#include <functional>
+#include <limits>
+#include <utility>
+
+namespace tyndall
+{
+namespace
+{
+// Not one of those that Rounds.h and BoxExchange.cxx take.
+constexpr int DepthsTag = 29997;
+constexpr int ReceiptTag = 29994;
+
+/// Boxes that follow each other in a box: of some of its slices, or of some rows of one.
+std::vector<VoxelBox> PortionsOf(const VoxelBox& box, std::size_t voxels)
+{
+  std::vector<VoxelBox> portions;
+  const auto row = static_cast<std::size_t>(box.size[0]), slice = row * static_cast<std::size_t>(box.size[1]);
+  if (slice == 0)
+  {
+    return portions;
+  }
+  const int slices = static_cast<int>(std::max<std::size_t>(voxels / slice, 1));
+  const int rows = slice > voxels ? static_cast<int>(std::max<std::size_t>(voxels / row, 1)) : box.size[1];
+  for (int k = 0; k < box.size[2]; k += slices)
+  {
+    for (int j = 0; j < box.size[1]; j += rows)
+    {
+      portions.push_back({ { box.first[0], box.first[1] + j, box.first[2] + k },
+        { box.size[0], std::min(rows, box.size[1] - j), std::min(slices, box.size[2] - k) } });
+    }
+  }
+  return portions;
+}
+
+/// As of the ranks that have any.
+std::vector<SmallLight> LightsOfAll(Communicator& communicator, const std::vector<SmallLight>* own)
+{
+  constexpr std::size_t numbers = 12;
+  static_assert(sizeof(SmallLight) == numbers * sizeof(float));
+  const double unknown = -std::numeric_limits<double>::infinity();
+  const double count = own ? static_cast<double>(own->size()) : unknown;
+  const std::vector<double> counts = communicator.Largest({ count, own ? -count : unknown });
+  if (counts[0] > unknown && counts[0] != -counts[1])
+  {
+    throw InvalidInput("Ranks have other lights than each other: give all of them the same.");
+  }
+  std::vector<SmallLight> lights(counts[0] > unknown ? static_cast<std::size_t>(counts[0]) : 0);
+  std::vector<double> said(numbers * lights.size(), unknown);
+  if (own && !own->empty())
+  {
+    const float* const first = own->front().place.s;
+    std::copy(first, first + said.size(), said.begin());
+  }
+  said = communicator.Largest(said);
+  if (!lights.empty())
+  {
+    std::transform(said.begin(), said.end(), lights.front().place.s, [](double x) { return static_cast<float>(x); });
+  }
+  return lights;
+}
+}
+
+ShadowsInBlocks::ShadowsInBlocks(Communicator& communicator, const BlockPartition& partition,
+  const std::vector<VoxelBox>& held, MediumRayCaster* own, std::size_t portion)
+  : Others(communicator)
+  , Partition(partition)
+  , Held(held)
+  , Own(own)
+  , VoxelsAtOnce(portion)
+  , Lights(LightsOfAll(communicator, own ? &own->LightsOfBlock() : nullptr))
+{
+}
+
+bool ShadowsInBlocks::LeadsThrough(const Portion& portion, int rank) const
+{
+  return MayLeadThrough(this->Lights[static_cast<std::size_t>(portion.light)], this->Partition.whole, portion.voxels,
+    this->Partition.blocks[static_cast<std::size_t>(rank)]);
+}
+
+/// Until the last portion that was sent has been received.
+void ShadowsInBlocks::AwaitReceipt()
+{
+  if (const std::optional<int> receiver = std::exchange(this->Receiver, std::nullopt))
+  {
+    this->Others.Receive<char>(*receiver, ReceiptTag);
+  }
+}
+
+/// Nothing where something has gone wrong.
+void ShadowsInBlocks::SendDepths(const Portion& portion, const Monitor& monitor)
+{
+  if (!this->LeadsThrough(portion, this->Others.Rank()))
+  {
+    return;
+  }
+  std::vector<float> depths;
+  this->Failure.Attempt([&] { depths = this->Own->DepthsTowards(portion.light, portion.voxels, monitor); });
+  this->AwaitReceipt();
+  this->Others.Send(portion.rank, DepthsTag, depths);
+  if (portion.rank != this->Others.Rank())
+  {
+    this->Receiver = portion.rank;
+  }
+}
+
+/// Of a portion of this rank's voxels, when all have sent what they have found.
+void ShadowsInBlocks::SeeLight(const Portion& portion, const Camera& camera)
+{
+  std::vector<float> depths(3 * portion.voxels.VoxelCount(), 0.0f);
+  for (int rank = 0; rank < this->Others.Ranks(); ++rank)
+  {
+    if (!this->LeadsThrough(portion, rank))
+    {
+      continue;
+    }
+    const std::vector<float> part = this->Others.Receive<float>(rank, DepthsTag);
+    if (rank != this->Others.Rank())
+    {
+      this->Others.Send<char>(rank, ReceiptTag, {});
+    }
+    if (part.size() == depths.size())
+    {
+      std::transform(part.begin(), part.end(), depths.begin(), depths.begin(), std::plus<float>());
+    }
+    else
+    {
+      this->Failure.broken = true; // there
+    }
+  }
+  this->Failure.Attempt([&] { this->Own->SeeLight(portion.light, camera, portion.voxels, depths); });
+}
+
+void ShadowsInBlocks::Follow(int light, const Camera& camera, const Monitor& monitor)
+{
+  this->Failure = {};
+  const int ranks = this->Others.Ranks();
+  for (int rank = 0; this->Own && rank < ranks; ++rank)
+  {
+    const auto number = static_cast<std::size_t>(rank);
+    if (this->Partition.blocks[number].VoxelCount() == 0)
+    {
+      continue;
+    }
+    const std::vector<VoxelBox> portions = PortionsOf(this->Held[number], this->VoxelsAtOnce);
+    const double each = 1.0 / (1.0 * ranks * static_cast<double>(portions.size()));
+    double done = 1.0 * rank / ranks;
+    for (const VoxelBox& voxels : portions)
+    {
+      const Portion portion = { light, rank, voxels };
+      this->SendDepths(portion, OfPart(monitor, done, done + each));
+      done += each;
+      if (rank == this->Others.Rank())
+      {
+        this->SeeLight(portion, camera);
+      }
+    }
+  }
+  this->AwaitReceipt();
+  this->Others.Together([&] { this->Failure.Throw(); });
+}
+
+void ShadowsInBlocks::Find(const Camera& camera, const Monitor& monitor)
+{
+  if (!this->AreThere())
+  {
+    return;
+  }
+  this->Others.Together([&] {
+    if (this->Own)
+    {
+      this->Own->PackForShadowRays();
+    }
+  });
+  const double lights = static_cast<double>(this->Lights.size());
+  for (std::size_t light = 0; light < this->Lights.size(); ++light)
+  {
+    this->Follow(static_cast<int>(light), camera,
+      OfPart(monitor, static_cast<double>(light) / lights, static_cast<double>(light + 1) / lights));
+  }
+}
+}
