@@ -1,5 +1,7 @@
 #include "Viewing/Blocks/PictureInBlocks.h"
 
+#include "Distribution/MessageTags.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,8 +12,7 @@ namespace tyndall
 {
 namespace
 {
-constexpr int DepthsTag = 29997; ///< not one of those that Rounds.h and BoxExchange.cxx take
-constexpr int TileEdge = 4;      ///< pixels of rays that are marched side by side
+constexpr int TileEdge = 4; ///< pixels of rays that are marched side by side
 
 /// Nothing: what a block shows that is nowhere seen.
 Picture Nothing(const std::array<int, 2>& size)
@@ -93,12 +94,12 @@ void PictureInBlocks::FollowLight(int light, const Camera& camera, const Monitor
   });
   for (std::size_t rank = 0; rank < found.size(); ++rank)
   {
-    this->Others.Send(static_cast<int>(rank), DepthsTag, std::exchange(found[rank], {}));
+    this->Others.Send(static_cast<int>(rank), MessageTag::DepthsOfLamps, std::exchange(found[rank], {}));
   }
   std::vector<float> depths(3 * this->Held[static_cast<std::size_t>(this->Others.Rank())].VoxelCount(), 0.0f);
   for (int rank = 0; rank < this->Others.Ranks(); ++rank)
   {
-    const std::vector<float> part = this->Others.Receive<float>(rank, DepthsTag);
+    const std::vector<float> part = this->Others.Receive<float>(rank, MessageTag::DepthsOfLamps);
     for (std::size_t i = 0; i < part.size(); ++i)
     {
       depths[i] += part[i];
