@@ -1,7 +1,11 @@
 #include "Ranks/ControllerCommunicator.h"
 
 #include "Device/Errors.h"
+#include "Distribution/MessageTags.h"
 
+#ifdef TYNDALL_HAS_DIY
+#include "Ranks/RankExchange.h"
+#endif
 #ifdef TYNDALL_HAS_MPI
 #include "vtkMPIController.h"
 #endif
@@ -20,7 +24,6 @@ namespace tyndall
 namespace
 {
 constexpr int FirstOfAll = 1000000;           ///< tags, behind those of VTK and of the other messages of ranks
-constexpr int TagsOfOne = 30010;              ///< as many as Communicator.h and Communicator.cxx have
 constexpr int Conversations = 64, Works = 16; ///< until tags come again
 constexpr double Grace = 1.0; ///< seconds in which what others have sent before they stopped still arrives
 
@@ -49,7 +52,7 @@ ControllerCommunicator::ControllerCommunicator(
   : Controller(controller)
   , Patience(patience)
   , Stopped(std::move(stopped))
-  , FirstTag(FirstOfAll + TagsOfOne * conversation)
+  , FirstTag(FirstOfAll + MessageTag::Count * conversation)
 {
 }
 
@@ -143,6 +146,14 @@ std::vector<char> ControllerCommunicator::Take(int from, int tag)
     std::this_thread::sleep_for(std::chrono::microseconds(waited.count() < 1e-3 ? 0 : 50));
   }
 }
+
+#ifdef TYNDALL_HAS_DIY
+std::vector<std::vector<char>> ControllerCommunicator::Swap(
+  const std::vector<int>& with, std::vector<std::vector<char>> parcels)
+{
+  return ExchangeByDIY(this->Controller, with, std::move(parcels), this->Patience);
+}
+#endif
 #endif
 
 namespace

@@ -34,7 +34,7 @@ std::unique_ptr<Communicator> CommunicatorOf(vtkMultiProcessController* ranks, s
 std::unique_ptr<Communicator> CommunicatorAtEnd(vtkMultiProcessController* ranks);
 
 #ifdef TYNDALL_HAS_MPI
-/// By VTK's controller of MPI.
+/// By VTK's controller of MPI; exchanges by DIY, where the host has it.
 class ControllerCommunicator : public Communicator
 {
 public:
@@ -52,6 +52,9 @@ public:
 protected:
   void Give(int to, int tag, std::vector<char> bytes) override;
   std::vector<char> Take(int from, int tag) override;
+#ifdef TYNDALL_HAS_DIY
+  std::vector<std::vector<char>> Swap(const std::vector<int>& with, std::vector<std::vector<char>> parcels) override;
+#endif
 
 private:
   /// A message that is still being sent: its memory must stay.

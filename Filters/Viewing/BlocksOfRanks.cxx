@@ -1,5 +1,6 @@
 #include "BlocksOfRanks.h"
 
+#include "Distribution/MessageTags.h"
 #include "Ranks/PieceBlocks.h"
 #include "Viewing/Blocks/BlockOrder.h"
 #include "Viewing/Scene/BlockOfScene.h"
@@ -11,11 +12,6 @@
 
 namespace tyndall
 {
-namespace
-{
-constexpr int PixelsTag = 29993; ///< not one of those that ShadowsInBlocks.cxx takes
-}
-
 std::vector<double> SaidByAll(Communicator& communicator, const std::vector<double>& own)
 {
   std::vector<double> all(own.size() * static_cast<std::size_t>(communicator.Ranks()), 0.0);
@@ -135,13 +131,13 @@ std::optional<BlocksOfRanks::Seen> BlocksOfRanks::Exchange(
     const BlockPixels mine = PartIn(rectOf(partner, 5), own);
     if (!mine.rect.IsEmpty())
     {
-      this->Others.Send(static_cast<int>(partner), PixelsTag, mine.pixels);
+      this->Others.Send(static_cast<int>(partner), MessageTag::Pixels, mine.pixels);
     }
     BlockPixels theirs;
     theirs.rect = Overlap(wanted, rectOf(partner, 1));
     if (!theirs.rect.IsEmpty())
     {
-      theirs.pixels = this->Others.Receive<BlockPixel>(static_cast<int>(partner), PixelsTag);
+      theirs.pixels = this->Others.Receive<BlockPixel>(static_cast<int>(partner), MessageTag::Pixels);
       from.push_back(partner);
       pixels.push_back(std::move(theirs));
     }

@@ -1,5 +1,6 @@
 #include "PictureOfBlocks.h"
 
+#include "Distribution/MessageTags.h"
 #include "Ranks/Ranks.h"
 #include "Ranks/WholeImage.h"
 #include "Viewing/ToneMapping.h"
@@ -12,8 +13,6 @@ namespace tyndall
 {
 namespace
 {
-constexpr int ListsTag = 29992; ///< not one of those that BlocksOfRanks.cxx takes
-
 std::string JoinedLines(const std::vector<std::string>& lines)
 {
   std::string joined;
@@ -160,14 +159,14 @@ PixelRect Around(const PixelRect& a, const PixelRect& b)
 std::vector<std::string> OnAllLists(Communicator& communicator, const std::vector<std::string>& own, bool says)
 {
   const std::string said = JoinedLines(own);
-  communicator.Send<char>(0, ListsTag, { said.begin(), said.end() });
-  communicator.Send<char>(0, ListsTag, { says ? '1' : '0' });
+  communicator.Send<char>(0, MessageTag::ListsOfWords, { said.begin(), said.end() });
+  communicator.Send<char>(0, MessageTag::ListsOfWords, { says ? '1' : '0' });
   std::vector<std::string> common;
   bool any = false;
   for (int rank = 0; communicator.Rank() == 0 && rank < communicator.Ranks(); ++rank)
   {
-    const std::vector<std::string> list = LinesOf(communicator.Receive<char>(rank, ListsTag));
-    if (communicator.Receive<char>(rank, ListsTag)[0] == '0')
+    const std::vector<std::string> list = LinesOf(communicator.Receive<char>(rank, MessageTag::ListsOfWords));
+    if (communicator.Receive<char>(rank, MessageTag::ListsOfWords)[0] == '0')
     {
       continue;
     }

@@ -1,5 +1,7 @@
 #include "Distribution/BoxExchange.h"
 
+#include "Distribution/MessageTags.h"
+
 #include <algorithm>
 #include <utility>
 
@@ -7,9 +9,6 @@ namespace tyndall
 {
 namespace
 {
-constexpr int ValuesTag = 29999;  ///< the last of those that Communicator.h leaves to others
-constexpr int NumbersTag = 29996; ///< beside those of GhostCells.cxx and Rounds.h
-
 /// Calls act(place) with the number of the first value of each row along x of a part, in an array over a box.
 template <class Act>
 void ForRows(const VoxelBox& box, const VoxelBox& part, int components, const Act& act)
@@ -64,14 +63,14 @@ std::vector<std::vector<std::size_t>> NumbersOfEach(
   {
     if (partition.blocks[rank].VoxelCount() > 0)
     {
-      communicator.Send(rank, NumbersTag, toEach[rank]);
+      communicator.Send(rank, MessageTag::NumbersOfEach, toEach[rank]);
     }
   }
   for (int rank = 0; rank < communicator.Ranks(); ++rank)
   {
     if (partition.blocks[rank].VoxelCount() > 0)
     {
-      found[rank] = communicator.Receive<std::size_t>(rank, NumbersTag);
+      found[rank] = communicator.Receive<std::size_t>(rank, MessageTag::NumbersOfEach);
     }
   }
   return found;
@@ -87,7 +86,7 @@ std::vector<float> ValuesInBox(Communicator& communicator, const BlockPartition&
   {
     if (const VoxelBox theirs = Common(block, wanted[rank]); rank != self && theirs.VoxelCount() > 0)
     {
-      communicator.Send(rank, ValuesTag, PartOf(own, block, theirs, components));
+      communicator.Send(rank, MessageTag::ValuesOfBoxes, PartOf(own, block, theirs, components));
     }
   }
   std::vector<float> values(box.VoxelCount() * components);
@@ -95,7 +94,8 @@ std::vector<float> ValuesInBox(Communicator& communicator, const BlockPartition&
   {
     if (const VoxelBox mine = Common(partition.blocks[rank], box); mine.VoxelCount() > 0)
     {
-      PutPart(rank == self ? PartOf(own, block, mine, components) : communicator.Receive<float>(rank, ValuesTag),
+      PutPart(rank == self ? PartOf(own, block, mine, components)
+                           : communicator.Receive<float>(rank, MessageTag::ValuesOfBoxes),
         values, box, mine, components);
     }
   }
@@ -111,7 +111,7 @@ std::vector<std::int64_t> SumsInBlock(Communicator& communicator, const BlockPar
   {
     if (const VoxelBox theirs = Common(found[self], partition.blocks[rank]); rank != self && theirs.VoxelCount() > 0)
     {
-      communicator.Send(rank, ValuesTag, TakeFrom(values, found[self], theirs, 1));
+      communicator.Send(rank, MessageTag::ValuesOfBoxes, TakeFrom(values, found[self], theirs, 1));
     }
   }
   std::vector<std::int64_t> sums(block.VoxelCount(), 0);
@@ -122,8 +122,9 @@ std::vector<std::int64_t> SumsInBlock(Communicator& communicator, const BlockPar
     {
       continue;
     }
-    const std::vector<std::int64_t> taken =
-      rank == self ? TakeFrom(values, found[self], mine, 1) : communicator.Receive<std::int64_t>(rank, ValuesTag);
+    const std::vector<std::int64_t> taken = rank == self
+      ? TakeFrom(values, found[self], mine, 1)
+      : communicator.Receive<std::int64_t>(rank, MessageTag::ValuesOfBoxes);
     auto from = taken.begin();
     ForRows(block, mine, 1, [&](std::size_t place) {
       for (int x = 0; x < mine.size[0]; ++x)

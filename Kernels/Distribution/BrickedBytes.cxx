@@ -1,5 +1,7 @@
 #include "Distribution/BrickedBytes.h"
 
+#include "Distribution/MessageTags.h"
+
 #include <algorithm>
 
 namespace tyndall
@@ -7,7 +9,6 @@ namespace tyndall
 namespace
 {
 constexpr std::int32_t NotYet = 256; ///< of a brick into which nothing was put
-constexpr int RunsTag = 29995;       ///< not one of those that others take (PathsInBlocks.cxx)
 constexpr std::uint32_t LongestRun = 1u << 24;
 
 /// Numbers and, in the upper bits, one less than how often each comes.
@@ -114,13 +115,14 @@ BrickedBytes BytesOfAll(Communicator& communicator, const BlockPartition& partit
   {
     if (rank != self && gets(rank))
     {
-      communicator.Send(rank, RunsTag, runs);
+      communicator.Send(rank, MessageTag::RunsOfBytes, runs);
     }
   }
   BrickedBytes all(partition.whole.size);
   for (int rank = 0; rank < communicator.Ranks() && gets(self); ++rank)
   {
-    all.Put(partition.blocks[rank], rank == self ? own : NumbersIn(communicator.Receive<std::uint32_t>(rank, RunsTag)));
+    all.Put(partition.blocks[rank],
+      rank == self ? own : NumbersIn(communicator.Receive<std::uint32_t>(rank, MessageTag::RunsOfBytes)));
   }
   return all;
 }

@@ -1,6 +1,7 @@
 #include "Distribution/Communicator.h"
 
 #include "Device/Errors.h"
+#include "Distribution/MessageTags.h"
 
 #include <algorithm>
 #include <exception>
@@ -14,10 +15,6 @@ namespace tyndall
 {
 namespace
 {
-// Sums and agreements have tags of their own, behind those of all else.
-constexpr int SumTag = 30000;
-constexpr int AgreementTag = 30001;
-
 /// What can go wrong, as ranks tell each other. What stands later is told before what stands earlier.
 enum class Trouble : char
 {
@@ -120,8 +117,8 @@ std::vector<double> Communicator::OverRanks(const std::vector<double>& values, c
 {
   if (this->Rank() > 0)
   {
-    this->Send(0, SumTag, values);
-    const std::vector<double> all = this->Receive<double>(0, SumTag);
+    this->Send(0, MessageTag::Sums, values);
+    const std::vector<double> all = this->Receive<double>(0, MessageTag::Sums);
     RequireAsMany(all.size(), values.size());
     return all;
   }
@@ -129,7 +126,7 @@ std::vector<double> Communicator::OverRanks(const std::vector<double>& values, c
   std::size_t most = all.size(), least = all.size();
   for (int rank = 1; rank < this->Ranks(); ++rank)
   {
-    const std::vector<double> ofRank = this->Receive<double>(rank, SumTag);
+    const std::vector<double> ofRank = this->Receive<double>(rank, MessageTag::Sums);
     most = std::max(most, ofRank.size());
     least = std::min(least, ofRank.size());
     std::transform(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(std::min(all.size(), ofRank.size())),
@@ -141,7 +138,7 @@ std::vector<double> Communicator::OverRanks(const std::vector<double>& values, c
   }
   for (int rank = 1; rank < this->Ranks(); ++rank)
   {
-    this->Send(rank, SumTag, all);
+    this->Send(rank, MessageTag::Sums, all);
   }
   RequireAsMany(all.size(), values.size());
   return all;
@@ -161,15 +158,15 @@ std::vector<char> Communicator::Agree(const std::vector<char>& own)
 {
   if (this->Rank() > 0)
   {
-    this->Send(0, AgreementTag, own);
-    return this->Receive<char>(0, AgreementTag);
+    this->Send(0, MessageTag::Agreements, own);
+    return this->Receive<char>(0, MessageTag::Agreements);
   }
   std::vector<char> worst = own;
   int from = 0;
   bool alike = true;
   for (int rank = 1; rank < this->Ranks(); ++rank)
   {
-    const std::vector<char> ofRank = this->Receive<char>(rank, AgreementTag);
+    const std::vector<char> ofRank = this->Receive<char>(rank, MessageTag::Agreements);
     alike = alike && ofRank == own;
     if (ofRank[0] > worst[0])
     {
@@ -185,7 +182,7 @@ std::vector<char> Communicator::Agree(const std::vector<char>& own)
   }
   for (int rank = 1; rank < this->Ranks(); ++rank)
   {
-    this->Send(rank, AgreementTag, worst);
+    this->Send(rank, MessageTag::Agreements, worst);
   }
   return worst;
 }
@@ -208,6 +205,57 @@ void Communicator::Together(const std::function<void()>& work)
   {
     Throw(static_cast<Trouble>(said[0]), std::string(said.begin() + 1, said.end()));
   }
+}
+
+void Communicator::RequireParcels(const std::vector<int>& with, const std::vector<std::vector<char>>& parcels) const
+{
+  std::vector<int> ranks = with;
+  std::sort(ranks.begin(), ranks.end());
+  const bool different = std::adjacent_find(ranks.begin(), ranks.end()) == ranks.end();
+  if (parcels.size() != ranks.size() || !different ||
+    (!ranks.empty() && (ranks.front() < 0 || ranks.back() >= this->Ranks())))
+  {
+    throw std::logic_error("an exchange takes a parcel for each of several different ranks");
+  }
+}
+
+/// What a rank has for itself stays, and does not count.
+std::vector<std::vector<char>> Communicator::CountAndExchange(
+  const std::vector<int>& with, std::vector<std::vector<char>> parcels)
+{
+  const std::size_t own = static_cast<std::size_t>(std::find(with.begin(), with.end(), this->Rank()) - with.begin());
+  std::vector<char> kept;
+  std::vector<int> others = with;
+  if (own < with.size())
+  {
+    kept = std::move(parcels[own]);
+    parcels.erase(parcels.begin() + static_cast<std::ptrdiff_t>(own));
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(own));
+  }
+  this->Counted.messages += others.size();
+  for (const std::vector<char>& parcel : parcels)
+  {
+    this->Counted.bytes += parcel.size();
+  }
+  parcels = this->Swap(others, std::move(parcels));
+  if (own < with.size())
+  {
+    parcels.insert(parcels.begin() + static_cast<std::ptrdiff_t>(own), std::move(kept));
+  }
+  return parcels;
+}
+
+std::vector<std::vector<char>> Communicator::Swap(const std::vector<int>& with, std::vector<std::vector<char>> parcels)
+{
+  for (std::size_t i = 0; i < with.size(); ++i)
+  {
+    this->Give(with[i], MessageTag::Parcels, std::move(parcels[i]));
+  }
+  for (std::size_t i = 0; i < with.size(); ++i)
+  {
+    parcels[i] = this->Take(with[i], MessageTag::Parcels);
+  }
+  return parcels;
 }
 
 void SingleRank::Give(int, int, std::vector<char>)

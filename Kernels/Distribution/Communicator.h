@@ -27,28 +27,47 @@ public:
   virtual int Ranks() const = 0;
 
   /// Does not wait for the other rank. A rank may send to itself: light comes round a periodic axis.
-  /// @param tag  0 to 29999
+  /// @param tag  one of MessageTags.h, or a number from 0 on, less than those
   template <class T>
   void Send(int to, int tag, const std::vector<T>& values)
   {
-    std::vector<char> bytes(values.size() * sizeof(T));
-    if (!bytes.empty())
-    {
-      std::memcpy(bytes.data(), values.data(), bytes.size());
-    }
-    this->CountAndSend(to, tag, std::move(bytes));
+    this->CountAndSend(to, tag, BytesOf(values));
   }
   /// Waits for it.
   template <class T>
   std::vector<T> Receive(int from, int tag)
   {
-    const std::vector<char> bytes = from == this->Rank() ? this->TakeOwn(tag) : this->Take(from, tag);
-    std::vector<T> values(bytes.size() / sizeof(T));
-    if (!bytes.empty())
+    return ValuesOf<T>(from == this->Rank() ? this->TakeOwn(tag) : this->Take(from, tag));
+  }
+
+  /// To each of some ranks a parcel of values, and from each of them one; parcels may be empty. All ranks call it,
+  /// those that have nobody to exchange with as well; a rank names all that name it.
+  /// @param with  different ranks; this one may be among them
+  /// @param pack  makes the parcels, one for each of `with`. Where it throws on one rank, it does on all (Together),
+  ///   and nothing is sent
+  /// @return by the ranks of `with`, whatever comes first
+  template <class T>
+  std::vector<std::vector<T>> Exchange(
+    const std::vector<int>& with, const std::function<std::vector<std::vector<T>>()>& pack)
+  {
+    std::vector<std::vector<char>> bytes;
+    this->Together([&] {
+      std::vector<std::vector<T>> parcels = pack();
+      for (std::vector<T>& parcel : parcels)
+      {
+        bytes.push_back(BytesOf(parcel));
+        parcel = {};
+      }
+      this->RequireParcels(with, bytes);
+    });
+    bytes = this->CountAndExchange(with, std::move(bytes));
+    std::vector<std::vector<T>> arrived;
+    for (std::vector<char>& parcel : bytes)
     {
-      std::memcpy(values.data(), bytes.data(), values.size() * sizeof(T));
+      arrived.push_back(ValuesOf<T>(parcel));
+      parcel = {};
     }
-    return values;
+    return arrived;
   }
 
   /// Added up over the ranks in their order, and the largest of all ranks: the same on each, value by value. All ranks
@@ -69,12 +88,40 @@ protected:
   virtual void Give(int to, int tag, std::vector<char> bytes) = 0;
   virtual std::vector<char> Take(int from, int tag) = 0;
 
+  /// An exchange with others: all ranks call it at once, just after they agreed that nothing has gone wrong. Here it is
+  /// done by messages.
+  /// @param with  none of them this rank
+  virtual std::vector<std::vector<char>> Swap(const std::vector<int>& with, std::vector<std::vector<char>> parcels);
+
 private:
+  template <class T>
+  static std::vector<char> BytesOf(const std::vector<T>& values)
+  {
+    std::vector<char> bytes(values.size() * sizeof(T));
+    if (!bytes.empty())
+    {
+      std::memcpy(bytes.data(), values.data(), bytes.size());
+    }
+    return bytes;
+  }
+  template <class T>
+  static std::vector<T> ValuesOf(const std::vector<char>& bytes)
+  {
+    std::vector<T> values(bytes.size() / sizeof(T));
+    if (!values.empty())
+    {
+      std::memcpy(values.data(), bytes.data(), values.size() * sizeof(T));
+    }
+    return values;
+  }
+
   using Joined = std::function<double(double, double)>;
   std::vector<double> OverRanks(const std::vector<double>& values, const Joined& join);
   std::vector<char> Agree(const std::vector<char>& own);
   void CountAndSend(int to, int tag, std::vector<char> bytes);
   std::vector<char> TakeOwn(int tag);
+  void RequireParcels(const std::vector<int>& with, const std::vector<std::vector<char>>& parcels) const;
+  std::vector<std::vector<char>> CountAndExchange(const std::vector<int>& with, std::vector<std::vector<char>> parcels);
 
   Traffic Counted;
   std::map<int, std::deque<std::vector<char>>> ToItself; ///< by tag

@@ -1,6 +1,7 @@
 #include "Distribution/GhostCells.h"
 
 #include "Distribution/BlockPartition.h"
+#include "Distribution/MessageTags.h"
 
 #include <algorithm>
 #include <iterator>
@@ -10,8 +11,6 @@ namespace tyndall
 {
 namespace
 {
-constexpr int GhostTag = 29997; ///< beside those of BoxExchange.cxx and PhotonsInBlocks.cxx
-
 /// Adds the places of a part's cells in an array over a box.
 void AddPlaces(const VoxelBox& box, const VoxelBox& part, std::vector<std::size_t>& places)
 {
@@ -72,11 +71,11 @@ void GhostCells::Exchange(Value* values, int arrays, std::size_t stride) const
       std::transform(owned.places.begin(), owned.places.end(), std::back_inserter(message),
         [from](std::size_t place) { return from[place]; });
     }
-    this->Others.Send(owned.rank, GhostTag, message);
+    this->Others.Send(owned.rank, MessageTag::GhostCells, message);
   }
   for (const Shared& copied : this->Copied)
   {
-    const std::vector<Value> message = this->Others.Receive<Value>(copied.rank, GhostTag);
+    const std::vector<Value> message = this->Others.Receive<Value>(copied.rank, MessageTag::GhostCells);
     auto next = message.begin();
     for (int array = 0; array < arrays; ++array)
     {
@@ -98,11 +97,11 @@ void GhostCells::AddToOwners(std::vector<double>& values) const
     std::vector<double> message(copied.places.size());
     std::transform(
       copied.places.begin(), copied.places.end(), message.begin(), [&](std::size_t place) { return values[place]; });
-    this->Others.Send(copied.rank, GhostTag, message);
+    this->Others.Send(copied.rank, MessageTag::GhostCells, message);
   }
   for (const Shared& owned : this->Owned)
   {
-    const std::vector<double> message = this->Others.Receive<double>(owned.rank, GhostTag);
+    const std::vector<double> message = this->Others.Receive<double>(owned.rank, MessageTag::GhostCells);
     for (std::size_t i = 0; i < message.size(); ++i)
     {
       values[owned.places[i]] += message[i];

@@ -45,12 +45,17 @@ public:
     double done = 0.0;
     for (bool left = true; left; ++round)
     {
-      std::vector<std::vector<OnItsWay>> parcels;
-      this->Others.Together([&] {
-        parcels = this->Sorted(follow(round, std::move(arrived), OfPart(monitor, done, 0.5 * (1.0 + done))));
+      const std::vector<std::vector<OnItsWay>> parcels = this->Others.Exchange<OnItsWay>(this->Neighbours, [&] {
+        const Monitor ofRound = OfPart(monitor, done, 0.5 * (1.0 + done));
+        std::vector<std::vector<OnItsWay>> gone = this->Sorted(follow(round, std::move(arrived), ofRound));
         Report(monitor, done = 0.5 * (1.0 + done));
+        return gone;
       });
-      arrived = this->Exchange(parcels);
+      arrived.clear();
+      for (const std::vector<OnItsWay>& parcel : parcels)
+      {
+        arrived.insert(arrived.end(), parcel.begin(), parcel.end());
+      }
       left = this->Others.Largest({ arrived.empty() ? 0.0 : 1.0 })[0] > 0.0;
     }
     this->Handed.rounds += round;
@@ -73,26 +78,7 @@ private:
     return parcels;
   }
 
-  /// Those that have come, for those that have gone.
-  template <class OnItsWay>
-  std::vector<OnItsWay> Exchange(const std::vector<std::vector<OnItsWay>>& parcels)
-  {
-    for (std::size_t i = 0; i < parcels.size(); ++i)
-    {
-      this->Others.Send(this->Neighbours[i], Tag, parcels[i]);
-    }
-    std::vector<OnItsWay> arrived;
-    for (const int rank : this->Neighbours)
-    {
-      const std::vector<OnItsWay> parcel = this->Others.Receive<OnItsWay>(rank, Tag);
-      arrived.insert(arrived.end(), parcel.begin(), parcel.end());
-    }
-    return arrived;
-  }
-
   std::size_t NeighbourWith(const int* voxel) const;
-
-  static constexpr int Tag = 29998; ///< not one of those that BoxExchange.cxx takes
 
   Communicator& Others;
   const BlockPartition& Partition;

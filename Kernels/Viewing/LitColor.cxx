@@ -2,6 +2,7 @@
 
 #include "Device/HostThreads.h"
 #include "Distribution/BoxExchange.h"
+#include "Distribution/MessageTags.h"
 #include "Numerics/Constants.h"
 
 #include <algorithm>
@@ -21,7 +22,6 @@ constexpr int ColumnsOfView = 64;             ///< along each edge of a view, at
 constexpr double ResolvedDepth = 2.0;         ///< k sigma_t distance of the most opaque voxel, at least
 constexpr double PartOfVeil = 0.25;           ///< of the most light of a ray, where what is shown is right as well
 constexpr double Opaque = 0.95;               ///< opacities above are as good as 1
-constexpr int ColumnsTag = 29995;             ///< of messages; not one of those that others take
 
 /// What voxels send to the eye.
 struct SourceFunction
@@ -198,12 +198,12 @@ double ExposureAlongAxes(const Spread& spread, const SourceFunction& source)
     std::vector<std::vector<SeenColumn>> byRank = { SeenInBlock(spread, axis, source) };
     if (others.Rank() > 0)
     {
-      others.Send(0, ColumnsTag, byRank[0]);
+      others.Send(0, MessageTag::ColumnsOfSight, byRank[0]);
       continue;
     }
     for (int rank = 1; rank < others.Ranks(); ++rank)
     {
-      byRank.push_back(others.Receive<SeenColumn>(rank, ColumnsTag));
+      byRank.push_back(others.Receive<SeenColumn>(rank, MessageTag::ColumnsOfSight));
     }
     const std::vector<float> ofAxis = BehindEachOther(spread.partition, axis, byRank);
     seen.insert(seen.end(), ofAxis.begin(), ofAxis.end());

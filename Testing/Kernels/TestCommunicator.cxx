@@ -37,6 +37,76 @@ TEST(Communicator, DeliversWhatARankSendsToItself)
   RunInThreads(2, sendToItself);
 }
 
+namespace
+{
+/// As many numbers as the ranks say, and of them: none from rank 0 to itself.
+std::vector<float> ParcelOf(int from, int to)
+{
+  return std::vector<float>(static_cast<std::size_t>(3 * from + to), 10.0f * from + to);
+}
+
+/// This rank among all.
+void ExpectParcelsFrom(Communicator& ranks, const std::vector<int>& with)
+{
+  const std::vector<std::vector<float>> arrived = ranks.Exchange<float>(with, [&] {
+    std::vector<std::vector<float>> parcels;
+    for (const int to : with)
+    {
+      parcels.push_back(ParcelOf(ranks.Rank(), to));
+    }
+    return parcels;
+  });
+  ASSERT_EQ(arrived.size(), with.size());
+  for (std::size_t i = 0; i < with.size(); ++i)
+  {
+    EXPECT_EQ(arrived[i], ParcelOf(with[i], ranks.Rank())) << "from rank " << with[i];
+  }
+}
+}
+
+TEST(Communicator, ExchangesParcelsOfAnyLengthWithItselfToo)
+{
+  SingleRank alone;
+  ExpectParcelsFrom(alone, { 0 });
+  ExpectParcelsFrom(alone, {});
+  EXPECT_EQ(alone.Sent().messages, 0u);
+  RunInThreads(4, [](Communicator& ranks) {
+    ExpectParcelsFrom(ranks, { 2, 0, 3, 1 });
+    const std::vector<int> twoPairs = { ranks.Rank() ^ 1 };
+    ExpectParcelsFrom(ranks, ranks.Rank() < 2 ? twoPairs : std::vector<int>()); // nobody of the others
+    ExpectParcelsFrom(ranks, twoPairs);
+  });
+}
+
+TEST(Communicator, CountsParcelsForOthers)
+{
+  RunInThreads(3, [](Communicator& ranks) {
+    ranks.Together([] {});
+    const Communicator::Traffic agreed = ranks.Sent();
+    ExpectParcelsFrom(ranks, { 0, 1, 2 });
+    const std::size_t own = static_cast<std::size_t>(ranks.Rank());
+    EXPECT_EQ(ranks.Sent().messages, 2 * agreed.messages + 2u);
+    EXPECT_EQ(ranks.Sent().bytes, 2 * agreed.bytes + (9 * own + 3 - 4 * own) * sizeof(float));
+  });
+}
+
+TEST(Communicator, ExchangesNothingWhereOneCannotPack)
+{
+  RunInThreads(3, [](Communicator& ranks) {
+    const auto pack = [&] {
+      Require(ranks.Rank() != 1, "no room");
+      return std::vector<std::vector<float>>(3);
+    };
+    EXPECT_THROW(ranks.Exchange<float>({ 0, 1, 2 }, pack), InvalidInput);
+    EXPECT_THROW(
+      ranks.Exchange<float>({ 0, 2 }, [] { return std::vector<std::vector<float>>(3); }), std::runtime_error);
+    EXPECT_THROW(
+      ranks.Exchange<float>({ 0, 0 }, [] { return std::vector<std::vector<float>>(2); }), std::runtime_error);
+    EXPECT_THROW(ranks.Exchange<float>({ 3 }, [] { return std::vector<std::vector<float>>(1); }), std::runtime_error);
+    ExpectParcelsFrom(ranks, { 0, 1, 2 });
+  });
+}
+
 TEST(Communicator, GivesAllRanksTheSameSumsAndLargestValues)
 {
   RunInThreads(4, [](Communicator& ranks) {

@@ -1,5 +1,6 @@
 #include "Photons/Distributed/PathsInBlocks.h"
 
+#include "Distribution/MessageTags.h"
 #include "Photons/Distributed/BlockMarch.h"
 #include "Photons/Distributed/PhotonShares.h"
 
@@ -13,8 +14,6 @@ namespace tyndall
 {
 namespace
 {
-constexpr int PathsTag = 29996; ///< not one of those that PhotonShares.cxx takes
-
 /// Which part of a way: its photon's mark and the round in which it was gone.
 using PartKey = std::pair<cl_ulong, cl_ulong>;
 }
@@ -89,8 +88,8 @@ std::vector<PhotonPath> PathsInBlocks::Trace(
   const Parts own = this->TraceParts(packed);
   if (this->Others.Rank() > 0)
   {
-    this->Others.Send(0, PathsTag, own.keys);
-    this->Others.Send(0, PathsTag, own.corners);
+    this->Others.Send(0, MessageTag::CornersOfPaths, own.keys);
+    this->Others.Send(0, MessageTag::CornersOfPaths, own.corners);
     return {};
   }
   std::map<PartKey, std::vector<cl_float4>> all;
@@ -98,8 +97,8 @@ std::vector<PhotonPath> PathsInBlocks::Trace(
   for (int rank = 1; rank < this->Others.Ranks(); ++rank)
   {
     Parts others;
-    others.keys = this->Others.Receive<cl_ulong>(rank, PathsTag);
-    others.corners = this->Others.Receive<cl_float4>(rank, PathsTag);
+    others.keys = this->Others.Receive<cl_ulong>(rank, MessageTag::CornersOfPaths);
+    others.corners = this->Others.Receive<cl_float4>(rank, MessageTag::CornersOfPaths);
     others.PutInto(all);
   }
   std::vector<PhotonPath> paths;

@@ -1,18 +1,16 @@
 #include "Photons/Distributed/PhotonShares.h"
 
-#include "Distribution/Rounds.h"
 #include "Photons/Marching/MarchedLight.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <numeric>
 
 namespace tyndall
 {
 namespace
 {
-constexpr int SharesTag = 29997; ///< not one of those that Rounds.h takes
-
 /// Whole numbers as doubles, whose sums are whole: a high and a low half.
 constexpr double Half = 0x1p31;
 }
@@ -111,6 +109,35 @@ std::vector<std::vector<PlacedPhoton>> ByBlocks(const BlockPartition& partition,
   return byRank;
 }
 
+/// Adds how many there are, and they.
+template <class T>
+void Append(const std::vector<T>& values, std::vector<char>& bytes)
+{
+  const std::size_t count = values.size();
+  const auto add = [&bytes](const void* from, std::size_t size) {
+    const char* const first = static_cast<const char*>(from);
+    bytes.insert(bytes.end(), first, first + size);
+  };
+  add(&count, sizeof(count));
+  add(values.data(), count * sizeof(T));
+}
+
+/// What Append has added, from `begin` on, which goes on behind it.
+template <class T>
+std::vector<T> TakeFrom(const std::vector<char>& bytes, std::size_t& begin)
+{
+  std::size_t count = 0;
+  std::memcpy(&count, bytes.data() + begin, sizeof(count));
+  std::vector<T> values(count);
+  begin += sizeof(count);
+  if (count > 0)
+  {
+    std::memcpy(values.data(), bytes.data() + begin, count * sizeof(T));
+  }
+  begin += count * sizeof(T);
+  return values;
+}
+
 /// Photons for one rank, as they are sent.
 struct Parcel
 {
@@ -118,7 +145,6 @@ struct Parcel
   std::vector<cl_ulong> numbers, marks;
   std::vector<int> batches;
 
-  Parcel() = default;
   Parcel(const PackedPhotons& packed, const std::vector<cl_ulong>& marksOfAll, const std::vector<PlacedPhoton>& some)
   {
     const auto each = static_cast<std::ptrdiff_t>(packed.FloatsEach());
@@ -134,41 +160,30 @@ struct Parcel
       }
     }
   }
-  void Send(Communicator& communicator, int to) const
+  explicit Parcel(const std::vector<char>& bytes)
   {
-    communicator.Send(to, SharesTag, this->values);
-    communicator.Send(to, SharesTag, this->numbers);
-    communicator.Send(to, SharesTag, this->marks);
-    communicator.Send(to, SharesTag, this->batches);
+    std::size_t begin = 0;
+    this->values = TakeFrom<float>(bytes, begin);
+    this->numbers = TakeFrom<cl_ulong>(bytes, begin);
+    this->marks = TakeFrom<cl_ulong>(bytes, begin);
+    this->batches = TakeFrom<int>(bytes, begin);
   }
-  static Parcel Receive(Communicator& communicator, int from)
+  std::vector<char> Bytes() const
   {
-    Parcel parcel;
-    parcel.values = communicator.Receive<float>(from, SharesTag);
-    parcel.numbers = communicator.Receive<cl_ulong>(from, SharesTag);
-    parcel.marks = communicator.Receive<cl_ulong>(from, SharesTag);
-    parcel.batches = communicator.Receive<int>(from, SharesTag);
-    return parcel;
+    std::vector<char> bytes;
+    Append(this->values, bytes);
+    Append(this->numbers, bytes);
+    Append(this->marks, bytes);
+    Append(this->batches, bytes);
+    return bytes;
   }
 };
 
-/// Those for each rank become those from each.
-void Exchange(Communicator& communicator, std::vector<Parcel>& parcels)
+std::vector<int> EveryRank(const Communicator& communicator)
 {
-  for (int rank = 0; rank < communicator.Ranks(); ++rank)
-  {
-    if (rank != communicator.Rank())
-    {
-      parcels[static_cast<std::size_t>(rank)].Send(communicator, rank);
-    }
-  }
-  for (int rank = 0; rank < communicator.Ranks(); ++rank)
-  {
-    if (rank != communicator.Rank())
-    {
-      parcels[static_cast<std::size_t>(rank)] = Parcel::Receive(communicator, rank);
-    }
-  }
+  std::vector<int> ranks(static_cast<std::size_t>(communicator.Ranks()));
+  std::iota(ranks.begin(), ranks.end(), 0);
+  return ranks;
 }
 
 /// What has come, batch by batch.
@@ -227,8 +242,7 @@ StartingPhotons SendToTheirBlocks(Communicator& communicator, const BlockPartiti
   });
   AddUpEntered(communicator, starting.packed);
   const std::size_t met = PlaceAmong(communicator, starting.packed.Count()).all;
-  std::vector<Parcel> parcels;
-  communicator.Together([&] {
+  const std::vector<std::vector<char>> arrived = communicator.Exchange<char>(EveryRank(communicator), [&] {
     CountedPhotons counted;
     if (settings.counts)
     {
@@ -239,13 +253,14 @@ StartingPhotons SendToTheirBlocks(Communicator& communicator, const BlockPartiti
     {
       number = numbers[number];
     }
+    std::vector<std::vector<char>> parcels;
     for (const std::vector<PlacedPhoton>& some : ByBlocks(partition, starting.packed))
     {
-      parcels.emplace_back(starting.packed, counted.marks, some);
+      parcels.push_back(Parcel(starting.packed, counted.marks, some).Bytes());
     }
+    return parcels;
   });
-  Exchange(communicator, parcels);
-  Join(parcels, starting);
+  Join({ arrived.begin(), arrived.end() }, starting);
   return starting;
 }
 
@@ -260,17 +275,10 @@ std::vector<Photon> ChosenOnEachRank(Communicator& communicator, const std::vect
       own.push_back(share[number - place.first]);
     }
   }
-  for (int rank = 0; rank < communicator.Ranks(); ++rank)
-  {
-    if (rank != communicator.Rank())
-    {
-      communicator.Send(rank, SharesTag, own);
-    }
-  }
   std::vector<Photon> all;
-  for (int rank = 0; rank < communicator.Ranks(); ++rank)
+  for (const std::vector<Photon>& some : communicator.Exchange<Photon>(
+         EveryRank(communicator), [&] { return std::vector<std::vector<Photon>>(communicator.Ranks(), own); }))
   {
-    const std::vector<Photon> some = rank == communicator.Rank() ? own : communicator.Receive<Photon>(rank, SharesTag);
     all.insert(all.end(), some.begin(), some.end());
   }
   return all;

@@ -1,6 +1,7 @@
 #include "Viewing/Blocks/ShadowsInBlocks.h"
 
 #include "Device/Errors.h"
+#include "Distribution/MessageTags.h"
 #include "Viewing/Sources/SmallLights.h"
 
 #include <algorithm>
@@ -12,10 +13,6 @@ namespace tyndall
 {
 namespace
 {
-// Not one of those that Rounds.h and BoxExchange.cxx take.
-constexpr int DepthsTag = 29997;
-constexpr int ReceiptTag = 29994;
-
 /// Boxes that follow each other in a box: of some of its slices, or of some rows of one.
 std::vector<VoxelBox> PortionsOf(const VoxelBox& box, std::size_t voxels)
 {
@@ -88,7 +85,7 @@ void ShadowsInBlocks::AwaitReceipt()
 {
   if (const std::optional<int> receiver = std::exchange(this->Receiver, std::nullopt))
   {
-    this->Others.Receive<char>(*receiver, ReceiptTag);
+    this->Others.Receive<char>(*receiver, MessageTag::ReceiptsOfDepths);
   }
 }
 
@@ -102,7 +99,7 @@ void ShadowsInBlocks::SendDepths(const Portion& portion, const Monitor& monitor)
   std::vector<float> depths;
   this->Failure.Attempt([&] { depths = this->Own->DepthsTowards(portion.light, portion.voxels, monitor); });
   this->AwaitReceipt();
-  this->Others.Send(portion.rank, DepthsTag, depths);
+  this->Others.Send(portion.rank, MessageTag::DepthsOfLamps, depths);
   if (portion.rank != this->Others.Rank())
   {
     this->Receiver = portion.rank;
@@ -119,10 +116,10 @@ void ShadowsInBlocks::SeeLight(const Portion& portion, const Camera& camera)
     {
       continue;
     }
-    const std::vector<float> part = this->Others.Receive<float>(rank, DepthsTag);
+    const std::vector<float> part = this->Others.Receive<float>(rank, MessageTag::DepthsOfLamps);
     if (rank != this->Others.Rank())
     {
-      this->Others.Send<char>(rank, ReceiptTag, {});
+      this->Others.Send<char>(rank, MessageTag::ReceiptsOfDepths, {});
     }
     if (part.size() == depths.size())
     {

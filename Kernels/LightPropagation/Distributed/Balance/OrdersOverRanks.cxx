@@ -1,5 +1,6 @@
 #include "LightPropagation/Distributed/Balance/OrdersOverRanks.h"
 
+#include "Distribution/MessageTags.h"
 #include "Medium/VoxelSums.h"
 
 #include <algorithm>
@@ -11,8 +12,6 @@ namespace tyndall
 {
 namespace
 {
-constexpr int LinesTag = 29996; ///< not one of those that others take (GhostCells.cxx)
-
 /// Adds what a block has of the whole grid's lines.
 void AddLines(const BlockPartition& partition, int rank, const std::vector<double>& ofBlock, LineSums& all)
 {
@@ -50,7 +49,7 @@ ThickLines LinesOfAll(
   ThickLines lines;
   if (communicator.Rank() > 0)
   {
-    communicator.Send(0, LinesTag, ofBlock);
+    communicator.Send(0, MessageTag::SumsAlongLines, ofBlock);
   }
   else
   {
@@ -62,7 +61,7 @@ ThickLines LinesOfAll(
     AddLines(partition, 0, ofBlock, all);
     for (int rank = 1; rank < communicator.Ranks(); ++rank)
     {
-      AddLines(partition, rank, communicator.Receive<double>(rank, LinesTag), all);
+      AddLines(partition, rank, communicator.Receive<double>(rank, MessageTag::SumsAlongLines), all);
     }
     lines = ThickLines(partition.whole, all);
   }

@@ -1,0 +1,25 @@
+#pragma once
+
+namespace tyndall
+{
+/// Tags of messages between ranks (Communicator.h), one for each thing that is sent. Sweeps, and steps of a lattice,
+/// number what they send from 0 on: less than these.
+namespace MessageTag
+{
+constexpr int ListsOfWords = 29989;     ///< PictureOfBlocks.cxx
+constexpr int Pixels = 29990;           ///< BlocksOfRanks.cxx
+constexpr int ReceiptsOfDepths = 29991; ///< ShadowsInBlocks.cxx
+constexpr int ColumnsOfSight = 29992;   ///< LitColor.cxx
+constexpr int DepthsOfLamps = 29993;    ///< ShadowsInBlocks.cxx
+constexpr int SumsAlongLines = 29994;   ///< OrdersOverRanks.cxx
+constexpr int CornersOfPaths = 29995;   ///< PathsInBlocks.cxx
+constexpr int RunsOfBytes = 29996;      ///< BrickedBytes.cxx
+constexpr int NumbersOfEach = 29997;    ///< BoxExchange.cxx
+constexpr int GhostCells = 29998;       ///< GhostCells.cxx
+constexpr int ValuesOfBoxes = 29999;    ///< BoxExchange.cxx
+constexpr int Sums = 30000;             ///< Communicator.cxx, as what follows
+constexpr int Agreements = 30001;
+constexpr int Parcels = 30002;
+constexpr int Count = 30010; ///< none is as large
+}
+}
