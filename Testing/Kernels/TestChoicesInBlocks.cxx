@@ -61,7 +61,7 @@ TEST_F(ChoicesInBlocks, TakeTheSettingsThatAQualityHasForTheWhole)
 TEST_F(ChoicesInBlocks, LeaveInHostMemoryWhatDoesNotFitTheBudget)
 {
   RandomMedium whole(Grid{ { 12, 11, 13 } }, 1, 0.6f, 7);
-  const BlockPartition partition = Uneven(whole.medium.grid);
+  const BlockPartition partition = BlockPartition::Even(whole.medium.grid, 3);
   PropagationSettings settings = SettingsOf(3);
   const LightField expected = LightOfAll(GetDevice(), partition, whole, LitFromOutside(), settings);
   settings.memoryBudget = 10000;

@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <string>
 #include <vector>
 
@@ -195,12 +194,11 @@ TEST_F(ErrorInBlocks, IsBroughtToATargetAsThatOfTheWhole)
   settings.acceleration = PropagationAcceleration::None;
   settings.source = PropagationSource::Constant;
   settings.emissionError = 0.0;
-  for (const double target : { 0.2, 0.03, 0.008 })
+  for (const double target : { 0.2, 0.008 })
   {
     const TargetLight expected =
       SolveToTargetError(whole.medium, shining, settings, target, {}, SolverOfWhole(this->GetDevice()));
-    for (const BlockPartition& partition : { BlockPartition::Even(whole.medium.grid, 1),
-           BlockPartition::Even(whole.medium.grid, 3), Uneven(whole.medium.grid) })
+    for (const BlockPartition& partition : { BlockPartition::Even(whole.medium.grid, 3), Uneven(whole.medium.grid) })
     {
       SCOPED_TRACE(std::to_string(partition.blocks.size()) + " ranks, " + std::to_string(target));
       const LightField found = LightOfAll(
@@ -215,6 +213,6 @@ TEST_F(ErrorInBlocks, IsBroughtToATargetAsThatOfTheWhole)
         });
       ExpectSameErrors(found, expected.light);
     }
-    std::printf("%g: %d solves, divided %d\n", target, expected.solves, expected.divided);
+    EXPECT_EQ(expected.divided, target < 0.1);
   }
 }
