@@ -92,9 +92,10 @@ tyndall::LightField vtkDiscreteOrdinates::SolvePiece(tyndall::Communicator& comm
   this->Last->Where(false);
   std::shared_ptr<tyndall::Device> device;
   communicator.Together([&] { device = tyndall::Device::Find(this->GetDevice()); });
+  tyndall::Device within(*device, tyndall::BudgetOf(this->MemoryBudget, false));
   const tyndall::OrdinatesSettings settings = GivenSettings(this);
   tyndall::LightField light = tyndall::SolveOrdinatesInBlocks(
-    *device, communicator, pieces.Partition(), piece.medium, shining.illumination, settings, tyndall::MonitorOf(this));
+    within, communicator, pieces.Partition(), piece.medium, shining.illumination, settings, tyndall::MonitorOf(this));
   light.settingsUsed = tyndall::Words(settings);
   return light;
 }

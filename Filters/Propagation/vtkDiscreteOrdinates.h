@@ -51,8 +51,7 @@ class LastLight;
  * earlier than the last solve from darkness on did.
  *
  * Orders are not accelerated: for thick media that absorb little, vtkLightPropagationMaps is faster. The radiance of
- * all directions has to fit the device: what it takes is said before any is taken. EstimateError is not used, and
- * blocks refuse it.
+ * all directions has to fit the device: what it takes is said before any is taken. EstimateError is not used.
  *
  * With Decomposition BLOCKS radiance goes from rank to rank (numerics.md, section 10 b): the same light, order by
  * order. Blocks cannot do, beside what no solver can: point, spot and rectangle lights beside periodic axes, WarmStart,

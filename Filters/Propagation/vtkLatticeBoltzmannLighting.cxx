@@ -238,10 +238,11 @@ tyndall::LightField vtkLatticeBoltzmannLighting::SolvePiece(tyndall::Communicato
   tyndall::LightField light = Timed(this->Seconds, [&] {
     const tyndall::BlockPartition& blocks = pieces.Partition();
     const tyndall::Monitor monitor = tyndall::MonitorOf(this);
-    return piece.share ? tyndall::SolveLatticeInBlocks(*device, communicator, blocks, piece.medium, ior, photons,
+    tyndall::Device within(*device, tyndall::BudgetOf(this->MemoryBudget, true));
+    return piece.share ? tyndall::SolveLatticeInBlocks(within, communicator, blocks, piece.medium, ior, photons,
                            shining.illumination, settings, monitor)
                        : tyndall::SolveLatticeInBlocks(
-                           *device, communicator, blocks, piece.medium, ior, shining.illumination, settings, monitor);
+                           within, communicator, blocks, piece.medium, ior, shining.illumination, settings, monitor);
   });
   light.settingsUsed = tyndall::Words(settings);
   return light;

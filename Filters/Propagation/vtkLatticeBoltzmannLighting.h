@@ -60,7 +60,7 @@ struct MediumInput;
  * (numerics.md, section 10 c): the steady light, and steps of both schemes. What blocks cannot do, beside what none of
  * the solvers can, are BlockSize, Interleaved, and point, spot and rectangle lights beside periodic axes.
  *
- * EstimateError is not used, and blocks refuse it.
+ * EstimateError is not used.
  *
  * @sa vtkLightPropagationMaps vtkDiscreteOrdinates vtkPhotonMarcher vtkParticipatingMedium vtkLightRig
  * @par Thanks

@@ -4,7 +4,9 @@
 #include "Common/LightTransportData.h"
 #include "Device/Device.h"
 #include "Device/Errors.h"
+#include "Distribution/SharedMedium.h"
 #include "LightPropagation/Accuracy/ErrorEstimate.h"
+#include "LightPropagation/Accuracy/ErrorInBlocks.h"
 #include "LightPropagation/Accuracy/TargetError.h"
 #include "LightPropagation/Conservative/ConservativePropagation.h"
 #include "LightPropagation/Distributed/PropagationInBlocks.h"
@@ -67,6 +69,15 @@ tyndall::PropagationSettings SettingsOf(vtkLightPropagationMaps* filter)
   return settings;
 }
 
+tyndall::LightField LightOf(tyndall::TargetLight&& found)
+{
+  found.light.settingsUsed = tyndall::Words(found.settings);
+  found.light.settingsUsed.push_back("VoxelsDividedBy = " + std::to_string(found.divided ? 2 : 1));
+  found.light.solves = found.solves;
+  found.light.secondsOfAll = found.seconds;
+  return std::move(found.light);
+}
+
 /// By directions, tolerance and voxels that the target needs, whatever Quality has.
 tyndall::LightField SolveToTarget(vtkLightPropagationMaps* filter, const tyndall::Medium& medium,
   const tyndall::Illumination& illumination, const tyndall::Monitor& monitor, const tyndall::PropagationSolver& solve)
@@ -77,13 +88,8 @@ tyndall::LightField SolveToTarget(vtkLightPropagationMaps* filter, const tyndall
       "TargetError is for the conservative scheme: as published the error does not fall with directions. Set "
       "TargetError to 0, or Scheme to conservative.");
   }
-  tyndall::TargetLight found =
-    tyndall::SolveToTargetError(medium, illumination, SettingsOf(filter), filter->GetTargetError(), monitor, solve);
-  found.light.settingsUsed = tyndall::Words(found.settings);
-  found.light.settingsUsed.push_back("VoxelsDividedBy = " + std::to_string(found.divided ? 2 : 1));
-  found.light.solves = found.solves;
-  found.light.secondsOfAll = found.seconds;
-  return std::move(found.light);
+  return LightOf(
+    tyndall::SolveToTargetError(medium, illumination, SettingsOf(filter), filter->GetTargetError(), monitor, solve));
 }
 
 tyndall::PropagationSettings OfPreview(tyndall::PropagationSettings settings)
@@ -151,10 +157,16 @@ std::shared_ptr<tyndall::Device> DeviceOnAll(vtkLightPropagationMaps* filter, ty
   return device;
 }
 
-/// As Quality has them for the medium of all ranks.
+/// As Quality has them for the medium of all ranks; a target chooses by itself.
 tyndall::PropagationSettings SettingsOn(vtkLightPropagationMaps* filter, tyndall::Communicator& communicator,
   const tyndall::PieceBlocks& pieces, const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining)
 {
+  tyndall::RequireSame(communicator, "TargetError or EstimateError", true,
+    { filter->GetTargetError(), filter->GetEstimateError() ? 1.0 : 0.0 });
+  if (filter->GetTargetError() > 0.0)
+  {
+    return SettingsOf(filter);
+  }
   return tyndall::AtQualityInBlocks(communicator, pieces.Partition(),
     static_cast<tyndall::Quality>(filter->GetQuality()), SettingsOf(filter), piece.medium, shining.illumination);
 }
@@ -186,9 +198,7 @@ std::string vtkLightPropagationMaps::NotByBlocks(vtkInformationVector**) const
 {
   const std::pair<bool, const char*> reasons[] = {
     { this->Scheme == PUBLISHED, "the published Scheme" },
-    { this->TargetError > 0.0, "TargetError" },
     { this->WarmStart, "WarmStart" },
-    { this->EstimateError, "EstimateError" },
   };
   const auto found =
     std::find_if(std::begin(reasons), std::end(reasons), [](const auto& reason) { return reason.first; });
@@ -215,8 +225,16 @@ tyndall::LightField vtkLightPropagationMaps::SolvePiece(tyndall::Communicator& c
   this->Last->Where(false);
   const std::shared_ptr<tyndall::Device> device = DeviceOnAll(this, communicator);
   const tyndall::PropagationSettings settings = SettingsOn(this, communicator, pieces, piece, shining);
-  tyndall::LightField light = tyndall::SolveInBlocks(
-    *device, communicator, pieces.Partition(), piece.medium, shining.illumination, settings, tyndall::MonitorOf(this));
+  const tyndall::SceneInBlocks scene = { communicator, pieces.Partition(), piece.medium, shining.illumination };
+  const tyndall::Monitor monitor = tyndall::MonitorOf(this);
+  if (this->TargetError > 0.0)
+  {
+    return LightOf(tyndall::SolveInBlocksToTargetError(*device, scene, settings, this->TargetError, monitor));
+  }
+  tyndall::LightField light = this->EstimateError
+    ? tyndall::SolveInBlocksWithErrorEstimate(*device, scene, settings, monitor)
+    : tyndall::SolveInBlocks(
+        *device, communicator, scene.partition, scene.medium, scene.illumination, settings, monitor);
   light.settingsUsed = tyndall::Words(settings);
   return light;
 }

@@ -205,7 +205,6 @@ std::string vtkScatteringSolver::NotByAnyBlocks(vtkInformationVector** inputs) c
   const std::pair<bool, const char*> reasons[] = {
     { this->Quality != USUAL && !this->QualityByBlocks, "a Quality that chooses settings from the whole medium" },
     { this->Preview, "Preview" },
-    { this->MemoryBudget > 0, "MemoryBudget" },
   };
   const auto found =
     std::find_if(std::begin(reasons), std::end(reasons), [](const auto& reason) { return reason.first; });
@@ -333,6 +332,7 @@ void vtkScatteringSolver::WritePiece(tyndall::Communicator& communicator, const 
 {
   pieces.SpreadToHeld(communicator, light.fluence, light.channels);
   pieces.SpreadToHeld(communicator, light.fluenceDirect, light.channels);
+  pieces.SpreadToHeld(communicator, light.fluenceError, light.channels);
   pieces.SpreadToHeld(communicator, light.netFlux, 3 * light.channels);
   pieces.SpreadToHeld(communicator, light.scatteredRadiance, light.channels);
   const std::size_t voxels = std::max<std::size_t>(pieces.Own().VoxelCount(), 1);

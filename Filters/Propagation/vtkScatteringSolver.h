@@ -86,7 +86,7 @@ public:
   /// What each of several ranks of MPI solves. With WHOLE all of the medium, which each then holds. With BLOCKS its
   /// piece: light is handed on from rank to rank, and no rank holds another's voxels but for a layer or two; one rank
   /// alone solves the same way then, so that light does not depend on their number, but for rounding. An error names
-  /// what blocks cannot do; of all solvers these are Preview and MemoryBudget; the subclass says what else.
+  /// what blocks cannot do; of all solvers this is Preview; the subclass says what else.
   /// AUTOMATIC_DECOMPOSITION (default): BLOCKS where each of several ranks is asked for its piece of more than 64^3
   /// voxels, the scene can be solved so, and the whole would not be solved more exactly or much sooner; else WHOLE.
   tyndallSetRangeMacro(Decomposition, int, AUTOMATIC_DECOMPOSITION, BLOCKS);
@@ -116,8 +116,9 @@ public:
   /// arrays over all voxels that do not fit in host memory then, and streams them through the device slice by slice:
   /// the same light, bit for bit, later; with 0 beyond nine tenths of the device. vtkLatticeBoltzmannLighting leaves
   /// what does not fit in host memory, and of vtkDiscreteOrdinates it is an error. Where the device is a processor,
-  /// which works on host memory in place, it bounds what a solve takes beside these arrays. DeviceName and field data
-  /// `device` say how much lay where. Valid [0, 2^31).
+  /// which works on host memory in place, it bounds what a solve takes beside these arrays. By blocks (Decomposition)
+  /// it is of each rank, and vtkLightPropagationMaps reads what does not fit from host memory. DeviceName and field
+  /// data `device` say how much lay where. Valid [0, 2^31).
   tyndallSetRangeMacro(MemoryBudget, int, 0, VTK_INT_MAX);
   vtkGetMacro(MemoryBudget, int);
   ///@}

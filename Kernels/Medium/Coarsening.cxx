@@ -6,24 +6,44 @@ namespace tyndall
 {
 namespace
 {
-/// Means along one axis of an array of [outer][count][inner] values, to [outer][fewer][inner].
-std::vector<float> AverageAlong(
-  const float* values, std::size_t outer, std::size_t count, std::size_t fewer, std::size_t inner)
+/// An axis of both grids, and the parts of it that an array has.
+struct CoarsenedAxis
 {
-  std::vector<float> means(outer * fewer * inner);
+  CoarsenedAxis(int fineOfAll, int coarseOfAll)
+    : count(static_cast<std::size_t>(fineOfAll))
+    , width(static_cast<double>(fineOfAll) / coarseOfAll)
+  {
+  }
+  /// Where a coarse voxel begins, in fine ones; it ends a width further.
+  double BeginOf(std::size_t coarse) const { return static_cast<double>(coarse) * this->width; }
+  bool Reaches(std::size_t fine, double end) const { return fine < this->count && fine < end - 1e-9; }
+
+  std::size_t count; ///< fine voxels of all
+  double width;      ///< of a coarse voxel, in fine ones
+};
+
+struct Part
+{
+  std::size_t first, size;
+};
+
+/// Means along one axis of an array of [outer][from][inner] values, to [outer][to][inner].
+std::vector<float> AverageAlong(const CoarsenedAxis& axis, const float* values, std::size_t outer, const Part& from,
+  const Part& to, std::size_t inner)
+{
+  std::vector<float> means(outer * to.size * inner);
   std::vector<double> sums(inner);
-  const double width = static_cast<double>(count) / static_cast<double>(fewer);
   for (std::size_t o = 0; o < outer; ++o)
   {
-    for (std::size_t to = 0; to < fewer; ++to)
+    for (std::size_t t = 0; t < to.size; ++t)
     {
       std::fill(sums.begin(), sums.end(), 0.0);
-      const double begin = to * width;
-      const double end = begin + width;
-      for (std::size_t from = static_cast<std::size_t>(begin); from < count && from < end - 1e-9; ++from)
+      const double begin = axis.BeginOf(to.first + t);
+      const double end = begin + axis.width;
+      for (std::size_t f = static_cast<std::size_t>(begin); axis.Reaches(f, end); ++f)
       {
-        const double part = std::min<double>(end, from + 1) - std::max<double>(begin, from);
-        const float* const row = values + (o * count + from) * inner;
+        const double part = std::min<double>(end, f + 1) - std::max<double>(begin, f);
+        const float* const row = values + (o * from.size + f - from.first) * inner;
         for (std::size_t i = 0; i < inner; ++i)
         {
           sums[i] += part * row[i];
@@ -31,29 +51,112 @@ std::vector<float> AverageAlong(
       }
       for (std::size_t i = 0; i < inner; ++i)
       {
-        means[(o * fewer + to) * inner + i] = static_cast<float>(sums[i] / width);
+        means[(o * to.size + t) * inner + i] = static_cast<float>(sums[i] / axis.width);
       }
     }
   }
   return means;
+}
+
+Grid Halved(Grid grid)
+{
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double length = grid.Length(axis);
+    grid.size[axis] = std::max(1, grid.size[axis] / 2);
+    grid.spacing[axis] = length / grid.size[axis];
+  }
+  return grid;
+}
+
+Grid GridOf(const Grid& whole, const VoxelBox& box)
+{
+  Grid grid = whole;
+  grid.size = box.size;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    grid.origin[axis] += box.first[axis] * grid.spacing[axis];
+  }
+  return grid;
 }
 }
 
 Coarsening::Coarsening(const Grid& fine, const Grid& coarse)
   : FineGrid(fine)
   , CoarseGrid(coarse)
+  , FinePart{ {}, fine.size }
+  , CoarsePart{ {}, coarse.size }
+  , FineOfAll(fine.size)
+  , CoarseOfAll(coarse.size)
 {
 }
 
 Coarsening::Coarsening(const Grid& fine)
-  : FineGrid(fine)
-  , CoarseGrid(fine)
+  : Coarsening(fine, Halved(fine))
 {
+}
+
+Coarsening Coarsening::PartOf(const VoxelBox& fine, const VoxelBox& coarse) const
+{
+  Coarsening part = *this;
+  part.FineGrid = GridOf(this->FineGrid, fine);
+  part.CoarseGrid = GridOf(this->CoarseGrid, coarse);
+  part.FinePart = fine;
+  part.CoarsePart = coarse;
+  return part;
+}
+
+VoxelBox Coarsening::FineBox(const VoxelBox& coarse) const
+{
+  VoxelBox fine;
   for (int axis = 0; axis < 3; ++axis)
   {
-    this->CoarseGrid.size[axis] = std::max(1, fine.size[axis] / 2);
-    this->CoarseGrid.spacing[axis] = fine.Length(axis) / this->CoarseGrid.size[axis];
+    if (coarse.VoxelCount() > 0)
+    {
+      const CoarsenedAxis of(this->FineOfAll[axis], this->CoarseOfAll[axis]);
+      const auto first = static_cast<std::size_t>(coarse.first[axis]);
+      const std::size_t last = first + static_cast<std::size_t>(coarse.size[axis]) - 1;
+      const double end = of.BeginOf(last) + of.width;
+      auto to = static_cast<std::size_t>(of.BeginOf(last));
+      while (of.Reaches(to, end))
+      {
+        ++to;
+      }
+      fine.first[axis] = static_cast<int>(of.BeginOf(first));
+      fine.size[axis] = static_cast<int>(to) - fine.first[axis];
+    }
   }
+  return fine;
+}
+
+VoxelBox Coarsening::CoarseBox(const VoxelBox& fine) const
+{
+  VoxelBox coarse;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const long all = this->FineOfAll[axis], fewer = this->CoarseOfAll[axis];
+    // The first coarse voxel c whose centre, (2 c + 1) all / (2 fewer), is not below a fine voxel's lower side.
+    const auto firstFrom = [=](long side) {
+      return static_cast<int>((2 * fewer * side - all + 2 * all - 1) / (2 * all));
+    };
+    coarse.first[axis] = firstFrom(fine.first[axis]);
+    coarse.size[axis] = firstFrom(fine.first[axis] + fine.size[axis]) - coarse.first[axis];
+  }
+  return coarse.VoxelCount() > 0 ? coarse : VoxelBox();
+}
+
+VoxelBox Coarsening::ParentBox(const VoxelBox& fine) const
+{
+  VoxelBox coarse;
+  for (int axis = 0; axis < 3 && fine.VoxelCount() > 0; ++axis)
+  {
+    const auto parentOf = [&](int voxel) {
+      return static_cast<int>((2L * voxel + 1) * this->CoarseOfAll[axis] / (2L * this->FineOfAll[axis]));
+    };
+    coarse.first[axis] = parentOf(fine.first[axis]);
+    coarse.size[axis] = parentOf(fine.first[axis] + fine.size[axis] - 1) + 1 - coarse.first[axis];
+  }
+  return coarse;
 }
 
 double Coarsening::Ratio() const
@@ -72,18 +175,31 @@ double Coarsening::Ratio() const
 
 std::vector<float> Coarsening::Average(const float* values, int components) const
 {
-  const auto from = [&](int axis) { return static_cast<std::size_t>(this->FineGrid.size[axis]); };
-  const auto to = [&](int axis) { return static_cast<std::size_t>(this->CoarseGrid.size[axis]); };
-  const auto inner = static_cast<std::size_t>(components);
-  const std::vector<float> x = AverageAlong(values, from(2) * from(1), from(0), to(0), inner);
-  const std::vector<float> xy = AverageAlong(x.data(), from(2), from(1), to(1), to(0) * inner);
-  return AverageAlong(xy.data(), 1, from(2), to(2), to(1) * to(0) * inner);
+  const auto part = [](const VoxelBox& box, int axis) {
+    return Part{ static_cast<std::size_t>(box.first[axis]), static_cast<std::size_t>(box.size[axis]) };
+  };
+  std::vector<float> means;
+  std::size_t inner = static_cast<std::size_t>(components);
+  std::size_t outer = this->FinePart.VoxelCount();
+  for (int axis = 0; axis < 3 && this->CoarsePart.VoxelCount() > 0; ++axis)
+  {
+    const Part from = part(this->FinePart, axis), to = part(this->CoarsePart, axis);
+    outer /= from.size;
+    means = AverageAlong(
+      { this->FineOfAll[axis], this->CoarseOfAll[axis] }, axis == 0 ? values : means.data(), outer, from, to, inner);
+    inner *= to.size;
+  }
+  return means;
 }
 
 std::vector<float> Coarsening::Average(const Field& values, const Field& weights) const
 {
   const int components = values.HasColour() || weights.HasColour() ? 3 : 1;
   std::vector<float> products(this->FineGrid.VoxelCount() * components), plain(products.size());
+  if (products.empty())
+  {
+    return products;
+  }
   float least = values.At(0, 0), largest = least;
   for (std::size_t i = 0; i < products.size(); ++i)
   {
@@ -107,11 +223,13 @@ std::size_t Coarsening::Parent(std::size_t fineVoxel) const
   std::size_t parent = 0, stride = 1;
   for (int axis = 0; axis < 3; ++axis)
   {
-    const auto size = static_cast<std::size_t>(this->FineGrid.size[axis]);
-    const auto coarse = static_cast<std::size_t>(this->CoarseGrid.size[axis]);
-    parent += (2 * (fineVoxel % size) + 1) * coarse / (2 * size) * stride;
+    const auto size = static_cast<std::size_t>(this->FinePart.size[axis]);
+    const auto fine = static_cast<std::size_t>(this->FinePart.first[axis]) + fineVoxel % size;
+    const auto all = static_cast<std::size_t>(this->FineOfAll[axis]);
+    const auto coarse = static_cast<std::size_t>(this->CoarseOfAll[axis]);
+    parent += ((2 * fine + 1) * coarse / (2 * all) - this->CoarsePart.first[axis]) * stride;
     fineVoxel /= size;
-    stride *= coarse;
+    stride *= static_cast<std::size_t>(this->CoarsePart.size[axis]);
   }
   return parent;
 }

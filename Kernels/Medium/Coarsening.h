@@ -2,13 +2,14 @@
 
 #include "Medium/Field.h"
 #include "Medium/Grid.h"
+#include "Medium/VoxelBox.h"
 
 #include <array>
 #include <vector>
 
 namespace tyndall
 {
-/// A coarser grid over the same box, and averages over its voxels.
+/// A coarser grid over the same box, and averages over its voxels; or a part of both grids.
 class Coarsening
 {
 public:
@@ -16,6 +17,17 @@ public:
   explicit Coarsening(const Grid& fine);
   /// @param coarse  the same box, nowhere finer
   Coarsening(const Grid& fine, const Grid& coarse);
+
+  /// The same of a box of each grid alone. Average needs all of FineBox(coarse), and gives what it gives of the whole,
+  /// bit for bit; Parent needs all of ParentBox(fine).
+  Coarsening PartOf(const VoxelBox& fine, const VoxelBox& coarse) const;
+  /// Fine voxels of which a part lies in a box of coarse voxels.
+  VoxelBox FineBox(const VoxelBox& coarse) const;
+  /// Of coarse voxels those whose centres lie in a box of fine ones. Boxes that fill the fine grid have each of them
+  /// once.
+  VoxelBox CoarseBox(const VoxelBox& fine) const;
+  /// Coarse voxels in which centres of a box of fine voxels lie.
+  VoxelBox ParentBox(const VoxelBox& fine) const;
 
   const Grid& Fine() const { return this->FineGrid; }
   const Grid& Coarse() const { return this->CoarseGrid; }
@@ -38,5 +50,7 @@ public:
 
 private:
   Grid FineGrid, CoarseGrid;
+  VoxelBox FinePart, CoarsePart;             ///< in the grids of the whole
+  std::array<int, 3> FineOfAll, CoarseOfAll; ///< voxels of these along each axis
 };
 }

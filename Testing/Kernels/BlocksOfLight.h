@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <mutex>
 #include <string>
 #include <vector>
@@ -125,14 +126,15 @@ struct PartOf
 };
 
 /// Arrays of the blocks put together; all else of rank 0, which must be that of all.
-inline LightField LightOfAll(Device& device, const BlockPartition& partition, const RandomMedium& whole,
-  const Illumination& shining, const PropagationSettings& settings)
+/// @param solve  of a rank's part
+inline LightField LightOfAll(const BlockPartition& partition, const RandomMedium& whole, const Illumination& shining,
+  const std::function<LightField(Communicator&, const Medium&, const Illumination&)>& solve)
 {
   LightField all, arrays;
   std::mutex guard;
   RunInThreads(static_cast<int>(partition.blocks.size()), [&](Communicator& communicator) {
     PartOf part(whole, partition.blocks[communicator.Rank()]);
-    const LightField light = SolveInBlocks(device, communicator, partition, part.medium, part.Of(shining), settings);
+    const LightField light = solve(communicator, part.medium, part.Of(shining));
     const std::lock_guard<std::mutex> lock(guard);
     if (all.convergence.empty())
     {
@@ -142,6 +144,7 @@ inline LightField LightOfAll(Device& device, const BlockPartition& partition, co
     EXPECT_EQ(light.balance.absorbed, all.balance.absorbed);
     EXPECT_EQ(light.convergence.size(), all.convergence.size());
     EXPECT_EQ(light.surfaceRadiance, all.surfaceRadiance);
+    EXPECT_EQ(light.relativeError, all.relativeError);
     const auto put = [&](std::vector<float> LightField::*array) {
       const std::vector<float>& from = light.*array;
       const std::size_t width = part.places.empty() ? 0 : from.size() / part.places.size();
@@ -153,16 +156,27 @@ inline LightField LightOfAll(Device& device, const BlockPartition& partition, co
     };
     put(&LightField::fluence);
     put(&LightField::fluenceDirect);
+    put(&LightField::fluenceError);
     put(&LightField::netFlux);
     put(&LightField::scatteredMoments);
     put(&LightField::straightOn);
   });
   all.fluence = arrays.fluence;
   all.fluenceDirect = arrays.fluenceDirect;
+  all.fluenceError = arrays.fluenceError;
   all.netFlux = arrays.netFlux;
   all.scatteredMoments = arrays.scatteredMoments;
   all.straightOn = arrays.straightOn;
   return all;
+}
+
+inline LightField LightOfAll(Device& device, const BlockPartition& partition, const RandomMedium& whole,
+  const Illumination& shining, const PropagationSettings& settings)
+{
+  return LightOfAll(
+    partition, whole, shining, [&](Communicator& communicator, const Medium& medium, const Illumination& light) {
+      return SolveInBlocks(device, communicator, partition, medium, light, settings);
+    });
 }
 
 /// Cut into blocks of uneven sizes, by planes that do not meet; one has no voxels.

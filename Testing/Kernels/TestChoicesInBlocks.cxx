@@ -58,6 +58,20 @@ TEST_F(ChoicesInBlocks, TakeTheSettingsThatAQualityHasForTheWhole)
   }
 }
 
+TEST_F(ChoicesInBlocks, LeaveInHostMemoryWhatDoesNotFitTheBudget)
+{
+  RandomMedium whole(Grid{ { 12, 11, 13 } }, 1, 0.6f, 7);
+  const BlockPartition partition = BlockPartition::Even(whole.medium.grid, 3);
+  PropagationSettings settings = SettingsOf(3);
+  const LightField expected = LightOfAll(GetDevice(), partition, whole, LitFromOutside(), settings);
+  settings.memoryBudget = 10000;
+  const LightField found = LightOfAll(GetDevice(), partition, whole, LitFromOutside(), settings);
+  EXPECT_EQ(found.fluence, expected.fluence);
+  EXPECT_EQ(found.netFlux, expected.netFlux);
+  EXPECT_NE(found.device.find("in host memory"), std::string::npos) << found.device;
+  EXPECT_EQ(expected.device.find("in host memory"), std::string::npos) << expected.device;
+}
+
 /// Light that is given by voxel, as that of photons.
 class LightGivenInBlocks : public DeviceTest
 {

@@ -163,7 +163,8 @@ TEST(DirectionForecast, TellsUnscatteredLightFromTheRest)
   few.fluence = { 2.2f, 1.8f }; // all of the difference is in unscattered light
   few.fluenceDirect = { 1.2f, 0.8f };
   more.convergence.resize(10);
-  DirectionForecast forecast(few, 9, more, 25);
+  SingleRank alone;
+  DirectionForecast forecast(alone, few, 9, more, 25);
   PropagationSettings settings;
   settings.uncollidedDirections = 400;
   const double fine = forecast.Error(settings);
@@ -171,7 +172,7 @@ TEST(DirectionForecast, TellsUnscatteredLightFromTheRest)
   EXPECT_LT(4.0 * fine, forecast.Error(settings));
   EXPECT_EQ(forecast.Cheapest({}, 1.5 * fine).uncollidedDirections, 0); // what is scattered of it is not known yet
   LightField between = more;
-  forecast.Separate(few, between, more);
+  forecast.Separate(alone, few, between, more);
   const PropagationSettings cheapest = forecast.Cheapest({}, 1.5 * fine);
   EXPECT_LE(cheapest.directionsPerFace, 9);
   EXPECT_GE(cheapest.uncollidedDirections, 256);

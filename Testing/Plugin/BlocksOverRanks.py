@@ -39,8 +39,8 @@ def same_facts(ranks, what, tolerance):
 
 
 for ranks in (1, 2, 3, 4, 8):
-    more = ["whole_plain", "whole_turbid", "whole_photons", "whole_scattered", "whole_thick"] if ranks == 1 else \
-        ["whole_where_better", "whole_where_few"] if ranks == 2 else ["blocks_errors", "blocks_of_wrong_pieces", "blocks_abort", "photons_abort"] if ranks == 3 else []
+    more = ["whole_plain", "whole_turbid", "whole_photons", "whole_scattered", "whole_thick", "blocks_estimated", "whole_estimated"] if ranks == 1 else \
+        ["whole_where_better", "whole_where_few"] if ranks == 2 else ["blocks_errors", "blocks_of_wrong_pieces", "blocks_abort", "photons_abort", "blocks_estimated", "blocks_budget"] if ranks == 3 else []
     code, said = runs.run(ranks, *CASES, *more)
     assert code == 0 and said.count("is done") == ranks, said
     ghost_cells_are_the_neighbours(ranks)
@@ -72,6 +72,13 @@ assert difference(blocks, whole) < 1e-5
 blocks, whole = runs.whole(1, "untouched_thick", "light")[0], runs.whole(1, "whole_thick", "light")[0]
 print("blocks and the whole, thick voxels: %.1e" % difference(blocks, whole))
 assert difference(blocks, whole) < 1e-4
+for case in ("estimated", "target"):  # differences of light, which agree as that does
+    whole, brightest = runs.whole(1, "whole_" + case, "light")[0], runs.whole(1, "blocks_plain", "light")[0].max()
+    for ranks in (1, 3):
+        error = abs(runs.whole(ranks, "blocks_" + case, "light")[0] - whole).max() / brightest
+        print("%d ranks, error %s: differs from the whole's by %.1e of fluence" % (ranks, case, error))
+        assert error < 1e-6 and whole.min() > 0, (ranks, case, error)
+
 for what in ("photons", "scattered"):
     marched = runs.whole(1, "blocks_" + what, "light")[0]
     assert marched.max() > 0 and difference(marched, runs.whole(1, "whole_" + what, "light")[0]) == 0, what

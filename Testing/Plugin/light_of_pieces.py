@@ -168,6 +168,41 @@ def blocks_wavelet():
     assert lines.GetNumberOfRows() > 0 and before, "no rows"
 
 
+PLAIN = dict(Acceleration="None (as published)", Source="Constant (as published)", EmissionError=0)
+
+
+def blocks_estimated():
+    """Errors as the whole has them; and light to a target."""
+    keep("blocks_estimated", wavelet("Blocks", EstimateError=1, **PLAIN), array="fluence_error")
+    light = wavelet("Blocks", TargetError=0.2, **PLAIN)
+    keep("blocks_target", light, array="fluence_error")
+    used = facts_of(light, "settings_used")
+    assert "VoxelsDividedBy" in used and "Decomposition = 2" in used, used
+
+
+def whole_estimated():
+    keep("whole_estimated", wavelet("Whole on each rank", EstimateError=1, **PLAIN), array="fluence_error")
+    keep("whole_target", wavelet("Whole on each rank", TargetError=0.2, **PLAIN), array="fluence_error")
+
+
+def blocks_budget():
+    """What does not fit the device lies in host memory: the same light; of ordinates it is one error, that says how much."""
+    medium = ParticipatingMedium(Input=Wavelet(WholeExtent=[-24, 24, -23, 23, -22, 22]), DensityArray=["POINTS", "RTData"])
+    settings = dict(Input=medium, SkyColor=[1, 1, 1], DirectionsPerFace=4, MaximumOrders=2, Decomposition="Blocks")
+    found = []
+    for budget in (0, 1):
+        light = LightPropagationMaps(MemoryBudget=budget, **settings)
+        light.UpdatePipeline()
+        assert ("in host memory" in facts_of(light, "device")) == (budget > 0), facts_of(light, "device")
+        found.append(vtk_to_numpy(light.GetClientSideObject().GetOutputDataObject(0).GetCellData().GetArray("fluence")))
+    assert (found[0] == found[1]).all()
+    light = DiscreteOrdinates(MemoryBudget=1, **{**settings, "DirectionsPerFace": 9})
+    errors = errors_of(light)
+    light.UpdatePipeline()
+    assert len(errors) == 1 and "has 1 MiB left" in errors[0], (rank, errors)
+    assert light.GetClientSideObject().GetOutputDataObject(0).GetNumberOfCells() == 0
+
+
 def photons(decomposition, **settings):
     """Photons that bend."""
     density = Calculator(Input=Wavelet(WholeExtent=SIZE), ResultArrayName="ior",

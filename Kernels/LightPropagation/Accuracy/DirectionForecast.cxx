@@ -41,7 +41,7 @@ double FallenTo(int directions)
 
 /// Root mean square of the difference of two parts of light, over that of `whole`.
 template <class Part>
-double Difference(const LightField& one, const LightField& other, const Part& part)
+double Difference(Communicator& communicator, const LightField& one, const LightField& other, const Part& part)
 {
   double sum = 0.0, all = 0.0;
   for (std::size_t i = 0; i < one.fluence.size(); ++i)
@@ -50,20 +50,21 @@ double Difference(const LightField& one, const LightField& other, const Part& pa
     sum += difference * difference;
     all += static_cast<double>(other.fluence[i]) * other.fluence[i];
   }
-  return all > 0.0 ? std::sqrt(sum / all) : 0.0;
+  const std::vector<double> sums = communicator.Sum({ sum, all });
+  return sums[1] > 0.0 ? std::sqrt(sums[0] / sums[1]) : 0.0;
 }
 }
 
 DirectionForecast::DirectionForecast(
-  const LightField& few, int fewDirections, const LightField& more, int moreDirections)
+  Communicator& communicator, const LightField& few, int fewDirections, const LightField& more, int moreDirections)
   : Fallen(std::hypot(FallenTo(fewDirections), FallenTo(moreDirections)) / OnFinerGrid)
   , Sweeps(std::max(LeastSweeps, static_cast<double>(more.convergence.size())))
 {
   const auto direct = [](
                         const LightField& light, std::size_t i) { return static_cast<double>(light.fluenceDirect[i]); };
   const auto scattered = [&](const LightField& light, std::size_t i) { return light.fluence[i] - direct(light, i); };
-  this->OfUncollided = Difference(few, more, direct) / this->Fallen;
-  this->OfScattered = Difference(few, more, scattered) / this->Fallen;
+  this->OfUncollided = Difference(communicator, few, more, direct) / this->Fallen;
+  this->OfScattered = Difference(communicator, few, more, scattered) / this->Fallen;
 }
 
 double DirectionForecast::UncollidedPart() const
@@ -72,11 +73,12 @@ double DirectionForecast::UncollidedPart() const
   return all > 0.0 ? this->OfUncollided / all : 0.0;
 }
 
-void DirectionForecast::Separate(const LightField& few, const LightField& between, const LightField& more)
+void DirectionForecast::Separate(
+  Communicator& communicator, const LightField& few, const LightField& between, const LightField& more)
 {
   const auto whole = [](const LightField& light, std::size_t i) { return static_cast<double>(light.fluence[i]); };
-  this->OfUncollided = Difference(few, between, whole) / this->Fallen;
-  this->OfScattered = Difference(between, more, whole) / this->Fallen;
+  this->OfUncollided = Difference(communicator, few, between, whole) / this->Fallen;
+  this->OfScattered = Difference(communicator, between, more, whole) / this->Fallen;
   this->Separated = true;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "Distribution/Communicator.h"
 #include "Light/LightField.h"
 #include "LightPropagation/PropagationSettings.h"
 
@@ -8,18 +9,21 @@ namespace tyndall
 /// Forecast of the error that directions leave, and of the work of a solve, from two solves of one grid along few and
 /// along more directions. How errors fall with the number of directions was measured (measurements.md), those of
 /// light that is not scattered yet and of scattered light each by their own number; of two solves they have nothing
-/// to do with each other.
+/// to do with each other. Light is that of a rank's block, what is made of it of all ranks.
 class DirectionForecast
 {
 public:
+  /// All ranks make one together.
   /// @param few, more  along `fewDirections` and `moreDirections` a face, unscattered light along the same
-  DirectionForecast(const LightField& few, int fewDirections, const LightField& more, int moreDirections);
+  DirectionForecast(
+    Communicator& communicator, const LightField& few, int fewDirections, const LightField& more, int moreDirections);
 
   /// The part of unscattered light of the difference, over all of it.
   double UncollidedPart() const;
   /// Where unscattered light is off, so is what is scattered of it: tells the two apart.
+  /// All ranks call it.
   /// @param between  scattered light along the few, unscattered light along the more
-  void Separate(const LightField& few, const LightField& between, const LightField& more);
+  void Separate(Communicator& communicator, const LightField& few, const LightField& between, const LightField& more);
 
   /// Relative, root mean square, of fluence, on a grid of twice the voxels an axis.
   double Error(const PropagationSettings& settings) const;

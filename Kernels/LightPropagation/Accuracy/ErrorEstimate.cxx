@@ -1,6 +1,6 @@
 #include "LightPropagation/Accuracy/ErrorEstimate.h"
 
-#include "LightPropagation/Problem/CoarseScene.h"
+#include "LightPropagation/Accuracy/CoarseSceneInBlocks.h"
 
 #include <algorithm>
 #include <array>
@@ -75,14 +75,15 @@ bool IsStoppedTooSoonToTell(const LightField& light)
 }
 
 /// What a variance of coarse voxels' fluence is in each voxel of theirs: the brighter are off by more, as beside lamps.
+/// @param averages, variance  of the coarse voxels that are seen
 std::vector<double> InVoxels(const LightField& light, const std::vector<float>& averages,
-  const std::vector<double>& variance, const Coarsening& coarsening)
+  const std::vector<double>& variance, const Coarsening& seen)
 {
   const auto channels = static_cast<std::size_t>(light.channels);
   std::vector<double> squares(light.fluence.size());
   for (std::size_t i = 0; i < squares.size(); ++i)
   {
-    const std::size_t parent = coarsening.Parent(i / channels) * channels + i % channels;
+    const std::size_t parent = seen.Parent(i / channels) * channels + i % channels;
     const double part = averages[parent] > 0.0f ? static_cast<double>(light.fluence[i]) / averages[parent] : 1.0;
     squares[i] = variance[parent] * part * part;
   }
@@ -95,19 +96,54 @@ double SumOfSquares(const std::vector<float>& values)
     values.begin(), values.end(), 0.0, [](double sum, double value) { return sum + value * value; });
 }
 
+double SumOf(const std::vector<double>& values)
+{
+  return std::accumulate(values.begin(), values.end(), 0.0);
+}
+
+/// Squares of the two parts of the error of coarse voxels' fluence.
+struct ErrorOfAverages
+{
+  double inSpace, partOfDifference; ///< over the differences of solves
+
+  double InSpace(float fine, float same) const { return this->inSpace * (static_cast<double>(fine) - same); }
+  double InDirections(float same, float other) const
+  {
+    return this->partOfDifference * (static_cast<double>(same) - other);
+  }
+  std::vector<double> Variance(
+    const std::vector<float>& fine, const std::vector<float>& same, const std::vector<float>& other) const
+  {
+    std::vector<double> variance(fine.size());
+    for (std::size_t i = 0; i < fine.size(); ++i)
+    {
+      const double space = this->InSpace(fine[i], same[i]), directions = this->InDirections(same[i], other[i]);
+      variance[i] = space * space + directions * directions;
+    }
+    return variance;
+  }
+};
+
+/// Of coarse voxels, those of a rank or all that it sees.
+struct VarianceOfAverages
+{
+  const std::vector<float>& averages; ///< fluence
+  std::vector<double> variance;       ///< of it
+};
+
 /// Fills in fluenceError and relativeError: errors of voxels smoothly, all together as large as they were, and not
 /// smaller, relative to all light, than in the averages, which beside lamps do not see how it falls off within voxels.
-/// @param averages, variance  of the coarse voxels' fluence
-void WriteError(
-  LightField& light, const std::vector<float>& averages, std::vector<double> variance, const Coarsening& coarsening)
+void WriteError(LightField& light, const CoarseBlocks& blocks, const VarianceOfAverages& own, VarianceOfAverages seen)
 {
-  const auto sum = [](const std::vector<double>& all) { return std::accumulate(all.begin(), all.end(), 0.0); };
-  const double fluences = SumOfSquares(light.fluence), ofAverages = SumOfSquares(averages);
-  const double asAverages = ofAverages > 0.0 ? fluences * sum(variance) / ofAverages : 0.0;
-  const double all = std::max(asAverages, sum(InVoxels(light, averages, variance, coarsening)));
-  Smooth(variance, coarsening.Coarse(), light.channels);
-  const std::vector<double> squares = InVoxels(light, averages, variance, coarsening);
-  const double smoothed = sum(squares), scale = smoothed > 0.0 ? all / smoothed : 1.0;
+  const Coarsening& toSeen = blocks.Seen();
+  std::vector<double> sums = blocks.Others().Sum({ SumOfSquares(light.fluence), SumOfSquares(own.averages),
+    SumOf(own.variance), SumOf(InVoxels(light, seen.averages, seen.variance, toSeen)) });
+  const double fluences = sums[0], ofAverages = sums[1];
+  const double asAverages = ofAverages > 0.0 ? fluences * sums[2] / ofAverages : 0.0;
+  const double all = std::max(asAverages, sums[3]);
+  Smooth(seen.variance, toSeen.Coarse(), light.channels);
+  const std::vector<double> squares = InVoxels(light, seen.averages, seen.variance, toSeen);
+  const double smoothed = blocks.Others().Sum({ SumOf(squares) })[0], scale = smoothed > 0.0 ? all / smoothed : 1.0;
   const double residual = light.convergence.empty() ? 0.0 : light.convergence.back().residual;
   light.fluenceError.resize(light.fluence.size());
   double errors = 0.0;
@@ -118,6 +154,7 @@ void WriteError(
     light.fluenceError[i] = static_cast<float>(std::sqrt(square));
     errors += square;
   }
+  errors = blocks.Others().Sum({ errors })[0];
   light.relativeError = fluences > 0.0 ? std::sqrt(errors / fluences) : 0.0;
 }
 }
@@ -139,38 +176,59 @@ void WriteErrorOfCosines(LightField& light, const LightField& few)
 }
 }
 
-ErrorParts WriteErrorEstimate(LightField& light, const Coarsening& coarsening, const std::vector<float>& same,
+ErrorParts WriteErrorEstimate(LightField& light, const CoarseBlocks& blocks, const std::vector<float>& same,
   const std::vector<float>& other, double partOfDifference, double orderInSpace)
 {
-  const double ratio = coarsening.Ratio();
-  const double inSpace = ratio > 1.0 ? 1.0 / (std::pow(ratio, orderInSpace) - 1.0) : 0.0;
-  const std::vector<float> fine = coarsening.Average(light.fluence.data(), light.channels);
-  std::vector<double> variance(fine.size());
-  double ofSpace = 0.0, ofDirections = 0.0, all = 0.0;
+  const double ratio = blocks.Ratio();
+  const ErrorOfAverages errors = { ratio > 1.0 ? 1.0 / (std::pow(ratio, orderInSpace) - 1.0) : 0.0, partOfDifference };
+  const std::vector<float> fine = blocks.Average(light.fluence, light.channels);
+  double ofSpace = 0.0, ofDirections = 0.0;
   for (std::size_t i = 0; i < fine.size(); ++i)
   {
-    const double space = inSpace * (static_cast<double>(fine[i]) - same[i]);
-    const double directions = partOfDifference * (static_cast<double>(same[i]) - other[i]);
-    variance[i] = space * space + directions * directions;
+    const double space = errors.InSpace(fine[i], same[i]), directions = errors.InDirections(same[i], other[i]);
     ofSpace += space * space;
     ofDirections += directions * directions;
-    all += static_cast<double>(fine[i]) * fine[i];
   }
-  WriteError(light, fine, std::move(variance), coarsening);
-  const double scale = all > 0.0 ? 1.0 / all : 0.0;
-  return { std::sqrt(scale * ofSpace), std::sqrt(scale * ofDirections),
+  const std::vector<double> sums = blocks.Others().Sum({ ofSpace, ofDirections, SumOfSquares(fine) });
+  const std::vector<float> seen = blocks.SeenOf(fine, light.channels);
+  WriteError(light, blocks, { fine, errors.Variance(fine, same, other) },
+    { seen, errors.Variance(seen, blocks.SeenOf(same, light.channels), blocks.SeenOf(other, light.channels)) });
+  const double scale = sums[2] > 0.0 ? 1.0 / sums[2] : 0.0;
+  return { std::sqrt(scale * sums[0]), std::sqrt(scale * sums[1]),
     light.convergence.empty() ? 0.0 : light.convergence.back().residual };
+}
+
+SceneOnOneRank::SceneOnOneRank(const Medium& medium, const Illumination& illumination, const PropagationSolver& solve)
+  : Partition(BlockPartition::Even(medium.grid, 1))
+  , TheMedium(medium)
+  , Light(illumination)
+  , Solve(solve)
+{
+}
+
+SolverInBlocks SceneOnOneRank::Solver() const
+{
+  return [this](const SceneInBlocks& scene, const PropagationSettings& settings, const Monitor& monitor) {
+    return this->Solve(scene.medium, scene.illumination, settings, monitor);
+  };
 }
 
 LightField SolveWithErrorEstimate(const Medium& medium, const Illumination& illumination,
   const PropagationSettings& settings, const Monitor& monitor, const PropagationSolver& solve)
 {
-  LightField light = solve(medium, illumination, settings, OfPart(monitor, 0.0, FinePart));
+  SceneOnOneRank whole(medium, illumination, solve);
+  return SolveWithErrorEstimate(whole.Scene(), settings, monitor, whole.Solver());
+}
+
+LightField SolveWithErrorEstimate(
+  const SceneInBlocks& scene, const PropagationSettings& settings, const Monitor& monitor, const SolverInBlocks& solve)
+{
+  LightField light = solve(scene, settings, OfPart(monitor, 0.0, FinePart));
   if (light.polarNodes > 0)
   {
     PropagationSettings fewer = settings;
     fewer.polarNodes = 3 * light.polarNodes / 4;
-    WriteErrorOfCosines(light, solve(medium, illumination, fewer, OfPart(monitor, FinePart, 1.0)));
+    WriteErrorOfCosines(light, solve(scene, fewer, OfPart(monitor, FinePart, 1.0)));
     return light;
   }
   if (IsStoppedTooSoonToTell(light))
@@ -179,8 +237,9 @@ LightField SolveWithErrorEstimate(const Medium& medium, const Illumination& illu
     return light;
   }
 
-  const Coarsening coarsening(medium.grid);
-  const CoarseScene coarse(medium, illumination, coarsening);
+  const CoarseBlocks blocks(scene.others, scene.partition);
+  const CoarseSceneInBlocks inVoxels(blocks, scene.medium, scene.illumination);
+  const SceneInBlocks coarse = { scene.others, blocks.Coarse(), inVoxels.TheMedium(), inVoxels.Shining() };
   PropagationSettings plain = settings;
   plain.netFlux = false;
   plain.storedDirections = 1;
@@ -188,16 +247,15 @@ LightField SolveWithErrorEstimate(const Medium& medium, const Illumination& illu
   plain.directionsPerFace = directions;
   plain.adaptDirections = false;
   plain.uncollidedDirections = light.uncollidedDirections; // as they were chosen for the grid itself
-  const std::vector<float> many =
-    solve(coarse.TheMedium(), coarse.Shining(), plain, OfPart(monitor, FinePart, 0.95)).fluence;
+  const std::vector<float> many = solve(coarse, plain, OfPart(monitor, FinePart, 0.95)).fluence;
   plain.directionsPerFace = OtherDirections(directions);
   if (light.uncollidedDirections > 0)
   {
     plain.uncollidedDirections = OtherDirections(light.uncollidedDirections);
   }
-  const std::vector<float> few = solve(coarse.TheMedium(), coarse.Shining(), plain, OfPart(monitor, 0.95, 1.0)).fluence;
+  const std::vector<float> few = solve(coarse, plain, OfPart(monitor, 0.95, 1.0)).fluence;
 
-  WriteErrorEstimate(light, coarsening, many, few, PartOfDifference(directions, plain.directionsPerFace), OrderInSpace);
+  WriteErrorEstimate(light, blocks, many, few, PartOfDifference(directions, plain.directionsPerFace), OrderInSpace);
   return light;
 }
 }

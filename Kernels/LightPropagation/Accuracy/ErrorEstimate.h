@@ -4,7 +4,8 @@
 #include "LightPropagation/PropagationSettings.h"
 
 #include "Device/Monitor.h"
-#include "Medium/Coarsening.h"
+#include "Distribution/CoarseBlocks.h"
+#include "Lights/Lights.h"
 #include "Medium/Medium.h"
 
 #include <functional>
@@ -16,18 +17,50 @@ namespace tyndall
 using PropagationSolver =
   std::function<LightField(const Medium&, const Illumination&, const PropagationSettings&, const Monitor&)>;
 
+/// A medium that is spread over ranks by blocks, and what shines on it, of this rank's block.
+struct SceneInBlocks
+{
+  Communicator& others;
+  const BlockPartition& partition;
+  const Medium& medium;
+  const Illumination& illumination;
+};
+
+/// The same of such a scene. All ranks call it together.
+using SolverInBlocks = std::function<LightField(const SceneInBlocks&, const PropagationSettings&, const Monitor&)>;
+
+/// A scene that one rank has whole, and its solver.
+class SceneOnOneRank
+{
+public:
+  SceneOnOneRank(const Medium& medium, const Illumination& illumination, const PropagationSolver& solve);
+  SceneOnOneRank(const SceneOnOneRank&) = delete;
+  SceneOnOneRank& operator=(const SceneOnOneRank&) = delete;
+
+  SceneInBlocks Scene() { return { this->Alone, this->Partition, this->TheMedium, this->Light }; }
+  SolverInBlocks Solver() const;
+
+private:
+  SingleRank Alone;
+  const BlockPartition Partition;
+  const Medium& TheMedium;
+  const Illumination& Light;
+  const PropagationSolver& Solve;
+};
+
 /// Errors of light by the two parts of Eq. (84) that are looked at apart, each a root mean square over that of fluence.
 struct ErrorParts
 {
   double inSpace = 0.0, inDirections = 0.0, residual = 0.0;
 };
 
-/// Fills in fluenceError and relativeError of light (Eqs. (82) to (84)).
-/// @param coarsening  of the light's grid
-/// @param same, other  fluence on the coarse grid, along the same directions and along others
+/// Fills in fluenceError and relativeError of light (Eqs. (82) to (84)). All ranks call it; what it returns, and
+/// relativeError, are of all.
+/// @param light  of this rank's block
+/// @param same, other  fluence of this rank's coarse voxels, along the same directions and along others
 /// @param partOfDifference  error of the light's directions over its difference to that of the others
 /// @param orderInSpace  that the error falls with in voxel size
-ErrorParts WriteErrorEstimate(LightField& light, const Coarsening& coarsening, const std::vector<float>& same,
+ErrorParts WriteErrorEstimate(LightField& light, const CoarseBlocks& blocks, const std::vector<float>& same,
   const std::vector<float>& other, double partOfDifference, double orderInSpace);
 
 /// Solve, and estimate the error of fluence without a reference, from two more solves on a grid of half the voxels an
@@ -46,4 +79,10 @@ ErrorParts WriteErrorEstimate(LightField& light, const Coarsening& coarsening, c
 /// and its error in voxel size not seen.
 LightField SolveWithErrorEstimate(const Medium& medium, const Illumination& illumination,
   const PropagationSettings& settings, const Monitor& monitor, const PropagationSolver& solve);
+
+/// The same of a scene that is spread over ranks; the coarse grid is that of the whole (CoarseBlocks.h), so that errors
+/// do not depend on the blocks, but for rounding. All ranks call it together, with a scene that is alike on all in what
+/// it has.
+LightField SolveWithErrorEstimate(
+  const SceneInBlocks& scene, const PropagationSettings& settings, const Monitor& monitor, const SolverInBlocks& solve);
 }

@@ -2,8 +2,8 @@
 
 #include "Device/Errors.h"
 #include "Light/Quality.h"
+#include "LightPropagation/Accuracy/CoarseSceneInBlocks.h"
 #include "LightPropagation/Accuracy/DirectionForecast.h"
-#include "LightPropagation/Problem/CoarseScene.h"
 #include "LightPropagation/Problem/DividedScene.h"
 #include "Numerics/NumberText.h"
 
@@ -29,7 +29,7 @@ constexpr double MuchUncollided = 0.3; ///< of the error, from which on a solve 
 constexpr int Few = 9, More = 25;
 constexpr double LeastEmissionError = 0.005;
 
-/// Fluence on the coarse grid, and the settings it was found with.
+/// Fluence of coarse voxels, and the settings it was found with.
 struct CoarseLight
 {
   PropagationSettings settings;
@@ -49,21 +49,20 @@ bool HasLampsNearby(const Illumination& illumination)
     [](const Light& light) { return light.type != LightType::Directional; });
 }
 
-/// The search, step by step.
+/// The search, step by step; all ranks take the same.
 class TargetSearch
 {
 public:
-  TargetSearch(const Medium& medium, const Illumination& illumination, const PropagationSettings& settings,
-    double target, const Monitor& monitor, const PropagationSolver& solve)
-    : TheMedium(medium)
-    , Shining(illumination)
+  TargetSearch(const SceneInBlocks& scene, const PropagationSettings& settings, double target, const Monitor& monitor,
+    const SolverInBlocks& solve)
+    : TheScene(scene)
     , Asked(settings)
     , Goal(Aim * target)
     , Target(target)
     , TheMonitor(monitor)
     , Solver(solve)
-    , Coarsened(medium.grid)
-    , Coarse(medium, illumination, this->Coarsened)
+    , Blocks(scene.others, scene.partition)
+    , Coarse(Blocks, scene.medium, scene.illumination)
   {
     const PropagationSettings byDefault;
     SetUnlessChosen(this->Asked.tolerance, byDefault.tolerance, std::min(LooseTolerance, TolerancePart * this->Goal));
@@ -76,9 +75,10 @@ public:
     this->LookAtDirections();
     if (this->Layers)
     {
-      return this->Finish(SolveWithErrorEstimate(this->TheMedium, this->Shining, this->Asked, this->TheMonitor,
-        [this](const Medium& medium, const Illumination& light, const PropagationSettings& settings,
-          const Monitor& monitor) { return this->Count(medium, light, settings, monitor); }));
+      return this->Finish(SolveWithErrorEstimate(this->TheScene, this->Asked, this->TheMonitor,
+        [this](const SceneInBlocks& scene, const PropagationSettings& settings, const Monitor& monitor) {
+          return this->Count(scene, settings, monitor);
+        }));
     }
     this->SolveAlong(this->Forecast->Cheapest(this->Asked, DirectionPart * this->Goal), 0.12, 0.4);
     if (this->Light.relativeError > this->Goal)
@@ -93,11 +93,10 @@ public:
   }
 
 private:
-  LightField Count(
-    const Medium& medium, const Illumination& illumination, const PropagationSettings& settings, const Monitor& monitor)
+  LightField Count(const SceneInBlocks& scene, const PropagationSettings& settings, const Monitor& monitor)
   {
     ++this->Solves;
-    return this->Solver(medium, illumination, settings, monitor);
+    return this->Solver(scene, settings, monitor);
   }
 
   LightField OnCoarse(PropagationSettings settings, double from, double to)
@@ -107,7 +106,9 @@ private:
     settings.storeMoments = false;
     settings.storedDirections = 1;
     settings.adaptDirections = false;
-    return this->Count(this->Coarse.TheMedium(), this->Coarse.Shining(), settings, OfPart(this->TheMonitor, from, to));
+    return this->Count(
+      { this->TheScene.others, this->Blocks.Coarse(), this->Coarse.TheMedium(), this->Coarse.Shining() }, settings,
+      OfPart(this->TheMonitor, from, to));
   }
 
   /// The coarse grid along few and along more directions.
@@ -125,12 +126,16 @@ private:
       settings.directionsPerFace = More;
       const LightField more = this->OnCoarse(settings, 0.03, 0.1);
       this->AlongMore = { settings, more.fluence };
-      this->Forecast.emplace(few, Few, more, More);
+      this->Forecast.emplace(this->TheScene.others, few, Few, more, More);
       if (this->MayHaveFinerUncollided())
       {
         settings.directionsPerFace = Few;
         settings.uncollidedDirections = More;
-        this->Forecast->Separate(few, this->OnCoarse(settings, 0.1, 0.12), more);
+        const LightField between = this->OnCoarse(settings, 0.1, 0.12);
+        if (between.uncollidedDirections > 0)
+        {
+          this->Forecast->Separate(this->TheScene.others, few, between, more);
+        }
       }
     }
   }
@@ -139,7 +144,7 @@ private:
   /// target takes more than a few directions.
   bool MayHaveFinerUncollided() const
   {
-    return this->Forecast->UncollidedPart() > MuchUncollided && ShinesThroughFaces(this->Shining) &&
+    return this->Forecast->UncollidedPart() > MuchUncollided && ShinesThroughFaces(this->TheScene.illumination) &&
       this->Forecast->Cheapest(this->Asked, DirectionPart * this->Goal).directionsPerFace > More;
   }
 
@@ -148,19 +153,19 @@ private:
   {
     this->Used = settings;
     const double middle = from + 0.8 * (to - from);
-    this->Light = this->Count(this->TheMedium, this->Shining, settings, OfPart(this->TheMonitor, from, middle));
+    this->Light = this->Count(this->TheScene, settings, OfPart(this->TheMonitor, from, middle));
     const CoarseLight* const solved = this->AlongFew.Has(settings) ? &this->AlongFew
       : this->AlongMore.Has(settings)                              ? &this->AlongMore
                                                                    : nullptr;
     const CoarseLight& other = solved == &this->AlongMore ? this->AlongFew : this->AlongMore;
     const double error = this->Forecast->Error(settings);
-    const double order = HasLampsNearby(this->Shining) ? OrderBesideLamps : OrderInSpace;
+    const double order = HasLampsNearby(this->TheScene.illumination) ? OrderBesideLamps : OrderInSpace;
     if (!solved && this->IsMetAtMost(other.fluence, error, order))
     {
       return;
     }
     const std::vector<float> same = solved ? solved->fluence : this->OnCoarse(settings, middle, to).fluence;
-    this->Parts = WriteErrorEstimate(this->Light, this->Coarsened, same, other.fluence,
+    this->Parts = WriteErrorEstimate(this->Light, this->Blocks, same, other.fluence,
       this->Forecast->PartOfDifference(settings, other.settings), order);
   }
 
@@ -203,7 +208,7 @@ private:
   /// voxel size. Then nobody has to tell the two apart.
   bool IsMetAtMost(const std::vector<float>& other, double error, double order)
   {
-    ErrorParts parts = WriteErrorEstimate(this->Light, this->Coarsened, other, other, 0.0, order);
+    ErrorParts parts = WriteErrorEstimate(this->Light, this->Blocks, other, other, 0.0, order);
     parts.inDirections = error;
     const double all = std::sqrt(this->Light.relativeError * this->Light.relativeError + error * error);
     const double scale = this->Light.relativeError > 0.0 ? all / this->Light.relativeError : 1.0;
@@ -237,21 +242,43 @@ private:
 
   void Divide()
   {
-    const DividedScene divided(this->TheMedium, this->Shining, this->Asked.periodic);
+    std::optional<DividedScene> divided;
     LightField light;
+    this->TheScene.others.Together([&] {
+      divided.emplace(
+        this->TheScene.medium, this->TheScene.illumination, this->Asked.periodic, this->TheScene.partition.whole);
+    });
+    const BlockPartition blocks = this->DividedBlocks(divided->PartsAlong());
     try
     {
-      light = this->Count(divided.TheMedium(), divided.Shining(), this->Used, OfPart(this->TheMonitor, 0.6, 1.0));
+      light = this->Count({ this->TheScene.others, blocks, divided->TheMedium(), divided->Shining() }, this->Used,
+        OfPart(this->TheMonitor, 0.6, 1.0));
     }
-    catch (const DeviceError& error)
+    catch (const DeviceError& error) // which all ranks throw
     {
       this->WhyNot = std::string(" Voxels of half the edge were tried: ") + error.what();
       return;
     }
-    divided.Undo(light);
+    divided->Undo(light);
     this->InHalves = true;
     this->EstimateOfDivided(light);
     this->Light = std::move(light);
+  }
+
+  BlockPartition DividedBlocks(const std::array<int, 3>& parts) const
+  {
+    BlockPartition divided = this->TheScene.partition;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      divided.whole.size[axis] *= parts[axis];
+      divided.whole.spacing[axis] /= parts[axis];
+      for (VoxelBox& block : divided.blocks)
+      {
+        block.first[axis] *= parts[axis];
+        block.size[axis] *= parts[axis];
+      }
+    }
+    return divided;
   }
 
   /// From the difference to whole voxels, which is three times the error that is left, and what else is left as before.
@@ -268,7 +295,8 @@ private:
       errors += error * error;
       all += static_cast<double>(light.fluence[i]) * light.fluence[i];
     }
-    light.relativeError = all > 0.0 ? std::sqrt(errors / all) : 0.0;
+    const std::vector<double> sums = this->TheScene.others.Sum({ errors, all });
+    light.relativeError = sums[1] > 0.0 ? std::sqrt(sums[0] / sums[1]) : 0.0;
   }
 
   TargetLight Finish(LightField&& light)
@@ -278,7 +306,8 @@ private:
     found.met = light.relativeError <= this->Target; // NaN: not known, so not met
     found.divided = this->InHalves;
     found.solves = this->Solves;
-    found.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - this->Start).count();
+    const std::chrono::duration<double> own = std::chrono::steady_clock::now() - this->Start;
+    found.seconds = this->TheScene.others.Largest({ own.count() })[0];
     if (!found.met)
     {
       light.doubts.push_back(this->WordsOfMiss(light.relativeError, found));
@@ -300,14 +329,13 @@ private:
       ", or ask for less." + this->WhyNot;
   }
 
-  const Medium& TheMedium;
-  const Illumination& Shining;
+  const SceneInBlocks& TheScene;
   PropagationSettings Asked;
   double Goal, Target;
   const Monitor& TheMonitor;
-  const PropagationSolver& Solver;
-  Coarsening Coarsened;
-  CoarseScene Coarse;
+  const SolverInBlocks& Solver;
+  CoarseBlocks Blocks;
+  CoarseSceneInBlocks Coarse;
   std::chrono::steady_clock::time_point Start = std::chrono::steady_clock::now();
 
   std::optional<DirectionForecast> Forecast;
@@ -324,10 +352,17 @@ private:
 TargetLight SolveToTargetError(const Medium& medium, const Illumination& illumination,
   const PropagationSettings& settings, double target, const Monitor& monitor, const PropagationSolver& solve)
 {
+  SceneOnOneRank whole(medium, illumination, solve);
+  return SolveToTargetError(whole.Scene(), settings, target, monitor, whole.Solver());
+}
+
+TargetLight SolveToTargetError(const SceneInBlocks& scene, const PropagationSettings& settings, double target,
+  const Monitor& monitor, const SolverInBlocks& solve)
+{
   if (!(target > 0.0 && target < 1.0))
   {
     throw InvalidInput("TargetError is " + Text("%g", target) + "; it must be above 0 and below 1.");
   }
-  return TargetSearch(medium, illumination, settings, target, monitor, solve).Run();
+  return TargetSearch(scene, settings, target, monitor, solve).Run();
 }
 }

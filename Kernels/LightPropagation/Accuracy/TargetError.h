@@ -31,4 +31,9 @@ struct TargetLight
 /// @param target  relative, above 0
 TargetLight SolveToTargetError(const Medium& medium, const Illumination& illumination,
   const PropagationSettings& settings, double target, const Monitor& monitor, const PropagationSolver& solve);
+
+/// The same of a scene that is spread over ranks, by coarse and divided blocks (ErrorEstimate.h). All ranks call it
+/// together, with a scene that is alike on all in what it has, and come to the same.
+TargetLight SolveToTargetError(const SceneInBlocks& scene, const PropagationSettings& settings, double target,
+  const Monitor& monitor, const SolverInBlocks& solve);
 }

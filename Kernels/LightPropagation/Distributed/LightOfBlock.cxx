@@ -1,5 +1,6 @@
 #include "LightPropagation/Distributed/LightOfBlock.h"
 
+#include "Device/DeviceWords.h"
 #include "Light/LeftOut.h"
 #include "LightPropagation/Conservative/ShownLight.h"
 #include "Numerics/Constants.h"
@@ -109,7 +110,7 @@ LightField LightOfBlock(BlockOnDevice& block, const IncidentLight& incident, Ite
   light.halfRangeFlux = HalfRangeFlux(incident.OfBoundary().Set());
   light.uncollidedDirections = incident.FineBoundary() ? incident.Fine()->Set().PerFace() : 0;
   SayWhatSolveLacks(block, how, light);
-  light.device = block.TheDevice.Name();
+  light.device = NameWithStreaming(block.TheDevice);
   return light;
 }
 }

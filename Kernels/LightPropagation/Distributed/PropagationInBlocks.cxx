@@ -46,10 +46,7 @@ std::string NotInBlocks(const Medium& medium, const Illumination& illumination, 
   return {};
 }
 
-namespace
-{
-/// What all ranks are given, checked.
-const BlockPartition& Checked(Communicator& communicator, const BlockPartition& partition, const Medium& medium,
+void CheckBlocks(Communicator& communicator, const BlockPartition& partition, const Medium& medium,
   const Illumination& illumination, const PropagationSettings& settings)
 {
   const int rank = communicator.Rank();
@@ -70,6 +67,15 @@ const BlockPartition& Checked(Communicator& communicator, const BlockPartition& 
   RequireSame(communicator, partition);
   RequireSame(communicator, has, medium, illumination, settings);
   CheckLightHasAnEnd(AbsorbsOnAny(communicator, has, medium), illumination, settings.periodic);
+}
+
+namespace
+{
+/// What all ranks are given, checked.
+const BlockPartition& Checked(Communicator& communicator, const BlockPartition& partition, const Medium& medium,
+  const Illumination& illumination, const PropagationSettings& settings)
+{
+  CheckBlocks(communicator, partition, medium, illumination, settings);
   return partition;
 }
 
@@ -105,6 +111,7 @@ public:
 
   LightField Solve(Device& device, const Illumination& illumination, const Monitor& monitor);
   std::string BetterAsWhole(const Medium& medium, const Illumination& illumination) const;
+  bool BalancesVoxels() const { return this->Orders.how == OrdersAdded::ByBalance; }
 
 private:
   /// Volume of a voxel over that which is solved.
@@ -141,9 +148,22 @@ UncollidedDirections ProblemInBlocks::FinerDirections(OrdersAdded how) const
   return { static_cast<int>(all[0]), all[1] > 0.0 };
 }
 
+/// What does not fit the budget lies in host memory.
+MemoryBudget WithinBudget(const PropagationSettings& settings)
+{
+  MemoryBudget budget;
+  if (settings.memoryBudget > 0)
+  {
+    budget.bytes = settings.memoryBudget;
+    budget.spills = true;
+  }
+  return budget;
+}
+
 LightField ProblemInBlocks::Solve(Device& device, const Illumination& illumination, const Monitor& monitor)
 {
   const BlockScene& scene = *this->Scene;
+  Device ofSolve(device, WithinBudget(this->Settings));
   const bool byBalance = this->Orders.how == OrdersAdded::ByBalance;
   const UncollidedDirections finer = byBalance ? UncollidedDirections() : this->FinerDirections(this->Orders.how);
   std::optional<IncidentLight> incident;
@@ -153,7 +173,7 @@ LightField ProblemInBlocks::Solve(Device& device, const Illumination& illuminati
   this->Others.Together([&] {
     incident.emplace(
       this->Blocks.whole, this->Settings, scene.illumination, finer, scene.channels, scene.traits.scatters);
-    block.emplace(device, this->Others, this->Blocks, scene, this->Settings, *incident);
+    block.emplace(ofSolve, this->Others, this->Blocks, scene, this->Settings, *incident);
     uncollided.emplace(*block, *incident);
     if (byBalance)
     {
@@ -235,6 +255,12 @@ PropagationSettings AtQualityInBlocks(Communicator& communicator, const BlockPar
   const bool scatters = communicator.Largest({ has && Scatters(medium) ? 1.0 : 0.0 })[0] > 0.0;
   return AtQuality(
     quality, settings, { ShinesThroughFaces(illumination), scatters, MeanThickness(partition.whole, extinction) });
+}
+
+bool BalancesVoxels(Device& device, Communicator& communicator, const BlockPartition& partition, const Medium& medium,
+  const Illumination& illumination, const PropagationSettings& settings)
+{
+  return ProblemInBlocks(device, communicator, partition, medium, illumination, settings).BalancesVoxels();
 }
 
 std::string BetterAsWhole(Device& device, Communicator& communicator, const BlockPartition& partition,

@@ -33,7 +33,8 @@ namespace tyndall
 ///
 /// @param medium  of the rank's block, with the grid that partition.OwnGrid() has; looked at by nobody where that has
 ///   no voxels
-/// @param illumination, settings  the same on all ranks
+/// @param illumination, settings  the same on all ranks, but for memoryBudget: what of this rank's arrays does not fit
+///   that lies in host memory, and is read from there; 0 is what the device has, and an error beyond
 /// @return the light of the rank's block; balance, face powers and convergence are of the whole. Empty arrays where the
 ///   block is
 /// @throws InvalidInput  on every rank, where one of them has an input that Check() refuses, where they disagree, or
@@ -42,6 +43,16 @@ namespace tyndall
 LightField SolveInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition,
   const Medium& medium, const Illumination& illumination, const PropagationSettings& settings,
   const Monitor& monitor = {});
+
+/// What SolveInBlocks checks first. All ranks call it.
+/// @throws InvalidInput  as SolveInBlocks
+void CheckBlocks(Communicator& communicator, const BlockPartition& partition, const Medium& medium,
+  const Illumination& illumination, const PropagationSettings& settings);
+
+/// Whether SolveInBlocks would add up orders by the balance of voxels. All ranks call it, and are told the same.
+/// @throws as SolveInBlocks
+bool BalancesVoxels(Device& device, Communicator& communicator, const BlockPartition& partition, const Medium& medium,
+  const Illumination& illumination, const PropagationSettings& settings);
 
 /// What of a scene keeps SolveInBlocks from it, in words for an error; empty: nothing does.
 std::string NotInBlocks(const Medium& medium, const Illumination& illumination, const PropagationSettings& settings);

@@ -7,38 +7,55 @@ namespace tyndall
 {
 namespace
 {
-Grid Divide(Grid grid, const std::array<bool, 3>& periodic)
+std::array<int, 3> PartsOf(const Grid& whole, const std::array<bool, 3>& periodic)
+{
+  std::array<int, 3> parts = {};
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    parts[axis] = whole.size[axis] == 1 && periodic[axis] ? 1 : 2;
+  }
+  return parts;
+}
+
+Grid Divide(Grid grid, const std::array<int, 3>& parts)
 {
   for (int axis = 0; axis < 3; ++axis)
   {
-    const int parts = grid.size[axis] == 1 && periodic[axis] ? 1 : 2;
-    grid.size[axis] *= parts;
-    grid.spacing[axis] /= parts;
+    grid.size[axis] *= parts[axis];
+    grid.spacing[axis] /= parts[axis];
   }
   return grid;
 }
 }
 
 DividedScene::DividedScene(const Medium& medium, const Illumination& illumination, const std::array<bool, 3>& periodic)
-  : Whole(medium.grid)
-  , Divided(medium)
+  : DividedScene(medium, illumination, periodic, medium.grid)
+{
+}
+
+DividedScene::DividedScene(
+  const Medium& part, const Illumination& illumination, const std::array<bool, 3>& periodic, const Grid& whole)
+  : Whole(whole)
+  , Given(part.grid)
+  , Along(PartsOf(whole, periodic))
+  , Divided(part)
   , Light(illumination)
 {
-  this->Divided.grid = Divide(medium.grid, periodic);
+  this->Divided.grid = Divide(part.grid, this->Along);
   for (Field* field : { &this->Divided.sigma_a, &this->Divided.sigma_s, &this->Divided.emission,
          &this->Light.uncollided.fluence, &this->Light.uncollided.meanDirection })
   {
     *field = this->Repeated(*field);
   }
-  if (medium.phase.Varies())
+  if (part.phase.Varies())
   {
-    this->Divided.phase = medium.phase.WithG(this->Repeated(medium.phase.G()));
+    this->Divided.phase = part.phase.WithG(this->Repeated(part.phase.G()));
   }
 }
 
 double DividedScene::Parts() const
 {
-  return static_cast<double>(this->Divided.grid.VoxelCount()) / static_cast<double>(this->Whole.VoxelCount());
+  return this->Along[0] * this->Along[1] * this->Along[2];
 }
 
 Field DividedScene::Repeated(const Field& field)
@@ -48,11 +65,7 @@ Field DividedScene::Repeated(const Field& field)
     return field;
   }
   const Grid& fine = this->Divided.grid;
-  std::array<int, 3> parts = {};
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    parts[axis] = fine.size[axis] / this->Whole.size[axis];
-  }
+  const std::array<int, 3>& parts = this->Along;
   std::vector<float> values;
   values.reserve(fine.VoxelCount() * field.components);
   for (int z = 0; z < fine.size[2]; ++z)
@@ -62,7 +75,7 @@ Field DividedScene::Repeated(const Field& field)
       for (int x = 0; x < fine.size[0]; ++x)
       {
         const float* const from =
-          field.values + this->Whole.IndexOf({ x / parts[0], y / parts[1], z / parts[2] }) * field.components;
+          field.values + this->Given.IndexOf({ x / parts[0], y / parts[1], z / parts[2] }) * field.components;
         values.insert(values.end(), from, from + field.components);
       }
     }
@@ -75,7 +88,7 @@ Field DividedScene::Repeated(const Field& field)
 
 void DividedScene::UndoCells(std::vector<float>& values) const
 {
-  const Grid& fine = this->Divided.grid;
+  const Grid fine = Divide(this->Whole, this->Along);
   const std::size_t components = values.size() / BoxFaceCellCount(fine);
   if (components == 0)
   {
@@ -85,8 +98,7 @@ void DividedScene::UndoCells(std::vector<float>& values) const
   ForBoxFaceCells(fine, [&](const BoxFaceCell& cell) {
     const PlaneAxes axes = AcrossAxis(cell.face / 2);
     const BoxFaceLayout layout = LayoutOfFace(this->Whole, cell.face);
-    const int partsU = fine.size[axes.u] / this->Whole.size[axes.u];
-    const int partsV = fine.size[axes.v] / this->Whole.size[axes.v];
+    const int partsU = this->Along[axes.u], partsV = this->Along[axes.v];
     const std::size_t parent =
       layout.first + cell.u / partsU * layout.step[axes.u] + cell.v / partsV * layout.step[axes.v];
     const float part = 1.0f / static_cast<float>(partsU * partsV);
@@ -100,7 +112,7 @@ void DividedScene::UndoCells(std::vector<float>& values) const
 
 void DividedScene::Undo(LightField& light) const
 {
-  const Coarsening back(this->Divided.grid, this->Whole);
+  const Coarsening back(this->Divided.grid, this->Given);
   const std::size_t voxels = this->Divided.grid.VoxelCount();
   for (std::vector<float>* values : { &light.fluence, &light.fluenceDirect, &light.netFlux, &light.scatteredRadiance,
          &light.scatteredMoments, &light.straightOn })

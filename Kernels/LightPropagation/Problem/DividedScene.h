@@ -15,21 +15,28 @@ class DividedScene
 {
 public:
   DividedScene(const Medium& medium, const Illumination& illumination, const std::array<bool, 3>& periodic);
+  /// Of a part of a scene.
+  /// @param whole  the grid of all
+  DividedScene(
+    const Medium& part, const Illumination& illumination, const std::array<bool, 3>& periodic, const Grid& whole);
   DividedScene(const DividedScene&) = delete;
   DividedScene& operator=(const DividedScene&) = delete;
 
   const Medium& TheMedium() const { return this->Divided; }
   const Illumination& Shining() const { return this->Light; }
-  double Parts() const; ///< voxels that each is divided into
+  double Parts() const;                                                ///< voxels that each is divided into
+  const std::array<int, 3>& PartsAlong() const { return this->Along; } ///< along each axis
 
-  /// Light of the divided scene as that of the scene: means over its voxels, and over the cells of the box's faces.
+  /// Light of the divided scene as that of the scene: means over its voxels, and over the cells of all of the box's
+  /// faces.
   void Undo(LightField& light) const;
 
 private:
   Field Repeated(const Field& field);
   void UndoCells(std::vector<float>& values) const;
 
-  Grid Whole;
+  Grid Whole, Given; ///< of all, and of the part
+  std::array<int, 3> Along;
   Medium Divided;
   Illumination Light;
   std::vector<std::vector<float>> Arrays; ///< that the scene sees
