@@ -192,7 +192,7 @@ static void leave_dark(__global float* fluence, __global float* mean_direction, 
 
 // Brick by brick: as finish_light, of records (PhotonBricks.h). One batch, and no counts.
 //   sigma_a, sigma_s  by records
-//   fluence, mean_direction  by voxels; of an empty brick the lowest voxel has the mean over it: fill_empty is to follow
+//   fluence, mean_direction  by voxels; of an empty brick the lowest voxel has the mean over it, until fill_empty
 //   taken             [brick][absorbed, scattered][CHANNELS] units of power
 __kernel void finish_bricks(LightSumsInfo info, const __global int* bricks, const __global float* sigma_a,
   const __global float* sigma_s, __global long* sums, ulong copyStride, __global float* fluence,
