@@ -19,9 +19,9 @@ std::int32_t BitsOf(float value)
   return bits;
 }
 
-/// One field in a layer of bricks along z, whose voxels stand one after the other in memory. Floats as integers: bits of
-/// those that are not negative are in the order of their values, with all that is not finite above, and integers take no
-/// branch a value.
+/// One field in a layer of bricks along z, whose voxels stand one after the other in memory. Floats as integers: bits
+/// of those that are not negative are in the order of their values, with all that is not finite above, and integers
+/// take no branch a value.
 class LayerOfBricks
 {
 public:
