@@ -19,36 +19,37 @@ std::int32_t BitsOf(float value)
   return bits;
 }
 
-/// One field in a row of bricks along x. Floats as integers: bits of those that are not negative are in the order of
-/// their values, with all that is not finite above, and integers take no branch a value.
-class RowOfBricks
+/// One field in a layer of bricks along z, whose voxels stand one after the other in memory. Floats as integers: bits
+/// of those that are not negative are in the order of their values, with all that is not finite above, and integers
+/// take no branch a value.
+class LayerOfBricks
 {
 public:
-  RowOfBricks(const Field& field, const Grid& grid)
+  LayerOfBricks(const Field& field, const Grid& grid, const FilledBricks& bricks, int layer)
     : Of(field)
     , TheGrid(grid)
-    , Bits(Count(grid.size[0]) * Count(field.components))
+    , BrickCount(bricks.count)
+    , Layer(layer)
+    , Bits(Count(bricks.count[0]) * Count(bricks.count[1]) * Lanes, 0)
   {
   }
 
   /// Marks bricks in which any value is not zero, and widens what is known of all values.
-  void Mark(int row, int layer, unsigned char* bricks, FilledBricks::Values& all)
+  void Mark(unsigned char* bricks, FilledBricks::Values& all)
   {
-    this->Collect(row, layer);
-    const std::size_t ofBrick = Count(BrickEdge) * Count(this->Of.components);
+    this->Collect();
     std::int32_t largest = 0, signs = 0;
-    for (std::size_t begin = 0, brick = 0; begin < this->Bits.size(); begin += ofBrick, ++brick)
+    for (std::size_t brick = 0; brick < this->Bits.size() / Lanes; ++brick)
     {
-      const std::size_t end = std::min(begin + ofBrick, this->Bits.size());
       std::int32_t here = 0;
-      for (std::size_t i = begin; i < end; ++i)
+      for (std::size_t lane = 0; lane < Lanes; ++lane)
       {
-        here |= this->Bits[i];
+        here |= this->Bits[brick * Lanes + lane];
       }
       if (here != 0)
       {
         signs |= here;
-        const std::int32_t most = this->LargestIn(row, layer, begin, end);
+        const std::int32_t most = this->LargestIn(static_cast<int>(brick));
         largest = std::max(largest, most);
         bricks[brick] |= most > 0 ? 1 : 0;
       }
@@ -60,40 +61,55 @@ public:
   }
 
 private:
+  static constexpr std::size_t Lanes = 8; ///< as many bits a brick as a vector instruction takes at once
+
+  /// Calls act(row, y) for the rows of voxels from y0 to y1, in the order of memory.
   template <class Act>
-  void ForRows(int row, int layer, const Act& act) const
+  void ForRows(int y0, int y1, const Act& act) const
   {
-    const std::array<int, 3>& size = this->TheGrid.size;
-    for (int z = layer * BrickEdge; z < std::min((layer + 1) * BrickEdge, size[2]); ++z)
+    for (int z = this->Layer * BrickEdge; z < std::min((this->Layer + 1) * BrickEdge, this->TheGrid.size[2]); ++z)
     {
-      for (int y = row * BrickEdge; y < std::min((row + 1) * BrickEdge, size[1]); ++y)
+      for (int y = y0; y < std::min(y1, this->TheGrid.size[1]); ++y)
       {
-        act(this->Of.values + this->TheGrid.IndexOf({ 0, y, z }) * Count(this->Of.components));
+        act(this->Of.values + this->TheGrid.IndexOf({ 0, y, z }) * Count(this->Of.components), y);
       }
     }
   }
 
-  /// All bits of values that stand one above the other.
-  void Collect(int row, int layer)
+  /// All bits of each brick's values. From end to end: jumps from row to row of bricks would take twice as long.
+  void Collect()
   {
-    std::fill(this->Bits.begin(), this->Bits.end(), 0);
-    std::int32_t* const bits = this->Bits.data();
-    const std::size_t count = this->Bits.size();
-    this->ForRows(row, layer, [&](const float* values) {
-      for (std::size_t i = 0; i < count; ++i)
+    const std::size_t each = Count(this->Of.components), ofBrick = BrickEdge * each;
+    const std::size_t values = Count(this->TheGrid.size[0]) * each, whole = values / ofBrick;
+    this->ForRows(0, this->TheGrid.size[1], [&](const float* row, int y) {
+      std::int32_t* const bits = this->Bits.data() + Count(y / BrickEdge) * Count(this->BrickCount[0]) * Lanes;
+      for (std::size_t brick = 0; brick < whole; ++brick)
       {
-        bits[i] |= BitsOf(values[i]);
+        for (std::size_t part = 0; part < each; ++part)
+        {
+          for (std::size_t lane = 0; lane < Lanes; ++lane)
+          {
+            bits[brick * Lanes + lane] |= BitsOf(row[(brick * each + part) * Lanes + lane]);
+          }
+        }
+      }
+      for (std::size_t i = whole * ofBrick; i < values; ++i)
+      {
+        bits[whole * Lanes] |= BitsOf(row[i]);
       }
     });
   }
 
-  std::int32_t LargestIn(int row, int layer, std::size_t begin, std::size_t end) const
+  std::int32_t LargestIn(int brick) const
   {
+    const int x = brick % this->BrickCount[0] * BrickEdge, y = brick / this->BrickCount[0] * BrickEdge;
+    const std::size_t each = Count(this->Of.components), begin = Count(x) * each;
+    const std::size_t end = Count(std::min(x + static_cast<int>(BrickEdge), this->TheGrid.size[0])) * each;
     std::int32_t largest = 0;
-    this->ForRows(row, layer, [&](const float* values) {
+    this->ForRows(y, y + BrickEdge, [&](const float* row, int) {
       for (std::size_t i = begin; i < end; ++i)
       {
-        largest = std::max(largest, BitsOf(values[i]));
+        largest = std::max(largest, BitsOf(row[i]));
       }
     });
     return largest;
@@ -101,8 +117,11 @@ private:
 
   const Field& Of;
   const Grid& TheGrid;
-  std::vector<std::int32_t> Bits;
+  const std::array<int, 3> BrickCount;
+  const int Layer;
+  std::vector<std::int32_t> Bits; ///< of each brick, in lanes
 };
+static_assert(BrickEdge == 8, "a row of a brick is whole lanes");
 
 void Widen(FilledBricks::Values& all, const FilledBricks::Values& part)
 {
@@ -113,14 +132,10 @@ void Widen(FilledBricks::Values& all, const FilledBricks::Values& part)
 /// What a layer of bricks along z has of one field.
 void MarkLayer(const Field& field, const Grid& grid, int layer, FilledBricks& bricks, FilledBricks::Values& values)
 {
-  if (!field.values)
+  if (field.values)
   {
-    return;
-  }
-  RowOfBricks bricksOfRow(field, grid);
-  for (int row = 0; row < bricks.count[1]; ++row)
-  {
-    bricksOfRow.Mark(row, layer, &bricks.filled[Count(layer * bricks.count[1] + row) * Count(bricks.count[0])], values);
+    LayerOfBricks(field, grid, bricks, layer)
+      .Mark(&bricks.filled[Count(layer) * Count(bricks.count[1]) * Count(bricks.count[0])], values);
   }
 }
 }

@@ -1,7 +1,7 @@
 // A medium that is mostly empty against one that fills its box.
 //
-//   TyndallBenchSparse [streaks] [photons] [scattered] [view] [inside] [maps] [EDGE...]   by default all but scattered
-//                                                                          and inside, at 128 and 256 voxels an edge
+//   TyndallBenchSparse [streaks] [photons] [many] [scattered] [view] [inside] [maps] [EDGE...]
+//                                    by default photons, view and maps, at 128 and 256 voxels an edge
 //
 // Fourteen cloudlets, apart from each other, of which 5% of the voxels are filled, and a haze of the same mean
 // extinction over the whole box: from constructing a solver on arrays in memory to its light, or to a picture. `again`:
@@ -9,6 +9,7 @@
 // filled the box. `seconds` is the shorter of two, as large grids take long; kernels were compiled on a small one.
 // `peak_bytes` is beyond the scene's own arrays.
 //   streaks    instead of cloudlets, long ones with a sun along them, which nobody had in mind when the code was made
+//   many       sixteen times the photons: how often what does not depend on their number counts
 //   scattered  a twentieth of the photons, followed through all their scatterings
 //   inside     pictures from the middle of the box
 
@@ -248,14 +249,13 @@ void PrintRuns(const char* what, int edge, double filledBricks, const std::vecto
   table.Print(std::string(what) + ", " + bench::GridText(edge));
 }
 
-/// @param orders  1: photons are followed to where they are first scattered; 0: to their ends, a twentieth of them
-Run MarchOf(Device& device, const Scene& scene, bool byBricks, int orders)
+/// @param orders  1: photons are followed to where they are first scattered; 0: to their ends
+Run MarchOf(Device& device, const Scene& scene, bool byBricks, int orders, std::size_t count)
 {
   Illumination illumination;
   Light sun;
   sun.direction = scene.sun;
   illumination.lights = { sun };
-  const std::size_t count = orders == 1 ? PhotonCount : PhotonCount / 20;
   const std::vector<Photon> photons = EmitPhotons(scene.grid, illumination, { count, Sampler::Hammersley, 0 }).photons;
   MarchSettings settings;
   settings.byBricks = byBricks;
@@ -332,8 +332,9 @@ struct Case
 
 std::vector<Case> CasesOf(Device& device)
 {
-  const auto march = [&device](int orders) {
-    return [&device, orders](const Scene& scene, bool byBricks) { return MarchOf(device, scene, byBricks, orders); };
+  const auto march = [&device](int orders, std::size_t count) {
+    return [&device, orders, count](
+             const Scene& scene, bool byBricks) { return MarchOf(device, scene, byBricks, orders, count); };
   };
   const auto view = [&device](bool inside) {
     return [&device, inside](const Scene& scene, bool) { return ViewOf(device, scene, inside); };
@@ -341,8 +342,9 @@ std::vector<Case> CasesOf(Device& device)
   const auto maps = [&device](int orders) {
     return [&device, orders](const Scene& scene, bool) { return MapsOf(device, scene, orders); };
   };
-  return { { "photons", "photons", true, march(1), true, {} },
-    { "photons that are scattered", "scattered", false, march(0), false, {} },
+  return { { "photons", "photons", true, march(1, PhotonCount), true, {} },
+    { "many photons", "many", false, march(1, 16 * PhotonCount), true, {} },
+    { "photons that are scattered", "scattered", false, march(0, PhotonCount / 20), false, {} },
     { "view", "view", true, view(false), false, {} }, { "view from inside", "inside", false, view(true), false, {} },
     { "maps, 3 orders", "maps", true, maps(3), false, {} }, { "maps, converged", "maps", true, maps(0), false, {} } };
 }

@@ -13,9 +13,9 @@ using namespace tyndall;
 namespace
 {
 /// Two cloudlets far apart in a box whose last bricks stand out of it.
-PhotonScene Cloudlets(float red = 1.0f)
+PhotonScene Cloudlets(float red = 1.0f, int width = 77)
 {
-  PhotonScene scene({ 77, 50, 61 }, 0.05, 1.0, 0.0f, 0.0f);
+  PhotonScene scene({ width, 50, 61 }, 0.05, 1.0, 0.0f, 0.0f);
   if (red != 1.0f)
   {
     scene.sigma_s.resize(3 * scene.sigma_s.size());
@@ -166,6 +166,24 @@ TEST_F(PhotonsByBricksTest, LightIsTheSameFromEverySide)
   {
     this->ExpectSame(scene, PhotonsOf(scene.medium.grid, Sun(direction)),
       std::to_string(direction[0]) + ' ' + std::to_string(direction[1]) + ' ' + std::to_string(direction[2]));
+  }
+}
+
+/// Of rows that are whole vectors, voxels of empty bricks are stored several at a time.
+TEST_F(PhotonsByBricksTest, RowsOfWholeVectorsHaveTheSameLight)
+{
+  for (const float red : { 1.0f, 0.5f })
+  {
+    const PhotonScene scene = Cloudlets(red, 84);
+    const std::vector<Photon> photons = PhotonsOf(scene.medium.grid, Sun({ 0.36, 0.48, 0.8 }));
+    const PhotonLight light = this->ExpectSame(scene, photons, std::to_string(red));
+    EXPECT_EQ(light.light.channels, red == 1.0f ? 1 : 3);
+    for (std::size_t voxel = 0; voxel < light.meanDirection.size() / 3; ++voxel)
+    {
+      const bool lit = light.light.fluence[voxel * static_cast<std::size_t>(light.light.channels)] > 1e-3f;
+      ASSERT_NEAR(light.meanDirection[3 * voxel + 2], 0.80, lit ? 1e-4 : 0.81) << voxel;
+      ASSERT_NEAR(light.meanDirection[3 * voxel + 0], 0.36, lit ? 1e-4 : 0.37) << voxel;
+    }
   }
 }
 

@@ -129,16 +129,11 @@ void MarchMedium::SetNodes(const BrickedBytes& all)
 
 void MarchMedium::PackBricks(const Medium& medium)
 {
-  const auto upload = [this](const std::vector<float>& values, const char* what) {
-    return Buffer<float>(this->device, values, what);
-  };
-  const auto coefficient = [&](const Field& field, int components, const char* what) {
-    return components > 0 ? upload(this->bricks.Coefficient(field, components), what)
-                          : Buffer<float>(this->device, 0, what);
-  };
-  this->sigmaA = coefficient(medium.sigma_a, this->AComponents, "sigma_a");
-  this->sigmaS = coefficient(medium.sigma_s, this->SComponents, "sigma_s");
-  this->sigma = upload(this->bricks.Extinction(medium, this->Diagonal(), this->channels), "extinction");
+  const PhotonBricks::Coefficients packed =
+    this->bricks.Pack(medium, this->Diagonal(), this->channels, this->AComponents, this->SComponents);
+  this->sigma = Buffer<float>(this->device, packed.extinction, "extinction");
+  this->sigmaA = Buffer<float>(this->device, packed.sigmaA, "sigma_a");
+  this->sigmaS = Buffer<float>(this->device, packed.sigmaS, "sigma_s");
   this->coefficients = Buffer<float>(this->device, 0, "squared index");
   this->nodes = Buffer<cl_uchar>(this->device, 0, "octree nodes");
 }

@@ -153,6 +153,9 @@ void MarchedLight::FinishBricks(
   With(finish, through.DescribeSums(packed), through.bricks.First(), through.sigmaA, through.sigmaS, this->Sums,
     cl_ulong(target.records * static_cast<std::size_t>(target.numbers)), fluence.Handle(), direction.Handle(), taken);
   through.Launch(finish, cl::NDRange(through.bricks.Count()));
+  cl::Kernel fill = this->SumsKernel("fill_empty", packed, target, light);
+  With(fill, through.DescribeSums(packed), through.bricks.First(), fluence.Handle(), direction.Handle());
+  through.Launch(fill, cl::NDRange(voxels / Count(grid.size[0])));
   fluence.Fetch();
   direction.Fetch();
 }

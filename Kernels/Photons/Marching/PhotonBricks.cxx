@@ -2,6 +2,7 @@
 
 #include "Device/HostMemory.h"
 #include "Device/HostThreads.h"
+#include "Device/Sizes.h"
 
 #include <algorithm>
 
@@ -53,40 +54,40 @@ void PhotonBricks::ForFilled(const Act& act) const
           const std::size_t voxel = this->Voxels.IndexOf({ low[0], y, z });
           const auto record =
             static_cast<std::size_t>(this->Begin[brick] + ((z - low[2]) * BrickEdge + (y - low[1])) * BrickEdge);
-          for (int x = low[0]; x < high[0]; ++x)
-          {
-            const auto along = static_cast<std::size_t>(x - low[0]);
-            act(record + along, voxel + along);
-          }
+          act(record, voxel, static_cast<std::size_t>(high[0] - low[0]));
         }
       }
     }
   });
 }
 
-std::vector<float> PhotonBricks::Extinction(const Medium& medium, double diagonal, int channels) const
+PhotonBricks::Coefficients PhotonBricks::Pack(
+  const Medium& medium, double diagonal, int channels, int aComponents, int sComponents) const
 {
-  std::vector<float> sigma = Zeros(this->RecordCount * static_cast<std::size_t>(channels));
-  for (int c = 0; c < channels; ++c)
+  const std::size_t ofA = tyndall::Count(aComponents), ofS = tyndall::Count(sComponents);
+  const std::size_t all = tyndall::Count(channels);
+  Coefficients packed = { Zeros(this->RecordCount * all), Zeros(this->RecordCount * ofA),
+    Zeros(this->RecordCount * ofS) };
+  for (std::size_t c = 0; c < all; ++c)
   {
-    float* const values = sigma.data() + static_cast<std::size_t>(c) * this->RecordCount;
-    values[0] = OutsideOfGrid;
-    const auto over = static_cast<float>(diagonal);
-    this->ForFilled([&](std::size_t record, std::size_t voxel) {
-      const float extinction = medium.sigma_a.At(voxel, c) + medium.sigma_s.At(voxel, c);
-      values[record] = std::min(over * extinction, ThickestVoxel);
-    });
+    packed.extinction[c * this->RecordCount] = OutsideOfGrid;
   }
-  return sigma;
-}
-
-std::vector<float> PhotonBricks::Coefficient(const Field& field, int components) const
-{
-  const auto each = static_cast<std::size_t>(components);
-  std::vector<float> values = Zeros(this->RecordCount * each);
-  this->ForFilled([&](std::size_t record, std::size_t voxel) {
-    std::copy_n(field.values + voxel * each, each, values.begin() + static_cast<std::ptrdiff_t>(record * each));
+  const auto over = static_cast<float>(diagonal);
+  // All of a row at a time: rows of a brick are far from each other in memory.
+  this->ForFilled([&](std::size_t record, std::size_t voxel, std::size_t count) {
+    std::copy_n(medium.sigma_a.values + voxel * ofA, count * ofA, packed.sigmaA.data() + record * ofA);
+    std::copy_n(medium.sigma_s.values + voxel * ofS, count * ofS, packed.sigmaS.data() + record * ofS);
+    for (std::size_t c = 0; c < all; ++c)
+    {
+      float* const values = packed.extinction.data() + c * this->RecordCount + record;
+      for (std::size_t i = 0; i < count; ++i)
+      {
+        const int channel = static_cast<int>(c);
+        const float extinction = medium.sigma_a.At(voxel + i, channel) + medium.sigma_s.At(voxel + i, channel);
+        values[i] = std::min(over * extinction, ThickestVoxel);
+      }
+    }
   });
-  return values;
+  return packed;
 }
 }

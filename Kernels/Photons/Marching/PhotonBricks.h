@@ -21,13 +21,16 @@ public:
   /// [brick] the first record of a filled one; of an empty one less than 0: the number of its record, negated.
   const Buffer<cl_int>& First() const { return this->OnDevice; }
 
-  /// [channels][records] extinction over `diagonal`, as PhotonMedium.cl has it by voxels.
-  std::vector<float> Extinction(const Medium& medium, double diagonal, int channels) const;
-  /// [records][components] of a coefficient; nothing of 0 components.
-  std::vector<float> Coefficient(const Field& field, int components) const;
+  struct Coefficients
+  {
+    std::vector<float> extinction;     ///< [channels][records], over `diagonal`, as PhotonMedium.cl has it by voxels
+    std::vector<float> sigmaA, sigmaS; ///< [records][components]
+  };
+  /// @param aComponents, sComponents  the medium's own, or 0: not wanted
+  Coefficients Pack(const Medium& medium, double diagonal, int channels, int aComponents, int sComponents) const;
 
 private:
-  /// Calls act(record, voxel) for the voxels of filled bricks, on all cores.
+  /// Calls act(first record, first voxel, count) for rows of voxels along x of filled bricks, on all cores.
   template <class Act>
   void ForFilled(const Act& act) const;
 

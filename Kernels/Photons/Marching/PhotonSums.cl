@@ -45,13 +45,14 @@ static long taken_by(const LightSumsInfo* info, float sum, float coefficient, fl
 #endif
 }
 
-// The sum over a batch's copies of a voxel's record, which is zero afterwards.
-static void take_batch(__global long* record, ulong copyStride, int batch, long* sum)
+// The sum over a batch's copies of a voxel's record, which is zero afterwards. False where it was all along.
+static bool take_batch(__global long* record, ulong copyStride, int batch, long* sum)
 {
   for (int c = 0; c < RECORD; ++c)
   {
     sum[c] = 0;
   }
+  bool any = false;
   for (int w = batch; w < COPIES; w += BATCHES)
   {
     __global long* here = record + w * copyStride;
@@ -63,12 +64,14 @@ static void take_batch(__global long* record, ulong copyStride, int batch, long*
     }
     if (bits != 0) // half of the memory need not be written
     {
+      any = true;
       for (int c = 0; c < RECORD; ++c)
       {
         here[c] = 0;
       }
     }
   }
+  return any;
 }
 
 #if DIRECTIONS
@@ -170,39 +173,34 @@ __kernel void finish_light(LightSumsInfo info, const __global float* sigma_a, co
 }
 
 #if BRICKS
-// Gives voxels in a row the light of one, which may be among them.
-static void fill_row(
-  const size_t first, int size, const size_t from, __global float* fluence, __global float* mean_direction)
+// Bricks along x and y.
+static int2 bricks_across(const LightSumsInfo* info)
 {
-  float light[COLOURS];
+  return (int2)((info->grid.size[0] + BrickEdge - 1) / BrickEdge, (info->grid.size[1] + BrickEdge - 1) / BrickEdge);
+}
+
+static void leave_dark(__global float* fluence, __global float* mean_direction, size_t voxel)
+{
   for (int c = 0; c < COLOURS; ++c)
   {
-    light[c] = fluence[from * COLOURS + c];
-  }
-  for (int i = 0; i < size * COLOURS; ++i)
-  {
-    fluence[first * COLOURS + i] = light[i % COLOURS];
+    fluence[voxel * COLOURS + c] = 0.0f;
   }
 #if DIRECTIONS
-  const float3 direction = vload3(from, mean_direction);
-  for (int x = 0; x < size; ++x)
-  {
-    vstore3(direction, first + x, mean_direction);
-  }
+  vstore3((float3)(0.0f), voxel, mean_direction);
 #endif
 }
 
 // Brick by brick: as finish_light, of records (PhotonBricks.h). One batch, and no counts.
 //   sigma_a, sigma_s  by records
-//   fluence, mean_direction  by voxels; all of an empty brick have the mean over it
+//   fluence, mean_direction  by voxels; of an empty brick the lowest voxel has the mean over it, until fill_empty
 //   taken             [brick][absorbed, scattered][CHANNELS] units of power
 __kernel void finish_bricks(LightSumsInfo info, const __global int* bricks, const __global float* sigma_a,
   const __global float* sigma_s, __global long* sums, ulong copyStride, __global float* fluence,
   __global float* mean_direction, __global long* taken)
 {
   const int brick = get_global_id(0), first = bricks[brick];
-  const int nx = (info.grid.size[0] + BrickEdge - 1) / BrickEdge, ny = (info.grid.size[1] + BrickEdge - 1) / BrickEdge;
-  const int place[3] = { brick % nx, brick / nx % ny, brick / (nx * ny) };
+  const int2 n = bricks_across(&info);
+  const int place[3] = { brick % n.x, brick / n.x % n.y, brick / (n.x * n.y) };
   int size[3];
   for (int a = 0; a < 3; ++a)
   {
@@ -225,7 +223,11 @@ __kernel void finish_bricks(LightSumsInfo info, const __global int* bricks, cons
         const size_t voxel = low + z * strideZ + y * strideY + x;
         const size_t record = first < 0 ? -first : first + (z * BrickEdge + y) * BrickEdge + x;
         long sum[RECORD];
-        take_batch(sums + record * RECORD, copyStride, 0, sum);
+        if (!take_batch(sums + record * RECORD, copyStride, 0, sum)) // most of them: photons are few
+        {
+          leave_dark(fluence, mean_direction, voxel);
+          continue;
+        }
         float total = 0.0f;
         for (int c = 0; c < CHANNELS; ++c)
         {
@@ -242,14 +244,84 @@ __kernel void finish_bricks(LightSumsInfo info, const __global int* bricks, cons
       }
     }
   }
-  for (int row = 0; first < 0 && row < size[1] * size[2]; ++row)
-  {
-    fill_row(low + row / size[1] * strideZ + row % size[1] * strideY, size[0], low, fluence, mean_direction);
-  }
   for (int c = 0; c < CHANNELS; ++c)
   {
     taken[(brick * 2 + 0) * CHANNELS + c] = absorbed[c];
     taken[(brick * 2 + 1) * CHANNELS + c] = scattered[c];
+  }
+}
+
+#if defined(__has_builtin)
+#if __has_builtin(__builtin_nontemporal_store)
+#define STORE_PAST_CACHES 1
+#endif
+#endif
+
+// To an aligned place, where the array is far more than caches hold: memory need not come there before it is written.
+static void store_past_caches(float4 values, __global float* to)
+{
+#ifdef STORE_PAST_CACHES
+  __builtin_nontemporal_store(values, (__global float4*)to);
+#else
+  vstore4(values, 0, to);
+#endif
+}
+
+// Stores one value, or three, in each voxel from `begin` to `end`.
+static void fill_voxels(__global float* values, size_t begin, size_t end, float3 value, int components)
+{
+  __global float* const to = values + begin * components;
+  if (end - begin != BrickEdge || ((size_t)to & (sizeof(float4) - 1)) != 0)
+  {
+    for (size_t i = 0; i < end - begin; ++i)
+    {
+      if (components == 3)
+      {
+        vstore3(value, i, to);
+      }
+      else
+      {
+        to[i] = value.x;
+      }
+    }
+  }
+  else if (components == 3)
+  {
+    for (int at = 0; at < 24; at += 12)
+    {
+      store_past_caches(value.xyzx, to + at);
+      store_past_caches(value.yzxy, to + at + 4);
+      store_past_caches(value.zxyz, to + at + 8);
+    }
+  }
+  else
+  {
+    store_past_caches(value.xxxx, to);
+    store_past_caches(value.xxxx, to + 4);
+  }
+}
+
+// Row by row along x, so that memory is written from end to end: all voxels of empty bricks have the light of the
+// lowest one.
+__kernel void fill_empty(
+  LightSumsInfo info, const __global int* bricks, __global float* fluence, __global float* mean_direction)
+{
+  const int r = get_global_id(0), nx = info.grid.size[0], ny = info.grid.size[1];
+  const int y = r % ny, z = r / ny, within = BrickEdge - 1;
+  const int2 n = bricks_across(&info);
+  const size_t row = (size_t)r * nx, lowest = ((size_t)(z & ~within) * ny + (y & ~within)) * nx;
+  for (int b = 0; b < n.x; ++b)
+  {
+    if (bricks[((z >> BrickBits) * n.y + (y >> BrickBits)) * n.x + b] >= 0)
+    {
+      continue;
+    }
+    const size_t from = lowest + b * BrickEdge;
+    const size_t begin = row + b * BrickEdge + (row == lowest ? 1 : 0), end = row + min((b + 1) * (int)BrickEdge, nx);
+    fill_voxels(fluence, begin, end, COLOURS == 3 ? vload3(from, fluence) : (float3)(fluence[from]), COLOURS);
+#if DIRECTIONS
+    fill_voxels(mean_direction, begin, end, vload3(from, mean_direction), 3);
+#endif
   }
 }
 #endif

@@ -75,6 +75,28 @@ inline float4 source_of(const ingredients* from, int voxel, int single, float4* 
 }
 
 #if BRICKED
+#if defined(__has_builtin)
+#if __has_builtin(__builtin_prefetch)
+#define ASK(values, place) __builtin_prefetch((const void*)(size_t)((values) + (place)))
+#endif
+#endif
+#ifndef ASK
+#define ASK(values, place)
+#endif
+
+// Rows of a brick are far from each other in memory: those of its next slice are asked for, by the ends of each row.
+static void ask_for_next_slice(const ingredients* from, int4 size, int voxel)
+{
+  if (get_local_id(0) == 0 || get_local_id(0) == BrickEdge)
+  {
+    const size_t next = (size_t)voxel + size.x * size.y;
+    ASK(from->absorption, next * ABSORPTION);
+    ASK(from->scattering, next * SCATTERING);
+    ASK(from->fluence, next * FLUENCE);
+  }
+}
+#undef ASK
+
 static void put_nothing(int place, __global float4* samples, __global float4* extinctions, __global float4* flow,
   __global float4* glow, __global float4* cosines)
 {
@@ -130,6 +152,9 @@ __kernel void pack_samples(int4 size, int single, float g, __global const float*
 #endif
   const int voxel = voxel_of(sample, size);
   const ingredients from = { absorption, scattering, emission, fluence, unscattered, direct, ior };
+#if BRICKED
+  ask_for_next_slice(&from, size, voxel);
+#endif
   float4 sigma_t, emitted;
   const float4 source = source_of(&from, voxel, single, &sigma_t, &emitted);
 #if GREY
