@@ -295,7 +295,7 @@ vtkSmartPointer<vtkImageData> OctreeOf(const tyndall::PieceBlocks& pieces, vtkIm
 bool HaveBatches(tyndall::Communicator& communicator, const std::vector<tyndall::Photon>& photons)
 {
   const bool own = std::any_of(photons.begin(), photons.end(), IsOfLaterBatch);
-  return communicator.Largest({ own ? 1.0 : 0.0 })[0] > 0.0;
+  return tyndall::OnAnyRank(communicator, own);
 }
 }
 

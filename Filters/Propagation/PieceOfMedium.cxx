@@ -17,6 +17,6 @@ PieceOfMedium::PieceOfMedium(
       this->medium = this->input.medium;
     }
   });
-  this->emits = communicator.Largest({ pieces.HasOwn() && this->input.Emits() ? 1.0 : 0.0 })[0] > 0.0;
+  this->emits = OnAnyRank(communicator, pieces.HasOwn() && this->input.Emits());
 }
 }

@@ -273,7 +273,7 @@ bool vtkScatteringSolver::GiveOrSolvePiece(vtkInformation* request, vtkMultiProc
         ". Leave it out, or let each rank solve the whole.");
   });
   this->WholeFor = tyndall::WordsOfAny(communicator, refused);
-  const bool chooses = communicator.Largest({ this->Decomposition == BLOCKS ? 1.0 : 0.0 })[0] == 0.0;
+  const bool chooses = !tyndall::OnAnyRank(communicator, this->Decomposition == BLOCKS);
   if (this->WholeFor.empty() && chooses)
   {
     this->WholeFor = this->BetterAsWhole(communicator, pieces, piece, shining);

@@ -23,11 +23,8 @@ namespace tyndall
 #ifdef TYNDALL_HAS_MPI
 namespace
 {
-constexpr int FirstOfAll = 1000000;           ///< tags, behind those of VTK and of the other messages of ranks
-constexpr int Conversations = 64, Works = 16; ///< until tags come again
-constexpr double Grace = 1.0; ///< seconds in which what others have sent before they stopped still arrives
-
-int Work = 0, Conversation = 0;
+constexpr int FirstOfAll = 1000000; ///< tags, behind those of VTK and of the other messages of ranks
+constexpr double Grace = 1.0;       ///< seconds in which what others have sent before they stopped still arrives
 
 /// What is still being sent when an error ends a conversation: MPI may read it for as long as the process lives.
 template <class Messages>
@@ -151,6 +148,10 @@ std::vector<char> ControllerCommunicator::Take(int from, int tag)
 std::vector<std::vector<char>> ControllerCommunicator::Swap(
   const std::vector<int>& with, std::vector<std::vector<char>> parcels)
 {
+  if (this->Stopped && this->Stopped()) // one has left: the others would wait for it inside DIY
+  {
+    throw Aborted();
+  }
   return ExchangeByDIY(this->Controller, with, std::move(parcels), this->Patience);
 }
 #endif
@@ -158,8 +159,11 @@ std::vector<std::vector<char>> ControllerCommunicator::Swap(
 
 namespace
 {
+constexpr int Conversations = 64, Works = 16; ///< until tags come again; those of frames are behind those of work
+int Work = 0, Conversation = 0, Frame = 0;
+
 std::unique_ptr<Communicator> Make(
-  vtkMultiProcessController* ranks, [[maybe_unused]] std::function<bool()> stopped, [[maybe_unused]] bool isLast)
+  vtkMultiProcessController* ranks, [[maybe_unused]] std::function<bool()> stopped, [[maybe_unused]] int conversation)
 {
   if (!ranks)
   {
@@ -168,9 +172,7 @@ std::unique_ptr<Communicator> Make(
 #ifdef TYNDALL_HAS_MPI
   if (auto* const mpi = vtkMPIController::SafeDownCast(ranks))
   {
-    Conversation = isLast ? 0 : Conversation % (Conversations - 1) + 1;
-    return std::make_unique<ControllerCommunicator>(
-      mpi, SecondsToWait(), std::move(stopped), Work * Conversations + Conversation);
+    return std::make_unique<ControllerCommunicator>(mpi, SecondsToWait(), std::move(stopped), conversation);
   }
 #endif
   throw InvalidInput("Ranks that work together have to speak to each other by MPI, and VTK's controller does not.");
@@ -179,19 +181,24 @@ std::unique_ptr<Communicator> Make(
 
 void BeginConversations()
 {
-#ifdef TYNDALL_HAS_MPI
   Work = (Work + 1) % Works;
   Conversation = 0;
-#endif
 }
 
 std::unique_ptr<Communicator> CommunicatorOf(vtkMultiProcessController* ranks, std::function<bool()> stopped)
 {
-  return Make(ranks, std::move(stopped), false);
+  Conversation = Conversation % (Conversations - 1) + 1;
+  return Make(ranks, std::move(stopped), Work * Conversations + Conversation);
+}
+
+std::unique_ptr<Communicator> CommunicatorOfFrame(vtkMultiProcessController* ranks)
+{
+  Frame = (Frame + 1) % Conversations;
+  return Make(ranks, {}, Works * Conversations + Frame);
 }
 
 std::unique_ptr<Communicator> CommunicatorAtEnd(vtkMultiProcessController* ranks)
 {
-  return Make(ranks, {}, true);
+  return Make(ranks, {}, Work * Conversations);
 }
 }

@@ -30,6 +30,10 @@ void BeginConversations();
 /// @param stopped  whether a rank that waits for another is to give up (Aborted), a second later
 std::unique_ptr<Communicator> CommunicatorOf(vtkMultiProcessController* ranks, std::function<bool()> stopped = {});
 
+/// Of ranks that draw a frame together, outside of any work: with tags of its own, so that nothing that work left
+/// behind is taken for its messages.
+std::unique_ptr<Communicator> CommunicatorOfFrame(vtkMultiProcessController* ranks);
+
 /// The last one of the work, however many a rank made before something went wrong.
 std::unique_ptr<Communicator> CommunicatorAtEnd(vtkMultiProcessController* ranks);
 

@@ -285,7 +285,7 @@ std::optional<AgreedBlocks> AgreeOnBlocks(
   }
   AgreedBlocks agreed;
   agreed.communicator = CommunicatorOf(ranks, [filter] { return IsStoppedByOthers(filter); });
-  if (agreed.communicator->Largest({ wanted ? 1.0 : 0.0 })[0] == 0.0)
+  if (!OnAnyRank(*agreed.communicator, wanted))
   {
     return {};
   }

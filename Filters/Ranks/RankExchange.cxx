@@ -121,9 +121,9 @@ std::vector<std::vector<char>> ExchangeByDIY(
   vtkMPIController* controller, const std::vector<int>& with, std::vector<std::vector<char>> parcels, double patience)
 {
   const int rank = controller->GetLocalProcessId();
-  const Deadline deadline(rank, patience);
   try
   {
+    const Deadline deadline(rank, patience);
     return Exchange(MasterOf(controller), with, std::move(parcels));
   }
   catch (const std::exception& error) // others wait for this rank, without an end

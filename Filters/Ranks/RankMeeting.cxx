@@ -16,7 +16,7 @@ namespace tyndall
 namespace
 {
 constexpr int Nobody = -1;
-constexpr double UsualWait = 600.0;
+constexpr double UsualWait = 600.0, LongestWait = 1e8; ///< seconds; clocks count no longer than centuries
 
 #ifdef TYNDALL_HAS_MPI
 constexpr int ComeTag = 745203, GoTag = 745204; ///< of messages to the first rank, and from it
@@ -108,7 +108,7 @@ double SecondsToWait()
 {
   const char* const said = std::getenv("TYNDALL_RANKS_WAIT");
   const double seconds = said ? std::atof(said) : 0.0;
-  return seconds > 0.0 ? seconds : UsualWait;
+  return seconds > 0.0 ? std::min(seconds, LongestWait) : UsualWait;
 }
 
 int MissingRank(vtkMultiProcessController* ranks)

@@ -1,6 +1,5 @@
 #include "BlocksOfRanks.h"
 
-#include "Distribution/MessageTags.h"
 #include "Ranks/PieceBlocks.h"
 #include "Viewing/Blocks/BlockOrder.h"
 #include "Viewing/Scene/BlockOfScene.h"
@@ -17,11 +16,6 @@ std::vector<double> SaidByAll(Communicator& communicator, const std::vector<doub
   std::vector<double> all(own.size() * static_cast<std::size_t>(communicator.Ranks()), 0.0);
   std::copy(own.begin(), own.end(), all.begin() + static_cast<std::ptrdiff_t>(own.size()) * communicator.Rank());
   return communicator.Sum(all);
-}
-
-bool OnAnyRank(Communicator& communicator, bool own)
-{
-  return communicator.Largest({ own ? 1.0 : 0.0 })[0] > 0.0;
 }
 
 BlocksOfRanks::BlocksOfRanks(Communicator& communicator, vtkImageData* image)
@@ -109,7 +103,25 @@ std::optional<BlocksOfRanks::Seen> BlocksOfRanks::Exchange(
     }
   }
 
-  // In rounds in which each rank has one partner at most.
+  std::vector<int> partners;
+  for (std::size_t rank = 0; rank < this->Blocks.size(); ++rank)
+  {
+    const bool gets = !Overlap(own.rect, rectOf(rank, 5)).IsEmpty();
+    const bool gives = !Overlap(wanted, rectOf(rank, 1)).IsEmpty();
+    if (rank != this->Rank && (gets || gives))
+    {
+      partners.push_back(static_cast<int>(rank));
+    }
+  }
+  auto arrived = this->Others.Exchange<BlockPixel>(partners, [&] {
+    std::vector<std::vector<BlockPixel>> parcels;
+    for (const int partner : partners)
+    {
+      parcels.push_back(PartIn(rectOf(static_cast<std::size_t>(partner), 5), own).pixels);
+    }
+    return parcels;
+  });
+
   std::vector<std::size_t> from;
   std::vector<BlockPixels> pixels;
   if (this->HasOwn())
@@ -117,29 +129,12 @@ std::optional<BlocksOfRanks::Seen> BlocksOfRanks::Exchange(
     from.push_back(this->Rank);
     pixels.push_back(own);
   }
-  std::size_t rounds = 1;
-  for (; rounds < this->Blocks.size(); rounds *= 2)
+  for (std::size_t i = 0; i < partners.size(); ++i)
   {
-  }
-  for (std::size_t round = 1; round < rounds; ++round)
-  {
-    const std::size_t partner = this->Rank ^ round;
-    if (partner >= this->Blocks.size())
+    if (!arrived[i].empty())
     {
-      continue;
-    }
-    const BlockPixels mine = PartIn(rectOf(partner, 5), own);
-    if (!mine.rect.IsEmpty())
-    {
-      this->Others.Send(static_cast<int>(partner), MessageTag::Pixels, mine.pixels);
-    }
-    BlockPixels theirs;
-    theirs.rect = Overlap(wanted, rectOf(partner, 1));
-    if (!theirs.rect.IsEmpty())
-    {
-      theirs.pixels = this->Others.Receive<BlockPixel>(static_cast<int>(partner), MessageTag::Pixels);
-      from.push_back(partner);
-      pixels.push_back(std::move(theirs));
+      from.push_back(static_cast<std::size_t>(partners[i]));
+      pixels.push_back({ Overlap(wanted, rectOf(from.back(), 1)), std::move(arrived[i]) });
     }
   }
   return this->InOrder(from, std::move(pixels), camera);

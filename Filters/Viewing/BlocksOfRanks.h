@@ -19,9 +19,6 @@ namespace tyndall
 /// @throws InvalidInput  on all ranks, where one says more than another
 std::vector<double> SaidByAll(Communicator& communicator, const std::vector<double>& own);
 
-/// Whether it is so on any rank. All of them have to call it.
-bool OnAnyRank(Communicator& communicator, bool own);
-
 /// An image that is spread over ranks, each of which has a block of its voxels, and may have some of its neighbours',
 /// flagged as duplicates. All ranks have to construct it and to call Exchange, also those that have no block.
 class BlocksOfRanks

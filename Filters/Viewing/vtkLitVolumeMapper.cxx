@@ -286,7 +286,7 @@ void vtkLitVolumeMapper::WithOthers(const std::function<void(tyndall::Communicat
 {
   try
   {
-    act(*tyndall::CommunicatorOf(this->Spread->ranks));
+    act(*tyndall::CommunicatorOfFrame(this->Spread->ranks));
   }
   catch (const std::exception& error)
   {
@@ -391,11 +391,12 @@ void vtkLitVolumeMapper::SeePieces(tyndall::Communicator& others, vtkRenderer* r
 {
   const double start = tyndall::ClockSeconds();
   this->Spread->view.reset();
-  if (this->Spread->together && this->IsExposureOld(others))
+  // A frame that fails on one rank alone is not remembered by the others as seen together.
+  const bool together = std::exchange(this->Spread->together, false);
+  if (together && this->IsExposureOld(others))
   {
     this->AgreeOnExposure(others);
   }
-  this->Spread->together = false;
   const bool exposed = this->FindExposure();
   const std::array<int, 2> drawn = tyndall::DrawnSize(renderer);
   const std::optional<tyndall::Camera> camera = CameraOf(renderer, volume);

@@ -268,6 +268,11 @@ std::vector<char> SingleRank::Take(int, int)
   throw std::logic_error("a single rank has nobody to hear from");
 }
 
+bool OnAnyRank(Communicator& communicator, bool own)
+{
+  return communicator.Largest({ own ? 1.0 : 0.0 })[0] > 0.0;
+}
+
 std::string WordsOfAny(Communicator& communicator, const std::string& own)
 {
   const double none = communicator.Ranks();

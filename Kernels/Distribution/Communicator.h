@@ -130,6 +130,9 @@ private:
 /// The words of the first rank that has any, on each; empty: none has. All ranks call it.
 std::string WordsOfAny(Communicator& communicator, const std::string& own);
 
+/// Whether it is so on any rank. All ranks call it.
+bool OnAnyRank(Communicator& communicator, bool own);
+
 /// A computation's only rank.
 class SingleRank : public Communicator
 {

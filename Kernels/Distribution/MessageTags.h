@@ -6,8 +6,7 @@ namespace tyndall
 /// number what they send from 0 on: less than these.
 namespace MessageTag
 {
-constexpr int ListsOfWords = 29989;     ///< PictureOfBlocks.cxx
-constexpr int Pixels = 29990;           ///< BlocksOfRanks.cxx
+constexpr int ListsOfWords = 29990;     ///< PictureOfBlocks.cxx
 constexpr int ReceiptsOfDepths = 29991; ///< ShadowsInBlocks.cxx
 constexpr int ColumnsOfSight = 29992;   ///< LitColor.cxx
 constexpr int DepthsOfLamps = 29993;    ///< ShadowsInBlocks.cxx

@@ -72,6 +72,21 @@ TEST_F(ChoicesInBlocks, LeaveInHostMemoryWhatDoesNotFitTheBudget)
   EXPECT_EQ(expected.device.find("in host memory"), std::string::npos) << expected.device;
 }
 
+/// Without a budget of the user's: of a device with memory of its own, nine tenths of what is left, as of the whole.
+TEST_F(ChoicesInBlocks, LeaveInHostMemoryWhatDoesNotFitTheDevice)
+{
+  RandomMedium whole(Grid{ { 12, 11, 13 } }, 1, 0.6f, 7);
+  const BlockPartition partition = BlockPartition::Even(whole.medium.grid, 1);
+  const PropagationSettings settings = SettingsOf(3);
+  const LightField expected = LightOfAll(GetDevice(), partition, whole, LitFromOutside(), settings);
+  setenv("TYNDALL_WITHOUT", "host_memory", 1);
+  Device small(GetDevice(), { 700000, false, MemoryBudget::NoLimit });
+  const LightField found = LightOfAll(small, partition, whole, LitFromOutside(), settings);
+  unsetenv("TYNDALL_WITHOUT");
+  EXPECT_EQ(found.fluence, expected.fluence);
+  EXPECT_NE(found.device.find("from host memory"), std::string::npos) << found.device;
+}
+
 /// Light that is given by voxel, as that of photons.
 class LightGivenInBlocks : public DeviceTest
 {

@@ -185,6 +185,21 @@ TEST_F(ErrorInBlocks, DoesNotDependOnTheNumberOfRanks)
 }
 
 /// The same directions, tolerance and voxels are chosen, and the same light found.
+namespace
+{
+/// Of all of the box's faces, on each rank.
+void ExpectSameCells(const LightField& found, const LightField& expected)
+{
+  ASSERT_EQ(found.facePower.size(), expected.facePower.size());
+  ASSERT_FALSE(found.facePower.empty());
+  const float largest = *std::max_element(expected.facePower.begin(), expected.facePower.end());
+  for (std::size_t i = 0; i < found.facePower.size(); ++i)
+  {
+    ASSERT_NEAR(found.facePower[i], expected.facePower[i], 1e-5 * largest) << "cell " << i;
+  }
+}
+}
+
 TEST_F(ErrorInBlocks, IsBroughtToATargetAsThatOfTheWhole)
 {
   RandomMedium whole(Grid{ { 8, 7, 9 } }, 1, 0.5f, 7);
@@ -194,6 +209,7 @@ TEST_F(ErrorInBlocks, IsBroughtToATargetAsThatOfTheWhole)
   settings.acceleration = PropagationAcceleration::None;
   settings.source = PropagationSource::Constant;
   settings.emissionError = 0.0;
+  settings.facePower = true;
   for (const double target : { 0.2, 0.008 })
   {
     const TargetLight expected =
@@ -209,6 +225,7 @@ TEST_F(ErrorInBlocks, IsBroughtToATargetAsThatOfTheWhole)
           EXPECT_EQ(own.solves, expected.solves);
           EXPECT_EQ(Words(own.settings), Words(expected.settings));
           EXPECT_EQ(own.met, expected.met);
+          ExpectSameCells(own.light, expected.light);
           return own.light;
         });
       ExpectSameErrors(found, expected.light);

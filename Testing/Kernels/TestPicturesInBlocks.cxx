@@ -407,29 +407,32 @@ TEST_F(PicturesInBlocks, SayThatRanksHaveOtherLights)
   scene.settings.shadowRays = true;
   scene.fluenceDirect = scene.Everywhere(0.05);
   const Spread spread = SpreadOver(scene, SomeCuts[1], true);
-  std::vector<std::string> said(4);
-  RunInThreads(4, [&](Communicator& communicator) {
-    const auto rank = static_cast<std::size_t>(communicator.Rank());
-    std::optional<MediumRayCaster> caster;
-    if (rank > 0) // else it has no voxels
-    {
-      Scene part = PartOf(scene, spread.blocks[rank], spread.held[rank], spread.known[rank]);
-      part.illumination.lights.assign(rank == 2 ? 2 : 1, Lamps()[0]);
-      const BlockOfScene block = { spread.blocks[rank], spread.known[rank], {} };
-      caster.emplace(
-        this->GetDevice(), part.MediumSeen(), part.LightSeen(), part.illumination, part.settings, Field{}, &block);
-    }
-    try
-    {
-      PictureInBlocks picture(communicator, spread.partition, spread.held, caster ? &*caster : nullptr);
-    }
-    catch (const InvalidInput& error)
-    {
-      said[rank] = error.what();
-    }
-  });
-  for (const std::string& words : said)
+  for (const std::vector<Light>& others : { std::vector<Light>(2, Lamps()[0]), std::vector<Light>(1, Lamps()[1]) })
   {
-    EXPECT_NE(words.find("other lights"), std::string::npos) << words;
+    std::vector<std::string> said(4);
+    RunInThreads(4, [&](Communicator& communicator) {
+      const auto rank = static_cast<std::size_t>(communicator.Rank());
+      std::optional<MediumRayCaster> caster;
+      if (rank > 0) // else it has no voxels
+      {
+        Scene part = PartOf(scene, spread.blocks[rank], spread.held[rank], spread.known[rank]);
+        part.illumination.lights = rank == 2 ? others : std::vector<Light>(1, Lamps()[0]);
+        const BlockOfScene block = { spread.blocks[rank], spread.known[rank], {} };
+        caster.emplace(
+          this->GetDevice(), part.MediumSeen(), part.LightSeen(), part.illumination, part.settings, Field{}, &block);
+      }
+      try
+      {
+        PictureInBlocks picture(communicator, spread.partition, spread.held, caster ? &*caster : nullptr);
+      }
+      catch (const InvalidInput& error)
+      {
+        said[rank] = error.what();
+      }
+    });
+    for (const std::string& words : said)
+    {
+      EXPECT_NE(words.find("other lights"), std::string::npos) << words;
+    }
   }
 }

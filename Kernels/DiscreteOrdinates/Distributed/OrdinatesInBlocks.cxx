@@ -110,7 +110,7 @@ private:
   UncollidedImage UncollidedKnown(const UncollidedImage& own) const
   {
     static const float nothing = 0.0f;
-    const bool any = this->Others.Largest({ this->Has && own.IsThere() ? 1.0 : 0.0 })[0] > 0.0;
+    const bool any = OnAnyRank(this->Others, this->Has && own.IsThere());
     UncollidedImage image;
     image.fluence = any ? Field{ &nothing, 1 } : Field();
     return this->Has ? own : image;
@@ -123,7 +123,7 @@ private:
     {
       light.leftOut.emplace_back(left_out::NetFlux);
     }
-    if (this->Others.Largest({ this->Has && medium.phase.Varies() ? 1.0 : 0.0 })[0] > 0.0)
+    if (OnAnyRank(this->Others, this->Has && medium.phase.Varies()))
     {
       light.doubts.emplace_back(DoubtOfVaryingCosine);
     }

@@ -238,7 +238,7 @@ LightField SolveLatticeInBlocks(Device& device, Communicator& communicator, cons
   const bool has = partition.blocks[communicator.Rank()].VoxelCount() > 0;
   MarchSettings march;
   const bool needs = settings.netFlux || (has && NeedsFirstMoments(medium, settings));
-  march.meanDirection = communicator.Largest({ needs ? 1.0 : 0.0 })[0] > 0.0;
+  march.meanDirection = OnAnyRank(communicator, needs);
   const PhotonLight found =
     PhotonMarcherInBlocks(device, communicator, partition, medium, ior, march).March(share, OfPart(monitor, 0.0, 0.5));
   Illumination lit = illumination;
@@ -271,7 +271,7 @@ LightField SolveLatticeInBlocks(Device& device, Communicator& communicator, cons
   const LatticeScene solved = { scene.medium, scene.illumination, scene.channels };
   const LatticeBox box(scene.medium.grid, around.Box().own, around.Box().innerFaces);
 
-  const bool moments = communicator.Largest({ has && NeedsFirstMoments(scene.medium, settings) ? 1.0 : 0.0 })[0] > 0.0;
+  const bool moments = OnAnyRank(communicator, has && NeedsFirstMoments(scene.medium, settings));
   const Uncollided direct = UncollidedInBlocks(device, communicator, inUnits, around, solved, settings, moments)
                               .Find(OfPart(monitor, 0.0, 0.1));
   LightField light = BeginLight(box.Count(), scene.channels, settings);
@@ -284,8 +284,7 @@ LightField SolveLatticeInBlocks(Device& device, Communicator& communicator, cons
     thickest = std::max(thickest, channels.AddTo(light, c, ofChannel));
   }
   AddUp(communicator, light);
-  const bool anisotropic =
-    communicator.Largest({ has && !scene.medium.phase.IsIsotropic() ? 1.0 : 0.0 })[0] > 0.0 && scene.traits.scatters;
+  const bool anisotropic = OnAnyRank(communicator, has && !scene.medium.phase.IsIsotropic()) && scene.traits.scatters;
   communicator.Together([&] {
     DescribeLight(light, device, anisotropic, settings, thickest);
     scene.Undo(light);

@@ -59,7 +59,7 @@ UncollidedInBlocks::UncollidedInBlocks(Device& device, Communicator& communicato
   , Layout(this->LayoutOn(this->Partition.OwnGrid(communicator.Rank())))
   , KnownLayout(this->LayoutOn(this->Unvarying.Widened(scene.medium.grid)))
   , Lamps(scene.shining.lights)
-  , IsGiven(communicator.Largest({ scene.shining.uncollided.IsThere() ? 1.0 : 0.0 })[0] > 0.0)
+  , IsGiven(OnAnyRank(communicator, scene.shining.uncollided.IsThere()))
 {
   if (this->IsGiven)
   {

@@ -248,7 +248,7 @@ private:
       divided.emplace(
         this->TheScene.medium, this->TheScene.illumination, this->Asked.periodic, this->TheScene.partition.whole);
     });
-    const BlockPartition blocks = this->DividedBlocks(divided->PartsAlong());
+    const BlockPartition blocks = divided->BlocksOf(this->TheScene.partition);
     try
     {
       light = this->Count({ this->TheScene.others, blocks, divided->TheMedium(), divided->Shining() }, this->Used,
@@ -263,22 +263,6 @@ private:
     this->InHalves = true;
     this->EstimateOfDivided(light);
     this->Light = std::move(light);
-  }
-
-  BlockPartition DividedBlocks(const std::array<int, 3>& parts) const
-  {
-    BlockPartition divided = this->TheScene.partition;
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      divided.whole.size[axis] *= parts[axis];
-      divided.whole.spacing[axis] /= parts[axis];
-      for (VoxelBox& block : divided.blocks)
-      {
-        block.first[axis] *= parts[axis];
-        block.size[axis] *= parts[axis];
-      }
-    }
-    return divided;
   }
 
   /// From the difference to whole voxels, which is three times the error that is left, and what else is left as before.

@@ -54,18 +54,22 @@ std::size_t BytesOfSolve(const PropagationProblem& problem, OrdersAdded how)
     BytesOfSweep(problem);
 }
 
+MemoryBudget BudgetAskedFor(const Device& device, std::size_t asked)
+{
+  MemoryBudget budget;
+  if (asked > 0 || !device.SharesHostMemory()) // else host memory is all that there is
+  {
+    const std::size_t left = device.MemoryLimit() - std::min(device.BytesInUse(), device.MemoryLimit());
+    budget.bytes = asked > 0 ? asked : left / 10 * 9;
+    budget.spills = true;
+  }
+  return budget;
+}
+
 MemoryBudget BudgetOfSolve(const Device& device, const PropagationProblem& problem, OrdersAdded how)
 {
-  const std::size_t asked = problem.Settings().memoryBudget;
-  const std::size_t left = device.MemoryLimit() - std::min(device.BytesInUse(), device.MemoryLimit());
-  MemoryBudget budget;
-  budget.bytes = asked > 0 ? asked : left / 10 * 9;
-  if (asked == 0 && device.SharesHostMemory())
-  {
-    return {}; // host memory is all that there is
-  }
-  budget.spills = true;
-  if (BytesOfSolve(problem, how) > budget.bytes)
+  MemoryBudget budget = BudgetAskedFor(device, problem.Settings().memoryBudget);
+  if (budget.spills && BytesOfSolve(problem, how) > budget.bytes)
   {
     budget.hostFrom = sizeof(float) * problem.TheGrid().VoxelCount();
   }

@@ -111,7 +111,7 @@ BlockScene::BlockScene(Communicator& communicator, bool has, const BlockPartitio
     this->medium = one.medium;
     this->illumination = one.light;
   }
-  this->given = communicator.Largest({ has && shining.uncollided.IsThere() ? 1.0 : 0.0 })[0] > 0.0;
+  this->given = OnAnyRank(communicator, has && shining.uncollided.IsThere());
   this->Truncate(communicator, partition, settings, memory);
   // The traits know of extinction by the similarity relation alone.
   this->traits.greyExtinction = this->traits.grey || (this->traits.greyExtinction && this->Truncated->Degree() == 0);

@@ -42,7 +42,7 @@ void AddShown(const BlockOnDevice& block, const Buffer<float>& ofOrders, LightFi
     }
     shown = std::make_unique<ShownLight>(block.Scene.medium, block.Scene.Scattering(), *basis, block.Layout, most);
   }
-  const bool coloured = block.Others.Largest({ shown && shown->HasColour() ? 1.0 : 0.0 })[0] > 0.0;
+  const bool coloured = OnAnyRank(block.Others, shown && shown->HasColour());
   if (shown)
   {
     shown->TakeColour(coloured);

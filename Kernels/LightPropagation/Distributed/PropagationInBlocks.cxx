@@ -3,6 +3,7 @@
 #include "Device/Errors.h"
 #include "Distribution/SharedMedium.h"
 #include "Light/LeftOut.h"
+#include "LightPropagation/Conservative/SolveMemory.h"
 #include "LightPropagation/Convergence.h"
 #include "LightPropagation/Distributed/Balance/IterationByBalance.h"
 #include "LightPropagation/Distributed/Balance/WhatWholeHas.h"
@@ -148,22 +149,10 @@ UncollidedDirections ProblemInBlocks::FinerDirections(OrdersAdded how) const
   return { static_cast<int>(all[0]), all[1] > 0.0 };
 }
 
-/// What does not fit the budget lies in host memory.
-MemoryBudget WithinBudget(const PropagationSettings& settings)
-{
-  MemoryBudget budget;
-  if (settings.memoryBudget > 0)
-  {
-    budget.bytes = settings.memoryBudget;
-    budget.spills = true;
-  }
-  return budget;
-}
-
 LightField ProblemInBlocks::Solve(Device& device, const Illumination& illumination, const Monitor& monitor)
 {
   const BlockScene& scene = *this->Scene;
-  Device ofSolve(device, WithinBudget(this->Settings));
+  Device ofSolve(device, BudgetAskedFor(device, this->Settings.memoryBudget));
   const bool byBalance = this->Orders.how == OrdersAdded::ByBalance;
   const UncollidedDirections finer = byBalance ? UncollidedDirections() : this->FinerDirections(this->Orders.how);
   std::optional<IncidentLight> incident;
@@ -200,7 +189,7 @@ LightField ProblemInBlocks::Solve(Device& device, const Illumination& illuminati
 bool ProblemInBlocks::IsInLayers(const Medium& medium, const Illumination& illumination) const
 {
   const bool varies = this->Has && !IsPlaneParallel(medium, illumination, this->Settings);
-  return this->Unvarying.IsSlab() || this->Others.Largest({ varies ? 1.0 : 0.0 })[0] == 0.0;
+  return this->Unvarying.IsSlab() || !OnAnyRank(this->Others, varies);
 }
 
 std::string ProblemInBlocks::BetterAsWhole(const Medium& medium, const Illumination& illumination) const
@@ -252,7 +241,7 @@ PropagationSettings AtQualityInBlocks(Communicator& communicator, const BlockPar
 {
   const bool has = partition.blocks.at(communicator.Rank()).VoxelCount() > 0;
   const double extinction = communicator.Sum({ has ? SumOfExtinction(medium, 0) : 0.0 })[0];
-  const bool scatters = communicator.Largest({ has && Scatters(medium) ? 1.0 : 0.0 })[0] > 0.0;
+  const bool scatters = OnAnyRank(communicator, has && Scatters(medium));
   return AtQuality(
     quality, settings, { ShinesThroughFaces(illumination), scatters, MeanThickness(partition.whole, extinction) });
 }

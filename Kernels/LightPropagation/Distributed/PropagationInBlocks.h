@@ -34,7 +34,7 @@ namespace tyndall
 /// @param medium  of the rank's block, with the grid that partition.OwnGrid() has; looked at by nobody where that has
 ///   no voxels
 /// @param illumination, settings  the same on all ranks, but for memoryBudget: what of this rank's arrays does not fit
-///   that lies in host memory, and is read from there; 0 is what the device has, and an error beyond
+///   that lies in host memory, and is read from there (BudgetAskedFor in SolveMemory.h)
 /// @return the light of the rank's block; balance, face powers and convergence are of the whole. Empty arrays where the
 ///   block is
 /// @throws InvalidInput  on every rank, where one of them has an input that Check() refuses, where they disagree, or

@@ -41,7 +41,7 @@ bool UncollidedOverRanks::LoadSource(EnergyLedger& ledger)
   }
   bool any = false;
   this->Block.Others.Together([&] { any = this->AddStraightOn(this->Block.Source); });
-  return this->Block.Others.Largest({ any || scene.traits.emits ? 1.0 : 0.0 })[0] > 0.0;
+  return OnAnyRank(this->Block.Others, any || scene.traits.emits);
 }
 
 /// @return W, of all ranks

@@ -53,6 +53,20 @@ DividedScene::DividedScene(
   }
 }
 
+BlockPartition DividedScene::BlocksOf(const BlockPartition& given) const
+{
+  BlockPartition divided = { Divide(given.whole, this->Along), given.blocks };
+  for (VoxelBox& block : divided.blocks)
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      block.first[axis] *= this->Along[axis];
+      block.size[axis] *= this->Along[axis];
+    }
+  }
+  return divided;
+}
+
 double DividedScene::Parts() const
 {
   return this->Along[0] * this->Along[1] * this->Along[2];

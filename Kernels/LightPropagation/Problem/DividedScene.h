@@ -1,5 +1,6 @@
 #pragma once
 
+#include "Distribution/BlockPartition.h"
 #include "Light/LightField.h"
 #include "Lights/Lights.h"
 #include "Medium/Medium.h"
@@ -24,8 +25,10 @@ public:
 
   const Medium& TheMedium() const { return this->Divided; }
   const Illumination& Shining() const { return this->Light; }
-  double Parts() const;                                                ///< voxels that each is divided into
-  const std::array<int, 3>& PartsAlong() const { return this->Along; } ///< along each axis
+  double Parts() const; ///< voxels that each is divided into
+  /// The same blocks in divided voxels.
+  /// @param given  of the whole
+  BlockPartition BlocksOf(const BlockPartition& given) const;
 
   /// Light of the divided scene as that of the scene: means over its voxels, and over the cells of all of the box's
   /// faces.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <numeric>
+#include <utility>
 
 namespace tyndall
 {
@@ -242,7 +243,7 @@ StartingPhotons SendToTheirBlocks(Communicator& communicator, const BlockPartiti
   });
   AddUpEntered(communicator, starting.packed);
   const std::size_t met = PlaceAmong(communicator, starting.packed.Count()).all;
-  const std::vector<std::vector<char>> arrived = communicator.Exchange<char>(EveryRank(communicator), [&] {
+  std::vector<std::vector<char>> arrived = communicator.Exchange<char>(EveryRank(communicator), [&] {
     CountedPhotons counted;
     if (settings.counts)
     {
@@ -260,7 +261,12 @@ StartingPhotons SendToTheirBlocks(Communicator& communicator, const BlockPartiti
     }
     return parcels;
   });
-  Join({ arrived.begin(), arrived.end() }, starting);
+  std::vector<Parcel> parcels;
+  for (std::vector<char>& bytes : arrived)
+  {
+    parcels.emplace_back(std::exchange(bytes, {})); // may be all photons there are: not held twice
+  }
+  Join(parcels, starting);
   return starting;
 }
 

@@ -444,7 +444,7 @@ PhotonMarcherInBlocks::PhotonMarcherInBlocks(Device& device, Communicator& commu
   const std::uint8_t* levels)
   : Inside(std::make_unique<Rank>(device, communicator, partition, settings))
 {
-  const bool octree = communicator.Largest({ levels ? 1.0 : 0.0 })[0] > 0.0;
+  const bool octree = OnAnyRank(communicator, levels);
   communicator.Together([&] { this->Inside->CheckInput(medium, ior, levels, octree); });
   RequireSame(communicator, partition);
   RequireSame(communicator, settings);

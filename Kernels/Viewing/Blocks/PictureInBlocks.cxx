@@ -82,7 +82,7 @@ PictureInBlocks::PictureInBlocks(Communicator& communicator, const BlockPartitio
 
 void PictureInBlocks::FindSources(const Camera& camera, const Monitor& monitor)
 {
-  if (this->Others.Largest({ this->Own && this->Own->NeedsSources() ? 1.0 : 0.0 })[0] == 0.0)
+  if (!OnAnyRank(this->Others, this->Own && this->Own->NeedsSources()))
   {
     return;
   }

@@ -5,6 +5,7 @@
 #include "Viewing/Sources/SmallLights.h"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <utility>
@@ -35,8 +36,22 @@ std::vector<VoxelBox> PortionsOf(const VoxelBox& box, std::size_t voxels)
   return portions;
 }
 
+double LongestEdge(const Grid& grid)
+{
+  double longest = 0.0;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    longest = std::max(longest, grid.size[axis] * grid.spacing[axis]);
+  }
+  return longest;
+}
+
+constexpr double Rounding = 1e-5; ///< by which ranks' lights may differ: each finds them for its own block
+constexpr const char* OtherLights = "Ranks have other lights than each other: give all of them the same.";
+
 /// As of the ranks that have any.
-std::vector<SmallLight> LightsOfAll(Communicator& communicator, const std::vector<SmallLight>* own)
+/// @param extent  of the whole grid, the longest
+std::vector<SmallLight> LightsOfAll(Communicator& communicator, const std::vector<SmallLight>* own, double extent)
 {
   constexpr std::size_t numbers = 12;
   static_assert(sizeof(SmallLight) == numbers * sizeof(float));
@@ -45,20 +60,28 @@ std::vector<SmallLight> LightsOfAll(Communicator& communicator, const std::vecto
   const std::vector<double> counts = communicator.Largest({ count, own ? -count : unknown });
   if (counts[0] > unknown && counts[0] != -counts[1])
   {
-    throw InvalidInput("Ranks have other lights than each other: give all of them the same.");
+    throw InvalidInput(OtherLights);
   }
   std::vector<SmallLight> lights(counts[0] > unknown ? static_cast<std::size_t>(counts[0]) : 0);
-  std::vector<double> said(numbers * lights.size(), unknown);
-  if (own && !own->empty())
+  std::vector<double> most(numbers * lights.size(), unknown), least = most;
+  if (own)
   {
-    const float* const first = own->front().place.s;
-    std::copy(first, first + said.size(), said.begin());
+    const auto* const floats = reinterpret_cast<const float*>(own->data());
+    std::copy(floats, floats + most.size(), most.begin());
+    std::transform(most.begin(), most.end(), least.begin(), std::negate<>());
   }
-  said = communicator.Largest(said);
-  if (!lights.empty())
+  most = communicator.Largest(most);
+  least = communicator.Largest(least);
+  for (std::size_t i = 0; i < most.size(); ++i)
   {
-    std::transform(said.begin(), said.end(), lights.front().place.s, [](double x) { return static_cast<float>(x); });
+    const bool isPlace = i % numbers < 3;
+    if (most[i] + least[i] > Rounding * std::max({ std::abs(most[i]), std::abs(least[i]), isPlace ? extent : 1.0 }))
+    {
+      throw InvalidInput(OtherLights);
+    }
   }
+  std::transform(most.begin(), most.end(), reinterpret_cast<float*>(lights.data()),
+    [](double value) { return static_cast<float>(value); });
   return lights;
 }
 }
@@ -70,7 +93,7 @@ ShadowsInBlocks::ShadowsInBlocks(Communicator& communicator, const BlockPartitio
   , Held(held)
   , Own(own)
   , VoxelsAtOnce(portion)
-  , Lights(LightsOfAll(communicator, own ? &own->LightsOfBlock() : nullptr))
+  , Lights(LightsOfAll(communicator, own ? &own->LightsOfBlock() : nullptr, LongestEdge(partition.whole)))
 {
 }
 

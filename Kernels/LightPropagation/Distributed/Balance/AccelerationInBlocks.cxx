@@ -58,7 +58,7 @@ void AccelerationInBlocks::SpreadMedium()
 bool AccelerationInBlocks::NeedsFirstMoments() const
 {
   const bool own = this->Block.Has() && AnyVoxelIsThickerThan(ThickForFirstMoments, this->The.scene.medium);
-  return this->The.others.Largest({ own ? 1.0 : 0.0 })[0] > 0.0 && this->LinearSource;
+  return OnAnyRank(this->The.others, own) && this->LinearSource;
 }
 
 void AccelerationInBlocks::AddBeams(const Monitor& monitor)

@@ -53,7 +53,7 @@ std::vector<float> SurfaceRadianceInBlocks(Communicator& communicator, const Blo
   const bool has = block.VoxelCount() > 0;
   const std::array<bool, 6> faces = FacesAtBox(block, partition.whole);
   const bool thick = has && IsThickAtFaces(medium, faces, channels);
-  if (communicator.Largest({ thick ? 1.0 : 0.0 })[0] == 0.0)
+  if (!OnAnyRank(communicator, thick))
   {
     return {};
   }
