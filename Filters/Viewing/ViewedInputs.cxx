@@ -5,6 +5,7 @@
 #include "Common/VectorArray.h"
 #include "Distribution/BoxExchange.h"
 #include "Medium/BoxFaces.h"
+#include "Medium/GridOfBox.h"
 #include "Viewing/Blocks/BlockFaces.h"
 #include "vtkMediumRayCaster.h"
 
@@ -168,12 +169,7 @@ ViewedInputs SpreadTo(const std::vector<VoxelBox>& wanted, const VoxelBox& given
     if (box.VoxelCount() > 0)
     {
       MediumInput& medium = spread.medium;
-      medium.medium.grid = partition.whole;
-      medium.medium.grid.size = box.size;
-      for (int axis = 0; axis < 3; ++axis)
-      {
-        medium.medium.grid.origin[axis] += box.first[axis] * partition.whole.spacing[axis];
-      }
+      medium.medium.grid = GridOfBox(box, partition.whole);
       medium.medium.sigma_a = medium.sigma_a;
       medium.medium.sigma_s = medium.sigma_s;
       medium.medium.emission = medium.emission;

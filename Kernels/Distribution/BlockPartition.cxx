@@ -1,6 +1,7 @@
 #include "Distribution/BlockPartition.h"
 
 #include "Device/Errors.h"
+#include "Medium/GridOfBox.h"
 
 #include <algorithm>
 #include <string>
@@ -52,12 +53,8 @@ void BlockPartition::Check() const
 Grid BlockPartition::OwnGrid(int rank) const
 {
   const VoxelBox& block = this->blocks.at(rank);
-  Grid grid = this->whole;
+  Grid grid = GridOfBox(block, this->whole);
   grid.size = block.VoxelCount() > 0 ? block.size : std::array<int, 3>{ 0, 0, 0 };
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    grid.origin[axis] += block.first[axis] * grid.spacing[axis];
-  }
   return grid;
 }
 

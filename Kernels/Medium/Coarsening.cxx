@@ -1,5 +1,7 @@
 #include "Medium/Coarsening.h"
 
+#include "Medium/GridOfBox.h"
+
 #include <algorithm>
 
 namespace tyndall
@@ -68,17 +70,6 @@ Grid Halved(Grid grid)
   }
   return grid;
 }
-
-Grid GridOf(const Grid& whole, const VoxelBox& box)
-{
-  Grid grid = whole;
-  grid.size = box.size;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    grid.origin[axis] += box.first[axis] * grid.spacing[axis];
-  }
-  return grid;
-}
 }
 
 Coarsening::Coarsening(const Grid& fine, const Grid& coarse)
@@ -99,8 +90,8 @@ Coarsening::Coarsening(const Grid& fine)
 Coarsening Coarsening::PartOf(const VoxelBox& fine, const VoxelBox& coarse) const
 {
   Coarsening part = *this;
-  part.FineGrid = GridOf(this->FineGrid, fine);
-  part.CoarseGrid = GridOf(this->CoarseGrid, coarse);
+  part.FineGrid = GridOfBox(fine, this->FineGrid);
+  part.CoarseGrid = GridOfBox(coarse, this->CoarseGrid);
   part.FinePart = fine;
   part.CoarsePart = coarse;
   return part;

@@ -1,6 +1,7 @@
 #include "Refraction/Voxelization/Voxelization.h"
 
 #include "Device/Sizes.h"
+#include "Medium/GridOfBox.h"
 #include "Refraction/Voxelization/CrossingMarker.h"
 #include "Refraction/Voxelization/SampleLattice.h"
 #include "Refraction/Voxelization/SurfaceFraction.h"
@@ -34,18 +35,6 @@ std::vector<const TriangleMesh*> TrianglesOf(const std::vector<OrientedMesh>& me
   return triangles;
 }
 
-/// A box as a grid by itself.
-Grid GridOf(const VoxelBox& box, const Grid& whole)
-{
-  Grid grid = whole;
-  grid.size = box.size;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    grid.origin[axis] += box.first[axis] * whole.spacing[axis];
-  }
-  return grid;
-}
-
 std::size_t VoxelsOfRow(const SampleColumns& columns, const Grid& grid)
 {
   return grid.VoxelCount() / grid.size[columns.up];
@@ -68,7 +57,7 @@ public:
     : TheDevice(device)
     , Whole(grid)
     , Counted(counted)
-    , TheGrid(GridOf(counted.box, grid))
+    , TheGrid(GridOfBox(counted.box, grid))
     , Samples(settings.samples)
     , Lattice(grid, settings.samples, TrianglesOf(meshes))
     , Columns(TheGrid, settings.columnAxis, settings.samples, this->Lattice.Pitch())
@@ -139,7 +128,7 @@ private:
       return {};
     }
     const LatticeMesh onLattice(this->TheDevice, this->Lattice.From(own.first), *mesh.mesh);
-    const SampleColumns columns(GridOf(own, this->Whole), this->Columns.axis, this->Samples, this->Columns.pitch);
+    const SampleColumns columns(GridOfBox(own, this->Whole), this->Columns.axis, this->Samples, this->Columns.pitch);
     return FindWindings(this->TheDevice, this->Whole, own, onLattice, columns, rows, mesh.orientation < 0, monitor);
   }
 

@@ -41,7 +41,7 @@ double LongestEdge(const Grid& grid)
   double longest = 0.0;
   for (int axis = 0; axis < 3; ++axis)
   {
-    longest = std::max(longest, grid.size[axis] * grid.spacing[axis]);
+    longest = std::max(longest, grid.Length(axis));
   }
   return longest;
 }

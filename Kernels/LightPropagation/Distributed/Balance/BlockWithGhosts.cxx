@@ -1,5 +1,7 @@
 #include "LightPropagation/Distributed/Balance/BlockWithGhosts.h"
 
+#include "Medium/GridOfBox.h"
+
 #include <algorithm>
 
 namespace tyndall
@@ -8,12 +10,8 @@ namespace
 {
 Grid GridOf(const Grid& whole, const VoxelBox& box)
 {
-  Grid grid = whole;
+  Grid grid = GridOfBox(box, whole);
   grid.size = box.VoxelCount() > 0 ? box.size : std::array<int, 3>{ 0, 0, 0 };
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    grid.origin[axis] += box.first[axis] * grid.spacing[axis];
-  }
   return grid;
 }
 }
