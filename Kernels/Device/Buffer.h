@@ -1,6 +1,7 @@
 #pragma once
 
 #include "Device/Device.h"
+#include "Device/HostMemory.h"
 
 #include <vector>
 
@@ -62,7 +63,29 @@ public:
     if (count > 0)
     {
       this->Owner->AwaitFirstRuns();
+      this->Owner->TakePages(this->Memory.memory, 0, count * sizeof(T));
       this->Owner->Queue().enqueueWriteBuffer(this->Memory.memory, CL_TRUE, 0, count * sizeof(T), values);
+    }
+  }
+  /// Wait for the device; set(T* values) sets all `Size()` values: in place on a CPU, without a copy.
+  template <class Set>
+  void WriteInPlace(const Set& set)
+  {
+    if (this->Count > 0)
+    {
+      this->Owner->TakePages(this->Memory.memory, 0, this->Bytes());
+      const Mapping mapping(*this, CL_MAP_WRITE_INVALIDATE_REGION);
+      set(mapping.values);
+    }
+  }
+  /// Wait for the device; look(const T* values) sees all `Size()` values: in place on a CPU, without a copy.
+  template <class Look>
+  void ReadInPlace(const Look& look) const
+  {
+    if (this->Count > 0)
+    {
+      const Mapping mapping(*this, CL_MAP_READ);
+      look(static_cast<const T*>(mapping.values));
     }
   }
   /// The same part of another.
@@ -82,7 +105,7 @@ public:
   }
   std::vector<T> Read() const
   {
-    std::vector<T> values(this->Count);
+    std::vector<T> values = Zeros<T>(this->Count);
     this->Read(values.data());
     return values;
   }
@@ -92,6 +115,7 @@ public:
   {
     if (count > 0)
     {
+      this->Owner->TakePages(this->Memory.memory, first * sizeof(T), count * sizeof(T));
       this->Owner->Queue().enqueueFillBuffer(this->Memory.memory, value, first * sizeof(T), count * sizeof(T));
     }
   }
@@ -104,6 +128,25 @@ public:
   }
 
 private:
+  /// The whole of an array that is not empty, for the host to use meanwhile.
+  struct Mapping
+  {
+    Mapping(const Buffer& of, cl_map_flags how)
+      : owner(*of.Owner)
+      , memory(of.Memory.memory)
+    {
+      this->owner.AwaitFirstRuns();
+      this->values = static_cast<T*>(this->owner.Queue().enqueueMapBuffer(this->memory, CL_TRUE, how, 0, of.Bytes()));
+    }
+    ~Mapping() { clEnqueueUnmapMemObject(this->owner.Queue()(), this->memory(), this->values, 0, nullptr, nullptr); }
+    Mapping(const Mapping&) = delete;
+    Mapping& operator=(const Mapping&) = delete;
+
+    Device& owner;
+    const cl::Buffer& memory;
+    T* values;
+  };
+
   /// OpenCL has no empty buffers; an empty array takes one value, so that it can still be passed to a kernel.
   std::size_t Bytes() const { return (this->Count > 0 ? this->Count : 1) * sizeof(T); }
 

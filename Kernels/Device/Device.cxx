@@ -468,6 +468,15 @@ void Device::Finish()
   this->TheQueue.finish();
 }
 
+void Device::TakePages(const cl::Buffer& memory, std::size_t first, std::size_t bytes) const
+{
+  void* const begin = this->Cpu && bytes >= 2 * HugePage ? memory.getInfo<CL_MEM_HOST_PTR>() : nullptr;
+  if (begin)
+  {
+    tyndall::TakePages(static_cast<char*>(begin) + first, bytes);
+  }
+}
+
 void Device::AwaitFirstRuns()
 {
   const CompilationListener* listener = CompilationListener::OfThisThread();

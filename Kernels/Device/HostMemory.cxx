@@ -29,21 +29,23 @@ void RequireHostMemory(double bytes, const std::string& what, const std::string&
   }
 }
 
-std::vector<float> Zeros(std::size_t count)
+void TakePages(void* memory, std::size_t bytes)
 {
-  std::vector<float> values;
-  values.reserve(count);
 #ifdef MADV_HUGEPAGE
   constexpr std::uintptr_t page = std::uintptr_t(1) << 21;
-  const std::uintptr_t begin = (reinterpret_cast<std::uintptr_t>(values.data()) + page - 1) / page * page;
-  const std::uintptr_t end = (reinterpret_cast<std::uintptr_t>(values.data()) + count * sizeof(float)) / page * page;
-  if (end > begin)
+  const std::uintptr_t begin = (reinterpret_cast<std::uintptr_t>(memory) + page - 1) / page * page;
+  const std::uintptr_t end = (reinterpret_cast<std::uintptr_t>(memory) + bytes) / page * page;
+  if (end <= begin)
   {
-    madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE); // may be refused: then it is slower
+    return;
   }
+  madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE); // may be refused: then it is slower
+#ifdef MADV_POPULATE_WRITE
+  InThreads((end - begin) / page, 16, [begin](std::size_t first, std::size_t last) {
+    madvise(reinterpret_cast<void*>(begin + first * page), (last - first) * page, MADV_POPULATE_WRITE); // as above
+  });
 #endif
-  values.resize(count);
-  return values;
+#endif
 }
 
 void MakeZeros(std::vector<ZeroedArray> arrays)

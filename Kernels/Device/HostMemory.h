@@ -16,9 +16,21 @@ std::size_t HostMemory();
 /// @throws DeviceError where they exceed three quarters of the machine's memory
 void RequireHostMemory(double bytes, const std::string& what, const std::string& advice);
 
-/// `count` zeros, in pages of 2 MB where the system has them: to take a large array page by page of 4 kB can cost more
-/// than to fill it.
-std::vector<float> Zeros(std::size_t count);
+/// Has the system give memory its pages now, on all cores and in pages of 2 MB where it has them: one core that meets
+/// them one by one, of 4 kB each, can take longer for them than to fill them. What the memory holds stays. For memory
+/// that will be written all over.
+void TakePages(void* memory, std::size_t bytes);
+
+/// `count` zeros, in such pages.
+template <class T = float>
+std::vector<T> Zeros(std::size_t count)
+{
+  std::vector<T> values;
+  values.reserve(count);
+  TakePages(values.data(), count * sizeof(T));
+  values.resize(count);
+  return values;
+}
 
 /// An array that is to hold so many zeros.
 struct ZeroedArray

@@ -53,7 +53,7 @@ Buffer<float> ChannelArrays::Load(const char* what, double absorbed, double scat
   const auto value = [&](std::size_t i, int) {
     return static_cast<float>(absorbed * this->Absorption[i] + scattered * this->Scattering[i]);
   };
-  return Buffer<float>(this->TheDevice, Planar(this->Layout, 1, value), what);
+  return PlanarOnDevice(this->TheDevice, this->Layout, 1, value, what);
 }
 
 std::size_t ChannelArrays::Bytes(const Grid& grid, bool netFlux)
@@ -136,9 +136,9 @@ void ChannelArrays::AddGiven(
 {
   UncollidedImage image = this->Scene.uncollided;
   const double size = this->Layout.grid.VoxelVolume();
-  const Buffer<float> path(this->TheDevice,
-    Planar(this->Layout, 1,
-      [&](std::size_t i, int) { return static_cast<float>(size * image.fluence.At(i, this->Scene.channel)); }),
+  const Buffer<float> path = PlanarOnDevice(
+    this->TheDevice, this->Layout, 1,
+    [&](std::size_t i, int) { return static_cast<float>(size * image.fluence.At(i, this->Scene.channel)); },
     "the light given");
   std::vector<float> ways(3 * this->Voxels + 1, 0.0f);
   if (image.meanDirection.values)

@@ -89,7 +89,7 @@ Buffer<float> UncollidedInBlocks::SigmaTOf(const VolumeLayout& layout, const Lat
     const std::size_t known = box.Known(i);
     return medium.sigma_a.At(known, c) + medium.sigma_s.At(known, c);
   };
-  return { this->TheDevice, Planar(layout, layout.sharedExtinction ? 1 : layout.channels, sigmaT), "extinction" };
+  return PlanarOnDevice(this->TheDevice, layout, layout.sharedExtinction ? 1 : layout.channels, sigmaT, "extinction");
 }
 
 Buffer<float> UncollidedInBlocks::Zeros(const VolumeLayout& layout, int parts, const char* what) const
@@ -198,7 +198,7 @@ void UncollidedInBlocks::AddMoments(const Light& lamp, const Buffer<float>& path
     }
     const auto onDevice = [&](const std::vector<float>& values, int components) {
       const auto at = [&](std::size_t i, int c) { return values[i * components + c]; };
-      return Buffer<float>(this->TheDevice, Planar(this->KnownLayout, components, at), "the light of a beam");
+      return PlanarOnDevice(this->TheDevice, this->KnownLayout, components, at, "the light of a beam");
     };
     const Buffer<float> alone = onDevice(knownPath, channels), through = onDevice(knownCurrents, 6 * channels);
     const Buffer<float> ignored = this->Zeros(this->KnownLayout, 1, "the light of a beam");

@@ -2,6 +2,7 @@
 
 #include "Device/DeviceWords.h"
 #include "Device/Errors.h"
+#include "Device/HostMemory.h"
 #include "Device/HostThreads.h"
 #include "Light/LeftOut.h"
 #include "LightPropagation/Conservative/Acceleration/DiffusionAcceleration.h"
@@ -134,7 +135,7 @@ LightField LightOf(TransportParts& parts, IterationResult&& found)
   {
     light.netFlux = Interleaved(parts.Layout, parts.Flux, 1.0 / parts.Layout.grid.VoxelVolume());
   }
-  light.scatteredRadiance.resize(light.fluence.size());
+  light.scatteredRadiance = Zeros(light.fluence.size());
   InThreads(light.fluence.size(), 65536, [&](std::size_t begin, std::size_t end) {
     const auto from = light.fluence.begin();
     std::transform(from + static_cast<std::ptrdiff_t>(begin), from + static_cast<std::ptrdiff_t>(end),

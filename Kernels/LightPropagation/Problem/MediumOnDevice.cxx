@@ -7,7 +7,7 @@ MediumOnDevice::MediumOnDevice(Device& device, const Medium& medium, const Trunc
 {
   const int extinctions = layout.sharedExtinction ? 1 : layout.channels;
   const auto load = [&](int channels, const char* what, auto&& value) {
-    return Buffer<float>(device, Planar(layout, channels, value), what);
+    return PlanarOnDevice(device, layout, channels, value, what);
   };
   this->Extinction = load(extinctions, "sigma_t", [&](std::size_t i, int c) { return scattering.SigmaT(i, c); });
   if (needs.sigma_s)

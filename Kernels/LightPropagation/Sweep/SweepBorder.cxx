@@ -1,5 +1,6 @@
 #include "LightPropagation/Sweep/SweepBorder.h"
 
+#include "Device/HostMemory.h"
 #include "Medium/BoxFaces.h"
 
 #include <algorithm>
@@ -8,7 +9,7 @@ namespace tyndall
 {
 SweepBorder::SweepBorder(const SweepPlan& plan, const SweepBoundary& boundary, Holds holds)
   : rays(holds == Holds::Maps ? 0 : 2 * plan.radianceEachWay, cl_float4{})
-  , maps(holds == Holds::Maps ? 2 * plan.mapsEachWay : 0, 0.0f)
+  , maps(Zeros(holds == Holds::Maps ? 2 * plan.mapsEachWay : 0))
   , outside(holds == Holds::Maps ? 2 * plan.outsideEachWay : 0, 0.0f)
   , radiance(holds == Holds::Maps ? 2 * plan.radianceEachWay : 0, 0.0f)
   , Plan(plan)

@@ -390,7 +390,7 @@ std::size_t SweepPlan::ScratchFloats() const
 }
 
 /// Where slabs of planes begin and end: an even number, as many as keep launches short, at least eight for each of
-/// several groups, cut between blocks.
+/// several groups, cut between blocks; alike from both ends, as units that come towards each other wait for each other.
 std::vector<int> SweepPlan::SlabBorders(int groups)
 {
   const int planes = this->Planes();
@@ -401,10 +401,11 @@ std::vector<int> SweepPlan::SlabBorders(int groups)
   this->secondsPerLaunch = perPlane * planes / slabs;
   const int step = planes >= 4 * this->plane.block ? this->plane.block : 1;
   std::vector<int> borders(slabs + 1);
-  for (int s = 0; s <= slabs; ++s)
+  for (int s = 0; 2 * s <= slabs; ++s)
   {
     const int even = static_cast<int>(static_cast<long>(planes) * s / slabs);
-    borders[s] = s == slabs ? planes : std::min(planes, RoundUp(even, step));
+    borders[s] = std::min(planes / 2, RoundUp(even, step));
+    borders[slabs - s] = planes - borders[s];
   }
   return borders;
 }

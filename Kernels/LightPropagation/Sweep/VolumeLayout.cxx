@@ -6,25 +6,30 @@
 
 namespace tyndall
 {
+namespace
+{
+constexpr std::size_t AtOnce = 512; ///< voxels, of which all parts stay in a cache until lines of it are whole
+}
+
 std::vector<float> Interleaved(const VolumeLayout& layout, const Buffer<float>& planar, double scale)
 {
-  const std::vector<float> values = planar.Read();
-  const std::size_t parts = (values.size() - SweepPadding) / layout.Stride();
+  const std::size_t stride = layout.Stride(), parts = (planar.Size() - SweepPadding) / stride;
   const std::size_t voxels = layout.grid.VoxelCount();
-  std::vector<float> interleaved(voxels * parts);
-  constexpr std::size_t AtOnce = 512; // voxels, of which all parts stay in a cache until lines of it are whole
-  InThreads(voxels, 16384, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t from = begin; from < end; from += AtOnce)
-    {
-      const std::size_t to = std::min(from + AtOnce, end);
-      for (std::size_t p = 0; p < parts; ++p)
+  std::vector<float> interleaved = Zeros(voxels * parts);
+  planar.ReadInPlace([&](const float* values) {
+    InThreads(voxels, 16384, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t from = begin; from < end; from += AtOnce)
       {
-        for (std::size_t i = from; i < to; ++i)
+        const std::size_t to = std::min(from + AtOnce, end);
+        for (std::size_t p = 0; p < parts; ++p)
         {
-          interleaved[i * parts + p] = static_cast<float>(values[p * layout.Stride() + i] * scale);
+          for (std::size_t i = from; i < to; ++i)
+          {
+            interleaved[i * parts + p] = static_cast<float>(values[p * stride + i] * scale);
+          }
         }
       }
-    }
+    });
   });
   return interleaved;
 }

@@ -1,10 +1,12 @@
 #pragma once
 
 #include "Device/Buffer.h"
+#include "Device/HostMemory.h"
 #include "Device/HostThreads.h"
 #include "LightPropagation/Sweep/MomentPlacesShared.h"
 #include "Medium/Grid.h"
 
+#include <algorithm>
 #include <vector>
 
 namespace tyndall
@@ -70,22 +72,40 @@ struct VolumeLayout
   }
 };
 
-/// A quantity of voxel and channel, value(voxel, channel), as an array of that layout with `channels` channels; zero
+/// A quantity of voxel and channel, value(voxel, channel), to `values` in that layout with `channels` channels; zero
 /// beyond the voxels. `value` is called from several threads.
 template <class Value>
-std::vector<float> Planar(const VolumeLayout& layout, int channels, const Value& value)
+void WritePlanar(const VolumeLayout& layout, int channels, const Value& value, float* values)
 {
-  std::vector<float> values(layout.Stride() * channels + SweepPadding, 0.0f);
-  const std::size_t voxels = layout.grid.VoxelCount();
+  const std::size_t voxels = layout.grid.VoxelCount(), stride = layout.Stride();
   for (int c = 0; c < channels; ++c)
   {
     InThreads(voxels, 16384, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i)
       {
-        values[c * layout.Stride() + i] = value(i, c);
+        values[c * stride + i] = value(i, c);
       }
     });
+    std::fill(values + c * stride + voxels, values + (c + 1) * stride, 0.0f);
   }
+  std::fill_n(values + channels * stride, SweepPadding, 0.0f);
+}
+
+template <class Value>
+std::vector<float> Planar(const VolumeLayout& layout, int channels, const Value& value)
+{
+  std::vector<float> values = Zeros(layout.Stride() * channels + SweepPadding);
+  WritePlanar(layout, channels, value, values.data());
+  return values;
+}
+
+/// @param what  it is, as Buffer has it
+template <class Value>
+Buffer<float> PlanarOnDevice(
+  Device& device, const VolumeLayout& layout, int channels, const Value& value, const char* what)
+{
+  Buffer<float> values(device, layout.Stride() * channels + SweepPadding, what);
+  values.WriteInPlace([&](float* to) { WritePlanar(layout, channels, value, to); });
   return values;
 }
 

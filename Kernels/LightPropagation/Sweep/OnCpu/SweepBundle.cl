@@ -76,6 +76,9 @@ static inline __attribute__((always_inline)) void CROSS_VOXELS(sweep_state* stat
 #endif
   for (int x = 0; x < state->width; x += REAL_WIDTH)
   {
+#if CHAINED
+    ask_for_lines(state);
+#endif
     const real_crossing crossing = cross_length(state, x, sigma_row, inverse_row, length, thin);
     const real mean_length = crossing.meanLength, keep = crossing.keep, change = crossing.change;
 #if SOURCE
@@ -547,6 +550,9 @@ static void CROSS_PLANES(sweep_state* state, int planes, __global float* map, co
       {
         FOR_FRAMES(FIND_SOURCES, state, wrapped, slot, bundle, coefficients)
       }
+#endif
+#if CHAINED
+      ask_ahead(state, map, r + RowsAhead < min(end_row, height) ? r + RowsAhead : -1, BLOCK, g, stages);
 #endif
       STAGE_ROW(state, wrapped, slot, s == 0, inside, in, out, crossing->length[s], bundle);
       if (s < crossing->stages - 1)

@@ -60,3 +60,32 @@ static inline float2 signs_of(const __global BundleInfo* bundle, int m)
 {
   return (float2)(bundle->move[m][0] + bundle->move[m][1], bundle->move[m][2] + bundle->move[m][3]);
 }
+
+#if CHAINED
+// Maps that are chained come from memory. Their rows are asked for before they are needed, into the second cache and a
+// few lines at each vector of voxels: all at once they would be waited for.
+static inline __attribute__((always_inline)) void ask_for_lines(sweep_state* state)
+{
+#if defined(__has_builtin)
+#if __has_builtin(__builtin_prefetch)
+  for (int i = 0; i < state->asks; ++i)
+  {
+    __builtin_prefetch((const void*)(uintptr_t)(state->asked + i * FloatsOfLine), 0, 2);
+  }
+  state->asked += state->asks * FloatsOfLine;
+#endif
+#endif
+}
+
+// What stage g of `stages` asks for of row y of `floats` floats; y < 0: nothing.
+static inline void ask_ahead(sweep_state* state, const __global float* map, int y, int floats, int g, int stages)
+{
+  state->asks = 0;
+  if (state->tile > 0 && y >= 0)
+  {
+    const int vectors = state->width / REAL_WIDTH, lines = (floats + FloatsOfLine - 1) / FloatsOfLine;
+    state->asks = (lines + stages * vectors - 1) / (stages * vectors);
+    state->asked = map + y * floats + g * state->asks * vectors * FloatsOfLine;
+  }
+}
+#endif

@@ -84,7 +84,11 @@ typedef struct
   __global float* planes;           // of the plane that is being crossed
   __global int* thin;               // [row] of it, 1 where all voxels are thin
   float meanLength[MeanLengthTerms];
-  int chained_before;   // planes of a chain that were crossed before those of `places`
+  int chained_before; // planes of a chain that were crossed before those of `places`
+#if CHAINED
+  const __global float* asked; // floats that are needed soon, and how many lines of them to ask for by vector
+  int asks;
+#endif
   int tile;             // rows that bundles cross in turns; 0: each crosses all of them
   int rings;            // one behind each stage but the last
   __global float* ring; // so many of RingRows rows of RAYS_OF_ROW floats
