@@ -3,12 +3,15 @@
 #include "Device/Batches.h"
 #include "Device/Buffer.h"
 #include "Device/CompilationListener.h"
+#include "Device/HostMemory.h"
 #include "TyndallKernelSources.h"
 
 #include <chrono>
 #include <cmath>
 #include <future>
 #include <mutex>
+#include <numeric>
+#include <stdexcept>
 #include <string>
 #include <thread>
 #include <vector>
@@ -236,3 +239,45 @@ TEST_P(Extinguished, KeepsItsRelativeErrorFromVacuumToOpaque)
 }
 
 INSTANTIATE_TEST_SUITE_P(Widths, Extinguished, testing::Values(1, 4, 8, 16));
+
+/// Small ones and such as lie in pages of 2 MB.
+TEST_F(DeviceLayer, BuffersAreSetAndSeenInPlace)
+{
+  for (const std::size_t count : { std::size_t(1000), std::size_t(3000001) })
+  {
+    std::vector<int> expected(count);
+    std::iota(expected.begin(), expected.end(), 7);
+    Buffer<int> buffer(this->GetDevice(), count, "numbers");
+    buffer.WriteInPlace([&](int* values) { std::copy(expected.begin(), expected.end(), values); });
+    EXPECT_EQ(buffer.Read(), expected);
+
+    buffer.Fill(3, 10, count - 20);
+    std::fill(expected.begin() + 10, expected.end() - 10, 3);
+    std::vector<int> seen;
+    buffer.ReadInPlace([&](const int* values) { seen.assign(values, values + count); });
+    EXPECT_EQ(seen, expected);
+  }
+  Buffer<int> empty(this->GetDevice(), 0, "nothing");
+  empty.WriteInPlace([](int*) { ADD_FAILURE() << "there is nothing to set"; });
+  empty.ReadInPlace([](const int*) { ADD_FAILURE() << "there is nothing to see"; });
+}
+
+TEST_F(DeviceLayer, BuffersGoOnWhereSettingThemFailed)
+{
+  Buffer<int> buffer(this->GetDevice(), 100, "numbers");
+  EXPECT_THROW(buffer.WriteInPlace([](int*) { throw std::runtime_error("no"); }), std::runtime_error);
+  buffer.Fill(5);
+  EXPECT_EQ(buffer.Read(), std::vector<int>(100, 5));
+}
+
+TEST(HostMemory, PagesThatAreTakenKeepWhatTheyHold)
+{
+  std::vector<int> expected(40 << 20 >> 2);
+  std::iota(expected.begin(), expected.end(), 1);
+  std::vector<int> values = expected;
+  TakePages(values.data(), values.size() * sizeof(int));
+  TakePages(values.data() + 1, 5);
+  TakePages(nullptr, 0);
+  EXPECT_EQ(values, expected);
+  EXPECT_EQ(Zeros(30 << 20 >> 2), std::vector<float>(30 << 20 >> 2, 0.0f));
+}
