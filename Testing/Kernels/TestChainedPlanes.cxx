@@ -67,8 +67,8 @@ TEST_F(ChainedPlanes, HaveTheSameLight)
 /// Of planes of more rows than bundles cross in turns sums have another order.
 TEST_F(ChainedPlanes, HaveTheSameLightInTilesOfRows)
 {
-  for (const std::array<int, 3>& size :
-    { std::array<int, 3>{ 11, 2 * RowsOfChain + 5, 9 }, { RowsOfChain + 1, 7, 3 * RowsOfChain } })
+  for (const std::array<int, 3>& size : { std::array<int, 3>{ 11, 2 * RowsOfChain + 5, 9 },
+         { RowsOfChain + 1, 7, 3 * RowsOfChain }, { 5, 5 * RowsOfChain + 3, 4 } })
   {
     SCOPED_TRACE(std::to_string(size[0]) + " x " + std::to_string(size[1]) + " x " + std::to_string(size[2]));
     Scene scene = RandomScene(size);

@@ -27,7 +27,8 @@ std::string DefineMoments(const SweepPlan& plan)
 std::string DefinesOf(const SweepPlan& plan)
 {
   std::string options = Define("REAL_WIDTH", plan.vector) + Define("CHANNELS", plan.channels) +
-    Define("ROW", plan.row) + Define("CURRENTS", plan.partialCurrents) + DefineMoments(plan);
+    Define("ROW", plan.row) + Define("CURRENTS", plan.partialCurrents) + Define("CHAIN_KEEPS", plan.rowsKept) +
+    DefineMoments(plan);
   for (int members = 1; members <= MaxMembers; members *= 2)
   {
     const auto has = [&](const BundleInfo& bundle) { return bundle.members == members; };

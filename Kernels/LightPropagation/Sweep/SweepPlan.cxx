@@ -165,6 +165,9 @@ void SweepPlan::LayPlane(const Device& device)
   this->plane.chained = this->PlanesChained(device);
   this->plane.tile = this->plane.chained > 1 ? RowsOfChain : 0;
   this->plane.together = std::max(this->plane.block, this->plane.chained);
+  // Planes packed as they are crossed stay in the cache, where one call has all bundles.
+  const bool inOneTurn = this->plane.tile > 0 && this->bundles.size() <= BundlesTogether;
+  this->rowsKept = inOneTurn && this->plane.block == 1 && this->plane.sizeV > RowsOfChainKept ? RowsOfChainKept : 0;
   this->plane.vacuum = static_cast<float>(std::max(1e-30 / LongestWay(this->bundles), 1e-37));
   this->plane.thin = static_cast<float>(Thin / this->LongestSegment());
   std::copy(MeanLength, MeanLength + MeanLengthTerms, this->plane.meanLength);
@@ -384,7 +387,7 @@ std::size_t SweepPlan::ScratchFloats() const
   const std::size_t quantities =
     PLANE_COUNT(this->channels, beams, this->netFlux, this->partialCurrents, this->octantSource);
   const std::size_t rows = static_cast<std::size_t>(this->plane.together) * this->plane.sizeV;
-  const std::size_t planes = quantities * rows * this->row;
+  const std::size_t planes = quantities * rows * this->row; // where rows are kept, too: cells of faces need them all
   const std::size_t packed = this->momentsInPlace ? 0 : 2 * rows * this->momentRow; // source and path
   return ring + planes + rows + packed + 3 * this->vector;
 }

@@ -42,8 +42,9 @@ struct SweepPlan
   bool forward = false; ///< some rays march that way
   bool backward = false;
 
-  int vector = 8; ///< floats of a work-item's vector
-  int row = 0;    ///< floats of a padded row
+  int vector = 8;   ///< floats of a work-item's vector
+  int row = 0;      ///< floats of a padded row
+  int rowsKept = 0; ///< of planes in scratch, where each is packed just before it is crossed; 0: all
   PlaneInfo plane = {};
   std::vector<BundleInfo> bundleRows;
   std::size_t mapsEachWay = 0; ///< floats of the maps, the rows outside and the radiances at the faces, one way

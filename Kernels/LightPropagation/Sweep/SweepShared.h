@@ -15,6 +15,7 @@ enum
   MomentRows = 8,       ///< of which a bundle's sources are kept: of the rows that its stages are at
   MostChained = 2,      ///< planes that a bundle crosses row by row one behind the other
   RowsOfChain = 32,     ///< of those, that bundles cross in turns: the planes' rows stay in the cache for all of them
+  RowsOfChainKept = 64, ///< a power of two: of a turn, and those that its last stage is behind
   RowsAhead = 2,        ///< of a chain's first stage, are rows of a map that is asked for
   FloatsOfLine = 16,    ///< of a cache
   FirstRow = -2         ///< of a plane, that a first stage may begin at

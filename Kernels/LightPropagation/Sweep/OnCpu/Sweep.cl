@@ -50,45 +50,62 @@ static void go_to_plane(sweep_state* state, int k)
 #undef MEMBERS
 #endif
 
-// Which rows are thin throughout.
-static void find_thin_rows(const PlaneInfo* layout, const __global float* sigma, __global int* thin)
+// The volume that a unit sweeps, see `sweep`.
+typedef struct
 {
-  for (int v = 0; v < layout->sizeV; ++v)
+  const SweepInfo* info;
+  const __global float *sigma, *source, *beams, *octants;
+  __global float *path, *lost, *flux, *currents;
+  int backward;
+} swept_volume;
+
+// Planes [first, first + count) of it in scratch.
+typedef struct
+{
+  __global float* planes;
+  __global int* thin; // [plane][row]
+  int first, count;
+  const __global OwnLightInfo* own; // [plane from where rays start] of the first plane crossed
+} packed_planes;
+
+// Which of the rows are thin throughout.
+static void find_thin_rows(const PlaneInfo* layout, const __global float* plane, int2 rows, __global int* thin)
+{
+  for (int v = rows.x; v < rows.y; ++v)
   {
+    const __global float* sigma = ROW_OF(plane, PlaneSigma, v);
     integer thick = (integer)0;
     for (int u = 0; u < layout->width; u += REAL_WIDTH)
     {
-      thick |= load_real(v * PLANES * ROW + u, sigma) >= layout->thin;
+      thick |= load_real(u, sigma) >= layout->thin;
     }
     thin[v] = !any(thick);
   }
 }
 
-// Make planes [first, first + count) ready to be crossed.
-// @param beams  of the source
-// @param octants  see `sweep`
-static void begin_planes(const SweepInfo* info, __global float* planes, __global int* thin, int first, int count,
-  const __global float* sigma, const __global float* source, const __global float* beams, const __global float* octants,
-  int backward)
+// Make rows [rows.x, rows.y) of planes ready to be crossed.
+static void begin_rows(const swept_volume* volume, const packed_planes* packed, int2 rows)
 {
+  const SweepInfo* info = volume->info;
   const PlaneInfo* layout = &info->planes;
-  pack(layout, planes + PlaneSigma * ROW, first, count, sigma);
+  const int first = packed->first, count = packed->count;
+  pack(layout, packed->planes + PlaneSigma * ROW, first, count, rows, volume->sigma);
 #if SOURCE
   for (int c = 0; c < CHANNELS; ++c)
   {
-    pack(layout, planes + (PlaneSource + c) * ROW, first, count, source + c * info->stride);
+    pack(layout, packed->planes + (PlaneSource + c) * ROW, first, count, rows, volume->source + c * info->stride);
     for (int b = 0; b < BEAMS; ++b)
     {
-      pack(layout, planes + (PLANE_BEAMS + b * CHANNELS + c) * ROW, first, count,
-        beams + (b * info->moments.channels + c) * info->stride);
+      pack(layout, packed->planes + (PLANE_BEAMS + b * CHANNELS + c) * ROW, first, count, rows,
+        volume->beams + (b * info->moments.channels + c) * info->stride);
     }
   }
 #endif
   for (int j = 0; j < count; ++j)
   {
-    __global float* plane = planes + j * plane_floats(layout);
-    find_thin_rows(layout, plane + PlaneSigma * ROW, thin + j * layout->sizeV);
-    for (int v = 0; v < layout->sizeV; ++v)
+    __global float* plane = packed->planes + j * plane_floats(layout);
+    find_thin_rows(layout, plane, rows, packed->thin + j * layout->sizeV);
+    for (int v = rows.x; v < rows.y; ++v)
     {
       __global float* row = ROW_OF(plane, 0, v);
       for (int at = 0; at < ROW; at += REAL_WIDTH)
@@ -103,7 +120,7 @@ static void begin_planes(const SweepInfo* info, __global float* planes, __global
     }
   }
 #if OCTANT_SOURCE
-  pack_octants(info, planes, first, count, octants, backward);
+  pack_octants(info, packed->planes, first, count, rows, volume->octants, volume->backward);
 #endif
 }
 
@@ -134,41 +151,42 @@ static void add_own_light(const PlaneInfo* layout, __global float* row, const __
 }
 #endif
 
-// Add what the planes gathered to the volume.
-// own      [plane from where rays start] of the first plane crossed
-static void end_planes(const SweepInfo* info, __global float* planes, int first, int count, __global float* path,
-  __global float* lost, __global float* flux, __global float* currents, const __global OwnLightInfo* own, int backward)
+// Add what rows of the planes gathered to the volume.
+static void end_rows(const swept_volume* volume, const packed_planes* packed, int2 rows)
 {
+  const SweepInfo* info = volume->info;
   const PlaneInfo* layout = &info->planes;
   const ulong stride = info->stride;
-  const int axis = info->axis;
+  const int axis = info->axis, backward = volume->backward, first = packed->first, count = packed->count;
 #if SOURCE && !DEGREE
   for (int j = 0; j < count; ++j)
   {
-    for (int v = 0; v < layout->sizeV; ++v)
+    for (int v = rows.x; v < rows.y; ++v)
     {
-      add_own_light(layout, ROW_OF(planes + j * plane_floats(layout), 0, v), own + (backward ? count - 1 - j : j));
+      add_own_light(
+        layout, ROW_OF(packed->planes + j * plane_floats(layout), 0, v), packed->own + (backward ? count - 1 - j : j));
     }
   }
 #endif
   for (int c = 0; c < CHANNELS; ++c)
   {
-    unpack(layout, planes + (PLANE_PATH + c) * ROW, first, count, 1.0f, path + c * stride,
-      PERIODIC_P ? lost + c * stride : 0);
+    unpack(layout, packed->planes + (PLANE_PATH + c) * ROW, first, count, rows, 1.0f, volume->path + c * stride,
+      PERIODIC_P ? volume->lost + c * stride : 0);
 #if NET_FLUX
-    const __global float* fluxes = planes + (PLANE_FLUX + 3 * c) * ROW;
-    unpack(layout, fluxes, first, count, 1.0f, flux + (3 * c + (axis == 0 ? 1 : 0)) * stride, 0);
-    unpack(layout, fluxes + ROW, first, count, 1.0f, flux + (3 * c + (axis == 2 ? 1 : 2)) * stride, 0);
-    unpack(layout, fluxes + 2 * ROW, first, count, backward ? -1.0f : 1.0f, flux + (3 * c + axis) * stride, 0);
+    const __global float* fluxes = packed->planes + (PLANE_FLUX + 3 * c) * ROW;
+    __global float* flux = volume->flux + 3 * c * stride;
+    unpack(layout, fluxes, first, count, rows, 1.0f, flux + (axis == 0 ? 1 : 0) * stride, 0);
+    unpack(layout, fluxes + ROW, first, count, rows, 1.0f, flux + (axis == 2 ? 1 : 2) * stride, 0);
+    unpack(layout, fluxes + 2 * ROW, first, count, rows, backward ? -1.0f : 1.0f, flux + axis * stride, 0);
 #endif
 #if CURRENTS
     const int aside[2] = { axis == 0 ? 1 : 0, axis == 2 ? 1 : 2 };
-    const __global float* entered = planes + (PLANE_CURRENTS + CurrentFaces * c) * ROW;
-    __global float* faces = currents + 6 * c * stride;
-    unpack(layout, entered, first, count, 1.0f, faces + (2 * axis + backward) * stride, 0);
+    const __global float* entered = packed->planes + (PLANE_CURRENTS + CurrentFaces * c) * ROW;
+    __global float* faces = volume->currents + 6 * c * stride;
+    unpack(layout, entered, first, count, rows, 1.0f, faces + (2 * axis + backward) * stride, 0);
     for (int side = 0; side < 4; ++side)
     {
-      unpack(layout, entered + (CurrentLowU + side) * ROW, first, count, 1.0f,
+      unpack(layout, entered + (CurrentLowU + side) * ROW, first, count, rows, 1.0f,
         faces + (2 * aside[side / 2] + side % 2) * stride, 0);
     }
 #endif
@@ -207,9 +225,11 @@ static void cross_planes(sweep_state* state, int planes, __global float* maps, c
 // that are chained) tile by tile of rows, so that those of a tile stay in the cache for all bundles.
 // @param planes  1 where CHAINED is 0
 // @param crossings, coefficients  of the first of the bundles
-static void cross_bundles(sweep_state* state, int planes, __global float* maps, const __global float* outside,
-  const __global float* radiance, const __global BundleInfo* bundles, int count, const __global CrossingInfo* crossings,
-  int all_bundles, const __global float* coefficients)
+// @param packed  the planes, whose rows are packed tile by tile where ROWS_KEPT: then the bundles are all that there are
+static void cross_bundles(sweep_state* state, const swept_volume* volume, const packed_planes* packed, int planes,
+  __global float* maps, const __global float* outside, const __global float* radiance,
+  const __global BundleInfo* bundles, int count, const __global CrossingInfo* crossings, int all_bundles,
+  const __global float* coefficients)
 {
   __global float* const kept = state->ring;
 #if DEGREE
@@ -226,8 +246,15 @@ static void cross_bundles(sweep_state* state, int planes, __global float* maps, 
     }
     return;
   }
-  for (int row = FirstRow; row < state->sizeV + ROWS_BEHIND(state->chained_before + planes); row += tile)
+  const int behind = ROWS_BEHIND(state->chained_before + planes);
+#if ROWS_KEPT
+  int ended = 0; // rows
+#endif
+  for (int row = FirstRow; row < state->sizeV + behind; row += tile)
   {
+#if ROWS_KEPT
+    begin_rows(volume, packed, (int2)(max(row, 0), min(row + tile, state->sizeV)));
+#endif
     for (int b = 0; b < count; ++b)
     {
       state->ring = kept + b * floats_of_bundle;
@@ -239,6 +266,11 @@ static void cross_bundles(sweep_state* state, int planes, __global float* maps, 
       cross_planes(
         state, planes, maps, outside, radiance, bundles + b, crossings + b, all_bundles, coefficients, row, row + tile);
     }
+#if ROWS_KEPT
+    const int end = clamp(row + tile - behind, ended, state->sizeV);
+    end_rows(volume, packed, (int2)(ended, end));
+    ended = end;
+#endif
   }
   state->ring = kept;
 }
@@ -374,6 +406,8 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
     }
   }
 
+  const swept_volume volume = { &info, sigma, source, beams, octants, path, lost, flux, currents, unit.backward };
+  const int2 all_rows = (int2)(0, layout.sizeV);
   for (int begin = range.x, count; begin < range.y; begin += count)
   {
     const int lap = begin / layout.sizeP * layout.sizeP; // planes already marched when the axis began anew
@@ -382,7 +416,10 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
     count = min(count, of_one_group(&layout, begin - lap, unit.backward));
 #endif
     const int first = unit.backward ? layout.sizeP - (begin - lap) - count : begin - lap;
-    begin_planes(&info, planes, thin, first, count, sigma, source, beams, octants, unit.backward);
+    packed_planes packed = { planes, thin, first, count, own + u * info.patternPlanes + begin };
+#if !ROWS_KEPT
+    begin_rows(&volume, &packed, all_rows);
+#endif
 #if DEGREE && !MOMENTS_IN_PLACE
 #if SOURCE
     pack_moments(&info, packed_source, first, count, higher_source);
@@ -435,12 +472,19 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
       state.momentChannel = info.packedMoments / CHANNELS;
 #endif
 #endif
+#if ROWS_KEPT
+      packed.first = min(state.places[0].plane, state.places[chained - 1].plane);
+      packed.count = chained;
+      packed.planes = planes + (packed.first - first) * plane_floats(&layout);
+      packed.thin = thin + (packed.first - first) * layout.sizeV;
+      packed.own = own + u * info.patternPlanes + k;
+#endif
       const __global CrossingInfo* of_plane = crossings + (unit.planesBefore + k) * info.bundles;
       for (int b = unit.firstBundle; b < unit.firstBundle + unit.bundles; b += together)
       {
         const int some = min(together, unit.firstBundle + unit.bundles - b);
-        cross_bundles(
-          &state, chained, maps, outside, radiance, bundles + b, some, of_plane + b, info.bundles, coefficients);
+        cross_bundles(&state, &volume, &packed, chained, maps, outside, radiance, bundles + b, some, of_plane + b,
+          info.bundles, coefficients);
       }
     }
     for (int k = 0; k < count; ++k)
@@ -453,8 +497,9 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
         }
       }
     }
-    end_planes(
-      &info, planes, first, count, path, lost, flux, currents, own + u * info.patternPlanes + begin, unit.backward);
+#if !ROWS_KEPT
+    end_rows(&volume, &packed, all_rows);
+#endif
 #if DEGREE && !MOMENTS_IN_PLACE
     unpack_moments(&info, packed_path, first, count, higher_path);
 #endif

@@ -29,6 +29,9 @@
 #ifndef SIDES
 #define SIDES 0
 #endif
+#ifndef CHAIN_KEEPS
+#define CHAIN_KEEPS 0
+#endif
 #define PAD REAL_WIDTH
 #define LAG 2 // rows a stage stays behind the one before
 #define PLANES_TOGETHER (REAL_WIDTH > MostChained ? REAL_WIDTH : MostChained) // at most
@@ -43,8 +46,20 @@
 #define PLANE_OCTANTS (PLANE_CURRENTS + (CURRENTS ? CurrentFaces : 0) * CHANNELS) // by WaysAside, W / (length^3 sr)
 #define PLANES PLANE_COUNT(CHANNELS, BEAMS, NET_FLUX, CURRENTS, OCTANT_SOURCE)
 #define RAYS_OF_ROW (MaxMembers * CHANNELS * ROW)
-// A plane is [row][quantity][ROW]: what is needed at once lies together, and no stride is a power of two.
-#define ROW_OF(planes, quantity, row) ((planes) + ((row)*PLANES + (quantity)) * ROW)
+
+// Whether planes may be crossed row by row one behind the other, up to PLANES_CHAINED: not where what comes in or goes
+// out beside rows is kept by plane, or rows come from the other side.
+#define CHAINED (!DEGREE && !FACE_IN && !FACE_OUT && !SIDES && !PERIODIC_U && !PERIODIC_V)
+#define ROWS_KEPT (CHAINED ? CHAIN_KEEPS : 0)
+
+// A plane is [row][quantity][ROW]: what is needed at once lies together, and no stride is a power of two. Where
+// ROWS_KEPT, it is those of its rows that bundles in turns are at, in as many places, used again and again.
+#if ROWS_KEPT
+#define PLACE_OF_ROW(row) ((row) & (ROWS_KEPT - 1))
+#else
+#define PLACE_OF_ROW(row) (row)
+#endif
+#define ROW_OF(planes, quantity, row) ((planes) + (PLACE_OF_ROW(row) * PLANES + (quantity)) * ROW)
 
 #if DEGREE
 // Of the functions from the second on, as MomentPlacesShared.h has them: floats of a group, and where voxel x is.
@@ -54,9 +69,7 @@
 static __constant int function_order[MOMENTS] = { FUNCTION_ORDER };
 #endif
 
-// Whether planes may be crossed row by row one behind the other, up to PLANES_CHAINED: not where what comes in or goes
-// out beside rows is kept by plane, or rows come from the other side.
-#define CHAINED (!DEGREE && !FACE_IN && !FACE_OUT && !SIDES && !PERIODIC_U && !PERIODIC_V)
+// Planes of a chain, their stages, and how far the last one stays behind.
 #define PLANES_CHAINED (CHAINED ? MostChained : 1)
 #define STAGES (3 * PLANES_CHAINED)
 #define ROWS_BEHIND(planes) (LAG * (3 * (planes)-1) + 2) // a plane, that a stage may end at at most

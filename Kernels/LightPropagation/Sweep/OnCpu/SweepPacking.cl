@@ -45,7 +45,7 @@ static ulong place_of(const PlaneInfo* layout, int u, int v, int plane)
 // Of all quantities of a plane.
 static int plane_floats(const PlaneInfo* layout)
 {
-  return PLANES * layout->sizeV * ROW;
+  return PLANES * (ROWS_KEPT ? ROWS_KEPT : layout->sizeV) * ROW;
 }
 
 // Set floats, a multiple of a vector, to zero.
@@ -81,17 +81,18 @@ static inline __attribute__((always_inline)) void pack_block(
   }
 }
 
-// Copy one quantity of planes [first, first + count) into scratch, rows filled up with zeros. May read, not use, a
-// vector beyond the last voxel.
-static void pack(const PlaneInfo* layout, __global float* to, int first, int count, const __global float* volume)
+// Copy one quantity of rows [rows.x, rows.y) of planes [first, first + count) into scratch, filled up with zeros. May
+// read, not use, a vector beyond the last voxel.
+static void pack(
+  const PlaneInfo* layout, __global float* to, int first, int count, int2 rows, const __global float* volume)
 {
-  for (int v = 0; v < layout->sizeV; ++v)
+  for (int v = rows.x; v < rows.y; ++v)
   {
     for (int u = 0; u < layout->width; u += REAL_WIDTH)
     {
       const integer beyond = LANES >= layout->sizeU - u;
       const __global float* from = volume + place_of(layout, u, v, first);
-      __global float* here = to + v * PLANES * ROW + u;
+      __global float* here = ROW_OF(to, 0, v) + u;
       if (layout->block == 1)
       {
         for (int j = 0; j < count; ++j)
@@ -154,19 +155,19 @@ static inline __attribute__((always_inline)) void unpack_block(
   }
 }
 
-// Add one quantity of the planes, with a sign, to the volume; exactly their voxels are touched, as others may be in
-// work elsewhere.
-static void unpack(const PlaneInfo* layout, const __global float* from, int first, int count, float sign,
+// Add one quantity of rows of the planes, with a sign, to the volume; exactly their voxels are touched, as others may be
+// in work elsewhere.
+static void unpack(const PlaneInfo* layout, const __global float* from, int first, int count, int2 rows, float sign,
   __global float* volume, __global float* lost)
 {
   const int plane = plane_floats(layout);
-  for (int v = 0; v < layout->sizeV; ++v)
+  for (int v = rows.x; v < rows.y; ++v)
   {
     for (int u = 0; u < layout->sizeU; u += REAL_WIDTH)
     {
       const ulong at = place_of(layout, u, v, first);
       const int used = min(REAL_WIDTH, layout->sizeU - u);
-      const __global float* here = from + v * PLANES * ROW + u;
+      const __global float* here = ROW_OF(from, 0, v) + u;
       if (layout->block == 1 && used == REAL_WIDTH)
       {
         for (int j = 0; j < count; ++j)

@@ -86,8 +86,8 @@ static void unpack_moments(
 
 #if OCTANT_SOURCE
 // What shines besides, into the octants of one way along the axis.
-static void pack_octants(
-  const SweepInfo* info, __global float* planes, int first, int count, const __global float* octants, int backward)
+static void pack_octants(const SweepInfo* info, __global float* planes, int first, int count, int2 rows,
+  const __global float* octants, int backward)
 {
   const int axis = info->axis;
   const int u = axis == 0 ? 1 : 0, v = axis == 2 ? 1 : 2;
@@ -96,7 +96,7 @@ static void pack_octants(
     for (int way = 0; way < WaysAside; ++way)
     {
       const int octant = (backward ? 0 : 1 << axis) + (way & 1 ? 1 << u : 0) + (way & 2 ? 1 << v : 0);
-      pack(&info->planes, planes + (PLANE_OCTANTS + WaysAside * c + way) * ROW, first, count,
+      pack(&info->planes, planes + (PLANE_OCTANTS + WaysAside * c + way) * ROW, first, count, rows,
         octants + (8 * c + octant) * info->stride);
     }
   }
