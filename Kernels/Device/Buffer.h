@@ -3,6 +3,7 @@
 #include "Device/Device.h"
 #include "Device/HostMemory.h"
 
+#include <utility>
 #include <vector>
 
 namespace tyndall
@@ -63,19 +64,21 @@ public:
     if (count > 0)
     {
       this->Owner->AwaitFirstRuns();
-      this->Owner->TakePages(this->Memory.memory, 0, count * sizeof(T));
+      this->TakePages(0, count);
       this->Owner->Queue().enqueueWriteBuffer(this->Memory.memory, CL_TRUE, 0, count * sizeof(T), values);
     }
   }
-  /// Wait for the device; set(T* values) sets all `Size()` values: in place on a CPU, without a copy.
+  /// Wait for the device; set(T* values) sets all `Size()` values: in place on a CPU, without a copy. What is queued
+  /// after it sees them; another queue must wait for this one.
   template <class Set>
   void WriteInPlace(const Set& set)
   {
     if (this->Count > 0)
     {
-      this->Owner->TakePages(this->Memory.memory, 0, this->Bytes());
-      const Mapping mapping(*this, CL_MAP_WRITE_INVALIDATE_REGION);
+      this->TakePages(0, this->Count);
+      Mapping mapping(*this, CL_MAP_WRITE_INVALIDATE_REGION);
       set(mapping.values);
+      mapping.GiveBack();
     }
   }
   /// Wait for the device; look(const T* values) sees all `Size()` values: in place on a CPU, without a copy.
@@ -84,8 +87,9 @@ public:
   {
     if (this->Count > 0)
     {
-      const Mapping mapping(*this, CL_MAP_READ);
+      Mapping mapping(*this, CL_MAP_READ);
       look(static_cast<const T*>(mapping.values));
+      mapping.GiveBack();
     }
   }
   /// The same part of another.
@@ -115,7 +119,7 @@ public:
   {
     if (count > 0)
     {
-      this->Owner->TakePages(this->Memory.memory, first * sizeof(T), count * sizeof(T));
+      this->TakePages(first, count);
       this->Owner->Queue().enqueueFillBuffer(this->Memory.memory, value, first * sizeof(T), count * sizeof(T));
     }
   }
@@ -125,6 +129,7 @@ public:
     std::swap(this->Owner, other.Owner);
     std::swap(this->Count, other.Count);
     std::swap(this->Memory, other.Memory);
+    std::swap(this->HasPages, other.HasPages);
   }
 
 private:
@@ -138,14 +143,31 @@ private:
       this->owner.AwaitFirstRuns();
       this->values = static_cast<T*>(this->owner.Queue().enqueueMapBuffer(this->memory, CL_TRUE, how, 0, of.Bytes()));
     }
-    ~Mapping() { clEnqueueUnmapMemObject(this->owner.Queue()(), this->memory(), this->values, 0, nullptr, nullptr); }
+    void GiveBack() { this->owner.Queue().enqueueUnmapMemObject(this->memory, std::exchange(this->values, nullptr)); }
+    ~Mapping()
+    {
+      if (this->values) // what was thrown meanwhile tells of the failure
+      {
+        clEnqueueUnmapMemObject(this->owner.Queue()(), this->memory(), this->values, 0, nullptr, nullptr);
+      }
+    }
     Mapping(const Mapping&) = delete;
     Mapping& operator=(const Mapping&) = delete;
 
     Device& owner;
-    const cl::Buffer& memory;
+    cl::Buffer memory;
     T* values;
   };
+
+  /// The first time that all of it is written.
+  void TakePages(std::size_t first, std::size_t count)
+  {
+    if (!this->HasPages && first == 0 && count == this->Count)
+    {
+      this->Owner->TakePages(this->Memory.memory, this->Bytes());
+      this->HasPages = true;
+    }
+  }
 
   /// OpenCL has no empty buffers; an empty array takes one value, so that it can still be passed to a kernel.
   std::size_t Bytes() const { return (this->Count > 0 ? this->Count : 1) * sizeof(T); }
@@ -153,6 +175,7 @@ private:
   Device* Owner = nullptr;
   std::size_t Count = 0;
   Device::Allocation Memory;
+  bool HasPages = false; ///< tyndall::TakePages was asked for all of it
 };
 
 namespace detail

@@ -330,14 +330,12 @@ cl::Program Device::Build(const char* kernel, const std::string& text, const std
 
 namespace
 {
-constexpr std::size_t HugePage = std::size_t(1) << 21;
-
 /// A buffer of a CPU in pages of 2 MB where the system has them to give: marching across a large grid otherwise waits
 /// for the translation of addresses.
 cl::Buffer InHugePages(const cl::Context& context, cl_mem_flags flags, std::size_t bytes)
 {
   void* memory = nullptr;
-  if (posix_memalign(&memory, HugePage, (bytes + HugePage - 1) / HugePage * HugePage) != 0)
+  if (posix_memalign(&memory, LargePage, (bytes + LargePage - 1) / LargePage * LargePage) != 0)
   {
     throw cl::Error(CL_MEM_OBJECT_ALLOCATION_FAILURE, "posix_memalign");
   }
@@ -408,8 +406,8 @@ Device::Allocation Device::Allocate(std::size_t bytes, cl_mem_flags flags, const
   }
   try
   {
-    return { this->Cpu && bytes >= HugePage ? InHugePages(this->TheContext, flags, bytes)
-                                            : cl::Buffer(this->TheContext, flags, bytes) };
+    return { this->Cpu && bytes >= LargePage ? InHugePages(this->TheContext, flags, bytes)
+                                             : cl::Buffer(this->TheContext, flags, bytes) };
   }
   catch (const cl::Error& error)
   {
@@ -468,12 +466,12 @@ void Device::Finish()
   this->TheQueue.finish();
 }
 
-void Device::TakePages(const cl::Buffer& memory, std::size_t first, std::size_t bytes) const
+void Device::TakePages(const cl::Buffer& memory, std::size_t bytes) const
 {
-  void* const begin = this->Cpu && bytes >= 2 * HugePage ? memory.getInfo<CL_MEM_HOST_PTR>() : nullptr;
+  void* const begin = this->Cpu && bytes >= 2 * LargePage ? memory.getInfo<CL_MEM_HOST_PTR>() : nullptr;
   if (begin)
   {
-    tyndall::TakePages(static_cast<char*>(begin) + first, bytes);
+    tyndall::TakePages(begin, bytes);
   }
 }
 

@@ -103,9 +103,9 @@ public:
   /// when it first runs.
   void AwaitFirstRuns();
 
-  /// TakePages of `bytes` of a buffer from byte `first` on, which are to be written. Nothing where the device has
-  /// memory of its own.
-  void TakePages(const cl::Buffer& memory, std::size_t first, std::size_t bytes) const;
+  /// tyndall::TakePages of a buffer of `bytes` that will be written all over. Nothing where the device has memory of its
+  /// own, nor of a few pages.
+  void TakePages(const cl::Buffer& memory, std::size_t bytes) const;
 
   /// Note that work of about so many seconds was queued, and wait for all of it once that is a tenth of a second:
   /// progress is reported and an abort noticed that often, while short kernels follow each other without the host.

@@ -32,7 +32,7 @@ void RequireHostMemory(double bytes, const std::string& what, const std::string&
 void TakePages(void* memory, std::size_t bytes)
 {
 #ifdef MADV_HUGEPAGE
-  constexpr std::uintptr_t page = std::uintptr_t(1) << 21;
+  constexpr std::uintptr_t page = LargePage;
   const std::uintptr_t begin = (reinterpret_cast<std::uintptr_t>(memory) + page - 1) / page * page;
   const std::uintptr_t end = (reinterpret_cast<std::uintptr_t>(memory) + bytes) / page * page;
   if (end <= begin)
@@ -51,11 +51,17 @@ void TakePages(void* memory, std::size_t bytes)
 void MakeZeros(std::vector<ZeroedArray> arrays)
 {
   std::sort(arrays.begin(), arrays.end(), [](const ZeroedArray& a, const ZeroedArray& b) { return a.count > b.count; });
+  for (const ZeroedArray& array : arrays)
+  {
+    *array.values = std::vector<float>();
+    array.values->reserve(array.count);
+    TakePages(array.values->data(), array.count * sizeof(float));
+  }
   std::atomic<std::size_t> next(0);
   InThreads(arrays.size(), 1, [&](std::size_t, std::size_t) {
     for (std::size_t i = next++; i < arrays.size(); i = next++)
     {
-      *arrays[i].values = Zeros(arrays[i].count);
+      arrays[i].values->resize(arrays[i].count);
     }
   });
 }

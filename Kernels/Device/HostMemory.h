@@ -16,6 +16,8 @@ std::size_t HostMemory();
 /// @throws DeviceError where they exceed three quarters of the machine's memory
 void RequireHostMemory(double bytes, const std::string& what, const std::string& advice);
 
+constexpr std::size_t LargePage = std::size_t(1) << 21; ///< bytes, where the system has pages larger than 4 kB
+
 /// Has the system give memory its pages now, on all cores and in pages of 2 MB where it has them: one core that meets
 /// them one by one, of 4 kB each, can take longer for them than to fill them. What the memory holds stays. For memory
 /// that will be written all over.

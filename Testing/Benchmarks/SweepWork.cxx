@@ -29,7 +29,7 @@ constexpr Count OfSegmentChannel = { 2, 3, 2, 1 };
 // For each ray: into the sum, what is left of it.
 constexpr Count OfRay = { 3, 5, 1, 1 };
 constexpr Count OfThinRay = { 3, 4, 1, 1 };
-// begin_planes and end_planes, a voxel each way along each axis: clamp, division; add_own_light.
+// begin_rows and end_rows, a voxel each way along each axis: clamp, division; add_own_light.
 constexpr Count OfPlane = { 2 + 8, 1 + 8, 5, 3 };
 // The same for each channel: own light, unpacking.
 constexpr Count OfPlaneChannel = { 2, 4, 5, 4 };

@@ -114,6 +114,27 @@ TEST_F(ChainedPlanes, HaveTheSameLightWhereItConvergesInThickVoxels)
   ExpectSame(scene);
 }
 
+/// Planes of more rows than scratch keeps: with partial currents, sources by octant, and rays that go round.
+TEST_F(ChainedPlanes, HaveTheSameLightWhereRowsAreKept)
+{
+  for (const bool periodic : { false, true })
+  {
+    SCOPED_TRACE(periodic ? "periodic" : "open");
+    Scene scene = RandomScene({ 5, 2 * RowsOfChainKept + 37, periodic ? 9 : 6 });
+    scene.Randomise(periodic ? 0.4 : 6.0, 3.0, 0.95);
+    scene.settings.periodic = { false, false, periodic };
+    scene.settings.maximumOrders = periodic ? 3 : 0;
+    const LightField expected = scene.Solve(GetDevice());
+    const NoCache none;
+    const LightField found = scene.Solve(GetDevice());
+    EXPECT_LT(RelativeRmse(found.fluence, expected.fluence), 1e-6);
+    EXPECT_LT(RelativeRmse(found.netFlux, expected.netFlux), 3e-6);
+    EXPECT_NE(found.fluence, expected.fluence) << "the same order: there are no tiles";
+    EXPECT_EQ(found.convergence.size(), expected.convergence.size());
+    EXPECT_NEAR(found.balance.absorbed[0], expected.balance.absorbed[0], 1e-6 * expected.balance.absorbed[0]);
+  }
+}
+
 /// What leaves by cells of the box's faces is the same but for the order of sums: rays along a face leave through cells
 /// of several planes.
 TEST_F(ChainedPlanes, HaveTheSamePowerByCellsOfFaces)

@@ -69,8 +69,8 @@ protected:
     const VolumeLayout layout = { how.grid, how.channels, how.components == 1 };
     const TruncatedScattering scattering(medium.medium, 0, how.channels);
     const MediumOnDevice onDevice(device, medium.medium, scattering, layout, { true, false });
-    const Buffer<float> source(device,
-      Planar(layout, how.channels, [&](std::size_t i, int c) { return static_cast<float>((7 * i + c) % 11); }),
+    const Buffer<float> source = PlanarOnDevice(
+      device, layout, how.channels, [&](std::size_t i, int c) { return static_cast<float>((7 * i + c) % 11); },
       "source");
     Buffer<float> path(device, layout.Floats(), "path"), flux(device, layout.Floats(3), "flux"),
       currents(device, layout.Floats(6), "currents");

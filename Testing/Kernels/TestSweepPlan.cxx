@@ -7,8 +7,10 @@
 #include "LightPropagation/Sweep/SweepPlan.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <string>
+#include <vector>
 
 using namespace tyndall;
 

@@ -25,10 +25,12 @@ int HarmonicsKept(int degree, std::size_t values)
 constexpr float LeastScattering = 1e-30f; ///< 1/length, in the solver's unit: of less nothing is ever seen
 
 /// Radiance that is scattered of a source of 1.
-std::vector<float> PerScattering(const VolumeLayout& layout, const Field& sigma_s)
+Buffer<float> PerScattering(Device& device, const VolumeLayout& layout, const Field& sigma_s)
 {
-  return Planar(layout, layout.channels,
-    [&](std::size_t i, int c) { return sigma_s.At(i, c) > LeastScattering ? 1.0f / sigma_s.At(i, c) : 0.0f; });
+  const auto inverse = [&](std::size_t i, int c) {
+    return sigma_s.At(i, c) > LeastScattering ? 1.0f / sigma_s.At(i, c) : 0.0f;
+  };
+  return PlanarOnDevice(device, layout, layout.channels, inverse, "the inverse of sigma_s");
 }
 }
 
@@ -67,7 +69,7 @@ void ShownLight::AddTo(
   const int functions = this->Basis.Count();
   const std::vector<double> matrix = this->Basis.Matrix();
   const Buffer<float> basis(device, std::vector<float>(matrix.begin(), matrix.end()), "the angular functions");
-  const Buffer<float> scale(device, PerScattering(this->Layout, this->TheMedium.sigma_s), "the inverse of sigma_s");
+  const Buffer<float> scale = PerScattering(device, this->Layout, this->TheMedium.sigma_s);
   const std::array<int, 3>& size = this->Layout.grid.size;
   for (int c = 0; c < this->Layout.channels; ++c)
   {

@@ -108,18 +108,19 @@ void UncollidedLight::PassFaces(const Buffer<float>& path, const Buffer<float>& 
   }
 }
 
-std::vector<float> UncollidedLight::ScatteredInVoxels() const
+Buffer<float> UncollidedLight::ScatteredInVoxels() const
 {
   const VolumeLayout& layout = this->Parts.Layout;
   const std::vector<float> passed = this->ThroughFaces.Read();
-  return Planar(layout, layout.channels, [&](std::size_t i, int c) {
+  const auto scattered = [&](std::size_t i, int c) {
     double power = this->Parts.Problem.Scattering().SigmaS(i, c) * this->LengthsOfLamps[c * layout.Stride() + i];
     for (int d = 0; d < 6; ++d)
     {
       power -= passed[(6 * c + d) * layout.Stride() + i];
     }
     return static_cast<float>(power / (4.0 * Pi * layout.grid.VoxelVolume()));
-  });
+  };
+  return PlanarOnDevice(this->Parts.TheDevice, layout, layout.channels, scattered, "light of lamps");
 }
 
 /// Weight of the difference of finer and usual directions (numerics.md, Eqs. (55), (76)): little in thick voxels, where

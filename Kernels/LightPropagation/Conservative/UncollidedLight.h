@@ -23,7 +23,7 @@ public:
   /// constant.
   const Buffer<float>& Passed() const { return this->ThroughFaces; }
   /// W / (length^3 sr), the same: what lamps' light is first scattered, less what passes faces at once.
-  std::vector<float> ScatteredInVoxels() const;
+  Buffer<float> ScatteredInVoxels() const;
   /// What was emitted and came in, what of it left, and what was absorbed before it was scattered.
   const EnergyLedger& Ledger() const { return this->Counted; }
 

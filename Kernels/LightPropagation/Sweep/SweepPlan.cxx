@@ -393,7 +393,8 @@ std::size_t SweepPlan::ScratchFloats() const
 }
 
 /// Where slabs of planes begin and end: an even number, as many as keep launches short, at least eight for each of
-/// several groups, cut between blocks; alike from both ends, as units that come towards each other wait for each other.
+/// several groups, cut between blocks and chains but in the middle; alike from both ends, as units that come towards each
+/// other wait for each other.
 std::vector<int> SweepPlan::SlabBorders(int groups)
 {
   const int planes = this->Planes();
@@ -402,7 +403,7 @@ std::vector<int> SweepPlan::SlabBorders(int groups)
   int slabs = std::max(static_cast<int>(std::ceil(perPlane * planes / SecondsPerLaunch)), groups > 1 ? 8 * groups : 2);
   slabs = std::max(2, RoundUp(std::min(slabs, planes), 2));
   this->secondsPerLaunch = perPlane * planes / slabs;
-  const int step = planes >= 4 * this->plane.block ? this->plane.block : 1;
+  const int step = planes >= 4 * this->plane.together ? this->plane.together : 1;
   std::vector<int> borders(slabs + 1);
   for (int s = 0; 2 * s <= slabs; ++s)
   {

@@ -11,12 +11,12 @@ enum
   MaxFrames = 2,        ///< of a bundle: u and v as they are, and exchanged
   RingRows = 4,         ///< a stage reads rows y - 1 to y + 1 while the stage before writes row y + 2
   MeanLengthTerms = 5,  ///< of (1 - exp(-t)) / t = 1 + t (m0 + t (m1 + ...)) for thin voxels, see SweepPlan.cxx
-  BundlesTogether = 16, ///< that cross a plane tile by tile, where light has angular moments
+  BundlesTogether = 16, ///< that cross planes in turns: where light has angular moments, or planes are chained
   MomentRows = 8,       ///< of which a bundle's sources are kept: of the rows that its stages are at
   MostChained = 2,      ///< planes that a bundle crosses row by row one behind the other
   RowsOfChain = 32,     ///< of those, that bundles cross in turns: the planes' rows stay in the cache for all of them
   RowsOfChainKept = 64, ///< a power of two: of a turn, and those that its last stage is behind
-  RowsAhead = 2,        ///< of a chain's first stage, are rows of a map that is asked for
+  RowsAhead = 2,        ///< from where a chain begins a row to the row of its map that is asked for
   FloatsOfLine = 16,    ///< of a cache
   FirstRow = -2         ///< of a plane, that a first stage may begin at
 };

@@ -91,6 +91,7 @@ void WritePlanar(const VolumeLayout& layout, int channels, const Value& value, f
   std::fill_n(values + channels * stride, SweepPadding, 0.0f);
 }
 
+/// The same as a new array.
 template <class Value>
 std::vector<float> Planar(const VolumeLayout& layout, int channels, const Value& value)
 {
@@ -99,6 +100,7 @@ std::vector<float> Planar(const VolumeLayout& layout, int channels, const Value&
   return values;
 }
 
+/// The same on a device, without a copy on a CPU.
 /// @param what  it is, as Buffer has it
 template <class Value>
 Buffer<float> PlanarOnDevice(

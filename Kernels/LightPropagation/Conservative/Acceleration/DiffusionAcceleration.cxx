@@ -326,7 +326,7 @@ void DiffusionAcceleration::MakeSystems()
   const bool passes = this->Uncollided->Passed().Size() > 0;
   if (passes)
   {
-    this->OfLamps = Buffer<float>(parts.TheDevice, this->Uncollided->ScatteredInVoxels(), "light of lamps");
+    this->OfLamps = this->Uncollided->ScatteredInVoxels();
   }
   for (int c = 0; c < parts.Layout.channels; ++c)
   {

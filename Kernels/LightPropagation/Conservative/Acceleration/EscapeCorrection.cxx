@@ -21,14 +21,14 @@ EscapeCorrection::EscapeCorrection(Device& device, const VolumeLayout& layout, c
   const double thinnest = *std::min_element(grid.spacing.begin(), grid.spacing.end());
   // At most a half of what a voxel takes of its own light, which is about half its optical thickness.
   const double whole = 0.25 * 4.0 * Pi * grid.VoxelVolume();
-  const std::vector<float> extra = Planar(layout, layout.channels, [&](std::size_t i, int c) {
+  const auto extra = [&](std::size_t i, int c) {
     const std::size_t at = c * layout.Stride() + i;
     const double extinction = scattering.SigmaT(i, c);
     const double most = whole * thinnest * extinction / (1.0 + thinnest * extinction);
     const double difference = std::clamp<double>(fine[at] - usual[at], -most, most);
     return extinction > 0.0 ? static_cast<float>(difference / extinction) : 0.0f;
-  });
-  this->Extra = Buffer<float>(device, extra, "what escapes of scattered light");
+  };
+  this->Extra = PlanarOnDevice(device, layout, layout.channels, extra, "what escapes of scattered light");
 }
 
 Rgb EscapeCorrection::Apply(const Buffer<float>& path, const Buffer<float>& source)

@@ -81,6 +81,7 @@ static inline __attribute__((always_inline)) void ask_for_lines(sweep_state* sta
 static inline void ask_ahead(sweep_state* state, const __global float* map, int y, int floats, int g, int stages)
 {
   state->asks = 0;
+  state->asked = map;
   if (state->tile > 0 && y >= 0)
   {
     const int vectors = state->width / REAL_WIDTH, lines = (floats + FloatsOfLine - 1) / FloatsOfLine;

@@ -17,6 +17,7 @@
 //   PERIODIC_U, PERIODIC_V  1 where rays come back on the other side
 //   STREAMED  1 where slices of the volumes are in slots (SliceStream.h)
 //   FACE_OUT, FACE_IN  1 where light leaves and comes in by cells of the box's faces (SweepFaces.cl)
+//   CHAIN_KEEPS  rows of planes that scratch has room for, a power of two; 0: all; may be left out
 //   SIDES     1 where the box is a block of a larger one (SweepSides.cl); may be left out
 //
 // Rays carry power (W), so that leaving through any face needs no further factor. A map row holds the rays by the voxel
@@ -77,6 +78,9 @@ typedef struct
 {
   int plane, stage; // of the plane
 } stage_of_chain;
+
+// Rows that are kept are those of a turn, and those that its last stage is behind.
+typedef char kept_rows_suffice[ROWS_KEPT == 0 || ROWS_KEPT >= RowsOfChain + ROWS_BEHIND(MostChained) ? 1 : -1];
 
 // A plane that is crossed.
 struct plane_place
