@@ -79,8 +79,9 @@ typedef struct
   int plane, stage; // of the plane
 } stage_of_chain;
 
-// Rows that are kept are those of a turn, and those that its last stage is behind.
-typedef char kept_rows_suffice[ROWS_KEPT == 0 || ROWS_KEPT >= RowsOfChain + ROWS_BEHIND(MostChained) ? 1 : -1];
+#if ROWS_KEPT // are those of a turn, and those that its last stage is behind
+typedef char kept_rows_suffice[ROWS_KEPT >= RowsOfChain + ROWS_BEHIND(MostChained) ? 1 : -1];
+#endif
 
 // A plane that is crossed.
 struct plane_place
