@@ -393,8 +393,8 @@ std::size_t SweepPlan::ScratchFloats() const
 }
 
 /// Where slabs of planes begin and end: an even number, as many as keep launches short, at least eight for each of
-/// several groups, cut between blocks and chains but in the middle; alike from both ends, as units that come towards each
-/// other wait for each other.
+/// several groups, cut between blocks and chains but in the middle; alike from both ends, as units that come towards
+/// each other wait for each other.
 std::vector<int> SweepPlan::SlabBorders(int groups)
 {
   const int planes = this->Planes();

@@ -155,8 +155,8 @@ static inline __attribute__((always_inline)) void unpack_block(
   }
 }
 
-// Add one quantity of rows of the planes, with a sign, to the volume; exactly their voxels are touched, as others may be
-// in work elsewhere.
+// Add one quantity of rows of the planes, with a sign, to the volume; exactly their voxels are touched, as others may
+// be in work elsewhere.
 static void unpack(const PlaneInfo* layout, const __global float* from, int first, int count, int2 rows, float sign,
   __global float* volume, __global float* lost)
 {
