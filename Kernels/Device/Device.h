@@ -103,8 +103,8 @@ public:
   /// when it first runs.
   void AwaitFirstRuns();
 
-  /// tyndall::TakePages of a buffer of `bytes` that will be written all over. Nothing where the device has memory of its
-  /// own, nor of a few pages.
+  /// tyndall::TakePages of a buffer of `bytes` that will be written all over. Nothing where the device has memory of
+  /// its own, nor of a few pages.
   void TakePages(const cl::Buffer& memory, std::size_t bytes) const;
 
   /// Note that work of about so many seconds was queued, and wait for all of it once that is a tenth of a second:

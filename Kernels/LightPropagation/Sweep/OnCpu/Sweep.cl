@@ -225,7 +225,8 @@ static void cross_planes(sweep_state* state, int planes, __global float* maps, c
 // that are chained) tile by tile of rows, so that those of a tile stay in the cache for all bundles.
 // @param planes  1 where CHAINED is 0
 // @param crossings, coefficients  of the first of the bundles
-// @param packed  the planes, whose rows are packed tile by tile where ROWS_KEPT: then the bundles are all that there are
+// @param packed  the planes, whose rows are packed tile by tile where ROWS_KEPT: then the bundles are all that there
+//                are
 static void cross_bundles(sweep_state* state, const swept_volume* volume, const packed_planes* packed, int planes,
   __global float* maps, const __global float* outside, const __global float* radiance,
   const __global BundleInfo* bundles, int count, const __global CrossingInfo* crossings, int all_bundles,
