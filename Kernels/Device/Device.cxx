@@ -243,7 +243,9 @@ cl::Kernel Device::Kernel(const char* name, std::string_view source, const std::
 {
   try
   {
-    return cl::Kernel(this->ProgramOf(name, std::string(source), "-cl-std=CL1.2 " + options), name);
+    return cl::Kernel(this->ProgramOf(name, std::string(source),
+                        "-cl-std=CL1.2 -DFOR_CPU=" + std::to_string(this->Cpu) + " " + options),
+      name);
   }
   catch (const cl::Error& error)
   {

@@ -1,6 +1,9 @@
 #pragma once
 
+#include "Device/Defines.h"
 #include "Device/Device.h"
+
+#include <string>
 
 namespace tyndall
 {
@@ -13,5 +16,25 @@ inline cl::NDRange GroupOfLargeItems(const Device& device, int dimensions = 1)
     : dimensions == 1    ? cl::NDRange(1)
     : dimensions == 2    ? cl::NDRange(1, 1)
                          : cl::NDRange(1, 1, 1);
+}
+
+/// Work-items of a group that add up together (Numerics/GroupSum.cl), side by side in memory: on a CPU each for itself.
+inline int SummingGroup(const Device& device)
+{
+  return device.IsCpu() ? 1 : 128;
+}
+
+/// GROUP, as kernels that sum up by groups are compiled with.
+inline std::string SummingOption(const Device& device)
+{
+  return Define("GROUP", SummingGroup(device));
+}
+
+/// Runs so many groups, of each of several channels.
+inline void RunSummingGroups(Device& device, const cl::Kernel& kernel, std::size_t groups, std::size_t channels = 1)
+{
+  const auto items = static_cast<std::size_t>(SummingGroup(device));
+  device.Queue().enqueueNDRangeKernel(
+    kernel, cl::NullRange, cl::NDRange(groups * items, channels), cl::NDRange(items, 1));
 }
 }

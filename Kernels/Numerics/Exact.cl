@@ -6,6 +6,8 @@
 #if DOUBLES
 #pragma OPENCL EXTENSION cl_khr_fp64 : enable
 typedef double exact;
+typedef double8 exact8;
 #else
 typedef float exact;
+typedef float8 exact8;
 #endif

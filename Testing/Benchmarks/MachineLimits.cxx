@@ -54,11 +54,12 @@ __kernel void multiply_adds(__global vector* result, int rounds, float a, float 
   result[get_global_id(0)] = sum;
 }
 
-// `count` vectors a work-item
-__kernel void triad(__global vector* a, const __global vector* b, const __global vector* c, float s, int count)
+// `count` vectors a work-item: one after the other, or, `beside` 1, those of neighbouring work-items side by side
+__kernel void triad(
+  __global vector* a, const __global vector* b, const __global vector* c, float s, int count, int beside)
 {
-  const size_t begin = get_global_id(0) * count;
-  for (size_t i = begin; i < begin + count; ++i)
+  const size_t begin = get_global_id(0) * (beside ? 1 : count), step = beside ? get_global_size(0) : 1;
+  for (size_t i = begin; i < begin + count * step; i += step)
   {
     a[i] = b[i] + s * c[i];
   }
@@ -101,7 +102,7 @@ MachineLimits MeasureLimits(Device& device, bool largeArrays)
   b.Fill(1.0f);
   c.Fill(2.0f);
   cl::Kernel triad = device.Kernel("triad", { Source }, options);
-  With(triad, a, b, c, 3.0f, cl_int(floats / (items * width)));
+  With(triad, a, b, c, 3.0f, cl_int(floats / (items * width)), cl_int(!device.IsCpu()));
   const double copying = Shortest(
     device, [&] { device.Queue().enqueueNDRangeKernel(triad, cl::NullRange, cl::NDRange(items), cl::NDRange(group)); });
   limits.bytes = 12.0 * floats / copying;

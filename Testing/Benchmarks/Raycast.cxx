@@ -1,7 +1,7 @@
 // Ray casting of a lit medium, against VTK's own volume ray casters without shading, at the same step, from the same
-// cameras, in one process. Needs a display (Xvfb).
+// cameras, in one process. Needs a display (Xvfb), but for `--alone`, which leaves VTK's out.
 //
-//   TyndallBenchRaycast [folder]   writes the last picture of each method there as PPM, to be looked at
+//   TyndallBenchRaycast [--quick] [--alone] [folder]   writes the last picture of each method there as PPM, to be looked at
 
 #include "Program.h"
 
@@ -354,21 +354,33 @@ Seconds TimeGpu(const Case& what)
   return TimeVtk(what, mapper, "vtkGPUVolumeRayCastMapper");
 }
 
-void Run(Device& device, const Case& what)
+/// What ours is compared with.
+struct Against
 {
-  const Seconds fixedPoint = TimeFixedPoint(what);
-  const Seconds gpu = TimeGpu(what);
-  Print(what, "vtkFixedPointVolumeRayCastMapper", fixedPoint);
-  Print(what, "vtkGPUVolumeRayCastMapper", gpu);
-  const bool gpuIsFaster = gpu.wall < fixedPoint.wall;
-  const std::string against = gpuIsFaster ? "vtkGPUVolumeRayCastMapper" : "vtkFixedPointVolumeRayCastMapper";
-  const Seconds fastest = gpuIsFaster ? gpu : fixedPoint;
+  std::string method; ///< empty: nothing
+  Seconds seconds;
+};
+
+/// Times VTK's ray casters.
+/// @return the faster one
+Against TimeVtks(const Case& what)
+{
+  const Against fixedPoint = { "vtkFixedPointVolumeRayCastMapper", TimeFixedPoint(what) };
+  const Against gpu = { "vtkGPUVolumeRayCastMapper", TimeGpu(what) };
+  Print(what, fixedPoint.method, fixedPoint.seconds);
+  Print(what, gpu.method, gpu.seconds);
+  return gpu.seconds.wall < fixedPoint.seconds.wall ? gpu : fixedPoint;
+}
+
+void Run(Device& device, const Case& what, bool alone)
+{
+  const Against against = alone ? Against() : TimeVtks(what);
 
   std::size_t peakBytes = 0;
   const Seconds single = TimeOurs(device, what, true, &peakBytes);
-  Print(what, "MediumRayCaster, single scattering", single, peakBytes, fastest, against);
+  Print(what, "MediumRayCaster, single scattering", single, peakBytes, against.seconds, against.method);
   const Seconds multiple = TimeOurs(device, what, false, &peakBytes);
-  Print(what, "MediumRayCaster, multiple scattering", multiple, peakBytes, fastest, against);
+  Print(what, "MediumRayCaster, multiple scattering", multiple, peakBytes, against.seconds, against.method);
   Print(what, "MediumRayCaster, first picture", TimeFirst(device, what));
   Print(what, "MediumRayCaster, shadow rays", TimeShadowRays(device, what));
 }
@@ -376,7 +388,11 @@ void Run(Device& device, const Case& what)
 void RunAll(Device& device, const bench::Arguments& arguments)
 {
   const bool quick = arguments.quick;
-  const std::string folder = arguments.words.empty() ? "" : arguments.words.front();
+  std::vector<std::string> words = arguments.words;
+  const auto kept = std::remove(words.begin(), words.end(), "--alone");
+  const bool alone = kept != words.end();
+  words.erase(kept, words.end());
+  const std::string folder = words.empty() ? "" : words.front();
   const int n = quick ? 32 : 128;
   std::vector<Scene> scenes = { MakeScene("cloud", n, true) };
   if (!quick)
@@ -386,10 +402,10 @@ void RunAll(Device& device, const bench::Arguments& arguments)
   for (Scene& scene : scenes)
   {
     Solve(device, scene);
-    Run(device, { scene, 0.5, quick ? 1 : 7, folder });
+    Run(device, { scene, 0.5, quick ? 1 : 7, folder }, alone);
     if (!quick)
     {
-      Run(device, { scene, 1.0, 7, {} });
+      Run(device, { scene, 1.0, 7, {} }, alone);
     }
   }
 }

@@ -30,7 +30,7 @@ struct Sweeping
   int channels = 1;
   float densest = 0.7f;
   int perFace = 25;
-  bool shines = true, lit = true, flux = false, currents = false;
+  bool shines = true, lit = true, flux = false, currents = false, byOctant = false;
   VoxelBox box = {};
   std::array<double, 3> beam = {}; ///< instead of all directions
 };
@@ -80,6 +80,8 @@ protected:
     SweepWorkspace workspace;
     SweepRequest request = { { &path, how.flux ? &flux : nullptr, how.currents ? &currents : nullptr }, RaysOf(how) };
     request.box = how.box;
+    const Buffer<float> octants = OctantsOf(device, layout);
+    request.octantSource = how.byOctant ? &octants : nullptr;
     std::unique_ptr<SweepOperator> sweep;
     if (ways)
     {
@@ -98,6 +100,20 @@ protected:
     found.flux = flux.Read();
     found.currents = currents.Read();
     return found;
+  }
+
+  /// By how much more, or less, voxels shine into each octant.
+  static Buffer<float> OctantsOf(Device& device, const VolumeLayout& layout)
+  {
+    std::vector<float> more(8 * layout.Floats(), 0.0f);
+    for (int row = 0; row < 8 * layout.channels; ++row)
+    {
+      for (std::size_t i = 0; i < layout.grid.VoxelCount(); ++i)
+      {
+        more[row * layout.Stride() + i] = 0.2f * static_cast<float>((5 * i + 3 * row) % 13) - 1.0f;
+      }
+    }
+    return { device, more, "sources by octant" };
   }
 
   static void ExpectSame(const Found& found, const Found& expected, const char* what)
@@ -185,6 +201,22 @@ TEST_F(SweepOnGpuTest, FindsThreeColoursOfThreeExtinctions)
   this->Compare(how);
 }
 
+TEST_F(SweepOnGpuTest, FindsTheLightOfASourceByOctant)
+{
+  for (const int perFace : { 25, 121 }) // some of 121 go between octants
+  {
+    for (const int colours : { 1, 3 })
+    {
+      Sweeping how;
+      how.perFace = perFace;
+      how.components = how.channels = colours;
+      how.densest = 3.0f;
+      how.flux = how.currents = how.byOctant = true;
+      this->Compare(how);
+    }
+  }
+}
+
 TEST_F(SweepOnGpuTest, FindsTheLightInUnequalVoxels)
 {
   Sweeping how;
@@ -270,9 +302,6 @@ TEST_F(SweepOnGpuTest, LeavesToTheOtherWhatItCannotDo)
   EXPECT_FALSE(SweepOnGpu::Can(request, {}));
   request = {};
   request.deposit.faceOut = &cells;
-  EXPECT_FALSE(SweepOnGpu::Can(request, {}));
-  request = {};
-  request.octantSource = &cells;
   EXPECT_FALSE(SweepOnGpu::Can(request, {}));
 }
 

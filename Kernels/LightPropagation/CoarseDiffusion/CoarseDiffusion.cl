@@ -1,5 +1,6 @@
 // From voxels to cells of them and back, between two sweeps (CoarseDiffusion.h). The host gives
-//   REAL_WIDTH  4 or 8 floats of a vector
+//   REAL_WIDTH  4 or 8 floats of a vector; 1: cells one by one, on a GPU
+//   GROUP       GroupSum.cl
 //   DOUBLES     1 where the device has double precision
 //   LINEAR      1: light is taken as linear across voxels; 0: as constant in each
 
@@ -19,7 +20,7 @@ __kernel void sum_cells(CoarseCells box, const __global float* values, float sca
     const int end_y = min((y + 1) << box.halvings[1], box.size[1]),
               end_z = min((z + 1) << box.halvings[2], box.size[2]);
     __global float* row = sums + row_at(&box.cells, y, z);
-    for (int x = 0; x < box.cells.size[0]; ++x)
+    FOR_VOXELS(x, 0, box.cells.size[0])
     {
       const int begin_x = x << box.halvings[0], end_x = min((x + 1) << box.halvings[0], box.size[0]);
       float sum = 0.0f;

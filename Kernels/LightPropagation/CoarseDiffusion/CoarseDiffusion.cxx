@@ -59,8 +59,7 @@ CoarseDiffusion::CoarseDiffusion(Device& device, const VolumeLayout& layout, int
 cl::Kernel CoarseDiffusion::Kernel(const char* name) const
 {
   return this->TheDevice.Kernel(name, kernel_source::CoarseDiffusion,
-    Define("REAL_WIDTH", this->TheDevice.KernelWidth(4, RowVector, 4)) + Define("LINEAR", this->Linear) +
-      ExactOption(this->TheDevice));
+    MultigridSolver::RowOptions(this->TheDevice) + Define("LINEAR", this->Linear) + ExactOption(this->TheDevice));
 }
 
 /// Of each cell, x fastest.

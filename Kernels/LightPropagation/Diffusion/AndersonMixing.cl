@@ -1,6 +1,9 @@
-// Anderson's mixing of the last corrections, see AndersonMixing.h.
+// Anderson's mixing of the last corrections, see AndersonMixing.h. The host gives
+//   GROUP    work-items that take a chunk together (GroupSum.cl)
+//   DOUBLES  1 where the device has double precision
 
 #include "LightPropagation/Diffusion/DiffusionLayout.cl"
+#include "Numerics/GroupSum.cl"
 
 // Sums for Anderson's mixing (numerics.md, Eqs. (71), (72)), with f = found - given and d1, d2 its differences to those
 // of the two iterations before: f f and found found (both weighted by how much the voxel scatters), d1 d1, d1 d2, d2
@@ -9,10 +12,10 @@ __kernel void anderson_sums(const __global exact* given, const __global exact* f
   const __global float* change2, const __global float* sigma_s, int first, float length, int voxels, int count,
   __global exact* sums)
 {
-  const int begin = get_global_id(0) * DiffusionChunk;
+  const int begin = get_group_id(0) * DiffusionChunk;
   const int end = min(count, begin + DiffusionChunk);
   exact sum[AndersonSums] = { 0, 0, 0, 0, 0, 0, 0, 0 };
-  for (int i = begin; i < end; ++i)
+  for (int i = begin + FIRST_IN_CHUNK(1); i < end; i += STEP_IN_CHUNK(1))
   {
     const exact tau = i < voxels ? sigma_s[first + i] * length : 0;
     if (tau < 0)
@@ -31,10 +34,10 @@ __kernel void anderson_sums(const __global exact* given, const __global exact* f
     sum[5] += d1 * f;
     sum[6] += d2 * f;
   }
-  for (int k = 0; k < AndersonSums; ++k)
-  {
-    sums[get_global_id(0) * AndersonSums + k] = sum[k];
-  }
+  // The eighth is 0.
+  const exact8 all = (exact8)(sum[0], sum[1], sum[2], sum[3], sum[4], sum[5], sum[6], sum[7]);
+  __global exact8* of_chunks = (__global exact8*)sums;
+  PUT_SUM_OF_GROUP(exact8, all, of_chunks[get_group_id(0)])
 }
 
 // given = found - w1 (found - found1) - w2 (found - found2); remembers found and found - given in the place of the

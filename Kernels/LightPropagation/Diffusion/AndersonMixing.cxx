@@ -25,11 +25,16 @@ AndersonMixing::AndersonMixing(Device& device, std::size_t voxels, std::size_t c
   }
 }
 
+cl::Kernel AndersonMixing::Kernel(const char* name) const
+{
+  return this->TheDevice.Kernel(
+    name, kernel_source::AndersonMixing, SummingOption(this->TheDevice) + ExactOption(this->TheDevice));
+}
+
 double AndersonMixing::Mix(const ExactValues& given, const ExactValues& found, const Sums& sums)
 {
   const std::array<double, 2> weights = this->WeightsBy(sums);
-  cl::Kernel step =
-    this->TheDevice.Kernel("anderson_step", kernel_source::AndersonMixing, ExactOption(this->TheDevice));
+  cl::Kernel step = this->Kernel("anderson_step");
   std::swap(this->FoundBefore[0], this->FoundBefore[1]);
   std::swap(this->ChangeBefore[0], this->ChangeBefore[1]);
   // What was the last is now the second before, and its place is taken: the kernel reads before it writes.
@@ -48,13 +53,10 @@ double AndersonMixing::ChangeBy(const Sums& sums)
 AndersonMixing::Sums AndersonMixing::SumsOf(
   const ExactValues& given, const ExactValues& found, const Weighting& weighting) const
 {
-  cl::Kernel kernel =
-    this->TheDevice.Kernel("anderson_sums", kernel_source::AndersonMixing, ExactOption(this->TheDevice));
+  cl::Kernel kernel = this->Kernel("anderson_sums");
   With(kernel, given.Handle(), found.Handle(), this->ChangeBefore[0], this->ChangeBefore[1], *weighting.sigma_s,
     cl_int(weighting.first), weighting.length, cl_int(this->Voxels), cl_int(this->Count), this->OfChunks.Handle());
-  const std::size_t chunks = PartsOf<std::size_t>(this->Count, DiffusionChunk);
-  this->TheDevice.Queue().enqueueNDRangeKernel(
-    kernel, cl::NullRange, cl::NDRange(chunks), GroupOfLargeItems(this->TheDevice));
+  RunSummingGroups(this->TheDevice, kernel, PartsOf<std::size_t>(this->Count, DiffusionChunk));
   Sums sums = {};
   const std::vector<double> parts = this->OfChunks.Read();
   for (std::size_t i = 0; i < parts.size(); ++i)

@@ -40,6 +40,7 @@ public:
   static double ChangeBy(const Sums& sums); ///< what Mix returns
 
 private:
+  cl::Kernel Kernel(const char* name) const;
   std::array<double, 2> WeightsBy(const Sums& sums) const;
 
   Device& TheDevice;

@@ -1,6 +1,7 @@
 // The diffusion system of a channel along rows of voxels, in vectors: its matrix, and what a sweep found as its
 // right-hand side, but for the box's faces (DiffusionSystem.cl). The host gives
-//   REAL_WIDTH  4 or 8 floats of a vector
+//   REAL_WIDTH  4 or 8 floats of a vector; 1: by voxels, on a GPU
+//   GROUP       GroupSum.cl
 //   DOUBLES     1 where the device has double precision
 //   PASSING     1: lamps' light passes faces at once where it is scattered
 //   MOMENTS     1: sweeps carry light that goes straight on where it is scattered forwards, or has angular moments
@@ -73,7 +74,7 @@ __kernel void diffusion_flat_source(
   FOR_ROWS(layout.rows)
   {
     const int here = r * layout.size[0];
-    for (int x = 0; x < layout.size[0]; x += REAL_WIDTH)
+    FOR_VECTORS(x, 0, layout.size[0])
     {
       const real sweeps = load_real(x, swept + here);
       for (int axis = 0; axis < (layout.flatStride > 0 ? 3 : 1); ++axis)
@@ -114,7 +115,7 @@ __kernel void diffusion_conductance(DiffusionLayout layout, const __global float
   {
     const int y = r % layout.size[1], z = r / layout.size[1], here = voxel_at(&layout, y, z);
     const int row = row_at(&layout.rows, y, z);
-    for (int x = 0; x < n; x += REAL_WIDTH)
+    FOR_VECTORS(x, 0, n)
     {
       store_real(in_row(load_real(here + x, sigma_a) * volume_of(&layout), n - x), x, loss + row);
     }
@@ -126,7 +127,7 @@ __kernel void diffusion_conductance(DiffusionLayout layout, const __global float
       const int count = find_spans(&layout, axis, y, z, spans);
       for (int s = 0; s < count; ++s)
       {
-        for (int x = spans[s].begin; x < spans[s].end; x += REAL_WIDTH)
+        FOR_VECTORS(x, spans[s].begin, spans[s].end)
         {
           const int i = here + x, j = spans[s].before + x;
           const real value = conductance_of(&layout, axis, load_real(j, sigma_t), load_real(j, sigma_a),
@@ -135,7 +136,7 @@ __kernel void diffusion_conductance(DiffusionLayout layout, const __global float
         }
       }
     }
-    fill_ghosts(conductance + row, n);
+    FILL_GHOSTS(conductance + row, n);
   }
 }
 
@@ -148,12 +149,15 @@ __kernel void diffusion_extinction(DiffusionLayout layout, const __global float*
   {
     const __global float* from = sigma_t + r * n;
     __global float* row = extinction + row_at(&layout.rows, r % layout.size[1], r / layout.size[1]);
-    for (int x = 0; x < n; x += REAL_WIDTH)
+    FOR_VECTORS(x, 0, n)
     {
       store_real(load_real(x, from), x, row);
     }
-    row[-1] = from[layout.periodic[0] ? n - 1 : 0];
-    row[n] = from[layout.periodic[0] ? 0 : n - 1];
+    if (ENDS_ROW(n))
+    {
+      row[-1] = from[layout.periodic[0] ? n - 1 : 0];
+      row[n] = from[layout.periodic[0] ? 0 : n - 1];
+    }
   }
 }
 
@@ -191,20 +195,23 @@ static real skin_of(const DiffusionLayout* layout, const real* sigma_t)
 }
 
 // Which rows have voxels with a skin.
-// skins  [z][y]
+// skins  [z][y], 0 before
 __kernel void diffusion_skins(DiffusionLayout layout, const __global float* extinction, __global int* skins)
 {
   FOR_ROWS(layout.rows)
   {
     const int y = r % layout.size[1], z = r / layout.size[1];
     real most = (real)0.0f;
-    for (int x = 0; x < layout.size[0]; x += REAL_WIDTH)
+    FOR_VECTORS(x, 0, layout.size[0])
     {
       real sigma_t[7];
       find_extinctions(&layout, y, z, x, extinction, sigma_t);
       most = fmax(most, in_row(skin_of(&layout, sigma_t), layout.size[0] - x));
     }
-    skins[r] = sum_of(most) > 0.0f;
+    if (sum_of(most) > 0.0f)
+    {
+      skins[r] = 1;
+    }
   }
 }
 
@@ -234,7 +241,7 @@ __kernel void diffusion_model(DiffusionLayout layout, const __global float* exti
   FOR_ROWS(layout.rows)
   {
     const int y = r % layout.size[1], z = r / layout.size[1], here = voxel_at(&layout, y, z);
-    for (int x = 0; x < n; x += REAL_WIDTH)
+    FOR_VECTORS(x, 0, n)
     {
       const real solved = load_rounded(fluence + here, x, n);
 #if SKIN
@@ -320,7 +327,7 @@ __kernel void diffusion_face_powers(DiffusionLayout layout, const __global float
       const __global float* along_x = pattern + layout.pattern[2 * axis];
       const float of_row = pattern[layout.pattern[2 * axis + 1] + (axis == 2 ? y : z)];
       __global float* out = (axis == 0 ? powers_x : axis == 1 ? powers_y : powers_z) + row;
-      for (int x = 0; x < n; x += REAL_WIDTH)
+      FOR_VECTORS(x, 0, n)
       {
         store_real((real)0.0f, x, out);
       }
@@ -328,7 +335,7 @@ __kernel void diffusion_face_powers(DiffusionLayout layout, const __global float
       const int count = find_spans(&layout, axis, y, z, spans);
       for (int s = 0; s < count; ++s)
       {
-        for (int x = spans[s].begin; x < spans[s].end; x += REAL_WIDTH)
+        FOR_VECTORS(x, spans[s].begin, spans[s].end)
         {
           const real crossing = of_row + (axis == 0 ? (real)along_x[y] : load_real(x, along_x));
           const real power =
@@ -337,7 +344,7 @@ __kernel void diffusion_face_powers(DiffusionLayout layout, const __global float
         }
       }
     }
-    fill_ghosts(powers_x + row, n);
+    FILL_GHOSTS(powers_x + row, n);
   }
 }
 
@@ -355,7 +362,7 @@ __kernel void diffusion_balance(DiffusionLayout layout, const __global float* gi
     const int y = r % layout.size[1], z = r / layout.size[1], row = row_at(&layout.rows, y, z);
     const int high_y = row_at(&layout.rows, y < layout.size[1] - 1 ? y + 1 : 0, z);
     const int high_z = row_at(&layout.rows, y, z < layout.size[2] - 1 ? z + 1 : 0);
-    for (int x = 0; x < n; x += REAL_WIDTH)
+    FOR_VECTORS(x, 0, n)
     {
       const real along_x = load_real(row + x, powers_x) - load_real(row + x + 1, powers_x);
       const real along_y = load_real(row + x, powers_y) - load_real(high_y + x, powers_y);
@@ -367,7 +374,7 @@ __kernel void diffusion_balance(DiffusionLayout layout, const __global float* gi
 }
 
 // What absorption takes of the fluence, W.
-// sums  [work-item]
+// sums  [work-group]
 __kernel void diffusion_absorbed(
   DiffusionLayout layout, const __global float* sigma_a, const __global exact* fluence, __global exact* sums)
 {
@@ -376,10 +383,11 @@ __kernel void diffusion_absorbed(
   exact sum = 0;
   FOR_ROWS(layout.rows)
   {
-    for (int x = 0; x < n; ++x)
+    FOR_VOXELS(x, 0, n)
     {
       sum += sigma_a[r * n + x] * fluence[r * n + x];
     }
   }
-  sums[get_global_id(0)] = sum * volume_of(&layout);
+  sum *= volume_of(&layout);
+  PUT_SUM_OF_GROUP(exact, sum, sums[get_group_id(0)])
 }

@@ -6,7 +6,7 @@
 SHARED_BEGIN
 enum
 {
-  DiffusionChunk = 4096, ///< values that a work-item sums up before the host adds the chunks in double
+  DiffusionChunk = 4096, ///< values that a work-group sums up before the host adds the chunks in double
   AndersonSums = 8,      ///< of a chunk
   RowVector = 8,         ///< the widest vector that walks along rows of a level, floats
   RowsLead = 16          ///< floats before a level's first row
@@ -22,7 +22,7 @@ typedef struct
   int pitch;     ///< floats from row to row
   int plane;     ///< from plane to plane
   int floats;    ///< of an array
-  int together;  ///< rows that a work-item walks along
+  int together;  ///< rows that a work-item of a CPU walks along
 } MultigridLevel;
 
 /// The grid and arrays of one channel.

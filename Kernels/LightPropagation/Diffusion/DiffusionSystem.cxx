@@ -107,8 +107,7 @@ cl::Kernel DiffusionSystem::Kernel(const char* name) const
 cl::Kernel DiffusionSystem::RowsKernel(const char* name) const
 {
   return this->TheDevice.Kernel(name, kernel_source::DiffusionRows,
-    this->Options() + Define("REAL_WIDTH", this->TheDevice.KernelWidth(4, RowVector, 4)) +
-      Define("SKIN", this->AnySkin));
+    this->Options() + MultigridSolver::RowOptions(this->TheDevice) + Define("SKIN", this->AnySkin));
 }
 
 void DiffusionSystem::Run(cl::Kernel& kernel)
@@ -143,6 +142,7 @@ void DiffusionSystem::FindSkins()
 {
   this->Skins =
     Buffer<cl_int>(this->TheDevice, tyndall::Count(this->Layout.size[1] * this->Layout.size[2]), "rows of skins");
+  this->Skins.Fill(0);
   const Buffer<float>& extinction = this->ExtinctionInRows();
   cl::Kernel kernel = this->RowsKernel("diffusion_skins");
   With(kernel, this->Layout, extinction, this->Skins);
@@ -246,7 +246,7 @@ void DiffusionSystem::Refine(double unit)
 double DiffusionSystem::Absorbed() const
 {
   cl::Kernel kernel = this->RowsKernel("diffusion_absorbed");
-  const ExactValues sums(this->TheDevice, MultigridSolver::ItemsOf(this->Layout.rows), "sums");
+  const ExactValues sums(this->TheDevice, MultigridSolver::GroupsOf(this->TheDevice, this->Layout.rows), "sums");
   With(kernel, this->Layout, *this->The.sigma_a, this->Solution.Handle(), sums.Handle());
   this->RunRows(kernel);
   const std::vector<double> parts = sums.Read();

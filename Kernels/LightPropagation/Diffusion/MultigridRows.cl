@@ -1,22 +1,47 @@
 // Rows of a multigrid level (DiffusionShared.h), and the matrix of a level along them:
 //   (A x)_i = sum over faces of conductance (x_i - x_j) + loss_i x_i
 // with the conductances of low faces, [axis][floats of an array]; 0 at the box's end.
+//
+// Kernels are written once, for CPUs and GPUs. On a CPU a work-item walks along rows in vectors. On a GPU
+// (REAL_WIDTH 1) it takes single voxels, and its neighbours in the work-group those beside. The host gives GROUP
+// (GroupSum.cl) with it.
 
 #pragma once
 #include "LightPropagation/Diffusion/DiffusionShared.h"
+#include "Numerics/GroupSum.cl"
 #include "Numerics/Numerics.cl"
 
+// FOR_ROWS     rows, r, of which this work-item has something to do, one after the other
+// FOR_VECTORS  in a row, what it has to do of begin <= x < end, by vectors
+// FOR_VOXELS   the same by single voxels
+// FILL_GHOSTS  within FOR_ROWS, behind the last write to the row: beside a row's ends lie those of the other side. A
+//              periodic axis goes on there, and where the box ends nothing passes
+// ENDS_ROW     true once a row
+#if REAL_WIDTH == 1
+#define LANES 0
+#define FOR_ROWS(level)                                                                            \
+  for (int voxel = get_global_id(0), r = voxel / (level).size[0], own_x = voxel % (level).size[0]; \
+       voxel < (level).size[0] * (level).size[1] * (level).size[2];                                \
+       voxel += get_global_size(0), r = voxel / (level).size[0], own_x = voxel % (level).size[0])
+#define FOR_VECTORS(x, begin, end) for (int x = own_x; x >= (begin) && x < (end); x = (end))
+#define FOR_VOXELS FOR_VECTORS
+#define FILL_GHOSTS(row, size) fill_ghosts_of(row, size, own_x)
+#define ENDS_ROW(size) (own_x == (size)-1)
+#else
 #if REAL_WIDTH == 4
 #define LANES ((int4)(0, 1, 2, 3))
 #else
 #define LANES ((int8)(0, 1, 2, 3, 4, 5, 6, 7))
 #endif
-
-// The rows that this work-item walks along, one after the other: r, y and z.
 #define FOR_ROWS(level)                                                            \
   for (int r = get_global_id(0) * (level).together,                                \
            row_end = min((level).size[1] * (level).size[2], r + (level).together); \
        r < row_end; ++r)
+#define FOR_VECTORS(x, begin, end) for (int x = (begin); x < (end); x += REAL_WIDTH)
+#define FOR_VOXELS(x, begin, end) for (int x = (begin); x < (end); ++x)
+#define FILL_GHOSTS(row, size) fill_ghosts(row, size)
+#define ENDS_ROW(size) true
+#endif
 
 inline int row_at(const MultigridLevel* level, int y, int z)
 {
@@ -29,12 +54,23 @@ inline real in_row(real values, int left)
   return left >= REAL_WIDTH ? values : select(values, (real)0.0f, LANES >= left);
 }
 
-// Beside a row's ends lie those of the other side: a periodic axis goes on there, and where the box ends nothing
-// passes.
 inline void fill_ghosts(__global float* row, int size)
 {
   row[-1] = row[size - 1];
   row[size] = row[0];
+}
+
+// By the work-item that wrote x.
+inline void fill_ghosts_of(__global float* row, int size, int x)
+{
+  if (x == 0)
+  {
+    row[size] = row[0];
+  }
+  if (x == size - 1)
+  {
+    row[-1] = row[x];
+  }
 }
 
 typedef struct
@@ -82,9 +118,17 @@ inline real apply_row(const matrix_row* row, int x)
 // Of two vectors side by side: sums of two neighbours, and of each two the first.
 inline real pair_sums(real a, real b)
 {
+#if REAL_WIDTH == 1
+  return a + b;
+#else
   return (real)(a.even + a.odd, b.even + b.odd);
+#endif
 }
 inline real first_of_pairs(real a, real b)
 {
+#if REAL_WIDTH == 1
+  return a;
+#else
   return (real)(a.even, b.even);
+#endif
 }

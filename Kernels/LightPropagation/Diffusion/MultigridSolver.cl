@@ -1,5 +1,6 @@
 // Conjugate gradients, preconditioned by multigrid, for the diffusion system (MultigridSolver.h). The host gives
-//   REAL_WIDTH  4 or 8 floats of a vector
+//   REAL_WIDTH  4 or 8 floats of a vector; 1: by voxels, on a GPU
+//   GROUP       GroupSum.cl; on a GPU at least as many as the coarsest level has voxels
 //   DOUBLES     1 where the device has double precision
 //
 // Each kernel walks along rows (MultigridRows.cl). Vectors are float: multigrid only has to point in about the right
@@ -9,6 +10,12 @@
 #include "LightPropagation/Diffusion/MultigridRows.cl"
 #include "Numerics/Exact.cl"
 
+#if REAL_WIDTH == 1
+typedef exact exact_real;
+#define to_exact_real
+#define load_exact(index, pointer) ((pointer)[index])
+#define store_exact(value, index, pointer) ((pointer)[index] = (value))
+#else
 #if DOUBLES
 typedef TYNDALL_JOIN(double, REAL_WIDTH) exact_real;
 #define to_exact_real TYNDALL_JOIN(convert_double, REAL_WIDTH)
@@ -19,10 +26,13 @@ typedef real exact_real;
 typedef exact_real __attribute__((aligned(4))) exact_anywhere;
 #define load_exact(index, pointer) (*(const __global exact_anywhere*)((pointer) + (index)))
 #define store_exact(value, index, pointer) (*(__global exact_anywhere*)((pointer) + (index)) = (value))
+#endif
 
 inline exact sum_of_exact(exact_real values)
 {
-#if REAL_WIDTH == 4
+#if REAL_WIDTH == 1
+  return values;
+#elif REAL_WIDTH == 4
   return (values.s0 + values.s1) + (values.s2 + values.s3);
 #else
   return ((values.s0 + values.s1) + (values.s2 + values.s3)) + ((values.s4 + values.s5) + (values.s6 + values.s7));
@@ -37,7 +47,7 @@ __kernel void level_invert(MultigridLevel level, const __global float* conductan
   {
     const int y = r % level.size[1], z = r / level.size[1];
     const matrix_row row = find_matrix_row(&level, y, z, conductance, loss, inverse);
-    for (int x = 0; x < level.size[0]; x += REAL_WIDTH)
+    FOR_VECTORS(x, 0, level.size[0])
     {
       const real diagonal = diagonal_of(&row, x);
       const real value = select((real)0.0f, (real)damping / diagonal, diagonal > (real)0.0f);
@@ -86,7 +96,7 @@ __kernel void level_coarsen(MultigridLevel fine, MultigridLevel coarse, const __
   {
     const int y = r % coarse.size[1], z = r / coarse.size[1];
     const int here = row_at(&coarse, y, z);
-    for (int x = 0; x < coarse.size[0]; x += REAL_WIDTH)
+    FOR_VECTORS(x, 0, coarse.size[0])
     {
       coarse_entries sum = { (real)0.0f, { (real)0.0f, (real)0.0f, (real)0.0f } };
       for (int c = 0; c <= fine.halved[2]; ++c)
@@ -107,7 +117,7 @@ __kernel void level_coarsen(MultigridLevel fine, MultigridLevel coarse, const __
         store_real(sum.passes[axis] * part, x, coarse_conductance + axis * coarse.floats + here);
       }
     }
-    fill_ghosts(coarse_conductance + here, coarse.size[0]);
+    FILL_GHOSTS(coarse_conductance + here, coarse.size[0]);
   }
 }
 
@@ -130,7 +140,7 @@ static float residual_at(
 }
 
 // The residual of `values`, per unit, in the place of the right-hand side, and Jacobi's first guess for it.
-// sums  [work-item] of its square
+// sums  [work-group] of its square
 __kernel void begin_residual(MultigridLevel level, const __global float* conductance, const __global float* loss,
   const __global float* inverse, const __global exact* values, float per_unit, __global float* right,
   __global float* guess, __global exact* sums)
@@ -140,7 +150,7 @@ __kernel void begin_residual(MultigridLevel level, const __global float* conduct
   {
     const int y = r % level.size[1], z = r / level.size[1], here = row_at(&level, y, z);
     const matrix_row row = find_matrix_row(&level, y, z, conductance, loss, guess);
-    for (int x = 0; x < level.size[0]; ++x)
+    FOR_VOXELS(x, 0, level.size[0])
     {
       const float left = residual_at(&level, &row, values, x, y, z, right[here + x]) * per_unit;
       right[here + x] = left;
@@ -151,9 +161,9 @@ __kernel void begin_residual(MultigridLevel level, const __global float* conduct
     {
       right[here + x] = 0.0f; // a ghost, perhaps
     }
-    fill_ghosts(guess + here, level.size[0]);
+    FILL_GHOSTS(guess + here, level.size[0]);
   }
-  sums[get_global_id(0)] = sum;
+  PUT_SUM_OF_GROUP(exact, sum, sums[get_group_id(0)])
 }
 
 // What is left of a level's right-hand side, summed over the fine voxels of each coarse one, and Jacobi's first guess
@@ -182,7 +192,7 @@ __kernel void level_restrict(MultigridLevel fine, MultigridLevel coarse, const _
         }
         const matrix_row row = find_matrix_row(&fine, v, w, conductance, loss, values);
         const __global float* fine_right = right + row_at(&fine, v, w);
-        for (int x = 0; x < coarse.size[0]; x += REAL_WIDTH)
+        FOR_VECTORS(x, 0, coarse.size[0])
         {
           const int u = x << fine.halved[0];
           real left = left_of_row(&fine, &row, fine_right, u);
@@ -194,11 +204,11 @@ __kernel void level_restrict(MultigridLevel fine, MultigridLevel coarse, const _
         }
       }
     }
-    for (int x = 0; x < coarse.size[0]; x += REAL_WIDTH)
+    FOR_VECTORS(x, 0, coarse.size[0])
     {
       store_real(load_real(x, coarse_right + here) * load_real(x, coarse_inverse + here), x, coarse_values + here);
     }
-    fill_ghosts(coarse_values + here, coarse.size[0]);
+    FILL_GHOSTS(coarse_values + here, coarse.size[0]);
   }
 }
 
@@ -211,6 +221,9 @@ __kernel void level_prolong(
     const int y = r % fine.size[1], z = r / fine.size[1];
     const __global float* from = correction + row_at(&coarse, y >> fine.halved[1], z >> fine.halved[2]);
     __global float* to = values + row_at(&fine, y, z);
+#if REAL_WIDTH == 1
+    to[own_x] += from[own_x >> fine.halved[0]];
+#else
     if (fine.halved[0])
     {
       for (int x = 0; 2 * x < fine.size[0]; x += REAL_WIDTH)
@@ -231,17 +244,18 @@ __kernel void level_prolong(
     }
     else
     {
-      for (int x = 0; x < fine.size[0]; x += REAL_WIDTH)
+      FOR_VECTORS(x, 0, fine.size[0])
       {
         store_real(load_real(x, to) + load_real(x, from), x, to);
       }
     }
-    fill_ghosts(to, fine.size[0]);
+#endif
+    FILL_GHOSTS(to, fine.size[0]);
   }
 }
 
 // A step of Jacobi's method.
-// sums  [work-item] of right times better
+// sums  [work-group] of right times better
 __kernel void level_smooth(MultigridLevel level, const __global float* conductance, const __global float* loss,
   const __global float* inverse, const __global float* right, const __global float* values, __global float* better,
   __global exact* sums)
@@ -252,7 +266,7 @@ __kernel void level_smooth(MultigridLevel level, const __global float* conductan
     const int y = r % level.size[1], z = r / level.size[1], here = row_at(&level, y, z);
     const matrix_row row = find_matrix_row(&level, y, z, conductance, loss, values);
     exact_real of_row = (exact_real)0;
-    for (int x = 0; x < level.size[0]; x += REAL_WIDTH)
+    FOR_VECTORS(x, 0, level.size[0])
     {
       const real b = load_real(x, right + here);
       const real value =
@@ -260,10 +274,10 @@ __kernel void level_smooth(MultigridLevel level, const __global float* conductan
       of_row += to_exact_real(b) * to_exact_real(value);
       store_real(value, x, better + here);
     }
-    fill_ghosts(better + here, level.size[0]);
+    FILL_GHOSTS(better + here, level.size[0]);
     sum += sum_of_exact(of_row);
   }
-  sums[get_global_id(0)] = sum;
+  PUT_SUM_OF_GROUP(exact, sum, sums[get_group_id(0)])
 }
 
 // Between two visits of a level: a part of what the first one found is kept, and what is left of the right-hand side
@@ -276,7 +290,7 @@ __kernel void level_revisit(MultigridLevel level, const __global float* conducta
   {
     const int y = r % level.size[1], z = r / level.size[1], here = row_at(&level, y, z);
     const matrix_row row = find_matrix_row(&level, y, z, conductance, loss, found);
-    for (int x = 0; x < level.size[0]; x += REAL_WIDTH)
+    FOR_VECTORS(x, 0, level.size[0])
     {
       const real left =
         in_row(multiply_add(apply_row(&row, x), (real)-part, load_real(x, right + here)), level.size[0] - x);
@@ -284,7 +298,7 @@ __kernel void level_revisit(MultigridLevel level, const __global float* conducta
       store_real(left, x, right + here);
       store_real(left * load_real(x, inverse + here), x, guess + here);
     }
-    fill_ghosts(guess + here, level.size[0]);
+    FILL_GHOSTS(guess + here, level.size[0]);
   }
 }
 
@@ -294,24 +308,23 @@ __kernel void level_join(MultigridLevel level, const __global float* kept, float
   FOR_ROWS(level)
   {
     const int here = row_at(&level, r % level.size[1], r / level.size[1]);
-    for (int x = 0; x < level.size[0]; x += REAL_WIDTH)
+    FOR_VECTORS(x, 0, level.size[0])
     {
       store_real(multiply_add(load_real(x, found + here), (real)part, load_real(x, kept + here)), x, found + here);
     }
-    fill_ghosts(found + here, level.size[0]);
+    FILL_GHOSTS(found + here, level.size[0]);
   }
 }
 
-// A few voxels: Gauss and Seidel there and back, by one work-item.
-// sums  of right times values
-__kernel void level_finish(MultigridLevel level, const __global float* conductance, const __global float* loss,
-  const __global float* right, __global float* values, __global exact* sums, int rounds)
+// A few voxels: Gauss and Seidel there and back. @return the sum of right times values
+static exact finish(const MultigridLevel* level, const __global float* conductance, const __global float* loss,
+  const __global float* right, __global float* values, int rounds)
 {
-  const int* n = level.size;
+  const int* n = level->size;
   const int count = n[0] * n[1] * n[2];
   for (int i = 0; i < n[1] * n[2]; ++i)
   {
-    __global float* row = values + row_at(&level, i % n[1], i / n[1]);
+    __global float* row = values + row_at(level, i % n[1], i / n[1]);
     for (int x = -1; x <= n[0]; ++x)
     {
       row[x] = 0.0f;
@@ -323,8 +336,8 @@ __kernel void level_finish(MultigridLevel level, const __global float* conductan
     for (int k = 0; k < count; ++k)
     {
       const int i = round & 1 ? count - 1 - k : k;
-      const int x = i % n[0], y = i / n[0] % n[1], z = i / (n[0] * n[1]), here = row_at(&level, y, z);
-      const matrix_row row = find_matrix_row(&level, y, z, conductance, loss, values);
+      const int x = i % n[0], y = i / n[0] % n[1], z = i / (n[0] * n[1]), here = row_at(level, y, z);
+      const matrix_row row = find_matrix_row(level, y, z, conductance, loss, values);
       const float in_x = row.passes_x[x] * row.own[x - 1] + row.passes_x[x + 1] * row.own[x + 1];
       const float in_y = row.passes_y[x] * row.low_y[x] + row.passes_high_y[x] * row.high_y[x];
       const float in_z = row.passes_z[x] * row.low_z[x] + row.passes_high_z[x] * row.high_z[x];
@@ -336,7 +349,57 @@ __kernel void level_finish(MultigridLevel level, const __global float* conductan
       sum += round == 2 * rounds - 1 ? (exact)right[here + x] * values[here + x] : 0;
     }
   }
-  sums[0] = sum;
+  return sum;
+}
+
+// By one work-item.
+// sums  of right times values
+__kernel void level_finish(MultigridLevel level, const __global float* conductance, const __global float* loss,
+  const __global float* right, __global float* values, __global exact* sums, int rounds)
+{
+  sums[0] = finish(&level, conductance, loss, right, values, rounds);
+}
+
+// What level_finish makes of it is linear in the right-hand side. On a GPU, where one work-item takes half a
+// millisecond, it is kept as a matrix. A work-item a voxel, whose right-hand side is 1.
+// rights, values  [voxel] an array of the level; rights are 0
+// answers         [voxel][voxel]
+__kernel void level_answers(MultigridLevel level, const __global float* conductance, const __global float* loss,
+  __global float* rights, __global float* values, __global float* answers, int rounds)
+{
+  const int* n = level.size;
+  const int of = get_global_id(0), count = n[0] * n[1] * n[2];
+  rights += of * level.floats;
+  values += of * level.floats;
+  rights[row_at(&level, of / n[0] % n[1], of / (n[0] * n[1])) + of % n[0]] = 1.0f;
+  finish(&level, conductance, loss, rights, values, rounds);
+  for (int i = 0; i < count; ++i)
+  {
+    answers[of * count + i] = values[row_at(&level, i / n[0] % n[1], i / (n[0] * n[1])) + i % n[0]];
+  }
+}
+
+// level_finish by that matrix and one work-group.
+// sums  of right times values
+__kernel void level_answer(MultigridLevel level, const __global float* answers, const __global float* right,
+  __global float* values, __global exact* sums)
+{
+  const int* n = level.size;
+  const int own = get_global_id(0), count = n[0] * n[1] * n[2];
+  exact sum = 0;
+  if (own < count)
+  {
+    float value = 0.0f;
+    for (int i = 0; i < count; ++i)
+    {
+      value += right[row_at(&level, i / n[0] % n[1], i / (n[0] * n[1])) + i % n[0]] * answers[i * count + own];
+    }
+    const int here = row_at(&level, own / n[0] % n[1], own / (n[0] * n[1])), x = own % n[0];
+    values[here + x] = value;
+    fill_ghosts_of(values + here, n[0], x);
+    sum = (exact)right[here + x] * value;
+  }
+  PUT_SUM_OF_GROUP(exact, sum, sums[0])
 }
 
 // p = z + part p
@@ -346,17 +409,17 @@ __kernel void turn_direction(
   FOR_ROWS(level)
   {
     const int here = row_at(&level, r % level.size[1], r / level.size[1]);
-    for (int x = 0; x < level.size[0]; x += REAL_WIDTH)
+    FOR_VECTORS(x, 0, level.size[0])
     {
       store_real(multiply_add(load_real(x, direction + here), (real)part, load_real(x, preconditioned + here)), x,
         direction + here);
     }
-    fill_ghosts(direction + here, level.size[0]);
+    FILL_GHOSTS(direction + here, level.size[0]);
   }
 }
 
 // q = A p
-// sums  [work-item] of p q
+// sums  [work-group] of p q
 __kernel void apply_matrix(MultigridLevel level, const __global float* conductance, const __global float* loss,
   const __global float* direction, __global float* applied, __global exact* sums)
 {
@@ -366,7 +429,7 @@ __kernel void apply_matrix(MultigridLevel level, const __global float* conductan
     const int y = r % level.size[1], z = r / level.size[1], here = row_at(&level, y, z);
     const matrix_row row = find_matrix_row(&level, y, z, conductance, loss, direction);
     exact_real of_row = (exact_real)0;
-    for (int x = 0; x < level.size[0]; x += REAL_WIDTH)
+    FOR_VECTORS(x, 0, level.size[0])
     {
       const real q = in_row(apply_row(&row, x), level.size[0] - x);
       of_row += to_exact_real(q) * to_exact_real(load_real(x, direction + here));
@@ -374,12 +437,12 @@ __kernel void apply_matrix(MultigridLevel level, const __global float* conductan
     }
     sum += sum_of_exact(of_row);
   }
-  sums[get_global_id(0)] = sum;
+  PUT_SUM_OF_GROUP(exact, sum, sums[get_group_id(0)])
 }
 
 // x += step p, r -= step q, and Jacobi's first guess for what is left.
 // values  by voxels, without ghosts; in units of the solver times `step_of_values` over `step`
-// sums    [work-item] of r r
+// sums    [work-group] of r r
 __kernel void go_along(MultigridLevel level, const __global float* direction, const __global float* applied,
   const __global float* inverse, float step, exact step_of_values, __global float* left, __global float* guess,
   __global exact* values, __global exact* sums)
@@ -390,7 +453,7 @@ __kernel void go_along(MultigridLevel level, const __global float* direction, co
     const int y = r % level.size[1], z = r / level.size[1], here = row_at(&level, y, z), n = level.size[0];
     __global exact* of_voxels = values + ((ulong)z * level.size[1] + y) * n;
     exact_real of_row = (exact_real)0;
-    for (int x = 0; x < n; x += REAL_WIDTH)
+    FOR_VECTORS(x, 0, n)
     {
       const real residual = multiply_add(load_real(x, applied + here), (real)-step, load_real(x, left + here));
       store_real(residual, x, left + here);
@@ -409,8 +472,8 @@ __kernel void go_along(MultigridLevel level, const __global float* direction, co
         }
       }
     }
-    fill_ghosts(guess + here, n);
+    FILL_GHOSTS(guess + here, n);
     sum += sum_of_exact(of_row);
   }
-  sums[get_global_id(0)] = sum;
+  PUT_SUM_OF_GROUP(exact, sum, sums[get_group_id(0)])
 }

@@ -13,6 +13,13 @@
 
 namespace tyndall
 {
+namespace
+{
+/// On a GPU: work-items that keep the largest of them busy; each then takes several voxels, and the host adds up no more
+/// sums.
+constexpr std::size_t GroupsAtMost = 4096;
+}
+
 MultigridSolver::MultigridSolver(Device& device, const std::array<int, 3>& size, const std::array<double, 3>& spacing)
   : TheDevice(device)
 {
@@ -36,22 +43,32 @@ MultigridSolver::MultigridSolver(Device& device, const std::array<int, 3>& size,
   }
   this->Direction = Buffer<float>(device, static_cast<std::size_t>(this->Rows().floats), what);
   this->Direction.Fill(0.0f);
-  std::size_t items = 1;
+  std::size_t groups = 1;
   for (const Level& level : this->Levels)
   {
-    items = std::max(items, ItemsOf(level.layout));
+    groups = std::max(groups, GroupsOf(device, level.layout));
   }
-  this->Sums = ExactValues(device, items, "sums");
+  this->Sums = ExactValues(device, groups, "sums");
 }
 
-std::size_t MultigridSolver::ItemsOf(const MultigridLevel& level)
+std::string MultigridSolver::RowOptions(const Device& device)
 {
-  return PartsOf<std::size_t>(static_cast<std::size_t>(level.size[1]) * level.size[2], level.together);
+  return Define("REAL_WIDTH", device.KernelWidth(4, RowVector)) + SummingOption(device);
+}
+
+std::size_t MultigridSolver::GroupsOf(const Device& device, const MultigridLevel& level)
+{
+  const std::size_t rows = static_cast<std::size_t>(level.size[1]) * level.size[2];
+  if (device.IsCpu())
+  {
+    return PartsOf<std::size_t>(rows, level.together);
+  }
+  return std::min<std::size_t>(PartsOf<std::size_t>(rows * level.size[0], SummingGroup(device)), GroupsAtMost);
 }
 
 void MultigridSolver::RunRows(Device& device, cl::Kernel& kernel, const MultigridLevel& level)
 {
-  device.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(ItemsOf(level)), GroupOfLargeItems(device));
+  RunSummingGroups(device, kernel, GroupsOf(device, level));
 }
 
 std::array<const Buffer<float>*, 3> MultigridSolver::Scratch() const
@@ -61,8 +78,8 @@ std::array<const Buffer<float>*, 3> MultigridSolver::Scratch() const
 
 cl::Kernel MultigridSolver::Kernel(const char* name) const
 {
-  return this->TheDevice.Kernel(name, kernel_source::MultigridSolver,
-    Define("REAL_WIDTH", this->TheDevice.KernelWidth(4, RowVector, 4)) + ExactOption(this->TheDevice));
+  return this->TheDevice.Kernel(
+    name, kernel_source::MultigridSolver, RowOptions(this->TheDevice) + ExactOption(this->TheDevice));
 }
 
 void MultigridSolver::Coarsen()
@@ -81,6 +98,43 @@ void MultigridSolver::Coarsen()
     With(invert, level.layout, level.conductance, level.loss, level.inverse, Damping);
     this->Run(invert, level);
   }
+  if (!this->TheDevice.IsCpu())
+  {
+    this->FindAnswers();
+  }
+}
+
+/// What the coarsest level makes of a 1 in each of its voxels.
+void MultigridSolver::FindAnswers()
+{
+  const Level& level = this->Levels.back();
+  const int* n = level.layout.size;
+  const std::size_t voxels = static_cast<std::size_t>(n[0]) * n[1] * n[2];
+  const std::size_t floats = voxels * level.layout.floats;
+  const char* what = "the diffusion system";
+  Buffer<float> rights(this->TheDevice, floats, what), values(this->TheDevice, floats, what);
+  rights.Fill(0.0f);
+  this->Answers = Buffer<float>(this->TheDevice, voxels * voxels, what);
+  cl::Kernel kernel = this->Kernel("level_answers");
+  With(kernel, level.layout, level.conductance, level.loss, rights, values, this->Answers, cl_int(FinishRounds));
+  this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(voxels), cl::NullRange);
+  this->TheDevice.Finish();
+}
+
+/// Of the coarsest level, from its right-hand side to `better`.
+void MultigridSolver::Finish(Level& level)
+{
+  if (this->Answers.Size() == 0)
+  {
+    cl::Kernel finish = this->Kernel("level_finish");
+    With(finish, level.layout, level.conductance, level.loss, level.right, level.better, this->Sums.Handle(),
+      cl_int(FinishRounds));
+    this->TheDevice.Queue().enqueueNDRangeKernel(finish, cl::NullRange, cl::NDRange(1), cl::NDRange(1));
+    return;
+  }
+  cl::Kernel answer = this->Kernel("level_answer");
+  With(answer, level.layout, this->Answers, level.right, level.better, this->Sums.Handle());
+  RunSummingGroups(this->TheDevice, answer, 1);
 }
 
 /// From a level's right-hand side and first guess to those of the next one.
@@ -109,7 +163,7 @@ void MultigridSolver::Correct(Level& fine, const Level& coarse)
 double MultigridSolver::Precondition()
 {
   this->Visit(0);
-  return this->SumOfItems();
+  return this->SumOfGroups();
 }
 
 /// From a level's right-hand side and first guess to `better`. Jacobi's first guess on the way down and a step of his
@@ -119,10 +173,7 @@ void MultigridSolver::Visit(std::size_t l)
   Level& level = this->Levels[l];
   if (l + 1 == this->Levels.size())
   {
-    cl::Kernel finish = this->Kernel("level_finish");
-    With(finish, level.layout, level.conductance, level.loss, level.right, level.better, this->Sums.Handle(),
-      cl_int(FinishRounds));
-    this->TheDevice.Queue().enqueueNDRangeKernel(finish, cl::NullRange, cl::NDRange(1), cl::NDRange(1));
+    this->Finish(level);
     return;
   }
   this->Restrict(level, this->Levels[l + 1]);
@@ -152,13 +203,13 @@ void MultigridSolver::VisitTwice(std::size_t l)
   this->Run(join, level);
 }
 
-/// Of what the finest level's work-items have summed up.
-double MultigridSolver::SumOfItems() const
+/// Of what the finest level's work-groups have summed up.
+double MultigridSolver::SumOfGroups() const
 {
   const std::vector<double> values = this->Sums.Read();
-  const std::size_t items = ItemsOf(this->Rows());
+  const std::size_t groups = GroupsOf(this->TheDevice, this->Rows());
   double sum = 0.0;
-  for (std::size_t i = 0; i < items; ++i)
+  for (std::size_t i = 0; i < groups; ++i)
   {
     sum += values[i];
   }
@@ -174,7 +225,7 @@ double MultigridSolver::Begin(const ExactValues& values, double unit)
     static_cast<float>(1.0 / unit), finest.right, finest.guess, this->Sums.Handle());
   this->Run(kernel, finest);
   this->Direction.Fill(0.0f);
-  return this->SumOfItems();
+  return this->SumOfGroups();
 }
 
 /// The next direction: the preconditioned residual and `part` of the last direction.
@@ -193,7 +244,7 @@ double MultigridSolver::Curvature()
   cl::Kernel kernel = this->Kernel("apply_matrix");
   With(kernel, finest.layout, finest.conductance, finest.loss, this->Direction, finest.better, this->Sums.Handle());
   this->Run(kernel, finest);
-  return this->SumOfItems();
+  return this->SumOfGroups();
 }
 
 /// Goes so far along the direction. @return the square of what is left, in units
@@ -205,7 +256,7 @@ double MultigridSolver::Step(const ExactValues& values, double length, double un
   SetExact(this->TheDevice, kernel, 5, length * unit);
   SetFrom(kernel, 6, finest.right, finest.guess, values.Handle(), this->Sums.Handle());
   this->Run(kernel, finest);
-  return this->SumOfItems();
+  return this->SumOfGroups();
 }
 
 int MultigridSolver::Solve(const ExactValues& values, double unit, double reduction, double leftAtMost)

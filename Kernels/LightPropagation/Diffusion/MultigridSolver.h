@@ -5,6 +5,7 @@
 
 #include <array>
 #include <limits>
+#include <string>
 #include <vector>
 
 namespace tyndall
@@ -48,10 +49,12 @@ public:
   /// The same of what the last Solve left, where neither matrix nor right-hand side nor values were written since.
   int GoOn(const ExactValues& values, double unit, double reduction, double leftAtMost);
 
-  /// Work-items that walk along a level's rows.
-  static std::size_t ItemsOf(const MultigridLevel& level);
-  /// Runs a kernel that walks along the rows of a level.
+  /// Options of kernels that walk along rows (MultigridRows.cl).
+  static std::string RowOptions(const Device& device);
+  /// Runs one.
   static void RunRows(Device& device, cl::Kernel& kernel, const MultigridLevel& level);
+  /// Groups that it runs in: sums that it leaves.
+  static std::size_t GroupsOf(const Device& device, const MultigridLevel& level);
 
 private:
   struct Level
@@ -61,6 +64,9 @@ private:
     /// `kept`: of the first of two visits; empty where there is one.
     Buffer<float> conductance, loss, inverse, right, guess, better, kept;
   };
+
+  void FindAnswers();
+  void Finish(Level& level);
 
   cl::Kernel Kernel(const char* name) const;
   void Run(cl::Kernel& kernel, const Level& level) { RunRows(this->TheDevice, kernel, level.layout); }
@@ -74,11 +80,12 @@ private:
   void Turn(double part);
   double Curvature();
   double Step(const ExactValues& values, double length, double unit);
-  double SumOfItems() const;
+  double SumOfGroups() const;
 
   Device& TheDevice;
   std::vector<Level> Levels;
   Buffer<float> Direction;
+  Buffer<float> Answers; ///< of the coarsest level, where that is quicker (level_answers); else empty
   ExactValues Sums;
   double FirstResidual = 0.0; ///< of the first solve, in units
 };

@@ -6,6 +6,6 @@
 SHARED_BEGIN
 enum
 {
-  CollectChunk = 4096 ///< voxels that a work-item sums up in float before the host adds the sums in double
+  CollectChunk = 4096 ///< voxels that a work-group sums up in float before the host adds the sums in double
 };
 SHARED_END

@@ -1,16 +1,18 @@
 // From light that was found to what is scattered of it (Gruson et al., Eq. 4, conservative). The host gives
 //   REAL_WIDTH  4 or 8 floats of a vector
+//   GROUP       work-items that take a chunk together (GroupSum.cl)
 //   DOUBLES     1 where the device has double precision
 //   SCATTERS    0: sigma_s is zero; `scatter_order` does not read it and writes no source. The other kernels are for
 //               media that scatter.
 
 #include "LightPropagation/Scattering/CollectShared.h"
 #include "Numerics/Exact.cl"
+#include "Numerics/GroupSum.cl"
 #include "Numerics/Numerics.cl"
 
 #define ADDED_UP 32 // vectors
 
-// One order: what the sweep gathered becomes light and the next source. A work-item a chunk of a channel; a channel's
+// One order: what the sweep gathered becomes light and the next source. A work-group a chunk of a channel; a channel's
 // arrays begin at a vector's border and are filled up with zeros to a whole number of vectors.
 // path     W length; cleared
 // fluence  W / length^2, added to
@@ -22,8 +24,8 @@ __kernel void scatter_order(__global float* path, __global float* fluence, __glo
   ulong last, int one_sigma_t, float per_volume)
 {
   const ulong channel = get_global_id(1);
-  const ulong begin = first + get_global_id(0) * CollectChunk;
-  const ulong end = min(last, begin + CollectChunk);
+  const ulong begin = first + get_group_id(0) * CollectChunk;
+  const ulong end = min(last, begin + CollectChunk), step = STEP_IN_CHUNK(REAL_WIDTH);
   path += channel * stride;
   fluence += channel * stride;
   source += channel * stride;
@@ -31,11 +33,11 @@ __kernel void scatter_order(__global float* path, __global float* fluence, __glo
   sigma_t += one_sigma_t ? 0 : channel * stride;
   real absorbed = (real)0.0f, scattered = (real)0.0f;
   // In two steps: floats lose digits where as many are added up one by one as a chunk has.
-  for (ulong part = begin; part < end; part += ADDED_UP * REAL_WIDTH)
+  for (ulong part = begin + FIRST_IN_CHUNK(REAL_WIDTH); part < end; part += ADDED_UP * step)
   {
     real absorbed_of_part = (real)0.0f, scattered_of_part = (real)0.0f;
-    const ulong end_of_part = min(end, part + ADDED_UP * REAL_WIDTH);
-    for (ulong i = part; i < end_of_part; i += REAL_WIDTH)
+    const ulong end_of_part = min(end, part + ADDED_UP * step);
+    for (ulong i = part; i < end_of_part; i += step)
     {
       const real p = load_real(i, path);
 #if SCATTERS
@@ -55,7 +57,8 @@ __kernel void scatter_order(__global float* path, __global float* fluence, __glo
     absorbed += absorbed_of_part;
     scattered += scattered_of_part;
   }
-  tally[channel * get_global_size(0) + get_global_id(0)] = (float2)(sum_of(absorbed), sum_of(scattered));
+  const float2 sum = (float2)(sum_of(absorbed), sum_of(scattered));
+  PUT_SUM_OF_GROUP(float2, sum, tally[channel * get_num_groups(0) + get_group_id(0)])
 }
 
 // All that was scattered but what the last order left over: from that, in `source`, and the fluence of all orders. A

@@ -22,7 +22,8 @@ cl::Kernel IsotropicScattering::Kernel(const char* name) const
 {
   const int vector = this->TheDevice.KernelWidth(4, 8, 4);
   return this->TheDevice.Kernel(name, kernel_source::IsotropicScattering,
-    Define("REAL_WIDTH", vector) + Define("SCATTERS", this->Scatters) + ExactOption(this->TheDevice));
+    Define("REAL_WIDTH", vector) + Define("SCATTERS", this->Scatters) + SummingOption(this->TheDevice) +
+      ExactOption(this->TheDevice));
 }
 
 ScatteringOperator::Powers IsotropicScattering::ScatterOrder(const Deposit& swept, const Buffer<float>& fluence,
@@ -36,8 +37,7 @@ ScatteringOperator::Powers IsotropicScattering::ScatterOrder(const Deposit& swep
   With(kernel, *swept.path, fluence, source, this->TheMedium.SigmaT(), this->TheMedium.SigmaS(), tally,
     cl_ulong(this->Layout.Stride()), cl_ulong(begin), cl_ulong(end), cl_int(this->Layout.sharedExtinction),
     this->PerVolume());
-  this->TheDevice.Queue().enqueueNDRangeKernel(
-    kernel, cl::NullRange, cl::NDRange(chunks, channels), GroupOfLargeItems(this->TheDevice, 2));
+  RunSummingGroups(this->TheDevice, kernel, chunks, channels);
   Powers powers;
   const std::vector<cl_float2> sums = tally.Read();
   for (std::size_t i = 0; i < sums.size(); ++i)

@@ -25,6 +25,7 @@
 
 #include "Numerics/FixedPoint.cl"
 #include "Numerics/Numerics.cl"
+#include "Numerics/Prefetch.cl"
 #include "Photons/Marching/PhotonLanes.cl"
 #include "Photons/Marching/PhotonSteps.cl"
 #include "Refraction/Index/SquaredIndex.cl"
@@ -198,23 +199,21 @@ static void deposit_all(const march_arrays* arrays, const photon_lanes* lanes, c
 }
 
 // Most of the time of a march across a large grid is spent on memory. It is prefetched a few voxels ahead of the
-// photons, as far as they go straight on, where the compiler has a builtin for that. Bricks are small enough without.
+// photons, as far as they go straight on. Bricks are small enough without.
 static void ask_ahead(const march_arrays* arrays, const photon_lanes* lanes, integer at)
 {
-#if REAL_WIDTH > 1 && !BRICKS && defined(__has_builtin)
-#if __has_builtin(__builtin_prefetch)
+#if REAL_WIDTH > 1 && !BRICKS
   const integer there = at + INTEGERS(lanes->ahead);
 #if CELLS // few, whose sums are near already
-#define ASK_FOR_RECORD(lane) __builtin_prefetch((const void*)(uintptr_t)(arrays->cells + (long)there lane), 0);
+#define ASK_FOR_RECORD(lane) PREFETCH(arrays->cells + (long)there lane, 0, 3);
 #else
-#define ASK_FOR_RECORD(lane) __builtin_prefetch((const void*)(uintptr_t)(arrays->sums + (long)there lane * RECORD), 1);
+#define ASK_FOR_RECORD(lane) PREFETCH(arrays->sums + (long)there lane * RECORD, 1, 3);
 #endif
 #define ASK(k, lane)   \
   ASK_FOR_RECORD(lane) \
-  __builtin_prefetch((const void*)(uintptr_t)(arrays->sigma + (long)there lane), 0);
+  PREFETCH(arrays->sigma + (long)there lane, 0, 3);
   LANE_BY_LANE(ASK)
 #undef ASK
-#endif
 #endif
 }
 

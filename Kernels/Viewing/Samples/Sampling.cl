@@ -16,6 +16,7 @@
 
 #pragma once
 #include "Numerics/Numerics.cl"
+#include "Numerics/Prefetch.cl"
 #include "Viewing/Samples/SamplePlaces.cl"
 #include "Viewing/Scene/ViewShared.h"
 
@@ -239,7 +240,7 @@ __attribute__((always_inline)) inline void find_corners_in_bricks(
 }
 #endif
 
-#if REAL_WIDTH > 1 && defined(__clang__)
+#if REAL_WIDTH > 1
 // Asks for the rows of samples around a point that a packet will come to, before they are needed. May be anything.
 inline void fetch_ahead(__global const float4* samples, real3 p, int4 size)
 {
@@ -248,8 +249,12 @@ inline void fetch_ahead(__global const float4* samples, real3 p, int4 size)
   const integer j = to_integer(p.y + (real)0.5f);
   const integer k = to_integer(p.z + (real)0.5f);
   const integer at = k * slice + j * row + to_integer(p.x + (real)0.5f);
-#define ASK(place) __builtin_prefetch((const void*)(size_t)(samples + (place)))
-#define ASK_AROUND(n) ASK(LANE(at, n)), ASK(LANE(at, n) + row), ASK(LANE(at, n) + slice), ASK(LANE(at, n) + slice + row)
+#define ASK(place) PREFETCH(samples + (place), 0, 3)
+#define ASK_AROUND(n)       \
+  ASK(LANE(at, n));         \
+  ASK(LANE(at, n) + row);   \
+  ASK(LANE(at, n) + slice); \
+  ASK(LANE(at, n) + slice + row)
   ASK_AROUND(0);
   ASK_AROUND(3);
 #if REAL_WIDTH == 16

@@ -12,6 +12,7 @@
 //   BRICKED      1: samples stand by bricks
 //   SHOWN        of what ShownSamples.cl packed: only the extinction tells what is empty
 
+#include "Numerics/Prefetch.cl"
 #include "Viewing/Samples/Border.cl"
 #include "Viewing/Samples/Sampling.cl"
 #include "Viewing/Samples/VoxelChannels.cl"
@@ -75,27 +76,17 @@ inline float4 source_of(const ingredients* from, int voxel, int single, float4* 
 }
 
 #if BRICKED
-#if defined(__has_builtin)
-#if __has_builtin(__builtin_prefetch)
-#define ASK(values, place) __builtin_prefetch((const void*)(size_t)((values) + (place)))
-#endif
-#endif
-#ifndef ASK
-#define ASK(values, place)
-#endif
-
 // Rows of a brick are far from each other in memory: those of its next slice are asked for, by the ends of each row.
 static void ask_for_next_slice(const ingredients* from, int4 size, int voxel)
 {
   if (get_local_id(0) == 0 || get_local_id(0) == BrickEdge)
   {
     const size_t next = (size_t)voxel + size.x * size.y;
-    ASK(from->absorption, next * ABSORPTION);
-    ASK(from->scattering, next * SCATTERING);
-    ASK(from->fluence, next * FLUENCE);
+    PREFETCH(from->absorption + next * ABSORPTION, 0, 3);
+    PREFETCH(from->scattering + next * SCATTERING, 0, 3);
+    PREFETCH(from->fluence + next * FLUENCE, 0, 3);
   }
 }
-#undef ASK
 
 static void put_nothing(int place, __global float4* samples, __global float4* extinctions, __global float4* flow,
   __global float4* glow, __global float4* cosines)

@@ -1,4 +1,7 @@
+// The host gives GROUP, work-items that take a chunk together (GroupSum.cl).
+
 #include "LightPropagation/Scattering/CollectShared.h"
+#include "Numerics/GroupSum.cl"
 
 // What leaves the box of each voxel's light besides what left in the sweep (numerics.md, Eq. (46)).
 // extra  of a source of 1, W length
@@ -7,18 +10,18 @@ __kernel void let_escape(__global float* path, const __global float* source, con
   const __global float* sigma_t, __global float* tally, ulong stride, int one_sigma_t)
 {
   const ulong channel = get_global_id(1);
-  const ulong begin = get_global_id(0) * CollectChunk;
+  const ulong begin = get_group_id(0) * CollectChunk;
   const ulong end = min(stride, begin + CollectChunk);
   path += channel * stride;
   source += channel * stride;
   extra += channel * stride;
   sigma_t += one_sigma_t ? 0 : channel * stride;
   float sum = 0.0f;
-  for (ulong i = begin; i < end; ++i)
+  for (ulong i = begin + FIRST_IN_CHUNK(1); i < end; i += STEP_IN_CHUNK(1))
   {
     const float escapes = source[i] * extra[i];
     path[i] -= escapes;
     sum += sigma_t[i] * escapes;
   }
-  tally[channel * get_global_size(0) + get_global_id(0)] = sum;
+  PUT_SUM_OF_GROUP(float, sum, tally[channel * get_num_groups(0) + get_group_id(0)])
 }

@@ -34,13 +34,13 @@ EscapeCorrection::EscapeCorrection(Device& device, const VolumeLayout& layout, c
 Rgb EscapeCorrection::Apply(const Buffer<float>& path, const Buffer<float>& source)
 {
   const int channels = this->Layout.channels;
-  cl::Kernel kernel = this->TheDevice.Kernel("let_escape", kernel_source::EscapeCorrection);
+  cl::Kernel kernel =
+    this->TheDevice.Kernel("let_escape", kernel_source::EscapeCorrection, SummingOption(this->TheDevice));
   const std::size_t chunks = PartsOf<std::size_t>(this->Layout.Stride(), CollectChunk);
   Buffer<float> tally(this->TheDevice, chunks * channels, "sums");
   With(kernel, path, source, this->Extra, this->SigmaT, tally, cl_ulong(this->Layout.Stride()),
     cl_int(this->Layout.sharedExtinction));
-  this->TheDevice.Queue().enqueueNDRangeKernel(
-    kernel, cl::NullRange, cl::NDRange(chunks, channels), GroupOfLargeItems(this->TheDevice, 2));
+  RunSummingGroups(this->TheDevice, kernel, chunks, channels);
   Rgb escaped = {};
   const std::vector<float> sums = tally.Read();
   for (std::size_t i = 0; i < sums.size(); ++i)

@@ -26,14 +26,14 @@
 #if DEGREE
 #include "LightPropagation/Sweep/OnCpu/SweepMoments.cl"
 // A function for as many frames as the bundle has.
-#define FOR_FRAMES(FUNCTION, ...) \
-  if (bundle->frames == 2)        \
-  {                               \
-    FUNCTION(__VA_ARGS__, 2);     \
-  }                               \
-  else                            \
-  {                               \
-    FUNCTION(__VA_ARGS__, 1);     \
+#define FOR_FRAMES(FUNCTION, y, slot)                  \
+  if (bundle->frames == 2)                             \
+  {                                                    \
+    FUNCTION(state, y, slot, bundle, coefficients, 2); \
+  }                                                    \
+  else                                                 \
+  {                                                    \
+    FUNCTION(state, y, slot, bundle, coefficients, 1); \
   }
 #else
 
@@ -548,7 +548,7 @@ static void CROSS_PLANES(sweep_state* state, int planes, __global float* map, co
 #if DEGREE && SOURCE
       if (s == 0)
       {
-        FOR_FRAMES(FIND_SOURCES, state, wrapped, slot, bundle, coefficients)
+        FOR_FRAMES(FIND_SOURCES, wrapped, slot)
       }
 #endif
 #if CHAINED
@@ -562,7 +562,7 @@ static void CROSS_PLANES(sweep_state* state, int planes, __global float* map, co
 #if DEGREE
       if (inside && s == stages - 1)
       {
-        FOR_FRAMES(GATHER_MOMENTS, state, y, slot, bundle, coefficients)
+        FOR_FRAMES(GATHER_MOMENTS, y, slot)
       }
 #endif
     }

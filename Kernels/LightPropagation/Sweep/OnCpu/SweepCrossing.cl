@@ -2,6 +2,7 @@
 
 #pragma once
 #include "LightPropagation/Sweep/OnCpu/SweepLayout.cl"
+#include "Numerics/Prefetch.cl"
 
 // Of rays with power P and a source of q: path += p1 P, P' = P - sigma p1 P + power q p1, p1 = (1 - exp(-tau)) / sigma
 // (numerics.md, Eqs. (23), (24)). For small tau P' is P less what it loses, for large tau it is P times what is left:
@@ -66,15 +67,11 @@ static inline float2 signs_of(const __global BundleInfo* bundle, int m)
 // few lines at each vector of voxels: all at once they would be waited for.
 static inline __attribute__((always_inline)) void ask_for_lines(sweep_state* state)
 {
-#if defined(__has_builtin)
-#if __has_builtin(__builtin_prefetch)
   for (int i = 0; i < state->asks; ++i)
   {
-    __builtin_prefetch((const void*)(uintptr_t)(state->asked + i * FloatsOfLine), 0, 2);
+    PREFETCH(state->asked + i * FloatsOfLine, 0, 2);
   }
   state->asked += state->asks * FloatsOfLine;
-#endif
-#endif
 }
 
 // What stage g of `stages` asks for of row y of `floats` floats; y < 0: nothing.

@@ -4,7 +4,7 @@
 // read and written once a plane without anything between work-items but the launch. Each voxel is added to by its own
 // work-item alone, bundle by bundle, so sums have one order. Physics and numbers are those of SweepBundle.cl.
 //
-// The host gives CHANNELS, SOURCE, NET_FLUX, CURRENTS as SweepLayout.cl has them, and
+// The host gives CHANNELS, SOURCE, NET_FLUX, CURRENTS, OCTANT_SOURCE as SweepLayout.cl has them, and
 //   ADDS  1: lanes follow one another and add to what is there; 0: each writes arrays of its own
 
 #define REAL_WIDTH 1
@@ -32,8 +32,9 @@ typedef struct
 typedef struct
 {
   const __global SweepLane* lane;
-  const __global float* sigma;  // of the plane's voxel (0, 0)
-  const __global float* source; // the same
+  const __global float* sigma;   // of the plane's voxel (0, 0)
+  const __global float* source;  // the same
+  const __global float* octants; // the same, where OCTANT_SOURCE
   ulong stride;
   int sizeU, sizeV;
   float meanLength[MeanLengthTerms];
@@ -49,6 +50,7 @@ typedef struct
   float length[3], part[3];
   int du[3], dv[3];
   bool bothAtOnce; // moves along u and v
+  int octants[2];  // it goes between: the same but for rays that go neither way along u or v
 } member_state;
 
 static segment_effect effect_of(const plane_state* state, float sigma, float length)
@@ -93,6 +95,17 @@ static segment_effect effect_at(const plane_state* state, int u, int v, float le
   return effect_of(state, fmax(state->sigma[voxel_of(state, u, v)], state->vacuum), length);
 }
 
+// By how much more than the source a voxel shines into a member's octant.
+static float shines_more(const plane_state* state, const member_state* member, int c, long voxel)
+{
+#if OCTANT_SOURCE
+  const __global float* octants = state->octants + 8 * c * state->stride + voxel;
+  return 0.5f * (octants[member->octants[0] * state->stride] + octants[member->octants[1] * state->stride]);
+#else
+  return 0.0f;
+#endif
+}
+
 // Rays behind a segment in voxel (u, v).
 static colours behind(
   const plane_state* state, const member_state* member, int u, int v, colours before, segment_effect effect)
@@ -102,7 +115,9 @@ static colours behind(
   {
     float kept = before.power[c] * effect.keep;
 #if SOURCE
-    kept += effect.meanLength * member->power * state->source[voxel_of(state, u, v) + c * state->stride];
+    const long voxel = voxel_of(state, u, v);
+    const float shines = state->source[voxel + c * state->stride] + shines_more(state, member, c, voxel);
+    kept += effect.meanLength * member->power * shines;
 #endif
     after.power[c] = multiply_add(before.power[c], effect.change, kept);
   }
@@ -179,15 +194,16 @@ typedef struct
   float escaped[4][CHANNELS]; // through -u, +u, -v, +v
 } voxel_sums;
 
-static void put_down(voxel_sums* sums, colours rays, float meanLength, float3 along)
+// @param not_lost  of what shines besides in the voxel itself: that is not lost there
+static void put_down(voxel_sums* sums, colours rays, colours not_lost, float meanLength, float3 along)
 {
   for (int c = 0; c < CHANNELS; ++c)
   {
-    const float path = meanLength * rays.power[c];
+    const float path = meanLength * (rays.power[c] - not_lost.power[c]);
     sums->path[c] += path;
 #if NET_FLUX
-    sums->flux[c][0] = multiply_add(path, along.x, sums->flux[c][0]);
-    sums->flux[c][1] = multiply_add(path, along.y, sums->flux[c][1]);
+    sums->flux[c][0] = multiply_add(meanLength * rays.power[c], along.x, sums->flux[c][0]);
+    sums->flux[c][1] = multiply_add(meanLength * rays.power[c], along.y, sums->flux[c][1]);
     sums->flux[c][2] = multiply_add(path, along.z, sums->flux[c][2]);
 #endif
   }
@@ -253,18 +269,32 @@ static void count_currents(
 }
 #endif
 
+// Of what shines besides in a voxel itself, see put_down.
+static colours not_lost_of(const plane_state* state, const member_state* member, long voxel)
+{
+  colours more = { { 0.0f } };
+#if OCTANT_SOURCE
+  for (int c = 0; c < CHANNELS; ++c)
+  {
+    more.power[c] = shines_more(state, member, c, voxel) * member->power / fmax(state->sigma[voxel], state->vacuum);
+  }
+#endif
+  return more;
+}
+
 // One member of a bundle through voxel (u, v), and on to the next plane.
 static colours cross_voxel(const plane_state* state, voxel_sums* sums, const member_state* member, int stages,
   const segment_effect* effects, float3 along, int u, int v)
 {
   colours rays = rays_at(state, member, u, v);
+  const colours not_lost = not_lost_of(state, member, voxel_of(state, u, v));
 #if CURRENTS
   for (int c = 0; c < CHANNELS; ++c)
   {
     sums->currents[c][CurrentAxis] += rays.power[c];
   }
 #endif
-  put_down(sums, rays, effects[0].meanLength, along);
+  put_down(sums, rays, not_lost, effects[0].meanLength, along);
   rays = behind(state, member, u, v, rays, effects[0]);
   for (int s = 1; s < stages; ++s)
   {
@@ -276,15 +306,31 @@ static colours cross_voxel(const plane_state* state, voxel_sums* sums, const mem
     count_currents(state, sums, member, s, u, v, come);
 #endif
     rays = mixed(rays, come, member->part[s]);
-    put_down(sums, rays, effects[s].meanLength, along);
+    put_down(sums, rays, not_lost, effects[s].meanLength, along);
     rays = behind(state, member, u, v, rays, effects[s]);
   }
   return rays;
 }
 
-static member_state member_of(const __global BundleInfo* bundle, const __global CrossingInfo* crossing, int m)
+// The octants that rays go into that are so turned, see SweepBundle.cl.
+static void find_octants(const __global SweepLane* lane, const __global BundleInfo* bundle, int m, int* octants)
+{
+  const int u = lane->axis == 0 ? 1 : 0, v = lane->axis == 2 ? 1 : 2;
+  const bool exchanged = bundle->move[m][0] == 0;
+  const bool between_u = fabs(exchanged ? bundle->sineV : bundle->sineU) < 1e-5f;
+  const bool between_v = fabs(exchanged ? bundle->sineU : bundle->sineV) < 1e-5f;
+  octants[0] = (lane->backward ? 0 : 1 << lane->axis) + (bundle->move[m][0] + bundle->move[m][1] > 0 ? 1 << u : 0) +
+    (bundle->move[m][2] + bundle->move[m][3] > 0 ? 1 << v : 0);
+  octants[1] = octants[0] ^ ((between_u ? 1 << u : 0) + (between_v ? 1 << v : 0));
+}
+
+static member_state member_of(
+  const __global SweepLane* lane, const __global BundleInfo* bundle, const __global CrossingInfo* crossing, int m)
 {
   member_state member;
+#if OCTANT_SOURCE
+  find_octants(lane, bundle, m, member.octants);
+#endif
   member.power = bundle->power;
   member.bothAtOnce = false;
   for (int s = 0; s < 3; ++s)
@@ -328,7 +374,7 @@ static void cross_bundles(const plane_state* state, voxel_sums* sums, const __gl
     }
     for (int m = 0; m < bundle->members; ++m, ++ray)
     {
-      member_state member = member_of(bundle, crossing, m);
+      member_state member = member_of(lane, bundle, crossing, m);
       member.rays = before + ray * plane * CHANNELS;
       member.entering = entering + ray * CHANNELS;
       const float3 along = direction_of(bundle, m, lane->backward);
@@ -396,14 +442,15 @@ static void put_escaped(
 
 // sigma     1/length, [voxel]
 // source    W / (length^3 sr), [channel][stride]
+// octants   see SweepRequest::octantSource
 // path, flux, currents  as of the kernel `sweep`
 // before    the lanes' maps: rays by the voxel that they enter in this plane, W
 // after     and in the next
 // entering  [ray][channel] W of the rays that come in through u's, v's face, and where they start
 // escaped   W, see SweepLane
 __kernel void cross_plane(PlaneLaunch launch, const __global SweepLane* lanes, const __global float* sigma,
-  const __global float* source, __global float* path, __global float* flux, __global float* currents,
-  const __global float* before, __global float* after, const __global float4* entering,
+  const __global float* source, const __global float* octants, __global float* path, __global float* flux,
+  __global float* currents, const __global float* before, __global float* after, const __global float4* entering,
   const __global BundleInfo* bundles, const __global CrossingInfo* crossings, __global float* escaped)
 {
   const int u = get_global_id(0), v = get_global_id(1);
@@ -419,6 +466,7 @@ __kernel void cross_plane(PlaneLaunch launch, const __global SweepLane* lanes, c
   state.lane = lane;
   state.sigma = sigma + launch.sigmaFirst + first;
   state.source = source + launch.sourceFirst + first;
+  state.octants = octants + 8 * launch.sourceFirst + first;
   state.stride = launch.stride;
   state.sizeU = lane->planes.sizeU;
   state.sizeV = lane->planes.sizeV;

@@ -52,6 +52,7 @@ private:
   Deposit To;
   VoxelBox Box;
   bool SameBoundary;
+  const Buffer<float>* OctantSource;
   int Channels; ///< that are swept together
 
   /// One of each entry of the request's rays, that has any.
@@ -78,7 +79,7 @@ private:
 
 bool SweepOnGpu::Can(const SweepRequest& request, const std::array<bool, 3>& periodic)
 {
-  return !periodic[0] && !periodic[1] && !periodic[2] && !request.angular && !request.faceIn && !request.octantSource &&
+  return !periodic[0] && !periodic[1] && !periodic[2] && !request.angular && !request.faceIn &&
     !request.deposit.faceOut;
 }
 
@@ -90,6 +91,7 @@ SweepOnGpu::Implementation::Implementation(
   , To(request.deposit)
   , Box(request.box)
   , SameBoundary(request.sameBoundary)
+  , OctantSource(request.octantSource)
   , Channels(layout.Groups().front().count)
 {
   if (!Can(request, {}))
@@ -242,7 +244,7 @@ SweepTally SweepOnGpu::Implementation::ApplyGroup(
   }
   const std::string options = Define("CHANNELS", this->Channels) + Define("SOURCE", volume.source != nullptr) +
     Define("NET_FLUX", this->To.flux != nullptr) + Define("CURRENTS", this->To.partialCurrents != nullptr) +
-    Define("ADDS", this->Together == 1);
+    Define("OCTANT_SOURCE", this->OctantSource && volume.source) + Define("ADDS", this->Together == 1);
   cl::Kernel kernel = this->TheDevice.Kernel("cross_plane", kernel_source::SweepOnGpu, options);
   const int lanes = static_cast<int>(this->Lanes.size());
   for (int lane = 0; lane < lanes; lane += this->Together)
@@ -327,6 +329,7 @@ void SweepOnGpu::Implementation::Launch(
   const Buffer<float>& flux = !this->To.flux ? path : adds ? *this->To.flux : this->Flux;
   const Buffer<float>& currents = !this->To.partialCurrents ? path : adds ? *this->To.partialCurrents : this->Currents;
   const Buffer<float>& source = volume.source ? *volume.source : this->SigmaT; // never read where there is none
+  const Buffer<float>& octants = this->OctantSource ? *this->OctantSource : source;
   PlaneLaunch launch = {};
   launch.sigmaFirst = volume.sigma_t_first;
   launch.sourceFirst = volume.source ? volume.first : 0;
@@ -337,8 +340,9 @@ void SweepOnGpu::Implementation::Launch(
   const double seconds = SecondsPerRay * sizeU * sizeV * rays * this->Channels;
   for (launch.plane = 0; launch.plane < sizeP; ++launch.plane)
   {
-    With(kernel, launch, this->LanesThere, this->SigmaT, source, path, flux, currents, this->Maps[launch.plane % 2],
-      this->Maps[1 - launch.plane % 2], this->Entering, this->Bundles, this->Crossings, this->Escaped);
+    With(kernel, launch, this->LanesThere, this->SigmaT, source, octants, path, flux, currents,
+      this->Maps[launch.plane % 2], this->Maps[1 - launch.plane % 2], this->Entering, this->Bundles, this->Crossings,
+      this->Escaped);
     queue.enqueueNDRangeKernel(kernel, cl::NullRange, all, cl::NDRange(GroupU, GroupV, 1));
     this->TheDevice.Queued(seconds);
     Report(monitor, (launch.plane + 1.0) / sizeP);

@@ -17,8 +17,8 @@ namespace tyndall
 class SweepOnGpu : public SweepOperator
 {
 public:
-  /// Whether it can do what is asked for: no periodic axis, no angular moments, no light by cells of the faces, no
-  /// sources by octant. SweepInMemory can, on GPUs too.
+  /// Whether it can do what is asked for: no periodic axis, no angular moments, no light by cells of the faces.
+  /// SweepInMemory can, on GPUs too.
   static bool Can(const SweepRequest& request, const std::array<bool, 3>& periodic);
 
   /// Along the axes, there and back.
