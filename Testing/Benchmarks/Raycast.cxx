@@ -1,7 +1,9 @@
 // Ray casting of a lit medium, against VTK's own volume ray casters without shading, at the same step, from the same
 // cameras, in one process. Needs a display (Xvfb), but for `--alone`, which leaves VTK's out.
 //
-//   TyndallBenchRaycast [--quick] [--alone] [folder]   writes the last picture of each method there as PPM, to be looked at
+//   TyndallBenchRaycast [--quick] [--alone] [folder]
+//
+// The last picture of each method is written to the folder as PPM, to be looked at.
 
 #include "Program.h"
 

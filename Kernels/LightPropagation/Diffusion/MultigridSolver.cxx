@@ -15,8 +15,8 @@ namespace tyndall
 {
 namespace
 {
-/// On a GPU: work-items that keep the largest of them busy; each then takes several voxels, and the host adds up no more
-/// sums.
+/// On a GPU: as many keep the largest of them busy. Each work-item then takes several voxels, and the host adds up no
+/// more sums.
 constexpr std::size_t GroupsAtMost = 4096;
 }
 
