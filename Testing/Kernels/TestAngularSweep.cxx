@@ -6,12 +6,15 @@
 #include "LightPropagation/Angular/AngularBasis.h"
 #include "LightPropagation/Angular/DirectionSet.h"
 #include "LightPropagation/Problem/MediumOnDevice.h"
+#include "LightPropagation/Sweep/OnGpu/SweepOnGpu.h"
 #include "LightPropagation/Sweep/SweepInMemory.h"
 #include "Numerics/Constants.h"
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <memory>
+#include <optional>
 #include <random>
 #include <vector>
 
@@ -23,12 +26,12 @@ namespace
 struct SweepScene
 {
   SweepScene(Device& device, const Grid& grid, int channels, int degree, int perFace, int beams,
-    const std::array<bool, 3>& periodicAxes)
+    const std::array<bool, 3>& periodicAxes, int extinctions = 1)
     : theDevice(device)
-    , medium(grid, 1, 0.7f, 20261122)
+    , medium(grid, extinctions, 0.7f, 20261122)
     , set(FittedDirections(perFace))
     , basis(set, degree)
-    , layout({ grid, channels, true })
+    , layout({ grid, channels, extinctions == 1 })
     , scattering(medium.medium, 0, channels)
     , onDevice(device, medium.medium, scattering, layout, { true, false })
     , periodic(periodicAxes)
@@ -87,7 +90,9 @@ struct SweepScene
     SweepTally tally;
   };
 
-  Found Sweep(const std::vector<float>& ofSource, const std::vector<AxisBundles>& rays, const AngularValues* values)
+  /// @param ways  of SweepOnGpu; none: SweepInMemory
+  Found Sweep(const std::vector<float>& ofSource, const std::vector<AxisBundles>& rays, const AngularValues* values,
+    std::optional<SweepOnGpu::Ways> ways = {})
   {
     const int functions = values ? basis.Count() : 1;
     Buffer<float> shines(theDevice, ofSource, "source");
@@ -98,9 +103,17 @@ struct SweepScene
     SweepWorkspace workspace;
     SweepRequest request = { { &path, nullptr, &currents, nullptr }, rays };
     request.angular = values;
-    SweepInMemory sweep(theDevice, layout, onDevice.SigmaT(), periodic, request, workspace);
+    std::unique_ptr<SweepOperator> sweep;
+    if (ways)
+    {
+      sweep = std::make_unique<SweepOnGpu>(theDevice, layout, onDevice.SigmaT(), request, *ways);
+    }
+    else
+    {
+      sweep = std::make_unique<SweepInMemory>(theDevice, layout, onDevice.SigmaT(), periodic, request, workspace);
+    }
     const SweepBoundary boundary = [this](int d, int face) { return Rgb{ 1.0 + 0.1 * face, 0.5, 0.01 * (d % 7) }; };
-    const SweepTally tally = sweep.Apply(&shines, boundary, {});
+    const SweepTally tally = sweep->Apply(&shines, boundary, {});
     return { this->OfVoxels(path.Read(), functions), currents.Read(), tally };
   }
 
@@ -191,16 +204,32 @@ protected:
   void ExpectSameAsOneByOne(SweepScene& scene)
   {
     const auto all = [](int) { return true; };
-    const SweepScene::Found found = scene.Sweep(scene.source, scene.Rays(all), &scene.angular);
+    const std::vector<AxisBundles> rays = scene.Rays(all);
     const SweepScene::Found expected = scene.SweepOneByOne();
-    EXPECT_LT(RelativeRmse(found.path, expected.path), 2e-6);
-    EXPECT_LT(RelativeRmse(found.currents, expected.currents), 2e-6);
+    ExpectSame(scene.Sweep(scene.source, rays, &scene.angular), expected, scene.layout.channels, "for CPUs");
+    const auto& around = scene.periodic;
+    for (const auto ways : { SweepOnGpu::Ways::Automatic, SweepOnGpu::Ways::OneByOne })
+    {
+      if (!around[0] && !around[1] && !around[2])
+      {
+        const SweepScene::Found found = scene.Sweep(scene.source, rays, &scene.angular, ways);
+        ExpectSame(found, expected, scene.layout.channels,
+          ways == SweepOnGpu::Ways::OneByOne ? "for GPUs, way by way" : "for GPUs, all ways at once");
+      }
+    }
+  }
+
+  static void ExpectSame(
+    const SweepScene::Found& found, const SweepScene::Found& expected, int channels, const char* what)
+  {
+    EXPECT_LT(RelativeRmse(found.path, expected.path), 2e-6) << what;
+    EXPECT_LT(RelativeRmse(found.currents, expected.currents), 2e-6) << what;
     for (int face = 0; face < 6; ++face)
     {
-      for (int c = 0; c < scene.layout.channels; ++c)
+      for (int c = 0; c < channels; ++c)
       {
-        EXPECT_NEAR(found.tally.in[face][c], expected.tally.in[face][c], 1e-6 * expected.tally.in[face][c]);
-        EXPECT_NEAR(found.tally.out[face][c], expected.tally.out[face][c], 1e-5 * expected.tally.out[face][c]);
+        EXPECT_NEAR(found.tally.in[face][c], expected.tally.in[face][c], 1e-6 * expected.tally.in[face][c]) << what;
+        EXPECT_NEAR(found.tally.out[face][c], expected.tally.out[face][c], 1e-5 * expected.tally.out[face][c]) << what;
       }
     }
   }
@@ -217,6 +246,12 @@ TEST_F(AngularSweep, OfThreeChannelsAndUnequalVoxelsIsTheSumOverDirections)
   Grid grid{ { 9, 6, 11 } };
   grid.spacing = { 1.0, 0.7, 1.6 };
   SweepScene scene(this->GetDevice(), grid, 3, 2, 16, 0, {});
+  this->ExpectSameAsOneByOne(scene);
+}
+
+TEST_F(AngularSweep, OfThreeExtinctionsIsTheSumOverDirections)
+{
+  SweepScene scene(this->GetDevice(), Grid{ { 5, 8, 6 } }, 3, 1, 9, 1, {}, 3);
   this->ExpectSameAsOneByOne(scene);
 }
 

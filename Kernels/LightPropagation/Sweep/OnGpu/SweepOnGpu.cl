@@ -5,11 +5,19 @@
 // work-item alone, bundle by bundle, so sums have one order. Physics and numbers are those of SweepBundle.cl.
 //
 // The host gives CHANNELS, SOURCE, NET_FLUX, CURRENTS, OCTANT_SOURCE as SweepLayout.cl has them, and
-//   ADDS  1: lanes follow one another and add to what is there; 0: each writes arrays of its own
+//   ADDS    1: lanes follow one another and add to what is there; 0: each writes arrays of its own
+//   DEGREE  of the angular moments in which light is gathered, and shines; 0, or not given: fluence alone
+//   BEAMS   sources with an angular distribution of their own; where DEGREE is not 0
 
 #define REAL_WIDTH 1
 #include "LightPropagation/Sweep/OnGpu/SweepOnGpuShared.h"
 #include "Numerics/Numerics.cl"
+
+#ifndef DEGREE
+#define DEGREE 0
+#define BEAMS 0
+#endif
+#define MOMENTS ((DEGREE + 1) * (DEGREE + 1))
 
 #if ADDS
 #define PUT(where, value) ((where) += (value))
@@ -46,6 +54,7 @@ typedef struct
 {
   const __global float* rays;      // of the member, [channel][v][u]
   const __global float4* entering; // [channel] through u's, v's face
+  const __global float* directed;  // where DEGREE, as rays: what shines along it, W / (length^3 sr)
   float power;
   float length[3], part[3];
   int du[3], dv[3];
@@ -115,8 +124,12 @@ static colours behind(
   {
     float kept = before.power[c] * effect.keep;
 #if SOURCE
+#if DEGREE
+    const float shines = member->directed[((ulong)c * state->sizeV + v) * state->sizeU + u];
+#else
     const long voxel = voxel_of(state, u, v);
     const float shines = state->source[voxel + c * state->stride] + shines_more(state, member, c, voxel);
+#endif
     kept += effect.meanLength * member->power * shines;
 #endif
     after.power[c] = multiply_add(before.power[c], effect.change, kept);
@@ -186,8 +199,11 @@ static colours behind_second(const plane_state* state, const member_state* membe
 // What a voxel's work-item adds up over all bundles.
 typedef struct
 {
-  float path[CHANNELS];
-  float own;               // path of a source of 1 in its own voxel
+  float path[CHANNELS]; // where DEGREE of one ray
+  float own;            // path of a source of 1 in its own voxel, the same
+#if DEGREE
+  float moments[CHANNELS][MOMENTS];
+#endif
   float flux[CHANNELS][3]; // along u, v and the axis
   float ownFlux;           // along the axis
   float currents[CHANNELS][CurrentFaces];
@@ -351,10 +367,32 @@ static float3 direction_of(const __global BundleInfo* bundle, int m, int backwar
     backward ? -bundle->cosine : bundle->cosine);
 }
 
+#if DEGREE
+// Of the ray that was just crossed, and the next one's sums begin.
+// @param functions  along it
+static void gather_moments(
+  voxel_sums* sums, const member_state* member, const __global float* functions, ulong plane, ulong here)
+{
+  for (int c = 0; c < CHANNELS; ++c)
+  {
+    float path = sums->path[c];
+#if SOURCE
+    path = multiply_add(sums->own, member->directed[c * plane + here], path);
+#endif
+    for (int k = 0; k < MOMENTS; ++k)
+    {
+      sums->moments[c][k] = multiply_add(path, functions[k], sums->moments[c][k]);
+    }
+    sums->path[c] = 0.0f;
+  }
+}
+#endif
+
 // All of the lane's bundles through voxel (u, v).
+// directed, functions  of the lane's rays, where DEGREE
 static void cross_bundles(const plane_state* state, voxel_sums* sums, const __global BundleInfo* bundles,
   const __global CrossingInfo* crossings, const __global float* before, __global float* after,
-  const __global float4* entering, int u, int v)
+  const __global float4* entering, const __global float* directed, const __global float* functions, int u, int v)
 {
   const __global SweepLane* lane = state->lane;
   const ulong plane = (ulong)state->sizeU * state->sizeV;
@@ -365,10 +403,13 @@ static void cross_bundles(const plane_state* state, voxel_sums* sums, const __gl
     const __global BundleInfo* bundle = bundles + lane->firstBundle + b;
     const __global CrossingInfo* crossing = crossings + b;
     segment_effect effects[3];
+#if DEGREE
+    sums->own = 0.0f;
+#endif
     for (int s = 0; s < crossing->stages; ++s)
     {
       effects[s] = effect_at(state, u, v, crossing->length[s]);
-      const float shines = bundle->power * bundle->members * effects[s].own;
+      const float shines = bundle->power * (DEGREE ? 1 : bundle->members) * effects[s].own;
       sums->own += shines;
       sums->ownFlux += shines * bundle->cosine;
     }
@@ -377,8 +418,12 @@ static void cross_bundles(const plane_state* state, voxel_sums* sums, const __gl
       member_state member = member_of(lane, bundle, crossing, m);
       member.rays = before + ray * plane * CHANNELS;
       member.entering = entering + ray * CHANNELS;
+      member.directed = directed + ray * plane * CHANNELS;
       const float3 along = direction_of(bundle, m, lane->backward);
       const colours rays = cross_voxel(state, sums, &member, crossing->stages, effects, along, u, v);
+#if DEGREE
+      gather_moments(sums, &member, functions + ray * (MOMENTS + BEAMS), plane, here);
+#endif
       for (int c = 0; c < CHANNELS; ++c)
       {
         after[(ray * CHANNELS + c) * plane + here] = rays.power[c];
@@ -387,9 +432,27 @@ static void cross_bundles(const plane_state* state, voxel_sums* sums, const __gl
   }
 }
 
+#if DEGREE
+// @param places  of the path with ADDS, else they lie [function][channel][stride]
+static void put_moments(
+  const plane_state* state, const PlaneLaunch* places, const float* moments, int c, ulong voxel, __global float* path)
+{
+  for (int k = 0; k < MOMENTS; ++k)
+  {
+#if ADDS
+    const MomentPlaces* of = &places->moments;
+    path[k == 0 ? places->putFirst + c * state->stride + voxel
+                : MOMENT_PLACE(*of, k, places->firstChannel + c, voxel / of->sizeX, voxel % of->sizeX)] += moments[k];
+#else
+    path[state->lane->path + ((ulong)k * CHANNELS + c) * state->stride + voxel] = moments[k];
+#endif
+  }
+}
+#endif
+
 // What the voxel has found, to where the lane puts it.
-static void put_sums(const plane_state* state, const voxel_sums* sums, ulong voxel, int u, int v, __global float* path,
-  __global float* flux, __global float* currents)
+static void put_sums(const plane_state* state, const PlaneLaunch* places, const voxel_sums* sums, ulong voxel, int u,
+  int v, __global float* path, __global float* flux, __global float* currents)
 {
   const __global SweepLane* lane = state->lane;
   const ulong stride = state->stride;
@@ -397,6 +460,9 @@ static void put_sums(const plane_state* state, const voxel_sums* sums, ulong vox
   const int asideU = axis == 0 ? 1 : 0, asideV = axis == 2 ? 1 : 2;
   for (int c = 0; c < CHANNELS; ++c)
   {
+#if DEGREE
+    put_moments(state, places, sums->moments[c], c, voxel, path);
+#else
     float own = 0.0f, ownFlux = 0.0f;
 #if SOURCE
     const float shines = state->source[voxel_of(state, u, v) + c * stride];
@@ -405,13 +471,14 @@ static void put_sums(const plane_state* state, const voxel_sums* sums, ulong vox
 #endif
     PUT(path[lane->path + c * stride + voxel], sums->path[c] + own);
 #if NET_FLUX
-    __global float* components = flux + 3 * (lane->path + c * stride) + voxel;
+    __global float* components = flux + 3 * (lane->deposit + c * stride) + voxel;
     PUT(components[asideU * stride], sums->flux[c][0]);
     PUT(components[asideV * stride], sums->flux[c][1]);
     PUT(components[axis * stride], sums->flux[c][2] + (lane->backward ? -ownFlux : ownFlux));
 #endif
+#endif
 #if CURRENTS
-    __global float* faces = currents + 6 * (lane->path + c * stride) + voxel;
+    __global float* faces = currents + 6 * (lane->deposit + c * stride) + voxel;
     PUT(faces[(2 * axis + lane->backward) * stride], sums->currents[c][CurrentAxis]);
 #if !ADDS
     faces[(2 * axis + 1 - lane->backward) * stride] = 0.0f;
@@ -447,11 +514,14 @@ static void put_escaped(
 // before    the lanes' maps: rays by the voxel that they enter in this plane, W
 // after     and in the next
 // entering  [ray][channel] W of the rays that come in through u's, v's face, and where they start
+// directed  as before: what shines along each ray, W / (length^3 sr); where DEGREE, as is
+// functions [ray][function, then beam] along them
 // escaped   W, see SweepLane
 __kernel void cross_plane(PlaneLaunch launch, const __global SweepLane* lanes, const __global float* sigma,
   const __global float* source, const __global float* octants, __global float* path, __global float* flux,
   __global float* currents, const __global float* before, __global float* after, const __global float4* entering,
-  const __global BundleInfo* bundles, const __global CrossingInfo* crossings, __global float* escaped)
+  const __global BundleInfo* bundles, const __global CrossingInfo* crossings, const __global float* directed,
+  const __global float* functions, __global float* escaped)
 {
   const int u = get_global_id(0), v = get_global_id(1);
   const __global SweepLane* lane = lanes + launch.firstLane + get_global_id(2);
@@ -478,11 +548,59 @@ __kernel void cross_plane(PlaneLaunch launch, const __global SweepLane* lanes, c
   }
   voxel_sums sums = { { 0.0f } };
   cross_bundles(&state, &sums, bundles, crossings + lane->crossings + launch.plane * lane->bundles, before + lane->map,
-    after + lane->map, entering + lane->firstRay * CHANNELS, u, v);
-  put_sums(&state, &sums, first + voxel_of(&state, u, v), u, v, path + launch.putFirst, flux + 3 * launch.putFirst,
-    currents + 6 * launch.putFirst);
+    after + lane->map, entering + lane->firstRay * CHANNELS, directed + lane->map,
+    functions + lane->firstRay * (MOMENTS + BEAMS), u, v);
+  put_sums(&state, &launch, &sums, first + voxel_of(&state, u, v), u, v, path + (DEGREE ? 0 : launch.putFirst),
+    flux + 3 * launch.putFirst, currents + 6 * launch.putFirst);
   put_escaped(&state, &sums, launch.plane, u, v, escaped);
 }
+
+#if DEGREE
+// What the plane's voxels shine along each ray, from a source of angular moments and beams. A work-item a voxel of the
+// plane and lane.
+__kernel void find_directed(PlaneLaunch launch, const __global SweepLane* lanes, const __global float* source,
+  const __global float* functions, __global float* directed)
+{
+  const int u = get_global_id(0), v = get_global_id(1);
+  const __global SweepLane* lane = lanes + launch.firstLane + get_global_id(2);
+  const __global PlaneInfo* planes = &lane->planes;
+  if (u >= planes->sizeU || v >= planes->sizeV || launch.plane >= planes->sizeP)
+  {
+    return;
+  }
+  const int plane = lane->backward ? planes->sizeP - 1 - launch.plane : launch.plane;
+  const ulong voxel = (ulong)(planes->firstU + u) * planes->stepU + (ulong)(planes->firstV + v) * planes->stepV +
+    (ulong)(planes->firstP + plane) * planes->stepP;
+  const MomentPlaces* of = &launch.moments;
+  const ulong size = (ulong)planes->sizeU * planes->sizeV;
+  functions += lane->firstRay * (MOMENTS + BEAMS);
+  for (int c = 0; c < CHANNELS; ++c)
+  {
+    const int channel = launch.firstChannel + c;
+    float values[MOMENTS + BEAMS];
+    values[0] = source[launch.sourceFirst + c * launch.stride + voxel];
+    for (int k = 1; k < MOMENTS; ++k)
+    {
+      values[k] = source[MOMENT_PLACE(*of, k, channel, voxel / of->sizeX, voxel % of->sizeX)];
+    }
+    for (int b = 0; b < BEAMS; ++b)
+    {
+      values[MOMENTS + b] = source[of->beams + ((ulong)b * of->channels + channel) * launch.stride + voxel];
+    }
+    __global float* to = directed + lane->map + c * size + (ulong)v * planes->sizeU + u;
+    for (int ray = 0; ray < lane->rays; ++ray)
+    {
+      const __global float* along = functions + ray * (MOMENTS + BEAMS);
+      float shines = 0.0f;
+      for (int k = 0; k < MOMENTS + BEAMS; ++k)
+      {
+        shines = multiply_add(values[k], along[k], shines);
+      }
+      to[ray * CHANNELS * size] = shines;
+    }
+  }
+}
+#endif
 
 // The rays of a lane where they start. A work-item a float of its maps.
 __kernel void start_rays(
@@ -523,3 +641,21 @@ __kernel void add_lanes(const __global float* of_lanes, int lanes, ulong values,
   }
   sum[first + i] += all;
 }
+
+#if DEGREE
+// The same of angular moments. A work-item a voxel, of a function and channel.
+__kernel void add_moments_of_lanes(
+  PlaneLaunch launch, const __global float* of_lanes, int lanes, __global float* sum, ulong first)
+{
+  const ulong voxel = get_global_id(0), stride = launch.stride;
+  const int k = get_global_id(1) / CHANNELS, c = get_global_id(1) % CHANNELS;
+  const MomentPlaces* of = &launch.moments;
+  float all = 0.0f;
+  for (int lane = 0; lane < lanes; ++lane)
+  {
+    all += of_lanes[(((ulong)lane * MOMENTS + k) * CHANNELS + c) * stride + voxel];
+  }
+  sum[k == 0 ? first + c * stride + voxel
+             : MOMENT_PLACE(*of, k, launch.firstChannel + c, voxel / of->sizeX, voxel % of->sizeX)] += all;
+}
+#endif

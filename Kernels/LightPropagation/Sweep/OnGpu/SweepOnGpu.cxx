@@ -34,16 +34,25 @@ public:
 private:
   void LayPlan(const SweepPlan& plan);
   void LayLane(const SweepPlan& plan, int way, int firstBundle, int firstCrossing);
+  void LayFunctions(const SweepPlan& plan, int way);
   void ChooseWays(Ways ways);
   void MakeBuffers();
-  std::size_t DepositFloats() const { return 1 + (this->To.flux ? 3 : 0) + (this->To.partialCurrents ? 6 : 0); }
+  int Functions() const { return this->Angular ? this->Angular->Functions() : 1; }
+  int Beams() const { return this->Angular ? this->Angular->Beams() : 0; }
+  std::size_t DepositFloats() const
+  {
+    return this->Functions() + (this->To.flux ? 3 : 0) + (this->To.partialCurrents ? 6 : 0);
+  }
 
   SweepTally ApplyGroup(const SweepVolume& volume, const SweepBoundary& boundary, const Monitor& monitor);
   bool Enter(const SweepBoundary& boundary, int group, SweepTally& tally);
-  void Launch(cl::Kernel& kernel, const SweepVolume& volume, int firstLane, const Monitor& monitor);
+  std::string Options(bool shines) const;
+  PlaneLaunch LaunchOf(const SweepVolume& volume, int firstLane) const;
+  void Launch(const std::string& options, const SweepVolume& volume, int firstLane, const Monitor& monitor);
   void AddUpEnds(int firstLane);
   void AddUpSides();
   void AddLanes(const SweepVolume& volume);
+  void AddMomentsOfLanes(const SweepVolume& volume);
   void CountOut(SweepTally& tally) const;
 
   Device& TheDevice;
@@ -52,6 +61,7 @@ private:
   Deposit To;
   VoxelBox Box;
   bool SameBoundary;
+  const AngularValues* Angular;
   const Buffer<float>* OctantSource;
   int Channels; ///< that are swept together
 
@@ -61,13 +71,16 @@ private:
   std::vector<std::size_t> FirstEnd; ///< of lanes, in Ends
   std::vector<BundleInfo> BundleRows;
   std::vector<CrossingInfo> CrossingRows;
-  int Together = 1; ///< lanes that go at once: all or one
+  std::vector<float> FunctionRows; ///< [ray][function, then beam]
+  int Together = 1;                ///< lanes that go at once: all or one
   std::size_t MapFloats = 0, EscapedFloats = 0, EndRows = 0;
   int Rays = 0;
 
   Buffer<SweepLane> LanesThere;
   Buffer<BundleInfo> Bundles;
   Buffer<CrossingInfo> Crossings;
+  Buffer<float> Along;    ///< FunctionRows
+  Buffer<float> Directed; ///< as maps: what shines along the rays
   Buffer<float> Maps[2];
   Buffer<cl_float4> Entering;         ///< [ray][channel] W through u's, v's face, and where rays start
   Buffer<float> Path, Flux, Currents; ///< of lanes that go at once
@@ -79,8 +92,7 @@ private:
 
 bool SweepOnGpu::Can(const SweepRequest& request, const std::array<bool, 3>& periodic)
 {
-  return !periodic[0] && !periodic[1] && !periodic[2] && !request.angular && !request.faceIn &&
-    !request.deposit.faceOut;
+  return !periodic[0] && !periodic[1] && !periodic[2] && !request.faceIn && !request.deposit.faceOut;
 }
 
 SweepOnGpu::Implementation::Implementation(
@@ -91,6 +103,7 @@ SweepOnGpu::Implementation::Implementation(
   , To(request.deposit)
   , Box(request.box)
   , SameBoundary(request.sameBoundary)
+  , Angular(request.angular)
   , OctantSource(request.octantSource)
   , Channels(layout.Groups().front().count)
 {
@@ -98,6 +111,7 @@ SweepOnGpu::Implementation::Implementation(
   {
     throw std::logic_error("SweepOnGpu cannot do this sweep");
   }
+  this->To.flux = this->Angular ? nullptr : this->To.flux; // it is among the moments
   for (const AxisBundles& along : request.rays)
   {
     if (along.bundles.empty())
@@ -105,8 +119,8 @@ SweepOnGpu::Implementation::Implementation(
       continue;
     }
     this->Plans.emplace_back(device, layout.grid, this->Box, along.axis, along.bundles, this->Channels,
-      std::array<bool, 3>{}, this->To.flux != nullptr, this->To.partialCurrents != nullptr, nullptr, layout.Places(1),
-      false, false);
+      std::array<bool, 3>{}, this->To.flux != nullptr, this->To.partialCurrents != nullptr, this->Angular,
+      layout.Places(this->Functions()), false, false);
   }
   for (const SweepPlan& plan : this->Plans)
   {
@@ -148,10 +162,30 @@ void SweepOnGpu::Implementation::LayLane(const SweepPlan& plan, int way, int fir
   lane.escaped = this->EscapedFloats;
   lane.positions = std::max(plan.plane.sizeU, plan.plane.sizeV);
   this->Rays += lane.rays;
+  this->LayFunctions(plan, way);
   this->EscapedFloats += std::size_t{ 4 } * plan.plane.sizeP * this->Channels * lane.positions;
   this->FirstEnd.push_back(this->EndRows);
   this->EndRows += Count(lane.rays) * this->Channels * plan.plane.sizeV;
   this->Lanes.push_back(lane);
+}
+
+/// The angular functions and beams along the rays of a lane.
+void SweepOnGpu::Implementation::LayFunctions(const SweepPlan& plan, int way)
+{
+  for (const Bundle& bundle : plan.bundles)
+  {
+    for (const Member& member : bundle.members)
+    {
+      const int direction = way == 0 ? member.direction : member.opposite;
+      for (int k = 0; this->Angular && k < this->Functions() + this->Beams(); ++k)
+      {
+        const double value = direction < 0 ? 0.0
+          : k < this->Functions()          ? this->Angular->functions[direction][k]
+                                           : this->Angular->beams[direction][k - this->Functions()];
+        this->FunctionRows.push_back(static_cast<float>(value));
+      }
+    }
+  }
 }
 
 /// All at once, where what they find has room beside each other; else one by one. Of a part of the grid one by one:
@@ -168,7 +202,8 @@ void SweepOnGpu::Implementation::ChooseWays(Ways ways)
   {
     SweepLane& lane = this->Lanes[i];
     lane.map = atOnce ? floats : 0;
-    lane.path = atOnce ? i * this->Channels * this->Layout.Stride() : 0;
+    lane.deposit = atOnce ? i * this->Channels * this->Layout.Stride() : 0;
+    lane.path = this->Functions() * lane.deposit;
     const std::size_t maps = Count(lane.rays) * this->Channels * lane.planes.sizeU * lane.planes.sizeV;
     floats = atOnce ? floats + maps : std::max(floats, maps);
   }
@@ -181,6 +216,11 @@ void SweepOnGpu::Implementation::MakeBuffers()
   this->LanesThere = Buffer<SweepLane>(device, this->Lanes, "the rays' ways");
   this->Bundles = Buffer<BundleInfo>(device, this->BundleRows, "the bundles of rays");
   this->Crossings = Buffer<CrossingInfo>(device, this->CrossingRows, "the ray pattern");
+  if (this->Angular)
+  {
+    this->Along = Buffer<float>(device, this->FunctionRows, "the angular functions");
+    this->Directed = Buffer<float>(device, this->MapFloats, "what shines along the rays");
+  }
   for (Buffer<float>& maps : this->Maps)
   {
     maps = Buffer<float>(device, this->MapFloats, "the light propagation maps");
@@ -198,7 +238,7 @@ void SweepOnGpu::Implementation::MakeBuffers()
   if (this->Together > 1)
   {
     const std::size_t values = this->Lanes.size() * this->Channels * this->Layout.Stride();
-    this->Path = Buffer<float>(device, values, "the light of each way");
+    this->Path = Buffer<float>(device, values * this->Functions(), "the light of each way");
     this->Path.Fill(0.0f); // beyond the voxels it stays
     if (this->To.flux)
     {
@@ -242,15 +282,12 @@ SweepTally SweepOnGpu::Implementation::ApplyGroup(
   {
     return tally; // nothing to carry
   }
-  const std::string options = Define("CHANNELS", this->Channels) + Define("SOURCE", volume.source != nullptr) +
-    Define("NET_FLUX", this->To.flux != nullptr) + Define("CURRENTS", this->To.partialCurrents != nullptr) +
-    Define("OCTANT_SOURCE", this->OctantSource && volume.source) + Define("ADDS", this->Together == 1);
-  cl::Kernel kernel = this->TheDevice.Kernel("cross_plane", kernel_source::SweepOnGpu, options);
+  const std::string options = this->Options(volume.source != nullptr);
   const int lanes = static_cast<int>(this->Lanes.size());
   for (int lane = 0; lane < lanes; lane += this->Together)
   {
     const double from = static_cast<double>(lane) / lanes, part = static_cast<double>(this->Together) / lanes;
-    this->Launch(kernel, volume, lane, OfPart(monitor, [=](double done) { return from + part * done; }));
+    this->Launch(options, volume, lane, OfPart(monitor, [=](double done) { return from + part * done; }));
     this->AddUpEnds(lane);
   }
   this->AddUpSides();
@@ -303,9 +340,30 @@ bool SweepOnGpu::Implementation::Enter(const SweepBoundary& boundary, int group,
   return lit;
 }
 
+std::string SweepOnGpu::Implementation::Options(bool shines) const
+{
+  return Define("CHANNELS", this->Channels) + Define("SOURCE", shines) + Define("NET_FLUX", this->To.flux != nullptr) +
+    Define("CURRENTS", this->To.partialCurrents != nullptr) + Define("OCTANT_SOURCE", this->OctantSource && shines) +
+    Define("DEGREE", this->Angular ? this->Angular->degree : 0) + Define("BEAMS", this->Beams()) +
+    Define("ADDS", this->Together == 1);
+}
+
+PlaneLaunch SweepOnGpu::Implementation::LaunchOf(const SweepVolume& volume, int firstLane) const
+{
+  PlaneLaunch launch = {};
+  launch.sigmaFirst = volume.sigma_t_first;
+  launch.sourceFirst = volume.source ? volume.first : 0;
+  launch.putFirst = this->Together == 1 ? volume.first : 0;
+  launch.stride = volume.stride;
+  launch.firstLane = firstLane;
+  launch.firstChannel = volume.firstChannel;
+  launch.moments = this->Layout.Places(this->Functions());
+  return launch;
+}
+
 /// From where rays start to where they leave their axis.
 void SweepOnGpu::Implementation::Launch(
-  cl::Kernel& kernel, const SweepVolume& volume, int firstLane, const Monitor& monitor)
+  const std::string& options, const SweepVolume& volume, int firstLane, const Monitor& monitor)
 {
   int sizeU = 0, sizeV = 0, sizeP = 0, rays = 0;
   std::size_t floats = 0;
@@ -330,19 +388,28 @@ void SweepOnGpu::Implementation::Launch(
   const Buffer<float>& currents = !this->To.partialCurrents ? path : adds ? *this->To.partialCurrents : this->Currents;
   const Buffer<float>& source = volume.source ? *volume.source : this->SigmaT; // never read where there is none
   const Buffer<float>& octants = this->OctantSource ? *this->OctantSource : source;
-  PlaneLaunch launch = {};
-  launch.sigmaFirst = volume.sigma_t_first;
-  launch.sourceFirst = volume.source ? volume.first : 0;
-  launch.putFirst = adds ? volume.first : 0;
-  launch.stride = volume.stride;
-  launch.firstLane = firstLane;
+  const Buffer<float>& directed = this->Angular ? this->Directed : this->Maps[0];
+  const Buffer<float>& functions = this->Angular ? this->Along : this->Maps[0];
+  const bool findsDirected = this->Angular && volume.source;
+  cl::Kernel kernel = this->TheDevice.Kernel("cross_plane", kernel_source::SweepOnGpu, options);
+  cl::Kernel find;
+  if (findsDirected)
+  {
+    find = this->TheDevice.Kernel("find_directed", kernel_source::SweepOnGpu, options);
+  }
+  PlaneLaunch launch = this->LaunchOf(volume, firstLane);
   const cl::NDRange all(RoundUp(Count(sizeU), GroupU), RoundUp(Count(sizeV), GroupV), this->Together);
   const double seconds = SecondsPerRay * sizeU * sizeV * rays * this->Channels;
   for (launch.plane = 0; launch.plane < sizeP; ++launch.plane)
   {
+    if (findsDirected)
+    {
+      With(find, launch, this->LanesThere, source, functions, directed);
+      queue.enqueueNDRangeKernel(find, cl::NullRange, all, cl::NDRange(GroupU, GroupV, 1));
+    }
     With(kernel, launch, this->LanesThere, this->SigmaT, source, octants, path, flux, currents,
       this->Maps[launch.plane % 2], this->Maps[1 - launch.plane % 2], this->Entering, this->Bundles, this->Crossings,
-      this->Escaped);
+      directed, functions, this->Escaped);
     queue.enqueueNDRangeKernel(kernel, cl::NullRange, all, cl::NDRange(GroupU, GroupV, 1));
     this->TheDevice.Queued(seconds);
     Report(monitor, (launch.plane + 1.0) / sizeP);
@@ -389,9 +456,25 @@ void SweepOnGpu::Implementation::AddLanes(const SweepVolume& volume)
     With(kernel, ofLanes, cl_int(this->Lanes.size()), cl_ulong(values), *to, cl_ulong(components * volume.first));
     this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(values));
   };
-  add(this->Path, this->To.path, 1);
+  if (this->Angular)
+  {
+    this->AddMomentsOfLanes(volume);
+  }
+  else
+  {
+    add(this->Path, this->To.path, 1);
+  }
   add(this->Flux, this->To.flux, 3);
   add(this->Currents, this->To.partialCurrents, 6);
+}
+
+void SweepOnGpu::Implementation::AddMomentsOfLanes(const SweepVolume& volume)
+{
+  cl::Kernel kernel = this->TheDevice.Kernel("add_moments_of_lanes", kernel_source::SweepOnGpu, this->Options(false));
+  With(
+    kernel, this->LaunchOf(volume, 0), this->Path, cl_int(this->Lanes.size()), *this->To.path, cl_ulong(volume.first));
+  this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange,
+    cl::NDRange(this->Layout.grid.VoxelCount(), static_cast<std::size_t>(this->Functions()) * this->Channels));
 }
 
 void SweepOnGpu::Implementation::CountOut(SweepTally& tally) const

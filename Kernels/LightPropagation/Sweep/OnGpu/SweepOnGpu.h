@@ -13,11 +13,12 @@ namespace tyndall
 /// 1e-5, and the same bit for bit each time (numerics.md, section 4.8).
 ///
 /// Memory: two floats a voxel of a plane, ray and channel; where ways go at once, each has its own path, flux and
-/// partial currents, in at most a quarter of the memory that is left. Else they follow one another.
+/// partial currents, in at most a quarter of the memory that is left. Else they follow one another. With angular moments
+/// a float more a voxel of a plane, ray and channel, what shines along it; a path is one of each function then.
 class SweepOnGpu : public SweepOperator
 {
 public:
-  /// Whether it can do what is asked for: no periodic axis, no angular moments, no light by cells of the faces.
+  /// Whether it can do what is asked for: no periodic axis, no light by cells of the faces.
   /// SweepInMemory can, on GPUs too.
   static bool Can(const SweepRequest& request, const std::array<bool, 3>& periodic);
 

@@ -15,7 +15,8 @@ typedef struct
   int crossings; ///< where those of its first plane begin, [plane][bundle]
   int firstRay;  ///< of all lanes' rays, each a float4 [channel] in `entering`; its maps begin there, too
   ulong map;     ///< floats before its maps, [ray][channel][v][u]
-  ulong path;    ///< floats before its path; flux: three times, currents: six times that
+  ulong path;    ///< floats before its path, or, with angular moments, [function][channel][stride]
+  ulong deposit; ///< the same of currents over six, and of flux over three
   ulong escaped; ///< where its tally begins, [plane][-u, +u, -v, +v][channel][position along the face]
   int positions; ///< of that
   int rays;
@@ -29,5 +30,7 @@ typedef struct
   ulong stride;                  ///< from one channel to the next
   int plane;                     ///< from where rays start
   int firstLane;                 ///< that of the first work-items
+  int firstChannel;
+  MomentPlaces moments; ///< of source and path, where light has angular moments
 } PlaneLaunch;
 SHARED_END
