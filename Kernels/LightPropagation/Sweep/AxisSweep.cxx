@@ -5,6 +5,7 @@
 #include "LightPropagation/Sweep/Slices/SliceStream.h"
 #include "LightPropagation/Sweep/SweepBorder.h"
 #include "LightPropagation/Sweep/SweepDefines.h"
+#include "LightPropagation/Sweep/SweepOperator.h"
 #include "LightPropagation/Sweep/SweepPlan.h"
 #include "Medium/BoxFaces.h"
 #include "TyndallKernelSources.h"
@@ -17,8 +18,6 @@ namespace tyndall
 {
 namespace
 {
-constexpr double NothingLeft = 1e-7; ///< of what was on the way after the first time: not worth going round again
-
 using BundleMaps = cl_int2; ///< for map_power: members, first float of the maps
 
 std::vector<BundleMaps> MapsOf(const SweepPlan& plan)

@@ -16,6 +16,8 @@ namespace tyndall
 {
 /// Planes that a ray goes round a periodic axis at most, unless the sweep is told another number.
 constexpr int MostPlanesAround = 8192;
+/// Of what was on the way round a periodic axis after the first time: not worth going round again.
+constexpr double NothingLeft = 1e-7;
 
 /// The bundles of rays that march along one axis.
 struct AxisBundles

@@ -13,7 +13,6 @@ namespace tyndall
 {
 namespace
 {
-constexpr double NothingLeft = 1e-7; ///< as AxisSweep has it
 
 /// Sums of all ranks, of what each counted.
 void AddUp(Communicator& communicator, std::array<Rgb, 6>& power)

@@ -6,6 +6,7 @@
 //
 // The host gives CHANNELS, SOURCE, NET_FLUX, CURRENTS, OCTANT_SOURCE as SweepLayout.cl has them, and
 //   ADDS    1: lanes follow one another and add to what is there; 0: each writes arrays of its own
+//   AROUND  1: the axis is periodic, and rays come to a voxel again and again: their lane adds to its own arrays
 //   DEGREE  of the angular moments in which light is gathered, and shines; 0, or not given: fluence alone
 //   BEAMS   sources with an angular distribution of their own; where DEGREE is not 0
 
@@ -13,17 +14,38 @@
 #include "LightPropagation/Sweep/OnGpu/SweepOnGpuShared.h"
 #include "Numerics/Numerics.cl"
 
-#ifndef DEGREE
+#ifndef DEGREE // kernels that do not depend on them
 #define DEGREE 0
 #define BEAMS 0
+#define AROUND 0
 #endif
 #define MOMENTS ((DEGREE + 1) * (DEGREE + 1))
 
-#if ADDS
+#if ADDS || AROUND
 #define PUT(where, value) ((where) += (value))
 #else
 #define PUT(where, value) ((where) = (value))
 #endif
+
+// A path, with what rounding takes of it where rays come again and again.
+static void put_path(__global float* path, __global float* lost, float value)
+{
+#if AROUND
+  const float more = value - *lost;
+  const float sum = *path + more;
+  *lost = (sum - *path) - more;
+  *path = sum;
+#else
+  PUT(*path, value);
+#endif
+}
+
+// The plane of the grid that a lane crosses as its k-th.
+static int plane_of(const __global SweepLane* lane, int k)
+{
+  const int of_axis = AROUND ? k % lane->planes.sizeP : k;
+  return lane->backward ? lane->planes.sizeP - 1 - of_axis : of_axis;
+}
 
 // What a segment does to rays, see SweepCrossing.cl; `own`: path of the light that a source of 1 adds in its own voxel.
 typedef struct
@@ -162,9 +184,20 @@ static colours coming_in(const plane_state* state, const member_state* member, i
   return rays;
 }
 
-// Behind the plane's first segment.
-static colours behind_first(const plane_state* state, const member_state* member, int u, int v)
+// Round the periodic axes, to a voxel of the plane or still outside it.
+static int2 go_round(const plane_state* state, int u, int v)
 {
+  const int size_u = state->sizeU, size_v = state->sizeV;
+  const int past_u = u < 0 ? size_u : u >= size_u ? -size_u : 0;
+  const int past_v = v < 0 ? size_v : v >= size_v ? -size_v : 0;
+  return (int2)(state->lane->periodicU ? u + past_u : u, state->lane->periodicV ? v + past_v : v);
+}
+
+// Behind the plane's first segment.
+static colours behind_first(const plane_state* state, const member_state* member, int of_u, int of_v)
+{
+  const int2 at = go_round(state, of_u, of_v);
+  const int u = at.x, v = at.y;
   if (!is_inside(state, u, v))
   {
     return coming_in(state, member, u, v);
@@ -182,8 +215,10 @@ static colours mixed(colours stay, colours come, float part)
 }
 
 // Behind the second one.
-static colours behind_second(const plane_state* state, const member_state* member, int u, int v)
+static colours behind_second(const plane_state* state, const member_state* member, int of_u, int of_v)
 {
+  const int2 at = go_round(state, of_u, of_v);
+  const int u = at.x, v = at.y;
   if (!is_inside(state, u, v))
   {
     return coming_in(state, member, u, v);
@@ -230,8 +265,8 @@ static void count_escaped(
   const plane_state* state, voxel_sums* sums, const member_state* member, int s, int u, int v, colours rays)
 {
   const int du = member->du[s], dv = member->dv[s];
-  const bool throughU = du > 0 ? u == state->sizeU - 1 : du < 0 && u == 0;
-  const bool throughV = dv > 0 ? v == state->sizeV - 1 : dv < 0 && v == 0;
+  const bool throughU = !state->lane->periodicU && (du > 0 ? u == state->sizeU - 1 : du < 0 && u == 0);
+  const bool throughV = !state->lane->periodicV && (dv > 0 ? v == state->sizeV - 1 : dv < 0 && v == 0);
   const float turned = throughU && throughV ? 0.5f : 0.0f;
   for (int c = 0; c < CHANNELS; ++c)
   {
@@ -434,8 +469,8 @@ static void cross_bundles(const plane_state* state, voxel_sums* sums, const __gl
 
 #if DEGREE
 // @param places  of the path with ADDS, else they lie [function][channel][stride]
-static void put_moments(
-  const plane_state* state, const PlaneLaunch* places, const float* moments, int c, ulong voxel, __global float* path)
+static void put_moments(const plane_state* state, const PlaneLaunch* places, const float* moments, int c, ulong voxel,
+  __global float* path, __global float* lost)
 {
   for (int k = 0; k < MOMENTS; ++k)
   {
@@ -444,7 +479,8 @@ static void put_moments(
     path[k == 0 ? places->putFirst + c * state->stride + voxel
                 : MOMENT_PLACE(*of, k, places->firstChannel + c, voxel / of->sizeX, voxel % of->sizeX)] += moments[k];
 #else
-    path[state->lane->path + ((ulong)k * CHANNELS + c) * state->stride + voxel] = moments[k];
+    const ulong place = state->lane->path + ((ulong)k * CHANNELS + c) * state->stride + voxel;
+    put_path(path + place, lost + place, moments[k]);
 #endif
   }
 }
@@ -452,7 +488,7 @@ static void put_moments(
 
 // What the voxel has found, to where the lane puts it.
 static void put_sums(const plane_state* state, const PlaneLaunch* places, const voxel_sums* sums, ulong voxel, int u,
-  int v, __global float* path, __global float* flux, __global float* currents)
+  int v, __global float* path, __global float* lost, __global float* flux, __global float* currents)
 {
   const __global SweepLane* lane = state->lane;
   const ulong stride = state->stride;
@@ -461,7 +497,7 @@ static void put_sums(const plane_state* state, const PlaneLaunch* places, const 
   for (int c = 0; c < CHANNELS; ++c)
   {
 #if DEGREE
-    put_moments(state, places, sums->moments[c], c, voxel, path);
+    put_moments(state, places, sums->moments[c], c, voxel, path, lost);
 #else
     float own = 0.0f, ownFlux = 0.0f;
 #if SOURCE
@@ -469,7 +505,8 @@ static void put_sums(const plane_state* state, const PlaneLaunch* places, const 
     own = sums->own * shines;
     ownFlux = sums->ownFlux * shines;
 #endif
-    PUT(path[lane->path + c * stride + voxel], sums->path[c] + own);
+    const ulong place = lane->path + c * stride + voxel;
+    put_path(path + place, lost + place, sums->path[c] + own);
 #if NET_FLUX
     __global float* components = flux + 3 * (lane->deposit + c * stride) + voxel;
     PUT(components[asideU * stride], sums->flux[c][0]);
@@ -480,7 +517,7 @@ static void put_sums(const plane_state* state, const PlaneLaunch* places, const 
 #if CURRENTS
     __global float* faces = currents + 6 * (lane->deposit + c * stride) + voxel;
     PUT(faces[(2 * axis + lane->backward) * stride], sums->currents[c][CurrentAxis]);
-#if !ADDS
+#if !ADDS && !AROUND
     faces[(2 * axis + 1 - lane->backward) * stride] = 0.0f;
 #endif
     PUT(faces[2 * asideU * stride], sums->currents[c][CurrentLowU]);
@@ -511,6 +548,7 @@ static void put_escaped(
 // source    W / (length^3 sr), [channel][stride]
 // octants   see SweepRequest::octantSource
 // path, flux, currents  as of the kernel `sweep`
+// lost      as path, where AROUND
 // before    the lanes' maps: rays by the voxel that they enter in this plane, W
 // after     and in the next
 // entering  [ray][channel] W of the rays that come in through u's, v's face, and where they start
@@ -518,18 +556,18 @@ static void put_escaped(
 // functions [ray][function, then beam] along them
 // escaped   W, see SweepLane
 __kernel void cross_plane(PlaneLaunch launch, const __global SweepLane* lanes, const __global float* sigma,
-  const __global float* source, const __global float* octants, __global float* path, __global float* flux,
-  __global float* currents, const __global float* before, __global float* after, const __global float4* entering,
-  const __global BundleInfo* bundles, const __global CrossingInfo* crossings, const __global float* directed,
-  const __global float* functions, __global float* escaped)
+  const __global float* source, const __global float* octants, __global float* path, __global float* lost,
+  __global float* flux, __global float* currents, const __global float* before, __global float* after,
+  const __global float4* entering, const __global BundleInfo* bundles, const __global CrossingInfo* crossings,
+  const __global float* directed, const __global float* functions, __global float* escaped)
 {
   const int u = get_global_id(0), v = get_global_id(1);
   const __global SweepLane* lane = lanes + launch.firstLane + get_global_id(2);
-  if (u >= lane->planes.sizeU || v >= lane->planes.sizeV || launch.plane >= lane->planes.sizeP)
+  if (u >= lane->planes.sizeU || v >= lane->planes.sizeV || launch.plane >= lane->patternPlanes)
   {
     return;
   }
-  const int plane = lane->backward ? lane->planes.sizeP - 1 - launch.plane : launch.plane;
+  const int plane = plane_of(lane, launch.plane);
   const ulong first = (ulong)lane->planes.firstU * lane->planes.stepU +
     (ulong)lane->planes.firstV * lane->planes.stepV + (ulong)(lane->planes.firstP + plane) * lane->planes.stepP;
   plane_state state;
@@ -547,10 +585,11 @@ __kernel void cross_plane(PlaneLaunch launch, const __global SweepLane* lanes, c
     state.meanLength[i] = lane->planes.meanLength[i];
   }
   voxel_sums sums = { { 0.0f } };
-  cross_bundles(&state, &sums, bundles, crossings + lane->crossings + launch.plane * lane->bundles, before + lane->map,
+  cross_bundles(&state, &sums, bundles,
+    crossings + (launch.ofRound ? 0 : lane->crossings) + launch.plane * lane->bundles, before + lane->map,
     after + lane->map, entering + lane->firstRay * CHANNELS, directed + lane->map,
     functions + lane->firstRay * (MOMENTS + BEAMS), u, v);
-  put_sums(&state, &launch, &sums, first + voxel_of(&state, u, v), u, v, path + (DEGREE ? 0 : launch.putFirst),
+  put_sums(&state, &launch, &sums, first + voxel_of(&state, u, v), u, v, path + (DEGREE ? 0 : launch.putFirst), lost,
     flux + 3 * launch.putFirst, currents + 6 * launch.putFirst);
   put_escaped(&state, &sums, launch.plane, u, v, escaped);
 }
@@ -564,11 +603,11 @@ __kernel void find_directed(PlaneLaunch launch, const __global SweepLane* lanes,
   const int u = get_global_id(0), v = get_global_id(1);
   const __global SweepLane* lane = lanes + launch.firstLane + get_global_id(2);
   const __global PlaneInfo* planes = &lane->planes;
-  if (u >= planes->sizeU || v >= planes->sizeV || launch.plane >= planes->sizeP)
+  if (u >= planes->sizeU || v >= planes->sizeV || launch.plane >= lane->patternPlanes)
   {
     return;
   }
-  const int plane = lane->backward ? planes->sizeP - 1 - launch.plane : launch.plane;
+  const int plane = plane_of(lane, launch.plane);
   const ulong voxel = (ulong)(planes->firstU + u) * planes->stepU + (ulong)(planes->firstV + v) * planes->stepV +
     (ulong)(planes->firstP + plane) * planes->stepP;
   const MomentPlaces* of = &launch.moments;

@@ -2,7 +2,7 @@
 
 #include "Device/Defines.h"
 #include "Device/Sizes.h"
-#include "LightPropagation/Sweep/OnGpu/SweepOnGpuShared.h"
+#include "LightPropagation/Sweep/OnGpu/GpuLanes.h"
 #include "LightPropagation/Sweep/SweepBorder.h"
 #include "LightPropagation/Sweep/SweepPlan.h"
 #include "LightPropagation/Sweep/SweepVolume.h"
@@ -21,22 +21,38 @@ namespace
 constexpr std::size_t GroupU = 32, GroupV = 4; ///< work-items along u, whose voxels mostly lie together, and along v
 constexpr double SecondsPerRay = 1e-10;        ///< through a voxel: only says how often to wait
 constexpr int MostAtOnce = 4;                  ///< part of the memory that ways at once may take: a quarter
+constexpr std::size_t MostLanes = 6;           ///< there and back along each axis
 }
 
 class SweepOnGpu::Implementation
 {
 public:
-  Implementation(
-    Device& device, const VolumeLayout& layout, const Buffer<float>& sigma_t, const SweepRequest& request, Ways ways);
+  Implementation(Device& device, const VolumeLayout& layout, const Buffer<float>& sigma_t,
+    const std::array<bool, 3>& periodic, const SweepRequest& request, Ways ways);
 
   SweepTally Apply(const Buffer<float>* source, const SweepBoundary& boundary, const Monitor& monitor);
+  void Forget();
 
 private:
-  void LayPlan(const SweepPlan& plan);
-  void LayLane(const SweepPlan& plan, int way, int firstBundle, int firstCrossing);
-  void LayFunctions(const SweepPlan& plan, int way);
-  void ChooseWays(Ways ways);
+  /// How planes are crossed by the lanes of a batch.
+  struct Crossing
+  {
+    bool shines;                                 ///< the medium does
+    const Buffer<cl_float4>* entering;           ///< light that comes in through the sides
+    const Buffer<CrossingInfo>* round = nullptr; ///< of rays that go round again; null: of those that start
+  };
+
+  /// Rays on their way round a periodic axis, between sweeps, of a batch and a group of channels.
+  struct OnTheWay
+  {
+    Buffer<float> maps[2];
+    int current = 0;
+  };
+
+  void ForgetGroup(int group);
+  bool FitAtOnce(const SweepRequest& request, Ways ways) const;
   void MakeBuffers();
+  void MakeArrays();
   int Functions() const { return this->Angular ? this->Angular->Functions() : 1; }
   int Beams() const { return this->Angular ? this->Angular->Beams() : 0; }
   std::size_t DepositFloats() const
@@ -46,211 +62,125 @@ private:
 
   SweepTally ApplyGroup(const SweepVolume& volume, const SweepBoundary& boundary, const Monitor& monitor);
   bool Enter(const SweepBoundary& boundary, int group, SweepTally& tally);
-  std::string Options(bool shines) const;
-  PlaneLaunch LaunchOf(const SweepVolume& volume, int firstLane) const;
-  void Launch(const std::string& options, const SweepVolume& volume, int firstLane, const Monitor& monitor);
-  void AddUpEnds(int firstLane);
-  void AddUpSides();
-  void AddLanes(const SweepVolume& volume);
-  void AddMomentsOfLanes(const SweepVolume& volume);
-  void CountOut(SweepTally& tally) const;
+  void CrossOnce(const LaneBatch& batch, const SweepVolume& volume, SweepTally& tally, const Monitor& monitor);
+  void GoRound(const LaneBatch& batch, const SweepVolume& volume, SweepTally& tally, const Monitor& monitor);
+  OnTheWay& RaysOnTheWay(const LaneBatch& batch, int group);
+  std::string Options(const LaneBatch& batch, bool shines) const;
+  PlaneLaunch LaunchOf(const LaneBatch& batch, const SweepVolume& volume) const;
+  void StartRays(const LaneBatch& batch);
+  int Cross(const LaneBatch& batch, const SweepVolume& volume, const Crossing& how,
+    const std::array<const Buffer<float>*, 2>& maps, const Monitor& monitor);
+  void AddUpEnds(const LaneBatch& batch, const Buffer<float>* current);
+  void AddUpSides(const LaneBatch& batch);
+  void AddLanes(const LaneBatch& batch, const SweepVolume& volume);
+  void AddMomentsOfLanes(const LaneBatch& batch, const SweepVolume& volume);
+  void CountSides(const LaneBatch& batch, SweepTally& tally) const;
+  Rgb CountEnds(int lane, const std::vector<float>& sums) const;
 
   Device& TheDevice;
   VolumeLayout Layout;
   const Buffer<float>& SigmaT;
   Deposit To;
-  VoxelBox Box;
+  int MostPlanes;
   bool SameBoundary;
   const AngularValues* Angular;
   const Buffer<float>* OctantSource;
-  int Channels; ///< that are swept together
+  GpuLanes The;
 
-  /// One of each entry of the request's rays, that has any.
-  std::vector<SweepPlan> Plans;
-  std::vector<SweepLane> Lanes;
-  std::vector<std::size_t> FirstEnd; ///< of lanes, in Ends
-  std::vector<BundleInfo> BundleRows;
-  std::vector<CrossingInfo> CrossingRows;
-  std::vector<float> FunctionRows; ///< [ray][function, then beam]
-  int Together = 1;                ///< lanes that go at once: all or one
-  std::size_t MapFloats = 0, EscapedFloats = 0, EndRows = 0;
-  int Rays = 0;
-
-  Buffer<SweepLane> LanesThere;
+  Buffer<SweepLane> Lanes;
   Buffer<BundleInfo> Bundles;
   Buffer<CrossingInfo> Crossings;
-  Buffer<float> Along;    ///< FunctionRows
-  Buffer<float> Directed; ///< as maps: what shines along the rays
-  Buffer<float> Maps[2];
-  Buffer<cl_float4> Entering;         ///< [ray][channel] W through u's, v's face, and where rays start
-  Buffer<float> Path, Flux, Currents; ///< of lanes that go at once
-  Buffer<float> Escaped;              ///< see SweepLane
-  Buffer<float> Sides;                ///< of each of its rows the sum
-  Buffer<float> Ends;                 ///< of the maps' rows behind the last plane: [lane][ray][channel][v]
+  Buffer<float> Along;                            ///< GpuLanes::functions
+  Buffer<float> Directed;                         ///< as maps: what shines along the rays
+  Buffer<float> Maps[2];                          ///< of open axes
+  std::map<std::pair<int, int>, OnTheWay> Rounds; ///< by a batch's first lane, and group
+  Buffer<cl_float4> Entering;                     ///< [ray][channel] W through u's, v's face, and where rays start
+  Buffer<cl_float4> Nothing;                      ///< that comes in
+  Buffer<float> Path, Lost, Flux, Currents; ///< of a batch's lanes; Lost: by rounding from Path, of lanes that go round
+  Buffer<float> Escaped;                    ///< see SweepLane
+  Buffer<float> Sides;                      ///< of each of its rows the sum
+  Buffer<float> Ends;                       ///< of the rows of maps behind the last plane
   std::map<int, std::pair<std::vector<cl_float4>, std::array<Rgb, 6>>> KeptEntering; ///< by group, with power
 };
 
-bool SweepOnGpu::Can(const SweepRequest& request, const std::array<bool, 3>& periodic)
+bool SweepOnGpu::Can(const SweepRequest& request)
 {
-  return !periodic[0] && !periodic[1] && !periodic[2] && !request.faceIn && !request.deposit.faceOut;
+  return !request.faceIn && !request.deposit.faceOut;
 }
 
-SweepOnGpu::Implementation::Implementation(
-  Device& device, const VolumeLayout& layout, const Buffer<float>& sigma_t, const SweepRequest& request, Ways ways)
+SweepOnGpu::Implementation::Implementation(Device& device, const VolumeLayout& layout, const Buffer<float>& sigma_t,
+  const std::array<bool, 3>& periodic, const SweepRequest& request, Ways ways)
   : TheDevice(device)
   , Layout(layout)
   , SigmaT(sigma_t)
   , To(request.deposit)
-  , Box(request.box)
+  , MostPlanes(request.mostPlanes)
   , SameBoundary(request.sameBoundary)
   , Angular(request.angular)
   , OctantSource(request.octantSource)
-  , Channels(layout.Groups().front().count)
+  , The(device, layout, request, periodic, this->FitAtOnce(request, ways))
 {
-  if (!Can(request, {}))
+  if (!Can(request))
   {
     throw std::logic_error("SweepOnGpu cannot do this sweep");
   }
   this->To.flux = this->Angular ? nullptr : this->To.flux; // it is among the moments
-  for (const AxisBundles& along : request.rays)
-  {
-    if (along.bundles.empty())
-    {
-      continue;
-    }
-    this->Plans.emplace_back(device, layout.grid, this->Box, along.axis, along.bundles, this->Channels,
-      std::array<bool, 3>{}, this->To.flux != nullptr, this->To.partialCurrents != nullptr, this->Angular,
-      layout.Places(this->Functions()), false, false);
-  }
-  for (const SweepPlan& plan : this->Plans)
-  {
-    this->LayPlan(plan);
-  }
-  this->ChooseWays(ways);
   this->MakeBuffers();
+  this->MakeArrays();
 }
 
-/// Its bundles and crossings behind those that have their place, and a lane for each way.
-void SweepOnGpu::Implementation::LayPlan(const SweepPlan& plan)
-{
-  const int firstBundle = static_cast<int>(this->BundleRows.size());
-  const int firstCrossing = static_cast<int>(this->CrossingRows.size());
-  this->BundleRows.insert(this->BundleRows.end(), plan.bundleRows.begin(), plan.bundleRows.end());
-  const std::vector<CrossingInfo> crossings = plan.Crossings(0, plan.CrossingPlanes());
-  this->CrossingRows.insert(this->CrossingRows.end(), crossings.begin(), crossings.end());
-  for (int way = 0; way < 2; ++way)
-  {
-    if (way == 0 ? plan.forward : plan.backward)
-    {
-      this->LayLane(plan, way, firstBundle, firstCrossing);
-    }
-  }
-}
-
-/// One more lane, but for where its maps and deposits are.
-void SweepOnGpu::Implementation::LayLane(const SweepPlan& plan, int way, int firstBundle, int firstCrossing)
-{
-  SweepLane lane = {};
-  lane.planes = plan.plane;
-  lane.axis = plan.axes.axis;
-  lane.backward = way;
-  lane.firstBundle = firstBundle;
-  lane.bundles = static_cast<int>(plan.bundles.size());
-  lane.crossings = firstCrossing + plan.PlanesBefore(way) * lane.bundles;
-  lane.firstRay = this->Rays;
-  lane.rays = static_cast<int>(plan.radianceEachWay) / this->Channels;
-  lane.escaped = this->EscapedFloats;
-  lane.positions = std::max(plan.plane.sizeU, plan.plane.sizeV);
-  this->Rays += lane.rays;
-  this->LayFunctions(plan, way);
-  this->EscapedFloats += std::size_t{ 4 } * plan.plane.sizeP * this->Channels * lane.positions;
-  this->FirstEnd.push_back(this->EndRows);
-  this->EndRows += Count(lane.rays) * this->Channels * plan.plane.sizeV;
-  this->Lanes.push_back(lane);
-}
-
-/// The angular functions and beams along the rays of a lane.
-void SweepOnGpu::Implementation::LayFunctions(const SweepPlan& plan, int way)
-{
-  for (const Bundle& bundle : plan.bundles)
-  {
-    for (const Member& member : bundle.members)
-    {
-      const int direction = way == 0 ? member.direction : member.opposite;
-      for (int k = 0; this->Angular && k < this->Functions() + this->Beams(); ++k)
-      {
-        const double value = direction < 0 ? 0.0
-          : k < this->Functions()          ? this->Angular->functions[direction][k]
-                                           : this->Angular->beams[direction][k - this->Functions()];
-        this->FunctionRows.push_back(static_cast<float>(value));
-      }
-    }
-  }
-}
-
-/// All at once, where what they find has room beside each other; else one by one. Of a part of the grid one by one:
-/// what is not swept would have to be cleared.
-void SweepOnGpu::Implementation::ChooseWays(Ways ways)
+/// What all lanes find has room beside each other. Of a part of the grid they go one by one: what is not swept would
+/// have to be cleared.
+bool SweepOnGpu::Implementation::FitAtOnce(const SweepRequest& request, Ways ways) const
 {
   const std::size_t bytes =
-    sizeof(float) * this->DepositFloats() * this->Lanes.size() * this->Channels * this->Layout.Stride();
+    sizeof(float) * this->DepositFloats() * MostLanes * this->Layout.channels * this->Layout.Stride();
   const std::size_t left = this->TheDevice.MemoryLimit() - this->TheDevice.BytesInUse();
-  const bool atOnce = ways == Ways::Automatic && this->Box.VoxelCount() == 0 && bytes <= left / MostAtOnce;
-  this->Together = atOnce ? static_cast<int>(this->Lanes.size()) : 1;
-  std::size_t floats = 0;
-  for (std::size_t i = 0; i < this->Lanes.size(); ++i)
-  {
-    SweepLane& lane = this->Lanes[i];
-    lane.map = atOnce ? floats : 0;
-    lane.deposit = atOnce ? i * this->Channels * this->Layout.Stride() : 0;
-    lane.path = this->Functions() * lane.deposit;
-    const std::size_t maps = Count(lane.rays) * this->Channels * lane.planes.sizeU * lane.planes.sizeV;
-    floats = atOnce ? floats + maps : std::max(floats, maps);
-  }
-  this->MapFloats = floats;
+  return ways == Ways::Automatic && request.box.VoxelCount() == 0 && bytes <= left / MostAtOnce;
 }
 
 void SweepOnGpu::Implementation::MakeBuffers()
 {
   Device& device = this->TheDevice;
-  this->LanesThere = Buffer<SweepLane>(device, this->Lanes, "the rays' ways");
-  this->Bundles = Buffer<BundleInfo>(device, this->BundleRows, "the bundles of rays");
-  this->Crossings = Buffer<CrossingInfo>(device, this->CrossingRows, "the ray pattern");
+  this->Lanes = Buffer<SweepLane>(device, this->The.lanes, "the rays' ways");
+  this->Bundles = Buffer<BundleInfo>(device, this->The.bundles, "the bundles of rays");
+  this->Crossings = Buffer<CrossingInfo>(device, this->The.crossings, "the ray pattern");
+  const std::size_t open = this->The.MostMaps(false), around = this->The.MostMaps(true);
   if (this->Angular)
   {
-    this->Along = Buffer<float>(device, this->FunctionRows, "the angular functions");
-    this->Directed = Buffer<float>(device, this->MapFloats, "what shines along the rays");
+    this->Along = Buffer<float>(device, this->The.functions, "the angular functions");
+    this->Directed = Buffer<float>(device, std::max(open, around), "what shines along the rays");
   }
   for (Buffer<float>& maps : this->Maps)
   {
-    maps = Buffer<float>(device, this->MapFloats, "the light propagation maps");
+    maps = Buffer<float>(device, std::max<std::size_t>(open, 1), "the light propagation maps");
   }
-  this->Entering = Buffer<cl_float4>(device, Count(this->Rays) * this->Channels, "the light that comes in");
-  this->Escaped = Buffer<float>(device, this->EscapedFloats, "the power that leaves sideways");
+  this->Entering = Buffer<cl_float4>(device, Count(this->The.rays) * this->The.channels, "the light that comes in");
+  if (around > 0)
+  {
+    this->Nothing = Buffer<cl_float4>(device, this->Entering.Size(), "the light that comes in");
+    this->Nothing.Fill(cl_float4{});
+  }
+  this->Escaped = Buffer<float>(device, this->The.escaped, "the power that leaves sideways");
   this->Escaped.Fill(0.0f); // rows of the shorter faces stay so at their ends
-  std::size_t rows = 0;
-  for (const SweepLane& lane : this->Lanes)
-  {
-    rows += std::size_t{ 4 } * lane.planes.sizeP * this->Channels;
-  }
-  this->Sides = Buffer<float>(device, rows, "sums");
-  this->Ends = Buffer<float>(device, this->EndRows, "sums");
-  if (this->Together > 1)
-  {
-    const std::size_t values = this->Lanes.size() * this->Channels * this->Layout.Stride();
-    this->Path = Buffer<float>(device, values * this->Functions(), "the light of each way");
-    this->Path.Fill(0.0f); // beyond the voxels it stays
-    if (this->To.flux)
+  this->Sides = Buffer<float>(device, this->The.sideRows, "sums");
+  this->Ends = Buffer<float>(device, this->The.endRows, "sums");
+}
+
+void SweepOnGpu::Implementation::MakeArrays()
+{
+  const std::size_t values = this->The.MostWithArrays() * this->The.channels * this->Layout.Stride();
+  const auto make = [&](Buffer<float>& array, bool wanted, std::size_t parts, const char* what) {
+    if (wanted && values > 0)
     {
-      this->Flux = Buffer<float>(device, 3 * values, "the net flux of each way");
-      this->Flux.Fill(0.0f);
+      array = Buffer<float>(this->TheDevice, parts * values, what);
+      array.Fill(0.0f); // beyond the voxels it stays
     }
-    if (this->To.partialCurrents)
-    {
-      this->Currents = Buffer<float>(device, 6 * values, "the partial currents of each way");
-      this->Currents.Fill(0.0f);
-    }
-  }
+  };
+  make(this->Path, true, this->Functions(), "the light of each way");
+  make(this->Lost, this->The.MostMaps(true) > 0, this->Functions(), "the light of each way");
+  make(this->Flux, this->To.flux != nullptr, 3, "the net flux of each way");
+  make(this->Currents, this->To.partialCurrents != nullptr, 6, "the partial currents of each way");
 }
 
 SweepTally SweepOnGpu::Implementation::Apply(
@@ -258,7 +188,7 @@ SweepTally SweepOnGpu::Implementation::Apply(
 {
   SweepTally tally;
   const std::vector<ChannelGroup> groups = this->Layout.Groups();
-  for (std::size_t g = 0; g < groups.size() && !this->Lanes.empty(); ++g)
+  for (std::size_t g = 0; g < groups.size() && !this->The.lanes.empty(); ++g)
   {
     SweepVolume volume = GroupVolume(this->Layout, groups[g], this->SigmaT, this->To);
     volume.source = source;
@@ -278,24 +208,25 @@ SweepTally SweepOnGpu::Implementation::ApplyGroup(
   const SweepVolume& volume, const SweepBoundary& boundary, const Monitor& monitor)
 {
   SweepTally tally;
-  if (!this->Enter(boundary, volume.firstChannel, tally) && !volume.source)
+  const bool lit = this->Enter(boundary, volume.firstChannel, tally);
+  if (boundary) // the sweep begins anew, as SweepInMemory has it
   {
-    return tally; // nothing to carry
+    this->ForgetGroup(volume.firstChannel);
   }
-  const std::string options = this->Options(volume.source != nullptr);
-  const int lanes = static_cast<int>(this->Lanes.size());
-  for (int lane = 0; lane < lanes; lane += this->Together)
+  const double lanes = static_cast<double>(this->The.lanes.size());
+  for (const LaneBatch& batch : this->The.batches)
   {
-    const double from = static_cast<double>(lane) / lanes, part = static_cast<double>(this->Together) / lanes;
-    this->Launch(options, volume, lane, OfPart(monitor, [=](double done) { return from + part * done; }));
-    this->AddUpEnds(lane);
+    const double from = batch.first / lanes, part = batch.count / lanes;
+    const Monitor ofBatch = OfPart(monitor, [=](double done) { return from + part * done; });
+    if (batch.around)
+    {
+      this->GoRound(batch, volume, tally, ofBatch);
+    }
+    else if (lit || volume.source) // else there is nothing to carry
+    {
+      this->CrossOnce(batch, volume, tally, ofBatch);
+    }
   }
-  this->AddUpSides();
-  if (this->Together > 1)
-  {
-    this->AddLanes(volume);
-  }
-  this->CountOut(tally);
   return tally;
 }
 
@@ -310,7 +241,7 @@ bool SweepOnGpu::Implementation::Enter(const SweepBoundary& boundary, int group,
   auto& [entering, power] = this->KeptEntering[group];
   if (entering.empty())
   {
-    for (const SweepPlan& plan : this->Plans)
+    for (const SweepPlan& plan : this->The.plans)
     {
       const SweepBorder border(plan, boundary, SweepBorder::Holds::RaysAlone);
       for (int way = 0; way < 2; ++way)
@@ -340,125 +271,241 @@ bool SweepOnGpu::Implementation::Enter(const SweepBoundary& boundary, int group,
   return lit;
 }
 
-std::string SweepOnGpu::Implementation::Options(bool shines) const
+/// From where rays start to where they leave their axis.
+void SweepOnGpu::Implementation::CrossOnce(
+  const LaneBatch& batch, const SweepVolume& volume, SweepTally& tally, const Monitor& monitor)
 {
-  return Define("CHANNELS", this->Channels) + Define("SOURCE", shines) + Define("NET_FLUX", this->To.flux != nullptr) +
-    Define("CURRENTS", this->To.partialCurrents != nullptr) + Define("OCTANT_SOURCE", this->OctantSource && shines) +
-    Define("DEGREE", this->Angular ? this->Angular->degree : 0) + Define("BEAMS", this->Beams()) +
-    Define("ADDS", this->Together == 1);
+  this->StartRays(batch);
+  this->Cross(
+    batch, volume, { volume.source != nullptr, &this->Entering }, { &this->Maps[0], &this->Maps[1] }, monitor);
+  this->AddUpEnds(batch, nullptr);
+  this->AddUpSides(batch);
+  if (batch.HasArrays())
+  {
+    this->AddLanes(batch, volume);
+  }
+  this->CountSides(batch, tally);
+  const std::vector<float> sums = this->Ends.Read();
+  for (int i = batch.first; i < batch.first + batch.count; ++i)
+  {
+    const SweepLane& lane = this->The.lanes[i];
+    const Rgb left = this->CountEnds(i, sums);
+    for (int c = 0; c < this->The.channels; ++c)
+    {
+      tally.out[2 * lane.axis + 1 - lane.backward][c] += left[c];
+    }
+  }
 }
 
-PlaneLaunch SweepOnGpu::Implementation::LaunchOf(const SweepVolume& volume, int firstLane) const
+/// From where rays start, all laps, and round the axis with those of the sweep before, until next to nothing is on the
+/// way (numerics.md, section 4.6).
+void SweepOnGpu::Implementation::GoRound(
+  const LaneBatch& batch, const SweepVolume& volume, SweepTally& tally, const Monitor& monitor)
+{
+  for (Buffer<float>* array : { &this->Path, &this->Lost, &this->Flux, &this->Currents })
+  {
+    if (array->Size() > 0)
+    {
+      array->Fill(0.0f);
+    }
+  }
+  OnTheWay& rays = this->RaysOnTheWay(batch, volume.firstChannel);
+  Rgb onTheWay = {};
+  const auto cross = [&](const Crossing& how) {
+    const int planes =
+      this->Cross(batch, volume, how, { &rays.maps[rays.current], &rays.maps[1 - rays.current] }, monitor);
+    rays.current = (rays.current + planes) % 2;
+    this->AddUpEnds(batch, &rays.maps[rays.current]);
+    this->AddUpSides(batch);
+    this->CountSides(batch, tally);
+    const std::vector<float> sums = this->Ends.Read();
+    onTheWay = {};
+    for (int i = batch.first; i < batch.first + batch.count; ++i)
+    {
+      const Rgb ofLane = this->CountEnds(i, sums);
+      for (int c = 0; c < 3; ++c)
+      {
+        onTheWay[c] += ofLane[c];
+      }
+    }
+    return planes;
+  };
+  const int planes = cross({ volume.source != nullptr, &this->Entering });
+  const double atFirst = Sum(onTheWay);
+  for (int gone = planes; gone < this->MostPlanes && Sum(onTheWay) > NothingLeft * atFirst; gone += planes)
+  {
+    const Buffer<CrossingInfo> crossings(
+      this->TheDevice, this->The.plans[batch.plan].Crossings(gone, planes), "the ray pattern");
+    cross({ false, &this->Nothing, &crossings });
+  }
+  this->AddLanes(batch, volume);
+  for (int c = 0; c < this->The.channels; ++c)
+  {
+    tally.onTheWay[c] += onTheWay[c];
+  }
+}
+
+SweepOnGpu::Implementation::OnTheWay& SweepOnGpu::Implementation::RaysOnTheWay(const LaneBatch& batch, int group)
+{
+  OnTheWay& rays = this->Rounds[{ batch.first, group }];
+  if (rays.maps[0].Size() == 0)
+  {
+    for (Buffer<float>& maps : rays.maps)
+    {
+      maps = Buffer<float>(this->TheDevice, batch.maps, "the light propagation maps");
+      maps.Fill(0.0f);
+    }
+  }
+  return rays;
+}
+
+void SweepOnGpu::Implementation::Forget()
+{
+  this->Rounds.clear();
+}
+
+void SweepOnGpu::Implementation::ForgetGroup(int group)
+{
+  for (auto& [key, rays] : this->Rounds)
+  {
+    if (key.second == group)
+    {
+      rays.maps[rays.current].Fill(0.0f);
+    }
+  }
+}
+
+std::string SweepOnGpu::Implementation::Options(const LaneBatch& batch, bool shines) const
+{
+  return Define("CHANNELS", this->The.channels) + Define("SOURCE", shines) +
+    Define("NET_FLUX", this->To.flux != nullptr) + Define("CURRENTS", this->To.partialCurrents != nullptr) +
+    Define("OCTANT_SOURCE", this->OctantSource && shines) +
+    Define("DEGREE", this->Angular ? this->Angular->degree : 0) + Define("BEAMS", this->Beams()) +
+    Define("ADDS", !batch.HasArrays()) + Define("AROUND", batch.around);
+}
+
+PlaneLaunch SweepOnGpu::Implementation::LaunchOf(const LaneBatch& batch, const SweepVolume& volume) const
 {
   PlaneLaunch launch = {};
   launch.sigmaFirst = volume.sigma_t_first;
   launch.sourceFirst = volume.source ? volume.first : 0;
-  launch.putFirst = this->Together == 1 ? volume.first : 0;
+  launch.putFirst = batch.HasArrays() ? 0 : volume.first;
   launch.stride = volume.stride;
-  launch.firstLane = firstLane;
+  launch.firstLane = batch.first;
   launch.firstChannel = volume.firstChannel;
   launch.moments = this->Layout.Places(this->Functions());
   return launch;
 }
 
-/// From where rays start to where they leave their axis.
-void SweepOnGpu::Implementation::Launch(
-  const std::string& options, const SweepVolume& volume, int firstLane, const Monitor& monitor)
+void SweepOnGpu::Implementation::StartRays(const LaneBatch& batch)
 {
-  int sizeU = 0, sizeV = 0, sizeP = 0, rays = 0;
   std::size_t floats = 0;
-  for (int i = firstLane; i < firstLane + this->Together; ++i)
+  for (int i = batch.first; i < batch.first + batch.count; ++i)
   {
-    const SweepLane& lane = this->Lanes[i];
+    const SweepLane& lane = this->The.lanes[i];
+    floats = std::max(floats, Count(lane.rays) * this->The.channels * lane.planes.sizeU * lane.planes.sizeV);
+  }
+  cl::Kernel start =
+    this->TheDevice.Kernel("start_rays", kernel_source::SweepOnGpu, Define("CHANNELS", this->The.channels));
+  With(start, cl_int(batch.first), this->Lanes, this->Entering, this->Maps[0]);
+  this->TheDevice.Queue().enqueueNDRangeKernel(start, cl::NullRange, cl::NDRange(floats, batch.count));
+}
+
+/// All planes, once.
+/// @param maps  that rays are in, and that they come to, in turn
+/// @return planes
+int SweepOnGpu::Implementation::Cross(const LaneBatch& batch, const SweepVolume& volume, const Crossing& how,
+  const std::array<const Buffer<float>*, 2>& maps, const Monitor& monitor)
+{
+  int sizeU = 0, sizeV = 0, planes = 0, rays = 0;
+  for (int i = batch.first; i < batch.first + batch.count; ++i)
+  {
+    const SweepLane& lane = this->The.lanes[i];
     sizeU = std::max(sizeU, lane.planes.sizeU);
     sizeV = std::max(sizeV, lane.planes.sizeV);
-    sizeP = std::max(sizeP, lane.planes.sizeP);
+    planes = std::max(planes, lane.patternPlanes);
     rays += lane.rays;
-    floats = std::max(floats, Count(lane.rays) * this->Channels * lane.planes.sizeU * lane.planes.sizeV);
   }
-  cl::CommandQueue& queue = this->TheDevice.Queue();
-  cl::Kernel start =
-    this->TheDevice.Kernel("start_rays", kernel_source::SweepOnGpu, Define("CHANNELS", this->Channels));
-  With(start, cl_int(firstLane), this->LanesThere, this->Entering, this->Maps[0]);
-  queue.enqueueNDRangeKernel(start, cl::NullRange, cl::NDRange(floats, this->Together));
-
-  const bool adds = this->Together == 1;
+  const bool adds = !batch.HasArrays();
   const Buffer<float>& path = adds ? *this->To.path : this->Path;
+  const Buffer<float>& lost = batch.around ? this->Lost : path;
   const Buffer<float>& flux = !this->To.flux ? path : adds ? *this->To.flux : this->Flux;
   const Buffer<float>& currents = !this->To.partialCurrents ? path : adds ? *this->To.partialCurrents : this->Currents;
-  const Buffer<float>& source = volume.source ? *volume.source : this->SigmaT; // never read where there is none
+  const Buffer<float>& source = how.shines ? *volume.source : this->SigmaT; // never read where there is none
   const Buffer<float>& octants = this->OctantSource ? *this->OctantSource : source;
-  const Buffer<float>& directed = this->Angular ? this->Directed : this->Maps[0];
-  const Buffer<float>& functions = this->Angular ? this->Along : this->Maps[0];
-  const bool findsDirected = this->Angular && volume.source;
-  cl::Kernel kernel = this->TheDevice.Kernel("cross_plane", kernel_source::SweepOnGpu, options);
-  cl::Kernel find;
-  if (findsDirected)
+  const Buffer<float>& directed = this->Angular ? this->Directed : *maps[0];
+  const Buffer<float>& functions = this->Angular ? this->Along : *maps[0];
+  const std::string options = this->Options(batch, how.shines);
+  cl::Kernel kernel = this->TheDevice.Kernel("cross_plane", kernel_source::SweepOnGpu, options), find;
+  if (this->Angular && how.shines)
   {
     find = this->TheDevice.Kernel("find_directed", kernel_source::SweepOnGpu, options);
   }
-  PlaneLaunch launch = this->LaunchOf(volume, firstLane);
-  const cl::NDRange all(RoundUp(Count(sizeU), GroupU), RoundUp(Count(sizeV), GroupV), this->Together);
-  const double seconds = SecondsPerRay * sizeU * sizeV * rays * this->Channels;
-  for (launch.plane = 0; launch.plane < sizeP; ++launch.plane)
+  PlaneLaunch launch = this->LaunchOf(batch, volume);
+  launch.ofRound = how.round != nullptr;
+  const cl::NDRange all(RoundUp(Count(sizeU), GroupU), RoundUp(Count(sizeV), GroupV), batch.count);
+  const cl::NDRange group(GroupU, GroupV, 1);
+  const double seconds = SecondsPerRay * sizeU * sizeV * rays * this->The.channels;
+  for (launch.plane = 0; launch.plane < planes; ++launch.plane)
   {
-    if (findsDirected)
+    if (find())
     {
-      With(find, launch, this->LanesThere, source, functions, directed);
-      queue.enqueueNDRangeKernel(find, cl::NullRange, all, cl::NDRange(GroupU, GroupV, 1));
+      With(find, launch, this->Lanes, source, functions, directed);
+      this->TheDevice.Queue().enqueueNDRangeKernel(find, cl::NullRange, all, group);
     }
-    With(kernel, launch, this->LanesThere, this->SigmaT, source, octants, path, flux, currents,
-      this->Maps[launch.plane % 2], this->Maps[1 - launch.plane % 2], this->Entering, this->Bundles, this->Crossings,
-      directed, functions, this->Escaped);
-    queue.enqueueNDRangeKernel(kernel, cl::NullRange, all, cl::NDRange(GroupU, GroupV, 1));
+    With(kernel, launch, this->Lanes, this->SigmaT, source, octants, path, lost, flux, currents,
+      *maps[launch.plane % 2], *maps[1 - launch.plane % 2], *how.entering, this->Bundles,
+      how.round ? *how.round : this->Crossings, directed, functions, this->Escaped);
+    this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, all, group);
     this->TheDevice.Queued(seconds);
-    Report(monitor, (launch.plane + 1.0) / sizeP);
+    Report(monitor, (launch.plane + 1.0) / planes);
   }
+  return planes;
 }
 
-/// What is in the maps behind the last plane has left.
-void SweepOnGpu::Implementation::AddUpEnds(int firstLane)
-{
-  cl::Kernel kernel = this->TheDevice.Kernel("sum_rows", kernel_source::SweepOnGpu, Define("CHANNELS", this->Channels));
-  for (int i = firstLane; i < firstLane + this->Together; ++i)
-  {
-    const SweepLane& lane = this->Lanes[i];
-    With(kernel, this->Maps[lane.planes.sizeP % 2], lane.map, cl_int(lane.planes.sizeU), this->Ends,
-      cl_ulong(this->FirstEnd[i]));
-    this->TheDevice.Queue().enqueueNDRangeKernel(
-      kernel, cl::NullRange, cl::NDRange(Count(lane.rays) * this->Channels * lane.planes.sizeV));
-  }
-}
-
-void SweepOnGpu::Implementation::AddUpSides()
-{
-  cl::Kernel kernel = this->TheDevice.Kernel("sum_rows", kernel_source::SweepOnGpu, Define("CHANNELS", this->Channels));
-  std::size_t first = 0;
-  for (const SweepLane& lane : this->Lanes)
-  {
-    const std::size_t rows = std::size_t{ 4 } * lane.planes.sizeP * this->Channels;
-    With(kernel, this->Escaped, lane.escaped, lane.positions, this->Sides, cl_ulong(first));
-    this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(rows));
-    first += rows;
-  }
-}
-
-void SweepOnGpu::Implementation::AddLanes(const SweepVolume& volume)
+/// What is in the maps behind the last plane: it has left, or is on its way round the axis.
+/// @param current  the maps; null: of each lane those that its planes end with
+void SweepOnGpu::Implementation::AddUpEnds(const LaneBatch& batch, const Buffer<float>* current)
 {
   cl::Kernel kernel =
-    this->TheDevice.Kernel("add_lanes", kernel_source::SweepOnGpu, Define("CHANNELS", this->Channels));
+    this->TheDevice.Kernel("sum_rows", kernel_source::SweepOnGpu, Define("CHANNELS", this->The.channels));
+  for (int i = batch.first; i < batch.first + batch.count; ++i)
+  {
+    const SweepLane& lane = this->The.lanes[i];
+    With(kernel, current ? *current : this->Maps[lane.planes.sizeP % 2], lane.map, cl_int(lane.planes.sizeU),
+      this->Ends, cl_ulong(this->The.ends[i]));
+    this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(this->The.EndRows(i)));
+  }
+}
+
+void SweepOnGpu::Implementation::AddUpSides(const LaneBatch& batch)
+{
+  cl::Kernel kernel =
+    this->TheDevice.Kernel("sum_rows", kernel_source::SweepOnGpu, Define("CHANNELS", this->The.channels));
+  for (int i = batch.first; i < batch.first + batch.count; ++i)
+  {
+    const SweepLane& lane = this->The.lanes[i];
+    With(kernel, this->Escaped, lane.escaped, lane.positions, this->Sides, cl_ulong(this->The.sides[i]));
+    this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(this->The.SideRows(i)));
+  }
+}
+
+void SweepOnGpu::Implementation::AddLanes(const LaneBatch& batch, const SweepVolume& volume)
+{
+  cl::Kernel kernel =
+    this->TheDevice.Kernel("add_lanes", kernel_source::SweepOnGpu, Define("CHANNELS", this->The.channels));
   const auto add = [&](const Buffer<float>& ofLanes, const Buffer<float>* to, std::size_t components) {
     if (!to)
     {
       return;
     }
-    const std::size_t values = components * this->Channels * this->Layout.Stride();
-    With(kernel, ofLanes, cl_int(this->Lanes.size()), cl_ulong(values), *to, cl_ulong(components * volume.first));
+    const std::size_t values = components * this->The.channels * this->Layout.Stride();
+    With(kernel, ofLanes, cl_int(batch.count), cl_ulong(values), *to, cl_ulong(components * volume.first));
     this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(values));
   };
   if (this->Angular)
   {
-    this->AddMomentsOfLanes(volume);
+    this->AddMomentsOfLanes(batch, volume);
   }
   else
   {
@@ -468,39 +515,44 @@ void SweepOnGpu::Implementation::AddLanes(const SweepVolume& volume)
   add(this->Currents, this->To.partialCurrents, 6);
 }
 
-void SweepOnGpu::Implementation::AddMomentsOfLanes(const SweepVolume& volume)
+void SweepOnGpu::Implementation::AddMomentsOfLanes(const LaneBatch& batch, const SweepVolume& volume)
 {
-  cl::Kernel kernel = this->TheDevice.Kernel("add_moments_of_lanes", kernel_source::SweepOnGpu, this->Options(false));
-  With(
-    kernel, this->LaunchOf(volume, 0), this->Path, cl_int(this->Lanes.size()), *this->To.path, cl_ulong(volume.first));
+  cl::Kernel kernel =
+    this->TheDevice.Kernel("add_moments_of_lanes", kernel_source::SweepOnGpu, this->Options(batch, false));
+  With(kernel, this->LaunchOf(batch, volume), this->Path, cl_int(batch.count), *this->To.path, cl_ulong(volume.first));
   this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange,
-    cl::NDRange(this->Layout.grid.VoxelCount(), static_cast<std::size_t>(this->Functions()) * this->Channels));
+    cl::NDRange(this->Layout.grid.VoxelCount(), static_cast<std::size_t>(this->Functions()) * this->The.channels));
 }
 
-void SweepOnGpu::Implementation::CountOut(SweepTally& tally) const
+void SweepOnGpu::Implementation::CountSides(const LaneBatch& batch, SweepTally& tally) const
 {
-  const std::vector<float> sides = this->Sides.Read(), ends = this->Ends.Read();
-  std::size_t row = 0;
-  for (std::size_t i = 0; i < this->Lanes.size(); ++i)
+  const std::vector<float> sums = this->Sides.Read();
+  for (int i = batch.first; i < batch.first + batch.count; ++i)
   {
-    const SweepLane& lane = this->Lanes[i];
-    const PlaneAxes axes = AcrossAxis(lane.axis);
+    const PlaneAxes axes = AcrossAxis(this->The.lanes[i].axis);
     const std::array<int, 4> faces = { 2 * axes.u, 2 * axes.u + 1, 2 * axes.v, 2 * axes.v + 1 };
-    for (int r = 0; r < 4 * lane.planes.sizeP * this->Channels; ++r, ++row)
+    for (std::size_t r = 0; r < this->The.SideRows(i); ++r)
     {
-      tally.out[faces[r / this->Channels % 4]][r % this->Channels] += sides[row];
-    }
-    for (int r = 0; r < lane.rays * this->Channels * lane.planes.sizeV; ++r)
-    {
-      const int channel = r / lane.planes.sizeV % this->Channels;
-      tally.out[2 * lane.axis + 1 - lane.backward][channel] += ends[this->FirstEnd[i] + r];
+      tally.out[faces[r / this->The.channels % 4]][r % this->The.channels] += sums[this->The.sides[i] + r];
     }
   }
 }
 
-SweepOnGpu::SweepOnGpu(
-  Device& device, const VolumeLayout& layout, const Buffer<float>& sigma_t, const SweepRequest& request, Ways ways)
-  : Inner(std::make_unique<Implementation>(device, layout, sigma_t, request, ways))
+/// Of a lane.
+Rgb SweepOnGpu::Implementation::CountEnds(int lane, const std::vector<float>& sums) const
+{
+  Rgb power = {};
+  const std::size_t ofMap = this->The.lanes[lane].planes.sizeV;
+  for (std::size_t r = 0; r < this->The.EndRows(lane); ++r)
+  {
+    power[r / ofMap % this->The.channels] += sums[this->The.ends[lane] + r];
+  }
+  return power;
+}
+
+SweepOnGpu::SweepOnGpu(Device& device, const VolumeLayout& layout, const Buffer<float>& sigma_t,
+  const std::array<bool, 3>& periodic, const SweepRequest& request, Ways ways)
+  : Inner(std::make_unique<Implementation>(device, layout, sigma_t, periodic, request, ways))
 {
 }
 
@@ -509,5 +561,10 @@ SweepOnGpu::~SweepOnGpu() = default;
 SweepTally SweepOnGpu::Apply(const Buffer<float>* source, const SweepBoundary& boundary, const Monitor& monitor)
 {
   return this->Inner->Apply(source, boundary, monitor);
+}
+
+void SweepOnGpu::Forget()
+{
+  this->Inner->Forget();
 }
 }

@@ -9,18 +9,18 @@
 namespace tyndall
 {
 /// The sweep of a volume in one device's memory, organised for GPUs: a work-item a voxel of a plane, all rays of one
-/// way along an axis, and all six ways at once where there is memory for it. Its light is that of SweepInMemory to
-/// 1e-5, and the same bit for bit each time (numerics.md, section 4.8).
+/// way along an axis, and all ways along open axes at once where there is memory for it, both along a periodic one. Its
+/// light is that of SweepInMemory to 1e-5, and the same bit for bit each time (numerics.md, section 4.8).
 ///
 /// Memory: two floats a voxel of a plane, ray and channel; where ways go at once, each has its own path, flux and
 /// partial currents, in at most a quarter of the memory that is left. Else they follow one another. With angular moments
-/// a float more a voxel of a plane, ray and channel, what shines along it; a path is one of each function then.
+/// a float more a voxel of a plane, ray and channel, what shines along it; a path is one of each function then. Along a
+/// periodic axis a path is two floats, and maps stay from sweep to sweep.
 class SweepOnGpu : public SweepOperator
 {
 public:
-  /// Whether it can do what is asked for: no periodic axis, no light by cells of the faces.
-  /// SweepInMemory can, on GPUs too.
-  static bool Can(const SweepRequest& request, const std::array<bool, 3>& periodic);
+  /// Whether it can do what is asked for: no light by cells of the faces. SweepInMemory can, on GPUs too.
+  static bool Can(const SweepRequest& request);
 
   /// Along the axes, there and back.
   enum class Ways
@@ -30,13 +30,13 @@ public:
   };
 
   /// @param sigma_t  must stay
-  /// @param request  what Can was true of
-  SweepOnGpu(Device& device, const VolumeLayout& layout, const Buffer<float>& sigma_t, const SweepRequest& request,
-    Ways ways = Ways::Automatic);
+  /// @param request  what Can was true of; no box of a grid with periodic axes
+  SweepOnGpu(Device& device, const VolumeLayout& layout, const Buffer<float>& sigma_t,
+    const std::array<bool, 3>& periodic, const SweepRequest& request, Ways ways = Ways::Automatic);
   ~SweepOnGpu() override;
 
   SweepTally Apply(const Buffer<float>* source, const SweepBoundary& boundary, const Monitor& monitor) override;
-  void Forget() override {} ///< no ray goes round
+  void Forget() override;
 
 private:
   class Implementation;

@@ -6,11 +6,14 @@
 
 SHARED_BEGIN
 /// All rays that march one way along an axis: they cross a plane of it in one launch, a work-item a voxel of the plane.
+/// Its maps and arrays are those of its batch (GpuLanes.h).
 typedef struct
 {
   PlaneInfo planes;
   int axis;
-  int backward; ///< 0 marches from the lower end of the axis, 1 from the upper
+  int backward;             ///< 0 marches from the lower end of the axis, 1 from the upper
+  int patternPlanes;        ///< that rays of a sweep start in: those of the axis, or of several laps round it
+  int periodicU, periodicV; ///< across it
   int firstBundle, bundles;
   int crossings; ///< where those of its first plane begin, [plane][bundle]
   int firstRay;  ///< of all lanes' rays, each a float4 [channel] in `entering`; its maps begin there, too
@@ -30,6 +33,7 @@ typedef struct
   ulong stride;                  ///< from one channel to the next
   int plane;                     ///< from where rays start
   int firstLane;                 ///< that of the first work-items
+  int ofRound;                   ///< 1: the crossings begin with this launch's lanes, and planes; 0: see SweepLane
   int firstChannel;
   MomentPlaces moments; ///< of source and path, where light has angular moments
 } PlaneLaunch;

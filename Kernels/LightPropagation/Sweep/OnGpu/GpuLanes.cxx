@@ -1,0 +1,164 @@
+#include "LightPropagation/Sweep/OnGpu/GpuLanes.h"
+
+#include "Device/Sizes.h"
+
+#include <algorithm>
+
+namespace tyndall
+{
+GpuLanes::GpuLanes(const Device& device, const VolumeLayout& layout, const SweepRequest& request,
+  const std::array<bool, 3>& periodic, bool atOnce)
+  : channels(layout.Groups().front().count)
+{
+  const int functionCount = request.angular ? request.angular->Functions() : 1;
+  std::vector<AxisBundles> rays = request.rays;
+  std::stable_partition(rays.begin(), rays.end(), [&](const AxisBundles& along) { return !periodic[along.axis]; });
+  for (const AxisBundles& along : rays)
+  {
+    if (!along.bundles.empty())
+    {
+      this->plans.emplace_back(device, layout.grid, request.box, along.axis, along.bundles, this->channels, periodic,
+        request.deposit.flux && !request.angular, request.deposit.partialCurrents != nullptr, request.angular,
+        layout.Places(functionCount), false, false);
+    }
+  }
+  for (const SweepPlan& plan : this->plans)
+  {
+    this->LayPlan(plan, request.angular);
+  }
+  this->LayBatches(atOnce);
+  for (LaneBatch& batch : this->batches)
+  {
+    this->Place(batch, layout.Stride(), functionCount);
+  }
+}
+
+/// Its bundles and crossings behind those that have their place, and a lane for each way.
+void GpuLanes::LayPlan(const SweepPlan& plan, const AngularValues* angular)
+{
+  const int firstBundle = static_cast<int>(this->bundles.size());
+  const int firstCrossing = static_cast<int>(this->crossings.size());
+  this->bundles.insert(this->bundles.end(), plan.bundleRows.begin(), plan.bundleRows.end());
+  const std::vector<CrossingInfo> rows = plan.Crossings(0, plan.CrossingPlanes());
+  this->crossings.insert(this->crossings.end(), rows.begin(), rows.end());
+  for (int way = 0; way < 2; ++way)
+  {
+    if (way == 0 ? plan.forward : plan.backward)
+    {
+      this->LayLane(plan, way, firstBundle, firstCrossing);
+      if (angular)
+      {
+        this->LayFunctions(plan, way, *angular);
+      }
+    }
+  }
+}
+
+/// One more lane, but for where its maps and deposits are.
+void GpuLanes::LayLane(const SweepPlan& plan, int way, int firstBundle, int firstCrossing)
+{
+  SweepLane lane = {};
+  lane.planes = plan.plane;
+  lane.axis = plan.axes.axis;
+  lane.backward = way;
+  lane.patternPlanes = plan.PatternPlanes();
+  lane.periodicU = plan.periodic[plan.axes.u];
+  lane.periodicV = plan.periodic[plan.axes.v];
+  lane.firstBundle = firstBundle;
+  lane.bundles = static_cast<int>(plan.bundles.size());
+  lane.crossings = firstCrossing + plan.PlanesBefore(way) * lane.bundles;
+  lane.firstRay = this->rays;
+  lane.rays = static_cast<int>(plan.radianceEachWay) / this->channels;
+  lane.escaped = this->escaped;
+  lane.positions = std::max(plan.plane.sizeU, plan.plane.sizeV);
+  this->lanes.push_back(lane);
+  this->PlanOfLane.push_back(&plan - this->plans.data());
+  const int number = static_cast<int>(this->lanes.size()) - 1;
+  this->rays += lane.rays;
+  this->escaped += this->SideRows(number) * lane.positions;
+  this->ends.push_back(this->endRows);
+  this->endRows += this->EndRows(number);
+  this->sides.push_back(this->sideRows);
+  this->sideRows += this->SideRows(number);
+}
+
+void GpuLanes::LayFunctions(const SweepPlan& plan, int way, const AngularValues& angular)
+{
+  for (const Bundle& bundle : plan.bundles)
+  {
+    for (const Member& member : bundle.members)
+    {
+      const int direction = way == 0 ? member.direction : member.opposite;
+      for (int k = 0; k < angular.Functions() + angular.Beams(); ++k)
+      {
+        const double value = direction < 0 ? 0.0
+          : k < angular.Functions()        ? angular.functions[direction][k]
+                                           : angular.beams[direction][k - angular.Functions()];
+        this->functions.push_back(static_cast<float>(value));
+      }
+    }
+  }
+}
+
+void GpuLanes::LayBatches(bool atOnce)
+{
+  const auto isAround = [this](std::size_t lane) {
+    const SweepPlan& plan = this->plans[this->PlanOfLane[lane]];
+    return plan.periodic[plan.axes.axis];
+  };
+  for (std::size_t i = 0; i < this->lanes.size(); ++i)
+  {
+    const bool around = isAround(i);
+    const bool joins = atOnce && !this->batches.empty() && this->batches.back().around == around &&
+      (!around || this->batches.back().plan == this->PlanOfLane[i]);
+    if (!joins)
+    {
+      this->batches.push_back({ static_cast<int>(i), 0, around, this->PlanOfLane[i] });
+    }
+    ++this->batches.back().count;
+  }
+}
+
+/// Where the maps and arrays of a batch's lanes are.
+void GpuLanes::Place(LaneBatch& batch, std::size_t stride, int functionCount)
+{
+  for (int i = 0; i < batch.count; ++i)
+  {
+    SweepLane& lane = this->lanes[batch.first + i];
+    lane.map = batch.maps;
+    lane.deposit = batch.HasArrays() ? i * this->channels * stride : 0;
+    lane.path = functionCount * lane.deposit;
+    batch.maps += Count(lane.rays) * this->channels * lane.planes.sizeU * lane.planes.sizeV;
+  }
+}
+
+std::size_t GpuLanes::MostMaps(bool around) const
+{
+  std::size_t most = 0;
+  for (const LaneBatch& batch : this->batches)
+  {
+    most = batch.around == around ? std::max(most, batch.maps) : most;
+  }
+  return most;
+}
+
+int GpuLanes::MostWithArrays() const
+{
+  int most = 0;
+  for (const LaneBatch& batch : this->batches)
+  {
+    most = batch.HasArrays() ? std::max(most, batch.count) : most;
+  }
+  return most;
+}
+
+std::size_t GpuLanes::EndRows(int lane) const
+{
+  return Count(this->lanes[lane].rays) * this->channels * this->lanes[lane].planes.sizeV;
+}
+
+std::size_t GpuLanes::SideRows(int lane) const
+{
+  return std::size_t{ 4 } * this->lanes[lane].patternPlanes * this->channels;
+}
+}
