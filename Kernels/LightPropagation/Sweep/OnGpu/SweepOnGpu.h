@@ -13,9 +13,9 @@ namespace tyndall
 /// light is that of SweepInMemory to 1e-5, and the same bit for bit each time (numerics.md, section 4.8).
 ///
 /// Memory: two floats a voxel of a plane, ray and channel; where ways go at once, each has its own path, flux and
-/// partial currents, in at most a quarter of the memory that is left. Else they follow one another. With angular moments
-/// a float more a voxel of a plane, ray and channel, what shines along it; a path is one of each function then. Along a
-/// periodic axis a path is two floats, and maps stay from sweep to sweep.
+/// partial currents, in at most a quarter of the memory that is left. Else they follow one another. With angular
+/// moments a float more a voxel of a plane, ray and channel, what shines along it; a path is one of each function then.
+/// Along a periodic axis a path is two floats, and maps stay from sweep to sweep.
 class SweepOnGpu : public SweepOperator
 {
 public:
