@@ -3,6 +3,7 @@
 #include "Device/Defines.h"
 #include "Device/Sizes.h"
 #include "LightPropagation/Sweep/OnGpu/GpuLanes.h"
+#include "LightPropagation/Sweep/OnGpu/LanePowers.h"
 #include "LightPropagation/Sweep/SweepBorder.h"
 #include "LightPropagation/Sweep/SweepPlan.h"
 #include "LightPropagation/Sweep/SweepVolume.h"
@@ -70,12 +71,8 @@ private:
   void StartRays(const LaneBatch& batch);
   int Cross(const LaneBatch& batch, const SweepVolume& volume, const Crossing& how,
     const std::array<const Buffer<float>*, 2>& maps, const Monitor& monitor);
-  void AddUpEnds(const LaneBatch& batch, const Buffer<float>* current);
-  void AddUpSides(const LaneBatch& batch);
   void AddLanes(const LaneBatch& batch, const SweepVolume& volume);
   void AddMomentsOfLanes(const LaneBatch& batch, const SweepVolume& volume);
-  void CountSides(const LaneBatch& batch, SweepTally& tally) const;
-  Rgb CountEnds(int lane, const std::vector<float>& sums) const;
 
   Device& TheDevice;
   VolumeLayout Layout;
@@ -97,9 +94,7 @@ private:
   Buffer<cl_float4> Entering;                     ///< [ray][channel] W through u's, v's face, and where rays start
   Buffer<cl_float4> Nothing;                      ///< that comes in
   Buffer<float> Path, Lost, Flux, Currents; ///< of a batch's lanes; Lost: by rounding from Path, of lanes that go round
-  Buffer<float> Escaped;                    ///< see SweepLane
-  Buffer<float> Sides;                      ///< of each of its rows the sum
-  Buffer<float> Ends;                       ///< of the rows of maps behind the last plane
+  LanePowers Powers;
   std::map<int, std::pair<std::vector<cl_float4>, std::array<Rgb, 6>>> KeptEntering; ///< by group, with power
 };
 
@@ -119,6 +114,7 @@ SweepOnGpu::Implementation::Implementation(Device& device, const VolumeLayout& l
   , Angular(request.angular)
   , OctantSource(request.octantSource)
   , The(device, layout, request, periodic, this->FitAtOnce(request, ways))
+  , Powers(device, this->The)
 {
   if (!Can(request))
   {
@@ -161,10 +157,6 @@ void SweepOnGpu::Implementation::MakeBuffers()
     this->Nothing = Buffer<cl_float4>(device, this->Entering.Size(), "the light that comes in");
     this->Nothing.Fill(cl_float4{});
   }
-  this->Escaped = Buffer<float>(device, this->The.escaped, "the power that leaves sideways");
-  this->Escaped.Fill(0.0f); // rows of the shorter faces stay so at their ends
-  this->Sides = Buffer<float>(device, this->The.sideRows, "sums");
-  this->Ends = Buffer<float>(device, this->The.endRows, "sums");
 }
 
 void SweepOnGpu::Implementation::MakeArrays()
@@ -278,23 +270,14 @@ void SweepOnGpu::Implementation::CrossOnce(
   this->StartRays(batch);
   this->Cross(
     batch, volume, { volume.source != nullptr, &this->Entering }, { &this->Maps[0], &this->Maps[1] }, monitor);
-  this->AddUpEnds(batch, nullptr);
-  this->AddUpSides(batch);
+  this->Powers.AddUp(
+    batch, [this](const SweepLane& lane) -> const Buffer<float>& { return this->Maps[lane.planes.sizeP % 2]; });
   if (batch.HasArrays())
   {
     this->AddLanes(batch, volume);
   }
-  this->CountSides(batch, tally);
-  const std::vector<float> sums = this->Ends.Read();
-  for (int i = batch.first; i < batch.first + batch.count; ++i)
-  {
-    const SweepLane& lane = this->The.lanes[i];
-    const Rgb left = this->CountEnds(i, sums);
-    for (int c = 0; c < this->The.channels; ++c)
-    {
-      tally.out[2 * lane.axis + 1 - lane.backward][c] += left[c];
-    }
-  }
+  this->Powers.CountSides(batch, tally);
+  this->Powers.CountEnds(batch, tally);
 }
 
 /// From where rays start, all laps, and round the axis with those of the sweep before, until next to nothing is on the
@@ -315,19 +298,9 @@ void SweepOnGpu::Implementation::GoRound(
     const int planes =
       this->Cross(batch, volume, how, { &rays.maps[rays.current], &rays.maps[1 - rays.current] }, monitor);
     rays.current = (rays.current + planes) % 2;
-    this->AddUpEnds(batch, &rays.maps[rays.current]);
-    this->AddUpSides(batch);
-    this->CountSides(batch, tally);
-    const std::vector<float> sums = this->Ends.Read();
-    onTheWay = {};
-    for (int i = batch.first; i < batch.first + batch.count; ++i)
-    {
-      const Rgb ofLane = this->CountEnds(i, sums);
-      for (int c = 0; c < 3; ++c)
-      {
-        onTheWay[c] += ofLane[c];
-      }
-    }
+    this->Powers.AddUp(batch, [&rays](const SweepLane&) -> const Buffer<float>& { return rays.maps[rays.current]; });
+    this->Powers.CountSides(batch, tally);
+    onTheWay = this->Powers.OfEnds(batch);
     return planes;
   };
   const int planes = cross({ volume.source != nullptr, &this->Entering });
@@ -455,39 +428,12 @@ int SweepOnGpu::Implementation::Cross(const LaneBatch& batch, const SweepVolume&
     }
     With(kernel, launch, this->Lanes, this->SigmaT, source, octants, path, lost, flux, currents,
       *maps[launch.plane % 2], *maps[1 - launch.plane % 2], *how.entering, this->Bundles,
-      how.round ? *how.round : this->Crossings, directed, functions, this->Escaped);
+      how.round ? *how.round : this->Crossings, directed, functions, this->Powers.Escaped());
     this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, all, group);
     this->TheDevice.Queued(seconds);
     Report(monitor, (launch.plane + 1.0) / planes);
   }
   return planes;
-}
-
-/// What is in the maps behind the last plane: it has left, or is on its way round the axis.
-/// @param current  the maps; null: of each lane those that its planes end with
-void SweepOnGpu::Implementation::AddUpEnds(const LaneBatch& batch, const Buffer<float>* current)
-{
-  cl::Kernel kernel =
-    this->TheDevice.Kernel("sum_rows", kernel_source::SweepOnGpu, Define("CHANNELS", this->The.channels));
-  for (int i = batch.first; i < batch.first + batch.count; ++i)
-  {
-    const SweepLane& lane = this->The.lanes[i];
-    With(kernel, current ? *current : this->Maps[lane.planes.sizeP % 2], lane.map, cl_int(lane.planes.sizeU),
-      this->Ends, cl_ulong(this->The.ends[i]));
-    this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(this->The.EndRows(i)));
-  }
-}
-
-void SweepOnGpu::Implementation::AddUpSides(const LaneBatch& batch)
-{
-  cl::Kernel kernel =
-    this->TheDevice.Kernel("sum_rows", kernel_source::SweepOnGpu, Define("CHANNELS", this->The.channels));
-  for (int i = batch.first; i < batch.first + batch.count; ++i)
-  {
-    const SweepLane& lane = this->The.lanes[i];
-    With(kernel, this->Escaped, lane.escaped, lane.positions, this->Sides, cl_ulong(this->The.sides[i]));
-    this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(this->The.SideRows(i)));
-  }
 }
 
 void SweepOnGpu::Implementation::AddLanes(const LaneBatch& batch, const SweepVolume& volume)
@@ -522,32 +468,6 @@ void SweepOnGpu::Implementation::AddMomentsOfLanes(const LaneBatch& batch, const
   With(kernel, this->LaunchOf(batch, volume), this->Path, cl_int(batch.count), *this->To.path, cl_ulong(volume.first));
   this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange,
     cl::NDRange(this->Layout.grid.VoxelCount(), static_cast<std::size_t>(this->Functions()) * this->The.channels));
-}
-
-void SweepOnGpu::Implementation::CountSides(const LaneBatch& batch, SweepTally& tally) const
-{
-  const std::vector<float> sums = this->Sides.Read();
-  for (int i = batch.first; i < batch.first + batch.count; ++i)
-  {
-    const PlaneAxes axes = AcrossAxis(this->The.lanes[i].axis);
-    const std::array<int, 4> faces = { 2 * axes.u, 2 * axes.u + 1, 2 * axes.v, 2 * axes.v + 1 };
-    for (std::size_t r = 0; r < this->The.SideRows(i); ++r)
-    {
-      tally.out[faces[r / this->The.channels % 4]][r % this->The.channels] += sums[this->The.sides[i] + r];
-    }
-  }
-}
-
-/// Of a lane.
-Rgb SweepOnGpu::Implementation::CountEnds(int lane, const std::vector<float>& sums) const
-{
-  Rgb power = {};
-  const std::size_t ofMap = this->The.lanes[lane].planes.sizeV;
-  for (std::size_t r = 0; r < this->The.EndRows(lane); ++r)
-  {
-    power[r / ofMap % this->The.channels] += sums[this->The.ends[lane] + r];
-  }
-  return power;
 }
 
 SweepOnGpu::SweepOnGpu(Device& device, const VolumeLayout& layout, const Buffer<float>& sigma_t,

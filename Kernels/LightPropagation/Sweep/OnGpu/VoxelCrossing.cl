@@ -1,0 +1,361 @@
+// Rays of one bundle through a voxel of a plane, for SweepOnGpu.cl, which says what the host gives. A voxel's work-item
+// computes what its neighbours do to the rays that they send it (numerics.md, Eq. (30a)).
+
+#pragma once
+#include "LightPropagation/Sweep/OnGpu/SweepOnGpuShared.h"
+#include "Numerics/Numerics.cl"
+
+// What a segment does to rays, see SweepCrossing.cl; `own`: path of the light that a source of 1 adds in its own voxel.
+typedef struct
+{
+  float meanLength, keep, change, own;
+} segment_effect;
+
+typedef struct
+{
+  float power[CHANNELS];
+} colours;
+
+// Where a work-item is.
+typedef struct
+{
+  const __global SweepLane* lane;
+  const __global float* sigma;   // of the plane's voxel (0, 0)
+  const __global float* source;  // the same
+  const __global float* octants; // the same, where OCTANT_SOURCE
+  ulong stride;
+  int sizeU, sizeV;
+  float meanLength[MeanLengthTerms];
+  float thin, vacuum;
+} plane_state;
+
+// A bundle in the plane, and one of its members.
+typedef struct
+{
+  const __global float* rays;      // of the member, [channel][v][u]
+  const __global float4* entering; // [channel] through u's, v's face
+  const __global float* directed;  // where DEGREE, as rays: what shines along it, W / (length^3 sr)
+  float power;
+  float length[3], part[3];
+  int du[3], dv[3];
+  bool bothAtOnce; // moves along u and v
+  int octants[2];  // it goes between: the same but for rays that go neither way along u or v
+} member_state;
+
+static segment_effect effect_of(const plane_state* state, float sigma, float length)
+{
+  segment_effect effect;
+  const float tau = sigma * length;
+  if (sigma < state->thin)
+  {
+    float rest = state->meanLength[MeanLengthTerms - 1];
+    for (int i = MeanLengthTerms - 2; i >= 0; --i)
+    {
+      rest = multiply_add(rest, tau, state->meanLength[i]);
+    }
+    const float mean = multiply_add(rest, tau, 1.0f);
+    effect.meanLength = mean * length;
+    effect.keep = 1.0f;
+    effect.change = -tau * mean;
+    effect.own = -length * length * rest;
+    return effect;
+  }
+  float left;
+  const float lost = extinguished(tau, &left);
+  effect.meanLength = lost / sigma;
+  effect.keep = tau < 1.0f ? 1.0f : 0.0f;
+  effect.change = tau < 1.0f ? -lost : left;
+  effect.own = (length - effect.meanLength) / sigma;
+  return effect;
+}
+
+static bool is_inside(const plane_state* state, int u, int v)
+{
+  return u >= 0 && u < state->sizeU && v >= 0 && v < state->sizeV;
+}
+
+static long voxel_of(const plane_state* state, int u, int v)
+{
+  return (long)u * state->lane->planes.stepU + (long)v * state->lane->planes.stepV;
+}
+
+static segment_effect effect_at(const plane_state* state, int u, int v, float length)
+{
+  return effect_of(state, fmax(state->sigma[voxel_of(state, u, v)], state->vacuum), length);
+}
+
+// By how much more than the source a voxel shines into a member's octant.
+static float shines_more(const plane_state* state, const member_state* member, int c, long voxel)
+{
+#if OCTANT_SOURCE
+  const __global float* octants = state->octants + 8 * c * state->stride + voxel;
+  return 0.5f * (octants[member->octants[0] * state->stride] + octants[member->octants[1] * state->stride]);
+#else
+  return 0.0f;
+#endif
+}
+
+// Rays behind a segment in voxel (u, v).
+static colours behind(
+  const plane_state* state, const member_state* member, int u, int v, colours before, segment_effect effect)
+{
+  colours after;
+  for (int c = 0; c < CHANNELS; ++c)
+  {
+    float kept = before.power[c] * effect.keep;
+#if SOURCE
+#if DEGREE
+    const float shines = member->directed[((ulong)c * state->sizeV + v) * state->sizeU + u];
+#else
+    const long voxel = voxel_of(state, u, v);
+    const float shines = state->source[voxel + c * state->stride] + shines_more(state, member, c, voxel);
+#endif
+    kept += effect.meanLength * member->power * shines;
+#endif
+    after.power[c] = multiply_add(before.power[c], effect.change, kept);
+  }
+  return after;
+}
+
+static colours rays_at(const plane_state* state, const member_state* member, int u, int v)
+{
+  colours rays;
+  for (int c = 0; c < CHANNELS; ++c)
+  {
+    rays.power[c] = member->rays[((ulong)c * state->sizeV + v) * state->sizeU + u];
+  }
+  return rays;
+}
+
+// Rays that come in through the sides of the box, to go on from (u, v) outside of it.
+static colours coming_in(const plane_state* state, const member_state* member, int u, int v)
+{
+  const bool beyondU = u < 0 || u >= state->sizeU, beyondV = v < 0 || v >= state->sizeV;
+  colours rays;
+  for (int c = 0; c < CHANNELS; ++c)
+  {
+    const float4 entering = member->entering[c];
+    rays.power[c] = beyondU && beyondV ? (member->bothAtOnce ? 0.5f * (entering.x + entering.y) : entering.x)
+      : beyondU                        ? entering.x
+                                       : entering.y;
+  }
+  return rays;
+}
+
+// Round the periodic axes, to a voxel of the plane or still outside it.
+static int2 go_round(const plane_state* state, int u, int v)
+{
+  const int size_u = state->sizeU, size_v = state->sizeV;
+  const int past_u = u < 0 ? size_u : u >= size_u ? -size_u : 0;
+  const int past_v = v < 0 ? size_v : v >= size_v ? -size_v : 0;
+  return (int2)(state->lane->periodicU ? u + past_u : u, state->lane->periodicV ? v + past_v : v);
+}
+
+// Behind the plane's first segment.
+static colours behind_first(const plane_state* state, const member_state* member, int of_u, int of_v)
+{
+  const int2 at = go_round(state, of_u, of_v);
+  const int u = at.x, v = at.y;
+  if (!is_inside(state, u, v))
+  {
+    return coming_in(state, member, u, v);
+  }
+  return behind(state, member, u, v, rays_at(state, member, u, v), effect_at(state, u, v, member->length[0]));
+}
+
+static colours mixed(colours stay, colours come, float part)
+{
+  for (int c = 0; c < CHANNELS; ++c)
+  {
+    stay.power[c] = part < 1.0f ? multiply_add(come.power[c] - stay.power[c], part, stay.power[c]) : come.power[c];
+  }
+  return stay;
+}
+
+// Behind the second one.
+static colours behind_second(const plane_state* state, const member_state* member, int of_u, int of_v)
+{
+  const int2 at = go_round(state, of_u, of_v);
+  const int u = at.x, v = at.y;
+  if (!is_inside(state, u, v))
+  {
+    return coming_in(state, member, u, v);
+  }
+  colours rays = behind_first(state, member, u - member->du[1], v - member->dv[1]);
+  if (member->part[1] < 1.0f)
+  {
+    rays = mixed(behind_first(state, member, u, v), rays, member->part[1]);
+  }
+  return behind(state, member, u, v, rays, effect_at(state, u, v, member->length[1]));
+}
+
+// What a voxel's work-item adds up over all bundles.
+typedef struct
+{
+  float path[CHANNELS]; // where DEGREE of one ray
+  float own;            // path of a source of 1 in its own voxel, the same
+#if DEGREE
+  float moments[CHANNELS][MOMENTS];
+#endif
+  float flux[CHANNELS][3]; // along u, v and the axis
+  float ownFlux;           // along the axis
+  float currents[CHANNELS][CurrentFaces];
+  float escaped[4][CHANNELS]; // through -u, +u, -v, +v
+} voxel_sums;
+
+// @param not_lost  of what shines besides in the voxel itself: that is not lost there
+static void put_down(voxel_sums* sums, colours rays, colours not_lost, float meanLength, float3 along)
+{
+  for (int c = 0; c < CHANNELS; ++c)
+  {
+    const float path = meanLength * (rays.power[c] - not_lost.power[c]);
+    sums->path[c] += path;
+#if NET_FLUX
+    sums->flux[c][0] = multiply_add(meanLength * rays.power[c], along.x, sums->flux[c][0]);
+    sums->flux[c][1] = multiply_add(meanLength * rays.power[c], along.y, sums->flux[c][1]);
+    sums->flux[c][2] = multiply_add(path, along.z, sums->flux[c][2]);
+#endif
+  }
+}
+
+// Power of the rays that leave the box from voxel (u, v) by the move before segment s, see COUNT_ESCAPED.
+static void count_escaped(
+  const plane_state* state, voxel_sums* sums, const member_state* member, int s, int u, int v, colours rays)
+{
+  const int du = member->du[s], dv = member->dv[s];
+  const bool throughU = !state->lane->periodicU && (du > 0 ? u == state->sizeU - 1 : du < 0 && u == 0);
+  const bool throughV = !state->lane->periodicV && (dv > 0 ? v == state->sizeV - 1 : dv < 0 && v == 0);
+  const float turned = throughU && throughV ? 0.5f : 0.0f;
+  for (int c = 0; c < CHANNELS; ++c)
+  {
+    const float4 entering = member->entering[c];
+    if (throughU)
+    {
+      const float power = member->part[s] * (rays.power[c] - turned * (rays.power[c] - entering.y));
+      sums->escaped[0][c] += du < 0 ? power : 0.0f;
+      sums->escaped[1][c] += du > 0 ? power : 0.0f;
+    }
+    if (throughV)
+    {
+      const float power = member->part[s] * (rays.power[c] - turned * (rays.power[c] - entering.x));
+      sums->escaped[2][c] += dv < 0 ? power : 0.0f;
+      sums->escaped[3][c] += dv > 0 ? power : 0.0f;
+    }
+  }
+}
+
+#if CURRENTS
+static void add_current(voxel_sums* sums, int face, colours rays, float part)
+{
+  for (int c = 0; c < CHANNELS; ++c)
+  {
+    for (int f = CurrentLowU; f < CurrentFaces; ++f)
+    {
+      sums->currents[c][f] += f == face ? part * rays.power[c] : 0.0f;
+    }
+  }
+}
+
+// Power that enters voxel (u, v) by the move before segment s: see SweepPartialCurrents.cl. Of rays through the edge
+// between four voxels those on their way to the voxels beside pass this one, too.
+// @param come  the rays that come from where the move began
+static void count_currents(
+  const plane_state* state, voxel_sums* sums, const member_state* member, int s, int u, int v, colours come)
+{
+  const int du = member->du[s], dv = member->dv[s];
+  const int uFace = du > 0 ? CurrentLowU : CurrentHighU;
+  const int vFace = dv > 0 ? CurrentLowV : CurrentHighV;
+  const float part = member->part[s];
+  if (du == 0 || dv == 0)
+  {
+    add_current(sums, du != 0 ? uFace : vFace, come, part);
+    return;
+  }
+  add_current(sums, uFace, come, 0.5f * part);
+  add_current(sums, vFace, come, 0.5f * part);
+  add_current(sums, uFace, behind_first(state, member, u - du, v), 0.5f * part);
+  add_current(sums, vFace, behind_first(state, member, u, v - dv), 0.5f * part);
+}
+#endif
+
+// Of what shines besides in a voxel itself, see put_down.
+static colours not_lost_of(const plane_state* state, const member_state* member, long voxel)
+{
+  colours more = { { 0.0f } };
+#if OCTANT_SOURCE
+  for (int c = 0; c < CHANNELS; ++c)
+  {
+    more.power[c] = shines_more(state, member, c, voxel) * member->power / fmax(state->sigma[voxel], state->vacuum);
+  }
+#endif
+  return more;
+}
+
+// One member of a bundle through voxel (u, v), and on to the next plane.
+static colours cross_voxel(const plane_state* state, voxel_sums* sums, const member_state* member, int stages,
+  const segment_effect* effects, float3 along, int u, int v)
+{
+  colours rays = rays_at(state, member, u, v);
+  const colours not_lost = not_lost_of(state, member, voxel_of(state, u, v));
+#if CURRENTS
+  for (int c = 0; c < CHANNELS; ++c)
+  {
+    sums->currents[c][CurrentAxis] += rays.power[c];
+  }
+#endif
+  put_down(sums, rays, not_lost, effects[0].meanLength, along);
+  rays = behind(state, member, u, v, rays, effects[0]);
+  for (int s = 1; s < stages; ++s)
+  {
+    count_escaped(state, sums, member, s, u, v, rays);
+    const int fromU = u - member->du[s], fromV = v - member->dv[s];
+    const colours come =
+      s == 1 ? behind_first(state, member, fromU, fromV) : behind_second(state, member, fromU, fromV);
+#if CURRENTS
+    count_currents(state, sums, member, s, u, v, come);
+#endif
+    rays = mixed(rays, come, member->part[s]);
+    put_down(sums, rays, not_lost, effects[s].meanLength, along);
+    rays = behind(state, member, u, v, rays, effects[s]);
+  }
+  return rays;
+}
+
+// The octants that rays go into that are so turned, see SweepBundle.cl.
+static void find_octants(const __global SweepLane* lane, const __global BundleInfo* bundle, int m, int* octants)
+{
+  const int u = lane->axis == 0 ? 1 : 0, v = lane->axis == 2 ? 1 : 2;
+  const bool exchanged = bundle->move[m][0] == 0;
+  const bool between_u = fabs(exchanged ? bundle->sineV : bundle->sineU) < 1e-5f;
+  const bool between_v = fabs(exchanged ? bundle->sineU : bundle->sineV) < 1e-5f;
+  octants[0] = (lane->backward ? 0 : 1 << lane->axis) + (bundle->move[m][0] + bundle->move[m][1] > 0 ? 1 << u : 0) +
+    (bundle->move[m][2] + bundle->move[m][3] > 0 ? 1 << v : 0);
+  octants[1] = octants[0] ^ ((between_u ? 1 << u : 0) + (between_v ? 1 << v : 0));
+}
+
+static member_state member_of(
+  const __global SweepLane* lane, const __global BundleInfo* bundle, const __global CrossingInfo* crossing, int m)
+{
+  member_state member;
+#if OCTANT_SOURCE
+  find_octants(lane, bundle, m, member.octants);
+#endif
+  member.power = bundle->power;
+  member.bothAtOnce = false;
+  for (int s = 0; s < 3; ++s)
+  {
+    member.length[s] = crossing->length[s];
+    member.part[s] = crossing->part[s];
+    member.du[s] = bundle->move[m][0] * crossing->moveU[s] + bundle->move[m][1] * crossing->moveV[s];
+    member.dv[s] = bundle->move[m][2] * crossing->moveU[s] + bundle->move[m][3] * crossing->moveV[s];
+    member.bothAtOnce = member.bothAtOnce || (crossing->moveU[s] != 0 && crossing->moveV[s] != 0);
+  }
+  return member;
+}
+
+static float3 direction_of(const __global BundleInfo* bundle, int m, int backward)
+{
+  return (float3)(bundle->move[m][0] * bundle->sineU + bundle->move[m][1] * bundle->sineV,
+    bundle->move[m][2] * bundle->sineU + bundle->move[m][3] * bundle->sineV,
+    backward ? -bundle->cosine : bundle->cosine);
+}
