@@ -53,9 +53,8 @@ void MakeZeros(std::vector<ZeroedArray> arrays)
   std::sort(arrays.begin(), arrays.end(), [](const ZeroedArray& a, const ZeroedArray& b) { return a.count > b.count; });
   for (const ZeroedArray& array : arrays)
   {
-    *array.values = std::vector<float>();
-    array.values->reserve(array.count);
-    TakePages(array.values->data(), array.count * sizeof(float));
+    *array.values = std::vector<float>(); // what it held goes first
+    *array.values = RoomFor(array.count);
   }
   std::atomic<std::size_t> next(0);
   InThreads(arrays.size(), 1, [&](std::size_t, std::size_t) {

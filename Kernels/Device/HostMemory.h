@@ -23,13 +23,21 @@ constexpr std::size_t LargePage = std::size_t(1) << 21; ///< bytes, where the sy
 /// that will be written all over.
 void TakePages(void* memory, std::size_t bytes);
 
-/// `count` zeros, in such pages.
+/// No values yet, but room for `count`, in such pages.
 template <class T = float>
-std::vector<T> Zeros(std::size_t count)
+std::vector<T> RoomFor(std::size_t count)
 {
   std::vector<T> values;
   values.reserve(count);
   TakePages(values.data(), count * sizeof(T));
+  return values;
+}
+
+/// `count` zeros, in such pages.
+template <class T = float>
+std::vector<T> Zeros(std::size_t count)
+{
+  std::vector<T> values = RoomFor<T>(count);
   values.resize(count);
   return values;
 }

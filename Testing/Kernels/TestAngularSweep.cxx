@@ -220,6 +220,7 @@ protected:
   {
     EXPECT_LT(RelativeRmse(found.path, expected.path), 2e-6) << what;
     EXPECT_LT(RelativeRmse(found.currents, expected.currents), 2e-6) << what;
+    EXPECT_NEAR(Sum(found.tally.onTheWay), Sum(expected.tally.onTheWay), 1e-5 * Sum(expected.tally.onTheWay)) << what;
     for (int face = 0; face < 6; ++face)
     {
       for (int c = 0; c < channels; ++c)

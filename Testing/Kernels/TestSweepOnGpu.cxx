@@ -22,6 +22,15 @@ namespace
 {
 constexpr double Same = 1e-5; ///< of the largest value
 
+/// A further sweep of the same operator.
+enum class Next
+{
+  Shining,
+  InTheDark,
+  Lit,       ///< as the first: with a boundary
+  Forgetting ///< shining, once all that is on its way is forgotten
+};
+
 /// A box of random voxels and how it is swept.
 struct Sweeping
 {
@@ -34,7 +43,7 @@ struct Sweeping
   VoxelBox box = {};
   std::array<bool, 3> periodic = {};
   int mostPlanes = MostPlanesAround;
-  int sweeps = 1;                  ///< one after the other: rays stay on their way round periodic axes
+  std::vector<Next> sweeps = {};   ///< behind the first: rays stay on their way round periodic axes
   std::array<double, 3> beam = {}; ///< instead of all directions
 };
 
@@ -99,9 +108,14 @@ protected:
     const SweepBoundary boundary = [](int d, int face) { return Rgb{ 1.0 + 0.3 * face, 0.5 + d % 3, 0.1 * (d % 7) }; };
     Found found;
     found.tally = sweep->Apply(how.shines ? &source : nullptr, how.lit ? boundary : SweepBoundary(), {});
-    for (int more = 1; more < how.sweeps; ++more)
+    for (const Next next : how.sweeps)
     {
-      found.tally = sweep->Apply(how.shines ? &source : nullptr, {}, {});
+      if (next == Next::Forgetting)
+      {
+        sweep->Forget();
+      }
+      found.tally =
+        sweep->Apply(next == Next::InTheDark ? nullptr : &source, next == Next::Lit ? boundary : SweepBoundary(), {});
     }
     found.path = path.Read();
     found.flux = flux.Read();
@@ -212,18 +226,31 @@ TEST_F(SweepOnGpuTest, FindsThreeColoursOfThreeExtinctions)
 
 TEST_F(SweepOnGpuTest, FindsTheLightOfASourceByOctant)
 {
+  struct Colours
+  {
+    int extinctions, channels;
+  };
   for (const int perFace : { 25, 121 }) // some of 121 go between octants
   {
-    for (const int colours : { 1, 3 })
+    for (const Colours colours : { Colours{ 1, 1 }, { 1, 3 }, { 3, 3 } })
     {
       Sweeping how;
       how.perFace = perFace;
-      how.components = how.channels = colours;
+      how.components = colours.extinctions;
+      how.channels = colours.channels;
       how.densest = 3.0f;
       how.flux = how.currents = how.byOctant = true;
       this->Compare(how);
     }
   }
+}
+
+TEST_F(SweepOnGpuTest, FindsTheLightThatComesInWhereNothingShinesByOctant)
+{
+  Sweeping how;
+  how.byOctant = true;
+  how.shines = false;
+  this->Compare(how);
 }
 
 /// Round one axis of few planes, two and three: rays start in laps, come in sideways, and are on their way between
@@ -236,15 +263,24 @@ TEST_F(SweepOnGpuTest, FindsTheLightRoundPeriodicAxes)
     Sweeping how;
     how.periodic = periodic;
     how.flux = how.currents = true;
+    how.channels = 3;
     this->Compare(how);
-    how.components = how.channels = 3;
+    how.components = 3;
     how.mostPlanes = 256;
     how.densest = 0.02f;
-    how.sweeps = 3;
-    this->Compare(how);
-    how.shines = false; // but what is on its way goes on
+    how.sweeps = { Next::InTheDark, Next::InTheDark }; // but what is on its way goes on
     this->Compare(how);
   }
+}
+
+TEST_F(SweepOnGpuTest, ForgetsRaysOnTheirWay)
+{
+  Sweeping how;
+  how.periodic = { false, true, true };
+  how.mostPlanes = 256;
+  how.densest = 0.02f;
+  how.sweeps = { Next::Shining, Next::Lit, Next::Forgetting, Next::InTheDark };
+  this->Compare(how);
 }
 
 TEST_F(SweepOnGpuTest, FindsTheLightInUnequalVoxels)
@@ -293,13 +329,17 @@ TEST_F(SweepOnGpuTest, FindsTheLightInAPartOfTheGrid)
 
 TEST_F(SweepOnGpuTest, IsTheSameEachTime)
 {
-  Sweeping how;
-  how.flux = how.currents = true;
-  const Found once = this->Sweep(how, SweepOnGpu::Ways::Automatic),
-              again = this->Sweep(how, SweepOnGpu::Ways::Automatic);
-  EXPECT_EQ(once.path, again.path);
-  EXPECT_EQ(once.flux, again.flux);
-  EXPECT_EQ(once.currents, again.currents);
+  for (const bool periodic : { false, true })
+  {
+    Sweeping how;
+    how.flux = how.currents = true;
+    how.periodic = { periodic, false, periodic };
+    const Found once = this->Sweep(how, SweepOnGpu::Ways::Automatic),
+                again = this->Sweep(how, SweepOnGpu::Ways::Automatic);
+    EXPECT_EQ(once.path, again.path);
+    EXPECT_EQ(once.flux, again.flux);
+    EXPECT_EQ(once.currents, again.currents);
+  }
 }
 
 TEST_F(SweepOnGpuTest, KeepsEveryWatt)

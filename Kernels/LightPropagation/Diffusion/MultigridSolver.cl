@@ -12,7 +12,7 @@
 
 #if REAL_WIDTH == 1
 typedef exact exact_real;
-#define to_exact_real
+#define to_exact_real (exact)
 #define load_exact(index, pointer) ((pointer)[index])
 #define store_exact(value, index, pointer) ((pointer)[index] = (value))
 #else

@@ -10,6 +10,7 @@
 #include "TyndallKernelSources.h"
 
 #include <algorithm>
+#include <stdexcept>
 
 namespace tyndall
 {
@@ -110,6 +111,10 @@ void MultigridSolver::FindAnswers()
   const Level& level = this->Levels.back();
   const int* n = level.layout.size;
   const std::size_t voxels = static_cast<std::size_t>(n[0]) * n[1] * n[2];
+  if (voxels > static_cast<std::size_t>(SummingGroup(this->TheDevice)))
+  {
+    throw std::logic_error("the coarsest level has more voxels than a group has work-items");
+  }
   const std::size_t floats = voxels * level.layout.floats;
   const char* what = "the diffusion system";
   Buffer<float> rights(this->TheDevice, floats, what), values(this->TheDevice, floats, what);

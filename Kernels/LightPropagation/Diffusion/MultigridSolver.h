@@ -17,8 +17,8 @@ namespace tyndall
 /// two visits of the first coarser levels), so that its cost hardly grows with the number of voxels (numerics.md,
 /// section 7.8).
 ///
-/// Its arrays are rows as MultigridLayout.h has them, which kernels walk along in vectors: an iteration takes about as
-/// long as its bytes take (some 150 a voxel, counted).
+/// Its arrays are rows as MultigridLayout.h has them, which kernels walk along in vectors, or, on a GPU, by voxels: an
+/// iteration takes about as long as its bytes take (some 150 a voxel, counted).
 class MultigridSolver
 {
 public:

@@ -33,7 +33,9 @@ struct VolumeLayout
   std::size_t Stride() const { return (this->grid.VoxelCount() + SweepPadding - 1) / SweepPadding * SweepPadding; }
   std::size_t Values() const { return this->channels * this->Stride(); } ///< of one quantity
   /// Floats of an array of `parts` values a voxel and channel, with what vectors may read beyond it.
-  std::size_t Floats(int parts = 1) const { return parts * this->Stride() * this->channels + SweepPadding; }
+  std::size_t Floats(int parts = 1) const { return this->FloatsOf(parts * this->channels); }
+  /// The same of so many channels.
+  std::size_t FloatsOf(int channelCount) const { return channelCount * this->Stride() + SweepPadding; }
   /// Where angular moments lie, of arrays that have some.
   MomentPlaces Places(int functions) const
   {
@@ -95,7 +97,7 @@ void WritePlanar(const VolumeLayout& layout, int channels, const Value& value, f
 template <class Value>
 std::vector<float> Planar(const VolumeLayout& layout, int channels, const Value& value)
 {
-  std::vector<float> values = Zeros(layout.Stride() * channels + SweepPadding);
+  std::vector<float> values = Zeros(layout.FloatsOf(channels));
   WritePlanar(layout, channels, value, values.data());
   return values;
 }
@@ -106,7 +108,7 @@ template <class Value>
 Buffer<float> PlanarOnDevice(
   Device& device, const VolumeLayout& layout, int channels, const Value& value, const char* what)
 {
-  Buffer<float> values(device, layout.Stride() * channels + SweepPadding, what);
+  Buffer<float> values(device, layout.FloatsOf(channels), what);
   values.WriteInPlace([&](float* to) { WritePlanar(layout, channels, value, to); });
   return values;
 }

@@ -1,5 +1,6 @@
 #include "LightPropagation/Sweep/OnGpu/GpuLanes.h"
 
+#include "Device/Defines.h"
 #include "Device/Sizes.h"
 
 #include <algorithm>
@@ -9,8 +10,10 @@ namespace tyndall
 GpuLanes::GpuLanes(const Device& device, const VolumeLayout& layout, const SweepRequest& request,
   const std::array<bool, 3>& periodic, bool atOnce)
   : channels(layout.Groups().front().count)
+  , functionCount(request.angular ? request.angular->Functions() : 1)
+  , floatsOfDeposit(
+      functionCount + (request.deposit.flux && !request.angular ? 3 : 0) + (request.deposit.partialCurrents ? 6 : 0))
 {
-  const int functionCount = request.angular ? request.angular->Functions() : 1;
   std::vector<AxisBundles> rays = request.rays;
   std::stable_partition(rays.begin(), rays.end(), [&](const AxisBundles& along) { return !periodic[along.axis]; });
   for (const AxisBundles& along : rays)
@@ -19,7 +22,7 @@ GpuLanes::GpuLanes(const Device& device, const VolumeLayout& layout, const Sweep
     {
       this->plans.emplace_back(device, layout.grid, request.box, along.axis, along.bundles, this->channels, periodic,
         request.deposit.flux && !request.angular, request.deposit.partialCurrents != nullptr, request.angular,
-        layout.Places(functionCount), false, false);
+        layout.Places(this->functionCount), false, false);
     }
   }
   for (const SweepPlan& plan : this->plans)
@@ -29,7 +32,7 @@ GpuLanes::GpuLanes(const Device& device, const VolumeLayout& layout, const Sweep
   this->LayBatches(atOnce);
   for (LaneBatch& batch : this->batches)
   {
-    this->Place(batch, layout.Stride(), functionCount);
+    this->Place(batch, layout.Stride());
   }
 }
 
@@ -120,14 +123,14 @@ void GpuLanes::LayBatches(bool atOnce)
 }
 
 /// Where the maps and arrays of a batch's lanes are.
-void GpuLanes::Place(LaneBatch& batch, std::size_t stride, int functionCount)
+void GpuLanes::Place(LaneBatch& batch, std::size_t stride)
 {
   for (int i = 0; i < batch.count; ++i)
   {
     SweepLane& lane = this->lanes[batch.first + i];
     lane.map = batch.maps;
     lane.deposit = batch.HasArrays() ? i * this->channels * stride : 0;
-    lane.path = functionCount * lane.deposit;
+    lane.path = this->functionCount * lane.deposit;
     batch.maps += Count(lane.rays) * this->channels * lane.planes.sizeU * lane.planes.sizeV;
   }
 }
@@ -140,6 +143,27 @@ std::size_t GpuLanes::MostMaps(bool around) const
     most = batch.around == around ? std::max(most, batch.maps) : most;
   }
   return most;
+}
+
+int GpuLanes::MostAround() const
+{
+  int most = 0;
+  for (const LaneBatch& batch : this->batches)
+  {
+    most = batch.around ? std::max(most, batch.count) : most;
+  }
+  return most;
+}
+
+std::size_t GpuLanes::ArrayFloats(std::size_t stride) const
+{
+  const std::size_t lost = Count(this->MostAround()) * this->functionCount; // by rounding
+  return (Count(this->MostWithArrays()) * this->floatsOfDeposit + lost) * this->channels * stride;
+}
+
+std::string GpuLanes::Options() const
+{
+  return Define("CHANNELS", this->channels) + Define("FUNCTIONS", this->functionCount);
 }
 
 int GpuLanes::MostWithArrays() const

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstddef>
+#include <string>
 #include <vector>
 
 namespace tyndall
@@ -42,9 +43,15 @@ struct GpuLanes
   std::size_t escaped = 0; ///< floats, see SweepLane
   int rays = 0;            ///< of all lanes
   int channels;            ///< that are swept together
+  int functionCount;       ///< of the light's angular moments; 1: fluence alone
+  int floatsOfDeposit;     ///< that a lane finds in a voxel, of a channel
 
   std::size_t MostMaps(bool around) const;
   int MostWithArrays() const; ///< lanes of a batch
+  int MostAround() const;     ///< the same of those that go round
+  /// That lanes write to, of their own. @param stride  of a channel
+  std::size_t ArrayFloats(std::size_t stride) const;
+  std::string Options() const; ///< of LaneSums.cl
   std::size_t EndRows(int lane) const;
   std::size_t SideRows(int lane) const;
 
@@ -53,7 +60,7 @@ private:
   void LayLane(const SweepPlan& plan, int way, int firstBundle, int firstCrossing);
   void LayFunctions(const SweepPlan& plan, int way, const AngularValues& angular);
   void LayBatches(bool atOnce);
-  void Place(LaneBatch& batch, std::size_t stride, int functionCount);
+  void Place(LaneBatch& batch, std::size_t stride);
 
   std::vector<std::size_t> PlanOfLane;
 };

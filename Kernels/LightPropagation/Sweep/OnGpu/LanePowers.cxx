@@ -1,6 +1,5 @@
 #include "LightPropagation/Sweep/OnGpu/LanePowers.h"
 
-#include "Device/Defines.h"
 #include "Medium/BoxFaces.h"
 #include "TyndallKernelSources.h"
 
@@ -23,8 +22,7 @@ LanePowers::LanePowers(Device& device, const GpuLanes& lanes)
 
 void LanePowers::AddUp(const LaneBatch& batch, const MapsOfLane& maps)
 {
-  cl::Kernel kernel =
-    this->TheDevice.Kernel("sum_rows", kernel_source::SweepOnGpu, Define("CHANNELS", this->Lanes.channels));
+  cl::Kernel kernel = this->TheDevice.Kernel("sum_rows", kernel_source::LaneSums, this->Lanes.Options());
   for (int i = batch.first; i < batch.first + batch.count; ++i)
   {
     const SweepLane& lane = this->Lanes.lanes[i];

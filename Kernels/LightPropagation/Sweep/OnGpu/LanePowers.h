@@ -7,8 +7,8 @@
 
 namespace tyndall
 {
-/// Power that leaves a sweep for GPUs sideways, and what is in its maps behind the last plane: counted on the device row
-/// by row, on the host in double.
+/// Power that leaves a sweep for GPUs sideways, and what is in its maps behind the last plane: counted on the device
+/// row by row, on the host in double.
 class LanePowers
 {
 public:

@@ -7,14 +7,9 @@
 // The host gives CHANNELS, SOURCE, NET_FLUX, CURRENTS, OCTANT_SOURCE as SweepLayout.cl has them, and
 //   ADDS    1: lanes follow one another and add to what is there; 0: each writes arrays of its own
 //   AROUND  1: the axis is periodic, and rays come to a voxel again and again: their lane adds to its own arrays
-//   DEGREE  of the angular moments in which light is gathered, and shines; 0, or not given: fluence alone
+//   DEGREE  of the angular moments in which light is gathered, and shines; 0: fluence alone
 //   BEAMS   sources with an angular distribution of their own; where DEGREE is not 0
 
-#ifndef DEGREE // kernels that do not depend on them
-#define DEGREE 0
-#define BEAMS 0
-#define AROUND 0
-#endif
 #define MOMENTS ((DEGREE + 1) * (DEGREE + 1))
 
 #define REAL_WIDTH 1
@@ -282,63 +277,5 @@ __kernel void find_directed(PlaneLaunch launch, const __global SweepLane* lanes,
       to[ray * CHANNELS * size] = shines;
     }
   }
-}
-#endif
-
-// The rays of a lane where they start. A work-item a float of its maps.
-__kernel void start_rays(
-  int first_lane, const __global SweepLane* lanes, const __global float4* entering, __global float* maps)
-{
-  const __global SweepLane* lane = lanes + first_lane + get_global_id(1);
-  const ulong plane = (ulong)lane->planes.sizeU * lane->planes.sizeV;
-  const ulong i = get_global_id(0);
-  if (i < plane * lane->rays * CHANNELS)
-  {
-    maps[lane->map + i] = entering[lane->firstRay * CHANNELS + i / plane].z;
-  }
-}
-
-// Sums of rows of floats, a work-item each, in their order and with what rounding takes.
-__kernel void sum_rows(const __global float* rows, ulong first, int length, __global float* sums, ulong first_sum)
-{
-  const __global float* row = rows + first + (ulong)get_global_id(0) * length;
-  float sum = 0.0f, rounding = 0.0f;
-  for (int i = 0; i < length; ++i)
-  {
-    const float y = row[i] - rounding;
-    const float t = sum + y;
-    rounding = (t - sum) - y;
-    sum = t;
-  }
-  sums[first_sum + get_global_id(0)] = sum;
-}
-
-// What the lanes found, each in an array of its own, added up in their order. A work-item a value.
-__kernel void add_lanes(const __global float* of_lanes, int lanes, ulong values, __global float* sum, ulong first)
-{
-  const ulong i = get_global_id(0);
-  float all = 0.0f;
-  for (int lane = 0; lane < lanes; ++lane)
-  {
-    all += of_lanes[lane * values + i];
-  }
-  sum[first + i] += all;
-}
-
-#if DEGREE
-// The same of angular moments. A work-item a voxel, of a function and channel.
-__kernel void add_moments_of_lanes(
-  PlaneLaunch launch, const __global float* of_lanes, int lanes, __global float* sum, ulong first)
-{
-  const ulong voxel = get_global_id(0), stride = launch.stride;
-  const int k = get_global_id(1) / CHANNELS, c = get_global_id(1) % CHANNELS;
-  const MomentPlaces* of = &launch.moments;
-  float all = 0.0f;
-  for (int lane = 0; lane < lanes; ++lane)
-  {
-    all += of_lanes[(((ulong)lane * MOMENTS + k) * CHANNELS + c) * stride + voxel];
-  }
-  sum[k == 0 ? first + c * stride + voxel
-             : MOMENT_PLACE(*of, k, launch.firstChannel + c, voxel / of->sizeX, voxel % of->sizeX)] += all;
 }
 #endif

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -22,7 +23,18 @@ namespace
 constexpr std::size_t GroupU = 32, GroupV = 4; ///< work-items along u, whose voxels mostly lie together, and along v
 constexpr double SecondsPerRay = 1e-10;        ///< through a voxel: only says how often to wait
 constexpr int MostAtOnce = 4;                  ///< part of the memory that ways at once may take: a quarter
-constexpr std::size_t MostLanes = 6;           ///< there and back along each axis
+
+/// All ways at once, where their arrays have room beside each other. Of a part of the grid they go one by one: what is
+/// not swept would have to be cleared.
+GpuLanes ChooseLanes(const Device& device, const VolumeLayout& layout, const std::array<bool, 3>& periodic,
+  const SweepRequest& request, SweepOnGpu::Ways ways)
+{
+  const bool mayAtOnce = ways == SweepOnGpu::Ways::Automatic && request.box.VoxelCount() == 0;
+  GpuLanes lanes(device, layout, request, periodic, mayAtOnce);
+  const std::size_t left = device.MemoryLimit() - device.BytesInUse();
+  const bool fit = sizeof(float) * lanes.ArrayFloats(layout.Stride()) <= left / MostAtOnce;
+  return fit || !mayAtOnce ? std::move(lanes) : GpuLanes(device, layout, request, periodic, false);
+}
 }
 
 class SweepOnGpu::Implementation
@@ -32,7 +44,7 @@ public:
     const std::array<bool, 3>& periodic, const SweepRequest& request, Ways ways);
 
   SweepTally Apply(const Buffer<float>* source, const SweepBoundary& boundary, const Monitor& monitor);
-  void Forget();
+  void Forget(std::optional<int> group = {});
 
 private:
   /// How planes are crossed by the lanes of a batch.
@@ -50,16 +62,10 @@ private:
     int current = 0;
   };
 
-  void ForgetGroup(int group);
-  bool FitAtOnce(const SweepRequest& request, Ways ways) const;
   void MakeBuffers();
   void MakeArrays();
-  int Functions() const { return this->Angular ? this->Angular->Functions() : 1; }
+  void ClearArrays(const LaneBatch& batch);
   int Beams() const { return this->Angular ? this->Angular->Beams() : 0; }
-  std::size_t DepositFloats() const
-  {
-    return this->Functions() + (this->To.flux ? 3 : 0) + (this->To.partialCurrents ? 6 : 0);
-  }
 
   SweepTally ApplyGroup(const SweepVolume& volume, const SweepBoundary& boundary, const Monitor& monitor);
   bool Enter(const SweepBoundary& boundary, int group, SweepTally& tally);
@@ -113,7 +119,7 @@ SweepOnGpu::Implementation::Implementation(Device& device, const VolumeLayout& l
   , SameBoundary(request.sameBoundary)
   , Angular(request.angular)
   , OctantSource(request.octantSource)
-  , The(device, layout, request, periodic, this->FitAtOnce(request, ways))
+  , The(ChooseLanes(device, layout, periodic, request, ways))
   , Powers(device, this->The)
 {
   if (!Can(request))
@@ -123,16 +129,6 @@ SweepOnGpu::Implementation::Implementation(Device& device, const VolumeLayout& l
   this->To.flux = this->Angular ? nullptr : this->To.flux; // it is among the moments
   this->MakeBuffers();
   this->MakeArrays();
-}
-
-/// What all lanes find has room beside each other. Of a part of the grid they go one by one: what is not swept would
-/// have to be cleared.
-bool SweepOnGpu::Implementation::FitAtOnce(const SweepRequest& request, Ways ways) const
-{
-  const std::size_t bytes =
-    sizeof(float) * this->DepositFloats() * MostLanes * this->Layout.channels * this->Layout.Stride();
-  const std::size_t left = this->TheDevice.MemoryLimit() - this->TheDevice.BytesInUse();
-  return ways == Ways::Automatic && request.box.VoxelCount() == 0 && bytes <= left / MostAtOnce;
 }
 
 void SweepOnGpu::Implementation::MakeBuffers()
@@ -161,18 +157,19 @@ void SweepOnGpu::Implementation::MakeBuffers()
 
 void SweepOnGpu::Implementation::MakeArrays()
 {
-  const std::size_t values = this->The.MostWithArrays() * this->The.channels * this->Layout.Stride();
-  const auto make = [&](Buffer<float>& array, bool wanted, std::size_t parts, const char* what) {
-    if (wanted && values > 0)
+  const std::size_t values = this->The.channels * this->Layout.Stride();
+  const auto make = [&](Buffer<float>& array, std::size_t lanes, std::size_t parts, const char* what) {
+    if (lanes * parts > 0)
     {
-      array = Buffer<float>(this->TheDevice, parts * values, what);
+      array = Buffer<float>(this->TheDevice, lanes * parts * values, what);
       array.Fill(0.0f); // beyond the voxels it stays
     }
   };
-  make(this->Path, true, this->Functions(), "the light of each way");
-  make(this->Lost, this->The.MostMaps(true) > 0, this->Functions(), "the light of each way");
-  make(this->Flux, this->To.flux != nullptr, 3, "the net flux of each way");
-  make(this->Currents, this->To.partialCurrents != nullptr, 6, "the partial currents of each way");
+  const std::size_t lanes = this->The.MostWithArrays();
+  make(this->Path, lanes, this->The.functionCount, "the light of each way");
+  make(this->Lost, this->The.MostAround(), this->The.functionCount, "the light of each way");
+  make(this->Flux, lanes, this->To.flux ? 3 : 0, "the net flux of each way");
+  make(this->Currents, lanes, this->To.partialCurrents ? 6 : 0, "the partial currents of each way");
 }
 
 SweepTally SweepOnGpu::Implementation::Apply(
@@ -203,7 +200,7 @@ SweepTally SweepOnGpu::Implementation::ApplyGroup(
   const bool lit = this->Enter(boundary, volume.firstChannel, tally);
   if (boundary) // the sweep begins anew, as SweepInMemory has it
   {
-    this->ForgetGroup(volume.firstChannel);
+    this->Forget(volume.firstChannel);
   }
   const double lanes = static_cast<double>(this->The.lanes.size());
   for (const LaneBatch& batch : this->The.batches)
@@ -285,13 +282,7 @@ void SweepOnGpu::Implementation::CrossOnce(
 void SweepOnGpu::Implementation::GoRound(
   const LaneBatch& batch, const SweepVolume& volume, SweepTally& tally, const Monitor& monitor)
 {
-  for (Buffer<float>* array : { &this->Path, &this->Lost, &this->Flux, &this->Currents })
-  {
-    if (array->Size() > 0)
-    {
-      array->Fill(0.0f);
-    }
-  }
+  this->ClearArrays(batch);
   OnTheWay& rays = this->RaysOnTheWay(batch, volume.firstChannel);
   Rgb onTheWay = {};
   const auto cross = [&](const Crossing& how) {
@@ -318,6 +309,21 @@ void SweepOnGpu::Implementation::GoRound(
   }
 }
 
+void SweepOnGpu::Implementation::ClearArrays(const LaneBatch& batch)
+{
+  const std::size_t values = batch.count * this->The.channels * this->Layout.Stride();
+  this->Path.Fill(0.0f, 0, this->The.functionCount * values);
+  this->Lost.Fill(0.0f, 0, this->The.functionCount * values);
+  if (this->To.flux)
+  {
+    this->Flux.Fill(0.0f, 0, 3 * values);
+  }
+  if (this->To.partialCurrents)
+  {
+    this->Currents.Fill(0.0f, 0, 6 * values);
+  }
+}
+
 SweepOnGpu::Implementation::OnTheWay& SweepOnGpu::Implementation::RaysOnTheWay(const LaneBatch& batch, int group)
 {
   OnTheWay& rays = this->Rounds[{ batch.first, group }];
@@ -332,16 +338,12 @@ SweepOnGpu::Implementation::OnTheWay& SweepOnGpu::Implementation::RaysOnTheWay(c
   return rays;
 }
 
-void SweepOnGpu::Implementation::Forget()
-{
-  this->Rounds.clear();
-}
-
-void SweepOnGpu::Implementation::ForgetGroup(int group)
+/// @param group  of channels; none: all
+void SweepOnGpu::Implementation::Forget(std::optional<int> group)
 {
   for (auto& [key, rays] : this->Rounds)
   {
-    if (key.second == group)
+    if (key.second == group.value_or(key.second))
     {
       rays.maps[rays.current].Fill(0.0f);
     }
@@ -366,7 +368,7 @@ PlaneLaunch SweepOnGpu::Implementation::LaunchOf(const LaneBatch& batch, const S
   launch.stride = volume.stride;
   launch.firstLane = batch.first;
   launch.firstChannel = volume.firstChannel;
-  launch.moments = this->Layout.Places(this->Functions());
+  launch.moments = this->Layout.Places(this->The.functionCount);
   return launch;
 }
 
@@ -378,8 +380,7 @@ void SweepOnGpu::Implementation::StartRays(const LaneBatch& batch)
     const SweepLane& lane = this->The.lanes[i];
     floats = std::max(floats, Count(lane.rays) * this->The.channels * lane.planes.sizeU * lane.planes.sizeV);
   }
-  cl::Kernel start =
-    this->TheDevice.Kernel("start_rays", kernel_source::SweepOnGpu, Define("CHANNELS", this->The.channels));
+  cl::Kernel start = this->TheDevice.Kernel("start_rays", kernel_source::LaneSums, this->The.Options());
   With(start, cl_int(batch.first), this->Lanes, this->Entering, this->Maps[0]);
   this->TheDevice.Queue().enqueueNDRangeKernel(start, cl::NullRange, cl::NDRange(floats, batch.count));
 }
@@ -438,8 +439,7 @@ int SweepOnGpu::Implementation::Cross(const LaneBatch& batch, const SweepVolume&
 
 void SweepOnGpu::Implementation::AddLanes(const LaneBatch& batch, const SweepVolume& volume)
 {
-  cl::Kernel kernel =
-    this->TheDevice.Kernel("add_lanes", kernel_source::SweepOnGpu, Define("CHANNELS", this->The.channels));
+  cl::Kernel kernel = this->TheDevice.Kernel("add_lanes", kernel_source::LaneSums, this->The.Options());
   const auto add = [&](const Buffer<float>& ofLanes, const Buffer<float>* to, std::size_t components) {
     if (!to)
     {
@@ -463,11 +463,11 @@ void SweepOnGpu::Implementation::AddLanes(const LaneBatch& batch, const SweepVol
 
 void SweepOnGpu::Implementation::AddMomentsOfLanes(const LaneBatch& batch, const SweepVolume& volume)
 {
-  cl::Kernel kernel =
-    this->TheDevice.Kernel("add_moments_of_lanes", kernel_source::SweepOnGpu, this->Options(batch, false));
+  cl::Kernel kernel = this->TheDevice.Kernel("add_moments_of_lanes", kernel_source::LaneSums, this->The.Options());
   With(kernel, this->LaunchOf(batch, volume), this->Path, cl_int(batch.count), *this->To.path, cl_ulong(volume.first));
   this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange,
-    cl::NDRange(this->Layout.grid.VoxelCount(), static_cast<std::size_t>(this->Functions()) * this->The.channels));
+    cl::NDRange(
+      this->Layout.grid.VoxelCount(), static_cast<std::size_t>(this->The.functionCount) * this->The.channels));
 }
 
 SweepOnGpu::SweepOnGpu(Device& device, const VolumeLayout& layout, const Buffer<float>& sigma_t,

@@ -1,0 +1,61 @@
+// Where a sweep for GPUs begins and ends: rays that start, and what its lanes have found, added up. The host gives
+//   CHANNELS   that are swept together
+//   FUNCTIONS  angular moments of the light; 1: fluence alone
+
+#include "LightPropagation/Sweep/OnGpu/SweepOnGpuShared.h"
+
+// The rays of a lane where they start. A work-item a float of its maps.
+__kernel void start_rays(
+  int first_lane, const __global SweepLane* lanes, const __global float4* entering, __global float* maps)
+{
+  const __global SweepLane* lane = lanes + first_lane + get_global_id(1);
+  const ulong plane = (ulong)lane->planes.sizeU * lane->planes.sizeV;
+  const ulong i = get_global_id(0);
+  if (i < plane * lane->rays * CHANNELS)
+  {
+    maps[lane->map + i] = entering[lane->firstRay * CHANNELS + i / plane].z;
+  }
+}
+
+// Sums of rows of floats, a work-item each, in their order and with what rounding takes.
+__kernel void sum_rows(const __global float* rows, ulong first, int length, __global float* sums, ulong first_sum)
+{
+  const __global float* row = rows + first + (ulong)get_global_id(0) * length;
+  float sum = 0.0f, rounding = 0.0f;
+  for (int i = 0; i < length; ++i)
+  {
+    const float y = row[i] - rounding;
+    const float t = sum + y;
+    rounding = (t - sum) - y;
+    sum = t;
+  }
+  sums[first_sum + get_global_id(0)] = sum;
+}
+
+// What the lanes found, each in an array of its own, added up in their order. A work-item a value.
+__kernel void add_lanes(const __global float* of_lanes, int lanes, ulong values, __global float* sum, ulong first)
+{
+  const ulong i = get_global_id(0);
+  float all = 0.0f;
+  for (int lane = 0; lane < lanes; ++lane)
+  {
+    all += of_lanes[lane * values + i];
+  }
+  sum[first + i] += all;
+}
+
+// The same of angular moments. A work-item a voxel, of a function and channel.
+__kernel void add_moments_of_lanes(
+  PlaneLaunch launch, const __global float* of_lanes, int lanes, __global float* sum, ulong first)
+{
+  const ulong voxel = get_global_id(0), stride = launch.stride;
+  const int k = get_global_id(1) / CHANNELS, c = get_global_id(1) % CHANNELS;
+  const MomentPlaces* of = &launch.moments;
+  float all = 0.0f;
+  for (int lane = 0; lane < lanes; ++lane)
+  {
+    all += of_lanes[(((ulong)lane * FUNCTIONS + k) * CHANNELS + c) * stride + voxel];
+  }
+  sum[k == 0 ? first + c * stride + voxel
+             : MOMENT_PLACE(*of, k, launch.firstChannel + c, voxel / of->sizeX, voxel % of->sizeX)] += all;
+}
