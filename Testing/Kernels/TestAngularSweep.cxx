@@ -245,7 +245,7 @@ TEST_F(AngularSweep, OfThreeChannelsAndUnequalVoxelsIsTheSumOverDirections)
   Grid grid{ { 9, 6, 11 } };
   grid.spacing = { 1.0, 0.7, 1.6 };
   SweepScene scene(this->GetDevice(), grid, 3, 2, 16, 0, {});
-  this->ExpectSameAsOneByOne(scene);
+  this->ExpectSameAsOneByOne(scene, { SweepOnGpu::Ways::Automatic, SweepOnGpu::Ways::OneByOne });
 }
 
 TEST_F(AngularSweep, OfThreeExtinctionsIsTheSumOverDirections)
