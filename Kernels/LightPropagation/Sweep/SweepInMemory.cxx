@@ -52,9 +52,7 @@ SweepTally SweepInMemory::Apply(const Buffer<float>* source, const SweepBoundary
   for (std::size_t g = 0; g < groups.size(); ++g)
   {
     const int first = groups[g].first;
-    const SweepBoundary ofChannels = boundary && first > 0
-      ? SweepBoundary([&](int direction, int face) { return OfGroup(boundary(direction, face), first); })
-      : boundary;
+    const SweepBoundary ofChannels = OfGroup(boundary, first);
     const SweepVolume volume = this->VolumeOf(groups[g], source);
     const double all = static_cast<double>(this->Axes.size() * groups.size());
     for (std::size_t a = 0; a < this->Axes.size(); ++a)

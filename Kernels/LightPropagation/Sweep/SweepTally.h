@@ -38,4 +38,11 @@ inline Rgb OfGroup(const Rgb& rgb, int first)
 {
   return first == 0 ? rgb : Rgb{ rgb[first], 0.0, 0.0 };
 }
+/// @param boundary  must stay; may be none
+inline SweepBoundary OfGroup(const SweepBoundary& boundary, int first)
+{
+  return boundary && first > 0
+    ? [&boundary, first](int direction, int face) { return OfGroup(boundary(direction, face), first); }
+    : boundary;
+}
 }

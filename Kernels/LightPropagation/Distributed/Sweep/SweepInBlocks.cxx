@@ -165,12 +165,8 @@ SweepTally SweepInBlocks::Apply(const Buffer<float>* source, const SweepBoundary
     const int first = groups[g].first;
     Sweeping sweeping;
     sweeping.volume = this->VolumeOf(groups[g], source);
-    sweeping.boundary = boundary;
+    sweeping.boundary = OfGroup(boundary, first);
     sweeping.group = g;
-    if (boundary && first > 0)
-    {
-      sweeping.boundary = [&](int direction, int face) { return OfGroup(boundary(direction, face), first); };
-    }
     const std::size_t ofFaces = first * BoxFaceCellCount(this->Partition.whole);
     sweeping.cells = { faceLit ? faceIn.data() + ofFaces : nullptr, left.empty() ? nullptr : left.data() + ofFaces,
       this->To.spreadsAside };

@@ -122,7 +122,7 @@ void GpuLanes::LayBatches(bool atOnce)
   }
 }
 
-/// Where the maps and arrays of a batch's lanes are.
+/// Where the maps and arrays of a batch's lanes are, and how large those of any batch are.
 void GpuLanes::Place(LaneBatch& batch, std::size_t stride)
 {
   for (int i = 0; i < batch.count; ++i)
@@ -133,47 +133,21 @@ void GpuLanes::Place(LaneBatch& batch, std::size_t stride)
     lane.path = this->functionCount * lane.deposit;
     batch.maps += Count(lane.rays) * this->channels * lane.planes.sizeU * lane.planes.sizeV;
   }
-}
-
-std::size_t GpuLanes::MostMaps(bool around) const
-{
-  std::size_t most = 0;
-  for (const LaneBatch& batch : this->batches)
-  {
-    most = batch.around == around ? std::max(most, batch.maps) : most;
-  }
-  return most;
-}
-
-int GpuLanes::MostAround() const
-{
-  int most = 0;
-  for (const LaneBatch& batch : this->batches)
-  {
-    most = batch.around ? std::max(most, batch.count) : most;
-  }
-  return most;
+  std::size_t& most = batch.around ? this->mostMapsAround : this->mostMapsOpen;
+  most = std::max(most, batch.maps);
+  this->mostWithArrays = batch.HasArrays() ? std::max(this->mostWithArrays, batch.count) : this->mostWithArrays;
+  this->mostAround = batch.around ? std::max(this->mostAround, batch.count) : this->mostAround;
 }
 
 std::size_t GpuLanes::ArrayFloats(std::size_t stride) const
 {
-  const std::size_t lost = Count(this->MostAround()) * this->functionCount; // by rounding
-  return (Count(this->MostWithArrays()) * this->floatsOfDeposit + lost) * this->channels * stride;
+  const std::size_t lost = Count(this->mostAround) * this->functionCount; // by rounding
+  return (Count(this->mostWithArrays) * this->floatsOfDeposit + lost) * this->channels * stride;
 }
 
 std::string GpuLanes::Options() const
 {
   return Define("CHANNELS", this->channels) + Define("FUNCTIONS", this->functionCount);
-}
-
-int GpuLanes::MostWithArrays() const
-{
-  int most = 0;
-  for (const LaneBatch& batch : this->batches)
-  {
-    most = batch.HasArrays() ? std::max(most, batch.count) : most;
-  }
-  return most;
 }
 
 std::size_t GpuLanes::EndRows(int lane) const

@@ -40,15 +40,14 @@ struct GpuLanes
   std::vector<std::size_t> ends;  ///< of each lane, where sums of its maps' rows begin, [ray][channel][v]
   std::vector<std::size_t> sides; ///< and those of the rows of what leaves sideways
   std::size_t endRows = 0, sideRows = 0;
-  std::size_t escaped = 0; ///< floats, see SweepLane
-  int rays = 0;            ///< of all lanes
-  int channels;            ///< that are swept together
-  int functionCount;       ///< of the light's angular moments; 1: fluence alone
-  int floatsOfDeposit;     ///< that a lane finds in a voxel, of a channel
+  std::size_t escaped = 0;                          ///< floats, see SweepLane
+  int rays = 0;                                     ///< of all lanes
+  int channels;                                     ///< that are swept together
+  int functionCount;                                ///< of the light's angular moments; 1: fluence alone
+  int floatsOfDeposit;                              ///< that a lane finds in a voxel, of a channel
+  std::size_t mostMapsOpen = 0, mostMapsAround = 0; ///< floats, of a batch of open axes and of one that goes round
+  int mostWithArrays = 0, mostAround = 0;           ///< lanes of a batch that has arrays, and of one that goes round
 
-  std::size_t MostMaps(bool around) const;
-  int MostWithArrays() const; ///< lanes of a batch
-  int MostAround() const;     ///< the same of those that go round
   /// That lanes write to, of their own. @param stride  of a channel
   std::size_t ArrayFloats(std::size_t stride) const;
   std::string Options() const; ///< of LaneSums.cl

@@ -137,7 +137,7 @@ void SweepOnGpu::Implementation::MakeBuffers()
   this->Lanes = Buffer<SweepLane>(device, this->The.lanes, "the rays' ways");
   this->Bundles = Buffer<BundleInfo>(device, this->The.bundles, "the bundles of rays");
   this->Crossings = Buffer<CrossingInfo>(device, this->The.crossings, "the ray pattern");
-  const std::size_t open = this->The.MostMaps(false), around = this->The.MostMaps(true);
+  const std::size_t open = this->The.mostMapsOpen, around = this->The.mostMapsAround;
   if (this->Angular)
   {
     this->Along = Buffer<float>(device, this->The.functions, "the angular functions");
@@ -165,9 +165,9 @@ void SweepOnGpu::Implementation::MakeArrays()
       array.Fill(0.0f); // beyond the voxels it stays
     }
   };
-  const std::size_t lanes = this->The.MostWithArrays();
+  const std::size_t lanes = this->The.mostWithArrays;
   make(this->Path, lanes, this->The.functionCount, "the light of each way");
-  make(this->Lost, this->The.MostAround(), this->The.functionCount, "the light of each way");
+  make(this->Lost, this->The.mostAround, this->The.functionCount, "the light of each way");
   make(this->Flux, lanes, this->To.flux ? 3 : 0, "the net flux of each way");
   make(this->Currents, lanes, this->To.partialCurrents ? 6 : 0, "the partial currents of each way");
 }
@@ -182,9 +182,7 @@ SweepTally SweepOnGpu::Implementation::Apply(
     SweepVolume volume = GroupVolume(this->Layout, groups[g], this->SigmaT, this->To);
     volume.source = source;
     const int first = groups[g].first;
-    const SweepBoundary ofChannels = boundary && first > 0
-      ? SweepBoundary([&](int direction, int face) { return OfGroup(boundary(direction, face), first); })
-      : boundary;
+    const SweepBoundary ofChannels = OfGroup(boundary, first);
     const double all = static_cast<double>(groups.size());
     const double before = static_cast<double>(g);
     const Monitor ofGroup = OfPart(monitor, [=](double done) { return (before + done) / all; });
