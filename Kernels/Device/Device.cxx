@@ -59,6 +59,7 @@ std::vector<cl::Device> DevicesOf(const cl::Platform& platform, Shared& shared)
 {
   if (IsPocl(platform) && !shared.Cache)
   {
+    CompileForAnyGroup();
     shared.Cache = ChoosePoclCache();
     if (!shared.Cache->warning.empty())
     {

@@ -196,6 +196,11 @@ PoclCache ChoosePoclCache()
   return { elsewhere, said + ". It is kept in \"" + elsewhere + "\" instead." + Advice() };
 }
 
+void CompileForAnyGroup()
+{
+  setenv("POCL_WORK_GROUP_SPECIALIZATION", "0", 0);
+}
+
 void RequireRoom(const std::string& folder)
 {
   struct statvfs disk = {};

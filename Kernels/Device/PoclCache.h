@@ -24,6 +24,11 @@ PoclCache ChoosePoclCache();
 /// Why `bytes` cannot be written to files in a folder, which is made where it is missing; empty: they can.
 std::string WhyNotWritable(const std::string& folder, std::size_t bytes = PoclCache::Room);
 
+/// PoCL compiles a kernel anew for each size of work-groups that it is run in, so for nearly every new grid. Its
+/// variable POCL_WORK_GROUP_SPECIALIZATION is set to 0 where nobody set it: kernels are compiled once, for any size.
+/// Before the first is.
+void CompileForAnyGroup();
+
 /// Quick enough to be asked before every program that is built.
 /// @throws DeviceError where the disk of the folder, in which PoCL writes already, has become full
 void RequireRoom(const std::string& folder);

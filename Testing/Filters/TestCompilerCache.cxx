@@ -3,6 +3,7 @@
 
 #include "vtkTestUtilities.h"
 
+#include <algorithm>
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
@@ -38,6 +39,33 @@ struct Solve
   vtkNew<vtkLightPropagationMaps> maps;
   test::Errors errors;
 };
+
+/// What PoCL has compiled into a folder and all below.
+std::size_t KernelsIn(const fs::path& folder)
+{
+  const fs::recursive_directory_iterator all(folder);
+  return static_cast<std::size_t>(
+    std::count_if(begin(all), end(all), [](const auto& entry) { return entry.path().extension() == ".so"; }));
+}
+
+/// Grids of other sizes, which ask for work-groups of other sizes, take what the first has compiled.
+void OtherSizes(test::Claims& claims, const fs::path& folder)
+{
+  unsetenv("POCL_WORK_GROUP_SPECIALIZATION");
+  setenv("POCL_CACHE_DIR", (folder / "cache").c_str(), 1);
+  Solve solve;
+  claims.That(solve.GivesLight(), "there is light");
+  const std::size_t first = KernelsIn(folder);
+  claims.That(first > 0, "kernels were compiled");
+  for (const int size : { 5, 11 })
+  {
+    solve.maps->SetInputDataObject(test::MakeMedium({ { size, size, size } }, 0.5, 1.0));
+    solve.maps->Update();
+    claims.That(solve.errors.None() && KernelsIn(folder) == first,
+      "none was compiled for " + std::to_string(size) + " voxels an edge: " + std::to_string(KernelsIn(folder)) +
+        " kernels, of " + std::to_string(first));
+  }
+}
 
 /// Warned of once, by the first filter; the light is there.
 void GoesOnElsewhere(test::Claims& claims, const fs::path& elsewhere, const std::string& trouble)
@@ -164,9 +192,9 @@ int TestCompilerCache(int argc, char* argv[])
       return true;
     };
   };
-  const std::map<std::string, Case> cases = { { "BelowAFile", always(BelowAFile) }, { "Empty", always(Empty) },
-    { "HomeBelowAFile", always(HomeBelowAFile) }, { "FullDisk", FullDisk }, { "FillsUp", FillsUp },
-    { "Nowhere", always(Nowhere) } };
+  const std::map<std::string, Case> cases = { { "OtherSizes", always(OtherSizes) },
+    { "BelowAFile", always(BelowAFile) }, { "Empty", always(Empty) }, { "HomeBelowAFile", always(HomeBelowAFile) },
+    { "FullDisk", FullDisk }, { "FillsUp", FillsUp }, { "Nowhere", always(Nowhere) } };
   const auto chosen = cases.find(name);
   if (chosen == cases.end())
   {

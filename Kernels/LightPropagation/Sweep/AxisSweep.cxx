@@ -49,12 +49,13 @@ struct AxisSweep::Implementation
   void Enter(const SweepBoundary& boundary, std::size_t firstChannel);
   void DarkenSides();
   void DarkenBeside();
-  /// How rays start and what they meet first.
+  /// How rays start and what they meet.
   struct Entry
   {
-    bool source;    ///< the medium shines
-    bool border;    ///< light comes in
-    bool mapsEmpty; ///< whatever is in the maps' memory is not light
+    bool source = false;    ///< the medium shines
+    bool border = false;    ///< light comes in through the faces that rays pass sideways
+    bool byCells = false;   ///< and by cells
+    bool mapsEmpty = false; ///< whatever is in the maps' memory is not light
   };
   void CrossOnce(const SweepVolume& volume, const Entry& entry, const Monitor& monitor);
   void GoRound(const SweepVolume& volume, int mostPlanes, const Monitor& monitor);
@@ -70,18 +71,9 @@ struct AxisSweep::Implementation
   {
     return { this->RoundSchedule, static_cast<int>(this->Plan.units.size()), this->StreamedRounds };
   }
-  void Launch(cl::Kernel kernel, const SweepVolume& volume, const Buffer<CrossingInfo>& crossings,
-    const Schedule& schedule, bool mapsEmpty, const Monitor& monitor);
-  /// What the kernel is compiled for.
-  struct Wanted
-  {
-    bool source; ///< the medium shines
-    bool border; ///< light comes in through the faces that rays pass sideways
-    bool faceIn; ///< and by cells
-    bool flux, faceOut;
-    bool spreadsAside; ///< Deposit::spreadsAside
-  };
-  cl::Kernel SweepKernel(const Wanted& wanted);
+  void Launch(const SweepVolume& volume, const Entry& entry, const Buffer<CrossingInfo>& crossings,
+    const Schedule& schedule, const Monitor& monitor);
+  cl::Kernel SweepKernel(const Deposit& to, bool byCells);
   FaceInfo Faces(std::size_t firstChannel, const Deposit& to) const;
   void EnterByCells(const SweepVolume& volume);
   const Buffer<float>& CellsOf(const Deposit& to);
@@ -209,10 +201,7 @@ void AxisSweep::Implementation::CrossOnce(const SweepVolume& volume, const Entry
 {
   const Schedule schedule =
     this->Plan.laps == 1 ? Schedule{ this->FirstSchedule, this->Plan.launches, this->StreamedFirst } : this->Rounds();
-  const Deposit& to = volume.deposit;
-  const Wanted wanted = { entry.source, entry.border, volume.faceIn != nullptr, to.flux != nullptr,
-    to.faceOut != nullptr, to.spreadsAside };
-  this->Launch(this->SweepKernel(wanted), volume, this->FirstCrossings, schedule, entry.mapsEmpty, monitor);
+  this->Launch(volume, entry, this->FirstCrossings, schedule, monitor);
 }
 
 /// Rays that left a periodic axis come back on the other side, until next to nothing is on the way.
@@ -228,17 +217,16 @@ void AxisSweep::Implementation::GoRound(const SweepVolume& volume, int mostPlane
   for (int gone = planes; gone < mostPlanes && Sum(onTheWay) > NothingLeft * atFirst; gone += planes)
   {
     const Buffer<CrossingInfo> crossings(this->TheDevice, this->Plan.Crossings(gone, planes), "the ray pattern");
-    const Deposit& to = volume.deposit;
-    const Wanted wanted = { false, false, false, to.flux != nullptr, to.faceOut != nullptr, to.spreadsAside };
-    this->Launch(this->SweepKernel(wanted), volume, crossings, this->Rounds(), false, monitor);
+    this->Launch(volume, {}, crossings, this->Rounds(), monitor);
     this->CountSideways();
     onTheWay = this->PowerOnTheWay();
   }
 }
 
-void AxisSweep::Implementation::Launch(cl::Kernel kernel, const SweepVolume& volume,
-  const Buffer<CrossingInfo>& crossings, const Schedule& schedule, bool mapsEmpty, const Monitor& monitor)
+void AxisSweep::Implementation::Launch(const SweepVolume& volume, const Entry& entry,
+  const Buffer<CrossingInfo>& crossings, const Schedule& schedule, const Monitor& monitor)
 {
+  cl::Kernel kernel = this->SweepKernel(volume.deposit, entry.byCells);
   const SweepPlan& plan = this->Plan;
   const Buffer<float>& flux = volume.deposit.flux ? *volume.deposit.flux : *volume.deposit.path;
   const Buffer<float>& partialCurrents =
@@ -253,7 +241,10 @@ void AxisSweep::Implementation::Launch(cl::Kernel kernel, const SweepVolume& vol
   info.outsideEachWay = static_cast<uint>(plan.outsideEachWay);
   info.radianceEachWay = static_cast<uint>(plan.radianceEachWay);
   info.coefficientsEachWay = static_cast<uint>(plan.coefficientsEachWay);
-  info.empty = mapsEmpty;
+  info.empty = entry.mapsEmpty;
+  info.shines = entry.source;
+  info.border = entry.border;
+  info.roundAxis = this->IsPeriodic();
   info.bundles = static_cast<int>(plan.bundles.size());
   info.patternPlanes = plan.PatternPlanes();
   info.axis = plan.axes.axis;
@@ -376,14 +367,13 @@ void AxisSweep::Implementation::LeaveByCells(const SweepVolume& volume)
     kernel, cl::NullRange, cl::NDRange(plan.plane.sizeV, 2), GroupOfLargeItems(this->TheDevice, 2));
 }
 
-cl::Kernel AxisSweep::Implementation::SweepKernel(const Wanted& wanted)
+cl::Kernel AxisSweep::Implementation::SweepKernel(const Deposit& to, bool byCells)
 {
   const SweepPlan& plan = this->Plan;
-  const std::string options = DefinesOf(plan) + Define("SOURCE", wanted.source) + Define("BORDER", wanted.border) +
-    Define("NET_FLUX", wanted.flux) + Define("FACE_OUT", wanted.faceOut) + Define("FACE_SPREAD", wanted.spreadsAside) +
-    Define("FACE_IN", wanted.faceIn) + Define("STREAMED", this->Stream != nullptr) +
-    Define("OCTANT_SOURCE", plan.octantSource && wanted.source) + Define("PERIODIC_P", this->IsPeriodic()) +
-    Define("PERIODIC_U", plan.periodic[plan.axes.u]) + Define("PERIODIC_V", plan.periodic[plan.axes.v]);
+  const std::string options = DefinesOf(plan) + Define("NET_FLUX", to.flux != nullptr) +
+    Define("FACE_OUT", to.faceOut != nullptr) + Define("FACE_SPREAD", to.spreadsAside) + Define("FACE_IN", byCells) +
+    Define("STREAMED", this->Stream != nullptr) + Define("PERIODIC_U", plan.periodic[plan.axes.u]) +
+    Define("PERIODIC_V", plan.periodic[plan.axes.v]);
   return this->TheDevice.Kernel("sweep", kernel_source::Sweep, options);
 }
 
@@ -482,7 +472,8 @@ void AxisSweep::Start(const SweepVolume& volume, const SweepBoundary& boundary, 
     return;
   }
   // The maps of a periodic axis hold what is on the way from the sweep before.
-  self.CrossOnce(volume, { volume.source != nullptr, lit, !lit && !self.IsPeriodic() && !byCells }, monitor);
+  const bool mapsEmpty = !lit && !self.IsPeriodic() && !byCells;
+  self.CrossOnce(volume, { volume.source != nullptr, lit, volume.faceIn != nullptr, mapsEmpty }, monitor);
   if (self.IsPeriodic())
   {
     self.GoRound(volume, mostPlanes, monitor);

@@ -28,7 +28,7 @@ std::string DefinesOf(const SweepPlan& plan)
 {
   std::string options = Define("REAL_WIDTH", plan.vector) + Define("CHANNELS", plan.channels) +
     Define("ROW", plan.row) + Define("CURRENTS", plan.partialCurrents) + Define("CHAIN_KEEPS", plan.rowsKept) +
-    DefineMoments(plan);
+    Define("OCTANT_SOURCE", plan.octantSource) + DefineMoments(plan);
   for (int members = 1; members <= MaxMembers; members *= 2)
   {
     const auto has = [&](const BundleInfo& bundle) { return bundle.members == members; };

@@ -142,7 +142,10 @@ typedef struct
   ulong first, stride;
   ulong mapsEachWay; ///< floats of the maps of one way along the axis
   uint outsideEachWay, radianceEachWay, coefficientsEachWay;
-  int empty; ///< 1: the maps hold nothing yet, and are cleared where rays start
+  int empty;     ///< 1: the maps hold nothing yet, and are cleared where rays start
+  int shines;    ///< 1: the medium does (emission or scattered light)
+  int border;    ///< 1: light comes in through the faces that rays pass sideways
+  int roundAxis; ///< 1: rays go round the axis: planes are added to many times, and what rounding loses is kept
   int bundles;
   int patternPlanes; ///< planes of the ray pattern
   int launch;        ///< row of the schedule

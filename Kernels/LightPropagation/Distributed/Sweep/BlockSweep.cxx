@@ -245,14 +245,12 @@ void BlockSweep::WriteBeyond(const SweepBoundary& boundary)
   this->Radiance.Write(radiance.data());
 }
 
-cl::Kernel BlockSweep::Kernel(const SweepVolume& volume)
+cl::Kernel BlockSweep::Kernel()
 {
   const SweepPlan& plan = this->Plan;
-  const bool shines = volume.source != nullptr;
-  const std::string options = DefinesOf(plan) + Define("SIDES", 1) + Define("STREAMED", 0) + Define("SOURCE", shines) +
-    Define("BORDER", 0) + Define("NET_FLUX", plan.netFlux) + Define("FACE_OUT", 0) + Define("FACE_SPREAD", 0) +
-    Define("FACE_IN", 0) + Define("OCTANT_SOURCE", plan.octantSource && shines) +
-    Define("PERIODIC_P", this->Periodic[plan.axes.axis]) + Define("PERIODIC_U", 0) + Define("PERIODIC_V", 0);
+  const std::string options = DefinesOf(plan) + Define("SIDES", 1) + Define("STREAMED", 0) +
+    Define("NET_FLUX", plan.netFlux) + Define("FACE_OUT", 0) + Define("FACE_SPREAD", 0) + Define("FACE_IN", 0) +
+    Define("PERIODIC_U", 0) + Define("PERIODIC_V", 0);
   return this->TheDevice.Kernel("sweep", kernel_source::Sweep, options);
 }
 
@@ -274,6 +272,8 @@ void BlockSweep::Launch(const SweepVolume& volume, const Monitor& monitor)
   info.bundles = static_cast<int>(plan.bundles.size());
   info.patternPlanes = plan.PatternPlanes();
   info.axis = plan.axes.axis;
+  info.shines = volume.source != nullptr;
+  info.roundAxis = this->Periodic[plan.axes.axis];
   info.planes = plan.plane;
   info.moments = plan.moments;
   info.packedMoments = plan.momentRow;
@@ -286,7 +286,7 @@ void BlockSweep::Launch(const SweepVolume& volume, const Monitor& monitor)
     const bool exit = (side % 2 == 1) == (this->Bundles.signs[axis] > 0);
     outer |= exit && this->IsOuter(axis, false) ? 1 << side : 0;
   }
-  cl::Kernel kernel = this->Kernel(volume);
+  cl::Kernel kernel = this->Kernel();
   for (int launch = 0; launch < plan.launches; ++launch)
   {
     info.launch = launch;

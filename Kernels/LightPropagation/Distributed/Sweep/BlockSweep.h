@@ -87,7 +87,7 @@ private:
   void FillSides(const Light& light, std::size_t ray, int channel, RaysAtFaces& rays) const;
   void WriteBeyond(const SweepBoundary& boundary);
   void Launch(const SweepVolume& volume, const Monitor& monitor);
-  cl::Kernel Kernel(const SweepVolume& volume);
+  cl::Kernel Kernel();
   void CountLeft(const RaysAtFaces& out, SweepTally& tally) const;
   class ByCells;
   template <class Visit>

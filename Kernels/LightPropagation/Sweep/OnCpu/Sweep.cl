@@ -90,8 +90,7 @@ static void begin_rows(const swept_volume* volume, const packed_planes* packed, 
   const PlaneInfo* layout = &info->planes;
   const int first = packed->first, count = packed->count;
   pack(layout, packed->planes + PlaneSigma * ROW, first, count, rows, volume->sigma);
-#if SOURCE
-  for (int c = 0; c < CHANNELS; ++c)
+  for (int c = 0; info->shines && c < CHANNELS; ++c)
   {
     pack(layout, packed->planes + (PlaneSource + c) * ROW, first, count, rows, volume->source + c * info->stride);
     for (int b = 0; b < BEAMS; ++b)
@@ -100,7 +99,6 @@ static void begin_rows(const swept_volume* volume, const packed_planes* packed, 
         volume->beams + (b * info->moments.channels + c) * info->stride);
     }
   }
-#endif
   for (int j = 0; j < count; ++j)
   {
     __global float* plane = packed->planes + j * plane_floats(layout);
@@ -117,14 +115,22 @@ static void begin_rows(const swept_volume* volume, const packed_planes* packed, 
         store_real((real)0.0f, at, row + PlaneTaken * ROW);
       }
       clear(row + PLANE_PATH * ROW, (PLANE_OCTANTS - PLANE_PATH) * ROW);
+      if (!info->shines)
+      {
+        clear(row + PlaneSource * ROW, (PLANE_PATH - PlaneSource) * ROW);
+        clear(row + PLANE_OCTANTS * ROW, (PLANES - PLANE_OCTANTS) * ROW);
+      }
     }
   }
 #if OCTANT_SOURCE
-  pack_octants(info, packed->planes, first, count, rows, volume->octants, volume->backward);
+  if (info->shines)
+  {
+    pack_octants(info, packed->planes, first, count, rows, volume->octants, volume->backward);
+  }
 #endif
 }
 
-#if SOURCE && !DEGREE
+#if !DEGREE
 // Adds to a row the path of the medium's own light in the voxel where it starts (numerics.md, Eq. (26)):
 // (length - taken) / sigma, or a polynomial where that would cancel or `taken` was not kept.
 static void add_own_light(const PlaneInfo* layout, __global float* row, const __global OwnLightInfo* light)
@@ -158,8 +164,8 @@ static void end_rows(const swept_volume* volume, const packed_planes* packed, in
   const PlaneInfo* layout = &info->planes;
   const ulong stride = info->stride;
   const int axis = info->axis, backward = volume->backward, first = packed->first, count = packed->count;
-#if SOURCE && !DEGREE
-  for (int j = 0; j < count; ++j)
+#if !DEGREE
+  for (int j = 0; info->shines && j < count; ++j)
   {
     for (int v = rows.x; v < rows.y; ++v)
     {
@@ -171,7 +177,7 @@ static void end_rows(const swept_volume* volume, const packed_planes* packed, in
   for (int c = 0; c < CHANNELS; ++c)
   {
     unpack(layout, packed->planes + (PLANE_PATH + c) * ROW, first, count, rows, 1.0f, volume->path + c * stride,
-      PERIODIC_P ? volume->lost + c * stride : 0);
+      info->roundAxis ? volume->lost + c * stride : 0);
 #if NET_FLUX
     const __global float* fluxes = packed->planes + (PLANE_FLUX + 3 * c) * ROW;
     __global float* flux = volume->flux + 3 * c * stride;
@@ -294,7 +300,7 @@ static void clear_tallies(float (*escaped)[4][CHANNELS], float (*rounding)[4][CH
 // sigma     1/length, [voxel]
 // source    W / (length^3 sr), with its angular moments and beams (MomentPlacesShared.h)
 // path      W length, with its angular moments, added to
-// lost      as path: what rounding took from it in this sweep, where PERIODIC_P
+// lost      as path: what rounding took from it in this sweep, where rays go round the axis
 // flux      W length, [channel][x, y, z][stride], added to
 // currents  W, [channel][-x, +x, -y, +y, -z, +z][stride], added to: through that face into the voxel
 // maps      rays of both ways
@@ -333,6 +339,9 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
   state.sizeU = layout.sizeU;
   state.sizeV = layout.sizeV;
   state.width = layout.width;
+  state.shines = info.shines;
+  state.border = info.border;
+  state.roundAxis = info.roundAxis;
   state.ring = scratch + unit.scratch;
   state.rings = RINGS_OF(layout.chained);
 #if DEGREE
@@ -396,9 +405,7 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
   radiance += unit.backward * info.radianceEachWay;
   coefficients += unit.backward * info.coefficientsEachWay;
 
-#if !BORDER
   clear(state.ring, rings + RAYS_OF_ROW + PAD);
-#endif
   if (info.empty && range.x == 0 && range.y > 0)
   {
     for (int b = unit.firstBundle; b < unit.firstBundle + unit.bundles; ++b)
@@ -422,9 +429,10 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
     begin_rows(&volume, &packed, all_rows);
 #endif
 #if DEGREE && !MOMENTS_IN_PLACE
-#if SOURCE
-    pack_moments(&info, packed_source, first, count, higher_source);
-#endif
+    if (info.shines)
+    {
+      pack_moments(&info, packed_source, first, count, higher_source);
+    }
     clear(packed_path, count * moment_plane);
 #endif
     clear_tallies(escaped, rounding);

@@ -81,7 +81,6 @@ static inline __attribute__((always_inline)) void CROSS_VOXELS(sweep_state* stat
 #endif
     const real_crossing crossing = cross_length(state, x, sigma_row, inverse_row, length, thin);
     const real mean_length = crossing.meanLength, keep = crossing.keep, change = crossing.change;
-#if SOURCE
     if (deposit && !thin)
     {
       store_real(multiply_add(mean_length, (real)(power * MEMBERS), load_real(x, taken_row)), x, taken_row);
@@ -92,13 +91,10 @@ static inline __attribute__((always_inline)) void CROSS_VOXELS(sweep_state* stat
     // mirror images cancels, but along it a ray and its opposite may cross the voxel in different parts.
     const real own_path = own_path_of(x, &crossing, inverse_row, length) * (power * MEMBERS * bundle->cosine);
 #endif
-#endif
 #pragma unroll
     for (int c = 0; c < CHANNELS; ++c)
     {
-#if SOURCE
       const real gain = shine * load_real(x, source_row + c * ROW);
-#endif
       real sum = (real)0.0f;
 #if OCTANT_SOURCE
       const __global float* octants = ROW_OF(state->planes, PLANE_OCTANTS + WaysAside * c, y);
@@ -121,10 +117,8 @@ static inline __attribute__((always_inline)) void CROSS_VOXELS(sweep_state* stat
         all_more += more;
         const real shines = multiply_add(shine, more, gain);
         const real kept = thin ? ray + shines : multiply_add(ray, keep, shines);
-#elif SOURCE
-        const real kept = thin ? ray + gain : multiply_add(ray, keep, gain);
 #else
-        const real kept = thin ? ray : ray * keep;
+        const real kept = thin ? ray + gain : multiply_add(ray, keep, gain);
 #endif
         const real after = multiply_add(ray, change, kept);
         store_real(after, x, out + FIRST(m, c));
@@ -147,9 +141,7 @@ static inline __attribute__((always_inline)) void CROSS_VOXELS(sweep_state* stat
         store_real(multiply_add(mean_length, sum_u, load_real(x, flux)), x, flux);
         store_real(multiply_add(mean_length, sum_v, load_real(x, flux + ROW)), x, flux + ROW);
         real sum_w = multiply_add(mean_length * bundle->cosine, sum, load_real(x, flux + 2 * ROW));
-#if SOURCE
         sum_w = multiply_add(own_path, load_real(x, source_row + c * ROW), sum_w);
-#endif
         store_real(sum_w, x, flux + 2 * ROW);
 #endif
       }
@@ -183,13 +175,11 @@ static void STAGE_ROW(sweep_state* state, int y, int slot, bool first, bool depo
     CROSS_ROW(false);
   }
 #undef CROSS_ROW
-#if PERIODIC_U
-  for (int i = 0; i < MEMBERS * CHANNELS; ++i)
+  for (int i = 0; PERIODIC_U && i < MEMBERS * CHANNELS; ++i)
   {
     out[i * ROW + PAD - 1] = out[i * ROW + PAD + state->sizeU - 1];
     out[i * ROW + PAD + state->sizeU] = out[i * ROW + PAD];
   }
-#endif
 }
 
 // Power of the rays that leave row y of `row` by a move of (du, dv), of which `part` moves. Rays that move both ways at
@@ -265,7 +255,6 @@ static void MOVE_PART(sweep_state* state, float part, const __global float* own,
   }
 }
 
-#if BORDER
 // Rays that come in from the side within a row: the column beside it, on both ends of every row in the rings.
 static void FILL_BORDER(sweep_state* state, const __global float* radiance)
 {
@@ -279,7 +268,6 @@ static void FILL_BORDER(sweep_state* state, const __global float* radiance)
     }
   }
 }
-#endif
 
 #if FACE_IN
 // Rays that come in through the faces across u by cells, into the columns beside row y.
@@ -302,9 +290,8 @@ static void ENTER_ASIDE(sweep_state* state, int y, const __global float* radianc
 static void FILL_OUTSIDE(sweep_state* state, const __global float* outside, const __global float* radiance,
   const __global BundleInfo* bundle, const __global CrossingInfo* crossing)
 {
-#if !PERIODIC_V
   const int size = state->sizeU;
-  for (int s = 1; s < crossing->stages; ++s)
+  for (int s = 1; !PERIODIC_V && s < crossing->stages; ++s)
   {
     for (int m = 0; m < MEMBERS; ++m)
     {
@@ -317,18 +304,17 @@ static void FILL_OUTSIDE(sweep_state* state, const __global float* outside, cons
         const __global float* alike = outside + FIRST(m, c);
         for (int x = 0; x < size; ++x)
         {
-#if PERIODIC_U
-          row[x] = alike[x] +
-            bundle->power * 0.5f *
-              (light_of_cell(state, side, x, c) + light_of_cell(state, side, (x + du + size) % size, c));
-#else
-          row[x] = alike[x] + bundle->power * light_of_cells(state, side, x, du, c);
-#endif
+          const float light = PERIODIC_U
+            ? 0.5f * (light_of_cell(state, side, x, c) + light_of_cell(state, side, (x + du + size) % size, c))
+            : light_of_cells(state, side, x, du, c);
+          row[x] = alike[x] + bundle->power * light;
         }
-#if PERIODIC_U
-        row[-1] = row[size - 1];
-        row[size] = row[0];
-#else
+        if (PERIODIC_U)
+        {
+          row[-1] = row[size - 1];
+          row[size] = row[0];
+          continue;
+        }
         // Past the edge half comes in through either face.
         const int corner = dv > 0 ? 0 : state->sizeV - 1;
         const int column = du > 0 ? 0 : size - 1;
@@ -337,11 +323,9 @@ static void FILL_OUTSIDE(sweep_state* state, const __global float* outside, cons
           : 0.5f * (light_of_cell(state, side, column, c) + light_of_cell(state, du > 0 ? 0 : 1, corner, c));
         row[-1] = alike[-1] + bundle->power * half_light;
         row[size] = alike[size] + bundle->power * half_light;
-#endif
       }
     }
   }
-#endif
 }
 #endif
 
@@ -432,8 +416,11 @@ static void TAKE_ROW(sweep_state* state, int y, bool inside, int s, const __glob
 static void ENTER_ROW(sweep_state* state, int y, int s, const __global float* radiance,
   const __global BundleInfo* bundle, const __global CrossingInfo* crossing, __global float* out)
 {
-#if FACE_IN && !PERIODIC_U
-  ENTER_ASIDE(state, y, radiance, bundle, crossing->moveU[s], crossing->moveV[s], out);
+#if FACE_IN
+  if (!PERIODIC_U)
+  {
+    ENTER_ASIDE(state, y, radiance, bundle, crossing->moveU[s], crossing->moveV[s], out);
+  }
 #elif SIDES
   for (int m = 0; m < MEMBERS; ++m)
   {
@@ -461,12 +448,10 @@ static void CROSS_PLANES(sweep_state* state, int planes, __global float* map, co
   int bundles, const __global float* coefficients, int first_row, int end_row)
 {
   const bool begins = first_row <= FirstRow;
-#if BORDER
-  if (begins)
+  if (begins && state->border)
   {
     FILL_BORDER(state, radiance);
   }
-#endif
   stage_of_chain chain[STAGES];
   int stages = 0, before = 0; // of planes that the chain has without these, as if it was crossed from its first one on
   for (int k = 1; k <= state->chained_before; ++k)
@@ -495,28 +480,20 @@ static void CROSS_PLANES(sweep_state* state, int planes, __global float* map, co
 #else
   const __global float* const beside = outside;
 #endif
-#if PERIODIC_V
   // Rows beyond the plane are rows of the other side, and computed again there; the first ones are needed after they
   // are overwritten.
-  const int beyond = stages - 1;
+  const int beyond = PERIODIC_V ? stages - 1 : 0;
   for (int i = 0; begins && i < beyond * BLOCK; ++i)
   {
     map[height * BLOCK + i] = map[(i / BLOCK % height) * BLOCK + i % BLOCK];
   }
-#else
-  const int beyond = 0;
-#endif
   const int end = min(height + beyond + LAG * (before + stages - 1), end_row);
   for (int r = max(-beyond, first_row); r < end; ++r)
   {
     for (int g = 0; g < stages; ++g)
     {
       const int y = r - LAG * (before + g);
-#if PERIODIC_V
-      const int reach = stages - 1 - g;
-#else
-      const int reach = 0;
-#endif
+      const int reach = PERIODIC_V ? stages - 1 - g : 0;
       if (y < -reach || y >= height + reach)
       {
         continue;
@@ -545,10 +522,17 @@ static void CROSS_PLANES(sweep_state* state, int planes, __global float* map, co
         MOVE_PART(state, crossing->part[s], own, in);
       }
       const int slot = y & (MomentRows - 1);
-#if DEGREE && SOURCE
+#if DEGREE
       if (s == 0)
       {
-        FOR_FRAMES(FIND_SOURCES, wrapped, slot)
+        if (state->shines)
+        {
+          FOR_FRAMES(FIND_SOURCES, wrapped, slot)
+        }
+        else
+        {
+          clear(state->sources + slot * RAYS_OF_ROW + PAD, MEMBERS * CHANNELS * ROW);
+        }
       }
 #endif
 #if CHAINED

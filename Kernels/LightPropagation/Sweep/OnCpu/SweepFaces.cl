@@ -35,12 +35,12 @@ static face_planes planes_of_ray(const sweep_state* state, float planes)
 {
 #if FACE_SPREAD
   const float middle = state->facePlane + 0.5f;
-#if PERIODIC_P
-  const face_planes found = { middle - 0.5f * planes, middle + 0.5f * planes };
-#else
-  const face_planes found = { fmax(middle - 0.5f * planes, 0.0f),
-    fmin(middle + 0.5f * planes, (float)state->facePlanes) };
-#endif
+  face_planes found = { middle - 0.5f * planes, middle + 0.5f * planes };
+  if (!state->roundAxis)
+  {
+    found.begin = fmax(found.begin, 0.0f);
+    found.end = fmin(found.end, (float)state->facePlanes);
+  }
 #else
   const face_planes found = { state->facePlane, state->facePlane + 1.0f };
 #endif
@@ -50,8 +50,8 @@ static face_planes planes_of_ray(const sweep_state* state, float planes)
 // Where the cells of plane p of a side begin.
 static __global float* cells_of_plane(const sweep_state* state, int side, int p, int c)
 {
-#if FACE_SPREAD && PERIODIC_P
-  p = (p + state->facePlanes) % state->facePlanes;
+#if FACE_SPREAD
+  p = (p + state->facePlanes) % state->facePlanes; // beyond an axis that rays go round
 #endif
   const long planes = p - state->facePlane;
   return state->faceOut + FACE_CELL(state, side, 0, c) + planes * state->faces->plane[side];
@@ -100,11 +100,7 @@ static float light_of_cells(const sweep_state* state, int side, int i, int move,
 {
   const int size = side < 2 ? state->sizeV : state->sizeU;
   const float here = light_of_cell(state, side, i, c);
-#if PERIODIC_V
-  const int beside = side < 2 ? (i + move + size) % size : i + move;
-#else
-  const int beside = i + move;
-#endif
+  const int beside = PERIODIC_V && side < 2 ? (i + move + size) % size : i + move;
   return move == 0 || beside < 0 || beside >= size ? here : 0.5f * (here + light_of_cell(state, side, beside, c));
 }
 #endif

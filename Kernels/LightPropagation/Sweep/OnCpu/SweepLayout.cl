@@ -2,7 +2,6 @@
 //   REAL_WIDTH  4, 8 or 16 floats of a vector
 //   CHANNELS  1 or 3 colours that share sigma_t
 //   ROW       floats in a padded row; the floats after a row's voxels and before the next row's are its border
-//   SOURCE    1 where the medium shines (emission or scattered light)
 //   DEGREE    of the angular moments in which light is gathered and scattered; 0: fluence alone
 //   BEAMS     sources with an angular distribution of their own, besides the moments; where DEGREE is not 0
 //   EVEN_EVEN, ODD_EVEN, EVEN_ODD, ODD_ODD  how many of the angular functions are even or odd along u and v; where
@@ -11,14 +10,14 @@
 //   MOMENTS_IN_PLACE  1: they are read and added to where they are; 0: they are packed like the rest of a plane
 //   NET_FLUX  1 where the net flux is wanted
 //   CURRENTS  1 where the power that enters each voxel through each face is wanted
-//   OCTANT_SOURCE  1 where voxels shine otherwise into each octant; where SOURCE is 1 and DEGREE is 0
-//   BORDER    1 where light comes in through the faces that rays pass sideways
-//   PERIODIC_P  1 where rays go round the axis: planes are added to many times, and what rounding loses is kept
+//   OCTANT_SOURCE  1 where voxels may shine otherwise into each octant; where DEGREE is 0
 //   PERIODIC_U, PERIODIC_V  1 where rays come back on the other side
 //   STREAMED  1 where slices of the volumes are in slots (SliceStream.h)
 //   FACE_OUT, FACE_IN  1 where light leaves and comes in by cells of the box's faces (SweepFaces.cl)
 //   CHAIN_KEEPS  rows of planes that scratch has room for, a power of two; 0: all; may be left out
 //   SIDES     1 where the box is a block of a larger one (SweepSides.cl); may be left out
+// What costs next to nothing to ask is not among them but in SweepInfo: a sweep of the light that comes in and those of
+// what it scatters are one program, which takes seconds to compile.
 //
 // Rays carry power (W), so that leaving through any face needs no further factor. A map row holds the rays by the voxel
 // they enter, for all members of a bundle and all channels: float [member][channel][ROW].
@@ -98,6 +97,7 @@ typedef struct
 {
   int sizeU, sizeV;                 // voxels of the plane
   int width;                        // sizeU rounded up to whole vectors
+  int shines, border, roundAxis;    // as SweepInfo has them
   const struct plane_place* places; // of planes that are crossed one behind the other
   __global float* planes;           // of the plane that is being crossed
   __global int* thin;               // [row] of it, 1 where all voxels are thin

@@ -108,22 +108,16 @@ static inline __attribute__((always_inline)) void CROSS_MOMENTS(sweep_state* sta
   {
     const real_crossing crossing = cross_length(state, x, sigma_row, inverse_row, length, thin);
     const real mean_length = crossing.meanLength, keep = crossing.keep, change = crossing.change;
-#if SOURCE
     const real shine = mean_length * power;
     const real own = own_path_of(x, &crossing, inverse_row, length) * power;
     store_real(first ? own : own + load_real(x, own_row), x, own_row);
-#endif
 #pragma unroll
     for (int i = 0; i < MEMBERS * CHANNELS; ++i)
     {
       const int at = i * ROW + PAD;
       const real ray = load_real(x, in[i / CHANNELS] + i % CHANNELS * ROW);
-#if SOURCE
       const real gain = shine * load_real(x, sources + at);
       const real kept = thin ? ray + gain : multiply_add(ray, keep, gain);
-#else
-      const real kept = thin ? ray : ray * keep;
-#endif
       store_real(multiply_add(ray, change, kept), x, out + at);
       const real before = first ? (real)0.0f : load_real(x, paths + at);
       store_real(multiply_add(mean_length, ray, before), x, paths + at);
@@ -163,9 +157,7 @@ static inline __attribute__((always_inline)) void GATHER_MOMENTS(sweep_state* st
             const float2 sign = signs_of(bundle, m);
             const int at = FIRST(m, c);
             real path = load_real(x, paths + at);
-#if SOURCE
             path = multiply_add(load_real(x, own_row), load_real(x, sources + at), path);
-#endif
             sums[f][0] += path;
             sums[f][1] = multiply_add(path, (real)sign.x, sums[f][1]);
             sums[f][2] = multiply_add(path, (real)sign.y, sums[f][2]);

@@ -43,11 +43,8 @@ static void add_beside(sweep_state* state, int y, int du, int face, const __glob
       const real ray = select(load_real(x, from), (real)0.0f, LANES >= size - x);
       store_real(multiply_add(ray, (real)part, load_real(x - du, sum)), x - du, sum);
     }
-#if PERIODIC_U
-    sum[du > 0 ? size - 1 : 0] += part * from[du > 0 ? 0 : size - 1];
-#else
-    sum[du > 0 ? size - 1 : 0] += part * from[du > 0 ? size : -1];
-#endif
+    const int beyond = PERIODIC_U ? (du > 0 ? 0 : size - 1) : (du > 0 ? size : -1);
+    sum[du > 0 ? size - 1 : 0] += part * from[beyond];
   }
 }
 
