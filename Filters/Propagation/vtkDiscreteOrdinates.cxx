@@ -81,9 +81,9 @@ std::string vtkDiscreteOrdinates::NotByBlocks(vtkInformationVector**) const
   return this->WarmStart ? "WarmStart" : "";
 }
 
-std::string vtkDiscreteOrdinates::NotInBlocks(const tyndall::PieceOfMedium&, const tyndall::IlluminationInput& shining)
+std::string vtkDiscreteOrdinates::NotInBlocks(const tyndall::PieceOfMedium&, const tyndall::IlluminationInput&)
 {
-  return tyndall::NotInBlocks(shining.illumination, GivenSettings(this));
+  return tyndall::NotInBlocks(GivenSettings(this));
 }
 
 tyndall::LightField vtkDiscreteOrdinates::SolvePiece(tyndall::Communicator& communicator,

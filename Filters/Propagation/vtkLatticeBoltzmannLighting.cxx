@@ -205,10 +205,9 @@ tyndall::IlluminationInput vtkLatticeBoltzmannLighting::ReadShiningOn(
   return ofFaces;
 }
 
-std::string vtkLatticeBoltzmannLighting::NotInBlocks(
-  const tyndall::PieceOfMedium&, const tyndall::IlluminationInput& shining)
+std::string vtkLatticeBoltzmannLighting::NotInBlocks(const tyndall::PieceOfMedium&, const tyndall::IlluminationInput&)
 {
-  return tyndall::NotInBlocks(shining.illumination, SettingsOf(this));
+  return tyndall::NotInBlocks(SettingsOf(this));
 }
 
 tyndall::LightField vtkLatticeBoltzmannLighting::SolvePiece(tyndall::Communicator& communicator,

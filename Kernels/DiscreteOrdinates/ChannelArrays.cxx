@@ -117,12 +117,12 @@ void ChannelArrays::SpreadOverRanks(UncollidedVolume& volume, std::unique_ptr<La
 {
   const OrdinatesRanks& ranks = *this->Scene.ranks;
   volume.whole = &ranks.partition.whole;
-  volume.followLamp = [this, &ranks, &nearLamps, &sigma_t = volume.sigma_t](
+  volume.followLamp = [this, &ranks, &nearLamps, periodic = volume.periodic, &sigma_t = volume.sigma_t](
                         const SweepVolume& ofChannels, const tyndall::Light& lamp, const Monitor& monitor) {
     if (!nearLamps)
     {
-      nearLamps =
-        std::make_unique<LampsInBlocks>(this->TheDevice, ranks.others, ranks.partition, this->Layout, sigma_t);
+      nearLamps = std::make_unique<LampsInBlocks>(
+        this->TheDevice, ranks.others, ranks.partition, periodic, this->Layout, sigma_t);
     }
     const SweepTally tally = nearLamps->Deposit(ofChannels, lamp, monitor);
     // Of all already; a rank without voxels may not know the channel's power.

@@ -98,17 +98,33 @@ VoxelBox Grown(const VoxelBox& box, int by, const Grid& whole)
   return grown;
 }
 
-std::vector<int> NeighboursOf(const BlockPartition& partition, int rank, int reach)
+namespace
+{
+bool AreNear(const VoxelBox& a, const VoxelBox& b, int axis, int reach, int period)
+{
+  const auto meet = [&](int shift) {
+    return a.first[axis] - reach < EndOf(b, axis) + shift && b.first[axis] + shift < EndOf(a, axis) + reach;
+  };
+  return meet(0) || (period > 0 && (meet(-period) || meet(period)));
+}
+}
+
+std::vector<int> NeighboursOf(const BlockPartition& partition, int rank, int reach, const std::array<bool, 3>& periodic)
 {
   std::vector<int> neighbours;
   if (partition.blocks.at(rank).VoxelCount() == 0)
   {
     return neighbours;
   }
-  const VoxelBox touched = Grown(partition.blocks[rank], reach, partition.whole);
   for (int other = 0; other < static_cast<int>(partition.blocks.size()); ++other)
   {
-    if (other != rank && Common(partition.blocks[other], touched).VoxelCount() > 0)
+    bool near = other != rank && partition.blocks[other].VoxelCount() > 0;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const int period = periodic[axis] ? partition.whole.size[axis] : 0;
+      near = near && AreNear(partition.blocks[rank], partition.blocks[other], axis, reach, period);
+    }
+    if (near)
     {
       neighbours.push_back(other);
     }

@@ -39,7 +39,9 @@ VoxelBox Grown(const VoxelBox& box, int by, const Grid& whole);
 
 /// The ranks whose blocks touch that of one, at a face, an edge or a corner.
 /// @param reach  voxels: those too that are fewer than so many apart from it
-std::vector<int> NeighboursOf(const BlockPartition& partition, int rank, int reach = 1);
+/// @param periodic  axes whose two ends touch
+std::vector<int> NeighboursOf(
+  const BlockPartition& partition, int rank, int reach = 1, const std::array<bool, 3>& periodic = {});
 
 /// The voxels that two boxes share; without any its size is 0 along some axis.
 VoxelBox Common(const VoxelBox& a, const VoxelBox& b);

@@ -55,6 +55,11 @@ std::vector<float> PartOf(const std::vector<float>& values, const VoxelBox& box,
   return TakeFrom(values, box, part, components);
 }
 
+std::vector<std::int64_t> PartOf(const std::vector<std::int64_t>& values, const VoxelBox& box, const VoxelBox& part)
+{
+  return TakeFrom(values, box, part, 1);
+}
+
 std::vector<std::vector<std::size_t>> NumbersOfEach(
   Communicator& communicator, const BlockPartition& partition, const std::vector<std::vector<std::size_t>>& toEach)
 {

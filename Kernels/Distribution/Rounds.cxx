@@ -5,10 +5,11 @@
 
 namespace tyndall
 {
-Rounds::Rounds(Communicator& communicator, const BlockPartition& partition, int reach)
+Rounds::Rounds(
+  Communicator& communicator, const BlockPartition& partition, int reach, const std::array<bool, 3>& periodic)
   : Others(communicator)
   , Partition(partition)
-  , Neighbours(NeighboursOf(partition, communicator.Rank(), reach))
+  , Neighbours(NeighboursOf(partition, communicator.Rank(), reach, periodic))
 {
 }
 

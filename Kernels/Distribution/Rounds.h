@@ -4,6 +4,7 @@
 #include "Distribution/BlockPartition.h"
 #include "Distribution/Communicator.h"
 
+#include <array>
 #include <cstddef>
 #include <functional>
 #include <vector>
@@ -28,7 +29,9 @@ class Rounds
 public:
   /// @param communicator, partition  must stay; as many blocks as ranks
   /// @param reach  voxels beyond its block that a traveller goes before it is handed on, the same on all ranks
-  Rounds(Communicator& communicator, const BlockPartition& partition, int reach = 1);
+  /// @param periodic  axes whose two ends touch
+  Rounds(Communicator& communicator, const BlockPartition& partition, int reach = 1,
+    const std::array<bool, 3>& periodic = {});
 
   /// Follows those that have come (in the first round: that set off here), and gives back those that go on elsewhere.
   template <class OnItsWay>

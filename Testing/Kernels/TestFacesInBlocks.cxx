@@ -94,7 +94,16 @@ protected:
     settings.directionsPerFace = perFace;
     settings.periodic = periodic;
     settings.angularDegree = g == 0.0 ? 0 : 1;
-    ExpectTheLightOfTheWhole(GetDevice(), whole, shining, settings);
+    const bool all = periodic[0] && periodic[1] && periodic[2];
+    all ? ExpectInUnevenBlocks(whole, shining, settings)
+        : ExpectTheLightOfTheWhole(GetDevice(), whole, shining, settings);
+  }
+
+  /// Where rays go round so often that blocks of all kinds would take a minute.
+  void ExpectInUnevenBlocks(const RandomMedium& whole, const Illumination& shining, const PropagationSettings& settings)
+  {
+    const LightField expected = SolveConservative(GetDevice(), whole.medium, shining, settings);
+    ExpectSame(LightOfAll(GetDevice(), Uneven(whole.medium.grid), whole, shining, settings), expected, true);
   }
 };
 
@@ -128,12 +137,12 @@ TEST_F(PeriodicInBlocks, ConvergeAsTheWholeInColour)
   whole.Emit(0.3f);
   PropagationSettings settings = SettingsOf(0);
   settings.periodic = { false, true, false };
-  ExpectTheLightOfTheWhole(GetDevice(), whole, LitFromOutside(), settings);
+  ExpectInUnevenBlocks(whole, LitFromOutside(), settings);
 }
 
 TEST_F(PeriodicInBlocks, AreTheWholeVoxelByVoxel)
 {
-  RandomMedium whole(Grid{ { 3, 1, 2 } }, 1, 0.8f, 53);
+  RandomMedium whole(Grid{ { 2, 1, 2 } }, 1, 0.8f, 53);
   whole.Emit(0.3f);
   PropagationSettings settings = SettingsOf(3);
   settings.periodic = { true, true, false };

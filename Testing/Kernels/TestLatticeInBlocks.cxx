@@ -256,6 +256,21 @@ TEST_F(LatticeBlocks, HaveTheLightThatGoesRoundPeriodicAxes)
   }
 }
 
+TEST_F(LatticeBlocks, HaveTheNearLampsThatShineRoundPeriodicAxes)
+{
+  MediumToCut medium = Everything({ 5, 3, 4 });
+  AddNearLamps(medium.scene);
+  medium.scene.light.faceAlbedo = {};
+  LatticeSettings settings = SettingsOf(1e-7);
+  settings.periodic = { true, false, true };
+  const LightField whole = this->Whole(medium, settings);
+  for (const int ranks : { 1, 3 })
+  {
+    SCOPED_TRACE(std::to_string(ranks) + " ranks");
+    ExpectSame(this->OnRanks(ranks, medium, settings), whole, 2e-6);
+  }
+}
+
 /// Instead of that of lamps, by voxel, with its mean direction, from which it is told where in voxels it is lost.
 TEST_F(LatticeBlocks, HaveTheLightThatIsGivenToTheWhole)
 {

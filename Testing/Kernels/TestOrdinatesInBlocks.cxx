@@ -151,6 +151,20 @@ TEST_F(OrdinatesBlocks, HaveTheLightThatGoesRoundPeriodicAxes)
   ExpectSame(this->OfBlocks(SingleVoxels(small.scene.medium.grid), small, settings), this->Whole(small, settings));
 }
 
+TEST_F(OrdinatesBlocks, HaveTheNearLampsThatShineRoundPeriodicAxes)
+{
+  MediumToCut medium = Everything({ 5, 3, 4 });
+  AddNearLamps(medium.scene);
+  OrdinatesSettings settings = SettingsOf(9);
+  settings.periodic = { true, false, true };
+  const LightField whole = this->Whole(medium, settings);
+  for (const int ranks : { 1, 3 })
+  {
+    SCOPED_TRACE(std::to_string(ranks) + " ranks");
+    ExpectSame(this->OfBlocks(BlockPartition::Even(medium.scene.medium.grid, ranks), medium, settings), whole);
+  }
+}
+
 /// Instead of that of lamps, by voxel, with its mean direction.
 TEST_F(OrdinatesBlocks, HaveTheLightThatIsGivenToTheWhole)
 {

@@ -128,6 +128,40 @@ TEST_F(PropagationBlocks, HaveTheLightOfLampsNearbyInMomentsAndBetweenFaces)
   ExpectTheLightOfTheWhole(GetDevice(), whole, shining, settings);
 }
 
+/// Beams go on beyond the ends, in passes; of a box without faces the rest of them is spread evenly.
+TEST_F(PropagationBlocks, HaveTheLightOfLampsNearbyThatGoesRoundPeriodicAxes)
+{
+  const std::array<bool, 3> periodic[] = { { true, false, false }, { false, true, true }, { true, true, true } };
+  const double densities[] = { 0.8, 0.3, 0.05 };
+  for (int i = 0; i < 3; ++i)
+  {
+    RandomMedium whole(Grid{ { 7, 5, 6 }, { 1.0, 0.8, 1.3 } }, i == 1 ? 3 : 1, densities[i], 14 + i);
+    Illumination shining;
+    shining.lights = { NearLamps()[i], NearLamps()[3] };
+    PropagationSettings settings = SettingsOf(1);
+    settings.periodic = periodic[i];
+    const LightField expected = SolveConservative(GetDevice(), whole.medium, shining, settings);
+    for (const BlockPartition& partition : { BlockPartition::Even(whole.medium.grid, 1),
+           BlockPartition::Even(whole.medium.grid, 3), UnevenBlocks(whole.medium.grid) })
+    {
+      SCOPED_TRACE(std::to_string(i) + ", " + std::to_string(partition.blocks.size()) + " ranks");
+      ExpectSame(LightOfAll(GetDevice(), partition, whole, shining, settings), expected, true);
+    }
+  }
+}
+
+TEST_F(PropagationBlocks, HaveTheLightOfALampThatGoesRoundVoxelByVoxel)
+{
+  RandomMedium whole(Grid{ { 2, 1, 3 } }, 1, 0.5f, 17);
+  Illumination shining;
+  shining.lights = { NearLamps()[3] };
+  shining.lights[0].position = { 0.7, 0.4, 2.2 };
+  PropagationSettings settings = SettingsOf(1);
+  settings.periodic = { true, true, false };
+  const LightField expected = SolveConservative(GetDevice(), whole.medium, shining, settings);
+  ExpectSame(LightOfAll(GetDevice(), VoxelByVoxel(whole.medium.grid), whole, shining, settings), expected, true);
+}
+
 /// What beams put down is in fixed point: it does not matter on which rank.
 TEST_F(PropagationBlocks, HaveTheUncollidedLightOfALampBesideThemBitForBit)
 {

@@ -139,14 +139,8 @@ private:
 };
 }
 
-std::string NotInBlocks(const Illumination& illumination, const OrdinatesSettings& settings)
+std::string NotInBlocks(const OrdinatesSettings& settings)
 {
-  const auto isNear = [](const Light& light) { return light.type != LightType::Directional; };
-  if ((settings.periodic[0] || settings.periodic[1] || settings.periodic[2]) &&
-    std::any_of(illumination.lights.begin(), illumination.lights.end(), isNear))
-  {
-    return "a point, spot or rectangle light beside a periodic axis";
-  }
   return IsPublished(settings) ? "the published Scheme" : std::string();
 }
 
@@ -159,7 +153,7 @@ LightField SolveOrdinatesInBlocks(Device& device, Communicator& communicator, co
     partition.Check();
     Require(static_cast<int>(partition.blocks.size()) == communicator.Ranks(), "There is not a block for each rank.");
     Check(settings);
-    const std::string refused = NotInBlocks(illumination, settings);
+    const std::string refused = NotInBlocks(settings);
     Require(
       refused.empty(), "A medium that is spread over ranks is not solved by discrete ordinates with " + refused + ".");
     if (has)

@@ -31,5 +31,5 @@ LightField SolveOrdinatesInBlocks(Device& device, Communicator& communicator, co
   const Monitor& monitor = {});
 
 /// What of a scene keeps SolveOrdinatesInBlocks from it, in words for an error; empty: nothing does.
-std::string NotInBlocks(const Illumination& illumination, const OrdinatesSettings& settings);
+std::string NotInBlocks(const OrdinatesSettings& settings);
 }

@@ -154,7 +154,7 @@ void DiffusionInBlocks::LoadCells()
 /// The matrix times values of the voxels with a layer around them.
 DiffusionInBlocks::Values DiffusionInBlocks::Applied(const std::vector<float>& around) const
 {
-  const LatticeBox box = this->Around.Box();
+  const LatticeBox box = BoxOf(this->Around);
   const std::array<std::size_t, 3> strides = box.known.Strides();
   Values applied;
   for (std::size_t i = 0; i < box.Count(); ++i)
@@ -220,7 +220,7 @@ std::vector<float> DiffusionInBlocks::Preconditioned(const Values& residual)
   this->Others.Together([&] {
     this->AddCells(byCells, around);
     const Values corrected = this->Applied(around);
-    const LatticeBox box = this->Around.Box();
+    const LatticeBox box = BoxOf(this->Around);
     for (std::size_t i = 0; i < own.size(); ++i)
     {
       own[i] = static_cast<float>(around[box.Known(i)] + jacobi(i, residual[i] - corrected[i]));

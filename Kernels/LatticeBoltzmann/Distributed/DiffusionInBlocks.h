@@ -3,7 +3,7 @@
 #include "Device/ExactValues.h"
 #include "Distribution/BlockPartition.h"
 #include "Distribution/Communicator.h"
-#include "LatticeBoltzmann/Distributed/VoxelsAround.h"
+#include "LatticeBoltzmann/Distributed/MediumAround.h"
 #include "LatticeBoltzmann/LatticeBox.h"
 #include "LatticeBoltzmann/LatticeSettings.h"
 #include "LatticeBoltzmann/LatticeVoxels.h"

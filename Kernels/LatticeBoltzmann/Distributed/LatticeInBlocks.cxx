@@ -4,9 +4,9 @@
 #include "Distribution/SharedMedium.h"
 #include "LatticeBoltzmann/Distributed/DiffusionInBlocks.h"
 #include "LatticeBoltzmann/Distributed/LinesInBlocks.h"
+#include "LatticeBoltzmann/Distributed/MediumAround.h"
 #include "LatticeBoltzmann/Distributed/SteppedInBlocks.h"
 #include "LatticeBoltzmann/Distributed/UncollidedInBlocks.h"
-#include "LatticeBoltzmann/Distributed/VoxelsAround.h"
 #include "LatticeBoltzmann/LatticeAccount.h"
 #include "LatticeBoltzmann/LatticeLight.h"
 #include "LatticeBoltzmann/Steady/SteadyLattice.h"
@@ -189,14 +189,8 @@ private:
 };
 }
 
-std::string NotInBlocks(const Illumination& illumination, const LatticeSettings& settings)
+std::string NotInBlocks(const LatticeSettings& settings)
 {
-  const auto isNear = [](const Light& light) { return light.type != LightType::Directional; };
-  if ((settings.periodic[0] || settings.periodic[1] || settings.periodic[2]) &&
-    std::any_of(illumination.lights.begin(), illumination.lights.end(), isNear))
-  {
-    return "a point, spot or rectangle light beside a periodic axis";
-  }
   if (settings.blockSize > 0)
   {
     return "blocks of voxels that step by themselves (BlockSize)";
@@ -216,7 +210,7 @@ void CheckInBlocks(Communicator& communicator, const BlockPartition& partition, 
     Check(settings);
     Check(illumination);
     CheckFaceAlbedo(illumination, settings.periodic);
-    const std::string refused = NotInBlocks(illumination, settings);
+    const std::string refused = NotInBlocks(settings);
     Require(refused.empty(), "A medium that is spread over ranks is not solved on a lattice with " + refused + ".");
     if (partition.blocks[communicator.Rank()].VoxelCount() > 0)
     {
@@ -269,7 +263,7 @@ LightField SolveLatticeInBlocks(Device& device, Communicator& communicator, cons
   BlockPartition inUnits = partition;
   inUnits.whole = scene.WholeOf(partition.whole);
   const LatticeScene solved = { scene.medium, scene.illumination, scene.channels };
-  const LatticeBox box(scene.medium.grid, around.Box().own, around.Box().innerFaces);
+  const LatticeBox box(scene.medium.grid, BoxOf(around).own, BoxOf(around).innerFaces);
 
   const bool moments = OnAnyRank(communicator, has && NeedsFirstMoments(scene.medium, settings));
   const Uncollided direct = UncollidedInBlocks(device, communicator, inUnits, around, solved, settings, moments)

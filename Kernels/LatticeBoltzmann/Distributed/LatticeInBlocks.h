@@ -46,5 +46,5 @@ LightField SolveLatticeInBlocks(Device& device, Communicator& communicator, cons
   const LatticeSettings& settings, const Monitor& monitor = {});
 
 /// What of a scene keeps SolveLatticeInBlocks from it, in words for an error; empty: nothing does.
-std::string NotInBlocks(const Illumination& illumination, const LatticeSettings& settings);
+std::string NotInBlocks(const LatticeSettings& settings);
 }

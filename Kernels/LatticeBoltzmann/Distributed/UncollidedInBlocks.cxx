@@ -66,7 +66,7 @@ UncollidedInBlocks::UncollidedInBlocks(Device& device, Communicator& communicato
     return;
   }
   communicator.Together([&] {
-    const LatticeBox box = around.Box();
+    const LatticeBox box = BoxOf(around);
     this->SigmaT = this->SigmaTOf(this->Layout, box);
     this->Path = this->Zeros(this->Layout, 1, "the light gathered");
     if (settings.netFlux)
@@ -152,8 +152,8 @@ UncollidedVolume UncollidedInBlocks::Volume()
   volume.followLamp = [this](const SweepVolume& ofChannels, const Light& lamp, const Monitor& monitor) {
     if (!this->NearLamps)
     {
-      this->NearLamps =
-        std::make_unique<LampsInBlocks>(this->TheDevice, this->Others, this->Partition, this->Layout, this->SigmaT);
+      this->NearLamps = std::make_unique<LampsInBlocks>(
+        this->TheDevice, this->Others, this->Partition, this->Settings.periodic, this->Layout, this->SigmaT);
     }
     return this->NearLamps->Deposit(ofChannels, lamp, monitor);
   };

@@ -4,7 +4,7 @@
 #include "Device/Monitor.h"
 #include "Distribution/BlockPartition.h"
 #include "Distribution/Communicator.h"
-#include "LatticeBoltzmann/Distributed/VoxelsAround.h"
+#include "LatticeBoltzmann/Distributed/MediumAround.h"
 #include "LatticeBoltzmann/LatticeScene.h"
 #include "LatticeBoltzmann/LatticeSettings.h"
 #include "LatticeBoltzmann/LatticeVoxels.h"

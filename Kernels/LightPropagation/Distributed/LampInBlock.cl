@@ -11,17 +11,21 @@ static void follow_in_block(const LampInfo* lamp, const BeamRow* row, BeamOnItsW
   lamp_tally tally;
   clear_tally(&tally, cells);
   beam_state state = { beam->layer, beam->step, beam->left, beam->rest };
-  float shone = 0.0f;
+  float shone = 0.0f, power = 0.0f;
+  if (!beam->begun || lamp->periodic[row->axis])
+  {
+    power = power_of_beam(lamp, row, tangent);
+  }
   if (!beam->begun)
   {
-    shone = power_of_beam(lamp, row, tangent);
-    tally.entered = shone;
+    shone = power;
+    tally.entered = row->skipped > 0 ? 0.0f : shone;
     state.left = shone;
   }
   // What is left of one that has come so far may be less than 0 by rounding.
   const bool is_there = beam->begun || shone > 0.0f;
   beam->begun = true;
-  beam->ended = !is_there || follow_beam(lamp, row, tangent, state.left, sigma, path, stride, &state, &tally);
+  beam->ended = !is_there || follow_beam(lamp, row, tangent, power, sigma, path, stride, &state, &tally);
   beam->layer = state.layer;
   beam->step = state.step;
   beam->left = state.left;

@@ -1,8 +1,8 @@
 #include "LightPropagation/Distributed/LampsInBlocks.h"
 
 #include "Device/GroupSize.h"
-#include "Distribution/BoxExchange.h"
 #include "LightPropagation/Uncollided/LampOnGrid.h"
+#include "LightPropagation/Uncollided/LampPasses.h"
 #include "LightPropagation/Uncollided/LampShares.h"
 #include "LightPropagation/Uncollided/LampSums.h"
 #include "Medium/BoxFaces.h"
@@ -27,7 +27,8 @@ constexpr int Reach = 2; ///< voxels beside a block that beams in it may lie ove
 constexpr std::size_t BeamsPerLaunch = 1 << 14; ///< keeps a launch well below a tenth of a second
 
 /// Where a beam sets off, the nearest voxel of the grid; about: whoever has it takes its first step.
-std::array<int, 3> FirstVoxel(const BeamRow& row, int beam, const glm::dvec3& point, const Grid& grid)
+std::array<int, 3> FirstVoxel(
+  const BeamRow& row, int beam, const glm::dvec3& point, const Grid& grid, const std::array<bool, 3>& periodic)
 {
   const double tangents[] = { row.tangentU + static_cast<double>(beam) * row.widthU, row.tangentV };
   const double along = row.up ? point[row.axis] + row.begin : point[row.axis] - row.begin;
@@ -37,6 +38,7 @@ std::array<int, 3> FirstVoxel(const BeamRow& row, int beam, const glm::dvec3& po
   {
     const int aside = (row.axis + 1 + k) % 3;
     place[aside] = std::floor(point[aside] + tangents[k] * row.begin);
+    place[aside] -= periodic[aside] ? std::floor(place[aside] / grid.size[aside]) * grid.size[aside] : 0.0;
   }
   std::array<int, 3> voxel = {};
   for (int axis = 0; axis < 3; ++axis)
@@ -48,18 +50,15 @@ std::array<int, 3> FirstVoxel(const BeamRow& row, int beam, const glm::dvec3& po
 }
 
 LampsInBlocks::LampsInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition,
-  const VolumeLayout& layout, const Buffer<float>& sigma_t)
+  const std::array<bool, 3>& periodic, const VolumeLayout& layout, const Buffer<float>& sigma_t)
   : TheDevice(device)
   , Others(communicator)
   , Partition(partition)
   , Own(partition.blocks[communicator.Rank()])
-  , Rounds(communicator, partition)
+  , Stored(communicator, partition, periodic, Reach)
+  , Rounds(communicator, partition, 1, periodic)
   , OwnStride(layout.Stride())
 {
-  for (const VoxelBox& block : partition.blocks)
-  {
-    this->Stored.push_back(block.VoxelCount() > 0 ? Grown(block, Reach, partition.whole) : VoxelBox());
-  }
   std::vector<float> own = this->Has() ? sigma_t.Read() : std::vector<float>();
   std::vector<float> stored;
   for (const ChannelGroup& group : layout.Groups())
@@ -67,7 +66,7 @@ LampsInBlocks::LampsInBlocks(Device& device, Communicator& communicator, const B
     std::vector<float> ofGroup(this->Own.VoxelCount());
     std::copy_n(own.begin() + static_cast<std::ptrdiff_t>(this->Has() ? layout.ExtinctionFirst(group.first) : 0),
       ofGroup.size(), ofGroup.begin());
-    const std::vector<float> around = ValuesInBox(communicator, partition, this->Stored, ofGroup, 1);
+    const std::vector<float> around = this->Stored.Spread(ofGroup, 1);
     stored.insert(stored.end(), around.begin(), around.end());
   }
   communicator.Together([&] {
@@ -85,8 +84,8 @@ public:
   Beams(LampsInBlocks& lamps, const SweepVolume& volume, const Light& light)
     : All(lamps)
     , Volume(volume)
-    , Lamp(light, lamps.Partition.whole, { false, false, false })
-    , Box(lamps.Stored[lamps.Others.Rank()])
+    , Lamp(light, lamps.Partition.whole, lamps.Stored.Periodic())
+    , Box(lamps.Stored.Known())
     , SigmaFirst(volume.sigma_t_first / std::max<std::size_t>(lamps.OwnStride, 1) * this->Box.VoxelCount())
   {
     lamps.Others.Together([&] {
@@ -102,27 +101,28 @@ public:
 
   SweepTally Run(const Monitor& monitor)
   {
-    const std::vector<glm::dvec3> points = this->Lamp.Points();
-    const double all = static_cast<double>(points.size());
-    for (std::size_t p = 0; p < points.size(); ++p)
-    {
-      this->Follow(points[p], 1.0 / all, OfPart(monitor, p / all, (p + 1) / all));
-    }
-    this->ShareSums();
+    const FollowPass follow = [this](const Pass& pass, double factor, const Monitor& ofPass) {
+      this->FollowPoints(pass, factor, ofPass);
+    };
+    const std::array<bool, 3>& periodic = this->All.Stored.Periodic();
+    const double even = FollowInPasses(this->All.Partition.whole, periodic, this->Shares, follow, monitor);
     // As in one memory.
     const double correction = this->AllInside && this->Shares.shone > 0.0 ? 1.0 / this->Shares.shone : 1.0;
-    this->PutDown(correction);
+    this->PutDown(correction, even);
     return this->Shares.Times(this->Lamp.TheLight().power, this->Volume.channels, correction);
   }
 
 private:
-  void Follow(const glm::dvec3& point, double part, const Monitor& monitor);
+  void FollowPoints(const Pass& pass, double factor, const Monitor& monitor);
+  void Follow(const glm::dvec3& point, const Pass& pass, double part, const Monitor& monitor);
   std::vector<BeamOnItsWay> SettingOff(const std::vector<BeamRow>& rows, const glm::dvec3& point) const;
   std::vector<BeamOnItsWay> FollowInBlock(const std::vector<BeamRow>& rows, const LampInfo& info,
     const Buffer<BeamRow>& rowBuffer, const std::vector<BeamOnItsWay>& beams, const Monitor& monitor);
-  void ShareSums();
+  std::size_t BeamsTogether(const BeamRow& row) const;
+  void AddToShares();
   std::vector<cl_long> CellsOfAll();
-  void PutDown(double correction);
+  double ExtinctionOfAll();
+  void PutDown(double correction, double even);
 
   LampsInBlocks& All;
   const SweepVolume& Volume;
@@ -131,12 +131,25 @@ private:
   std::size_t SigmaFirst;
   std::unique_ptr<LampSums> Sums; ///< of the stored voxels; null without any
   cl::Kernel Kernel;
-  LampShares Shares;
+  LampShares Shares; ///< of all ranks
+  LampShares Found;  ///< of this one, of what is being followed
   bool AllInside = true;
 };
 
+/// As LampBeams does, of all ranks together.
+void LampsInBlocks::Beams::FollowPoints(const Pass& pass, double factor, const Monitor& monitor)
+{
+  const std::vector<glm::dvec3> points = this->Lamp.PointsOf(pass);
+  const double all = static_cast<double>(points.size());
+  for (std::size_t p = 0; p < points.size(); ++p)
+  {
+    this->Follow(points[p], pass, factor / all, OfPart(monitor, p / all, (p + 1) / all));
+  }
+  this->AddToShares();
+}
+
 /// From one point, until no beam is left anywhere.
-void LampsInBlocks::Beams::Follow(const glm::dvec3& point, double part, const Monitor& monitor)
+void LampsInBlocks::Beams::Follow(const glm::dvec3& point, const Pass& pass, double part, const Monitor& monitor)
 {
   this->AllInside = this->AllInside && this->Lamp.IsInside(point);
   std::vector<BeamRow> rows;
@@ -146,7 +159,7 @@ void LampsInBlocks::Beams::Follow(const glm::dvec3& point, double part, const Mo
     [&](int round, std::vector<BeamOnItsWay>&& arrived, const Monitor& ofRound) {
       if (round == 0)
       {
-        rows = this->Lamp.Rows(point, FirstPass(this->All.Partition.whole));
+        rows = this->Lamp.Rows(point, pass);
         arrived = this->SettingOff(rows, point);
         rowBuffer = Buffer<BeamRow>(this->All.TheDevice, rows.empty() ? std::vector<BeamRow>(1) : rows, "beams");
       }
@@ -163,7 +176,9 @@ std::vector<BeamOnItsWay> LampsInBlocks::Beams::SettingOff(
   {
     for (int b = 0; b < rows[r].count; ++b)
     {
-      if (Holds(this->All.Own, FirstVoxel(rows[r], b, point, this->All.Partition.whole).data()))
+      const std::array<int, 3> voxel =
+        FirstVoxel(rows[r], b, point, this->All.Partition.whole, this->All.Stored.Periodic());
+      if (Holds(this->All.Own, voxel.data()))
       {
         own.push_back({ static_cast<cl_int>(r), b, 0, 0, 0, 0.0f, 0.0f, {}, 0 });
       }
@@ -180,7 +195,7 @@ std::vector<BeamOnItsWay> LampsInBlocks::Beams::FollowInBlock(const std::vector<
   std::vector<BeamOnItsWay> gone;
   for (std::size_t first = 0, count; first < beams.size(); first += count)
   {
-    count = std::min(BeamsPerLaunch, beams.size() - first);
+    count = std::min(this->BeamsTogether(rows[beams[first].row]), beams.size() - first);
     const auto begin = beams.begin() + static_cast<std::ptrdiff_t>(first);
     const std::vector<BeamOnItsWay> some(begin, begin + static_cast<std::ptrdiff_t>(count));
     const Buffer<BeamOnItsWay> onDevice(device, some, "beams");
@@ -194,7 +209,7 @@ std::vector<BeamOnItsWay> LampsInBlocks::Beams::FollowInBlock(const std::vector<
     const std::vector<float> found = sums.Read();
     for (std::size_t b = 0; b < count; ++b)
     {
-      this->Shares.Count(rows[after[b].row], found.data() + b * LampRowSums);
+      this->Found.Count(rows[after[b].row], found.data() + b * LampRowSums);
       if (!after[b].ended)
       {
         gone.push_back(after[b]);
@@ -205,20 +220,34 @@ std::vector<BeamOnItsWay> LampsInBlocks::Beams::FollowInBlock(const std::vector<
   return gone;
 }
 
-/// Of this rank to those of all.
-void LampsInBlocks::Beams::ShareSums()
+/// Of a launch. Round a periodic axis that is all in one block it may be far.
+std::size_t LampsInBlocks::Beams::BeamsTogether(const BeamRow& row) const
 {
-  std::vector<double> values = { this->Shares.shone };
-  values.insert(values.end(), this->Shares.in.begin(), this->Shares.in.end());
-  values.insert(values.end(), this->Shares.out.begin(), this->Shares.out.end());
+  const double layers = this->All.Stored.Periodic()[row.axis] ? row.layers : 1.0;
+  const double most = static_cast<double>(BeamsPerLaunch);
+  return static_cast<std::size_t>(std::clamp(LampOnGrid::LayersPerLaunch / layers, 1.0, most));
+}
+
+/// What became of the beams of this rank and of the others.
+void LampsInBlocks::Beams::AddToShares()
+{
+  std::vector<double> values = { this->Found.shone, this->Found.onTheWay };
+  values.insert(values.end(), this->Found.in.begin(), this->Found.in.end());
+  values.insert(values.end(), this->Found.out.begin(), this->Found.out.end());
   values = this->All.Others.Sum(values);
-  this->Shares.shone = values[0];
-  std::copy_n(values.begin() + 1, 6, this->Shares.in.begin());
-  std::copy_n(values.begin() + 7, 6, this->Shares.out.begin());
+  this->Shares.shone += values[0];
+  this->Shares.onTheWay += values[1];
+  for (std::size_t face = 0; face < 6; ++face)
+  {
+    this->Shares.in[face] += values[2 + face];
+    this->Shares.out[face] += values[8 + face];
+  }
+  this->Found = {};
 }
 
 /// Sums of the block's voxels, from all ranks whose beams lay over them, into the deposit.
-void LampsInBlocks::Beams::PutDown(double correction)
+/// @param even  of the power, to be spread evenly
+void LampsInBlocks::Beams::PutDown(double correction, double even)
 {
   const LampsInBlocks& all = this->All;
   const std::vector<cl_long> found = this->Sums ? this->Sums->Sums().Read() : std::vector<cl_long>();
@@ -231,17 +260,19 @@ void LampsInBlocks::Beams::PutDown(double correction)
     const std::size_t count = this->Box.VoxelCount();
     const auto begin = found.begin() + static_cast<std::ptrdiff_t>(part * count);
     const std::vector<std::int64_t> ofPart(begin, begin + static_cast<std::ptrdiff_t>(count));
-    const std::vector<std::int64_t> inBlock = SumsInBlock(all.Others, all.Partition, all.Stored, ofPart);
+    const std::vector<std::int64_t> inBlock = all.Stored.Gather(ofPart);
     own.insert(own.end(), inBlock.begin(), inBlock.end());
     own.resize((part + 1) * this->Volume.stride, 0);
   }
   const std::vector<cl_long> cells = this->CellsOfAll();
+  const double extinction = even > 0.0 ? this->ExtinctionOfAll() : 0.0;
   all.Others.Together([&] {
     LampSums sums(all.TheDevice, this->Volume.deposit, this->Volume.stride, all.Partition.whole);
     if (all.Has())
     {
       sums.Sums().Write(own.data());
       sums.AddTo(this->Volume, this->Lamp, correction);
+      sums.SpreadEvenly(this->Volume, this->Lamp, correction * even, extinction);
     }
     if (!cells.empty())
     {
@@ -251,6 +282,14 @@ void LampsInBlocks::Beams::PutDown(double correction)
     }
     all.TheDevice.Finish(); // the sums go
   });
+  this->Shares.onTheWay += extinction > 0.0 ? 0.0 : even; // nothing ever takes it
+}
+
+double LampsInBlocks::Beams::ExtinctionOfAll()
+{
+  double own = 0.0;
+  this->All.Others.Together([&] { own = this->All.Has() ? Extinction(this->Volume) : 0.0; });
+  return this->All.Others.Sum({ own })[0];
 }
 
 /// What leaves by cells of the whole grid's faces, which each rank knows; empty where nobody asks.

@@ -4,12 +4,13 @@
 #include "Distribution/BlockPartition.h"
 #include "Distribution/Communicator.h"
 #include "Distribution/Rounds.h"
+#include "Distribution/VoxelsAround.h"
 #include "LightPropagation/Sweep/SweepTally.h"
 #include "LightPropagation/Sweep/SweepVolume.h"
 #include "Lights/Lights.h"
 
+#include <array>
 #include <cstddef>
-#include <vector>
 
 namespace tyndall
 {
@@ -18,15 +19,15 @@ namespace tyndall
 /// they come to (numerics.md, section 4.9). A beam lies over up to four voxels, some of which may be another rank's:
 /// each rank knows sigma_t of two voxels round its block, and gives what its beams put down there to their owners, in
 /// fixed point, so that deposits are those of DepositLamp bit for bit but for the last correction of the power, whose
-/// sum has another order. No axis is periodic.
+/// sum has another order.
 class LampsInBlocks
 {
 public:
   /// All ranks make one together.
   /// @param communicator, partition  must stay
   /// @param layout  of the rank's block
-  LampsInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition, const VolumeLayout& layout,
-    const Buffer<float>& sigma_t);
+  LampsInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition,
+    const std::array<bool, 3>& periodic, const VolumeLayout& layout, const Buffer<float>& sigma_t);
 
   /// As DepositLamp. All ranks call it.
   /// @param volume  the rank's block; of its deposit cells of faces are those of the whole grid
@@ -41,7 +42,7 @@ private:
   Communicator& Others;
   const BlockPartition& Partition;
   VoxelBox Own;
-  std::vector<VoxelBox> Stored; ///< by rank: its block and what its beams may reach beside it
+  VoxelsAround Stored; ///< the block and what its beams may reach beside it
   tyndall::Rounds Rounds;
   std::size_t OwnStride; ///< of an extinction of the block in its layout, and
   Buffer<float> SigmaT;  ///< 1/length, of the stored voxels, one extinction after the other

@@ -27,11 +27,6 @@ namespace tyndall
 std::string NotInBlocks(const Medium& medium, const Illumination& illumination, const PropagationSettings& settings)
 {
   const bool goesRound = settings.periodic[0] || settings.periodic[1] || settings.periodic[2];
-  const auto isNear = [](const Light& light) { return light.type != LightType::Directional; };
-  if (goesRound && std::any_of(illumination.lights.begin(), illumination.lights.end(), isNear))
-  {
-    return "a point, spot or rectangle light beside a periodic axis";
-  }
   if (settings.source == PropagationSource::Octants)
   {
     return "a source by octants of directions";

@@ -139,7 +139,7 @@ UncollidedVolume UncollidedOverRanks::VolumeOf(const Deposit& deposit)
     if (!this->NearLamps)
     {
       this->NearLamps = std::make_unique<LampsInBlocks>(
-        block.TheDevice, block.Others, block.Partition, block.Layout, block.OnDevice.SigmaT());
+        block.TheDevice, block.Others, block.Partition, block.Settings.periodic, block.Layout, block.OnDevice.SigmaT());
     }
     return this->NearLamps->Deposit(ofChannels, lamp, ofLamp);
   };

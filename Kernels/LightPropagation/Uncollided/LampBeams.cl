@@ -65,10 +65,17 @@ static int place(const LampInfo* lamp, int axis, float tangent, int* i)
   return (*i < 0) == (tangent < 0.0f) ? AFTER : BEFORE;
 }
 
+// Round a periodic axis arrays may hold voxels of the grid's other side.
 static ulong place_in_arrays(const LampInfo* lamp, const int* voxel)
 {
-  const ulong line = (ulong)(voxel[2] - lamp->first[2]) * lamp->stored[1] + (voxel[1] - lamp->first[1]);
-  return line * lamp->stored[0] + (voxel[0] - lamp->first[0]);
+  ulong place = 0;
+  for (int a = 2; a >= 0; --a)
+  {
+    const int i = voxel[a] - lamp->first[a];
+    const int beyond = i < 0 ? -1 : i >= lamp->stored[a] ? 1 : 0;
+    place = place * lamp->stored[a] + (ulong)(i - beyond * lamp->size[a]);
+  }
+  return place;
 }
 
 typedef struct
@@ -309,6 +316,7 @@ static bool is_followed(const LampInfo* lamp, const BeamRow* row, int layer, flo
   bool followed = true;
   for (int a = 0; a < 3; ++a)
   {
+    place(lamp, a, 0.0f, &voxel[a]);
     voxel[a] = clamp(voxel[a], 0, lamp->size[a] - 1);
     followed = followed && voxel[a] >= lamp->followed[a] && voxel[a] < lamp->followedEnd[a];
   }
@@ -317,6 +325,7 @@ static bool is_followed(const LampInfo* lamp, const BeamRow* row, int layer, flo
 #endif
 
 // One beam from where it comes into the box's layers, or from where it was, to where it leaves them.
+// @param power  that it set off with
 // @return whether it has; else, where IN_BLOCK, it has come to where beams are not followed, as `beam` says
 static bool follow_beam(const LampInfo* lamp, const BeamRow* row, float2 tangent, float power,
   const __global float* sigma, __global long* path, ulong stride, beam_state* beam, lamp_tally* tally)

@@ -2,6 +2,7 @@
 
 #include "Device/GroupSize.h"
 #include "LightPropagation/Uncollided/LampOnGrid.h"
+#include "LightPropagation/Uncollided/LampPasses.h"
 #include "LightPropagation/Uncollided/LampPyramids.h"
 #include "LightPropagation/Uncollided/LampShares.h"
 #include "LightPropagation/Uncollided/LampSums.h"
@@ -10,19 +11,13 @@
 #include <glm/vec3.hpp>
 
 #include <algorithm>
-#include <cmath>
-#include <numeric>
 #include <string_view>
 
 namespace tyndall
 {
 namespace
 {
-constexpr int RowsPerLaunch = 256;      ///< keeps a launch well below a tenth of a second for rows of a thousand voxels
-constexpr double LayersPerLaunch = 4e6; ///< of beams that go round a periodic axis: the same
-constexpr int PassesAtMost = 9;         ///< in all
-constexpr int EvenFrom = 3;             ///< passes, after which the light of a box without faces is spread evenly
-constexpr double LeftAtMost = 5e-4;     ///< of the power: then no further pass
+constexpr int RowsPerLaunch = 256; ///< keeps a launch well below a tenth of a second for rows of a thousand voxels
 
 /// The beams of one lamp, from all points that stand for it.
 class LampBeams
@@ -39,7 +34,10 @@ public:
 
   SweepTally Run(const Monitor& monitor)
   {
-    this->FollowAll(monitor);
+    const FollowPass follow = [this](const Pass& pass, double factor, const Monitor& ofPass) {
+      this->FollowPoints(pass, factor, ofPass);
+    };
+    const double even = FollowInPasses(this->Volume.grid, this->Periodic, this->Shares, follow, monitor);
     // All directions of a lamp inside the box were followed: so it is known what beams on the cone's border missed.
     const double correction = this->AllInside && this->Shares.shone > 0.0 ? 1.0 / this->Shares.shone : 1.0;
     this->Sums.AddTo(this->Volume, this->Lamp, correction);
@@ -47,74 +45,21 @@ public:
     {
       this->Sums.AddCellsTo(this->Volume, this->Volume.faceFirst, this->Lamp, correction);
     }
-    if (this->Even > 0.0)
+    if (even > 0.0 && !this->Sums.SpreadEvenly(this->Volume, this->Lamp, correction * even, Extinction(this->Volume)))
     {
-      this->SpreadEvenly(correction);
+      this->Shares.onTheWay = even; // nothing ever takes it
     }
     return this->Shares.Times(this->Lamp.TheLight().power, this->Volume.channels, correction);
   }
 
 private:
-  /// Round periodic axes in passes (numerics.md, section 5.3): beams that are still in the box where one pass ends go
-  /// on as others, fewer, that share its power.
-  void FollowAll(const Monitor& monitor)
-  {
-    Pass pass = FirstPass(this->Volume.grid);
-    this->FollowPoints(pass, 1.0, OfPart(monitor, 0.0, 0.5));
-    const bool endless = this->Periodic[0] && this->Periodic[1] && this->Periodic[2];
-    for (int done = 1; done<PassesAtMost&& this->Shares.onTheWay> LeftAtMost * this->Shares.shone; ++done)
-    {
-      if (endless && done >= EvenFrom)
-      {
-        std::swap(this->Even, this->Shares.onTheWay);
-        return;
-      }
-      const Monitor ofPass = OfPart(monitor, 1.0 - std::exp2(-done), 1.0 - std::exp2(-done - 1));
-      const double wanted = this->Shares.onTheWay;
-      this->Shares.onTheWay = 0.0;
-      pass = pass.Next();
-      this->FollowPoints({ pass.begin, pass.begin }, 1.0, {}); // what these beams have left where the pass begins
-      const double found = this->Shares.onTheWay;
-      if (!(found > 0.0))
-      {
-        this->Shares.onTheWay = wanted;
-        return;
-      }
-      this->Shares.onTheWay = 0.0;
-      this->FollowPoints(pass, wanted / found, ofPass);
-    }
-  }
-
   void FollowPoints(const Pass& pass, double factor, const Monitor& monitor)
   {
-    // From far a rectangle is a point.
-    const std::vector<glm::dvec3> points =
-      pass.begin == 0 ? this->Lamp.Points() : std::vector<glm::dvec3>{ this->Lamp.Middle() };
+    const std::vector<glm::dvec3> points = this->Lamp.PointsOf(pass);
     const double all = static_cast<double>(points.size());
     for (std::size_t p = 0; p < points.size(); ++p)
     {
       this->Follow(points[p], pass, factor / all, [&](double done) { Report(monitor, (p + done) / all); });
-    }
-  }
-
-  /// In a box without faces thin light crosses all places alike in the end.
-  void SpreadEvenly(double correction)
-  {
-    const SweepVolume& volume = this->Volume;
-    const std::vector<float> sigma = volume.sigma_t->Read();
-    const auto first = sigma.begin() + volume.sigma_t_first;
-    const double sum = std::accumulate(first, first + volume.grid.VoxelCount(), 0.0);
-    if (!(sum > 0.0))
-    {
-      this->Shares.onTheWay = this->Even; // nothing ever takes it
-      return;
-    }
-    for (int c = 0; c < volume.channels; ++c)
-    {
-      cl::Kernel add = this->Kernel("add_evenly", kernel_source::LampSums);
-      With(add, *volume.deposit.path, cl_ulong(volume.first + c * volume.stride),
-        static_cast<float>(this->Lamp.TheLight().power[c] * correction * this->Even / sum));
-      this->TheDevice.Queue().enqueueNDRangeKernel(add, cl::NullRange, cl::NDRange(volume.grid.VoxelCount()));
     }
   }
 
@@ -157,7 +102,8 @@ private:
   std::size_t RowsTogether(const BeamRow& row) const
   {
     const double layers = this->Periodic[row.axis] ? static_cast<double>(row.count) * row.layers : 1.0;
-    return static_cast<std::size_t>(std::clamp(LayersPerLaunch / layers, 1.0, static_cast<double>(RowsPerLaunch)));
+    return static_cast<std::size_t>(
+      std::clamp(LampOnGrid::LayersPerLaunch / layers, 1.0, static_cast<double>(RowsPerLaunch)));
   }
 
   Device& TheDevice;
@@ -166,7 +112,6 @@ private:
   std::array<bool, 3> Periodic;
   LampSums Sums;
   LampShares Shares;
-  double Even = 0.0; ///< of the power, to be spread over the whole box
   bool AllInside = true;
 };
 }

@@ -60,6 +60,11 @@ std::vector<glm::dvec3> LampOnGrid::Points() const
   return points;
 }
 
+std::vector<glm::dvec3> LampOnGrid::PointsOf(const Pass& pass) const
+{
+  return pass.begin == 0 ? this->Points() : std::vector<glm::dvec3>{ this->Middle() };
+}
+
 bool LampOnGrid::IsInside(const glm::dvec3& point) const
 {
   bool inside = true;

@@ -21,6 +21,8 @@ namespace tyndall
 class LampOnGrid
 {
 public:
+  static constexpr double LayersPerLaunch = 4e6; ///< of beams that go far, for less than a tenth of a second
+
   /// @param grid  the whole; must stay, as the light
   LampOnGrid(const Light& light, const Grid& grid, const std::array<bool, 3>& periodic);
 
@@ -28,7 +30,8 @@ public:
 
   /// What stands for the lamp: a point, or the middles of a rectangle's parts; voxels from the grid's corner.
   std::vector<glm::dvec3> Points() const;
-  glm::dvec3 Middle() const; ///< the same, of the lamp's position
+  glm::dvec3 Middle() const;                                ///< the same, of the lamp's position
+  std::vector<glm::dvec3> PointsOf(const Pass& pass) const; ///< from far a rectangle is a point
   bool IsInside(const glm::dvec3& point) const;
 
   /// The beams from one of its points.

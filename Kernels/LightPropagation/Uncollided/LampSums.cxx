@@ -3,6 +3,9 @@
 #include "Medium/BoxFaces.h"
 #include "TyndallKernelSources.h"
 
+#include <numeric>
+#include <vector>
+
 namespace tyndall
 {
 LampSums::LampSums(Device& device, const Deposit& deposit, std::size_t stride, const Grid& grid)
@@ -50,5 +53,28 @@ void LampSums::AddCellsTo(const SweepVolume& volume, std::size_t faceFirst, cons
   With(add, this->OfCells, *volume.deposit.faceOut, cl_ulong(faceFirst), cl_ulong(cells), watts);
   this->TheDevice.Queue().enqueueNDRangeKernel(add, cl::NullRange, cl::NDRange(cells, volume.channels), cl::NullRange);
   this->TheDevice.Finish(); // the cells may go
+}
+
+bool LampSums::SpreadEvenly(const SweepVolume& volume, const LampOnGrid& lamp, double share, double extinction) const
+{
+  if (!(extinction > 0.0))
+  {
+    return false;
+  }
+  for (int c = 0; c < volume.channels && volume.grid.VoxelCount() > 0; ++c)
+  {
+    cl::Kernel add = lamp.Kernel(this->TheDevice, "add_evenly", kernel_source::LampSums, volume.deposit);
+    With(add, *volume.deposit.path, cl_ulong(volume.first + c * volume.stride),
+      static_cast<float>(lamp.TheLight().power[c] * share / extinction));
+    this->TheDevice.Queue().enqueueNDRangeKernel(add, cl::NullRange, cl::NDRange(volume.grid.VoxelCount()));
+  }
+  return true;
+}
+
+double Extinction(const SweepVolume& volume)
+{
+  const std::vector<float> sigma = volume.sigma_t->Read();
+  const auto first = sigma.begin() + static_cast<std::ptrdiff_t>(volume.sigma_t_first);
+  return std::accumulate(first, first + static_cast<std::ptrdiff_t>(volume.grid.VoxelCount()), 0.0);
 }
 }

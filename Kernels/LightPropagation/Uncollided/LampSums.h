@@ -29,9 +29,18 @@ public:
   /// The same of the cells, to the deposit's that begin at `faceFirst`.
   void AddCellsTo(const SweepVolume& volume, std::size_t faceFirst, const LampOnGrid& lamp, double factor) const;
 
+  /// In a box without faces thin light crosses all places alike in the end: so it goes to the deposit's path.
+  /// @param share  of the lamp's power
+  /// @param extinction  Extinction of the whole box
+  /// @return false: nothing there takes any
+  bool SpreadEvenly(const SweepVolume& volume, const LampOnGrid& lamp, double share, double extinction) const;
+
 private:
   Device& TheDevice;
   Buffer<cl_long> Fixed, OfCells;
   std::size_t TheStride;
 };
+
+/// sigma_t of all voxels of a volume, added up, 1/length.
+double Extinction(const SweepVolume& volume);
 }

@@ -1,8 +1,9 @@
-#include "LatticeBoltzmann/Distributed/VoxelsAround.h"
+#include "Distribution/VoxelsAround.h"
 
 #include "Distribution/BoxExchange.h"
 
 #include <algorithm>
+#include <functional>
 
 namespace tyndall
 {
@@ -10,7 +11,7 @@ VoxelsAround::VoxelsAround(
   Communicator& communicator, const BlockPartition& partition, const std::array<bool, 3>& periodic, int layers)
   : Others(communicator)
   , Partition(partition)
-  , Periodic(periodic)
+  , Around(periodic)
 {
   const std::array<int, 3>& size = partition.whole.size;
   std::array<int, 3> most = {}; // periods away from the grid
@@ -54,18 +55,26 @@ Grid VoxelsAround::KnownGrid() const
   return BlockPartition{ this->Partition.whole, { this->Known() } }.OwnGrid(0);
 }
 
-LatticeBox VoxelsAround::Box() const
+/// Of all ranks' known voxels.
+std::vector<VoxelBox> VoxelsAround::Images(const std::array<int, 3>& periods) const
 {
-  VoxelBox own = this->Own();
-  int inner = 0;
+  std::vector<VoxelBox> images;
+  for (const VoxelBox& box : this->Boxes)
+  {
+    images.push_back(this->Image(box, periods));
+  }
+  return images;
+}
+
+/// Where the voxels of an image are among the known ones.
+VoxelBox VoxelsAround::PlaceOf(const VoxelBox& image, const std::array<int, 3>& periods) const
+{
+  VoxelBox place = image;
   for (int axis = 0; axis < 3; ++axis)
   {
-    const bool around = this->Periodic[axis];
-    inner |= around || own.first[axis] > 0 ? 1 << (2 * axis) : 0;
-    inner |= around || EndOf(own, axis) < this->Partition.whole.size[axis] ? 1 << (2 * axis + 1) : 0;
-    own.first[axis] -= this->Known().first[axis];
+    place.first[axis] += periods[axis] * this->Partition.whole.size[axis];
   }
-  return { this->KnownGrid(), own, inner };
+  return place;
 }
 
 std::vector<float> VoxelsAround::Spread(const std::vector<float>& own, int components) const
@@ -74,20 +83,25 @@ std::vector<float> VoxelsAround::Spread(const std::vector<float>& own, int compo
   std::vector<float> values(known.VoxelCount() * static_cast<std::size_t>(components));
   for (const std::array<int, 3>& periods : this->Periods)
   {
-    std::vector<VoxelBox> wanted;
-    for (const VoxelBox& box : this->Boxes)
-    {
-      wanted.push_back(this->Image(box, periods));
-    }
+    const std::vector<VoxelBox> wanted = this->Images(periods);
     const std::vector<float> part = ValuesInBox(this->Others, this->Partition, wanted, own, components);
-    VoxelBox place = wanted[this->Others.Rank()];
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      place.first[axis] += periods[axis] * this->Partition.whole.size[axis];
-    }
-    PutPart(part, values, known, place, components);
+    PutPart(part, values, known, this->PlaceOf(wanted[this->Others.Rank()], periods), components);
   }
   return values;
+}
+
+std::vector<std::int64_t> VoxelsAround::Gather(const std::vector<std::int64_t>& known) const
+{
+  std::vector<std::int64_t> sums(this->Own().VoxelCount(), 0);
+  for (const std::array<int, 3>& periods : this->Periods)
+  {
+    const std::vector<VoxelBox> found = this->Images(periods);
+    const VoxelBox place = this->PlaceOf(found[this->Others.Rank()], periods);
+    const std::vector<std::int64_t> part =
+      SumsInBlock(this->Others, this->Partition, found, PartOf(known, this->Known(), place));
+    std::transform(part.begin(), part.end(), sums.begin(), sums.begin(), std::plus<std::int64_t>());
+  }
+  return sums;
 }
 
 Field VoxelsAround::Spread(const Field& own, std::vector<float>& values) const
@@ -99,23 +113,5 @@ Field VoxelsAround::Spread(const Field& own, std::vector<float>& values) const
   const std::size_t count = this->Own().VoxelCount() * static_cast<std::size_t>(own.components);
   values = this->Spread(std::vector<float>(own.values, own.values + count), own.components);
   return { values.data(), own.components };
-}
-
-MediumAround::MediumAround(
-  const VoxelsAround& voxels, const Medium& own, const Field& ior, const UncollidedImage& image)
-  : medium(own)
-{
-  this->medium.grid = voxels.KnownGrid();
-  this->medium.sigma_a = voxels.Spread(own.sigma_a, this->Absorption);
-  this->medium.sigma_s = voxels.Spread(own.sigma_s, this->Scattering);
-  this->medium.emission = voxels.Spread(own.emission, this->Emission);
-  if (own.phase.Varies())
-  {
-    this->medium.phase = own.phase.WithG(voxels.Spread(own.phase.G(), this->G));
-  }
-  this->index = voxels.Spread(ior, this->Index);
-  this->uncollided = image;
-  this->uncollided.fluence = voxels.Spread(image.fluence, this->Fluence);
-  this->uncollided.meanDirection = voxels.Spread(image.meanDirection, this->Directions);
 }
 }

@@ -2,12 +2,11 @@
 
 #include "Distribution/BlockPartition.h"
 #include "Distribution/Communicator.h"
-#include "LatticeBoltzmann/LatticeBox.h"
-#include "Lights/UncollidedImage.h"
 #include "Medium/Field.h"
-#include "Medium/Medium.h"
+#include "Medium/VoxelBox.h"
 
 #include <array>
+#include <cstdint>
 #include <vector>
 
 namespace tyndall
@@ -24,37 +23,26 @@ public:
   const VoxelBox& Own() const { return this->Partition.blocks[this->Others.Rank()]; }
   const VoxelBox& Known() const { return this->Boxes[this->Others.Rank()]; }
   Grid KnownGrid() const; ///< of no voxels where the block is empty
-  /// The block among these. Beyond all its faces across periodic axes others lie.
-  LatticeBox Box() const;
+  const std::array<bool, 3>& Periodic() const { return this->Around; }
+  const Grid& Whole() const { return this->Partition.whole; }
 
   /// Of values of each own voxel those of all known ones. All ranks call it.
   std::vector<float> Spread(const std::vector<float>& own, int components) const;
   /// The same of a field, which is `own` where it has no values.
   Field Spread(const Field& own, std::vector<float>& values) const;
+  /// The other way round: of what each rank has found for its known voxels the sums for this rank's own ones, in whole
+  /// numbers, so that the order of ranks does not matter. All ranks call it.
+  std::vector<std::int64_t> Gather(const std::vector<std::int64_t>& known) const;
 
 private:
   VoxelBox Image(const VoxelBox& box, const std::array<int, 3>& periods) const;
+  std::vector<VoxelBox> Images(const std::array<int, 3>& periods) const;
+  VoxelBox PlaceOf(const VoxelBox& image, const std::array<int, 3>& periods) const;
 
   Communicator& Others;
   const BlockPartition& Partition;
-  const std::array<bool, 3> Periodic;
+  const std::array<bool, 3> Around;        ///< the periodic axes
   std::vector<VoxelBox> Boxes;             ///< by rank
   std::vector<std::array<int, 3>> Periods; ///< so many of which away from the grid some box has voxels, along each axis
-};
-
-/// A block's medium and index, and uncollided light that is given, with those of the voxels around it.
-struct MediumAround
-{
-  /// All ranks make one together.
-  MediumAround(const VoxelsAround& voxels, const Medium& own, const Field& ior, const UncollidedImage& image);
-  MediumAround(const MediumAround&) = delete;
-  MediumAround& operator=(const MediumAround&) = delete;
-
-  Medium medium;
-  Field index;
-  UncollidedImage uncollided;
-
-private:
-  std::vector<float> Absorption, Scattering, Emission, G, Index, Fluence, Directions;
 };
 }

@@ -1,0 +1,30 @@
+#pragma once
+
+#include "Distribution/VoxelsAround.h"
+#include "LatticeBoltzmann/LatticeBox.h"
+#include "Lights/UncollidedImage.h"
+#include "Medium/Medium.h"
+
+#include <vector>
+
+namespace tyndall
+{
+/// A rank's block among the voxels known around it. Beyond all its faces across periodic axes others lie.
+LatticeBox BoxOf(const VoxelsAround& around);
+
+/// A block's medium and index, and uncollided light that is given, with those of the voxels around it.
+struct MediumAround
+{
+  /// All ranks make one together.
+  MediumAround(const VoxelsAround& voxels, const Medium& own, const Field& ior, const UncollidedImage& image);
+  MediumAround(const MediumAround&) = delete;
+  MediumAround& operator=(const MediumAround&) = delete;
+
+  Medium medium;
+  Field index;
+  UncollidedImage uncollided;
+
+private:
+  std::vector<float> Absorption, Scattering, Emission, G, Index, Fluence, Directions;
+};
+}

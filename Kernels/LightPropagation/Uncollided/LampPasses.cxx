@@ -1,0 +1,41 @@
+#include "LightPropagation/Uncollided/LampPasses.h"
+
+#include <cmath>
+#include <utility>
+
+namespace tyndall
+{
+namespace
+{
+constexpr int PassesAtMost = 9;     ///< in all
+constexpr int EvenFrom = 3;         ///< passes, after which the light of a box without faces is spread evenly
+constexpr double LeftAtMost = 5e-4; ///< of the power: then no further pass
+}
+
+double FollowInPasses(const Grid& grid, const std::array<bool, 3>& periodic, LampShares& shares,
+  const FollowPass& follow, const Monitor& monitor)
+{
+  Pass pass = FirstPass(grid);
+  follow(pass, 1.0, OfPart(monitor, 0.0, 0.5));
+  const bool endless = periodic[0] && periodic[1] && periodic[2];
+  for (int done = 1; done < PassesAtMost && shares.onTheWay > LeftAtMost * shares.shone; ++done)
+  {
+    if (endless && done >= EvenFrom)
+    {
+      return std::exchange(shares.onTheWay, 0.0);
+    }
+    const Monitor ofPass = OfPart(monitor, 1.0 - std::exp2(-done), 1.0 - std::exp2(-done - 1));
+    const double wanted = std::exchange(shares.onTheWay, 0.0);
+    pass = pass.Next();
+    follow({ pass.begin, pass.begin }, 1.0, {}); // what these beams have left where the pass begins
+    const double found = std::exchange(shares.onTheWay, 0.0);
+    if (!(found > 0.0))
+    {
+      shares.onTheWay = wanted;
+      break;
+    }
+    follow(pass, wanted / found, ofPass);
+  }
+  return 0.0;
+}
+}
