@@ -1,7 +1,6 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 namespace tyndall
 {
@@ -9,16 +8,6 @@ namespace tyndall
 inline std::string Define(const char* name, int value)
 {
   return std::string(" -D") + name + "=" + std::to_string(value);
-}
-/// The same of several: what stands between the braces of an array.
-inline std::string Define(const char* name, const std::vector<int>& values)
-{
-  std::string list;
-  for (const int value : values)
-  {
-    list += (list.empty() ? "" : ",") + std::to_string(value);
-  }
-  return std::string(" -D") + name + "=" + list;
 }
 /// The same of a float, to six decimals.
 inline std::string DefineFloat(const char* name, float value)

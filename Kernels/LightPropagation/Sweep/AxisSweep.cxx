@@ -106,6 +106,7 @@ struct AxisSweep::Implementation
   Buffer<cl_int2> FirstSchedule, RoundSchedule;
   Buffer<CrossingInfo> FirstCrossings;
   Buffer<OwnLightInfo> FirstOwnLight;
+  Buffer<cl_int> FunctionPlaces;
   std::unique_ptr<SliceStream> Stream; ///< of a volume in host memory; null: it is swept where it is
   SliceStream::Schedule StreamedFirst, StreamedRounds;
 
@@ -148,6 +149,7 @@ void AxisSweep::Implementation::MakeBuffers()
   this->RoundSchedule = Buffer<cl_int2>(device, plan.roundSchedule, "the schedule");
   this->FirstCrossings = Buffer<CrossingInfo>(device, plan.Crossings(0, plan.CrossingPlanes()), "the ray pattern");
   this->FirstOwnLight = Buffer<OwnLightInfo>(device, plan.OwnLight(), "the ray pattern");
+  this->FunctionPlaces = Buffer<cl_int>(device, plan.FunctionPlaces(), "the angular functions");
 }
 
 /// Light that comes in, into the maps. Where it is the same each time, its border is kept.
@@ -272,7 +274,7 @@ void AxisSweep::Implementation::Launch(const SweepVolume& volume, const Entry& e
       in(SlotArray::PartialCurrents, partialCurrents), this->Maps(), this->Outside, this->Radiance,
       this->Workspace.scratch, this->Units, this->Bundles, this->Coefficients, crossings, this->FirstOwnLight,
       this->Stream ? schedule.streamed.rows : schedule.planes, this->Sideways, faceOut, faceIn,
-      in(SlotArray::OctantSource, octantSource));
+      in(SlotArray::OctantSource, octantSource), this->FunctionPlaces);
     this->TheDevice.Queue().enqueueNDRangeKernel(
       kernel, cl::NullRange, cl::NDRange(plan.units.size()), cl::NDRange(1), after, done);
     this->TheDevice.Queued(plan.secondsPerLaunch * schedule.launches / launches);

@@ -19,8 +19,7 @@ std::string DefineMoments(const SweepPlan& plan)
   const auto [evenEven, oddEven, evenOdd, oddOdd] = plan.order.counts;
   return Define("DEGREE", plan.angular->degree) + Define("BEAMS", plan.angular->Beams()) +
     Define("EVEN_EVEN", evenEven) + Define("ODD_EVEN", oddEven) + Define("EVEN_ODD", evenOdd) +
-    Define("ODD_ODD", oddOdd) + Define("FUNCTION_ORDER", plan.order.functions) +
-    Define("MOMENTS_IN_PLACE", plan.momentsInPlace) + Define("TILE", RowsTogether);
+    Define("ODD_ODD", oddOdd) + Define("MOMENTS_IN_PLACE", plan.momentsInPlace) + Define("TILE", RowsTogether);
 }
 }
 

@@ -499,6 +499,17 @@ void SweepPlan::LetRaysGoOn()
   this->plane.thin = static_cast<float>(Thin / LongestWay(this->bundles));
 }
 
+std::vector<cl_int> SweepPlan::FunctionPlaces() const
+{
+  std::vector<cl_int> places;
+  for (const int function : this->order.functions)
+  {
+    places.push_back(std::max(function - 1, 0) * MomentGroup);
+  }
+  places.resize(std::max<std::size_t>(places.size(), 1), 0);
+  return places;
+}
+
 std::vector<OwnLightInfo> SweepPlan::OwnLight(int lapPlanes) const
 {
   std::vector<OwnLightInfo> rows;

@@ -75,6 +75,9 @@ struct SweepPlan
   /// [unit][plane] how the medium's own light gets out of the voxel where it starts.
   /// @param lapPlanes  that rays had crossed when they began this lap
   std::vector<OwnLightInfo> OwnLight(int lapPlanes = 0) const;
+  /// Where each angular function is in a group of moments (MomentPlacesShared.h), in the order of this axis; of the
+  /// first, which is not in one, and where light has no moments, 0.
+  std::vector<cl_int> FunctionPlaces() const;
   /// Rays go on from the end of the grid in planes of the pattern beyond those of its own; before OwnLight().
   void LetRaysGoOn();
 

@@ -100,6 +100,7 @@ void BlockSweep::LayPattern()
   this->CrossingsOnDevice =
     Buffer<CrossingInfo>(this->TheDevice, plan.Crossings(this->LapPlanes, plan.CrossingPlanes()), "the ray pattern");
   this->OwnLight = Buffer<OwnLightInfo>(this->TheDevice, plan.OwnLight(this->LapPlanes), "the ray pattern");
+  this->FunctionPlaces = Buffer<cl_int>(this->TheDevice, plan.FunctionPlaces(), "the angular functions");
 }
 
 int BlockSweep::DirectionOf(const Member& member) const
@@ -293,7 +294,7 @@ void BlockSweep::Launch(const SweepVolume& volume, const Monitor& monitor)
     With(kernel, info, *volume.sigma_t, source, path, lost, flux, currents, this->Workspace.sweep.maps, this->Outside,
       this->Radiance, this->Workspace.sweep.scratch, this->Units, this->BundlesOnDevice, this->Coefficients,
       this->CrossingsOnDevice, this->OwnLight, this->Schedule, this->Sideways, path, path, octants,
-      this->Workspace.sidesIn, this->Workspace.sidesOut, outer);
+      this->FunctionPlaces, this->Workspace.sidesIn, this->Workspace.sidesOut, outer);
     this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(plan.units.size()), cl::NDRange(1));
     this->TheDevice.Queued(plan.secondsPerLaunch);
     Report(monitor, (launch + 1.0) / plan.launches);

@@ -112,5 +112,6 @@ private:
   Buffer<cl_int2> Schedule;
   Buffer<CrossingInfo> CrossingsOnDevice;
   Buffer<OwnLightInfo> OwnLight;
+  Buffer<cl_int> FunctionPlaces;
 };
 }

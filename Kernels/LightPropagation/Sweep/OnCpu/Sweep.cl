@@ -314,6 +314,7 @@ static void clear_tallies(float (*escaped)[4][CHANNELS], float (*rounding)[4][CH
 // octants   see SweepRequest::octantSource
 // face_out, face_in  see Deposit.h, SweepOperator.h; where FACE_OUT, FACE_IN; face_out [unit][channel][cell] where
 //           FACE_SPREAD
+// function_places  see SweepPlan::FunctionPlaces
 // sides_in, sides_out  [plane from the box's first on][ray], see SweepSides.cl; outer_sides: bit i, of light through
 //           its side i, that it leaves the whole grid; where SIDES
 __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo info, const __global float* sigma,
@@ -322,7 +323,7 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
   __global float* scratch, const __global UnitInfo* units, const __global BundleInfo* bundles,
   const __global float* coefficients, const __global CrossingInfo* crossings, const __global OwnLightInfo* own,
   const __global int2* schedule, __global float* tally, __global float* face_out, const __global float* face_in,
-  const __global float* octants SIDES_ARGUMENTS)
+  const __global float* octants, const __global int* function_places SIDES_ARGUMENTS)
 {
   const int u = get_global_id(0);
   const int unit_count = get_global_size(0);
@@ -388,6 +389,12 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
 #endif
 #else
   const __global float* beams = source;
+#endif
+#if DEGREE
+  for (int k = 0; k < MOMENTS; ++k)
+  {
+    state.functionPlaces[k] = function_places[k];
+  }
 #endif
   for (int i = 0; i < MeanLengthTerms; ++i)
   {

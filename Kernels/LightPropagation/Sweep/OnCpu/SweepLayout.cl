@@ -5,8 +5,7 @@
 //   DEGREE    of the angular moments in which light is gathered and scattered; 0: fluence alone
 //   BEAMS     sources with an angular distribution of their own, besides the moments; where DEGREE is not 0
 //   EVEN_EVEN, ODD_EVEN, EVEN_ODD, ODD_ODD  how many of the angular functions are even or odd along u and v; where
-//             DEGREE is not 0, as are
-//   FUNCTION_ORDER  the functions by parity: even and even, odd and even, even and odd, odd and odd
+//             DEGREE is not 0, as is
 //   MOMENTS_IN_PLACE  1: they are read and added to where they are; 0: they are packed like the rest of a plane
 //   NET_FLUX  1 where the net flux is wanted
 //   CURRENTS  1 where the power that enters each voxel through each face is wanted
@@ -66,7 +65,6 @@
 #define HIGHER (MOMENTS - 1)
 #define GROUP (HIGHER * MomentGroup)
 #define IN_ROW(x) ((x) / MomentGroup * GROUP + (x) % MomentGroup)
-static __constant int function_order[MOMENTS] = { FUNCTION_ORDER };
 #endif
 
 // Planes of a chain, their stages, and how far the last one stays behind.
@@ -118,6 +116,8 @@ typedef struct
   const __global float* momentSource;
   __global float* momentPath;
   ulong momentStep, momentChannel;
+  // Where each function is in a group of moments, by parity: even and even, odd and even, even and odd, odd and odd.
+  int functionPlaces[MOMENTS];
 #endif
   __global float* moving;     // the rays of a row of which a part moves
   float (*escaped)[CHANNELS]; // of the plane, through -u, +u, -v, +v, W; with the rounding errors

@@ -12,11 +12,11 @@
 #define OF_ODD_EVEN(MACRO) FUNCTIONS_OF(MACRO, EVEN_EVEN, EVEN_EVEN + ODD_EVEN, 1)
 #define OF_EVEN_ODD(MACRO) FUNCTIONS_OF(MACRO, EVEN_EVEN + ODD_EVEN, EVEN_EVEN + ODD_EVEN + EVEN_ODD, 2)
 #define OF_ODD_ODD(MACRO) FUNCTIONS_OF(MACRO, EVEN_EVEN + ODD_EVEN + EVEN_ODD, MOMENTS, 3)
-#define FUNCTIONS_OF(MACRO, begin, end, parity)              \
-  _Pragma("unroll") for (int k = begin; k < end; ++k)        \
-  {                                                          \
-    const int place = (function_order[k] - 1) * MomentGroup; \
-    MACRO(parity)                                            \
+#define FUNCTIONS_OF(MACRO, begin, end, parity)       \
+  _Pragma("unroll") for (int k = begin; k < end; ++k) \
+  {                                                   \
+    const int place = state->functionPlaces[k];       \
+    MACRO(parity)                                     \
   }
 // Those of a parity are left out where they are zero in all of the bundle's directions.
 #define OF_ALL_PARITIES(MACRO) \
