@@ -223,6 +223,22 @@ TEST_F(PublishedBlocks, TakeAnEighthOfTheMemoryOnEachOfEightRanks)
   EXPECT_LT(most(8), 0.15 * one);
 }
 
+TEST_F(PublishedBlocks, FailTogetherWhereTheyDoNotFitTheMemoryOfOneRank)
+{
+  const MediumToCut medium = Everything({ 6, 5, 4 });
+  const BlockPartition partition = BlockPartition::Even(medium.scene.medium.grid, 3);
+  RunInThreads(3, [&](Communicator& communicator) {
+    MediumToCut part = medium.Part(partition.blocks[communicator.Rank()]);
+    part.Attach();
+    MemoryBudget budget;
+    budget.bytes = communicator.Rank() == 1 ? 5000 : budget.bytes;
+    Device own(this->GetDevice(), budget);
+    EXPECT_THROW(
+      SolvePublishedInBlocks(own, communicator, partition, part.scene.medium, part.scene.light, SettingsOf()),
+      DeviceError);
+  });
+}
+
 TEST_F(PublishedBlocks, FailTogetherWithWords)
 {
   const MediumToCut medium = Everything({ 6, 5, 4 });

@@ -40,6 +40,23 @@ std::vector<float> NetFlux(const PublishedModel& model, const Moment& moment)
 }
 }
 
+void AddGiven(const PublishedModel& model, const UncollidedImage& image, std::size_t voxels,
+  const std::function<void(std::size_t, std::size_t, int, double)>& add)
+{
+  const Field& mean = image.meanDirection;
+  for (std::size_t voxel = 0; voxel < voxels; ++voxel)
+  {
+    const std::vector<double> moments = model.MomentsAlong({ mean.At(voxel, 0), mean.At(voxel, 1), mean.At(voxel, 2) });
+    for (std::size_t k = 0; k < moments.size(); ++k)
+    {
+      for (int c = 0; c < model.Channels(); ++c)
+      {
+        add(k, voxel, c, moments[k] * image.fluence.At(voxel, c));
+      }
+    }
+  }
+}
+
 void TakeMoments(const PublishedModel& model, bool netFlux, const Moment& moment, LightField& field)
 {
   field.channels = model.Channels();

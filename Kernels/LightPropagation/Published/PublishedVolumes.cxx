@@ -1,6 +1,7 @@
 #include "LightPropagation/Published/PublishedVolumes.h"
 
 #include "Device/Sizes.h"
+#include "LightPropagation/Published/PublishedLight.h"
 
 #include <algorithm>
 #include <string>
@@ -248,19 +249,12 @@ void PublishedVolumes::WriteSourceOf(int sourceDirection, const std::vector<floa
 void PublishedVolumes::AddGiven(const UncollidedImage& image)
 {
   std::vector<float> all = this->OrderMoments[0].Read();
-  this->ForEach(0, 1, [&](std::size_t at, std::size_t voxel, int) {
-    const Field& mean = image.meanDirection;
-    const std::vector<double> moments =
-      this->Model.MomentsAlong({ mean.At(voxel, 0), mean.At(voxel, 1), mean.At(voxel, 2) });
-    for (std::size_t k = 0; k < moments.size(); ++k)
-    {
-      for (int c = 0; c < this->Channels(); ++c)
-      {
-        all[k * this->LayoutSize(0) + c * this->Layouts.volume[0] + at] +=
-          static_cast<float>(moments[k] * image.fluence.At(voxel, c));
-      }
-    }
-  });
+  tyndall::AddGiven(
+    this->Model, image, this->TheGrid.VoxelCount(), [&](std::size_t k, std::size_t voxel, int c, double value) {
+      const std::array<int, 3> at = this->TheGrid.VoxelAt(voxel);
+      all[k * this->LayoutSize(0) + static_cast<std::size_t>(c) * this->Layouts.volume[0] +
+        this->Layouts.Index(0, at[0], at[1], at[2])] += static_cast<float>(value);
+    });
   this->OrderMoments[0].Write(all.data());
 }
 

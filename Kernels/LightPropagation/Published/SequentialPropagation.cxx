@@ -88,19 +88,10 @@ private:
   /// Light that another solver found, to the moments of the first order.
   void AddGiven()
   {
-    for (std::size_t voxel = 0; voxel < this->TheMedium.grid.VoxelCount(); ++voxel)
-    {
-      const Field& mean = this->Given.meanDirection;
-      const std::vector<double> moments =
-        this->Model.MomentsAlong({ mean.At(voxel, 0), mean.At(voxel, 1), mean.At(voxel, 2) });
-      for (std::size_t k = 0; k < moments.size(); ++k)
-      {
-        for (int c = 0; c < this->Channels; ++c)
-        {
-          this->OrderMoments[k][voxel * this->Channels + c] += moments[k] * this->Given.fluence.At(voxel, c);
-        }
-      }
-    }
+    tyndall::AddGiven(this->Model, this->Given, this->TheMedium.grid.VoxelCount(),
+      [this](std::size_t k, std::size_t voxel, int c, double value) {
+        this->OrderMoments[k][voxel * this->Channels + c] += value;
+      });
     tyndall::Add(this->Tally, TallyOf(this->Given, this->TheMedium, 0, this->Channels));
   }
 

@@ -116,7 +116,13 @@ private:
     }
     if (order == 0)
     {
-      failure.Attempt([&] { this->AddGiven(); });
+      if (this->Given.IsThere())
+      {
+        AddGiven(this->Model, this->Given, this->TheMedium.grid.VoxelCount(),
+          [this](std::size_t k, std::size_t voxel, int c, double value) {
+            this->Moments[k][voxel * this->Model.Channels() + c] += static_cast<float>(value);
+          });
+      }
       this->FluenceDirect = this->Moments[0];
     }
     for (std::size_t k = 0; k < this->Moments.size(); ++k)
@@ -139,23 +145,6 @@ private:
       source[i] *= factor * this->TheMedium.sigma_s.At(i / channels, static_cast<int>(i % channels));
     }
     return source;
-  }
-
-  void AddGiven()
-  {
-    const std::size_t channels = static_cast<std::size_t>(this->Model.Channels());
-    for (std::size_t voxel = 0; voxel < this->TheMedium.grid.VoxelCount() && this->Given.IsThere(); ++voxel)
-    {
-      const Field& mean = this->Given.meanDirection;
-      const std::vector<double> moments =
-        this->Model.MomentsAlong({ mean.At(voxel, 0), mean.At(voxel, 1), mean.At(voxel, 2) });
-      for (std::size_t i = 0; i < moments.size() * channels; ++i)
-      {
-        const std::size_t c = i % channels;
-        this->Moments[i / channels][voxel * channels + c] +=
-          static_cast<float>(moments[i / channels] * this->Given.fluence.At(voxel, static_cast<int>(c)));
-      }
-    }
   }
 
   /// What came in is what all ranks' voxels take and what left, which each is told.
