@@ -154,6 +154,20 @@ TEST_F(PublishedBlocks, HaveTheColoursAndTheStoredDirectionsOfTheWhole)
     this->Whole(medium, SettingsOf()));
 }
 
+/// Which the whole has in one channel; more ranks than voxels.
+TEST_F(PublishedBlocks, HaveTheLightOfOneColour)
+{
+  MediumToCut green({ 4, 1, 1 });
+  green.scene.Randomise(1.0, 1.0, 0.9);
+  green.scene.ShineAlong({ 0.3, -0.5, -0.9 });
+  green.scene.light.lights[0].power = { 0.0, 2.0, 0.0 };
+  green.scene.light.sky = { 0.0, 0.3, 0.0 };
+  const LightField whole = this->Whole(green, SettingsOf());
+  const LightField light = this->OfBlocks(BlockPartition::Even(green.scene.medium.grid, 6), green, SettingsOf());
+  ExpectSameLight(light, whole, 1e-6);
+  EXPECT_EQ(light.convergence.size(), whole.convergence.size());
+}
+
 /// Cell by cell, also of a part of a plane's sides.
 TEST_F(PublishedBlocks, HaveTheLightThatFacesGiveBack)
 {
