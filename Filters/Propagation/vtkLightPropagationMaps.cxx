@@ -10,6 +10,7 @@
 #include "LightPropagation/Accuracy/TargetError.h"
 #include "LightPropagation/Conservative/ConservativePropagation.h"
 #include "LightPropagation/Distributed/PropagationInBlocks.h"
+#include "LightPropagation/Distributed/Published/PublishedInBlocks.h"
 #include "LightPropagation/Problem/PropagationQuality.h"
 #include "LightPropagation/Published/ParallelPropagation.h"
 #include "LightPropagation/Published/SequentialPropagation.h"
@@ -29,6 +30,7 @@
 #include <algorithm>
 #include <iterator>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -157,6 +159,30 @@ std::shared_ptr<tyndall::Device> DeviceOnAll(vtkLightPropagationMaps* filter, ty
   return device;
 }
 
+bool IsPublishedOnAll(vtkLightPropagationMaps* filter, tyndall::Communicator& communicator)
+{
+  tyndall::RequireSame(communicator, "Scheme", true, { 1.0 * filter->GetScheme() });
+  return filter->GetScheme() == vtkLightPropagationMaps::PUBLISHED;
+}
+
+/// As of the whole, what does not fit a rank's budget is an error.
+tyndall::LightField SolvePublishedPiece(vtkLightPropagationMaps* filter, tyndall::Device& device,
+  const tyndall::SceneInBlocks& scene, const tyndall::PropagationSettings& settings, const tyndall::Monitor& monitor)
+{
+  std::optional<tyndall::Device> within;
+  scene.others.Together([&] { within.emplace(device, tyndall::BudgetOf(filter->GetMemoryBudget(), false)); });
+  const tyndall::SolverInBlocks solve = [&](const tyndall::SceneInBlocks& inside,
+                                          const tyndall::PropagationSettings& how, const tyndall::Monitor& watch) {
+    return tyndall::SolvePublishedInBlocks(
+      *within, inside.others, inside.partition, inside.medium, inside.illumination, how, watch);
+  };
+  tyndall::LightField light = filter->GetEstimateError()
+    ? tyndall::SolveWithErrorEstimate(scene, settings, monitor, solve)
+    : solve(scene, settings, monitor);
+  light.settingsUsed = tyndall::Words(settings);
+  return light;
+}
+
 /// As Quality has them for the medium of all ranks; a target chooses by itself.
 tyndall::PropagationSettings SettingsOn(vtkLightPropagationMaps* filter, tyndall::Communicator& communicator,
   const tyndall::PieceBlocks& pieces, const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining)
@@ -197,7 +223,8 @@ vtkLightPropagationMaps::~vtkLightPropagationMaps() = default;
 std::string vtkLightPropagationMaps::NotByBlocks(vtkInformationVector**) const
 {
   const std::pair<bool, const char*> reasons[] = {
-    { this->Scheme == PUBLISHED, "the published Scheme" },
+    { this->Scheme == PUBLISHED && this->Algorithm == SEQUENTIAL, "the sequential Algorithm of the published Scheme" },
+    { this->Scheme == PUBLISHED && this->TargetError > 0.0, "TargetError of the published Scheme" },
     { this->WarmStart, "WarmStart" },
   };
   const auto found =
@@ -208,12 +235,17 @@ std::string vtkLightPropagationMaps::NotByBlocks(vtkInformationVector**) const
 std::string vtkLightPropagationMaps::NotInBlocks(
   const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining)
 {
-  return tyndall::NotInBlocks(piece.medium, shining.illumination, SettingsOf(this));
+  return this->Scheme == PUBLISHED ? std::string()
+                                   : tyndall::NotInBlocks(piece.medium, shining.illumination, SettingsOf(this));
 }
 
 std::string vtkLightPropagationMaps::BetterAsWhole(tyndall::Communicator& communicator,
   const tyndall::PieceBlocks& pieces, const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining)
 {
+  if (IsPublishedOnAll(this, communicator))
+  {
+    return {}; // the same light, to rounding
+  }
   const std::shared_ptr<tyndall::Device> device = DeviceOnAll(this, communicator);
   return tyndall::BetterAsWhole(*device, communicator, pieces.Partition(), piece.medium, shining.illumination,
     SettingsOn(this, communicator, pieces, piece, shining));
@@ -223,10 +255,15 @@ tyndall::LightField vtkLightPropagationMaps::SolvePiece(tyndall::Communicator& c
   const tyndall::PieceBlocks& pieces, const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining)
 {
   this->Last->Where(false);
+  const bool published = IsPublishedOnAll(this, communicator);
   const std::shared_ptr<tyndall::Device> device = DeviceOnAll(this, communicator);
   const tyndall::PropagationSettings settings = SettingsOn(this, communicator, pieces, piece, shining);
   const tyndall::SceneInBlocks scene = { communicator, pieces.Partition(), piece.medium, shining.illumination };
   const tyndall::Monitor monitor = tyndall::MonitorOf(this);
+  if (published)
+  {
+    return SolvePublishedPiece(this, *device, scene, settings, monitor);
+  }
   if (this->TargetError > 0.0)
   {
     return LightOf(tyndall::SolveInBlocksToTargetError(*device, scene, settings, this->TargetError, monitor));

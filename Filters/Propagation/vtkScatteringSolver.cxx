@@ -334,7 +334,8 @@ void vtkScatteringSolver::WritePiece(tyndall::Communicator& communicator, const 
   pieces.SpreadToHeld(communicator, light.fluenceDirect, light.channels);
   pieces.SpreadToHeld(communicator, light.fluenceError, light.channels);
   pieces.SpreadToHeld(communicator, light.netFlux, 3 * light.channels);
-  pieces.SpreadToHeld(communicator, light.scatteredRadiance, light.channels);
+  const int stored = std::max(static_cast<int>(light.storedDirections.size()), 1);
+  pieces.SpreadToHeld(communicator, light.scatteredRadiance, light.channels * stored);
   const std::size_t voxels = std::max<std::size_t>(pieces.Own().VoxelCount(), 1);
   const std::vector<double> ofMoments =
     communicator.Largest({ 1.0 * static_cast<double>(light.scatteredMoments.size() / voxels),

@@ -164,6 +164,7 @@ inline tyndall::LightField LightOfBlocks(const tyndall::BlockPartition& partitio
       all.fluence.assign(channels * partition.whole.VoxelCount(), 0.0f);
       all.fluenceDirect = all.fluence;
       all.netFlux.assign(3 * all.fluence.size(), 0.0f);
+      all.scatteredRadiance.clear();
     }
     EXPECT_EQ(light.facePowerOut, all.facePowerOut);
     EXPECT_EQ(light.balance.absorbed, all.balance.absorbed);
@@ -184,7 +185,10 @@ inline tyndall::LightField LightOfBlocks(const tyndall::BlockPartition& partitio
     };
     put(light.fluence, all.fluence, channels);
     put(light.fluenceDirect, all.fluenceDirect, channels);
-    put(light.netFlux, all.netFlux, 3 * channels);
+    put(light.netFlux, all.netFlux, light.netFlux.empty() ? 0 : 3 * channels);
+    const std::size_t scattered = channels * light.storedDirections.size();
+    all.scatteredRadiance.resize(scattered * partition.whole.VoxelCount());
+    put(light.scatteredRadiance, all.scatteredRadiance, light.scatteredRadiance.empty() ? 0 : scattered);
   });
   return all;
 }

@@ -574,6 +574,31 @@ def ordinates_whole():
     own_pieces("ordinates_whole", [piece_of([0, 12, 0, 5, 0, 4])], solve=by_ordinates)
 
 
+PUBLISHED = dict(Scheme="As published")
+
+
+def published_even():
+    own_pieces("published_even", [piece_of(extent) for extent in parts(even_cuts())],
+               solve=lambda *what: by_blocks(*what, **PUBLISHED))
+
+
+def published_uneven():
+    own_pieces("published_uneven", uneven_pieces(), solve=lambda *what: by_blocks(*what, **PUBLISHED))
+
+
+def published_whole():
+    own_pieces("published_whole", [piece_of([0, 12, 0, 5, 0, 4])], solve=lambda *what: solved(*what, **PUBLISHED))
+
+
+def published_shown():
+    """Scattered radiance in several directions, round an axis, with the error that fluence has."""
+    settings = dict(PUBLISHED, StoredDirections=6, EstimateError=1, PeriodicX=1)
+    light = wavelet("Blocks", **settings)
+    keep("published_shown", light, array="scattered_radiance")
+    keep("published_estimated", light, array="fluence_error")
+    assert "Decomposition = 2" in facts_of(light, "settings_used")
+
+
 def lattice_errors():
     """What a lattice cannot do by pieces is one error that names it; where ranks decide by themselves they solve the whole."""
     medium = ParticipatingMedium(Input=Wavelet(WholeExtent=SIZE), DensityArray=["POINTS", "RTData"])
@@ -592,7 +617,8 @@ def lattice_errors():
 def blocks_errors():
     """What cannot be solved by pieces is one error that names it; what one rank lacks, on all of them."""
     medium = ParticipatingMedium(Input=Wavelet(WholeExtent=SIZE), DensityArray=["POINTS", "RTData"])
-    for named, settings in (("a source by octants", {"Source": 3}), ("WarmStart", {"WarmStart": 1})):
+    for named, settings in (("a source by octants", {"Source": 3}), ("WarmStart", {"WarmStart": 1}),
+                            ("the sequential Algorithm", {"Scheme": 0, "Algorithm": 0})):
         light = LightPropagationMaps(Input=medium, SkyColor=[1, 1, 1], Decomposition="Blocks", **settings)
         errors = errors_of(light)
         light.UpdatePipeline()

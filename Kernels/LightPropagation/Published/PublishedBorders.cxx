@@ -12,7 +12,7 @@ PublishedBorders::PublishedBorders(
 
 std::vector<float> PublishedBorders::Radiance(const PublishedPlan::Batch& batch) const
 {
-  std::vector<float> radiance(this->Plan.boundarySize, 0.0f);
+  std::vector<float> radiance(this->Plan.sizes.boundary, 0.0f);
   std::size_t at = 0;
   for (int i = 0; i < batch.count; ++i)
   {
@@ -27,7 +27,7 @@ std::vector<float> PublishedBorders::Radiance(const PublishedPlan::Batch& batch)
   return radiance;
 }
 
-void PublishedBorders::TallyEntered(const PublishedPlan::Batch& batch, OrderLedger& ledger) const
+void PublishedBorders::TallyEntered(const PublishedPlan::Batch& batch, SweepTally& tally) const
 {
   for (int i = 0; i < batch.count; ++i)
   {
@@ -36,7 +36,7 @@ void PublishedBorders::TallyEntered(const PublishedPlan::Batch& batch, OrderLedg
       const Rgb& boundary = this->Model.Boundary(batch.first + i, axis);
       for (int c = 0; c < this->Model.Channels(); ++c)
       {
-        ledger.entered[c] += rays * map.beamPower * boundary[c];
+        tally.in[map.EntryFace(axis)][c] += rays * map.beamPower * boundary[c];
       }
     };
     enter(map.axis, static_cast<double>(map.sizeU) * map.sizeV * this->Plan.SubMaps());
@@ -56,27 +56,29 @@ void PublishedBorders::TallyEntered(const PublishedPlan::Batch& batch, OrderLedg
 }
 
 void PublishedBorders::TallyEscaped(
-  const PublishedPlan::Batch& batch, const std::vector<float>& escaped, OrderLedger& ledger) const
+  const PublishedPlan::Batch& batch, const std::vector<float>& escaped, SweepTally& tally) const
 {
   const int rows = batch.Map().sizeV;
   std::size_t at = 0;
-  for (int i = 0; i < batch.count; ++i)
+  for (const MapGeometry& map : batch.maps)
   {
-    const MapGeometry& map = batch.maps[i];
-    const auto take = [&](int count, double& power) {
+    const auto take = [&](int count) {
       double sum = 0.0;
       for (int k = 0; k < count; ++k)
       {
         sum += escaped[at++];
       }
-      power += map.beamPower * sum;
+      return map.beamPower * sum;
     };
     for (int c = 0; c < this->Model.Channels(); ++c)
     {
-      take(rows, ledger.facePowerOut[map.ExitFace(map.axisU)][c]);
-      take(1, ledger.facePowerOut[map.ExitFace(map.axisV)][c]);
-      take(
-        rows, this->Settings.periodic[map.axis] ? ledger.carried[c] : ledger.facePowerOut[map.ExitFace(map.axis)][c]);
+      tally.out[map.ExitFace(map.axisU)][c] += take(rows);
+      tally.out[map.ExitFace(map.axisV)][c] += take(1);
+      const double ahead = take(rows);
+      if (this->Plan.Ends(batch))
+      {
+        (this->Settings.periodic[map.axis] ? tally.onTheWay[c] : tally.out[map.ExitFace(map.axis)][c]) += ahead;
+      }
     }
   }
 }
@@ -89,14 +91,15 @@ void PublishedBorders::TallyLeft(
   {
     const auto take = [&](int exitAxis, int channel, int axisSlow, int slow, int axisFast, int fast) {
       const int face = map.ExitFace(exitAxis);
+      const bool leaves = !this->Settings.periodic[exitAxis] && (exitAxis != map.axis || this->Plan.Ends(batch));
       std::array<int, 3> voxel = {};
       for (int j = 0; j < slow; ++j)
       {
         for (int i = 0; i < fast; ++i, ++at)
         {
-          voxel[axisSlow] = j;
+          voxel[axisSlow] = j + (axisSlow == map.axis ? this->Plan.FirstPlane() : 0);
           voxel[axisFast] = i;
-          if (left[at] != 0.0f && !this->Settings.periodic[exitAxis])
+          if (left[at] != 0.0f && leaves)
           {
             faces.Leave(faces.Cell(face, voxel), channel, map.beamPower * left[at]);
           }
@@ -105,8 +108,8 @@ void PublishedBorders::TallyLeft(
     };
     for (int c = 0; c < this->Model.Channels(); ++c)
     {
-      take(map.axisU, c, map.axis, map.planes, map.axisV, map.sizeV);
-      take(map.axisV, c, map.axis, map.planes, map.axisU, map.sizeU);
+      take(map.axisU, c, map.axis, this->Plan.Planes(batch), map.axisV, map.sizeV);
+      take(map.axisV, c, map.axis, this->Plan.Planes(batch), map.axisU, map.sizeU);
       take(map.axis, c, map.axisV, map.sizeV, map.axisU, map.sizeU);
     }
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "LightPropagation/FaceReflection.h"
+#include "LightPropagation/Published/OrderLedger.h"
 #include "LightPropagation/Published/PublishedModel.h"
 
 #include <array>
@@ -30,6 +31,8 @@ public:
   std::size_t Cell(int face, const std::array<int, 3>& voxel) const;
 
   void Leave(std::size_t cell, int channel, double power) { this->Out[channel * this->Cells() + cell] += power; }
+  /// What has left in this order, [channel][cell], for sums over ranks.
+  std::vector<double>& PowersLeft() { return this->Out; }
   /// What comes back in this order, [channel][cell]. W / (length^2 sr)
   const std::vector<float>& Radiance() const { return this->Back; }
   float Radiance(std::size_t cell, int channel) const { return this->Back[channel * this->Cells() + cell]; }

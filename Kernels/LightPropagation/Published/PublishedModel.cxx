@@ -2,9 +2,7 @@
 
 #include "Device/Errors.h"
 #include "Light/LeftOut.h"
-#include "LightPropagation/Convergence.h"
 #include "LightPropagation/Problem/PropagationProblem.h"
-#include "LightPropagation/Uncollided/GivenLight.h"
 #include "Medium/BoxFaces.h"
 #include "Numerics/Constants.h"
 #include "Numerics/Vectors.h"
@@ -23,9 +21,6 @@ namespace tyndall
 namespace
 {
 constexpr double FourPi = 4.0 * Pi;
-
-/// No problem that converges at all needs more; those that do not must end.
-constexpr int MostOrders = 10000;
 
 int NearestOf(const std::vector<std::array<double, 3>>& directions, const std::array<double, 3>& omega)
 {
@@ -231,7 +226,7 @@ std::vector<std::string> LeftOutAsPublished(const Illumination& illumination)
   };
 }
 
-std::vector<std::string> LeftOutAsPublished(const Medium& medium, const MediumTraits& traits,
+std::vector<std::string> LeftOutAsPublished(bool isotropic, const MediumTraits& traits, bool uncollidedGiven,
   const Illumination& illumination, const PropagationSettings& settings, int orders)
 {
   std::vector<std::string> words = LeftOutAsPublished(illumination);
@@ -242,8 +237,8 @@ std::vector<std::string> LeftOutAsPublished(const Medium& medium, const MediumTr
     }
   };
   const bool leaveOut = settings.leaveOut;
-  say(illumination.uncollided.IsThere(), left_out::OwnUncollided);
-  say(leaveOut && medium.phase.IsIsotropic() && traits.scatters, left_out::Isotropic);
+  say(uncollidedGiven, left_out::OwnUncollided);
+  say(leaveOut && isotropic && traits.scatters, left_out::Isotropic);
   say(leaveOut && !traits.scatters, left_out::NoScattering);
   say(leaveOut && !traits.emits, left_out::NoEmission);
   say(leaveOut && !Reflects(illumination), left_out::BlackFaces);
@@ -270,16 +265,36 @@ void CheckPublishedPhase(const Medium& medium)
   }
 }
 
-PublishedModel::PublishedModel(
-  const Medium& medium, const Illumination& illumination, const PropagationSettings& settings, int channels)
+namespace
+{
+const PhaseOfMedium& CheckedPhase(
+  const Medium& medium, const Illumination& illumination, const PropagationSettings& settings)
 {
   Check(medium, illumination, settings);
   CheckPublishedPhase(medium);
-  this->ChannelCount = channels == 3 || medium.Channels() == 3 || illumination.uncollided.fluence.HasColour() ||
-      !ColourOf(illumination).IsGrey()
-    ? 3
-    : 1;
-  this->Isotropic = medium.phase.IsIsotropic();
+  return medium.phase;
+}
+
+int ChannelsOf(const Medium& medium, const Illumination& illumination)
+{
+  const bool coloured =
+    medium.Channels() == 3 || illumination.uncollided.fluence.HasColour() || !ColourOf(illumination).IsGrey();
+  return coloured ? 3 : 1;
+}
+}
+
+PublishedModel::PublishedModel(
+  const Medium& medium, const Illumination& illumination, const PropagationSettings& settings, int channels)
+  : PublishedModel(CheckedPhase(medium, illumination, settings), illumination, settings,
+      std::max(channels, ChannelsOf(medium, illumination)))
+{
+}
+
+PublishedModel::PublishedModel(
+  const PhaseOfMedium& phase, const Illumination& illumination, const PropagationSettings& settings, int channels)
+  : ChannelCount(channels)
+{
+  this->Isotropic = phase.IsIsotropic();
   this->Set = PublishedDirections(settings.directionsPerFace);
   this->AlbedoOfFaces = illumination.faceAlbedo;
   this->BoundaryRadiances = BoundaryOf(this->Set, illumination, settings.periodic);
@@ -301,7 +316,7 @@ PublishedModel::PublishedModel(
   this->Coefficients.push_back(fluence);
   if (!this->Isotropic)
   {
-    for (std::vector<double>& row : ScatteringFactors(medium.phase.OfChannel(0), this->Set, this->Sources))
+    for (std::vector<double>& row : ScatteringFactors(phase.OfChannel(0), this->Set, this->Sources))
     {
       this->Coefficients.push_back(std::move(row));
     }
@@ -454,159 +469,5 @@ bool GridWalk::Next()
   this->fraction = std::max(0.0, end - this->Depth);
   this->Depth = std::max(this->Depth, end);
   return true;
-}
-
-namespace
-{
-constexpr double WarmMargin = 1.5; ///< the error of a guess does not fall evenly
-}
-
-OrderLedger::OrderLedger(const Medium& medium, const PublishedModel& model, const PropagationSettings& settings)
-  : TheMedium(medium)
-  , Settings(settings)
-  , Channels(model.Channels())
-  , FacesReflect(model.FacesReflect())
-  , Start(std::chrono::steady_clock::now())
-{
-  const double power = FourPi * medium.grid.VoxelVolume();
-  for (std::size_t voxel = 0; voxel < medium.grid.VoxelCount(); ++voxel)
-  {
-    for (int c = 0; c < this->Channels; ++c)
-    {
-      this->Balance.emitted[c] += power * medium.emission.At(voxel, c);
-    }
-  }
-}
-
-void OrderLedger::BeginWarm(const Rgb& rate)
-{
-  this->Warm = true;
-  this->LeastRatio = rate;
-}
-
-void OrderLedger::CountGiven(const UncollidedImage& image)
-{
-  const SweepTally tally = TallyOf(image, this->TheMedium, 0, this->Channels);
-  for (int c = 0; c < this->Channels; ++c)
-  {
-    this->entered[c] += tally.in[0][c];
-    for (std::size_t face = 0; face < tally.out.size(); ++face)
-    {
-      this->facePowerOut[face][c] += tally.out[face][c];
-    }
-  }
-}
-
-void OrderLedger::GiveBack(const std::array<Rgb, 6>& powers)
-{
-  this->ComingBack = {};
-  for (std::size_t face = 0; face < powers.size(); ++face)
-  {
-    for (int c = 0; c < this->Channels; ++c)
-    {
-      this->facePowerOut[face][c] -= powers[face][c];
-      this->ComingBack[c] += powers[face][c];
-    }
-  }
-}
-
-void OrderLedger::CloseOrder(const float* fluence)
-{
-  Rgb sum = {}, magnitude = {};
-  Rgb absorbed = {};
-  Rgb scattered = {};
-  for (std::size_t voxel = 0; voxel < this->TheMedium.grid.VoxelCount(); ++voxel)
-  {
-    for (int c = 0; c < this->Channels; ++c)
-    {
-      const double value = fluence[voxel * this->Channels + c];
-      sum[c] += value;
-      magnitude[c] += std::abs(value);
-      absorbed[c] += value * this->TheMedium.sigma_a.At(voxel, c);
-      scattered[c] += value * this->TheMedium.sigma_s.At(voxel, c);
-    }
-  }
-  const double volume = this->TheMedium.grid.VoxelVolume();
-  ConvergenceRow row;
-  row.iteration = this->Orders();
-  row.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - this->Start).count();
-  this->Balance.entered = this->entered;
-  this->Balance.escaped = {};
-  for (int c = 0; c < this->Channels; ++c)
-  {
-    this->Balance.absorbed[c] += volume * absorbed[c];
-    this->Balance.leftOver[c] = volume * scattered[c] + this->carried[c] + this->ComingBack[c];
-    for (const Rgb& face : this->facePowerOut)
-    {
-      this->Balance.escaped[c] += face[c];
-    }
-    this->TotalSum[c] += sum[c];
-    row.absorbed += this->Balance.absorbed[c];
-    row.escaped += this->Balance.escaped[c];
-    row.leftOver += this->Balance.leftOver[c];
-  }
-  const bool goesOn = this->Warm ? Sum(magnitude) > 0.0 : row.leftOver > 0.0;
-  row.residual = goesOn ? this->EstimateResidual(this->Warm ? magnitude : sum) : 0.0;
-  this->SumBefore = this->LastSum;
-  this->LastSum = this->Warm && this->Rows.empty() ? Rgb{}
-    : this->Warm                                   ? magnitude
-                                                   : sum; // with a guess it tells nothing
-  this->Rows.push_back(row);
-  this->Finished = row.residual == 0.0 ||
-    (this->Settings.maximumOrders > 0 ? this->Orders() >= this->Settings.maximumOrders
-                                      : MeetsTolerance(this->Settings, row.residual) || this->Orders() >= MostOrders);
-}
-
-/// Orders shrink like a geometric series in the end: what is still to come is its rest.
-double OrderLedger::EstimateResidual(const Rgb& orderSum)
-{
-  double residual = this->Rows.empty() ? 1.0 : 0.0;
-  for (int c = 0; c < this->Channels; ++c)
-  {
-    if (orderSum[c] > 0.0 && (this->LastSum[c] > 0.0 || (this->Warm && !this->Rows.empty())))
-    {
-      const double known = this->LeastRatio[c] > 0.0 ? this->LeastRatio[c] : 1.0;
-      const double found =
-        this->LastSum[c] > 0.0 ? std::max(orderSum[c] / this->LastSum[c], this->LeastRatio[c]) : known;
-      const double ratio = std::min(found, 0.9999);
-      const double growth = this->Ratio[c] > 0.0 && !this->Warm ? std::max(0.0, ratio - this->Ratio[c]) : 0.0;
-      this->Limit[c] = std::min(ratio + growth, 0.9999);
-      this->Ratio[c] = ratio;
-      double rest = orderSum[c] * ratio / (1.0 - ratio) / this->TotalSum[c];
-      if (this->FacesReflect)
-      {
-        rest = std::max(rest, this->RestOfPairs(c, orderSum[c]) / this->TotalSum[c]);
-      }
-      residual = std::max(residual, this->Warm ? WarmMargin * rest : rest);
-    }
-  }
-  return residual;
-}
-
-/// Light that goes to and fro between a face that gives back much and one that gives back little falls by much and by
-/// little in turn, but evenly from pair to pair of orders: what the pairs to come add up to.
-double OrderLedger::RestOfPairs(int channel, double orderSum)
-{
-  const double before = this->SumBefore[channel];
-  if (before <= 0.0)
-  {
-    return orderSum; // no pair is known yet
-  }
-  const double ratio = std::min(orderSum / before, 0.9998);
-  this->Limit[channel] = std::max(this->Limit[channel], std::sqrt(ratio));
-  return (this->LastSum[channel] + orderSum) * ratio / (1.0 - ratio);
-}
-
-double OrderLedger::Progress(double fractionOfOrder) const
-{
-  const double residual = this->Rows.empty() ? 1.0 : this->Rows.back().residual;
-  return ProgressOf(this->Settings, residual, this->Orders() + fractionOfOrder);
-}
-
-void OrderLedger::WriteTo(LightField& field) const
-{
-  field.balance = this->Balance;
-  field.facePowerOut = this->facePowerOut;
-  field.convergence = this->Rows;
 }
 }

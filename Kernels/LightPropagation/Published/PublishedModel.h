@@ -1,14 +1,13 @@
 #pragma once
 
-#include "Light/LightField.h"
 #include "LightPropagation/Angular/DirectionSet.h"
 #include "LightPropagation/PropagationSettings.h"
+#include "Lights/Lights.h"
 
 #include "Medium/Medium.h"
 #include "Medium/Traits.h"
 
 #include <array>
-#include <chrono>
 #include <string>
 #include <vector>
 
@@ -30,6 +29,10 @@ public:
   /// CheckPublishedPhase; directions that are not a square number
   PublishedModel(
     const Medium& medium, const Illumination& illumination, const PropagationSettings& settings, int channels = 1);
+  /// Of a scene that has been checked, of which a rank may have a part (Distributed/Published/PublishedInBlocks.h).
+  /// @param channels  1 or 3
+  PublishedModel(
+    const PhaseOfMedium& phase, const Illumination& illumination, const PropagationSettings& settings, int channels);
 
   int Channels() const { return this->ChannelCount; } ///< 3 where medium or light is coloured, else 1
   const DirectionSet& Directions() const { return this->Set; }
@@ -80,6 +83,25 @@ private:
   std::vector<int> NearestSource;
   std::vector<std::vector<double>> Coefficients;
 };
+
+/// Why the published scheme cannot solve a medium, in words: where its phase function varies by voxel or channel. Empty
+/// where it can.
+std::string WhyNotPublished(const Medium& medium);
+/// @throws InvalidInput with that
+void CheckPublishedPhase(const Medium& medium);
+
+/// `count` directions spread evenly over the sphere: the cells of a cube's faces where count is 6 n^2, else Fibonacci
+/// points.
+std::vector<std::array<double, 3>> EvenDirections(int count);
+
+/// What of the illumination the published method cannot carry, in words; empty if nothing.
+std::vector<std::string> LeftOutAsPublished(const Illumination& illumination);
+
+/// That, and what the scene did not need but that one channel does for three.
+/// @param isotropic  scattering is
+/// @param orders     that were propagated
+std::vector<std::string> LeftOutAsPublished(bool isotropic, const MediumTraits& traits, bool uncollidedGiven,
+  const Illumination& illumination, const PropagationSettings& settings, int orders);
 
 /// Why the published scheme cannot solve a medium, in words: where its phase function varies by voxel or channel. Empty
 /// where it can.
@@ -148,54 +170,5 @@ private:
   int Planes;
   double Depth = 0.0, NextU, NextV, StepU, StepV;
   int SignU, SignV;
-};
-
-/// Adds up orders: powers, convergence, and whether to go on.
-class OrderLedger
-{
-public:
-  OrderLedger(const Medium& medium, const PublishedModel& model, const PropagationSettings& settings);
-
-  Rgb entered = {};                     ///< W, to be added to by the solver
-  std::array<Rgb, 6> facePowerOut = {}; ///< W, likewise
-  Rgb carried = {};                     ///< W on the way through periodic axes, set by the solver each order
-
-  /// W of light that another solver found, in the first order.
-  void CountGiven(const UncollidedImage& image);
-
-  /// Of what left, W through each face come back in the next order: before CloseOrder, where cells are counted.
-  void GiveBack(const std::array<Rgb, 6>& powers);
-
-  /// The first order has a guess in it that the second is to take away: orders after the first may be negative, and
-  /// fall by `rate` at least (numerics.md, section 6.4).
-  void BeginWarm(const Rgb& rate);
-  const Rgb& Rate() const { return this->Limit; } ///< of an order to the one before, to which it seems to grow
-
-  /// @param fluence  of this order alone, channels interleaved
-  void CloseOrder(const float* fluence);
-  bool Done() const { return this->Finished; }
-  int Orders() const { return static_cast<int>(this->Rows.size()); }
-  /// Fraction of all work done when a fraction of the running order is.
-  double Progress(double fractionOfOrder) const;
-
-  void WriteTo(LightField& field) const; ///< balance, facePowerOut, convergence
-
-private:
-  double EstimateResidual(const Rgb& orderSum);
-  double RestOfPairs(int channel, double orderSum);
-
-  const Medium& TheMedium;
-  PropagationSettings Settings;
-  int Channels;
-  bool FacesReflect; ///< light can go to and fro between two of them
-  bool Finished = false;
-  EnergyBalance Balance;
-  Rgb TotalSum = {};
-  Rgb LastSum = {}, SumBefore = {}; ///< of the last order, of the one before that
-  Rgb ComingBack = {};
-  Rgb Ratio = {}, Limit = {}, LeastRatio = {};
-  bool Warm = false;
-  std::vector<ConvergenceRow> Rows;
-  std::chrono::steady_clock::time_point Start;
 };
 }

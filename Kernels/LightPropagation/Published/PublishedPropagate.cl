@@ -40,7 +40,7 @@ inline real depth(real gone, real tau, float length)
 
 // What rays have as they start; both maps get it, so that the border is there in both.
 //   boundary  radiance entering across w, u, v: [direction][3][CHANNELS]
-//   carried   with periodic_w: radiance by voxel, [direction][carried_stride], from carried_first on
+//   carried   where rays are given: radiance by voxel, [direction][carried_stride], from carried_first on
 __kernel void start_rays(const PublishedMap map, __global float* rays, __global const float* boundary,
   __global const float* carried, const ulong carried_first, const ulong carried_stride
 #if FACES
@@ -69,7 +69,7 @@ __kernel void start_rays(const PublishedMap map, __global float* rays, __global 
     radiance = (side_u ? boundary[CHANNELS] : 0.0f) + (side_v ? boundary[2 * CHANNELS] : 0.0f);
     radiance *= side_u && side_v ? 0.5f : 1.0f;
   }
-  else if (map.periodicW)
+  else if (map.given)
   {
     const int from_u = (u + map.sizeU) % map.sizeU;
     const int from_v = (v + map.sizeV) % map.sizeV;
@@ -232,8 +232,8 @@ __kernel void cross_voxels(const PublishedMap map, const int plane, const int ad
 #endif
 }
 
-// Behind the last plane: adds up what leaves, and with periodic_w keeps it for the next order,
-// [direction][carried_stride].
+// Behind the last plane: adds up what leaves, and where rays are kept (for the next order round a periodic axis, or for
+// the rank that has the next planes) keeps it, [direction][carried_stride].
 //   crossings  one a direction: parity says which map
 __kernel void end_rays(
   const PublishedMap map, const int first, __global const PublishedCrossing* crossings, __global float* rays,
@@ -262,7 +262,7 @@ __kernel void end_rays(
 #if FACES
   leave_ahead(&map, &faces, row, v, left + (ulong)slot * LEFT(map, faces));
 #endif
-  if (map.periodicW)
+  if (map.kept)
   {
     carried += carried_first + crossing.direction * carried_stride + (ulong)(channel * map.sizeV + v) * map.sizeU;
     for (int u = 0; u < map.sizeU; ++u)

@@ -27,8 +27,9 @@ typedef struct
   int rowStride; ///< floats between rows of a volume
   int volume;    ///< floats of a volume of one channel
   int rayRow;    ///< floats of a row of a ray map
-  int periodicU, periodicV, periodicW;
-  int directions; ///< in the batch
+  int periodicU, periodicV;
+  int given, kept; ///< rays begin with the radiance that they had behind the planes before; it is kept for those after
+  int directions;  ///< in the batch
 } PublishedMap;
 
 /// What the rays of one direction do in one launch.

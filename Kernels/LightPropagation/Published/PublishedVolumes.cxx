@@ -1,6 +1,7 @@
 #include "LightPropagation/Published/PublishedVolumes.h"
 
 #include "Device/Sizes.h"
+#include "LightPropagation/Published/PublishedLight.h"
 
 #include <algorithm>
 #include <string>
@@ -46,23 +47,30 @@ std::size_t VolumeLayouts::Index(int layout, int x, int y, int z) const
                      : static_cast<std::size_t>(x) * this->plane[1] + z * this->row[1] + y;
 }
 
-PublishedVolumes::PublishedVolumes(Device& device, const Medium& medium, const PublishedModel& model, int width)
+PublishedVolumes::PublishedVolumes(
+  Device& device, const Medium& medium, const PublishedModel& model, int width, const std::array<bool, 3>& axes)
   : Width(width)
   , Layouts(Addressable(device, medium.grid, width), width)
   , Coloured(medium.sigma_a.HasColour() || medium.sigma_s.HasColour())
   , TheDevice(device)
-  , TheMedium(medium)
+  , TheGrid(medium.grid)
   , Model(model)
+  , Axes(axes)
 {
-  this->MakeMedium();
+  this->MakeMedium(medium);
   this->FindSlots();
-  this->MakeSources();
+  this->MakeSources(medium);
   this->MakeMoments();
 }
 
 std::size_t PublishedVolumes::LayoutSize(int layout) const
 {
   return static_cast<std::size_t>(this->Layouts.volume[layout]) * this->Channels();
+}
+
+std::size_t PublishedVolumes::LargestLayout() const
+{
+  return std::max(this->Has(0) ? this->LayoutSize(0) : 0, this->Has(1) ? this->LayoutSize(1) : 0);
 }
 
 /// visit(index in the layout, voxel x fastest, channel)
@@ -105,21 +113,25 @@ std::vector<float> PublishedVolumes::Arrange(int layout, const float* interleave
 std::vector<float> PublishedVolumes::Interleave(int layout, const float* arranged) const
 {
   const std::size_t channels = static_cast<std::size_t>(this->Channels());
-  std::vector<float> values(this->TheMedium.grid.VoxelCount() * channels);
+  std::vector<float> values(this->TheGrid.VoxelCount() * channels);
   this->ForEach(layout, this->Channels(),
     [&](std::size_t at, std::size_t voxel, int c) { values[voxel * channels + c] = arranged[at]; });
   return values;
 }
 
-void PublishedVolumes::MakeMedium()
+void PublishedVolumes::MakeMedium(const Medium& medium)
 {
   const int channels = this->Coloured ? 3 : 1;
-  const auto scattering = [&](std::size_t voxel, int c) { return this->TheMedium.sigma_s.At(voxel, c); };
+  const auto scattering = [&](std::size_t voxel, int c) { return medium.sigma_s.At(voxel, c); };
   const auto extinction = [&](std::size_t voxel, int c) {
-    return this->TheMedium.sigma_a.At(voxel, c) + this->TheMedium.sigma_s.At(voxel, c);
+    return medium.sigma_a.At(voxel, c) + medium.sigma_s.At(voxel, c);
   };
   for (int layout = 0; layout < 2; ++layout)
   {
+    if (!this->Has(layout))
+    {
+      continue;
+    }
     this->Extinction[layout] =
       Buffer<float>(this->TheDevice, this->ArrangeValues(layout, channels, extinction), "the extinction coefficient");
     this->Scattering[layout] =
@@ -136,15 +148,15 @@ void PublishedVolumes::FindSlots()
     int slots = 0;
     for (std::size_t i = 0; i < set.directions.size(); ++i)
     {
-      const bool alongX = static_cast<int>(i) / set.PerFace() / 2 == 0;
+      const int axis = static_cast<int>(i) / set.PerFace() / 2;
       int& slot = this->Slots[layout][this->Model.SourceOf(static_cast<int>(i))];
-      slot = (layout == 1) == alongX && slot < 0 ? slots++ : slot;
+      slot = this->Axes[axis] && (layout == 1) == (axis == 0) && slot < 0 ? slots++ : slot;
     }
   }
 }
 
 /// U in the layouts in which the maps read it, at first the medium's emission.
-void PublishedVolumes::MakeSources()
+void PublishedVolumes::MakeSources(const Medium& medium)
 {
   std::vector<PublishedPart> parts;
   for (int layout = 0; layout < 2; ++layout)
@@ -163,24 +175,35 @@ void PublishedVolumes::MakeSources()
       Buffer<float>(this->TheDevice, this->LayoutSize(layout) * slots, "the unscattered radiance U");
     this->Sources[layout].Fill(0.0f);
   }
-  this->Parts = Buffer<PublishedPart>(this->TheDevice, parts, "the list of U");
-  if (this->TheMedium.emission.values)
+  if (this->IsWhole())
   {
-    this->WriteSources([&](std::size_t voxel, int, int c) { return this->TheMedium.emission.At(voxel, c); });
+    this->Parts = Buffer<PublishedPart>(this->TheDevice, parts, "the list of U");
+  }
+  if (medium.emission.values)
+  {
+    this->WriteSources([&](std::size_t voxel, int, int c) { return medium.emission.At(voxel, c); });
   }
 }
 
 void PublishedVolumes::MakeMoments()
 {
   const int moments = this->Model.MomentCount();
+  const auto dark = [&](int layout, const char* what) {
+    Buffer<float> buffer(this->TheDevice, this->LayoutSize(layout) * moments, what);
+    buffer.Fill(0.0f);
+    return buffer;
+  };
   for (int layout = 0; layout < 2; ++layout)
   {
-    this->OrderMoments[layout] =
-      Buffer<float>(this->TheDevice, this->LayoutSize(layout) * moments, "the moments of an order");
-    this->OrderMoments[layout].Fill(0.0f);
+    if (this->Has(layout))
+    {
+      this->OrderMoments[layout] = dark(layout, "the moments of an order");
+    }
   }
-  this->Totals = Buffer<float>(this->TheDevice, this->LayoutSize(0) * moments, "the moments");
-  this->Totals.Fill(0.0f);
+  if (this->IsWhole())
+  {
+    this->Totals = dark(0, "the moments");
+  }
 }
 
 /// value(voxel, source direction, channel)
@@ -210,22 +233,28 @@ void PublishedVolumes::WriteSource(const std::vector<float>& source)
   this->WriteSources([&](std::size_t voxel, int d, int c) { return source[(voxel * directions + d) * channels + c]; });
 }
 
+void PublishedVolumes::WriteSourceOf(int sourceDirection, const std::vector<float>& source)
+{
+  for (int layout = 0; layout < 2; ++layout)
+  {
+    if (const int slot = this->Slots[layout][sourceDirection]; slot >= 0)
+    {
+      const std::vector<float> arranged = this->Arrange(layout, source.data());
+      this->TheDevice.Queue().enqueueWriteBuffer(this->Sources[layout].Handle(), CL_TRUE,
+        slot * arranged.size() * sizeof(float), arranged.size() * sizeof(float), arranged.data());
+    }
+  }
+}
+
 void PublishedVolumes::AddGiven(const UncollidedImage& image)
 {
   std::vector<float> all = this->OrderMoments[0].Read();
-  this->ForEach(0, 1, [&](std::size_t at, std::size_t voxel, int) {
-    const Field& mean = image.meanDirection;
-    const std::vector<double> moments =
-      this->Model.MomentsAlong({ mean.At(voxel, 0), mean.At(voxel, 1), mean.At(voxel, 2) });
-    for (std::size_t k = 0; k < moments.size(); ++k)
-    {
-      for (int c = 0; c < this->Channels(); ++c)
-      {
-        all[k * this->LayoutSize(0) + c * this->Layouts.volume[0] + at] +=
-          static_cast<float>(moments[k] * image.fluence.At(voxel, c));
-      }
-    }
-  });
+  tyndall::AddGiven(
+    this->Model, image, this->TheGrid.VoxelCount(), [&](std::size_t k, std::size_t voxel, int c, double value) {
+      const std::array<int, 3> at = this->TheGrid.VoxelAt(voxel);
+      all[k * this->LayoutSize(0) + static_cast<std::size_t>(c) * this->Layouts.volume[0] +
+        this->Layouts.Index(0, at[0], at[1], at[2])] += static_cast<float>(value);
+    });
   this->OrderMoments[0].Write(all.data());
 }
 
@@ -233,7 +262,7 @@ std::vector<float> PublishedVolumes::ReadSource() const
 {
   const std::size_t channels = static_cast<std::size_t>(this->Channels());
   const std::size_t directions = this->Model.SourceDirections().size();
-  std::vector<float> all(this->TheMedium.grid.VoxelCount() * channels * directions);
+  std::vector<float> all(this->TheGrid.VoxelCount() * channels * directions);
   for (std::size_t d = 0; d < directions; ++d)
   {
     const int layout = this->Slots[0][d] >= 0 ? 0 : 1;
@@ -252,9 +281,10 @@ std::vector<float> PublishedVolumes::ReadSource() const
   return all;
 }
 
-std::vector<float> PublishedVolumes::ReadMoment(const Buffer<float>& moments, int moment) const
+std::vector<float> PublishedVolumes::ReadMoment(const Buffer<float>& moments, int moment, int layout) const
 {
-  return this->Interleave(0, this->ReadPart(moments, moment * this->LayoutSize(0), this->LayoutSize(0)).data());
+  const std::size_t size = this->LayoutSize(layout);
+  return this->Interleave(layout, this->ReadPart(moments, moment * size, size).data());
 }
 
 std::vector<float> PublishedVolumes::ReadPart(const Buffer<float>& buffer, std::size_t first, std::size_t count) const

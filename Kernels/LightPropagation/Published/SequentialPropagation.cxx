@@ -3,6 +3,8 @@
 #include "Light/ChannelReduction.h"
 #include "LightPropagation/Convergence.h"
 #include "LightPropagation/Published/PublishedFaces.h"
+#include "LightPropagation/Published/PublishedLight.h"
+#include "LightPropagation/Uncollided/GivenLight.h"
 
 #include <cmath>
 
@@ -53,9 +55,10 @@ public:
       {
         this->AddGiven();
       }
+      this->Ledger.Count(this->Tally);
       const std::vector<float> fluence(this->OrderMoments[0].begin(), this->OrderMoments[0].end());
       this->Faces.CloseOrder(this->Ledger);
-      this->Ledger.CloseOrder(fluence.data());
+      this->Ledger.CloseOrder(SumsOf(this->TheMedium, this->Channels, fluence.data()));
       this->UpdateSources();
       if (this->Ledger.Orders() == 1)
       {
@@ -74,7 +77,7 @@ private:
     {
       std::fill(moment.begin(), moment.end(), 0.0);
     }
-    this->Ledger.carried = {};
+    this->Tally = {};
     const std::vector<Direction>& directions = this->Model.Directions().directions;
     for (std::size_t i = 0; i < directions.size(); ++i)
     {
@@ -85,20 +88,11 @@ private:
   /// Light that another solver found, to the moments of the first order.
   void AddGiven()
   {
-    for (std::size_t voxel = 0; voxel < this->TheMedium.grid.VoxelCount(); ++voxel)
-    {
-      const Field& mean = this->Given.meanDirection;
-      const std::vector<double> moments =
-        this->Model.MomentsAlong({ mean.At(voxel, 0), mean.At(voxel, 1), mean.At(voxel, 2) });
-      for (std::size_t k = 0; k < moments.size(); ++k)
-      {
-        for (int c = 0; c < this->Channels; ++c)
-        {
-          this->OrderMoments[k][voxel * this->Channels + c] += moments[k] * this->Given.fluence.At(voxel, c);
-        }
-      }
-    }
-    this->Ledger.CountGiven(this->Given);
+    tyndall::AddGiven(this->Model, this->Given, this->TheMedium.grid.VoxelCount(),
+      [this](std::size_t k, std::size_t voxel, int c, double value) {
+        this->OrderMoments[k][voxel * this->Channels + c] += value;
+      });
+    tyndall::Add(this->Tally, TallyOf(this->Given, this->TheMedium, 0, this->Channels));
   }
 
   void PropagateDirection(int i, const Monitor& monitor)
@@ -143,7 +137,7 @@ private:
           const int v = ray.v * resolution + s % resolution;
           const std::size_t first = (static_cast<std::size_t>(v) * elementsU + u) * this->Channels;
           std::copy_n(ray.radiance, this->Channels, carriedOn.begin() + first);
-          Add(this->Ledger.carried, ray, map.beamPower);
+          Add(this->Tally.onTheWay, ray, map.beamPower);
         }
         else
         {
@@ -227,7 +221,7 @@ private:
     {
       ray.radiance[c] = static_cast<float>(boundary[c]);
     }
-    Add(this->Ledger.entered, ray, map.beamPower);
+    Add(this->Tally.in[0], ray, map.beamPower);
   }
 
   std::size_t CellOf(int face, const Ray& ray, const MapGeometry& map, int w) const
@@ -243,7 +237,7 @@ private:
   void Leave(const Ray& ray, const MapGeometry& map, int axis, int w, double power)
   {
     const int face = map.ExitFace(axis);
-    Add(this->Ledger.facePowerOut[face], ray, power);
+    Add(this->Tally.out[face], ray, power);
     if (this->Faces.Count())
     {
       const std::size_t cell = this->CellOf(face, ray, map, w);
@@ -323,30 +317,8 @@ private:
 
   void WriteTo(LightField& field) const
   {
-    field.channels = this->Channels;
-    field.fluence = this->Moments[0];
-    field.storedDirections = this->Model.StoredDirections();
-    const std::size_t stored = field.storedDirections.size();
-    field.scatteredRadiance.resize(this->Values * stored);
-    for (std::size_t i = 0; i < this->Values; ++i)
-    {
-      const std::size_t voxel = i / this->Channels;
-      const std::size_t c = i % this->Channels;
-      for (std::size_t d = 0; d < stored; ++d)
-      {
-        const PublishedModel::Part part = this->Model.ScatteredRadiance(static_cast<int>(d));
-        field.scatteredRadiance[(voxel * stored + d) * this->Channels + c] =
-          static_cast<float>(part.factor) * this->Moments[part.moment][i];
-      }
-    }
-    if (this->Settings.netFlux)
-    {
-      field.netFlux.resize(3 * this->Values);
-      for (std::size_t i = 0; i < 3 * this->Values; ++i)
-      {
-        field.netFlux[i] = this->Moments[this->Model.NetFlux(static_cast<int>(i % 3))][i / 3];
-      }
-    }
+    TakeMoments(
+      this->Model, this->Settings.netFlux, [this](int k) { return this->Moments[k]; }, field);
     this->Ledger.WriteTo(field);
     this->Faces.WriteTo(field);
     field.halfRangeFlux = HalfRangeFlux(this->Model.Directions());
@@ -357,6 +329,7 @@ private:
   PropagationSettings Settings;
   PublishedModel Model;
   OrderLedger Ledger;
+  SweepTally Tally; ///< of the order that runs
   PublishedFaces Faces;
   int Channels;
   UncollidedImage Given;
@@ -383,8 +356,8 @@ LightField SolveSequential(
   return SolveChannels(settings.leaveOut, channels, medium, illumination,
     [&](const Medium& ofChannels, const Illumination& light, int count) {
       LightField field = SequentialPropagation(ofChannels, light, settings, count).Solve(monitor);
-      field.leftOut =
-        LeftOutAsPublished(medium, traits, illumination, settings, static_cast<int>(field.convergence.size()));
+      field.leftOut = LeftOutAsPublished(medium.phase.IsIsotropic(), traits, illumination.uncollided.IsThere(),
+        illumination, settings, static_cast<int>(field.convergence.size()));
       JudgeConvergence(settings, field);
       DoubtGivenLight(illumination, field);
       return field;

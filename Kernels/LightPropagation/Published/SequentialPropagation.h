@@ -1,5 +1,6 @@
 #pragma once
 
+#include "Light/LightField.h"
 #include "LightPropagation/Published/PublishedModel.h"
 
 #include "Device/Monitor.h"

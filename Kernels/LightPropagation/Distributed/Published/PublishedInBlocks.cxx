@@ -1,0 +1,263 @@
+#include "LightPropagation/Distributed/Published/PublishedInBlocks.h"
+
+#include "Device/Errors.h"
+#include "Distribution/SharedMedium.h"
+#include "Light/ChannelReduction.h"
+#include "Light/LeftOut.h"
+#include "LightPropagation/Convergence.h"
+#include "LightPropagation/Distributed/BlockScene.h"
+#include "LightPropagation/Distributed/Published/SweepInSlabs.h"
+#include "LightPropagation/Problem/PropagationProblem.h"
+#include "LightPropagation/Published/OrderLedger.h"
+#include "LightPropagation/Published/PublishedLight.h"
+#include "Lights/UncollidedImage.h"
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <utility>
+
+namespace tyndall
+{
+namespace
+{
+/// What all ranks have together.
+struct SceneOfAll
+{
+  MediumTraits traits;
+  int channels = 1;
+  bool isotropic = true;
+  Rgb emitted = {};   ///< W
+  bool given = false; ///< uncollided light is
+};
+
+SceneOfAll SceneOf(Communicator& communicator, bool has, const Medium& medium, const Illumination& illumination)
+{
+  SceneOfAll scene;
+  const MediumTraits own = has ? TraitsOf(medium) : MediumTraits();
+  scene.traits = TraitsOfAll(communicator, own);
+  const int channels = has ? SceneChannels(medium, own, illumination).given : 1;
+  scene.channels = static_cast<int>(communicator.Largest({ 1.0 * channels })[0]);
+  scene.isotropic = !OnAnyRank(communicator, has && !medium.phase.IsIsotropic());
+  scene.given = OnAnyRank(communicator, has && illumination.uncollided.IsThere());
+  const Rgb emitted = has ? EmittedBy(medium, scene.channels) : Rgb{};
+  const std::vector<double> sum = communicator.Sum({ emitted[0], emitted[1], emitted[2] });
+  std::copy(sum.begin(), sum.end(), scene.emitted.begin());
+  return scene;
+}
+
+/// Orders one by one, of all ranks; of the voxels those of this rank's block.
+class PublishedOfBlock
+{
+public:
+  /// All ranks make one together. What is given must stay.
+  PublishedOfBlock(Device& device, Communicator& communicator, const BlockPartition& partition, bool has,
+    const Medium& medium, const Illumination& illumination, const PropagationSettings& settings,
+    const PublishedModel& model, const SceneOfAll& scene)
+    : Others(communicator)
+    , Has(has)
+    , CountsGiven(IsFirstThatHas(communicator, partition))
+    , TheMedium(medium)
+    , Given(illumination.uncollided)
+    , Model(model)
+    , NetFlux(settings.netFlux)
+    , Ledger(partition.whole.VoxelVolume(), scene.emitted, this->Model, settings)
+    , Faces(partition.whole, this->Model, settings)
+    , Sweep(device, communicator, partition, medium, this->Model, settings, this->Faces)
+    , Emits(scene.traits.emits || !settings.leaveOut)
+    , IsGiven(scene.given)
+    , Totals(this->Model.MomentCount())
+    , Moments(this->Totals.size())
+  {
+  }
+
+  void RunOrder(const Monitor& monitor)
+  {
+    const int order = this->Ledger.Orders();
+    const Monitor ofOrder = OfPart(monitor, [this](double done) { return this->Ledger.Progress(done); });
+    this->Ledger.Count(this->Sweep.Run(order, this->Emits, this->Faces, ofOrder));
+    HeldFailure failure;
+    if (this->Has)
+    {
+      this->Collect(order, failure);
+    }
+    this->Others.Together([&] { failure.Throw(); });
+    if (order == 0 && this->IsGiven)
+    {
+      this->Ledger.Count(this->PowersGiven());
+    }
+    this->Close();
+    this->Emits = true; // from now on U is not zero
+  }
+
+  bool Done() const { return this->Ledger.Done(); }
+  int Orders() const { return this->Ledger.Orders(); }
+
+  LightField Result() const
+  {
+    LightField field;
+    TakeMoments(
+      this->Model, this->NetFlux, [this](int k) { return this->Totals[k]; }, field);
+    field.fluenceDirect = this->FluenceDirect;
+    this->Ledger.WriteTo(field);
+    this->Faces.WriteTo(field);
+    return field;
+  }
+
+private:
+  std::size_t Values() const { return this->TheMedium.grid.VoxelCount() * this->Model.Channels(); }
+
+  /// Eq. (4): what all sweeps left in this block, and U of the next order from it.
+  void Collect(int order, HeldFailure& failure)
+  {
+    for (std::size_t k = 0; k < this->Moments.size(); ++k)
+    {
+      this->Moments[k] = this->Sweep.Moment(static_cast<int>(k), failure);
+    }
+    if (order == 0)
+    {
+      if (this->Given.IsThere())
+      {
+        AddGiven(this->Model, this->Given, this->TheMedium.grid.VoxelCount(),
+          [this](std::size_t k, std::size_t voxel, int c, double value) {
+            this->Moments[k][voxel * this->Model.Channels() + c] += static_cast<float>(value);
+          });
+      }
+      this->FluenceDirect = this->Moments[0];
+    }
+    for (std::size_t k = 0; k < this->Moments.size(); ++k)
+    {
+      this->Totals[k].resize(this->Values(), 0.0f);
+      std::transform(this->Totals[k].begin(), this->Totals[k].end(), this->Moments[k].begin(), this->Totals[k].begin(),
+        [](float sum, float more) { return sum + more; });
+    }
+    this->Sweep.WriteSources([this](int d) { return this->SourceOf(d); }, failure);
+  }
+
+  std::vector<float> SourceOf(int sourceDirection) const
+  {
+    const PublishedModel::Part part = this->Model.Source(sourceDirection);
+    const float factor = static_cast<float>(part.factor);
+    std::vector<float> source = this->Moments[part.moment];
+    const std::size_t channels = static_cast<std::size_t>(this->Model.Channels());
+    for (std::size_t i = 0; i < source.size(); ++i)
+    {
+      source[i] *= factor * this->TheMedium.sigma_s.At(i / channels, static_cast<int>(i % channels));
+    }
+    return source;
+  }
+
+  /// What came in is what all ranks' voxels take and what left, which each is told.
+  SweepTally PowersGiven() const
+  {
+    SweepTally tally;
+    for (int c = 0; c < this->Model.Channels() && this->Has; ++c)
+    {
+      tally.in[0][c] = PowerLost(this->Given, this->TheMedium, c);
+      for (int face = 0; face < 6 && this->CountsGiven; ++face)
+      {
+        tally.in[0][c] += this->Given.escaped[face][c];
+        tally.out[face][c] = this->Given.escaped[face][c];
+      }
+    }
+    return SumOverRanks(this->Others, tally);
+  }
+
+  void Close()
+  {
+    if (this->Faces.Count())
+    {
+      this->Faces.PowersLeft() = this->Others.Sum(this->Faces.PowersLeft());
+    }
+    this->Faces.CloseOrder(this->Ledger);
+    const OrderSums own =
+      this->Has ? SumsOf(this->TheMedium, this->Model.Channels(), this->Moments[0].data()) : OrderSums();
+    std::vector<double> values;
+    for (const Rgb* rgb : { &own.fluence, &own.magnitude, &own.absorbed, &own.scattered })
+    {
+      values.insert(values.end(), rgb->begin(), rgb->end());
+    }
+    values = this->Others.Sum(values);
+    OrderSums all;
+    auto from = values.begin();
+    for (Rgb* rgb : { &all.fluence, &all.magnitude, &all.absorbed, &all.scattered })
+    {
+      std::copy_n(from, 3, rgb->begin());
+      from += 3;
+    }
+    this->Ledger.CloseOrder(all);
+  }
+
+  Communicator& Others;
+  const bool Has, CountsGiven;
+  const Medium& TheMedium;
+  const UncollidedImage& Given;
+  const PublishedModel& Model;
+  const bool NetFlux;
+  OrderLedger Ledger;
+  PublishedFaces Faces;
+  SweepInSlabs Sweep;
+  bool Emits; ///< U is not zero
+  const bool IsGiven;
+  std::vector<std::vector<float>> Totals, Moments; ///< of all orders, of the last
+  std::vector<float> FluenceDirect;
+};
+
+void CheckPublishedBlocks(Communicator& communicator, const BlockPartition& partition, bool has, const Medium& medium,
+  const Illumination& illumination, const PropagationSettings& settings)
+{
+  communicator.Together([&] {
+    partition.Check();
+    Require(static_cast<int>(partition.blocks.size()) == communicator.Ranks(), "There is not a block for each rank.");
+    if (has)
+    {
+      CheckBlock(medium, illumination, settings);
+      CheckPublishedPhase(medium);
+      Require(medium.grid.size == partition.OwnGrid(communicator.Rank()).size,
+        "The medium of rank " + std::to_string(communicator.Rank()) + " does not have the size of its block.");
+    }
+  });
+  RequireSame(communicator, partition);
+  RequireSame(communicator, has, medium, illumination, settings);
+  RequireSame(communicator, "StoredDirections", true, { 1.0 * settings.storedDirections });
+  CheckLightHasAnEnd(AbsorbsOnAny(communicator, has, medium), illumination, settings.periodic);
+}
+
+std::vector<std::string> LeftOutOfBlocks(
+  const SceneOfAll& scene, const Illumination& illumination, const PropagationSettings& settings, int orders)
+{
+  std::vector<std::string> words =
+    LeftOutAsPublished(scene.isotropic, scene.traits, scene.given, illumination, settings, orders);
+  if (settings.leaveOut && scene.channels == 1)
+  {
+    words.insert(words.begin(), left_out::Grey);
+  }
+  return words;
+}
+}
+
+LightField SolvePublishedInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition,
+  const Medium& medium, const Illumination& illumination, const PropagationSettings& settings, const Monitor& monitor)
+{
+  const bool has = partition.blocks.at(communicator.Rank()).VoxelCount() > 0;
+  CheckPublishedBlocks(communicator, partition, has, medium, illumination, settings);
+  Medium own = has ? medium : Medium();
+  own.grid = partition.OwnGrid(communicator.Rank());
+  const SceneOfAll scene = SceneOf(communicator, has, own, illumination);
+  std::optional<PublishedModel> model;
+  communicator.Together(
+    [&] { model.emplace(has ? medium.phase : PhaseOfMedium(), illumination, settings, scene.channels); });
+  PublishedOfBlock propagation(device, communicator, partition, has, own, illumination, settings, *model, scene);
+  do
+  {
+    propagation.RunOrder(monitor);
+  } while (!propagation.Done());
+  LightField light = propagation.Result();
+  light.leftOut = LeftOutOfBlocks(scene, illumination, settings, propagation.Orders());
+  light.halfRangeFlux = HalfRangeFlux(model->Directions());
+  light.device = device.Name();
+  JudgeConvergence(settings, light);
+  DoubtGivenLight(illumination, light);
+  return light;
+}
+}
