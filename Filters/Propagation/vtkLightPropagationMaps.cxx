@@ -27,7 +27,6 @@
 #include "vtkObjectFactory.h"
 
 #include <algorithm>
-#include <iterator>
 #include <memory>
 #include <string>
 #include <utility>
@@ -196,13 +195,7 @@ vtkLightPropagationMaps::~vtkLightPropagationMaps() = default;
 
 std::string vtkLightPropagationMaps::NotByBlocks(vtkInformationVector**) const
 {
-  const std::pair<bool, const char*> reasons[] = {
-    { this->Scheme == PUBLISHED, "the published Scheme" },
-    { this->WarmStart, "WarmStart" },
-  };
-  const auto found =
-    std::find_if(std::begin(reasons), std::end(reasons), [](const auto& reason) { return reason.first; });
-  return found == std::end(reasons) ? std::string() : found->second;
+  return this->Scheme == PUBLISHED ? "the published Scheme" : "";
 }
 
 std::string vtkLightPropagationMaps::NotInBlocks(
@@ -222,19 +215,19 @@ std::string vtkLightPropagationMaps::BetterAsWhole(tyndall::Communicator& commun
 tyndall::LightField vtkLightPropagationMaps::SolvePiece(tyndall::Communicator& communicator,
   const tyndall::PieceBlocks& pieces, const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining)
 {
-  this->Last->Where(false);
+  tyndall::KeptLight* const last = this->Last->Where(this->WarmStart);
   const std::shared_ptr<tyndall::Device> device = DeviceOnAll(this, communicator);
   const tyndall::PropagationSettings settings = SettingsOn(this, communicator, pieces, piece, shining);
   const tyndall::SceneInBlocks scene = { communicator, pieces.Partition(), piece.medium, shining.illumination };
   const tyndall::Monitor monitor = tyndall::MonitorOf(this);
   if (this->TargetError > 0.0)
   {
-    return LightOf(tyndall::SolveInBlocksToTargetError(*device, scene, settings, this->TargetError, monitor));
+    return LightOf(tyndall::SolveInBlocksToTargetError(*device, scene, settings, this->TargetError, monitor, last));
   }
   tyndall::LightField light = this->EstimateError
-    ? tyndall::SolveInBlocksWithErrorEstimate(*device, scene, settings, monitor)
+    ? tyndall::SolveInBlocksWithErrorEstimate(*device, scene, settings, monitor, last)
     : tyndall::SolveInBlocks(
-        *device, communicator, scene.partition, scene.medium, scene.illumination, settings, monitor);
+        *device, communicator, scene.partition, scene.medium, scene.illumination, settings, monitor, last);
   light.settingsUsed = tyndall::Words(settings);
   return light;
 }

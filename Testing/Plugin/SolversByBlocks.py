@@ -8,7 +8,7 @@ from pieces_of_ranks import Runs, difference
 runs = Runs("SolversByBlocks")
 CASES = ["lattice_wavelet", "lattice_even", "lattice_uneven", "lattice_lamps", "lattice_around",
          "lattice_steps", "lattice_photons", "ordinates_even",
-         "ordinates_uneven", "ordinates_faces", "ordinates_around"]
+         "ordinates_uneven", "ordinates_faces", "ordinates_around", "ordinates_warm"]
 LIKE = {"lattice_uneven": "lattice_even", "ordinates_uneven": "ordinates_even"}
 
 for ranks in (1, 2, 3, 8):

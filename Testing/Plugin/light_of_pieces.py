@@ -393,7 +393,7 @@ def whole_where_few():
 def whole_where_better():
     """What pieces cannot do, or not as well, each rank solves as a whole, says why, and does not solve again."""
     medium = ParticipatingMedium(Input=Wavelet(WholeExtent=SIZE), DensityArray=["POINTS", "RTData"])
-    for why, settings in (("Preview", {"Preview": 1}), ("WarmStart", {"WarmStart": 1}),
+    for why, settings in (("Preview", {"Preview": 1}),
                           ("a source by octants of directions", {"Source": 3}),
                           ("many scattering orders", {"FaceAlbedo": [0.9] * 6}),
                           ("thick voxels", {"Input": ParticipatingMedium(
@@ -574,6 +574,30 @@ def ordinates_whole():
     own_pieces("ordinates_whole", [piece_of([0, 12, 0, 5, 0, 4])], solve=by_ordinates)
 
 
+def warm_by_blocks(case, solver):
+    """Where an albedo was edited, light begins from the last one, of which each rank has kept its own part."""
+    medium = ParticipatingMedium(Input=source_of(uneven_pieces()[rank]), DensityArray=["CELLS", "density"],
+                                 ExtinctionScale=0.5, MinimumDensity=0, MaximumDensity=1, Albedo=[0.9, 0.9, 0.9])
+    light = solver(Input=medium, SkyColor=[1, 1, 1], DirectionsPerFace=4, Decomposition="Blocks", WarmStart=1,
+                   **({"Terms": 16} if solver is DiscreteOrdinates else {}))
+    light.UpdatePipeline()
+    light.UpdatePropertyInformation()
+    assert "WarmStart): there is none" in light.LeftOut, light.LeftOut
+    medium.Albedo = [0.88, 0.88, 0.88]
+    light.UpdatePipeline()
+    light.UpdatePropertyInformation()
+    assert light.SweepsSaved > 0 and "begun from the last light" in light.LeftOut, (light.SweepsSaved, light.LeftOut)
+    keep(case, light)
+
+
+def blocks_warm():
+    warm_by_blocks("blocks_warm", LightPropagationMaps)
+
+
+def ordinates_warm():
+    warm_by_blocks("ordinates_warm", DiscreteOrdinates)
+
+
 def lattice_errors():
     """What a lattice cannot do by pieces is one error that names it; where ranks decide by themselves they solve the whole."""
     medium = ParticipatingMedium(Input=Wavelet(WholeExtent=SIZE), DensityArray=["POINTS", "RTData"])
@@ -596,7 +620,7 @@ def blocks_errors():
     lights = PointLight(Position=[0, 0, 20], Power=[9, 9, 9])
     medium = ParticipatingMedium(Input=Wavelet(WholeExtent=SIZE), DensityArray=["POINTS", "RTData"])
     for named, settings in (("a point, spot or rectangle light beside a periodic axis", {"Lights": lights, "PeriodicX": 1}),
-                            ("a source by octants", {"Source": 3}), ("WarmStart", {"WarmStart": 1})):
+                            ("a source by octants", {"Source": 3})):
         light = LightPropagationMaps(Input=medium, SkyColor=[1, 1, 1], Decomposition="Blocks", **settings)
         errors = errors_of(light)
         light.UpdatePipeline()
