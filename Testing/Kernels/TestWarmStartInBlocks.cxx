@@ -162,11 +162,12 @@ TEST_F(WarmStartsInBlocks, TakeTheOrdersOfTheWholeInAngularMoments)
   ExpectTheWarmLightOfTheWhole(change, "g 0.7", { UnevenSlices(grid) });
 }
 
-TEST_F(WarmStartsInBlocks, GoRoundPeriodicAxes)
+TEST_F(WarmStartsInBlocks, GoRoundPeriodicAxesBesideAFaceThatGivesBackLight)
 {
   const Grid grid = { { 4, 3, 5 } };
   Change change(grid, 1, 0.5f, 0.8f, ToTolerance(1e-3));
   change.settings.periodic = { true, false, false };
+  change.shining.faceAlbedo[4] = change.next.faceAlbedo[4] = { 0.7, 0.7, 0.7 };
   change.TurnLamp();
   change.DarkenTo(0.78f);
   ExpectTheWarmLightOfTheWhole(change, "periodic", { UnevenSlices(grid) });
