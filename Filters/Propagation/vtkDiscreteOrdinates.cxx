@@ -78,7 +78,7 @@ vtkDiscreteOrdinates::~vtkDiscreteOrdinates() = default;
 
 std::string vtkDiscreteOrdinates::NotByBlocks(vtkInformationVector**) const
 {
-  return this->WarmStart ? "WarmStart" : "";
+  return {};
 }
 
 std::string vtkDiscreteOrdinates::NotInBlocks(const tyndall::PieceOfMedium&, const tyndall::IlluminationInput&)
@@ -89,13 +89,13 @@ std::string vtkDiscreteOrdinates::NotInBlocks(const tyndall::PieceOfMedium&, con
 tyndall::LightField vtkDiscreteOrdinates::SolvePiece(tyndall::Communicator& communicator,
   const tyndall::PieceBlocks& pieces, const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining)
 {
-  this->Last->Where(false);
+  tyndall::KeptLight* const last = this->Last->Where(this->WarmStart);
   std::shared_ptr<tyndall::Device> device;
   communicator.Together([&] { device = tyndall::Device::Find(this->GetDevice()); });
   tyndall::Device within(*device, tyndall::BudgetOf(this->MemoryBudget, false));
   const tyndall::OrdinatesSettings settings = GivenSettings(this);
-  tyndall::LightField light = tyndall::SolveOrdinatesInBlocks(
-    within, communicator, pieces.Partition(), piece.medium, shining.illumination, settings, tyndall::MonitorOf(this));
+  tyndall::LightField light = tyndall::SolveOrdinatesInBlocks(within, communicator, pieces.Partition(), piece.medium,
+    shining.illumination, settings, tyndall::MonitorOf(this), last);
   light.settingsUsed = tyndall::Words(settings);
   return light;
 }

@@ -54,8 +54,8 @@ class LastLight;
  * all directions has to fit the device: what it takes is said before any is taken. EstimateError is not used.
  *
  * With Decomposition BLOCKS radiance goes from rank to rank (numerics.md, section 10 b): the same light, order by
- * order. Blocks cannot do, beside what no solver can: point, spot and rectangle lights beside periodic axes, WarmStart,
- * a Quality other than USUAL and the published scheme.
+ * order. Blocks cannot do, beside what no solver can: point, spot and rectangle lights beside periodic axes, a
+ * Quality other than USUAL and the published scheme.
  *
  * @sa vtkSeparablePhaseFunction vtkLightPropagationMaps vtkParticipatingMedium vtkLightRig
  * @par Thanks
@@ -124,8 +124,8 @@ public:
   ///@{
   /// Whether the light of the last update is the first guess of the next one: fewer sweeps where medium or lights
   /// changed a little, the same light within the tolerance. It is kept in memory until an update with WarmStart off: a
-  /// float a voxel and channel, as published of each direction; conservative where light is scattered evenly. Default
-  /// off.
+  /// float a voxel and channel, as published of each direction; conservative where light is scattered evenly. By
+  /// blocks each rank keeps that of its own, and all begin in the dark where blocks have changed. Default off.
   vtkSetMacro(WarmStart, bool);
   vtkGetMacro(WarmStart, bool);
   vtkBooleanMacro(WarmStart, bool);

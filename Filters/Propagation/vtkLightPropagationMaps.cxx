@@ -28,7 +28,6 @@
 #include "vtkObjectFactory.h"
 
 #include <algorithm>
-#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
@@ -225,7 +224,7 @@ std::string vtkLightPropagationMaps::NotByBlocks(vtkInformationVector**) const
   const std::pair<bool, const char*> reasons[] = {
     { this->Scheme == PUBLISHED && this->Algorithm == SEQUENTIAL, "the sequential Algorithm of the published Scheme" },
     { this->Scheme == PUBLISHED && this->TargetError > 0.0, "TargetError of the published Scheme" },
-    { this->WarmStart, "WarmStart" },
+    { this->Scheme == PUBLISHED && this->WarmStart, "WarmStart of the published Scheme" },
   };
   const auto found =
     std::find_if(std::begin(reasons), std::end(reasons), [](const auto& reason) { return reason.first; });
@@ -254,8 +253,8 @@ std::string vtkLightPropagationMaps::BetterAsWhole(tyndall::Communicator& commun
 tyndall::LightField vtkLightPropagationMaps::SolvePiece(tyndall::Communicator& communicator,
   const tyndall::PieceBlocks& pieces, const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining)
 {
-  this->Last->Where(false);
   const bool published = IsPublishedOnAll(this, communicator);
+  tyndall::KeptLight* const last = this->Last->Where(this->WarmStart);
   const std::shared_ptr<tyndall::Device> device = DeviceOnAll(this, communicator);
   const tyndall::PropagationSettings settings = SettingsOn(this, communicator, pieces, piece, shining);
   const tyndall::SceneInBlocks scene = { communicator, pieces.Partition(), piece.medium, shining.illumination };
@@ -266,12 +265,12 @@ tyndall::LightField vtkLightPropagationMaps::SolvePiece(tyndall::Communicator& c
   }
   if (this->TargetError > 0.0)
   {
-    return LightOf(tyndall::SolveInBlocksToTargetError(*device, scene, settings, this->TargetError, monitor));
+    return LightOf(tyndall::SolveInBlocksToTargetError(*device, scene, settings, this->TargetError, monitor, last));
   }
   tyndall::LightField light = this->EstimateError
-    ? tyndall::SolveInBlocksWithErrorEstimate(*device, scene, settings, monitor)
+    ? tyndall::SolveInBlocksWithErrorEstimate(*device, scene, settings, monitor, last)
     : tyndall::SolveInBlocks(
-        *device, communicator, scene.partition, scene.medium, scene.illumination, settings, monitor);
+        *device, communicator, scene.partition, scene.medium, scene.illumination, settings, monitor, last);
   light.settingsUsed = tyndall::Words(settings);
   return light;
 }

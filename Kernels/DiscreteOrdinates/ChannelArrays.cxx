@@ -189,7 +189,7 @@ double ChannelArrays::MagnitudeOf(const std::vector<float>& values, const std::v
     const double other = others.empty() ? 0.0 : others[i];
     sum += std::abs(values[i] - other) * this->Scattering[i];
   }
-  return sum * this->Layout.grid.VoxelVolume() * this->ScatteredAway;
+  return this->Scene.Sum({ sum * this->Layout.grid.VoxelVolume() * this->ScatteredAway })[0];
 }
 
 void ChannelArrays::ScatterEvenly(const std::vector<float>& values, double factor, const Buffer<float>& source) const

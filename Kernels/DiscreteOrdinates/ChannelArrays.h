@@ -42,7 +42,7 @@ public:
   };
   /// @param lamps  whether it is uncollided light of lamps
   Powers PowersOf(const std::vector<float>& values, bool lamps) const;
-  /// W that are scattered of the difference of two fluences, its magnitude in each voxel.
+  /// W that are scattered of the difference of two fluences, its magnitude in each voxel. All ranks call it.
   double MagnitudeOf(const std::vector<float>& values, const std::vector<float>& others) const;
   /// Emission of the voxels into every direction. W / (length^3 sr)
   void EmitEvenly(const Buffer<float>& source, EnergyLedger& ledger) const;

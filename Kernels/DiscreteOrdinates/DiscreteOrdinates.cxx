@@ -2,6 +2,7 @@
 
 #include "DiscreteOrdinates/OrdinatesParts.h"
 #include "DiscreteOrdinates/OrdinatesScene.h"
+#include "DiscreteOrdinates/OrdinatesWarmStart.h"
 #include "DiscreteOrdinates/PublishedOrders.h"
 #include "DiscreteOrdinates/SweptOrders.h"
 #include "Light/LeftOut.h"
@@ -16,8 +17,6 @@ namespace tyndall
 {
 namespace
 {
-constexpr double SlowestRate = 1.0 - 1e-6; ///< of orders, that is told the next solve
-
 std::vector<std::string> Words(const PropagationProblem& problem, const FarLight& far, const OrdinatesAngles& angles)
 {
   std::vector<std::string> words;
@@ -68,45 +67,15 @@ std::vector<std::string> DoubtsOf(const PropagationProblem& problem, const Ordin
   return doubts;
 }
 
-LightKind KindOf(const PropagationProblem& problem, const OrdinatesAngles& angles, const OrdinatesSettings& settings)
+LightKind KindOf(const PropagationProblem& problem, const OrdinatesSettings& settings)
 {
-  const Grid& grid = problem.TheGrid();
-  return { IsPublished(settings) ? "discrete ordinates as published" : "discrete ordinates", grid.size, grid.spacing,
-    problem.Channels(), angles.phase.Terms(), angles.phase.DirectionCount(), settings.periodic };
+  LightKind kind;
+  kind.size = problem.TheGrid().size;
+  kind.spacing = problem.TheGrid().spacing;
+  kind.channels = problem.Channels();
+  kind.periodic = settings.periodic;
+  return kind;
 }
-
-std::string WhyNotWarm(
-  const KeptLight& kept, const LightKind& kind, const OrdinatesAngles& angles, const OrdinatesSettings& settings)
-{
-  if (!IsPublished(settings) && !CanBeginWarm(angles, settings))
-  {
-    return "sources that terms of the phase function make negative are set to 0 order by order, from darkness on";
-  }
-  return WhyNotBegun(kept, kind, settings.maximumOrders);
-}
-
-/// One channel's part of kept light.
-OrdinatesGuess GuessOf(const KeptLight& kept, bool begins, int channel, int channels)
-{
-  OrdinatesGuess guess;
-  guess.keeps = true;
-  if (begins)
-  {
-    const auto values = static_cast<std::ptrdiff_t>(kept.scattered.size()) / channels;
-    guess.values.assign(kept.scattered.begin() + channel * values, kept.scattered.begin() + (channel + 1) * values);
-    guess.firstScattered = kept.firstScattered[channel];
-    guess.rate = kept.rate[channel];
-  }
-  return guess;
-}
-
-void TakeLeft(KeptLight& left, const OrdinatesResult& found, const OrdinatesSettings& settings, int channel)
-{
-  left.scattered.insert(left.scattered.end(), found.left.begin(), found.left.end());
-  left.firstScattered[channel] = found.firstScattered;
-  left.rate[channel] = settings.maximumOrders > 0 ? 0.0 : std::min(found.rate, SlowestRate);
-}
-
 }
 
 LightField SolveDiscreteOrdinates(Device& device, const Medium& medium, const Illumination& illumination,
@@ -121,41 +90,27 @@ LightField SolveDiscreteOrdinates(Device& device, const Medium& medium, const Il
   light.channels = problem.Channels();
   light.doubts = DoubtsOf(problem, settings);
   bool diverged = false;
-  std::string whyNot;
-  KeptLight left;
+  OrdinatesWarmStart warm(kept, settings);
   for (int c = 0; c < light.channels; ++c)
   {
     const PhaseFunction function = FunctionOf(problem.TheMedium(), c, nullptr);
     const OrdinatesAngles angles = { OrdinateGroups(far.directions), SeparableOf(function, far.directions, settings),
       function };
     CheckMemory(device, problem.TheGrid(), angles, settings);
-    OrdinatesScene scene = { problem.TheMedium(), c, LampsOf(far, problem.Shining(), c),
+    const OrdinatesScene scene = { problem.TheMedium(), c, LampsOf(far, problem.Shining(), c),
       IncomingOf(far, problem.Shining(), c), FaceAlbedoOf(problem.Shining(), c), UncollidedOf(problem.Shining(), c),
-      {} };
-    if (kept)
-    {
-      left.kind = c == 0 ? KindOf(problem, angles, settings) : left.kind;
-      const std::string why = WhyNotWarm(*kept, left.kind, angles, settings);
-      whyNot = whyNot.empty() ? why : whyNot;
-      scene.guess = GuessOf(*kept, why.empty(), c, light.channels);
-    }
+      warm.Begin(c, KindOf(problem, settings), angles, nullptr) };
     const Monitor ofChannel = OfPart(monitor, static_cast<double>(c) / light.channels, (c + 1.0) / light.channels);
     const OrdinatesResult found = IsPublished(settings) ? SolvePublishedOrders(device, scene, angles, solved, ofChannel)
                                                         : SolveSweptOrders(device, scene, angles, solved, ofChannel);
     TakeChannel(light, found, c);
-    TakeLeft(left, found, settings, c);
+    warm.Take(found, c);
     diverged = diverged || found.diverged;
     light.leftOut = c == 0 ? Words(problem, far, angles) : light.leftOut;
   }
   DescribeLight(light, device, far);
   light.faceAlbedo = illumination.faceAlbedo;
-  if (kept)
-  {
-    left.fromDarkness = kept->fromDarkness;
-    left.scattered = diverged ? std::vector<float>() : std::move(left.scattered);
-    light.leftOut.push_back(WordsOfWarmStart(whyNot));
-    Keep(std::move(left), whyNot.empty(), light, *kept);
-  }
+  warm.Finish(diverged, light, kept);
   if (!IsPublished(settings) && settings.seriesAfter > 0 &&
     light.convergence.size() >= static_cast<std::size_t>(settings.seriesAfter))
   {

@@ -135,7 +135,7 @@ private:
     {
       this->Guess.push_back(static_cast<float>(scale * value));
     }
-    this->Arrays.ScatterEvenly(this->Guess, 1.0, this->Out());
+    this->Scene.Together([&] { this->Arrays.ScatterEvenly(this->Guess, 1.0, this->Out()); });
     this->GoesOn += this->Arrays.PowersOf(this->Guess, false).scattered;
     this->Record.BeginWarm(this->Scene.guess.rate);
   }
@@ -154,7 +154,7 @@ private:
     if (!this->Guess.empty())
     {
       guessed = this->Arrays.PowersOf(this->Guess, false).scattered;
-      this->Arrays.ScatterEvenly(this->Guess, -1.0, this->Out());
+      this->Scene.Together([&] { this->Arrays.ScatterEvenly(this->Guess, -1.0, this->Out()); });
     }
     this->Reflect();
     this->Result.ledger.Absorb(0, powers.absorbed);

@@ -8,12 +8,14 @@ namespace tyndall
 std::string LightKind::WhatChangedSince(const LightKind& last) const
 {
   return this->size != last.size || this->spacing != last.spacing ? "the grid has changed"
-    : this->channels != last.channels                             ? "the number of channels has changed"
-    : this->degree != last.degree                                 ? "the degree of angular moments has changed"
-    : this->directions != last.directions                         ? "the directions have changed"
-    : this->periodic != last.periodic                             ? "the periodic axes have changed"
-    : this->method != last.method                                 ? "the light was found by " + last.method
-                                                                  : std::string();
+    : this->block.first != last.block.first || this->block.size != last.block.size
+    ? "the blocks that the grid is cut into have changed"
+    : this->channels != last.channels     ? "the number of channels has changed"
+    : this->degree != last.degree         ? "the degree of angular moments has changed"
+    : this->directions != last.directions ? "the directions have changed"
+    : this->periodic != last.periodic     ? "the periodic axes have changed"
+    : this->method != last.method         ? "the light was found by " + last.method
+                                          : std::string();
 }
 
 std::string WhyNotBegun(const KeptLight& kept, const LightKind& kind, int maximumOrders)

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "Light/LightField.h"
+#include "Medium/VoxelBox.h"
 
 #include <array>
 #include <string>
@@ -19,13 +20,15 @@ struct LightKind
   int degree = 0; ///< of angular moments
   int directions = 0;
   std::array<bool, 3> periodic = {};
+  VoxelBox block = {}; ///< of the grid, whose light it is; of one that is not spread over ranks: none
 
   /// What is not as in `last`, as a clause: "the grid has changed". Empty: nothing.
   std::string WhatChangedSince(const LightKind& last) const;
 };
 
 /// Light of the last solve, the first guess of the next one (WarmStart; numerics.md, section 6.4). Empty before the
-/// first. A solve that is given one begins from it where it can, and leaves its own in it when it ends well. The user
+/// first. Of a grid that is spread over ranks by blocks each rank keeps that of its own, but powers and rows are of the
+/// whole. A solve that is given one begins from it where it can, and leaves its own in it when it ends well. The user
 /// owns it, and drops it to begin in the dark.
 struct KeptLight
 {

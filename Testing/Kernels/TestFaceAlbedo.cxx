@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -266,6 +267,31 @@ TEST_F(FaceAlbedo, IsMattGroundUnderASlabByDefault)
         EXPECT_NEAR(light.facePowerOut[5][0] / in, row["reflected"], 0.003) << tau << ' ' << ground << ' ' << cosine;
         EXPECT_NEAR(light.facePowerOut[4][0] / in, row["taken"], 0.003) << tau << ' ' << ground << ' ' << cosine;
       }
+    }
+  }
+}
+
+/// Light that a face gave back comes in once, and not again with each lap of the rays that go round another axis.
+TEST_F(FaceAlbedo, IsTheSameBesideEveryPeriodicAxis)
+{
+  std::vector<double> means;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    for (int face = 0; face < 6; ++face)
+    {
+      if (face / 2 == axis)
+      {
+        continue;
+      }
+      Scene scene({ 3, 3, 3 }, 0.05f, 0.2f);
+      scene.ShineFromEverywhere(0.2);
+      scene.settings.periodic[axis] = true;
+      scene.settings.maximumOrders = 3;
+      scene.light.faceAlbedo[face] = Grey(0.7);
+      const LightField light = scene.Solve(this->GetDevice());
+      EXPECT_LT(light.balance.RelativeError(1), 1e-5) << axis << ' ' << face;
+      means.push_back(std::accumulate(light.fluence.begin(), light.fluence.end(), 0.0) / 27.0);
+      EXPECT_NEAR(means.back(), means.front(), 1e-4 * means.front()) << axis << ' ' << face;
     }
   }
 }

@@ -13,7 +13,7 @@ from pieces_of_ranks import Runs, difference
 
 runs = Runs("BlocksOverRanks")
 WRONG = ["arrays", "components", "spacing", "g", "gap"]
-CASES = ["blocks_wavelet", "blocks_photons", "blocks_scattered", "blocks_plain", "blocks_turbid", "blocks_ghosts", "blocks_given_all", "blocks_even",
+CASES = ["blocks_wavelet", "blocks_photons", "blocks_scattered", "blocks_plain", "blocks_turbid", "blocks_ghosts", "blocks_given_all", "blocks_warm", "blocks_even",
          "blocks_uneven", "untouched_even", "untouched_uneven", "untouched_lit", "untouched_thick", "untouched_given"]
 LIKE = {"blocks_ghosts": "blocks_wavelet", "blocks_given_all": "blocks_even", "blocks_uneven": "blocks_even",
         "untouched_even": "blocks_even", "untouched_uneven": "blocks_even"}

@@ -10,7 +10,7 @@ from pieces_of_ranks import Runs, difference
 runs = Runs("SolversByBlocks")
 CASES = ["lattice_wavelet", "lattice_even", "lattice_uneven", "lattice_lamps", "lattice_around",
          "lattice_steps", "lattice_photons", "ordinates_even",
-         "ordinates_uneven", "ordinates_faces", "ordinates_around",
+         "ordinates_uneven", "ordinates_faces", "ordinates_around", "ordinates_warm",
          "published_even", "published_uneven", "published_shown"]
 LIKE = {"published_uneven": "published_even", "lattice_uneven": "lattice_even", "ordinates_uneven": "ordinates_even"}
 

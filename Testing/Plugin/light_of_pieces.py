@@ -393,7 +393,7 @@ def whole_where_few():
 def whole_where_better():
     """What pieces cannot do, or not as well, each rank solves as a whole, says why, and does not solve again."""
     medium = ParticipatingMedium(Input=Wavelet(WholeExtent=SIZE), DensityArray=["POINTS", "RTData"])
-    for why, settings in (("Preview", {"Preview": 1}), ("WarmStart", {"WarmStart": 1}),
+    for why, settings in (("Preview", {"Preview": 1}),
                           ("a source by octants of directions", {"Source": 3}),
                           ("many scattering orders", {"FaceAlbedo": [0.9] * 6}),
                           ("thick voxels", {"Input": ParticipatingMedium(
@@ -599,6 +599,30 @@ def published_shown():
     assert "Decomposition = 2" in facts_of(light, "settings_used")
 
 
+def warm_by_blocks(case, solver):
+    """Where an albedo was edited, light begins from the last one, of which each rank has kept its own part."""
+    medium = ParticipatingMedium(Input=source_of(uneven_pieces()[rank]), DensityArray=["CELLS", "density"],
+                                 ExtinctionScale=0.5, MinimumDensity=0, MaximumDensity=1, Albedo=[0.9, 0.9, 0.9])
+    light = solver(Input=medium, SkyColor=[1, 1, 1], DirectionsPerFace=4, Decomposition="Blocks", WarmStart=1,
+                   **({"Terms": 16} if solver is DiscreteOrdinates else {}))
+    light.UpdatePipeline()
+    light.UpdatePropertyInformation()
+    assert "WarmStart): there is none" in light.LeftOut, light.LeftOut
+    medium.Albedo = [0.88, 0.88, 0.88]
+    light.UpdatePipeline()
+    light.UpdatePropertyInformation()
+    assert light.SweepsSaved > 0 and "begun from the last light" in light.LeftOut, (light.SweepsSaved, light.LeftOut)
+    keep(case, light)
+
+
+def blocks_warm():
+    warm_by_blocks("blocks_warm", LightPropagationMaps)
+
+
+def ordinates_warm():
+    warm_by_blocks("ordinates_warm", DiscreteOrdinates)
+
+
 def lattice_errors():
     """What a lattice cannot do by pieces is one error that names it; where ranks decide by themselves they solve the whole."""
     medium = ParticipatingMedium(Input=Wavelet(WholeExtent=SIZE), DensityArray=["POINTS", "RTData"])
@@ -617,7 +641,7 @@ def lattice_errors():
 def blocks_errors():
     """What cannot be solved by pieces is one error that names it; what one rank lacks, on all of them."""
     medium = ParticipatingMedium(Input=Wavelet(WholeExtent=SIZE), DensityArray=["POINTS", "RTData"])
-    for named, settings in (("a source by octants", {"Source": 3}), ("WarmStart", {"WarmStart": 1}),
+    for named, settings in (("a source by octants", {"Source": 3}), ("WarmStart", {"Scheme": 0, "WarmStart": 1}),
                             ("the sequential Algorithm", {"Scheme": 0, "Algorithm": 0})):
         light = LightPropagationMaps(Input=medium, SkyColor=[1, 1, 1], Decomposition="Blocks", **settings)
         errors = errors_of(light)

@@ -2,6 +2,7 @@
 
 #include "Device/Errors.h"
 #include "DiscreteOrdinates/OrdinatesParts.h"
+#include "DiscreteOrdinates/OrdinatesWarmStart.h"
 #include "DiscreteOrdinates/SweptOrders.h"
 #include "Distribution/SharedMedium.h"
 #include "Light/LeftOut.h"
@@ -61,7 +62,8 @@ public:
   }
 
   /// In the user's units.
-  LightField Solve(const Medium& medium, const Illumination& illumination, const Monitor& monitor) const
+  LightField Solve(
+    const Medium& medium, const Illumination& illumination, const Monitor& monitor, KeptLight* kept) const
   {
     Medium own = this->Has ? medium : Medium();
     own.grid = this->Partition.OwnGrid(this->Others.Rank());
@@ -73,10 +75,11 @@ public:
     const FarLight far = FarLightOf(shining, this->AsSolved.directionsPerFace, this->Settings);
     LightField light;
     light.channels = scene.channels;
+    OrdinatesWarmStart warm(kept, this->Settings);
     for (int c = 0; c < light.channels; ++c)
     {
       const double all = light.channels;
-      this->SolveChannel(light, c, scene, shining, far, OfPart(monitor, c / all, (c + 1) / all));
+      this->SolveChannel(light, c, scene, shining, far, warm, OfPart(monitor, c / all, (c + 1) / all));
     }
     if (!this->Has)
     {
@@ -86,12 +89,13 @@ public:
     }
     this->Describe(light, medium, far);
     this->Others.Together([&] { scene.Undo(light); });
+    warm.Finish(false, light, kept);
     return light;
   }
 
 private:
   void SolveChannel(LightField& light, int channel, const BlockScene& scene, const Illumination& shining,
-    const FarLight& far, const Monitor& monitor) const
+    const FarLight& far, OrdinatesWarmStart& warm, const Monitor& monitor) const
   {
     BlockPartition inUnits = this->Partition;
     inUnits.whole = scene.WholeOf(this->Partition.whole);
@@ -102,8 +106,22 @@ private:
       SeparableOf(function, far.directions, this->Settings), function };
     this->Others.Together([&] { CheckMemory(this->TheDevice, solved.grid, angles, this->Settings); });
     const OrdinatesScene ofChannel = { solved, channel, LampsOf(far, shining, channel),
-      IncomingOf(far, shining, channel), FaceAlbedoOf(shining, channel), UncollidedOf(shining, channel), {}, &ranks };
-    TakeChannel(light, SolveSweptOrders(this->TheDevice, ofChannel, angles, this->Settings, monitor), channel);
+      IncomingOf(far, shining, channel), FaceAlbedoOf(shining, channel), UncollidedOf(shining, channel),
+      warm.Begin(channel, this->KindOf(inUnits, light.channels), angles, &ranks), &ranks };
+    const OrdinatesResult found = SolveSweptOrders(this->TheDevice, ofChannel, angles, this->Settings, monitor);
+    TakeChannel(light, found, channel);
+    warm.Take(found, channel);
+  }
+
+  LightKind KindOf(const BlockPartition& inUnits, int channels) const
+  {
+    LightKind kind;
+    kind.size = inUnits.whole.size;
+    kind.spacing = inUnits.whole.spacing;
+    kind.channels = channels;
+    kind.periodic = this->Settings.periodic;
+    kind.block = inUnits.blocks[this->Others.Rank()];
+    return kind;
   }
 
   /// A rank without voxels takes part in what the others do with light that is given.
@@ -145,8 +163,10 @@ std::string NotInBlocks(const OrdinatesSettings& settings)
 }
 
 LightField SolveOrdinatesInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition,
-  const Medium& medium, const Illumination& illumination, const OrdinatesSettings& settings, const Monitor& monitor)
+  const Medium& medium, const Illumination& illumination, const OrdinatesSettings& settings, const Monitor& monitor,
+  KeptLight* kept)
 {
+  RequireSame(communicator, "WarmStart", true, { kept ? 1.0 : 0.0 });
   const bool has = partition.blocks.at(communicator.Rank()).VoxelCount() > 0;
   PropagationSettings asPropagation = AsPropagation(settings);
   communicator.Together([&] {
@@ -178,7 +198,7 @@ LightField SolveOrdinatesInBlocks(Device& device, Communicator& communicator, co
     face = Times(face, 1.0 / narrowing);
   }
   LightField light =
-    OrdinatesOfBlock(device, communicator, wide, has, asPropagation, settings).Solve(medium, shining, monitor);
+    OrdinatesOfBlock(device, communicator, wide, has, asPropagation, settings).Solve(medium, shining, monitor, kept);
   MultiplyPowers(light, narrowing);
   if (asPropagation.directionsPerFace != settings.directionsPerFace)
   {

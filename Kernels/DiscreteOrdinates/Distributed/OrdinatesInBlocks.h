@@ -5,6 +5,7 @@
 #include "DiscreteOrdinates/OrdinatesSettings.h"
 #include "Distribution/BlockPartition.h"
 #include "Distribution/Communicator.h"
+#include "Light/KeptLight.h"
 #include "Light/LightField.h"
 #include "Lights/Lights.h"
 #include "Medium/Medium.h"
@@ -21,6 +22,9 @@ namespace tyndall
 /// @param medium  of the rank's block, with the grid that partition.OwnGrid() has; looked at by nobody where that has
 ///   no voxels
 /// @param illumination, settings  the same on all ranks
+/// @param kept  as SolveDiscreteOrdinates has it: of each rank the light of its own block. It is begun from where it
+///   fits on all ranks; where blocks, or anything else, have changed on one, all begin in the dark. Null on all ranks
+///   or on none
 /// @return the light of the rank's block; balance, face powers and convergence are of the whole. Empty arrays where the
 ///   block is
 /// @throws InvalidInput  on every rank, where one of them has an input that SolveDiscreteOrdinates refuses, where they
@@ -28,7 +32,7 @@ namespace tyndall
 /// @throws DeviceError, Aborted  on every rank what one of them throws
 LightField SolveOrdinatesInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition,
   const Medium& medium, const Illumination& illumination, const OrdinatesSettings& settings,
-  const Monitor& monitor = {});
+  const Monitor& monitor = {}, KeptLight* kept = nullptr);
 
 /// What of a scene keeps SolveOrdinatesInBlocks from it, in words for an error; empty: nothing does.
 std::string NotInBlocks(const OrdinatesSettings& settings);

@@ -16,27 +16,28 @@ PropagationSettings AsBlocksCan(Device& device, const SceneInBlocks& scene, cons
   return balances ? alike : settings;
 }
 
-/// @param asked  settings of the user
-SolverInBlocks SolverOf(Device& device, const PropagationSettings& asked)
+/// @param given, asked  scene and settings of the user
+SolverInBlocks SolverOf(Device& device, const SceneInBlocks& given, const PropagationSettings& asked, KeptLight* kept)
 {
   const bool open = asked.uncollidedDirections < 0;
-  return [&device, open](const SceneInBlocks& scene, const PropagationSettings& settings, const Monitor& monitor) {
+  const Medium* const ofGrid = &given.medium; // not coarser, or divided
+  return [=, &device](const SceneInBlocks& scene, const PropagationSettings& settings, const Monitor& monitor) {
     return SolveInBlocks(device, scene.others, scene.partition, scene.medium, scene.illumination,
-      open ? AsBlocksCan(device, scene, settings) : settings, monitor);
+      open ? AsBlocksCan(device, scene, settings) : settings, monitor, &scene.medium == ofGrid ? kept : nullptr);
   };
 }
 }
 
-LightField SolveInBlocksWithErrorEstimate(
-  Device& device, const SceneInBlocks& scene, const PropagationSettings& settings, const Monitor& monitor)
+LightField SolveInBlocksWithErrorEstimate(Device& device, const SceneInBlocks& scene,
+  const PropagationSettings& settings, const Monitor& monitor, KeptLight* kept)
 {
-  return SolveWithErrorEstimate(scene, settings, monitor, SolverOf(device, settings));
+  return SolveWithErrorEstimate(scene, settings, monitor, SolverOf(device, scene, settings, kept));
 }
 
 TargetLight SolveInBlocksToTargetError(Device& device, const SceneInBlocks& scene, const PropagationSettings& settings,
-  double target, const Monitor& monitor)
+  double target, const Monitor& monitor, KeptLight* kept)
 {
   CheckBlocks(scene.others, scene.partition, scene.medium, scene.illumination, settings); // which goes to coarse ones
-  return SolveToTargetError(scene, settings, target, monitor, SolverOf(device, settings));
+  return SolveToTargetError(scene, settings, target, monitor, SolverOf(device, scene, settings, kept));
 }
 }

@@ -2,6 +2,7 @@
 
 #include "Device/Device.h"
 #include "Device/Monitor.h"
+#include "Light/KeptLight.h"
 #include "LightPropagation/Accuracy/TargetError.h"
 
 namespace tyndall
@@ -12,12 +13,14 @@ namespace tyndall
 // then, by what these leave, where those of the grid itself were finer.
 
 /// SolveWithErrorEstimate (ErrorEstimate.h).
+/// @param kept  as SolveInBlocks has it, of solves on the grid itself
 /// @throws as SolveInBlocks
-LightField SolveInBlocksWithErrorEstimate(
-  Device& device, const SceneInBlocks& scene, const PropagationSettings& settings, const Monitor& monitor = {});
+LightField SolveInBlocksWithErrorEstimate(Device& device, const SceneInBlocks& scene,
+  const PropagationSettings& settings, const Monitor& monitor = {}, KeptLight* kept = nullptr);
 
 /// SolveToTargetError (TargetError.h).
+/// @param kept  as SolveInBlocks has it, of solves on the grid itself
 /// @throws as SolveInBlocks
 TargetLight SolveInBlocksToTargetError(Device& device, const SceneInBlocks& scene, const PropagationSettings& settings,
-  double target, const Monitor& monitor = {});
+  double target, const Monitor& monitor = {}, KeptLight* kept = nullptr);
 }

@@ -96,9 +96,11 @@ IterationResult SourceIteration::Run(const Monitor& monitor)
   {
     this->Result.ledger = this->Cells->WithOut(this->Result.ledger);
   }
+  // Rounding, and what the last sweeps would have taken away, can leave dark voxels a little below 0; and what shines
+  // out of thick voxels, behind them.
   if (this->AtFaces || this->Warm.Begins() || this->Cells)
   {
-    this->CutOffNegative();
+    CutOffNegative(this->Parts.Fluence);
   }
   this->Result.ledger.ShareEscaped(this->Escaped);
   this->Result.leftOut = this->LeftOut();
@@ -443,7 +445,7 @@ void SourceIteration::EstimateResidual()
 /// Beside what is first scattered, the next sweep carries what is scattered of the guess.
 void SourceIteration::BeginWarm()
 {
-  this->Parts.Scattering->AddFirstScattered({ &this->Warm.Guess(), nullptr, nullptr, nullptr }, this->Parts.Source);
+  this->Warm.AddGuessTo(this->Parts.Source);
   this->Shining = this->Shining || Sum(this->Warm.GuessedPower()) != 0.0;
   for (int c = 0; c < this->Parts.Layout.channels; ++c)
   {
@@ -484,18 +486,6 @@ void SourceIteration::GatherMoments()
   {
     AddMoments(this->Parts.TheDevice, this->Parts.Layout, this->Parts.Functions(), this->Parts.Path, this->Moments);
   }
-}
-
-/// Rounding, and what the last sweeps would have taken away, can leave dark voxels a little below 0; and what shines
-/// out of thick voxels, behind them.
-void SourceIteration::CutOffNegative()
-{
-  std::vector<float> fluence = this->Parts.Fluence.Read();
-  for (float& value : fluence)
-  {
-    value = std::max(value, 0.0f);
-  }
-  this->Parts.Fluence.Write(fluence.data());
 }
 
 void SourceIteration::Leave()

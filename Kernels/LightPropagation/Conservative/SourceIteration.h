@@ -39,7 +39,6 @@ private:
   void BeginWarm();
   void GoOnWarm();
   void GatherMoments();
-  void CutOffNegative();
   void Leave();
   void SweepEmptySlabs(const Monitor& monitor);
   void AddOutside(const VoxelBox& box);

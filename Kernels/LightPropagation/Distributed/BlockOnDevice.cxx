@@ -63,4 +63,11 @@ std::unique_ptr<SweepOperator> BlockOnDevice::MakeSweep(const SweepRequest& requ
   });
   return sweep;
 }
+
+WarmStart::Scene SceneOf(const BlockOnDevice& block, const IncidentLight& incident)
+{
+  return { block.TheDevice, block.Layout, block.Scene.Scattering(), *block.Scattering, block.Settings, block.Fluence,
+    block.Scene.traits.scatters, block.Functions(), static_cast<int>(incident.Usual().Set().directions.size()),
+    block.Partition.whole, &block.Others, block.Partition.blocks[block.Others.Rank()] };
+}
 }

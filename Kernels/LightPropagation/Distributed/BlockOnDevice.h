@@ -4,6 +4,7 @@
 #include "Distribution/BlockPartition.h"
 #include "Distribution/Communicator.h"
 #include "LightPropagation/Conservative/FaceLight.h"
+#include "LightPropagation/Conservative/WarmStart.h"
 #include "LightPropagation/Distributed/BlockScene.h"
 #include "LightPropagation/Distributed/IncidentLight.h"
 #include "LightPropagation/Distributed/Sweep/SweepInBlocks.h"
@@ -55,4 +56,7 @@ public:
 private:
   BlockWorkspace Workspace;
 };
+
+/// What a solve of it begins from the last light with. Both must stay.
+WarmStart::Scene SceneOf(const BlockOnDevice& block, const IncidentLight& incident);
 }

@@ -15,12 +15,13 @@ constexpr int FewPlanes = 256;      ///< as SourceIteration has it
 constexpr double FallByCells = 0.3; ///< of what is left over from order to order, at least so much in the forecast
 }
 
-IterationInBlocks::IterationInBlocks(
-  BlockOnDevice& block, const IncidentLight& incident, UncollidedOverRanks& uncollided, const OrdersOverRanks& orders)
+IterationInBlocks::IterationInBlocks(BlockOnDevice& block, const IncidentLight& incident,
+  UncollidedOverRanks& uncollided, const OrdersOverRanks& orders, const KeptLight* kept)
   : Block(block)
   , Incident(incident)
   , Uncollided(uncollided)
   , Orders(orders)
+  , Kept(kept)
 {
   if (block.StoresMoments())
   {
@@ -33,6 +34,7 @@ IterationInBlocks::IterationInBlocks(
 IterationResult IterationInBlocks::Run(const Monitor& monitor)
 {
   this->Shining = this->Uncollided.LoadSource(this->Result.ledger);
+  this->MakeWarm();
   this->MakeCells();
   const std::unique_ptr<SweepOperator> sweep = this->MakeSweep();
   BeamsInSource beams = this->BeamsOfSource();
@@ -53,10 +55,28 @@ IterationResult IterationInBlocks::Run(const Monitor& monitor)
     }
     this->Reflect();
     this->Scatter();
+    if (this->Order == 0 && this->Warm->Begins() && !this->Cells)
+    {
+      this->BeginWarm();
+    }
     ++this->Order;
   } while (!this->Done());
   this->Finish();
   return std::move(this->Result);
+}
+
+void IterationInBlocks::MakeWarm()
+{
+  BlockOnDevice& block = this->Block;
+  this->Warm.emplace(SceneOf(block, this->Incident), this->Kept,
+    this->Orders.how == OrdersAdded::ByCells ? "diffusion on cells" : "source iteration");
+  block.Others.Together([&] {
+    if (this->Warm->Keeps() && block.Angular)
+    {
+      this->Moments = Buffer<float>(block.TheDevice, block.Layout.MomentFloats(block.Functions()), "the light to keep");
+      this->Moments.Fill(0.0f);
+    }
+  });
 }
 
 void IterationInBlocks::MakeCells()
@@ -121,7 +141,7 @@ void IterationInBlocks::SweepOrder(SweepOperator& sweep, BeamsInSource& beams, c
 {
   const bool lit = this->Order == 0 && this->Incident.SweepsAreLit();
   const SweepBoundary boundary = lit ? this->Incident.UsualBoundary().Boundary() : SweepBoundary();
-  const bool goesOn = Sum(this->OnTheWay) > 0.0 || Sum(this->Reflected) > 0.0;
+  const bool goesOn = Sum(this->OnTheWay) != 0.0 || Sum(this->Reflected) != 0.0; // of a guess they can be negative
   this->OnTheWay = {};
   if (!this->Shining && !boundary && !goesOn)
   {
@@ -173,9 +193,26 @@ void IterationInBlocks::Reflect()
 /// @param scale  to W / length^2
 void IterationInBlocks::TakeDirect(const Buffer<float>& fluence, double scale)
 {
-  if (this->Order == 0 && this->Block.Has)
+  if (this->Order > 0)
   {
-    this->Result.fluenceDirect = Interleaved(this->Block.Layout, fluence, scale);
+    return;
+  }
+  this->Block.Others.Together([&] {
+    if (this->Block.Has)
+    {
+      this->Result.fluenceDirect = Interleaved(this->Block.Layout, fluence, scale);
+    }
+    if (this->Warm->Keeps())
+    {
+      this->Direct = fluence.Read();
+      this->Direct.resize(this->Block.Fluence.Size());
+      std::transform(this->Direct.begin(), this->Direct.end(), this->Direct.begin(),
+        [scale](float value) { return static_cast<float>(scale * value); });
+    }
+  });
+  if (this->Warm->Keeps())
+  {
+    this->Warm->Prepare(this->Direct);
   }
 }
 
@@ -195,10 +232,20 @@ void IterationInBlocks::Scatter()
   {
     this->Result.ledger.Absorb(c, powers[c]);
     this->Scattered[c] = powers[3 + c];
-    this->Result.ledger.LeaveOver(c, this->Scattered[c] + this->OnTheWay[c] + this->Reflected[c] + this->Stranded[c]);
   }
   this->Shining = Sum(this->Scattered) > 0.0;
-  this->EstimateResidual();
+  if (this->Warm->Begins() && this->Order > 0)
+  {
+    this->GoOnWarm();
+  }
+  else
+  {
+    this->EstimateResidual();
+  }
+  for (int c = 0; c < 3; ++c)
+  {
+    this->Result.ledger.LeaveOver(c, this->Scattered[c] + this->OnTheWay[c] + this->Reflected[c] + this->Stranded[c]);
+  }
   const double all = Sum(this->AllScattered);
   this->Result.convergence.Add(this->Residual, all > 0.0 ? Sum(this->Scattered) / all : 0.0, this->Result.ledger);
 }
@@ -212,6 +259,10 @@ std::vector<double> IterationInBlocks::ScatterOwn()
     if (!block.Has)
     {
       return;
+    }
+    if (this->Moments.Size() > 0 && this->Order > 0) // of orders that were scattered before
+    {
+      AddMoments(block.TheDevice, block.Layout, block.Functions(), block.Path, this->Moments);
     }
     const ScatteringOperator::Powers own =
       block.Scattering->ScatterOrder(block.WholeDeposit(), block.Fluence, block.Source, { 0, block.Layout.Stride() });
@@ -234,7 +285,9 @@ std::vector<double> IterationInBlocks::ScatterOwn()
 /// As SourceIteration does.
 void IterationInBlocks::ScatterByCells()
 {
-  const OrdersByCellsInBlocks::Powers powers = this->Cells->ScatterOrder(this->Result.ledger);
+  const bool guessed = this->Order == 0 && this->Warm->Begins();
+  const OrdersByCellsInBlocks::Powers powers =
+    this->Cells->ScatterOrder(this->Result.ledger, guessed ? &this->Warm->Guess() : nullptr);
   this->Scattered = powers.scattered;
   this->Shining =
     std::any_of(powers.magnitude.begin(), powers.magnitude.end(), [](double power) { return power > 0.0; });
@@ -267,6 +320,60 @@ void IterationInBlocks::EstimateResidual()
   }
 }
 
+/// As SourceIteration does: beside what is first scattered, the next sweep carries what is scattered of the guess.
+void IterationInBlocks::BeginWarm()
+{
+  this->Warm->AddGuessTo(this->Block.Source);
+  this->Shining = this->Shining || Sum(this->Warm->GuessedPower()) != 0.0;
+  for (int c = 0; c < this->Block.Layout.channels; ++c)
+  {
+    this->Rest[c].BeginWarm(this->Warm->Rate(c));
+  }
+}
+
+/// As SourceIteration does: from the first sweep on it is the error of the guess that goes on.
+void IterationInBlocks::GoOnWarm()
+{
+  const Rgb guessed = this->Order == 1 ? this->Warm->GuessedPower() : Rgb{};
+  if (this->Order == 1)
+  {
+    this->Warm->TakeGuessFrom(this->Block.Source);
+  }
+  const Rgb magnitudes = this->Warm->MagnitudeOf(this->Block.Source);
+  const FaceLight* const faces = this->Block.Faces.get(); // the same on all ranks
+  this->Shining = Sum(magnitudes) > 0.0;
+  this->Residual = 0.0;
+  for (int c = 0; c < this->Block.Layout.channels; ++c)
+  {
+    this->AllScattered[c] += this->Scattered[c];
+    this->Scattered[c] -= guessed[c];
+    const double now = magnitudes[c] + std::abs(this->OnTheWay[c]) + (faces ? faces->Magnitude()[c] : 0.0);
+    if (now > 0.0)
+    {
+      this->Residual = std::max(this->Residual, this->Rest[c].After(now, this->AllScattered[c]));
+    }
+  }
+}
+
+void IterationInBlocks::Leave()
+{
+  std::vector<float> moments;
+  this->Block.Others.Together([&] {
+    if (this->Warm->Begins() || this->Cells)
+    {
+      CutOffNegative(this->Block.Fluence); // as SourceIteration does
+    }
+    moments = this->Moments.Size() > 0 ? this->Moments.Read() : std::vector<float>();
+  });
+  this->Result.leftOut = this->Warm->LeftOut();
+  this->Result.warm = this->Warm->Begins();
+  if (this->Warm->Keeps())
+  {
+    this->Result.kept =
+      this->Warm->Leave(this->Direct, moments, { this->Rest[0].Ratio(), this->Rest[1].Ratio(), this->Rest[2].Ratio() });
+  }
+}
+
 bool IterationInBlocks::Done() const
 {
   if (this->Residual == 0.0 || this->Order >= MostOrders)
@@ -274,13 +381,15 @@ bool IterationInBlocks::Done() const
     return true;
   }
   const PropagationSettings& settings = this->Block.Settings;
+  const int least = this->Warm->Begins() ? 2 : 3; // a guess has shown already how fast orders fall
   return settings.maximumOrders > 0 ? this->Order >= settings.maximumOrders
-                                    : this->Order >= 3 && MeetsTolerance(settings, this->Residual);
+                                    : this->Order >= least && MeetsTolerance(settings, this->Residual);
 }
 
 /// Powers that are known at the end alone.
 void IterationInBlocks::Finish()
 {
+  this->Leave();
   this->Result.ledger.ShareEscaped(this->Escaped);
   if (this->Cells)
   {

@@ -2,6 +2,7 @@
 
 #include "LightPropagation/Conservative/Acceleration/EscapeCorrection.h"
 #include "LightPropagation/Conservative/Iteration.h"
+#include "LightPropagation/Conservative/WarmStart.h"
 #include "LightPropagation/Convergence.h"
 #include "LightPropagation/Distributed/Balance/OrdersByCellsInBlocks.h"
 #include "LightPropagation/Distributed/Balance/OrdersOverRanks.h"
@@ -12,6 +13,7 @@
 
 #include <array>
 #include <optional>
+#include <vector>
 
 namespace tyndall
 {
@@ -22,13 +24,15 @@ class IterationInBlocks : public Iteration
 public:
   /// @param block, incident, uncollided  must stay
   /// @param orders  one by one or by cells, as all ranks decided
+  /// @param kept  light of the last solve (WarmStart.h), must stay; null, on all ranks: none, and none is to be kept
   /// @throws DeviceError if the array of light that is shown does not fit
   IterationInBlocks(BlockOnDevice& block, const IncidentLight& incident, UncollidedOverRanks& uncollided,
-    const OrdersOverRanks& orders);
+    const OrdersOverRanks& orders, const KeptLight* kept = nullptr);
   /// All ranks call it.
   IterationResult Run(const Monitor& monitor) override;
 
 private:
+  void MakeWarm();
   void MakeCells();
   std::unique_ptr<SweepOperator> MakeSweep();
   BeamsInSource BeamsOfSource();
@@ -42,6 +46,9 @@ private:
   std::vector<double> ScatterOwn();
   void ScatterByCells();
   void EstimateResidual();
+  void BeginWarm();
+  void GoOnWarm();
+  void Leave();
   bool Done() const;
   void Finish();
 
@@ -49,6 +56,10 @@ private:
   const IncidentLight& Incident;
   UncollidedOverRanks& Uncollided;
   const OrdersOverRanks Orders;
+  const KeptLight* const Kept;
+  std::optional<WarmStart> Warm; ///< made first in Run
+  std::vector<float> Direct;     ///< W / length^2, [channel][stride], where light is to be kept
+  Buffer<float> Moments;         ///< of scattered light of all orders, W length, where they are to be kept
   std::optional<EscapeCorrection> Escaping;
   std::optional<OrdersByCellsInBlocks> Cells; ///< none: orders are added up one by one
 

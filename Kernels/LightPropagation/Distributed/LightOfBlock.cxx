@@ -98,6 +98,7 @@ LightField LightOfBlock(BlockOnDevice& block, const IncidentLight& incident, Ite
   {
     AddShown(block, found.shown, light);
   }
+  light.leftOut.insert(light.leftOut.end(), found.leftOut.begin(), found.leftOut.end());
   light.balance = found.ledger.Balance();
   light.facePowerOut = found.ledger.FacePowerOut();
   if (block.Faces)

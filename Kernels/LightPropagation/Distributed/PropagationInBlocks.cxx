@@ -20,6 +20,7 @@
 #include <array>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace tyndall
@@ -105,7 +106,7 @@ public:
   ProblemInBlocks(const ProblemInBlocks&) = delete; // the scene sees its light
   ProblemInBlocks& operator=(const ProblemInBlocks&) = delete;
 
-  LightField Solve(Device& device, const Illumination& illumination, const Monitor& monitor);
+  LightField Solve(Device& device, const Illumination& illumination, const Monitor& monitor, KeptLight* kept);
   std::string BetterAsWhole(const Medium& medium, const Illumination& illumination) const;
   bool BalancesVoxels() const { return this->Orders.how == OrdersAdded::ByBalance; }
 
@@ -144,7 +145,8 @@ UncollidedDirections ProblemInBlocks::FinerDirections(OrdersAdded how) const
   return { static_cast<int>(all[0]), all[1] > 0.0 };
 }
 
-LightField ProblemInBlocks::Solve(Device& device, const Illumination& illumination, const Monitor& monitor)
+LightField ProblemInBlocks::Solve(
+  Device& device, const Illumination& illumination, const Monitor& monitor, KeptLight* kept)
 {
   const BlockScene& scene = *this->Scene;
   Device ofSolve(device, BudgetAskedFor(device, this->Settings.memoryBudget));
@@ -161,14 +163,17 @@ LightField ProblemInBlocks::Solve(Device& device, const Illumination& illuminati
     uncollided.emplace(*block, *incident);
     if (byBalance)
     {
-      iteration = std::make_unique<IterationByBalance>(*block, *incident, *uncollided);
+      iteration = std::make_unique<IterationByBalance>(*block, *incident, *uncollided, kept);
     }
     else
     {
-      iteration = std::make_unique<IterationInBlocks>(*block, *incident, *uncollided, this->Orders);
+      iteration = std::make_unique<IterationInBlocks>(*block, *incident, *uncollided, this->Orders, kept);
     }
   });
-  LightField light = LightOfBlock(*block, *incident, iteration->Run(monitor), this->Orders.how);
+  IterationResult found = iteration->Run(monitor);
+  const bool warm = found.warm;
+  KeptLight left = std::move(found.kept);
+  LightField light = LightOfBlock(*block, *incident, std::move(found), this->Orders.how);
   this->Others.Together([&] {
     this->Scene->Undo(light);
     MultiplyPowers(light, this->Narrowing());
@@ -176,6 +181,10 @@ LightField ProblemInBlocks::Solve(Device& device, const Illumination& illuminati
   if (block->StoresMoments())
   {
     light.lampsApart = incident->LampsOf(illumination);
+  }
+  if (kept)
+  {
+    Keep(std::move(left), warm, light, *kept);
   }
   return light;
 }
@@ -217,10 +226,12 @@ std::string ProblemInBlocks::BetterAsWhole(const Medium& medium, const Illuminat
 }
 
 LightField SolveInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition,
-  const Medium& medium, const Illumination& illumination, const PropagationSettings& settings, const Monitor& monitor)
+  const Medium& medium, const Illumination& illumination, const PropagationSettings& settings, const Monitor& monitor,
+  KeptLight* kept)
 {
+  RequireSame(communicator, "WarmStart", true, { kept ? 1.0 : 0.0 });
   ProblemInBlocks problem(device, communicator, partition, medium, illumination, settings);
-  LightField light = problem.Solve(device, illumination, monitor);
+  LightField light = problem.Solve(device, illumination, monitor, kept);
   if (light.directionsPerFace != settings.directionsPerFace)
   {
     light.leftOut.push_back(left_out::DirectionsAlongSlab(light.directionsPerFace));

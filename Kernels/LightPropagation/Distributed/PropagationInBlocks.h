@@ -4,6 +4,7 @@
 #include "Device/Monitor.h"
 #include "Distribution/BlockPartition.h"
 #include "Distribution/Communicator.h"
+#include "Light/KeptLight.h"
 #include "Light/LightField.h"
 #include "Light/Quality.h"
 #include "LightPropagation/PropagationSettings.h"
@@ -35,6 +36,9 @@ namespace tyndall
 ///   no voxels
 /// @param illumination, settings  the same on all ranks, but for memoryBudget: what of this rank's arrays does not fit
 ///   that lies in host memory, and is read from there (BudgetAskedFor in SolveMemory.h)
+/// @param kept  as SolveConservative has it: of each rank the light of its own block. It is begun from where it fits on
+///   all ranks, by as many sweeps as the whole takes; where blocks, or anything else, have changed on one, all begin in
+///   the dark. Null on all ranks or on none
 /// @return the light of the rank's block; balance, face powers and convergence are of the whole. Empty arrays where the
 ///   block is
 /// @throws InvalidInput  on every rank, where one of them has an input that Check() refuses, where they disagree, or
@@ -42,7 +46,7 @@ namespace tyndall
 /// @throws DeviceError, Aborted  on every rank what one of them throws
 LightField SolveInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition,
   const Medium& medium, const Illumination& illumination, const PropagationSettings& settings,
-  const Monitor& monitor = {});
+  const Monitor& monitor = {}, KeptLight* kept = nullptr);
 
 /// What SolveInBlocks checks first. All ranks call it.
 /// @throws InvalidInput  as SolveInBlocks

@@ -187,10 +187,6 @@ void AxisSweep::Implementation::DarkenSides()
 void AxisSweep::Implementation::DarkenBeside()
 {
   const SweepPlan& plan = this->Plan;
-  if (this->SidesDark)
-  {
-    return;
-  }
   cl::Kernel kernel = this->TheDevice.Kernel("darken_beside", kernel_source::SweepMaps);
   With(kernel, this->OwnMaps, cl_ulong(plan.mapsEachWay), this->MapPlaces, cl_int(plan.channels), cl_int(plan.row),
     cl_int(plan.vector), plan.plane.sizeU, plan.plane.width);
@@ -211,7 +207,10 @@ void AxisSweep::Implementation::GoRound(const SweepVolume& volume, int mostPlane
 {
   const int planes = this->Plan.PatternPlanes();
   this->CountSideways();
-  this->DarkenBeside();
+  if (!this->SidesDark || volume.faceIn)
+  {
+    this->DarkenBeside();
+  }
   this->DarkenSides();
   Rgb& onTheWay = this->Tally.onTheWay;
   onTheWay = this->PowerOnTheWay();

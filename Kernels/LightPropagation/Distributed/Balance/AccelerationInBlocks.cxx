@@ -98,7 +98,11 @@ ConvergenceRecord AccelerationInBlocks::Run(const Monitor& monitor)
       this->TakeDirect();
       this->MakeSystems();
     }
-    this->Correct();
+    this->Correct(iteration);
+    if (iteration == 0 && this->The.warm.Keeps())
+    {
+      this->BeginWarm();
+    }
     ++iteration;
   } while (!this->Done(iteration));
   this->WriteFluence();
@@ -236,6 +240,7 @@ void AccelerationInBlocks::Sweep(bool first, const Monitor& monitor)
 void AccelerationInBlocks::TakeDirect()
 {
   const VolumeLayout& own = this->The.layout;
+  std::vector<float> direct;
   this->The.others.Together([&] {
     if (!this->Block.Has())
     {
@@ -249,11 +254,58 @@ void AccelerationInBlocks::TakeDirect()
     }
     this->The.fluence.Write(values.data());
     this->FluenceDirect = Interleaved(own, this->The.fluence, 1.0);
+    direct = std::move(values);
   });
+  if (this->The.warm.Keeps())
+  {
+    this->The.warm.Prepare(direct);
+  }
+}
+
+/// As DiffusionAcceleration::BeginWarm: what is guessed goes beyond what the first sweep and its systems found.
+void AccelerationInBlocks::BeginWarm()
+{
+  const VolumeLayout& own = this->The.layout;
+  this->The.others.Together([&] {
+    this->First = this->UncollidedFluence;
+    this->First.resize(own.Values());
+    for (int c = 0; c < own.channels && this->Block.Has(); ++c)
+    {
+      const std::vector<double> found = this->Systems[c]->Found();
+      for (std::size_t i = 0; i < found.size(); ++i)
+      {
+        this->First[c * own.Stride() + i] += static_cast<float>(found[i]);
+      }
+    }
+  });
+  if (!this->The.warm.Begins())
+  {
+    return;
+  }
+  const VolumeLayout& held = this->Block.WithGhosts();
+  Buffer<float> guess;
+  this->The.others.Together([&] { guess = Buffer<float>(this->The.device, held.Floats(), "the last light"); });
+  this->Block.SpreadWithGhosts(this->The.warm.Guessed(), own.channels, guess);
+  std::vector<float> values;
+  this->The.others.Together([&] { values = guess.Read(); });
+  for (int c = 0; c < own.channels; ++c)
+  {
+    std::vector<double> ofChannel(held.grid.VoxelCount());
+    std::transform(values.begin() + static_cast<std::ptrdiff_t>(c * held.Stride()),
+      values.begin() + static_cast<std::ptrdiff_t>(c * held.Stride() + ofChannel.size()), ofChannel.begin(),
+      [&](float value) { return value / own.grid.VoxelVolume(); });
+    this->Systems[c]->BeginBeyond(ofChannel);
+  }
+}
+
+KeptLight AccelerationInBlocks::Leave() const
+{
+  const double rate = std::clamp(this->Rest.Ratio(), 0.5, 0.95);
+  return this->The.warm.Leave(this->First, {}, { rate, rate, rate });
 }
 
 /// As DiffusionAcceleration::Correct.
-void AccelerationInBlocks::Correct()
+void AccelerationInBlocks::Correct(int iteration)
 {
   double change = 0.0;
   for (int c = 0; c < this->The.layout.channels; ++c)
@@ -264,7 +316,8 @@ void AccelerationInBlocks::Correct()
     }
   }
   this->CountLight();
-  this->Residual = this->Rest.After(change);
+  const double guessed = iteration == 1 && this->The.warm.Begins() ? this->The.warm.Rate(0) : 0.0;
+  this->Residual = this->Rest.After(change, guessed);
   this->Convergence.Add(this->Residual, change, this->The.ledger);
 }
 
@@ -297,8 +350,9 @@ void AccelerationInBlocks::CountLight()
 bool AccelerationInBlocks::Done(int iterations) const
 {
   const int most = this->The.settings.maximumOrders > 0 ? this->The.settings.maximumOrders : MostSweeps;
+  const int least = this->The.warm.Begins() ? 2 : 3; // a guess has shown already how fast changes fall
   return iterations >= most || this->Residual == 0.0 ||
-    (iterations >= 3 && MeetsTolerance(this->The.settings, this->Residual));
+    (iterations >= least && MeetsTolerance(this->The.settings, this->Residual));
 }
 
 /// Where the system's solution is negative, the fluence of the last sweep stands.

@@ -5,6 +5,7 @@
 #include "LightPropagation/Angular/SweptDirections.h"
 #include "LightPropagation/Conservative/ConvergenceRecord.h"
 #include "LightPropagation/Conservative/EnergyLedger.h"
+#include "LightPropagation/Conservative/WarmStart.h"
 #include "LightPropagation/Convergence.h"
 #include "LightPropagation/Distributed/Balance/BalanceOverRanks.h"
 #include "LightPropagation/Distributed/Balance/BeamsInThickBlocks.h"
@@ -21,7 +22,7 @@
 namespace tyndall
 {
 /// Iteration with diffusion acceleration (numerics.md, section 7) on one rank's block, in step with the others: as
-/// DiffusionAcceleration.h, of isotropic scattering, without faces that reflect and without a first guess.
+/// DiffusionAcceleration.h, of isotropic scattering, without faces that reflect.
 class AccelerationInBlocks
 {
 public:
@@ -46,6 +47,7 @@ public:
     Buffer<float>& fluence; ///< W / length^2, becomes the light
     Buffer<float>& flux;    ///< of lamps, is added to; empty: not wanted
     EnergyLedger& ledger;   ///< of emission and of what lamps let in and out, is added to
+    WarmStart& warm;        ///< of the block
     bool shines;            ///< the source, on any rank
   };
   /// All ranks make one together.
@@ -61,6 +63,8 @@ public:
   const std::vector<float>& Direct() const { return this->FluenceDirect; } ///< unscattered, channels interleaved
   /// As LightField has it, after Run: of the faces of the whole box. All ranks call it.
   std::vector<float> FindSurfaceRadiance() const;
+  /// For the next solve, after Run, where light is kept. All ranks call it.
+  KeptLight Leave() const;
 
 private:
   void SpreadMedium();
@@ -69,7 +73,8 @@ private:
   void ScatterFound();
   void Sweep(bool first, const Monitor& monitor);
   void TakeDirect();
-  void Correct();
+  void BeginWarm();
+  void Correct(int iteration);
   void CountLight();
   double VoxelPower(int channel) const;
   bool Done(int iterations) const;
@@ -90,6 +95,7 @@ private:
   EnergyLedger OfUncollided;
   SweepTally Tally; ///< of the last sweep
   Rgb GivenPower = {}, PowerIn = {};
+  std::vector<float> First; ///< as DiffusionAcceleration has it
   RestOfChanges Rest;
   double Residual = 1.0;
   ConvergenceRecord Convergence;

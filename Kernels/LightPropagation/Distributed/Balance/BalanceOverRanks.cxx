@@ -111,6 +111,20 @@ void BalanceOverRanks::Refine(double unit)
   });
 }
 
+void BalanceOverRanks::BeginBeyond(const std::vector<double>& guessed)
+{
+  this->Others.Together([&] {
+    for (std::size_t i = 0; i < this->Fluence.size(); ++i)
+    {
+      this->Fluence[i] += guessed[i];
+    }
+    if (this->System)
+    {
+      this->System->Begin(this->Fluence);
+    }
+  });
+}
+
 std::vector<double> BalanceOverRanks::OwnOf(const std::vector<double>& held) const
 {
   std::vector<double> own(this->Block.Own().grid.VoxelCount());

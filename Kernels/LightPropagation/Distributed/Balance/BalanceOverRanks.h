@@ -34,6 +34,9 @@ public:
   void Refine(double unit);
   double Absorbed() const;
   std::array<double, 6> Outflow(double entered, const std::array<double, 6>& ofSweep);
+  /// As DiffusionSystem::Begin.
+  /// @param guessed  beyond the fluence that was solved for, W / length^2, by voxel with ghosts
+  void BeginBeyond(const std::vector<double>& guessed);
 
   // Of this rank alone.
   std::vector<double> Found() const; ///< W / length^2, by voxel of the block

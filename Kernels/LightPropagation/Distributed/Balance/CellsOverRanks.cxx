@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
 
 namespace tyndall
@@ -132,15 +133,16 @@ std::vector<double> CellsOverRanks::SumByCells(const Values& ofVoxels)
   return this->Others.Sum(sums);
 }
 
-/// Of what the last sweep scattered, W by voxel, all orders to come. @return W of all ranks
-double CellsOverRanks::Solve(const Values& scattered)
+/// Of what the last sweep scattered, W by voxel, all orders to come; none where they are guessed.
+/// @return W of all ranks that it scattered
+double CellsOverRanks::Solve(const Values& scattered, bool guessed)
 {
   const std::vector<double> byCells = this->SumByCells(scattered);
   const auto magnitude = [](double sum, double value) { return sum + std::abs(value); };
   const double all = std::accumulate(byCells.begin(), byCells.end(), 0.0, magnitude);
   std::vector<double> found(byCells.size(), 0.0);
   this->Others.Together([&] {
-    if (this->Solver && all > 0.0)
+    if (this->Solver && all > 0.0 && !guessed)
     {
       this->FoundOnDevice.Fill(0.0);
       this->Solver->Right().Write(InRows(this->Box.cells, byCells).data());
@@ -229,7 +231,26 @@ double CellsOverRanks::ScatteredIn(
   return scattered;
 }
 
-CellsOverRanks::Powers CellsOverRanks::ScatterOrder(Buffer<float>& path, Buffer<float>& fluence, Buffer<float>& source)
+/// All orders to come, W length, to the light of the block and of the voxels beside it. All ranks call it.
+void CellsOverRanks::AddComing(Values& light, const Buffer<float>* guess)
+{
+  if (guess)
+  {
+    Values own;
+    this->Others.Together([&] { own = ChannelOf(*guess, this->First, this->Layout.grid.VoxelCount()); });
+    const Values coming = this->WithNeighbours(own);
+    std::transform(light.begin(), light.end(), coming.begin(), light.begin(), std::plus<float>());
+    return;
+  }
+  const double volume = this->Layout.grid.VoxelVolume();
+  for (std::size_t i = 0; i < light.size(); ++i)
+  {
+    light[i] += static_cast<float>(volume * this->FoundAt(VoxelIn(this->Held, i)));
+  }
+}
+
+CellsOverRanks::Powers CellsOverRanks::ScatterOrder(
+  Buffer<float>& path, Buffer<float>& fluence, Buffer<float>& source, const Buffer<float>* guess)
 {
   const std::size_t count = this->Layout.grid.VoxelCount();
   const double volume = this->Layout.grid.VoxelVolume();
@@ -241,11 +262,8 @@ CellsOverRanks::Powers CellsOverRanks::ScatterOrder(Buffer<float>& path, Buffer<
   {
     shines[i] = static_cast<float>(this->ScatteredIn(VoxelIn(block, i), all, keptOfSwept)); // W
   }
-  const double swept = this->Solve(shines);
-  for (std::size_t i = 0; i < all.size(); ++i)
-  {
-    all[i] += static_cast<float>(volume * this->FoundAt(VoxelIn(this->Held, i)));
-  }
+  const double swept = this->Solve(shines, guess != nullptr);
+  this->AddComing(all, guess);
   std::vector<double> sums(16, 0.0); // absorbed, of the solution, scattered, the same without signs; then by face
   for (std::size_t i = 0; i < count; ++i)
   {

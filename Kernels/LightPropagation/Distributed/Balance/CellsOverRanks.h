@@ -44,12 +44,15 @@ public:
   /// @param path  W length, [channel][stride]; replaced by what the next sweep is to have less
   /// @param fluence  W / length^2, added to
   /// @param source  W / (length^3 sr), replaced
-  Powers ScatterOrder(Buffer<float>& path, Buffer<float>& fluence, Buffer<float>& source);
+  /// @param guess  W length, of all orders to come, in the place of the cells' solution; null, on all ranks: that
+  Powers ScatterOrder(
+    Buffer<float>& path, Buffer<float>& fluence, Buffer<float>& source, const Buffer<float>* guess = nullptr);
 
 private:
   using Values = std::vector<float>;
   std::vector<double> SumByCells(const Values& ofVoxels);
-  double Solve(const Values& scattered);
+  double Solve(const Values& scattered, bool guessed);
+  void AddComing(Values& light, const Buffer<float>* guess);
   double FoundAt(const std::array<int, 3>& voxel) const;
   Values WithNeighbours(const Values& own);
   std::size_t PlaceOf(const std::array<int, 3>& voxel) const;

@@ -13,7 +13,9 @@ class IterationByBalance : public Iteration
 {
 public:
   /// @param block, incident, uncollided  must stay; of isotropic scattering, without finer directions
-  IterationByBalance(BlockOnDevice& block, const IncidentLight& incident, UncollidedOverRanks& uncollided);
+  /// @param kept  light of the last solve (WarmStart.h), must stay; null, on all ranks: none, and none is to be kept
+  IterationByBalance(BlockOnDevice& block, const IncidentLight& incident, UncollidedOverRanks& uncollided,
+    const KeptLight* kept = nullptr);
   /// All ranks call it.
   IterationResult Run(const Monitor& monitor) override;
 
@@ -21,5 +23,6 @@ private:
   BlockOnDevice& Block;
   const IncidentLight& Incident;
   UncollidedOverRanks& Uncollided;
+  const KeptLight* const Kept;
 };
 }

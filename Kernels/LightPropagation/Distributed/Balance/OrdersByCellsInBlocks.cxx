@@ -12,14 +12,14 @@ OrdersByCellsInBlocks::OrdersByCellsInBlocks(BlockOnDevice& block, const std::ar
   }
 }
 
-OrdersByCellsInBlocks::Powers OrdersByCellsInBlocks::ScatterOrder(EnergyLedger& ledger)
+OrdersByCellsInBlocks::Powers OrdersByCellsInBlocks::ScatterOrder(EnergyLedger& ledger, const Buffer<float>* guess)
 {
   Powers all;
   for (std::size_t i = 0; i < this->Cells.size(); ++i)
   {
     const auto c = static_cast<int>(i);
     const CellsOverRanks::Powers powers =
-      this->Cells[i]->ScatterOrder(this->Block.Path, this->Block.Fluence, this->Block.Source);
+      this->Cells[i]->ScatterOrder(this->Block.Path, this->Block.Fluence, this->Block.Source, guess);
     ledger.Absorb(c, powers.absorbed);
     ledger.LeaveOver(c, powers.left);
     all.scattered[c] = powers.scattered;

@@ -29,7 +29,8 @@ public:
 
   /// From the path integrals of a sweep to fluence and the next source, with all orders to come. All ranks call it.
   /// @param ledger  what is absorbed and left over is counted here, and that the sweep let out too much
-  Powers ScatterOrder(EnergyLedger& ledger);
+  /// @param guess  of all orders to come, in the place of the cells' solution; null, on all ranks: that
+  Powers ScatterOrder(EnergyLedger& ledger, const Buffer<float>* guess);
 
   /// A ledger with what leaves of the orders to come.
   EnergyLedger WithOut(const EnergyLedger& ledger) const;
