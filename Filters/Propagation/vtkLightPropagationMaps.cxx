@@ -28,6 +28,7 @@
 #include "vtkObjectFactory.h"
 
 #include <algorithm>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
