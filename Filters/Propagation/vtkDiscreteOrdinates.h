@@ -54,8 +54,7 @@ class LastLight;
  * all directions has to fit the device: what it takes is said before any is taken. EstimateError is not used.
  *
  * With Decomposition BLOCKS radiance goes from rank to rank (numerics.md, section 10 b): the same light, order by
- * order. Blocks cannot do, beside what no solver can: point, spot and rectangle lights beside periodic axes, a
- * Quality other than USUAL and the published scheme.
+ * order. Blocks cannot do, beside what no solver can: a Quality other than USUAL and the published scheme.
  *
  * @sa vtkSeparablePhaseFunction vtkLightPropagationMaps vtkParticipatingMedium vtkLightRig
  * @par Thanks

@@ -58,7 +58,7 @@ struct MediumInput;
  *
  * With Decomposition BLOCKS lines of links go on from rank to rank, or what voxels send each other in a step
  * (numerics.md, section 10 c): the steady light, and steps of both schemes. What blocks cannot do, beside what none of
- * the solvers can, are BlockSize, Interleaved, and point, spot and rectangle lights beside periodic axes.
+ * the solvers can, are BlockSize and Interleaved.
  *
  * EstimateError is not used.
  *

@@ -59,7 +59,8 @@ LampsInBlocks::LampsInBlocks(Device& device, Communicator& communicator, const B
   , Rounds(communicator, partition, 1, periodic)
   , OwnStride(layout.Stride())
 {
-  std::vector<float> own = this->Has() ? sigma_t.Read() : std::vector<float>();
+  std::vector<float> own;
+  communicator.Together([&] { own = this->Has() ? sigma_t.Read() : own; });
   std::vector<float> stored;
   for (const ChannelGroup& group : layout.Groups())
   {
@@ -223,7 +224,8 @@ std::vector<BeamOnItsWay> LampsInBlocks::Beams::FollowInBlock(const std::vector<
 /// Of a launch. Round a periodic axis that is all in one block it may be far.
 std::size_t LampsInBlocks::Beams::BeamsTogether(const BeamRow& row) const
 {
-  const double layers = this->All.Stored.Periodic()[row.axis] ? row.layers : 1.0;
+  const bool all = this->All.Own.size[row.axis] == this->All.Partition.whole.size[row.axis];
+  const double layers = all && this->All.Stored.Periodic()[row.axis] ? row.layers : 1.0;
   const double most = static_cast<double>(BeamsPerLaunch);
   return static_cast<std::size_t>(std::clamp(LampOnGrid::LayersPerLaunch / layers, 1.0, most));
 }
@@ -250,8 +252,8 @@ void LampsInBlocks::Beams::AddToShares()
 void LampsInBlocks::Beams::PutDown(double correction, double even)
 {
   const LampsInBlocks& all = this->All;
-  const std::vector<cl_long> found = this->Sums ? this->Sums->Sums().Read() : std::vector<cl_long>();
-  std::vector<cl_long> own;
+  std::vector<cl_long> found, own;
+  all.Others.Together([&] { found = this->Sums ? this->Sums->Sums().Read() : found; });
   // A rank without voxels may not know what the others want.
   const int parts =
     static_cast<int>(all.Others.Largest({ static_cast<double>(LampSums::Parts(this->Volume.deposit)) })[0]);
@@ -300,11 +302,13 @@ std::vector<cl_long> LampsInBlocks::Beams::CellsOfAll()
     return {};
   }
   std::vector<double> values(BoxFaceCellCount(this->All.Partition.whole), 0.0);
-  if (this->Sums)
-  {
-    const std::vector<cl_long> own = this->Sums->Cells().Read();
-    std::copy(own.begin(), own.end(), values.begin());
-  }
+  this->All.Others.Together([&] {
+    if (this->Sums)
+    {
+      const std::vector<cl_long> own = this->Sums->Cells().Read();
+      std::copy(own.begin(), own.end(), values.begin());
+    }
+  });
   values = this->All.Others.Sum(values);
   return { values.begin(), values.end() };
 }

@@ -19,7 +19,7 @@ namespace tyndall
 /// they come to (numerics.md, section 4.9). A beam lies over up to four voxels, some of which may be another rank's:
 /// each rank knows sigma_t of two voxels round its block, and gives what its beams put down there to their owners, in
 /// fixed point, so that deposits are those of DepositLamp bit for bit but for the last correction of the power, whose
-/// sum has another order.
+/// sum has another order; round periodic axes but for what is below 1e-7 of a beam, which ends there.
 class LampsInBlocks
 {
 public:

@@ -103,24 +103,6 @@ std::vector<std::string> LeftOutAsPublished(const Illumination& illumination);
 std::vector<std::string> LeftOutAsPublished(bool isotropic, const MediumTraits& traits, bool uncollidedGiven,
   const Illumination& illumination, const PropagationSettings& settings, int orders);
 
-/// Why the published scheme cannot solve a medium, in words: where its phase function varies by voxel or channel. Empty
-/// where it can.
-std::string WhyNotPublished(const Medium& medium);
-/// @throws InvalidInput with that
-void CheckPublishedPhase(const Medium& medium);
-
-/// `count` directions spread evenly over the sphere: the cells of a cube's faces where count is 6 n^2, else Fibonacci
-/// points.
-std::vector<std::array<double, 3>> EvenDirections(int count);
-
-/// What of the illumination the published method cannot carry, in words; empty if nothing.
-std::vector<std::string> LeftOutAsPublished(const Illumination& illumination);
-
-/// That, and what the scene did not need but that one channel does for three.
-/// @param orders  that were propagated
-std::vector<std::string> LeftOutAsPublished(const Medium& medium, const MediumTraits& traits,
-  const Illumination& illumination, const PropagationSettings& settings, int orders);
-
 class GridWalk;
 
 /// The rays of a direction as its map goes through the grid plane by plane along the axis of its face.

@@ -114,6 +114,12 @@ private:
     {
       this->Moments[k] = this->Sweep.Moment(static_cast<int>(k), failure);
     }
+    failure.Attempt([&] { this->AddToTotals(order); });
+    this->Sweep.WriteSources([this](int d) { return this->SourceOf(d); }, failure);
+  }
+
+  void AddToTotals(int order)
+  {
     if (order == 0)
     {
       if (this->Given.IsThere())
@@ -131,7 +137,6 @@ private:
       std::transform(this->Totals[k].begin(), this->Totals[k].end(), this->Moments[k].begin(), this->Totals[k].begin(),
         [](float sum, float more) { return sum + more; });
     }
-    this->Sweep.WriteSources([this](int d) { return this->SourceOf(d); }, failure);
   }
 
   std::vector<float> SourceOf(int sourceDirection) const

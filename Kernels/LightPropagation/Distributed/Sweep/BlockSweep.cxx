@@ -65,6 +65,7 @@ BlockSweep::BlockSweep(Device& device, const BlockPartition& partition, int rank
   this->BundlesOnDevice = Buffer<BundleInfo>(device, plan.bundleRows, "the bundles of rays");
   this->Units = Buffer<UnitInfo>(device, plan.units, "the units of work");
   this->Schedule = Buffer<cl_int2>(device, plan.schedule, "the schedule");
+  this->FunctionPlaces = Buffer<cl_int>(device, this->Plan.FunctionPlaces(), "the angular functions");
   this->LayPattern();
 }
 
@@ -100,7 +101,6 @@ void BlockSweep::LayPattern()
   this->CrossingsOnDevice =
     Buffer<CrossingInfo>(this->TheDevice, plan.Crossings(this->LapPlanes, plan.CrossingPlanes()), "the ray pattern");
   this->OwnLight = Buffer<OwnLightInfo>(this->TheDevice, plan.OwnLight(this->LapPlanes), "the ray pattern");
-  this->FunctionPlaces = Buffer<cl_int>(this->TheDevice, plan.FunctionPlaces(), "the angular functions");
 }
 
 int BlockSweep::DirectionOf(const Member& member) const
