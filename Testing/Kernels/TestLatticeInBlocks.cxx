@@ -467,11 +467,6 @@ TEST_F(LatticeBlocks, FailTogether)
 
 TEST_F(LatticeBlocks, SayWhatIsNotCarriedFromRankToRank)
 {
-  ExpectErrors("beside a periodic axis", [](int, MediumToCut& part, LatticeSettings& settings, Monitor&) {
-    part.scene.light.lights[0].type = LightType::Point;
-    part.scene.light.faceAlbedo = {};
-    settings.periodic[1] = true;
-  });
   ExpectErrors(
     "Interleaved", [](int, MediumToCut&, LatticeSettings& settings, Monitor&) { settings.interleaves = true; });
   ExpectErrors("BlockSize", [](int, MediumToCut&, LatticeSettings& settings, Monitor&) { settings.blockSize = 4; });

@@ -292,8 +292,4 @@ TEST_F(OrdinatesBlocks, FailTogetherWithWordsOnWhatIsNotCarried)
       monitor = [](double done) { return done < 0.3; };
     }
   });
-  expectErrors("beside a periodic axis", [](int, MediumToCut& part, OrdinatesSettings& settings, Monitor&) {
-    part.scene.light.lights[0].type = LightType::Point;
-    settings.periodic[1] = true;
-  });
 }
