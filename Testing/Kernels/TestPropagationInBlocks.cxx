@@ -487,9 +487,4 @@ TEST_F(PropagationBlocksFail, WithWordsOnWhatIsNotCarriedFromRankToRank)
     settings.acceleration = PropagationAcceleration::Automatic;
     settings.periodic[1] = true;
   });
-  ExpectErrors(
-    "point, spot or rectangle", [](int, PartOf&, Illumination& shining, PropagationSettings& settings, Monitor&) {
-      shining.lights[0].type = LightType::Point;
-      settings.periodic[1] = true;
-    });
 }
