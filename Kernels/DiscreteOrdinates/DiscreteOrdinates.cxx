@@ -3,7 +3,7 @@
 #include "DiscreteOrdinates/OrdinatesParts.h"
 #include "DiscreteOrdinates/OrdinatesScene.h"
 #include "DiscreteOrdinates/OrdinatesWarmStart.h"
-#include "DiscreteOrdinates/PublishedOrders.h"
+#include "DiscreteOrdinates/Published/PublishedOrders.h"
 #include "DiscreteOrdinates/SweptOrders.h"
 #include "Light/LeftOut.h"
 #include "LightPropagation/Problem/PropagationProblem.h"

@@ -1,7 +1,7 @@
 #include "DiscreteOrdinates/OrdinatesParts.h"
 
 #include "Device/Errors.h"
-#include "DiscreteOrdinates/PublishedOrders.h"
+#include "DiscreteOrdinates/Published/PublishedOrders.h"
 #include "DiscreteOrdinates/SweptOrders.h"
 #include "LightPropagation/Angular/DirectionSet.h"
 #include "LightPropagation/Uncollided/EnvironmentPeaks.h"

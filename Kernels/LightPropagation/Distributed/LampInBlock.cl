@@ -2,7 +2,7 @@
 // host gives what LampBeams.cl asks for.
 
 #define IN_BLOCK 1
-#include "LightPropagation/Uncollided/LampBeams.cl"
+#include "LightPropagation/Uncollided/Lamps/LampBeams.cl"
 
 static void follow_in_block(const LampInfo* lamp, const BeamRow* row, BeamOnItsWay* beam, const __global float* sigma,
   __global long* path, ulong stride, __global long* cells, __global float* sums)

@@ -1,10 +1,10 @@
 #include "LightPropagation/Distributed/LampsInBlocks.h"
 
 #include "Device/GroupSize.h"
-#include "LightPropagation/Uncollided/LampOnGrid.h"
-#include "LightPropagation/Uncollided/LampPasses.h"
-#include "LightPropagation/Uncollided/LampShares.h"
-#include "LightPropagation/Uncollided/LampSums.h"
+#include "LightPropagation/Uncollided/Lamps/LampOnGrid.h"
+#include "LightPropagation/Uncollided/Lamps/LampPasses.h"
+#include "LightPropagation/Uncollided/Lamps/LampShares.h"
+#include "LightPropagation/Uncollided/Lamps/LampSums.h"
 #include "Medium/BoxFaces.h"
 #include "TyndallKernelSources.h"
 

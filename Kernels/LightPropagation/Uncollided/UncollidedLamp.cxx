@@ -1,6 +1,6 @@
 #include "LightPropagation/Uncollided/UncollidedLamp.h"
 
-#include "LightPropagation/Uncollided/LampBeams.h"
+#include "LightPropagation/Uncollided/Lamps/LampBeams.h"
 #include "LightPropagation/Uncollided/NarrowLight.h"
 #include "LightPropagation/Uncollided/ParallelBeam.h"
 #include "Numerics/Vectors.h"

@@ -1,11 +1,11 @@
-#include "LightPropagation/Uncollided/LampBeams.h"
+#include "LightPropagation/Uncollided/Lamps/LampBeams.h"
 
 #include "Device/GroupSize.h"
-#include "LightPropagation/Uncollided/LampOnGrid.h"
-#include "LightPropagation/Uncollided/LampPasses.h"
-#include "LightPropagation/Uncollided/LampPyramids.h"
-#include "LightPropagation/Uncollided/LampShares.h"
-#include "LightPropagation/Uncollided/LampSums.h"
+#include "LightPropagation/Uncollided/Lamps/LampOnGrid.h"
+#include "LightPropagation/Uncollided/Lamps/LampPasses.h"
+#include "LightPropagation/Uncollided/Lamps/LampPyramids.h"
+#include "LightPropagation/Uncollided/Lamps/LampShares.h"
+#include "LightPropagation/Uncollided/Lamps/LampSums.h"
 #include "TyndallKernelSources.h"
 
 #include <glm/vec3.hpp>

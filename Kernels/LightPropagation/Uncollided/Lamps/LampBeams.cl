@@ -12,8 +12,8 @@
 // cross-section lies over up to four voxels, each takes its part (numerics.md, Eqs. (33), (34)). All values are
 // parts of the lamp's power: its colours share sigma_t.
 
-#include "LightPropagation/Uncollided/LampBeamsShared.h"
-#include "LightPropagation/Uncollided/LampUnits.cl"
+#include "LightPropagation/Uncollided/Lamps/LampBeamsShared.h"
+#include "LightPropagation/Uncollided/Lamps/LampUnits.cl"
 #include "Numerics/FixedPoint.cl"
 #include "Numerics/Numerics.cl"
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "LightPropagation/Sweep/SweepVolume.h"
-#include "LightPropagation/Uncollided/LampOnGrid.h"
+#include "LightPropagation/Uncollided/Lamps/LampOnGrid.h"
 
 namespace tyndall
 {

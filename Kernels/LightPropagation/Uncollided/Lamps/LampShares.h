@@ -1,7 +1,7 @@
 #pragma once
 
 #include "LightPropagation/Sweep/SweepTally.h"
-#include "LightPropagation/Uncollided/LampBeamsShared.h"
+#include "LightPropagation/Uncollided/Lamps/LampBeamsShared.h"
 
 #include <array>
 

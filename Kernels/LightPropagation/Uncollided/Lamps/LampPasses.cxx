@@ -1,4 +1,4 @@
-#include "LightPropagation/Uncollided/LampPasses.h"
+#include "LightPropagation/Uncollided/Lamps/LampPasses.h"
 
 #include <cmath>
 #include <utility>

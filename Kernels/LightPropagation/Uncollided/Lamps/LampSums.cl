@@ -1,7 +1,7 @@
 // What beams of a lamp put down in fixed point, added to a deposit. The host gives what LampBeams.cl asks for.
 
-#include "LightPropagation/Uncollided/LampBeamsShared.h"
-#include "LightPropagation/Uncollided/LampUnits.cl"
+#include "LightPropagation/Uncollided/Lamps/LampBeamsShared.h"
+#include "LightPropagation/Uncollided/Lamps/LampUnits.cl"
 
 // path   W length, [channel][stride], added to
 // units  [channel] W length of a fixed point unit

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "Device/Monitor.h"
-#include "LightPropagation/Uncollided/LampPyramids.h"
-#include "LightPropagation/Uncollided/LampShares.h"
+#include "LightPropagation/Uncollided/Lamps/LampPyramids.h"
+#include "LightPropagation/Uncollided/Lamps/LampShares.h"
 #include "Medium/Grid.h"
 
 #include <array>

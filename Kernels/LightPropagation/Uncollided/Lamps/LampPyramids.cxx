@@ -1,4 +1,4 @@
-#include "LightPropagation/Uncollided/LampPyramids.h"
+#include "LightPropagation/Uncollided/Lamps/LampPyramids.h"
 
 #include "Numerics/Constants.h"
 #include "Numerics/Vectors.h"

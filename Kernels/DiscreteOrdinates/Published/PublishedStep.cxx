@@ -1,4 +1,4 @@
-#include "DiscreteOrdinates/PublishedStep.h"
+#include "DiscreteOrdinates/Published/PublishedStep.h"
 
 #include "Device/Defines.h"
 #include "Medium/BoxFaces.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "LightPropagation/Uncollided/LampBeamsShared.h"
+#include "LightPropagation/Uncollided/Lamps/LampBeamsShared.h"
 #include "Lights/Lights.h"
 #include "Medium/Grid.h"
 

@@ -1,4 +1,4 @@
-#include "LightPropagation/Uncollided/LampOnGrid.h"
+#include "LightPropagation/Uncollided/Lamps/LampOnGrid.h"
 
 #include "Device/Defines.h"
 #include "Medium/BoxFaces.h"

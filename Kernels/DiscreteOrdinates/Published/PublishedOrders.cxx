@@ -1,7 +1,7 @@
-#include "DiscreteOrdinates/PublishedOrders.h"
+#include "DiscreteOrdinates/Published/PublishedOrders.h"
 
 #include "DiscreteOrdinates/ChannelArrays.h"
-#include "DiscreteOrdinates/PublishedStep.h"
+#include "DiscreteOrdinates/Published/PublishedStep.h"
 
 #include <algorithm>
 #include <cmath>

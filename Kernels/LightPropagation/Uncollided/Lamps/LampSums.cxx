@@ -1,4 +1,4 @@
-#include "LightPropagation/Uncollided/LampSums.h"
+#include "LightPropagation/Uncollided/Lamps/LampSums.h"
 
 #include "Medium/BoxFaces.h"
 #include "TyndallKernelSources.h"

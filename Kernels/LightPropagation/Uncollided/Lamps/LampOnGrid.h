@@ -2,8 +2,8 @@
 
 #include "Device/Device.h"
 #include "LightPropagation/Sweep/Deposit.h"
-#include "LightPropagation/Uncollided/LampBeamsShared.h"
-#include "LightPropagation/Uncollided/LampPyramids.h"
+#include "LightPropagation/Uncollided/Lamps/LampBeamsShared.h"
+#include "LightPropagation/Uncollided/Lamps/LampPyramids.h"
 #include "Lights/Lights.h"
 #include "Medium/Grid.h"
 #include "Medium/VoxelBox.h"
