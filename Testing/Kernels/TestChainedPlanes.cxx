@@ -105,6 +105,10 @@ TEST_F(ChainedPlanes, HaveTheSameLightInTilesOfRows)
 TEST_F(ChainedPlanes, AreTheSameBitForBitWhereTheyAreStreamed)
 {
   Scene scene = RandomScene({ 37, 2 * RowsOfChain + 5, 45 });
+  if (!GetDevice().IsCpu())
+  {
+    GTEST_SKIP() << "what a GPU holds whole it does not sweep by these kernels";
+  }
   const NoCache none(" host_memory");
   const LightField whole = scene.Solve(GetDevice());
   const PropagationProblem problem(scene.medium, scene.light, scene.settings);

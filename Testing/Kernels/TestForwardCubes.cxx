@@ -47,7 +47,7 @@ PowerParts SolvedCube(Device& device, const ReferenceRow& cube, int degree)
   ShineAs(scene, static_cast<int>(cube["src"]));
   scene.settings.angularDegree = degree;
   scene.settings.directionsPerFace = 64;
-  scene.settings.uncollidedDirections = 900;
+  scene.settings.uncollidedDirections = 1024;
   scene.settings.staggeredRays = true;
   const LightField light = scene.Solve(device);
   EXPECT_LT(light.balance.RelativeError(light.channels), 1e-5);

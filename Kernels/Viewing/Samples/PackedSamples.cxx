@@ -132,7 +132,7 @@ void PackedSamples::PackSources(const SceneOnDevice& scene, const Buffer<float>&
   const bool forShadowRays = this->For == Packing::ForShadowRays;
   const bool bends = traits.bends && !forShadowRays; // shadow rays go straight on
   const std::string options = traits.PackingOptions() + traits.PhaseOptions(traits.knowsFlow) +
-    Define("SHADOW_RAYS", traits.shadowRays && !forShadowRays) + Define("BENDS", bends) + Define("SHOWN", 0);
+    Define("SHADOW_RAYS", traits.shadowRays && !forShadowRays) + Define("BENDS", bends);
   const cl_int single = traits.singleScatteringOnly ? 1 : 0;
 
   cl::Kernel pack = this->TheDevice.Kernel("pack_samples", kernel_source::ScatteredLight, options);
@@ -141,7 +141,7 @@ void PackedSamples::PackSources(const SceneOnDevice& scene, const Buffer<float>&
     scene.meanDirection.Handle(), scene.ior, scene.meanCosines, this->Samples(), this->Extinctions(), this->Flow(),
     this->Glow(), this->Cosines(), this->SeenGroups, this->BricksOfRecords);
   this->Launch(pack, traits.grid.size);
-  this->FindBricks(options);
+  this->FindBricks(bends, false);
 }
 
 std::string PackedSamples::ShownOptions() const
@@ -155,22 +155,26 @@ std::string PackedSamples::ShownOptions() const
 void PackedSamples::PackShown(const SceneOnDevice& scene, const Buffer<float>& direct, const Buffer<float>& diffuse)
 {
   const ViewTraits& traits = this->Traits;
+  const bool bends = traits.bends && this->For != Packing::ForShadowRays;
   const std::string options = traits.PackingOptions() + traits.PhaseOptions(false) + Define("SHADOW_RAYS", 0) +
-    Define("BENDS", traits.bends && this->For != Packing::ForShadowRays) +
-    Define("STRAIGHT_ON", this->For == Packing::Unscattered ? 0 : traits.straightOnChannels) +
+    Define("BENDS", bends) + Define("STRAIGHT_ON", this->For == Packing::Unscattered ? 0 : traits.straightOnChannels) +
     Define("AUREOLE", traits.aureoleChannels);
   cl::Kernel pack = this->TheDevice.Kernel("pack_shown", kernel_source::ShownSamples, options + this->ShownOptions());
   With(pack, Int4(traits.grid.size), scene.arrays[0].Handle(), scene.arrays[1].Handle(), scene.arrays[2].Handle(),
     scene.straightOn, diffuse, direct, scene.ior, this->Samples(), this->Extinctions(), this->Flow(), this->Glow(),
     this->SeenGroups);
   this->Launch(pack, traits.grid.size);
-  this->FindBricks(options + Define("SHOWN", 1));
+  this->FindBricks(bends, true);
 }
 
-void PackedSamples::FindBricks(const std::string& options)
+void PackedSamples::FindBricks(bool bends, bool shown)
 {
+  const ViewTraits& traits = this->Traits;
+  const std::string options = Define("COLOURED", traits.coloured) + Define("GREY", traits.grey) +
+    Define("BRICKED", traits.bricked) + Define("GLOW", traits.GlowsApart()) + Define("BENDS", bends) +
+    Define("SHOWN", shown);
   const cl_int4 size = Int4(this->Traits.grid.size), bricks = Int4(this->Count);
-  cl::Kernel find = this->TheDevice.Kernel("find_empty_bricks", kernel_source::ScatteredLight, options);
+  cl::Kernel find = this->TheDevice.Kernel("find_empty_bricks", kernel_source::EmptyBricks, options);
   With(find, size, bricks, Int4(this->KnownSize), Int4(this->KnownBefore), this->Samples(), this->Extinctions(),
     this->Glow(), this->Gradients, this->Seen, this->First, this->Distances);
   this->TheDevice.Queue().enqueueNDRangeKernel(find, cl::NullRange,

@@ -56,7 +56,7 @@ private:
   void PackSources(const SceneOnDevice& scene, const Buffer<float>& direct);
   void PackShown(const SceneOnDevice& scene, const Buffer<float>& direct, const Buffer<float>& diffuse);
   void Launch(cl::Kernel& kernel, const std::array<int, 3>& size);
-  void FindBricks(const std::string& options);
+  void FindBricks(bool bends, bool shown);
 
   Device& TheDevice;
   const ViewTraits& Traits;

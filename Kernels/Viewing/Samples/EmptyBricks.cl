@@ -1,0 +1,117 @@
+// Bricks of samples that rays may skip: a program of its own, since of all that samples are packed by it needs little.
+//
+// The host gives
+//   COLOURED, GREY, BRICKED  as in Sampling.cl
+//   GLOW         1: emission is packed apart
+//   BENDS        1: the refractive index varies
+//   SHOWN        of what ShownSamples.cl packed: only the extinction tells what is empty
+
+#include "Viewing/Samples/SamplePlaces.cl"
+#include "Viewing/Scene/ViewShared.h"
+
+// Whether a sample extinguishes or shines.
+static int is_filled(
+  int place, __global const float4* samples, __global const float4* extinctions, __global const float4* glow)
+{
+#if GREY
+  int filled = any(samples[place].xy != (float2)(0.0f));
+#else
+  int filled = SHOWN ? samples[place].w != 0.0f : any(samples[place] != (float4)(0.0f));
+#endif
+#if COLOURED
+  filled |= any(extinctions[place] != (float4)(0.0f));
+#endif
+#if GLOW
+  filled |= any(glow[place] != (float4)(0.0f));
+#endif
+  return filled;
+}
+
+// Whether anything extinguishes or shines in a brick, or bends with BENDS, or does so close enough to be interpolated
+// into it (seen: SeenBricks.h; the others are empty):
+// 1 it is empty, -1 it is not, 0 rays bend.
+//   known   voxels of `bending`, `before` of which lie before the first of the samples
+#if BRICKED
+// The same of samples that stand by bricks. Those around a brick of voxels are in the record of its number, and the
+// first two along an axis of the next one.
+__kernel void find_empty_bricks(int4 size, int4 brick_count, int4 known, int4 before,
+  __global const float4* restrict samples, __global const float4* restrict extinctions,
+  __global const float4* restrict glow, __global const float4* restrict bending, __global const uchar* restrict seen,
+  __global const int* restrict records, __global char* restrict bricks)
+{
+  const int i = get_global_id(0), j = get_global_id(1), k = get_global_id(2);
+  if (i >= brick_count.x)
+  {
+    return;
+  }
+  const int brick = (k * brick_count.y + j) * brick_count.x + i;
+  const int nx = size.x / BrickEdge + 1, ny = size.y / BrickEdge + 1, nz = size.z / BrickEdge + 1;
+  int filled = 0;
+  for (int corner = 0; corner < 8 && seen[brick] && !filled; ++corner)
+  {
+    const int dx = corner & 1, dy = corner >> 1 & 1, dz = corner >> 2;
+    const bool isThere = i + dx < nx && j + dy < ny && k + dz < nz;
+    const int first = isThere ? records[((k + dz) * ny + j + dy) * nx + i + dx] : 0;
+    for (int z = 0; z < (dz ? 2 : SampleEdge) && first != 0 && !filled; ++z)
+    {
+      for (int y = 0; y < (dy ? 2 : SAMPLE_ROWS) && !filled; ++y)
+      {
+        for (int x = 0; x < (dx ? 2 : SampleEdge); ++x)
+        {
+          filled |= is_filled(first + (z * SAMPLE_ROWS + y) * SampleEdge + x, samples, extinctions, glow);
+        }
+      }
+    }
+  }
+  bricks[brick] = filled ? -1 : 1;
+}
+#else
+__kernel void find_empty_bricks(int4 size, int4 brick_count, int4 known, int4 before,
+  __global const float4* restrict samples, __global const float4* restrict extinctions,
+  __global const float4* restrict glow, __global const float4* restrict bending, __global const uchar* restrict seen,
+  __global const int* restrict records, __global char* restrict bricks)
+{
+  const int i = get_global_id(0);
+  const int j = get_global_id(1);
+  const int k = get_global_id(2);
+  if (i >= brick_count.x)
+  {
+    return;
+  }
+  const int brick = (k * brick_count.y + j) * brick_count.x + i;
+  if (!seen[brick])
+  {
+    bricks[brick] = 1;
+    return;
+  }
+  const int row = size.x + 2;
+  const int slice = row * (size.y + 2);
+  const int x0 = i * BrickEdge, x1 = min(x0 + BrickEdge + 1, size.x + 1);
+  const int y0 = j * BrickEdge, y1 = min(y0 + BrickEdge + 1, size.y + 1);
+  const int z0 = k * BrickEdge, z1 = min(z0 + BrickEdge + 1, size.z + 1);
+  int filled = 0;
+  int bends = 0;
+#if BENDS
+#define LOOK_ON (!filled || !bends)
+#else
+#define LOOK_ON (!filled)
+#endif
+  for (int z = z0; z <= z1 && LOOK_ON; ++z)
+  {
+    for (int y = y0; y <= y1 && LOOK_ON; ++y)
+    {
+      for (int x = x0; x <= x1; ++x)
+      {
+        const int place = z * slice + y * row + x;
+        filled |= is_filled(place, samples, extinctions, glow);
+#if BENDS
+        const int there = ((z + before.z) * (known.y + 2) + y + before.y) * (known.x + 2) + x + before.x;
+        bends |= any(bending[there].xyz != (float3)(0.0f));
+#endif
+      }
+    }
+  }
+#undef LOOK_ON
+  bricks[brick] = bends ? 0 : filled ? -1 : 1;
+}
+#endif
