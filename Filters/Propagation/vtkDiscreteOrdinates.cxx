@@ -93,7 +93,8 @@ tyndall::LightField vtkDiscreteOrdinates::SolvePiece(tyndall::Communicator& comm
   std::shared_ptr<tyndall::Device> device;
   communicator.Together([&] { device = tyndall::Device::Find(this->GetDevice()); });
   tyndall::Device within(*device, tyndall::BudgetOf(this->MemoryBudget, false));
-  const tyndall::OrdinatesSettings settings = GivenSettings(this);
+  const tyndall::OrdinatesSettings settings = tyndall::AtQualityInBlocks(communicator, pieces.Partition(),
+    static_cast<tyndall::Quality>(this->Quality), GivenSettings(this), piece.medium, tyndall::MemoryOf(*device));
   tyndall::LightField light = tyndall::SolveOrdinatesInBlocks(within, communicator, pieces.Partition(), piece.medium,
     shining.illumination, settings, tyndall::MonitorOf(this), last);
   light.settingsUsed = tyndall::Words(settings);

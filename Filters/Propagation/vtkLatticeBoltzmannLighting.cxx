@@ -90,7 +90,6 @@ vtkLatticeBoltzmannLighting::vtkLatticeBoltzmannLighting()
   this->Probes = defaults.probes;
   this->MaximumOrders = defaults.maximumSteps;
   this->NetFlux = defaults.netFlux;
-  this->QualityByBlocks = true; // which looks at nothing of the medium
   this->SetNumberOfInputPorts(PHOTONS + 1);
 }
 

@@ -215,7 +215,6 @@ vtkLightPropagationMaps::vtkLightPropagationMaps()
   this->LeaveOut = defaults.leaveOut;
   this->StoredDirections = defaults.storedDirections;
   this->Last = std::make_unique<tyndall::LastLight>();
-  this->QualityByBlocks = true;
 }
 
 vtkLightPropagationMaps::~vtkLightPropagationMaps() = default;

@@ -203,7 +203,6 @@ int vtkScatteringSolver::RequestUpdateExtent(
 std::string vtkScatteringSolver::NotByAnyBlocks(vtkInformationVector** inputs) const
 {
   const std::pair<bool, const char*> reasons[] = {
-    { this->Quality != USUAL && !this->QualityByBlocks, "a Quality that chooses settings from the whole medium" },
     { this->Preview, "Preview" },
   };
   const auto found =

@@ -211,8 +211,6 @@ protected:
   bool LitColor = false;
   double Exposure = 0.0;
   int ToneCurve = 1;
-  /// Of the solver: whether pieces can be solved with a Quality other than USUAL.
-  bool QualityByBlocks = false;
 
 private:
   vtkScatteringSolver(const vtkScatteringSolver&) = delete;

@@ -257,6 +257,29 @@ TEST_F(OrdinatesBlocks, HaveTheColoursAndTheScatteringOfTheWhole)
     this->Whole(green, SettingsOf()));
 }
 
+/// As many directions as the whole has room for on the smallest device, and terms as far as any rank scatters unevenly.
+TEST(QualityOfOrdinatesInBlocks, IsThatOfTheWhole)
+{
+  MediumToCut medium = Everything({ 7, 4, 6 });
+  medium.Attach();
+  const std::size_t bytes = 6 * 49 * 4 * medium.scene.medium.grid.VoxelCount(); // of 49 directions a face
+  const DeviceMemory large, small = { 2 * bytes + 1, large.one };
+  for (const Quality quality : { Quality::Draft, Quality::Default, Quality::Fine })
+  {
+    const OrdinatesSettings expected = AtQuality(quality, {}, medium.scene.medium, small);
+    const BlockPartition partition = Slices(medium.scene.medium.grid, { 0, 5 });
+    RunInThreads(3, [&](Communicator& communicator) {
+      MediumToCut part = medium.Part(partition.blocks[communicator.Rank()]);
+      part.Attach();
+      part.scene.medium.phase = communicator.Rank() > 0 ? part.scene.medium.phase : PhaseFunction();
+      const OrdinatesSettings found = AtQualityInBlocks(
+        communicator, partition, quality, {}, part.scene.medium, communicator.Rank() == 1 ? small : large);
+      EXPECT_EQ(Words(found), Words(expected));
+    });
+    EXPECT_EQ(expected.directionsPerFace, quality == Quality::Draft ? 9 : quality == Quality::Fine ? 49 : 25);
+  }
+}
+
 TEST_F(OrdinatesBlocks, FailTogetherWithWordsOnWhatIsNotCarried)
 {
   const MediumToCut medium = Everything({ 6, 5, 4 });

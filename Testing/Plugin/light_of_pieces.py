@@ -544,12 +544,19 @@ def ordinates_by_blocks(density, array, **settings):
     return by_blocks(density, array, solve=by_ordinates, **settings)
 
 
-FACES = {"FaceAlbedo": [0, 0.4, 0, 0, 0.3, 0]}
+FACES = {"FaceAlbedo": [0, 0.4, 0, 0, 0.3, 0], "Quality": "Draft"}
 
 
 def ordinates_faces():
     own_pieces("ordinates_faces", uneven_pieces(),
-               solve=lambda density, array: ordinates_by_blocks(density, array, Lights=near_lamp(), **FACES))
+               solve=lambda density, array: drafted(density, array, Lights=near_lamp(), **FACES))
+
+
+def drafted(density, array, **settings):
+    light = ordinates_by_blocks(density, array, **settings)
+    used = facts_of(light, "settings_used")
+    assert light.GetClientSideObject().GetOutputDataObject(0).GetNumberOfCells() == 0 or "Tolerance = 0.01" in used, used
+    return light
 
 
 def ordinates_faces_whole():

@@ -162,6 +162,19 @@ std::string NotInBlocks(const OrdinatesSettings& settings)
   return IsPublished(settings) ? "the published Scheme" : std::string();
 }
 
+OrdinatesSettings AtQualityInBlocks(Communicator& communicator, const BlockPartition& partition, Quality quality,
+  const OrdinatesSettings& settings, const Medium& medium, const DeviceMemory& memory)
+{
+  const bool has = partition.blocks.at(communicator.Rank()).VoxelCount() > 0;
+  const MediumOfQuality ofAll = { partition.whole.VoxelCount(),
+    !OnAnyRank(communicator, has && !medium.phase.IsIsotropic()) };
+  constexpr double MoreThanAny = 1e18; // which a whole number of 64 bits holds
+  DeviceMemory least;
+  least.all =
+    static_cast<std::size_t>(-communicator.Largest({ -std::min(static_cast<double>(memory.all), MoreThanAny) })[0]);
+  return AtQuality(quality, settings, ofAll, least);
+}
+
 LightField SolveOrdinatesInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition,
   const Medium& medium, const Illumination& illumination, const OrdinatesSettings& settings, const Monitor& monitor,
   KeptLight* kept)

@@ -2,6 +2,7 @@
 
 #include "Device/Device.h"
 #include "Device/Monitor.h"
+#include "DiscreteOrdinates/OrdinatesQuality.h"
 #include "DiscreteOrdinates/OrdinatesSettings.h"
 #include "Distribution/BlockPartition.h"
 #include "Distribution/Communicator.h"
@@ -36,4 +37,10 @@ LightField SolveOrdinatesInBlocks(Device& device, Communicator& communicator, co
 
 /// What of a scene keeps SolveOrdinatesInBlocks from it, in words for an error; empty: nothing does.
 std::string NotInBlocks(const OrdinatesSettings& settings);
+
+/// AtQuality (OrdinatesQuality.h), as one rank chooses it that has the whole medium and the smallest memory of all. All
+/// ranks call it, and are told the same.
+/// @param memory  of this rank's device
+OrdinatesSettings AtQualityInBlocks(Communicator& communicator, const BlockPartition& partition, Quality quality,
+  const OrdinatesSettings& settings, const Medium& medium, const DeviceMemory& memory);
 }
