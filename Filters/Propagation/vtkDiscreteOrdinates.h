@@ -54,7 +54,7 @@ class LastLight;
  * all directions has to fit the device: what it takes is said before any is taken. EstimateError is not used.
  *
  * With Decomposition BLOCKS radiance goes from rank to rank (numerics.md, section 10 b): the same light, order by
- * order. Blocks cannot do, beside what no solver can: the published scheme. A Quality
+ * order. Blocks cannot do the published scheme. A Quality
  * has no more directions than half the smallest memory of all ranks would hold of the whole.
  *
  * @sa vtkSeparablePhaseFunction vtkLightPropagationMaps vtkParticipatingMedium vtkLightRig

@@ -15,9 +15,9 @@ CASES = ["lattice_wavelet", "lattice_even", "lattice_uneven", "lattice_lamps", "
 LIKE = {"published_uneven": "published_even", "lattice_uneven": "lattice_even", "ordinates_uneven": "ordinates_even"}
 
 for ranks in (1, 2, 3, 8):
-    more = ["lattice_exact", "lattice_whole", "lattice_photons_whole", "ordinates_whole", "ordinates_faces_whole", "published_whole"] if ranks == 1 else \
+    more = ["lattice_exact", "lattice_whole", "lattice_photons_whole", "ordinates_whole", "ordinates_faces_whole", "published_whole", "previews_whole"] if ranks == 1 else \
         ["lattice_errors"] if ranks == 2 else []
-    code, said = runs.run(ranks, *CASES, *more)
+    code, said = runs.run(ranks, *CASES, "previews", *more)
     assert code == 0 and said.count("is done") == ranks, said
     for case in CASES:
         light, balance = runs.whole(ranks, case, "light")
@@ -40,6 +40,12 @@ for case, of_whole in (("ordinates_even", "ordinates_whole"), ("ordinates_faces"
 blocks, whole = runs.whole(1, "published_even", "light")[0], runs.whole(1, "published_whole", "light")[0]
 print("maps as published in blocks and in the whole: %.1e" % difference(blocks, whole))
 assert difference(blocks, whole) < 1e-6
+for name in ("maps", "ordinates", "lattice"):
+    for ranks in (1, 2, 3, 8):
+        blocks, whole = runs.whole(ranks, "preview_" + name, "light"), runs.whole(1, "preview_%s_whole" % name, "light")
+        print("%d ranks, a preview of %s in blocks and in the whole: %.1e" % (ranks, name, difference(blocks[0], whole[0])))
+        assert difference(blocks[0], whole[0]) < 1e-6
+        assert abs(blocks[1] - whole[1]).max() < 1e-6 * whole[1].max(), (ranks, name)
 for ranks in (2, 3, 8):  # differences of light, which agree as that does
     error, expected = (runs.whole(count, "published_estimated", "light")[0] for count in (ranks, 1))
     off = abs(error - expected).max() / (4 * math.pi * runs.whole(1, "published_shown", "light")[0].max())
