@@ -95,7 +95,7 @@ std::string vtkDiscreteOrdinates::NotByBlocks(vtkInformationVector**) const
 
 std::string vtkDiscreteOrdinates::NotInBlocks(const tyndall::PieceOfMedium&, const tyndall::IlluminationInput&)
 {
-  return this->Preview ? std::string() : tyndall::NotInBlocks(GivenSettings(this));
+  return {};
 }
 
 tyndall::LightField vtkDiscreteOrdinates::SolvePiece(tyndall::Communicator& communicator,

@@ -568,6 +568,16 @@ def ordinates_around():
                solve=lambda density, array: ordinates_by_blocks(density, array, PeriodicX=1, FaceAlbedo=[0, 0, 0, 0, 0.3, 0]))
 
 
+def ordinates_steps():
+    """As published."""
+    own_pieces("ordinates_steps", uneven_pieces(), solve=lambda density, array: ordinates_by_blocks(density, array, Scheme="As published"))
+
+
+def ordinates_steps_whole():
+    own_pieces("ordinates_steps_whole", [piece_of([0, 12, 0, 5, 0, 4])],
+               solve=lambda density, array: by_ordinates(density, array, Scheme="As published"))
+
+
 def ordinates_even():
     own_pieces("ordinates_even", [piece_of(extent) for extent in parts(even_cuts())], solve=ordinates_by_blocks)
 
