@@ -395,10 +395,11 @@ TEST_F(OrdinatesBlocks, FailTogetherWithWordsOnWhatIsNotCarried)
   expectErrors("disagree about settings", [](int rank, MediumToCut&, OrdinatesSettings& settings, Monitor&) {
     settings.scheme = rank == 1 ? OrdinatesScheme::Published : OrdinatesScheme::Conservative;
   });
-  expectErrors("aborted", [](int rank, MediumToCut&, OrdinatesSettings&, Monitor& monitor) {
-    if (rank == 1)
-    {
-      monitor = [](double done) { return done < 0.3; };
-    }
-  });
+  for (const OrdinatesScheme scheme : { OrdinatesScheme::Conservative, OrdinatesScheme::Published })
+  {
+    expectErrors("aborted", [scheme](int rank, MediumToCut&, OrdinatesSettings& settings, Monitor& monitor) {
+      settings.scheme = scheme;
+      monitor = rank == 1 ? Monitor([](double done) { return done < 0.3; }) : Monitor();
+    });
+  }
 }

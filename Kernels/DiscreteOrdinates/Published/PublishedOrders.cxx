@@ -62,30 +62,34 @@ public:
       this->Scene.Together([&] { Report(monitor, share); });
       this->StepOnce(monitor ? Monitor([&](double) { return monitor(share); }) : Monitor());
     } while (!this->Done());
-    this->Finish();
+    this->Scene.Together([&] { this->Finish(); });
     return std::move(this->Result);
   }
 
 private:
   void Begin(const Monitor& monitor)
   {
-    for (Buffer<float>* field : { &this->Radiance, &this->Scattered, &this->Steady })
-    {
-      field->Fill(0.0f);
-    }
+    this->Scene.Together([&] {
+      for (Buffer<float>* field : { &this->Radiance, &this->Scattered, &this->Steady })
+      {
+        field->Fill(0.0f);
+      }
+    });
     if (this->Arrays.Emits())
     {
       this->Scene.Together([&] { this->Arrays.EmitEvenly(this->Steady, this->Result.ledger); });
     }
     this->Arrays.AddLamps(this->Steady, this->Settings.periodic, this->Result, monitor);
     this->OfLamps = this->Result.ledger;
-    if (this->Arrays.Faces)
-    {
-      this->LampsThroughCells = this->Arrays.Faces->TakeOut();
-    }
-    this->LampFluence = this->Arrays.Direct.Read();
-    this->LampFlux = this->Arrays.Light.flux.Read();
-    this->Fluence.assign(this->Arrays.Voxels, 0.0f);
+    this->Scene.Together([&] {
+      if (this->Arrays.Faces)
+      {
+        this->LampsThroughCells = this->Arrays.Faces->TakeOut();
+      }
+      this->LampFluence = this->Arrays.Direct.Read();
+      this->LampFlux = this->Arrays.Light.flux.Read();
+      this->Fluence.assign(this->Arrays.Voxels, 0.0f);
+    });
     if (this->Scene.guess.values.empty())
     {
       this->MoveOn(); // from darkness: nothing is scattered yet
@@ -101,8 +105,12 @@ private:
     {
       return;
     }
-    FaceLight& faces = *this->Arrays.Faces;
     this->Step->LeaveByCells(this->Radiance);
+    this->Scene.Together([&] { this->LetBackIn(*this->Arrays.Faces); });
+  }
+
+  void LetBackIn(FaceLight& faces)
+  {
     const std::vector<float> swept = faces.TakeOut();
     this->ThroughCells.resize(swept.size());
     std::vector<double> back(swept.size());
@@ -192,10 +200,8 @@ private:
     }
     if (this->Settings.netFlux)
     {
-      this->Scene.Together([&] {
-        this->Arrays.Light.flux.Fill(0.0f); // of all steps
-        this->Scattering.Gather(this->Radiance, this->Arrays.Light, {});
-      });
+      this->Arrays.Light.flux.Fill(0.0f); // of all steps
+      this->Scattering.Gather(this->Radiance, this->Arrays.Light, {});
     }
     this->Arrays.Read(this->Result);
     this->Result.fluence = this->Fluence;
