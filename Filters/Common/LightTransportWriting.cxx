@@ -286,6 +286,7 @@ void WriteLitColor(LitColor&& lit, vtkImageData* output)
 
 void WriteConvergence(const std::vector<ConvergenceRow>& rows, const std::vector<int>& sweepsSaved, vtkTable* table)
 {
+  table->Initialize(); // ParaView leaves what a rank without voxels had
   vtkNew<vtkIntArray> iteration;
   iteration->SetName("iteration");
   for (const ConvergenceRow& row : rows)

@@ -5,13 +5,14 @@
 #include "Device/Device.h"
 #include "DiscreteOrdinates/DiscreteOrdinates.h"
 #include "DiscreteOrdinates/Distributed/OrdinatesInBlocks.h"
+#include "DiscreteOrdinates/OrdinatesParts.h"
 #include "DiscreteOrdinates/OrdinatesQuality.h"
+#include "LightPropagation/Accuracy/PreviewLight.h"
 #include "Ranks/PieceBlocks.h"
 #include "Work/GuardedWork.h"
 
 #include "Propagation/LastLight.h"
 #include "Propagation/PieceOfMedium.h"
-#include "Propagation/PreviewLight.h"
 
 #include "vtkDataObject.h"
 #include "vtkImageData.h"
@@ -41,22 +42,33 @@ tyndall::OrdinatesSettings GivenSettings(vtkDiscreteOrdinates* filter)
   return settings;
 }
 
+tyndall::OrdinatesSettings OfPreview(tyndall::OrdinatesSettings settings)
+{
+  settings.directionsPerFace = std::min(settings.directionsPerFace, tyndall::PreviewDirections);
+  settings.spiralDirections = 0;
+  settings.terms = std::min(settings.terms, settings.directionsPerFace);
+  settings.tolerance = std::max(settings.tolerance, tyndall::PreviewTolerance);
+  settings.seriesAfter = tyndall::PreviewOrders;
+  settings.netFlux = false;
+  return settings;
+}
+
 tyndall::OrdinatesSettings SettingsOf(
   vtkDiscreteOrdinates* filter, const tyndall::Medium& medium, const tyndall::Device& device)
 {
-  tyndall::OrdinatesSettings settings = GivenSettings(filter);
-  if (filter->GetPreview())
-  {
-    settings.directionsPerFace = std::min(settings.directionsPerFace, tyndall::PreviewDirections);
-    settings.spiralDirections = 0;
-    settings.terms = std::min(settings.terms, settings.directionsPerFace);
-    settings.tolerance = std::max(settings.tolerance, tyndall::PreviewTolerance);
-    settings.seriesAfter = tyndall::PreviewOrders;
-    settings.netFlux = false;
-    return settings;
-  }
-  return tyndall::AtQuality(
-    static_cast<tyndall::Quality>(filter->GetQuality()), settings, medium, tyndall::MemoryOf(device));
+  const auto quality = static_cast<tyndall::Quality>(filter->GetQuality());
+  return filter->GetPreview() ? OfPreview(GivenSettings(filter))
+                              : tyndall::AtQuality(quality, GivenSettings(filter), medium, tyndall::MemoryOf(device));
+}
+
+/// As that of the whole medium of all ranks.
+tyndall::OrdinatesSettings SettingsOn(vtkDiscreteOrdinates* filter, tyndall::Communicator& communicator,
+  const tyndall::PieceBlocks& pieces, const tyndall::Medium& medium, const tyndall::Device& device)
+{
+  const auto quality = static_cast<tyndall::Quality>(filter->GetQuality());
+  return filter->GetPreview() ? OfPreview(GivenSettings(filter))
+                              : tyndall::AtQualityInBlocks(communicator, pieces.Partition(), quality,
+                                  GivenSettings(filter), medium, tyndall::MemoryOf(device));
 }
 }
 
@@ -83,19 +95,27 @@ std::string vtkDiscreteOrdinates::NotByBlocks(vtkInformationVector**) const
 
 std::string vtkDiscreteOrdinates::NotInBlocks(const tyndall::PieceOfMedium&, const tyndall::IlluminationInput&)
 {
-  return tyndall::NotInBlocks(GivenSettings(this));
+  return {};
 }
 
 tyndall::LightField vtkDiscreteOrdinates::SolvePiece(tyndall::Communicator& communicator,
   const tyndall::PieceBlocks& pieces, const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining)
 {
-  tyndall::KeptLight* const last = this->Last->Where(this->WarmStart);
+  tyndall::KeptLight* const last = this->Last->Where(this->WarmStart && !this->Preview);
   std::shared_ptr<tyndall::Device> device;
   communicator.Together([&] { device = tyndall::Device::Find(this->GetDevice()); });
   tyndall::Device within(*device, tyndall::BudgetOf(this->MemoryBudget, false));
-  const tyndall::OrdinatesSettings settings = GivenSettings(this);
-  tyndall::LightField light = tyndall::SolveOrdinatesInBlocks(within, communicator, pieces.Partition(), piece.medium,
-    shining.illumination, settings, tyndall::MonitorOf(this), last);
+  const tyndall::OrdinatesSettings settings = SettingsOn(this, communicator, pieces, piece.medium, *device);
+  const tyndall::Monitor monitor = tyndall::MonitorOf(this);
+  const tyndall::BlockPartition& partition = pieces.Partition();
+  tyndall::LightField light = this->Preview
+    ? tyndall::SolvePreviewOnFirst({ communicator, partition, piece.medium, shining.illumination }, {},
+        tyndall::AsPropagation(settings), tyndall::PreviewGrid(partition.whole),
+        [&](const tyndall::PreviewScene& scene) {
+          return tyndall::SolveDiscreteOrdinates(within, scene.medium, scene.illumination, settings, monitor);
+        })
+    : tyndall::SolveOrdinatesInBlocks(
+        within, communicator, partition, piece.medium, shining.illumination, settings, monitor, last);
   light.settingsUsed = tyndall::Words(settings);
   return light;
 }
@@ -114,12 +134,13 @@ int vtkDiscreteOrdinates::RequestData(
     const tyndall::OrdinatesSettings settings = SettingsOf(this, input.medium, *device);
     tyndall::Device within(*device, tyndall::BudgetOf(this->MemoryBudget, false));
     tyndall::KeptLight* const last = this->Last->Where(this->WarmStart && !this->Preview);
-    const tyndall::SolveIn solve = [&](const tyndall::Medium& inside, const tyndall::Illumination& shining) {
-      return tyndall::SolveDiscreteOrdinates(within, inside, shining, settings, tyndall::MonitorOf(this), last);
+    const tyndall::PreviewSolver solve = [&](const tyndall::PreviewScene& scene) {
+      return tyndall::SolveDiscreteOrdinates(
+        within, scene.medium, scene.illumination, settings, tyndall::MonitorOf(this), last);
     };
-    const tyndall::Grid coarse = tyndall::PreviewGrid(input.medium.grid);
-    tyndall::LightField light = this->Preview ? tyndall::SolvePreview(input.medium, illumination, coarse, solve)
-                                              : solve(input.medium, illumination);
+    const tyndall::PreviewScene scene = { input.medium, illumination, {} };
+    tyndall::LightField light =
+      this->Preview ? tyndall::SolvePreview(scene, tyndall::PreviewGrid(input.medium.grid), solve) : solve(scene);
     light.settingsUsed = tyndall::Words(settings);
     TellOfDefaultSky(shining, light.leftOut);
     this->WriteSolved(std::move(light), inputs, outputs);

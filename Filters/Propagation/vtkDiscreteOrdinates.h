@@ -54,7 +54,8 @@ class LastLight;
  * all directions has to fit the device: what it takes is said before any is taken. EstimateError is not used.
  *
  * With Decomposition BLOCKS radiance goes from rank to rank (numerics.md, section 10 b): the same light, order by
- * order. Blocks cannot do, beside what no solver can: a Quality other than USUAL and the published scheme.
+ * order, or as published step by step. A Quality has no more directions than half the smallest memory of all ranks
+ * would hold of the whole.
  *
  * @sa vtkSeparablePhaseFunction vtkLightPropagationMaps vtkParticipatingMedium vtkLightRig
  * @par Thanks

@@ -6,11 +6,11 @@
 #include "Device/Device.h"
 #include "LatticeBoltzmann/Distributed/LatticeInBlocks.h"
 #include "LatticeBoltzmann/LatticeBoltzmann.h"
+#include "LatticeBoltzmann/LatticeLight.h"
 #include "LatticeBoltzmann/LatticeQuality.h"
-#include "Medium/Coarsening.h"
+#include "LightPropagation/Accuracy/PreviewLight.h"
 #include "Photons/PhotonData.h"
 #include "Propagation/PieceOfMedium.h"
-#include "Propagation/PreviewLight.h"
 #include "Ranks/PieceBlocks.h"
 #include "Work/GuardedWork.h"
 
@@ -63,6 +63,40 @@ tyndall::LatticeSettings SettingsOf(vtkLatticeBoltzmannLighting* filter)
   return tyndall::AtQuality(static_cast<tyndall::Quality>(filter->GetQuality()), settings);
 }
 
+/// Whether a preview is of fewer voxels: grids that cannot be halved to cubes have their own.
+bool IsOnCoarse(vtkLatticeBoltzmannLighting* filter, const tyndall::Grid& grid)
+{
+  return filter->GetPreview() && tyndall::CubicPreviewGrid(grid).size != grid.size;
+}
+
+tyndall::PreviewSolver SolverOfWhole(vtkLatticeBoltzmannLighting* filter)
+{
+  return [filter](const tyndall::PreviewScene& scene) {
+    const std::shared_ptr<tyndall::Device> device = tyndall::Device::Find(filter->GetDevice());
+    tyndall::Device within(*device, tyndall::BudgetOf(filter->GetMemoryBudget(), true));
+    return tyndall::SolveLatticeBoltzmann(
+      within, scene.medium, scene.index, scene.illumination, SettingsOf(filter), tyndall::MonitorOf(filter));
+  };
+}
+
+/// Of few voxels as a whole, of more by blocks.
+tyndall::LightField SolvePreviewOfPiece(vtkLatticeBoltzmannLighting* filter, tyndall::Device& device,
+  const tyndall::SceneInBlocks& own, const tyndall::Field& ior)
+{
+  const tyndall::LatticeSettings settings = SettingsOf(filter);
+  const tyndall::PropagationSettings alike = tyndall::AsPropagation(settings);
+  const tyndall::Grid coarse = tyndall::CubicPreviewGrid(own.partition.whole);
+  if (coarse.VoxelCount() <= tyndall::PreviewVoxels)
+  {
+    return tyndall::SolvePreviewOnFirst(own, ior, alike, coarse, SolverOfWhole(filter));
+  }
+  return tyndall::SolvePreviewInBlocks(
+    own, ior, alike, coarse, [&](const tyndall::PreviewScene& scene, const tyndall::BlockPartition& blocks) {
+      return tyndall::SolveLatticeInBlocks(device, own.others, blocks, scene.medium, scene.index, scene.illumination,
+        settings, tyndall::MonitorOf(filter));
+    });
+}
+
 /// Of all power, what is in none of the balance's accounts but the last, the worst channel.
 double LeftOverOf(const tyndall::LightField& light)
 {
@@ -90,7 +124,6 @@ vtkLatticeBoltzmannLighting::vtkLatticeBoltzmannLighting()
   this->Probes = defaults.probes;
   this->MaximumOrders = defaults.maximumSteps;
   this->NetFlux = defaults.netFlux;
-  this->QualityByBlocks = true; // which looks at nothing of the medium
   this->SetNumberOfInputPorts(PHOTONS + 1);
 }
 
@@ -160,27 +193,11 @@ tyndall::LightField vtkLatticeBoltzmannLighting::Solve(vtkInformationVector** in
   const bool emits = input.Emits();
   const tyndall::IlluminationInput shining = this->ReadShining(inputs, emits);
   this->WarnWhereDark(shining.illumination, emits);
-  const auto solve = [&](const tyndall::Medium& inside, const tyndall::Illumination& illumination,
-                       const tyndall::Field& index) {
-    const std::shared_ptr<tyndall::Device> device = tyndall::Device::Find(this->GetDevice());
-    tyndall::Device within(*device, tyndall::BudgetOf(this->MemoryBudget, true));
-    return tyndall::SolveLatticeBoltzmann(
-      within, inside, index, illumination, SettingsOf(this), tyndall::MonitorOf(this));
-  };
+  const tyndall::PreviewScene scene = { input.medium, shining.illumination, ior };
   tyndall::LightField light = Timed(this->Seconds, [&] {
-    // A preview of grids that cannot be halved to cubes has their own voxels.
-    const tyndall::Grid coarse = tyndall::CubicPreviewGrid(input.medium.grid);
-    if (!this->Preview || coarse.size == input.medium.grid.size)
-    {
-      return solve(input.medium, shining.illumination, ior);
-    }
-    const std::vector<float> coarseIndex =
-      ior.IsThere() ? tyndall::Coarsening(input.medium.grid, coarse).Average(ior.Values(), 1) : std::vector<float>();
-    const tyndall::Field index = { ior.IsThere() ? coarseIndex.data() : nullptr, 1 };
-    return tyndall::SolvePreview(input.medium, shining.illumination, coarse,
-      [&](const tyndall::Medium& inside, const tyndall::Illumination& illumination) {
-        return solve(inside, illumination, index);
-      });
+    const tyndall::PreviewSolver solve = SolverOfWhole(this);
+    const tyndall::Grid& grid = input.medium.grid;
+    return IsOnCoarse(this, grid) ? tyndall::SolvePreview(scene, tyndall::CubicPreviewGrid(grid), solve) : solve(scene);
   });
   TellOfDefaultSky(shining, light.leftOut);
   return light;
@@ -238,6 +255,10 @@ tyndall::LightField vtkLatticeBoltzmannLighting::SolvePiece(tyndall::Communicato
     const tyndall::BlockPartition& blocks = pieces.Partition();
     const tyndall::Monitor monitor = tyndall::MonitorOf(this);
     tyndall::Device within(*device, tyndall::BudgetOf(this->MemoryBudget, true));
+    if (!piece.share && IsOnCoarse(this, blocks.whole))
+    {
+      return SolvePreviewOfPiece(this, within, { communicator, blocks, piece.medium, shining.illumination }, ior);
+    }
     return piece.share ? tyndall::SolveLatticeInBlocks(within, communicator, blocks, piece.medium, ior, photons,
                            shining.illumination, settings, monitor)
                        : tyndall::SolveLatticeInBlocks(

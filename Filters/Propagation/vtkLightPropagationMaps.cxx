@@ -7,6 +7,7 @@
 #include "Distribution/SharedMedium.h"
 #include "LightPropagation/Accuracy/ErrorEstimate.h"
 #include "LightPropagation/Accuracy/ErrorInBlocks.h"
+#include "LightPropagation/Accuracy/PreviewLight.h"
 #include "LightPropagation/Accuracy/TargetError.h"
 #include "LightPropagation/Conservative/ConservativePropagation.h"
 #include "LightPropagation/Distributed/PropagationInBlocks.h"
@@ -19,7 +20,6 @@
 
 #include "Propagation/LastLight.h"
 #include "Propagation/PieceOfMedium.h"
-#include "Propagation/PreviewLight.h"
 
 #include "vtkDataObject.h"
 #include "vtkImageData.h"
@@ -117,6 +117,23 @@ tyndall::LightField SolvePublished(vtkLightPropagationMaps* filter, tyndall::Dev
   return tyndall::SolveParallel(within, medium, illumination, settings, monitor, 0, kept);
 }
 
+/// By the scheme that is asked for, the whole.
+/// @param ofGrid  whose light is kept: not that of coarser or divided grids
+tyndall::PropagationSolver SolverOf(
+  vtkLightPropagationMaps* filter, const tyndall::Medium* ofGrid, tyndall::KeptLight* last)
+{
+  const bool published = filter->GetScheme() == vtkLightPropagationMaps::PUBLISHED;
+  const bool sequential = published && filter->GetAlgorithm() == vtkLightPropagationMaps::SEQUENTIAL;
+  const std::shared_ptr<tyndall::Device> device = sequential ? nullptr : tyndall::Device::Find(filter->GetDevice());
+  return [=](const tyndall::Medium& inside, const tyndall::Illumination& shining,
+           const tyndall::PropagationSettings& how, const tyndall::Monitor& watch) {
+    tyndall::KeptLight* const kept = &inside == ofGrid ? last : nullptr;
+    return sequential ? tyndall::SolveSequential(inside, shining, how, watch)
+      : published     ? SolvePublished(filter, *device, inside, shining, how, watch, kept)
+                      : tyndall::SolveConservative(*device, inside, shining, how, watch, kept);
+  };
+}
+
 tyndall::LightField Solve(vtkLightPropagationMaps* filter, const tyndall::Medium& medium,
   const tyndall::Illumination& illumination, tyndall::KeptLight* last)
 {
@@ -124,21 +141,10 @@ tyndall::LightField Solve(vtkLightPropagationMaps* filter, const tyndall::Medium
     ? OfPreview(SettingsOf(filter))
     : tyndall::AtQuality(static_cast<tyndall::Quality>(filter->GetQuality()), SettingsOf(filter), medium, illumination);
   const tyndall::Monitor monitor = tyndall::MonitorOf(filter);
-  const bool published = filter->GetScheme() == vtkLightPropagationMaps::PUBLISHED;
-  const bool sequential = published && filter->GetAlgorithm() == vtkLightPropagationMaps::SEQUENTIAL;
-  const std::shared_ptr<tyndall::Device> device = sequential ? nullptr : tyndall::Device::Find(filter->GetDevice());
-  const tyndall::PropagationSolver solve = [&](const tyndall::Medium& inside, const tyndall::Illumination& shining,
-                                             const tyndall::PropagationSettings& how, const tyndall::Monitor& watch) {
-    tyndall::KeptLight* const kept = &inside == &medium ? last : nullptr; // not of coarser or divided ones
-    return sequential ? tyndall::SolveSequential(inside, shining, how, watch)
-      : published     ? SolvePublished(filter, *device, inside, shining, how, watch, kept)
-                      : tyndall::SolveConservative(*device, inside, shining, how, watch, kept);
-  };
+  const tyndall::PropagationSolver solve = SolverOf(filter, &medium, last);
   tyndall::LightField light = filter->GetPreview()
-    ? tyndall::SolvePreview(medium, illumination, tyndall::PreviewGrid(medium.grid),
-        [&](const tyndall::Medium& inside, const tyndall::Illumination& shining) {
-          return solve(inside, shining, settings, monitor);
-        })
+    ? tyndall::SolvePreview({ medium, illumination, {} }, tyndall::PreviewGrid(medium.grid),
+        [&](const tyndall::PreviewScene& scene) { return solve(scene.medium, scene.illumination, settings, monitor); })
     : filter->GetTargetError() > 0.0 ? SolveToTarget(filter, medium, illumination, monitor, solve)
     : filter->GetEstimateError()     ? tyndall::SolveWithErrorEstimate(medium, illumination, settings, monitor, solve)
                                      : solve(medium, illumination, settings, monitor);
@@ -183,6 +189,20 @@ tyndall::LightField SolvePublishedPiece(vtkLightPropagationMaps* filter, tyndall
   return light;
 }
 
+/// The first rank solves the coarse grid as a whole, so that nothing is what blocks cannot do.
+tyndall::LightField SolvePreviewOfPiece(vtkLightPropagationMaps* filter, const tyndall::SceneInBlocks& scene)
+{
+  tyndall::PropagationSolver solve;
+  scene.others.Together([&] { solve = SolverOf(filter, nullptr, nullptr); });
+  const tyndall::PropagationSettings settings = OfPreview(SettingsOf(filter));
+  const tyndall::Monitor monitor = tyndall::MonitorOf(filter);
+  tyndall::LightField light = tyndall::SolvePreviewOnFirst(scene, {}, settings,
+    tyndall::PreviewGrid(scene.partition.whole),
+    [&](const tyndall::PreviewScene& coarse) { return solve(coarse.medium, coarse.illumination, settings, monitor); });
+  light.settingsUsed = tyndall::Words(settings);
+  return light;
+}
+
 /// As Quality has them for the medium of all ranks; a target chooses by itself.
 tyndall::PropagationSettings SettingsOn(vtkLightPropagationMaps* filter, tyndall::Communicator& communicator,
   const tyndall::PieceBlocks& pieces, const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining)
@@ -215,13 +235,16 @@ vtkLightPropagationMaps::vtkLightPropagationMaps()
   this->LeaveOut = defaults.leaveOut;
   this->StoredDirections = defaults.storedDirections;
   this->Last = std::make_unique<tyndall::LastLight>();
-  this->QualityByBlocks = true;
 }
 
 vtkLightPropagationMaps::~vtkLightPropagationMaps() = default;
 
 std::string vtkLightPropagationMaps::NotByBlocks(vtkInformationVector**) const
 {
+  if (this->Preview)
+  {
+    return {};
+  }
   const std::pair<bool, const char*> reasons[] = {
     { this->Scheme == PUBLISHED && this->Algorithm == SEQUENTIAL, "the sequential Algorithm of the published Scheme" },
     { this->Scheme == PUBLISHED && this->TargetError > 0.0, "TargetError of the published Scheme" },
@@ -235,8 +258,9 @@ std::string vtkLightPropagationMaps::NotByBlocks(vtkInformationVector**) const
 std::string vtkLightPropagationMaps::NotInBlocks(
   const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining)
 {
-  return this->Scheme == PUBLISHED ? std::string()
-                                   : tyndall::NotInBlocks(piece.medium, shining.illumination, SettingsOf(this));
+  return this->Scheme == PUBLISHED || this->Preview
+    ? std::string()
+    : tyndall::NotInBlocks(piece.medium, shining.illumination, SettingsOf(this));
 }
 
 std::string vtkLightPropagationMaps::BetterAsWhole(tyndall::Communicator& communicator,
@@ -254,6 +278,10 @@ std::string vtkLightPropagationMaps::BetterAsWhole(tyndall::Communicator& commun
 tyndall::LightField vtkLightPropagationMaps::SolvePiece(tyndall::Communicator& communicator,
   const tyndall::PieceBlocks& pieces, const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining)
 {
+  if (this->Preview)
+  {
+    return SolvePreviewOfPiece(this, { communicator, pieces.Partition(), piece.medium, shining.illumination });
+  }
   const bool published = IsPublishedOnAll(this, communicator);
   tyndall::KeptLight* const last = this->Last->Where(this->WarmStart);
   const std::shared_ptr<tyndall::Device> device = DeviceOnAll(this, communicator);

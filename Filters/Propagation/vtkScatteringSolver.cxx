@@ -22,7 +22,6 @@
 #include "vtkTable.h"
 
 #include <algorithm>
-#include <iterator>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -186,7 +185,7 @@ bool vtkScatteringSolver::WantsBlocks(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) const
 {
   return this->Decomposition == AUTOMATIC_DECOMPOSITION ? tyndall::EachAsksForItsPiece(request, outputs) &&
-      tyndall::IsWorthPieces(inputs[MEDIUM]) && this->NotByAnyBlocks(inputs).empty()
+      tyndall::IsWorthPieces(inputs[MEDIUM]) && this->NotByBlocks(inputs).empty()
                                                         : this->Decomposition == BLOCKS;
 }
 
@@ -199,24 +198,11 @@ int vtkScatteringSolver::RequestUpdateExtent(
   return 1;
 }
 
-/// What keeps solvers of all kinds from solving pieces, or this one.
-std::string vtkScatteringSolver::NotByAnyBlocks(vtkInformationVector** inputs) const
-{
-  const std::pair<bool, const char*> reasons[] = {
-    { this->Quality != USUAL && !this->QualityByBlocks, "a Quality that chooses settings from the whole medium" },
-    { this->Preview, "Preview" },
-  };
-  const auto found =
-    std::find_if(std::begin(reasons), std::end(reasons), [](const auto& reason) { return reason.first; });
-  const std::string ofSolver = this->NotByBlocks(inputs);
-  return !ofSolver.empty() || found == std::end(reasons) ? ofSolver : found->second;
-}
-
 /// What keeps this rank from solving its piece, in words; empty: nothing, and what shines on it is read.
 std::string vtkScatteringSolver::NotOnPiece(const tyndall::PieceBlocks& pieces, tyndall::PieceOfMedium& piece,
   tyndall::IlluminationInput& shining, vtkInformationVector** inputs)
 {
-  std::string refused = this->NotByAnyBlocks(inputs);
+  std::string refused = this->NotByBlocks(inputs);
   vtkImageData* const given = vtkImageData::GetData(inputs[UNCOLLIDED]);
   if (refused.empty() && given && !pieces.HasOwnOf(given))
   {
@@ -246,7 +232,7 @@ bool vtkScatteringSolver::GiveOrSolvePiece(vtkInformation* request, vtkMultiProc
   if (!agreed)
   {
     const bool asked = this->Decomposition == AUTOMATIC_DECOMPOSITION && tyndall::EachAsksForItsPiece(request, outputs);
-    std::string refused = this->NotByAnyBlocks(inputs);
+    std::string refused = this->NotByBlocks(inputs);
     if (refused.empty())
     {
       refused =
@@ -273,7 +259,8 @@ bool vtkScatteringSolver::GiveOrSolvePiece(vtkInformation* request, vtkMultiProc
         ". Leave it out, or let each rank solve the whole.");
   });
   this->WholeFor = tyndall::WordsOfAny(communicator, refused);
-  const bool chooses = !tyndall::OnAnyRank(communicator, this->Decomposition == BLOCKS);
+  tyndall::RequireSame(communicator, "Preview", true, { this->Preview ? 1.0 : 0.0 });
+  const bool chooses = !this->Preview && !tyndall::OnAnyRank(communicator, this->Decomposition == BLOCKS);
   if (this->WholeFor.empty() && chooses)
   {
     this->WholeFor = this->BetterAsWhole(communicator, pieces, piece, shining);

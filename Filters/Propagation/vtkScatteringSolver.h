@@ -86,7 +86,7 @@ public:
   /// What each of several ranks of MPI solves. With WHOLE all of the medium, which each then holds. With BLOCKS its
   /// piece: light is handed on from rank to rank, and no rank holds another's voxels but for a layer or two; one rank
   /// alone solves the same way then, so that light does not depend on their number, but for rounding. An error names
-  /// what blocks cannot do; of all solvers this is Preview; the subclass says what else.
+  /// what blocks cannot do, which the subclass says.
   /// AUTOMATIC_DECOMPOSITION (default): BLOCKS where each of several ranks is asked for its piece of more than 64^3
   /// voxels, the scene can be solved so, and the whole would not be solved more exactly or much sooner; else WHOLE.
   tyndallSetRangeMacro(Decomposition, int, AUTOMATIC_DECOMPOSITION, BLOCKS);
@@ -105,7 +105,8 @@ public:
   /// Whether to find the light on half as many voxels along each axis (and half of those where many are left; LeftOut
   /// says how many), along few directions and to some percent, as a preview while lights are moved: `fluence` and
   /// `fluence_direct` alone, linear between the coarse voxels' middles. Quality, TargetError and WarmStart are not read
-  /// then. Default off.
+  /// then. By blocks (Decomposition) each rank averages its piece, and the first that has voxels solves the coarse grid
+  /// for all. Default off.
   vtkSetMacro(Preview, bool);
   vtkGetMacro(Preview, bool);
   vtkBooleanMacro(Preview, bool);
@@ -179,13 +180,13 @@ protected:
   /// What of a solve is told on the panel; of an empty one before solving, and where it failed.
   virtual void Note(const tyndall::LightField& light) = 0;
 
-  /// What among properties and inputs keeps this solver from solving pieces, beside what keeps all of them, in words
-  /// for an error; empty: nothing does.
+  /// What among properties and inputs keeps this solver from solving pieces, in words for an error; empty: nothing
+  /// does.
   virtual std::string NotByBlocks(vtkInformationVector** inputs) const = 0;
   /// The same of a scene that was read.
   virtual std::string NotInBlocks(const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining) = 0;
   /// What of a scene that pieces can be solved of the whole is solved more exactly or much sooner for, in words that
-  /// follow "better for"; empty: nothing is. All ranks call it, and are told the same.
+  /// follow "better for"; empty: nothing is. Not asked of previews. All ranks call it, and are told the same.
   virtual std::string BetterAsWhole(tyndall::Communicator& communicator, const tyndall::PieceBlocks& pieces,
     const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining);
   /// Solves this rank's piece. All ranks call it; none has been refused.
@@ -211,8 +212,6 @@ protected:
   bool LitColor = false;
   double Exposure = 0.0;
   int ToneCurve = 1;
-  /// Of the solver: whether pieces can be solved with a Quality other than USUAL.
-  bool QualityByBlocks = false;
 
 private:
   vtkScatteringSolver(const vtkScatteringSolver&) = delete;
@@ -223,7 +222,6 @@ private:
     tyndall::IlluminationInput& shining, vtkInformationVector** inputs);
   void TellOfPieces(tyndall::LightField& light, bool inBlocks) const;
   bool WantsBlocks(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) const;
-  std::string NotByAnyBlocks(vtkInformationVector** inputs) const;
   bool GiveOrSolvePiece(vtkInformation* request, vtkMultiProcessController* ranks, vtkInformationVector** inputs,
     vtkInformationVector* outputs);
   bool GivePiece(tyndall::Communicator& communicator, const tyndall::PieceBlocks& pieces, vtkInformationVector** inputs,

@@ -7,7 +7,6 @@
 #include "DiscreteOrdinates/SweptOrders.h"
 #include "Light/LeftOut.h"
 #include "LightPropagation/Problem/PropagationProblem.h"
-#include "Numerics/NumberText.h"
 
 #include <algorithm>
 #include <string>
@@ -44,29 +43,6 @@ std::vector<std::string> Words(const PropagationProblem& problem, const FarLight
   return words;
 }
 
-std::vector<std::string> DoubtsOf(const PropagationProblem& problem, const OrdinatesSettings& settings)
-{
-  std::vector<std::string> doubts;
-  double thickest = 0.0;
-  for (int c = 0; c < problem.Channels(); ++c)
-  {
-    thickest = std::max(thickest, ThickestStep(problem.TheMedium(), c));
-  }
-  if (IsPublished(settings) && thickest > 1.0)
-  {
-    doubts.push_back("Explicit steps as published are not stable where sigma_t times the step, the shortest edge of a "
-                     "voxel, is above 1: here it is up to " +
-      Text("%.3g", thickest) +
-      ". Radiance becomes negative, and above 2 it grows without end. Choose the conservative scheme, or finer "
-      "voxels.");
-  }
-  if (problem.TheMedium().phase.Varies())
-  {
-    doubts.emplace_back(DoubtOfVaryingCosine);
-  }
-  return doubts;
-}
-
 LightKind KindOf(const PropagationProblem& problem, const OrdinatesSettings& settings)
 {
   LightKind kind;
@@ -88,7 +64,12 @@ LightField SolveDiscreteOrdinates(Device& device, const Medium& medium, const Il
   solved.periodic = problem.Settings().periodic;
   LightField light;
   light.channels = problem.Channels();
-  light.doubts = DoubtsOf(problem, settings);
+  double thickest = 0.0;
+  for (int c = 0; c < light.channels; ++c)
+  {
+    thickest = std::max(thickest, ThickestStep(problem.TheMedium(), c));
+  }
+  light.doubts = DoubtsOf(settings, thickest, problem.TheMedium().phase.Varies());
   bool diverged = false;
   OrdinatesWarmStart warm(kept, settings);
   for (int c = 0; c < light.channels; ++c)
@@ -96,7 +77,7 @@ LightField SolveDiscreteOrdinates(Device& device, const Medium& medium, const Il
     const PhaseFunction function = FunctionOf(problem.TheMedium(), c, nullptr);
     const OrdinatesAngles angles = { OrdinateGroups(far.directions), SeparableOf(function, far.directions, settings),
       function };
-    CheckMemory(device, problem.TheGrid(), angles, settings);
+    CheckMemory(device, problem.TheGrid(), angles, settings, false);
     const OrdinatesScene scene = { problem.TheMedium(), c, LampsOf(far, problem.Shining(), c),
       IncomingOf(far, problem.Shining(), c), FaceAlbedoOf(problem.Shining(), c), UncollidedOf(problem.Shining(), c),
       warm.Begin(c, KindOf(problem, settings), angles, nullptr) };

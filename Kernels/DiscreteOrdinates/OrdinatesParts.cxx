@@ -149,10 +149,30 @@ SeparablePhaseFunction SeparableOf(
   return { function, directions, separable };
 }
 
-void CheckMemory(Device& device, const Grid& grid, const OrdinatesAngles& angles, const OrdinatesSettings& settings)
+std::vector<std::string> DoubtsOf(const OrdinatesSettings& settings, double thickestStep, bool cosineVaries)
 {
-  const std::size_t bytes =
-    IsPublished(settings) ? BytesOfPublishedOrders(grid, angles, settings) : BytesOfSweptOrders(grid, angles, settings);
+  std::vector<std::string> doubts;
+  if (IsPublished(settings) && thickestStep > 1.0)
+  {
+    doubts.push_back("Explicit steps as published are not stable where sigma_t times the step, the shortest edge of a "
+                     "voxel, is above 1: here it is up to " +
+      Text("%.3g", thickestStep) +
+      ". Radiance becomes negative, and above 2 it grows without end. Choose the conservative scheme, or finer "
+      "voxels.");
+  }
+  if (cosineVaries)
+  {
+    doubts.emplace_back("The mean cosine g varies by voxel; discrete ordinates are solved with its mean, weighted by "
+                        "sigma_s. Light Propagation Maps tell voxels apart.");
+  }
+  return doubts;
+}
+
+void CheckMemory(
+  Device& device, const Grid& grid, const OrdinatesAngles& angles, const OrdinatesSettings& settings, bool inBlocks)
+{
+  const std::size_t bytes = IsPublished(settings) ? BytesOfPublishedOrders(grid, angles, settings, inBlocks)
+                                                  : BytesOfSweptOrders(grid, angles, settings);
   const std::size_t radiance = sizeof(float) * AngularScattering::Floats(angles.groups, grid.VoxelCount());
   const std::size_t free = device.MemoryLimit() - device.BytesInUse();
   if (bytes <= free && radiance <= device.AllocationLimit())

@@ -9,6 +9,7 @@
 #include "PhaseFunction/SeparablePhaseFunction.h"
 
 #include <array>
+#include <string>
 #include <vector>
 
 namespace tyndall
@@ -35,9 +36,9 @@ FarLight FarLightOf(const Illumination& shining, int perFace, const OrdinatesSet
 /// @param ranks  of all of which; all call it. Null: the medium is the whole
 PhaseFunction FunctionOf(const Medium& medium, int channel, const OrdinatesRanks* ranks);
 
-constexpr auto DoubtOfVaryingCosine =
-  "The mean cosine g varies by voxel; discrete ordinates are solved with its mean, weighted by sigma_s. Light "
-  "Propagation Maps tell voxels apart.";
+/// What of a medium makes light doubtful.
+/// @param thickestStep  ThickestStep of all channels
+std::vector<std::string> DoubtsOf(const OrdinatesSettings& settings, double thickestStep, bool cosineVaries);
 
 /// Those of a channel in all three.
 std::array<Rgb, 6> FaceAlbedoOf(const Illumination& shining, int channel);
@@ -47,7 +48,9 @@ SeparablePhaseFunction SeparableOf(
   const PhaseFunction& function, const std::vector<Direction>& directions, const OrdinatesSettings& settings);
 
 /// @throws DeviceError that says what is needed
-void CheckMemory(Device& device, const Grid& grid, const OrdinatesAngles& angles, const OrdinatesSettings& settings);
+/// @param inBlocks  the grid is one of several ranks'
+void CheckMemory(
+  Device& device, const Grid& grid, const OrdinatesAngles& angles, const OrdinatesSettings& settings, bool inBlocks);
 
 /// Sees `far` and `shining`, which must stay. Empty: nothing comes in.
 IncomingRadiance IncomingOf(const FarLight& far, const Illumination& shining, int channel);

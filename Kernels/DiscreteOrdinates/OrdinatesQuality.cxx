@@ -17,23 +17,24 @@ struct Level
 constexpr Level Draft = { 3, 9, 1e-2 }, Fine = { 8, 49, 1e-4 }, Reference = { 12, 100, 1e-5 };
 
 /// Rows of directions whose radiance, one channel of every voxel, takes at most half of the memory.
-int RowsThatFit(int rows, int atLeast, const Grid& grid, const DeviceMemory& memory)
+int RowsThatFit(int rows, int atLeast, std::size_t voxels, const DeviceMemory& memory)
 {
   constexpr std::size_t Faces = 6;
-  while (rows > atLeast && Faces * rows * rows * sizeof(float) * grid.VoxelCount() > memory.all / 2)
+  while (rows > atLeast && Faces * rows * rows * sizeof(float) * voxels > memory.all / 2)
   {
     --rows;
   }
   return rows;
 }
 
-void SetLevel(const Level& level, OrdinatesSettings& settings, const Medium& medium, const DeviceMemory& memory)
+void SetLevel(
+  const Level& level, OrdinatesSettings& settings, const MediumOfQuality& medium, const DeviceMemory& memory)
 {
   const OrdinatesSettings byDefault;
-  const int rows = RowsThatFit(level.rows, Draft.rows, medium.grid, memory);
+  const int rows = RowsThatFit(level.rows, Draft.rows, medium.voxels, memory);
   SetUnlessChosen(settings.directionsPerFace, byDefault.directionsPerFace, rows * rows);
   SetUnlessChosen(settings.tolerance, byDefault.tolerance, level.tolerance);
-  if (!medium.phase.IsIsotropic())
+  if (!medium.isIsotropic)
   {
     SetUnlessChosen(settings.terms, byDefault.terms, level.terms);
   }
@@ -42,6 +43,12 @@ void SetLevel(const Level& level, OrdinatesSettings& settings, const Medium& med
 
 OrdinatesSettings AtQuality(
   Quality quality, OrdinatesSettings settings, const Medium& medium, const DeviceMemory& memory)
+{
+  return AtQuality(quality, settings, MediumOfQuality{ medium.grid.VoxelCount(), medium.phase.IsIsotropic() }, memory);
+}
+
+OrdinatesSettings AtQuality(
+  Quality quality, OrdinatesSettings settings, const MediumOfQuality& medium, const DeviceMemory& memory)
 {
   switch (quality)
   {

@@ -5,6 +5,7 @@
 #include "LightPropagation/Problem/AngularDegree.h"
 #include "Medium/Medium.h"
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,15 @@ namespace tyndall
 /// as `settings` has them at their default values. No more directions than half the device's memory holds.
 OrdinatesSettings AtQuality(
   Quality quality, OrdinatesSettings settings, const Medium& medium, const DeviceMemory& memory);
+
+/// What of a medium that matters for.
+struct MediumOfQuality
+{
+  std::size_t voxels = 0;  ///< of the whole grid
+  bool isIsotropic = true; ///< the phase function
+};
+OrdinatesSettings AtQuality(
+  Quality quality, OrdinatesSettings settings, const MediumOfQuality& medium, const DeviceMemory& memory);
 
 /// "Name = value" of each setting that a quality may choose.
 std::vector<std::string> Words(const OrdinatesSettings& settings);

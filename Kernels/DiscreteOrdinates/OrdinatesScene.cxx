@@ -31,6 +31,11 @@ std::unique_ptr<FaceLight> FaceLightOf(Device& device, const OrdinatesScene& sce
   return std::make_unique<FaceLight>(device, grid, 1, std::move(ofCells), scene.faceAlbedo);
 }
 
+std::optional<LightOfCells> CellsOf(const FaceLight* faces)
+{
+  return faces ? std::optional<LightOfCells>({ faces->Out(), faces->In() }) : std::nullopt;
+}
+
 SweepTally OrdinatesRanks::Sum(const SweepTally& own) const
 {
   SweepTally sum = own;

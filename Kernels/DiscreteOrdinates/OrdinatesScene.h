@@ -17,6 +17,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace tyndall
@@ -89,6 +90,9 @@ struct OrdinatesResult
 /// What the box's faces give back along the directions of a solve: of what leaves through a cell their albedo, the same
 /// radiance along all that come in (numerics.md, Eq. (D14)). Null: none gives back any.
 std::unique_ptr<FaceLight> FaceLightOf(Device& device, const OrdinatesScene& scene, const OrdinateGroups& groups);
+
+/// What whoever carries light sees of that; nothing where no face gives back any.
+std::optional<LightOfCells> CellsOf(const FaceLight* faces);
 
 /// Rows of the convergence table, with an estimate of what is still to come from how fast orders become smaller.
 class OrdinatesRecord

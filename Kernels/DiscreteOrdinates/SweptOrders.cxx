@@ -26,12 +26,6 @@ bool CanBeNegative(const OrdinatesAngles& angles, const OrdinatesSettings& setti
   return SumsOf(settings) == PairSums::Matrix || angles.phase.Terms() > 1;
 }
 
-/// Whoever sweeps with faces that give back light sees these.
-std::optional<LightOfCells> CellsOf(const FaceLight* faces)
-{
-  return faces ? std::optional<LightOfCells>({ faces->Out(), faces->In() }) : std::nullopt;
-}
-
 std::unique_ptr<OrdinateSweep> SweepOf(Device& device, const OrdinatesScene& scene, const OrdinatesAngles& angles,
   const OrdinatesSettings& settings, const LightOfCells* reflecting)
 {

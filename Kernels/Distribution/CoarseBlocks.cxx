@@ -6,19 +6,19 @@
 
 namespace tyndall
 {
-CoarseBlocks::CoarseBlocks(Communicator& communicator, const BlockPartition& fine)
+CoarseBlocks::CoarseBlocks(Communicator& communicator, const BlockPartition& fine, const Grid& coarse)
   : TheCommunicator(communicator)
   , FinePartition(fine)
-  , Whole(fine.whole)
+  , Whole(fine.whole, coarse)
   , OwnPart(Whole)
   , SeenPart(Whole)
 {
   this->CoarsePartition.whole = this->Whole.Coarse();
   for (const VoxelBox& block : fine.blocks)
   {
-    const VoxelBox coarse = block.VoxelCount() > 0 ? this->Whole.CoarseBox(block) : VoxelBox();
-    const VoxelBox around = this->Whole.FineBox(coarse), seen = this->Whole.ParentBox(block);
-    this->CoarsePartition.blocks.push_back(coarse);
+    const VoxelBox own = block.VoxelCount() > 0 ? this->Whole.CoarseBox(block) : VoxelBox();
+    const VoxelBox around = this->Whole.FineBox(own), seen = this->Whole.ParentBox(block);
+    this->CoarsePartition.blocks.push_back(own);
     this->AroundBoxes.push_back(around);
     this->SeenBoxes.push_back(seen.VoxelCount() > 0 ? Grown(seen, 1, this->Whole.Coarse()) : seen);
     this->AnyStraddles = this->AnyStraddles || Common(around, block).VoxelCount() < around.VoxelCount();

@@ -9,14 +9,20 @@
 
 namespace tyndall
 {
-/// A grid in blocks, one a rank, and the grid of half the voxels an axis (Coarsening.h) in blocks of its own: a rank
+/// A grid in blocks, one a rank, and a coarser grid (Coarsening.h) in blocks of its own: a rank
 /// has the coarse voxels whose centres lie in its block. Where blocks end amid coarse voxels these need fine voxels of
 /// neighbours. Of a rank that has none, or thin blocks, there may be no coarse voxels. One rank has both grids whole.
 class CoarseBlocks
 {
 public:
   /// @param communicator  must stay
-  CoarseBlocks(Communicator& communicator, const BlockPartition& fine);
+  /// @param coarse  over the same box, nowhere finer
+  CoarseBlocks(Communicator& communicator, const BlockPartition& fine, const Grid& coarse);
+  /// Of half the voxels an axis.
+  CoarseBlocks(Communicator& communicator, const BlockPartition& fine)
+    : CoarseBlocks(communicator, fine, Coarsening(fine.whole).Coarse())
+  {
+  }
 
   Communicator& Others() const { return this->TheCommunicator; }
   const BlockPartition& Fine() const { return this->FinePartition; }
@@ -35,7 +41,8 @@ public:
   /// Means over this rank's coarse voxels. All ranks call it.
   std::vector<float> Average(const std::vector<float>& values, int components) const;
 
-  /// From this rank's fine voxels to the coarse ones in which they lie (Parent) and a layer of voxels round these.
+  /// From this rank's fine voxels to the coarse ones in which they lie (Parent) and a layer of voxels round these,
+  /// between which it refines.
   const Coarsening& Seen() const { return this->SeenPart; }
   /// Values of the latter. All ranks call it.
   /// @param values  `components` for each of this rank's coarse voxels

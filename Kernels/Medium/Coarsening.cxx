@@ -1,5 +1,6 @@
 #include "Medium/Coarsening.h"
 
+#include "Device/HostThreads.h"
 #include "Medium/GridOfBox.h"
 
 #include <algorithm>
@@ -58,6 +59,11 @@ std::vector<float> AverageAlong(const CoarsenedAxis& axis, const float* values, 
     }
   }
   return means;
+}
+
+float Mix(float first, float second, float part)
+{
+  return first + part * (second - first);
 }
 
 Grid Halved(Grid grid)
@@ -207,6 +213,66 @@ std::vector<float> Coarsening::Average(const Field& values, const Field& weights
     means[i] = sums[i] > 0.0f ? std::clamp(means[i] / sums[i], least, largest) : 0.0f;
   }
   return means;
+}
+
+/// Of a fine voxel along an axis: its value is (1 - part) of the coarse voxel `first`, of those that an array has, and
+/// part of `second`.
+struct Coarsening::Between
+{
+  std::size_t first, second;
+  float part;
+};
+
+std::vector<Coarsening::Between> Coarsening::BetweenAlong(int axis) const
+{
+  const int fine = this->FineOfAll[axis], coarse = this->CoarseOfAll[axis], begin = this->CoarsePart.first[axis];
+  std::vector<Between> places(static_cast<std::size_t>(this->FinePart.size[axis]));
+  for (std::size_t i = 0; i < places.size(); ++i)
+  {
+    const double middle = this->FinePart.first[axis] + static_cast<double>(i) + 0.5;
+    const double place = std::clamp(middle * coarse / fine - 0.5, 0.0, coarse - 1.0);
+    const int first = static_cast<int>(place);
+    places[i] = { static_cast<std::size_t>(first - begin),
+      static_cast<std::size_t>(std::min(first + 1, coarse - 1) - begin), static_cast<float>(place - first) };
+  }
+  return places;
+}
+
+/// The coarse values of a row along x, between those of four coarse rows.
+void Coarsening::MixRows(
+  const std::vector<float>& values, const Between& y, const Between& z, std::vector<float>& row) const
+{
+  const std::size_t layer = row.size() * static_cast<std::size_t>(this->CoarsePart.size[1]);
+  const float* const low = values.data() + z.first * layer;
+  const float* const high = values.data() + z.second * layer;
+  const std::size_t near = y.first * row.size(), far = y.second * row.size();
+  for (std::size_t i = 0; i < row.size(); ++i)
+  {
+    row[i] = Mix(Mix(low[near + i], low[far + i], y.part), Mix(high[near + i], high[far + i], y.part), z.part);
+  }
+}
+
+std::vector<float> Coarsening::Refine(const std::vector<float>& values, int components) const
+{
+  const auto xs = this->BetweenAlong(0), ys = this->BetweenAlong(1), zs = this->BetweenAlong(2);
+  const auto count = static_cast<std::size_t>(components);
+  std::vector<float> refined(this->FinePart.VoxelCount() * count);
+  InThreads(ys.size() * zs.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    std::vector<float> row(static_cast<std::size_t>(this->CoarsePart.size[0]) * count);
+    for (std::size_t line = begin; line < end; ++line)
+    {
+      this->MixRows(values, ys[line % ys.size()], zs[line / ys.size()], row);
+      float* out = refined.data() + line * xs.size() * count;
+      for (const Between& x : xs)
+      {
+        for (std::size_t c = 0; c < count; ++c)
+        {
+          *out++ = Mix(row[x.first * count + c], row[x.second * count + c], x.part);
+        }
+      }
+    }
+  });
+  return refined;
 }
 
 std::size_t Coarsening::Parent(std::size_t fineVoxel) const

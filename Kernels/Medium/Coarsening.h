@@ -45,10 +45,19 @@ public:
   /// @return 3 components a coarse voxel where either has colour, else 1
   std::vector<float> Average(const Field& values, const Field& weights) const;
 
+  /// Of values of the coarse voxels those at the fine ones' middles: linear between the coarse ones' middles, and
+  /// constant beyond them. A part needs all of ParentBox(fine), and a layer of voxels round it as far as the grid goes.
+  /// @param values  `components` a coarse voxel, x fastest
+  std::vector<float> Refine(const std::vector<float>& values, int components) const;
+
   /// The coarse voxel in which the centre of a fine one lies.
   std::size_t Parent(std::size_t fineVoxel) const;
 
 private:
+  struct Between;
+  std::vector<Between> BetweenAlong(int axis) const;
+  void MixRows(const std::vector<float>& values, const Between& y, const Between& z, std::vector<float>& row) const;
+
   Grid FineGrid, CoarseGrid;
   VoxelBox FinePart, CoarsePart;             ///< in the grids of the whole
   std::array<int, 3> FineOfAll, CoarseOfAll; ///< voxels of these along each axis

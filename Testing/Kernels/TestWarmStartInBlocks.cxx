@@ -132,7 +132,8 @@ protected:
     EXPECT_LT(LargestDifference(found.netFlux, expected.netFlux), 1e-5);
     EXPECT_LT(LargestDifference(found.scatteredMoments, expected.scatteredMoments), 1e-6);
     EXPECT_LT(LargestDifference(found.facePower, expected.facePower), 1e-6);
-    EXPECT_LT(found.balance.RelativeError(found.channels), 1e-5);
+    const double ofWhole = expected.balance.RelativeError(found.channels); // steps as published do not keep power
+    EXPECT_LT(found.balance.RelativeError(found.channels), std::max(1e-5, 1.00001 * ofWhole));
     EXPECT_THAT(found.leftOut, testing::Contains(testing::HasSubstr("begun from the last light")));
     EXPECT_TRUE(found.converged);
   }
@@ -321,10 +322,13 @@ TEST_F(WarmStartsInBlocks, TakeTheOrdersOfTheWholeOfDiscreteOrdinates)
           GetDevice(), communicator, partition, medium, shining, settings, {}, &kept[communicator.Rank()]);
       });
   };
-  for (const bool around : { false, true })
+  for (const std::string scene : { "open, a white face", "periodic", "as published, open, a white face" })
   {
-    SCOPED_TRACE(around ? "periodic" : "open, a white face");
+    SCOPED_TRACE(scene);
+    const bool around = scene == "periodic";
     settings.periodic[0] = around;
+    settings.scheme =
+      scene.find("published") != std::string::npos ? OrdinatesScheme::Published : OrdinatesScheme::Conservative;
     change.shining.faceAlbedo[4] = change.next.faceAlbedo[4] = around ? Rgb{} : Rgb{ 0.7, 0.7, 0.7 };
     KeptLight kept;
     whole(change.before, change.shining, &kept);

@@ -10,15 +10,15 @@ from pieces_of_ranks import Runs, difference
 runs = Runs("SolversByBlocks")
 CASES = ["lattice_wavelet", "lattice_even", "lattice_uneven", "lattice_lamps", "lattice_around",
          "lattice_steps", "lattice_photons", "ordinates_even",
-         "ordinates_uneven", "ordinates_faces", "ordinates_around", "ordinates_warm",
+         "ordinates_uneven", "ordinates_faces", "ordinates_around", "ordinates_warm", "ordinates_steps",
          "published_even", "published_uneven", "published_shown"]
 LIKE = {"published_uneven": "published_even", "lattice_uneven": "lattice_even", "ordinates_uneven": "ordinates_even"}
 
 for ranks in (1, 2, 3, 8):
-    more = ["lattice_exact", "lattice_whole", "lattice_photons_whole", "ordinates_whole", "ordinates_faces_whole", "published_whole"] if ranks == 1 else \
+    more = ["lattice_exact", "lattice_whole", "lattice_photons_whole", "ordinates_whole", "ordinates_faces_whole", "ordinates_steps_whole", "published_whole", "previews_whole"] if ranks == 1 else \
         ["lattice_errors"] if ranks == 2 else []
-    code, said = runs.run(ranks, *CASES, *more)
-    assert code == 0 and said.count("is done") == ranks, said
+    code, said = runs.run(ranks, *CASES, *(["previews"] if ranks in (1, 3) else []), *more)
+    assert code == 0 and said.count("is done") == ranks and "ERR|" not in said, said
     for case in CASES:
         light, balance = runs.whole(ranks, case, "light")
         expected, wanted = runs.whole(1, LIKE.get(case, case), "light")
@@ -33,13 +33,20 @@ assert difference(blocks, whole) < 2e-6
 blocks, whole = runs.whole(3, "lattice_photons", "light")[0], runs.whole(1, "lattice_photons_whole", "light")[0]
 print("photons on a lattice in blocks and in the whole: %.1e" % difference(blocks, whole))
 assert difference(blocks, whole) < 2e-6
-for case, of_whole in (("ordinates_even", "ordinates_whole"), ("ordinates_faces", "ordinates_faces_whole")):
+for case, of_whole in (("ordinates_even", "ordinates_whole"), ("ordinates_faces", "ordinates_faces_whole"),
+                       ("ordinates_steps", "ordinates_steps_whole")):
     ordinates, whole = runs.whole(1, case, "light")[0], runs.whole(1, of_whole, "light")[0]
     print("%s in blocks and in the whole: %.1e" % (case, difference(ordinates, whole)))
     assert difference(ordinates, whole) < 1e-6
 blocks, whole = runs.whole(1, "published_even", "light")[0], runs.whole(1, "published_whole", "light")[0]
 print("maps as published in blocks and in the whole: %.1e" % difference(blocks, whole))
 assert difference(blocks, whole) < 1e-6
+for name in ("maps", "ordinates", "lattice"):
+    for ranks in (1, 3):
+        blocks, whole = runs.whole(ranks, "preview_" + name, "light"), runs.whole(1, "preview_%s_whole" % name, "light")
+        print("%d ranks, a preview of %s in blocks and in the whole: %.1e" % (ranks, name, difference(blocks[0], whole[0])))
+        assert difference(blocks[0], whole[0]) < 1e-6
+        assert abs(blocks[1] - whole[1]).max() < 1e-6 * whole[1].max(), (ranks, name)
 for ranks in (2, 3, 8):  # differences of light, which agree as that does
     error, expected = (runs.whole(count, "published_estimated", "light")[0] for count in (ranks, 1))
     off = abs(error - expected).max() / (4 * math.pi * runs.whole(1, "published_shown", "light")[0].max())

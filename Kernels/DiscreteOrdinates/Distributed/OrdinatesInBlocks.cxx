@@ -3,6 +3,7 @@
 #include "Device/Errors.h"
 #include "DiscreteOrdinates/OrdinatesParts.h"
 #include "DiscreteOrdinates/OrdinatesWarmStart.h"
+#include "DiscreteOrdinates/Published/PublishedOrders.h"
 #include "DiscreteOrdinates/SweptOrders.h"
 #include "Distribution/SharedMedium.h"
 #include "Light/LeftOut.h"
@@ -21,30 +22,10 @@ namespace
 void RequireSameOrdinates(Communicator& communicator, const OrdinatesSettings& settings)
 {
   RequireSame(communicator, "settings of the ordinates", true,
-    { 1.0 * static_cast<int>(settings.scattering), 1.0 * settings.spiralDirections, 1.0 * settings.terms });
+    { 1.0 * static_cast<int>(settings.scheme), 1.0 * static_cast<int>(settings.scattering),
+      1.0 * settings.spiralDirections, 1.0 * settings.terms });
 }
 
-/// What shines, for a rank without voxels where one channel does for three: it must know whether something does.
-Illumination White(Illumination light)
-{
-  const auto whiten = [](Rgb& rgb) { rgb.fill(Sum(rgb)); };
-  for (Light& lamp : light.lights)
-  {
-    whiten(lamp.power);
-  }
-  whiten(light.sky);
-  std::for_each(light.faces.begin(), light.faces.end(), whiten);
-  for (std::size_t i = 0; i + 2 < light.environment.radiance.size(); i += 3)
-  {
-    float* const pixel = light.environment.radiance.data() + i;
-    std::fill_n(pixel, 3, pixel[0] + pixel[1] + pixel[2]);
-  }
-  return light;
-}
-}
-
-namespace
-{
 /// A scene of blocks as it is solved: in the units and channels of all.
 class OrdinatesOfBlock
 {
@@ -62,6 +43,7 @@ public:
   }
 
   /// In the user's units.
+  /// Judged, but for the scene as the user gave it.
   LightField Solve(
     const Medium& medium, const Illumination& illumination, const Monitor& monitor, KeptLight* kept) const
   {
@@ -71,15 +53,17 @@ public:
     known.uncollided = this->UncollidedKnown(illumination.uncollided);
     const BlockScene scene(
       this->Others, this->Has, this->Partition, own, known, this->AsSolved, MemoryOf(this->TheDevice));
-    const Illumination shining = this->Has || scene.channels == 3 ? scene.illumination : White(scene.illumination);
+    const Illumination& shining = scene.illumination; // grey where one channel does for three, without voxels too
     const FarLight far = FarLightOf(shining, this->AsSolved.directionsPerFace, this->Settings);
     LightField light;
     light.channels = scene.channels;
     OrdinatesWarmStart warm(kept, this->Settings);
+    bool diverged = false;
     for (int c = 0; c < light.channels; ++c)
     {
       const double all = light.channels;
-      this->SolveChannel(light, c, scene, shining, far, warm, OfPart(monitor, c / all, (c + 1) / all));
+      const Monitor ofChannel = OfPart(monitor, c / all, (c + 1) / all);
+      diverged = this->SolveChannel(light, c, scene, shining, far, warm, ofChannel) || diverged;
     }
     if (!this->Has)
     {
@@ -87,14 +71,16 @@ public:
       light.fluenceDirect.clear();
       light.netFlux.clear();
     }
-    this->Describe(light, medium, far);
+    this->Describe(light, scene, far);
     this->Others.Together([&] { scene.Undo(light); });
-    warm.Finish(false, light, kept);
+    warm.Finish(diverged, light, kept);
+    Judge(this->Settings, diverged, light);
     return light;
   }
 
 private:
-  void SolveChannel(LightField& light, int channel, const BlockScene& scene, const Illumination& shining,
+  /// @return whether it has diverged
+  bool SolveChannel(LightField& light, int channel, const BlockScene& scene, const Illumination& shining,
     const FarLight& far, OrdinatesWarmStart& warm, const Monitor& monitor) const
   {
     BlockPartition inUnits = this->Partition;
@@ -104,13 +90,16 @@ private:
     const PhaseFunction function = FunctionOf(solved, channel, &ranks);
     const OrdinatesAngles angles = { OrdinateGroups(far.directions),
       SeparableOf(function, far.directions, this->Settings), function };
-    this->Others.Together([&] { CheckMemory(this->TheDevice, solved.grid, angles, this->Settings); });
+    this->Others.Together([&] { CheckMemory(this->TheDevice, solved.grid, angles, this->Settings, true); });
     const OrdinatesScene ofChannel = { solved, channel, LampsOf(far, shining, channel),
       IncomingOf(far, shining, channel), FaceAlbedoOf(shining, channel), UncollidedOf(shining, channel),
       warm.Begin(channel, this->KindOf(inUnits, light.channels), angles, &ranks), &ranks };
-    const OrdinatesResult found = SolveSweptOrders(this->TheDevice, ofChannel, angles, this->Settings, monitor);
+    const OrdinatesResult found = IsPublished(this->Settings)
+      ? SolvePublishedOrders(this->TheDevice, ofChannel, angles, this->Settings, monitor)
+      : SolveSweptOrders(this->TheDevice, ofChannel, angles, this->Settings, monitor);
     TakeChannel(light, found, channel);
     warm.Take(found, channel);
+    return found.diverged;
   }
 
   LightKind KindOf(const BlockPartition& inUnits, int channels) const
@@ -134,17 +123,21 @@ private:
     return this->Has ? own : image;
   }
 
-  void Describe(LightField& light, const Medium& medium, const FarLight& far) const
+  void Describe(LightField& light, const BlockScene& scene, const FarLight& far) const
   {
     DescribeLight(light, this->TheDevice, far);
     if (!this->Settings.netFlux)
     {
       light.leftOut.emplace_back(left_out::NetFlux);
     }
-    if (OnAnyRank(this->Others, this->Has && medium.phase.Varies()))
+    double thickest = 0.0;
+    for (int c = 0; c < light.channels && this->Has; ++c)
     {
-      light.doubts.emplace_back(DoubtOfVaryingCosine);
+      thickest = std::max(thickest, ThickestStep(scene.medium, c));
     }
+    thickest = this->Others.Largest({ thickest })[0];
+    const bool varies = OnAnyRank(this->Others, this->Has && scene.medium.phase.Varies());
+    light.doubts = DoubtsOf(this->Settings, thickest, varies);
     light.directionsPerFace = this->AsSolved.directionsPerFace;
   }
 
@@ -157,9 +150,17 @@ private:
 };
 }
 
-std::string NotInBlocks(const OrdinatesSettings& settings)
+OrdinatesSettings AtQualityInBlocks(Communicator& communicator, const BlockPartition& partition, Quality quality,
+  const OrdinatesSettings& settings, const Medium& medium, const DeviceMemory& memory)
 {
-  return IsPublished(settings) ? "the published Scheme" : std::string();
+  const bool has = partition.blocks.at(communicator.Rank()).VoxelCount() > 0;
+  const MediumOfQuality ofAll = { partition.whole.VoxelCount(),
+    !OnAnyRank(communicator, has && !medium.phase.IsIsotropic()) };
+  constexpr double MoreThanAny = 1e18; // which a whole number of 64 bits holds
+  DeviceMemory least;
+  least.all =
+    static_cast<std::size_t>(-communicator.Largest({ -std::min(static_cast<double>(memory.all), MoreThanAny) })[0]);
+  return AtQuality(quality, settings, ofAll, least);
 }
 
 LightField SolveOrdinatesInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition,
@@ -173,9 +174,6 @@ LightField SolveOrdinatesInBlocks(Device& device, Communicator& communicator, co
     partition.Check();
     Require(static_cast<int>(partition.blocks.size()) == communicator.Ranks(), "There is not a block for each rank.");
     Check(settings);
-    const std::string refused = NotInBlocks(settings);
-    Require(
-      refused.empty(), "A medium that is spread over ranks is not solved by discrete ordinates with " + refused + ".");
     if (has)
     {
       CheckBlock(medium, illumination, asPropagation);
@@ -205,7 +203,6 @@ LightField SolveOrdinatesInBlocks(Device& device, Communicator& communicator, co
     light.leftOut.push_back(left_out::DirectionsAlongSlab(asPropagation.directionsPerFace));
   }
   light.faceAlbedo = illumination.faceAlbedo;
-  Judge(settings, false, light);
   DoubtGivenLight(illumination, light);
   return light;
 }

@@ -2,6 +2,7 @@
 
 #include "Device/Device.h"
 #include "Device/Monitor.h"
+#include "DiscreteOrdinates/OrdinatesQuality.h"
 #include "DiscreteOrdinates/OrdinatesSettings.h"
 #include "Distribution/BlockPartition.h"
 #include "Distribution/Communicator.h"
@@ -10,14 +11,13 @@
 #include "Lights/Lights.h"
 #include "Medium/Medium.h"
 
-#include <string>
-
 namespace tyndall
 {
 /// The light of a medium that is spread over ranks by blocks, by discrete ordinates (DiscreteOrdinates.h): sweeps go
-/// from rank to rank (UpwindSweepInBlocks.h), scattering is by voxel, and what counts power is the same on all. No rank
-/// holds more than its block. All ranks call it together. The light is that of SolveDiscreteOrdinates, order by order,
-/// but for rounding.
+/// from rank to rank (UpwindSweepInBlocks.h), or as published what stands beside blocks (PublishedStepInBlocks.h),
+/// scattering is by voxel, and what counts power is the same on all. No rank holds more than its block, as published
+/// with a layer round it. All ranks call it together. The light is that of SolveDiscreteOrdinates, order by order, but
+/// for rounding.
 ///
 /// @param medium  of the rank's block, with the grid that partition.OwnGrid() has; looked at by nobody where that has
 ///   no voxels
@@ -28,12 +28,15 @@ namespace tyndall
 /// @return the light of the rank's block; balance, face powers and convergence are of the whole. Empty arrays where the
 ///   block is
 /// @throws InvalidInput  on every rank, where one of them has an input that SolveDiscreteOrdinates refuses, where they
-///   disagree, where blocks wait for each other, or where the scene has something that is not carried: names it
+///   disagree, or where blocks wait for each other
 /// @throws DeviceError, Aborted  on every rank what one of them throws
 LightField SolveOrdinatesInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition,
   const Medium& medium, const Illumination& illumination, const OrdinatesSettings& settings,
   const Monitor& monitor = {}, KeptLight* kept = nullptr);
 
-/// What of a scene keeps SolveOrdinatesInBlocks from it, in words for an error; empty: nothing does.
-std::string NotInBlocks(const OrdinatesSettings& settings);
+/// AtQuality (OrdinatesQuality.h), as one rank chooses it that has the whole medium and the smallest memory of all. All
+/// ranks call it, and are told the same.
+/// @param memory  of this rank's device
+OrdinatesSettings AtQualityInBlocks(Communicator& communicator, const BlockPartition& partition, Quality quality,
+  const OrdinatesSettings& settings, const Medium& medium, const DeviceMemory& memory);
 }

@@ -1,8 +1,5 @@
 #include "DiscreteOrdinates/Distributed/UpwindSweepInBlocks.h"
 
-#include "LightPropagation/Distributed/Sweep/SweepInBlocks.h"
-#include "Medium/BoxFaces.h"
-
 #include <algorithm>
 #include <utility>
 
@@ -10,21 +7,6 @@ namespace tyndall
 {
 namespace
 {
-constexpr int Everywhere = 0x3f; ///< all six faces
-
-/// Faces of a rank's block that are no faces of the grid.
-int InnerFacesOf(const OrdinatesRanks& ranks)
-{
-  const VoxelBox& block = ranks.partition.blocks[ranks.others.Rank()];
-  int inner = ranks.Has() ? 0 : Everywhere;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    inner |= block.first[axis] > 0 ? 1 << (2 * axis) : 0;
-    inner |= EndOf(block, axis) < ranks.partition.whole.size[axis] ? 1 << (2 * axis + 1) : 0;
-  }
-  return inner;
-}
-
 /// Axis across which light goes from one block to another. Rays march along z.
 int AxisOf(BlockContact::Kind kind)
 {
@@ -37,8 +19,7 @@ UpwindSweepInBlocks::UpwindSweepInBlocks(
   : TheDevice(device)
   , Ranks(ranks)
   , TheGrid(grid)
-  , OfWhole(faces.reflecting)
-  , Sweep(device, grid, groups, this->FacesOfBlock(device, faces))
+  , Sweep(device, grid, groups, this->FacesOfBlock(faces))
 {
   for (int g = 0; g < groups.Count(); ++g)
   {
@@ -84,74 +65,16 @@ void UpwindSweepInBlocks::FindContacts(Octant& octant, const SweptFaces& faces) 
 }
 
 /// With cells of its own, where some of the whole grid's give back light.
-SweptFaces UpwindSweepInBlocks::FacesOfBlock(Device& device, const SweptFaces& ofWhole)
+SweptFaces UpwindSweepInBlocks::FacesOfBlock(const SweptFaces& ofWhole)
 {
   SweptFaces faces = ofWhole;
   faces.inner = InnerFacesOf(this->Ranks);
-  if (!ofWhole.reflecting)
+  if (ofWhole.reflecting)
   {
-    return faces;
+    this->Cells.emplace(this->TheDevice, this->Ranks, this->TheGrid, faces.periodic, *ofWhole.reflecting);
+    faces.reflecting = &this->Cells->Seen();
   }
-  const Grid& whole = this->Ranks.partition.whole;
-  const VoxelBox& block = this->Ranks.partition.blocks[this->Ranks.others.Rank()];
-  ForBoxFaceCells(this->TheGrid, [&](const BoxFaceCell& cell) {
-    if (!(faces.inner >> cell.face & 1) && !faces.periodic[cell.face / 2])
-    {
-      const std::array<int, 3> at = this->TheGrid.VoxelAt(cell.voxel);
-      const BoxFaceLayout layout = LayoutOfFace(whole, cell.face);
-      std::size_t there = layout.first;
-      for (int axis = 0; axis < 3; ++axis)
-      {
-        there += static_cast<std::size_t>(block.first[axis] + at[axis]) * layout.step[axis];
-      }
-      this->OfBlock.places.push_back({ cell.number, there });
-    }
-  });
-  const std::size_t count = BoxFaceCellCount(this->TheGrid);
-  this->OfBlock.out = Buffer<float>(device, count, "the light that leaves by cells");
-  this->OfBlock.in = Buffer<float>(device, count, "the light that faces give back");
-  this->Seen.emplace(LightOfCells{ this->OfBlock.out, this->OfBlock.in });
-  faces.reflecting = &*this->Seen;
   return faces;
-}
-
-/// What comes in through cells of the block.
-void UpwindSweepInBlocks::LetCellsIn()
-{
-  if (!this->OfWhole)
-  {
-    return;
-  }
-  this->Failure.Attempt([&] {
-    const std::vector<float> ofWhole = this->OfWhole->in.Read();
-    std::vector<float> in(this->OfBlock.in.Size(), 0.0f);
-    for (const auto& [here, there] : this->OfBlock.places)
-    {
-      in[here] = ofWhole[there];
-    }
-    this->OfBlock.in.Write(in.data());
-    this->OfBlock.out.Fill(0.0f);
-  });
-}
-
-/// What leaves through those of all ranks. All call it.
-void UpwindSweepInBlocks::LetCellsOut()
-{
-  if (!this->OfWhole)
-  {
-    return;
-  }
-  std::vector<double> left;
-  this->Ranks.others.Together([&] {
-    left.resize(this->OfWhole->out.Size(), 0.0);
-    this->Sweep.LeaveByCells();
-    const std::vector<float> out = this->OfBlock.out.Read();
-    for (const auto& [here, there] : this->OfBlock.places)
-    {
-      left[there] = out[here];
-    }
-  });
-  AddOverRanks(this->TheDevice, this->Ranks.others, left, this->OfWhole->out);
 }
 
 /// visit(place in the octant's values of the face) for each group and cell of a contact, in an order that both ranks
@@ -258,7 +181,12 @@ FacePowers UpwindSweepInBlocks::Apply(const Buffer<float>& radiance, const Buffe
 {
   this->Failure = {};
   FacePowers powers;
-  this->LetCellsIn();
+  this->Failure.Attempt([&] {
+    if (this->Cells)
+    {
+      this->Cells->LetIn();
+    }
+  });
   this->Failure.Attempt([&] { this->Sweep.LetIn(incoming, powers); });
   for (std::size_t i = 0; i < this->Order.size(); ++i)
   {
@@ -286,7 +214,10 @@ FacePowers UpwindSweepInBlocks::Apply(const Buffer<float>& radiance, const Buffe
   std::copy_n(sums.begin(), 6, powers.in.begin());
   std::copy_n(sums.begin() + 6, 6, powers.out.begin());
   powers.onTheWay = sums.back();
-  this->LetCellsOut();
+  if (this->Cells)
+  {
+    this->Cells->LetOut([&] { this->Sweep.LeaveByCells(); });
+  }
   return powers;
 }
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "DiscreteOrdinates/Distributed/CellsOfBlock.h"
 #include "DiscreteOrdinates/OrdinatesScene.h"
 #include "DiscreteOrdinates/UpwindSweep.h"
 #include "Distribution/HeldFailure.h"
@@ -44,30 +45,20 @@ private:
     std::vector<std::vector<float>> waiting;        ///< from these, to come in with the next sweep; empty: nothing
   };
   using Faces = std::array<std::vector<float>, 3>;
-  /// Cells of this block's faces as their sweep sees them, and where they are among those of the whole grid.
-  struct Cells
-  {
-    Buffer<float> out, in;
-    std::vector<std::array<std::size_t, 2>> places; ///< here, and there
-  };
 
   void FindContacts(Octant& octant, const SweptFaces& faces) const;
-  SweptFaces FacesOfBlock(Device& device, const SweptFaces& faces);
+  SweptFaces FacesOfBlock(const SweptFaces& ofWhole);
   void TakeFrom(const Octant& octant, int number);
   void Enter(const Octant& octant, const BlockContact& contact, const std::vector<float>& message, Faces& faces) const;
   void GiveTo(const Octant& octant, int number);
   void TakeFromAround();
-  void LetCellsIn();
-  void LetCellsOut();
   template <class Visit>
   void ForFace(const Octant& octant, const BlockContact& contact, const VoxelBox& cells, const Visit& visit) const;
 
   Device& TheDevice;
   const OrdinatesRanks& Ranks;
   const Grid TheGrid;
-  const LightOfCells* OfWhole; ///< null: no face gives back light
-  Cells OfBlock;
-  std::optional<LightOfCells> Seen; ///< of the block
+  std::optional<CellsOfBlock> Cells; ///< where faces give back light
   std::vector<Octant> Octants;
   std::vector<int> Order; ///< of this rank
   UpwindSweep Sweep;

@@ -1,10 +1,13 @@
 #include "DiscreteOrdinates/Published/PublishedOrders.h"
 
 #include "DiscreteOrdinates/ChannelArrays.h"
+#include "DiscreteOrdinates/Distributed/PublishedStepInBlocks.h"
 #include "DiscreteOrdinates/Published/PublishedStep.h"
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <optional>
 
 namespace tyndall
 {
@@ -19,6 +22,19 @@ PairSums SumsOf(const OrdinatesSettings& settings)
   return settings.scattering == OrdinatesScattering::Matrix ? PairSums::Passes : PairSums::Terms;
 }
 
+std::unique_ptr<OrdinateStep> StepOf(Device& device, const OrdinatesScene& scene, const OrdinatesAngles& angles,
+  const OrdinatesSettings& settings, const LightOfCells* reflecting)
+{
+  const Grid& grid = scene.medium.grid;
+  if (scene.ranks)
+  {
+    return std::make_unique<PublishedStepInBlocks>(
+      device, *scene.ranks, grid, angles.groups, settings.periodic, scene.incoming, reflecting);
+  }
+  return std::make_unique<PublishedStep>(
+    device, grid, angles.groups, scene.incoming, SteppedFaces::Of(grid, settings.periodic, reflecting));
+}
+
 class PublishedOrders
 {
 public:
@@ -27,7 +43,8 @@ public:
     : Scene(scene)
     , Settings(settings)
     , Arrays(device, scene, angles, settings.netFlux)
-    , Step(device, scene.medium.grid, angles.groups, settings.periodic, scene.incoming, this->Arrays.Faces.get())
+    , Cells(CellsOf(this->Arrays.Faces.get()))
+    , Step(StepOf(device, scene, angles, settings, this->Cells ? &*this->Cells : nullptr))
     , Scattering(device, angles.groups, angles.phase, SumsOf(settings), false, settings.netFlux, this->Arrays.Voxels)
     , Radiance(device, AngularScattering::Floats(angles.groups, this->Arrays.Voxels), "radiance of all directions")
     , Scattered(device, this->Radiance.Size(), "scattered light of all directions")
@@ -42,39 +59,43 @@ public:
     {
       const double done = static_cast<double>(this->Record.All().size()) / (this->Record.All().size() + 20.0);
       const double share = 0.1 + 0.9 * done;
-      Report(monitor, share);
+      this->Scene.Together([&] { Report(monitor, share); });
       this->StepOnce(monitor ? Monitor([&](double) { return monitor(share); }) : Monitor());
     } while (!this->Done());
-    this->Finish();
+    this->Scene.Together([&] { this->Finish(); });
     return std::move(this->Result);
   }
 
 private:
   void Begin(const Monitor& monitor)
   {
-    for (Buffer<float>* field : { &this->Radiance, &this->Scattered, &this->Steady })
-    {
-      field->Fill(0.0f);
-    }
+    this->Scene.Together([&] {
+      for (Buffer<float>* field : { &this->Radiance, &this->Scattered, &this->Steady })
+      {
+        field->Fill(0.0f);
+      }
+    });
     if (this->Arrays.Emits())
     {
-      this->Arrays.EmitEvenly(this->Steady, this->Result.ledger);
+      this->Scene.Together([&] { this->Arrays.EmitEvenly(this->Steady, this->Result.ledger); });
     }
     this->Arrays.AddLamps(this->Steady, this->Settings.periodic, this->Result, monitor);
     this->OfLamps = this->Result.ledger;
-    if (this->Arrays.Faces)
-    {
-      this->LampsThroughCells = this->Arrays.Faces->TakeOut();
-    }
-    this->LampFluence = this->Arrays.Direct.Read();
-    this->LampFlux = this->Arrays.Light.flux.Read();
-    this->Fluence.assign(this->Arrays.Voxels, 0.0f);
+    this->Scene.Together([&] {
+      if (this->Arrays.Faces)
+      {
+        this->LampsThroughCells = this->Arrays.Faces->TakeOut();
+      }
+      this->LampFluence = this->Arrays.Direct.Read();
+      this->LampFlux = this->Arrays.Light.flux.Read();
+      this->Fluence.assign(this->Arrays.Voxels, 0.0f);
+    });
     if (this->Scene.guess.values.empty())
     {
       this->MoveOn(); // from darkness: nothing is scattered yet
       return;
     }
-    this->Radiance.Write(this->Scene.guess.values.data());
+    this->Scene.Together([&] { this->Radiance.Write(this->Scene.guess.values.data()); });
   }
 
   /// What leaves the box now comes back with the next step.
@@ -84,8 +105,12 @@ private:
     {
       return;
     }
-    FaceLight& faces = *this->Arrays.Faces;
-    this->Step.LeaveByCells(this->Radiance);
+    this->Step->LeaveByCells(this->Radiance);
+    this->Scene.Together([&] { this->LetBackIn(*this->Arrays.Faces); });
+  }
+
+  void LetBackIn(FaceLight& faces)
+  {
     const std::vector<float> swept = faces.TakeOut();
     this->ThroughCells.resize(swept.size());
     std::vector<double> back(swept.size());
@@ -100,14 +125,13 @@ private:
 
   void StepOnce(const Monitor& monitor)
   {
-    this->Scattering.Scatter(
-      this->Radiance, this->Arrays.SigmaS, this->Scattered, this->Arrays.Scale, this->Arrays.Light, monitor);
-    const std::vector<float> now = this->Arrays.Light.order.Read();
-    double change = 0.0;
-    for (std::size_t i = 0; i < now.size(); ++i)
-    {
-      change += std::abs(static_cast<double>(now[i]) - this->Fluence[i]);
-    }
+    std::vector<float> now;
+    this->Scene.Together([&] {
+      this->Scattering.Scatter(
+        this->Radiance, this->Arrays.SigmaS, this->Scattered, this->Arrays.Scale, this->Arrays.Light, monitor);
+      now = this->Arrays.Light.order.Read();
+    });
+    const double change = this->ChangeTo(now);
     this->FirstChange = this->Record.All().empty() ? change : this->FirstChange;
     this->Result.diverged = !(change <= WithoutEnd * this->FirstChange);
     this->Fluence = now;
@@ -126,15 +150,27 @@ private:
     }
   }
 
+  /// Of fluence, in all voxels.
+  double ChangeTo(const std::vector<float>& now) const
+  {
+    double change = 0.0;
+    for (std::size_t i = 0; i < now.size(); ++i)
+    {
+      change += std::abs(static_cast<double>(now[i]) - this->Fluence[i]);
+    }
+    const bool counts = !this->Scene.ranks || this->Scene.ranks->Has();
+    return this->Scene.Sum({ counts ? change : 0.0 })[0];
+  }
+
   void MoveOn()
   {
-    this->Step.Apply(this->Radiance, this->Scattered, this->Steady, this->Arrays.SigmaT, this->Scattered);
+    this->Step->Apply(this->Radiance, this->Scattered, this->Steady, this->Arrays.SigmaT, this->Scattered);
     this->Radiance.Swap(this->Scattered);
   }
 
   void CountSteady()
   {
-    const FacePowers powers = this->Step.Powers(this->Radiance);
+    const FacePowers powers = this->Step->Powers(this->Radiance);
     for (int face = 0; face < 6; ++face)
     {
       this->Result.ledger.Enter(0, powers.in[face]);
@@ -190,7 +226,8 @@ private:
   const OrdinatesScene& Scene;
   const OrdinatesSettings& Settings;
   ChannelArrays Arrays;
-  PublishedStep Step;
+  const std::optional<LightOfCells> Cells;
+  std::unique_ptr<OrdinateStep> Step;
   AngularScattering Scattering;
   Buffer<float> Radiance, Scattered, Steady;
   std::vector<float> Fluence, LampFluence, LampFlux;
@@ -207,13 +244,17 @@ private:
 OrdinatesResult SolvePublishedOrders(Device& device, const OrdinatesScene& scene, const OrdinatesAngles& angles,
   const OrdinatesSettings& settings, const Monitor& monitor)
 {
-  return PublishedOrders(device, scene, angles, settings).Run(monitor);
+  std::unique_ptr<PublishedOrders> orders;
+  scene.Together([&] { orders = std::make_unique<PublishedOrders>(device, scene, angles, settings); });
+  return orders->Run(monitor);
 }
 
-std::size_t BytesOfPublishedOrders(const Grid& grid, const OrdinatesAngles& angles, const OrdinatesSettings& settings)
+std::size_t BytesOfPublishedOrders(
+  const Grid& grid, const OrdinatesAngles& angles, const OrdinatesSettings& settings, bool inBlocks)
 {
   const std::size_t voxels = grid.VoxelCount();
-  return 3 * sizeof(float) * AngularScattering::Floats(angles.groups, voxels) +
+  const std::size_t around = inBlocks ? PublishedStepInBlocks::Floats(grid, angles.groups) : 0;
+  return sizeof(float) * (3 * AngularScattering::Floats(angles.groups, voxels) + around) +
     ChannelArrays::Bytes(grid, settings.netFlux) +
     AngularScattering::Bytes(angles.groups, angles.phase.Terms(), SumsOf(settings), voxels);
 }

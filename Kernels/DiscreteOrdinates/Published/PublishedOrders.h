@@ -15,7 +15,9 @@ OrdinatesResult SolvePublishedOrders(Device& device, const OrdinatesScene& scene
   const OrdinatesSettings& settings, const Monitor& monitor);
 
 /// Bytes on the device.
-std::size_t BytesOfPublishedOrders(const Grid& grid, const OrdinatesAngles& angles, const OrdinatesSettings& settings);
+/// @param inBlocks  of one of several ranks
+std::size_t BytesOfPublishedOrders(
+  const Grid& grid, const OrdinatesAngles& angles, const OrdinatesSettings& settings, bool inBlocks);
 
 /// Largest sigma_t of a channel times the step: from 1 on the scheme is not stable.
 double ThickestStep(const Medium& medium, int channel);

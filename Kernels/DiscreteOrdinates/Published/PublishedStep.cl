@@ -25,21 +25,27 @@ inline ulong cell_of(const int at[3], const int n[3], int axis, int up)
   return first + (up ? 0 : size) + within;
 }
 
-// Each voxel takes what stood one step upwind, linear between the eight nearest voxels.
+// Each voxel takes what stood one step upwind, linear between the eight nearest voxels. Of a block on one of several
+// ranks these may be voxels beside it.
+//   before    of a box of `known` voxels, in which the own ones begin at `first`
 //   parts     [group][3][8]: the step along each axis in voxels, 0 to 1
 //   up        [group][3]: whether the group goes up an axis
 //   incoming  [group][3][8]: radiance outside the box, by the axis along which it is left
 //   face_in   radiance that is given back, by cell of the box's faces; where FACE_IN
+//   own, known  voxels along the axes; of a group `stride` and `known_stride` apart
+//   outside   bits of the faces -x, +x, ... +z beyond which there are no voxels
+//   around    bits of the axes whose other end follows beyond the end of the own voxels
 __kernel void move_on(const __global float* before, __global float* after, const __global float* parts,
-  const __global int* up, const __global float* incoming, const __global float* face_in, int nx, int ny, int nz,
-  ulong stride, int periodic)
+  const __global int* up, const __global float* incoming, const __global float* face_in, int4 own, int4 known,
+  int4 first, ulong stride, ulong known_stride, int outside, int around)
 {
   const int group = get_global_id(1);
   const ulong i = get_global_id(0);
-  const int at[3] = { (int)(i % nx), (int)(i / nx % ny), (int)(i / nx / ny) };
-  const int n[3] = { nx, ny, nz };
-  const __global float8* outside = (const __global float8*)incoming + group * 3;
+  const int at[3] = { (int)(i % own.x), (int)(i / own.x % own.y), (int)(i / own.x / own.y) };
+  const int n[3] = { own.x, own.y, own.z };
+  const __global float8* from_far = (const __global float8*)incoming + group * 3;
   const __global float8* part = (const __global float8*)parts + group * 3;
+  const __global float8* there = (const __global float8*)before + group * known_stride;
   float8 sum = (float8)0.0f;
   for (int corner = 0; corner < 8; ++corner)
   {
@@ -55,23 +61,25 @@ __kernel void move_on(const __global float* before, __global float* after, const
       const int upwind = corner >> a & 1;
       weight *= upwind ? part[a] : (float8)1.0f - part[a];
       from[a] = at[a] - (up[3 * group + a] ? upwind : -upwind);
-      const bool beyond = from[a] < 0 || from[a] >= n[a];
-      left = beyond && !(periodic >> a & 1) ? a : left;
+      const bool below = from[a] < 0, above = from[a] >= n[a];
+      const bool beyond = (below && (outside >> (2 * a) & 1)) || (above && (outside >> (2 * a + 1) & 1));
+      left = beyond ? a : left;
 #if FACE_IN
-      if (beyond && !(periodic >> a & 1))
+      if (beyond)
       {
-        light += outside[a] + (float8)face_in[cell_of(at, n, a, up[3 * group + a])];
+        light += from_far[a] + (float8)face_in[cell_of(at, n, a, up[3 * group + a])];
         ++beyond_axes;
       }
 #endif
-      from[a] += from[a] < 0 ? n[a] : from[a] >= n[a] ? -n[a] : 0;
+      from[a] += !(around >> a & 1) ? 0 : below ? n[a] : above ? -n[a] : 0;
+      from[a] = beyond ? at[a] : from[a]; // which is not read
     }
-    const ulong voxel = ((ulong)from[2] * ny + from[1]) * nx + from[0];
+    const ulong voxel = ((ulong)(from[2] + first.z) * known.y + (from[1] + first.y)) * known.x + (from[0] + first.x);
 #if FACE_IN
-    light = beyond_axes > 0 ? light / (float)beyond_axes : ((const __global float8*)before)[group * stride + voxel];
+    light = beyond_axes > 0 ? light / (float)beyond_axes : there[voxel];
     sum += weight * light;
 #else
-    sum += weight * (left >= 0 ? outside[left] : ((const __global float8*)before)[group * stride + voxel]);
+    sum += weight * (left >= 0 ? from_far[left] : there[voxel]);
 #endif
   }
   ((__global float8*)after)[group * stride + i] = sum;

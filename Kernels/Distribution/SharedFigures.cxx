@@ -1,0 +1,85 @@
+#include "Distribution/SharedFigures.h"
+
+#include <algorithm>
+#include <sstream>
+
+namespace tyndall
+{
+namespace
+{
+/// Calls visit(number) for each of a light's, in an order that all know.
+template <class Visit>
+void ForNumbers(LightField& light, const Visit& visit)
+{
+  const auto ofColor = [&visit](Rgb& rgb) { std::for_each(rgb.begin(), rgb.end(), visit); };
+  EnergyBalance& balance = light.balance;
+  for (Rgb* const rgb : { &balance.entered, &balance.emitted, &balance.absorbed, &balance.escaped, &balance.leftOver })
+  {
+    ofColor(*rgb);
+  }
+  std::for_each(light.facePowerOut.begin(), light.facePowerOut.end(), ofColor);
+  visit(light.halfRangeFlux);
+  for (ConvergenceRow& row : light.convergence)
+  {
+    for (double* const number :
+      { &row.seconds, &row.residual, &row.change, &row.absorbed, &row.escaped, &row.leftOver })
+    {
+      visit(*number);
+    }
+  }
+}
+
+/// Whole numbers likewise.
+template <class Visit>
+void ForWholeNumbers(LightField& light, const Visit& visit)
+{
+  visit(light.channels);
+  for (ConvergenceRow& row : light.convergence)
+  {
+    visit(row.iteration);
+  }
+  std::for_each(light.sweepsSaved.begin(), light.sweepsSaved.end(), visit);
+}
+
+std::vector<std::string> ShareLines(Communicator& communicator, bool found, const std::vector<std::string>& lines)
+{
+  std::string joined;
+  for (const std::string& line : lines)
+  {
+    joined += line + "\n";
+  }
+  std::istringstream words(WordsOfAny(communicator, found ? joined : std::string()));
+  std::vector<std::string> shared;
+  for (std::string line; std::getline(words, line);)
+  {
+    shared.push_back(line);
+  }
+  return shared;
+}
+}
+
+void ShareFigures(Communicator& communicator, bool found, LightField& light)
+{
+  const auto count = [](const auto& list) { return static_cast<double>(list.size()); };
+  const std::vector<double> counts =
+    communicator.Largest({ found ? count(light.convergence) : 0.0, found ? count(light.sweepsSaved) : 0.0 });
+  if (!found)
+  {
+    light = {};
+    light.channels = 0;
+    light.convergence.resize(static_cast<std::size_t>(counts[0]));
+    light.sweepsSaved.resize(static_cast<std::size_t>(counts[1]));
+  }
+  std::vector<double> numbers;
+  const auto add = [&](auto number) { numbers.push_back(found ? static_cast<double>(number) : 0.0); };
+  ForNumbers(light, add);
+  ForWholeNumbers(light, add);
+  numbers = communicator.Sum(numbers);
+  auto next = numbers.begin();
+  ForNumbers(light, [&](double& number) { number = *next++; });
+  ForWholeNumbers(light, [&](int& number) { number = static_cast<int>(*next++); });
+  light.device = WordsOfAny(communicator, found ? light.device : std::string());
+  light.doubts = ShareLines(communicator, found, light.doubts);
+  light.leftOut = ShareLines(communicator, found, light.leftOut);
+}
+}
