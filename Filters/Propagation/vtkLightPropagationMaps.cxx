@@ -80,16 +80,19 @@ tyndall::LightField LightOf(tyndall::TargetLight&& found)
   return std::move(found.light);
 }
 
+/// As published there is none.
+void CheckTarget(vtkLightPropagationMaps* filter)
+{
+  tyndall::Require(filter->GetScheme() != vtkLightPropagationMaps::PUBLISHED || filter->GetTargetError() == 0.0,
+    "TargetError is for the conservative scheme: as published the error does not fall with directions. Set "
+    "TargetError to 0, or Scheme to conservative.");
+}
+
 /// By directions, tolerance and voxels that the target needs, whatever Quality has.
 tyndall::LightField SolveToTarget(vtkLightPropagationMaps* filter, const tyndall::Medium& medium,
   const tyndall::Illumination& illumination, const tyndall::Monitor& monitor, const tyndall::PropagationSolver& solve)
 {
-  if (filter->GetScheme() == vtkLightPropagationMaps::PUBLISHED)
-  {
-    throw tyndall::InvalidInput(
-      "TargetError is for the conservative scheme: as published the error does not fall with directions. Set "
-      "TargetError to 0, or Scheme to conservative.");
-  }
+  CheckTarget(filter);
   return LightOf(
     tyndall::SolveToTargetError(medium, illumination, SettingsOf(filter), filter->GetTargetError(), monitor, solve));
 }
@@ -167,14 +170,18 @@ bool IsPublishedOnAll(vtkLightPropagationMaps* filter, tyndall::Communicator& co
 
 /// As of the whole, what does not fit a rank's budget is an error.
 tyndall::LightField SolvePublishedPiece(vtkLightPropagationMaps* filter, tyndall::Device& device,
-  const tyndall::SceneInBlocks& scene, const tyndall::PropagationSettings& settings, const tyndall::Monitor& monitor)
+  const tyndall::SceneInBlocks& scene, const tyndall::PropagationSettings& settings, const tyndall::Monitor& monitor,
+  tyndall::KeptLight* last)
 {
   std::optional<tyndall::Device> within;
-  scene.others.Together([&] { within.emplace(device, tyndall::BudgetOf(filter->GetMemoryBudget(), false)); });
+  scene.others.Together([&] {
+    CheckTarget(filter);
+    within.emplace(device, tyndall::BudgetOf(filter->GetMemoryBudget(), false));
+  });
   const tyndall::SolverInBlocks solve = [&](const tyndall::SceneInBlocks& inside,
                                           const tyndall::PropagationSettings& how, const tyndall::Monitor& watch) {
-    return tyndall::SolvePublishedInBlocks(
-      *within, inside.others, inside.partition, inside.medium, inside.illumination, how, watch);
+    return tyndall::SolvePublishedInBlocks(*within, inside.others, inside.partition, inside.medium, inside.illumination,
+      how, watch, &inside.medium == &scene.medium ? last : nullptr); // not of coarser ones
   };
   tyndall::LightField light = filter->GetEstimateError()
     ? tyndall::SolveWithErrorEstimate(scene, settings, monitor, solve)
@@ -224,8 +231,6 @@ std::string vtkLightPropagationMaps::NotByBlocks(vtkInformationVector**) const
 {
   const std::pair<bool, const char*> reasons[] = {
     { this->Scheme == PUBLISHED && this->Algorithm == SEQUENTIAL, "the sequential Algorithm of the published Scheme" },
-    { this->Scheme == PUBLISHED && this->TargetError > 0.0, "TargetError of the published Scheme" },
-    { this->Scheme == PUBLISHED && this->WarmStart, "WarmStart of the published Scheme" },
   };
   const auto found =
     std::find_if(std::begin(reasons), std::end(reasons), [](const auto& reason) { return reason.first; });
@@ -262,7 +267,7 @@ tyndall::LightField vtkLightPropagationMaps::SolvePiece(tyndall::Communicator& c
   const tyndall::Monitor monitor = tyndall::MonitorOf(this);
   if (published)
   {
-    return SolvePublishedPiece(this, *device, scene, settings, monitor);
+    return SolvePublishedPiece(this, *device, scene, settings, monitor, last);
   }
   if (this->TargetError > 0.0)
   {

@@ -62,7 +62,7 @@ class LastLight;
  * whole where scattering is isotropic, axes are open and faces dark; where they are added up one by one the source is
  * constant in voxels, so that voxels thicker than about 1/4 need the whole, or more voxels. Blocks cannot do, beside
  * what no solver can: Source OCTANTS, LINEAR where orders are not accelerated, and of the published scheme the
- * SEQUENTIAL algorithm, WarmStart and TargetError. Errors are estimated, and targets met, as of the whole
+ * SEQUENTIAL algorithm. Errors are estimated, and targets met, as of the whole
  * (numerics.md, section 9.2). The published scheme has the light of the whole (section 3). AUTOMATIC_DECOMPOSITION
  * leaves to the whole, beside that: many orders in angular moments, between faces that reflect or round periodic axes,
  * which it accelerates; many thick voxels whose orders are added up one by one; small bright emission, which it follows

@@ -11,7 +11,7 @@ runs = Runs("SolversByBlocks")
 CASES = ["lattice_wavelet", "lattice_even", "lattice_uneven", "lattice_lamps", "lattice_around",
          "lattice_steps", "lattice_photons", "ordinates_even",
          "ordinates_uneven", "ordinates_faces", "ordinates_around", "ordinates_warm",
-         "published_even", "published_uneven", "published_shown"]
+         "published_even", "published_uneven", "published_shown", "published_warm"]
 LIKE = {"published_uneven": "published_even", "lattice_uneven": "lattice_even", "ordinates_uneven": "ordinates_even"}
 
 for ranks in (1, 2, 3, 8):

@@ -10,9 +10,11 @@
 #include "LightPropagation/Problem/PropagationProblem.h"
 #include "LightPropagation/Published/OrderLedger.h"
 #include "LightPropagation/Published/PublishedLight.h"
+#include "LightPropagation/Published/PublishedWarmStart.h"
 #include "Lights/UncollidedImage.h"
 
 #include <algorithm>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -53,7 +55,7 @@ public:
   /// All ranks make one together. What is given must stay.
   PublishedOfBlock(Device& device, Communicator& communicator, const BlockPartition& partition, bool has,
     const Medium& medium, const Illumination& illumination, const PropagationSettings& settings,
-    const PublishedModel& model, const SceneOfAll& scene)
+    const PublishedModel& model, const SceneOfAll& scene, const KeptLight* kept)
     : Others(communicator)
     , Has(has)
     , CountsGiven(IsFirstThatHas(communicator, partition))
@@ -64,10 +66,12 @@ public:
     , Ledger(partition.whole.VoxelVolume(), scene.emitted, this->Model, settings)
     , Faces(partition.whole, this->Model, settings)
     , Sweep(device, communicator, partition, medium, this->Model, settings, this->Faces)
+    , Warm({ medium, this->Model, settings, partition.whole, 1, &communicator, partition.blocks[communicator.Rank()] },
+        kept)
     , Emits(scene.traits.emits || !settings.leaveOut)
     , IsGiven(scene.given)
-    , Totals(this->Model.MomentCount())
-    , Moments(this->Totals.size())
+    , Values(has ? medium.grid.VoxelCount() * model.Channels() : 0)
+    , Totals(this->Values * model.MomentCount(), 0.0f)
   {
   }
 
@@ -76,12 +80,9 @@ public:
     const int order = this->Ledger.Orders();
     const Monitor ofOrder = OfPart(monitor, [this](double done) { return this->Ledger.Progress(done); });
     this->Ledger.Count(this->Sweep.Run(order, this->Emits, this->Faces, ofOrder));
-    HeldFailure failure;
-    if (this->Has)
-    {
-      this->Collect(order, failure);
-    }
-    this->Others.Together([&] { failure.Throw(); });
+    this->Collect(order);
+    this->BeginOrGoOnWarm(order);
+    this->Scatter();
     if (order == 0 && this->IsGiven)
     {
       this->Ledger.Count(this->PowersGiven());
@@ -97,53 +98,95 @@ public:
   {
     LightField field;
     TakeMoments(
-      this->Model, this->NetFlux, [this](int k) { return this->Totals[k]; }, field);
+      this->Model, this->NetFlux, [this](int k) { return this->OneOf(this->Totals, k); }, field);
     field.fluenceDirect = this->FluenceDirect;
     this->Ledger.WriteTo(field);
     this->Faces.WriteTo(field);
+    if (this->Warm.Keeps())
+    {
+      field.leftOut.push_back(this->Warm.Words());
+    }
     return field;
   }
 
-private:
-  std::size_t Values() const { return this->TheMedium.grid.VoxelCount() * this->Model.Channels(); }
+  KeptLight Left() const { return this->Warm.Leave(this->Totals, this->Faces, this->Ledger.Rate()); }
+  bool BeganWarm() const { return this->Warm.Begins(); }
 
-  /// Eq. (4): what all sweeps left in this block, and U of the next order from it.
-  void Collect(int order, HeldFailure& failure)
+private:
+  std::vector<float> OneOf(const std::vector<float>& moments, int k) const
   {
-    for (std::size_t k = 0; k < this->Moments.size(); ++k)
-    {
-      this->Moments[k] = this->Sweep.Moment(static_cast<int>(k), failure);
-    }
-    failure.Attempt([&] { this->AddToTotals(order); });
-    this->Sweep.WriteSources([this](int d) { return this->SourceOf(d); }, failure);
+    const auto first = moments.begin() + static_cast<std::ptrdiff_t>(k * this->Values);
+    return { first, first + static_cast<std::ptrdiff_t>(this->Values) };
   }
 
-  void AddToTotals(int order)
+  /// What all sweeps left in this block.
+  void Collect(int order)
   {
-    if (order == 0)
+    HeldFailure failure;
+    failure.Attempt([&] { this->Moments.resize(this->Totals.size()); });
+    for (int k = 0; k < this->Model.MomentCount() && this->Has; ++k)
     {
-      if (this->Given.IsThere())
+      const std::vector<float> moment = this->Sweep.Moment(k, failure);
+      failure.Attempt([&] {
+        std::copy(moment.begin(), moment.end(), this->Moments.begin() + static_cast<std::ptrdiff_t>(k * this->Values));
+      });
+    }
+    failure.Attempt([&] {
+      if (order == 0 && this->Has)
       {
-        AddGiven(this->Model, this->Given, this->TheMedium.grid.VoxelCount(),
-          [this](std::size_t k, std::size_t voxel, int c, double value) {
-            this->Moments[k][voxel * this->Model.Channels() + c] += static_cast<float>(value);
-          });
+        this->LookAtDirect();
       }
-      this->FluenceDirect = this->Moments[0];
-    }
-    for (std::size_t k = 0; k < this->Moments.size(); ++k)
+    });
+    this->Others.Together([&] { failure.Throw(); });
+  }
+
+  void LookAtDirect()
+  {
+    if (this->Given.IsThere())
     {
-      this->Totals[k].resize(this->Values(), 0.0f);
-      std::transform(this->Totals[k].begin(), this->Totals[k].end(), this->Moments[k].begin(), this->Totals[k].begin(),
-        [](float sum, float more) { return sum + more; });
+      AddGiven(this->Model, this->Given, this->TheMedium.grid.VoxelCount(),
+        [this](std::size_t k, std::size_t voxel, int c, double value) {
+          this->Moments[k * this->Values + voxel * this->Model.Channels() + c] += static_cast<float>(value);
+        });
     }
+    this->FluenceDirect = this->OneOf(this->Moments, 0);
+  }
+
+  /// As ParallelPropagation does.
+  void BeginOrGoOnWarm(int order)
+  {
+    if (order == 0 && this->Warm.Keeps())
+    {
+      this->Warm.AddTo(this->Moments, this->Faces, this->FluenceDirect);
+      if (this->Warm.Begins())
+      {
+        this->Ledger.BeginWarm(this->Warm.Rate());
+      }
+    }
+    else if (order == 1 && this->Warm.Begins())
+    {
+      this->Warm.TakeFrom(this->Moments);
+    }
+  }
+
+  /// Eq. (4): U of the next order, and I of all so far.
+  void Scatter()
+  {
+    std::transform(
+      this->Totals.begin(), this->Totals.end(), this->Moments.begin(), this->Totals.begin(), std::plus<>());
+    HeldFailure failure;
+    if (this->Has)
+    {
+      this->Sweep.WriteSources([this](int d) { return this->SourceOf(d); }, failure);
+    }
+    this->Others.Together([&] { failure.Throw(); });
   }
 
   std::vector<float> SourceOf(int sourceDirection) const
   {
     const PublishedModel::Part part = this->Model.Source(sourceDirection);
     const float factor = static_cast<float>(part.factor);
-    std::vector<float> source = this->Moments[part.moment];
+    std::vector<float> source = this->OneOf(this->Moments, part.moment);
     const std::size_t channels = static_cast<std::size_t>(this->Model.Channels());
     for (std::size_t i = 0; i < source.size(); ++i)
     {
@@ -176,7 +219,7 @@ private:
     }
     this->Faces.CloseOrder(this->Ledger);
     const OrderSums own =
-      this->Has ? SumsOf(this->TheMedium, this->Model.Channels(), this->Moments[0].data()) : OrderSums();
+      this->Has ? SumsOf(this->TheMedium, this->Model.Channels(), this->Moments.data()) : OrderSums();
     std::vector<double> values;
     for (const Rgb* rgb : { &own.fluence, &own.magnitude, &own.absorbed, &own.scattered })
     {
@@ -202,9 +245,11 @@ private:
   OrderLedger Ledger;
   PublishedFaces Faces;
   SweepInSlabs Sweep;
+  PublishedWarmStart Warm;
   bool Emits; ///< U is not zero
   const bool IsGiven;
-  std::vector<std::vector<float>> Totals, Moments; ///< of all orders, of the last
+  const std::size_t Values;           ///< of a moment: voxels times channels
+  std::vector<float> Totals, Moments; ///< of all orders, of the last; [moment][voxel][channel]
   std::vector<float> FluenceDirect;
 };
 
@@ -242,8 +287,10 @@ std::vector<std::string> LeftOutOfBlocks(
 }
 
 LightField SolvePublishedInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition,
-  const Medium& medium, const Illumination& illumination, const PropagationSettings& settings, const Monitor& monitor)
+  const Medium& medium, const Illumination& illumination, const PropagationSettings& settings, const Monitor& monitor,
+  KeptLight* kept)
 {
+  RequireSame(communicator, "WarmStart", true, { kept ? 1.0 : 0.0 });
   const bool has = partition.blocks.at(communicator.Rank()).VoxelCount() > 0;
   CheckPublishedBlocks(communicator, partition, has, medium, illumination, settings);
   Medium own = has ? medium : Medium();
@@ -252,17 +299,22 @@ LightField SolvePublishedInBlocks(Device& device, Communicator& communicator, co
   std::optional<PublishedModel> model;
   communicator.Together(
     [&] { model.emplace(has ? medium.phase : PhaseOfMedium(), illumination, settings, scene.channels); });
-  PublishedOfBlock propagation(device, communicator, partition, has, own, illumination, settings, *model, scene);
+  PublishedOfBlock propagation(device, communicator, partition, has, own, illumination, settings, *model, scene, kept);
   do
   {
     propagation.RunOrder(monitor);
   } while (!propagation.Done());
   LightField light = propagation.Result();
-  light.leftOut = LeftOutOfBlocks(scene, illumination, settings, propagation.Orders());
+  std::vector<std::string> leftOut = LeftOutOfBlocks(scene, illumination, settings, propagation.Orders());
+  light.leftOut.insert(light.leftOut.begin(), leftOut.begin(), leftOut.end());
   light.halfRangeFlux = HalfRangeFlux(model->Directions());
   light.device = device.Name();
   JudgeConvergence(settings, light);
   DoubtGivenLight(illumination, light);
+  if (kept)
+  {
+    Keep(propagation.Left(), propagation.BeganWarm(), light, *kept);
+  }
   return light;
 }
 }
