@@ -623,6 +623,16 @@ def ordinates_warm():
     warm_by_blocks("ordinates_warm", DiscreteOrdinates, Terms=16)
 
 
+def published_in_turn():
+    """The sequential algorithm, round an axis."""
+    own_pieces("published_in_turn", uneven_pieces(), solve=lambda *what: by_blocks(*what, Algorithm=0, PeriodicX=1, **PUBLISHED))
+
+
+def published_in_turn_whole():
+    own_pieces("published_in_turn_whole", [piece_of([0, 12, 0, 5, 0, 4])],
+               solve=lambda *what: solved(*what, Algorithm=0, PeriodicX=1, **PUBLISHED))
+
+
 def published_warm():
     warm_by_blocks("published_warm", LightPropagationMaps, **PUBLISHED)
 
@@ -647,7 +657,7 @@ def blocks_errors():
     medium = ParticipatingMedium(Input=Wavelet(WholeExtent=SIZE), DensityArray=["POINTS", "RTData"])
     for named, settings in (("blocks) with a source by octants", {"Source": 3}),
                             ("TargetError is for the conservative scheme", {"Scheme": 0, "TargetError": 0.1}),
-                            ("blocks) with the sequential Algorithm", {"Scheme": 0, "Algorithm": 0})):
+                            ("disagree about Scheme or Algorithm", {"Scheme": 0, "Algorithm": rank % 2})):
         light = LightPropagationMaps(Input=medium, SkyColor=[1, 1, 1], Decomposition="Blocks", **settings)
         errors = errors_of(light)
         light.UpdatePipeline()

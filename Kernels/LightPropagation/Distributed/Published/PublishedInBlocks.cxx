@@ -6,15 +6,19 @@
 #include "Light/LeftOut.h"
 #include "LightPropagation/Convergence.h"
 #include "LightPropagation/Distributed/BlockScene.h"
+#include "LightPropagation/Distributed/Published/SlabRaysInTurn.h"
+#include "LightPropagation/Distributed/Published/SlabRaysOnDevice.h"
 #include "LightPropagation/Distributed/Published/SweepInSlabs.h"
 #include "LightPropagation/Problem/PropagationProblem.h"
 #include "LightPropagation/Published/OrderLedger.h"
 #include "LightPropagation/Published/PublishedLight.h"
 #include "LightPropagation/Published/PublishedWarmStart.h"
+#include "LightPropagation/Published/SequentialPropagation.h"
 #include "Lights/UncollidedImage.h"
 
 #include <algorithm>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -48,14 +52,17 @@ SceneOfAll SceneOf(Communicator& communicator, bool has, const Medium& medium, c
   return scene;
 }
 
+/// Rays of an algorithm, still without planes; faces must stay.
+using MakeRays = std::function<std::unique_ptr<SlabRays>(const PublishedModel& model, const PublishedFaces& faces)>;
+
 /// Orders one by one, of all ranks; of the voxels those of this rank's block.
 class PublishedOfBlock
 {
 public:
   /// All ranks make one together. What is given must stay.
-  PublishedOfBlock(Device& device, Communicator& communicator, const BlockPartition& partition, bool has,
-    const Medium& medium, const Illumination& illumination, const PropagationSettings& settings,
-    const PublishedModel& model, const SceneOfAll& scene, const KeptLight* kept)
+  PublishedOfBlock(Communicator& communicator, const BlockPartition& partition, bool has, const Medium& medium,
+    const Illumination& illumination, const PropagationSettings& settings, const PublishedModel& model,
+    const SceneOfAll& scene, const MakeRays& make, const KeptLight* kept)
     : Others(communicator)
     , Has(has)
     , CountsGiven(IsFirstThatHas(communicator, partition))
@@ -65,7 +72,8 @@ public:
     , NetFlux(settings.netFlux)
     , Ledger(partition.whole.VoxelVolume(), scene.emitted, this->Model, settings)
     , Faces(partition.whole, this->Model, settings)
-    , Sweep(device, communicator, partition, medium, this->Model, settings, this->Faces)
+    , Rays(make(this->Model, this->Faces))
+    , Sweep(communicator, partition, medium, this->Model, settings, *this->Rays)
     , Warm({ medium, this->Model, settings, partition.whole, 1, &communicator, partition.blocks[communicator.Rank()] },
         kept)
     , Emits(scene.traits.emits || !settings.leaveOut)
@@ -244,6 +252,7 @@ private:
   const bool NetFlux;
   OrderLedger Ledger;
   PublishedFaces Faces;
+  const std::unique_ptr<SlabRays> Rays;
   SweepInSlabs Sweep;
   PublishedWarmStart Warm;
   bool Emits; ///< U is not zero
@@ -284,9 +293,9 @@ std::vector<std::string> LeftOutOfBlocks(
   }
   return words;
 }
-}
 
-LightField SolvePublishedInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition,
+/// By an algorithm, which is the same on all ranks.
+LightField SolveBy(const MakeRays& make, Communicator& communicator, const BlockPartition& partition,
   const Medium& medium, const Illumination& illumination, const PropagationSettings& settings, const Monitor& monitor,
   KeptLight* kept)
 {
@@ -299,22 +308,52 @@ LightField SolvePublishedInBlocks(Device& device, Communicator& communicator, co
   std::optional<PublishedModel> model;
   communicator.Together(
     [&] { model.emplace(has ? medium.phase : PhaseOfMedium(), illumination, settings, scene.channels); });
-  PublishedOfBlock propagation(device, communicator, partition, has, own, illumination, settings, *model, scene, kept);
+  PublishedOfBlock propagation(communicator, partition, has, own, illumination, settings, *model, scene, make, kept);
   do
   {
     propagation.RunOrder(monitor);
   } while (!propagation.Done());
   LightField light = propagation.Result();
-  std::vector<std::string> leftOut = LeftOutOfBlocks(scene, illumination, settings, propagation.Orders());
+  const std::vector<std::string> leftOut = LeftOutOfBlocks(scene, illumination, settings, propagation.Orders());
   light.leftOut.insert(light.leftOut.begin(), leftOut.begin(), leftOut.end());
   light.halfRangeFlux = HalfRangeFlux(model->Directions());
-  light.device = device.Name();
   JudgeConvergence(settings, light);
   DoubtGivenLight(illumination, light);
   if (kept)
   {
     Keep(propagation.Left(), propagation.BeganWarm(), light, *kept);
   }
+  return light;
+}
+
+void RequireSameAlgorithm(Communicator& communicator, bool inTurn)
+{
+  RequireSame(communicator, "Algorithm", true, { inTurn ? 1.0 : 0.0 });
+}
+}
+
+LightField SolvePublishedInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition,
+  const Medium& medium, const Illumination& illumination, const PropagationSettings& settings, const Monitor& monitor,
+  KeptLight* kept)
+{
+  RequireSameAlgorithm(communicator, false);
+  const MakeRays make = [&](const PublishedModel& model, const PublishedFaces& faces) {
+    return std::make_unique<SlabRaysOnDevice>(device, partition.whole, model, settings, faces);
+  };
+  LightField light = SolveBy(make, communicator, partition, medium, illumination, settings, monitor, kept);
+  light.device = device.Name();
+  return light;
+}
+
+LightField SolveSequentialInBlocks(Communicator& communicator, const BlockPartition& partition, const Medium& medium,
+  const Illumination& illumination, const PropagationSettings& settings, const Monitor& monitor)
+{
+  RequireSameAlgorithm(communicator, true);
+  const MakeRays make = [&](const PublishedModel& model, const PublishedFaces&) {
+    return std::make_unique<SlabRaysInTurn>(partition.whole, model, settings);
+  };
+  LightField light = SolveBy(make, communicator, partition, medium, illumination, settings, monitor, nullptr);
+  light.device = SequentialDevice;
   return light;
 }
 }

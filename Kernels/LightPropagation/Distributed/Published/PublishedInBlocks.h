@@ -32,4 +32,10 @@ namespace tyndall
 LightField SolvePublishedInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition,
   const Medium& medium, const Illumination& illumination, const PropagationSettings& settings,
   const Monitor& monitor = {}, KeptLight* kept = nullptr);
+
+/// The same by the sequential algorithm: the light of SolveSequential, to rounding, with as many orders. A ray is
+/// followed through a rank's planes, then through those of the next (SlabRaysInTurn.h); ranks work at once on different
+/// directions, each on one core. It needs no device, keeps no light, and throws no DeviceError.
+LightField SolveSequentialInBlocks(Communicator& communicator, const BlockPartition& partition, const Medium& medium,
+  const Illumination& illumination, const PropagationSettings& settings, const Monitor& monitor = {});
 }
