@@ -28,7 +28,6 @@
 #include "vtkObjectFactory.h"
 
 #include <algorithm>
-#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
@@ -80,16 +79,19 @@ tyndall::LightField LightOf(tyndall::TargetLight&& found)
   return std::move(found.light);
 }
 
+/// As published there is none.
+void CheckTarget(vtkLightPropagationMaps* filter)
+{
+  tyndall::Require(filter->GetScheme() != vtkLightPropagationMaps::PUBLISHED || filter->GetTargetError() == 0.0,
+    "TargetError is for the conservative scheme: as published the error does not fall with directions. Set "
+    "TargetError to 0, or Scheme to conservative.");
+}
+
 /// By directions, tolerance and voxels that the target needs, whatever Quality has.
 tyndall::LightField SolveToTarget(vtkLightPropagationMaps* filter, const tyndall::Medium& medium,
   const tyndall::Illumination& illumination, const tyndall::Monitor& monitor, const tyndall::PropagationSolver& solve)
 {
-  if (filter->GetScheme() == vtkLightPropagationMaps::PUBLISHED)
-  {
-    throw tyndall::InvalidInput(
-      "TargetError is for the conservative scheme: as published the error does not fall with directions. Set "
-      "TargetError to 0, or Scheme to conservative.");
-  }
+  CheckTarget(filter);
   return LightOf(
     tyndall::SolveToTargetError(medium, illumination, SettingsOf(filter), filter->GetTargetError(), monitor, solve));
 }
@@ -167,20 +169,33 @@ std::shared_ptr<tyndall::Device> DeviceOnAll(vtkLightPropagationMaps* filter, ty
 
 bool IsPublishedOnAll(vtkLightPropagationMaps* filter, tyndall::Communicator& communicator)
 {
-  tyndall::RequireSame(communicator, "Scheme", true, { 1.0 * filter->GetScheme() });
+  const bool published = filter->GetScheme() == vtkLightPropagationMaps::PUBLISHED;
+  tyndall::RequireSame(communicator, "Scheme or Algorithm", true,
+    { 1.0 * filter->GetScheme(), published ? 1.0 * filter->GetAlgorithm() : 0.0 });
   return filter->GetScheme() == vtkLightPropagationMaps::PUBLISHED;
 }
 
 /// As of the whole, what does not fit a rank's budget is an error.
-tyndall::LightField SolvePublishedPiece(vtkLightPropagationMaps* filter, tyndall::Device& device,
-  const tyndall::SceneInBlocks& scene, const tyndall::PropagationSettings& settings, const tyndall::Monitor& monitor)
+/// @param device  null: by the sequential algorithm
+tyndall::LightField SolvePublishedPiece(vtkLightPropagationMaps* filter, tyndall::Device* device,
+  const tyndall::SceneInBlocks& scene, const tyndall::PropagationSettings& settings, const tyndall::Monitor& monitor,
+  tyndall::KeptLight* last)
 {
-  std::optional<tyndall::Device> within;
-  scene.others.Together([&] { within.emplace(device, tyndall::BudgetOf(filter->GetMemoryBudget(), false)); });
+  std::optional<tyndall::Device> within; // none of the sequential algorithm
+  scene.others.Together([&] {
+    CheckTarget(filter);
+    if (device)
+    {
+      within.emplace(*device, tyndall::BudgetOf(filter->GetMemoryBudget(), false));
+    }
+  });
   const tyndall::SolverInBlocks solve = [&](const tyndall::SceneInBlocks& inside,
                                           const tyndall::PropagationSettings& how, const tyndall::Monitor& watch) {
-    return tyndall::SolvePublishedInBlocks(
-      *within, inside.others, inside.partition, inside.medium, inside.illumination, how, watch);
+    tyndall::KeptLight* const kept = &inside.medium == &scene.medium ? last : nullptr; // not of coarser ones
+    return within ? tyndall::SolvePublishedInBlocks(
+                      *within, inside.others, inside.partition, inside.medium, inside.illumination, how, watch, kept)
+                  : tyndall::SolveSequentialInBlocks(
+                      inside.others, inside.partition, inside.medium, inside.illumination, how, watch);
   };
   tyndall::LightField light = filter->GetEstimateError()
     ? tyndall::SolveWithErrorEstimate(scene, settings, monitor, solve)
@@ -239,22 +254,6 @@ vtkLightPropagationMaps::vtkLightPropagationMaps()
 
 vtkLightPropagationMaps::~vtkLightPropagationMaps() = default;
 
-std::string vtkLightPropagationMaps::NotByBlocks(vtkInformationVector**) const
-{
-  if (this->Preview)
-  {
-    return {};
-  }
-  const std::pair<bool, const char*> reasons[] = {
-    { this->Scheme == PUBLISHED && this->Algorithm == SEQUENTIAL, "the sequential Algorithm of the published Scheme" },
-    { this->Scheme == PUBLISHED && this->TargetError > 0.0, "TargetError of the published Scheme" },
-    { this->Scheme == PUBLISHED && this->WarmStart, "WarmStart of the published Scheme" },
-  };
-  const auto found =
-    std::find_if(std::begin(reasons), std::end(reasons), [](const auto& reason) { return reason.first; });
-  return found == std::end(reasons) ? std::string() : found->second;
-}
-
 std::string vtkLightPropagationMaps::NotInBlocks(
   const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining)
 {
@@ -284,13 +283,14 @@ tyndall::LightField vtkLightPropagationMaps::SolvePiece(tyndall::Communicator& c
   }
   const bool published = IsPublishedOnAll(this, communicator);
   tyndall::KeptLight* const last = this->Last->Where(this->WarmStart);
-  const std::shared_ptr<tyndall::Device> device = DeviceOnAll(this, communicator);
+  const bool inTurn = published && this->Algorithm == SEQUENTIAL;
+  const std::shared_ptr<tyndall::Device> device = inTurn ? nullptr : DeviceOnAll(this, communicator);
   const tyndall::PropagationSettings settings = SettingsOn(this, communicator, pieces, piece, shining);
   const tyndall::SceneInBlocks scene = { communicator, pieces.Partition(), piece.medium, shining.illumination };
   const tyndall::Monitor monitor = tyndall::MonitorOf(this);
   if (published)
   {
-    return SolvePublishedPiece(this, *device, scene, settings, monitor);
+    return SolvePublishedPiece(this, device.get(), scene, settings, monitor, last);
   }
   if (this->TargetError > 0.0)
   {

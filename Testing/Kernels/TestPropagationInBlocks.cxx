@@ -479,9 +479,6 @@ TEST_F(PropagationBlocksFail, TogetherWhereOneIsStopped)
 
 TEST_F(PropagationBlocksFail, WithWordsOnWhatIsNotCarriedFromRankToRank)
 {
-  ExpectErrors("by octants", [](int, PartOf&, Illumination&, PropagationSettings& settings, Monitor&) {
-    settings.source = PropagationSource::Octants;
-  });
   ExpectErrors("a linear source besides", [](int, PartOf&, Illumination&, PropagationSettings& settings, Monitor&) {
     settings.source = PropagationSource::Linear;
     settings.acceleration = PropagationAcceleration::Automatic;

@@ -6,6 +6,7 @@
 #include "LightPropagation/Distributed/Published/PublishedInBlocks.h"
 #include "LightPropagation/Distributed/Published/SlabsAcross.h"
 #include "LightPropagation/Published/ParallelPropagation.h"
+#include "LightPropagation/Published/SequentialPropagation.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -59,6 +60,14 @@ protected:
     return LightOfBlocks(partition, medium, [&](Communicator& communicator, MediumToCut& part) {
       return SolvePublishedInBlocks(
         this->GetDevice(), communicator, partition, part.scene.medium, part.scene.light, settings);
+    });
+  }
+
+  /// By the sequential algorithm.
+  static LightField InTurn(const BlockPartition& partition, const MediumToCut& medium, const PropagationSettings& how)
+  {
+    return LightOfBlocks(partition, medium, [&](Communicator& communicator, MediumToCut& part) {
+      return SolveSequentialInBlocks(communicator, partition, part.scene.medium, part.scene.light, how);
     });
   }
 
@@ -207,6 +216,35 @@ TEST_F(PublishedBlocks, HaveTheLightThatIsGivenToTheWhole)
     const LightField whole = this->Whole(medium, SettingsOf(4));
     ExpectSame(this->OfBlocks(BlockPartition::Even(medium.scene.medium.grid, 3), medium, SettingsOf(4)), whole);
     ExpectSame(this->OfBlocks(Slices(medium.scene.medium.grid, { 0, 1, 1 }), medium, SettingsOf(4)), whole);
+  }
+}
+
+/// Of all that the scheme carries; on ranks of uneven parts, single planes and none.
+TEST_F(PublishedBlocks, HaveTheLightOfTheSequentialAlgorithm)
+{
+  for (const bool around : { false, true })
+  {
+    SCOPED_TRACE(around ? "round two axes" : "open");
+    MediumToCut medium = Everything({ 5, 7, 3 });
+    medium.scene.medium.phase = PhaseFunction::HenyeyGreenstein(0.6);
+    medium.scene.light.faceAlbedo[0].fill(0.6);
+    medium.scene.light.faceAlbedo[3].fill(around ? 0.0 : 0.3);
+    GiveLight(medium, around);
+    medium.Attach();
+    PropagationSettings settings = SettingsOf(around ? 4 : 0);
+    settings.periodic = { false, around, around };
+    settings.mapResolution = around ? 2 : 1;
+    settings.storedDirections = 6;
+    const LightField whole = SolveSequential(medium.scene.medium, medium.scene.light, settings);
+    const Grid& grid = medium.scene.medium.grid;
+    for (const BlockPartition& partition :
+      { BlockPartition::Even(grid, 1), BlockPartition::Even(grid, 5), Slices(grid, { 0, 1, 1, 3 }) })
+    {
+      SCOPED_TRACE(std::to_string(partition.blocks.size()) + " ranks");
+      const LightField light = InTurn(partition, medium, settings);
+      ExpectSame(light, whole);
+      EXPECT_EQ(light.device, whole.device);
+    }
   }
 }
 

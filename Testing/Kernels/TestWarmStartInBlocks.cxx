@@ -6,6 +6,8 @@
 #include "DiscreteOrdinates/DiscreteOrdinates.h"
 #include "DiscreteOrdinates/Distributed/OrdinatesInBlocks.h"
 #include "LightPropagation/Accuracy/ErrorInBlocks.h"
+#include "LightPropagation/Distributed/Published/PublishedInBlocks.h"
+#include "LightPropagation/Published/ParallelPropagation.h"
 
 #include <gmock/gmock.h>
 
@@ -123,6 +125,46 @@ protected:
       ExpectSameWarm(AfterInBlocks(partitions[i], change), whole);
     }
   }
+  /// In an open box with a white face, and round an axis: of another solver than maps.
+  /// @param settings  of that, whose axes are set
+  /// @param whole   of a medium, what shines on it, and kept light
+  /// @param blocks  of a partition, a rank and its part, what shines, and kept light
+  template <class Settings, class Whole, class Blocks>
+  void ExpectTheOrdersOfTheWhole(Change& change, Settings& settings, const std::vector<BlockPartition>& partitions,
+    const Whole& whole, const Blocks& blocks)
+  {
+    change.TurnLamp();
+    change.DarkenTo(0.88f);
+    const auto ofAll = [&](const BlockPartition& partition, const RandomMedium& all, const Illumination& light,
+                         Kept& kept) {
+      return LightOfAll(
+        partition, all, light, [&](Communicator& communicator, const Medium& medium, const Illumination& shining) {
+          return blocks(partition, communicator, medium, shining, &kept[communicator.Rank()]);
+        });
+    };
+    for (const bool around : { false, true })
+    {
+      SCOPED_TRACE(around ? "periodic" : "open, a white face");
+      settings.periodic[0] = around;
+      change.shining.faceAlbedo[4] = change.next.faceAlbedo[4] = around ? Rgb{} : Rgb{ 0.7, 0.7, 0.7 };
+      KeptLight kept;
+      whole(change.before, change.shining, &kept);
+      const LightField expected = whole(change.after, change.next, &kept);
+      EXPECT_LT(expected.convergence.size(), whole(change.after, change.next, nullptr).convergence.size());
+      for (const BlockPartition& partition : partitions)
+      {
+        SCOPED_TRACE(std::to_string(partition.blocks.size()) + " ranks");
+        Kept ofRanks(partition.blocks.size());
+        ofAll(partition, change.before, change.shining, ofRanks);
+        ExpectSameWarm(ofAll(partition, change.after, change.next, ofRanks), expected);
+        ofRanks.back().kind.block.first[0] += 1;
+        const LightField cold = ofAll(partition, change.after, change.next, ofRanks);
+        EXPECT_THAT(cold.leftOut, testing::Contains(testing::HasSubstr("the blocks that the grid is cut into")));
+        EXPECT_GT(cold.convergence.size(), expected.convergence.size());
+      }
+    }
+  }
+
   static void ExpectSameWarm(const LightField& found, const LightField& expected)
   {
     EXPECT_EQ(found.convergence.size(), expected.convergence.size());
@@ -132,8 +174,9 @@ protected:
     EXPECT_LT(LargestDifference(found.netFlux, expected.netFlux), 1e-5);
     EXPECT_LT(LargestDifference(found.scatteredMoments, expected.scatteredMoments), 1e-6);
     EXPECT_LT(LargestDifference(found.facePower, expected.facePower), 1e-6);
-    const double ofWhole = expected.balance.RelativeError(found.channels); // steps as published do not keep power
-    EXPECT_LT(found.balance.RelativeError(found.channels), std::max(1e-5, 1.00001 * ofWhole));
+    // As published it is not closed (numerics.md, section 3).
+    EXPECT_LT(found.balance.RelativeError(found.channels),
+      std::max(1e-5, 1.0001 * expected.balance.RelativeError(expected.channels)));
     EXPECT_THAT(found.leftOut, testing::Contains(testing::HasSubstr("begun from the last light")));
     EXPECT_TRUE(found.converged);
   }
@@ -302,49 +345,45 @@ TEST_F(WarmStartsInBlocks, AreOfAllRanksOrOfNone)
   EXPECT_THAT(errors, testing::Each(testing::HasSubstr("disagree about WarmStart")));
 }
 
+/// Of voxels and of what faces give back; these are counted by cell also where none does, round an axis.
+TEST_F(WarmStartsInBlocks, TakeTheOrdersOfTheWholeAsPublished)
+{
+  const Grid grid = { { 7, 6, 5 } };
+  Change change(grid, 3, 0.5f, 0.9f, ToTolerance(1e-4));
+  PropagationSettings& settings = change.settings;
+  settings.directionsPerFace = 4;
+  settings.facePower = true;
+  ExpectTheOrdersOfTheWhole(
+    change, settings, { BlockPartition::Even(grid, 3), UnevenSlices(grid) },
+    [&](const RandomMedium& medium, const Illumination& light, KeptLight* kept) {
+      return SolveParallel(GetDevice(), medium.medium, light, settings, {}, 0, kept);
+    },
+    [&](const BlockPartition& partition, Communicator& communicator, const Medium& medium, const Illumination& shining,
+      KeptLight* kept) {
+      return SolvePublishedInBlocks(GetDevice(), communicator, partition, medium, shining, settings, {}, kept);
+    });
+}
+
 TEST_F(WarmStartsInBlocks, TakeTheOrdersOfTheWholeOfDiscreteOrdinates)
 {
   const Grid grid = { { 7, 6, 5 } };
-  Change change(grid, 3, 0.5f, 0.9f, {});
-  change.TurnLamp();
-  change.DarkenTo(0.88f);
   OrdinatesSettings settings;
   settings.directionsPerFace = 4;
   settings.terms = 16;
-  const auto whole = [&](const RandomMedium& medium, const Illumination& light, KeptLight* kept) {
-    return SolveDiscreteOrdinates(GetDevice(), medium.medium, light, settings, {}, kept);
-  };
-  const auto blocks = [&](const BlockPartition& partition, const RandomMedium& all, const Illumination& light,
-                        Kept& kept) {
-    return LightOfAll(
-      partition, all, light, [&](Communicator& communicator, const Medium& medium, const Illumination& shining) {
-        return SolveOrdinatesInBlocks(
-          GetDevice(), communicator, partition, medium, shining, settings, {}, &kept[communicator.Rank()]);
-      });
-  };
-  for (const std::string scene : { "open, a white face", "periodic", "as published, open, a white face" })
+  for (const OrdinatesScheme scheme : { OrdinatesScheme::Conservative, OrdinatesScheme::Published })
   {
-    SCOPED_TRACE(scene);
-    const bool around = scene == "periodic";
-    settings.periodic[0] = around;
-    settings.scheme =
-      scene.find("published") != std::string::npos ? OrdinatesScheme::Published : OrdinatesScheme::Conservative;
-    change.shining.faceAlbedo[4] = change.next.faceAlbedo[4] = around ? Rgb{} : Rgb{ 0.7, 0.7, 0.7 };
-    KeptLight kept;
-    whole(change.before, change.shining, &kept);
-    const LightField expected = whole(change.after, change.next, &kept);
-    EXPECT_LT(expected.convergence.size(), whole(change.after, change.next, nullptr).convergence.size());
-    for (const BlockPartition& partition :
-      { BlockPartition::Even(grid, 1), BlockPartition::Even(grid, 2), UnevenSlices(grid), Uneven(grid) })
-    {
-      SCOPED_TRACE(std::to_string(partition.blocks.size()) + " ranks");
-      Kept ofRanks(partition.blocks.size());
-      blocks(partition, change.before, change.shining, ofRanks);
-      ExpectSameWarm(blocks(partition, change.after, change.next, ofRanks), expected);
-      ofRanks.back().kind.block.first[0] += 1;
-      const LightField cold = blocks(partition, change.after, change.next, ofRanks);
-      EXPECT_THAT(cold.leftOut, testing::Contains(testing::HasSubstr("the blocks that the grid is cut into")));
-      EXPECT_GT(cold.convergence.size(), expected.convergence.size());
-    }
+    SCOPED_TRACE(scheme == OrdinatesScheme::Published ? "as published" : "conservative");
+    settings.scheme = scheme;
+    Change change(grid, 3, 0.5f, 0.9f, {});
+    ExpectTheOrdersOfTheWhole(
+      change, settings,
+      { BlockPartition::Even(grid, 1), BlockPartition::Even(grid, 2), UnevenSlices(grid), Uneven(grid) },
+      [&](const RandomMedium& medium, const Illumination& light, KeptLight* kept) {
+        return SolveDiscreteOrdinates(GetDevice(), medium.medium, light, settings, {}, kept);
+      },
+      [&](const BlockPartition& partition, Communicator& communicator, const Medium& medium,
+        const Illumination& shining, KeptLight* kept) {
+        return SolveOrdinatesInBlocks(GetDevice(), communicator, partition, medium, shining, settings, {}, kept);
+      });
   }
 }

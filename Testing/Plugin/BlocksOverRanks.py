@@ -14,7 +14,7 @@ from pieces_of_ranks import Runs, difference
 runs = Runs("BlocksOverRanks")
 WRONG = ["arrays", "components", "spacing", "g", "gap"]
 CASES = ["blocks_wavelet", "blocks_photons", "blocks_scattered", "blocks_plain", "blocks_turbid", "blocks_ghosts", "blocks_given_all", "blocks_warm", "blocks_even",
-         "blocks_uneven", "untouched_even", "untouched_uneven", "untouched_lit", "untouched_thick", "untouched_given"]
+         "blocks_uneven", "untouched_even", "untouched_uneven", "untouched_lit", "untouched_thick", "untouched_given", "blocks_absorbing"]
 LIKE = {"blocks_ghosts": "blocks_wavelet", "blocks_given_all": "blocks_even", "blocks_uneven": "blocks_even",
         "untouched_even": "blocks_even", "untouched_uneven": "blocks_even"}
 
@@ -39,7 +39,7 @@ def same_facts(ranks, what, tolerance):
 
 
 for ranks in (1, 2, 3, 4, 8):
-    more = ["whole_plain", "whole_turbid", "whole_photons", "whole_scattered", "whole_thick", "blocks_estimated", "whole_estimated"] if ranks == 1 else \
+    more = ["whole_plain", "whole_turbid", "whole_photons", "whole_scattered", "whole_thick", "whole_absorbing", "blocks_estimated", "whole_estimated"] if ranks == 1 else \
         ["whole_where_better", "whole_where_few"] if ranks == 2 else ["blocks_errors", "blocks_of_wrong_pieces", "blocks_abort", "photons_abort", "blocks_estimated", "blocks_budget"] if ranks == 3 else []
     code, said = runs.run(ranks, *CASES, *more)
     assert code == 0 and said.count("is done") == ranks, said
@@ -72,6 +72,9 @@ assert difference(blocks, whole) < 1e-5
 blocks, whole = runs.whole(1, "untouched_thick", "light")[0], runs.whole(1, "whole_thick", "light")[0]
 print("blocks and the whole, thick voxels: %.1e" % difference(blocks, whole))
 assert difference(blocks, whole) < 1e-4
+blocks, whole = runs.whole(1, "blocks_absorbing", "light")[0], runs.whole(1, "whole_absorbing", "light")[0]
+print("blocks and the whole, thick voxels that absorb: %.1e" % difference(blocks, whole))
+assert difference(blocks, whole) < 1e-6
 for case in ("estimated", "target"):  # differences of light, which agree as that does
     whole, brightest = runs.whole(1, "whole_" + case, "light")[0], runs.whole(1, "blocks_plain", "light")[0].max()
     for ranks in (1, 3):

@@ -11,11 +11,11 @@ runs = Runs("SolversByBlocks")
 CASES = ["lattice_wavelet", "lattice_even", "lattice_uneven", "lattice_lamps", "lattice_around",
          "lattice_steps", "lattice_photons", "ordinates_even",
          "ordinates_uneven", "ordinates_faces", "ordinates_around", "ordinates_warm", "ordinates_steps",
-         "published_even", "published_uneven", "published_shown"]
+         "published_even", "published_uneven", "published_shown", "published_warm", "published_in_turn"]
 LIKE = {"published_uneven": "published_even", "lattice_uneven": "lattice_even", "ordinates_uneven": "ordinates_even"}
 
 for ranks in (1, 2, 3, 8):
-    more = ["lattice_exact", "lattice_whole", "lattice_photons_whole", "ordinates_whole", "ordinates_faces_whole", "ordinates_steps_whole", "published_whole", "previews_whole"] if ranks == 1 else \
+    more = ["lattice_exact", "lattice_whole", "lattice_photons_whole", "ordinates_whole", "ordinates_faces_whole", "ordinates_steps_whole", "published_whole", "published_in_turn_whole", "previews_whole"] if ranks == 1 else \
         ["lattice_errors"] if ranks == 2 else []
     code, said = runs.run(ranks, *CASES, *(["previews"] if ranks in (1, 3) else []), *more)
     assert code == 0 and said.count("is done") == ranks and "ERR|" not in said, said
@@ -38,9 +38,10 @@ for case, of_whole in (("ordinates_even", "ordinates_whole"), ("ordinates_faces"
     ordinates, whole = runs.whole(1, case, "light")[0], runs.whole(1, of_whole, "light")[0]
     print("%s in blocks and in the whole: %.1e" % (case, difference(ordinates, whole)))
     assert difference(ordinates, whole) < 1e-6
-blocks, whole = runs.whole(1, "published_even", "light")[0], runs.whole(1, "published_whole", "light")[0]
-print("maps as published in blocks and in the whole: %.1e" % difference(blocks, whole))
-assert difference(blocks, whole) < 1e-6
+for case, of_whole in (("published_even", "published_whole"), ("published_in_turn", "published_in_turn_whole")):
+    blocks, whole = runs.whole(1, case, "light")[0], runs.whole(1, of_whole, "light")[0]
+    print("maps as published, %s, in blocks and in the whole: %.1e" % (case, difference(blocks, whole)))
+    assert difference(blocks, whole) < 1e-6
 for name in ("maps", "ordinates", "lattice"):
     for ranks in (1, 3):
         blocks, whole = runs.whole(ranks, "preview_" + name, "light"), runs.whole(1, "preview_%s_whole" % name, "light")

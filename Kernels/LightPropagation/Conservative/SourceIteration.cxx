@@ -36,7 +36,9 @@ SourceIteration::SourceIteration(TransportParts& parts, const KeptLight* kept)
   }
   if (parts.How == OrdersAdded::OneByOne && OctantSources::Matter(parts.Problem, !parts.OtherSources().empty()))
   {
-    this->AtFaces.emplace(parts.TheDevice, parts.Problem, parts.Layout, parts.OnDevice, !parts.Lamps.empty());
+    const Grid& grid = parts.Layout.grid;
+    this->AtFaces.emplace(OctantSources::Scene{ parts.TheDevice, this->Settings, parts.Layout, parts.OnDevice, grid,
+      { { 0, 0, 0 }, grid.size }, !parts.Lamps.empty() });
   }
   if (parts.How == OrdersAdded::ByCells)
   {

@@ -15,6 +15,7 @@ BlockOnDevice::BlockOnDevice(Device& device, Communicator& communicator, const B
   , Layout({ partition.OwnGrid(communicator.Rank()), scene.channels, scene.sharedExtinction })
   , OnDevice(device, scene.medium, scene.Scattering(), this->Layout, { true, false })
   , Scattering(MakeScattering(device, this->Layout, this->OnDevice, scene.Scattering().Degree(), scene.traits.scatters))
+  , Across(device, communicator, partition, this->Layout, settings.periodic)
 {
   if (scene.Scattering().Degree() > 0 && this->Has)
   {

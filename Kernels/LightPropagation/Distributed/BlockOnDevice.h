@@ -7,6 +7,7 @@
 #include "LightPropagation/Conservative/WarmStart.h"
 #include "LightPropagation/Distributed/BlockScene.h"
 #include "LightPropagation/Distributed/IncidentLight.h"
+#include "LightPropagation/Distributed/Sweep/AcrossFaces.h"
 #include "LightPropagation/Distributed/Sweep/SweepInBlocks.h"
 #include "LightPropagation/Problem/MediumOnDevice.h"
 #include "LightPropagation/Scattering/ScatteringOperator.h"
@@ -40,6 +41,7 @@ public:
   std::unique_ptr<const SweptMoments> Angular; ///< null: all is isotropic, or there are no voxels
   /// Of the whole grid, by cells of its faces; where they reflect, or face power is asked for; else null.
   std::unique_ptr<FaceLight> Faces;
+  AcrossFaces Across; ///< to the voxels beyond the block's faces
 
   /// [channel][stride]; flux [channel][x, y, z][stride], empty where net flux is not asked for. Where light has angular
   /// moments, Source and Path have them [function][channel][stride], and Source those of beams behind them.

@@ -1,5 +1,7 @@
 #include "LightPropagation/Distributed/IterationInBlocks.h"
 
+#include "Light/LeftOut.h"
+#include "LightPropagation/Distributed/Balance/WhatWholeHas.h"
 #include "LightPropagation/Scattering/MomentScattering.h"
 
 #include <algorithm>
@@ -36,6 +38,7 @@ IterationResult IterationInBlocks::Run(const Monitor& monitor)
   this->Shining = this->Uncollided.LoadSource(this->Result.ledger);
   this->MakeWarm();
   this->MakeCells();
+  this->MakeAtFaces();
   const std::unique_ptr<SweepOperator> sweep = this->MakeSweep();
   BeamsInSource beams = this->BeamsOfSource();
   do
@@ -92,6 +95,28 @@ void IterationInBlocks::MakeCells()
   }
 }
 
+/// Where orders are added up one by one.
+void IterationInBlocks::MakeAtFaces()
+{
+  BlockOnDevice& block = this->Block;
+  if (this->Cells)
+  {
+    return;
+  }
+  const OctantSources::Voxels voxels = CountThickVoxels(block.Others, block.Scene);
+  if (OctantSourcesMatter(voxels, block.Scene, block.Settings))
+  {
+    block.Others.Together([&] {
+      this->AtFaces.emplace(OctantSources::Scene{ block.TheDevice, block.Settings, block.Layout, block.OnDevice,
+        block.Partition.whole, block.Partition.blocks[block.Others.Rank()], !this->Incident.Lamps().empty() });
+    });
+  }
+  else if (block.Settings.source == PropagationSource::Octants)
+  {
+    this->NotByOctant = { OctantSources::AreThick(voxels) ? left_out::NotByOctant : left_out::ThinVoxels };
+  }
+}
+
 std::unique_ptr<SweepOperator> IterationInBlocks::MakeSweep()
 {
   const SweptDirections& usual = this->Incident.Usual();
@@ -99,6 +124,8 @@ std::unique_ptr<SweepOperator> IterationInBlocks::MakeSweep()
   SweepRequest request = { this->Block.WholeDeposit(),
     { { 0, usual.Along(0) }, { 1, usual.Along(1) }, { 2, usual.Along(2) } } };
   request.angular = this->Block.Angular ? &this->Block.Angular->Values() : nullptr;
+  request.deposit.partialCurrents = this->AtFaces ? &this->AtFaces->Currents() : nullptr;
+  request.octantSource = this->AtFaces ? &this->AtFaces->Sources() : nullptr;
   request.mostPlanes = this->Block.Settings.maximumOrders > 0 ? MostPlanesAround : FewPlanes;
   request.faceIn = faces && faces->Reflects() ? &faces->In() : nullptr;
   return this->Block.MakeSweep(request);
@@ -116,8 +143,8 @@ void IterationInBlocks::AddUncollided(const Monitor& monitor)
   const bool corrects = this->Incident.CorrectsEscape();
   const auto sources = static_cast<double>(this->Uncollided.Count());
   const double part = corrects ? sources / (sources + 1.0) : 1.0; // of the time
-  const SweepTally tally =
-    this->Uncollided.AddAll(this->Block.StoresMoments() ? &this->Result.shown : nullptr, OfPart(monitor, 0.0, part));
+  const SweepTally tally = this->Uncollided.AddAll(this->Block.StoresMoments() ? &this->Result.shown : nullptr,
+    this->AtFaces ? &*this->AtFaces : nullptr, OfPart(monitor, 0.0, part));
   this->Result.ledger.Count(tally);
   this->Stranded = tally.onTheWay;
   if (corrects)
@@ -225,6 +252,7 @@ void IterationInBlocks::Scatter()
     this->ScatterByCells();
     return;
   }
+  this->ShineByOctant();
   std::vector<double> powers = this->ScatterOwn();
   this->TakeDirect(this->Block.Fluence, 1.0);
   powers = this->Block.Others.Sum(powers);
@@ -248,6 +276,18 @@ void IterationInBlocks::Scatter()
   }
   const double all = Sum(this->AllScattered);
   this->Result.convergence.Add(this->Residual, all > 0.0 ? Sum(this->Scattered) / all : 0.0, this->Result.ledger);
+}
+
+/// Of all light that came in, with what did so in the voxels beyond the block's faces.
+void IterationInBlocks::ShineByOctant()
+{
+  if (!this->AtFaces)
+  {
+    return;
+  }
+  this->Block.Others.Together([&] { this->AtFaces->TakeIncoming(this->Incident.Usual()); });
+  const BeyondFaces beyond = this->Block.Across.Fetch(this->AtFaces->CameInThroughFaces());
+  this->Block.Others.Together([&] { this->AtFaces->Find(this->Block.Source, beyond); });
 }
 
 /// @return W of this rank, three that its voxels absorbed and three that they scattered
@@ -359,13 +399,14 @@ void IterationInBlocks::Leave()
 {
   std::vector<float> moments;
   this->Block.Others.Together([&] {
-    if (this->Warm->Begins() || this->Cells)
+    if (this->AtFaces || this->Warm->Begins() || this->Cells)
     {
       CutOffNegative(this->Block.Fluence); // as SourceIteration does
     }
     moments = this->Moments.Size() > 0 ? this->Moments.Read() : std::vector<float>();
   });
   this->Result.leftOut = this->Warm->LeftOut();
+  this->Result.leftOut.insert(this->Result.leftOut.end(), this->NotByOctant.begin(), this->NotByOctant.end());
   this->Result.warm = this->Warm->Begins();
   if (this->Warm->Keeps())
   {

@@ -10,9 +10,11 @@
 #include "LightPropagation/Distributed/IncidentLight.h"
 #include "LightPropagation/Distributed/UncollidedOverRanks.h"
 #include "LightPropagation/Scattering/BeamsInSource.h"
+#include "LightPropagation/ThickVoxels/OctantSources.h"
 
 #include <array>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace tyndall
@@ -34,6 +36,7 @@ public:
 private:
   void MakeWarm();
   void MakeCells();
+  void MakeAtFaces();
   std::unique_ptr<SweepOperator> MakeSweep();
   BeamsInSource BeamsOfSource();
   void AddUncollided(const Monitor& monitor);
@@ -43,6 +46,7 @@ private:
   void Reflect();
   void TakeDirect(const Buffer<float>& fluence, double scale);
   void Scatter();
+  void ShineByOctant();
   std::vector<double> ScatterOwn();
   void ScatterByCells();
   void EstimateResidual();
@@ -62,6 +66,8 @@ private:
   Buffer<float> Moments;         ///< of scattered light of all orders, W length, where they are to be kept
   std::optional<EscapeCorrection> Escaping;
   std::optional<OrdersByCellsInBlocks> Cells; ///< none: orders are added up one by one
+  std::optional<OctantSources> AtFaces;       ///< where voxels are thick, on any rank
+  std::vector<std::string> NotByOctant;       ///< words for that, where it was asked for
 
   IterationResult Result;
   int Order = 0;         ///< that is under way

@@ -28,10 +28,6 @@ namespace tyndall
 std::string NotInBlocks(const Medium& medium, const Illumination& illumination, const PropagationSettings& settings)
 {
   const bool goesRound = settings.periodic[0] || settings.periodic[1] || settings.periodic[2];
-  if (settings.source == PropagationSource::Octants)
-  {
-    return "a source by octants of directions";
-  }
   const bool isAngular = !medium.phase.IsIsotropic() && settings.angularDegree != 0;
   if (settings.source == PropagationSource::Linear &&
     (isAngular || goesRound || Reflects(illumination) || settings.facePower || settings.uncollidedDirections > 0))
@@ -208,10 +204,6 @@ std::string ProblemInBlocks::BetterAsWhole(const Medium& medium, const Illuminat
   {
     return "many scattering orders, anisotropic, round a periodic axis or between faces that reflect, which it "
            "accelerates";
-  }
-  if (oneByOne && OctantSourcesMatter(this->Others, scene, this->Settings))
-  {
-    return "thick voxels, whose source it has by octant";
   }
   if (this->Orders.how == OrdersAdded::ByBalance && this->FinerDirections(this->Orders.how).perFace > 0)
   {

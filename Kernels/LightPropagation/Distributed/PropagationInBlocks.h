@@ -23,14 +23,15 @@ namespace tyndall
 ///
 /// Orders are added up as HowOrdersAreAdded (OrdersOverRanks.h) has it: one by one; where voxels are thin and light is
 /// scattered many times each with what diffusion on cells says of the rest (CellsOverRanks.h); where voxels are thicker
-/// by their balance (AccelerationInBlocks.h), both with the source that the settings ask for. One by one it is
-/// constant in voxels. Cells and the balance are for isotropic scattering in an open box without faces that reflect.
+/// by their balance (AccelerationInBlocks.h), both with the source that the settings ask for. One by one thick voxels
+/// shine by octant, as in the whole (OctantSources.h). Cells and the balance are for isotropic scattering in an open
+/// box without faces that reflect.
 ///
 /// Carried are light that comes in through the box's faces, from the sky and the environment, of all kinds of lights,
 /// and emission; scattering in angular moments; light that faces give back and that goes round periodic axes. The light
-/// is that of SolveConservative with emissionError 0, a constant source where orders are added up one by one, and where
-/// voxels are balanced uncollidedDirections 0 for -1 (else -1 chooses as there): to rounding where neither is
-/// accelerated, else to the tolerance. It does not depend on the number of ranks, but for rounding.
+/// is that of SolveConservative with emissionError 0, and where voxels are balanced uncollidedDirections 0 for -1 (else
+/// -1 chooses as there): to rounding where neither is accelerated, else to the tolerance. It does not depend on the
+/// number of ranks, but for rounding.
 ///
 /// @param medium  of the rank's block, with the grid that partition.OwnGrid() has; looked at by nobody where that has
 ///   no voxels

@@ -76,7 +76,7 @@ std::size_t UncollidedOverRanks::Count() const
   return this->Incident.Lamps().size() + (this->Incident.FineBoundary() ? 1 : 0);
 }
 
-SweepTally UncollidedOverRanks::AddAll(const Buffer<float>* shown, const Monitor& monitor)
+SweepTally UncollidedOverRanks::AddAll(const Buffer<float>* shown, OctantSources* atFaces, const Monitor& monitor)
 {
   const double all = static_cast<double>(this->Count());
   const std::size_t lamps = this->Incident.Lamps().size();
@@ -84,7 +84,7 @@ SweepTally UncollidedOverRanks::AddAll(const Buffer<float>* shown, const Monitor
   for (std::size_t i = 0; i < lamps; ++i)
   {
     const Monitor ofLamp = OfPart(monitor, i / all, (i + 1) / all);
-    Add(tally, this->OnAllRanks([&] { return this->AddLampAt(i, ofLamp); }));
+    Add(tally, this->OnAllRanks([&] { return this->AddLampAt(i, atFaces, ofLamp); }));
   }
   if (this->Block.Has && shown)
   {
@@ -92,7 +92,15 @@ SweepTally UncollidedOverRanks::AddAll(const Buffer<float>* shown, const Monitor
   }
   if (const BoundaryLight* const boundary = this->Incident.FineBoundary())
   {
-    Add(tally, this->AddBoundary(*boundary, this->Block.WholeDeposit(), OfPart(monitor, (all - 1.0) / all, 1.0)));
+    Deposit deposit = this->Block.WholeDeposit();
+    deposit.partialCurrents = atFaces ? &atFaces->Currents() : nullptr;
+    Add(tally, this->AddBoundary(*boundary, deposit, OfPart(monitor, (all - 1.0) / all, 1.0)));
+    this->Block.Others.Together([&] {
+      if (atFaces)
+      {
+        atFaces->TakeIncoming(*this->Incident.Fine());
+      }
+    });
   }
   if (this->Block.Scene.given)
   {
@@ -135,6 +143,7 @@ UncollidedVolume UncollidedOverRanks::VolumeOf(const Deposit& deposit)
     deposit };
   volume.whole = &block.Partition.whole;
   volume.basis = block.Basis();
+  volume.fetchBeyond = [&block](const Buffer<float>& byFaces) { return block.Across.Fetch(byFaces); };
   volume.followLamp = [this, &block](const SweepVolume& ofChannels, const Light& lamp, const Monitor& ofLamp) {
     if (!this->NearLamps)
     {
@@ -152,8 +161,17 @@ SweepTally UncollidedOverRanks::AddLamp(const Light& lamp, const Deposit& deposi
 }
 
 /// To the block's arrays, with a beam of its own where it has one.
-SweepTally UncollidedOverRanks::AddLampAt(std::size_t lamp, const Monitor& monitor)
+SweepTally UncollidedOverRanks::AddLampAt(std::size_t lamp, OctantSources* atFaces, const Monitor& monitor)
 {
+  if (atFaces)
+  {
+    Deposit deposit = this->Block.WholeDeposit();
+    deposit.path = &atFaces->LampPath();
+    deposit.firstMoments = &atFaces->LampMoments();
+    const SweepTally tally = this->AddLamp(this->Incident.Lamps()[lamp], deposit, monitor);
+    atFaces->TakeLamp(this->Block.Path);
+    return tally;
+  }
   UncollidedVolume volume = this->VolumeOf(this->Block.WholeDeposit());
   const SweptMoments* const angular = this->Block.Angular.get();
   if (angular)

@@ -6,6 +6,7 @@
 #include "LightPropagation/Distributed/BlockOnDevice.h"
 #include "LightPropagation/Distributed/IncidentLight.h"
 #include "LightPropagation/Distributed/LampsInBlocks.h"
+#include "LightPropagation/ThickVoxels/OctantSources.h"
 #include "LightPropagation/Uncollided/GivenLight.h"
 #include "LightPropagation/Uncollided/UncollidedSource.h"
 
@@ -36,8 +37,9 @@ public:
   /// Adds the light of lamps, then of what comes in along directions of its own and what is given, to the block's
   /// arrays; what parallel beams are first scattered, to its source. All ranks call it.
   /// @param shown  what light of lamps is first scattered is added to it; null: not wanted
+  /// @param atFaces  of thick voxels, which take what it does at their faces; null, on all ranks: not wanted
   /// @return of all ranks
-  SweepTally AddAll(const Buffer<float>* shown, const Monitor& monitor);
+  SweepTally AddAll(const Buffer<float>* shown, OctantSources* atFaces, const Monitor& monitor);
   std::size_t Count() const; ///< of lamps and sets of directions, for a share of a monitor
 
   /// The light of one lamp alone. All ranks call it.
@@ -55,7 +57,7 @@ public:
 private:
   Rgb LoadEmission();
   SweepTally OnAllRanks(const std::function<SweepTally()>& add);
-  SweepTally AddLampAt(std::size_t lamp, const Monitor& monitor);
+  SweepTally AddLampAt(std::size_t lamp, OctantSources* atFaces, const Monitor& monitor);
   SweepTally AddBoundary(const BoundaryLight& light, const Deposit& deposit, const Monitor& monitor);
   SweepTally AddGiven(const Monitor& monitor);
   UncollidedVolume VolumeOf(const Deposit& deposit);

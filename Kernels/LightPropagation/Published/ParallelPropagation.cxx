@@ -43,7 +43,9 @@ struct ParallelPropagation::Implementation
     , Plan(device, medium.grid, this->Model, settings, this->Volumes, temporaryBytes)
     , Borders(this->Model, settings, this->Plan)
     , Faces(medium.grid, this->Model, settings)
-    , Warm(medium, this->Model, settings, kept)
+    , Warm(
+        { medium, this->Model, this->Settings, medium.grid, static_cast<std::size_t>(this->Volumes.Layouts.volume[0]) },
+        kept)
     , Sweep(
         device, this->Volumes, this->Model, settings, this->Plan.sizes, this->Faces.Count() ? this->Faces.Cells() : 0)
     , UpdateSources(device.Kernel("update_sources", kernel_source::PublishedCollect,
@@ -60,6 +62,7 @@ struct ParallelPropagation::Implementation
   void FinishOrder();
   void UpdateSourcesOfOrder();
   void LookAtDirect();
+  void BeginFrom(const std::vector<float>& moments);
 
   // What came of it
   LightField Result() const;
@@ -129,7 +132,9 @@ void ParallelPropagation::Implementation::FinishOrder()
 {
   if (this->Ledger.Orders() == 1 && this->Warm.Begins())
   {
-    this->Warm.TakeFrom(this->Volumes);
+    std::vector<float> moments = this->Volumes.OrderMoments[0].Read();
+    this->Warm.TakeFrom(moments);
+    this->Volumes.OrderMoments[0].Write(moments.data());
   }
   if (this->Ledger.Orders() == 0 && this->Outside.uncollided.IsThere())
   {
@@ -167,10 +172,20 @@ void ParallelPropagation::Implementation::LookAtDirect()
   this->FluenceDirect = this->Volumes.ReadMoment(this->Volumes.OrderMoments[0], 0);
   if (this->Warm.Keeps())
   {
-    this->Warm.AddTo(this->Volumes, this->Faces, this->FluenceDirect);
+    std::vector<float> moments = this->Volumes.OrderMoments[0].Read();
+    this->Warm.AddTo(moments, this->Faces, this->FluenceDirect);
+    this->BeginFrom(moments);
   }
+}
+
+/// @param moments  of the first order, with a guess where there is one
+void ParallelPropagation::Implementation::BeginFrom(const std::vector<float>& moments)
+{
   if (this->Warm.Begins())
   {
+    this->Volumes.OrderMoments[0].Write(moments.data());
+    this->Volumes.OrderMoments[1].Fill(0.0f); // it is in the other already
+    this->Volumes.Totals.Fill(0.0f);
     this->UpdateSourcesOfOrder();
     this->Ledger.BeginWarm(this->Warm.Rate());
   }
@@ -296,7 +311,7 @@ LightField ParallelPropagation::Result() const
 
 KeptLight ParallelPropagation::Left() const
 {
-  return this->Inner->Warm.Leave(this->Inner->Volumes, this->Inner->Faces, this->Inner->Ledger.Rate());
+  return this->Inner->Warm.Leave(this->Inner->Volumes.Totals.Read(), this->Inner->Faces, this->Inner->Ledger.Rate());
 }
 
 bool ParallelPropagation::BeganWarm() const

@@ -365,6 +365,17 @@ std::vector<double> PublishedModel::MomentsAlong(const std::array<double, 3>& me
   return moments;
 }
 
+std::vector<int> PublishedModel::SourcesReadAlong(int axis) const
+{
+  const std::size_t ofAxis = 2 * static_cast<std::size_t>(this->Set.PerFace());
+  const std::size_t first = axis < 0 ? 0 : axis * ofAxis, count = axis < 0 ? this->NearestSource.size() : ofAxis;
+  const auto from = this->NearestSource.begin() + static_cast<std::ptrdiff_t>(first);
+  std::vector<int> sources(from, from + static_cast<std::ptrdiff_t>(count));
+  std::sort(sources.begin(), sources.end());
+  sources.erase(std::unique(sources.begin(), sources.end()), sources.end());
+  return sources;
+}
+
 PublishedModel::Part PublishedModel::Source(int sourceDirection) const
 {
   return this->Isotropic ? Part{ 0, 1.0 / FourPi } : Part{ 1 + sourceDirection, 1.0 };

@@ -50,6 +50,8 @@ public:
   const std::vector<std::array<double, 3>>& SourceDirections() const { return this->Sources; }
   /// d(i) of Eq. (3), an index into SourceDirections.
   int SourceOf(int direction) const { return this->NearestSource[direction]; }
+  /// Those of the maps along an axis, sorted; -1: of all maps.
+  std::vector<int> SourcesReadAlong(int axis) const;
 
   /// A moment is a sum over directions of a coefficient times a voxel's mean radiance in that direction. Moment 0 is
   /// the fluence; the scattered radiance per source direction and the net flux follow where they are not multiples of

@@ -7,6 +7,8 @@
 
 namespace tyndall
 {
+constexpr const char* SequentialDevice = "host, one core"; ///< LightField::device
+
 /// Light propagation maps as published, Algorithm 1 of Gruson et al. 2012 (Fattal 2009): one ray after the other on one
 /// core (numerics.md, section 3). The reference that the parallel algorithm is compared with, and the baseline of its
 /// speed. Exponentials are the library's, in double; radiance is float.

@@ -1,6 +1,7 @@
 // How thick voxels shine into each octant beside what shines evenly in all of a voxel, see OctantSources.h. Face d of a
 // voxel is -x, +x, -y, +y, -z, +z.
 
+#include "LightPropagation/Sweep/BeyondFaces.cl"
 #include "LightPropagation/Sweep/FallOfLight.cl"
 #include "LightPropagation/ThickVoxels/OctantSourcesShared.h"
 
@@ -53,7 +54,7 @@ __kernel void take_incoming(OctantSourceInfo info, __global float* restrict curr
   }
 }
 
-// Of a voxel's neighbour across face d; -1 beyond the box.
+// Of a voxel's neighbour across face d; -1 beyond the box or block.
 static long next_voxel(const OctantSourceInfo* info, const int* at, ulong i, int d)
 {
   const int axis = d / 2, size = info->size[axis];
@@ -67,7 +68,7 @@ static long next_voxel(const OctantSourceInfo* info, const int* at, ulong i, int
 // responses  of layers as thick as the voxel along each axis
 static void find_of_voxel(const OctantSourceInfo* info, const int* at, ulong i, float t, float s,
   const layer_response* responses, const __global float* source, const __global float* incoming,
-  __global float* of_lamps, int lamps, __global float* sources)
+  const __global float* beyond, __global float* of_lamps, int lamps, __global float* sources)
 {
   float more[3][2];
   for (int axis = 0; axis < 3; ++axis)
@@ -80,9 +81,14 @@ static void find_of_voxel(const OctantSourceInfo* info, const int* at, ulong i, 
     }
     for (int d = 0; d < 2; ++d)
     {
+      const long elsewhere = place_beyond(&info->beyond, info->size, at, 2 * axis + d);
       const long next = next_voxel(info, at, i, 2 * axis + d);
       float out = 0.0f;
-      if (next >= 0)
+      if (elsewhere >= 0)
+      {
+        out = beyond[elsewhere];
+      }
+      else if (next >= 0)
       {
         out = incoming[(2 * axis + 1 - d) * info->stride + next];
       }
@@ -125,12 +131,13 @@ static void find_of_voxel(const OctantSourceInfo* info, const int* at, ulong i, 
 // Of what is scattered of the light that came in (numerics.md, Eqs. (46e), (46f)), by octant; a row of voxels.
 // incoming  W / (length^2 sr), of the sweep
 // source    W / (length^3 sr), of the sweep, and `sources` with it
+// beyond    as incoming, of the voxels beyond a block's faces
 // of_lamps  W / (length^3 sr) by face, where lamps is 1; cleared
 // sources   W / (length^3 sr), [octant][stride] from 8 `first` on, replaced: beside what shines evenly. Where there is
 //           less than that the first orders may be below 0, for what later ones shine there out of the voxel.
 __kernel void find_octant_sources(OctantSourceInfo info, const __global float* sigma_t, const __global float* sigma_s,
-  const __global float* source, const __global float* values, const __global float* incoming, __global float* of_lamps,
-  int lamps, __global float* sources)
+  const __global float* source, const __global float* values, const __global float* incoming,
+  const __global float* beyond, __global float* of_lamps, int lamps, __global float* sources, ulong channel)
 {
   int at[3] = { 0, get_global_id(0), get_global_id(1) };
   ulong i = ((ulong)at[2] * info.size[1] + at[1]) * info.size[0];
@@ -151,7 +158,7 @@ __kernel void find_octant_sources(OctantSourceInfo info, const __global float* s
     last_t = t;
     last_s = s;
     find_of_voxel(&info, at, i, t, s, responses, source + info.first, incoming + 6 * info.first,
-      of_lamps + 6 * info.first, lamps, sources + 8 * info.first);
+      beyond + channel * info.beyond.stride, of_lamps + 6 * info.first, lamps, sources + 8 * info.first);
   }
 }
 

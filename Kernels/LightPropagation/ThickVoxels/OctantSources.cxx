@@ -34,6 +34,11 @@ bool OctantSources::AreThick(const PropagationProblem& problem)
   return AnyVoxelIsThickerThan(Thick, problem.TheMedium());
 }
 
+bool OctantSources::AreThick(const Voxels& voxels)
+{
+  return voxels.thickest > Thick;
+}
+
 OctantSources::Voxels OctantSources::Count(const Medium& medium, const TruncatedScattering& scattering, int channels)
 {
   const Grid& grid = medium.grid;
@@ -57,7 +62,7 @@ bool OctantSources::Matter(
   const Voxels& voxels, const PropagationSettings& settings, bool scatters, int degree, bool otherSources)
 {
   const bool wanted =
-    settings.source == PropagationSource::Octants ? voxels.thickest > Thick : MatterUnasked(voxels, settings);
+    settings.source == PropagationSource::Octants ? AreThick(voxels) : MatterUnasked(voxels, settings);
   return wanted && scatters && degree == 0 && !otherSources && !settings.firstMoments && settings.maximumOrders != 1 &&
     voxels.thickest <= Opaque;
 }
@@ -68,13 +73,11 @@ bool OctantSources::Matter(const PropagationProblem& problem, bool otherSources)
     problem.Traits().scatters, problem.Scattering().Degree(), otherSources);
 }
 
-OctantSources::OctantSources(Device& device, const PropagationProblem& problem, const VolumeLayout& layout,
-  const MediumOnDevice& medium, bool lamps)
-  : TheDevice(device)
-  , Problem(problem)
-  , Layout(layout)
-  , TheMedium(medium)
+OctantSources::OctantSources(const Scene& scene)
+  : The(scene)
 {
+  Device& device = scene.device;
+  const VolumeLayout& layout = scene.layout;
   const auto byFaces = [&] {
     Buffer<float> buffer(device, layout.Floats(6), "light at the faces of thick voxels");
     buffer.Fill(0.0f);
@@ -87,7 +90,7 @@ OctantSources::OctantSources(Device& device, const PropagationProblem& problem, 
   const VoxelResponse response;
   this->Diffuse = Buffer<float>(device, response.diffuse, "the response of thick voxels");
   this->Falling = Buffer<float>(device, response.falling, "the response of thick voxels");
-  if (lamps)
+  if (scene.lamps)
   {
     this->OfLamps = byFaces();
     this->MomentsOfLamp = byFaces();
@@ -103,8 +106,8 @@ const OctantSources::Crossings& OctantSources::CrossingsOf(const SweptDirections
   {
     return known->second;
   }
-  const PropagationSettings& settings = this->Problem.Settings();
-  const Grid& grid = this->Layout.grid;
+  const PropagationSettings& settings = this->The.settings;
+  const Grid& grid = this->The.whole;
   const CrossingPattern pattern =
     FindCrossingPattern(grid, along.Set(), settings.mapResolution, along.Starts(), settings.periodic);
   double perRadiance = 0.0;
@@ -112,50 +115,74 @@ const OctantSources::Crossings& OctantSources::CrossingsOf(const SweptDirections
   {
     perRadiance += HalfRange(grid, along.Set(), 0, marching);
   }
-  Crossings found = { Buffer<float>(this->TheDevice, pattern.values, "the pattern of rays"), pattern.first,
+  Crossings found = { Buffer<float>(this->The.device, pattern.values, "the pattern of rays"), pattern.first,
     perRadiance };
   return this->Patterns.emplace(&along, std::move(found)).first->second;
 }
 
 void OctantSources::TakeIncoming(const SweptDirections& along)
 {
+  if (this->IsEmpty())
+  {
+    return;
+  }
   const Crossings& crossings = this->CrossingsOf(along);
-  cl::Kernel take = this->TheDevice.Kernel("take_incoming", kernel_source::OctantSources);
-  for (int c = 0; c < this->Layout.channels; ++c)
+  cl::Kernel take = this->The.device.Kernel("take_incoming", kernel_source::OctantSources);
+  for (int c = 0; c < this->The.layout.channels; ++c)
   {
     OctantSourceInfo info = this->InfoOf(c);
-    std::copy(crossings.first.begin(), crossings.first.end(), info.pattern);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const PlaneAxes across = AcrossAxis(axis);
+      const int low = std::min(across.u, across.v), high = std::max(across.u, across.v);
+      info.pattern[2 * axis] = crossings.first[2 * axis] + this->The.block.first[low];
+      info.pattern[2 * axis + 1] = crossings.first[2 * axis + 1] + this->The.block.first[high];
+    }
     info.perRadiance = static_cast<float>(crossings.perRadiance);
     With(take, info, this->OfSweep, crossings.values, this->Incoming, cl_int(!this->CameIn));
-    const std::array<int, 3>& n = this->Layout.grid.size;
-    this->TheDevice.Queue().enqueueNDRangeKernel(take, cl::NullRange, cl::NDRange(n[1], n[2], 6));
+    const std::array<int, 3>& n = this->The.layout.grid.size;
+    this->The.device.Queue().enqueueNDRangeKernel(take, cl::NullRange, cl::NDRange(n[1], n[2], 6));
   }
   this->CameIn = true;
 }
 
 void OctantSources::TakeLamp(const Buffer<float>& allPath)
 {
-  cl::Kernel add = this->TheDevice.Kernel("add_lamp", kernel_source::OctantSources);
-  for (int c = 0; c < this->Layout.channels; ++c)
+  if (this->IsEmpty())
   {
-    With(add, this->InfoOf(c), this->TheMedium.SigmaT(), this->TheMedium.SigmaS(), this->PathOfLamp,
+    return;
+  }
+  cl::Kernel add = this->The.device.Kernel("add_lamp", kernel_source::OctantSources);
+  for (int c = 0; c < this->The.layout.channels; ++c)
+  {
+    With(add, this->InfoOf(c), this->The.medium.SigmaT(), this->The.medium.SigmaS(), this->PathOfLamp,
       this->MomentsOfLamp, this->Falling, this->OfLamps, allPath);
-    const std::array<int, 3>& n = this->Layout.grid.size;
-    this->TheDevice.Queue().enqueueNDRangeKernel(add, cl::NullRange, cl::NDRange(n[0], n[1], n[2]));
+    const std::array<int, 3>& n = this->The.layout.grid.size;
+    this->The.device.Queue().enqueueNDRangeKernel(add, cl::NullRange, cl::NDRange(n[0], n[1], n[2]));
   }
   this->LampsShine = true;
 }
 
-void OctantSources::Find(const Buffer<float>& source)
+void OctantSources::Find(const Buffer<float>& source, const BeyondFaces& beyond)
 {
-  cl::Kernel find = this->TheDevice.Kernel("find_octant_sources", kernel_source::OctantSources);
-  const Buffer<float>& lamps = this->LampsShine ? this->OfLamps : this->Found;
-  for (int c = 0; c < this->Layout.channels; ++c)
+  if (this->IsEmpty())
   {
-    With(find, this->InfoOf(c), this->TheMedium.SigmaT(), this->TheMedium.SigmaS(), source, this->Diffuse,
-      this->Incoming, lamps, cl_int(this->LampsShine), this->Found);
-    const std::array<int, 3>& n = this->Layout.grid.size;
-    this->TheDevice.Queue().enqueueNDRangeKernel(find, cl::NullRange, cl::NDRange(n[1], n[2]));
+    return;
+  }
+  cl::Kernel find = this->The.device.Kernel("find_octant_sources", kernel_source::OctantSources);
+  const Buffer<float>& lamps = this->LampsShine ? this->OfLamps : this->Found;
+  for (int c = 0; c < this->The.layout.channels; ++c)
+  {
+    OctantSourceInfo info = this->InfoOf(c);
+    info.beyond = beyond.info;
+    for (cl_int& periodic : info.periodic)
+    {
+      periodic = periodic && !beyond.values; // which has what is round an axis
+    }
+    With(find, info, this->The.medium.SigmaT(), this->The.medium.SigmaS(), source, this->Diffuse, this->Incoming,
+      beyond.values ? *beyond.values : this->Incoming, lamps, cl_int(this->LampsShine), this->Found, cl_ulong(c));
+    const std::array<int, 3>& n = this->The.layout.grid.size;
+    this->The.device.Queue().enqueueNDRangeKernel(find, cl::NullRange, cl::NDRange(n[1], n[2]));
   }
   this->CameIn = false;
   this->LampsShine = false;
@@ -163,19 +190,19 @@ void OctantSources::Find(const Buffer<float>& source)
 
 OctantSourceInfo OctantSources::InfoOf(int channel) const
 {
-  const Grid& grid = this->Layout.grid;
+  const Grid& grid = this->The.layout.grid;
   OctantSourceInfo info = {};
   for (int axis = 0; axis < 3; ++axis)
   {
     info.size[axis] = grid.size[axis];
-    info.periodic[axis] = this->Problem.Settings().periodic[axis];
+    info.periodic[axis] = this->The.settings.periodic[axis];
     info.spacing[axis] = static_cast<float>(grid.spacing[axis]);
     // One of a direction and its mirror image may stand for both.
-    info.leftOut[axis] = grid.size[axis] == 1 && this->Problem.Settings().periodic[axis];
+    info.leftOut[axis] = this->The.whole.size[axis] == 1 && this->The.settings.periodic[axis];
   }
-  info.firstT = this->Layout.ExtinctionFirst(channel);
-  info.first = channel * this->Layout.Stride();
-  info.stride = this->Layout.Stride();
+  info.firstT = this->The.layout.ExtinctionFirst(channel);
+  info.first = channel * this->The.layout.Stride();
+  info.stride = this->The.layout.Stride();
   return info;
 }
 }

@@ -3,6 +3,7 @@
 #include "LightPropagation/Angular/SweptDirections.h"
 #include "LightPropagation/Problem/MediumOnDevice.h"
 #include "LightPropagation/Problem/PropagationProblem.h"
+#include "LightPropagation/Sweep/BeyondFaces.h"
 #include "LightPropagation/Sweep/VolumeLayout.h"
 #include "LightPropagation/ThickVoxels/OctantSourcesShared.h"
 
@@ -19,27 +20,37 @@ namespace tyndall
 class OctantSources
 {
 public:
-  /// Whether any voxel is so thick that it matters.
-  static bool AreThick(const PropagationProblem& problem);
-  /// Whether the source is to be by octant, some voxels are thick, none is opaque, and scattering is isotropic; and all
-  /// light comes in through voxels' faces, or from lamps. Of an automatic source: where a quarter of the voxels
-  /// that scatter are thick or more, and the orders are as many as the tolerance asks for.
-  static bool Matter(const PropagationProblem& problem, bool otherSources);
-
   /// What of a medium's voxels, or those of a block, decides it; of all channels.
   struct Voxels
   {
     double scattering = 0.0, thick = 0.0; ///< how many scatter, and of these are thick
     double thickest = 0.0;                ///< mean free paths of transport along a voxel's longest edge
   };
+
+  /// Whether any voxel is so thick that it matters.
+  static bool AreThick(const PropagationProblem& problem);
+  static bool AreThick(const Voxels& voxels);
+  /// Whether the source is to be by octant, some voxels are thick, none is opaque, and scattering is isotropic; and all
+  /// light comes in through voxels' faces, or from lamps. Of an automatic source: where a quarter of the voxels
+  /// that scatter are thick or more, and the orders are as many as the tolerance asks for.
+  static bool Matter(const PropagationProblem& problem, bool otherSources);
+
   static Voxels Count(const Medium& medium, const TruncatedScattering& scattering, int channels);
   static bool Matter(
     const Voxels& voxels, const PropagationSettings& settings, bool scatters, int degree, bool otherSources);
 
-  /// @param medium  on the device; must stay
-  /// @param lamps  there are some
-  OctantSources(Device& device, const PropagationProblem& problem, const VolumeLayout& layout,
-    const MediumOnDevice& medium, bool lamps);
+  /// Voxels on a device, of a whole medium or of a rank's block of it; all must stay.
+  struct Scene
+  {
+    Device& device;
+    const PropagationSettings& settings;
+    const VolumeLayout& layout;
+    const MediumOnDevice& medium;
+    const Grid& whole;
+    VoxelBox block; ///< of the whole
+    bool lamps;     ///< there are some
+  };
+  explicit OctantSources(const Scene& scene);
 
   /// For Deposit::partialCurrents of every sweep.
   const Buffer<float>& Currents() const { return this->OfSweep; }
@@ -52,9 +63,12 @@ public:
   const Buffer<float>& LampPath() const { return this->PathOfLamp; }
   const Buffer<float>& LampMoments() const { return this->MomentsOfLamp; }
   void TakeLamp(const Buffer<float>& allPath);
+  /// Of what was taken, W / (length^2 sr), [channel][face][stride]: what Find() looks at across a block's faces.
+  const Buffer<float>& CameInThroughFaces() const { return this->Incoming; }
   /// The sources of what is scattered of all light that was taken since the last time.
   /// @param source  W / (length^3 sr), of the sweep that the last of it came in with
-  void Find(const Buffer<float>& source);
+  /// @param beyond  of CameInThroughFaces(), of a block
+  void Find(const Buffer<float>& source, const BeyondFaces& beyond = {});
 
 private:
   /// Of rays along some directions (CrossingPattern.h).
@@ -67,10 +81,9 @@ private:
   const Crossings& CrossingsOf(const SweptDirections& along);
   OctantSourceInfo InfoOf(int channel) const;
 
-  Device& TheDevice;
-  const PropagationProblem& Problem;
-  const VolumeLayout Layout;
-  const MediumOnDevice& TheMedium;
+  bool IsEmpty() const { return this->The.layout.grid.VoxelCount() == 0; } ///< of a block without voxels
+
+  Scene The;
   Buffer<float> OfSweep, Incoming;                  ///< [channel][face][stride]
   Buffer<float> Found;                              ///< [channel][octant][stride]
   Buffer<float> PathOfLamp, MomentsOfLamp, OfLamps; ///< as Deposit has them; [channel][face][stride]

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "Device/SharedTypes.h"
+#include "LightPropagation/Sweep/BeyondFacesShared.h"
 
 SHARED_BEGIN
 enum
@@ -25,5 +26,6 @@ typedef struct
   ulong firstT, first, stride; ///< where this channel begins: of sigma_t, of all others (by face: six times that)
   float spacing[3];
   float perRadiance; ///< power per area through a face of an even radiance of 1
+  BeyondFacesInfo beyond;
 } OctantSourceInfo;
 SHARED_END

@@ -1,5 +1,6 @@
 // A beam of parallel light, after it was followed: its path is added to a deposit, and its first moments.
 
+#include "LightPropagation/Sweep/BeyondFaces.cl"
 #include "LightPropagation/Uncollided/ParallelBeamShared.h"
 
 // Distance from the middle of a voxel, in voxels, of the mean place where light is lost that comes in through a face
@@ -12,9 +13,11 @@ static float distance_to_face(float tau)
 // First moments of the deposit from the powers through the faces (numerics.md, Eq. (39)): exact where as much goes in
 // as comes out through the faces beside; never more than if all light came in through the face.
 // path, currents           of the beam, as in Sweep/Deposit.h
+// beyond                   as currents, of the voxels beyond a block's faces, from this channel on
 // all_path, first_moments  of the deposit, added to
 __kernel void add_beam(BeamInfo beam, const __global float* sigma, ulong sigma_first, const __global float* path,
-  const __global float* currents, __global float* all_path, __global float* first_moments, ulong first, ulong stride)
+  const __global float* currents, const __global float* beyond, ulong channel, __global float* all_path,
+  __global float* first_moments, ulong first, ulong stride)
 {
   const ulong i = get_global_id(0);
   const ulong begin = first + get_global_id(1) * stride;
@@ -22,6 +25,7 @@ __kernel void add_beam(BeamInfo beam, const __global float* sigma, ulong sigma_f
   all_path[begin + i] += length;
   const float s = sigma[sigma_first + i];
   currents += 6 * begin;
+  beyond += (channel + get_global_id(1)) * beam.beyond.stride;
   first_moments += 6 * begin;
   const int at[3] = { i % beam.size[0], i / beam.size[0] % beam.size[1], i / ((ulong)beam.size[0] * beam.size[1]) };
   float in[3], out[3], rest = -s * length, leaving = 0.0f;
@@ -31,9 +35,10 @@ __kernel void add_beam(BeamInfo beam, const __global float* sigma, ulong sigma_f
     const __global float* through = currents + (2 * a + 1 - beam.up[a]) * stride;
     const int last = beam.up[a] ? beam.size[a] - 1 : 0;
     const int next = at[a] != last ? (beam.up[a] ? step : -step) : (beam.size[a] - 1) * (beam.up[a] ? -step : step);
-    border[a] = at[a] == last && !beam.periodic[a];
+    const long elsewhere = place_beyond(&beam.beyond, beam.size, at, 2 * a + beam.up[a]);
+    border[a] = at[a] == last && !beam.periodic[a] && elsewhere < 0;
     in[a] = through[i];
-    out[a] = border[a] ? 0.0f : through[(long)i + next];
+    out[a] = border[a] ? 0.0f : elsewhere >= 0 ? beyond[elsewhere] : through[(long)i + next];
     rest += in[a] - out[a];
     leaving += border[a] ? in[a] : 0.0f;
   }

@@ -53,7 +53,8 @@ SweepTally SweepBeam(
   return tally;
 }
 
-void AddWithFirstMoments(const UncollidedVolume& volume, const Light& light, const Deposit& ofBeam)
+void AddWithFirstMoments(
+  const UncollidedVolume& volume, const Light& light, const Deposit& ofBeam, const BeyondFaces& beyond)
 {
   const std::array<double, 3> omega = Along(light);
   const Grid& grid = volume.layout.grid;
@@ -67,12 +68,14 @@ void AddWithFirstMoments(const UncollidedVolume& volume, const Light& light, con
     info.lengths[a] = static_cast<float>(grid.spacing[a] / std::max(std::abs(omega[a]), 1e-6));
   }
   info.thin = ThinForFirstMoments;
+  info.beyond = beyond.info;
   cl::Kernel add = volume.device.Kernel("add_beam", kernel_source::ParallelBeam);
   for (const ChannelGroup& group : volume.layout.Groups())
   {
     const SweepVolume to = GroupVolume(volume.layout, group, volume.sigma_t, volume.deposit);
-    With(add, info, *to.sigma_t, cl_ulong(to.sigma_t_first), *ofBeam.path, *ofBeam.partialCurrents, *to.deposit.path,
-      *to.deposit.firstMoments, cl_ulong(to.first), cl_ulong(to.stride));
+    With(add, info, *to.sigma_t, cl_ulong(to.sigma_t_first), *ofBeam.path, *ofBeam.partialCurrents,
+      beyond.values ? *beyond.values : *ofBeam.path, cl_ulong(group.first), *to.deposit.path, *to.deposit.firstMoments,
+      cl_ulong(to.first), cl_ulong(to.stride));
     volume.device.Queue().enqueueNDRangeKernel(
       add, cl::NullRange, cl::NDRange(grid.VoxelCount(), to.channels), cl::NullRange);
   }
@@ -94,7 +97,11 @@ SweepTally DepositBeam(const UncollidedVolume& volume, const Light& light, const
   deposit.path = &path;
   deposit.partialCurrents = &partialCurrents;
   const SweepTally tally = SweepBeam(volume, light, true, deposit, monitor);
-  AddWithFirstMoments(volume, light, deposit);
+  const BeyondFaces beyond = volume.fetchBeyond ? volume.fetchBeyond(partialCurrents) : BeyondFaces();
+  if (volume.layout.grid.VoxelCount() > 0)
+  {
+    AddWithFirstMoments(volume, light, deposit, beyond);
+  }
   return tally;
 }
 }

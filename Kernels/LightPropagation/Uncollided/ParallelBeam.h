@@ -22,5 +22,7 @@ SweepTally SweepBeam(const UncollidedVolume& volume, const Light& light, bool fi
 /// Adds what a beam deposited to path and first moments of the volume's deposit. These are found from the powers
 /// through the voxels' faces, so those that enter the voxels beside are looked at.
 /// @param ofBeam  path and partial currents
-void AddWithFirstMoments(const UncollidedVolume& volume, const Light& light, const Deposit& ofBeam);
+/// @param beyond  of these, where the layout's grid is a block
+void AddWithFirstMoments(
+  const UncollidedVolume& volume, const Light& light, const Deposit& ofBeam, const BeyondFaces& beyond = {});
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "Device/SharedTypes.h"
+#include "LightPropagation/Sweep/BeyondFacesShared.h"
 
 SHARED_BEGIN
 /// A beam of parallel light through the box.
@@ -13,5 +14,6 @@ typedef struct
   float spacing[3];
   float lengths[3]; ///< of a ray from face to face
   float thin;       ///< optical length of voxels below which light is taken as lost evenly
+  BeyondFacesInfo beyond;
 } BeamInfo;
 SHARED_END

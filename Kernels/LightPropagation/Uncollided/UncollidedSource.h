@@ -3,6 +3,7 @@
 #include "Device/Device.h"
 #include "Device/Monitor.h"
 #include "LightPropagation/Angular/AngularBasis.h"
+#include "LightPropagation/Sweep/BeyondFaces.h"
 #include "LightPropagation/Sweep/SweepOperator.h"
 #include "LightPropagation/Sweep/SweepVolume.h"
 #include "Lights/Lights.h"
@@ -29,6 +30,8 @@ struct UncollidedVolume
   /// The grid that rays go through, where the medium here is a block of it (`makeSweep` knows of the others); null: the
   /// layout's.
   const Grid* whole = nullptr;
+  /// Of such a block, of what goes in through voxels' faces; empty: the layout's grid is the whole.
+  FetchBeyondFaces fetchBeyond = {};
   const Grid& Whole() const { return this->whole ? *this->whole : this->layout.grid; }
 };
 

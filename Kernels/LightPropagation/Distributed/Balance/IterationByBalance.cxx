@@ -35,7 +35,7 @@ IterationResult IterationByBalance::Run(const Monitor& monitor)
   }
   else
   {
-    result.ledger.Count(this->Uncollided.AddAll(nullptr, ofLamps));
+    result.ledger.Count(this->Uncollided.AddAll(nullptr, nullptr, ofLamps));
   }
   result.convergence = acceleration.Run(monitor);
   result.fluenceDirect = acceleration.Direct();

@@ -128,7 +128,7 @@ bool IsBeyondBoth(const BlockScene& scene, const PropagationSettings& settings)
     settings.periodic[1] || settings.periodic[2];
 }
 
-/// How blocks do it: where orders are added up one by one the source is constant in voxels.
+/// How blocks do it.
 OrdersAdded InBlocks(OrdersAdded ofWhole, const BlockScene& scene, const PropagationSettings& settings)
 {
   if (IsBeyondBoth(scene, settings))

@@ -1,7 +1,6 @@
 #include "LightPropagation/Distributed/Balance/WhatWholeHas.h"
 
 #include "LightPropagation/Emission/EmissionPeaks.h"
-#include "LightPropagation/ThickVoxels/OctantSources.h"
 #include "Medium/VoxelSums.h"
 
 #include <algorithm>
@@ -83,13 +82,18 @@ private:
 };
 }
 
-bool OctantSourcesMatter(Communicator& communicator, const BlockScene& scene, const PropagationSettings& settings)
+OctantSources::Voxels CountThickVoxels(Communicator& communicator, const BlockScene& scene)
 {
   const OctantSources::Voxels own = OctantSources::Count(scene.medium, scene.Scattering(), scene.channels);
   const std::vector<double> counted = communicator.Sum({ own.scattering, own.thick });
   const std::vector<double> thickest = communicator.Largest({ own.thickest });
-  return OctantSources::Matter(
-    { counted[0], counted[1], thickest[0] }, settings, scene.traits.scatters, scene.Scattering().Degree(), scene.given);
+  return { counted[0], counted[1], thickest[0] };
+}
+
+bool OctantSourcesMatter(
+  const OctantSources::Voxels& ofAll, const BlockScene& scene, const PropagationSettings& settings)
+{
+  return OctantSources::Matter(ofAll, settings, scene.traits.scatters, scene.Scattering().Degree(), scene.given);
 }
 
 bool MayHaveEmissionPeaks(

@@ -6,13 +6,19 @@
 #include "Light/LeftOut.h"
 #include "LightPropagation/Convergence.h"
 #include "LightPropagation/Distributed/BlockScene.h"
+#include "LightPropagation/Distributed/Published/SlabRaysInTurn.h"
+#include "LightPropagation/Distributed/Published/SlabRaysOnDevice.h"
 #include "LightPropagation/Distributed/Published/SweepInSlabs.h"
 #include "LightPropagation/Problem/PropagationProblem.h"
 #include "LightPropagation/Published/OrderLedger.h"
 #include "LightPropagation/Published/PublishedLight.h"
+#include "LightPropagation/Published/PublishedWarmStart.h"
+#include "LightPropagation/Published/SequentialPropagation.h"
 #include "Lights/UncollidedImage.h"
 
 #include <algorithm>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -46,14 +52,17 @@ SceneOfAll SceneOf(Communicator& communicator, bool has, const Medium& medium, c
   return scene;
 }
 
+/// Rays of an algorithm, still without planes; faces must stay.
+using MakeRays = std::function<std::unique_ptr<SlabRays>(const PublishedModel& model, const PublishedFaces& faces)>;
+
 /// Orders one by one, of all ranks; of the voxels those of this rank's block.
 class PublishedOfBlock
 {
 public:
   /// All ranks make one together. What is given must stay.
-  PublishedOfBlock(Device& device, Communicator& communicator, const BlockPartition& partition, bool has,
-    const Medium& medium, const Illumination& illumination, const PropagationSettings& settings,
-    const PublishedModel& model, const SceneOfAll& scene)
+  PublishedOfBlock(Communicator& communicator, const BlockPartition& partition, bool has, const Medium& medium,
+    const Illumination& illumination, const PropagationSettings& settings, const PublishedModel& model,
+    const SceneOfAll& scene, const MakeRays& make, const KeptLight* kept)
     : Others(communicator)
     , Has(has)
     , CountsGiven(IsFirstThatHas(communicator, partition))
@@ -63,11 +72,14 @@ public:
     , NetFlux(settings.netFlux)
     , Ledger(partition.whole.VoxelVolume(), scene.emitted, this->Model, settings)
     , Faces(partition.whole, this->Model, settings)
-    , Sweep(device, communicator, partition, medium, this->Model, settings, this->Faces)
+    , Rays(make(this->Model, this->Faces))
+    , Sweep(communicator, partition, medium, this->Model, settings, *this->Rays)
+    , Warm({ medium, this->Model, settings, partition.whole, 1, &communicator, partition.blocks[communicator.Rank()] },
+        kept)
     , Emits(scene.traits.emits || !settings.leaveOut)
     , IsGiven(scene.given)
-    , Totals(this->Model.MomentCount())
-    , Moments(this->Totals.size())
+    , Values(has ? medium.grid.VoxelCount() * model.Channels() : 0)
+    , Totals(this->Values * model.MomentCount(), 0.0f)
   {
   }
 
@@ -76,12 +88,9 @@ public:
     const int order = this->Ledger.Orders();
     const Monitor ofOrder = OfPart(monitor, [this](double done) { return this->Ledger.Progress(done); });
     this->Ledger.Count(this->Sweep.Run(order, this->Emits, this->Faces, ofOrder));
-    HeldFailure failure;
-    if (this->Has)
-    {
-      this->Collect(order, failure);
-    }
-    this->Others.Together([&] { failure.Throw(); });
+    this->Collect(order);
+    this->BeginOrGoOnWarm(order);
+    this->Scatter();
     if (order == 0 && this->IsGiven)
     {
       this->Ledger.Count(this->PowersGiven());
@@ -97,53 +106,95 @@ public:
   {
     LightField field;
     TakeMoments(
-      this->Model, this->NetFlux, [this](int k) { return this->Totals[k]; }, field);
+      this->Model, this->NetFlux, [this](int k) { return this->OneOf(this->Totals, k); }, field);
     field.fluenceDirect = this->FluenceDirect;
     this->Ledger.WriteTo(field);
     this->Faces.WriteTo(field);
+    if (this->Warm.Keeps())
+    {
+      field.leftOut.push_back(this->Warm.Words());
+    }
     return field;
   }
 
-private:
-  std::size_t Values() const { return this->TheMedium.grid.VoxelCount() * this->Model.Channels(); }
+  KeptLight Left() const { return this->Warm.Leave(this->Totals, this->Faces, this->Ledger.Rate()); }
+  bool BeganWarm() const { return this->Warm.Begins(); }
 
-  /// Eq. (4): what all sweeps left in this block, and U of the next order from it.
-  void Collect(int order, HeldFailure& failure)
+private:
+  std::vector<float> OneOf(const std::vector<float>& moments, int k) const
   {
-    for (std::size_t k = 0; k < this->Moments.size(); ++k)
-    {
-      this->Moments[k] = this->Sweep.Moment(static_cast<int>(k), failure);
-    }
-    failure.Attempt([&] { this->AddToTotals(order); });
-    this->Sweep.WriteSources([this](int d) { return this->SourceOf(d); }, failure);
+    const auto first = moments.begin() + static_cast<std::ptrdiff_t>(k * this->Values);
+    return { first, first + static_cast<std::ptrdiff_t>(this->Values) };
   }
 
-  void AddToTotals(int order)
+  /// What all sweeps left in this block.
+  void Collect(int order)
   {
-    if (order == 0)
+    HeldFailure failure;
+    failure.Attempt([&] { this->Moments.resize(this->Totals.size()); });
+    for (int k = 0; k < this->Model.MomentCount() && this->Has; ++k)
     {
-      if (this->Given.IsThere())
+      const std::vector<float> moment = this->Sweep.Moment(k, failure);
+      failure.Attempt([&] {
+        std::copy(moment.begin(), moment.end(), this->Moments.begin() + static_cast<std::ptrdiff_t>(k * this->Values));
+      });
+    }
+    failure.Attempt([&] {
+      if (order == 0 && this->Has)
       {
-        AddGiven(this->Model, this->Given, this->TheMedium.grid.VoxelCount(),
-          [this](std::size_t k, std::size_t voxel, int c, double value) {
-            this->Moments[k][voxel * this->Model.Channels() + c] += static_cast<float>(value);
-          });
+        this->LookAtDirect();
       }
-      this->FluenceDirect = this->Moments[0];
-    }
-    for (std::size_t k = 0; k < this->Moments.size(); ++k)
+    });
+    this->Others.Together([&] { failure.Throw(); });
+  }
+
+  void LookAtDirect()
+  {
+    if (this->Given.IsThere())
     {
-      this->Totals[k].resize(this->Values(), 0.0f);
-      std::transform(this->Totals[k].begin(), this->Totals[k].end(), this->Moments[k].begin(), this->Totals[k].begin(),
-        [](float sum, float more) { return sum + more; });
+      AddGiven(this->Model, this->Given, this->TheMedium.grid.VoxelCount(),
+        [this](std::size_t k, std::size_t voxel, int c, double value) {
+          this->Moments[k * this->Values + voxel * this->Model.Channels() + c] += static_cast<float>(value);
+        });
     }
+    this->FluenceDirect = this->OneOf(this->Moments, 0);
+  }
+
+  /// As ParallelPropagation does.
+  void BeginOrGoOnWarm(int order)
+  {
+    if (order == 0 && this->Warm.Keeps())
+    {
+      this->Warm.AddTo(this->Moments, this->Faces, this->FluenceDirect);
+      if (this->Warm.Begins())
+      {
+        this->Ledger.BeginWarm(this->Warm.Rate());
+      }
+    }
+    else if (order == 1 && this->Warm.Begins())
+    {
+      this->Warm.TakeFrom(this->Moments);
+    }
+  }
+
+  /// Eq. (4): U of the next order, and I of all so far.
+  void Scatter()
+  {
+    std::transform(
+      this->Totals.begin(), this->Totals.end(), this->Moments.begin(), this->Totals.begin(), std::plus<>());
+    HeldFailure failure;
+    if (this->Has)
+    {
+      this->Sweep.WriteSources([this](int d) { return this->SourceOf(d); }, failure);
+    }
+    this->Others.Together([&] { failure.Throw(); });
   }
 
   std::vector<float> SourceOf(int sourceDirection) const
   {
     const PublishedModel::Part part = this->Model.Source(sourceDirection);
     const float factor = static_cast<float>(part.factor);
-    std::vector<float> source = this->Moments[part.moment];
+    std::vector<float> source = this->OneOf(this->Moments, part.moment);
     const std::size_t channels = static_cast<std::size_t>(this->Model.Channels());
     for (std::size_t i = 0; i < source.size(); ++i)
     {
@@ -176,7 +227,7 @@ private:
     }
     this->Faces.CloseOrder(this->Ledger);
     const OrderSums own =
-      this->Has ? SumsOf(this->TheMedium, this->Model.Channels(), this->Moments[0].data()) : OrderSums();
+      this->Has ? SumsOf(this->TheMedium, this->Model.Channels(), this->Moments.data()) : OrderSums();
     std::vector<double> values;
     for (const Rgb* rgb : { &own.fluence, &own.magnitude, &own.absorbed, &own.scattered })
     {
@@ -201,10 +252,13 @@ private:
   const bool NetFlux;
   OrderLedger Ledger;
   PublishedFaces Faces;
+  const std::unique_ptr<SlabRays> Rays;
   SweepInSlabs Sweep;
+  PublishedWarmStart Warm;
   bool Emits; ///< U is not zero
   const bool IsGiven;
-  std::vector<std::vector<float>> Totals, Moments; ///< of all orders, of the last
+  const std::size_t Values;           ///< of a moment: voxels times channels
+  std::vector<float> Totals, Moments; ///< of all orders, of the last; [moment][voxel][channel]
   std::vector<float> FluenceDirect;
 };
 
@@ -239,11 +293,13 @@ std::vector<std::string> LeftOutOfBlocks(
   }
   return words;
 }
-}
 
-LightField SolvePublishedInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition,
-  const Medium& medium, const Illumination& illumination, const PropagationSettings& settings, const Monitor& monitor)
+/// By an algorithm, which is the same on all ranks.
+LightField SolveBy(const MakeRays& make, Communicator& communicator, const BlockPartition& partition,
+  const Medium& medium, const Illumination& illumination, const PropagationSettings& settings, const Monitor& monitor,
+  KeptLight* kept)
 {
+  RequireSame(communicator, "WarmStart", true, { kept ? 1.0 : 0.0 });
   const bool has = partition.blocks.at(communicator.Rank()).VoxelCount() > 0;
   CheckPublishedBlocks(communicator, partition, has, medium, illumination, settings);
   Medium own = has ? medium : Medium();
@@ -252,17 +308,52 @@ LightField SolvePublishedInBlocks(Device& device, Communicator& communicator, co
   std::optional<PublishedModel> model;
   communicator.Together(
     [&] { model.emplace(has ? medium.phase : PhaseOfMedium(), illumination, settings, scene.channels); });
-  PublishedOfBlock propagation(device, communicator, partition, has, own, illumination, settings, *model, scene);
+  PublishedOfBlock propagation(communicator, partition, has, own, illumination, settings, *model, scene, make, kept);
   do
   {
     propagation.RunOrder(monitor);
   } while (!propagation.Done());
   LightField light = propagation.Result();
-  light.leftOut = LeftOutOfBlocks(scene, illumination, settings, propagation.Orders());
+  const std::vector<std::string> leftOut = LeftOutOfBlocks(scene, illumination, settings, propagation.Orders());
+  light.leftOut.insert(light.leftOut.begin(), leftOut.begin(), leftOut.end());
   light.halfRangeFlux = HalfRangeFlux(model->Directions());
-  light.device = device.Name();
   JudgeConvergence(settings, light);
   DoubtGivenLight(illumination, light);
+  if (kept)
+  {
+    Keep(propagation.Left(), propagation.BeganWarm(), light, *kept);
+  }
+  return light;
+}
+
+void RequireSameAlgorithm(Communicator& communicator, bool inTurn)
+{
+  RequireSame(communicator, "Algorithm", true, { inTurn ? 1.0 : 0.0 });
+}
+}
+
+LightField SolvePublishedInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition,
+  const Medium& medium, const Illumination& illumination, const PropagationSettings& settings, const Monitor& monitor,
+  KeptLight* kept)
+{
+  RequireSameAlgorithm(communicator, false);
+  const MakeRays make = [&](const PublishedModel& model, const PublishedFaces& faces) {
+    return std::make_unique<SlabRaysOnDevice>(device, partition.whole, model, settings, faces);
+  };
+  LightField light = SolveBy(make, communicator, partition, medium, illumination, settings, monitor, kept);
+  light.device = device.Name();
+  return light;
+}
+
+LightField SolveSequentialInBlocks(Communicator& communicator, const BlockPartition& partition, const Medium& medium,
+  const Illumination& illumination, const PropagationSettings& settings, const Monitor& monitor)
+{
+  RequireSameAlgorithm(communicator, true);
+  const MakeRays make = [&](const PublishedModel& model, const PublishedFaces&) {
+    return std::make_unique<SlabRaysInTurn>(partition.whole, model, settings);
+  };
+  LightField light = SolveBy(make, communicator, partition, medium, illumination, settings, monitor, nullptr);
+  light.device = SequentialDevice;
   return light;
 }
 }

@@ -1,17 +1,14 @@
 #pragma once
 
+#include "LightPropagation/Distributed/Published/SlabRays.h"
 #include "LightPropagation/Distributed/Published/SlabsAcross.h"
-#include "LightPropagation/Published/PublishedBorders.h"
 #include "LightPropagation/Published/PublishedFaces.h"
-#include "LightPropagation/Published/PublishedSweep.h"
 
 #include "Device/Monitor.h"
 #include "Distribution/Communicator.h"
 #include "Distribution/HeldFailure.h"
 
-#include <array>
 #include <functional>
-#include <optional>
 #include <vector>
 
 namespace tyndall
@@ -33,11 +30,11 @@ class SweepInSlabs
 {
 public:
   /// All ranks make one together.
-  /// @param blocks  of the medium; must stay, as do communicator, device and model
+  /// @param blocks  of the medium; must stay, as do communicator and model
   /// @param own     medium of this rank's block; looked at by nobody where that has no voxels
-  /// @param faces   of the whole box
-  SweepInSlabs(Device& device, Communicator& communicator, const BlockPartition& blocks, const Medium& own,
-    const PublishedModel& model, const PropagationSettings& settings, const PublishedFaces& faces);
+  /// @param rays    without planes so far; must stay
+  SweepInSlabs(Communicator& communicator, const BlockPartition& blocks, const Medium& own, const PublishedModel& model,
+    const PropagationSettings& settings, SlabRays& rays);
 
   /// All rays once. All ranks call it.
   /// @param order   from 0: in it light comes in from outside
@@ -57,15 +54,6 @@ public:
   void WriteSources(const std::function<std::vector<float>(int sourceDirection)>& source, HeldFailure& failure);
 
 private:
-  /// Planes across an axis. Without any only the first is there.
-  struct Slab
-  {
-    std::optional<SlabsAcross> all;
-    std::optional<PublishedVolumes> volumes;
-    std::optional<PublishedPlan> plan;
-    std::optional<PublishedBorders> borders;
-  };
-
   /// A batch through this rank's planes.
   struct Task
   {
@@ -85,31 +73,25 @@ private:
     PublishedFaces& faces;
     SweepTally tally;
     HeldFailure failure;
-    std::array<bool, 3> collected = {}; ///< some of this order, by axis
   };
 
-  void MakeVolumes(int axis, const Medium& own);
+  void TakePlanes(int axis, const Medium& own);
   int DirectionsPerBatch() const;
-  void MakePlans(int perBatch, const PublishedFaces& faces);
   void MakeTasks();
   Task TaskOf(int axis, std::size_t batch) const;
+  SlabRays::Way WayOf(const Task& task, const Running& running) const;
   void RunTask(std::size_t number, Running& running, const Monitor& monitor);
-  void BeginTask(const Task& task, Running& running);
-  std::vector<float> Send(
-    const Task& task, std::size_t pass, const std::vector<float>& given, Running& running, const Monitor& monitor);
-  void EndTask(const Task& task, Running& running);
   void TakeFromAround(Running& running);
-  std::size_t FloatsOfMap(const Task& task) const;
-  std::vector<int> SourcesReadAlong(int axis) const;
+  bool HasPlanes(int axis) const { return this->Slabs[axis].PlaceOf(this->Others.Rank()) >= 0; }
+  const VoxelBox& PlanesOf(int axis) const { return this->Slabs[axis].boxes.blocks[this->Others.Rank()]; }
 
-  Device& TheDevice;
   Communicator& Others;
   const BlockPartition& Blocks;
   const PublishedModel& Model;
   PropagationSettings Settings;
-  std::array<Slab, 3> Slabs;
-  std::optional<PublishedSweep> Sweep; ///< none without planes
-  std::vector<Task> Tasks;             ///< in the order in which they are done
+  SlabRays& Rays;
+  std::vector<SlabsAcross> Slabs; ///< by axis
+  std::vector<Task> Tasks;        ///< in the order in which they are done
   /// Of each task and pass, what rays that went round have as they begin the next order; empty: nothing.
   std::vector<std::vector<std::vector<float>>> Waiting;
 };

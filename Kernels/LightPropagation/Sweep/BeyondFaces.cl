@@ -1,0 +1,11 @@
+// What the voxels beyond the faces of a block have (BeyondFaces.h).
+
+#include "LightPropagation/Sweep/BeyondFacesShared.h"
+
+// Where the value of the one beyond face d of a voxel is; -1: it is in the block, or beyond the whole.
+static long place_beyond(const BeyondFacesInfo* beyond, const int* size, const int* at, int d)
+{
+  const int axis = d / 2, u = axis == 0 ? 1 : 0, v = axis == 2 ? 1 : 2;
+  const bool last = at[axis] == (d & 1 ? size[axis] - 1 : 0);
+  return last && beyond->first[d] >= 0 ? beyond->first[d] + at[u] + (long)size[u] * at[v] : -1;
+}

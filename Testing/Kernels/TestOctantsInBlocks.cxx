@@ -1,0 +1,113 @@
+// Thick voxels whose orders are added up one by one, in a medium that is spread over ranks: they shine by octant as in
+// the whole (numerics.md, section 6.5), also where the voxels beside them are another rank's.
+
+#include "BlocksOfLight.h"
+
+#include "Light/LeftOut.h"
+
+#include <gmock/gmock.h>
+
+using namespace blocks_of_light;
+using namespace tyndall;
+
+namespace
+{
+PropagationSettings ByOctant()
+{
+  PropagationSettings settings = SettingsOf(4);
+  settings.directionsPerFace = 4;
+  settings.source = PropagationSource::Octants;
+  return settings;
+}
+
+/// A slanting beam, a lamp inside, a bright face and a sky.
+Illumination Lit()
+{
+  Illumination shining = LitFromOutside();
+  Light lamp;
+  lamp.type = LightType::Point;
+  lamp.position = { 2.6, 3.1, 2.2 };
+  lamp.power = { 10.0, 4.0, 1.0 };
+  shining.lights.push_back(lamp);
+  return shining;
+}
+}
+
+class OctantsInBlocks : public DeviceTest
+{
+protected:
+  void ExpectTheLightOfTheWholeByOctant(
+    const RandomMedium& whole, const Illumination& shining, const PropagationSettings& settings)
+  {
+    const Grid& grid = whole.medium.grid;
+    const LightField byOctant = SolveConservative(GetDevice(), whole.medium, shining, settings);
+    for (const BlockPartition& partition :
+      { BlockPartition::Even(grid, 1), BlockPartition::Even(grid, 2), Uneven(grid) })
+    {
+      SCOPED_TRACE(std::to_string(partition.blocks.size()) + " ranks");
+      ExpectSame(LightOfAll(GetDevice(), partition, whole, shining, settings), byOctant, settings.periodic[0]);
+    }
+    PropagationSettings constant = settings;
+    constant.source = PropagationSource::Constant;
+    EXPECT_GT(
+      RelativeRmse(SolveConservative(GetDevice(), whole.medium, shining, constant).fluence, byOctant.fluence), 1e-3);
+  }
+};
+
+TEST_F(OctantsInBlocks, HaveTheLightOfTheWhole)
+{
+  RandomMedium whole(Grid{ { 5, 6, 4 }, { 1.0, 0.8, 1.3 } }, 3, 4.0f, 6);
+  whole.Emit(0.3f);
+  this->ExpectTheLightOfTheWholeByOctant(whole, Lit(), ByOctant());
+}
+
+/// Of which blocks have a part, or all. The beam goes across it: round it through few voxels it takes many laps.
+TEST_F(OctantsInBlocks, HaveTheLightOfTheWholeRoundAnAxis)
+{
+  RandomMedium whole(Grid{ { 9, 3, 4 } }, 3, 4.0f, 7);
+  Illumination shining = LitFromOutside();
+  shining.lights[0].direction = { 0.0, -0.5, -0.9 };
+  PropagationSettings settings = ByOctant();
+  settings.maximumOrders = 2;
+  settings.periodic[0] = true;
+  this->ExpectTheLightOfTheWholeByOctant(whole, shining, settings);
+}
+
+TEST_F(OctantsInBlocks, HaveTheLightOfTheWholeFromFinerDirectionsAndWhiteFaces)
+{
+  RandomMedium whole(Grid{ { 3, 4, 5 } }, 3, 4.0f, 7);
+  Illumination shining = LitFromOutside();
+  shining.lights.clear();
+  PropagationSettings settings = ByOctant();
+  settings.uncollidedDirections = 9;
+  this->ExpectTheLightOfTheWholeByOctant(whole, shining, settings);
+  shining.faceAlbedo[2] = { 0.8, 0.6, 0.4 };
+  settings.uncollidedDirections = 0;
+  this->ExpectTheLightOfTheWholeByOctant(whole, shining, settings);
+}
+
+/// Of many thick voxels that absorb so much that acceleration does not pay.
+TEST_F(OctantsInBlocks, ShineSoUnasked)
+{
+  RandomMedium whole(Grid{ { 5, 4, 3 } }, 3, 4.0f, 8);
+  Share(whole, 0.8f, 0.2f);
+  PropagationSettings settings = ByOctant();
+  settings.source = PropagationSource::Automatic;
+  settings.acceleration = PropagationAcceleration::Automatic;
+  settings.maximumOrders = 0;
+  this->ExpectTheLightOfTheWholeByOctant(whole, Lit(), settings);
+}
+
+TEST_F(OctantsInBlocks, SayWhereThereAreNone)
+{
+  const PropagationSettings settings = ByOctant();
+  for (const float densest : { 0.1f, 3e4f })
+  {
+    RandomMedium whole(Grid{ { 3, 2, 2 } }, 3, densest, 6);
+    Share(whole, 0.5f, 0.5f);
+    const LightField light =
+      LightOfAll(GetDevice(), BlockPartition::Even(whole.medium.grid, 2), whole, LitFromOutside(), settings);
+    EXPECT_THAT(
+      light.leftOut, testing::Contains(std::string(densest < 1.0f ? left_out::ThinVoxels : left_out::NotByOctant)));
+  }
+}
