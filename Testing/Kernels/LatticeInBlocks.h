@@ -7,9 +7,13 @@
 
 #include "LatticeBoltzmann/Distributed/LatticeInBlocks.h"
 
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -45,6 +49,22 @@ inline LatticeSettings SettingsOf(double tolerance = 1e-4)
   return settings;
 }
 
+/// Of any place and way in some voxels, and of a colour.
+inline std::vector<Photon> AnyPhotons(std::size_t count)
+{
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> place(0.5, 4.5);
+  std::vector<Photon> photons(count);
+  for (Photon& photon : photons)
+  {
+    photon.position = { place(random), place(random), place(random) };
+    const glm::dvec3 along = glm::normalize(glm::dvec3(place(random) - 2.5, place(random) - 2.5, place(random) - 2.5));
+    photon.direction = { static_cast<float>(along.x), static_cast<float>(along.y), static_cast<float>(along.z) };
+    photon.power = { 0.01f, 0.02f, 0.03f };
+  }
+  return photons;
+}
+
 class LatticeBlocks : public LatticeTest
 {
 protected:
@@ -52,6 +72,25 @@ protected:
   {
     medium.Attach();
     return this->Solve(medium.scene, settings, medium.ior);
+  }
+
+  LightField Whole(MediumToCut& medium, const std::vector<Photon>& photons, const LatticeSettings& settings)
+  {
+    medium.Attach();
+    return SolveLatticeBoltzmann(
+      this->GetDevice(), medium.scene.medium, medium.Index(), photons, medium.scene.light, settings);
+  }
+
+  LightField OfBlocks(const BlockPartition& partition, const MediumToCut& medium, const std::vector<Photon>& photons,
+    const LatticeSettings& settings)
+  {
+    return LightOfBlocks(partition, medium, [&](Communicator& communicator, MediumToCut& part) {
+      const std::size_t rank = static_cast<std::size_t>(communicator.Rank()), ranks = partition.blocks.size();
+      const std::vector<Photon> share(photons.begin() + static_cast<std::ptrdiff_t>(photons.size() * rank / ranks),
+        photons.begin() + static_cast<std::ptrdiff_t>(photons.size() * (rank + 1) / ranks));
+      return SolveLatticeInBlocks(
+        this->GetDevice(), communicator, partition, part.scene.medium, part.Index(), share, part.scene.light, settings);
+    });
   }
 
   LightField OfBlocks(const BlockPartition& partition, const MediumToCut& medium, const LatticeSettings& settings)

@@ -2,12 +2,7 @@
 
 #include "LatticeInBlocks.h"
 
-#include <glm/geometric.hpp>
-#include <glm/vec3.hpp>
-
 #include <algorithm>
-#include <functional>
-#include <random>
 #include <string>
 #include <vector>
 
@@ -190,34 +185,15 @@ TEST_F(LatticeBlocks, HaveTheLightThatIsGivenToTheWhole)
 TEST_F(LatticeBlocks, HaveThePhotonsOfTheWhole)
 {
   MediumToCut medium = Everything({ 8, 7, 5 });
-  Scene& scene = medium.scene;
-  scene.light.lights.clear();
-  std::mt19937 random(5);
-  std::uniform_real_distribution<double> place(0.5, 4.5);
-  std::vector<Photon> photons(300);
-  for (Photon& photon : photons)
-  {
-    photon.position = { place(random), place(random), place(random) };
-    const glm::dvec3 along = glm::normalize(glm::dvec3(place(random) - 2.5, place(random) - 2.5, place(random) - 2.5));
-    photon.direction = { static_cast<float>(along.x), static_cast<float>(along.y), static_cast<float>(along.z) };
-    photon.power = { 0.01f, 0.02f, 0.03f };
-  }
-  const LatticeSettings settings = SettingsOf(1e-7);
-  medium.Attach();
-  const LightField whole =
-    SolveLatticeBoltzmann(this->GetDevice(), scene.medium, medium.Index(), photons, scene.light, settings);
-  for (const BlockPartition& partition : { BlockPartition::Even(scene.medium.grid, 1),
-         BlockPartition::Even(scene.medium.grid, 3), Slices(scene.medium.grid, { 0, 1 }) })
+  medium.scene.light.lights.clear();
+  const Grid& grid = medium.scene.medium.grid;
+  const std::vector<Photon> photons = AnyPhotons(300);
+  const LightField whole = this->Whole(medium, photons, SettingsOf(1e-7));
+  for (const BlockPartition& partition :
+    { BlockPartition::Even(grid, 1), BlockPartition::Even(grid, 3), Slices(grid, { 0, 1 }) })
   {
     SCOPED_TRACE(std::to_string(partition.blocks.size()) + " ranks");
-    const LightField light = LightOfBlocks(partition, medium, [&](Communicator& communicator, MediumToCut& part) {
-      const std::size_t rank = static_cast<std::size_t>(communicator.Rank()), ranks = partition.blocks.size();
-      const std::vector<Photon> share(photons.begin() + static_cast<std::ptrdiff_t>(photons.size() * rank / ranks),
-        photons.begin() + static_cast<std::ptrdiff_t>(photons.size() * (rank + 1) / ranks));
-      return SolveLatticeInBlocks(
-        this->GetDevice(), communicator, partition, part.scene.medium, part.Index(), share, part.scene.light, settings);
-    });
-    ExpectSame(light, whole, 2e-6);
+    ExpectSame(this->OfBlocks(partition, medium, photons, SettingsOf(1e-7)), whole, 2e-6);
   }
 }
 

@@ -84,3 +84,60 @@ TEST_F(LatticeStepsInBlocks, AreThoseOfBlocksOfVoxels)
     }
   }
 }
+
+/// Counted or settled, by blocks of voxels, too; of photons of a colour and of none.
+TEST_F(LatticeStepsInBlocks, GoOnBesidePhotonsAsInTheWhole)
+{
+  MediumToCut medium = Thin({ 8, 7, 5 });
+  medium.scene.light.lights.clear();
+  const Grid& grid = medium.scene.medium.grid;
+  std::vector<Photon> photons = AnyPhotons(300);
+  LatticeSettings counted = SettingsOf(), settled = SettingsOf(1e-3);
+  counted.interleaves = settled.interleaves = true;
+  counted.stretches = 3;
+  counted.stepsPerExchange = 4;
+  counted.maximumSteps = 25;
+  counted.blockSize = 4;
+  settled.stretches = 5;
+  for (const LatticeSettings& settings : { counted, settled })
+  {
+    SCOPED_TRACE(std::to_string(settings.maximumSteps));
+    const LightField whole = this->Whole(medium, photons, settings);
+    EXPECT_EQ(whole.channels, settings.maximumSteps > 0 ? 3 : 1);
+    for (const BlockPartition& partition : { BlockPartition::Even(grid, 3), Slices(grid, { 0, 1 }) })
+    {
+      SCOPED_TRACE(std::to_string(partition.blocks.size()) + " ranks");
+      ExpectSameSteps(this->OfBlocks(partition, medium, photons, settings), whole);
+    }
+    for (Photon& photon : photons)
+    {
+      photon.power.fill(0.02f);
+    }
+  }
+}
+
+/// Who goes on with photons, and who waits for them to end, is agreed on before any of them marches.
+TEST_F(LatticeStepsInBlocks, AreAgreedOnBeforePhotonsMarch)
+{
+  const MediumToCut medium = Thin({ 6, 5, 4 });
+  const BlockPartition partition = BlockPartition::Even(medium.scene.medium.grid, 2);
+  std::vector<std::string> errors(2);
+  RunInThreads(2, [&](Communicator& communicator) {
+    const int rank = communicator.Rank();
+    MediumToCut part = medium.Part(partition.blocks[rank]);
+    part.Attach();
+    LatticeSettings settings = SettingsOf();
+    settings.interleaves = rank == 1;
+    try
+    {
+      SolveLatticeInBlocks(this->GetDevice(), communicator, partition, part.scene.medium, part.Index(), AnyPhotons(9),
+        part.scene.light, settings);
+    }
+    catch (const InvalidInput& error)
+    {
+      errors[rank] = error.what();
+    }
+  });
+  EXPECT_NE(errors[0].find("disagree about settings"), std::string::npos) << errors[0];
+  EXPECT_EQ(errors[0], errors[1]);
+}

@@ -9,13 +9,13 @@ from pieces_of_ranks import Runs, difference
 
 runs = Runs("SolversByBlocks")
 CASES = ["lattice_wavelet", "lattice_even", "lattice_uneven", "lattice_lamps", "lattice_around",
-         "lattice_steps", "lattice_photons", "ordinates_even",
+         "lattice_steps", "lattice_photons", "lattice_turns", "ordinates_even",
          "ordinates_uneven", "ordinates_faces", "ordinates_around", "ordinates_warm",
          "published_even", "published_uneven", "published_shown"]
 LIKE = {"published_uneven": "published_even", "lattice_uneven": "lattice_even", "ordinates_uneven": "ordinates_even"}
 
 for ranks in (1, 2, 3, 8):
-    more = ["lattice_exact", "lattice_whole", "lattice_photons_whole", "ordinates_whole", "ordinates_faces_whole", "published_whole"] if ranks == 1 else \
+    more = ["lattice_exact", "lattice_whole", "lattice_photons_whole", "lattice_turns_whole", "ordinates_whole", "ordinates_faces_whole", "published_whole"] if ranks == 1 else \
         ["lattice_errors"] if ranks == 2 else []
     code, said = runs.run(ranks, *CASES, *more)
     assert code == 0 and said.count("is done") == ranks, said
@@ -33,6 +33,9 @@ assert difference(blocks, whole) < 2e-6
 blocks, whole = runs.whole(3, "lattice_photons", "light")[0], runs.whole(1, "lattice_photons_whole", "light")[0]
 print("photons on a lattice in blocks and in the whole: %.1e" % difference(blocks, whole))
 assert difference(blocks, whole) < 2e-6
+blocks, whole = runs.whole(3, "lattice_turns", "light")[0], runs.whole(1, "lattice_turns_whole", "light")[0]
+print("photons beside the steps of a lattice in blocks and in the whole: %.1e" % difference(blocks, whole))
+assert difference(blocks, whole) < 1e-6
 for case, of_whole in (("ordinates_even", "ordinates_whole"), ("ordinates_faces", "ordinates_faces_whole")):
     ordinates, whole = runs.whole(1, case, "light")[0], runs.whole(1, of_whole, "light")[0]
     print("%s in blocks and in the whole: %.1e" % (case, difference(ordinates, whole)))

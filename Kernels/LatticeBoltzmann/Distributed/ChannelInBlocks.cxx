@@ -118,7 +118,7 @@ void ChannelInBlocks::Solve(const Monitor& monitor)
   else if (this->Settings.Solves())
   {
     SteadyInBlocks system(this->TheDevice, this->Others, this->Scene.partition, this->Box, this->Settings,
-      *this->Voxels, this->Photons ? &*this->Photons : nullptr);
+      *this->Voxels, this->TheLattice());
     this->Fluence = SteadyLattice(this->Box, this->Settings, *this->Voxels, system).Solve(monitor, this->Rows);
   }
   else
@@ -127,14 +127,33 @@ void ChannelInBlocks::Solve(const Monitor& monitor)
   }
 }
 
-void ChannelInBlocks::Settle(const StepsBefore& before, const Monitor& monitor)
+SteppedInBlocks& ChannelInBlocks::Stepping()
 {
   if (!this->Steps)
   {
-    this->Steps.emplace(this->TheDevice, this->Others, this->Scene.partition, this->Settings, this->Stepped,
-      this->Photons ? &*this->Photons : nullptr);
+    this->Steps.emplace(
+      this->TheDevice, this->Others, this->Scene.partition, this->Settings, this->Stepped, this->TheLattice());
   }
-  this->Fluence = Settling(*this->Steps, this->Settings).Run(before, monitor, this->Rows);
+  return *this->Steps;
+}
+
+void ChannelInBlocks::Step(int steps)
+{
+  this->Stepping().Step(steps, 0.0, {});
+}
+
+void ChannelInBlocks::Shine()
+{
+  this->Voxels->Shine(this->Scene.OfKnown(), this->Direct, this->Channel);
+  if (this->Photons)
+  {
+    this->Photons->Shine(this->Voxels->source);
+  }
+}
+
+void ChannelInBlocks::Settle(const StepsBefore& before, const Monitor& monitor)
+{
+  this->Fluence = Settling(this->Stepping(), this->Settings).Run(before, monitor, this->Rows);
 }
 
 /// Of blocks that step by themselves: the lattice of all voxels that this rank steps gives way to one of its own ones.
@@ -168,8 +187,8 @@ void ChannelInBlocks::EndSteps()
       this->KeepOwn();
     }
   });
-  SteppedInBlocks(this->TheDevice, this->Others, this->Scene.partition, this->Settings, this->Scene.around.Own(),
-    this->Photons ? &*this->Photons : nullptr)
+  SteppedInBlocks(
+    this->TheDevice, this->Others, this->Scene.partition, this->Settings, this->Scene.around.Own(), this->TheLattice())
     .FillAround();
 }
 

@@ -29,15 +29,22 @@ public:
   ChannelInBlocks(const ChannelInBlocks&) = delete;
   ChannelInBlocks& operator=(const ChannelInBlocks&) = delete;
 
-  double Thickest() const { return this->Voxels->thickest; } ///< sigma_t h, of all voxels of all ranks
+  double Thickest() const { return this->Voxels->thickest; }                  ///< sigma_t h, of all voxels of all ranks
+  Lattice* TheLattice() { return this->Photons ? &*this->Photons : nullptr; } ///< null: the rank has no voxels
+  const LatticeVoxels& TheVoxels() const { return *this->Voxels; }            ///< the known ones
   /// The steady lattice, or one that steps.
   void Solve(const Monitor& monitor);
+  void Step(int steps);
+  /// Takes uncollided light that has changed, on this rank.
+  void Shine();
+  /// Steps on, from densities that other steps have left.
+  void Settle(const StepsBefore& before, const Monitor& monitor);
   /// Scattered light of the rank's block beside the uncollided one, and where all power of that went.
   void AddTo(LightField& light);
 
 private:
   void TakeWhatIsOfAll();
-  void Settle(const StepsBefore& before, const Monitor& monitor);
+  SteppedInBlocks& Stepping();
   void KeepOwn();
   void EndSteps();
 

@@ -3,6 +3,7 @@
 #include "Device/Errors.h"
 #include "Distribution/SharedMedium.h"
 #include "LatticeBoltzmann/Distributed/ChannelInBlocks.h"
+#include "LatticeBoltzmann/Distributed/InterleavedInBlocks.h"
 #include "LatticeBoltzmann/Distributed/SceneInBlocks.h"
 #include "LatticeBoltzmann/Distributed/UncollidedInBlocks.h"
 #include "LatticeBoltzmann/LatticeLight.h"
@@ -22,7 +23,7 @@ void RequireSameLattice(
 {
   std::vector<double> numbers = { 1.0 * settings.directions, 1.0 * static_cast<int>(settings.scheme),
     1.0 * settings.maximumSteps, 1.0 * settings.solvesSteady, 1.0 * settings.probes, settings.tolerance,
-    1.0 * settings.blockSize, 1.0 * settings.stepsPerExchange };
+    1.0 * settings.blockSize, 1.0 * settings.stepsPerExchange, 1.0 * settings.interleaves, 1.0 * settings.stretches };
   for (const Rgb& face : shining.faceAlbedo)
   {
     numbers.insert(numbers.end(), face.begin(), face.end());
@@ -31,39 +32,6 @@ void RequireSameLattice(
   RequireSame(communicator, "whether there is a refractive index", has, { ior.values ? 1.0 : 0.0 });
 }
 
-/// Sums over ranks of what each counted.
-void AddUp(Communicator& communicator, LightField& light)
-{
-  EnergyBalance& balance = light.balance;
-  std::vector<Rgb*> counted = { &balance.entered, &balance.emitted, &balance.absorbed, &balance.escaped };
-  for (Rgb& face : light.facePowerOut)
-  {
-    counted.push_back(&face);
-  }
-  std::vector<double> values;
-  for (const Rgb* rgb : counted)
-  {
-    values.insert(values.end(), rgb->begin(), rgb->end());
-  }
-  values = communicator.Sum(values);
-  for (std::size_t i = 0; i < values.size(); ++i)
-  {
-    (*counted[i / 3])[i % 3] = values[i];
-  }
-  for (std::size_t c = 0; c < 3; ++c)
-  {
-    balance.leftOver[c] = balance.entered[c] + balance.emitted[c] - balance.absorbed[c] - balance.escaped[c];
-  }
-}
-}
-
-std::string NotInBlocks(const LatticeSettings& settings)
-{
-  return settings.interleaves ? "photons that march while light diffuses (Interleaved)" : std::string();
-}
-
-namespace
-{
 /// What a rank can tell of its own input. All ranks call it.
 void CheckInBlocks(Communicator& communicator, const BlockPartition& partition, const Medium& medium, const Field& ior,
   const Illumination& illumination, const LatticeSettings& settings)
@@ -74,8 +42,6 @@ void CheckInBlocks(Communicator& communicator, const BlockPartition& partition, 
     Check(settings);
     Check(illumination);
     CheckFaceAlbedo(illumination, settings.periodic);
-    const std::string refused = NotInBlocks(settings);
-    Require(refused.empty(), "A medium that is spread over ranks is not solved on a lattice with " + refused + ".");
     if (partition.blocks[communicator.Rank()].VoxelCount() > 0)
     {
       CheckLattice(medium, ior, settings);
@@ -85,6 +51,17 @@ void CheckInBlocks(Communicator& communicator, const BlockPartition& partition, 
     }
   });
 }
+
+/// What they have to have alike, and to have together. All ranks call it.
+void CheckTogether(Communicator& communicator, const BlockPartition& partition, const Medium& medium, const Field& ior,
+  const Illumination& illumination, const LatticeSettings& settings)
+{
+  const bool has = partition.blocks.at(communicator.Rank()).VoxelCount() > 0;
+  RequireSame(communicator, partition);
+  RequireSame(communicator, has, medium, illumination, AsPropagationInBlocks(settings));
+  RequireSameLattice(communicator, has, ior, illumination, settings);
+  CheckLightHasAnEnd(AbsorbsOnAny(communicator, has, medium), illumination, settings.periodic);
+}
 }
 
 LightField SolveLatticeInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition,
@@ -93,10 +70,17 @@ LightField SolveLatticeInBlocks(Device& device, Communicator& communicator, cons
 {
   CheckInBlocks(communicator, partition, medium, ior, illumination, settings);
   communicator.Together([&] { CheckPhotonsGoNotRound(settings); });
+  CheckTogether(communicator, partition, medium, ior, illumination, settings);
   const bool has = partition.blocks[communicator.Rank()].VoxelCount() > 0;
   MarchSettings march;
   const bool needs = settings.netFlux || (has && NeedsFirstMoments(medium, settings));
   march.meanDirection = OnAnyRank(communicator, needs);
+  if (settings.interleaves)
+  {
+    PhotonMarcherInBlocks marcher(device, communicator, partition, medium, ior, march);
+    return InterleavedInBlocks(device, communicator, partition, medium, ior, illumination, settings)
+      .Solve(marcher, share, monitor);
+  }
   const PhotonLight found =
     PhotonMarcherInBlocks(device, communicator, partition, medium, ior, march).March(share, OfPart(monitor, 0.0, 0.5));
   Illumination lit = illumination;
@@ -110,10 +94,7 @@ LightField SolveLatticeInBlocks(Device& device, Communicator& communicator, cons
 {
   const bool has = partition.blocks.at(communicator.Rank()).VoxelCount() > 0;
   CheckInBlocks(communicator, partition, medium, ior, illumination, settings);
-  RequireSame(communicator, partition);
-  RequireSame(communicator, has, medium, illumination, AsPropagationInBlocks(settings));
-  RequireSameLattice(communicator, has, ior, illumination, settings);
-  CheckLightHasAnEnd(AbsorbsOnAny(communicator, has, medium), illumination, settings.periodic);
+  CheckTogether(communicator, partition, medium, ior, illumination, settings);
 
   const SceneInBlocks scene(device, communicator, partition, medium, ior, illumination, settings);
   const BlockScene& solved = scene.scene;
@@ -131,13 +112,7 @@ LightField SolveLatticeInBlocks(Device& device, Communicator& communicator, cons
     channel.AddTo(light);
     thickest = std::max(thickest, channel.Thickest());
   }
-  AddUp(communicator, light);
-  const bool anisotropic = OnAnyRank(communicator, has && !solved.medium.phase.IsIsotropic()) && solved.traits.scatters;
-  communicator.Together([&] {
-    DescribeLight(light, device, anisotropic, settings, thickest);
-    solved.Undo(light);
-    JudgeLight(light, illumination, settings);
-  });
+  FinishLight(light, device, communicator, scene, illumination, settings, thickest);
   return light;
 }
 }

@@ -4,6 +4,8 @@
 #include "LatticeBoltzmann/LatticeLight.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <vector>
 
 namespace tyndall
 {
@@ -34,6 +36,31 @@ BlockPartition WithWhole(BlockPartition partition, const Grid& whole)
 {
   partition.whole = whole;
   return partition;
+}
+
+/// Sums over ranks of what each counted.
+void AddUp(Communicator& communicator, LightField& light)
+{
+  EnergyBalance& balance = light.balance;
+  std::vector<Rgb*> counted = { &balance.entered, &balance.emitted, &balance.absorbed, &balance.escaped };
+  for (Rgb& face : light.facePowerOut)
+  {
+    counted.push_back(&face);
+  }
+  std::vector<double> values;
+  for (const Rgb* rgb : counted)
+  {
+    values.insert(values.end(), rgb->begin(), rgb->end());
+  }
+  values = communicator.Sum(values);
+  for (std::size_t i = 0; i < values.size(); ++i)
+  {
+    (*counted[i / 3])[i % 3] = values[i];
+  }
+  for (std::size_t c = 0; c < 3; ++c)
+  {
+    balance.leftOver[c] = balance.entered[c] + balance.emitted[c] - balance.absorbed[c] - balance.escaped[c];
+  }
 }
 }
 
@@ -72,5 +99,19 @@ VoxelBox SceneInBlocks::Stepped(const LatticeSettings& settings, int rank) const
     box.size[axis] = std::min(end, this->partition.whole.size[axis]) - box.first[axis];
   }
   return box;
+}
+
+void FinishLight(LightField& light, const Device& device, Communicator& communicator, const SceneInBlocks& scene,
+  const Illumination& illumination, const LatticeSettings& settings, double thickest)
+{
+  AddUp(communicator, light);
+  const BlockScene& solved = scene.scene;
+  const bool anisotropic =
+    OnAnyRank(communicator, scene.has && !solved.medium.phase.IsIsotropic()) && solved.traits.scatters;
+  communicator.Together([&] {
+    DescribeLight(light, device, anisotropic, settings, thickest);
+    solved.Undo(light);
+    JudgeLight(light, illumination, settings);
+  });
 }
 }

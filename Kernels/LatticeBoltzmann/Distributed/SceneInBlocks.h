@@ -7,6 +7,7 @@
 #include "LatticeBoltzmann/Distributed/MediumAround.h"
 #include "LatticeBoltzmann/LatticeScene.h"
 #include "LatticeBoltzmann/LatticeSettings.h"
+#include "Light/LightField.h"
 #include "LightPropagation/Distributed/BlockScene.h"
 #include "LightPropagation/PropagationSettings.h"
 #include "Lights/Lights.h"
@@ -41,4 +42,10 @@ struct SceneInBlocks
   const BlockScene scene;
   const BlockPartition partition; ///< in the units of the scene
 };
+
+/// FinishLight (LatticeLight.h) of a rank's light: balance and face powers of all ranks, in the user's units. All ranks
+/// call it.
+/// @param illumination  as given
+void FinishLight(LightField& light, const Device& device, Communicator& communicator, const SceneInBlocks& scene,
+  const Illumination& illumination, const LatticeSettings& settings, double thickest);
 }

@@ -36,8 +36,8 @@ cl_ulong SteppedInBlocks::PlaceOf(int direction, const Voxel& voxel) const
     at(voxel[0] + LatticeFirst);
 }
 
-/// act(direction, where it comes from: voxel of the lattice or beside it, voxel of the whole grid) for each density that
-/// comes into it from outside.
+/// act(direction, where it comes from: voxel of the lattice or beside it, voxel of the whole grid) for each density
+/// that comes into it from outside.
 template <class Act>
 void SteppedInBlocks::ForComing(const BlockPartition& partition, const Act& act) const
 {

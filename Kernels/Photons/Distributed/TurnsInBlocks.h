@@ -13,8 +13,8 @@
 
 namespace tyndall
 {
-/// How photons over ranks march a few voxels at a time, so that the light that they leave is used in between (MarchTurns
-/// has it of the whole, beside which it is used). All ranks call each of these together.
+/// How photons over ranks march a few voxels at a time, so that the light that they leave is used in between, where
+/// MarchTurns has it used beside them. All ranks call each of these together.
 struct TurnsInBlocks
 {
   int stretches = 16; ///< of a photon's way in a turn, from voxel wall to voxel wall; 0: to its end
