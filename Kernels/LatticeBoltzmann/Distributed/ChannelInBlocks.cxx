@@ -68,7 +68,7 @@ std::vector<cl_ulong> PlacesOf(const VoxelBox& box, const LatticeInfo& info, int
 }
 }
 
-ChannelInBlocks::ChannelInBlocks(Device& device, Communicator& communicator, const SceneInBlocks& scene,
+ChannelInBlocks::ChannelInBlocks(Device& device, Communicator& communicator, const LatticeSceneInBlocks& scene,
   const LatticeSettings& settings, const Uncollided& direct, int channel)
   : TheDevice(device)
   , Others(communicator)

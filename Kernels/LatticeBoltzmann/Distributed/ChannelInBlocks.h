@@ -3,7 +3,7 @@
 #include "Device/Device.h"
 #include "Device/Monitor.h"
 #include "Distribution/Communicator.h"
-#include "LatticeBoltzmann/Distributed/SceneInBlocks.h"
+#include "LatticeBoltzmann/Distributed/LatticeSceneInBlocks.h"
 #include "LatticeBoltzmann/Distributed/SteppedInBlocks.h"
 #include "LatticeBoltzmann/Lattice.h"
 #include "LatticeBoltzmann/LatticeBox.h"
@@ -24,7 +24,7 @@ class ChannelInBlocks
 public:
   /// What is given must stay.
   /// @param direct  by known voxel
-  ChannelInBlocks(Device& device, Communicator& communicator, const SceneInBlocks& scene,
+  ChannelInBlocks(Device& device, Communicator& communicator, const LatticeSceneInBlocks& scene,
     const LatticeSettings& settings, const Uncollided& direct, int channel);
   ChannelInBlocks(const ChannelInBlocks&) = delete;
   ChannelInBlocks& operator=(const ChannelInBlocks&) = delete;
@@ -50,7 +50,7 @@ private:
 
   Device& TheDevice;
   Communicator& Others;
-  const SceneInBlocks& Scene;
+  const LatticeSceneInBlocks& Scene;
   const LatticeSettings& Settings;
   const LatticeSettings OfKnown, OfOwn; ///< of lattices of all voxels that this rank steps, and of its own ones
   const Uncollided& Direct;

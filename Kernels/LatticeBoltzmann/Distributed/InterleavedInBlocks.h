@@ -5,7 +5,7 @@
 #include "Distribution/BlockPartition.h"
 #include "Distribution/Communicator.h"
 #include "LatticeBoltzmann/Distributed/ChannelInBlocks.h"
-#include "LatticeBoltzmann/Distributed/SceneInBlocks.h"
+#include "LatticeBoltzmann/Distributed/LatticeSceneInBlocks.h"
 #include "LatticeBoltzmann/Interleaved/PhotonsToCome.h"
 #include "LatticeBoltzmann/LatticeSettings.h"
 #include "Light/LightField.h"
@@ -58,7 +58,7 @@ private:
   const LatticeSettings& Settings;
 
   std::optional<PhotonsToCome> ToCome; ///< in this rank's block
-  std::optional<SceneInBlocks> Scene;
+  std::optional<LatticeSceneInBlocks> Scene;
   std::vector<float> Directions;
   Uncollided Light; ///< by known voxel, in the units of the scene
   std::vector<Channel> Channels;

@@ -4,7 +4,7 @@
 #include "Distribution/SharedMedium.h"
 #include "LatticeBoltzmann/Distributed/ChannelInBlocks.h"
 #include "LatticeBoltzmann/Distributed/InterleavedInBlocks.h"
-#include "LatticeBoltzmann/Distributed/SceneInBlocks.h"
+#include "LatticeBoltzmann/Distributed/LatticeSceneInBlocks.h"
 #include "LatticeBoltzmann/Distributed/UncollidedInBlocks.h"
 #include "LatticeBoltzmann/LatticeLight.h"
 #include "LightPropagation/Distributed/BlockScene.h"
@@ -96,7 +96,7 @@ LightField SolveLatticeInBlocks(Device& device, Communicator& communicator, cons
   CheckInBlocks(communicator, partition, medium, ior, illumination, settings);
   CheckTogether(communicator, partition, medium, ior, illumination, settings);
 
-  const SceneInBlocks scene(device, communicator, partition, medium, ior, illumination, settings);
+  const LatticeSceneInBlocks scene(device, communicator, partition, medium, ior, illumination, settings);
   const BlockScene& solved = scene.scene;
   const bool moments = OnAnyRank(communicator, has && NeedsFirstMoments(solved.medium, settings));
   const Uncollided direct =

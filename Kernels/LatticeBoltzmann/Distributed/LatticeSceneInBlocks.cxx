@@ -1,4 +1,4 @@
-#include "LatticeBoltzmann/Distributed/SceneInBlocks.h"
+#include "LatticeBoltzmann/Distributed/LatticeSceneInBlocks.h"
 
 #include "Device/Sizes.h"
 #include "LatticeBoltzmann/LatticeLight.h"
@@ -71,7 +71,7 @@ PropagationSettings AsPropagationInBlocks(const LatticeSettings& settings)
   return of;
 }
 
-SceneInBlocks::SceneInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition,
+LatticeSceneInBlocks::LatticeSceneInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition,
   const Medium& medium, const Field& ior, const Illumination& illumination, const LatticeSettings& settings)
   : has(partition.blocks[communicator.Rank()].VoxelCount() > 0)
   , around(communicator, partition, settings.periodic, LayersFor(settings))
@@ -83,13 +83,13 @@ SceneInBlocks::SceneInBlocks(Device& device, Communicator& communicator, const B
 {
 }
 
-LatticeBox SceneInBlocks::Box() const
+LatticeBox LatticeSceneInBlocks::Box() const
 {
   const LatticeBox own = BoxOf(this->around);
   return { this->scene.medium.grid, own.own, own.innerFaces };
 }
 
-VoxelBox SceneInBlocks::Stepped(const LatticeSettings& settings, int rank) const
+VoxelBox LatticeSceneInBlocks::Stepped(const LatticeSettings& settings, int rank) const
 {
   VoxelBox box = this->partition.blocks[rank];
   for (int axis = 0; axis < 3 && settings.blockSize > 0 && box.VoxelCount() > 0; ++axis)
@@ -101,7 +101,7 @@ VoxelBox SceneInBlocks::Stepped(const LatticeSettings& settings, int rank) const
   return box;
 }
 
-void FinishLight(LightField& light, const Device& device, Communicator& communicator, const SceneInBlocks& scene,
+void FinishLight(LightField& light, const Device& device, Communicator& communicator, const LatticeSceneInBlocks& scene,
   const Illumination& illumination, const LatticeSettings& settings, double thickest)
 {
   AddUp(communicator, light);

@@ -20,14 +20,14 @@ namespace tyndall
 PropagationSettings AsPropagationInBlocks(const LatticeSettings& settings);
 
 /// What a lattice over ranks is solved of, in the units and channels of all: a rank's block and the voxels around it.
-struct SceneInBlocks
+struct LatticeSceneInBlocks
 {
   /// All ranks make one together. What is given must stay.
   /// @param medium, ior, illumination  of the rank's block; looked at by nobody where that has no voxels
-  SceneInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition, const Medium& medium,
-    const Field& ior, const Illumination& illumination, const LatticeSettings& settings);
-  SceneInBlocks(const SceneInBlocks&) = delete;
-  SceneInBlocks& operator=(const SceneInBlocks&) = delete;
+  LatticeSceneInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition,
+    const Medium& medium, const Field& ior, const Illumination& illumination, const LatticeSettings& settings);
+  LatticeSceneInBlocks(const LatticeSceneInBlocks&) = delete;
+  LatticeSceneInBlocks& operator=(const LatticeSceneInBlocks&) = delete;
 
   LatticeScene OfKnown() const { return { this->scene.medium, this->scene.illumination, this->scene.channels }; }
   LatticeBox Box() const; ///< the rank's block among the known voxels
@@ -46,6 +46,6 @@ struct SceneInBlocks
 /// FinishLight (LatticeLight.h) of a rank's light: balance and face powers of all ranks, in the user's units. All ranks
 /// call it.
 /// @param illumination  as given
-void FinishLight(LightField& light, const Device& device, Communicator& communicator, const SceneInBlocks& scene,
+void FinishLight(LightField& light, const Device& device, Communicator& communicator, const LatticeSceneInBlocks& scene,
   const Illumination& illumination, const LatticeSettings& settings, double thickest);
 }
