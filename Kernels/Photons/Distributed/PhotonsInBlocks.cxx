@@ -188,7 +188,7 @@ void PhotonMarcherInBlocks::Rank::ShareNodes(const std::uint8_t* levels)
 {
   std::vector<std::uint8_t> own;
   this->Others.Together([&] { own = this->Has ? this->Through->OwnNodes(levels) : own; });
-  this->Nodes = std::make_unique<BrickedBytes>(BytesOfAll(this->Others, this->Partition, own, Receivers::All));
+  this->Nodes = std::make_unique<BrickedBytes>(BytesOfAll(this->Others, this->Partition, own));
   this->Others.Together([&] {
     if (this->Has)
     {
