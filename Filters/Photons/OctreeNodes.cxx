@@ -15,6 +15,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <utility>
 #include <vector>
 
@@ -28,7 +29,6 @@ using Voxel = std::array<int, 3>;
 struct LevelsOfVoxels
 {
   int At(const Voxel& voxel) const { return this->levels[this->grid.IndexOf(voxel)]; }
-  int Largest() const { return *std::max_element(this->levels.begin(), this->levels.end()); }
 
   const Grid& grid;
   const std::vector<std::uint8_t>& levels;
@@ -38,13 +38,6 @@ struct LevelsOfVoxels
 struct LevelsInBricks
 {
   int At(const Voxel& voxel) const { return this->levels.At(voxel); }
-  int Largest() const
-  {
-    const std::vector<std::int32_t>& table = this->levels.Table();
-    const std::vector<std::uint8_t>& dense = this->levels.Dense();
-    const int even = *std::max_element(table.begin(), table.end());
-    return std::max<int>(even, dense.empty() ? 0 : *std::max_element(dense.begin(), dense.end()));
-  }
 
   const BrickedBytes& levels;
 };
@@ -133,27 +126,34 @@ private:
   const Levels& TheLevels;
 };
 
-/// Trees are apart from each other: each is described and built on some core.
+/// Trees of some roots. They are apart from each other: each is described and built on some core.
 template <class Levels>
-std::vector<Tree> Build(const Grid& grid, const Levels& all, int rootLevel, vtkHyperTreeGrid* nodes)
+std::vector<Tree> Build(
+  const Grid& grid, const Levels& all, int rootLevel, const VoxelBox& roots, vtkHyperTreeGrid* nodes)
 {
-  const auto count = static_cast<std::size_t>(nodes->GetMaxNumberOfTrees());
+  const auto count = roots.VoxelCount();
   const TreeDescriber<Levels> describer(grid, all);
   std::vector<Tree> trees(count);
   std::vector<vtkHyperTree*> built(count);
+  std::vector<Voxel> places(count);
+  Grid ofRoots;
+  ofRoots.size = roots.size;
   for (std::size_t index = 0; index < count; ++index)
   {
-    built[index] = nodes->GetTree(static_cast<vtkIdType>(index), true);
+    Voxel& root = places[index];
+    root = ofRoots.VoxelAt(index);
+    std::transform(root.begin(), root.end(), roots.first.begin(), root.begin(), std::plus<int>());
+    vtkIdType tree = 0;
+    nodes->GetIndexFromLevelZeroCoordinates(
+      tree, static_cast<unsigned int>(root[0]), static_cast<unsigned int>(root[1]), static_cast<unsigned int>(root[2]));
+    built[index] = nodes->GetTree(tree, true);
   }
   InThreads(count, 8, [&](std::size_t begin, std::size_t end) {
     for (std::size_t index = begin; index < end; ++index)
     {
-      unsigned int root[3];
-      nodes->GetLevelZeroCoordinatesFromIndex(static_cast<vtkIdType>(index), root[0], root[1], root[2]);
+      const Voxel& root = places[index];
       Tree& tree = trees[index];
-      tree = describer.Describe({ static_cast<int>(root[0] << rootLevel), static_cast<int>(root[1] << rootLevel),
-                                  static_cast<int>(root[2] << rootLevel) },
-        rootLevel);
+      tree = describer.Describe({ root[0] << rootLevel, root[1] << rootLevel, root[2] << rootLevel }, rootLevel);
       vtkNew<vtkBitArray> refined;
       refined->SetNumberOfValues(static_cast<vtkIdType>(tree.refined.size()));
       for (std::size_t i = 0; i < tree.refined.size(); ++i)
@@ -173,9 +173,10 @@ std::vector<Tree> Build(const Grid& grid, const Levels& all, int rootLevel, vtkH
 }
 
 template <class Levels>
-vtkIdType FillFrom(const Grid& grid, int topLevel, const Levels& all, vtkHyperTreeGrid* nodes)
+vtkIdType FillFrom(const OctreeRoots& roots, const VoxelBox& some, const Levels& all, vtkHyperTreeGrid* nodes)
 {
-  const int rootLevel = std::max(all.Largest(), topLevel - 3);
+  const Grid& grid = roots.grid;
+  const int rootLevel = roots.level;
   nodes->Initialize();
   nodes->SetBranchFactor(2);
   nodes->SetXCoordinates(Borders(grid, 0, rootLevel));
@@ -187,7 +188,7 @@ vtkIdType FillFrom(const Grid& grid, int topLevel, const Levels& all, vtkHyperTr
 
   std::vector<unsigned char> levels, outside;
   vtkIdType count = 0;
-  for (const Tree& tree : Build(grid, all, rootLevel, nodes))
+  for (const Tree& tree : Build(grid, all, rootLevel, some, nodes))
   {
     levels.insert(levels.end(), tree.levels.begin(), tree.levels.end());
     outside.insert(outside.end(), tree.outside.begin(), tree.outside.end());
@@ -210,13 +211,50 @@ vtkIdType FillFrom(const Grid& grid, int topLevel, const Levels& all, vtkHyperTr
 }
 }
 
-vtkIdType FillWithNodes(const Grid& grid, const Octree& octree, vtkHyperTreeGrid* nodes)
+OctreeRoots::OctreeRoots(const Grid& whole, int topLevel, int largest)
+  : grid(whole)
+  , level(std::max(largest, topLevel - 3))
 {
-  return FillFrom(grid, octree.topLevel, LevelsOfVoxels{ grid, octree.levels }, nodes);
 }
 
-vtkIdType FillWithNodes(const Grid& grid, int topLevel, const BrickedBytes& levels, vtkHyperTreeGrid* nodes)
+VoxelBox OctreeRoots::Of(const VoxelBox& block) const
 {
-  return FillFrom(grid, topLevel, LevelsInBricks{ levels }, nodes);
+  const int edge = 1 << this->level;
+  VoxelBox roots;
+  for (int axis = 0; axis < 3 && block.VoxelCount() > 0; ++axis)
+  {
+    roots.first[axis] = (block.first[axis] + edge - 1) / edge;
+    roots.size[axis] = (block.first[axis] + block.size[axis] + edge - 1) / edge - roots.first[axis];
+  }
+  return roots.VoxelCount() > 0 ? roots : VoxelBox();
+}
+
+VoxelBox OctreeRoots::VoxelsOf(const VoxelBox& roots) const
+{
+  VoxelBox voxels;
+  for (int axis = 0; axis < 3 && roots.VoxelCount() > 0; ++axis)
+  {
+    const int end = (roots.first[axis] + roots.size[axis]) << this->level;
+    voxels.first[axis] = roots.first[axis] << this->level;
+    voxels.size[axis] = std::min(end, this->grid.size[axis]) - voxels.first[axis];
+  }
+  return voxels;
+}
+
+vtkIdType FillWithNodes(const Grid& grid, const Octree& octree, vtkHyperTreeGrid* nodes)
+{
+  const OctreeRoots all(grid, octree.topLevel, *std::max_element(octree.levels.begin(), octree.levels.end()));
+  return FillFrom(all, all.Of({ { 0, 0, 0 }, grid.size }), LevelsOfVoxels{ grid, octree.levels }, nodes);
+}
+
+vtkIdType FillWithNodes(
+  const OctreeRoots& all, const VoxelBox& roots, const BrickedBytes& levels, vtkHyperTreeGrid* nodes)
+{
+  if (roots.VoxelCount() == 0)
+  {
+    nodes->Initialize();
+    return 0;
+  }
+  return FillFrom(all, roots, LevelsInBricks{ levels }, nodes);
 }
 }

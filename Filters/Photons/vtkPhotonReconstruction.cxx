@@ -7,8 +7,8 @@
 #include "Ranks/PieceBlocks.h"
 #include "Ranks/Ranks.h"
 #include "Ranks/WholeImage.h"
+#include "Reconstruction/Distributed/ReconstructionInBlocks.h"
 #include "Reconstruction/PhotonReconstruction.h"
-#include "Reconstruction/ReconstructionInBlocks.h"
 #include "Work/GuardedWork.h"
 
 #include "vtkCellData.h"
@@ -230,13 +230,8 @@ int vtkPhotonReconstruction::RequestInformation(
 int vtkPhotonReconstruction::RequestUpdateExtent(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  tyndall::AskForAllBut(this->WantsBlocks(request, outputs) ? 0 : -1, request, inputs, 1, outputs);
+  tyndall::AskForAllBut(tyndall::EachAsksForItsPiece(request, outputs) ? 0 : -1, request, inputs, 1, outputs);
   return 1;
-}
-
-bool vtkPhotonReconstruction::WantsBlocks(vtkInformation* request, vtkInformationVector* outputs) const
-{
-  return this->Scheme == CONSERVATIVE && tyndall::EachAsksForItsPiece(request, outputs);
 }
 
 /// Each rank the light of its piece.
@@ -246,7 +241,7 @@ bool vtkPhotonReconstruction::ReconstructPiece(vtkInformation* request, vtkMulti
 {
   vtkImageData* const image = vtkImageData::GetData(inputs[0]);
   const std::optional<tyndall::AgreedBlocks> agreed = tyndall::AgreeOnBlocks(
-    ranks, this, this->WantsBlocks(request, outputs), tyndall::AskingPort(request, outputs), image);
+    ranks, this, tyndall::EachAsksForItsPiece(request, outputs), tyndall::AskingPort(request, outputs), image);
   if (!agreed)
   {
     return false;

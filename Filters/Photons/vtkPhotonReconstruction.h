@@ -43,8 +43,7 @@ class vtkMultiProcessController;
  *
  * and field data `fluence_bias` (by which part the light of all voxels together was off before it was conserved);
  * `left_out` gains what was not needed here, `device` is the one that computed. In a parallel pipeline every rank
- * smooths its piece by CONSERVATIVE, and the light is that of the whole, to rounding; by the other schemes each works
- * on the whole and hands on its piece.
+ * smooths its piece, and the light is that of the whole, to rounding.
  *
  * Cells that are hidden by `vtkGhostType` are empty.
  *
@@ -145,7 +144,6 @@ private:
   vtkPhotonReconstruction(const vtkPhotonReconstruction&) = delete;
   void operator=(const vtkPhotonReconstruction&) = delete;
 
-  bool WantsBlocks(vtkInformation* request, vtkInformationVector* outputs) const;
   bool ReconstructPiece(vtkInformation* request, vtkMultiProcessController* ranks, vtkInformationVector** inputs,
     vtkInformationVector* outputs);
   void Note(const tyndall::ReconstructedLight& light, double squares, double ofErrors);

@@ -23,6 +23,7 @@
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkUnsignedCharArray.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -87,6 +88,28 @@ std::vector<std::uint8_t> SpreadToHeld(
   std::vector<float> values(levels.begin(), levels.end());
   pieces.SpreadToHeld(communicator, values, 1);
   return std::vector<std::uint8_t>(values.begin(), values.end());
+}
+
+/// Each rank the trees whose roots begin in its block. @return the nodes of all. All ranks call it.
+vtkIdType FillWithTrees(tyndall::Communicator& communicator, const tyndall::BlockPartition& partition,
+  const tyndall::Octree& octree, vtkHyperTreeGrid* nodes)
+{
+  const auto largest = std::max_element(octree.levels.begin(), octree.levels.end());
+  const std::vector<double> ofAll =
+    communicator.Largest({ largest != octree.levels.end() ? 1.0 * *largest : 0.0, 1.0 * octree.topLevel });
+  const tyndall::OctreeRoots roots(partition.whole, static_cast<int>(ofAll[1]), static_cast<int>(ofAll[0]));
+  std::vector<tyndall::VoxelBox> wanted;
+  for (const tyndall::VoxelBox& block : partition.blocks)
+  {
+    wanted.push_back(roots.VoxelsOf(roots.Of(block)));
+  }
+  const tyndall::BrickedBytes levels = tyndall::BytesOfBoxes(communicator, partition, octree.levels, wanted);
+  double count = 0.0;
+  communicator.Together([&] {
+    const tyndall::VoxelBox own = roots.Of(partition.blocks[static_cast<std::size_t>(communicator.Rank())]);
+    count = static_cast<double>(tyndall::FillWithNodes(roots, own, levels, nodes));
+  });
+  return static_cast<vtkIdType>(communicator.Sum({ count })[0]);
 }
 
 void AddLevels(vtkImageData* output, std::vector<std::uint8_t>&& levels)
@@ -178,19 +201,9 @@ bool vtkRefractionOctree::BuildPiece(vtkInformation* request, vtkMultiProcessCon
   });
   tyndall::Octree octree = tyndall::BuildOctreeInBlocks(
     communicator, pieces.Partition(), read.medium, read.index, SettingsOf(this), tyndall::MonitorOf(this));
-  const tyndall::BrickedBytes all =
-    tyndall::BytesOfAll(communicator, pieces.Partition(), octree.levels, tyndall::Receivers::First);
-  octree.levels = SpreadToHeld(communicator, pieces, octree.levels);
-
   vtkHyperTreeGrid* const nodes = vtkHyperTreeGrid::GetData(outputs, 1);
-  double count = 0.0;
-  communicator.Together([&] {
-    if (communicator.Rank() == 0)
-    {
-      count = static_cast<double>(tyndall::FillWithNodes(pieces.Partition().whole, octree.topLevel, all, nodes));
-    }
-  });
-  this->NodeCount = static_cast<vtkIdType>(communicator.Largest({ count })[0]);
+  this->NodeCount = FillWithTrees(communicator, pieces.Partition(), octree, nodes);
+  octree.levels = SpreadToHeld(communicator, pieces, octree.levels);
   tyndall::TellExtent(asking, outputs->GetInformationObject(1), nodes->GetExtent());
   vtkImageData* const output = vtkImageData::GetData(outputs, 0);
   tyndall::PassOn(image, output);

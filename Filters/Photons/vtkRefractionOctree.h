@@ -40,8 +40,8 @@ class vtkMultiProcessController;
  * stick out of it. In output 1 nodes wholly outside are masked.
  *
  * In a parallel pipeline every rank has its piece, and ranks tell each other of nodes that lie in several of them: the
- * levels are those of the whole. Output 1 is on the first rank. Where pieces make up no whole each rank has all of it,
- * and hands on the piece of output 0 that it was asked for.
+ * levels are those of the whole. Of output 1 each has the trees that begin in its piece. Where pieces make up no whole
+ * each rank has all of it, and hands on the piece of output 0 that it was asked for; output 1 is on the first one then.
  *
  * Cells that are hidden by `vtkGhostType` are empty.
  *

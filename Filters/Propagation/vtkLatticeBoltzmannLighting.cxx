@@ -224,7 +224,7 @@ tyndall::IlluminationInput vtkLatticeBoltzmannLighting::ReadShiningOn(
 
 std::string vtkLatticeBoltzmannLighting::NotInBlocks(const tyndall::PieceOfMedium&, const tyndall::IlluminationInput&)
 {
-  return tyndall::NotInBlocks(SettingsOf(this));
+  return {};
 }
 
 tyndall::LightField vtkLatticeBoltzmannLighting::SolvePiece(tyndall::Communicator& communicator,

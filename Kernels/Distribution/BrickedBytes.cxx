@@ -3,6 +3,7 @@
 #include "Distribution/MessageTags.h"
 
 #include <algorithm>
+#include <cstddef>
 
 namespace tyndall
 {
@@ -105,25 +106,48 @@ void BrickedBytes::PutInBrick(const VoxelBox& part, const VoxelBox& box, const s
   });
 }
 
-BrickedBytes BytesOfAll(Communicator& communicator, const BlockPartition& partition,
-  const std::vector<std::uint8_t>& own, Receivers receivers)
+namespace
+{
+std::vector<std::uint8_t> NumbersOf(const VoxelBox& part, const VoxelBox& box, const std::vector<std::uint8_t>& numbers)
+{
+  std::vector<std::uint8_t> some;
+  ForRows(part, box, [&](std::size_t place, const std::array<int, 3>&) {
+    const auto from = numbers.begin() + static_cast<std::ptrdiff_t>(place);
+    some.insert(some.end(), from, from + part.size[0]);
+  });
+  return some;
+}
+}
+
+BrickedBytes BytesOfBoxes(Communicator& communicator, const BlockPartition& partition,
+  const std::vector<std::uint8_t>& own, const std::vector<VoxelBox>& wanted)
 {
   const int self = communicator.Rank();
-  const auto gets = [&](int rank) { return receivers == Receivers::All || rank == 0; };
-  const std::vector<std::uint32_t> runs = RunsOf(own);
+  const VoxelBox& block = partition.blocks[self];
   for (int rank = 0; rank < communicator.Ranks(); ++rank)
   {
-    if (rank != self && gets(rank))
+    if (const VoxelBox part = Common(block, wanted[rank]); rank != self && part.VoxelCount() > 0)
     {
-      communicator.Send(rank, MessageTag::RunsOfBytes, runs);
+      communicator.Send(rank, MessageTag::RunsOfBytes, RunsOf(NumbersOf(part, block, own)));
     }
   }
-  BrickedBytes all(partition.whole.size);
-  for (int rank = 0; rank < communicator.Ranks() && gets(self); ++rank)
+  BrickedBytes bytes(partition.whole.size);
+  for (int rank = 0; rank < communicator.Ranks(); ++rank)
   {
-    all.Put(partition.blocks[rank],
-      rank == self ? own : NumbersIn(communicator.Receive<std::uint32_t>(rank, MessageTag::RunsOfBytes)));
+    if (const VoxelBox part = Common(partition.blocks[rank], wanted[self]); part.VoxelCount() > 0)
+    {
+      bytes.Put(part,
+        rank == self ? NumbersOf(part, block, own)
+                     : NumbersIn(communicator.Receive<std::uint32_t>(rank, MessageTag::RunsOfBytes)));
+    }
   }
-  return all;
+  return bytes;
+}
+
+BrickedBytes BytesOfAll(
+  Communicator& communicator, const BlockPartition& partition, const std::vector<std::uint8_t>& own)
+{
+  const std::vector<VoxelBox> all(partition.blocks.size(), VoxelBox{ { 0, 0, 0 }, partition.whole.size });
+  return BytesOfBoxes(communicator, partition, own, all);
 }
 }

@@ -53,16 +53,14 @@ private:
   std::vector<std::uint8_t> Uneven;
 };
 
-/// Which ranks get what all have.
-enum class Receivers
-{
-  First,
-  All
-};
-
-/// Numbers of the voxels of all blocks, on the ranks that get them; elsewhere nothing is put in. Runs of one number are
-/// sent as one. All ranks call it.
+/// Numbers of the voxels of a box that each rank wants, which may reach into the blocks of others, in a table of all of
+/// the grid; outside nothing is put in. Runs of one number are sent as one. All ranks call it.
 /// @param own  of this rank's block, x fastest
-BrickedBytes BytesOfAll(Communicator& communicator, const BlockPartition& partition,
-  const std::vector<std::uint8_t>& own, Receivers receivers);
+/// @param wanted  by rank, within the grid; of no voxels where a rank wants none
+BrickedBytes BytesOfBoxes(Communicator& communicator, const BlockPartition& partition,
+  const std::vector<std::uint8_t>& own, const std::vector<VoxelBox>& wanted);
+
+/// The same of all voxels, on each rank.
+BrickedBytes BytesOfAll(
+  Communicator& communicator, const BlockPartition& partition, const std::vector<std::uint8_t>& own);
 }

@@ -217,20 +217,20 @@ std::vector<float> Lattice::FluenceAt(const Buffer<cl_int>& voxels) const
   return seen.Read();
 }
 
-std::vector<float> Lattice::DensitiesAt(const Buffer<cl_ulong>& places) const
+std::vector<float> Lattice::At(const Buffer<cl_ulong>& places, const Buffer<float>& of) const
 {
   cl::Kernel take = this->Kernel("take_densities");
   const Buffer<float> values(this->TheDevice, places.Size(), "densities for others");
-  With(take, this->Now, places, values);
+  With(take, of, places, values);
   this->Queue.enqueueNDRangeKernel(take, cl::NullRange, cl::NDRange(places.Size()));
   return values.Read();
 }
 
-void Lattice::PutDensities(const Buffer<cl_ulong>& places, const std::vector<float>& values)
+void Lattice::Put(const std::vector<float>& values, const Buffer<cl_ulong>& places, const Buffer<float>& to)
 {
   cl::Kernel put = this->Kernel("put_densities");
   const Buffer<float> given(this->TheDevice, values, "densities of others");
-  With(put, this->Now, places, given);
+  With(put, to, places, given);
   this->Queue.enqueueNDRangeKernel(put, cl::NullRange, cl::NDRange(places.Size()));
   this->TheDevice.Finish(); // the buffer goes
 }

@@ -1,6 +1,6 @@
 #include "LatticeBoltzmann/LatticeBoltzmann.h"
 
-#include "LatticeBoltzmann/InterleavedLattice.h"
+#include "LatticeBoltzmann/Interleaved/InterleavedLattice.h"
 #include "LatticeBoltzmann/LatticeChannel.h"
 #include "LatticeBoltzmann/LatticeLight.h"
 #include "LatticeBoltzmann/WhereLightIsLost.h"

@@ -16,13 +16,14 @@ typedef struct
   size_t at[4];
   size_t field;
   float y, z;
+  int first; // voxel of the level's grid that the row's first one is, a multiple of 8
 } rows_between;
 
 inline rows_between rows_beside(const __global PyramidLevels* where, int level, int y, int z)
 {
-  const int4 size = where->size[level];
+  const int4 size = where->size[level], first = where->first[level];
   const float cell = 1.0f / (float)(1 << level);
-  const float at_y = ((float)y + 0.5f) * cell - 0.5f, at_z = ((float)z + 0.5f) * cell - 0.5f;
+  const float at_y = ((float)(y + first.y) + 0.5f) * cell - 0.5f, at_z = ((float)(z + first.z) + 0.5f) * cell - 0.5f;
   const float low_y = floor(at_y), low_z = floor(at_z);
   rows_between r;
 #pragma unroll
@@ -33,6 +34,7 @@ inline rows_between rows_beside(const __global PyramidLevels* where, int level, 
   r.field = field_of(size);
   r.y = at_y - low_y;
   r.z = at_z - low_z;
+  r.first = first.x;
   return r;
 }
 
@@ -57,6 +59,7 @@ inline real sample(const __global float* values, const rows_between* rows, int l
   {
     return load_real(x, values + rows->at[0]);
   }
+  x += rows->first;
   const int first = (x - (1 << level) / 2) >> level; // cell left of the first voxel
 #if REAL_WIDTH == 8
   const float8 cells = cells_across(values, rows, first);

@@ -2,13 +2,14 @@
 
 #include "Device/Batches.h"
 #include "Device/Defines.h"
+#include "Device/HostThreads.h"
 #include "Device/Sizes.h"
-#include "Reconstruction/LightPyramid.h"
-#include "Reconstruction/WholeRows.h"
+#include "Reconstruction/ReconstructionChecks.h"
 #include "TyndallKernelSources.h"
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 
 namespace tyndall
 {
@@ -18,74 +19,110 @@ using Estimator = ReconstructionSettings::Estimator;
 
 constexpr std::size_t FirstPart = std::size_t(1) << 18; // voxels per launch, until it is known how long that takes
 
-/// Takes the light of each voxel from one level of its pyramid.
-class LevelPasses
+/// Of light, counts and weights.
+constexpr LightPyramid::Down Downs[] = { LightPyramid::Down::Gauss, LightPyramid::Down::Sum,
+  LightPyramid::Down::MeanOfLit };
+
+std::size_t VoxelsOf(const Reconstruction& task, bool needed)
 {
-public:
-  explicit LevelPasses(const Reconstruction& task)
-    : Task(task)
-    , Size(task.light.grid.size)
-    , HasDirections(task.light.meanDirection != nullptr)
-    , Published(task.settings.estimator == Estimator::Published)
-    , ConstantRadius(task.settings.estimator == Estimator::ConstantRadius)
-    , Top(this->ConstantRadius ? std::min(task.settings.level, task.levels) : task.levels)
-    , Kernels(task.device, RowWidth(task.device, task.light.grid))
-  {
-  }
-
-  void Run(const HostMappedBuffer<float>& counts, const HostMappedBuffer<float>& weights, double weightStep,
-    ReconstructedLight& result) const;
-
-private:
-  /// Of the light, and of its directions.
-  LightPyramid PyramidOfLight() const;
-  /// Of one number per voxel; without levels where that is not `wanted`.
-  LightPyramid PyramidOf(
-    const HostMappedBuffer<float>& array, bool wanted, LightPyramid::Down down, const char* what) const;
-  /// Runs a kernel over the grid, in parts.
-  void InParts(const cl::Kernel& kernel) const;
-  /// Scales the light as the task says.
-  void Conserve(const HostMappedBuffer<float>& fluence, ReconstructedLight& result) const;
-
-  cl::Kernel Kernel(const char* name) const
-  {
-    return this->Kernels.Kernel(name, kernel_source::LevelReconstruction,
-      Define("CHANNELS", this->Task.light.channels) + Define("DIRECTIONS", this->HasDirections) +
-        Define("PUBLISHED", this->Published) + Define("CONSTANT_RADIUS", this->ConstantRadius) +
-        Define("TOP", this->Top));
-  }
-
-  const Reconstruction& Task;
-  const std::array<int, 3>& Size;
-  bool HasDirections, Published, ConstantRadius;
-  int Top;
-  RowKernels Kernels;
-};
-
-LightPyramid LevelPasses::PyramidOfLight() const
-{
-  const int channels = this->Task.light.channels;
-  LightPyramid pyramid(
-    this->Kernels, this->Task.light.grid, channels + (this->HasDirections ? 3 : 0), this->Top, "the pyramid of light");
-  pyramid.Fill({ this->Kernels, this->Task.fluence, this->Size, 1, channels, false, "fluence" }, channels, 0);
-  if (this->HasDirections)
-  {
-    pyramid.Fill({ this->Kernels, this->Task.direction, this->Size, 1, 3, false, "mean directions" }, 3, channels);
-  }
-  pyramid.Build(LightPyramid::Down::Gauss);
-  return pyramid;
+  return needed ? task.light.grid.VoxelCount() : 0;
+}
 }
 
-LightPyramid LevelPasses::PyramidOf(
-  const HostMappedBuffer<float>& array, bool wanted, LightPyramid::Down down, const char* what) const
+PhotonsOfVoxels::PhotonsOfVoxels(const Reconstruction& task)
+  : counts(task.device, task.light.photonCount, VoxelsOf(task, NeedsCounts(task.settings.estimator)), "photon_count")
+  , weights(
+      task.device, task.light.photonWeight, VoxelsOf(task, NeedsWeights(task.settings.estimator)), "photon_weight")
 {
-  LightPyramid pyramid(this->Kernels, this->Task.light.grid, 1, wanted ? this->Top : 0, what);
-  if (wanted)
+}
+
+WeightsOfVoxels::WeightsOfVoxels(const float* values, std::size_t voxels)
+{
+  constexpr std::size_t piece = 1 << 16;
+  this->total = SumInThreads(voxels, piece,
+    [&](std::size_t begin, std::size_t end) { return std::accumulate(values + begin, values + end, 0.0); });
+  this->lit = static_cast<double>(voxels) - static_cast<double>(std::count(values, values + voxels, 0.0f));
+}
+
+double WeightStepOf(const ReconstructionSettings& settings, const WeightsOfVoxels& weights)
+{
+  const double mean = weights.total > 0.0 ? 0.999 * weights.total / weights.lit : 1.0;
+  return settings.weightStep > 0.0 ? settings.weightStep : mean;
+}
+
+int TopLevelOf(const ReconstructionSettings& settings, int levels)
+{
+  return settings.estimator == Estimator::ConstantRadius ? std::min(settings.level, levels) : levels;
+}
+
+std::vector<int> FieldsOfPyramids(Estimator estimator, int channels, bool directions)
+{
+  std::vector<int> fields = { channels + (directions ? 3 : 0) };
+  fields.resize(NeedsWeights(estimator) ? 3 : NeedsCounts(estimator) ? 2 : 1, 1);
+  return fields;
+}
+
+LevelPasses::LevelPasses(const Reconstruction& task, const PhotonsOfVoxels& photons, ReconstructedLight& result,
+  int width, const PartOfPyramid& part)
+  : Task(task)
+  , Photons(photons)
+  , Result(result)
+  , Size(task.light.grid.size)
+  , HasDirections(task.light.meanDirection != nullptr)
+  , Published(task.settings.estimator == Estimator::Published)
+  , ConstantRadius(task.settings.estimator == Estimator::ConstantRadius)
+  , Top(TopLevelOf(task.settings, task.levels))
+  , Kernels(task.device, width)
+  , Part(part)
+  , Fluence(task.device, result.fluence.data(), result.fluence.size(), "fluence")
+{
+  const char* const what[] = { "the pyramid of light", "the pyramid of photon counts", "the pyramid of weights" };
+  for (const int fields : FieldsOfPyramids(task.settings.estimator, task.light.channels, this->HasDirections))
   {
-    pyramid.Fill({ this->Kernels, array, this->Size, 1, 1, false, what }, 1, 0);
-    pyramid.Build(down);
+    this->Pyramids.emplace_back(
+      this->Kernels, task.light.grid, fields, this->Top, what[this->Pyramids.size()], this->Part);
   }
-  return pyramid;
+}
+
+cl::Kernel LevelPasses::Kernel(const char* name) const
+{
+  return this->Kernels.Kernel(name, kernel_source::LevelReconstruction,
+    Define("CHANNELS", this->Task.light.channels) + Define("DIRECTIONS", this->HasDirections) +
+      Define("PUBLISHED", this->Published) + Define("CONSTANT_RADIUS", this->ConstantRadius) +
+      Define("TOP", this->Top));
+}
+
+void LevelPasses::Fill(
+  std::size_t pyramid, const HostMappedBuffer<float>& array, int components, int first, const char* what)
+{
+  this->Pyramids[pyramid].Fill({ this->Kernels, array, this->Size, 1, components, false, what }, components, first);
+}
+
+void LevelPasses::Build()
+{
+  const int channels = this->Task.light.channels;
+  this->Fill(0, this->Task.fluence, channels, 0, "fluence");
+  if (this->HasDirections)
+  {
+    this->Fill(0, this->Task.direction, 3, channels, "mean directions");
+  }
+  if (this->Pyramids.size() > 1)
+  {
+    this->Fill(1, this->Photons.counts, 1, 0, "photon counts");
+  }
+  if (this->Pyramids.size() > 2)
+  {
+    this->Fill(2, this->Photons.weights, 1, 0, "weights");
+  }
+  for (std::size_t pyramid = 0; pyramid < this->Pyramids.size(); ++pyramid)
+  {
+    this->Pyramids[pyramid].Build(Downs[pyramid]);
+  }
+}
+
+void LevelPasses::BuildAbove(std::size_t pyramid, const std::vector<float>& cells)
+{
+  this->Pyramids[pyramid].BuildAbove(Downs[pyramid], cells);
 }
 
 void LevelPasses::InParts(const cl::Kernel& kernel) const
@@ -98,59 +135,48 @@ void LevelPasses::InParts(const cl::Kernel& kernel) const
     [&](std::size_t first, std::size_t layers) { this->Kernels.Run(kernel, this->Size, first, layers); });
 }
 
-void LevelPasses::Conserve(const HostMappedBuffer<float>& fluence, ReconstructedLight& result) const
+void LevelPasses::Choose(double weightStep)
 {
-  const ArrayRange range = RangeOf(this->Task.device, fluence, result.fluence.data(), result.fluence.size(),
-    this->Task.light.channels, 0.0f, std::numeric_limits<float>::max());
-  const std::array<float, 3> factors = this->Task.Conserve(range.total, result);
-  if (this->Task.settings.conserve)
-  {
-    cl::Kernel scale = this->Kernel("scale_light");
-    With(scale, fluence.Handle(), cl_float4{ { factors[0], factors[1], factors[2], 0.0f } });
-    this->Task.device.Queue().enqueueNDRangeKernel(
-      scale, cl::NullRange, cl::NDRange(this->Task.light.grid.VoxelCount()), cl::NullRange);
-  }
-}
-
-void LevelPasses::Run(const HostMappedBuffer<float>& counts, const HostMappedBuffer<float>& weights, double weightStep,
-  ReconstructedLight& result) const
-{
-  const LightPyramid smooth = this->PyramidOfLight();
-  const LightPyramid photons =
-    this->PyramidOf(counts, !this->ConstantRadius, LightPyramid::Down::Sum, "the pyramid of photon counts");
-  const LightPyramid heavy =
-    this->PyramidOf(weights, this->Published, LightPyramid::Down::MeanOfLit, "the pyramid of weights");
-
   Device& device = this->Task.device;
-  const int channels = this->Task.light.channels;
-  const HostMappedBuffer<float> fluence(device, result.fluence.data(), result.fluence.size(), "fluence");
-  const HostMappedBuffer<float> direction(
-    device, result.meanDirection.data(), result.meanDirection.size(), "directions");
-  const HostMappedBuffer<float> chosen(device, result.mipLevel.data(), result.mipLevel.size(), "levels");
-  const WholeRows fluenceRows(this->Kernels, fluence, this->Size, 1, channels, true, "fluence");
-  const WholeRows directionRows(
-    this->Kernels, direction, this->Size, this->HasDirections ? 1 : 0, 3, true, "mean directions");
+  std::vector<float>& ways = this->Result.meanDirection;
+  std::vector<float>& levels = this->Result.mipLevel;
+  const HostMappedBuffer<float> direction(device, ways.data(), ways.size(), "directions");
+  const HostMappedBuffer<float> chosen(device, levels.data(), levels.size(), "levels");
+  const int volumes = this->HasDirections ? 1 : 0;
+  const WholeRows fluenceRows(this->Kernels, this->Fluence, this->Size, 1, this->Task.light.channels, true, "fluence");
+  const WholeRows directionRows(this->Kernels, direction, this->Size, volumes, 3, true, "mean directions");
   const WholeRows chosenRows(this->Kernels, chosen, this->Size, 1, 1, true, "levels");
 
+  // What an estimator does not look at is any.
+  const LightPyramid& light = this->Pyramids.front();
+  const LightPyramid& heavy = this->Pyramids.back();
+  const LightPyramid& photons = this->Pyramids[std::min<std::size_t>(1, this->Pyramids.size() - 1)];
   cl::Kernel choose = this->Kernel("choose_level");
-  With(choose, smooth.Values(), smooth.Levels(), photons.Values(), heavy.Values(), photons.Levels(),
+  With(choose, light.Values(), light.Levels(), photons.Values(), heavy.Values(), photons.Levels(),
     cl_float(this->Published ? weightStep : this->Task.settings.nearest), fluenceRows.Handle(), directionRows.Handle(),
     chosenRows.Handle(), VoxelLayout(this->Size, this->Kernels.Width()));
   this->InParts(choose);
   fluenceRows.Fetch();
-  this->Conserve(fluence, result);
-  fluence.Fetch();
   chosenRows.Fetch();
   if (this->HasDirections)
   {
     directionRows.Fetch();
   }
 }
-}
 
-void ReconstructByLevel(const Reconstruction& task, const HostMappedBuffer<float>& counts,
-  const HostMappedBuffer<float>& weights, double weightStep, ReconstructedLight& result)
+void LevelPasses::Conserve()
 {
-  LevelPasses(task).Run(counts, weights, weightStep, result);
+  const std::vector<float>& found = this->Result.fluence;
+  const ArrayRange range = RangeOf(this->Task.device, this->Fluence, found.data(), found.size(),
+    this->Task.light.channels, 0.0f, std::numeric_limits<float>::max());
+  const std::array<float, 3> factors = this->Task.Conserve(range.total, this->Result);
+  if (this->Task.settings.conserve)
+  {
+    cl::Kernel scale = this->Kernel("scale_light");
+    With(scale, this->Fluence.Handle(), cl_float4{ { factors[0], factors[1], factors[2], 0.0f } });
+    this->Task.device.Queue().enqueueNDRangeKernel(
+      scale, cl::NullRange, cl::NDRange(this->Task.light.grid.VoxelCount()), cl::NullRange);
+    this->Fluence.Fetch();
+  }
 }
 }

@@ -12,7 +12,8 @@ enum
 /// Where the levels lie.
 typedef struct
 {
-  int4 size[LevelsAtMost + 1]; ///< as in LightRows.cl
+  int4 size[LevelsAtMost + 1];  ///< as in LightRows.cl
+  int4 first[LevelsAtMost + 1]; ///< voxel of the level's grid that the first voxel looked at is; 0 but of a block
   ulong offset[LevelsAtMost + 1];
 } PyramidLevels;
 SHARED_END

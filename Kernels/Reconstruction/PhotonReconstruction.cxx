@@ -53,20 +53,6 @@ void RequireMemory(const Device& device, const NoisyLight& light, bool conservat
     "Use a coarser grid or fewer batches.");
 }
 
-/// The weight of photons from a level to the next: the mean weight of lit voxels, less than marching rounds weights to,
-/// so that equal ones all reach the first step.
-double WeightStep(const NoisyLight& light, const ReconstructionSettings& settings, double total)
-{
-  if (settings.weightStep > 0.0)
-  {
-    return settings.weightStep;
-  }
-  const std::size_t voxels = light.grid.VoxelCount();
-  const std::ptrdiff_t dark = std::count(light.photonWeight, light.photonWeight + voxels, 0.0f);
-  const double lit = static_cast<double>(voxels) - static_cast<double>(dark);
-  return total > 0.0 ? 0.999 * total / lit : 1.0;
-}
-
 /// Whether the light is of one colour everywhere, so that its channels share their noise.
 bool OneColour(const NoisyLight& light)
 {
@@ -151,22 +137,21 @@ void ReconstructFromLevels(const Reconstruction& task, ReconstructedLight& resul
 {
   const NoisyLight& light = task.light;
   const std::size_t voxels = light.grid.VoxelCount();
-  const bool needsCounts = NeedsCounts(task.settings.estimator);
-  const bool needsWeights = task.settings.estimator == Estimator::Published;
-  const HostMappedBuffer<float> counts(task.device, light.photonCount, needsCounts ? voxels : 0, "photon_count");
-  const HostMappedBuffer<float> weights(task.device, light.photonWeight, needsWeights ? voxels : 0, "photon_weight");
-  double step = 1.0;
-  if (needsCounts)
+  const PhotonsOfVoxels photons(task);
+  WeightsOfVoxels weights;
+  if (NeedsCounts(task.settings.estimator))
   {
-    Checked(task.device, counts, light.photonCount, voxels, 1, light.grid, "photon_count", 0.0f, Most);
+    Checked(task.device, photons.counts, light.photonCount, voxels, 1, light.grid, "photon_count", 0.0f, Most);
   }
-  if (needsWeights)
+  if (NeedsWeights(task.settings.estimator))
   {
-    const ArrayRange range =
-      Checked(task.device, weights, light.photonWeight, voxels, 1, light.grid, "photon_weight", 0.0f, Most);
-    step = WeightStep(light, task.settings, range.total[0]);
+    Checked(task.device, photons.weights, light.photonWeight, voxels, 1, light.grid, "photon_weight", 0.0f, Most);
+    weights = WeightsOfVoxels(light.photonWeight, voxels);
   }
-  ReconstructByLevel(task, counts, weights, step, result);
+  LevelPasses passes(task, photons, result, RowWidth(task.device, light.grid));
+  passes.Build();
+  passes.Choose(WeightStepOf(task.settings, weights));
+  passes.Conserve();
 }
 }
 

@@ -42,6 +42,11 @@ bool NeedsCounts(Estimator estimator)
   return estimator == Estimator::Published || estimator == Estimator::NearestPhotons;
 }
 
+bool NeedsWeights(Estimator estimator)
+{
+  return estimator == Estimator::Published;
+}
+
 void Check(const ReconstructionSettings& settings)
 {
   const auto require = [](bool fits, const std::string& what, double value, const std::string& range) {
@@ -90,7 +95,7 @@ void CheckPresence(const NoisyLight& light, Estimator estimator)
   {
     RequireArray(light.photonCount, estimator, "photon_count", advice);
   }
-  if (estimator == Estimator::Published)
+  if (NeedsWeights(estimator))
   {
     RequireArray(light.photonWeight, estimator, "photon_weight", advice);
   }

@@ -5,6 +5,7 @@
 namespace tyndall
 {
 bool NeedsCounts(ReconstructionSettings::Estimator estimator);
+bool NeedsWeights(ReconstructionSettings::Estimator estimator); ///< of photons
 
 /// @throws InvalidInput where a setting is out of its range
 void Check(const ReconstructionSettings& settings);

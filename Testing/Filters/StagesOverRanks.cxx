@@ -180,7 +180,8 @@ void LevelsAreThoseOfTheWhole(Ranks& ranks)
       ranks.Expect(octree->GetNodeCount() == nodes, "another NodeCount");
       auto* const tree = vtkHyperTreeGrid::SafeDownCast(octree->GetOutputDataObject(1));
       vtkIdType leaves = tree->GetNumberOfLeaves();
-      ranks.Expect(ranks.Rank == 0 ? leaves >= nodes : leaves == 0, "the tree is not on the first rank alone");
+      const bool all = ranks.Rank == 0 && (ranks.Count == 1 || size[0] < 32); // of few roots the first has all
+      ranks.Expect(all ? leaves >= nodes : leaves < nodes, "trees are not where they begin");
     }
   }
 }

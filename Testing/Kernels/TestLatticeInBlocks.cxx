@@ -1,124 +1,13 @@
 // The steady light of a lattice in a medium that is spread over ranks, against that of one rank and of the whole.
 
-#include "LatticeScene.h"
-#include "MediumInBlocks.h"
-
-#include "LatticeBoltzmann/Distributed/LatticeInBlocks.h"
-
-#include <glm/geometric.hpp>
-#include <glm/vec3.hpp>
+#include "LatticeInBlocks.h"
 
 #include <algorithm>
-#include <functional>
-#include <random>
 #include <string>
 #include <vector>
 
 using namespace tyndall;
-
-namespace
-{
-/// With all that shines, thick voxels beside thin ones, faces that give back light, and an index that varies.
-MediumToCut Everything(std::array<int, 3> size)
-{
-  MediumToCut medium(size);
-  Scene& scene = medium.scene;
-  scene.Randomise(4.0, 2.0, 0.9, 11);
-  scene.emission = RandomValues(scene.sigma_s.size(), 0.0, 0.2, 3);
-  scene.ShineAlong({ 0.3, -0.5, -0.9 });
-  scene.ShineAlong({ -0.6, 0.2, 0.1 }, 0.4);
-  scene.ShineFromEverywhere(0.1);
-  for (std::size_t face = 0; face < 6; ++face)
-  {
-    const double of = 0.1 * static_cast<double>(face);
-    scene.light.faces[face] = { of, of, of };
-    scene.light.faceAlbedo[face] = { of, of, of };
-  }
-  medium.ior = RandomValues(scene.sigma_s.size(), 1.0, 1.6, 5);
-  return medium;
-}
-
-LatticeSettings SettingsOf(double tolerance = 1e-4)
-{
-  LatticeSettings settings;
-  settings.tolerance = tolerance;
-  settings.netFlux = true;
-  return settings;
-}
-
-}
-
-class LatticeBlocks : public LatticeTest
-{
-protected:
-  LightField Whole(MediumToCut& medium, const LatticeSettings& settings)
-  {
-    medium.Attach();
-    return this->Solve(medium.scene, settings, medium.ior);
-  }
-
-  LightField OfBlocks(const BlockPartition& partition, const MediumToCut& medium, const LatticeSettings& settings)
-  {
-    return LightOfBlocks(partition, medium, [&](Communicator& communicator, MediumToCut& part) {
-      return SolveLatticeInBlocks(
-        this->GetDevice(), communicator, partition, part.scene.medium, part.Index(), part.scene.light, settings);
-    });
-  }
-
-  LightField OnRanks(int ranks, const MediumToCut& medium, const LatticeSettings& settings)
-  {
-    return this->OfBlocks(BlockPartition::Even(medium.scene.medium.grid, ranks), medium, settings);
-  }
-
-  static void ExpectSame(const LightField& found, const LightField& expected, double tolerance)
-  {
-    ExpectSameLight(found, expected, tolerance);
-    EXPECT_TRUE(found.converged);
-    for (std::size_t c = 0; c < static_cast<std::size_t>(expected.channels); ++c)
-    {
-      const double all = expected.balance.entered[c] + expected.balance.emitted[c];
-      EXPECT_LT(std::abs(found.balance.leftOver[c]), 1e-5 * all);
-    }
-  }
-
-  /// The errors of three ranks, of which one is given something else than the others.
-  std::vector<std::string> Errors(const std::function<void(int rank, MediumToCut&, LatticeSettings&, Monitor&)>& change,
-    const BlockPartition* blocks = nullptr)
-  {
-    const MediumToCut medium = Everything({ 6, 5, 4 });
-    const BlockPartition partition = blocks ? *blocks : BlockPartition::Even(medium.scene.medium.grid, 3);
-    std::vector<std::string> errors(partition.blocks.size());
-    RunInThreads(static_cast<int>(errors.size()), [&](Communicator& communicator) {
-      const int rank = communicator.Rank();
-      MediumToCut part = medium.Part(partition.blocks[rank]);
-      part.Attach();
-      LatticeSettings settings = SettingsOf();
-      Monitor monitor;
-      change(rank, part, settings, monitor);
-      try
-      {
-        SolveLatticeInBlocks(this->GetDevice(), communicator, partition, part.scene.medium, part.Index(),
-          part.scene.light, settings, monitor);
-      }
-      catch (const std::exception& error)
-      {
-        errors[rank] = error.what();
-      }
-    });
-    return errors;
-  }
-
-  void ExpectErrors(
-    const std::string& words, const std::function<void(int rank, MediumToCut&, LatticeSettings&, Monitor&)>& change)
-  {
-    const std::vector<std::string> errors = this->Errors(change);
-    for (const std::string& error : errors)
-    {
-      EXPECT_NE(error.find(words), std::string::npos) << error;
-      EXPECT_EQ(error, errors.front());
-    }
-  }
-};
+using namespace lattice_in_blocks;
 
 TEST_F(LatticeBlocks, HaveTheLightOfTheWhole)
 {
@@ -296,34 +185,15 @@ TEST_F(LatticeBlocks, HaveTheLightThatIsGivenToTheWhole)
 TEST_F(LatticeBlocks, HaveThePhotonsOfTheWhole)
 {
   MediumToCut medium = Everything({ 8, 7, 5 });
-  Scene& scene = medium.scene;
-  scene.light.lights.clear();
-  std::mt19937 random(5);
-  std::uniform_real_distribution<double> place(0.5, 4.5);
-  std::vector<Photon> photons(300);
-  for (Photon& photon : photons)
-  {
-    photon.position = { place(random), place(random), place(random) };
-    const glm::dvec3 along = glm::normalize(glm::dvec3(place(random) - 2.5, place(random) - 2.5, place(random) - 2.5));
-    photon.direction = { static_cast<float>(along.x), static_cast<float>(along.y), static_cast<float>(along.z) };
-    photon.power = { 0.01f, 0.02f, 0.03f };
-  }
-  const LatticeSettings settings = SettingsOf(1e-7);
-  medium.Attach();
-  const LightField whole =
-    SolveLatticeBoltzmann(this->GetDevice(), scene.medium, medium.Index(), photons, scene.light, settings);
-  for (const BlockPartition& partition : { BlockPartition::Even(scene.medium.grid, 1),
-         BlockPartition::Even(scene.medium.grid, 3), Slices(scene.medium.grid, { 0, 1 }) })
+  medium.scene.light.lights.clear();
+  const Grid& grid = medium.scene.medium.grid;
+  const std::vector<Photon> photons = AnyPhotons(300);
+  const LightField whole = this->Whole(medium, photons, SettingsOf(1e-7));
+  for (const BlockPartition& partition :
+    { BlockPartition::Even(grid, 1), BlockPartition::Even(grid, 3), Slices(grid, { 0, 1 }) })
   {
     SCOPED_TRACE(std::to_string(partition.blocks.size()) + " ranks");
-    const LightField light = LightOfBlocks(partition, medium, [&](Communicator& communicator, MediumToCut& part) {
-      const std::size_t rank = static_cast<std::size_t>(communicator.Rank()), ranks = partition.blocks.size();
-      const std::vector<Photon> share(photons.begin() + static_cast<std::ptrdiff_t>(photons.size() * rank / ranks),
-        photons.begin() + static_cast<std::ptrdiff_t>(photons.size() * (rank + 1) / ranks));
-      return SolveLatticeInBlocks(
-        this->GetDevice(), communicator, partition, part.scene.medium, part.Index(), share, part.scene.light, settings);
-    });
-    ExpectSame(light, whole, 2e-6);
+    ExpectSame(this->OfBlocks(partition, medium, photons, SettingsOf(1e-7)), whole, 2e-6);
   }
 }
 
@@ -342,41 +212,6 @@ TEST_F(LatticeBlocks, MayBeBetweenFacesThatGiveBackAllLight)
     part.scene.light.faceAlbedo.fill({ 1.0, 1.0, 1.0 });
     std::fill(part.scene.sigma_a.begin(), part.scene.sigma_a.end(), 0.0f);
   });
-}
-
-/// Counted, or until little changes at some voxels; as published, and round periodic axes.
-TEST_F(LatticeBlocks, StepAsTheWhole)
-{
-  MediumToCut medium = Everything({ 7, 5, 6 });
-  medium.scene.light.faceAlbedo[0] = medium.scene.light.faceAlbedo[1] = {};
-  for (float& scattering : medium.scene.sigma_s)
-  {
-    scattering = std::min(scattering, 0.5f); // steps as published are stable then
-  }
-  LatticeSettings counted = SettingsOf(), settled = SettingsOf(1e-3), published = SettingsOf();
-  counted.maximumSteps = 37;
-  counted.periodic = { true, false, false };
-  settled.solvesSteady = false;
-  settled.probes = 20;
-  published.scheme = LatticeScheme::Published;
-  published.maximumSteps = 20;
-  for (const LatticeSettings& settings : { counted, settled, published })
-  {
-    SCOPED_TRACE(std::to_string(settings.maximumSteps));
-    const LightField whole = this->Whole(medium, settings);
-    for (const BlockPartition& partition : { BlockPartition::Even(medium.scene.medium.grid, 1),
-           BlockPartition::Even(medium.scene.medium.grid, 8), Slices(medium.scene.medium.grid, { 0, 1, 1 }) })
-    {
-      SCOPED_TRACE(std::to_string(partition.blocks.size()) + " ranks");
-      const LightField light = this->OfBlocks(partition, medium, settings);
-      ExpectSameLight(light, whole, 1e-6);
-      EXPECT_EQ(light.convergence.size(), whole.convergence.size());
-      EXPECT_NEAR(light.convergence.back().residual, whole.convergence.back().residual, 1e-4);
-      EXPECT_EQ(light.doubts, whole.doubts);
-      const double all = whole.balance.entered[0] + whole.balance.emitted[0];
-      EXPECT_NEAR(light.balance.leftOver[0], whole.balance.leftOver[0], 1e-6 * all);
-    }
-  }
 }
 
 /// Who has light that others have not is told.
@@ -463,11 +298,4 @@ TEST_F(LatticeBlocks, FailTogether)
       monitor = [](double done) { return done < 0.2; };
     }
   });
-}
-
-TEST_F(LatticeBlocks, SayWhatIsNotCarriedFromRankToRank)
-{
-  ExpectErrors(
-    "Interleaved", [](int, MediumToCut&, LatticeSettings& settings, Monitor&) { settings.interleaves = true; });
-  ExpectErrors("BlockSize", [](int, MediumToCut&, LatticeSettings& settings, Monitor&) { settings.blockSize = 4; });
 }

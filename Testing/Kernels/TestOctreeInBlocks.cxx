@@ -178,7 +178,7 @@ TEST(BrickedBytes, AreOfAllRanksWhatEachHas)
   for (const int ranks : { 1, 2, 3, 7 })
   {
     const BlockPartition partition = BlockPartition::Even(grid, ranks);
-    for (const Receivers receivers : { Receivers::All, Receivers::First })
+    for (const bool some : { false, true })
     {
       RunInThreads(ranks, [&](Communicator& communicator) {
         const VoxelBox& box = partition.blocks[static_cast<std::size_t>(communicator.Rank())];
@@ -190,13 +190,24 @@ TEST(BrickedBytes, AreOfAllRanksWhatEachHas)
             own.push_back(all[i]);
           }
         }
-        const BrickedBytes bytes = BytesOfAll(communicator, partition, own, receivers);
-        for (std::size_t i = 0; i < all.size() && (receivers == Receivers::All || communicator.Rank() == 0); ++i)
+        // Of some the first rank wants what is not even, and the others nothing.
+        std::vector<VoxelBox> wanted(partition.blocks.size());
+        wanted[0] = { { 1, 0, 7 }, { 9, 9, 10 } };
+        const BrickedBytes bytes =
+          some ? BytesOfBoxes(communicator, partition, own, wanted) : BytesOfAll(communicator, partition, own);
+        const VoxelBox there =
+          some ? wanted[static_cast<std::size_t>(communicator.Rank())] : VoxelBox{ { 0, 0, 0 }, grid.size };
+        for (std::size_t i = 0; i < all.size(); ++i)
         {
-          ASSERT_EQ(bytes.At(grid.VoxelAt(i)), all[i]) << i << " of " << ranks;
+          if (Holds(there, grid.VoxelAt(i).data()))
+          {
+            ASSERT_EQ(bytes.At(grid.VoxelAt(i)), all[i]) << i << " of " << ranks;
+          }
         }
-        const std::size_t uneven = receivers == Receivers::All || communicator.Rank() == 0 ? 10 : 0; // of 18
-        EXPECT_EQ(bytes.Dense().size(), uneven * BrickedBytes::Voxels);
+        if (!some || there.VoxelCount() == 0)
+        {
+          EXPECT_EQ(bytes.Dense().size(), (some ? 0 : 10) * BrickedBytes::Voxels); // of 18
+        }
       });
     }
   }

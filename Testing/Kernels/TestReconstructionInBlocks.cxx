@@ -4,12 +4,16 @@
 
 #include "Distribution/BoxExchange.h"
 #include "Distribution/RanksInThreads.h"
-#include "Reconstruction/ReconstructionInBlocks.h"
+#include "Reconstruction/Distributed/ReconstructionInBlocks.h"
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
-#include <mutex>
+#include <random>
+#include <string>
+#include <vector>
 
 using namespace tyndall;
 using testing::HasSubstr;
@@ -155,9 +159,83 @@ TEST_F(ReconstructionInBlocksTest, FailsTogether)
   };
   EXPECT_THAT(said({}, false), HasSubstr("(11, 3, 2)"));
   ReconstructionSettings settings;
-  settings.estimator = ReconstructionSettings::Estimator::ConstantRadius;
-  EXPECT_THAT(said(settings, false), HasSubstr("Only the conservative estimator"));
+  settings.estimator = ReconstructionSettings::Estimator::Published;
+  EXPECT_THAT(said(settings, false), HasSubstr("There is no fluence"));
   scene.batchFluence[2 * scene.grid.IndexOf({ 11, 3, 2 })] = 1.0f;
   EXPECT_THAT(said({}, true), HasSubstr("disagree about channels"));
+}
+
+/// By the estimators that take light from one level, whose choice is that of the whole to the last voxel.
+class LevelsInBlocksTest : public DeviceTest
+{
+protected:
+  /// With photons of some weights, more of them where it is bright.
+  static ReconstructionScene WithPhotons(std::array<int, 3> size, int channels)
+  {
+    ReconstructionScene scene = Scene(size, channels);
+    std::mt19937 random(4);
+    for (std::size_t i = 0; i < scene.grid.VoxelCount(); ++i)
+    {
+      const double fluence = scene.fluence[i * static_cast<std::size_t>(channels)];
+      scene.count[i] = static_cast<float>(std::poisson_distribution<int>(0.3 * fluence + 1e-3)(random));
+      scene.weight[i] = scene.count[i] > 0.0f ? 0.5f + 0.01f * static_cast<float>(random() % 100) : 0.0f;
+    }
+    return scene;
+  }
+
+  void ExpectTheWhole(
+    const ReconstructionScene& scene, const BlockPartition& partition, const ReconstructionSettings& settings)
+  {
+    const ReconstructedLight whole = Reconstruct(this->GetDevice(), scene.Seen(), settings);
+    const double most = *std::max_element(whole.fluence.begin(), whole.fluence.end());
+    RunInThreads(static_cast<int>(partition.blocks.size()), [&](Communicator& communicator) {
+      const VoxelBox all = { {}, scene.grid.size },
+                     own = partition.blocks[static_cast<std::size_t>(communicator.Rank())];
+      ReconstructionScene part(own.size, scene.channels);
+      part.fluence = PartOf(scene.fluence, all, own, scene.channels);
+      part.direction = PartOf(scene.direction, all, own, 3);
+      part.count = PartOf(scene.count, all, own, 1);
+      part.weight = PartOf(scene.weight, all, own, 1);
+      const ReconstructedLight found =
+        ReconstructInBlocks(this->GetDevice(), communicator, partition, part.Seen(), settings);
+      EXPECT_EQ(found.mipLevel, PartOf(whole.mipLevel, all, own, 1));
+      EXPECT_EQ(found.meanDirection, PartOf(whole.meanDirection, all, own, 3));
+      EXPECT_EQ(found.leftOut, whole.leftOut);
+      EXPECT_NEAR(found.bias, whole.bias, 1e-6);
+      const std::vector<float> fluence = PartOf(whole.fluence, all, own, scene.channels);
+      ASSERT_EQ(found.fluence.size(), fluence.size());
+      for (std::size_t i = 0; i < fluence.size(); ++i)
+      {
+        ASSERT_NEAR(found.fluence[i], fluence[i], 1e-6 * most) << i << " of rank " << communicator.Rank();
+      }
+    });
+  }
+};
+
+TEST_F(LevelsInBlocksTest, AreThoseOfTheWhole)
+{
+  using Estimator = ReconstructionSettings::Estimator;
+  const ReconstructionScene scene = WithPhotons({ 83, 22, 9 }, 1), colours = WithPhotons({ 37, 12, 10 }, 3);
+  const BlockPartition uneven = { scene.grid,
+    { { { 1, 0, 0 }, { 82, 22, 9 } }, {}, { { 0, 1, 0 }, { 1, 21, 9 } }, { { 0, 0, 1 }, { 1, 1, 8 } },
+      { { 0, 0, 0 }, { 1, 1, 1 } } } };
+  for (const Estimator estimator : { Estimator::Published, Estimator::ConstantRadius, Estimator::NearestPhotons })
+  {
+    SCOPED_TRACE(static_cast<int>(estimator));
+    ReconstructionSettings settings = By(estimator);
+    settings.level = 4;
+    this->ExpectTheWhole(scene, BlockPartition::Even(scene.grid, 3), settings);
+    this->ExpectTheWhole(scene, uneven, settings);
+    settings.conserve = false;
+    settings.level = 1;
+    this->ExpectTheWhole(colours, BlockPartition::Even(colours.grid, 2), settings);
+  }
+}
+
+TEST_F(LevelsInBlocksTest, MayBeNone)
+{
+  const ReconstructionScene small = WithPhotons({ 2, 1, 5 }, 1);
+  this->ExpectTheWhole(
+    small, BlockPartition::Even(small.grid, 4), By(ReconstructionSettings::Estimator::NearestPhotons));
 }
 }

@@ -50,6 +50,9 @@ def check(proxy, names, sizes, precision=0):
 
 
 check(importance, [["importance"], ["fluence", "photon_count", "origin_mean", "chosen"]], [[32, 32, 2], [8, 8, 6]])
+light.Scheme = "As published"
+check(light, [["fluence", "mean_direction", "mip_level"]], [[20, 16, 12]], 1e-6)
+light.Scheme = "Conservative"
 check(light, [["fluence", "fluence_error", "mean_direction", "mip_level"]], [[20, 16, 12]], 1e-6)
 own = emitter.GetClientSideObject().GetOutputDataObject(0).GetNumberOfPoints()
 assert own > 7900, own  # each rank's marcher asks for all

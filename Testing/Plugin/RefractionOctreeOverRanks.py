@@ -1,4 +1,4 @@
-"""Two ranks: each has its piece of the levels, which are those of the whole; the nodes are there once."""
+"""Two ranks: each has its piece of the levels, which are those of the whole, and the trees that begin in it."""
 import os
 
 from paraview import servermanager
@@ -24,4 +24,7 @@ for medium, level, count in ((even, 4, 1), (uneven, 0, 8 * 6 * 12)):
     cells = HyperTreeGridToUnstructuredGrid(Input=nodes)
     cells.UpdatePipeline()
     own = cells.GetClientSideObject().GetOutputDataObject(0).GetNumberOfCells()
-    assert own == (count if rank == 0 else 0), (rank, own)
+    trees = count / 2 if count > 1 else 1 - rank  # one node is one tree
+    assert own == trees, (rank, own)
+    octree.UpdatePropertyInformation()
+    assert octree.NodeCount == count, octree.NodeCount

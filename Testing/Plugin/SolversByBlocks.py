@@ -9,15 +9,17 @@ from pieces_of_ranks import Runs, difference
 
 runs = Runs("SolversByBlocks")
 CASES = ["lattice_wavelet", "lattice_even", "lattice_uneven", "lattice_lamps", "lattice_around",
-         "lattice_steps", "lattice_photons", "ordinates_even",
+         "lattice_steps", "lattice_photons", "lattice_turns", "ordinates_even",
          "ordinates_uneven", "ordinates_faces", "ordinates_around", "ordinates_warm", "ordinates_steps",
          "published_even", "published_uneven", "published_shown", "published_warm", "published_in_turn"]
 LIKE = {"published_uneven": "published_even", "lattice_uneven": "lattice_even", "ordinates_uneven": "ordinates_even"}
+WHOLE = ["lattice_exact", "lattice_whole", "lattice_photons_whole", "lattice_turns_whole", "ordinates_whole", "ordinates_faces_whole",
+         "ordinates_steps_whole", "published_whole", "published_in_turn_whole", "previews_whole"]
 
 for ranks in (1, 2, 3, 8):
-    more = ["lattice_exact", "lattice_whole", "lattice_photons_whole", "ordinates_whole", "ordinates_faces_whole", "ordinates_steps_whole", "published_whole", "published_in_turn_whole", "previews_whole"] if ranks == 1 else \
-        ["lattice_errors"] if ranks == 2 else []
-    code, said = runs.run(ranks, *CASES, *(["previews"] if ranks in (1, 3) else []), *more)
+    more = WHOLE if ranks == 1 else []
+    previews = ["previews"] if ranks in (1, 3) else []
+    code, said = runs.run(ranks, *CASES, *previews, *more)
     assert code == 0 and said.count("is done") == ranks and "ERR|" not in said, said
     for case in CASES:
         light, balance = runs.whole(ranks, case, "light")
@@ -33,6 +35,9 @@ assert difference(blocks, whole) < 2e-6
 blocks, whole = runs.whole(3, "lattice_photons", "light")[0], runs.whole(1, "lattice_photons_whole", "light")[0]
 print("photons on a lattice in blocks and in the whole: %.1e" % difference(blocks, whole))
 assert difference(blocks, whole) < 2e-6
+blocks, whole = runs.whole(3, "lattice_turns", "light")[0], runs.whole(1, "lattice_turns_whole", "light")[0]
+print("photons beside the steps of a lattice in blocks and in the whole: %.1e" % difference(blocks, whole))
+assert difference(blocks, whole) < 1e-6
 for case, of_whole in (("ordinates_even", "ordinates_whole"), ("ordinates_faces", "ordinates_faces_whole"),
                        ("ordinates_steps", "ordinates_steps_whole")):
     ordinates, whole = runs.whole(1, case, "light")[0], runs.whole(1, of_whole, "light")[0]

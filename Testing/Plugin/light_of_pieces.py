@@ -517,7 +517,7 @@ def lattice_of_photons(**settings):
     medium = ParticipatingMedium(Input=source_of(uneven_pieces()[rank]), DensityArray=["CELLS", "density"], ExtinctionScale=2,
                                  MinimumDensity=0, MaximumDensity=1, Albedo=[0.99, 0.9, 0.7])
     emitter = PhotonEmitter(Input=medium, Lights=LightRig(SunElevation=50), PhotonCount=20000)
-    light = LatticeBoltzmannLighting(Input=medium, Photons=emitter, NetFlux=1, Tolerance=1e-7, **settings)
+    light = LatticeBoltzmannLighting(Input=medium, Photons=emitter, NetFlux=1, **{"Tolerance": 1e-7, **settings})
     light.UpdatePipeline()
     return light
 
@@ -536,6 +536,15 @@ def lattice_photons():
 
 def lattice_photons_whole():
     keep("lattice_photons_whole", lattice_of_photons(Decomposition="Whole on each rank"))
+
+
+def lattice_turns(case="lattice_turns", **settings):
+    """Photons that march beside the steps of blocks of voxels."""
+    keep(case, lattice_of_photons(Interleaved=1, VoxelsPerTurn=5, BlockSize=4, MaximumOrders=30, **settings))
+
+
+def lattice_turns_whole():
+    lattice_turns("lattice_turns_whole", Decomposition="Whole on each rank")
 
 
 def lattice_steps():
@@ -682,21 +691,6 @@ def published_in_turn_whole():
 
 def published_warm():
     warm_by_blocks("published_warm", LightPropagationMaps, **PUBLISHED)
-
-
-def lattice_errors():
-    """What a lattice cannot do by pieces is one error that names it; where ranks decide by themselves they solve the whole."""
-    medium = ParticipatingMedium(Input=Wavelet(WholeExtent=SIZE), DensityArray=["POINTS", "RTData"])
-    for named, settings in (("BlockSize", {"BlockSize": 4}),):
-        light = LatticeBoltzmannLighting(Input=medium, SkyColor=[1, 1, 1], Decomposition="Blocks", **settings)
-        errors = errors_of(light)
-        light.UpdatePipeline()
-        light.UpdatePipeline()
-        assert len(errors) == 1 and named in errors[0] and "blocks" in errors[0], (rank, named, errors)
-        assert light.GetClientSideObject().GetOutputDataObject(0).GetNumberOfCells() == 0
-        light.Decomposition = "Automatic"
-        light.UpdatePipeline()
-        assert len(errors) == 1 and light.GetClientSideObject().GetOutputDataObject(0).GetNumberOfCells() > 0, errors
 
 
 def blocks_errors():

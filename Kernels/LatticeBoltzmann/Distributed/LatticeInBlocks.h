@@ -22,8 +22,10 @@ namespace tyndall
 /// together.
 ///
 /// The light is that of SolveLatticeBoltzmann to the tolerance, with its refraction, colours, faces' albedo, periodic
-/// axes, first moments of lamps' light or of light that is given, and net flux. It does not depend on the number of
-/// ranks, but for rounding.
+/// axes, first moments of lamps' light or of light that is given, and net flux; by steps it is that of as many steps,
+/// to rounding. It does not depend on the number of ranks, but for rounding. Where blocks of voxels step by themselves
+/// (blockSize), a rank steps all voxels of those of which it has a part, and holds blockSize - 1 more layers around its
+/// own.
 ///
 /// @param medium, ior  of the rank's block, with the grid that partition.OwnGrid() has; looked at by nobody where that
 ///   has no voxels
@@ -31,20 +33,18 @@ namespace tyndall
 /// @return the light of the rank's block; balance, face powers and convergence are of the whole. Empty arrays where the
 ///   block is
 /// @throws InvalidInput  on every rank, where one of them has an input that SolveLatticeBoltzmann refuses, where they
-///   disagree, where blocks wait for each other, or where the scene has something that is not carried: names it
+///   disagree, or where blocks wait for each other
 /// @throws DeviceError, Aborted  on every rank what one of them throws
 LightField SolveLatticeInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition,
   const Medium& medium, const Field& ior, const Illumination& illumination, const LatticeSettings& settings,
   const Monitor& monitor = {});
 
 /// The same of the light of photons, as SolveLatticeBoltzmann has it of the whole: they march to their ends, handed on
-/// from rank to rank (PhotonMarcherInBlocks), before their light diffuses.
+/// from rank to rank (PhotonMarcherInBlocks), before their light diffuses, or by turns (LatticeSettings::interleaves)
+/// between which it does.
 /// @param share  of this rank: all photons are those of rank 0, then those of rank 1, and so on
 /// @throws InvalidInput  also where an axis is periodic, or what PhotonMarcherInBlocks says
 LightField SolveLatticeInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition,
   const Medium& medium, const Field& ior, const std::vector<Photon>& share, const Illumination& illumination,
   const LatticeSettings& settings, const Monitor& monitor = {});
-
-/// What of a scene keeps SolveLatticeInBlocks from it, in words for an error; empty: nothing does.
-std::string NotInBlocks(const LatticeSettings& settings);
 }

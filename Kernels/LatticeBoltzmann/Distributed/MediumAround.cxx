@@ -4,16 +4,20 @@ namespace tyndall
 {
 LatticeBox BoxOf(const VoxelsAround& around)
 {
-  VoxelBox own = around.Own();
+  return BoxOf(around, around.Own());
+}
+
+LatticeBox BoxOf(const VoxelsAround& around, VoxelBox box)
+{
   int inner = 0;
   for (int axis = 0; axis < 3; ++axis)
   {
     const bool goesRound = around.Periodic()[axis];
-    inner |= goesRound || own.first[axis] > 0 ? 1 << (2 * axis) : 0;
-    inner |= goesRound || EndOf(own, axis) < around.Whole().size[axis] ? 1 << (2 * axis + 1) : 0;
-    own.first[axis] -= around.Known().first[axis];
+    inner |= goesRound || box.first[axis] > 0 ? 1 << (2 * axis) : 0;
+    inner |= goesRound || EndOf(box, axis) < around.Whole().size[axis] ? 1 << (2 * axis + 1) : 0;
+    box.first[axis] -= around.Known().first[axis];
   }
-  return { around.KnownGrid(), own, inner };
+  return { around.KnownGrid(), box, inner };
 }
 
 MediumAround::MediumAround(

@@ -9,8 +9,10 @@
 
 namespace tyndall
 {
-/// A rank's block among the voxels known around it. Beyond all its faces across periodic axes others lie.
+/// A rank's block, or another box of voxels that are known to it, among the voxels known around it. Beyond all its
+/// faces across periodic axes others lie.
 LatticeBox BoxOf(const VoxelsAround& around);
+LatticeBox BoxOf(const VoxelsAround& around, VoxelBox box);
 
 /// A block's medium and index, and uncollided light that is given, with those of the voxels around it.
 struct MediumAround

@@ -15,17 +15,19 @@ constexpr int StepTag = 0;
 }
 
 SteppedInBlocks::SteppedInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition,
-  const LatticeSettings& settings, Lattice* lattice)
+  const LatticeSettings& settings, const VoxelBox& box, Lattice* lattice)
   : TheDevice(device)
   , Others(communicator)
   , Settings(settings)
+  , Own(partition.blocks[communicator.Rank()])
+  , Box(box)
   , TheLattice(lattice)
 {
   this->FindParcels(partition);
   communicator.Together([&] { this->FindProbes(partition); });
 }
 
-/// @param voxel  of the block, from -1 on, one beyond its end
+/// @param voxel  of the lattice, from -1 on, one beyond its end
 cl_ulong SteppedInBlocks::PlaceOf(int direction, const Voxel& voxel) const
 {
   const LatticeInfo& info = this->TheLattice->Info();
@@ -34,15 +36,14 @@ cl_ulong SteppedInBlocks::PlaceOf(int direction, const Voxel& voxel) const
     at(voxel[0] + LatticeFirst);
 }
 
-/// act(direction, where it comes from: voxel of the block or beside it, voxel of the whole grid) for each density that
-/// another block sends into this one.
+/// act(direction, where it comes from: voxel of the lattice or beside it, voxel of the whole grid) for each density
+/// that comes into it from outside.
 template <class Act>
 void SteppedInBlocks::ForComing(const BlockPartition& partition, const Act& act) const
 {
-  const VoxelBox& block = partition.blocks[this->Others.Rank()];
   Grid grid;
-  grid.size = block.size;
-  for (std::size_t i = 0; i < block.VoxelCount(); ++i)
+  grid.size = this->Box.size;
+  for (std::size_t i = 0; this->Has() && i < this->Box.VoxelCount(); ++i)
   {
     for (int d = 0; d < this->Settings.directions; ++d)
     {
@@ -52,8 +53,8 @@ void SteppedInBlocks::ForComing(const BlockPartition& partition, const Act& act)
       {
         const int size = partition.whole.size[axis];
         from[axis] -= Ways[d][axis];
-        isBeyond = isBeyond || from[axis] < 0 || from[axis] >= block.size[axis];
-        inWhole[axis] = block.first[axis] + from[axis];
+        isBeyond = isBeyond || from[axis] < 0 || from[axis] >= this->Box.size[axis];
+        inWhole[axis] = this->Box.first[axis] + from[axis];
         isOutside = isOutside || (!this->Settings.periodic[axis] && (inWhole[axis] < 0 || inWhole[axis] >= size));
         inWhole[axis] = (inWhole[axis] + size) % size;
       }
@@ -65,11 +66,10 @@ void SteppedInBlocks::ForComing(const BlockPartition& partition, const Act& act)
   }
 }
 
-/// Each rank asks for what comes into its block: directions, and voxels of the whole grid.
+/// Each rank asks for what comes into its lattice: directions, and voxels of the whole grid.
 void SteppedInBlocks::FindParcels(const BlockPartition& partition)
 {
   const std::size_t ranks = partition.blocks.size();
-  const VoxelBox& block = partition.blocks[this->Others.Rank()];
   std::vector<std::vector<std::size_t>> asks(ranks);
   std::vector<std::vector<cl_ulong>> gets(ranks), sends(ranks);
   this->Others.Together([&] {
@@ -89,7 +89,7 @@ void SteppedInBlocks::FindParcels(const BlockPartition& partition)
     for (auto next = asked[rank].begin(); next != asked[rank].end(); next += 2)
     {
       Voxel voxel = partition.whole.VoxelAt(next[1]);
-      std::transform(voxel.begin(), voxel.end(), block.first.begin(), voxel.begin(), std::minus<int>());
+      std::transform(voxel.begin(), voxel.end(), this->Box.first.begin(), voxel.begin(), std::minus<int>());
       sends[rank].push_back(this->PlaceOf(static_cast<int>(next[0]), voxel));
     }
   }
@@ -115,28 +115,27 @@ void SteppedInBlocks::FindProbes(const BlockPartition& partition)
 {
   const std::vector<std::size_t> ofWhole = ProbesOf(partition.whole, this->Settings);
   this->LooksAtAll = ofWhole.empty();
-  const VoxelBox& block = partition.blocks[this->Others.Rank()];
   std::vector<cl_int> own;
   Grid grid;
-  grid.size = block.size;
+  grid.size = this->Box.size;
   for (const std::size_t probe : ofWhole)
   {
     Voxel voxel = partition.whole.VoxelAt(probe);
-    if (Holds(block, voxel.data()))
+    if (Holds(this->Own, voxel.data()))
     {
-      std::transform(voxel.begin(), voxel.end(), block.first.begin(), voxel.begin(), std::minus<int>());
+      std::transform(voxel.begin(), voxel.end(), this->Box.first.begin(), voxel.begin(), std::minus<int>());
       own.push_back(static_cast<cl_int>(grid.IndexOf(voxel)));
     }
   }
   this->Probes = own.empty() ? Buffer<cl_int>() : Buffer<cl_int>(this->TheDevice, own, "probes");
 }
 
-/// What voxels around the block send into it; nothing in each message where something has gone wrong.
+/// What voxels around the lattice send into it; nothing in each message where something has gone wrong.
 void SteppedInBlocks::Exchange()
 {
   std::vector<float> out, in;
   this->Failure.Attempt([&] {
-    out = this->Sends.places.Size() > 0 ? this->TheLattice->DensitiesAt(this->Sends.places) : out;
+    out = this->Sends.places.Size() > 0 ? this->TheLattice->At(this->Sends.places, this->TheLattice->Sent()) : out;
     in.reserve(this->Gets.places.Size());
   });
   auto next = out.begin();
@@ -161,7 +160,7 @@ void SteppedInBlocks::Exchange()
   this->Failure.Attempt([&] {
     if (!in.empty())
     {
-      this->TheLattice->PutDensities(this->Gets.places, in);
+      this->TheLattice->Put(in, this->Gets.places, this->TheLattice->Sent());
     }
   });
 }
@@ -169,11 +168,12 @@ void SteppedInBlocks::Exchange()
 void SteppedInBlocks::Step(int steps, double done, const Monitor& monitor)
 {
   this->Failure = {};
-  for (int step = 1; step <= steps && this->Has(); ++step)
+  const int each = this->Settings.blockSize > 0 ? this->Settings.stepsPerExchange : 1;
+  for (int step = 0; step < steps && this->Has(); step += each)
   {
     this->Exchange();
     this->Failure.Attempt([&] {
-      this->TheLattice->Step(1, step == steps);
+      this->TheLattice->Step(std::min(each, steps - step), step + each >= steps);
       this->TheDevice.Finish();
       Report(monitor, done);
     });
@@ -199,6 +199,6 @@ std::vector<float> SteppedInBlocks::Probed() const
 
 std::vector<float> SteppedInBlocks::Fluence() const
 {
-  return this->Has() ? this->TheLattice->Fluence() : std::vector<float>();
+  return this->Has() ? PartOf(this->TheLattice->Fluence(), this->Box, this->Own, 1) : std::vector<float>();
 }
 }

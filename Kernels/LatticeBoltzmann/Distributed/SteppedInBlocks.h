@@ -16,15 +16,18 @@
 namespace tyndall
 {
 /// A lattice whose blocks lie on several ranks and step together: before each step a block gets what the voxels around
-/// it send into it, round periodic axes too. Each step is that of one memory.
+/// it send into it, round periodic axes too. Each step is that of one memory. Blocks of voxels that step by themselves
+/// (LatticeSettings::blockSize) get it before each of their exchanges; of those that lie on several ranks each of these
+/// ranks steps all voxels.
 class SteppedInBlocks : public SteppedLattice
 {
 public:
   /// All ranks make one together, and all of it must stay.
   /// @param settings  with the axes that are periodic in the whole grid
-  /// @param lattice  of the rank's block; null: it has none
+  /// @param box  voxels of the lattice, in the whole grid: the rank's block, or whole blocks that step by themselves
+  /// @param lattice  null: the rank has none
   SteppedInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition,
-    const LatticeSettings& settings, Lattice* lattice);
+    const LatticeSettings& settings, const VoxelBox& box, Lattice* lattice);
 
   /// All ranks call it.
   /// @throws on every rank what any of them throws
@@ -32,7 +35,7 @@ public:
   /// Once all steps are done, with what voxels around the block send then. All ranks call it.
   void FillAround();
   std::vector<float> Probed() const override;
-  std::vector<float> Fluence() const override;
+  std::vector<float> Fluence() const override; ///< of the rank's block
   std::vector<double> Sum(const std::vector<double>& ofRank) override { return this->Others.Sum(ofRank); }
   void Alone(const std::function<void()>& work) override { this->Others.Together(work); }
 
@@ -56,6 +59,7 @@ private:
   Device& TheDevice;
   Communicator& Others;
   const LatticeSettings& Settings;
+  const VoxelBox Own, Box;
   Lattice* TheLattice;
   Parcels Sends, Gets;
   bool LooksAtAll = true;

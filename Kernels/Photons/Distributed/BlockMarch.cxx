@@ -39,10 +39,17 @@ struct BlockMarch::Marched
 
 BlockMarch::BlockMarch(const MarchMedium& medium, const MarchSums& target, const PackedPhotons& packed)
   : Medium(medium)
+  , Info(medium.Describe())
   , Target(target)
   , Channels(packed.channels)
   , Kernel(MarchKernelFor(medium, target, packed.channels, "march_block", Define("BLOCKS", 1)))
 {
+}
+
+void BlockMarch::GoAsFarAs(const StretchesOfTurns& turn)
+{
+  this->Info.pause = static_cast<cl_int>(turn.gone);
+  this->Info.eventLimit = turn.last ? this->Info.pause : this->Medium.EventLimit();
 }
 
 BlockMarch::Outcome BlockMarch::Start(
@@ -110,7 +117,7 @@ void BlockMarch::MarchBatch(const Marched& photons, int batch, std::size_t begin
   InBatches(device, launches, monitor, [&](std::size_t first, std::size_t size) {
     elsewhere.Empty();
     next.Fill(0);
-    With(this->Kernel, this->Medium.Describe(), this->Medium.sigma, this->Medium.coefficients, this->Medium.nodes,
+    With(this->Kernel, this->Info, this->Medium.sigma, this->Medium.coefficients, this->Medium.nodes,
       photons.starting.values, photons.starting.marks, photons.arrived, elsewhere.Room(), elsewhere.Number(),
       photons.starting.ends, *this->Target.sums, cl_ulong(Count(batch) * stride),
       cl_ulong(Count(shares.batches) * stride), next, cl_int(photons.resumes), cl_int(begin + first), cl_int(size),

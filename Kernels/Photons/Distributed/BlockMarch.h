@@ -3,6 +3,7 @@
 #include "Device/Monitor.h"
 #include "Photons/Marching/MarchLaunch.h"
 #include "Photons/Marching/MarchShared.h"
+#include "Photons/Marching/MarchTurns.h"
 
 #include <vector>
 
@@ -25,13 +26,16 @@ public:
   struct Outcome
   {
     std::vector<cl_int> ends;         ///< PhotonEnd and powers of each (Tally)
-    std::vector<PhotonOnItsWay> gone; ///< into other blocks, in any order
+    std::vector<PhotonOnItsWay> gone; ///< into other blocks, or that wait in this one, in any order
   };
+  /// From now on photons wait after so many stretches of their ways, or in the last turn are given up.
+  void GoAsFarAs(const StretchesOfTurns& turn);
+
   /// Of photons that set off in the block.
   /// @param marks  by which they count, or none
   /// @throws Aborted: the sums are of a part of the photons then
   Outcome Start(const PackedPhotons& photons, const std::vector<cl_ulong>& marks, const Monitor& monitor);
-  /// Of photons that have come from other blocks. @throws Aborted
+  /// Of photons that have come from other blocks, or waited. @throws Aborted
   Outcome Resume(std::vector<PhotonOnItsWay> arrived, const Monitor& monitor);
 
 private:
@@ -41,6 +45,7 @@ private:
     std::vector<PhotonOnItsWay>& gone);
 
   const MarchMedium& Medium;
+  MarchInfo Info;
   const MarchSums& Target;
   int Channels;
   cl::Kernel Kernel;

@@ -9,7 +9,7 @@ static void resume_packet(const march_arrays* arrays, const __global PhotonOnIts
   take_over(arrays, arrived, first, end, lanes, flight);
   take_off(arrays, lanes, flight);
   const integer corner = to_attend(arrays, lanes, flight);
-  const integer special = corner | given_up(arrays, flight);
+  const integer special = corner | halted(arrays, flight);
   if (anywhere(special))
   {
     land(flight, lanes);

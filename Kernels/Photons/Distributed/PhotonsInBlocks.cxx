@@ -8,6 +8,7 @@
 #include "Photons/Distributed/BlockMarch.h"
 #include "Photons/Distributed/PathsInBlocks.h"
 #include "Photons/Distributed/PhotonShares.h"
+#include "Photons/Distributed/PhotonTallies.h"
 #include "Photons/Distributed/PilotsInBlocks.h"
 #include "Photons/Marching/MarchedBatches.h"
 #include "Photons/Marching/MarchedLight.h"
@@ -70,10 +71,10 @@ class PhotonMarcherInBlocks::Rank
 {
 public:
   Rank(Device& device, Communicator& communicator, const BlockPartition& partition, const MarchSettings& settings)
-    : TheDevice(device)
+    : Settings(settings)
+    , TheDevice(device)
     , Others(communicator)
     , Partition(partition)
-    , Settings(settings)
     , Own(BlockOf(partition, communicator.Rank()))
     , Has(this->Own.VoxelCount() > 0)
   {
@@ -82,11 +83,13 @@ public:
   /// @param octree  whether any rank has levels
   void CheckInput(const Medium& medium, const Field& ior, const std::uint8_t* levels, bool octree) const;
   void Prepare(const Medium& medium, const Field& ior, const std::uint8_t* levels, bool octree);
-  PhotonLight March(const std::vector<Photon>& share, const Monitor& monitor);
+  /// @param turns  null: at once
+  PhotonLight March(const std::vector<Photon>& share, const TurnsInBlocks* turns, const Monitor& monitor);
   std::vector<PhotonPath> Paths(const std::vector<Photon>& share, std::size_t count);
   PilotLight Gather(const std::vector<Photon>& photons, const std::vector<std::array<int, 2>>& origins,
     const std::array<int, 3>& cells, const Monitor& monitor);
 
+  const MarchSettings Settings;
   RoundsTraffic Handed; ///< of the last march
 
 private:
@@ -95,20 +98,20 @@ private:
   std::vector<float> IndexAround(const Field& ior, bool bends);
   void ShareNodes(const std::uint8_t* levels);
   void PrepareScattering(const Medium& medium, const Field& index);
-  PhotonLight MarchThese(const std::vector<Photon>& share, const PhotonNumbers& numbers, const Monitor& monitor);
+  PhotonLight MarchThese(
+    const std::vector<Photon>& share, const PhotonNumbers& numbers, const TurnsInBlocks* turns, const Monitor& monitor);
   PhotonLight MarchInBatches(const std::vector<Photon>& share, const PlaceOfShare& place, const Monitor& monitor);
-  void Follow(const StartingPhotons& starting, PhotonLight& result, const Monitor& monitor);
+  void Follow(const StartingPhotons& starting, const TurnsInBlocks* turns, PhotonLight& result, const Monitor& monitor);
+  void FollowAtOnce(const StartingPhotons& starting, BlockMarch* march, PhotonLight& result, const Monitor& monitor);
+  void FollowByTurns(const StartingPhotons& starting, const TurnsInBlocks& turns, const MarchSums& target,
+    BlockMarch* march, PhotonLight& result, const Monitor& monitor);
   void AddScattered(const PackedPhotons& packed, PhotonLight& result, const Monitor& monitor);
   ScatteredPhotons FollowScattered(const PhotonScattering* in, PackedPhotons photons,
     const PhotonScattering::Settings& settings, const Monitor& monitor);
-  void SumUp(const std::vector<Rgb*>& powers, const std::vector<double*>& numbers);
-  void AddUp(PhotonLight& result);
-  void AddUpScattered(PhotonLight& result);
 
   Device& TheDevice;
   Communicator& Others;
   const BlockPartition& Partition;
-  const MarchSettings Settings;
   const VoxelBox Own;
   const bool Has; ///< voxels
   MarchTraits Traits;
@@ -185,7 +188,7 @@ void PhotonMarcherInBlocks::Rank::ShareNodes(const std::uint8_t* levels)
 {
   std::vector<std::uint8_t> own;
   this->Others.Together([&] { own = this->Has ? this->Through->OwnNodes(levels) : own; });
-  this->Nodes = std::make_unique<BrickedBytes>(BytesOfAll(this->Others, this->Partition, own, Receivers::All));
+  this->Nodes = std::make_unique<BrickedBytes>(BytesOfAll(this->Others, this->Partition, own));
   this->Others.Together([&] {
     if (this->Has)
     {
@@ -236,29 +239,74 @@ void PhotonMarcherInBlocks::Rank::PrepareScattering(const Medium& medium, const 
   });
 }
 
+void PhotonMarcherInBlocks::Rank::FollowAtOnce(
+  const StartingPhotons& starting, BlockMarch* march, PhotonLight& result, const Monitor& monitor)
+{
+  this->Rounds->UntilAllEnd<PhotonOnItsWay>(
+    [&](int round, std::vector<PhotonOnItsWay>&& arrived, const Monitor& ofRound) {
+      BlockMarch::Outcome outcome;
+      if (march)
+      {
+        outcome = round == 0 ? march->Start(starting.packed, starting.marks, ofRound)
+                             : march->Resume(std::move(arrived), ofRound);
+      }
+      Tally(starting.packed, outcome.ends, result);
+      return std::move(outcome.gone);
+    },
+    monitor);
+}
+
+void PhotonMarcherInBlocks::Rank::FollowByTurns(const StartingPhotons& starting, const TurnsInBlocks& turns,
+  const MarchSums& target, BlockMarch* march, PhotonLight& result, const Monitor& monitor)
+{
+  Buffer<float> fluence;
+  cl::Kernel show;
+  this->Others.Together([&] {
+    if (march)
+    {
+      fluence = Buffer<float>(this->TheDevice, this->Own.VoxelCount() * static_cast<std::size_t>(result.light.channels),
+        "fluence of photons on their way");
+      show = this->Light->Show(starting.packed, target, result.light, fluence);
+    }
+  });
+  turns.begin(starting.packed, result.light.channels);
+  WaitingPhotons photons(this->Others, *this->Rounds, this->Own, march, starting,
+    [&](const std::vector<cl_int>& ends) { Tally(starting.packed, ends, result); });
+  photons.ToTheirEnds(
+    turns, MarchEventLimit(this->Partition.whole, this->Settings),
+    [&]() -> const Buffer<float>& {
+      if (march)
+      {
+        const auto rows = static_cast<std::size_t>(this->Own.size[1]) * static_cast<std::size_t>(this->Own.size[2]);
+        this->TheDevice.Queue().enqueueNDRangeKernel(show, cl::NullRange, cl::NDRange(rows));
+      }
+      return fluence;
+    },
+    monitor);
+}
+
 /// Up to where they are first scattered.
-void PhotonMarcherInBlocks::Rank::Follow(const StartingPhotons& starting, PhotonLight& result, const Monitor& monitor)
+void PhotonMarcherInBlocks::Rank::Follow(
+  const StartingPhotons& starting, const TurnsInBlocks* turns, PhotonLight& result, const Monitor& monitor)
 {
   const PackedPhotons& packed = starting.packed;
   MarchSums target;
   std::unique_ptr<BlockMarch> march;
-  this->Rounds->UntilAllEnd<PhotonOnItsWay>(
-    [&](int round, std::vector<PhotonOnItsWay>&& arrived, const Monitor& ofRound) {
-      BlockMarch::Outcome outcome;
-      if (this->Has && round == 0)
-      {
-        target = this->Light->Prepare(packed);
-        march = std::make_unique<BlockMarch>(*this->Through, target, packed);
-        outcome = march->Start(packed, starting.marks, ofRound);
-      }
-      else if (this->Has)
-      {
-        outcome = march->Resume(std::move(arrived), ofRound);
-      }
-      Tally(packed, outcome.ends, result);
-      return std::move(outcome.gone);
-    },
-    monitor);
+  this->Others.Together([&] {
+    if (this->Has)
+    {
+      target = this->Light->Prepare(packed);
+      march = std::make_unique<BlockMarch>(*this->Through, target, packed);
+    }
+  });
+  if (turns)
+  {
+    this->FollowByTurns(starting, *turns, target, march.get(), result, monitor);
+  }
+  else
+  {
+    this->FollowAtOnce(starting, march.get(), result, monitor);
+  }
   this->Others.Together([&] {
     if (this->Has)
     {
@@ -266,7 +314,7 @@ void PhotonMarcherInBlocks::Rank::Follow(const StartingPhotons& starting, Photon
       SayWhatIsLeftOut(*this->Through, packed, result.light);
     }
   });
-  this->AddUp(result);
+  AddUpTallies(this->Others, result);
 }
 
 /// This rank's share of one channel's scattered light and tallies.
@@ -289,57 +337,6 @@ ScatteredPhotons PhotonMarcherInBlocks::Rank::FollowScattered(
   return found;
 }
 
-/// Powers and numbers of this rank to the sums of all.
-void PhotonMarcherInBlocks::Rank::SumUp(const std::vector<Rgb*>& powers, const std::vector<double*>& numbers)
-{
-  std::vector<double> values;
-  for (const Rgb* power : powers)
-  {
-    values.insert(values.end(), power->begin(), power->end());
-  }
-  std::transform(
-    numbers.begin(), numbers.end(), std::back_inserter(values), [](const double* number) { return *number; });
-  values = this->Others.Sum(values);
-  auto value = values.cbegin();
-  for (Rgb* power : powers)
-  {
-    std::copy_n(value, 3, power->begin());
-    value += 3;
-  }
-  for (double* number : numbers)
-  {
-    *number = *value++;
-  }
-}
-
-void PhotonMarcherInBlocks::Rank::AddUp(PhotonLight& result)
-{
-  EnergyBalance& balance = result.light.balance;
-  std::vector<Rgb*> powers = { &balance.absorbed, &balance.escaped, &balance.leftOver, &result.scattered };
-  for (Rgb& face : result.light.facePowerOut)
-  {
-    powers.push_back(&face);
-  }
-  double deposits = static_cast<double>(result.deposits), steps = static_cast<double>(result.steps);
-  this->SumUp(powers, { &deposits, &steps });
-  result.deposits = static_cast<std::size_t>(deposits);
-  result.steps = static_cast<std::size_t>(steps);
-}
-
-void PhotonMarcherInBlocks::Rank::AddUpScattered(PhotonLight& result)
-{
-  EnergyBalance& balance = result.light.balance;
-  std::vector<Rgb*> powers = { &balance.entered, &balance.absorbed, &balance.escaped, &balance.leftOver,
-    &result.exchanged };
-  for (Rgb& face : result.light.facePowerOut)
-  {
-    powers.push_back(&face);
-  }
-  double scatterings = static_cast<double>(result.scatterings);
-  this->SumUp(powers, { &scatterings });
-  result.scatterings = static_cast<std::uint64_t>(scatterings);
-}
-
 /// What more orders than one ask for.
 void PhotonMarcherInBlocks::Rank::AddScattered(const PackedPhotons& packed, PhotonLight& result, const Monitor& monitor)
 {
@@ -348,7 +345,7 @@ void PhotonMarcherInBlocks::Rank::AddScattered(const PackedPhotons& packed, Phot
     this->Scattering->AddTo(result, packed, {}, monitor,
       [this](const PhotonScattering* in, PackedPhotons photons, const PhotonScattering::Settings& settings,
         const Monitor& ofRun) { return this->FollowScattered(in, std::move(photons), settings, ofRun); });
-    this->AddUpScattered(result);
+    AddUpScattered(this->Others, result);
   }
   else if (this->Settings.maximumOrders != 1)
   {
@@ -358,7 +355,7 @@ void PhotonMarcherInBlocks::Rank::AddScattered(const PackedPhotons& packed, Phot
 
 /// @param numbers  of the photons among all
 PhotonLight PhotonMarcherInBlocks::Rank::MarchThese(
-  const std::vector<Photon>& share, const PhotonNumbers& numbers, const Monitor& monitor)
+  const std::vector<Photon>& share, const PhotonNumbers& numbers, const TurnsInBlocks* turns, const Monitor& monitor)
 {
   const StartingPhotons starting =
     SendToTheirBlocks(this->Others, this->Partition, share, numbers, this->Traits, this->Settings);
@@ -371,7 +368,7 @@ PhotonLight PhotonMarcherInBlocks::Rank::MarchThese(
   result.missed = packed.missed;
   result.batches = static_cast<int>(this->Others.Largest({ 1.0 * BatchesOf(share) })[0]);
   result.secondsMarching = -ClockSeconds();
-  this->Follow(starting, result, this->Scattering ? OfPart(monitor, 0.0, 0.05) : monitor);
+  this->Follow(starting, turns, result, this->Scattering ? OfPart(monitor, 0.0, 0.05) : monitor);
   PutIntoColours(packed, colours, result);
   this->AddScattered(packed, result, OfPart(monitor, 0.05, 1.0));
   if (this->Settings.batches && packed.Batches() == 1)
@@ -397,12 +394,13 @@ PhotonLight PhotonMarcherInBlocks::Rank::MarchInBatches(
       some.push_back(share[number - place.first]);
     }
     const double parts = static_cast<double>(batches);
-    all.Add(this->MarchThese(some, own, OfPart(monitor, b / parts, (b + 1) / parts)));
+    all.Add(this->MarchThese(some, own, nullptr, OfPart(monitor, b / parts, (b + 1) / parts)));
   }
   return std::move(all).Sum();
 }
 
-PhotonLight PhotonMarcherInBlocks::Rank::March(const std::vector<Photon>& share, const Monitor& monitor)
+PhotonLight PhotonMarcherInBlocks::Rank::March(
+  const std::vector<Photon>& share, const TurnsInBlocks* turns, const Monitor& monitor)
 {
   const double start = ClockSeconds();
   this->Rounds = std::make_unique<tyndall::Rounds>(this->Others, this->Partition);
@@ -416,7 +414,7 @@ PhotonLight PhotonMarcherInBlocks::Rank::March(const std::vector<Photon>& share,
   {
     PhotonNumbers numbers(share.size());
     std::iota(numbers.begin(), numbers.end(), place.first);
-    result = this->MarchThese(share, numbers, monitor);
+    result = this->MarchThese(share, numbers, turns, monitor);
   }
   this->Handed = this->Rounds->Traffic();
   result.seconds = ClockSeconds() - start;
@@ -455,7 +453,16 @@ PhotonMarcherInBlocks::~PhotonMarcherInBlocks() = default;
 
 PhotonLight PhotonMarcherInBlocks::March(const std::vector<Photon>& share, const Monitor& monitor)
 {
-  return this->Inside->March(share, monitor);
+  return this->Inside->March(share, nullptr, monitor);
+}
+
+PhotonLight PhotonMarcherInBlocks::MarchByTurns(
+  const std::vector<Photon>& share, const TurnsInBlocks& turns, const Monitor& monitor)
+{
+  const MarchSettings& settings = this->Inside->Settings;
+  Require(settings.maximumOrders == 1 && !settings.batches && settings.errorBatches == 0,
+    "Photons march in turns up to where they are first scattered, and without batches.");
+  return this->Inside->March(share, &turns, monitor);
 }
 
 std::vector<PhotonPath> PhotonMarcherInBlocks::Paths(const std::vector<Photon>& share, std::size_t count)

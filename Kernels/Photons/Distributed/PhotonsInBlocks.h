@@ -6,6 +6,7 @@
 #include "Distribution/Communicator.h"
 #include "Distribution/Rounds.h"
 #include "Medium/Medium.h"
+#include "Photons/Distributed/TurnsInBlocks.h"
 #include "Photons/Importance/PilotLight.h"
 #include "Photons/Photons.h"
 
@@ -46,6 +47,10 @@ public:
   /// @return arrays of the rank's block, none where that is empty; balance, face powers and all counts are of the whole
   /// @throws InvalidInput, DeviceError, Aborted  on every rank what one of them throws
   PhotonLight March(const std::vector<Photon>& share, const Monitor& monitor = {});
+
+  /// The same light, of photons that march in turns. Without batches, and of one order.
+  /// @throws InvalidInput  also where settings ask for batches or other orders than 1
+  PhotonLight MarchByTurns(const std::vector<Photon>& share, const TurnsInBlocks& turns, const Monitor& monitor = {});
 
   /// The ways of so many of all photons, spread evenly (ChooseEvenly), corner by corner, each in one piece, as
   /// PhotonMarcher has them.

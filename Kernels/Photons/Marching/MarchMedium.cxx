@@ -260,7 +260,7 @@ MarchInfo MarchMedium::Describe() const
   info.stepSize = static_cast<float>(this->settings.stepSize);
   info.slowest = 0.5f * this->traits.index.least / *std::max_element(info.spacing, info.spacing + 3);
   info.darkness = DarkUnits;
-  info.eventLimit = this->EventLimit();
+  info.eventLimit = info.pause = this->EventLimit();
   info.copy = this->Records();
   return info;
 }

@@ -34,6 +34,7 @@ typedef struct
   float slowest;  ///< voxels per time that a photon keeps to wherever n is its least; steps are no longer than for it
   float darkness; ///< power below which nothing is left of a photon
   int eventLimit; ///< walls and turns of a photon at most
+  int pause;      ///< stretches of its way after which a photon in a block waits; eventLimit or more: none does
   ulong copy;     ///< voxels of the padded grid
 } MarchInfo;
 

@@ -11,8 +11,6 @@ namespace tyndall
 {
 namespace
 {
-constexpr int Few = 100; ///< a turn is the last one where one packet of so many is on its way still
-
 struct Span
 {
   double begin = 0.0, end = 0.0; ///< s
@@ -38,13 +36,12 @@ public:
     , March(MarchKernelFor(medium, target, packed.channels, "march_turn", Define("TURNS", 1)))
     , None(medium.device, 0, "cells of the voxels")
     , Packets(medium.device, this->PacketCount * this->BytesOfPacket(packed.channels), "photons on their way")
-    , Going(medium.device, this->PacketCount, "packets on their way")
-    , Left(medium.device, 1, "number of packets on their way")
+    , Going(medium.device, this->PacketCount, "photons on their way")
+    , Left(medium.device, 1, "number of photons on their way")
     , Next(medium.device, 1, "number of the next photon")
   {
   }
 
-  std::size_t Packed() const { return this->PacketCount; }
   /// Queued. @param stretches  at most the medium's limit
   cl::Event Turn(const cl::CommandQueue& queue, int turn, int stretches, bool last);
   /// Waits.
@@ -102,6 +99,15 @@ void AddTimes(const cl::Event& marched, const std::array<cl::Event, 2>& meanwhil
 }
 }
 
+void StretchesOfTurns::Next(std::size_t left)
+{
+  constexpr std::size_t few = 100;
+  const double before = static_cast<double>(this->gone);
+  this->last = this->Each == 0 || left < this->All / few || before + this->Each >= static_cast<double>(this->Limit);
+  this->stretches = this->last ? this->Limit : this->Each;
+  this->gone += this->stretches;
+}
+
 TurnTimes MarchInTurns(const MarchMedium& medium, const PackedPhotons& packed, const PhotonsOnDevice& photons,
   const MarchSums& target, const MarchTurns& turns,
   const std::function<const Buffer<float>&(const cl::CommandQueue& queue)>& show, const Monitor& monitor)
@@ -111,15 +117,12 @@ TurnTimes MarchInTurns(const MarchMedium& medium, const PackedPhotons& packed, c
   const cl::CommandQueue theirs = turns.sideBySide ? medium.device.AnotherQueue() : mine;
   TurnsOfPhotons all(medium, packed, photons, target);
   medium.device.Finish(); // what is on the device's own queue
-  const int limit = medium.EventLimit();
-  std::size_t left = all.Packed();
-  for (double gone = 0.0; left > 0; ++times.turns)
+  StretchesOfTurns turn(turns.stretches, medium.EventLimit(), packed.Count());
+  std::size_t left = packed.Count();
+  for (; left > 0; ++times.turns)
   {
-    const bool last =
-      turns.stretches == 0 || left < all.Packed() / Few || gone + turns.stretches >= static_cast<double>(limit);
-    const int stretches = last ? limit : turns.stretches;
-    gone += stretches;
-    const std::vector<cl::Event> marched = { all.Turn(mine, times.turns, stretches, last) };
+    turn.Next(left);
+    const std::vector<cl::Event> marched = { all.Turn(mine, times.turns, turn.stretches, turn.last) };
     const bool besides = times.turns > 0; // before, there is no light to do something with
     const std::array<cl::Event, 2> meanwhile = besides ? turns.meanwhile(theirs) : std::array<cl::Event, 2>();
     theirs.enqueueBarrierWithWaitList(&marched);
@@ -132,7 +135,7 @@ TurnTimes MarchInTurns(const MarchMedium& medium, const PackedPhotons& packed, c
     const Span span = SpanOf(marched.front(), marched.front());
     times.marching += span.end - span.begin;
     left = all.StillGoing(mine);
-    Report(monitor, 1.0 - static_cast<double>(left) / all.Packed());
+    Report(monitor, 1.0 - static_cast<double>(left) / static_cast<double>(packed.Count()));
   }
   return times;
 }

@@ -4,6 +4,8 @@
 #include "Photons/Marching/MarchLaunch.h"
 
 #include <array>
+#include <cstddef>
+#include <cstdint>
 #include <functional>
 
 namespace tyndall
@@ -23,6 +25,33 @@ struct MarchTurns
   /// Queues what takes over the light that photons have left since they began.
   /// @param fluence  W / length^2, [voxel][channel]
   std::function<void(const cl::CommandQueue& queue, const Buffer<float>& fluence)> take;
+};
+
+/// How far photons go in each turn: the last one takes them to their ends.
+class StretchesOfTurns
+{
+public:
+  /// @param each  stretches of a turn, as MarchTurns has them
+  /// @param limit  walls and turns of a photon at most
+  /// @param all  photons
+  StretchesOfTurns(int each, int limit, std::size_t all)
+    : Each(each)
+    , Limit(limit)
+    , All(all)
+  {
+  }
+
+  /// The next turn. @param left  photons that are on their way still; where these are fewer than a hundredth it is the
+  ///   last one
+  void Next(std::size_t left);
+
+  int stretches = 0;     ///< in this turn
+  std::int64_t gone = 0; ///< stretches up to its end
+  bool last = false;
+
+private:
+  int Each, Limit;
+  std::size_t All;
 };
 
 /// How long that took, on the device.

@@ -285,11 +285,13 @@ static integer to_attend(const march_arrays* arrays, const photon_lanes* lanes, 
   return special & flight->alive;
 }
 
-// Those that have been at as many walls and turns as photons may: in a block they have not come as far as each other.
-static integer given_up(const march_arrays* arrays, const photon_flight* flight)
+// Those that have been at as many walls and turns as photons may, or as they may before they wait: in a block they have
+// not come as far as each other.
+static integer halted(const march_arrays* arrays, const photon_flight* flight)
 {
 #if BLOCKS
-  return flight->alive & truth(flight->crossings >= (integer)arrays->info->eventLimit);
+  const int most = min(arrays->info->eventLimit, arrays->info->pause);
+  return flight->alive & truth(flight->crossings >= (integer)most);
 #else
   return (integer)0;
 #endif
@@ -328,16 +330,27 @@ static void attend(
   const march_arrays* arrays, photon_lanes* lanes, const photon_flight* flight, integer mask, int first)
 {
   const integer outside = truth(flight->sigma == (real)OUTSIDE);
-  const integer ended = mask & (outside | truth(brightest(flight) < (real)arrays->info->darkness));
+  const integer dark = truth(brightest(flight) < (real)arrays->info->darkness);
+#if BLOCKS
+  const bool waits = arrays->info->pause < arrays->info->eventLimit;
+  const integer halt = halted(arrays, flight), ended = mask & (outside | dark | (waits ? halt : (integer)0));
+#else
+  const integer ended = mask & (outside | dark);
+#endif
   if (anywhere(ended))
   {
     const int beyond = bits_of(outside);
 #if BLOCKS
+    const int nothing = bits_of(dark);
     keep_owed(lanes, flight);
 #endif
     FOR_LANES(k, ended)
     {
+#if BLOCKS // one that waits goes on from where it is
+      const int face = beyond >> k & 1 ? face_left(arrays->info, lanes, k) : nothing >> k & 1 ? Dark : Elsewhere;
+#else
       const int face = beyond >> k & 1 ? face_left(arrays->info, lanes, k) : Dark;
+#endif
 #if BLOCKS
       if (face == Elsewhere)
       {
@@ -357,7 +370,7 @@ static void attend(
   }
 #endif
 #if BLOCKS
-  const integer spent = mask & INTEGERS(lanes->alive) & given_up(arrays, flight);
+  const integer spent = mask & INTEGERS(lanes->alive) & halt;
   FOR_LANES(k, spent)
   {
     end_photon(lanes, k, StillGoing, arrays->ends + first + k);
@@ -475,7 +488,7 @@ static bool follow(
     owed = true;
     cross_walls(arrays, lanes, flight, next);
     const integer corner = to_attend(arrays, lanes, flight);
-    const integer special = corner | given_up(arrays, flight);
+    const integer special = corner | halted(arrays, flight);
     if (anywhere(special))
     {
 #if !PATHS
@@ -559,6 +572,17 @@ typedef struct
   photon_flight flight;
 } photon_packet;
 
+// Photons of a packet that are on their way.
+static int number_of(const photon_packet* packet)
+{
+  int number = 0;
+  for (int k = 0; k < REAL_WIDTH; ++k)
+  {
+    number += packet->lanes.alive[k] != 0;
+  }
+  return number;
+}
+
 // Bytes of a photon_packet, for the host.
 __kernel void size_packet(__global int* bytes)
 {
@@ -585,7 +609,7 @@ static void take_turn(const march_arrays* arrays, const __global float* photons,
   {
     give_up_all(arrays, &here.lanes, &here.flight, first);
   }
-  *going = goes && !last;
+  *going = goes && !last ? number_of(&here) : 0;
   if (*going)
   {
     *packet = here;
@@ -593,7 +617,7 @@ static void take_turn(const march_arrays* arrays, const __global float* photons,
 }
 
 // A turn of all `count` photons, which are of one batch (march_photons).
-//   packets  of photons on their way; going: whether a packet is one
+//   packets  of photons on their way; going: how many of each are
 //   left     gains their number
 //   turn     its number; last: photons on their way are given up after it
 __kernel void march_turn(MarchInfo info, const __global float* sigma, const __global float* coefficients,

@@ -1,4 +1,4 @@
-#include "LatticeBoltzmann/InterleavedLattice.h"
+#include "LatticeBoltzmann/Interleaved/InterleavedLattice.h"
 
 #include "Device/Clock.h"
 #include "LatticeBoltzmann/LatticeLight.h"
@@ -13,25 +13,12 @@ namespace tyndall
 namespace
 {
 constexpr double Together = 0.05; ///< of the shorter part's time: with less, a device does one after the other
-
-/// W / length^2 that are usual for light of so much power.
-double UsualFluence(const Rgb& power, const Grid& grid)
-{
-  const double x = grid.Length(0), y = grid.Length(1), z = grid.Length(2), area = x * y + y * z + z * x;
-  const double usual = Sum(power) / area;
-  return usual > 1e-30 && usual < 1e30 ? usual : 1.0;
 }
 
-/// Part of a channel's light that a step's way through a voxel scatters.
-std::vector<float> ScattersOf(const Medium& medium, int channel, double unit, const std::vector<double>& begins)
+int StepsOfTurn(const LatticeSettings& settings, int done)
 {
-  std::vector<float> scatters(medium.grid.VoxelCount());
-  for (std::size_t i = 0; i < scatters.size(); ++i)
-  {
-    scatters[i] = static_cast<float>(begins[i] * unit * medium.grid.spacing[0] * medium.sigma_s.At(i, channel));
-  }
-  return scatters;
-}
+  const int most = settings.stepsPerExchange, asked = settings.maximumSteps;
+  return asked > 0 ? std::clamp(asked - 1 - done, 0, most) : most;
 }
 
 InterleavedLattice::InterleavedLattice(Device& device, const Medium& medium, const Field& ior,
@@ -44,70 +31,37 @@ InterleavedLattice::InterleavedLattice(Device& device, const Medium& medium, con
 {
 }
 
-/// Something like the photons' light, from which a problem has its units and channels, and says what they are. It
-/// varies from voxel to voxel, in colour too where photons have several.
-void InterleavedLattice::StandInFor(const PackedPhotons& packed, int channels)
-{
-  const double usual = UsualFluence(packed.entered, this->TheMedium.grid);
-  const bool colours = packed.channels == 3;
-  Rgb colour = colours ? Rgb{ 1.0, 0.75, 0.5 } : packed.colour;
-  std::for_each(colour.begin(), colour.end(), [&](double& value) { value *= usual; });
-  this->StandInEscaped.fill(colour);
-  for (std::size_t i = 0; i < this->TheMedium.grid.VoxelCount(); ++i)
-  {
-    for (int c = 0; c < channels; ++c)
-    {
-      const std::size_t period = colours ? 5 + static_cast<std::size_t>(c) : 5;
-      this->StandIn.push_back(static_cast<float>(colour[c] * (1.0 + 0.125 * static_cast<double>(i % period))));
-    }
-  }
-}
-
 void InterleavedLattice::Begin(const PackedPhotons& packed, int channels)
 {
-  this->PhotonChannels = channels;
-  this->StandInFor(packed, channels);
+  const Grid& grid = this->TheMedium.grid;
+  this->ToCome.emplace(packed, channels, grid, VoxelBox{ { 0, 0, 0 }, grid.size });
   Illumination lit = this->Shining;
-  lit.uncollided = {};
-  lit.uncollided.fluence = { this->StandIn.data(), channels };
-  lit.uncollided.escaped = this->StandInEscaped;
+  lit.uncollided = this->ToCome->Image();
   this->Problem.emplace(this->TheMedium, lit, AsPropagation(this->Settings));
   const UncollidedImage& solved = this->Problem->Shining().uncollided;
   const int all = this->Problem->Channels();
-  const auto brightest = std::max_element(this->StandInEscaped[0].begin(), this->StandInEscaped[0].end());
-  this->Light.fluence.assign(this->TheMedium.grid.VoxelCount() * static_cast<std::size_t>(all), 0.0f);
+  this->Light.fluence.assign(grid.VoxelCount() * static_cast<std::size_t>(all), 0.0f);
   this->Light.image.fluence = { this->Light.fluence.data(), all };
   for (int c = 0; c < all; ++c)
   {
     Channel channel;
     channel.lattice = std::make_unique<LatticeChannel>(
       this->TheDevice, SceneOf(*this->Problem), this->Index, this->Settings, this->Light, c);
-    const auto power = all == 1 ? brightest - this->StandInEscaped[0].begin() : c;
-    channel.from = channels == 1 ? 0 : static_cast<int>(power);
-    const double given = this->StandIn[channel.from], escaped = this->StandInEscaped[0][power];
-    channel.fluence = given > 0.0 ? solved.fluence.At(0, c) / given : 0.0;
-    channel.power = escaped > 0.0 ? solved.escaped[0][c] / escaped : 0.0;
+    channel.takes = TakenOfPhotons(*this->ToCome, solved, 0, all, c);
     Lattice& lattice = channel.lattice->TheLattice();
-    channel.scatters =
-      lattice.Placed(ScattersOf(this->Problem->TheMedium(), c, channel.fluence, channel.lattice->TheVoxels().begins),
-        "how voxels scatter photons");
+    channel.scatters = lattice.Placed(
+      ScattersOf(this->Problem->TheMedium(), c, channel.takes.fluence, channel.lattice->TheVoxels().begins),
+      "how voxels scatter photons");
     channel.glows = lattice.Placed(channel.lattice->TheVoxels().source, "what voxels emit");
     this->Channels.push_back(std::move(channel));
   }
-}
-
-/// Of a turn. The last one that is asked for is done when all photons have come to their ends.
-int InterleavedLattice::StepsOfTurn() const
-{
-  const int most = this->Settings.stepsPerExchange, asked = this->Settings.maximumSteps;
-  return asked > 0 ? std::clamp(asked - 1 - this->Steps, 0, most) : most;
 }
 
 std::array<cl::Event, 2> InterleavedLattice::Step(const cl::CommandQueue& queue)
 {
   std::array<cl::Event, 2> events;
   queue.enqueueMarkerWithWaitList(nullptr, &events[0]);
-  const int steps = this->StepsOfTurn();
+  const int steps = StepsOfTurn(this->Settings, this->Steps);
   for (Channel& channel : this->Channels)
   {
     Lattice& lattice = channel.lattice->TheLattice();
@@ -126,7 +80,7 @@ void InterleavedLattice::Take(const cl::CommandQueue& queue, const Buffer<float>
   {
     Lattice& lattice = channel.lattice->TheLattice();
     lattice.StepOn(queue);
-    lattice.ShineBy(channel.scatters, channel.glows, fluence, this->PhotonChannels, channel.from);
+    lattice.ShineBy(channel.scatters, channel.glows, fluence, this->ToCome->channels, channel.takes.from);
   }
 }
 
@@ -139,14 +93,15 @@ void InterleavedLattice::TakeAll(const PhotonLight& photons)
   for (std::size_t c = 0; c < all; ++c)
   {
     const Channel& channel = this->Channels[c];
-    const std::size_t from = std::min(static_cast<std::size_t>(channel.from), given - 1);
+    const std::size_t from = std::min(static_cast<std::size_t>(channel.takes.from), given - 1);
     for (std::size_t i = 0; i < voxels; ++i)
     {
-      this->Light.fluence[i * all + c] = static_cast<float>(channel.fluence * photons.light.fluence[i * given + from]);
+      this->Light.fluence[i * all + c] =
+        static_cast<float>(channel.takes.fluence * photons.light.fluence[i * given + from]);
     }
     for (std::size_t face = 0; face < 6; ++face)
     {
-      this->Light.image.escaped[face][c] = channel.power * photons.light.facePowerOut[face][from];
+      this->Light.image.escaped[face][c] = channel.takes.power * photons.light.facePowerOut[face][from];
     }
   }
   if (!photons.meanDirection.empty())

@@ -2,6 +2,7 @@
 
 #include "Device/Device.h"
 #include "Device/Monitor.h"
+#include "LatticeBoltzmann/Interleaved/PhotonsToCome.h"
 #include "LatticeBoltzmann/LatticeChannel.h"
 #include "LatticeBoltzmann/LatticeSettings.h"
 #include "Light/LightField.h"
@@ -17,6 +18,10 @@
 
 namespace tyndall
 {
+/// Steps of a turn of photons, after so many that were done. The last one that is asked for is done when all photons
+/// have come to their ends.
+int StepsOfTurn(const LatticeSettings& settings, int done);
+
 /// Photons that march, and the light that they have left so far, which diffuses by steps while they march on (Bernabei
 /// et al., section III; numerics.md, section 10 c). The light is that of the lattice under all the photons' light, to
 /// the tolerance: steps go on after the last photon has come to its end.
@@ -32,19 +37,15 @@ public:
 
 private:
   void Begin(const PackedPhotons& packed, int channels);
-  void StandInFor(const PackedPhotons& packed, int channels);
   std::array<cl::Event, 2> Step(const cl::CommandQueue& queue);
   void Take(const cl::CommandQueue& queue, const Buffer<float>& fluence);
   void TakeAll(const PhotonLight& photons);
-  int StepsOfTurn() const;
 
-  /// A channel, and which of the photons' it takes.
+  /// A channel, and what it takes of the photons.
   struct Channel
   {
     std::unique_ptr<LatticeChannel> lattice;
-    int from = 0;         ///< channel of the photons' light
-    double fluence = 1.0; ///< of the lattice's units, in one of the photons'
-    double power = 1.0;   ///< the same of power
+    TakenOfPhotons takes;
     Buffer<float> scatters, glows;
   };
 
@@ -54,9 +55,7 @@ private:
   const Illumination& Shining;
   const LatticeSettings& Settings;
 
-  std::vector<float> StandIn; ///< for the photons' light, in place of which the problem is put
-  std::array<Rgb, 6> StandInEscaped = {};
-  int PhotonChannels = 1;
+  std::optional<PhotonsToCome> ToCome;
   std::optional<PropagationProblem> Problem;
   Uncollided Light; ///< in the problem's units
   std::vector<Channel> Channels;

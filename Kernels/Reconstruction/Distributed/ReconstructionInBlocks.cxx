@@ -1,12 +1,13 @@
-#include "Reconstruction/ReconstructionInBlocks.h"
+#include "Reconstruction/Distributed/ReconstructionInBlocks.h"
 
 #include "Device/Clock.h"
 #include "Device/Errors.h"
 #include "Distribution/BoxExchange.h"
 #include "Distribution/SharedMedium.h"
 #include "Medium/Medium.h"
-#include "Numerics/PyramidLayout.h"
 #include "Reconstruction/ConservativePasses.h"
+#include "Reconstruction/Distributed/LevelsInBlocks.h"
+#include "Reconstruction/Distributed/PyramidBlocks.h"
 #include "Reconstruction/ReconstructionChecks.h"
 
 #include <algorithm>
@@ -20,6 +21,8 @@ namespace tyndall
 {
 namespace
 {
+using Estimator = ReconstructionSettings::Estimator;
+
 /// Levels that each rank makes of its block, and voxels round it that its own depend on by them: per level one cell of
 /// the level above for interpolation, four for gains and errors, two for details and what they are made of.
 constexpr int OwnLevels = 2;
@@ -69,14 +72,8 @@ public:
     , Shared(std::min(OwnLevels, this->Levels))
     , Own(partition.blocks[static_cast<std::size_t>(communicator.Rank())])
     , Has(this->Own.VoxelCount() > 0)
+    , Blocks(partition, this->Shared, Margin, 1 << this->Shared)
   {
-    const PyramidLayout layout(partition.whole.size);
-    this->Cells.whole.size = layout.sizes[static_cast<std::size_t>(std::min(this->Shared, layout.Top()))];
-    for (const VoxelBox& block : partition.blocks)
-    {
-      this->Around.push_back(this->BoxAround(block));
-      this->Cells.blocks.push_back(this->CellsIn(block));
-    }
   }
 
   /// @param batches  [voxel][batch][channel] of the own block
@@ -87,40 +84,7 @@ private:
   struct Local;
   struct Above;
 
-  int CellEdge() const { return 1 << this->Shared; }
-
-  /// A block and the margin, from cell to cell of the shared level.
-  VoxelBox BoxAround(const VoxelBox& block) const
-  {
-    VoxelBox box = block.VoxelCount() > 0 ? Grown(block, Margin, this->Partition.whole) : VoxelBox();
-    for (int axis = 0; axis < 3 && box.VoxelCount() > 0; ++axis)
-    {
-      const int end = EndOf(box, axis), cells = (end + this->CellEdge() - 1) / this->CellEdge();
-      box.first[axis] = box.first[axis] / this->CellEdge() * this->CellEdge();
-      box.size[axis] = std::min(cells * this->CellEdge(), this->Partition.whole.size[axis]) - box.first[axis];
-    }
-    return box;
-  }
-
-  /// The cells of the shared level whose first voxels are in a box.
-  VoxelBox CellsIn(const VoxelBox& box) const
-  {
-    VoxelBox cells;
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      cells.first[axis] = (box.first[axis] + this->CellEdge() - 1) / this->CellEdge();
-      cells.size[axis] = (EndOf(box, axis) + this->CellEdge() - 1) / this->CellEdge() - cells.first[axis];
-    }
-    return box.VoxelCount() > 0 && cells.VoxelCount() > 0 ? cells : VoxelBox();
-  }
-
-  const VoxelBox& Box() const { return this->Around[static_cast<std::size_t>(this->Others.Rank())]; }
-  Grid GridOf(const std::array<int, 3>& size) const
-  {
-    Grid grid = this->Partition.whole;
-    grid.size = size;
-    return grid;
-  }
+  const VoxelBox& Box() const { return this->Blocks.Around(this->Others.Rank()); }
 
   Device& TheDevice;
   Communicator& Others;
@@ -130,9 +94,8 @@ private:
   const int Levels;
   const int Shared; ///< the lowest level that each rank has of all
   const VoxelBox Own;
-  const bool Has;               ///< voxels
-  std::vector<VoxelBox> Around; ///< by rank, the voxels that it works on
-  BlockPartition Cells;         ///< of the shared level, those that ranks make known
+  const bool Has; ///< voxels
+  const PyramidBlocks Blocks;
 };
 
 /// Levels of the block and its margin, up to the shared one.
@@ -154,7 +117,7 @@ struct BlockReconstruction::Local
   NoisyLight LightOf(const BlockReconstruction& block, const Described& what) const
   {
     NoisyLight of;
-    of.grid = block.GridOf(block.Box().size);
+    of.grid = block.Blocks.GridOf(block.Box().size);
     of.channels = what.channels;
     of.batches = what.batches;
     of.batchFluence = this->values.data();
@@ -204,12 +167,11 @@ ReconstructedLight BlockReconstruction::Run(
   const Described& what, const std::vector<float>& batches, const std::vector<float>& directions)
 {
   const int width = what.batches * what.channels;
-  std::vector<float> around = ValuesInBox(this->Others, this->Partition, this->Around, batches, width);
-  std::vector<float> vectors =
-    what.directions ? ValuesInBox(this->Others, this->Partition, this->Around, directions, 3) : std::vector<float>();
-  const int fields = what.batches + what.channels + (what.directions ? 3 : 0);
-  const VoxelBox all = { {}, this->Cells.whole.size }, cells = this->CellsIn(this->Box());
-  const VoxelBox& ownCells = this->Cells.blocks[static_cast<std::size_t>(this->Others.Rank())];
+  std::vector<float> around = ValuesInBox(this->Others, this->Partition, this->Blocks.around, batches, width);
+  std::vector<float> vectors = what.directions
+    ? ValuesInBox(this->Others, this->Partition, this->Blocks.around, directions, 3)
+    : std::vector<float>();
+  const VoxelBox all = { {}, this->Blocks.SharedSize() }, cells = this->Blocks.CellsIn(this->Box());
   std::unique_ptr<Local> local;
   std::vector<float> known;
   this->Others.Together([&] {
@@ -217,15 +179,10 @@ ReconstructedLight BlockReconstruction::Run(
     {
       local = std::make_unique<Local>(*this, what, std::move(around), std::move(vectors));
       local->passes.Build();
-      known = PartOf(local->passes.LightOf(this->Shared).Read(), cells, ownCells, fields);
+      known = local->passes.LightOf(this->Shared).Read();
     }
   });
-  std::vector<VoxelBox> wanted;
-  for (const VoxelBox& block : this->Partition.blocks)
-  {
-    wanted.push_back(block.VoxelCount() > 0 ? all : VoxelBox());
-  }
-  known = ValuesInBox(this->Others, this->Cells, wanted, known, fields);
+  known = this->Blocks.Gather(this->Others, known, what.batches + what.channels + (what.directions ? 3 : 0));
   std::array<double, 3> total = {};
   this->Others.Together([&] {
     if (this->Has)
@@ -320,6 +277,63 @@ void FindTotals(Communicator& communicator, const std::vector<float>& batches, D
   std::copy(sum.begin(), sum.end(), what.total.begin());
   what.largest = communicator.Largest({ largest })[0];
 }
+
+/// What a rank can tell of its own light.
+void CheckBlock(const NoisyLight& light, const Grid& whole, const VoxelBox& own, Estimator estimator)
+{
+  constexpr float Most = std::numeric_limits<float>::max(), LongestDirection = 1.001f;
+  CheckPresence(light, estimator);
+  const auto check = [&](const float* values, int width, bool needed, const char* name, float low, float high) {
+    if (values && needed)
+    {
+      CheckValues(values, width, light.grid, whole, own, low, high, name);
+    }
+  };
+  const bool conservative = estimator == Estimator::Conservative;
+  check(light.batchFluence, light.batches * light.channels, conservative, "fluence_batches", 0.0f, Most);
+  check(light.fluence, light.channels, !conservative, "fluence", 0.0f, Most);
+  check(light.meanDirection, 3, true, "mean_direction", -LongestDirection, LongestDirection);
+  check(light.photonCount, 1, NeedsCounts(estimator), "photon_count", 0.0f, Most);
+  check(light.photonWeight, 1, NeedsWeights(estimator), "photon_weight", 0.0f, Most);
+}
+
+/// By the conservative estimator: channels of several colours each by itself, too.
+ReconstructedLight ReconstructBatches(
+  BlockReconstruction& block, Communicator& communicator, const NoisyLight& light, Described& what, std::size_t voxels)
+{
+  const std::size_t width = static_cast<std::size_t>(what.batches) * static_cast<std::size_t>(what.channels);
+  const std::vector<float> batches(light.batchFluence, light.batchFluence + voxels * width);
+  const std::vector<float> directions(light.meanDirection, light.meanDirection + (what.directions ? 3 * voxels : 0));
+  FindTotals(communicator, batches, what);
+  ReconstructedLight result = block.Run(what, batches, directions);
+  if (what.channels == 1 || OneColourOnAll(communicator, batches))
+  {
+    return result;
+  }
+  Described grey = what;
+  grey.channels = 1;
+  grey.directions = false;
+  double before = 0.0, after = 0.0;
+  for (std::size_t c = 0; c < 3; ++c)
+  {
+    std::vector<float> channel(batches.size() / 3);
+    for (std::size_t i = 0; i < channel.size(); ++i)
+    {
+      channel[i] = batches[3 * i + c];
+    }
+    FindTotals(communicator, channel, grey);
+    const ReconstructedLight one = block.Run(grey, channel, {});
+    before += grey.total[0];
+    after += grey.total[0] * (1.0 + one.bias);
+    for (std::size_t i = 0; i < voxels; ++i)
+    {
+      result.fluence[3 * i + c] = one.fluence[i];
+      result.fluenceError[3 * i + c] = one.fluenceError[i];
+    }
+  }
+  result.bias = before > 0.0 ? after / before - 1.0 : 0.0;
+  return result;
+}
 }
 
 ReconstructedLight ReconstructInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition,
@@ -328,60 +342,29 @@ ReconstructedLight ReconstructInBlocks(Device& device, Communicator& communicato
   const double start = ClockSeconds();
   const VoxelBox& own = partition.blocks[static_cast<std::size_t>(communicator.Rank())];
   const bool has = own.VoxelCount() > 0;
-  const std::size_t voxels = has ? light.grid.VoxelCount() : 0;
   communicator.Together([&] {
     partition.Check();
     Check(settings);
-    Require(settings.estimator == ReconstructionSettings::Estimator::Conservative,
-      "Only the conservative estimator works on light that is spread over ranks.");
     if (has)
     {
-      constexpr float LongestDirection = 1.001f;
-      CheckPresence(light, settings.estimator);
-      CheckValues(light.batchFluence, light.batches * light.channels, light.grid, partition.whole, own, 0.0f,
-        std::numeric_limits<float>::max(), "fluence_batches");
-      if (light.meanDirection)
-      {
-        CheckValues(light.meanDirection, 3, light.grid, partition.whole, own, -LongestDirection, LongestDirection,
-          "mean_direction");
-      }
+      CheckBlock(light, partition.whole, own, settings.estimator);
     }
     Report(monitor, 0.0);
   });
   RequireSame(communicator, "settings", true,
-    { 1.0 * static_cast<int>(settings.estimator), 1.0 * settings.levels, settings.weightStep,
-      1.0 * settings.conserve });
+    { 1.0 * static_cast<int>(settings.estimator), 1.0 * settings.levels, settings.weightStep, 1.0 * settings.level,
+      1.0 * settings.nearest, 1.0 * settings.conserve });
   Described what = DescribedBy(communicator, light, has);
-  const std::size_t width = static_cast<std::size_t>(what.batches) * static_cast<std::size_t>(what.channels);
-  const std::vector<float> batches(light.batchFluence, light.batchFluence + voxels * width);
-  const std::vector<float> directions(light.meanDirection, light.meanDirection + (what.directions ? 3 * voxels : 0));
-  FindTotals(communicator, batches, what);
-  BlockReconstruction block(device, communicator, partition, settings, monitor);
-  ReconstructedLight result = block.Run(what, batches, directions);
-  if (what.channels == 3 && !OneColourOnAll(communicator, batches))
+  ReconstructedLight result;
+  if (settings.estimator == Estimator::Conservative)
   {
-    Described grey = what;
-    grey.channels = 1;
-    grey.directions = false;
-    double before = 0.0, after = 0.0;
-    for (std::size_t c = 0; c < 3; ++c)
-    {
-      std::vector<float> channel(batches.size() / 3);
-      for (std::size_t i = 0; i < channel.size(); ++i)
-      {
-        channel[i] = batches[3 * i + c];
-      }
-      FindTotals(communicator, channel, grey);
-      const ReconstructedLight one = block.Run(grey, channel, {});
-      before += grey.total[0];
-      after += grey.total[0] * (1.0 + one.bias);
-      for (std::size_t i = 0; i < voxels; ++i)
-      {
-        result.fluence[3 * i + c] = one.fluence[i];
-        result.fluenceError[3 * i + c] = one.fluenceError[i];
-      }
-    }
-    result.bias = before > 0.0 ? after / before - 1.0 : 0.0;
+    BlockReconstruction block(device, communicator, partition, settings, monitor);
+    result = ReconstructBatches(block, communicator, light, what, has ? light.grid.VoxelCount() : 0);
+  }
+  else
+  {
+    result =
+      LevelsInBlocks(device, communicator, partition, settings, monitor).Run(light, what.channels, what.directions);
   }
   NoisyLight described = light;
   const float there = 0.0f;
