@@ -1,6 +1,7 @@
 #include "Distribution/Communicator.h"
 
 #include "Device/Errors.h"
+#include "Distribution/HeldFailure.h"
 #include "Distribution/MessageTags.h"
 
 #include <algorithm>
@@ -19,8 +20,9 @@ namespace
 enum class Trouble : char
 {
   None,
-  Stopped, ///< Aborted
-  OfInput, ///< InvalidInput
+  OfOthers, ///< NothingCame
+  Stopped,  ///< Aborted
+  OfInput,  ///< InvalidInput
   OfDevice,
   OfMemory,
   Other
@@ -40,6 +42,10 @@ Outcome Try(const std::function<void()>& work)
   try
   {
     work();
+  }
+  catch (const NothingCame& error)
+  {
+    outcome = { Trouble::OfOthers, error.what(), std::current_exception() };
   }
   catch (const Aborted& error)
   {

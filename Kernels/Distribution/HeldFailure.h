@@ -2,9 +2,20 @@
 
 #include <exception>
 #include <functional>
+#include <stdexcept>
 
 namespace tyndall
 {
+/// A rank was sent less than it waits for. Communicator::Together tells what went wrong elsewhere before it.
+struct NothingCame : std::runtime_error
+{
+  NothingCame()
+    : std::runtime_error("Ranks were not sent as much as they wait for, and none says why: something that they were "
+                         "given differs. Give all ranks the same properties.")
+  {
+  }
+};
+
 /// What has gone wrong on a rank while others wait for what it sends: it goes on, sends nothing in each message, and
 /// throws in the end.
 struct HeldFailure
@@ -32,6 +43,10 @@ struct HeldFailure
     if (this->error)
     {
       std::rethrow_exception(this->error);
+    }
+    if (this->broken)
+    {
+      throw NothingCame();
     }
   }
 

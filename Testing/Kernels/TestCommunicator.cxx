@@ -1,4 +1,5 @@
 #include "Device/Errors.h"
+#include "Distribution/HeldFailure.h"
 #include "Distribution/RanksInThreads.h"
 
 #include <gtest/gtest.h>
@@ -146,6 +147,39 @@ TEST(Communicator, ThrowsOnAllRanksWhatOneThrows)
     }),
       Aborted);
   });
+}
+
+/// Which may be that another one is stopped; where no rank says why, that.
+TEST(Communicator, ThrowsOnAllRanksWhereOneIsNotSentWhatItWaitsFor)
+{
+  for (const bool stopped : { true, false })
+  {
+    RunInThreads(3, [stopped](Communicator& ranks) {
+      HeldFailure failure;
+      failure.broken = ranks.Rank() == 0;
+      const auto work = [&] {
+        if (stopped && ranks.Rank() == 2)
+        {
+          throw Aborted();
+        }
+        failure.Throw();
+      };
+      try
+      {
+        ranks.Together(work);
+        ADD_FAILURE() << "rank " << ranks.Rank() << " goes on";
+      }
+      catch (const Aborted&)
+      {
+        EXPECT_TRUE(stopped);
+      }
+      catch (const std::runtime_error& error)
+      {
+        EXPECT_FALSE(stopped);
+        EXPECT_NE(std::string(error.what()).find("On rank 0: Ranks were not sent"), std::string::npos) << error.what();
+      }
+    });
+  }
 }
 
 TEST(Communicator, GivesUpWaitingForARankThatIsGone)
