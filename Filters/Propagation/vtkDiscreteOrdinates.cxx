@@ -88,16 +88,6 @@ vtkDiscreteOrdinates::vtkDiscreteOrdinates()
 
 vtkDiscreteOrdinates::~vtkDiscreteOrdinates() = default;
 
-std::string vtkDiscreteOrdinates::NotByBlocks(vtkInformationVector**) const
-{
-  return {};
-}
-
-std::string vtkDiscreteOrdinates::NotInBlocks(const tyndall::PieceOfMedium&, const tyndall::IlluminationInput&)
-{
-  return {};
-}
-
 tyndall::LightField vtkDiscreteOrdinates::SolvePiece(tyndall::Communicator& communicator,
   const tyndall::PieceBlocks& pieces, const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining)
 {

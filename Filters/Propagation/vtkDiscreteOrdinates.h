@@ -166,8 +166,6 @@ protected:
 
   int RequestData(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
   void Note(const tyndall::LightField& light) override;
-  std::string NotByBlocks(vtkInformationVector** inputs) const override;
-  std::string NotInBlocks(const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining) override;
   tyndall::LightField SolvePiece(tyndall::Communicator& communicator, const tyndall::PieceBlocks& pieces,
     const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining) override;
 

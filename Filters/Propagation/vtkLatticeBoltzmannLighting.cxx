@@ -222,11 +222,6 @@ tyndall::IlluminationInput vtkLatticeBoltzmannLighting::ReadShiningOn(
   return ofFaces;
 }
 
-std::string vtkLatticeBoltzmannLighting::NotInBlocks(const tyndall::PieceOfMedium&, const tyndall::IlluminationInput&)
-{
-  return {};
-}
-
 tyndall::LightField vtkLatticeBoltzmannLighting::SolvePiece(tyndall::Communicator& communicator,
   const tyndall::PieceBlocks& pieces, const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining)
 {

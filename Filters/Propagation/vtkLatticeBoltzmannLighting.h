@@ -57,8 +57,7 @@ struct MediumInput;
  * Output 1: vtkTable, one row an iteration (of steps: every 16 or so): `iteration`, `seconds`, `residual`, `change`.
  *
  * With Decomposition BLOCKS lines of links go on from rank to rank, or what voxels send each other in a step
- * (numerics.md, section 10 c): the steady light, and steps of both schemes. What blocks cannot do, beside what none of
- * the solvers can, are BlockSize and Interleaved.
+ * (numerics.md, section 10 c): the steady light, and steps of both schemes.
  *
  * EstimateError is not used.
  *
@@ -172,7 +171,6 @@ protected:
   int RequestData(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
   void Note(const tyndall::LightField& light) override;
   std::string NotByBlocks(vtkInformationVector** inputs) const override;
-  std::string NotInBlocks(const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining) override;
   tyndall::LightField SolvePiece(tyndall::Communicator& communicator, const tyndall::PieceBlocks& pieces,
     const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining) override;
   int PortOfShares() const override { return PHOTONS; }

@@ -60,7 +60,7 @@ class LastLight;
  *
  * With Decomposition BLOCKS rays go from rank to rank (numerics.md, section 4.9). Orders are accelerated as in the
  * whole where scattering is isotropic, axes are open and faces dark; elsewhere they are added up one by one, by octant
- * where the whole would be. Blocks cannot do, beside what no solver can: Source LINEAR where orders are not
+ * where the whole would be. Blocks cannot do: Source LINEAR where orders are not
  * accelerated. Errors are estimated, and targets met, as of the whole (numerics.md, section 9.2). The published scheme
  * has the light of the whole, by either Algorithm (section 3). AUTOMATIC_DECOMPOSITION leaves to the whole, beside
  * that: many orders in angular moments, between faces that reflect or round periodic axes, which it accelerates; small
@@ -260,7 +260,6 @@ protected:
 
   int RequestData(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
   void Note(const tyndall::LightField& light) override;
-  std::string NotByBlocks(vtkInformationVector**) const override { return {}; }
   std::string NotInBlocks(const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining) override;
   std::string BetterAsWhole(tyndall::Communicator& communicator, const tyndall::PieceBlocks& pieces,
     const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining) override;

@@ -198,6 +198,16 @@ int vtkScatteringSolver::RequestUpdateExtent(
   return 1;
 }
 
+std::string vtkScatteringSolver::NotByBlocks(vtkInformationVector**) const
+{
+  return {};
+}
+
+std::string vtkScatteringSolver::NotInBlocks(const tyndall::PieceOfMedium&, const tyndall::IlluminationInput&)
+{
+  return {};
+}
+
 /// What keeps this rank from solving its piece, in words; empty: nothing, and what shines on it is read.
 std::string vtkScatteringSolver::NotOnPiece(const tyndall::PieceBlocks& pieces, tyndall::PieceOfMedium& piece,
   tyndall::IlluminationInput& shining, vtkInformationVector** inputs)

@@ -182,9 +182,9 @@ protected:
 
   /// What among properties and inputs keeps this solver from solving pieces, in words for an error; empty: nothing
   /// does.
-  virtual std::string NotByBlocks(vtkInformationVector** inputs) const = 0;
+  virtual std::string NotByBlocks(vtkInformationVector** inputs) const;
   /// The same of a scene that was read.
-  virtual std::string NotInBlocks(const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining) = 0;
+  virtual std::string NotInBlocks(const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining);
   /// What of a scene that pieces can be solved of the whole is solved more exactly or much sooner for, in words that
   /// follow "better for"; empty: nothing is. Not asked of previews. All ranks call it, and are told the same.
   virtual std::string BetterAsWhole(tyndall::Communicator& communicator, const tyndall::PieceBlocks& pieces,
