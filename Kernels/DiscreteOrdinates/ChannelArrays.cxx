@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace tyndall
 {
@@ -31,9 +32,6 @@ ChannelArrays::ChannelArrays(Device& device, const OrdinatesScene& scene, const 
     this->AnyScattering = this->AnyScattering || this->Scattering.back() > 0.0f;
     this->AnyEmission = this->AnyEmission || scene.medium.emission.At(i, scene.channel) > 0.0f;
   }
-  const std::vector<double> any = scene.Sum({ this->AnyScattering ? 1.0 : 0.0, this->AnyEmission ? 1.0 : 0.0 });
-  this->AnyScattering = any[0] > 0.0;
-  this->AnyEmission = any[1] > 0.0;
   this->SigmaT = this->Load("sigma_t", 1.0, this->ScatteredAway);
   this->SigmaS = this->Load("sigma_s", 0.0, this->ScatteredAway);
   this->Scale = Buffer<float>(device, this->Voxels, "the sources");
@@ -46,6 +44,13 @@ ChannelArrays::ChannelArrays(Device& device, const OrdinatesScene& scene, const 
   {
     light->Fill(0.0f);
   }
+}
+
+void ChannelArrays::LookAtAllRanks()
+{
+  const std::vector<double> any = this->Scene.Sum({ this->AnyScattering ? 1.0 : 0.0, this->AnyEmission ? 1.0 : 0.0 });
+  this->AnyScattering = any[0] > 0.0;
+  this->AnyEmission = any[1] > 0.0;
 }
 
 Buffer<float> ChannelArrays::Load(const char* what, double absorbed, double scattered) const
@@ -69,15 +74,20 @@ void ChannelArrays::AddLamps(
   {
     return;
   }
-  const LampScattering scattering(this->TheDevice, this->Layout.grid, this->Angles.groups, this->Angles.function);
-  const Buffer<float> sigma_t = this->Load("sigma_t", 1.0, 1.0), sigma_s = this->Load("sigma_s", 0.0, 1.0);
+  std::optional<LampScattering> scattering;
+  Buffer<float> sigma_t, sigma_s, path;
+  this->Scene.Together([&] {
+    scattering.emplace(this->TheDevice, this->Layout.grid, this->Angles.groups, this->Angles.function);
+    sigma_t = this->Load("sigma_t", 1.0, 1.0);
+    sigma_s = this->Load("sigma_s", 0.0, 1.0);
+    path = Buffer<float>(this->TheDevice, this->Layout.Floats(), "the light of a lamp");
+  });
   const SweepMaker sweeps = [&](const SweepRequest& request) { return this->SweepOf(sigma_t, periodic, request); };
   std::unique_ptr<LampsInBlocks> nearLamps;
-  Buffer<float> path(this->TheDevice, this->Layout.Floats(), "the light of a lamp");
   const double all = static_cast<double>(this->Scene.lamps.size());
   for (std::size_t i = 0; i < this->Scene.lamps.size(); ++i)
   {
-    path.Fill(0.0f);
+    this->Scene.Together([&] { path.Fill(0.0f); });
     UncollidedVolume volume = { this->TheDevice, this->Layout, sigma_t, periodic, sweeps,
       { &path, nullptr, nullptr, nullptr, this->Faces ? &this->Faces->Out() : nullptr } };
     if (this->Scene.ranks)
@@ -87,12 +97,12 @@ void ChannelArrays::AddLamps(
     const Monitor ofLamp = OfPart(monitor, i / all, (i + 1) / all);
     this->CountLamp(UncollidedLamp(this->Scene.lamps[i]).AddTo(volume, ofLamp), result.ledger);
     this->Scene.Together([&] {
-      scattering.Add(this->Scene.lamps[i], path, sigma_s, { source, this->Scale, this->Direct, this->Light });
+      scattering->Add(this->Scene.lamps[i], path, sigma_s, { source, this->Scale, this->Direct, this->Light });
     });
   }
   if (this->Scene.uncollided.IsThere())
   {
-    this->AddGiven(scattering, sigma_s, source, result);
+    this->AddGiven(*scattering, sigma_s, source, result);
   }
 }
 
@@ -117,6 +127,7 @@ void ChannelArrays::SpreadOverRanks(UncollidedVolume& volume, std::unique_ptr<La
 {
   const OrdinatesRanks& ranks = *this->Scene.ranks;
   volume.whole = &ranks.partition.whole;
+  volume.together = [&ranks](const std::function<void()>& work) { ranks.others.Together(work); };
   volume.followLamp = [this, &ranks, &nearLamps, periodic = volume.periodic, &sigma_t = volume.sigma_t](
                         const SweepVolume& ofChannels, const tyndall::Light& lamp, const Monitor& monitor) {
     if (!nearLamps)
@@ -136,16 +147,16 @@ void ChannelArrays::AddGiven(
 {
   UncollidedImage image = this->Scene.uncollided;
   const double size = this->Layout.grid.VoxelVolume();
-  const Buffer<float> path = PlanarOnDevice(
-    this->TheDevice, this->Layout, 1,
-    [&](std::size_t i, int) { return static_cast<float>(size * image.fluence.At(i, this->Scene.channel)); },
-    "the light given");
-  std::vector<float> ways(3 * this->Voxels + 1, 0.0f);
-  if (image.meanDirection.values)
-  {
-    std::copy_n(image.meanDirection.values, 3 * this->Voxels, ways.begin());
-  }
   this->Scene.Together([&] {
+    const Buffer<float> path = PlanarOnDevice(
+      this->TheDevice, this->Layout, 1,
+      [&](std::size_t i, int) { return static_cast<float>(size * image.fluence.At(i, this->Scene.channel)); },
+      "the light given");
+    std::vector<float> ways(3 * this->Voxels + 1, 0.0f);
+    if (image.meanDirection.values)
+    {
+      std::copy_n(image.meanDirection.values, 3 * this->Voxels, ways.begin());
+    }
     scattering.AddAlong(Buffer<float>(this->TheDevice, ways, "mean directions"), path, sigma_s,
       { source, this->Scale, this->Direct, this->Light });
   });
@@ -209,20 +220,22 @@ void ChannelArrays::ScatterEvenly(const std::vector<float>& values, double facto
 
 void ChannelArrays::EmitEvenly(const Buffer<float>& source, EnergyLedger& ledger) const
 {
-  std::vector<float> emission(this->Voxels);
   double sum = 0.0;
-  for (std::size_t i = 0; i < this->Voxels; ++i)
-  {
-    emission[i] = this->TheMedium.emission.At(i, this->Scene.channel);
-    sum += emission[i];
-  }
+  this->Scene.Together([&] {
+    std::vector<float> emission(this->Voxels);
+    for (std::size_t i = 0; i < this->Voxels; ++i)
+    {
+      emission[i] = this->TheMedium.emission.At(i, this->Scene.channel);
+      sum += emission[i];
+    }
+    const Buffer<float> values(this->TheDevice, emission, "emission");
+    cl::Kernel even = this->TheDevice.Kernel("even_source", kernel_source::UpwindSweep, Define("REAL_WIDTH", 8));
+    With(even, source, values, cl_ulong(OrdinateStride(this->Voxels)));
+    this->TheDevice.Queue().enqueueNDRangeKernel(
+      even, cl::NullRange, cl::NDRange(this->Voxels, this->Angles.groups.Count()));
+    this->TheDevice.Finish(); // the values go
+  });
   ledger.Emit(0, 4.0 * Pi * this->Scene.Sum({ sum * this->Layout.grid.VoxelVolume() })[0]);
-  const Buffer<float> values(this->TheDevice, emission, "emission");
-  cl::Kernel even = this->TheDevice.Kernel("even_source", kernel_source::UpwindSweep, Define("REAL_WIDTH", 8));
-  With(even, source, values, cl_ulong(OrdinateStride(this->Voxels)));
-  this->TheDevice.Queue().enqueueNDRangeKernel(
-    even, cl::NullRange, cl::NDRange(this->Voxels, this->Angles.groups.Count()));
-  this->TheDevice.Finish(); // the values go
 }
 
 void ChannelArrays::Read(OrdinatesResult& result) const

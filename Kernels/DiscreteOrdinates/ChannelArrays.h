@@ -22,8 +22,12 @@ namespace tyndall
 class ChannelArrays
 {
 public:
+  /// Asks no other rank: it may fail on one alone.
   /// @param scene, angles  must stay
   ChannelArrays(Device& device, const OrdinatesScene& scene, const OrdinatesAngles& angles, bool netFlux);
+
+  /// Whether any rank's voxels emit or scatter: before anybody asks. All ranks call it, as most of what follows.
+  void LookAtAllRanks();
 
   /// Bytes that these arrays take on the device.
   static std::size_t Bytes(const Grid& grid, bool netFlux);
@@ -44,7 +48,7 @@ public:
   Powers PowersOf(const std::vector<float>& values, bool lamps) const;
   /// W that are scattered of the difference of two fluences, its magnitude in each voxel. All ranks call it.
   double MagnitudeOf(const std::vector<float>& values, const std::vector<float>& others) const;
-  /// Emission of the voxels into every direction. W / (length^3 sr)
+  /// Emission of the voxels into every direction. W / (length^3 sr). All ranks call it, where any emits.
   void EmitEvenly(const Buffer<float>& source, EnergyLedger& ledger) const;
   /// Adds what is scattered evenly of a fluence, which may be negative.
   void ScatterEvenly(const std::vector<float>& values, double factor, const Buffer<float>& source) const;

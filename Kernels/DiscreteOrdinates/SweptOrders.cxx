@@ -57,6 +57,7 @@ public:
 
   OrdinatesResult Run(const Monitor& monitor)
   {
+    this->Arrays.LookAtAllRanks();
     this->FirstOrder(OfPart(monitor, 0.0, 0.1));
     while (!this->Done())
     {
@@ -68,14 +69,7 @@ public:
       this->Order(
         monitor ? Monitor([&](double) { return monitor(std::clamp(0.1 + 0.9 * done, 0.1, 0.99)); }) : Monitor());
     }
-    this->Arrays.Read(this->Result);
-    this->AddSeries();
-    if (this->Arrays.Faces)
-    {
-      this->Result.facePower = this->Arrays.Faces->PerArea(this->Arrays.Faces->LeftInAll());
-    }
-    this->Leave();
-    this->Result.convergence = std::move(this->Record.All());
+    this->Scene.Together([&] { this->Finish(); });
     return std::move(this->Result);
   }
 
@@ -86,23 +80,27 @@ private:
   void FirstOrder(const Monitor& monitor)
   {
     const bool swept = this->Scene.incoming || this->Arrays.Emits() || !this->Settings.leaveOut;
-    this->Radiance.Fill(0.0f);
+    this->Scene.Together([&] { this->Radiance.Fill(0.0f); });
     if (this->Arrays.Emits())
     {
-      this->Scene.Together([&] { this->Arrays.EmitEvenly(this->Radiance, this->Result.ledger); });
+      this->Arrays.EmitEvenly(this->Radiance, this->Result.ledger);
     }
     if (swept)
     {
       this->SweepAndScatter(this->Scene.incoming, OfPart(monitor, 0.0, 0.5));
-      this->Result.direct = this->Arrays.Light.order.Read();
     }
-    else
-    {
+    this->Scene.Together([&] {
+      if (swept)
+      {
+        this->Result.direct = this->Arrays.Light.order.Read();
+        return;
+      }
       this->Source.Fill(0.0f);
       this->Result.direct.assign(this->Arrays.Voxels, 0.0f);
-    }
+    });
     this->Arrays.AddLamps(this->Out(), this->Settings.periodic, this->Result, OfPart(monitor, 0.5, 1.0));
-    const std::vector<float> lamps = this->Arrays.Direct.Read();
+    std::vector<float> lamps;
+    this->Scene.Together([&] { lamps = this->Arrays.Direct.Read(); });
     const ChannelArrays::Powers unscattered = this->Arrays.PowersOf(this->Result.direct, false);
     const ChannelArrays::Powers ofLamps = this->Arrays.PowersOf(lamps, true);
     this->Count(unscattered, ofLamps);
@@ -125,11 +123,13 @@ private:
     }
     const double before = this->Scene.guess.firstScattered;
     const double scale = before > 0.0 ? this->Result.firstScattered / before : 0.0;
-    for (float value : this->Scene.guess.values)
-    {
-      this->Guess.push_back(static_cast<float>(scale * value));
-    }
-    this->Scene.Together([&] { this->Arrays.ScatterEvenly(this->Guess, 1.0, this->Out()); });
+    this->Scene.Together([&] {
+      for (float value : this->Scene.guess.values)
+      {
+        this->Guess.push_back(static_cast<float>(scale * value));
+      }
+      this->Arrays.ScatterEvenly(this->Guess, 1.0, this->Out());
+    });
     this->GoesOn += this->Arrays.PowersOf(this->Guess, false).scattered;
     this->Record.BeginWarm(this->Scene.guess.rate);
   }
@@ -137,7 +137,8 @@ private:
   void Order(const Monitor& monitor)
   {
     this->SweepAndScatter({}, monitor);
-    const std::vector<float> found = this->Arrays.Light.order.Read();
+    std::vector<float> found;
+    this->Scene.Together([&] { found = this->Arrays.Light.order.Read(); });
     const ChannelArrays::Powers powers = this->Arrays.PowersOf(found, false);
     if (!this->IsWarm())
     {
@@ -158,6 +159,18 @@ private:
     this->GoesOn = this->Arrays.MagnitudeOf(found, this->Guess) + std::abs(this->OnTheWay) + reflected;
     this->Record.Add(this->GoesOn, powers.scattered, this->Result.ledger);
     this->Guess.clear();
+  }
+
+  void Finish()
+  {
+    this->Arrays.Read(this->Result);
+    this->AddSeries();
+    if (this->Arrays.Faces)
+    {
+      this->Result.facePower = this->Arrays.Faces->PerArea(this->Arrays.Faces->LeftInAll());
+    }
+    this->Leave();
+    this->Result.convergence = std::move(this->Record.All());
   }
 
   bool GoesOnAsSeries() const
@@ -209,9 +222,11 @@ private:
       });
       return;
     }
-    this->Scene.Together([&] { this->Scattering.Gather(this->Radiance, this->Arrays.Light, monitor); });
-    this->Radiance.Fill(0.0f); // only what goes round periodic axes is left
-    this->Source.Fill(0.0f);
+    this->Scene.Together([&] {
+      this->Scattering.Gather(this->Radiance, this->Arrays.Light, monitor);
+      this->Radiance.Fill(0.0f); // only what goes round periodic axes is left
+      this->Source.Fill(0.0f);
+    });
   }
 
   /// What faces give back of the light that left in this order, and of lamps before, has not left.
@@ -221,7 +236,8 @@ private:
     {
       return;
     }
-    const std::array<Rgb, 6> back = this->Arrays.Faces->Reflect();
+    std::array<Rgb, 6> back = {};
+    this->Scene.Together([&] { back = this->Arrays.Faces->Reflect(); });
     this->Reflected = 0.0;
     for (int face = 0; face < 6; ++face)
     {

@@ -79,7 +79,7 @@ void ShareFigures(Communicator& communicator, bool found, LightField& light)
   ForNumbers(light, [&](double& number) { number = *next++; });
   ForWholeNumbers(light, [&](int& number) { number = static_cast<int>(*next++); });
   light.device = WordsOfAny(communicator, found ? light.device : std::string());
-  light.doubts = ShareLines(communicator, found, light.doubts);
+  light.doubts.clear();
   light.leftOut = ShareLines(communicator, found, light.leftOut);
 }
 }

@@ -6,7 +6,8 @@
 namespace tyndall
 {
 /// What is told of light that one rank found, to all: channels, balance, powers through faces, half-range flux,
-/// convergence, sweeps saved, device, doubts and what was left out. No arrays. All ranks call it.
+/// convergence, sweeps saved, device and what was left out. No arrays, and no doubts: a preview is not judged. All
+/// ranks call it.
 /// @param found  on the one rank that has it
 void ShareFigures(Communicator& communicator, bool found, LightField& light);
 }

@@ -2,6 +2,7 @@
 // the whole (numerics.md, section 6.5), also where the voxels beside them are another rank's.
 
 #include "BlocksOfLight.h"
+#include "MemoryOfOneRank.h"
 
 #include "Light/LeftOut.h"
 
@@ -110,4 +111,32 @@ TEST_F(OctantsInBlocks, SayWhereThereAreNone)
     EXPECT_THAT(
       light.leftOut, testing::Contains(std::string(densest < 1.0f ? left_out::ThinVoxels : left_out::NotByOctant)));
   }
+}
+
+/// Where orders are added up by cells, as of the whole.
+TEST_F(OctantsInBlocks, SayThatCellsHaveNone)
+{
+  RandomMedium whole(Grid{ { 22, 19, 18 } }, 1, 0.5f, 5);
+  Share(whole, 0.02f, 0.98f);
+  PropagationSettings settings = ByOctant();
+  settings.maximumOrders = 0;
+  settings.tolerance = 1e-6;
+  settings.acceleration = PropagationAcceleration::Automatic;
+  const LightField light =
+    LightOfAll(GetDevice(), BlockPartition::Even(whole.medium.grid, 2), whole, LitFromOutside(), settings);
+  EXPECT_THAT(light.leftOut, testing::Contains(std::string(left_out::NotByOctant)));
+  EXPECT_THAT(light.leftOut, testing::Not(testing::Contains(std::string("acceleration: few scattering orders do"))));
+}
+
+TEST_F(OctantsInBlocks, FailTogetherWhereMemoryEnds)
+{
+  const RandomMedium whole(Grid{ { 4, 3, 3 } }, 1, 4.0f, 6);
+  const BlockPartition partition = BlockPartition::Even(whole.medium.grid, 2);
+  PropagationSettings settings = ByOctant();
+  settings.maximumOrders = 2;
+  settings.directionsPerFace = 1;
+  ExpectToFailTogether(GetDevice(), 2, 1000, [&](Device& device, Communicator& communicator) {
+    PartOf part(whole, partition.blocks[communicator.Rank()]);
+    SolveInBlocks(device, communicator, partition, part.medium, Lit(), settings);
+  });
 }

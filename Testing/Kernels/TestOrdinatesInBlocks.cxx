@@ -2,6 +2,7 @@
 
 #include "DeviceTest.h"
 #include "MediumInBlocks.h"
+#include "MemoryOfOneRank.h"
 
 #include "DiscreteOrdinates/DiscreteOrdinates.h"
 #include "DiscreteOrdinates/Distributed/OrdinatesInBlocks.h"
@@ -296,6 +297,22 @@ OrdinatesSettings AsPublished(int steps = 0)
   OrdinatesSettings settings = SettingsOf(steps);
   settings.scheme = OrdinatesScheme::Published;
   return settings;
+}
+
+TEST_F(OrdinatesBlocks, FailTogetherWhereMemoryEnds)
+{
+  MediumToCut medium = Thin({ 4, 3, 3 });
+  AddNearLamps(medium.scene);
+  const BlockPartition partition = BlockPartition::Even(medium.scene.medium.grid, 2);
+  const auto expect = [&](const OrdinatesSettings& settings, std::size_t bytes) {
+    ExpectToFailTogether(this->GetDevice(), 2, bytes, [&](Device& device, Communicator& communicator) {
+      MediumToCut part = medium.Part(partition.blocks[communicator.Rank()]);
+      part.Attach();
+      SolveOrdinatesInBlocks(device, communicator, partition, part.scene.medium, part.scene.light, settings);
+    });
+  };
+  expect(SettingsOf(2), 140000); // that nobody says no to beforehand
+  expect(AsPublished(2), 290000);
 }
 
 /// Step by step: with near lamps, in blocks of all kinds, between dark faces and such as give back light.

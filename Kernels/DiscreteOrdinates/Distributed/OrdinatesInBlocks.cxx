@@ -97,8 +97,10 @@ private:
     const OrdinatesResult found = IsPublished(this->Settings)
       ? SolvePublishedOrders(this->TheDevice, ofChannel, angles, this->Settings, monitor)
       : SolveSweptOrders(this->TheDevice, ofChannel, angles, this->Settings, monitor);
-    TakeChannel(light, found, channel);
-    warm.Take(found, channel);
+    this->Others.Together([&] {
+      TakeChannel(light, found, channel);
+      warm.Take(found, channel);
+    });
     return found.diverged;
   }
 

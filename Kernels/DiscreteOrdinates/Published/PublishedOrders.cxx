@@ -54,6 +54,7 @@ public:
 
   OrdinatesResult Run(const Monitor& monitor)
   {
+    this->Arrays.LookAtAllRanks();
     this->Begin(OfPart(monitor, 0.0, 0.1));
     do
     {
@@ -77,7 +78,7 @@ private:
     });
     if (this->Arrays.Emits())
     {
-      this->Scene.Together([&] { this->Arrays.EmitEvenly(this->Steady, this->Result.ledger); });
+      this->Arrays.EmitEvenly(this->Steady, this->Result.ledger);
     }
     this->Arrays.AddLamps(this->Steady, this->Settings.periodic, this->Result, monitor);
     this->OfLamps = this->Result.ledger;

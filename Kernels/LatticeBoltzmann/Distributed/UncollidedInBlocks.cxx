@@ -149,6 +149,7 @@ UncollidedVolume UncollidedInBlocks::Volume()
   UncollidedVolume volume = { this->TheDevice, this->Layout, this->SigmaT, this->Settings.periodic, sweeps,
     this->ToOwn() };
   volume.whole = &this->Partition.whole;
+  volume.together = [this](const std::function<void()>& work) { this->Others.Together(work); };
   volume.followLamp = [this](const SweepVolume& ofChannels, const Light& lamp, const Monitor& monitor) {
     if (!this->NearLamps)
     {

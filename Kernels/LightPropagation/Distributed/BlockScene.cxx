@@ -45,9 +45,9 @@ void RequireSame(Communicator& communicator, bool has, const Medium& medium, con
   RequireSame(communicator, "g, or the phase function", has, scatters);
   RequireSame(communicator, "settings", true,
     { 1.0 * settings.directionsPerFace, 1.0 * settings.mapResolution, 1.0 * settings.maximumOrders, settings.tolerance,
-      1.0 * settings.netFlux, 1.0 * settings.leaveOut, 1.0 * settings.staggeredRays, 1.0 * settings.angularDegree,
-      1.0 * settings.storeMoments, 1.0 * settings.uncollidedDirections, 1.0 * settings.facePower,
-      1.0 * settings.periodic[0], 1.0 * settings.periodic[1], 1.0 * settings.periodic[2],
+      1.0 * settings.netFlux, 1.0 * settings.firstMoments, 1.0 * settings.leaveOut, 1.0 * settings.staggeredRays,
+      1.0 * settings.angularDegree, 1.0 * settings.storeMoments, 1.0 * settings.uncollidedDirections,
+      1.0 * settings.facePower, 1.0 * settings.periodic[0], 1.0 * settings.periodic[1], 1.0 * settings.periodic[2],
       1.0 * static_cast<int>(settings.source), 1.0 * static_cast<int>(settings.acceleration), settings.emissionError });
   std::vector<double> light = { 1.0 * static_cast<double>(illumination.lights.size()), Sum(illumination.sky),
     1.0 * illumination.environment.width, 1.0 * illumination.environment.height };

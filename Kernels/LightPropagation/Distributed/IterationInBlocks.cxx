@@ -95,16 +95,11 @@ void IterationInBlocks::MakeCells()
   }
 }
 
-/// Where orders are added up one by one.
+/// Where orders are added up one by one; words where they are not, too.
 void IterationInBlocks::MakeAtFaces()
 {
   BlockOnDevice& block = this->Block;
-  if (this->Cells)
-  {
-    return;
-  }
-  const OctantSources::Voxels voxels = CountThickVoxels(block.Others, block.Scene);
-  if (OctantSourcesMatter(voxels, block.Scene, block.Settings))
+  if (!this->Cells && OctantSourcesMatter(block.Others, block.Scene, block.Settings))
   {
     block.Others.Together([&] {
       this->AtFaces.emplace(OctantSources::Scene{ block.TheDevice, block.Settings, block.Layout, block.OnDevice,
@@ -113,7 +108,8 @@ void IterationInBlocks::MakeAtFaces()
   }
   else if (block.Settings.source == PropagationSource::Octants)
   {
-    this->NotByOctant = { OctantSources::AreThick(voxels) ? left_out::NotByOctant : left_out::ThinVoxels };
+    const bool thick = OctantSources::AreThick(CountThickVoxels(block.Others, block.Scene));
+    this->NotByOctant = { thick ? left_out::NotByOctant : left_out::ThinVoxels };
   }
 }
 
@@ -174,10 +170,12 @@ void IterationInBlocks::SweepOrder(SweepOperator& sweep, BeamsInSource& beams, c
   {
     return;
   }
-  if (this->Order == 0)
-  {
-    beams.Hold();
-  }
+  this->Block.Others.Together([&] {
+    if (this->Order == 0)
+    {
+      beams.Hold();
+    }
+  });
   const SweepTally tally = sweep.Apply(this->Shining ? &this->Block.Source : nullptr, boundary, monitor);
   this->Result.ledger.Count(tally);
   this->OnTheWay = tally.onTheWay;
@@ -206,7 +204,8 @@ void IterationInBlocks::Reflect()
   {
     return;
   }
-  const std::array<Rgb, 6> back = this->Block.Faces->Reflect();
+  std::array<Rgb, 6> back = {};
+  this->Block.Others.Together([&] { back = this->Block.Faces->Reflect(); });
   for (int face = 0; face < 6; ++face)
   {
     for (int c = 0; c < 3; ++c)

@@ -86,10 +86,12 @@ SweepTally UncollidedOverRanks::AddAll(const Buffer<float>* shown, OctantSources
     const Monitor ofLamp = OfPart(monitor, i / all, (i + 1) / all);
     Add(tally, this->OnAllRanks([&] { return this->AddLampAt(i, atFaces, ofLamp); }));
   }
-  if (this->Block.Has && shown)
-  {
-    this->Block.Scattering->AddFirstScattered(this->Block.WholeDeposit(), *shown);
-  }
+  this->Block.Others.Together([&] {
+    if (this->Block.Has && shown)
+    {
+      this->Block.Scattering->AddFirstScattered(this->Block.WholeDeposit(), *shown);
+    }
+  });
   if (const BoundaryLight* const boundary = this->Incident.FineBoundary())
   {
     Deposit deposit = this->Block.WholeDeposit();
@@ -106,14 +108,18 @@ SweepTally UncollidedOverRanks::AddAll(const Buffer<float>* shown, OctantSources
   {
     Add(tally, this->AddGiven(monitor));
   }
-  if (this->Block.Faces)
-  {
-    this->Block.Faces->TakeUncollided();
-  }
+  this->Block.Others.Together([&] {
+    if (this->Block.Faces)
+    {
+      this->Block.Faces->TakeUncollided();
+    }
+  });
   return tally;
 }
 
 /// What goes wrong on one rank does on all: light is swept by all together.
+/// @param add  throws on one rank alone after the last step that all take together, and not before: what may fail there
+///   stands in Together
 SweepTally UncollidedOverRanks::OnAllRanks(const std::function<SweepTally()>& add)
 {
   SweepTally tally;
@@ -144,6 +150,7 @@ UncollidedVolume UncollidedOverRanks::VolumeOf(const Deposit& deposit)
   volume.whole = &block.Partition.whole;
   volume.basis = block.Basis();
   volume.fetchBeyond = [&block](const Buffer<float>& byFaces) { return block.Across.Fetch(byFaces); };
+  volume.together = [&block](const std::function<void()>& work) { block.Others.Together(work); };
   volume.followLamp = [this, &block](const SweepVolume& ofChannels, const Light& lamp, const Monitor& ofLamp) {
     if (!this->NearLamps)
     {
@@ -174,11 +181,13 @@ SweepTally UncollidedOverRanks::AddLampAt(std::size_t lamp, OctantSources* atFac
   }
   UncollidedVolume volume = this->VolumeOf(this->Block.WholeDeposit());
   const SweptMoments* const angular = this->Block.Angular.get();
-  if (angular)
-  {
-    this->OfLamp.Fill(0.0f);
-    volume.beamPath = &this->OfLamp;
-  }
+  this->Block.Others.Together([&] { // without voxels there are no moments
+    if (angular)
+    {
+      this->OfLamp.Fill(0.0f);
+      volume.beamPath = &this->OfLamp;
+    }
+  });
   const SweepTally tally = UncollidedLamp(this->Incident.Lamps()[lamp]).AddTo(volume, monitor);
   const int beam = angular ? angular->BeamOf(lamp) : -1;
   if (beam >= 0)

@@ -21,11 +21,9 @@ constexpr double Many = 0.25; ///< of the voxels that scatter: few are walls, an
 constexpr double Opaque = 1e4;
 
 /// Whether an automatic source is to be by octant.
-bool MatterUnasked(const OctantSources::Voxels& voxels, const PropagationSettings& settings)
+bool MatterUnasked(const OctantSources::Voxels& voxels)
 {
-  return settings.source == PropagationSource::Automatic && settings.maximumOrders == 0 &&
-    settings.acceleration == PropagationAcceleration::Automatic && voxels.scattering > 0.0 &&
-    voxels.thick >= Many * voxels.scattering;
+  return voxels.scattering > 0.0 && voxels.thick >= Many * voxels.scattering;
 }
 }
 
@@ -58,19 +56,28 @@ OctantSources::Voxels OctantSources::Count(const Medium& medium, const Truncated
   return voxels;
 }
 
+bool OctantSources::MayMatter(const PropagationSettings& settings, bool scatters, int degree, bool otherSources)
+{
+  const bool unasked = settings.source == PropagationSource::Automatic && settings.maximumOrders == 0 &&
+    settings.acceleration == PropagationAcceleration::Automatic;
+  return (settings.source == PropagationSource::Octants || unasked) && scatters && degree == 0 && !otherSources &&
+    !settings.firstMoments && settings.maximumOrders != 1;
+}
+
 bool OctantSources::Matter(
   const Voxels& voxels, const PropagationSettings& settings, bool scatters, int degree, bool otherSources)
 {
-  const bool wanted =
-    settings.source == PropagationSource::Octants ? AreThick(voxels) : MatterUnasked(voxels, settings);
-  return wanted && scatters && degree == 0 && !otherSources && !settings.firstMoments && settings.maximumOrders != 1 &&
-    voxels.thickest <= Opaque;
+  const bool wanted = settings.source == PropagationSource::Octants ? AreThick(voxels) : MatterUnasked(voxels);
+  return MayMatter(settings, scatters, degree, otherSources) && wanted && voxels.thickest <= Opaque;
 }
 
 bool OctantSources::Matter(const PropagationProblem& problem, bool otherSources)
 {
-  return Matter(Count(problem.TheMedium(), problem.Scattering(), problem.Channels()), problem.Settings(),
-    problem.Traits().scatters, problem.Scattering().Degree(), otherSources);
+  const bool scatters = problem.Traits().scatters;
+  const int degree = problem.Scattering().Degree();
+  return MayMatter(problem.Settings(), scatters, degree, otherSources) &&
+    Matter(Count(problem.TheMedium(), problem.Scattering(), problem.Channels()), problem.Settings(), scatters, degree,
+      otherSources);
 }
 
 OctantSources::OctantSources(const Scene& scene)

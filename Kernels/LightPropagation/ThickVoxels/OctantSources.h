@@ -35,6 +35,8 @@ public:
   /// that scatter are thick or more, and the orders are as many as the tolerance asks for.
   static bool Matter(const PropagationProblem& problem, bool otherSources);
 
+  /// Whether it may matter, whatever the voxels are: to be asked before they are counted.
+  static bool MayMatter(const PropagationSettings& settings, bool scatters, int degree, bool otherSources);
   static Voxels Count(const Medium& medium, const TruncatedScattering& scattering, int channels);
   static bool Matter(
     const Voxels& voxels, const PropagationSettings& settings, bool scatters, int degree, bool otherSources);

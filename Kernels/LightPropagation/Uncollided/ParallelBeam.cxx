@@ -88,10 +88,13 @@ SweepTally DepositBeam(const UncollidedVolume& volume, const Light& light, const
   {
     return SweepBeam(volume, light, false, volume.deposit, monitor);
   }
-  Buffer<float> path(volume.device, volume.layout.Floats(), "the light of a beam");
-  Buffer<float> partialCurrents(volume.device, volume.layout.Floats(6), "the light of a beam");
-  path.Fill(0.0f);
-  partialCurrents.Fill(0.0f);
+  Buffer<float> path, partialCurrents;
+  volume.Together([&] {
+    path = Buffer<float>(volume.device, volume.layout.Floats(), "the light of a beam");
+    partialCurrents = Buffer<float>(volume.device, volume.layout.Floats(6), "the light of a beam");
+    path.Fill(0.0f);
+    partialCurrents.Fill(0.0f);
+  });
   Deposit deposit = volume.deposit;
   deposit.firstMoments = nullptr;
   deposit.path = &path;

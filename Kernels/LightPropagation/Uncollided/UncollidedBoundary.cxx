@@ -23,11 +23,13 @@ SweepTally UncollidedBoundary::AddTo(const UncollidedVolume& volume, const Monit
   const int channels = volume.layout.Groups().front().count; // that are swept at once
   const SweepBoundary incoming = this->Light.Boundary();
   const auto isLit = [&](int direction) { return !this->Settings.leaveOut || this->Light.IsLit(direction); };
-  const AngularValues values = volume.basis ? this->Light.Along().Values(*volume.basis) : AngularValues();
+  AngularValues values;
+  volume.Together([&] { values = volume.basis ? this->Light.Along().Values(*volume.basis) : AngularValues(); });
   SweepTally tally;
   for (int part = 0; part < 6; ++part)
   {
-    const std::vector<Bundle> bundles = this->Light.Along().LitAlong(part / 2, part % 2, isLit);
+    std::vector<Bundle> bundles;
+    volume.Together([&] { bundles = this->Light.Along().LitAlong(part / 2, part % 2, isLit); });
     const PlaneAxes axes = AcrossAxis(part / 2);
     const std::size_t plane = static_cast<std::size_t>(grid.size[axes.u]) * grid.size[axes.v];
     const std::size_t most = std::max<std::size_t>(MostRays / (MaxMembers * plane * channels), 8);

@@ -8,6 +8,8 @@
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
+#include <optional>
+
 namespace tyndall
 {
 UncollidedLamp::UncollidedLamp(const Light& lamp)
@@ -21,23 +23,25 @@ SweepTally UncollidedLamp::AddTo(const UncollidedVolume& volume, const Monitor& 
   {
     return {};
   }
-  if (!volume.basis)
-  {
-    return this->Put(volume, monitor);
-  }
   const bool parallel = this->Lamp.type == LightType::Directional;
-  const NarrowLight light(volume, !parallel);
+  std::optional<NarrowLight> light;
+  volume.Together([&] { // a rank without voxels has no basis, and no light of its own
+    if (volume.basis)
+    {
+      light.emplace(volume, !parallel);
+    }
+  });
   UncollidedVolume apart = volume;
-  apart.deposit = light.To();
+  apart.deposit = light ? light->To() : volume.deposit;
   const SweepTally tally = this->Put(apart, monitor);
-  if (parallel)
+  if (light && parallel)
   {
     const glm::dvec3 along = glm::normalize(Vector(this->Lamp.direction));
-    light.AddAlong({ along.x, along.y, along.z });
+    light->AddAlong({ along.x, along.y, along.z });
   }
-  else
+  else if (light)
   {
-    light.AddAlongFlux();
+    light->AddAlongFlux();
   }
   return tally;
 }

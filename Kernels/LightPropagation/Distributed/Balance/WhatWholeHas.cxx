@@ -90,10 +90,12 @@ OctantSources::Voxels CountThickVoxels(Communicator& communicator, const BlockSc
   return { counted[0], counted[1], thickest[0] };
 }
 
-bool OctantSourcesMatter(
-  const OctantSources::Voxels& ofAll, const BlockScene& scene, const PropagationSettings& settings)
+bool OctantSourcesMatter(Communicator& communicator, const BlockScene& scene, const PropagationSettings& settings)
 {
-  return OctantSources::Matter(ofAll, settings, scene.traits.scatters, scene.Scattering().Degree(), scene.given);
+  // All of these are the same on all ranks, so all of them count or none does.
+  const int degree = scene.Scattering().Degree();
+  return OctantSources::MayMatter(settings, scene.traits.scatters, degree, scene.given) &&
+    OctantSources::Matter(CountThickVoxels(communicator, scene), settings, scene.traits.scatters, degree, scene.given);
 }
 
 bool MayHaveEmissionPeaks(

@@ -11,9 +11,8 @@ namespace tyndall
 
 /// OctantSources::Count of the medium of all ranks. All call it, and are told the same.
 OctantSources::Voxels CountThickVoxels(Communicator& communicator, const BlockScene& scene);
-/// OctantSources::Matter of the whole medium, where orders are added up one by one.
-bool OctantSourcesMatter(
-  const OctantSources::Voxels& ofAll, const BlockScene& scene, const PropagationSettings& settings);
+/// OctantSources::Matter of the whole medium, where orders are added up one by one. All call it, and are told the same.
+bool OctantSourcesMatter(Communicator& communicator, const BlockScene& scene, const PropagationSettings& settings);
 
 /// All ranks call this, and are told the same. Blocks do not do it:
 /// whether a few bright voxels emit so much that the whole may follow their light along rays of their own

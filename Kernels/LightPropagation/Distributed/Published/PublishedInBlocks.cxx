@@ -79,7 +79,6 @@ public:
     , Emits(scene.traits.emits || !settings.leaveOut)
     , IsGiven(scene.given)
     , Values(has ? medium.grid.VoxelCount() * model.Channels() : 0)
-    , Totals(this->Values * model.MomentCount(), 0.0f)
   {
   }
 
@@ -131,7 +130,10 @@ private:
   void Collect(int order)
   {
     HeldFailure failure;
-    failure.Attempt([&] { this->Moments.resize(this->Totals.size()); });
+    failure.Attempt([&] {
+      this->Totals.resize(this->Values * this->Model.MomentCount(), 0.0f); // in the first order
+      this->Moments.resize(this->Totals.size());
+    });
     for (int k = 0; k < this->Model.MomentCount() && this->Has; ++k)
     {
       const std::vector<float> moment = this->Sweep.Moment(k, failure);
@@ -313,16 +315,19 @@ LightField SolveBy(const MakeRays& make, Communicator& communicator, const Block
   {
     propagation.RunOrder(monitor);
   } while (!propagation.Done());
-  LightField light = propagation.Result();
+  LightField light;
+  communicator.Together([&] { light = propagation.Result(); });
   const std::vector<std::string> leftOut = LeftOutOfBlocks(scene, illumination, settings, propagation.Orders());
   light.leftOut.insert(light.leftOut.begin(), leftOut.begin(), leftOut.end());
   light.halfRangeFlux = HalfRangeFlux(model->Directions());
   JudgeConvergence(settings, light);
   DoubtGivenLight(illumination, light);
-  if (kept)
-  {
-    Keep(propagation.Left(), propagation.BeganWarm(), light, *kept);
-  }
+  communicator.Together([&] {
+    if (kept)
+    {
+      Keep(propagation.Left(), propagation.BeganWarm(), light, *kept);
+    }
+  });
   return light;
 }
 
