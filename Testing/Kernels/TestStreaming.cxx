@@ -2,6 +2,7 @@
 
 #include "DeviceTest.h"
 #include "MediumScene.h"
+#include "RandomMedium.h"
 
 #include "LightPropagation/Conservative/SolveMemory.h"
 
