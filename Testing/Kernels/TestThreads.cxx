@@ -267,8 +267,7 @@ TEST_P(Stopped, GivesBackWhatItTookWhereMemoryEnds)
   const std::size_t before = device.BytesInUse();
   work(device, {});
   const std::size_t needed = device.PeakBytes() - before;
-  const std::size_t least = device.IsCpu() ? 20 : 200; // within a 20th the sweep of a GPU streams
-  std::vector<Buffer<char>> hoard = AllMemoryBut(device, needed / least);
+  std::vector<Buffer<char>> hoard = AllMemoryBut(device, needed / 20);
   const std::size_t hoarded = device.BytesInUse();
   EXPECT_THROW(work(device, {}), DeviceError);
   EXPECT_EQ(device.BytesInUse(), hoarded);
