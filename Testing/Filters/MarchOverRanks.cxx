@@ -359,7 +359,7 @@ int main(int argc, char* argv[])
       { "emitted in batches", 1, 1, 0, 3, true }, { "emitted, scattered", 3, 0, 5, 1, true, 1e-9 },
       { "automatic", 1, 0, 5, 1, true, 0.0, automatic },
       { "automatic, with an octree", 1, 0, 5, 1, true, 0.0, automatic, Octree::InPieces },
-      { "with an octree that all have, order 4", 1, 1, 0, 1, true, 0.0, automatic, Octree::Whole, 4 },
+      { "with an octree that all have, order 4", 1, 1, 0, 1, true, 0.0, vtkPhotonMarcher::BLOCKS, Octree::Whole, 4 },
       { "scattered, with an octree", 0, 1, 0, 1, false, 1e-9, automatic, Octree::InPieces } };
     for (const Asked& asked : all)
     {
