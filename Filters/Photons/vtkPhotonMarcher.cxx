@@ -275,7 +275,7 @@ std::string vtkPhotonMarcher::NotByBlocks(const PieceOfMarch& piece) const
   {
     return "an octree that lies in other pieces on ranks than the medium";
   }
-  return tyndall::NotInBlocks(piece.settings, piece.read.Levels() != nullptr);
+  return tyndall::NotInBlocks(piece.settings);
 }
 
 namespace

@@ -115,8 +115,8 @@ public:
   /// of the index some voxels round it, and its share of the photons: a photon that leaves the piece is handed on as it
   /// stands (numerics.md, section 12.6), scattered ones too, and light is that of one rank bit for bit. Where ranks are
   /// given the same photons each takes a part of them, else all are those of rank 0, then of rank 1, and so on. An
-  /// error names what blocks cannot do: the published scheme, an octree with IntegratorOrder 4, and one that lies on
-  /// ranks in other pieces than the medium. What EmptySpace keeps by bricks they keep voxel by voxel.
+  /// error names what blocks cannot do: the published scheme, and an octree that lies on ranks in other pieces than the
+  /// medium. What EmptySpace keeps by bricks they keep voxel by voxel.
   /// AUTOMATIC_DECOMPOSITION (default): BLOCKS where each of several ranks asks for its piece and the scene can be
   /// marched through so; else WHOLE, and also where EmptySpace asks for bricks, unless the whole, once for each rank of
   /// a machine, is more than the memory that it has available.
@@ -126,7 +126,7 @@ public:
 
   ///@{
   /// Order of the conservative scheme's integrator: 1 (explicit Euler, to compare), 2 (leapfrog; default) or 4
-  /// (Yoshida; where the index is smooth over several voxels).
+  /// (Yoshida; where the index is smooth over several voxels; crosses 16 voxels of an octree's node in a step at most).
   tyndallSetRangeMacro(IntegratorOrder, int, 1, 4);
   vtkGetMacro(IntegratorOrder, int);
   ///@}

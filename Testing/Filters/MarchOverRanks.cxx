@@ -134,6 +134,7 @@ struct Asked
   double precision = 0.0;                       ///< of powers, over what entered
   int decomposition = vtkPhotonMarcher::BLOCKS; ///< that is compared with the whole
   Octree octree = Octree::None;
+  int integrator = 2;
 };
 
 /// What a rank has of the light.
@@ -203,6 +204,7 @@ struct Scene
     this->Marcher->SetInputConnection(this->Medium->GetOutputPort());
     this->Marcher->SetDecomposition(decomposition);
     this->Marcher->SetMaximumOrders(asked.orders);
+    this->Marcher->SetIntegratorOrder(asked.integrator);
     this->Marcher->SetErrorBatches(4);
     this->Marcher->SetPathCount(asked.paths);
   }
@@ -357,7 +359,7 @@ int main(int argc, char* argv[])
       { "emitted in batches", 1, 1, 0, 3, true }, { "emitted, scattered", 3, 0, 5, 1, true, 1e-9 },
       { "automatic", 1, 0, 5, 1, true, 0.0, automatic },
       { "automatic, with an octree", 1, 0, 5, 1, true, 0.0, automatic, Octree::InPieces },
-      { "with an octree that all have", 1, 1, 0, 1, true, 0.0, automatic, Octree::Whole },
+      { "with an octree that all have, order 4", 1, 1, 0, 1, true, 0.0, vtkPhotonMarcher::BLOCKS, Octree::Whole, 4 },
       { "scattered, with an octree", 0, 1, 0, 1, false, 1e-9, automatic, Octree::InPieces } };
     for (const Asked& asked : all)
     {

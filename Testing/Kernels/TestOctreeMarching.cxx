@@ -2,9 +2,11 @@
 // table for a ball of glass.
 #include "DeviceTest.h"
 #include "PhotonScene.h"
+#include "PhotonWays.h"
 
 #include "Numerics/ChooseEvenly.h"
 #include "Photons/Emission/PhotonEmitter.h"
+#include "Photons/Marching/MarchShared.h"
 #include "Refraction/Octree/RefractionOctree.h"
 
 using namespace tyndall;
@@ -108,4 +110,23 @@ TEST_F(OctreeMarching, WithoutAToleranceIsMarchingVoxelByVoxel)
   settings.tolerance = 0.0;
   scene.levels = BuildOctree(scene.Medium(), scene.Index(), settings).levels;
   EXPECT_EQ(Go(this->GetDevice(), scene, photons).light.light.fluence, fine.light.light.fluence);
+}
+
+/// Where one node is all of the grid.
+TEST_F(OctreeMarching, CrossesCubesOfLargerNodesInStepsOfOrderFour)
+{
+  PhotonScene scene(64, 1.0, 0.1f);
+  scene.SetIndex([](double x, double y, double z) {
+    return 1.2 + 0.004 * std::sin(3.0 * x + 1.0) * std::cos(2.0 * y) * std::cos(4.0 * z + 0.5);
+  });
+  scene.settings.order = 4;
+  const std::vector<Photon> photons = Sunlight(scene.medium.grid, 20000);
+  const PhotonLight fine = scene.March(this->GetDevice(), photons);
+  scene.levels.assign(scene.medium.grid.VoxelCount(), 6);
+  const PhotonLight coarse = scene.March(this->GetDevice(), photons);
+  std::printf("%.1f steps instead of %.1f a photon, %.5f of the light displaced\n", coarse.steps / 20000.0,
+    fine.steps / 20000.0, Displaced(coarse, fine));
+  EXPECT_LT(Displaced(coarse, fine), 0.004); // 0.03 by steps from end to end
+  scene.levels.assign(scene.medium.grid.VoxelCount(), YoshidaLevel);
+  ExpectSameLight(scene.March(this->GetDevice(), photons), coarse);
 }

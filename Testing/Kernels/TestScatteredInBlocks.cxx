@@ -116,6 +116,7 @@ TEST_F(ScatteredBlocks, HaveItByTheStepsOfAnOctree)
   for (const std::size_t components : { std::size_t(1), std::size_t(3) })
   {
     PhotonScene scene = SceneOfNodes(components == 1, components);
+    scene.settings.order = components == 1 ? 4 : 2;
     scene.settings.maximumOrders = 0;
     ExpectSameOnRanks(GetDevice(), scene, AnyPhotons(scene.medium.grid, 500), { 1, 3, 8 });
   }

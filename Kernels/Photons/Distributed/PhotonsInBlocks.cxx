@@ -31,14 +31,16 @@ namespace
 /// Voxels round a block whose index has a part in the ways of photons in it (numerics.md, Eq. (99f)): three of each
 /// spline's, and those of the places that the integrator looks at before it goes there. Beyond, the index counts as
 /// constant.
-int ReachOfIndex(const MarchSettings& settings)
+/// @param octree  whether steps are those of an octree
+int ReachOfIndex(const MarchSettings& settings, bool octree)
 {
   constexpr int OfSpline = 3;
   if (settings.order == 1)
   {
     return OfSpline;
   }
-  const double ahead = 0.5 * (settings.order == 2 ? LeapfrogLooksAhead : YoshidaLooksAhead) * settings.stepSize;
+  const double steps = 0.5 * (settings.order == 2 ? LeapfrogLooksAhead : YoshidaLooksAhead) * settings.stepSize;
+  const double ahead = octree && settings.order == 4 ? std::max(steps, 1.0 * (1 << YoshidaLevel)) : steps;
   return OfSpline + 1 + static_cast<int>(ahead); // also from a voxel's upper wall
 }
 
@@ -57,12 +59,8 @@ void RequireSame(Communicator& communicator, const MarchSettings& settings)
 }
 }
 
-std::string NotInBlocks(const MarchSettings& settings, bool octree)
+std::string NotInBlocks(const MarchSettings& settings)
 {
-  if (octree && settings.order == 4)
-  {
-    return "the steps of an octree by the integrator of order 4, which looks at the index as far ahead as nodes reach";
-  }
   return settings.sums == MarchSettings::Sums::Unsafe ? "Unsafe sums" : std::string();
 }
 
@@ -94,8 +92,8 @@ public:
 
 private:
   MarchTraits TraitsOfAllRanks(const Medium& medium, const Field& ior);
-  VoxelBox KnownOf(int rank, bool bends) const;
-  std::vector<float> IndexAround(const Field& ior, bool bends);
+  VoxelBox KnownOf(int rank, int reach) const;
+  std::vector<float> IndexAround(const Field& ior, int reach);
   void ShareNodes(const std::uint8_t* levels);
   void PrepareScattering(const Medium& medium, const Field& index);
   PhotonLight MarchThese(
@@ -140,7 +138,7 @@ void PhotonMarcherInBlocks::Rank::CheckInput(
       "The block of rank " + std::to_string(this->Others.Rank()) +
         (levels ? " has octree levels and others have none." : " has no octree levels and others have."));
   }
-  const std::string refused = NotInBlocks(this->Settings, octree);
+  const std::string refused = NotInBlocks(this->Settings);
   Require(refused.empty(), "A medium that is spread over ranks is not marched through with " + refused + ".");
 }
 
@@ -157,23 +155,24 @@ MarchTraits PhotonMarcherInBlocks::Rank::TraitsOfAllRanks(const Medium& medium, 
 }
 
 /// The voxels whose index a rank needs.
-VoxelBox PhotonMarcherInBlocks::Rank::KnownOf(int rank, bool bends) const
+VoxelBox PhotonMarcherInBlocks::Rank::KnownOf(int rank, int reach) const
 {
   const VoxelBox& block = this->Partition.blocks[rank];
-  return bends && block.VoxelCount() > 0 ? Grown(block, ReachOfIndex(this->Settings), this->Partition.whole) : block;
+  return block.VoxelCount() > 0 ? Grown(block, reach, this->Partition.whole) : block;
 }
 
-/// The index of these, from all ranks. Empty where it is 1 everywhere, or constant.
-std::vector<float> PhotonMarcherInBlocks::Rank::IndexAround(const Field& ior, bool bends)
+/// The index of these, from all ranks. Empty where nothing depends on it.
+/// @param reach  0: nothing does
+std::vector<float> PhotonMarcherInBlocks::Rank::IndexAround(const Field& ior, int reach)
 {
-  if (!bends)
+  if (reach == 0)
   {
     return {};
   }
   std::vector<VoxelBox> known;
   for (int rank = 0; rank < this->Others.Ranks(); ++rank)
   {
-    known.push_back(this->KnownOf(rank, bends));
+    known.push_back(this->KnownOf(rank, reach));
   }
   std::vector<float> own(this->Has ? this->Own.VoxelCount() : 0, 1.0f);
   if (this->Has && ior.values)
@@ -202,12 +201,13 @@ void PhotonMarcherInBlocks::Rank::Prepare(
 {
   this->Traits = this->TraitsOfAllRanks(medium, ior);
   const bool bends = !this->Settings.leaveOut || this->Traits.index.Varies();
-  const std::vector<float> index = this->IndexAround(ior, bends);
+  const int reach = bends ? ReachOfIndex(this->Settings, octree) : 0;
+  const std::vector<float> index = this->IndexAround(ior, reach);
   const Field known = { index.empty() ? nullptr : index.data(), 1 };
   this->Others.Together([&] {
     if (this->Has)
     {
-      const MarchedPart block = { this->Partition.whole, this->Own, this->KnownOf(this->Others.Rank(), bends) };
+      const MarchedPart block = { this->Partition.whole, this->Own, this->KnownOf(this->Others.Rank(), reach) };
       this->Through =
         std::make_unique<MarchMedium>(this->TheDevice, medium, known, this->Settings, this->Traits, block, octree);
     }

@@ -24,9 +24,9 @@ namespace tyndall
 /// section 12.6), with the random numbers that it has drawn where it is scattered: its way does not depend on the
 /// blocks, and what voxels gain is in fixed point. The light is that of PhotonMarcher, bit for bit, whatever the number
 /// of ranks; powers of scattered light, which are sums of floats, to 1e-9. No rank holds more of the medium than its
-/// block and, of the refractive index, some voxels round it. Of an octree each has the nodes of the whole grid, in
-/// bricks of 8^3 voxels, of which those that lie in one node take 4 bytes: steps look into the next node, which may lie
-/// anywhere.
+/// block and, of the refractive index, some voxels round it: by steps of order 4 of an octree 20 or more. Of an octree
+/// each has the nodes of the whole grid, in bricks of 8^3 voxels, of which those that lie in one node take 4 bytes:
+/// steps look into the next node, which may lie anywhere.
 class PhotonMarcherInBlocks
 {
 public:
@@ -69,6 +69,5 @@ private:
 };
 
 /// What is asked for that keeps ranks from marching photons in blocks, in words for an error; empty: nothing does.
-/// @param octree  whether paths are to go by the steps of an octree
-std::string NotInBlocks(const MarchSettings& settings, bool octree);
+std::string NotInBlocks(const MarchSettings& settings);
 }

@@ -21,6 +21,13 @@ enum
   YoshidaLooksAhead = 6   ///< 1.35 steps
 };
 
+/// Level of the largest cube of an octree that a step of order 4 crosses; no way that it looks ahead along an axis is
+/// longer than its edge, of 2^4 voxels, or than the halves of steps above, whichever is more.
+enum
+{
+  YoshidaLevel = 4
+};
+
 /// The medium, and how photons are marched through it. Places are those of the whole grid; arrays have a block of it.
 typedef struct
 {

@@ -31,7 +31,8 @@ class PhotonMarcher
 public:
   /// @param ior     refractive index, one component per voxel; null values: 1 everywhere
   /// @param levels  octree level of each voxel (0: itself, k: in a node of 2^k voxels per edge), which a step of
-  ///                a path may cross whole; null: step by step. As all arrays, read in the constructor only.
+  ///                a path may cross whole (of order 4 a cube of it of 16 voxels per edge); null: step by step. As all
+  ///                arrays, read in the constructor only.
   /// @throws InvalidInput for a medium, an index or a level that is not valid (names the voxel); DeviceError
   PhotonMarcher(Device& device, const Medium& medium, const Field& ior, const MarchSettings& settings = {},
     const std::uint8_t* levels = nullptr);

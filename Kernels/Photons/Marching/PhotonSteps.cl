@@ -17,7 +17,8 @@
 // The integrator looks at places before a photon gets there, but no farther ahead than by so many steps
 // (MarchShared.h): a jump of n that makes a photon many times as fast as its step was meant for would have it look
 // anywhere, and a block of a grid knows the index no farther than that (numerics.md, Eq. (99f)). An octree's steps are
-// longer.
+// longer: those of order 2 look at no index before they get there, and those of order 4 end in larger nodes, too, where
+// they leave one of 2^YoshidaLevel voxels an edge.
 //
 // Where n does not vary within the reach of interpolation nothing is evaluated, and a step is as long as that is so.
 //
@@ -270,10 +271,11 @@ static void squared_index_at(const march_arrays* arrays, integer mask, const rea
 // A way from where a photon is, in voxels, as far as the integrator looks.
 static real looked_ahead(const MarchInfo* info, real way)
 {
-#if LEVELS
-  return way;
+#if LEVELS && ORDER == 2
+  return way; // to a node, all of which are known
 #else
-  const float most = 0.5f * (ORDER == 4 ? YoshidaLooksAhead : LeapfrogLooksAhead) * info->stepSize;
+  const float steps = 0.5f * (ORDER == 4 ? YoshidaLooksAhead : LeapfrogLooksAhead) * info->stepSize;
+  const float most = LEVELS ? greater(steps, (float)(1 << YoshidaLevel)) : steps;
   return lesser(greater(way, (real)-most), (real)most);
 #endif
 }
@@ -346,8 +348,12 @@ static real times_of_steps(
 #if LEVELS
   if (anywhere(truth(node > 1)))
   {
-    // To where it leaves the octree's node, and a little into the next one.
+    // To where it leaves the octree's node, or a cube of it, and a little into the next one.
+#if ORDER == 4
+    const integer level = min(max(node, 1) - 1, YoshidaLevel);
+#else
     const integer level = max(node, 1) - 1;
+#endif
     real out = NEVER;
     FOR_AXES(a)
     {
