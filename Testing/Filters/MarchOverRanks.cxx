@@ -123,7 +123,7 @@ enum class Octree
   None,
   InPieces, ///< a filter, of which each rank has its piece
   Whole,    ///< all of it, on each rank
-  Smaller   ///< the same of a smaller box
+  Elsewhere ///< the same, of a box beside the medium
 };
 
 /// How photons are marched.
@@ -195,15 +195,14 @@ struct Scene
     {
       this->Marcher->SetOctreeConnection(this->Levels->GetOutputPort());
     }
-    if (asked.octree == Octree::Whole || asked.octree == Octree::Smaller)
+    if (asked.octree == Octree::Whole || asked.octree == Octree::Elsewhere)
     {
       this->Levels->Update();
       vtkNew<vtkImageData> levels;
       levels->ShallowCopy(this->Levels->GetOutputDataObject(0));
-      if (asked.octree == Octree::Smaller)
+      if (asked.octree == Octree::Elsewhere)
       {
-        const int box[6] = { 0, Size[0] - 1, 0, Size[1], 0, Size[2] };
-        levels->Crop(box);
+        levels->SetOrigin(Size[0], 0.0, 0.0);
       }
       this->Marcher->SetOctreeData(levels);
       this->Medium->CellsMade = 0;
@@ -322,7 +321,7 @@ bool NamesWhatItCannot(vtkMPIController* controller)
   };
   vtkNew<Note> errors;
   Asked asked = { "errors" };
-  asked.octree = Octree::Smaller;
+  asked.octree = Octree::Elsewhere;
   Scene scene(controller, asked, vtkPhotonMarcher::BLOCKS);
   scene.Marcher->AddObserver(vtkCommand::ErrorEvent, errors);
   vtkImageData* const light = scene.Update();
