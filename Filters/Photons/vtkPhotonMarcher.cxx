@@ -8,8 +8,8 @@
 #include "Numerics/ChooseEvenly.h"
 #include "Photons/Distributed/PhotonShares.h"
 #include "Photons/Distributed/PhotonsInBlocks.h"
-#include "Photons/Marching/PublishedPhotons.h"
 #include "Photons/PhotonData.h"
+#include "Photons/Published/PublishedPhotons.h"
 #include "Photons/RefractiveInput.h"
 #include "Ranks/PieceBlocks.h"
 #include "Ranks/RankMemory.h"
@@ -93,6 +93,13 @@ tyndall::MarchSettings SettingsOf(vtkPhotonMarcher* filter, vtkImageData* medium
   return settings;
 }
 
+tyndall::PublishedSettings PublishedSettingsOf(vtkPhotonMarcher* filter)
+{
+  tyndall::PublishedSettings settings;
+  settings.smooth = filter->GetSmoothing();
+  return settings;
+}
+
 /// The light of a rank's block as that of the voxels that the output is to have. All ranks call it.
 void SpreadToHeld(
   tyndall::Communicator& communicator, const tyndall::PieceBlocks& pieces, tyndall::PhotonLight& photons)
@@ -106,7 +113,7 @@ void SpreadToHeld(
   pieces.SpreadToHeld(communicator, photons.photonWeight, 1);
 }
 
-void Write(tyndall::PhotonLight&& photons, vtkImageData* output)
+void WriteLightOf(tyndall::PhotonLight&& photons, vtkImageData* output)
 {
   const int channels = photons.light.channels;
   const bool scattered = photons.scatterings > 0;
@@ -134,7 +141,6 @@ void Write(tyndall::PhotonLight&& photons, vtkImageData* output)
   }
   tyndall::AddFact(output, "scattered", { photons.scattered.begin(), photons.scattered.begin() + channels }, channels);
 }
-
 }
 
 /// What a rank marches photons through, and which.
@@ -239,9 +245,9 @@ int vtkPhotonMarcher::RequestInformation(vtkInformation*, vtkInformationVector**
 bool vtkPhotonMarcher::WantsBlocks(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) const
 {
-  return this->Decomposition == AUTOMATIC_DECOMPOSITION ? tyndall::EachAsksForItsPiece(request, outputs) &&
-      tyndall::IsWorthPieces(inputs[MediumPort]) && this->Scheme != PUBLISHED
-                                                        : this->Decomposition == BLOCKS;
+  return this->Decomposition == AUTOMATIC_DECOMPOSITION
+    ? tyndall::EachAsksForItsPiece(request, outputs) && tyndall::IsWorthPieces(inputs[MediumPort])
+    : this->Decomposition == BLOCKS;
 }
 
 /// The memory of an old medium is given back before the filters before run, which may need it.
@@ -267,10 +273,6 @@ int vtkPhotonMarcher::RequestUpdateExtent(
 /// What keeps ranks from marching through their pieces, in words; empty: nothing does.
 std::string vtkPhotonMarcher::NotByBlocks(const PieceOfMarch& piece) const
 {
-  if (this->Scheme == PUBLISHED)
-  {
-    return "the published Scheme";
-  }
   if (piece.octreeElsewhere)
   {
     return "an octree that lies in other pieces on ranks than the medium";
@@ -328,6 +330,36 @@ bool vtkPhotonMarcher::ReadPiece(tyndall::Communicator& communicator, const tynd
   return communicator.Largest({ refused.empty() && !rather ? 0.0 : 1.0 })[0] == 0.0;
 }
 
+/// All ranks call it.
+vtkPhotonMarcher::Marched vtkPhotonMarcher::MarchInBlocks(tyndall::Device& device, tyndall::Communicator& communicator,
+  const tyndall::BlockPartition& partition, const PieceOfMarch& piece)
+{
+  const tyndall::Medium& medium = piece.read.input.medium;
+  const bool published = this->Scheme == PUBLISHED;
+  Marched marched;
+  if (published)
+  {
+    tyndall::PackingLoss loss;
+    marched.light = tyndall::MarchPublishedInBlocks(device, communicator, partition, medium, piece.read.ior,
+      piece.read.Levels(), piece.photons, PublishedSettingsOf(this), &loss, tyndall::MonitorOf(this));
+    marched.packingLoss = loss.Relative();
+  }
+  if (!published || this->PathCount > 0)
+  {
+    tyndall::PhotonMarcherInBlocks marcher(
+      device, communicator, partition, medium, piece.read.ior, piece.settings, piece.read.Levels());
+    if (!published)
+    {
+      marched.light = marcher.March(piece.photons, tyndall::MonitorOf(this));
+    }
+    if (this->PathCount > 0)
+    {
+      marched.paths = marcher.Paths(piece.photons, static_cast<std::size_t>(this->PathCount));
+    }
+  }
+  return marched;
+}
+
 /// @return false, on all ranks, where each is to march through the whole
 bool vtkPhotonMarcher::MarchPiece(vtkInformation* request, vtkMultiProcessController* ranks,
   vtkInformationVector** inputs, vtkInformationVector* outputs)
@@ -350,26 +382,21 @@ bool vtkPhotonMarcher::MarchPiece(vtkInformation* request, vtkMultiProcessContro
   this->Kept->Forget();
   std::shared_ptr<tyndall::Device> device;
   communicator->Together([&] { device = tyndall::FindWithin(this->Within, this->Device, this->MemoryBudget); });
-  tyndall::PhotonMarcherInBlocks marcher(*device, *communicator, pieces.Partition(), piece.read.input.medium,
-    piece.read.ior, piece.settings, piece.read.Levels());
-  tyndall::PhotonLight light = marcher.March(piece.photons, tyndall::MonitorOf(this));
-  const std::vector<tyndall::PhotonPath> paths = this->PathCount > 0
-    ? marcher.Paths(piece.photons, static_cast<std::size_t>(this->PathCount))
-    : std::vector<tyndall::PhotonPath>();
+  Marched marched = this->MarchInBlocks(*device, *communicator, pieces.Partition(), piece);
   this->WarnOfBox(inputs, pieces.Partition().whole);
-  this->Note(light);
-  this->Warn(light, tyndall::PlaceAmong(*communicator, piece.photons.size()).all);
-  SpreadToHeld(*communicator, pieces, light);
+  this->Note(marched);
+  this->Warn(marched.light, tyndall::PlaceAmong(*communicator, piece.photons.size()).all);
+  SpreadToHeld(*communicator, pieces, marched.light);
   vtkImageData* const output = vtkImageData::GetData(outputs, 0);
   tyndall::PassOn(image, output);
   pieces.KeepHeld(output);
   if (pieces.Held().VoxelCount() > 0)
   {
-    Write(std::move(light), output);
+    this->Write(std::move(marched), output);
   }
   if (communicator->Rank() == 0)
   {
-    tyndall::WritePaths(paths, vtkPolyData::GetData(outputs, 1));
+    tyndall::WritePaths(marched.paths, vtkPolyData::GetData(outputs, 1));
   }
   return true;
 }
@@ -379,12 +406,10 @@ vtkPhotonMarcher::Marched vtkPhotonMarcher::MarchAsPublished(
 {
   const tyndall::RefractiveInput read = tyndall::ReadRefractiveMedium(
     this, vtkImageData::GetData(inputs[MediumPort]), vtkImageData::GetData(inputs[OctreePort]));
-  tyndall::PublishedSettings settings;
-  settings.smooth = this->Smoothing;
   tyndall::PackingLoss loss;
   Marched marched;
   marched.light = tyndall::MarchPublished(*tyndall::FindWithin(this->Within, this->Device, this->MemoryBudget),
-    read.input.medium, read.ior, read.Levels(), photons, settings, &loss, tyndall::MonitorOf(this));
+    read.input.medium, read.ior, read.Levels(), photons, PublishedSettingsOf(this), &loss, tyndall::MonitorOf(this));
   marched.packingLoss = loss.Relative();
   return marched;
 }
@@ -423,7 +448,6 @@ vtkPhotonMarcher::Marched vtkPhotonMarcher::March(
 int vtkPhotonMarcher::RequestData(vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs)
 {
   this->Note({});
-  this->PackingLoss = 0.0;
   this->MediumKept = false;
   const tyndall::WorkOnPieces onPieces = { MediumPort,
     [&](vtkMultiProcessController* ranks, vtkInformationVector** inputs) {
@@ -435,16 +459,11 @@ int vtkPhotonMarcher::RequestData(vtkInformation* request, vtkInformationVector*
     this->WarnOfBox(inputs, tyndall::GridOf(vtkImageData::GetData(inputs[MediumPort])));
     Marched marched = this->March(inputs, photons);
 
-    this->Note(marched.light);
-    this->PackingLoss = marched.packingLoss;
+    this->Note(marched);
     this->Warn(marched.light, photons.size());
     vtkImageData* output = vtkImageData::GetData(outputs, 0);
     tyndall::PassOn(vtkImageData::GetData(inputs[MediumPort]), output);
-    Write(std::move(marched.light), output);
-    if (this->Scheme == PUBLISHED)
-    {
-      tyndall::AddFact(output, "packing_loss", std::vector<double>{ marched.packingLoss });
-    }
+    this->Write(std::move(marched), output);
     tyndall::KeepWhatIsAskedFor(outputs->GetInformationObject(0), output);
     if (tyndall::IsFirstPiece(request, outputs))
     {
@@ -462,8 +481,19 @@ void vtkPhotonMarcher::WarnOfBox(vtkInformationVector** inputs, const tyndall::G
   }
 }
 
-void vtkPhotonMarcher::Note(const tyndall::PhotonLight& light)
+void vtkPhotonMarcher::Write(Marched&& marched, vtkImageData* output) const
 {
+  WriteLightOf(std::move(marched.light), output);
+  if (this->Scheme == PUBLISHED)
+  {
+    tyndall::AddFact(output, "packing_loss", std::vector<double>{ marched.packingLoss });
+  }
+}
+
+void vtkPhotonMarcher::Note(const Marched& marched)
+{
+  const tyndall::PhotonLight& light = marched.light;
+  this->PackingLoss = marched.packingLoss;
   this->Deposits = static_cast<vtkIdType>(light.deposits);
   this->Steps = static_cast<vtkIdType>(light.steps);
   this->Missed = static_cast<vtkIdType>(light.missed);

@@ -16,6 +16,7 @@ class Communicator;
 class Device;
 class KeptMarcher;
 class PieceBlocks;
+struct BlockPartition;
 struct Grid;
 struct MarchSettings;
 struct Photon;
@@ -113,10 +114,11 @@ public:
   ///@{
   /// What each of several ranks of MPI holds. With WHOLE all of the medium and all photons. With BLOCKS its piece, and
   /// of the index some voxels round it, and its share of the photons: a photon that leaves the piece is handed on as it
-  /// stands (numerics.md, section 12.6), scattered ones too, and light is that of one rank bit for bit. Where ranks are
+  /// stands (numerics.md, section 12.6), scattered ones too, and light is that of one rank bit for bit, that of the
+  /// published scheme but for what its packing loses, which is not the same twice on one rank either. Where ranks are
   /// given the same photons each takes a part of them, else all are those of rank 0, then of rank 1, and so on. An
-  /// error names what blocks cannot do: the published scheme, and an octree that lies on ranks in other pieces than the
-  /// medium. What EmptySpace keeps by bricks they keep voxel by voxel.
+  /// error names what blocks cannot do: an octree that lies on ranks in other pieces than the medium. What EmptySpace
+  /// keeps by bricks they keep voxel by voxel.
   /// AUTOMATIC_DECOMPOSITION (default): BLOCKS where each of several ranks asks for its piece and the scene can be
   /// marched through so; else WHOLE, and also where EmptySpace asks for bricks, unless the whole, once for each rank of
   /// a machine, is more than the memory that it has available.
@@ -266,15 +268,18 @@ private:
   struct Marched;
   Marched March(vtkInformationVector** inputs, const std::vector<tyndall::Photon>& photons);
   Marched MarchAsPublished(vtkInformationVector** inputs, const std::vector<tyndall::Photon>& photons);
-  bool WantsBlocks(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) const;
   struct PieceOfMarch;
+  Marched MarchInBlocks(tyndall::Device& device, tyndall::Communicator& communicator,
+    const tyndall::BlockPartition& partition, const PieceOfMarch& piece);
+  bool WantsBlocks(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) const;
   std::string NotByBlocks(const PieceOfMarch& piece) const;
   bool ReadPiece(tyndall::Communicator& communicator, const tyndall::PieceBlocks& pieces, vtkInformationVector** inputs,
     bool needsPieces, PieceOfMarch& piece);
   bool MarchPiece(vtkInformation* request, vtkMultiProcessController* ranks, vtkInformationVector** inputs,
     vtkInformationVector* outputs);
   void WarnOfBox(vtkInformationVector** inputs, const tyndall::Grid& medium);
-  void Note(const tyndall::PhotonLight& light);
+  void Write(Marched&& marched, vtkImageData* output) const;
+  void Note(const Marched& marched);
   void Warn(const tyndall::PhotonLight& light, std::size_t photons);
 
   int Scheme = CONSERVATIVE;

@@ -3,7 +3,7 @@
 #include "Photons/Emission/PhotonEmitter.h"
 #include "Photons/Importance/PhotonImportance.h"
 #include "Photons/Marching/PhotonMarcher.h"
-#include "Photons/Marching/PublishedPhotons.h"
+#include "Photons/Published/PublishedPhotons.h"
 #include "Reconstruction/PhotonReconstruction.h"
 
 #include <algorithm>

@@ -3,7 +3,7 @@
 #include "Measure.h"
 
 #include "../Kernels/MeshShapes.h"
-#include "Photons/Marching/PublishedPhotons.h"
+#include "Photons/Published/PublishedPhotons.h"
 
 #include <algorithm>
 #include <array>

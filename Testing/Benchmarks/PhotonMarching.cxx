@@ -4,7 +4,7 @@
 
 #include "../Kernels/PhotonScene.h"
 
-#include "Photons/Marching/PublishedPhotons.h"
+#include "Photons/Published/PublishedPhotons.h"
 
 #include <algorithm>
 

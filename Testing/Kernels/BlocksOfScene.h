@@ -11,7 +11,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
+#include <functional>
 #include <random>
+#include <string>
 #include <vector>
 
 // Scenes in blocks, one a rank, whose ranks are threads.
@@ -89,9 +92,13 @@ inline std::vector<tyndall::Photon> ShareOf(const std::vector<tyndall::Photon>& 
   return { cut(rank), cut(rank + 1) };
 }
 
+/// How a rank marches its share of the photons through its part of a scene.
+using MarchOfRank = std::function<tyndall::PhotonLight(tyndall::Communicator& communicator, const BlockOfScene& part,
+  const std::vector<tyndall::Photon>& share, tyndall::RoundsTraffic& traffic)>;
+
 /// Arrays of the blocks put together; all else must be the same on all ranks.
-inline tyndall::PhotonLight LightOfAll(tyndall::Device& device, const PhotonScene& scene,
-  const tyndall::BlockPartition& partition, const std::vector<tyndall::Photon>& photons,
+inline tyndall::PhotonLight LightOfAll(const PhotonScene& scene, const tyndall::BlockPartition& partition,
+  const std::vector<tyndall::Photon>& photons, const MarchOfRank& march,
   std::vector<tyndall::RoundsTraffic>* traffic = nullptr)
 {
   const int ranks = static_cast<int>(partition.blocks.size());
@@ -100,10 +107,7 @@ inline tyndall::PhotonLight LightOfAll(tyndall::Device& device, const PhotonScen
   tyndall::RunInThreads(ranks, [&](tyndall::Communicator& communicator) {
     const int rank = communicator.Rank();
     const BlockOfScene part(scene, partition.blocks[rank]);
-    tyndall::PhotonMarcherInBlocks marcher(
-      device, communicator, partition, part.medium, part.Index(), scene.settings, part.Levels());
-    found[rank] = marcher.March(ShareOf(photons, rank, ranks));
-    handed[rank] = marcher.Traffic();
+    found[rank] = march(communicator, part, ShareOf(photons, rank, ranks), handed[rank]);
   });
   tyndall::PhotonLight all = found[0];
   const std::size_t voxels = scene.medium.grid.VoxelCount();
@@ -128,6 +132,38 @@ inline tyndall::PhotonLight LightOfAll(tyndall::Device& device, const PhotonScen
     *traffic = handed;
   }
   return all;
+}
+
+inline tyndall::PhotonLight LightOfAll(tyndall::Device& device, const PhotonScene& scene,
+  const tyndall::BlockPartition& partition, const std::vector<tyndall::Photon>& photons,
+  std::vector<tyndall::RoundsTraffic>* traffic = nullptr)
+{
+  const auto march = [&](tyndall::Communicator& communicator, const BlockOfScene& part,
+                       const std::vector<tyndall::Photon>& share, tyndall::RoundsTraffic& handed) {
+    tyndall::PhotonMarcherInBlocks marcher(
+      device, communicator, partition, part.medium, part.Index(), scene.settings, part.Levels());
+    tyndall::PhotonLight light = marcher.March(share);
+    handed = marcher.Traffic();
+    return light;
+  };
+  return LightOfAll(scene, partition, photons, march, traffic);
+}
+
+/// What each of some ranks says that it cannot do; empty: nothing.
+inline std::vector<std::string> ErrorsOfRanks(int ranks, const std::function<void(tyndall::Communicator&)>& work)
+{
+  std::vector<std::string> errors(ranks);
+  tyndall::RunInThreads(ranks, [&](tyndall::Communicator& communicator) {
+    try
+    {
+      work(communicator);
+    }
+    catch (const std::exception& error)
+    {
+      errors[communicator.Rank()] = error.what();
+    }
+  });
+  return errors;
 }
 
 /// Extinction from 0.01 to 1 a voxel's edge, `components` of it.

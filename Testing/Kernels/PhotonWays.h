@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
 #include <vector>
@@ -31,6 +32,43 @@ inline std::vector<tyndall::Photon> AnyPhotons(const tyndall::Grid& grid, std::s
     }
     photon.power.fill(static_cast<float>(0.5 + uniform(random)));
     photon.weight = static_cast<float>(4.0 * uniform(random));
+  }
+  return photons;
+}
+
+inline tyndall::Photon PhotonFrom(std::array<double, 3> position, std::array<float, 3> direction)
+{
+  tyndall::Photon photon;
+  photon.position = position;
+  photon.direction = direction;
+  photon.power = { 1.0f, 1.0f, 1.0f };
+  return photon;
+}
+
+/// Along faces, edges and corners of voxels of 1, in a cube from -4 to 4.
+inline std::vector<tyndall::Photon> PhotonsAlongFaces()
+{
+  std::vector<tyndall::Photon> photons;
+  const float s = std::sqrt(0.5f), t = std::sqrt(1.0f / 3.0f);
+  for (const double y : { -4.0, -1.0, 0.0, 1e-9, -1e-9, 2.0, 4.0 })
+  {
+    for (const double z : { -4.0, 0.0, 1.0, 4.0 })
+    {
+      photons.push_back(PhotonFrom({ -4.0, y, z }, { 1.0f, 0.0f, 0.0f }));
+      photons.push_back(PhotonFrom({ 4.0, y, z }, { -1.0f, 0.0f, 0.0f }));
+      photons.push_back(PhotonFrom({ y, -4.0, z }, { 0.0f, 1.0f, 0.0f }));
+      photons.push_back(PhotonFrom({ z, y, 4.0 }, { 0.0f, 0.0f, -1.0f }));
+      photons.push_back(PhotonFrom({ -4.0, -4.0, z }, { s, s, 0.0f })); // through edges
+      photons.push_back(PhotonFrom({ z, 4.0, -4.0 }, { 0.0f, -s, s }));
+    }
+  }
+  for (const float x : { -t, t })
+  {
+    for (const float y : { -t, t })
+    {
+      photons.push_back(PhotonFrom({ 0.0, 0.0, 0.0 }, { x, y, t })); // from a corner, and through it
+      photons.push_back(PhotonFrom({ -4.0 * std::copysign(1.0, x), -4.0 * std::copysign(1.0, y), -4.0 }, { x, y, t }));
+    }
   }
   return photons;
 }

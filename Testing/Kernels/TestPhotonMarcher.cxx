@@ -3,7 +3,7 @@
 #include "PhotonScene.h"
 
 #include "Photons/Emission/PhotonEmitter.h"
-#include "Photons/Marching/PublishedPhotons.h"
+#include "Photons/Published/PublishedPhotons.h"
 
 #include <algorithm>
 #include <functional>

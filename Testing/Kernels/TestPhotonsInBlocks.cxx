@@ -40,15 +40,6 @@ void ExpectSameOnRanks(
       LightOfAll(device, scene, BlockPartition::Even(scene.medium.grid, number), photons), expected);
   }
 }
-
-Photon PhotonFrom(std::array<double, 3> position, std::array<float, 3> direction)
-{
-  Photon photon;
-  photon.position = position;
-  photon.direction = direction;
-  photon.power = { 1.0f, 1.0f, 1.0f };
-  return photon;
-}
 }
 
 class PhotonBlocks : public DeviceTest
@@ -200,28 +191,7 @@ TEST_F(PhotonBlocks, MayBeUnevenEmptyOrOneVoxel)
 TEST_F(PhotonBlocks, ShareWhatRunsAlongTheirFaces)
 {
   PhotonScene scene({ 8, 8, 8 }, 1.0, 4.0, 0.05f, 0.02f);
-  std::vector<Photon> photons;
-  const float s = std::sqrt(0.5f), t = std::sqrt(1.0f / 3.0f);
-  for (const double y : { -4.0, -1.0, 0.0, 1e-9, -1e-9, 2.0, 4.0 })
-  {
-    for (const double z : { -4.0, 0.0, 1.0, 4.0 })
-    {
-      photons.push_back(PhotonFrom({ -4.0, y, z }, { 1.0f, 0.0f, 0.0f }));
-      photons.push_back(PhotonFrom({ 4.0, y, z }, { -1.0f, 0.0f, 0.0f }));
-      photons.push_back(PhotonFrom({ y, -4.0, z }, { 0.0f, 1.0f, 0.0f }));
-      photons.push_back(PhotonFrom({ z, y, 4.0 }, { 0.0f, 0.0f, -1.0f }));
-      photons.push_back(PhotonFrom({ -4.0, -4.0, z }, { s, s, 0.0f })); // through edges
-      photons.push_back(PhotonFrom({ z, 4.0, -4.0 }, { 0.0f, -s, s }));
-    }
-  }
-  for (const float x : { -t, t })
-  {
-    for (const float y : { -t, t })
-    {
-      photons.push_back(PhotonFrom({ 0.0, 0.0, 0.0 }, { x, y, t })); // from a corner, and through it
-      photons.push_back(PhotonFrom({ -4.0 * std::copysign(1.0, x), -4.0 * std::copysign(1.0, y), -4.0 }, { x, y, t }));
-    }
-  }
+  const std::vector<Photon> photons = PhotonsAlongFaces();
   ExpectSameOnRanks(GetDevice(), scene, photons, { 2, 4, 8, 64 });
   scene.SetIndex([](double x, double y, double z) { return 1.4 - 0.02 * (x * x + y * y + z * z) / 16.0; });
   ExpectSameOnRanks(GetDevice(), scene, photons, { 2, 4, 8 });
@@ -440,8 +410,7 @@ protected:
     PhotonScene scene = SmallScene();
     scene.SetBall(0.6, 1.5, 1.0);
     const BlockPartition partition = BlockPartition::Even(scene.medium.grid, 3);
-    std::vector<std::string> errors(3);
-    RunInThreads(3, [&](Communicator& communicator) {
+    const std::vector<std::string> errors = ErrorsOfRanks(3, [&](Communicator& communicator) {
       const int rank = communicator.Rank();
       BlockOfScene part(scene, partition.blocks[rank]);
       BlockPartition given = partition;
@@ -449,15 +418,8 @@ protected:
       std::vector<Photon> photons = AnyPhotons(scene.medium.grid, 100);
       Monitor monitor;
       change(rank, { part, given, settings, photons, monitor });
-      try
-      {
-        PhotonMarcherInBlocks(GetDevice(), communicator, given, part.medium, part.Index(), settings, part.Levels())
-          .March(photons, monitor);
-      }
-      catch (const std::exception& error)
-      {
-        errors[rank] = error.what();
-      }
+      PhotonMarcherInBlocks(GetDevice(), communicator, given, part.medium, part.Index(), settings, part.Levels())
+        .March(photons, monitor);
     });
     for (const std::string& error : errors)
     {

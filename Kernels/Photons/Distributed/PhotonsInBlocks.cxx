@@ -5,6 +5,7 @@
 #include "Distribution/BoxExchange.h"
 #include "Distribution/SharedMedium.h"
 #include "Numerics/ChooseEvenly.h"
+#include "Photons/Distributed/BlockInput.h"
 #include "Photons/Distributed/BlockMarch.h"
 #include "Photons/Distributed/PathsInBlocks.h"
 #include "Photons/Distributed/PhotonShares.h"
@@ -19,7 +20,6 @@
 #include <cmath>
 #include <cstdint>
 #include <iterator>
-#include <limits>
 #include <memory>
 #include <numeric>
 #include <utility>
@@ -42,12 +42,6 @@ int ReachOfIndex(const MarchSettings& settings, bool octree)
   const double steps = 0.5 * (settings.order == 2 ? LeapfrogLooksAhead : YoshidaLooksAhead) * settings.stepSize;
   const double ahead = octree && settings.order == 4 ? std::max(steps, 1.0 * (1 << YoshidaLevel)) : steps;
   return OfSpline + 1 + static_cast<int>(ahead); // also from a voxel's upper wall
-}
-
-/// None where there are fewer blocks than ranks, which is yet to be refused.
-VoxelBox BlockOf(const BlockPartition& partition, int rank)
-{
-  return rank < static_cast<int>(partition.blocks.size()) ? partition.blocks[rank] : VoxelBox();
 }
 
 void RequireSame(Communicator& communicator, const MarchSettings& settings)
@@ -123,21 +117,8 @@ private:
 void PhotonMarcherInBlocks::Rank::CheckInput(
   const Medium& medium, const Field& ior, const std::uint8_t* levels, bool octree) const
 {
-  this->Partition.Check();
-  Require(
-    static_cast<int>(this->Partition.blocks.size()) == this->Others.Ranks(), "There is not a block for each rank.");
+  CheckMarchedBlock(this->Others, this->Partition, medium, ior, levels, octree);
   Check(this->Settings);
-  if (this->Has)
-  {
-    Check(medium);
-    Require(medium.grid.size == this->Own.size,
-      "The medium of rank " + std::to_string(this->Others.Rank()) + " does not have the size of its block.");
-    CheckIndex(ior, medium.grid);
-    CheckLevels(levels, medium.grid, this->Partition.whole);
-    Require((levels != nullptr) == octree,
-      "The block of rank " + std::to_string(this->Others.Rank()) +
-        (levels ? " has octree levels and others have none." : " has no octree levels and others have."));
-  }
   const std::string refused = NotInBlocks(this->Settings);
   Require(refused.empty(), "A medium that is spread over ranks is not marched through with " + refused + ".");
 }
@@ -146,11 +127,8 @@ MarchTraits PhotonMarcherInBlocks::Rank::TraitsOfAllRanks(const Medium& medium, 
 {
   MarchTraits traits = this->Has ? MarchTraitsOf(medium, ior, FindFilledBricks(medium)) : MarchTraits();
   static_cast<MediumTraits&>(traits) = TraitsOfAll(this->Others, traits);
-  const float endless = std::numeric_limits<float>::infinity();
-  const std::vector<double> largest = this->Others.Largest({ traits.coloured ? 1.0 : 0.0,
-    this->Has ? -traits.index.least : -endless, this->Has ? traits.index.largest : -endless });
-  traits.coloured = largest[0] > 0.0;
-  traits.index = { static_cast<float>(-largest[1]), static_cast<float>(largest[2]) };
+  traits.coloured = OnAnyRank(this->Others, traits.coloured);
+  traits.index = IndexRangeOfAll(this->Others, this->Has, traits.index);
   return traits;
 }
 

@@ -1,18 +1,17 @@
 // Photon marching as published: Pfeuti 2009, section 3.1.5, after Sun et al. 2008. One work-item per photon; explicit
 // Euler (Eq. 2.10, 2.11); the line of each step is rasterised and every voxel of it gets the photon's power, however
 // long the path in it is; colour (RGBe, Ward 1991) and mean direction (10 bits per component) share 64 bits, which
-// compare-and-swap replaces, with ten tries. The host gives
+// compare-and-swap replaces, with ten tries. A photon marches as far as its block of the grid goes: a line that goes on
+// in another block is rasterised on there. The host gives
 //   BENDS   1: the index varies
 //   LEVELS  1: there are octree levels
 //   A_CHANNELS, S_CHANNELS  components of sigma_a and sigma_s, 0: there is none
 //   TRIES   of compare-and-swap
 
 #include "Numerics/Numerics.cl"
-#include "Photons/Marching/PublishedPhotonsShared.h"
+#include "Photons/Published/PublishedPhotonsShared.h"
 
 #pragma OPENCL EXTENSION cl_khr_int64_base_atomics : enable
-
-#define OUT_OF_GRID 6
 
 static float3 from_rgbe(uint packed)
 {
@@ -70,15 +69,26 @@ static bool deposit_packed(__global ulong* voxel, float3 power, float3 direction
   return false;
 }
 
-static int3 size_of(const PublishedMarchInfo* info)
+static int3 voxels_of(const int* numbers)
 {
-  return (int3)(info->size[0], info->size[1], info->size[2]);
+  return (int3)(numbers[0], numbers[1], numbers[2]);
+}
+
+static bool is_within(int3 voxel, int3 size)
+{
+  return all(voxel >= 0) && all(voxel < size);
+}
+
+// Place in an array over a box, of the voxel of it that is nearest.
+static int index_in(const IndexGrid* box, int3 voxel)
+{
+  const int3 inside = clamp(voxel, (int3)(0), voxels_of(box->size) - 1);
+  return (inside.z * box->size[1] + inside.y) * box->size[0] + inside.x;
 }
 
 static int index_of(const PublishedMarchInfo* info, int3 voxel)
 {
-  const int3 inside = clamp(voxel, (int3)(0), size_of(info) - 1);
-  return (inside.z * info->size[1] + inside.y) * info->size[0] + inside.x;
+  return index_in(&info->own, voxel - voxels_of(info->first));
 }
 
 #if BENDS
@@ -86,19 +96,20 @@ static int index_of(const PublishedMarchInfo* info, int3 voxel)
 static float4 index_at(const PublishedMarchInfo* info, const __global float4* index, float3 p)
 {
   const float3 q = p - 0.5f, base = floor(q), f = q - base;
-  const int3 b = convert_int3(base);
+  const int3 b = convert_int3(base) - voxels_of(info->knownFirst);
   float4 sum = 0.0f;
   for (int corner = 0; corner < 8; ++corner)
   {
     const int3 d = (int3)(corner & 1, corner >> 1 & 1, corner >> 2);
     const float weight = (d.x ? f.x : 1.0f - f.x) * (d.y ? f.y : 1.0f - f.y) * (d.z ? f.z : 1.0f - f.z);
-    sum += weight * index[index_of(info, b + d)];
+    sum += weight * index[index_in(&info->known, b + d)];
   }
   return sum;
 }
 #endif
 
-// Index and its central differences.
+// Index and its central differences, by one voxel where the whole grid ends. At the border of `known` within the grid
+// they are not right, and not read: photons of the block read those of one voxel round it.
 __kernel void published_index(PublishedMarchInfo info, const __global float* ior, __global float4* index)
 {
   const int3 v = (int3)(get_global_id(0), get_global_id(1), get_global_id(2));
@@ -106,11 +117,13 @@ __kernel void published_index(PublishedMarchInfo info, const __global float* ior
   for (int a = 0; a < 3; ++a)
   {
     const int3 step = (int3)(a == 0, a == 1, a == 2);
-    const int here = a == 0 ? v.x : a == 1 ? v.y : v.z;
-    const int span = (here > 0) + (here < info.size[a] - 1);
-    gradient[a] = span == 0 ? 0.0f : (ior[index_of(&info, v + step)] - ior[index_of(&info, v - step)]) / span;
+    const int here = info.knownFirst[a] + (a == 0 ? v.x : a == 1 ? v.y : v.z);
+    const int span = (here > 0) + (here < info.whole.size[a] - 1);
+    gradient[a] =
+      span == 0 ? 0.0f : (ior[index_in(&info.known, v + step)] - ior[index_in(&info.known, v - step)]) / span;
   }
-  index[index_of(&info, v)] = (float4)(gradient[0], gradient[1], gradient[2], ior[index_of(&info, v)]);
+  const int at = index_in(&info.known, v);
+  index[at] = (float4)(gradient[0], gradient[1], gradient[2], ior[at]);
 }
 
 #define component(values, count, voxel, c) \
@@ -148,42 +161,63 @@ typedef struct
   float3 position, velocity, power; // voxels; n times direction; W in units
 } published_photon;
 
-// Deposit the voxels whose middles, along the axis of largest change, lie between the two ends.
-static void rasterize(const PublishedMarchInfo* info, const published_photon* a, const published_photon* b,
-  __global ulong* packed, __global PublishedPhotonEnd* end)
+static published_photon photon_at(const __global PublishedPlace* place)
+{
+  return (published_photon){ vload3(0, place->position), vload3(0, place->velocity), vload3(0, place->power) };
+}
+
+static void put_at(const published_photon* photon, __global PublishedPlace* place)
+{
+  vstore3(photon->position, 0, place->position);
+  vstore3(photon->velocity, 0, place->velocity);
+  vstore3(photon->power, 0, place->power);
+}
+
+static void deposit(const PublishedMarchInfo* info, int3 voxel, float3 power, float3 direction, __global ulong* packed,
+  __global PublishedPhoton* photon)
+{
+  ++photon->deposits;
+  photon->givenUp += !deposit_packed(packed + index_of(info, voxel), power, direction);
+  vstore3(vload3(0, photon->deposited) + power, 0, photon->deposited);
+}
+
+// Deposit the voxels whose middles, along the axis of largest change, lie between the two ends, in the order of the
+// way, from the one that is due: `next`, if the photon has just come for it, whatever another device's rounding took it
+// to be. Returns false where one of another block is due, which `next` becomes.
+static bool rasterize(const PublishedMarchInfo* info, const published_photon* a, const published_photon* b,
+  __global ulong* packed, __global PublishedPhoton* photon, bool arrives, int3* next)
 {
   const float3 change = b->position - a->position;
   const float3 size = fabs(change);
   const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
   const float from = axis == 0 ? a->position.x : axis == 1 ? a->position.y : a->position.z;
   const float to = axis == 0 ? b->position.x : axis == 1 ? b->position.y : b->position.z;
-  if (from == to)
-  {
-    return;
-  }
   const int low = (int)ceil(fmin(from, to) - 0.5f), high = (int)ceil(fmax(from, to) - 0.5f);
-  for (int cell = low; cell < high; ++cell)
+  const int first = photon->done;
+  for (int i = first; i < high - low; ++i)
   {
+    const int cell = from < to ? low + i : high - 1 - i;
     const float t = (cell + 0.5f - from) / (to - from);
-    const int3 voxel = convert_int3_rtn(a->position + t * change);
-    if (any(voxel < 0) || any(voxel >= size_of(info)))
+    const int3 voxel = arrives && i == first ? *next : convert_int3_rtn(a->position + t * change);
+    if (!is_within(voxel, voxels_of(info->whole.size)))
     {
       continue;
     }
-    const float3 power = mix(a->power, b->power, t);
-    const float3 direction = normalize(mix(a->velocity, b->velocity, t));
-    ++end->deposits;
-    end->givenUp += !deposit_packed(packed + index_of(info, voxel), power, direction);
-    for (int c = 0; c < 3; ++c)
+    if (!is_within(voxel - voxels_of(info->first), voxels_of(info->own.size)))
     {
-      end->deposited[c] += c == 0 ? power.x : c == 1 ? power.y : power.z;
+      photon->done = i;
+      *next = voxel;
+      return false;
     }
+    deposit(info, voxel, mix(a->power, b->power, t), normalize(mix(a->velocity, b->velocity, t)), packed, photon);
   }
+  photon->done = high - low;
+  return true;
 }
 
 static int face_left(const PublishedMarchInfo* info, float3 p)
 {
-  const float3 size = convert_float3(size_of(info));
+  const float3 size = convert_float3(voxels_of(info->whole.size));
   const float3 before = -p, after = p - size;
   const float most = fmax(fmax(fmax(before.x, before.y), fmax(before.z, after.x)), fmax(after.y, after.z));
   return most == before.x ? 0
@@ -194,52 +228,83 @@ static int face_left(const PublishedMarchInfo* info, float3 p)
                           : 5;
 }
 
-__kernel void march_published(PublishedMarchInfo info, const __global float4* index, const __global float* sigma_a,
-  const __global float* sigma_s, const __global uchar* levels, const __global float* photons, int first,
-  __global PublishedPhotonEnd* ends, __global ulong* packed)
+typedef struct
 {
-  const int i = first + get_global_id(0);
-  const __global float* given = photons + (ulong)i * 9;
-  const float3 h = (float3)(info.spacing[0], info.spacing[1], info.spacing[2]);
-  published_photon photon = { (float3)(given[0], given[1], given[2]), (float3)(given[3], given[4], given[5]),
-    (float3)(given[6], given[7], given[8]) };
-  __global PublishedPhotonEnd* end = ends + i;
-  end->deposits = end->givenUp = 0;
-  for (int c = 0; c < 3; ++c)
-  {
-    end->deposited[c] = 0.0f;
-  }
+  const PublishedMarchInfo* info;
+  const __global float4* index;
+  const __global float* sigma_a;
+  const __global float* sigma_s;
+  const __global uchar* levels;
+} published_medium;
+
+static published_photon step_from(const published_medium* medium, const published_photon* photon)
+{
+  const PublishedMarchInfo* info = medium->info;
+  const float3 h = (float3)(info->spacing[0], info->spacing[1], info->spacing[2]);
+  published_photon next = *photon;
 #if BENDS
-  photon.velocity *= index_at(&info, index, photon.position).w;
-#endif
-  int step = 0;
-  for (; step < info.stepLimit; ++step)
-  {
-    published_photon next = photon;
-#if BENDS
-    const float4 n = index_at(&info, index, photon.position);
-    const float3 u = photon.velocity / (n.w * h);
+  const float4 n = index_at(info, medium->index, photon->position);
+  const float3 u = photon->velocity / (n.w * h);
 #else
-    const float3 u = photon.velocity / h;
+  const float3 u = photon->velocity / h;
 #endif
-    const float ds = step_length(&info, levels, photon.position, u);
-    next.position += ds * u;
+  const float ds = step_length(info, medium->levels, photon->position, u);
+  next.position += ds * u;
 #if BENDS
-    next.velocity += ds * n.xyz / h;
+  next.velocity += ds * n.xyz / h;
 #endif
-    next.power *= exp(-ds * extinction(sigma_a, sigma_s, index_of(&info, convert_int3_rtn(photon.position))));
-    rasterize(&info, &photon, &next, packed, end);
-    photon = next;
-    if (any(photon.position < 0.0f) || any(photon.position >= convert_float3(size_of(&info))))
+  next.power *=
+    exp(-ds * extinction(medium->sigma_a, medium->sigma_s, index_of(info, convert_int3_rtn(photon->position))));
+  return next;
+}
+
+// Photons that set off in the block, or go on in it, to their ends or into another block.
+__kernel void march_published(PublishedMarchInfo info, const __global float4* index, const __global float* sigma_a,
+  const __global float* sigma_s, const __global uchar* levels, __global PublishedPhoton* photons,
+  __global ulong* packed)
+{
+  __global PublishedPhoton* photon = photons + get_global_id(0);
+  const published_medium medium = { &info, index, sigma_a, sigma_s, levels };
+  published_photon from = photon_at(&photon->from), to = photon_at(&photon->to);
+  bool begins = photon->steps == 0, arrives = !begins;
+#if BENDS
+  from.velocity *= begins ? index_at(&info, index, from.position).w : 1.0f;
+#endif
+  int3 next = vload3(0, photon->voxel);
+  for (;; begins = true, arrives = false)
+  {
+    if (begins)
     {
+      to = step_from(&medium, &from);
+      ++photon->steps;
+      photon->done = 0;
+    }
+    if (!rasterize(&info, &from, &to, packed, photon, arrives, &next))
+    {
+      photon->face = PublishedElsewhere;
       break;
     }
+    if (any(to.position < 0.0f) || any(to.position >= convert_float3(voxels_of(info.whole.size))))
+    {
+      photon->face = face_left(&info, to.position);
+      break;
+    }
+    if (photon->steps == info.stepLimit)
+    {
+      photon->face = PublishedGivenUp;
+      break;
+    }
+    next = convert_int3_rtn(to.position);
+    if (!is_within(next - voxels_of(info.first), voxels_of(info.own.size)))
+    {
+      photon->face = PublishedElsewhere;
+      break;
+    }
+    from = to;
   }
-  end->face = step < info.stepLimit ? face_left(&info, photon.position) : OUT_OF_GRID;
-  end->steps = step + 1;
-  end->power[0] = photon.power.x;
-  end->power[1] = photon.power.y;
-  end->power[2] = photon.power.z;
+  put_at(&from, &photon->from);
+  put_at(&to, &photon->to);
+  vstore3(next, 0, photon->voxel);
 }
 
 // fluence  3 per voxel, W / length^2;  direction  3 per voxel
@@ -254,11 +319,11 @@ __kernel void unpack_light(
 }
 
 // The 3x3x3 Gauss filter, one axis of it: 1/4, 1/2, 1/4.
-__kernel void smooth_along(int axis, PublishedMarchInfo info, const __global float* from, __global float* to)
+__kernel void smooth_along(int axis, IndexGrid box, const __global float* from, __global float* to)
 {
   const int3 v = (int3)(get_global_id(0), get_global_id(1), get_global_id(2));
   const int3 step = (int3)(axis == 0, axis == 1, axis == 2);
-  const float3 sum = 0.25f * (vload3(index_of(&info, v - step), from) + vload3(index_of(&info, v + step), from)) +
-    0.5f * vload3(index_of(&info, v), from);
-  vstore3(sum, index_of(&info, v), to);
+  const float3 sum = 0.25f * (vload3(index_in(&box, v - step), from) + vload3(index_in(&box, v + step), from)) +
+    0.5f * vload3(index_in(&box, v), from);
+  vstore3(sum, index_in(&box, v), to);
 }

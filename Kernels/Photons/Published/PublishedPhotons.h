@@ -2,8 +2,14 @@
 
 #include "Device/Device.h"
 #include "Device/Monitor.h"
+#include "Distribution/BlockPartition.h"
+#include "Distribution/Communicator.h"
+#include "Distribution/Rounds.h"
 #include "Medium/Medium.h"
 #include "Photons/Photons.h"
+
+#include <cstdint>
+#include <vector>
 
 namespace tyndall
 {
@@ -35,4 +41,22 @@ struct PackingLoss
 PhotonLight MarchPublished(Device& device, const Medium& medium, const Field& ior, const std::uint8_t* levels,
   const std::vector<Photon>& photons, const PublishedSettings& settings = {}, PackingLoss* loss = nullptr,
   const Monitor& monitor = {});
+
+/// The same through a medium that is spread over ranks by blocks. All ranks call it.
+///
+/// A photon is handed on as it stands where the line of a step comes to another block's voxel, and makes the same steps
+/// and deposits, bit for bit, whatever the blocks. Voxels get their deposits in another order, as they do from call to
+/// call: light is that of one rank but for what the packing loses, and the same where it loses nothing. Of the index a
+/// rank gets two voxels round its block, of the octree nothing but its block's levels.
+///
+/// @param medium, ior, levels  of the rank's block, as PhotonMarcherInBlocks has them
+/// @param share  some of the photons: all of them are those of rank 0, then those of rank 1, and so on
+/// @param settings  the same on all ranks
+/// @return arrays of the rank's block, none where that is empty; `loss`, balance, face powers and counts are of the
+///   whole
+/// @throws InvalidInput, DeviceError, Aborted  on every rank what one of them throws
+PhotonLight MarchPublishedInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition,
+  const Medium& medium, const Field& ior, const std::uint8_t* levels, const std::vector<Photon>& share,
+  const PublishedSettings& settings = {}, PackingLoss* loss = nullptr, const Monitor& monitor = {},
+  RoundsTraffic* traffic = nullptr);
 }

@@ -1,0 +1,307 @@
+#include "Photons/Published/PublishedPhotons.h"
+
+#include "Device/Clock.h"
+#include "Device/Errors.h"
+#include "Distribution/BoxExchange.h"
+#include "Distribution/SharedMedium.h"
+#include "Distribution/VoxelsAround.h"
+#include "Photons/Distributed/BlockInput.h"
+#include "Photons/Distributed/PhotonShares.h"
+#include "Photons/Distributed/PhotonTallies.h"
+#include "Photons/Published/PublishedMarch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <memory>
+#include <numeric>
+#include <utility>
+
+namespace tyndall
+{
+namespace
+{
+/// The line of a step goes from voxel to voxel, or, where it runs along an edge, by rounding past one.
+constexpr int VoxelsPassed = 2;
+
+/// By which photons are packed: three channels, and as many steps as there are stretches with steps of a voxel.
+MarchSettings PackingSettings()
+{
+  MarchSettings settings;
+  settings.leaveOut = false;
+  return settings;
+}
+
+/// A typical photon's power, W, as a power of two: colours in units of it are far from the ends of what RGBe holds.
+double TypicalPower(const Rgb& entered, std::size_t photons)
+{
+  const double mean = Sum(entered) / (3.0 * static_cast<double>(std::max<std::size_t>(photons, 1)));
+  return mean > 0.0 ? std::exp2(std::round(std::log2(mean))) : 1.0;
+}
+
+/// Photons as they set off.
+/// @param larger  the unit that their power is to have over the one that it has
+std::vector<PublishedPhoton> PhotonsOf(const PackedPhotons& packed, double larger)
+{
+  std::vector<PublishedPhoton> photons(packed.Count());
+  const float* value = packed.values.data();
+  for (PublishedPhoton& photon : photons)
+  {
+    std::copy_n(value, 3, photon.from.position);
+    std::copy_n(value + 3, 3, photon.from.velocity);
+    for (int c = 0; c < 3; ++c)
+    {
+      photon.from.power[c] = value[6 + c] / static_cast<float>(larger);
+    }
+    value += packed.FloatsEach();
+  }
+  return photons;
+}
+
+void RequireAtomics(const Device& device)
+{
+  if (!device.HasExtension("cl_khr_int64_base_atomics"))
+  {
+    throw DeviceError(device.Name() +
+      " has no 64-bit atomics (cl_khr_int64_base_atomics), which the published scheme needs. "
+      "Choose the conservative scheme, or another device.");
+  }
+}
+
+/// Adds what became of a photon that has come to its end.
+void Tally(const PublishedPhoton& photon, double unit, PhotonLight& result, PackingLoss& loss)
+{
+  result.deposits += static_cast<std::size_t>(photon.deposits);
+  result.steps += static_cast<std::size_t>(photon.steps);
+  loss.deposits += static_cast<std::size_t>(photon.deposits);
+  loss.givenUp += static_cast<std::size_t>(photon.givenUp);
+  const bool left = photon.face < PublishedGivenUp;
+  for (int c = 0; c < 3; ++c)
+  {
+    loss.deposited[c] += photon.deposited[c] * unit;
+    const double power = photon.to.power[c] * unit;
+    (left ? result.light.balance.escaped : result.light.balance.leftOver)[c] += power;
+    if (left)
+    {
+      result.light.facePowerOut[photon.face][c] += power;
+    }
+  }
+}
+
+/// What ranks have found, added up on each.
+void AddUp(Communicator& communicator, PackingLoss& loss)
+{
+  std::vector<double> values(loss.deposited.begin(), loss.deposited.end());
+  values.insert(values.end(), loss.kept.begin(), loss.kept.end());
+  values.push_back(static_cast<double>(loss.deposits));
+  values.push_back(static_cast<double>(loss.givenUp));
+  values = communicator.Sum(values);
+  std::copy_n(values.begin(), 3, loss.deposited.begin());
+  std::copy_n(values.begin() + 3, 3, loss.kept.begin());
+  loss.deposits = static_cast<std::size_t>(values[6]);
+  loss.givenUp = static_cast<std::size_t>(values[7]);
+}
+
+/// One rank's part of a march.
+class PublishedOfBlock
+{
+public:
+  PublishedOfBlock(Device& device, Communicator& communicator, const BlockPartition& partition, const Medium& medium,
+    const Field& ior, const std::uint8_t* levels, const PublishedSettings& settings)
+    : TheDevice(device)
+    , Others(communicator)
+    , Partition(partition)
+    , TheMedium(medium)
+    , Settings(settings)
+    , Own(BlockOf(partition, communicator.Rank()))
+    , Has(this->Own.VoxelCount() > 0)
+  {
+    this->Check(ior, levels);
+    this->Prepare(ior, levels);
+  }
+
+  PhotonLight March(const std::vector<Photon>& share, PackingLoss& loss, RoundsTraffic& traffic, const Monitor& monitor)
+  {
+    const double start = ClockSeconds();
+    const StartingPhotons starting = this->Starting(share);
+    const double unit = TypicalPower(starting.packed.entered, PlaceAmong(this->Others, starting.packed.Count()).all);
+    PhotonLight result;
+    result.light.channels = 3;
+    result.light.device = this->TheDevice.Name();
+    result.missed = starting.packed.missed;
+    result.light.balance.entered = starting.packed.entered;
+    result.light.leftOut = { "scattered light: fluence is what comes from the lights without being scattered" };
+    const double marching = ClockSeconds();
+    traffic = this->Follow(starting.packed, unit, result, loss, monitor);
+    this->Gain(unit, result, loss);
+    result.secondsMarching = ClockSeconds() - marching;
+    this->Finish(result);
+    AddUpTallies(this->Others, result);
+    AddUp(this->Others, loss);
+    result.seconds = ClockSeconds() - start;
+    return result;
+  }
+
+private:
+  void Check(const Field& ior, const std::uint8_t* levels) const
+  {
+    const bool octree = OnAnyRank(this->Others, levels != nullptr);
+    this->Others.Together([&] {
+      CheckMarchedBlock(this->Others, this->Partition, this->TheMedium, ior, levels, octree);
+      RequireAtomics(this->TheDevice);
+    });
+    RequireSame(this->Others, this->Partition);
+    RequireSame(this->Others, "settings", true, { 1.0 * this->Settings.tries, this->Settings.smooth ? 1.0 : 0.0 });
+  }
+
+  void Prepare(const Field& ior, const std::uint8_t* levels)
+  {
+    const IndexRange own = this->Has ? IndexRangeOf(ior, this->TheMedium.grid) : IndexRange();
+    const bool bends = IndexRangeOfAll(this->Others, this->Has, own).Varies();
+    const VoxelsAround around(this->Others, this->Partition, {}, PublishedMarch::Reach);
+    std::vector<float> index;
+    this->Others.Together([&] {
+      index.assign(bends ? this->Own.VoxelCount() : 0, 1.0f);
+      if (ior.values)
+      {
+        std::copy_n(ior.values, index.size(), index.begin());
+      }
+    });
+    index = bends ? around.Spread(index, 1) : std::vector<float>();
+    this->Others.Together([&] {
+      if (this->Has)
+      {
+        this->Through = std::make_unique<PublishedMarch>(this->TheDevice, this->TheMedium,
+          bends ? index.data() : nullptr, levels, MarchedPart{ this->Partition.whole, this->Own, around.Known() },
+          MarchEventLimit(this->Partition.whole, PackingSettings()), this->Settings.tries);
+      }
+    });
+  }
+
+  StartingPhotons Starting(const std::vector<Photon>& share)
+  {
+    PhotonNumbers numbers(share.size());
+    std::iota(numbers.begin(), numbers.end(), PlaceAmong(this->Others, share.size()).first);
+    return SendToTheirBlocks(this->Others, this->Partition, share, numbers, {}, PackingSettings());
+  }
+
+  /// Photons to their ends. @param unit  W of one unit of the power that they have on their way
+  RoundsTraffic Follow(
+    const PackedPhotons& packed, double unit, PhotonLight& result, PackingLoss& loss, const Monitor& monitor)
+  {
+    Rounds rounds(this->Others, this->Partition, VoxelsPassed);
+    rounds.UntilAllEnd<PublishedPhoton>(
+      [&](int round, std::vector<PublishedPhoton>&& arrived, const Monitor& ofRound) {
+        std::vector<PublishedPhoton> going = round == 0 ? PhotonsOf(packed, unit / packed.unit) : std::move(arrived);
+        if (this->Through)
+        {
+          this->Through->March(going, ofRound);
+        }
+        const auto ended = std::stable_partition(
+          going.begin(), going.end(), [](const PublishedPhoton& photon) { return photon.face == PublishedElsewhere; });
+        std::for_each(ended, going.end(), [&](const PublishedPhoton& photon) { Tally(photon, unit, result, loss); });
+        going.erase(ended, going.end());
+        return going;
+      },
+      monitor);
+    return rounds.Traffic();
+  }
+
+  /// The light of the block, not smoothed.
+  void Gain(double unit, PhotonLight& result, PackingLoss& loss)
+  {
+    this->Others.Together([&] {
+      if (this->Through)
+      {
+        PublishedMarch::Light light = this->Through->Unpack(unit);
+        result.light.fluence = std::move(light.fluence);
+        result.meanDirection = std::move(light.direction);
+      }
+    });
+    const double volume = this->Partition.whole.VoxelVolume();
+    loss.kept = this->Total(result, [&](std::size_t, int) { return volume / std::cbrt(volume); });
+  }
+
+  void Finish(PhotonLight& result)
+  {
+    if (this->Settings.smooth)
+    {
+      const VoxelsAround around(this->Others, this->Partition, {}, 1);
+      this->Smooth(around, result.light.fluence);
+      this->Smooth(around, result.meanDirection);
+    }
+    const double volume = this->Partition.whole.VoxelVolume();
+    const Field &a = this->TheMedium.sigma_a, &s = this->TheMedium.sigma_s;
+    result.light.balance.absorbed =
+      this->Total(result, [&](std::size_t voxel, int c) { return volume * (a.At(voxel, c) + s.At(voxel, c)); });
+    result.scattered = this->Total(result, [&](std::size_t voxel, int c) { return volume * s.At(voxel, c); });
+  }
+
+  void Smooth(const VoxelsAround& around, std::vector<float>& values)
+  {
+    const std::vector<float> known = around.Spread(values, 3);
+    this->Others.Together([&] {
+      if (this->Through)
+      {
+        values = PartOf(this->Through->Smoothed(around.Known(), known), around.Known(), this->Own, 3);
+      }
+    });
+  }
+
+  /// Of the block's fluence, each time so much. @param weight  of a voxel and channel
+  template <class Weight>
+  static Rgb Total(const PhotonLight& result, const Weight& weight)
+  {
+    Rgb sum = {};
+    for (std::size_t i = 0; i < result.light.fluence.size(); ++i)
+    {
+      const int c = static_cast<int>(i % 3);
+      sum[c] += result.light.fluence[i] * weight(i / 3, c);
+    }
+    return sum;
+  }
+
+  Device& TheDevice;
+  Communicator& Others;
+  const BlockPartition& Partition;
+  const Medium& TheMedium;
+  const PublishedSettings& Settings;
+  const VoxelBox Own;
+  const bool Has;                          ///< voxels
+  std::unique_ptr<PublishedMarch> Through; ///< null without voxels
+};
+}
+
+double PackingLoss::Relative() const
+{
+  const double in = Sum(this->deposited);
+  return in > 0.0 ? 1.0 - Sum(this->kept) / in : 0.0;
+}
+
+PhotonLight MarchPublishedInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition,
+  const Medium& medium, const Field& ior, const std::uint8_t* levels, const std::vector<Photon>& share,
+  const PublishedSettings& settings, PackingLoss* loss, const Monitor& monitor, RoundsTraffic* traffic)
+{
+  PublishedOfBlock march(device, communicator, partition, medium, ior, levels, settings);
+  PackingLoss packing;
+  RoundsTraffic handed;
+  PhotonLight result = march.March(share, packing, handed, monitor);
+  if (loss)
+  {
+    *loss = packing;
+  }
+  if (traffic)
+  {
+    *traffic = handed;
+  }
+  return result;
+}
+
+PhotonLight MarchPublished(Device& device, const Medium& medium, const Field& ior, const std::uint8_t* levels,
+  const std::vector<Photon>& photons, const PublishedSettings& settings, PackingLoss* loss, const Monitor& monitor)
+{
+  SingleRank alone;
+  const BlockPartition whole = { medium.grid, { { { 0, 0, 0 }, medium.grid.size } } };
+  return MarchPublishedInBlocks(device, alone, whole, medium, ior, levels, photons, settings, loss, monitor);
+}
+}
