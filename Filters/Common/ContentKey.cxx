@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <cstring>
 #include <string>
+#include <vector>
 
 namespace tyndall
 {
@@ -89,13 +90,13 @@ void AddCells(Digest& digest, vtkCellArray* cells)
     AddArray(digest, cells->GetConnectivityArray());
   }
 }
-}
 
-std::uint64_t ContentKey(vtkDataObject* data)
+/// @param kinds  of arrays
+std::uint64_t KeyOf(vtkDataObject* data, const std::vector<int>& kinds)
 {
   Digest digest;
   digest.AddText(data ? data->GetClassName() : nullptr);
-  for (int kind : { vtkDataObject::POINT, vtkDataObject::CELL, vtkDataObject::FIELD, vtkDataObject::ROW })
+  for (const int kind : kinds)
   {
     vtkFieldData* const arrays = data ? data->GetAttributesAsFieldData(kind) : nullptr;
     digest.Add(static_cast<std::uint64_t>(kind));
@@ -121,5 +122,16 @@ std::uint64_t ContentKey(vtkDataObject* data)
     }
   }
   return digest.Value();
+}
+}
+
+std::uint64_t ContentKey(vtkDataObject* data)
+{
+  return KeyOf(data, { vtkDataObject::POINT, vtkDataObject::CELL, vtkDataObject::FIELD, vtkDataObject::ROW });
+}
+
+std::uint64_t ContentKeyButFacts(vtkDataObject* data)
+{
+  return KeyOf(data, { vtkDataObject::POINT, vtkDataObject::CELL, vtkDataObject::ROW });
 }
 }

@@ -11,4 +11,8 @@ namespace tyndall
 /// ParaView's readers do, which read a file twice for two ways to ask for one time step.
 /// @param data  null: that there is none
 std::uint64_t ContentKey(vtkDataObject* data);
+
+/// The same without the arrays of the field data: ranks that hold the same photons know other facts of the medium where
+/// one has no piece of it.
+std::uint64_t ContentKeyButFacts(vtkDataObject* data);
 }

@@ -287,7 +287,7 @@ std::vector<Photon> ShareOfPhotons(Communicator& communicator, vtkPolyData* give
   std::uint64_t key = 0;
   communicator.Together([&] {
     photons = ReadPhotons(given);
-    key = ContentKey(given);
+    key = ContentKeyButFacts(given);
   });
   const double high = static_cast<double>(key >> 32), low = static_cast<double>(key & 0xFFFFFFFFu);
   const std::vector<double> largest = communicator.Largest({ high, -high, low, -low });

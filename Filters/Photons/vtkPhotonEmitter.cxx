@@ -3,13 +3,13 @@
 #include "Common/LightTransportData.h"
 #include "Photons/ImportanceData.h"
 #include "Photons/PhotonData.h"
+#include "Ranks/ControllerCommunicator.h"
 #include "Ranks/PieceBlocks.h"
 #include "Ranks/Ranks.h"
 #include "Ranks/WholeImage.h"
 #include "Work/GuardedWork.h"
 #include "Work/WholeInputs.h"
 
-#include "vtkCommunicator.h"
 #include "vtkDataObject.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
@@ -20,7 +20,9 @@
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
+#include <memory>
 #include <optional>
+#include <vector>
 
 vtkStandardNewMacro(vtkPhotonEmitter);
 
@@ -87,19 +89,15 @@ tyndall::Grid WholeGrid(vtkAlgorithm* filter, vtkMultiProcessController* ranks, 
   return tyndall::GridOf(vtkImageData::GetData(inputs.Vectors()[port]));
 }
 
-template <class Number>
-Number SumOver(vtkMultiProcessController* ranks, Number own)
-{
-  Number sum = own;
-  ranks->AllReduce(&own, &sum, 1, vtkCommunicator::SUM_OP);
-  return sum;
-}
-
-/// Each piece has its part of the photons.
-void TellPart(vtkInformation* asking, tyndall::EmissionSettings& settings)
+/// Each piece has its part of the photons. Where ranks work together and one of them is asked for all photons, which a
+/// rank without voxels may not know of, each has all: parts beside the whole would be more light than there is.
+void TellPart(vtkInformation* asking, tyndall::Communicator* others, tyndall::EmissionSettings& settings)
 {
   using Pipeline = vtkStreamingDemandDrivenPipeline;
-  if (asking->Has(Pipeline::UPDATE_PIECE_NUMBER()) && asking->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()) > 1)
+  const bool divided =
+    asking->Has(Pipeline::UPDATE_PIECE_NUMBER()) && asking->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()) > 1;
+  const bool whole = others && tyndall::OnAnyRank(*others, !divided);
+  if (divided && !whole)
   {
     settings.part = asking->Get(Pipeline::UPDATE_PIECE_NUMBER());
     settings.parts = asking->Get(Pipeline::UPDATE_NUMBER_OF_PIECES());
@@ -125,7 +123,9 @@ int vtkPhotonEmitter::RequestData(vtkInformation* request, vtkInformationVector*
     vtkImageData* const mapped = vtkImageData::GetData(inputs[IMPORTANCE_MAP]);
     const tyndall::ImportanceMap map = tyndall::ReadImportanceMap(mapped, illumination);
     tyndall::EmissionSettings settings;
-    TellPart(tyndall::AskingPort(request, outputs), settings);
+    const std::unique_ptr<tyndall::Communicator> others =
+      ranks ? tyndall::CommunicatorOf(ranks, [this] { return tyndall::IsStoppedByOthers(this); }) : nullptr;
+    TellPart(tyndall::AskingPort(request, outputs), others.get(), settings);
     settings.photonCount = static_cast<std::size_t>(this->PhotonCount);
     settings.sampler = static_cast<tyndall::Sampler>(this->Sampler);
     settings.seed = static_cast<std::uint64_t>(this->Seed);
@@ -140,10 +140,11 @@ int vtkPhotonEmitter::RequestData(vtkInformation* request, vtkInformationVector*
       this->Power = tyndall::Sum(emitted.power);
       this->Seconds = emitted.seconds;
     });
-    if (ranks && settings.parts > 1)
+    if (others && settings.parts > 1)
     {
-      this->Photons = SumOver(ranks, this->Photons);
-      this->Power = SumOver(ranks, this->Power);
+      const std::vector<double> sums = others->Sum({ static_cast<double>(this->Photons), this->Power });
+      this->Photons = static_cast<vtkIdType>(sums[0]);
+      this->Power = sums[1];
     }
   };
   return tyndall::GuardedInPieces(this, request, given, outputs, MEDIUM, work);

@@ -364,7 +364,7 @@ void RequireAll(vtkAlgorithm* filter, vtkInformationVector** given)
   }
 }
 
-RankGlance GlanceAtAll(vtkAlgorithm* filter, vtkInformationVector** given, vtkInformationVector* outputs)
+RankGlance GlanceAtAll(vtkAlgorithm* filter, vtkInformationVector** given, vtkInformationVector* outputs, int inShares)
 {
   RankGlance rank;
   for (int port = 0; port < filter->GetNumberOfInputPorts(); ++port)
@@ -374,7 +374,8 @@ RankGlance GlanceAtAll(vtkAlgorithm* filter, vtkInformationVector** given, vtkIn
     {
       vtkInformation* const connection = given[port]->GetInformationObject(i);
       rank.inputs.push_back(GlanceAt(connection));
-      rank.inputs.back().key = ContentKey(vtkDataObject::GetData(connection));
+      vtkDataObject* const data = vtkDataObject::GetData(connection);
+      rank.inputs.back().key = port == inShares ? ContentKeyButFacts(data) : ContentKey(data);
     }
   }
   for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
@@ -451,7 +452,7 @@ WholeInputs::WholeInputs(vtkMultiProcessController* ranks, vtkAlgorithm* filter,
     return;
   }
   RankGlance own;
-  OnAllRanks(ranks, [&] { own = GlanceAtAll(filter, given, outputs); });
+  OnAllRanks(ranks, [&] { own = GlanceAtAll(filter, given, outputs, inShares); });
   this->AllSeen = std::make_unique<Seen>(Seen{ ranks, given, inPieces, inShares, alsoInPieces, Share(ranks, own) });
   NoteParts(this->AllSeen->all, ranks->GetLocalProcessId(), outputs);
   for (int port = 0; port < ports; ++port)

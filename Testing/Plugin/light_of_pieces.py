@@ -534,6 +534,13 @@ def lattice_photons():
         assert "Decomposition = 2" in said, said
 
 
+def lattice_photons_few():
+    """A medium of few voxels, of which the rank without any cannot know that: none waits, and no photon counts twice."""
+    few, os.environ["TYNDALL_PIECES_FROM"] = os.environ["TYNDALL_PIECES_FROM"], "1e9"
+    keep("lattice_photons_few", lattice_of_photons())
+    os.environ["TYNDALL_PIECES_FROM"] = few
+
+
 def lattice_photons_whole():
     keep("lattice_photons_whole", lattice_of_photons(Decomposition="Whole on each rank"))
 
