@@ -286,6 +286,22 @@ bool CallHeard(const std::function<void()>& build)
   built.get();
   return tookLong;
 }
+
+/// Builds a program.
+/// @return what the compiler says where it fails; empty: it is built
+std::string LogOfFailure(cl::Program& program, const cl::Device& device, const std::string& options, bool& tookLong)
+{
+  try
+  {
+    tookLong = CallHeard([&] { program.build({ device }, options.c_str()); }) || tookLong;
+    return {};
+  }
+  catch (const cl::Error& failed)
+  {
+    const std::string log = program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device);
+    return log.empty() ? "OpenCL code " + std::to_string(failed.err()) : log;
+  }
+}
 }
 
 cl::Program Device::ProgramOf(const char* kernel, const std::string& text, const std::string& options)
@@ -315,18 +331,20 @@ cl::Program Device::Build(const char* kernel, const std::string& text, const std
   {
     RequireRoom(this->CacheFolder);
   }
-  cl::Program program(this->TheContext, text);
-  try
-  {
-    if (CallHeard([&] { program.build({ this->TheDevice }, options.c_str()); }))
-    {
-      this->Programs->CompiledSince = true;
-    }
-  }
-  catch (const cl::Error&)
+  cl::Program program;
+  bool tookLong = false;
+  const std::string log = BuildBesideOthers([&] {
+    program = cl::Program(this->TheContext, text);
+    return LogOfFailure(program, this->TheDevice, options, tookLong);
+  });
+  if (!log.empty())
   {
     throw DeviceError("The kernel " + std::string(kernel) + " does not build on " + this->DeviceName + " with \"" +
-      options + "\":\n" + program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(this->TheDevice));
+      options + "\":\n" + log);
+  }
+  if (tookLong)
+  {
+    this->Programs->CompiledSince = true;
   }
   return program;
 }

@@ -211,4 +211,15 @@ void RequireRoom(const std::string& folder)
       " are needed." + Advice());
   }
 }
+
+std::string BuildBesideOthers(const std::function<std::string()>& build)
+{
+  constexpr int MostTimes = 3;
+  std::string log = build();
+  for (int times = 1; times < MostTimes && !log.empty() && log.find("error") == std::string::npos; ++times)
+  {
+    log = build();
+  }
+  return log;
+}
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <string>
 
 namespace tyndall
@@ -32,4 +33,11 @@ void CompileForAnyGroup();
 /// Quick enough to be asked before every program that is built.
 /// @throws DeviceError where the disk of the folder, in which PoCL writes already, has become full
 void RequireRoom(const std::string& folder);
+
+/// Builds a program, and where that fails without a word of the compiler's builds it again, thrice at most: ranks that
+/// begin with an empty folder compile the same programs at once, and one whose file another has just replaced fails
+/// (PoCL 3.1: pocl_remove of program.bc).
+/// @param build  builds it from its source. @return the log of a failure; empty: it is built
+/// @return likewise, of the last time
+std::string BuildBesideOthers(const std::function<std::string()>& build);
 }

@@ -11,6 +11,7 @@
 #include <string>
 #include <sys/resource.h>
 #include <unistd.h>
+#include <vector>
 
 using namespace tyndall;
 
@@ -60,5 +61,20 @@ TEST_F(PoclCacheTest, AFolderThatTakesTooLittleIsTold)
   ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &before), 0);
   std::signal(SIGXFSZ, handler);
   EXPECT_EQ(WhyNotWritable(this->Folder.string(), 1), "");
+}
+
+TEST_F(PoclCacheTest, AFailureWithoutTheCompilersWordsIsTriedAgain)
+{
+  const std::vector<std::string> removed = { "Device pthread failed to build the program", "" };
+  const std::vector<std::string> wrong = { "line 1: error: use of undeclared identifier", "" };
+  const std::vector<std::string> never(9, "Device pthread failed to build the program");
+  const auto timesOf = [](const std::vector<std::string>& logs, const std::string& last) {
+    std::size_t times = 0;
+    EXPECT_EQ(BuildBesideOthers([&] { return logs[times++]; }), last);
+    return times;
+  };
+  EXPECT_EQ(timesOf(removed, ""), 2u);
+  EXPECT_EQ(timesOf(wrong, wrong[0]), 1u) << "an error of the program stays one";
+  EXPECT_EQ(timesOf(never, never[0]), 3u);
 }
 }
