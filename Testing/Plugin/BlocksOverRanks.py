@@ -5,8 +5,6 @@ none has more than its part.
 """
 import glob
 import os
-import re
-import time
 
 import numpy
 from pieces_of_ranks import Runs, difference
@@ -87,8 +85,4 @@ for what in ("photons", "scattered"):
     assert marched.max() > 0 and difference(marched, runs.whole(1, "whole_" + what, "light")[0]) == 0, what
 
 for case in ("blocks_killed", "photons_killed"):
-    code, said = runs.run(3, case)
-    end = time.time() - float(re.search(r"killed at ([0-9.]+)", said)[1])
-    assert code != 0 and "is done" not in said, (case, code, said)
-    print("%s, a killed rank: all ended after %.1f s, with code %d" % (case, end, code))
-    assert end < 30, (case, end)
+    runs.end_with_the_killed(3, case)

@@ -1,5 +1,5 @@
 """Pictures of media of which each rank has only a piece: that of the whole, whatever the number of ranks, and no rank is
-given more than its piece.
+given more than its piece; a rank that is killed amid a picture ends all.
 
     python3 PicturesOverRanks.py
 """
@@ -78,3 +78,5 @@ for ranks in (1, 2, 3, 4):
             assert largest < {1: 1.01, 2: 0.61, 3: 0.5, 4: 0.36}[ranks], (ranks, largest)
     if more:
         print(said)
+
+runs.end_with_the_killed(3, "killed")

@@ -4,7 +4,6 @@ one error on every rank; a rank that is aborted or killed ends the work of all.
     python3 PiecesOverRanks.py
 """
 import os
-import re
 import time
 
 from pieces_of_ranks import Runs
@@ -40,8 +39,4 @@ os.environ["TYNDALL_RANKS_WAIT"] = "4"
 code, said = run(3, "missing")
 assert code == 0 and said.count("is done") == 3, said
 print("a rank that does not come: %.0f s" % (time.time() - start))
-code, said = run(3, "killed")
-end = time.time() - float(re.search(r"killed at ([0-9.]+)", said)[1])
-assert code != 0 and "is done" not in said, (code, said)
-print("a killed rank: all ended after %.1f s, with code %d" % (end, code))
-assert end < 30, end
+runs.end_with_the_killed(3, "killed")

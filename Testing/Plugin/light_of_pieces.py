@@ -6,14 +6,13 @@ Of the cases that give light each rank writes its pieces to FOLDER; those that m
 """
 import os
 import sys
-import time
 
 import numpy
 from paraview import servermanager
 from paraview.simple import *
 from paraview.vtk import vtkDoubleArray, vtkImageData
 from paraview.vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from pieces import errors_of, flag_duplicates, source_of
+from pieces import dies_amid, errors_of, flag_duplicates, source_of
 from vtkmodules.vtkIOXML import vtkXMLImageDataWriter
 
 folder = sys.argv[1]
@@ -744,13 +743,8 @@ def blocks_killed():
 
 def killed_amid(light, after=0.0):
     """The last rank is killed when so much is done."""
-    def end(caller, event):
-        if caller.GetProgress() >= after:
-            print("killed at %f" % time.time(), flush=True)
-            os.kill(os.getpid(), 9)
-
     if odd_rank():
-        light.GetClientSideObject().AddObserver("ProgressEvent", end)
+        dies_amid(light, after)
     light.UpdatePipeline()
 
 
@@ -870,18 +864,9 @@ def missing():
 
 
 def killed():
-    """The last rank is killed amid its work; the others are to hear of it from mpiexec."""
     medium = ParticipatingMedium(Input=source_of(piece_of(parts(even_cuts())[rank])),
                                  DensityArray=["CELLS", "density"])
-    light = LightPropagationMaps(Input=medium, SkyColor=[1, 1, 1], DirectionsPerFace=16)
-
-    def end(caller, event):
-        print("killed at %f" % time.time(), flush=True)
-        os.kill(os.getpid(), 9)
-
-    if rank == ranks - 1:
-        light.GetClientSideObject().AddObserver("ProgressEvent", end)
-    light.UpdatePipeline()
+    killed_amid(LightPropagationMaps(Input=medium, SkyColor=[1, 1, 1], DirectionsPerFace=16))
 
 
 for case in sys.argv[2:]:

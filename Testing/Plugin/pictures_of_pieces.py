@@ -14,7 +14,7 @@ from paraview import servermanager
 from paraview.simple import *
 from paraview.vtk import vtkDoubleArray, vtkExtentTranslator, vtkImageData
 from paraview.vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from pieces import errors_of, flag_duplicates, source_of
+from pieces import dies_amid, errors_of, flag_duplicates, source_of
 from vtkmodules.vtkIOXML import vtkXMLImageDataWriter
 
 folder = sys.argv[1]
@@ -384,6 +384,14 @@ def abort():
     caster.UpdatePipeline()
     output = algorithm.GetOutputDataObject(0)
     assert not errors and output.GetNumberOfPoints() == 0 and output.GetFieldData().HasArray("aborted"), errors
+
+
+def killed():
+    """The last rank, while rays that bend go from rank to rank."""
+    caster = MediumRayCaster(Input=source_of(bend(piece())), Environment=sky(), ImageSize=[800, 600])
+    if rank == ranks - 1:
+        dies_amid(caster, 0.1)
+    caster.UpdatePipeline()
 
 
 for case in sys.argv[2:]:

@@ -1,4 +1,7 @@
 """For scripts of pvbatch --symmetric in which each rank has a piece of an image of its own."""
+import os
+import time
+
 import numpy
 from paraview import servermanager
 from paraview.vtk.util.numpy_support import numpy_to_vtk
@@ -14,6 +17,16 @@ def errors_of(proxy):
     note.CallDataType = "string0"
     proxy.GetClientSideObject().AddObserver("ErrorEvent", note)
     return texts
+
+
+def dies_amid(proxy, after=0.0):
+    """This rank is killed when so much of the filter's work is done; the others are to hear of it from mpiexec."""
+    def end(caller, event):
+        if caller.GetProgress() >= after:
+            print("killed at %f" % time.time(), flush=True)
+            os.kill(os.getpid(), 9)
+
+    proxy.GetClientSideObject().AddObserver("ProgressEvent", end)
 
 
 def source_of(piece):

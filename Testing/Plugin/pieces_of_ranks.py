@@ -1,8 +1,10 @@
 """Runs scripts of pieces over ranks, and puts together what they wrote."""
 import glob
 import os
+import re
 import shutil
 import subprocess
+import time
 
 import numpy
 
@@ -31,6 +33,14 @@ class Runs:
                                "--symmetric", self.script, folder, *cases],
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=timeout)
         return done.returncode, done.stdout
+
+    def end_with_the_killed(self, ranks, case):
+        """Checks that a case in which a rank is killed ends on all, soon."""
+        code, said = self.run(ranks, case)
+        end = time.time() - float(re.search(r"killed at ([0-9.]+)", said)[1])
+        assert code != 0 and "is done" not in said, (case, code, said)
+        print("%s, a killed rank: all ended after %.1f s, with code %d" % (case, end, code))
+        assert end < 30, (case, end)
 
     def whole(self, ranks, case, what):
         """@return the array of the whole, of each rank's piece, and the balance"""
