@@ -32,7 +32,7 @@ inline std::shared_ptr<Device> FindWithin(std::shared_ptr<Device>& kept, const s
     std::shared_ptr<Device> whole;
     Device within;
   };
-  const std::shared_ptr<Device> whole = Device::Find(name);
+  std::shared_ptr<Device> whole = Device::Find(name);
   if (mebibytes == 0)
   {
     kept.reset();

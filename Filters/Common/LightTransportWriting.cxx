@@ -175,7 +175,8 @@ std::string Lines(const std::vector<std::string>& texts)
 
 namespace
 {
-void WriteMoments(LightField&& light, vtkImageData* output)
+/// Whose moments are taken from it.
+void WriteMoments(LightField& light, vtkImageData* output)
 {
   const auto voxels = static_cast<std::size_t>(output->GetNumberOfCells());
   if (light.scatteredMoments.empty())
@@ -235,7 +236,7 @@ void WriteLight(LightField&& light, vtkImageData* output)
     const int stored = std::max(1, static_cast<int>(light.storedDirections.size()));
     AddCells(output, "scattered_radiance", std::move(light.scatteredRadiance), channels * stored);
   }
-  WriteMoments(std::move(light), output);
+  WriteMoments(light, output);
 
   const EnergyBalance& balance = light.balance;
   AddFact(output, "energy_balance",

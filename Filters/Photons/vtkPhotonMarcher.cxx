@@ -390,13 +390,13 @@ bool vtkPhotonMarcher::MarchPiece(vtkInformation* request, vtkMultiProcessContro
   vtkImageData* const output = vtkImageData::GetData(outputs, 0);
   tyndall::PassOn(image, output);
   pieces.KeepHeld(output);
-  if (pieces.Held().VoxelCount() > 0)
-  {
-    this->Write(std::move(marched), output);
-  }
   if (communicator->Rank() == 0)
   {
     tyndall::WritePaths(marched.paths, vtkPolyData::GetData(outputs, 1));
+  }
+  if (pieces.Held().VoxelCount() > 0)
+  {
+    this->Write(std::move(marched), output);
   }
   return true;
 }
@@ -463,12 +463,12 @@ int vtkPhotonMarcher::RequestData(vtkInformation* request, vtkInformationVector*
     this->Warn(marched.light, photons.size());
     vtkImageData* output = vtkImageData::GetData(outputs, 0);
     tyndall::PassOn(vtkImageData::GetData(inputs[MediumPort]), output);
-    this->Write(std::move(marched), output);
-    tyndall::KeepWhatIsAskedFor(outputs->GetInformationObject(0), output);
     if (tyndall::IsFirstPiece(request, outputs))
     {
       tyndall::WritePaths(marched.paths, vtkPolyData::GetData(outputs, 1));
     }
+    this->Write(std::move(marched), output);
+    tyndall::KeepWhatIsAskedFor(outputs->GetInformationObject(0), output);
   });
 }
 

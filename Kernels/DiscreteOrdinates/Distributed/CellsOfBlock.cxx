@@ -5,15 +5,10 @@
 
 namespace tyndall
 {
-namespace
-{
-constexpr int Everywhere = 0x3f; ///< all six faces
-}
-
 int InnerFacesOf(const OrdinatesRanks& ranks)
 {
   const VoxelBox& block = ranks.partition.blocks[ranks.others.Rank()];
-  int inner = ranks.Has() ? 0 : Everywhere;
+  int inner = ranks.Has() ? 0 : AllFaces;
   for (int axis = 0; axis < 3; ++axis)
   {
     inner |= block.first[axis] > 0 ? 1 << (2 * axis) : 0;

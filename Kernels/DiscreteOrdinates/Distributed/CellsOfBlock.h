@@ -12,6 +12,8 @@
 
 namespace tyndall
 {
+constexpr int AllFaces = 0x3f; ///< bits of the faces -x, +x, ... +z
+
 /// Bits of the faces -x, +x, ... +z of this rank's block that are no faces of the grid; of a rank without voxels all.
 int InnerFacesOf(const OrdinatesRanks& ranks);
 

@@ -8,11 +8,6 @@
 
 namespace tyndall
 {
-namespace
-{
-constexpr int Everywhere = 0x3f; ///< all six faces
-}
-
 PublishedStepInBlocks::PublishedStepInBlocks(Device& device, const OrdinatesRanks& ranks, const Grid& grid,
   const OrdinateGroups& groups, const std::array<bool, 3>& periodic, const IncomingRadiance& incoming,
   const LightOfCells* reflecting)
@@ -52,7 +47,7 @@ SteppedFaces PublishedStepInBlocks::FacesOfBlock(const std::array<bool, 3>& peri
   }
   else
   {
-    faces.outside = Everywhere;
+    faces.outside = AllFaces;
   }
   if (reflecting)
   {
