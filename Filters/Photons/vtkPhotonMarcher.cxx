@@ -5,6 +5,7 @@
 #include "Common/LightTransportData.h"
 #include "Common/SameVoxels.h"
 #include "Device/Device.h"
+#include "Distribution/SharedMedium.h"
 #include "Numerics/ChooseEvenly.h"
 #include "Photons/Distributed/PhotonShares.h"
 #include "Photons/Distributed/PhotonsInBlocks.h"
@@ -335,6 +336,8 @@ vtkPhotonMarcher::Marched vtkPhotonMarcher::MarchInBlocks(tyndall::Device& devic
   const tyndall::BlockPartition& partition, const PieceOfMarch& piece)
 {
   const tyndall::Medium& medium = piece.read.input.medium;
+  tyndall::RequireSame(
+    communicator, "Scheme or PathCount", true, { 1.0 * this->Scheme, static_cast<double>(this->PathCount) });
   const bool published = this->Scheme == PUBLISHED;
   Marched marched;
   if (published)

@@ -108,15 +108,24 @@ bool IsKnownToMiss(vtkAlgorithm* filter, const LastFailure& last)
   return known;
 }
 
-/// That a rank does not come: nobody waits for it twice.
-void FailWithout(int missing, vtkAlgorithm* filter, vtkInformationVector* outputs, LastFailure& last)
+/// That a rank does not come, or came to another filter: nobody waits for it twice.
+void FailWithout(const Absence& absence, vtkAlgorithm* filter, vtkInformationVector* outputs, LastFailure& last)
 {
   EmptyWithout(outputs);
-  vtkErrorWithObjectMacro(
-    filter, << "Rank " << missing << " did not come to this filter within " << SecondsToWait()
-            << " seconds. All ranks have to update the same filters: look at the script, and for an "
-               "error of a filter before on that rank. If it only takes longer, set "
-               "TYNDALL_RANKS_WAIT (seconds).");
+  if (absence.elsewhere)
+  {
+    vtkErrorWithObjectMacro(filter, << "Rank " << absence.rank
+                                    << " came to another filter than rank 0 (on this rank: " << filter->GetClassName()
+                                    << "). Make the same pipeline on all ranks, and update it in the same order.");
+  }
+  else
+  {
+    vtkErrorWithObjectMacro(
+      filter, << "Rank " << absence.rank << " did not come to this filter within " << SecondsToWait()
+              << " seconds. All ranks have to update the same filters: look at the script, and for an "
+                 "error of a filter before on that rank. If it only takes longer, set "
+                 "TYNDALL_RANKS_WAIT (seconds).");
+  }
   last.Note(LastFailure::Missing);
 }
 
@@ -140,9 +149,9 @@ int GuardedOn(vtkMultiProcessController* ranks, vtkAlgorithm* filter, vtkInforma
     EmptyWithout(outputs);
     return 1;
   }
-  if (const int missing = ranks ? MissingRank(ranks) : -1; missing >= 0)
+  if (const Absence absence = ranks ? AbsentRank(ranks, filter->GetClassName()) : Absence(); absence.rank >= 0)
   {
-    FailWithout(missing, filter, outputs, last);
+    FailWithout(absence, filter, outputs, last);
     return 1;
   }
   if (StillHolds(ranks, last))

@@ -364,6 +364,27 @@ void RequireAll(vtkAlgorithm* filter, vtkInformationVector** given)
   }
 }
 
+/// An array that is shorter or longer than its cells or points is not cut along with them.
+void CheckLengths(vtkDataObject* data, const std::string& named)
+{
+  auto* const image = vtkImageData::SafeDownCast(data);
+  const auto check = [&](vtkDataSetAttributes* attributes, vtkIdType values, const char* what) {
+    for (int i = 0; i < attributes->GetNumberOfArrays(); ++i)
+    {
+      vtkAbstractArray* const array = attributes->GetAbstractArray(i);
+      Require(array->GetNumberOfTuples() == values,
+        named + " has an array '" + (array->GetName() ? array->GetName() : "") + "' of " +
+          std::to_string(array->GetNumberOfTuples()) + " values where there are " + std::to_string(values) + " " +
+          what + ". Give it a value for each.");
+    }
+  };
+  if (image)
+  {
+    check(image->GetCellData(), image->GetNumberOfCells(), "cells");
+    check(image->GetPointData(), image->GetNumberOfPoints(), "points");
+  }
+}
+
 RankGlance GlanceAtAll(vtkAlgorithm* filter, vtkInformationVector** given, vtkInformationVector* outputs, int inShares)
 {
   RankGlance rank;
@@ -375,6 +396,7 @@ RankGlance GlanceAtAll(vtkAlgorithm* filter, vtkInformationVector** given, vtkIn
       vtkInformation* const connection = given[port]->GetInformationObject(i);
       rank.inputs.push_back(GlanceAt(connection));
       vtkDataObject* const data = vtkDataObject::GetData(connection);
+      CheckLengths(data, Named(port));
       rank.inputs.back().key = port == inShares ? ContentKeyButFacts(data) : ContentKey(data);
     }
   }

@@ -233,6 +233,13 @@ TEST_F(PublishedPhotonBlocks, FailTogether)
   expect("has no octree levels", [](int rank, BlockOfScene& part, auto&, auto&, auto&) {
     part.levels.assign(rank == 1 ? 0 : part.medium.grid.VoxelCount(), 0);
   });
+  expect("refractive index", [](int rank, BlockOfScene& part, auto&, auto&, auto&) {
+    part.ior.assign(rank == 1 ? 0 : part.medium.grid.VoxelCount(), 1.2f);
+  });
+  expect("components of sigma_a", [](int rank, BlockOfScene& part, auto&, auto&, auto&) {
+    part.sigma_s.resize(part.medium.grid.VoxelCount() * 3, 0.1f);
+    part.medium.sigma_s = { part.sigma_s.data(), rank == 1 ? 3 : 1 };
+  });
   expect("aborted", [](int rank, auto&, auto&, auto&, Monitor& monitor) {
     monitor = [rank](double done) { return rank != 1 || done < 0.6; };
   });

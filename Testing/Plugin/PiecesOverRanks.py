@@ -16,7 +16,7 @@ cut = ["even", "ghosts", "uneven", "alone"]
 
 for ranks in (1, 2, 3, 4, 8):
     cases = (from_files if ranks != 4 else []) + cut
-    more = ["errors", "abort"] if ranks == 3 else []
+    more = ["errors", "abort", "elsewhere"] if ranks == 3 else []
     cases += ["no_file"] if ranks == 3 else []
     code, said = run(ranks, *cases, *more)
     assert code == 0 and said.count("is done") == ranks, said

@@ -30,6 +30,12 @@ def density_of(extent):
     return (0.3 + 0.2 * numpy.sin(0.7 * x) * numpy.cos(0.5 * y + 0.3 * z)).astype(numpy.float32).ravel()
 
 
+def add_density(image, values, name="density"):
+    array = numpy_to_vtk(values, deep=True)
+    array.SetName(name)
+    image.GetCellData().AddArray(array)
+
+
 def piece_of(extent, own=None, name="density", components=1, spacing=1.0, g=None):
     """@param own  cells outside of this extent are duplicates of another rank's, with a wrong value"""
     image = vtkImageData()
@@ -38,9 +44,7 @@ def piece_of(extent, own=None, name="density", components=1, spacing=1.0, g=None
     values = density_of(extent)
     if own:
         values[flag_duplicates(image, own)] = 99
-    array = numpy_to_vtk(numpy.repeat(values, components).reshape(-1, components), deep=True)
-    array.SetName(name)
-    image.GetCellData().AddArray(array)
+    add_density(image, numpy.repeat(values, components).reshape(-1, components), name)
     if g is not None:
         fact = vtkDoubleArray()
         fact.SetName("g")
@@ -232,6 +236,17 @@ def blocks_scattered():
 
 def whole_scattered():
     keep("whole_scattered", photons("Whole on each rank", MaximumOrders=0))
+
+
+def photons_differ():
+    """Ranks that ask for other paths, or by another scheme, do not march: one error."""
+    for setting in ({"PathCount": 5}, {"Scheme": 0}):
+        light = PhotonMarcher(Input=fog(), Photons=PhotonEmitter(Input=fog(), SkyColor=[1, 1, 1], PhotonCount=2000),
+                              Decomposition="Blocks", **(setting if odd_rank() else {}))
+        errors = errors_of(light)
+        light.UpdatePipeline()
+        assert len(errors) == 1 and "disagree about Scheme or PathCount" in errors[0], (rank, errors)
+        assert light.GetClientSideObject().GetOutputDataObject(0).GetNumberOfCells() == 0
 
 
 def photons_abort():
@@ -782,6 +797,11 @@ def wrong_pieces():
     yield "spacing", piece_of(whole, spacing=2.0 if odd else 1.0), "different origins, spacings or directions"
     yield "g", piece_of(whole, g=0.5 if odd else 0.2), "say different things of the phase function (g 0.2; g 0.5)"
     yield "gap", piece_of([whole[0] + odd, whole[1] + odd] + whole[2:]), "which make no whole"
+    short = piece_of(whole)
+    if odd:
+        density = vtk_to_numpy(short.GetCellData().GetArray("density"))
+        add_density(short, density[:5])
+    yield "short", short, "On rank %d: The input has an array 'density' of 5 values" % (ranks - 1)
     mine = piece_of([0, 12, 0, 5, 0, 4])
     vtk_to_numpy(mine.GetCellData().GetArray("density"))[7] += rank
     yield "overlap", mine, 'cell array "density" has different values'
@@ -861,6 +881,21 @@ def missing():
         light.UpdatePipeline()
         assert len(errors) == 1 and "Rank %d did not come" % (ranks - 1) in errors[0] and not later, (errors, later)
         assert light.GetClientSideObject().GetOutputDataObject(0).GetNumberOfCells() == 0
+
+
+def elsewhere():
+    """The last rank has no lamps, so that ranks come to other filters: each has one error, and what is right then works."""
+    medium = ParticipatingMedium(Input=source_of(piece_of(parts(even_cuts())[rank])), DensityArray=["CELLS", "density"])
+    lights = [] if odd_rank() else [LightRig()]
+    light = LightPropagationMaps(Input=medium, SkyColor=[1, 1, 1], DirectionsPerFace=4, **{"Lights": rig for rig in lights})
+    errors = [errors_of(proxy) for proxy in [medium, light, *lights]]
+    light.UpdatePipeline()
+    light.UpdatePipeline()
+    said = sum(errors, [])
+    assert len(said) == 1 and "Rank %d came to another filter than rank 0" % (ranks - 1) in said[0], (rank, said)
+    assert light.GetClientSideObject().GetOutputDataObject(0).GetNumberOfCells() == 0
+    right = solved(source_of(piece_of(parts(even_cuts())[rank])), ["CELLS", "density"], Lights=LightRig())
+    assert right.GetClientSideObject().GetOutputDataObject(0).GetNumberOfCells() > 0, rank
 
 
 def killed():

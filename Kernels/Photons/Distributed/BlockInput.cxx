@@ -1,6 +1,7 @@
 #include "Photons/Distributed/BlockInput.h"
 
 #include "Device/Errors.h"
+#include "Distribution/SharedMedium.h"
 
 #include <limits>
 #include <string>
@@ -31,6 +32,17 @@ void CheckMarchedBlock(const Communicator& communicator, const BlockPartition& p
   Require((levels != nullptr) == octree,
     "The block of rank " + rank +
       (levels ? " has octree levels and others have none." : " has no octree levels and others have."));
+}
+
+void RequireSameInput(
+  Communicator& communicator, const BlockPartition& partition, const Medium& medium, const Field& ior)
+{
+  RequireSame(communicator, partition);
+  const bool has = partition.blocks[communicator.Rank()].VoxelCount() > 0;
+  RequireSame(communicator, "whether there is a refractive index", has, { ior.values ? 1.0 : 0.0 });
+  const auto components = [](const Field& field) { return field.values ? field.components : 0; };
+  RequireSame(communicator, "the components of sigma_a or sigma_s", has,
+    { 1.0 * components(medium.sigma_a), 1.0 * components(medium.sigma_s) });
 }
 
 IndexRange IndexRangeOfAll(Communicator& communicator, bool has, const IndexRange& own)

@@ -21,6 +21,12 @@ VoxelBox BlockOf(const BlockPartition& partition, int rank);
 void CheckMarchedBlock(const Communicator& communicator, const BlockPartition& partition, const Medium& medium,
   const Field& ior, const std::uint8_t* levels, bool octree);
 
+/// What all ranks' blocks must have alike: the partition, whether they have a refractive index, and the components of
+/// their coefficients. All ranks call it.
+/// @throws InvalidInput  on each, where they differ
+void RequireSameInput(
+  Communicator& communicator, const BlockPartition& partition, const Medium& medium, const Field& ior);
+
 /// All ranks call it. @param own  that of a rank which has no voxels does not count
 IndexRange IndexRangeOfAll(Communicator& communicator, bool has, const IndexRange& own);
 }

@@ -422,7 +422,7 @@ PhotonMarcherInBlocks::PhotonMarcherInBlocks(Device& device, Communicator& commu
 {
   const bool octree = OnAnyRank(communicator, levels);
   communicator.Together([&] { this->Inside->CheckInput(medium, ior, levels, octree); });
-  RequireSame(communicator, partition);
+  RequireSameInput(communicator, partition, medium, ior);
   RequireSame(communicator, settings);
   this->Inside->Prepare(medium, ior, levels, octree);
 }

@@ -43,7 +43,8 @@ public:
   };
   /// @param unit  W of one unit of power
   Light Unpack(double unit);
-  /// Values of a box, 3 a voxel, after the 3x3x3 Gauss filter of the published scheme, as if there was nothing beyond.
+  /// Values of a box, 3 a voxel, after the 3x3x3 Gauss filter of the published scheme; beyond the box, the
+  /// values of its faces again.
   std::vector<float> Smoothed(const VoxelBox& box, const std::vector<float>& values);
 
 private:

@@ -150,7 +150,7 @@ private:
       CheckMarchedBlock(this->Others, this->Partition, this->TheMedium, ior, levels, octree);
       RequireAtomics(this->TheDevice);
     });
-    RequireSame(this->Others, this->Partition);
+    RequireSameInput(this->Others, this->Partition, this->TheMedium, ior);
     RequireSame(this->Others, "settings", true, { 1.0 * this->Settings.tries, this->Settings.smooth ? 1.0 : 0.0 });
   }
 
