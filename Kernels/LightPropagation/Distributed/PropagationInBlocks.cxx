@@ -29,12 +29,9 @@ std::string NotInBlocks(const Medium& medium, const Illumination& illumination, 
 {
   const bool goesRound = settings.periodic[0] || settings.periodic[1] || settings.periodic[2];
   const bool isAngular = !medium.phase.IsIsotropic() && settings.angularDegree != 0;
-  if (settings.source == PropagationSource::Linear &&
-    (isAngular || goesRound || Reflects(illumination) || settings.facePower || settings.uncollidedDirections > 0))
+  if (settings.source == PropagationSource::Linear && (isAngular || goesRound || settings.uncollidedDirections > 0))
   {
-    return "a linear source besides anisotropic scattering, periodic axes, FaceAlbedo, UncollidedDirections or power "
-           "by "
-           "cells of faces";
+    return "a linear source besides anisotropic scattering, periodic axes or UncollidedDirections";
   }
   return {};
 }
@@ -205,7 +202,8 @@ std::string ProblemInBlocks::BetterAsWhole(const Medium& medium, const Illuminat
     return "many scattering orders, anisotropic, round a periodic axis or between faces that reflect, which it "
            "accelerates";
   }
-  if (this->Orders.how == OrdersAdded::ByBalance && this->FinerDirections(this->Orders.how).perFace > 0)
+  if (this->Orders.how == OrdersAdded::ByBalance && !Reflects(scene.illumination) &&
+    this->FinerDirections(this->Orders.how).perFace > 0)
   {
     return "faces that shine unevenly, whose light it has along finer directions";
   }

@@ -108,12 +108,6 @@ SweepTally UncollidedOverRanks::AddAll(const Buffer<float>* shown, OctantSources
   {
     Add(tally, this->AddGiven(monitor));
   }
-  this->Block.Others.Together([&] {
-    if (this->Block.Faces)
-    {
-      this->Block.Faces->TakeUncollided();
-    }
-  });
   return tally;
 }
 

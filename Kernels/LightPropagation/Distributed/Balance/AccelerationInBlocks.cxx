@@ -64,7 +64,8 @@ bool AccelerationInBlocks::NeedsFirstMoments() const
 void AccelerationInBlocks::AddBeams(const Monitor& monitor)
 {
   const std::vector<Light>& lamps = this->The.lamps;
-  const Buffer<float>* const flux = this->The.flux.Size() > 0 ? &this->The.flux : nullptr;
+  Deposit more = this->DepositOfSweep(); // with the faces' cells, as sweeps have them
+  more.flux = this->The.flux.Size() > 0 ? &this->The.flux : nullptr;
   const VolumeLayout whole = { this->The.partition.whole, this->The.layout.channels,
     this->The.layout.sharedExtinction };
   this->Beams = std::make_unique<BeamsInThickBlocks>(this->The.device, this->The.others, this->Block, whole,
@@ -72,7 +73,7 @@ void AccelerationInBlocks::AddBeams(const Monitor& monitor)
   for (std::size_t i = 0; i < lamps.size(); ++i)
   {
     const double all = static_cast<double>(lamps.size());
-    this->The.ledger.Count(this->Beams->Add(lamps[i], this->The.makeSweep, this->The.addNearLamp, this->The.path, flux,
+    this->The.ledger.Count(this->Beams->Add(lamps[i], this->The.makeSweep, this->The.addNearLamp, this->The.path, more,
       OfPart(monitor, i / all, (i + 1) / all)));
   }
   this->Beams->Finish();
@@ -81,10 +82,12 @@ void AccelerationInBlocks::AddBeams(const Monitor& monitor)
 ConvergenceRecord AccelerationInBlocks::Run(const Monitor& monitor)
 {
   this->GiveFirstScattered();
-  const Deposit deposit = { &this->The.path, nullptr, &this->OwnCurrents, nullptr };
-  this->Swept = this->The.makeSweep({ deposit,
+  this->ReflectUncollided();
+  SweepRequest request = { this->DepositOfSweep(),
     { { 0, this->The.directions.Along(0) }, { 1, this->The.directions.Along(1) },
-      { 2, this->The.directions.Along(2) } } });
+      { 2, this->The.directions.Along(2) } } };
+  request.faceIn = this->The.faces && this->The.faces->Reflects() ? &this->The.faces->In() : nullptr;
+  this->Swept = this->The.makeSweep(request);
   int iteration = 0;
   do
   {
@@ -143,6 +146,29 @@ void AccelerationInBlocks::GiveFirstScattered()
   this->OfUncollided = this->The.ledger;
 }
 
+/// What of uncollided light comes back comes back every time.
+void AccelerationInBlocks::ReflectUncollided()
+{
+  if (!this->The.faces)
+  {
+    return;
+  }
+  this->Faces =
+    std::make_unique<FaceBalanceInBlocks>(this->The.device, this->The.others, *this->The.faces, this->Block);
+  for (int c = 0; c < this->The.layout.channels; ++c)
+  {
+    this->GivenPower[c] += this->Faces->OfBox().GivenBack()[c];
+  }
+}
+
+/// No flux: it comes from the systems.
+Deposit AccelerationInBlocks::DepositOfSweep() const
+{
+  const FaceLight* const faces = this->The.faces;
+  return { &this->The.path, nullptr, &this->OwnCurrents, nullptr, faces ? &faces->Out() : nullptr,
+    faces && !faces->Reflects() };
+}
+
 /// W of a voxel, about: the unit that the system's solver works in.
 double AccelerationInBlocks::VoxelPower(int c) const
 {
@@ -160,16 +186,17 @@ void AccelerationInBlocks::MakeSystems()
     this->The.boundary.Shines() ? this->The.boundary.IncomingPower() : std::array<Rgb, 6>{};
   for (int c = 0; c < held.channels; ++c)
   {
-    std::array<double, 6> ofChannel;
+    std::array<double, 6> ofChannel, albedo = {};
     for (int face = 0; face < 6; ++face)
     {
+      albedo[face] = this->The.faces ? this->The.faces->Albedo()[face][c] : 0.0;
       ofChannel[face] = incoming[face][c];
       this->PowerIn[c] += this->Tally.in[face][c];
     }
     const DiffusionSystem::Arrays arrays = { held.Stride(), held.ExtinctionFirst(c), c * held.Stride(), &this->SigmaT,
       &this->SigmaT, &this->SigmaA, &this->CountedSigmaS, &this->Given, held.Places(1), c, nullptr, &this->Source,
       &this->Path, &this->PartialCurrents, this->Beams ? &this->Beams->Passed() : nullptr,
-      this->Beams ? &this->Beams->OfLamps() : nullptr };
+      this->Beams ? &this->Beams->OfLamps() : nullptr, this->Faces ? &this->Faces->Rows(c) : nullptr, albedo };
     this->Systems.push_back(std::make_unique<BalanceOverRanks>(this->The.device, this->The.others, this->The.partition,
       this->Block, directions.Set(), pattern, arrays, ofChannel, this->LinearSource));
   }
@@ -232,6 +259,10 @@ void AccelerationInBlocks::Sweep(bool first, const Monitor& monitor)
   if (first)
   {
     this->Block.Spread(source, own.channels, this->Source);
+  }
+  if (this->Faces)
+  {
+    this->Faces->TakeSwept();
   }
   this->Block.Spread(path, own.channels, this->Path);
   this->Block.SpreadWithGhosts(currents, 6 * own.channels, this->PartialCurrents);
@@ -316,6 +347,14 @@ void AccelerationInBlocks::Correct(int iteration)
     }
   }
   this->CountLight();
+  if (this->The.faces && this->The.faces->Reflects())
+  {
+    Rgb given = this->GivenPower;
+    std::transform(given.begin(), given.end(), this->PowerIn.begin(), given.begin(), std::plus<>());
+    double ofFaces = 0.0;
+    this->The.others.Together([&] { ofFaces = this->Faces->OfBox().Reflect(iteration, given); });
+    change = std::max(change, ofFaces);
+  }
   const double guessed = iteration == 1 && this->The.warm.Begins() ? this->The.warm.Rate(0) : 0.0;
   this->Residual = this->Rest.After(change, guessed);
   this->Convergence.Add(this->Residual, change, this->The.ledger);
@@ -324,6 +363,7 @@ void AccelerationInBlocks::Correct(int iteration)
 void AccelerationInBlocks::CountLight()
 {
   this->The.ledger = this->OfUncollided;
+  std::vector<bool> lit(this->The.layout.channels, false);
   for (int c = 0; c < this->The.layout.channels; ++c)
   {
     double entered = 0.0;
@@ -340,10 +380,16 @@ void AccelerationInBlocks::CountLight()
     }
     this->The.ledger.Absorb(c, this->Systems[c]->Absorbed());
     const std::array<double, 6> outflow = this->Systems[c]->Outflow(entered, ofSweep);
-    for (int face = 0; face < 6; ++face)
+    lit[c] = true;
+    for (int face = 0; face < 6 && !this->Faces; ++face)
     {
       this->The.ledger.Escape(c, face, outflow[face]);
     }
+  }
+  if (this->Faces)
+  {
+    this->Faces->TakeLeaving(lit);
+    this->Faces->OfBox().Count(this->The.ledger);
   }
 }
 
@@ -402,6 +448,13 @@ void AccelerationInBlocks::WriteFluence()
       LimitFlux(own, fluence, this->The.flux);
     }
   });
+}
+
+std::vector<double> AccelerationInBlocks::LeftByCell() const
+{
+  const BoundaryLight& boundary = this->The.boundary;
+  return this->Faces->LeftByCell(
+    boundary.Shines() ? boundary.IncomingPower() : std::array<Rgb, 6>{}, this->The.scene.medium);
 }
 
 std::vector<float> AccelerationInBlocks::FindSurfaceRadiance() const

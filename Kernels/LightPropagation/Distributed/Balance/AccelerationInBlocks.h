@@ -10,6 +10,7 @@
 #include "LightPropagation/Distributed/Balance/BalanceOverRanks.h"
 #include "LightPropagation/Distributed/Balance/BeamsInThickBlocks.h"
 #include "LightPropagation/Distributed/Balance/BlockWithGhosts.h"
+#include "LightPropagation/Distributed/Balance/FaceBalanceInBlocks.h"
 #include "LightPropagation/Distributed/BlockScene.h"
 #include "LightPropagation/Problem/MediumOnDevice.h"
 #include "LightPropagation/PropagationSettings.h"
@@ -22,7 +23,7 @@
 namespace tyndall
 {
 /// Iteration with diffusion acceleration (numerics.md, section 7) on one rank's block, in step with the others: as
-/// DiffusionAcceleration.h, of isotropic scattering, without faces that reflect.
+/// DiffusionAcceleration.h, of isotropic scattering.
 class AccelerationInBlocks
 {
 public:
@@ -46,9 +47,10 @@ public:
     Buffer<float>& path;    ///< W length, of lamps' uncollided light; used up
     Buffer<float>& fluence; ///< W / length^2, becomes the light
     Buffer<float>& flux;    ///< of lamps, is added to; empty: not wanted
-    EnergyLedger& ledger;   ///< of emission and of what lamps let in and out, is added to
-    WarmStart& warm;        ///< of the block
-    bool shines;            ///< the source, on any rank
+    FaceLight* faces;     ///< of the whole box, with what of lamps left; null: no face gives back light or is asked for
+    EnergyLedger& ledger; ///< of emission and of what lamps let in and out, is added to
+    WarmStart& warm;      ///< of the block
+    bool shines;          ///< the source, on any rank
   };
   /// All ranks make one together.
   explicit AccelerationInBlocks(const Parts& parts);
@@ -63,6 +65,8 @@ public:
   const std::vector<float>& Direct() const { return this->FluenceDirect; } ///< unscattered, channels interleaved
   /// As LightField has it, after Run: of the faces of the whole box. All ranks call it.
   std::vector<float> FindSurfaceRadiance() const;
+  /// W that left through each cell of the whole box's faces, after Run, with faces. All ranks call it.
+  std::vector<double> LeftByCell() const;
   /// For the next solve, after Run, where light is kept. All ranks call it.
   KeptLight Leave() const;
 
@@ -76,6 +80,8 @@ private:
   void BeginWarm();
   void Correct(int iteration);
   void CountLight();
+  void ReflectUncollided();
+  Deposit DepositOfSweep() const;
   double VoxelPower(int channel) const;
   bool Done(int iterations) const;
   void WriteFluence();
@@ -88,6 +94,7 @@ private:
   Buffer<float> OwnCurrents;                                 ///< of the block
   std::vector<float> OwnSigmaS, OwnGiven, UncollidedFluence; ///< of the block, [channel][stride]
   std::unique_ptr<BeamsInThickBlocks> Beams;                 ///< null: not added
+  std::unique_ptr<FaceBalanceInBlocks> Faces;                ///< null: as in Parts
   std::unique_ptr<SweepOperator> Swept;
   std::vector<std::unique_ptr<BalanceOverRanks>> Systems; ///< by channel
   std::vector<float> FluenceDirect;

@@ -4,6 +4,7 @@
 #include "Medium/VoxelSums.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace tyndall
 {
@@ -207,14 +208,18 @@ void BalanceOverRanks::ShapeSource()
 SurfacePowers BalanceOverRanks::PowersAtSurface() const
 {
   SurfacePowers powers = this->System->PowersAtSurface();
-  const std::vector<double> held = std::move(powers.net);
-  powers.net.clear();
+  const std::vector<double> held = std::exchange(powers.net, {}), back = std::exchange(powers.back, {});
   const Grid& grid = this->Block.WithGhosts().grid;
   ForBoxFaceCells(this->Block.Own().grid, [&](const BoxFaceCell& cell) {
     const std::array<int, 3> voxel = grid.VoxelAt(this->Block.PlaceOf(cell.voxel));
     const BoxFaceLayout layout = LayoutOfFace(grid, cell.face);
-    powers.net.push_back(
-      held[layout.first + voxel[0] * layout.step[0] + voxel[1] * layout.step[1] + voxel[2] * layout.step[2]]);
+    const std::size_t at =
+      layout.first + voxel[0] * layout.step[0] + voxel[1] * layout.step[1] + voxel[2] * layout.step[2];
+    powers.net.push_back(held[at]);
+    if (!back.empty())
+    {
+      powers.back.push_back(back[at]);
+    }
   });
   return powers;
 }

@@ -42,7 +42,7 @@ BeamsInThickBlocks::BeamsInThickBlocks(Device& device, Communicator& communicato
 }
 
 SweepTally BeamsInThickBlocks::Add(const Light& lamp, const SweepMaker& makeSweep, const NearLampAdder& addNear,
-  Buffer<float>& path, const Buffer<float>* flux, const Monitor& monitor)
+  Buffer<float>& path, const Deposit& more, const Monitor& monitor)
 {
   if (Sum(lamp.power) == 0.0)
   {
@@ -51,8 +51,10 @@ SweepTally BeamsInThickBlocks::Add(const Light& lamp, const SweepMaker& makeSwee
   const bool parallel = lamp.type == LightType::Directional;
   this->OwnPath.Fill(0.0f);
   this->OwnSixfold.Fill(0.0f);
-  const SweepTally tally = parallel ? this->FollowBeam(lamp, makeSweep, flux, monitor)
-                                    : addNear(lamp, { &this->OwnPath, flux, nullptr, &this->OwnSixfold }, monitor);
+  const SweepTally tally = parallel
+    ? this->FollowBeam(lamp, makeSweep, more, monitor)
+    : addNear(
+        lamp, { &this->OwnPath, more.flux, nullptr, &this->OwnSixfold, more.faceOut, more.spreadsAside }, monitor);
   std::vector<float> lengths, sixfold;
   this->Others.Together([&] {
     lengths = this->OwnPath.Read();
@@ -79,9 +81,9 @@ SweepTally BeamsInThickBlocks::Add(const Light& lamp, const SweepMaker& makeSwee
 }
 
 SweepTally BeamsInThickBlocks::FollowBeam(
-  const Light& lamp, const SweepMaker& makeSweep, const Buffer<float>* flux, const Monitor& monitor)
+  const Light& lamp, const SweepMaker& makeSweep, const Deposit& more, const Monitor& monitor)
 {
-  const Deposit ofBeam = { &this->OwnPath, flux, &this->OwnSixfold, nullptr };
+  const Deposit ofBeam = { &this->OwnPath, more.flux, &this->OwnSixfold, nullptr, more.faceOut, more.spreadsAside };
   const UncollidedVolume rays = { this->TheDevice, this->Whole, this->TheMedium.sigma_t, NoneIsPeriodic, makeSweep,
     {} };
   return SweepBeam(rays, lamp, true, ofBeam, monitor);

@@ -34,9 +34,9 @@ public:
 
   /// @param addNear  follows point, spot and rectangle lamps; directional ones go along rays of sweeps
   /// @param path  of the block, W length, added to
-  /// @param flux  the same, as Deposit has it; null: not wanted
+  /// @param more  of the block: its flux and the cells of the box's faces are added to, where they are there
   SweepTally Add(const Light& lamp, const SweepMaker& makeSweep, const NearLampAdder& addNear, Buffer<float>& path,
-    const Buffer<float>* flux, const Monitor& monitor);
+    const Deposit& more, const Monitor& monitor);
 
   /// To be called when all were added: what Passed and OfLamps have of other ranks' voxels.
   void Finish();
@@ -45,8 +45,7 @@ public:
   const Buffer<float>& OfLamps() const { return this->InVoxels; }
 
 private:
-  SweepTally FollowBeam(
-    const Light& lamp, const SweepMaker& makeSweep, const Buffer<float>* flux, const Monitor& monitor);
+  SweepTally FollowBeam(const Light& lamp, const SweepMaker& makeSweep, const Deposit& more, const Monitor& monitor);
   void FindFirstMoments(const Light& lamp);
   void PassFaces();
 

@@ -53,6 +53,16 @@ bool BlockWithGhosts::IsOwn(const std::array<int, 3>& voxel) const
   return own;
 }
 
+std::size_t BlockWithGhosts::OwnAt(const std::array<int, 3>& voxel) const
+{
+  std::array<int, 3> own = voxel;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    own[axis] += this->Box.first[axis] - this->Block.first[axis];
+  }
+  return this->OfBlock.grid.IndexOf(own);
+}
+
 std::vector<float> BlockWithGhosts::Placed(const std::vector<float>& own, int parts, float elsewhere) const
 {
   const std::array<int, 3>& n = this->OfBlock.grid.size;

@@ -34,8 +34,9 @@ public:
   /// Of arrays with ghosts what is over the block.
   std::vector<float> TakeOwn(const Buffer<float>& held, int parts) const;
 
-  std::size_t PlaceOf(std::size_t ownVoxel) const;   ///< of a voxel of the block, with ghosts
-  bool IsOwn(const std::array<int, 3>& voxel) const; ///< of the box with ghosts, from its first one
+  std::size_t PlaceOf(std::size_t ownVoxel) const;          ///< of a voxel of the block, with ghosts
+  bool IsOwn(const std::array<int, 3>& voxel) const;        ///< of the box with ghosts, from its first one
+  std::size_t OwnAt(const std::array<int, 3>& voxel) const; ///< the same voxel in the block, which has it
 
 private:
   std::vector<float> Placed(const std::vector<float>& own, int parts, float elsewhere) const;

@@ -26,7 +26,7 @@ IterationResult IterationByBalance::Run(const Monitor& monitor)
     [this](const Light& lamp, const Deposit& to, const Monitor& ofLamp) {
       return this->Uncollided.AddLamp(lamp, to, ofLamp);
     },
-    block.Source, block.Path, block.Fluence, block.Flux, result.ledger, warm, shines });
+    block.Source, block.Path, block.Fluence, block.Flux, block.Faces.get(), result.ledger, warm, shines });
   const Monitor ofLamps =
     OfPart(monitor, [&block](double done) { return ProgressOf(block.Settings, 1.0, UncollidedPart * done); });
   if (!this->Incident.Lamps().empty() && acceleration.NeedsFirstMoments())
@@ -48,7 +48,7 @@ IterationResult IterationByBalance::Run(const Monitor& monitor)
   }
   if (block.Faces)
   {
-    result.leftByCell = block.Faces->LeftInAll();
+    result.leftByCell = acceleration.LeftByCell();
   }
   return result;
 }

@@ -124,8 +124,7 @@ ScatteringOfScene ScatteringOfAll(Communicator& communicator, const BlockPartiti
 /// What neither cells nor the balance of voxels carry from rank to rank.
 bool IsBeyondBoth(const BlockScene& scene, const PropagationSettings& settings)
 {
-  return scene.Scattering().Degree() > 0 || Reflects(scene.illumination) || settings.periodic[0] ||
-    settings.periodic[1] || settings.periodic[2];
+  return scene.Scattering().Degree() > 0 || settings.periodic[0] || settings.periodic[1] || settings.periodic[2];
 }
 
 /// How blocks do it.
@@ -139,7 +138,7 @@ OrdersAdded InBlocks(OrdersAdded ofWhole, const BlockScene& scene, const Propaga
   {
     return OrdersAdded::ByBalance;
   }
-  const bool balances = !settings.facePower && settings.uncollidedDirections <= 0;
+  const bool balances = settings.uncollidedDirections <= 0;
   return ofWhole == OrdersAdded::ByBalance && !balances ? OrdersAdded::OneByOne : ofWhole;
 }
 }
