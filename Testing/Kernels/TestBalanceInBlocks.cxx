@@ -168,3 +168,18 @@ TEST_F(ThickPropagationBlocks, HaveTheLightOfTheWholeBetweenFacesThatGiveBackLig
   partitions.push_back(Anyhow(whole.medium.grid));
   ExpectTheLightOfTheWhole(whole, shining, settings, partitions, 1e-4);
 }
+
+/// With a beam that goes round and is scattered near faces, and between faces that give back light.
+TEST_F(ThickPropagationBlocks, HaveTheLightOfTheWholeRoundPeriodicAxes)
+{
+  RandomMedium whole(Grid{ { 4, 3, 5 }, { 1.0, 0.7, 1.6 } }, 1, 6.0f, 9);
+  whole.Emit(0.3f);
+  Illumination shining = LitFromOutside();
+  PropagationSettings settings = Accelerated();
+  settings.source = PropagationSource::Linear;
+  shining.faceAlbedo[4] = { 0.7, 0.7, 0.7 };
+  settings.periodic = { true, true, false };
+  ExpectTheLightOfTheWhole(whole, shining, settings, { Anyhow(whole.medium.grid) }, 1e-4);
+  settings.periodic = { true, true, true };
+  ExpectTheLightOfTheWhole(whole, Illumination(), settings, OnRanks(whole.medium.grid, { 3 }), 1e-4);
+}

@@ -48,7 +48,7 @@ Found SolveOverRanks(const RandomMatrix& matrix, const std::vector<double>& righ
   std::mutex guard;
   const VoxelBox all = { {}, partition.whole.size };
   RunInThreads(static_cast<int>(partition.blocks.size()), [&](Communicator& communicator) {
-    MultigridOverRanks solver(communicator, partition, gatherAtMost);
+    MultigridOverRanks solver(communicator, partition, {}, gatherAtMost);
     const VoxelBox& held = solver.Held();
     const auto part = [&](const std::vector<float>& values) { return PartOf(values, all, held, 1); };
     solver.SetMatrix({ part(matrix.Conductances(0)), part(matrix.Conductances(1)), part(matrix.Conductances(2)) },

@@ -334,6 +334,6 @@ TEST_F(PropagationBlocksFail, WithWordsOnWhatIsNotCarriedFromRankToRank)
   ExpectErrors("a linear source besides", [](int, PartOf&, Illumination&, PropagationSettings& settings, Monitor&) {
     settings.source = PropagationSource::Linear;
     settings.acceleration = PropagationAcceleration::Automatic;
-    settings.periodic[1] = true;
+    settings.uncollidedDirections = 16;
   });
 }

@@ -27,11 +27,10 @@ namespace tyndall
 {
 std::string NotInBlocks(const Medium& medium, const Illumination& illumination, const PropagationSettings& settings)
 {
-  const bool goesRound = settings.periodic[0] || settings.periodic[1] || settings.periodic[2];
   const bool isAngular = !medium.phase.IsIsotropic() && settings.angularDegree != 0;
-  if (settings.source == PropagationSource::Linear && (isAngular || goesRound || settings.uncollidedDirections > 0))
+  if (settings.source == PropagationSource::Linear && (isAngular || settings.uncollidedDirections > 0))
   {
-    return "a linear source besides anisotropic scattering, periodic axes or UncollidedDirections";
+    return "a linear source besides anisotropic scattering or UncollidedDirections";
   }
   return {};
 }

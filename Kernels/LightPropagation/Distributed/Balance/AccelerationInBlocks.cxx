@@ -22,7 +22,7 @@ constexpr float Elsewhere = -1.0f; ///< sigma_s of other ranks' voxels, which ar
 AccelerationInBlocks::AccelerationInBlocks(const Parts& parts)
   : The(parts)
   , LinearSource(parts.settings.source != PropagationSource::Constant)
-  , Block(parts.others, parts.partition, parts.layout.channels, parts.layout.sharedExtinction)
+  , Block(parts.others, parts.partition, parts.settings.periodic, parts.layout.channels, parts.layout.sharedExtinction)
 {
   parts.others.Together([&] {
     const char* what = "the diffusion system";
@@ -61,7 +61,7 @@ bool AccelerationInBlocks::NeedsFirstMoments() const
   return OnAnyRank(this->The.others, own) && this->LinearSource;
 }
 
-void AccelerationInBlocks::AddBeams(const Monitor& monitor)
+SweepTally AccelerationInBlocks::AddBeams(const Monitor& monitor)
 {
   const std::vector<Light>& lamps = this->The.lamps;
   Deposit more = this->DepositOfSweep(); // with the faces' cells, as sweeps have them
@@ -69,14 +69,16 @@ void AccelerationInBlocks::AddBeams(const Monitor& monitor)
   const VolumeLayout whole = { this->The.partition.whole, this->The.layout.channels,
     this->The.layout.sharedExtinction };
   this->Beams = std::make_unique<BeamsInThickBlocks>(this->The.device, this->The.others, this->Block, whole,
-    BeamsInThickBlocks::Coefficients{ this->SigmaT, this->SigmaA, this->CountedSigmaS });
+    this->The.settings.periodic, BeamsInThickBlocks::Coefficients{ this->SigmaT, this->SigmaA, this->CountedSigmaS });
+  SweepTally tally;
   for (std::size_t i = 0; i < lamps.size(); ++i)
   {
     const double all = static_cast<double>(lamps.size());
-    this->The.ledger.Count(this->Beams->Add(lamps[i], this->The.makeSweep, this->The.addNearLamp, this->The.path, more,
-      OfPart(monitor, i / all, (i + 1) / all)));
+    const Monitor ofLamp = OfPart(monitor, i / all, (i + 1) / all);
+    Add(tally, this->Beams->Add(lamps[i], this->The.makeSweep, this->The.addNearLamp, this->The.path, more, ofLamp));
   }
   this->Beams->Finish();
+  return tally;
 }
 
 ConvergenceRecord AccelerationInBlocks::Run(const Monitor& monitor)
@@ -180,8 +182,8 @@ void AccelerationInBlocks::MakeSystems()
   const Grid& whole = this->The.partition.whole;
   const VolumeLayout& held = this->Block.WithGhosts();
   const SweptDirections& directions = this->The.directions;
-  const CrossingPattern pattern =
-    FindCrossingPattern(whole, directions.Set(), this->The.settings.mapResolution, directions.Starts(), {});
+  const CrossingPattern pattern = FindCrossingPattern(
+    whole, directions.Set(), this->The.settings.mapResolution, directions.Starts(), this->The.settings.periodic);
   const std::array<Rgb, 6> incoming =
     this->The.boundary.Shines() ? this->The.boundary.IncomingPower() : std::array<Rgb, 6>{};
   for (int c = 0; c < held.channels; ++c)
@@ -198,7 +200,7 @@ void AccelerationInBlocks::MakeSystems()
       &this->Path, &this->PartialCurrents, this->Beams ? &this->Beams->Passed() : nullptr,
       this->Beams ? &this->Beams->OfLamps() : nullptr, this->Faces ? &this->Faces->Rows(c) : nullptr, albedo };
     this->Systems.push_back(std::make_unique<BalanceOverRanks>(this->The.device, this->The.others, this->The.partition,
-      this->Block, directions.Set(), pattern, arrays, ofChannel, this->LinearSource));
+      this->Block, directions.Set(), pattern, arrays, ofChannel, this->The.settings.periodic, this->LinearSource));
   }
 }
 
@@ -249,6 +251,7 @@ void AccelerationInBlocks::Sweep(bool first, const Monitor& monitor)
   this->OwnCurrents.Fill(0.0f);
   const bool shines = !first || this->The.shines;
   const SweepBoundary boundary = this->The.boundary.Shines() ? this->The.boundary.Boundary() : SweepBoundary();
+  this->Swept->Forget();
   this->Tally = this->Swept->Apply(shines ? &this->The.source : nullptr, boundary, monitor);
   std::vector<float> source, path, currents;
   this->The.others.Together([&] {
@@ -472,7 +475,7 @@ std::vector<float> AccelerationInBlocks::FindSurfaceRadiance() const
       powers.back().lamps = this->The.lamps.empty() ? nullptr : this->UncollidedFluence.data() + c * own.Stride();
     }
   });
-  return SurfaceRadianceInBlocks(
-    this->The.others, this->The.partition, this->The.scene.medium, own.channels, this->The.lamps, powers);
+  return SurfaceRadianceInBlocks(this->The.others, this->The.partition, this->The.scene.medium,
+    this->The.settings.periodic, own.channels, this->The.lamps, powers);
 }
 }

@@ -57,8 +57,8 @@ public:
 
   /// In thick voxels it matters where lamps' light is first scattered. The same on all ranks, which ask together.
   bool NeedsFirstMoments() const;
-  /// If it does: adds the uncollided light of lamps to path, flux and ledger. All ranks call it before Run.
-  void AddBeams(const Monitor& monitor);
+  /// If it does: adds the uncollided light of lamps to path, flux and faces. All ranks call it before Run.
+  SweepTally AddBeams(const Monitor& monitor);
 
   /// All ranks call it.
   ConvergenceRecord Run(const Monitor& monitor);

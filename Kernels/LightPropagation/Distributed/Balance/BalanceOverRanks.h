@@ -25,9 +25,11 @@ public:
   ///   below 0 there; what the others are is never looked at
   /// @param pattern  of the whole grid
   /// @param incoming  W / length^2 through the faces of the whole grid, but that of lights
+  /// @param periodic  axes of the whole grid
   BalanceOverRanks(Device& device, Communicator& communicator, const BlockPartition& partition,
     const BlockWithGhosts& block, const DirectionSet& directions, const CrossingPattern& pattern,
-    const DiffusionSystem::Arrays& arrays, const std::array<double, 6>& incoming, bool linear);
+    const DiffusionSystem::Arrays& arrays, const std::array<double, 6>& incoming, const std::array<bool, 3>& periodic,
+    bool linear);
 
   /// As those of DiffusionSystem, of all ranks.
   double Correct(double unit);
@@ -52,6 +54,7 @@ private:
 
   Communicator& Others;
   const BlockWithGhosts& Block;
+  const std::array<bool, 3> Periodic;
   const Buffer<float>* SigmaA;
   std::size_t First;
   std::unique_ptr<DiffusionSystem> System; ///< of the block with ghosts; null without voxels

@@ -10,17 +10,13 @@
 
 namespace tyndall
 {
-namespace
-{
-constexpr std::array<bool, 3> NoneIsPeriodic = { false, false, false };
-}
-
 BeamsInThickBlocks::BeamsInThickBlocks(Device& device, Communicator& communicator, const BlockWithGhosts& block,
-  const VolumeLayout& whole, const Coefficients& medium)
+  const VolumeLayout& whole, const std::array<bool, 3>& periodic, const Coefficients& medium)
   : TheDevice(device)
   , Others(communicator)
   , Block(block)
   , Whole(whole)
+  , Periodic(periodic)
   , TheMedium(medium)
 {
   communicator.Together([&] {
@@ -84,7 +80,7 @@ SweepTally BeamsInThickBlocks::FollowBeam(
   const Light& lamp, const SweepMaker& makeSweep, const Deposit& more, const Monitor& monitor)
 {
   const Deposit ofBeam = { &this->OwnPath, more.flux, &this->OwnSixfold, nullptr, more.faceOut, more.spreadsAside };
-  const UncollidedVolume rays = { this->TheDevice, this->Whole, this->TheMedium.sigma_t, NoneIsPeriodic, makeSweep,
+  const UncollidedVolume rays = { this->TheDevice, this->Whole, this->TheMedium.sigma_t, this->Periodic, makeSweep,
     {} };
   return SweepBeam(rays, lamp, true, ofBeam, monitor);
 }
@@ -95,8 +91,8 @@ void BeamsInThickBlocks::FindFirstMoments(const Light& lamp)
   this->BeamPath.Fill(0.0f);
   this->FirstMoments.Fill(0.0f);
   const Deposit all = { &this->BeamPath, nullptr, nullptr, &this->FirstMoments };
-  const UncollidedVolume volume = { this->TheDevice, this->Block.WithGhosts(), this->TheMedium.sigma_t, NoneIsPeriodic,
-    {}, all };
+  const UncollidedVolume volume = { this->TheDevice, this->Block.WithGhosts(), this->TheMedium.sigma_t,
+    this->Block.Periodic(), {}, all };
   AddWithFirstMoments(volume, lamp, { &this->Path, nullptr, &this->Currents });
 }
 
@@ -105,7 +101,7 @@ void BeamsInThickBlocks::PassFaces()
   const VolumeLayout& held = this->Block.WithGhosts();
   for (int c = 0; c < held.channels; ++c)
   {
-    PassLampLight(this->TheDevice, held.grid, NoneIsPeriodic,
+    PassLampLight(this->TheDevice, held.grid, this->Block.Periodic(),
       { held.Stride(), held.ExtinctionFirst(c), c * held.Stride(), &this->TheMedium.sigma_t, &this->TheMedium.sigma_a,
         &this->TheMedium.sigma_s, &this->TheMedium.sigma_t, &this->BeamPath, &this->FirstMoments, &this->ThroughFaces,
         &this->PathOfAll });

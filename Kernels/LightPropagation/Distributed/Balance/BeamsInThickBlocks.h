@@ -7,6 +7,7 @@
 #include "LightPropagation/Sweep/SweepTally.h"
 #include "Lights/Lights.h"
 
+#include <array>
 #include <functional>
 #include <vector>
 
@@ -28,9 +29,10 @@ public:
     const Buffer<float>& sigma_s;
   };
   /// @param device, communicator, block  must stay
-  /// @param whole  the layout of the whole grid
+  /// @param whole  the layout of the whole grid, and
+  /// @param periodic  its axes whose ends touch
   BeamsInThickBlocks(Device& device, Communicator& communicator, const BlockWithGhosts& block,
-    const VolumeLayout& whole, const Coefficients& medium);
+    const VolumeLayout& whole, const std::array<bool, 3>& periodic, const Coefficients& medium);
 
   /// @param addNear  follows point, spot and rectangle lamps; directional ones go along rays of sweeps
   /// @param path  of the block, W length, added to
@@ -53,6 +55,7 @@ private:
   Communicator& Others;
   const BlockWithGhosts& Block;
   const VolumeLayout Whole;
+  const std::array<bool, 3> Periodic;
   Coefficients TheMedium;
   Buffer<float> OwnPath, OwnSixfold; ///< of a lamp, over the block; its currents, or of a near one first moments
   Buffer<float> Path, Currents, BeamPath, FirstMoments; ///< the same, with ghosts

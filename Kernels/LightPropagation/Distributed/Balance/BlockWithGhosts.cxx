@@ -16,20 +16,21 @@ Grid GridOf(const Grid& whole, const VoxelBox& box)
 }
 }
 
-BlockWithGhosts::BlockWithGhosts(
-  Communicator& communicator, const BlockPartition& partition, int channels, bool sharedExtinction)
+BlockWithGhosts::BlockWithGhosts(Communicator& communicator, const BlockPartition& partition,
+  const std::array<bool, 3>& periodic, int channels, bool sharedExtinction)
   : Others(communicator)
   , Block(partition.blocks[communicator.Rank()])
+  , Alone(GoesRoundAlone(this->Block, partition.whole.size, periodic))
 {
   std::vector<std::vector<VoxelBox>> ghosts;
   for (const VoxelBox& block : partition.blocks)
   {
-    ghosts.push_back(LayersBeside(block, partition.whole.size));
+    ghosts.push_back(LayersBeside(block, partition.whole.size, periodic));
   }
   this->Box = Hull(this->Block, ghosts[communicator.Rank()]);
   this->OfBlock = { GridOf(partition.whole, this->Block), channels, sharedExtinction };
   this->OfBox = { GridOf(partition.whole, this->Box), channels, sharedExtinction };
-  this->Ghosts = std::make_unique<GhostCells>(communicator, partition.blocks, ghosts, this->Box);
+  this->Ghosts = std::make_unique<GhostCells>(communicator, partition.blocks, ghosts, this->Box, partition.whole.size);
 }
 
 std::size_t BlockWithGhosts::PlaceOf(std::size_t ownVoxel) const

@@ -19,10 +19,18 @@ class BlockWithGhosts
 public:
   /// All ranks make one together.
   /// @param communicator  must stay
-  BlockWithGhosts(Communicator& communicator, const BlockPartition& partition, int channels, bool sharedExtinction);
+  /// @param periodic  axes whose two ends touch
+  BlockWithGhosts(Communicator& communicator, const BlockPartition& partition, const std::array<bool, 3>& periodic,
+    int channels, bool sharedExtinction);
 
   bool Has() const { return this->OfBlock.grid.VoxelCount() > 0; } ///< voxels
-  const VoxelBox& Held() const { return this->Box; }               ///< in voxels of the whole grid
+  const VoxelBox& Held() const
+  {
+    return this->Box;
+  } ///< in voxels of the whole grid, round periodic axes beyond its ends
+  /// Periodic axes that the block has from end to end: only there nothing of others is needed, and arrays with ghosts
+  /// are of a grid that is periodic.
+  const std::array<bool, 3>& Periodic() const { return this->Alone; }
   const VolumeLayout& Own() const { return this->OfBlock; }
   const VolumeLayout& WithGhosts() const { return this->OfBox; }
 
@@ -43,6 +51,7 @@ private:
 
   Communicator& Others;
   VoxelBox Block, Box;
+  std::array<bool, 3> Alone;
   VolumeLayout OfBlock, OfBox;
   std::unique_ptr<GhostCells> Ghosts;
 };

@@ -29,13 +29,13 @@ IterationResult IterationByBalance::Run(const Monitor& monitor)
     block.Source, block.Path, block.Fluence, block.Flux, block.Faces.get(), result.ledger, warm, shines });
   const Monitor ofLamps =
     OfPart(monitor, [&block](double done) { return ProgressOf(block.Settings, 1.0, UncollidedPart * done); });
-  if (!this->Incident.Lamps().empty() && acceleration.NeedsFirstMoments())
+  const bool nearFaces = !this->Incident.Lamps().empty() && acceleration.NeedsFirstMoments();
+  const SweepTally ofUncollided =
+    nearFaces ? acceleration.AddBeams(ofLamps) : this->Uncollided.AddAll(nullptr, nullptr, ofLamps);
+  result.ledger.Count(ofUncollided);
+  for (int c = 0; c < 3; ++c)
   {
-    acceleration.AddBeams(ofLamps);
-  }
-  else
-  {
-    result.ledger.Count(this->Uncollided.AddAll(nullptr, nullptr, ofLamps));
+    result.ledger.LeaveOver(c, ofUncollided.onTheWay[c]);
   }
   result.convergence = acceleration.Run(monitor);
   result.fluenceDirect = acceleration.Direct();

@@ -121,16 +121,16 @@ ScatteringOfScene ScatteringOfAll(Communicator& communicator, const BlockPartiti
   return all;
 }
 
-/// What neither cells nor the balance of voxels carry from rank to rank.
-bool IsBeyondBoth(const BlockScene& scene, const PropagationSettings& settings)
+/// What cells do not carry from rank to rank.
+bool GoesRound(const PropagationSettings& settings)
 {
-  return scene.Scattering().Degree() > 0 || settings.periodic[0] || settings.periodic[1] || settings.periodic[2];
+  return settings.periodic[0] || settings.periodic[1] || settings.periodic[2];
 }
 
 /// How blocks do it.
 OrdersAdded InBlocks(OrdersAdded ofWhole, const BlockScene& scene, const PropagationSettings& settings)
 {
-  if (IsBeyondBoth(scene, settings))
+  if (scene.Scattering().Degree() > 0)
   {
     return OrdersAdded::OneByOne;
   }
@@ -139,7 +139,8 @@ OrdersAdded InBlocks(OrdersAdded ofWhole, const BlockScene& scene, const Propaga
     return OrdersAdded::ByBalance;
   }
   const bool balances = settings.uncollidedDirections <= 0;
-  return ofWhole == OrdersAdded::ByBalance && !balances ? OrdersAdded::OneByOne : ofWhole;
+  const bool has = ofWhole == OrdersAdded::ByBalance ? balances : !GoesRound(settings);
+  return has ? ofWhole : OrdersAdded::OneByOne;
 }
 }
 
