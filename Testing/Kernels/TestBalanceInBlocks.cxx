@@ -41,6 +41,7 @@ protected:
     EXPECT_LT(RelativeRmse(alone.netFlux, expected.netFlux), 2.0 * tolerance);
     EXPECT_LT(RelativeRmse(alone.fluenceDirect, expected.fluenceDirect), 1e-6);
     EXPECT_LE(LargestDifference(alone.facePower, expected.facePower), tolerance);
+    EXPECT_LE(LargestDifference(alone.scatteredMoments, expected.scatteredMoments), tolerance);
     ExpectTheSurface(alone, expected, tolerance);
     ExpectEnergyKept(alone);
     for (std::size_t i = 0; i < partitions.size(); ++i)
@@ -51,6 +52,7 @@ protected:
       EXPECT_LT(LargestDifference(found.fluence, alone.fluence), 1e-6);
       EXPECT_LT(RelativeRmse(found.netFlux, alone.netFlux), 1e-5);
       EXPECT_LE(LargestDifference(found.facePower, alone.facePower), 1e-6);
+      EXPECT_LE(LargestDifference(found.scatteredMoments, alone.scatteredMoments), 1e-6);
       ExpectTheSurface(found, alone, 1e-6);
       ExpectEnergyKept(found);
     }
@@ -182,4 +184,25 @@ TEST_F(ThickPropagationBlocks, HaveTheLightOfTheWholeRoundPeriodicAxes)
   ExpectTheLightOfTheWhole(whole, shining, settings, { Anyhow(whole.medium.grid) }, 1e-4);
   settings.periodic = { true, true, true };
   ExpectTheLightOfTheWhole(whole, Illumination(), settings, OnRanks(whole.medium.grid, { 3 }), 1e-4);
+}
+
+/// In colour with a beam that is scattered near faces, and round a periodic axis between faces that give back light.
+TEST_F(ThickPropagationBlocks, HaveTheLightOfTheWholeInAngularMoments)
+{
+  RandomMedium whole(Grid{ { 6, 5, 4 }, { 1.0, 0.7, 1.6 } }, 3, 6.0f, 10);
+  whole.Emit(0.3f);
+  whole.medium.phase = PhaseFunction::HenyeyGreenstein(0.7);
+  PropagationSettings settings = Accelerated();
+  settings.source = PropagationSource::Linear;
+  settings.angularDegree = 2;
+  settings.storeMoments = true;
+  ExpectTheLightOfTheWhole(
+    whole, LitFromOutside(), settings, { BlockPartition::Even(whole.medium.grid, 2), Anyhow(whole.medium.grid) }, 1e-4);
+  RandomMedium grey(Grid{ { 4, 3, 5 } }, 1, 6.0f, 11);
+  grey.Emit(0.3f);
+  grey.medium.phase = PhaseFunction::HenyeyGreenstein(0.7);
+  Illumination shining = Diffuse();
+  shining.faceAlbedo[4] = { 0.7, 0.7, 0.7 };
+  settings.periodic = { false, true, false };
+  ExpectTheLightOfTheWhole(grey, shining, settings, OnRanks(grey.medium.grid, { 3 }), 1e-4);
 }

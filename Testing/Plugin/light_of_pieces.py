@@ -393,7 +393,7 @@ def whole_where_few():
 def whole_where_better():
     """What pieces cannot do, or not as well, each rank solves as a whole, says why, and does not solve again."""
     medium = ParticipatingMedium(Input=Wavelet(WholeExtent=SIZE), DensityArray=["POINTS", "RTData"])
-    for why, settings in (("many scattering orders", {"FaceAlbedo": [0.9] * 6}),):
+    for why, settings in (("many scattering orders", {"FaceAlbedo": [0.9] * 6, "UncollidedDirections": 8}),):
         light = LightPropagationMaps(**{**dict(Input=medium, SkyColor=[1, 1, 1], DirectionsPerFace=4), **settings})
         errors = errors_of(light)
         light.UpdatePipeline()

@@ -94,6 +94,7 @@ double BalanceOverRanks::Correct(double unit)
     if (this->System)
     {
       this->System->SetFound(this->Fluence);
+      this->System->FindFlux();
       sums = this->System->SumsOfChange();
     }
   });
@@ -128,7 +129,13 @@ void BalanceOverRanks::BeginBeyond(const std::vector<double>& guessed)
     }
     if (this->System)
     {
-      this->System->Begin(this->Fluence);
+      std::vector<double> state = this->System->State();
+      std::copy(this->Fluence.begin(), this->Fluence.end(), state.begin());
+      for (std::size_t i = this->Fluence.size(); i < state.size(); ++i)
+      {
+        state[i] += guessed[i];
+      }
+      this->System->Begin(state);
     }
   });
 }
@@ -150,7 +157,7 @@ std::vector<double> BalanceOverRanks::Found() const
 
 std::vector<double> BalanceOverRanks::NextFluence() const
 {
-  return this->System ? this->System->NextFluence().Read() : std::vector<double>();
+  return this->System ? this->OwnOf(this->System->NextFluence().Read()) : std::vector<double>();
 }
 
 double BalanceOverRanks::Absorbed() const
@@ -209,6 +216,14 @@ void BalanceOverRanks::ShapeSource()
   if (this->System)
   {
     this->System->ShapeSource();
+  }
+}
+
+void BalanceOverRanks::PutNextFlux(const Buffer<float>& path)
+{
+  if (this->System)
+  {
+    this->System->PutNextFlux(path);
   }
 }
 

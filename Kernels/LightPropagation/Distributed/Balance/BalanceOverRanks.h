@@ -37,15 +37,16 @@ public:
   double Absorbed() const;
   std::array<double, 6> Outflow(double entered, const std::array<double, 6>& ofSweep);
   /// As DiffusionSystem::Begin.
-  /// @param guessed  beyond the fluence that was solved for, W / length^2, by voxel with ghosts
+  /// @param guessed  beyond what was solved for, W / length^2, by voxel with ghosts, as DiffusionSystem::State
   void BeginBeyond(const std::vector<double>& guessed);
 
   // Of this rank alone.
   std::vector<double> Found() const; ///< W / length^2, by voxel of the block
-  /// The same, on which the next sweep's source is to be built, with ghosts; empty where the block is.
+  /// The same, on which the next sweep's source is to be built.
   std::vector<double> NextFluence() const;
   void ShapeSource();
-  void AddFlux(const Buffer<float>& flux); ///< with ghosts, which are not those of the others
+  void PutNextFlux(const Buffer<float>& path); ///< of arrays with ghosts
+  void AddFlux(const Buffer<float>& flux);     ///< with ghosts, which are not those of the others
   /// As that of DiffusionSystem, by cells of the block's faces; of those at the box's faces alone it is known.
   SurfacePowers PowersAtSurface() const;
 

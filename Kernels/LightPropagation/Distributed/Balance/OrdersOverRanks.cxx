@@ -128,12 +128,8 @@ bool GoesRound(const PropagationSettings& settings)
 }
 
 /// How blocks do it.
-OrdersAdded InBlocks(OrdersAdded ofWhole, const BlockScene& scene, const PropagationSettings& settings)
+OrdersAdded InBlocks(OrdersAdded ofWhole, const PropagationSettings& settings)
 {
-  if (scene.Scattering().Degree() > 0)
-  {
-    return OrdersAdded::OneByOne;
-  }
   if (settings.source == PropagationSource::Linear)
   {
     return OrdersAdded::ByBalance;
@@ -157,7 +153,7 @@ OrdersOverRanks HowOrdersAreAdded(Communicator& communicator, const BlockPartiti
   orders.needed = OrdersNeeded(all);
   orders.halvings = CellHalvings(all.grid, all.thickest);
   orders.ofWhole = HowOrdersAreAdded(settings, scene.traits.scatters, all);
-  orders.how = InBlocks(orders.ofWhole, scene, settings);
+  orders.how = InBlocks(orders.ofWhole, settings);
   return orders;
 }
 }
