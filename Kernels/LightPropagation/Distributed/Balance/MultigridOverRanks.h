@@ -26,11 +26,12 @@ public:
   MultigridOverRanks(Communicator& communicator, const BlockPartition& partition,
     const std::array<bool, 3>& periodic = {}, std::size_t gatherAtMost = FewCells);
 
-  /// As BlockWithGhosts: the rank's block and the layer of voxels beside it, what arrays are over, x fastest. Of none where the block is.
+  /// As BlockWithGhosts: the rank's block and the layer of voxels beside it, what arrays are over, x fastest. Of none
+  /// where the block is.
   const VoxelBox& Held() const { return this->Levels.front().held; }
 
-  /// @param conductance  by axis, of low faces of the block's voxels and of those above it; 0 at the end of an axis that
-  ///   is not periodic
+  /// @param conductance  by axis, of low faces of the block's voxels and of those above it; 0 at the end of an axis
+  ///   that is not periodic
   /// @param loss  of the block's voxels
   void SetMatrix(const std::array<std::vector<float>, 3>& conductance, const std::vector<float>& loss);
 
