@@ -399,7 +399,6 @@ TEST_F(WarmStartsInBlocks, TakeFewerSweepsByTheBalanceOfVoxelsInMoments)
   change.settings.acceleration = PropagationAcceleration::Automatic;
   change.settings.source = PropagationSource::Linear;
   change.settings.angularDegree = 1;
-  change.settings.periodic = { true, false, false };
   change.TurnLamp();
   ExpectTheWarmLightOfTheWhole(change, "by balance, in moments", { Uneven(grid) });
 }
