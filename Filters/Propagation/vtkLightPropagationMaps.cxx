@@ -254,12 +254,9 @@ vtkLightPropagationMaps::vtkLightPropagationMaps()
 
 vtkLightPropagationMaps::~vtkLightPropagationMaps() = default;
 
-std::string vtkLightPropagationMaps::NotInBlocks(
-  const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining)
+std::string vtkLightPropagationMaps::NotInBlocks(const tyndall::PieceOfMedium&, const tyndall::IlluminationInput&)
 {
-  return this->Scheme == PUBLISHED || this->Preview
-    ? std::string()
-    : tyndall::NotInBlocks(piece.medium, shining.illumination, SettingsOf(this));
+  return this->Scheme == PUBLISHED || this->Preview ? std::string() : tyndall::NotInBlocks(SettingsOf(this));
 }
 
 std::string vtkLightPropagationMaps::BetterAsWhole(tyndall::Communicator& communicator,

@@ -26,10 +26,30 @@ void AddPlaces(const VoxelBox& box, const VoxelBox& part, std::vector<std::size_
     }
   }
 }
+
+VoxelBox Moved(VoxelBox box, const std::array<int, 3>& by)
+{
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    box.first[axis] += by[axis];
+  }
+  return box;
+}
+
+/// By how much a box beyond the grid's ends is moved to where its cells are.
+std::array<int, 3> PeriodsOf(const VoxelBox& box, const std::array<int, 3>& gridSize)
+{
+  std::array<int, 3> by = {};
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    by[axis] = box.first[axis] < 0 ? gridSize[axis] : box.first[axis] >= gridSize[axis] ? -gridSize[axis] : 0;
+  }
+  return by;
+}
 }
 
 GhostCells::GhostCells(Communicator& communicator, const std::vector<VoxelBox>& own,
-  const std::vector<std::vector<VoxelBox>>& ghosts, const VoxelBox& held)
+  const std::vector<std::vector<VoxelBox>>& ghosts, const VoxelBox& held, const std::array<int, 3>& gridSize)
   : Others(communicator)
 {
   const int self = communicator.Rank();
@@ -37,7 +57,9 @@ GhostCells::GhostCells(Communicator& communicator, const std::vector<VoxelBox>& 
     Shared cells = { other, {} };
     for (const VoxelBox& box : ghosts[holder])
     {
-      AddPlaces(held, Common(box, own[owner]), cells.places);
+      const std::array<int, 3> round = PeriodsOf(box, gridSize);
+      const VoxelBox common = Common(Moved(box, round), own[owner]);
+      AddPlaces(held, holder == self ? Moved(common, { -round[0], -round[1], -round[2] }) : common, cells.places);
     }
     return cells;
   };
@@ -109,14 +131,27 @@ void GhostCells::AddToOwners(std::vector<double>& values) const
   }
 }
 
-std::vector<VoxelBox> LayersBeside(const VoxelBox& own, const std::array<int, 3>& gridSize)
+std::array<bool, 3> GoesRoundAlone(
+  const VoxelBox& own, const std::array<int, 3>& gridSize, const std::array<bool, 3>& periodic)
 {
+  std::array<bool, 3> alone = {};
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    alone[axis] = periodic[axis] && own.size[axis] == gridSize[axis];
+  }
+  return alone;
+}
+
+std::vector<VoxelBox> LayersBeside(
+  const VoxelBox& own, const std::array<int, 3>& gridSize, const std::array<bool, 3>& periodic)
+{
+  const std::array<bool, 3> alone = GoesRoundAlone(own, gridSize, periodic);
   std::vector<VoxelBox> layers;
   for (int face = 0; face < 6 && own.VoxelCount() > 0; ++face)
   {
     const int axis = face / 2;
     const int place = face % 2 ? EndOf(own, axis) : own.first[axis] - 1;
-    if (place >= 0 && place < gridSize[axis])
+    if ((place >= 0 && place < gridSize[axis]) || (periodic[axis] && !alone[axis]))
     {
       layers.push_back(own);
       layers.back().first[axis] = place;

@@ -26,6 +26,7 @@ public:
   /// From now on rays come in through other parts of the cells.
   void SetPowerIn(std::vector<double> powerIn);
 
+  const Grid& Box() const { return this->TheGrid; }
   bool Reflects() const { return this->AnyAlbedo; }
   const std::array<Rgb, 6>& Albedo() const { return this->AlbedoOfFaces; }
   std::size_t Cells() const { return this->FaceOfCell.size(); }

@@ -58,6 +58,27 @@ inline Illumination LitFromOutside()
   return shining;
 }
 
+/// Lamps in the medium and beside it, each of its own kind.
+inline std::vector<Light> NearLamps()
+{
+  std::vector<Light> lamps(4);
+  const LightType types[] = { LightType::Point, LightType::Spot, LightType::Rectangle, LightType::Point };
+  const std::array<double, 3> positions[] = { { 5.3, 4.1, 3.2 }, { 13.5, -2.0, 9.0 }, { 3.0, 10.5, 4.0 },
+    { -1.0, 4.4, -2.5 } };
+  const std::array<double, 3> directions[] = { { 0.0, 0.0, 1.0 }, { -0.7, 0.6, -0.5 }, { 0.1, -1.0, 0.2 },
+    { 0.0, 0.0, 1.0 } };
+  for (std::size_t i = 0; i < lamps.size(); ++i)
+  {
+    lamps[i].type = types[i];
+    lamps[i].position = positions[i];
+    lamps[i].direction = directions[i];
+    lamps[i].power = { 10.0, 4.0, 1.0 };
+    lamps[i].angle = 50.0;
+    lamps[i].size = { 3.0, 2.0 };
+  }
+  return lamps;
+}
+
 /// The arrays of a box of a medium.
 struct PartOf
 {

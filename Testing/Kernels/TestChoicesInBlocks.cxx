@@ -197,6 +197,8 @@ TEST_F(BetterAsWholeInBlocks, IsNotAThinMediumOrAThickOneThatHardlyAbsorbs)
   Illumination shining;
   shining.sky = { 1.0, 1.0, 1.0 };
   ExpectTold(white, shining, Untouched(), "");
+  shining.faceAlbedo[0] = { 0.5, 0.5, 0.5 };
+  ExpectTold(white, shining, Untouched(), "");
 }
 
 /// They shine by octant in blocks as well.
@@ -218,8 +220,9 @@ TEST_F(BetterAsWholeInBlocks, AreOrdersThatItAccelerates)
   std::fill(whole.scattering.begin(), whole.scattering.end(), 4.0f);
   Illumination shining;
   shining.sky = { 1.0, 1.0, 1.0 };
-  shining.faceAlbedo[0] = { 0.5, 0.5, 0.5 };
-  ExpectTold(whole, shining, Untouched(), "many scattering orders");
+  PropagationSettings settings = Untouched();
+  settings.uncollidedDirections = 36;
+  ExpectTold(whole, shining, settings, "many scattering orders");
 }
 
 TEST_F(BetterAsWholeInBlocks, AreLayers)

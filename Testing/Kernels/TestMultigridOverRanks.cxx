@@ -39,18 +39,35 @@ std::vector<double> ByChance(std::size_t count)
   return values;
 }
 
+/// Values of a box that may reach beyond the grid's ends, where its other side is.
+std::vector<float> PartRoundAxes(const std::vector<float>& values, const Grid& whole, const VoxelBox& box)
+{
+  Grid ofBox;
+  ofBox.size = box.size;
+  std::vector<float> part;
+  for (std::size_t i = 0; i < box.VoxelCount(); ++i)
+  {
+    std::array<int, 3> voxel = ofBox.VoxelAt(i);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      voxel[axis] = (voxel[axis] + box.first[axis] + whole.size[axis]) % whole.size[axis];
+    }
+    part.push_back(values[whole.IndexOf(voxel)]);
+  }
+  return part;
+}
+
 /// Of a right-hand side of the whole.
 Found SolveOverRanks(const RandomMatrix& matrix, const std::vector<double>& right, const BlockPartition& partition,
-  std::size_t gatherAtMost, double reduction)
+  std::size_t gatherAtMost, double reduction, const std::array<bool, 3>& periodic = {})
 {
   Found found;
   found.values.resize(right.size());
   std::mutex guard;
-  const VoxelBox all = { {}, partition.whole.size };
   RunInThreads(static_cast<int>(partition.blocks.size()), [&](Communicator& communicator) {
-    MultigridOverRanks solver(communicator, partition, gatherAtMost);
+    MultigridOverRanks solver(communicator, partition, periodic, gatherAtMost);
     const VoxelBox& held = solver.Held();
-    const auto part = [&](const std::vector<float>& values) { return PartOf(values, all, held, 1); };
+    const auto part = [&](const std::vector<float>& values) { return PartRoundAxes(values, partition.whole, held); };
     solver.SetMatrix({ part(matrix.Conductances(0)), part(matrix.Conductances(1)), part(matrix.Conductances(2)) },
       part(matrix.Losses()));
     std::vector<double> values(held.VoxelCount(), 0.0);
@@ -106,6 +123,32 @@ TEST(MultigridOverRanks, FindsWhatTheMatrixWasMultipliedWithWhateverTheBlocks)
       const Found found = SolveOverRanks(matrix, right, BlockPartition::Even(grid, ranks), 64, 1e-6);
       EXPECT_LT(LargestDifference(found.values, truth), 1e-5);
       EXPECT_LE(found.iterations, 25);
+    }
+  }
+}
+
+/// Blocks that have the axis from end to end, and such that do not; of one cell, and none.
+TEST(MultigridOverRanks, GoesRoundPeriodicAxes)
+{
+  for (const std::array<int, 3>& size : std::vector<std::array<int, 3>>{ { 23, 17, 10 }, { 2, 1, 3 }, { 16, 16, 16 } })
+  {
+    for (const std::array<bool, 3>& periodic :
+      std::vector<std::array<bool, 3>>{ { true, false, true }, { true, true, true } })
+    {
+      const RandomMatrix matrix(size, periodic, 1.0);
+      const Grid grid = { size };
+      const std::vector<double> truth = ByChance(grid.VoxelCount());
+      const std::vector<double> right = matrix.Times(truth);
+      int iterations = 0; // of one rank
+      for (const int ranks : { 1, 2, 3, 8 })
+      {
+        SCOPED_TRACE(std::to_string(size[0]) + " voxels on " + std::to_string(ranks) + " ranks");
+        const Found found = SolveOverRanks(matrix, right, BlockPartition::Even(grid, ranks), 64, 1e-6, periodic);
+        EXPECT_LT(LargestDifference(found.values, truth), 1e-5);
+        iterations = ranks == 1 ? found.iterations : iterations;
+        EXPECT_EQ(found.iterations, iterations);
+        EXPECT_LE(found.iterations, 25);
+      }
     }
   }
 }

@@ -54,27 +54,6 @@ TEST_F(PropagationBlocks, GoOnBesideARankWithoutVoxels)
 
 namespace
 {
-/// Lamps in the medium and beside it, each of its own kind.
-std::vector<Light> NearLamps()
-{
-  std::vector<Light> lamps(4);
-  const LightType types[] = { LightType::Point, LightType::Spot, LightType::Rectangle, LightType::Point };
-  const std::array<double, 3> positions[] = { { 5.3, 4.1, 3.2 }, { 13.5, -2.0, 9.0 }, { 3.0, 10.5, 4.0 },
-    { -1.0, 4.4, -2.5 } };
-  const std::array<double, 3> directions[] = { { 0.0, 0.0, 1.0 }, { -0.7, 0.6, -0.5 }, { 0.1, -1.0, 0.2 },
-    { 0.0, 0.0, 1.0 } };
-  for (std::size_t i = 0; i < lamps.size(); ++i)
-  {
-    lamps[i].type = types[i];
-    lamps[i].position = positions[i];
-    lamps[i].direction = directions[i];
-    lamps[i].power = { 10.0, 4.0, 1.0 };
-    lamps[i].angle = 50.0;
-    lamps[i].size = { 3.0, 2.0 };
-  }
-  return lamps;
-}
-
 /// Blocks of no common plane, one of them of one voxel's width, one without any.
 BlockPartition UnevenBlocks(const Grid& grid)
 {
@@ -253,133 +232,6 @@ TEST_F(PropagationBlocks, HaveTheLightOfTheWholeByCells)
   }
 }
 
-/// Voxels of several mean free paths, which absorb little or nothing: the balance of voxels goes with the sweeps.
-class ThickPropagationBlocks : public PropagationBlocks
-{
-protected:
-  static PropagationSettings Accelerated()
-  {
-    PropagationSettings settings = SettingsOf(0);
-    settings.acceleration = PropagationAcceleration::Automatic;
-    settings.source = PropagationSource::Automatic;
-    return settings;
-  }
-  static Illumination Diffuse()
-  {
-    Illumination shining = LitFromOutside();
-    shining.lights.clear();
-    return shining;
-  }
-
-  /// As the solver in one memory, and the same on any ranks: to 1e-6 of the largest fluence.
-  void ExpectTheLightOfTheWhole(const RandomMedium& whole, const Illumination& shining,
-    const PropagationSettings& settings, const std::vector<BlockPartition>& partitions, double tolerance)
-  {
-    const LightField expected = SolveConservative(GetDevice(), whole.medium, shining, settings);
-    const LightField alone =
-      LightOfAll(GetDevice(), BlockPartition::Even(whole.medium.grid, 1), whole, shining, settings);
-    EXPECT_TRUE(alone.converged);
-    EXPECT_LE(alone.convergence.size(), expected.convergence.size() + 1);
-    EXPECT_LT(LargestDifference(alone.fluence, expected.fluence), tolerance);
-    EXPECT_LT(RelativeRmse(alone.netFlux, expected.netFlux), 2.0 * tolerance);
-    EXPECT_LT(RelativeRmse(alone.fluenceDirect, expected.fluenceDirect), 1e-6);
-    ExpectTheSurface(alone, expected, tolerance);
-    ExpectEnergyKept(alone);
-    for (std::size_t i = 0; i < partitions.size(); ++i)
-    {
-      SCOPED_TRACE("partition " + std::to_string(i));
-      const LightField found = LightOfAll(GetDevice(), partitions[i], whole, shining, settings);
-      EXPECT_EQ(found.convergence.size(), alone.convergence.size());
-      EXPECT_LT(LargestDifference(found.fluence, alone.fluence), 1e-6);
-      EXPECT_LT(RelativeRmse(found.netFlux, alone.netFlux), 1e-5);
-      ExpectTheSurface(found, alone, 1e-6);
-      ExpectEnergyKept(found);
-    }
-  }
-  /// What leaves thick voxels at the box's faces.
-  static void ExpectTheSurface(const LightField& found, const LightField& expected, double tolerance)
-  {
-    EXPECT_EQ(found.surfaceRadiance.empty(), expected.surfaceRadiance.empty());
-    EXPECT_LE(LargestDifference(found.surfaceRadiance, expected.surfaceRadiance), tolerance);
-  }
-  static void ExpectEnergyKept(const LightField& light)
-  {
-    EXPECT_LT(light.balance.RelativeError(light.channels), 1e-5);
-  }
-  /// Over the largest value.
-  static double LargestDifference(const std::vector<float>& found, const std::vector<float>& expected)
-  {
-    double largest = 0.0, difference = found.size() == expected.size() ? 0.0 : HUGE_VAL;
-    for (std::size_t i = 0; i < expected.size(); ++i)
-    {
-      largest = std::max<double>(largest, std::abs(expected[i]));
-      difference = std::max<double>(difference, std::abs(found[i] - expected[i]));
-    }
-    return largest > 0.0 ? difference / largest : difference;
-  }
-  static std::vector<BlockPartition> OnRanks(const Grid& grid, const std::vector<int>& ranks)
-  {
-    std::vector<BlockPartition> partitions;
-    for (const int count : ranks)
-    {
-      partitions.push_back(BlockPartition::Even(grid, count));
-    }
-    return partitions;
-  }
-};
-
-TEST_F(ThickPropagationBlocks, ConvergeInAWhiteCube)
-{
-  for (const float perVoxel : { 4.0f, 10.0f })
-  {
-    SCOPED_TRACE(std::to_string(perVoxel) + " a voxel");
-    RandomMedium whole(Grid{ { 16, 16, 16 } }, 1, 1.0f);
-    std::fill(whole.absorption.begin(), whole.absorption.end(), 0.0f);
-    std::fill(whole.scattering.begin(), whole.scattering.end(), perVoxel);
-    whole.Emit(0.0f);
-    ExpectTheLightOfTheWhole(whole, Diffuse(), Accelerated(), OnRanks(whole.medium.grid, { 2, 3, 8 }), 1e-4);
-  }
-}
-
-/// Blocks that end anywhere, of one voxel, and none; voxels of all thicknesses beside each other, void too.
-TEST_F(ThickPropagationBlocks, HaveTheLightOfTheWholeInUnevenBlocksOfAnyMedium)
-{
-  RandomMedium whole(Grid{ { 9, 7, 6 }, { 1.0, 0.7, 1.6 } }, 3, 12.0f, 3);
-  whole.Emit(0.3f);
-  PropagationSettings settings = Accelerated();
-  settings.source = PropagationSource::Linear;
-  const BlockPartition uneven = { whole.medium.grid,
-    { { { 0, 0, 0 }, { 3, 7, 6 } }, {}, { { 3, 0, 0 }, { 1, 7, 6 } }, { { 4, 0, 0 }, { 5, 1, 1 } },
-      { { 4, 0, 1 }, { 5, 1, 5 } }, { { 4, 1, 0 }, { 5, 6, 6 } } } };
-  ExpectTheLightOfTheWhole(whole, Diffuse(), settings, { uneven, BlockPartition::Even(whole.medium.grid, 4) }, 1e-4);
-}
-
-TEST_F(ThickPropagationBlocks, GoOnInBlocksOfOneVoxelBesideRanksWithout)
-{
-  RandomMedium whole(Grid{ { 2, 2, 1 } }, 1, 12.0f, 6);
-  whole.Emit(0.3f);
-  PropagationSettings settings = Accelerated();
-  settings.source = PropagationSource::Linear;
-  ExpectTheLightOfTheWhole(whole, Diffuse(), settings, OnRanks(whole.medium.grid, { 6 }), 1e-4);
-}
-
-/// A beam that slants through voxels of all thicknesses, in colour: it is scattered near the faces it comes through.
-TEST_F(ThickPropagationBlocks, HaveTheLightOfLampsThatIsScatteredNearFaces)
-{
-  RandomMedium whole(Grid{ { 8, 7, 9 } }, 3, 8.0f, 4);
-  whole.Emit(0.0f);
-  Share(whole, 0.001f, 0.999f);
-  Illumination shining = LitFromOutside();
-  shining.lights[0].power = { 1.0, 0.0, 3.0 };
-  ExpectTheLightOfTheWhole(whole, shining, Accelerated(), OnRanks(whole.medium.grid, { 3, 8 }), 1e-4);
-  for (const Light& lamp : NearLamps())
-  {
-    SCOPED_TRACE("a lamp at " + std::to_string(lamp.position[0]));
-    shining.lights = { lamp };
-    ExpectTheLightOfTheWhole(whole, shining, Accelerated(), OnRanks(whole.medium.grid, { 8 }), 1e-4);
-  }
-}
-
 /// Whatever goes wrong on one rank is one error on each, and none waits for the others.
 class PropagationBlocksFail : public PropagationBlocks
 {
@@ -482,6 +334,6 @@ TEST_F(PropagationBlocksFail, WithWordsOnWhatIsNotCarriedFromRankToRank)
   ExpectErrors("a linear source besides", [](int, PartOf&, Illumination&, PropagationSettings& settings, Monitor&) {
     settings.source = PropagationSource::Linear;
     settings.acceleration = PropagationAcceleration::Automatic;
-    settings.periodic[1] = true;
+    settings.uncollidedDirections = 16;
   });
 }

@@ -387,3 +387,18 @@ TEST_F(WarmStartsInBlocks, TakeTheOrdersOfTheWholeOfDiscreteOrdinates)
       });
   }
 }
+
+TEST_F(WarmStartsInBlocks, TakeFewerSweepsByTheBalanceOfVoxelsInMoments)
+{
+  const Grid grid = { { 5, 4, 3 } };
+  Change change(grid, 1, 8.0f, 0.99f, ToTolerance(1e-4));
+  for (RandomMedium* medium : { &change.before, &change.after })
+  {
+    medium->medium.phase = PhaseFunction::HenyeyGreenstein(0.7);
+  }
+  change.settings.acceleration = PropagationAcceleration::Automatic;
+  change.settings.source = PropagationSource::Linear;
+  change.settings.angularDegree = 1;
+  change.TurnLamp();
+  ExpectTheWarmLightOfTheWhole(change, "by balance, in moments", { Uneven(grid) });
+}

@@ -288,6 +288,9 @@ def whole_plain():
     keep("whole_plain", light)
 
 
+ONE_BY_ONE = dict(Acceleration="None (as published)", Source="Constant (as published)", EmissionError=0, UncollidedDirections=0)
+
+
 def turbid(decomposition, **settings):
     """Scattering forwards, in colour, round a periodic axis and before a bright face."""
     medium = ParticipatingMedium(Input=Wavelet(WholeExtent=SIZE), DensityArray=["POINTS", "RTData"], ExtinctionScale=0.2, MinimumDensity=0,
@@ -299,15 +302,14 @@ def turbid(decomposition, **settings):
 
 
 def blocks_turbid():
-    light = turbid("Blocks")
+    light = turbid("Blocks", **ONE_BY_ONE)
     cells = light.GetClientSideObject().GetOutputDataObject(0).GetCellData()
     assert cells.GetNumberOfTuples() == 0 or cells.GetArray("scattered_moments"), "no moments"
     keep("blocks_turbid", light)
 
 
 def whole_turbid():
-    keep("whole_turbid", turbid("Whole on each rank", Acceleration="None (as published)", Source="Constant (as published)",
-                                EmissionError=0, UncollidedDirections=0))
+    keep("whole_turbid", turbid("Whole on each rank", **ONE_BY_ONE))
 
 
 def facts_of(light, name):
@@ -407,7 +409,7 @@ def whole_where_few():
 def whole_where_better():
     """What pieces cannot do, or not as well, each rank solves as a whole, says why, and does not solve again."""
     medium = ParticipatingMedium(Input=Wavelet(WholeExtent=SIZE), DensityArray=["POINTS", "RTData"])
-    for why, settings in (("many scattering orders", {"FaceAlbedo": [0.9] * 6}),):
+    for why, settings in (("many scattering orders", {"FaceAlbedo": [0.9] * 6, "UncollidedDirections": 36}),):
         light = LightPropagationMaps(**{**dict(Input=medium, SkyColor=[1, 1, 1], DirectionsPerFace=4), **settings})
         errors = errors_of(light)
         light.UpdatePipeline()
@@ -633,11 +635,11 @@ def ordinates_whole():
     own_pieces("ordinates_whole", [piece_of([0, 12, 0, 5, 0, 4])], solve=by_ordinates)
 
 
-PREVIEWED = (("maps", solved, {"Source": 1, "PeriodicX": 1}), ("ordinates", by_ordinates, {"Quality": "Fine"}), ("lattice", on_lattice, {}))
+PREVIEWED = (("maps", solved, {"Source": 1, "UncollidedDirections": 36}), ("ordinates", by_ordinates, {"Quality": "Fine"}), ("lattice", on_lattice, {}))
 
 
 def previews():
-    """Of all solvers; what blocks cannot do (a linear source round an axis) previews can."""
+    """Of all solvers; what blocks cannot do (a linear source with finer directions) previews can."""
     for name, solve, settings in PREVIEWED:
         light = untouched(Wavelet(WholeExtent=SIZE), ["POINTS", "RTData"], solve=solve, full=277, Preview=1, **settings)
         keep("preview_" + name, light)
@@ -717,7 +719,7 @@ def published_warm():
 def blocks_errors():
     """What cannot be solved by pieces is one error that names it; what one rank lacks, on all of them."""
     medium = ParticipatingMedium(Input=Wavelet(WholeExtent=SIZE), DensityArray=["POINTS", "RTData"])
-    for named, settings in (("blocks) with a linear source besides", {"Source": 1, "PeriodicX": 1}),
+    for named, settings in (("blocks) with a linear source besides", {"Source": 1, "UncollidedDirections": 36}),
                             ("TargetError is for the conservative scheme", {"Scheme": 0, "TargetError": 0.1}),
                             ("disagree about Scheme or Algorithm", {"Scheme": 0, "Algorithm": rank % 2})):
         light = LightPropagationMaps(Input=medium, SkyColor=[1, 1, 1], Decomposition="Blocks", **settings)

@@ -17,11 +17,12 @@ __kernel void anderson_sums(const __global exact* given, const __global exact* f
   exact sum[AndersonSums] = { 0, 0, 0, 0, 0, 0, 0, 0 };
   for (int i = begin + FIRST_IN_CHUNK(1); i < end; i += STEP_IN_CHUNK(1))
   {
-    const exact tau = i < voxels ? sigma_s[first + i] * length : 0;
-    if (tau < 0)
+    const float scatters = sigma_s[first + i % voxels];
+    if (scatters < 0.0f)
     {
       continue; // counted elsewhere
     }
+    const exact tau = i < voxels ? scatters * length : 0;
     const exact f = found[i] - given[i];
     const exact d1 = f - change1[i];
     const exact d2 = f - change2[i];

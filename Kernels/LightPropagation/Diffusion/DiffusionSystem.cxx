@@ -206,13 +206,29 @@ double DiffusionSystem::Correct(double unit)
   this->FindModel();
   this->Balance();
   this->Solver.Solve(this->Solution, unit, ReductionAfter(this->Corrections));
+  this->FindFlux();
+  return this->MixBy(this->SumsOfChange());
+}
+
+void DiffusionSystem::SetFound(const std::vector<double>& fluence)
+{
+  std::vector<double> state = fluence;
+  if (this->HasMoments())
+  {
+    state = this->Solution.Read();
+    std::copy(fluence.begin(), fluence.end(), state.begin());
+  }
+  this->Solution.Write(state);
+}
+
+void DiffusionSystem::FindFlux()
+{
   if (this->HasMoments())
   {
     cl::Kernel flux =
       this->OnArrays("diffusion_found_flux", this->The.moments, cl_int(this->The.channel), this->Solution.Handle());
     this->Run(flux);
   }
-  return this->MixBy(this->SumsOfChange());
 }
 
 double DiffusionSystem::ReductionAfter(int corrections)

@@ -92,7 +92,8 @@ public:
   void Balance();                                    ///< of each voxel: the right-hand side, from the model
   MultigridSolver& Matrix() { return this->Solver; } ///< and right-hand side
   static double ReductionAfter(int corrections);     ///< of the residual, in the next solution
-  void SetFound(const std::vector<double>& fluence) { this->Solution.Write(fluence); }
+  void SetFound(const std::vector<double>& fluence);
+  void FindFlux(); ///< that goes with it, the moments of degree 1, where there are angular moments
   static constexpr double RefinedBy = 0.1, RefinedTo = 1e-6; ///< what Refine asks for, of the residual and in units
   AndersonMixing::Sums SumsOfChange() const;                 ///< once the solution is there
   double MixBy(const AndersonMixing::Sums& sums);            ///< @return as Correct

@@ -141,6 +141,12 @@ void IterationInBlocks::AddUncollided(const Monitor& monitor)
   const double part = corrects ? sources / (sources + 1.0) : 1.0; // of the time
   const SweepTally tally = this->Uncollided.AddAll(this->Block.StoresMoments() ? &this->Result.shown : nullptr,
     this->AtFaces ? &*this->AtFaces : nullptr, OfPart(monitor, 0.0, part));
+  this->Block.Others.Together([&] {
+    if (this->Block.Faces)
+    {
+      this->Block.Faces->TakeUncollided();
+    }
+  });
   this->Result.ledger.Count(tally);
   this->Stranded = tally.onTheWay;
   if (corrects)

@@ -25,16 +25,11 @@
 
 namespace tyndall
 {
-std::string NotInBlocks(const Medium& medium, const Illumination& illumination, const PropagationSettings& settings)
+std::string NotInBlocks(const PropagationSettings& settings)
 {
-  const bool goesRound = settings.periodic[0] || settings.periodic[1] || settings.periodic[2];
-  const bool isAngular = !medium.phase.IsIsotropic() && settings.angularDegree != 0;
-  if (settings.source == PropagationSource::Linear &&
-    (isAngular || goesRound || Reflects(illumination) || settings.facePower || settings.uncollidedDirections > 0))
+  if (settings.source == PropagationSource::Linear && settings.uncollidedDirections > 0)
   {
-    return "a linear source besides anisotropic scattering, periodic axes, FaceAlbedo, UncollidedDirections or power "
-           "by "
-           "cells of faces";
+    return "a linear source besides UncollidedDirections";
   }
   return {};
 }
@@ -54,7 +49,7 @@ void CheckBlocks(Communicator& communicator, const BlockPartition& partition, co
       Require(medium.grid.size == partition.OwnGrid(rank).size,
         "The medium of rank " + std::to_string(rank) + " does not have the size of its block.");
     }
-    const std::string refused = NotInBlocks(medium, illumination, settings);
+    const std::string refused = NotInBlocks(settings);
     Require(refused.empty(), "A medium that is spread over ranks is not solved with " + refused + ".");
   });
   RequireSame(communicator, partition);
@@ -202,10 +197,11 @@ std::string ProblemInBlocks::BetterAsWhole(const Medium& medium, const Illuminat
   }
   if (oneByOne && this->Orders.ofWhole != OrdersAdded::OneByOne)
   {
-    return "many scattering orders, anisotropic, round a periodic axis or between faces that reflect, which it "
+    return "many scattering orders in thin voxels round a periodic axis or along UncollidedDirections, which it "
            "accelerates";
   }
-  if (this->Orders.how == OrdersAdded::ByBalance && this->FinerDirections(this->Orders.how).perFace > 0)
+  if (this->Orders.how == OrdersAdded::ByBalance && !Reflects(scene.illumination) &&
+    this->FinerDirections(this->Orders.how).perFace > 0)
   {
     return "faces that shine unevenly, whose light it has along finer directions";
   }

@@ -24,8 +24,8 @@ namespace tyndall
 /// Orders are added up as HowOrdersAreAdded (OrdersOverRanks.h) has it: one by one; where voxels are thin and light is
 /// scattered many times each with what diffusion on cells says of the rest (CellsOverRanks.h); where voxels are thicker
 /// by their balance (AccelerationInBlocks.h), both with the source that the settings ask for. One by one thick voxels
-/// shine by octant, as in the whole (OctantSources.h). Cells and the balance are for isotropic scattering in an open
-/// box without faces that reflect.
+/// shine by octant, as in the whole (OctantSources.h). Cells are for isotropic scattering in an open box without faces
+/// that reflect.
 ///
 /// Carried are light that comes in through the box's faces, from the sky and the environment, of all kinds of lights,
 /// and emission; scattering in angular moments; light that faces give back and that goes round periodic axes. The light
@@ -59,8 +59,8 @@ void CheckBlocks(Communicator& communicator, const BlockPartition& partition, co
 bool BalancesVoxels(Device& device, Communicator& communicator, const BlockPartition& partition, const Medium& medium,
   const Illumination& illumination, const PropagationSettings& settings);
 
-/// What of a scene keeps SolveInBlocks from it, in words for an error; empty: nothing does.
-std::string NotInBlocks(const Medium& medium, const Illumination& illumination, const PropagationSettings& settings);
+/// What of settings keeps SolveInBlocks from it, in words for an error; empty: nothing does.
+std::string NotInBlocks(const PropagationSettings& settings);
 
 /// AtQuality (PropagationQuality.h), as of the whole medium. All ranks call it.
 PropagationSettings AtQualityInBlocks(Communicator& communicator, const BlockPartition& partition, Quality quality,

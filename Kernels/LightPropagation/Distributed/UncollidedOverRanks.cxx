@@ -52,9 +52,7 @@ Rgb UncollidedOverRanks::LoadEmission()
   if (this->Block.Has)
   {
     const Field& emission = this->Block.Scene.medium.emission;
-    const std::vector<float> values =
-      Planar(layout, layout.channels, [&](std::size_t i, int c) { return emission.At(i, c); });
-    this->Block.Source.Write(values.data(), values.size() - SweepPadding);
+    this->WriteEmission(this->Block.Source);
     for (int c = 0; c < layout.channels; ++c)
     {
       emitted[c] = 4.0 * Pi * layout.grid.VoxelVolume() *
@@ -63,6 +61,19 @@ Rgb UncollidedOverRanks::LoadEmission()
   }
   emitted = this->Block.Others.Sum(emitted);
   return { emitted[0], emitted[1], emitted[2] };
+}
+
+void UncollidedOverRanks::WriteEmission(Buffer<float>& source) const
+{
+  if (!this->Block.Has || !this->Block.Scene.traits.emits)
+  {
+    return;
+  }
+  const VolumeLayout& layout = this->Block.Layout;
+  const Field& emission = this->Block.Scene.medium.emission;
+  const std::vector<float> values =
+    Planar(layout, layout.channels, [&](std::size_t i, int c) { return emission.At(i, c); });
+  source.Write(values.data(), values.size() - SweepPadding);
 }
 
 bool UncollidedOverRanks::AddStraightOn(const Buffer<float>& source) const
@@ -108,12 +119,6 @@ SweepTally UncollidedOverRanks::AddAll(const Buffer<float>* shown, OctantSources
   {
     Add(tally, this->AddGiven(monitor));
   }
-  this->Block.Others.Together([&] {
-    if (this->Block.Faces)
-    {
-      this->Block.Faces->TakeUncollided();
-    }
-  });
   return tally;
 }
 
@@ -162,24 +167,15 @@ UncollidedVolume UncollidedOverRanks::VolumeOf(const Deposit& deposit)
   return volume;
 }
 
-SweepTally UncollidedOverRanks::AddLamp(const Light& lamp, const Deposit& deposit, const Monitor& monitor)
+SweepTally UncollidedOverRanks::AddLamp(std::size_t lamp, const Deposit& deposit, const Monitor& monitor)
 {
-  return UncollidedLamp(lamp).AddTo(this->VolumeOf(deposit), monitor);
+  return this->OnAllRanks([&] { return this->FollowLamp(lamp, deposit, monitor); });
 }
 
-/// To the block's arrays, with a beam of its own where it has one.
-SweepTally UncollidedOverRanks::AddLampAt(std::size_t lamp, OctantSources* atFaces, const Monitor& monitor)
+/// With a beam of its own where it has one.
+SweepTally UncollidedOverRanks::FollowLamp(std::size_t lamp, const Deposit& deposit, const Monitor& monitor)
 {
-  if (atFaces)
-  {
-    Deposit deposit = this->Block.WholeDeposit();
-    deposit.path = &atFaces->LampPath();
-    deposit.firstMoments = &atFaces->LampMoments();
-    const SweepTally tally = this->AddLamp(this->Incident.Lamps()[lamp], deposit, monitor);
-    atFaces->TakeLamp(this->Block.Path);
-    return tally;
-  }
-  UncollidedVolume volume = this->VolumeOf(this->Block.WholeDeposit());
+  UncollidedVolume volume = this->VolumeOf(deposit);
   const SweptMoments* const angular = this->Block.Angular.get();
   this->Block.Others.Together([&] { // without voxels there are no moments
     if (angular)
@@ -194,6 +190,21 @@ SweepTally UncollidedOverRanks::AddLampAt(std::size_t lamp, OctantSources* atFac
   {
     this->Block.Scattering->AddBeam(this->OfLamp, this->Block.Source, beam);
   }
+  return tally;
+}
+
+/// To the block's arrays.
+SweepTally UncollidedOverRanks::AddLampAt(std::size_t lamp, OctantSources* atFaces, const Monitor& monitor)
+{
+  Deposit deposit = this->Block.WholeDeposit();
+  if (!atFaces)
+  {
+    return this->FollowLamp(lamp, deposit, monitor);
+  }
+  deposit.path = &atFaces->LampPath();
+  deposit.firstMoments = &atFaces->LampMoments();
+  const SweepTally tally = this->FollowLamp(lamp, deposit, monitor);
+  atFaces->TakeLamp(this->Block.Path);
   return tally;
 }
 

@@ -42,9 +42,14 @@ public:
   SweepTally AddAll(const Buffer<float>* shown, OctantSources* atFaces, const Monitor& monitor);
   std::size_t Count() const; ///< of lamps and sets of directions, for a share of a monitor
 
-  /// The light of one lamp alone. All ranks call it.
+  /// The light of one lamp alone; what a parallel beam is first scattered, to the block's source. All ranks call it.
+  /// @param deposit  with first moments, where they are wanted
   /// @return of all ranks
-  SweepTally AddLamp(const Light& lamp, const Deposit& deposit, const Monitor& monitor);
+  SweepTally AddLamp(std::size_t lamp, const Deposit& deposit, const Monitor& monitor);
+  /// What is given of another solver. All ranks call it.
+  SweepTally AddGiven(const Monitor& monitor);
+  /// What the medium emits, written to a source of this rank, the first moment.
+  void WriteEmission(Buffer<float>& source) const;
 
   /// W length, [channel][stride], of a sky of radiance 1, as TransportParts::EvenSky.
   struct EvenSky
@@ -59,7 +64,7 @@ private:
   SweepTally OnAllRanks(const std::function<SweepTally()>& add);
   SweepTally AddLampAt(std::size_t lamp, OctantSources* atFaces, const Monitor& monitor);
   SweepTally AddBoundary(const BoundaryLight& light, const Deposit& deposit, const Monitor& monitor);
-  SweepTally AddGiven(const Monitor& monitor);
+  SweepTally FollowLamp(std::size_t lamp, const Deposit& deposit, const Monitor& monitor);
   UncollidedVolume VolumeOf(const Deposit& deposit);
 
   BlockOnDevice& Block;

@@ -8,7 +8,7 @@
 #include "Medium/VoxelSums.h"
 
 #include <algorithm>
-#include <cmath>
+#include <functional>
 #include <utility>
 
 namespace tyndall
@@ -68,9 +68,9 @@ IterationResult DiffusionAcceleration::Run(const Monitor& monitor)
   {
     this->FindShown();
   }
-  if (this->Parts.Faces)
+  if (this->Box)
   {
-    this->Result.leftByCell = this->LeftWithoutPattern();
+    this->Result.leftByCell = this->LeftByCell();
   }
   return std::move(this->Result);
 }
@@ -171,122 +171,42 @@ void DiffusionAcceleration::ReflectUncollided()
   {
     return;
   }
-  const std::size_t cells = parts.Faces->Cells();
-  const std::vector<float> left = parts.Faces->TakeOut();
-  this->LeftUncollided.assign(left.begin(), left.end());
-  for (std::size_t i = 0; i < left.size(); ++i)
-  {
-    this->GivenBack.push_back(parts.Faces->Albedo()[parts.Faces->FaceOf(i % cells)][i / cells] * left[i]);
-    this->GivenPower[i / cells] += this->GivenBack.back();
-  }
-  this->CameBack = this->GivenBack;
-  this->BackMixing.resize(parts.Layout.channels);
+  this->Box.emplace(*parts.Faces);
   for (int c = 0; c < parts.Layout.channels; ++c)
   {
-    this->Faces.emplace_back(parts.TheDevice, (FaceLeaves + 1) * cells, "the light at the box's faces");
-    this->Faces.back().Fill(0.0f);
-  }
-  if (parts.FacesReflect())
-  {
-    parts.Faces->LetIn(std::vector<double>(left.size(), 0.0), this->GivenBack);
+    this->GivenPower[c] += this->Box->GivenBack()[c];
+    this->Faces.emplace_back(parts.TheDevice, (FaceLeaves + 1) * parts.Faces->Cells(), "the light at the box's faces");
   }
 }
 
 /// What came back and left in the sweep, for the diffusion systems.
 void DiffusionAcceleration::TakeSweptFaces()
 {
-  if (!this->Parts.Faces)
+  if (!this->Box)
   {
     return;
   }
-  const std::size_t cells = this->Parts.Faces->Cells();
-  const std::vector<float> left = this->Parts.Faces->TakeOut();
+  this->Box->TakeSwept();
   for (std::size_t c = 0; c < this->Faces.size(); ++c)
   {
-    std::vector<float> rows((FaceLeaves + 1) * cells, 0.0f);
-    std::copy_n(this->CameBack.begin() + c * cells, cells, rows.begin() + FaceCame * cells);
-    std::copy_n(this->GivenBack.begin() + c * cells, cells, rows.begin() + FaceGiven * cells);
-    std::copy_n(left.begin() + c * cells, cells, rows.begin() + FaceLeft * cells);
-    this->Faces[c].Write(rows.data());
+    this->Faces[c].Write(this->Box->RowsOf(static_cast<int>(c)).data());
   }
 }
 
-/// Lets come in with the next sweep what the faces give back by the systems' solution.
-/// @return by how much it differs from what came in with the last one, over all light that is given
-double DiffusionAcceleration::ReflectFound(int iteration)
-{
-  const FaceLight& faces = *this->Parts.Faces;
-  const std::size_t cells = faces.Cells();
-  const std::vector<double> leaves = this->LeftByCell();
-  double change = 0.0;
-  for (std::size_t c = 0; c < this->Faces.size(); ++c)
-  {
-    double differs = 0.0, all = this->GivenPower[c] + this->PowerIn[c];
-    const auto begin = this->CameBack.begin() + static_cast<std::ptrdiff_t>(c * cells);
-    const std::vector<double> came(begin, begin + static_cast<std::ptrdiff_t>(cells));
-    std::vector<double> found(cells);
-    for (std::size_t cell = 0; cell < cells; ++cell)
-    {
-      const std::size_t i = c * cells + cell;
-      const double albedo = faces.Albedo()[faces.FaceOf(cell)][c];
-      found[cell] = this->GivenBack[i] + albedo * std::max(leaves[i] - this->LeftUncollided[i], 0.0);
-      differs += std::abs(found[cell] - came[cell]);
-      all += found[cell];
-    }
-    change = std::max(change, all > 0.0 ? differs / all : 0.0);
-    // In thin media the systems do not know how what comes back goes through them.
-    const std::vector<double> next = iteration > 0 ? this->BackMixing[c].Next(came, found) : found;
-    std::copy(next.begin(), next.end(), begin);
-  }
-  // The systems' power does not have the pattern of rays.
-  this->Parts.Faces->LetIn(std::vector<double>(this->CameBack.size(), 0.0), this->CameBack);
-  return change;
-}
-
-/// The same without the pattern in which the last sweep's rays go in and out through cells: in thin voxels the systems
-/// have it of the sweep. The sums over faces stay.
-std::vector<double> DiffusionAcceleration::LeftWithoutPattern() const
-{
-  const FaceLight& faces = *this->Parts.Faces;
-  const Grid& grid = this->Parts.Layout.grid;
-  const std::size_t cells = faces.Cells();
-  const std::vector<double> left = this->LeftByCell();
-  const std::array<Rgb, 6> incoming =
-    this->Parts.SweepsAreLit() ? this->Parts.UsualBoundary->IncomingPower() : std::array<Rgb, 6>{};
-  const double longest = *std::max_element(grid.spacing.begin(), grid.spacing.end());
-  std::vector<double> smooth = left;
-  for (std::size_t c = 0; c < this->Faces.size(); ++c)
-  {
-    const std::vector<float> rows = this->Faces[c].Read();
-    ForBoxFaceCells(grid, [&](const BoxFaceCell& cell) {
-      const double tau = longest * this->TheMedium.TransportSigmaT(cell.voxel, static_cast<int>(c));
-      const double area = grid.VoxelVolume() / grid.spacing[cell.face / 2];
-      const double in = rows[FaceCame * cells + cell.number] + incoming[cell.face][c] * area;
-      const double pattern = faces.Pattern(cell.number), swept = rows[FaceLeft * cells + cell.number];
-      double& here = smooth[c * cells + cell.number];
-      const double change = this->Parts.SpreadsAside()
-        ? swept / pattern - (here - this->LeftUncollided[c * cells + cell.number])
-        : (1.0 / pattern - 1.0) * (swept - pattern * in);
-      here = std::max(here + change / (1.0 + 0.25 * tau * tau), 0.0);
-    });
-  }
-  return faces.ScaledTo(std::move(smooth), left);
-}
-
-/// W that leave through each cell, by the systems' solution; in a dark channel those of uncollided light alone.
+/// By cell of the box's faces, without the pattern of rays.
 std::vector<double> DiffusionAcceleration::LeftByCell() const
 {
-  const std::size_t cells = this->Parts.Faces->Cells();
-  std::vector<double> left = this->LeftUncollided;
-  for (std::size_t c = 0; c < this->Faces.size(); ++c)
+  const Grid& grid = this->Parts.Layout.grid;
+  const double longest = *std::max_element(grid.spacing.begin(), grid.spacing.end());
+  std::vector<double> tau;
+  for (int c = 0; c < this->Parts.Layout.channels; ++c)
   {
-    const std::vector<float> rows = this->Faces[c].Read();
-    for (std::size_t i = 0; i<cells&& this->VoxelPower(static_cast<int>(c))> 0.0; ++i)
-    {
-      left[c * cells + i] += rows[FaceLeaves * cells + i];
-    }
+    ForBoxFaceCells(
+      grid, [&](const BoxFaceCell& cell) { tau.push_back(longest * this->TheMedium.TransportSigmaT(cell.voxel, c)); });
   }
-  return left;
+  const std::array<Rgb, 6> incoming =
+    this->Parts.SweepsAreLit() ? this->Parts.UsualBoundary->IncomingPower() : std::array<Rgb, 6>{};
+  return this->Box->LeftWithoutPattern(incoming, tau, this->Parts.SpreadsAside());
 }
 
 /// The source of the next sweep, of what the last one and the systems found.
@@ -374,7 +294,9 @@ void DiffusionAcceleration::Correct(int iteration)
   this->CountLight();
   if (this->Parts.FacesReflect())
   {
-    change = std::max(change, this->ReflectFound(iteration));
+    Rgb given = this->GivenPower;
+    std::transform(given.begin(), given.end(), this->PowerIn.begin(), given.begin(), std::plus<>());
+    change = std::max(change, this->Box->Reflect(iteration, given));
   }
   const bool guessed = iteration == 1 && this->Warm.Begins() && this->Warm.Rate(0) > 0.0;
   this->Residual = this->Rest.After(change, guessed ? this->Warm.Rate(0) : 0.0);
@@ -402,26 +324,20 @@ void DiffusionAcceleration::CountLight()
     }
     this->Result.ledger.Absorb(c, this->Systems[c]->Absorbed());
     const std::array<double, 6> outflow = this->Systems[c]->Outflow(entered, ofSweep);
-    for (int face = 0; face < 6 && !this->Parts.Faces; ++face)
+    if (this->Box)
+    {
+      const std::vector<float> rows = this->Faces[c].Read();
+      this->Box->SetLeaving(
+        c, { rows.begin() + static_cast<std::ptrdiff_t>(FaceLeaves * this->Parts.Faces->Cells()), rows.end() });
+    }
+    for (int face = 0; face < 6 && !this->Box; ++face)
     {
       this->Result.ledger.Escape(c, face, outflow[face]);
     }
   }
-  if (this->Parts.Faces)
+  if (this->Box)
   {
-    this->CountFaces();
-  }
-}
-
-/// Where light is counted by cells: uncollided light that left is in the ledger already.
-void DiffusionAcceleration::CountFaces()
-{
-  const FaceLight& faces = *this->Parts.Faces;
-  const std::vector<double> left = this->LeftByCell();
-  for (std::size_t i = 0; i < left.size(); ++i)
-  {
-    const int face = faces.FaceOf(i % faces.Cells()), c = static_cast<int>(i / faces.Cells());
-    this->Result.ledger.Escape(c, face, (1.0 - faces.Albedo()[face][c]) * left[i] - this->LeftUncollided[i]);
+    this->Box->Count(this->Result.ledger);
   }
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "LightPropagation/Conservative/Acceleration/HostMixing.h"
+#include "LightPropagation/Conservative/Acceleration/FaceBalance.h"
 #include "LightPropagation/Conservative/Iteration.h"
 #include "LightPropagation/Conservative/TransportParts.h"
 #include "LightPropagation/Conservative/UncollidedLight.h"
@@ -39,11 +39,8 @@ private:
   void Correct(int iteration);
   void ReflectUncollided();
   void TakeSweptFaces();
-  double ReflectFound(int iteration);
   std::vector<double> LeftByCell() const;
-  std::vector<double> LeftWithoutPattern() const;
   void CountLight();
-  void CountFaces();
   double VoxelPower(int channel) const;
   bool Done(int iterations) const;
   std::vector<float> SweptFluence() const;
@@ -66,10 +63,9 @@ private:
   std::vector<std::unique_ptr<DiffusionSystem>> Systems;
   /// By channel, where light by cells of the box's faces is wanted: as DiffusionSystem::Arrays has it.
   std::vector<Buffer<float>> Faces;
-  std::vector<double> CameBack, GivenBack, LeftUncollided; ///< W, [channel][cell]
-  std::vector<HostMixing> BackMixing;                      ///< of CameBack, by channel
-  SweepTally Tally;                                        ///< of the last sweep
-  Rgb GivenPower = {}, PowerIn = {};                       ///< W, emitted or first scattered; through faces
+  std::optional<FaceBalance> Box;
+  SweepTally Tally;                  ///< of the last sweep
+  Rgb GivenPower = {}, PowerIn = {}; ///< W, emitted or first scattered; through faces
   RestOfChanges Rest;
   double Residual = 1.0;
 

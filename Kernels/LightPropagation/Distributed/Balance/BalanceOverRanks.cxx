@@ -4,20 +4,26 @@
 #include "Medium/VoxelSums.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace tyndall
 {
 namespace
 {
 /// The tables of the planes that a box has.
-CrossingPattern PatternOf(const CrossingPattern& whole, const VoxelBox& box)
+CrossingPattern PatternOf(const CrossingPattern& whole, const VoxelBox& box, const std::array<int, 3>& size)
 {
-  CrossingPattern pattern = whole;
-  for (int axis = 0; axis < 3; ++axis)
+  CrossingPattern pattern;
+  for (int table = 0; table < 6; ++table)
   {
-    const PlaneAxes axes = AcrossAxis(axis);
-    pattern.first[2 * axis] += box.first[axes.u];
-    pattern.first[2 * axis + 1] += box.first[axes.v];
+    const PlaneAxes axes = AcrossAxis(table / 2);
+    const int along = table % 2 ? axes.v : axes.u;
+    pattern.first[table] = static_cast<int>(pattern.values.size());
+    for (int k = 0; k < box.size[along]; ++k)
+    {
+      const int plane = (box.first[along] + k + size[along]) % size[along]; // round a periodic axis
+      pattern.values.push_back(whole.values[whole.first[table] + plane]);
+    }
   }
   return pattern;
 }
@@ -32,23 +38,25 @@ std::vector<float> ArrayOf(const MultigridLevel& rows, const std::vector<float>&
 
 BalanceOverRanks::BalanceOverRanks(Device& device, Communicator& communicator, const BlockPartition& partition,
   const BlockWithGhosts& block, const DirectionSet& directions, const CrossingPattern& pattern,
-  const DiffusionSystem::Arrays& arrays, const std::array<double, 6>& incoming, bool linear)
+  const DiffusionSystem::Arrays& arrays, const std::array<double, 6>& incoming, const std::array<bool, 3>& periodic,
+  bool linear)
   : Others(communicator)
   , Block(block)
+  , Periodic(periodic)
   , SigmaA(arrays.sigma_a)
   , First(arrays.first)
 {
   std::array<std::vector<float>, 3> conductance;
   std::vector<float> loss;
   communicator.Together([&] {
-    this->Solver = std::make_unique<MultigridOverRanks>(communicator, partition);
+    this->Solver = std::make_unique<MultigridOverRanks>(communicator, partition, periodic);
     this->Fluence.assign(block.WithGhosts().grid.VoxelCount(), 0.0);
     if (!block.Has())
     {
       return;
     }
-    this->System = std::make_unique<DiffusionSystem>(device, block.WithGhosts().grid, std::array<bool, 3>{}, directions,
-      PatternOf(pattern, block.Held()), arrays, incoming, linear);
+    this->System = std::make_unique<DiffusionSystem>(device, block.WithGhosts().grid, block.Periodic(), directions,
+      PatternOf(pattern, block.Held(), partition.whole.size), arrays, incoming, linear);
     MultigridSolver& matrix = this->System->Matrix();
     const std::vector<float> all = matrix.Conductance().Read();
     for (int axis = 0; axis < 3; ++axis)
@@ -86,6 +94,7 @@ double BalanceOverRanks::Correct(double unit)
     if (this->System)
     {
       this->System->SetFound(this->Fluence);
+      this->System->FindFlux();
       sums = this->System->SumsOfChange();
     }
   });
@@ -120,7 +129,13 @@ void BalanceOverRanks::BeginBeyond(const std::vector<double>& guessed)
     }
     if (this->System)
     {
-      this->System->Begin(this->Fluence);
+      std::vector<double> state = this->System->State();
+      std::copy(this->Fluence.begin(), this->Fluence.end(), state.begin());
+      for (std::size_t i = this->Fluence.size(); i < state.size(); ++i)
+      {
+        state[i] += guessed[i];
+      }
+      this->System->Begin(state);
     }
   });
 }
@@ -142,7 +157,7 @@ std::vector<double> BalanceOverRanks::Found() const
 
 std::vector<double> BalanceOverRanks::NextFluence() const
 {
-  return this->System ? this->System->NextFluence().Read() : std::vector<double>();
+  return this->System ? this->OwnOf(this->System->NextFluence().Read()) : std::vector<double>();
 }
 
 double BalanceOverRanks::Absorbed() const
@@ -193,7 +208,7 @@ std::array<double, 6> BalanceOverRanks::Outflow(double entered, const std::array
     std::copy_n(next, 6, ofFaces->begin());
     next += 6;
   }
-  return DiffusionSystem::OutflowBy(sums, entered, ofSweep);
+  return DiffusionSystem::OutflowBy(sums, entered, ofSweep, this->Periodic);
 }
 
 void BalanceOverRanks::ShapeSource()
@@ -204,17 +219,29 @@ void BalanceOverRanks::ShapeSource()
   }
 }
 
+void BalanceOverRanks::PutNextFlux(const Buffer<float>& path)
+{
+  if (this->System)
+  {
+    this->System->PutNextFlux(path);
+  }
+}
+
 SurfacePowers BalanceOverRanks::PowersAtSurface() const
 {
   SurfacePowers powers = this->System->PowersAtSurface();
-  const std::vector<double> held = std::move(powers.net);
-  powers.net.clear();
+  const std::vector<double> held = std::exchange(powers.net, {}), back = std::exchange(powers.back, {});
   const Grid& grid = this->Block.WithGhosts().grid;
   ForBoxFaceCells(this->Block.Own().grid, [&](const BoxFaceCell& cell) {
     const std::array<int, 3> voxel = grid.VoxelAt(this->Block.PlaceOf(cell.voxel));
     const BoxFaceLayout layout = LayoutOfFace(grid, cell.face);
-    powers.net.push_back(
-      held[layout.first + voxel[0] * layout.step[0] + voxel[1] * layout.step[1] + voxel[2] * layout.step[2]]);
+    const std::size_t at =
+      layout.first + voxel[0] * layout.step[0] + voxel[1] * layout.step[1] + voxel[2] * layout.step[2];
+    powers.net.push_back(held[at]);
+    if (!back.empty())
+    {
+      powers.back.push_back(back[at]);
+    }
   });
   return powers;
 }

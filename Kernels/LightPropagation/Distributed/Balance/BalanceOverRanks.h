@@ -25,9 +25,11 @@ public:
   ///   below 0 there; what the others are is never looked at
   /// @param pattern  of the whole grid
   /// @param incoming  W / length^2 through the faces of the whole grid, but that of lights
+  /// @param periodic  axes of the whole grid
   BalanceOverRanks(Device& device, Communicator& communicator, const BlockPartition& partition,
     const BlockWithGhosts& block, const DirectionSet& directions, const CrossingPattern& pattern,
-    const DiffusionSystem::Arrays& arrays, const std::array<double, 6>& incoming, bool linear);
+    const DiffusionSystem::Arrays& arrays, const std::array<double, 6>& incoming, const std::array<bool, 3>& periodic,
+    bool linear);
 
   /// As those of DiffusionSystem, of all ranks.
   double Correct(double unit);
@@ -35,15 +37,16 @@ public:
   double Absorbed() const;
   std::array<double, 6> Outflow(double entered, const std::array<double, 6>& ofSweep);
   /// As DiffusionSystem::Begin.
-  /// @param guessed  beyond the fluence that was solved for, W / length^2, by voxel with ghosts
+  /// @param guessed  beyond what was solved for, W / length^2, by voxel with ghosts, as DiffusionSystem::State
   void BeginBeyond(const std::vector<double>& guessed);
 
   // Of this rank alone.
   std::vector<double> Found() const; ///< W / length^2, by voxel of the block
-  /// The same, on which the next sweep's source is to be built, with ghosts; empty where the block is.
+  /// The same, on which the next sweep's source is to be built.
   std::vector<double> NextFluence() const;
   void ShapeSource();
-  void AddFlux(const Buffer<float>& flux); ///< with ghosts, which are not those of the others
+  void PutNextFlux(const Buffer<float>& path); ///< of arrays with ghosts
+  void AddFlux(const Buffer<float>& flux);     ///< with ghosts, which are not those of the others
   /// As that of DiffusionSystem, by cells of the block's faces; of those at the box's faces alone it is known.
   SurfacePowers PowersAtSurface() const;
 
@@ -52,6 +55,7 @@ private:
 
   Communicator& Others;
   const BlockWithGhosts& Block;
+  const std::array<bool, 3> Periodic;
   const Buffer<float>* SigmaA;
   std::size_t First;
   std::unique_ptr<DiffusionSystem> System; ///< of the block with ghosts; null without voxels

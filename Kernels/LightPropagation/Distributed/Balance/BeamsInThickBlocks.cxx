@@ -1,38 +1,31 @@
 #include "LightPropagation/Distributed/Balance/BeamsInThickBlocks.h"
 
 #include "LightPropagation/Diffusion/LampPassing.h"
-#include "LightPropagation/Uncollided/ParallelBeam.h"
 #include "Numerics/Constants.h"
 
 #include <algorithm>
-#include <array>
 #include <functional>
+#include <vector>
 
 namespace tyndall
 {
-namespace
-{
-constexpr std::array<bool, 3> NoneIsPeriodic = { false, false, false };
-}
-
 BeamsInThickBlocks::BeamsInThickBlocks(Device& device, Communicator& communicator, const BlockWithGhosts& block,
-  const VolumeLayout& whole, const Coefficients& medium)
+  std::size_t pathFloats, const Coefficients& medium)
   : TheDevice(device)
   , Others(communicator)
   , Block(block)
-  , Whole(whole)
   , TheMedium(medium)
 {
   communicator.Together([&] {
     const char* what = "light of lamps";
-    this->OwnPath = Buffer<float>(device, block.Own().Floats(), what);
-    this->OwnSixfold = Buffer<float>(device, block.Own().Floats(6), what);
+    this->OwnPath = Buffer<float>(device, pathFloats, what);
+    this->OwnMoments = Buffer<float>(device, block.Own().Floats(6), what);
     const VolumeLayout& held = block.WithGhosts();
-    for (Buffer<float>* array : { &this->Path, &this->BeamPath, &this->PathOfAll, &this->InVoxels })
+    for (Buffer<float>* array : { &this->Path, &this->PathOfAll, &this->InVoxels })
     {
       *array = Buffer<float>(device, held.Floats(), what);
     }
-    for (Buffer<float>* array : { &this->Currents, &this->FirstMoments, &this->ThroughFaces })
+    for (Buffer<float>* array : { &this->FirstMoments, &this->ThroughFaces })
     {
       *array = Buffer<float>(device, held.Floats(6), what);
     }
@@ -41,61 +34,33 @@ BeamsInThickBlocks::BeamsInThickBlocks(Device& device, Communicator& communicato
   });
 }
 
-SweepTally BeamsInThickBlocks::Add(const Light& lamp, const SweepMaker& makeSweep, const NearLampAdder& addNear,
-  Buffer<float>& path, const Buffer<float>* flux, const Monitor& monitor)
+SweepTally BeamsInThickBlocks::Add(
+  std::size_t lamp, const LampAdder& add, Buffer<float>& path, const Deposit& more, const Monitor& monitor)
 {
-  if (Sum(lamp.power) == 0.0)
-  {
-    return {};
-  }
-  const bool parallel = lamp.type == LightType::Directional;
-  this->OwnPath.Fill(0.0f);
-  this->OwnSixfold.Fill(0.0f);
-  const SweepTally tally = parallel ? this->FollowBeam(lamp, makeSweep, flux, monitor)
-                                    : addNear(lamp, { &this->OwnPath, flux, nullptr, &this->OwnSixfold }, monitor);
-  std::vector<float> lengths, sixfold;
+  this->Others.Together([&] {
+    this->OwnPath.Fill(0.0f);
+    this->OwnMoments.Fill(0.0f);
+  });
+  const SweepTally tally =
+    add(lamp, { &this->OwnPath, more.flux, nullptr, &this->OwnMoments, more.faceOut, more.spreadsAside }, monitor);
+  std::vector<float> lengths, moments;
   this->Others.Together([&] {
     lengths = this->OwnPath.Read();
-    sixfold = this->OwnSixfold.Read();
+    moments = this->OwnMoments.Read();
     std::vector<float> all = path.Read();
     std::transform(all.begin(), all.end(), lengths.begin(), all.begin(), std::plus<float>());
     path.Write(all.data());
   });
   const int channels = this->Block.Own().channels;
-  this->Block.Spread(lengths, channels, parallel ? this->Path : this->BeamPath);
-  this->Block.SpreadWithGhosts(sixfold, 6 * channels, parallel ? this->Currents : this->FirstMoments);
+  this->Block.Spread(lengths, channels, this->Path);
+  this->Block.SpreadWithGhosts(moments, 6 * channels, this->FirstMoments);
   this->Others.Together([&] {
-    if (!this->Block.Has())
+    if (this->Block.Has())
     {
-      return;
+      this->PassFaces();
     }
-    if (parallel)
-    {
-      this->FindFirstMoments(lamp);
-    }
-    this->PassFaces();
   });
   return tally;
-}
-
-SweepTally BeamsInThickBlocks::FollowBeam(
-  const Light& lamp, const SweepMaker& makeSweep, const Buffer<float>* flux, const Monitor& monitor)
-{
-  const Deposit ofBeam = { &this->OwnPath, flux, &this->OwnSixfold, nullptr };
-  const UncollidedVolume rays = { this->TheDevice, this->Whole, this->TheMedium.sigma_t, NoneIsPeriodic, makeSweep,
-    {} };
-  return SweepBeam(rays, lamp, true, ofBeam, monitor);
-}
-
-/// Of a parallel beam, from its path and currents.
-void BeamsInThickBlocks::FindFirstMoments(const Light& lamp)
-{
-  this->BeamPath.Fill(0.0f);
-  this->FirstMoments.Fill(0.0f);
-  const Deposit all = { &this->BeamPath, nullptr, nullptr, &this->FirstMoments };
-  const UncollidedVolume volume = { this->TheDevice, this->Block.WithGhosts(), this->TheMedium.sigma_t, NoneIsPeriodic,
-    {}, all };
-  AddWithFirstMoments(volume, lamp, { &this->Path, nullptr, &this->Currents });
 }
 
 void BeamsInThickBlocks::PassFaces()
@@ -103,9 +68,9 @@ void BeamsInThickBlocks::PassFaces()
   const VolumeLayout& held = this->Block.WithGhosts();
   for (int c = 0; c < held.channels; ++c)
   {
-    PassLampLight(this->TheDevice, held.grid, NoneIsPeriodic,
+    PassLampLight(this->TheDevice, held.grid, this->Block.Periodic(),
       { held.Stride(), held.ExtinctionFirst(c), c * held.Stride(), &this->TheMedium.sigma_t, &this->TheMedium.sigma_a,
-        &this->TheMedium.sigma_s, &this->TheMedium.sigma_t, &this->BeamPath, &this->FirstMoments, &this->ThroughFaces,
+        &this->TheMedium.sigma_s, &this->TheMedium.swept, &this->Path, &this->FirstMoments, &this->ThroughFaces,
         &this->PathOfAll });
   }
 }

@@ -5,15 +5,14 @@
 #include "LightPropagation/Distributed/Balance/BlockWithGhosts.h"
 #include "LightPropagation/Sweep/SweepOperator.h"
 #include "LightPropagation/Sweep/SweepTally.h"
-#include "Lights/Lights.h"
 
+#include <cstddef>
 #include <functional>
-#include <vector>
 
 namespace tyndall
 {
-/// Adds the light of a point, spot or rectangle lamp to a deposit of the rank's block.
-using NearLampAdder = std::function<SweepTally(const Light& lamp, const Deposit& to, const Monitor& monitor)>;
+/// Adds the light of a lamp, by its number, to a deposit of the rank's block.
+using LampAdder = std::function<SweepTally(std::size_t lamp, const Deposit& to, const Monitor& monitor)>;
 
 /// Uncollided light of lamps in thick voxels of a grid that is spread over ranks, and the part of it that
 /// passes voxels' faces at once where it is first scattered (LampPassing.h). All ranks call it together.
@@ -23,20 +22,20 @@ public:
   /// With ghosts, 1/length: sigma_s of the block alone is looked at. Must stay.
   struct Coefficients
   {
-    const Buffer<float>& sigma_t;
+    const Buffer<float>& sigma_t; ///< that light diffuses with
     const Buffer<float>& sigma_a;
     const Buffer<float>& sigma_s;
+    const Buffer<float>& swept; ///< sigma_t of the sweeps
   };
   /// @param device, communicator, block  must stay
-  /// @param whole  the layout of the whole grid
-  BeamsInThickBlocks(Device& device, Communicator& communicator, const BlockWithGhosts& block,
-    const VolumeLayout& whole, const Coefficients& medium);
+  /// @param pathFloats  of the block's path integrals, with their angular moments
+  BeamsInThickBlocks(Device& device, Communicator& communicator, const BlockWithGhosts& block, std::size_t pathFloats,
+    const Coefficients& medium);
 
-  /// @param addNear  follows point, spot and rectangle lamps; directional ones go along rays of sweeps
   /// @param path  of the block, W length, added to
-  /// @param flux  the same, as Deposit has it; null: not wanted
-  SweepTally Add(const Light& lamp, const SweepMaker& makeSweep, const NearLampAdder& addNear, Buffer<float>& path,
-    const Buffer<float>* flux, const Monitor& monitor);
+  /// @param more  of the block: its flux and the cells of the box's faces are added to, where they are there
+  SweepTally Add(
+    std::size_t lamp, const LampAdder& add, Buffer<float>& path, const Deposit& more, const Monitor& monitor);
 
   /// To be called when all were added: what Passed and OfLamps have of other ranks' voxels.
   void Finish();
@@ -45,18 +44,14 @@ public:
   const Buffer<float>& OfLamps() const { return this->InVoxels; }
 
 private:
-  SweepTally FollowBeam(
-    const Light& lamp, const SweepMaker& makeSweep, const Buffer<float>* flux, const Monitor& monitor);
-  void FindFirstMoments(const Light& lamp);
   void PassFaces();
 
   Device& TheDevice;
   Communicator& Others;
   const BlockWithGhosts& Block;
-  const VolumeLayout Whole;
   Coefficients TheMedium;
-  Buffer<float> OwnPath, OwnSixfold; ///< of a lamp, over the block; its currents, or of a near one first moments
-  Buffer<float> Path, Currents, BeamPath, FirstMoments; ///< the same, with ghosts
-  Buffer<float> PathOfAll, ThroughFaces, InVoxels;      ///< of all, with ghosts
+  Buffer<float> OwnPath, OwnMoments;               ///< of a lamp, over the block, as Deposit has them
+  Buffer<float> Path, FirstMoments;                ///< the same, with ghosts, without angular moments
+  Buffer<float> PathOfAll, ThroughFaces, InVoxels; ///< of all, with ghosts
 };
 }

@@ -16,20 +16,21 @@ Grid GridOf(const Grid& whole, const VoxelBox& box)
 }
 }
 
-BlockWithGhosts::BlockWithGhosts(
-  Communicator& communicator, const BlockPartition& partition, int channels, bool sharedExtinction)
+BlockWithGhosts::BlockWithGhosts(Communicator& communicator, const BlockPartition& partition,
+  const std::array<bool, 3>& periodic, int channels, bool sharedExtinction)
   : Others(communicator)
   , Block(partition.blocks[communicator.Rank()])
+  , Alone(GoesRoundAlone(this->Block, partition.whole.size, periodic))
 {
   std::vector<std::vector<VoxelBox>> ghosts;
   for (const VoxelBox& block : partition.blocks)
   {
-    ghosts.push_back(LayersBeside(block, partition.whole.size));
+    ghosts.push_back(LayersBeside(block, partition.whole.size, periodic));
   }
   this->Box = Hull(this->Block, ghosts[communicator.Rank()]);
   this->OfBlock = { GridOf(partition.whole, this->Block), channels, sharedExtinction };
   this->OfBox = { GridOf(partition.whole, this->Box), channels, sharedExtinction };
-  this->Ghosts = std::make_unique<GhostCells>(communicator, partition.blocks, ghosts, this->Box);
+  this->Ghosts = std::make_unique<GhostCells>(communicator, partition.blocks, ghosts, this->Box, partition.whole.size);
 }
 
 std::size_t BlockWithGhosts::PlaceOf(std::size_t ownVoxel) const
@@ -51,6 +52,16 @@ bool BlockWithGhosts::IsOwn(const std::array<int, 3>& voxel) const
     own = own && place >= this->Block.first[axis] && place < EndOf(this->Block, axis);
   }
   return own;
+}
+
+std::size_t BlockWithGhosts::OwnAt(const std::array<int, 3>& voxel) const
+{
+  std::array<int, 3> own = voxel;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    own[axis] += this->Box.first[axis] - this->Block.first[axis];
+  }
+  return this->OfBlock.grid.IndexOf(own);
 }
 
 std::vector<float> BlockWithGhosts::Placed(const std::vector<float>& own, int parts, float elsewhere) const

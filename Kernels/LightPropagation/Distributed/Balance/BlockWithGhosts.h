@@ -19,10 +19,18 @@ class BlockWithGhosts
 public:
   /// All ranks make one together.
   /// @param communicator  must stay
-  BlockWithGhosts(Communicator& communicator, const BlockPartition& partition, int channels, bool sharedExtinction);
+  /// @param periodic  axes whose two ends touch
+  BlockWithGhosts(Communicator& communicator, const BlockPartition& partition, const std::array<bool, 3>& periodic,
+    int channels, bool sharedExtinction);
 
   bool Has() const { return this->OfBlock.grid.VoxelCount() > 0; } ///< voxels
-  const VoxelBox& Held() const { return this->Box; }               ///< in voxels of the whole grid
+  const VoxelBox& Held() const
+  {
+    return this->Box;
+  } ///< in voxels of the whole grid, round periodic axes beyond its ends
+  /// Periodic axes that the block has from end to end: only there nothing of others is needed, and arrays with ghosts
+  /// are of a grid that is periodic.
+  const std::array<bool, 3>& Periodic() const { return this->Alone; }
   const VolumeLayout& Own() const { return this->OfBlock; }
   const VolumeLayout& WithGhosts() const { return this->OfBox; }
 
@@ -34,14 +42,16 @@ public:
   /// Of arrays with ghosts what is over the block.
   std::vector<float> TakeOwn(const Buffer<float>& held, int parts) const;
 
-  std::size_t PlaceOf(std::size_t ownVoxel) const;   ///< of a voxel of the block, with ghosts
-  bool IsOwn(const std::array<int, 3>& voxel) const; ///< of the box with ghosts, from its first one
+  std::size_t PlaceOf(std::size_t ownVoxel) const;          ///< of a voxel of the block, with ghosts
+  bool IsOwn(const std::array<int, 3>& voxel) const;        ///< of the box with ghosts, from its first one
+  std::size_t OwnAt(const std::array<int, 3>& voxel) const; ///< the same voxel in the block, which has it
 
 private:
   std::vector<float> Placed(const std::vector<float>& own, int parts, float elsewhere) const;
 
   Communicator& Others;
   VoxelBox Block, Box;
+  std::array<bool, 3> Alone;
   VolumeLayout OfBlock, OfBox;
   std::unique_ptr<GhostCells> Ghosts;
 };

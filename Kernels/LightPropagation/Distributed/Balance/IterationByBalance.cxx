@@ -1,7 +1,7 @@
 #include "LightPropagation/Distributed/Balance/IterationByBalance.h"
 
 #include "LightPropagation/Convergence.h"
-#include "LightPropagation/Distributed/Balance/AccelerationInBlocks.h"
+#include "LightPropagation/Scattering/MomentScattering.h"
 
 namespace tyndall
 {
@@ -22,20 +22,23 @@ IterationResult IterationByBalance::Run(const Monitor& monitor)
   WarmStart warm(SceneOf(block, this->Incident), this->Kept, "diffusion acceleration");
   AccelerationInBlocks acceleration({ block.TheDevice, block.Others, block.Partition, block.Scene, block.Settings,
     block.Layout, block.OnDevice, this->Incident.Usual(), this->Incident.UsualBoundary(), this->Incident.Lamps(),
+    *block.Scattering, block.Angular.get(), block.Functions(),
     [&block](const SweepRequest& request) { return block.MakeSweep(request); },
-    [this](const Light& lamp, const Deposit& to, const Monitor& ofLamp) {
+    [this](std::size_t lamp, const Deposit& to, const Monitor& ofLamp) {
       return this->Uncollided.AddLamp(lamp, to, ofLamp);
     },
-    block.Source, block.Path, block.Fluence, block.Flux, result.ledger, warm, shines });
+    block.Source, block.Path, block.Fluence, block.Flux, block.Faces.get(), result.ledger, warm, shines });
   const Monitor ofLamps =
     OfPart(monitor, [&block](double done) { return ProgressOf(block.Settings, 1.0, UncollidedPart * done); });
-  if (!this->Incident.Lamps().empty() && acceleration.NeedsFirstMoments())
+  this->MakeShown(result);
+  const bool nearFaces = !this->Incident.Lamps().empty() && acceleration.NeedsFirstMoments();
+  const SweepTally ofUncollided = nearFaces
+    ? this->AddNearFaces(acceleration, result.shown, ofLamps)
+    : this->Uncollided.AddAll(block.StoresMoments() ? &result.shown : nullptr, nullptr, ofLamps);
+  result.ledger.Count(ofUncollided);
+  for (int c = 0; c < 3; ++c)
   {
-    acceleration.AddBeams(ofLamps);
-  }
-  else
-  {
-    result.ledger.Count(this->Uncollided.AddAll(nullptr, nullptr, ofLamps));
+    result.ledger.LeaveOver(c, ofUncollided.onTheWay[c]);
   }
   result.convergence = acceleration.Run(monitor);
   result.fluenceDirect = acceleration.Direct();
@@ -46,10 +49,61 @@ IterationResult IterationByBalance::Run(const Monitor& monitor)
   {
     result.kept = acceleration.Leave();
   }
+  if (block.StoresMoments())
+  {
+    this->FindShown(acceleration, result.shown);
+  }
   if (block.Faces)
   {
-    result.leftByCell = block.Faces->LeftInAll();
+    result.leftByCell = acceleration.LeftByCell();
   }
   return result;
+}
+
+/// What is not shown of the source of a next sweep: what the medium emits, and later what lamps' light is scattered
+/// first.
+void IterationByBalance::MakeShown(IterationResult& result)
+{
+  const BlockOnDevice& block = this->Block;
+  block.Others.Together([&] {
+    if (block.StoresMoments())
+    {
+      result.shown = Buffer<float>(block.TheDevice, block.Layout.MomentFloats(block.Functions()), "the light shown");
+      result.shown.Fill(0.0f);
+      this->Uncollided.WriteEmission(result.shown);
+    }
+  });
+}
+
+/// Lamps whose light is scattered near thick voxels' faces.
+SweepTally IterationByBalance::AddNearFaces(
+  AccelerationInBlocks& acceleration, const Buffer<float>& shown, const Monitor& monitor)
+{
+  const BlockOnDevice& block = this->Block;
+  SweepTally tally = acceleration.AddBeams(monitor);
+  block.Others.Together([&] {
+    if (block.StoresMoments() && block.Has)
+    {
+      block.Scattering->AddFirstScattered(block.WholeDeposit(), shown);
+    }
+  });
+  if (block.Scene.given)
+  {
+    Add(tally, this->Uncollided.AddGiven(monitor));
+  }
+  return tally;
+}
+
+void IterationByBalance::FindShown(AccelerationInBlocks& acceleration, const Buffer<float>& shown)
+{
+  const BlockOnDevice& block = this->Block;
+  acceleration.ScatterFound();
+  block.Others.Together([&] {
+    if (block.Has)
+    {
+      const std::size_t values = block.Layout.Places(block.Functions()).beams;
+      AddToShown(block.TheDevice, values, block.Source, shown, -1.0f);
+    }
+  });
 }
 }

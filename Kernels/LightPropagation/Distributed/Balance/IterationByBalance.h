@@ -1,6 +1,7 @@
 #pragma once
 
 #include "LightPropagation/Conservative/Iteration.h"
+#include "LightPropagation/Distributed/Balance/AccelerationInBlocks.h"
 #include "LightPropagation/Distributed/BlockOnDevice.h"
 #include "LightPropagation/Distributed/IncidentLight.h"
 #include "LightPropagation/Distributed/UncollidedOverRanks.h"
@@ -12,7 +13,7 @@ namespace tyndall
 class IterationByBalance : public Iteration
 {
 public:
-  /// @param block, incident, uncollided  must stay; of isotropic scattering, without finer directions
+  /// @param block, incident, uncollided  must stay; without finer directions
   /// @param kept  light of the last solve (WarmStart.h), must stay; null, on all ranks: none, and none is to be kept
   IterationByBalance(BlockOnDevice& block, const IncidentLight& incident, UncollidedOverRanks& uncollided,
     const KeptLight* kept = nullptr);
@@ -20,6 +21,10 @@ public:
   IterationResult Run(const Monitor& monitor) override;
 
 private:
+  void MakeShown(IterationResult& result);
+  SweepTally AddNearFaces(AccelerationInBlocks& acceleration, const Buffer<float>& shown, const Monitor& monitor);
+  void FindShown(AccelerationInBlocks& acceleration, const Buffer<float>& shown);
+
   BlockOnDevice& Block;
   const IncidentLight& Incident;
   UncollidedOverRanks& Uncollided;

@@ -61,18 +61,19 @@ std::size_t CellsOf(const std::array<int, 3>& size)
 }
 }
 
-/// A row of a level's own cells, and how far its neighbours are; 0 at the grid's end, where nothing passes.
+/// A row of a level's own cells, and how far its neighbours are, along x those of its first cell and its last; 0 at the
+/// grid's end, where nothing passes.
 struct MultigridOverRanks::Row
 {
   std::size_t first;
   int count;
-  bool beginsGrid, endsGrid; ///< along x
-  std::ptrdiff_t lowY, highY, lowZ, highZ;
+  std::ptrdiff_t lowX, highX, lowY, highY, lowZ, highZ;
 };
 
-MultigridOverRanks::MultigridOverRanks(
-  Communicator& communicator, const BlockPartition& partition, std::size_t gatherAtMost)
+MultigridOverRanks::MultigridOverRanks(Communicator& communicator, const BlockPartition& partition,
+  const std::array<bool, 3>& periodic, std::size_t gatherAtMost)
   : Others(communicator)
+  , Periodic(periodic)
 {
   std::vector<MultigridLevel> layouts = MultigridLevels(partition.whole.size, partition.whole.spacing);
   if (layouts.size() == 1)
@@ -109,7 +110,7 @@ void MultigridOverRanks::AddLevel(const std::array<int, 3>& size, const std::arr
   std::vector<std::vector<VoxelBox>> beside, ofOthers;
   for (std::size_t rank = 0; rank < own.size(); ++rank)
   {
-    beside.push_back(LayersBeside(own[rank], size));
+    beside.push_back(LayersBeside(own[rank], size, this->Periodic));
     ofOthers.push_back(TouchedOfOthers(own[rank], touched[rank]));
   }
   const auto self = static_cast<std::size_t>(this->Others.Rank());
@@ -117,8 +118,10 @@ void MultigridOverRanks::AddLevel(const std::array<int, 3>& size, const std::arr
   level.size = size;
   level.halved = halved;
   level.own = own[self];
+  level.periodic = this->Periodic;
+  level.alone = GoesRoundAlone(own[self], size, this->Periodic);
   level.held = Hull(Hull(own[self], beside[self]), ofOthers[self]);
-  level.beside = std::make_unique<GhostCells>(this->Others, own, beside, level.held);
+  level.beside = std::make_unique<GhostCells>(this->Others, own, beside, level.held, size);
   level.shared = std::make_unique<GhostCells>(this->Others, own, ofOthers, level.held);
   const std::size_t count = level.held.VoxelCount();
   for (std::vector<double>& ofAxis : level.conductance)
@@ -135,18 +138,24 @@ void MultigridOverRanks::AddLevel(const std::array<int, 3>& size, const std::arr
 MultigridOverRanks::Row MultigridOverRanks::RowOf(const Level& level, int y, int z)
 {
   const VoxelBox& own = level.own;
-  const auto strideY = static_cast<std::ptrdiff_t>(level.Stride(1)),
-             strideZ = static_cast<std::ptrdiff_t>(level.Stride(2));
   Row row;
   row.first = (z - level.held.first[2]) * level.Stride(2) + (y - level.held.first[1]) * level.Stride(1) +
     (own.first[0] - level.held.first[0]);
   row.count = own.size[0];
-  row.beginsGrid = own.first[0] == 0;
-  row.endsGrid = EndOf(own, 0) == level.size[0];
-  row.lowY = y > 0 ? -strideY : 0;
-  row.highY = y + 1 < level.size[1] ? strideY : 0;
-  row.lowZ = z > 0 ? -strideZ : 0;
-  row.highZ = z + 1 < level.size[2] ? strideZ : 0;
+  const auto step = [&](int axis, int from, int by) {
+    const auto stride = static_cast<std::ptrdiff_t>(level.Stride(axis));
+    const int size = level.size[axis], to = from + by;
+    const bool inside = to >= 0 && to < size;
+    return inside || (level.periodic[axis] && !level.alone[axis]) ? by * stride
+      : level.alone[axis]                                         ? by * (1 - size) * stride
+                                                                  : 0;
+  };
+  row.lowX = step(0, own.first[0], -1);
+  row.highX = step(0, EndOf(own, 0) - 1, 1);
+  row.lowY = step(1, y, -1);
+  row.highY = step(1, y, 1);
+  row.lowZ = step(2, z, -1);
+  row.highZ = step(2, z, 1);
   return row;
 }
 
@@ -185,7 +194,7 @@ double MultigridOverRanks::SumOverRows(const Level& level, const Term& term)
 double MultigridOverRanks::Apply(const Level& level, const std::vector<double>& values, const Row& row, int x)
 {
   const std::size_t i = row.first + x;
-  const std::ptrdiff_t lowX = x == 0 && row.beginsGrid ? 0 : -1, highX = x + 1 == row.count && row.endsGrid ? 0 : 1;
+  const std::ptrdiff_t lowX = x == 0 ? row.lowX : -1, highX = x + 1 == row.count ? row.highX : 1;
   const double own = values[i];
   const auto& [alongX, alongY, alongZ] = level.conductance;
   double sum = level.loss[i] * own;
@@ -200,7 +209,8 @@ double MultigridOverRanks::Diagonal(const Level& level, const Row& row, int x)
   const std::size_t i = row.first + x;
   const auto& [alongX, alongY, alongZ] = level.conductance;
   double sum = level.loss[i] + alongX[i] + alongY[i] + alongZ[i];
-  sum += x + 1 == row.count && row.endsGrid ? 0.0 : alongX[i + 1];
+  const std::ptrdiff_t highX = x + 1 == row.count ? row.highX : 1;
+  sum += highX != 0 ? alongX[i + highX] : 0.0;
   sum += row.highY != 0 ? alongY[i + row.highY] : 0.0;
   sum += row.highZ != 0 ? alongZ[i + row.highZ] : 0.0;
   return sum;

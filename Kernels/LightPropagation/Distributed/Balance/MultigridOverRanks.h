@@ -17,18 +17,21 @@ namespace tyndall
 /// it. Where few are left the first rank has them all. What it finds therefore does not depend on the blocks, but for
 /// rounding (numerics.md, section 7.14).
 ///
-/// No axis is periodic. All ranks make one and call it together.
+/// All ranks make one and call it together.
 class MultigridOverRanks
 {
 public:
   /// @param communicator  must stay
   /// @param gatherAtMost  cells of a level that the first rank has alone; of the finest none is gathered
-  MultigridOverRanks(Communicator& communicator, const BlockPartition& partition, std::size_t gatherAtMost = FewCells);
+  MultigridOverRanks(Communicator& communicator, const BlockPartition& partition,
+    const std::array<bool, 3>& periodic = {}, std::size_t gatherAtMost = FewCells);
 
-  /// The rank's block and the layer of voxels beside it: what arrays are over, x fastest. Of none where the block is.
+  /// As BlockWithGhosts: the rank's block and the layer of voxels beside it, what arrays are over, x fastest. Of none
+  /// where the block is.
   const VoxelBox& Held() const { return this->Levels.front().held; }
 
-  /// @param conductance  by axis, of low faces of the block's voxels and of those above it; 0 at the grid's end
+  /// @param conductance  by axis, of low faces of the block's voxels and of those above it; 0 at the end of an axis
+  ///   that is not periodic
   /// @param loss  of the block's voxels
   void SetMatrix(const std::array<std::vector<float>, 3>& conductance, const std::vector<float>& loss);
 
@@ -44,8 +47,10 @@ private:
   static constexpr std::size_t FewCells = 32768;
   struct Level
   {
-    std::array<int, 3> size = {};               ///< of the whole
-    std::array<int, 3> halved = {};             ///< to the next coarser level
+    std::array<int, 3> size = {};   ///< of the whole
+    std::array<int, 3> halved = {}; ///< to the next coarser level
+    std::array<bool, 3> periodic = {};
+    std::array<bool, 3> alone = {};             ///< axes round which this rank's own cells go on with themselves
     VoxelBox own, held;                         ///< of this rank
     std::unique_ptr<GhostCells> beside, shared; ///< cells beside own ones; others' that have finer cells of this rank
     std::array<std::vector<double>, 3> conductance;
@@ -85,6 +90,7 @@ private:
   int Iterate(std::vector<double>& values, double left, double unit, double reduction, double leftAtMost);
 
   Communicator& Others;
+  const std::array<bool, 3> Periodic;
   std::vector<Level> Levels;
   std::vector<double> Direction, Applied; ///< over the finest level's box
   double FirstResidual = 0.0;

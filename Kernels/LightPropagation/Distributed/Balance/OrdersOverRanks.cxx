@@ -121,26 +121,22 @@ ScatteringOfScene ScatteringOfAll(Communicator& communicator, const BlockPartiti
   return all;
 }
 
-/// What neither cells nor the balance of voxels carry from rank to rank.
-bool IsBeyondBoth(const BlockScene& scene, const PropagationSettings& settings)
+/// What cells do not carry from rank to rank.
+bool GoesRound(const PropagationSettings& settings)
 {
-  return scene.Scattering().Degree() > 0 || Reflects(scene.illumination) || settings.periodic[0] ||
-    settings.periodic[1] || settings.periodic[2];
+  return settings.periodic[0] || settings.periodic[1] || settings.periodic[2];
 }
 
 /// How blocks do it.
-OrdersAdded InBlocks(OrdersAdded ofWhole, const BlockScene& scene, const PropagationSettings& settings)
+OrdersAdded InBlocks(OrdersAdded ofWhole, const PropagationSettings& settings)
 {
-  if (IsBeyondBoth(scene, settings))
-  {
-    return OrdersAdded::OneByOne;
-  }
   if (settings.source == PropagationSource::Linear)
   {
     return OrdersAdded::ByBalance;
   }
-  const bool balances = !settings.facePower && settings.uncollidedDirections <= 0;
-  return ofWhole == OrdersAdded::ByBalance && !balances ? OrdersAdded::OneByOne : ofWhole;
+  const bool balances = settings.uncollidedDirections <= 0;
+  const bool has = ofWhole == OrdersAdded::ByBalance ? balances : !GoesRound(settings);
+  return has ? ofWhole : OrdersAdded::OneByOne;
 }
 }
 
@@ -157,7 +153,7 @@ OrdersOverRanks HowOrdersAreAdded(Communicator& communicator, const BlockPartiti
   orders.needed = OrdersNeeded(all);
   orders.halvings = CellHalvings(all.grid, all.thickest);
   orders.ofWhole = HowOrdersAreAdded(settings, scene.traits.scatters, all);
-  orders.how = InBlocks(orders.ofWhole, scene, settings);
+  orders.how = InBlocks(orders.ofWhole, settings);
   return orders;
 }
 }

@@ -12,13 +12,13 @@ namespace tyndall
 namespace
 {
 /// Which faces of a block lie on the box's.
-std::array<bool, 6> FacesAtBox(const VoxelBox& block, const Grid& whole)
+std::array<bool, 6> FacesAtBox(const VoxelBox& block, const Grid& whole, const std::array<bool, 3>& periodic)
 {
   std::array<bool, 6> faces;
   for (int axis = 0; axis < 3; ++axis)
   {
-    faces[2 * axis] = block.first[axis] == 0;
-    faces[2 * axis + 1] = EndOf(block, axis) == whole.size[axis];
+    faces[2 * axis] = !periodic[axis] && block.first[axis] == 0;
+    faces[2 * axis + 1] = !periodic[axis] && EndOf(block, axis) == whole.size[axis];
   }
   return faces;
 }
@@ -47,11 +47,12 @@ void PutCells(const std::vector<float>& ofBlock, const VoxelBox& block, const st
 }
 
 std::vector<float> SurfaceRadianceInBlocks(Communicator& communicator, const BlockPartition& partition,
-  const Medium& medium, int channels, const std::vector<Light>& lamps, const std::vector<SurfacePowers>& powers)
+  const Medium& medium, const std::array<bool, 3>& periodic, int channels, const std::vector<Light>& lamps,
+  const std::vector<SurfacePowers>& powers)
 {
   const VoxelBox& block = partition.blocks[communicator.Rank()];
   const bool has = block.VoxelCount() > 0;
-  const std::array<bool, 6> faces = FacesAtBox(block, partition.whole);
+  const std::array<bool, 6> faces = FacesAtBox(block, partition.whole, periodic);
   const bool thick = has && IsThickAtFaces(medium, faces, channels);
   if (!OnAnyRank(communicator, thick))
   {
