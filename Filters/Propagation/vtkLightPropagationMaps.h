@@ -59,12 +59,12 @@ class LastLight;
  * Without lights, environment, SkyColor, FaceRadiance and emission the result is dark, with a warning.
  *
  * With Decomposition BLOCKS rays go from rank to rank (numerics.md, section 4.9). Orders are accelerated as in the
- * whole, but not in thin voxels round periodic axes and not in thick ones with UncollidedDirections: there, and where
- * the whole does so, they are added up one by one, by octant where the whole would be. Blocks cannot do: Source LINEAR
- * with UncollidedDirections. Errors are estimated, and targets met, as of the whole (numerics.md, section 9.2). The
- * published scheme has the light of the whole, by either Algorithm (section 3). AUTOMATIC_DECOMPOSITION leaves to the
- * whole, beside that: those many orders, which it accelerates; small bright emission, which it follows along exact
- * rays; finer UncollidedDirections beside accelerated sweeps; and layers.
+ * whole, but not in thin voxels of isotropic scattering round periodic axes and not in thick ones with
+ * UncollidedDirections: there, and where the whole does so, they are added up one by one, by octant where the whole
+ * would be. Blocks cannot do: Source LINEAR with UncollidedDirections. Errors are estimated, and targets met, as of
+ * the whole (numerics.md, section 9.2). The published scheme has the light of the whole, by either Algorithm (section
+ * 3). AUTOMATIC_DECOMPOSITION leaves to the whole, beside that: those many orders, which it accelerates; small bright
+ * emission, which it follows along exact rays; finer UncollidedDirections beside accelerated sweeps; and layers.
  *
  * @sa vtkParticipatingMedium vtkLightRig vtkEnvironmentReader vtkMediumRayCaster
  * @par Thanks

@@ -50,14 +50,15 @@ int NumberOf(const char* filter)
   return static_cast<int>(number >> 1);
 }
 
-/// Receives who has come until all have, or the time is over.
+/// Receives who has come until all have, or the time is over, and what has been sent by then: a rank that came too late
+/// to the last meeting has withdrawn from it.
 void Collect(vtkMPIController* ranks, double wait, std::vector<Word>& come)
 {
   const Clock::time_point start = Clock::now();
   const auto missing = [&] { return std::any_of(come.begin(), come.end(), [](const Word& word) { return !word[0]; }); };
-  while (missing() && !IsPast(start, wait))
+  for (int waits = 1; waits || (missing() && !IsPast(start, wait));)
   {
-    int waits = 0, from = 0;
+    int from = 0;
     ranks->Iprobe(vtkMultiProcessController::ANY_SOURCE, ComeTag, &waits, &from);
     if (waits)
     {

@@ -200,8 +200,7 @@ std::string ProblemInBlocks::BetterAsWhole(const Medium& medium, const Illuminat
     return "many scattering orders in thin voxels round a periodic axis or along UncollidedDirections, which it "
            "accelerates";
   }
-  if (this->Orders.how == OrdersAdded::ByBalance && !Reflects(scene.illumination) &&
-    this->FinerDirections(this->Orders.how).perFace > 0)
+  if (this->Orders.how == OrdersAdded::ByBalance && this->FinerDirections(this->Orders.how).perFace > 0)
   {
     return "faces that shine unevenly, whose light it has along finer directions";
   }

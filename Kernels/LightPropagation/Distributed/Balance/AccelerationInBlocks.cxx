@@ -176,7 +176,7 @@ void AccelerationInBlocks::FindGiven()
       this->The.scattering.AddFirstScattered({ &this->The.path }, this->OwnGiven);
       given = this->OwnGiven.Read();
     }
-    flux = this->FluxOf(this->OwnGiven);
+    flux = this->Moments.Any() ? this->FluxOf(this->OwnGiven) : std::vector<float>();
   });
   this->Block.Spread(given, own.channels, this->Given);
   if (this->Moments.Any())
@@ -195,7 +195,7 @@ std::vector<float> AccelerationInBlocks::FluxOf(const Buffer<float>& moments) co
 {
   Buffer<float> flux(this->The.device, this->The.layout.Floats(3), "the net flux given");
   flux.Fill(0.0f);
-  if (this->Moments.Any() && this->Block.Has())
+  if (this->Block.Has())
   {
     AddFluxOfMoments(this->The.device, this->The.layout, this->The.functions, moments, flux);
   }
@@ -413,7 +413,8 @@ void AccelerationInBlocks::Correct(int iteration)
     std::transform(given.begin(), given.end(), this->PowerIn.begin(), given.begin(), std::plus<>());
     double ofFaces = 0.0;
     this->The.others.Together([&] { ofFaces = this->Faces->OfBox().Reflect(iteration, given); });
-    change = std::max(change, ofFaces);
+    // Which each rank has found for itself, and not to the last bit where their devices are of other kinds.
+    change = std::max(change, this->The.others.Largest({ ofFaces })[0]);
   }
   const double guessed = iteration == 1 && this->The.warm.Begins() ? this->The.warm.Rate(0) : 0.0;
   this->Residual = this->Rest.After(change, guessed);
