@@ -364,7 +364,8 @@ void RequireAll(vtkAlgorithm* filter, vtkInformationVector** given)
   }
 }
 
-/// An array that is shorter or longer than its cells or points is not cut along with them.
+/// An array that is shorter or longer than its cells or points is not cut along with them. Of a piece that VTK has cut
+/// to nothing old arrays may be left.
 void CheckLengths(vtkDataObject* data, const std::string& named)
 {
   auto* const image = vtkImageData::SafeDownCast(data);
@@ -378,7 +379,7 @@ void CheckLengths(vtkDataObject* data, const std::string& named)
           what + ". Give it a value for each.");
     }
   };
-  if (image)
+  if (image && image->GetNumberOfPoints() > 0)
   {
     check(image->GetCellData(), image->GetNumberOfCells(), "cells");
     check(image->GetPointData(), image->GetNumberOfPoints(), "points");
