@@ -275,13 +275,19 @@ void AccelerationInBlocks::ScatterFound()
   });
 }
 
+/// To the systems, which have the source of the sweep without its beams and moments.
+void AccelerationInBlocks::SpreadSource()
+{
+  std::vector<float> source;
+  this->The.others.Together([&] { source = this->The.source.Read(); });
+  this->Block.Spread(source, this->The.layout.channels, this->Source);
+}
+
 /// At the surfaces of thick voxels, where others may have those beside them.
 void AccelerationInBlocks::ShapeSource()
 {
   const VolumeLayout& own = this->The.layout;
-  std::vector<float> source;
-  this->The.others.Together([&] { source = this->The.source.Read(); });
-  this->Block.Spread(source, own.channels, this->Source);
+  this->SpreadSource();
   this->The.others.Together([&] {
     for (int c = 0; c < own.channels; ++c)
     {
@@ -290,7 +296,7 @@ void AccelerationInBlocks::ShapeSource()
         this->Systems[c]->ShapeSource();
       }
     }
-    source = this->Block.TakeOwn(this->Source, own.channels);
+    const std::vector<float> source = this->Block.TakeOwn(this->Source, own.channels);
     this->The.source.Write(source.data(), own.Values()); // the first moment
   });
 }
@@ -314,21 +320,20 @@ void AccelerationInBlocks::Sweep(int iteration, const Monitor& monitor)
     this->ScatterFound();
     this->ShapeSource();
   }
-  this->The.path.Fill(0.0f);
-  this->OwnCurrents.Fill(0.0f);
+  else
+  {
+    this->SpreadSource();
+  }
+  this->The.others.Together([&] {
+    this->The.path.Fill(0.0f);
+    this->OwnCurrents.Fill(0.0f);
+  });
   const bool shines = iteration > 0 || this->The.shines;
   const SweepBoundary boundary = this->The.boundary.Shines() ? this->The.boundary.Boundary() : SweepBoundary();
   this->Swept->Forget();
   this->Tally = this->Swept->Apply(shines ? &this->The.source : nullptr, boundary, monitor);
-  std::vector<float> source, currents;
-  this->The.others.Together([&] {
-    source = this->The.source.Read();
-    currents = this->OwnCurrents.Read();
-  });
-  if (iteration == 0)
-  {
-    this->Block.Spread(source, own.channels, this->Source);
-  }
+  std::vector<float> currents;
+  this->The.others.Together([&] { currents = this->OwnCurrents.Read(); });
   if (this->Faces)
   {
     this->Faces->TakeSwept();

@@ -86,6 +86,7 @@ private:
   std::size_t BeamValues() const;
   std::vector<float> FluxOf(const Buffer<float>& moments) const;
   void MakeSystems();
+  void SpreadSource();
   void ShapeSource();
   void Sweep(int iteration, const Monitor& monitor);
   void PutNextFlux();

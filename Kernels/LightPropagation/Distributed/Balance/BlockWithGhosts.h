@@ -24,10 +24,8 @@ public:
     int channels, bool sharedExtinction);
 
   bool Has() const { return this->OfBlock.grid.VoxelCount() > 0; } ///< voxels
-  const VoxelBox& Held() const
-  {
-    return this->Box;
-  } ///< in voxels of the whole grid, round periodic axes beyond its ends
+  /// In voxels of the whole grid, round periodic axes beyond its ends.
+  const VoxelBox& Held() const { return this->Box; }
   /// Periodic axes that the block has from end to end: only there nothing of others is needed, and arrays with ghosts
   /// are of a grid that is periodic.
   const std::array<bool, 3>& Periodic() const { return this->Alone; }
