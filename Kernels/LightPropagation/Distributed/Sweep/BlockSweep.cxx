@@ -1,14 +1,9 @@
 #include "LightPropagation/Distributed/Sweep/BlockSweep.h"
 
-#include "Device/Defines.h"
 #include "LightPropagation/Distributed/Sweep/BlockSweepByCells.h"
-#include "LightPropagation/Sweep/SweepDefines.h"
 #include "Medium/BoxFaces.h"
-#include "TyndallKernelSources.h"
 
 #include <algorithm>
-#include <string>
-#include <utility>
 
 namespace tyndall
 {
@@ -34,38 +29,20 @@ SweepPlan PlanOf(
 
 BlockSweep::BlockSweep(Device& device, const BlockPartition& partition, int rank, const ParallelBundles& rays,
   const std::array<bool, 3>& periodic, const SweepVolume& volume, BlockWorkspace& workspace)
-  : TheDevice(device)
-  , Bundles(rays)
+  : Bundles(rays)
   , Periodic(periodic)
   , Whole(partition.whole)
   , Block(partition.blocks[rank])
-  , Workspace(workspace)
   , Plan(PlanOf(device, partition, rank, rays, volume))
-  , SideFloats(static_cast<std::size_t>(this->Plan.plane.sizeU) + this->Plan.plane.sizeV + 1)
+  , Rays{ this->Plan, rays.way, periodic[rays.axis] }
+  , SideFloats(this->Rays.SideFloats())
   , RayCount(this->Plan.radianceEachWay)
 {
-  if (periodic[rays.axis])
+  if (this->Rays.around)
   {
     this->Plan.LetRaysGoOn();
   }
-  const SweepPlan& plan = this->Plan;
-  workspace.sweep.Reserve(device, plan.mapsEachWay, plan.units.size() * plan.ScratchFloats());
-  const std::size_t sides = this->RayCount * plan.Planes() * this->SideFloats;
-  if (workspace.sidesIn.Size() < sides)
-  {
-    workspace.sidesIn = Buffer<float>(device, sides, "the rays that come in from other blocks");
-    workspace.sidesOut = Buffer<float>(device, sides, "the rays that go out to other blocks");
-  }
-  this->Outside = Buffer<float>(device, plan.outsideEachWay, "the light that comes in sideways");
-  this->Radiance = Buffer<float>(device, 2 * plan.radianceEachWay, "the light that comes in sideways");
-  this->Sideways =
-    Buffer<float>(device, plan.units.size() * plan.Planes() * 4 * plan.channels, "the power that leaves sideways");
-  this->Coefficients = Buffer<float>(
-    device, plan.coefficients.empty() ? std::vector<float>{ 0.0f } : plan.coefficients, "the angular functions");
-  this->BundlesOnDevice = Buffer<BundleInfo>(device, plan.bundleRows, "the bundles of rays");
-  this->Units = Buffer<UnitInfo>(device, plan.units, "the units of work");
-  this->Schedule = Buffer<cl_int2>(device, plan.schedule, "the schedule");
-  this->FunctionPlaces = Buffer<cl_int>(device, this->Plan.FunctionPlaces(), "the angular functions");
+  this->Carrier = MakeBlockCrossing(device, this->Rays, volume, workspace);
   this->LayPattern();
 }
 
@@ -98,9 +75,7 @@ void BlockSweep::LayPattern()
     }
     this->Moves.push_back(moves);
   }
-  this->CrossingsOnDevice =
-    Buffer<CrossingInfo>(this->TheDevice, plan.Crossings(this->LapPlanes, plan.CrossingPlanes()), "the ray pattern");
-  this->OwnLight = Buffer<OwnLightInfo>(this->TheDevice, plan.OwnLight(this->LapPlanes), "the ray pattern");
+  this->Carrier->LayPattern(this->LapPlanes);
 }
 
 int BlockSweep::DirectionOf(const Member& member) const
@@ -154,15 +129,14 @@ RaysAtFaces BlockSweep::FromOutside(const SweepBoundary& boundary, const LightBy
 {
   const SweepPlan& plan = this->Plan;
   RaysAtFaces rays;
-  rays.maps.assign(plan.mapsEachWay, 0.0f);
-  rays.sides.assign(this->RayCount * plan.Planes() * this->SideFloats, 0.0f);
+  rays.maps.assign(this->Carrier->MapFloats(), 0.0f);
+  rays.sides.assign(this->Rays.Sides(), 0.0f);
   const bool beginHere = this->IsOuter(plan.axes.axis, true);
   this->ForRaysFrom(boundary, [&](const Light& light, const BundleInfo& bundle, std::size_t slot, int c) {
     this->FillSides(light, bundle.border + slot, c, rays);
     for (int v = 0; beginHere && v < plan.plane.sizeV; ++v)
     {
-      float* row = rays.maps.data() + bundle.map + plan.vector +
-        (static_cast<std::size_t>(v) * bundle.members * plan.channels + slot) * plan.row;
+      float* row = rays.maps.data() + this->Carrier->RowOfMap(bundle, slot, v);
       std::fill(row, row + plan.plane.sizeU, static_cast<float>(light.along[c]));
     }
   });
@@ -215,13 +189,9 @@ std::array<Rgb, 6> BlockSweep::PowerIn(const SweepBoundary& boundary) const
 RaysAtFaces BlockSweep::Cross(const SweepVolume& volume, RaysAtFaces in, const SweepBoundary& boundary,
   const LightByCells& cells, SweepTally& tally, const Monitor& monitor)
 {
-  this->WriteBeyond(boundary);
-  this->Workspace.sweep.maps.Write(in.maps.data(), in.maps.size());
-  this->Workspace.sidesIn.Write(in.sides.data(), in.sides.size());
-  this->Launch(volume, monitor);
-  this->Workspace.sweep.maps.Read(in.maps.data(), in.maps.size());
-  this->Workspace.sidesOut.Read(in.sides.data(), in.sides.size());
-  this->CountLeft(in, tally);
+  const std::vector<float> aside =
+    this->Carrier->Cross(volume, this->LightBeyond(boundary), this->OuterSides(), in, monitor);
+  this->CountLeft(aside, in, tally);
   if (cells.in || cells.left)
   {
     ByCells(*this, cells).Leave(in, boundary, tally);
@@ -229,87 +199,39 @@ RaysAtFaces BlockSweep::Cross(const SweepVolume& volume, RaysAtFaces in, const S
   return in;
 }
 
-/// Light from beyond the grid, for rays that come in at one of its edges and leave at another without crossing a voxel.
-void BlockSweep::WriteBeyond(const SweepBoundary& boundary)
+std::vector<cl_float4> BlockSweep::LightBeyond(const SweepBoundary& boundary) const
 {
-  const SweepPlan& plan = this->Plan;
-  std::vector<float> outside(plan.outsideEachWay, 0.0f), radiance(2 * plan.radianceEachWay, 0.0f);
+  std::vector<cl_float4> beyond(this->RayCount, cl_float4{});
   this->ForRaysFrom(boundary, [&](const Light& light, const BundleInfo& bundle, std::size_t slot, int c) {
-    float* row = outside.data() + bundle.outside + slot * plan.row + plan.vector;
-    std::fill(row, row + plan.plane.sizeU, static_cast<float>(light.v[c]));
-    for (int way = 0; way < 2; ++way)
-    {
-      radiance[way * plan.radianceEachWay + bundle.border + slot] = static_cast<float>(light.u[c]);
-    }
+    cl_float4& ofRay = beyond[bundle.border + slot];
+    ofRay.s[0] = static_cast<float>(light.u[c]);
+    ofRay.s[1] = static_cast<float>(light.v[c]);
   });
-  this->Outside.Write(outside.data());
-  this->Radiance.Write(radiance.data());
+  return beyond;
 }
 
-cl::Kernel BlockSweep::Kernel()
+/// Of -u, +u, -v, +v those where rays leave the whole grid, as BlockCrossing takes them.
+int BlockSweep::OuterSides() const
 {
-  const SweepPlan& plan = this->Plan;
-  const std::string options = DefinesOf(plan) + Define("SIDES", 1) + Define("STREAMED", 0) +
-    Define("NET_FLUX", plan.netFlux) + Define("FACE_OUT", 0) + Define("FACE_SPREAD", 0) + Define("FACE_IN", 0) +
-    Define("PERIODIC_U", 0) + Define("PERIODIC_V", 0);
-  return this->TheDevice.Kernel("sweep", kernel_source::Sweep, options);
-}
-
-void BlockSweep::Launch(const SweepVolume& volume, const Monitor& monitor)
-{
-  const SweepPlan& plan = this->Plan;
-  const Buffer<float>& path = *volume.deposit.path; // stands for what the kernel does not touch
-  const Buffer<float>& flux = volume.deposit.flux ? *volume.deposit.flux : path;
-  const Buffer<float>& currents = volume.deposit.partialCurrents ? *volume.deposit.partialCurrents : path;
-  const Buffer<float>& source = volume.source ? *volume.source : path;
-  const Buffer<float>& lost = this->Periodic[plan.axes.axis] ? this->Workspace.sweep.lost : path;
-  const Buffer<float>& octants = volume.octantSource ? *volume.octantSource : path;
-  SweepInfo info = {};
-  info.sigmaFirst = volume.sigma_t_first;
-  info.first = volume.first;
-  info.stride = volume.stride;
-  info.radianceEachWay = static_cast<uint>(plan.radianceEachWay); // the other buffers hold one way alone
-  info.coefficientsEachWay = static_cast<uint>(plan.coefficientsEachWay);
-  info.bundles = static_cast<int>(plan.bundles.size());
-  info.patternPlanes = plan.PatternPlanes();
-  info.axis = plan.axes.axis;
-  info.shines = volume.source != nullptr;
-  info.roundAxis = this->Periodic[plan.axes.axis];
-  info.planes = plan.plane;
-  info.moments = plan.moments;
-  info.packedMoments = plan.momentRow;
-  info.sizeY = this->Block.size[1];
-  info.firstChannel = volume.firstChannel;
-  cl_int outer = 0;
+  int outer = 0;
   for (int side = 0; side < 4; ++side)
   {
-    const int axis = side < 2 ? plan.axes.u : plan.axes.v;
+    const int axis = side < 2 ? this->Plan.axes.u : this->Plan.axes.v;
     const bool exit = (side % 2 == 1) == (this->Bundles.signs[axis] > 0);
     outer |= exit && this->IsOuter(axis, false) ? 1 << side : 0;
   }
-  cl::Kernel kernel = this->Kernel();
-  for (int launch = 0; launch < plan.launches; ++launch)
-  {
-    info.launch = launch;
-    With(kernel, info, *volume.sigma_t, source, path, lost, flux, currents, this->Workspace.sweep.maps, this->Outside,
-      this->Radiance, this->Workspace.sweep.scratch, this->Units, this->BundlesOnDevice, this->Coefficients,
-      this->CrossingsOnDevice, this->OwnLight, this->Schedule, this->Sideways, path, path, octants,
-      this->FunctionPlaces, this->Workspace.sidesIn, this->Workspace.sidesOut, outer);
-    this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(plan.units.size()), cl::NDRange(1));
-    this->TheDevice.Queued(plan.secondsPerLaunch);
-    Report(monitor, (launch + 1.0) / plan.launches);
-  }
+  return outer;
 }
 
-void BlockSweep::CountLeft(const RaysAtFaces& out, SweepTally& tally) const
+/// @param aside  W that left sideways, see BlockCrossing::Cross
+void BlockSweep::CountLeft(const std::vector<float>& aside, const RaysAtFaces& out, SweepTally& tally) const
 {
   const SweepPlan& plan = this->Plan;
   const PlaneAxes& axes = plan.axes;
   const std::array<int, 4> faces = { 2 * axes.u, 2 * axes.u + 1, 2 * axes.v, 2 * axes.v + 1 };
-  const std::vector<float> left = this->Sideways.Read();
-  for (std::size_t i = 0; i < left.size(); ++i)
+  for (std::size_t i = 0; i < aside.size(); ++i)
   {
-    tally.out[faces[i / plan.channels % 4]][i % plan.channels] += left[i];
+    tally.out[faces[i / plan.channels % 4]][i % plan.channels] += aside[i];
   }
   if (!this->IsAtEnd(axes.axis, false))
   {
@@ -318,9 +240,10 @@ void BlockSweep::CountLeft(const RaysAtFaces& out, SweepTally& tally) const
   Rgb& ahead = this->Periodic[axes.axis] ? tally.onTheWay : tally.out[2 * axes.axis + 1 - this->Bundles.way];
   for (const BundleInfo& bundle : plan.bundleRows)
   {
-    for (int row = 0; row < plan.plane.sizeV * bundle.members * plan.channels; ++row)
+    const int slots = bundle.members * plan.channels;
+    for (int row = 0; row < plan.plane.sizeV * slots; ++row)
     {
-      const float* rays = out.maps.data() + bundle.map + static_cast<std::size_t>(row) * plan.row + plan.vector;
+      const float* rays = out.maps.data() + this->Carrier->RowOfMap(bundle, row % slots, row / slots);
       double& sum = ahead[row % plan.channels];
       for (int u = 0; u < plan.plane.sizeU; ++u)
       {
@@ -350,7 +273,7 @@ void BlockSweep::ForEachPlace(const BlockContact& contact, bool out, const Visit
       {
         for (int slot = 0; slot < slots; ++slot)
         {
-          const std::size_t row = bundle.map + (static_cast<std::size_t>(v) * slots + slot) * plan.row + plan.vector;
+          const std::size_t row = this->Carrier->RowOfMap(bundle, slot, v);
           for (int u = firstU; u < endU; ++u)
           {
             visit(false, row + u);
@@ -428,6 +351,6 @@ std::size_t BlockSweep::Values(const std::vector<BlockContact>& contacts) const
 
 std::size_t BlockSweep::Bytes() const
 {
-  return 2 * (this->Plan.mapsEachWay + this->RayCount * this->Plan.Planes() * this->SideFloats) * sizeof(float);
+  return 2 * (this->Carrier->MapFloats() + this->Rays.Sides()) * sizeof(float);
 }
 }

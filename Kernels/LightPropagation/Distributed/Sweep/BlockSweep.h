@@ -2,38 +2,25 @@
 
 #include "Distribution/BlockPartition.h"
 #include "LightPropagation/Distributed/Sweep/BlockContact.h"
+#include "LightPropagation/Distributed/Sweep/BlockCrossing.h"
 #include "LightPropagation/Distributed/Sweep/ParallelBundles.h"
 #include "LightPropagation/Sweep/SweepPlan.h"
 #include "LightPropagation/Sweep/SweepTally.h"
 #include "LightPropagation/Sweep/SweepVolume.h"
-#include "LightPropagation/Sweep/SweepWorkspace.h"
 
 #include "Device/Monitor.h"
 
+#include <memory>
 #include <vector>
 
 namespace tyndall
 {
-/// Rays at the faces of a block, W: those that come in or those that go out.
-struct RaysAtFaces
-{
-  std::vector<float> maps;  ///< at the end of the axis, as SweepPlan lays maps out, one way
-  std::vector<float> sides; ///< [plane in the order of the march][ray][cell], as SweepSides.cl has them
-};
-
 /// Light by cells of the faces of the whole grid, of a sweep's channels, [channel][cell] (BoxFaces.h).
 struct LightByCells
 {
   const float* in = nullptr; ///< W / (length^2 sr) that comes in, the same from all directions; null: nothing
   double* left = nullptr;    ///< W that leaves, added to; null: not wanted
   bool spreads = false;      ///< Deposit::spreadsAside
-};
-
-/// What sweeps of one rank's blocks share: contents are undefined between them.
-struct BlockWorkspace
-{
-  SweepWorkspace sweep;
-  Buffer<float> sidesIn, sidesOut;
 };
 
 /// Sweeps one block of a grid along one set of parallel bundles: the rays that come in from other blocks and from
@@ -47,6 +34,8 @@ public:
   /// @param workspace  must stay
   BlockSweep(Device& device, const BlockPartition& partition, int rank, const ParallelBundles& rays,
     const std::array<bool, 3>& periodic, const SweepVolume& volume, BlockWorkspace& workspace);
+  BlockSweep(const BlockSweep&) = delete;
+  BlockSweep& operator=(const BlockSweep&) = delete;
 
   /// Round a periodic axis: rays have gone through so many planes of the whole grid when they come in at its end.
   void BeginLap(int planes);
@@ -85,33 +74,24 @@ private:
   template <class Act>
   void ForRaysFrom(const SweepBoundary& boundary, const Act& act) const;
   void FillSides(const Light& light, std::size_t ray, int channel, RaysAtFaces& rays) const;
-  void WriteBeyond(const SweepBoundary& boundary);
-  void Launch(const SweepVolume& volume, const Monitor& monitor);
-  cl::Kernel Kernel();
-  void CountLeft(const RaysAtFaces& out, SweepTally& tally) const;
+  std::vector<cl_float4> LightBeyond(const SweepBoundary& boundary) const;
+  int OuterSides() const;
+  void CountLeft(const std::vector<float>& aside, const RaysAtFaces& out, SweepTally& tally) const;
   class ByCells;
   template <class Visit>
   void ForEachPlace(const BlockContact& contact, bool out, const Visit& visit) const;
 
-  Device& TheDevice;
   ParallelBundles Bundles;
   std::array<bool, 3> Periodic;
   Grid Whole;
   VoxelBox Block;
-  BlockWorkspace& Workspace;
   SweepPlan Plan;
+  RaysOfBlock Rays;
+  std::unique_ptr<BlockCrossing> Carrier;
   std::vector<CrossingInfo> Crossings;      ///< [plane of the block][bundle]
   std::vector<std::array<double, 2>> Moves; ///< of a bundle along its own u and v through the whole grid, voxels
   int LapPlanes = 0;                        ///< that rays have gone through already
   std::size_t SideFloats = 0;               ///< of one ray and plane
   std::size_t RayCount = 0;                 ///< members of all bundles, times channels
-
-  Buffer<float> Outside, Radiance, Sideways, Coefficients;
-  Buffer<BundleInfo> BundlesOnDevice;
-  Buffer<UnitInfo> Units;
-  Buffer<cl_int2> Schedule;
-  Buffer<CrossingInfo> CrossingsOnDevice;
-  Buffer<OwnLightInfo> OwnLight;
-  Buffer<cl_int> FunctionPlaces;
 };
 }

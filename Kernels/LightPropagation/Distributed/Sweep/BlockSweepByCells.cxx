@@ -62,7 +62,7 @@ void BlockSweep::ByCells::ForEnds(const Act& act) const
     {
       for (int slot = 0; slot < slots; ++slot)
       {
-        const std::size_t row = bundle.map + (static_cast<std::size_t>(v) * slots + slot) * plan.row + plan.vector;
+        const std::size_t row = this->Sweep.Carrier->RowOfMap(bundle, slot, v);
         for (int u = 0; u < plan.plane.sizeU; ++u)
         {
           act(bundle, slot % plan.channels, row + u, u, v);

@@ -7,6 +7,41 @@
 
 namespace tyndall
 {
+SweepLane LaneOf(const SweepPlan& plan, int way)
+{
+  SweepLane lane = {};
+  lane.planes = plan.plane;
+  lane.axis = plan.axes.axis;
+  lane.backward = way;
+  lane.patternPlanes = plan.PatternPlanes();
+  lane.periodicU = plan.periodic[plan.axes.u];
+  lane.periodicV = plan.periodic[plan.axes.v];
+  lane.bundles = static_cast<int>(plan.bundles.size());
+  lane.rays = static_cast<int>(plan.radianceEachWay) / plan.channels;
+  lane.positions = std::max(plan.plane.sizeU, plan.plane.sizeV);
+  return lane;
+}
+
+std::vector<float> FunctionsAlong(const SweepPlan& plan, int way, const AngularValues& angular)
+{
+  std::vector<float> functions;
+  for (const Bundle& bundle : plan.bundles)
+  {
+    for (const Member& member : bundle.members)
+    {
+      const int direction = way == 0 ? member.direction : member.opposite;
+      for (int k = 0; k < angular.Functions() + angular.Beams(); ++k)
+      {
+        const double value = direction < 0 ? 0.0
+          : k < angular.Functions()        ? angular.functions[direction][k]
+                                           : angular.beams[direction][k - angular.Functions()];
+        functions.push_back(static_cast<float>(value));
+      }
+    }
+  }
+  return functions;
+}
+
 GpuLanes::GpuLanes(const Device& device, const VolumeLayout& layout, const SweepRequest& request,
   const std::array<bool, 3>& periodic, bool atOnce)
   : channels(layout.Groups().front().count)
@@ -51,7 +86,8 @@ void GpuLanes::LayPlan(const SweepPlan& plan, const AngularValues* angular)
       this->LayLane(plan, way, firstBundle, firstCrossing);
       if (angular)
       {
-        this->LayFunctions(plan, way, *angular);
+        const std::vector<float> along = FunctionsAlong(plan, way, *angular);
+        this->functions.insert(this->functions.end(), along.begin(), along.end());
       }
     }
   }
@@ -60,20 +96,11 @@ void GpuLanes::LayPlan(const SweepPlan& plan, const AngularValues* angular)
 /// One more lane, but for where its maps and deposits are.
 void GpuLanes::LayLane(const SweepPlan& plan, int way, int firstBundle, int firstCrossing)
 {
-  SweepLane lane = {};
-  lane.planes = plan.plane;
-  lane.axis = plan.axes.axis;
-  lane.backward = way;
-  lane.patternPlanes = plan.PatternPlanes();
-  lane.periodicU = plan.periodic[plan.axes.u];
-  lane.periodicV = plan.periodic[plan.axes.v];
+  SweepLane lane = LaneOf(plan, way);
   lane.firstBundle = firstBundle;
-  lane.bundles = static_cast<int>(plan.bundles.size());
   lane.crossings = firstCrossing + plan.PlanesBefore(way) * lane.bundles;
   lane.firstRay = this->rays;
-  lane.rays = static_cast<int>(plan.radianceEachWay) / this->channels;
   lane.escaped = this->escaped;
-  lane.positions = std::max(plan.plane.sizeU, plan.plane.sizeV);
   this->lanes.push_back(lane);
   this->PlanOfLane.push_back(&plan - this->plans.data());
   const int number = static_cast<int>(this->lanes.size()) - 1;
@@ -83,24 +110,6 @@ void GpuLanes::LayLane(const SweepPlan& plan, int way, int firstBundle, int firs
   this->endRows += this->EndRows(number);
   this->sides.push_back(this->sideRows);
   this->sideRows += this->SideRows(number);
-}
-
-void GpuLanes::LayFunctions(const SweepPlan& plan, int way, const AngularValues& angular)
-{
-  for (const Bundle& bundle : plan.bundles)
-  {
-    for (const Member& member : bundle.members)
-    {
-      const int direction = way == 0 ? member.direction : member.opposite;
-      for (int k = 0; k < angular.Functions() + angular.Beams(); ++k)
-      {
-        const double value = direction < 0 ? 0.0
-          : k < angular.Functions()        ? angular.functions[direction][k]
-                                           : angular.beams[direction][k - angular.Functions()];
-        this->functions.push_back(static_cast<float>(value));
-      }
-    }
-  }
 }
 
 void GpuLanes::LayBatches(bool atOnce)

@@ -12,6 +12,13 @@
 
 namespace tyndall
 {
+/// The rays of a plan that go one way, but for where what they need is in buffers.
+/// @param way  0 forward along the axis, 1 backward
+SweepLane LaneOf(const SweepPlan& plan, int way);
+
+/// Their angular functions, then beams, [ray][function].
+std::vector<float> FunctionsAlong(const SweepPlan& plan, int way, const AngularValues& angular);
+
 /// Lanes that cross planes in the same launches: of open axes, or the ways of one periodic axis.
 struct LaneBatch
 {
@@ -57,7 +64,6 @@ struct GpuLanes
 private:
   void LayPlan(const SweepPlan& plan, const AngularValues* angular);
   void LayLane(const SweepPlan& plan, int way, int firstBundle, int firstCrossing);
-  void LayFunctions(const SweepPlan& plan, int way, const AngularValues& angular);
   void LayBatches(bool atOnce);
   void Place(LaneBatch& batch, std::size_t stride);
 

@@ -8,6 +8,7 @@
 //   ADDS    1: lanes follow one another and add to what is there; 0: each writes arrays of its own
 //   AROUND  1: the axis is periodic, and rays come to a voxel again and again: their lane adds to its own arrays
 //   DEGREE  of the angular moments in which light is gathered, and shines; 0: fluence alone
+//   SIDES   see VoxelSides.cl
 //   BEAMS   sources with an angular distribution of their own; where DEGREE is not 0
 
 #define MOMENTS ((DEGREE + 1) * (DEGREE + 1))
@@ -93,6 +94,11 @@ static void cross_bundles(const plane_state* state, voxel_sums* sums, const __gl
       member.rays = before + ray * plane * CHANNELS;
       member.entering = entering + ray * CHANNELS;
       member.directed = directed + ray * plane * CHANNELS;
+#if SIDES
+      const ulong sides_before = (ulong)ray * CHANNELS * SIDE_FLOATS(state);
+      member.sidesIn = state->sidesIn + sides_before;
+      member.sidesOut = state->sidesOut + sides_before;
+#endif
       const float3 along = direction_of(bundle, m, lane->backward);
       const colours rays = cross_voxel(state, sums, &member, crossing->stages, effects, along, u, v);
 #if DEGREE
@@ -115,12 +121,13 @@ static void put_moments(const plane_state* state, const PlaneLaunch* places, con
   {
 #if ADDS
     const MomentPlaces* of = &places->moments;
-    path[k == 0 ? places->putFirst + c * state->stride + voxel
-                : MOMENT_PLACE(*of, k, places->firstChannel + c, voxel / of->sizeX, voxel % of->sizeX)] += moments[k];
+    const ulong place = k == 0
+      ? places->putFirst + c * state->stride + voxel
+      : MOMENT_PLACE(*of, k, places->firstChannel + c, voxel / of->sizeX, voxel % of->sizeX);
 #else
     const ulong place = state->lane->path + ((ulong)k * CHANNELS + c) * state->stride + voxel;
-    put_path(path + place, lost + place, moments[k]);
 #endif
+    put_path(path + place, lost + place, moments[k]);
   }
 }
 #endif
@@ -194,11 +201,13 @@ static void put_escaped(
 // directed  as before: what shines along each ray, W / (length^3 sr); where DEGREE, as is
 // functions [ray][function, then beam] along them
 // escaped   W, see SweepLane
+// sides_in, sides_out  [plane from where rays start], see VoxelSides.cl; outer_sides: bit i, of light through its side
+//           i, that it leaves the whole grid; where SIDES
 __kernel void cross_plane(PlaneLaunch launch, const __global SweepLane* lanes, const __global float* sigma,
   const __global float* source, const __global float* octants, __global float* path, __global float* lost,
   __global float* flux, __global float* currents, const __global float* before, __global float* after,
   const __global float4* entering, const __global BundleInfo* bundles, const __global CrossingInfo* crossings,
-  const __global float* directed, const __global float* functions, __global float* escaped)
+  const __global float* directed, const __global float* functions, __global float* escaped SIDES_ARGUMENTS)
 {
   const int u = get_global_id(0), v = get_global_id(1);
   const __global SweepLane* lane = lanes + launch.firstLane + get_global_id(2);
@@ -223,13 +232,19 @@ __kernel void cross_plane(PlaneLaunch launch, const __global SweepLane* lanes, c
   {
     state.meanLength[i] = lane->planes.meanLength[i];
   }
+#if SIDES
+  const ulong sides_of_plane = (ulong)launch.plane * lane->rays * CHANNELS * SIDE_FLOATS(&state);
+  state.sidesIn = sides_in + sides_of_plane;
+  state.sidesOut = sides_out + sides_of_plane;
+  state.outerSides = outer_sides;
+#endif
   voxel_sums sums = { { 0.0f } };
   cross_bundles(&state, &sums, bundles,
     crossings + (launch.ofRound ? 0 : lane->crossings) + launch.plane * lane->bundles, before + lane->map,
     after + lane->map, entering + lane->firstRay * CHANNELS, directed + lane->map,
     functions + lane->firstRay * (MOMENTS + BEAMS), u, v);
-  put_sums(&state, &launch, &sums, first + voxel_of(&state, u, v), u, v, path + (DEGREE ? 0 : launch.putFirst), lost,
-    flux + 3 * launch.putFirst, currents + 6 * launch.putFirst);
+  put_sums(&state, &launch, &sums, first + voxel_of(&state, u, v), u, v, path + (DEGREE ? 0 : launch.putFirst),
+    lost + (DEGREE ? 0 : launch.putFirst), flux + 3 * launch.putFirst, currents + 6 * launch.putFirst);
   put_escaped(&state, &sums, launch.plane, u, v, escaped);
 }
 

@@ -4,6 +4,7 @@
 #include "Device/Sizes.h"
 #include "LightPropagation/Sweep/OnGpu/GpuLanes.h"
 #include "LightPropagation/Sweep/OnGpu/LanePowers.h"
+#include "LightPropagation/Sweep/OnGpu/PlaneGroups.h"
 #include "LightPropagation/Sweep/SweepBorder.h"
 #include "LightPropagation/Sweep/SweepPlan.h"
 #include "LightPropagation/Sweep/SweepVolume.h"
@@ -20,9 +21,7 @@ namespace tyndall
 {
 namespace
 {
-constexpr std::size_t GroupU = 32, GroupV = 4; ///< work-items along u, whose voxels mostly lie together, and along v
-constexpr double SecondsPerRay = 1e-10;        ///< through a voxel: only says how often to wait
-constexpr int MostAtOnce = 4;                  ///< part of the memory that ways at once may take: a quarter
+constexpr int MostAtOnce = 4; ///< part of the memory that ways at once may take: a quarter
 
 /// All ways at once, where their arrays have room beside each other. Of a part of the grid they go one by one: what is
 /// not swept would have to be cleared.

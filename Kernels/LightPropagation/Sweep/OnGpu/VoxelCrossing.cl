@@ -3,6 +3,7 @@
 
 #pragma once
 #include "LightPropagation/Sweep/OnGpu/SweepOnGpuShared.h"
+#include "LightPropagation/Sweep/OnGpu/VoxelSides.cl"
 #include "Numerics/Numerics.cl"
 
 // What a segment does to rays, see SweepCrossing.cl; `own`: path of the light that a source of 1 adds in its own voxel.
@@ -27,6 +28,11 @@ typedef struct
   int sizeU, sizeV;
   float meanLength[MeanLengthTerms];
   float thin, vacuum;
+#if SIDES
+  const __global float* sidesIn; // of the plane, [ray][channel][SIDE_FLOATS]
+  __global float* sidesOut;
+  int outerSides;
+#endif
 } plane_state;
 
 // A bundle in the plane, and one of its members.
@@ -35,6 +41,10 @@ typedef struct
   const __global float* rays;      // of the member, [channel][v][u]
   const __global float4* entering; // [channel] through u's, v's face
   const __global float* directed;  // where DEGREE, as rays: what shines along it, W / (length^3 sr)
+#if SIDES
+  const __global float* sidesIn; // of the member, [channel][SIDE_FLOATS]
+  __global float* sidesOut;
+#endif
   float power;
   float length[3], part[3];
   int du[3], dv[3];
@@ -134,13 +144,40 @@ static colours coming_in(const plane_state* state, const member_state* member, i
   colours rays;
   for (int c = 0; c < CHANNELS; ++c)
   {
+#if SIDES
+    const int from = beyondU && beyondV ? state->sizeU + state->sizeV : beyondU ? state->sizeU + v : u;
+    rays.power[c] = member->sidesIn[c * SIDE_FLOATS(state) + from];
+#else
     const float4 entering = member->entering[c];
     rays.power[c] = beyondU && beyondV ? (member->bothAtOnce ? 0.5f * (entering.x + entering.y) : entering.x)
       : beyondU                        ? entering.x
                                        : entering.y;
+#endif
   }
   return rays;
 }
+
+#if SIDES
+// What voxel (u, v) holds of rays that go out of the block by the move before segment s.
+static void give_sides(const plane_state* state, const member_state* member, int s, int u, int v, colours rays)
+{
+  const int du = member->du[s], dv = member->dv[s];
+  const bool acrossU = (du < 0 && u == 0) || (du > 0 && u == state->sizeU - 1);
+  const bool acrossV = (dv < 0 && v == 0) || (dv > 0 && v == state->sizeV - 1);
+  for (int c = 0; c < CHANNELS; ++c)
+  {
+    __global float* side = member->sidesOut + c * SIDE_FLOATS(state);
+    if (acrossU)
+    {
+      side[state->sizeU + v] = rays.power[c];
+    }
+    if (acrossV)
+    {
+      side[u] = rays.power[c];
+    }
+  }
+}
+#endif
 
 // Round the periodic axes, to a voxel of the plane or still outside it.
 static int2 go_round(const plane_state* state, int u, int v)
@@ -223,8 +260,10 @@ static void count_escaped(
   const plane_state* state, voxel_sums* sums, const member_state* member, int s, int u, int v, colours rays)
 {
   const int du = member->du[s], dv = member->dv[s];
-  const bool throughU = !state->lane->periodicU && (du > 0 ? u == state->sizeU - 1 : du < 0 && u == 0);
-  const bool throughV = !state->lane->periodicV && (dv > 0 ? v == state->sizeV - 1 : dv < 0 && v == 0);
+  const bool throughU = !state->lane->periodicU && (du > 0 ? u == state->sizeU - 1 : du < 0 && u == 0) &&
+    LEAVES_GRID(state, du > 0 ? 1 : 0);
+  const bool throughV = !state->lane->periodicV && (dv > 0 ? v == state->sizeV - 1 : dv < 0 && v == 0) &&
+    LEAVES_GRID(state, dv > 0 ? 3 : 2);
   const float turned = throughU && throughV ? 0.5f : 0.0f;
   for (int c = 0; c < CHANNELS; ++c)
   {
@@ -307,6 +346,9 @@ static colours cross_voxel(const plane_state* state, voxel_sums* sums, const mem
   rays = behind(state, member, u, v, rays, effects[0]);
   for (int s = 1; s < stages; ++s)
   {
+#if SIDES
+    give_sides(state, member, s, u, v, rays);
+#endif
     count_escaped(state, sums, member, s, u, v, rays);
     const int fromU = u - member->du[s], fromV = v - member->dv[s];
     const colours come =

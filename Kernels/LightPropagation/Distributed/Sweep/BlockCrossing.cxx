@@ -1,0 +1,42 @@
+#include "LightPropagation/Distributed/Sweep/BlockCrossing.h"
+
+#include "LightPropagation/Distributed/Sweep/BlockCrossingOnCpu.h"
+#include "LightPropagation/Distributed/Sweep/BlockCrossingOnGpu.h"
+
+namespace tyndall
+{
+std::size_t RaysOfBlock::SideFloats() const
+{
+  return static_cast<std::size_t>(this->plan.plane.sizeU) + this->plan.plane.sizeV + 1;
+}
+
+std::size_t RaysOfBlock::Sides() const
+{
+  return this->plan.radianceEachWay * this->plan.Planes() * this->SideFloats();
+}
+
+std::unique_ptr<BlockCrossing> MakeBlockCrossing(
+  Device& device, const RaysOfBlock& rays, const SweepVolume& volume, BlockWorkspace& workspace)
+{
+  if (workspace.sidesIn.Size() < rays.Sides())
+  {
+    workspace.sidesIn = Buffer<float>(device, rays.Sides(), "the rays that come in from other blocks");
+    workspace.sidesOut = Buffer<float>(device, rays.Sides(), "the rays that go out to other blocks");
+  }
+  if (device.IsCpu())
+  {
+    return std::make_unique<BlockCrossingOnCpu>(device, rays, volume.grid.size[1], workspace);
+  }
+  return std::make_unique<BlockCrossingOnGpu>(device, rays, workspace);
+}
+
+BlockArrays::BlockArrays(const RaysOfBlock& rays, const SweepVolume& volume, const BlockWorkspace& workspace)
+  : path(*volume.deposit.path)
+  , lost(rays.around ? workspace.sweep.lost : this->path)
+  , flux(volume.deposit.flux ? *volume.deposit.flux : this->path)
+  , currents(volume.deposit.partialCurrents ? *volume.deposit.partialCurrents : this->path)
+  , source(volume.source ? *volume.source : this->path)
+  , octants(volume.octantSource ? *volume.octantSource : this->path)
+{
+}
+}
