@@ -20,7 +20,7 @@ BlockCrossingOnGpu::BlockCrossingOnGpu(Device& device, const RaysOfBlock& rays, 
     if (buffer.Size() < floats)
     {
       buffer = {};
-      buffer = Buffer<float>(device, floats, what);
+      buffer = Buffer<float>(device, floats, what, CL_MEM_READ_WRITE, Residence::Device);
     }
   };
   workspace.sweep.Reserve(device, this->MapFloats(), 0);

@@ -1,5 +1,5 @@
-// A box that is a block of a larger one, for SweepOnGpu.cl: what rays bring in through its sides, and take out. The host
-// gives
+// A box that is a block of a larger one, for SweepOnGpu.cl: what rays bring in through its sides, and take out. The
+// host gives
 //   SIDES  1 where the box is such a block, whose axes are open then; may be left out: 0
 //
 // Of each plane, counted from where rays start, [ray][channel][SIDE_FLOATS]: as SweepSides.cl has it.
