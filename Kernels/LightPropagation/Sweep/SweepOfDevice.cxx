@@ -8,7 +8,7 @@ namespace tyndall
 std::unique_ptr<SweepOperator> SweepOfDevice(Device& device, const VolumeLayout& layout, const Buffer<float>& sigma_t,
   const std::array<bool, 3>& periodic, const SweepRequest& request, SweepWorkspace& workspace)
 {
-  if (!device.IsCpu() && !device.Streams() && SweepOnGpu::Can(request))
+  if (!device.IsCpu() && !device.Streams())
   {
     return std::make_unique<SweepOnGpu>(device, layout, sigma_t, periodic, request);
   }

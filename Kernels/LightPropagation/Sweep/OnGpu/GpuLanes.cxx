@@ -22,6 +22,11 @@ SweepLane LaneOf(const SweepPlan& plan, int way)
   return lane;
 }
 
+std::size_t SideFloats(const SweepLane& lane)
+{
+  return Count(lane.planes.sizeU) + lane.planes.sizeV + 1;
+}
+
 std::vector<float> FunctionsAlong(const SweepPlan& plan, int way, const AngularValues& angular)
 {
   std::vector<float> functions;
@@ -138,6 +143,8 @@ void GpuLanes::Place(LaneBatch& batch, std::size_t stride)
   {
     SweepLane& lane = this->lanes[batch.first + i];
     lane.map = batch.maps;
+    lane.sides = batch.sides;
+    batch.sides += Count(lane.rays) * this->channels * lane.patternPlanes * SideFloats(lane);
     lane.deposit = batch.HasArrays() ? i * this->channels * stride : 0;
     lane.path = this->functionCount * lane.deposit;
     batch.maps += Count(lane.rays) * this->channels * lane.planes.sizeU * lane.planes.sizeV;

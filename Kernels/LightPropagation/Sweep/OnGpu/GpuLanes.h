@@ -16,6 +16,9 @@ namespace tyndall
 /// @param way  0 forward along the axis, 1 backward
 SweepLane LaneOf(const SweepPlan& plan, int way);
 
+/// Of a ray and plane: what is beside it (VoxelSides.cl).
+std::size_t SideFloats(const SweepLane& lane);
+
 /// Their angular functions, then beams, [ray][function].
 std::vector<float> FunctionsAlong(const SweepPlan& plan, int way, const AngularValues& angular);
 
@@ -26,6 +29,7 @@ struct LaneBatch
   bool around = false;      ///< along a periodic axis: rays go round
   std::size_t plan = 0;     ///< of these, where they go around
   std::size_t maps = 0;     ///< floats of its maps
+  std::size_t sides = 0;    ///< and of what is beside its planes, where light comes and goes by cells
 
   /// Whether each lane puts what it finds into arrays of its own, for these to be added up.
   bool HasArrays() const { return this->around || this->count > 1; }

@@ -14,6 +14,7 @@
 #define MOMENTS ((DEGREE + 1) * (DEGREE + 1))
 
 #define REAL_WIDTH 1
+#include "LightPropagation/Sweep/OnGpu/LanePlane.cl"
 #include "LightPropagation/Sweep/OnGpu/VoxelCrossing.cl"
 
 #if ADDS || AROUND
@@ -33,13 +34,6 @@ static void put_path(__global float* path, __global float* lost, float value)
 #else
   PUT(*path, value);
 #endif
-}
-
-// The plane of the grid that a lane crosses as its k-th.
-static int plane_of(const __global SweepLane* lane, int k)
-{
-  const int of_axis = AROUND ? k % lane->planes.sizeP : k;
-  return lane->backward ? lane->planes.sizeP - 1 - of_axis : of_axis;
 }
 
 #if DEGREE
@@ -233,8 +227,8 @@ __kernel void cross_plane(PlaneLaunch launch, const __global SweepLane* lanes, c
   }
 #if SIDES
   const ulong sides_of_plane = (ulong)launch.plane * lane->rays * CHANNELS * SIDE_FLOATS(&state);
-  state.sidesIn = sides_in + sides_of_plane;
-  state.sidesOut = sides_out + sides_of_plane;
+  state.sidesIn = sides_in + lane->sides + sides_of_plane;
+  state.sidesOut = sides_out + lane->sides + sides_of_plane;
   state.outerSides = outer_sides;
 #endif
   voxel_sums sums = { { 0.0f } };

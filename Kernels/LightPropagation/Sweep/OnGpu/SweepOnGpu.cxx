@@ -3,6 +3,7 @@
 #include "Device/Defines.h"
 #include "Device/Sizes.h"
 #include "LightPropagation/Sweep/OnGpu/GpuLanes.h"
+#include "LightPropagation/Sweep/OnGpu/LaneFaces.h"
 #include "LightPropagation/Sweep/OnGpu/LanePowers.h"
 #include "LightPropagation/Sweep/OnGpu/PlaneGroups.h"
 #include "LightPropagation/Sweep/SweepBorder.h"
@@ -13,7 +14,6 @@
 #include <algorithm>
 #include <map>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <utility>
 
@@ -64,6 +64,8 @@ private:
   void MakeBuffers();
   void MakeArrays();
   void ClearArrays(const LaneBatch& batch);
+  bool ShineByCells() const { return this->Faces && this->Faces->Shine(); }
+  LaneFaces::Rays RaysOf(const Crossing& how) const;
   int Beams() const { return this->Angular ? this->Angular->Beams() : 0; }
 
   SweepTally ApplyGroup(const SweepVolume& volume, const SweepBoundary& boundary, const Monitor& monitor);
@@ -100,13 +102,9 @@ private:
   Buffer<cl_float4> Nothing;                      ///< that comes in
   Buffer<float> Path, Lost, Flux, Currents; ///< of a batch's lanes; Lost: by rounding from Path, of lanes that go round
   LanePowers Powers;
+  std::optional<LaneFaces> Faces; ///< where light comes or goes by cells
   std::map<int, std::pair<std::vector<cl_float4>, std::array<Rgb, 6>>> KeptEntering; ///< by group, with power
 };
-
-bool SweepOnGpu::Can(const SweepRequest& request)
-{
-  return !request.faceIn && !request.deposit.faceOut;
-}
 
 SweepOnGpu::Implementation::Implementation(Device& device, const VolumeLayout& layout, const Buffer<float>& sigma_t,
   const std::array<bool, 3>& periodic, const SweepRequest& request, Ways ways)
@@ -121,13 +119,13 @@ SweepOnGpu::Implementation::Implementation(Device& device, const VolumeLayout& l
   , The(ChooseLanes(device, layout, periodic, request, ways))
   , Powers(device, this->The)
 {
-  if (!Can(request))
-  {
-    throw std::logic_error("SweepOnGpu cannot do this sweep");
-  }
   this->To.flux = this->Angular ? nullptr : this->To.flux; // it is among the moments
   this->MakeBuffers();
   this->MakeArrays();
+  if (request.faceIn || request.deposit.faceOut)
+  {
+    this->Faces.emplace(device, this->The, layout.grid, request);
+  }
 }
 
 void SweepOnGpu::Implementation::MakeBuffers()
@@ -208,7 +206,7 @@ SweepTally SweepOnGpu::Implementation::ApplyGroup(
     {
       this->GoRound(batch, volume, tally, ofBatch);
     }
-    else if (lit || volume.source) // else there is nothing to carry
+    else if (lit || volume.source || this->ShineByCells()) // else there is nothing to carry
     {
       this->CrossOnce(batch, volume, tally, ofBatch);
     }
@@ -261,9 +259,18 @@ bool SweepOnGpu::Implementation::Enter(const SweepBoundary& boundary, int group,
 void SweepOnGpu::Implementation::CrossOnce(
   const LaneBatch& batch, const SweepVolume& volume, SweepTally& tally, const Monitor& monitor)
 {
+  const Crossing how = { volume.source != nullptr, &this->Entering };
   this->StartRays(batch);
-  this->Cross(
-    batch, volume, { volume.source != nullptr, &this->Entering }, { &this->Maps[0], &this->Maps[1] }, monitor);
+  if (this->ShineByCells())
+  {
+    this->Faces->EnterStart(batch, this->RaysOf(how), volume.faceFirst, this->Maps[0]);
+  }
+  this->Cross(batch, volume, how, { &this->Maps[0], &this->Maps[1] }, monitor);
+  for (int i = batch.first; this->Faces && i < batch.first + batch.count; ++i)
+  {
+    const Buffer<float>& maps = this->Maps[this->The.lanes[i].planes.sizeP % 2];
+    this->Faces->LeaveEnd(i, this->RaysOf(how), volume.faceFirst, maps);
+  }
   this->Powers.AddUp(
     batch, [this](const SweepLane& lane) -> const Buffer<float>& { return this->Maps[lane.planes.sizeP % 2]; });
   if (batch.HasArrays())
@@ -353,7 +360,7 @@ std::string SweepOnGpu::Implementation::Options(const LaneBatch& batch, bool shi
     Define("NET_FLUX", this->To.flux != nullptr) + Define("CURRENTS", this->To.partialCurrents != nullptr) +
     Define("OCTANT_SOURCE", this->OctantSource && shines) +
     Define("DEGREE", this->Angular ? this->Angular->degree : 0) + Define("BEAMS", this->Beams()) +
-    Define("ADDS", !batch.HasArrays()) + Define("AROUND", batch.around);
+    Define("ADDS", !batch.HasArrays()) + Define("AROUND", batch.around) + Define("SIDES", this->Faces ? 2 : 0);
 }
 
 PlaneLaunch SweepOnGpu::Implementation::LaunchOf(const LaneBatch& batch, const SweepVolume& volume) const
@@ -414,6 +421,11 @@ int SweepOnGpu::Implementation::Cross(const LaneBatch& batch, const SweepVolume&
   }
   PlaneLaunch launch = this->LaunchOf(batch, volume);
   launch.ofRound = how.round != nullptr;
+  if (this->Faces)
+  {
+    this->Faces->EnterSides(batch, this->RaysOf(how), volume.faceFirst);
+    this->Faces->SetSides(kernel);
+  }
   const cl::NDRange all(RoundUp(Count(sizeU), GroupU), RoundUp(Count(sizeV), GroupV), batch.count);
   const cl::NDRange group(GroupU, GroupV, 1);
   const double seconds = SecondsPerRay * sizeU * sizeV * rays * this->The.channels;
@@ -431,7 +443,16 @@ int SweepOnGpu::Implementation::Cross(const LaneBatch& batch, const SweepVolume&
     this->TheDevice.Queued(seconds);
     Report(monitor, (launch.plane + 1.0) / planes);
   }
+  if (this->Faces)
+  {
+    this->Faces->LeaveSides(batch, this->RaysOf(how), volume.faceFirst);
+  }
   return planes;
+}
+
+LaneFaces::Rays SweepOnGpu::Implementation::RaysOf(const Crossing& how) const
+{
+  return { this->Lanes, this->Bundles, how.round ? *how.round : this->Crossings, how.round != nullptr, *how.entering };
 }
 
 void SweepOnGpu::Implementation::AddLanes(const LaneBatch& batch, const SweepVolume& volume)

@@ -19,9 +19,6 @@ namespace tyndall
 class SweepOnGpu : public SweepOperator
 {
 public:
-  /// Whether it can do what is asked for: no light by cells of the faces. SweepInMemory can, on GPUs too.
-  static bool Can(const SweepRequest& request);
-
   /// Along the axes, there and back.
   enum class Ways
   {
@@ -30,7 +27,7 @@ public:
   };
 
   /// @param sigma_t  must stay
-  /// @param request  what Can was true of; no box of a grid with periodic axes
+  /// @param request  no box of a grid with periodic axes
   SweepOnGpu(Device& device, const VolumeLayout& layout, const Buffer<float>& sigma_t,
     const std::array<bool, 3>& periodic, const SweepRequest& request, Ways ways = Ways::Automatic);
   ~SweepOnGpu() override;

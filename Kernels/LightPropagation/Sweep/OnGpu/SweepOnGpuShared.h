@@ -23,7 +23,16 @@ typedef struct
   ulong escaped; ///< where its tally begins, [plane][-u, +u, -v, +v][channel][position along the face]
   int positions; ///< of that
   int rays;
+  ulong sides; ///< floats before its sides, [plane][ray][channel] (VoxelSides.cl), where light comes or goes by cells
 } SweepLane;
+
+/// Where the cells of the box's faces are for a lane (BoxFaces.h), of a channel: those of the faces -u, +u, -v, +v as
+/// FaceInfo has them, and those of the faces where its rays start and end, [v][u].
+typedef struct
+{
+  int first[4], plane[4], along[4];
+  int start, end;
+} LaneFaceInfo;
 
 /// A launch of the kernel `cross_plane`.
 typedef struct

@@ -267,16 +267,21 @@ static void count_escaped(
   const float turned = throughU && throughV ? 0.5f : 0.0f;
   for (int c = 0; c < CHANNELS; ++c)
   {
-    const float4 entering = member->entering[c];
+#if SIDES == 2
+    const __global float* in = member->sidesIn + c * SIDE_FLOATS(state);
+    const float2 beyond = (float2)(in[state->sizeU + v], in[u]); // where rays move both ways in this segment
+#else
+    const float2 beyond = member->entering[c].xy;
+#endif
     if (throughU)
     {
-      const float power = member->part[s] * (rays.power[c] - turned * (rays.power[c] - entering.y));
+      const float power = member->part[s] * (rays.power[c] - turned * (rays.power[c] - beyond.y));
       sums->escaped[0][c] += du < 0 ? power : 0.0f;
       sums->escaped[1][c] += du > 0 ? power : 0.0f;
     }
     if (throughV)
     {
-      const float power = member->part[s] * (rays.power[c] - turned * (rays.power[c] - entering.x));
+      const float power = member->part[s] * (rays.power[c] - turned * (rays.power[c] - beyond.x));
       sums->escaped[2][c] += dv < 0 ? power : 0.0f;
       sums->escaped[3][c] += dv > 0 ? power : 0.0f;
     }

@@ -1,6 +1,7 @@
-// A box that is a block of a larger one, for SweepOnGpu.cl: what rays bring in through its sides, and take out. The
+// A box with light of its own for each voxel at its sides, for SweepOnGpu.cl: what rays bring in there, and take out. The
 // host gives
-//   SIDES  1 where the box is such a block, whose axes are open then; may be left out: 0
+//   SIDES  1: the box is a block of a larger one, whose axes are open then. 2: it is the whole, whose light comes and
+//          goes by cells of its faces (LaneFaces.cl). May be left out: 0
 //
 // Of each plane, counted from where rays start, [ray][channel][SIDE_FLOATS]: as SweepSides.cl has it.
 

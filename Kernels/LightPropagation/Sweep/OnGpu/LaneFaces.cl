@@ -1,0 +1,218 @@
+// Light by cells of the box's faces, in a sweep for GPUs: what comes in through each is laid down beside the rays before
+// planes are crossed (VoxelSides.cl), and what leaves through each is added up afterwards, a work-item a cell: one order,
+// no atomics. Physics and numbers are those of SweepFaces.cl and SweepMaps.cl. The host gives
+//   CHANNELS  that are swept together
+//   AROUND    as SweepOnGpu.cl has it
+//   FACE_IN   1: light comes in by cells, besides that which is the same for a whole face
+//   SPREAD    1: Deposit::spreadsAside
+
+#include "LightPropagation/Sweep/OnGpu/LanePlane.cl"
+#include "Numerics/Numerics.cl"
+
+#define SIDE_FLOATS(lane) ((lane)->planes.sizeU + (lane)->planes.sizeV + 1)
+
+// The cells of one channel that a lane passes in a plane.
+typedef struct
+{
+  const __global SweepLane* lane;
+  const __global LaneFaceInfo* faces;
+  const __global float* light;
+  int plane;
+} cells_beside;
+
+// A ray of a lane in a plane, and its moves.
+typedef struct
+{
+  const __global BundleInfo* bundle;
+  const __global CrossingInfo* crossing;
+  int member;
+} ray_in_plane;
+
+// @param rays  of all lanes: its bundle, and which member it is
+static ray_in_plane ray_of(const __global SweepLane* lane, const __global int2* rays,
+  const __global BundleInfo* bundles, const __global CrossingInfo* crossings, int ray, int k)
+{
+  const int2 of = rays[lane->firstRay + ray];
+  const ray_in_plane found = { bundles + of.x, crossings + k * lane->bundles + of.x - lane->firstBundle, of.y };
+  return found;
+}
+
+static int2 move_of(const ray_in_plane* ray, int s)
+{
+  const __global int* move = ray->bundle->move[ray->member];
+  const int u = ray->crossing->moveU[s], v = ray->crossing->moveV[s];
+  return (int2)(move[0] * u + move[1] * v, move[2] * u + move[3] * v);
+}
+
+#if FACE_IN
+static float light_of_cell(const cells_beside* cells, int side, int i)
+{
+  const __global LaneFaceInfo* faces = cells->faces;
+  return cells->light[faces->first[side] + cells->plane * faces->plane[side] + i * faces->along[side]];
+}
+#endif
+
+// In the mean over cell i and the one at i + move, where it is on the face, times the power of a ray.
+static float light_of_cells(const cells_beside* cells, float power, int side, int i, int move)
+{
+#if FACE_IN
+  const __global SweepLane* lane = cells->lane;
+  const int size = side < 2 ? lane->planes.sizeV : lane->planes.sizeU;
+  const bool wraps = side < 2 ? lane->periodicV : lane->periodicU;
+  const float here = light_of_cell(cells, side, i);
+  const int beside = wraps ? (i + move + size) % size : i + move;
+  return power *
+    (move == 0 || beside < 0 || beside >= size ? here : 0.5f * (here + light_of_cell(cells, side, beside)));
+#else
+  return 0.0f;
+#endif
+}
+
+// Rays that come in through the sides of a lane's planes. A work-item a place of VoxelSides.cl.
+// crossings  of the lane's planes
+__kernel void enter_sides(int number, const __global SweepLane* lanes, const __global LaneFaceInfo* faces,
+  const __global int2* rays, const __global BundleInfo* bundles, const __global CrossingInfo* crossings,
+  const __global float4* entering, const __global float* face_in, ulong first, ulong stride, __global float* sides_in)
+{
+  const int place = get_global_id(0), slot = get_global_id(1), k = get_global_id(2);
+  const __global SweepLane* lane = lanes + number;
+  const int sizeU = lane->planes.sizeU, sizeV = lane->planes.sizeV;
+  const ray_in_plane ray = ray_of(lane, rays, bundles, crossings + lane->crossings, slot / CHANNELS, k);
+  const cells_beside cells = { lane, faces + number, face_in + first + slot % CHANNELS * stride, plane_of(lane, k) };
+  const float4 alike = entering[lane->firstRay * CHANNELS + slot];
+  const float power = ray.bundle->power;
+  float light = 0.0f;
+  for (int s = 1; s < ray.crossing->stages; ++s)
+  {
+    const int2 move = move_of(&ray, s);
+    const int faceU = move.x > 0 ? 0 : 1, faceV = move.y > 0 ? 2 : 3;
+    if (place < sizeU && move.y != 0)
+    {
+      light = alike.y + light_of_cells(&cells, power, faceV, place, move.x);
+    }
+    if (place >= sizeU && place < sizeU + sizeV && move.x != 0)
+    {
+      light = alike.x + light_of_cells(&cells, power, faceU, place - sizeU, move.y);
+    }
+    if (place == sizeU + sizeV && move.x != 0 && move.y != 0) // half comes in through either face
+    {
+      light = 0.5f *
+        (alike.x + alike.y + light_of_cells(&cells, power, faceV, move.x > 0 ? 0 : sizeU - 1, 0) +
+          light_of_cells(&cells, power, faceU, move.y > 0 ? 0 : sizeV - 1, 0));
+    }
+  }
+  sides_in[lane->sides + ((ulong)k * lane->rays * CHANNELS + slot) * SIDE_FLOATS(lane) + place] = light;
+}
+
+// What part of a ray that moves aside in a plane leaves through the cells of plane p.
+// @param planes  from one of its moves to the next
+static float part_through(const __global SweepLane* lane, int plane, int p, float planes)
+{
+#if SPREAD
+  const int size = lane->planes.sizeP;
+  float begin = plane + 0.5f - 0.5f * planes, end = plane + 0.5f + 0.5f * planes, part = 0.0f;
+  begin = AROUND ? begin : fmax(begin, 0.0f);
+  end = AROUND ? end : fmin(end, (float)size);
+  for (int round = AROUND ? -1 : 0; round <= (AROUND ? 1 : 0); ++round)
+  {
+    const int there = p + round * size;
+    part += fmax(fmin(end, there + 1.0f) - fmax(begin, (float)there), 0.0f);
+  }
+  return part / (end - begin);
+#else
+  return plane == p ? 1.0f : 0.0f;
+#endif
+}
+
+// Power of a ray that leaves through cell `i` of a side in a plane, of rays that move both ways at an edge half.
+// @param in, out  of the ray and plane (VoxelSides.cl)
+static float power_through(const __global SweepLane* lane, const ray_in_plane* ray, int side, int i,
+  const __global float* in, const __global float* out)
+{
+  const int sizeU = lane->planes.sizeU, sizeV = lane->planes.sizeV;
+  const bool of_u = side < 2;
+  const int size = of_u ? sizeV : sizeU; // along the face
+  const bool edges = !(of_u ? lane->periodicV : lane->periodicU);
+  float power = 0.0f;
+  for (int s = 1; s < ray->crossing->stages; ++s)
+  {
+    const int2 move = move_of(ray, s);
+    const int through = of_u ? move.x : move.y, along = of_u ? move.y : move.x;
+    if (through != (side % 2 ? 1 : -1))
+    {
+      continue;
+    }
+    const bool turns = edges && along != 0;
+    const float stays = turns && i == (along > 0 ? size - 1 : 0) ? 0.5f : 1.0f;
+    float leaves = stays * out[of_u ? sizeU + i : i];
+    if (turns && i == (along > 0 ? 0 : size - 1)) // came in beside, and goes straight through
+    {
+      const int last = side % 2 ? (of_u ? sizeU : sizeV) - 1 : 0;
+      leaves += 0.5f * in[of_u ? last : sizeU + last];
+    }
+    power = multiply_add(ray->crossing->part[s], leaves, power);
+  }
+  return power;
+}
+
+// Adds to the cells of the faces beside a lane what leaves through them. A work-item a cell, of a side and channel.
+__kernel void leave_sides(int number, const __global SweepLane* lanes, const __global LaneFaceInfo* faces,
+  const __global int2* rays, const __global BundleInfo* bundles, const __global CrossingInfo* crossings, int of_round,
+  const __global float* sides_in, const __global float* sides_out, __global float* face_out, ulong first, ulong stride)
+{
+  const int i = get_global_id(0), p = get_global_id(1), side = get_global_id(2) / CHANNELS;
+  const int c = get_global_id(2) % CHANNELS;
+  const __global SweepLane* lane = lanes + number;
+  if (i >= (side < 2 ? lane->planes.sizeV : lane->planes.sizeU) || (side < 2 ? lane->periodicU : lane->periodicV))
+  {
+    return;
+  }
+  float left = 0.0f;
+  for (int r = 0; r < lane->rays; ++r)
+  {
+    const int2 of = rays[lane->firstRay + r];
+    const __global BundleInfo* bundle = bundles + of.x;
+    const bool ofU = bundle->move[of.y][side < 2 ? 0 : 2] != 0; // it moves there as its bundle does along u
+    const float planes = ofU ? bundle->planesU : bundle->planesV;
+    for (int k = 0; k < lane->patternPlanes; ++k)
+    {
+      const float part = part_through(lane, plane_of(lane, k), p, planes);
+      if (part > 0.0f)
+      {
+        const ray_in_plane ray = ray_of(lane, rays, bundles, crossings + (of_round ? 0 : lane->crossings), r, k);
+        const ulong before = lane->sides + (((ulong)k * lane->rays + r) * CHANNELS + c) * SIDE_FLOATS(lane);
+        left = multiply_add(part, power_through(lane, &ray, side, i, sides_in + before, sides_out + before), left);
+      }
+    }
+  }
+  const __global LaneFaceInfo* of = faces + number;
+  face_out[first + c * stride + of->first[side] + p * of->plane[side] + i * of->along[side]] += left;
+}
+
+// Adds to a lane's rays, where they start, what comes in by cells. A work-item a float of its maps.
+__kernel void enter_start(int number, const __global SweepLane* lanes, const __global LaneFaceInfo* faces,
+  const __global int2* rays, const __global BundleInfo* bundles, const __global float* face_in, ulong first,
+  ulong stride, __global float* maps)
+{
+  const __global SweepLane* lane = lanes + number;
+  const ulong plane = (ulong)lane->planes.sizeU * lane->planes.sizeV;
+  const ulong i = get_global_id(0), slot = i / plane;
+  const float power = bundles[rays[lane->firstRay + slot / CHANNELS].x].power;
+  maps[lane->map + i] += power * face_in[first + slot % CHANNELS * stride + faces[number].start + i % plane];
+}
+
+// Adds to the cells where a lane ends what its rays bring there. A work-item a cell, of a channel.
+__kernel void leave_end(int number, const __global SweepLane* lanes, const __global LaneFaceInfo* faces,
+  const __global float* maps, __global float* face_out, ulong first, ulong stride)
+{
+  const __global SweepLane* lane = lanes + number;
+  const ulong plane = (ulong)lane->planes.sizeU * lane->planes.sizeV;
+  const ulong cell = get_global_id(0);
+  const int c = get_global_id(1);
+  float left = 0.0f;
+  for (int ray = 0; ray < lane->rays; ++ray)
+  {
+    left += maps[lane->map + ((ulong)ray * CHANNELS + c) * plane + cell];
+  }
+  face_out[first + c * stride + faces[number].end + cell] += left;
+}
