@@ -1,6 +1,6 @@
-// Light by cells of the box's faces, in a sweep for GPUs: what comes in through each is laid down beside the rays before
-// planes are crossed (VoxelSides.cl), and what leaves through each is added up afterwards, a work-item a cell: one order,
-// no atomics. Physics and numbers are those of SweepFaces.cl and SweepMaps.cl. The host gives
+// Light by cells of the box's faces, in a sweep for GPUs: what comes in through each is laid down beside the rays
+// before planes are crossed (VoxelSides.cl), and what leaves through each is added up afterwards, a work-item a cell:
+// one order, no atomics. Physics and numbers are those of SweepFaces.cl and SweepMaps.cl. The host gives
 //   CHANNELS  that are swept together
 //   AROUND    as SweepOnGpu.cl has it
 //   FACE_IN   1: light comes in by cells, besides that which is the same for a whole face
@@ -167,6 +167,7 @@ __kernel void leave_sides(int number, const __global SweepLane* lanes, const __g
   {
     return;
   }
+  const int at = lane->backward ? lane->planes.sizeP - 1 - p : p;
   float left = 0.0f;
   for (int r = 0; r < lane->rays; ++r)
   {
@@ -174,7 +175,9 @@ __kernel void leave_sides(int number, const __global SweepLane* lanes, const __g
     const __global BundleInfo* bundle = bundles + of.x;
     const bool ofU = bundle->move[of.y][side < 2 ? 0 : 2] != 0; // it moves there as its bundle does along u
     const float planes = ofU ? bundle->planesU : bundle->planesV;
-    for (int k = 0; k < lane->patternPlanes; ++k)
+    // Planes in which it may move so that it passes these cells.
+    const int reach = AROUND ? lane->patternPlanes : SPREAD ? (int)ceil(0.5f * planes) : 0;
+    for (int k = max(at - reach, 0); k < min(at + reach + 1, lane->patternPlanes); ++k)
     {
       const float part = part_through(lane, plane_of(lane, k), p, planes);
       if (part > 0.0f)

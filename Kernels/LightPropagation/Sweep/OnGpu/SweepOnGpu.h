@@ -15,7 +15,8 @@ namespace tyndall
 /// Memory: two floats a voxel of a plane, ray and channel; where ways go at once, each has its own path, flux and
 /// partial currents, in at most a quarter of the memory that is left. Else they follow one another. With angular
 /// moments a float more a voxel of a plane, ray and channel, what shines along it; a path is one of each function then.
-/// Along a periodic axis a path is two floats, and maps stay from sweep to sweep.
+/// Along a periodic axis a path is two floats, and maps stay from sweep to sweep. Where light comes or goes by cells of
+/// the faces two floats more a ray, channel, plane and cell of the plane's edges.
 class SweepOnGpu : public SweepOperator
 {
 public:

@@ -1,5 +1,5 @@
-// A box with light of its own for each voxel at its sides, for SweepOnGpu.cl: what rays bring in there, and take out. The
-// host gives
+// A box with light of its own for each voxel at its sides, for SweepOnGpu.cl: what rays bring in there, and take out.
+// The host gives
 //   SIDES  1: the box is a block of a larger one, whose axes are open then. 2: it is the whole, whose light comes and
 //          goes by cells of its faces (LaneFaces.cl). May be left out: 0
 //
