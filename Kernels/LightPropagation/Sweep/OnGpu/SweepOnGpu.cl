@@ -115,9 +115,8 @@ static void put_moments(const plane_state* state, const PlaneLaunch* places, con
   {
 #if ADDS
     const MomentPlaces* of = &places->moments;
-    const ulong place = k == 0
-      ? places->putFirst + c * state->stride + voxel
-      : MOMENT_PLACE(*of, k, places->firstChannel + c, voxel / of->sizeX, voxel % of->sizeX);
+    const ulong place = k == 0 ? places->putFirst + c * state->stride + voxel
+                               : MOMENT_PLACE(*of, k, places->firstChannel + c, voxel / of->sizeX, voxel % of->sizeX);
 #else
     const ulong place = state->lane->path + ((ulong)k * CHANNELS + c) * state->stride + voxel;
 #endif
