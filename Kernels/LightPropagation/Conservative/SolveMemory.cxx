@@ -36,22 +36,25 @@ std::size_t ArraysOfOrders(const PropagationProblem& problem, OrdersAdded how)
   }
 }
 
-/// Rays of all bundles along an axis, both ways, and planes that are being crossed.
-std::size_t BytesOfSweep(const PropagationProblem& problem)
+/// Rays of all bundles along an axis, both ways, and planes that are being crossed; on a GPU rays of all axes before and
+/// behind a plane, and what shines along them.
+std::size_t BytesOfSweep(const Device& device, const PropagationProblem& problem)
 {
   const std::array<int, 3>& n = problem.TheGrid().size;
   const std::size_t plane =
     std::max({ Count(n[0]) * Count(n[1]), Count(n[1]) * Count(n[2]), Count(n[0]) * Count(n[2]) });
-  const std::size_t rays = Count(std::max(problem.Settings().directionsPerFace, 1)) * 2 + 16 * 4 * 16;
+  const std::size_t directions = Count(std::max(problem.Settings().directionsPerFace, 1));
+  const std::size_t onGpu = 3 * directions * (problem.Scattering().Degree() > 0 ? 3 : 2);
+  const std::size_t rays = device.IsCpu() ? 2 * directions + 16 * 4 * 16 : onGpu;
   return 2 * sizeof(float) * Count(problem.Channels()) * plane * rays;
 }
 }
 
-std::size_t BytesOfSolve(const PropagationProblem& problem, OrdersAdded how)
+std::size_t BytesOfSolve(const Device& device, const PropagationProblem& problem, OrdersAdded how)
 {
   const VolumeLayout layout = { problem.TheGrid(), problem.Channels() };
   return sizeof(float) * layout.Values() * (ArraysOfLight(problem) + ArraysOfOrders(problem, how)) +
-    BytesOfSweep(problem);
+    BytesOfSweep(device, problem);
 }
 
 MemoryBudget BudgetAskedFor(const Device& device, std::size_t asked)
@@ -69,7 +72,7 @@ MemoryBudget BudgetAskedFor(const Device& device, std::size_t asked)
 MemoryBudget BudgetOfSolve(const Device& device, const PropagationProblem& problem, OrdersAdded how)
 {
   MemoryBudget budget = BudgetAskedFor(device, problem.Settings().memoryBudget);
-  if (budget.spills && BytesOfSolve(problem, how) > budget.bytes)
+  if (budget.spills && BytesOfSolve(device, problem, how) > budget.bytes)
   {
     budget.hostFrom = sizeof(float) * problem.TheGrid().VoxelCount();
   }

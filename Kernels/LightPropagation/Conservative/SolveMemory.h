@@ -8,7 +8,8 @@
 namespace tyndall
 {
 /// Bytes that a solve takes of a device where nothing is streamed: at most, and about a quarter more than most solves.
-std::size_t BytesOfSolve(const PropagationProblem& problem, OrdersAdded how);
+/// GPUs take more where there is room: arrays of their own of all ways at once (SweepOnGpu.h).
+std::size_t BytesOfSolve(const Device& device, const PropagationProblem& problem, OrdersAdded how);
 
 /// What a solve may take of a device: what was asked for, or (0) nine tenths of what is left there; what does not fit
 /// lies in host memory. A device that works on host memory has no bound of its own.

@@ -1,6 +1,7 @@
 #include "LightPropagation/Sweep/OnGpu/GpuLanes.h"
 
 #include "Device/Defines.h"
+#include "Device/Device.h"
 #include "Device/Sizes.h"
 
 #include <algorithm>
@@ -62,7 +63,7 @@ GpuLanes::GpuLanes(const Device& device, const VolumeLayout& layout, const Sweep
     {
       this->plans.emplace_back(device, layout.grid, request.box, along.axis, along.bundles, this->channels, periodic,
         request.deposit.flux && !request.angular, request.deposit.partialCurrents != nullptr, request.angular,
-        layout.Places(this->functionCount), false, false);
+        layout.Places(this->functionCount), false, request.octantSource != nullptr);
     }
   }
   for (const SweepPlan& plan : this->plans)
@@ -72,6 +73,7 @@ GpuLanes::GpuLanes(const Device& device, const VolumeLayout& layout, const Sweep
   this->LayBatches(atOnce);
   for (LaneBatch& batch : this->batches)
   {
+    batch.hasArrays = !device.Streams() && (batch.around || batch.count > 1);
     this->Place(batch, layout.Stride());
   }
 }
@@ -145,14 +147,17 @@ void GpuLanes::Place(LaneBatch& batch, std::size_t stride)
     lane.map = batch.maps;
     lane.sides = batch.sides;
     batch.sides += Count(lane.rays) * this->channels * lane.patternPlanes * SideFloats(lane);
-    lane.deposit = batch.HasArrays() ? i * this->channels * stride : 0;
+    lane.deposit = batch.hasArrays ? i * this->channels * stride : 0;
     lane.path = this->functionCount * lane.deposit;
     batch.maps += Count(lane.rays) * this->channels * lane.planes.sizeU * lane.planes.sizeV;
   }
   std::size_t& most = batch.around ? this->mostMapsAround : this->mostMapsOpen;
   most = std::max(most, batch.maps);
-  this->mostWithArrays = batch.HasArrays() ? std::max(this->mostWithArrays, batch.count) : this->mostWithArrays;
-  this->mostAround = batch.around ? std::max(this->mostAround, batch.count) : this->mostAround;
+  if (batch.hasArrays)
+  {
+    this->mostWithArrays = std::max(this->mostWithArrays, batch.count);
+    this->mostAround = batch.around ? std::max(this->mostAround, batch.count) : this->mostAround;
+  }
 }
 
 std::size_t GpuLanes::ArrayFloats(std::size_t stride) const

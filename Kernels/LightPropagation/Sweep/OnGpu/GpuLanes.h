@@ -30,15 +30,14 @@ struct LaneBatch
   std::size_t plan = 0;     ///< of these, where they go around
   std::size_t maps = 0;     ///< floats of its maps
   std::size_t sides = 0;    ///< and of what is beside its planes, where light comes and goes by cells
-
-  /// Whether each lane puts what it finds into arrays of its own, for these to be added up.
-  bool HasArrays() const { return this->around || this->count > 1; }
+  bool hasArrays = false;   ///< each lane puts what it finds into arrays of its own, for these to be added up
 };
 
 /// What marches in a sweep for GPUs, and where it is in the buffers: worked out once on the host.
 struct GpuLanes
 {
-  /// @param atOnce  lanes of open axes go in the same launches, as do both ways of a periodic axis; else one by one
+  /// @param atOnce  lanes of open axes go in the same launches, as do both ways of a periodic axis; else one by one. On a
+  /// device that streams not; lanes add to the deposit there, round periodic axes, too
   GpuLanes(const Device& device, const VolumeLayout& layout, const SweepRequest& request,
     const std::array<bool, 3>& periodic, bool atOnce);
 
@@ -62,6 +61,7 @@ struct GpuLanes
   /// That lanes write to, of their own. @param stride  of a channel
   std::size_t ArrayFloats(std::size_t stride) const;
   std::string Options() const; ///< of LaneSums.cl
+  const SweepPlan& PlanOf(std::size_t lane) const { return this->plans[this->PlanOfLane[lane]]; }
   std::size_t EndRows(int lane) const;
   std::size_t SideRows(int lane) const;
 

@@ -43,8 +43,11 @@ LaneFaces::LaneFaces(Device& device, const GpuLanes& lanes, const Grid& grid, co
   }
   this->Faces = Buffer<LaneFaceInfo>(device, faces, "the box's faces");
   this->RayPlaces = Buffer<cl_int2>(device, rays, "the rays");
-  this->SidesIn = Buffer<float>(device, sides, "the light that comes in sideways");
-  this->SidesOut = Buffer<float>(device, sides, "the light that leaves sideways");
+  const auto ofRays = [&](const char* what) {
+    return Buffer<float>(device, sides, what, CL_MEM_READ_WRITE, Residence::Device);
+  };
+  this->SidesIn = ofRays("the light that comes in sideways");
+  this->SidesOut = ofRays("the light that leaves sideways");
 }
 
 LaneFaceInfo LaneFaces::FacesOf(const SweepLane& lane, const Grid& grid) const

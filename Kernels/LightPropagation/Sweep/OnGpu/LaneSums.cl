@@ -32,16 +32,17 @@ __kernel void sum_rows(const __global float* rows, ulong first, int length, __gl
   sums[first_sum + get_global_id(0)] = sum;
 }
 
-// What the lanes found, each in an array of its own, added up in their order. A work-item a value.
+// What the lanes found, each in an array of its own, added in their order, as lanes do that add to what is there: the
+// same bits. A work-item a value.
 __kernel void add_lanes(const __global float* of_lanes, int lanes, ulong values, __global float* sum, ulong first)
 {
   const ulong i = get_global_id(0);
-  float all = 0.0f;
+  float all = sum[first + i];
   for (int lane = 0; lane < lanes; ++lane)
   {
     all += of_lanes[lane * values + i];
   }
-  sum[first + i] += all;
+  sum[first + i] = all;
 }
 
 // The same of angular moments. A work-item a voxel, of a function and channel.
@@ -51,11 +52,13 @@ __kernel void add_moments_of_lanes(
   const ulong voxel = get_global_id(0), stride = launch.stride;
   const int k = get_global_id(1) / CHANNELS, c = get_global_id(1) % CHANNELS;
   const MomentPlaces* of = &launch.moments;
-  float all = 0.0f;
+  __global float* to = sum +
+    (k == 0 ? first + c * stride + voxel
+            : MOMENT_PLACE(*of, k, launch.firstChannel + c, voxel / of->sizeX, voxel % of->sizeX));
+  float all = *to;
   for (int lane = 0; lane < lanes; ++lane)
   {
     all += of_lanes[(((ulong)lane * FUNCTIONS + k) * CHANNELS + c) * stride + voxel];
   }
-  sum[k == 0 ? first + c * stride + voxel
-             : MOMENT_PLACE(*of, k, launch.firstChannel + c, voxel / of->sizeX, voxel % of->sizeX)] += all;
+  *to = all;
 }

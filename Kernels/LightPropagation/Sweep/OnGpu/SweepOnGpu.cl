@@ -6,7 +6,7 @@
 //
 // The host gives CHANNELS, SOURCE, NET_FLUX, CURRENTS, OCTANT_SOURCE as SweepLayout.cl has them, and
 //   ADDS    1: lanes follow one another and add to what is there; 0: each writes arrays of its own
-//   AROUND  1: the axis is periodic, and rays come to a voxel again and again: their lane adds to its own arrays
+//   AROUND  1: the axis is periodic, and rays come to a voxel again and again: their lane adds to what it has put there
 //   DEGREE  of the angular moments in which light is gathered, and shines; 0: fluence alone
 //   SIDES   see VoxelSides.cl
 //   BEAMS   sources with an angular distribution of their own; where DEGREE is not 0
@@ -210,12 +210,14 @@ __kernel void cross_plane(PlaneLaunch launch, const __global SweepLane* lanes, c
   }
   const int plane = plane_of(lane, launch.plane);
   const ulong first = (ulong)lane->planes.firstU * lane->planes.stepU +
-    (ulong)lane->planes.firstV * lane->planes.stepV + (ulong)(lane->planes.firstP + plane) * lane->planes.stepP;
+    (ulong)lane->planes.firstV * lane->planes.stepV +
+    (ulong)(lane->planes.firstP + plane - launch.slotPlane) * lane->planes.stepP;
+  const ulong values = launch.putFirst + launch.slotValues, puts = launch.slotPath + (DEGREE ? 0 : launch.putFirst);
   plane_state state;
   state.lane = lane;
   state.sigma = sigma + launch.sigmaFirst + first;
-  state.source = source + launch.sourceFirst + first;
-  state.octants = octants + 8 * launch.sourceFirst + first;
+  state.source = source + launch.slotSource + launch.sourceFirst + first;
+  state.octants = octants + 8 * (launch.slotValues + launch.sourceFirst) + first;
   state.stride = launch.stride;
   state.sizeU = lane->planes.sizeU;
   state.sizeV = lane->planes.sizeV;
@@ -236,8 +238,8 @@ __kernel void cross_plane(PlaneLaunch launch, const __global SweepLane* lanes, c
     crossings + (launch.ofRound ? 0 : lane->crossings) + launch.plane * lane->bundles, before + lane->map,
     after + lane->map, entering + lane->firstRay * CHANNELS, directed + lane->map,
     functions + lane->firstRay * (MOMENTS + BEAMS), u, v);
-  put_sums(&state, &launch, &sums, first + voxel_of(&state, u, v), u, v, path + (DEGREE ? 0 : launch.putFirst),
-    lost + (DEGREE ? 0 : launch.putFirst), flux + 3 * launch.putFirst, currents + 6 * launch.putFirst);
+  put_sums(&state, &launch, &sums, first + voxel_of(&state, u, v), u, v, path + puts, lost + puts, flux + 3 * values,
+    currents + 6 * values);
   put_escaped(&state, &sums, launch.plane, u, v, escaped);
 }
 
@@ -256,8 +258,9 @@ __kernel void find_directed(PlaneLaunch launch, const __global SweepLane* lanes,
   }
   const int plane = plane_of(lane, launch.plane);
   const ulong voxel = (ulong)(planes->firstU + u) * planes->stepU + (ulong)(planes->firstV + v) * planes->stepV +
-    (ulong)(planes->firstP + plane) * planes->stepP;
+    (ulong)(planes->firstP + plane - launch.slotPlane) * planes->stepP;
   const MomentPlaces* of = &launch.moments;
+  source += launch.slotSource;
   const ulong size = (ulong)planes->sizeU * planes->sizeV;
   functions += lane->firstRay * (MOMENTS + BEAMS);
   for (int c = 0; c < CHANNELS; ++c)

@@ -3,8 +3,10 @@
 #include "Device/Defines.h"
 #include "Device/Sizes.h"
 #include "LightPropagation/Sweep/OnGpu/GpuLanes.h"
+#include "LightPropagation/Sweep/OnGpu/LaneArrays.h"
 #include "LightPropagation/Sweep/OnGpu/LaneFaces.h"
 #include "LightPropagation/Sweep/OnGpu/LanePowers.h"
+#include "LightPropagation/Sweep/OnGpu/LaneSlices.h"
 #include "LightPropagation/Sweep/OnGpu/PlaneGroups.h"
 #include "LightPropagation/Sweep/SweepBorder.h"
 #include "LightPropagation/Sweep/SweepPlan.h"
@@ -24,11 +26,11 @@ namespace
 constexpr int MostAtOnce = 4; ///< part of the memory that ways at once may take: a quarter
 
 /// All ways at once, where their arrays have room beside each other. Of a part of the grid they go one by one: what is
-/// not swept would have to be cleared.
+/// not swept would have to be cleared. So do they where the volume is in host memory, a slice of one after the other.
 GpuLanes ChooseLanes(const Device& device, const VolumeLayout& layout, const std::array<bool, 3>& periodic,
   const SweepRequest& request, SweepOnGpu::Ways ways)
 {
-  const bool mayAtOnce = ways == SweepOnGpu::Ways::Automatic && request.box.VoxelCount() == 0;
+  const bool mayAtOnce = ways == SweepOnGpu::Ways::Automatic && request.box.VoxelCount() == 0 && !device.Streams();
   GpuLanes lanes(device, layout, request, periodic, mayAtOnce);
   const std::size_t left = device.MemoryLimit() - device.BytesInUse();
   const bool fit = sizeof(float) * lanes.ArrayFloats(layout.Stride()) <= left / MostAtOnce;
@@ -40,7 +42,7 @@ class SweepOnGpu::Implementation
 {
 public:
   Implementation(Device& device, const VolumeLayout& layout, const Buffer<float>& sigma_t,
-    const std::array<bool, 3>& periodic, const SweepRequest& request, Ways ways);
+    const std::array<bool, 3>& periodic, const SweepRequest& request, SweepWorkspace& workspace, Ways ways);
 
   SweepTally Apply(const Buffer<float>* source, const SweepBoundary& boundary, const Monitor& monitor);
   void Forget(std::optional<int> group = {});
@@ -61,9 +63,15 @@ private:
     int current = 0;
   };
 
+  /// What planes are crossed with: of the whole volume, or of slots.
+  struct Arrays
+  {
+    const Buffer<float>&sigma_t, &source, &octants, &path, &lost, &flux, &currents;
+  };
+
   void MakeBuffers();
-  void MakeArrays();
-  void ClearArrays(const LaneBatch& batch);
+  void MakeSlices();
+  void BeginLost(const LaneBatch& batch);
   bool ShineByCells() const { return this->Faces && this->Faces->Shine(); }
   LaneFaces::Rays RaysOf(const Crossing& how) const;
   int Beams() const { return this->Angular ? this->Angular->Beams() : 0; }
@@ -78,8 +86,11 @@ private:
   void StartRays(const LaneBatch& batch);
   int Cross(const LaneBatch& batch, const SweepVolume& volume, const Crossing& how,
     const std::array<const Buffer<float>*, 2>& maps, const Monitor& monitor);
-  void AddLanes(const LaneBatch& batch, const SweepVolume& volume);
-  void AddMomentsOfLanes(const LaneBatch& batch, const SweepVolume& volume);
+  int CrossPlanes(const LaneBatch& batch, const SweepVolume& volume, const Crossing& how,
+    const std::array<const Buffer<float>*, 2>& maps, const Monitor& monitor);
+  Arrays Whole(const LaneBatch& batch, const SweepVolume& volume) const;
+  Arrays InSlots(const LaneSlices& slices) const;
+  void AddArrays(const LaneBatch& batch, const SweepVolume& volume);
 
   Device& TheDevice;
   VolumeLayout Layout;
@@ -89,8 +100,10 @@ private:
   bool SameBoundary;
   const AngularValues* Angular;
   const Buffer<float>* OctantSource;
+  SweepWorkspace& Workspace;
   GpuLanes The;
 
+  std::vector<std::unique_ptr<LaneSlices>> Slices; ///< by lane, of a volume in host memory; null: swept where it lies
   Buffer<SweepLane> Lanes;
   Buffer<BundleInfo> Bundles;
   Buffer<CrossingInfo> Crossings;
@@ -100,28 +113,30 @@ private:
   std::map<std::pair<int, int>, OnTheWay> Rounds; ///< by a batch's first lane, and group
   Buffer<cl_float4> Entering;                     ///< [ray][channel] W through u's, v's face, and where rays start
   Buffer<cl_float4> Nothing;                      ///< that comes in
-  Buffer<float> Path, Lost, Flux, Currents; ///< of a batch's lanes; Lost: by rounding from Path, of lanes that go round
+  LaneArrays OfLanes;
   LanePowers Powers;
   std::optional<LaneFaces> Faces; ///< where light comes or goes by cells
   std::map<int, std::pair<std::vector<cl_float4>, std::array<Rgb, 6>>> KeptEntering; ///< by group, with power
 };
 
 SweepOnGpu::Implementation::Implementation(Device& device, const VolumeLayout& layout, const Buffer<float>& sigma_t,
-  const std::array<bool, 3>& periodic, const SweepRequest& request, Ways ways)
+  const std::array<bool, 3>& periodic, const SweepRequest& request, SweepWorkspace& workspace, Ways ways)
   : TheDevice(device)
   , Layout(layout)
   , SigmaT(sigma_t)
-  , To(request.deposit)
+  , To(request.angular ? Deposit{ request.deposit.path, nullptr, request.deposit.partialCurrents } : request.deposit)
   , MostPlanes(request.mostPlanes)
   , SameBoundary(request.sameBoundary)
   , Angular(request.angular)
   , OctantSource(request.octantSource)
+  , Workspace(workspace)
   , The(ChooseLanes(device, layout, periodic, request, ways))
+  , OfLanes(device, this->The, layout, this->To)
   , Powers(device, this->The)
 {
-  this->To.flux = this->Angular ? nullptr : this->To.flux; // it is among the moments
   this->MakeBuffers();
-  this->MakeArrays();
+  this->MakeSlices();
+  this->Lanes = Buffer<SweepLane>(device, this->The.lanes, "the rays' ways");
   if (request.faceIn || request.deposit.faceOut)
   {
     this->Faces.emplace(device, this->The, layout.grid, request);
@@ -131,18 +146,20 @@ SweepOnGpu::Implementation::Implementation(Device& device, const VolumeLayout& l
 void SweepOnGpu::Implementation::MakeBuffers()
 {
   Device& device = this->TheDevice;
-  this->Lanes = Buffer<SweepLane>(device, this->The.lanes, "the rays' ways");
+  const auto ofRays = [&device](std::size_t floats, const char* what) {
+    return Buffer<float>(device, floats, what, CL_MEM_READ_WRITE, Residence::Device);
+  };
   this->Bundles = Buffer<BundleInfo>(device, this->The.bundles, "the bundles of rays");
   this->Crossings = Buffer<CrossingInfo>(device, this->The.crossings, "the ray pattern");
   const std::size_t open = this->The.mostMapsOpen, around = this->The.mostMapsAround;
   if (this->Angular)
   {
     this->Along = Buffer<float>(device, this->The.functions, "the angular functions");
-    this->Directed = Buffer<float>(device, std::max(open, around), "what shines along the rays");
+    this->Directed = ofRays(std::max(open, around), "what shines along the rays");
   }
   for (Buffer<float>& maps : this->Maps)
   {
-    maps = Buffer<float>(device, std::max<std::size_t>(open, 1), "the light propagation maps");
+    maps = ofRays(std::max<std::size_t>(open, 1), "the light propagation maps");
   }
   this->Entering = Buffer<cl_float4>(device, Count(this->The.rays) * this->The.channels, "the light that comes in");
   if (around > 0)
@@ -152,21 +169,27 @@ void SweepOnGpu::Implementation::MakeBuffers()
   }
 }
 
-void SweepOnGpu::Implementation::MakeArrays()
+/// Of a volume in host memory, once all that has to be on the device is.
+void SweepOnGpu::Implementation::MakeSlices()
 {
-  const std::size_t values = this->The.channels * this->Layout.Stride();
-  const auto make = [&](Buffer<float>& array, std::size_t lanes, std::size_t parts, const char* what) {
-    if (lanes * parts > 0)
+  if (!this->TheDevice.Streams())
+  {
+    return;
+  }
+  for (const LaneBatch& batch : this->The.batches)
+  {
+    for (const ChannelGroup& group : this->Layout.Groups())
     {
-      array = Buffer<float>(this->TheDevice, lanes * parts * values, what);
-      array.Fill(0.0f); // beyond the voxels it stays
+      if (batch.around)
+      {
+        this->RaysOnTheWay(batch, group.first);
+      }
     }
-  };
-  const std::size_t lanes = this->The.mostWithArrays;
-  make(this->Path, lanes, this->The.functionCount, "the light of each way");
-  make(this->Lost, this->The.mostAround, this->The.functionCount, "the light of each way");
-  make(this->Flux, lanes, this->To.flux ? 3 : 0, "the net flux of each way");
-  make(this->Currents, lanes, this->To.partialCurrents ? 6 : 0, "the partial currents of each way");
+  }
+  for (std::size_t i = 0; i < this->The.lanes.size(); ++i)
+  {
+    this->Slices.push_back(LaneSlices::Make(this->TheDevice, this->The.PlanOf(i), this->The.lanes[i], this->Workspace));
+  }
 }
 
 SweepTally SweepOnGpu::Implementation::Apply(
@@ -273,10 +296,7 @@ void SweepOnGpu::Implementation::CrossOnce(
   }
   this->Powers.AddUp(
     batch, [this](const SweepLane& lane) -> const Buffer<float>& { return this->Maps[lane.planes.sizeP % 2]; });
-  if (batch.HasArrays())
-  {
-    this->AddLanes(batch, volume);
-  }
+  this->AddArrays(batch, volume);
   this->Powers.CountSides(batch, tally);
   this->Powers.CountEnds(batch, tally);
 }
@@ -286,7 +306,7 @@ void SweepOnGpu::Implementation::CrossOnce(
 void SweepOnGpu::Implementation::GoRound(
   const LaneBatch& batch, const SweepVolume& volume, SweepTally& tally, const Monitor& monitor)
 {
-  this->ClearArrays(batch);
+  this->BeginLost(batch);
   OnTheWay& rays = this->RaysOnTheWay(batch, volume.firstChannel);
   Rgb onTheWay = {};
   const auto cross = [&](const Crossing& how) {
@@ -306,26 +326,23 @@ void SweepOnGpu::Implementation::GoRound(
       this->TheDevice, this->The.plans[batch.plan].Crossings(gone, planes), "the ray pattern");
     cross({ false, &this->Nothing, &crossings });
   }
-  this->AddLanes(batch, volume);
+  this->AddArrays(batch, volume);
   for (int c = 0; c < this->The.channels; ++c)
   {
     tally.onTheWay[c] += onTheWay[c];
   }
 }
 
-void SweepOnGpu::Implementation::ClearArrays(const LaneBatch& batch)
+/// What rounding takes from the path of lanes that go round, and their own path, begin anew.
+void SweepOnGpu::Implementation::BeginLost(const LaneBatch& batch)
 {
-  const std::size_t values = batch.count * this->The.channels * this->Layout.Stride();
-  this->Path.Fill(0.0f, 0, this->The.functionCount * values);
-  this->Lost.Fill(0.0f, 0, this->The.functionCount * values);
-  if (this->To.flux)
+  if (batch.hasArrays)
   {
-    this->Flux.Fill(0.0f, 0, 3 * values);
+    this->OfLanes.Clear(batch);
+    return;
   }
-  if (this->To.partialCurrents)
-  {
-    this->Currents.Fill(0.0f, 0, 6 * values);
-  }
+  this->Workspace.ReserveLost(this->TheDevice, this->To.path->Size());
+  this->Workspace.lost.Fill(0.0f);
 }
 
 SweepOnGpu::Implementation::OnTheWay& SweepOnGpu::Implementation::RaysOnTheWay(const LaneBatch& batch, int group)
@@ -335,7 +352,8 @@ SweepOnGpu::Implementation::OnTheWay& SweepOnGpu::Implementation::RaysOnTheWay(c
   {
     for (Buffer<float>& maps : rays.maps)
     {
-      maps = Buffer<float>(this->TheDevice, batch.maps, "the light propagation maps");
+      maps =
+        Buffer<float>(this->TheDevice, batch.maps, "the light propagation maps", CL_MEM_READ_WRITE, Residence::Device);
       maps.Fill(0.0f);
     }
   }
@@ -360,7 +378,7 @@ std::string SweepOnGpu::Implementation::Options(const LaneBatch& batch, bool shi
     Define("NET_FLUX", this->To.flux != nullptr) + Define("CURRENTS", this->To.partialCurrents != nullptr) +
     Define("OCTANT_SOURCE", this->OctantSource && shines) +
     Define("DEGREE", this->Angular ? this->Angular->degree : 0) + Define("BEAMS", this->Beams()) +
-    Define("ADDS", !batch.HasArrays()) + Define("AROUND", batch.around) + Define("SIDES", this->Faces ? 2 : 0);
+    Define("ADDS", !batch.hasArrays) + Define("AROUND", batch.around) + Define("SIDES", this->Faces ? 2 : 0);
 }
 
 PlaneLaunch SweepOnGpu::Implementation::LaunchOf(const LaneBatch& batch, const SweepVolume& volume) const
@@ -368,7 +386,7 @@ PlaneLaunch SweepOnGpu::Implementation::LaunchOf(const LaneBatch& batch, const S
   PlaneLaunch launch = {};
   launch.sigmaFirst = volume.sigma_t_first;
   launch.sourceFirst = volume.source ? volume.first : 0;
-  launch.putFirst = batch.HasArrays() ? 0 : volume.first;
+  launch.putFirst = batch.hasArrays ? 0 : volume.first;
   launch.stride = volume.stride;
   launch.firstLane = batch.first;
   launch.firstChannel = volume.firstChannel;
@@ -395,6 +413,21 @@ void SweepOnGpu::Implementation::StartRays(const LaneBatch& batch)
 int SweepOnGpu::Implementation::Cross(const LaneBatch& batch, const SweepVolume& volume, const Crossing& how,
   const std::array<const Buffer<float>*, 2>& maps, const Monitor& monitor)
 {
+  if (this->Faces)
+  {
+    this->Faces->EnterSides(batch, this->RaysOf(how), volume.faceFirst);
+  }
+  const int planes = this->CrossPlanes(batch, volume, how, maps, monitor);
+  if (this->Faces)
+  {
+    this->Faces->LeaveSides(batch, this->RaysOf(how), volume.faceFirst);
+  }
+  return planes;
+}
+
+int SweepOnGpu::Implementation::CrossPlanes(const LaneBatch& batch, const SweepVolume& volume, const Crossing& how,
+  const std::array<const Buffer<float>*, 2>& maps, const Monitor& monitor)
+{
   int sizeU = 0, sizeV = 0, planes = 0, rays = 0;
   for (int i = batch.first; i < batch.first + batch.count; ++i)
   {
@@ -404,13 +437,6 @@ int SweepOnGpu::Implementation::Cross(const LaneBatch& batch, const SweepVolume&
     planes = std::max(planes, lane.patternPlanes);
     rays += lane.rays;
   }
-  const bool adds = !batch.HasArrays();
-  const Buffer<float>& path = adds ? *this->To.path : this->Path;
-  const Buffer<float>& lost = batch.around ? this->Lost : path;
-  const Buffer<float>& flux = !this->To.flux ? path : adds ? *this->To.flux : this->Flux;
-  const Buffer<float>& currents = !this->To.partialCurrents ? path : adds ? *this->To.partialCurrents : this->Currents;
-  const Buffer<float>& source = how.shines ? *volume.source : this->SigmaT; // never read where there is none
-  const Buffer<float>& octants = this->OctantSource ? *this->OctantSource : source;
   const Buffer<float>& directed = this->Angular ? this->Directed : *maps[0];
   const Buffer<float>& functions = this->Angular ? this->Along : *maps[0];
   const std::string options = this->Options(batch, how.shines);
@@ -419,34 +445,47 @@ int SweepOnGpu::Implementation::Cross(const LaneBatch& batch, const SweepVolume&
   {
     find = this->TheDevice.Kernel("find_directed", kernel_source::SweepOnGpu, options);
   }
-  PlaneLaunch launch = this->LaunchOf(batch, volume);
-  launch.ofRound = how.round != nullptr;
   if (this->Faces)
   {
-    this->Faces->EnterSides(batch, this->RaysOf(how), volume.faceFirst);
     this->Faces->SetSides(kernel);
   }
   const cl::NDRange all(RoundUp(Count(sizeU), GroupU), RoundUp(Count(sizeV), GroupV), batch.count);
   const cl::NDRange group(GroupU, GroupV, 1);
   const double seconds = SecondsPerRay * sizeU * sizeV * rays * this->The.channels;
-  for (launch.plane = 0; launch.plane < planes; ++launch.plane)
-  {
-    if (find())
+  const auto cross = [&](PlaneLaunch launch, const Arrays& in, int from, int to, const std::vector<cl::Event>* after,
+                       cl::Event* done) {
+    for (launch.plane = from; launch.plane < to; ++launch.plane)
     {
-      With(find, launch, this->Lanes, source, functions, directed);
-      this->TheDevice.Queue().enqueueNDRangeKernel(find, cl::NullRange, all, group);
+      if (find())
+      {
+        With(find, launch, this->Lanes, in.source, functions, directed);
+        this->TheDevice.Queue().enqueueNDRangeKernel(find, cl::NullRange, all, group, after);
+      }
+      With(kernel, launch, this->Lanes, in.sigma_t, in.source, in.octants, in.path, in.lost, in.flux, in.currents,
+        *maps[launch.plane % 2], *maps[1 - launch.plane % 2], *how.entering, this->Bundles,
+        how.round ? *how.round : this->Crossings, directed, functions, this->Powers.Escaped());
+      this->TheDevice.Queue().enqueueNDRangeKernel(
+        kernel, cl::NullRange, all, group, after, launch.plane + 1 == to ? done : nullptr);
+      after = nullptr; // the queue keeps the order
+      this->TheDevice.Queued(seconds);
+      Report(monitor, (launch.plane + 1.0) / planes);
     }
-    With(kernel, launch, this->Lanes, this->SigmaT, source, octants, path, lost, flux, currents,
-      *maps[launch.plane % 2], *maps[1 - launch.plane % 2], *how.entering, this->Bundles,
-      how.round ? *how.round : this->Crossings, directed, functions, this->Powers.Escaped());
-    this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, all, group);
-    this->TheDevice.Queued(seconds);
-    Report(monitor, (launch.plane + 1.0) / planes);
-  }
-  if (this->Faces)
+  };
+  PlaneLaunch launch = this->LaunchOf(batch, volume);
+  launch.ofRound = how.round != nullptr;
+  if (this->Slices.empty() || !this->Slices[batch.first])
   {
-    this->Faces->LeaveSides(batch, this->RaysOf(how), volume.faceFirst);
+    cross(launch, this->Whole(batch, volume), 0, planes, nullptr, nullptr);
+    return planes;
   }
+  LaneSlices& slices = *this->Slices[batch.first];
+  SweepVolume shining = volume;
+  shining.source = how.shines ? volume.source : nullptr;
+  shining.octantSource = how.shines ? this->OctantSource : nullptr;
+  slices.Cross(shining, launch,
+    [&](const PlaneLaunch& inSlot, int from, int to, const std::vector<cl::Event>* after, cl::Event* done) {
+      cross(inSlot, this->InSlots(slices), from, to, after, done);
+    });
   return planes;
 }
 
@@ -455,42 +494,43 @@ LaneFaces::Rays SweepOnGpu::Implementation::RaysOf(const Crossing& how) const
   return { this->Lanes, this->Bundles, how.round ? *how.round : this->Crossings, how.round != nullptr, *how.entering };
 }
 
-void SweepOnGpu::Implementation::AddLanes(const LaneBatch& batch, const SweepVolume& volume)
+/// What there is none of is not looked at.
+SweepOnGpu::Implementation::Arrays SweepOnGpu::Implementation::Whole(
+  const LaneBatch& batch, const SweepVolume& volume) const
 {
-  cl::Kernel kernel = this->TheDevice.Kernel("add_lanes", kernel_source::LaneSums, this->The.Options());
-  const auto add = [&](const Buffer<float>& ofLanes, const Buffer<float>* to, std::size_t components) {
-    if (!to)
-    {
-      return;
-    }
-    const std::size_t values = components * this->The.channels * this->Layout.Stride();
-    With(kernel, ofLanes, cl_int(batch.count), cl_ulong(values), *to, cl_ulong(components * volume.first));
-    this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(values));
-  };
-  if (this->Angular)
-  {
-    this->AddMomentsOfLanes(batch, volume);
-  }
-  else
-  {
-    add(this->Path, this->To.path, 1);
-  }
-  add(this->Flux, this->To.flux, 3);
-  add(this->Currents, this->To.partialCurrents, 6);
+  const bool own = batch.hasArrays;
+  const Buffer<float>& path = own ? this->OfLanes.path : *this->To.path;
+  const Buffer<float>& source = volume.source ? *volume.source : this->SigmaT;
+  return { this->SigmaT, source, this->OctantSource ? *this->OctantSource : source, path,
+    !batch.around ? path
+      : own       ? this->OfLanes.lost
+                  : this->Workspace.lost,
+    !this->To.flux ? path
+      : own        ? this->OfLanes.flux
+                   : *this->To.flux,
+    !this->To.partialCurrents ? path
+      : own                   ? this->OfLanes.currents
+                              : *this->To.partialCurrents };
 }
 
-void SweepOnGpu::Implementation::AddMomentsOfLanes(const LaneBatch& batch, const SweepVolume& volume)
+SweepOnGpu::Implementation::Arrays SweepOnGpu::Implementation::InSlots(const LaneSlices& slices) const
 {
-  cl::Kernel kernel = this->TheDevice.Kernel("add_moments_of_lanes", kernel_source::LaneSums, this->The.Options());
-  With(kernel, this->LaunchOf(batch, volume), this->Path, cl_int(batch.count), *this->To.path, cl_ulong(volume.first));
-  this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange,
-    cl::NDRange(
-      this->Layout.grid.VoxelCount(), static_cast<std::size_t>(this->The.functionCount) * this->The.channels));
+  return { slices.Slots(SlotArray::SigmaT), slices.Slots(SlotArray::Source), slices.Slots(SlotArray::OctantSource),
+    slices.Slots(SlotArray::Path), slices.Slots(SlotArray::Lost), slices.Slots(SlotArray::Flux),
+    slices.Slots(SlotArray::PartialCurrents) };
+}
+
+void SweepOnGpu::Implementation::AddArrays(const LaneBatch& batch, const SweepVolume& volume)
+{
+  if (batch.hasArrays)
+  {
+    this->OfLanes.AddUp(batch, this->LaunchOf(batch, volume), volume);
+  }
 }
 
 SweepOnGpu::SweepOnGpu(Device& device, const VolumeLayout& layout, const Buffer<float>& sigma_t,
-  const std::array<bool, 3>& periodic, const SweepRequest& request, Ways ways)
-  : Inner(std::make_unique<Implementation>(device, layout, sigma_t, periodic, request, ways))
+  const std::array<bool, 3>& periodic, const SweepRequest& request, SweepWorkspace& workspace, Ways ways)
+  : Inner(std::make_unique<Implementation>(device, layout, sigma_t, periodic, request, workspace, ways))
 {
 }
 

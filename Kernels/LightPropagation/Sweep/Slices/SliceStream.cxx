@@ -8,7 +8,9 @@ namespace tyndall
 {
 namespace
 {
-constexpr int SliceThickness = 16;      ///< planes of a slot: as many as Gruson et al. take, if there is room
+/// Planes of a slot, if there is room: as many as Gruson et al. take; of GPUs more, since slices along x go over the bus
+/// in rows of so many voxels.
+constexpr int SliceThickness = 16, SliceThicknessOnGpu = 64;
 constexpr std::size_t SlotsPerUnit = 2; ///< one that is crossed, and one whose slice comes or goes
 
 /// Floats of one voxel in all arrays.
@@ -33,7 +35,8 @@ int ThicknessFor(const Device& device, const SweepPlan& plan, const SweepWorkspa
   }
   const std::size_t plane = Count(plan.plane.sizeU) * Count(plan.plane.sizeV) * FloatsOfVoxel(plan) * sizeof(float);
   const std::size_t fit = left / 4 * 3 / (SlotsPerUnit * plan.units.size() * plane);
-  return static_cast<int>(std::clamp<std::size_t>(fit, 1, SliceThickness));
+  const int most = device.IsCpu() ? SliceThickness : SliceThicknessOnGpu;
+  return static_cast<int>(std::clamp<std::size_t>(fit, 1, most));
 }
 
 /// Whether units that are in work side by side never have to do with the same planes.
@@ -102,6 +105,7 @@ void SliceStream::LaySlots()
   this->Stride = RoundUp<std::size_t>(Count(x) * Count(y) * Count(z), SweepPadding);
   this->Places = this->Plan.moments;
   this->Places.channels = this->Plan.channels;
+  this->Places.sizeX = x;
   this->Places.groups = PartsOf<int>(x, MomentGroup);
   this->Places.second = channels * this->Stride;
   const std::size_t row = Count(this->Places.groups) * Count(this->Places.functions - 1) * MomentGroup;
@@ -149,9 +153,9 @@ int SliceStream::Aligned() const
   return this->HasMoments() && this->Plan.axes.axis == 0 ? MomentGroup : 1;
 }
 
-int SliceStream::FirstOfSlot(const SlicePiece& piece) const
+SliceStream::SlotPlace SliceStream::PlaceOf(const SlicePiece& piece, std::size_t launch, std::size_t unit) const
 {
-  return piece.begin / this->Aligned() * this->Aligned();
+  return { SlotsPerUnit * unit + launch % SlotsPerUnit, piece.begin / this->Aligned() * this->Aligned() };
 }
 
 SliceStream::Schedule SliceStream::Cut(const std::vector<cl_int2>& schedule) const
@@ -167,8 +171,8 @@ SliceStream::Schedule SliceStream::Cut(const std::vector<cl_int2>& schedule) con
     }
     for (std::size_t u = 0; u < cut.pieces[launch].size(); ++u)
     {
-      const std::size_t slot = SlotsPerUnit * u + launch % SlotsPerUnit;
-      rows.push_back({ { static_cast<cl_int>(slot), this->FirstOfSlot(cut.pieces[launch][u]) } });
+      const SlotPlace place = this->PlaceOf(cut.pieces[launch][u], launch, u);
+      rows.push_back({ { static_cast<cl_int>(place.slot), place.firstPlane } });
     }
   }
   cut.rows = Buffer<cl_int2>(this->TheDevice, rows, "the schedule");
@@ -232,7 +236,7 @@ SliceStream::Rows SliceStream::PlanarRows(const SlicePiece& piece) const
   std::array<int, 3> first = this->Plan.box.first, size = this->Plan.box.size, inSlot = {};
   first[axis] += piece.begin;
   size[axis] = piece.end - piece.begin;
-  inSlot[axis] = piece.begin - this->FirstOfSlot(piece);
+  inSlot[axis] = piece.begin % this->Aligned();
   const auto place = [](const std::array<int, 3>& voxel, const std::array<int, 3>& extent) {
     return Count(voxel[0]) + Count(extent[0]) * (Count(voxel[1]) + Count(extent[1]) * Count(voxel[2]));
   };
@@ -297,7 +301,7 @@ void SliceStream::Copy(
     {
       if (launch[u].begin < launch[u].end && (array.comesBack || !back))
       {
-        const std::size_t slot = SlotsPerUnit * u + Count(parity);
+        const std::size_t slot = this->PlaceOf(launch[u], Count(parity), u).slot;
         this->CopyArray(array, launch[u], slot * this->SlotFloats(array.slots), back);
       }
     }

@@ -40,6 +40,14 @@ public:
   };
   Schedule Cut(const std::vector<cl_int2>& schedule) const;
 
+  /// Where a unit's piece of a launch lies.
+  struct SlotPlace
+  {
+    std::size_t slot;
+    int firstPlane; ///< of the box, that the slot begins with
+  };
+  SlotPlace PlaceOf(const SlicePiece& piece, std::size_t launch, std::size_t unit) const;
+
   /// The launch's layout as that of slots.
   void Describe(SweepInfo& info) const;
   const Buffer<float>& Slots(SlotArray array) const;
@@ -71,7 +79,6 @@ private:
   void LaySlots();
   bool HasMoments() const { return this->Plan.angular != nullptr; }
   int Aligned() const;
-  int FirstOfSlot(const SlicePiece& piece) const;
   std::size_t SlotFloats(SlotArray array) const;
   Rows PlanarRows(const SlicePiece& piece) const;
   Rows MomentRows(const SlicePiece& piece) const;
