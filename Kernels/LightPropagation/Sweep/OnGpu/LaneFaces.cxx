@@ -118,31 +118,37 @@ void LaneFaces::EnterSides(const LaneBatch& batch, const Rays& rays, std::size_t
   }
 }
 
-void LaneFaces::LeaveSides(const LaneBatch& batch, const Rays& rays, std::size_t first) const
+void LaneFaces::Leave(
+  const LaneBatch& batch, const Rays& rays, std::size_t first, const std::array<const Buffer<float>*, 2>& maps) const
 {
   if (!this->Out)
   {
     return;
   }
-  cl::Kernel kernel = this->Kernel("leave_sides", batch.around);
+  cl::Kernel sides = this->Kernel("leave_sides", batch.around), end = this->Kernel("leave_end", batch.around);
   for (int i = batch.first; i < batch.first + batch.count; ++i)
   {
-    const SweepLane& lane = this->The.lanes[i];
-    With(kernel, cl_int(i), rays.lanes, this->Faces, this->RayPlaces, rays.bundles, rays.crossings,
-      cl_int(rays.ofRound), this->SidesIn, this->SidesOut, *this->Out, cl_ulong(first), cl_ulong(this->Cells));
-    this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange,
-      cl::NDRange(Count(std::max(lane.planes.sizeU, lane.planes.sizeV)), Count(lane.planes.sizeP),
-        std::size_t{ 4 } * this->The.channels));
+    this->LeaveSides(sides, i, rays, first);
+    if (!batch.around)
+    {
+      this->LeaveEnd(end, i, rays, first, *maps[this->The.lanes[i].patternPlanes % 2]);
+    }
   }
 }
 
-void LaneFaces::LeaveEnd(int number, const Rays& rays, std::size_t first, const Buffer<float>& maps) const
+void LaneFaces::LeaveSides(cl::Kernel& kernel, int number, const Rays& rays, std::size_t first) const
 {
-  if (!this->Out)
-  {
-    return;
-  }
-  cl::Kernel kernel = this->Kernel("leave_end", false);
+  const SweepLane& lane = this->The.lanes[number];
+  With(kernel, cl_int(number), rays.lanes, this->Faces, this->RayPlaces, rays.bundles, rays.crossings,
+    cl_int(rays.ofRound), this->SidesIn, this->SidesOut, *this->Out, cl_ulong(first), cl_ulong(this->Cells));
+  this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange,
+    cl::NDRange(Count(std::max(lane.planes.sizeU, lane.planes.sizeV)), Count(lane.planes.sizeP),
+      std::size_t{ 4 } * this->The.channels));
+}
+
+void LaneFaces::LeaveEnd(
+  cl::Kernel& kernel, int number, const Rays& rays, std::size_t first, const Buffer<float>& maps) const
+{
   With(kernel, cl_int(number), rays.lanes, this->Faces, maps, *this->Out, cl_ulong(first), cl_ulong(this->Cells));
   this->TheDevice.Queue().enqueueNDRangeKernel(
     kernel, cl::NullRange, cl::NDRange(this->CellsOfPlane(this->The.lanes[number]), Count(this->The.channels)));

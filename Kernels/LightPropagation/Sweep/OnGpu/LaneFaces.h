@@ -2,6 +2,8 @@
 
 #include "LightPropagation/Sweep/OnGpu/GpuLanes.h"
 
+#include <array>
+
 namespace tyndall
 {
 /// Light that comes and goes by cells of the box's faces (SweepRequest::faceIn, Deposit::faceOut) in a sweep for GPUs:
@@ -32,13 +34,16 @@ public:
   void EnterStart(const LaneBatch& batch, const Rays& rays, std::size_t first, const Buffer<float>& maps) const;
   /// Beside planes that are then crossed.
   void EnterSides(const LaneBatch& batch, const Rays& rays, std::size_t first);
-  /// From beside planes that were crossed.
-  void LeaveSides(const LaneBatch& batch, const Rays& rays, std::size_t first) const;
-  /// Out of the maps at the end of an open axis.
-  void LeaveEnd(int lane, const Rays& rays, std::size_t first, const Buffer<float>& maps) const;
+  /// From beside planes that were crossed, and from the maps at the ends of open axes: lane by lane, so that sums have
+  /// one order whichever lanes go at once.
+  /// @param maps  before planes of even numbers, counted from where rays start, and of odd ones
+  void Leave(
+    const LaneBatch& batch, const Rays& rays, std::size_t first, const std::array<const Buffer<float>*, 2>& maps) const;
 
 private:
   LaneFaceInfo FacesOf(const SweepLane& lane, const Grid& grid) const;
+  void LeaveSides(cl::Kernel& kernel, int lane, const Rays& rays, std::size_t first) const;
+  void LeaveEnd(cl::Kernel& kernel, int lane, const Rays& rays, std::size_t first, const Buffer<float>& maps) const;
   cl::Kernel Kernel(const char* name, bool around) const;
   std::size_t CellsOfPlane(const SweepLane& lane) const;
 

@@ -289,11 +289,6 @@ void SweepOnGpu::Implementation::CrossOnce(
     this->Faces->EnterStart(batch, this->RaysOf(how), volume.faceFirst, this->Maps[0]);
   }
   this->Cross(batch, volume, how, { &this->Maps[0], &this->Maps[1] }, monitor);
-  for (int i = batch.first; this->Faces && i < batch.first + batch.count; ++i)
-  {
-    const Buffer<float>& maps = this->Maps[this->The.lanes[i].planes.sizeP % 2];
-    this->Faces->LeaveEnd(i, this->RaysOf(how), volume.faceFirst, maps);
-  }
   this->Powers.AddUp(
     batch, [this](const SweepLane& lane) -> const Buffer<float>& { return this->Maps[lane.planes.sizeP % 2]; });
   this->AddArrays(batch, volume);
@@ -420,7 +415,7 @@ int SweepOnGpu::Implementation::Cross(const LaneBatch& batch, const SweepVolume&
   const int planes = this->CrossPlanes(batch, volume, how, maps, monitor);
   if (this->Faces)
   {
-    this->Faces->LeaveSides(batch, this->RaysOf(how), volume.faceFirst);
+    this->Faces->Leave(batch, this->RaysOf(how), volume.faceFirst, maps);
   }
   return planes;
 }
