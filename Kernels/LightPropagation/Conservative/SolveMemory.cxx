@@ -36,6 +36,20 @@ std::size_t ArraysOfOrders(const PropagationProblem& problem, OrdersAdded how)
   }
 }
 
+/// What is beside the planes of all axes, in and out, where light comes or goes by cells of faces on a GPU.
+std::size_t BytesBesidePlanes(const PropagationProblem& problem)
+{
+  const std::array<int, 3>& n = problem.TheGrid().size;
+  std::size_t places = 0;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const PlaneAxes across = AcrossAxis(axis);
+    places += Count(n[axis]) * (Count(n[across.u]) + n[across.v] + 1);
+  }
+  const std::size_t directions = Count(std::max(problem.Settings().directionsPerFace, 1)); // twice as many an axis
+  return 4 * sizeof(float) * Count(problem.Channels()) * places * directions;
+}
+
 /// Rays of all bundles along an axis, both ways, and planes that are being crossed; on a GPU rays of all axes before and
 /// behind a plane, and what shines along them.
 std::size_t BytesOfSweep(const Device& device, const PropagationProblem& problem)
@@ -46,7 +60,9 @@ std::size_t BytesOfSweep(const Device& device, const PropagationProblem& problem
   const std::size_t directions = Count(std::max(problem.Settings().directionsPerFace, 1));
   const std::size_t onGpu = 3 * directions * (problem.Scattering().Degree() > 0 ? 3 : 2);
   const std::size_t rays = device.IsCpu() ? 2 * directions + 16 * 4 * 16 : onGpu;
-  return 2 * sizeof(float) * Count(problem.Channels()) * plane * rays;
+  const bool byCells = Reflects(problem.Shining()) || problem.Settings().facePower;
+  return 2 * sizeof(float) * Count(problem.Channels()) * plane * rays +
+    (byCells && !device.IsCpu() ? BytesBesidePlanes(problem) : 0);
 }
 }
 
