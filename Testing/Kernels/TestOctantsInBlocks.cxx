@@ -130,6 +130,10 @@ TEST_F(OctantsInBlocks, SayThatCellsHaveNone)
 
 TEST_F(OctantsInBlocks, FailTogetherWhereMemoryEnds)
 {
+  if (!GetDevice().SharesHostMemory())
+  {
+    GTEST_SKIP() << "what does not fit lies in host memory there";
+  }
   const RandomMedium whole(Grid{ { 4, 3, 3 } }, 1, 4.0f, 6);
   const BlockPartition partition = BlockPartition::Even(whole.medium.grid, 2);
   PropagationSettings settings = ByOctant();

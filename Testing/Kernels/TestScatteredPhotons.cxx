@@ -2,6 +2,7 @@
 
 #include "DeviceTest.h"
 #include "MediumScene.h"
+#include "RandomMedium.h"
 
 #include "Numerics/Constants.h"
 #include "Photons/Marching/PhotonMarcher.h"
@@ -342,6 +343,12 @@ TEST_F(ScatteredPhotonsTest, AreTheSameHoweverTheyAreShared)
   apart.sums = MarchSettings::Sums::Private;
   shared.sums = MarchSettings::Sums::Shared;
   const PhotonLight one = this->March(scene, photons, apart), other = this->March(scene, photons, shared);
+  if (!this->GetDevice().IsCpu()) // on which the compiler may round each of the two kernels in its own way
+  {
+    EXPECT_LT(RelativeRmse(one.light.fluence, other.light.fluence), 1e-6);
+    EXPECT_LT(RelativeRmse(one.meanDirection, other.meanDirection), 1e-6);
+    return;
+  }
   EXPECT_EQ(one.light.fluence, other.light.fluence);
   EXPECT_EQ(one.meanDirection, other.meanDirection);
 }

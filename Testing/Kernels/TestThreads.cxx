@@ -262,6 +262,11 @@ TEST_P(Stopped, GivesBackWhatItTookBesideOthers)
 TEST_P(Stopped, GivesBackWhatItTookWhereMemoryEnds)
 {
   Device& device = this->GetDevice();
+  const std::string name = this->GetParam();
+  if (!device.SharesHostMemory() && (name == "conservative" || name == "by_orders"))
+  {
+    GTEST_SKIP() << "what does not fit lies in host memory there";
+  }
   const Work work = this->WorkNamed(this->GetParam());
   device.ResetPeak();
   const std::size_t before = device.BytesInUse();

@@ -50,8 +50,8 @@ std::size_t BytesBesidePlanes(const PropagationProblem& problem)
   return 4 * sizeof(float) * Count(problem.Channels()) * places * directions;
 }
 
-/// Rays of all bundles along an axis, both ways, and planes that are being crossed; on a GPU rays of all axes before and
-/// behind a plane, and what shines along them.
+/// Rays of all bundles along an axis, both ways, and planes that are being crossed; on a GPU rays of all axes before
+/// and behind a plane, and what shines along them.
 std::size_t BytesOfSweep(const Device& device, const PropagationProblem& problem)
 {
   const std::array<int, 3>& n = problem.TheGrid().size;

@@ -3,7 +3,7 @@
 #include "Device/Defines.h"
 #include "Device/Sizes.h"
 #include "LightPropagation/Sweep/OnGpu/GpuLanes.h"
-#include "LightPropagation/Sweep/OnGpu/PlaneGroups.h"
+#include "LightPropagation/Sweep/OnGpu/PlaneKernels.h"
 #include "TyndallKernelSources.h"
 
 namespace tyndall
@@ -92,11 +92,6 @@ void BlockCrossingOnGpu::Launch(const SweepVolume& volume, int outerSides, const
   const Buffer<float>& functions = plan.angular ? this->Functions : of.path;
   const bool shines = volume.source != nullptr;
   const std::string options = this->Options(shines, volume.octantSource != nullptr);
-  cl::Kernel kernel = this->TheDevice.Kernel("cross_plane", kernel_source::SweepOnGpu, options), find;
-  if (plan.angular && shines)
-  {
-    find = this->TheDevice.Kernel("find_directed", kernel_source::SweepOnGpu, options);
-  }
   PlaneLaunch launch = {};
   launch.sigmaFirst = volume.sigma_t_first;
   launch.sourceFirst = shines ? volume.first : 0;
@@ -104,23 +99,14 @@ void BlockCrossingOnGpu::Launch(const SweepVolume& volume, int outerSides, const
   launch.stride = volume.stride;
   launch.firstChannel = volume.firstChannel;
   launch.moments = plan.moments;
-  const std::size_t sizeU = plan.plane.sizeU, sizeV = plan.plane.sizeV;
-  const cl::NDRange all(RoundUp(sizeU, GroupU), RoundUp(sizeV, GroupV), 1), group(GroupU, GroupV, 1);
-  const double seconds = SecondsPerRay * static_cast<double>(sizeU * sizeV * plan.radianceEachWay);
-  for (launch.plane = 0; launch.plane < plan.Planes(); ++launch.plane)
-  {
-    if (find())
-    {
-      With(find, launch, this->Lanes, of.source, functions, directed);
-      this->TheDevice.Queue().enqueueNDRangeKernel(find, cl::NullRange, all, group);
-    }
-    With(kernel, launch, this->Lanes, *volume.sigma_t, of.source, of.octants, of.path, of.lost, of.flux, of.currents,
-      this->Maps(launch.plane), this->Maps(launch.plane + 1), this->Beyond, this->Bundles, this->Crossings, directed,
-      functions, this->Left, this->Workspace.sidesIn, this->Workspace.sidesOut, cl_int(outerSides));
-    this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, all, group);
-    this->TheDevice.Queued(seconds);
-    Report(monitor, (launch.plane + 1.0) / plan.Planes());
-  }
+  PlaneKernels kernels(
+    this->TheDevice, options, plan.angular && shines, { plan.plane.sizeU, plan.plane.sizeV, 1, plan.radianceEachWay });
+  kernels.SetSides(this->Workspace.sidesIn, this->Workspace.sidesOut, outerSides);
+  kernels.Launch(launch, { *volume.sigma_t, of.source, of.octants, of.path, of.lost, of.flux, of.currents },
+    { this->Lanes, this->Bundles, this->Crossings, this->Beyond, { &this->Maps(0), &this->Maps(1) }, directed,
+      functions, this->Left },
+    0, plan.Planes(), nullptr, nullptr,
+    [&](int behind) { Report(monitor, static_cast<double>(behind) / plan.Planes()); });
 }
 
 std::vector<float> BlockCrossingOnGpu::SumsOfSides()

@@ -79,11 +79,9 @@ std::size_t LaneFaces::CellsOfPlane(const SweepLane& lane) const
   return Count(lane.planes.sizeU) * lane.planes.sizeV;
 }
 
-void LaneFaces::SetSides(cl::Kernel& kernel) const
+void LaneFaces::SetSides(PlaneKernels& planes) const
 {
-  kernel.setArg(FirstOfSides, this->SidesIn.Handle());
-  kernel.setArg(FirstOfSides + 1, this->SidesOut.Handle());
-  kernel.setArg(FirstOfSides + 2, AllSides);
+  planes.SetSides(this->SidesIn, this->SidesOut, AllSides);
 }
 
 void LaneFaces::EnterStart(const LaneBatch& batch, const Rays& rays, std::size_t first, const Buffer<float>& maps) const

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "LightPropagation/Sweep/OnGpu/GpuLanes.h"
+#include "LightPropagation/Sweep/OnGpu/PlaneKernels.h"
 
 #include <array>
 
@@ -27,7 +28,7 @@ public:
   LaneFaces(Device& device, const GpuLanes& lanes, const Grid& grid, const SweepRequest& request);
 
   bool Shine() const { return this->In != nullptr; } ///< light comes in by cells
-  void SetSides(cl::Kernel& kernel) const;           ///< the last arguments of `cross_plane`
+  void SetSides(PlaneKernels& planes) const;         ///< theirs, that are beside planes
 
   /// Into the maps where rays of an open axis start.
   /// @param first  where the first channel begins, of faceIn and faceOut

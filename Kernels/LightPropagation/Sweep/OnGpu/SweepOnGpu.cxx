@@ -7,7 +7,7 @@
 #include "LightPropagation/Sweep/OnGpu/LaneFaces.h"
 #include "LightPropagation/Sweep/OnGpu/LanePowers.h"
 #include "LightPropagation/Sweep/OnGpu/LaneSlices.h"
-#include "LightPropagation/Sweep/OnGpu/PlaneGroups.h"
+#include "LightPropagation/Sweep/OnGpu/PlaneKernels.h"
 #include "LightPropagation/Sweep/SweepBorder.h"
 #include "LightPropagation/Sweep/SweepPlan.h"
 #include "LightPropagation/Sweep/SweepVolume.h"
@@ -63,12 +63,6 @@ private:
     int current = 0;
   };
 
-  /// What planes are crossed with: of the whole volume, or of slots.
-  struct Arrays
-  {
-    const Buffer<float>&sigma_t, &source, &octants, &path, &lost, &flux, &currents;
-  };
-
   void MakeBuffers();
   void MakeSlices();
   void BeginLost(const LaneBatch& batch);
@@ -88,8 +82,9 @@ private:
     const std::array<const Buffer<float>*, 2>& maps, const Monitor& monitor);
   int CrossPlanes(const LaneBatch& batch, const SweepVolume& volume, const Crossing& how,
     const std::array<const Buffer<float>*, 2>& maps, const Monitor& monitor);
-  Arrays Whole(const LaneBatch& batch, const SweepVolume& volume) const;
-  Arrays InSlots(const LaneSlices& slices) const;
+  PlaneKernels KernelsOf(const LaneBatch& batch, bool shines) const;
+  PlaneArrays Whole(const LaneBatch& batch, const SweepVolume& volume) const;
+  PlaneArrays InSlots(const LaneSlices& slices) const;
   void AddArrays(const LaneBatch& batch, const SweepVolume& volume);
 
   Device& TheDevice;
@@ -423,54 +418,20 @@ int SweepOnGpu::Implementation::Cross(const LaneBatch& batch, const SweepVolume&
 int SweepOnGpu::Implementation::CrossPlanes(const LaneBatch& batch, const SweepVolume& volume, const Crossing& how,
   const std::array<const Buffer<float>*, 2>& maps, const Monitor& monitor)
 {
-  int sizeU = 0, sizeV = 0, planes = 0, rays = 0;
+  int planes = 0;
   for (int i = batch.first; i < batch.first + batch.count; ++i)
   {
-    const SweepLane& lane = this->The.lanes[i];
-    sizeU = std::max(sizeU, lane.planes.sizeU);
-    sizeV = std::max(sizeV, lane.planes.sizeV);
-    planes = std::max(planes, lane.patternPlanes);
-    rays += lane.rays;
+    planes = std::max(planes, this->The.lanes[i].patternPlanes);
   }
-  const Buffer<float>& directed = this->Angular ? this->Directed : *maps[0];
-  const Buffer<float>& functions = this->Angular ? this->Along : *maps[0];
-  const std::string options = this->Options(batch, how.shines);
-  cl::Kernel kernel = this->TheDevice.Kernel("cross_plane", kernel_source::SweepOnGpu, options), find;
-  if (this->Angular && how.shines)
-  {
-    find = this->TheDevice.Kernel("find_directed", kernel_source::SweepOnGpu, options);
-  }
-  if (this->Faces)
-  {
-    this->Faces->SetSides(kernel);
-  }
-  const cl::NDRange all(RoundUp(Count(sizeU), GroupU), RoundUp(Count(sizeV), GroupV), batch.count);
-  const cl::NDRange group(GroupU, GroupV, 1);
-  const double seconds = SecondsPerRay * sizeU * sizeV * rays * this->The.channels;
-  const auto cross = [&](PlaneLaunch launch, const Arrays& in, int from, int to, const std::vector<cl::Event>* after,
-                       cl::Event* done) {
-    for (launch.plane = from; launch.plane < to; ++launch.plane)
-    {
-      if (find())
-      {
-        With(find, launch, this->Lanes, in.source, functions, directed);
-        this->TheDevice.Queue().enqueueNDRangeKernel(find, cl::NullRange, all, group, after);
-      }
-      With(kernel, launch, this->Lanes, in.sigma_t, in.source, in.octants, in.path, in.lost, in.flux, in.currents,
-        *maps[launch.plane % 2], *maps[1 - launch.plane % 2], *how.entering, this->Bundles,
-        how.round ? *how.round : this->Crossings, directed, functions, this->Powers.Escaped());
-      this->TheDevice.Queue().enqueueNDRangeKernel(
-        kernel, cl::NullRange, all, group, after, launch.plane + 1 == to ? done : nullptr);
-      after = nullptr; // the queue keeps the order
-      this->TheDevice.Queued(seconds);
-      Report(monitor, (launch.plane + 1.0) / planes);
-    }
-  };
+  PlaneKernels kernels = this->KernelsOf(batch, how.shines);
+  const PlaneRays rays = { this->Lanes, this->Bundles, how.round ? *how.round : this->Crossings, *how.entering, maps,
+    this->Angular ? this->Directed : *maps[0], this->Angular ? this->Along : *maps[0], this->Powers.Escaped() };
+  const auto crossed = [&](int behind) { Report(monitor, static_cast<double>(behind) / planes); };
   PlaneLaunch launch = this->LaunchOf(batch, volume);
   launch.ofRound = how.round != nullptr;
   if (this->Slices.empty() || !this->Slices[batch.first])
   {
-    cross(launch, this->Whole(batch, volume), 0, planes, nullptr, nullptr);
+    kernels.Launch(launch, this->Whole(batch, volume), rays, 0, planes, nullptr, nullptr, crossed);
     return planes;
   }
   LaneSlices& slices = *this->Slices[batch.first];
@@ -479,7 +440,7 @@ int SweepOnGpu::Implementation::CrossPlanes(const LaneBatch& batch, const SweepV
   shining.octantSource = how.shines ? this->OctantSource : nullptr;
   slices.Cross(shining, launch,
     [&](const PlaneLaunch& inSlot, int from, int to, const std::vector<cl::Event>* after, cl::Event* done) {
-      cross(inSlot, this->InSlots(slices), from, to, after, done);
+      kernels.Launch(inSlot, this->InSlots(slices), rays, from, to, after, done, crossed);
     });
   return planes;
 }
@@ -489,9 +450,27 @@ LaneFaces::Rays SweepOnGpu::Implementation::RaysOf(const Crossing& how) const
   return { this->Lanes, this->Bundles, how.round ? *how.round : this->Crossings, how.round != nullptr, *how.entering };
 }
 
+PlaneKernels SweepOnGpu::Implementation::KernelsOf(const LaneBatch& batch, bool shines) const
+{
+  PlaneKernels::Size size;
+  size.lanes = batch.count;
+  for (int i = batch.first; i < batch.first + batch.count; ++i)
+  {
+    const SweepLane& lane = this->The.lanes[i];
+    size.u = std::max(size.u, lane.planes.sizeU);
+    size.v = std::max(size.v, lane.planes.sizeV);
+    size.rays += Count(lane.rays) * this->The.channels;
+  }
+  PlaneKernels kernels(this->TheDevice, this->Options(batch, shines), this->Angular && shines, size);
+  if (this->Faces)
+  {
+    this->Faces->SetSides(kernels);
+  }
+  return kernels;
+}
+
 /// What there is none of is not looked at.
-SweepOnGpu::Implementation::Arrays SweepOnGpu::Implementation::Whole(
-  const LaneBatch& batch, const SweepVolume& volume) const
+PlaneArrays SweepOnGpu::Implementation::Whole(const LaneBatch& batch, const SweepVolume& volume) const
 {
   const bool own = batch.hasArrays;
   const Buffer<float>& path = own ? this->OfLanes.path : *this->To.path;
@@ -508,7 +487,7 @@ SweepOnGpu::Implementation::Arrays SweepOnGpu::Implementation::Whole(
                               : *this->To.partialCurrents };
 }
 
-SweepOnGpu::Implementation::Arrays SweepOnGpu::Implementation::InSlots(const LaneSlices& slices) const
+PlaneArrays SweepOnGpu::Implementation::InSlots(const LaneSlices& slices) const
 {
   return { slices.Slots(SlotArray::SigmaT), slices.Slots(SlotArray::Source), slices.Slots(SlotArray::OctantSource),
     slices.Slots(SlotArray::Path), slices.Slots(SlotArray::Lost), slices.Slots(SlotArray::Flux),

@@ -9,10 +9,11 @@
 
 namespace tyndall
 {
-/// The sweep of a volume by one device, organised for GPUs: a work-item a voxel of a plane, all rays of one way along an
-/// axis, and all ways along open axes at once where there is memory for it, both along a periodic one. Its light is that
-/// of SweepInMemory to 1e-5, and the same bit for bit each time (numerics.md, section 4.8). A volume in host memory goes
-/// through the device in slices, one way after the other (LaneSlices.h): the same light bit for bit along open axes.
+/// The sweep of a volume by one device, organised for GPUs: a work-item a voxel of a plane, all rays of one way along
+/// an axis, and all ways along open axes at once where there is memory for it, both along a periodic one. Its light is
+/// that of SweepInMemory to 1e-5, and the same bit for bit each time (numerics.md, section 4.8). A volume in host
+/// memory goes through the device in slices, one way after the other (LaneSlices.h): the same light bit for bit along
+/// open axes.
 ///
 /// Memory: two floats a voxel of a plane, ray and channel; where ways go at once, each has its own path, flux and
 /// partial currents, in at most a quarter of the memory that is left. Else they follow one another. With angular

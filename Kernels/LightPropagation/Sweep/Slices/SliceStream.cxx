@@ -8,8 +8,8 @@ namespace tyndall
 {
 namespace
 {
-/// Planes of a slot, if there is room: as many as Gruson et al. take; of GPUs more, since slices along x go over the bus
-/// in rows of so many voxels.
+/// Planes of a slot, if there is room: as many as Gruson et al. take; of GPUs more, since slices along x go over the
+/// bus in rows of so many voxels.
 constexpr int SliceThickness = 16, SliceThicknessOnGpu = 64;
 constexpr std::size_t SlotsPerUnit = 2; ///< one that is crossed, and one whose slice comes or goes
 
