@@ -5,7 +5,7 @@
 namespace tyndall
 {
 /// By the kernels of Sweep/OnCpu with SIDES (SweepSides.cl); maps are padded as SweepPlan has them.
-class BlockCrossingOnCpu : public BlockCrossing
+class BlockCrossingOnCpu final : public BlockCrossing
 {
 public:
   /// @param sizeY  of the block

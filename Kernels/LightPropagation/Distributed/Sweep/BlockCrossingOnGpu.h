@@ -9,7 +9,7 @@ namespace tyndall
 {
 /// By the kernels of Sweep/OnGpu with SIDES (VoxelSides.cl): a lane, which adds to what is there. A map is
 /// [ray][channel][v][u].
-class BlockCrossingOnGpu : public BlockCrossing
+class BlockCrossingOnGpu final : public BlockCrossing
 {
 public:
   BlockCrossingOnGpu(Device& device, const RaysOfBlock& rays, BlockWorkspace& workspace);

@@ -36,8 +36,8 @@ struct LaneBatch
 /// What marches in a sweep for GPUs, and where it is in the buffers: worked out once on the host.
 struct GpuLanes
 {
-  /// @param atOnce  lanes of open axes go in the same launches, as do both ways of a periodic axis; else one by one. Not
-  /// on a device that streams, where all lanes add to the deposit
+  /// @param atOnce  lanes of open axes go in the same launches, as do both ways of a periodic axis; else one by one.
+  /// Not on a device that streams, where all lanes add to the deposit
   GpuLanes(const Device& device, const VolumeLayout& layout, const SweepRequest& request,
     const std::array<bool, 3>& periodic, bool atOnce);
 
