@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <string>
 #include <vector>
 
@@ -70,6 +71,39 @@ TEST_F(ChoicesInBlocks, LeaveInHostMemoryWhatDoesNotFitTheBudget)
   EXPECT_EQ(found.netFlux, expected.netFlux);
   EXPECT_NE(found.device.find("host memory"), std::string::npos) << found.device;
   EXPECT_EQ(expected.device.find("host memory"), std::string::npos) << expected.device;
+}
+
+/// On a GPU in slices of the blocks, with copies: light of all kinds, and what goes with it.
+TEST_F(ChoicesInBlocks, HaveTheSameLightOfWhatIsInHostMemory)
+{
+  enum Kind
+  {
+    InColour,
+    InMoments,
+    RoundAnAxis,
+    ByOctant,
+    ByBalance
+  };
+  for (const Kind kind : { InColour, InMoments, RoundAnAxis, ByOctant, ByBalance })
+  {
+    SCOPED_TRACE("kind " + std::to_string(kind));
+    RandomMedium whole(Grid{ { 21, 8, 9 } }, kind == InColour ? 3 : 1, kind >= ByOctant ? 6.0f : 0.6f, 27);
+    whole.medium.phase = PhaseFunction::HenyeyGreenstein(kind == InMoments ? 0.6 : 0.0);
+    const BlockPartition partition = BlockPartition::Even(whole.medium.grid, 4);
+    PropagationSettings settings = SettingsOf(kind == ByBalance ? 0 : 3);
+    settings.netFlux = true;
+    settings.periodic = { kind == RoundAnAxis, false, false };
+    settings.source = kind == ByOctant ? PropagationSource::Octants : PropagationSource::Automatic;
+    const LightField expected = LightOfAll(GetDevice(), partition, whole, LitFromOutside(), settings);
+    settings.memoryBudget = 10000;
+    setenv("TYNDALL_WITHOUT", "host_memory", 1);
+    const LightField found = LightOfAll(GetDevice(), partition, whole, LitFromOutside(), settings);
+    unsetenv("TYNDALL_WITHOUT");
+    EXPECT_EQ(found.fluence, expected.fluence);
+    EXPECT_EQ(found.netFlux, expected.netFlux);
+    EXPECT_EQ(found.facePowerOut, expected.facePowerOut);
+    EXPECT_NE(found.device.find("host memory"), std::string::npos) << found.device;
+  }
 }
 
 /// Without a budget of the user's: of a device with memory of its own, nine tenths of what is left, as of the whole.

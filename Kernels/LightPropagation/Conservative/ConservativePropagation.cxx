@@ -173,7 +173,7 @@ LightField Solve(Device& device, const Medium& medium, const Illumination& illum
 {
   const PropagationProblem problem(medium, illumination, settings, MemoryOf(device));
   const OrdersAdded how = HowOrdersAreAdded(problem);
-  Device ofSolve(device, BudgetOfSolve(device, problem, how));
+  Device ofSolve(device, BudgetOfSolve(device, ExtentOf(problem, how)));
   TransportParts parts(ofSolve, problem, how);
   std::unique_ptr<Iteration> iteration;
   if (parts.How == OrdersAdded::ByBalance)

@@ -11,66 +11,73 @@ namespace tyndall
 namespace
 {
 /// Values a voxel and channel of the medium and of the light that sweeps carry.
-std::size_t ArraysOfLight(const PropagationProblem& problem)
+std::size_t ArraysOfLight(const SolveExtent& solve)
 {
-  const std::size_t degree = Count(problem.Scattering().Degree());
+  const std::size_t degree = Count(solve.degree);
   const std::size_t moments = (degree + 1) * (degree + 1);
   const std::size_t medium = 2 + (degree > 0 ? degree + 2 : 0);
-  const std::size_t flux = problem.Settings().netFlux ? 3 : 0;
-  const std::size_t shown = degree > 0 && problem.Settings().storeMoments ? moments : 0;
+  const std::size_t flux = solve.settings.netFlux ? 3 : 0;
+  const std::size_t shown = degree > 0 && solve.settings.storeMoments ? moments : 0;
   const std::size_t beams = degree > 0 ? 5 : 0;
-  return medium + 2 * moments + 1 + flux + shown + beams + (problem.Settings().firstMoments ? 6 : 0);
+  return medium + 2 * moments + 1 + flux + shown + beams + (solve.settings.firstMoments ? 6 : 0);
 }
 
 /// The same of what adds up scattering orders.
-std::size_t ArraysOfOrders(const PropagationProblem& problem, OrdersAdded how)
+std::size_t ArraysOfOrders(const SolveExtent& solve)
 {
-  const std::size_t degree = Count(problem.Scattering().Degree());
+  const std::size_t degree = Count(solve.degree);
   const std::size_t moments = (degree + 1) * (degree + 1);
   constexpr std::size_t OfOctants = 28, OfCells = 2, OfBalance = 34;
-  switch (how)
+  switch (solve.how)
   {
-    case OrdersAdded::ByBalance: return OfBalance + 2 * moments + (problem.Settings().netFlux ? 6 : 0);
+    case OrdersAdded::ByBalance: return OfBalance + 2 * moments + (solve.settings.netFlux ? 6 : 0);
     case OrdersAdded::ByCells: return OfCells;
-    default: return OctantSources::Matter(problem, false) ? OfOctants : 0;
+    default: return solve.byOctant ? OfOctants : 0;
   }
 }
 
 /// What is beside the planes of all axes, in and out, where light comes or goes by cells of faces on a GPU.
-std::size_t BytesBesidePlanes(const PropagationProblem& problem)
+std::size_t BytesBesidePlanes(const SolveExtent& solve)
 {
-  const std::array<int, 3>& n = problem.TheGrid().size;
+  const std::array<int, 3>& n = solve.size;
   std::size_t places = 0;
   for (int axis = 0; axis < 3; ++axis)
   {
     const PlaneAxes across = AcrossAxis(axis);
     places += Count(n[axis]) * (Count(n[across.u]) + n[across.v] + 1);
   }
-  const std::size_t directions = Count(std::max(problem.Settings().directionsPerFace, 1)); // twice as many an axis
-  return 4 * sizeof(float) * Count(problem.Channels()) * places * directions;
+  const std::size_t directions = Count(std::max(solve.settings.directionsPerFace, 1)); // twice as many an axis
+  return 4 * sizeof(float) * Count(solve.channels) * places * directions;
 }
 
 /// Rays of all bundles along an axis, both ways, and planes that are being crossed; on a GPU rays of all axes before
 /// and behind a plane, and what shines along them.
-std::size_t BytesOfSweep(const Device& device, const PropagationProblem& problem)
+std::size_t BytesOfSweep(const Device& device, const SolveExtent& solve)
 {
-  const std::array<int, 3>& n = problem.TheGrid().size;
+  const std::array<int, 3>& n = solve.size;
   const std::size_t plane =
     std::max({ Count(n[0]) * Count(n[1]), Count(n[1]) * Count(n[2]), Count(n[0]) * Count(n[2]) });
-  const std::size_t directions = Count(std::max(problem.Settings().directionsPerFace, 1));
-  const std::size_t onGpu = 3 * directions * (problem.Scattering().Degree() > 0 ? 3 : 2);
+  const std::size_t directions = Count(std::max(solve.settings.directionsPerFace, 1));
+  const std::size_t onGpu = 3 * directions * (solve.degree > 0 ? 3 : 2);
   const std::size_t rays = device.IsCpu() ? 2 * directions + 16 * 4 * 16 : onGpu;
-  const bool byCells = Reflects(problem.Shining()) || problem.Settings().facePower;
-  return 2 * sizeof(float) * Count(problem.Channels()) * plane * rays +
-    (byCells && !device.IsCpu() ? BytesBesidePlanes(problem) : 0);
+  return 2 * sizeof(float) * Count(solve.channels) * plane * rays +
+    (solve.besidePlanes && !device.IsCpu() ? BytesBesidePlanes(solve) : 0);
 }
 }
 
-std::size_t BytesOfSolve(const Device& device, const PropagationProblem& problem, OrdersAdded how)
+SolveExtent ExtentOf(const PropagationProblem& problem, OrdersAdded how)
 {
-  const VolumeLayout layout = { problem.TheGrid(), problem.Channels() };
-  return sizeof(float) * layout.Values() * (ArraysOfLight(problem) + ArraysOfOrders(problem, how)) +
-    BytesOfSweep(device, problem);
+  SolveExtent solve = { problem.TheGrid().size, problem.Settings(), problem.Channels(), problem.Scattering().Degree(),
+    how };
+  solve.byOctant = OctantSources::Matter(problem, false);
+  solve.besidePlanes = Reflects(problem.Shining()) || problem.Settings().facePower;
+  return solve;
+}
+
+std::size_t BytesOfSolve(const Device& device, const SolveExtent& solve)
+{
+  const VolumeLayout layout = { Grid{ solve.size }, solve.channels };
+  return sizeof(float) * layout.Values() * (ArraysOfLight(solve) + ArraysOfOrders(solve)) + BytesOfSweep(device, solve);
 }
 
 MemoryBudget BudgetAskedFor(const Device& device, std::size_t asked)
@@ -85,12 +92,12 @@ MemoryBudget BudgetAskedFor(const Device& device, std::size_t asked)
   return budget;
 }
 
-MemoryBudget BudgetOfSolve(const Device& device, const PropagationProblem& problem, OrdersAdded how)
+MemoryBudget BudgetOfSolve(const Device& device, const SolveExtent& solve)
 {
-  MemoryBudget budget = BudgetAskedFor(device, problem.Settings().memoryBudget);
-  if (budget.spills && BytesOfSolve(device, problem, how) > budget.bytes)
+  MemoryBudget budget = BudgetAskedFor(device, solve.settings.memoryBudget);
+  if (budget.spills && BytesOfSolve(device, solve) > budget.bytes)
   {
-    budget.hostFrom = sizeof(float) * problem.TheGrid().VoxelCount();
+    budget.hostFrom = sizeof(float) * Grid{ solve.size }.VoxelCount();
   }
   return budget;
 }

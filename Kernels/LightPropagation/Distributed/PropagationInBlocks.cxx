@@ -108,6 +108,7 @@ private:
     return this->Given.whole.VoxelVolume() / this->Unvarying.Widened(this->Given.whole).VoxelVolume();
   }
   UncollidedDirections FinerDirections(OrdersAdded how) const;
+  MemoryBudget Budget(const Device& device) const;
   bool IsInLayers(const Medium& medium, const Illumination& illumination) const;
 
   Communicator& Others;
@@ -136,11 +137,27 @@ UncollidedDirections ProblemInBlocks::FinerDirections(OrdersAdded how) const
   return { static_cast<int>(all[0]), all[1] > 0.0 };
 }
 
+/// Kernels for CPUs work on what lies in host memory where it is; for GPUs a block that does not fit goes through the
+/// device in slices.
+MemoryBudget ProblemInBlocks::Budget(const Device& device) const
+{
+  if (device.IsCpu())
+  {
+    return BudgetAskedFor(device, this->Settings.memoryBudget);
+  }
+  const BlockScene& scene = *this->Scene;
+  SolveExtent solve = { this->Blocks.blocks[this->Others.Rank()].size, this->Settings, scene.channels,
+    this->Has ? scene.Scattering().Degree() : 0, this->Orders.how };
+  solve.byOctant = this->Settings.source == PropagationSource::Octants;
+  solve.besidePlanes = true;
+  return BudgetOfSolve(device, solve);
+}
+
 LightField ProblemInBlocks::Solve(
   Device& device, const Illumination& illumination, const Monitor& monitor, KeptLight* kept)
 {
   const BlockScene& scene = *this->Scene;
-  Device ofSolve(device, BudgetAskedFor(device, this->Settings.memoryBudget));
+  Device ofSolve(device, this->Budget(device));
   const bool byBalance = this->Orders.how == OrdersAdded::ByBalance;
   const UncollidedDirections finer = byBalance ? UncollidedDirections() : this->FinerDirections(this->Orders.how);
   std::optional<IncidentLight> incident;

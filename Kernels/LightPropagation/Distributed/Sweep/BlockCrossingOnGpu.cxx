@@ -30,13 +30,14 @@ BlockCrossingOnGpu::BlockCrossingOnGpu(Device& device, const RaysOfBlock& rays, 
     reserve(workspace.directed, this->MapFloats(), "what shines along the rays");
     this->Functions = Buffer<float>(device, FunctionsAlong(plan, rays.way, *plan.angular), "the angular functions");
   }
-  this->Lanes = Buffer<SweepLane>(device, std::vector<SweepLane>{ this->Lane }, "the rays' way");
   this->Bundles = Buffer<BundleInfo>(device, plan.bundleRows, "the bundles of rays");
   this->Beyond = Buffer<cl_float4>(device, plan.radianceEachWay, "the light that comes in sideways");
   const std::size_t rows = std::size_t{ 4 } * plan.Planes() * plan.channels;
   this->Left = Buffer<float>(device, rows * this->Lane.positions, "the power that leaves sideways");
   this->Left.Fill(0.0f); // rows of the shorter faces stay so at their ends
   this->Sides = Buffer<float>(device, rows, "sums");
+  this->Slices = this->MakeSlices();
+  this->Lanes = Buffer<SweepLane>(device, std::vector<SweepLane>{ this->Lane }, "the rays' way");
 }
 
 std::size_t BlockCrossingOnGpu::MapFloats() const
@@ -83,6 +84,32 @@ std::string BlockCrossingOnGpu::Options(bool shines, bool octants) const
     Define("AROUND", this->Rays.around) + Define("SIDES", 1);
 }
 
+/// As SliceStream takes a grid of its own: the block's arrays hold no other voxels.
+std::unique_ptr<LaneSlices> BlockCrossingOnGpu::MakeSlices()
+{
+  if (!this->TheDevice.Streams())
+  {
+    return nullptr;
+  }
+  SweepPlan plan = this->Plan;
+  plan.grid.size = plan.box.size;
+  plan.box.first = {};
+  plan.periodic[plan.axes.axis] = this->Rays.around; // then there is `lost` beside the path
+  return LaneSlices::Make(this->TheDevice, plan, this->Lane, this->Workspace.sweep);
+}
+
+PlaneLaunch BlockCrossingOnGpu::LaunchOf(const SweepVolume& volume) const
+{
+  PlaneLaunch launch = {};
+  launch.sigmaFirst = volume.sigma_t_first;
+  launch.sourceFirst = volume.source ? volume.first : 0;
+  launch.putFirst = volume.first;
+  launch.stride = volume.stride;
+  launch.firstChannel = volume.firstChannel;
+  launch.moments = this->Plan.moments;
+  return launch;
+}
+
 /// All planes, one after the other.
 void BlockCrossingOnGpu::Launch(const SweepVolume& volume, int outerSides, const Monitor& monitor)
 {
@@ -92,21 +119,23 @@ void BlockCrossingOnGpu::Launch(const SweepVolume& volume, int outerSides, const
   const Buffer<float>& functions = plan.angular ? this->Functions : of.path;
   const bool shines = volume.source != nullptr;
   const std::string options = this->Options(shines, volume.octantSource != nullptr);
-  PlaneLaunch launch = {};
-  launch.sigmaFirst = volume.sigma_t_first;
-  launch.sourceFirst = shines ? volume.first : 0;
-  launch.putFirst = volume.first;
-  launch.stride = volume.stride;
-  launch.firstChannel = volume.firstChannel;
-  launch.moments = plan.moments;
   PlaneKernels kernels(
     this->TheDevice, options, plan.angular && shines, { plan.plane.sizeU, plan.plane.sizeV, 1, plan.radianceEachWay });
   kernels.SetSides(this->Workspace.sidesIn, this->Workspace.sidesOut, outerSides);
-  kernels.Launch(launch, { *volume.sigma_t, of.source, of.octants, of.path, of.lost, of.flux, of.currents },
-    { this->Lanes, this->Bundles, this->Crossings, this->Beyond, { &this->Maps(0), &this->Maps(1) }, directed,
-      functions, this->Left },
-    0, plan.Planes(), nullptr, nullptr,
-    [&](int behind) { Report(monitor, static_cast<double>(behind) / plan.Planes()); });
+  const PlaneRays rays = { this->Lanes, this->Bundles, this->Crossings, this->Beyond,
+    { &this->Maps(0), &this->Maps(1) }, directed, functions, this->Left };
+  const auto crossed = [&](int behind) { Report(monitor, static_cast<double>(behind) / plan.Planes()); };
+  const PlaneLaunch launch = this->LaunchOf(volume);
+  if (!this->Slices)
+  {
+    kernels.Launch(launch, { *volume.sigma_t, of.source, of.octants, of.path, of.lost, of.flux, of.currents }, rays, 0,
+      plan.Planes(), nullptr, nullptr, crossed);
+    return;
+  }
+  this->Slices->Cross(volume, launch,
+    [&](const PlaneLaunch& inSlot, int from, int to, const std::vector<cl::Event>* after, cl::Event* done) {
+      kernels.Launch(inSlot, this->Slices->Arrays(), rays, from, to, after, done, crossed);
+    });
 }
 
 std::vector<float> BlockCrossingOnGpu::SumsOfSides()

@@ -1,14 +1,17 @@
 #pragma once
 
 #include "LightPropagation/Distributed/Sweep/BlockCrossing.h"
+#include "LightPropagation/Sweep/OnGpu/LaneSlices.h"
+#include "LightPropagation/Sweep/OnGpu/PlaneKernels.h"
 #include "LightPropagation/Sweep/OnGpu/SweepOnGpuShared.h"
 
+#include <memory>
 #include <string>
 
 namespace tyndall
 {
 /// By the kernels of Sweep/OnGpu with SIDES (VoxelSides.cl): a lane, which adds to what is there. A map is
-/// [ray][channel][v][u].
+/// [ray][channel][v][u]. What of the block is in host memory goes through the device in slices.
 class BlockCrossingOnGpu final : public BlockCrossing
 {
 public:
@@ -22,6 +25,8 @@ public:
 
 private:
   std::string Options(bool shines, bool octants) const;
+  std::unique_ptr<LaneSlices> MakeSlices();
+  PlaneLaunch LaunchOf(const SweepVolume& volume) const;
   void Launch(const SweepVolume& volume, int outerSides, const Monitor& monitor);
   std::vector<float> SumsOfSides();
   /// That rays are in before plane k, counted from the block's first one.
@@ -32,6 +37,7 @@ private:
   const SweepPlan& Plan; ///< theirs
   BlockWorkspace& Workspace;
   SweepLane Lane;
+  std::unique_ptr<LaneSlices> Slices; ///< null: the block lies on the device, or is swept where it lies
 
   Buffer<SweepLane> Lanes; ///< the one
   Buffer<BundleInfo> Bundles;

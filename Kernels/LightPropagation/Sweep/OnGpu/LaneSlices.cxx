@@ -30,6 +30,13 @@ std::unique_ptr<LaneSlices> LaneSlices::Make(
   return slices;
 }
 
+PlaneArrays LaneSlices::Arrays() const
+{
+  const auto slots = [this](SlotArray array) -> const Buffer<float>& { return this->Stream->Slots(array); };
+  return { slots(SlotArray::SigmaT), slots(SlotArray::Source), slots(SlotArray::OctantSource), slots(SlotArray::Path),
+    slots(SlotArray::Lost), slots(SlotArray::Flux), slots(SlotArray::PartialCurrents) };
+}
+
 void LaneSlices::Cross(const SweepVolume& volume, const PlaneLaunch& launch, const Planes& cross)
 {
   SweepInfo slots = {};

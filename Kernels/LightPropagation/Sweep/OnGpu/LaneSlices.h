@@ -1,5 +1,6 @@
 #pragma once
 
+#include "LightPropagation/Sweep/OnGpu/PlaneKernels.h"
 #include "LightPropagation/Sweep/OnGpu/SweepOnGpuShared.h"
 #include "LightPropagation/Sweep/Slices/SliceStream.h"
 #include "LightPropagation/Sweep/SweepPlan.h"
@@ -20,7 +21,7 @@ public:
   static std::unique_ptr<LaneSlices> Make(
     Device& device, const SweepPlan& plan, SweepLane& lane, SweepWorkspace& workspace);
 
-  const Buffer<float>& Slots(SlotArray array) const { return this->Stream->Slots(array); }
+  PlaneArrays Arrays() const; ///< the slots
 
   /// The lane's planes from, to, whose slice lies in a slot that the launch tells; they wait for some events, and the
   /// last one tells one that it is done.

@@ -84,7 +84,6 @@ private:
     const std::array<const Buffer<float>*, 2>& maps, const Monitor& monitor);
   PlaneKernels KernelsOf(const LaneBatch& batch, bool shines) const;
   PlaneArrays Whole(const LaneBatch& batch, const SweepVolume& volume) const;
-  PlaneArrays InSlots(const LaneSlices& slices) const;
   void AddArrays(const LaneBatch& batch, const SweepVolume& volume);
 
   Device& TheDevice;
@@ -440,7 +439,7 @@ int SweepOnGpu::Implementation::CrossPlanes(const LaneBatch& batch, const SweepV
   shining.octantSource = how.shines ? this->OctantSource : nullptr;
   slices.Cross(shining, launch,
     [&](const PlaneLaunch& inSlot, int from, int to, const std::vector<cl::Event>* after, cl::Event* done) {
-      kernels.Launch(inSlot, this->InSlots(slices), rays, from, to, after, done, crossed);
+      kernels.Launch(inSlot, slices.Arrays(), rays, from, to, after, done, crossed);
     });
   return planes;
 }
@@ -485,13 +484,6 @@ PlaneArrays SweepOnGpu::Implementation::Whole(const LaneBatch& batch, const Swee
     !this->To.partialCurrents ? path
       : own                   ? this->OfLanes.currents
                               : *this->To.partialCurrents };
-}
-
-PlaneArrays SweepOnGpu::Implementation::InSlots(const LaneSlices& slices) const
-{
-  return { slices.Slots(SlotArray::SigmaT), slices.Slots(SlotArray::Source), slices.Slots(SlotArray::OctantSource),
-    slices.Slots(SlotArray::Path), slices.Slots(SlotArray::Lost), slices.Slots(SlotArray::Flux),
-    slices.Slots(SlotArray::PartialCurrents) };
 }
 
 void SweepOnGpu::Implementation::AddArrays(const LaneBatch& batch, const SweepVolume& volume)
