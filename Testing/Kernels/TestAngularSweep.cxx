@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -94,23 +95,47 @@ struct SweepScene
   Found Sweep(const std::vector<float>& ofSource, const std::vector<AxisBundles>& rays, const AngularValues* values,
     std::optional<SweepOnGpu::Ways> ways = {})
   {
+    SweepWorkspace workspace;
+    return SweepOn(theDevice, workspace, ofSource, rays, values, ways);
+  }
+
+  /// By the sweep for GPUs, with the volume in host memory: through slots in which anything was left.
+  Found SweepInSlices(
+    const std::vector<float>& ofSource, const std::vector<AxisBundles>& rays, const AngularValues* values)
+  {
+    constexpr std::size_t MoreThanAll = 1 << 18;
+    setenv("TYNDALL_WITHOUT", "host_memory", 1); // copies, as of a device with memory of its own
+    Device streaming(theDevice, { 1, true, sizeof(float) * layout.grid.VoxelCount() });
+    SweepWorkspace workspace;
+    for (Buffer<float>& slots : workspace.slots)
+    {
+      ReserveOnDevice(streaming, slots, MoreThanAll, "slots");
+      slots.Fill(1e30f);
+    }
+    Found found = SweepOn(streaming, workspace, ofSource, rays, values, SweepOnGpu::Ways::Automatic);
+    unsetenv("TYNDALL_WITHOUT");
+    return found;
+  }
+
+  Found SweepOn(Device& device, SweepWorkspace& workspace, const std::vector<float>& ofSource,
+    const std::vector<AxisBundles>& rays, const AngularValues* values, std::optional<SweepOnGpu::Ways> ways)
+  {
     const int functions = values ? basis.Count() : 1;
-    Buffer<float> shines(theDevice, ofSource, "source");
-    Buffer<float> path(theDevice, layout.MomentFloats(functions), "path");
-    Buffer<float> currents(theDevice, layout.Floats(6), "currents");
+    Buffer<float> shines(device, ofSource, "source");
+    Buffer<float> path(device, layout.MomentFloats(functions), "path");
+    Buffer<float> currents(device, layout.Floats(6), "currents");
     path.Fill(0.0f);
     currents.Fill(0.0f);
-    SweepWorkspace workspace;
     SweepRequest request = { { &path, nullptr, &currents, nullptr }, rays };
     request.angular = values;
     std::unique_ptr<SweepOperator> sweep;
     if (ways)
     {
-      sweep = std::make_unique<SweepOnGpu>(theDevice, layout, onDevice.SigmaT(), periodic, request, workspace, *ways);
+      sweep = std::make_unique<SweepOnGpu>(device, layout, onDevice.SigmaT(), periodic, request, workspace, *ways);
     }
     else
     {
-      sweep = std::make_unique<SweepInMemory>(theDevice, layout, onDevice.SigmaT(), periodic, request, workspace);
+      sweep = std::make_unique<SweepInMemory>(device, layout, onDevice.SigmaT(), periodic, request, workspace);
     }
     const SweepBoundary boundary = [this](int d, int face) { return Rgb{ 1.0 + 0.1 * face, 0.5, 0.01 * (d % 7) }; };
     const SweepTally tally = sweep->Apply(&shines, boundary, {});
@@ -215,6 +240,8 @@ protected:
       ExpectSame(found, expected, scene.layout.channels,
         ways == SweepOnGpu::Ways::OneByOne ? "for GPUs, way by way" : "for GPUs, all ways at once");
     }
+    ExpectSame(
+      scene.SweepInSlices(scene.source, rays, &scene.angular), expected, scene.layout.channels, "for GPUs, in slices");
   }
 
   static void ExpectSame(

@@ -172,6 +172,15 @@ TEST_F(Streaming, OfAngularMomentsIsTheSameLightBitForBit)
   this->ExpectSameLight(scene, { 2, 16 });
 }
 
+TEST_F(Streaming, OfAngularMomentsRoundAPeriodicAxisIsTheSameLight)
+{
+  Scene scene = RandomScene({ 19, 20, 15 });
+  scene.medium.phase = PhaseFunction::HenyeyGreenstein(0.6);
+  scene.settings.directionsPerFace = 4;
+  scene.settings.periodic = { false, true, false };
+  this->ExpectSameLight(scene, { 2, 16 });
+}
+
 TEST_F(Streaming, OfABoxThatIsMostlyEmptyIsTheSameLightBitForBit)
 {
   Scene scene = RandomScene(SmallSize);

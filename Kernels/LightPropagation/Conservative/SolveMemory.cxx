@@ -36,32 +36,38 @@ std::size_t ArraysOfOrders(const SolveExtent& solve)
   }
 }
 
-/// What is beside the planes of all axes, in and out, where light comes or goes by cells of faces on a GPU.
-std::size_t BytesBesidePlanes(const SolveExtent& solve)
+/// Voxels of the largest plane across an axis.
+std::size_t LargestPlane(const SolveExtent& solve)
 {
   const std::array<int, 3>& n = solve.size;
-  std::size_t places = 0;
+  return std::max({ Count(n[0]) * Count(n[1]), Count(n[1]) * Count(n[2]), Count(n[0]) * Count(n[2]) });
+}
+
+/// Places of a ray beside all planes along an axis, the most of any.
+std::size_t MostBesidePlanes(const SolveExtent& solve)
+{
+  std::size_t most = 0;
   for (int axis = 0; axis < 3; ++axis)
   {
     const PlaneAxes across = AcrossAxis(axis);
-    places += Count(n[axis]) * (Count(n[across.u]) + n[across.v] + 1);
+    most = std::max(most, Count(solve.size[axis]) * (Count(solve.size[across.u]) + Count(solve.size[across.v]) + 1));
   }
-  const std::size_t directions = Count(std::max(solve.settings.directionsPerFace, 1)); // twice as many an axis
-  return 4 * sizeof(float) * Count(solve.channels) * places * directions;
+  return most;
 }
 
-/// Rays of all bundles along an axis, both ways, and planes that are being crossed; on a GPU rays of all axes before
-/// and behind a plane, and what shines along them.
+/// Rays of all bundles along an axis, both ways, and planes that are being crossed; on a GPU rays of all axes, or of
+/// one set of a block's, before and behind a plane, what shines along them, and what they bring and take beside planes.
 std::size_t BytesOfSweep(const Device& device, const SolveExtent& solve)
 {
-  const std::array<int, 3>& n = solve.size;
-  const std::size_t plane =
-    std::max({ Count(n[0]) * Count(n[1]), Count(n[1]) * Count(n[2]), Count(n[0]) * Count(n[2]) });
   const std::size_t directions = Count(std::max(solve.settings.directionsPerFace, 1));
-  const std::size_t onGpu = 3 * directions * (solve.degree > 0 ? 3 : 2);
-  const std::size_t rays = device.IsCpu() ? 2 * directions + 16 * 4 * 16 : onGpu;
-  return 2 * sizeof(float) * Count(solve.channels) * plane * rays +
-    (solve.besidePlanes && !device.IsCpu() ? BytesBesidePlanes(solve) : 0);
+  const std::size_t values = sizeof(float) * Count(solve.channels);
+  if (device.IsCpu())
+  {
+    return 2 * values * LargestPlane(solve) * (2 * directions + 16 * 4 * 16);
+  }
+  const std::size_t rays = solve.ofBlock ? PartsOf(directions, std::size_t{ 4 }) : 6 * directions;
+  const std::size_t beside = solve.ofBlock || solve.byCells ? 2 * MostBesidePlanes(solve) : 0;
+  return values * rays * (LargestPlane(solve) * (solve.degree > 0 ? 3 : 2) + beside);
 }
 }
 
@@ -70,7 +76,7 @@ SolveExtent ExtentOf(const PropagationProblem& problem, OrdersAdded how)
   SolveExtent solve = { problem.TheGrid().size, problem.Settings(), problem.Channels(), problem.Scattering().Degree(),
     how };
   solve.byOctant = OctantSources::Matter(problem, false);
-  solve.besidePlanes = Reflects(problem.Shining()) || problem.Settings().facePower;
+  solve.byCells = Reflects(problem.Shining()) || problem.Settings().facePower;
   return solve;
 }
 

@@ -18,8 +18,9 @@ struct SolveExtent
   int channels = 1;
   int degree = 0; ///< of angular moments
   OrdersAdded how = OrdersAdded::OneByOne;
-  bool byOctant = false;     ///< voxels shine otherwise into each octant
-  bool besidePlanes = false; ///< what rays bring in and take out beside planes is kept: by cells of faces, or blocks
+  bool byOctant = false; ///< voxels shine otherwise into each octant
+  bool byCells = false;  ///< light comes or goes by cells of the faces
+  bool ofBlock = false;  ///< a rank's block is swept, by one set of rays after the other
 };
 SolveExtent ExtentOf(const PropagationProblem& problem, OrdersAdded how);
 

@@ -149,7 +149,7 @@ MemoryBudget ProblemInBlocks::Budget(const Device& device) const
   SolveExtent solve = { this->Blocks.blocks[this->Others.Rank()].size, this->Settings, scene.channels,
     this->Has ? scene.Scattering().Degree() : 0, this->Orders.how };
   solve.byOctant = this->Settings.source == PropagationSource::Octants;
-  solve.besidePlanes = true;
+  solve.ofBlock = true;
   return BudgetOfSolve(device, solve);
 }
 

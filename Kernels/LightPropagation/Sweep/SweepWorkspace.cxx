@@ -2,19 +2,19 @@
 
 namespace tyndall
 {
+void ReserveOnDevice(Device& device, Buffer<float>& buffer, std::size_t floats, const char* what)
+{
+  if (buffer.Size() < floats)
+  {
+    buffer = {};
+    buffer = Buffer<float>(device, floats, what, CL_MEM_READ_WRITE, Residence::Device);
+  }
+}
+
 void SweepWorkspace::Reserve(Device& device, std::size_t mapFloats, std::size_t scratchFloats)
 {
-  if (this->maps.Size() < mapFloats)
-  {
-    this->maps = {};
-    this->maps = Buffer<float>(device, mapFloats, "the light propagation maps", CL_MEM_READ_WRITE, Residence::Device);
-  }
-  if (this->scratch.Size() < scratchFloats)
-  {
-    this->scratch = {};
-    this->scratch =
-      Buffer<float>(device, scratchFloats, "the planes being crossed", CL_MEM_READ_WRITE, Residence::Device);
-  }
+  ReserveOnDevice(device, this->maps, mapFloats, "the light propagation maps");
+  ReserveOnDevice(device, this->scratch, scratchFloats, "the planes being crossed");
 }
 
 void SweepWorkspace::ReserveLost(Device& device, std::size_t floats)
@@ -30,12 +30,7 @@ void SweepWorkspace::ReserveSlots(Device& device, const SlotSizes& floats)
 {
   for (std::size_t i = 0; i < floats.size(); ++i)
   {
-    Buffer<float>& slot = this->slots[i];
-    if (slot.Size() < floats[i])
-    {
-      slot = {};
-      slot = Buffer<float>(device, floats[i], "slices of the volume", CL_MEM_READ_WRITE, Residence::Device);
-    }
+    ReserveOnDevice(device, this->slots[i], floats[i], "slices of the volume");
   }
 }
 }

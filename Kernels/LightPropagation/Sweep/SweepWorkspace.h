@@ -20,6 +20,10 @@ enum class SlotArray
 };
 using SlotSizes = std::array<std::size_t, static_cast<std::size_t>(SlotArray::Count)>;
 
+/// Room for so many floats, on the device as long as there is some. What is too small is given back first: nothing that
+/// uses it may be under way.
+void ReserveOnDevice(Device& device, Buffer<float>& buffer, std::size_t floats, const char* what);
+
 /// Scratch that sweeps along different axes share: contents are undefined between sweeps.
 struct SweepWorkspace
 {

@@ -18,11 +18,8 @@ std::size_t RaysOfBlock::Sides() const
 std::unique_ptr<BlockCrossing> MakeBlockCrossing(
   Device& device, const RaysOfBlock& rays, const SweepVolume& volume, BlockWorkspace& workspace)
 {
-  if (workspace.sidesIn.Size() < rays.Sides())
-  {
-    workspace.sidesIn = Buffer<float>(device, rays.Sides(), "the rays that come in from other blocks");
-    workspace.sidesOut = Buffer<float>(device, rays.Sides(), "the rays that go out to other blocks");
-  }
+  ReserveOnDevice(device, workspace.sidesIn, rays.Sides(), "the rays that come in from other blocks");
+  ReserveOnDevice(device, workspace.sidesOut, rays.Sides(), "the rays that go out to other blocks");
   if (device.IsCpu())
   {
     return std::make_unique<BlockCrossingOnCpu>(device, rays, volume.grid.size[1], workspace);

@@ -16,24 +16,17 @@ BlockCrossingOnGpu::BlockCrossingOnGpu(Device& device, const RaysOfBlock& rays, 
   , Lane(LaneOf(rays.plan, rays.way))
 {
   const SweepPlan& plan = this->Plan;
-  const auto reserve = [&](Buffer<float>& buffer, std::size_t floats, const char* what) {
-    if (buffer.Size() < floats)
-    {
-      buffer = {};
-      buffer = Buffer<float>(device, floats, what, CL_MEM_READ_WRITE, Residence::Device);
-    }
-  };
   workspace.sweep.Reserve(device, this->MapFloats(), 0);
-  reserve(workspace.otherMaps, this->MapFloats(), "the light propagation maps");
+  ReserveOnDevice(device, workspace.otherMaps, this->MapFloats(), "the light propagation maps");
   if (plan.angular)
   {
-    reserve(workspace.directed, this->MapFloats(), "what shines along the rays");
+    ReserveOnDevice(device, workspace.directed, this->MapFloats(), "what shines along the rays");
     this->Functions = Buffer<float>(device, FunctionsAlong(plan, rays.way, *plan.angular), "the angular functions");
   }
   this->Bundles = Buffer<BundleInfo>(device, plan.bundleRows, "the bundles of rays");
   this->Beyond = Buffer<cl_float4>(device, plan.radianceEachWay, "the light that comes in sideways");
   const std::size_t rows = std::size_t{ 4 } * plan.Planes() * plan.channels;
-  this->Left = Buffer<float>(device, rows * this->Lane.positions, "the power that leaves sideways");
+  ReserveOnDevice(device, this->Left, rows * this->Lane.positions, "the power that leaves sideways");
   this->Left.Fill(0.0f); // rows of the shorter faces stay so at their ends
   this->Sides = Buffer<float>(device, rows, "sums");
   this->Slices = this->MakeSlices();
@@ -132,7 +125,9 @@ void BlockCrossingOnGpu::Launch(const SweepVolume& volume, int outerSides, const
       plan.Planes(), nullptr, nullptr, crossed);
     return;
   }
-  this->Slices->Cross(volume, launch,
+  SweepVolume shining = volume;
+  shining.octantSource = shines ? volume.octantSource : nullptr;
+  this->Slices->Cross(shining, launch,
     [&](const PlaneLaunch& inSlot, int from, int to, const std::vector<cl::Event>* after, cl::Event* done) {
       kernels.Launch(inSlot, this->Slices->Arrays(), rays, from, to, after, done, crossed);
     });

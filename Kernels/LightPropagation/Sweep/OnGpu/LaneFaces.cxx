@@ -11,8 +11,7 @@ namespace tyndall
 {
 namespace
 {
-constexpr cl_uint FirstOfSides = 17; ///< arguments of `cross_plane` before those of SIDES
-constexpr cl_int AllSides = 15;      ///< of the box are those of the grid
+constexpr int AllSides = 15; ///< of the box are those of the grid
 }
 
 LaneFaces::LaneFaces(Device& device, const GpuLanes& lanes, const Grid& grid, const SweepRequest& request)

@@ -10,7 +10,7 @@ namespace tyndall
 LanePowers::LanePowers(Device& device, const GpuLanes& lanes)
   : TheDevice(device)
   , Lanes(lanes)
-  , OfPlanes(device, lanes.escaped, "the power that leaves sideways")
+  , OfPlanes(device, lanes.escaped, "the power that leaves sideways", CL_MEM_READ_WRITE, Residence::Device)
   , Sides(device, lanes.sideRows, "sums")
   , Ends(device, lanes.endRows, "sums")
 {

@@ -129,12 +129,12 @@ SweepOnGpu::Implementation::Implementation(Device& device, const VolumeLayout& l
   , Powers(device, this->The)
 {
   this->MakeBuffers();
-  this->MakeSlices();
-  this->Lanes = Buffer<SweepLane>(device, this->The.lanes, "the rays' ways");
   if (request.faceIn || request.deposit.faceOut)
   {
     this->Faces.emplace(device, this->The, layout.grid, request);
   }
+  this->MakeSlices();
+  this->Lanes = Buffer<SweepLane>(device, this->The.lanes, "the rays' ways");
 }
 
 void SweepOnGpu::Implementation::MakeBuffers()

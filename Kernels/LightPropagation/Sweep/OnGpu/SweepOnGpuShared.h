@@ -42,7 +42,7 @@ typedef struct
   ulong stride;                  ///< from one channel to the next
   ulong slotSource, slotPath;    ///< of slots that slices of the volume lie in: floats before that of source, of path
   ulong slotValues;              ///< and before that of one value a voxel and channel; 0, where the volume lies whole
-  int slotPlane;                 ///< of the lane's planes, that the slot begins with; 0, where the volume lies whole
+  int slotPlane;                 ///< of the box's planes, that the slot begins with; 0, where the volume lies whole
   int plane;                     ///< from where rays start
   int firstLane;                 ///< that of the first work-items
   int ofRound;                   ///< 1: the crossings begin with this launch's lanes, and planes; 0: see SweepLane

@@ -211,7 +211,9 @@ std::vector<SliceStream::Streamed> SliceStream::ArraysOf(const SweepVolume& volu
   }
   if (this->Plan.periodic[this->Plan.axes.axis])
   {
-    arrays.push_back({ &this->Workspace.lost, SlotArray::Lost, channels, volume.first, true });
+    // Kernels for CPUs keep what is lost of fluence alone, those for GPUs of all functions.
+    arrays.push_back(
+      { &this->Workspace.lost, SlotArray::Lost, channels, volume.first, true, this->HasMoments() ? 0 : -1 });
   }
   if (to.flux)
   {
@@ -345,18 +347,18 @@ void SliceStream::Cross(const Schedule& schedule, const SweepVolume& volume, con
   cl::Event fetched = this->Last;
   for (std::size_t l = 0; l < schedule.pieces.size(); ++l)
   {
-    this->Transfers.flush();
     const std::vector<cl::Event> after = { fetched };
-    cl::Event done;
-    launch(static_cast<int>(l), &after, &done);
-    kernels.flush();
     const bool isLast = l + 1 == schedule.pieces.size();
     const bool ahead = !isLast && !Follows(schedule.pieces[l], schedule.pieces[l + 1], this->Aligned());
-    if (ahead)
+    if (ahead) // first: a launch may wait for its own beginning
     {
       fetch(l + 1);
       fetched = this->Last;
     }
+    this->Transfers.flush();
+    cl::Event done;
+    launch(static_cast<int>(l), &after, &done);
+    kernels.flush();
     this->Waiting = { done };
     this->Copy(arrays, schedule.pieces[l], static_cast<int>(l % 2), true);
     if (!isLast && !ahead)
