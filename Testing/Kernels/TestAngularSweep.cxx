@@ -104,16 +104,21 @@ struct SweepScene
     const std::vector<float>& ofSource, const std::vector<AxisBundles>& rays, const AngularValues* values)
   {
     constexpr std::size_t MoreThanAll = 1 << 18;
+    const std::size_t before = theDevice.BytesInUse();
+    Found found;
     setenv("TYNDALL_WITHOUT", "host_memory", 1); // copies, as of a device with memory of its own
-    Device streaming(theDevice, { 1, true, sizeof(float) * layout.grid.VoxelCount() });
-    SweepWorkspace workspace;
-    for (Buffer<float>& slots : workspace.slots)
     {
-      ReserveOnDevice(streaming, slots, MoreThanAll, "slots");
-      slots.Fill(1e30f);
+      Device streaming(theDevice, { 1, true, sizeof(float) * layout.grid.VoxelCount() });
+      SweepWorkspace workspace;
+      for (Buffer<float>& slots : workspace.slots)
+      {
+        ReserveOnDevice(streaming, slots, MoreThanAll, "slots");
+        slots.Fill(1e30f);
+      }
+      found = SweepOn(streaming, workspace, ofSource, rays, values, SweepOnGpu::Ways::Automatic);
     }
-    Found found = SweepOn(streaming, workspace, ofSource, rays, values, SweepOnGpu::Ways::Automatic);
     unsetenv("TYNDALL_WITHOUT");
+    EXPECT_EQ(theDevice.BytesInUse(), before);
     return found;
   }
 

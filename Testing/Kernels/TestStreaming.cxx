@@ -98,7 +98,7 @@ protected:
     EXPECT_EQ(whole.device, device.Name());
     const PropagationProblem problem(scene.medium, scene.light, scene.settings);
     const std::size_t bytes = BytesOfSolve(device, ExtentOf(problem, HowOrdersAreAdded(problem)));
-    EXPECT_TRUE(!device.IsCpu() || taken <= bytes) << bytes;
+    EXPECT_TRUE(!device.IsCpu() || taken <= bytes) << taken << " of " << bytes;
     for (const int part : parts)
     {
       SCOPED_TRACE("within a " + std::to_string(part) + "th of " + std::to_string(taken) + " bytes");

@@ -19,7 +19,9 @@ std::size_t ArraysOfLight(const SolveExtent& solve)
   const std::size_t flux = solve.settings.netFlux ? 3 : 0;
   const std::size_t shown = degree > 0 && solve.settings.storeMoments ? moments : 0;
   const std::size_t beams = degree > 0 ? 5 : 0;
-  return medium + 2 * moments + 1 + flux + shown + beams + (solve.settings.firstMoments ? 6 : 0);
+  const std::array<bool, 3>& periodic = solve.settings.periodic;
+  const std::size_t lost = periodic[0] || periodic[1] || periodic[2] ? moments : 0; // by rounding
+  return medium + 2 * moments + lost + 1 + flux + shown + beams + (solve.settings.firstMoments ? 6 : 0);
 }
 
 /// The same of what adds up scattering orders.
@@ -82,7 +84,9 @@ SolveExtent ExtentOf(const PropagationProblem& problem, OrdersAdded how)
 
 std::size_t BytesOfSolve(const Device& device, const SolveExtent& solve)
 {
-  const VolumeLayout layout = { Grid{ solve.size }, solve.channels };
+  std::array<int, 3> size = solve.size;
+  size[0] = solve.degree > 0 ? RoundUp(size[0], int{ MomentGroup }) : size[0];
+  const VolumeLayout layout = { Grid{ size }, solve.channels };
   return sizeof(float) * layout.Values() * (ArraysOfLight(solve) + ArraysOfOrders(solve)) + BytesOfSweep(device, solve);
 }
 
