@@ -3,7 +3,9 @@
 #include "LatticeInBlocks.h"
 
 #include <algorithm>
+#include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 using namespace tyndall;
@@ -79,6 +81,60 @@ TEST_F(LatticeBlocks, HaveTheEnvironmentOfTheWhole)
   environment.radiance[3 * 37] = 90.0f;
   const LatticeSettings settings = SettingsOf(1e-7);
   ExpectSame(this->OnRanks(4, medium, settings), this->Whole(medium, settings), 2e-6);
+}
+
+/// Each kind of light alone, and each beside each other one.
+TEST_F(LatticeBlocks, CountEachLightOnce)
+{
+  const std::vector<std::pair<const char*, std::function<void(MediumToCut&)>>> kinds = {
+    { "sky", [](MediumToCut& medium) { medium.scene.ShineFromEverywhere(0.2); } },
+    { "environment",
+      [](MediumToCut& medium) {
+        Environment& environment = medium.scene.light.environment;
+        environment.width = 8;
+        environment.height = 4;
+        environment.radiance = RandomValues(3 * 8 * 4, 0.5, 1.5, 6);
+        environment.radiance[3 * 21] = 300.0f; // a peak
+      } },
+    { "faces",
+      [](MediumToCut& medium) {
+        medium.scene.light.faces[1] = { 0.7, 0.7, 0.7 };
+        medium.scene.light.faces[4] = { 0.3, 0.3, 0.3 };
+      } },
+    { "sun",
+      [](MediumToCut& medium) {
+        medium.scene.ShineAlong({ 0.3, -0.5, -0.9 });
+      } },
+    { "lamps", [](MediumToCut& medium) { AddNearLamps(medium.scene); } },
+    { "emission",
+      [](MediumToCut& medium) { medium.scene.emission = RandomValues(medium.scene.sigma_s.size(), 0.0, 0.2, 3); } },
+    { "uncollided light",
+      [](MediumToCut& medium) {
+        medium.given = RandomValues(medium.scene.sigma_s.size(), 0.1, 2.0, 7);
+        medium.ways = RandomValues(3 * medium.scene.sigma_s.size(), -0.57, 0.57, 8);
+        medium.scene.light.uncollided.escaped[3].fill(5.0);
+      } },
+  };
+  for (std::size_t first = 0; first < kinds.size(); ++first)
+  {
+    for (std::size_t second = first; second < kinds.size(); ++second)
+    {
+      SCOPED_TRACE(std::string(kinds[first].first) + " and " + kinds[second].first);
+      MediumToCut medium({ 5, 4, 6 });
+      medium.scene.Randomise(2.0, 2.0, 0.8, 17);
+      kinds[first].second(medium);
+      if (second != first)
+      {
+        kinds[second].second(medium);
+      }
+      const LightField whole = this->Whole(medium, SettingsOf(1e-7));
+      for (const int ranks : { 1, 3 })
+      {
+        SCOPED_TRACE(std::to_string(ranks) + " ranks");
+        ExpectSame(this->OnRanks(ranks, medium, SettingsOf(1e-7)), whole, 2e-6);
+      }
+    }
+  }
 }
 
 /// Points, spots and rectangles, in thick voxels, too, and in units in which a float holds no area.
