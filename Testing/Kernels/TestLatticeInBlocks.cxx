@@ -270,6 +270,51 @@ TEST_F(LatticeBlocks, MayBeBetweenFacesThatGiveBackAllLight)
   });
 }
 
+/// Rows of voxels along periodic axes are empty, as clear air above a cloud is, or a hole through it. Of what is first
+/// scattered near a thick voxel's face a part begins in such a row, and some rows glow themselves.
+TEST_F(LatticeBlocks, LightRowsThatAreEmptyAlongPeriodicAxes)
+{
+  const auto clearAir = [](const std::array<int, 3>& at) { return at[2] >= 5; };
+  const auto hole = [](const std::array<int, 3>& at) { return at[0] == 1 && at[1] == 2; };
+  const auto diagonal = [](const std::array<int, 3>& at) { return (at[0] + at[2]) % 2 == 0; };
+  const std::vector<std::pair<std::array<bool, 3>, std::function<bool(const std::array<int, 3>&)>>> cases = {
+    { { true, false, false }, clearAir }, { { true, true, false }, clearAir }, { { false, false, true }, hole },
+    { { false, true, true }, hole }, { { true, false, true }, diagonal }
+  };
+  for (std::size_t i = 0; i < cases.size(); ++i)
+  {
+    SCOPED_TRACE(i);
+    MediumToCut medium({ 4, 5, 6 });
+    Scene& scene = medium.scene;
+    scene.Randomise(4.0, 1.0, 0.9, 23);
+    scene.emission = RandomValues(scene.sigma_a.size(), 0.0, 0.2, 3);
+    scene.ShineAlong({ 0.3, -0.5, -0.9 });
+    AddNearLamps(scene);
+    for (std::size_t voxel = 0; voxel < scene.sigma_a.size(); ++voxel)
+    {
+      if (cases[i].second(scene.medium.grid.VoxelAt(voxel)))
+      {
+        scene.sigma_a[voxel] = scene.sigma_s[voxel] = 0.0f;
+      }
+    }
+    LatticeSettings settings = SettingsOf(1e-7), steps = SettingsOf(1e-5);
+    settings.periodic = steps.periodic = cases[i].first;
+    const LightField whole = this->Whole(medium, settings);
+    const double all = whole.balance.entered[0] + whole.balance.emitted[0];
+    EXPECT_LT(std::abs(whole.balance.leftOver[0]), 2e-6 * all);
+    for (const int ranks : { 1, 3 })
+    {
+      SCOPED_TRACE(std::to_string(ranks) + " ranks");
+      ExpectSame(this->OnRanks(ranks, medium, settings), whole, 2e-6);
+    }
+    steps.solvesSteady = false;
+    ExpectSameLight(this->Whole(medium, steps), whole, 3e-4);
+    ExpectSameLight(this->OnRanks(3, medium, steps), whole, 3e-4);
+    steps.blockSize = 3;
+    ExpectSameLight(this->Whole(medium, steps), whole, 3e-4);
+  }
+}
+
 /// Who has light that others have not is told.
 TEST_F(LatticeBlocks, AgreeOnTheLightThatIsGiven)
 {
