@@ -230,6 +230,22 @@ TEST_F(InterleavedLattices, RefusePeriodicAxesAndNegativeNumbers)
   }
 }
 
+TEST_F(InterleavedLattices, SayThatPhotonsMissTheMedium)
+{
+  PhotonScene scene = this->Ball();
+  std::vector<Photon> photons = AnyPhotons(scene.medium.grid, 4);
+  for (Photon& photon : photons)
+  {
+    photon.position = { -50.0, 0.0, 0.0 };
+    photon.direction = { -1.0f, 0.0f, 0.0f };
+  }
+  for (const LatticeSettings& settings : { LatticeSettings(), Interleaved(4) })
+  {
+    EXPECT_THAT(this->Solve(scene, photons, settings).doubts,
+      testing::Contains(testing::HasSubstr("4 of 4 photons do not meet the medium")));
+  }
+}
+
 TEST_F(InterleavedLattices, AreDarkWithoutPhotons)
 {
   PhotonScene scene = this->Ball();

@@ -253,6 +253,22 @@ TEST_F(LatticeBlocks, HaveThePhotonsOfTheWhole)
   }
 }
 
+TEST_F(LatticeBlocks, SayThatPhotonsMissTheMedium)
+{
+  const MediumToCut medium = Everything({ 4, 3, 2 });
+  std::vector<Photon> photons = AnyPhotons(5);
+  photons[1].position = photons[4].position = { -9.0, 0.0, 0.0 };
+  photons[1].direction = photons[4].direction = { -1.0f, 0.0f, 0.0f };
+  for (const bool interleaves : { false, true })
+  {
+    LatticeSettings settings = SettingsOf();
+    settings.interleaves = interleaves;
+    const LightField light =
+      this->OfBlocks(BlockPartition::Even(medium.scene.medium.grid, 3), medium, photons, settings);
+    EXPECT_TRUE(Says(light.doubts, " photons do not meet the medium"));
+  }
+}
+
 /// Between faces that all give back all light the medium takes it in the end; where none does that is an error.
 TEST_F(LatticeBlocks, MayBeBetweenFacesThatGiveBackAllLight)
 {
