@@ -15,10 +15,12 @@
 #include "vtkSMTransferFunctionProxy.h"
 
 #include <cstring>
+#include <functional>
 #include <iterator>
 #include <set>
 #include <sstream>
 #include <string>
+#include <vector>
 
 namespace
 {
@@ -144,7 +146,7 @@ void ColorAtFirstChange(vtkObject* caller, unsigned long, void*, void* property)
 }
 
 /// Charts that show nothing yet: the new representation goes to one of them.
-void MakeEmptyChartsLogarithmic(vtkSMSessionProxyManager* manager)
+void MakeEmptyChartsLogarithmic(vtkSMSessionProxyManager* manager, const std::vector<const char*>& axes)
 {
   vtkNew<vtkCollection> views;
   manager->GetProxies("views", views);
@@ -154,8 +156,26 @@ void MakeEmptyChartsLogarithmic(vtkSMSessionProxyManager* manager)
     if (view && view->GetProperty("LeftAxisLogScale") &&
       vtkSMPropertyHelper(view, "Representations").GetNumberOfElements() == 0)
     {
-      vtkSMPropertyHelper(view, "LeftAxisLogScale").Set(1);
+      for (const char* const axis : axes)
+      {
+        vtkSMPropertyHelper(view, axis).Set(1);
+      }
       view->UpdateVTKObjects();
+    }
+  }
+}
+
+/// Sets the values of those series that are plotted, in a property that has name, value, name, ...
+void SetSeries(vtkSMProxy* representation, const char* property,
+  const std::function<bool(const std::string&)>& isPlotted, const char* plotted, const char* other)
+{
+  vtkSMPropertyHelper values(representation, property);
+  for (unsigned int i = 0; i + 1 < values.GetNumberOfElements(); i += 2)
+  {
+    const bool is = isPlotted(values.GetAsString(i));
+    if (is || other)
+    {
+      values.Set(i + 1, is ? plotted : other);
     }
   }
 }
@@ -164,15 +184,22 @@ void Plot(vtkSMProxy* representation, vtkPVXMLElement* hint)
 {
   std::istringstream names(hint->GetAttributeOrEmpty("y"));
   const std::set<std::string> plotted{ std::istream_iterator<std::string>(names), {} };
+  const std::string begin = hint->GetAttributeOrEmpty("y_begin");
+  const auto isPlotted = [&](const std::string& name) {
+    return plotted.count(name) > 0 || (!begin.empty() && name.compare(0, begin.size(), begin) == 0);
+  };
   vtkSMPropertyHelper(representation, "UseIndexForXAxis").Set(0);
   vtkSMPropertyHelper(representation, "XArrayName").Set(hint->GetAttributeOrEmpty("x"));
-  vtkSMPropertyHelper visible(representation, "SeriesVisibility"); // name, 0 or 1, name, ...
-  for (unsigned int i = 0; i + 1 < visible.GetNumberOfElements(); i += 2)
+  SetSeries(representation, "SeriesVisibility", isPlotted, "1", "0");
+  std::vector<const char*> axes = { "LeftAxisLogScale" };
+  if (std::strcmp(hint->GetAttributeOrEmpty("style"), "points") == 0)
   {
-    visible.Set(i + 1, plotted.count(visible.GetAsString(i)) > 0 ? "1" : "0");
+    SetSeries(representation, "SeriesLineStyle", isPlotted, "0", nullptr);
+    SetSeries(representation, "SeriesMarkerStyle", isPlotted, "4", nullptr); // circles
+    axes.push_back("BottomAxisLogScale");
   }
   representation->UpdateVTKObjects();
-  MakeEmptyChartsLogarithmic(representation->GetSessionProxyManager());
+  MakeEmptyChartsLogarithmic(representation->GetSessionProxyManager(), axes);
 }
 
 /// A representation is registered when it knows its input, and before anybody sees it.

@@ -270,6 +270,7 @@ cl::Kernel Device::Kernel(const char* name, std::string_view source, const std::
   {
     const cl::Program program = this->ProgramOf(
       name, std::string(source), "-cl-std=CL1.2 -DFOR_CPU=" + std::to_string(this->Cpu) + " " + options);
+    NoteKernel(program(), name);
     return cl::Kernel(program, name);
   }
   catch (const cl::Error& error)
