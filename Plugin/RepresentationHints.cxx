@@ -15,7 +15,6 @@
 #include "vtkSMTransferFunctionProxy.h"
 
 #include <cstring>
-#include <functional>
 #include <iterator>
 #include <set>
 #include <sstream>
@@ -165,18 +164,20 @@ void MakeEmptyChartsLogarithmic(vtkSMSessionProxyManager* manager, const std::ve
   }
 }
 
-/// Sets the values of those series that are plotted, in a property that has name, value, name, ...
-void SetSeries(vtkSMProxy* representation, const char* property,
-  const std::function<bool(const std::string&)>& isPlotted, const char* plotted, const char* other)
+/// Sets the value of series, in a property that has name, value, name, ...
+void SetSeries(
+  vtkSMProxy* representation, const char* property, const std::vector<std::string>& series, const char* value)
 {
-  vtkSMPropertyHelper values(representation, property);
-  for (unsigned int i = 0; i + 1 < values.GetNumberOfElements(); i += 2)
+  vtkSMPropertyHelper values(representation, property, true);
+  for (const std::string& name : series)
   {
-    const bool is = isPlotted(values.GetAsString(i));
-    if (is || other)
+    unsigned int place = 0;
+    while (place < values.GetNumberOfElements() && name != values.GetAsString(place))
     {
-      values.Set(i + 1, is ? plotted : other);
+      place += 2;
     }
+    values.Set(place, name.c_str());
+    values.Set(place + 1, value);
   }
 }
 
@@ -185,17 +186,23 @@ void Plot(vtkSMProxy* representation, vtkPVXMLElement* hint)
   std::istringstream names(hint->GetAttributeOrEmpty("y"));
   const std::set<std::string> plotted{ std::istream_iterator<std::string>(names), {} };
   const std::string begin = hint->GetAttributeOrEmpty("y_begin");
-  const auto isPlotted = [&](const std::string& name) {
-    return plotted.count(name) > 0 || (!begin.empty() && name.compare(0, begin.size(), begin) == 0);
-  };
+  std::vector<std::string> series, others;
+  const vtkSMPropertyHelper all(representation, "SeriesVisibility"); // name, 0 or 1, name, ...
+  for (unsigned int i = 0; i + 1 < all.GetNumberOfElements(); i += 2)
+  {
+    const std::string name = all.GetAsString(i);
+    const bool isPlotted = plotted.count(name) > 0 || (!begin.empty() && name.compare(0, begin.size(), begin) == 0);
+    (isPlotted ? series : others).push_back(name);
+  }
   vtkSMPropertyHelper(representation, "UseIndexForXAxis").Set(0);
   vtkSMPropertyHelper(representation, "XArrayName").Set(hint->GetAttributeOrEmpty("x"));
-  SetSeries(representation, "SeriesVisibility", isPlotted, "1", "0");
+  SetSeries(representation, "SeriesVisibility", series, "1");
+  SetSeries(representation, "SeriesVisibility", others, "0");
   std::vector<const char*> axes = { "LeftAxisLogScale" };
   if (std::strcmp(hint->GetAttributeOrEmpty("style"), "points") == 0)
   {
-    SetSeries(representation, "SeriesLineStyle", isPlotted, "0", nullptr);
-    SetSeries(representation, "SeriesMarkerStyle", isPlotted, "4", nullptr); // circles
+    SetSeries(representation, "SeriesLineStyle", series, "0");
+    SetSeries(representation, "SeriesMarkerStyle", series, "4"); // circles
     axes.push_back("BottomAxisLogScale");
   }
   representation->UpdateVTKObjects();

@@ -201,7 +201,11 @@ private:
     const double end = this->TheDevice.Now() + left;
     const std::size_t made = KernelsMade();
     const double first = this->Timed(run, light, monitor);
-    std::vector<double> seconds(made == KernelsMade() ? 1 : 0, first);
+    std::vector<double> seconds;
+    if (made == KernelsMade())
+    {
+      seconds.push_back(first);
+    }
     try
     {
       if (seconds.empty() && this->TheDevice.Now() + first <= end)

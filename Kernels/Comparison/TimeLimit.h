@@ -29,8 +29,8 @@ inline Monitor PartUntil(const Device& device, double end, const Monitor& monito
 struct NominalSeconds
 {
   static constexpr double OfRayVoxel = 5e-9;   ///< a sweep along one ray through one voxel, of one channel
-  static constexpr double OfPhoton = 1e-6;     ///< besides its way
-  static constexpr double OfCrossing = 2e-8;   ///< of a voxel, by a photon
-  static constexpr double OfScattering = 1e-7; ///< of a photon
+  static constexpr double OfPhoton = 3e-6;     ///< besides its way
+  static constexpr double OfCrossing = 1e-7;   ///< of a voxel, by a photon
+  static constexpr double OfScattering = 1e-6; ///< of a photon
 };
 }
