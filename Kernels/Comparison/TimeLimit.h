@@ -24,8 +24,8 @@ inline Monitor PartUntil(const Device& device, double end, const Monitor& monito
   };
 }
 
-/// What work takes on two slow cores, seconds. What the reference is made of is decided by these and never by a clock, so
-/// that it is the same however busy the machine is; a clock only stops what takes too long all the same.
+/// What work takes on two slow cores, seconds. What the reference is made of is decided by these and never by a clock,
+/// so that it is the same however busy the machine is; a clock only stops what takes too long all the same.
 struct NominalSeconds
 {
   static constexpr double OfRayVoxel = 5e-9;   ///< a sweep along one ray through one voxel, of one channel
