@@ -239,7 +239,7 @@ public:
   /// last update from darkness on took to the same residual (0 where this was one), estimated relative error of
   /// fluence left by those that were not done, estimated relative error of fluence altogether (0 without
   /// EstimateError or TargetError; NaN, not known, after one order), relative error of the energy balance, what the
-  /// directions carry of the power that even light brings through a face, over the exact value (0.9875 with 25
+  /// directions carry of the power that even light brings through a face, over the exact value (0.99992 with 25
   /// directions per face: light that enters from faces and sky is off by as much), seconds, the device's name, and
   /// what the scene did not need, one per line.
   vtkGetMacro(Solves, int);

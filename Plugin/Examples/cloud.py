@@ -5,7 +5,7 @@ import sys
 from paraview.simple import *
 
 LoadPlugin(os.environ["TYNDALL_PLUGIN"], remote=True, ns=globals())
-folder = sys.argv[1] if len(sys.argv) > 1 else os.environ.get("TYNDALL_TEST_OUTPUT", ".")
+os.chdir(sys.argv[1] if len(sys.argv) > 1 else os.environ.get("TYNDALL_TEST_OUTPUT", "."))
 
 # A cloud 480 m wide, in grams of water per cubic metre: waves on a ball.
 box = Wavelet(WholeExtent=[-24, 24] * 3, Maximum=1, XMag=0.13, YMag=0.11, ZMag=0.14,
@@ -18,8 +18,8 @@ sun = LightRig(SunElevation=30, SunAzimuth=180, SunPower=[4, 3.7, 3.2])
 light = LightPropagationMaps(Input=cloud, Lights=sun, SkyColor=[0.03, 0.06, 0.13], Tolerance=5e-3)
 picture = MediumRayCaster(Input=light, Lights=sun, ImageSize=[400, 300], BackgroundRadiance=[0.03, 0.06, 0.13],
                           CameraPosition=[50, -95, 45], CameraViewAngle=24)
-SaveData(os.path.join(folder, "cloud.png"), proxy=picture)
+SaveData("cloud.png", proxy=picture)
 
 light.UpdatePropertyInformation()
-print(light.Orders, "orders, energy balance to", light.BalanceError, "in", light.Seconds, "s")
+print(f"{light.Orders} orders, energy balance to {light.BalanceError:.0e} in {light.Seconds:.2f} s")
 assert light.BalanceError < 1e-5

@@ -1,5 +1,6 @@
 """Density, light rig, light propagation maps: light comes out, with its convergence and what the panel says of it."""
 import os
+import re
 
 from paraview import servermanager
 from paraview.simple import *
@@ -92,3 +93,12 @@ assert fluence(light).mean() < thin.mean()
 assert servermanager.Fetch(medium).GetFieldData().GetArray("energy_balance") is None
 medium.ExtinctionScale = 2
 assert servermanager.Fetch(light).GetFieldData().GetArray("energy_balance")
+
+# What the panel says of the half-range flux is what comes out.
+for solver, settings in (LightPropagationMaps, {"UncollidedDirections": 25}), (DiscreteOrdinates, {}):
+    light = solver(Input=medium, SkyColor=[1, 1, 1], DirectionsPerFace=25, MaximumOrders=1, **settings)
+    light.UpdatePipeline()
+    light.UpdatePropertyInformation()
+    said = light.SMProxy.GetProperty("HalfRangeFlux").GetDocumentation().GetDescription()
+    told = re.search(r"([\d.]+) with 25\s+directions", said)[1]
+    assert f"{light.HalfRangeFlux:.{len(told) - 2}f}" == told, (light.HalfRangeFlux, told)

@@ -3,6 +3,7 @@
 #include "Device/Defines.h"
 #include "Medium/BoxFaces.h"
 #include "Numerics/Constants.h"
+#include "Numerics/NumberText.h"
 #include "Numerics/Vectors.h"
 
 #include <glm/geometric.hpp>
@@ -131,6 +132,6 @@ cl::Kernel LampOnGrid::Kernel(Device& device, const char* name, std::string_view
     Define("ATOMICS", HasAtomics(device)) + Define("LAMBERT", this->Lamp.type == LightType::Rectangle) +
       Define("CONE", this->Lamp.type == LightType::Spot) + Define("MOMENTS", deposit.firstMoments != nullptr) +
       Define("NET_FLUX", deposit.flux != nullptr) + Define("FACE_OUT", deposit.faceOut != nullptr) +
-      DefineFloat("THIN", ThinForFirstMoments));
+      " -DTHIN=" + FloatLiteral(ThinForFirstMoments));
 }
 }
