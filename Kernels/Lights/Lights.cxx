@@ -1,8 +1,12 @@
 #include "Lights/Lights.h"
 
 #include "Device/Errors.h"
+#include "Medium/Grid.h"
 #include "Numerics/Constants.h"
 #include "Numerics/NumberText.h"
+#include "Numerics/Vectors.h"
+
+#include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -36,11 +40,41 @@ Rgb Lookup(const Environment& environment, const std::array<double, 3>& directio
   return sum;
 }
 
+namespace
+{
+constexpr double LeastSpotAngle = 1e-12; ///< degrees: what squares of its sine need as floats
+
+/// Of any length that is not 0: scaled first, so that squares neither vanish nor overflow.
+glm::dvec3 Unit(const std::array<double, 3>& vector)
+{
+  const double largest = std::max({ std::abs(vector[0]), std::abs(vector[1]), std::abs(vector[2]) });
+  return largest > 0.0 ? glm::normalize(Vector(vector) / largest) : Vector(vector);
+}
+}
+
+std::array<double, 3> DirectionOf(const Light& light)
+{
+  const glm::dvec3 unit = Unit(light.direction);
+  return { unit.x, unit.y, unit.z };
+}
+
+double AngleFromAxis(const Light& light, const std::array<double, 3>& way)
+{
+  const glm::dvec3 axis = Unit(light.direction), along = Unit(way);
+  return std::atan2(glm::length(glm::cross(along, axis)), glm::dot(along, axis));
+}
+
+double HalfAngle(const Light& spot)
+{
+  return 0.5 * spot.angle * Pi / 180.0;
+}
+
 double AxialIntensity(const Light& lamp)
 {
+  const double sine = std::sin(0.5 * HalfAngle(lamp));
   switch (lamp.type)
   {
-    case LightType::Spot: return 1.0 / (2.0 * Pi * (1.0 - std::cos(0.5 * lamp.angle * Pi / 180.0)));
+    case LightType::Spot: return 1.0 / (4.0 * Pi * sine * sine); // 1 - cos(angle) would cancel
     case LightType::Rectangle: return 1.0 / Pi;
     case LightType::Point: return 1.0 / (4.0 * Pi);
     case LightType::Directional: break;
@@ -50,15 +84,71 @@ double AxialIntensity(const Light& lamp)
 
 std::array<std::array<double, 3>, 2> RectangleEdges(const Light& light)
 {
-  const auto [x, y, z] = light.direction;
-  const double length = std::hypot(x, y, z);
+  const auto [x, y, z] = DirectionOf(light);
   const double across = std::hypot(x, y);
-  const bool vertical = across < 1e-9 * length;
+  const bool vertical = across < 1e-9;
   const double ex = vertical ? 1.0 : -y / across;
   const double ey = vertical ? 0.0 : x / across;
-  const double s = light.size[1] / length;
+  const double s = light.size[1];
   return { { { light.size[0] * ex, light.size[0] * ey, 0.0 },
     { -s * z * ey, s * z * ex, s * (x * ey - y * ex) } } }; // direction x first edge
+}
+
+namespace
+{
+constexpr double FarAway = 1e5;       ///< of the box's longest edge, from where light is parallel
+constexpr double TooFarToAim = 1e10;  ///< the same, from where a direction does not tell what of the box is lit
+constexpr double SmallFromFar = 1e-3; ///< edge of a rectangle over its distance, up to which it shines as a point
+
+/// A lamp that is FarAway, at the middle of the box. @param way  from it to there
+Light Parallel(const Light& lamp, const glm::dvec3& way, double distance)
+{
+  const double angle = AngleFromAxis(lamp, { way.x, way.y, way.z });
+  const double part = lamp.type == LightType::Rectangle ? std::max(std::cos(angle), 0.0)
+    : lamp.type == LightType::Spot                      ? (angle <= HalfAngle(lamp) ? 1.0 : 0.0)
+                                                        : 1.0;
+  Light beam = lamp;
+  beam.type = LightType::Directional;
+  const glm::dvec3 along = Unit({ way.x, way.y, way.z });
+  beam.direction = { along.x, along.y, along.z };
+  beam.power = Times(lamp.power, part * AxialIntensity(lamp) / distance / distance);
+  return beam;
+}
+
+Light SeenFrom(const Grid& grid, const Light& lamp, std::size_t number)
+{
+  const std::array<double, 3> edges = { grid.Length(0), grid.Length(1), grid.Length(2) };
+  const double longest = std::max({ edges[0], edges[1], edges[2] });
+  const glm::dvec3 way = Vector(grid.origin) + 0.5 * Vector(edges) - Vector(lamp.position);
+  const double distance = std::hypot(way.x, way.y, way.z);
+  const double size = std::max(lamp.size[0], lamp.size[1]);
+  if (lamp.type == LightType::Directional || distance < FarAway * longest ||
+    (lamp.type == LightType::Rectangle && size > SmallFromFar * distance))
+  {
+    return lamp;
+  }
+  const double ofBox = std::hypot(edges[0], edges[1], edges[2]) / distance; // more than half of what it is seen under
+  if (lamp.type == LightType::Spot && std::abs(AngleFromAxis(lamp, { way.x, way.y, way.z }) - HalfAngle(lamp)) < ofBox)
+  {
+    if (distance > TooFarToAim * longest)
+    {
+      throw InvalidInput("Light " + std::to_string(number) + " is a spot " + Text("%.3g", distance / longest) +
+        " box lengths away, and the border of its cone crosses the box; where is not known from so far. Put it nearer, "
+        "or take a directional light.");
+    }
+    return lamp;
+  }
+  return Parallel(lamp, way, distance);
+}
+}
+
+std::vector<Light> SeenFrom(const Grid& grid, std::vector<Light> lights)
+{
+  for (std::size_t i = 0; i < lights.size(); ++i)
+  {
+    lights[i] = SeenFrom(grid, lights[i], i);
+  }
+  return lights;
 }
 
 namespace
@@ -159,13 +249,14 @@ void CheckLight(const Light& light, std::size_t number)
       throw InvalidInput(name + " has power " + Refusal(light.power[axis]));
     }
   }
-  if (light.type != LightType::Point && std::hypot(light.direction[0], light.direction[1], light.direction[2]) == 0.0)
+  if (light.type != LightType::Point && Unit(light.direction) == glm::dvec3(0.0))
   {
     throw InvalidInput(name + " has direction (0, 0, 0); say where it shines.");
   }
-  if (light.type == LightType::Spot && !(light.angle > 0.0 && light.angle <= 180.0))
+  if (light.type == LightType::Spot && !(light.angle >= LeastSpotAngle && light.angle <= 180.0))
   {
-    throw InvalidInput(name + " is a spot with opening angle " + Text("%g", light.angle) + "; it must be in (0, 180].");
+    throw InvalidInput(
+      name + " is a spot with opening angle " + Text("%.6g", light.angle) + "; it must be from 1e-12 to 180 degrees.");
   }
   if (light.type == LightType::Rectangle &&
     !(light.size[0] > 0.0 && light.size[1] > 0.0 && std::isfinite(light.size[0] * light.size[1])))

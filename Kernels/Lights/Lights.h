@@ -7,6 +7,8 @@
 
 namespace tyndall
 {
+struct Grid;
+
 enum class LightType
 {
   Directional = 0, ///< parallel light through all of space
@@ -52,8 +54,22 @@ struct Illumination
   UncollidedImage uncollided; ///< light that was found already as far as it is not scattered, beside the others
 };
 
+/// The unit vector along which a light shines, whatever the length of its `direction`; 0 where that is 0.
+std::array<double, 3> DirectionOf(const Light& light);
+
 /// W per steradian of a lamp of 1 W along its axis; 0 of a directional light, which has none.
 double AxialIntensity(const Light& lamp);
+
+/// The angle between a light's direction and `way`, which may have any length.
+double AngleFromAxis(const Light& light, const std::array<double, 3>& way);
+/// Half of the opening angle of a spot, radians.
+double HalfAngle(const Light& spot);
+
+/// The lights as they shine on a box: a lamp further away than 1e5 of its longest edges is a directional light of the
+/// irradiance that it has in the middle of the box (0 where it shines elsewhere). A spot the border of whose cone
+/// crosses the box stays what it is, and so does a rectangle that is large for its distance.
+/// @throws InvalidInput where such a spot is so far away that it cannot be aimed
+std::vector<Light> SeenFrom(const Grid& grid, std::vector<Light> lights);
 
 /// The edges of a rectangular light as vectors: the first is horizontal (across z and the direction; along x where the
 /// direction is vertical), the second across the first and the direction.
@@ -79,8 +95,8 @@ bool Reflects(const Illumination& illumination);
 /// @throws InvalidInput where a face that gives back light lies across a periodic axis, which has none
 void CheckFaceAlbedo(const Illumination& illumination, const std::array<bool, 3>& periodic);
 
-/// @throws InvalidInput where a light has a zero direction, a power that is negative or beyond float, no size; an
-///   environment has a negative or infinite pixel (names the first); a sky or a face a radiance that is negative or
+/// @throws InvalidInput where a light has a zero direction, an angle out of range, a power that is negative or beyond
+///   float, no size; an environment has a negative or infinite pixel (names the first); a sky or a face a radiance that is negative or
 ///   beyond float, a face an albedo that is not from 0 to 1
 void Check(const Illumination& illumination);
 }

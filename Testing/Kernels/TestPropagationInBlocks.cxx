@@ -90,6 +90,30 @@ TEST_F(PropagationBlocks, HaveTheLightOfLampsNearby)
   }
 }
 
+/// Beams that begin on faces far from their lamp, a cone that is thinner than a voxel, and a lamp that is a sun.
+TEST_F(PropagationBlocks, HaveTheLightOfFarLampsAndNarrowCones)
+{
+  RandomMedium whole(Grid{ { 11, 7, 9 }, { 0.3, 1.0, 2.0 } }, 1, 0.8f, 8);
+  for (const double distance : { 4e3, 4e8 })
+  {
+    Illumination shining;
+    shining.lights = { NearLamps()[0], NearLamps()[1] };
+    shining.lights[0].position = { 0.6 * distance, -0.2 * distance, -distance };
+    shining.lights[0].power = Times(Rgb{ 3.0, 3.0, 3.0 }, distance * distance);
+    shining.lights[1].position = { 1.8 + 0.01 * distance, 3.1, 8.0 + 0.02 * distance };
+    shining.lights[1].direction = { -1.0, 0.0, -2.0 };
+    shining.lights[1].angle = 1e-6;
+    const LightField expected = SolveConservative(GetDevice(), whole.medium, shining, SettingsOf(2));
+    EXPECT_GT(expected.balance.entered[0], 10.0);
+    for (const BlockPartition& partition :
+      { BlockPartition::Even(whole.medium.grid, 1), BlockPartition::Even(whole.medium.grid, 3) })
+    {
+      SCOPED_TRACE(std::to_string(distance) + ", " + std::to_string(partition.blocks.size()) + " ranks");
+      ExpectSame(LightOfAll(GetDevice(), partition, whole, shining, SettingsOf(2)), expected);
+    }
+  }
+}
+
 /// The same in angular moments, between faces that give back light, and with what leaves by cells of faces.
 TEST_F(PropagationBlocks, HaveTheLightOfLampsNearbyInMomentsAndBetweenFaces)
 {
@@ -126,6 +150,22 @@ TEST_F(PropagationBlocks, HaveTheLightOfLampsNearbyThatGoesRoundPeriodicAxes)
       SCOPED_TRACE(std::to_string(i) + ", " + std::to_string(partition.blocks.size()) + " ranks");
       ExpectSame(LightOfAll(GetDevice(), partition, whole, shining, settings), expected, true);
     }
+  }
+}
+
+TEST_F(PropagationBlocks, LoseNothingOfALampInABoxWithoutFaces)
+{
+  RandomMedium whole(Grid{ { 12, 9, 10 } }, 1, 0.05f, 3);
+  Share(whole, 1.0f, 0.0f);
+  Illumination shining;
+  shining.lights = { NearLamps()[0] };
+  PropagationSettings settings = SettingsOf(1);
+  settings.periodic = { true, true, true };
+  for (const int ranks : { 1, 3 })
+  {
+    const LightField light =
+      LightOfAll(GetDevice(), BlockPartition::Even(whole.medium.grid, ranks), whole, shining, settings);
+    EXPECT_NEAR(light.balance.absorbed[0], light.balance.entered[0], 5e-5 * light.balance.entered[0]) << ranks;
   }
 }
 

@@ -87,6 +87,7 @@ BlockScene::BlockScene(Communicator& communicator, bool has, const BlockPartitio
   , lengthUnit(LengthUnitOf(partition.whole))
 {
   communicator.Together([&] {
+    this->illumination.lights = SeenFrom(partition.whole, shining.lights);
     if (this->lengthUnit != 1.0)
     {
       // Lamps have places on every rank: all follow their light.
