@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 
+#include <utility>
 namespace tyndall
 {
 namespace
@@ -156,7 +157,8 @@ private:
     this->Result.ledger.LeaveOver(
       0, powers.scattered - guessed + this->OnTheWay + this->Reflected + this->Arrays.Stranded());
     const double reflected = this->Arrays.Faces ? this->Arrays.Faces->Magnitude()[0] : 0.0;
-    this->GoesOn = this->Arrays.MagnitudeOf(found, this->Guess) + std::abs(this->OnTheWay) + reflected;
+    this->GoesOn = GoesOnToItsEnd(this->Settings.maximumOrders, std::abs(this->WasOnTheWay), std::abs(this->OnTheWay),
+      this->Arrays.MagnitudeOf(found, this->Guess) + reflected);
     this->Record.Add(this->GoesOn, powers.scattered, this->Result.ledger);
     this->Guess.clear();
   }
@@ -213,7 +215,7 @@ private:
       this->Result.ledger.Enter(0, powers.in[face]);
       this->Result.ledger.Escape(0, face, powers.out[face]);
     }
-    this->OnTheWay = powers.onTheWay;
+    this->WasOnTheWay = std::exchange(this->OnTheWay, powers.onTheWay);
     if (this->Arrays.Scatters() || !this->Settings.leaveOut)
     {
       this->Scene.Together([&] {
@@ -250,8 +252,9 @@ private:
   {
     this->Reflect();
     this->Result.ledger.Absorb(0, swept.absorbed + ofLamps.absorbed);
-    this->GoesOn = swept.scattered + ofLamps.scattered + this->OnTheWay + this->Reflected;
-    this->Result.ledger.LeaveOver(0, this->GoesOn + this->Arrays.Stranded());
+    const double others = swept.scattered + ofLamps.scattered + this->Reflected;
+    this->GoesOn = GoesOnToItsEnd(this->Settings.maximumOrders, this->WasOnTheWay, this->OnTheWay, others);
+    this->Result.ledger.LeaveOver(0, others + this->OnTheWay + this->Arrays.Stranded());
     this->Record.Add(this->GoesOn, this->Result.ledger);
   }
 
@@ -280,6 +283,7 @@ private:
   double GoesOn = 0.0, OnTheWay = 0.0, Reflected = 0.0; ///< W
 };
 }
+  double WasOnTheWay = 0.0;                             ///< W, before the last sweep
 
 bool CanBeginWarm(const OrdinatesAngles& angles, const OrdinatesSettings& settings)
 {

@@ -10,6 +10,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <utility>
 
 namespace tyndall
 {
@@ -271,7 +273,7 @@ void SourceIteration::SweepOrder(const Monitor& monitor)
 {
   const SweepBoundary boundary = this->Order == 0 ? this->Parts.BoundaryOfSweeps() : SweepBoundary();
   const bool nothing = !boundary && !this->Shining && Sum(this->OnTheWay) == 0.0 && Sum(this->Reflected) == 0.0;
-  this->OnTheWay = {};
+  this->WasOnTheWay = std::exchange(this->OnTheWay, {});
   if (nothing)
   {
     return;
@@ -351,7 +353,8 @@ void SourceIteration::ScatterByCells()
   {
     this->Result.ledger.LeaveOver(c, powers.left[c] + this->OnTheWay[c] + this->Stranded[c]);
     this->AllScattered[c] += powers.scattered[c];
-    const double now = powers.magnitude[c] + std::abs(this->OnTheWay[c]);
+    const double now = GoesOnToItsEnd(
+      this->Settings.maximumOrders, std::abs(this->WasOnTheWay[c]), std::abs(this->OnTheWay[c]), powers.magnitude[c]);
     if (now > 0.0 && this->AllScattered[c] > 0.0)
     {
       this->Residual = std::max(this->Residual, this->Rest[c].After(now, this->AllScattered[c]));
@@ -434,7 +437,8 @@ void SourceIteration::EstimateResidual()
   this->Residual = 0.0;
   for (int c = 0; c < this->Parts.Layout.channels; ++c)
   {
-    const double now = this->Scattered[c] + this->OnTheWay[c] + this->Reflected[c];
+    const double now = GoesOnToItsEnd(
+      this->Settings.maximumOrders, this->WasOnTheWay[c], this->OnTheWay[c], this->Scattered[c] + this->Reflected[c]);
     this->AllScattered[c] += now;
     if (now == 0.0)
     {
@@ -473,7 +477,8 @@ void SourceIteration::GoOnWarm()
     this->AllScattered[c] += this->Scattered[c];
     this->Scattered[c] -= guessed[c];
     const double reflected = this->Parts.Faces ? this->Parts.Faces->Magnitude()[c] : 0.0;
-    const double now = magnitudes[c] + std::abs(this->OnTheWay[c]) + reflected;
+    const double now = GoesOnToItsEnd(this->Settings.maximumOrders, std::abs(this->WasOnTheWay[c]),
+      std::abs(this->OnTheWay[c]), magnitudes[c] + reflected);
     if (now > 0.0)
     {
       this->Residual = std::max(this->Residual, this->Rest[c].After(now, this->AllScattered[c]));
