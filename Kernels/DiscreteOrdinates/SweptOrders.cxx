@@ -1,14 +1,15 @@
 #include "DiscreteOrdinates/SweptOrders.h"
 
 #include "DiscreteOrdinates/Distributed/UpwindSweepInBlocks.h"
+#include "DiscreteOrdinates/OrdinatesParts.h"
 #include "DiscreteOrdinates/UpwindSweep.h"
 
 #include <algorithm>
 #include <cmath>
 #include <memory>
 #include <optional>
-
 #include <utility>
+
 namespace tyndall
 {
 namespace
@@ -58,6 +59,7 @@ public:
 
   OrdinatesResult Run(const Monitor& monitor)
   {
+    this->Arrays.TakeVacuumApart(AsPropagation(this->Settings));
     this->Arrays.LookAtAllRanks();
     this->FirstOrder(OfPart(monitor, 0.0, 0.1));
     while (!this->Done())
@@ -281,9 +283,9 @@ private:
   OrdinatesResult Result;
   std::vector<float> Guess;                             ///< W / length^2, until it is taken away again
   double GoesOn = 0.0, OnTheWay = 0.0, Reflected = 0.0; ///< W
+  double WasOnTheWay = 0.0;                             ///< W, before the last sweep
 };
 }
-  double WasOnTheWay = 0.0;                             ///< W, before the last sweep
 
 bool CanBeginWarm(const OrdinatesAngles& angles, const OrdinatesSettings& settings)
 {

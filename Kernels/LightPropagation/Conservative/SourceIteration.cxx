@@ -200,10 +200,11 @@ void SourceIteration::AddUncollided(const Monitor& monitor)
   {
     sources.push_back(std::make_unique<UncollidedBoundary>(this->Settings, *this->Parts.FineBoundary));
   }
-  for (std::unique_ptr<UncollidedSource>& other : this->Parts.OtherSources())
-  {
-    sources.push_back(std::move(other));
-  }
+  const auto append = [&sources](TransportParts::Sources more) {
+    std::move(more.begin(), more.end(), std::back_inserter(sources));
+  };
+  append(this->Parts.OtherSources());
+  append(this->Parts.VacuumSources());
   const bool escapes = this->Parts.CorrectsEscape;
   const double all = static_cast<double>(sources.size() + (escapes ? 1 : 0));
   SweepTally tally;
@@ -224,7 +225,8 @@ void SourceIteration::AddUncollided(const Monitor& monitor)
     Add(tally, this->Parts.AddUncollided(*sources[i], deposit, ofSource));
     if (this->AtFaces)
     {
-      this->AtFaces->TakeIncoming(*this->Parts.Fine);
+      const bool ofVacuum = this->Parts.OfVacuum && i + 1 == sources.size();
+      this->AtFaces->TakeIncoming(ofVacuum ? *this->Parts.OfVacuum : *this->Parts.Fine);
     }
     if (this->Parts.StoresMoments() && i + 1 == this->Parts.Lamps.size())
     {
