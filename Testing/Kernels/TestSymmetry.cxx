@@ -250,7 +250,7 @@ TEST_F(Symmetry, OfAnEnvironmentHoweverItStands)
   std::fill_n(sky.radiance.begin() + 3 * (30 * 64 + 11), 3, 3e4f); // a sun near the zenith
   const LightField light = scene.Solve(this->GetDevice());
   const std::vector<CubeTurn> turns = AllCubeTurns();
-  for (std::size_t t = 5; t < turns.size(); t += 10)
+  for (std::size_t t = 5; t < turns.size(); t += 17)
   {
     Rotation rotation = {};
     for (int a = 0; a < 3; ++a)
