@@ -15,10 +15,47 @@
 
 namespace tyndall
 {
+namespace
+{
+std::array<double, 3> Product(const Rotation& matrix, const std::array<double, 3>& v)
+{
+  std::array<double, 3> product;
+  for (int row = 0; row < 3; ++row)
+  {
+    product[row] = matrix[row][0] * v[0] + matrix[row][1] * v[1] + matrix[row][2] * v[2];
+  }
+  return product;
+}
+
+Rotation Transposed(const Rotation& matrix)
+{
+  Rotation transposed;
+  for (int row = 0; row < 3; ++row)
+  {
+    for (int column = 0; column < 3; ++column)
+    {
+      transposed[row][column] = matrix[column][row];
+    }
+  }
+  return transposed;
+}
+}
+
+std::array<double, 3> Environment::ToPicture(const std::array<double, 3>& inScene) const
+{
+  return Product(this->toPicture, inScene);
+}
+
+std::array<double, 3> Environment::ToScene(const std::array<double, 3>& inPicture) const
+{
+  return Product(Transposed(this->toPicture), inPicture);
+}
+
 Rgb Lookup(const Environment& environment, const std::array<double, 3>& direction)
 {
-  const double polar = std::atan2(std::hypot(direction[0], direction[1]), direction[2]);
-  const double azimuth = std::atan2(direction[1], direction[0]);
+  const std::array<double, 3> seen = environment.ToPicture(direction);
+  const double polar = std::atan2(std::hypot(seen[0], seen[1]), seen[2]);
+  const double azimuth = std::atan2(seen[1], seen[0]);
   const double column = (azimuth < 0.0 ? azimuth / (2.0 * Pi) + 1.0 : azimuth / (2.0 * Pi)) * environment.width - 0.5;
   const double row = (1.0 - polar / Pi) * environment.height - 0.5;
   const double left = std::floor(column);
@@ -153,56 +190,39 @@ std::vector<Light> SeenFrom(const Grid& grid, std::vector<Light> lights)
 
 namespace
 {
-Environment Shifted(const Environment& environment, int columns)
+/// About z, exact for quarter turns.
+Rotation AboutZ(double degrees)
 {
-  Environment shifted = environment;
-  const std::size_t row = 3 * static_cast<std::size_t>(environment.width);
-  for (auto begin = shifted.radiance.begin(); begin != shifted.radiance.end(); begin += row)
-  {
-    std::rotate(begin, begin + 3 * (environment.width - columns), begin + row);
-  }
-  return shifted;
+  const double quarters = degrees / 90.0;
+  const int whole = static_cast<int>(std::lround(quarters - 4.0 * std::floor(quarters / 4.0))) % 4;
+  const double exact[] = { 0.0, 1.0, 0.0, -1.0 };
+  const bool isExact = quarters == std::round(quarters);
+  const double sine = isExact ? exact[whole] : std::sin(degrees * Pi / 180.0);
+  const double cosine = isExact ? exact[(whole + 1) % 4] : std::cos(degrees * Pi / 180.0);
+  return { { { cosine, -sine, 0.0 }, { sine, cosine, 0.0 }, { 0.0, 0.0, 1.0 } } };
+}
 }
 
-/// Mean of what is seen through pixel (i, j), which looks along `axes` of the environment's own frame.
-Rgb SeenThrough(const Environment& environment, int i, int j, int up)
+Environment Turned(const Environment& environment, const Rotation& rotation)
 {
-  constexpr int Parts = 2;
-  const double pi = std::acos(-1.0);
-  Rgb sum = {};
-  double total = 0.0;
-  for (int part = 0; part < Parts * Parts; ++part)
+  for (int a = 0; a < 3; ++a)
   {
-    const int column = part % Parts;
-    const int row = part / Parts;
-    const double azimuth = 2.0 * pi * (i + (column + 0.5) / Parts) / environment.width;
-    const double polar = pi * (1.0 - (j + (row + 0.5) / Parts) / environment.height);
-    const std::array<double, 3> scene = { std::sin(polar) * std::cos(azimuth), std::sin(polar) * std::sin(azimuth),
-      std::cos(polar) };
-    const Rgb seen = Lookup(environment, { scene[(up + 1) % 3], scene[(up + 2) % 3], scene[up] });
-    for (int c = 0; c < 3; ++c)
+    for (int b = 0; b < 3; ++b)
     {
-      sum[c] += std::sin(polar) * seen[c];
-    }
-    total += std::sin(polar);
-  }
-  return { sum[0] / total, sum[1] / total, sum[2] / total };
-}
-
-Environment StoodUp(const Environment& environment, int up)
-{
-  Environment stood = environment;
-  for (int j = 0; j < environment.height; ++j)
-  {
-    for (int i = 0; i < environment.width; ++i)
-    {
-      const Rgb seen = SeenThrough(environment, i, j, up);
-      std::copy(
-        seen.begin(), seen.end(), stood.radiance.begin() + 3 * (static_cast<std::size_t>(j) * environment.width + i));
+      const double product = Product(rotation, rotation[a])[b];
+      if (!(std::abs(product - (a == b ? 1.0 : 0.0)) < 1e-6))
+      {
+        throw InvalidInput("An environment is turned by an orthogonal matrix: rows of length 1 that stand at right "
+                           "angles to each other.");
+      }
     }
   }
-  return stood;
-}
+  Environment turned = environment;
+  for (int row = 0; row < 3; ++row)
+  {
+    turned.toPicture[row] = Product(rotation, environment.toPicture[row]); // times the transposed one
+  }
+  return turned;
 }
 
 Environment Turned(const Environment& environment, int up, double degrees)
@@ -211,14 +231,9 @@ Environment Turned(const Environment& environment, int up, double degrees)
   {
     throw InvalidInput("An environment stands up along axis 0, 1 or 2 (x, y, z) and is turned by a finite angle.");
   }
-  if (environment.Empty())
-  {
-    return environment;
-  }
-  const double turn = degrees / 360.0 - std::floor(degrees / 360.0);
-  const int columns = static_cast<int>(std::lround(turn * environment.width)) % environment.width;
-  const Environment turned = columns == 0 ? environment : Shifted(environment, columns);
-  return up == 2 ? turned : StoodUp(turned, up);
+  Rotation stands = {}; // its z along axis `up`
+  stands[up][2] = stands[(up + 1) % 3][0] = stands[(up + 2) % 3][1] = 1.0;
+  return Turned(Turned(environment, AboutZ(degrees)), stands);
 }
 
 namespace

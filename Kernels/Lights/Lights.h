@@ -28,16 +28,24 @@ struct Light
   double angle = 0.0;                        ///< full opening angle of a spot, degrees
 };
 
-/// Radiance that comes from infinitely far away, W / (length^2 sr), in latitude-longitude layout with z up: pixel (i,
-/// j) of width x height looks along azimuth 2 pi (i + 1/2) / width about +z from +x, polar angle
-/// pi (1 - (j + 1/2) / height) from +z; so row 0 is the nadir.
+/// A rotation, mirrored or not: rows of an orthogonal matrix.
+using Rotation = std::array<std::array<double, 3>, 3>;
+
+/// Radiance that comes from infinitely far away, W / (length^2 sr): a picture in latitude-longitude layout, and how it
+/// stands in the scene. In the picture's own axes z is up: pixel (i, j) of width x height looks along azimuth
+/// 2 pi (i + 1/2) / width about +z from +x, polar angle pi (1 - (j + 1/2) / height) from +z; so row 0 is the nadir.
+/// Pixels stay as they are however it stands, so that none loses power.
 struct Environment
 {
   int width = 0; ///< 0: there is no environment
   int height = 0;
   std::vector<float> radiance; ///< 3 * width * height, RGB interleaved
+  /// What is seen along d in the scene is in the picture along toPicture * d.
+  Rotation toPicture = { { { 1.0, 0.0, 0.0 }, { 0.0, 1.0, 0.0 }, { 0.0, 0.0, 1.0 } } };
 
   bool Empty() const { return this->width == 0; }
+  std::array<double, 3> ToPicture(const std::array<double, 3>& inScene) const;
+  std::array<double, 3> ToScene(const std::array<double, 3>& inPicture) const;
 };
 
 /// Everything that shines on a medium from outside (and the lights inside it).
@@ -75,14 +83,16 @@ std::vector<Light> SeenFrom(const Grid& grid, std::vector<Light> lights);
 /// direction is vertical), the second across the first and the direction.
 std::array<std::array<double, 3>, 2> RectangleEdges(const Light& light);
 
-/// Mean radiance the environment has where it is looked at along `direction` (from the viewer outwards; the light
-/// travels the other way), bilinear between pixels.
+/// Mean radiance the environment has where it is looked at along `direction` of the scene (from the viewer outwards;
+/// the light travels the other way), bilinear between pixels.
 Rgb Lookup(const Environment& environment, const std::array<double, 3>& direction);
 
 /// The same environment standing otherwise: its up (+z) along axis `up` of the scene (0, 1, 2: x, y, z; the other axes
-/// follow in their cyclic order), then turned by `degrees` about that axis. A turn about z moves whole pixels, so that
-/// nothing is lost; other axes are resampled.
+/// follow in their cyclic order), then turned by `degrees` about that axis.
 Environment Turned(const Environment& environment, int up, double degrees);
+/// The same turned, or mirrored: what was seen along d is seen along rotation * d.
+/// @throws InvalidInput where that is no orthogonal matrix
+Environment Turned(const Environment& environment, const Rotation& rotation);
 
 /// Whether anything of it shines: has a power or a radiance above 0.
 bool Shines(const Illumination& illumination);

@@ -400,6 +400,33 @@ TEST(PhotonEmitter, APeakInTheSkyIsSeenAndWeighedRight)
   }
 }
 
+TEST(PhotonEmitter, ASkyHasItsPowerHoweverItStands)
+{
+  Illumination light;
+  light.environment.width = 64;
+  light.environment.height = 32;
+  light.environment.radiance.assign(3 * 64 * 32, 0.5f);
+  light.environment.radiance[3 * (31 * 64 + 5)] = 2e4f; // a pixel at the zenith
+  const Grid cube{ { 4, 4, 4 } };                       // it looks alike from all sides of another axis
+  const double upright = EmitPhotons(cube, light, { 20000 }).power[0];
+  for (int up = 0; up < 2; ++up)
+  {
+    Illumination turned = light;
+    turned.environment = Turned(light.environment, up, 0.0);
+    const EmittedPhotons emitted = EmitPhotons(cube, turned, { 20000 });
+    EXPECT_NEAR(emitted.power[0] / upright, 1.0, 1e-3);
+    std::array<double, 3> along = {};
+    for (const Photon& photon : emitted.photons)
+    {
+      for (int a = 0; a < 3; ++a)
+      {
+        along[a] -= photon.direction[a] * photon.power[0];
+      }
+    }
+    EXPECT_GT(along[up], 10.0 * std::abs(along[2]));
+  }
+}
+
 TEST(PhotonEmitter, LightsShareThePhotonsByPower)
 {
   Illumination light;

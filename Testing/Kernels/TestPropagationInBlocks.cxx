@@ -1,10 +1,13 @@
 // The light of a medium that is spread over ranks, against that of the whole on one.
 
 #include "BlocksOfLight.h"
+#include "TransparentBox.h"
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -167,6 +170,60 @@ TEST_F(PropagationBlocks, LoseNothingOfALampInABoxWithoutFaces)
       LightOfAll(GetDevice(), BlockPartition::Even(whole.medium.grid, ranks), whole, shining, settings);
     EXPECT_NEAR(light.balance.absorbed[0], light.balance.entered[0], 5e-5 * light.balance.entered[0]) << ranks;
   }
+}
+
+namespace
+{
+/// No voxel takes light, and all emit.
+RandomMedium Glow(const Grid& grid)
+{
+  RandomMedium glow(grid, 1, 0.0f);
+  glow.Emit(1.0f);
+  std::fill(glow.emission.begin(), glow.emission.end(), 1.0f);
+  return glow;
+}
+}
+
+/// Of an odd number of directions along the edge of a cube's face one goes along an axis: its light never ends, and is
+/// left over.
+TEST_F(PropagationBlocks, EndWhereLightAlongAPeriodicAxisDoesNot)
+{
+  RandomMedium whole = Glow(Grid{ { 4, 3, 3 } });
+  whole.absorption[3] = 0.5f;
+  PropagationSettings settings = SettingsOf(0);
+  settings.periodic = { true, false, false };
+  const LightField expected = SolveConservative(GetDevice(), whole.medium, {}, settings);
+  EXPECT_LT(expected.convergence.size(), 20u);
+  EXPECT_LT(expected.balance.RelativeError(1), 1e-5);
+  EXPECT_GT(expected.balance.leftOver[0], 0.01 * expected.balance.emitted[0]);
+  ASSERT_EQ(expected.doubts.size(), 1u);
+  EXPECT_NE(expected.doubts[0].find("left over: its rays still go round periodic axes"), std::string::npos);
+  for (const int ranks : { 1, 3 })
+  {
+    SCOPED_TRACE(std::to_string(ranks) + " ranks");
+    ExpectSame(
+      LightOfAll(GetDevice(), BlockPartition::Even(whole.medium.grid, ranks), whole, {}, settings), expected, true);
+  }
+}
+
+/// By default there is none along such an axis: the light is that of a rod without ends.
+TEST_F(PropagationBlocks, HaveNoDirectionAlongAPeriodicAxis)
+{
+  const RandomMedium whole = Glow(Grid{ { 4, 4, 4 } });
+  const auto expectRod = [](const LightField& light) {
+    const double mean = std::accumulate(light.fluence.begin(), light.fluence.end(), 0.0) / 64.0;
+    const double rod = MeanFluenceOfTransparentBox({ std::numeric_limits<double>::infinity(), 4.0, 4.0 });
+    EXPECT_NEAR(mean / rod, 1.0, 0.08);
+    EXPECT_LT(light.balance.leftOver[0], 1e-6 * light.balance.emitted[0]);
+    EXPECT_EQ(light.directionsPerFace, 16);
+  };
+  PropagationSettings settings;
+  settings.periodic = { true, false, false };
+  settings.directionsPerFace = 9;
+  expectRod(SolveConservative(GetDevice(), whole.medium, {}, settings));
+  settings.emissionError = 0.0; // by the usual sweeps
+  expectRod(SolveConservative(GetDevice(), whole.medium, {}, settings));
+  expectRod(LightOfAll(GetDevice(), BlockPartition::Even(whole.medium.grid, 3), whole, {}, settings));
 }
 
 TEST_F(PropagationBlocks, HaveTheLightOfALampThatGoesRoundVoxelByVoxel)

@@ -59,6 +59,10 @@ void RequireSame(Communicator& communicator, bool has, const Medium& medium, con
   {
     light.insert(light.end(), albedo.begin(), albedo.end());
   }
+  for (const std::array<double, 3>& row : illumination.environment.toPicture)
+  {
+    light.insert(light.end(), row.begin(), row.end());
+  }
   RequireSame(communicator, "what shines on it", true, light);
 }
 

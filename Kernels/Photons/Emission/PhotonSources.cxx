@@ -169,7 +169,8 @@ public:
     const double cosine = bottom + v * (top - bottom);
     const double sine = std::sqrt(std::max(1.0 - cosine * cosine, 0.0));
     const double azimuth = 2.0 * Pi * (i + h) / this->Width;
-    const glm::dvec3 seen(sine * std::cos(azimuth), sine * std::sin(azimuth), cosine);
+    const glm::dvec3 seen =
+      Vector(this->Picture.ToScene({ sine * std::cos(azimuth), sine * std::sin(azimuth), cosine }));
 
     const double angle = 2.0 * Pi / this->Width * (top - bottom);
     const double density = (row[i + 1] - row[i]) / (this->Rows.back() * angle);
@@ -234,8 +235,8 @@ private:
         }
         const double polar = Pi * (1.0 - (j + 0.5) / this->Height);
         const double azimuth = 2.0 * Pi * (i + 0.5) / this->Width;
-        const glm::dvec3 seen(
-          std::sin(polar) * std::cos(azimuth), std::sin(polar) * std::sin(azimuth), std::cos(polar));
+        const glm::dvec3 seen = Vector(this->Picture.ToScene(
+          { std::sin(polar) * std::cos(azimuth), std::sin(polar) * std::sin(azimuth), std::cos(polar) }));
         weights[static_cast<std::size_t>(j) * this->Width + i] =
           sum * this->Outline(seen) * (this->CosineBelow(j + 1) - this->CosineBelow(j));
       }

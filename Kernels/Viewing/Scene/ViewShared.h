@@ -48,6 +48,7 @@ typedef struct
   int4 held;             ///< voxels of the arrays of such a block
   int4 bricks;           ///< bricks
   int4 environment;      ///< width, height in pixels
+  float4 toPicture[3];   ///< of the environment: rows of the matrix from the world's axes to the picture's
   BlockInfo block;
   PhaseInfo phase;
 } ViewInfo;
