@@ -341,8 +341,8 @@ private:
   bool IsNew = false;
 };
 
-/// Looks at what PoCL keeps in a folder, with as few questions to the system as can be: at files that are noted, and into
-/// folders of programs that have changed since they were.
+/// Looks at what PoCL keeps in a folder, with as few questions to the system as can be: at files that are noted, and
+/// into folders of programs that have changed since they were.
 class CacheInspection
 {
 public:

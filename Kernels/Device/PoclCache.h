@@ -34,10 +34,10 @@ struct DamagedFiles
   std::string trouble; ///< why one cannot be set aside; empty: all are
 };
 
-/// Renames damaged files below a folder of PoCL's to *.damaged, so that it compiles them anew: bitcode and libraries that
-/// are cut off, overwritten or unreadable, and those that were changed since an earlier call noted their checksums in the
-/// folder. What is as it was noted is not read. Other processes may do so, and PoCL may write, at the same time: it
-/// renames what it has written, and leaves nothing half.
+/// Renames damaged files below a folder of PoCL's to *.damaged, so that it compiles them anew: bitcode and libraries
+/// that are cut off, overwritten or unreadable, and those that were changed since an earlier call noted their checksums
+/// in the folder. What is as it was noted is not read. Other processes may do so, and PoCL may write, at the same time:
+/// it renames what it has written, and leaves nothing half.
 DamagedFiles SetDamagedAside(const std::string& folder);
 
 /// Notes the checksums of what PoCL has written to the folder since they were noted last.
