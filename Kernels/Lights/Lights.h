@@ -106,7 +106,7 @@ bool Reflects(const Illumination& illumination);
 void CheckFaceAlbedo(const Illumination& illumination, const std::array<bool, 3>& periodic);
 
 /// @throws InvalidInput where a light has a zero direction, an angle out of range, a power that is negative or beyond
-///   float, no size; an environment has a negative or infinite pixel (names the first); a sky or a face a radiance that is negative or
-///   beyond float, a face an albedo that is not from 0 to 1
+///   float, no size; an environment has a negative or infinite pixel (names the first); a sky or a face a radiance that
+///   is negative or beyond float, a face an albedo that is not from 0 to 1
 void Check(const Illumination& illumination);
 }

@@ -2,6 +2,7 @@
 // outputs.
 
 #include "AdaptiveScene.h"
+#include "Numerics/NumberText.h"
 
 #include <limits>
 
@@ -132,7 +133,7 @@ void PhotonsThatMeanNothingAreRefused(test::Claims& claims)
   {
     scene.marcher->SetPhotonsData(Beam(4, [=](vtkIdType i) { return i == 2 ? batch : 0.0; }));
     scene.marcher->Update();
-    claims.That(errors.WasOneWith("Photon 2 has batch " + std::to_string(batch)), "a batch that is none");
+    claims.That(errors.WasOneWith("Photon 2 has batch " + tyndall::Text("%g", batch)), "a batch that is none");
     claims.That(test::AreEmpty({ scene.marcher }), "and no light");
   }
   const auto heavy = Beam(4, [](vtkIdType) { return 0.0; });
