@@ -34,7 +34,7 @@ Lattice::Lattice(Device& device, const LatticeBox& box, const LatticeSettings& s
   this->LayOut(voxels);
   this->Options = Define("DIRECTIONS", settings.directions) + Define("BENDS", voxels.bends) +
     Define("PASSES_ALL", voxels.passesAll) + Define("REFLECTS", voxels.Reflects()) +
-    Define("PUBLISHED", settings.scheme == LatticeScheme::Published);
+    Define("PUBLISHED", settings.scheme == LatticeScheme::Published) + Define("ENDLESS", !voxels.endless.empty());
   const std::size_t bytes = 2 * sizeof(float) * static_cast<std::size_t>(settings.directions) * this->TheInfo.stride;
   this->Options += Define("STREAMS", device.IsCpu() && bytes > Cached);
   this->Load(voxels);
@@ -117,6 +117,10 @@ void Lattice::Load(const LatticeVoxels& voxels)
   {
     this->Squared = arranged(voxels.squared, 0.0f, "n^2");
   }
+  if (!voxels.endless.empty())
+  {
+    this->Endless = arranged(voxels.endless, 0.0f, "lines without an end");
+  }
   if (voxels.Reflects())
   {
     this->Albedo = Buffer<float>(this->TheDevice,
@@ -189,7 +193,7 @@ void Lattice::StepTogether(bool writes)
   this->Wrap(this->Now);
   cl::Kernel step = this->Kernel("step_lattice");
   With(step, this->TheInfo, this->Resistance, this->Squared, this->Albedo, this->Turning, this->Kept, this->Source,
-    this->Now, this->Next, this->Shown, cl_int(writes));
+    this->Endless, this->Now, this->Next, this->Shown, cl_int(writes));
   this->Queue.enqueueNDRangeKernel(step, cl::NullRange, cl::NDRange(this->Size[1], this->Size[2]));
   this->Now.Swap(this->Next);
 }
@@ -202,7 +206,7 @@ void Lattice::StepBlocks(int steps)
   cl::Kernel step =
     this->TheDevice.Kernel("step_blocks", kernel_source::LatticeBlocks, this->Options + Define("BLOCK", edge));
   With(step, this->TheInfo, this->Resistance, this->Squared, this->Albedo, this->Turning, this->Kept, this->Source,
-    this->Next, this->Sends, this->Now, this->Shown, cl_int(steps));
+    this->Endless, this->Next, this->Sends, this->Now, this->Shown, cl_int(steps));
   this->Queue.enqueueNDRangeKernel(
     step, cl::NullRange, WholeBlocks(this->Size, edge), cl::NDRange(group, group, group));
   this->Next.Swap(this->Sends);

@@ -78,7 +78,7 @@ private:
   const LatticeSettings& Settings;
   LatticeInfo TheInfo = {};
   std::string Options;
-  Buffer<float> Resistance, Turning, Kept, Squared, Albedo, Source, Shown;
+  Buffer<float> Resistance, Turning, Kept, Squared, Albedo, Source, Endless, Shown;
   Buffer<float> Now, Next; ///< densities; of blocks `Next` is what they send each other
   Buffer<float> Sends;     ///< of blocks: what they are about to send
 };

@@ -5,6 +5,8 @@
 #define IN_BLOCK (BLOCK * BLOCK * BLOCK)
 DEFINE_ARRIVING(arriving, float)
 DEFINE_COLLIDED(collided, float)
+DEFINE_OPEN(open_weight, float, int)
+DEFINE_SENT(sent_weight, float, int)
 
 // Voxel of the block that lies `sign` ways of direction i from this one, -1 where that is another block's or outside.
 static int neighbour_in_block(LatticeInfo lattice, int i, int sign)
@@ -30,8 +32,9 @@ static int neighbour_in_block(LatticeInfo lattice, int i, int sign)
 //   densities  of all voxels, before and after
 __kernel __attribute__((reqd_work_group_size(BLOCK, BLOCK, BLOCK))) void step_blocks(LatticeInfo lattice,
   const __global float* resistance, const __global float* squared, const __global float* albedo,
-  const __global float* turning, const __global float* kept, const __global float* source, const __global float* came,
-  __global float* goes, __global float* densities, __global float* fluence, int steps)
+  const __global float* turning, const __global float* kept, const __global float* source,
+  const __global float* endless, const __global float* came, __global float* goes, __global float* densities,
+  __global float* fluence, int steps)
 {
   __local float block[DIRECTIONS * IN_BLOCK];
   const int x = get_global_id(0), y = get_global_id(1), z = get_global_id(2);
@@ -40,6 +43,8 @@ __kernel __attribute__((reqd_work_group_size(BLOCK, BLOCK, BLOCK))) void step_bl
   const ulong at = exists ? (ulong)(z + 1) * lattice.layer + (ulong)(y + 1) * lattice.row + x + LatticeFirst : 0;
   const float half_source = 0.5f * source[at], even = turning[at], stays = kept[at];
   const float own = PASSES_ALL ? 1.0f : resistance[at], index = BENDS ? squared[at] : 1.0f;
+  const int closed = ENDLESS ? (int)endless[at] : 0;
+  const float open = open_weight(closed);
   float here[DIRECTIONS], mean[DIRECTIONS], sum = 0.0f;
   FOR_DIRECTIONS(i)
   {
@@ -62,8 +67,8 @@ __kernel __attribute__((reqd_work_group_size(BLOCK, BLOCK, BLOCK))) void step_bl
     barrier(CLK_LOCAL_MEM_FENCE);
     FOR_DIRECTIONS(i)
     {
-      const float half_own = WEIGHT(i) * half_source;
-      const float after = collided(WEIGHT(i), here[i] + half_own, sum, even, stays) + half_own;
+      const float weight = sent_weight(i, closed, open), half_own = weight * half_source;
+      const float after = collided(weight, here[i] + half_own, sum, even, stays) + half_own;
       block[i * IN_BLOCK + me] = after;
       mean[i] += after;
     }

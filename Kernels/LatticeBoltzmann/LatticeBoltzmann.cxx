@@ -104,6 +104,8 @@ LightField SolveLatticeBoltzmann(Device& device, const Medium& medium, const Fie
   const PhotonLight found = marcher.March(photons, OfPart(monitor, 0.0, 0.5));
   Illumination lit = illumination;
   lit.uncollided = ImageOf(found);
-  return SolveLatticeBoltzmann(device, medium, ior, lit, settings, OfPart(monitor, 0.5, 1.0));
+  LightField light = SolveLatticeBoltzmann(device, medium, ior, lit, settings, OfPart(monitor, 0.5, 1.0));
+  DoubtPhotons(found.missed, photons.size(), light);
+  return light;
 }
 }

@@ -89,6 +89,15 @@ UncollidedImage ImageOf(const PhotonLight& photons)
   return image;
 }
 
+void DoubtPhotons(std::size_t missed, std::size_t all, LightField& light)
+{
+  if (missed > 0)
+  {
+    light.doubts.push_back(std::to_string(missed) + " of " + std::to_string(all) +
+      " photons do not meet the medium, so their power is not in it. Give PhotonEmitter the same medium.");
+  }
+}
+
 LightField BeginLight(std::size_t voxels, int channels, const LatticeSettings& settings)
 {
   LightField light;

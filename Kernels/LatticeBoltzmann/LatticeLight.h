@@ -27,6 +27,10 @@ void CheckPhotonsGoNotRound(const LatticeSettings& settings);
 /// Photons' light as uncollided light; its arrays are theirs.
 UncollidedImage ImageOf(const PhotonLight& photons);
 
+/// Warns of photons that do not meet the medium.
+/// @param missed, all  photons of all ranks
+void DoubtPhotons(std::size_t missed, std::size_t all, LightField& light);
+
 /// Dark, in the channels that are solved.
 LightField BeginLight(std::size_t voxels, int channels, const LatticeSettings& settings);
 

@@ -4,6 +4,7 @@
 //   BENDS       1: the refractive index varies
 //   REFLECTS    1: a face of the box gives back light
 //   PUBLISHED   1: collisions as printed
+//   ENDLESS     1: along some lines no light is sent
 //
 // Densities are what leaves a voxel along each of its links, [direction][stride]. Their sum is fluence, W / length^2.
 // The voxels round the box hold what comes in.
@@ -49,12 +50,30 @@ __constant char Ways[18][3] = LATTICE_WAYS;
     return PLAIN ? sent : part * sent + (1.0f - returns) * back;                                                   \
   }
 
+// Of even light that voxels send nothing goes along endless lines (LatticeVoxels.h), and all of it along the others.
+//   closed  bits of the pairs of directions of endless lines
+#define DEFINE_OPEN(name, type, whole)                                                    \
+  static type name(whole closed)                                                          \
+  {                                                                                       \
+    type open = (type)(1.0f);                                                             \
+    for (int i = 0; ENDLESS && i < DIRECTIONS; i += 2)                                    \
+    {                                                                                     \
+      open -= select((type)(0.0f), (type)(2.0f * WEIGHT(i)), (closed >> i / 2 & 1) != 0); \
+    }                                                                                     \
+    return fmax(open, (type)(WEIGHT(DIRECTIONS - 1)));                                    \
+  }
+#define DEFINE_SENT(name, type, whole)                                                                               \
+  static type name(int i, whole closed, type open)                                                                   \
+  {                                                                                                                  \
+    return ENDLESS ? select((type)(WEIGHT(i)) / open, (type)(0.0f), (closed >> i / 2 & 1) != 0) : (type)(WEIGHT(i)); \
+  }
+
 // Density along a direction after a collision (Eqs. (L1), (L6)).
-//   weight  of the direction
+//   weight  of the direction, among those that light is sent along
 //   before  what arrived, with half of the source of a step
 //   sum     of those of all directions
 #define DEFINE_COLLIDED(name, type)                                                                                \
-  static type name(float weight, type before, type sum, type even, type stays)                                     \
+  static type name(type weight, type before, type sum, type even, type stays)                                      \
   {                                                                                                                \
     return PUBLISHED ? before * stays + even * (weight * sum) : (before + even * (weight * sum - before)) * stays; \
   }

@@ -11,6 +11,8 @@
 #define WIDTH 16
 DEFINE_ARRIVING(arriving, float16)
 DEFINE_COLLIDED(collided, float16)
+DEFINE_OPEN(open_weight, float16, int16)
+DEFINE_SENT(sent_weight, float16, int16)
 
 // Of sixteen voxels beginning at `at`: to those of the row's end that are voxels.
 static void store_some(float16 values, __global float* to, ulong at, int voxels)
@@ -63,10 +65,12 @@ static float16 arriving_along(LatticeInfo lattice, LINKS, const __global float* 
 //   turning   part of the density that collisions make even
 //   kept      part that is not absorbed in a step; published: neither absorbed nor scattered
 //   source    W / length^2 a step, that begins evenly in all directions
+//   endless   with ENDLESS: bits of the pairs of directions along which nothing is sent
 //   from, to  densities before and after
 //   fluence   [voxel], written with `writes`
 __kernel void step_lattice(LatticeInfo lattice, LINKS, const __global float* turning, const __global float* kept,
-  const __global float* source, const __global float* from, __global float* to, __global float* fluence, int writes)
+  const __global float* source, const __global float* endless, const __global float* from, __global float* to,
+  __global float* fluence, int writes)
 {
   const int y = get_global_id(0), z = get_global_id(1), nx = lattice.size[0];
   const ulong line = (ulong)(z + 1) * lattice.layer + (ulong)(y + 1) * lattice.row + LatticeFirst;
@@ -81,10 +85,12 @@ __kernel void step_lattice(LatticeInfo lattice, LINKS, const __global float* tur
       sum += here[i];
     }
     const float16 even = vload16(0, turning + at), stays = vload16(0, kept + at);
+    const int16 closed = ENDLESS ? convert_int16(vload16(0, endless + at)) : (int16)(0);
+    const float16 open = open_weight(closed);
     FOR_DIRECTIONS(i)
     {
-      const float16 own = WEIGHT(i) * half_source;
-      store_densities(collided(WEIGHT(i), here[i] + own, sum, even, stays) + own, to + i * lattice.stride, at, nx - x);
+      const float16 weight = sent_weight(i, closed, open), own = weight * half_source;
+      store_densities(collided(weight, here[i] + own, sum, even, stays) + own, to + i * lattice.stride, at, nx - x);
     }
     if (writes)
     {

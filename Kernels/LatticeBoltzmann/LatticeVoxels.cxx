@@ -1,5 +1,7 @@
 #include "LatticeBoltzmann/LatticeVoxels.h"
 
+#include "Device/Errors.h"
+#include "LatticeBoltzmann/LatticeShared.h"
 #include "Numerics/Constants.h"
 
 #include <algorithm>
@@ -10,6 +12,10 @@ namespace tyndall
 {
 namespace
 {
+/// A closed line on which a voxel ends less than this part of the light, in the mean, is endless. Where no axis is open
+/// all lines close, and thin media end light in many laps.
+constexpr double LeastEnding = 1e-3, LeastEndingInClosedBox = 1e-12;
+
 /// Of light that begins between two places, what comes to the farther one before it comes to the nearer or is absorbed.
 /// @param way     from the nearer one, of all resistance between them
 /// @param decays  how many e-folds diffuse light falls by from one to the other
@@ -28,6 +34,61 @@ double DecaysAcross(const Medium& medium, std::size_t voxel, int channel)
   const double absorbs = medium.sigma_a.At(voxel, channel);
   return medium.grid.spacing[0] * std::sqrt(3.0 * absorbs * medium.TransportSigmaT(voxel, channel));
 }
+
+/// Lines of links of a pair of directions that close round periodic axes, through a whole grid.
+class ClosedLines
+{
+public:
+  ClosedLines(const std::array<int, 3>& size, const std::array<bool, 3>& periodic, int pair)
+    : Size(size)
+  {
+    constexpr int ways[18][3] = LATTICE_WAYS;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const int way = ways[2 * pair][axis];
+      this->Ways[axis] = way;
+      this->Close = this->Close && (way == 0 || periodic[axis]);
+      this->Common = way != 0 ? std::gcd(this->Common, size[axis]) : this->Common;
+      this->Across *= way == 0 ? static_cast<std::size_t>(size[axis]) : 1;
+    }
+    this->IsDiagonal = std::count(this->Ways.begin(), this->Ways.end(), 0) == 1;
+  }
+
+  /// 0: lines of the pair do not close.
+  std::size_t Count() const
+  {
+    return this->Close ? this->Across * (this->IsDiagonal ? static_cast<std::size_t>(this->Common) : 1) : 0;
+  }
+
+  /// Number of the line through a voxel, which may lie beyond the grid's periodic ends.
+  std::size_t Through(const std::array<int, 3>& voxel) const
+  {
+    std::size_t line = 0;
+    int along = 0; // of a diagonal: the same, but for whole periods, in all of its voxels
+    int sign = 1;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const int at = (voxel[axis] % this->Size[axis] + this->Size[axis]) % this->Size[axis];
+      if (this->Ways[axis] == 0)
+      {
+        line = line * static_cast<std::size_t>(this->Size[axis]) + static_cast<std::size_t>(at);
+      }
+      else
+      {
+        along += sign * this->Ways[axis] * at;
+        sign = -1;
+      }
+    }
+    const int number = (along % this->Common + this->Common) % this->Common;
+    return this->IsDiagonal ? line * static_cast<std::size_t>(this->Common) + static_cast<std::size_t>(number) : line;
+  }
+
+private:
+  std::array<int, 3> Size, Ways = {};
+  std::size_t Across = 1;
+  int Common = 0;
+  bool Close = true, IsDiagonal = false;
+};
 }
 
 double Uncollided::Nearer(std::size_t voxel, int channel, std::size_t face) const
@@ -90,6 +151,74 @@ LatticeVoxels::LatticeVoxels(
   }
   this->TakeOutside(scene.shining, channel);
   this->Shine(scene, direct, channel);
+  if (!published && (settings.periodic[0] || settings.periodic[1] || settings.periodic[2]))
+  {
+    const auto ofAll = [](const std::vector<double>& sums) { return sums; };
+    this->FindEndless(medium.grid, settings.periodic, LatticeBox(medium.grid), { 0, 0, 0 }, ofAll);
+    this->CheckLightEnds(medium.grid);
+  }
+}
+
+void LatticeVoxels::FindEndless(const Grid& whole, const std::array<bool, 3>& periodic, const LatticeBox& box,
+  const std::array<int, 3>& first, const std::function<std::vector<double>(const std::vector<double>&)>& sum)
+{
+  const double ofVoxel = periodic[0] && periodic[1] && periodic[2] ? LeastEndingInClosedBox : LeastEnding;
+  const auto inWhole = [&](std::size_t i) {
+    std::array<int, 3> at = box.known.VoxelAt(i);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      at[axis] += first[axis] - box.own.first[axis];
+    }
+    return at;
+  };
+  std::vector<float> bits(box.known.VoxelCount(), 0.0f);
+  for (int pair = 0; pair < this->Directions / 2; ++pair)
+  {
+    const ClosedLines lines(whole.size, periodic, pair);
+    if (lines.Count() == 0)
+    {
+      continue;
+    }
+    const double least = ofVoxel * static_cast<double>(whole.VoxelCount()) / static_cast<double>(lines.Count());
+    std::vector<double> inALap(lines.Count(), 0.0);
+    for (std::size_t i = 0; i < box.Count(); ++i)
+    {
+      const std::size_t voxel = box.Known(i);
+      inALap[lines.Through(inWhole(voxel))] += 1.0 - (1.0 - this->lost[voxel]) * (1.0 - this->turning[voxel]);
+    }
+    inALap = sum(inALap);
+    for (std::size_t i = 0; i < bits.size(); ++i)
+    {
+      bits[i] += inALap[lines.Through(inWhole(i))] < least ? static_cast<float>(1 << pair) : 0.0f;
+    }
+  }
+  const bool any = std::any_of(bits.begin(), bits.end(), [](float bit) { return bit > 0.0f; });
+  this->endless = any ? std::move(bits) : std::vector<float>();
+}
+
+void LatticeVoxels::CheckLightEnds(const Grid& known) const
+{
+  const auto all = static_cast<float>((1 << this->Directions / 2) - 1);
+  for (std::size_t i = 0; i < this->endless.size(); ++i)
+  {
+    if (this->endless[i] == all && this->source[i] > 0.0f)
+    {
+      throw InvalidInput("What begins in voxel " + VoxelName(known, i) +
+        " meets nothing round the three periodic axes: light would grow without end. Leave an axis open, or give the "
+        "medium some sigma_a there.");
+    }
+  }
+}
+
+double LatticeVoxels::OpenWeight(std::size_t voxel) const
+{
+  double open = 1.0;
+  const int bits = this->endless.empty() ? 0 : static_cast<int>(this->endless[voxel]);
+  for (int pair = 0; pair < this->Directions / 2; ++pair)
+  {
+    open -= bits >> pair & 1 ? 2.0 * LatticeWeight(this->Directions, 2 * pair) : 0.0;
+  }
+  return std::max(open, LatticeWeight(this->Directions, this->Directions - 1)); // what is dark goes nowhere
 }
 
 void LatticeVoxels::TakeOutside(const Illumination& shining, int channel)

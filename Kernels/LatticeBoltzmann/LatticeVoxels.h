@@ -1,11 +1,13 @@
 #pragma once
 
+#include "LatticeBoltzmann/LatticeBox.h"
 #include "LatticeBoltzmann/LatticeScene.h"
 #include "LatticeBoltzmann/LatticeSettings.h"
 #include "Lights/UncollidedImage.h"
 #include "Medium/Field.h"
 
 #include <array>
+#include <functional>
 #include <vector>
 
 namespace tyndall
@@ -44,6 +46,10 @@ struct LatticeVoxels
   /// W / length^2 of uncollided light, by voxel and face, that is scattered first so near to the face that it begins on
   /// its other side (Eq. (L13)): no part of `source` there. Empty: none.
   std::vector<float> crossing;
+  /// By voxel, a whole number whose bit k stands for directions 2 k and 2 k + 1: along these its line of links closes
+  /// round periodic axes and meets next to nothing, so that light on it would never end. No light is sent along such a
+  /// line; what begins in its voxels goes along the others. Empty: there is none.
+  std::vector<float> endless;
   std::vector<double> begins;       ///< part of what begins in a voxel that is not absorbed in the same step, Eq. (L4a)
   bool bends = false;               ///< n^2 varies
   bool passesAll = true;            ///< no link gives back light
@@ -57,6 +63,16 @@ struct LatticeVoxels
 
   /// Source of uncollided light, and of what the medium emits.
   void Shine(const LatticeScene& scene, const Uncollided& direct, int channel);
+  /// Where the lines are that light would go round without end. Collective.
+  /// @param whole, periodic  the grid of all ranks
+  /// @param box    of this rank, whose first own voxel is at `first` in the whole grid
+  /// @param sum    over all ranks
+  void FindEndless(const Grid& whole, const std::array<bool, 3>& periodic, const LatticeBox& box,
+    const std::array<int, 3>& first, const std::function<std::vector<double>(const std::vector<double>&)>& sum);
+  /// @throws InvalidInput where light begins in a voxel all of whose lines are endless (names the first known one)
+  void CheckLightEnds(const Grid& known) const;
+  /// Weight of the directions along which light is sent; 1 but on endless lines.
+  double OpenWeight(std::size_t voxel) const;
   /// What comes in from outside and what faces give back. To be called again where `bends` was changed.
   void TakeOutside(const Illumination& shining, int channel);
 

@@ -9,7 +9,9 @@ namespace tyndall
 {
 namespace
 {
-constexpr double Askew = 0.2; ///< less of the direction along an axis says nothing: shadows' edges fall off, too
+/// Less of the direction along an axis says nothing: shadows' edges fall off, too. From the first to the second it says
+/// more and more, so that rounding decides nothing.
+constexpr double SaysNothing = 0.15, SaysAll = 0.25;
 
 /// Mean of exp(-k x) over x from 0 to 1.
 double MeanOf(double k)
@@ -52,11 +54,18 @@ public:
   double Nearer(std::size_t voxel, std::size_t axis) const
   {
     const double along = this->Image.meanDirection.At(voxel, static_cast<int>(axis));
+    const double says = std::clamp((std::abs(along) - SaysNothing) / (SaysAll - SaysNothing), 0.0, 1.0);
+    return says > 0.0 && this->Thickness(voxel, axis) > 0.0 ? says * this->NearerBySlope(voxel, axis, along) : 0.0;
+  }
+
+  double Fluence(std::size_t voxel) const { return this->Image.fluence.At(voxel, this->Channel); }
+
+private:
+  /// The same from how light falls off.
+  /// @param along  of its direction, along the axis
+  double NearerBySlope(std::size_t voxel, std::size_t axis, double along) const
+  {
     const double thickness = this->Thickness(voxel, axis);
-    if (std::abs(along) < Askew || !(thickness > 0.0))
-    {
-      return 0.0;
-    }
     const double most = thickness / std::abs(along);
     const std::size_t ahead = along > 0.0 ? 1 : 0; // of the two faces across the axis
     const std::size_t next = VoxelBeyond(this->TheMedium.grid, this->Periodic, voxel, 2 * axis + ahead);
@@ -71,16 +80,13 @@ public:
       // Seen from the voxel before, whose thickness is the measure of k.
       const double before = this->Thickness(last, axis), there = this->Fluence(last);
       const double ratio = before > 0.0 ? thickness / before : 0.0;
-      return before > 0.0 && there > 0.0
-        ? NearerBy(std::min(ratio * FallOff(this->Fluence(voxel) / there, ratio, before / std::abs(along)), most))
-        : NearerBy(most);
+      const double passes = there > 0.0 ? this->Fluence(voxel) / there : 1.0; // nothing came from there
+      return before > 0.0 ? NearerBy(std::min(ratio * FallOff(passes, ratio, before / std::abs(along)), most))
+                          : NearerBy(most);
     }
     return NearerBy(most);
   }
 
-  double Fluence(std::size_t voxel) const { return this->Image.fluence.At(voxel, this->Channel); }
-
-private:
   double Thickness(std::size_t voxel, std::size_t axis) const
   {
     return this->TheMedium.grid.spacing[axis] *

@@ -116,6 +116,38 @@ TEST_F(InterleavedLattices, TakePhotonsOfAnyColourAndPower)
   }
 }
 
+/// Of photons that go so far askew of an axis as to tell just something, or nothing, of where in voxels they are lost.
+TEST_F(InterleavedLattices, AreLinearInPower)
+{
+  PhotonScene scene({ 9, 7, 8 }, 0.5, 0.0, 0.3f, 4.0f);
+  const Grid& grid = scene.medium.grid;
+  for (const LatticeSettings& settings : { Interleaved(4), LatticeSettings() })
+  {
+    for (const double askew : { 0.1499999, 0.2, 0.25 })
+    {
+      const auto solve = [&](double power) {
+        std::vector<Photon> photons = AnyPhotons(grid, 300);
+        for (Photon& photon : photons)
+        {
+          const double z = std::sqrt(1.0 - askew * askew);
+          photon.direction = { static_cast<float>(askew), 0.0f,
+            static_cast<float>(photon.direction[2] > 0.0f ? z : -z) };
+          photon.power.fill(static_cast<float>(power));
+        }
+        LightField light = this->Solve(scene, photons, settings);
+        std::for_each(light.fluence.begin(), light.fluence.end(),
+          [=](float& fluence) { fluence = static_cast<float>(fluence / power); });
+        return light.fluence;
+      };
+      const std::vector<float> one = solve(1.0);
+      for (const double power : { 3.0, 0.37, 1e4, 1e-6, 1e12 })
+      {
+        EXPECT_LT(RelativeDifference(solve(power), one), 1e-6) << askew << ", " << power << " W";
+      }
+    }
+  }
+}
+
 TEST_F(InterleavedLattices, AreTheSameSideBySideAndInTurns)
 {
   PhotonScene scene = this->Ball();
@@ -195,6 +227,22 @@ TEST_F(InterleavedLattices, RefusePeriodicAxesAndNegativeNumbers)
     LatticeSettings wrong;
     wrong.*number = -1;
     EXPECT_THROW(this->Solve(scene, {}, wrong), InvalidInput);
+  }
+}
+
+TEST_F(InterleavedLattices, SayThatPhotonsMissTheMedium)
+{
+  PhotonScene scene = this->Ball();
+  std::vector<Photon> photons = AnyPhotons(scene.medium.grid, 4);
+  for (Photon& photon : photons)
+  {
+    photon.position = { -50.0, 0.0, 0.0 };
+    photon.direction = { -1.0f, 0.0f, 0.0f };
+  }
+  for (const LatticeSettings& settings : { LatticeSettings(), Interleaved(4) })
+  {
+    EXPECT_THAT(this->Solve(scene, photons, settings).doubts,
+      testing::Contains(testing::HasSubstr("4 of 4 photons do not meet the medium")));
   }
 }
 

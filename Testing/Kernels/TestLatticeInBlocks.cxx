@@ -3,7 +3,9 @@
 #include "LatticeInBlocks.h"
 
 #include <algorithm>
+#include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 using namespace tyndall;
@@ -79,6 +81,60 @@ TEST_F(LatticeBlocks, HaveTheEnvironmentOfTheWhole)
   environment.radiance[3 * 37] = 90.0f;
   const LatticeSettings settings = SettingsOf(1e-7);
   ExpectSame(this->OnRanks(4, medium, settings), this->Whole(medium, settings), 2e-6);
+}
+
+/// Each kind of light alone, and each beside each other one.
+TEST_F(LatticeBlocks, CountEachLightOnce)
+{
+  const std::vector<std::pair<const char*, std::function<void(MediumToCut&)>>> kinds = {
+    { "sky", [](MediumToCut& medium) { medium.scene.ShineFromEverywhere(0.2); } },
+    { "environment",
+      [](MediumToCut& medium) {
+        Environment& environment = medium.scene.light.environment;
+        environment.width = 8;
+        environment.height = 4;
+        environment.radiance = RandomValues(3 * 8 * 4, 0.5, 1.5, 6);
+        environment.radiance[3 * 21] = 300.0f; // a peak
+      } },
+    { "faces",
+      [](MediumToCut& medium) {
+        medium.scene.light.faces[1] = { 0.7, 0.7, 0.7 };
+        medium.scene.light.faces[4] = { 0.3, 0.3, 0.3 };
+      } },
+    { "sun",
+      [](MediumToCut& medium) {
+        medium.scene.ShineAlong({ 0.3, -0.5, -0.9 });
+      } },
+    { "lamps", [](MediumToCut& medium) { AddNearLamps(medium.scene); } },
+    { "emission",
+      [](MediumToCut& medium) { medium.scene.emission = RandomValues(medium.scene.sigma_s.size(), 0.0, 0.2, 3); } },
+    { "uncollided light",
+      [](MediumToCut& medium) {
+        medium.given = RandomValues(medium.scene.sigma_s.size(), 0.1, 2.0, 7);
+        medium.ways = RandomValues(3 * medium.scene.sigma_s.size(), -0.57, 0.57, 8);
+        medium.scene.light.uncollided.escaped[3].fill(5.0);
+      } },
+  };
+  for (std::size_t first = 0; first < kinds.size(); ++first)
+  {
+    for (std::size_t second = first; second < kinds.size(); ++second)
+    {
+      SCOPED_TRACE(std::string(kinds[first].first) + " and " + kinds[second].first);
+      MediumToCut medium({ 5, 4, 6 });
+      medium.scene.Randomise(2.0, 2.0, 0.8, 17);
+      kinds[first].second(medium);
+      if (second != first)
+      {
+        kinds[second].second(medium);
+      }
+      const LightField whole = this->Whole(medium, SettingsOf(1e-7));
+      for (const int ranks : { 1, 3 })
+      {
+        SCOPED_TRACE(std::to_string(ranks) + " ranks");
+        ExpectSame(this->OnRanks(ranks, medium, SettingsOf(1e-7)), whole, 2e-6);
+      }
+    }
+  }
 }
 
 /// Points, spots and rectangles, in thick voxels, too, and in units in which a float holds no area.
@@ -197,6 +253,22 @@ TEST_F(LatticeBlocks, HaveThePhotonsOfTheWhole)
   }
 }
 
+TEST_F(LatticeBlocks, SayThatPhotonsMissTheMedium)
+{
+  const MediumToCut medium = Everything({ 4, 3, 2 });
+  std::vector<Photon> photons = AnyPhotons(5);
+  photons[1].position = photons[4].position = { -9.0, 0.0, 0.0 };
+  photons[1].direction = photons[4].direction = { -1.0f, 0.0f, 0.0f };
+  for (const bool interleaves : { false, true })
+  {
+    LatticeSettings settings = SettingsOf();
+    settings.interleaves = interleaves;
+    const LightField light =
+      this->OfBlocks(BlockPartition::Even(medium.scene.medium.grid, 3), medium, photons, settings);
+    EXPECT_TRUE(Says(light.doubts, " photons do not meet the medium"));
+  }
+}
+
 /// Between faces that all give back all light the medium takes it in the end; where none does that is an error.
 TEST_F(LatticeBlocks, MayBeBetweenFacesThatGiveBackAllLight)
 {
@@ -212,6 +284,51 @@ TEST_F(LatticeBlocks, MayBeBetweenFacesThatGiveBackAllLight)
     part.scene.light.faceAlbedo.fill({ 1.0, 1.0, 1.0 });
     std::fill(part.scene.sigma_a.begin(), part.scene.sigma_a.end(), 0.0f);
   });
+}
+
+/// Rows of voxels along periodic axes are empty, as clear air above a cloud is, or a hole through it. Of what is first
+/// scattered near a thick voxel's face a part begins in such a row, and some rows glow themselves.
+TEST_F(LatticeBlocks, LightRowsThatAreEmptyAlongPeriodicAxes)
+{
+  const auto clearAir = [](const std::array<int, 3>& at) { return at[2] >= 5; };
+  const auto hole = [](const std::array<int, 3>& at) { return at[0] == 1 && at[1] == 2; };
+  const auto diagonal = [](const std::array<int, 3>& at) { return (at[0] + at[2]) % 2 == 0; };
+  const std::vector<std::pair<std::array<bool, 3>, std::function<bool(const std::array<int, 3>&)>>> cases = {
+    { { true, false, false }, clearAir }, { { true, true, false }, clearAir }, { { false, false, true }, hole },
+    { { false, true, true }, hole }, { { true, false, true }, diagonal }
+  };
+  for (std::size_t i = 0; i < cases.size(); ++i)
+  {
+    SCOPED_TRACE(i);
+    MediumToCut medium({ 4, 5, 6 });
+    Scene& scene = medium.scene;
+    scene.Randomise(4.0, 1.0, 0.9, 23);
+    scene.emission = RandomValues(scene.sigma_a.size(), 0.0, 0.2, 3);
+    scene.ShineAlong({ 0.3, -0.5, -0.9 });
+    AddNearLamps(scene);
+    for (std::size_t voxel = 0; voxel < scene.sigma_a.size(); ++voxel)
+    {
+      if (cases[i].second(scene.medium.grid.VoxelAt(voxel)))
+      {
+        scene.sigma_a[voxel] = scene.sigma_s[voxel] = 0.0f;
+      }
+    }
+    LatticeSettings settings = SettingsOf(1e-7), steps = SettingsOf(1e-5);
+    settings.periodic = steps.periodic = cases[i].first;
+    const LightField whole = this->Whole(medium, settings);
+    const double all = whole.balance.entered[0] + whole.balance.emitted[0];
+    EXPECT_LT(std::abs(whole.balance.leftOver[0]), 2e-6 * all);
+    for (const int ranks : { 1, 3 })
+    {
+      SCOPED_TRACE(std::to_string(ranks) + " ranks");
+      ExpectSame(this->OnRanks(ranks, medium, settings), whole, 2e-6);
+    }
+    steps.solvesSteady = false;
+    ExpectSameLight(this->Whole(medium, steps), whole, 3e-4);
+    ExpectSameLight(this->OnRanks(3, medium, steps), whole, 3e-4);
+    steps.blockSize = 3;
+    ExpectSameLight(this->Whole(medium, steps), whole, 3e-4);
+  }
 }
 
 /// Who has light that others have not is told.

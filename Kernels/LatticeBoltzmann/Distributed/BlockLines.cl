@@ -13,8 +13,11 @@ typedef struct
   Border low;  // or the grid's face
 } Piece;
 
-// below  [piece][2], of the voxel behind it: part that links let through, n^2
-static bool begin_piece(LatticeInfo lattice, MEDIUM, int pair, exact shines, const __global exact* below, Piece* piece)
+// below    [piece][2], of the voxel behind it: part that links let through, n^2
+// endless  as of sweep_lines
+// @return false: none begins here, or it is of a line that stays dark
+static bool begin_piece(LatticeInfo lattice, MEDIUM, int pair, exact shines, const __global exact* below,
+  const __global float* endless, Piece* piece)
 {
   const int i = 2 * pair;
   bool closed;
@@ -24,6 +27,10 @@ static bool begin_piece(LatticeInfo lattice, MEDIUM, int pair, exact shines, con
   }
   const Place before = next_along(lattice, piece->place, i + 1);
   const ulong voxel = voxel_at(lattice, piece->place.at);
+  if (is_endless(endless, voxel, pair))
+  {
+    return false;
+  }
   piece->is_cut = before.face == OtherBlock;
   piece->link.up = piece->link.down = piece->low.in = piece->low.back = 0;
   if (piece->is_cut)
@@ -60,11 +67,15 @@ static Top last_of_piece(LatticeInfo lattice, Place place, int i)
 //         the last voxel sends up, 0 + 2 x + 3 B; what the first sends down, 1 + 4 x + 5 B; parts that the link behind
 //         lets up and down
 __kernel void pieces_up(LatticeInfo lattice, MEDIUM, int pair, exact shines, const __global exact* below,
-  __global exact* behind, __global exact* share, __global exact* says)
+  const __global float* endless, __global exact* behind, __global exact* share, __global exact* says)
 {
   Piece piece;
-  if (!begin_piece(lattice, straight, passes, squared, even, pair, shines, below, &piece))
+  if (!begin_piece(lattice, straight, passes, squared, even, pair, shines, below, endless, &piece))
   {
+    for (int k = 0; k < 8; ++k)
+    {
+      says[8 * PIECE + k] = 0;
+    }
     return;
   }
   const int i = 2 * pair;
@@ -96,11 +107,11 @@ __kernel void pieces_up(LatticeInfo lattice, MEDIUM, int pair, exact shines, con
 //   joined  [piece][3]: x, B, and what the first voxel of the piece beyond sends down
 //   densities  those of the voxels behind and beyond, too, on the way to these
 __kernel void pieces_down(LatticeInfo lattice, MEDIUM, int pair, exact shines, const __global exact* below,
-  const __global exact* behind, const __global exact* share, const __global exact* joined, __global exact* sum,
-  __global float* densities, int writes)
+  const __global float* endless, const __global exact* behind, const __global exact* share,
+  const __global exact* joined, __global exact* sum, __global float* densities, int writes)
 {
   Piece piece;
-  if (!begin_piece(lattice, straight, passes, squared, even, pair, shines, below, &piece))
+  if (!begin_piece(lattice, straight, passes, squared, even, pair, shines, below, endless, &piece))
   {
     return;
   }

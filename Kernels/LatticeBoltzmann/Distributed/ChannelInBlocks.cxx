@@ -107,6 +107,13 @@ void ChannelInBlocks::TakeWhatIsOfAll()
   voxels.bends = static_cast<float>(all[1]) != static_cast<float>(1.0 / all[2]);
   voxels.thickest = all[3];
   voxels.TakeOutside(this->Scene.scene.illumination, this->Channel);
+  if (this->Settings.scheme == LatticeScheme::Conservative)
+  {
+    const auto ofAll = [this](const std::vector<double>& sums) { return this->Others.Sum(sums); };
+    voxels.FindEndless(this->Scene.partition.whole, this->Settings.periodic, this->Box,
+      this->Scene.partition.blocks[this->Others.Rank()].first, ofAll);
+    this->Others.Together([&] { voxels.CheckLightEnds(this->Box.known); });
+  }
 }
 
 void ChannelInBlocks::Solve(const Monitor& monitor)

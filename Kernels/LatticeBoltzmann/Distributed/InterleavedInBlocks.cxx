@@ -7,6 +7,7 @@
 #include "LatticeBoltzmann/LatticeLight.h"
 #include "LatticeBoltzmann/WhereLightIsLost.h"
 #include "Light/LeftOut.h"
+#include "Photons/Distributed/PhotonShares.h"
 
 #include <algorithm>
 
@@ -172,6 +173,7 @@ LightField InterleavedInBlocks::Solve(
     thickest = std::max(thickest, channel.Thickest());
   }
   FinishLight(light, this->TheDevice, this->Others, *this->Scene, this->Shining, this->Settings, thickest);
+  DoubtPhotons(found.missed, PlaceAmong(this->Others, share.size()).all, light);
   if (this->Settings.sideBySide)
   {
     light.leftOut.emplace_back(left_out::NotSideBySide);

@@ -10,6 +10,7 @@
 #include "LightPropagation/Distributed/BlockScene.h"
 #include "LightPropagation/Problem/AngularDegree.h"
 #include "LightPropagation/Problem/PropagationProblem.h"
+#include "Photons/Distributed/PhotonShares.h"
 #include "Photons/Distributed/PhotonsInBlocks.h"
 
 #include <algorithm>
@@ -85,7 +86,10 @@ LightField SolveLatticeInBlocks(Device& device, Communicator& communicator, cons
     PhotonMarcherInBlocks(device, communicator, partition, medium, ior, march).March(share, OfPart(monitor, 0.0, 0.5));
   Illumination lit = illumination;
   lit.uncollided = has ? ImageOf(found) : UncollidedImage();
-  return SolveLatticeInBlocks(device, communicator, partition, medium, ior, lit, settings, OfPart(monitor, 0.5, 1.0));
+  LightField light =
+    SolveLatticeInBlocks(device, communicator, partition, medium, ior, lit, settings, OfPart(monitor, 0.5, 1.0));
+  DoubtPhotons(found.missed, PlaceAmong(communicator, share.size()).all, light);
+  return light;
 }
 
 LightField SolveLatticeInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition,

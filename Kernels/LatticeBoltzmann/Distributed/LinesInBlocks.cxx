@@ -141,6 +141,10 @@ void LinesInBlocks::Load(const BlockPartition& partition, const std::array<bool,
   this->Straight.Write(GoesStraight(this->Box, this->Voxels));
   this->Passes = Buffer<float>(this->TheDevice, OwnOf(this->Box, this->Voxels.passes), "how links pass light");
   this->Squared = Buffer<float>(this->TheDevice, OwnOf(this->Box, this->Voxels.squared), "n^2");
+  if (!this->Voxels.endless.empty())
+  {
+    this->Endless = Buffer<float>(this->TheDevice, OwnOf(this->Box, this->Voxels.endless), "lines without an end");
+  }
   const int pairs = static_cast<int>(this->Pairs.size());
   for (int slot = 0; slot < std::min(PairsAtOnce, pairs); ++slot)
   {
@@ -236,7 +240,7 @@ LinesInBlocks::Values LinesInBlocks::Take(const std::vector<Shared>& from, int t
   return all;
 }
 
-/// With its first arguments, up to `below`.
+/// With its first arguments, up to `endless`.
 cl::Kernel LinesInBlocks::Kernel(const char* name, int pair, double shines) const
 {
   cl::Kernel lines = this->TheDevice.Kernel(
@@ -244,7 +248,7 @@ cl::Kernel LinesInBlocks::Kernel(const char* name, int pair, double shines) cons
   With(lines, this->Densities->Info(), this->Straight.Handle(), this->Passes, this->Squared, this->Even.Handle(),
     cl_int(pair));
   SetExact(this->TheDevice, lines, 6, shines);
-  SetFrom(lines, 7, this->Pairs[pair].below.Handle());
+  SetFrom(lines, 7, this->Pairs[pair].below.Handle(), this->Endless);
   return lines;
 }
 
@@ -261,7 +265,7 @@ void LinesInBlocks::GoUp(int pair, Slot& slot, double shines, Part says)
   Values said;
   this->Failure.Attempt([&] {
     cl::Kernel up = this->Kernel("pieces_up", pair, shines);
-    SetFrom(up, 8, slot.behind.Handle(), slot.share.Handle(), slot.says.Handle());
+    SetFrom(up, 9, slot.behind.Handle(), slot.share.Handle(), slot.says.Handle());
     this->Run(up, pair);
     said = joinedBy.empty() ? Values() : slot.says.Read();
   });
@@ -315,7 +319,7 @@ void LinesInBlocks::GoDown(int pair, Slot& slot, double shines, bool writes)
     }
     slot.joined.Write(joined);
     cl::Kernel down = this->Kernel("pieces_down", pair, shines);
-    SetFrom(down, 8, slot.behind.Handle(), slot.share.Handle(), slot.joined.Handle(), this->Arriving.Handle(),
+    SetFrom(down, 9, slot.behind.Handle(), slot.share.Handle(), slot.joined.Handle(), this->Arriving.Handle(),
       this->Densities->Densities(), cl_int(writes));
     this->Run(down, pair);
   });

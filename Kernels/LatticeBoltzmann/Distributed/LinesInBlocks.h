@@ -92,7 +92,7 @@ private:
   std::vector<Slot> Slots;
   std::size_t MostPieces = 1;
   ExactValues Straight, Even, Arriving;
-  Buffer<float> Passes, Squared;
+  Buffer<float> Passes, Squared, Endless;
   HeldFailure Failure; ///< of a sweep
   double Work = 0.0;
 };

@@ -131,7 +131,8 @@ void UncollidedInBlocks::AddEnvironment(const Monitor& monitor)
     whole, settings, DirectionsForVoxels(settings.directionsPerFace, whole.spacing), RayStarts::Middle);
   const SplitEnvironment far = Split(environment, directions.Set());
   this->Lamps.insert(this->Lamps.end(), far.peaks.begin(), far.peaks.end());
-  const BoundaryLight boundary(whole, settings, directions, this->Scene.shining, far.smooth);
+  const Illumination noOther; // sky and faces are incident on the lattice itself
+  const BoundaryLight boundary(whole, settings, directions, noOther, far.smooth);
   if (!boundary.Shines())
   {
     return;

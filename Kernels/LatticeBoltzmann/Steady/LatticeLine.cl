@@ -31,6 +31,11 @@ static ulong voxel_at(LatticeInfo lattice, const int* at)
   return ((ulong)at[2] * lattice.size[1] + at[1]) * lattice.size[0] + at[0];
 }
 
+static bool is_endless(const __global float* endless, ulong voxel, int pair)
+{
+  return ENDLESS && ((int)endless[voxel] >> pair & 1);
+}
+
 static Place next_along(LatticeInfo lattice, Place place, int i)
 {
   Place next = place;

@@ -11,9 +11,10 @@
 //   behind    [voxel][2], scratch
 //   share     [voxel], scratch: of closed lines, how much more a voxel sends by what goes round, T
 //   sum       [voxel], W / length^2: what arrives is added
+//   endless   [voxel], with ENDLESS: bits of the pairs along which its lines are endless, which stay dark
 //   writes    1: densities are written, too, as step_lattice has them
 __kernel void sweep_lines(LatticeInfo lattice, MEDIUM, int pair, exact shines, __global exact* behind,
-  __global exact* share, __global exact* sum, __global float* densities, int writes)
+  __global exact* share, __global exact* sum, __global float* densities, const __global float* endless, int writes)
 {
   const int i = 2 * pair;
   Place place;
@@ -23,6 +24,10 @@ __kernel void sweep_lines(LatticeInfo lattice, MEDIUM, int pair, exact shines, _
     return;
   }
   const ulong voxel = voxel_at(lattice, place.at);
+  if (is_endless(endless, voxel, pair))
+  {
+    return;
+  }
   const Place before = next_along(lattice, place, i + 1);
   Link closing = { 0, 0 };
   Border low = { 0, 0 };

@@ -15,7 +15,8 @@ constexpr double Thinnest = 0.05; ///< sigma_t h as which the preconditioner tak
 std::string OptionsOfLines(const Device& device, const LatticeSettings& settings, const LatticeVoxels& voxels)
 {
   return ExactOption(device) + Define("DIRECTIONS", settings.directions) + Define("BENDS", voxels.bends) +
-    Define("PASSES_ALL", voxels.passesAll) + Define("REFLECTS", voxels.Reflects()) + Define("PUBLISHED", 0);
+    Define("PASSES_ALL", voxels.passesAll) + Define("REFLECTS", voxels.Reflects()) + Define("PUBLISHED", 0) +
+    Define("ENDLESS", !voxels.endless.empty());
 }
 
 std::vector<double> GoesStraight(const LatticeBox& box, const LatticeVoxels& voxels)

@@ -20,6 +20,7 @@ SteadyInMemory::SteadyInMemory(Device& device, const Grid& grid, const LatticeSe
   , Count(grid.VoxelCount())
   , Passes(device, voxels.passes, "how links pass light")
   , Squared(device, voxels.squared, "n^2")
+  , Endless(device, voxels.endless, "lines without an end")
   , Diffusion(device, grid.size, grid.spacing)
 {
   this->Load();
@@ -87,7 +88,7 @@ SteadyInMemory::Values SteadyInMemory::Sweep(const Values& even, double shines, 
       cl_int(pair));
     SetExact(this->TheDevice, lines, 6, shines);
     SetFrom(lines, 7, this->Behind.Handle(), this->Share.Handle(), this->Arriving.Handle(), this->Densities.Densities(),
-      cl_int(writes));
+      this->Endless, cl_int(writes));
     this->TheDevice.Queue().enqueueNDRangeKernel(lines, cl::NullRange, cl::NDRange(range[0], range[1]));
     this->TheDevice.Finish();
     this->Work += 1.0;

@@ -32,7 +32,7 @@ private:
   const Lattice& Densities;
   std::size_t Count;
   ExactValues Straight, Even, Behind, Share, Arriving, Correction;
-  Buffer<float> Passes, Squared;
+  Buffer<float> Passes, Squared, Endless;
   MultigridSolver Diffusion;
   double Work = 0.0;
 };

@@ -40,7 +40,7 @@ SteadyLattice::SteadyLattice(
 
 double SteadyLattice::Turns(std::size_t known) const
 {
-  return (1.0 - this->Voxels.lost[known]) * this->Voxels.turning[known];
+  return (1.0 - this->Voxels.lost[known]) * this->Voxels.turning[known] / this->Voxels.OpenWeight(known);
 }
 
 /// Of all ranks.
@@ -58,7 +58,7 @@ SteadyLattice::Values SteadyLattice::EvenOf(const Values& scaled, bool withSourc
     const std::size_t known = this->Box.Known(i);
     const double half = withSources ? 0.5 * this->Voxels.source[known] : 0.0, kept = 1.0 - this->Voxels.lost[known];
     const double own = half * (1.0 + kept * (1.0 - this->Voxels.turning[known])); // of the half before the collision
-    even[i] = this->Turns(known) * this->Voxels.squared[known] * scaled[i] + own;
+    even[i] = this->Turns(known) * this->Voxels.squared[known] * scaled[i] + own / this->Voxels.OpenWeight(known);
   }
   return even;
 }

@@ -31,7 +31,8 @@ public:
 private:
   using Values = SteadySystem::Values;
 
-  double Turns(std::size_t known) const; ///< part of a density that is made even and not absorbed
+  /// Part of a density that is made even and not absorbed, over the weight of the directions that it is sent along.
+  double Turns(std::size_t known) const;
   double Dot(const Values& a, const Values& b) const;
   Values EvenOf(const Values& scaled, bool withSources) const;
   Values Arriving(const Values& scaled, bool withSources, bool writes, const Monitor& monitor);
