@@ -54,10 +54,9 @@ int DirectionsPerFaceFor(const PropagationSettings& settings, const UnvaryingAxe
   {
     return told;
   }
-  const int periodic = settings.periodic[0] + settings.periodic[1] + settings.periodic[2];
-  const bool goRound = periodic == 1 || periodic == 2; // in a box without faces all light does
+  const bool goRound = settings.periodic[0] + settings.periodic[1] + settings.periodic[2] == 2;
   const int even = goRound || unvarying.IsSlab() ? edge + edge % 2 : edge;
-  const bool stays = periodic == 2 && even == EdgeWithCosineZero;
+  const bool stays = goRound && even == EdgeWithCosineZero;
   const int enough = unvarying.IsSlab() || stays ? std::max(even, EdgeInSlabs) : even;
   return enough * enough;
 }
