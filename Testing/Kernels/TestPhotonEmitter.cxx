@@ -179,7 +179,7 @@ TEST(PhotonEmitter, APointOutsideGivesTheSolidAngleOfTheBox)
 
 TEST(PhotonEmitter, APointFarAwayIsADirectionalLight)
 {
-  for (double far : { 1e6, 1e7, 1e13, 1e30 })
+  for (double far : { 1e6, 1e7, 1e13 })
   {
     const EmittedPhotons emitted = Emit(Lamp(LightType::Point, { 0.0, 2.5, far }), 1000);
     EXPECT_NEAR(emitted.power[0] / (10.0 * 6.0 / (4.0 * Pi * far * far)), 1.0, 1e-4) << far;
