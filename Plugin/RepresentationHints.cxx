@@ -19,6 +19,7 @@
 #include <set>
 #include <sstream>
 #include <string>
+#include <vector>
 
 namespace
 {
@@ -144,7 +145,7 @@ void ColorAtFirstChange(vtkObject* caller, unsigned long, void*, void* property)
 }
 
 /// Charts that show nothing yet: the new representation goes to one of them.
-void MakeEmptyChartsLogarithmic(vtkSMSessionProxyManager* manager)
+void MakeEmptyChartsLogarithmic(vtkSMSessionProxyManager* manager, const std::vector<const char*>& axes)
 {
   vtkNew<vtkCollection> views;
   manager->GetProxies("views", views);
@@ -154,9 +155,29 @@ void MakeEmptyChartsLogarithmic(vtkSMSessionProxyManager* manager)
     if (view && view->GetProperty("LeftAxisLogScale") &&
       vtkSMPropertyHelper(view, "Representations").GetNumberOfElements() == 0)
     {
-      vtkSMPropertyHelper(view, "LeftAxisLogScale").Set(1);
+      for (const char* const axis : axes)
+      {
+        vtkSMPropertyHelper(view, axis).Set(1);
+      }
       view->UpdateVTKObjects();
     }
+  }
+}
+
+/// Sets the value of series, in a property that has name, value, name, ...
+void SetSeries(
+  vtkSMProxy* representation, const char* property, const std::vector<std::string>& series, const char* value)
+{
+  vtkSMPropertyHelper values(representation, property, true);
+  for (const std::string& name : series)
+  {
+    unsigned int place = 0;
+    while (place < values.GetNumberOfElements() && name != values.GetAsString(place))
+    {
+      place += 2;
+    }
+    values.Set(place, name.c_str());
+    values.Set(place + 1, value);
   }
 }
 
@@ -164,15 +185,28 @@ void Plot(vtkSMProxy* representation, vtkPVXMLElement* hint)
 {
   std::istringstream names(hint->GetAttributeOrEmpty("y"));
   const std::set<std::string> plotted{ std::istream_iterator<std::string>(names), {} };
+  const std::string begin = hint->GetAttributeOrEmpty("y_begin");
+  std::vector<std::string> series, others;
+  const vtkSMPropertyHelper all(representation, "SeriesVisibility"); // name, 0 or 1, name, ...
+  for (unsigned int i = 0; i + 1 < all.GetNumberOfElements(); i += 2)
+  {
+    const std::string name = all.GetAsString(i);
+    const bool isPlotted = plotted.count(name) > 0 || (!begin.empty() && name.compare(0, begin.size(), begin) == 0);
+    (isPlotted ? series : others).push_back(name);
+  }
   vtkSMPropertyHelper(representation, "UseIndexForXAxis").Set(0);
   vtkSMPropertyHelper(representation, "XArrayName").Set(hint->GetAttributeOrEmpty("x"));
-  vtkSMPropertyHelper visible(representation, "SeriesVisibility"); // name, 0 or 1, name, ...
-  for (unsigned int i = 0; i + 1 < visible.GetNumberOfElements(); i += 2)
+  SetSeries(representation, "SeriesVisibility", series, "1");
+  SetSeries(representation, "SeriesVisibility", others, "0");
+  std::vector<const char*> axes = { "LeftAxisLogScale" };
+  if (std::strcmp(hint->GetAttributeOrEmpty("style"), "points") == 0)
   {
-    visible.Set(i + 1, plotted.count(visible.GetAsString(i)) > 0 ? "1" : "0");
+    SetSeries(representation, "SeriesLineStyle", series, "0");
+    SetSeries(representation, "SeriesMarkerStyle", series, "4"); // circles
+    axes.push_back("BottomAxisLogScale");
   }
   representation->UpdateVTKObjects();
-  MakeEmptyChartsLogarithmic(representation->GetSessionProxyManager());
+  MakeEmptyChartsLogarithmic(representation->GetSessionProxyManager(), axes);
 }
 
 /// A representation is registered when it knows its input, and before anybody sees it.

@@ -10,7 +10,9 @@
 ///   its smallest or more, the map is logarithmic. What opens as Lit Volume, which uses no map, is coloured when it is
 ///   first shown in another way.
 /// - <Plotted port="P" x="NAME" y="NAME NAME ..."/>: a line chart of table P begins with these columns, not with all
-///   over the row's number. Its left axis is logarithmic where nothing else is in the view.
+///   over the row's number. Its left axis is logarithmic where nothing else is in the view. With y_begin="TEXT" columns
+///   whose names begin so are plotted as well; with style="points" rows are points, not joined by lines, and both axes
+///   are logarithmic.
 /// - <VolumeColors .../>: see VolumeColors.h.
 ///
 /// To be called when the plugin is loaded; serves windows and scripts.

@@ -6,6 +6,7 @@
 #include "Common/PhaseFunctionData.h"
 #include "Common/SameVoxels.h"
 #include "Device/HostThreads.h"
+#include "Numerics/NumberText.h"
 
 #include "vtkAlgorithm.h"
 #include "vtkCellData.h"
@@ -273,7 +274,7 @@ Grid GridOf(vtkImageData* image)
     }
     if (!(grid.spacing[axis] > 0.0) || std::isinf(grid.spacing[axis]))
     {
-      throw InvalidInput("The input image has spacing " + std::to_string(grid.spacing[axis]) + " along " + axes[axis] +
+      throw InvalidInput("The input image has spacing " + Text("%g", grid.spacing[axis]) + " along " + axes[axis] +
         "; it must be a positive number.");
     }
     grid.origin[axis] = image->GetOrigin()[axis] + extent[2 * axis] * grid.spacing[axis];
@@ -450,7 +451,7 @@ LightType TypeOf(double number, vtkIdType light)
 {
   if (number != 0.0 && number != 1.0 && number != 2.0 && number != 3.0)
   {
-    throw InvalidInput("Light " + std::to_string(light) + " has light_type " + std::to_string(number) +
+    throw InvalidInput("Light " + std::to_string(light) + " has light_type " + Text("%g", number) +
       "; it must be 0 (directional), 1 (point), 2 (spot) or 3 (rectangle).");
   }
   return static_cast<LightType>(static_cast<int>(number));

@@ -1,12 +1,12 @@
 #include "PropertyRange.h"
 
 #include "Device/Errors.h"
+#include "Numerics/NumberText.h"
 
 #include "vtkAlgorithm.h"
 #include "vtkInformation.h"
 #include "vtkInformationStringVectorKey.h"
 
-#include <cstdio>
 #include <string>
 #include <vector>
 
@@ -23,9 +23,7 @@ vtkInformationStringVectorKey* Refused()
 
 std::string Number(double value)
 {
-  char text[32];
-  std::snprintf(text, sizeof(text), "%.9g", value);
-  return text;
+  return Text("%.9g", value);
 }
 
 std::string Numbers(const double* values, int count)

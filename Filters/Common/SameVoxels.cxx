@@ -1,11 +1,11 @@
 #include "Common/SameVoxels.h"
 
 #include "Device/Errors.h"
+#include "Numerics/NumberText.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 
 namespace tyndall
 {
@@ -13,9 +13,7 @@ namespace
 {
 std::string Triple(const std::array<double, 3>& values)
 {
-  char text[96];
-  std::snprintf(text, sizeof(text), "(%.9g, %.9g, %.9g)", values[0], values[1], values[2]);
-  return text;
+  return "(" + Text("%.9g", values[0]) + ", " + Text("%.9g", values[1]) + ", " + Text("%.9g", values[2]) + ")";
 }
 
 std::string Described(const Grid& grid)

@@ -2,6 +2,7 @@
 
 #include "Device/Errors.h"
 #include "IO/ReadableFile.h"
+#include "Numerics/NumberText.h"
 
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
@@ -124,7 +125,7 @@ void ParseHdrFormat(const std::string& path, const std::string& format, HdrHeade
 
 double ParseHdrExposure(const std::string& path, const std::string& text)
 {
-  const double exposure = std::strtod(text.c_str(), nullptr);
+  const double exposure = NumberIn(text).value_or(0.0);
   if (!(exposure > 0.0) || !std::isfinite(exposure))
   {
     Corrupt(path, "its exposure is \"" + text + "\", not a positive number");

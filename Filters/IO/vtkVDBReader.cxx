@@ -7,6 +7,7 @@
 #include "IO/VDB/VDBFile.h"
 #include "IO/VDB/VDBGeometry.h"
 #include "IO/VDB/VDBMetadata.h"
+#include "Numerics/NumberText.h"
 #include "Work/GuardedWork.h"
 
 #include "vtkCellData.h"
@@ -19,11 +20,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iomanip>
 #include <set>
-#include <sstream>
 
 using tyndall::InvalidInput;
+using tyndall::Text;
 using tyndall::VDBBox;
 using tyndall::VDBFile;
 using tyndall::VDBGrid;
@@ -32,24 +32,21 @@ namespace
 {
 std::string ToString(const VDBBox& box)
 {
-  std::ostringstream text;
-  text << "[" << box.Min[0] << ", " << box.Min[1] << ", " << box.Min[2] << "] to [" << box.Max[0] << ", " << box.Max[1]
-       << ", " << box.Max[2] << "]";
-  return text.str();
+  const auto corner = [](const auto& voxel) {
+    return "[" + std::to_string(voxel[0]) + ", " + std::to_string(voxel[1]) + ", " + std::to_string(voxel[2]) + "]";
+  };
+  return corner(box.Min) + " to " + corner(box.Max);
 }
 
 std::string Bytes(double bytes)
 {
-  std::ostringstream text;
   const char* units[] = { "B", "KiB", "MiB", "GiB", "TiB", "PiB", "EiB" };
   int unit = 0;
   for (; bytes >= 1024.0 && unit < 6; ++unit)
   {
     bytes /= 1024.0;
   }
-  text.precision(bytes >= 999.5 ? 4 : 3);
-  text << bytes << " " << units[unit];
-  return text.str();
+  return Text(bytes >= 999.5 ? "%.4g" : "%.3g", bytes) + " " + units[unit];
 }
 
 /// Memory of an image with a grid's voxels as cells of that extent.
@@ -60,25 +57,25 @@ double BytesAsImage(const VDBGrid& grid, const std::array<std::int64_t, 6>& exte
 
 std::string Summary(const VDBFile& file)
 {
-  std::ostringstream lines;
+  std::string lines;
   for (const VDBGrid& grid : file.Grids())
   {
-    lines << grid.Name << ": " << grid.Type << (grid.Place.Half ? " (16 bits in the file)" : "") << ", ";
+    lines += grid.Name + ": " + grid.Type + (grid.Place.Half ? " (16 bits in the file)" : "") + ", ";
     if (!grid.Unusable.empty())
     {
-      lines << "not readable as an image: " << grid.Unusable << "\n";
+      lines += "not readable as an image: " + grid.Unusable + "\n";
       continue;
     }
     if (grid.Tree.ActiveBox.Empty())
     {
-      lines << "no active voxels\n";
+      lines += "no active voxels\n";
       continue;
     }
-    lines << grid.Tree.ActiveVoxels << " active voxels in " << ToString(grid.Tree.ActiveBox) << ", "
-          << Bytes(static_cast<double>(grid.Tree.TreeBytes)) << " as a tree, "
-          << Bytes(BytesAsImage(grid, tyndall::ExtentOf(grid))) << " as an image\n";
+    lines += std::to_string(grid.Tree.ActiveVoxels) + " active voxels in " + ToString(grid.Tree.ActiveBox) + ", " +
+      Bytes(static_cast<double>(grid.Tree.TreeBytes)) + " as a tree, " +
+      Bytes(BytesAsImage(grid, tyndall::ExtentOf(grid))) + " as an image\n";
   }
-  return lines.str();
+  return lines;
 }
 
 /// The largest part of an image's voxels that is active in any of its grids.
@@ -264,13 +261,10 @@ void vtkVDBReader::Internals::CheckMemory(vtkIdType maximum) const
   const Limit limit = this->LimitOfMemory(maximum);
   if (image + tree > limit.Bytes)
   {
-    std::ostringstream text;
-    text << "The chosen grids of \"" << this->Path << "\" need " << Bytes(image + tree) << " (" << std::fixed
-         << std::setprecision(0) << image + tree << " bytes) as an image of voxels "
-         << ToString(tyndall::VoxelsOf(extent)) << "; the limit is " << Bytes(limit.Bytes) << limit.Why
-         << ". Choose fewer grids, resample or crop the file, or " << (maximum > 0 ? "raise" : "set")
-         << " MaximumMemory (in MiB).";
-    throw InvalidInput(text.str());
+    throw InvalidInput("The chosen grids of \"" + this->Path + "\" need " + Bytes(image + tree) + " (" +
+      Text("%.0f", image + tree) + " bytes) as an image of voxels " + ToString(tyndall::VoxelsOf(extent)) +
+      "; the limit is " + Bytes(limit.Bytes) + limit.Why + ". Choose fewer grids, resample or crop the file, or " +
+      (maximum > 0 ? "raise" : "set") + " MaximumMemory (in MiB).");
   }
 }
 

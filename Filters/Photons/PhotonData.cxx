@@ -7,6 +7,7 @@
 #include "Common/LightTransportData.h"
 #include "Device/HostThreads.h"
 #include "Distribution/Communicator.h"
+#include "Numerics/NumberText.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
@@ -24,7 +25,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <string>
 
 namespace tyndall
@@ -55,7 +55,7 @@ std::int32_t BatchOf(double number, vtkIdType photon)
 {
   if (!(number >= 0.0 && number < MarchedBatchesAtMost) || number != std::floor(number))
   {
-    throw InvalidInput("Photon " + std::to_string(photon) + " has batch " + std::to_string(number) +
+    throw InvalidInput("Photon " + std::to_string(photon) + " has batch " + Text("%g", number) +
       "; it must be a whole number of 0 to 63, as PhotonEmitter makes it.");
   }
   return static_cast<std::int32_t>(number);
@@ -87,12 +87,11 @@ Box BoxOf(const Grid& grid)
   return box;
 }
 
-std::string Text(const Box& box)
+std::string Described(const Box& box)
 {
-  char text[160];
-  std::snprintf(text, sizeof(text), "x from %.9g to %.9g, y from %.9g to %.9g, z from %.9g to %.9g", box[0], box[1],
-    box[2], box[3], box[4], box[5]);
-  return text;
+  const auto number = [](double value) { return Text("%.9g", value); };
+  return "x from " + number(box[0]) + " to " + number(box[1]) + ", y from " + number(box[2]) + " to " + number(box[3]) +
+    ", z from " + number(box[4]) + " to " + number(box[5]);
 }
 }
 
@@ -134,8 +133,8 @@ std::string DoubtOfBox(vtkPolyData* photons, const Grid& medium)
     same = same && std::abs(made[i] - box[i]) <= tolerance;
   }
   return same ? ""
-              : "The photons were made for the box " + Text(made) + ", the medium fills the box " + Text(box) +
-      ": where they differ, light is missing or too much. Give PhotonEmitter the same medium.";
+              : "The photons were made for the box " + Described(made) + ", the medium fills the box " +
+      Described(box) + ": where they differ, light is missing or too much. Give PhotonEmitter the same medium.";
 }
 
 void WritePhotons(const EmittedPhotons& emitted, const Grid& box, vtkPolyData* output)
@@ -272,7 +271,7 @@ std::vector<std::uint8_t> ReadLevels(vtkImageData* image)
       const float level = field.Values()[i];
       if (!(level >= 0.0f && level <= 30.0f) || level != static_cast<float>(static_cast<int>(level)))
       {
-        throw InvalidInput("octree_level is " + std::to_string(level) + " in voxel " + VoxelName(GridOf(image), i) +
+        throw InvalidInput("octree_level is " + Text("%g", level) + " in voxel " + VoxelName(GridOf(image), i) +
           "; it must be a whole number, as RefractionOctree makes it.");
       }
       levels[i] = static_cast<std::uint8_t>(level);

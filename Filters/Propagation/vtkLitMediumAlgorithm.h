@@ -65,7 +65,7 @@ public:
   ///@}
 
   ///@{
-  /// By how much the environment is turned about its up, degrees, rounded to whole pixels. Default 0.
+  /// By how much the environment is turned about its up, degrees. Default 0.
   tyndallSetRangeMacro(EnvironmentAzimuth, double, tyndall::AnyLow, tyndall::AnyHigh);
   vtkGetMacro(EnvironmentAzimuth, double);
   ///@}

@@ -26,6 +26,8 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <set>
+#include <string>
 #include <utility>
 
 namespace
@@ -55,6 +57,21 @@ void AddNumbers(
     column->InsertNextValue(static_cast<typename Array::ValueType>(number(row)));
   }
   table->AddColumn(column);
+}
+
+/// For charts: a column for each method that has rows, NaN in those of the others.
+void AddErrorsByMethod(vtkTable* table, const std::vector<Row>& rows)
+{
+  std::set<tyndall::ComparedMethod> methods;
+  for (const Row& row : rows)
+  {
+    methods.insert(row.method);
+  }
+  for (const tyndall::ComparedMethod method : methods)
+  {
+    AddNumbers(table, (std::string("error of ") + tyndall::NameOf(method)).c_str(), rows,
+      [method](const Row& row) { return row.method == method ? row.errorL2 : Row::Unknown; });
+  }
 }
 
 void AddFacePower(vtkTable* table, const std::vector<Row>& rows)
@@ -99,6 +116,7 @@ void Write(const tyndall::Comparison& comparison, vtkTable* table)
   AddFacePower(table, rows);
   AddNumbers(table, "power_in", rows, [](const Row& row) { return row.powerIn; });
   AddNumbers<vtkIntArray>(table, "pareto", rows, [](const Row& row) { return row.pareto ? 1 : 0; });
+  AddErrorsByMethod(table, rows);
   tyndall::AddFact(table, "reference", std::vector<std::string>{ comparison.reference.text });
   tyndall::AddFact(table, "left_out", comparison.leftOut);
   tyndall::AddFact(table, "device", std::vector<std::string>{ comparison.device });
@@ -318,6 +336,10 @@ int vtkSolverComparison::RequestData(
     Write(std::move(comparison.reference), reference.has_value(), output);
     tyndall::TellExtentAndKeepWhatIsAskedFor(
       tyndall::AskingPort(request, outputs), outputs->GetInformationObject(REFERENCE_OUTPUT), output);
+    for (const std::string& warning : comparison.warnings)
+    {
+      vtkWarningMacro(<< warning);
+    }
   });
 }
 

@@ -53,6 +53,7 @@ struct ComparisonSettings;
  * | `face_power_out` | W | 6 components: through -x, +x, -y, +y, -z, +z, channels summed |
  * | `power_in` | W | entered and emitted, channels summed |
  * | `pareto` | 1 | 1 where no other row of the same quantity is both faster and better |
+ * | `error of METHOD` | 1 | `error_l2` of one method, NaN in rows of others: for charts |
  *
  * and field data `reference` (what it is), `left_out` (what was not compared, and why) and `device`.
  *

@@ -1,5 +1,7 @@
 #include "Ranks/RankMeeting.h"
 
+#include "Numerics/NumberText.h"
+
 #ifdef TYNDALL_HAS_MPI
 #include "vtkMPIController.h"
 #endif
@@ -134,7 +136,7 @@ Absence Come(vtkMPIController* ranks, double wait, int filter)
 double SecondsToWait()
 {
   const char* const said = std::getenv("TYNDALL_RANKS_WAIT");
-  const double seconds = said ? std::atof(said) : 0.0;
+  const double seconds = NumberIn(said ? said : "").value_or(0.0);
   return seconds > 0.0 ? std::min(seconds, LongestWait) : UsualWait;
 }
 

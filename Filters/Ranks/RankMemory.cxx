@@ -1,6 +1,7 @@
 #include "Ranks/RankMemory.h"
 
 #include "Common/AvailableMemory.h"
+#include "Numerics/NumberText.h"
 #include "Ranks/Ranks.h"
 
 #include "vtkInformation.h"
@@ -53,7 +54,7 @@ bool IsWorthPieces(vtkInformationVector* image)
 {
   const char* const said = std::getenv("TYNDALL_PIECES_FROM");
   const double voxels = VoxelsOf(image);
-  return voxels == 0.0 || voxels > (said ? std::atof(said) : FewVoxels);
+  return voxels == 0.0 || voxels > (said ? NumberIn(said).value_or(0.0) : FewVoxels);
 }
 
 bool NeedsPieces(

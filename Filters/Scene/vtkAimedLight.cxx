@@ -5,6 +5,8 @@
 
 #include "vtkMath.h"
 
+#include <cmath>
+
 vtkAimedLight::~vtkAimedLight() = default;
 
 tyndall::DrawnLight vtkAimedLight::MakeLight() const
@@ -12,7 +14,8 @@ tyndall::DrawnLight vtkAimedLight::MakeLight() const
   tyndall::DrawnLight drawn;
   double* const direction = drawn.light.direction.data();
   vtkMath::Subtract(this->FocalPoint, this->Position, direction);
-  drawn.length = vtkMath::Normalize(direction);
+  drawn.length = std::hypot(direction[0], direction[1], direction[2]);
+  drawn.light.direction = tyndall::DirectionOf(drawn.light);
   if (!(drawn.length > 0.0))
   {
     throw tyndall::InvalidInput(

@@ -24,11 +24,12 @@ using tyndall::LightType;
 
 constexpr double BallSize = 0.02; ///< of a point light, in ShapeSize
 
-/// Unit vector, so that `direction` can be compared; a vector without length stays what it is.
-std::array<double, 3> Normalized(std::array<double, 3> direction)
+/// So that `direction` can be compared; a vector without length stays what it is.
+std::array<double, 3> Normalized(const std::array<double, 3>& direction)
 {
-  vtkMath::Normalize(direction.data());
-  return direction;
+  Light along;
+  along.direction = direction;
+  return tyndall::DirectionOf(along);
 }
 
 Light SunLight(double elevation, double azimuth, const double power[3])

@@ -38,8 +38,8 @@ struct Light;
  * Output 1: what the rig's own lights look like in a view (those of inputs are drawn by their sources): vtkPolyData of
  * lines and polygons with point array `color` (bytes of red, green, blue).
  *
- * A direction of length 0, an angle outside (0, 180], a size or power that is negative, or anything that is not finite,
- * is an error that names the light; the outputs are empty then.
+ * A direction of length 0, an angle outside [1e-12, 180], a size or power that is negative, or anything that is not
+ * finite, is an error that names the light; the outputs are empty then.
  *
  * @sa vtkSun vtkPointLight vtkSpotLight vtkRectangleLight
  */
@@ -101,7 +101,7 @@ public:
 
   ///@{
   /// A point at (x, y, z) that shines evenly into a cone about (dx, dy, dz), of any length, with power (r, g, b), W.
-  /// `angle` is the cone's full opening, degrees, valid (0, 180].
+  /// `angle` is the cone's full opening, degrees, valid [1e-12, 180].
   void AddSpotLight(
     double x, double y, double z, double dx, double dy, double dz, double r, double g, double b, double angle);
   void RemoveAllSpotLights();

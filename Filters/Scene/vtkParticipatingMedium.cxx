@@ -8,6 +8,7 @@
 #include "Device/HostThreads.h"
 #include "Medium/OpticalSize.h"
 #include "Medium/Presets.h"
+#include "Numerics/NumberText.h"
 #include "Ranks/ControllerCommunicator.h"
 #include "Ranks/PieceBlocks.h"
 #include "Ranks/Ranks.h"
@@ -24,7 +25,6 @@
 #include <array>
 #include <cmath>
 #include <memory>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -33,6 +33,7 @@ namespace
 using tyndall::InvalidInput;
 using tyndall::Require;
 using tyndall::Rgb;
+using tyndall::Text;
 using tyndall::Times;
 
 constexpr std::size_t VoxelsOfThread = 16384; ///< at least
@@ -53,7 +54,7 @@ bool NotNegative(double value)
 
 void RequireMeanCosine(const char* property, double g)
 {
-  Require(std::abs(g) < 1.0, std::string(property) + " is " + std::to_string(g) + "; it must lie between -1 and 1.");
+  Require(std::abs(g) < 1.0, std::string(property) + " is " + Text("%g", g) + "; it must lie between -1 and 1.");
 }
 
 /// Numbers of a column of the phase function's table.
@@ -103,7 +104,7 @@ Recipe CustomMedium(vtkParticipatingMedium* filter)
   for (int c = 0; c < 3; ++c)
   {
     const double albedo = filter->GetAlbedo()[c];
-    Require(albedo >= 0.0 && albedo <= 1.0, "Albedo is " + std::to_string(albedo) + "; it must lie in [0, 1].");
+    Require(albedo >= 0.0 && albedo <= 1.0, "Albedo is " + Text("%g", albedo) + "; it must lie in [0, 1].");
     recipe.sigma_s[c] = albedo * filter->GetExtinctionScale();
     recipe.sigma_a[c] = (1.0 - albedo) * filter->GetExtinctionScale();
   }
@@ -135,14 +136,12 @@ std::string ExtentInWords(const tyndall::Grid& grid, double millimetres)
   {
     unit = longest >= larger.millimetres ? larger : unit;
   }
-  std::ostringstream text;
-  text.precision(4);
+  std::string text;
   for (int axis = 0; axis < 3; ++axis)
   {
-    text << (axis > 0 ? " x " : "") << grid.Length(axis) * millimetres / unit.millimetres;
+    text += (axis > 0 ? " x " : "") + Text("%.4g", grid.Length(axis) * millimetres / unit.millimetres);
   }
-  text << " " << unit.name;
-  return text.str();
+  return text + " " + unit.name;
 }
 
 Recipe RealMedium(vtkParticipatingMedium* filter)
@@ -183,7 +182,7 @@ Rgb MeanCosines(vtkParticipatingMedium* filter, const std::vector<double>& ofCha
 Recipe RecipeOf(vtkParticipatingMedium* filter, const std::vector<double>& channelMeanCosines)
 {
   Require(NotNegative(filter->GetExtinctionScale()),
-    "ExtinctionScale is " + std::to_string(filter->GetExtinctionScale()) + "; it must be finite and not negative.");
+    "ExtinctionScale is " + Text("%g", filter->GetExtinctionScale()) + "; it must be finite and not negative.");
   const Rgb g = MeanCosines(filter, channelMeanCosines); // looked at with a preset as well
   Recipe recipe = filter->GetPreset() == vtkParticipatingMedium::CUSTOM ? CustomMedium(filter) : RealMedium(filter);
   recipe.g = filter->GetPreset() == vtkParticipatingMedium::CUSTOM ? g : recipe.g;
@@ -191,7 +190,7 @@ Recipe RecipeOf(vtkParticipatingMedium* filter, const std::vector<double>& chann
   {
     recipe.emission[c] = filter->GetEmissionScale() * filter->GetEmissionColor()[c];
     Require(NotNegative(recipe.emission[c]),
-      "EmissionScale times EmissionColor is " + std::to_string(recipe.emission[c]) +
+      "EmissionScale times EmissionColor is " + Text("%g", recipe.emission[c]) +
         "; it must be finite and not negative.");
   }
   return recipe;
@@ -202,8 +201,8 @@ std::vector<float> RelativeDensity(
   const tyndall::FloatField& density, const tyndall::Grid& grid, double minimum, double maximum)
 {
   Require(std::isfinite(minimum) && std::isfinite(maximum) && maximum >= minimum,
-    "The densities range from MinimumDensity " + std::to_string(minimum) + " to MaximumDensity " +
-      std::to_string(maximum) + "; the latter must not be less.");
+    "The densities range from MinimumDensity " + Text("%g", minimum) + " to MaximumDensity " + Text("%g", maximum) +
+      "; the latter must not be less.");
   const float* values = density.Values();
   std::vector<float> relative(grid.VoxelCount());
   tyndall::InThreads(relative.size(), VoxelsOfThread, [&](std::size_t begin, std::size_t end) {
@@ -216,8 +215,8 @@ std::vector<float> RelativeDensity(
   const std::size_t first = tyndall::RangesOf(values, relative.size(), 1).firstNotFinite;
   if (first < relative.size())
   {
-    throw InvalidInput("The density is " + std::to_string(values[first]) + " in voxel " +
-      tyndall::VoxelName(grid, first) + " (the first such voxel); it must be finite.");
+    throw InvalidInput("The density is " + Text("%g", values[first]) + " in voxel " + tyndall::VoxelName(grid, first) +
+      " (the first such voxel); it must be finite.");
   }
   tyndall::RequireFinite(
     "relative density", relative.data(), relative.size(), 1,
@@ -400,7 +399,7 @@ void vtkParticipatingMedium::NoteSize(const tyndall::Grid& grid, const tyndall::
   {
     const bool thin = size.thickness < thinnest;
     vtkWarningMacro("The medium's optical thickness is "
-      << size.thickness << " at most, along x, y or z: "
+      << Text("%g", size.thickness) << " at most, along x, y or z: "
       << (thin ? "hardly any light meets it" : "no light comes deeper than its outermost voxels") << ". Look at "
       << (this->Preset == CUSTOM ? "ExtinctionScale and MaximumDensity"
                                  : "LengthUnit (the dataset is " + this->PhysicalExtent + " large) and MaximumDensity")

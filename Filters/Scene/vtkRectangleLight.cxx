@@ -3,7 +3,6 @@
 #include "Common/LightTransportData.h"
 #include "Scene/LightShapes.h"
 
-#include "vtkMath.h"
 #include "vtkObjectFactory.h"
 
 vtkStandardNewMacro(vtkRectangleLight);
@@ -20,7 +19,7 @@ tyndall::DrawnLight vtkRectangleLight::MakeLight() const
   tyndall::DrawnLight drawn;
   drawn.light.type = tyndall::LightType::Rectangle;
   drawn.light.direction = tyndall::Triple(this->Direction);
-  vtkMath::Normalize(drawn.light.direction.data());
+  drawn.light.direction = tyndall::DirectionOf(drawn.light);
   drawn.light.size = { this->Size[0], this->Size[1] };
   return drawn;
 }

@@ -20,7 +20,7 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
-  /// Full opening of the cone, degrees. Default 40, valid (0, 180].
+  /// Full opening of the cone, degrees. Default 40, valid (0, 180], at least 1e-12 for a solve.
   tyndallSetRangeMacro(Angle, double, tyndall::AboveZero, 180.0);
   vtkGetMacro(Angle, double);
   ///@}

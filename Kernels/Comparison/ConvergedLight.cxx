@@ -5,10 +5,10 @@
 #include "Comparison/PhotonReference.h"
 #include "Comparison/TimeLimit.h"
 #include "Device/Errors.h"
+#include "Numerics/NumberText.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 namespace tyndall
 {
@@ -45,12 +45,12 @@ PropagationSettings SettingsOf(const Rung& rung)
 
 std::string InWords(const Rung& rung, const Grid& grid, double seconds)
 {
-  char text[256];
-  std::snprintf(text, sizeof(text),
-    "light propagation maps, %d directions a face, map resolution %d, tolerance %g, %dx%dx%d voxels (%s), %.3g s",
-    rung.directions, rung.map, ConvergedTolerance, grid.size[0], grid.size[1], grid.size[2],
-    rung.refinement > 1 ? "twice as fine" : "the medium's: what they are too large for is in no figure", seconds);
-  return text;
+  const auto size = [&](int axis) { return std::to_string(grid.size[axis]); };
+  return "light propagation maps, " + std::to_string(rung.directions) + " directions a face, map resolution " +
+    std::to_string(rung.map) + ", tolerance " + Text("%g", ConvergedTolerance) + ", " + size(0) + "x" + size(1) + "x" +
+    size(2) + " voxels (" +
+    (rung.refinement > 1 ? "twice as fine" : "the medium's: what they are too large for is in no figure") + "), " +
+    Text("%.3g", seconds) + " s";
 }
 
 ReferenceLight AsReference(LightField&& light, const Grid& grid)
@@ -65,64 +65,66 @@ ReferenceLight AsReference(LightField&& light, const Grid& grid)
 
 ReferenceLight Climb(Device& device, const ComparedScene& scene, const Rung& rung, const Monitor& monitor)
 {
-  const double start = ClockSeconds();
+  const double start = device.Now();
   const RescaledScene fine(scene, RescaledScene::To::Finer, RefinementBy(rung.refinement, scene.medium.grid));
   ReferenceLight reference =
     AsReference(Propagate(device, fine.Scene(), SettingsOf(rung), monitor), fine.Scene().medium.grid);
-  reference.text = InWords(rung, reference.grid, ClockSeconds() - start);
+  reference.text = InWords(rung, reference.grid, device.Now() - start);
   return reference;
 }
 
-/// Seconds that settings take, from two poorer ones: a part for what does not depend on the rays, and one for each ray.
+/// Seconds that settings take, by NominalSeconds: as many sweeps as along few directions.
 class Forecast
 {
 public:
   Forecast(Device& device, const ComparedScene& scene, const Monitor& monitor)
     : VoxelGrid(scene.medium.grid)
   {
-    constexpr Rung few = { 1, 25, 1 }, more = { 1, 100, 1 };
-    const auto run = [&](const Rung& rung, double from, double to) {
-      const double start = ClockSeconds();
-      Propagate(device, scene, SettingsOf(rung), PartWithin(HUGE_VAL, monitor, from, to));
-      return ClockSeconds() - start;
-    };
-    run(few, 0.0, 0.2); // compiles
-    const double ofFew = run(few, 0.2, 0.4), ofMore = run(more, 0.4, 1.0);
-    this->OfRay = std::max(ofMore - ofFew, 0.1 * ofMore) / (Rays(more) - Rays(few));
-    this->Fixed = std::max(0.0, ofMore - this->OfRay * Rays(more));
+    const LightField light = Propagate(device, scene, SettingsOf({ 1, 25, 1 }), monitor);
+    this->OfRayVoxel = NominalSeconds::OfRayVoxel * light.channels *
+      std::max<double>(1.0, static_cast<double>(light.convergence.size()));
   }
 
   double Seconds(const Rung& rung) const
   {
     const Factors factors = RefinementBy(rung.refinement, this->VoxelGrid);
-    return (this->Fixed + this->OfRay * Rays(rung)) * factors[0] * factors[1] * factors[2];
+    const double rays = 6.0 * rung.directions * rung.map * rung.map;
+    return this->OfRayVoxel * rays * static_cast<double>(this->VoxelGrid.VoxelCount()) * factors[0] * factors[1] *
+      factors[2];
   }
 
 private:
-  static double Rays(const Rung& rung) { return 1.0 * rung.directions * rung.map * rung.map; }
-
   Grid VoxelGrid;
-  double OfRay = 0.0, Fixed = 0.0;
+  double OfRayVoxel = 0.0;
 };
 
 ReferenceLight ByPropagation(Device& device, const ComparedScene& scene, double seconds, const Monitor& monitor)
 {
-  const double start = ClockSeconds();
-  const Forecast forecast(device, scene, PartWithin(HUGE_VAL, monitor, 0.0, 0.2));
+  constexpr double partOfTry = 0.6; // of the time left: a poorer one takes a half or less
+  const double end = device.Now() + seconds;
+  const Forecast forecast(device, scene, OfPart(monitor, 0.0, 0.2));
+  std::string stopped;
   for (const Rung& rung : Ladder)
   {
     const bool last = &rung == std::end(Ladder) - 1;
-    const double left = seconds - (ClockSeconds() - start);
-    if (!last && forecast.Seconds(rung) > left)
+    if (!last && forecast.Seconds(rung) > seconds)
     {
       continue;
     }
+    const double until = last ? HUGE_VAL : device.Now() + partOfTry * (end - device.Now());
     try
     {
-      return Climb(device, scene, rung, PartWithin(last ? HUGE_VAL : left, monitor, 0.2, 1.0));
+      ReferenceLight reference = Climb(device, scene, rung, PartUntil(device, until, monitor, 0.2, 1.0));
+      reference.text += stopped;
+      return reference;
     }
     catch (const TimeIsUp&)
     {
+      if (last)
+      {
+        throw;
+      }
+      stopped = "; finer ones were stopped: the machine was too busy for them";
     }
     catch (const DeviceError&) // too large; a lower rung may do
     {
@@ -132,7 +134,7 @@ ReferenceLight ByPropagation(Device& device, const ComparedScene& scene, double 
       }
     }
   }
-  return {}; // not reached: the last rung has all the time it needs
+  return {}; // not reached
 }
 
 ReferenceLight ByPhotonsAlways(
@@ -149,7 +151,6 @@ ReferenceLight ByPhotonsAlways(
 ReferenceLight ByWhatIsBetter(
   Device& device, const ComparedScene& scene, const ComparedSettings& settings, double seconds, const Monitor& monitor)
 {
-  const double start = ClockSeconds();
   const std::string whyNot = scene.WhyNotByPhotons(true);
   if (!whyNot.empty())
   {
@@ -158,14 +159,12 @@ ReferenceLight ByWhatIsBetter(
     return reference;
   }
   constexpr double toForecast = 0.3; // of the progress
-  const PhotonForecast forecast =
-    ForecastOfPhotons(device, scene, settings, seconds, PartWithin(HUGE_VAL, monitor, 0.0, toForecast));
+  const PhotonForecast forecast = ForecastOfPhotons(device, scene, settings, seconds, OfPart(monitor, 0.0, toForecast));
   const LightField* const maps = forecast.maps ? &*forecast.maps : nullptr;
-  const double left = seconds - (ClockSeconds() - start);
-  const Monitor rest = PartWithin(HUGE_VAL, monitor, toForecast, 1.0);
+  const Monitor rest = OfPart(monitor, toForecast, 1.0);
   ReferenceLight reference = forecast.beats
     ? ReferenceOfPhotons(device, scene, settings, forecast.photonsOfASet, 0.0, maps, rest)
-    : ByPropagation(device, scene, left, rest);
+    : ByPropagation(device, scene, (1.0 - forecast.PartOfTime) * seconds, rest);
   reference.text += "; " + forecast.why;
   return reference;
 }

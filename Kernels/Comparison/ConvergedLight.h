@@ -19,9 +19,10 @@ struct ReferenceLight
 
 /// Where light goes straight, as ComparedSettings::monteCarloReference says: photons that are scattered until they end
 /// (PhotonReference.h), or a converged run of the best method: 256 directions a face, two rays a voxel's edge,
-/// tolerance 1e-6, on the doubled grid; less of it where that would take more than `seconds`. Where light is bent,
-/// photons: of unscattered light, or of all (ComparedSettings::scattersReference).
-/// @throws InvalidInput where photons are asked for always, and cannot make the light of this scene
+/// tolerance 1e-6, on the doubled grid; less of it where that would take more than `seconds`, by NominalSeconds. Where
+/// light is bent, photons: of unscattered light, or of all (ComparedSettings::scattersReference).
+/// @throws InvalidInput where photons are asked for always, and cannot make the light of this scene; what the monitor
+///         throws, where the machine is far slower, once nothing poorer is left to try
 ReferenceLight ConvergedLight(Device& device, const ComparedScene& scene, const ComparedSettings& settings,
   double seconds, const Monitor& monitor = {});
 }

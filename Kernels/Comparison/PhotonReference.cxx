@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 namespace tyndall
 {
@@ -17,16 +16,32 @@ constexpr int FewestSets = 16, MostSets = 64;
 constexpr int FewestToForecast = 4, MostToForecast = 64;           ///< sets
 constexpr std::size_t PartToForecast = 16, LeastToForecast = 1000; ///< photons of a set
 constexpr std::size_t MostOfASet = std::size_t{ 1 } << 21;         ///< a hundred megabytes
-constexpr double PartOfTime = 0.25;                                ///< for the maps, and for photons, to forecast by
 constexpr double Beats = 1.0 / 3.0; ///< error of the reference over that of the best method compared
 constexpr double Enough = 0.1;      ///< the same, of sixteen sets
 
-/// The finest maps that are tried, or few directions where these take too long or do not fit; none where these do,
-/// too.
-std::optional<LightField> FinestMaps(
+constexpr double TypicalSweeps = 20.0;
+
+/// Light of few directions and, where that is found, of the finest maps that are tried.
+struct ForecastMaps
+{
+  std::optional<LightField> coarse, finest;
+
+  std::optional<LightField>& Best() { return this->finest ? this->finest : this->coarse; }
+};
+
+/// By NominalSeconds.
+double SecondsOf(const PropagationSettings& settings, const ComparedScene& scene, double sweeps)
+{
+  const int channels =
+    std::max({ scene.medium.sigma_a.components, scene.medium.sigma_s.components, scene.medium.emission.components });
+  return NominalSeconds::OfRayVoxel * channels * sweeps * 6.0 * settings.directionsPerFace * settings.mapResolution *
+    settings.mapResolution * static_cast<double>(scene.medium.grid.VoxelCount());
+}
+
+/// Those that take no more than `seconds` together, and fit the device.
+ForecastMaps FindMaps(
   Device& device, const ComparedScene& scene, const ComparedSettings& settings, double seconds, const Monitor& monitor)
 {
-  const double end = ClockSeconds() + seconds;
   PropagationSettings finest, coarse;
   finest.directionsPerFace = *std::max_element(settings.directionsPerFace.begin(), settings.directionsPerFace.end());
   finest.mapResolution = finest.directionsPerFace < FewestForFinerMaps
@@ -34,23 +49,54 @@ std::optional<LightField> FinestMaps(
     : *std::max_element(settings.mapResolutions.begin(), settings.mapResolutions.end());
   coarse.directionsPerFace = std::min(coarse.directionsPerFace, finest.directionsPerFace);
   finest.tolerance = coarse.tolerance = settings.tolerance;
-  double done = 0.5, until = end - 0.3 * seconds;
-  for (const PropagationSettings& maps : { finest, coarse })
-  {
+  ForecastMaps maps;
+  double sweeps = TypicalSweeps;
+  const auto find = [&](const PropagationSettings& of, std::optional<LightField>& light, double from, double to) {
+    const double needed = SecondsOf(of, scene, sweeps);
+    if (needed > seconds)
+    {
+      return;
+    }
     try
     {
-      return Propagate(device, scene, maps, PartWithin(until - ClockSeconds(), monitor, done, done + 0.25));
-    }
-    catch (const TimeIsUp&)
-    {
+      light = Propagate(device, scene, of, OfPart(monitor, from, to));
+      sweeps = static_cast<double>(light->convergence.size());
+      seconds -= SecondsOf(of, scene, sweeps);
     }
     catch (const DeviceError&)
     {
     }
-    done += 0.25;
-    until = end;
+  };
+  find(coarse, maps.coarse, 0.0, 0.3);
+  if (maps.coarse && (finest.directionsPerFace > coarse.directionsPerFace || finest.mapResolution > 1))
+  {
+    find(finest, maps.finest, 0.3, 1.0);
   }
-  return std::nullopt;
+  return maps;
+}
+
+/// Seconds of a photon by NominalSeconds, of the light that photons are to find: its fluence is their way.
+double SecondsOfPhoton(const ComparedScene& scene, const LightField& light)
+{
+  const Grid& grid = scene.medium.grid;
+  double way = 0.0, scatterings = 0.0;
+  for (std::size_t i = 0; i < light.fluence.size(); ++i)
+  {
+    const std::size_t voxel = i / static_cast<std::size_t>(light.channels), channel = i - voxel * light.channels;
+    way += light.fluence[i] * grid.VoxelVolume();
+    scatterings += light.fluence[i] * grid.VoxelVolume() * scene.medium.sigma_s.At(voxel, static_cast<int>(channel));
+  }
+  double power = 0.0;
+  for (int channel = 0; channel < light.channels; ++channel)
+  {
+    power += light.balance.entered[static_cast<std::size_t>(channel)];
+  }
+  const double edge = std::min({ grid.spacing[0], grid.spacing[1], grid.spacing[2] });
+  constexpr double wallsOfEdge = 1.5; // that a straight line of a voxel's edge goes through, in the mean
+  return NominalSeconds::OfPhoton +
+    (power > 0.0
+        ? (NominalSeconds::OfCrossing * wallsOfEdge * way / edge + NominalSeconds::OfScattering * scatterings) / power
+        : 0.0);
 }
 
 /// A few photons, to forecast by.
@@ -61,27 +107,28 @@ struct Pilot
   double seconds = 0.0;    ///< of a photon
 };
 
-Pilot FewPhotons(
-  Device& device, const ComparedScene& scene, std::size_t largest, double seconds, const Monitor& monitor)
+/// @param maps  null: none are there
+/// @return nothing where four sets take longer than `seconds`
+std::optional<Pilot> FewPhotons(Device& device, const ComparedScene& scene, std::size_t largest, double seconds,
+  const LightField* maps, const Monitor& monitor)
 {
-  MarchEvenly(device, scene, LeastToForecast, 0, 1, PartWithin(seconds, monitor, 0.0, 0.1)); // compiles
-  const double begun = ClockSeconds();
+  constexpr double all = MostToForecast + 1.0;
   Pilot pilot;
   pilot.photons = std::max(largest / PartToForecast, LeastToForecast);
-  const auto march = [&](int seed) {
-    const double all = MostToForecast + 1.0, left = seconds - (ClockSeconds() - begun);
-    const Monitor part = PartWithin(seed > FewestToForecast ? HUGE_VAL : left, monitor, seed / all, (seed + 1) / all);
-    return MarchEvenly(device, scene, pilot.photons, 0, static_cast<std::uint64_t>(seed) + 1, part);
-  };
-  const auto goesOn = [&](int sets) {
-    return sets < FewestToForecast || (sets < MostToForecast && ClockSeconds() - begun < seconds);
-  };
-  while (goesOn(pilot.means.Count()))
+  pilot.seconds = SecondsOfPhoton(
+    scene, maps ? *maps : MarchEvenly(device, scene, LeastToForecast, 0, 1, OfPart(monitor, 0.0, 1.0 / all)));
+  const double affordable = seconds / (pilot.seconds * static_cast<double>(pilot.photons));
+  if (affordable < FewestToForecast)
   {
-    const LightField light = march(pilot.means.Count() + 1);
+    return std::nullopt;
+  }
+  const int sets = static_cast<int>(std::min<double>(affordable, MostToForecast));
+  for (int set = 1; set <= sets; ++set)
+  {
+    const LightField light = MarchEvenly(device, scene, pilot.photons, 0, static_cast<std::uint64_t>(set) + 1,
+      OfPart(monitor, set / all, (set + 1) / all));
     pilot.means.Add(light.fluence, light.channels);
   }
-  pilot.seconds = (ClockSeconds() - begun) / (static_cast<double>(pilot.photons) * pilot.means.Count());
   return pilot;
 }
 }
@@ -89,30 +136,43 @@ Pilot FewPhotons(
 ReferenceLight ReferenceOfPhotons(Device& device, const ComparedScene& scene, const ComparedSettings& settings,
   std::size_t set, double seconds, const LightField* maps, const Monitor& monitor)
 {
-  const double start = ClockSeconds();
+  const double start = device.Now();
   const bool all = settings.scattersReference;
   MeansOfSets fluence, direct;
-  const auto goesOn = [&](int sets) {
-    return sets < MostSets && (sets < FewestSets || ClockSeconds() - start < seconds);
-  };
-  while (goesOn(fluence.Count()))
+  int sets = FewestSets;
+  for (int made = 0; made < sets; ++made)
   {
-    const int count = fluence.Count();
-    const Monitor part = PartWithin(HUGE_VAL, monitor, 1.0 * count / MostSets, (count + 1.0) / MostSets);
-    const LightField light = MarchEvenly(device, scene, set, all ? 0 : 1, static_cast<std::uint64_t>(count) + 1, part);
+    const Monitor part = OfPart(monitor, 1.0 * made / MostSets, (made + 1.0) / MostSets);
+    LightField light;
+    try
+    {
+      light = MarchEvenly(device, scene, set, all ? 0 : 1, static_cast<std::uint64_t>(made) + 1, part);
+    }
+    catch (const TimeIsUp&)
+    {
+      if (made < FewestToForecast)
+      {
+        throw;
+      }
+      break;
+    }
     fluence.Add(light.fluence, light.channels);
     direct.Add(all ? light.fluenceDirect : light.fluence, light.channels);
+    if (made == 0)
+    {
+      const double affordable = seconds / (SecondsOfPhoton(scene, light) * static_cast<double>(set));
+      sets = static_cast<int>(std::clamp<double>(affordable, FewestSets, MostSets));
+    }
   }
   ReferenceLight reference;
   reference.grid = scene.medium.grid;
   reference.channels = fluence.Channels();
   reference.fluence = all ? fluence.Values() : std::vector<float>();
   reference.fluenceDirect = direct.Values();
-  char text[160];
-  std::snprintf(text, sizeof(text), "%d times %zu photons%s, not filtered, standard error %.2g, %.3g s",
-    fluence.Count(), set, all ? " that are scattered until they end" : "", fluence.RelativeError(),
-    ClockSeconds() - start);
-  reference.text = text;
+  reference.text = std::to_string(fluence.Count()) + " times " + std::to_string(set) + " photons" +
+    (all ? " that are scattered until they end" : "") + ", not filtered, standard error " +
+    Text("%.2g", fluence.RelativeError()) + ", " + Text("%.3g", device.Now() - start) + " s" +
+    (fluence.Count() < FewestSets ? " (no more: the machine was too busy)" : "");
   if (maps && maps->channels == reference.channels &&
     direct.SquaredErrorOf(maps->fluenceDirect, maps->channels) <= direct.Variance())
   {
@@ -125,28 +185,25 @@ ReferenceLight ReferenceOfPhotons(Device& device, const ComparedScene& scene, co
 PhotonForecast ForecastOfPhotons(
   Device& device, const ComparedScene& scene, const ComparedSettings& settings, double seconds, const Monitor& monitor)
 {
-  const double start = ClockSeconds();
+  const double part = 0.5 * PhotonForecast::PartOfTime * seconds; // for maps, and for photons
   PhotonForecast forecast;
-  Pilot pilot;
-  try
-  {
-    const int largest = *std::max_element(settings.photonCounts.begin(), settings.photonCounts.end());
-    pilot = FewPhotons(
-      device, scene, static_cast<std::size_t>(largest), PartOfTime * seconds, PartWithin(HUGE_VAL, monitor, 0.0, 0.5));
-  }
-  catch (const TimeIsUp&)
+  ForecastMaps maps = FindMaps(device, scene, settings, part, OfPart(monitor, 0.0, 0.5));
+  const int largest = *std::max_element(settings.photonCounts.begin(), settings.photonCounts.end());
+  const std::optional<Pilot> pilot = FewPhotons(device, scene, static_cast<std::size_t>(largest), part,
+    maps.coarse ? &*maps.coarse : nullptr, OfPart(monitor, 0.5, 1.0));
+  if (!pilot)
   {
     forecast.why = "not photons: they are scattered too often for the time";
     return forecast;
   }
-  forecast.maps = FinestMaps(device, scene, settings, PartOfTime * seconds, monitor);
-  const double left = seconds - (ClockSeconds() - start), all = pilot.means.SumOfSquares();
-  const double made = static_cast<double>(pilot.photons) * pilot.means.Count();
-  const double ofMade = pilot.means.RelativeError();
+  forecast.maps = std::move(maps.Best());
+  const double left = seconds - 2.0 * part, all = pilot->means.SumOfSquares();
+  const double made = static_cast<double>(pilot->photons) * pilot->means.Count();
+  const double ofMade = pilot->means.RelativeError();
   const double ofMaps = !forecast.maps ? HUGE_VAL
-    : all > 0.0 ? std::sqrt(pilot.means.SquaredErrorOf(forecast.maps->fluence, forecast.maps->channels) / all)
+    : all > 0.0 ? std::sqrt(pilot->means.SquaredErrorOf(forecast.maps->fluence, forecast.maps->channels) / all)
                 : 0.0;
-  const double affordable = std::min(std::max(left / pilot.seconds, 1.0), 1.0 * FewestSets * MostOfASet);
+  const double affordable = std::min(std::max(left / pilot->seconds, 1.0), 1.0 * FewestSets * MostOfASet);
   forecast.beats = all > 0.0 && ofMade * std::sqrt(made / affordable) <= Beats * ofMaps;
   const double wanted = forecast.maps ? made * std::pow(ofMade / (Enough * ofMaps), 2) : affordable;
   const double photons = forecast.beats ? std::min(affordable, std::max(wanted, 1.0 * LeastToForecast)) : affordable;

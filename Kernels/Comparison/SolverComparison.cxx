@@ -2,9 +2,11 @@
 
 #include "Comparison/ComparisonErrors.h"
 #include "Comparison/TimeLimit.h"
+#include "Device/CompilationListener.h"
 #include "Device/Errors.h"
 #include "LatticeBoltzmann/CubicVoxels.h"
 #include "LightPropagation/Published/PublishedModel.h"
+#include "Numerics/NumberText.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +16,7 @@ namespace tyndall
 {
 namespace
 {
-std::string Text(const Grid& grid)
+std::string SizeOf(const Grid& grid)
 {
   return std::to_string(grid.size[0]) + "x" + std::to_string(grid.size[1]) + "x" + std::to_string(grid.size[2]);
 }
@@ -49,11 +51,12 @@ public:
     : SceneGrid(scene)
     , Reference(reference)
     , ToReference(FactorsBetween(scene, reference.grid))
+    , IsThere(!reference.fluence.empty() || !reference.fluenceDirect.empty())
   {
     const std::optional<Factors> fromReference = FactorsBetween(reference.grid, scene);
     if (!this->ToReference && !fromReference)
     {
-      throw InvalidInput("The reference has " + Text(reference.grid) + " voxels, the medium " + Text(scene) +
+      throw InvalidInput("The reference has " + SizeOf(reference.grid) + " voxels, the medium " + SizeOf(scene) +
         ". They must fill the same box, with a whole number of voxels of one in each of the other. Resample the "
         "reference.");
     }
@@ -61,10 +64,16 @@ public:
     this->FluenceDirect = this->AsCompared(reference.fluenceDirect, fromReference);
   }
 
-  bool Has(ComparedMethod method) const { return !this->For(method).empty(); }
+  /// Whether runs of a method are to be compared: with no reference at all they are measured alone.
+  bool Has(ComparedMethod method) const { return !this->IsThere || !this->For(method).empty(); }
 
+  /// Unknown where there is no reference.
   RelativeErrors ErrorsOf(const LightField& light, const ComparedRun& run) const
   {
+    if (!this->IsThere)
+    {
+      return { ComparisonRow::Unknown, ComparisonRow::Unknown, ComparisonRow::Unknown };
+    }
     const std::optional<Factors> coarsening = FactorsBetween(this->SceneGrid, run.grid);
     std::vector<float> values = Repeated(light.fluence.data(), light.channels, run.grid, *coarsening);
     if (this->ToReference)
@@ -92,6 +101,7 @@ private:
   Grid SceneGrid;
   const ReferenceLight& Reference;
   std::optional<Factors> ToReference; ///< where the reference is as coarse as the scene or coarser
+  bool IsThere = false;
   std::vector<float> Fluence, FluenceDirect;
 };
 
@@ -148,16 +158,18 @@ public:
     if (left <= 0.0 || (run.allOrders && lane.secondsOfCost * run.cost > left))
     {
       this->LeaveOut(run, "was not begun, for its time was not left");
+      ++this->Late;
       return;
     }
     double seconds = left;
     try
     {
-      seconds = this->Run(run, left, PartWithin(left, monitor, 0.0, 1.0));
+      seconds = this->Run(run, left, PartUntil(this->TheDevice, this->TheDevice.Now() + left, monitor, 0.0, 1.0));
     }
     catch (const TimeIsUp&)
     {
       this->LeaveOut(run, "was stopped when its time was up");
+      ++this->Late;
     }
     catch (const DeviceError& error)
     {
@@ -167,6 +179,8 @@ public:
     lane.secondsOfCost = run.allOrders ? seconds / run.cost : lane.secondsOfCost;
   }
 
+  int RunsLeftForTime() const { return this->Late; }
+
 private:
   void LeaveOut(const ComparedRun& run, const std::string& why)
   {
@@ -175,37 +189,65 @@ private:
 
   double Timed(const ComparedRun& run, LightField& light, const Monitor& monitor)
   {
-    const double start = ClockSeconds();
+    const double start = this->TheDevice.Now();
     light = run.solve(false, monitor);
-    return ClockSeconds() - start;
+    return this->TheDevice.Now() - start;
   }
 
-  /// @return its seconds. The first run, which compiles, does not count where the time allows others.
-  double Run(const ComparedRun& run, double left, const Monitor& monitor)
+  /// Seconds of runs in which nothing was compiled; none where the time does not allow one.
+  std::vector<double> TimesOf(const ComparedRun& run, double left, LightField& light, const Monitor& monitor)
   {
     constexpr double partForRepeats = 0.2;
+    const double end = this->TheDevice.Now() + left;
+    const std::size_t made = KernelsMade();
+    const double first = this->Timed(run, light, monitor);
+    std::vector<double> seconds;
+    if (made == KernelsMade())
+    {
+      seconds.push_back(first);
+    }
+    try
+    {
+      if (seconds.empty() && this->TheDevice.Now() + first <= end)
+      {
+        seconds.push_back(this->Timed(run, light, monitor));
+      }
+      const double fitting = seconds.empty() ? 0.0 : partForRepeats * left / seconds.back();
+      while (seconds.size() < static_cast<std::size_t>(this->Settings.repeats) &&
+        static_cast<double>(seconds.size()) + 1.0 <= fitting)
+      {
+        seconds.push_back(this->Timed(run, light, monitor));
+      }
+    }
+    catch (const TimeIsUp&) // one was made
+    {
+    }
+    if (seconds.empty())
+    {
+      this->LeaveOut(run, "its seconds are those of a run that compiled kernels; there was no time for another");
+      seconds.push_back(first);
+    }
+    return seconds;
+  }
+
+  /// @return its seconds
+  double Run(const ComparedRun& run, double left, const Monitor& monitor)
+  {
     this->TheDevice.ResetPeak();
     const std::size_t before = this->TheDevice.BytesInUse();
     LightField light;
-    const double first = this->Timed(run, light, monitor);
+    const double seconds = Median(this->TimesOf(run, left, light, monitor));
     const bool host = run.method == ComparedMethod::PublishedSequential;
-    const double fitting = partForRepeats * left / first;
-    std::vector<double> seconds;
-    for (int i = 0; i < this->Settings.repeats && i + 1.0 <= fitting; ++i)
-    {
-      seconds.push_back(this->Timed(run, light, monitor));
-    }
     ComparisonRow row;
     row.method = run.method;
     row.setting = run.setting;
     row.grid = run.grid;
-    row.seconds = seconds.empty() ? first : Median(seconds);
+    row.seconds = seconds;
     row.peakBytes = host ? ComparisonRow::Unknown : static_cast<double>(this->TheDevice.PeakBytes() - before);
     this->Compare(row, run, light);
     this->Estimate(row, run, light, monitor);
-    const double median = row.seconds;
     this->Result.rows.push_back(std::move(row));
-    return median;
+    return seconds;
   }
 
   void Compare(ComparisonRow& row, const ComparedRun& run, const LightField& light) const
@@ -240,6 +282,7 @@ private:
   const ComparisonSettings& Settings;
   const Comparator& TheComparator;
   Comparison& Result;
+  int Late = 0;
 };
 
 /// The runs of the methods that the scene allows; what the others lack is left out.
@@ -264,7 +307,9 @@ std::vector<Lane> LanesOf(Device& device, const ComparedScene& scene, const Comp
 
 /// A run of each method in turn, so that what else the machine does falls on all alike, and time that one does not need
 /// is left for the others.
-void RunInTurns(std::vector<Lane>& lanes, Runner& runner, double end, const Monitor& monitor)
+/// @return how many there were
+std::size_t RunInTurns(
+  const Device& device, std::vector<Lane>& lanes, Runner& runner, double end, const Monitor& monitor)
 {
   std::size_t count = 0, done = 0;
   for (const Lane& lane : lanes)
@@ -278,11 +323,32 @@ void RunInTurns(std::vector<Lane>& lanes, Runner& runner, double end, const Moni
       if (!lane.Done())
       {
         const auto active = std::count_if(lanes.begin(), lanes.end(), [](const Lane& other) { return !other.Done(); });
-        const double share = (end - ClockSeconds()) / static_cast<double>(active);
-        runner.RunNext(lane, share, PartWithin(HUGE_VAL, monitor, 1.0 * done / count, (done + 1.0) / count));
+        const double share = (end - device.Now()) / static_cast<double>(active);
+        runner.RunNext(lane, share, OfPart(monitor, 1.0 * done / count, (done + 1.0) / count));
         ++done;
       }
     }
+  }
+  return count;
+}
+
+/// The converged light, within half of the budget; empty, with a warning, where the machine is too slow for any.
+ReferenceLight ReferenceWithin(Device& device, const ComparedScene& scene, const ComparedSettings& tried, double budget,
+  std::vector<std::string>& warnings, const Monitor& monitor)
+{
+  try
+  {
+    return ConvergedLight(
+      device, scene, tried, 0.5 * budget, PartUntil(device, device.Now() + 0.5 * budget, monitor, 0.0, 1.0));
+  }
+  catch (const TimeIsUp&)
+  {
+    warnings.push_back("No reference could be made in half of the " + Text("%g", budget) +
+      " s of TimeBudget: runs are measured, and their errors are not known. Give more time, a smaller medium, or a "
+      "reference of your own.");
+    ReferenceLight none;
+    none.grid = scene.medium.grid;
+    return none;
   }
 }
 
@@ -306,7 +372,7 @@ Comparison CompareSolvers(Device& device, const ComparedScene& scene, const Comp
   Check(settings);
   Check(scene.medium);
   Check(scene.illumination);
-  const double end = ClockSeconds() + settings.timeBudget;
+  const double end = device.Now() + settings.timeBudget;
   const double begun = reference ? 0.0 : 0.4; // part of the progress
   Comparison result;
   result.device = device.Name();
@@ -322,11 +388,17 @@ Comparison CompareSolvers(Device& device, const ComparedScene& scene, const Comp
     });
   result.reference = reference
     ? *reference
-    : ConvergedLight(device, scene, tried, 0.5 * settings.timeBudget, PartWithin(HUGE_VAL, monitor, 0.0, begun));
+    : ReferenceWithin(device, scene, tried, settings.timeBudget, result.warnings, OfPart(monitor, 0.0, begun));
   const Comparator comparator(scene.medium.grid, result.reference);
   std::vector<Lane> lanes = LanesOf(device, scene, settings, comparator, result);
   Runner runner(device, settings, comparator, result);
-  RunInTurns(lanes, runner, end, PartWithin(HUGE_VAL, monitor, begun, 1.0));
+  const std::size_t runs = RunInTurns(device, lanes, runner, end, OfPart(monitor, begun, 1.0));
+  if (runner.RunsLeftForTime() > 0)
+  {
+    result.warnings.push_back("TimeBudget, " + Text("%g", settings.timeBudget) + " s, was over before " +
+      std::to_string(runner.RunsLeftForTime()) + " of " + std::to_string(runs) +
+      " runs were made; Left Out names them. Give more time, or compare fewer settings.");
+  }
   std::stable_sort(result.rows.begin(), result.rows.end(),
     [](const ComparisonRow& a, const ComparisonRow& b) { return a.method < b.method; });
   MarkPareto(result.rows);

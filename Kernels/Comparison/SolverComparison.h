@@ -15,9 +15,9 @@ struct ComparisonSettings
   std::vector<ComparedMethod> methods = { ComparedMethod::LightPropagationMaps, ComparedMethod::ConstantSource,
     ComparedMethod::Published, ComparedMethod::Photons };
   ComparedSettings tried;
-  int repeats = 3; ///< runs that count, after one that compiles; fewer where the budget does not allow them
+  int repeats = 3; ///< runs that count, after any that compiles; fewer where the budget does not allow them
   /// Seconds for all: half of them for a reference that is not given, the others shared by the methods. A run that does
-  /// not fit is not begun, or stopped.
+  /// not fit is not begun, or stopped. What is compared does not depend on the clock else.
   double timeBudget = 300.0;
   bool estimates = true; ///< let solvers estimate their errors, by a run whose time does not count
 };
@@ -26,7 +26,8 @@ struct Comparison
 {
   std::vector<ComparisonRow> rows;
   ReferenceLight reference;
-  std::vector<std::string> leftOut; ///< what was not compared, and why
+  std::vector<std::string> leftOut;  ///< what was not compared, and why
+  std::vector<std::string> warnings; ///< what the time did not allow
   std::string device;
 };
 

@@ -1,10 +1,17 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <functional>
 
 namespace tyndall
 {
+/// Kernels that devices of this process have made for the first time. Each is compiled, or read from a cache, when it
+/// first runs: work during which this number stays is measured without that.
+std::size_t KernelsMade();
+/// For devices: of a program, which must stay, one was made.
+void NoteKernel(const void* program, const char* name);
+
 /// While one lives, it is called about ten times a second in the thread that made it whenever that thread waits for a
 /// device's compiler, which takes seconds where nobody has compiled the kernels before. Of several in a thread the last
 /// one is called.

@@ -5,6 +5,7 @@
 #include "Device/PoclCache.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cctype>
 #include <cstdlib>
 #include <future>
@@ -39,6 +40,7 @@ struct Shared
   std::map<std::string, std::shared_ptr<Device>> Devices;
   std::optional<PoclCache> Cache; ///< as soon as PoCL was asked for devices
   std::vector<std::string> Warnings;
+  std::atomic<bool> HasCompiled{ false }; ///< a program, rather than read it from the cache
 };
 
 /// Never destroyed: an OpenCL platform may be gone before our statics are, and must not be called then.
@@ -46,6 +48,15 @@ Shared& TheShared()
 {
   static auto& shared = *new Shared;
   return shared;
+}
+
+/// At the end of the process: the next one then knows what was damaged since.
+void NoteWhatWasCompiled()
+{
+  if (TheShared().HasCompiled)
+  {
+    NoteChecksums(TheShared().Cache->folder);
+  }
 }
 
 bool IsPocl(const cl::Platform& platform)
@@ -61,6 +72,7 @@ std::vector<cl::Device> DevicesOf(const cl::Platform& platform, Shared& shared)
   {
     CompileForAnyGroup();
     shared.Cache = ChoosePoclCache();
+    std::atexit(NoteWhatWasCompiled);
     if (!shared.Cache->warning.empty())
     {
       shared.Warnings.push_back(shared.Cache->warning);
@@ -240,18 +252,31 @@ bool Device::HasExtension(const std::string& name) const
   return !IsHidden(name) && (" " + this->Extensions + " ").find(" " + name + " ") != std::string::npos;
 }
 
+namespace
+{
+/// For failures without a reason; empty where the platform keeps nothing that is known.
+std::string AdviceOnCache(const std::string& folder)
+{
+  return folder.empty()
+    ? std::string()
+    : " Its compiled kernels in \"" + folder + "\" may be damaged: delete that folder and start again.";
+}
+
+}
+
 cl::Kernel Device::Kernel(const char* name, std::string_view source, const std::string& options)
 {
   try
   {
-    return cl::Kernel(this->ProgramOf(name, std::string(source),
-                        "-cl-std=CL1.2 -DFOR_CPU=" + std::to_string(this->Cpu) + " " + options),
-      name);
+    const cl::Program program = this->ProgramOf(
+      name, std::string(source), "-cl-std=CL1.2 -DFOR_CPU=" + std::to_string(this->Cpu) + " " + options);
+    NoteKernel(program(), name);
+    return cl::Kernel(program, name);
   }
   catch (const cl::Error& error)
   {
     throw DeviceError("The kernel " + std::string(name) + " cannot be made on " + this->DeviceName + ": " +
-      error.what() + " gave " + std::to_string(error.err()) + ".");
+      error.what() + " gave " + std::to_string(error.err()) + "." + AdviceOnCache(this->CacheFolder));
   }
 }
 
@@ -331,6 +356,8 @@ cl::Program Device::Build(const char* kernel, const std::string& text, const std
   {
     RequireRoom(this->CacheFolder);
   }
+  constexpr double ofCompiling = 0.1; // seconds: less is reading from the cache
+  const double begun = ClockSeconds();
   cl::Program program;
   bool tookLong = false;
   const std::string log = BuildBesideOthers([&] {
@@ -340,8 +367,10 @@ cl::Program Device::Build(const char* kernel, const std::string& text, const std
   if (!log.empty())
   {
     throw DeviceError("The kernel " + std::string(kernel) + " does not build on " + this->DeviceName + " with \"" +
-      options + "\":\n" + log);
+      options + "\":\n" + log +
+      (log.find("error") == std::string::npos ? AdviceOnCache(this->CacheFolder) : std::string()));
   }
+  TheShared().HasCompiled = TheShared().HasCompiled || ClockSeconds() - begun > ofCompiling;
   if (tookLong)
   {
     this->Programs->CompiledSince = true;

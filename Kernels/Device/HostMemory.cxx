@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdint>
-#include <cstdio>
+#include <string>
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -22,10 +22,9 @@ void RequireHostMemory(double bytes, const std::string& what, const std::string&
   const double usable = 0.75 * static_cast<double>(HostMemory());
   if (bytes > usable)
   {
-    char numbers[96];
-    std::snprintf(
-      numbers, sizeof(numbers), " needs %.0f bytes; %.0f of this machine's memory can be used. ", bytes, usable);
-    throw DeviceError(what + numbers + advice);
+    const auto whole = [](double number) { return std::to_string(static_cast<std::uint64_t>(std::min(number, 1e19))); };
+    throw DeviceError(what + " needs " + whole(bytes) + " bytes; " + whole(usable) +
+      " of this machine's memory can be used. " + advice);
   }
 }
 

@@ -7,13 +7,22 @@
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
+#include <ctime>
+#include <elf.h>
 #include <fcntl.h>
 #include <filesystem>
+#include <fstream>
+#include <functional>
+#include <locale>
+#include <map>
+#include <optional>
 #include <sys/stat.h>
 #include <sys/statvfs.h>
 #include <unistd.h>
 #include <utility>
 #include <vector>
+
+namespace fs = std::filesystem;
 
 namespace tyndall
 {
@@ -120,7 +129,7 @@ std::vector<char> Noise()
 std::string PrivateFolder(std::string& trouble)
 {
   std::error_code error;
-  std::filesystem::path temporary = std::filesystem::temp_directory_path(error);
+  fs::path temporary = fs::temp_directory_path(error);
   if (error)
   {
     temporary = "/tmp";
@@ -158,7 +167,7 @@ std::string WhyNotWritable(const std::string& folder, std::size_t bytes)
     return "its name is longer than " + std::to_string(LongestName) + " characters";
   }
   std::error_code error;
-  std::filesystem::create_directories(folder, error);
+  fs::create_directories(folder, error);
   if (error)
   {
     return error.message();
@@ -176,13 +185,387 @@ std::string WhyNotWritable(const std::string& folder, std::size_t bytes)
   return {};
 }
 
+namespace
+{
+constexpr const char* Aside = ".damaged";
+
+/// LLVM's bitcode: a signature and blocks, each of which says how many words it has.
+bool IsWholeBitcode(const std::string& bytes)
+{
+  const auto word = [&bytes](std::size_t at) {
+    std::uint32_t value = 0;
+    std::memcpy(&value, bytes.data() + at, sizeof(value));
+    return value;
+  };
+  constexpr std::uint32_t signature = 0xdec04342, isBlock = 1;
+  if (bytes.size() < 8 || word(0) != signature)
+  {
+    return false;
+  }
+  std::size_t at = 4;
+  while (at + 8 <= bytes.size() && (word(at) & 3) == isBlock)
+  {
+    at += 8 + 4 * static_cast<std::size_t>(word(at + 4));
+  }
+  return at == bytes.size();
+}
+
+/// A library: all of its sections lie in it.
+bool IsWholeLibrary(const std::string& bytes)
+{
+  Elf64_Ehdr header = {};
+  std::memcpy(&header, bytes.data(), std::min(sizeof(header), bytes.size()));
+  if (std::memcmp(header.e_ident, ELFMAG, SELFMAG) != 0 || header.e_ident[EI_CLASS] != ELFCLASS64)
+  {
+    return header.e_ident[EI_CLASS] == ELFCLASS32; // whose headers are others
+  }
+  const auto lies = [&bytes](std::uint64_t from, std::uint64_t size) {
+    return from <= bytes.size() && size <= bytes.size() - from;
+  };
+  bool whole = header.e_shnum > 0 && lies(header.e_shoff, header.e_shnum * sizeof(Elf64_Shdr));
+  for (std::size_t i = 0; whole && i < header.e_shnum; ++i)
+  {
+    Elf64_Shdr section = {};
+    std::memcpy(&section, bytes.data() + header.e_shoff + i * sizeof(section), sizeof(section));
+    whole = section.sh_type == SHT_NOBITS || lies(section.sh_offset, section.sh_size);
+  }
+  return whole;
+}
+
+std::optional<std::string> BytesOf(const fs::path& file)
+{
+  std::ifstream stream(file, std::ios::binary);
+  std::string bytes;
+  std::vector<char> block(1 << 16);
+  while (stream.read(block.data(), static_cast<std::streamsize>(block.size())) || stream.gcount() > 0)
+  {
+    bytes.append(block.data(), static_cast<std::size_t>(stream.gcount()));
+  }
+  return stream.eof() && !stream.bad() ? std::optional<std::string>(std::move(bytes)) : std::nullopt;
+}
+
+/// What is known of a file or folder.
+struct Note
+{
+  std::uint64_t number = 0; ///< of the file on its disk
+  std::uint64_t size = 0;   ///< bytes
+  std::int64_t written = 0; ///< nanoseconds: contents
+  std::int64_t changed = 0; ///< nanoseconds: contents, name, or rights
+  std::uint64_t sum = 0;    ///< of a file's bytes
+
+  bool LooksLike(const Note& other) const
+  {
+    return this->number == other.number && this->size == other.size && this->written == other.written &&
+      this->changed == other.changed;
+  }
+};
+
+/// Without its sum.
+std::optional<Note> NoteOf(const std::string& path)
+{
+  struct stat found = {};
+  if (stat(path.c_str(), &found) != 0)
+  {
+    return std::nullopt;
+  }
+  const auto nanoseconds = [](const timespec& time) { return time.tv_sec * std::int64_t(1000000000) + time.tv_nsec; };
+  return Note{ found.st_ino, static_cast<std::uint64_t>(found.st_size), nanoseconds(found.st_mtim),
+    nanoseconds(found.st_ctim), 0 };
+}
+
+std::uint64_t SumOf(const std::string& bytes) // FNV-1a
+{
+  std::uint64_t sum = 14695981039346656037u;
+  for (const char byte : bytes)
+  {
+    sum = (sum ^ static_cast<unsigned char>(byte)) * 1099511628211u;
+  }
+  return sum;
+}
+
+/// Notes of what is in a folder, by paths from there on, kept in a file there.
+class Notes
+{
+public:
+  explicit Notes(const std::string& folder)
+    : File(folder + "/tyndall-checksums")
+  {
+    std::ifstream stream(this->File);
+    stream.imbue(std::locale::classic());
+    Note note;
+    std::string path;
+    while (stream >> note.number >> note.size >> note.written >> note.changed >> note.sum &&
+      std::getline(stream >> std::ws, path))
+    {
+      this->Known.emplace_hint(this->Known.end(), path, note);
+    }
+  }
+
+  const std::map<std::string, Note>& All() const { return this->Known; }
+  const Note* Find(const std::string& path) const
+  {
+    const auto found = this->Known.find(path);
+    return found == this->Known.end() ? nullptr : &found->second;
+  }
+  void Set(const std::string& path, const Note& note)
+  {
+    this->Known[path] = note;
+    this->IsNew = true;
+  }
+  void Forget(const std::string& path) { this->IsNew = this->Known.erase(path) > 0 || this->IsNew; }
+
+  /// Through a file of its own: other processes may write theirs.
+  void Write() const
+  {
+    if (!this->IsNew)
+    {
+      return;
+    }
+    const std::string written = this->File + "-" + std::to_string(getpid());
+    std::ofstream stream(written);
+    for (const auto& [path, note] : this->Known)
+    {
+      stream << std::to_string(note.number) + " " + std::to_string(note.size) + " " + std::to_string(note.written) +
+          " " + std::to_string(note.changed) + " " + std::to_string(note.sum) + " " + path + "\n";
+    }
+    stream.close();
+    if (!stream || std::rename(written.c_str(), this->File.c_str()) != 0)
+    {
+      unlink(written.c_str());
+    }
+  }
+
+private:
+  std::string File;
+  std::map<std::string, Note> Known;
+  bool IsNew = false;
+};
+
+/// Looks at what PoCL keeps in a folder, with as few questions to the system as can be: at files that are noted, and
+/// into folders of programs that have changed since they were.
+class CacheInspection
+{
+public:
+  /// Takes what is damaged, by its path in the folder, and how. @return whether it is not there any more
+  using Report = std::function<bool(const std::string& path, const std::string& how)>;
+
+  /// @param folder  ends in no slash
+  explicit CacheInspection(const std::string& folder)
+    : Folder(folder)
+    , Known(folder)
+  {
+  }
+
+  void Run(const Report& report)
+  {
+    std::vector<std::string> noted;
+    for (const auto& [path, note] : this->Known.All())
+    {
+      const std::optional<Note> found = NoteOf(this->Folder + path);
+      if (!found || (IsOfKernels(path) && !found->LooksLike(note)))
+      {
+        noted.push_back(path);
+      }
+    }
+    for (const std::string& path : noted)
+    {
+      this->LookAtFile(path, report);
+    }
+    for (const std::string& program : this->ChangedPrograms())
+    {
+      this->LookInto(program, report);
+    }
+    this->Known.Write();
+  }
+
+private:
+  static bool IsOfKernels(const fs::path& path) { return path.extension() == ".bc" || path.extension() == ".so"; }
+  static bool CanBeUsed(const fs::path& folder) { return access(folder.c_str(), R_OK | W_OK | X_OK) == 0; }
+  /// Whether a name is a part of one of the hashes that name programs: the folder might be one of other things.
+  static bool IsOfHash(const fs::path& path, std::size_t least, std::size_t most)
+  {
+    const std::string name = path.filename().string();
+    return name.size() >= least && name.size() <= most &&
+      std::all_of(name.begin(), name.end(), [](char c) { return c >= 'A' && c <= 'Z'; });
+  }
+  std::string Within(const fs::path& path) const { return path.string().substr(this->Folder.size()); }
+
+  std::vector<std::string> ChangedPrograms() const
+  {
+    std::vector<std::string> programs;
+    std::error_code none;
+    for (const auto& above : fs::directory_iterator(this->Folder, none))
+    {
+      if (!IsOfHash(above.path(), 2, 2) || !above.is_directory(none))
+      {
+        continue;
+      }
+      for (const auto& program : fs::directory_iterator(above.path(), none))
+      {
+        const std::string path = this->Within(program.path());
+        const Note* const before = this->Known.Find(path);
+        const std::optional<Note> found = NoteOf(program.path().string());
+        if (IsOfHash(program.path(), 20, 64) && program.is_directory(none) &&
+          !(before && found && found->LooksLike(*before)))
+        {
+          programs.push_back(path);
+        }
+      }
+    }
+    return programs;
+  }
+
+  void LookInto(const std::string& program, const Report& report)
+  {
+    const fs::path folder = this->Folder + program;
+    if (!CanBeUsed(folder))
+    {
+      report(program, "cannot be used");
+      return;
+    }
+    const std::optional<Note> found = NoteOf(folder.string()); // before: what comes meanwhile is looked at next time
+    std::vector<std::string> files, unusable;
+    std::error_code none;
+    for (fs::recursive_directory_iterator entry(folder, none), end; entry != end; entry.increment(none))
+    {
+      const fs::path& path = entry->path();
+      if (!entry->is_directory(none))
+      {
+        files.insert(files.end(), IsOfKernels(path) ? 1 : 0, this->Within(path));
+        continue;
+      }
+      const bool unfit = path.extension() != Aside && (IsOfKernels(path) || !CanBeUsed(path));
+      unusable.insert(unusable.end(), unfit ? 1 : 0, this->Within(path));
+      if (unfit || path.extension() == Aside)
+      {
+        entry.disable_recursion_pending();
+      }
+    }
+    bool sound = unusable.empty();
+    for (const std::string& path : files)
+    {
+      sound = this->LookAtFile(path, report) && sound;
+    }
+    for (const std::string& path : unusable)
+    {
+      report(path, "cannot be used");
+    }
+    const bool rests = found && std::time(nullptr) - found->changed / 1000000000 > 1; // clocks of disks tick slowly
+    if (sound && rests)                                                               // else it is looked into again
+    {
+      this->Known.Set(program, *found);
+    }
+  }
+
+  /// @return whether nothing was wrong with it
+  bool LookAtFile(const std::string& path, const Report& report)
+  {
+    const std::string file = this->Folder + path;
+    const Note* const before = this->Known.Find(path);
+    std::optional<Note> found = NoteOf(file);
+    if (!found) // set aside, by another process perhaps
+    {
+      this->Known.Forget(path);
+      return true;
+    }
+    if (before && found->LooksLike(*before))
+    {
+      return true;
+    }
+    const std::string how = this->HowDamaged(file, before, *found);
+    if (!how.empty())
+    {
+      if (report(path, how))
+      {
+        this->Known.Forget(path);
+      }
+      return false;
+    }
+    this->Known.Set(path, *found);
+    return true;
+  }
+
+  /// @param found  gets its sum. @return empty: not damaged as far as can be seen
+  static std::string HowDamaged(const fs::path& file, const Note* before, Note& found)
+  {
+    const std::optional<std::string> bytes = BytesOf(file);
+    if (!bytes)
+    {
+      return "cannot be read";
+    }
+    if (!(file.extension() == ".so" ? IsWholeLibrary(*bytes) : IsWholeBitcode(*bytes)))
+    {
+      return "is cut off or overwritten";
+    }
+    found.sum = SumOf(*bytes);
+    // Ranks that compile the same program at once replace each other's bitcode, which is not the same to the last byte.
+    const bool replaced = before && before->number != found.number && file.extension() == ".bc";
+    return before && before->sum != found.sum && !replaced ? "was changed" : "";
+  }
+
+  std::string Folder;
+  Notes Known;
+};
+
+std::string WithoutSlash(std::string folder)
+{
+  while (folder.size() > 1 && folder.back() == '/')
+  {
+    folder.pop_back();
+  }
+  return folder;
+}
+
+/// In words; empty: nothing was damaged.
+std::string Told(const DamagedFiles& damaged, const std::string& folder)
+{
+  return damaged.count == 0 ? std::string()
+                            : "The folder \"" + folder +
+      "\" of compiled kernels (of PoCL, which runs OpenCL on the CPU) was damaged: " + damaged.first +
+      (damaged.count > 1 ? ", and so on for " + std::to_string(damaged.count) + " files" : "") +
+      ". Kernels are compiled again where needed. The damaged files now end in " + Aside + " and can be deleted.";
+}
+}
+
+DamagedFiles SetDamagedAside(const std::string& said)
+{
+  const std::string folder = WithoutSlash(said);
+  DamagedFiles all;
+  CacheInspection(folder).Run([&](const std::string& path, const std::string& how) {
+    const std::string place = folder + path;
+    std::error_code error;
+    fs::remove_all(place + Aside, error);
+    fs::rename(place, place + Aside, error);
+    if (error && fs::exists(place)) // else another process has renamed it
+    {
+      all.trouble = "\"" + place + "\" " + how + ", and cannot be renamed";
+    }
+    all.first = all.count == 0 ? "\"" + path.substr(1) + "\" " + how : all.first;
+    ++all.count;
+    return !fs::exists(place);
+  });
+  return all;
+}
+
+void NoteChecksums(const std::string& folder)
+{
+  CacheInspection(WithoutSlash(folder)).Run([](const std::string&, const std::string&) {
+    return false;
+  }); // left to the next process
+}
+
 PoclCache ChoosePoclCache()
 {
   const Candidate own = FolderOfEnvironment();
-  const std::string trouble = WhyNotWritable(own.folder);
+  std::string trouble = WhyNotWritable(own.folder);
   if (trouble.empty())
   {
-    return { own.folder, {} };
+    const DamagedFiles damaged = SetDamagedAside(own.folder);
+    if (damaged.trouble.empty())
+    {
+      return { own.folder, Told(damaged, own.folder) };
+    }
+    trouble = damaged.trouble;
   }
   const std::string said = "PoCL, which runs OpenCL on the CPU, cannot keep what it compiles in \"" + own.folder +
     "\" (chosen by " + own.chosenBy + "): " + trouble;
@@ -192,6 +575,7 @@ PoclCache ChoosePoclCache()
   {
     throw DeviceError(said + "; nor in \"" + elsewhere + "\": " + troubleElsewhere + "." + Advice());
   }
+  SetDamagedAside(elsewhere);
   setenv("POCL_CACHE_DIR", elsewhere.c_str(), 1);
   return { elsewhere, said + ". It is kept in \"" + elsewhere + "\" instead." + Advice() };
 }

@@ -7,7 +7,7 @@
 namespace tyndall
 {
 /// The folder to which PoCL writes what it compiles. It is looked at before PoCL does: that finds no device where it
-/// cannot make the folder, and ends the process where the folder's disk is full.
+/// cannot make the folder, and ends the process where the folder's disk is full or a file in it is damaged.
 struct PoclCache
 {
   /// Bytes that are asked for: kernels of a scene take a part of it.
@@ -19,11 +19,29 @@ struct PoclCache
 
 /// The folder that PoCL takes by itself: POCL_CACHE_DIR, or one of the user's. Where that cannot be written, a private
 /// one in the temporary directory: POCL_CACHE_DIR is set to it, so PoCL must not have been asked for devices before.
+/// Damaged files are set aside.
 /// @throws DeviceError where neither can be written
 PoclCache ChoosePoclCache();
 
 /// Why `bytes` cannot be written to files in a folder, which is made where it is missing; empty: they can.
 std::string WhyNotWritable(const std::string& folder, std::size_t bytes = PoclCache::Room);
+
+/// What was found damaged of what PoCL keeps.
+struct DamagedFiles
+{
+  std::size_t count = 0;
+  std::string first;   ///< one of them, and how
+  std::string trouble; ///< why one cannot be set aside; empty: all are
+};
+
+/// Renames damaged files below a folder of PoCL's to *.damaged, so that it compiles them anew: bitcode and libraries
+/// that are cut off, overwritten or unreadable, and those that were changed since an earlier call noted their checksums
+/// in the folder. What is as it was noted is not read. Other processes may do so, and PoCL may write, at the same time:
+/// it renames what it has written, and leaves nothing half.
+DamagedFiles SetDamagedAside(const std::string& folder);
+
+/// Notes the checksums of what PoCL has written to the folder since they were noted last.
+void NoteChecksums(const std::string& folder);
 
 /// PoCL compiles a kernel anew for each size of work-groups that it is run in, so for nearly every new grid. Its
 /// variable POCL_WORK_GROUP_SPECIALIZATION is set to 0 where nobody set it: kernels are compiled once, for any size.

@@ -2,6 +2,7 @@
 
 #include "Device/Defines.h"
 #include "Distribution/SharedMedium.h"
+#include "LightPropagation/Emission/UncollidedEmission.h"
 #include "LightPropagation/Sweep/SweepOfDevice.h"
 #include "LightPropagation/Uncollided/GivenLight.h"
 #include "LightPropagation/Uncollided/UncollidedLamp.h"
@@ -46,6 +47,36 @@ ChannelArrays::ChannelArrays(Device& device, const OrdinatesScene& scene, const 
   }
 }
 
+/// @param emptyVoxels  of those that are swept apart, else of the others; W / (length^3 sr)
+float ChannelArrays::EmissionOf(std::size_t voxel, bool emptyVoxels) const
+{
+  const double sigma_t = static_cast<double>(this->Absorption[voxel]) + this->Scattering[voxel];
+  const bool apart = this->OfVacuum && VacuumEmission::IsEmpty(sigma_t, this->Layout.grid);
+  return apart == emptyVoxels ? this->TheMedium.emission.At(voxel, this->Scene.channel) : 0.0f;
+}
+
+void ChannelArrays::TakeVacuumApart(PropagationSettings settings)
+{
+  const Grid& whole = this->Scene.WholeGrid();
+  if (!VacuumEmission::IsApart(whole, settings))
+  {
+    return;
+  }
+  settings.netFlux = true; // it tells which way light goes that is scattered
+  bool any = false;
+  this->Scene.Together([&] {
+    this->OfVacuum = VacuumEmission::DirectionsFor(whole, settings);
+    for (std::size_t i = 0; i < this->Voxels; ++i)
+    {
+      any = any || this->EmissionOf(i, true) > 0.0f;
+    }
+  });
+  if (this->Scene.Sum({ any ? 1.0 : 0.0 })[0] == 0.0)
+  {
+    this->OfVacuum.reset();
+  }
+}
+
 void ChannelArrays::LookAtAllRanks()
 {
   const std::vector<double> any = this->Scene.Sum({ this->AnyScattering ? 1.0 : 0.0, this->AnyEmission ? 1.0 : 0.0 });
@@ -70,7 +101,7 @@ std::size_t ChannelArrays::Bytes(const Grid& grid, bool netFlux)
 void ChannelArrays::AddLamps(
   const Buffer<float>& source, const std::array<bool, 3>& periodic, OrdinatesResult& result, const Monitor& monitor)
 {
-  if (this->Scene.lamps.empty() && !this->Scene.uncollided.IsThere())
+  if (this->Scene.lamps.empty() && !this->Scene.uncollided.IsThere() && !this->OfVacuum)
   {
     return;
   }
@@ -84,26 +115,62 @@ void ChannelArrays::AddLamps(
   });
   const SweepMaker sweeps = [&](const SweepRequest& request) { return this->SweepOf(sigma_t, periodic, request); };
   std::unique_ptr<LampsInBlocks> nearLamps;
-  const double all = static_cast<double>(this->Scene.lamps.size());
-  for (std::size_t i = 0; i < this->Scene.lamps.size(); ++i)
-  {
-    this->Scene.Together([&] { path.Fill(0.0f); });
+  const auto volumeHere = [&] {
     UncollidedVolume volume = { this->TheDevice, this->Layout, sigma_t, periodic, sweeps,
       { &path, nullptr, nullptr, nullptr, this->Faces ? &this->Faces->Out() : nullptr } };
     if (this->Scene.ranks)
     {
       this->SpreadOverRanks(volume, nearLamps);
     }
+    return volume;
+  };
+  const LampTarget target = { source, this->Scale, this->Direct, this->Light };
+  const double all = static_cast<double>(this->Scene.lamps.size() + (this->OfVacuum ? 1 : 0));
+  for (std::size_t i = 0; i < this->Scene.lamps.size(); ++i)
+  {
+    this->Scene.Together([&] { path.Fill(0.0f); });
     const Monitor ofLamp = OfPart(monitor, i / all, (i + 1) / all);
-    this->CountLamp(UncollidedLamp(this->Scene.lamps[i]).AddTo(volume, ofLamp), result.ledger);
-    this->Scene.Together([&] {
-      scattering->Add(this->Scene.lamps[i], path, sigma_s, { source, this->Scale, this->Direct, this->Light });
-    });
+    this->CountLamp(UncollidedLamp(this->Scene.lamps[i]).AddTo(volumeHere(), ofLamp), result.ledger);
+    this->Scene.Together([&] { scattering->Add(this->Scene.lamps[i], path, sigma_s, target); });
+  }
+  if (this->OfVacuum)
+  {
+    this->Scene.Together([&] { path.Fill(0.0f); });
+    const Monitor ofVacuum = OfPart(monitor, (all - 1.0) / all, 1.0);
+    this->CountLamp(this->AddVacuum(volumeHere(), *scattering, sigma_s, target, ofVacuum), result.ledger);
   }
   if (this->Scene.uncollided.IsThere())
   {
     this->AddGiven(*scattering, sigma_s, source, result);
   }
+}
+
+/// What empty voxels emit. It is scattered by its mean direction.
+/// @param volume  its deposit has a path alone, which is 0
+SweepTally ChannelArrays::AddVacuum(UncollidedVolume volume, const LampScattering& scattering,
+  const Buffer<float>& sigma_s, const LampTarget& target, const Monitor& monitor) const
+{
+  Buffer<float> flux;
+  std::optional<VacuumEmission> emission;
+  this->Scene.Together([&] {
+    flux = Buffer<float>(this->TheDevice, this->Layout.Floats(3), "the net flux of what empty voxels emit");
+    flux.Fill(0.0f);
+    emission.emplace(
+      *this->OfVacuum, Planar(this->Layout, 1, [&](std::size_t i, int) { return this->EmissionOf(i, true); }));
+  });
+  volume.deposit.flux = &flux;
+  const SweepTally tally = emission->AddTo(volume, monitor);
+  this->Scene.Together([&] {
+    const std::vector<float> paths = volume.deposit.path->Read(), fluxes = flux.Read();
+    std::vector<float> ways(3 * this->Voxels + 1, 0.0f);
+    for (std::size_t i = 0; i < 3 * this->Voxels; ++i)
+    {
+      const float path = paths[i / 3];
+      ways[i] = path > 0.0f ? fluxes[i % 3 * this->Layout.Stride() + i / 3] / path : 0.0f;
+    }
+    scattering.AddAlong(Buffer<float>(this->TheDevice, ways, "mean directions"), *volume.deposit.path, sigma_s, target);
+  });
+  return tally;
 }
 
 std::unique_ptr<SweepOperator> ChannelArrays::SweepOf(
@@ -225,8 +292,8 @@ void ChannelArrays::EmitEvenly(const Buffer<float>& source, EnergyLedger& ledger
     std::vector<float> emission(this->Voxels);
     for (std::size_t i = 0; i < this->Voxels; ++i)
     {
-      emission[i] = this->TheMedium.emission.At(i, this->Scene.channel);
-      sum += emission[i];
+      emission[i] = this->EmissionOf(i, false);
+      sum += this->TheMedium.emission.At(i, this->Scene.channel);
     }
     const Buffer<float> values(this->TheDevice, emission, "emission");
     cl::Kernel even = this->TheDevice.Kernel("even_source", kernel_source::UpwindSweep, Define("REAL_WIDTH", 8));

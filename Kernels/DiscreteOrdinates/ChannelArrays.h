@@ -3,6 +3,7 @@
 #include "DiscreteOrdinates/AngularScattering.h"
 #include "DiscreteOrdinates/LampScattering.h"
 #include "DiscreteOrdinates/OrdinatesScene.h"
+#include "LightPropagation/Angular/SweptDirections.h"
 #include "LightPropagation/Distributed/LampsInBlocks.h"
 #include "LightPropagation/Distributed/Sweep/SweepInBlocks.h"
 #include "LightPropagation/Sweep/SweepWorkspace.h"
@@ -26,13 +27,17 @@ public:
   /// @param scene, angles  must stay
   ChannelArrays(Device& device, const OrdinatesScene& scene, const OrdinatesAngles& angles, bool netFlux);
 
+  /// From now on what empty voxels emit is not among EmitEvenly's, but of AddLamps: uncollided light along rays of its
+  /// own (UncollidedEmission.h). All ranks call it.
+  void TakeVacuumApart(PropagationSettings settings);
   /// Whether any rank's voxels emit or scatter: before anybody asks. All ranks call it, as most of what follows.
   void LookAtAllRanks();
 
   /// Bytes that these arrays take on the device.
   static std::size_t Bytes(const Grid& grid, bool netFlux);
 
-  /// Uncollided light of all lamps: counts it, and adds what of it is scattered for the first time.
+  /// Uncollided light of all lamps, of empty voxels and of another solver: counts it, and adds what of it is scattered
+  /// for the first time.
   /// @param source  of all directions, over Scale
   void AddLamps(
     const Buffer<float>& source, const std::array<bool, 3>& periodic, OrdinatesResult& result, const Monitor& monitor);
@@ -49,6 +54,7 @@ public:
   /// W that are scattered of the difference of two fluences, its magnitude in each voxel. All ranks call it.
   double MagnitudeOf(const std::vector<float>& values, const std::vector<float>& others) const;
   /// Emission of the voxels into every direction. W / (length^3 sr). All ranks call it, where any emits.
+  /// @param ledger  all emission is counted
   void EmitEvenly(const Buffer<float>& source, EnergyLedger& ledger) const;
   /// Adds what is scattered evenly of a fluence, which may be negative.
   void ScatterEvenly(const std::vector<float>& values, double factor, const Buffer<float>& source) const;
@@ -73,6 +79,9 @@ private:
   void AddGiven(const LampScattering& scattering, const Buffer<float>& sigma_s, const Buffer<float>& source,
     OrdinatesResult& result);
   void CountLamp(const SweepTally& tally, EnergyLedger& ledger);
+  float EmissionOf(std::size_t voxel, bool emptyVoxels) const;
+  SweepTally AddVacuum(UncollidedVolume volume, const LampScattering& scattering, const Buffer<float>& sigma_s,
+    const LampTarget& target, const Monitor& monitor) const;
 
   Device& TheDevice;
   const OrdinatesScene& Scene;
@@ -80,6 +89,7 @@ private:
   double ScatteredAway; ///< part of what is scattered that does not go straight on
   std::vector<float> Absorption, Scattering;
   bool AnyEmission = false, AnyScattering = false;
+  std::unique_ptr<const SweptDirections> OfVacuum; ///< along which empty voxels emit; null: none does, or not apart
   double GoingRound = 0.0;
   SweepWorkspace Workspace;
   BlockWorkspace BlocksWorkspace;

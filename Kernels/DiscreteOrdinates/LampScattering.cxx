@@ -131,8 +131,7 @@ void LampScattering::Add(
 {
   const bool parallel = lamp.type == LightType::Directional;
   const glm::dvec3 origin(this->TheGrid.origin[0], this->TheGrid.origin[1], this->TheGrid.origin[2]);
-  const glm::dvec3 place =
-    parallel ? glm::normalize(Vector(lamp.direction)) : glm::dvec3(Vector(lamp.position)) - origin;
+  const glm::dvec3 place = parallel ? Vector(DirectionOf(lamp)) : Vector(lamp.position) - origin;
   LampInRays info = {};
   for (int a = 0; a < 3; ++a)
   {

@@ -1,12 +1,14 @@
 #include "DiscreteOrdinates/SweptOrders.h"
 
 #include "DiscreteOrdinates/Distributed/UpwindSweepInBlocks.h"
+#include "DiscreteOrdinates/OrdinatesParts.h"
 #include "DiscreteOrdinates/UpwindSweep.h"
 
 #include <algorithm>
 #include <cmath>
 #include <memory>
 #include <optional>
+#include <utility>
 
 namespace tyndall
 {
@@ -57,6 +59,7 @@ public:
 
   OrdinatesResult Run(const Monitor& monitor)
   {
+    this->Arrays.TakeVacuumApart(AsPropagation(this->Settings));
     this->Arrays.LookAtAllRanks();
     this->FirstOrder(OfPart(monitor, 0.0, 0.1));
     while (!this->Done())
@@ -156,7 +159,8 @@ private:
     this->Result.ledger.LeaveOver(
       0, powers.scattered - guessed + this->OnTheWay + this->Reflected + this->Arrays.Stranded());
     const double reflected = this->Arrays.Faces ? this->Arrays.Faces->Magnitude()[0] : 0.0;
-    this->GoesOn = this->Arrays.MagnitudeOf(found, this->Guess) + std::abs(this->OnTheWay) + reflected;
+    this->GoesOn = GoesOnToItsEnd(this->Settings.maximumOrders, std::abs(this->WasOnTheWay), std::abs(this->OnTheWay),
+      this->Arrays.MagnitudeOf(found, this->Guess) + reflected);
     this->Record.Add(this->GoesOn, powers.scattered, this->Result.ledger);
     this->Guess.clear();
   }
@@ -213,7 +217,7 @@ private:
       this->Result.ledger.Enter(0, powers.in[face]);
       this->Result.ledger.Escape(0, face, powers.out[face]);
     }
-    this->OnTheWay = powers.onTheWay;
+    this->WasOnTheWay = std::exchange(this->OnTheWay, powers.onTheWay);
     if (this->Arrays.Scatters() || !this->Settings.leaveOut)
     {
       this->Scene.Together([&] {
@@ -250,8 +254,9 @@ private:
   {
     this->Reflect();
     this->Result.ledger.Absorb(0, swept.absorbed + ofLamps.absorbed);
-    this->GoesOn = swept.scattered + ofLamps.scattered + this->OnTheWay + this->Reflected;
-    this->Result.ledger.LeaveOver(0, this->GoesOn + this->Arrays.Stranded());
+    const double others = swept.scattered + ofLamps.scattered + this->Reflected;
+    this->GoesOn = GoesOnToItsEnd(this->Settings.maximumOrders, this->WasOnTheWay, this->OnTheWay, others);
+    this->Result.ledger.LeaveOver(0, others + this->OnTheWay + this->Arrays.Stranded());
     this->Record.Add(this->GoesOn, this->Result.ledger);
   }
 
@@ -278,6 +283,7 @@ private:
   OrdinatesResult Result;
   std::vector<float> Guess;                             ///< W / length^2, until it is taken away again
   double GoesOn = 0.0, OnTheWay = 0.0, Reflected = 0.0; ///< W
+  double WasOnTheWay = 0.0;                             ///< W, before the last sweep
 };
 }
 

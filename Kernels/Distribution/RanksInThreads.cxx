@@ -1,5 +1,7 @@
 #include "Distribution/RanksInThreads.h"
 
+#include "Numerics/NumberText.h"
+
 #include <chrono>
 #include <condition_variable>
 #include <deque>
@@ -34,8 +36,8 @@ public:
     std::deque<std::vector<char>>& queue = this->Messages[{ from, tag }];
     if (!this->Arrived.wait_for(lock, std::chrono::duration<double>(patience), [&] { return !queue.empty(); }))
     {
-      throw std::runtime_error("nothing came from rank " + std::to_string(from) + " within " +
-        std::to_string(patience) + " s (tag " + std::to_string(tag) + ")");
+      throw std::runtime_error("nothing came from rank " + std::to_string(from) + " within " + Text("%g", patience) +
+        " s (tag " + std::to_string(tag) + ")");
     }
     std::vector<char> bytes = std::move(queue.front());
     queue.pop_front();

@@ -12,6 +12,8 @@ namespace
 constexpr double WarmMargin = 1.5;      ///< the error of a guess does not fall evenly
 constexpr double MarginOfChanges = 1.5; ///< of the estimated error: changes do not fall off evenly
 constexpr double MuchLeftOver = 0.01;   ///< of the power, with the usual tolerance
+constexpr double SlowestFall = 1e-4;    ///< from order to order, of light that is waited for round periodic axes
+constexpr double NextToAll = 1e-3;      ///< what else there is beside it, at most
 
 /// Of all power, what the solver gave up.
 double LeftOver(const EnergyBalance& balance)
@@ -56,6 +58,13 @@ double RestOfChanges::After(double change, double guessedRatio)
   this->LastRatio = ratio;
   this->Last = change;
   return first && change != 0.0 ? 1.0 : MarginOfChanges * change * fall / (1.0 - fall);
+}
+
+double GoesOnToItsEnd(int maximumOrders, double before, double onTheWay, double others)
+{
+  const bool endless =
+    maximumOrders == 0 && before > 0.0 && onTheWay >= (1.0 - SlowestFall) * before && NextToAll * onTheWay >= others;
+  return endless ? others : others + onTheWay;
 }
 
 double ProgressOf(const PropagationSettings& settings, double residual, double iterations)

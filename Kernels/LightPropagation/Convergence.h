@@ -46,6 +46,13 @@ private:
   double Last = 1.0, LastRatio = 1.0;
 };
 
+/// Of what goes on to the next order, without what never ends: light round periodic axes that is next to all of it and
+/// does not become less, as what empty voxels emit along such an axis. W, of one channel.
+/// @param maximumOrders  asked for: then all goes on
+/// @param before, onTheWay  round periodic axes after the last order but one, and after the last
+/// @param others  what goes on besides
+double GoesOnToItsEnd(int maximumOrders, double before, double onTheWay, double others);
+
 /// Of a solve, [0, 1]: orders of those asked for, else how far the logarithm of the residual has come, and a little
 /// more with each iteration.
 /// @param residual  of the last iteration, 1 before there is one

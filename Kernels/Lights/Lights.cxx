@@ -1,8 +1,12 @@
 #include "Lights/Lights.h"
 
 #include "Device/Errors.h"
+#include "Medium/Grid.h"
 #include "Numerics/Constants.h"
 #include "Numerics/NumberText.h"
+#include "Numerics/Vectors.h"
+
+#include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -11,10 +15,47 @@
 
 namespace tyndall
 {
+namespace
+{
+std::array<double, 3> Product(const Rotation& matrix, const std::array<double, 3>& v)
+{
+  std::array<double, 3> product;
+  for (int row = 0; row < 3; ++row)
+  {
+    product[row] = matrix[row][0] * v[0] + matrix[row][1] * v[1] + matrix[row][2] * v[2];
+  }
+  return product;
+}
+
+Rotation Transposed(const Rotation& matrix)
+{
+  Rotation transposed;
+  for (int row = 0; row < 3; ++row)
+  {
+    for (int column = 0; column < 3; ++column)
+    {
+      transposed[row][column] = matrix[column][row];
+    }
+  }
+  return transposed;
+}
+}
+
+std::array<double, 3> Environment::ToPicture(const std::array<double, 3>& inScene) const
+{
+  return Product(this->toPicture, inScene);
+}
+
+std::array<double, 3> Environment::ToScene(const std::array<double, 3>& inPicture) const
+{
+  return Product(Transposed(this->toPicture), inPicture);
+}
+
 Rgb Lookup(const Environment& environment, const std::array<double, 3>& direction)
 {
-  const double polar = std::atan2(std::hypot(direction[0], direction[1]), direction[2]);
-  const double azimuth = std::atan2(direction[1], direction[0]);
+  const std::array<double, 3> seen = environment.ToPicture(direction);
+  const double polar = std::atan2(std::hypot(seen[0], seen[1]), seen[2]);
+  const double azimuth = std::atan2(seen[1], seen[0]);
   const double column = (azimuth < 0.0 ? azimuth / (2.0 * Pi) + 1.0 : azimuth / (2.0 * Pi)) * environment.width - 0.5;
   const double row = (1.0 - polar / Pi) * environment.height - 0.5;
   const double left = std::floor(column);
@@ -36,11 +77,41 @@ Rgb Lookup(const Environment& environment, const std::array<double, 3>& directio
   return sum;
 }
 
+namespace
+{
+constexpr double LeastSpotAngle = 1e-12; ///< degrees: what squares of its sine need as floats
+
+/// Of any length that is not 0: scaled first, so that squares neither vanish nor overflow.
+glm::dvec3 Unit(const std::array<double, 3>& vector)
+{
+  const double largest = std::max({ std::abs(vector[0]), std::abs(vector[1]), std::abs(vector[2]) });
+  return largest > 0.0 ? glm::normalize(Vector(vector) / largest) : Vector(vector);
+}
+}
+
+std::array<double, 3> DirectionOf(const Light& light)
+{
+  const glm::dvec3 unit = Unit(light.direction);
+  return { unit.x, unit.y, unit.z };
+}
+
+double AngleFromAxis(const Light& light, const std::array<double, 3>& way)
+{
+  const glm::dvec3 axis = Unit(light.direction), along = Unit(way);
+  return std::atan2(glm::length(glm::cross(along, axis)), glm::dot(along, axis));
+}
+
+double HalfAngle(const Light& spot)
+{
+  return 0.5 * spot.angle * Pi / 180.0;
+}
+
 double AxialIntensity(const Light& lamp)
 {
+  const double sine = std::sin(0.5 * HalfAngle(lamp));
   switch (lamp.type)
   {
-    case LightType::Spot: return 1.0 / (2.0 * Pi * (1.0 - std::cos(0.5 * lamp.angle * Pi / 180.0)));
+    case LightType::Spot: return 1.0 / (4.0 * Pi * sine * sine); // 1 - cos(angle) would cancel
     case LightType::Rectangle: return 1.0 / Pi;
     case LightType::Point: return 1.0 / (4.0 * Pi);
     case LightType::Directional: break;
@@ -50,69 +121,108 @@ double AxialIntensity(const Light& lamp)
 
 std::array<std::array<double, 3>, 2> RectangleEdges(const Light& light)
 {
-  const auto [x, y, z] = light.direction;
-  const double length = std::hypot(x, y, z);
+  const auto [x, y, z] = DirectionOf(light);
   const double across = std::hypot(x, y);
-  const bool vertical = across < 1e-9 * length;
+  const bool vertical = across < 1e-9;
   const double ex = vertical ? 1.0 : -y / across;
   const double ey = vertical ? 0.0 : x / across;
-  const double s = light.size[1] / length;
+  const double s = light.size[1];
   return { { { light.size[0] * ex, light.size[0] * ey, 0.0 },
     { -s * z * ey, s * z * ex, s * (x * ey - y * ex) } } }; // direction x first edge
 }
 
 namespace
 {
-Environment Shifted(const Environment& environment, int columns)
+constexpr double FarAway = 1e5;       ///< of the box's longest edge, from where light is parallel
+constexpr double TooFarToAim = 1e10;  ///< the same, from where a direction does not tell what of the box is lit
+constexpr double SmallFromFar = 1e-3; ///< edge of a rectangle over its distance, up to which it shines as a point
+
+/// A lamp that is FarAway, at the middle of the box. @param way  from it to there
+Light Parallel(const Light& lamp, const glm::dvec3& way, double distance)
 {
-  Environment shifted = environment;
-  const std::size_t row = 3 * static_cast<std::size_t>(environment.width);
-  for (auto begin = shifted.radiance.begin(); begin != shifted.radiance.end(); begin += row)
-  {
-    std::rotate(begin, begin + 3 * (environment.width - columns), begin + row);
-  }
-  return shifted;
+  const double angle = AngleFromAxis(lamp, { way.x, way.y, way.z });
+  const double part = lamp.type == LightType::Rectangle ? std::max(std::cos(angle), 0.0)
+    : lamp.type == LightType::Spot                      ? (angle <= HalfAngle(lamp) ? 1.0 : 0.0)
+                                                        : 1.0;
+  Light beam = lamp;
+  beam.type = LightType::Directional;
+  const glm::dvec3 along = Unit({ way.x, way.y, way.z });
+  beam.direction = { along.x, along.y, along.z };
+  beam.power = Times(lamp.power, part * AxialIntensity(lamp) / distance / distance);
+  return beam;
 }
 
-/// Mean of what is seen through pixel (i, j), which looks along `axes` of the environment's own frame.
-Rgb SeenThrough(const Environment& environment, int i, int j, int up)
+Light SeenFrom(const Grid& grid, const Light& lamp, std::size_t number)
 {
-  constexpr int Parts = 2;
-  const double pi = std::acos(-1.0);
-  Rgb sum = {};
-  double total = 0.0;
-  for (int part = 0; part < Parts * Parts; ++part)
+  const std::array<double, 3> edges = { grid.Length(0), grid.Length(1), grid.Length(2) };
+  const double longest = std::max({ edges[0], edges[1], edges[2] });
+  const glm::dvec3 way = Vector(grid.origin) + 0.5 * Vector(edges) - Vector(lamp.position);
+  const double distance = std::hypot(way.x, way.y, way.z);
+  const double size = std::max(lamp.size[0], lamp.size[1]);
+  if (lamp.type == LightType::Directional || distance < FarAway * longest ||
+    (lamp.type == LightType::Rectangle && size > SmallFromFar * distance))
   {
-    const int column = part % Parts;
-    const int row = part / Parts;
-    const double azimuth = 2.0 * pi * (i + (column + 0.5) / Parts) / environment.width;
-    const double polar = pi * (1.0 - (j + (row + 0.5) / Parts) / environment.height);
-    const std::array<double, 3> scene = { std::sin(polar) * std::cos(azimuth), std::sin(polar) * std::sin(azimuth),
-      std::cos(polar) };
-    const Rgb seen = Lookup(environment, { scene[(up + 1) % 3], scene[(up + 2) % 3], scene[up] });
-    for (int c = 0; c < 3; ++c)
-    {
-      sum[c] += std::sin(polar) * seen[c];
-    }
-    total += std::sin(polar);
+    return lamp;
   }
-  return { sum[0] / total, sum[1] / total, sum[2] / total };
+  const double ofBox = std::hypot(edges[0], edges[1], edges[2]) / distance; // more than half of what it is seen under
+  if (lamp.type == LightType::Spot && std::abs(AngleFromAxis(lamp, { way.x, way.y, way.z }) - HalfAngle(lamp)) < ofBox)
+  {
+    if (distance > TooFarToAim * longest)
+    {
+      throw InvalidInput("Light " + std::to_string(number) + " is a spot " + Text("%.3g", distance / longest) +
+        " box lengths away, and the border of its cone crosses the box; where is not known from so far. Put it nearer, "
+        "or take a directional light.");
+    }
+    return lamp;
+  }
+  return Parallel(lamp, way, distance);
+}
 }
 
-Environment StoodUp(const Environment& environment, int up)
+std::vector<Light> SeenFrom(const Grid& grid, std::vector<Light> lights)
 {
-  Environment stood = environment;
-  for (int j = 0; j < environment.height; ++j)
+  for (std::size_t i = 0; i < lights.size(); ++i)
   {
-    for (int i = 0; i < environment.width; ++i)
+    lights[i] = SeenFrom(grid, lights[i], i);
+  }
+  return lights;
+}
+
+namespace
+{
+/// About z, exact for quarter turns.
+Rotation AboutZ(double degrees)
+{
+  const double quarters = degrees / 90.0;
+  const int whole = static_cast<int>(std::lround(quarters - 4.0 * std::floor(quarters / 4.0))) % 4;
+  const double exact[] = { 0.0, 1.0, 0.0, -1.0 };
+  const bool isExact = quarters == std::round(quarters);
+  const double sine = isExact ? exact[whole] : std::sin(degrees * Pi / 180.0);
+  const double cosine = isExact ? exact[(whole + 1) % 4] : std::cos(degrees * Pi / 180.0);
+  return { { { cosine, -sine, 0.0 }, { sine, cosine, 0.0 }, { 0.0, 0.0, 1.0 } } };
+}
+}
+
+Environment Turned(const Environment& environment, const Rotation& rotation)
+{
+  for (int a = 0; a < 3; ++a)
+  {
+    for (int b = 0; b < 3; ++b)
     {
-      const Rgb seen = SeenThrough(environment, i, j, up);
-      std::copy(
-        seen.begin(), seen.end(), stood.radiance.begin() + 3 * (static_cast<std::size_t>(j) * environment.width + i));
+      const double product = Product(rotation, rotation[a])[b];
+      if (!(std::abs(product - (a == b ? 1.0 : 0.0)) < 1e-6))
+      {
+        throw InvalidInput("An environment is turned by an orthogonal matrix: rows of length 1 that stand at right "
+                           "angles to each other.");
+      }
     }
   }
-  return stood;
-}
+  Environment turned = environment;
+  for (int row = 0; row < 3; ++row)
+  {
+    turned.toPicture[row] = Product(rotation, environment.toPicture[row]); // times the transposed one
+  }
+  return turned;
 }
 
 Environment Turned(const Environment& environment, int up, double degrees)
@@ -121,14 +231,9 @@ Environment Turned(const Environment& environment, int up, double degrees)
   {
     throw InvalidInput("An environment stands up along axis 0, 1 or 2 (x, y, z) and is turned by a finite angle.");
   }
-  if (environment.Empty())
-  {
-    return environment;
-  }
-  const double turn = degrees / 360.0 - std::floor(degrees / 360.0);
-  const int columns = static_cast<int>(std::lround(turn * environment.width)) % environment.width;
-  const Environment turned = columns == 0 ? environment : Shifted(environment, columns);
-  return up == 2 ? turned : StoodUp(turned, up);
+  Rotation stands = {}; // its z along axis `up`
+  stands[up][2] = stands[(up + 1) % 3][0] = stands[(up + 2) % 3][1] = 1.0;
+  return Turned(Turned(environment, AboutZ(degrees)), stands);
 }
 
 namespace
@@ -159,14 +264,14 @@ void CheckLight(const Light& light, std::size_t number)
       throw InvalidInput(name + " has power " + Refusal(light.power[axis]));
     }
   }
-  if (light.type != LightType::Point && std::hypot(light.direction[0], light.direction[1], light.direction[2]) == 0.0)
+  if (light.type != LightType::Point && Unit(light.direction) == glm::dvec3(0.0))
   {
     throw InvalidInput(name + " has direction (0, 0, 0); say where it shines.");
   }
-  if (light.type == LightType::Spot && !(light.angle > 0.0 && light.angle <= 180.0))
+  if (light.type == LightType::Spot && !(light.angle >= LeastSpotAngle && light.angle <= 180.0))
   {
     throw InvalidInput(
-      name + " is a spot with opening angle " + std::to_string(light.angle) + "; it must be in (0, 180].");
+      name + " is a spot with opening angle " + Text("%.6g", light.angle) + "; it must be from 1e-12 to 180 degrees.");
   }
   if (light.type == LightType::Rectangle &&
     !(light.size[0] > 0.0 && light.size[1] > 0.0 && std::isfinite(light.size[0] * light.size[1])))
@@ -257,7 +362,7 @@ void Check(const Illumination& illumination)
   {
     if (!Usable(environment.radiance[i]))
     {
-      throw InvalidInput("The environment's radiance is " + std::to_string(environment.radiance[i]) + " in pixel (" +
+      throw InvalidInput("The environment's radiance is " + Text("%g", environment.radiance[i]) + " in pixel (" +
         std::to_string(i / 3 % environment.width) + ", " + std::to_string(i / 3 / environment.width) +
         ") (the first such pixel); it must be finite and not negative.");
     }

@@ -1,16 +1,50 @@
 #pragma once
 
-#include <cstdio>
+#include <charconv>
+#include <cstring>
+#include <optional>
 #include <string>
+#include <string_view>
+
+// Numbers as text, and back, in the same digits under any locale: a host program may have set one with a decimal comma.
+// Sources write and read no floating-point number in another way (the test NumbersKnowNoLocale).
 
 namespace tyndall
 {
-/// A number in words for the user.
-/// @param format  as of printf, for one double
+/// A number for users, files and kernels.
+/// @param format  as of printf, for one double: "%g", "%.3g", "%.0f", "%.8e"
 inline std::string Text(const char* format, double value)
 {
-  char text[64];
-  std::snprintf(text, sizeof(text), format, value);
-  return text;
+  const char kind = format[std::strlen(format) - 1];
+  int precision = 6;
+  if (format[1] == '.')
+  {
+    std::from_chars(format + 2, format + std::strlen(format) - 1, precision);
+  }
+  char text[512]; // the largest double has 309 digits before its point
+  const auto written = std::to_chars(text, text + sizeof(text), value,
+    kind == 'f'     ? std::chars_format::fixed
+      : kind == 'e' ? std::chars_format::scientific
+                    : std::chars_format::general,
+    precision);
+  return { text, written.ptr };
+}
+
+/// A float as C++ and OpenCL C write it, with all of its digits.
+inline std::string FloatLiteral(float value)
+{
+  return Text("%.8e", value) + "f";
+}
+
+/// The floating-point number that a text begins with, after blanks; none where it begins with something else or one
+/// beyond doubles.
+inline std::optional<double> NumberIn(std::string_view text)
+{
+  const std::size_t begin = text.find_first_not_of(" \t\r\n");
+  text.remove_prefix(begin == std::string_view::npos ? text.size() : begin);
+  text.remove_prefix(text.size() > 1 && text[0] == '+' && text[1] != '-' ? 1 : 0);
+  double number = 0.0;
+  const auto read = std::from_chars(text.data(), text.data() + text.size(), number);
+  return read.ec == std::errc() ? std::optional<double>(number) : std::nullopt;
 }
 }

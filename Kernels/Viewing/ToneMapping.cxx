@@ -2,10 +2,10 @@
 
 #include "Device/Errors.h"
 #include "Device/HostThreads.h"
+#include "Numerics/NumberText.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
 #include <functional>
 #include <mutex>
@@ -90,10 +90,8 @@ void Check(const ToneMapping& settings)
 {
   if (!(settings.exposure >= 0.0 && settings.exposure <= LargestExposure))
   {
-    char text[128];
-    std::snprintf(text, sizeof(text), "The exposure (Exposure) is %g; it must be from 0 (automatic) to %g.",
-      settings.exposure, LargestExposure);
-    throw InvalidInput(text);
+    throw InvalidInput("The exposure (Exposure) is " + Text("%g", settings.exposure) +
+      "; it must be from 0 (automatic) to " + Text("%g", LargestExposure) + ".");
   }
 }
 

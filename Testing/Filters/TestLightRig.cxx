@@ -51,6 +51,14 @@ void EachKindIsARow(test::Claims& claims)
   }
   claims.Near(Value(rig, "direction", vtkLightRig::DIRECTIONAL, 0), -1.0, 0.0, "direction is a unit vector");
   claims.Near(Value(rig, "direction", vtkLightRig::SPOT, 1), 1.0, 0.0, "direction is a unit vector");
+  for (double length : { 1e-300, 1e-165, 1e160 })
+  {
+    vtkNew<vtkLightRig> extreme;
+    extreme->SunOff();
+    extreme->AddDirectionalLight(0.6 * length, 0, -0.8 * length, 4, 5, 6);
+    extreme->Update();
+    claims.Near(Value(extreme, "direction", 0, 2), -0.8, 1e-15, "direction is a unit vector, whatever was its length");
+  }
   claims.Near(Value(rig, "angle", vtkLightRig::SPOT, 0), 30.0, 0.0, "angle of the spot");
   claims.Near(Value(rig, "size", vtkLightRig::RECTANGLE, 1), 8.0, 0.0, "height of the rectangle");
   claims.Near(rig->GetOutput()->GetPoint(vtkLightRig::POINT)[2], 3.0, 0.0, "height of the point light");

@@ -1,5 +1,6 @@
 #include "MediumScene.h"
 #include "MeshData.h"
+#include "Numerics/NumberText.h"
 
 #include "vtkCubeSource.h"
 #include "vtkMeshVoxelizer.h"
@@ -240,8 +241,8 @@ void NumbersOfMaterialsAreWhole(test::Claims& claims)
   };
   for (double odd : { 1.4, 1e18, -1e18, std::numeric_limits<double>::quiet_NaN() })
   {
-    refused(
-      NumberedBall("material_id", odd), "The mesh's cell array 'material_id' in cell 5 is " + std::to_string(odd));
+    refused(NumberedBall("material_id", odd),
+      "The mesh's cell array 'material_id' in cell 5 is " + tyndall::Text("%.15g", odd));
   }
   const auto text = Ball(0.0, 1.0);
   vtkNew<vtkStringArray> names;

@@ -245,7 +245,6 @@ inline void ExpectSame(const LightField& found, const LightField& expected, bool
   EXPECT_LT(RelativeRmse(found.facePower, expected.facePower), 1e-6);
   EXPECT_EQ(found.faceAlbedo, expected.faceAlbedo);
   EXPECT_EQ(found.convergence.size(), expected.convergence.size());
-  // Of lamps round periodic axes that of the whole closes to 5e-5 alone (TestLampBeams).
   EXPECT_LT(found.balance.RelativeError(expected.channels),
     std::max(1e-6, 1.1 * expected.balance.RelativeError(expected.channels)));
   for (int c = 0; c < expected.channels; ++c)

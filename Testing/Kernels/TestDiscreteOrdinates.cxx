@@ -243,6 +243,33 @@ TEST_F(DiscreteOrdinates, ScatterALampTheSameToAllSides)
   EXPECT_LT(light.balance.RelativeError(1), 1e-5);
 }
 
+TEST_F(DiscreteOrdinates, HaveNarrowSpotsFarLampsAndDirectionsOfAnyLength)
+{
+  for (double length : { 1e-165, 1.0, 1e160 })
+  {
+    LitMedium scene({ 7, 6, 5 }, 0.05f, 0.2f);
+    scene.ShineAlong({ 0.0, 0.6 * length, 0.8 * length });
+    Light lamp;
+    lamp.type = LightType::Spot;
+    lamp.direction = { 0.3 * length, 0.1 * length, length };
+    lamp.position = { 3.2, 3.1, -1.0 };
+    lamp.angle = 1e-6;
+    scene.light.lights.push_back(lamp);
+    lamp.type = LightType::Point;
+    lamp.position = { 3.2, 1.5e11, -0.5e11 };
+    lamp.power = Times(lamp.power, 1e23);
+    scene.light.lights.push_back(lamp);
+    scene.how.maximumOrders = 3;
+    const LightField light = scene.SolveOrdinates(this->GetDevice());
+    ExpectFiniteAndNotNegative(light.fluence);
+    // The sun through two faces, the spot, and the lamp through two.
+    const double distance = std::hypot(1.5e11, 0.5e11), irradiance = 1e23 / (4.0 * Pi * distance * distance);
+    const double ofLamp = irradiance * (35.0 * 1.5e11 + 42.0 * 0.5e11) / distance;
+    EXPECT_NEAR(light.balance.entered[0] / (0.6 * 35.0 + 0.8 * 42.0 + 1.0 + ofLamp), 1.0, 1e-4) << length;
+    EXPECT_LT(light.balance.RelativeError(1), 1e-5);
+  }
+}
+
 TEST_F(DiscreteOrdinates, ScatterLampsByPeaksThatAreNarrowerThanTheirDirections)
 {
   for (double g : { -0.999, 0.99, 0.999 })

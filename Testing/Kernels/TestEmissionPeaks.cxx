@@ -1,10 +1,15 @@
+#include "BlocksOfLight.h"
 #include "DeviceTest.h"
 #include "KobayashiScene.h"
+#include "OrdinatesScene.h"
+#include "TransparentBox.h"
 
 #include "Reference/KobayashiReference.h"
 #include "Reference/OpticalLength.h"
 
 #include <algorithm>
+#include <cmath>
+#include <functional>
 #include <numeric>
 #include <random>
 #include <string>
@@ -551,4 +556,119 @@ TEST_F(EmissionPeaks, LightKobayashisVoidThatScatters)
     EXPECT_NEAR(KobayashiFluence(scene, light.fluence, reference.point, true) / reference.BestHalf(), 1.0, 0.03)
       << reference.point[0] << ' ' << reference.point[1] << ' ' << reference.point[2];
   }
+}
+
+namespace
+{
+/// A cube of voxels that emits 1 in the middle of an empty box, or that is all of it.
+struct CubeInVacuum
+{
+  std::array<int, 3> box;
+  int first, edge; ///< voxels
+  std::array<double, 3> spacing = { 1.0, 1.0, 1.0 };
+
+  LitMedium Made() const
+  {
+    LitMedium scene(this->box);
+    scene.medium.grid.spacing = this->spacing;
+    scene.emission.assign(scene.sigma_a.size(), 0.0f);
+    for (std::size_t i = 0; i < scene.emission.size(); ++i)
+    {
+      scene.emission[i] = this->Holds(scene.medium.grid.VoxelAt(i)) ? 1.0f : 0.0f;
+    }
+    return scene;
+  }
+  bool Holds(const std::array<int, 3>& voxel) const
+  {
+    return std::all_of(
+      voxel.begin(), voxel.end(), [this](int at) { return at >= this->first && at < this->first + this->edge; });
+  }
+  /// Of the cube's voxels, over what is right.
+  double MeanFluence(const LightField& light) const
+  {
+    Grid grid;
+    grid.size = this->box;
+    double sum = 0.0;
+    for (std::size_t i = 0; i < light.fluence.size(); ++i)
+    {
+      sum += this->Holds(grid.VoxelAt(i)) ? light.fluence[i] : 0.0;
+    }
+    std::array<double, 3> lengths;
+    for (int a = 0; a < 3; ++a)
+    {
+      lengths[a] = this->edge * this->spacing[a];
+    }
+    return sum / std::pow(this->edge, 3) / MeanFluenceOfTransparentBox(lengths);
+  }
+};
+
+std::vector<CubeInVacuum> CubesInVacuum()
+{
+  return { { { 1, 1, 1 }, 0, 1 }, { { 2, 2, 2 }, 0, 2 }, { { 5, 5, 5 }, 0, 5 }, { { 9, 10, 7 }, 3, 2 },
+    { { 14, 12, 13 }, 4, 5 }, { { 6, 5, 7 }, 1, 3, { 1.0, 0.6, 1.5 } } };
+}
+}
+
+class EmissionInVacuum : public DeviceTest
+{
+protected:
+  void ExpectFluence(const std::function<LightField(LitMedium&)>& solve)
+  {
+    for (const CubeInVacuum& cube : CubesInVacuum())
+    {
+      SCOPED_TRACE(testing::Message() << cube.edge << " voxels in " << cube.box[0]);
+      LitMedium scene = cube.Made();
+      const LightField light = solve(scene);
+      EXPECT_NEAR(cube.MeanFluence(light), 1.0, cube.edge == 1 ? 0.02 : 0.01);
+      EXPECT_LT(light.balance.RelativeError(1), 1e-6);
+      EXPECT_EQ(light.fluence, light.fluenceDirect);
+    }
+  }
+};
+
+TEST_F(EmissionInVacuum, HasTheLengthsOfItsPathsInMaps)
+{
+  ExpectFluence([this](LitMedium& scene) { return scene.Solve(this->GetDevice()); });
+}
+
+TEST_F(EmissionInVacuum, HasTheLengthsOfItsPathsInOrdinates)
+{
+  ExpectFluence([this](LitMedium& scene) { return scene.SolveOrdinates(this->GetDevice()); });
+}
+
+/// A wall of 5 mean free paths that absorbs a fifth of what it meets.
+TEST_F(EmissionInVacuum, IsScatteredByWhatItMeets)
+{
+  LitMedium scene({ 12, 6, 6 }, 0.0f, 0.0f);
+  scene.emission.assign(scene.sigma_a.size(), 0.0f);
+  for (std::size_t i = 0; i < scene.emission.size(); ++i)
+  {
+    const int x = static_cast<int>(i % 12);
+    scene.emission[i] = x < 3 ? 1.0f : 0.0f;
+    scene.sigma_a[i] = x >= 7 ? 0.2f : 0.0f;
+    scene.sigma_s[i] = x >= 7 ? 0.8f : 0.0f;
+  }
+  const LightField maps = scene.Solve(this->GetDevice());
+  const LightField ordinates = scene.SolveOrdinates(this->GetDevice());
+  EXPECT_LT(RelativeRmse(ordinates.fluenceDirect, maps.fluenceDirect), 1e-5); // uncollided light is one
+  EXPECT_NEAR(ordinates.balance.absorbed[0] / maps.balance.absorbed[0], 1.0, 0.05);
+  EXPECT_LT(maps.balance.RelativeError(1), 1e-5);
+  EXPECT_LT(ordinates.balance.RelativeError(1), 1e-5);
+}
+
+TEST_F(EmissionInVacuum, GoesOnFromRankToRank)
+{
+  RandomMedium whole(Grid{ { 4, 3, 5 } }, 1, 0.8f, 5);
+  whole.Emit(1.0f); // a tenth of the voxels are empty
+  PropagationSettings settings = blocks_of_light::SettingsOf(2);
+  settings.emissionError = 0.02;
+  const LightField apart = SolveConservative(this->GetDevice(), whole.medium, {}, settings);
+  for (const int ranks : { 1, 3 })
+  {
+    const BlockPartition partition = BlockPartition::Even(whole.medium.grid, ranks);
+    blocks_of_light::ExpectSame(blocks_of_light::LightOfAll(this->GetDevice(), partition, whole, {}, settings), apart);
+  }
+  settings.emissionError = 0.0;
+  const LightField swept = SolveConservative(this->GetDevice(), whole.medium, {}, settings);
+  EXPECT_GT(RelativeRmse(swept.fluence, apart.fluence), 1e-4);
 }

@@ -87,23 +87,39 @@ TEST(TurnedEnvironment, StandsUpAlongEveryAxis)
   ExpectSeen(Turned(environment, 1, 0.0), { 0.0, 0.0, 1.0 }, { 3.0, 2.0, 2.0 }, 0.02);
 }
 
-TEST(TurnedEnvironment, KeepsItsPower)
+TEST(TurnedEnvironment, KeepsItsPixels)
 {
-  Environment environment = Gradient(64, 32);
-  environment.radiance[3 * (20 * 64 + 7)] = 500.0f; // a sun
-  const auto power = [](const Environment& of) {
-    double sum = 0.0;
-    for (int j = 0; j < of.height; ++j)
+  const Environment environment = Gradient(60, 30);
+  for (int up = 0; up < 3; ++up)
+  {
+    EXPECT_EQ(Turned(environment, up, 123.4).radiance, environment.radiance);
+  }
+}
+
+TEST(TurnedEnvironment, TurnsByAnyMatrix)
+{
+  const Environment environment = Gradient(256, 128);
+  const Rotation turn = { { { 0.6, 0.0, 0.8 }, { 0.48, 0.8, -0.36 }, { -0.64, 0.6, 0.48 } } };
+  const Rotation mirror = { { { 0.0, 1.0, 0.0 }, { 1.0, 0.0, 0.0 }, { 0.0, 0.0, -1.0 } } };
+  for (const Rotation& matrix : { turn, mirror })
+  {
+    const std::array<double, 3> before = { 0.36, -0.48, 0.8 };
+    std::array<double, 3> after = {};
+    for (int row = 0; row < 3; ++row)
     {
-      for (int i = 0; i < of.width; ++i)
+      for (int column = 0; column < 3; ++column)
       {
-        sum += of.radiance[3 * (static_cast<std::size_t>(j) * of.width + i)] * std::sin(Pi * (j + 0.5) / of.height);
+        after[row] += matrix[row][column] * before[column];
       }
     }
-    return sum;
-  };
-  EXPECT_NEAR(power(Turned(environment, 2, 123.0)) / power(environment), 1.0, 1e-6);
-  EXPECT_NEAR(power(Turned(environment, 1, 123.0)) / power(environment), 1.0, 0.02);
+    const Environment turned = Turned(environment, matrix);
+    ExpectSeen(turned, after, Lookup(environment, before), 1e-9);
+    const std::array<double, 3> there = turned.ToScene(turned.ToPicture(after));
+    for (int a = 0; a < 3; ++a)
+    {
+      EXPECT_NEAR(there[a], after[a], 1e-12);
+    }
+  }
 }
 
 TEST(TurnedEnvironment, SaysWhatItCannotDo)
@@ -111,5 +127,6 @@ TEST(TurnedEnvironment, SaysWhatItCannotDo)
   const Environment environment = Gradient(8, 4);
   EXPECT_THROW(Turned(environment, 3, 0.0), InvalidInput);
   EXPECT_THROW(Turned(environment, 2, std::numeric_limits<double>::quiet_NaN()), InvalidInput);
+  EXPECT_THROW(Turned(environment, { { { 1.0, 0.1, 0.0 }, { 0.0, 1.0, 0.0 }, { 0.0, 0.0, 1.0 } } }), InvalidInput);
   EXPECT_TRUE(Turned(Environment(), 1, 30.0).Empty());
 }

@@ -213,6 +213,28 @@ TEST_F(LatticeBoltzmann, KeepsPowerOfBeamsIntoThickVoxelsOfEveryKind)
   }
 }
 
+TEST_F(LatticeBoltzmann, TakesNarrowSpotsFarLampsAndDirectionsOfAnyLength)
+{
+  for (double length : { 1e-165, 1e160 })
+  {
+    Scene scene({ 7, 6, 5 }, 0.05f, 0.7f);
+    scene.ShineAlong({ 0.0, 0.6 * length, 0.8 * length });
+    Light lamp;
+    lamp.type = LightType::Spot;
+    lamp.direction = { 0.3 * length, 0.1 * length, length };
+    lamp.position = { 3.2, 3.1, -1.0 };
+    lamp.angle = 1e-6;
+    scene.light.lights.push_back(lamp);
+    lamp.type = LightType::Point;
+    lamp.position = { 3.2, 2.5, -1.5e11 };
+    lamp.power = Times(lamp.power, 4.0 * std::acos(-1.0) * 2.25e22);
+    scene.light.lights.push_back(lamp);
+    const LightField light = this->Solve(scene);
+    EXPECT_NEAR(light.balance.entered[0] / (0.6 * 35.0 + 0.8 * 42.0 + 1.0 + 42.0), 1.0, 1e-4) << length;
+    EXPECT_LT(light.balance.RelativeError(1), 1e-3);
+  }
+}
+
 TEST_F(LatticeBoltzmann, IsPositiveAndKeepsPowerWhateverItsVoxelsAre)
 {
   for (const double albedo : { 0.0, 0.5, 0.999, 1.0 })

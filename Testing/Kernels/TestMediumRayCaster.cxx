@@ -7,6 +7,28 @@ namespace
 {
 class MediumRayCasterTest : public DeviceTest
 {
+protected:
+  /// In vacuum, from within and in every direction, what Lookup has.
+  void ExpectEnvironment(const Scene& scene)
+  {
+    const std::vector<Vec> directions = { { 1, 0.1, 0.2 }, { -1, 0.01, 0 }, { -1, -0.01, 0 }, { 0.1, 1, -3 },
+      { 0.01, 0.02, 1 }, { 0.01, 0, -1 } };
+    for (const Vec& towards : directions)
+    {
+      Camera camera;
+      camera.position = { 2, 2, 2 }; // inside the medium
+      camera.focalPoint = { 2 + towards[0], 2 + towards[1], 2 + towards[2] };
+      camera.viewUp = { 0, 1, 0.3 };
+      camera.viewAngle = 70.0;
+      const Picture picture = scene.Seen(this->GetDevice(), camera);
+      ForEveryPixel(picture, camera, [&](std::size_t pixel, const Ray& ray) {
+        const Rgb expected = Lookup(scene.illumination.environment, ray.direction);
+        EXPECT_NEAR(expected[0] + 0.5, picture.radiance[3 * pixel], 2e-5);
+        EXPECT_NEAR(expected[1], picture.radiance[3 * pixel + 1], 2e-5);
+        EXPECT_NEAR(expected[2], picture.radiance[3 * pixel + 2], 1e-4);
+      });
+    }
+  }
 };
 
 TEST_F(MediumRayCasterTest, VacuumShowsTheBackgroundColourExactly)
@@ -29,23 +51,9 @@ TEST_F(MediumRayCasterTest, VacuumShowsTheEnvironmentInEveryDirection)
   Scene scene(GridOf(4, 4, 4));
   scene.illumination.environment = SmoothEnvironment();
   scene.illumination.sky = { 0.5, 0.0, 0.0 };
-  const std::vector<Vec> directions = { { 1, 0.1, 0.2 }, { -1, 0.01, 0 }, { -1, -0.01, 0 }, { 0.1, 1, -3 },
-    { 0.01, 0.02, 1 }, { 0.01, 0, -1 } };
-  for (const Vec& towards : directions)
-  {
-    Camera camera;
-    camera.position = { 2, 2, 2 }; // inside the medium
-    camera.focalPoint = { 2 + towards[0], 2 + towards[1], 2 + towards[2] };
-    camera.viewUp = { 0, 1, 0.3 };
-    camera.viewAngle = 70.0;
-    const Picture picture = scene.Seen(this->GetDevice(), camera);
-    ForEveryPixel(picture, camera, [&](std::size_t pixel, const Ray& ray) {
-      const Rgb expected = Lookup(scene.illumination.environment, ray.direction);
-      EXPECT_NEAR(expected[0] + 0.5, picture.radiance[3 * pixel], 2e-5);
-      EXPECT_NEAR(expected[1], picture.radiance[3 * pixel + 1], 2e-5);
-      EXPECT_NEAR(expected[2], picture.radiance[3 * pixel + 2], 1e-4);
-    });
-  }
+  this->ExpectEnvironment(scene);
+  scene.illumination.environment = Turned(scene.illumination.environment, 0, 30.0);
+  this->ExpectEnvironment(scene);
 }
 
 TEST_F(MediumRayCasterTest, BackgroundIsSeenThroughTheMediumAndCanBeLeftOut)

@@ -136,6 +136,20 @@ TEST_F(ParallelPropagationTest, AgreesOnPeriodicAxes)
   }
 }
 
+/// Which no voxel takes.
+TEST_F(ParallelPropagationTest, EndsWhereLightAlongAPeriodicAxisDoesNot)
+{
+  RandomMedium glow(std::array{ 5, 6, 4 }, 1, 0.0f);
+  glow.Emit(1.0f);
+  glow.scattering[7] = 0.5f;
+  PropagationSettings settings;
+  settings.periodic = { false, false, true };
+  const LightField light = this->Solve(glow.medium, {}, settings);
+  EXPECT_LT(light.convergence.size(), 200u);
+  EXPECT_GT(light.balance.leftOver[0], 0.01 * light.balance.emitted[0]);
+  EXPECT_FALSE(light.doubts.empty());
+}
+
 TEST_F(ParallelPropagationTest, AgreesOnStoredDirectionsEmissionAndNetFlux)
 {
   RandomMedium random({ 7, 6, 5 }, 3);

@@ -179,9 +179,26 @@ TEST(PhotonEmitter, APointOutsideGivesTheSolidAngleOfTheBox)
 
 TEST(PhotonEmitter, APointFarAwayIsADirectionalLight)
 {
-  const double far = 1e7;
-  const EmittedPhotons emitted = Emit(Lamp(LightType::Point, { 0.0, 0.0, far }), 1000);
-  EXPECT_NEAR(emitted.power[0] / (10.0 * 6.0 / (4.0 * Pi * far * far)), 1.0, 1e-4);
+  for (double far : { 1e6, 1e7, 1e13 })
+  {
+    const EmittedPhotons emitted = Emit(Lamp(LightType::Point, { 0.0, 2.5, far }), 1000);
+    EXPECT_NEAR(emitted.power[0] / (10.0 * 6.0 / (4.0 * Pi * far * far)), 1.0, 1e-4) << far;
+  }
+}
+
+TEST(PhotonEmitter, DirectionsMayHaveAnyLength)
+{
+  for (LightType type : { LightType::Directional, LightType::Spot, LightType::Rectangle })
+  {
+    const EmittedPhotons expected = Emit(Lamp(type, { 0.0, 2.5, 9.0 }, { 0.1, 0.2, -1.0 }), 100);
+    for (double length : { 1e-300, 1e-165, 1e160 })
+    {
+      const EmittedPhotons emitted = Emit(Lamp(type, { 0.0, 2.5, 9.0 }, { 0.1 * length, 0.2 * length, -length }), 100);
+      ASSERT_EQ(emitted.photons.size(), expected.photons.size()) << length;
+      EXPECT_FLOAT_EQ(emitted.power[0], expected.power[0]);
+      EXPECT_FLOAT_EQ(emitted.photons[0].direction[2], expected.photons[0].direction[2]);
+    }
+  }
 }
 
 TEST(PhotonEmitter, LampsInsideGiveAllTheirPower)
@@ -311,6 +328,18 @@ TEST(PhotonEmitter, ASpotThatLightsTheBoxWhollyGivesAllItsPower)
   Light narrow = Lamp(LightType::Spot, { 0.0, 2.5, 12.0 });
   narrow.angle = 8.0;
   EXPECT_NEAR(Emit(narrow, 1000).power[0], 10.0, 1e-3);
+  for (double angle : { 1e-12, 1e-6, 1e-3 })
+  {
+    narrow.angle = angle;
+    narrow.direction = { 0.02, 0.03, -1.0 };
+    const EmittedPhotons emitted = Emit(narrow, 1000);
+    EXPECT_NEAR(emitted.power[0], 10.0, 1e-3) << angle;
+    for (const Photon& photon : emitted.photons) // the cone's radius at the face is 4 tan(angle / 2)
+    {
+      const double offset = std::hypot(photon.position[0] - 0.08, photon.position[1] - 2.62);
+      ASSERT_LE(offset, 4.1 * std::tan(0.5 * angle * Pi / 180.0) + 1e-13) << angle;
+    }
+  }
   Light wide = Lamp(LightType::Spot, { 0.0, 2.5, 12.0 });
   wide.angle = 170.0;
   const double cone = 2.0 * Pi * (1.0 - std::cos(85.0 * Pi / 180.0));
@@ -368,6 +397,33 @@ TEST(PhotonEmitter, APeakInTheSkyIsSeenAndWeighedRight)
   for (Sampler sampler : { Sampler::Hammersley, Sampler::Halton, Sampler::Jittered, Sampler::Grid, Sampler::Random })
   {
     EXPECT_NEAR(EmitPhotons(Box(), light, { 20000, sampler, 3 }).power[0] / exact, 1.0, 0.015);
+  }
+}
+
+TEST(PhotonEmitter, ASkyHasItsPowerHoweverItStands)
+{
+  Illumination light;
+  light.environment.width = 64;
+  light.environment.height = 32;
+  light.environment.radiance.assign(3 * 64 * 32, 0.5f);
+  light.environment.radiance[3 * (31 * 64 + 5)] = 2e4f; // a pixel at the zenith
+  const Grid cube{ { 4, 4, 4 } };                       // it looks alike from all sides of another axis
+  const double upright = EmitPhotons(cube, light, { 20000 }).power[0];
+  for (int up = 0; up < 2; ++up)
+  {
+    Illumination turned = light;
+    turned.environment = Turned(light.environment, up, 0.0);
+    const EmittedPhotons emitted = EmitPhotons(cube, turned, { 20000 });
+    EXPECT_NEAR(emitted.power[0] / upright, 1.0, 1e-3);
+    std::array<double, 3> along = {};
+    for (const Photon& photon : emitted.photons)
+    {
+      for (int a = 0; a < 3; ++a)
+      {
+        along[a] -= photon.direction[a] * photon.power[0];
+      }
+    }
+    EXPECT_GT(along[up], 10.0 * std::abs(along[2]));
   }
 }
 

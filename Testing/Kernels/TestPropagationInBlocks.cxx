@@ -1,10 +1,13 @@
 // The light of a medium that is spread over ranks, against that of the whole on one.
 
 #include "BlocksOfLight.h"
+#include "TransparentBox.h"
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -90,6 +93,30 @@ TEST_F(PropagationBlocks, HaveTheLightOfLampsNearby)
   }
 }
 
+/// Beams that begin on faces far from their lamp, a cone that is thinner than a voxel, and a lamp that is a sun.
+TEST_F(PropagationBlocks, HaveTheLightOfFarLampsAndNarrowCones)
+{
+  RandomMedium whole(Grid{ { 11, 7, 9 }, { 0.3, 1.0, 2.0 } }, 1, 0.8f, 8);
+  for (const double distance : { 4e3, 4e8 })
+  {
+    Illumination shining;
+    shining.lights = { NearLamps()[0], NearLamps()[1] };
+    shining.lights[0].position = { 0.6 * distance, -0.2 * distance, -distance };
+    shining.lights[0].power = Times(Rgb{ 3.0, 3.0, 3.0 }, distance * distance);
+    shining.lights[1].position = { 1.8 + 0.01 * distance, 3.1, 8.0 + 0.02 * distance };
+    shining.lights[1].direction = { -1.0, 0.0, -2.0 };
+    shining.lights[1].angle = 1e-6;
+    const LightField expected = SolveConservative(GetDevice(), whole.medium, shining, SettingsOf(2));
+    EXPECT_GT(expected.balance.entered[0], 10.0);
+    for (const BlockPartition& partition :
+      { BlockPartition::Even(whole.medium.grid, 1), BlockPartition::Even(whole.medium.grid, 3) })
+    {
+      SCOPED_TRACE(std::to_string(distance) + ", " + std::to_string(partition.blocks.size()) + " ranks");
+      ExpectSame(LightOfAll(GetDevice(), partition, whole, shining, SettingsOf(2)), expected);
+    }
+  }
+}
+
 /// The same in angular moments, between faces that give back light, and with what leaves by cells of faces.
 TEST_F(PropagationBlocks, HaveTheLightOfLampsNearbyInMomentsAndBetweenFaces)
 {
@@ -127,6 +154,73 @@ TEST_F(PropagationBlocks, HaveTheLightOfLampsNearbyThatGoesRoundPeriodicAxes)
       ExpectSame(LightOfAll(GetDevice(), partition, whole, shining, settings), expected, true);
     }
   }
+}
+
+TEST_F(PropagationBlocks, LoseNothingOfALampInABoxWithoutFaces)
+{
+  RandomMedium whole(Grid{ { 12, 9, 10 } }, 1, 0.05f, 3);
+  Share(whole, 1.0f, 0.0f);
+  Illumination shining;
+  shining.lights = { NearLamps()[0] };
+  PropagationSettings settings = SettingsOf(1);
+  settings.periodic = { true, true, true };
+  for (const int ranks : { 1, 3 })
+  {
+    const LightField light =
+      LightOfAll(GetDevice(), BlockPartition::Even(whole.medium.grid, ranks), whole, shining, settings);
+    EXPECT_NEAR(light.balance.absorbed[0], light.balance.entered[0], 5e-5 * light.balance.entered[0]) << ranks;
+  }
+}
+
+namespace
+{
+/// No voxel takes light, and all emit.
+RandomMedium Glow(const Grid& grid)
+{
+  RandomMedium glow(grid, 1, 0.0f);
+  glow.Emit(1.0f);
+  std::fill(glow.emission.begin(), glow.emission.end(), 1.0f);
+  return glow;
+}
+}
+
+/// Of an odd number of directions along the edge of a cube's face one goes along an axis: its light never ends, and is
+/// left over.
+TEST_F(PropagationBlocks, EndWhereLightAlongAPeriodicAxisDoesNot)
+{
+  RandomMedium whole = Glow(Grid{ { 4, 3, 3 } });
+  whole.absorption[3] = 0.5f;
+  PropagationSettings settings = SettingsOf(0);
+  settings.periodic = { true, false, false };
+  const LightField expected = SolveConservative(GetDevice(), whole.medium, {}, settings);
+  EXPECT_LT(expected.convergence.size(), 20u);
+  EXPECT_LT(expected.balance.RelativeError(1), 1e-5);
+  EXPECT_GT(expected.balance.leftOver[0], 0.01 * expected.balance.emitted[0]);
+  ASSERT_EQ(expected.doubts.size(), 1u);
+  EXPECT_NE(expected.doubts[0].find("left over: its rays still go round periodic axes"), std::string::npos);
+  for (const int ranks : { 1, 3 })
+  {
+    SCOPED_TRACE(std::to_string(ranks) + " ranks");
+    ExpectSame(
+      LightOfAll(GetDevice(), BlockPartition::Even(whole.medium.grid, ranks), whole, {}, settings), expected, true);
+  }
+}
+
+/// What empty voxels emit has directions of its own, none along such an axis: the light is that of a rod without ends.
+TEST_F(PropagationBlocks, HaveTheLightOfAnEmittingVacuumAlongAPeriodicAxis)
+{
+  const RandomMedium whole = Glow(Grid{ { 4, 4, 4 } });
+  const auto expectRod = [](const LightField& light) {
+    const double mean = std::accumulate(light.fluence.begin(), light.fluence.end(), 0.0) / 64.0;
+    const double rod = MeanFluenceOfTransparentBox({ std::numeric_limits<double>::infinity(), 4.0, 4.0 });
+    EXPECT_NEAR(mean / rod, 1.0, 0.08);
+    EXPECT_LT(light.balance.leftOver[0], 1e-6 * light.balance.emitted[0]);
+  };
+  PropagationSettings settings;
+  settings.periodic = { true, false, false };
+  settings.directionsPerFace = 9;
+  expectRod(SolveConservative(GetDevice(), whole.medium, {}, settings));
+  expectRod(LightOfAll(GetDevice(), BlockPartition::Even(whole.medium.grid, 3), whole, {}, settings));
 }
 
 TEST_F(PropagationBlocks, HaveTheLightOfALampThatGoesRoundVoxelByVoxel)

@@ -1,5 +1,7 @@
 #include "ViewScene.h"
 
+#include <numeric>
+
 using namespace tyndall;
 using namespace viewing;
 
@@ -168,6 +170,50 @@ TEST_F(ShadowRays, FarLightsOfEveryKindLookAlike)
   EXPECT_LT(LargestDifference(sun, seenBy(LightType::Point, 4.0 * Pi * sphere)), 0.01);
   EXPECT_LT(LargestDifference(sun, seenBy(LightType::Spot, 2.0 * Pi * (1.0 - std::cos(Pi / 180.0)) * sphere)), 0.01);
   EXPECT_LT(LargestDifference(sun, seenBy(LightType::Rectangle, Pi * sphere)), 0.01);
+}
+
+// A lamp like the sun, and one that is told by a direction of extreme length.
+TEST_F(ShadowRays, OfALampAsFarAsTheSunAreThoseOfASun)
+{
+  Scene scene = Blobs();
+  scene.fluence.clear();
+  scene.settings.shadowRays = true;
+  const auto seenBy = [&](const Light& light) {
+    scene.illumination.lights = { light };
+    return scene.Seen(this->GetDevice()).radiance;
+  };
+  Light light;
+  light.direction = { -0.6, 0.0, -0.8 };
+  light.power = { 10.0, 10.0, 10.0 };
+  const std::vector<float> sun = seenBy(light);
+  light.direction = { -0.6e160, 0.0, -0.8e160 };
+  EXPECT_LT(LargestDifference(sun, seenBy(light)), 1e-6);
+  light.direction = { -0.6e-165, 0.0, -0.8e-165 };
+  EXPECT_LT(LargestDifference(sun, seenBy(light)), 1e-6);
+  light.type = LightType::Point;
+  light.position = { 0.6e13, 0.0, 0.8e13 };
+  light.power = Times(light.power, 4.0 * Pi * 1e26);
+  EXPECT_LT(LargestDifference(sun, seenBy(light)), 1e-4);
+}
+
+// Whose cosine a float does not tell from 1: the cone's border is where it is.
+TEST_F(ShadowRays, SeeNarrowConesAsWideAsTheyAre)
+{
+  Scene scene(GridOf(21, 1, 1));
+  scene.grid.spacing = { 0.1, 1.0, 1.0 };
+  scene.sigma_s = scene.Everywhere(1e-3);
+  scene.settings.shadowRays = true;
+  Light light;
+  light.type = LightType::Spot;
+  light.position = { 1.05, 0.5, 4500.5 };
+  light.direction = { 0.0, 0.0, -1.0 };
+  scene.illumination.lights = { light };
+  const auto lit = [&](double angle) {
+    scene.illumination.lights[0].angle = angle;
+    const Picture picture = scene.Seen(this->GetDevice(), FromAbove(scene.grid, 5.0));
+    return std::accumulate(picture.radiance.begin(), picture.radiance.end(), 0.0) * angle * angle;
+  };
+  EXPECT_NEAR(lit(0.02) / lit(0.06), 15.0 / 21.0, 0.03); // to 0.785 from the axis
 }
 
 TEST_F(ShadowRays, SpotAndRectangleShineToOneSide)

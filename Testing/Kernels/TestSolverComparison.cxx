@@ -4,13 +4,12 @@
 #include "Comparison/MeansOfSets.h"
 #include "Comparison/PhotonReference.h"
 #include "Comparison/SolverComparison.h"
+#include "Device/CompilationListener.h"
 #include "Medium/Coarsening.h"
 
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <cmath>
-#include <thread>
 
 namespace
 {
@@ -398,22 +397,13 @@ TEST_F(ComparedMonteCarlo, IsForecastByFewDirectionsWhereTheFinestMapsDoNotFit)
   EXPECT_EQ(forecast.maps->fluence, Propagate(device, cube.scene, {}, {}).fluence);
 }
 
-// Maps of so many rays take longer than all the photons that are wanted.
+// Of a fifth of a second maps of many rays take more than their part, whatever a clock says.
 TEST_F(ComparedMonteCarlo, MakesTheReferenceWhereMapsTakeTooLong)
 {
   SunlitCube cube(24);
   cube.settings.tried.photonCounts = { 16000 };
-  cube.settings.tried.tolerance = 1e-9;
-  Device& device = this->GetDevice();
-  MarchEvenly(device, cube.scene, 1000, 0, 1, {}); // compiles
-  int calls = 0;
-  const Monitor slowMaps = [&](double done) {
-    calls += done > 0.5 ? 1 : 0;
-    std::this_thread::sleep_for(std::chrono::milliseconds(done > 0.5 ? 400 : 0));
-    return true;
-  };
-  const PhotonForecast forecast = ForecastOfPhotons(device, cube.scene, cube.settings.tried, 2.0, slowMaps);
-  EXPECT_FALSE(forecast.maps) << "a second of maps in two calls of " << calls;
+  const PhotonForecast forecast = ForecastOfPhotons(this->GetDevice(), cube.scene, cube.settings.tried, 0.2, {});
+  EXPECT_FALSE(forecast.maps);
   EXPECT_TRUE(forecast.beats) << forecast.why;
   EXPECT_GT(forecast.photonsOfASet, 0u);
   EXPECT_NE(forecast.why.find("maps take too long"), std::string::npos) << forecast.why;
@@ -453,5 +443,107 @@ TEST_F(ComparedMonteCarlo, RefusesToBeTheReferenceOfWhatItCannotDo)
   catch (const InvalidInput& error)
   {
     EXPECT_NE(std::string(error.what()).find("this medium emits"), std::string::npos) << error.what();
+  }
+}
+
+/// Comparisons on machines as fast as a test says.
+class ComparedByTheClock : public DeviceTest
+{
+protected:
+  void TearDown() override
+  {
+    if (this->TheDevice)
+    {
+      this->TheDevice->SetClock(ClockSeconds);
+    }
+    DeviceTest::TearDown();
+  }
+
+  /// A clock that is looked at so many times a second.
+  void LookEvery(double seconds)
+  {
+    this->Looks = 0;
+    this->GetDevice().SetClock([this, seconds] { return seconds * ++this->Looks; });
+  }
+
+  int Looks = 0;
+};
+
+TEST_F(ComparedByTheClock, HaveTheSameReferenceHoweverBusyTheMachineIs)
+{
+  SunlitCube cube(6);
+  cube.settings.methods = { ComparedMethod::LightPropagationMaps };
+  cube.settings.tried.directionsPerFace = { 4, 25 };
+  cube.settings.tried.coarsenings = { 1 };
+  cube.settings.tried.orders = {};
+  cube.settings.tried.photonCounts = { 1000 };
+  cube.settings.tried.monteCarloReference = MonteCarloReference::WhereItCanBeat;
+  cube.settings.timeBudget = 1.0;
+  this->LookEvery(0.0);
+  const Comparison idle = CompareSolvers(this->GetDevice(), cube.scene, cube.settings);
+  this->LookEvery(2e-5);
+  const Comparison busy = CompareSolvers(this->GetDevice(), cube.scene, cube.settings);
+  EXPECT_EQ(idle.reference.fluence, busy.reference.fluence) << idle.reference.text << "\n" << busy.reference.text;
+  ASSERT_EQ(idle.rows.size(), busy.rows.size());
+  for (std::size_t i = 0; i < idle.rows.size(); ++i)
+  {
+    EXPECT_EQ(idle.rows[i].setting, busy.rows[i].setting);
+    EXPECT_EQ(idle.rows[i].errorL2, busy.rows[i].errorL2) << idle.rows[i].setting;
+  }
+}
+
+TEST_F(ComparedByTheClock, TellSecondsWithoutCompilation)
+{
+  SunlitCube cube(4);
+  ReferenceLight reference;
+  reference.grid = cube.scene.medium.grid;
+  reference.fluence.assign(cube.sigma_a.size(), 1.0f);
+  cube.settings.methods = { ComparedMethod::LightPropagationMaps };
+  cube.settings.tried.directionsPerFace = { 4, 9 };
+  cube.settings.tried.mapResolutions = { 1 };
+  cube.settings.tried.coarsenings = { 1 };
+  cube.settings.tried.orders = {};
+  cube.settings.timeBudget = 1000.0;
+  this->GetDevice().SetClock([this] { return 3.0 * static_cast<double>(KernelsMade()) + 1e-6 * ++this->Looks; });
+  const Comparison found = CompareSolvers(this->GetDevice(), cube.scene, cube.settings, &reference);
+  ASSERT_EQ(found.rows.size(), 2u);
+  for (const ComparisonRow& row : found.rows)
+  {
+    EXPECT_LT(row.seconds, 1.0) << row.setting << ": three seconds go for each kernel that is made";
+  }
+}
+
+TEST_F(ComparedByTheClock, EndWithinTheirBudgetAndSayWhatIsMissing)
+{
+  SunlitCube cube(8);
+  cube.settings.methods = { ComparedMethod::LightPropagationMaps, ComparedMethod::MonteCarlo };
+  cube.settings.timeBudget = 60.0;
+  this->LookEvery(2.0);
+  const Comparison found = CompareSolvers(this->GetDevice(), cube.scene, cube.settings);
+  const double ofLooks = 2.0 * static_cast<double>(found.rows.size() + found.leftOut.size()); // one for each run
+  EXPECT_LT(2.0 * this->Looks, 60.0 + ofLooks + 8.0);
+  ASSERT_FALSE(found.warnings.empty());
+  EXPECT_NE(found.warnings.back().find("TimeBudget, 60 s, was over before"), std::string::npos)
+    << found.warnings.back();
+  EXPECT_FALSE(found.leftOut.empty());
+}
+
+TEST_F(ComparedByTheClock, GiveTheirRowsWithoutAReferenceThatTakesTooLong)
+{
+  SunlitCube cube(8);
+  cube.settings.methods = { ComparedMethod::LightPropagationMaps };
+  cube.settings.tried.directionsPerFace = { 4, 25 };
+  cube.settings.tried.coarsenings = { 1 };
+  cube.settings.timeBudget = 60.0;
+  this->GetDevice().SetClock([this] { return ++this->Looks <= 2 ? 0.0 : 31.0; }); // as fast as can be, after that
+  const Comparison found = CompareSolvers(this->GetDevice(), cube.scene, cube.settings);
+  ASSERT_EQ(found.warnings.size(), 1u);
+  EXPECT_NE(found.warnings[0].find("No reference could be made in half of the 60 s"), std::string::npos)
+    << found.warnings[0];
+  EXPECT_GE(found.rows.size(), 2u);
+  for (const ComparisonRow& row : found.rows)
+  {
+    EXPECT_TRUE(std::isnan(row.errorL2)) << row.setting;
+    EXPECT_LT(row.balance, 1e-4) << row.setting;
   }
 }

@@ -237,6 +237,34 @@ TEST_F(Symmetry, OfAnEnvironmentAboutItsAxis)
   EXPECT_EQ(turns, 16);
 }
 
+TEST_F(Symmetry, OfAnEnvironmentHoweverItStands)
+{
+  Scene scene = UnevenMedium({ 7, 6, 5 }, { 0.1, 0.1, 0.1 }, 10.0);
+  Environment& sky = scene.light.environment;
+  sky.width = 64;
+  sky.height = 32;
+  for (int i = 0; i < 64 * 32; ++i)
+  {
+    sky.radiance.insert(sky.radiance.end(), 3, 1.0f + 0.5f * static_cast<float>(i * 37 % 11) / 11.0f);
+  }
+  std::fill_n(sky.radiance.begin() + 3 * (30 * 64 + 11), 3, 3e4f); // a sun near the zenith
+  const LightField light = scene.Solve(this->GetDevice());
+  const std::vector<CubeTurn> turns = AllCubeTurns();
+  for (std::size_t t = 5; t < turns.size(); t += 17)
+  {
+    Rotation rotation = {};
+    for (int a = 0; a < 3; ++a)
+    {
+      rotation[turns[t].to[a]][a] = turns[t].turned[a] ? -1.0 : 1.0;
+    }
+    Scene turned = Turned(scene, turns[t]);
+    turned.light.environment = Turned(sky, rotation);
+    const LightField found = turned.Solve(this->GetDevice());
+    EXPECT_LT(LargestDifference(found.fluence, turns[t].Field(light.fluence, scene.medium.grid.size)), 1e-5);
+    EXPECT_NEAR(found.balance.entered[0], light.balance.entered[0], 1e-6 * light.balance.entered[0]);
+  }
+}
+
 TEST_F(Symmetry, OfUnequalVoxels)
 {
   for (const KindOfLight& kind : Kinds)

@@ -1,4 +1,4 @@
-"""Light opens without a bar of colours, and other ways to show it begin with fluence, logarithmic where it spans decades; a chart of its convergence begins with residual and change."""
+"""Light opens without a bar of colours, and other ways to show it begin with fluence, logarithmic where it spans decades; a chart of its convergence begins with residual and change, one of a comparison with points, a colour for each method."""
 import os
 
 from paraview.simple import *
@@ -46,3 +46,23 @@ states = dict(zip(pairs[::2], pairs[1::2]))
 assert sorted(name for name, on in states.items() if on == "1") == ["change", "residual"], states
 assert plotted.XArrayName == "iteration" and plotted.UseIndexForXAxis == 0
 assert chart.LeftAxisLogScale == 1 and chart.BottomAxisLogScale == 0
+
+comparison = SolverComparison(Input=medium, Lights=LightRig(), Directions=[4, 9], Coarsenings=[1], Orders=[1], MapResolutions=[1],
+                              PhotonCounts=[100, 1000], TimeBudget=1e6, MonteCarloReference="Never")
+chart = CreateView("XYChartView")
+plotted = Show(OutputPort(comparison, 0), chart)
+
+
+def series_of(name):
+    values = plotted.SMProxy.GetProperty(name)  # series, value, series, ...
+    values = [values.GetElement(i) for i in range(values.GetNumberOfElements())]
+    return dict(zip(values[::2], values[1::2]))
+
+
+shown = sorted(name for name, on in series_of("SeriesVisibility").items() if on == "1")
+assert shown == ["error of " + method for method in
+                 ("as published", "constant source, not accelerated", "light propagation maps", "photons")], shown
+for name in shown:
+    assert series_of("SeriesLineStyle")[name] == "0" and series_of("SeriesMarkerStyle")[name] == "4", name
+assert plotted.XArrayName == "seconds" and plotted.UseIndexForXAxis == 0
+assert chart.LeftAxisLogScale == 1 and chart.BottomAxisLogScale == 1

@@ -2,11 +2,9 @@
 
 #include "Device/Errors.h"
 #include "IO/VDB/OpenVDB.h"
+#include "Numerics/NumberText.h"
 
 #include <cmath>
-#include <iomanip>
-#include <limits>
-#include <sstream>
 #include <string>
 
 /// What numbers of 16 bits can hold.
@@ -43,11 +41,10 @@ void RequireHalf(const Value& value, const Where& where)
     {
       return;
     }
-    std::ostringstream text;
-    text << "its value " << std::setprecision(std::numeric_limits<Value>::max_digits10) << value << " " << where();
-    text << (std::abs(value) > 1 ? " exceeds 65504, the largest number of 16 bits"
-                                 : " would lose more than 0.1% in 16 bits, which end at 6e-8");
-    throw InvalidInput(text.str() + ". Switch SaveAsHalf off");
+    throw InvalidInput("its value " + Text(sizeof(Value) > 4 ? "%.17g" : "%.9g", value) + " " + where() +
+      (std::abs(value) > 1 ? " exceeds 65504, the largest number of 16 bits"
+                           : " would lose more than 0.1% in 16 bits, which end at 6e-8") +
+      ". Switch SaveAsHalf off");
   }
 }
 }

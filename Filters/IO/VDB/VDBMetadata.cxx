@@ -162,7 +162,7 @@ std::vector<double> NumbersOf(const std::string& text)
   std::istringstream words(text);
   for (std::string word; words >> word;)
   {
-    numbers.push_back(std::strtod(word.c_str(), nullptr)); // of what is no number: 0, which is a bad table then
+    numbers.push_back(NumberIn(word).value_or(0.0)); // 0 makes a bad table of what is no number
   }
   return numbers;
 }

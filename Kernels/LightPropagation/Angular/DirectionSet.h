@@ -57,8 +57,8 @@ DirectionSet FittedDirections(int perFace, const std::string& name = "Directions
 /// even ones they do not converge either, but say so.
 DirectionSet DirectionsForVoxels(int perFace, const std::array<double, 3>& spacing);
 
-/// The flux of even light through a face as a set has it, over the exact pi (numerics.md, Eq. (17)): 0.9875 with 25
-/// directions per face, 1.0019 with 100. The power of diffuse light that enters is off by this factor.
+/// The flux of even light through a face as a set has it, over the exact pi (numerics.md, Eq. (17)): with 25 directions
+/// 0.9875 (equal angles) or 0.99992 (fitted). The power of diffuse light that enters is off by this factor.
 double HalfRangeFlux(const DirectionSet& set);
 
 /// The direction through a face of the cube. @param s, t  tangents along the next axis, and the one after it

@@ -21,6 +21,7 @@ public:
 
   const DirectionSet& Set() const { return this->Directions; }
   RayStarts Starts() const { return this->WhereRaysStart; }
+  int RaysPerEdge() const { return this->MapResolution; } ///< of a voxel
   const DirectionSymmetry& Symmetry() const { return this->Mirrors; }
   bool MergesMirrors() const { return this->Merges; } ///< not where net flux is asked for, which differs
   /// Functions along the directions; of those that stand for others the mean over all of them.

@@ -10,6 +10,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <utility>
 
 namespace tyndall
 {
@@ -198,10 +200,11 @@ void SourceIteration::AddUncollided(const Monitor& monitor)
   {
     sources.push_back(std::make_unique<UncollidedBoundary>(this->Settings, *this->Parts.FineBoundary));
   }
-  for (std::unique_ptr<UncollidedSource>& other : this->Parts.OtherSources())
-  {
-    sources.push_back(std::move(other));
-  }
+  const auto append = [&sources](TransportParts::Sources more) {
+    std::move(more.begin(), more.end(), std::back_inserter(sources));
+  };
+  append(this->Parts.OtherSources());
+  append(this->Parts.VacuumSources());
   const bool escapes = this->Parts.CorrectsEscape;
   const double all = static_cast<double>(sources.size() + (escapes ? 1 : 0));
   SweepTally tally;
@@ -222,7 +225,8 @@ void SourceIteration::AddUncollided(const Monitor& monitor)
     Add(tally, this->Parts.AddUncollided(*sources[i], deposit, ofSource));
     if (this->AtFaces)
     {
-      this->AtFaces->TakeIncoming(*this->Parts.Fine);
+      const bool ofVacuum = this->Parts.OfVacuum && i + 1 == sources.size();
+      this->AtFaces->TakeIncoming(ofVacuum ? *this->Parts.OfVacuum : *this->Parts.Fine);
     }
     if (this->Parts.StoresMoments() && i + 1 == this->Parts.Lamps.size())
     {
@@ -271,7 +275,7 @@ void SourceIteration::SweepOrder(const Monitor& monitor)
 {
   const SweepBoundary boundary = this->Order == 0 ? this->Parts.BoundaryOfSweeps() : SweepBoundary();
   const bool nothing = !boundary && !this->Shining && Sum(this->OnTheWay) == 0.0 && Sum(this->Reflected) == 0.0;
-  this->OnTheWay = {};
+  this->WasOnTheWay = std::exchange(this->OnTheWay, {});
   if (nothing)
   {
     return;
@@ -351,7 +355,8 @@ void SourceIteration::ScatterByCells()
   {
     this->Result.ledger.LeaveOver(c, powers.left[c] + this->OnTheWay[c] + this->Stranded[c]);
     this->AllScattered[c] += powers.scattered[c];
-    const double now = powers.magnitude[c] + std::abs(this->OnTheWay[c]);
+    const double now = GoesOnToItsEnd(
+      this->Settings.maximumOrders, std::abs(this->WasOnTheWay[c]), std::abs(this->OnTheWay[c]), powers.magnitude[c]);
     if (now > 0.0 && this->AllScattered[c] > 0.0)
     {
       this->Residual = std::max(this->Residual, this->Rest[c].After(now, this->AllScattered[c]));
@@ -434,7 +439,8 @@ void SourceIteration::EstimateResidual()
   this->Residual = 0.0;
   for (int c = 0; c < this->Parts.Layout.channels; ++c)
   {
-    const double now = this->Scattered[c] + this->OnTheWay[c] + this->Reflected[c];
+    const double now = GoesOnToItsEnd(
+      this->Settings.maximumOrders, this->WasOnTheWay[c], this->OnTheWay[c], this->Scattered[c] + this->Reflected[c]);
     this->AllScattered[c] += now;
     if (now == 0.0)
     {
@@ -473,7 +479,8 @@ void SourceIteration::GoOnWarm()
     this->AllScattered[c] += this->Scattered[c];
     this->Scattered[c] -= guessed[c];
     const double reflected = this->Parts.Faces ? this->Parts.Faces->Magnitude()[c] : 0.0;
-    const double now = magnitudes[c] + std::abs(this->OnTheWay[c]) + reflected;
+    const double now = GoesOnToItsEnd(this->Settings.maximumOrders, std::abs(this->WasOnTheWay[c]),
+      std::abs(this->OnTheWay[c]), magnitudes[c] + reflected);
     if (now > 0.0)
     {
       this->Residual = std::max(this->Residual, this->Rest[c].After(now, this->AllScattered[c]));

@@ -67,6 +67,7 @@ private:
   bool Shining = false;  ///< the source is not zero
   Rgb Scattered = {};    ///< W, by the order just done
   Rgb OnTheWay = {};     ///< W, rays that go round a periodic axis in the next sweep
+  Rgb WasOnTheWay = {};  ///< W, the same before the last sweep
   Rgb Reflected = {};    ///< W, by faces, that come in with the next sweep
   Rgb Stranded = {};     ///< W, of uncollided light whose rays go round a periodic axis without end
   Rgb Escaped = {};      ///< W, by the correction

@@ -47,11 +47,10 @@ Beam BeamOf(const Light& lamp, const Grid& grid, const BoxFaceCell& cell, int ch
   const int u = AcrossAxis(axis).u;
   const int v = AcrossAxis(axis).v;
   const double inwards = cell.face % 2 ? -1.0 : 1.0;
-  const std::array<double, 3>& d = lamp.direction;
-  const double length = std::hypot(d[0], d[1], d[2]);
+  const std::array<double, 3> d = DirectionOf(lamp);
   if (lamp.type == LightType::Directional)
   {
-    const double cosine = inwards * d[axis] / length;
+    const double cosine = inwards * d[axis];
     return { cosine > 0.0 ? lamp.power[channel] * cosine : 0.0, cosine };
   }
   std::array<double, 3> way = {};
@@ -68,12 +67,12 @@ Beam BeamOf(const Light& lamp, const Grid& grid, const BoxFaceCell& cell, int ch
   {
     return { 0.0, 0.0 };
   }
-  const double alongAxis = length > 0.0 ? (way[0] * d[0] + way[1] * d[1] + way[2] * d[2]) / (length * distance) : 1.0;
-  const double cone = std::cos(lamp.angle * Pi / 360.0);
   const double part = lamp.type == LightType::Point ? 1.0
-    : lamp.type == LightType::Spot                  ? (alongAxis >= cone ? 1.0 : 0.0)
-                                                    : std::max(alongAxis, 0.0);
-  return { lamp.power[channel] * AxialIntensity(lamp) * part * cosine / (distance * distance), cosine };
+    : lamp.type == LightType::Spot                  ? (AngleFromAxis(lamp, way) <= HalfAngle(lamp) ? 1.0 : 0.0)
+                                                    : std::max(std::cos(AngleFromAxis(lamp, way)), 0.0);
+  const double ofAll = AxialIntensity(lamp) * part * cosine / (distance * distance);
+  // A narrow cone lights a part of the cell: no more than all of its power falls on it.
+  return { lamp.power[channel] * std::min(ofAll, 1.0 / (grid.spacing[u] * grid.spacing[v])), cosine };
 }
 
 /// Radiance at cosine mu of what comes in and what the medium shines, in a half-space.

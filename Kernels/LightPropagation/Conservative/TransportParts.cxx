@@ -52,7 +52,7 @@ Rgb MeanRadiance(const BoundaryLight& boundary)
 }
 
 /// Peaks go along rays of their own, but not round periodic axes: of their images there is no end.
-SplitEmission EmissionOf(const PropagationProblem& problem, const BoundaryLight& boundary)
+SplitEmission SplitEmissionOf(const PropagationProblem& problem, const BoundaryLight& boundary)
 {
   const std::array<bool, 3>& periodic = problem.Settings().periodic;
   const bool endless = periodic[0] || periodic[1] || periodic[2];
@@ -80,7 +80,8 @@ TransportParts::TransportParts(Device& device, const PropagationProblem& problem
     this->Given = std::make_unique<GivenLight>(image, problem.TheMedium(), problem.Scattering());
   }
   this->FindBoundaryLight();
-  this->Emission = EmissionOf(problem, *this->UsualBoundary);
+  this->Emission = SplitEmissionOf(problem, *this->UsualBoundary);
+  this->FindVacuum();
   this->FindFaceLight();
   if (problem.Scattering().Degree() > 0)
   {
@@ -122,12 +123,38 @@ bool TransportParts::LoadEmission(Buffer<float>& source) const
   {
     return false;
   }
-  const Field smooth = this->Emission.Smooth(this->Problem.TheMedium());
-  const std::vector<float> emitted =
-    Planar(this->Layout, this->Layout.channels, [&](std::size_t i, int c) { return smooth.At(i, c); });
+  const std::vector<float> emitted = this->EmissionOf(false);
   const bool shines = std::any_of(emitted.begin(), emitted.end(), [](float value) { return value > 0.0f; });
   source.Write(emitted.data(), emitted.size() - SweepPadding);
   return shines;
+}
+
+/// Without small bright emission. W / (length^3 sr)
+/// @param emptyVoxels  of those that are swept apart, else of the others
+std::vector<float> TransportParts::EmissionOf(bool emptyVoxels) const
+{
+  const PropagationProblem& problem = this->Problem;
+  const Field smooth = this->Emission.Smooth(problem.TheMedium());
+  return Planar(this->Layout, this->Layout.channels, [&](std::size_t i, int c) {
+    const bool apart = this->OfVacuum && VacuumEmission::IsEmpty(problem.Scattering().SigmaT(i, c), this->Layout.grid);
+    return apart == emptyVoxels ? smooth.At(i, c) : 0.0f;
+  });
+}
+
+void TransportParts::FindVacuum()
+{
+  const PropagationSettings& settings = this->Problem.Settings();
+  const Grid& grid = this->Layout.grid;
+  if (!this->Problem.Traits().emits || !VacuumEmission::IsApart(grid, settings))
+  {
+    return;
+  }
+  this->OfVacuum = VacuumEmission::DirectionsFor(grid, settings);
+  const std::vector<float> emitted = this->EmissionOf(true);
+  if (std::none_of(emitted.begin(), emitted.end(), [](float value) { return value > 0.0f; }))
+  {
+    this->OfVacuum.reset();
+  }
 }
 
 void TransportParts::FindBoundaryLight()
@@ -241,6 +268,16 @@ TransportParts::Sources TransportParts::OtherSources() const
   if (this->Given)
   {
     sources.push_back(std::make_unique<GivenLight>(*this->Given));
+  }
+  return sources;
+}
+
+TransportParts::Sources TransportParts::VacuumSources() const
+{
+  Sources sources;
+  if (this->OfVacuum)
+  {
+    sources.push_back(std::make_unique<VacuumEmission>(*this->OfVacuum, this->EmissionOf(true)));
   }
   return sources;
 }

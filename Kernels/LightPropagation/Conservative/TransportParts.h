@@ -53,8 +53,10 @@ public:
   std::unique_ptr<const BoundaryLight> UsualBoundary, FineBoundary; ///< FineBoundary: null where there are none
   /// By cells of the box's faces: where they reflect, or face power is asked for; else null.
   std::unique_ptr<FaceLight> Faces;
-  std::vector<Light> Lamps;                ///< those of the scene and the peaks of the environment
-  SplitEmission Emission;                  ///< of the medium
+  std::vector<Light> Lamps; ///< those of the scene and the peaks of the environment
+  SplitEmission Emission;   ///< of the medium
+  /// What empty voxels emit goes along these until it meets the medium; null: none emits, or it goes with the rest.
+  std::unique_ptr<const SweptDirections> OfVacuum;
   std::unique_ptr<const GivenLight> Given; ///< that another solver found; null: none
 
   /// [channel][stride]; flux [channel][x, y, z][stride], empty where net flux is not asked for. Where light has angular
@@ -102,8 +104,10 @@ public:
 
   Sources LampSources() const;
   Sources BrightEmissionSources() const;
-  /// Small bright emission and given light: what is not of lamps.
+  /// Small bright emission and given light: what is not of lamps, and not swept.
   Sources OtherSources() const;
+  /// What empty voxels emit, where it goes along directions of its own.
+  Sources VacuumSources() const;
   /// What the usual directions carry of what the medium emits, into a source; nothing where it does not.
   /// @return whether any of it shines
   bool LoadEmission(Buffer<float>& source) const;
@@ -126,6 +130,8 @@ public:
 private:
   bool ByBalance() const { return this->How == OrdersAdded::ByBalance; }
   void LoadSource();
+  void FindVacuum();
+  std::vector<float> EmissionOf(bool emptyVoxels) const;
   void FindBoundaryLight();
   void FindFaceLight();
   int SlotOf(const UncollidedSource& source) const;

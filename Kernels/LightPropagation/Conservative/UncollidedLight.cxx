@@ -59,7 +59,12 @@ void UncollidedLight::AddSources(const Monitor& monitor)
     this->ThroughFaces = Buffer<float>(parts.TheDevice, parts.Layout.Floats(6), "light of lamps");
     this->ThroughFaces.Fill(0.0f);
   }
-  const TransportParts::Sources lamps = parts.LampSources(), others = parts.OtherSources();
+  const TransportParts::Sources lamps = parts.LampSources();
+  TransportParts::Sources others = parts.OtherSources();
+  for (std::unique_ptr<UncollidedSource>& vacuum : parts.VacuumSources())
+  {
+    others.push_back(std::move(vacuum));
+  }
   std::size_t done = 0;
   const auto monitorOfNext = [&] {
     const double all = static_cast<double>(lamps.size() + others.size());

@@ -59,6 +59,10 @@ void RequireSame(Communicator& communicator, bool has, const Medium& medium, con
   {
     light.insert(light.end(), albedo.begin(), albedo.end());
   }
+  for (const std::array<double, 3>& row : illumination.environment.toPicture)
+  {
+    light.insert(light.end(), row.begin(), row.end());
+  }
   RequireSame(communicator, "what shines on it", true, light);
 }
 
@@ -87,6 +91,7 @@ BlockScene::BlockScene(Communicator& communicator, bool has, const BlockPartitio
   , lengthUnit(LengthUnitOf(partition.whole))
 {
   communicator.Together([&] {
+    this->illumination.lights = SeenFrom(partition.whole, shining.lights);
     if (this->lengthUnit != 1.0)
     {
       // Lamps have places on every rank: all follow their light.

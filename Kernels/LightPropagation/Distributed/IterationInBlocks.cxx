@@ -171,7 +171,7 @@ void IterationInBlocks::SweepOrder(SweepOperator& sweep, BeamsInSource& beams, c
   const bool lit = this->Order == 0 && this->Incident.SweepsAreLit();
   const SweepBoundary boundary = lit ? this->Incident.UsualBoundary().Boundary() : SweepBoundary();
   const bool goesOn = Sum(this->OnTheWay) != 0.0 || Sum(this->Reflected) != 0.0; // of a guess they can be negative
-  this->OnTheWay = {};
+  this->WasOnTheWay = std::exchange(this->OnTheWay, {});
   if (!this->Shining && !boundary && !goesOn)
   {
     return;
@@ -356,7 +356,8 @@ void IterationInBlocks::EstimateResidual()
   this->Residual = 0.0;
   for (int c = 0; c < this->Block.Layout.channels; ++c)
   {
-    const double now = this->Scattered[c] + this->OnTheWay[c] + this->Reflected[c];
+    const double now = GoesOnToItsEnd(this->Block.Settings.maximumOrders, this->WasOnTheWay[c], this->OnTheWay[c],
+      this->Scattered[c] + this->Reflected[c]);
     this->AllScattered[c] += now;
     if (now > 0.0)
     {
@@ -392,7 +393,8 @@ void IterationInBlocks::GoOnWarm()
   {
     this->AllScattered[c] += this->Scattered[c];
     this->Scattered[c] -= guessed[c];
-    const double now = magnitudes[c] + std::abs(this->OnTheWay[c]) + (faces ? faces->Magnitude()[c] : 0.0);
+    const double now = GoesOnToItsEnd(this->Block.Settings.maximumOrders, std::abs(this->WasOnTheWay[c]),
+      std::abs(this->OnTheWay[c]), magnitudes[c] + (faces ? faces->Magnitude()[c] : 0.0));
     if (now > 0.0)
     {
       this->Residual = std::max(this->Residual, this->Rest[c].After(now, this->AllScattered[c]));

@@ -74,6 +74,7 @@ private:
   bool Shining = false;  ///< the source is not zero, on any rank
   Rgb Scattered = {};    ///< W of all ranks, as those that follow, by the order just done
   Rgb OnTheWay = {};     ///< rays that go round a periodic axis in the next sweep
+  Rgb WasOnTheWay = {};  ///< the same before the last sweep
   Rgb Reflected = {};    ///< by faces, that come in with the next sweep
   Rgb Stranded = {};     ///< of uncollided light whose rays go round a periodic axis without end
   Rgb Escaped = {};      ///< by the correction

@@ -7,29 +7,33 @@
 static void follow_in_block(const LampInfo* lamp, const BeamRow* row, BeamOnItsWay* beam, const __global float* sigma,
   __global long* path, ulong stride, __global long* cells, __global float* sums)
 {
-  const float2 tangent = tangent_of(row, beam->beam);
   lamp_tally tally;
   clear_tally(&tally, cells);
-  beam_state state = { beam->layer, beam->step, beam->left, beam->rest };
+  beam_state state = { beam->layer, beam->step, beam->left, beam->rest, { beam->stays[0], beam->stays[1] } };
   float shone = 0.0f, power = 0.0f;
   if (!beam->begun || lamp->periodic[row->axis])
   {
-    power = power_of_beam(lamp, row, tangent);
+    power = power_of_beam(lamp, row, beam->beam);
   }
   if (!beam->begun)
   {
     shone = power;
     tally.entered = row->skipped > 0 ? 0.0f : shone;
     state.left = shone;
+    state.stays[0] = state.stays[1] = 1.0f;
   }
   // What is left of one that has come so far may be less than 0 by rounding.
   const bool is_there = beam->begun || shone > 0.0f;
   beam->begun = true;
-  beam->ended = !is_there || follow_beam(lamp, row, tangent, power, sigma, path, stride, &state, &tally);
+  beam->ended = !is_there ||
+    follow_beam(
+      lamp, row, begin_of(row, beam->beam), tangent_of(row, beam->beam), power, sigma, path, stride, &state, &tally);
   beam->layer = state.layer;
   beam->step = state.step;
   beam->left = state.left;
   beam->rest = state.rest;
+  beam->stays[0] = state.stays[0];
+  beam->stays[1] = state.stays[1];
   for (int a = 0; a < 3 && !beam->ended; ++a)
   {
     beam->voxel[a] = state.voxel[a];

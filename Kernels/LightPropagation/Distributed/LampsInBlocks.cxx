@@ -27,17 +27,15 @@ constexpr int Reach = 2; ///< voxels beside a block that beams in it may lie ove
 constexpr std::size_t BeamsPerLaunch = 1 << 14; ///< keeps a launch well below a tenth of a second
 
 /// Where a beam sets off, the nearest voxel of the grid; about: whoever has it takes its first step.
-std::array<int, 3> FirstVoxel(
-  const BeamRow& row, int beam, const glm::dvec3& point, const Grid& grid, const std::array<bool, 3>& periodic)
+std::array<int, 3> FirstVoxel(const BeamRow& row, int beam, const Grid& grid, const std::array<bool, 3>& periodic)
 {
-  const double tangents[] = { row.tangentU + static_cast<double>(beam) * row.widthU, row.tangentV };
-  const double along = row.up ? point[row.axis] + row.begin : point[row.axis] - row.begin;
+  const double begins[] = { row.startU + static_cast<double>(beam) * row.openU, row.startV };
   std::array<double, 3> place = {};
-  place[row.axis] = row.up ? std::floor(along + 1e-6) : std::ceil(along - 1e-6) - 1.0;
+  place[row.axis] = row.up ? std::floor(row.from + 1e-6) : std::ceil(row.from - 1e-6) - 1.0;
   for (int k = 0; k < 2; ++k)
   {
     const int aside = (row.axis + 1 + k) % 3;
-    place[aside] = std::floor(point[aside] + tangents[k] * row.begin);
+    place[aside] = std::floor(begins[k]);
     place[aside] -= periodic[aside] ? std::floor(place[aside] / grid.size[aside]) * grid.size[aside] : 0.0;
   }
   std::array<int, 3> voxel = {};
@@ -108,7 +106,8 @@ public:
     const std::array<bool, 3>& periodic = this->All.Stored.Periodic();
     const double even = FollowInPasses(this->All.Partition.whole, periodic, this->Shares, follow, monitor);
     // As in one memory.
-    const double correction = this->AllInside && this->Shares.shone > 0.0 ? 1.0 / this->Shares.shone : 1.0;
+    const double correction =
+      this->AllFollowed && this->Shares.shone > 0.0 ? 1.0 / this->Shares.shone : this->Lamp.Share();
     this->PutDown(correction, even);
     return this->Shares.Times(this->Lamp.TheLight().power, this->Volume.channels, correction);
   }
@@ -116,7 +115,7 @@ public:
 private:
   void FollowPoints(const Pass& pass, double factor, const Monitor& monitor);
   void Follow(const glm::dvec3& point, const Pass& pass, double part, const Monitor& monitor);
-  std::vector<BeamOnItsWay> SettingOff(const std::vector<BeamRow>& rows, const glm::dvec3& point) const;
+  std::vector<BeamOnItsWay> SettingOff(const std::vector<BeamRow>& rows) const;
   std::vector<BeamOnItsWay> FollowInBlock(const std::vector<BeamRow>& rows, const LampInfo& info,
     const Buffer<BeamRow>& rowBuffer, const std::vector<BeamOnItsWay>& beams, const Monitor& monitor);
   std::size_t BeamsTogether(const BeamRow& row) const;
@@ -132,9 +131,9 @@ private:
   std::size_t SigmaFirst;
   std::unique_ptr<LampSums> Sums; ///< of the stored voxels; null without any
   cl::Kernel Kernel;
-  LampShares Shares; ///< of all ranks
-  LampShares Found;  ///< of this one, of what is being followed
-  bool AllInside = true;
+  LampShares Shares;       ///< of all ranks
+  LampShares Found;        ///< of this one, of what is being followed
+  bool AllFollowed = true; ///< directions that it shines in
 };
 
 /// As LampBeams does, of all ranks together.
@@ -152,7 +151,7 @@ void LampsInBlocks::Beams::FollowPoints(const Pass& pass, double factor, const M
 /// From one point, until no beam is left anywhere.
 void LampsInBlocks::Beams::Follow(const glm::dvec3& point, const Pass& pass, double part, const Monitor& monitor)
 {
-  this->AllInside = this->AllInside && this->Lamp.IsInside(point);
+  this->AllFollowed = this->AllFollowed && this->Lamp.FollowsAll(point);
   std::vector<BeamRow> rows;
   Buffer<BeamRow> rowBuffer;
   const LampInfo info = this->Lamp.Describe(point, part, this->Box, this->All.Own);
@@ -161,7 +160,7 @@ void LampsInBlocks::Beams::Follow(const glm::dvec3& point, const Pass& pass, dou
       if (round == 0)
       {
         rows = this->Lamp.Rows(point, pass);
-        arrived = this->SettingOff(rows, point);
+        arrived = this->SettingOff(rows);
         rowBuffer = Buffer<BeamRow>(this->All.TheDevice, rows.empty() ? std::vector<BeamRow>(1) : rows, "beams");
       }
       return this->FollowInBlock(rows, info, rowBuffer, arrived, ofRound);
@@ -169,19 +168,17 @@ void LampsInBlocks::Beams::Follow(const glm::dvec3& point, const Pass& pass, dou
     monitor);
 }
 
-std::vector<BeamOnItsWay> LampsInBlocks::Beams::SettingOff(
-  const std::vector<BeamRow>& rows, const glm::dvec3& point) const
+std::vector<BeamOnItsWay> LampsInBlocks::Beams::SettingOff(const std::vector<BeamRow>& rows) const
 {
   std::vector<BeamOnItsWay> own;
   for (std::size_t r = 0; r < rows.size() && this->All.Has(); ++r)
   {
     for (int b = 0; b < rows[r].count; ++b)
     {
-      const std::array<int, 3> voxel =
-        FirstVoxel(rows[r], b, point, this->All.Partition.whole, this->All.Stored.Periodic());
+      const std::array<int, 3> voxel = FirstVoxel(rows[r], b, this->All.Partition.whole, this->All.Stored.Periodic());
       if (Holds(this->All.Own, voxel.data()))
       {
-        own.push_back({ static_cast<cl_int>(r), b, 0, 0, 0, 0.0f, 0.0f, {}, 0 });
+        own.push_back({ static_cast<cl_int>(r), b, 0, 0, 0, 0.0f, 0.0f, {}, {}, 0 });
       }
     }
   }

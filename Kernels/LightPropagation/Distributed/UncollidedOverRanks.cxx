@@ -5,7 +5,9 @@
 #include "Medium/VoxelSums.h"
 #include "Numerics/Constants.h"
 
+#include <algorithm>
 #include <exception>
+#include <optional>
 
 namespace tyndall
 {
@@ -29,6 +31,7 @@ bool UncollidedOverRanks::LoadSource(EnergyLedger& ledger)
   const BlockScene& scene = this->Block.Scene;
   if (scene.traits.emits)
   {
+    this->FindVacuum();
     const Rgb emitted = this->LoadEmission();
     for (int c = 0; c < 3; ++c)
     {
@@ -69,11 +72,40 @@ void UncollidedOverRanks::WriteEmission(Buffer<float>& source) const
   {
     return;
   }
-  const VolumeLayout& layout = this->Block.Layout;
-  const Field& emission = this->Block.Scene.medium.emission;
-  const std::vector<float> values =
-    Planar(layout, layout.channels, [&](std::size_t i, int c) { return emission.At(i, c); });
+  const std::vector<float> values = this->EmissionOf(false);
   source.Write(values.data(), values.size() - SweepPadding);
+}
+
+/// @param emptyVoxels  of those that are swept apart, else of the others; W / (length^3 sr)
+std::vector<float> UncollidedOverRanks::EmissionOf(bool emptyVoxels) const
+{
+  const BlockScene& scene = this->Block.Scene;
+  const VolumeLayout& layout = this->Block.Layout;
+  return Planar(layout, layout.channels, [&](std::size_t i, int c) {
+    const bool apart = this->OfVacuum && VacuumEmission::IsEmpty(scene.Scattering().SigmaT(i, c), layout.grid);
+    return apart == emptyVoxels ? scene.medium.emission.At(i, c) : 0.0f;
+  });
+}
+
+/// As TransportParts does; all ranks call it.
+void UncollidedOverRanks::FindVacuum()
+{
+  const BlockOnDevice& block = this->Block;
+  const Grid& whole = block.Partition.whole;
+  if (!VacuumEmission::IsApart(whole, block.Settings))
+  {
+    return;
+  }
+  bool any = false;
+  block.Others.Together([&] {
+    this->OfVacuum = VacuumEmission::DirectionsFor(whole, block.Settings);
+    const std::vector<float> own = block.Has ? this->EmissionOf(true) : std::vector<float>();
+    any = std::any_of(own.begin(), own.end(), [](float value) { return value > 0.0f; });
+  });
+  if (!OnAnyRank(block.Others, any))
+  {
+    this->OfVacuum.reset();
+  }
 }
 
 bool UncollidedOverRanks::AddStraightOn(const Buffer<float>& source) const
@@ -84,7 +116,7 @@ bool UncollidedOverRanks::AddStraightOn(const Buffer<float>& source) const
 
 std::size_t UncollidedOverRanks::Count() const
 {
-  return this->Incident.Lamps().size() + (this->Incident.FineBoundary() ? 1 : 0);
+  return this->Incident.Lamps().size() + (this->Incident.FineBoundary() ? 1 : 0) + (this->OfVacuum ? 1 : 0);
 }
 
 SweepTally UncollidedOverRanks::AddAll(const Buffer<float>* shown, OctantSources* atFaces, const Monitor& monitor)
@@ -107,7 +139,7 @@ SweepTally UncollidedOverRanks::AddAll(const Buffer<float>* shown, OctantSources
   {
     Deposit deposit = this->Block.WholeDeposit();
     deposit.partialCurrents = atFaces ? &atFaces->Currents() : nullptr;
-    Add(tally, this->AddBoundary(*boundary, deposit, OfPart(monitor, (all - 1.0) / all, 1.0)));
+    Add(tally, this->AddBoundary(*boundary, deposit, OfPart(monitor, lamps / all, (lamps + 1.0) / all)));
     this->Block.Others.Together([&] {
       if (atFaces)
       {
@@ -115,10 +147,34 @@ SweepTally UncollidedOverRanks::AddAll(const Buffer<float>* shown, OctantSources
       }
     });
   }
+  if (this->OfVacuum)
+  {
+    Add(tally, this->AddVacuum(atFaces, OfPart(monitor, (all - 1.0) / all, 1.0)));
+  }
   if (this->Block.Scene.given)
   {
     Add(tally, this->AddGiven(monitor));
   }
+  return tally;
+}
+
+SweepTally UncollidedOverRanks::AddVacuum(OctantSources* atFaces, const Monitor& monitor)
+{
+  if (!this->OfVacuum)
+  {
+    return {};
+  }
+  Deposit deposit = this->Block.WholeDeposit();
+  deposit.partialCurrents = atFaces ? &atFaces->Currents() : nullptr;
+  std::optional<VacuumEmission> emission;
+  this->Block.Others.Together([&] { emission.emplace(*this->OfVacuum, this->EmissionOf(true)); });
+  const SweepTally tally = this->OnAllRanks([&] { return emission->AddTo(this->VolumeOf(deposit), monitor); });
+  this->Block.Others.Together([&] {
+    if (atFaces)
+    {
+      atFaces->TakeIncoming(*this->OfVacuum);
+    }
+  });
   return tally;
 }
 

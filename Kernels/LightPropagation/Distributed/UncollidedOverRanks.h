@@ -6,6 +6,7 @@
 #include "LightPropagation/Distributed/BlockOnDevice.h"
 #include "LightPropagation/Distributed/IncidentLight.h"
 #include "LightPropagation/Distributed/LampsInBlocks.h"
+#include "LightPropagation/Emission/UncollidedEmission.h"
 #include "LightPropagation/ThickVoxels/OctantSources.h"
 #include "LightPropagation/Uncollided/GivenLight.h"
 #include "LightPropagation/Uncollided/UncollidedSource.h"
@@ -34,8 +35,8 @@ public:
   /// @return whether anything does
   bool AddStraightOn(const Buffer<float>& source) const;
 
-  /// Adds the light of lamps, then of what comes in along directions of its own and what is given, to the block's
-  /// arrays; what parallel beams are first scattered, to its source. All ranks call it.
+  /// Adds the light of lamps, then of what comes in and what empty voxels emit along directions of their own, and what
+  /// is given, to the block's arrays; what parallel beams are first scattered, to its source. All ranks call it.
   /// @param shown  what light of lamps is first scattered is added to it; null: not wanted
   /// @param atFaces  of thick voxels, which take what it does at their faces; null, on all ranks: not wanted
   /// @return of all ranks
@@ -48,7 +49,9 @@ public:
   SweepTally AddLamp(std::size_t lamp, const Deposit& deposit, const Monitor& monitor);
   /// What is given of another solver. All ranks call it.
   SweepTally AddGiven(const Monitor& monitor);
-  /// What the medium emits, written to a source of this rank, the first moment.
+  /// What empty voxels emit, where it goes along directions of its own. All ranks call it.
+  SweepTally AddVacuum(OctantSources* atFaces, const Monitor& monitor);
+  /// What the medium emits and the sweeps carry, written to a source of this rank, the first moment.
   void WriteEmission(Buffer<float>& source) const;
 
   /// W length, [channel][stride], of a sky of radiance 1, as TransportParts::EvenSky.
@@ -60,6 +63,8 @@ public:
   EvenSky FindEvenSky(const Monitor& monitor);
 
 private:
+  void FindVacuum();
+  std::vector<float> EmissionOf(bool emptyVoxels) const;
   Rgb LoadEmission();
   SweepTally OnAllRanks(const std::function<SweepTally()>& add);
   SweepTally AddLampAt(std::size_t lamp, OctantSources* atFaces, const Monitor& monitor);
@@ -69,7 +74,9 @@ private:
 
   BlockOnDevice& Block;
   const IncidentLight& Incident;
-  std::unique_ptr<const GivenLight> Given;  ///< null: none is, or there are no voxels
+  std::unique_ptr<const GivenLight> Given; ///< null: none is, or there are no voxels
+  /// As TransportParts has it, where any rank's empty voxels emit.
+  std::unique_ptr<const SweptDirections> OfVacuum;
   std::unique_ptr<LampsInBlocks> NearLamps; ///< null until there is one
   Buffer<float> OfLamp;                     ///< path integrals of one lamp's light, where it goes into angular moments
 };

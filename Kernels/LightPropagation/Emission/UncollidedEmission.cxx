@@ -2,11 +2,23 @@
 
 #include "LightPropagation/Emission/EmissionRays.h"
 #include "LightPropagation/Uncollided/NarrowLight.h"
+#include "LightPropagation/Uncollided/UncollidedBoundary.h"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace tyndall
 {
+namespace
+{
+constexpr double Empty = 1e-4;                           ///< mean free paths a voxel, at most
+constexpr std::size_t MostVoxels = std::size_t(1) << 21; ///< of a grid
+constexpr int FewestPerEdge = 12;                        ///< directions along the edge of a cube's face
+constexpr double RaysOfVoxel = 2304.0;                   ///< along the directions of a face
+constexpr double RaysOfGrid = 64e6;                      ///< the same of all voxels, but one a direction at least
+}
+
 UncollidedEmission::UncollidedEmission(EmissionPeak peak, double error)
   : Peak(std::move(peak))
   , Error(error)
@@ -33,5 +45,47 @@ SweepTally UncollidedEmission::Put(const UncollidedVolume& volume, const Monitor
     return DepositEmission(volume.device, ofChannels, first, this->Peak, this->Error, ofGroup);
   };
   return AddByGroups(volume, monitor, add);
+}
+
+bool VacuumEmission::IsApart(const Grid& whole, const PropagationSettings& settings)
+{
+  return settings.emissionError > 0.0 && whole.VoxelCount() <= MostVoxels;
+}
+
+bool VacuumEmission::IsEmpty(double sigma_t, const Grid& grid)
+{
+  return sigma_t * *std::max_element(grid.spacing.begin(), grid.spacing.end()) <= Empty;
+}
+
+/// An even number along an edge: none goes along an axis, which may be periodic.
+std::unique_ptr<const SweptDirections> VacuumEmission::DirectionsFor(
+  const Grid& whole, const PropagationSettings& settings)
+{
+  const int asked = static_cast<int>(std::lround(std::sqrt(static_cast<double>(settings.directionsPerFace))));
+  const int edge = std::max(FewestPerEdge, asked + asked % 2), perFace = edge * edge;
+  const bool around = settings.periodic[0] || settings.periodic[1] || settings.periodic[2]; // many times
+  const double rays = around ? perFace : std::min(RaysOfVoxel, RaysOfGrid / static_cast<double>(whole.VoxelCount()));
+  PropagationSettings finer = settings;
+  finer.mapResolution = std::max(settings.mapResolution, static_cast<int>(std::sqrt(rays / perFace)));
+  return std::make_unique<SweptDirections>(whole, finer, EquiangularDirections(perFace), RayStarts::Staggered);
+}
+
+VacuumEmission::VacuumEmission(const SweptDirections& along, std::vector<float> emission)
+  : Along(along)
+  , Emission(std::move(emission))
+{
+}
+
+SweepTally VacuumEmission::AddTo(const UncollidedVolume& volume, const Monitor& monitor) const
+{
+  Buffer<float> source;
+  volume.Together([&] {
+    const int functions = volume.basis ? volume.basis->Count() : 1;
+    source = Buffer<float>(volume.device, volume.layout.MomentFloats(functions), "what empty voxels emit");
+    source.Fill(0.0f);
+    source.Write(this->Emission.data(), this->Emission.size() - SweepPadding);
+  });
+  return SweepAlong(
+    volume, this->Along, [](int) { return true; }, &source, {}, monitor);
 }
 }

@@ -15,11 +15,11 @@ SlabScene::SlabScene(const Medium& medium, const Illumination& illumination, con
 {
   for (std::size_t i = 0; i < illumination.lights.size(); ++i)
   {
-    const std::array<double, 3>& d = illumination.lights[i].direction;
-    const double length = std::hypot(d[0], d[1], d[2]), along = d[this->Axis] / length;
+    const std::array<double, 3> d = DirectionOf(illumination.lights[i]);
+    const double along = d[this->Axis];
     if (along != 0.0)
     {
-      this->Directions.push_back({ along, d[(this->Axis + 1) % 3] / length, d[(this->Axis + 2) % 3] / length });
+      this->Directions.push_back({ along, d[(this->Axis + 1) % 3], d[(this->Axis + 2) % 3] });
       this->Entering.push_back(i);
     }
   }

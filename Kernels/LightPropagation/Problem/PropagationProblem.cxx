@@ -108,6 +108,7 @@ void PropagationProblem::TakeUnits(const Medium& wide, const Illumination& illum
 {
   this->Solved = wide;
   this->SolvedLight = illumination;
+  this->SolvedLight.lights = SeenFrom(wide.grid, illumination.lights);
   for (Rgb& face : this->SolvedLight.uncollided.escaped)
   {
     face = Times(face, 1.0 / this->Narrowing);

@@ -67,9 +67,8 @@ double PowerInto(const Grid& grid, const Light& light)
     return Sum(light.power);
   }
   const std::array<double, 3> area = FaceAreas(grid);
-  const std::array<double, 3>& d = light.direction;
-  const double across = std::abs(d[0]) * area[0] + std::abs(d[1]) * area[1] + std::abs(d[2]) * area[2];
-  return Sum(light.power) * across / std::hypot(d[0], d[1], d[2]);
+  const std::array<double, 3> d = DirectionOf(light);
+  return Sum(light.power) * (std::abs(d[0]) * area[0] + std::abs(d[1]) * area[1] + std::abs(d[2]) * area[2]);
 }
 }
 

@@ -12,16 +12,16 @@ constexpr double Width =
 constexpr int EdgeInSlabs = 12;
 constexpr int EdgeWithCosineZero = 10; ///< of even ones: light along its axes' planes would go round for ever
 
-bool IsNear(const Light& light)
+bool AnyIsNear(const std::vector<Light>& lights)
 {
-  return light.type != LightType::Directional;
+  return std::any_of(
+    lights.begin(), lights.end(), [](const Light& light) { return light.type != LightType::Directional; });
 }
 }
 
 UnvaryingAxes::UnvaryingAxes(const Grid& grid, const Illumination& illumination, const PropagationSettings& settings)
 {
-  if (settings.source == PropagationSource::Constant ||
-    std::any_of(illumination.lights.begin(), illumination.lights.end(), IsNear))
+  if (settings.source == PropagationSource::Constant || AnyIsNear(SeenFrom(grid, illumination.lights)))
   {
     return;
   }

@@ -13,6 +13,8 @@ namespace
 /// No problem that converges at all needs more; those that do not must end.
 constexpr int MostOrders = 10000;
 
+constexpr double NothingToWaitFor = 1e-3; ///< of what is left over, beside what goes round without end
+
 constexpr double WarmMargin = 1.5; ///< the error of a guess does not fall evenly
 }
 
@@ -116,11 +118,18 @@ void OrderLedger::CloseOrder(const OrderSums& sums)
     row.leftOver += this->Balance.leftOver[c];
   }
   const Rgb& counted = this->Warm ? sums.magnitude : sums.fluence;
-  const bool goesOn = this->Warm ? Sum(sums.magnitude) > 0.0 : row.leftOver > 0.0;
+  bool goesOn = this->Warm && Sum(sums.magnitude) > 0.0;
+  for (int c = 0; c < this->Channels && !this->Warm; ++c)
+  {
+    const double others = this->VoxelVolume * sums.scattered[c] + this->ComingBack[c];
+    goesOn = goesOn ||
+      GoesOnToItsEnd(this->Settings.maximumOrders, this->CarriedBefore[c], this->Carried[c], others) >
+        NothingToWaitFor * this->Balance.leftOver[c];
+  }
   row.residual = goesOn ? this->EstimateResidual(counted) : 0.0;
   this->SumBefore = this->LastSum;
   this->LastSum = this->Warm && this->Rows.empty() ? Rgb{} : counted; // with a guess it tells nothing
-  this->Carried = {};
+  this->CarriedBefore = std::exchange(this->Carried, {});
   this->Rows.push_back(row);
   this->Finished = row.residual == 0.0 ||
     (this->Settings.maximumOrders > 0 ? this->Orders() >= this->Settings.maximumOrders

@@ -64,6 +64,7 @@ private:
   Rgb Entered = {};                     ///< W
   std::array<Rgb, 6> FacePowerOut = {}; ///< W
   Rgb Carried = {};                     ///< W on the way through periodic axes, of this order
+  Rgb CarriedBefore = {};               ///< W, of the one before
   EnergyBalance Balance;
   Rgb TotalSum = {};
   Rgb LastSum = {}, SumBefore = {}; ///< of the last order, of the one before that

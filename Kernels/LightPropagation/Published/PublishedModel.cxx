@@ -38,12 +38,11 @@ int NearestOf(const std::vector<std::array<double, 3>>& directions, const std::a
   return best;
 }
 
-/// The directions nearest to omega, by their index: each once for every tiny push that leads to it, of the 48 that the
-/// cube's symmetries make of one. All are the same, unless omega lies between cells.
+/// The directions nearest to a unit vector, by their index: each once for every tiny push that leads to it, of the 48
+/// that the cube's symmetries make of one. All are the same, unless omega lies between cells.
 std::vector<int> NearestAround(const DirectionSet& set, const std::array<double, 3>& omega)
 {
-  const double length = glm::length(Vector(omega));
-  std::array<double, 3> push = { 1e-9 * length, 2e-9 * length, 3e-9 * length };
+  std::array<double, 3> push = { 1e-9, 2e-9, 3e-9 };
   std::vector<int> nearest;
   do
   {
@@ -68,7 +67,7 @@ std::vector<std::array<Rgb, 3>> BoundaryOf(
   {
     if (light.type == LightType::Directional)
     {
-      const std::vector<int> nearest = NearestAround(set, light.direction);
+      const std::vector<int> nearest = NearestAround(set, DirectionOf(light));
       for (const int i : nearest)
       {
         for (int c = 0; c < 3; ++c)

@@ -1,10 +1,6 @@
 #include "LightPropagation/Scattering/SweptMoments.h"
 
 #include "LightPropagation/Scattering/BeamScattering.h"
-#include "Numerics/Vectors.h"
-
-#include <glm/geometric.hpp>
-#include <glm/vec3.hpp>
 
 #include <algorithm>
 
@@ -41,10 +37,9 @@ SweptMoments::SweptMoments(const SweptDirections& directions, const PhaseOfMediu
   std::vector<std::vector<double>> ofBeams;
   for (const int lamp : this->LampOfBeam)
   {
-    const glm::dvec3 along = glm::normalize(Vector(lamps[lamp].direction));
     const auto beyond = scattering.IsNowhereNegative() ? BeyondSmoothMoments : BeyondMoments;
     ofBeams.push_back(beyond(
-      phase.OfChannel(0), scattering.OfThinVoxels(), directions.Set(), this->TheBasis, { along.x, along.y, along.z }));
+      phase.OfChannel(0), scattering.OfThinVoxels(), directions.Set(), this->TheBasis, DirectionOf(lamps[lamp])));
   }
   for (std::size_t d = 0; d < directions.Set().directions.size(); ++d)
   {

@@ -116,7 +116,7 @@ const OctantSources::Crossings& OctantSources::CrossingsOf(const SweptDirections
   const PropagationSettings& settings = this->The.settings;
   const Grid& grid = this->The.whole;
   const CrossingPattern pattern =
-    FindCrossingPattern(grid, along.Set(), settings.mapResolution, along.Starts(), settings.periodic);
+    FindCrossingPattern(grid, along.Set(), along.RaysPerEdge(), along.Starts(), settings.periodic);
   double perRadiance = 0.0;
   for (int marching = 0; marching < 3; ++marching)
   {

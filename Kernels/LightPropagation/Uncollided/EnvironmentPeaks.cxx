@@ -37,7 +37,8 @@ std::array<double, 3> DirectionOf(const Environment& environment, std::size_t pi
   const std::size_t row = pixel / environment.width;
   const double azimuth = 2.0 * Pi * (column + 0.5) / environment.width;
   const double polar = Pi * (1.0 - (row + 0.5) / environment.height);
-  return { std::sin(polar) * std::cos(azimuth), std::sin(polar) * std::sin(azimuth), std::cos(polar) };
+  return environment.ToScene(
+    { std::sin(polar) * std::cos(azimuth), std::sin(polar) * std::sin(azimuth), std::cos(polar) });
 }
 
 double SolidAngle(const Environment& environment, std::size_t pixel)

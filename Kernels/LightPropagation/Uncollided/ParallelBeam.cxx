@@ -2,11 +2,7 @@
 
 #include "LightPropagation/Angular/RayBundles.h"
 #include "LightPropagation/Uncollided/ParallelBeamShared.h"
-#include "Numerics/Vectors.h"
 #include "TyndallKernelSources.h"
-
-#include <glm/geometric.hpp>
-#include <glm/vec3.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -20,18 +16,13 @@ constexpr int RaysPerEdge = 2; ///< of a voxel
 /// and into those beside through another, and each seems to be lit from its own side.
 constexpr int RaysPerThickEdge = 8;
 
-std::array<double, 3> Along(const Light& light)
-{
-  const glm::dvec3 along = glm::normalize(Vector(light.direction));
-  return { along.x, along.y, along.z };
-}
 }
 
 SweepTally SweepBeam(
   const UncollidedVolume& volume, const Light& light, bool firstMoments, const Deposit& deposit, const Monitor& monitor)
 {
   const Grid& grid = volume.Whole();
-  const std::array<double, 3> omega = Along(light);
+  const std::array<double, 3> omega = DirectionOf(light);
   const std::vector<int> axes = MarchingAxes(grid, omega);
   Rgb power = light.power; // each of the axes carries its part of the beam
   for (double& ofChannel : power)
@@ -56,7 +47,7 @@ SweepTally SweepBeam(
 void AddWithFirstMoments(
   const UncollidedVolume& volume, const Light& light, const Deposit& ofBeam, const BeyondFaces& beyond)
 {
-  const std::array<double, 3> omega = Along(light);
+  const std::array<double, 3> omega = DirectionOf(light);
   const Grid& grid = volume.layout.grid;
   BeamInfo info = {};
   for (int a = 0; a < 3; ++a)

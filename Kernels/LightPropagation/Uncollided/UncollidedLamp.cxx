@@ -3,10 +3,6 @@
 #include "LightPropagation/Uncollided/Lamps/LampBeams.h"
 #include "LightPropagation/Uncollided/NarrowLight.h"
 #include "LightPropagation/Uncollided/ParallelBeam.h"
-#include "Numerics/Vectors.h"
-
-#include <glm/geometric.hpp>
-#include <glm/vec3.hpp>
 
 #include <optional>
 
@@ -36,8 +32,7 @@ SweepTally UncollidedLamp::AddTo(const UncollidedVolume& volume, const Monitor& 
   const SweepTally tally = this->Put(apart, monitor);
   if (light && parallel)
   {
-    const glm::dvec3 along = glm::normalize(Vector(this->Lamp.direction));
-    light->AddAlong({ along.x, along.y, along.z });
+    light->AddAlong(DirectionOf(this->Lamp));
   }
   else if (light)
   {

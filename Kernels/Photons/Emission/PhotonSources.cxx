@@ -27,17 +27,18 @@ std::array<glm::dvec3, 2> Across(const glm::dvec3& n)
   return { glm::dvec3(1.0 + sign * n.x * n.x * a, sign * b, -sign * n.x), glm::dvec3(b, sign + n.y * n.y * a, -n.y) };
 }
 
-glm::dvec3 Around(const glm::dvec3& axis, double cosine, double turn)
+/// @param versine  1 - cosine of the angle to the axis; of small angles a cosine tells little
+glm::dvec3 Around(const glm::dvec3& axis, double versine, double turn)
 {
   const std::array<glm::dvec3, 2> across = Across(axis);
-  const double sine = std::sqrt(std::max(1.0 - cosine * cosine, 0.0));
+  const double cosine = 1.0 - versine, sine = std::sqrt(std::max(versine * (2.0 - versine), 0.0));
   return axis * cosine + across[0] * (sine * std::cos(2.0 * Pi * turn)) +
     across[1] * (sine * std::sin(2.0 * Pi * turn));
 }
 
 PhotonSource Directional(const Grid& grid, const Light& light)
 {
-  const glm::dvec3 direction = glm::normalize(Vector(light.direction));
+  const glm::dvec3 direction = Vector(DirectionOf(light));
   const auto plane = std::make_shared<PhotonPlane>(grid, direction);
   return { 0,
     [=](const PhotonSample& u) {
@@ -58,16 +59,17 @@ PhotonSource Point(const Grid& grid, const Light& light)
 
 PhotonSource Spot(const Grid& grid, const Light& light)
 {
-  const glm::dvec3 axis = glm::normalize(Vector(light.direction));
-  const double edge = std::cos(0.5 * light.angle * Pi / 180.0);
-  const double cone = 2.0 * Pi * (1.0 - edge);
+  const glm::dvec3 axis = Vector(DirectionOf(light));
+  const double cone = 1.0 / AxialIntensity(light);
   const auto view = std::make_shared<LampView>(grid, Vector(light.position));
   const bool fromCone = view->SolidAngle() > cone;
   const Rgb power = fromCone ? light.power : Times(light.power, view->SolidAngle() / cone);
   return { 0, [=](const PhotonSample& u) -> std::optional<Shot> {
             const glm::dvec3 direction =
-              fromCone ? Around(axis, 1.0 - (1.0 - edge) * u[0], u[1]) : view->Direction(u[0], u[1]);
-            const bool isThere = fromCone ? view->Enters(direction) : glm::dot(direction, axis) >= edge;
+              fromCone ? Around(axis, cone / (2.0 * Pi) * u[0], u[1]) : view->Direction(u[0], u[1]);
+            const bool isThere = fromCone
+              ? view->Enters(direction)
+              : AngleFromAxis(light, { direction.x, direction.y, direction.z }) <= HalfAngle(light);
             return isThere ? std::optional<Shot>({ view->Lamp(), direction, power }) : std::nullopt;
           } };
 }
@@ -75,12 +77,12 @@ PhotonSource Spot(const Grid& grid, const Light& light)
 PhotonSource Rectangle(const Grid& grid, const Light& light)
 {
   const glm::dvec3 middle = Vector(light.position);
-  const glm::dvec3 normal = glm::normalize(Vector(light.direction));
+  const glm::dvec3 normal = Vector(DirectionOf(light));
   const auto edges = RectangleEdges(light);
   return { 0, [=](const PhotonSample& u) -> std::optional<Shot> {
             const LampView view(grid, middle + Vector(edges[0]) * (u[2] - 0.5) + Vector(edges[1]) * (u[3] - 0.5));
             const glm::dvec3 direction =
-              view.Outside() ? view.Direction(u[0], u[1]) : Around(normal, std::sqrt(1.0 - u[0]), u[1]);
+              view.Outside() ? view.Direction(u[0], u[1]) : Around(normal, 1.0 - std::sqrt(1.0 - u[0]), u[1]);
             const double cosine = glm::dot(direction, normal);
             if (cosine <= 0.0 || !view.Enters(direction))
             {
@@ -121,11 +123,11 @@ PhotonSource DiffuseFace(const Grid& grid, int face, const Rgb& radiance)
   const bool up = face % 2 == 1;
   glm::dvec3 inwards(0.0);
   inwards[axis] = up ? -1.0 : 1.0;
-  return { -2,
-    [=](const PhotonSample& u) {
-      const FaceOfGrid at = { grid, axis, up };
-      return Shot{ at.At(u[0], u[1]), Around(inwards, std::sqrt(1.0 - u[2]), u[3]), Times(radiance, Pi * at.Area()) };
-    } };
+  return { -2, [=](const PhotonSample& u) {
+            const FaceOfGrid at = { grid, axis, up };
+            return Shot{ at.At(u[0], u[1]), Around(inwards, 1.0 - std::sqrt(1.0 - u[2]), u[3]),
+              Times(radiance, Pi * at.Area()) };
+          } };
 }
 
 /// Directions of an environment, by what comes from them onto the volume.
@@ -167,7 +169,8 @@ public:
     const double cosine = bottom + v * (top - bottom);
     const double sine = std::sqrt(std::max(1.0 - cosine * cosine, 0.0));
     const double azimuth = 2.0 * Pi * (i + h) / this->Width;
-    const glm::dvec3 seen(sine * std::cos(azimuth), sine * std::sin(azimuth), cosine);
+    const glm::dvec3 seen =
+      Vector(this->Picture.ToScene({ sine * std::cos(azimuth), sine * std::sin(azimuth), cosine }));
 
     const double angle = 2.0 * Pi / this->Width * (top - bottom);
     const double density = (row[i + 1] - row[i]) / (this->Rows.back() * angle);
@@ -232,8 +235,8 @@ private:
         }
         const double polar = Pi * (1.0 - (j + 0.5) / this->Height);
         const double azimuth = 2.0 * Pi * (i + 0.5) / this->Width;
-        const glm::dvec3 seen(
-          std::sin(polar) * std::cos(azimuth), std::sin(polar) * std::sin(azimuth), std::cos(polar));
+        const glm::dvec3 seen = Vector(this->Picture.ToScene(
+          { std::sin(polar) * std::cos(azimuth), std::sin(polar) * std::sin(azimuth), std::cos(polar) }));
         weights[static_cast<std::size_t>(j) * this->Width + i] =
           sum * this->Outline(seen) * (this->CosineBelow(j + 1) - this->CosineBelow(j));
       }
@@ -274,9 +277,10 @@ std::optional<Photon> Land(const Grid& grid, const Shot& shot)
 std::vector<PhotonSource> PhotonSourcesOf(const Grid& grid, const Illumination& illumination)
 {
   std::vector<PhotonSource> sources;
-  for (std::size_t i = 0; i < illumination.lights.size(); ++i)
+  const std::vector<Light> lights = SeenFrom(grid, illumination.lights);
+  for (std::size_t i = 0; i < lights.size(); ++i)
   {
-    const Light& light = illumination.lights[i];
+    const Light& light = lights[i];
     sources.push_back(light.type == LightType::Directional ? Directional(grid, light)
         : light.type == LightType::Point                   ? Point(grid, light)
         : light.type == LightType::Spot                    ? Spot(grid, light)

@@ -1,11 +1,11 @@
 #include "Refraction/Index/IndexRange.h"
 
 #include "Device/Errors.h"
+#include "Numerics/NumberText.h"
 #include "Numerics/PyramidLayout.h"
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 #include <string>
 
 namespace tyndall
@@ -24,11 +24,9 @@ void CheckIndex(const Field& ior, const Grid& grid)
   {
     if (!(ior.values[i] >= Least && ior.values[i] <= Largest))
     {
-      std::ostringstream text;
-      text << "ior is " << ior.values[i] << " in voxel " << VoxelName(grid, i)
-           << " (the first such voxel); a refractive index must be finite and positive, from " << Least << " to "
-           << Largest << ".";
-      throw InvalidInput(text.str());
+      throw InvalidInput("ior is " + Text("%g", ior.values[i]) + " in voxel " + VoxelName(grid, i) +
+        " (the first such voxel); a refractive index must be finite and positive, from " + Text("%g", Least) + " to " +
+        Text("%g", Largest) + ".");
     }
   }
 }

@@ -1,9 +1,8 @@
 #include "Refraction/Voxelization/MeshChecks.h"
 
 #include "Device/Errors.h"
+#include "Numerics/NumberText.h"
 #include "Refraction/Voxelization/SampleLattice.h"
-
-#include <cstdio>
 
 namespace tyndall
 {
@@ -11,9 +10,7 @@ namespace
 {
 std::string Place(const std::array<double, 3>& point)
 {
-  char text[96];
-  std::snprintf(text, sizeof(text), "(%.6g, %.6g, %.6g)", point[0], point[1], point[2]);
-  return text;
+  return "(" + Text("%.6g", point[0]) + ", " + Text("%.6g", point[1]) + ", " + Text("%.6g", point[2]) + ")";
 }
 
 std::string Along(const MeshTopology::Edge& edge)
@@ -30,9 +27,7 @@ std::string Counted(std::size_t count, const char* thing)
 std::string OfWindings(const WindingNumbers& windings, const Grid& grid, int samples)
 {
   const int ofVoxel = samples * samples * samples;
-  char volume[32];
-  std::snprintf(
-    volume, sizeof(volume), "%.3g", static_cast<double>(windings.oddSamples) * grid.VoxelVolume() / ofVoxel);
+  const std::string volume = Text("%.3g", static_cast<double>(windings.oddSamples) * grid.VoxelVolume() / ofVoxel);
   return "intersects itself, or has parts inside out or within each other: about " +
     Counted(windings.oddSamples, "sample") + " (" + std::to_string(ofVoxel) + " a voxel; a volume of " + volume +
     ") it winds neither 0 times nor once but from " + std::to_string(windings.lowest) + " to " +

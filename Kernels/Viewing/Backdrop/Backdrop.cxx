@@ -39,6 +39,7 @@ Backdrop::Backdrop(Device& device, const Medium& medium, const SolvedLight& ligh
   {
     this->Width = environment.width;
     this->Height = environment.height;
+    this->Turn = environment.toPicture;
     pixels = PixelsOf(environment, traits.ShowsMoments());
   }
   if (!pixels.sharp.empty())

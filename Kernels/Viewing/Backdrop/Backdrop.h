@@ -26,6 +26,7 @@ public:
 
   bool HasEnvironment() const { return this->Width > 0; }
   std::array<int, 2> EnvironmentSize() const { return { this->Width, this->Height }; } ///< pixels
+  const Rotation& ToPicture() const { return this->Turn; }                             ///< of the environment
   const Buffer<cl_float4>& Environment() const { return this->Pixels; }
   /// Where moments are shown: what of the environment is seen without being scattered at all.
   const Buffer<cl_float4>& SharpEnvironment() const { return this->SharpPixels; }
@@ -40,6 +41,7 @@ private:
   bool UnderSky = false;
   Rgb Sky = {};
   int Width = 0, Height = 0;
+  Rotation Turn = {};
   Buffer<cl_float4> Pixels, SharpPixels, TableCells, GroundCells, SurfaceCells;
   int GroundBits = 0;
 };

@@ -27,8 +27,8 @@ inline real angle_of(real y, real x)
   return copysign(p, y);
 }
 
-// Radiance seen along each (world) direction, as Lookup in Lights.h has it. The picture has a column more on both
-// sides, so that it closes around z.
+// Radiance seen along each direction in the axes of the environment's picture, as Lookup in Lights.h has it. The
+// picture has a column more on both sides, so that it closes around z.
 inline rgb look_up(__global const float4* environment, real3 d, int4 size)
 {
   const real polar = angle_of(sqrt(fma(d.x, d.x, d.y * d.y)), d.z);
@@ -53,7 +53,10 @@ inline rgb look_behind(const ViewInfo* v, real3 d, __global const float4* enviro
 {
   rgb behind = { (real)v->background.x, (real)v->background.y, (real)v->background.z };
 #if ENVIRONMENT
-  const rgb seen = look_up(environment, d, v->environment);
+  const float4* m = v->toPicture;
+  const real3 turned = { d.x * m[0].x + d.y * m[0].y + d.z * m[0].z, d.x * m[1].x + d.y * m[1].y + d.z * m[1].z,
+    d.x * m[2].x + d.y * m[2].y + d.z * m[2].z };
+  const rgb seen = look_up(environment, turned, v->environment);
   behind.r += seen.r;
   behind.g += seen.g;
   behind.b += seen.b;

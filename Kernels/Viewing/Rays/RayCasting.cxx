@@ -39,6 +39,10 @@ ViewInfo RayCasting::ViewOf(const Camera& camera, const ViewSettings& settings, 
   view.background = Float4(Vector(this->Behind.Colour(settings)), settings.showBackground ? 1.0 : 0.0);
   view.bricks = Int4(this->Samples.BrickCount());
   view.environment = Int4({ environment[0], environment[1], 0 });
+  for (int row = 0; row < 3; ++row)
+  {
+    view.toPicture[row] = Float4(Vector(this->Behind.ToPicture()[row]));
+  }
   return view;
 }
 

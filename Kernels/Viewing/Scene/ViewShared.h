@@ -48,6 +48,7 @@ typedef struct
   int4 held;             ///< voxels of the arrays of such a block
   int4 bricks;           ///< bricks
   int4 environment;      ///< width, height in pixels
+  float4 toPicture[3];   ///< of the environment: rows of the matrix from the world's axes to the picture's
   BlockInfo block;
   PhaseInfo phase;
 } ViewInfo;
@@ -101,7 +102,8 @@ typedef struct
 typedef struct
 {
   float4 place; ///< world, from the lower corner of the box, of the whole; w: 1 a point, 0 parallel light
-  float4 axis;  ///< unit vector, the way the light travels; w: cosine of the cone's half angle, -2 for a whole sphere
+  float4
+    axis; ///< unit vector, the way the light travels; w: tangent of a quarter of the cone's angle, 0 without a cone
   float4 power; ///< irradiance, or radiant intensity along the axis; w: 1 falls with the cosine to the axis, else 0
 } SmallLight;
 

@@ -35,7 +35,12 @@ inline way_to_light towards(const SmallLight* light, real3 place, real scatters,
   const real to_axis = -fma(d.x, (real)light->axis.x, fma(d.y, (real)light->axis.y, d.z * (real)light->axis.z));
   real arriving = point > (real)0.0f ? (real)1.0f / greater(square, (real)nearest_square) : (real)1.0f;
   arriving *= light->power.w > 0.0f ? greater(to_axis, (real)0.0f) : (real)1.0f;
-  arriving = to_axis >= (real)light->axis.w ? arriving : (real)0.0f;
+  // tan(angle / 2) = sine / (1 + cosine): a cosine alone does not tell small angles from 0.
+  const real3 across = { fma(d.y, (real)light->axis.z, -d.z * light->axis.y),
+    fma(d.z, (real)light->axis.x, -d.x * light->axis.z), fma(d.x, (real)light->axis.y, -d.y * light->axis.x) };
+  const real sine = sqrt(fma(across.x, across.x, fma(across.y, across.y, across.z * across.z)));
+  const real most = fma((real)light->axis.w, (real)1.0f + to_axis, (real)(light->axis.w > 0.0f ? 0.0f : 2.0f));
+  arriving = sine <= most ? arriving : (real)0.0f;
   arriving = scatters > (real)0.0f ? arriving : (real)0.0f;
   const way_to_light way = { d, point > (real)0.0f ? distance : (real)1e30f, arriving };
   return way;

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
 namespace tyndall
@@ -19,10 +18,9 @@ std::vector<SmallLight> SmallLights(const std::vector<Light>& lights, const Grid
     small.push_back(
       { Float4(place, point ? 1.0 : 0.0), Float4(axis, cone), Float4(scale * Vector(power), cosine ? 1.0 : 0.0) });
   };
-  for (const Light& light : lights)
+  for (const Light& light : SeenFrom(grid, lights))
   {
-    const double length = glm::length(Vector(light.direction));
-    const glm::dvec3 axis = length > 0.0 ? Vector(light.direction) / length : glm::dvec3(0.0, 0.0, -1.0);
+    const glm::dvec3 axis = Vector(DirectionOf(light));
     const glm::dvec3 place = Vector(light.position) - Vector(grid.origin);
     if (IsBlack(light.power))
     {
@@ -30,16 +28,15 @@ std::vector<SmallLight> SmallLights(const std::vector<Light>& lights, const Grid
     }
     if (light.type == LightType::Directional)
     {
-      add({ 0.0, 0.0, 0.0 }, false, axis, -2.0, light.power, 1.0, false);
+      add({ 0.0, 0.0, 0.0 }, false, axis, 0.0, light.power, 1.0, false);
     }
     else if (light.type == LightType::Point)
     {
-      add(place, true, axis, -2.0, light.power, 1.0 / (4.0 * Pi), false);
+      add(place, true, axis, 0.0, light.power, 1.0 / (4.0 * Pi), false);
     }
     else if (light.type == LightType::Spot)
     {
-      const double cone = std::cos(light.angle * Pi / 360.0);
-      add(place, true, axis, cone, light.power, 1.0 / (2.0 * Pi * (1.0 - cone)), false);
+      add(place, true, axis, std::tan(0.5 * HalfAngle(light)), light.power, AxialIntensity(light), false);
     }
     else
     {
@@ -50,7 +47,7 @@ std::vector<SmallLight> SmallLights(const std::vector<Light>& lights, const Grid
       {
         const glm::dvec3 offset =
           ((sample % n + 0.5) / n - 0.5) * Vector(edges[0]) + ((sample / n + 0.5) / n - 0.5) * Vector(edges[1]);
-        add(place + offset, true, axis, -2.0, light.power, 1.0 / (Pi * n * n), true);
+        add(place + offset, true, axis, 0.0, light.power, 1.0 / (Pi * n * n), true);
       }
     }
   }

@@ -87,6 +87,7 @@ SweepTally IterationByBalance::AddNearFaces(
       block.Scattering->AddFirstScattered(block.WholeDeposit(), shown);
     }
   });
+  Add(tally, this->Uncollided.AddVacuum(nullptr, monitor));
   if (block.Scene.given)
   {
     Add(tally, this->Uncollided.AddGiven(monitor));

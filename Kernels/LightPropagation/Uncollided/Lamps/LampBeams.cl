@@ -10,7 +10,7 @@
 // Space around the lamp is six pyramids, one for each way along an axis; in a pyramid beams lie on a grid of tangents,
 // so fine that a beam is at most a voxel wide where it leaves the box. It is followed layer by layer; where its square
 // cross-section lies over up to four voxels, each takes its part (numerics.md, Eqs. (33), (34)). All values are
-// parts of the lamp's power: its colours share sigma_t.
+// parts of the share of the lamp's power that may come to the box (LampOnGrid.h): its colours share sigma_t.
 
 #include "LightPropagation/Uncollided/Lamps/LampBeamsShared.h"
 #include "LightPropagation/Uncollided/Lamps/LampUnits.cl"
@@ -24,14 +24,13 @@ static float corner_angle(float a, float b, float d)
   return atan2(a * b, d * sqrt(a * a + b * b + d * d));
 }
 
-// Solid angle of the rectangle [a0, a1] x [b0, b1] at distance d: in closed form where it is near; far away, where that
-// is a small difference of large angles, by Gauss's rule of 2 x 2 points.
-static float solid_angle(float a0, float a1, float b0, float b1, float d)
+// Solid angle of the rectangle of this width and height about (a, b) at distance d: in closed form where it is near;
+// far away, where that is a small difference of large angles, by Gauss's rule of 2 x 2 points.
+static float solid_angle(float a, float b, float width, float height, float d)
 {
-  const float a = 0.5f * (a0 + a1), b = 0.5f * (b0 + b1);
-  const float width = a1 - a0, height = b1 - b0;
   if (a * a + b * b + d * d < 64.0f * fmax(width * width, height * height))
   {
+    const float a0 = a - 0.5f * width, a1 = a + 0.5f * width, b0 = b - 0.5f * height, b1 = b + 0.5f * height;
     return corner_angle(a1, b1, d) - corner_angle(a0, b1, d) - corner_angle(a1, b0, d) + corner_angle(a0, b0, d);
   }
   float sum = 0.0f;
@@ -105,17 +104,39 @@ static void leave_box(const LampInfo* lamp, int face, const int* voxel, float po
 #endif
 }
 
-// The first voxel under a cross-section from low to low + width, and the part of it that lies there.
-static void overlap(float low, float width, int* voxel, float* part)
+// The first voxel under a cross-section from low to high, and the part of it that lies there.
+static void overlap(float2 edges, int* voxel, float* part)
 {
-  *voxel = (int)floor(low);
-  *part = clamp((*voxel + 1 - low) / width, 0.0f, 1.0f);
+  *voxel = (int)floor(edges.x);
+  *part = edges.y > edges.x ? clamp((*voxel + 1 - edges.x) / (edges.y - edges.x), 0.0f, 1.0f) : 1.0f;
+}
+
+// The edges of a cross-section along an axis, without what has gone out through the face that the beam moves to.
+// @return the part of the cross-section that is between them
+static float cut_at_face(const LampInfo* lamp, int axis, float tangent, float2* edges)
+{
+  const float n = lamp->size[axis], all = edges->y - edges->x;
+  if (lamp->periodic[axis] || (tangent < 0.0f ? edges->x >= 0.0f : edges->y <= n))
+  {
+    return 1.0f;
+  }
+  if (tangent < 0.0f)
+  {
+    edges->x = clamp(edges->x, 0.0f, fmax(edges->y, 0.0f));
+    edges->y = fmax(edges->y, edges->x);
+  }
+  else
+  {
+    edges->y = clamp(edges->y, fmin(edges->x, n), n);
+    edges->x = fmin(edges->x, edges->y);
+  }
+  return all > 0.0f ? clamp((edges->y - edges->x) / all, 0.0f, 1.0f) : 0.0f;
 }
 
 #if MOMENTS
 // Path that light has in a voxel, times the distance from its middle of the mean place where it is lost: along the
 // beam's axis and aside (numerics.md, Eqs. (37), (38)).
-//   way   of the step, from begin to end, layers from the lamp
+//   way   of the step, from begin to end, layers from where beams begin
 //   mean  middle of the part of the cross-section in the voxel, half way through the step
 static void add_moments(const LampInfo* lamp, const BeamRow* row, const int* voxel, float2 way, float2 mean,
   float2 tangent, float tau, float lost, float path, __global long* first_moments, ulong stride)
@@ -124,7 +145,7 @@ static void add_moments(const LampInfo* lamp, const BeamRow* row, const int* vox
   const float at = mix(way.x, way.y, part);
   const float aside = at - 0.5f * (way.x + way.y);
   float from_middle[3];
-  const float along = lamp->position[row->axis] + (row->up ? at : -at);
+  const float along = row->from + (row->up ? at : -at);
   from_middle[0] = along - floor(along) - 0.5f; // laps of a periodic axis
   from_middle[1] = mean.x + aside * tangent.x - 0.5f;
   from_middle[2] = mean.y + aside * tangent.y - 0.5f;
@@ -137,7 +158,7 @@ static void add_moments(const LampInfo* lamp, const BeamRow* row, const int* vox
 #endif
 
 #if NET_FLUX
-// Path times direction, along x, y, z, of a step from way.x to way.y layers from the lamp.
+// Path times direction, along x, y, z, of a step from way.x to way.y layers from where beams begin.
 static void add_flux(const LampInfo* lamp, const BeamRow* row, float2 tangent, float2 way, float length, float path,
   __global long* flux, ulong stride)
 {
@@ -153,7 +174,7 @@ static void add_flux(const LampInfo* lamp, const BeamRow* row, float2 tangent, f
 // Power that left through a face beside the beam's axis since the middle of the step before: a step at most ago, in two
 // halves.
 //   at    where it is now, along the axes aside, voxels
-//   here  the middle of the step, layers from the lamp
+//   here  the middle of the step, layers from where beams begin
 static void leave_aside(const LampInfo* lamp, const BeamRow* row, int face, float2 tangent, float2 at, float here,
   float step, float power, lamp_tally* tally)
 {
@@ -163,7 +184,7 @@ static void leave_aside(const LampInfo* lamp, const BeamRow* row, int face, floa
   for (int part = 0; part < 2; ++part)
   {
     const float ago = (0.25f + 0.5f * part) * step;
-    const float along = lamp->position[row->axis] + (row->up ? here - ago : ago - here);
+    const float along = row->from + (row->up ? here - ago : ago - here);
     int voxel[3];
     voxel[row->axis] = (int)floor(along);
     voxel[u] = (int)floor(at.x - tangent.x * ago);
@@ -179,25 +200,91 @@ static void leave_aside(const LampInfo* lamp, const BeamRow* row, int face, floa
 #endif
 }
 
-// One step of a beam: every part of it through its voxel. Changes `left` and `rest`, what is too small to be seen in
-// it.
+// Where a beam is between two steps.
+typedef struct
+{
+  int layer, step;
+  float left, rest;
+  float stays[2]; // of its cross-section, along u and v, what has not left the box
+#if IN_BLOCK
+  int voxel[3];
+#endif
+} beam_state;
+
+// What of a beam has left through the faces beside its axis since the last step: only that, for what is left is spread
+// over the rest of its cross-section. Changes the edges to those of that rest.
+//   middle  of the whole cross-section
+static void leave_sides(const LampInfo* lamp, const BeamRow* row, bool first, float2 tangent, float2 middle, float2 way,
+  float2* edges_u, float2* edges_v, beam_state* beam, lamp_tally* tally)
+{
+  const float tangents[2] = { tangent.x, tangent.y };
+  const float within[2] = { cut_at_face(lamp, (row->axis + 1) % 3, tangent.x, edges_u),
+    cut_at_face(lamp, (row->axis + 2) % 3, tangent.y, edges_v) };
+  if (within[0] >= beam->stays[0] && within[1] >= beam->stays[1])
+  {
+    return;
+  }
+  float goes[2];
+  for (int k = 0; k < 2; ++k)
+  {
+    goes[k] = within[k] < beam->stays[k] ? 1.0f - within[k] / beam->stays[k] : 0.0f;
+    beam->stays[k] = fmin(beam->stays[k], within[k]);
+  }
+  for (int k = 0; k < 2; ++k)
+  {
+    if (!(goes[k] > 0.0f))
+    {
+      continue;
+    }
+    // Past an edge of the box: half through either side.
+    const float power = beam->left * goes[k] * (1.0f - 0.5f * goes[1 - k]);
+    const int axis = (row->axis + 1 + k) % 3, other = (row->axis + 2 - k) % 3;
+    int beside;
+    float part;
+    overlap(k == 0 ? *edges_v : *edges_u, &beside, &part);
+    for (int q = 0; q < 2; ++q)
+    {
+      const float through = power * (q ? 1.0f - part : part);
+      int voxel = beside + q;
+      const bool comes = place(lamp, other, tangents[1 - k], &voxel) == BEFORE;
+      if (first || comes)
+      {
+        tally->entered -= tally->counts ? through : 0.0f;
+      }
+      else if (through > 0.0f)
+      {
+        const float gone = tangents[k] < 0.0f ? -0.5f : lamp->size[axis] + 0.5f, at = beside + q + 0.5f;
+        leave_aside(lamp, row, 2 * axis + (tangents[k] > 0.0f), tangent,
+          k == 0 ? (float2)(gone, at) : (float2)(at, gone), 0.5f * (way.x + way.y), way.y - way.x, through, tally);
+      }
+    }
+  }
+  beam->left *= (1.0f - goes[0]) * (1.0f - goes[1]);
+}
+
+// One step of a beam: every part of it through its voxel. Changes what is left of it, and what is too small to be seen
+// in that.
 static void step_beam(const LampInfo* lamp, const BeamRow* row, int layer, bool first, bool last, float2 tangent,
   float2 middle, float2 width, float2 way, float length, const __global float* sigma, __global long* path, ulong stride,
-  float* left, float* rest, lamp_tally* tally)
+  beam_state* beam, lamp_tally* tally)
 {
   const int u = (row->axis + 1) % 3;
   const int v = (row->axis + 2) % 3;
+  float2 edges_u = (float2)(middle.x - 0.5f * width.x, middle.x + 0.5f * width.x);
+  float2 edges_v = (float2)(middle.y - 0.5f * width.y, middle.y + 0.5f * width.y);
+  leave_sides(lamp, row, first, tangent, middle, way, &edges_u, &edges_v, beam, tally);
   int2 lowest;
   float part_u, part_v;
   int voxel[3];
-  overlap(middle.x - 0.5f * width.x, width.x, &voxel[0], &part_u);
-  overlap(middle.y - 0.5f * width.y, width.y, &voxel[1], &part_v);
+  overlap(edges_u, &voxel[0], &part_u);
+  overlap(edges_v, &voxel[1], &part_v);
   lowest = (int2)(voxel[0], voxel[1]);
   float after = 0.0f, taken = 0.0f;
   for (int q = 0; q < 4; ++q)
   {
     const float part = (q & 1 ? 1.0f - part_u : part_u) * (q & 2 ? 1.0f - part_v : part_v);
-    if (part <= 0.0f)
+    const float power = beam->left * part;
+    if (power <= 0.0f)
     {
       continue;
     }
@@ -206,82 +293,68 @@ static void step_beam(const LampInfo* lamp, const BeamRow* row, int layer, bool 
     voxel[v] = lowest.y + (q >> 1);
     const int at_u = place(lamp, u, tangent.x, &voxel[u]);
     const int at_v = place(lamp, v, tangent.y, &voxel[v]);
-    const bool outside = at_u != INSIDE || at_v != INSIDE;
-    const bool gone = at_u == AFTER || at_v == AFTER;
-    const bool missed = (gone && (first || at_u == BEFORE || at_v == BEFORE)) || (outside && last && !gone);
-    float lost = 0.0f, through = 1.0f, mean_length = 0.0f;
-    ulong index = 0;
-    if (!outside)
+    if (at_u != INSIDE || at_v != INSIDE)
     {
-      index = place_in_arrays(lamp, voxel);
-      const float tau = sigma[index] * length;
-      lost = extinguished(tau, &through);
-      mean_length = tau > 1e-20f ? lost / sigma[index] : length;
+      after += last ? 0.0f : power; // it comes in later, or never
+      tally->entered -= last && tally->counts ? power : 0.0f;
+      continue;
     }
-    const float power = *left * part;
-    if (missed)
+    const ulong index = place_in_arrays(lamp, voxel);
+    const float tau = sigma[index] * length;
+    float through;
+    const float lost = extinguished(tau, &through);
+    const float mean_length = tau > 1e-20f ? lost / sigma[index] : length;
+    const float counted = tally->counts ? power * (mean_length * units_of(sigma[index], lamp->diagonal)) : 0.0f;
+    if (counted > 0.0f)
     {
-      tally->entered -= tally->counts ? power : 0.0f;
+      add_units(path + index, convert_long_sat_rte(counted * lamp->scale));
     }
-    else if (gone)
-    {
-      // Past an edge of the box: half through either side.
-      const float both = at_u == AFTER && at_v == AFTER ? 0.5f : 1.0f;
-      const float2 at = (float2)(lowest.x + (q & 1), lowest.y + (q >> 1)) + 0.5f;
-      const float here = 0.5f * (way.x + way.y);
-      leave_aside(lamp, row, 2 * u + (tangent.x > 0.0f), tangent, at, here, way.y - way.x,
-        at_u == AFTER ? both * power : 0.0f, tally);
-      leave_aside(lamp, row, 2 * v + (tangent.y > 0.0f), tangent, at, here, way.y - way.x,
-        at_v == AFTER ? both * power : 0.0f, tally);
-    }
-    else if (outside)
-    {
-      after += power;
-    }
-    else
-    {
-      const float counted = tally->counts ? power * (mean_length * units_of(sigma[index], lamp->diagonal)) : 0.0f;
-      if (counted > 0.0f)
-      {
-        add_units(path + index, convert_long_sat_rte(counted * lamp->scale));
-      }
 #if NET_FLUX
-      add_flux(lamp, row, tangent, way, length, counted, path + FIRST_OF_FLUX * stride + index, stride);
+    add_flux(lamp, row, tangent, way, length, counted, path + FIRST_OF_FLUX * stride + index, stride);
 #endif
 #if MOMENTS
-      if (tally->counts && sigma[index] * length > 0.5f * THIN)
-      {
-        const float2 mean = (float2)(q & 1
-            ? 0.5f * (middle.x + 0.5f * width.x - lowest.x - 1.0f)
-            : 0.5f * (fmin(middle.x + 0.5f * width.x - lowest.x, 1.0f) + middle.x - 0.5f * width.x - lowest.x),
-          q & 2 ? 0.5f * (middle.y + 0.5f * width.y - lowest.y - 1.0f)
-                : 0.5f * (fmin(middle.y + 0.5f * width.y - lowest.y, 1.0f) + middle.y - 0.5f * width.y - lowest.y));
-        add_moments(
-          lamp, row, voxel, way, mean, tangent, sigma[index] * length, lost, counted, path + stride + index, stride);
-      }
-#endif
-      const bool thick = mean_length * sigma[index] < 0.5f * length * sigma[index];
-      after += thick ? power * through : power;
-      taken += thick ? 0.0f : power * lost;
+    if (tally->counts && tau > 0.5f * THIN)
+    {
+      const float2 mean = (float2)(q & 1 ? 0.5f * (edges_u.y - lowest.x - 1.0f)
+                                         : 0.5f * (fmin(edges_u.y - lowest.x, 1.0f) + edges_u.x - lowest.x),
+        q & 2 ? 0.5f * (edges_v.y - lowest.y - 1.0f)
+              : 0.5f * (fmin(edges_v.y - lowest.y, 1.0f) + edges_v.x - lowest.y));
+      add_moments(lamp, row, voxel, way, mean, tangent, tau, lost, counted, path + stride + index, stride);
     }
+#endif
+    const bool thick = lost < 0.5f * tau;
+    after += thick ? power * through : power;
+    taken += thick ? 0.0f : power * lost;
   }
   // What rounding took from thin losses is made up for: over thousands of steps it would add up.
-  const float change = *rest - taken;
-  *left = after + change;
-  *rest = change - (*left - after);
+  const float change = beam->rest - taken;
+  beam->left = after + change;
+  beam->rest = change - (beam->left - after);
+}
+
+// The edges of a beam's cross-section t layers from where it begins, along u or v.
+static float2 edges_at(float start, float tangent, float open, float width, float t)
+{
+  const float middle = start + tangent * t, half_width = 0.5f * fmin(open + width * t, 1.0f);
+  return (float2)(middle - half_width, middle + half_width);
 }
 
 // What is left of a beam at the far end of its axis, through up to four cells there.
-static void leave_end(const LampInfo* lamp, const BeamRow* row, float2 tangent, float t, float left, lamp_tally* tally)
+//   start  its middle where it begins
+static void leave_end(
+  const LampInfo* lamp, const BeamRow* row, float2 start, float2 tangent, float t, float left, lamp_tally* tally)
 {
 #if FACE_OUT
   const int u = (row->axis + 1) % 3;
   const int v = (row->axis + 2) % 3;
   int voxel[3] = { 0, 0, 0 }, lowest[2];
   float part_u, part_v;
-  const float2 width = clamp((float2)(row->widthU, row->widthV) * t, 1e-4f, 1.0f);
-  overlap(lamp->position[u] + tangent.x * t - 0.5f * width.x, width.x, &lowest[0], &part_u);
-  overlap(lamp->position[v] + tangent.y * t - 0.5f * width.y, width.y, &lowest[1], &part_v);
+  float2 edges_u = edges_at(start.x, tangent.x, row->openU, row->widthU, t);
+  float2 edges_v = edges_at(start.y, tangent.y, row->openV, row->widthV, t);
+  cut_at_face(lamp, u, tangent.x, &edges_u);
+  cut_at_face(lamp, v, tangent.y, &edges_v);
+  overlap(edges_u, &lowest[0], &part_u);
+  overlap(edges_v, &lowest[1], &part_v);
   for (int q = 0; q < 4; ++q)
   {
     voxel[u] = lowest[0] + (q & 1);
@@ -295,16 +368,6 @@ static void leave_end(const LampInfo* lamp, const BeamRow* row, float2 tangent, 
   tally->escaped[2 * row->axis + row->up] += left;
 #endif
 }
-
-// Where a beam is between two steps.
-typedef struct
-{
-  int layer, step;
-  float left, rest;
-#if IN_BLOCK
-  int voxel[3];
-#endif
-} beam_state;
 
 #if IN_BLOCK
 // The voxel that the middle of a beam is in, or the nearest of the grid; whether beams are followed there.
@@ -325,9 +388,10 @@ static bool is_followed(const LampInfo* lamp, const BeamRow* row, int layer, flo
 #endif
 
 // One beam from where it comes into the box's layers, or from where it was, to where it leaves them.
+// @param begin  its middle where it begins
 // @param power  that it set off with
 // @return whether it has; else, where IN_BLOCK, it has come to where beams are not followed, as `beam` says
-static bool follow_beam(const LampInfo* lamp, const BeamRow* row, float2 tangent, float power,
+static bool follow_beam(const LampInfo* lamp, const BeamRow* row, float2 begin, float2 tangent, float power,
   const __global float* sigma, __global long* path, ulong stride, beam_state* beam, lamp_tally* tally)
 {
   const int n = lamp->size[row->axis];
@@ -335,9 +399,9 @@ static bool follow_beam(const LampInfo* lamp, const BeamRow* row, float2 tangent
   const int v = (row->axis + 2) % 3;
   const float3 along = (float3)(lamp->spacing[row->axis], tangent.x * lamp->spacing[u], tangent.y * lamp->spacing[v]);
   const float per_layer = sqrt(dot(along, along));
-  const float start = lamp->position[row->axis];
+  const float start = row->from;
   const int first =
-    row->begin > 0.0f ? (row->up ? 0 : n - 1) : clamp((int)(row->up ? floor(start) : ceil(start) - 1.0f), 0, n - 1);
+    row->outside ? (row->up ? 0 : n - 1) : clamp((int)(row->up ? floor(start) : ceil(start) - 1.0f), 0, n - 1);
   const int layers = row->up ? n - first : first + 1;
   const int all = lamp->periodic[row->axis] ? row->layers : layers;
   const bool sideways = lamp->position[u] < 0.0f || lamp->position[u] > lamp->size[u] || lamp->position[v] < 0.0f ||
@@ -345,7 +409,7 @@ static bool follow_beam(const LampInfo* lamp, const BeamRow* row, float2 tangent
   // Where an axis is periodic beams go on until next to nothing is left; others leave.
   const float least = lamp->periodic[row->axis] ? 1e-7f * power : 0.0f;
   const int before = beam->layer;
-  float now = before == 0 ? row->begin : row->up ? first + before - start : start - (first - (before - 1));
+  float now = before == 0 ? 0.0f : row->up ? first + before - start : start - (first - (before - 1));
 #if IN_BLOCK
   bool follows = true;
 #endif
@@ -362,8 +426,8 @@ static bool follow_beam(const LampInfo* lamp, const BeamRow* row, float2 tangent
       // has there, not half a step on: so much power, and no less, enters.
       const bool first_step = k == 0 && s == 0;
       const bool last_step = k == all - 1 && s == STEPS - 1;
-      const float t = first_step && row->begin > 0.0f ? t0 : last_step && sideways ? t1 : 0.5f * (t0 + t1);
-      const float2 middle = (float2)(lamp->position[u] + tangent.x * t, lamp->position[v] + tangent.y * t);
+      const float t = first_step && row->outside ? t0 : last_step && sideways ? t1 : 0.5f * (t0 + t1);
+      const float2 middle = begin + tangent * t;
 #if IN_BLOCK
       // Whoever was given it takes its first step: it gets on wherever rounding sees it.
       if (!is_followed(lamp, row, layer, middle, beam->voxel) && !follows)
@@ -376,8 +440,8 @@ static bool follow_beam(const LampInfo* lamp, const BeamRow* row, float2 tangent
       follows = false;
 #endif
       step_beam(lamp, row, layer, first_step, last_step, tangent, middle,
-        clamp((float2)(row->widthU, row->widthV) * t, 1e-4f, 1.0f), (float2)(t0, t1), (t1 - t0) * per_layer, sigma,
-        path, stride, &beam->left, &beam->rest, tally);
+        fmin((float2)(row->openU, row->openV) + (float2)(row->widthU, row->widthV) * t, 1.0f), (float2)(t0, t1),
+        (t1 - t0) * per_layer, sigma, path, stride, beam, tally);
     }
     now = end;
   }
@@ -388,12 +452,12 @@ static bool follow_beam(const LampInfo* lamp, const BeamRow* row, float2 tangent
   }
   else
   {
-    leave_end(lamp, row, tangent, now, beam->left, tally);
+    leave_end(lamp, row, begin, tangent, now, beam->left, tally);
   }
   return true;
 }
 
-#if LAMBERT || CONE
+#if LAMBERT
 // Of the angle between a ray and the lamp's direction.
 static float cosine_at(const LampInfo* lamp, const BeamRow* row, float2 tangent)
 {
@@ -409,35 +473,132 @@ static float cosine_at(const LampInfo* lamp, const BeamRow* row, float2 tangent)
 #endif
 
 #if CONE
-#define PROBES 4 // an edge of a beam
-static float part_in_cone(const LampInfo* lamp, const BeamRow* row, float2 tangent, float2 half_width)
+#define SLICES 64 // of a beam that the border of the cone crosses
+
+// Rays d = (ahead, u + x, v) of a pyramid, v fixed; in the cone are those with a x^2 + 2 b x + c <= 0 and
+// along + x slope >= 0 (numerics.md, Eq. (33a)).
+typedef struct
 {
-  int inside = 0;
-  for (int i = 0; i < PROBES * PROBES; ++i)
+  float ahead, u, v;
+  float a, b, c, root;
+  float along, slope;
+} cone_slice;
+
+// @param v  from the base of the pyramid, length
+static cone_slice slice_at(const LampInfo* lamp, const BeamRow* row, float v)
+{
+  const int i = row->axis, j = (i + 1) % 3, k = (i + 2) % 3;
+  const float c[3] = { lamp->direction[i], lamp->direction[j], lamp->direction[k] };
+  const float m[3] = { row->crossing[0] - v * c[1], row->crossing[1] + v * c[0], row->crossing[2] };
+  const float s2 = lamp->sineSquare, k2 = lamp->cosine * lamp->cosine;
+  cone_slice slice;
+  slice.ahead = row->up ? lamp->spacing[i] : -lamp->spacing[i];
+  slice.u = row->baseU * lamp->spacing[j];
+  slice.v = row->baseV * lamp->spacing[k] + v;
+  const float plane = slice.ahead * slice.ahead + slice.v * slice.v, square = plane + slice.u * slice.u;
+  slice.along = slice.ahead * c[0] + slice.u * c[1] + slice.v * c[2];
+  slice.slope = c[1];
+  if (s2 < 0.5f)
   {
-    const float2 probe = ((float2)(i % PROBES, i / PROBES) + 0.5f) * (2.0f / PROBES) - 1.0f;
-    inside += cosine_at(lamp, row, tangent + probe * half_width) >= lamp->cosine ? 1 : 0;
+    slice.a = c[0] * c[0] + c[2] * c[2] - s2;
+    slice.b = m[0] * c[2] - m[2] * c[0] - s2 * slice.u;
+    slice.c = m[0] * m[0] + m[1] * m[1] + m[2] * m[2] - s2 * square;
   }
-  return inside / (float)(PROBES * PROBES);
+  else
+  {
+    slice.a = k2 - c[1] * c[1];
+    slice.b = k2 * slice.u - slice.along * c[1];
+    slice.c = k2 * square - slice.along * slice.along;
+  }
+  slice.root = k2 * (s2 * plane - m[1] * m[1]);
+  return slice;
+}
+
+static bool is_in_cone(const cone_slice* slice, float x)
+{
+  return (slice->a * x + 2.0f * slice->b) * x + slice->c <= 0.0f && slice->along + slice->slope * x >= 0.0f;
+}
+
+// What of the slice from edges.x to edges.y is in the cone.
+static float2 part_of_slice(const cone_slice* slice, float2 edges)
+{
+  const bool low = is_in_cone(slice, edges.x), high = is_in_cone(slice, edges.y);
+  if (low && high)
+  {
+    return edges;
+  }
+  const float q = -(slice->b + copysign(sqrt(fmax(slice->root, 0.0f)), slice->b));
+  const float r0 = slice->a != 0.0f ? q / slice->a : INFINITY, r1 = q != 0.0f ? slice->c / q : r0;
+  if (low != high)
+  {
+    const float middle = 0.5f * (edges.x + edges.y);
+    const float border = clamp(fabs(r0 - middle) < fabs(r1 - middle) ? r0 : r1, edges.x, edges.y);
+    return low ? (float2)(edges.x, border) : (float2)(border, edges.y);
+  }
+  const float first = fmin(r0, r1), second = fmax(r0, r1);
+  const bool within = slice->a > 0.0f && slice->root > 0.0f && first > edges.x && second < edges.y &&
+    slice->along + slice->slope * 0.5f * (first + second) > 0.0f;
+  return within ? (float2)(first, second) : edges.xx;
+}
+
+// Solid angle of a part of a slice, over its height.
+static float angle_of_slice(const cone_slice* slice, float2 part)
+{
+  const float x = slice->u + 0.5f * (part.x + part.y);
+  const float inverse = rsqrt(slice->ahead * slice->ahead + x * x + slice->v * slice->v);
+  return (part.y - part.x) * inverse * inverse * inverse;
+}
+
+// Part of a beam's solid angle that is in the cone.
+//   middle  from the base of the pyramid
+static float part_in_cone(const LampInfo* lamp, const BeamRow* row, float2 middle)
+{
+  const float2 spacing = (float2)(lamp->spacing[(row->axis + 1) % 3], lamp->spacing[(row->axis + 2) % 3]);
+  const float2 low = (middle - 0.5f * (float2)(row->widthU, row->widthV)) * spacing;
+  const float2 width = (float2)(row->widthU, row->widthV) * spacing, edges = (float2)(low.x, low.x + width.x);
+  const cone_slice bottom = slice_at(lamp, row, low.y), top = slice_at(lamp, row, low.y + width.y);
+  if (is_in_cone(&bottom, edges.x) && is_in_cone(&bottom, edges.y) && is_in_cone(&top, edges.x) &&
+    is_in_cone(&top, edges.y)) // which is convex
+  {
+    return 1.0f;
+  }
+  float inside = 0.0f, all = 0.0f;
+  for (int i = 0; i < SLICES; ++i)
+  {
+    const cone_slice slice = slice_at(lamp, row, low.y + (i + 0.5f) / SLICES * width.y);
+    inside += angle_of_slice(&slice, part_of_slice(&slice, edges));
+    all += angle_of_slice(&slice, edges);
+  }
+  return inside / all;
 }
 #endif
 
-static float2 tangent_of(const BeamRow* row, int beam)
+// Of a beam of a row, from the base of its pyramid; of the pyramid's axis; and its middle where it begins.
+static float2 tangent_from_base(const BeamRow* row, int beam)
 {
   return (float2)(row->tangentU + beam * row->widthU, row->tangentV);
 }
 
-// Of the lamp's, that a beam sets off with.
-static float power_of_beam(const LampInfo* lamp, const BeamRow* row, float2 tangent)
+static float2 tangent_of(const BeamRow* row, int beam)
 {
-  const float hu = lamp->spacing[(row->axis + 1) % 3], hv = lamp->spacing[(row->axis + 2) % 3];
-  const float2 half_width = 0.5f * (float2)(row->widthU, row->widthV);
-  float angle = solid_angle((tangent.x - half_width.x) * hu, (tangent.x + half_width.x) * hu,
-    (tangent.y - half_width.y) * hv, (tangent.y + half_width.y) * hv, lamp->spacing[row->axis]);
+  return (float2)(row->baseU, row->baseV) + tangent_from_base(row, beam);
+}
+
+static float2 begin_of(const BeamRow* row, int beam)
+{
+  return (float2)(row->startU + beam * row->openU, row->startV);
+}
+
+// Of the lamp's share, that a beam sets off with.
+static float power_of_beam(const LampInfo* lamp, const BeamRow* row, int beam)
+{
+  const float2 spacing = (float2)(lamp->spacing[(row->axis + 1) % 3], lamp->spacing[(row->axis + 2) % 3]);
+  const float2 tangent = tangent_of(row, beam), size = (float2)(row->widthU, row->widthV) * spacing;
+  float angle = solid_angle(tangent.x * spacing.x, tangent.y * spacing.y, size.x, size.y, lamp->spacing[row->axis]);
 #if LAMBERT
   angle *= fmax(cosine_at(lamp, row, tangent), 0.0f);
 #elif CONE
-  angle *= part_in_cone(lamp, row, tangent, half_width);
+  angle *= part_in_cone(lamp, row, tangent_from_base(row, beam));
 #endif
   return angle > 0.0f ? lamp->intensity * angle : 0.0f;
 }
@@ -476,14 +637,13 @@ static void follow_row(const LampInfo* lamp, const BeamRow* row, const __global 
   clear_tally(&tally, cells);
   for (int i = 0; i < row->count; ++i)
   {
-    const float2 tangent = tangent_of(row, i);
-    const float power = power_of_beam(lamp, row, tangent);
+    const float power = power_of_beam(lamp, row, i);
     if (power > 0.0f)
     {
-      beam_state beam = { 0, 0, power, 0.0f };
+      beam_state beam = { 0, 0, power, 0.0f, { 1.0f, 1.0f } };
       tally.entered += row->skipped > 0 ? 0.0f : power;
       shone += power;
-      follow_beam(lamp, row, tangent, power, sigma, path, stride, &beam, &tally);
+      follow_beam(lamp, row, begin_of(row, i), tangent_of(row, i), power, sigma, path, stride, &beam, &tally);
     }
   }
   write_sums(&tally, shone, sums);

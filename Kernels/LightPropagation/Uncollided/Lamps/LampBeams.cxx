@@ -38,8 +38,9 @@ public:
       this->FollowPoints(pass, factor, ofPass);
     };
     const double even = FollowInPasses(this->Volume.grid, this->Periodic, this->Shares, follow, monitor);
-    // All directions of a lamp inside the box were followed: so it is known what beams on the cone's border missed.
-    const double correction = this->AllInside && this->Shares.shone > 0.0 ? 1.0 / this->Shares.shone : 1.0;
+    // Where all directions that the lamp shines in were followed, it is known what they should have had.
+    const double correction =
+      this->AllFollowed && this->Shares.shone > 0.0 ? 1.0 / this->Shares.shone : this->Lamp.Share();
     this->Sums.AddTo(this->Volume, this->Lamp, correction);
     if (this->Volume.deposit.faceOut)
     {
@@ -70,7 +71,7 @@ private:
 
   void Follow(const glm::dvec3& point, const Pass& pass, double part, const std::function<void(double)>& report)
   {
-    this->AllInside = this->AllInside && this->Lamp.IsInside(point);
+    this->AllFollowed = this->AllFollowed && this->Lamp.FollowsAll(point);
     const std::vector<BeamRow> rows = this->Lamp.Rows(point, pass);
     if (rows.empty())
     {
@@ -112,7 +113,7 @@ private:
   std::array<bool, 3> Periodic;
   LampSums Sums;
   LampShares Shares;
-  bool AllInside = true;
+  bool AllFollowed = true; ///< directions that it shines in
 };
 }
 

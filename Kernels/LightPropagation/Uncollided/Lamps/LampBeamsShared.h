@@ -22,8 +22,8 @@ typedef struct
   float spacing[3];
   float position[3];                ///< of the lamp, from the box's corner
   float direction[3];               ///< unit, in space
-  float cosine;                     ///< of the cone's half angle
-  float intensity;                  ///< part of the power, per steradian; at normal emission where LAMBERT
+  float cosine, sineSquare;         ///< of the cone's half angle
+  float intensity;                  ///< part of the lamp's share, per steradian; at normal emission where LAMBERT
   float scale;                      ///< fixed point units per length
   float diagonal;                   ///< of a voxel
   int faceFirst[6], faceStep[3][3]; ///< as BoxFaceLayout has them: of each face; of an axis' faces, along each axis
@@ -33,10 +33,15 @@ typedef struct
 typedef struct
 {
   int axis, up;             ///< marches along the axis, up or down
-  float tangentU, tangentV; ///< of the first beam's middle; v's for all
+  float baseU, baseV;       ///< tangents of the pyramid that others are relative to: a narrow cone's axis
+  float crossing[3];        ///< base's direction x the cone's axis, along axis, u, v
+  float tangentU, tangentV; ///< of the first beam's middle, from the base; v's for all
   float widthU, widthV;     ///< of a beam, in tangents
   int count;                ///< of beams along u
-  float begin;              ///< layers from the lamp to the box, 0 inside
+  int outside;              ///< the lamp is outside the box's layers
+  float from;               ///< where beams begin: the lamp's place along the axis, or the box's face
+  float startU, startV;     ///< there the first beam's middle, voxels
+  float openU, openV;       ///< and there the width of a beam
   int skipped;              ///< layers that they go before anything is counted and put down
   int layers;               ///< that they go in all where the axis is periodic
 } BeamRow;
@@ -49,6 +54,7 @@ typedef struct
   int begun;       ///< 0: it has not set off
   float left;      ///< of its power
   float rest;      ///< too small to be seen in it
+  float stays[2];  ///< of its cross-section, along u and v, what has not left the box
   int voxel[3];    ///< that its middle is in then, or the nearest of the grid
   int ended;       ///< 1: it has left the grid
 } BeamOnItsWay;

@@ -3,6 +3,7 @@
 #include "Device/Defines.h"
 #include "Medium/BoxFaces.h"
 #include "Numerics/Constants.h"
+#include "Numerics/NumberText.h"
 #include "Numerics/Vectors.h"
 
 #include <glm/geometric.hpp>
@@ -75,6 +76,35 @@ bool LampOnGrid::IsInside(const glm::dvec3& point) const
   return inside;
 }
 
+bool LampOnGrid::FollowsAll(const glm::dvec3& point) const
+{
+  return this->IsInside(point) ||
+    (this->Lamp.type == LightType::Spot && SeesAllOfCone(this->TheGrid, this->Lamp, point));
+}
+
+/// By the ball around the box; a power of two.
+double LampOnGrid::Share() const
+{
+  constexpr double ofNearBall = 1.1; // solid angle of a ball over pi (radius / distance)^2, from twice its radius on
+  const Grid& grid = this->TheGrid;
+  const double radius = 0.5 * std::hypot(grid.Length(0), grid.Length(1), grid.Length(2));
+  glm::dvec3 way = Vector(grid.origin) - Vector(this->Lamp.position);
+  for (int a = 0; a < 3; ++a)
+  {
+    way[a] += 0.5 * grid.Length(a);
+  }
+  const double ofLamp =
+    this->Lamp.type == LightType::Rectangle ? 0.5 * std::hypot(this->Lamp.size[0], this->Lamp.size[1]) : 0.0;
+  const double distance = glm::length(way) - ofLamp;
+  if (distance < 2.0 * radius)
+  {
+    return 1.0;
+  }
+  const double part = radius / distance;
+  const double share = ofNearBall * Pi * AxialIntensity(this->Lamp) * part * part;
+  return share < 1.0 ? std::exp2(std::ceil(std::log2(share))) : 1.0;
+}
+
 std::vector<BeamRow> LampOnGrid::Rows(const glm::dvec3& point, const Pass& pass) const
 {
   const double width = this->Lamp.type == LightType::Rectangle ? 2.0 * BeamWidth : BeamWidth;
@@ -86,8 +116,7 @@ LampInfo LampOnGrid::Describe(
 {
   LampInfo info = {};
   const Grid& grid = this->TheGrid;
-  const glm::dvec3 direction =
-    this->Lamp.type == LightType::Point ? glm::dvec3(0.0, 0.0, 1.0) : glm::normalize(Vector(this->Lamp.direction));
+  const std::array<double, 3> direction = DirectionOf(this->Lamp);
   for (int a = 0; a < 3; ++a)
   {
     info.size[a] = grid.size[a];
@@ -100,8 +129,10 @@ LampInfo LampOnGrid::Describe(
     info.position[a] = static_cast<float>(point[a]);
     info.direction[a] = static_cast<float>(direction[a]);
   }
-  info.intensity = static_cast<float>(AxialIntensity(this->Lamp) * part);
-  info.cosine = static_cast<float>(std::cos(0.5 * this->Lamp.angle * Pi / 180.0));
+  info.intensity = static_cast<float>(AxialIntensity(this->Lamp) * part / this->Share());
+  const double sine = std::sin(HalfAngle(this->Lamp));
+  info.cosine = static_cast<float>(std::cos(HalfAngle(this->Lamp)));
+  info.sineSquare = static_cast<float>(sine * sine);
   info.scale = static_cast<float>(this->UnitsPerLength());
   info.diagonal = static_cast<float>(this->Diagonal());
   for (int face = 0; face < 6; ++face)
@@ -131,6 +162,6 @@ cl::Kernel LampOnGrid::Kernel(Device& device, const char* name, std::string_view
     Define("ATOMICS", HasAtomics(device)) + Define("LAMBERT", this->Lamp.type == LightType::Rectangle) +
       Define("CONE", this->Lamp.type == LightType::Spot) + Define("MOMENTS", deposit.firstMoments != nullptr) +
       Define("NET_FLUX", deposit.flux != nullptr) + Define("FACE_OUT", deposit.faceOut != nullptr) +
-      DefineFloat("THIN", ThinForFirstMoments));
+      " -DTHIN=" + FloatLiteral(ThinForFirstMoments));
 }
 }

@@ -37,6 +37,13 @@ public:
   /// The beams from one of its points.
   std::vector<BeamRow> Rows(const glm::dvec3& point, const Pass& pass) const;
 
+  /// Whether its beams take all light from one of its points: it is in the box, or its cone leads into it.
+  bool FollowsAll(const glm::dvec3& point) const;
+
+  /// Of the lamp's power, at least what comes to the box: what is counted in parts of it keeps its digits however far
+  /// away the lamp is.
+  double Share() const;
+
   /// @param part  of the lamp's power that the point has
   /// @param stored  the voxels that arrays hold; and of them those in which beams are followed
   LampInfo Describe(const glm::dvec3& point, double part, const VoxelBox& stored, const VoxelBox& followed) const;

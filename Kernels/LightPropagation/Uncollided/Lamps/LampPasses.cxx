@@ -27,7 +27,7 @@ double FollowInPasses(const Grid& grid, const std::array<bool, 3>& periodic, Lam
     const Monitor ofPass = OfPart(monitor, 1.0 - std::exp2(-done), 1.0 - std::exp2(-done - 1));
     const double wanted = std::exchange(shares.onTheWay, 0.0);
     pass = pass.Next();
-    follow({ pass.begin, pass.begin }, 1.0, {}); // what these beams have left where the pass begins
+    follow({ pass.begin, pass.end, true }, 1.0, {}); // what the same beams have left where the pass begins
     const double found = std::exchange(shares.onTheWay, 0.0);
     if (!(found > 0.0))
     {

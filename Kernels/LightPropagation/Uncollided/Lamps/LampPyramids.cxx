@@ -1,9 +1,6 @@
 #include "LightPropagation/Uncollided/Lamps/LampPyramids.h"
 
 #include "Numerics/Constants.h"
-#include "Numerics/Vectors.h"
-
-#include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -12,51 +9,12 @@ namespace tyndall
 {
 namespace
 {
+constexpr double RightAngle = 0.5 * Pi;
 constexpr int BeamsAcrossCone = 16; ///< of a spot, at least
 constexpr int FirstReach = 2;    ///< longest edges of the box, in voxels, that beams go along a periodic axis at first
 constexpr int Farther = 4;       ///< times as far in each pass after that
 constexpr int BeamsAtLeast = 16; ///< along an edge of a pyramid that goes round a periodic axis
 constexpr double BeamsPerVoxel = 64.0; ///< that cross it in a pass, about
-
-/// Smallest and largest tangent (voxels along `aside` per layer) at which the box is seen from `position` between two
-/// depths, within the pyramid.
-std::array<double, 2> Tangents(const Grid& grid, const glm::dvec3& position, int aside, double near, double far)
-{
-  const double low = -position[aside];
-  const double high = grid.size[aside] - position[aside];
-  const double depth = std::max(near, 1e-9);
-  return { std::max(-1.0, std::min(low / depth, low / far)), std::min(1.0, std::max(high / depth, high / far)) };
-}
-
-/// Tangents (voxels along `aside` per layer) between which a spot's cone is seen in the pyramid along `axis`. The
-/// planes that touch the cone and hold the third axis are turned by asin(sin(half angle) / R) from its middle, R the
-/// length of that in the plane of the two axes. The first is larger than the second where the cone is not seen there.
-std::array<double, 2> TangentsOfCone(const Grid& grid, int axis, bool up, int aside, const Light& light)
-{
-  constexpr double rightAngle = 0.5 * Pi;
-  constexpr double margin = 1e-6; // rounding must not cut the cone
-  const glm::dvec3 middle = glm::normalize(Vector(light.direction));
-  const double forward = up ? middle[axis] : -middle[axis];
-  const double half = 0.5 * light.angle * Pi / 180.0;
-  const double inPlane = std::hypot(forward, middle[aside]);
-  if (half >= rightAngle || std::sin(half) >= inPlane)
-  {
-    return { -1.0, 1.0 };
-  }
-  const double turn = std::atan2(middle[aside], forward);
-  const double reach = std::asin(std::sin(half) / inPlane) + margin;
-  if (turn - reach >= rightAngle || turn + reach <= -rightAngle)
-  {
-    return { 1.0, -1.0 };
-  }
-  const auto tangent = [&](double angle) {
-    return std::abs(angle) >= rightAngle ? std::copysign(1.0, angle)
-                                         : std::tan(angle) * grid.spacing[axis] / grid.spacing[aside];
-  };
-  const double low = tangent(turn - reach), high = tangent(turn + reach);
-  const double aroundIt = 0.01 * (high - low); // beams' edges do not fall on the cone's
-  return { std::max(low - aroundIt, -1.0), std::min(high + aroundIt, 1.0) };
-}
 
 /// How many beams lie beside each other between two tangents.
 /// @param far  layers to where they are to be `width` voxels wide
@@ -65,39 +23,160 @@ int BeamsBetween(const std::array<double, 2>& tangents, double far, double width
   return static_cast<int>(std::ceil((tangents[1] - tangents[0]) * far / width - 1e-6)); // rounding decides on no more
 }
 
-/// The pyramid of beams along one axis.
+bool IsEmpty(const std::array<double, 2>& range)
+{
+  return range[0] >= range[1];
+}
+
+/// Beams beside each other: between which tangents, and how many.
+struct BeamGrid
+{
+  std::array<double, 2> u, v;
+  int countU, countV;
+};
+
+/// A spot's cone as the plane of a pyramid's axis and one aside has it: the planes that touch the cone and hold the
+/// third axis are turned by asin(sin(half angle) / R) from its middle, R the length of that in the plane.
+struct ConeInPlane
+{
+  ConeInPlane(double forward, double aside, double sine)
+    : hasSides(sine < std::hypot(forward, aside))
+    , turn(std::atan2(aside, forward))
+    , reach(hasSides ? std::asin(sine / std::hypot(forward, aside)) : Pi)
+  {
+  }
+
+  bool hasSides; ///< it is not seen all around
+  double turn, reach;
+};
+
+/// Where pyramids border on each other: a ray belongs to the axis along which it goes furthest, in voxels times these
+/// weights. From far the box is all in one pyramid: where two of them meet, beams' steps leave uneven gaps.
+std::array<double, 3> WeightsOfAxes(const Grid& grid, const glm::dvec3& position)
+{
+  constexpr double widest = 1.5; // tangent, at which beams still move aside by less than a voxel a step
+  double least = widest;
+  std::array<double, 3> weights = { 1.0, 1.0, 1.0 };
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double near = std::max(-position[axis], position[axis] - grid.size[axis]);
+    double aside = 0.0;
+    for (int k = 1; k <= 2; ++k)
+    {
+      const double place = position[(axis + k) % 3];
+      aside = std::max({ aside, std::abs(place), std::abs(grid.size[(axis + k) % 3] - place) });
+    }
+    if (near > 0.0 && aside <= least * near)
+    {
+      least = aside / near;
+      weights = { 1.0, 1.0, 1.0 };
+      weights[axis] = widest;
+    }
+  }
+  return weights;
+}
+
+/// The pyramid of beams along one axis. Tangents along the k-th axis after it are voxels aside per layer, and counted
+/// from `Base`: that of a narrow cone's axis, so that they keep their digits however narrow it is, else 0.
 class Pyramid
 {
 public:
-  Pyramid(const Grid& grid, const std::array<bool, 3>& periodic, const glm::dvec3& position, int axis, bool up)
-    : TheGrid(grid)
+  Pyramid(const Grid& grid, const std::array<bool, 3>& periodic, const Light& light, const glm::dvec3& position,
+    int axis, bool up)
+    : Axis(axis)
+    , Up(up)
+    , TheGrid(grid)
     , Periodic(periodic)
     , Position(position)
-    , Axis(axis)
-    , Up(up)
     , Near(std::max(0.0, up ? -position[axis] : position[axis] - grid.size[axis]))
     , Far(up ? grid.size[axis] - position[axis] : position[axis])
   {
+    const std::array<double, 3> weights = WeightsOfAxes(grid, position);
+    this->Widest = { weights[axis] / weights[(axis + 1) % 3], weights[axis] / weights[(axis + 2) % 3] };
+    if (light.type != LightType::Spot)
+    {
+      return;
+    }
+    const ConeInPlane first = this->ConeAlong(1, light), second = this->ConeAlong(2, light);
+    this->HasBase = IsNarrow(first) && IsNarrow(second);
+    if (this->HasBase)
+    {
+      this->Base = { std::tan(first.turn) * this->PerLayer(1), std::tan(second.turn) * this->PerLayer(2) };
+    }
   }
 
   bool IsThere(const Pass& pass) const { return this->Far > 0.0 && (pass.begin == 0 || this->Periodic[this->Axis]); }
 
-  /// Tangents along the k-th axis after this one, of beams that are still in the box in a pass.
+  /// Of beams that are still in the box in a pass.
   std::array<double, 2> Seen(int k, const Light& light, const Pass& pass) const
   {
     const int aside = (this->Axis + k) % 3;
-    std::array<double, 2> seen = Tangents(this->TheGrid, this->Position, aside, this->Near, this->Far);
+    std::array<double, 2> seen = this->Box(k);
     if (pass.begin > 0 && !this->Periodic[aside])
     {
-      seen = { std::max(seen[0], -this->Position[aside] / pass.begin),
-        std::min(seen[1], (this->TheGrid.size[aside] - this->Position[aside]) / pass.begin) };
+      const double depth = this->Near + pass.begin, low = -this->Position[aside];
+      seen = { std::max(seen[0], low / depth - this->Base[k - 1]),
+        std::min(seen[1], (this->TheGrid.size[aside] + low) / depth - this->Base[k - 1]) };
     }
     if (light.type == LightType::Spot)
     {
-      const std::array<double, 2> cone = TangentsOfCone(this->TheGrid, this->Axis, this->Up, aside, light);
-      seen = { std::max(seen[0], cone[0]), std::min(seen[1], cone[1]) };
+      const std::array<double, 2> cone = this->Cone(k, light);
+      const double aroundIt = 0.01 * (cone[1] - cone[0]); // beams' edges do not fall on the cone's
+      seen = { std::max(seen[0], cone[0] - aroundIt), std::min(seen[1], cone[1] + aroundIt) };
     }
     return seen;
+  }
+
+  /// Whether all of a spot's cone that is in the pyramid is seen.
+  bool SeesAllOfCone(const Light& spot) const
+  {
+    bool isThere = true, seesAll = this->Far > 0.0;
+    for (int k = 1; k <= 2; ++k)
+    {
+      const double base = this->Base[k - 1], widest = this->Widest[k - 1];
+      const std::array<double, 2> cone = this->Cone(k, spot), box = this->Box(k);
+      const std::array<double, 2> part = { std::max(cone[0], -widest - base), std::min(cone[1], widest - base) };
+      isThere = isThere && !IsEmpty(part);
+      seesAll = seesAll && box[0] <= part[0] && part[1] <= box[1];
+    }
+    return seesAll || !isThere;
+  }
+
+  BeamRow Row(const BeamGrid& beams, int number, const Light& light, const Pass& pass) const
+  {
+    const double width[] = { (beams.u[1] - beams.u[0]) / beams.countU, (beams.v[1] - beams.v[0]) / beams.countV };
+    const double middle[] = { beams.u[0] + 0.5 * width[0], beams.v[0] + (number + 0.5) * width[1] };
+    const auto start = [&](int k) { // in doubles: from far both parts are large
+      return static_cast<float>(this->Position[(this->Axis + 1 + k) % 3] + (this->Base[k] + middle[k]) * this->Near);
+    };
+    const bool outside = this->Near > 0.0;
+    const double from = !outside ? this->Position[this->Axis] : this->Up ? 0.0 : this->TheGrid.size[this->Axis];
+    BeamRow row = {};
+    row.axis = this->Axis;
+    row.up = this->Up;
+    row.baseU = static_cast<float>(this->Base[0]);
+    row.baseV = static_cast<float>(this->Base[1]);
+    if (light.type == LightType::Spot && !this->HasBase)
+    {
+      const std::array<double, 3> along = DirectionOf(light);
+      const double layer = (this->Up ? 1.0 : -1.0) * this->TheGrid.spacing[this->Axis];
+      row.crossing[1] = static_cast<float>(-layer * along[(this->Axis + 2) % 3]);
+      row.crossing[2] = static_cast<float>(layer * along[(this->Axis + 1) % 3]);
+    }
+    row.tangentU = static_cast<float>(middle[0]);
+    row.tangentV = static_cast<float>(middle[1]);
+    row.widthU = static_cast<float>(width[0]);
+    row.widthV = static_cast<float>(width[1]);
+    row.count = beams.countU;
+    row.outside = outside;
+    row.from = static_cast<float>(from);
+    row.startU = start(0);
+    row.startV = start(1);
+    row.openU = static_cast<float>(width[0] * this->Near);
+    row.openV = static_cast<float>(width[1] * this->Near);
+    row.skipped = pass.begin;
+    row.layers = pass.onlyBefore ? pass.begin : pass.end;
+    return row;
   }
 
   /// Beams along the k-th axis after this one. They are at most `width` voxels wide where they leave the box, or where
@@ -126,14 +205,83 @@ public:
     return std::max(count, static_cast<int>(std::min(enough, BeamsBetween(seen, pass.begin, width) + 0.0)));
   }
 
+  const int Axis;
+  const bool Up;
+
+private:
+  /// The cone is so narrow, and so far from the planes across the axis, that its border is near its axis' tangent.
+  static bool IsNarrow(const ConeInPlane& cone)
+  {
+    constexpr double narrow = 0.1;
+    return cone.reach < narrow * std::min(1.0, RightAngle - std::abs(cone.turn));
+  }
+
+  double PerLayer(int k) const
+  {
+    return this->TheGrid.spacing[this->Axis] / this->TheGrid.spacing[(this->Axis + k) % 3];
+  }
+
+  ConeInPlane ConeAlong(int k, const Light& spot) const
+  {
+    const std::array<double, 3> along = DirectionOf(spot);
+    return { this->Up ? along[this->Axis] : -along[this->Axis], along[(this->Axis + k) % 3],
+      std::sin(HalfAngle(spot)) };
+  }
+
+  /// Between which the box is seen, within the pyramid.
+  std::array<double, 2> Box(int k) const
+  {
+    const int aside = (this->Axis + k) % 3;
+    const double low = -this->Position[aside];
+    const double high = this->TheGrid.size[aside] - this->Position[aside];
+    const double depth = std::max(this->Near, 1e-9), widest = this->Widest[k - 1];
+    return { std::max(-widest, std::min(low / depth, low / this->Far)) - this->Base[k - 1],
+      std::min(widest, std::max(high / depth, high / this->Far)) - this->Base[k - 1] };
+  }
+
+  /// Between which a spot's cone is; the first is larger than the second where it is not in the pyramid.
+  std::array<double, 2> Cone(int k, const Light& spot) const
+  {
+    const ConeInPlane cone = this->ConeAlong(k, spot);
+    if (HalfAngle(spot) >= RightAngle || !cone.hasSides)
+    {
+      return { -this->Widest[k - 1], this->Widest[k - 1] };
+    }
+    if (cone.turn - cone.reach >= RightAngle || cone.turn + cone.reach <= -RightAngle)
+    {
+      return { 1.0, -1.0 };
+    }
+    if (this->HasBase) // tan a - tan b = sin(a - b) / (cos a cos b)
+    {
+      const double scale = std::sin(cone.reach) / std::cos(cone.turn) * this->PerLayer(k);
+      return { -scale / std::cos(cone.turn - cone.reach), scale / std::cos(cone.turn + cone.reach) };
+    }
+    const auto tangent = [&](double angle) {
+      return std::abs(angle) >= RightAngle ? std::copysign(this->Widest[k - 1], angle)
+                                           : std::tan(angle) * this->PerLayer(k);
+    };
+    return { tangent(cone.turn - cone.reach), tangent(cone.turn + cone.reach) };
+  }
+
   const Grid& TheGrid;
   const std::array<bool, 3>& Periodic;
   const glm::dvec3& Position;
-  const int Axis;
-  const bool Up;
-  const double Near, Far; ///< layers from the light to the box and to where it ends
+  const double Near, Far;                      ///< layers from the light to the box and to where it ends
+  std::array<double, 2> Widest = { 1.0, 1.0 }; ///< tangents, from 0, where other pyramids begin
+  bool HasBase = false;
+  std::array<double, 2> Base = {};
 };
+}
 
+bool SeesAllOfCone(const Grid& grid, const Light& spot, const glm::dvec3& position)
+{
+  constexpr std::array<bool, 3> open = {};
+  bool all = true;
+  for (int face = 0; face < 6; ++face)
+  {
+    all = all && Pyramid(grid, open, spot, position, face / 2, face % 2 == 1).SeesAllOfCone(spot);
+  }
+  return all;
 }
 
 Pass Pass::Next() const
@@ -152,24 +300,21 @@ std::vector<BeamRow> Beams(const Grid& grid, const std::array<bool, 3>& periodic
   std::vector<BeamRow> rows;
   for (int face = 0; face < 6; ++face)
   {
-    const Pyramid pyramid(grid, periodic, position, face / 2, face % 2 == 1);
+    const Pyramid pyramid(grid, periodic, light, position, face / 2, face % 2 == 1);
     if (!pyramid.IsThere(pass))
     {
       continue;
     }
-    const std::array<double, 2> u = pyramid.Seen(1, light, pass), v = pyramid.Seen(2, light, pass);
-    if (u[0] >= u[1] || v[0] >= v[1])
+    BeamGrid beams = { pyramid.Seen(1, light, pass), pyramid.Seen(2, light, pass), 0, 0 };
+    if (IsEmpty(beams.u) || IsEmpty(beams.v))
     {
       continue;
     }
-    const int countU = pyramid.Count(1, u, light, pass, width), countV = pyramid.Count(2, v, light, pass, width);
-    for (int j = 0; j < countV; ++j)
+    beams.countU = pyramid.Count(1, beams.u, light, pass, width);
+    beams.countV = pyramid.Count(2, beams.v, light, pass, width);
+    for (int j = 0; j < beams.countV; ++j)
     {
-      const double widthU = (u[1] - u[0]) / countU;
-      const double widthV = (v[1] - v[0]) / countV;
-      rows.push_back({ pyramid.Axis, pyramid.Up, static_cast<float>(u[0] + 0.5 * widthU),
-        static_cast<float>(v[0] + (j + 0.5) * widthV), static_cast<float>(widthU), static_cast<float>(widthV), countU,
-        static_cast<float>(pyramid.Near), pass.begin, pass.end });
+      rows.push_back(pyramid.Row(beams, j, light, pass));
     }
   }
   return rows;

@@ -14,7 +14,8 @@ namespace tyndall
 /// A part of the way of beams that go round a periodic axis. Others have the first only.
 struct Pass
 {
-  int begin, end; ///< layers from the lamp
+  int begin, end;          ///< layers from the lamp
+  bool onlyBefore = false; ///< its beams stop where it begins
 
   Pass Next() const; ///< where this one ends, four times as far
 };
@@ -31,4 +32,7 @@ Pass FirstPass(const Grid& grid); ///< twice the box's longest edge
 /// @param position  of the point, voxels from the box's corner
 std::vector<BeamRow> Beams(const Grid& grid, const std::array<bool, 3>& periodic, const Light& light,
   const glm::dvec3& position, double width, const Pass& pass);
+
+/// Whether the beams of the first pass hold all of a spot's cone.
+bool SeesAllOfCone(const Grid& grid, const Light& spot, const glm::dvec3& position);
 }
