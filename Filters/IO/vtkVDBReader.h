@@ -6,6 +6,7 @@
 #include "vtkNew.h"           // for members
 #include "vtkTyndallModule.h" // for export macro
 
+#include <array>
 #include <memory>
 
 class vtkDataArraySelection;
@@ -41,6 +42,9 @@ class vtkDataArraySelection;
  * knows that a medium is sparse. No mask of what is active goes with the image: it would be wrong after a filter that
  * changes an array, and solvers find what is empty from the values in one pass.
  *
+ * Files of a series may have other extents, places and grids than each other: filters after the reader are told of the
+ * extent of the time that is asked for. A grid that is switched on and is not in one of the files is left out there.
+ *
  * The file is listed without loading a voxel value, and leaves are loaded where the requested extent needs them only.
  *
  * Errors, each one message, with empty output: a file that is not there, truncated or corrupt (see VDBFile.h for what
@@ -58,10 +62,17 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
-  /// The .vdb file.
-  vtkSetFilePathMacro(FileName);
-  vtkGetFilePathMacro(FileName);
+  /// The .vdb file, or those of a series: the first at time 0, the next at time 1, and so on. Each time's image is what
+  /// its file alone gives, with an extent of its own; a file without active voxels is an empty image.
+  void SetFileName(VTK_FILEPATH const char* fileName); ///< instead of all others; null: none
+  void AddFileName(VTK_FILEPATH const char* fileName);
+  void RemoveAllFileNames();
+  int GetNumberOfFileNames() const;
+  const char* GetFileName(int index = 0); ///< null: there is none
   ///@}
+
+  /// The file that was looked at last.
+  const char* GetCurrentFileName();
 
   /// Whether the file begins as an OpenVDB file does.
   virtual int CanReadFile(const char* fileName);
@@ -100,12 +111,16 @@ protected:
 
   int RequestInformation(vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output) override;
   int RequestData(vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output) override;
+  vtkExecutive* CreateDefaultExecutive() override;
 
 private:
   vtkVDBReader(const vtkVDBReader&) = delete;
   void operator=(const vtkVDBReader&) = delete;
 
-  char* FileName = nullptr;
+  class SeriesPipeline;
+  int FileAskedFor(vtkInformation* output) const;
+  std::array<int, 6> ExtentToRead(vtkInformation* output);
+
   vtkIdType MaximumMemory = 0;
   vtkNew<vtkDataArraySelection> GridSelection;
 

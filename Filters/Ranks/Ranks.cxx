@@ -84,14 +84,15 @@ void EndTogether(Communicator& communicator, const Ending& own)
   {
     communicator.Together([&] {
       Require(own.kind != Ending::InputFailed, "The filter before failed, and says why there.");
+      Require(own.kind != Ending::Empty, "The input image is empty.");
       Throw(own);
     });
   }
   catch (const InvalidInput&)
   {
-    if (own.kind == Ending::InputFailed)
+    if (own.kind == Ending::InputFailed || own.kind == Ending::Empty)
     {
-      throw InputFailed(); // which is no error of this filter here
+      Throw(own); // which is no error of this filter here
     }
     throw;
   }

@@ -174,6 +174,10 @@ int GuardedOn(vtkMultiProcessController* ranks, vtkAlgorithm* filter, vtkInforma
     ForgetAbort(filter);
     last.Note(LastFailure::Abort);
   }
+  else if (ending.kind == Ending::Empty)
+  {
+    EmptyOutputs(outputs, EmptyFact);
+  }
   else if (ending.kind != Ending::Done)
   {
     EmptyOutputs(outputs, FailedFact);
