@@ -310,6 +310,41 @@ vtkDataArray* ChosenArray(vtkAlgorithm* filter, int index, vtkImageData* image, 
   return Find(image, ChoiceOf(filter, index, otherwise)).array;
 }
 
+ArraysRead FindArrays(vtkAlgorithm* filter, const VoxelArrays& arrays, vtkImageData* image)
+{
+  ArraysRead read;
+  const auto add = [&](const Choice& choice) {
+    const Found found = Find(image, choice);
+    if (found.array)
+    {
+      const char* const name = found.array->GetName();
+      (found.ofPoints ? read.ofPoints : read.ofCells).emplace_back(name ? name : "");
+    }
+  };
+  for (std::size_t number = 0; number < arrays.chosen.size(); ++number)
+  {
+    add(ChoiceOf(filter, static_cast<int>(number), arrays.chosen[number]));
+  }
+  for (const std::string& name : arrays.named)
+  {
+    Choice choice;
+    choice.name = name;
+    add(choice);
+  }
+  return read;
+}
+
+bool ChoosesOnlyPoints(vtkAlgorithm* filter, int numbers)
+{
+  bool ofPoints = false, ofCells = false;
+  for (int number = 0; number < numbers; ++number)
+  {
+    const Choice choice = ChoiceOf(filter, number, "");
+    (choice.pointsFirst ? ofPoints : ofCells) |= choice.made;
+  }
+  return ofPoints && !ofCells;
+}
+
 MediumInput ReadMedium(vtkAlgorithm* filter, vtkImageData* image)
 {
   MediumInput input;

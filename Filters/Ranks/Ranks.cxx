@@ -193,7 +193,19 @@ void AskTogether(vtkInformation* request, vtkInformationVector* outputs, vtkInfo
   const int asking = Asking(request, outputs);
   for (int i = 0; i < inputs->GetNumberOfInformationObjects(); ++i)
   {
-    inputs->GetInformationObject(i)->Set(Together(), asking);
+    vtkInformation* const input = inputs->GetInformationObject(i);
+    input->Set(Together(), asking);
+    // An output with voxels around points is asked for more than there are points.
+    const int* const whole = input->Get(Pipeline::WHOLE_EXTENT());
+    const int* const asked = input->Get(Pipeline::UPDATE_EXTENT());
+    for (int bound = 1; whole && asked && bound < 6; bound += 2)
+    {
+      if (asked[bound] > whole[bound])
+      {
+        const std::vector<int> within(whole, whole + 6);
+        input->Set(Pipeline::UPDATE_EXTENT(), within.data(), 6);
+      }
+    }
   }
 }
 

@@ -356,6 +356,7 @@ int vtkParticipatingMedium::FillInputPortInformation(int port, vtkInformation* i
   if (port == DENSITY)
   {
     tyndall::TakeImages(information);
+    tyndall::ReadsVoxels(information, { "" }, { "g" });
   }
   else
   {
@@ -368,8 +369,9 @@ int vtkParticipatingMedium::FillInputPortInformation(int port, vtkInformation* i
 int vtkParticipatingMedium::RequestInformation(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  tyndall::TellSomeExtent(inputs[DENSITY], outputs);
-  return this->Superclass::RequestInformation(request, inputs, outputs);
+  const int done = this->Superclass::RequestInformation(request, inputs, outputs);
+  tyndall::TellVoxels(this, DENSITY, inputs[DENSITY], outputs);
+  return done;
 }
 
 /// Where ranks each ask for their piece that of the density; else all of it, for the size is told of the whole.
@@ -470,6 +472,7 @@ void vtkParticipatingMedium::PrintSelf(ostream& os, vtkIndent indent)
     os << indent << name << ": " << rgb[0] << " " << rgb[1] << " " << rgb[2] << "\n";
   };
   this->Superclass::PrintSelf(os, indent);
+  os << indent << "PointData: " << this->PointData << "\n";
   os << indent << "Preset: " << (this->Preset == CUSTOM ? "custom" : GetPresetName(this->Preset)) << "\n";
   os << indent << "MinimumDensity: " << this->MinimumDensity << "\n";
   os << indent << "MaximumDensity: " << this->MaximumDensity << "\n";

@@ -20,7 +20,7 @@ struct OpticalSize;
  * @class vtkParticipatingMedium
  * @brief turns a density into a medium that absorbs, scatters and emits light
  *
- * Input: vtkImageData with an array of one component, of cells or of points (averaged to cells): the active scalars, or
+ * Input: vtkImageData with an array of one component, of cells or of points (SetPointData): the active scalars, or
  * the array chosen by SetInputArrayToProcess(0, ...). An array `g` (1 or 3 components) of it is the mean cosine by
  * voxel, of a mixture for example; it is passed on and counts before MeanCosine.
  *
@@ -90,6 +90,19 @@ public:
   static const char* GetPresetName(int preset);
   static const char* GetPresetDensity(int preset);
   static const char* GetPresetSource(int preset);
+  ///@}
+
+  ///@{
+  /// What arrays of points are: 0 (default): each is in the middle of a voxel of its value, so that n points are n voxels,
+  /// the output has arrays of cells, and its bounds are half a spacing wider than the input's; 1: their mean is that of
+  /// the voxel between them, and n points are n - 1 voxels. Where an array of cells is read as well, voxels are the cells
+  /// and points are averaged; field data `settings_used` then say so.
+  enum PointDataKinds
+  {
+    VOXELS_AROUND_POINTS = 0,
+    AVERAGE_TO_CELLS = 1
+  };
+  tyndallPointDataMacro();
   ///@}
 
   ///@{
@@ -246,6 +259,7 @@ private:
     vtkInformationVector* outputs);
 
   int Preset = CUSTOM;
+  int PointData = VOXELS_AROUND_POINTS;
   double MinimumDensity = 0.0;
   double MaximumDensity = 1.0;
   double ExtinctionScale = 1.0;

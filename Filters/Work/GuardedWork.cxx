@@ -193,6 +193,21 @@ int GuardedOn(vtkMultiProcessController* ranks, vtkAlgorithm* filter, vtkInforma
 }
 }
 
+namespace
+{
+/// In field data of filters that do not tell of their settings themselves.
+void TellAveraged(vtkAlgorithm* filter, vtkInformationVector* outputs)
+{
+  std::vector<std::string> settings;
+  AddAveraged(filter, settings);
+  vtkDataObject* const output = vtkDataObject::GetData(outputs, 0);
+  if (output && !settings.empty() && !output->GetFieldData()->HasArray("settings_used"))
+  {
+    AddFact(output, "settings_used", settings);
+  }
+}
+}
+
 int Guarded(vtkAlgorithm* filter, vtkInformationVector* outputs, const std::function<void()>& work)
 {
   return GuardedOn(nullptr, filter, outputs, [&] {
@@ -227,6 +242,7 @@ int GuardedInPieces(vtkAlgorithm* filter, vtkInformation* request, vtkInformatio
     });
     WholeInputs inputs(ranks, filter, given, outputs, port, shares, others);
     work(ranks, inputs);
+    TellAveraged(filter, outputs);
   });
 }
 

@@ -3,6 +3,7 @@
 #include "vtkNew.h"
 #include "vtkSmartPointer.h"
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -22,6 +23,9 @@ namespace tyndall
 /// on one rank alone. Then each rank gets all of it: pieces of an image are put together (GatheredImage.h), with cell
 /// and point arrays, ghost cells once; of other data, as tables and lights, what one rank alone has goes to all.
 /// Points in shares are put one after the other, by rank.
+///
+/// Images of which a filter reads arrays of points have a voxel around each of them (Common/ImageInput.h), also where
+/// one process is alone. Of a plane of points that pieces share, the voxels are those of the lowest rank.
 ///
 /// Memory of each rank: the whole image, and one piece of one array.
 class WholeInputs
@@ -54,6 +58,11 @@ public:
 private:
   struct Seen; ///< of the inputs, on all ranks
   void MakeWhole(int port);
+  void NoteAveragedArrays(vtkInformationVector** given);
+  void Change(int port, vtkInformationVector* given,
+    const std::function<vtkSmartPointer<vtkDataObject>(int connection, vtkDataObject* data)>& change);
+
+  vtkAlgorithm* Filter;
 
   std::unique_ptr<Seen> AllSeen; ///< null: this process is alone
   std::vector<vtkSmartPointer<vtkInformationVector>> Kept;
