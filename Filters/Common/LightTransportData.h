@@ -9,6 +9,7 @@
 #include "vtkFloatArray.h"
 #include "vtkSmartPointer.h"
 
+#include <algorithm>
 #include <array>
 #include <initializer_list>
 #include <string>
@@ -109,6 +110,14 @@ ArraysRead FindArrays(vtkAlgorithm* filter, const VoxelArrays& arrays, vtkImageD
 
 /// Whether arrays were chosen by SetInputArrayToProcess, and all of them of points.
 bool ChoosesOnlyPoints(vtkAlgorithm* filter, int numbers);
+
+/// Relative density of the fog that fills a level set, by the distance from its surface, which is negative inside: 1, and
+/// less in proportion within a voxel of the surface; 0 outside. What OpenVDB's sdfToFogVolume makes with that cutoff.
+template <typename Value>
+Value FogInside(Value distance, double voxel)
+{
+  return std::min(std::max(static_cast<Value>(-distance / voxel), Value(0)), Value(1));
+}
 
 /// Numbers of SetInputArrayToProcess for the filters that take a medium at port 0.
 enum MediumArray

@@ -641,6 +641,10 @@ int vtkVDBReader::RequestData(vtkInformation*, vtkInformationVector**, vtkInform
       }
       tyndall::AddGridCells(*internal.File->Read(*grid, box), grid->Type, grid->Name, box, image);
       tyndall::AddMetadata(image, tyndall::FieldName(grid->Name, ""), grid->Metadata);
+      if (this->LevelSetsAsFog)
+      {
+        tyndall::MakeFogOfLevelSet(image, grid->Name);
+      }
       this->UpdateProgress(++done / static_cast<double>(internal.Chosen.size()));
     }
     tyndall::AddMetadata(image, tyndall::FieldName("", ""), internal.File->Metadata());
@@ -656,6 +660,7 @@ void vtkVDBReader::PrintSelf(ostream& os, vtkIndent indent)
   this->Superclass::PrintSelf(os, indent);
   os << indent << "FileName: " << (this->GetFileName() ? this->GetFileName() : "(none)") << "\n";
   os << indent << "Files: " << this->GetNumberOfFileNames() << "\n";
+  os << indent << "LevelSetsAsFog: " << this->LevelSetsAsFog << "\n";
   os << indent << "MaximumMemory: " << this->MaximumMemory << "\n";
   os << indent << "GridSelection:\n";
   this->GridSelection->PrintSelf(os, indent.GetNextIndent());

@@ -94,6 +94,15 @@ public:
   const char* GetGridSummary();
 
   ///@{
+  /// Whether level sets (grids of real numbers whose class says so, or whose class is not known, with a positive
+  /// background and values below 0) become fog: 1 inside of the surface, less in proportion within a voxel of it, 0
+  /// outside. Default off: the distances, as they are.
+  vtkSetMacro(LevelSetsAsFog, bool);
+  vtkGetMacro(LevelSetsAsFog, bool);
+  vtkBooleanMacro(LevelSetsAsFog, bool);
+  ///@}
+
+  ///@{
   /// Most memory that the image and the tree it is read from may take, MiB. Default 0: half of the machine's memory,
   /// 90% of what is available, and, unless vtkVDBWriter noted that the file was an image of that size, 1 GiB or 1000
   /// times the file's length, whichever is more: one changed bit of a small file can put a voxel thousands of voxels
@@ -121,6 +130,7 @@ private:
   int FileAskedFor(vtkInformation* output) const;
   std::array<int, 6> ExtentToRead(vtkInformation* output);
 
+  bool LevelSetsAsFog = false;
   vtkIdType MaximumMemory = 0;
   vtkNew<vtkDataArraySelection> GridSelection;
 

@@ -317,6 +317,46 @@ void AddGridCells(const openvdb::GridBase& grid, const std::string& type, const 
   AddFact(image, FieldName(name, "type").c_str(), std::vector<std::string>{ type });
 }
 
+namespace
+{
+template <typename ArrayT>
+bool MakeFog(vtkImageData* image, vtkDataArray* distances, const std::string& kind)
+{
+  using Value = typename ArrayT::ValueType;
+  const std::string name = distances->GetName();
+  auto* const cells = ArrayT::SafeDownCast(distances);
+  auto* const background = FactOf<ArrayT>(image->GetFieldData(), name, "background");
+  if (!cells || !background || cells->GetNumberOfComponents() != 1)
+  {
+    return false;
+  }
+  Value* const values = cells->GetPointer(0);
+  Value* const end = values + cells->GetNumberOfTuples();
+  const bool looksSo = kind != "fog volume" && kind != "staggered" && background->GetValue(0) > 0 &&
+    std::any_of(values, end, [](Value value) { return value < 0; });
+  if (kind != "level set" && !looksSo)
+  {
+    return false;
+  }
+  const double* const spacing = image->GetSpacing();
+  const double voxel = *std::min_element(spacing, spacing + 3);
+  std::transform(values, end, values, [voxel](Value value) { return FogInside(value, voxel); });
+  background->SetValue(0, 0);
+  return true;
+}
+}
+
+void MakeFogOfLevelSet(vtkImageData* image, const std::string& name)
+{
+  vtkDataArray* const cells = image->GetCellData()->GetArray(name.c_str());
+  auto* const noted = FactOf<vtkStringArray>(image->GetFieldData(), name, "class");
+  const std::string kind = noted && noted->GetNumberOfValues() == 1 ? std::string(noted->GetValue(0)) : "unknown";
+  if (MakeFog<vtkFloatArray>(image, cells, kind) || MakeFog<vtkDoubleArray>(image, cells, kind))
+  {
+    AddFact(image, FieldName(name, "class").c_str(), std::vector<std::string>{ "fog volume" });
+  }
+}
+
 openvdb::GridPtrVec MakeGrids(
   vtkDataArray* array, vtkFieldData* field, const openvdb::CoordBBox& voxels, const VoxelOptions& options)
 {

@@ -21,6 +21,11 @@ namespace tyndall
 void AddGridCells(const openvdb::GridBase& grid, const std::string& type, const std::string& name,
   const openvdb::CoordBBox& box, vtkImageData* image);
 
+/// Makes fog of cells that are a level set (FogInside), and says so in field data `class` and `background`; leaves others
+/// as they are. A level set is of real numbers, and its class says so, or is not known where the background is positive
+/// and cells are negative.
+void MakeFogOfLevelSet(vtkImageData* image, const std::string& name);
+
 /// How cells become voxels.
 struct VoxelOptions
 {
