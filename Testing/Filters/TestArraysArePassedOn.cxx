@@ -1,14 +1,25 @@
-// Filters that hand on their input hand on all of its arrays, whichever of them is the active one.
+// Filters that hand on their input hand on all of its arrays, whichever of them is the active one; and take arrays of
+// points as those of the voxels around them.
 
 #include "MediumScene.h"
 
+#include "vtkDiscreteOrdinates.h"
+#include "vtkLatticeBoltzmannLighting.h"
 #include "vtkLPMCollect.h"
 #include "vtkLPMPropagate.h"
+#include "vtkMediumRayCaster.h"
 #include "vtkParticipatingMedium.h"
 #include "vtkPhotonEmitter.h"
+#include "vtkPhotonImportance.h"
 #include "vtkPhotonMarcher.h"
 #include "vtkPhotonReconstruction.h"
+#include "vtkPointLight.h"
+#include "vtkPointSet.h"
 #include "vtkRefractionOctree.h"
+#include "vtkStringArray.h"
+
+#include <algorithm>
+#include <cmath>
 
 namespace
 {
@@ -75,6 +86,115 @@ void ShallowCopiesOutliveTheirFilter(test::Claims& claims)
 }
 }
 
+namespace
+{
+/// 5 x 4 x 3 voxels that differ from each other, as cells or as points in their middle.
+vtkSmartPointer<vtkImageData> Varied(bool asPoints)
+{
+  auto image = test::MakeImage({ { 5, 4, 3 }, { 0.5, 0.5, 0.5 }, { 1.0, 2.0, 3.0 }, { 2, -1, 0 } });
+  if (asPoints)
+  {
+    image = test::MakeImage({ { 4, 3, 2 }, { 0.5, 0.5, 0.5 }, { 1.25, 2.25, 3.25 }, { 2, -1, 0 } });
+  }
+  vtkFieldData* const to = asPoints ? static_cast<vtkFieldData*>(image->GetPointData()) : image->GetCellData();
+  const auto add = [&](const char* name, double mean, int components = 1) {
+    test::AddValues<vtkFloatArray>(to, name, 60, components,
+      [=](vtkIdType i, int c) { return mean * (1.0 + 0.5 * std::sin(1.3 * static_cast<double>(i) + c)); });
+  };
+  add("sigma_a", 0.2);
+  add("sigma_s", 0.6);
+  add("emission", 0.1);
+  add("fluence", 2.0);
+  add("fluence_batches", 2.0, 2);
+  test::AddValues<vtkFloatArray>(
+    to, "ior", 60, 1, [](vtkIdType i, int) { return 1.0 + 0.01 * static_cast<double>(i % 5); });
+  return image;
+}
+
+bool SameArrays(vtkFieldData* a, vtkFieldData* b)
+{
+  bool same = a->GetNumberOfArrays() == b->GetNumberOfArrays();
+  for (int i = 0; same && i < a->GetNumberOfArrays(); ++i)
+  {
+    vtkDataArray* const values = a->GetArray(i);
+    vtkDataArray* const others = values ? b->GetArray(values->GetName()) : nullptr;
+    same = !values ||
+      (others && values->GetNumberOfValues() == others->GetNumberOfValues() &&
+        values->GetNumberOfComponents() == others->GetNumberOfComponents());
+    for (vtkIdType value = 0; same && values && value < values->GetNumberOfValues(); ++value)
+    {
+      same = values->GetVariantValue(value) == others->GetVariantValue(value);
+    }
+  }
+  return same;
+}
+
+/// That a filter makes the same of both.
+void MakesTheSame(test::Claims& claims, vtkAlgorithm* filter)
+{
+  const std::string what = filter->GetClassName();
+  test::Errors errors(filter);
+  vtkSmartPointer<vtkDataSet> made[2];
+  for (const bool asPoints : { false, true })
+  {
+    filter->SetInputDataObject(Varied(asPoints));
+    filter->Update();
+    auto* const output = vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0));
+    made[asPoints].TakeReference(output->NewInstance());
+    made[asPoints]->DeepCopy(output);
+  }
+  claims.That(errors.None(), "no error of " + what);
+  const auto &ofCells = made[0], &ofPoints = made[1];
+  double bounds[2][6];
+  ofCells->GetBounds(bounds[0]);
+  ofPoints->GetBounds(bounds[1]);
+  claims.That(ofCells->GetNumberOfPoints() > 0 && std::equal(bounds[0], bounds[0] + 6, bounds[1]),
+    what + " has the same bounds where voxels are around points");
+  claims.That(SameArrays(ofCells->GetCellData(), ofPoints->GetCellData()) &&
+      SameArrays(ofCells->GetPointData(), ofPoints->GetPointData()),
+    what + " makes the same of voxels around points as of cells");
+}
+
+void PointsAreVoxelsOfAllFilters(test::Claims& claims)
+{
+  vtkNew<vtkPointLight> lamp;
+  lamp->SetPosition(0.0, 1.0, 2.0);
+  const auto lit = [&](vtkLitMediumAlgorithm* filter) {
+    filter->SetLightsConnection(lamp->GetOutputPort());
+    MakesTheSame(claims, filter);
+  };
+  vtkNew<vtkLightPropagationMaps> maps;
+  lit(maps);
+  lit(vtkNew<vtkDiscreteOrdinates>());
+  lit(vtkNew<vtkLatticeBoltzmannLighting>());
+  lit(vtkNew<vtkLPMPropagate>());
+  lit(vtkNew<vtkPhotonImportance>());
+  vtkNew<vtkMediumRayCaster> caster;
+  caster->SetImageSize(16, 12);
+  lit(caster);
+  vtkNew<vtkPhotonEmitter> emitter;
+  emitter->SetPhotonCount(100);
+  lit(emitter);
+  vtkNew<vtkPhotonMarcher> marcher;
+  marcher->SetPhotonsData(emitter->GetOutput());
+  MakesTheSame(claims, marcher);
+  MakesTheSame(claims, vtkNew<vtkRefractionOctree>());
+  vtkNew<vtkPhotonReconstruction> reconstruction;
+  reconstruction->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "fluence");
+  MakesTheSame(claims, reconstruction);
+
+  // Points beside cells.
+  const auto mixed = test::MakeMedium({ { 3, 3, 3 } }, 0.1, 0.2);
+  mixed->GetCellData()->RemoveArray("sigma_s");
+  test::AddPoints(mixed, "sigma_s", 0.3);
+  maps->SetInputDataObject(mixed);
+  maps->Update();
+  claims.That(maps->GetOutput()->GetNumberOfCells() == 27, "beside an array of cells points are averaged");
+  claims.That(std::string(maps->GetSettingsUsed()).find("PointData = 1 for 'sigma_s'") != std::string::npos,
+    std::string("that is among the settings used: ") + maps->GetSettingsUsed());
+}
+}
+
 int TestArraysArePassedOn(int, char*[])
 {
   if (!test::HasDevice())
@@ -83,6 +203,7 @@ int TestArraysArePassedOn(int, char*[])
   }
   test::Claims claims;
   ShallowCopiesOutliveTheirFilter(claims);
+  PointsAreVoxelsOfAllFilters(claims);
   for (const char* active : CellNames)
   {
     vtkNew<vtkRefractionOctree> octree;

@@ -294,6 +294,24 @@ void LevelSetsKeepTheirInside(test::Claims& claims)
   claims.That(reader->GetOutput()->GetCellData()->GetArray("surface")->GetComponent(
                 reader->GetOutput()->ComputeCellId(middle), 0) == -3.0,
     "the inside of a level set is its negative background");
+
+  reader->LevelSetsAsFogOn();
+  reader->Update();
+  vtkDataArray* const fog = reader->GetOutput()->GetCellData()->GetArray("surface");
+  int corner[3] = { -1, 7, 7 };
+  double range[2];
+  fog->GetRange(range);
+  claims.That(fog->GetComponent(reader->GetOutput()->ComputeCellId(middle), 0) == 1.0 &&
+      fog->GetComponent(reader->GetOutput()->ComputeCellId(corner), 0) == 0.0 && range[0] == 0.0 && range[1] == 1.0,
+    "fog is inside of the surface");
+  auto* const kind =
+    vtkStringArray::SafeDownCast(reader->GetOutput()->GetFieldData()->GetAbstractArray("vdb:surface:class"));
+  claims.That(kind && kind->GetValue(0) == "fog volume", "it is a fog volume then");
+  auto plain = SmallFog();
+  WriteGrids(Path("plain.vdb"), { plain });
+  reader->SetFileName(Path("plain.vdb").c_str());
+  reader->Update();
+  claims.That(reader->GetOutput()->GetCellData()->GetArray("density")->GetRange()[1] == 4.0, "a fog stays as it is");
 }
 
 /// A cube of `edge` voxels, each with its edge as value, from index `edge` on; 0: a grid without active voxels, -1: none.

@@ -57,7 +57,6 @@ boxes = []
 for step, extent in enumerate(([0, 5] * 3, None, [3, 9] * 3, [-2, 8] * 3)):
     boxes.append(os.path.join(folder, f"box_{step}.vdb"))
     if extent is None:
-        wavelet.Maximum, wavelet.StandardDeviation = 0.0, 1e-3
         nothing = Calculator(Input=cells, AttributeType="Cell Data", ResultArrayName="d", Function="0*RTData")
         chosen = PassArrays(Input=nothing, CellDataArrays=["d"])
         SaveData(boxes[-1], proxy=chosen, Background=0.0)
@@ -85,13 +84,9 @@ for time in (3, 0, 1, 2):
     scene.AnimationTime = time
     Render(view)
     assert light.GetDataInformation().GetNumberOfCells() == counts[time], (time, "view")
-seen = []
-scene.AddObserver("TickEvent", lambda *_: seen.append(light.GetDataInformation().GetNumberOfCells())) \
-    if hasattr(scene, "AddObserver") else None
 scene.GoToFirst()
 scene.Play()
 assert light.GetDataInformation().GetNumberOfCells() == counts[3], "animation"
-assert not seen or seen[-4:] == counts, seen
 Delete(view)
 
 # A damaged one: no data, and the session lives on.
