@@ -9,7 +9,7 @@ namespace tyndall
 constexpr const char* AbortedFact = "aborted";
 constexpr const char* FailedFact = "failed";
 /// Of an output that is empty because the file it was read from is, which is no error.
-constexpr const char* EmptyFact = "empty";
+constexpr const char* EmptyFact = "nothing_in_file";
 /// Beside FailedFact: because a rank did not come, so that it is not waited for again.
 constexpr const char* MissingFact = "rank_missing";
 

@@ -284,8 +284,10 @@ Grid GridOf(vtkImageData* image)
   }
   if (!image->GetDirectionMatrix()->IsIdentity())
   {
-    throw InvalidInput("The input image is rotated by its direction matrix, which is not supported. Resample it, for "
-                       "example with ResampleToImage.");
+    throw InvalidInput(
+      "The input image is turned by its direction matrix, and not by right angles, which is not supported. Resample "
+      "it: "
+      "with Resample of VDBReader, where it was read by that, or with ResampleToImage (Resample To Image).");
   }
   Check(grid);
   return grid;

@@ -111,8 +111,9 @@ ArraysRead FindArrays(vtkAlgorithm* filter, const VoxelArrays& arrays, vtkImageD
 /// Whether arrays were chosen by SetInputArrayToProcess, and all of them of points.
 bool ChoosesOnlyPoints(vtkAlgorithm* filter, int numbers);
 
-/// Relative density of the fog that fills a level set, by the distance from its surface, which is negative inside: 1, and
-/// less in proportion within a voxel of the surface; 0 outside. What OpenVDB's sdfToFogVolume makes with that cutoff.
+/// Relative density of the fog that fills a level set, by the distance from its surface, which is negative inside: 1,
+/// and less in proportion within a voxel of the surface; 0 outside. What OpenVDB's sdfToFogVolume makes with that
+/// cutoff.
 template <typename Value>
 Value FogInside(Value distance, double voxel)
 {

@@ -2,6 +2,7 @@
 
 #include "Common/AvailableMemory.h"
 #include "Common/FilterBefore.h"
+#include "Common/ImageInput.h"
 #include "Common/LightTransportData.h"
 #include "Device/HostMemory.h"
 #include "IO/VDB/VDBCells.h"
@@ -160,7 +161,12 @@ struct vtkVDBReader::Internals
   tyndall::VDBGeometry Image;
   bool IsBare = false; ///< no chosen grid has an active voxel
 
+  bool Resample = false;    ///< where axes go aslant
+  bool Resampled = false;   ///< Image is along the world's axes, and not along the grids'
+  tyndall::VDBGeometry Own; ///< of the grids then
+
   bool IsSeries() const { return this->Files.size() > 1; }
+  std::string FaultOf(const VDBGrid& grid) const;
   void Look(int file, vtkDataArraySelection* selection, vtkIdType maximumMemory);
   void List(int file);
   void Offer(vtkDataArraySelection* selection);
@@ -174,6 +180,14 @@ struct vtkVDBReader::Internals
   };
   Limit LimitOfMemory(vtkIdType maximum) const;
 };
+
+/// Why a grid cannot become an image; empty: it can.
+std::string vtkVDBReader::Internals::FaultOf(const VDBGrid& grid) const
+{
+  return grid.Shears && !this->Resample && grid.Unusable.empty()
+    ? "its transform shears; an image needs axes at right angles. Switch Resample on"
+    : grid.Unusable;
+}
 
 /// Lists one of the files, and finds out which image its chosen grids are.
 void vtkVDBReader::Internals::Look(int file, vtkDataArraySelection* selection, vtkIdType maximumMemory)
@@ -220,7 +234,7 @@ void vtkVDBReader::Internals::Offer(vtkDataArraySelection* selection)
   const VDBGrid* first = nullptr;
   for (const VDBGrid& grid : this->File->Grids())
   {
-    const bool usable = grid.Unusable.empty();
+    const bool usable = this->FaultOf(grid).empty();
     first = usable && first == nullptr ? &grid : first;
     if (!selection->ArrayExists(grid.Name.c_str()))
     {
@@ -239,7 +253,7 @@ void vtkVDBReader::Internals::Offer(vtkDataArraySelection* selection)
 void vtkVDBReader::Internals::Choose(vtkDataArraySelection* selection)
 {
   this->Chosen.clear();
-  this->IsBare = false;
+  this->IsBare = this->Resampled = false;
   this->Image = {};
   const auto& grids = this->File->Grids();
   if (this->IsSeries() && grids.empty())
@@ -247,12 +261,12 @@ void vtkVDBReader::Internals::Choose(vtkDataArraySelection* selection)
     this->IsBare = true;
     return;
   }
-  if (std::none_of(grids.begin(), grids.end(), [](const VDBGrid& grid) { return grid.Unusable.empty(); }) &&
+  if (std::none_of(grids.begin(), grids.end(), [&](const VDBGrid& grid) { return this->FaultOf(grid).empty(); }) &&
     selection->GetNumberOfArraysEnabled() == 0)
   {
     throw InvalidInput(grids.empty() ? "\"" + this->Path + "\" holds no grid."
                                      : "No grid of \"" + this->Path + "\" can become an image. Of \"" +
-          grids.front().Name + "\", " + grids.front().Unusable + ".");
+          grids.front().Name + "\", " + this->FaultOf(grids.front()) + ".");
   }
   for (int i = 0; i < selection->GetNumberOfArrays(); ++i)
   {
@@ -276,10 +290,10 @@ void vtkVDBReader::Internals::Choose(vtkDataArraySelection* selection)
       throw InvalidInput("\"" + this->Path + "\" has no grid \"" + name + "\". It has " +
         (available.empty() ? "none" : available) + ".");
     }
-    if (!grid->Unusable.empty())
+    if (const std::string fault = this->FaultOf(*grid); !fault.empty())
     {
-      throw InvalidInput("Grid \"" + name + "\" of \"" + this->Path + "\" cannot become an image: " + grid->Unusable +
-        ", or switch it off.");
+      throw InvalidInput(
+        "Grid \"" + name + "\" of \"" + this->Path + "\" cannot become an image: " + fault + ", or switch it off.");
     }
     if (!this->Chosen.empty() && !tyndall::SharesTransform(*this->Chosen.front(), *grid))
     {
@@ -294,6 +308,10 @@ void vtkVDBReader::Internals::Choose(vtkDataArraySelection* selection)
   if (!this->Chosen.empty())
   {
     this->Image = tyndall::GeometryOf(this->Chosen);
+    this->Own = this->Image;
+    this->Resampled = this->Resample && !this->Image.Empty() &&
+      (this->Chosen.front()->Shears || !tyndall::WaysOf(this->Image.Spacing.data(), this->Image.Direction.data()));
+    this->Image = this->Resampled ? tyndall::BoxAround(this->Chosen) : this->Image;
   }
   this->IsBare = this->Image.Empty() && (this->IsSeries() || !this->Chosen.empty());
 }
@@ -311,7 +329,7 @@ void vtkVDBReader::Internals::CheckMemory(vtkIdType maximum) const
   double image = 0.0, tree = 0.0;
   for (const VDBGrid* grid : this->Chosen)
   {
-    image += BytesAsImage(*grid, extent);
+    image += BytesAsImage(*grid, extent) + (this->Resampled ? BytesAsImage(*grid, this->Own.Extent) : 0.0);
     tree = std::max(tree, static_cast<double>(grid->Tree.TreeBytes));
   }
   const Limit limit = this->LimitOfMemory(maximum);
@@ -561,6 +579,7 @@ int vtkVDBReader::RequestInformation(vtkInformation*, vtkInformationVector**, vt
   info->Set(Pipeline::WHOLE_EXTENT(), NoExtent, 6);
   info->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
   TellTimes(info, this->GetNumberOfFileNames());
+  internal.Resample = this->Resample;
   const bool listed = tyndall::GuardedInformation(
     this, [&] { internal.Look(this->FileAskedFor(info), this->GridSelection, this->MaximumMemory); });
   if (!listed)
@@ -612,10 +631,14 @@ int vtkVDBReader::RequestData(vtkInformation*, vtkInformationVector**, vtkInform
     vtkImageData* image = vtkImageData::GetData(info);
     image->Initialize();
     Internals& internal = *this->Internal;
-    const std::array<int, 6> extent = this->ExtentToRead(info);
+    std::array<int, 6> extent = this->ExtentToRead(info);
     if (internal.IsSeries())
     {
       image->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), internal.ListedFile);
+    }
+    else
+    {
+      image->GetInformation()->Remove(vtkDataObject::DATA_TIME_STEP());
     }
     if (internal.IsBare)
     {
@@ -631,7 +654,8 @@ int vtkVDBReader::RequestData(vtkInformation*, vtkInformationVector**, vtkInform
     image->SetSpacing(geometry.Spacing.data());
     image->SetDirectionMatrix(geometry.Direction.data());
 
-    const openvdb::CoordBBox box = CellsIn(extent.data());
+    const std::array<int, 6> own = internal.Resampled ? WholeExtentOf(internal.Own) : extent;
+    const openvdb::CoordBBox box = CellsIn(own.data());
     double done = 0.0;
     for (const VDBGrid* grid : internal.Chosen)
     {
@@ -639,7 +663,17 @@ int vtkVDBReader::RequestData(vtkInformation*, vtkInformationVector**, vtkInform
       {
         throw tyndall::Aborted();
       }
-      tyndall::AddGridCells(*internal.File->Read(*grid, box), grid->Type, grid->Name, box, image);
+      vtkNew<vtkImageData> cells;
+      vtkImageData* const asRead = internal.Resampled ? cells.Get() : image;
+      if (internal.Resampled)
+      {
+        cells->SetExtent(std::array<int, 6>(own).data());
+      }
+      tyndall::AddGridCells(*internal.File->Read(*grid, box), grid->Type, grid->Name, box, asRead);
+      if (internal.Resampled)
+      {
+        tyndall::AddResampled(cells, *grid, box, image);
+      }
       tyndall::AddMetadata(image, tyndall::FieldName(grid->Name, ""), grid->Metadata);
       if (this->LevelSetsAsFog)
       {
@@ -660,6 +694,7 @@ void vtkVDBReader::PrintSelf(ostream& os, vtkIndent indent)
   this->Superclass::PrintSelf(os, indent);
   os << indent << "FileName: " << (this->GetFileName() ? this->GetFileName() : "(none)") << "\n";
   os << indent << "Files: " << this->GetNumberOfFileNames() << "\n";
+  os << indent << "Resample: " << this->Resample << "\n";
   os << indent << "LevelSetsAsFog: " << this->LevelSetsAsFog << "\n";
   os << indent << "MaximumMemory: " << this->MaximumMemory << "\n";
   os << indent << "GridSelection:\n";

@@ -26,7 +26,8 @@ class vtkDataArraySelection;
  *
  * A cell is centred on its voxel's index: index i of OpenVDB is the cell that covers [i - 1/2, i + 1/2] in index space,
  * and cell i of the image, whose extent starts at the first active voxel and so need not start at 0. Units: spacing
- * and origin are the grid's world units. A rotated grid becomes an image with a direction matrix.
+ * and origin are the grid's world units. A rotated grid becomes an image with a direction matrix, or
+ * is resampled.
  *
  * The extent is the box of the active voxels of the chosen grids, or the extent that vtkVDBWriter noted. A cell that is
  * not active has the value that the grid gives it: the background, or inside a level set its negative.
@@ -103,6 +104,16 @@ public:
   ///@}
 
   ///@{
+  /// Whether grids whose axes go aslant to those of the world, or are not at right angles to each other, are resampled
+  /// to an image along the world's axes, which holds their voxels: with the shortest edge of a voxel, linear between
+  /// the middles of voxels (integers: the nearest). Default off: aslant ones have a direction matrix, which solvers
+  /// refuse, and those that shear are an error.
+  vtkSetMacro(Resample, bool);
+  vtkGetMacro(Resample, bool);
+  vtkBooleanMacro(Resample, bool);
+  ///@}
+
+  ///@{
   /// Most memory that the image and the tree it is read from may take, MiB. Default 0: half of the machine's memory,
   /// 90% of what is available, and, unless vtkVDBWriter noted that the file was an image of that size, 1 GiB or 1000
   /// times the file's length, whichever is more: one changed bit of a small file can put a voxel thousands of voxels
@@ -131,6 +142,7 @@ private:
   std::array<int, 6> ExtentToRead(vtkInformation* output);
 
   bool LevelSetsAsFog = false;
+  bool Resample = false;
   vtkIdType MaximumMemory = 0;
   vtkNew<vtkDataArraySelection> GridSelection;
 

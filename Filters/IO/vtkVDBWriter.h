@@ -105,8 +105,8 @@ public:
   ///@}
 
   ///@{
-  /// What arrays of points are where there are none of cells: 0 (default): each is a voxel; 1: their mean is that of the
-  /// voxel between them.
+  /// What arrays of points are where there are none of cells: 0 (default): each is a voxel; 1: their mean is that of
+  /// the voxel between them.
   enum PointDataKinds
   {
     VOXELS_AROUND_POINTS = 0,

@@ -59,10 +59,10 @@ public:
   ///@}
 
   ///@{
-  /// What arrays of points are: 0 (default): each is in the middle of a voxel of its value, so that n points are n voxels,
-  /// the output has arrays of cells, and its bounds are half a spacing wider than the input's; 1: their mean is that of
-  /// the voxel between them, and n points are n - 1 voxels. Where an array of cells is read as well, voxels are the cells
-  /// and points are averaged; field data `settings_used` then say so.
+  /// What arrays of points are: 0 (default): each is in the middle of a voxel of its value, so that n points are n
+  /// voxels, the output has arrays of cells, and its bounds are half a spacing wider than the input's; 1: their mean is
+  /// that of the voxel between them, and n points are n - 1 voxels. Where an array of cells is read as well, voxels are
+  /// the cells and points are averaged; field data `settings_used` then say so.
   enum PointDataKinds
   {
     VOXELS_AROUND_POINTS = 0,

@@ -47,8 +47,8 @@ struct VoxelBox;
  *     emission = rho EmissionScale EmissionColor
  *
  * With LevelSet the array is the distance from a surface, negative inside: rho is 1 inside, less in proportion within a
- * voxel of the surface, and 0 outside. A level set that is taken for a density has its fog outside of the surface, and a
- * warning says so: field data of vtkVDBReader call it one, or it is negative inside of the image and positive on its
+ * voxel of the surface, and 0 outside. A level set that is taken for a density has its fog outside of the surface, and
+ * a warning says so: field data of vtkVDBReader call it one, or it is negative inside of the image and positive on its
  * border.
  *
  * A preset gives sigma_s, sigma_a (1/mm at rho = 1) and g of a real medium instead of Albedo and MeanCosine;
@@ -100,10 +100,10 @@ public:
   ///@}
 
   ///@{
-  /// What arrays of points are: 0 (default): each is in the middle of a voxel of its value, so that n points are n voxels,
-  /// the output has arrays of cells, and its bounds are half a spacing wider than the input's; 1: their mean is that of
-  /// the voxel between them, and n points are n - 1 voxels. Where an array of cells is read as well, voxels are the cells
-  /// and points are averaged; field data `settings_used` then say so.
+  /// What arrays of points are: 0 (default): each is in the middle of a voxel of its value, so that n points are n
+  /// voxels, the output has arrays of cells, and its bounds are half a spacing wider than the input's; 1: their mean is
+  /// that of the voxel between them, and n points are n - 1 voxels. Where an array of cells is read as well, voxels are
+  /// the cells and points are averaged; field data `settings_used` then say so.
   enum PointDataKinds
   {
     VOXELS_AROUND_POINTS = 0,

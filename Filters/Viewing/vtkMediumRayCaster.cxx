@@ -434,14 +434,16 @@ bool vtkMediumRayCaster::See(const tyndall::AskedView& view, tyndall::Picture& p
     const tyndall::GridBlock* const block = view.block ? &*view.block : nullptr;
     vtkInformationVector** const given = this->GetExecutive()->GetInputInformation();
     std::vector<vtkInformationVector*> ports(given, given + this->GetNumberOfInputPorts());
-    const vtkNew<vtkInformationVector> around;
+    const vtkNew<vtkInformationVector> medium;
     vtkImageData* const image = vtkImageData::GetData(given[MEDIUM]);
-    if (!block && tyndall::AreAroundPoints(this, MEDIUM, image))
+    if (!block && image)
     {
-      const vtkNew<vtkInformation> voxels;
-      voxels->Set(vtkDataObject::DATA_OBJECT(), tyndall::VoxelsAround(image));
-      around->Append(voxels);
-      ports[MEDIUM] = around;
+      vtkSmartPointer<vtkImageData> voxels = tyndall::Aligned(image);
+      voxels = tyndall::AreAroundPoints(this, MEDIUM, voxels) ? tyndall::VoxelsAround(voxels) : voxels;
+      const vtkNew<vtkInformation> asVoxels;
+      asVoxels->Set(vtkDataObject::DATA_OBJECT(), voxels);
+      medium->Append(asVoxels);
+      ports[MEDIUM] = medium;
     }
     std::unique_ptr<tyndall::CasterScene> scene = this->FindScene(ports.data(), settings, block);
     this->SayDoubts(*scene);

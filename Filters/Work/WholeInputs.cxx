@@ -17,6 +17,7 @@
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkMatrix3x3.h"
 #include "vtkMultiProcessController.h"
 #include "vtkMultiProcessStream.h"
 #include "vtkPointData.h"
@@ -401,7 +402,7 @@ Extent OwnPointsOf(vtkImageData* image)
   {
     return extent;
   }
-  const unsigned char duplicate = ofPoints ? vtkDataSetAttributes::DUPLICATEPOINT : vtkDataSetAttributes::DUPLICATECELL;
+  const unsigned char duplicate = vtkDataSetAttributes::DUPLICATECELL; // the same number as DUPLICATEPOINT
   const ValueBox box = ofPoints ? PointBoxOf(extent) : CellBoxOf(extent);
   Extent own = { extent[1], extent[0], extent[3], extent[2], extent[5], extent[4] };
   vtkIdType number = 0;
@@ -569,80 +570,19 @@ void NoteParts(const std::vector<RankGlance>& all, int rank, vtkInformationVecto
 struct WholeInputs::Seen
 {
   vtkMultiProcessController* ranks;
-  vtkInformationVector** given;
   int inPieces, inShares;
   std::vector<int> alsoInPieces;
   std::vector<RankGlance> all;
 };
 
-WholeInputs::WholeInputs(vtkMultiProcessController* ranks, vtkAlgorithm* filter, vtkInformationVector** given,
-  vtkInformationVector* outputs, int inPieces, int inShares, const std::vector<int>& alsoInPieces)
-  : Filter(filter)
+namespace
 {
-  const int ports = filter->GetNumberOfInputPorts();
-  this->Ports.assign(given, given + ports);
-  this->Kept.resize(static_cast<std::size_t>(ports));
-  this->NoteAveragedArrays(given);
-  if (ranks == nullptr)
-  {
-    RequireAll(filter, given);
-    NoteParts({}, 0, outputs);
-    for (int port = 0; port < ports; ++port)
-    {
-      this->Change(port, given[port], [&](int connection, vtkDataObject* data) -> vtkSmartPointer<vtkDataObject> {
-        auto* const image = vtkImageData::SafeDownCast(data);
-        (void)connection;
-        return AreAroundPoints(filter, port, image) ? VoxelsAround(image).GetPointer() : data;
-      });
-    }
-    return;
-  }
-  RankGlance own;
-  OnAllRanks(ranks, [&] { own = GlanceAtAll(filter, given, outputs, inShares); });
-  this->AllSeen = std::make_unique<Seen>(Seen{ ranks, given, inPieces, inShares, alsoInPieces, Share(ranks, own) });
-  NoteParts(this->AllSeen->all, ranks->GetLocalProcessId(), outputs);
-  for (int port = 0; port < ports; ++port)
-  {
-    const bool also = std::find(alsoInPieces.begin(), alsoInPieces.end(), port) != alsoInPieces.end();
-    if (port != inPieces && port != inShares && !also)
-    {
-      this->MakeWhole(port);
-      continue;
-    }
-    for (int i = 0; i < this->AllSeen->all[0].connections[static_cast<std::size_t>(port)]; ++i)
-    {
-      CheckExtent(GlancesOf(this->AllSeen->all, port, i), Named(port));
-    }
-    this->Change(port, given[port], [&](int connection, vtkDataObject* data) -> vtkSmartPointer<vtkDataObject> {
-      const OnRanks glances = GlancesOf(this->AllSeen->all, port, connection);
-      const int rank = ranks->GetLocalProcessId();
-      return glances[static_cast<std::size_t>(rank)].aroundPoints
-        ? VoxelsOfPiece(vtkImageData::SafeDownCast(data), glances, rank).GetPointer()
-        : data;
-    });
-  }
-}
-
-/// Of arrays of points that are read beside others of cells.
-void WholeInputs::NoteAveragedArrays(vtkInformationVector** given)
+/// Puts other data in the place of a port's.
+/// @return null: there is none
+vtkSmartPointer<vtkInformationVector> Changed(
+  vtkInformationVector* given, const std::function<vtkSmartPointer<vtkDataObject>(int, vtkDataObject*)>& change)
 {
-  std::vector<std::string> averaged;
-  for (std::size_t port = 0; port < this->Ports.size(); ++port)
-  {
-    for (int i = 0; i < given[port]->GetNumberOfInformationObjects(); ++i)
-    {
-      AreAroundPoints(this->Filter, static_cast<int>(port), vtkImageData::GetData(given[port], i),
-        averaged.empty() ? &averaged : nullptr);
-    }
-  }
-  NoteAveraged(this->Filter, averaged);
-}
-
-/// Puts other data on a port, where there are any.
-void WholeInputs::Change(int port, vtkInformationVector* given,
-  const std::function<vtkSmartPointer<vtkDataObject>(int connection, vtkDataObject* data)>& change)
-{
-  const auto changed = vtkSmartPointer<vtkInformationVector>::New();
+  auto changed = vtkSmartPointer<vtkInformationVector>::New();
   bool any = false;
   for (int i = 0; i < given->GetNumberOfInformationObjects(); ++i)
   {
@@ -660,11 +600,115 @@ void WholeInputs::Change(int port, vtkInformationVector* given,
     replaced->Set(vtkDataObject::DATA_OBJECT(), other);
     changed->Append(replaced);
   }
-  if (any)
+  return any ? changed : nullptr;
+}
+}
+
+WholeInputs::WholeInputs(vtkMultiProcessController* ranks, vtkAlgorithm* filter, vtkInformationVector** given,
+  vtkInformationVector* outputs, int inPieces, int inShares, const std::vector<int>& alsoInPieces)
+  : Filter(filter)
+{
+  OnAllRanks(ranks, [&] { this->AlignGiven(given); });
+  this->NoteAveragedArrays();
+  const int ports = static_cast<int>(this->Ports.size());
+  std::vector<vtkInformationVector*> aligned = this->Ports;
+  if (ranks == nullptr)
   {
-    this->Kept[static_cast<std::size_t>(port)] = changed;
-    this->Ports[static_cast<std::size_t>(port)] = changed;
+    RequireAll(filter, aligned.data());
+    NoteParts({}, 0, outputs);
+    for (int port = 0; port < ports; ++port)
+    {
+      this->Change(port, [&](int, vtkDataObject* data) -> vtkSmartPointer<vtkDataObject> {
+        auto* const image = vtkImageData::SafeDownCast(data);
+        return AreAroundPoints(filter, port, image) ? VoxelsAround(image).GetPointer() : data;
+      });
+    }
+    return;
   }
+  RankGlance own;
+  OnAllRanks(ranks, [&] { own = GlanceAtAll(filter, aligned.data(), outputs, inShares); });
+  this->AllSeen = std::make_unique<Seen>(Seen{ ranks, inPieces, inShares, alsoInPieces, Share(ranks, own) });
+  NoteParts(this->AllSeen->all, ranks->GetLocalProcessId(), outputs);
+  for (int port = 0; port < ports; ++port)
+  {
+    const bool also = std::find(alsoInPieces.begin(), alsoInPieces.end(), port) != alsoInPieces.end();
+    if (port != inPieces && port != inShares && !also)
+    {
+      this->MakeWhole(port);
+      continue;
+    }
+    for (int i = 0; i < this->AllSeen->all[0].connections[static_cast<std::size_t>(port)]; ++i)
+    {
+      CheckExtent(GlancesOf(this->AllSeen->all, port, i), Named(port));
+    }
+    this->Change(port, [&](int connection, vtkDataObject* data) -> vtkSmartPointer<vtkDataObject> {
+      const OnRanks glances = GlancesOf(this->AllSeen->all, port, connection);
+      const int rank = ranks->GetLocalProcessId();
+      return glances[static_cast<std::size_t>(rank)].aroundPoints
+        ? VoxelsOfPiece(vtkImageData::SafeDownCast(data), glances, rank).GetPointer()
+        : data;
+    });
+  }
+}
+
+/// Images that are read as voxels with axes along those of the world, and the extents that were told of them.
+void WholeInputs::AlignGiven(vtkInformationVector** given)
+{
+  const int ports = this->Filter->GetNumberOfInputPorts();
+  this->Ports.assign(given, given + ports);
+  this->Kept.assign(static_cast<std::size_t>(ports), nullptr);
+  this->Given.assign(given, given + ports);
+  for (int port = 0; port < ports; ++port)
+  {
+    const VoxelArrays arrays = VoxelArraysOf(this->Filter->GetInputPortInformation(port));
+    if (arrays.chosen.empty() && arrays.named.empty())
+    {
+      continue;
+    }
+    const vtkSmartPointer<vtkInformationVector> aligned =
+      Changed(given[port], [](int, vtkDataObject* data) -> vtkSmartPointer<vtkDataObject> {
+        auto* const image = vtkImageData::SafeDownCast(data);
+        return image ? Aligned(image).GetPointer() : data;
+      });
+    for (int i = 0; aligned && i < aligned->GetNumberOfInformationObjects(); ++i)
+    {
+      vtkInformation* const information = aligned->GetInformationObject(i);
+      vtkImageData* const before = vtkImageData::GetData(given[port], i);
+      const auto ways = before ? WaysOf(before->GetSpacing(), before->GetDirectionMatrix()->GetData()) : std::nullopt;
+      if (ways && information != given[port]->GetInformationObject(i) && information->Has(Pipeline::WHOLE_EXTENT()))
+      {
+        information->Set(Pipeline::WHOLE_EXTENT(), ways->Extent(information->Get(Pipeline::WHOLE_EXTENT())).data(), 6);
+      }
+    }
+    if (aligned)
+    {
+      this->Given[static_cast<std::size_t>(port)] = aligned;
+      this->Ports[static_cast<std::size_t>(port)] = aligned;
+    }
+  }
+}
+
+/// Of arrays of points that are read beside others of cells.
+void WholeInputs::NoteAveragedArrays()
+{
+  std::vector<std::string> averaged;
+  for (std::size_t port = 0; port < this->Ports.size(); ++port)
+  {
+    for (int i = 0; i < this->Ports[port]->GetNumberOfInformationObjects(); ++i)
+    {
+      AreAroundPoints(this->Filter, static_cast<int>(port), vtkImageData::GetData(this->Ports[port], i),
+        averaged.empty() ? &averaged : nullptr);
+    }
+  }
+  NoteAveraged(this->Filter, averaged);
+}
+
+/// Puts other data on a port than are given.
+void WholeInputs::Change(int port, const ToOther& change)
+{
+  const auto number = static_cast<std::size_t>(port);
+  this->Kept[number] = Changed(this->Given[number], change);
+  this->Ports[number] = this->Kept[number] ? this->Kept[number] : this->Given[number];
 }
 
 WholeInputs::~WholeInputs() = default;
@@ -702,10 +746,7 @@ void WholeInputs::MakeWhole()
 void WholeInputs::MakeWhole(int port)
 {
   const Seen& seen = *this->AllSeen;
-  const auto number = static_cast<std::size_t>(port);
-  this->Kept[number] = nullptr;
-  this->Ports[number] = seen.given[port];
-  this->Change(port, seen.given[port], [&](int connection, vtkDataObject* data) {
+  this->Change(port, [&](int connection, vtkDataObject* data) {
     const OnRanks glances = GlancesOf(seen.all, port, connection);
     vtkSmartPointer<vtkDataObject> whole =
       port == seen.inShares ? AllShares(seen.ranks, data, glances) : WholeOf(seen.ranks, data, glances, Named(port));

@@ -24,7 +24,8 @@ namespace tyndall
 /// and point arrays, ghost cells once; of other data, as tables and lights, what one rank alone has goes to all.
 /// Points in shares are put one after the other, by rank.
 ///
-/// Images of which a filter reads arrays of points have a voxel around each of them (Common/ImageInput.h), also where
+/// Images that a filter reads as voxels have axes along those of the world, where theirs are so in another order. Those
+/// of which it reads arrays of points have a voxel around each of them (Common/ImageInput.h), also where
 /// one process is alone. Of a plane of points that pieces share, the voxels are those of the lowest rank.
 ///
 /// Memory of each rank: the whole image, and one piece of one array.
@@ -58,11 +59,13 @@ public:
 private:
   struct Seen; ///< of the inputs, on all ranks
   void MakeWhole(int port);
-  void NoteAveragedArrays(vtkInformationVector** given);
-  void Change(int port, vtkInformationVector* given,
-    const std::function<vtkSmartPointer<vtkDataObject>(int connection, vtkDataObject* data)>& change);
+  using ToOther = std::function<vtkSmartPointer<vtkDataObject>(int connection, vtkDataObject* data)>;
+  void AlignGiven(vtkInformationVector** given);
+  void NoteAveragedArrays();
+  void Change(int port, const ToOther& change);
 
   vtkAlgorithm* Filter;
+  std::vector<vtkSmartPointer<vtkInformationVector>> Given; ///< by port, images with aligned axes
 
   std::unique_ptr<Seen> AllSeen; ///< null: this process is alone
   std::vector<vtkSmartPointer<vtkInformationVector>> Kept;

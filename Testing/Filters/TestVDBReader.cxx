@@ -14,6 +14,7 @@
 #include "vtkVDBReader.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -202,6 +203,9 @@ void TransformsThatFit(test::Claims& claims)
   bent->SetGridName("density");
   bent->Update();
   claims.That(bentErrors.WasOneWith("shears"), "a sheared grid is an error");
+  bent->ResampleOn();
+  bent->Update();
+  claims.That(bentErrors.None() && bent->GetOutput()->GetDirectionMatrix()->IsIdentity(), "it is resampled on request");
   bent->SetGridName("frustum");
   bent->Update();
   claims.That(bentErrors.WasOneWith("not linear"), "a frustum is an error");
@@ -314,7 +318,61 @@ void LevelSetsKeepTheirInside(test::Claims& claims)
   claims.That(reader->GetOutput()->GetCellData()->GetArray("density")->GetRange()[1] == 4.0, "a fog stays as it is");
 }
 
-/// A cube of `edge` voxels, each with its edge as value, from index `edge` on; 0: a grid without active voxels, -1: none.
+/// Values that are linear in the world, in a box of voxels by any transform, are found where they are.
+void AslantGridsAreResampled(test::Claims& claims)
+{
+  auto aslant = openvdb::math::Transform::createLinearTransform(0.5);
+  aslant->postRotate(0.7, openvdb::math::Z_AXIS);
+  aslant->postRotate(0.3, openvdb::math::X_AXIS);
+  aslant->postTranslate(openvdb::Vec3d(1, -2, 3));
+  auto sheared = openvdb::math::Transform::createLinearTransform(0.5);
+  sheared->postShear(0.5, openvdb::math::X_AXIS, openvdb::math::Y_AXIS);
+  const auto linear = [](const openvdb::Vec3d& at) { return 10.0 + 0.5 * at[0] - 0.25 * at[1] + at[2]; };
+  for (const auto& transform : { aslant, sheared })
+  {
+    auto grid = NewGrid<openvdb::FloatGrid>("float", "linear");
+    auto near = NewGrid<openvdb::Int32Grid>("int32", "near");
+    for (int i = 0; i < 12 * 10 * 8; ++i)
+    {
+      const openvdb::Coord voxel(3 + i % 12, i / 12 % 10, i / 120 - 4);
+      grid->tree().setValue(voxel, static_cast<float>(linear(transform->indexToWorld(voxel))));
+      near->tree().setValue(voxel, 7);
+    }
+    grid->setTransform(transform);
+    near->setTransform(transform);
+    WriteGrids(Path("aslant.vdb"), { grid, near });
+    vtkNew<vtkVDBReader> reader;
+    test::Errors errors(reader);
+    reader->SetFileName(Path("aslant.vdb").c_str());
+    reader->ResampleOn();
+    reader->Update();
+    vtkImageData* const image = reader->GetOutput();
+    claims.That(errors.None() && image->GetDirectionMatrix()->IsIdentity(), "a grid is resampled to the world's axes");
+    claims.Near(image->GetSpacing()[0], 0.5, 1e-12, "the shortest edge");
+    vtkDataArray* const values = image->GetCellData()->GetArray("linear");
+    vtkDataArray* const integers = image->GetCellData()->GetArray("near");
+    double worst = 0.0, inside = 0.0, filled = 0.0;
+    for (vtkIdType cell = 0; cell < image->GetNumberOfCells(); ++cell)
+    {
+      double bounds[6];
+      image->GetCellBounds(cell, bounds);
+      const openvdb::Vec3d middle(
+        0.5 * (bounds[0] + bounds[1]), 0.5 * (bounds[2] + bounds[3]), 0.5 * (bounds[4] + bounds[5]));
+      const openvdb::Vec3d at = transform->worldToIndex(middle);
+      const bool within = at[0] > 3 && at[0] < 14 && at[1] > 0 && at[1] < 9 && at[2] > -4 && at[2] < 3;
+      worst = within ? std::max(worst, std::abs(values->GetComponent(cell, 0) - linear(middle))) : worst;
+      inside += within ? 1.0 : 0.0;
+      filled += integers->GetComponent(cell, 0) == 7.0 ? 1.0 : 0.0;
+    }
+    claims.That(inside > 200.0, "there are voxels within");
+    claims.Near(worst, 0.0, 1e-5, "distance of a resampled value from the linear one");
+    claims.Near(filled * std::pow(image->GetSpacing()[0], 3) / (960.0 * transform->voxelVolume()), 1.0, 0.03,
+      "volume of what is filled");
+  }
+}
+
+/// A cube of `edge` voxels, each with its edge as value, from index `edge` on; 0: a grid without active voxels, -1:
+/// none.
 void WriteCube(const std::string& name, int edge)
 {
   auto grid = NewGrid<openvdb::FloatGrid>("float", "density");
@@ -436,6 +494,7 @@ int TestVDBReader(int argc, char* argv[])
   TransformsThatFit(claims);
   WrongQuestionsAreErrors(claims);
   LevelSetsKeepTheirInside(claims);
+  AslantGridsAreResampled(claims);
   EachTimeOfASeriesIsItsFile(claims);
   ATimeThatNobodyWasToldOfIsItsFile(claims);
   GridsOfASeriesAreKept(claims);

@@ -31,7 +31,7 @@ medium.Albedo = [0.9, 0.6, 0.3]
 medium.ExtinctionScale = 2
 medium.EmissionScale = 0.5
 scattering, absorption, emission = (cells(medium, name) for name in ("sigma_s", "sigma_a", "emission"))
-assert scattering.shape == (512, 3) and emission.shape == (512,)
+assert scattering.shape == (729, 3) and emission.shape == (729,)
 assert abs(scattering + absorption - 4 * emission[:, None]).max() < 1e-5
 
 medium.Preset = "Skim milk"
