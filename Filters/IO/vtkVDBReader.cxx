@@ -479,6 +479,14 @@ vtkExecutive* vtkVDBReader::CreateDefaultExecutive()
   return SeriesPipeline::New();
 }
 
+void vtkVDBReader::SetExecutive(vtkExecutive* executive)
+{
+  if (!executive || SeriesPipeline::SafeDownCast(executive))
+  {
+    this->Superclass::SetExecutive(executive);
+  }
+}
+
 void vtkVDBReader::SetFileName(const char* fileName)
 {
   const std::vector<std::string> files = fileName ? std::vector<std::string>{ fileName } : std::vector<std::string>();

@@ -122,6 +122,9 @@ public:
   vtkGetMacro(MaximumMemory, vtkIdType);
   ///@}
 
+  /// Stays with the reader's own, which a series needs: ParaView gives every source another one.
+  void SetExecutive(vtkExecutive* executive) override;
+
   /// Later than the selection of grids, too.
   vtkMTimeType GetMTime() override;
 

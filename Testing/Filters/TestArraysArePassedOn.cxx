@@ -108,8 +108,10 @@ vtkSmartPointer<vtkImageData> Varied(bool asPoints)
   add("emission", 0.1);
   add("fluence", 2.0);
   add("fluence_batches", 2.0, 2);
-  test::AddValues<vtkFloatArray>(
-    to, "ior", 60, 1, [](vtkIdType i, int) { return 1.0 + 0.01 * static_cast<double>(i % 5); });
+  test::AddValues<vtkFloatArray>(to, "ior", 60, 1, [](vtkIdType i, int) { // of 1 at the faces of the box
+    const bool inside = i % 5 > 0 && i % 5 < 4 && i / 5 % 4 > 0 && i / 5 % 4 < 3 && i / 20 == 1;
+    return inside ? 1.0 + 0.01 * static_cast<double>(i % 5) : 1.0;
+  });
   return image;
 }
 

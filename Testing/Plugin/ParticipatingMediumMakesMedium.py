@@ -21,6 +21,7 @@ as_is = cells(medium, "sigma_s") / 0.9
 # Made after: relative density 1 is the largest density there is.
 wavelet.UpdatePipeline()
 largest = wavelet.PointData["RTData"].GetRange()[1]
+SetActiveSource(wavelet)  # whose arrays it chooses from
 medium = ParticipatingMedium(Input=wavelet)
 assert medium.DensityArray[1] == "RTData" and medium.MinimumDensity == 0, medium.DensityArray
 assert abs(medium.MaximumDensity - largest) < 1e-9 * largest, medium.MaximumDensity

@@ -413,7 +413,7 @@ void AddResampledOf(K, vtkImageData* cells, const VDBGrid& grid, const openvdb::
       {
         const openvdb::Vec3d middle(
           origin[0] + (i + 0.5) * spacing[0], origin[1] + (j + 0.5) * spacing[1], origin[2] + (k + 0.5) * spacing[2]);
-        sampler.Sample(toIndex.pretransform(middle - zero), to);
+        sampler.Sample(toIndex.transform(middle - zero), to);
       }
     }
   }
