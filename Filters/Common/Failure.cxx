@@ -28,6 +28,10 @@ Ending EndingOf(const std::function<void()>& work)
   {
     return { Ending::InputFailed, "" };
   }
+  catch (const InputIsEmpty&)
+  {
+    return { Ending::Empty, "" };
+  }
   catch (const cl::Error& error)
   {
     return { Ending::Failed,
@@ -56,6 +60,7 @@ void Throw(const Ending& ending)
     case Ending::Done: return;
     case Ending::Aborted: throw Aborted();
     case Ending::InputFailed: throw InputFailed();
+    case Ending::Empty: throw InputIsEmpty();
     case Ending::Failed: throw InvalidInput(ending.why);
   }
 }

@@ -11,6 +11,11 @@ struct InputFailed
 {
 };
 
+/// Thrown where an input is empty, and is meant to be.
+struct InputIsEmpty
+{
+};
+
 struct Ending
 {
   enum Kind
@@ -18,6 +23,7 @@ struct Ending
     Done,
     Aborted,     ///< no error: nothing is to be shown
     InputFailed, ///< the filter before has said why
+    Empty,       ///< no error: there is nothing to work on
     Failed,
   };
 

@@ -15,5 +15,9 @@ void StopWithFilterBefore(vtkDataObject* input)
   {
     throw InputFailed();
   }
+  if (ReadFact(input, EmptyFact, 0.0) > 0.0)
+  {
+    throw InputIsEmpty();
+  }
 }
 }

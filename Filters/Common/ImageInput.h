@@ -1,6 +1,15 @@
 #pragma once
 
+#include "vtkSmartPointer.h"
+
+#include <array>
+#include <initializer_list>
+#include <optional>
+#include <string>
+#include <vector>
+
 class vtkAlgorithm;
+class vtkImageData;
 class vtkInformation;
 class vtkInformationVector;
 
@@ -16,11 +25,59 @@ void TakeImages(vtkInformation* port);
 /// The same of a filter without outputs, a writer, to which VTK does not hand on blocks one by one: they are refused.
 void TakeOneImage(vtkInformation* port);
 
+/// Also in FillInputPortInformation: the image is read as voxels, by these arrays.
+/// @param chosen  default names of those that SetInputArrayToProcess chooses, by number; "": the active scalars
+/// @param named   others, which have no other names; AnyArray: all, where there are none of these
+void ReadsVoxels(
+  vtkInformation* port, std::initializer_list<const char*> chosen, std::initializer_list<const char*> named = {});
+constexpr const char* AnyArray = "";
+struct VoxelArrays
+{
+  std::vector<std::string> chosen, named; ///< none: the port is not read as voxels
+};
+VoxelArrays VoxelArraysOf(vtkInformation* port);
+
+/// Whether the voxels that a filter reads of an image are around its points (PropertyRange.h, tyndallPointDataMacro):
+/// it reads arrays of points, and none of cells.
+/// @param averaged  where it reads both: the names of those of points
+bool AreAroundPoints(vtkAlgorithm* filter, int port, vtkImageData* image, std::vector<std::string>* averaged = nullptr);
+
+/// An image with a voxel around each point: arrays of points are its arrays of cells, those of cells are left out.
+/// Where an image has one point along an axis it has one voxel.
+vtkSmartPointer<vtkImageData> VoxelsAround(vtkImageData* points);
+
+/// Which way the axes of an image go where each goes along one of the world's, up or down: by a direction matrix, a
+/// negative spacing, or both.
+struct AxisWays
+{
+  std::array<int, 3> world = { 0, 1, 2 };             ///< axis of the world, of each axis of the image
+  std::array<bool, 3> down = { false, false, false }; ///< of each axis of the image
+  std::array<double, 3> spacing = { 1.0, 1.0, 1.0 };  ///< of each axis of the world
+
+  bool AreAlike() const;                               ///< those of the world already
+  std::array<int, 6> Extent(const int* ofImage) const; ///< the same extent in numbers along the world's axes
+};
+
+/// @param direction  null: the unit matrix
+/// @return nothing where axes go aslant, or a spacing is 0 or not finite
+std::optional<AxisWays> WaysOf(const double* spacing, const double* direction);
+
+/// The same image with axes along those of the world: its cells and points in another order, at the same places. Itself
+/// where it has them already, or cannot have them.
+vtkSmartPointer<vtkImageData> Aligned(vtkImageData* image);
+
+/// That a filter averages arrays of points, for they meet others of cells; none: it does not.
+void NoteAveraged(vtkAlgorithm* filter, const std::vector<std::string>& arrays);
+/// Adds the same as a line to the settings used.
+void AddAveraged(vtkAlgorithm* filter, std::vector<std::string>& settings);
+
 /// To be asked before a filter works; Guarded does.
 /// @throws InvalidInput where a port for images has other data, with what to do about it
 void RequireImages(vtkAlgorithm* filter);
 
-/// In RequestInformation of a filter whose output has the extent of its input: where the input has none, as data
-/// that are no image, the output has a voxel, so that the pipeline asks the filter for it.
-void TellSomeExtent(vtkInformationVector* inputs, vtkInformationVector* outputs);
+/// In RequestInformation of a filter whose output has the voxels of its input at a port: where the input has no extent,
+/// as data that are no image, the output has a voxel, so that the pipeline asks the filter for it. Where voxels are
+/// around points, as far as is known before the image, the output has one more than there are between them; its axes
+/// are aligned.
+void TellVoxels(vtkAlgorithm* filter, int port, vtkInformationVector* inputs, vtkInformationVector* outputs);
 }

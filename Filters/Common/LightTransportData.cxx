@@ -285,8 +285,10 @@ Grid GridOf(vtkImageData* image)
   }
   if (!image->GetDirectionMatrix()->IsIdentity())
   {
-    throw InvalidInput("The input image is rotated by its direction matrix, which is not supported. Resample it, for "
-                       "example with ResampleToImage.");
+    throw InvalidInput(
+      "The input image is turned by its direction matrix, and not by right angles, which is not supported. Resample "
+      "it: "
+      "with Resample of VDBReader, where it was read by that, or with ResampleToImage (Resample To Image).");
   }
   Check(grid);
   return grid;
@@ -309,6 +311,41 @@ FloatField ReadChosenCells(
 vtkDataArray* ChosenArray(vtkAlgorithm* filter, int index, vtkImageData* image, const std::string& otherwise)
 {
   return Find(image, ChoiceOf(filter, index, otherwise)).array;
+}
+
+ArraysRead FindArrays(vtkAlgorithm* filter, const VoxelArrays& arrays, vtkImageData* image)
+{
+  ArraysRead read;
+  const auto add = [&](const Choice& choice) {
+    const Found found = Find(image, choice);
+    if (found.array)
+    {
+      const char* const name = found.array->GetName();
+      (found.ofPoints ? read.ofPoints : read.ofCells).emplace_back(name ? name : "");
+    }
+  };
+  for (std::size_t number = 0; number < arrays.chosen.size(); ++number)
+  {
+    add(ChoiceOf(filter, static_cast<int>(number), arrays.chosen[number]));
+  }
+  for (const std::string& name : arrays.named)
+  {
+    Choice choice;
+    choice.name = name;
+    add(choice);
+  }
+  return read;
+}
+
+bool ChoosesOnlyPoints(vtkAlgorithm* filter, int numbers)
+{
+  bool ofPoints = false, ofCells = false;
+  for (int number = 0; number < numbers; ++number)
+  {
+    const Choice choice = ChoiceOf(filter, number, "");
+    (choice.pointsFirst ? ofPoints : ofCells) |= choice.made;
+  }
+  return ofPoints && !ofCells;
 }
 
 MediumInput ReadMedium(vtkAlgorithm* filter, vtkImageData* image)

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "Common/ImageInput.h"
 #include "Common/LightTransportWriting.h"
 #include "Device/Errors.h"
 #include "Lights/Lights.h"
@@ -8,6 +9,7 @@
 #include "vtkFloatArray.h"
 #include "vtkSmartPointer.h"
 
+#include <algorithm>
 #include <array>
 #include <initializer_list>
 #include <string>
@@ -83,7 +85,8 @@ std::string NamesOf(vtkDataSetAttributes* attributes);
 /// Shapes an array may have; empty: any.
 using Components = std::initializer_list<int>;
 
-/// Values of the image's cells: the cell array of that name, or its point array averaged to cells. Float arrays are
+/// Values of the image's cells: the cell array of that name, or its point array averaged to cells (of an image that has
+/// voxels around its points, ImageInput.h, Guarded has made its points cells before). Float arrays are
 /// used where they are, others are converted. Hidden cells (GhostFlags.h) have 0, of the refractive index 1.
 /// @throws InvalidInput naming the array, the components it has, or the arrays that there are
 FloatField ReadCells(vtkImageData* image, const std::string& name, Need need, Components components = { 1, 3 });
@@ -97,6 +100,25 @@ FloatField ReadChosenCells(vtkAlgorithm* filter, int index, vtkImageData* image,
 
 /// The array that ReadChosenCells would read, or null; it is not looked at.
 vtkDataArray* ChosenArray(vtkAlgorithm* filter, int index, vtkImageData* image, const std::string& otherwise);
+
+/// Names of the arrays that a filter reads of an image: all that are there.
+struct ArraysRead
+{
+  std::vector<std::string> ofCells, ofPoints;
+};
+ArraysRead FindArrays(vtkAlgorithm* filter, const VoxelArrays& arrays, vtkImageData* image);
+
+/// Whether arrays were chosen by SetInputArrayToProcess, and all of them of points.
+bool ChoosesOnlyPoints(vtkAlgorithm* filter, int numbers);
+
+/// Relative density of the fog that fills a level set, by the distance from its surface, which is negative inside: 1,
+/// and less in proportion within a voxel of the surface; 0 outside. What OpenVDB's sdfToFogVolume makes with that
+/// cutoff.
+template <typename Value>
+Value FogInside(Value distance, double voxel)
+{
+  return std::min(std::max(static_cast<Value>(-distance / voxel), Value(0)), Value(1));
+}
 
 /// Numbers of SetInputArrayToProcess for the filters that take a medium at port 0.
 enum MediumArray

@@ -5,6 +5,7 @@
 
 #include "vtkAlgorithm.h"
 #include "vtkInformation.h"
+#include "vtkInformationIntegerKey.h"
 #include "vtkInformationStringVectorKey.h"
 
 #include <string>
@@ -18,6 +19,12 @@ namespace
 vtkInformationStringVectorKey* Refused()
 {
   static auto* const key = vtkInformationStringVectorKey::MakeKey("REFUSED_PROPERTIES", "Tyndall");
+  return key;
+}
+
+vtkInformationIntegerKey* PointDataKey()
+{
+  static auto* const key = vtkInformationIntegerKey::MakeKey("POINT_DATA", "Tyndall");
   return key;
 }
 
@@ -85,6 +92,17 @@ void NoteProperty(vtkAlgorithm* filter, const char* property, const double* valu
       " must be " + RangeText(low, high) + ".";
     information->Append(Refused(), text.c_str());
   }
+}
+
+bool SetPointData(vtkAlgorithm* filter, int& held, int kind)
+{
+  filter->GetInformation()->Set(PointDataKey(), kind);
+  return SetInRange<int>(filter, "PointData", &held, { kind }, VoxelsAroundPoints, AverageToCells);
+}
+
+PointDataKind PointDataOf(vtkAlgorithm* filter)
+{
+  return filter->GetInformation()->Get(PointDataKey()) == AverageToCells ? AverageToCells : VoxelsAroundPoints;
 }
 
 void CheckProperties(vtkAlgorithm* filter)

@@ -32,6 +32,19 @@ constexpr double LargestFloat =
 TYNDALL_EXPORT void NoteProperty(
   vtkAlgorithm* filter, const char* property, const double* values, int count, double low, double high);
 
+/// How a filter reads arrays of points; see tyndallPointDataMacro.
+enum PointDataKind
+{
+  VoxelsAroundPoints = 0,
+  AverageToCells = 1,
+};
+
+/// What the setter of that does. @return whether the property has changed
+TYNDALL_EXPORT bool SetPointData(vtkAlgorithm* filter, int& held, int kind);
+
+/// What a filter was told by it.
+PointDataKind PointDataOf(vtkAlgorithm* filter);
+
 /// To be asked before a filter works; Guarded does.
 /// @throws InvalidInput that names every property out of its range, its value and its range
 void CheckProperties(vtkAlgorithm* filter);
@@ -107,6 +120,23 @@ bool SetInRange(vtkAlgorithm* filter, const char* property, Type* heldValues, st
   void Set##name(const type values[6])                                                                                 \
   {                                                                                                                    \
     this->Set##name(values[0], values[1], values[2], values[3], values[4], values[5]);                                 \
+  }
+
+/// The property PointData: what arrays of points are. 0 (default): each point is in the middle of a voxel of its value,
+/// so that n points are n voxels and bounds are half a spacing wider, and arrays of points become cells of the output;
+/// 1: a voxel is between points, and has their mean, n - 1 voxels. Where an array of cells is read as well, voxels are
+/// the cells, and points are averaged.
+#define tyndallPointDataMacro()                             \
+  virtual void SetPointData(int kind)                       \
+  {                                                         \
+    if (tyndall::SetPointData(this, this->PointData, kind)) \
+    {                                                       \
+      this->Modified();                                     \
+    }                                                       \
+  }                                                         \
+  virtual int GetPointData()                                \
+  {                                                         \
+    return this->PointData;                                 \
   }
 
 #endif

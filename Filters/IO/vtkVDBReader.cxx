@@ -1,6 +1,8 @@
 #include "vtkVDBReader.h"
 
 #include "Common/AvailableMemory.h"
+#include "Common/FilterBefore.h"
+#include "Common/ImageInput.h"
 #include "Common/LightTransportData.h"
 #include "Device/HostMemory.h"
 #include "IO/VDB/VDBCells.h"
@@ -11,15 +13,18 @@
 #include "Work/GuardedWork.h"
 
 #include "vtkCellData.h"
+#include "vtkCompositeDataPipeline.h"
 #include "vtkDataArraySelection.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
+#include "vtkInformationExecutivePortVectorKey.h"
 #include "vtkInformationVector.h"
 #include "vtkObjectFactory.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <set>
 
 using tyndall::InvalidInput;
@@ -108,10 +113,33 @@ openvdb::CoordBBox CellsIn(const int* extent)
   return box;
 }
 
-void EmptyExtent(vtkInformation* info)
+constexpr int NoExtent[6] = { 0, -1, 0, -1, 0, -1 };
+
+std::array<int, 6> WholeExtentOf(const tyndall::VDBGeometry& image)
 {
-  const int empty[6] = { 0, -1, 0, -1, 0, -1 };
-  info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), empty, 6);
+  std::array<int, 6> extent;
+  std::transform(image.Extent.begin(), image.Extent.end(), extent.begin(),
+    [](std::int64_t bound) { return static_cast<int>(bound); });
+  return extent;
+}
+
+/// One file has no time, of more each has the one of its place.
+void TellTimes(vtkInformation* info, int files)
+{
+  using Pipeline = vtkStreamingDemandDrivenPipeline;
+  if (files < 2)
+  {
+    info->Remove(Pipeline::TIME_STEPS());
+    info->Remove(Pipeline::TIME_RANGE());
+    info->Remove(Pipeline::TIME_DEPENDENT_INFORMATION());
+    return;
+  }
+  std::vector<double> times(static_cast<std::size_t>(files));
+  std::iota(times.begin(), times.end(), 0.0);
+  const double range[2] = { times.front(), times.back() };
+  info->Set(Pipeline::TIME_STEPS(), times.data(), files);
+  info->Set(Pipeline::TIME_RANGE(), range, 2);
+  info->Set(Pipeline::TIME_DEPENDENT_INFORMATION(), 1);
 }
 }
 
@@ -121,14 +149,23 @@ struct vtkVDBReader::Internals
   std::unique_ptr<VDBFile> File;
   std::string Path;
   std::string Summary;
-  std::set<std::string> Listed; ///< names that came into the selection from a file
-  std::string OnlyGrid;         ///< set by SetGridName, not applied yet
+  std::vector<std::string> Files; ///< of a series by time
+  int ListedFile = -1;            ///< which of them File is
+  std::set<std::string> Listed;   ///< names that came into the selection from a file
+  std::string OnlyGrid;           ///< set by SetGridName, not applied yet
 
   std::vector<const VDBGrid*> Chosen;
   tyndall::VDBGeometry Image;
   bool IsBare = false; ///< no chosen grid has an active voxel
 
-  void List(const char* path);
+  bool Resample = false;    ///< where axes go aslant
+  bool Resampled = false;   ///< Image is along the world's axes, and not along the grids'
+  tyndall::VDBGeometry Own; ///< of the grids then
+
+  bool IsSeries() const { return this->Files.size() > 1; }
+  std::string FaultOf(const VDBGrid& grid) const;
+  void Look(int file, vtkDataArraySelection* selection, vtkIdType maximumMemory);
+  void List(int file);
   void Offer(vtkDataArraySelection* selection);
   void Choose(vtkDataArraySelection* selection);
   void CheckMemory(vtkIdType maximum) const;
@@ -141,26 +178,47 @@ struct vtkVDBReader::Internals
   Limit LimitOfMemory(vtkIdType maximum) const;
 };
 
-/// Anew each time: it takes milliseconds, and a file's time and length do not tell that it was written again.
-void vtkVDBReader::Internals::List(const char* path)
+/// Why a grid cannot become an image; empty: it can.
+std::string vtkVDBReader::Internals::FaultOf(const VDBGrid& grid) const
 {
-  if (path == nullptr || path[0] == '\0')
+  return grid.Shears && !this->Resample && grid.Unusable.empty()
+    ? "its transform shears; an image needs axes at right angles. Switch Resample on"
+    : grid.Unusable;
+}
+
+/// Lists one of the files, and finds out which image its chosen grids are.
+void vtkVDBReader::Internals::Look(int file, vtkDataArraySelection* selection, vtkIdType maximumMemory)
+{
+  this->Chosen.clear();
+  this->List(file);
+  this->Offer(selection);
+  this->Choose(selection);
+  this->CheckMemory(maximumMemory);
+}
+
+/// Anew each time: it takes milliseconds, and a file's time and length do not tell that it was written again.
+void vtkVDBReader::Internals::List(int file)
+{
+  this->File.reset();
+  this->Summary.clear();
+  this->ListedFile = file;
+  if (this->Files.empty() || this->Files[static_cast<std::size_t>(file)].empty())
   {
     throw InvalidInput("No file: set FileName.");
   }
-  this->File.reset();
-  this->Summary.clear();
+  const std::string& path = this->Files[static_cast<std::size_t>(file)];
   this->File.reset(new VDBFile(path));
   this->Path = path;
   this->Summary = ::Summary(*this->File);
 }
 
-/// Brings the file's grids into the selection. Those that share the first one's transform are chosen at first.
+/// Brings the file's grids into the selection. Those that share the first one's transform are chosen at first. Of a
+/// series those of other files stay.
 void vtkVDBReader::Internals::Offer(vtkDataArraySelection* selection)
 {
   for (auto name = this->Listed.begin(); name != this->Listed.end();)
   {
-    if (this->File->Find(*name) == nullptr)
+    if (!this->IsSeries() && this->File->Find(*name) == nullptr)
     {
       selection->RemoveArrayByName(name->c_str());
       name = this->Listed.erase(name);
@@ -173,7 +231,7 @@ void vtkVDBReader::Internals::Offer(vtkDataArraySelection* selection)
   const VDBGrid* first = nullptr;
   for (const VDBGrid& grid : this->File->Grids())
   {
-    const bool usable = grid.Unusable.empty();
+    const bool usable = this->FaultOf(grid).empty();
     first = usable && first == nullptr ? &grid : first;
     if (!selection->ArrayExists(grid.Name.c_str()))
     {
@@ -192,15 +250,20 @@ void vtkVDBReader::Internals::Offer(vtkDataArraySelection* selection)
 void vtkVDBReader::Internals::Choose(vtkDataArraySelection* selection)
 {
   this->Chosen.clear();
-  this->IsBare = false;
+  this->IsBare = this->Resampled = false;
   this->Image = {};
   const auto& grids = this->File->Grids();
-  if (std::none_of(grids.begin(), grids.end(), [](const VDBGrid& grid) { return grid.Unusable.empty(); }) &&
+  if (this->IsSeries() && grids.empty())
+  {
+    this->IsBare = true;
+    return;
+  }
+  if (std::none_of(grids.begin(), grids.end(), [&](const VDBGrid& grid) { return this->FaultOf(grid).empty(); }) &&
     selection->GetNumberOfArraysEnabled() == 0)
   {
     throw InvalidInput(grids.empty() ? "\"" + this->Path + "\" holds no grid."
                                      : "No grid of \"" + this->Path + "\" can become an image. Of \"" +
-          grids.front().Name + "\", " + grids.front().Unusable + ".");
+          grids.front().Name + "\", " + this->FaultOf(grids.front()) + ".");
   }
   for (int i = 0; i < selection->GetNumberOfArrays(); ++i)
   {
@@ -210,6 +273,10 @@ void vtkVDBReader::Internals::Choose(vtkDataArraySelection* selection)
       continue;
     }
     const VDBGrid* grid = this->File->Find(name);
+    if (grid == nullptr && this->IsSeries() && this->Listed.count(name) > 0)
+    {
+      continue; // another file has it
+    }
     if (grid == nullptr)
     {
       std::string available;
@@ -220,10 +287,10 @@ void vtkVDBReader::Internals::Choose(vtkDataArraySelection* selection)
       throw InvalidInput("\"" + this->Path + "\" has no grid \"" + name + "\". It has " +
         (available.empty() ? "none" : available) + ".");
     }
-    if (!grid->Unusable.empty())
+    if (const std::string fault = this->FaultOf(*grid); !fault.empty())
     {
-      throw InvalidInput("Grid \"" + name + "\" of \"" + this->Path + "\" cannot become an image: " + grid->Unusable +
-        ", or switch it off.");
+      throw InvalidInput(
+        "Grid \"" + name + "\" of \"" + this->Path + "\" cannot become an image: " + fault + ", or switch it off.");
     }
     if (!this->Chosen.empty() && !tyndall::SharesTransform(*this->Chosen.front(), *grid))
     {
@@ -238,8 +305,12 @@ void vtkVDBReader::Internals::Choose(vtkDataArraySelection* selection)
   if (!this->Chosen.empty())
   {
     this->Image = tyndall::GeometryOf(this->Chosen);
-    this->IsBare = this->Image.Empty();
+    this->Own = this->Image;
+    this->Resampled = this->Resample && !this->Image.Empty() &&
+      (this->Chosen.front()->Shears || !tyndall::WaysOf(this->Image.Spacing.data(), this->Image.Direction.data()));
+    this->Image = this->Resampled ? tyndall::BoxAround(this->Chosen) : this->Image;
   }
+  this->IsBare = this->Image.Empty() && (this->IsSeries() || !this->Chosen.empty());
 }
 
 void vtkVDBReader::Internals::CheckMemory(vtkIdType maximum) const
@@ -255,7 +326,7 @@ void vtkVDBReader::Internals::CheckMemory(vtkIdType maximum) const
   double image = 0.0, tree = 0.0;
   for (const VDBGrid* grid : this->Chosen)
   {
-    image += BytesAsImage(*grid, extent);
+    image += BytesAsImage(*grid, extent) + (this->Resampled ? BytesAsImage(*grid, this->Own.Extent) : 0.0);
     tree = std::max(tree, static_cast<double>(grid->Tree.TreeBytes));
   }
   const Limit limit = this->LimitOfMemory(maximum);
@@ -292,6 +363,101 @@ vtkVDBReader::Internals::Limit vtkVDBReader::Internals::LimitOfMemory(vtkIdType 
   return limit;
 }
 
+namespace
+{
+using Pipeline = vtkStreamingDemandDrivenPipeline;
+
+/// What an output is asked for, which goes when its extent is told anew.
+struct Request
+{
+  int piece, pieces, ghostLevels;
+  std::array<int, 6> extent;
+  bool isPart; ///< of the extent
+
+  explicit Request(vtkInformation* output)
+    : piece(output->Get(Pipeline::UPDATE_PIECE_NUMBER()))
+    , pieces(output->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()))
+    , ghostLevels(output->Get(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS()))
+  {
+    const int *part = output->Get(Pipeline::UPDATE_EXTENT()), *whole = output->Get(Pipeline::WHOLE_EXTENT());
+    this->isPart = part && whole && !std::equal(part, part + 6, whole);
+    std::copy_n(this->isPart ? part : NoExtent, 6, this->extent.begin());
+  }
+
+  void Restore(vtkInformation* output) const
+  {
+    output->Set(Pipeline::UPDATE_PIECE_NUMBER(), this->piece);
+    output->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), this->pieces);
+    output->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), this->ghostLevels);
+    const int* const whole = output->Get(Pipeline::WHOLE_EXTENT());
+    bool fits = this->isPart && whole;
+    for (int i = 0; i < 6 && fits; ++i)
+    {
+      fits = i % 2 == 0 ? this->extent[i] >= whole[i] : this->extent[i] <= whole[i];
+    }
+    if (fits)
+    {
+      output->Set(Pipeline::UPDATE_EXTENT(), this->extent.data(), 6);
+    }
+  }
+};
+
+/// Tells an algorithm and all after it what the first of them has to tell now.
+void TellDownstream(vtkExecutive* executive, std::set<vtkExecutive*>& told)
+{
+  auto* const pipeline = vtkDemandDrivenPipeline::SafeDownCast(executive);
+  if (!pipeline || !told.insert(executive).second)
+  {
+    return;
+  }
+  std::vector<Request> requests;
+  for (int port = 0; port < executive->GetNumberOfOutputPorts(); ++port)
+  {
+    vtkInformation* const output = executive->GetOutputInformation(port);
+    requests.emplace_back(output);
+    vtkExecutive** const consumers = vtkExecutive::CONSUMERS()->GetExecutives(output);
+    const std::vector<vtkExecutive*> after(consumers, consumers + vtkExecutive::CONSUMERS()->Length(output));
+    std::for_each(after.begin(), after.end(), [&](vtkExecutive* consumer) { TellDownstream(consumer, told); });
+  }
+  pipeline->UpdateInformation();
+  for (std::size_t port = 0; port < requests.size(); ++port)
+  {
+    requests[port].Restore(executive->GetOutputInformation(static_cast<int>(port)));
+  }
+}
+}
+
+/// VTK asks what extent there is before it says of what time it wants data, and no filter after a reader takes another
+/// extent from then on. So where that time has another file than the one that was told of, all of them are told anew.
+class vtkVDBReader::SeriesPipeline : public vtkCompositeDataPipeline
+{
+public:
+  static SeriesPipeline* New();
+  vtkTypeMacro(SeriesPipeline, vtkCompositeDataPipeline);
+
+  vtkTypeBool ProcessRequest(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override
+  {
+    auto* const reader = vtkVDBReader::SafeDownCast(this->GetAlgorithm());
+    if (reader && !this->IsTelling && request->Has(REQUEST_TIME_DEPENDENT_INFORMATION()) &&
+      reader->FileAskedFor(outputs->GetInformationObject(0)) != reader->Internal->ListedFile)
+    {
+      this->IsTelling = true;
+      reader->Modified();
+      std::set<vtkExecutive*> told;
+      TellDownstream(this, told);
+      this->IsTelling = false;
+      return 1;
+    }
+    return this->Superclass::ProcessRequest(request, inputs, outputs);
+  }
+
+private:
+  bool IsTelling = false;
+};
+
+vtkStandardNewMacro(vtkVDBReader::SeriesPipeline);
+
 vtkStandardNewMacro(vtkVDBReader);
 
 vtkVDBReader::vtkVDBReader()
@@ -300,9 +466,66 @@ vtkVDBReader::vtkVDBReader()
   this->SetNumberOfInputPorts(0);
 }
 
-vtkVDBReader::~vtkVDBReader()
+vtkVDBReader::~vtkVDBReader() = default;
+
+vtkExecutive* vtkVDBReader::CreateDefaultExecutive()
 {
-  delete[] this->FileName;
+  return SeriesPipeline::New();
+}
+
+void vtkVDBReader::SetExecutive(vtkExecutive* executive)
+{
+  if (!executive || SeriesPipeline::SafeDownCast(executive))
+  {
+    this->Superclass::SetExecutive(executive);
+  }
+}
+
+void vtkVDBReader::SetFileName(const char* fileName)
+{
+  const std::vector<std::string> files = fileName ? std::vector<std::string>{ fileName } : std::vector<std::string>();
+  if (files != this->Internal->Files)
+  {
+    this->Internal->Files = files;
+    this->Modified();
+  }
+}
+
+void vtkVDBReader::AddFileName(const char* fileName)
+{
+  this->Internal->Files.emplace_back(fileName ? fileName : "");
+  this->Modified();
+}
+
+void vtkVDBReader::RemoveAllFileNames()
+{
+  this->Internal->Files.clear();
+  this->Modified();
+}
+
+int vtkVDBReader::GetNumberOfFileNames() const
+{
+  return static_cast<int>(this->Internal->Files.size());
+}
+
+const char* vtkVDBReader::GetFileName(int index)
+{
+  const bool isThere = index >= 0 && index < this->GetNumberOfFileNames();
+  return isThere ? this->Internal->Files[static_cast<std::size_t>(index)].c_str() : nullptr;
+}
+
+const char* vtkVDBReader::GetCurrentFileName()
+{
+  return this->Internal->Path.c_str();
+}
+
+/// The last one that begins at the time that is asked for or before.
+int vtkVDBReader::FileAskedFor(vtkInformation* output) const
+{
+  constexpr double rounding = 1e-6; // of times that are computed
+  const double time = output->Has(Pipeline::UPDATE_TIME_STEP()) ? output->Get(Pipeline::UPDATE_TIME_STEP()) : 0.0;
+  return time > 0.0 ? static_cast<int>(std::min(time + rounding, std::max(this->GetNumberOfFileNames() - 1.0, 0.0)))
+                    : 0;
 }
 
 int vtkVDBReader::CanReadFile(const char* fileName)
@@ -355,33 +578,52 @@ int vtkVDBReader::RequestInformation(vtkInformation*, vtkInformationVector**, vt
 {
   vtkInformation* info = outputs->GetInformationObject(0);
   Internals& internal = *this->Internal;
-  internal.Chosen.clear();
-  EmptyExtent(info);
+  info->Set(Pipeline::WHOLE_EXTENT(), NoExtent, 6);
   info->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
-  const bool listed = tyndall::GuardedInformation(this, [&] {
-    internal.List(this->FileName);
-    internal.Offer(this->GridSelection);
-    internal.Choose(this->GridSelection);
-    internal.CheckMemory(this->MaximumMemory);
-  });
+  TellTimes(info, this->GetNumberOfFileNames());
+  internal.Resample = this->Resample;
+  const bool listed = tyndall::GuardedInformation(
+    this, [&] { internal.Look(this->FileAskedFor(info), this->GridSelection, this->MaximumMemory); });
   if (!listed)
   {
     internal.Chosen.clear();
+    internal.IsBare = false;
     return 1;
   }
-  if (internal.IsBare)
+  if (internal.IsBare && !internal.IsSeries())
   {
     vtkWarningMacro("The chosen grids of \"" << internal.Path << "\" have no active voxels, so the image is empty.");
   }
 
   const tyndall::VDBGeometry& image = internal.Image;
-  int extent[6];
-  std::copy(image.Extent.begin(), image.Extent.end(), extent);
-  info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
+  info->Set(Pipeline::WHOLE_EXTENT(), WholeExtentOf(image).data(), 6);
   info->Set(vtkDataObject::ORIGIN(), image.Origin.data(), 3);
   info->Set(vtkDataObject::SPACING(), image.Spacing.data(), 3);
   info->Set(vtkDataObject::DIRECTION(), image.Direction.data(), 9);
   return 1;
+}
+
+/// The extent to read. Filters that did not hear of another file of a series asked for a part of the one before it.
+std::array<int, 6> vtkVDBReader::ExtentToRead(vtkInformation* info)
+{
+  std::array<int, 6> asked, told;
+  info->Get(Pipeline::UPDATE_EXTENT(), asked.data());
+  info->Get(Pipeline::WHOLE_EXTENT(), told.data());
+  const int file = this->FileAskedFor(info);
+  if (file == this->Internal->ListedFile)
+  {
+    return asked;
+  }
+  this->Internal->Look(file, this->GridSelection, this->MaximumMemory);
+  const std::array<int, 6> whole = WholeExtentOf(this->Internal->Image);
+  std::array<int, 6> extent = whole;
+  for (int i = 0; i < 6 && asked != told; ++i)
+  {
+    extent[i] = i % 2 == 0 ? std::max(asked[i], whole[i]) : std::min(asked[i], whole[i]);
+  }
+  info->Set(Pipeline::WHOLE_EXTENT(), whole.data(), 6);
+  info->Set(Pipeline::UPDATE_EXTENT(), extent.data(), 6);
+  return extent;
 }
 
 int vtkVDBReader::RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
@@ -391,19 +633,31 @@ int vtkVDBReader::RequestData(vtkInformation*, vtkInformationVector**, vtkInform
     vtkImageData* image = vtkImageData::GetData(info);
     image->Initialize();
     Internals& internal = *this->Internal;
-    int extent[6];
-    info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), extent);
+    std::array<int, 6> extent = this->ExtentToRead(info);
+    if (internal.IsSeries())
+    {
+      image->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), internal.ListedFile);
+    }
+    else
+    {
+      image->GetInformation()->Remove(vtkDataObject::DATA_TIME_STEP());
+    }
+    if (internal.IsBare)
+    {
+      tyndall::AddFact(image, tyndall::EmptyFact, std::vector<double>{ 1.0 });
+    }
     if (internal.Chosen.empty() || extent[0] > extent[1] || extent[2] > extent[3] || extent[4] > extent[5])
     {
       return;
     }
     const tyndall::VDBGeometry& geometry = internal.Image;
-    image->SetExtent(extent);
+    image->SetExtent(extent.data());
     image->SetOrigin(geometry.Origin.data());
     image->SetSpacing(geometry.Spacing.data());
     image->SetDirectionMatrix(geometry.Direction.data());
 
-    const openvdb::CoordBBox box = CellsIn(extent);
+    const std::array<int, 6> own = internal.Resampled ? WholeExtentOf(internal.Own) : extent;
+    const openvdb::CoordBBox box = CellsIn(own.data());
     double done = 0.0;
     for (const VDBGrid* grid : internal.Chosen)
     {
@@ -411,8 +665,22 @@ int vtkVDBReader::RequestData(vtkInformation*, vtkInformationVector**, vtkInform
       {
         throw tyndall::Aborted();
       }
-      tyndall::AddGridCells(*internal.File->Read(*grid, box), grid->Type, grid->Name, box, image);
+      vtkNew<vtkImageData> cells;
+      vtkImageData* const asRead = internal.Resampled ? cells.Get() : image;
+      if (internal.Resampled)
+      {
+        cells->SetExtent(std::array<int, 6>(own).data());
+      }
+      tyndall::AddGridCells(*internal.File->Read(*grid, box), grid->Type, grid->Name, box, asRead);
+      if (internal.Resampled)
+      {
+        tyndall::AddResampled(cells, *grid, box, image);
+      }
       tyndall::AddMetadata(image, tyndall::FieldName(grid->Name, ""), grid->Metadata);
+      if (this->LevelSetsAsFog)
+      {
+        tyndall::MakeFogOfLevelSet(image, grid->Name);
+      }
       this->UpdateProgress(++done / static_cast<double>(internal.Chosen.size()));
     }
     tyndall::AddMetadata(image, tyndall::FieldName("", ""), internal.File->Metadata());
@@ -426,7 +694,10 @@ int vtkVDBReader::RequestData(vtkInformation*, vtkInformationVector**, vtkInform
 void vtkVDBReader::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "FileName: " << (this->FileName ? this->FileName : "(none)") << "\n";
+  os << indent << "FileName: " << (this->GetFileName() ? this->GetFileName() : "(none)") << "\n";
+  os << indent << "Files: " << this->GetNumberOfFileNames() << "\n";
+  os << indent << "Resample: " << this->Resample << "\n";
+  os << indent << "LevelSetsAsFog: " << this->LevelSetsAsFog << "\n";
   os << indent << "MaximumMemory: " << this->MaximumMemory << "\n";
   os << indent << "GridSelection:\n";
   this->GridSelection->PrintSelf(os, indent.GetNextIndent());

@@ -95,8 +95,8 @@ void WriteWholeOrNot(const std::string& path, const openvdb::GridPtrVec& grids, 
   whole.Finish();
 }
 
-/// The arrays that become grids: those of cells, and those of points averaged to cells where none of cells has the
-/// name.
+/// The arrays that become grids: those of cells, and beside them those of points averaged to cells where none of cells
+/// has the name.
 std::vector<vtkSmartPointer<vtkDataArray>> CellArraysOf(vtkImageData* image)
 {
   std::vector<vtkSmartPointer<vtkDataArray>> arrays;
@@ -180,6 +180,7 @@ vtkImageData* vtkVDBWriter::GetImageInput()
 int vtkVDBWriter::FillInputPortInformation(int, vtkInformation* info)
 {
   tyndall::TakeOneImage(info);
+  tyndall::ReadsVoxels(info, {}, { tyndall::AnyArray });
   return 1;
 }
 
@@ -223,13 +224,19 @@ void vtkVDBWriter::WriteData()
       }
     });
     this->SetErrorCode(vtkErrorCode::FileFormatError); // until it is written
+    vtkSmartPointer<vtkImageData> voxels;
     std::vector<vtkSmartPointer<vtkDataArray>> arrays;
     tyndall::OnAllRanks(this->Controller, [&] {
       tyndall::RequireImages(this);
-      arrays = CellArraysOf(this->GetImageInput());
+      voxels = this->GetImageInput();
+      if (voxels && tyndall::AreAroundPoints(this, 0, voxels))
+      {
+        voxels = tyndall::VoxelsAround(voxels);
+      }
+      arrays = CellArraysOf(voxels);
     });
-    tyndall::GatheredImage image(this->Controller, this->GetImageInput(), arrays, {},
-      tyndall::GatheredImage::On::FirstRank, "The image is not written");
+    tyndall::GatheredImage image(
+      this->Controller, voxels, arrays, {}, tyndall::GatheredImage::On::FirstRank, "The image is not written");
     tyndall::OnAllRanks(this->Controller, [&] {
       if (image.IsFirstRank() && (image.Frame() == nullptr || image.NumberOfCellArrays() == 0))
       {
@@ -262,6 +269,7 @@ void vtkVDBWriter::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   os << indent << "FileName: " << (this->FileName ? this->FileName : "(none)") << "\n";
+  os << indent << "PointData: " << this->PointData << "\n";
   os << indent << "Compression: " << this->Compression << "\n";
   os << indent << "Background: " << this->Background << "\n";
   os << indent << "Tolerance: " << this->Tolerance << "\n";

@@ -19,7 +19,8 @@ class vtkMultiProcessController;
  * | the same with 3 components             | vec3s, vec3d, vec3i                                       |
  * | other numbers of components, 3 x int64 | a grid for each component, `<array>_0`, `<array>_1`, ...  |
  *
- * Point arrays are averaged to cells, where there is no cell array of their name.
+ * Of an image of points alone each is a voxel (SetPointData). Beside cell arrays those of points are averaged to cells,
+ * where there is no cell array of their name.
  *
  * Cells that equal the background become inactive voxels and take no room; every other one is active. The image's
  * extent, spacing, origin and direction become the grid's index space and transform (see vtkVDBReader: a voxel's index
@@ -103,6 +104,17 @@ public:
   vtkBooleanMacro(SaveAsHalf, bool);
   ///@}
 
+  ///@{
+  /// What arrays of points are where there are none of cells: 0 (default): each is a voxel; 1: their mean is that of
+  /// the voxel between them.
+  enum PointDataKinds
+  {
+    VOXELS_AROUND_POINTS = 0,
+    AVERAGE_TO_CELLS = 1
+  };
+  tyndallPointDataMacro();
+  ///@}
+
   /// The image to write.
   vtkImageData* GetImageInput();
 
@@ -131,6 +143,7 @@ private:
   void operator=(const vtkVDBWriter&) = delete;
 
   char* FileName = nullptr;
+  int PointData = VOXELS_AROUND_POINTS;
   int Compression = BLOSC;
   double Background = 0.0;
   double Tolerance = 0.0;

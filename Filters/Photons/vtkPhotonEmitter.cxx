@@ -55,6 +55,17 @@ vtkPolyData* vtkPhotonEmitter::GetOutput()
   return vtkPolyData::SafeDownCast(this->GetOutputDataObject(0));
 }
 
+/// Of the medium no array is read, but its box is that of the filter that reads them.
+int vtkPhotonEmitter::FillInputPortInformation(int port, vtkInformation* information)
+{
+  const int done = this->Superclass::FillInputPortInformation(port, information);
+  if (port == MEDIUM)
+  {
+    tyndall::ReadsVoxels(information, { "sigma_a", "sigma_s", "emission", "ior" }, { tyndall::AnyArray });
+  }
+  return done;
+}
+
 int vtkPhotonEmitter::FillOutputPortInformation(int, vtkInformation* information)
 {
   information->Set(vtkDataObject::DATA_TYPE_NAME(), "vtkPolyData");

@@ -126,6 +126,7 @@ protected:
   vtkPhotonEmitter();
   ~vtkPhotonEmitter() override;
 
+  int FillInputPortInformation(int port, vtkInformation* information) override;
   int FillOutputPortInformation(int port, vtkInformation* information) override;
   int RequestUpdateExtent(
     vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;

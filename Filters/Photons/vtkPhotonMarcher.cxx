@@ -214,6 +214,10 @@ int vtkPhotonMarcher::FillInputPortInformation(int port, vtkInformation* informa
   {
     tyndall::TakeImages(information);
   }
+  if (port == MediumPort)
+  {
+    tyndall::ReadsVoxels(information, { "sigma_a", "sigma_s", "emission", "ior" }, { "g" });
+  }
   if (port == OctreePort)
   {
     information->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
@@ -238,7 +242,7 @@ void vtkPhotonMarcher::SetInputConnection(int port, vtkAlgorithmOutput* input)
 
 int vtkPhotonMarcher::RequestInformation(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  tyndall::TellSomeExtent(inputs[MediumPort], outputs);
+  tyndall::TellVoxels(this, MediumPort, inputs[MediumPort], outputs);
   return 1;
 }
 
@@ -531,6 +535,7 @@ void vtkPhotonMarcher::Warn(const tyndall::PhotonLight& light, std::size_t photo
 void vtkPhotonMarcher::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
+  os << indent << "PointData: " << this->PointData << "\n";
   os << indent << "Scheme: " << this->Scheme << "\n";
   os << indent << "IntegratorOrder: " << this->IntegratorOrder << "\n";
   os << indent << "StepSize: " << this->StepSize << "\n";

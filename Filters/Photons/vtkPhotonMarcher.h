@@ -127,6 +127,19 @@ public:
   ///@}
 
   ///@{
+  /// What arrays of points are: 0 (default): each is in the middle of a voxel of its value, so that n points are n
+  /// voxels, the output has arrays of cells, and its bounds are half a spacing wider than the input's; 1: their mean is
+  /// that of the voxel between them, and n points are n - 1 voxels. Where an array of cells is read as well, voxels are
+  /// the cells and points are averaged; field data `settings_used` then say so.
+  enum PointDataKinds
+  {
+    VOXELS_AROUND_POINTS = 0,
+    AVERAGE_TO_CELLS = 1
+  };
+  tyndallPointDataMacro();
+  ///@}
+
+  ///@{
   /// Order of the conservative scheme's integrator: 1 (explicit Euler, to compare), 2 (leapfrog; default) or 4
   /// (Yoshida; where the index is smooth over several voxels; crosses 16 voxels of an octree's node in a step at most).
   tyndallSetRangeMacro(IntegratorOrder, int, 1, 4);
@@ -283,6 +296,7 @@ private:
   void Warn(const tyndall::PhotonLight& light, std::size_t photons);
 
   int Scheme = CONSERVATIVE;
+  int PointData = VOXELS_AROUND_POINTS;
   int IntegratorOrder;
   double StepSize;
   bool PhotonCounts;

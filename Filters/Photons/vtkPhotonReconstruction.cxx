@@ -217,13 +217,15 @@ vtkPhotonReconstruction::~vtkPhotonReconstruction() = default;
 int vtkPhotonReconstruction::FillInputPortInformation(int, vtkInformation* information)
 {
   tyndall::TakeImages(information);
+  tyndall::ReadsVoxels(
+    information, { "fluence", "mean_direction", "photon_count", "photon_weight", "fluence_batches" });
   return 1;
 }
 
 int vtkPhotonReconstruction::RequestInformation(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  tyndall::TellSomeExtent(inputs[0], outputs);
+  tyndall::TellVoxels(this, 0, inputs[0], outputs);
   return 1;
 }
 
@@ -310,6 +312,7 @@ void vtkPhotonReconstruction::Note(const tyndall::ReconstructedLight& light, dou
 void vtkPhotonReconstruction::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
+  os << indent << "PointData: " << this->PointData << "\n";
   os << indent << "Scheme: " << this->Scheme << "\n";
   os << indent << "Levels: " << this->Levels << "\n";
   os << indent << "WeightStep: " << this->WeightStep << "\n";

@@ -21,7 +21,7 @@ class vtkMultiProcessController;
  * Pyramids of the light, each level of half the resolution of the one below it. Every voxel takes its light from the
  * level that Scheme chooses; a level without photons is never chosen while a coarser one has some.
  *
- * Input: vtkImageData as vtkPhotonMarcher makes it, with cell arrays (point arrays are averaged to cells)
+ * Input: vtkImageData as vtkPhotonMarcher makes it, with cell arrays (point arrays: see SetPointData)
  *
  * | array | components | unit | meaning | needed by Scheme |
  * |---|---|---|---|---|
@@ -112,6 +112,19 @@ public:
   ///@}
 
   ///@{
+  /// What arrays of points are: 0 (default): each is in the middle of a voxel of its value, so that n points are n
+  /// voxels, the output has arrays of cells, and its bounds are half a spacing wider than the input's; 1: their mean is
+  /// that of the voxel between them, and n points are n - 1 voxels. Where an array of cells is read as well, voxels are
+  /// the cells and points are averaged; field data `settings_used` then say so.
+  enum PointDataKinds
+  {
+    VOXELS_AROUND_POINTS = 0,
+    AVERAGE_TO_CELLS = 1
+  };
+  tyndallPointDataMacro();
+  ///@}
+
+  ///@{
   /// Part of the name of the OpenCL device to use, of any case. Default empty: what the variable TYNDALL_DEVICE names,
   /// or else PoCL's CPU device.
   vtkSetStdStringFromCharMacro(Device);
@@ -149,6 +162,7 @@ private:
   void Note(const tyndall::ReconstructedLight& light, double squares, double ofErrors);
 
   int Scheme = CONSERVATIVE;
+  int PointData = VOXELS_AROUND_POINTS;
   int Levels;
   double WeightStep;
   int Level;

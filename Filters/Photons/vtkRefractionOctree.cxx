@@ -143,13 +143,14 @@ int vtkRefractionOctree::FillOutputPortInformation(int port, vtkInformation* inf
 int vtkRefractionOctree::FillInputPortInformation(int, vtkInformation* information)
 {
   tyndall::TakeImages(information);
+  tyndall::ReadsVoxels(information, { "ior", "sigma_a", "sigma_s" });
   return 1;
 }
 
 int vtkRefractionOctree::RequestInformation(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  tyndall::TellSomeExtent(inputs[0], outputs);
+  tyndall::TellVoxels(this, 0, inputs[0], outputs);
   return 1;
 }
 
@@ -242,6 +243,7 @@ int vtkRefractionOctree::RequestData(
 void vtkRefractionOctree::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
+  os << indent << "PointData: " << this->PointData << "\n";
   os << indent << "Tolerance: " << this->Tolerance << "\n";
   os << indent << "IncludeExtinction: " << this->IncludeExtinction << "\n";
   os << indent << "ExtinctionTolerance: " << this->ExtinctionTolerance << "\n";

@@ -20,7 +20,7 @@ class vtkMultiProcessController;
  *
  * Input: vtkImageData with cell array `ior` (refractive index, 1 component, above 0), or that chosen by
  * SetInputArrayToProcess 0; with IncludeExtinction also `sigma_a` and `sigma_s` (1 or 3 components, 1/length), or those
- * chosen as 1 and 2. Point arrays are averaged to cells.
+ * chosen as 1 and 2. Of point arrays see SetPointData.
  *
  * Output 0: the input with cell array `octree_level` (uint8: 0 a single voxel, k a node of 2^k voxels per edge) and
  * field data `left_out` (what the scene did not need) and `device`.
@@ -78,6 +78,19 @@ public:
   ///@}
 
   ///@{
+  /// What arrays of points are: 0 (default): each is in the middle of a voxel of its value, so that n points are n
+  /// voxels, the output has arrays of cells, and its bounds are half a spacing wider than the input's; 1: their mean is
+  /// that of the voxel between them, and n points are n - 1 voxels. Where an array of cells is read as well, voxels are
+  /// the cells and points are averaged; field data `settings_used` then say so.
+  enum PointDataKinds
+  {
+    VOXELS_AROUND_POINTS = 0,
+    AVERAGE_TO_CELLS = 1
+  };
+  tyndallPointDataMacro();
+  ///@}
+
+  ///@{
   /// Part of the name of the OpenCL device to use, of any case. Default empty: what the variable TYNDALL_DEVICE names,
   /// or else PoCL's CPU device.
   vtkSetStdStringFromCharMacro(Device);
@@ -114,6 +127,7 @@ private:
     vtkInformationVector* outputs);
   void Write(vtkInformationVector* outputs, tyndall::Octree&& octree);
 
+  int PointData = VOXELS_AROUND_POINTS;
   double Tolerance;
   bool IncludeExtinction;
   double ExtinctionTolerance;

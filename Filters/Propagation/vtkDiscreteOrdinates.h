@@ -22,7 +22,7 @@ class LastLight;
  * direction costs Terms, not all other directions. By default the energy is kept, and voxels may be as thick as they
  * are; as published steps are explicit, and a warning says where they are not stable.
  *
- * Input 0, the medium: vtkImageData with cell arrays (point arrays are averaged to cells)
+ * Input 0, the medium: vtkImageData with cell arrays (point arrays: see SetPointData)
  *
  * | array      | components | unit             | meaning                                          |
  * |------------|------------|------------------|--------------------------------------------------|

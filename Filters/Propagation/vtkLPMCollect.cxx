@@ -128,7 +128,7 @@ int vtkLPMCollect::FillInputPortInformation(int, vtkInformation* information)
 
 int vtkLPMCollect::RequestInformation(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  tyndall::TellSomeExtent(inputs[0], outputs);
+  tyndall::TellVoxels(this, 0, inputs[0], outputs);
   return 1;
 }
 

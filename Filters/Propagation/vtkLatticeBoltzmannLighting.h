@@ -23,7 +23,7 @@ struct MediumInput;
  * which bends what diffuses, too. By default power is kept and light positive whatever voxels are, and the steady state
  * is solved for; as published light goes in explicit steps, and a warning says where they are too long.
  *
- * Input 0, the medium: vtkImageData of cubic voxels (to 0.1%) with cell arrays (point arrays are averaged to cells)
+ * Input 0, the medium: vtkImageData of cubic voxels (to 0.1%) with cell arrays (point arrays: see SetPointData)
  *
  * | array      | components | unit             | meaning                                          |
  * |------------|------------|------------------|--------------------------------------------------|

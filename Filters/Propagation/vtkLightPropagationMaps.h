@@ -21,7 +21,7 @@ class LastLight;
  * a voxel's edge. What they lose to a voxel becomes its scattered light, which the next scattering order propagates,
  * until the light that is left does not matter any more.
  *
- * Input 0, the medium: vtkImageData with cell arrays (point arrays are averaged to cells)
+ * Input 0, the medium: vtkImageData with cell arrays (point arrays: see SetPointData)
  *
  * | array      | components | unit             | meaning                                          |
  * |------------|------------|------------------|--------------------------------------------------|

@@ -57,7 +57,11 @@ int vtkLitMediumAlgorithm::FillInputPortInformation(int port, vtkInformation* in
   {
     tyndall::TakeImages(information);
   }
-  if (port != MEDIUM)
+  if (port == MEDIUM)
+  {
+    tyndall::ReadsVoxels(information, { "sigma_a", "sigma_s", "emission", "ior" }, { "g" });
+  }
+  else
   {
     information->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
   }
@@ -67,7 +71,7 @@ int vtkLitMediumAlgorithm::FillInputPortInformation(int port, vtkInformation* in
 int vtkLitMediumAlgorithm::RequestInformation(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  tyndall::TellSomeExtent(inputs[MEDIUM], outputs);
+  tyndall::TellVoxels(this, MEDIUM, inputs[MEDIUM], outputs);
   return 1;
 }
 
@@ -104,6 +108,7 @@ void vtkLitMediumAlgorithm::PrintNumbers(
 void vtkLitMediumAlgorithm::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
+  os << indent << "PointData: " << this->PointData << "\n";
   os << indent << "EnvironmentUp: " << this->EnvironmentUp << "\n";
   os << indent << "EnvironmentAzimuth: " << this->EnvironmentAzimuth << "\n";
 }

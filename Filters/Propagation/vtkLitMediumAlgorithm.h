@@ -59,6 +59,19 @@ public:
   ///@}
 
   ///@{
+  /// What arrays of points are: 0 (default): each is in the middle of a voxel of its value, so that n points are n
+  /// voxels, the output has arrays of cells, and its bounds are half a spacing wider than the input's; 1: their mean is
+  /// that of the voxel between them, and n points are n - 1 voxels. Where an array of cells is read as well, voxels are
+  /// the cells and points are averaged; field data `settings_used` then say so.
+  enum PointDataKinds
+  {
+    VOXELS_AROUND_POINTS = 0,
+    AVERAGE_TO_CELLS = 1
+  };
+  tyndallPointDataMacro();
+  ///@}
+
+  ///@{
   /// Axis of the scene along which the environment's up points: 0, 1, 2 for x, y, z. Default 2.
   tyndallSetRangeMacro(EnvironmentUp, int, 0, 2);
   vtkGetMacro(EnvironmentUp, int);
@@ -89,6 +102,7 @@ protected:
 
   int EnvironmentUp = 2;
   double EnvironmentAzimuth = 0.0;
+  int PointData = VOXELS_AROUND_POINTS;
 
 private:
   vtkLitMediumAlgorithm(const vtkLitMediumAlgorithm&) = delete;

@@ -311,12 +311,13 @@ bool vtkScatteringSolver::GivePiece(tyndall::Communicator& communicator, const t
 }
 
 /// That over several ranks, and why each solved the whole, where they were to choose.
-void vtkScatteringSolver::TellOfPieces(tyndall::LightField& light, bool inBlocks) const
+void vtkScatteringSolver::TellOfPieces(tyndall::LightField& light, bool inBlocks)
 {
   if (this->OverRanks || inBlocks)
   {
     light.settingsUsed.push_back("Decomposition = " + std::to_string(inBlocks ? BLOCKS : WHOLE));
   }
+  tyndall::AddAveraged(this, light.settingsUsed);
   if (this->OverRanks && !this->WholeFor.empty())
   {
     light.leftOut.push_back("pieces: each rank solved the whole, for " + this->WholeFor);

@@ -220,7 +220,7 @@ private:
   void ColorsModified();
   std::string NotOnPiece(const tyndall::PieceBlocks& pieces, tyndall::PieceOfMedium& piece,
     tyndall::IlluminationInput& shining, vtkInformationVector** inputs);
-  void TellOfPieces(tyndall::LightField& light, bool inBlocks) const;
+  void TellOfPieces(tyndall::LightField& light, bool inBlocks);
   bool WantsBlocks(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) const;
   bool GiveOrSolvePiece(vtkInformation* request, vtkMultiProcessController* ranks, vtkInformationVector** inputs,
     vtkInformationVector* outputs);

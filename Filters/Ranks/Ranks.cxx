@@ -84,14 +84,15 @@ void EndTogether(Communicator& communicator, const Ending& own)
   {
     communicator.Together([&] {
       Require(own.kind != Ending::InputFailed, "The filter before failed, and says why there.");
+      Require(own.kind != Ending::Empty, "The input image is empty.");
       Throw(own);
     });
   }
   catch (const InvalidInput&)
   {
-    if (own.kind == Ending::InputFailed)
+    if (own.kind == Ending::InputFailed || own.kind == Ending::Empty)
     {
-      throw InputFailed(); // which is no error of this filter here
+      Throw(own); // which is no error of this filter here
     }
     throw;
   }
@@ -192,7 +193,19 @@ void AskTogether(vtkInformation* request, vtkInformationVector* outputs, vtkInfo
   const int asking = Asking(request, outputs);
   for (int i = 0; i < inputs->GetNumberOfInformationObjects(); ++i)
   {
-    inputs->GetInformationObject(i)->Set(Together(), asking);
+    vtkInformation* const input = inputs->GetInformationObject(i);
+    input->Set(Together(), asking);
+    // An output with voxels around points, or with axes in another order, is asked for more than its input has.
+    const int* const whole = input->Get(Pipeline::WHOLE_EXTENT());
+    const int* const asked = input->Get(Pipeline::UPDATE_EXTENT());
+    for (int bound = 0; whole && asked && bound < 6; ++bound)
+    {
+      if (bound % 2 == 0 ? asked[bound] < whole[bound] : asked[bound] > whole[bound])
+      {
+        const std::vector<int> within(whole, whole + 6);
+        input->Set(Pipeline::UPDATE_EXTENT(), within.data(), 6);
+      }
+    }
   }
 }
 

@@ -125,7 +125,8 @@ struct Part
   AskedPiece piece; ///< empty: nothing, or where it is not divided all that there is
 };
 
-Part PartAskedFor(vtkInformation* information)
+/// @param image  extent of what there is: all of it is asked for by whoever asks for all that was told of
+Part PartAskedFor(vtkInformation* information, const Extent& image)
 {
   Part part;
   part.divided = information->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()) > 1;
@@ -136,9 +137,13 @@ Part PartAskedFor(vtkInformation* information)
     part.piece = { own, own };
     return part;
   }
-  Extent update;
+  Extent update, whole = AskedPiece::Nothing;
   information->Get(Pipeline::UPDATE_EXTENT(), update.data());
-  part.piece = AskedPieceOf(information, update);
+  if (information->Has(Pipeline::WHOLE_EXTENT()))
+  {
+    information->Get(Pipeline::WHOLE_EXTENT(), whole.data());
+  }
+  part.piece = AskedPieceOf(information, update == whole ? image : update);
   return part;
 }
 }
@@ -261,7 +266,7 @@ void KeepPiece(const AskedPiece& piece, vtkImageData* output)
 
 std::array<int, 6> ExtentAskedFor(vtkInformation* information, const std::array<int, 6>& image)
 {
-  const Part part = PartAskedFor(information);
+  const Part part = PartAskedFor(information, image);
   if (part.piece.IsEmpty())
   {
     return part.divided ? AskedPiece::Nothing : image;
@@ -277,7 +282,7 @@ std::array<int, 6> ExtentAskedFor(vtkInformation* information, const std::array<
 
 void KeepWhatIsAskedFor(vtkInformation* information, vtkImageData* output)
 {
-  const Part part = PartAskedFor(information);
+  const Part part = PartAskedFor(information, ExtentOf(output));
   if (part.divided || !part.piece.IsEmpty())
   {
     KeepPiece(part.piece, output);

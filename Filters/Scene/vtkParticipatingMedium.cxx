@@ -15,15 +15,18 @@
 #include "Ranks/WholeImage.h"
 #include "Work/GuardedWork.h"
 
+#include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkObjectFactory.h"
+#include "vtkStringArray.h"
 #include "vtkTable.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -225,6 +228,63 @@ std::vector<float> RelativeDensity(
   return relative;
 }
 
+/// The same of a level set.
+std::vector<float> FogOfLevelSet(const tyndall::FloatField& distance, const tyndall::Grid& grid)
+{
+  const float* const values = distance.Values();
+  const double voxel = *std::min_element(grid.spacing.begin(), grid.spacing.end());
+  tyndall::RequireFinite(
+    "distance from the level set", values, grid.VoxelCount(), 1,
+    [&](std::size_t at) { return "voxel " + tyndall::VoxelName(grid, at); }, "Repair the level set.");
+  std::vector<float> relative(grid.VoxelCount());
+  std::transform(
+    values, values + relative.size(), relative.begin(), [&](float value) { return tyndall::FogInside(value, voxel); });
+  return relative;
+}
+
+/// What makes an array look like a level set.
+struct Signs
+{
+  double lowest = AnyValue, highest = -AnyValue, lowestOnBorder = AnyValue;
+  static constexpr double AnyValue = std::numeric_limits<double>::max();
+};
+
+/// @param box  voxels of the array in the whole
+Signs SignsOf(const float* values, const tyndall::VoxelBox& box, const tyndall::Grid& whole)
+{
+  Signs signs;
+  std::size_t i = 0;
+  std::array<int, 3> at;
+  const auto isBorder = [&](int axis) {
+    const int place = box.first[axis] + at[axis];
+    return place == 0 || place == whole.size[axis] - 1;
+  };
+  for (at[2] = 0; at[2] < box.size[2]; ++at[2])
+  {
+    for (at[1] = 0; at[1] < box.size[1]; ++at[1])
+    {
+      const bool rowOnBorder = isBorder(1) || isBorder(2);
+      for (at[0] = 0; at[0] < box.size[0]; ++at[0], ++i)
+      {
+        const double value = values[i];
+        signs.lowest = std::min(signs.lowest, value);
+        signs.highest = std::max(signs.highest, value);
+        signs.lowestOnBorder =
+          rowOnBorder || isBorder(0) ? std::min(signs.lowestOnBorder, value) : signs.lowestOnBorder;
+      }
+    }
+  }
+  return signs;
+}
+
+/// Whether vtkVDBReader says that an array was a level set.
+bool WasLevelSet(vtkImageData* image, const std::string& array)
+{
+  auto* const kind =
+    vtkArrayDownCast<vtkStringArray>(image->GetFieldData()->GetAbstractArray(("vdb:" + array + ":class").c_str()));
+  return kind && kind->GetNumberOfValues() == 1 && kind->GetValue(0) == "level set";
+}
+
 /// Hidden cells have nothing of the medium, wherever MinimumDensity is.
 void EmptyHidden(vtkImageData* image, std::vector<float>& relative)
 {
@@ -266,8 +326,10 @@ std::vector<float> MakeMedium(vtkParticipatingMedium* filter, const Recipe& reci
 {
   const tyndall::PhaseDescription phase = DescriptionOf(filter, recipe.g, vtkTable::GetData(phaseTable));
   const tyndall::FloatField density = tyndall::ReadChosenCells(filter, 0, input, "", tyndall::Need::Required, { 1 });
-  std::vector<float> relative =
-    RelativeDensity(density, tyndall::GridOf(input), filter->GetMinimumDensity(), filter->GetMaximumDensity());
+  const tyndall::Grid grid = tyndall::GridOf(input);
+  std::vector<float> relative = filter->GetLevelSet()
+    ? FogOfLevelSet(density, grid)
+    : RelativeDensity(density, grid, filter->GetMinimumDensity(), filter->GetMaximumDensity());
 
   EmptyHidden(input, relative);
 
@@ -355,6 +417,7 @@ int vtkParticipatingMedium::FillInputPortInformation(int port, vtkInformation* i
   if (port == DENSITY)
   {
     tyndall::TakeImages(information);
+    tyndall::ReadsVoxels(information, { "" }, { "g" });
   }
   else
   {
@@ -367,8 +430,9 @@ int vtkParticipatingMedium::FillInputPortInformation(int port, vtkInformation* i
 int vtkParticipatingMedium::RequestInformation(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  tyndall::TellSomeExtent(inputs[DENSITY], outputs);
-  return this->Superclass::RequestInformation(request, inputs, outputs);
+  const int done = this->Superclass::RequestInformation(request, inputs, outputs);
+  tyndall::TellVoxels(this, DENSITY, inputs[DENSITY], outputs);
+  return done;
 }
 
 /// Where ranks each ask for their piece that of the density; else all of it, for the size is told of the whole.
@@ -407,6 +471,36 @@ void vtkParticipatingMedium::NoteSize(const tyndall::Grid& grid, const tyndall::
   }
 }
 
+void vtkParticipatingMedium::DoubtLevelSet(
+  vtkImageData* image, const tyndall::VoxelBox& box, const tyndall::Grid& whole, tyndall::Communicator* ranks)
+{
+  constexpr double small = 0.01; // of the largest value: noise about 0
+  if (this->LevelSet)
+  {
+    return;
+  }
+  Signs signs;
+  double said = 0.0;
+  if (box.VoxelCount() > 0)
+  {
+    const tyndall::FloatField density = tyndall::ReadChosenCells(this, 0, image, "", tyndall::Need::Required, { 1 });
+    signs = SignsOf(density.Values(), box, whole);
+    vtkDataArray* const array = tyndall::ChosenArray(this, 0, image, "");
+    said = WasLevelSet(image, array->GetName() ? array->GetName() : "") ? 1.0 : 0.0;
+  }
+  std::vector<double> all = { -signs.lowest, signs.highest, -signs.lowestOnBorder, said };
+  all = ranks ? ranks->Largest(all) : all;
+  const bool isInside = -all[0] < 0.0 && all[1] > 0.0;
+  const bool looksSo = -all[2] > 0.0 && all[0] > small * all[1] && this->MinimumDensity >= 0.0;
+  if (isInside && (all[3] > 0.0 || looksSo))
+  {
+    vtkWarningMacro(
+      "The density is negative inside of the image and positive around, as a level set (the distance from a "
+      "surface) is. As a density it has no fog inside of the surface, and fog outside. Switch LevelSet on "
+      "for fog inside of it, or LevelSetsAsFog of vtkVDBReader.");
+  }
+}
+
 int vtkParticipatingMedium::RequestData(
   vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs)
 {
@@ -423,6 +517,7 @@ int vtkParticipatingMedium::RequestData(
     const Recipe recipe = RecipeOf(this, this->ChannelMeanCosines);
     const std::vector<float> relative = MakeMedium(this, recipe, input, inputs[PHASE_TABLE], output);
     const tyndall::Grid grid = tyndall::GridOf(input);
+    this->DoubtLevelSet(input, { { 0, 0, 0 }, grid.size }, grid, nullptr);
     this->NoteSize(grid, tyndall::OpticalSizeOf(relative.data(), grid, LargestExtinction(recipe)));
     tyndall::KeepWhatIsAskedFor(outputs->GetInformationObject(0), output);
   });
@@ -458,6 +553,9 @@ bool vtkParticipatingMedium::MakePiece(vtkInformation* request, vtkMultiProcessC
     }
     sums = tyndall::OpticalSumsOf(relative.data(), pieces.Own(), whole);
   });
+  const tyndall::VoxelBox all = { { 0, 0, 0 }, whole.size };
+  const bool hasAll = input && input->GetNumberOfCells() == static_cast<vtkIdType>(all.VoxelCount());
+  this->DoubtLevelSet(input, hasAll ? all : pieces.Held(), whole, communicator.get());
   this->NoteSize(whole, tyndall::OpticalSizeOf(communicator->Sum(sums), whole, LargestExtinction(recipe)));
   pieces.KeepHeld(output);
   return true;
@@ -469,9 +567,11 @@ void vtkParticipatingMedium::PrintSelf(ostream& os, vtkIndent indent)
     os << indent << name << ": " << rgb[0] << " " << rgb[1] << " " << rgb[2] << "\n";
   };
   this->Superclass::PrintSelf(os, indent);
+  os << indent << "PointData: " << this->PointData << "\n";
   os << indent << "Preset: " << (this->Preset == CUSTOM ? "custom" : GetPresetName(this->Preset)) << "\n";
   os << indent << "MinimumDensity: " << this->MinimumDensity << "\n";
   os << indent << "MaximumDensity: " << this->MaximumDensity << "\n";
+  os << indent << "LevelSet: " << this->LevelSet << "\n";
   os << indent << "ExtinctionScale: " << this->ExtinctionScale << "\n";
   print("Albedo", this->Albedo);
   os << indent << "PhaseFunction: " << this->PhaseFunction << "\n";

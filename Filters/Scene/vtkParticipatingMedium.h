@@ -12,15 +12,17 @@ class vtkMultiProcessController;
 
 namespace tyndall
 {
+class Communicator;
 struct Grid;
 struct OpticalSize;
+struct VoxelBox;
 }
 
 /**
  * @class vtkParticipatingMedium
  * @brief turns a density into a medium that absorbs, scatters and emits light
  *
- * Input: vtkImageData with an array of one component, of cells or of points (averaged to cells): the active scalars, or
+ * Input: vtkImageData with an array of one component, of cells or of points (SetPointData): the active scalars, or
  * the array chosen by SetInputArrayToProcess(0, ...). An array `g` (1 or 3 components) of it is the mean cosine by
  * voxel, of a mixture for example; it is passed on and counts before MeanCosine.
  *
@@ -43,6 +45,11 @@ struct OpticalSize;
  *     sigma_t  = rho ExtinctionScale
  *     sigma_s  = Albedo sigma_t,   sigma_a = (1 - Albedo) sigma_t
  *     emission = rho EmissionScale EmissionColor
+ *
+ * With LevelSet the array is the distance from a surface, negative inside: rho is 1 inside, less in proportion within a
+ * voxel of the surface, and 0 outside. A level set that is taken for a density has its fog outside of the surface, and
+ * a warning says so: field data of vtkVDBReader call it one, or it is negative inside of the image and positive on its
+ * border.
  *
  * A preset gives sigma_s, sigma_a (1/mm at rho = 1) and g of a real medium instead of Albedo and MeanCosine;
  * ExtinctionScale then multiplies them, 1 being the medium as it was measured, and LengthUnit or MillimetresPerUnit
@@ -93,6 +100,19 @@ public:
   ///@}
 
   ///@{
+  /// What arrays of points are: 0 (default): each is in the middle of a voxel of its value, so that n points are n
+  /// voxels, the output has arrays of cells, and its bounds are half a spacing wider than the input's; 1: their mean is
+  /// that of the voxel between them, and n points are n - 1 voxels. Where an array of cells is read as well, voxels are
+  /// the cells and points are averaged; field data `settings_used` then say so.
+  enum PointDataKinds
+  {
+    VOXELS_AROUND_POINTS = 0,
+    AVERAGE_TO_CELLS = 1
+  };
+  tyndallPointDataMacro();
+  ///@}
+
+  ///@{
   /// Density that is vacuum, as is what lies below it. Default 0.
   tyndallSetRangeMacro(MinimumDensity, double, tyndall::AnyLow, tyndall::AnyHigh);
   vtkGetMacro(MinimumDensity, double);
@@ -103,6 +123,15 @@ public:
   /// on; if equal to it, everything above it has relative density 1.
   tyndallSetRangeMacro(MaximumDensity, double, tyndall::AnyLow, tyndall::AnyHigh);
   vtkGetMacro(MaximumDensity, double);
+  ///@}
+
+  ///@{
+  /// Whether the array is a level set, the distance from a surface in the dataset's unit, negative inside. Default off.
+  /// On: fog fills the inside, with a ramp of a voxel (the shortest edge) at the surface; MinimumDensity and
+  /// MaximumDensity are not read.
+  vtkSetMacro(LevelSet, bool);
+  vtkGetMacro(LevelSet, bool);
+  vtkBooleanMacro(LevelSet, bool);
   ///@}
 
   ///@{
@@ -242,12 +271,19 @@ private:
 
   /// Of the medium that was made; warns where it is too thin or too thick to be meant.
   void NoteSize(const tyndall::Grid& grid, const tyndall::OpticalSize& size);
+  /// Warns where the density is a level set.
+  /// @param box  voxels of the image in the whole; of a rank without any nothing
+  /// @param ranks  null: this process is alone. All of them call it
+  void DoubtLevelSet(
+    vtkImageData* image, const tyndall::VoxelBox& box, const tyndall::Grid& whole, tyndall::Communicator* ranks);
   bool MakePiece(vtkInformation* request, vtkMultiProcessController* ranks, vtkInformationVector** inputs,
     vtkInformationVector* outputs);
 
   int Preset = CUSTOM;
+  int PointData = VOXELS_AROUND_POINTS;
   double MinimumDensity = 0.0;
   double MaximumDensity = 1.0;
+  bool LevelSet = false;
   double ExtinctionScale = 1.0;
   double Albedo[3] = { 0.9, 0.9, 0.9 };
   int PhaseFunction = HENYEY_GREENSTEIN;

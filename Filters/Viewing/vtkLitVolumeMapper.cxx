@@ -221,7 +221,8 @@ double vtkLitVolumeMapper::EstimateExposure()
   std::vector<float> radiance;
   try
   {
-    const tyndall::Grid grid = tyndall::GridOf(vtkImageData::SafeDownCast(this->GetDataObjectInput()));
+    auto* const image = vtkImageData::SafeDownCast(this->GetDataObjectInput());
+    const tyndall::Grid grid = tyndall::GridOf(image ? tyndall::Aligned(image) : nullptr);
     for (const auto& from : ExposedFrom)
     {
       tyndall::Picture picture;

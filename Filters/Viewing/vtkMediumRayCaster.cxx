@@ -77,6 +77,18 @@ vtkMediumRayCaster::vtkMediumRayCaster()
 
 vtkMediumRayCaster::~vtkMediumRayCaster() = default;
 
+int vtkMediumRayCaster::FillInputPortInformation(int port, vtkInformation* information)
+{
+  const int done = this->Superclass::FillInputPortInformation(port, information);
+  if (port == MEDIUM)
+  {
+    const auto& names = tyndall::ViewedNames;
+    tyndall::ReadsVoxels(
+      information, { names[0], names[1], names[2], names[3], names[4], names[5], names[6] }, { "g" });
+  }
+  return done;
+}
+
 int vtkMediumRayCaster::RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
 {
   vtkInformation* information = outputs->GetInformationObject(0);
@@ -365,7 +377,8 @@ void vtkMediumRayCaster::HandOn(Shot&& shot, vtkInformationVector* outputs)
     tyndall::WritePicture(std::move(shot.picture), shot.first, std::move(color), output);
   }
   const std::string device = tyndall::FindWithin(this->Within, this->Device, this->MemoryBudget)->Name();
-  const std::vector<std::string> settings = tyndall::Words(tyndall::SettingsOf(this, shot.exposure));
+  std::vector<std::string> settings = tyndall::Words(tyndall::SettingsOf(this, shot.exposure));
+  tyndall::AddAveraged(this, settings);
   tyndall::AddFact(output, "exposure", std::vector<double>{ shot.exposure });
   tyndall::AddFact(output, "left_out", shot.leftOut);
   tyndall::AddFact(output, "settings_used", settings);
@@ -419,8 +432,20 @@ bool vtkMediumRayCaster::See(const tyndall::AskedView& view, tyndall::Picture& p
     tyndall::ViewSettings settings = tyndall::SettingsOf(this, view.exposure);
     settings.imageSize = view.size;
     const tyndall::GridBlock* const block = view.block ? &*view.block : nullptr;
-    std::unique_ptr<tyndall::CasterScene> scene =
-      this->FindScene(this->GetExecutive()->GetInputInformation(), settings, block);
+    vtkInformationVector** const given = this->GetExecutive()->GetInputInformation();
+    std::vector<vtkInformationVector*> ports(given, given + this->GetNumberOfInputPorts());
+    const vtkNew<vtkInformationVector> medium;
+    vtkImageData* const image = vtkImageData::GetData(given[MEDIUM]);
+    if (!block && image)
+    {
+      vtkSmartPointer<vtkImageData> voxels = tyndall::Aligned(image);
+      voxels = tyndall::AreAroundPoints(this, MEDIUM, voxels) ? tyndall::VoxelsAround(voxels) : voxels;
+      const vtkNew<vtkInformation> asVoxels;
+      asVoxels->Set(vtkDataObject::DATA_OBJECT(), voxels);
+      medium->Append(asVoxels);
+      ports[MEDIUM] = medium;
+    }
+    std::unique_ptr<tyndall::CasterScene> scene = this->FindScene(ports.data(), settings, block);
     this->SayDoubts(*scene);
     seen = !block || scene->caster->CastsBlocks();
     if (seen)

@@ -37,7 +37,7 @@ class WholeInputs;
  * d/ds(n dx/ds) = grad n says, surfaces of refractive objects may mirror, and the background is looked up along the
  * direction in which a ray leaves. Where it is constant none of that is computed.
  *
- * Input 0, the medium with its light: vtkImageData with cell arrays (point arrays are averaged to cells)
+ * Input 0, the medium with its light: vtkImageData with cell arrays (point arrays: see SetPointData)
  *
  * | array | components | unit | meaning |
  * |---|---|---|---|
@@ -333,6 +333,7 @@ protected:
   vtkMediumRayCaster();
   ~vtkMediumRayCaster() override;
 
+  int FillInputPortInformation(int port, vtkInformation* information) override;
   int RequestInformation(
     vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
   int RequestUpdateExtent(

@@ -174,6 +174,10 @@ int GuardedOn(vtkMultiProcessController* ranks, vtkAlgorithm* filter, vtkInforma
     ForgetAbort(filter);
     last.Note(LastFailure::Abort);
   }
+  else if (ending.kind == Ending::Empty)
+  {
+    EmptyOutputs(outputs, EmptyFact);
+  }
   else if (ending.kind != Ending::Done)
   {
     EmptyOutputs(outputs, FailedFact);
@@ -186,6 +190,21 @@ int GuardedOn(vtkMultiProcessController* ranks, vtkAlgorithm* filter, vtkInforma
   filter->SetProgressText(nullptr);
   WarnOfDevices(filter);
   return 1;
+}
+}
+
+namespace
+{
+/// In field data of filters that do not tell of their settings themselves.
+void TellAveraged(vtkAlgorithm* filter, vtkInformationVector* outputs)
+{
+  std::vector<std::string> settings;
+  AddAveraged(filter, settings);
+  vtkDataObject* const output = vtkDataObject::GetData(outputs, 0);
+  if (output && !settings.empty() && !output->GetFieldData()->HasArray("settings_used"))
+  {
+    AddFact(output, "settings_used", settings);
+  }
 }
 }
 
@@ -223,6 +242,7 @@ int GuardedInPieces(vtkAlgorithm* filter, vtkInformation* request, vtkInformatio
     });
     WholeInputs inputs(ranks, filter, given, outputs, port, shares, others);
     work(ranks, inputs);
+    TellAveraged(filter, outputs);
   });
 }
 

@@ -2,6 +2,7 @@
 
 #include "Common/ContentKey.h"
 #include "Common/FilterBefore.h"
+#include "Common/ImageInput.h"
 #include "Device/Errors.h"
 #include "Ranks/GatheredImage.h"
 #include "Ranks/Ranks.h"
@@ -16,6 +17,7 @@
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkMatrix3x3.h"
 #include "vtkMultiProcessController.h"
 #include "vtkMultiProcessStream.h"
 #include "vtkPointData.h"
@@ -49,6 +51,8 @@ struct Glance
   Extent whole = NoExtent;           ///< that its source says there is
   std::uint64_t key = 0;             ///< of its content
   std::array<std::string, 2> active; ///< names of active scalars, of cells and points
+  bool aroundPoints = false;         ///< its voxels are
+  Extent points = NoExtent;          ///< those that are no duplicates
 };
 
 /// Of all connections of a rank, and what it is asked for.
@@ -124,7 +128,7 @@ void Write(const RankGlance& rank, vtkMultiProcessStream& stream)
   {
     stream << static_cast<int>(glance.isThere) << static_cast<int>(glance.isImage) << glance.extent << glance.whole
            << static_cast<int>(glance.key >> 32) << static_cast<int>(glance.key & 0xFFFFFFFFu) << glance.active[0]
-           << glance.active[1];
+           << glance.active[1] << static_cast<int>(glance.aroundPoints) << glance.points;
   }
   stream << static_cast<int>(rank.asked.size());
   std::for_each(rank.asked.begin(), rank.asked.end(), [&](const Extent& extent) { stream << extent; });
@@ -144,9 +148,10 @@ RankGlance Read(vtkMultiProcessStream& stream)
   rank.inputs.resize(static_cast<std::size_t>(inputs));
   for (Glance& glance : rank.inputs)
   {
-    int isThere = 0, isImage = 0, high = 0, low = 0;
+    int isThere = 0, isImage = 0, high = 0, low = 0, aroundPoints = 0;
     stream >> isThere >> isImage >> glance.extent >> glance.whole >> high >> low >> glance.active[0] >>
-      glance.active[1];
+      glance.active[1] >> aroundPoints >> glance.points;
+    glance.aroundPoints = aroundPoints != 0;
     glance.isThere = isThere != 0;
     glance.isImage = isImage != 0;
     glance.key = static_cast<std::uint64_t>(static_cast<std::uint32_t>(high)) << 32 | static_cast<std::uint32_t>(low);
@@ -386,6 +391,93 @@ void CheckLengths(vtkDataObject* data, const std::string& named)
   }
 }
 
+/// The least extent of the points that are no duplicates, by flags of points or else of cells.
+Extent OwnPointsOf(vtkImageData* image)
+{
+  Extent extent;
+  image->GetExtent(extent.data());
+  vtkUnsignedCharArray* const ofPoints = image->GetPointGhostArray();
+  vtkUnsignedCharArray* const flags = ofPoints ? ofPoints : image->GetCellGhostArray();
+  if (!flags)
+  {
+    return extent;
+  }
+  const unsigned char duplicate = vtkDataSetAttributes::DUPLICATECELL; // the same number as DUPLICATEPOINT
+  const ValueBox box = ofPoints ? PointBoxOf(extent) : CellBoxOf(extent);
+  Extent own = { extent[1], extent[0], extent[3], extent[2], extent[5], extent[4] };
+  vtkIdType number = 0;
+  std::array<int, 3> at;
+  for (at[2] = box.low[2]; at[2] <= box.high[2]; ++at[2])
+  {
+    for (at[1] = box.low[1]; at[1] <= box.high[1]; ++at[1])
+    {
+      for (at[0] = box.low[0]; at[0] <= box.high[0]; ++at[0], ++number)
+      {
+        for (int axis = 0; axis < 3 && !(flags->GetValue(number) & duplicate); ++axis)
+        {
+          const int last = at[axis] + (ofPoints || box.Along(axis) == 0 ? 0 : 1);
+          own[2 * axis] = std::min(own[2 * axis], at[axis]);
+          own[2 * axis + 1] = std::max(own[2 * axis + 1], std::min(last, extent[2 * axis + 1]));
+        }
+      }
+    }
+  }
+  return own;
+}
+
+bool IsIn(const Extent& points, const std::array<int, 3>& at)
+{
+  bool in = true;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    in = in && at[axis] >= points[2 * axis] && at[axis] <= points[2 * axis + 1];
+  }
+  return in;
+}
+
+/// The voxels around the points of a rank's piece: those that others have as their own, or lower ranks too, are
+/// duplicates.
+vtkSmartPointer<vtkImageData> VoxelsOfPiece(vtkImageData* piece, const OnRanks& glances, int rank)
+{
+  const vtkSmartPointer<vtkImageData> voxels = VoxelsAround(piece);
+  if (Alike(glances) || std::all_of(glances.begin(), glances.end(), [&](const Glance& glance) {
+        return !glance.isThere || glance.points == glances[static_cast<std::size_t>(rank)].extent;
+      })) // each has all
+  {
+    return voxels;
+  }
+  vtkUnsignedCharArray* const given = voxels->GetCellGhostArray();
+  vtkNew<vtkUnsignedCharArray> flags;
+  flags->SetName(vtkDataSetAttributes::GhostArrayName());
+  const ValueBox box = PointBoxOf(glances[static_cast<std::size_t>(rank)].extent);
+  bool any = false;
+  std::array<int, 3> at;
+  for (at[2] = box.low[2]; at[2] <= box.high[2]; ++at[2])
+  {
+    for (at[1] = box.low[1]; at[1] <= box.high[1]; ++at[1])
+    {
+      for (at[0] = box.low[0]; at[0] <= box.high[0]; ++at[0])
+      {
+        bool duplicate = !IsIn(glances[static_cast<std::size_t>(rank)].points, at);
+        for (int lower = 0; lower < rank && !duplicate; ++lower)
+        {
+          const Glance& other = glances[static_cast<std::size_t>(lower)];
+          duplicate = other.isThere && IsIn(other.points, at);
+        }
+        const unsigned char kept = given ? given->GetValue(flags->GetNumberOfValues()) : 0;
+        flags->InsertNextValue(duplicate ? kept | vtkDataSetAttributes::DUPLICATECELL : kept);
+        any = any || duplicate;
+      }
+    }
+  }
+  if (any)
+  {
+    voxels->GetCellData()->RemoveArray(vtkDataSetAttributes::GhostArrayName());
+    voxels->GetCellData()->AddArray(flags);
+  }
+  return voxels;
+}
+
 RankGlance GlanceAtAll(vtkAlgorithm* filter, vtkInformationVector** given, vtkInformationVector* outputs, int inShares)
 {
   RankGlance rank;
@@ -399,6 +491,12 @@ RankGlance GlanceAtAll(vtkAlgorithm* filter, vtkInformationVector** given, vtkIn
       vtkDataObject* const data = vtkDataObject::GetData(connection);
       CheckLengths(data, Named(port));
       rank.inputs.back().key = port == inShares ? ContentKeyButFacts(data) : ContentKey(data);
+      auto* const image = vtkImageData::SafeDownCast(data);
+      if (rank.inputs.back().isThere && AreAroundPoints(filter, port, image))
+      {
+        rank.inputs.back().aroundPoints = true;
+        rank.inputs.back().points = OwnPointsOf(image);
+      }
     }
   }
   for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
@@ -437,6 +535,16 @@ OnRanks GlancesOf(const std::vector<RankGlance>& all, int port, int connection)
   return glances;
 }
 
+/// The extent of voxels around the points of another.
+Extent Around(Extent points)
+{
+  for (int axis = 0; axis < 3 && PointBoxOf(points).Count() > 0; ++axis)
+  {
+    ++points[2 * axis + 1];
+  }
+  return points;
+}
+
 /// Where ranks are asked for parts of their own, as those of sources that know no other.
 void NoteParts(const std::vector<RankGlance>& all, int rank, vtkInformationVector* outputs)
 {
@@ -446,6 +554,12 @@ void NoteParts(const std::vector<RankGlance>& all, int rank, vtkInformationVecto
     for (const RankGlance& of : all)
     {
       parts.push_back(of.asked[static_cast<std::size_t>(port)]);
+      const Glance medium = of.inputs.empty() ? Glance() : of.inputs.front();
+      if (medium.aroundPoints &&
+        parts.back() == medium.whole) // as told before it was known that voxels are around points
+      {
+        parts.back() = Around(parts.back());
+      }
     }
     const bool alike = std::all_of(parts.begin(), parts.end(), [&](const Extent& part) { return part == parts[0]; });
     NotePartsOfRanks(outputs->GetInformationObject(port), alike ? std::vector<Extent>() : parts, rank);
@@ -456,27 +570,64 @@ void NoteParts(const std::vector<RankGlance>& all, int rank, vtkInformationVecto
 struct WholeInputs::Seen
 {
   vtkMultiProcessController* ranks;
-  vtkInformationVector** given;
   int inPieces, inShares;
   std::vector<int> alsoInPieces;
   std::vector<RankGlance> all;
 };
 
+namespace
+{
+/// Puts other data in the place of a port's.
+/// @return null: there is none
+vtkSmartPointer<vtkInformationVector> Changed(
+  vtkInformationVector* given, const std::function<vtkSmartPointer<vtkDataObject>(int, vtkDataObject*)>& change)
+{
+  auto changed = vtkSmartPointer<vtkInformationVector>::New();
+  bool any = false;
+  for (int i = 0; i < given->GetNumberOfInformationObjects(); ++i)
+  {
+    vtkInformation* const information = given->GetInformationObject(i);
+    vtkDataObject* const data = vtkDataObject::GetData(information);
+    const vtkSmartPointer<vtkDataObject> other = change(i, data);
+    if (other == data)
+    {
+      changed->Append(information);
+      continue;
+    }
+    any = true;
+    vtkNew<vtkInformation> replaced;
+    replaced->Copy(information);
+    replaced->Set(vtkDataObject::DATA_OBJECT(), other);
+    changed->Append(replaced);
+  }
+  return any ? changed : nullptr;
+}
+}
+
 WholeInputs::WholeInputs(vtkMultiProcessController* ranks, vtkAlgorithm* filter, vtkInformationVector** given,
   vtkInformationVector* outputs, int inPieces, int inShares, const std::vector<int>& alsoInPieces)
+  : Filter(filter)
 {
-  const int ports = filter->GetNumberOfInputPorts();
-  this->Ports.assign(given, given + ports);
-  this->Kept.resize(static_cast<std::size_t>(ports));
+  OnAllRanks(ranks, [&] { this->AlignGiven(given); });
+  this->NoteAveragedArrays();
+  const int ports = static_cast<int>(this->Ports.size());
+  std::vector<vtkInformationVector*> aligned = this->Ports;
   if (ranks == nullptr)
   {
-    RequireAll(filter, given);
+    RequireAll(filter, aligned.data());
     NoteParts({}, 0, outputs);
+    for (int port = 0; port < ports; ++port)
+    {
+      this->Change(port, [&](int, vtkDataObject* data) -> vtkSmartPointer<vtkDataObject> {
+        auto* const image = vtkImageData::SafeDownCast(data);
+        return AreAroundPoints(filter, port, image) ? VoxelsAround(image).GetPointer() : data;
+      });
+    }
     return;
   }
   RankGlance own;
-  OnAllRanks(ranks, [&] { own = GlanceAtAll(filter, given, outputs, inShares); });
-  this->AllSeen = std::make_unique<Seen>(Seen{ ranks, given, inPieces, inShares, alsoInPieces, Share(ranks, own) });
+  OnAllRanks(ranks, [&] { own = GlanceAtAll(filter, aligned.data(), outputs, inShares); });
+  this->AllSeen = std::make_unique<Seen>(Seen{ ranks, inPieces, inShares, alsoInPieces, Share(ranks, own) });
   NoteParts(this->AllSeen->all, ranks->GetLocalProcessId(), outputs);
   for (int port = 0; port < ports; ++port)
   {
@@ -490,7 +641,74 @@ WholeInputs::WholeInputs(vtkMultiProcessController* ranks, vtkAlgorithm* filter,
     {
       CheckExtent(GlancesOf(this->AllSeen->all, port, i), Named(port));
     }
+    this->Change(port, [&](int connection, vtkDataObject* data) -> vtkSmartPointer<vtkDataObject> {
+      const OnRanks glances = GlancesOf(this->AllSeen->all, port, connection);
+      const int rank = ranks->GetLocalProcessId();
+      return glances[static_cast<std::size_t>(rank)].aroundPoints
+        ? VoxelsOfPiece(vtkImageData::SafeDownCast(data), glances, rank).GetPointer()
+        : data;
+    });
   }
+}
+
+/// Images that are read as voxels with axes along those of the world, and the extents that were told of them.
+void WholeInputs::AlignGiven(vtkInformationVector** given)
+{
+  const int ports = this->Filter->GetNumberOfInputPorts();
+  this->Ports.assign(given, given + ports);
+  this->Kept.assign(static_cast<std::size_t>(ports), nullptr);
+  this->Given.assign(given, given + ports);
+  for (int port = 0; port < ports; ++port)
+  {
+    const VoxelArrays arrays = VoxelArraysOf(this->Filter->GetInputPortInformation(port));
+    if (arrays.chosen.empty() && arrays.named.empty())
+    {
+      continue;
+    }
+    const vtkSmartPointer<vtkInformationVector> aligned =
+      Changed(given[port], [](int, vtkDataObject* data) -> vtkSmartPointer<vtkDataObject> {
+        auto* const image = vtkImageData::SafeDownCast(data);
+        return image ? Aligned(image).GetPointer() : data;
+      });
+    for (int i = 0; aligned && i < aligned->GetNumberOfInformationObjects(); ++i)
+    {
+      vtkInformation* const information = aligned->GetInformationObject(i);
+      vtkImageData* const before = vtkImageData::GetData(given[port], i);
+      const auto ways = before ? WaysOf(before->GetSpacing(), before->GetDirectionMatrix()->GetData()) : std::nullopt;
+      if (ways && information != given[port]->GetInformationObject(i) && information->Has(Pipeline::WHOLE_EXTENT()))
+      {
+        information->Set(Pipeline::WHOLE_EXTENT(), ways->Extent(information->Get(Pipeline::WHOLE_EXTENT())).data(), 6);
+      }
+    }
+    if (aligned)
+    {
+      this->Given[static_cast<std::size_t>(port)] = aligned;
+      this->Ports[static_cast<std::size_t>(port)] = aligned;
+    }
+  }
+}
+
+/// Of arrays of points that are read beside others of cells.
+void WholeInputs::NoteAveragedArrays()
+{
+  std::vector<std::string> averaged;
+  for (std::size_t port = 0; port < this->Ports.size(); ++port)
+  {
+    for (int i = 0; i < this->Ports[port]->GetNumberOfInformationObjects(); ++i)
+    {
+      AreAroundPoints(this->Filter, static_cast<int>(port), vtkImageData::GetData(this->Ports[port], i),
+        averaged.empty() ? &averaged : nullptr);
+    }
+  }
+  NoteAveraged(this->Filter, averaged);
+}
+
+/// Puts other data on a port than are given.
+void WholeInputs::Change(int port, const ToOther& change)
+{
+  const auto number = static_cast<std::size_t>(port);
+  this->Kept[number] = Changed(this->Given[number], change);
+  this->Ports[number] = this->Kept[number] ? this->Kept[number] : this->Given[number];
 }
 
 WholeInputs::~WholeInputs() = default;
@@ -528,19 +746,18 @@ void WholeInputs::MakeWhole()
 void WholeInputs::MakeWhole(int port)
 {
   const Seen& seen = *this->AllSeen;
-  const auto number = static_cast<std::size_t>(port);
-  this->Kept[number] = vtkSmartPointer<vtkInformationVector>::New();
-  this->Ports[number] = this->Kept[number];
-  for (int i = 0; i < seen.all[0].connections[number]; ++i)
-  {
-    const OnRanks glances = GlancesOf(seen.all, port, i);
-    vtkInformation* const information = seen.given[port]->GetInformationObject(i);
-    vtkDataObject* const data = vtkDataObject::GetData(information);
-    const vtkSmartPointer<vtkDataObject> whole =
+  this->Change(port, [&](int connection, vtkDataObject* data) {
+    const OnRanks glances = GlancesOf(seen.all, port, connection);
+    vtkSmartPointer<vtkDataObject> whole =
       port == seen.inShares ? AllShares(seen.ranks, data, glances) : WholeOf(seen.ranks, data, glances, Named(port));
-    vtkNew<vtkInformation> replaced;
-    replaced->Set(vtkDataObject::DATA_OBJECT(), whole);
-    this->Kept[number]->Append(whole == data ? information : replaced.Get());
-  }
+    const bool around =
+      std::any_of(glances.begin(), glances.end(), [](const Glance& glance) { return glance.aroundPoints; });
+    auto* const image = vtkImageData::SafeDownCast(whole);
+    if (around && image && image->GetNumberOfPoints() > 0)
+    {
+      whole = VoxelsAround(image);
+    }
+    return whole;
+  });
 }
 }

@@ -3,6 +3,7 @@
 #include "vtkNew.h"
 #include "vtkSmartPointer.h"
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -22,6 +23,10 @@ namespace tyndall
 /// on one rank alone. Then each rank gets all of it: pieces of an image are put together (GatheredImage.h), with cell
 /// and point arrays, ghost cells once; of other data, as tables and lights, what one rank alone has goes to all.
 /// Points in shares are put one after the other, by rank.
+///
+/// Images that a filter reads as voxels have axes along those of the world, where theirs are so in another order. Those
+/// of which it reads arrays of points have a voxel around each of them (Common/ImageInput.h), also where
+/// one process is alone. Of a plane of points that pieces share, the voxels are those of the lowest rank.
 ///
 /// Memory of each rank: the whole image, and one piece of one array.
 class WholeInputs
@@ -54,6 +59,13 @@ public:
 private:
   struct Seen; ///< of the inputs, on all ranks
   void MakeWhole(int port);
+  using ToOther = std::function<vtkSmartPointer<vtkDataObject>(int connection, vtkDataObject* data)>;
+  void AlignGiven(vtkInformationVector** given);
+  void NoteAveragedArrays();
+  void Change(int port, const ToOther& change);
+
+  vtkAlgorithm* Filter;
+  std::vector<vtkSmartPointer<vtkInformationVector>> Given; ///< by port, images with aligned axes
 
   std::unique_ptr<Seen> AllSeen; ///< null: this process is alone
   std::vector<vtkSmartPointer<vtkInformationVector>> Kept;

@@ -4,6 +4,7 @@
 #include "MeshData.h"
 
 #include "vtkMeshVoxelizer.h"
+#include "vtkParticipatingMedium.h"
 #include "vtkPhotonReconstruction.h"
 #include "vtkRefractionOctree.h"
 
@@ -19,6 +20,7 @@
 #include "vtkImageData.h"
 #include "vtkMPIController.h"
 #include "vtkNew.h"
+#include "vtkRTAnalyticSource.h"
 #include "vtkStringArray.h"
 
 #include <algorithm>
@@ -186,6 +188,32 @@ void LevelsAreThoseOfTheWhole(Ranks& ranks)
   }
 }
 
+/// Pieces share planes of points, whose voxels are those of the lower rank.
+void VoxelsAroundPointsAreThoseOfTheWhole(Ranks& ranks)
+{
+  for (const int ghosts : { 0, 1 })
+  {
+    vtkNew<vtkRTAnalyticSource> points;
+    points->SetWholeExtent(-3, 8, 0, 6, 2, 9);
+    vtkNew<vtkParticipatingMedium> medium;
+    medium->SetInputConnection(points->GetOutputPort());
+    medium->SetMaximumDensity(300.0);
+    ranks.ExpectPieces(medium, "a medium of points", ghosts);
+    ranks.Expect(medium->GetPhysicalExtent() == std::string("1.2 x 0.7 x 0.8 cm"),
+      std::string("the size of voxels around points: ") + medium->GetPhysicalExtent());
+    vtkNew<vtkRefractionOctree> octree;
+    octree->SetInputConnection(points->GetOutputPort());
+    octree->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "RTData");
+    octree->SetTolerance(20.0);
+    ranks.ExpectPieces(octree, "levels of points", ghosts);
+    vtkNew<vtkRefractionOctree> after;
+    after->SetInputConnection(medium->GetOutputPort());
+    after->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "RTData");
+    after->SetTolerance(20.0);
+    ranks.ExpectPieces(after, "levels of a medium of points", ghosts);
+  }
+}
+
 /// Noisy light of each piece: of two batches, with directions, and bright on one side.
 vtkSmartPointer<vtkImageData> NoisyLight(const std::array<int, 3>& size)
 {
@@ -272,6 +300,7 @@ int main(int argc, char* argv[])
     VoxelsAreThoseOfTheWhole(ranks);
     LevelsAreThoseOfTheWhole(ranks);
     LightIsSmoothedAsTheWhole(ranks);
+    VoxelsAroundPointsAreThoseOfTheWhole(ranks);
     FailTogether(ranks);
     end = ranks.Right() ? EXIT_SUCCESS : EXIT_FAILURE;
   }

@@ -5,6 +5,8 @@
 #include "vtkTable.h"
 #include "vtkUnsignedCharArray.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -336,10 +338,144 @@ void AnyImageWillDo(test::Claims& claims)
   filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "ct");
   filter->SetMaximumDensity(255.0);
   filter->SetAlbedo(1.0, 1.0, 1.0);
+  filter->SetPointData(vtkParticipatingMedium::AVERAGE_TO_CELLS);
   filter->Update();
   claims.That(errors.None(), "points of bytes, in an odd box");
   claims.Near(At(filter, "sigma_s", 0), 0.5, 1e-6, "average of a cell with half of its points dense");
   claims.Near(At(filter, "sigma_s", 1), 0.0, 1e-6, "average of a cell with no point dense");
+}
+
+bool HasBounds(vtkImageData* image, const std::array<double, 6>& expected)
+{
+  double bounds[6];
+  image->GetBounds(bounds);
+  return std::equal(expected.begin(), expected.end(), bounds);
+}
+
+void PointsAreInTheMiddleOfVoxels(test::Claims& claims)
+{
+  // 4 x 3 x 2 points.
+  const auto image = test::MakeImage({ { 3, 2, 1 }, { 0.5, 2.0, 4.0 }, { 10.0, 0.0, -5.0 }, { -3, 7, 2 } });
+  const vtkIdType points = image->GetNumberOfPoints();
+  test::AddValues<vtkDoubleArray>(
+    image->GetPointData(), "ct", points, 1, [](vtkIdType i, int) { return 0.5 + static_cast<double>(i); });
+  test::AddPoints(image, "heat", 300.0);
+  image->GetPointData()->SetActiveScalars("ct");
+  vtkNew<vtkParticipatingMedium> filter;
+  test::Errors errors(filter);
+  filter->SetInputDataObject(image);
+  filter->SetAlbedo(0.0, 0.0, 0.0);
+  filter->Update();
+  vtkImageData* const output = filter->GetOutput();
+  const int extent[6] = { -3, 1, 7, 10, 2, 4 };
+  claims.That(errors.None() && std::equal(extent, extent + 6, output->GetExtent()), "n points are n voxels");
+  claims.That(HasBounds(output, { 8.25, 10.25, 13.0, 19.0, 1.0, 9.0 }), "bounds are half a spacing wider");
+  bool untouched = output->GetNumberOfCells() == points;
+  for (vtkIdType i = 0; untouched && i < points; ++i)
+  {
+    untouched = At(filter, "sigma_a", i) == 0.5 + static_cast<double>(i);
+    double middle[6];
+    output->GetCellBounds(i, middle);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      claims.Near(
+        0.5 * (middle[2 * axis] + middle[2 * axis + 1]), image->GetPoint(i)[axis], 1e-12, "middle of a voxel");
+    }
+  }
+  claims.That(untouched, "values are those of the points");
+  claims.That(output->GetCellData()->HasArray("heat") && output->GetPointData()->GetNumberOfArrays() == 0,
+    "other arrays of points are cells, too");
+  claims.That(image->GetPointData()->GetNumberOfArrays() == 2 && image->GetCellData()->GetNumberOfArrays() == 0,
+    "the input stays as it is");
+
+  filter->SetPointData(vtkParticipatingMedium::AVERAGE_TO_CELLS);
+  filter->Update();
+  claims.That(output->GetNumberOfCells() == 6 && output->GetPointData()->HasArray("heat"), "n - 1 voxels on request");
+  claims.Near(At(filter, "sigma_a", 0), 0.5 + (0 + 1 + 4 + 5 + 12 + 13 + 16 + 17) / 8.0, 1e-6, "a mean of 8 points");
+
+  // One array of cells: voxels are the cells.
+  test::AddCells(image, "g", 0.5);
+  filter->SetPointData(vtkParticipatingMedium::VOXELS_AROUND_POINTS);
+  filter->Update();
+  auto* const said = vtkArrayDownCast<vtkStringArray>(output->GetFieldData()->GetAbstractArray("settings_used"));
+  claims.That(output->GetNumberOfCells() == 6, "beside an array of cells points are averaged");
+  claims.That(said && said->GetValue(0).find("PointData = 1 for 'ct'") == 0, "that is said");
+}
+
+void OnePointAlongAnAxisIsOneVoxel(test::Claims& claims)
+{
+  const auto image = test::MakeImage({ { 3, 2, 0 }, { 1.0, 1.0, 0.25 } });
+  test::AddPoints(image, "slice", 2.0);
+  image->GetPointData()->SetActiveScalars("slice");
+  test::AddValues<vtkUnsignedCharArray>(image->GetPointData(), vtkDataSetAttributes::GhostArrayName(), 12, 1,
+    [](vtkIdType i, int) { return i == 5 ? vtkDataSetAttributes::HIDDENPOINT : 0; });
+  vtkNew<vtkParticipatingMedium> filter;
+  test::Errors errors(filter);
+  filter->SetInputDataObject(image);
+  filter->SetAlbedo(0.0, 0.0, 0.0);
+  filter->Update();
+  const int extent[6] = { 0, 4, 0, 3, 0, 1 };
+  claims.That(errors.None() && std::equal(extent, extent + 6, filter->GetOutput()->GetExtent()), "a slice is a layer");
+  claims.That(HasBounds(filter->GetOutput(), { -0.5, 3.5, -0.5, 2.5, -0.125, 0.125 }), "it is a spacing thick");
+  claims.That(At(filter, "sigma_a", 4) == 2.0 && At(filter, "sigma_a", 5) == 0.0, "a hidden point is an empty voxel");
+}
+
+/// A ball in the middle of 20^3 voxels: the distance from its surface.
+vtkSmartPointer<vtkImageData> Ball(const char* name, double spacing)
+{
+  auto image = test::MakeImage({ { 20, 20, 20 }, { spacing, spacing, spacing } });
+  test::AddValues<vtkFloatArray>(image->GetCellData(), name, 8000, 1, [=](vtkIdType i, int) {
+    const double at[3] = { i % 20 - 9.5, i / 20 % 20 - 9.5, i / 400 - 9.5 };
+    return spacing * (std::sqrt(at[0] * at[0] + at[1] * at[1] + at[2] * at[2]) - 7.0);
+  });
+  image->GetCellData()->SetActiveScalars(name);
+  return image;
+}
+
+void LevelSetsAreFilledNotTakenForADensity(test::Claims& claims)
+{
+  for (const double spacing : { 1.0, 0.05 })
+  {
+    const auto ball = Ball("surface", spacing);
+    vtkDataArray* const distance = ball->GetCellData()->GetArray("surface");
+    vtkNew<vtkParticipatingMedium> filter;
+    test::Errors errors(filter);
+    filter->SetInputDataObject(ball);
+    filter->SetAlbedo(0.0, 0.0, 0.0);
+    filter->Update();
+    claims.That(errors.WasOneWith("Switch LevelSet on"), "a level set as density is a warning");
+    filter->LevelSetOn();
+    filter->SetExtinctionScale(3.0);
+    filter->Update();
+    claims.That(errors.None(), "a level set as such is none");
+    bool right = true;
+    for (vtkIdType i = 0; i < 8000; ++i)
+    {
+      const double inside = -distance->GetComponent(i, 0) / spacing; // voxels
+      right = right && std::abs(At(filter, "sigma_a", i) - 3.0 * std::min(std::max(inside, 0.0), 1.0)) < 1e-5;
+    }
+    claims.That(right, "fog fills the inside, with a ramp of a voxel");
+  }
+
+  // What a file says, where the border says nothing; and what is none.
+  const auto cut = Ball("surface", 1.0);
+  cut->GetCellData()->GetArray("surface")->SetComponent(0, 0, -1.0);
+  vtkNew<vtkParticipatingMedium> filter;
+  test::Errors errors(filter);
+  filter->SetInputDataObject(cut);
+  filter->Update();
+  claims.That(errors.None(), "an array that is negative on the border is no level set");
+  vtkNew<vtkStringArray> kind;
+  kind->SetName("vdb:surface:class");
+  kind->InsertNextValue("level set");
+  cut->GetFieldData()->AddArray(kind);
+  cut->Modified();
+  filter->Update();
+  claims.That(errors.WasOneWith("level set"), "unless its file says that it is");
+  const auto tissue = Ball("ct", -1.0); // negative around
+  filter->SetInputDataObject(tissue);
+  filter->Update();
+  claims.That(errors.None(), "a density that is negative around is none");
 }
 
 void BadInputIsOneError(test::Claims& claims)
@@ -431,6 +567,9 @@ int TestParticipatingMedium(int, char*[])
   TheOutputSaysHowItScatters(claims);
   ATableIsThePhaseFunction(claims);
   MeanCosinesByVoxelPassThrough(claims);
+  PointsAreInTheMiddleOfVoxels(claims);
+  OnePointAlongAnAxisIsOneVoxel(claims);
+  LevelSetsAreFilledNotTakenForADensity(claims);
   AnyImageWillDo(claims);
   BadInputIsOneError(claims);
   BadPhaseFunctionsAreOneError(claims);

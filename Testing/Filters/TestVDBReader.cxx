@@ -8,11 +8,16 @@
 #include "vtkInformation.h"
 #include "vtkMatrix3x3.h"
 #include "vtkNew.h"
+#include "vtkParticipatingMedium.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkStringArray.h"
 #include "vtkVDBReader.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <string>
+#include <vector>
 
 using test::Folder;
 using test::IsEmpty;
@@ -198,6 +203,9 @@ void TransformsThatFit(test::Claims& claims)
   bent->SetGridName("density");
   bent->Update();
   claims.That(bentErrors.WasOneWith("shears"), "a sheared grid is an error");
+  bent->ResampleOn();
+  bent->Update();
+  claims.That(bentErrors.None() && bent->GetOutput()->GetDirectionMatrix()->IsIdentity(), "it is resampled on request");
   bent->SetGridName("frustum");
   bent->Update();
   claims.That(bentErrors.WasOneWith("not linear"), "a frustum is an error");
@@ -290,6 +298,188 @@ void LevelSetsKeepTheirInside(test::Claims& claims)
   claims.That(reader->GetOutput()->GetCellData()->GetArray("surface")->GetComponent(
                 reader->GetOutput()->ComputeCellId(middle), 0) == -3.0,
     "the inside of a level set is its negative background");
+
+  reader->LevelSetsAsFogOn();
+  reader->Update();
+  vtkDataArray* const fog = reader->GetOutput()->GetCellData()->GetArray("surface");
+  int corner[3] = { -1, 7, 7 };
+  double range[2];
+  fog->GetRange(range);
+  claims.That(fog->GetComponent(reader->GetOutput()->ComputeCellId(middle), 0) == 1.0 &&
+      fog->GetComponent(reader->GetOutput()->ComputeCellId(corner), 0) == 0.0 && range[0] == 0.0 && range[1] == 1.0,
+    "fog is inside of the surface");
+  auto* const kind =
+    vtkStringArray::SafeDownCast(reader->GetOutput()->GetFieldData()->GetAbstractArray("vdb:surface:class"));
+  claims.That(kind && kind->GetValue(0) == "fog volume", "it is a fog volume then");
+  auto plain = SmallFog();
+  WriteGrids(Path("plain.vdb"), { plain });
+  reader->SetFileName(Path("plain.vdb").c_str());
+  reader->Update();
+  claims.That(reader->GetOutput()->GetCellData()->GetArray("density")->GetRange()[1] == 4.0, "a fog stays as it is");
+}
+
+/// Values that are linear in the world, in a box of voxels by any transform, are found where they are.
+void AslantGridsAreResampled(test::Claims& claims)
+{
+  auto aslant = openvdb::math::Transform::createLinearTransform(0.5);
+  aslant->postRotate(0.7, openvdb::math::Z_AXIS);
+  aslant->postRotate(0.3, openvdb::math::X_AXIS);
+  aslant->postTranslate(openvdb::Vec3d(1, -2, 3));
+  auto sheared = openvdb::math::Transform::createLinearTransform(0.5);
+  sheared->postShear(0.5, openvdb::math::X_AXIS, openvdb::math::Y_AXIS);
+  const auto linear = [](const openvdb::Vec3d& at) { return 10.0 + 0.5 * at[0] - 0.25 * at[1] + at[2]; };
+  for (const auto& transform : { aslant, sheared })
+  {
+    auto grid = NewGrid<openvdb::FloatGrid>("float", "linear");
+    auto near = NewGrid<openvdb::Int32Grid>("int32", "near");
+    for (int i = 0; i < 12 * 10 * 8; ++i)
+    {
+      const openvdb::Coord voxel(3 + i % 12, i / 12 % 10, i / 120 - 4);
+      grid->tree().setValue(voxel, static_cast<float>(linear(transform->indexToWorld(voxel))));
+      near->tree().setValue(voxel, 7);
+    }
+    grid->setTransform(transform);
+    near->setTransform(transform);
+    WriteGrids(Path("aslant.vdb"), { grid, near });
+    vtkNew<vtkVDBReader> reader;
+    test::Errors errors(reader);
+    reader->SetFileName(Path("aslant.vdb").c_str());
+    reader->ResampleOn();
+    reader->Update();
+    vtkImageData* const image = reader->GetOutput();
+    claims.That(errors.None() && image->GetDirectionMatrix()->IsIdentity(), "a grid is resampled to the world's axes");
+    claims.Near(image->GetSpacing()[0], 0.5, 1e-12, "the shortest edge");
+    vtkDataArray* const values = image->GetCellData()->GetArray("linear");
+    vtkDataArray* const integers = image->GetCellData()->GetArray("near");
+    double worst = 0.0, inside = 0.0, filled = 0.0;
+    for (vtkIdType cell = 0; cell < image->GetNumberOfCells(); ++cell)
+    {
+      double bounds[6];
+      image->GetCellBounds(cell, bounds);
+      const openvdb::Vec3d middle(
+        0.5 * (bounds[0] + bounds[1]), 0.5 * (bounds[2] + bounds[3]), 0.5 * (bounds[4] + bounds[5]));
+      const openvdb::Vec3d at = transform->worldToIndex(middle);
+      const bool within = at[0] > 3 && at[0] < 14 && at[1] > 0 && at[1] < 9 && at[2] > -4 && at[2] < 3;
+      worst = within ? std::max(worst, std::abs(values->GetComponent(cell, 0) - linear(middle))) : worst;
+      inside += within ? 1.0 : 0.0;
+      filled += integers->GetComponent(cell, 0) == 7.0 ? 1.0 : 0.0;
+    }
+    claims.That(inside > 200.0, "there are voxels within");
+    claims.Near(worst, 0.0, 1e-5, "distance of a resampled value from the linear one");
+    claims.Near(filled * std::pow(image->GetSpacing()[0], 3) / (960.0 * transform->voxelVolume()), 1.0, 0.03,
+      "volume of what is filled");
+  }
+}
+
+/// A cube of `edge` voxels, each with its edge as value, from index `edge` on; 0: a grid without active voxels, -1:
+/// none.
+void WriteCube(const std::string& name, int edge)
+{
+  auto grid = NewGrid<openvdb::FloatGrid>("float", "density");
+  for (int i = 0; i < edge * edge * edge; ++i)
+  {
+    grid->tree().setValue(
+      openvdb::Coord(edge + i % edge, edge + i / edge % edge, edge + i / edge / edge), static_cast<float>(edge));
+  }
+  WriteGrids(Path(name), edge < 0 ? openvdb::GridPtrVec() : openvdb::GridPtrVec{ grid });
+}
+
+/// That an image has the extent and the values of a cube.
+void IsCube(test::Claims& claims, vtkImageData* image, const char* array, int edge, const std::string& where)
+{
+  const int cells = std::max(edge * edge * edge, 0);
+  const int expected[6] = { edge, 2 * edge, edge, 2 * edge, edge, 2 * edge };
+  vtkDataArray* const values = image->GetCellData()->GetArray(array);
+  claims.That(image->GetNumberOfCells() == cells, where + " has the cells of its file");
+  if (cells > 0 && claims.That(values != nullptr, where + " has values"))
+  {
+    double range[2];
+    values->GetRange(range);
+    claims.That(std::equal(expected, expected + 6, image->GetExtent()), where + " lies where its file says");
+    claims.That(range[0] == edge && range[1] == edge, where + " has its file's values");
+  }
+}
+
+void EachTimeOfASeriesIsItsFile(test::Claims& claims)
+{
+  const std::vector<int> edges = { 5, 0, 6, 10, -1, 7 };
+  for (const std::size_t first : { 0u, 1u, 4u }) // of them an empty one, and one without grids
+  {
+    vtkNew<vtkVDBReader> reader;
+    std::vector<int> frames;
+    for (std::size_t i = first; i < edges.size(); ++i)
+    {
+      frames.push_back(edges[i]);
+      const std::string name = "cube_" + std::to_string(edges[i]) + ".vdb";
+      WriteCube(name, edges[i]);
+      reader->AddFileName(Path(name).c_str());
+    }
+    vtkNew<vtkParticipatingMedium> medium; // each through another one, as pipelines have several filters
+    vtkNew<vtkParticipatingMedium> after;
+    medium->SetInputConnection(reader->GetOutputPort());
+    medium->SetAlbedo(0.0, 0.0, 0.0);
+    after->SetInputConnection(medium->GetOutputPort());
+    after->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "density");
+    after->SetAlbedo(0.0, 0.0, 0.0);
+    test::Errors ofReader(reader), ofMedium(medium), ofAfter(after);
+    const int last = static_cast<int>(frames.size()) - 1;
+    for (const int time : { 0, last, 1, 0, last / 2, 1, 1, last })
+    {
+      const std::string where = "time " + std::to_string(time) + " of " + std::to_string(last + 1);
+      after->UpdateTimeStep(time);
+      IsCube(claims, after->GetOutput(), "sigma_a", frames[time], where + " after two filters");
+      reader->UpdateTimeStep(time);
+      IsCube(claims, reader->GetOutput(), "density", frames[time], where);
+    }
+    claims.That(ofReader.None() && ofMedium.None() && ofAfter.None(), "no file of a series is an error");
+    after->UpdateTimeStep(last, 1, 2, 0);
+    claims.That(after->GetOutput()->GetNumberOfCells() < 7 * 7 * 7 && after->GetOutput()->GetNumberOfCells() > 0,
+      "a piece of another time is a piece");
+    medium->Update();
+    claims.That(medium->GetOutput()->GetNumberOfCells() == 7 * 7 * 7, "the last time stays where none is asked for");
+  }
+}
+
+/// A filter that asks for time only when all others know the extent.
+void ATimeThatNobodyWasToldOfIsItsFile(test::Claims& claims)
+{
+  vtkNew<vtkVDBReader> reader;
+  for (const int edge : { 5, 10 })
+  {
+    const std::string name = "probed_" + std::to_string(edge) + ".vdb";
+    WriteCube(name, edge);
+    reader->AddFileName(Path(name).c_str());
+  }
+  test::Errors errors(reader);
+  reader->UpdateTimeStep(0.0);
+  vtkInformation* const output = reader->GetExecutive()->GetOutputInformation(0);
+  vtkNew<vtkInformation> request;
+  request->Set(vtkDemandDrivenPipeline::REQUEST_DATA());
+  output->Set(vtkStreamingDemandDrivenPipeline::UPDATE_TIME_STEP(), 1.0);
+  reader->ProcessRequest(request, nullptr, reader->GetExecutive()->GetOutputInformation());
+  IsCube(claims, reader->GetOutput(), "density", 10, "a time that was not told of");
+  claims.That(errors.None(), "that is no error");
+}
+
+void GridsOfASeriesAreKept(test::Claims& claims)
+{
+  WriteGrids(Path("both.vdb"), { SmallFog("density"), SmallFog("heat") });
+  WriteGrids(Path("one.vdb"), { SmallFog("density") });
+  vtkNew<vtkVDBReader> reader;
+  test::Errors errors(reader);
+  reader->AddFileName(Path("both.vdb").c_str());
+  reader->AddFileName(Path("one.vdb").c_str());
+  reader->AddFileName(Path("both.vdb").c_str());
+  const auto arraysAt = [&](double time) {
+    reader->UpdateTimeStep(time);
+    return reader->GetOutput()->GetCellData()->GetNumberOfArrays();
+  };
+  claims.That(arraysAt(0.0) == 2 && arraysAt(1.0) == 1 && arraysAt(2.0) == 2, "each file has the grids that it has");
+  reader->SetGridArrayStatus("heat", 0);
+  claims.That(arraysAt(1.0) == 1 && arraysAt(2.0) == 1, "a grid that is switched off stays off");
+  reader->SetGridArrayStatus("density", 0);
+  reader->SetGridArrayStatus("heat", 1);
+  claims.That(arraysAt(0.0) == 1 && arraysAt(1.0) == 0 && errors.None(), "a time without a chosen grid is empty");
 }
 }
 
@@ -304,5 +494,9 @@ int TestVDBReader(int argc, char* argv[])
   TransformsThatFit(claims);
   WrongQuestionsAreErrors(claims);
   LevelSetsKeepTheirInside(claims);
+  AslantGridsAreResampled(claims);
+  EachTimeOfASeriesIsItsFile(claims);
+  ATimeThatNobodyWasToldOfIsItsFile(claims);
+  GridsOfASeriesAreKept(claims);
   return claims.Result();
 }

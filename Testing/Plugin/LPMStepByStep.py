@@ -26,11 +26,11 @@ for order in range(3):
     buffers.UpdatePipeline()
     buffers.UpdatePropertyInformation()
     assert buffers.Order == order, buffers.Order
-    assert buffers.Bytes == 6 * 9 * 3 * 4 * 12 * 10 * 8, buffers.Bytes
-    assert cells(buffers, "T_zmin").shape == (12 * 10 * 8, 27)
+    assert buffers.Bytes == 6 * 9 * 3 * 4 * 13 * 11 * 9, buffers.Bytes
+    assert cells(buffers, "T_zmin").shape == (13 * 11 * 9, 27)
     light = LPMCollect(Input=buffers)
 
 expected = cells(together, "fluence")
 difference = numpy.abs(cells(light, "fluence") - expected).max()
 assert expected.min() > 0 and difference < 2e-6 * expected.max(), difference
-assert cells(light, "unscattered").shape == (12 * 10 * 8, 18)
+assert cells(light, "unscattered").shape == (13 * 11 * 9, 18)

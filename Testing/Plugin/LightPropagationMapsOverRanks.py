@@ -10,7 +10,8 @@ assert servermanager.vtkProcessModule.GetProcessModule().GetNumberOfLocalPartiti
 
 whole = (0, 8, 0, 6, 0, 12)
 wavelet = Wavelet(WholeExtent=whole)
-medium = ParticipatingMedium(Input=wavelet, MinimumDensity=0, MaximumDensity=0)  # 1 everywhere
+medium = ParticipatingMedium(Input=wavelet, MinimumDensity=0, MaximumDensity=0,  # 1 everywhere
+                             PointData="Average To Cells")
 light = LightPropagationMaps(Input=medium, SkyColor=[1, 1, 1])
 light.UpdatePipeline()
 

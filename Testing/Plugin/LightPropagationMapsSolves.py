@@ -24,7 +24,7 @@ assert [light.AbsorptionArray[1], light.ScatteringArray[1], light.EmissionArray[
 
 # With nothing touched, a right picture.
 lit = fluence(light)
-assert lit.shape == (12**3,) and 0.05 < lit.min() and lit.max() < 5, (lit.min(), lit.max())
+assert lit.shape == (13**3,) and 0.05 < lit.min() and lit.max() < 5, (lit.min(), lit.max())
 assert light.Orders > 3 and 0 < light.Residual <= 1e-4 and light.BalanceError < 1e-5 and light.Seconds > 0
 assert light.DeviceName
 data = servermanager.Fetch(light)
@@ -65,7 +65,7 @@ light.Lights = None
 light.SkyColor = [1, 1, 2]
 light.NetFlux = 1
 sky = fluence(light)
-assert sky.shape == (12**3, 3)
+assert sky.shape == (13**3, 3)
 assert abs(sky[:, 2] / sky[:, 0] - 2).max() < 1e-4, sky
 assert servermanager.Fetch(light).GetCellData().GetArray("net_flux").GetNumberOfComponents() == 9
 light.Scheme = "As published"

@@ -25,14 +25,14 @@ medium = ParticipatingMedium(Input=density, DensityArray=["POINTS", "density"], 
 medium.UpdatePipeline()
 bare = PassArrays(Input=medium, CellDataArrays=["sigma_a", "sigma_s"], FieldDataArrays=["g"])
 bare.UpdatePipeline()
-assert "density" in medium.PointData.keys() or "density" in medium.CellData.keys(), "there is something to mistake"
+assert "density" in medium.GetPointDataInformation().keys() or "density" in medium.CellData.keys(), "there is something to mistake"
 
 sky = 2.0
 seen = {}
 for name, source in (("all", medium), ("bare", bare)):
     light = LightPropagationMaps(Input=source, SkyColor=[sky] * 3, DirectionsPerFace=9)
     light.UpdatePipeline()
-    assert "sigma_a" not in light.PointData.keys(), "nothing is converted for it"
+    assert "sigma_a" not in light.GetPointDataInformation().keys(), "nothing is converted for it"
     seen[name] = picture(light)
     fluence = light.CellData["fluence"].GetRange()
     assert 0 < fluence[0] and fluence[1] < 4 * math.pi * sky * 1.0001, fluence

@@ -21,6 +21,7 @@ as_is = cells(medium, "sigma_s") / 0.9
 # Made after: relative density 1 is the largest density there is.
 wavelet.UpdatePipeline()
 largest = wavelet.PointData["RTData"].GetRange()[1]
+SetActiveSource(wavelet)  # whose arrays it chooses from
 medium = ParticipatingMedium(Input=wavelet)
 assert medium.DensityArray[1] == "RTData" and medium.MinimumDensity == 0, medium.DensityArray
 assert abs(medium.MaximumDensity - largest) < 1e-9 * largest, medium.MaximumDensity
@@ -31,7 +32,7 @@ medium.Albedo = [0.9, 0.6, 0.3]
 medium.ExtinctionScale = 2
 medium.EmissionScale = 0.5
 scattering, absorption, emission = (cells(medium, name) for name in ("sigma_s", "sigma_a", "emission"))
-assert scattering.shape == (512, 3) and emission.shape == (512,)
+assert scattering.shape == (729, 3) and emission.shape == (729,)
 assert abs(scattering + absorption - 4 * emission[:, None]).max() < 1e-5
 
 medium.Preset = "Skim milk"

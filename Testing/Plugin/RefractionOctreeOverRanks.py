@@ -13,7 +13,7 @@ wavelet = Wavelet(WholeExtent=(0, 8, 0, 6, 0, 12))
 even = Calculator(Input=wavelet, ResultArrayName="ior", Function="1.33")
 uneven = Calculator(Input=wavelet, ResultArrayName="ior", Function="1 + 0.5 * coordsX / 8")
 for medium, level, count in ((even, 4, 1), (uneven, 0, 8 * 6 * 12)):
-    octree = RefractionOctree(Input=medium)
+    octree = RefractionOctree(Input=medium, PointData="Average To Cells")
     octree.UpdatePipeline()
     piece = octree.GetClientSideObject().GetOutputDataObject(0)
     assert piece.GetNumberOfCells() == 8 * 6 * 12 / 2, piece.GetExtent()

@@ -52,6 +52,43 @@ for time in series.TimestepValues:
     maxima.append(values(servermanager.Fetch(series), "RTData").max())
 assert maxima[0] < maxima[1] < maxima[2], maxima
 
+# A series whose boxes change, with an empty one: in UpdatePipeline, in a view, and as an animation, to and fro.
+boxes = []
+for step, extent in enumerate(([0, 5] * 3, None, [3, 9] * 3, [-2, 8] * 3)):
+    boxes.append(os.path.join(folder, f"box_{step}.vdb"))
+    if extent is None:
+        nothing = Calculator(Input=cells, AttributeType="Cell Data", ResultArrayName="d", Function="0*RTData")
+        chosen = PassArrays(Input=nothing, CellDataArrays=["d"])
+        SaveData(boxes[-1], proxy=chosen, Background=0.0)
+        # A file of VDBWriter notes its extent, which other programs do not: without these notes the grid is empty.
+        with open(boxes[-1], "rb") as file:
+            bytes_of = file.read()
+        with open(boxes[-1], "wb") as file:
+            file.write(bytes_of.replace(b"image_extent_min", b"other_extent_min"))
+        continue
+    density = PointDatatoCellData(Input=Wavelet(WholeExtent=extent))
+    SaveData(boxes[-1], proxy=Calculator(Input=density, AttributeType="Cell Data", ResultArrayName="d", Function="1"))
+counts = [125, 0, 216, 1000]
+changing = VDBReader(FileName=boxes)
+changing.Grids = ["d"]
+light = LightPropagationMaps(Input=ParticipatingMedium(Input=changing), DirectionsPerFace=1, MaximumOrders=1)
+for time in (0, 1, 3, 2, 1, 0, 3):
+    light.UpdatePipeline(time)
+    assert servermanager.Fetch(changing).GetNumberOfCells() == counts[time], (time, "reader")
+    assert servermanager.Fetch(light).GetNumberOfCells() == counts[time], (time, "solver")
+view = CreateRenderView(ViewSize=[60, 60])
+Show(light, view, "UniformGridRepresentation").Representation = "Surface"
+scene = GetAnimationScene()
+scene.UpdateAnimationUsingDataTimeSteps()
+for time in (3, 0, 1, 2):
+    scene.AnimationTime = time
+    Render(view)
+    assert light.GetDataInformation().GetNumberOfCells() == counts[time], (time, "view")
+scene.GoToFirst()
+scene.Play()
+assert light.GetDataInformation().GetNumberOfCells() == counts[3], "animation"
+Delete(view)
+
 # A damaged one: no data, and the session lives on.
 damaged = os.path.join(folder, "damaged.vdb")
 with open(files[0], "rb") as whole, open(damaged, "wb") as part:

@@ -2,6 +2,7 @@
 
 #include "Common/LightTransportData.h"
 #include "Device/Errors.h"
+#include "IO/VDB/VDBGrid.h"
 #include "IO/VDB/VDBHalf.h"
 #include "IO/VDB/VDBMetadata.h"
 #include "IO/VDB/VDBValues.h"
@@ -315,6 +316,158 @@ void AddGridCells(const openvdb::GridBase& grid, const std::string& type, const 
 {
   WithKind(type, [&](auto kind) { AddCellsOf(kind, grid, name, box, image); });
   AddFact(image, FieldName(name, "type").c_str(), std::vector<std::string>{ type });
+}
+
+namespace
+{
+/// Values of a box of voxels between their middles.
+template <typename K>
+class BoxSampler
+{
+public:
+  using Number = typename K::Number;
+
+  BoxSampler(const openvdb::CoordBBox& box, const Number* values, const Number* background)
+    : Low(box.min())
+    , Size(box.dim())
+    , Values(values)
+    , Background(background)
+  {
+  }
+
+  /// @param at  index, whole numbers in the middle of voxels
+  void Sample(const openvdb::Vec3d& at, Number* value) const
+  {
+    if constexpr (std::is_integral<Number>::value)
+    {
+      const Number* const nearest = this->At(openvdb::Coord::round(at));
+      std::copy_n(nearest, K::Count, value);
+    }
+    else
+    {
+      const openvdb::Coord first = openvdb::Coord::floor(at);
+      double sum[K::Count] = {};
+      for (int corner = 0; corner < 8; ++corner)
+      {
+        const openvdb::Coord voxel = first.offsetBy(corner & 1, corner >> 1 & 1, corner >> 2);
+        double weight = 1.0;
+        for (int axis = 0; axis < 3; ++axis)
+        {
+          weight *= 1.0 - std::abs(at[axis] - voxel[axis]);
+        }
+        const Number* const there = this->At(voxel);
+        for (int c = 0; c < K::Count && weight > 0.0; ++c)
+        {
+          sum[c] += weight * static_cast<double>(there[c]);
+        }
+      }
+      std::transform(sum, sum + K::Count, value, [](double number) { return static_cast<Number>(number); });
+    }
+  }
+
+private:
+  const Number* At(const openvdb::Coord& voxel) const
+  {
+    const openvdb::Coord at = voxel - this->Low;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      if (at[axis] < 0 || at[axis] >= this->Size[axis])
+      {
+        return this->Background;
+      }
+    }
+    const vtkIdType cell =
+      at[0] + static_cast<vtkIdType>(this->Size[0]) * (at[1] + static_cast<vtkIdType>(this->Size[1]) * at[2]);
+    return this->Values + cell * K::Count;
+  }
+
+  openvdb::Coord Low, Size;
+  const Number *Values, *Background;
+};
+
+template <typename K>
+void AddResampledOf(K, vtkImageData* cells, const VDBGrid& grid, const openvdb::CoordBBox& box, vtkImageData* image)
+{
+  auto* const given = K::Array::SafeDownCast(cells->GetCellData()->GetArray(grid.Name.c_str()));
+  auto* const background = FactOf<typename K::Array>(cells->GetFieldData(), grid.Name, "background");
+  vtkNew<typename K::Array> values;
+  values->SetName(grid.Name.c_str());
+  values->SetNumberOfComponents(K::Count);
+  values->SetNumberOfTuples(image->GetNumberOfCells());
+  openvdb::Mat3d steps;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    steps.setRow(axis, openvdb::Vec3d(grid.Axes[axis].data()));
+  }
+  const openvdb::Mat3d toIndex = steps.inverse();
+  const openvdb::Vec3d zero(grid.Translation.data());
+  const BoxSampler<K> sampler(box, given->GetPointer(0), background->GetPointer(0));
+  const int* const extent = image->GetExtent();
+  const double *origin = image->GetOrigin(), *spacing = image->GetSpacing();
+  typename K::Number* to = values->GetPointer(0);
+  for (int k = extent[4]; k < extent[5]; ++k)
+  {
+    for (int j = extent[2]; j < extent[3]; ++j)
+    {
+      for (int i = extent[0]; i < extent[1]; ++i, to += K::Count)
+      {
+        const openvdb::Vec3d middle(
+          origin[0] + (i + 0.5) * spacing[0], origin[1] + (j + 0.5) * spacing[1], origin[2] + (k + 0.5) * spacing[2]);
+        sampler.Sample(toIndex.transform(middle - zero), to);
+      }
+    }
+  }
+  image->GetCellData()->AddArray(values);
+}
+}
+
+void AddResampled(vtkImageData* cells, const VDBGrid& grid, const openvdb::CoordBBox& box, vtkImageData* image)
+{
+  WithKind(grid.Type, [&](auto kind) { AddResampledOf(kind, cells, grid, box, image); });
+  for (const char* fact : { "background", "type" })
+  {
+    image->GetFieldData()->AddArray(cells->GetFieldData()->GetAbstractArray(FieldName(grid.Name, fact).c_str()));
+  }
+}
+
+namespace
+{
+template <typename ArrayT>
+bool MakeFog(vtkImageData* image, vtkDataArray* distances, const std::string& kind)
+{
+  using Value = typename ArrayT::ValueType;
+  const std::string name = distances->GetName();
+  auto* const cells = ArrayT::SafeDownCast(distances);
+  auto* const background = FactOf<ArrayT>(image->GetFieldData(), name, "background");
+  if (!cells || !background || cells->GetNumberOfComponents() != 1)
+  {
+    return false;
+  }
+  Value* const values = cells->GetPointer(0);
+  Value* const end = values + cells->GetNumberOfTuples();
+  const bool looksSo = kind != "fog volume" && kind != "staggered" && background->GetValue(0) > 0 &&
+    std::any_of(values, end, [](Value value) { return value < 0; });
+  if (kind != "level set" && !looksSo)
+  {
+    return false;
+  }
+  const double* const spacing = image->GetSpacing();
+  const double voxel = *std::min_element(spacing, spacing + 3);
+  std::transform(values, end, values, [voxel](Value value) { return FogInside(value, voxel); });
+  background->SetValue(0, 0);
+  return true;
+}
+}
+
+void MakeFogOfLevelSet(vtkImageData* image, const std::string& name)
+{
+  vtkDataArray* const cells = image->GetCellData()->GetArray(name.c_str());
+  auto* const noted = FactOf<vtkStringArray>(image->GetFieldData(), name, "class");
+  const std::string kind = noted && noted->GetNumberOfValues() == 1 ? std::string(noted->GetValue(0)) : "unknown";
+  if (MakeFog<vtkFloatArray>(image, cells, kind) || MakeFog<vtkDoubleArray>(image, cells, kind))
+  {
+    AddFact(image, FieldName(name, "class").c_str(), std::vector<std::string>{ "fog volume" });
+  }
 }
 
 openvdb::GridPtrVec MakeGrids(

@@ -5,6 +5,10 @@
 #include <string>
 #include <vector>
 
+namespace tyndall
+{
+struct VDBGrid;
+}
 class vtkDataArray;
 class vtkFieldData;
 class vtkImageData;
@@ -20,6 +24,16 @@ namespace tyndall
 /// @param box   the image's cells
 void AddGridCells(const openvdb::GridBase& grid, const std::string& type, const std::string& name,
   const openvdb::CoordBBox& box, vtkImageData* image);
+
+/// Adds the values of a grid's cells at the middle of each cell of another image: linear between the middles of voxels,
+/// of integers that of the nearest, and the background beyond. Field data are added, too.
+/// @param cells  as AddGridCells made them of `box`
+void AddResampled(vtkImageData* cells, const VDBGrid& grid, const openvdb::CoordBBox& box, vtkImageData* image);
+
+/// Makes fog of cells that are a level set (FogInside), and says so in field data `class` and `background`; leaves
+/// others as they are. A level set is of real numbers, and its class says so, or is not known where the background is
+/// positive and cells are negative.
+void MakeFogOfLevelSet(vtkImageData* image, const std::string& name);
 
 /// How cells become voxels.
 struct VoxelOptions

@@ -193,6 +193,37 @@ VDBGeometry GeometryOf(const std::vector<const VDBGrid*>& grids)
   return geometry;
 }
 
+VDBGeometry BoxAround(const std::vector<const VDBGrid*>& grids)
+{
+  VDBGeometry box;
+  const std::array<std::int64_t, 6> extent = ExtentOfAll(grids);
+  if (extent[0] > extent[1])
+  {
+    return box;
+  }
+  const VDBGrid& grid = *grids.front();
+  const VDBBox voxels = VoxelsOf(extent);
+  const double edge = std::min({ LengthOf(grid.Axes[0]), LengthOf(grid.Axes[1]), LengthOf(grid.Axes[2]) });
+  for (int row = 0; row < 3; ++row)
+  {
+    double low = grid.Translation[row], high = low;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const double step = grid.Axes[axis][row];
+      const double first = (static_cast<double>(voxels.Min[axis]) - 0.5) * step;
+      const double last = (static_cast<double>(voxels.Max[axis]) + 0.5) * step;
+      low += std::min(first, last);
+      high += std::max(first, last);
+    }
+    box.Origin[row] = low;
+    box.Spacing[row] = edge;
+    box.Extent[2 * row] = 0;
+    box.Extent[2 * row + 1] =
+      std::max<std::int64_t>(static_cast<std::int64_t>(std::ceil((high - low) / edge - 1e-6)), 1);
+  }
+  return box;
+}
+
 VDBPlacement PlacementOf(vtkImageData* image)
 {
   VDBPlacement place;

@@ -51,6 +51,9 @@ bool SharesTransform(const VDBGrid& a, const VDBGrid& b);
 /// All of some grids, at least one, that share a transform.
 VDBGeometry GeometryOf(const std::vector<const VDBGrid*>& grids);
 
+/// An image with axes along those of the world that holds the voxels of some grids, of the shortest edge of theirs.
+VDBGeometry BoxAround(const std::vector<const VDBGrid*>& grids);
+
 /// Where an image lies, as a grid.
 struct VDBPlacement
 {

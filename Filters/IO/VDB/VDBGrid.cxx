@@ -59,8 +59,14 @@ bool ReadLinearMap(VDBBytes& bytes, const std::string& type, VDBGrid& grid)
   return true;
 }
 
-/// Why an image cannot have the grid's map; empty: it can.
-std::string FaultOfMap(const VDBGrid& grid)
+double TripleProduct(const std::array<std::array<double, 3>, 3>& v)
+{
+  return v[0][0] * (v[1][1] * v[2][2] - v[1][2] * v[2][1]) + v[0][1] * (v[1][2] * v[2][0] - v[1][0] * v[2][2]) +
+    v[0][2] * (v[1][0] * v[2][1] - v[1][1] * v[2][0]);
+}
+
+/// Why an image cannot have the grid's map; empty: it can. Notes whether it shears.
+std::string FaultOfMap(VDBGrid& grid)
 {
   const auto dot = [&](int i, int j) {
     const auto &a = grid.Axes[i], &b = grid.Axes[j];
@@ -78,11 +84,12 @@ std::string FaultOfMap(const VDBGrid& grid)
   for (int axis = 0; axis < 3; ++axis)
   {
     const int next = (axis + 1) % 3;
-    if (!(std::abs(dot(axis, next) / lengths[axis] / lengths[next]) < 1e-6))
+    const double volume = TripleProduct(grid.Axes);
+    if (!(std::abs(volume) > 1e-9 * lengths[0] * lengths[1] * lengths[2]))
     {
-      return "its transform shears; an image needs axes at right angles. Resample the grid, for example with "
-             "OpenVDB's resampleToMatch";
+      return "its transform gives voxels no volume";
     }
+    grid.Shears = grid.Shears || !(std::abs(dot(axis, next) / lengths[axis] / lengths[next]) < 1e-6);
   }
   return {};
 }

@@ -25,6 +25,7 @@ struct VDBGrid
   std::string Name;     ///< unique in the file: grids of the same name are called name[0], name[1], ...
   std::string Type;     ///< a name of FindValueType, or else OpenVDB's name of it
   std::string Unusable; ///< why the grid cannot become an image; empty: it can
+  bool Shears = false;  ///< it can, but only resampled: its axes are not at right angles
   std::array<std::array<double, 3>, 3> Axes = {};  ///< world vectors of a step of one voxel along i, j, k
   std::array<double, 3> Translation = { 0, 0, 0 }; ///< world position of index (0, 0, 0), the centre of that voxel
   openvdb::MetaMap Metadata;                       ///< without what describes the file (file_bbox_min, ...)
