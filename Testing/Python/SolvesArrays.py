@@ -80,6 +80,44 @@ assert sunless.fluence.mean() < 1.01 * furnace.fluence.mean(), sunless.fluence.m
 picture = tyndall.picture(light, (40, 30))
 assert picture.shape == (30, 40, 4) and picture.dtype == numpy.uint8 and picture[..., :3].max() > 0
 
+# What people hand in: other classes of lights, numbers as arrays, g by voxel, masked arrays, arrays that do not fit.
+sun, rig = tyndall.vtkSun(), tyndall.vtkLightRig()
+rig.SetSun(False)
+rig.AddDirectionalLight(0.0, 0.0, -1.0, 1.0, 1.0, 1.0)
+sun.Update()
+by_class = tyndall.solve(density, lights=sun, MaximumOrders=1).fluence
+numpy.testing.assert_array_equal(tyndall.solve(density, lights=sun.GetOutput(), MaximumOrders=1).fluence, by_class)
+assert by_class.max() > 0.0
+few = dict(albedo=0.9, sky=1.0, MaximumOrders=2)
+of_number = tyndall.solve(density, g=0.8, **few).fluence
+for g in (numpy.float64(0.8), numpy.array(0.8), numpy.array([0.8]), numpy.full(shape, 0.8)):
+    numpy.testing.assert_allclose(tyndall.solve(density, g=g, **few).fluence, of_number, rtol=1e-6)
+by_colour = tyndall.solve(density, g=[0.0, 0.5, 0.8], **few).fluence
+numpy.testing.assert_allclose(by_colour[..., 2], of_number, rtol=1e-3)
+halves = numpy.where(numpy.arange(shape[0])[:, None, None] < 4, 0.0, 0.8) * numpy.ones(shape)
+lamp_in_it = dict(albedo=0.9, lights=rig, MaximumOrders=2, NetFlux=True)
+assert (tyndall.solve(density, g=halves, **lamp_in_it).fluence != tyndall.solve(density, g=0.8, **lamp_in_it).fluence).any()
+masked = numpy.ma.masked_greater(density, 0.99)
+count = numpy.ma.count_masked(masked)
+raises(ValueError, f"density is masked in {count} places", lambda: tyndall.solve(masked))
+raises(ValueError, "emission is masked in", lambda: tyndall.solve(density, emission=masked))
+numpy.testing.assert_array_equal(tyndall.solve(numpy.ma.masked_greater(density, 2.0), **few).fluence,
+                                 tyndall.solve(density, **few).fluence)
+raises(ValueError, "g has the shape", lambda: tyndall.solve(density, g=halves[1:]))
+raises(ValueError, "g has the shape (2,)", lambda: tyndall.solve(density, g=[0.1, 0.2]))
+raises(ValueError, "spacing has the shape (2,)", lambda: tyndall.solve(density, (1.0, 2.0)))
+raises(ValueError, "origin has the shape (4,)", lambda: tyndall.solve(density, origin=(0.0,) * 4))
+raises(ValueError, "sky has the shape (2,)", lambda: tyndall.solve(density, sky=(1.0, 2.0)))
+raises(ValueError, "albedo is no array of numbers", lambda: tyndall.solve(density, albedo="white"))
+raises(ValueError, "density is no array of numbers", lambda: tyndall.solve(numpy.full(shape, "thick")))
+raises(TypeError, "does not take FaceRadiance", lambda: tyndall.solve(density, FaceRadiance=(1.0, 2.0)))
+raises(TypeError, "lights is a list", lambda: tyndall.solve(density, lights=[sun]))
+short = sun.GetOutput().NewInstance()
+short.DeepCopy(sun.GetOutput())
+short.GetPointData().GetArray("power").Resize(0)
+raises(tyndall.SolvingError, "'power' has 0 values where the dataset has 1",
+       lambda: tyndall.solve(density, lights=short))
+
 raises(tyndall.SolvingError, "Tolerance is -1", lambda: tyndall.solve(density, Tolerance=-1.0))
 raises(TypeError, "no property Tollerance", lambda: tyndall.solve(density, Tollerance=1.0))
 raises(ValueError, "maps, ordinates, lattice", lambda: tyndall.solve(density, method="magic"))

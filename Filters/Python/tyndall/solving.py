@@ -8,7 +8,8 @@ import warnings
 
 import numpy
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkImageData, vtkTable
+from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkImageData, vtkPolyData, vtkTable
+from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm
 
 from . import vtkTyndall as classes
 
@@ -76,9 +77,10 @@ def solve(medium, spacing=None, *, origin=None, extinction=None, albedo=None, g=
     origin       corner of the first voxel, default 0, 0, 0; not with a vtkImageData
     extinction   1 / length of density 1: sigma_t = extinction * density, default 1; with density alone, as are
     albedo       part of it that is scattered, a number or red, green and blue, default 0.9
-    g            mean cosine of Henyey and Greenstein's phase function, default 0: isotropic
+    g            mean cosine of Henyey and Greenstein's phase function, default 0: isotropic; a number, or red, green and
+                 blue, or one for each voxel, [x, y, z] or [x, y, z, rgb]
     emission     radiance per unit length, W / (length^3 sr), [x, y, z] or [x, y, z, rgb]
-    lights       a vtkLightRig, or polydata as it makes it
+    lights       a vtkLightRig, vtkSun, vtkPointLight, ..., or polydata as they make it
     sky          radiance from everywhere, a number or red, green and blue, W / (length^2 sr)
     environment  radiance in latitude-longitude layout, [row from the top, column, rgb], or a vtkImageData
     method       "maps", "ordinates" or "lattice"
@@ -87,8 +89,10 @@ def solve(medium, spacing=None, *, origin=None, extinction=None, albedo=None, g=
     Where nothing shines the solver's default sky does, a sun and a grey sky; `left_out` of the light says so, and
     DefaultSky=False leaves it dark.
 
-    Raises SolvingError with the filter's own words, and TypeError for an argument that this medium would not use; the
-    filter's warnings become Python's.
+    Arrays with masked values are refused: nothing says what is there.
+
+    Raises SolvingError with the filter's own words, TypeError for an argument that this medium would not use, and
+    ValueError for arrays of a wrong shape; the filter's warnings become Python's.
     """
     if method not in METHODS:
         raise ValueError(f"method {method!r}: there is {', '.join(METHODS)}")
@@ -108,13 +112,18 @@ def solve(medium, spacing=None, *, origin=None, extinction=None, albedo=None, g=
     else:
         maker = classes.vtkParticipatingMedium()
         filters.append(maker)
-        maker.SetInputData(image_of(**place, density=medium))
+        g = making.get("g", 0.0)
+        by_voxel = numpy.ndim(g) > 1
+        maker.SetInputData(image_of(**place, density=medium, **(dict(g=g) if by_voxel else {})))
         maker.SetInputArrayToProcess(0, 0, 0, vtkDataObject.FIELD_ASSOCIATION_CELLS, "density")
         maker.SetMillimetresPerUnit(1.0)
         maker.SetExtinctionScale(making.get("extinction", 1.0))
-        maker.SetAlbedo(_triple(making.get("albedo", 0.9)))
-        maker.SetPhaseFunction(maker.HENYEY_GREENSTEIN if g else maker.ISOTROPIC)
-        maker.SetMeanCosine(making.get("g", 0.0))
+        maker.SetAlbedo(_triple("albedo", making.get("albedo", 0.9)))
+        maker.SetPhaseFunction(maker.HENYEY_GREENSTEIN if numpy.any(g) else maker.ISOTROPIC)
+        if not by_voxel and numpy.size(g) == 1:
+            maker.SetMeanCosine(float(numpy.reshape(g, ())))
+        elif not by_voxel:
+            maker.SetChannelMeanCosines(*_triple("g", g))
         image = _result(maker, filters)
     if emission is not None:
         shining = vtkImageData()
@@ -165,8 +174,8 @@ def image_of(spacing=1.0, origin=(0.0, 0.0, 0.0), **arrays):
         raise ValueError(f"voxels are [x, y, z], this array has {len(shape)} indices")
     image = vtkImageData()
     image.SetDimensions(*(count + 1 for count in shape[:3]))
-    image.SetSpacing(*_triple(spacing))
-    image.SetOrigin(*origin)
+    image.SetSpacing(*_triple("spacing", spacing))
+    image.SetOrigin(*_triple("origin", origin))
     for name, values in arrays.items():
         _add(image, name, values)
     return image
@@ -176,8 +185,18 @@ def _voxels(image):
     return tuple(max(points - 1, 1) for points in image.GetDimensions())
 
 
+def _numbers(name, values, kind=numpy.float32):
+    masked = numpy.ma.count_masked(values)
+    if masked:
+        raise ValueError(f"{name} is masked in {masked} places; say what is there: {name}.filled(0), for one")
+    try:
+        return numpy.asarray(values, dtype=kind)
+    except (TypeError, ValueError) as error:
+        raise ValueError(f"{name} is no array of numbers: {error}") from None
+
+
 def _add(image, name, values):
-    values = numpy.asarray(values, dtype=numpy.float32)
+    values = _numbers(name, values)
     voxels = _voxels(image)
     if values.shape[:3] != voxels or values.ndim not in (3, 4):
         raise ValueError(f"{name} has the shape {values.shape}, the voxels are {voxels}")
@@ -197,12 +216,14 @@ def _refuse(arguments, why):
 
 
 def _light_up(solver, lights, sky, environment):
-    if isinstance(lights, classes.vtkLightRig):
+    if isinstance(lights, vtkAlgorithm):
         solver.SetLightsConnection(lights.GetOutputPort())
-    elif lights is not None:
+    elif isinstance(lights, vtkPolyData):
         solver.SetLightsData(lights)
+    elif lights is not None:
+        raise TypeError(f"lights is a {type(lights).__name__}; it must be a vtkLightRig, a vtkSun, ..., or their vtkPolyData")
     if sky is not None:
-        solver.SetSkyColor(_triple(sky))
+        solver.SetSkyColor(_triple("sky", sky))
     if isinstance(environment, vtkImageData):
         solver.SetEnvironmentData(environment)
     elif environment is not None:
@@ -210,7 +231,7 @@ def _light_up(solver, lights, sky, environment):
 
 
 def _environment(radiance):
-    radiance = numpy.asarray(radiance, dtype=numpy.float32)
+    radiance = _numbers("environment", radiance)
     if radiance.ndim != 3 or radiance.shape[2] != 3:
         raise ValueError(f"an environment is [row, column, rgb], this one has the shape {radiance.shape}")
     image = vtkImageData()
@@ -252,8 +273,13 @@ def _set(algorithm, name, value):
     setter = getattr(algorithm, "Set" + name, None)
     if setter is None:
         raise TypeError(f"{algorithm.GetClassName()} has no property {name}")
-    setter(*value) if isinstance(value, (tuple, list, numpy.ndarray)) else setter(value)
+    try:
+        setter(*value) if isinstance(value, (tuple, list, numpy.ndarray)) else setter(value)
+    except TypeError as error:
+        raise TypeError(f"{algorithm.GetClassName()} does not take {name}={value!r}: {error}") from None
 
 
-def _triple(value):
-    return tuple(float(x) for x in numpy.broadcast_to(value, 3))
+def _triple(name, value):
+    if numpy.shape(value) not in ((), (1,), (3,)):
+        raise ValueError(f"{name} has the shape {numpy.shape(value)}; it must be one number or three")
+    return tuple(float(x) for x in numpy.broadcast_to(_numbers(name, value, float), 3))
