@@ -4,7 +4,9 @@ class vtkAlgorithm;
 class vtkInformation;
 class vtkInformationVector;
 
-/// For filters that work on images. A port that takes vtkImageData alone refuses other data by an error of VTK's
+/// What is asked of inputs before a filter works.
+///
+/// For filters that work on images: a port that takes vtkImageData alone refuses other data by an error of VTK's
 /// executive for each pass of the pipeline, none of which says what to do. These ports take any data, and refuse them
 /// once.
 namespace tyndall
@@ -19,6 +21,11 @@ void TakeOneImage(vtkInformation* port);
 /// To be asked before a filter works; Guarded does.
 /// @throws InvalidInput where a port for images has other data, with what to do about it
 void RequireImages(vtkAlgorithm* filter);
+
+/// The same for the arrays of all inputs, images or not: who reads an array that is shorter than its dataset reads
+/// memory behind it. Guarded asks this, too, before anything reads them.
+/// @throws InvalidInput where an array has not a value for each point, cell or row
+void RequireWholeArrays(vtkAlgorithm* filter);
 
 /// In RequestInformation of a filter whose output has the extent of its input: where the input has none, as data
 /// that are no image, the output has a voxel, so that the pipeline asks the filter for it.

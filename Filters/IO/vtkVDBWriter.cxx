@@ -226,6 +226,7 @@ void vtkVDBWriter::WriteData()
     std::vector<vtkSmartPointer<vtkDataArray>> arrays;
     tyndall::OnAllRanks(this->Controller, [&] {
       tyndall::RequireImages(this);
+      tyndall::RequireWholeArrays(this);
       arrays = CellArraysOf(this->GetImageInput());
     });
     tyndall::GatheredImage image(this->Controller, this->GetImageInput(), arrays, {},

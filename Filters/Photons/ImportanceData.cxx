@@ -2,6 +2,7 @@
 
 #include "Common/FilterBefore.h"
 #include "Common/LightTransportData.h"
+#include "Numerics/NumberText.h"
 
 #include "vtkCellData.h"
 #include "vtkFieldData.h"
@@ -46,7 +47,7 @@ std::vector<int> LightsOf(vtkImageData* image, int layers)
     const double number = numbers ? numbers->GetVariantValue(layer).ToDouble() : layer;
     if (!(number >= -2.0 && number <= VTK_INT_MAX) || number != static_cast<int>(number))
     {
-      throw InvalidInput("The importance map's field data 'light' has " + std::to_string(number) + " for layer " +
+      throw InvalidInput("The importance map's field data 'light' has " + Text("%g", number) + " for layer " +
         std::to_string(layer) + "; it must be the number of a light.");
     }
     lights[static_cast<std::size_t>(layer)] = static_cast<int>(number);

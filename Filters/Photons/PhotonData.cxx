@@ -7,6 +7,7 @@
 #include "Common/LightTransportData.h"
 #include "Device/HostThreads.h"
 #include "Distribution/Communicator.h"
+#include "Numerics/NumberText.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
@@ -55,7 +56,7 @@ std::int32_t BatchOf(double number, vtkIdType photon)
 {
   if (!(number >= 0.0 && number < MarchedBatchesAtMost) || number != std::floor(number))
   {
-    throw InvalidInput("Photon " + std::to_string(photon) + " has batch " + std::to_string(number) +
+    throw InvalidInput("Photon " + std::to_string(photon) + " has batch " + Text("%g", number) +
       "; it must be a whole number of 0 to 63, as PhotonEmitter makes it.");
   }
   return static_cast<std::int32_t>(number);
@@ -122,7 +123,7 @@ std::string DoubtOfBox(vtkPolyData* photons, const Grid& medium)
   vtkDataArray* const found = photons ? photons->GetFieldData()->GetArray(BoxName) : nullptr;
   if (!found || found->GetNumberOfValues() != 6)
   {
-    return {};
+    return {}; // ReadPhotons refuses what is there and no box
   }
   Box made;
   const Box box = BoxOf(medium);
@@ -195,6 +196,20 @@ void WritePhotons(const EmittedPhotons& emitted, const Grid& box, vtkPolyData* o
   output->GetPointData()->AddArray(batch);
 }
 
+namespace
+{
+void CheckBoxFact(vtkPolyData* photons)
+{
+  vtkAbstractArray* const found = photons->GetFieldData()->GetAbstractArray(BoxName);
+  if (found && (!vtkArrayDownCast<vtkDataArray>(found) || found->GetNumberOfValues() != 6))
+  {
+    throw InvalidInput("The photons' field data '" + std::string(BoxName) + "' has " +
+      std::to_string(found->GetNumberOfValues()) +
+      " values; it must be the six bounds of the box that they were made for, or not be there.");
+  }
+}
+}
+
 std::vector<Photon> ReadPhotons(vtkPolyData* data)
 {
   if (!data)
@@ -206,6 +221,7 @@ std::vector<Photon> ReadPhotons(vtkPolyData* data)
     StopWithFilterBefore(data);
     return {};
   }
+  CheckBoxFact(data);
   const auto direction = AsFloats(PhotonArray(data, "direction", Need::Required, { 3 }));
   const auto power = AsFloats(PhotonArray(data, "power", Need::Required, { 1, 3 }));
   const auto weight = AsFloats(PhotonArray(data, "weight", Need::Optional, { 1 }));
@@ -272,7 +288,7 @@ std::vector<std::uint8_t> ReadLevels(vtkImageData* image)
       const float level = field.Values()[i];
       if (!(level >= 0.0f && level <= 30.0f) || level != static_cast<float>(static_cast<int>(level)))
       {
-        throw InvalidInput("octree_level is " + std::to_string(level) + " in voxel " + VoxelName(GridOf(image), i) +
+        throw InvalidInput("octree_level is " + Text("%g", level) + " in voxel " + VoxelName(GridOf(image), i) +
           "; it must be a whole number, as RefractionOctree makes it.");
       }
       levels[i] = static_cast<std::uint8_t>(level);

@@ -1,6 +1,7 @@
 #include "Scene/MeshSolids.h"
 
 #include "Device/Errors.h"
+#include "Numerics/NumberText.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellArrayIterator.h"
@@ -121,9 +122,8 @@ int MaterialNumber(double value, const std::string& what)
 {
   if (!IsMaterialNumber(value))
   {
-    throw InvalidInput(what + " is " + std::to_string(value) +
-      "; the number of a material must be a whole number from " + std::to_string(std::numeric_limits<int>::min()) +
-      " to " + std::to_string(std::numeric_limits<int>::max()) + ".");
+    throw InvalidInput(what + " is " + Text("%.15g", value) + "; the number of a material must be a whole number from " +
+      std::to_string(std::numeric_limits<int>::min()) + " to " + std::to_string(std::numeric_limits<int>::max()) + ".");
   }
   return static_cast<int>(value);
 }

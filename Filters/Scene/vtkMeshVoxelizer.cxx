@@ -4,6 +4,7 @@
 #include "Common/LightTransportData.h"
 #include "Common/PhaseFunctionData.h"
 #include "Device/Device.h"
+#include "Numerics/NumberText.h"
 #include "Ranks/ControllerCommunicator.h"
 #include "Ranks/Ranks.h"
 #include "Ranks/WholeImage.h"
@@ -92,8 +93,9 @@ tyndall::Grid GridIn(const double bounds[6], const int size[3])
     const double high = bounds[2 * axis + 1];
     if (!(low < high))
     {
-      throw tyndall::InvalidInput("ModelBounds reach from " + std::to_string(low) + " to " + std::to_string(high) +
-        " along " + std::string(1, "xyz"[axis]) + "; the latter must be larger. All 0: a box around the meshes.");
+      throw tyndall::InvalidInput("ModelBounds reach from " + tyndall::Text("%g", low) + " to " +
+        tyndall::Text("%g", high) + " along " + std::string(1, "xyz"[axis]) +
+        "; the latter must be larger. All 0: a box around the meshes.");
     }
     grid.size[axis] = size[axis];
     grid.origin[axis] = low;

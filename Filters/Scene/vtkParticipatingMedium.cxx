@@ -8,6 +8,7 @@
 #include "Device/HostThreads.h"
 #include "Medium/OpticalSize.h"
 #include "Medium/Presets.h"
+#include "Numerics/NumberText.h"
 #include "Ranks/ControllerCommunicator.h"
 #include "Ranks/PieceBlocks.h"
 #include "Ranks/Ranks.h"
@@ -53,7 +54,8 @@ bool NotNegative(double value)
 
 void RequireMeanCosine(const char* property, double g)
 {
-  Require(std::abs(g) < 1.0, std::string(property) + " is " + std::to_string(g) + "; it must lie between -1 and 1.");
+  Require(
+    std::abs(g) < 1.0, std::string(property) + " is " + tyndall::Text("%g", g) + "; it must lie between -1 and 1.");
 }
 
 /// Numbers of a column of the phase function's table.
@@ -103,7 +105,7 @@ Recipe CustomMedium(vtkParticipatingMedium* filter)
   for (int c = 0; c < 3; ++c)
   {
     const double albedo = filter->GetAlbedo()[c];
-    Require(albedo >= 0.0 && albedo <= 1.0, "Albedo is " + std::to_string(albedo) + "; it must lie in [0, 1].");
+    Require(albedo >= 0.0 && albedo <= 1.0, "Albedo is " + tyndall::Text("%g", albedo) + "; it must lie in [0, 1].");
     recipe.sigma_s[c] = albedo * filter->GetExtinctionScale();
     recipe.sigma_a[c] = (1.0 - albedo) * filter->GetExtinctionScale();
   }
@@ -183,7 +185,8 @@ Rgb MeanCosines(vtkParticipatingMedium* filter, const std::vector<double>& ofCha
 Recipe RecipeOf(vtkParticipatingMedium* filter, const std::vector<double>& channelMeanCosines)
 {
   Require(NotNegative(filter->GetExtinctionScale()),
-    "ExtinctionScale is " + std::to_string(filter->GetExtinctionScale()) + "; it must be finite and not negative.");
+    "ExtinctionScale is " + tyndall::Text("%g", filter->GetExtinctionScale()) +
+      "; it must be finite and not negative.");
   const Rgb g = MeanCosines(filter, channelMeanCosines); // looked at with a preset as well
   Recipe recipe = filter->GetPreset() == vtkParticipatingMedium::CUSTOM ? CustomMedium(filter) : RealMedium(filter);
   recipe.g = filter->GetPreset() == vtkParticipatingMedium::CUSTOM ? g : recipe.g;
@@ -191,7 +194,7 @@ Recipe RecipeOf(vtkParticipatingMedium* filter, const std::vector<double>& chann
   {
     recipe.emission[c] = filter->GetEmissionScale() * filter->GetEmissionColor()[c];
     Require(NotNegative(recipe.emission[c]),
-      "EmissionScale times EmissionColor is " + std::to_string(recipe.emission[c]) +
+      "EmissionScale times EmissionColor is " + tyndall::Text("%g", recipe.emission[c]) +
         "; it must be finite and not negative.");
   }
   return recipe;
@@ -202,8 +205,8 @@ std::vector<float> RelativeDensity(
   const tyndall::FloatField& density, const tyndall::Grid& grid, double minimum, double maximum)
 {
   Require(std::isfinite(minimum) && std::isfinite(maximum) && maximum >= minimum,
-    "The densities range from MinimumDensity " + std::to_string(minimum) + " to MaximumDensity " +
-      std::to_string(maximum) + "; the latter must not be less.");
+    "The densities range from MinimumDensity " + tyndall::Text("%g", minimum) + " to MaximumDensity " +
+      tyndall::Text("%g", maximum) + "; the latter must not be less.");
   const float* values = density.Values();
   std::vector<float> relative(grid.VoxelCount());
   tyndall::InThreads(relative.size(), VoxelsOfThread, [&](std::size_t begin, std::size_t end) {
@@ -216,7 +219,7 @@ std::vector<float> RelativeDensity(
   const std::size_t first = tyndall::RangesOf(values, relative.size(), 1).firstNotFinite;
   if (first < relative.size())
   {
-    throw InvalidInput("The density is " + std::to_string(values[first]) + " in voxel " +
+    throw InvalidInput("The density is " + tyndall::Text("%g", values[first]) + " in voxel " +
       tyndall::VoxelName(grid, first) + " (the first such voxel); it must be finite.");
   }
   tyndall::RequireFinite(
@@ -273,6 +276,7 @@ std::vector<float> MakeMedium(vtkParticipatingMedium* filter, const Recipe& reci
   EmptyHidden(input, relative);
 
   tyndall::PassOn(input, output);
+  tyndall::ForgetChoices(output);
   AddProduct(output, "sigma_a", relative, recipe.sigma_a);
   AddProduct(output, "sigma_s", relative, recipe.sigma_s);
   if (recipe.emission != Rgb{})

@@ -1,6 +1,7 @@
 #include "DiscreteOrdinates/OrdinatesSettings.h"
 
 #include "Device/Errors.h"
+#include "Numerics/NumberText.h"
 
 #include <string>
 
@@ -24,7 +25,7 @@ void Check(const OrdinatesSettings& settings)
   }
   if (!(settings.tolerance > 0.0))
   {
-    throw InvalidInput("Tolerance is " + std::to_string(settings.tolerance) + "; it must be positive.");
+    throw InvalidInput("Tolerance is " + Text("%g", settings.tolerance) + "; it must be positive.");
   }
 }
 }

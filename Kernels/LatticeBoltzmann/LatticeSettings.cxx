@@ -1,6 +1,7 @@
 #include "LatticeBoltzmann/LatticeSettings.h"
 
 #include "Device/Errors.h"
+#include "Numerics/NumberText.h"
 
 #include <string>
 
@@ -39,7 +40,7 @@ void Check(const LatticeSettings& settings)
   }
   if (!(settings.tolerance > 0.0))
   {
-    throw InvalidInput("Tolerance is " + std::to_string(settings.tolerance) + "; it must be positive.");
+    throw InvalidInput("Tolerance is " + Text("%g", settings.tolerance) + "; it must be positive.");
   }
 }
 }

@@ -1,6 +1,7 @@
 #include "LightPropagation/PropagationSettings.h"
 
 #include "Device/Errors.h"
+#include "Numerics/NumberText.h"
 
 #include <string>
 
@@ -31,7 +32,7 @@ void Check(const PropagationSettings& settings)
   }
   if (!(settings.tolerance > 0.0))
   {
-    throw InvalidInput("Tolerance is " + std::to_string(settings.tolerance) + "; it must be positive.");
+    throw InvalidInput("Tolerance is " + Text("%g", settings.tolerance) + "; it must be positive.");
   }
   if (settings.source == PropagationSource::Linear && settings.acceleration == PropagationAcceleration::None)
   {
@@ -41,7 +42,7 @@ void Check(const PropagationSettings& settings)
   }
   if (!(settings.emissionError >= 0.0))
   {
-    throw InvalidInput("EmissionError is " + std::to_string(settings.emissionError) +
+    throw InvalidInput("EmissionError is " + Text("%g", settings.emissionError) +
       "; it must not be negative: 0 is for no rays of their own, 0.02 is usual, 0.005 accurate.");
   }
   if (settings.angularDegree < -1 || settings.angularDegree > 15)

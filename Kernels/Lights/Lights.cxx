@@ -165,8 +165,7 @@ void CheckLight(const Light& light, std::size_t number)
   }
   if (light.type == LightType::Spot && !(light.angle > 0.0 && light.angle <= 180.0))
   {
-    throw InvalidInput(
-      name + " is a spot with opening angle " + std::to_string(light.angle) + "; it must be in (0, 180].");
+    throw InvalidInput(name + " is a spot with opening angle " + Text("%g", light.angle) + "; it must be in (0, 180].");
   }
   if (light.type == LightType::Rectangle &&
     !(light.size[0] > 0.0 && light.size[1] > 0.0 && std::isfinite(light.size[0] * light.size[1])))
@@ -257,7 +256,7 @@ void Check(const Illumination& illumination)
   {
     if (!Usable(environment.radiance[i]))
     {
-      throw InvalidInput("The environment's radiance is " + std::to_string(environment.radiance[i]) + " in pixel (" +
+      throw InvalidInput("The environment's radiance is " + Text("%g", environment.radiance[i]) + " in pixel (" +
         std::to_string(i / 3 % environment.width) + ", " + std::to_string(i / 3 / environment.width) +
         ") (the first such pixel); it must be finite and not negative.");
     }

@@ -56,7 +56,7 @@ void CheckField(const Field& field, const FilledBricks::Values& found, const cha
   {
     if (!(field.values[i] >= 0.0f) || std::isinf(field.values[i]))
     {
-      throw InvalidInput(std::string(name) + " is " + std::to_string(field.values[i]) + " in voxel " +
+      throw InvalidInput(std::string(name) + " is " + Text("%g", field.values[i]) + " in voxel " +
         VoxelName(grid, i / static_cast<std::size_t>(field.components)) +
         " (the first such voxel); it must be finite and not negative. Clean the input, for example with a Calculator.");
     }
@@ -80,7 +80,7 @@ void CheckMeanCosines(const Medium& medium)
   {
     if (!(std::abs(g.values[i]) < 1.0f))
     {
-      throw InvalidInput("The mean cosine g is " + std::to_string(g.values[i]) + " in voxel " +
+      throw InvalidInput("The mean cosine g is " + Text("%g", g.values[i]) + " in voxel " +
         VoxelName(medium.grid, i / static_cast<std::size_t>(g.components)) +
         " (the first such voxel); it must lie between -1 and 1, and be neither.");
     }

@@ -4,6 +4,7 @@
 #include "Device/HostMemory.h"
 #include "Medium/Medium.h"
 #include "Medium/Traits.h"
+#include "Numerics/NumberText.h"
 #include "Numerics/PyramidLayout.h"
 #include "Reconstruction/ConservativeReconstruction.h"
 #include "Reconstruction/LevelReconstruction.h"
@@ -33,7 +34,7 @@ ArrayRange Checked(Device& device, const HostMappedBuffer<float>& array, const f
   if (range.unfit)
   {
     const std::size_t voxel = *range.unfit / width;
-    throw InvalidInput(std::string(name) + " is " + std::to_string(values[*range.unfit]) + " in voxel " +
+    throw InvalidInput(std::string(name) + " is " + Text("%g", values[*range.unfit]) + " in voxel " +
       VoxelName(grid, voxel) + " (the first such voxel); it must be finite and " +
       (low < 0.0f ? "no longer than 1." : "not negative.") + " Clean the light, or march the photons anew.");
   }

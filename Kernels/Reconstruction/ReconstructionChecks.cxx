@@ -3,6 +3,7 @@
 #include "Device/HostMemory.h"
 #include "Light/LeftOut.h"
 #include "Medium/Medium.h"
+#include "Numerics/NumberText.h"
 #include "Numerics/PyramidLayout.h"
 #include "Reconstruction/LightPyramidShared.h"
 
@@ -52,7 +53,7 @@ void Check(const ReconstructionSettings& settings)
   const auto require = [](bool fits, const std::string& what, double value, const std::string& range) {
     if (!fits)
     {
-      throw InvalidInput(what + " is " + std::to_string(value) + "; it must be " + range + ".");
+      throw InvalidInput(what + " is " + Text("%g", value) + "; it must be " + range + ".");
     }
   };
   const std::string most = std::to_string(LevelsAtMost);

@@ -39,7 +39,7 @@ void AMapThatMeansNothingIsRefused(test::Claims& claims)
   const double nan = std::numeric_limits<double>::quiet_NaN();
   refused(Map({ 4, 4, 1 }, [](vtkIdType, int) { return 0.0; }), "importance of light 0 is 0 everywhere");
   refused(Map({ 4, 4, 1 }, [=](vtkIdType i, int) { return i == 6 ? nan : 1.0; }), "nan in column 2, row 1");
-  refused(Map({ 4, 4, 1 }, [](vtkIdType i, int) { return i == 6 ? -1.0 : 1.0; }), "-1.000000 in column 2, row 1");
+  refused(Map({ 4, 4, 1 }, [](vtkIdType i, int) { return i == 6 ? -1.0 : 1.0; }), "-1 in column 2, row 1");
   refused(Map({ 4, 4, 1 }, [](vtkIdType i, int) { return i == 6 ? 1e300 : 1.0; }), "inf in column 2, row 1");
   refused(Map({ 4, 5, 1 }, One), "4 x 5 cells");
   refused(Map({ 4, 4, 2 }, One), "lights that there are not: 1 ");

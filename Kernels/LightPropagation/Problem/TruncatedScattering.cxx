@@ -1,5 +1,6 @@
 #include "LightPropagation/Problem/TruncatedScattering.h"
 
+#include "Numerics/NumberText.h"
 #include <algorithm>
 #include <cmath>
 
@@ -61,7 +62,7 @@ std::vector<std::string> TruncatedScattering::LeftOut() const
   const PhaseOfMedium& phase = this->TheMedium.phase;
   if (this->MostDegree == 0)
   {
-    const std::string g = phase.Varies() ? "that of each voxel" : std::to_string(phase.MeanCosine(0, 0));
+    const std::string g = phase.Varies() ? "that of each voxel" : Text("%g", phase.MeanCosine(0, 0));
     return phase.IsIsotropic()
       ? std::vector<std::string>()
       : std::vector<std::string>{ "anisotropy: solved as isotropic scattering with sigma_s (1 - g), g = " + g +

@@ -4,6 +4,7 @@
 #include "Device/Errors.h"
 #include "Device/HostMemory.h"
 #include "Medium/Medium.h"
+#include "Numerics/NumberText.h"
 #include "Photons/Emission/PhotonSources.h"
 
 #include <algorithm>
@@ -171,7 +172,7 @@ void Check(const EmissionSettings& settings)
   }
   if (!(settings.densestAtMost >= 1.0))
   {
-    throw InvalidInput("The density of photons at most is " + std::to_string(settings.densestAtMost) +
+    throw InvalidInput("The density of photons at most is " + Text("%g", settings.densestAtMost) +
       " times that of photons spread evenly; it must be at least 1.");
   }
   if (settings.map)

@@ -1,6 +1,7 @@
 #include "Photons/Importance/ImportanceMap.h"
 
 #include "Device/Errors.h"
+#include "Numerics/NumberText.h"
 #include "Photons/Emission/CumulativeTable.h"
 
 #include <algorithm>
@@ -31,7 +32,7 @@ void CheckSquare(const ImportanceMap& map, std::size_t square)
   {
     if (!(density[i] >= 0.0f) || std::isinf(density[i]))
     {
-      throw InvalidInput("The importance of " + LightName(map.lights[square]) + " is " + std::to_string(density[i]) +
+      throw InvalidInput("The importance of " + LightName(map.lights[square]) + " is " + Text("%g", density[i]) +
         " in " + place(i) + "; it must be finite and not negative.");
     }
     zeros += density[i] == 0.0f ? 1 : 0;

@@ -2,6 +2,7 @@
 
 #include "Device/Clock.h"
 #include "Device/Errors.h"
+#include "Numerics/NumberText.h"
 #include "Photons/Emission/PhotonEmitter.h"
 
 #include <algorithm>
@@ -44,13 +45,13 @@ void Check(const ImportanceSettings& settings)
   }
   if (!(settings.background > 0.0 && settings.background <= 1.0))
   {
-    throw InvalidInput("The background is " + std::to_string(settings.background) +
+    throw InvalidInput("The background is " + Text("%g", settings.background) +
       " of the photons; it must be above 0, so that every place sends some, and at most 1.");
   }
   if (!settings.automatic && !(settings.gradientThreshold >= 0.0 && settings.luminanceThreshold >= 0.0))
   {
-    throw InvalidInput("The thresholds are " + std::to_string(settings.gradientThreshold) + " (gradient) and " +
-      std::to_string(settings.luminanceThreshold) + " (luminance); they must not be negative.");
+    throw InvalidInput("The thresholds are " + Text("%g", settings.gradientThreshold) + " (gradient) and " +
+      Text("%g", settings.luminanceThreshold) + " (luminance); they must not be negative.");
   }
 }
 

@@ -3,6 +3,7 @@
 #include "Device/Batches.h"
 #include "Device/Defines.h"
 #include "Device/Sizes.h"
+#include "Numerics/NumberText.h"
 
 #include <algorithm>
 #include <string>
@@ -62,8 +63,8 @@ void Check(const MarchSettings& settings)
   }
   if (!(settings.stepSize >= ShortestStep && settings.stepSize <= LongestStep))
   {
-    throw InvalidInput("The step size is " + std::to_string(settings.stepSize) + " voxels; it must be " +
-      std::to_string(ShortestStep) + " to " + std::to_string(LongestStep) + ".");
+    throw InvalidInput("The step size is " + Text("%g", settings.stepSize) + " voxels; it must be " +
+      Text("%g", ShortestStep) + " to " + Text("%g", LongestStep) + ".");
   }
   if (settings.maximumOrders < 0)
   {

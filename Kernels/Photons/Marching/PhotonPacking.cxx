@@ -2,6 +2,7 @@
 
 #include "Device/Errors.h"
 #include "Medium/Traits.h"
+#include "Numerics/NumberText.h"
 
 #include <algorithm>
 #include <cmath>
@@ -29,8 +30,7 @@ void CheckPhoton(const Photon& photon, std::size_t number)
     }
     if (!(photon.power[a] >= 0.0f) || std::isinf(photon.power[a]))
     {
-      throw InvalidInput(
-        name + " has power " + std::to_string(photon.power[a]) + "; it must be finite and not negative.");
+      throw InvalidInput(name + " has power " + Text("%g", photon.power[a]) + "; it must be finite and not negative.");
     }
     length = std::max(length, std::abs(photon.direction[a]));
   }
@@ -41,7 +41,7 @@ void CheckPhoton(const Photon& photon, std::size_t number)
   if (!(photon.weight >= 0.0f) || std::isinf(photon.weight))
   {
     throw InvalidInput(
-      name + " has weight " + std::to_string(photon.weight) + "; it must be finite and not negative, 1 as a rule.");
+      name + " has weight " + Text("%g", photon.weight) + "; it must be finite and not negative, 1 as a rule.");
   }
 }
 

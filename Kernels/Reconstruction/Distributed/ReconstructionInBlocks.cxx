@@ -5,6 +5,7 @@
 #include "Distribution/BoxExchange.h"
 #include "Distribution/SharedMedium.h"
 #include "Medium/Medium.h"
+#include "Numerics/NumberText.h"
 #include "Reconstruction/ConservativePasses.h"
 #include "Reconstruction/Distributed/LevelsInBlocks.h"
 #include "Reconstruction/Distributed/PyramidBlocks.h"
@@ -51,7 +52,7 @@ void CheckValues(const float* values, int width, const Grid& grid, const Grid& w
     {
       voxel[axis] += own.first[axis];
     }
-    throw InvalidInput(std::string(name) + " is " + std::to_string(*unfit) + " in voxel " +
+    throw InvalidInput(std::string(name) + " is " + Text("%g", *unfit) + " in voxel " +
       VoxelName(whole, whole.IndexOf(voxel)) + " (the first such voxel); it must be finite and " +
       (low < 0.0f ? "no longer than 1." : "not negative.") + " Clean the light, or march the photons anew.");
   }

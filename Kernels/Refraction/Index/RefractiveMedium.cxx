@@ -39,7 +39,7 @@ void Check(const Material& material, const std::string& name)
         Text("%.6g", material.sigma_a[c]) + " and " + Text("%.6g", material.sigma_s[c]) + ".");
   }
   Require(std::abs(static_cast<float>(material.g)) < 1.0f,
-    name + " has the mean cosine " + std::to_string(material.g) + "; it must lie between -1 and 1.");
+    name + " has the mean cosine " + Text("%g", material.g) + "; it must lie between -1 and 1.");
 }
 
 namespace
@@ -47,15 +47,14 @@ namespace
 void CheckPerturbation(const Perturbation& perturbation, const std::vector<Solid>& solids)
 {
   Require(perturbation.size > 0.0 && std::isfinite(perturbation.size),
-    "The noise's size is " + std::to_string(perturbation.size) + "; it must be a positive length.");
+    "The noise's size is " + Text("%g", perturbation.size) + "; it must be a positive length.");
   Require(perturbation.scattering >= 0.0 && perturbation.scattering <= 1.0,
-    "The noise of scattering is " + std::to_string(perturbation.scattering) + "; it must lie in [0, 1].");
+    "The noise of scattering is " + Text("%g", perturbation.scattering) + "; it must lie in [0, 1].");
   for (const Solid& solid : solids)
   {
     Require(perturbation.index >= 0.0 && perturbation.index < solid.material.n,
-      "The noise of the index is " + std::to_string(perturbation.index) +
-        "; it must not be negative, and be less than " + std::to_string(solid.material.n) +
-        ", the refractive index of " + solid.name + ".");
+      "The noise of the index is " + Text("%g", perturbation.index) + "; it must not be negative, and be less than " +
+        Text("%g", solid.material.n) + ", the refractive index of " + solid.name + ".");
   }
 }
 
@@ -305,7 +304,7 @@ Grid GridAround(const std::vector<Solid>& solids, const std::array<int, 3>& size
   Require(longest > 0.0, "There is no mesh, or none with an extent, to put a box around." + WithoutExtent(solids));
   Require(std::isfinite(longest), "The meshes reach further than a number can say. Scale them.");
   Require(margin >= 0.0 && std::isfinite(margin),
-    "The margin is " + std::to_string(margin) + "; it must be finite and not negative.");
+    "The margin is " + Text("%g", margin) + "; it must be finite and not negative.");
 
   const int reach = filterSize / 2 + 1;
   double edge = 0.0;
@@ -365,7 +364,7 @@ RefractiveMedium Concluded(VoxelizedPart&& part, const VoxelFindings& all, const
     medium.ior.clear();
     medium.iorGradient.clear();
     medium.leftOut.push_back(
-      "smoothing of n, ior_gradient: the refractive index is " + std::to_string(settings.outside.n) + " everywhere");
+      "smoothing of n, ior_gradient: the refractive index is " + Text("%g", settings.outside.n) + " everywhere");
   }
   return medium;
 }

@@ -2,6 +2,7 @@
 
 #include "Device/Errors.h"
 #include "Device/HostThreads.h"
+#include "Numerics/NumberText.h"
 
 #include <atomic>
 #include <cmath>
@@ -29,12 +30,12 @@ void Check(const OctreeSettings& settings)
 {
   if (!(settings.tolerance >= 0.0 && settings.tolerance <= 1.0))
   {
-    throw InvalidInput("Tolerance is " + std::to_string(settings.tolerance) + "; it must lie in [0, 1].");
+    throw InvalidInput("Tolerance is " + Text("%g", settings.tolerance) + "; it must lie in [0, 1].");
   }
   if (!(settings.extinctionTolerance >= 0.0) || std::isinf(settings.extinctionTolerance))
   {
-    throw InvalidInput("ExtinctionTolerance is " + std::to_string(settings.extinctionTolerance) +
-      "; it must be finite and not negative.");
+    throw InvalidInput(
+      "ExtinctionTolerance is " + Text("%g", settings.extinctionTolerance) + "; it must be finite and not negative.");
   }
 }
 
@@ -61,7 +62,7 @@ void CheckIndex(const Field& index, const Grid& grid, const Grid& whole, const s
   {
     if (!(index.values[i] > 0.0f) || std::isinf(index.values[i]))
     {
-      throw InvalidInput("The refractive index is " + std::to_string(index.values[i]) + " in voxel " +
+      throw InvalidInput("The refractive index is " + Text("%g", index.values[i]) + " in voxel " +
         VoxelName(whole, whole.IndexOf(Plus(grid.VoxelAt(i), first))) +
         " (the first such voxel); it must be finite and above 0. Clean the input, for example with a "
         "Calculator.");

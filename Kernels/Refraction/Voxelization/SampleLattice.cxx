@@ -1,6 +1,7 @@
 #include "Refraction/Voxelization/SampleLattice.h"
 
 #include "Device/Errors.h"
+#include "Numerics/NumberText.h"
 
 #include <algorithm>
 #include <cmath>
@@ -80,7 +81,7 @@ SampleLattice::SampleLattice(const Grid& grid, int samples, const std::vector<co
   }
   if (!(longest < Longest / 2.0))
   {
-    throw InvalidInput("The mesh is " + std::to_string(longest / samples) + " voxels long. With " +
+    throw InvalidInput("The mesh is " + Text("%g", longest / samples) + " voxels long. With " +
       std::to_string(samples) + (samples == 1 ? " sample" : " samples") + " an edge of a voxel it can be " +
       std::to_string(static_cast<int>(Longest / 2.0) / samples) +
       " at most. Make the box larger, or cut away what is far outside of it.");

@@ -1,6 +1,7 @@
 #include "Refraction/Voxelization/TriangleMesh.h"
 
 #include "Device/Errors.h"
+#include "Numerics/NumberText.h"
 
 #include <algorithm>
 #include <cmath>
@@ -20,8 +21,8 @@ void CheckPoint(const TriangleMesh& mesh, std::size_t number)
   if (!std::isfinite(p[0]) || !std::isfinite(p[1]) || !std::isfinite(p[2]))
   {
     const std::size_t known = number < mesh.pointNumbers.size() ? mesh.pointNumbers[number] : number;
-    throw InvalidInput("Point " + std::to_string(known) + " of the mesh is at (" + std::to_string(p[0]) + ", " +
-      std::to_string(p[1]) + ", " + std::to_string(p[2]) + "), which is not finite. Clean the mesh.");
+    throw InvalidInput("Point " + std::to_string(known) + " of the mesh is at (" + Text("%g", p[0]) + ", " +
+      Text("%g", p[1]) + ", " + Text("%g", p[2]) + "), which is not finite. Clean the mesh.");
   }
 }
 

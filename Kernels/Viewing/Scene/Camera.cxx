@@ -1,6 +1,7 @@
 #include "Viewing/Scene/Camera.h"
 
 #include "Device/Errors.h"
+#include "Numerics/NumberText.h"
 #include "Numerics/Vectors.h"
 
 #include <algorithm>
@@ -46,11 +47,11 @@ std::array<std::array<double, 3>, 3> Axes(const Camera& camera)
   if (!camera.parallelProjection && !(camera.viewAngle > 0.0 && camera.viewAngle < 180.0))
   {
     throw InvalidInput(
-      "The camera's view angle is " + std::to_string(camera.viewAngle) + " degrees; it must be between 0 and 180.");
+      "The camera's view angle is " + Text("%g", camera.viewAngle) + " degrees; it must be between 0 and 180.");
   }
   if (camera.parallelProjection && !(camera.parallelScale > 0.0 && std::isfinite(camera.parallelScale)))
   {
-    throw InvalidInput("The camera's parallel scale is " + std::to_string(camera.parallelScale) +
+    throw InvalidInput("The camera's parallel scale is " + Text("%g", camera.parallelScale) +
       "; it is half the picture's height and must be positive.");
   }
   const glm::dvec3 view = Scaled(0.5 * Vector(camera.focalPoint) - 0.5 * Vector(camera.position)); // no overflow

@@ -75,7 +75,7 @@ void CheckPart(double part, const char* what)
 {
   if (!(part >= 0.0 && part <= 1.0))
   {
-    throw InvalidInput(std::string(what) + " is " + std::to_string(part) + "; it is a part of the light, from 0 to 1.");
+    throw InvalidInput(std::string(what) + " is " + Text("%g", part) + "; it is a part of the light, from 0 to 1.");
   }
 }
 
@@ -89,7 +89,7 @@ void CheckSurface(const ViewSettings& settings)
   }
   if (settings.surfaceIndex != 0.0 && !(settings.surfaceIndex > 0.0 && std::isfinite(settings.surfaceIndex)))
   {
-    throw InvalidInput("The refractive index of the surface is " + std::to_string(settings.surfaceIndex) +
+    throw InvalidInput("The refractive index of the surface is " + Text("%g", settings.surfaceIndex) +
       "; it must be above 0, or 0 for the middle of the grid's range.");
   }
   CheckPart(settings.surfaceReflectance, "The surface's reflectance");
@@ -108,8 +108,8 @@ void CheckTable(const ViewSettings& settings)
     CheckPart(colour, "A channel of the table's colour");
     if (colour + settings.tableReflectance > 1.0 + 1e-9)
     {
-      throw InvalidInput("The table scatters " + std::to_string(colour) + " and mirrors " +
-        std::to_string(settings.tableReflectance) +
+      throw InvalidInput("The table scatters " + Text("%g", colour) + " and mirrors " +
+        Text("%g", settings.tableReflectance) +
         " of the light, together more than all of it; lower its colour or its reflectance.");
     }
   }
@@ -151,7 +151,7 @@ void Check(const ViewSettings& settings)
   }
   if (!(settings.minimumTransmittance >= 0.0 && settings.minimumTransmittance < 1.0))
   {
-    throw InvalidInput("The transmittance at which rays stop is " + std::to_string(settings.minimumTransmittance) +
+    throw InvalidInput("The transmittance at which rays stop is " + Text("%g", settings.minimumTransmittance) +
       "; it must be at least 0 and below 1.");
   }
   if (settings.shadowRays && settings.rectangleSamples < 1)
@@ -240,14 +240,14 @@ std::vector<std::string> DoubtsAbout(
   if (settings.surfaceReflection != SurfaceReflection::None && settings.surfaceIndex > 0.0 &&
     !(settings.surfaceIndex > index.least && settings.surfaceIndex <= index.largest))
   {
-    doubts.push_back("No surface reflects: its index is " + std::to_string(settings.surfaceIndex) +
-      ", those of the grid are from " + std::to_string(index.least) + " to " + std::to_string(index.largest) + ".");
+    doubts.push_back("No surface reflects: its index is " + Text("%g", settings.surfaceIndex) +
+      ", those of the grid are from " + Text("%g", index.least) + " to " + Text("%g", index.largest) + ".");
   }
   const IndexRange faces = RangeOnFaces(ior, grid);
   if (faces.largest - faces.least > FacesAlike * faces.largest)
   {
-    doubts.push_back("The refractive index varies over the faces of the box, from " + std::to_string(faces.least) +
-      " to " + std::to_string(faces.largest) +
+    doubts.push_back("The refractive index varies over the faces of the box, from " + Text("%g", faces.least) + " to " +
+      Text("%g", faces.largest) +
       ": light is not bent there, and looks brighter or darker by n^2. Give the box a margin.");
   }
   return doubts;
@@ -284,7 +284,7 @@ void CheckViewedIndex(const Field& ior, const Grid& grid)
   {
     if (ior.values[i] < LeastViewedIndex || ior.values[i] > LargestViewedIndex)
     {
-      throw InvalidInput("ior is " + std::to_string(ior.values[i]) + " in voxel " + VoxelName(grid, i) +
+      throw InvalidInput("ior is " + Text("%g", ior.values[i]) + " in voxel " + VoxelName(grid, i) +
         " (the first such voxel); rays are followed where it is from 0.001 to 1000.");
     }
   }
