@@ -56,7 +56,7 @@ public:
   }
 
 private:
-  /// Watches the algorithm of a new proxy, if it stops on abort and is in this process.
+  /// Watches the algorithm of a new proxy in this process, if it stops on abort or has results for the panel.
   void Watch(vtkObject*, unsigned long, void* data)
   {
     const auto* registered = static_cast<vtkSMProxyManager::RegisteredProxyInformation*>(data);
@@ -65,15 +65,19 @@ private:
       return;
     }
     vtkPVXMLElement* hints = registered->Proxy->GetHints();
-    if (!hints || !hints->FindNestedElementByName("StopsOnAbort"))
+    const bool stops = hints && hints->FindNestedElementByName("StopsOnAbort");
+    if (!stops && !(hints && hints->FindNestedElementByName("FreshResults")))
     {
       return;
     }
     auto* algorithm = vtkAlgorithm::SafeDownCast(registered->Proxy->GetClientSideObject());
-    if (algorithm && !algorithm->HasObserver(vtkCommand::StartEvent, this->Watcher))
+    if (algorithm && !algorithm->HasObserver(vtkCommand::EndEvent, this->Watcher))
     {
-      algorithm->AddObserver(vtkCommand::StartEvent, this->Watcher);
-      algorithm->AddObserver(vtkCommand::ProgressEvent, this->Watcher);
+      if (stops)
+      {
+        algorithm->AddObserver(vtkCommand::StartEvent, this->Watcher);
+        algorithm->AddObserver(vtkCommand::ProgressEvent, this->Watcher);
+      }
       algorithm->AddObserver(vtkCommand::EndEvent, this->Watcher);
       this->Proxies[algorithm] = registered->Proxy;
     }
@@ -89,7 +93,7 @@ private:
           algorithm->GetProgressText() ? ": " : "", algorithm->GetProgressText() ? algorithm->GetProgressText() : "");
         this->HandleWaitingEvents();
         break;
-      default: this->End(); this->ShowResults(algorithm);
+      default: this->End(algorithm); this->ShowResults(algorithm);
     }
   }
 
@@ -120,9 +124,9 @@ private:
     }
   }
 
-  void End()
+  void End(vtkAlgorithm* algorithm)
   {
-    if (this->Running)
+    if (this->Running && this->Running == algorithm)
     {
       vtkLogF(TRACE, "%s has ended", this->Running->GetClassName());
       this->Running = nullptr;
@@ -135,7 +139,8 @@ private:
   void ShowResults(vtkAlgorithm* algorithm)
   {
     const vtkWeakPointer<vtkSMProxy> proxy = this->Proxies[algorithm];
-    this->ShowLater(proxy, std::exchange(this->IsAborted, false), 0);
+    const bool isAborted = this->Running == nullptr && std::exchange(this->IsAborted, false);
+    this->ShowLater(proxy, isAborted, 0);
   }
 
   void ShowLater(const vtkWeakPointer<vtkSMProxy>& proxy, bool isAborted, int milliseconds)
@@ -153,6 +158,10 @@ private:
       if (proxy && isAborted)
       {
         this->Stopped.Add(proxy);
+      }
+      else if (proxy)
+      {
+        this->Stopped.Remove(proxy);
       }
     });
   }

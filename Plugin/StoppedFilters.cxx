@@ -1,6 +1,8 @@
 #include "StoppedFilters.h"
 
 #include "vtkAlgorithm.h"
+#include "vtkDataObject.h"
+#include "vtkFieldData.h"
 #include "vtkLogger.h"
 #include "vtkSMPropertyHelper.h"
 #include "vtkSMProxy.h"
@@ -10,8 +12,9 @@
 #include <QApplication>
 #include <QMainWindow>
 #include <QStatusBar>
-#include <QString>
 #include <QVariant>
+
+#include <algorithm>
 
 namespace
 {
@@ -49,49 +52,118 @@ bool AppliesByItself(vtkSMProxy* proxy)
   return settings && vtkSMPropertyHelper(settings, "AutoApply", true).GetAsInt() != 0;
 }
 
-void Say(const QString& text)
+vtkDataObject* OutputOf(vtkSMProxy* proxy)
 {
-  vtkLogF(TRACE, "status bar: %s", text.toUtf8().constData());
+  return vtkAlgorithm::SafeDownCast(proxy->GetClientSideObject())->GetOutputDataObject(0);
+}
+
+/// Whether the filter shows the light of before.
+bool ShowsLight(vtkSMProxy* proxy)
+{
+  vtkDataObject* const output = OutputOf(proxy);
+  return output && output->GetNumberOfElements(vtkDataObject::CELL) > 0;
+}
+
+/// Whether what the filter has is that of a run that was stopped, although it may have been asked for it again.
+bool IsStillStopped(vtkSMProxy* proxy)
+{
+  vtkDataObject* const output = OutputOf(proxy);
+  return output && output->GetFieldData()->HasArray("aborted");
+}
+
+std::vector<QStatusBar*> StatusBars()
+{
+  std::vector<QStatusBar*> bars;
   for (QWidget* window : QApplication::topLevelWidgets())
   {
     if (auto* main = qobject_cast<QMainWindow*>(window))
     {
-      main->statusBar()->showMessage(text);
+      bars.push_back(main->statusBar());
     }
+  }
+  return bars;
+}
+
+void Say(const QString& text)
+{
+  vtkLogF(TRACE, "status bar: %s", text.toUtf8().constData());
+  for (QStatusBar* bar : StatusBars())
+  {
+    bar->showMessage(text);
   }
 }
 }
 
 void StoppedFilters::Add(vtkSMProxy* proxy)
 {
-  this->Stopped.emplace_back(proxy);
-  this->FollowApply();
-  if (AppliesByItself(proxy))
+  if (std::find(this->Stopped.begin(), this->Stopped.end(), proxy) == this->Stopped.end())
   {
-    Say(NameOf(proxy) + ": stopped; runs again when something is changed");
-    return;
+    this->Stopped.emplace_back(proxy);
   }
-  Say(NameOf(proxy) + ": stopped; Apply runs it again");
-  QWidget* const properties = FindWidget("pqProxyWidget", "ProxyPanel");
-  if (properties && IsOnPanel(proxy))
+  this->FollowPanel();
+  const bool byItself = AppliesByItself(proxy);
+  this->Said = NameOf(proxy) +
+    (byItself ? ": stopped; runs again when something is changed" : ": stopped; Apply runs it again") +
+    (ShowsLight(proxy) ? ", and until then it shows the light of before" : "");
+  Say(this->Said);
+  if (!byItself)
   {
-    QMetaObject::invokeMethod(properties, "changeAvailable");
+    this->OfferApply();
   }
 }
 
-void StoppedFilters::FollowApply()
+void StoppedFilters::Remove(vtkSMProxy* proxy)
 {
-  auto* const apply = qobject_cast<QAbstractButton*>(FindWidget("QAbstractButton", "Accept"));
-  if (apply && !this->FollowsApply)
+  const auto found = std::find(this->Stopped.begin(), this->Stopped.end(), proxy);
+  if (found == this->Stopped.end() || IsStillStopped(proxy))
   {
-    QObject::connect(apply, &QAbstractButton::pressed, apply, [this] { this->RunAgain(); });
-    this->FollowsApply = true;
+    return;
+  }
+  this->Stopped.erase(found);
+  for (QStatusBar* bar : StatusBars())
+  {
+    if (bar->currentMessage() == this->Said)
+    {
+      vtkLogF(TRACE, "status bar is cleared");
+      bar->clearMessage();
+    }
+  }
+  if (QWidget* const panel = FindWidget("pqPropertiesPanel"))
+  {
+    QMetaObject::invokeMethod(panel, "updateButtonState");
+  }
+}
+
+void StoppedFilters::FollowPanel()
+{
+  QWidget* const panel = FindWidget("pqPropertiesPanel");
+  auto* const apply = qobject_cast<QAbstractButton*>(FindWidget("QAbstractButton", "Accept"));
+  if (!panel || !apply || this->Apply)
+  {
+    return;
+  }
+  this->Apply = apply;
+  QObject::connect(apply, &QAbstractButton::pressed, apply, [this] { this->RunAgain(); });
+  this->PanelChanged.setSingleShot(true);
+  QObject::connect(&this->PanelChanged, &QTimer::timeout, apply, [this] { this->OfferApply(); });
+  QObject::connect(panel, SIGNAL(applyEnableStateChanged()), &this->PanelChanged, SLOT(start()));
+}
+
+/// Apply is for changes to ParaView; here it is for the stopped filter that is on the panel, too.
+void StoppedFilters::OfferApply()
+{
+  const auto isOffered = [](const vtkWeakPointer<vtkSMProxy>& proxy) {
+    return proxy && IsOnPanel(proxy) && !AppliesByItself(proxy);
+  };
+  if (this->Apply && std::any_of(this->Stopped.begin(), this->Stopped.end(), isOffered))
+  {
+    this->Apply->setEnabled(true);
+    QMetaObject::invokeMethod(this->Apply, "highlight");
   }
 }
 
 void StoppedFilters::RunAgain()
 {
-  std::vector<vtkWeakPointer<vtkSMProxy>> left;
   for (const vtkWeakPointer<vtkSMProxy>& proxy : this->Stopped)
   {
     if (proxy && IsOnPanel(proxy))
@@ -99,10 +171,5 @@ void StoppedFilters::RunAgain()
       vtkAlgorithm::SafeDownCast(proxy->GetClientSideObject())->Modified();
       proxy->MarkModified(proxy);
     }
-    else if (proxy)
-    {
-      left.push_back(proxy);
-    }
   }
-  this->Stopped = left;
 }

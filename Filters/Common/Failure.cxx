@@ -34,9 +34,10 @@ Ending EndingOf(const std::function<void()>& work)
   }
   catch (const cl::Error& error)
   {
+    const bool ofMemory = error.err() == CL_MEM_OBJECT_ALLOCATION_FAILURE || error.err() == CL_OUT_OF_HOST_MEMORY;
     return { Ending::Failed,
       std::string("The OpenCL device failed in ") + error.what() + " (OpenCL error " + std::to_string(error.err()) +
-        "). Try another device (property Device or variable TYNDALL_DEVICE)." };
+        "). " + (ofMemory ? NoMemory : "Try another device (property Device or variable TYNDALL_DEVICE).") };
   }
   catch (const std::bad_alloc&)
   {

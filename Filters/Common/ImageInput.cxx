@@ -4,6 +4,7 @@
 #include "Device/Errors.h"
 #include "PropertyRange.h"
 
+#include "vtkAbstractArray.h"
 #include "vtkAlgorithm.h"
 #include "vtkCellData.h"
 #include "vtkDataObject.h"
@@ -25,6 +26,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 namespace tyndall
 {
@@ -228,6 +230,46 @@ void RequireImages(vtkAlgorithm* filter)
     {
       throw InvalidInput("The input" + (port > 0 ? " " + std::to_string(port) : std::string()) + " is a " +
         input->GetClassName() + "; it must be an image, vtkImageData. " + HowToMakeAnImage(input));
+    }
+  }
+}
+
+namespace
+{
+/// @throws InvalidInput where an array of these has not a value for each of `count` points, cells or rows
+void RequireAsLong(vtkDataSetAttributes* arrays, vtkIdType count, const std::string& elements, const std::string& input)
+{
+  for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
+  {
+    vtkAbstractArray* const array = arrays->GetAbstractArray(i);
+    if (array->GetNumberOfTuples() != count)
+    {
+      const std::string name = array->GetName() ? array->GetName() : "";
+      throw InvalidInput("Array '" + name + "' has " + std::to_string(array->GetNumberOfTuples()) +
+        " values where the dataset has " + std::to_string(count) + " " + elements + " (" + input +
+        "). Give each of them a value, or leave the array out.");
+    }
+  }
+}
+}
+
+void RequireWholeArrays(vtkAlgorithm* filter)
+{
+  const std::pair<int, const char*> kinds[] = { { vtkDataObject::POINT, "points" }, { vtkDataObject::CELL, "cells" },
+    { vtkDataObject::ROW, "rows" } };
+  for (int port = 0; port < filter->GetNumberOfInputPorts(); ++port)
+  {
+    for (int i = 0; i < filter->GetNumberOfInputConnections(port); ++i)
+    {
+      vtkDataObject* const input = filter->GetInputDataObject(port, i);
+      for (const auto& [kind, elements] : kinds)
+      {
+        if (vtkDataSetAttributes* const arrays = input ? input->GetAttributes(kind) : nullptr)
+        {
+          RequireAsLong(arrays, input->GetNumberOfElements(kind), elements,
+            "input " + std::to_string(port) + ", " + input->GetClassName());
+        }
+      }
     }
   }
 }

@@ -13,7 +13,9 @@ class vtkImageData;
 class vtkInformation;
 class vtkInformationVector;
 
-/// For filters that work on images. A port that takes vtkImageData alone refuses other data by an error of VTK's
+/// What is asked of inputs before a filter works.
+///
+/// For filters that work on images: a port that takes vtkImageData alone refuses other data by an error of VTK's
 /// executive for each pass of the pipeline, none of which says what to do. These ports take any data, and refuse them
 /// once.
 namespace tyndall
@@ -74,6 +76,11 @@ void AddAveraged(vtkAlgorithm* filter, std::vector<std::string>& settings);
 /// To be asked before a filter works; Guarded does.
 /// @throws InvalidInput where a port for images has other data, with what to do about it
 void RequireImages(vtkAlgorithm* filter);
+
+/// The same for the arrays of all inputs, images or not: who reads an array that is shorter than its dataset reads
+/// memory behind it. Guarded asks this, too, before anything reads them.
+/// @throws InvalidInput where an array has not a value for each point, cell or row
+void RequireWholeArrays(vtkAlgorithm* filter);
 
 /// In RequestInformation of a filter whose output has the voxels of its input at a port: where the input has no extent,
 /// as data that are no image, the output has a voxel, so that the pipeline asks the filter for it. Where voxels are

@@ -20,6 +20,7 @@
 #include "vtkPointData.h"
 #include "vtkPointDataToCellData.h"
 #include "vtkPolyData.h"
+#include "vtkStringArray.h"
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
@@ -162,7 +163,29 @@ struct Choice
 /// What ParaView's panel hands on where the input has no array of the default name (none_string of the proxies).
 const char* const NothingChosen = "(by name)";
 
-Choice ChoiceOf(vtkAlgorithm* filter, int index, const std::string& otherwise)
+/// Of field data.
+const char* const OfPoints = "points";
+
+std::string ChoiceFact(const std::string& quantity)
+{
+  return quantity + "_array";
+}
+
+/// What the filter before took for a quantity, where that has a usual name and the array is still there.
+void FollowFilterBefore(vtkImageData* image, Choice& choice)
+{
+  auto* const said =
+    vtkArrayDownCast<vtkStringArray>(image->GetFieldData()->GetAbstractArray(ChoiceFact(choice.name).c_str()));
+  const std::string name = said && said->GetNumberOfValues() > 0 ? said->GetValue(0) : std::string();
+  const bool isThere = image->GetCellData()->GetArray(name.c_str()) || image->GetPointData()->GetArray(name.c_str());
+  if (!name.empty() && isThere)
+  {
+    choice.name = name;
+    choice.pointsFirst = said->GetNumberOfValues() > 1 && said->GetValue(1) == OfPoints;
+  }
+}
+
+Choice ChoiceOf(vtkAlgorithm* filter, int index, vtkImageData* image, const std::string& otherwise)
 {
   vtkInformation* information = filter->GetInputArrayInformation(index);
   Choice choice;
@@ -184,6 +207,10 @@ Choice ChoiceOf(vtkAlgorithm* filter, int index, const std::string& otherwise)
     choice.pointsFirst = otherwise.empty();
     choice.name = otherwise;
     choice.attribute = otherwise.empty() ? static_cast<int>(vtkDataSetAttributes::SCALARS) : -1;
+  }
+  if (!choice.made && choice.attribute < 0)
+  {
+    FollowFilterBefore(image, choice);
   }
   return choice;
 }
@@ -305,12 +332,85 @@ FloatField ReadChosenCells(
   vtkAlgorithm* filter, int index, vtkImageData* image, const std::string& otherwise, Need need, Components components)
 {
   const float empty = otherwise == "ior" ? 1.0f : 0.0f; // what a hidden cell has of it
-  return Read(image, ChoiceOf(filter, index, otherwise), need, components, empty);
+  GridOf(image);
+  return Read(image, ChoiceOf(filter, index, image, otherwise), need, components, empty);
 }
 
 vtkDataArray* ChosenArray(vtkAlgorithm* filter, int index, vtkImageData* image, const std::string& otherwise)
 {
-  return Find(image, ChoiceOf(filter, index, otherwise)).array;
+  return Find(image, ChoiceOf(filter, index, image, otherwise)).array;
+}
+
+Quantities QuantitiesOfMedium()
+{
+  return { { SigmaA, "sigma_a" }, { SigmaS, "sigma_s" }, { Emission, "emission" }, { RefractiveIndex, "ior" } };
+}
+
+void NoteChoices(vtkAlgorithm* filter, const Quantities& quantities, vtkImageData* input, vtkImageData* output)
+{
+  for (const auto& [index, quantity] : quantities)
+  {
+    const Found found = Find(input, ChoiceOf(filter, index, input, quantity));
+    const char* const name = found.array ? found.array->GetName() : nullptr;
+    std::vector<std::string> said = { name ? name : quantity };
+    if (name && found.ofPoints && input->GetCellData()->HasArray(name))
+    {
+      said.emplace_back(OfPoints);
+    }
+    output->GetFieldData()->RemoveArray(ChoiceFact(quantity).c_str());
+    if (said != std::vector<std::string>{ quantity })
+    {
+      AddFact(output, ChoiceFact(quantity).c_str(), said);
+    }
+  }
+}
+
+void ForgetChoices(vtkImageData* output)
+{
+  for (const char* quantity : { "sigma_a", "sigma_s", "emission" })
+  {
+    output->GetFieldData()->RemoveArray(ChoiceFact(quantity).c_str());
+  }
+}
+
+bool IsUnusual(vtkAlgorithm* filter, int index, vtkImageData* image, const std::string& name, float usual)
+{
+  const Found found = Find(image, ChoiceOf(filter, index, image, name));
+  if (!found.array)
+  {
+    return false;
+  }
+  const FloatField field = ToField(image, found, name, {}, usual);
+  const float* const values = field.Values();
+  return std::any_of(
+    values, values + image->GetNumberOfCells() * field.Components(), [=](float value) { return value != usual; });
+}
+
+std::vector<std::string> IgnoredIndex(bool isUnusual)
+{
+  return isUnusual ? std::vector<std::string>{ "ior (light goes straight on, as if it were 1 everywhere; PhotonMarcher "
+                                               "knows it, with MaximumOrders 0 for scattered light too, and so does "
+                                               "LatticeBoltzmannLighting by its conservative scheme where light is "
+                                               "diffuse)" }
+                   : std::vector<std::string>();
+}
+
+std::vector<std::string> IgnoredEmission(bool isUnusual)
+{
+  return isUnusual
+    ? std::vector<std::string>{ "emission (photons carry the light of lights alone; LightPropagationMaps, "
+                                "DiscreteOrdinates and LatticeBoltzmannLighting know it)" }
+    : std::vector<std::string>();
+}
+
+std::string WarningOf(const std::vector<std::string>& ignored)
+{
+  std::string words;
+  for (const std::string& text : ignored)
+  {
+    words += (words.empty() ? "" : ", and ") + text;
+  }
+  return words.empty() ? words : "The light does not depend on the medium's " + words + ".";
 }
 
 ArraysRead FindArrays(vtkAlgorithm* filter, const VoxelArrays& arrays, vtkImageData* image)

@@ -13,6 +13,7 @@
 #include <array>
 #include <initializer_list>
 #include <string>
+#include <utility>
 #include <vector>
 
 class vtkAlgorithm;
@@ -93,8 +94,9 @@ FloatField ReadCells(vtkImageData* image, const std::string& name, Need need, Co
 
 /// The same for the array that SetInputArrayToProcess chose as number `index`, by name or by attribute. Where points
 /// were chosen, the point array is preferred to a cell array of the same name. Where nothing was chosen, which is
-/// SCALARS to VTK and "" to ParaView before it knows the input, `otherwise` is read; "" there stands for the active
-/// scalars. An array of another name that was chosen is never optional.
+/// SCALARS to VTK and "" to ParaView before it knows the input, or the name `otherwise`, the array is read that the
+/// filter before took for it (NoteChoices), or else `otherwise`; "" there stands for the active scalars. An array of
+/// another name that was chosen is never optional.
 FloatField ReadChosenCells(vtkAlgorithm* filter, int index, vtkImageData* image, const std::string& otherwise,
   Need need, Components components = { 1, 3 });
 
@@ -129,6 +131,30 @@ enum MediumArray
 };
 /// The same for the refractive index, of those that know it.
 constexpr int RefractiveIndex = 3;
+
+/// Numbers of SetInputArrayToProcess, and the names of the arrays where none is chosen.
+using Quantities = std::vector<std::pair<int, std::string>>;
+Quantities QuantitiesOfMedium(); ///< those of MediumArray, and RefractiveIndex
+
+/// Have an output say which of its arrays the filter took for these quantities, so that filters after it take the same:
+/// field data `sigma_a_array` and so on, a text with the array's name, and "points" where that was preferred to cells of
+/// its name. None where it is the usual array.
+/// @param input  of the filter; the output has its arrays
+void NoteChoices(vtkAlgorithm* filter, const Quantities& quantities, vtkImageData* input, vtkImageData* output);
+
+/// For a filter that makes a medium's arrays itself: what its input said of other ones holds no more.
+void ForgetChoices(vtkImageData* output);
+
+/// Whether the array that ReadChosenCells would read is there and has another value than the usual one in a cell that
+/// is not hidden. Not checked otherwise: for filters that do not know the quantity.
+bool IsUnusual(vtkAlgorithm* filter, int index, vtkImageData* image, const std::string& name, float usual);
+
+/// What a filter that takes light as going straight on ignores of this medium, and one whose photons come from lights
+/// alone: texts of field data `ignored` (IgnoredFact); empty where that is nothing.
+std::vector<std::string> IgnoredIndex(bool isUnusual);
+std::vector<std::string> IgnoredEmission(bool isUnusual);
+/// The same as a warning.
+std::string WarningOf(const std::vector<std::string>& ignored);
 
 /// A medium and the arrays that it sees.
 struct MediumInput

@@ -212,7 +212,7 @@ void WriteLight(LightField&& light, vtkImageData* output)
     cells->RemoveArray(earlier); // of another solve that the input has been through
   }
   for (const char* earlier :
-    { "stored_directions", "scattered", "packing_loss", "fluence_bias", "half_range_flux", "settings_used",
+    { "stored_directions", "scattered", "packing_loss", "fluence_bias", "half_range_flux", "settings_used", IgnoredFact,
       SurfaceRadianceFact, LampsApartFact, FacePowerFact, FaceAlbedoFact, LitColorDistanceFact, LitColorExposureFact })
   {
     output->GetFieldData()->RemoveArray(earlier);

@@ -45,6 +45,8 @@ void AddFact(vtkDataObject* data, const char* name, const std::vector<std::array
 
 /// What leaves thick voxels at the box's faces, see LightField::surfaceRadiance: a tuple per cell of BoxFaces.h.
 constexpr const char* SurfaceRadianceFact = "surface_radiance";
+/// Field data: arrays of the medium that the light does not depend on, and which filters know them, a text each.
+constexpr const char* IgnoredFact = "ignored";
 /// Field data: LightField::facePower, and what part of it comes back, red, green, blue of each face, -x to +z.
 constexpr const char* FacePowerFact = "face_power";
 constexpr const char* FaceAlbedoFact = "face_albedo";

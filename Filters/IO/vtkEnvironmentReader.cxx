@@ -3,6 +3,7 @@
 #include "Common/FiniteValues.h"
 #include "Common/LightTransportData.h"
 #include "IO/RadianceFile.h"
+#include "IO/ReadableFile.h"
 #include "Work/GuardedWork.h"
 
 #include "vtkFloatArray.h"
@@ -34,6 +35,10 @@ enum class Kind
 
 Kind KindOf(const std::string& path)
 {
+  if (!tyndall::HasAnEnd(path))
+  {
+    return Kind::Unknown;
+  }
   std::ifstream stream(path, std::ios::binary);
   char start[4] = {};
   stream.read(start, 4);

@@ -228,6 +228,7 @@ void vtkVDBWriter::WriteData()
     std::vector<vtkSmartPointer<vtkDataArray>> arrays;
     tyndall::OnAllRanks(this->Controller, [&] {
       tyndall::RequireImages(this);
+      tyndall::RequireWholeArrays(this);
       voxels = this->GetImageInput();
       if (voxels && tyndall::AreAroundPoints(this, 0, voxels))
       {

@@ -121,7 +121,7 @@ std::string DoubtOfBox(vtkPolyData* photons, const Grid& medium)
   vtkDataArray* const found = photons ? photons->GetFieldData()->GetArray(BoxName) : nullptr;
   if (!found || found->GetNumberOfValues() != 6)
   {
-    return {};
+    return {}; // ReadPhotons refuses what is there and no box
   }
   Box made;
   const Box box = BoxOf(medium);
@@ -194,6 +194,20 @@ void WritePhotons(const EmittedPhotons& emitted, const Grid& box, vtkPolyData* o
   output->GetPointData()->AddArray(batch);
 }
 
+namespace
+{
+void CheckBoxFact(vtkPolyData* photons)
+{
+  vtkAbstractArray* const found = photons->GetFieldData()->GetAbstractArray(BoxName);
+  if (found && (!vtkArrayDownCast<vtkDataArray>(found) || found->GetNumberOfValues() != 6))
+  {
+    throw InvalidInput("The photons' field data '" + std::string(BoxName) + "' has " +
+      std::to_string(found->GetNumberOfValues()) +
+      " values; it must be the six bounds of the box that they were made for, or not be there.");
+  }
+}
+}
+
 std::vector<Photon> ReadPhotons(vtkPolyData* data)
 {
   if (!data)
@@ -205,6 +219,7 @@ std::vector<Photon> ReadPhotons(vtkPolyData* data)
     StopWithFilterBefore(data);
     return {};
   }
+  CheckBoxFact(data);
   const auto direction = AsFloats(PhotonArray(data, "direction", Need::Required, { 3 }));
   const auto power = AsFloats(PhotonArray(data, "power", Need::Required, { 1, 3 }));
   const auto weight = AsFloats(PhotonArray(data, "weight", Need::Optional, { 1 }));

@@ -119,7 +119,7 @@ void TellPart(vtkInformation* asking, tyndall::Communicator* others, tyndall::Em
 int vtkPhotonEmitter::RequestData(vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs)
 {
   this->Photons = 0;
-  this->Power = 0.0;
+  std::fill_n(this->Power, 3, 0.0);
   this->Seconds = 0.0;
   const auto work = [&](vtkMultiProcessController* ranks, tyndall::WholeInputs& all) {
     const tyndall::Grid grid = WholeGrid(this, ranks, all);
@@ -148,14 +148,15 @@ int vtkPhotonEmitter::RequestData(vtkInformation* request, vtkInformationVector*
         tyndall::EmitPhotons(grid, illumination, settings, tyndall::MonitorOf(this));
       tyndall::WritePhotons(emitted, grid, vtkPolyData::GetData(outputs));
       this->Photons = static_cast<vtkIdType>(emitted.photons.size());
-      this->Power = tyndall::Sum(emitted.power);
+      std::copy_n(emitted.power.begin(), 3, this->Power);
       this->Seconds = emitted.seconds;
     });
     if (others && settings.parts > 1)
     {
-      const std::vector<double> sums = others->Sum({ static_cast<double>(this->Photons), this->Power });
-      this->Photons = static_cast<vtkIdType>(sums[0]);
-      this->Power = sums[1];
+      const std::vector<double> sums =
+        others->Sum({ this->Power[0], this->Power[1], this->Power[2], static_cast<double>(this->Photons) });
+      std::copy_n(sums.begin(), 3, this->Power);
+      this->Photons = static_cast<vtkIdType>(sums[3]);
     }
   };
   return tyndall::GuardedInPieces(this, request, given, outputs, MEDIUM, work);
@@ -171,6 +172,6 @@ void vtkPhotonEmitter::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "MaximumDensity: " << this->MaximumDensity << "\n";
   PrintNumbers(os, indent, "SkyColor", this->SkyColor, 3);
   os << indent << "Photons: " << this->Photons << "\n";
-  os << indent << "Power: " << this->Power << "\n";
+  PrintNumbers(os, indent, "Power", this->Power, 3);
   os << indent << "Seconds: " << this->Seconds << "\n";
 }

@@ -115,10 +115,10 @@ public:
   ///@}
 
   ///@{
-  /// What came of the last update: photons made, their power (W, channels summed), seconds. Of all ranks where
-  /// they run it together.
+  /// What came of the last update: photons made, their power (W, red, green, blue, as the energy balance of light is by
+  /// channel), seconds. Of all ranks where they run it together.
   vtkGetMacro(Photons, vtkIdType);
-  vtkGetMacro(Power, double);
+  vtkGetVector3Macro(Power, double);
   vtkGetMacro(Seconds, double);
   ///@}
 
@@ -144,7 +144,7 @@ private:
   double SkyColor[3] = { 0.0, 0.0, 0.0 };
 
   vtkIdType Photons = 0;
-  double Power = 0.0;
+  double Power[3] = { 0.0, 0.0, 0.0 };
   double Seconds = 0.0;
 };
 

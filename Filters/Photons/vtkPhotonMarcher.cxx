@@ -151,6 +151,7 @@ struct vtkPhotonMarcher::PieceOfMarch
   tyndall::RefractiveInput read;
   bool octreeElsewhere = false; ///< the octree given does not have these voxels
   tyndall::MarchSettings settings;
+  bool emits = false;                   ///< this rank's piece of the medium
   std::vector<tyndall::Photon> photons; ///< this rank's share
 };
 
@@ -325,6 +326,7 @@ bool vtkPhotonMarcher::ReadPiece(tyndall::Communicator& communicator, const tynd
       piece.octreeElsewhere = given && !octree;
       piece.read = tyndall::ReadRefractiveMedium(this, piece.image, octree);
     }
+    piece.emits = piece.read.input.Emits();
     piece.settings = SettingsOf(this, piece.image, batches);
     rather = this->Decomposition == AUTOMATIC_DECOMPOSITION && piece.settings.byBricks && !needsPieces;
     refused = this->NotByBlocks(piece);
@@ -392,6 +394,7 @@ bool vtkPhotonMarcher::MarchPiece(vtkInformation* request, vtkMultiProcessContro
   Marched marched = this->MarchInBlocks(*device, *communicator, pieces.Partition(), piece);
   this->WarnOfBox(inputs, pieces.Partition().whole);
   this->Note(marched);
+  this->Ignored = tyndall::IgnoredEmission(tyndall::OnAnyRank(*communicator, piece.emits));
   this->Warn(marched.light, tyndall::PlaceAmong(*communicator, piece.photons.size()).all);
   SpreadToHeld(*communicator, pieces, marched.light);
   vtkImageData* const output = vtkImageData::GetData(outputs, 0);
@@ -403,7 +406,7 @@ bool vtkPhotonMarcher::MarchPiece(vtkInformation* request, vtkMultiProcessContro
   }
   if (pieces.Held().VoxelCount() > 0)
   {
-    this->Write(std::move(marched), output);
+    this->Write(std::move(marched), image, output);
   }
   return true;
 }
@@ -467,14 +470,16 @@ int vtkPhotonMarcher::RequestData(vtkInformation* request, vtkInformationVector*
     Marched marched = this->March(inputs, photons);
 
     this->Note(marched);
+    vtkImageData* const medium = vtkImageData::GetData(inputs[MediumPort]);
+    this->Ignored = tyndall::IgnoredEmission(tyndall::IsUnusual(this, tyndall::Emission, medium, "emission", 0.0f));
     this->Warn(marched.light, photons.size());
     vtkImageData* output = vtkImageData::GetData(outputs, 0);
-    tyndall::PassOn(vtkImageData::GetData(inputs[MediumPort]), output);
+    tyndall::PassOn(medium, output);
     if (tyndall::IsFirstPiece(request, outputs))
     {
       tyndall::WritePaths(marched.paths, vtkPolyData::GetData(outputs, 1));
     }
-    this->Write(std::move(marched), output);
+    this->Write(std::move(marched), medium, output);
     tyndall::KeepWhatIsAskedFor(outputs->GetInformationObject(0), output);
   });
 }
@@ -488,9 +493,14 @@ void vtkPhotonMarcher::WarnOfBox(vtkInformationVector** inputs, const tyndall::G
   }
 }
 
-void vtkPhotonMarcher::Write(Marched&& marched, vtkImageData* output) const
+void vtkPhotonMarcher::Write(Marched&& marched, vtkImageData* medium, vtkImageData* output)
 {
   WriteLightOf(std::move(marched.light), output);
+  tyndall::NoteChoices(this, tyndall::QuantitiesOfMedium(), medium, output);
+  if (!this->Ignored.empty())
+  {
+    tyndall::AddFact(output, tyndall::IgnoredFact, this->Ignored);
+  }
   if (this->Scheme == PUBLISHED)
   {
     tyndall::AddFact(output, "packing_loss", std::vector<double>{ marched.packingLoss });
@@ -513,6 +523,10 @@ void vtkPhotonMarcher::Note(const Marched& marched)
 
 void vtkPhotonMarcher::Warn(const tyndall::PhotonLight& light, std::size_t photons)
 {
+  if (!this->Ignored.empty())
+  {
+    vtkWarningMacro(<< tyndall::WarningOf(this->Ignored));
+  }
   if (this->Missed > 0)
   {
     vtkWarningMacro(

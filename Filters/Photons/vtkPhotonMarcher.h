@@ -23,6 +23,7 @@ struct Photon;
 struct PhotonLight;
 }
 
+class vtkImageData;
 class vtkMultiProcessController;
 
 /**
@@ -291,7 +292,7 @@ private:
   bool MarchPiece(vtkInformation* request, vtkMultiProcessController* ranks, vtkInformationVector** inputs,
     vtkInformationVector* outputs);
   void WarnOfBox(vtkInformationVector** inputs, const tyndall::Grid& medium);
-  void Write(Marched&& marched, vtkImageData* output) const;
+  void Write(Marched&& marched, vtkImageData* medium, vtkImageData* output);
   void Note(const Marched& marched);
   void Warn(const tyndall::PhotonLight& light, std::size_t photons);
 
@@ -324,6 +325,7 @@ private:
   double Seconds = 0.0;
   std::string DeviceName;
   std::string LeftOut;
+  std::vector<std::string> Ignored; ///< of the medium, in the last update
 };
 
 #endif

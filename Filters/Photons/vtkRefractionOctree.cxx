@@ -162,9 +162,11 @@ int vtkRefractionOctree::RequestUpdateExtent(
   return 1;
 }
 
-void vtkRefractionOctree::Write(vtkInformationVector* outputs, tyndall::Octree&& octree)
+void vtkRefractionOctree::Write(vtkImageData* input, vtkInformationVector* outputs, tyndall::Octree&& octree)
 {
   vtkImageData* const output = vtkImageData::GetData(outputs, 0);
+  tyndall::NoteChoices(
+    this, { { RefractiveIndex, "ior" }, { Absorption, "sigma_a" }, { Scattering, "sigma_s" } }, input, output);
   if (!octree.levels.empty())
   {
     AddLevels(output, std::move(octree.levels));
@@ -209,7 +211,7 @@ bool vtkRefractionOctree::BuildPiece(vtkInformation* request, vtkMultiProcessCon
   vtkImageData* const output = vtkImageData::GetData(outputs, 0);
   tyndall::PassOn(image, output);
   pieces.KeepHeld(output);
-  this->Write(outputs, std::move(octree));
+  this->Write(image, outputs, std::move(octree));
   return true;
 }
 
@@ -235,7 +237,7 @@ int vtkRefractionOctree::RequestData(
     tyndall::TellExtent(tyndall::AskingPort(request, outputs), outputs->GetInformationObject(1), nodes->GetExtent());
     vtkImageData* output = vtkImageData::GetData(outputs, 0);
     tyndall::PassOn(image, output);
-    this->Write(outputs, std::move(octree));
+    this->Write(image, outputs, std::move(octree));
     tyndall::KeepWhatIsAskedFor(outputs->GetInformationObject(0), output);
   });
 }

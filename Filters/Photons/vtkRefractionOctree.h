@@ -12,6 +12,7 @@ namespace tyndall
 struct Octree;
 }
 
+class vtkImageData;
 class vtkMultiProcessController;
 
 /**
@@ -125,7 +126,7 @@ private:
 
   bool BuildPiece(vtkInformation* request, vtkMultiProcessController* ranks, vtkInformationVector** inputs,
     vtkInformationVector* outputs);
-  void Write(vtkInformationVector* outputs, tyndall::Octree&& octree);
+  void Write(vtkImageData* input, vtkInformationVector* outputs, tyndall::Octree&& octree);
 
   int PointData = VOXELS_AROUND_POINTS;
   double Tolerance;

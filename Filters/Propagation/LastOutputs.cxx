@@ -1,13 +1,17 @@
 #include "Propagation/LastOutputs.h"
 
 #include "Common/ContentKey.h"
+#include "Common/FilterBefore.h"
 #include "Common/LightTransportWriting.h"
 
 #include "vtkDataObject.h"
+#include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationDoubleKey.h"
 #include "vtkInformationVector.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
 
+#include <string>
 #include <utility>
 
 namespace tyndall
@@ -52,7 +56,7 @@ bool LastOutputs::GiveBack(
   if (key != this->MadeOf || this->Outputs.empty())
   {
     this->MadeOf = std::move(key);
-    this->Outputs.clear();
+    this->LetGo();
     return false;
   }
   for (std::size_t port = 0; port < this->Outputs.size(); ++port)
@@ -68,9 +72,53 @@ void LastOutputs::Keep(vtkMTimeType settings, vtkInformationVector** inputs, int
   this->Keep(outputs);
 }
 
-void LastOutputs::Keep(vtkInformationVector* outputs)
+namespace
+{
+/// Whether a kept image lies in the extent that is told for the output.
+bool IsAsTold(vtkDataObject* kept, vtkInformation* output)
+{
+  int told[6];
+  output->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), told);
+  const int* const own = vtkImageData::SafeDownCast(kept)->GetExtent();
+  return own[0] >= told[0] && own[1] <= told[1] && own[2] >= told[2] && own[3] <= told[3] && own[4] >= told[4] &&
+    own[5] <= told[5];
+}
+}
+
+bool LastOutputs::GiveBefore(vtkInformationVector* outputs) const
+{
+  if (this->Before.empty() || !IsAsTold(this->Before.front(), outputs->GetInformationObject(0)))
+  {
+    return false;
+  }
+  for (std::size_t port = 0; port < this->Before.size(); ++port)
+  {
+    vtkDataObject* const output = vtkDataObject::GetData(outputs, static_cast<int>(port));
+    CopyButTime(this->Before[port], output);
+    AddFact(output, AbortedFact, std::vector<double>{ 1.0 });
+  }
+  AddFact(vtkDataObject::GetData(outputs, 0), "left_out", std::vector<std::string>{ LightOfBefore });
+  return true;
+}
+
+void LastOutputs::LetGo()
+{
+  if (!this->Outputs.empty())
+  {
+    this->Before = std::move(this->Outputs);
+  }
+  this->Outputs.clear();
+}
+
+void LastOutputs::Forget()
 {
   this->Outputs.clear();
+  this->Before.clear();
+}
+
+void LastOutputs::Keep(vtkInformationVector* outputs)
+{
+  this->Forget();
   for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
   {
     vtkDataObject* const made = vtkDataObject::GetData(outputs, port);

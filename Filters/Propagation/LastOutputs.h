@@ -12,13 +12,16 @@ class vtkInformationVector;
 
 namespace tyndall
 {
+/// In `left_out`, where outputs are those of before.
+constexpr const char* LightOfBefore = "light: that of before, for the solve was stopped";
+
 /// What a filter made last, to be given out again where it is asked for the same of the same: the pipeline may run it
 /// twice for one time step (ContentKey.h). The arrays are those of the outputs, not copies. Outputs are whole when they
 /// are kept and when they come back: the filter then hands on the piece that it was asked for.
 class LastOutputs
 {
 public:
-  /// First in RequestData. Where it gives nothing back, it has let go what it kept.
+  /// First in RequestData. Where it gives nothing back, what it kept is only for GiveBefore.
   /// @param settings  when a property last changed that the outputs depend on
   /// @return whether the outputs are there: neither such a property nor the content of an input has changed
   bool GiveBack(vtkMTimeType settings, vtkInformationVector** inputs, int ports, vtkInformationVector* outputs);
@@ -28,7 +31,13 @@ public:
   /// The same where GiveBack was not asked for them.
   void Keep(vtkMTimeType settings, vtkInformationVector** inputs, int ports, vtkInformationVector* outputs);
 
-  void Forget() { this->Outputs.clear(); }
+  /// After a run that was stopped, whose outputs are empty and said to be aborted: the outputs of the last run that was
+  /// not, where they have the extent that is told for them. They stay marked as aborted, and `left_out` says so, too.
+  /// @return whether the outputs are there
+  bool GiveBefore(vtkInformationVector* outputs) const;
+
+  void LetGo(); ///< but for GiveBefore
+  void Forget();
 
 private:
   using Key = std::vector<std::uint64_t>;
@@ -37,6 +46,7 @@ private:
 
   Key MadeOf;
   std::vector<vtkSmartPointer<vtkDataObject>> Outputs; ///< by port
+  std::vector<vtkSmartPointer<vtkDataObject>> Before;  ///< the same, until there are others
 };
 }
 

@@ -106,7 +106,7 @@ tyndall::LightField vtkDiscreteOrdinates::SolvePiece(tyndall::Communicator& comm
         })
     : tyndall::SolveOrdinatesInBlocks(
         within, communicator, partition, piece.medium, shining.illumination, settings, monitor, last);
-  light.settingsUsed = tyndall::Words(settings);
+  light.settingsUsed = tyndall::Words(settings, light);
   return light;
 }
 
@@ -131,7 +131,7 @@ int vtkDiscreteOrdinates::RequestData(
     const tyndall::PreviewScene scene = { input.medium, illumination, {} };
     tyndall::LightField light =
       this->Preview ? tyndall::SolvePreview(scene, tyndall::PreviewGrid(input.medium.grid), solve) : solve(scene);
-    light.settingsUsed = tyndall::Words(settings);
+    light.settingsUsed = tyndall::Words(settings, light);
     TellOfDefaultSky(shining, light.leftOut);
     this->WriteSolved(std::move(light), inputs, outputs);
   });

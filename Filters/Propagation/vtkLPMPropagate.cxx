@@ -7,6 +7,7 @@
 #include "Ranks/WholeImage.h"
 #include "Work/GuardedWork.h"
 
+#include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
@@ -105,6 +106,8 @@ int vtkLPMPropagate::RequestData(vtkInformation* request, vtkInformationVector**
     const tyndall::FloatField unscattered = tyndall::ReadCells(image, "unscattered", tyndall::Need::Optional, {});
     const tyndall::PropagationSettings settings = SettingsOf(this);
     tyndall::Check(settings);
+    const bool refracts = tyndall::IsUnusual(this, tyndall::RefractiveIndex, image, "ior", 1.0f);
+    const std::vector<std::string> ignored = tyndall::IgnoredIndex(refracts);
     const int channels = unscattered.IsThere() ? ChannelsOf(unscattered, settings.storedDirections) : 1;
 
     tyndall::Illumination illumination = this->ReadIllumination(inputs);
@@ -138,6 +141,13 @@ int vtkLPMPropagate::RequestData(vtkInformation* request, vtkInformationVector**
     tyndall::AddFact(output, tyndall::MapResolutionFact, std::vector<double>{ 1.0 * settings.mapResolution });
     tyndall::AddFact(output, tyndall::StoredDirectionsFact, std::vector<double>{ 1.0 * settings.storedDirections });
     tyndall::AddFact(output, tyndall::OrderFact, std::vector<double>{ 1.0 * this->Order });
+    tyndall::NoteChoices(this, tyndall::QuantitiesOfMedium(), image, output);
+    output->GetFieldData()->RemoveArray(tyndall::IgnoredFact);
+    if (refracts)
+    {
+      tyndall::AddFact(output, tyndall::IgnoredFact, ignored);
+      vtkWarningMacro(<< tyndall::WarningOf(ignored));
+    }
     tyndall::KeepWhatIsAskedFor(outputs->GetInformationObject(0), output);
   });
 }

@@ -170,6 +170,7 @@ protected:
   int FillInputPortInformation(int port, vtkInformation* information) override;
   int RequestData(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
   void Note(const tyndall::LightField& light) override;
+  bool KnowsIndex() const override { return this->Scheme == CONSERVATIVE; }
   std::string NotByBlocks(vtkInformationVector** inputs) const override;
   tyndall::LightField SolvePiece(tyndall::Communicator& communicator, const tyndall::PieceBlocks& pieces,
     const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining) override;

@@ -72,7 +72,7 @@ tyndall::PropagationSettings SettingsOf(vtkLightPropagationMaps* filter)
 
 tyndall::LightField LightOf(tyndall::TargetLight&& found)
 {
-  found.light.settingsUsed = tyndall::Words(found.settings);
+  found.light.settingsUsed = tyndall::Words(found.settings, found.light);
   found.light.settingsUsed.push_back("VoxelsDividedBy = " + std::to_string(found.divided ? 2 : 1));
   found.light.solves = found.solves;
   found.light.secondsOfAll = found.seconds;
@@ -152,7 +152,7 @@ tyndall::LightField Solve(vtkLightPropagationMaps* filter, const tyndall::Medium
                                      : solve(medium, illumination, settings, monitor);
   if (light.settingsUsed.empty())
   {
-    light.settingsUsed = tyndall::Words(settings);
+    light.settingsUsed = tyndall::Words(settings, light);
   }
   return light;
 }
@@ -200,7 +200,7 @@ tyndall::LightField SolvePublishedPiece(vtkLightPropagationMaps* filter, tyndall
   tyndall::LightField light = filter->GetEstimateError()
     ? tyndall::SolveWithErrorEstimate(scene, settings, monitor, solve)
     : solve(scene, settings, monitor);
-  light.settingsUsed = tyndall::Words(settings);
+  light.settingsUsed = tyndall::Words(settings, light);
   return light;
 }
 
@@ -214,7 +214,7 @@ tyndall::LightField SolvePreviewOfPiece(vtkLightPropagationMaps* filter, const t
   tyndall::LightField light = tyndall::SolvePreviewOnFirst(scene, {}, settings,
     tyndall::PreviewGrid(scene.partition.whole),
     [&](const tyndall::PreviewScene& coarse) { return solve(coarse.medium, coarse.illumination, settings, monitor); });
-  light.settingsUsed = tyndall::Words(settings);
+  light.settingsUsed = tyndall::Words(settings, light);
   return light;
 }
 
@@ -297,7 +297,7 @@ tyndall::LightField vtkLightPropagationMaps::SolvePiece(tyndall::Communicator& c
     ? tyndall::SolveInBlocksWithErrorEstimate(*device, scene, settings, monitor, last)
     : tyndall::SolveInBlocks(
         *device, communicator, scene.partition, scene.medium, scene.illumination, settings, monitor, last);
-  light.settingsUsed = tyndall::Words(settings);
+  light.settingsUsed = tyndall::Words(settings, light);
   return light;
 }
 

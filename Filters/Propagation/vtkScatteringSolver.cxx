@@ -1,5 +1,6 @@
 #include "vtkScatteringSolver.h"
 
+#include "Common/FilterBefore.h"
 #include "Common/LightTransportData.h"
 #include "Device/Errors.h"
 #include "Distribution/SharedMedium.h"
@@ -15,6 +16,7 @@
 
 #include "vtkCommand.h"
 #include "vtkDataObject.h"
+#include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
@@ -29,12 +31,18 @@
 namespace
 {
 /// Light beside the arrays of the medium, and its convergence.
-/// @param pieces  of which the light is this rank's; null: it is the whole
+/// @param ignored  of the medium
+/// @param pieces   of which the light is this rank's; null: it is the whole
 /// @return its doubts
-std::vector<std::string> Write(
-  tyndall::LightField&& light, vtkImageData* medium, vtkInformationVector* outputs, const tyndall::PieceBlocks* pieces)
+std::vector<std::string> Write(vtkAlgorithm* filter, tyndall::LightField&& light,
+  const std::vector<std::string>& ignored, vtkImageData* medium, vtkInformationVector* outputs,
+  const tyndall::PieceBlocks* pieces)
 {
   std::vector<std::string> doubts = light.doubts;
+  if (!ignored.empty())
+  {
+    doubts.push_back(tyndall::WarningOf(ignored));
+  }
   tyndall::WriteConvergence(light.convergence, light.sweepsSaved, vtkTable::GetData(outputs, 1));
   vtkImageData* const output = vtkImageData::GetData(outputs, 0);
   tyndall::PassOn(medium, output);
@@ -45,6 +53,11 @@ std::vector<std::string> Write(
   if (!pieces || pieces->Held().VoxelCount() > 0)
   {
     tyndall::WriteLight(std::move(light), output); // light that is not finite is an error, with no warnings before
+    tyndall::NoteChoices(filter, tyndall::QuantitiesOfMedium(), medium, output);
+    if (!ignored.empty())
+    {
+      tyndall::AddFact(output, tyndall::IgnoredFact, ignored);
+    }
   }
   return doubts;
 }
@@ -171,13 +184,30 @@ int vtkScatteringSolver::GiveOrSolve(vtkInformation* request, vtkInformationVect
       return;
     }
     this->Note({});
+    this->Ignored = tyndall::IgnoredIndex(this->IgnoresIndexOf(vtkImageData::GetData(inputs[MEDIUM])));
     solve(inputs);
   });
   if (tyndall::AreEmptied(outputs))
   {
-    this->Note({});
+    this->GiveLightBefore(outputs);
   }
   return done;
+}
+
+/// After a solve that failed, or was stopped: nothing, or the light of before, which stays in views.
+void vtkScatteringSolver::GiveLightBefore(vtkInformationVector* outputs)
+{
+  tyndall::LightField nothing;
+  vtkImageData* const output = vtkImageData::GetData(outputs, 0);
+  if (output->GetFieldData()->HasArray(tyndall::AbortedFact) && this->Solved->GiveBefore(outputs))
+  {
+    nothing.leftOut = { tyndall::LightOfBefore };
+    if (!this->SolvedInPieces)
+    {
+      tyndall::KeepWhatIsAskedFor(outputs->GetInformationObject(0), output);
+    }
+  }
+  this->Note(nothing);
 }
 
 /// Without WHOLE, whether this rank would have each solve its piece; ranks may differ in it.
@@ -201,6 +231,13 @@ int vtkScatteringSolver::RequestUpdateExtent(
 std::string vtkScatteringSolver::NotByBlocks(vtkInformationVector**) const
 {
   return {};
+}
+
+/// @param medium  may be null or without voxels
+bool vtkScatteringSolver::IgnoresIndexOf(vtkImageData* medium)
+{
+  return !this->KnowsIndex() && medium && medium->GetNumberOfCells() > 0 &&
+    tyndall::IsUnusual(this, tyndall::RefractiveIndex, medium, "ior", 1.0f);
 }
 
 std::string vtkScatteringSolver::NotInBlocks(const tyndall::PieceOfMedium&, const tyndall::IlluminationInput&)
@@ -262,12 +299,15 @@ bool vtkScatteringSolver::GiveOrSolvePiece(vtkInformation* request, vtkMultiProc
   piece.share = this->PortOfShares() < 0 ? nullptr : vtkPolyData::GetData(inputs[this->PortOfShares()]);
   tyndall::IlluminationInput shining;
   std::string refused;
+  bool ignoresIndex = false;
   communicator.Together([&] {
+    ignoresIndex = this->IgnoresIndexOf(piece.image);
     refused = this->NotOnPiece(pieces, piece, shining, inputs);
     tyndall::Require(refused.empty() || this->Decomposition != BLOCKS,
       "Ranks cannot solve their pieces (Decomposition: blocks) with " + refused +
         ". Leave it out, or let each rank solve the whole.");
   });
+  this->Ignored = tyndall::IgnoredIndex(tyndall::OnAnyRank(communicator, ignoresIndex));
   this->WholeFor = tyndall::WordsOfAny(communicator, refused);
   tyndall::RequireSame(communicator, "Preview", true, { this->Preview ? 1.0 : 0.0 });
   const bool chooses = !this->Preview && !tyndall::OnAnyRank(communicator, this->Decomposition == BLOCKS);
@@ -305,7 +345,7 @@ bool vtkScatteringSolver::GivePiece(tyndall::Communicator& communicator, const t
   const bool onAll = communicator.Largest({ same ? 0.0 : 1.0 })[0] == 0.0;
   if (kept && !onAll)
   {
-    this->Solved->Forget();
+    this->Solved->LetGo();
   }
   return onAll;
 }
@@ -341,8 +381,9 @@ void vtkScatteringSolver::WritePiece(tyndall::Communicator& communicator, const 
   pieces.SpreadToHeld(communicator, light.scatteredMoments, static_cast<int>(ofMoments[0]));
   pieces.SpreadToHeld(communicator, light.straightOn, static_cast<int>(ofMoments[1]));
   std::vector<std::string> doubts;
-  communicator.Together(
-    [&] { doubts = Write(std::move(light), vtkImageData::GetData(inputs[MEDIUM]), outputs, &pieces); });
+  communicator.Together([&] {
+    doubts = Write(this, std::move(light), this->Ignored, vtkImageData::GetData(inputs[MEDIUM]), outputs, &pieces);
+  });
   for (const std::string& doubt : doubts)
   {
     vtkWarningMacro(<< doubt);
@@ -356,7 +397,8 @@ void vtkScatteringSolver::WriteSolved(
 {
   this->TellOfPieces(light, false);
   this->Note(light);
-  for (const std::string& doubt : Write(std::move(light), vtkImageData::GetData(inputs[MEDIUM]), outputs, nullptr))
+  vtkImageData* const medium = vtkImageData::GetData(inputs[MEDIUM]);
+  for (const std::string& doubt : Write(this, std::move(light), this->Ignored, medium, outputs, nullptr))
   {
     vtkWarningMacro(<< doubt);
   }

@@ -10,7 +10,9 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
+class vtkImageData;
 class vtkMultiProcessController;
 
 namespace tyndall
@@ -180,6 +182,9 @@ protected:
   /// What of a solve is told on the panel; of an empty one before solving, and where it failed.
   virtual void Note(const tyndall::LightField& light) = 0;
 
+  /// Whether the light depends on the medium's cells `ior`. The frame's: no, which is warned of where they are not 1.
+  virtual bool KnowsIndex() const { return false; }
+
   /// What among properties and inputs keeps this solver from solving pieces, in words for an error; empty: nothing
   /// does.
   virtual std::string NotByBlocks(vtkInformationVector** inputs) const;
@@ -218,6 +223,8 @@ private:
   void operator=(const vtkScatteringSolver&) = delete;
 
   void ColorsModified();
+  bool IgnoresIndexOf(vtkImageData* medium);
+  void GiveLightBefore(vtkInformationVector* outputs);
   std::string NotOnPiece(const tyndall::PieceBlocks& pieces, tyndall::PieceOfMedium& piece,
     tyndall::IlluminationInput& shining, vtkInformationVector** inputs);
   void TellOfPieces(tyndall::LightField& light, bool inBlocks);
@@ -234,10 +241,11 @@ private:
   void HandOn(vtkInformationVector** inputs, vtkInformationVector* outputs);
 
   std::unique_ptr<tyndall::LastOutputs> Solved;
-  bool SolvedInPieces = false; ///< that is of this rank's piece
-  bool OverRanks = false;      ///< of the light that is being made: several ranks make it together
-  std::string WholeFor;        ///< the same: why each solves the whole, though it was left to choose
-  vtkTimeStamp ColorsTime;     ///< of LitColor, Exposure, ToneCurve: they do not change the light
+  bool SolvedInPieces = false;      ///< that is of this rank's piece
+  bool OverRanks = false;           ///< of the light that is being made: several ranks make it together
+  std::vector<std::string> Ignored; ///< the same: of the medium
+  std::string WholeFor;             ///< the same: why each solves the whole, though it was left to choose
+  vtkTimeStamp ColorsTime;          ///< of LitColor, Exposure, ToneCurve: they do not change the light
 };
 
 #endif

@@ -331,6 +331,7 @@ int vtkSolverComparison::RequestData(
       this->Settings(), reference ? &*reference : nullptr, tyndall::MonitorOf(this));
     TellOfDefaultSky(shining, comparison.leftOut);
     Write(comparison, this->GetOutput());
+    this->TellOfIgnored(vtkImageData::GetData(inputs[MEDIUM]));
     this->Note(comparison, tyndall::ClockSeconds() - start);
     vtkImageData* const output = vtkImageData::GetData(outputs, REFERENCE_OUTPUT);
     Write(std::move(comparison.reference), reference.has_value(), output);
@@ -341,6 +342,20 @@ int vtkSolverComparison::RequestData(
       vtkWarningMacro(<< warning);
     }
   });
+}
+
+/// Of the index, of which only some of the compared methods know.
+void vtkSolverComparison::TellOfIgnored(vtkImageData* medium)
+{
+  const bool ofMaps = this->LightPropagationMaps || this->ConstantSource || this->AsPublished ||
+    this->AsPublishedSequential || this->DiscreteOrdinates;
+  const std::vector<std::string> ignored =
+    tyndall::IgnoredIndex(ofMaps && tyndall::IsUnusual(this, tyndall::RefractiveIndex, medium, "ior", 1.0f));
+  if (!ignored.empty())
+  {
+    tyndall::AddFact(this->GetOutput(), tyndall::IgnoredFact, ignored);
+    vtkWarningMacro("Light of maps and ordinates does not depend on the medium's " << ignored.front() << ".");
+  }
 }
 
 void vtkSolverComparison::Note(const tyndall::Comparison& comparison, double seconds)

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+class vtkImageData;
 class vtkTable;
 
 namespace tyndall
@@ -229,6 +230,7 @@ private:
   void operator=(const vtkSolverComparison&) = delete;
 
   tyndall::ComparisonSettings Settings() const;
+  void TellOfIgnored(vtkImageData* medium);
   void Note(const tyndall::Comparison& comparison, double seconds);
 
   bool LightPropagationMaps = true;

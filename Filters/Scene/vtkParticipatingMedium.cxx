@@ -334,6 +334,7 @@ std::vector<float> MakeMedium(vtkParticipatingMedium* filter, const Recipe& reci
   EmptyHidden(input, relative);
 
   tyndall::PassOn(input, output);
+  tyndall::ForgetChoices(output);
   AddProduct(output, "sigma_a", relative, recipe.sigma_a);
   AddProduct(output, "sigma_s", relative, recipe.sigma_s);
   if (recipe.emission != Rgb{})

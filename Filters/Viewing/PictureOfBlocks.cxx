@@ -110,18 +110,22 @@ Picture PictureOfBlocks::Take() const
   return PictureOfAll(seen->frontToBack, this->Part, static_cast<float>(farDepth));
 }
 
-double PictureOfBlocks::Exposure(const Picture& part) const
+double PictureOfBlocks::Exposure(const Picture& part, bool background) const
 {
-  std::vector<float> radiance;
+  std::vector<float> radiance, alpha;
+  const int columns = this->Counted.end[0] - this->Counted.begin[0];
   for (int row = this->Counted.begin[1]; row < this->Counted.end[1]; ++row)
   {
-    const auto first = part.radiance.begin() +
-      3 *
-        (static_cast<std::ptrdiff_t>(row - this->Part.begin[1]) * part.width + this->Counted.begin[0] -
-          this->Part.begin[0]);
-    radiance.insert(radiance.end(), first, first + 3 * (this->Counted.end[0] - this->Counted.begin[0]));
+    const std::ptrdiff_t first = static_cast<std::ptrdiff_t>(row - this->Part.begin[1]) * part.width +
+      this->Counted.begin[0] - this->Part.begin[0];
+    const auto lit = part.radiance.begin() + 3 * first;
+    radiance.insert(radiance.end(), lit, lit + 3 * columns);
+    if (!background)
+    {
+      alpha.insert(alpha.end(), part.alpha.begin() + first, part.alpha.begin() + first + columns);
+    }
   }
-  const std::vector<int> own = LuminanceCounts(radiance);
+  const std::vector<int> own = LuminanceCounts(radiance, alpha);
   const std::vector<double> all = this->Seen.communicator.Sum({ own.begin(), own.end() });
   return ExposureOfCounts({ all.begin(), all.end() });
 }

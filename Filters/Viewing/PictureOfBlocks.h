@@ -55,8 +55,9 @@ public:
   Picture Take() const;
 
   /// AutomaticExposure of the whole picture.
-  /// @param part  as Take made it
-  double Exposure(const Picture& part) const;
+  /// @param part        as Take made it
+  /// @param background  whether it is seen behind the medium
+  double Exposure(const Picture& part, bool background) const;
 
 private:
   BlockPixels CastOwn(double& farDepth) const;

@@ -18,6 +18,8 @@ constexpr unsigned int GlOne = 1;
 constexpr unsigned int GlOneMinusSourceAlpha = 0x0303;
 constexpr unsigned int GlBlend = 0x0BE2;
 constexpr unsigned int GlDepthTest = 0x0B71;
+constexpr unsigned int GlLessOrEqual = 0x0203;
+constexpr unsigned int GlGreater = 0x0204;
 
 const char* const FragmentShader = R"(//VTK::System::Dec
 in vec2 texCoord;
@@ -26,6 +28,7 @@ uniform sampler2D picture;
 void main()
 {
   gl_FragData[0] = texture2D(picture, texCoord);
+  gl_FragDepth = 1.0; // behind all that is drawn
 }
 )";
 
@@ -62,7 +65,7 @@ PictureOverlay::PictureOverlay() = default;
 PictureOverlay::~PictureOverlay() = default;
 
 void PictureOverlay::Draw(
-  vtkRenderer* renderer, const std::vector<std::uint8_t>& pixels, const std::array<int, 2>& size)
+  vtkRenderer* renderer, const std::vector<std::uint8_t>& pixels, const std::array<int, 2>& size, Over over)
 {
   vtkOpenGLRenderWindow* const window = WindowOf(renderer);
   if (!this->Made)
@@ -85,7 +88,15 @@ void PictureOverlay::Draw(
   const vtkOpenGLState::ScopedglEnableDisable blend(state, GlBlend);
   const vtkOpenGLState::ScopedglDepthMask depthMask(state);
   const vtkOpenGLState::ScopedglBlendFuncSeparate function(state);
-  state->vtkglDisable(GlDepthTest);
+  if (over == Over::All)
+  {
+    state->vtkglDisable(GlDepthTest);
+  }
+  else // by sample, of which an edge covers some in a pixel
+  {
+    state->vtkglEnable(GlDepthTest);
+    state->vtkglDepthFunc(over == Over::Background ? GlLessOrEqual : GlGreater);
+  }
   state->vtkglDepthMask(0);
   state->vtkglEnable(GlBlend);
   state->vtkglBlendFuncSeparate(GlOne, GlOneMinusSourceAlpha, GlOne, GlOneMinusSourceAlpha);
@@ -94,6 +105,7 @@ void PictureOverlay::Draw(
   quad.Program->SetUniformi("picture", texture->GetTextureUnit());
   quad.Render();
   texture->Deactivate();
+  state->vtkglDepthFunc(GlLessOrEqual); // as VTK has it
 }
 
 void PictureOverlay::Release(vtkWindow* window)

@@ -20,12 +20,21 @@ std::vector<float> DrawnDepths(vtkRenderer* renderer);
 class PictureOverlay
 {
 public:
+  /// What of the screen, sample by sample where a pixel has several.
+  enum class Over
+  {
+    All,
+    Background, ///< where nothing is drawn
+    Objects,    ///< where something is
+  };
+
   PictureOverlay();
   ~PictureOverlay();
 
   /// @param pixels  red, green, blue, which are multiplied by alpha already, and alpha, row by row from below
   /// @param size    columns and rows; stretched to all that the renderer draws
-  void Draw(vtkRenderer* renderer, const std::vector<std::uint8_t>& pixels, const std::array<int, 2>& size);
+  void Draw(vtkRenderer* renderer, const std::vector<std::uint8_t>& pixels, const std::array<int, 2>& size,
+    Over over = Over::All);
 
   /// Before the window goes, or another one is drawn in.
   void Release(vtkWindow* window);

@@ -16,7 +16,8 @@ namespace tyndall
 {
 namespace
 {
-constexpr double AlikeScales = 1e-6; ///< relative
+constexpr double AlikeScales = 1e-6;       ///< relative
+constexpr double SmallestDistance = 1e-15; ///< from camera to focal point, of the camera's from the origin
 
 using Vec = std::array<double, 3>;
 
@@ -48,9 +49,31 @@ double ScaleOf(vtkMatrix4x4* matrix)
 }
 }
 
+namespace
+{
+/// @throws InvalidInput where the camera does not say where it stands and looks
+void CheckCamera(vtkCamera* camera)
+{
+  Vec position, focalPoint, viewUp;
+  camera->GetPosition(position.data());
+  camera->GetFocalPoint(focalPoint.data());
+  camera->GetViewUp(viewUp.data());
+  for (const Vec& place : { position, focalPoint, viewUp })
+  {
+    Require(std::isfinite(place[0]) && std::isfinite(place[1]) && std::isfinite(place[2]),
+      "The camera's position, focal point or view up is not finite.");
+  }
+  // VTK puts the focal point a little away, by less than numbers of this size can tell.
+  const double distance = std::sqrt(vtkMath::Distance2BetweenPoints(position.data(), focalPoint.data()));
+  Require(distance > SmallestDistance * vtkMath::Norm(position.data()) && distance > 1e-19,
+    "The camera's position and focal point are the same; move one, so that it is clear where it looks.");
+}
+}
+
 RenderedCamera::RenderedCamera(vtkRenderer* renderer, vtkMatrix4x4* place)
 {
   vtkCamera* const camera = renderer->GetActiveCamera();
+  CheckCamera(camera);
   vtkNew<vtkMatrix4x4> toEye;
   vtkMatrix4x4::Multiply4x4(camera->GetModelViewTransformMatrix(), place, toEye);
   this->Scale = ScaleOf(toEye);

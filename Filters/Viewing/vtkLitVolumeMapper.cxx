@@ -56,6 +56,20 @@ std::vector<std::uint8_t> PixelsOf(
   return pixels;
 }
 
+/// The same where an object is drawn in a pixel whose ray went by it, as by a line that is thinner than a pixel: it is
+/// seen through the medium, and hides the background.
+/// @param pixels  where a background is seen
+std::vector<std::uint8_t> PixelsBeforeObjects(
+  std::vector<std::uint8_t> pixels, const tyndall::Picture& picture, const std::vector<float>& ends)
+{
+  for (std::size_t i = 0; i < pixels.size(); ++i)
+  {
+    const bool open = ends.empty() || ends[i / 4] >= tyndall::Endless;
+    pixels[i] = open ? static_cast<std::uint8_t>(pixels[i] * picture.alpha[i / 4] + 0.5f) : pixels[i];
+  }
+  return pixels;
+}
+
 /// The same of a piece alone, which is laid over others or under them: see SetPiece.
 std::vector<std::uint8_t> PixelsOfPiece(
   tyndall::Picture picture, const std::vector<float>& ends, bool background, const tyndall::ToneMapping& tones)
@@ -218,7 +232,7 @@ double vtkLitVolumeMapper::EstimateExposure()
   {
     return 0.0;
   }
-  std::vector<float> radiance;
+  std::vector<float> radiance, alpha;
   try
   {
     auto* const image = vtkImageData::SafeDownCast(this->GetDataObjectInput());
@@ -230,14 +244,25 @@ double vtkLitVolumeMapper::EstimateExposure()
       {
         return 0.0;
       }
-      radiance.insert(radiance.end(), picture.radiance.begin(), picture.radiance.end());
+      this->AddSeen(picture, radiance, alpha);
     }
   }
   catch (const std::exception&) // an image that is no medium: the ray caster says so when it is drawn
   {
     return 0.0;
   }
-  return tyndall::AutomaticExposure(radiance);
+  return tyndall::AutomaticExposure(radiance, alpha);
+}
+
+/// One more picture that the exposure is found from.
+void vtkLitVolumeMapper::AddSeen(
+  const tyndall::Picture& picture, std::vector<float>& radiance, std::vector<float>& alpha)
+{
+  radiance.insert(radiance.end(), picture.radiance.begin(), picture.radiance.end());
+  if (!this->RayCaster->SeesRadianceBehind())
+  {
+    alpha.insert(alpha.end(), picture.alpha.begin(), picture.alpha.end());
+  }
 }
 
 /// The same for all pieces together, from pictures of the whole. On all ranks.
@@ -245,7 +270,7 @@ double vtkLitVolumeMapper::EstimateExposure()
 double vtkLitVolumeMapper::ExposureOfPieces(tyndall::Communicator& others)
 {
   const tyndall::BlocksOfRanks blocks(others, this->UpdateSurrounded());
-  std::vector<float> radiance;
+  std::vector<float> radiance, alpha;
   for (const auto& from : ExposedFrom)
   {
     if (!blocks.MakeUpTheWhole())
@@ -262,10 +287,9 @@ double vtkLitVolumeMapper::ExposureOfPieces(tyndall::Communicator& others)
     {
       return 0.0;
     }
-    const std::vector<float> found = tyndall::RadianceOfAll(pieces->frontToBack, all);
-    radiance.insert(radiance.end(), found.begin(), found.end());
+    this->AddSeen(tyndall::PictureOfAll(pieces->frontToBack, all, tyndall::BlockPixel::FarAway), radiance, alpha);
   }
-  return tyndall::AutomaticExposure(radiance);
+  return tyndall::AutomaticExposure(radiance, alpha);
 }
 
 void vtkLitVolumeMapper::SetPiece(vtkMultiProcessController* ranks, vtkImageData* surrounded)
@@ -509,10 +533,14 @@ void vtkLitVolumeMapper::Render(vtkRenderer* renderer, vtkVolume* volume)
   }
   const tyndall::ToneMapping tones = this->Tones();
   const bool background = this->RayCaster->GetShowBackground();
-  this->Overlay->Draw(renderer,
-    this->IsPiece() ? PixelsOfPiece(std::move(picture), view.ends, background, tones)
-                    : PixelsOf(picture, view.ends, background, tones),
-    view.size);
+  const std::vector<std::uint8_t> pixels = this->IsPiece() ? PixelsOfPiece(picture, view.ends, background, tones)
+                                                           : PixelsOf(picture, view.ends, background, tones);
+  using Over = tyndall::PictureOverlay::Over;
+  this->Overlay->Draw(renderer, pixels, view.size, background ? Over::Background : Over::All);
+  if (background)
+  {
+    this->Overlay->Draw(renderer, PixelsBeforeObjects(pixels, picture, view.ends), view.size, Over::Objects);
+  }
   this->Seconds = this->TimeToDraw = tyndall::ClockSeconds() - start;
 }
 

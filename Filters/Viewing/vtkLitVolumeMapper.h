@@ -9,6 +9,7 @@
 
 #include <functional>
 #include <memory>
+#include <vector>
 
 class vtkAlgorithmOutput;
 class vtkImageData;
@@ -111,6 +112,7 @@ private:
   vtkImageData* UpdateSurrounded();
   bool IsPiece() const;
   double EstimateExposure();
+  void AddSeen(const tyndall::Picture& picture, std::vector<float>& radiance, std::vector<float>& alpha);
   void WithOthers(const std::function<void(tyndall::Communicator&)>& act);
   void SeePieces(tyndall::Communicator& others, vtkRenderer* renderer, vtkVolume* volume);
   void AgreeOnExposure(tyndall::Communicator& others);

@@ -207,6 +207,13 @@ std::unique_ptr<tyndall::CasterScene> vtkMediumRayCaster::FindScene(
   return tyndall::MakeScene(viewed, viewed.ior, this->ReadIllumination(inputs), key, settings, nullptr);
 }
 
+bool vtkMediumRayCaster::SeesRadianceBehind()
+{
+  const double* const behind = this->BackgroundRadiance;
+  return this->ShowBackground &&
+    (this->GetNumberOfInputConnections(ENVIRONMENT) > 0 || behind[0] > 0.0 || behind[1] > 0.0 || behind[2] > 0.0);
+}
+
 /// Once for a scene.
 void vtkMediumRayCaster::SayDoubts(tyndall::CasterScene& scene)
 {
@@ -270,7 +277,10 @@ vtkMediumRayCaster::Shot vtkMediumRayCaster::SeeWhole(vtkInformationVector** inp
   const tyndall::Camera camera = tyndall::CameraOf(this, shot.scene->grid);
   Taking taking;
   taking.take = [&] { return shot.scene->caster->Render(camera, tyndall::MonitorOf(this)); };
-  taking.exposureOf = [](const tyndall::Picture& picture) { return tyndall::AutomaticExposure(picture.radiance); };
+  taking.exposureOf = [this](const tyndall::Picture& picture) {
+    return tyndall::AutomaticExposure(
+      picture.radiance, this->SeesRadianceBehind() ? std::vector<float>() : picture.alpha);
+  };
   taking.onAnyRank = [](bool own) { return own; };
   this->Expose(taking, shot);
   shot.leftOut = shot.scene->caster->LeftOut();
@@ -355,7 +365,8 @@ std::optional<vtkMediumRayCaster::Shot> vtkMediumRayCaster::SeeBlocks(
     tyndall::CameraOf(this, blocks.Whole()), { this->ImageSize[0], this->ImageSize[1] }, part, counted);
   Taking taking;
   taking.take = [&] { return picture.Take(); };
-  taking.exposureOf = [&](const tyndall::Picture& taken) { return picture.Exposure(taken); };
+  taking.exposureOf = [&](
+                        const tyndall::Picture& taken) { return picture.Exposure(taken, this->SeesRadianceBehind()); };
   taking.onAnyRank = [&](bool here) { return tyndall::OnAnyRank(*communicator, here); };
   this->Expose(taking, shot);
   shot.first = part.begin;

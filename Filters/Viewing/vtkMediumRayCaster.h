@@ -349,6 +349,10 @@ private:
   /// @return false where it failed: there was an error, and there is none again until something has changed
   bool See(const tyndall::AskedView& view, tyndall::Picture& picture);
 
+  /// Whether a background is in a picture that was made for its exposure: BackgroundColor is not, which is as bright on
+  /// the screen whatever the exposure.
+  bool SeesRadianceBehind();
+
   enum class Use
   {
     Whole,

@@ -16,13 +16,17 @@
 #include "Work/WholeInputs.h"
 
 #include "vtkAlgorithm.h"
+#include "vtkAlgorithmOutput.h"
 #include "vtkCommunicator.h"
+#include "vtkCompositeDataIterator.h"
+#include "vtkCompositeDataSet.h"
 #include "vtkDataObject.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkMultiProcessController.h"
+#include "vtkSmartPointer.h"
 #include "vtkVersionMacros.h"
 
 namespace tyndall
@@ -75,6 +79,48 @@ void WarnOfDevices(vtkAlgorithm* filter)
   for (const std::string& warning : Device::TakeWarnings())
   {
     vtkWarningWithObjectMacro(filter, << warning);
+  }
+}
+}
+
+namespace
+{
+/// The number of blocks of an input where the pipeline hands them on one after the other and this is the first; else 0.
+int BlocksBegun(vtkAlgorithm* filter, int port)
+{
+  vtkAlgorithmOutput* const from =
+    filter->GetNumberOfInputConnections(port) > 0 ? filter->GetInputConnection(port, 0) : nullptr;
+  auto* const blocks =
+    from ? vtkCompositeDataSet::SafeDownCast(from->GetProducer()->GetOutputDataObject(from->GetIndex())) : nullptr;
+  if (!blocks)
+  {
+    return 0;
+  }
+  const auto each = vtkSmartPointer<vtkCompositeDataIterator>::Take(blocks->NewIterator());
+  int count = 0;
+  vtkDataObject* first = nullptr;
+  for (each->InitTraversal(); !each->IsDoneWithTraversal(); each->GoToNextItem())
+  {
+    first = count == 0 ? each->GetCurrentDataObject() : first;
+    ++count;
+  }
+  return first == filter->GetInputDataObject(port, 0) ? count : 0;
+}
+
+/// Of filters for which the voxels of one block depend on those of another.
+void WarnOfBlocks(vtkAlgorithm* filter)
+{
+  const bool local = filter->IsA("vtkParticipatingMedium") || filter->IsA("vtkRefractionOctree");
+  for (int port = 0; !local && port < filter->GetNumberOfInputPorts(); ++port)
+  {
+    if (const int blocks = BlocksBegun(filter, port); blocks > 1)
+    {
+      vtkWarningWithObjectMacro(
+        filter, << "Input " << port << " has " << blocks
+                << " blocks, which are worked on one after the other, each alone: no light goes "
+                   "from one to another. Where they are one medium, make one image of them, for "
+                   "example with ResampleToImage.");
+    }
   }
 }
 }
@@ -187,6 +233,10 @@ int GuardedOn(vtkMultiProcessController* ranks, vtkAlgorithm* filter, vtkInforma
     }
     last.Note(LastFailure::Error);
   }
+  else
+  {
+    WarnOfBlocks(filter);
+  }
   filter->SetProgressText(nullptr);
   WarnOfDevices(filter);
   return 1;
@@ -212,6 +262,7 @@ int Guarded(vtkAlgorithm* filter, vtkInformationVector* outputs, const std::func
 {
   return GuardedOn(nullptr, filter, outputs, [&] {
     RequireImages(filter);
+    RequireWholeArrays(filter);
     CheckProperties(filter);
     CheckDuplicates(filter, outputs);
     work();
@@ -234,6 +285,7 @@ int GuardedInPieces(vtkAlgorithm* filter, vtkInformation* request, vtkInformatio
   return GuardedOn(ranks, filter, outputs, [&] {
     OnAllRanks(ranks, [&] {
       RequireImages(filter);
+      RequireWholeArrays(filter);
       CheckProperties(filter);
       if (!ranks) // else WholeInputs takes each cell once
       {

@@ -11,6 +11,7 @@
 #include <future>
 #include <optional>
 #include <sys/mman.h>
+#include <sys/resource.h>
 #include <thread>
 #include <utility>
 
@@ -83,21 +84,43 @@ std::vector<cl::Device> DevicesOf(const cl::Platform& platform, Shared& shared)
   return devices;
 }
 
+/// MiB that this process may take; none: as many as there are.
+std::optional<std::size_t> LimitOfMemory()
+{
+  struct rlimit limit = {};
+  const bool limited = getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY;
+  return limited ? std::optional<std::size_t>(limit.rlim_cur >> 20) : std::nullopt;
+}
+
+/// For an error: drivers bring a compiler.
+std::string NeedsMemory()
+{
+  const std::optional<std::size_t> limit = LimitOfMemory();
+  return " A driver of OpenCL takes some hundred MiB of memory, " +
+    (limit ? "and this process may take " + std::to_string(*limit) + " MiB in all (ulimit -v): let it take more."
+           : std::string("and there is too little: end other programs."));
+}
+
 /// Every device of every platform. A platform whose driver fails is passed over, not fatal: others may work.
 /// @param troubles  gets a sentence for each of those
 std::vector<Candidate> AllDevices(Shared& shared, std::string& troubles)
 {
   std::vector<cl::Platform> platforms;
+  bool tooLittleMemory = false;
   try
   {
     cl::Platform::get(&platforms);
   }
-  catch (const cl::Error&) // no driver is installed
+  catch (const cl::Error& error) // no driver is installed, or none could be loaded
   {
+    tooLittleMemory = error.err() == CL_OUT_OF_HOST_MEMORY;
   }
   if (platforms.empty())
   {
-    troubles += " Install one: Debian's package pocl-opencl-icd runs OpenCL on the CPU.";
+    // With little memory a loader says that there is no driver, too.
+    troubles += tooLittleMemory || LimitOfMemory() ? NeedsMemory() + " If there is no driver, install one:"
+                                                   : std::string(" Install one:");
+    troubles += " Debian's package pocl-opencl-icd runs OpenCL on the CPU.";
   }
   std::vector<Candidate> found;
   for (const cl::Platform& platform : platforms)
@@ -112,9 +135,13 @@ std::vector<Candidate> AllDevices(Shared& shared, std::string& troubles)
     }
     catch (const cl::Error& error)
     {
+      const std::string ofMemory = error.err() == CL_OUT_OF_HOST_MEMORY ? NeedsMemory() : std::string();
       troubles += " The platform " + name + " is installed and gives none (OpenCL error " +
-        std::to_string(error.err()) + "). Start the program anew" +
-        (IsPocl(platform) ? " with POCL_CACHE_DIR a folder that can be written" : "") + ", or install another driver.";
+        std::to_string(error.err()) + ")." +
+        (ofMemory.empty() ? " Start the program anew" +
+              std::string(IsPocl(platform) ? " with POCL_CACHE_DIR a folder that can be written" : "") +
+              ", or install another driver."
+                          : ofMemory);
     }
     catch (const DeviceError& error)
     {

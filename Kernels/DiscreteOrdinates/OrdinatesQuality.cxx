@@ -65,4 +65,10 @@ std::vector<std::string> Words(const OrdinatesSettings& settings)
   return { "DirectionsPerFace = " + std::to_string(settings.directionsPerFace),
     "Terms = " + std::to_string(settings.terms), "Tolerance = " + Text("%g", settings.tolerance) };
 }
+
+std::vector<std::string> Words(OrdinatesSettings settings, const LightField& light)
+{
+  settings.directionsPerFace = light.directionsPerFace > 0 ? light.directionsPerFace : settings.directionsPerFace;
+  return Words(settings);
+}
 }

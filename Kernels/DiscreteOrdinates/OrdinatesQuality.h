@@ -1,6 +1,7 @@
 #pragma once
 
 #include "DiscreteOrdinates/OrdinatesSettings.h"
+#include "Light/LightField.h"
 #include "Light/Quality.h"
 #include "LightPropagation/Problem/AngularDegree.h"
 #include "Medium/Medium.h"
@@ -27,4 +28,6 @@ OrdinatesSettings AtQuality(
 
 /// "Name = value" of each setting that a quality may choose.
 std::vector<std::string> Words(const OrdinatesSettings& settings);
+/// The same as the light was solved with: more directions, where a slab needs them (UnvaryingAxes.h).
+std::vector<std::string> Words(OrdinatesSettings settings, const LightField& light);
 }

@@ -153,9 +153,15 @@ std::vector<SeenColumn> SeenInBlock(const Spread& spread, int axis, const Source
   return seen;
 }
 
+/// Pixels of views.
+struct SeenPixels
+{
+  std::vector<float> radiance, alpha;
+};
+
 /// Lays the columns of all blocks behind each other.
 /// @param byRank  of each block, as SeenInBlock has them
-std::vector<float> BehindEachOther(
+SeenPixels BehindEachOther(
   const BlockPartition& partition, int axis, const std::vector<std::vector<SeenColumn>>& byRank)
 {
   std::vector<std::size_t> order(byRank.size());
@@ -176,12 +182,13 @@ std::vector<float> BehindEachOther(
     }
     std::reverse(order.begin(), order.end());
   }
-  std::vector<float> seen;
+  SeenPixels seen;
   for (const auto& [place, sides] : columns)
   {
     for (const SeenColumn& column : sides)
     {
-      seen.insert(seen.end(), column.radiance.begin(), column.radiance.end());
+      seen.radiance.insert(seen.radiance.end(), column.radiance.begin(), column.radiance.end());
+      seen.alpha.push_back(static_cast<float>(1.0 - column.transmittance));
     }
   }
   return seen;
@@ -192,7 +199,7 @@ std::vector<float> BehindEachOther(
 double ExposureAlongAxes(const Spread& spread, const SourceFunction& source)
 {
   Communicator& others = spread.others;
-  std::vector<float> seen;
+  SeenPixels seen;
   for (int axis = 0; axis < 3; ++axis)
   {
     std::vector<std::vector<SeenColumn>> byRank = { SeenInBlock(spread, axis, source) };
@@ -205,10 +212,11 @@ double ExposureAlongAxes(const Spread& spread, const SourceFunction& source)
     {
       byRank.push_back(others.Receive<SeenColumn>(rank, MessageTag::ColumnsOfSight));
     }
-    const std::vector<float> ofAxis = BehindEachOther(spread.partition, axis, byRank);
-    seen.insert(seen.end(), ofAxis.begin(), ofAxis.end());
+    const SeenPixels ofAxis = BehindEachOther(spread.partition, axis, byRank);
+    seen.radiance.insert(seen.radiance.end(), ofAxis.radiance.begin(), ofAxis.radiance.end());
+    seen.alpha.insert(seen.alpha.end(), ofAxis.alpha.begin(), ofAxis.alpha.end());
   }
-  return others.Sum({ others.Rank() == 0 ? AutomaticExposure(seen) : 0.0 })[0];
+  return others.Sum({ others.Rank() == 0 ? AutomaticExposure(seen.radiance, seen.alpha) : 0.0 })[0];
 }
 
 /// Gives an empty voxel the mean of its neighbours' radiance, each as much as it is dense.

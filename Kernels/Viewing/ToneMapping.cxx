@@ -95,21 +95,24 @@ void Check(const ToneMapping& settings)
   }
 }
 
-std::vector<int> LuminanceCounts(const std::vector<float>& radiance)
+std::vector<int> LuminanceCounts(const std::vector<float>& radiance, const std::vector<float>& alpha)
 {
-  constexpr int Shift = 23 - 8; // to the leading bits of a float
+  constexpr float Parts = 16.0f; // of a pixel
+  constexpr int Shift = 23 - 8;  // to the leading bits of a float
   std::vector<int> count((1u << (31 - Shift)), 0);
   std::mutex mutex;
   InThreads(radiance.size() / 3, PixelsOfThread, [&](std::size_t begin, std::size_t end) {
     std::vector<int> here(count.size(), 0);
     for (std::size_t i = 3 * begin; i < 3 * end; i += 3)
     {
-      const float luminance = 0.2126f * radiance[i] + 0.7152f * radiance[i + 1] + 0.0722f * radiance[i + 2];
+      const float filled = alpha.empty() ? 1.0f : alpha[i / 3];
+      const float luminance = (0.2126f * radiance[i] + 0.7152f * radiance[i + 1] + 0.0722f * radiance[i + 2]) /
+        std::max(filled, ThinnestPart);
       if (luminance > 0.0f && std::isfinite(luminance))
       {
         std::uint32_t bits;
         std::memcpy(&bits, &luminance, sizeof(bits));
-        ++here[bits >> Shift];
+        here[bits >> Shift] += std::max(static_cast<int>(Parts * filled + 0.5f), 1);
       }
     }
     const std::lock_guard<std::mutex> lock(mutex);
@@ -148,9 +151,9 @@ double ExposureOfCounts(const std::vector<int>& count)
   return counted > 0.0 ? 0.18 * std::exp2(-sum / counted) : 1.0;
 }
 
-double AutomaticExposure(const std::vector<float>& radiance)
+double AutomaticExposure(const std::vector<float>& radiance, const std::vector<float>& alpha)
 {
-  return ExposureOfCounts(LuminanceCounts(radiance));
+  return ExposureOfCounts(LuminanceCounts(radiance, alpha));
 }
 
 double ExposedAs(double shown, ToneCurve curve)
@@ -167,7 +170,7 @@ float ShownValue(float exposed, ToneCurve curve)
 std::vector<std::uint8_t> ToneMap(
   const std::vector<float>& radiance, const std::vector<float>& alpha, const ToneMapping& settings)
 {
-  const double asked = settings.exposure > 0.0 ? settings.exposure : AutomaticExposure(radiance);
+  const double asked = settings.exposure > 0.0 ? settings.exposure : AutomaticExposure(radiance, alpha);
   const auto exposure = static_cast<float>(std::min(asked, LargestExposure));
   const ScreenValues& screen = ScreenValuesOf(settings.curve);
   const std::size_t pixels = radiance.size() / 3;

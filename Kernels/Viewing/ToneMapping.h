@@ -24,15 +24,19 @@ struct ToneMapping
 /// @throws InvalidInput for an exposure out of its range
 void Check(const ToneMapping& settings);
 
-/// The exposure that `exposure` = 0 stands for. Of the lit pixels those a thousand times darker than the 95th
-/// percentile, or darker still, do not count: what is nearly black would make the rest white. 1 where no pixel
-/// is lit.
+/// The exposure that `exposure` = 0 stands for. It is that of what is lit, not of the black behind it: a pixel that the
+/// medium fills in part counts for that part, with the radiance of that part, so that thin smoke is exposed as thick
+/// smoke is, and as before a background as bright. What fills less than ThinnestPart of a pixel may shine by itself,
+/// and is taken to fill so much of it. Of the lit pixels those a thousand times darker than the 95th percentile, or
+/// darker still, do not count: what is nearly black would make the rest white. 1 where no pixel is lit.
 /// @param radiance  3 per pixel, not negative
-double AutomaticExposure(const std::vector<float>& radiance);
+/// @param alpha     one per pixel in [0, 1]; empty: all is filled, as by a background
+double AutomaticExposure(const std::vector<float>& radiance, const std::vector<float>& alpha);
+constexpr float ThinnestPart = 0.2f;
 
-/// How many pixels have which luminance: 256 classes for every doubling. Of parts of a picture they add up.
-/// @param radiance  3 per pixel, not negative
-std::vector<int> LuminanceCounts(const std::vector<float>& radiance);
+/// How much of a picture, in 16ths of pixels, has which luminance: 256 classes for every doubling. Of parts of a picture
+/// they add up.
+std::vector<int> LuminanceCounts(const std::vector<float>& radiance, const std::vector<float>& alpha);
 
 /// The same exposure, of all that was counted.
 double ExposureOfCounts(const std::vector<int>& luminanceCounts);

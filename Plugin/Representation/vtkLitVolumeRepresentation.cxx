@@ -213,6 +213,11 @@ void vtkLitVolumeRepresentation::SetExposure(double exposure)
   this->RayCaster()->SetExposure(exposure);
 }
 
+double vtkLitVolumeRepresentation::GetUsedExposure()
+{
+  return vtkLitVolumeMapper::SafeDownCast(this->VolumeMapper)->GetUsedExposure();
+}
+
 void vtkLitVolumeRepresentation::SetToneCurve(int curve)
 {
   this->RayCaster()->SetToneCurve(curve);

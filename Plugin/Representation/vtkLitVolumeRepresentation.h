@@ -49,6 +49,9 @@ public:
   void SetDevice(const char* name);
   ///@}
 
+  /// What radiance was multiplied by in the last frame; 0 before.
+  double GetUsedExposure();
+
   ///@{
   /// Disconnect inputs 1 and 2.
   void RemoveLights();

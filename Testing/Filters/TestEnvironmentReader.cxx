@@ -23,6 +23,7 @@
 #include <limits>
 #include <random>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 namespace
@@ -373,6 +374,29 @@ void DamagedFilesAreErrors(test::Claims& claims)
 }
 }
 
+namespace
+{
+/// Who opens a pipe waits for someone who writes to it.
+void PipesAreErrors(test::Claims& claims)
+{
+  for (const char* name : { "pipe.exr", "pipe.hdr" })
+  {
+    const std::string path = Path(name);
+    unlink(path.c_str());
+    claims.That(mkfifo(path.c_str(), 0600) == 0, "there is a pipe");
+    alarm(20); // ends the test where it waits
+    vtkNew<vtkEnvironmentReader> reader;
+    test::Errors errors(reader);
+    claims.That(reader->CanReadFile(path.c_str()) == 0, "a pipe is no environment");
+    reader->SetFileName(path.c_str());
+    reader->Update();
+    alarm(0);
+    claims.That(errors.WasOneWith("is not a file but a pipe"), std::string("one error for ") + name);
+    unlink(path.c_str());
+  }
+}
+}
+
 int TestEnvironmentReader(int argc, char* argv[])
 {
   char* folder = vtkTestUtilities::GetArgOrEnvOrDefault("-T", argc, argv, "TYNDALL_TEST_OUTPUT", ".");
@@ -386,5 +410,6 @@ int TestEnvironmentReader(int argc, char* argv[])
   LightIsKept(claims);
   WrongQuestionsAreErrors(claims);
   DamagedFilesAreErrors(claims);
+  PipesAreErrors(claims);
   return claims.Result();
 }

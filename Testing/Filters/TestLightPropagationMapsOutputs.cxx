@@ -289,6 +289,7 @@ void ReportsAndStops(test::Claims& claims)
   maps->SetSkyColor(1.0, 1.0, 1.0);
   maps->Update();
   claims.That(watcher->Reports > 10 && watcher->Grows, "progress is reported, and grows");
+  const double before = maps->GetOutput()->GetCellData()->GetArray("fluence")->GetComponent(77, 0);
 
   watcher->Reports = 0;
   watcher->StopAt = 5;
@@ -296,13 +297,34 @@ void ReportsAndStops(test::Claims& claims)
   maps->SetTolerance(1e-6);
   maps->Update();
   claims.That(watcher->Reports >= 5 && watcher->Reports <= 6, "it stops when told, at once");
-  claims.That(maps->GetOutput()->GetNumberOfCells() == 0, "the output is empty then");
   claims.That(errors.None(), "and that is no error");
+  const auto isMarked = [&] {
+    return maps->GetOutput()->GetFieldData()->HasArray("aborted") != 0 &&
+      maps->GetOutputDataObject(1)->GetFieldData()->HasArray("aborted") != 0;
+  };
+  for (int update = 0; update < 2; ++update)
+  {
+    claims.That(maps->GetOutput()->GetNumberOfCells() == 24 * 24 * 24, "the last light stays then");
+    claims.That(maps->GetOutput()->GetCellData()->GetArray("fluence")->GetComponent(77, 0) == before, "as it was");
+    claims.That(isMarked() && maps->GetOrders() == 0, "and is marked as that of before");
+    claims.That(std::string(maps->GetLeftOut()).find("that of before") != std::string::npos, "on the panel, too");
+    watcher->Reports = 0;
+    maps->Update();
+    claims.That(watcher->Reports == 0, "nothing runs again by itself");
+  }
+  watcher->Reports = 0;
+  maps->SetDirectionsPerFace(64);
+  maps->Update();
+  claims.That(maps->GetOutput()->GetNumberOfCells() == 24 * 24 * 24 && isMarked(), "nor does it go when stopped again");
+  watcher->Reports = 0;
+  maps->SetInputDataObject(test::MakeMedium({ { 26, 24, 24 } }, 0.0, 1.0));
+  maps->Update();
+  claims.That(maps->GetOutput()->GetNumberOfCells() == 0 && isMarked(), "light of other voxels does not stay");
 
   watcher->StopAt = 0;
   maps->SetDirectionsPerFace(4);
   maps->Update();
-  claims.That(maps->GetOutput()->GetNumberOfCells() == 24 * 24 * 24, "it runs again after that");
+  claims.That(maps->GetOutput()->GetNumberOfCells() == 26 * 24 * 24 && !isMarked(), "it runs again after that");
 }
 }
 

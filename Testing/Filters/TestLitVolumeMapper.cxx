@@ -186,6 +186,14 @@ void RefusesAStretchedVolume(test::Claims& claims)
   scene.volume->SetScale(1.0, 2.0, 1.0);
   scene.window->Render();
   claims.That(errors.WasOneWith("stretched"), "a stretched volume is an error");
+  scene.volume->SetScale(1.0, 1.0, 1.0);
+  vtkCamera* const camera = scene.renderer->GetActiveCamera();
+  camera->SetFocalPoint(camera->GetPosition());
+  scene.window->Render();
+  claims.That(errors.WasOneWith("position and focal point are the same"), "a camera that looks nowhere is another");
+  camera->SetPosition(std::nan(""), 0.0, 0.0);
+  scene.window->Render();
+  claims.That(errors.WasOneWith("is not finite"), "and so is one that stands nowhere");
 }
 }
 

@@ -45,7 +45,8 @@ void ASunGivesItsPhotons(test::Claims& claims)
     claims.That(photons->GetNumberOfPoints() == 1000 && photons->GetNumberOfVerts() == 1000, "a thousand photons");
     claims.Near(Total(photons, 0), 4.0 * 16.0, 1e-3, "red power of the sun on the box");
     claims.Near(Total(photons, 2), 1.0 * 16.0, 1e-3, "blue power of the sun on the box");
-    claims.Near(emitter->GetPower(), 7.0 * 16.0, 1e-2, "power on the panel");
+    claims.Near(emitter->GetPower()[0], 4.0 * 16.0, 1e-2, "red power on the panel");
+    claims.Near(emitter->GetPower()[2], 1.0 * 16.0, 1e-2, "blue power on the panel");
     claims.That(photons->GetPointData()->GetVectors() != nullptr, "directions are the active vectors");
     const double* bounds = photons->GetBounds();
     claims.That(bounds[0] >= 2.0 && bounds[1] <= 6.0 && bounds[2] >= 0.0 && bounds[3] <= 4.0, "they are on the box");
@@ -94,7 +95,7 @@ void AMapMakesPhotonsDense(test::Claims& claims)
     return;
   }
   claims.Near(Total(emitter->GetOutput(), 0), 16.0, 1e-3, "power of the sun, all the same");
-  claims.Near(emitter->GetPower(), 48.0, 1e-2, "power on the panel");
+  claims.Near(emitter->GetPower()[1], 16.0, 1e-2, "power on the panel is that of a channel");
   vtkIdType dense = 0, first = 0;
   double product = 0.0;
   for (vtkIdType i = 0; i < 8000; ++i)

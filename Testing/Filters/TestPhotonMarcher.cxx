@@ -370,6 +370,36 @@ void BadInputIsOneError(test::Claims& claims)
   pipeline.marcher->Update();
   claims.That(errors.WasOneWith("no point array 'direction'"), "points that are no photons");
 }
+
+/// Photons by hand: what is shorter than its points is one error, and memory behind it is not read.
+void ShortArraysAreRefused(test::Claims& claims)
+{
+  Pipeline pipeline(test::MakeMedium({ { 4, 4, 4 } }, 0.1, 0.5), 100);
+  test::Errors errors(pipeline.marcher);
+  const auto refused = [&](const char* name, const std::string& part, const auto& change) {
+    vtkNew<vtkPolyData> photons;
+    pipeline.emitter->Update();
+    photons->DeepCopy(pipeline.emitter->GetOutputDataObject(0));
+    change(photons.Get(), photons->GetPointData()->GetArray(name));
+    pipeline.marcher->SetPhotonsData(photons);
+    pipeline.marcher->Update();
+    claims.That(errors.WasOneWith(part), std::string("photons are refused: ") + part);
+    claims.That(pipeline.Light()->GetNumberOfCells() == 0, std::string("and there is no light: ") + part);
+  };
+  for (const char* name : { "direction", "power", "weight", "batch", "light" })
+  {
+    refused(name, "'" + std::string(name) + "' has 99 values where the dataset has 100 points",
+      [](vtkPolyData*, vtkDataArray* array) { array->Resize(99); });
+    refused(name, "'" + std::string(name) + "' has 101 values where the dataset has 100 points",
+      [](vtkPolyData*, vtkDataArray* array) { array->SetNumberOfTuples(101); });
+  }
+  refused("batch", "'mass' has 3 values where the dataset has 100 cells", [](vtkPolyData* photons, vtkDataArray*) {
+    test::AddValues<vtkFloatArray>(photons->GetCellData(), "mass", 3, 1, [](vtkIdType, int) { return 1.0; });
+  });
+  refused("batch", "'photon_box' has 5 values", [](vtkPolyData* photons, vtkDataArray*) {
+    test::AddValues<vtkFloatArray>(photons->GetFieldData(), "photon_box", 5, 1, [](vtkIdType, int) { return 1.0; });
+  });
+}
 }
 
 int TestPhotonMarcher(int, char*[])
@@ -388,5 +418,6 @@ int TestPhotonMarcher(int, char*[])
   TrappedLightIsAWarning(claims);
   EmptySpaceIsKeptAsAskedFor(claims);
   BadInputIsOneError(claims);
+  ShortArraysAreRefused(claims);
   return claims.Result();
 }

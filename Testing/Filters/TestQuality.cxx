@@ -60,6 +60,27 @@ void SetsWhatNobodySet(test::Claims& claims)
   claims.That(errors.None(), "without complaint");
 }
 
+/// What goes on for ever along two axes takes 36 directions where 25 are asked for, and that is what is told.
+template <class Solver>
+void TellsWhatASlabTook(test::Claims& claims, const std::string& which)
+{
+  for (const int decomposition : { Solver::WHOLE, Solver::BLOCKS })
+  {
+    vtkNew<Solver> solver;
+    solver->SetInputDataObject(Medium());
+    solver->SetDecomposition(decomposition);
+    solver->PeriodicXOn();
+    solver->PeriodicYOn();
+    solver->SetFaceRadiance(0.0, 0.0, 0.0, 0.0, 0.0, 1.0);
+    solver->Update();
+    const std::string used = Used(solver->GetOutputDataObject(0));
+    const std::string leftOut = solver->GetLeftOut();
+    claims.That(
+      leftOut.find("solved with 36 a face") != std::string::npos, which + ": a slab of 36 directions: " + leftOut);
+    claims.That(Has(used, "DirectionsPerFace = 36"), which + ": which the settings say: " + used);
+  }
+}
+
 template <class Solver>
 void SetsTolerance(test::Claims& claims, const std::string& which)
 {
@@ -136,6 +157,8 @@ int TestQuality(int, char*[])
   }
   test::Claims claims;
   SetsWhatNobodySet(claims);
+  TellsWhatASlabTook<vtkLightPropagationMaps>(claims, "maps");
+  TellsWhatASlabTook<vtkDiscreteOrdinates>(claims, "ordinates");
   SetsTolerance<vtkDiscreteOrdinates>(claims, "ordinates");
   SetsTolerance<vtkLatticeBoltzmannLighting>(claims, "lattice");
   SetsSteps(claims);

@@ -18,6 +18,8 @@
 #include <cstdint>
 #include <string>
 #include <vector>
+#include <sys/stat.h>
+#include <unistd.h>
 
 using test::Folder;
 using test::IsEmpty;
@@ -231,6 +233,11 @@ void WrongQuestionsAreErrors(test::Claims& claims)
   fails(Path("none.vdb"), "cannot be read", "a missing file is an error");
   fails(Path("empty.vdb"), "is empty", "an empty file is an error");
   fails(Folder, "cannot be read", "a folder is an error");
+  mkfifo(Path("pipe.vdb").c_str(), 0600);
+  alarm(20); // ends the test where the reader waits for someone who writes
+  fails(Path("pipe.vdb"), "is not a file but a pipe", "a pipe is an error");
+  claims.That(!reader->CanReadFile(Path("pipe.vdb").c_str()), "a pipe is not taken for a .vdb file");
+  alarm(0);
   fails(Path("text.vdb"), "not an OpenVDB file", "another file is an error");
   claims.That(!reader->CanReadFile(Path("text.vdb").c_str()), "another file is not taken for a .vdb file");
 

@@ -91,7 +91,8 @@ TEST_F(BlocksInView, ShowWhatIsBehindOnce)
   for (const auto& cuts : Cuts)
   {
     const std::vector<BlockPixels> seen = SeenOf(this->GetDevice(), scene, Cut(scene.grid, cuts), scene.Framed());
-    const std::vector<float> radiance = RadianceOfAll(seen, { { 0, 0 }, { whole.width, whole.height } });
+    const std::vector<float> radiance =
+      PictureOfAll(seen, { { 0, 0 }, { whole.width, whole.height } }, BlockPixel::FarAway).radiance;
     EXPECT_LT(LargestDifference(radiance, whole.radiance), 1e-5);
     for (int pixel : { 0, whole.width * whole.height / 2 })
     {

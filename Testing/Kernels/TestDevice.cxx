@@ -8,12 +8,17 @@
 
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
+#include <fstream>
 #include <future>
+#include <iostream>
 #include <mutex>
 #include <numeric>
 #include <stdexcept>
 #include <string>
+#include <sys/resource.h>
 #include <thread>
+#include <unistd.h>
 #include <vector>
 
 using namespace tyndall;
@@ -58,6 +63,23 @@ TEST_F(DeviceLayer, NamesTheDevicesThereAreWhereTheOneAskedForIsNot)
   EXPECT_TRUE(Contains(complaint, "no such device"));
   EXPECT_TRUE(Contains(complaint, this->GetDevice().Name()));
   EXPECT_TRUE(Contains(complaint, "TYNDALL_DEVICE"));
+}
+
+/// In a process of its own, which has not loaded a driver yet.
+TEST(DeviceDeathTest, NamesMemoryWhereThatKeepsDriversFromLoading)
+{
+  testing::GTEST_FLAG(death_test_style) = "threadsafe";
+  const auto findWithLittle = [] {
+    std::size_t pages = 0;
+    std::ifstream("/proc/self/statm") >> pages;
+    const rlim_t most = pages * static_cast<rlim_t>(sysconf(_SC_PAGESIZE)) + (60u << 20);
+    const struct rlimit limit = { most, most };
+    setrlimit(RLIMIT_AS, &limit);
+    const std::string complaint = ComplaintOf([] { Device::Find(); });
+    std::cerr << complaint << std::endl;
+    std::_Exit(Contains(complaint, "MiB in all (ulimit -v): let it take more") ? 0 : 1);
+  };
+  EXPECT_EXIT(findWithLittle(), testing::ExitedWithCode(0), "There is no OpenCL device to work on. .*OpenCL");
 }
 
 TEST_F(DeviceLayer, SaysHowManyBytesAreMissing)

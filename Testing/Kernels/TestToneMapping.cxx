@@ -55,17 +55,41 @@ TEST(ToneMapping, ShowsTheColourThatRadianceWasChosenFor)
 
 TEST(ToneMapping, ExposesTheMeanAsAGreyCard)
 {
-  EXPECT_NEAR(0.18 / 3.0, AutomaticExposure({ 1.0f, 1.0f, 1.0f, 9.0f, 9.0f, 9.0f, 0.0f, 0.0f, 0.0f }), 2e-4);
-  EXPECT_EQ(1.0, AutomaticExposure({ 0.0f, 0.0f, 0.0f }));
+  EXPECT_NEAR(0.18 / 3.0, AutomaticExposure({ 1.0f, 1.0f, 1.0f, 9.0f, 9.0f, 9.0f, 0.0f, 0.0f, 0.0f }, {}), 2e-4);
+  EXPECT_EQ(1.0, AutomaticExposure({ 0.0f, 0.0f, 0.0f }, {}));
+}
+
+TEST(ToneMapping, ExposesThinSmokeAsThickSmoke)
+{
+  // Smoke of radiance 0.2 that fills all, a half, a fifth of the pixels, and before a background as bright.
+  const std::vector<float> filled = { 1.0f, 0.5f, 0.2f, 0.0f };
+  std::vector<float> radiance, before;
+  for (const float alpha : filled)
+  {
+    radiance.insert(radiance.end(), 3, 0.2f * alpha);
+    before.insert(before.end(), 3, 0.2f);
+  }
+  EXPECT_NEAR(0.9, AutomaticExposure(radiance, filled), 3e-3);
+  EXPECT_NEAR(0.9, AutomaticExposure(before, {}), 3e-3);
+  // What is hardly seen counts little: the bright core does not become white.
+  const std::vector<float> wisps = { 1.0f, 0.01f, 0.01f, 0.01f };
+  std::vector<float> seen;
+  for (const float alpha : wisps)
+  {
+    seen.insert(seen.end(), 3, 0.2f * alpha);
+  }
+  EXPECT_LT(AutomaticExposure(seen, wisps) * 0.2, 0.4);
+  // What shines by itself and fills nothing is seen all the same.
+  EXPECT_NEAR(0.18 * ThinnestPart, AutomaticExposure({ 1.0f, 1.0f, 1.0f }, { 0.0f }), 2e-4);
 }
 
 TEST(ToneMapping, IsNotBlindedByWhatIsNearlyBlack)
 {
   std::vector<float> radiance(300, 1e-20f);
   std::fill_n(radiance.begin(), 60, 2.0f);
-  EXPECT_NEAR(0.09, AutomaticExposure(radiance), 3e-4);
+  EXPECT_NEAR(0.09, AutomaticExposure(radiance, {}), 3e-4);
   std::fill_n(radiance.begin(), 6, 1e5f); // a sun
-  EXPECT_NEAR(0.09, AutomaticExposure(radiance), 0.07);
+  EXPECT_NEAR(0.09, AutomaticExposure(radiance, {}), 0.07);
 }
 
 TEST(ToneMapping, ColoursLaidOverBlackAreThePicture)

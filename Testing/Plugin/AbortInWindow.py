@@ -67,6 +67,7 @@ try:
     abort("%s.*%s" % (stopped, SOLVER))
 
     assert paraview.wait(PATIENCE) == 0, paraview.returncode
+    wait_for("%s.*status bar is cleared" % stopped)  # when the last one has ended well
 finally:
     if paraview.poll() is None:
         paraview.kill()

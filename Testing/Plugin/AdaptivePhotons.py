@@ -43,7 +43,7 @@ batch = vtk_to_numpy(photons.GetPointData().GetArray("batch"))
 assert 0 < weight.min() < 0.9 and 1.1 < weight.max() < 3.5, (weight.min(), weight.max())
 assert set(batch) == {0, 1}, set(batch)
 emitter.UpdatePropertyInformation()
-power = emitter.Power
+power = emitter.Power[0]
 
 marcher = PhotonMarcher(Input=octree, Photons=emitter, PhotonCounts=1)
 noisy = servermanager.Fetch(marcher)
@@ -82,7 +82,7 @@ reconstruction.UpdatePipeline()
 marcher.UpdatePropertyInformation()
 emitter.UpdatePropertyInformation()
 assert marcher.MediumKept == 1
-assert abs(emitter.Power / power / 1e6 - 1) < 1e-4, (emitter.Power, power)
+assert abs(emitter.Power[0] / power / 1e6 - 1) < 1e-4, (emitter.Power, power)
 assert abs(cells(servermanager.Fetch(importance), "importance") - density).max() < 1e-6
 
 # Another medium: nothing of the old one is left.

@@ -38,7 +38,7 @@ def same_facts(ranks, what, tolerance):
 
 for ranks in (1, 2, 3, 4, 8):
     more = ["whole_plain", "whole_turbid", "whole_photons", "whole_scattered", "whole_thick", "whole_absorbing", "blocks_estimated", "whole_estimated"] if ranks == 1 else \
-        ["whole_where_better", "whole_where_few"] if ranks == 2 else ["blocks_errors", "blocks_of_wrong_pieces", "blocks_abort", "photons_abort", "photons_differ", "blocks_estimated", "blocks_budget"] if ranks == 3 else []
+        ["whole_where_better", "whole_where_few"] if ranks == 2 else ["blocks_errors", "blocks_of_wrong_pieces", "blocks_abort", "blocks_ignored", "photons_abort", "photons_differ", "blocks_estimated", "blocks_budget"] if ranks == 3 else []
     code, said = runs.run(ranks, *CASES, *more)
     assert code == 0 and said.count("is done") == ranks, said
     ghost_cells_are_the_neighbours(ranks)

@@ -63,6 +63,10 @@ shown.Exposure = 0
 chosen = lit_view.drawn(view)
 pictures.write(output + "Exposed.png", chosen)
 assert 40 < chosen[75, 100].max() < 256, "the exposure is chosen"
+used = shown.UsedExposure
+assert used > 0, used  # which is told
+shown.Exposure = used
+lit_view.check_same(lit_view.drawn(view), chosen)
 shown.Exposure = lit_view.EXPOSURE
 shown.ShowBackground = 1
 shown.BackgroundColor = [0, 0.6, 0.2]
@@ -71,6 +75,40 @@ for shown.Exposure in (lit_view.EXPOSURE, 0):
 shown.Exposure = lit_view.EXPOSURE
 shown.ShowBackground = 0
 lit_view.check_same(lit_view.drawn(view), alone)
+
+# Lines that are thinner than a pixel stay as they are where a background is shown and edges are smoothed.
+view.GetRenderWindow().SetMultiSamples(4)
+beside = lit_view.drawn(view)[:, :40, 0].astype(float).sum()
+line = Show(Line(Point1=[-20, 14, -14], Point2=[22, 14, 13]), view)
+line.AmbientColor = line.DiffuseColor = [1, 1, 1]
+line.Ambient, line.Diffuse, line.LineWidth = 1, 0, 0.5
+shown.BackgroundColor = [0, 0.6, 0.2]
+
+
+def of_line():
+    """How much red the line adds."""
+    return lit_view.drawn(view)[:, :40, 0].astype(float).sum() - beside
+
+
+without = of_line()
+shown.ShowBackground = 1
+assert without > 500 and abs(of_line() / without - 1) < 0.1, (of_line(), without)
+shown.ShowBackground = 0
+Delete(line.Input)
+view.GetRenderWindow().SetMultiSamples(0)
+
+# Arrays of other names: what the solver was told to take is what is shown.
+renamed = light.Input
+for name, was in (("mua", "sigma_a"), ("mus", "sigma_s")):
+    renamed = Calculator(Input=renamed, AttributeType="Cell Data", ResultArrayName=name, Function=was)
+renamed = PassArrays(Input=renamed, CellDataArrays=["mua", "mus"], FieldDataArrays=["g", "phase_function"])
+told = LightPropagationMaps(Input=renamed, Lights=light.Lights, DirectionsPerFace=4,
+                            AbsorptionArray=["CELLS", "mua"], ScatteringArray=["CELLS", "mus"])
+Hide(light, view)
+other = lit_view.show_lit(told, view)
+lit_view.check_same(lit_view.drawn(view), alone)
+Hide(told, view)
+Show(light, view)
 
 # A state gives the same picture.
 SaveState(output + ".pvsm")

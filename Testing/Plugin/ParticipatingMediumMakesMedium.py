@@ -28,6 +28,13 @@ assert abs(medium.MaximumDensity - largest) < 1e-9 * largest, medium.MaximumDens
 assert abs(cells(medium, "sigma_s") * largest - 0.9 * as_is).max() < 1e-3
 assert abs(cells(medium, "sigma_a") * largest - 0.1 * as_is).max() < 1e-3
 
+# What is told is that of the last update, without being asked for.
+for unit in ("m", "km", "mm"):
+    medium.LengthUnit = unit
+    medium.UpdatePipeline()
+    assert medium.PhysicalExtent.endswith(" " + unit), (unit, medium.PhysicalExtent)
+medium.LengthUnit = "Millimetres Per Unit"
+
 medium.Albedo = [0.9, 0.6, 0.3]
 medium.ExtinctionScale = 2
 medium.EmissionScale = 0.5

@@ -18,7 +18,7 @@ emitter.Sampler = "Halton"
 photons = servermanager.Fetch(emitter)
 assert photons.GetNumberOfPoints() == 20000
 emitter.UpdatePropertyInformation()  # what the panel shows
-assert emitter.Photons == 20000 and emitter.Power > 0
+assert emitter.Photons == 20000 and emitter.Power[0] > 0
 
 marcher = PhotonMarcher(Input=medium, Photons=emitter)
 marcher.PathCount = 12

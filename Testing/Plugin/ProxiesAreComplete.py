@@ -95,6 +95,10 @@ def faults_of_proxy(proxy):
     places = ("ShowInMenu", "ReaderFactory", "WriterFactory")
     if hints is None or not any(hints.find(place) is not None for place in places):
         yield "it is in no menu and opens no file"
+    exposed = {each.get("name") for each in proxy.findall("SubProxy/ExposedProperties/Property")}
+    shown = [prop.get("name") for prop in proxy.iter() if prop.get("information_only") and prop.get("panel_visibility")]
+    if (shown or "GridSummary" in exposed) and (hints is None or hints.find("FreshResults") is None):
+        yield "its results %s stay those of the first update" % shown
 
 
 def faults_of_property(prop):

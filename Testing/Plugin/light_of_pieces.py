@@ -751,7 +751,37 @@ def blocks_abort():
     solver.SetAbortExecute(0)  # which the observer set once more when all was done
     light.Tolerance = 1e-3
     light.UpdatePipeline()
-    assert solver.GetOutputDataObject(0).GetNumberOfCells() > 0 and not errors, errors
+    output = solver.GetOutputDataObject(0)
+    assert output.GetNumberOfCells() > 0 and not output.GetFieldData().HasArray("aborted") and not errors, errors
+    before = vtk_to_numpy(output.GetCellData().GetArray("fluence")).copy()
+
+    # Stopped once more: each rank keeps its piece of the light of before, which says so.
+    if odd_rank():
+        solver.AddObserver("ProgressEvent", lambda caller, event: caller.SetAbortExecute(1))
+    light.Tolerance = 1e-7
+    light.UpdatePipeline()
+    output = solver.GetOutputDataObject(0)
+    assert output.GetFieldData().HasArray("aborted") and not errors, errors
+    assert (vtk_to_numpy(output.GetCellData().GetArray("fluence")) == before).all()
+    solver.RemoveObservers("ProgressEvent")
+    solver.SetAbortExecute(0)
+
+
+def blocks_ignored():
+    """An index that is not 1 on one rank alone is told of on all."""
+    piece = piece_of(parts(even_cuts())[rank])
+    index = numpy.ones(piece.GetNumberOfCells(), dtype=numpy.float32)
+    index[0] = 1.5 if odd_rank() else 1.0
+    add_density(piece, index, "ior")
+    medium = ParticipatingMedium(Input=source_of(piece), DensityArray=["CELLS", "density"])
+    for solver in (LightPropagationMaps, DiscreteOrdinates):
+        light = solver(Input=medium, SkyColor=[1, 1, 1], DirectionsPerFace=4, Decomposition="Blocks")
+        warnings = []
+        light.GetClientSideObject().AddObserver("WarningEvent", lambda caller, event: warnings.append(event))
+        light.UpdatePipeline()
+        ignored = light.GetClientSideObject().GetOutputDataObject(0).GetFieldData().GetAbstractArray("ignored")
+        assert ignored and ignored.GetValue(0).startswith("ior "), (rank, ignored)
+        assert len(warnings) == 1, (rank, warnings)
 
 
 def blocks_killed():

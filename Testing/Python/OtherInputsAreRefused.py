@@ -1,4 +1,5 @@
-"""Every port for images refuses what is none by one error, which says what it got and what makes an image of it."""
+"""Every port for images refuses what is none by one error, which says what it got and what makes an image of it; every
+port refuses data with an array that has not a value for each point, cell or row, which would be read beyond its end."""
 import os
 
 import numpy
@@ -164,9 +165,38 @@ def refuses(algorithm, port, named, data):
     algorithm.SetInputDataObject(port, before)
 
 
+def spoilt(data):
+    """Copies with one array that is too short, of each kind that the data have."""
+    for kind, of in ((vtkDataObject.POINT, "points"), (vtkDataObject.CELL, "cells"), (vtkDataObject.ROW, "rows")):
+        count = data.GetNumberOfElements(kind) if data.GetAttributes(kind) else 0
+        if count == 0:
+            continue
+        made = data.NewInstance()
+        made.ShallowCopy(data)
+        array = numpy_to_vtk(numpy.ones(count - 1), deep=True)
+        array.SetName("short")
+        made.GetAttributes(kind).AddArray(array)
+        yield of, made
+
+
+def refuses_short_arrays(algorithm):
+    for port in range(algorithm.GetNumberOfInputPorts()):
+        before = algorithm.GetInputDataObject(port, 0)
+        for of, data in spoilt(before) if before else ():
+            algorithm.SetInputDataObject(port, data)
+            said = messages(algorithm)
+            case = (algorithm.GetClassName(), port, of, said)
+            assert said.count("ERROR") == 1 and "Warning" not in said, case
+            assert "values where the dataset has " in said and of + " (input %d" % port in said, case
+            assert isinstance(algorithm, tyndall.vtkVDBWriter) or is_empty(algorithm), case
+            yield port, of
+        algorithm.SetInputDataObject(port, before)
+
+
 FILTERS = [name for name in dir(tyndall) if isinstance(getattr(tyndall, name), type)
            and issubclass(getattr(tyndall, name), vtkAlgorithm) and name not in ("vtkLitVolumeMapper",)]
 tried = 0
+short = 0
 for name in FILTERS:
     try:
         algorithm = getattr(tyndall, name)()
@@ -180,6 +210,7 @@ for name in FILTERS:
             refuses(algorithm, port, named, data)
         for named, data in IN_BLOCKS:
             refuses(algorithm, port, data.GetClassName() if name == "vtkVDBWriter" else named, data)
+    short += len(list(refuses_short_arrays(algorithm)))
     said = messages(algorithm)
     assert "ERROR" not in said, (name, said)
     if name == "vtkVDBWriter":
@@ -188,6 +219,19 @@ for name in FILTERS:
         assert not is_empty(algorithm), name
     tried += 1
 assert tried == 14, tried
+assert short > 2 * tried, short
+
+# A table whose columns are not as long as each other.
+table = vtkTable()
+for column, rows in (("cosine", 5), ("value", 3)):
+    array = numpy_to_vtk(numpy.linspace(-1.0, 1.0, rows), deep=True)
+    array.SetName(column)
+    table.GetRowData().AddArray(array)
+medium = with_valid_input("vtkParticipatingMedium")
+medium.SetPhaseFunction(medium.TABULATED)
+medium.SetPhaseTableData(table)
+said = messages(medium)
+assert said.count("ERROR") == 1 and "'value' has 3 values where the dataset has 5 rows" in said, said
 
 # Images in blocks are worked on one by one, where the filter has an output; one image is written.
 for make, parts in ((blocks, 2), (collection, 2), (partitions, 1)):
@@ -195,6 +239,14 @@ for make, parts in ((blocks, 2), (collection, 2), (partitions, 1)):
     octree.SetInputDataObject(make(image))
     assert messages(octree) == ""
     assert octree.GetOutputDataObject(0).GetNumberOfCells() == parts * count**3, make
+# Where light would have to go from one to another, that is warned of, once.
+solver = tyndall.vtkLightPropagationMaps()
+for make, parts in ((blocks, 2), (collection, 2), (partitions, 1)):
+    solver.SetInputDataObject(make(image))
+    said = messages(solver)
+    assert said.count("Warning") == (1 if parts > 1 else 0) and "ERROR" not in said, (make, said)
+    assert parts == 1 or "has 2 blocks" in said, said
+    assert solver.GetOutputDataObject(0).GetNumberOfCells() == parts * count**3, make
 writer = with_valid_input("vtkVDBWriter")
 refuses(writer, 0, "vtkPartitionedDataSetCollection", collection(image))
 assert messages(writer) == "" and os.path.exists("refused.vdb")

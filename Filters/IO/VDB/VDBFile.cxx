@@ -34,6 +34,10 @@ void SetType(VDBGrid& grid, std::string type)
 
 bool VDBFile::HasMagic(const std::string& path)
 {
+  if (!HasAnEnd(path))
+  {
+    return false;
+  }
   std::ifstream stream(path, std::ios::binary);
   std::int64_t magic = 0;
   stream.read(reinterpret_cast<char*>(&magic), sizeof(magic));

@@ -77,4 +77,10 @@ std::vector<std::string> Words(const PropagationSettings& settings)
     "StaggeredRays = " + std::to_string(settings.staggeredRays ? 1 : 0),
     "Tolerance = " + Text("%g", settings.tolerance), "EmissionError = " + Text("%g", settings.emissionError) };
 }
+
+std::vector<std::string> Words(PropagationSettings settings, const LightField& light)
+{
+  settings.directionsPerFace = light.directionsPerFace > 0 ? light.directionsPerFace : settings.directionsPerFace;
+  return Words(settings);
+}
 }

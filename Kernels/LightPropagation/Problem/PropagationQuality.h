@@ -1,5 +1,6 @@
 #pragma once
 
+#include "Light/LightField.h"
 #include "Light/Quality.h"
 #include "LightPropagation/PropagationSettings.h"
 #include "Lights/Lights.h"
@@ -32,4 +33,6 @@ bool Scatters(const Medium& medium); ///< in any voxel
 
 /// "Name = value" of each setting that a quality may choose.
 std::vector<std::string> Words(const PropagationSettings& settings);
+/// The same as the light was solved with: more directions, where a slab needs them (UnvaryingAxes.h).
+std::vector<std::string> Words(PropagationSettings settings, const LightField& light);
 }

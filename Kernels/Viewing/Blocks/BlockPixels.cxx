@@ -153,9 +153,4 @@ Picture PictureOfAll(const std::vector<BlockPixels>& frontToBack, const PixelRec
   });
   return picture;
 }
-
-std::vector<float> RadianceOfAll(const std::vector<BlockPixels>& frontToBack, const PixelRect& rect)
-{
-  return PictureOfAll(frontToBack, rect, BlockPixel::FarAway).radiance;
-}
 }

@@ -124,7 +124,4 @@ void TakeFrom(const Picture& again, const Starts& starts, BlockPixels& pixels);
 /// What all blocks show in a rectangle: radiance, alpha (of the medium, without the background) and depth.
 /// @param farDepth  of the pictures of blocks
 Picture PictureOfAll(const std::vector<BlockPixels>& frontToBack, const PixelRect& rect, float farDepth);
-
-/// The radiance of all blocks in a rectangle, 3 per pixel.
-std::vector<float> RadianceOfAll(const std::vector<BlockPixels>& frontToBack, const PixelRect& rect);
 }
