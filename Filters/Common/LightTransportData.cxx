@@ -458,7 +458,7 @@ MediumInput ReadMedium(vtkAlgorithm* filter, vtkImageData* image)
   input.medium.sigma_a = input.sigma_a;
   input.medium.sigma_s = input.sigma_s;
   input.medium.emission = input.emission;
-  input.g = ReadCells(image, "g", Need::Optional, { 1, 3 });
+  input.g = ReadMeanCosines(image, input.sigma_s);
   input.medium.phase = ReadPhase(image, input.g, input.sigma_s);
   Check(input.medium);
   return input;

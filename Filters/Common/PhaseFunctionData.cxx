@@ -2,11 +2,14 @@
 
 #include "Common/InputsKey.h"
 #include "Common/LightTransportData.h"
+#include "Common/VectorArray.h"
 #include "Numerics/NumberText.h"
+#include "PhaseFunction/UsedCosines.h"
 
 #include "vtkCellData.h"
 #include "vtkDataObject.h"
 #include "vtkFieldData.h"
+#include "vtkFloatArray.h"
 #include "vtkImageData.h"
 #include "vtkPointData.h"
 #include "vtkStringArray.h"
@@ -14,6 +17,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace tyndall
 {
@@ -134,30 +138,6 @@ void CheckNotContradicted(const PhaseDescription& description, const PhaseFuncti
     }
   }
 }
-
-/// Whether all voxels that scatter have one mean cosine in each channel.
-/// @param even  where they do, that one; unchanged where nothing scatters
-bool IsEven(const Field& g, const Field& sigma_s, std::size_t voxels, Rgb& even)
-{
-  const Rgb* first = nullptr;
-  Rgb found = {};
-  for (std::size_t i = 0; i < voxels; ++i)
-  {
-    const Rgb here = { g.At(i, 0), g.At(i, 1), g.At(i, 2) };
-    const bool scatters = sigma_s.At(i, 0) > 0.0f || sigma_s.At(i, 1) > 0.0f || sigma_s.At(i, 2) > 0.0f;
-    if (scatters && first && here != *first)
-    {
-      return false;
-    }
-    if (scatters && !first)
-    {
-      found = here;
-      first = &found;
-    }
-  }
-  even = first ? found : even;
-  return true;
-}
 }
 
 std::array<PhaseFunction, 3> PhaseDescription::Functions() const
@@ -258,19 +238,24 @@ void WritePhaseDescription(vtkDataObject* medium, const PhaseDescription& descri
   }
 }
 
+FloatField ReadMeanCosines(vtkImageData* image, const Field& sigma_s)
+{
+  FloatField g = ReadCells(image, GFact, Need::Optional, { 1, 3 });
+  std::vector<float> used = WithoutUnusedCosines(g, sigma_s, GridOf(image).VoxelCount());
+  return used.empty() ? g : FloatField(ArrayOf<vtkFloatArray>(GFact, std::move(used), g.Components()));
+}
+
 PhaseOfMedium ReadPhase(vtkImageData* image, const Field& g, const Field& sigma_s)
 {
-  PhaseDescription description = ReadPhaseDescription(image);
+  const PhaseDescription description = ReadPhaseDescription(image);
   if (g.values)
   {
+    const PhaseFunction kind = description.KindOfVaryingG();
     Medium medium;
     medium.grid = GridOf(image);
-    medium.phase = PhaseOfMedium(description.KindOfVaryingG(), g);
+    medium.phase = PhaseOfMedium(kind, g);
     Check(medium);
-    if (!IsEven(g, sigma_s, medium.grid.VoxelCount(), description.g))
-    {
-      return medium.phase;
-    }
+    return PhaseByVoxel(kind, g, MeanCosineRange(g, sigma_s, medium.grid.VoxelCount()));
   }
   const std::array<PhaseFunction, 3> functions = description.Functions();
   if (!NeedsG(description.name) && image->GetFieldData()->HasArray(GFact))

@@ -26,6 +26,7 @@ class vtkImageData;
 /// not contradict. Cells `g` (1 or 3 components) of `henyey_greenstein` and `schlick` count before field data `g`.
 namespace tyndall
 {
+class FloatField;
 struct InputsKey;
 
 /// What field data say. A text and numbers that are not checked before Functions().
@@ -56,6 +57,10 @@ std::string PhaseInWords(vtkDataObject* medium);
 /// Writes it as field data, and takes away those that it does not need. `g` of functions that need none is their mean
 /// cosine.
 void WritePhaseDescription(vtkDataObject* medium, const PhaseDescription& description);
+
+/// Cells `g` of an image; not there where it has none. Where nothing scatters their values have no meaning: those that
+/// would be refused are 0.
+FloatField ReadMeanCosines(vtkImageData* medium, const Field& sigma_s);
 
 /// How a medium with such field data and cells `g` scatters.
 /// @param g         without values: there are no such cells. Seen, not owned

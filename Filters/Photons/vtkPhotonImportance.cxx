@@ -171,6 +171,7 @@ std::optional<tyndall::Importance> vtkPhotonImportance::FindInPieces(
       read = tyndall::ReadRefractiveMedium(this, own);
     }
   });
+  tyndall::AgreeOnMeanCosine(communicator, pieces.HasOwn(), read.input.g, read.input.medium);
   const tyndall::ImportanceSettings settings = SettingsOf(this);
   tyndall::RequireSame(communicator, "settings, or how many lights shine", true,
     { light ? 1.0 * static_cast<double>(light->lights.size()) : -1.0, light ? tyndall::Sum(light->sky) : 0.0,

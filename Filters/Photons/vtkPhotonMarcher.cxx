@@ -334,6 +334,8 @@ bool vtkPhotonMarcher::ReadPiece(tyndall::Communicator& communicator, const tynd
       "Ranks cannot march photons through their pieces (Decomposition: blocks) with " + refused +
         ". Leave it out, or let each rank have the whole.");
   });
+  tyndall::MediumInput& input = piece.read.input;
+  tyndall::AgreeOnMeanCosine(communicator, pieces.HasOwn(), input.g, input.medium);
   return communicator.Largest({ refused.empty() && !rather ? 0.0 : 1.0 })[0] == 0.0;
 }
 

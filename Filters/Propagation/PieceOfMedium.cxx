@@ -1,5 +1,6 @@
 #include "Propagation/PieceOfMedium.h"
 
+#include "Distribution/SharedMedium.h"
 #include "Ranks/PieceBlocks.h"
 
 #include "vtkImageData.h"
@@ -14,9 +15,10 @@ PieceOfMedium::PieceOfMedium(
     {
       this->image = pieces.OwnImage(given);
       this->input = ReadMedium(filter, this->image);
-      this->medium = this->input.medium;
     }
   });
+  AgreeOnMeanCosine(communicator, pieces.HasOwn(), this->input.g, this->input.medium);
+  this->medium = this->input.medium;
   this->emits = OnAnyRank(communicator, pieces.HasOwn() && this->input.Emits());
 }
 }

@@ -342,10 +342,10 @@ std::vector<float> MakeMedium(vtkParticipatingMedium* filter, const Recipe& reci
     AddProduct(output, "emission", relative, recipe.emission);
   }
   tyndall::WritePhaseDescription(output, phase);
-  if (const tyndall::FloatField g = tyndall::ReadCells(output, "g", tyndall::Need::Optional, { 1, 3 }); g.IsThere())
+  const tyndall::FloatField scattering = tyndall::ReadCells(output, "sigma_s", tyndall::Need::Required);
+  if (const tyndall::FloatField g = tyndall::ReadMeanCosines(output, scattering); g.IsThere())
   {
-    const tyndall::FloatField sigma_s = tyndall::ReadCells(output, "sigma_s", tyndall::Need::Required);
-    tyndall::ReadPhase(output, g, sigma_s); // says what is wrong with the input's
+    tyndall::ReadPhase(output, g, scattering); // says what is wrong with the input's
   }
   return relative;
 }

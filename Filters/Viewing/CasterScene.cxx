@@ -1,5 +1,6 @@
 #include "CasterScene.h"
 
+#include "Distribution/SharedMedium.h"
 #include "Viewing/Blocks/PictureInBlocks.h"
 #include "vtkMediumRayCaster.h"
 
@@ -40,6 +41,12 @@ std::unique_ptr<CasterScene> MakeSceneOfBlock(
     if (pieces.HasOwn())
     {
       viewed = ReadViewed(pieces.filter, pieces.image, partition.whole);
+    }
+  });
+  AgreeOnMeanCosine(communicator, pieces.HasOwn(), viewed.medium.g, viewed.medium.medium);
+  communicator.Together([&] {
+    if (pieces.HasOwn())
+    {
       own = SharedSceneOf(viewed.medium.medium, viewed.Light(), viewed.ior, pieces.settings);
     }
   });

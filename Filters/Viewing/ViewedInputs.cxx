@@ -4,6 +4,7 @@
 #include "Common/PhaseFunctionData.h"
 #include "Common/VectorArray.h"
 #include "Distribution/BoxExchange.h"
+#include "Distribution/SharedMedium.h"
 #include "Medium/BoxFaces.h"
 #include "Medium/GridOfBox.h"
 #include "Viewing/Blocks/BlockFaces.h"
@@ -179,6 +180,7 @@ ViewedInputs SpreadTo(const std::vector<VoxelBox>& wanted, const VoxelBox& given
       medium.medium.phase = ReadPhase(asLarge, medium.g, medium.sigma_s);
     }
   });
+  AgreeOnMeanCosine(communicator, box.VoxelCount() > 0, spread.medium.g, spread.medium.medium);
   return spread;
 }
 }

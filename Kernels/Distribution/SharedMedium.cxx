@@ -1,8 +1,11 @@
 #include "Distribution/SharedMedium.h"
 
 #include "Device/Errors.h"
+#include "PhaseFunction/UsedCosines.h"
 
 #include <algorithm>
+#include <functional>
+#include <iterator>
 #include <limits>
 #include <string>
 
@@ -49,6 +52,24 @@ bool IsFirstThatHas(const Communicator& communicator, const BlockPartition& part
   const auto has = [](const VoxelBox& block) { return block.VoxelCount() > 0; };
   const std::vector<VoxelBox>& blocks = partition.blocks;
   return std::find_if(blocks.begin(), blocks.end(), has) - blocks.begin() == communicator.Rank();
+}
+
+void AgreeOnMeanCosine(Communicator& communicator, bool has, const Field& g, Medium& medium)
+{
+  const bool given = has && g.values;
+  MeanCosineRange range;
+  communicator.Together([&] { range = given ? MeanCosineRange(g, medium.sigma_s, medium.grid.VoxelCount()) : range; });
+  std::vector<double> ends(range.greatest.begin(), range.greatest.end());
+  std::transform(range.least.begin(), range.least.end(), std::back_inserter(ends), std::negate<double>());
+  ends = communicator.Largest(ends);
+  std::copy_n(ends.begin(), 3, range.greatest.begin());
+  std::transform(ends.begin() + 3, ends.end(), range.least.begin(), std::negate<double>());
+  communicator.Together([&] {
+    if (given)
+    {
+      medium.phase = PhaseByVoxel(medium.phase.OfChannel(0), g, range);
+    }
+  });
 }
 
 MediumTraits TraitsOfAll(Communicator& communicator, MediumTraits traits)

@@ -2,6 +2,7 @@
 
 #include "Distribution/BlockPartition.h"
 #include "Distribution/Communicator.h"
+#include "Medium/Medium.h"
 #include "Medium/Traits.h"
 
 #include <vector>
@@ -20,6 +21,13 @@ void RequireSame(Communicator& communicator, const BlockPartition& partition);
 
 /// Whether a rank is the first that has voxels: who counts what all know but ranks without voxels. No message is sent.
 bool IsFirstThatHas(const Communicator& communicator, const BlockPartition& partition);
+
+/// How a medium whose g is given by voxel scatters: each rank has g by voxel where it varies among the voxels of all
+/// ranks that scatter, else the same phase function as the others. Collective.
+/// @param has     voxels
+/// @param g       of the rank's voxels; without values the rank has none, and its medium stays as it is
+/// @param medium  of the rank, whose phase function is of the kind wanted
+void AgreeOnMeanCosine(Communicator& communicator, bool has, const Field& g, Medium& medium);
 
 /// Of the medium of all ranks, as far as solvers leave things out: absorbs, scatters, emits, grey and greyExtinction.
 /// @param ofBlock  the others of it are kept

@@ -66,6 +66,7 @@ PropagationSettings AsPropagation(const LatticeSettings& settings)
 {
   PropagationSettings of;
   of.periodic = settings.periodic;
+  of.maximumOrders = settings.maximumSteps;
   of.netFlux = settings.netFlux;
   of.source = PropagationSource::Constant; // voxels stay cubes in slabs, too
   return of;
@@ -137,7 +138,6 @@ void DescribeLight(
 void JudgeLight(LightField& light, const Illumination& illumination, const LatticeSettings& settings)
 {
   PropagationSettings judged = AsPropagation(settings);
-  judged.maximumOrders = settings.maximumSteps;
   judged.tolerance = settings.tolerance;
   JudgeConvergence(judged, light);
   if (Reflects(illumination))

@@ -1,7 +1,13 @@
 #include "MediumScene.h"
 
 #include "vtkDataSetAttributes.h"
+#include "vtkDiscreteOrdinates.h"
+#include "vtkLatticeBoltzmannLighting.h"
 #include "vtkLightPropagationMaps.h"
+#include "vtkLightRig.h"
+#include "vtkMediumRayCaster.h"
+#include "vtkPhotonEmitter.h"
+#include "vtkPhotonMarcher.h"
 #include "vtkStringArray.h"
 #include "vtkUnsignedCharArray.h"
 
@@ -10,6 +16,7 @@
 #include <functional>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 /// What of an image says how it scatters: cells `g`, field data `g`, `phase_function` and its companions.
@@ -146,6 +153,94 @@ void HiddenCellsDoNotMatter(test::Claims& claims, Solver& solver)
     "g of a hidden cell may be anything");
 }
 
+/// All filters that read g: their values for a medium, or none where they refused it.
+class ReadersOfG
+{
+public:
+  ReadersOfG()
+  {
+    vtkNew<vtkLightRig> rig;
+    this->Emitter->SetLightsConnection(rig->GetOutputPort());
+    this->Emitter->SetPhotonCount(100);
+    vtkNew<vtkMediumRayCaster> caster;
+    caster->SetImageSize(8, 6);
+    caster->SetCameraPosition(9.0, 8.0, 12.0);
+    caster->SetCameraFocalPoint(1.5, 2.0, 2.5);
+    caster->SetLightsConnection(rig->GetOutputPort());
+    caster->SetShadowRays(true);
+    vtkNew<vtkPhotonMarcher> marcher;
+    marcher->SetPhotonsConnection(this->Emitter->GetOutputPort());
+    marcher->SetMaximumOrders(3);
+    this->Add("photons", marcher);
+    this->Add("the ray caster", caster);
+    this->AddSolver<vtkLightPropagationMaps>("maps");
+    this->AddSolver<vtkDiscreteOrdinates>("ordinates");
+    this->AddSolver<vtkLatticeBoltzmannLighting>("a lattice");
+    this->AddSolver<vtkLatticeBoltzmannLighting>("a lattice as published")->SetScheme(0);
+  }
+
+  std::size_t Count() const { return this->Readers.size(); }
+  const std::string& Name(std::size_t i) const { return this->Readers[i].first; }
+  std::vector<double> Values(std::size_t i, vtkImageData* medium)
+  {
+    vtkAlgorithm* const reader = this->Readers[i].second;
+    const test::Errors quiet(reader);
+    this->Emitter->SetInputDataObject(medium);
+    reader->SetInputDataObject(medium);
+    reader->Update();
+    auto* const output = vtkImageData::SafeDownCast(reader->GetOutputDataObject(0));
+    vtkDataArray* array = output->GetCellData()->GetArray("fluence");
+    array = array ? array : output->GetPointData()->GetArray("radiance");
+    std::vector<double> values;
+    for (vtkIdType k = 0; array && k < array->GetNumberOfValues(); ++k)
+    {
+      const int components = array->GetNumberOfComponents();
+      values.push_back(array->GetComponent(k / components, static_cast<int>(k % components)));
+    }
+    return values;
+  }
+
+private:
+  void Add(const char* name, vtkAlgorithm* reader) { this->Readers.emplace_back(name, reader); }
+  template <class Solver>
+  Solver* AddSolver(const char* name)
+  {
+    vtkNew<Solver> solver;
+    solver->SetSkyColor(1.0, 1.0, 1.0);
+    solver->SetMaximumOrders(3);
+    this->Add(name, solver);
+    return solver;
+  }
+
+  vtkNew<vtkPhotonEmitter> Emitter;
+  std::vector<std::pair<std::string, vtkSmartPointer<vtkAlgorithm>>> Readers;
+};
+
+void NothingIsReadWhereNothingScatters(test::Claims& claims)
+{
+  constexpr vtkIdType hole = 16;
+  const auto medium = [](double elsewhere, double there) {
+    auto image = test::MakeMedium({ { 3, 4, 5 } }, 0.05, 0.3);
+    image->GetCellData()->GetArray("sigma_s")->SetComponent(hole, 0, 0.0);
+    AddCellsOfG(image, 1, [=](vtkIdType i, int) { return i == hole ? there : i < 30 ? 0.75 : elsewhere; });
+    return image;
+  };
+  ReadersOfG readers;
+  for (std::size_t i = 0; i < readers.Count(); ++i)
+  {
+    for (const double elsewhere : { 0.75, 0.25 })
+    {
+      const std::vector<double> usual = readers.Values(i, medium(elsewhere, 0.0));
+      claims.That(!usual.empty(), readers.Name(i) + " take cells g");
+      for (const double there : { 1.0, -7.0, NotANumber })
+      {
+        claims.That(!usual.empty() && readers.Values(i, medium(elsewhere, there)) == usual,
+          readers.Name(i) + ": g is " + std::to_string(there) + " where nothing scatters");
+      }
+    }
+  }
+}
+
 void NamesChooseTheFunction(test::Claims& claims, Solver& solver)
 {
   const std::vector<double> isotropic = solver.Fluence(Good());
@@ -225,6 +320,7 @@ int TestPhaseFunctionOfMedium(int, char*[])
   Solver solver;
   CellsCountBeforeFieldData(claims, solver);
   HiddenCellsDoNotMatter(claims, solver);
+  NothingIsReadWhereNothingScatters(claims);
   NamesChooseTheFunction(claims, solver);
   BadFunctionsAreOneError(claims, solver);
   BadTablesNameTheRow(claims, solver);

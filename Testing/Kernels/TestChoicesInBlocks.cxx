@@ -2,8 +2,10 @@
 
 #include "BlocksOfLight.h"
 
+#include "Distribution/SharedMedium.h"
 #include "LightPropagation/Emission/EmissionPeaks.h"
 #include "LightPropagation/Problem/PropagationQuality.h"
+#include "PhaseFunction/UsedCosines.h"
 
 #include <algorithm>
 #include <cmath>
@@ -36,6 +38,50 @@ TEST_F(ChoicesInBlocks, TakeAsManyDirectionsOfUnscatteredLightAsTheWhole)
       LightOfAll(GetDevice(), BlockPartition::Even(whole.medium.grid, ranks), whole, shining, settings);
     EXPECT_EQ(found.uncollidedDirections, expected.uncollidedDirections);
     ExpectSame(found, expected);
+  }
+}
+
+/// g by voxel that is the same in all voxels of one block that scatter and varies in another, or is the same in all blocks
+/// or all but one. In voxels that do not scatter it is any number.
+TEST_F(ChoicesInBlocks, AgreeOnWhetherTheMeanCosineVaries)
+{
+  const auto inBlock = [](int x, float lower, float upper) { return x < 4 ? lower : x < 8 ? 0.5f : upper; };
+  for (const std::array<float, 2>& g : { std::array<float, 2>{ 0.3f, -0.2f }, { 0.5f, 0.5f }, { 0.5f, 0.8f } })
+  {
+    SCOPED_TRACE(std::to_string(g[0]) + ", " + std::to_string(g[1]));
+    RandomMedium whole(Grid{ { 12, 5, 4 } }, 1, 0.6f, 7);
+    std::vector<float> cosines;
+    for (std::size_t i = 0; i < whole.scattering.size(); ++i)
+    {
+      const int x = whole.medium.grid.VoxelAt(i)[0];
+      whole.scattering[i] *= x == 5 || (x >= 8 && g[0] == g[1]) ? 0.0f : 1.0f; // the last block does not scatter
+      cosines.push_back(whole.scattering[i] > 0.0f ? inBlock(x, g[0], g[1]) : 0.01f * static_cast<float>(x));
+    }
+    const PhaseFunction kind = PhaseFunction::Schlick(0.0);
+    const Field ofWhole = { cosines.data(), 1 };
+    whole.medium.phase = PhaseOfMedium(kind, ofWhole);
+    SingleRank single;
+    Medium alone = whole.medium;
+    AgreeOnMeanCosine(single, true, ofWhole, alone);
+    EXPECT_EQ(alone.phase.Varies(), g[1] != 0.5f || g[0] != 0.5f);
+    EXPECT_EQ(
+      alone.phase.OfChannel(0).MeanCosine(), alone.phase.Varies() ? 0.0 : PhaseFunction::Schlick(0.5).MeanCosine());
+    const LightField expected = SolveConservative(GetDevice(), alone, LitFromOutside(), SettingsOf(6));
+    for (const int ranks : { 1, 3 })
+    {
+      SCOPED_TRACE(std::to_string(ranks) + " ranks");
+      const BlockPartition partition = BlockPartition::Even(whole.medium.grid, ranks);
+      const LightField found = LightOfAll(partition, whole, LitFromOutside(),
+        [&](Communicator& communicator, const Medium& given, const Illumination& light) {
+          // As filters read their piece.
+          const Field own = given.phase.G();
+          Medium medium = given;
+          medium.phase = PhaseByVoxel(kind, own, MeanCosineRange(own, given.sigma_s, given.grid.VoxelCount()));
+          AgreeOnMeanCosine(communicator, true, own, medium);
+          return SolveInBlocks(GetDevice(), communicator, partition, medium, light, SettingsOf(6));
+        });
+      ExpectSame(found, expected);
+    }
   }
 }
 

@@ -286,6 +286,16 @@ TEST_F(LatticeBlocks, MayBeBetweenFacesThatGiveBackAllLight)
   });
 }
 
+/// Round three periodic axes likewise: where nothing absorbs, what is emitted never ends.
+TEST_F(LatticeBlocks, RefuseLightThatGoesRoundWithoutEnd)
+{
+  ExpectErrors("without end", [](int, MediumToCut& part, LatticeSettings& settings, Monitor&) {
+    settings.periodic = { true, true, true };
+    part.scene.light.faceAlbedo = {};
+    std::fill(part.scene.sigma_a.begin(), part.scene.sigma_a.end(), 0.0f);
+  });
+}
+
 /// Rows of voxels along periodic axes are empty, as clear air above a cloud is, or a hole through it. Of what is first
 /// scattered near a thick voxel's face a part begins in such a row, and some rows glow themselves.
 TEST_F(LatticeBlocks, LightRowsThatAreEmptyAlongPeriodicAxes)

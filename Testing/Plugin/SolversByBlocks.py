@@ -11,7 +11,8 @@ runs = Runs("SolversByBlocks")
 CASES = ["lattice_wavelet", "lattice_even", "lattice_uneven", "lattice_lamps", "lattice_around",
          "lattice_steps", "lattice_photons", "lattice_photons_few", "lattice_photons_whole", "lattice_turns", "ordinates_even",
          "ordinates_uneven", "ordinates_faces", "ordinates_around", "ordinates_warm", "ordinates_steps",
-         "published_even", "published_uneven", "published_shown", "published_warm", "published_in_turn"]
+         "published_even", "published_uneven", "published_shown", "published_warm", "published_in_turn", "lattice_cosines",
+         "ordinates_cosines", "blocks_cosines"]
 LIKE = {"published_uneven": "published_even", "lattice_uneven": "lattice_even", "lattice_photons_few": "lattice_photons",
         "ordinates_uneven": "ordinates_even"}
 WHOLE = ["lattice_exact", "lattice_whole", "lattice_turns_whole", "ordinates_whole", "ordinates_faces_whole",

@@ -514,6 +514,30 @@ def lattice_uneven():
     own_pieces("lattice_uneven", uneven_pieces(), solve=lattice_by_blocks)
 
 
+def with_cosines():
+    """Pieces with cells g that are the same in one half of the voxels that scatter, and vary in the other one. In the last layer
+    nothing scatters, and g is 1."""
+    pieces = [piece_of(extent) for extent in parts(even_cuts())]
+    for piece, extent in zip(pieces, parts(even_cuts())):
+        x = numpy.arange(piece.GetNumberOfCells()) % max(extent[1] - extent[0], 1) + extent[0]
+        values = vtk_to_numpy(piece.GetCellData().GetArray("density"))
+        values[x == 11] = 0
+        add_density(piece, numpy.where(x == 11, 1, numpy.where(x < 6, 0.5, 0.05 * x)).astype(numpy.float32), "g")
+    return pieces
+
+
+def lattice_cosines():
+    own_pieces("lattice_cosines", with_cosines(), solve=lattice_by_blocks)
+
+
+def ordinates_cosines():
+    own_pieces("ordinates_cosines", with_cosines(), solve=ordinates_by_blocks)
+
+
+def blocks_cosines():
+    own_pieces("blocks_cosines", with_cosines(), solve=by_blocks)
+
+
 def near_lamp():
     return PointLight(Position=[7, 2, 6], Power=[9, 5, 9])
 

@@ -186,7 +186,7 @@ LightField SolveOrdinatesInBlocks(Device& device, Communicator& communicator, co
   RequireSame(communicator, partition);
   RequireSame(communicator, has, medium, illumination, asPropagation);
   RequireSameOrdinates(communicator, settings);
-  CheckLightHasAnEnd(AbsorbsOnAny(communicator, has, medium), illumination, settings.periodic);
+  CheckLightHasAnEnd(LightEndsOnAny(communicator, has, medium, illumination), illumination, asPropagation);
   const UnvaryingAxes unvarying(partition.whole, illumination, asPropagation);
   BlockPartition wide = partition;
   wide.whole = unvarying.Widened(partition.whole);

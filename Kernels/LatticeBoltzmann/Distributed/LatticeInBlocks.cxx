@@ -61,7 +61,7 @@ void CheckTogether(Communicator& communicator, const BlockPartition& partition, 
   RequireSame(communicator, partition);
   RequireSame(communicator, has, medium, illumination, AsPropagationInBlocks(settings));
   RequireSameLattice(communicator, has, ior, illumination, settings);
-  CheckLightHasAnEnd(AbsorbsOnAny(communicator, has, medium), illumination, settings.periodic);
+  CheckLightHasAnEnd(LightEndsOnAny(communicator, has, medium, illumination), illumination, AsPropagation(settings));
 }
 }
 

@@ -66,11 +66,19 @@ void RequireSame(Communicator& communicator, bool has, const Medium& medium, con
   RequireSame(communicator, "what shines on it", true, light);
 }
 
-std::array<bool, 3> AbsorbsOnAny(Communicator& communicator, bool has, const Medium& medium)
+LightEnds LightEndsOnAny(Communicator& communicator, bool has, const Medium& medium, const Illumination& illumination)
 {
-  const std::array<bool, 3> own = has ? ChannelsThatAbsorb(medium) : std::array<bool, 3>{};
-  const std::vector<double> any = communicator.Largest({ own[0] * 1.0, own[1] * 1.0, own[2] * 1.0 });
-  return { any[0] > 0.0, any[1] > 0.0, any[2] > 0.0 };
+  const LightEnds own = has ? LightEndsIn(medium, illumination) : LightEnds();
+  std::vector<double> any(own.absorbs.begin(), own.absorbs.end());
+  any.insert(any.end(), own.begins.begin(), own.begins.end());
+  any = communicator.Largest(any);
+  LightEnds ends;
+  for (std::size_t c = 0; c < 3; ++c)
+  {
+    ends.absorbs[c] = any[c] > 0.0;
+    ends.begins[c] = any[3 + c] > 0.0;
+  }
+  return ends;
 }
 
 Medium VoxelOfVacuum(const Grid& whole)

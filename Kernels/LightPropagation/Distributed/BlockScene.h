@@ -4,6 +4,7 @@
 #include "Distribution/Communicator.h"
 #include "Light/LightField.h"
 #include "LightPropagation/Problem/AngularDegree.h"
+#include "LightPropagation/Problem/PropagationProblem.h"
 #include "LightPropagation/Problem/SceneUnits.h"
 #include "LightPropagation/Problem/TruncatedScattering.h"
 #include "LightPropagation/PropagationSettings.h"
@@ -22,8 +23,8 @@ namespace tyndall
 void RequireSame(Communicator& communicator, bool has, const Medium& medium, const Illumination& illumination,
   const PropagationSettings& settings);
 
-/// Whether any rank's medium absorbs, by channel. All ranks call it together.
-std::array<bool, 3> AbsorbsOnAny(Communicator& communicator, bool has, const Medium& medium);
+/// LightEndsIn of the medium of all ranks. All ranks call it together.
+LightEnds LightEndsOnAny(Communicator& communicator, bool has, const Medium& medium, const Illumination& illumination);
 
 /// A medium for a rank whose block has no voxels: what is found there counts nowhere.
 Medium VoxelOfVacuum(const Grid& whole);

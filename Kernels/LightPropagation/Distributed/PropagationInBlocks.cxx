@@ -54,7 +54,7 @@ void CheckBlocks(Communicator& communicator, const BlockPartition& partition, co
   });
   RequireSame(communicator, partition);
   RequireSame(communicator, has, medium, illumination, settings);
-  CheckLightHasAnEnd(AbsorbsOnAny(communicator, has, medium), illumination, settings.periodic);
+  CheckLightHasAnEnd(LightEndsOnAny(communicator, has, medium, illumination), illumination, settings);
 }
 
 namespace

@@ -1,6 +1,7 @@
 #include "LightPropagation/Problem/AngularDegree.h"
 
 #include "LightPropagation/Angular/AngularBasis.h"
+#include "PhaseFunction/UsedCosines.h"
 
 #include <algorithm>
 #include <cmath>
@@ -35,10 +36,14 @@ std::vector<double> LargestMoments(const Medium& medium)
     add(medium.phase.OfChannel(2));
     return largest;
   }
-  const Field& g = medium.phase.G();
-  const auto [least, most] = std::minmax_element(g.values, g.values + medium.grid.VoxelCount() * g.components);
-  add(medium.phase.OfChannel(0).WithMeanCosine(*least));
-  add(medium.phase.OfChannel(0).WithMeanCosine(*most));
+  const MeanCosineRange range(medium.phase.G(), medium.sigma_s, medium.grid.VoxelCount());
+  for (std::size_t c = 0; c < 3; ++c)
+  {
+    for (const double g : { range.least[c], range.greatest[c] })
+    {
+      add(medium.phase.OfChannel(0).WithMeanCosine(std::isfinite(g) ? g : 0.0));
+    }
+  }
   return largest;
 }
 

@@ -15,35 +15,50 @@ const Grid& Checked(const Medium& medium, const Illumination& illumination, cons
 }
 }
 
-std::array<bool, 3> ChannelsThatAbsorb(const Medium& medium)
+LightEnds LightEndsIn(const Medium& medium, const Illumination& illumination)
 {
-  std::array<bool, 3> absorbs = {};
+  LightEnds ends;
+  const auto any = [&](const Field& field, int channel) {
+    bool found = false;
+    for (std::size_t i = 0; i < medium.grid.VoxelCount() && field.values && !found; ++i)
+    {
+      found = field.At(i, channel) > 0.0f;
+    }
+    return found;
+  };
   for (int c = 0; c < 3; ++c)
   {
-    for (std::size_t i = 0; i < medium.grid.VoxelCount() && !absorbs[c]; ++i)
+    bool meets = illumination.uncollided.IsThere();
+    for (const Light& light : illumination.lights)
     {
-      absorbs[c] = medium.sigma_a.At(i, medium.sigma_a.components == 3 ? c : 0) > 0.0f;
+      meets = meets || (light.type != LightType::Directional && light.power[c] > 0.0);
     }
+    ends.absorbs[c] = any(medium.sigma_a, c);
+    ends.begins[c] = !ends.absorbs[c] && (any(medium.emission, c) || (meets && any(medium.sigma_s, c)));
   }
-  return absorbs;
+  return ends;
 }
 
-void CheckLightHasAnEnd(
-  const std::array<bool, 3>& absorbs, const Illumination& illumination, const std::array<bool, 3>& periodic)
+void CheckLightHasAnEnd(const LightEnds& ends, const Illumination& illumination, const PropagationSettings& settings)
 {
-  bool anyFace = false;
+  const std::array<bool, 3>& periodic = settings.periodic;
+  const bool anyFace = !periodic[0] || !periodic[1] || !periodic[2];
   for (int c = 0; c < 3; ++c)
   {
     bool closed = true;
     for (int face = 0; face < 6; ++face)
     {
       closed = closed && (periodic[face / 2] || illumination.faceAlbedo[face][c] >= 1.0);
-      anyFace = anyFace || !periodic[face / 2];
     }
-    if (closed && anyFace && !absorbs[c])
+    if (closed && anyFace && !ends.absorbs[c])
     {
       throw InvalidInput("Every face gives back all light (FaceAlbedo 1) and the medium absorbs none: light would grow "
                          "without end. Give a face an albedo below 1, or the medium some sigma_a.");
+    }
+    if (!anyFace && !ends.absorbs[c] && ends.begins[c] && settings.maximumOrders == 0)
+    {
+      throw InvalidInput("All three axes are periodic and the medium absorbs no light: what begins in it would grow "
+                         "without end. Leave an axis open, give the medium some sigma_a, or set MaximumOrders.");
     }
   }
 }
@@ -60,7 +75,7 @@ void CheckBlock(const Medium& medium, const Illumination& illumination, const Pr
 void Check(const Medium& medium, const Illumination& illumination, const PropagationSettings& settings)
 {
   CheckBlock(medium, illumination, settings);
-  CheckLightHasAnEnd(ChannelsThatAbsorb(medium), illumination, settings.periodic);
+  CheckLightHasAnEnd(LightEndsIn(medium, illumination), illumination, settings);
 }
 
 PropagationProblem::PropagationProblem(const Medium& medium, const Illumination& illumination,

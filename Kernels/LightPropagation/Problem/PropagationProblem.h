@@ -22,11 +22,15 @@ void Check(const Medium& medium, const Illumination& illumination, const Propaga
 
 /// The same of a medium that is one of several blocks, but for what only all of them tell: whether light ends.
 void CheckBlock(const Medium& medium, const Illumination& illumination, const PropagationSettings& settings);
-/// @param absorbs  by channel, any voxel
-/// @throws InvalidInput where light can neither leave the box nor be absorbed
-void CheckLightHasAnEnd(
-  const std::array<bool, 3>& absorbs, const Illumination& illumination, const std::array<bool, 3>& periodic);
-std::array<bool, 3> ChannelsThatAbsorb(const Medium& medium);
+/// Whether light ends in a medium, and whether it begins there: is emitted, or scattered of lamps within or of light that
+/// is given. By channel, in any voxel.
+struct LightEnds
+{
+  std::array<bool, 3> absorbs = {}, begins = {};
+};
+LightEnds LightEndsIn(const Medium& medium, const Illumination& illumination);
+/// @throws InvalidInput where light can neither leave the box nor be absorbed, and goes on until it does
+void CheckLightHasAnEnd(const LightEnds& ends, const Illumination& illumination, const PropagationSettings& settings);
 
 /// A scene as it is solved: in units of length and of power that floats hold well, wide along axes on which nothing
 /// changes, with as many channels as it needs. Made once from what the user gave; Undo() turns the light that was found

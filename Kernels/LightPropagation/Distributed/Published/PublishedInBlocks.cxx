@@ -281,7 +281,7 @@ void CheckPublishedBlocks(Communicator& communicator, const BlockPartition& part
   RequireSame(communicator, partition);
   RequireSame(communicator, has, medium, illumination, settings);
   RequireSame(communicator, "StoredDirections", true, { 1.0 * settings.storedDirections });
-  CheckLightHasAnEnd(AbsorbsOnAny(communicator, has, medium), illumination, settings.periodic);
+  CheckLightHasAnEnd(LightEndsOnAny(communicator, has, medium, illumination), illumination, settings);
 }
 
 std::vector<std::string> LeftOutOfBlocks(

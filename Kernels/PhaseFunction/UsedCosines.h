@@ -1,0 +1,100 @@
+#pragma once
+
+#include "Device/HostThreads.h"
+#include "Medium/Field.h"
+#include "PhaseFunction/PhaseOfMedium.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+namespace tyndall
+{
+// Mean cosines by voxel count where something scatters, and there alone: elsewhere they have no meaning, and may be any
+// number, or none.
+
+/// Least and greatest mean cosine of the voxels that scatter, by channel; of a channel in which none does the least is
+/// infinite and the greatest minus infinity.
+struct MeanCosineRange
+{
+  MeanCosineRange()
+  {
+    this->least.fill(std::numeric_limits<double>::infinity());
+    this->greatest.fill(-std::numeric_limits<double>::infinity());
+  }
+  /// @param g, sigma_s  of `voxels` voxels
+  MeanCosineRange(const Field& g, const Field& sigma_s, std::size_t voxels)
+    : MeanCosineRange()
+  {
+    for (std::size_t i = 0; i < voxels; ++i)
+    {
+      for (int c = 0; c < 3; ++c)
+      {
+        if (sigma_s.At(i, c) > 0.0f)
+        {
+          this->least[c] = std::min<double>(this->least[c], g.At(i, c));
+          this->greatest[c] = std::max<double>(this->greatest[c], g.At(i, c));
+        }
+      }
+    }
+  }
+
+  bool IsEven() const ///< in each channel
+  {
+    bool even = true;
+    for (std::size_t c = 0; c < 3; ++c)
+    {
+      even = even && this->least[c] >= this->greatest[c];
+    }
+    return even;
+  }
+
+  std::array<double, 3> least, greatest;
+};
+
+/// How a medium scatters whose g is given by voxel: a function for each channel, where all voxels that scatter have the
+/// same g. A channel in which none does is like another one.
+/// @param kind   of one mean cosine (PhaseFunction::WithMeanCosine), else InvalidInput
+/// @param range  of g in the whole medium, of which `g` may be a part
+inline PhaseOfMedium PhaseByVoxel(const PhaseFunction& kind, const Field& g, const MeanCosineRange& range)
+{
+  if (!range.IsEven())
+  {
+    return PhaseOfMedium(kind, g);
+  }
+  double any = 0.0;
+  for (const double cosine : range.least)
+  {
+    any = std::isfinite(cosine) ? cosine : any;
+  }
+  std::array<PhaseFunction, 3> functions;
+  std::transform(range.least.begin(), range.least.end(), functions.begin(),
+    [&](double cosine) { return kind.WithMeanCosine(std::isfinite(cosine) ? cosine : any); });
+  return PhaseOfMedium(functions);
+}
+
+/// @return g with 0 in place of values outside (-1, 1) where nothing scatters; empty where there are none
+inline std::vector<float> WithoutUnusedCosines(const Field& g, const Field& sigma_s, std::size_t voxels)
+{
+  const auto components = static_cast<std::size_t>(g.components);
+  const std::size_t count = g.values ? voxels * components : 0;
+  const auto isUnused = [&](std::size_t i) {
+    const auto scatters = [&](int channel) { return sigma_s.At(i / components, channel) > 0.0f; };
+    const bool used = components == 3 ? scatters(static_cast<int>(i % 3)) : scatters(0) || scatters(1) || scatters(2);
+    return !used && !(std::abs(g.values[i]) < 1.0f);
+  };
+  if (!AnyInThreads(count, isUnused))
+  {
+    return {};
+  }
+  std::vector<float> used(g.values, g.values + count);
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    used[i] = isUnused(i) ? 0.0f : used[i];
+  }
+  return used;
+}
+}
