@@ -17,9 +17,9 @@
 #include <cmath>
 #include <cstdint>
 #include <string>
-#include <vector>
 #include <sys/stat.h>
 #include <unistd.h>
+#include <vector>
 
 using test::Folder;
 using test::IsEmpty;
