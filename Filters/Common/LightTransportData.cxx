@@ -185,6 +185,7 @@ void FollowFilterBefore(vtkImageData* image, Choice& choice)
   }
 }
 
+/// @param image  of the filter's input; null: what the filter before took does not matter
 Choice ChoiceOf(vtkAlgorithm* filter, int index, vtkImageData* image, const std::string& otherwise)
 {
   vtkInformation* information = filter->GetInputArrayInformation(index);
@@ -208,7 +209,7 @@ Choice ChoiceOf(vtkAlgorithm* filter, int index, vtkImageData* image, const std:
     choice.name = otherwise;
     choice.attribute = otherwise.empty() ? static_cast<int>(vtkDataSetAttributes::SCALARS) : -1;
   }
-  if (!choice.made && choice.attribute < 0)
+  if (image && !choice.made && choice.attribute < 0)
   {
     FollowFilterBefore(image, choice);
   }
@@ -426,7 +427,7 @@ ArraysRead FindArrays(vtkAlgorithm* filter, const VoxelArrays& arrays, vtkImageD
   };
   for (std::size_t number = 0; number < arrays.chosen.size(); ++number)
   {
-    add(ChoiceOf(filter, static_cast<int>(number), arrays.chosen[number]));
+    add(ChoiceOf(filter, static_cast<int>(number), image, arrays.chosen[number]));
   }
   for (const std::string& name : arrays.named)
   {
@@ -442,7 +443,7 @@ bool ChoosesOnlyPoints(vtkAlgorithm* filter, int numbers)
   bool ofPoints = false, ofCells = false;
   for (int number = 0; number < numbers; ++number)
   {
-    const Choice choice = ChoiceOf(filter, number, "");
+    const Choice choice = ChoiceOf(filter, number, nullptr, "");
     (choice.pointsFirst ? ofPoints : ofCells) |= choice.made;
   }
   return ofPoints && !ofCells;
