@@ -4,6 +4,7 @@
 #include "vtkSmartPointer.h"
 #include "vtkType.h"
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -32,7 +33,7 @@ public:
   void Keep(vtkMTimeType settings, vtkInformationVector** inputs, int ports, vtkInformationVector* outputs);
 
   /// After a run that was stopped, whose outputs are empty and said to be aborted: the outputs of the last run that was
-  /// not, where they have the extent that is told for them. They stay marked as aborted, and `left_out` says so, too.
+  /// not, where the same extent is told for them. They stay marked as aborted, and `left_out` says so, too.
   /// @return whether the outputs are there
   bool GiveBefore(vtkInformationVector* outputs) const;
 
@@ -45,6 +46,7 @@ private:
   static Key KeyOf(vtkMTimeType settings, vtkInformationVector** inputs, int ports);
 
   Key MadeOf;
+  std::array<int, 6> Told = {};                        ///< the extent of the whole output, when they were made
   std::vector<vtkSmartPointer<vtkDataObject>> Outputs; ///< by port
   std::vector<vtkSmartPointer<vtkDataObject>> Before;  ///< the same, until there are others
 };

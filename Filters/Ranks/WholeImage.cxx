@@ -125,7 +125,20 @@ struct Part
   AskedPiece piece; ///< empty: nothing, or where it is not divided all that there is
 };
 
-/// @param image  extent of what there is: all of it is asked for by whoever asks for all that was told of
+/// Whether one extent has all points of another.
+bool Covers(const Extent& extent, const Extent& other)
+{
+  bool covers = true;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    covers = covers && extent[2 * axis] <= other[2 * axis] && extent[2 * axis + 1] >= other[2 * axis + 1];
+  }
+  return covers;
+}
+
+/// @param image  extent of what there is. Whoever asks for all that was told of asks for all of this: a file of another
+///               time, or voxels around points that were not known to be. So do those who ask for pieces of all where
+///               this is more (where it is not, it may be the piece alone that was made).
 Part PartAskedFor(vtkInformation* information, const Extent& image)
 {
   Part part;
@@ -143,7 +156,7 @@ Part PartAskedFor(vtkInformation* information, const Extent& image)
   {
     information->Get(Pipeline::WHOLE_EXTENT(), whole.data());
   }
-  part.piece = AskedPieceOf(information, update == whole ? image : update);
+  part.piece = AskedPieceOf(information, update == whole && (!part.divided || Covers(image, whole)) ? image : update);
   return part;
 }
 }
@@ -282,7 +295,13 @@ std::array<int, 6> ExtentAskedFor(vtkInformation* information, const std::array<
 
 void KeepWhatIsAskedFor(vtkInformation* information, vtkImageData* output)
 {
-  const Part part = PartAskedFor(information, ExtentOf(output));
+  const Extent image = ExtentOf(output);
+  const Part part = PartAskedFor(information, image);
+  if (!part.divided && part.piece.own == image) // which may be more than was told of
+  {
+    information->Set(Pipeline::WHOLE_EXTENT(), image.data(), 6);
+    information->Set(Pipeline::UPDATE_EXTENT(), image.data(), 6);
+  }
   if (part.divided || !part.piece.IsEmpty())
   {
     KeepPiece(part.piece, output);
