@@ -10,6 +10,7 @@
 #include "IO/VDB/VDBGeometry.h"
 #include "IO/VDB/VDBMetadata.h"
 #include "Numerics/NumberText.h"
+#include "Ranks/WholeImage.h"
 #include "Work/GuardedWork.h"
 
 #include "vtkCellData.h"
@@ -408,8 +409,8 @@ struct Request
 }
 
 /// VTK asks what extent there is before it says of what time it wants data. Where that time has another file than the one
-/// that was told of, this tells of it anew; filters between here and who asks still ask for the former extent, and get
-/// all that there is. (VTK keeps a list of consumers, too, but also of those that are gone: they cannot be told.)
+/// that was told of, this tells of it anew; filters between here and who asks still ask for a former extent, and get all
+/// that there is. (VTK keeps a list of consumers, too, but also of those that are gone: they cannot be told.)
 class vtkVDBReader::SeriesPipeline : public vtkCompositeDataPipeline
 {
 public:
@@ -425,7 +426,6 @@ public:
       reader->FileAskedFor(output) != reader->Internal->ListedFile)
     {
       this->IsTelling = true;
-      output->Get(WHOLE_EXTENT(), this->Before.data());
       const Request asked(output);
       reader->Modified();
       this->UpdateInformation();
@@ -438,7 +438,7 @@ public:
       std::array<int, 6> asked;
       output->Get(UPDATE_EXTENT(), asked.data());
       const bool isEmpty = asked[0] > asked[1] || asked[2] > asked[3] || asked[4] > asked[5];
-      if (!isEmpty && (asked == this->Before || !IsIn(asked, output->Get(WHOLE_EXTENT()))))
+      if (!isEmpty && (tyndall::AsksForAll(output) || !IsIn(asked, output->Get(WHOLE_EXTENT()))))
       {
         std::array<int, 6> whole;
         output->Get(WHOLE_EXTENT(), whole.data());
@@ -450,7 +450,6 @@ public:
 
 private:
   bool IsTelling = false;
-  std::array<int, 6> Before = { 0, -1, 0, -1, 0, -1 }; ///< the extent of the file that was told of before
 };
 
 vtkStandardNewMacro(vtkVDBReader::SeriesPipeline);
@@ -603,6 +602,7 @@ int vtkVDBReader::RequestInformation(vtkInformation*, vtkInformationVector**, vt
 /// The extent to read. Filters that did not hear of another file of a series asked for a part of the one before it.
 std::array<int, 6> vtkVDBReader::ExtentToRead(vtkInformation* info)
 {
+  tyndall::NoteExtentTold(info);
   std::array<int, 6> asked, told;
   info->Get(Pipeline::UPDATE_EXTENT(), asked.data());
   info->Get(Pipeline::WHOLE_EXTENT(), told.data());

@@ -35,6 +35,13 @@ vtkInformationIntegerVectorKey* PartsOfRanks()
   return key;
 }
 
+/// Of an output: the whole extents that were told of it when its data were made.
+vtkInformationIntegerVectorKey* ExtentsTold()
+{
+  static auto* const key = vtkInformationIntegerVectorKey::MakeKey("EXTENTS_TOLD", "Tyndall");
+  return key;
+}
+
 /// Flags values that a neighbouring piece has, too. Other flags stay, and so do the arrays of the input, which the
 /// image may share.
 /// @param box  numbers of the values
@@ -150,13 +157,10 @@ Part PartAskedFor(vtkInformation* information, const Extent& image)
     part.piece = { own, own };
     return part;
   }
-  Extent update, whole = AskedPiece::Nothing;
+  Extent update;
   information->Get(Pipeline::UPDATE_EXTENT(), update.data());
-  if (information->Has(Pipeline::WHOLE_EXTENT()))
-  {
-    information->Get(Pipeline::WHOLE_EXTENT(), whole.data());
-  }
-  part.piece = AskedPieceOf(information, update == whole && (!part.divided || Covers(image, whole)) ? image : update);
+  const bool all = AsksForAll(information) && (!part.divided || Covers(image, update));
+  part.piece = AskedPieceOf(information, all ? image : update);
   return part;
 }
 }
@@ -293,8 +297,38 @@ std::array<int, 6> ExtentAskedFor(vtkInformation* information, const std::array<
   return extent;
 }
 
+bool AsksForAll(vtkInformation* information)
+{
+  Extent asked = AskedPiece::Nothing, whole = AskedPiece::Nothing;
+  information->Get(Pipeline::UPDATE_EXTENT(), asked.data());
+  if (information->Has(Pipeline::WHOLE_EXTENT()))
+  {
+    information->Get(Pipeline::WHOLE_EXTENT(), whole.data());
+  }
+  const int* const told = information->Get(ExtentsTold());
+  bool all = asked == whole;
+  for (int i = 0; i < information->Length(ExtentsTold()); i += 6)
+  {
+    all = all || std::equal(asked.begin(), asked.end(), told + i);
+  }
+  return all;
+}
+
+void NoteExtentTold(vtkInformation* information)
+{
+  const int* const whole = information->Get(Pipeline::WHOLE_EXTENT());
+  const int* const told = information->Get(ExtentsTold());
+  bool isNew = whole != nullptr;
+  for (int i = 0; isNew && i < information->Length(ExtentsTold()); i += 6)
+  {
+    isNew = !std::equal(whole, whole + 6, told + i);
+  }
+  std::for_each(whole, whole + (isNew ? 6 : 0), [&](int bound) { information->Append(ExtentsTold(), bound); });
+}
+
 void KeepWhatIsAskedFor(vtkInformation* information, vtkImageData* output)
 {
+  NoteExtentTold(information);
   const Extent image = ExtentOf(output);
   const Part part = PartAskedFor(information, image);
   if (!part.divided && part.piece.own == image) // which may be more than was told of
