@@ -86,7 +86,7 @@ void WarnOfDevices(vtkAlgorithm* filter)
 namespace
 {
 /// The number of blocks of an input where the pipeline hands them on one after the other and this is the first; else 0.
-int BlocksBegun(vtkAlgorithm* filter, int port)
+int BlocksBegun(vtkAlgorithm* filter, vtkInformationVector** given, int port)
 {
   vtkAlgorithmOutput* const from =
     filter->GetNumberOfInputConnections(port) > 0 ? filter->GetInputConnection(port, 0) : nullptr;
@@ -104,16 +104,16 @@ int BlocksBegun(vtkAlgorithm* filter, int port)
     first = count == 0 ? each->GetCurrentDataObject() : first;
     ++count;
   }
-  return first == filter->GetInputDataObject(port, 0) ? count : 0;
+  return first == vtkDataObject::GetData(given[port], 0) ? count : 0;
 }
 
 /// Of filters for which the voxels of one block depend on those of another.
-void WarnOfBlocks(vtkAlgorithm* filter)
+void WarnOfBlocks(vtkAlgorithm* filter, vtkInformationVector** given)
 {
   const bool local = filter->IsA("vtkParticipatingMedium") || filter->IsA("vtkRefractionOctree");
   for (int port = 0; !local && port < filter->GetNumberOfInputPorts(); ++port)
   {
-    if (const int blocks = BlocksBegun(filter, port); blocks > 1)
+    if (const int blocks = BlocksBegun(filter, given, port); blocks > 1)
     {
       vtkWarningWithObjectMacro(
         filter, << "Input " << port << " has " << blocks
@@ -233,10 +233,6 @@ int GuardedOn(vtkMultiProcessController* ranks, vtkAlgorithm* filter, vtkInforma
     }
     last.Note(LastFailure::Error);
   }
-  else
-  {
-    WarnOfBlocks(filter);
-  }
   filter->SetProgressText(nullptr);
   WarnOfDevices(filter);
   return 1;
@@ -295,6 +291,7 @@ int GuardedInPieces(vtkAlgorithm* filter, vtkInformation* request, vtkInformatio
     WholeInputs inputs(ranks, filter, given, outputs, port, shares, others);
     work(ranks, inputs);
     TellAveraged(filter, outputs);
+    WarnOfBlocks(filter, given);
   });
 }
 

@@ -857,7 +857,7 @@ def wrong_pieces():
     if odd:
         density = vtk_to_numpy(short.GetCellData().GetArray("density"))
         add_density(short, density[:5])
-    yield "short", short, "On rank %d: The input has an array 'density' of 5 values" % (ranks - 1)
+    yield "short", short, "On rank %d: Array 'density' has 5 values" % (ranks - 1)
     mine = piece_of([0, 12, 0, 5, 0, 4])
     vtk_to_numpy(mine.GetCellData().GetArray("density"))[7] += rank
     yield "overlap", mine, 'cell array "density" has different values'
