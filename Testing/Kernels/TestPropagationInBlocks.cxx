@@ -3,6 +3,8 @@
 #include "BlocksOfLight.h"
 #include "TransparentBox.h"
 
+#include "Device/Errors.h"
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -430,4 +432,39 @@ TEST_F(PropagationBlocksFail, WithWordsOnWhatIsNotCarriedFromRankToRank)
     settings.acceleration = PropagationAcceleration::Automatic;
     settings.uncollidedDirections = 16;
   });
+}
+
+// A lamp within an opaque block in vacuum, more than floats can carry: the whole refuses it (Extremes).
+TEST_F(PropagationBlocks, RefuseLightThatDoesNotBalanceOnAnyNumberOfRanks)
+{
+  RandomMedium whole(Grid{ { 9, 9, 9 } }, 1, 0.0f);
+  for (int i = 0; i < 27; ++i)
+  {
+    whole.scattering[whole.medium.grid.IndexOf({ 3 + i % 3, 3 + i / 3 % 3, 3 + i / 9 })] = 1e30f;
+  }
+  Illumination shining;
+  Light lamp;
+  lamp.type = LightType::Point;
+  lamp.position = { 4.5, 4.5, 4.5 };
+  shining.lights = { lamp };
+  for (const int ranks : { 1, 3 })
+  {
+    const BlockPartition partition = BlockPartition::Even(whole.medium.grid, ranks);
+    RunInThreads(ranks, [&](Communicator& communicator) {
+      PartOf part(whole, partition.blocks[communicator.Rank()]);
+      std::string said;
+      try
+      {
+        const LightField light =
+          SolveInBlocks(this->GetDevice(), communicator, partition, part.medium, shining, PropagationSettings());
+        said = "balances to " + std::to_string(light.balance.RelativeError(1));
+      }
+      catch (const InvalidInput& error)
+      {
+        said = error.what();
+      }
+      EXPECT_NE(said.find("Its thickest voxel has optical thickness 1e+30"), std::string::npos)
+        << ranks << ": " << said;
+    });
+  }
 }
