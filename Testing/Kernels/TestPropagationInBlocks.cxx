@@ -119,6 +119,29 @@ TEST_F(PropagationBlocks, HaveTheLightOfFarLampsAndNarrowCones)
   }
 }
 
+/// On a face, on an edge, and where a face is also the border of a block.
+TEST_F(PropagationBlocks, HaveTheLightOfLampsOnTheBorder)
+{
+  RandomMedium whole(Grid{ { 6, 5, 7 }, { 1.0, 0.8, 1.3 } }, 1, 0.8f, 7);
+  Light lamp = NearLamps()[0];
+  for (const std::array<double, 3>& position :
+    { std::array<double, 3>{ 0.0, 1.7, 9.1 }, { 6.0, 1.7, 4.1 }, { 3.0, 4.0, 4.0 } })
+  {
+    lamp.position = position;
+    Illumination shining;
+    shining.lights = { lamp };
+    const LightField expected = SolveConservative(GetDevice(), whole.medium, shining, SettingsOf(2));
+    for (const int ranks : { 1, 3 })
+    {
+      SCOPED_TRACE(std::to_string(position[2]) + ", " + std::to_string(ranks) + " ranks");
+      const BlockPartition partition = BlockPartition::Even(whole.medium.grid, ranks);
+      const LightField found = LightOfAll(GetDevice(), partition, whole, shining, SettingsOf(2));
+      ExpectSame(found, expected);
+      EXPECT_LT(found.balance.RelativeError(3), 1e-6);
+    }
+  }
+}
+
 /// The same in angular moments, between faces that give back light, and with what leaves by cells of faces.
 TEST_F(PropagationBlocks, HaveTheLightOfLampsNearbyInMomentsAndBetweenFaces)
 {
