@@ -138,8 +138,8 @@ using Quantities = std::vector<std::pair<int, std::string>>;
 Quantities QuantitiesOfMedium(); ///< those of MediumArray, and RefractiveIndex
 
 /// Have an output say which of its arrays the filter took for these quantities, so that filters after it take the same:
-/// field data `sigma_a_array` and so on, a text with the array's name, and "points" where that was preferred to cells of
-/// its name. None where it is the usual array.
+/// field data `sigma_a_array` and so on, a text with the array's name, and "points" where that was preferred to cells
+/// of its name. None where it is the usual array.
 /// @param input  of the filter; the output has its arrays
 void NoteChoices(vtkAlgorithm* filter, const Quantities& quantities, vtkImageData* input, vtkImageData* output);
 

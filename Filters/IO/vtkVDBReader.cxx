@@ -408,9 +408,9 @@ struct Request
 };
 }
 
-/// VTK asks what extent there is before it says of what time it wants data. Where that time has another file than the one
-/// that was told of, this tells of it anew; filters between here and who asks still ask for a former extent, and get all
-/// that there is. (VTK keeps a list of consumers, too, but also of those that are gone: they cannot be told.)
+/// VTK asks what extent there is before it says of what time it wants data. Where that time has another file than the
+/// one that was told of, this tells of it anew; filters between here and who asks still ask for a former extent, and
+/// get all that there is. (VTK keeps a list of consumers, too, but also of those that are gone: they cannot be told.)
 class vtkVDBReader::SeriesPipeline : public vtkCompositeDataPipeline
 {
 public:

@@ -55,8 +55,8 @@ enum class Balancing
   Not
 };
 
-/// Part of the power that is lost or made, the worst channel; grey light has nothing in the other channels. A faint channel
-/// is compared with a thousandth of the brightest one.
+/// Part of the power that is lost or made, the worst channel; grey light has nothing in the other channels. A faint
+/// channel is compared with a thousandth of the brightest one.
 double ImbalanceOf(const EnergyBalance& balance)
 {
   Rgb in = {};

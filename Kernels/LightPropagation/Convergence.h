@@ -67,8 +67,8 @@ constexpr double UncollidedPart = 0.5;
 /// Adds to a light's `doubts` what faces that reflect do not know of light that another solver found.
 void DoubtGivenLight(const Illumination& illumination, LightField& light);
 
-/// The energy check of every conservative solver: power is absorbed, escapes or is left over. An error above 1e-4 becomes
-/// one of the light's `doubts`.
+/// The energy check of every conservative solver: power is absorbed, escapes or is left over. An error above 1e-4
+/// becomes one of the light's `doubts`.
 /// @param medium  read only where the balance is off, to tell why; without voxels: not known
 /// @throws InvalidInput where the error is above 1e-2, or not a number
 void JudgeBalance(LightField& light, const Medium& medium);

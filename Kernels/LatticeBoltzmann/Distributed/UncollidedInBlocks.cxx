@@ -264,8 +264,8 @@ void UncollidedInBlocks::LeaveAlone(std::vector<float>& moments) const
   }
 }
 
-/// W that entered and went nowhere: it neither left, nor collides in a voxel of any rank, nor is still on the way round a
-/// periodic axis. Collective.
+/// W that entered and went nowhere: it neither left, nor collides in a voxel of any rank, nor is still on the way round
+/// a periodic axis. Collective.
 Rgb UncollidedInBlocks::Lost() const
 {
   const std::vector<float> path = this->Path.Read(), sigma_t = this->SigmaT.Read();
