@@ -21,6 +21,7 @@
 #include "vtkCompositeDataIterator.h"
 #include "vtkCompositeDataSet.h"
 #include "vtkDataObject.h"
+#include "vtkDataSetAttributes.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
@@ -28,6 +29,8 @@
 #include "vtkMultiProcessController.h"
 #include "vtkSmartPointer.h"
 #include "vtkVersionMacros.h"
+
+#include <algorithm>
 
 namespace tyndall
 {
@@ -85,6 +88,22 @@ void WarnOfDevices(vtkAlgorithm* filter)
 
 namespace
 {
+/// Whether these are the same data: the pipeline hands on a copy of each block that has its arrays.
+bool HaveSameArrays(vtkDataObject* a, vtkDataObject* b)
+{
+  int shared = 0;
+  for (const int kind : { vtkDataObject::POINT, vtkDataObject::CELL })
+  {
+    vtkDataSetAttributes* const ofA = a ? a->GetAttributes(kind) : nullptr;
+    vtkDataSetAttributes* const ofB = b ? b->GetAttributes(kind) : nullptr;
+    for (int i = 0; ofA && ofB && i < std::min(ofA->GetNumberOfArrays(), ofB->GetNumberOfArrays()); ++i)
+    {
+      shared += ofA->GetAbstractArray(i) == ofB->GetAbstractArray(i) ? 1 : 0;
+    }
+  }
+  return shared > 0;
+}
+
 /// The number of blocks of an input where the pipeline hands them on one after the other and this is the first; else 0.
 int BlocksBegun(vtkAlgorithm* filter, vtkInformationVector** given, int port)
 {
@@ -104,7 +123,7 @@ int BlocksBegun(vtkAlgorithm* filter, vtkInformationVector** given, int port)
     first = count == 0 ? each->GetCurrentDataObject() : first;
     ++count;
   }
-  return first == vtkDataObject::GetData(given[port], 0) ? count : 0;
+  return HaveSameArrays(first, vtkDataObject::GetData(given[port], 0)) ? count : 0;
 }
 
 /// Of filters for which the voxels of one block depend on those of another.

@@ -1,6 +1,6 @@
-// Filters that hand on their input hand on all of its arrays, whichever of them is the active one, and say which of them
-// they took for the medium's quantities, and which they do not know; and take arrays of points as those of the voxels
-// around them, and images whose axes are others than the world's as those that have these.
+// Filters that hand on their input hand on all of its arrays, whichever of them is the active one, and say which of
+// them they took for the medium's quantities, and which they do not know; and take arrays of points as those of the
+// voxels around them, and images whose axes are others than the world's as those that have these.
 
 #include "MediumScene.h"
 
