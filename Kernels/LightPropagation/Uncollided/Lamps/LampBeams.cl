@@ -111,8 +111,8 @@ static void overlap(float2 edges, int* voxel, float* part)
   *part = edges.y > edges.x ? clamp((*voxel + 1 - edges.x) / (edges.y - edges.x), 0.0f, 1.0f) : 1.0f;
 }
 
-// The edges of a cross-section along u (k 0) or v (1), without the part beyond a face of the box: the face that the beam
-// moves towards and, unless the lamp is beside the box along this axis, the opposite one, too.
+// The edges of a cross-section along u (k 0) or v (1), without the part beyond a face of the box: the face that the
+// beam moves towards and, unless the lamp is beside the box along this axis, the opposite one, too.
 // @param up  whether light leaves through the upper face
 // @return the part of the cross-section that is between them
 static float cut_at_face(const LampInfo* lamp, const BeamRow* row, int k, float tangent, float2* edges, int* up)
@@ -378,8 +378,8 @@ static float part_to_come(const LampInfo* lamp, const BeamRow* row, float2 start
   return 1.0f - part_inside(lamp, row, 0, tangent.x, edges_u) * part_inside(lamp, row, 1, tangent.y, edges_v);
 }
 
-// A beam at the end of the box that has come in sideways: in the last half step more of it reaches the box, and the rest
-// has not entered.
+// A beam at the end of the box that has come in sideways: in the last half step more of it reaches the box, and the
+// rest has not entered.
 //   waiting  power that had not reached the box in the middle of the last step, at `here`
 static void miss_box(const LampInfo* lamp, const BeamRow* row, float2 start, float2 tangent, float here, float end,
   float waiting, beam_state* beam, lamp_tally* tally)
