@@ -1,5 +1,6 @@
 #include "DeviceTest.h"
 
+#include "Numerics/NumberText.h"
 #include "Refraction/Octree/MinMaxPyramid.h"
 #include "Refraction/Octree/RefractionOctree.h"
 
@@ -351,7 +352,7 @@ TEST(OctreeRefuses, WhatHasNoMeaning)
     EXPECT_THAT(ComplaintOf([&] {
       Build({ 3, 4, 5 }, index, 0.01);
     }),
-      testing::AllOf(HasSubstr("refractive index is " + std::to_string(wrong)), HasSubstr("voxel (1, 2, 2)")));
+      testing::AllOf(HasSubstr("refractive index is " + Text("%g", wrong)), HasSubstr("voxel (1, 2, 2)")));
   }
   const std::vector<float> index = { 1.0f, 1.5f };
   for (double wrong : { -0.1, 1.1, static_cast<double>(nan) })
