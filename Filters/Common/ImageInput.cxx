@@ -189,15 +189,15 @@ void CopyInOrder(vtkDataSetAttributes* from, vtkIdList* order, vtkDataSetAttribu
 }
 
 /// As far as is known before the image.
-bool MayBeAroundPoints(vtkAlgorithm* filter, int port, vtkDataObject* before)
+bool MayBeAroundPoints(vtkAlgorithm* filter, int port, vtkInformation* input)
 {
-  auto* const image = vtkImageData::SafeDownCast(before);
+  auto* const image = vtkImageData::SafeDownCast(vtkDataObject::GetData(input));
   if (image && image->GetNumberOfPoints() > 0 && (HasArrays(image->GetCellData()) || HasArrays(image->GetPointData())))
   {
     return AreAroundPoints(filter, port, image);
   }
   const VoxelArrays arrays = VoxelArraysOf(filter->GetInputPortInformation(port));
-  return PointDataOf(filter) == VoxelsAroundPoints && ChoosesOnlyPoints(filter, static_cast<int>(arrays.chosen.size()));
+  return PointDataOf(filter) == VoxelsAroundPoints && ChoosesOnlyPoints(filter, arrays.chosen, input);
 }
 
 /// @return which filters of ParaView make an image of such data, as what they do
@@ -889,7 +889,7 @@ void TellVoxels(vtkAlgorithm* filter, int port, vtkInformationVector* inputs, vt
   const double* const origin = input->Get(vtkDataObject::ORIGIN());
   const auto ways = spacing ? WaysOf(spacing, input->Get(vtkDataObject::DIRECTION())) : std::nullopt;
   std::array<int, 6> extent = ways ? ways->Extent(told.data()) : told;
-  const bool around = isKnown && told[0] <= told[1] && MayBeAroundPoints(filter, port, vtkDataObject::GetData(input));
+  const bool around = isKnown && told[0] <= told[1] && MayBeAroundPoints(filter, port, input);
   for (int axis = 0; axis < 3 && around; ++axis)
   {
     ++extent[2 * axis + 1];

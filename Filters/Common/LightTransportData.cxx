@@ -439,13 +439,15 @@ ArraysRead FindArrays(vtkAlgorithm* filter, const VoxelArrays& arrays, vtkImageD
   return read;
 }
 
-bool ChoosesOnlyPoints(vtkAlgorithm* filter, int numbers)
+bool ChoosesOnlyPoints(vtkAlgorithm* filter, const std::vector<std::string>& chosen, vtkInformation* input)
 {
   bool ofPoints = false, ofCells = false;
-  for (int number = 0; number < numbers; ++number)
+  for (std::size_t number = 0; number < chosen.size(); ++number)
   {
-    const Choice choice = ChoiceOf(filter, number, nullptr, "");
-    (choice.pointsFirst ? ofPoints : ofCells) |= choice.made;
+    const Choice choice = ChoiceOf(filter, static_cast<int>(number), nullptr, chosen[number]);
+    const bool isActive = choice.attribute >= 0 &&
+      vtkDataObject::GetActiveFieldInformation(input, vtkDataObject::FIELD_ASSOCIATION_POINTS, choice.attribute);
+    (choice.pointsFirst ? ofPoints : ofCells) |= choice.made || isActive;
   }
   return ofPoints && !ofCells;
 }

@@ -110,8 +110,9 @@ struct ArraysRead
 };
 ArraysRead FindArrays(vtkAlgorithm* filter, const VoxelArrays& arrays, vtkImageData* image);
 
-/// Whether arrays were chosen by SetInputArrayToProcess, and all of them of points.
-bool ChoosesOnlyPoints(vtkAlgorithm* filter, int numbers);
+/// Whether arrays were chosen by SetInputArrayToProcess, or are active as `input` tells, and all of them are of points.
+/// @param chosen  VoxelArrays
+bool ChoosesOnlyPoints(vtkAlgorithm* filter, const std::vector<std::string>& chosen, vtkInformation* input);
 
 /// Relative density of the fog that fills a level set, by the distance from its surface, which is negative inside: 1,
 /// and less in proportion within a voxel of the surface; 0 outside. What OpenVDB's sdfToFogVolume makes with that
@@ -137,8 +138,8 @@ using Quantities = std::vector<std::pair<int, std::string>>;
 Quantities QuantitiesOfMedium(); ///< those of MediumArray, and RefractiveIndex
 
 /// Have an output say which of its arrays the filter took for these quantities, so that filters after it take the same:
-/// field data `sigma_a_array` and so on, a text with the array's name, and "points" where that was preferred to cells of
-/// its name. None where it is the usual array.
+/// field data `sigma_a_array` and so on, a text with the array's name, and "points" where that was preferred to cells
+/// of its name. None where it is the usual array.
 /// @param input  of the filter; the output has its arrays
 void NoteChoices(vtkAlgorithm* filter, const Quantities& quantities, vtkImageData* input, vtkImageData* output);
 

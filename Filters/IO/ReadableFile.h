@@ -9,6 +9,6 @@ namespace tyndall
 bool HasAnEnd(const std::string& path);
 
 /// Bytes of a file that is to be read.
-/// @throws InvalidInput where it is not there, may not be read, is a folder, or what is not read to an end, as a pipe is
+/// @throws InvalidInput where it is not there, may not be read, is a folder, or has no end, as a pipe
 std::uint64_t ReadableSize(const std::string& path);
 }

@@ -10,6 +10,7 @@
 #include "IO/VDB/VDBGeometry.h"
 #include "IO/VDB/VDBMetadata.h"
 #include "Numerics/NumberText.h"
+#include "Ranks/WholeImage.h"
 #include "Work/GuardedWork.h"
 
 #include "vtkCellData.h"
@@ -17,7 +18,6 @@
 #include "vtkDataArraySelection.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
-#include "vtkInformationExecutivePortVectorKey.h"
 #include "vtkInformationVector.h"
 #include "vtkObjectFactory.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
@@ -367,6 +367,16 @@ namespace
 {
 using Pipeline = vtkStreamingDemandDrivenPipeline;
 
+bool IsIn(const std::array<int, 6>& part, const int* whole)
+{
+  bool in = true;
+  for (int i = 0; i < 6; ++i)
+  {
+    in = in && (i % 2 == 0 ? part[i] >= whole[i] : part[i] <= whole[i]);
+  }
+  return in;
+}
+
 /// What an output is asked for, which goes when its extent is told anew.
 struct Request
 {
@@ -390,45 +400,17 @@ struct Request
     output->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), this->pieces);
     output->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), this->ghostLevels);
     const int* const whole = output->Get(Pipeline::WHOLE_EXTENT());
-    bool fits = this->isPart && whole;
-    for (int i = 0; i < 6 && fits; ++i)
-    {
-      fits = i % 2 == 0 ? this->extent[i] >= whole[i] : this->extent[i] <= whole[i];
-    }
-    if (fits)
+    if (this->isPart && whole && IsIn(this->extent, whole))
     {
       output->Set(Pipeline::UPDATE_EXTENT(), this->extent.data(), 6);
     }
   }
 };
-
-/// Tells an algorithm and all after it what the first of them has to tell now.
-void TellDownstream(vtkExecutive* executive, std::set<vtkExecutive*>& told)
-{
-  auto* const pipeline = vtkDemandDrivenPipeline::SafeDownCast(executive);
-  if (!pipeline || !told.insert(executive).second)
-  {
-    return;
-  }
-  std::vector<Request> requests;
-  for (int port = 0; port < executive->GetNumberOfOutputPorts(); ++port)
-  {
-    vtkInformation* const output = executive->GetOutputInformation(port);
-    requests.emplace_back(output);
-    vtkExecutive** const consumers = vtkExecutive::CONSUMERS()->GetExecutives(output);
-    const std::vector<vtkExecutive*> after(consumers, consumers + vtkExecutive::CONSUMERS()->Length(output));
-    std::for_each(after.begin(), after.end(), [&](vtkExecutive* consumer) { TellDownstream(consumer, told); });
-  }
-  pipeline->UpdateInformation();
-  for (std::size_t port = 0; port < requests.size(); ++port)
-  {
-    requests[port].Restore(executive->GetOutputInformation(static_cast<int>(port)));
-  }
-}
 }
 
-/// VTK asks what extent there is before it says of what time it wants data, and no filter after a reader takes another
-/// extent from then on. So where that time has another file than the one that was told of, all of them are told anew.
+/// VTK asks what extent there is before it says of what time it wants data. Where that time has another file than the
+/// one that was told of, this tells of it anew; filters between here and who asks still ask for a former extent, and
+/// get all that there is. (VTK keeps a list of consumers, too, but also of those that are gone: they cannot be told.)
 class vtkVDBReader::SeriesPipeline : public vtkCompositeDataPipeline
 {
 public:
@@ -439,15 +421,29 @@ public:
     vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override
   {
     auto* const reader = vtkVDBReader::SafeDownCast(this->GetAlgorithm());
+    vtkInformation* const output = outputs->GetInformationObject(0);
     if (reader && !this->IsTelling && request->Has(REQUEST_TIME_DEPENDENT_INFORMATION()) &&
-      reader->FileAskedFor(outputs->GetInformationObject(0)) != reader->Internal->ListedFile)
+      reader->FileAskedFor(output) != reader->Internal->ListedFile)
     {
       this->IsTelling = true;
+      const Request asked(output);
       reader->Modified();
-      std::set<vtkExecutive*> told;
-      TellDownstream(this, told);
+      this->UpdateInformation();
+      asked.Restore(output);
       this->IsTelling = false;
       return 1;
+    }
+    if (request->Has(REQUEST_UPDATE_EXTENT()) && output->Has(UPDATE_EXTENT()) && output->Has(WHOLE_EXTENT()))
+    {
+      std::array<int, 6> asked;
+      output->Get(UPDATE_EXTENT(), asked.data());
+      const bool isEmpty = asked[0] > asked[1] || asked[2] > asked[3] || asked[4] > asked[5];
+      if (!isEmpty && (tyndall::AsksForAll(output) || !IsIn(asked, output->Get(WHOLE_EXTENT()))))
+      {
+        std::array<int, 6> whole;
+        output->Get(WHOLE_EXTENT(), whole.data());
+        output->Set(UPDATE_EXTENT(), whole.data(), 6);
+      }
     }
     return this->Superclass::ProcessRequest(request, inputs, outputs);
   }
@@ -606,6 +602,7 @@ int vtkVDBReader::RequestInformation(vtkInformation*, vtkInformationVector**, vt
 /// The extent to read. Filters that did not hear of another file of a series asked for a part of the one before it.
 std::array<int, 6> vtkVDBReader::ExtentToRead(vtkInformation* info)
 {
+  tyndall::NoteExtentTold(info);
   std::array<int, 6> asked, told;
   info->Get(Pipeline::UPDATE_EXTENT(), asked.data());
   info->Get(Pipeline::WHOLE_EXTENT(), told.data());

@@ -21,6 +21,7 @@
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkMultiProcessController.h"
 #include "vtkObjectFactory.h"
 #include "vtkPolyData.h"
 #include "vtkSmartPointer.h"
@@ -463,6 +464,7 @@ int vtkPhotonMarcher::RequestData(vtkInformation* request, vtkInformationVector*
   this->MediumKept = false;
   const tyndall::WorkOnPieces onPieces = { MediumPort,
     [&](vtkMultiProcessController* ranks, vtkInformationVector** inputs) {
+      this->IsFirstRank = !ranks || ranks->GetLocalProcessId() == 0;
       return this->MarchPiece(request, ranks, inputs, outputs);
     },
     PhotonsPort, { OctreePort } };
@@ -524,8 +526,13 @@ void vtkPhotonMarcher::Note(const Marched& marched)
   this->LeftOut = tyndall::Lines(light.light.leftOut);
 }
 
+/// On the first rank alone: the light is that of all.
 void vtkPhotonMarcher::Warn(const tyndall::PhotonLight& light, std::size_t photons)
 {
+  if (!this->IsFirstRank)
+  {
+    return;
+  }
   if (!this->Ignored.empty())
   {
     vtkWarningMacro(<< tyndall::WarningOf(this->Ignored));
@@ -535,6 +542,10 @@ void vtkPhotonMarcher::Warn(const tyndall::PhotonLight& light, std::size_t photo
     vtkWarningMacro(
       << this->Missed << " of " << photons
       << " photons do not meet the medium, so their power is not in it. Give PhotonEmitter the same medium.");
+  }
+  for (const std::string& doubt : light.light.doubts)
+  {
+    vtkWarningMacro(<< doubt);
   }
   const tyndall::EnergyBalance& balance = light.light.balance;
   const double trapped =

@@ -326,6 +326,7 @@ private:
   std::string DeviceName;
   std::string LeftOut;
   std::vector<std::string> Ignored; ///< of the medium, in the last update
+  bool IsFirstRank = true;          ///< the same: the rank that warns for all that march together
 };
 
 #endif

@@ -5,12 +5,12 @@
 #include "Common/LightTransportWriting.h"
 
 #include "vtkDataObject.h"
-#include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationDoubleKey.h"
 #include "vtkInformationVector.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
+#include <array>
 #include <cstring>
 #include <string>
 #include <utility>
@@ -84,20 +84,17 @@ void LastOutputs::Keep(
 
 namespace
 {
-/// Whether a kept image lies in the extent that is told for the output.
-bool IsAsTold(vtkDataObject* kept, vtkInformation* output)
+std::array<int, 6> ExtentTold(vtkInformationVector* outputs)
 {
-  int told[6];
-  output->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), told);
-  const int* const own = vtkImageData::SafeDownCast(kept)->GetExtent();
-  return own[0] >= told[0] && own[1] <= told[1] && own[2] >= told[2] && own[3] <= told[3] && own[4] >= told[4] &&
-    own[5] <= told[5];
+  std::array<int, 6> told = { 0, -1, 0, -1, 0, -1 };
+  outputs->GetInformationObject(0)->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), told.data());
+  return told;
 }
 }
 
 bool LastOutputs::GiveBefore(vtkInformationVector* outputs, OwnAxes& axes) const
 {
-  if (this->Before.empty() || !IsAsTold(this->Before.front(), outputs->GetInformationObject(0)))
+  if (this->Before.empty() || ExtentTold(outputs) != this->Told)
   {
     return false;
   }
@@ -131,6 +128,7 @@ void LastOutputs::Forget()
 void LastOutputs::Keep(vtkInformationVector* outputs)
 {
   this->Forget();
+  this->Told = ExtentTold(outputs);
   for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
   {
     vtkDataObject* const made = vtkDataObject::GetData(outputs, port);

@@ -6,6 +6,7 @@
 #include "vtkSmartPointer.h"
 #include "vtkType.h"
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -37,7 +38,7 @@ public:
     vtkInformationVector* outputs);
 
   /// After a run that was stopped, whose outputs are empty and said to be aborted: the outputs of the last run that was
-  /// not, where they have the extent that is told for them. They stay marked as aborted, and `left_out` says so, too.
+  /// not, where the same extent is told for them. They stay marked as aborted, and `left_out` says so, too.
   /// @param axes  become those in which they lie
   /// @return whether the outputs are there
   bool GiveBefore(vtkInformationVector* outputs, OwnAxes& axes) const;
@@ -51,6 +52,7 @@ private:
   static Key KeyOf(vtkMTimeType settings, const OwnAxes& axes, vtkInformationVector** inputs, int ports);
 
   Key MadeOf;
+  std::array<int, 6> Told = {};                        ///< the extent of the whole output, when they were made
   OwnAxes Axes, AxesBefore;                            ///< of Outputs and of Before
   std::vector<vtkSmartPointer<vtkDataObject>> Outputs; ///< by port
   std::vector<vtkSmartPointer<vtkDataObject>> Before;  ///< the same, until there are others

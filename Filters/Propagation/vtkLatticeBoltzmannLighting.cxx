@@ -22,7 +22,6 @@
 #include "vtkPolyData.h"
 
 #include <algorithm>
-#include <cmath>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -97,16 +96,12 @@ tyndall::LightField SolvePreviewOfPiece(vtkLatticeBoltzmannLighting* filter, tyn
     });
 }
 
-/// Of all power, what is in none of the balance's accounts but the last, the worst channel.
-double LeftOverOf(const tyndall::LightField& light)
+/// Of all power, what has neither been absorbed nor escaped, the worst channel.
+double UnaccountedPart(const tyndall::LightField& light)
 {
-  double most = 0.0;
-  for (std::size_t c = 0; c < static_cast<std::size_t>(light.channels); ++c)
-  {
-    const double all = light.balance.entered[c] + light.balance.emitted[c];
-    most = std::max(most, all > 0.0 ? std::abs(light.balance.leftOver[c]) / all : 0.0);
-  }
-  return most;
+  tyndall::EnergyBalance balance = light.balance;
+  balance.leftOver = {};
+  return balance.RelativeError(light.channels);
 }
 }
 
@@ -278,7 +273,7 @@ void vtkLatticeBoltzmannLighting::Note(const tyndall::LightField& light)
   const bool any = !light.convergence.empty();
   this->Steps = any ? light.convergence.back().iteration : 0;
   this->Residual = any ? light.convergence.back().residual : 0.0;
-  this->BalanceError = LeftOverOf(light);
+  this->BalanceError = UnaccountedPart(light);
   this->DeviceName = light.device;
   this->LeftOut = tyndall::Lines(light.leftOut);
   this->SettingsUsed = tyndall::Lines(light.settingsUsed);

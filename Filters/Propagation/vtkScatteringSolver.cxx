@@ -20,6 +20,7 @@
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkMultiProcessController.h"
 #include "vtkPolyData.h"
 #include "vtkTable.h"
 
@@ -169,6 +170,7 @@ int vtkScatteringSolver::GiveOrSolve(vtkInformation* request, vtkInformationVect
   this->WholeFor.clear();
   tyndall::WorkOnPieces onPieces = { MEDIUM, [&](vtkMultiProcessController* ranks, vtkInformationVector** inputs) {
                                       this->OverRanks = ranks != nullptr;
+                                      this->IsFirstRank = !ranks || ranks->GetLocalProcessId() == 0;
                                       return this->GiveOrSolvePiece(request, ranks, inputs, outputs);
                                     } };
   onPieces.shares = this->PortOfShares();
@@ -388,10 +390,7 @@ void vtkScatteringSolver::WritePiece(tyndall::Communicator& communicator, const 
   communicator.Together([&] {
     doubts = Write(this, std::move(light), this->Ignored, vtkImageData::GetData(inputs[MEDIUM]), outputs, &pieces);
   });
-  for (const std::string& doubt : doubts)
-  {
-    vtkWarningMacro(<< doubt);
-  }
+  this->WarnOnce(doubts);
   this->Solved->Keep(
     this->Superclass::GetMTime(), tyndall::OwnAxesOf(this), inputs, this->GetNumberOfInputPorts(), outputs);
   this->SolvedInPieces = true;
@@ -403,12 +402,18 @@ void vtkScatteringSolver::WriteSolved(
   this->TellOfPieces(light, false);
   this->Note(light);
   vtkImageData* const medium = vtkImageData::GetData(inputs[MEDIUM]);
-  for (const std::string& doubt : Write(this, std::move(light), this->Ignored, medium, outputs, nullptr))
+  this->WarnOnce(Write(this, std::move(light), this->Ignored, medium, outputs, nullptr));
+  this->Solved->Keep(outputs);
+  this->HandOn(inputs, outputs);
+}
+
+/// Warns on the first rank alone: the light is that of all.
+void vtkScatteringSolver::WarnOnce(const std::vector<std::string>& doubts)
+{
+  for (const std::string& doubt : this->IsFirstRank ? doubts : std::vector<std::string>())
   {
     vtkWarningMacro(<< doubt);
   }
-  this->Solved->Keep(outputs);
-  this->HandOn(inputs, outputs);
 }
 
 tyndall::ToneMapping vtkScatteringSolver::Tones() const

@@ -238,11 +238,13 @@ private:
   void ColorPiece(tyndall::Communicator& communicator, const tyndall::PieceBlocks& pieces,
     vtkInformationVector** inputs, vtkInformationVector* outputs);
   tyndall::ToneMapping Tones() const;
+  void WarnOnce(const std::vector<std::string>& doubts);
   void HandOn(vtkInformationVector** inputs, vtkInformationVector* outputs);
 
   std::unique_ptr<tyndall::LastOutputs> Solved;
   bool SolvedInPieces = false;      ///< that is of this rank's piece
   bool OverRanks = false;           ///< of the light that is being made: several ranks make it together
+  bool IsFirstRank = true;          ///< the same: the rank that warns for all of them
   std::vector<std::string> Ignored; ///< the same: of the medium
   std::string WholeFor;             ///< the same: why each solves the whole, though it was left to choose
   vtkTimeStamp ColorsTime;          ///< of LitColor, Exposure, ToneCurve: they do not change the light

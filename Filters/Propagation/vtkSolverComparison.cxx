@@ -22,6 +22,7 @@
 #include "vtkStringArray.h"
 #include "vtkTable.h"
 
+#include <algorithm>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -332,7 +333,7 @@ int vtkSolverComparison::RequestData(
       this->Settings(), reference ? &*reference : nullptr, tyndall::MonitorOf(this));
     TellOfDefaultSky(shining, comparison.leftOut);
     Write(comparison, this->GetOutput());
-    this->TellOfIgnored(vtkImageData::GetData(inputs[MEDIUM]));
+    this->TellOfIgnored(comparison, vtkImageData::GetData(inputs[MEDIUM]));
     this->Note(comparison, tyndall::ClockSeconds() - start);
     vtkImageData* const output = vtkImageData::GetData(outputs, REFERENCE_OUTPUT);
     Write(std::move(comparison.reference), reference.has_value(), output);
@@ -346,10 +347,10 @@ int vtkSolverComparison::RequestData(
 }
 
 /// Of the index, of which only some of the compared methods know.
-void vtkSolverComparison::TellOfIgnored(vtkImageData* medium)
+void vtkSolverComparison::TellOfIgnored(const tyndall::Comparison& comparison, vtkImageData* medium)
 {
-  const bool ofMaps = this->LightPropagationMaps || this->ConstantSource || this->AsPublished ||
-    this->AsPublishedSequential || this->DiscreteOrdinates;
+  const bool ofMaps = std::any_of(comparison.rows.begin(), comparison.rows.end(),
+    [](const auto& row) { return row.method <= tyndall::ComparedMethod::DiscreteOrdinates; }); // and maps of all kinds
   const std::vector<std::string> ignored =
     tyndall::IgnoredIndex(ofMaps && tyndall::IsUnusual(this, tyndall::RefractiveIndex, medium, "ior", 1.0f));
   if (!ignored.empty())

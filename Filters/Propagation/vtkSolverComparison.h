@@ -230,7 +230,7 @@ private:
   void operator=(const vtkSolverComparison&) = delete;
 
   tyndall::ComparisonSettings Settings() const;
-  void TellOfIgnored(vtkImageData* medium);
+  void TellOfIgnored(const tyndall::Comparison& comparison, vtkImageData* medium);
   void Note(const tyndall::Comparison& comparison, double seconds);
 
   bool LightPropagationMaps = true;

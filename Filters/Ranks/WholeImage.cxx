@@ -35,6 +35,13 @@ vtkInformationIntegerVectorKey* PartsOfRanks()
   return key;
 }
 
+/// Of an output: the whole extents that were told of it when its data were made.
+vtkInformationIntegerVectorKey* ExtentsTold()
+{
+  static auto* const key = vtkInformationIntegerVectorKey::MakeKey("EXTENTS_TOLD", "Tyndall");
+  return key;
+}
+
 /// Flags values that a neighbouring piece has, too. Other flags stay, and so do the arrays of the input, which the
 /// image may share.
 /// @param box  numbers of the values
@@ -125,7 +132,20 @@ struct Part
   AskedPiece piece; ///< empty: nothing, or where it is not divided all that there is
 };
 
-/// @param image  extent of what there is: all of it is asked for by whoever asks for all that was told of
+/// Whether one extent has all points of another.
+bool Covers(const Extent& extent, const Extent& other)
+{
+  bool covers = true;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    covers = covers && extent[2 * axis] <= other[2 * axis] && extent[2 * axis + 1] >= other[2 * axis + 1];
+  }
+  return covers;
+}
+
+/// @param image  extent of what there is. Whoever asks for all that was told of asks for all of this: a file of another
+///               time, or voxels around points that were not known to be. So do those who ask for pieces of all where
+///               this is more (where it is not, it may be the piece alone that was made).
 Part PartAskedFor(vtkInformation* information, const Extent& image)
 {
   Part part;
@@ -137,13 +157,10 @@ Part PartAskedFor(vtkInformation* information, const Extent& image)
     part.piece = { own, own };
     return part;
   }
-  Extent update, whole = AskedPiece::Nothing;
+  Extent update;
   information->Get(Pipeline::UPDATE_EXTENT(), update.data());
-  if (information->Has(Pipeline::WHOLE_EXTENT()))
-  {
-    information->Get(Pipeline::WHOLE_EXTENT(), whole.data());
-  }
-  part.piece = AskedPieceOf(information, update == whole ? image : update);
+  const bool all = AsksForAll(information) && (!part.divided || Covers(image, update));
+  part.piece = AskedPieceOf(information, all ? image : update);
   return part;
 }
 }
@@ -280,9 +297,45 @@ std::array<int, 6> ExtentAskedFor(vtkInformation* information, const std::array<
   return extent;
 }
 
+bool AsksForAll(vtkInformation* information)
+{
+  Extent asked = AskedPiece::Nothing, whole = AskedPiece::Nothing;
+  information->Get(Pipeline::UPDATE_EXTENT(), asked.data());
+  if (information->Has(Pipeline::WHOLE_EXTENT()))
+  {
+    information->Get(Pipeline::WHOLE_EXTENT(), whole.data());
+  }
+  const int* const told = information->Get(ExtentsTold());
+  bool all = asked == whole;
+  for (int i = 0; i < information->Length(ExtentsTold()); i += 6)
+  {
+    all = all || std::equal(asked.begin(), asked.end(), told + i);
+  }
+  return all;
+}
+
+void NoteExtentTold(vtkInformation* information)
+{
+  const int* const whole = information->Get(Pipeline::WHOLE_EXTENT());
+  const int* const told = information->Get(ExtentsTold());
+  bool isNew = whole != nullptr;
+  for (int i = 0; isNew && i < information->Length(ExtentsTold()); i += 6)
+  {
+    isNew = !std::equal(whole, whole + 6, told + i);
+  }
+  std::for_each(whole, whole + (isNew ? 6 : 0), [&](int bound) { information->Append(ExtentsTold(), bound); });
+}
+
 void KeepWhatIsAskedFor(vtkInformation* information, vtkImageData* output)
 {
-  const Part part = PartAskedFor(information, ExtentOf(output));
+  NoteExtentTold(information);
+  const Extent image = ExtentOf(output);
+  const Part part = PartAskedFor(information, image);
+  if (!part.divided && part.piece.own == image) // which may be more than was told of
+  {
+    information->Set(Pipeline::WHOLE_EXTENT(), image.data(), 6);
+    information->Set(Pipeline::UPDATE_EXTENT(), image.data(), 6);
+  }
   if (part.divided || !part.piece.IsEmpty())
   {
     KeepPiece(part.piece, output);

@@ -61,6 +61,13 @@ std::array<int, 6> PartOfExtent(const std::array<int, 6>& whole, int piece, int 
 /// Crops an image to a piece of it, and marks its ghost cells (vtkGhostType); empties it where the piece is.
 void KeepPiece(const AskedPiece& piece, vtkImageData* output);
 
+/// Whether the update extent of an output is all of it: the whole extent, or one that was told when its data were made
+/// at another time. Whoever asks may not know of the new one: VTK tells of extents before it says of what time data are
+/// wanted.
+bool AsksForAll(vtkInformation* information);
+/// In RequestData; KeepWhatIsAskedFor does it.
+void NoteExtentTold(vtkInformation* information);
+
 /// In RequestData: what KeepWhatIsAskedFor leaves of an image; its last bounds are less than its first ones where that
 /// is nothing.
 std::array<int, 6> ExtentAskedFor(vtkInformation* information, const std::array<int, 6>& image);

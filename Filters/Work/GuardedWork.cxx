@@ -21,6 +21,7 @@
 #include "vtkCompositeDataIterator.h"
 #include "vtkCompositeDataSet.h"
 #include "vtkDataObject.h"
+#include "vtkDataSetAttributes.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
@@ -28,6 +29,8 @@
 #include "vtkMultiProcessController.h"
 #include "vtkSmartPointer.h"
 #include "vtkVersionMacros.h"
+
+#include <algorithm>
 
 namespace tyndall
 {
@@ -85,8 +88,24 @@ void WarnOfDevices(vtkAlgorithm* filter)
 
 namespace
 {
+/// Whether these are the same data: the pipeline hands on a copy of each block that has its arrays.
+bool HaveSameArrays(vtkDataObject* a, vtkDataObject* b)
+{
+  int shared = 0;
+  for (const int kind : { vtkDataObject::POINT, vtkDataObject::CELL })
+  {
+    vtkDataSetAttributes* const ofA = a ? a->GetAttributes(kind) : nullptr;
+    vtkDataSetAttributes* const ofB = b ? b->GetAttributes(kind) : nullptr;
+    for (int i = 0; ofA && ofB && i < std::min(ofA->GetNumberOfArrays(), ofB->GetNumberOfArrays()); ++i)
+    {
+      shared += ofA->GetAbstractArray(i) == ofB->GetAbstractArray(i) ? 1 : 0;
+    }
+  }
+  return shared > 0;
+}
+
 /// The number of blocks of an input where the pipeline hands them on one after the other and this is the first; else 0.
-int BlocksBegun(vtkAlgorithm* filter, int port)
+int BlocksBegun(vtkAlgorithm* filter, vtkInformationVector** given, int port)
 {
   vtkAlgorithmOutput* const from =
     filter->GetNumberOfInputConnections(port) > 0 ? filter->GetInputConnection(port, 0) : nullptr;
@@ -104,16 +123,16 @@ int BlocksBegun(vtkAlgorithm* filter, int port)
     first = count == 0 ? each->GetCurrentDataObject() : first;
     ++count;
   }
-  return first == filter->GetInputDataObject(port, 0) ? count : 0;
+  return HaveSameArrays(first, vtkDataObject::GetData(given[port], 0)) ? count : 0;
 }
 
 /// Of filters for which the voxels of one block depend on those of another.
-void WarnOfBlocks(vtkAlgorithm* filter)
+void WarnOfBlocks(vtkAlgorithm* filter, vtkInformationVector** given)
 {
   const bool local = filter->IsA("vtkParticipatingMedium") || filter->IsA("vtkRefractionOctree");
   for (int port = 0; !local && port < filter->GetNumberOfInputPorts(); ++port)
   {
-    if (const int blocks = BlocksBegun(filter, port); blocks > 1)
+    if (const int blocks = BlocksBegun(filter, given, port); blocks > 1)
     {
       vtkWarningWithObjectMacro(
         filter, << "Input " << port << " has " << blocks
@@ -233,10 +252,6 @@ int GuardedOn(vtkMultiProcessController* ranks, vtkAlgorithm* filter, vtkInforma
     }
     last.Note(LastFailure::Error);
   }
-  else
-  {
-    WarnOfBlocks(filter);
-  }
   filter->SetProgressText(nullptr);
   WarnOfDevices(filter);
   return 1;
@@ -296,6 +311,7 @@ int GuardedInPieces(vtkAlgorithm* filter, vtkInformation* request, vtkInformatio
     work(ranks, inputs);
     TellAveraged(filter, outputs);
     inputs.PutIntoScene(outputs);
+    WarnOfBlocks(filter, given);
   });
 }
 

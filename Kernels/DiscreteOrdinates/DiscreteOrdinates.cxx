@@ -6,6 +6,7 @@
 #include "DiscreteOrdinates/Published/PublishedOrders.h"
 #include "DiscreteOrdinates/SweptOrders.h"
 #include "Light/LeftOut.h"
+#include "LightPropagation/Convergence.h"
 #include "LightPropagation/Problem/PropagationProblem.h"
 
 #include <algorithm>
@@ -91,6 +92,7 @@ LightField SolveDiscreteOrdinates(Device& device, const Medium& medium, const Il
   }
   DescribeLight(light, device, far);
   light.faceAlbedo = illumination.faceAlbedo;
+  Judge(settings, diverged, problem.TheMedium(), nullptr, light);
   warm.Finish(diverged, light, kept);
   if (!IsPublished(settings) && settings.seriesAfter > 0 &&
     light.convergence.size() >= static_cast<std::size_t>(settings.seriesAfter))
@@ -98,7 +100,6 @@ LightField SolveDiscreteOrdinates(Device& device, const Medium& medium, const Il
     light.leftOut.push_back("orders: those after " + std::to_string(settings.seriesAfter) + " are a geometric series");
   }
   problem.Undo(light);
-  Judge(settings, diverged, light);
   DoubtGivenLight(illumination, light);
   return light;
 }

@@ -4,6 +4,7 @@
 #include "DiscreteOrdinates/Published/PublishedOrders.h"
 #include "DiscreteOrdinates/SweptOrders.h"
 #include "LightPropagation/Angular/DirectionSet.h"
+#include "LightPropagation/Convergence.h"
 #include "LightPropagation/Uncollided/EnvironmentPeaks.h"
 #include "Numerics/Constants.h"
 #include "Numerics/NumberText.h"
@@ -257,8 +258,17 @@ void DescribeLight(LightField& light, const Device& device, const FarLight& far)
   light.device = device.Name();
 }
 
-void Judge(const OrdinatesSettings& settings, bool diverged, LightField& light)
+void Judge(const OrdinatesSettings& settings, bool diverged, const Medium& medium, const OrdinatesRanks* ranks,
+  LightField& light)
 {
+  if (!IsPublished(settings) && ranks)
+  {
+    JudgeBalance(light, ranks->others, ranks->Has(), medium);
+  }
+  else if (!IsPublished(settings))
+  {
+    JudgeBalance(light, medium);
+  }
   const double residual = light.convergence.empty() ? 0.0 : light.convergence.back().residual;
   const bool isAsked = settings.maximumOrders > 0 || (settings.seriesAfter > 0 && !IsPublished(settings));
   light.converged = !diverged && (isAsked || residual <= settings.tolerance);

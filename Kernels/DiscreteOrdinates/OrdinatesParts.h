@@ -64,6 +64,10 @@ void TakeChannel(LightField& light, const OrdinatesResult& found, int channel);
 /// What light has beside fluence, before it is in the user's units.
 void DescribeLight(LightField& light, const Device& device, const FarLight& far);
 
-/// Whether it has converged.
-void Judge(const OrdinatesSettings& settings, bool diverged, LightField& light);
+/// Whether it has converged, and, but as published, whether it balances (Convergence.h). Collective.
+/// @param medium  solved, of this rank
+/// @param ranks   null: there is one
+/// @throws InvalidInput where it does not balance
+void Judge(const OrdinatesSettings& settings, bool diverged, const Medium& medium, const OrdinatesRanks* ranks,
+  LightField& light);
 }

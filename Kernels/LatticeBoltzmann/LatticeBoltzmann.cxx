@@ -55,6 +55,11 @@ Uncollided FindUncollided(
   found.firstMoments = std::move(light.firstMoments);
   found.image.fluence = { found.fluence.data(), light.channels };
   found.image.escaped = light.facePowerOut;
+  for (std::size_t c = 0; c < 3; ++c)
+  {
+    const EnergyBalance& sums = light.balance;
+    found.lost[c] = sums.entered[c] - sums.absorbed[c] - sums.escaped[c] - sums.leftOver[c];
+  }
   for (std::size_t i = 0; settings.netFlux && i < problem.TheGrid().VoxelCount(); ++i)
   {
     for (int c = 0; c < problem.Channels(); ++c)
@@ -84,6 +89,7 @@ LightField SolveLatticeBoltzmann(Device& device, const Medium& medium, const Fie
     channel.AddTo(light);
     thickest = std::max(thickest, channel.Thickest());
   }
+  CountLost(uncollided.lost, light.balance);
   FinishLight(light, device, problem, illumination, settings, thickest);
   return light;
 }
@@ -105,7 +111,7 @@ LightField SolveLatticeBoltzmann(Device& device, const Medium& medium, const Fie
   Illumination lit = illumination;
   lit.uncollided = ImageOf(found);
   LightField light = SolveLatticeBoltzmann(device, medium, ior, lit, settings, OfPart(monitor, 0.5, 1.0));
-  DoubtPhotons(found.missed, photons.size(), light);
+  DoubtPhotons(found, photons.size(), light);
   return light;
 }
 }

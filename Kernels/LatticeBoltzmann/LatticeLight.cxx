@@ -90,11 +90,12 @@ UncollidedImage ImageOf(const PhotonLight& photons)
   return image;
 }
 
-void DoubtPhotons(std::size_t missed, std::size_t all, LightField& light)
+void DoubtPhotons(const PhotonLight& photons, std::size_t all, LightField& light)
 {
-  if (missed > 0)
+  light.doubts.insert(light.doubts.end(), photons.light.doubts.begin(), photons.light.doubts.end());
+  if (photons.missed > 0)
   {
-    light.doubts.push_back(std::to_string(missed) + " of " + std::to_string(all) +
+    light.doubts.push_back(std::to_string(photons.missed) + " of " + std::to_string(all) +
       " photons do not meet the medium, so their power is not in it. Give PhotonEmitter the same medium.");
   }
 }
@@ -135,6 +136,14 @@ void DescribeLight(
   }
 }
 
+void CountLost(const Rgb& lost, EnergyBalance& balance)
+{
+  for (std::size_t c = 0; c < lost.size(); ++c)
+  {
+    balance.entered[c] += lost[c];
+  }
+}
+
 void JudgeLight(LightField& light, const Illumination& illumination, const LatticeSettings& settings)
 {
   PropagationSettings judged = AsPropagation(settings);
@@ -153,6 +162,10 @@ void FinishLight(LightField& light, const Device& device, const PropagationProbl
 {
   const bool anisotropic = !problem.TheMedium().phase.IsIsotropic() && problem.Traits().scatters;
   DescribeLight(light, device, anisotropic, settings, thickest);
+  if (settings.scheme == LatticeScheme::Conservative)
+  {
+    JudgeBalance(light, problem.TheMedium());
+  }
   problem.Undo(light);
   JudgeLight(light, illumination, settings);
 }

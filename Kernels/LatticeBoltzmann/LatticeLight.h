@@ -27,9 +27,9 @@ void CheckPhotonsGoNotRound(const LatticeSettings& settings);
 /// Photons' light as uncollided light; its arrays are theirs.
 UncollidedImage ImageOf(const PhotonLight& photons);
 
-/// Warns of photons that do not meet the medium.
-/// @param missed, all  photons of all ranks
-void DoubtPhotons(std::size_t missed, std::size_t all, LightField& light);
+/// Hands on what photons' light is doubted for, and warns of photons that do not meet the medium.
+/// @param all  number of photons, of all ranks
+void DoubtPhotons(const PhotonLight& photons, std::size_t all, LightField& light);
 
 /// Dark, in the channels that are solved.
 LightField BeginLight(std::size_t voxels, int channels, const LatticeSettings& settings);
@@ -39,6 +39,9 @@ LightField BeginLight(std::size_t voxels, int channels, const LatticeSettings& s
 /// @param thickest  sigma_t h, of all voxels
 void DescribeLight(
   LightField& light, const Device& device, bool anisotropic, const LatticeSettings& settings, double thickest);
+
+/// Adds to what entered the W of uncollided light that entered and went nowhere.
+void CountLost(const Rgb& lost, EnergyBalance& balance);
 
 /// Whether it has converged, and what else is to be said of light in the user's units.
 void JudgeLight(LightField& light, const Illumination& illumination, const LatticeSettings& settings);

@@ -18,6 +18,7 @@ struct Uncollided
   std::vector<float> fluence, netFlux;
   std::vector<float> firstMoments; ///< as LightField has them, of the image's channels; empty: not known
   UncollidedImage image;
+  Rgb lost = {}; ///< W that entered and went nowhere, which the energy balance is to show
 
   /// Distance in voxels, 0 to 1/2, from a voxel's middle towards a face of the mean place where its light is lost.
   double Nearer(std::size_t voxel, int channel, std::size_t face) const;

@@ -1,9 +1,11 @@
 #include "LightPropagation/Convergence.h"
 
+#include "Device/Errors.h"
 #include "Numerics/NumberText.h"
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 namespace tyndall
 {
@@ -14,6 +16,101 @@ constexpr double MarginOfChanges = 1.5; ///< of the estimated error: changes do 
 constexpr double MuchLeftOver = 0.01;   ///< of the power, with the usual tolerance
 constexpr double SlowestFall = 1e-4;    ///< from order to order, of light that is waited for round periodic axes
 constexpr double NextToAll = 1e-3;      ///< what else there is beside it, at most
+
+constexpr double ImbalanceAtMost = 1e-2; ///< of the power, beyond any rounding
+constexpr double ImbalanceUnsaid = 1e-4; ///< the same, of rounding
+constexpr double FaintChannel = 1e-3;    ///< of the brightest one: photons' channels share their units of power
+constexpr double OpaqueVoxel = 100.0;    ///< mean free paths, about, beyond which floats lose light in a voxel
+
+struct ThickestVoxel
+{
+  double thickness = 0.0; ///< mean free paths of transport along its longest edge, of all channels
+  std::string name;       ///< empty: not known
+};
+
+ThickestVoxel ThickestOf(const Medium& medium)
+{
+  const Grid& grid = medium.grid;
+  const int channels = medium.Channels();
+  std::size_t thickest = 0;
+  float largest = 0.0f;
+  for (std::size_t i = 0; i < grid.VoxelCount(); ++i)
+  {
+    for (int c = 0; c < channels; ++c)
+    {
+      const float sigma_t = medium.TransportSigmaT(i, c);
+      thickest = sigma_t > largest ? i : thickest;
+      largest = std::max(largest, sigma_t);
+    }
+  }
+  return grid.VoxelCount() == 0
+    ? ThickestVoxel()
+    : ThickestVoxel{ largest * *std::max_element(grid.spacing.begin(), grid.spacing.end()), VoxelName(grid, thickest) };
+}
+
+enum class Balancing
+{
+  Well,
+  Poorly,
+  Not
+};
+
+/// Part of the power that is lost or made, the worst channel; grey light has nothing in the other channels. A faint
+/// channel is compared with a thousandth of the brightest one.
+double ImbalanceOf(const EnergyBalance& balance)
+{
+  Rgb in = {};
+  for (std::size_t c = 0; c < in.size(); ++c)
+  {
+    in[c] = balance.entered[c] + balance.emitted[c];
+  }
+  const double least = FaintChannel * *std::max_element(in.begin(), in.end());
+  double worst = 0.0;
+  for (std::size_t c = 0; c < in.size(); ++c)
+  {
+    const double error = std::abs(in[c] - balance.absorbed[c] - balance.escaped[c] - balance.leftOver[c]);
+    const double scale = std::max(in[c], least);
+    const double part = scale > 0.0 ? error / scale : error;
+    worst = part <= worst || std::isnan(worst) ? worst : part;
+  }
+  return worst;
+}
+
+Balancing BalancingOf(const EnergyBalance& balance)
+{
+  const double error = ImbalanceOf(balance);
+  return error <= ImbalanceUnsaid ? Balancing::Well : error <= ImbalanceAtMost ? Balancing::Poorly : Balancing::Not;
+}
+
+/// What may be wrong, and what to do.
+std::string WordsOfImbalance(const ThickestVoxel& thickest)
+{
+  const std::string thickness = Text("%.3g", thickest.thickness);
+  if (thickest.thickness > OpaqueVoxel)
+  {
+    return "more than floats can carry through this medium. Its thickest voxel" +
+      (thickest.name.empty() ? std::string() : ", " + thickest.name + ",") + " has optical thickness " + thickness +
+      "; beyond some hundred it is opaque, so give it less.";
+  }
+  return "more than rounding. " +
+    (thickest.thickness > 0.0 ? "Voxels of at most " + thickness + " mean free paths are not the cause: look"
+                              : "Look") +
+    " at the lights. Move lamps that are very far away, on a face of the box or "
+    "at a corner of a voxel, make very narrow cones wider, and resample very flat voxels; another solver shows which "
+    "light is right.";
+}
+
+void Judge(LightField& light, Balancing balancing, const ThickestVoxel& thickest)
+{
+  const double error = ImbalanceOf(light.balance);
+  const std::string why = WordsOfImbalance(thickest), part = Text("%.2g", error) + " of the power is lost or made, ";
+  if (balancing == Balancing::Poorly)
+  {
+    light.doubts.push_back("The energy balance is off: " + part + why);
+    return;
+  }
+  throw InvalidInput((std::isnan(error) ? "The light is not a number, " : "The light does not balance: " + part) + why);
+}
 
 /// Of all power, what the solver gave up.
 double LeftOver(const EnergyBalance& balance)
@@ -85,6 +182,25 @@ void DoubtGivenLight(const Illumination& illumination, LightField& light)
   {
     light.doubts.emplace_back("FaceAlbedo gives back scattered light only: through which cells of the faces the light "
                               "of UncollidedLight leaves is not known.");
+  }
+}
+
+void JudgeBalance(LightField& light, const Medium& medium)
+{
+  const Balancing balancing = BalancingOf(light.balance);
+  if (balancing != Balancing::Well)
+  {
+    Judge(light, balancing, ThickestOf(medium));
+  }
+}
+
+void JudgeBalance(LightField& light, Communicator& communicator, bool has, const Medium& ofBlock)
+{
+  const double worst = communicator.Largest({ static_cast<double>(BalancingOf(light.balance)) })[0];
+  if (worst > 0.0)
+  {
+    const double own = has ? ThickestOf(ofBlock).thickness : 0.0;
+    Judge(light, static_cast<Balancing>(static_cast<int>(worst)), { communicator.Largest({ own })[0], {} });
   }
 }
 

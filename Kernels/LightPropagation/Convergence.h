@@ -1,7 +1,9 @@
 #pragma once
 
+#include "Distribution/Communicator.h"
 #include "Light/LightField.h"
 #include "LightPropagation/PropagationSettings.h"
+#include "Medium/Medium.h"
 
 namespace tyndall
 {
@@ -64,6 +66,15 @@ constexpr double UncollidedPart = 0.5;
 
 /// Adds to a light's `doubts` what faces that reflect do not know of light that another solver found.
 void DoubtGivenLight(const Illumination& illumination, LightField& light);
+
+/// The energy check of every conservative solver: power is absorbed, escapes or is left over. An error above 1e-4
+/// becomes one of the light's `doubts`.
+/// @param medium  read only where the balance is off, to tell why; without voxels: not known
+/// @throws InvalidInput where the error is above 1e-2, or not a number
+void JudgeBalance(LightField& light, const Medium& medium);
+/// The same of light over ranks, each with the balance of all. Collective.
+/// @param has  voxels, this rank
+void JudgeBalance(LightField& light, Communicator& communicator, bool has, const Medium& ofBlock);
 
 /// Sets `converged` of solved light, and adds to its `doubts` where it is not, or where power is left over.
 void JudgeConvergence(const PropagationSettings& settings, LightField& light);

@@ -151,8 +151,8 @@ def elephant_in_a_sphere(part=1):
 
 def seen(name, light, centre):
     """The elephant from the side."""
-    return picture("elephant-in-a-sphere" + name, light, CameraPosition=around(centre, 5, 260, 10), CameraFocalPoint=centre,
-                   CameraViewAngle=19, SurfaceReflection="Fresnel")
+    return picture("elephant-in-a-sphere" + name, light, Exposure=0.25, CameraPosition=around(centre, 5, 260, 10),
+                   CameraFocalPoint=centre, CameraViewAngle=19, SurfaceReflection="Fresnel")
 
 
 def elephant():

@@ -252,7 +252,7 @@ void NumbersOfMaterialsAreWhole(test::Claims& claims)
   refused(text, "The mesh's cell array 'material_id' is text");
   const auto tooShort = Ball(0.0, 1.0);
   test::AddValues<vtkDoubleArray>(tooShort->GetCellData(), "material_id", 3, 1, [](vtkIdType, int) { return 1.0; });
-  refused(tooShort, "The mesh's cell array 'material_id' has 3 values");
+  refused(tooShort, "Array 'material_id' has 3 values");
 
   filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "foo");
   refused(NumberedBall("kind", 1.0), "no cell array 'foo'");

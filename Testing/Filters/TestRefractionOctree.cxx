@@ -255,6 +255,7 @@ void OtherArraysCanBeChosen(test::Claims& claims)
   test::Errors errors(filter);
   filter->SetInputDataObject(image);
   filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "n");
+  filter->SetPointData(vtkRefractionOctree::AVERAGE_TO_CELLS);
   filter->SetTolerance(0.09);
   filter->Update();
   claims.That(errors.None() && filter->GetNodeCount() == 2, "points averaged to cells 1.05 and 1.15 are two nodes");

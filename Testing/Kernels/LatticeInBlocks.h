@@ -110,6 +110,7 @@ protected:
   {
     ExpectSameLight(found, expected, tolerance);
     EXPECT_TRUE(found.converged);
+    EXPECT_LT(found.balance.RelativeError(expected.channels), 1e-5); // what uncollided light lost
     for (std::size_t c = 0; c < static_cast<std::size_t>(expected.channels); ++c)
     {
       const double all = expected.balance.entered[c] + expected.balance.emitted[c];

@@ -1,6 +1,12 @@
 #include "LightPropagation/Convergence.h"
 
+#include "Device/Errors.h"
+#include "Distribution/RanksInThreads.h"
+
 #include <gtest/gtest.h>
+
+#include <limits>
+#include <mutex>
 
 using namespace tyndall;
 
@@ -57,4 +63,97 @@ TEST(Convergence, DoubtsLightOfWhichAHundredthIsLeftOver)
   EXPECT_TRUE(light.converged);
   ASSERT_EQ(light.doubts.size(), 1u);
   EXPECT_NE(light.doubts[0].find("1.01% is left over"), std::string::npos) << light.doubts[0];
+}
+
+namespace
+{
+/// What each of some ranks, of which one is not told the same, does about a balance that is off by part of the power.
+struct Judged
+{
+  int refused = 0;
+  std::vector<std::string> words;
+};
+
+Judged JudgeOnRanks(int ranks, double lost, double lostOnLast)
+{
+  Judged judged;
+  std::mutex guard;
+  RunInThreads(ranks, [&](Communicator& communicator) {
+    LightField light = LightWith(0.0, 0.0);
+    const float sigma = 0.5f;
+    Medium medium;
+    medium.grid.size = { 1, 1, 1 };
+    medium.sigma_a = { &sigma, 1 };
+    medium.sigma_s = { &sigma, 1 };
+    light.balance.absorbed[0] = 4.0 - 4.0 * (communicator.Rank() + 1 == ranks ? lostOnLast : lost);
+    std::string word;
+    bool refused = false;
+    try
+    {
+      JudgeBalance(light, communicator, communicator.Rank() == 0, medium);
+      word = light.doubts.empty() ? "" : light.doubts[0];
+    }
+    catch (const InvalidInput& error)
+    {
+      refused = true;
+      word = error.what();
+    }
+    const std::lock_guard<std::mutex> lock(guard);
+    judged.refused += refused ? 1 : 0;
+    judged.words.push_back(word);
+  });
+  return judged;
+}
+}
+
+TEST(Balance, IsJudgedAlikeOnAllRanks)
+{
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const int ranks : { 1, 3 })
+  {
+    EXPECT_EQ(JudgeOnRanks(ranks, 0.9e-4, 0.9e-4).words, std::vector<std::string>(ranks, "")) << ranks;
+    const Judged poor = JudgeOnRanks(ranks, 2.5e-4, 2.5e-4), bad = JudgeOnRanks(ranks, 0.36, 0.36),
+                 none = JudgeOnRanks(ranks, 0.0, nan);
+    EXPECT_EQ(poor.refused, 0) << ranks;
+    EXPECT_EQ(bad.refused, ranks);
+    EXPECT_EQ(none.refused, ranks);
+    for (int rank = 0; rank < ranks; ++rank)
+    {
+      EXPECT_EQ(poor.words[rank].find("The energy balance is off: 0.00025 of the power is lost or made"), 0u);
+      EXPECT_NE(poor.words[rank].find("Voxels of at most 1 mean free paths are not the cause"), std::string::npos);
+      EXPECT_EQ(bad.words[rank].find("The light does not balance: 0.36 of the power is lost or made"), 0u);
+    }
+  }
+}
+
+TEST(Balance, BlamesAMediumThatIsThickEnough)
+{
+  const std::vector<float> sigma = { 1.0f, 2e6f };
+  Medium medium;
+  medium.grid.size = { 2, 1, 1 };
+  medium.sigma_a = { sigma.data(), 1 };
+  medium.sigma_s = { sigma.data(), 1 };
+  LightField light = LightWith(0.0, 0.0); // nothing is absorbed, nothing leaves
+  try
+  {
+    JudgeBalance(light, medium);
+    ADD_FAILURE() << "all power is lost";
+  }
+  catch (const InvalidInput& error)
+  {
+    EXPECT_NE(
+      std::string(error.what()).find("Its thickest voxel, (1, 0, 0), has optical thickness 4e+06"), std::string::npos)
+      << error.what();
+  }
+}
+
+TEST(Balance, OfAFaintChannelCountsByTheBrightestOne)
+{
+  LightField light = LightWith(0.0, 0.0);
+  light.balance.entered = { 3.0, 0.0, 1e-8 }; // beside 1 W that is emitted
+  light.balance.absorbed = { 4.0, 0.0, 0.0 }; // photons' channels share their units of power
+  JudgeBalance(light, Medium());
+  EXPECT_TRUE(light.doubts.empty());
+  light.balance.absorbed[0] = 3.9;
+  EXPECT_THROW(JudgeBalance(light, Medium()), InvalidInput);
 }

@@ -342,6 +342,109 @@ TEST_F(LampBeams, AnIsolatedOpaqueVoxelStopsEveryRay)
 
 namespace
 {
+constexpr std::array<double, 3> UnevenLengths = { 7.0, 6.4, 7.8 };
+
+/// A grey box of uneven voxels in the light of one lamp.
+LightField LitBy(Device& device, const Light& lamp, std::array<bool, 3> periodic = {})
+{
+  Scene scene({ 7, 8, 6 }, 0.05f);
+  scene.medium.grid.spacing = { 1.0, 0.8, 1.3 };
+  scene.settings.periodic = periodic;
+  scene.light.lights = { lamp };
+  return scene.Solve(device);
+}
+
+/// Solid angle of that box from a point below it.
+double SolidAngleFromBelow(const std::array<double, 3>& eye)
+{
+  const auto corner = [](double a, double b, double d) {
+    return std::atan2(a * b, d * std::sqrt(a * a + b * b + d * d));
+  };
+  const double x0 = -eye[0], x1 = UnevenLengths[0] - eye[0], y0 = -eye[1], y1 = UnevenLengths[1] - eye[1];
+  return corner(x1, y1, -eye[2]) - corner(x0, y1, -eye[2]) - corner(x1, y0, -eye[2]) + corner(x0, y0, -eye[2]);
+}
+}
+
+TEST_F(LampBeams, OnAFaceAnEdgeAndACornerALampShinesInwardsOnly)
+{
+  for (int border = 1; border < 27; ++border) // a digit an axis; 1: on the low face, 2: on the high one
+  {
+    std::array<double, 3> position = {};
+    double part = 1.0;
+    for (int a = 0, digits = border; a < 3; ++a, digits /= 3)
+    {
+      position[a] = UnevenLengths[a] * (digits % 3 == 0 ? 0.41 : digits % 3 - 1.0);
+      part *= digits % 3 == 0 ? 1.0 : 0.5;
+    }
+    const LightField light = LitBy(this->GetDevice(), Lamp(LightType::Point, position));
+    EXPECT_NEAR(light.balance.entered[0], 10.0 * part, 10.0 * part * 1e-3) << border;
+    EXPECT_LT(light.balance.RelativeError(1), 1e-5) << border;
+  }
+}
+
+TEST_F(LampBeams, LightDoesNotJumpWhereALampGoesThroughAFace)
+{
+  for (LightType type : { LightType::Point, LightType::Spot })
+  {
+    for (int face = 0; face < 6; ++face)
+    {
+      const int axis = face / 2;
+      const double wall = face % 2 ? UnevenLengths[axis] : 0.0, outwards = face % 2 ? 1.0 : -1.0;
+      const auto at = [&](double beyond) {
+        Light lamp = Lamp(type, { 0.41 * UnevenLengths[0], 0.37 * UnevenLengths[1], 0.53 * UnevenLengths[2] });
+        lamp.position[axis] = wall + outwards * beyond;
+        lamp.direction = { 0.3, 0.2, 0.1 };
+        lamp.direction[axis] = -outwards;
+        return LitBy(this->GetDevice(), lamp);
+      };
+      const LightField within = at(-1e-4), on = at(0.0), beyond = at(1e-4);
+      const double largest = *std::max_element(on.fluence.begin(), on.fluence.end());
+      for (std::size_t i = 0; i < on.fluence.size(); ++i)
+      {
+        EXPECT_NEAR(within.fluence[i], on.fluence[i], 0.01 * on.fluence[i] + 1e-3 * largest) << face << ' ' << i;
+        EXPECT_NEAR(beyond.fluence[i], on.fluence[i], 0.01 * on.fluence[i] + 1e-3 * largest) << face << ' ' << i;
+      }
+      EXPECT_NEAR(within.balance.absorbed[0], on.balance.absorbed[0], 2e-3 * on.balance.absorbed[0]) << face;
+      EXPECT_NEAR(beyond.balance.absorbed[0], on.balance.absorbed[0], 2e-3 * on.balance.absorbed[0]) << face;
+      EXPECT_NEAR(within.balance.entered[0], 10.0, 1e-2) << face;
+    }
+  }
+}
+
+TEST_F(LampBeams, InsideAllPowerEntersAndOutsideThatOfTheSolidAngle)
+{
+  for (double z : { 3.0, 1.2, 0.4, 0.13, 0.01, 1e-4, -1e-4, -0.01, -0.13, -0.4, -1.3, -4.0 })
+  {
+    const Light lamp = Lamp(LightType::Point, { 2.9, 2.6, z });
+    const double part = z > 0.0 ? 1.0 : SolidAngleFromBelow(lamp.position) / (4.0 * Pi);
+    const LightField light = LitBy(this->GetDevice(), lamp);
+    EXPECT_NEAR(light.balance.entered[0] / (10.0 * part), 1.0, 1e-3) << z;
+    EXPECT_LT(light.balance.RelativeError(1), 1e-5) << z;
+    for (const std::array<double, 3>& direction : { std::array<double, 3>{ 1.0, 0.4, 0.3 }, { 0.0, 1.0, 0.0 } })
+    {
+      Light spot = Lamp(LightType::Spot, lamp.position);
+      spot.direction = direction;
+      EXPECT_NEAR(LitBy(this->GetDevice(), spot).balance.entered[0], 10.0, z > 0.0 ? 1e-2 : 10.0) << z;
+    }
+  }
+}
+
+TEST_F(LampBeams, OnTheEndOfAPeriodicAxisALampIsInside)
+{
+  for (double x : { 0.0, 7.0 })
+  {
+    const std::array<bool, 3> alongX = { true, false, false };
+    const LightField light = LitBy(this->GetDevice(), Lamp(LightType::Point, { x, 3.0, 0.0 }), alongX);
+    EXPECT_NEAR(light.balance.entered[0], 5.0, 5e-3) << x;
+    EXPECT_LT(light.balance.RelativeError(1), 1e-4) << x;
+    const double beside = x > 0.0 ? x - 1e-3 : 1e-3;
+    const LightField within = LitBy(this->GetDevice(), Lamp(LightType::Point, { beside, 3.0, 0.0 }), alongX);
+    EXPECT_NEAR(light.balance.absorbed[0] / within.balance.absorbed[0], 1.0, 2e-3) << x;
+  }
+}
+
+namespace
+{
 /// Integral of exp(-x / m) over m from 0 to 1.
 double ExponentialIntegral2(double x)
 {

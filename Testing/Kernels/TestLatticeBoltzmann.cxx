@@ -250,7 +250,7 @@ TEST_F(LatticeBoltzmann, IsPositiveAndKeepsPowerWhateverItsVoxelsAre)
     {
       ASSERT_TRUE(std::isfinite(fluence) && fluence >= 0.0f) << albedo;
     }
-    EXPECT_LT(light.balance.RelativeError(1), 1e-12); // what is left over closes it
+    EXPECT_LT(light.balance.RelativeError(1), 1e-7); // what is left over closes it, but for uncollided light's rounding
     EXPECT_GT(light.balance.leftOver[0], -1e-3 * light.balance.entered[0]) << albedo;
     EXPECT_LT(light.balance.leftOver[0], (albedo < 0.9 ? 1e-3 : 0.5) * light.balance.entered[0]) << albedo;
   }

@@ -2,6 +2,10 @@
 
 #include "LatticeInBlocks.h"
 
+#include "Device/Errors.h"
+#include "LatticeBoltzmann/Distributed/LatticeSceneInBlocks.h"
+#include "LatticeBoltzmann/LatticeLight.h"
+
 #include <algorithm>
 #include <functional>
 #include <string>
@@ -425,4 +429,46 @@ TEST_F(LatticeBlocks, FailTogether)
       monitor = [](double done) { return done < 0.2; };
     }
   });
+}
+
+/// What entered and went nowhere is in the balance, on whichever rank it was found.
+TEST_F(LatticeBlocks, RefuseLightThatDoesNotBalance)
+{
+  const MediumToCut medium = Everything({ 6, 5, 4 });
+  const auto judge = [&](int ranks, double lost) {
+    const BlockPartition partition = BlockPartition::Even(medium.scene.medium.grid, ranks);
+    std::vector<std::string> words(partition.blocks.size());
+    RunInThreads(ranks, [&](Communicator& communicator) {
+      const int rank = communicator.Rank();
+      MediumToCut part = medium.Part(partition.blocks[rank]);
+      part.Attach();
+      const LatticeSettings settings = SettingsOf();
+      const LatticeSceneInBlocks scene(
+        this->GetDevice(), communicator, partition, part.scene.medium, part.Index(), part.scene.light, settings);
+      LightField light = BeginLight(scene.Box().Count(), 1, settings);
+      light.balance.entered[0] = light.balance.escaped[0] = 2.0;
+      const Rgb lostHere = { rank == ranks - 1 ? lost * ranks : 0.0, 0.0, 0.0 };
+      try
+      {
+        FinishLight(light, this->GetDevice(), communicator, scene, part.scene.light, settings, 1.0, lostHere);
+        words[rank] = light.doubts.empty() ? "" : light.doubts.front();
+      }
+      catch (const InvalidInput& error)
+      {
+        words[rank] = error.what();
+      }
+    });
+    return words;
+  };
+  for (const int ranks : { 1, 3 })
+  {
+    for (const std::string& word : judge(ranks, 0.5))
+    {
+      EXPECT_EQ(word.find("The light does not balance: 0.2 of the power is lost or made"), 0u) << word;
+    }
+    for (const std::string& word : judge(ranks, 0.002))
+    {
+      EXPECT_EQ(word.find("The energy balance is off: 0.001 of the power is lost or made"), 0u) << word;
+    }
+  }
 }

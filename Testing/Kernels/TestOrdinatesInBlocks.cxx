@@ -4,8 +4,10 @@
 #include "MediumInBlocks.h"
 #include "MemoryOfOneRank.h"
 
+#include "Device/Errors.h"
 #include "DiscreteOrdinates/DiscreteOrdinates.h"
 #include "DiscreteOrdinates/Distributed/OrdinatesInBlocks.h"
+#include "DiscreteOrdinates/OrdinatesParts.h"
 
 #include <algorithm>
 #include <string>
@@ -419,4 +421,38 @@ TEST_F(OrdinatesBlocks, FailTogetherWithWordsOnWhatIsNotCarried)
       monitor = rank == 1 ? Monitor([](double done) { return done < 0.3; }) : Monitor();
     });
   }
+}
+
+TEST(BalanceOfOrdinates, IsJudgedOnAnyNumberOfRanks)
+{
+  Scene scene({ 3, 1, 1 }, 0.2f, 0.3f);
+  scene.Attach();
+  LightField given;
+  given.convergence = { ConvergenceRow() };
+  given.balance.entered[0] = 4.0;
+  given.balance.absorbed[0] = 3.0; // a quarter is lost
+  const std::string words = "The light does not balance: 0.25 of the power is lost or made";
+  OrdinatesSettings settings;
+  LightField alone = given;
+  EXPECT_THROW(Judge(settings, false, scene.medium, nullptr, alone), InvalidInput);
+  for (const int count : { 1, 3 })
+  {
+    const BlockPartition partition = BlockPartition::Even(scene.medium.grid, count);
+    RunInThreads(count, [&](Communicator& communicator) {
+      const OrdinatesRanks ranks = { communicator, partition };
+      LightField light = given;
+      std::string said;
+      try
+      {
+        Judge(settings, false, scene.medium, &ranks, light);
+      }
+      catch (const InvalidInput& error)
+      {
+        said = error.what();
+      }
+      EXPECT_EQ(said.find(words), 0u) << said;
+    });
+  }
+  settings.scheme = OrdinatesScheme::Published; // loses power, as its paper has it
+  Judge(settings, false, scene.medium, nullptr, given);
 }

@@ -3,6 +3,8 @@
 #include "BlocksOfLight.h"
 #include "TransparentBox.h"
 
+#include "Device/Errors.h"
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -113,6 +115,29 @@ TEST_F(PropagationBlocks, HaveTheLightOfFarLampsAndNarrowCones)
     {
       SCOPED_TRACE(std::to_string(distance) + ", " + std::to_string(partition.blocks.size()) + " ranks");
       ExpectSame(LightOfAll(GetDevice(), partition, whole, shining, SettingsOf(2)), expected);
+    }
+  }
+}
+
+/// On a face, on an edge, and where a face is also the border of a block.
+TEST_F(PropagationBlocks, HaveTheLightOfLampsOnTheBorder)
+{
+  RandomMedium whole(Grid{ { 6, 5, 7 }, { 1.0, 0.8, 1.3 } }, 1, 0.8f, 7);
+  Light lamp = NearLamps()[0];
+  for (const std::array<double, 3>& position :
+    { std::array<double, 3>{ 0.0, 1.7, 9.1 }, { 6.0, 1.7, 4.1 }, { 3.0, 4.0, 4.0 } })
+  {
+    lamp.position = position;
+    Illumination shining;
+    shining.lights = { lamp };
+    const LightField expected = SolveConservative(GetDevice(), whole.medium, shining, SettingsOf(2));
+    for (const int ranks : { 1, 3 })
+    {
+      SCOPED_TRACE(std::to_string(position[2]) + ", " + std::to_string(ranks) + " ranks");
+      const BlockPartition partition = BlockPartition::Even(whole.medium.grid, ranks);
+      const LightField found = LightOfAll(GetDevice(), partition, whole, shining, SettingsOf(2));
+      ExpectSame(found, expected);
+      EXPECT_LT(found.balance.RelativeError(3), 1e-6);
     }
   }
 }
@@ -430,4 +455,39 @@ TEST_F(PropagationBlocksFail, WithWordsOnWhatIsNotCarriedFromRankToRank)
     settings.acceleration = PropagationAcceleration::Automatic;
     settings.uncollidedDirections = 16;
   });
+}
+
+// A lamp within an opaque block in vacuum, more than floats can carry: the whole refuses it (Extremes).
+TEST_F(PropagationBlocks, RefuseLightThatDoesNotBalanceOnAnyNumberOfRanks)
+{
+  RandomMedium whole(Grid{ { 9, 9, 9 } }, 1, 0.0f);
+  for (int i = 0; i < 27; ++i)
+  {
+    whole.scattering[whole.medium.grid.IndexOf({ 3 + i % 3, 3 + i / 3 % 3, 3 + i / 9 })] = 1e30f;
+  }
+  Illumination shining;
+  Light lamp;
+  lamp.type = LightType::Point;
+  lamp.position = { 4.5, 4.5, 4.5 };
+  shining.lights = { lamp };
+  for (const int ranks : { 1, 3 })
+  {
+    const BlockPartition partition = BlockPartition::Even(whole.medium.grid, ranks);
+    RunInThreads(ranks, [&](Communicator& communicator) {
+      PartOf part(whole, partition.blocks[communicator.Rank()]);
+      std::string said;
+      try
+      {
+        const LightField light =
+          SolveInBlocks(this->GetDevice(), communicator, partition, part.medium, shining, PropagationSettings());
+        said = "balances to " + std::to_string(light.balance.RelativeError(1));
+      }
+      catch (const InvalidInput& error)
+      {
+        said = error.what();
+      }
+      EXPECT_NE(said.find("Its thickest voxel has optical thickness 1e+30"), std::string::npos)
+        << ranks << ": " << said;
+    });
+  }
 }

@@ -102,7 +102,7 @@ renamed = light.Input
 for name, was in (("mua", "sigma_a"), ("mus", "sigma_s")):
     renamed = Calculator(Input=renamed, AttributeType="Cell Data", ResultArrayName=name, Function=was)
 renamed = PassArrays(Input=renamed, CellDataArrays=["mua", "mus"], FieldDataArrays=["g", "phase_function"])
-told = LightPropagationMaps(Input=renamed, Lights=light.Lights, DirectionsPerFace=4,
+told = lit_view.LightPropagationMaps(Input=renamed, Lights=light.Lights, DirectionsPerFace=4,
                             AbsorptionArray=["CELLS", "mua"], ScatteringArray=["CELLS", "mus"])
 Hide(light, view)
 other = lit_view.show_lit(told, view)

@@ -76,6 +76,7 @@ others = (("vtkRectilinearGrid", rectilinear()), ("vtkUnstructuredGrid", AppendD
 for kind, source in others:
     source.UpdatePipeline()
     for make, taken in cases:
+        SetActiveSource(source)  # whose arrays a script's filter begins with, whatever its Input is
         proxy = make(Input=source)
         said = messages(proxy)
         case = (proxy.GetXMLName(), kind, said)

@@ -267,8 +267,6 @@ def try_value(worker, prop, value, component, must_be_refused, what):
 def check(name, proxy):
     worker = Writer() if name == "VDBWriter" else Worker(name)
     properties = list(proxy)
-    if name == "VDBReader":
-        properties += [each for each in internal["VDBReaderCore"] if each.get("name") == "MaximumMemory"]
     tried = 0
     for prop in properties:
         numeric = prop.tag in ("IntVectorProperty", "DoubleVectorProperty")
@@ -290,12 +288,9 @@ def check(name, proxy):
     return tried
 
 
-internal, tried = {}, 0
+tried = 0
 files = sorted(glob.glob(os.path.join(os.environ["TYNDALL_SOURCE"], "Plugin/ServerManager/*.xml")))
 trees = [group for file in files for group in ElementTree.parse(file).getroot().findall("ProxyGroup")]
-for group in trees:
-    if group.get("name").startswith("internal"):
-        internal.update({proxy.get("name"): proxy for proxy in group})
 for group in trees:
     if not group.get("name").startswith(("internal", "views")):
         for proxy in (each for each in group if each.tag != "Extension"):

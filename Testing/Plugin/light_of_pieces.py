@@ -792,7 +792,7 @@ def blocks_abort():
 
 
 def blocks_ignored():
-    """An index that is not 1 on one rank alone is told of on all."""
+    """An index that is not 1 on one rank alone is in the light of all, and the first rank warns of it."""
     piece = piece_of(parts(even_cuts())[rank])
     index = numpy.ones(piece.GetNumberOfCells(), dtype=numpy.float32)
     index[0] = 1.5 if odd_rank() else 1.0
@@ -805,7 +805,7 @@ def blocks_ignored():
         light.UpdatePipeline()
         ignored = light.GetClientSideObject().GetOutputDataObject(0).GetFieldData().GetAbstractArray("ignored")
         assert ignored and ignored.GetValue(0).startswith("ior "), (rank, ignored)
-        assert len(warnings) == 1, (rank, warnings)
+        assert len(warnings) == (1 if rank == 0 else 0), (rank, warnings)
 
 
 def blocks_killed():
@@ -857,7 +857,7 @@ def wrong_pieces():
     if odd:
         density = vtk_to_numpy(short.GetCellData().GetArray("density"))
         add_density(short, density[:5])
-    yield "short", short, "On rank %d: The input has an array 'density' of 5 values" % (ranks - 1)
+    yield "short", short, "On rank %d: Array 'density' has 5 values" % (ranks - 1)
     mine = piece_of([0, 12, 0, 5, 0, 4])
     vtk_to_numpy(mine.GetCellData().GetArray("density"))[7] += rank
     yield "overlap", mine, 'cell array "density" has different values'

@@ -65,7 +65,7 @@ def fetch(proxy, association, name, size):
 def values(light, picture):
     """@return fluence, radiance, convergence and the facts on the panel, at the client"""
     light.UpdatePropertyInformation()
-    fluence, facts = fetch(light, vtkDataObject.CELL, "fluence", [20, 16, 12])
+    fluence, facts = fetch(light, vtkDataObject.CELL, "fluence", [21, 17, 13])  # a voxel for each point
     return {
         "fluence": fluence,
         "radiance": fetch(picture, vtkDataObject.POINT, "radiance", [64, 48, 1])[0],

@@ -72,9 +72,10 @@ public:
       light.netFlux.clear();
     }
     this->Describe(light, scene, far);
+    const OrdinatesRanks ranks = { this->Others, this->Partition };
+    Judge(this->Settings, diverged, scene.medium, &ranks, light);
     this->Others.Together([&] { scene.Undo(light); });
     warm.Finish(diverged, light, kept);
-    Judge(this->Settings, diverged, light);
     return light;
   }
 

@@ -173,7 +173,7 @@ LightField InterleavedInBlocks::Solve(
     thickest = std::max(thickest, channel.Thickest());
   }
   FinishLight(light, this->TheDevice, this->Others, *this->Scene, this->Shining, this->Settings, thickest);
-  DoubtPhotons(found.missed, PlaceAmong(this->Others, share.size()).all, light);
+  DoubtPhotons(found, PlaceAmong(this->Others, share.size()).all, light);
   if (this->Settings.sideBySide)
   {
     light.leftOut.emplace_back(left_out::NotSideBySide);

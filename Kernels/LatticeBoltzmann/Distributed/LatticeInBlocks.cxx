@@ -88,7 +88,7 @@ LightField SolveLatticeInBlocks(Device& device, Communicator& communicator, cons
   lit.uncollided = has ? ImageOf(found) : UncollidedImage();
   LightField light =
     SolveLatticeInBlocks(device, communicator, partition, medium, ior, lit, settings, OfPart(monitor, 0.5, 1.0));
-  DoubtPhotons(found.missed, PlaceAmong(communicator, share.size()).all, light);
+  DoubtPhotons(found, PlaceAmong(communicator, share.size()).all, light);
   return light;
 }
 
@@ -116,7 +116,7 @@ LightField SolveLatticeInBlocks(Device& device, Communicator& communicator, cons
     channel.AddTo(light);
     thickest = std::max(thickest, channel.Thickest());
   }
-  FinishLight(light, device, communicator, scene, illumination, settings, thickest);
+  FinishLight(light, device, communicator, scene, illumination, settings, thickest, direct.lost);
   return light;
 }
 }

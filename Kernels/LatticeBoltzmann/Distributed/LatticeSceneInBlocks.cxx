@@ -2,6 +2,7 @@
 
 #include "Device/Sizes.h"
 #include "LatticeBoltzmann/LatticeLight.h"
+#include "LightPropagation/Convergence.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -102,14 +103,20 @@ VoxelBox LatticeSceneInBlocks::Stepped(const LatticeSettings& settings, int rank
 }
 
 void FinishLight(LightField& light, const Device& device, Communicator& communicator, const LatticeSceneInBlocks& scene,
-  const Illumination& illumination, const LatticeSettings& settings, double thickest)
+  const Illumination& illumination, const LatticeSettings& settings, double thickest, const Rgb& lost)
 {
   AddUp(communicator, light);
+  const std::vector<double> all = communicator.Sum({ lost[0], lost[1], lost[2] });
+  CountLost({ all[0], all[1], all[2] }, light.balance);
   const BlockScene& solved = scene.scene;
   const bool anisotropic =
     OnAnyRank(communicator, scene.has && !solved.medium.phase.IsIsotropic()) && solved.traits.scatters;
+  communicator.Together([&] { DescribeLight(light, device, anisotropic, settings, thickest); });
+  if (settings.scheme == LatticeScheme::Conservative)
+  {
+    JudgeBalance(light, communicator, scene.has, solved.medium);
+  }
   communicator.Together([&] {
-    DescribeLight(light, device, anisotropic, settings, thickest);
     solved.Undo(light);
     JudgeLight(light, illumination, settings);
   });

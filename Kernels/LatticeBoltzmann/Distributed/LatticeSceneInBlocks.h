@@ -46,6 +46,7 @@ struct LatticeSceneInBlocks
 /// FinishLight (LatticeLight.h) of a rank's light: balance and face powers of all ranks, in the user's units. All ranks
 /// call it.
 /// @param illumination  as given
+/// @param lost  Uncollided::lost of this rank
 void FinishLight(LightField& light, const Device& device, Communicator& communicator, const LatticeSceneInBlocks& scene,
-  const Illumination& illumination, const LatticeSettings& settings, double thickest);
+  const Illumination& illumination, const LatticeSettings& settings, double thickest, const Rgb& lost = {});
 }

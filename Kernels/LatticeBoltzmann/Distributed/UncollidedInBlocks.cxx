@@ -9,6 +9,7 @@
 #include "LightPropagation/Uncollided/EnvironmentPeaks.h"
 #include "LightPropagation/Uncollided/ParallelBeam.h"
 #include "LightPropagation/Uncollided/UncollidedLamp.h"
+#include "Medium/VoxelSums.h"
 
 #include <algorithm>
 #include <utility>
@@ -263,6 +264,31 @@ void UncollidedInBlocks::LeaveAlone(std::vector<float>& moments) const
   }
 }
 
+/// W that entered and went nowhere: it neither left, nor collides in a voxel of any rank, nor is still on the way round
+/// a periodic axis. Collective.
+Rgb UncollidedInBlocks::Lost() const
+{
+  const std::vector<float> path = this->Path.Read(), sigma_t = this->SigmaT.Read();
+  std::vector<double> collides(3, 0.0);
+  for (int c = 0; c < this->Layout.channels; ++c)
+  {
+    collides[c] = SumOverVoxels(this->Layout.grid, [&](std::size_t i) {
+      return static_cast<double>(path[c * this->Layout.Stride() + i]) * sigma_t[this->Layout.ExtinctionFirst(c) + i];
+    });
+  }
+  collides = this->Others.Sum(collides);
+  Rgb lost = {};
+  for (int c = 0; c < this->Layout.channels; ++c)
+  {
+    lost[c] = -collides[c] - this->Tally.onTheWay[c];
+    for (int face = 0; face < 6; ++face)
+    {
+      lost[c] += this->Tally.in[face][c] - this->Tally.out[face][c];
+    }
+  }
+  return lost;
+}
+
 Uncollided UncollidedInBlocks::Find(const Monitor& monitor)
 {
   if (this->IsGiven)
@@ -288,8 +314,10 @@ Uncollided UncollidedInBlocks::Find(const Monitor& monitor)
   {
     found.firstMoments = this->FoundMoments(inverse);
   }
+  const Rgb lost = this->Lost();
   if (IsFirstThatHas(this->Others, this->Partition))
   {
+    found.lost = Times(lost, this->Narrowing);
     found.image.escaped = this->Tally.out;
     for (Rgb& face : found.image.escaped)
     {

@@ -31,7 +31,7 @@ public:
   UncollidedInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition,
     const VoxelsAround& around, const LatticeScene& scene, const LatticeSettings& settings, bool firstMoments);
 
-  /// By known voxel; power that escaped on the first rank that has voxels, on the others 0. All ranks call it.
+  /// By known voxel; power that escaped or was lost on the first rank that has voxels, on the others 0. Collective.
   Uncollided Find(const Monitor& monitor);
 
 private:
@@ -41,6 +41,7 @@ private:
   void AddMoments(const Light& lamp, const Buffer<float>& path, const Buffer<float>& currents);
   UncollidedVolume Volume();
   Uncollided Given() const;
+  Rgb Lost() const;
   void LeaveAlone(std::vector<float>& moments) const;
   std::vector<float> FoundMoments(double scale) const;
   VolumeLayout LayoutOn(const Grid& grid) const { return { grid, this->Scene.channels, this->SharedExtinction }; }

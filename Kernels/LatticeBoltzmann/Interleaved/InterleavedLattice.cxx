@@ -150,7 +150,7 @@ LightField InterleavedLattice::Solve(PhotonMarcher& marcher, const std::vector<P
     thickest = std::max(thickest, channel.Thickest());
   }
   FinishLight(light, this->TheDevice, *this->Problem, this->Shining, this->Settings, thickest);
-  DoubtPhotons(found.missed, photons.size(), light);
+  DoubtPhotons(found, photons.size(), light);
   if (this->Settings.sideBySide && times.together < Together * std::min(times.marching, times.meanwhile))
   {
     light.leftOut.emplace_back(left_out::NotSideBySide);

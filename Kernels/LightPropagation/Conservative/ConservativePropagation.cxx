@@ -1,7 +1,6 @@
 #include "LightPropagation/Conservative/ConservativePropagation.h"
 
 #include "Device/DeviceWords.h"
-#include "Device/Errors.h"
 #include "Device/HostMemory.h"
 #include "Device/HostThreads.h"
 #include "Light/LeftOut.h"
@@ -15,10 +14,8 @@
 #include "LightPropagation/Problem/ScatteringOrders.h"
 #include "LightPropagation/Problem/SlabTurn.h"
 #include "Numerics/Constants.h"
-#include "Numerics/NumberText.h"
 
 #include <algorithm>
-#include <cmath>
 #include <memory>
 #include <string>
 
@@ -26,41 +23,6 @@ namespace tyndall
 {
 namespace
 {
-constexpr double ImbalanceAtMost = 1e-2; ///< beyond any rounding
-
-/// A solve must not hand on in silence that power went nowhere.
-/// @throws InvalidInput where the energy balance is off by a hundredth
-void CheckBalance(const PropagationProblem& problem, const EnergyBalance& balance)
-{
-  const double error = balance.RelativeError(problem.Channels());
-  if (error <= ImbalanceAtMost)
-  {
-    return;
-  }
-  const Grid& grid = problem.TheGrid();
-  std::size_t thickest = 0;
-  float largest = 0.0f;
-  for (std::size_t i = 0; i < grid.VoxelCount(); ++i)
-  {
-    for (int c = 0; c < problem.Channels(); ++c)
-    {
-      const float sigma_t = problem.TheMedium().TransportSigmaT(i, c);
-      if (sigma_t > largest)
-      {
-        largest = sigma_t;
-        thickest = i;
-      }
-    }
-  }
-  const double tau = largest * *std::max_element(grid.spacing.begin(), grid.spacing.end());
-  const std::string what = std::isfinite(error)
-    ? "The light does not balance: " + Text("%.2g", error) + " of the power is lost or made"
-    : std::string("The light is not a number");
-  throw InvalidInput(what + ", more than floats can carry through this medium. Its thickest voxel, " +
-    VoxelName(grid, thickest) + ", has optical thickness " + Text("%.3g", tau) +
-    "; beyond some hundred it is opaque, so give it less.");
-}
-
 /// What the scene did not need, of its traits, but that one channel does for three.
 std::vector<std::string> LeftOutOf(const TransportParts& parts, const IterationResult& found)
 {
@@ -185,10 +147,10 @@ LightField Solve(Device& device, const Medium& medium, const Illumination& illum
     iteration = std::make_unique<SourceIteration>(parts, kept);
   }
   IterationResult found = iteration->Run(monitor);
-  CheckBalance(problem, found.ledger.Balance());
   const bool warm = found.warm;
   KeptLight left = std::move(found.kept);
   LightField light = LightOf(parts, std::move(found));
+  JudgeBalance(light, problem.TheMedium());
   if (kept)
   {
     Keep(std::move(left), warm, light, *kept);
@@ -210,7 +172,9 @@ LightField SolveConservative(Device& device, const Medium& medium, const Illumin
 {
   if (IsPlaneParallel(medium, illumination, settings))
   {
-    return SolvePlaneParallel(medium, illumination, settings, monitor);
+    LightField light = SolvePlaneParallel(medium, illumination, settings, monitor);
+    JudgeBalance(light, medium);
+    return light;
   }
   const SlabTurn turn(medium.grid, illumination, settings);
   if (!turn)

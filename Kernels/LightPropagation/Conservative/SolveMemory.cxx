@@ -77,7 +77,7 @@ SolveExtent ExtentOf(const PropagationProblem& problem, OrdersAdded how)
 {
   SolveExtent solve = { problem.TheGrid().size, problem.Settings(), problem.Channels(), problem.Scattering().Degree(),
     how };
-  solve.byOctant = OctantSources::Matter(problem, false);
+  solve.byOctant = OctantSources::Matter(problem);
   solve.byCells = Reflects(problem.Shining()) || problem.Settings().facePower;
   return solve;
 }

@@ -36,7 +36,7 @@ SourceIteration::SourceIteration(TransportParts& parts, const KeptLight* kept)
     this->Moments = Buffer<float>(parts.TheDevice, parts.Layout.MomentFloats(parts.Functions()), "the light to keep");
     this->Moments.Fill(0.0f);
   }
-  if (parts.How == OrdersAdded::OneByOne && OctantSources::Matter(parts.Problem, !parts.OtherSources().empty()))
+  if (parts.How == OrdersAdded::OneByOne && OctantSources::Matter(parts.Problem))
   {
     const Grid& grid = parts.Layout.grid;
     this->AtFaces.emplace(OctantSources::Scene{ parts.TheDevice, this->Settings, parts.Layout, parts.OnDevice, grid,
@@ -196,14 +196,15 @@ void SourceIteration::MakeLitSweep()
 void SourceIteration::AddUncollided(const Monitor& monitor)
 {
   TransportParts::Sources sources = this->Parts.LampSources();
-  if (this->Parts.FineBoundary)
-  {
-    sources.push_back(std::make_unique<UncollidedBoundary>(this->Settings, *this->Parts.FineBoundary));
-  }
   const auto append = [&sources](TransportParts::Sources more) {
     std::move(more.begin(), more.end(), std::back_inserter(sources));
   };
   append(this->Parts.OtherSources());
+  const std::size_t alongRays = sources.size(); // each by itself; the others are swept
+  if (this->Parts.FineBoundary)
+  {
+    sources.push_back(std::make_unique<UncollidedBoundary>(this->Settings, *this->Parts.FineBoundary));
+  }
   append(this->Parts.VacuumSources());
   const bool escapes = this->Parts.CorrectsEscape;
   const double all = static_cast<double>(sources.size() + (escapes ? 1 : 0));
@@ -220,10 +221,11 @@ void SourceIteration::AddUncollided(const Monitor& monitor)
       Add(tally, this->AddLamp(*sources[i], ofSource));
       continue;
     }
-    Deposit deposit = this->DepositOfSweep();
+    const bool isSwept = i >= alongRays;
+    Deposit deposit = isSwept ? this->DepositOfSweep() : this->Parts.WholeDeposit();
     deposit.firstMoments = this->Settings.firstMoments && isLamp ? &firstMoments : nullptr;
     Add(tally, this->Parts.AddUncollided(*sources[i], deposit, ofSource));
-    if (this->AtFaces)
+    if (this->AtFaces && isSwept)
     {
       const bool ofVacuum = this->Parts.OfVacuum && i + 1 == sources.size();
       this->AtFaces->TakeIncoming(ofVacuum ? *this->Parts.OfVacuum : *this->Parts.Fine);

@@ -105,9 +105,7 @@ public:
     };
     const std::array<bool, 3>& periodic = this->All.Stored.Periodic();
     const double even = FollowInPasses(this->All.Partition.whole, periodic, this->Shares, follow, monitor);
-    // As in one memory.
-    const double correction =
-      this->AllFollowed && this->Shares.shone > 0.0 ? 1.0 / this->Shares.shone : this->Lamp.Share();
+    const double correction = this->Lamp.Correction(this->Shares);
     this->PutDown(correction, even);
     return this->Shares.Times(this->Lamp.TheLight().power, this->Volume.channels, correction);
   }
@@ -131,9 +129,8 @@ private:
   std::size_t SigmaFirst;
   std::unique_ptr<LampSums> Sums; ///< of the stored voxels; null without any
   cl::Kernel Kernel;
-  LampShares Shares;       ///< of all ranks
-  LampShares Found;        ///< of this one, of what is being followed
-  bool AllFollowed = true; ///< directions that it shines in
+  LampShares Shares; ///< of all ranks
+  LampShares Found;  ///< of this one, of what is being followed
 };
 
 /// As LampBeams does, of all ranks together.
@@ -151,10 +148,9 @@ void LampsInBlocks::Beams::FollowPoints(const Pass& pass, double factor, const M
 /// From one point, until no beam is left anywhere.
 void LampsInBlocks::Beams::Follow(const glm::dvec3& point, const Pass& pass, double part, const Monitor& monitor)
 {
-  this->AllFollowed = this->AllFollowed && this->Lamp.FollowsAll(point);
   std::vector<BeamRow> rows;
   Buffer<BeamRow> rowBuffer;
-  const LampInfo info = this->Lamp.Describe(point, part, this->Box, this->All.Own);
+  const LampInfo info = this->Lamp.Describe(part, this->Box, this->All.Own);
   this->All.Rounds.UntilAllEnd<BeamOnItsWay>(
     [&](int round, std::vector<BeamOnItsWay>&& arrived, const Monitor& ofRound) {
       if (round == 0)

@@ -182,6 +182,7 @@ LightField ProblemInBlocks::Solve(
   const bool warm = found.warm;
   KeptLight left = std::move(found.kept);
   LightField light = LightOfBlock(*block, *incident, std::move(found), this->Orders.how);
+  JudgeBalance(light, this->Others, this->Has, scene.medium);
   this->Others.Together([&] {
     this->Scene->Undo(light);
     MultiplyPowers(light, this->Narrowing());

@@ -56,28 +56,26 @@ OctantSources::Voxels OctantSources::Count(const Medium& medium, const Truncated
   return voxels;
 }
 
-bool OctantSources::MayMatter(const PropagationSettings& settings, bool scatters, int degree, bool otherSources)
+bool OctantSources::MayMatter(const PropagationSettings& settings, bool scatters, int degree)
 {
   const bool unasked = settings.source == PropagationSource::Automatic && settings.maximumOrders == 0 &&
     settings.acceleration == PropagationAcceleration::Automatic;
-  return (settings.source == PropagationSource::Octants || unasked) && scatters && degree == 0 && !otherSources &&
+  return (settings.source == PropagationSource::Octants || unasked) && scatters && degree == 0 &&
     !settings.firstMoments && settings.maximumOrders != 1;
 }
 
-bool OctantSources::Matter(
-  const Voxels& voxels, const PropagationSettings& settings, bool scatters, int degree, bool otherSources)
+bool OctantSources::Matter(const Voxels& voxels, const PropagationSettings& settings, bool scatters, int degree)
 {
   const bool wanted = settings.source == PropagationSource::Octants ? AreThick(voxels) : MatterUnasked(voxels);
-  return MayMatter(settings, scatters, degree, otherSources) && wanted && voxels.thickest <= Opaque;
+  return MayMatter(settings, scatters, degree) && wanted && voxels.thickest <= Opaque;
 }
 
-bool OctantSources::Matter(const PropagationProblem& problem, bool otherSources)
+bool OctantSources::Matter(const PropagationProblem& problem)
 {
   const bool scatters = problem.Traits().scatters;
   const int degree = problem.Scattering().Degree();
-  return MayMatter(problem.Settings(), scatters, degree, otherSources) &&
-    Matter(Count(problem.TheMedium(), problem.Scattering(), problem.Channels()), problem.Settings(), scatters, degree,
-      otherSources);
+  return MayMatter(problem.Settings(), scatters, degree) &&
+    Matter(Count(problem.TheMedium(), problem.Scattering(), problem.Channels()), problem.Settings(), scatters, degree);
 }
 
 OctantSources::OctantSources(const Scene& scene)

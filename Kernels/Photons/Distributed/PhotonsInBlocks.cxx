@@ -4,6 +4,7 @@
 #include "Device/Errors.h"
 #include "Distribution/BoxExchange.h"
 #include "Distribution/SharedMedium.h"
+#include "LightPropagation/Convergence.h"
 #include "Numerics/ChooseEvenly.h"
 #include "Photons/Distributed/BlockInput.h"
 #include "Photons/Distributed/BlockMarch.h"
@@ -395,6 +396,7 @@ PhotonLight PhotonMarcherInBlocks::Rank::March(
     result = this->MarchThese(share, numbers, turns, monitor);
   }
   this->Handed = this->Rounds->Traffic();
+  JudgeBalance(result.light, Medium()); // the same on all ranks
   result.seconds = ClockSeconds() - start;
   return result;
 }

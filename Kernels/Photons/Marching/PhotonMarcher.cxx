@@ -1,6 +1,7 @@
 #include "Photons/Marching/PhotonMarcher.h"
 
 #include "Device/Clock.h"
+#include "LightPropagation/Convergence.h"
 #include "Photons/Importance/PilotGathering.h"
 #include "Photons/Marching/MarchedBatches.h"
 #include "Photons/Marching/MarchedLight.h"
@@ -165,7 +166,10 @@ PhotonMarcher::PhotonMarcher(PhotonMarcher&&) noexcept = default;
 PhotonLight PhotonMarcher::March(const std::vector<Photon>& photons, const Monitor& monitor)
 {
   const bool batches = this->Inside->medium.settings.errorBatches > 0;
-  return batches ? this->Inside->MarchInBatches(photons, monitor) : this->Inside->March(photons, {}, monitor);
+  PhotonLight found =
+    batches ? this->Inside->MarchInBatches(photons, monitor) : this->Inside->March(photons, {}, monitor);
+  JudgeBalance(found.light, Medium());
+  return found;
 }
 
 PhotonLight PhotonMarcher::MarchByTurns(
@@ -178,7 +182,9 @@ PhotonLight PhotonMarcher::MarchByTurns(
   }
   this->Inside->RequireVoxels("Photons march in turns");
   const Implementation::Turns inTurns = { turns, times };
-  return this->Inside->March(photons, {}, monitor, &inTurns);
+  PhotonLight found = this->Inside->March(photons, {}, monitor, &inTurns);
+  JudgeBalance(found.light, Medium());
+  return found;
 }
 
 std::vector<PhotonPath> PhotonMarcher::Paths(const std::vector<Photon>& photons, const std::vector<std::size_t>& chosen)

@@ -94,8 +94,8 @@ bool OctantSourcesMatter(Communicator& communicator, const BlockScene& scene, co
 {
   // All of these are the same on all ranks, so all of them count or none does.
   const int degree = scene.Scattering().Degree();
-  return OctantSources::MayMatter(settings, scene.traits.scatters, degree, scene.given) &&
-    OctantSources::Matter(CountThickVoxels(communicator, scene), settings, scene.traits.scatters, degree, scene.given);
+  return OctantSources::MayMatter(settings, scene.traits.scatters, degree) &&
+    OctantSources::Matter(CountThickVoxels(communicator, scene), settings, scene.traits.scatters, degree);
 }
 
 bool MayHaveEmissionPeaks(

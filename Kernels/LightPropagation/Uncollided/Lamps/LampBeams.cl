@@ -111,21 +111,26 @@ static void overlap(float2 edges, int* voxel, float* part)
   *part = edges.y > edges.x ? clamp((*voxel + 1 - edges.x) / (edges.y - edges.x), 0.0f, 1.0f) : 1.0f;
 }
 
-// The edges of a cross-section along an axis, without what has gone out through the face that the beam moves to.
+// The edges of a cross-section along u (k 0) or v (1), without the part beyond a face of the box: the face that the beam
+// moves towards and, unless the lamp is beside the box along this axis, the opposite one, too.
+// @param up  whether light leaves through the upper face
 // @return the part of the cross-section that is between them
-static float cut_at_face(const LampInfo* lamp, int axis, float tangent, float2* edges)
+static float cut_at_face(const LampInfo* lamp, const BeamRow* row, int k, float tangent, float2* edges, int* up)
 {
+  const int axis = (row->axis + 1 + k) % 3;
   const float n = lamp->size[axis], all = edges->y - edges->x;
-  if (lamp->periodic[axis] || (tangent < 0.0f ? edges->x >= 0.0f : edges->y <= n))
+  const bool beside = (row->beside >> k) & 1;
+  *up = beside ? tangent >= 0.0f : edges->y - n > -edges->x;
+  if (lamp->periodic[axis] || (*up ? edges->y <= n : edges->x >= 0.0f))
   {
     return 1.0f;
   }
-  if (tangent < 0.0f)
+  if (!beside || tangent < 0.0f)
   {
     edges->x = clamp(edges->x, 0.0f, fmax(edges->y, 0.0f));
     edges->y = fmax(edges->y, edges->x);
   }
-  else
+  if (!beside || tangent >= 0.0f)
   {
     edges->y = clamp(edges->y, fmin(edges->x, n), n);
     edges->x = fmin(edges->x, edges->y);
@@ -213,13 +218,14 @@ typedef struct
 
 // What of a beam has left through the faces beside its axis since the last step: only that, for what is left is spread
 // over the rest of its cross-section. Changes the edges to those of that rest.
-//   middle  of the whole cross-section
-static void leave_sides(const LampInfo* lamp, const BeamRow* row, bool first, float2 tangent, float2 middle, float2 way,
+//   first  the beam reaches the box here: the part beside the box has not entered
+static void leave_sides(const LampInfo* lamp, const BeamRow* row, bool first, float2 tangent, float2 way,
   float2* edges_u, float2* edges_v, beam_state* beam, lamp_tally* tally)
 {
   const float tangents[2] = { tangent.x, tangent.y };
-  const float within[2] = { cut_at_face(lamp, (row->axis + 1) % 3, tangent.x, edges_u),
-    cut_at_face(lamp, (row->axis + 2) % 3, tangent.y, edges_v) };
+  int up[2];
+  const float within[2] = { cut_at_face(lamp, row, 0, tangent.x, edges_u, &up[0]),
+    cut_at_face(lamp, row, 1, tangent.y, edges_v, &up[1]) };
   if (within[0] >= beam->stays[0] && within[1] >= beam->stays[1])
   {
     return;
@@ -253,9 +259,9 @@ static void leave_sides(const LampInfo* lamp, const BeamRow* row, bool first, fl
       }
       else if (through > 0.0f)
       {
-        const float gone = tangents[k] < 0.0f ? -0.5f : lamp->size[axis] + 0.5f, at = beside + q + 0.5f;
-        leave_aside(lamp, row, 2 * axis + (tangents[k] > 0.0f), tangent,
-          k == 0 ? (float2)(gone, at) : (float2)(at, gone), 0.5f * (way.x + way.y), way.y - way.x, through, tally);
+        const float gone = up[k] ? lamp->size[axis] + 0.5f : -0.5f, at = beside + q + 0.5f;
+        leave_aside(lamp, row, 2 * axis + up[k], tangent, k == 0 ? (float2)(gone, at) : (float2)(at, gone),
+          0.5f * (way.x + way.y), way.y - way.x, through, tally);
       }
     }
   }
@@ -264,22 +270,23 @@ static void leave_sides(const LampInfo* lamp, const BeamRow* row, bool first, fl
 
 // One step of a beam: every part of it through its voxel. Changes what is left of it, and what is too small to be seen
 // in that.
-static void step_beam(const LampInfo* lamp, const BeamRow* row, int layer, bool first, bool last, float2 tangent,
-  float2 middle, float2 width, float2 way, float length, const __global float* sigma, __global long* path, ulong stride,
-  beam_state* beam, lamp_tally* tally)
+// @return power that has not reached the box yet
+static float step_beam(const LampInfo* lamp, const BeamRow* row, int layer, float2 tangent, float2 middle, float2 width,
+  float2 way, float length, const __global float* sigma, __global long* path, ulong stride, beam_state* beam,
+  lamp_tally* tally)
 {
   const int u = (row->axis + 1) % 3;
   const int v = (row->axis + 2) % 3;
   float2 edges_u = (float2)(middle.x - 0.5f * width.x, middle.x + 0.5f * width.x);
   float2 edges_v = (float2)(middle.y - 0.5f * width.y, middle.y + 0.5f * width.y);
-  leave_sides(lamp, row, first, tangent, middle, way, &edges_u, &edges_v, beam, tally);
+  leave_sides(lamp, row, false, tangent, way, &edges_u, &edges_v, beam, tally);
   int2 lowest;
   float part_u, part_v;
   int voxel[3];
   overlap(edges_u, &voxel[0], &part_u);
   overlap(edges_v, &voxel[1], &part_v);
   lowest = (int2)(voxel[0], voxel[1]);
-  float after = 0.0f, taken = 0.0f;
+  float after = 0.0f, taken = 0.0f, waiting = 0.0f;
   for (int q = 0; q < 4; ++q)
   {
     const float part = (q & 1 ? 1.0f - part_u : part_u) * (q & 2 ? 1.0f - part_v : part_v);
@@ -295,8 +302,8 @@ static void step_beam(const LampInfo* lamp, const BeamRow* row, int layer, bool 
     const int at_v = place(lamp, v, tangent.y, &voxel[v]);
     if (at_u != INSIDE || at_v != INSIDE)
     {
-      after += last ? 0.0f : power; // it comes in later, or never
-      tally->entered -= last && tally->counts ? power : 0.0f;
+      after += power; // it comes in later, or never
+      waiting += power;
       continue;
     }
     const ulong index = place_in_arrays(lamp, voxel);
@@ -330,6 +337,7 @@ static void step_beam(const LampInfo* lamp, const BeamRow* row, int layer, bool 
   const float change = beam->rest - taken;
   beam->left = after + change;
   beam->rest = change - (beam->left - after);
+  return waiting;
 }
 
 // The edges of a beam's cross-section t layers from where it begins, along u or v.
@@ -337,6 +345,49 @@ static float2 edges_at(float start, float tangent, float open, float width, floa
 {
   const float middle = start + tangent * t, half_width = 0.5f * fmin(open + width * t, 1.0f);
   return (float2)(middle - half_width, middle + half_width);
+}
+
+// A beam from before the box's first layer, at that layer's face: the part that passes beside the box has not entered.
+//   start  its middle there
+static void enter_box(
+  const LampInfo* lamp, const BeamRow* row, float2 start, float2 tangent, beam_state* beam, lamp_tally* tally)
+{
+  float2 edges_u = edges_at(start.x, tangent.x, row->openU, row->widthU, 0.0f);
+  float2 edges_v = edges_at(start.y, tangent.y, row->openV, row->widthV, 0.0f);
+  leave_sides(lamp, row, true, tangent, (float2)(0.0f), &edges_u, &edges_v, beam, tally);
+}
+
+// Part of a cross-section along u (k 0) or v (1), of what has not left the box, that is inside.
+static float part_inside(const LampInfo* lamp, const BeamRow* row, int k, float tangent, float2 edges)
+{
+  int up, first;
+  cut_at_face(lamp, row, k, tangent, &edges, &up);
+  const int axis = (row->axis + 1 + k) % 3;
+  float part;
+  overlap(edges, &first, &part);
+  int second = first + 1;
+  return (place(lamp, axis, tangent, &first) == INSIDE ? part : 0.0f) +
+    (place(lamp, axis, tangent, &second) == INSIDE ? 1.0f - part : 0.0f);
+}
+
+// Part of a cross-section, of what has not left the box, that has not reached it yet.
+static float part_to_come(const LampInfo* lamp, const BeamRow* row, float2 start, float2 tangent, float t)
+{
+  const float2 edges_u = edges_at(start.x, tangent.x, row->openU, row->widthU, t);
+  const float2 edges_v = edges_at(start.y, tangent.y, row->openV, row->widthV, t);
+  return 1.0f - part_inside(lamp, row, 0, tangent.x, edges_u) * part_inside(lamp, row, 1, tangent.y, edges_v);
+}
+
+// A beam at the end of the box that has come in sideways: in the last half step more of it reaches the box, and the rest
+// has not entered.
+//   waiting  power that had not reached the box in the middle of the last step, at `here`
+static void miss_box(const LampInfo* lamp, const BeamRow* row, float2 start, float2 tangent, float here, float end,
+  float waiting, beam_state* beam, lamp_tally* tally)
+{
+  const float to_come = part_to_come(lamp, row, start, tangent, end);
+  const float missed = fmin(waiting * to_come / part_to_come(lamp, row, start, tangent, here), beam->left);
+  tally->entered -= tally->counts ? missed : 0.0f;
+  beam->left -= missed;
 }
 
 // What is left of a beam at the far end of its axis, through up to four cells there.
@@ -351,8 +402,9 @@ static void leave_end(
   float part_u, part_v;
   float2 edges_u = edges_at(start.x, tangent.x, row->openU, row->widthU, t);
   float2 edges_v = edges_at(start.y, tangent.y, row->openV, row->widthV, t);
-  cut_at_face(lamp, u, tangent.x, &edges_u);
-  cut_at_face(lamp, v, tangent.y, &edges_v);
+  int up;
+  cut_at_face(lamp, row, 0, tangent.x, &edges_u, &up);
+  cut_at_face(lamp, row, 1, tangent.y, &edges_v, &up);
   overlap(edges_u, &lowest[0], &part_u);
   overlap(edges_v, &lowest[1], &part_v);
   for (int q = 0; q < 4; ++q)
@@ -404,8 +456,6 @@ static bool follow_beam(const LampInfo* lamp, const BeamRow* row, float2 begin, 
     row->outside ? (row->up ? 0 : n - 1) : clamp((int)(row->up ? floor(start) : ceil(start) - 1.0f), 0, n - 1);
   const int layers = row->up ? n - first : first + 1;
   const int all = lamp->periodic[row->axis] ? row->layers : layers;
-  const bool sideways = lamp->position[u] < 0.0f || lamp->position[u] > lamp->size[u] || lamp->position[v] < 0.0f ||
-    lamp->position[v] > lamp->size[v];
   // Where an axis is periodic beams go on until next to nothing is left; others leave.
   const float least = lamp->periodic[row->axis] ? 1e-7f * power : 0.0f;
   const int before = beam->layer;
@@ -413,6 +463,12 @@ static bool follow_beam(const LampInfo* lamp, const BeamRow* row, float2 begin, 
 #if IN_BLOCK
   bool follows = true;
 #endif
+  float waiting = 0.0f, here = now;
+  tally->counts = row->skipped == 0;
+  if (before == 0 && beam->step == 0 && row->outside)
+  {
+    enter_box(lamp, row, begin, tangent, beam, tally);
+  }
   for (int k = before; k < all && beam->left > least; ++k)
   {
     tally->counts = k >= row->skipped;
@@ -422,12 +478,8 @@ static bool follow_beam(const LampInfo* lamp, const BeamRow* row, float2 begin, 
     {
       const float t0 = now + (end - now) * s / STEPS;
       const float t1 = now + (end - now) * (s + 1) / STEPS;
-      // A beam from outside has at the first face, or at the last where it comes in sideways, the cross-section that it
-      // has there, not half a step on: so much power, and no less, enters.
-      const bool first_step = k == 0 && s == 0;
-      const bool last_step = k == all - 1 && s == STEPS - 1;
-      const float t = first_step && row->outside ? t0 : last_step && sideways ? t1 : 0.5f * (t0 + t1);
-      const float2 middle = begin + tangent * t;
+      here = 0.5f * (t0 + t1);
+      const float2 middle = begin + tangent * here;
 #if IN_BLOCK
       // Whoever was given it takes its first step: it gets on wherever rounding sees it.
       if (!is_followed(lamp, row, layer, middle, beam->voxel) && !follows)
@@ -439,11 +491,15 @@ static bool follow_beam(const LampInfo* lamp, const BeamRow* row, float2 begin, 
       }
       follows = false;
 #endif
-      step_beam(lamp, row, layer, first_step, last_step, tangent, middle,
-        fmin((float2)(row->openU, row->openV) + (float2)(row->widthU, row->widthV) * t, 1.0f), (float2)(t0, t1),
+      waiting = step_beam(lamp, row, layer, tangent, middle,
+        fmin((float2)(row->openU, row->openV) + (float2)(row->widthU, row->widthV) * here, 1.0f), (float2)(t0, t1),
         (t1 - t0) * per_layer, sigma, path, stride, beam, tally);
     }
     now = end;
+  }
+  if (row->beside && waiting > 0.0f)
+  {
+    miss_box(lamp, row, begin, tangent, here, now, waiting, beam, tally);
   }
   tally->counts = true;
   if (lamp->periodic[row->axis])

@@ -38,9 +38,7 @@ public:
       this->FollowPoints(pass, factor, ofPass);
     };
     const double even = FollowInPasses(this->Volume.grid, this->Periodic, this->Shares, follow, monitor);
-    // Where all directions that the lamp shines in were followed, it is known what they should have had.
-    const double correction =
-      this->AllFollowed && this->Shares.shone > 0.0 ? 1.0 / this->Shares.shone : this->Lamp.Share();
+    const double correction = this->Lamp.Correction(this->Shares);
     this->Sums.AddTo(this->Volume, this->Lamp, correction);
     if (this->Volume.deposit.faceOut)
     {
@@ -71,7 +69,6 @@ private:
 
   void Follow(const glm::dvec3& point, const Pass& pass, double part, const std::function<void(double)>& report)
   {
-    this->AllFollowed = this->AllFollowed && this->Lamp.FollowsAll(point);
     const std::vector<BeamRow> rows = this->Lamp.Rows(point, pass);
     if (rows.empty())
     {
@@ -81,7 +78,7 @@ private:
     Buffer<float> sums(this->TheDevice, rows.size() * LampRowSums, "sums");
     cl::Kernel kernel = this->Kernel("follow_lamp", kernel_source::LampBeams);
     const VoxelBox box = { { 0, 0, 0 }, this->Volume.grid.size };
-    const LampInfo info = this->Lamp.Describe(point, part, box, box);
+    const LampInfo info = this->Lamp.Describe(part, box, box);
     for (std::size_t first = 0, count; first < rows.size(); first += count)
     {
       count = std::min<std::size_t>(this->RowsTogether(rows[first]), rows.size() - first);
@@ -113,7 +110,6 @@ private:
   std::array<bool, 3> Periodic;
   LampSums Sums;
   LampShares Shares;
-  bool AllFollowed = true; ///< directions that it shines in
 };
 }
 

@@ -20,7 +20,6 @@ typedef struct
   int followed[3], followedEnd[3]; ///< and those in which beams are followed (LampInBlock.cl)
   int periodic[3];
   float spacing[3];
-  float position[3];                ///< of the lamp, from the box's corner
   float direction[3];               ///< unit, in space
   float cosine, sineSquare;         ///< of the cone's half angle
   float intensity;                  ///< part of the lamp's share, per steradian; at normal emission where LAMBERT
@@ -44,6 +43,7 @@ typedef struct
   float openU, openV;       ///< and there the width of a beam
   int skipped;              ///< layers that they go before anything is counted and put down
   int layers;               ///< that they go in all where the axis is periodic
+  int beside;               ///< 1, 2: the lamp is beside the box along u, v; beams may enter through faces there
 } BeamRow;
 
 /// A beam between two of its steps, on its way from one block of a grid to another.

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace tyndall
 {
@@ -18,6 +19,8 @@ namespace
 constexpr int PointsPerEdge = 4;  ///< of a rectangle
 constexpr double BeamWidth = 0.5; ///< of a lamp's beams where they leave the box, voxels; a rectangle's: twice
 constexpr int RoundsAtMost = 64;  ///< that all power may go through one voxel, in fixed point
+constexpr double OnBorder =
+  1e-6; ///< of the box's edges: a lamp as near to a face is on it, as for photons (PhotonPlane.h)
 }
 
 LampOnGrid::LampOnGrid(const Light& light, const Grid& grid, const std::array<bool, 3>& periodic)
@@ -32,7 +35,11 @@ glm::dvec3 LampOnGrid::PlaceOf(const glm::dvec3& point) const
   glm::dvec3 place;
   for (int a = 0; a < 3; ++a)
   {
+    const double size = this->TheGrid.size[a];
     place[a] = (point[a] - this->TheGrid.origin[a]) / this->TheGrid.spacing[a];
+    place[a] = std::abs(place[a]) <= OnBorder * size ? 0.0
+      : std::abs(place[a] - size) <= OnBorder * size ? size
+                                                     : place[a];
   }
   return place;
 }
@@ -71,7 +78,8 @@ bool LampOnGrid::IsInside(const glm::dvec3& point) const
   bool inside = true;
   for (int a = 0; a < 3; ++a)
   {
-    inside = inside && point[a] >= 0.0 && point[a] <= this->TheGrid.size[a];
+    const double size = this->TheGrid.size[a];
+    inside = inside && (this->Periodic[a] ? point[a] >= 0.0 && point[a] <= size : point[a] > 0.0 && point[a] < size);
   }
   return inside;
 }
@@ -80,6 +88,48 @@ bool LampOnGrid::FollowsAll(const glm::dvec3& point) const
 {
   return this->IsInside(point) ||
     (this->Lamp.type == LightType::Spot && SeesAllOfCone(this->TheGrid, this->Lamp, point));
+}
+
+/// Of a point's power, by the solid angles of the faces that it sees; 0 where that is not known.
+double LampOnGrid::EnteringPart() const
+{
+  if (this->Lamp.type != LightType::Point)
+  {
+    return 0.0;
+  }
+  const glm::dvec3 point = this->Middle();
+  double angle = 0.0;
+  for (int face = 0; face < 6; ++face)
+  {
+    const int axis = face / 2, u = (axis + 1) % 3, v = (axis + 2) % 3;
+    const auto reach = [&](int a, double end) { return (end - point[a]) * this->TheGrid.spacing[a]; };
+    const double near = face % 2 ? -reach(axis, this->TheGrid.size[axis]) : reach(axis, 0.0);
+    if (near <= 0.0)
+    {
+      continue;
+    }
+    for (int corner = 0; corner < 4; ++corner)
+    {
+      const double a = reach(u, corner & 1 ? this->TheGrid.size[u] : 0.0);
+      const double b = reach(v, corner & 2 ? this->TheGrid.size[v] : 0.0);
+      const double seen = std::atan2(a * b, near * std::sqrt(a * a + b * b + near * near));
+      angle += corner == 0 || corner == 3 ? seen : -seen;
+    }
+  }
+  return angle / (4.0 * Pi);
+}
+
+double LampOnGrid::Correction(const LampShares& shares) const
+{
+  const std::vector<glm::dvec3> points = this->Points();
+  const bool all =
+    std::all_of(points.begin(), points.end(), [this](const glm::dvec3& point) { return this->FollowsAll(point); });
+  if (all && shares.shone > 0.0)
+  {
+    return 1.0 / shares.shone;
+  }
+  const double entering = this->EnteringPart(), found = std::accumulate(shares.in.begin(), shares.in.end(), 0.0);
+  return entering > 0.0 && found > 0.0 ? entering / found : this->Share();
 }
 
 /// By the ball around the box; a power of two.
@@ -111,8 +161,7 @@ std::vector<BeamRow> LampOnGrid::Rows(const glm::dvec3& point, const Pass& pass)
   return Beams(this->TheGrid, this->Periodic, this->Lamp, point, width, pass);
 }
 
-LampInfo LampOnGrid::Describe(
-  const glm::dvec3& point, double part, const VoxelBox& stored, const VoxelBox& followed) const
+LampInfo LampOnGrid::Describe(double part, const VoxelBox& stored, const VoxelBox& followed) const
 {
   LampInfo info = {};
   const Grid& grid = this->TheGrid;
@@ -126,7 +175,6 @@ LampInfo LampOnGrid::Describe(
     info.followedEnd[a] = followed.first[a] + followed.size[a];
     info.periodic[a] = this->Periodic[a];
     info.spacing[a] = static_cast<float>(grid.spacing[a]);
-    info.position[a] = static_cast<float>(point[a]);
     info.direction[a] = static_cast<float>(direction[a]);
   }
   info.intensity = static_cast<float>(AxialIntensity(this->Lamp) * part / this->Share());

@@ -4,6 +4,7 @@
 #include "LightPropagation/Sweep/Deposit.h"
 #include "LightPropagation/Uncollided/Lamps/LampBeamsShared.h"
 #include "LightPropagation/Uncollided/Lamps/LampPyramids.h"
+#include "LightPropagation/Uncollided/Lamps/LampShares.h"
 #include "Lights/Lights.h"
 #include "Medium/Grid.h"
 #include "Medium/VoxelBox.h"
@@ -32,13 +33,14 @@ public:
   std::vector<glm::dvec3> Points() const;
   glm::dvec3 Middle() const;                                ///< the same, of the lamp's position
   std::vector<glm::dvec3> PointsOf(const Pass& pass) const; ///< from far a rectangle is a point
-  bool IsInside(const glm::dvec3& point) const;
+  bool IsInside(const glm::dvec3& point) const;             ///< the end of a periodic axis is inside, a face is not
 
   /// The beams from one of its points.
   std::vector<BeamRow> Rows(const glm::dvec3& point, const Pass& pass) const;
 
-  /// Whether its beams take all light from one of its points: it is in the box, or its cone leads into it.
-  bool FollowsAll(const glm::dvec3& point) const;
+  /// By what the found shares are multiplied to be parts of the lamp's power: where it is known which part of it is
+  /// followed (all light of a lamp in the box and of a cone that leads into it) or enters (a point outside), that part.
+  double Correction(const LampShares& shares) const;
 
   /// Of the lamp's power, at least what comes to the box: what is counted in parts of it keeps its digits however far
   /// away the lamp is.
@@ -46,7 +48,7 @@ public:
 
   /// @param part  of the lamp's power that the point has
   /// @param stored  the voxels that arrays hold; and of them those in which beams are followed
-  LampInfo Describe(const glm::dvec3& point, double part, const VoxelBox& stored, const VoxelBox& followed) const;
+  LampInfo Describe(double part, const VoxelBox& stored, const VoxelBox& followed) const;
 
   /// Fixed point units per length (numerics.md, Eq. (36)).
   double UnitsPerLength() const;
@@ -57,6 +59,8 @@ public:
   static bool HasAtomics(Device& device) { return device.HasExtension("cl_khr_int64_base_atomics"); }
 
 private:
+  bool FollowsAll(const glm::dvec3& point) const;
+  double EnteringPart() const;
   glm::dvec3 PlaceOf(const glm::dvec3& point) const;
 
   const Light& Lamp;

@@ -105,7 +105,11 @@ public:
     }
   }
 
-  bool IsThere(const Pass& pass) const { return this->Far > 0.0 && (pass.begin == 0 || this->Periodic[this->Axis]); }
+  bool IsThere(const Pass& pass) const
+  {
+    const bool around = this->Periodic[this->Axis];
+    return (this->Far > 0.0 || (around && this->Far == 0.0)) && (pass.begin == 0 || around);
+  }
 
   /// Of beams that are still in the box in a pass.
   std::array<double, 2> Seen(int k, const Light& light, const Pass& pass) const
@@ -169,6 +173,7 @@ public:
     row.widthV = static_cast<float>(width[1]);
     row.count = beams.countU;
     row.outside = outside;
+    row.beside = (this->IsBeside(1) ? 1 : 0) + (this->IsBeside(2) ? 2 : 0);
     row.from = static_cast<float>(from);
     row.startU = start(0);
     row.startV = start(1);
@@ -209,6 +214,12 @@ public:
   const bool Up;
 
 private:
+  bool IsBeside(int k) const
+  {
+    const int aside = (this->Axis + k) % 3;
+    return this->Position[aside] < 0.0 || this->Position[aside] > this->TheGrid.size[aside];
+  }
+
   /// The cone is so narrow, and so far from the planes across the axis, that its border is near its axis' tangent.
   static bool IsNarrow(const ConeInPlane& cone)
   {
@@ -228,13 +239,19 @@ private:
       std::sin(HalfAngle(spot)) };
   }
 
-  /// Between which the box is seen, within the pyramid.
+  /// Between which the box is seen, within the pyramid: from one of its faces all tangents that lead inwards.
   std::array<double, 2> Box(int k) const
   {
     const int aside = (this->Axis + k) % 3;
     const double low = -this->Position[aside];
     const double high = this->TheGrid.size[aside] - this->Position[aside];
     const double depth = std::max(this->Near, 1e-9), widest = this->Widest[k - 1];
+    if (this->Near == 0.0 && low <= 0.0 && high >= 0.0)
+    {
+      const bool around = this->Periodic[aside];
+      return { (low < 0.0 || around ? -widest : 0.0) - this->Base[k - 1],
+        (high > 0.0 || around ? widest : 0.0) - this->Base[k - 1] };
+    }
     return { std::max(-widest, std::min(low / depth, low / this->Far)) - this->Base[k - 1],
       std::min(widest, std::max(high / depth, high / this->Far)) - this->Base[k - 1] };
   }
