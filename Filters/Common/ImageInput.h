@@ -1,5 +1,7 @@
 #pragma once
 
+#include "Lights/Lights.h"
+
 #include "vtkSmartPointer.h"
 
 #include <array>
@@ -9,6 +11,7 @@
 #include <vector>
 
 class vtkAlgorithm;
+class vtkDataObject;
 class vtkImageData;
 class vtkInformation;
 class vtkInformationVector;
@@ -26,6 +29,12 @@ void TakeImages(vtkInformation* port);
 
 /// The same of a filter without outputs, a writer, to which VTK does not hand on blocks one by one: they are refused.
 void TakeOneImage(vtkInformation* port);
+
+/// Of an input or an output port, in FillInputPortInformation or FillOutputPortInformation: its image is a picture that
+/// has no place in the scene, so that it is not turned along with a medium (OwnAxes).
+void TakePictures(vtkInformation* port);
+
+bool IsForImagesOfScene(vtkInformation* port); ///< for images, not for pictures
 
 /// Also in FillInputPortInformation: the image is read as voxels, by these arrays.
 /// @param chosen  default names of those that SetInputArrayToProcess chooses, by number; "": the active scalars
@@ -67,6 +76,47 @@ std::optional<AxisWays> WaysOf(const double* spacing, const double* direction);
 /// The same image with axes along those of the world: its cells and points in another order, at the same places. Itself
 /// where it has them already, or cannot have them.
 vtkSmartPointer<vtkImageData> Aligned(vtkImageData* image);
+
+/// The axes of an image that its direction matrix turns otherwise than by right angles, mirrored or not. A filter works
+/// in these (WholeInputs.h): there its medium has the unit matrix and the origin that it has in the scene, and lights,
+/// photons, cameras and vectors of inputs are turned into them. What filters give out is in the scene again.
+struct OwnAxes
+{
+  using Vec = std::array<double, 3>;
+
+  Vec origin = { 0.0, 0.0, 0.0 }; ///< of the image: the place that has the same coordinates in both
+  Rotation axes = { { { 1.0, 0.0, 0.0 }, { 0.0, 1.0, 0.0 }, { 0.0, 0.0, 1.0 } } };   ///< a row each, in the scene
+  std::array<double, 9> direction = { 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0 }; ///< the matrix, spacings above 0
+
+  bool AreThoseOfScene() const { return this->direction == OwnAxes().direction; }
+  bool AreMirrored() const;
+  Vec Place(const Vec& inScene) const;
+  Vec Way(const Vec& inScene) const;
+  Vec PlaceInScene(const Vec& place) const;
+  Vec WayInScene(const Vec& way) const;
+
+  std::vector<double> Words() const;
+  static OwnAxes From(const std::vector<double>& words);
+};
+
+/// @return the scene's, too, where right angles turn the image, its matrix is that of no rotation (which GridOf
+///   refuses), or it is null or empty
+OwnAxes OwnAxesOf(vtkImageData* image);
+
+/// Those in which a filter works, and saying so, before it does.
+OwnAxes OwnAxesOf(vtkAlgorithm* filter);
+void NoteOwnAxes(vtkAlgorithm* filter, const OwnAxes& axes);
+
+/// An image of the scene as it lies in such axes, with vectors (net_flux, mean_direction, ior_gradient, what is chosen
+/// for the mean direction by a filter that reads the port, and field data of directions) that are turned, too.
+vtkSmartPointer<vtkImageData> InOwnAxes(vtkImageData* image, const OwnAxes& axes, vtkAlgorithm* filter, int port);
+
+/// The other way round, of an image that a filter gives out.
+/// @param given  what it was made of, as it is in the scene: arrays that were handed on are those of it; may be null
+void PutIntoScene(vtkImageData* output, const OwnAxes& axes, vtkImageData* given);
+
+/// Of all outputs of a filter but pictures, and photons, which are written in the scene. @param given  as above
+void PutIntoScene(vtkAlgorithm* filter, const OwnAxes& axes, vtkInformationVector* outputs, vtkImageData* given);
 
 /// That a filter averages arrays of points, for they meet others of cells; none: it does not.
 void NoteAveraged(vtkAlgorithm* filter, const std::vector<std::string>& arrays);

@@ -43,7 +43,7 @@ struct InputsKey
   }
 
   /// @param array  null: that there is none
-  void Add(vtkDataArray* array) { this->times.push_back(array ? array->GetMTime() : 0); }
+  void Add(vtkDataArray* array) { this->times.push_back(array ? TimeOf(array) : 0); }
 
   /// All arrays of a dataset; null: that there is none.
   void Add(vtkDataObject* data)

@@ -6,6 +6,7 @@
 #include "Common/PhaseFunctionData.h"
 #include "Common/SameVoxels.h"
 #include "Device/HostThreads.h"
+#include "Numerics/Constants.h"
 #include "Numerics/NumberText.h"
 
 #include "vtkAlgorithm.h"
@@ -314,9 +315,9 @@ Grid GridOf(vtkImageData* image)
   if (!image->GetDirectionMatrix()->IsIdentity())
   {
     throw InvalidInput(
-      "The input image is turned by its direction matrix, and not by right angles, which is not supported. Resample "
-      "it: "
-      "with Resample of VDBReader, where it was read by that, or with ResampleToImage (Resample To Image).");
+      "The input image is sheared by its direction matrix, or turned otherwise than the medium that it belongs to, "
+      "which is not supported. Resample it: with Resample of VDBReader, where it was read by that, or with "
+      "ResampleToImage (Resample To Image).");
   }
   Check(grid);
   return grid;
@@ -625,10 +626,44 @@ std::vector<Light> ReadLights(vtkPolyData* data)
     light.power = Row<3>(power, i);
     light.direction = Row<3>(direction, i);
     light.size = Row<2>(size, i);
-    light.angle = Row<1>(angle, i)[0];
+    light.angle = light.type == LightType::Rectangle ? 0.0 : Row<1>(angle, i)[0];
   }
   Check(read);
   return read.lights;
+}
+
+std::vector<Light> InOwnAxes(std::vector<Light> lights, const OwnAxes& axes)
+{
+  for (Light& light : lights)
+  {
+    if (axes.AreThoseOfScene())
+    {
+      break;
+    }
+    const std::array<double, 3> edge = axes.Way(RectangleEdges(light)[0]);
+    light.position = axes.Place(light.position);
+    light.direction = axes.Way(light.direction);
+    if (light.type == LightType::Rectangle)
+    {
+      light.angle = 0.0;
+      const auto [level, steep] = RectangleEdges(light);
+      const auto along = [&](const std::array<double, 3>& other, double length) {
+        return (edge[0] * other[0] + edge[1] * other[1] + edge[2] * other[2]) / length;
+      };
+      light.angle = std::atan2(along(steep, light.size[1]), along(level, light.size[0])) * 180.0 / Pi;
+    }
+  }
+  return lights;
+}
+
+Illumination InOwnAxes(Illumination illumination, const OwnAxes& axes)
+{
+  if (!axes.AreThoseOfScene())
+  {
+    illumination.lights = InOwnAxes(std::move(illumination.lights), axes);
+    illumination.environment = Turned(illumination.environment, axes.axes);
+  }
+  return illumination;
 }
 
 namespace

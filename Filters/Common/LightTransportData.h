@@ -212,6 +212,10 @@ double ReadFact(vtkDataObject* data, const char* name, double missing);
 /// lights. Checked.
 std::vector<Light> ReadLights(vtkPolyData* lights);
 
+/// Lights of the scene, and with its sky, as they shine on an image in axes of its own.
+std::vector<Light> InOwnAxes(std::vector<Light> lights, const OwnAxes& axes);
+Illumination InOwnAxes(Illumination illumination, const OwnAxes& axes);
+
 /// The environment of a latitude-longitude image: point data `radiance`, 1 (grey) or 3 components, of width x height x
 /// 1 points; hidden ones are black. No image: an empty environment. Checked.
 Environment ReadEnvironment(vtkImageData* image);

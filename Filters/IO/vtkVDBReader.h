@@ -106,8 +106,8 @@ public:
   ///@{
   /// Whether grids whose axes go aslant to those of the world, or are not at right angles to each other, are resampled
   /// to an image along the world's axes, which holds their voxels: with the shortest edge of a voxel, linear between
-  /// the middles of voxels (integers: the nearest). Default off: aslant ones have a direction matrix, which solvers
-  /// refuse, and those that shear are an error.
+  /// the middles of voxels (integers: the nearest). Default off: aslant ones have a direction matrix, and are solved in
+  /// their own axes; those that shear are an error.
   vtkSetMacro(Resample, bool);
   vtkGetMacro(Resample, bool);
   vtkBooleanMacro(Resample, bool);

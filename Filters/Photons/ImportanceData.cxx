@@ -28,6 +28,7 @@ void SetGrid(vtkImageData* image, const Grid& grid)
   image->SetExtent(0, grid.size[0], 0, grid.size[1], 0, grid.size[2]);
   image->SetOrigin(grid.origin.data());
   image->SetSpacing(grid.spacing.data());
+  image->SetDirectionMatrix(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0);
 }
 
 /// Numbers of the lights whose squares are layers.

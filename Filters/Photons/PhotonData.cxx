@@ -97,6 +97,13 @@ std::string Described(const Box& box)
 
 namespace
 {
+template <class Turn>
+std::array<float, 3> Turned(const std::array<float, 3>& direction, const Turn& turn)
+{
+  const std::array<double, 3> way = turn(std::array<double, 3>{ direction[0], direction[1], direction[2] });
+  return { static_cast<float>(way[0]), static_cast<float>(way[1]), static_cast<float>(way[2]) };
+}
+
 /// Points that know their bounds: VTK would look for them on one core, without regard to ranges that were left.
 class BoundedPoints : public vtkPoints
 {
@@ -137,8 +144,9 @@ std::string DoubtOfBox(vtkPolyData* photons, const Grid& medium)
       Described(box) + ": where they differ, light is missing or too much. Give PhotonEmitter the same medium.";
 }
 
-void WritePhotons(const EmittedPhotons& emitted, const Grid& box, vtkPolyData* output)
+void WritePhotons(const EmittedPhotons& emitted, const Grid& box, const OwnAxes& axes, vtkPolyData* output)
 {
+  const bool turned = !axes.AreThoseOfScene();
   const std::size_t count = emitted.photons.size();
   vtkNew<BoundedPoints> points;
   points->SetDataTypeToDouble();
@@ -160,7 +168,12 @@ void WritePhotons(const EmittedPhotons& emitted, const Grid& box, vtkPolyData* o
   InThreads(count, PhotonsOfThread, [&](std::size_t begin, std::size_t end) {
     for (auto i = static_cast<vtkIdType>(begin); i < static_cast<vtkIdType>(end); ++i)
     {
-      const Photon& photon = emitted.photons[static_cast<std::size_t>(i)];
+      Photon photon = emitted.photons[static_cast<std::size_t>(i)];
+      if (turned)
+      {
+        photon.position = axes.PlaceInScene(photon.position);
+        photon.direction = Turned(photon.direction, [&](const auto& way) { return axes.WayInScene(way); });
+      }
       places->SetTypedTuple(i, photon.position.data());
       direction->SetTypedTuple(i, photon.direction.data());
       power->SetTypedTuple(i, photon.power.data());
@@ -208,8 +221,9 @@ void CheckBoxFact(vtkPolyData* photons)
 }
 }
 
-std::vector<Photon> ReadPhotons(vtkPolyData* data)
+std::vector<Photon> ReadPhotons(vtkPolyData* data, const OwnAxes& axes)
 {
+  const bool turned = !axes.AreThoseOfScene();
   if (!data)
   {
     return {};
@@ -238,6 +252,11 @@ std::vector<Photon> ReadPhotons(vtkPolyData* data)
         photon.direction[c] = direction->GetTypedComponent(i, c);
         photon.power[c] = power->GetTypedComponent(i, colours == 3 ? c : 0);
       }
+      if (turned)
+      {
+        photon.position = axes.Place(photon.position);
+        photon.direction = Turned(photon.direction, [&](const auto& way) { return axes.Way(way); });
+      }
       photon.weight = weight ? weight->GetValue(i) : 1.0f;
       photon.batch = batch ? BatchOf(batch->GetComponent(i, 0), i) : 0;
     }
@@ -245,7 +264,7 @@ std::vector<Photon> ReadPhotons(vtkPolyData* data)
   return photons;
 }
 
-void WritePaths(const std::vector<PhotonPath>& paths, vtkPolyData* output)
+void WritePaths(const std::vector<PhotonPath>& paths, const OwnAxes& axes, vtkPolyData* output)
 {
   vtkNew<vtkPoints> points;
   points->SetDataTypeToDouble();
@@ -259,7 +278,9 @@ void WritePaths(const std::vector<PhotonPath>& paths, vtkPolyData* output)
     lines->InsertNextCell(static_cast<int>(path.points.size()));
     for (std::size_t i = 0; i < path.points.size(); ++i)
     {
-      lines->InsertCellPoint(points->InsertNextPoint(path.points[i].data()));
+      const std::array<double, 3>& place = path.points[i];
+      lines->InsertCellPoint(
+        points->InsertNextPoint(axes.AreThoseOfScene() ? place.data() : axes.PlaceInScene(place).data()));
       left->InsertNextValue(path.left[i]);
     }
     numbers->InsertNextValue(static_cast<vtkIdType>(path.photon));
@@ -295,12 +316,12 @@ std::vector<std::uint8_t> ReadLevels(vtkImageData* image)
   return levels;
 }
 
-std::vector<Photon> ShareOfPhotons(Communicator& communicator, vtkPolyData* given)
+std::vector<Photon> ShareOfPhotons(Communicator& communicator, vtkPolyData* given, const OwnAxes& axes)
 {
   std::vector<Photon> photons;
   std::uint64_t key = 0;
   communicator.Together([&] {
-    photons = ReadPhotons(given);
+    photons = ReadPhotons(given, axes);
     key = ContentKeyButFacts(given);
   });
   const double high = static_cast<double>(key >> 32), low = static_cast<double>(key & 0xFFFFFFFFu);

@@ -63,6 +63,10 @@ int vtkPhotonEmitter::FillInputPortInformation(int port, vtkInformation* informa
   {
     tyndall::ReadsVoxels(information, { "sigma_a", "sigma_s", "emission", "ior" }, { tyndall::AnyArray });
   }
+  if (port == IMPORTANCE_MAP)
+  {
+    tyndall::TakePictures(information);
+  }
   return done;
 }
 
@@ -146,7 +150,7 @@ int vtkPhotonEmitter::RequestData(vtkInformation* request, vtkInformationVector*
     tyndall::WorkOnAllRanks(ranks, this, [&] {
       const tyndall::EmittedPhotons emitted =
         tyndall::EmitPhotons(grid, illumination, settings, tyndall::MonitorOf(this));
-      tyndall::WritePhotons(emitted, grid, vtkPolyData::GetData(outputs));
+      tyndall::WritePhotons(emitted, grid, tyndall::OwnAxesOf(this), vtkPolyData::GetData(outputs));
       this->Photons = static_cast<vtkIdType>(emitted.photons.size());
       std::copy_n(emitted.power.begin(), 3, this->Power);
       this->Seconds = emitted.seconds;

@@ -111,11 +111,21 @@ void vtkPhotonImportance::SetInputConnection(int port, vtkAlgorithmOutput* input
   this->Superclass::SetInputConnection(port, input);
 }
 
+int vtkPhotonImportance::FillOutputPortInformation(int port, vtkInformation* information)
+{
+  if (port == 0)
+  {
+    tyndall::TakePictures(information);
+  }
+  return this->Superclass::FillOutputPortInformation(port, information);
+}
+
 int vtkPhotonImportance::RequestInformation(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   SetGrid(outputs->GetInformationObject(0), MapGrid(this->PilotCount));
   SetGrid(outputs->GetInformationObject(1), PilotGrid(inputs[MEDIUM]->GetInformationObject(0), this->PilotDimensions));
+  outputs->GetInformationObject(0)->Remove(vtkDataObject::DIRECTION()); // the medium's
   return 1;
 }
 

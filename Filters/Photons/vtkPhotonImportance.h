@@ -147,6 +147,7 @@ protected:
   vtkPhotonImportance();
   ~vtkPhotonImportance() override;
 
+  int FillOutputPortInformation(int port, vtkInformation* information) override;
   int RequestInformation(
     vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
   int RequestUpdateExtent(

@@ -315,7 +315,7 @@ bool vtkPhotonMarcher::ReadPiece(tyndall::Communicator& communicator, const tynd
   std::string refused;
   bool rather = false; // whole, though it can be marched through so
   std::vector<tyndall::Photon> photons =
-    tyndall::ShareOfPhotons(communicator, vtkPolyData::GetData(inputs[PhotonsPort]));
+    tyndall::ShareOfPhotons(communicator, vtkPolyData::GetData(inputs[PhotonsPort]), tyndall::OwnAxesOf(this));
   const bool batches = HaveBatches(communicator, photons);
   communicator.Together([&] {
     piece.photons = std::move(photons);
@@ -405,7 +405,7 @@ bool vtkPhotonMarcher::MarchPiece(vtkInformation* request, vtkMultiProcessContro
   pieces.KeepHeld(output);
   if (communicator->Rank() == 0)
   {
-    tyndall::WritePaths(marched.paths, vtkPolyData::GetData(outputs, 1));
+    tyndall::WritePaths(marched.paths, tyndall::OwnAxesOf(this), vtkPolyData::GetData(outputs, 1));
   }
   if (pieces.Held().VoxelCount() > 0)
   {
@@ -469,7 +469,8 @@ int vtkPhotonMarcher::RequestData(vtkInformation* request, vtkInformationVector*
     },
     PhotonsPort, { OctreePort } };
   return tyndall::Guarded(this, request, given, outputs, onPieces, [&](vtkInformationVector** inputs) {
-    const std::vector<tyndall::Photon> photons = tyndall::ReadPhotons(vtkPolyData::GetData(inputs[PhotonsPort]));
+    const std::vector<tyndall::Photon> photons =
+      tyndall::ReadPhotons(vtkPolyData::GetData(inputs[PhotonsPort]), tyndall::OwnAxesOf(this));
     this->WarnOfBox(inputs, tyndall::GridOf(vtkImageData::GetData(inputs[MediumPort])));
     Marched marched = this->March(inputs, photons);
 
@@ -481,7 +482,7 @@ int vtkPhotonMarcher::RequestData(vtkInformation* request, vtkInformationVector*
     tyndall::PassOn(medium, output);
     if (tyndall::IsFirstPiece(request, outputs))
     {
-      tyndall::WritePaths(marched.paths, vtkPolyData::GetData(outputs, 1));
+      tyndall::WritePaths(marched.paths, tyndall::OwnAxesOf(this), vtkPolyData::GetData(outputs, 1));
     }
     this->Write(std::move(marched), medium, output);
     tyndall::KeepWhatIsAskedFor(outputs->GetInformationObject(0), output);

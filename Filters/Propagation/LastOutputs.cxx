@@ -11,6 +11,7 @@
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <array>
+#include <cstring>
 #include <string>
 #include <utility>
 
@@ -36,9 +37,15 @@ void CopyButTime(vtkDataObject* from, vtkDataObject* to)
 }
 }
 
-LastOutputs::Key LastOutputs::KeyOf(vtkMTimeType settings, vtkInformationVector** inputs, int ports)
+LastOutputs::Key LastOutputs::KeyOf(
+  vtkMTimeType settings, const OwnAxes& axes, vtkInformationVector** inputs, int ports)
 {
   Key key = { settings };
+  for (const double word : axes.Words())
+  {
+    key.emplace_back();
+    std::memcpy(&key.back(), &word, sizeof(word));
+  }
   for (int port = 0; port < ports; ++port)
   {
     for (int i = 0; i < inputs[port]->GetNumberOfInformationObjects(); ++i)
@@ -50,13 +57,14 @@ LastOutputs::Key LastOutputs::KeyOf(vtkMTimeType settings, vtkInformationVector*
 }
 
 bool LastOutputs::GiveBack(
-  vtkMTimeType settings, vtkInformationVector** inputs, int ports, vtkInformationVector* outputs)
+  vtkMTimeType settings, const OwnAxes& axes, vtkInformationVector** inputs, int ports, vtkInformationVector* outputs)
 {
-  Key key = KeyOf(settings, inputs, ports);
+  Key key = KeyOf(settings, axes, inputs, ports);
   if (key != this->MadeOf || this->Outputs.empty())
   {
-    this->MadeOf = std::move(key);
     this->LetGo();
+    this->MadeOf = std::move(key);
+    this->Axes = axes;
     return false;
   }
   for (std::size_t port = 0; port < this->Outputs.size(); ++port)
@@ -66,9 +74,11 @@ bool LastOutputs::GiveBack(
   return true;
 }
 
-void LastOutputs::Keep(vtkMTimeType settings, vtkInformationVector** inputs, int ports, vtkInformationVector* outputs)
+void LastOutputs::Keep(
+  vtkMTimeType settings, const OwnAxes& axes, vtkInformationVector** inputs, int ports, vtkInformationVector* outputs)
 {
-  this->MadeOf = KeyOf(settings, inputs, ports);
+  this->MadeOf = KeyOf(settings, axes, inputs, ports);
+  this->Axes = axes;
   this->Keep(outputs);
 }
 
@@ -82,7 +92,7 @@ std::array<int, 6> ExtentTold(vtkInformationVector* outputs)
 }
 }
 
-bool LastOutputs::GiveBefore(vtkInformationVector* outputs) const
+bool LastOutputs::GiveBefore(vtkInformationVector* outputs, OwnAxes& axes) const
 {
   if (this->Before.empty() || ExtentTold(outputs) != this->Told)
   {
@@ -94,6 +104,7 @@ bool LastOutputs::GiveBefore(vtkInformationVector* outputs) const
     CopyButTime(this->Before[port], output);
     AddFact(output, AbortedFact, std::vector<double>{ 1.0 });
   }
+  axes = this->AxesBefore;
   AddFact(vtkDataObject::GetData(outputs, 0), "left_out", std::vector<std::string>{ LightOfBefore });
   return true;
 }
@@ -103,6 +114,7 @@ void LastOutputs::LetGo()
   if (!this->Outputs.empty())
   {
     this->Before = std::move(this->Outputs);
+    this->AxesBefore = this->Axes;
   }
   this->Outputs.clear();
 }

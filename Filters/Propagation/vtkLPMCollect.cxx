@@ -6,6 +6,7 @@
 #include "LightPropagation/Published/ParallelPropagation.h"
 #include "Propagation/LPMBuffers.h"
 #include "Work/GuardedWork.h"
+#include "Work/WholeInputs.h"
 
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
@@ -123,6 +124,7 @@ vtkLPMCollect::~vtkLPMCollect() = default;
 int vtkLPMCollect::FillInputPortInformation(int, vtkInformation* information)
 {
   tyndall::TakeImages(information);
+  tyndall::ReadsVoxels(information, { "sigma_a", "sigma_s", "emission" }, { "g" });
   return 1;
 }
 
@@ -132,10 +134,10 @@ int vtkLPMCollect::RequestInformation(vtkInformation*, vtkInformationVector** in
   return 1;
 }
 
-int vtkLPMCollect::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+int vtkLPMCollect::RequestData(vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs)
 {
-  return tyndall::Guarded(this, outputs, [&] {
-    vtkImageData* image = vtkImageData::GetData(inputs[0]);
+  const auto work = [&](vtkMultiProcessController*, tyndall::WholeInputs& inputs) {
+    vtkImageData* image = vtkImageData::GetData(inputs.Vectors()[0]);
     const tyndall::MediumInput input = tyndall::ReadMedium(this, image);
     const std::size_t voxels = input.medium.grid.VoxelCount();
     const Buffers buffers = ReadBuffers(image);
@@ -172,7 +174,8 @@ int vtkLPMCollect::RequestData(vtkInformation*, vtkInformationVector** inputs, v
     const tyndall::Rgb& left = light.balance.leftOver;
     tyndall::AddFact(
       output, "left_over", std::vector<double>(left.begin(), left.begin() + light.channels), light.channels);
-  });
+  };
+  return tyndall::GuardedInPieces(this, request, given, outputs, 0, work);
 }
 
 void vtkLPMCollect::PrintSelf(ostream& os, vtkIndent indent)

@@ -166,7 +166,7 @@ tyndall::LightField vtkLatticeBoltzmannLighting::SolveWithPhotons(
   }
   tyndall::Illumination illumination;
   tyndall::AddFaceAlbedo(illumination, this->FaceAlbedo, this->FaceAlbedoColor);
-  const std::vector<tyndall::Photon> photons = tyndall::ReadPhotons(given);
+  const std::vector<tyndall::Photon> photons = tyndall::ReadPhotons(given, tyndall::OwnAxesOf(this));
   return Timed(this->Seconds, [&] {
     const std::shared_ptr<tyndall::Device> device = tyndall::Device::Find(this->GetDevice());
     tyndall::Device within(*device, tyndall::BudgetOf(this->MemoryBudget, true));
@@ -234,7 +234,7 @@ tyndall::LightField vtkLatticeBoltzmannLighting::SolvePiece(tyndall::Communicato
   std::vector<tyndall::Photon> photons;
   if (piece.share)
   {
-    photons = tyndall::ShareOfPhotons(communicator, piece.share);
+    photons = tyndall::ShareOfPhotons(communicator, piece.share, tyndall::OwnAxesOf(this));
     const std::string doubt = tyndall::DoubtOfBox(piece.share, pieces.Partition().whole);
     if (!doubt.empty() && communicator.Rank() == 0)
     {

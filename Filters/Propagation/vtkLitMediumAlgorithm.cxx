@@ -10,6 +10,8 @@
 #include "vtkInformationVector.h"
 #include "vtkPolyData.h"
 
+#include <utility>
+
 vtkLitMediumAlgorithm::vtkLitMediumAlgorithm()
 {
   this->SetNumberOfInputPorts(3);
@@ -57,6 +59,10 @@ int vtkLitMediumAlgorithm::FillInputPortInformation(int port, vtkInformation* in
   {
     tyndall::TakeImages(information);
   }
+  if (port == ENVIRONMENT)
+  {
+    tyndall::TakePictures(information);
+  }
   if (port == MEDIUM)
   {
     tyndall::ReadsVoxels(information, { "sigma_a", "sigma_s", "emission", "ior" }, { "g" });
@@ -91,7 +97,7 @@ tyndall::Illumination vtkLitMediumAlgorithm::ReadIllumination(vtkInformationVect
   illumination.lights = tyndall::ReadLights(vtkPolyData::GetData(inputs[LIGHTS]));
   illumination.environment = tyndall::Turned(tyndall::ReadEnvironment(vtkImageData::GetData(inputs[ENVIRONMENT])),
     this->EnvironmentUp, this->EnvironmentAzimuth);
-  return illumination;
+  return tyndall::InOwnAxes(std::move(illumination), tyndall::OwnAxesOf(this));
 }
 
 void vtkLitMediumAlgorithm::PrintNumbers(

@@ -25,12 +25,12 @@ bool OnlyFromFarAway(const tyndall::Illumination& illumination)
 }
 
 /// A sun gives white media, which are all alike under an even sky, a bright and a dark side.
-void AddDefaultSky(tyndall::Illumination& illumination)
+void AddDefaultSky(tyndall::Illumination& illumination, const tyndall::OwnAxes& axes)
 {
   constexpr double radiance = 0.1; // a third of the sun's irradiance, as a clear sky has
   vtkNew<vtkLightRig> untouched;
   untouched->Update();
-  illumination.lights = tyndall::ReadLights(untouched->GetOutput());
+  illumination.lights = tyndall::InOwnAxes(tyndall::ReadLights(untouched->GetOutput()), axes);
   illumination.sky.fill(radiance);
 }
 }
@@ -57,7 +57,7 @@ tyndall::IlluminationInput vtkPropagationAlgorithm::ReadAllIllumination(vtkInfor
   shining.isDefaultSky = this->DefaultSky && !isConnected && !emits && tyndall::NothingShines(illumination);
   if (shining.isDefaultSky)
   {
-    AddDefaultSky(illumination);
+    AddDefaultSky(illumination, tyndall::OwnAxesOf(this));
   }
   return shining;
 }

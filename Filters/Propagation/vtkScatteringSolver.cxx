@@ -180,7 +180,8 @@ int vtkScatteringSolver::GiveOrSolve(vtkInformation* request, vtkInformationVect
     {
       this->Solved->Forget();
     }
-    if (this->Solved->GiveBack(this->Superclass::GetMTime(), inputs, this->GetNumberOfInputPorts(), outputs))
+    if (this->Solved->GiveBack(
+          this->Superclass::GetMTime(), tyndall::OwnAxesOf(this), inputs, this->GetNumberOfInputPorts(), outputs))
     {
       this->HandOn(inputs, outputs);
       return;
@@ -201,13 +202,15 @@ void vtkScatteringSolver::GiveLightBefore(vtkInformationVector* outputs)
 {
   tyndall::LightField nothing;
   vtkImageData* const output = vtkImageData::GetData(outputs, 0);
-  if (output->GetFieldData()->HasArray(tyndall::AbortedFact) && this->Solved->GiveBefore(outputs))
+  tyndall::OwnAxes axes;
+  if (output->GetFieldData()->HasArray(tyndall::AbortedFact) && this->Solved->GiveBefore(outputs, axes))
   {
     nothing.leftOut = { tyndall::LightOfBefore };
     if (!this->SolvedInPieces)
     {
       tyndall::KeepWhatIsAskedFor(outputs->GetInformationObject(0), output);
     }
+    tyndall::PutIntoScene(output, axes, nullptr);
   }
   this->Note(nothing);
 }
@@ -341,7 +344,8 @@ bool vtkScatteringSolver::GivePiece(tyndall::Communicator& communicator, const t
   vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   const bool kept = this->SolvedInPieces &&
-    this->Solved->GiveBack(this->Superclass::GetMTime(), inputs, this->GetNumberOfInputPorts(), outputs);
+    this->Solved->GiveBack(
+      this->Superclass::GetMTime(), tyndall::OwnAxesOf(this), inputs, this->GetNumberOfInputPorts(), outputs);
   const vtkIdType cells = vtkImageData::GetData(outputs, 0)->GetNumberOfCells();
   const bool same = kept && cells == static_cast<vtkIdType>(pieces.Held().VoxelCount());
   const bool onAll = communicator.Largest({ same ? 0.0 : 1.0 })[0] == 0.0;
@@ -387,7 +391,8 @@ void vtkScatteringSolver::WritePiece(tyndall::Communicator& communicator, const 
     doubts = Write(this, std::move(light), this->Ignored, vtkImageData::GetData(inputs[MEDIUM]), outputs, &pieces);
   });
   this->WarnOnce(doubts);
-  this->Solved->Keep(this->Superclass::GetMTime(), inputs, this->GetNumberOfInputPorts(), outputs);
+  this->Solved->Keep(
+    this->Superclass::GetMTime(), tyndall::OwnAxesOf(this), inputs, this->GetNumberOfInputPorts(), outputs);
   this->SolvedInPieces = true;
 }
 

@@ -130,6 +130,7 @@ void Write(tyndall::ReferenceLight&& reference, bool given, vtkImageData* image)
   image->SetExtent(0, size[0], 0, size[1], 0, size[2]);
   image->SetSpacing(reference.grid.spacing.data());
   image->SetOrigin(reference.grid.origin.data());
+  image->SetDirectionMatrix(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0);
   const std::pair<const char*, std::vector<float>*> arrays[] = { { "fluence", &reference.fluence },
     { "fluence_direct", &reference.fluenceDirect } };
   for (const auto& [name, values] : arrays)

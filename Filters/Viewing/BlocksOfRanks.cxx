@@ -1,5 +1,6 @@
 #include "BlocksOfRanks.h"
 
+#include "CasterProperties.h"
 #include "Ranks/PieceBlocks.h"
 #include "Viewing/Blocks/BlockOrder.h"
 #include "Viewing/Scene/BlockOfScene.h"
@@ -18,10 +19,31 @@ std::vector<double> SaidByAll(Communicator& communicator, const std::vector<doub
   return communicator.Sum(all);
 }
 
+namespace
+{
+/// Of the first rank that has any of the image.
+OwnAxes AxesOfFirst(Communicator& communicator, vtkImageData* image)
+{
+  std::vector<double> words = OwnAxesOf(image).Words();
+  words.push_back(image && image->GetNumberOfPoints() > 0 ? 1.0 : 0.0);
+  const std::vector<double> said = SaidByAll(communicator, words);
+  for (auto rank = said.begin(); rank != said.end(); rank += static_cast<std::ptrdiff_t>(words.size()))
+  {
+    const std::vector<double> own(rank, rank + static_cast<std::ptrdiff_t>(words.size()));
+    if (own.back() > 0.0)
+    {
+      return OwnAxes::From(own);
+    }
+  }
+  return {};
+}
+}
+
 BlocksOfRanks::BlocksOfRanks(Communicator& communicator, vtkImageData* image)
   : Others(communicator)
   , Rank(static_cast<std::size_t>(communicator.Rank()))
   , Blocks(static_cast<std::size_t>(communicator.Ranks()))
+  , AxesOfAll(AxesOfFirst(communicator, image))
 {
   const PieceBlocks pieces(communicator, nullptr, image);
   this->Tiled = pieces.MakeUpTheWhole();
@@ -75,7 +97,7 @@ BlocksOfRanks::Seen BlocksOfRanks::InOrder(
     blocks.push_back(this->Blocks[rank]);
   }
   Seen seen;
-  for (int number : FrontToBack(blocks, camera))
+  for (int number : FrontToBack(blocks, InOwnAxes(camera, this->AxesOfAll)))
   {
     seen.own = ranks[number] == this->Rank ? seen.frontToBack.size() : seen.own;
     seen.frontToBack.push_back(std::move(pixels[number]));

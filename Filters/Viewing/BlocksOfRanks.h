@@ -1,5 +1,6 @@
 #pragma once
 
+#include "Common/ImageInput.h"
 #include "Distribution/BlockPartition.h"
 #include "Distribution/Communicator.h"
 #include "Viewing/Blocks/BlockPixels.h"
@@ -39,7 +40,8 @@ public:
   bool MakeUpTheWhole() const { return this->Tiled; }
   bool HasOwn() const { return this->Blocks[this->Rank].OwnVoxels() > 0; }
   const GridBlock& Own() const { return this->Blocks[this->Rank]; }
-  const Grid& Whole() const { return this->Own().whole; } ///< where MakeUpTheWhole
+  const Grid& Whole() const { return this->Own().whole; } ///< where MakeUpTheWhole, in its axes
+  const OwnAxes& Axes() const { return this->AxesOfAll; }
 
   // Where MakeUpTheWhole, in voxels of the whole.
   const BlockPartition& Partition() const { return this->Parts; }
@@ -53,6 +55,7 @@ public:
   /// @param own     this block's pixels; none where it is not seen, or there is none
   /// @param wanted  pixels
   /// @param failed  this rank has no picture, though it should
+  /// @param camera  in the scene
   /// @return nothing, on all ranks, where one of them failed
   std::optional<Seen> Exchange(
     const BlockPixels& own, const PixelRect& wanted, bool failed, const Camera& camera) const;
@@ -65,6 +68,7 @@ private:
   std::vector<GridBlock> Blocks; ///< by rank
   BlockPartition Parts;
   std::vector<VoxelBox> OfPieces;
+  OwnAxes AxesOfAll;
   bool Tiled = false;
 };
 }

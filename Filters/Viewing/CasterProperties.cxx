@@ -41,8 +41,35 @@ ViewSettings SettingsOf(vtkMediumRayCaster* filter, double exposure)
   return AtQuality(static_cast<Quality>(filter->GetQuality()), settings);
 }
 
+Camera InOwnAxes(const Camera& inScene, const OwnAxes& axes)
+{
+  Camera camera = inScene;
+  if (!axes.AreThoseOfScene())
+  {
+    camera.position = axes.Place(inScene.position);
+    camera.focalPoint = axes.Place(inScene.focalPoint);
+    camera.viewUp = axes.Way(inScene.viewUp);
+    camera.mirrored = inScene.mirrored != axes.AreMirrored();
+  }
+  return camera;
+}
+
+Camera InScene(const Camera& camera, const OwnAxes& axes)
+{
+  Camera inScene = camera;
+  if (!axes.AreThoseOfScene())
+  {
+    inScene.position = axes.PlaceInScene(camera.position);
+    inScene.focalPoint = axes.PlaceInScene(camera.focalPoint);
+    inScene.viewUp = axes.WayInScene(camera.viewUp);
+    inScene.mirrored = camera.mirrored != axes.AreMirrored();
+  }
+  return inScene;
+}
+
 Camera CameraOf(vtkMediumRayCaster* filter, const Grid& grid)
 {
+  const OwnAxes axes = OwnAxesOf(filter);
   Camera camera;
   camera.position = Triple(filter->GetCameraPosition());
   camera.focalPoint = Triple(filter->GetCameraFocalPoint());
@@ -52,7 +79,15 @@ Camera CameraOf(vtkMediumRayCaster* filter, const Grid& grid)
   if (camera.position == camera.focalPoint)
   {
     const double aspect = static_cast<double>(filter->GetImageSize()[0]) / filter->GetImageSize()[1];
-    camera = FrameGrid(grid, aspect, camera.viewAngle, ThreeQuarterView(camera.viewUp), camera.viewUp);
+    const bool turned = !axes.AreThoseOfScene();
+    const auto towards = ThreeQuarterView(camera.viewUp);
+    camera = turned ? FrameGrid(grid, aspect, camera.viewAngle, axes.Way(towards), axes.Way(camera.viewUp))
+                    : FrameGrid(grid, aspect, camera.viewAngle, towards, camera.viewUp);
+    camera.mirrored = axes.AreMirrored();
+  }
+  else
+  {
+    camera = InOwnAxes(camera, axes);
   }
   camera.parallelProjection = filter->GetCameraParallelProjection();
   return camera;

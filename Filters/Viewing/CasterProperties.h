@@ -1,5 +1,6 @@
 #pragma once
 
+#include "Common/ImageInput.h"
 #include "Lights/Lights.h"
 #include "Medium/Grid.h"
 #include "Viewing/Scene/Camera.h"
@@ -18,6 +19,11 @@ Rgb BackgroundOf(vtkMediumRayCaster* filter, double exposure);
 
 ViewSettings SettingsOf(vtkMediumRayCaster* filter, double exposure);
 
+/// The same view of a medium that lies in axes of its own, and the other way round.
+Camera InOwnAxes(const Camera& inScene, const OwnAxes& axes);
+Camera InScene(const Camera& camera, const OwnAxes& axes);
+
+/// In the axes in which the filter works.
 /// @param grid  of the whole medium, which is looked at where the filter has no camera of its own
 Camera CameraOf(vtkMediumRayCaster* filter, const Grid& grid);
 

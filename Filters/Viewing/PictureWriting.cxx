@@ -21,6 +21,7 @@ void WritePicture(
   output->SetExtent(first[0], first[0] + picture.width - 1, first[1], first[1] + picture.height - 1, 0, 0);
   output->SetOrigin(0.0, 0.0, 0.0);
   output->SetSpacing(1.0, 1.0, 1.0);
+  output->SetDirectionMatrix(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0);
   vtkPointData* const pixels = output->GetPointData();
   const auto shown = ArrayOf<vtkUnsignedCharArray>("color", std::move(color), 4);
   LeaveRanges(shown);

@@ -2,6 +2,7 @@
 
 #include "AskedView.h"
 #include "BlocksOfRanks.h"
+#include "CasterProperties.h"
 #include "Common/LightTransportData.h"
 #include "Device/Clock.h"
 #include "PictureOverlay.h"
@@ -133,12 +134,12 @@ std::optional<double> AgreedRaysApart(tyndall::Communicator& others, std::vector
 }
 
 /// One of the small pictures that the exposure is found from.
-tyndall::AskedView ExposedView(const tyndall::Grid& grid, const double from[3])
+tyndall::AskedView ExposedView(const tyndall::Grid& grid, const tyndall::OwnAxes& axes, const double from[3])
 {
   tyndall::AskedView view;
   view.size = { ExposedSize[0], ExposedSize[1] };
   const double aspect = static_cast<double>(ExposedSize[0]) / ExposedSize[1];
-  view.camera = tyndall::FrameGrid(grid, aspect, 30.0, { from[0], from[1], from[2] });
+  view.camera = tyndall::InScene(tyndall::FrameGrid(grid, aspect, 30.0, { from[0], from[1], from[2] }), axes);
   return view;
 }
 }
@@ -236,11 +237,14 @@ double vtkLitVolumeMapper::EstimateExposure()
   try
   {
     auto* const image = vtkImageData::SafeDownCast(this->GetDataObjectInput());
-    const tyndall::Grid grid = tyndall::GridOf(image ? tyndall::Aligned(image) : nullptr);
+    const vtkSmartPointer<vtkImageData> aligned = image ? tyndall::Aligned(image) : nullptr;
+    const tyndall::OwnAxes axes = tyndall::OwnAxesOf(aligned.GetPointer());
+    const tyndall::Grid grid =
+      tyndall::GridOf(tyndall::InOwnAxes(aligned, axes, this->RayCaster, vtkMediumRayCaster::MEDIUM));
     for (const auto& from : ExposedFrom)
     {
       tyndall::Picture picture;
-      if (!this->RayCaster->See(ExposedView(grid, from), picture))
+      if (!this->RayCaster->See(ExposedView(grid, axes, from), picture))
       {
         return 0.0;
       }
@@ -277,7 +281,7 @@ double vtkLitVolumeMapper::ExposureOfPieces(tyndall::Communicator& others)
     {
       return 0.0;
     }
-    tyndall::AskedView view = ExposedView(blocks.Whole(), from);
+    tyndall::AskedView view = ExposedView(blocks.Whole(), blocks.Axes(), from);
     tyndall::Picture picture;
     view.block = blocks.Own();
     const bool seen = !blocks.HasOwn() || this->RayCaster->See(view, picture);

@@ -89,6 +89,12 @@ int vtkMediumRayCaster::FillInputPortInformation(int port, vtkInformation* infor
   return done;
 }
 
+int vtkMediumRayCaster::FillOutputPortInformation(int port, vtkInformation* information)
+{
+  tyndall::TakePictures(information);
+  return this->Superclass::FillOutputPortInformation(port, information);
+}
+
 int vtkMediumRayCaster::RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
 {
   vtkInformation* information = outputs->GetInformationObject(0);
@@ -98,6 +104,7 @@ int vtkMediumRayCaster::RequestInformation(vtkInformation*, vtkInformationVector
   information->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
   information->Set(vtkDataObject::ORIGIN(), origin, 3);
   information->Set(vtkDataObject::SPACING(), spacing, 3);
+  information->Remove(vtkDataObject::DIRECTION()); // the medium's
   vtkDataObject::SetPointDataActiveScalarInfo(information, VTK_UNSIGNED_CHAR, 4);
   return 1;
 }
@@ -148,6 +155,8 @@ tyndall::InputsKey vtkMediumRayCaster::KeyOf(vtkInformationVector** inputs, Use 
   }
   tyndall::AddPhase(key, image);
   key.Add({ 1.0 * this->EnvironmentUp, this->EnvironmentAzimuth });
+  const std::vector<double> axes = tyndall::OwnAxesOf(this).Words();
+  key.numbers.insert(key.numbers.end(), axes.begin(), axes.end());
   for (int number = tyndall::SigmaA; number < tyndall::ViewedArrayCount; ++number)
   {
     key.Add(tyndall::ChosenArray(this, number, image, tyndall::ViewedNames[number]));
@@ -447,21 +456,25 @@ bool vtkMediumRayCaster::See(const tyndall::AskedView& view, tyndall::Picture& p
     std::vector<vtkInformationVector*> ports(given, given + this->GetNumberOfInputPorts());
     const vtkNew<vtkInformationVector> medium;
     vtkImageData* const image = vtkImageData::GetData(given[MEDIUM]);
-    if (!block && image)
+    tyndall::OwnAxes axes;
+    if (image)
     {
-      vtkSmartPointer<vtkImageData> voxels = tyndall::Aligned(image);
-      voxels = tyndall::AreAroundPoints(this, MEDIUM, voxels) ? tyndall::VoxelsAround(voxels) : voxels;
+      vtkSmartPointer<vtkImageData> voxels = block ? vtkSmartPointer<vtkImageData>(image) : tyndall::Aligned(image);
+      axes = tyndall::OwnAxesOf(voxels.GetPointer());
+      voxels = tyndall::InOwnAxes(voxels, axes, this, MEDIUM);
+      voxels = !block && tyndall::AreAroundPoints(this, MEDIUM, voxels) ? tyndall::VoxelsAround(voxels) : voxels;
       const vtkNew<vtkInformation> asVoxels;
       asVoxels->Set(vtkDataObject::DATA_OBJECT(), voxels);
       medium->Append(asVoxels);
       ports[MEDIUM] = medium;
     }
+    tyndall::NoteOwnAxes(this, axes);
     std::unique_ptr<tyndall::CasterScene> scene = this->FindScene(ports.data(), settings, block);
     this->SayDoubts(*scene);
     seen = !block || scene->caster->CastsBlocks();
     if (seen)
     {
-      picture = scene->caster->Render(view.camera, {}, view.ends, block);
+      picture = scene->caster->Render(tyndall::InOwnAxes(view.camera, axes), {}, view.ends, block);
     }
     this->Kept = std::move(scene);
   });

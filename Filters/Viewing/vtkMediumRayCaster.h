@@ -334,6 +334,7 @@ protected:
   ~vtkMediumRayCaster() override;
 
   int FillInputPortInformation(int port, vtkInformation* information) override;
+  int FillOutputPortInformation(int port, vtkInformation* information) override;
   int RequestInformation(
     vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
   int RequestUpdateExtent(

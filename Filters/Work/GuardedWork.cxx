@@ -310,6 +310,7 @@ int GuardedInPieces(vtkAlgorithm* filter, vtkInformation* request, vtkInformatio
     WholeInputs inputs(ranks, filter, given, outputs, port, shares, others);
     work(ranks, inputs);
     TellAveraged(filter, outputs);
+    inputs.PutIntoScene(outputs);
     WarnOfBlocks(filter, given);
   });
 }

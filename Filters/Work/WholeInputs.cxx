@@ -609,6 +609,8 @@ WholeInputs::WholeInputs(vtkMultiProcessController* ranks, vtkAlgorithm* filter,
   : Filter(filter)
 {
   OnAllRanks(ranks, [&] { this->AlignGiven(given); });
+  this->AgreeOnAxes(ranks);
+  OnAllRanks(ranks, [&] { this->TurnGiven(); });
   this->NoteAveragedArrays();
   const int ports = static_cast<int>(this->Ports.size());
   std::vector<vtkInformationVector*> aligned = this->Ports;
@@ -686,6 +688,67 @@ void WholeInputs::AlignGiven(vtkInformationVector** given)
       this->Ports[static_cast<std::size_t>(port)] = aligned;
     }
   }
+}
+
+/// Those of the first port's image, of whichever rank has any of it.
+void WholeInputs::AgreeOnAxes(vtkMultiProcessController* ranks)
+{
+  const bool reads =
+    this->Filter->GetNumberOfInputPorts() > 0 && IsForImagesOfScene(this->Filter->GetInputPortInformation(0));
+  const bool any = reads && this->Ports[0]->GetNumberOfInformationObjects() > 0;
+  this->Medium = any ? vtkDataObject::GetData(this->Ports[0], 0) : nullptr;
+  auto* const image = vtkImageData::SafeDownCast(this->Medium);
+  this->Axes = OwnAxesOf(image);
+  if (ranks && reads)
+  {
+    std::vector<double> words = this->Axes.Words();
+    words.push_back(image && image->GetNumberOfPoints() > 0 ? 1.0 : 0.0);
+    std::vector<double> all(words.size() * static_cast<std::size_t>(ranks->GetNumberOfProcesses()));
+    ranks->AllGather(words.data(), all.data(), static_cast<vtkIdType>(words.size()));
+    bool found = false;
+    for (auto rank = all.begin(); rank != all.end(); rank += static_cast<std::ptrdiff_t>(words.size()))
+    {
+      const std::vector<double> said(rank, rank + static_cast<std::ptrdiff_t>(words.size()));
+      const OwnAxes axes = OwnAxes::From(said);
+      Require(!found || said.back() == 0.0 || axes.direction == this->Axes.direction,
+        "The input lies in pieces on several ranks, which are turned by different direction matrices. Give all pieces "
+        "of an image the same.");
+      if (!found && said.back() > 0.0)
+      {
+        this->Axes = axes;
+        found = true;
+      }
+    }
+  }
+  NoteOwnAxes(this->Filter, this->Axes);
+}
+
+/// Images of the scene into the axes of the first one.
+void WholeInputs::TurnGiven()
+{
+  for (int port = 0; port < this->Filter->GetNumberOfInputPorts() && !this->Axes.AreThoseOfScene(); ++port)
+  {
+    const auto number = static_cast<std::size_t>(port);
+    if (!IsForImagesOfScene(this->Filter->GetInputPortInformation(port)))
+    {
+      continue;
+    }
+    const vtkSmartPointer<vtkInformationVector> turned =
+      Changed(this->Ports[number], [&](int, vtkDataObject* data) -> vtkSmartPointer<vtkDataObject> {
+        auto* const image = vtkImageData::SafeDownCast(data);
+        return image ? InOwnAxes(image, this->Axes, this->Filter, port).GetPointer() : data;
+      });
+    if (turned)
+    {
+      this->Given[number] = turned;
+      this->Ports[number] = turned;
+    }
+  }
+}
+
+void WholeInputs::PutIntoScene(vtkInformationVector* outputs)
+{
+  tyndall::PutIntoScene(this->Filter, this->Axes, outputs, vtkImageData::SafeDownCast(this->Medium));
 }
 
 /// Of arrays of points that are read beside others of cells.

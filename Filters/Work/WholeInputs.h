@@ -1,5 +1,7 @@
 #pragma once
 
+#include "Common/ImageInput.h"
+
 #include "vtkNew.h"
 #include "vtkSmartPointer.h"
 
@@ -24,7 +26,8 @@ namespace tyndall
 /// and point arrays, ghost cells once; of other data, as tables and lights, what one rank alone has goes to all.
 /// Points in shares are put one after the other, by rank.
 ///
-/// Images that a filter reads as voxels have axes along those of the world, where theirs are so in another order. Those
+/// Images that a filter reads as voxels have axes along those of the world, where theirs are so in another order. Where
+/// the first input is turned otherwise, the filter works in its axes (OwnAxes), which all ranks know. Those
 /// of which it reads arrays of points have a voxel around each of them (Common/ImageInput.h), also where
 /// one process is alone. Of a plane of points that pieces share, the voxels are those of the lowest rank.
 ///
@@ -49,6 +52,9 @@ public:
   /// By port.
   vtkInformationVector** Vectors() { return this->Ports.data(); }
 
+  /// Puts outputs that were made in axes of the medium's own into the scene.
+  void PutIntoScene(vtkInformationVector* outputs);
+
   /// Data instead of those of the first port that was left in pieces; until MakeWhole.
   void Replace(vtkDataObject* data);
 
@@ -61,11 +67,15 @@ private:
   void MakeWhole(int port);
   using ToOther = std::function<vtkSmartPointer<vtkDataObject>(int connection, vtkDataObject* data)>;
   void AlignGiven(vtkInformationVector** given);
+  void AgreeOnAxes(vtkMultiProcessController* ranks);
+  void TurnGiven();
   void NoteAveragedArrays();
   void Change(int port, const ToOther& change);
 
   vtkAlgorithm* Filter;
   std::vector<vtkSmartPointer<vtkInformationVector>> Given; ///< by port, images with aligned axes
+  OwnAxes Axes;                                             ///< of the first port's
+  vtkSmartPointer<vtkDataObject> Medium;                    ///< the same image as it is in the scene; null: none is
 
   std::unique_ptr<Seen> AllSeen; ///< null: this process is alone
   std::vector<vtkSmartPointer<vtkInformationVector>> Kept;

@@ -127,6 +127,14 @@ std::array<std::array<double, 3>, 2> RectangleEdges(const Light& light)
   const double ex = vertical ? 1.0 : -y / across;
   const double ey = vertical ? 0.0 : x / across;
   const double s = light.size[1];
+  if (light.angle != 0.0)
+  {
+    const glm::dvec3 level(ex, ey, 0.0), steep(-z * ey, z * ex, x * ey - y * ex);
+    const double cosine = std::cos(light.angle * Pi / 180.0), sine = std::sin(light.angle * Pi / 180.0);
+    const glm::dvec3 first = light.size[0] * (cosine * level + sine * steep);
+    const glm::dvec3 second = s * (cosine * steep - sine * level);
+    return { { { first.x, first.y, first.z }, { second.x, second.y, second.z } } };
+  }
   return { { { light.size[0] * ex, light.size[0] * ey, 0.0 },
     { -s * z * ey, s * z * ex, s * (x * ey - y * ex) } } }; // direction x first edge
 }

@@ -25,7 +25,7 @@ struct Light
   std::array<double, 3> direction = { 0.0, 0.0, -1.0 }; ///< in which the light travels; any length but 0
   Rgb power = { 1.0, 1.0, 1.0 }; ///< W; for a directional light W/length^2 through a plane across `direction`
   std::array<double, 2> size = { 0.0, 0.0 }; ///< edges of a rectangle
-  double angle = 0.0;                        ///< full opening angle of a spot, degrees
+  double angle = 0.0; ///< full opening angle of a spot; of a rectangle, by which its edges are turned; degrees
 };
 
 /// A rotation, mirrored or not: rows of an orthogonal matrix.
@@ -80,7 +80,7 @@ double HalfAngle(const Light& spot);
 std::vector<Light> SeenFrom(const Grid& grid, std::vector<Light> lights);
 
 /// The edges of a rectangular light as vectors: the first is horizontal (across z and the direction; along x where the
-/// direction is vertical), the second across the first and the direction.
+/// direction is vertical), then turned by `angle`; the second is the direction x the first.
 std::array<std::array<double, 3>, 2> RectangleEdges(const Light& light);
 
 /// Mean radiance the environment has where it is looked at along `direction` of the scene (from the viewer outwards;

@@ -1,10 +1,13 @@
 // vtkPhotonEmitter and vtkPhotonMarcher in a pipeline that MPI ranks run together: with Decomposition BLOCKS each has
 // its piece of the medium and its share of the photons, and of the light what it has where each has the whole: bit for
-// bit, or of the published scheme to what its packing loses. Run by mpiexec; a program by itself.
+// bit, or of the published scheme to what its packing loses. So it is where the medium is turned by a direction matrix,
+// which vtkLightPropagationMaps then solves by pieces, too. Run by mpiexec; a program by itself.
 
+#include "vtkLightPropagationMaps.h"
 #include "vtkPhotonEmitter.h"
 #include "vtkPhotonMarcher.h"
 #include "vtkRefractionOctree.h"
+#include "vtkSun.h"
 
 #include "Device/Device.h"
 #include "Device/Errors.h"
@@ -20,6 +23,7 @@
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkMatrix3x3.h"
 #include "vtkMPIController.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
@@ -41,6 +45,7 @@
 namespace
 {
 constexpr int Size[3] = { 17, 12, 9 };
+constexpr double Turned[9] = { 0.48, -0.8, 0.36, 0.64, 0.6, 0.48, 0.6, 0.0, -0.8 }; ///< and mirrored
 
 /// A medium that makes the piece that it is asked for.
 class Waves : public vtkImageAlgorithm
@@ -49,6 +54,7 @@ public:
   static Waves* New();
   vtkTypeMacro(Waves, vtkImageAlgorithm);
   vtkIdType CellsMade = 0; ///< last
+  bool IsTurned = false;
 
 protected:
   Waves() { this->SetNumberOfInputPorts(0); }
@@ -59,6 +65,13 @@ protected:
     const int whole[6] = { 0, Size[0], 0, Size[1], 0, Size[2] };
     output->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), whole, 6);
     output->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
+    const double origin[3] = { 0.0, 0.0, 0.0 }, spacing[3] = { 1.0, 1.0, 1.0 };
+    output->Set(vtkDataObject::ORIGIN(), origin, 3);
+    output->Set(vtkDataObject::SPACING(), spacing, 3);
+    if (this->IsTurned)
+    {
+      output->Set(vtkDataObject::DIRECTION(), Turned, 9);
+    }
     return 1;
   }
 
@@ -69,6 +82,10 @@ protected:
     int e[6];
     information->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), e);
     image->SetExtent(e);
+    if (this->IsTurned)
+    {
+      image->SetDirectionMatrix(Turned);
+    }
     this->CellsMade = image->GetNumberOfCells();
     vtkNew<vtkFloatArray> arrays[3];
     const char* const names[3] = { "sigma_a", "sigma_s", "ior" };
@@ -138,6 +155,7 @@ struct Asked
   int integrator = 2;
   int scheme = vtkPhotonMarcher::CONSERVATIVE;
   double packing = 0.0; ///< what it may lose of a voxel's light, over the largest
+  bool turned = false;  ///< the medium
 };
 
 /// What a rank has of the light.
@@ -178,6 +196,7 @@ struct Scene
   Scene(vtkMPIController* ranks, const Asked& asked, int decomposition)
     : Ranks(ranks)
   {
+    this->Medium->IsTurned = this->Box->IsTurned = asked.turned;
     if (asked.emits)
     {
       this->Emitter->SetInputConnection(this->Box->GetOutputPort());
@@ -332,6 +351,40 @@ bool NamesWhatItCannot(vtkMPIController* controller)
     Expect(light->GetNumberOfCells() == 0, "light", rank);
 }
 
+/// Maps solve pieces of a turned medium: the light of the whole, with the matrix and vectors in the scene.
+bool SolvesTurnedPieces(vtkMPIController* controller)
+{
+  const int rank = controller->GetLocalProcessId(), ranks = controller->GetNumberOfProcesses();
+  vtkSmartPointer<vtkImageData> light[2];
+  for (const bool blocks : { false, true })
+  {
+    vtkNew<Waves> medium;
+    medium->IsTurned = true;
+    vtkNew<vtkSun> sun;
+    vtkNew<vtkLightPropagationMaps> maps;
+    maps->SetInputConnection(medium->GetOutputPort());
+    maps->SetLightsConnection(sun->GetOutputPort());
+    maps->SetNetFlux(true);
+    maps->SetDecomposition(blocks ? vtkLightPropagationMaps::BLOCKS : vtkLightPropagationMaps::WHOLE);
+    maps->UpdatePiece(rank, ranks, 0);
+    light[blocks] = maps->GetOutput();
+  }
+  bool right = Expect(light[1]->GetNumberOfCells() > 0 && light[0]->GetNumberOfCells() == light[1]->GetNumberOfCells(),
+    "no turned piece", rank);
+  right = Expect(std::equal(Turned, Turned + 9, light[1]->GetDirectionMatrix()->GetData()) &&
+              std::equal(Turned, Turned + 9, light[0]->GetDirectionMatrix()->GetData()),
+            "light without the matrix", rank) &&
+    right;
+  for (const char* array : { "fluence", "net_flux" })
+  {
+    right = Expect(SameArray(ValuesOf(light[1]->GetCellData()->GetArray(array)),
+                     ValuesOf(light[0]->GetCellData()->GetArray(array)), 1e-4),
+              std::string("another ") + array + " of a turned piece", rank) &&
+      right;
+  }
+  return right;
+}
+
 /// What the last rank stops while photons are scattered ends on all, without an error, and can be marched after that.
 bool EndsTogether(vtkMPIController* controller)
 {
@@ -381,11 +434,14 @@ int main(int argc, char* argv[])
       { "with an octree that all have, order 4", 1, 1, 0, 1, true, 0.0, vtkPhotonMarcher::BLOCKS, Octree::Whole, 4 },
       { "scattered, with an octree", 0, 1, 0, 1, false, 1e-9, automatic, Octree::InPieces },
       { "as published, with an octree", 1, 1, 0, 1, true, 1e-3, automatic, Octree::InPieces, 2,
-        vtkPhotonMarcher::PUBLISHED, 0.01 } };
+        vtkPhotonMarcher::PUBLISHED, 0.01 },
+      { "emitted, turned, with an octree", 3, 1, 5, 1, true, 1e-9, vtkPhotonMarcher::BLOCKS, Octree::InPieces, 2,
+        vtkPhotonMarcher::CONSERVATIVE, 0.0, true } };
     for (const Asked& asked : all)
     {
       right = HasTheSameLight(controller, asked) && right;
     }
+    right = SolvesTurnedPieces(controller) && right;
     right = NamesWhatItCannot(controller) && right;
     right = EndsTogether(controller) && right;
     end = right ? EXIT_SUCCESS : EXIT_FAILURE;

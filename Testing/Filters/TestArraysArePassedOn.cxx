@@ -256,15 +256,6 @@ void AxesAreTakenAsTheyGo(test::Claims& claims)
   maps->SetLightsConnection(lamp->GetOutputPort());
   maps->Update();
   claims.That(maps->GetOutput()->GetNumberOfCells() == 60, "a chain keeps all voxels");
-
-  // Aslant: one error with the remedy.
-  const auto aslant = Varied(false);
-  const double direction[9] = { 0.8, -0.6, 0, 0.6, 0.8, 0, 0, 0, 1 };
-  aslant->SetDirectionMatrix(direction);
-  test::Errors errors(maps);
-  maps->SetInputDataObject(aslant);
-  maps->Update();
-  claims.That(errors.WasOneWith("Resample To Image"), "axes that go aslant are refused");
 }
 
 void PointsAreVoxelsOfAllFilters(test::Claims& claims)

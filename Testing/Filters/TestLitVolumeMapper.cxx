@@ -104,12 +104,21 @@ int LargestDifference(vtkUnsignedCharArray* window, vtkUnsignedCharArray* pictur
   return largest;
 }
 
-void ShowsThePictureOfTheRayCaster(test::Claims& claims)
+/// @param direction  of the medium's image; null: not turned
+void ShowsThePictureOfTheRayCaster(test::Claims& claims, const double* direction)
 {
   const auto medium = Fog(0.01, 0.05);
+  if (direction)
+  {
+    medium->SetDirectionMatrix(direction);
+  }
   for (bool parallel : { false, true })
   {
     Scene scene(medium);
+    if (direction)
+    {
+      scene.renderer->ResetCamera();
+    }
     vtkCamera* const camera = scene.renderer->GetActiveCamera();
     camera->SetParallelProjection(parallel);
     camera->SetParallelScale(9);
@@ -204,7 +213,12 @@ int TestLitVolumeMapper(int, char*[])
     return test::SkippedWithoutDevice("none was found");
   }
   test::Claims claims;
-  ShowsThePictureOfTheRayCaster(claims);
+  const double turned[9] = { 0.48, -0.8, -0.36, 0.64, 0.6, -0.48, 0.6, 0.0, 0.8 };
+  const double mirrored[9] = { -0.48, -0.8, -0.36, -0.64, 0.6, -0.48, -0.6, 0.0, 0.8 };
+  for (const double* direction : { static_cast<const double*>(nullptr), turned, mirrored })
+  {
+    ShowsThePictureOfTheRayCaster(claims, direction);
+  }
   EndsRaysAtOpaqueSurfaces(claims);
   CastsFewerRaysWhileTheCameraMoves(claims);
   RefusesAStretchedVolume(claims);

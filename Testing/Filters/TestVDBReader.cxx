@@ -375,6 +375,19 @@ void AslantGridsAreResampled(test::Claims& claims)
     claims.Near(worst, 0.0, 1e-5, "distance of a resampled value from the linear one");
     claims.Near(filled * std::pow(image->GetSpacing()[0], 3) / (960.0 * transform->voxelVolume()), 1.0, 0.03,
       "volume of what is filled");
+    if (transform == aslant)
+    {
+      reader->ResampleOff();
+      vtkNew<vtkParticipatingMedium> medium;
+      test::Errors ofMedium(medium);
+      medium->SetInputConnection(reader->GetOutputPort());
+      medium->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "linear");
+      medium->Update();
+      const double* const direction = image->GetDirectionMatrix()->GetData();
+      claims.That(ofMedium.None() && !image->GetDirectionMatrix()->IsIdentity() &&
+          std::equal(direction, direction + 9, medium->GetOutput()->GetDirectionMatrix()->GetData()),
+        "what is not resampled is a medium in its own axes");
+    }
   }
 }
 

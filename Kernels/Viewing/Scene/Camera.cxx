@@ -72,7 +72,8 @@ std::array<std::array<double, 3>, 3> Axes(const Camera& camera)
     throw InvalidInput("The camera's view up is along its view; choose one across it.");
   }
   const glm::dvec3 unitRight = glm::normalize(right);
-  return { Array(unitRight), Array(glm::cross(unitRight, forward)), Array(forward) };
+  const glm::dvec3 upwards = glm::cross(unitRight, forward);
+  return { Array(camera.mirrored ? -unitRight : unitRight), Array(upwards), Array(forward) };
 }
 
 std::array<double, 3> ThreeQuarterView(const std::array<double, 3>& viewUp)

@@ -19,6 +19,7 @@ struct Camera
   /// From the focal point to the picture's middle, to the right and upwards, in halves of its width and height: of a
   /// part of a larger picture, or one for the left or right eye.
   std::array<double, 2> shift = { 0.0, 0.0 };
+  bool mirrored = false; ///< the scene is: what is to the right in the picture is to the left of it
 };
 
 /// The direction of the default view: three quarters from the front and a little from above, with the axis nearest
