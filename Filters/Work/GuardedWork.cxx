@@ -16,21 +16,14 @@
 #include "Work/WholeInputs.h"
 
 #include "vtkAlgorithm.h"
-#include "vtkAlgorithmOutput.h"
 #include "vtkCommunicator.h"
-#include "vtkCompositeDataIterator.h"
-#include "vtkCompositeDataSet.h"
 #include "vtkDataObject.h"
-#include "vtkDataSetAttributes.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkMultiProcessController.h"
-#include "vtkSmartPointer.h"
 #include "vtkVersionMacros.h"
-
-#include <algorithm>
 
 namespace tyndall
 {
@@ -82,64 +75,6 @@ void WarnOfDevices(vtkAlgorithm* filter)
   for (const std::string& warning : Device::TakeWarnings())
   {
     vtkWarningWithObjectMacro(filter, << warning);
-  }
-}
-}
-
-namespace
-{
-/// Whether these are the same data: the pipeline hands on a copy of each block that has its arrays.
-bool HaveSameArrays(vtkDataObject* a, vtkDataObject* b)
-{
-  int shared = 0;
-  for (const int kind : { vtkDataObject::POINT, vtkDataObject::CELL })
-  {
-    vtkDataSetAttributes* const ofA = a ? a->GetAttributes(kind) : nullptr;
-    vtkDataSetAttributes* const ofB = b ? b->GetAttributes(kind) : nullptr;
-    for (int i = 0; ofA && ofB && i < std::min(ofA->GetNumberOfArrays(), ofB->GetNumberOfArrays()); ++i)
-    {
-      shared += ofA->GetAbstractArray(i) == ofB->GetAbstractArray(i) ? 1 : 0;
-    }
-  }
-  return shared > 0;
-}
-
-/// The number of blocks of an input where the pipeline hands them on one after the other and this is the first; else 0.
-int BlocksBegun(vtkAlgorithm* filter, vtkInformationVector** given, int port)
-{
-  vtkAlgorithmOutput* const from =
-    filter->GetNumberOfInputConnections(port) > 0 ? filter->GetInputConnection(port, 0) : nullptr;
-  auto* const blocks =
-    from ? vtkCompositeDataSet::SafeDownCast(from->GetProducer()->GetOutputDataObject(from->GetIndex())) : nullptr;
-  if (!blocks)
-  {
-    return 0;
-  }
-  const auto each = vtkSmartPointer<vtkCompositeDataIterator>::Take(blocks->NewIterator());
-  int count = 0;
-  vtkDataObject* first = nullptr;
-  for (each->InitTraversal(); !each->IsDoneWithTraversal(); each->GoToNextItem())
-  {
-    first = count == 0 ? each->GetCurrentDataObject() : first;
-    ++count;
-  }
-  return HaveSameArrays(first, vtkDataObject::GetData(given[port], 0)) ? count : 0;
-}
-
-/// Of filters for which the voxels of one block depend on those of another.
-void WarnOfBlocks(vtkAlgorithm* filter, vtkInformationVector** given)
-{
-  const bool local = filter->IsA("vtkParticipatingMedium") || filter->IsA("vtkRefractionOctree");
-  for (int port = 0; !local && port < filter->GetNumberOfInputPorts(); ++port)
-  {
-    if (const int blocks = BlocksBegun(filter, given, port); blocks > 1)
-    {
-      vtkWarningWithObjectMacro(
-        filter, << "Input " << port << " has " << blocks
-                << " blocks, which are worked on one after the other, each alone: no light goes "
-                   "from one to another. Where they are one medium, make one image of them, for "
-                   "example with ResampleToImage.");
-    }
   }
 }
 }
@@ -311,7 +246,6 @@ int GuardedInPieces(vtkAlgorithm* filter, vtkInformation* request, vtkInformatio
     work(ranks, inputs);
     TellAveraged(filter, outputs);
     inputs.PutIntoScene(outputs);
-    WarnOfBlocks(filter, given);
   });
 }
 

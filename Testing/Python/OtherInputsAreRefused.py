@@ -239,14 +239,6 @@ for make, parts in ((blocks, 2), (collection, 2), (partitions, 1)):
     octree.SetInputDataObject(make(image))
     assert messages(octree) == ""
     assert octree.GetOutputDataObject(0).GetNumberOfCells() == parts * count**3, make
-# Where light would have to go from one to another, that is warned of, once.
-solver = tyndall.vtkLightPropagationMaps()
-for make, parts in ((blocks, 2), (collection, 2), (partitions, 1)):
-    solver.SetInputDataObject(make(image))
-    said = messages(solver)
-    assert said.count("Warning") == (1 if parts > 1 else 0) and "ERROR" not in said, (make, said)
-    assert parts == 1 or "has 2 blocks" in said, said
-    assert solver.GetOutputDataObject(0).GetNumberOfCells() == parts * count**3, make
 writer = with_valid_input("vtkVDBWriter")
 refuses(writer, 0, "vtkPartitionedDataSetCollection", collection(image))
 assert messages(writer) == "" and os.path.exists("refused.vdb")

@@ -529,7 +529,7 @@ static float cosine_at(const LampInfo* lamp, const BeamRow* row, float2 tangent)
 #endif
 
 #if CONE
-#define SLICES 256 // of a beam that the border of the cone crosses
+#define SLICES 512 // of a beam that the border of the cone crosses
 
 // Rays d = (ahead, u + x, v) of a pyramid, v fixed; in the cone are those with a x^2 + 2 b x + c <= 0 and
 // along + x slope >= 0 (numerics.md, Eq. (33a)).
