@@ -12,8 +12,8 @@
 class vtkSMProxy;
 
 /// What becomes of filters that the user stopped, in ParaView's window: the status bar says so, Apply is there to be
-/// pressed while such a filter is on the panel, and pressed runs it again although nothing was changed. Until it has run
-/// to its end.
+/// pressed while such a filter is on the panel, and pressed runs it again although nothing was changed. Until it has
+/// run to its end.
 class StoppedFilters
 {
 public:

@@ -34,8 +34,8 @@ void Check(const ToneMapping& settings);
 double AutomaticExposure(const std::vector<float>& radiance, const std::vector<float>& alpha);
 constexpr float ThinnestPart = 0.2f;
 
-/// How much of a picture, in 16ths of pixels, has which luminance: 256 classes for every doubling. Of parts of a picture
-/// they add up.
+/// How much of a picture, in 16ths of pixels, has which luminance: 256 classes for every doubling. Of parts of a
+/// picture they add up.
 std::vector<int> LuminanceCounts(const std::vector<float>& radiance, const std::vector<float>& alpha);
 
 /// The same exposure, of all that was counted.

@@ -41,8 +41,8 @@ TEST_F(ChoicesInBlocks, TakeAsManyDirectionsOfUnscatteredLightAsTheWhole)
   }
 }
 
-/// g by voxel that is the same in all voxels of one block that scatter and varies in another, or is the same in all blocks
-/// or all but one. In voxels that do not scatter it is any number.
+/// g by voxel that is the same in all voxels of one block that scatter and varies in another, or is the same in all
+/// blocks or all but one. In voxels that do not scatter it is any number.
 TEST_F(ChoicesInBlocks, AgreeOnWhetherTheMeanCosineVaries)
 {
   const auto inBlock = [](int x, float lower, float upper) { return x < 4 ? lower : x < 8 ? 0.5f : upper; };

@@ -22,8 +22,8 @@ void Check(const Medium& medium, const Illumination& illumination, const Propaga
 
 /// The same of a medium that is one of several blocks, but for what only all of them tell: whether light ends.
 void CheckBlock(const Medium& medium, const Illumination& illumination, const PropagationSettings& settings);
-/// Whether light ends in a medium, and whether it begins there: is emitted, or scattered of lamps within or of light that
-/// is given. By channel, in any voxel.
+/// Whether light ends in a medium, and whether it begins there: is emitted, or scattered of lamps within or of light
+/// that is given. By channel, in any voxel.
 struct LightEnds
 {
   std::array<bool, 3> absorbs = {}, begins = {};

@@ -32,8 +32,8 @@ public:
   static bool AreThick(const Voxels& voxels);
   /// Whether the source is to be by octant, some voxels are thick, none is opaque, and scattering is isotropic. Of an
   /// automatic source: where a quarter of the voxels that scatter are thick or more, and the orders are as many as the
-  /// tolerance asks for. Whatever shines: lights add up. What of exact rays of bright emission or of given light is first
-  /// scattered shines evenly out of a voxel, and all later orders by octant.
+  /// tolerance asks for. Whatever shines: lights add up. What of exact rays of bright emission or of given light is
+  /// first scattered shines evenly out of a voxel, and all later orders by octant.
   static bool Matter(const PropagationProblem& problem);
 
   /// Whether it may matter, whatever the voxels are: to be asked before they are counted.
