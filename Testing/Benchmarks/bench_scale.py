@@ -53,7 +53,7 @@ def work(folder, grid, orders, repeats, decomposition):
     rank = servermanager.vtkProcessModule.GetProcessModule().GetPartitionId()
     before = peak_bytes()
     low = -(grid // 2)
-    wavelet = simple.Wavelet(WholeExtent=[low, low + grid] * 3)
+    wavelet = simple.Wavelet(WholeExtent=[low, low + grid - 1] * 3)  # a voxel around each point
     medium = ParticipatingMedium(Input=wavelet, MinimumDensity=37, MaximumDensity=277, ExtinctionScale=20.0 / grid)
     light = LightPropagationMaps(Input=medium, Lights=LightRig(), SkyColor=[0.1, 0.15, 0.2], MaximumOrders=orders,
                                  Decomposition=WORDS[decomposition])
