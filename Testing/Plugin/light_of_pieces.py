@@ -800,7 +800,7 @@ def blocks_ignored():
     add_density(piece, index, "ior")
     medium = ParticipatingMedium(Input=source_of(piece), DensityArray=["CELLS", "density"])
     for solver in (LightPropagationMaps, DiscreteOrdinates):
-        light = solver(Input=medium, SkyColor=[1, 1, 1], DirectionsPerFace=4, Decomposition="Blocks")
+        light = solver(Input=medium, SkyColor=[1, 1, 1], DirectionsPerFace=9, Decomposition="Blocks")
         warnings = []
         light.GetClientSideObject().AddObserver("WarningEvent", lambda caller, event: warnings.append(event))
         light.UpdatePipeline()
