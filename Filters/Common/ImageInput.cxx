@@ -294,9 +294,11 @@ void RequireWholeArrays(vtkAlgorithm* filter)
     for (int i = 0; i < filter->GetNumberOfInputConnections(port); ++i)
     {
       vtkDataObject* const input = filter->GetInputDataObject(port, i);
+      auto* const image = vtkImageData::SafeDownCast(input);
+      const bool isCutToNothing = image && image->GetNumberOfPoints() == 0; // by VTK, which may leave old arrays
       for (const auto& [kind, elements] : kinds)
       {
-        if (vtkDataSetAttributes* const arrays = input ? input->GetAttributes(kind) : nullptr)
+        if (vtkDataSetAttributes* const arrays = input && !isCutToNothing ? input->GetAttributes(kind) : nullptr)
         {
           RequireAsLong(arrays, input->GetNumberOfElements(kind), elements,
             "input " + std::to_string(port) + ", " + input->GetClassName());

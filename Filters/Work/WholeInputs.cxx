@@ -369,28 +369,6 @@ void RequireAll(vtkAlgorithm* filter, vtkInformationVector** given)
   }
 }
 
-/// An array that is shorter or longer than its cells or points is not cut along with them. Of a piece that VTK has cut
-/// to nothing old arrays may be left.
-void CheckLengths(vtkDataObject* data, const std::string& named)
-{
-  auto* const image = vtkImageData::SafeDownCast(data);
-  const auto check = [&](vtkDataSetAttributes* attributes, vtkIdType values, const char* what) {
-    for (int i = 0; i < attributes->GetNumberOfArrays(); ++i)
-    {
-      vtkAbstractArray* const array = attributes->GetAbstractArray(i);
-      Require(array->GetNumberOfTuples() == values,
-        named + " has an array '" + (array->GetName() ? array->GetName() : "") + "' of " +
-          std::to_string(array->GetNumberOfTuples()) + " values where there are " + std::to_string(values) + " " +
-          what + ". Give it a value for each.");
-    }
-  };
-  if (image && image->GetNumberOfPoints() > 0)
-  {
-    check(image->GetCellData(), image->GetNumberOfCells(), "cells");
-    check(image->GetPointData(), image->GetNumberOfPoints(), "points");
-  }
-}
-
 /// The least extent of the points that are no duplicates, by flags of points or else of cells.
 Extent OwnPointsOf(vtkImageData* image)
 {
@@ -489,7 +467,6 @@ RankGlance GlanceAtAll(vtkAlgorithm* filter, vtkInformationVector** given, vtkIn
       vtkInformation* const connection = given[port]->GetInformationObject(i);
       rank.inputs.push_back(GlanceAt(connection));
       vtkDataObject* const data = vtkDataObject::GetData(connection);
-      CheckLengths(data, Named(port));
       rank.inputs.back().key = port == inShares ? ContentKeyButFacts(data) : ContentKey(data);
       auto* const image = vtkImageData::SafeDownCast(data);
       if (rank.inputs.back().isThere && AreAroundPoints(filter, port, image))
