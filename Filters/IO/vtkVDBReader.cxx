@@ -367,16 +367,6 @@ namespace
 {
 using Pipeline = vtkStreamingDemandDrivenPipeline;
 
-bool IsIn(const std::array<int, 6>& part, const int* whole)
-{
-  bool in = true;
-  for (int i = 0; i < 6; ++i)
-  {
-    in = in && (i % 2 == 0 ? part[i] >= whole[i] : part[i] <= whole[i]);
-  }
-  return in;
-}
-
 /// What an output is asked for, which goes when its extent is told anew.
 struct Request
 {
@@ -400,7 +390,7 @@ struct Request
     output->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), this->pieces);
     output->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), this->ghostLevels);
     const int* const whole = output->Get(Pipeline::WHOLE_EXTENT());
-    if (this->isPart && whole && IsIn(this->extent, whole))
+    if (this->isPart && whole && tyndall::Covers(whole, this->extent.data()))
     {
       output->Set(Pipeline::UPDATE_EXTENT(), this->extent.data(), 6);
     }
@@ -438,7 +428,7 @@ public:
       std::array<int, 6> asked;
       output->Get(UPDATE_EXTENT(), asked.data());
       const bool isEmpty = asked[0] > asked[1] || asked[2] > asked[3] || asked[4] > asked[5];
-      if (!isEmpty && (tyndall::AsksForAll(output) || !IsIn(asked, output->Get(WHOLE_EXTENT()))))
+      if (!isEmpty && (tyndall::AsksForAll(output) || !tyndall::Covers(output->Get(WHOLE_EXTENT()), asked.data())))
       {
         std::array<int, 6> whole;
         output->Get(WHOLE_EXTENT(), whole.data());

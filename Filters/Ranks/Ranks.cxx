@@ -198,13 +198,10 @@ void AskTogether(vtkInformation* request, vtkInformationVector* outputs, vtkInfo
     // An output with voxels around points, or with axes in another order, is asked for more than its input has.
     const int* const whole = input->Get(Pipeline::WHOLE_EXTENT());
     const int* const asked = input->Get(Pipeline::UPDATE_EXTENT());
-    for (int bound = 0; whole && asked && bound < 6; ++bound)
+    if (whole && asked && !Covers(whole, asked))
     {
-      if (bound % 2 == 0 ? asked[bound] < whole[bound] : asked[bound] > whole[bound])
-      {
-        const std::vector<int> within(whole, whole + 6);
-        input->Set(Pipeline::UPDATE_EXTENT(), within.data(), 6);
-      }
+      const std::vector<int> within(whole, whole + 6);
+      input->Set(Pipeline::UPDATE_EXTENT(), within.data(), 6);
     }
   }
 }

@@ -132,17 +132,6 @@ struct Part
   AskedPiece piece; ///< empty: nothing, or where it is not divided all that there is
 };
 
-/// Whether one extent has all points of another.
-bool Covers(const Extent& extent, const Extent& other)
-{
-  bool covers = true;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    covers = covers && extent[2 * axis] <= other[2 * axis] && extent[2 * axis + 1] >= other[2 * axis + 1];
-  }
-  return covers;
-}
-
 /// @param image  extent of what there is. Whoever asks for all that was told of asks for all of this: a file of another
 ///               time, or voxels around points that were not known to be. So do those who ask for pieces of all where
 ///               this is more (where it is not, it may be the piece alone that was made).
@@ -159,7 +148,7 @@ Part PartAskedFor(vtkInformation* information, const Extent& image)
   }
   Extent update;
   information->Get(Pipeline::UPDATE_EXTENT(), update.data());
-  const bool all = AsksForAll(information) && (!part.divided || Covers(image, update));
+  const bool all = AsksForAll(information) && (!part.divided || Covers(image.data(), update.data()));
   part.piece = AskedPieceOf(information, all ? image : update);
   return part;
 }
@@ -295,6 +284,16 @@ std::array<int, 6> ExtentAskedFor(vtkInformation* information, const std::array<
     extent[2 * axis + 1] = std::min(part.piece.withGhosts[2 * axis + 1], image[2 * axis + 1]);
   }
   return extent;
+}
+
+bool Covers(const int* extent, const int* other)
+{
+  bool covers = true;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    covers = covers && extent[2 * axis] <= other[2 * axis] && extent[2 * axis + 1] >= other[2 * axis + 1];
+  }
+  return covers;
 }
 
 bool AsksForAll(vtkInformation* information)

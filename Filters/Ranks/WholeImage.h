@@ -61,6 +61,9 @@ std::array<int, 6> PartOfExtent(const std::array<int, 6>& whole, int piece, int 
 /// Crops an image to a piece of it, and marks its ghost cells (vtkGhostType); empties it where the piece is.
 void KeepPiece(const AskedPiece& piece, vtkImageData* output);
 
+/// Whether one extent has all points of another; six numbers each.
+bool Covers(const int* extent, const int* other);
+
 /// Whether the update extent of an output is all of it: the whole extent, or one that was told when its data were made
 /// at another time. Whoever asks may not know of the new one: VTK tells of extents before it says of what time data are
 /// wanted.
