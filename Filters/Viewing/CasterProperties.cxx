@@ -41,30 +41,33 @@ ViewSettings SettingsOf(vtkMediumRayCaster* filter, double exposure)
   return AtQuality(static_cast<Quality>(filter->GetQuality()), settings);
 }
 
-Camera InOwnAxes(const Camera& inScene, const OwnAxes& axes)
+namespace
 {
-  Camera camera = inScene;
+template <typename Place, typename Way>
+Camera Turned(Camera camera, const OwnAxes& axes, const Place& place, const Way& way)
+{
   if (!axes.AreThoseOfScene())
   {
-    camera.position = axes.Place(inScene.position);
-    camera.focalPoint = axes.Place(inScene.focalPoint);
-    camera.viewUp = axes.Way(inScene.viewUp);
-    camera.mirrored = inScene.mirrored != axes.AreMirrored();
+    camera.position = place(camera.position);
+    camera.focalPoint = place(camera.focalPoint);
+    camera.viewUp = way(camera.viewUp);
+    camera.mirrored = camera.mirrored != axes.AreMirrored();
   }
   return camera;
+}
+}
+
+Camera InOwnAxes(const Camera& inScene, const OwnAxes& axes)
+{
+  return Turned(
+    inScene, axes, [&](const auto& at) { return axes.Place(at); }, [&](const auto& to) { return axes.Way(to); });
 }
 
 Camera InScene(const Camera& camera, const OwnAxes& axes)
 {
-  Camera inScene = camera;
-  if (!axes.AreThoseOfScene())
-  {
-    inScene.position = axes.PlaceInScene(camera.position);
-    inScene.focalPoint = axes.PlaceInScene(camera.focalPoint);
-    inScene.viewUp = axes.WayInScene(camera.viewUp);
-    inScene.mirrored = camera.mirrored != axes.AreMirrored();
-  }
-  return inScene;
+  return Turned(
+    camera, axes, [&](const auto& at) { return axes.PlaceInScene(at); },
+    [&](const auto& to) { return axes.WayInScene(to); });
 }
 
 Camera CameraOf(vtkMediumRayCaster* filter, const Grid& grid)
