@@ -105,7 +105,7 @@ void PictureOverlay::Draw(
   quad.Program->SetUniformi("picture", texture->GetTextureUnit());
   quad.Render();
   texture->Deactivate();
-  state->vtkglDepthFunc(GlLessOrEqual); // as VTK has it
+  state->vtkglDepthFunc(GlLessOrEqual); // VTK's default, which it expects after us
 }
 
 void PictureOverlay::Release(vtkWindow* window)

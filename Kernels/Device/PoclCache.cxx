@@ -283,7 +283,7 @@ std::uint64_t SumOf(const std::string& bytes) // FNV-1a
   return sum;
 }
 
-/// Notes of what is in a folder, by paths from there on, kept in a file there.
+/// Checksums of the files in a folder, by relative path, stored in a file of that folder.
 class Notes
 {
 public:

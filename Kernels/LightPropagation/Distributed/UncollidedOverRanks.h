@@ -35,8 +35,8 @@ public:
   /// @return whether anything does
   bool AddStraightOn(const Buffer<float>& source) const;
 
-  /// Adds the light of lamps, then of what comes in and what empty voxels emit along directions of their own, and what
-  /// is given, to the block's arrays; what parallel beams are first scattered, to its source. All ranks call it.
+  /// Adds uncollided light to the block's arrays: of lamps, then of the boundary and of emitting empty voxels, each
+  /// along its own directions, then what is given. First scattering of parallel beams goes to the source. Collective.
   /// @param shown  what light of lamps is first scattered is added to it; null: not wanted
   /// @param atFaces  of thick voxels, which take what it does at their faces; null, on all ranks: not wanted
   /// @return of all ranks

@@ -39,7 +39,7 @@ public:
   static std::unique_ptr<const SweptDirections> DirectionsFor(const Grid& whole, const PropagationSettings& settings);
 
   /// @param along  must stay
-  /// @param emission  of empty voxels, W / (length^3 sr), as Planar has it
+  /// @param emission  of empty voxels, W / (length^3 sr), in the layout that Planar makes
   VacuumEmission(const SweptDirections& along, std::vector<float> emission);
 
   SweepTally AddTo(const UncollidedVolume& volume, const Monitor& monitor) const override;
