@@ -1,6 +1,7 @@
 #include "LightPropagation/Sweep/AxisSweep.h"
 
 #include "Device/Defines.h"
+#include "Device/ExactValues.h"
 #include "Device/GroupSize.h"
 #include "LightPropagation/Sweep/Slices/SliceStream.h"
 #include "LightPropagation/Sweep/SweepBorder.h"
@@ -73,11 +74,12 @@ struct AxisSweep::Implementation
   }
   void Launch(const SweepVolume& volume, const Entry& entry, const Buffer<CrossingInfo>& crossings,
     const Schedule& schedule, const Monitor& monitor);
+  cl::Kernel MapsKernel(const char* name);
   cl::Kernel SweepKernel(const Deposit& to, bool byCells);
   FaceInfo Faces(std::size_t firstChannel, const Deposit& to) const;
   void EnterByCells(const SweepVolume& volume);
-  const Buffer<float>& CellsOf(const Deposit& to);
-  void LeaveSideways(const Deposit& to);
+  const cl::Buffer& CellsOf(const Deposit& to);
+  void TakeFaceCells(const Deposit& to);
   void LeaveByCells(const SweepVolume& volume);
 
   /// As SweepBorder has them.
@@ -97,8 +99,9 @@ struct AxisSweep::Implementation
   Buffer<float> OwnMaps;           ///< of a periodic axis
   Buffer<float> Outside, Radiance; ///< as SweepBorder has them
   Buffer<float> Sideways;          ///< power that left: [plane][unit][-u, +u, -v, +v][channel]
-  Buffer<float> FacesOfUnits;      ///< power that left through cells aside, as Deposit::faceOut: [unit][channel][cell]
-  Buffer<float> Sums;              ///< power in the maps: [way][bundle][row][channel]
+  ExactValues FaceCells;           ///< power that left through cells, as Deposit::faceOut: [unit][channel][cell]
+  bool HasFaceCells = false;
+  Buffer<float> Sums; ///< power in the maps: [way][bundle][row][channel]
   Buffer<BundleInfo> Bundles;
   Buffer<BundleMaps> MapPlaces;
   Buffer<UnitInfo> Units;
@@ -187,7 +190,7 @@ void AxisSweep::Implementation::DarkenSides()
 void AxisSweep::Implementation::DarkenBeside()
 {
   const SweepPlan& plan = this->Plan;
-  cl::Kernel kernel = this->TheDevice.Kernel("darken_beside", kernel_source::SweepMaps);
+  cl::Kernel kernel = this->MapsKernel("darken_beside");
   With(kernel, this->OwnMaps, cl_ulong(plan.mapsEachWay), this->MapPlaces, cl_int(plan.channels), cl_int(plan.row),
     cl_int(plan.vector), plan.plane.sizeU, plan.plane.width);
   this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange,
@@ -251,7 +254,7 @@ void AxisSweep::Implementation::Launch(const SweepVolume& volume, const Entry& e
   info.axis = plan.axes.axis;
   info.planes = plan.plane;
   info.faces = this->Faces(volume.faceFirst, volume.deposit);
-  const Buffer<float>& faceOut = this->CellsOf(volume.deposit);
+  const cl::Buffer& faceOut = this->CellsOf(volume.deposit);
   const Buffer<float>& faceIn = volume.faceIn ? *volume.faceIn : *volume.deposit.path;
   const Buffer<float>& octantSource = volume.octantSource ? *volume.octantSource : *volume.deposit.path;
   info.moments = plan.moments;
@@ -320,7 +323,7 @@ void AxisSweep::Implementation::EnterByCells(const SweepVolume& volume)
   }
   const Buffer<float> powers(this->TheDevice, power, "the bundles of rays");
   const int low = 2 * plan.axes.axis;
-  cl::Kernel kernel = this->TheDevice.Kernel("enter_by_cells", kernel_source::SweepMaps);
+  cl::Kernel kernel = this->MapsKernel("enter_by_cells");
   With(kernel, this->Maps(), cl_ulong(plan.mapsEachWay), this->MapPlaces, powers, cl_int(plan.channels),
     cl_int(plan.row), cl_int(plan.vector), plan.plane.sizeU, *volume.faceIn,
     cl_ulong(volume.faceFirst + LayoutOfFace(plan.grid, low).first),
@@ -330,27 +333,29 @@ void AxisSweep::Implementation::EnterByCells(const SweepVolume& volume)
   this->TheDevice.Finish(); // the powers go
 }
 
-/// Where sideways moves leave light: units that go side by side would meet in cells that rays share.
-const Buffer<float>& AxisSweep::Implementation::CellsOf(const Deposit& to)
+/// Where rays leave light: ten thousands in a cell, too many for a sum in floats. Units that go side by side would meet
+/// in cells that rays share.
+const cl::Buffer& AxisSweep::Implementation::CellsOf(const Deposit& to)
 {
-  if (!to.faceOut || !to.spreadsAside)
+  if (!to.faceOut)
   {
-    return to.faceOut ? *to.faceOut : *to.path;
+    return to.path->Handle();
   }
-  if (this->FacesOfUnits.Size() == 0)
+  if (!this->HasFaceCells)
   {
-    this->FacesOfUnits =
-      Buffer<float>(this->TheDevice, this->Plan.units.size() * to.faceOut->Size(), "the power that leaves by cells");
-    this->FacesOfUnits.Fill(0.0f);
+    const std::size_t units = to.spreadsAside ? this->Plan.units.size() : 1;
+    this->FaceCells = ExactValues(this->TheDevice, units * to.faceOut->Size(), "the power that leaves by cells");
+    this->HasFaceCells = true;
   }
-  return this->FacesOfUnits;
+  return this->FaceCells.Handle();
 }
 
-/// From the units' own cells.
-void AxisSweep::Implementation::LeaveSideways(const Deposit& to)
+/// From the sweep's own cells.
+void AxisSweep::Implementation::TakeFaceCells(const Deposit& to)
 {
-  cl::Kernel kernel = this->TheDevice.Kernel("take_faces_of_units", kernel_source::SweepMaps);
-  With(kernel, this->FacesOfUnits, cl_int(this->Plan.units.size()), cl_ulong(to.faceOut->Size()), *to.faceOut);
+  cl::Kernel kernel = this->MapsKernel("take_face_cells");
+  const std::size_t units = to.spreadsAside ? this->Plan.units.size() : 1;
+  With(kernel, this->FaceCells.Handle(), cl_int(units), cl_ulong(to.faceOut->Size()), *to.faceOut);
   this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(to.faceOut->Size()));
 }
 
@@ -359,19 +364,24 @@ void AxisSweep::Implementation::LeaveByCells(const SweepVolume& volume)
 {
   const SweepPlan& plan = this->Plan;
   const int low = 2 * plan.axes.axis;
-  cl::Kernel kernel = this->TheDevice.Kernel("leave_by_cells", kernel_source::SweepMaps);
+  cl::Kernel kernel = this->MapsKernel("leave_by_cells");
   With(kernel, this->Maps(), cl_ulong(plan.mapsEachWay), this->MapPlaces, cl_int(plan.bundles.size()),
-    cl_int(plan.channels), cl_int(plan.row), cl_int(plan.vector), plan.plane.sizeU, *volume.deposit.faceOut,
+    cl_int(plan.channels), cl_int(plan.row), cl_int(plan.vector), plan.plane.sizeU, this->CellsOf(volume.deposit),
     cl_ulong(volume.faceFirst + LayoutOfFace(plan.grid, low + 1).first),
     cl_ulong(volume.faceFirst + LayoutOfFace(plan.grid, low).first), cl_ulong(BoxFaceCellCount(plan.grid)));
   this->TheDevice.Queue().enqueueNDRangeKernel(
     kernel, cl::NullRange, cl::NDRange(plan.plane.sizeV, 2), GroupOfLargeItems(this->TheDevice, 2));
 }
 
+cl::Kernel AxisSweep::Implementation::MapsKernel(const char* name)
+{
+  return this->TheDevice.Kernel(name, kernel_source::SweepMaps, ExactOption(this->TheDevice));
+}
+
 cl::Kernel AxisSweep::Implementation::SweepKernel(const Deposit& to, bool byCells)
 {
   const SweepPlan& plan = this->Plan;
-  const std::string options = DefinesOf(plan) + Define("NET_FLUX", to.flux != nullptr) +
+  const std::string options = DefinesOf(plan) + ExactOption(this->TheDevice) + Define("NET_FLUX", to.flux != nullptr) +
     Define("FACE_OUT", to.faceOut != nullptr) + Define("FACE_SPREAD", to.spreadsAside) + Define("FACE_IN", byCells) +
     Define("STREAMED", this->Stream != nullptr) + Define("PERIODIC_U", plan.periodic[plan.axes.u]) +
     Define("PERIODIC_V", plan.periodic[plan.axes.v]);
@@ -412,7 +422,7 @@ Rgb AxisSweep::Implementation::PowerOnTheWay()
 void AxisSweep::Implementation::SumMaps()
 {
   const SweepPlan& plan = this->Plan;
-  cl::Kernel kernel = this->TheDevice.Kernel("map_power", kernel_source::SweepMaps);
+  cl::Kernel kernel = this->MapsKernel("map_power");
   With(kernel, this->Maps(), cl_ulong(plan.mapsEachWay), this->MapPlaces, plan.plane.sizeV, cl_int(plan.channels),
     cl_int(plan.row), cl_int(plan.vector), plan.plane.sizeU, this->Sums);
   this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange,
@@ -487,9 +497,9 @@ void AxisSweep::Start(const SweepVolume& volume, const SweepBoundary& boundary, 
       self.LeaveByCells(volume);
     }
   }
-  if (volume.deposit.faceOut && volume.deposit.spreadsAside)
+  if (volume.deposit.faceOut)
   {
-    self.LeaveSideways(volume.deposit);
+    self.TakeFaceCells(volume.deposit);
   }
 }
 

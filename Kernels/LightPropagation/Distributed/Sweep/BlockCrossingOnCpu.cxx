@@ -1,6 +1,7 @@
 #include "LightPropagation/Distributed/Sweep/BlockCrossingOnCpu.h"
 
 #include "Device/Defines.h"
+#include "Device/ExactValues.h"
 #include "LightPropagation/Sweep/SweepDefines.h"
 #include "TyndallKernelSources.h"
 
@@ -81,9 +82,9 @@ void BlockCrossingOnCpu::WriteBeyond(const std::vector<cl_float4>& beyond)
 cl::Kernel BlockCrossingOnCpu::Kernel()
 {
   const SweepPlan& plan = this->Plan;
-  const std::string options = DefinesOf(plan) + Define("SIDES", 1) + Define("STREAMED", 0) +
-    Define("NET_FLUX", plan.netFlux) + Define("FACE_OUT", 0) + Define("FACE_SPREAD", 0) + Define("FACE_IN", 0) +
-    Define("PERIODIC_U", 0) + Define("PERIODIC_V", 0);
+  const std::string options = DefinesOf(plan) + ExactOption(this->TheDevice) + Define("SIDES", 1) +
+    Define("STREAMED", 0) + Define("NET_FLUX", plan.netFlux) + Define("FACE_OUT", 0) + Define("FACE_SPREAD", 0) +
+    Define("FACE_IN", 0) + Define("PERIODIC_U", 0) + Define("PERIODIC_V", 0);
   return this->TheDevice.Kernel("sweep", kernel_source::Sweep, options);
 }
 

@@ -312,8 +312,8 @@ static void clear_tallies(float (*escaped)[4][CHANNELS], float (*rounding)[4][CH
 //           anew; where STREAMED [launch][planes, slots][unit], see go_to_slot
 // tally     [plane from where rays start][unit][-u, +u, -v, +v][channel] W that left
 // octants   see SweepRequest::octantSource
-// face_out, face_in  see Deposit.h, SweepOperator.h; where FACE_OUT, FACE_IN; face_out [unit][channel][cell] where
-//           FACE_SPREAD
+// face_out, face_in  see Deposit.h, SweepOperator.h; where FACE_OUT, FACE_IN; face_out is the sweep's own, and
+//           [unit][channel][cell] where FACE_SPREAD
 // function_places  see SweepPlan::FunctionPlaces
 // sides_in, sides_out  [plane from the box's first on][ray], see SweepSides.cl; outer_sides: bit i, of light through
 //           its side i, that it leaves the whole grid; where SIDES
@@ -322,7 +322,7 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
   __global float* currents, __global float* maps, const __global float* outside, const __global float* radiance,
   __global float* scratch, const __global UnitInfo* units, const __global BundleInfo* bundles,
   const __global float* coefficients, const __global CrossingInfo* crossings, const __global OwnLightInfo* own,
-  const __global int2* schedule, __global float* tally, __global float* face_out, const __global float* face_in,
+  const __global int2* schedule, __global float* tally, __global exact* face_out, const __global float* face_in,
   const __global float* octants, const __global int* function_places SIDES_ARGUMENTS)
 {
   const int u = get_global_id(0);

@@ -48,7 +48,7 @@ static face_planes planes_of_ray(const sweep_state* state, float planes)
 }
 
 // Where the cells of plane p of a side begin.
-static __global float* cells_of_plane(const sweep_state* state, int side, int p, int c)
+static __global exact* cells_of_plane(const sweep_state* state, int side, int p, int c)
 {
 #if FACE_SPREAD
   p = (p + state->facePlanes) % state->facePlanes; // beyond an axis that rays go round
@@ -78,7 +78,7 @@ static void leave_all_through(
   const int along = state->faces->along[side];
   for (int p = (int)floor(of.begin); p < of.end; ++p)
   {
-    __global float* out = cells_of_plane(state, side, p, c);
+    __global exact* out = cells_of_plane(state, side, p, c);
     const float of_rays = part * part_of_plane(of, p);
     for (int x = 0; x < state->sizeU; ++x)
     {

@@ -23,6 +23,7 @@
 
 #pragma once
 #include "LightPropagation/Sweep/SweepShared.h"
+#include "Numerics/Exact.cl"
 #include "Numerics/Numerics.cl"
 
 #ifndef SIDES
@@ -128,7 +129,7 @@ typedef struct
   int firstPlane;     // of the box, in the grid
 #endif
 #if FACE_OUT
-  __global float* faceOut;   // the unit's own
+  __global exact* faceOut;   // the unit's own
   int facePlane, facePlanes; // that is being crossed; all of them
 #endif
 #if FACE_IN

@@ -1,4 +1,6 @@
-// The ends of sweeps: the power in the maps of rays.
+// The ends of sweeps: the power in the maps of rays. The host gives what Exact.cl asks for.
+
+#include "Numerics/Exact.cl"
 
 // Power of the rays in the maps, a work-item a row of a bundle and way: what leaves at the far end of an axis.
 // maps     [way][bundle][row][member][channel][row_floats], rays in the first `size_u` floats after `border`
@@ -53,10 +55,10 @@ __kernel void darken_beside(__global float* maps, ulong maps_each_way, const __g
 
 // Of open axes: rays that leave at the far end, by cells of its faces. A work-item a row of the face and way; arguments
 // as of map_power, but
-// face_out  W, [channel][cell], added to
+// face_out  W, [channel][cell], the sweep's own, added to
 // first     [way] of the face's cells, in the first channel
 __kernel void leave_by_cells(const __global float* maps, ulong maps_each_way, const __global int2* bundles,
-  int bundle_count, int channels, int row_floats, int border, int size_u, __global float* face_out, ulong first_forward,
+  int bundle_count, int channels, int row_floats, int border, int size_u, __global exact* face_out, ulong first_forward,
   ulong first_backward, ulong face_stride)
 {
   const int row = get_global_id(0);
@@ -69,7 +71,7 @@ __kernel void leave_by_cells(const __global float* maps, ulong maps_each_way, co
     for (int r = 0; r < bundles[b].x * channels; ++r)
     {
       const __global float* rays = of_bundle + r * row_floats;
-      __global float* out = face_out + r % channels * face_stride;
+      __global exact* out = face_out + r % channels * face_stride;
       for (int x = 0; x < size_u; ++x)
       {
         out[x] += rays[x];
@@ -78,18 +80,17 @@ __kernel void leave_by_cells(const __global float* maps, ulong maps_each_way, co
   }
 }
 
-// What left through cells of faces that rays pass sideways: the units' own are added up in their order, and cleared. A
-// work-item a value.
-__kernel void take_faces_of_units(__global float* units, int count, ulong values, __global float* face_out)
+// What left through cells of faces: the units' own are added up in their order, and cleared. A work-item a value.
+__kernel void take_face_cells(__global exact* units, int count, ulong values, __global float* face_out)
 {
   const ulong i = get_global_id(0);
-  float sum = 0.0f;
+  exact sum = 0.0f;
   for (int unit = 0; unit < count; ++unit)
   {
     sum += units[unit * values + i];
     units[unit * values + i] = 0.0f;
   }
-  face_out[i] += sum;
+  face_out[i] = (float)(face_out[i] + sum);
 }
 
 // The same the other way round: adds to the maps what comes in by cells of the faces where rays start.
