@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <functional>
 #include <random>
 #include <string>
@@ -161,25 +162,24 @@ TEST_F(Superposition, OfFacesAlongFinerDirections)
   }
 }
 
+/// What a glowing voxel sends to another, that one sends back: off by what a handful of directions does to the
+/// scattered light of one voxel, whose rays are not the same both ways, and, of sources by octant, by the voxels: they
+/// are nearer the truth (2.0% for 3.0%, root mean square, beside voxels of a third), but not the same both ways.
 TEST_F(Superposition, ReciprocityIsTheBetterTheMoreDirectionsThereAre)
 {
-  // What a glowing voxel sends to another, that one sends back: off by what a handful of directions does to the
-  // scattered light of one voxel, whose rays are not the same both ways. Measured, root mean square over 28 pairs:
-  // 3.3%, 1.3%, 0.55%.
   constexpr int n = 12;
   std::mt19937 random(3);
   std::vector<std::array<int, 3>> places;
-  for (int i = 0; i < 8; ++i)
+  for (int i = 0; i < 5; ++i)
   {
     const int x = static_cast<int>(random() % n), y = static_cast<int>(random() % n);
     places.push_back({ x, y, static_cast<int>(random() % n) });
   }
   const auto index = [](const std::array<int, 3>& at) { return (at[2] * n + at[1]) * n + at[0]; };
-  std::vector<double> errors;
-  for (const int directions : { 25, 400, 1600 })
-  {
+  const auto rootMeanSquare = [&](PropagationSource source, int directions) {
     Scene medium({ n, n, n });
     medium.Randomise(1.0, 1.0, 0.9, 5);
+    medium.settings.source = source;
     medium.settings.directionsPerFace = directions;
     std::vector<std::vector<float>> fluences;
     for (const std::array<int, 3>& place : places)
@@ -198,9 +198,12 @@ TEST_F(Superposition, ReciprocityIsTheBetterTheMoreDirectionsThereAre)
         squares += std::pow(2.0 * (there - back) / (there + back), 2);
       }
     }
-    errors.push_back(std::sqrt(squares / pairs));
-    this->RecordProperty(std::to_string(directions) + " directions", std::to_string(errors.back()));
-  }
-  EXPECT_LT(errors[1], 0.7 * errors[0]);
-  EXPECT_LT(errors[2], 0.7 * errors[1]);
+    return std::sqrt(squares / pairs);
+  };
+  const double few = rootMeanSquare(PropagationSource::Constant, 25);
+  const double more = rootMeanSquare(PropagationSource::Constant, 400);
+  const double octants = rootMeanSquare(PropagationSource::Automatic, 400);
+  std::printf("25 directions %g, 400 %g; by octant, 400 directions %g\n", few, more, octants);
+  EXPECT_LT(more, 0.6 * few);
+  EXPECT_LT(octants, 2e-2);
 }
