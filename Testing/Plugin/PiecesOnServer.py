@@ -43,7 +43,7 @@ def light_and_picture():
     picture = MediumRayCaster(Input=light, CameraPosition=[30, 20, 10], CameraFocalPoint=[0, 0, 0], ImageSize=[24, 18])
     light.UpdatePipeline()
     picture.UpdatePipeline()
-    fluence, facts = whole_chain.fetch(light, vtkDataObject.CELL, "fluence", [16, 14, 12])
+    fluence, facts = whole_chain.fetch(light, vtkDataObject.CELL, "fluence", [17, 15, 13])
     radiance = whole_chain.fetch(picture, vtkDataObject.POINT, "radiance", [24, 18, 1])[0]
     return fluence, vtk_to_numpy(facts.GetArray("energy_balance")).copy(), radiance
 
