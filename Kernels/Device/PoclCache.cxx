@@ -42,14 +42,14 @@ std::string Advice()
     Megabytes(PoclCache::Room) + " can be written.";
 }
 
-struct Candidate
+struct FolderChoice
 {
   std::string folder;
   std::string chosenBy; ///< what leads PoCL there
 };
 
 /// As PoCL finds it.
-Candidate FolderOfEnvironment()
+FolderChoice FolderOfEnvironment()
 {
   if (const char* said = std::getenv("POCL_CACHE_DIR"))
   {
@@ -556,7 +556,7 @@ void NoteChecksums(const std::string& folder)
 
 PoclCache ChoosePoclCache()
 {
-  const Candidate own = FolderOfEnvironment();
+  const FolderChoice own = FolderOfEnvironment();
   std::string trouble = WhyNotWritable(own.folder);
   if (trouble.empty())
   {

@@ -13,7 +13,6 @@ namespace tyndall
 {
 namespace
 {
-constexpr int Ways[18][3] = LATTICE_WAYS;
 constexpr int Width = 16;                               ///< of the vectors of LatticeStep.cl
 constexpr std::size_t Cached = std::size_t{ 48 } << 20; ///< bytes of densities that caches may hold: with more, none do
 
@@ -50,7 +49,8 @@ void Lattice::LayOut(const LatticeVoxels& voxels)
   this->TheInfo.layer = this->TheInfo.row * (this->Size[1] + 2);
   for (int i = 0; i < 18; ++i)
   {
-    this->TheInfo.offset[i] = Ways[i][0] + Ways[i][1] * this->TheInfo.row + Ways[i][2] * this->TheInfo.layer;
+    this->TheInfo.offset[i] =
+      LatticeWays[i][0] + LatticeWays[i][1] * this->TheInfo.row + LatticeWays[i][2] * this->TheInfo.layer;
   }
   const std::array<bool, 3>& periodic = this->Settings.periodic;
   this->TheInfo.periodic = periodic[0] + 2 * periodic[1] + 4 * periodic[2];

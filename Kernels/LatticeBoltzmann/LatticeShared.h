@@ -34,3 +34,10 @@ typedef struct
   ulong stride;      ///< of densities, from direction to direction
 } LatticeInfo;
 SHARED_END
+
+#ifndef __OPENCL_C_VERSION__
+namespace tyndall
+{
+inline constexpr int LatticeWays[18][3] = LATTICE_WAYS;
+}
+#endif

@@ -42,10 +42,9 @@ public:
   ClosedLines(const std::array<int, 3>& size, const std::array<bool, 3>& periodic, int pair)
     : Size(size)
   {
-    constexpr int ways[18][3] = LATTICE_WAYS;
     for (int axis = 0; axis < 3; ++axis)
     {
-      const int way = ways[2 * pair][axis];
+      const int way = LatticeWays[2 * pair][axis];
       this->Ways[axis] = way;
       this->Close = this->Close && (way == 0 || periodic[axis]);
       this->Common = way != 0 ? std::gcd(this->Common, size[axis]) : this->Common;

@@ -246,12 +246,6 @@ Environment Turned(const Environment& environment, int up, double degrees)
 
 namespace
 {
-/// Light is worked with as floats.
-bool Usable(double value)
-{
-  return value >= 0.0 && value <= std::numeric_limits<float>::max();
-}
-
 /// "1e+39; it must be ..."
 std::string Refusal(double value)
 {
@@ -267,7 +261,7 @@ void CheckLight(const Light& light, std::size_t number)
     {
       throw InvalidInput(name + " has a position or direction that is not finite.");
     }
-    if (!Usable(light.power[axis]))
+    if (!IsUsable(light.power[axis]))
     {
       throw InvalidInput(name + " has power " + Refusal(light.power[axis]));
     }
@@ -349,7 +343,7 @@ void Check(const Illumination& illumination)
   {
     for (std::size_t face = 0; face < 6; ++face)
     {
-      if (!Usable(illumination.faces[face][c]))
+      if (!IsUsable(illumination.faces[face][c]))
       {
         throw InvalidInput("FaceRadiance of face " + FaceName(face) + " is " + Refusal(illumination.faces[face][c]));
       }
@@ -360,7 +354,7 @@ void Check(const Illumination& illumination)
           "; it must be from 0 to 1: the part of what leaves through the face that comes back.");
       }
     }
-    if (!Usable(illumination.sky[c]))
+    if (!IsUsable(illumination.sky[c]))
     {
       throw InvalidInput("The sky's radiance (SkyColor) is " + Refusal(illumination.sky[c]));
     }
@@ -368,7 +362,7 @@ void Check(const Illumination& illumination)
   const Environment& environment = illumination.environment;
   for (std::size_t i = 0; i < environment.radiance.size(); ++i)
   {
-    if (!Usable(environment.radiance[i]))
+    if (!IsUsable(environment.radiance[i]))
     {
       throw InvalidInput("The environment's radiance is " + Text("%g", environment.radiance[i]) + " in pixel (" +
         std::to_string(i / 3 % environment.width) + ", " + std::to_string(i / 3 / environment.width) +

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 
 namespace tyndall
 {
@@ -20,5 +21,11 @@ inline Rgb Times(const Rgb& rgb, double factor)
 inline bool IsBlack(const Rgb& rgb)
 {
   return rgb == Rgb{};
+}
+
+/// Whether it can be power or radiance: light is worked with as floats.
+inline bool IsUsable(double value)
+{
+  return value >= 0.0 && value <= std::numeric_limits<float>::max();
 }
 }

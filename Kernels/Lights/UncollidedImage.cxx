@@ -14,18 +14,13 @@ namespace
 {
 constexpr double LongestMean = 1.0 + 1e-3; ///< of a mean of unit vectors in floats
 
-bool Usable(double value)
-{
-  return value >= 0.0 && value <= std::numeric_limits<float>::max();
-}
-
 void CheckFluence(const UncollidedImage& image, const Grid& grid)
 {
   CheckComponents(image.fluence, "fluence_direct");
   const std::size_t components = static_cast<std::size_t>(image.fluence.components);
   for (std::size_t i = 0; i < grid.VoxelCount() * components; ++i)
   {
-    if (!Usable(image.fluence.values[i]))
+    if (!IsUsable(image.fluence.values[i]))
     {
       throw InvalidInput("fluence_direct of UncollidedLight is " + Text("%.6g", image.fluence.values[i]) +
         " in voxel " + VoxelName(grid, i / components) +
@@ -73,7 +68,7 @@ void Check(const UncollidedImage& image, const Medium& medium)
   {
     for (double watts : face)
     {
-      if (!Usable(watts))
+      if (!IsUsable(watts))
       {
         throw InvalidInput(
           "face_power_out of UncollidedLight is " + Text("%.6g", watts) + " W; it must be finite and not negative.");

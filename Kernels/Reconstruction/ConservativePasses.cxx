@@ -18,7 +18,8 @@ namespace
 /// Part of the light taken for noise that the error counts (numerics.md, Eq. (104), which says how it was fitted).
 constexpr float Honesty = 0.4f;
 
-constexpr std::size_t FirstPart = std::size_t(1) << 22; // voxels per launch, until it is known how long that takes
+constexpr std::size_t VoxelsOfFirstLaunch = std::size_t(1)
+  << 22; // voxels per launch, until it is known how long that takes
 
 int Carried(const NoisyLight& light)
 {
@@ -118,7 +119,7 @@ void ConservativePasses::RunAbove(int below, const cl::Kernel& kernel, double fr
   }
   Batches parts;
   parts.count = Count(cells[2]);
-  parts.first = std::max<std::size_t>(FirstPart / (8 * Count(cells[0]) * Count(cells[1])), 1);
+  parts.first = std::max<std::size_t>(VoxelsOfFirstLaunch / (8 * Count(cells[0]) * Count(cells[1])), 1);
   parts.from = from;
   parts.to = to;
   InBatches(this->Task.device, parts, this->Task.monitor,

@@ -21,7 +21,7 @@ constexpr std::size_t VoxelsOfThread = 16384; ///< at least
 constexpr int ColumnsOfView = 64;             ///< along each edge of a view, at most
 constexpr double ResolvedDepth = 2.0;         ///< k sigma_t distance of the most opaque voxel, at least
 constexpr double PartOfVeil = 0.25;           ///< of the most light of a ray, where what is shown is right as well
-constexpr double Opaque = 0.95;               ///< opacities above are as good as 1
+constexpr double AsGoodAsOpaque = 0.95;       ///< opacities above are as good as 1
 
 /// What voxels send to the eye.
 struct SourceFunction
@@ -343,7 +343,7 @@ std::vector<float> LargestOpacities(const Spread& spread, const std::vector<floa
             static_cast<std::size_t>(spread.partition.whole.size[plane.u]);
         most = std::max(most, static_cast<float>(depths[axis][column]));
       }
-      opacities[voxel] = std::min(static_cast<float>(-std::expm1(-most) / Opaque), 1.0f);
+      opacities[voxel] = std::min(static_cast<float>(-std::expm1(-most) / AsGoodAsOpaque), 1.0f);
     }
   });
   return opacities;

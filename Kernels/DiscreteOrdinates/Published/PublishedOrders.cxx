@@ -14,10 +14,10 @@ namespace tyndall
 namespace
 {
 constexpr int MostSteps = 10000;
-constexpr double SlowestRate = 0.99; ///< that is told the next solve: light on its way does not fall off at all
-constexpr double WithoutEnd = 1e4;   ///< a step's change over the first one's
+constexpr double SlowestRateOfSteps = 0.99; ///< that is told the next solve: light on its way does not fall off at all
+constexpr double WithoutEnd = 1e4;          ///< a step's change over the first one's
 
-PairSums SumsOf(const OrdinatesSettings& settings)
+PairSums SumsOfSteps(const OrdinatesSettings& settings)
 {
   return settings.scattering == OrdinatesScattering::Matrix ? PairSums::Passes : PairSums::Terms;
 }
@@ -45,7 +45,8 @@ public:
     , Arrays(device, scene, angles, settings.netFlux)
     , Cells(CellsOf(this->Arrays.Faces.get()))
     , Step(StepOf(device, scene, angles, settings, this->Cells ? &*this->Cells : nullptr))
-    , Scattering(device, angles.groups, angles.phase, SumsOf(settings), false, settings.netFlux, this->Arrays.Voxels)
+    , Scattering(
+        device, angles.groups, angles.phase, SumsOfSteps(settings), false, settings.netFlux, this->Arrays.Voxels)
     , Radiance(device, AngularScattering::Floats(angles.groups, this->Arrays.Voxels), "radiance of all directions")
     , Scattered(device, this->Radiance.Size(), "scattered light of all directions")
     , Steady(device, this->Radiance.Size(), "sources of all directions")
@@ -219,7 +220,7 @@ private:
     {
       this->Result.left = this->Radiance.Read();
       this->Result.firstScattered = 1.0;
-      this->Result.rate = std::max(std::min(this->Record.Rate(), SlowestRate), this->Scene.guess.rate);
+      this->Result.rate = std::max(std::min(this->Record.Rate(), SlowestRateOfSteps), this->Scene.guess.rate);
     }
     this->Result.convergence = std::move(this->Record.All());
   }
@@ -257,7 +258,7 @@ std::size_t BytesOfPublishedOrders(
   const std::size_t around = inBlocks ? PublishedStepInBlocks::Floats(grid, angles.groups) : 0;
   return sizeof(float) * (3 * AngularScattering::Floats(angles.groups, voxels) + around) +
     ChannelArrays::Bytes(grid, settings.netFlux) +
-    AngularScattering::Bytes(angles.groups, angles.phase.Terms(), SumsOf(settings), voxels);
+    AngularScattering::Bytes(angles.groups, angles.phase.Terms(), SumsOfSteps(settings), voxels);
 }
 
 double ThickestStep(const Medium& medium, int channel)

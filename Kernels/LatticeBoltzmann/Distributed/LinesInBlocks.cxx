@@ -12,7 +12,6 @@ namespace tyndall
 {
 namespace
 {
-constexpr int Ways[18][3] = LATTICE_WAYS;
 constexpr int PairsAtOnce = 3;
 constexpr std::size_t Says = 8, Hears = 3, SaysOfSweep = 2; ///< numbers of a piece, as BlockLines.cl has them
 
@@ -168,7 +167,7 @@ LinesInBlocks::Values LinesInBlocks::Below(const PiecesOfLines& pieces, const Vo
     bool isFace = false;
     for (int axis = 0; axis < 3; ++axis)
     {
-      voxel[axis] -= block.first[axis] + Ways[2 * pair][axis];
+      voxel[axis] -= block.first[axis] + LatticeWays[2 * pair][axis];
       const bool isOut = voxel[axis] < 0 || voxel[axis] >= block.size[axis];
       isFace = isFace || (isOut && !(this->Box.innerFaces >> (2 * axis + (voxel[axis] < 0 ? 0 : 1)) & 1));
     }

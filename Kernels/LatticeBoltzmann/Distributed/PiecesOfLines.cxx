@@ -10,16 +10,11 @@
 
 namespace tyndall
 {
-namespace
-{
-constexpr int Ways[18][3] = LATTICE_WAYS;
-}
-
 PiecesOfLines::PiecesOfLines(const BlockPartition& partition, const std::array<bool, 3>& periodic, int pair)
   : Partition(partition)
   , Periodic(periodic)
   , Pair(pair)
-  , Way({ Ways[2 * pair][0], Ways[2 * pair][1], Ways[2 * pair][2] })
+  , Way({ LatticeWays[2 * pair][0], LatticeWays[2 * pair][1], LatticeWays[2 * pair][2] })
 {
   for (int axis = 0; axis < 3; ++axis)
   {

@@ -10,7 +10,6 @@ namespace tyndall
 {
 namespace
 {
-constexpr int Ways[18][3] = LATTICE_WAYS;
 constexpr int StepTag = 0;
 }
 
@@ -52,7 +51,7 @@ void SteppedInBlocks::ForComing(const BlockPartition& partition, const Act& act)
       for (int axis = 0; axis < 3; ++axis)
       {
         const int size = partition.whole.size[axis];
-        from[axis] -= Ways[d][axis];
+        from[axis] -= LatticeWays[d][axis];
         isBeyond = isBeyond || from[axis] < 0 || from[axis] >= this->Box.size[axis];
         inWhole[axis] = this->Box.first[axis] + from[axis];
         isOutside = isOutside || (!this->Settings.periodic[axis] && (inWhole[axis] < 0 || inWhole[axis] >= size));

@@ -8,7 +8,6 @@ namespace tyndall
 {
 namespace
 {
-constexpr int Ways[18][3] = LATTICE_WAYS;
 constexpr double Thinnest = 0.05; ///< sigma_t h as which the preconditioner takes thinner voxels
 }
 
@@ -35,7 +34,7 @@ std::array<std::size_t, 2> LinesOfPair(const std::array<int, 3>& size, int pair)
   std::vector<int> moving, still;
   for (int a = 0; a < 3; ++a)
   {
-    (Ways[2 * pair][a] != 0 ? moving : still).push_back(size[a]);
+    (LatticeWays[2 * pair][a] != 0 ? moving : still).push_back(size[a]);
   }
   const auto lines = [](int first, int second) {
     return std::array<std::size_t, 2>{ static_cast<std::size_t>(first), static_cast<std::size_t>(second) };

@@ -16,7 +16,7 @@ constexpr double UncollidedWork = 5.0;  ///< of a direction of unscattered light
 constexpr double LeastSweeps = 3.0;
 constexpr double OnFinerGrid = 1.3; ///< error on the grid itself over that on the coarse one: measured 0.97 to 1.3
 constexpr int Directions[] = { 9, 16, 25, 36, 49, 64, 100, 196, 256, 400 };
-constexpr int Uncollided[] = { 0, 49, 64, 81, 100, 256, 400, 576, 900, 1600 };
+constexpr int UncollidedCounts[] = { 0, 49, 64, 81, 100, 256, 400, 576, 900, 1600 };
 
 /// Error along so many directions a face, over that along 9; those of more than 100 staggered.
 struct Fall
@@ -107,7 +107,7 @@ PropagationSettings DirectionForecast::Cheapest(const PropagationSettings& setti
   bool any = false;
   for (const int directions : Directions)
   {
-    for (const int uncollided : Uncollided)
+    for (const int uncollided : UncollidedCounts)
     {
       if (uncollided > 0 && !this->Separated)
       {

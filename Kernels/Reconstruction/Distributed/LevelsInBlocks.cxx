@@ -21,8 +21,8 @@ namespace
 /// Levels that each rank makes of its block, and voxels round it that its own depend on by them: light lies between the
 /// cells of a level, one more to either side, and these are of two cells below and four in all. Vectors of voxels begin
 /// at multiples of eight.
-constexpr int OwnLevels = 2;
-constexpr int Margin = 16;
+constexpr int LevelsOfBlock = 2;
+constexpr int MarginOfLevels = 16;
 constexpr int Edge = 8;
 
 /// Totals of `channels` side by side.
@@ -90,7 +90,7 @@ LevelsInBlocks::LevelsInBlocks(Device& device, Communicator& communicator, const
   , Settings(settings)
   , TheMonitor(monitor)
   , Levels(LevelsOf(partition.whole, settings.levels))
-  , Blocks(partition, std::min(OwnLevels, TopLevelOf(settings, this->Levels)), Margin, Edge)
+  , Blocks(partition, std::min(LevelsOfBlock, TopLevelOf(settings, this->Levels)), MarginOfLevels, Edge)
 {
 }
 

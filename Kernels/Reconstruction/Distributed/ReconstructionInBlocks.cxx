@@ -27,7 +27,7 @@ using Estimator = ReconstructionSettings::Estimator;
 /// Levels that each rank makes of its block, and voxels round it that its own depend on by them: per level one cell of
 /// the level above for interpolation, four for gains and errors, two for details and what they are made of.
 constexpr int OwnLevels = 2;
-constexpr int Margin = 32;
+constexpr int MarginOfPasses = 32;
 
 /// Light of ranks that have it alike.
 struct Described
@@ -73,7 +73,7 @@ public:
     , Shared(std::min(OwnLevels, this->Levels))
     , Own(partition.blocks[static_cast<std::size_t>(communicator.Rank())])
     , Has(this->Own.VoxelCount() > 0)
-    , Blocks(partition, this->Shared, Margin, 1 << this->Shared)
+    , Blocks(partition, this->Shared, MarginOfPasses, 1 << this->Shared)
   {
   }
 

@@ -239,7 +239,7 @@ void Keep(const VoxelBox& part, const VoxelBox& box, RefractiveMedium& medium)
   keep(medium.gByVoxel, medium.components);
 }
 
-double Sum(const std::vector<float>& occupancy, const PartOfBox& part)
+double SumOfPart(const std::vector<float>& occupancy, const PartOfBox& part)
 {
   const bool all = part.own.VoxelCount() == part.made.VoxelCount();
   const std::vector<float> own = all ? std::vector<float>() : PartOf(occupancy, part.made, part.own, 1);
@@ -268,7 +268,7 @@ void Fill(Device& device, const std::vector<Solid>& solids, const RefractiveMedi
     medium.iorGradient = IndexGradient(device, grid, index, OfPart(monitor, 0.8, 1.0));
   }
   Keep(part.made, box, medium);
-  const double inside = Sum(medium.occupancy, part);
+  const double inside = SumOfPart(medium.occupancy, part);
   result.findings.empty = inside == 0.0;
   result.findings.volume = settings.grid.VoxelVolume() * inside;
 }

@@ -8,14 +8,14 @@ namespace tyndall
 {
 namespace
 {
-std::string Place(const std::array<double, 3>& point)
+std::string PlaceText(const std::array<double, 3>& point)
 {
   return "(" + Text("%.6g", point[0]) + ", " + Text("%.6g", point[1]) + ", " + Text("%.6g", point[2]) + ")";
 }
 
 std::string Along(const MeshTopology::Edge& edge)
 {
-  return "from " + Place(edge[0]) + " to " + Place(edge[1]);
+  return "from " + PlaceText(edge[0]) + " to " + PlaceText(edge[1]);
 }
 
 std::string Counted(std::size_t count, const char* thing)
@@ -31,7 +31,7 @@ std::string OfWindings(const WindingNumbers& windings, const Grid& grid, int sam
   return "intersects itself, or has parts inside out or within each other: about " +
     Counted(windings.oddSamples, "sample") + " (" + std::to_string(ofVoxel) + " a voxel; a volume of " + volume +
     ") it winds neither 0 times nor once but from " + std::to_string(windings.lowest) + " to " +
-    std::to_string(windings.highest) + " times, the first at " + Place(windings.firstOddSample) +
+    std::to_string(windings.highest) + " times, the first at " + PlaceText(windings.firstOddSample) +
     ". What it encloses an even number of times counts as outside.";
 }
 }

@@ -14,10 +14,10 @@ constexpr int SamplesOfWord = 4; ///< a byte each
 constexpr std::size_t SlabBytes = std::size_t(16) << 20;
 
 /// Adds up what find_windings of Voxelization.cl says of columns.
-class Sum
+class WindingSum
 {
 public:
-  Sum(const Grid& grid, const VoxelBox& box, const SampleColumns& columns)
+  WindingSum(const Grid& grid, const VoxelBox& box, const SampleColumns& columns)
     : TheGrid(grid)
     , Box(box)
     , Columns(columns)
@@ -85,7 +85,7 @@ WindingNumbers FindWindings(Device& device, const Grid& grid, const VoxelBox& bo
   Buffer<cl_int4> found(device, across * atOnce, "winding numbers");
   std::vector<cl_int4> ofColumns(across * atOnce);
 
-  Sum sum(grid, box, columns);
+  WindingSum sum(grid, box, columns);
   for (int first = 0; first < columns.count[1]; first += atOnce)
   {
     const int end = std::min(first + atOnce, columns.count[1]);

@@ -46,7 +46,7 @@ double LongestEdge(const Grid& grid)
   return longest;
 }
 
-constexpr double Rounding = 1e-5; ///< by which ranks' lights may differ: each finds them for its own block
+constexpr double MostApart = 1e-5; ///< by which ranks' lights may differ: each finds them for its own block
 constexpr const char* OtherLights = "Ranks have other lights than each other: give all of them the same.";
 
 /// As of the ranks that have any.
@@ -75,7 +75,7 @@ std::vector<SmallLight> LightsOfAll(Communicator& communicator, const std::vecto
   for (std::size_t i = 0; i < most.size(); ++i)
   {
     const bool isPlace = i % numbers < 3;
-    if (most[i] + least[i] > Rounding * std::max({ std::abs(most[i]), std::abs(least[i]), isPlace ? extent : 1.0 }))
+    if (most[i] + least[i] > MostApart * std::max({ std::abs(most[i]), std::abs(least[i]), isPlace ? extent : 1.0 }))
     {
       throw InvalidInput(OtherLights);
     }

@@ -11,7 +11,7 @@ namespace tyndall
 namespace
 {
 constexpr std::size_t RowsOfThread = 16; ///< at least
-constexpr float Rounding = 1e-3f;        ///< of 255: float's, where whole numbers are divided and multiplied
+constexpr float RoundingOfByte = 1e-3f;  ///< of 255: float's, where whole numbers are divided and multiplied
 
 using Shown = std::array<float, 3>; ///< [0, 255]
 
@@ -38,9 +38,9 @@ struct Screen
     std::array<std::uint8_t, 4> share = {};
     for (int c = 0; c < 3 && this->open > 0.0f; ++c)
     {
-      const float value = std::ceil((wanted[c] - this->shown[c]) / this->open - Rounding);
+      const float value = std::ceil((wanted[c] - this->shown[c]) / this->open - RoundingOfByte);
       share[c] = static_cast<std::uint8_t>(std::clamp(value, 0.0f, 255.0f));
-      this->shown[c] += std::floor(share[c] * this->open + Rounding);
+      this->shown[c] += std::floor(share[c] * this->open + RoundingOfByte);
     }
     const float alpha = this->open > 0.0f ? 1.0f - std::min(openThen / this->open, 1.0f) : 0.0f;
     share[3] = static_cast<std::uint8_t>(255.0f * alpha + 0.5f);
