@@ -2,6 +2,7 @@
 
 #include "Device/Sizes.h"
 #include "Light/LeftOut.h"
+#include "LightPropagation/Conservative/NegativeFluence.h"
 #include "LightPropagation/Convergence.h"
 #include "LightPropagation/Problem/ScatteringOrders.h"
 #include "LightPropagation/Scattering/MomentScattering.h"
@@ -104,7 +105,10 @@ IterationResult SourceIteration::Run(const Monitor& monitor)
   // out of thick voxels, behind them.
   if (this->AtFaces || this->Warm.Begins() || this->Cells)
   {
-    CutOffNegative(this->Parts.Fluence);
+    SingleRank alone;
+    const BlockPartition whole = BlockPartition::Even(this->Parts.Layout.grid, 1);
+    CutOffNegative(alone, VoxelsAround(alone, whole, this->Settings.periodic, 1), this->Parts.Layout,
+      this->Parts.Problem.TheMedium().sigma_a, this->Parts.Fluence);
   }
   this->Result.ledger.ShareEscaped(this->Escaped);
   this->Result.leftOut = this->LeftOut();

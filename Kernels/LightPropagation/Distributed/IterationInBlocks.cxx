@@ -1,6 +1,7 @@
 #include "LightPropagation/Distributed/IterationInBlocks.h"
 
 #include "Light/LeftOut.h"
+#include "LightPropagation/Conservative/NegativeFluence.h"
 #include "LightPropagation/Distributed/Balance/WhatWholeHas.h"
 #include "LightPropagation/Scattering/MomentScattering.h"
 
@@ -405,13 +406,14 @@ void IterationInBlocks::GoOnWarm()
 void IterationInBlocks::Leave()
 {
   std::vector<float> moments;
-  this->Block.Others.Together([&] {
-    if (this->AtFaces || this->Warm->Begins() || this->Cells)
-    {
-      CutOffNegative(this->Block.Fluence); // as SourceIteration does
-    }
-    moments = this->Moments.Size() > 0 ? this->Moments.Read() : std::vector<float>();
-  });
+  if (this->AtFaces || this->Warm->Begins() || this->Cells) // as SourceIteration does
+  {
+    const VoxelsAround around(this->Block.Others, this->Block.Partition, this->Block.Settings.periodic, 1);
+    CutOffNegative(
+      this->Block.Others, around, this->Block.Layout, this->Block.Scene.medium.sigma_a, this->Block.Fluence);
+  }
+  this->Block.Others.Together(
+    [&] { moments = this->Moments.Size() > 0 ? this->Moments.Read() : std::vector<float>(); });
   this->Result.leftOut = this->Warm->LeftOut();
   this->Result.leftOut.insert(this->Result.leftOut.end(), this->NotByOctant.begin(), this->NotByOctant.end());
   this->Result.warm = this->Warm->Begins();

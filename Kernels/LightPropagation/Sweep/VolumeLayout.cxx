@@ -33,14 +33,4 @@ std::vector<float> Interleaved(const VolumeLayout& layout, const Buffer<float>& 
   });
   return interleaved;
 }
-
-void CutOffNegative(Buffer<float>& values)
-{
-  std::vector<float> cut = values.Read();
-  for (float& value : cut)
-  {
-    value = std::max(value, 0.0f);
-  }
-  values.Write(cut.data());
-}
 }

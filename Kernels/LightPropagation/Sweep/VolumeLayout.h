@@ -116,7 +116,4 @@ Buffer<float> PlanarOnDevice(
 /// The voxels' values of such an array, times `scale`, the `parts` values of a voxel (channels, times components) side
 /// by side.
 std::vector<float> Interleaved(const VolumeLayout& layout, const Buffer<float>& planar, double scale);
-
-/// Makes values below 0 zero.
-void CutOffNegative(Buffer<float>& values);
 }

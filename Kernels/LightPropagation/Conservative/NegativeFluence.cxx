@@ -1,0 +1,136 @@
+#include "LightPropagation/Conservative/NegativeFluence.h"
+
+#include <algorithm>
+#include <array>
+#include <functional>
+
+namespace tyndall
+{
+namespace
+{
+constexpr int MostTurns = 50; ///< each takes from voxels one farther away, where those beside do not have enough
+
+/// One channel's fluence on this rank, and what voxels owe that had less than none.
+class OwedPower
+{
+public:
+  OwedPower(const VoxelsAround& around, const std::function<double(std::size_t)>& sigma_a, float* fluence)
+    : Around(around)
+    , Sigma(sigma_a)
+    , Fluence(fluence)
+    , Own(around.Own())
+    , Known(around.Known())
+    , Owed(this->Own.VoxelCount(), 0.0)
+  {
+    for (std::size_t i = 0; i < this->Owed.size(); ++i)
+    {
+      this->Borrow(i);
+    }
+  }
+
+  bool Any() const
+  {
+    return std::any_of(this->Owed.begin(), this->Owed.end(), [](double owed) { return owed > 0.0; });
+  }
+
+  /// From the voxels beside, which may then owe some themselves.
+  void Collect()
+  {
+    std::vector<float> own(this->Owed.size());
+    for (std::size_t i = 0; i < own.size(); ++i)
+    {
+      own[i] = static_cast<float>(this->Sigma(i) * this->Fluence[i]);
+    }
+    const std::vector<float> absorbed = this->Around.Spread(own, 1);
+    this->ForOwn([&](std::size_t i, std::size_t known, const std::array<int, 3>& at) {
+      const double beside = this->Owed[i] > 0.0 ? this->SumBeside(absorbed, known, at) : 0.0;
+      own[i] = beside > 0.0 ? static_cast<float>(this->Owed[i] / beside) : 0.0f;
+      this->Owed[i] = beside > 0.0 ? 0.0 : this->Owed[i];
+    });
+    const std::vector<float> parts = this->Around.Spread(own, 1);
+    this->ForOwn([&](std::size_t i, std::size_t known, const std::array<int, 3>& at) {
+      if (this->Sigma(i) > 0.0)
+      {
+        this->Fluence[i] = static_cast<float>(this->Fluence[i] * (1.0 - this->SumBeside(parts, known, at)));
+        this->Borrow(i);
+      }
+    });
+  }
+
+private:
+  void Borrow(std::size_t i)
+  {
+    if (this->Fluence[i] < 0.0f)
+    {
+      this->Owed[i] -= this->Sigma(i) * this->Fluence[i];
+      this->Fluence[i] = 0.0f;
+    }
+  }
+
+  /// Calls act(voxel, its place among the known ones, that place along each axis).
+  template <class Act>
+  void ForOwn(const Act& act) const
+  {
+    const std::array<int, 3>& n = this->Own.size;
+    std::array<int, 3> to = {};
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      to[axis] = this->Own.first[axis] - this->Known.first[axis];
+    }
+    std::size_t i = 0;
+    for (int z = 0; z < n[2]; ++z)
+    {
+      for (int y = 0; y < n[1]; ++y)
+      {
+        for (int x = 0; x < n[0]; ++x, ++i)
+        {
+          const std::array<int, 3> at = { x + to[0], y + to[1], z + to[2] };
+          act(i, this->Step(2) * at[2] + this->Step(1) * at[1] + at[0], at);
+        }
+      }
+    }
+  }
+
+  std::size_t Step(int axis) const
+  {
+    const std::size_t row = this->Known.size[0];
+    return axis == 0 ? 1 : axis == 1 ? row : row * this->Known.size[1];
+  }
+
+  /// Of the known voxels beside one of them.
+  double SumBeside(const std::vector<float>& values, std::size_t known, const std::array<int, 3>& at) const
+  {
+    double sum = 0.0;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      sum += at[axis] > 0 ? values[known - this->Step(axis)] : 0.0;
+      sum += at[axis] + 1 < this->Known.size[axis] ? values[known + this->Step(axis)] : 0.0;
+    }
+    return sum;
+  }
+
+  const VoxelsAround& Around;
+  const std::function<double(std::size_t)> Sigma;
+  float* Fluence;
+  const VoxelBox Own, Known;
+  std::vector<double> Owed; ///< W / length^3
+};
+}
+
+void CutOffNegative(Communicator& communicator, const VoxelsAround& around, const VolumeLayout& layout,
+  const Field& sigma_a, Buffer<float>& fluence)
+{
+  std::vector<float> values;
+  communicator.Together([&] { values = fluence.Read(); });
+  for (int c = 0; c < layout.channels; ++c)
+  {
+    OwedPower owed(
+      around, [&sigma_a, c](std::size_t i) { return sigma_a.At(i, c); }, values.data() + c * layout.Stride());
+    for (int turn = 0; turn < MostTurns && communicator.Sum({ owed.Any() ? 1.0 : 0.0 })[0] > 0.0; ++turn)
+    {
+      owed.Collect();
+    }
+  }
+  communicator.Together([&] { fluence.Write(values.data()); });
+}
+}
