@@ -1,7 +1,7 @@
-"""Servers of many ranks, each of which has only a piece of the medium: the client gets the light that it would compute itself. Then
-a rank of the last one is killed amid its work: the server ends, and the client lives and is told.
+"""Servers of many ranks, each of which has only a piece of the medium: the client gets the light that it would compute itself. With
+kill a rank of the last one is then killed amid its work: the server ends, and the client lives and is told.
 
-    pvpython PiecesOnServer.py DECOMPOSITION RANKS...
+    pvpython PiecesOnServer.py DECOMPOSITION RANKS... [kill]
 
 With Blocks each rank solves its piece, else all solve the whole.
 """
@@ -20,7 +20,8 @@ from paraview.simple import *
 from paraview.vtk import vtkDataObject
 from paraview.vtk.util.numpy_support import vtk_to_numpy
 
-decomposition, counts = sys.argv[1], [int(count) for count in sys.argv[2:]]
+kills = sys.argv[-1] == "kill"
+decomposition, counts = sys.argv[1], [int(count) for count in sys.argv[2:] if count != "kill"]
 log = os.path.join(os.environ["TYNDALL_TEST_OUTPUT"], "PiecesOnServer.%s.log" % decomposition[:5])
 SIZE = [-8, 8, -7, 7, -6, 6]
 
@@ -85,7 +86,7 @@ for count in counts:
             error = abs(found - wanted).max() / abs(wanted).max()
             print("%d ranks: %.1e" % (count, error), flush=True)
             assert error < 1e-6, (count, found, wanted)
-        if count == counts[-1]:
+        if kills and count == counts[-1]:
             kill_one(server, count)
         else:
             Disconnect()
