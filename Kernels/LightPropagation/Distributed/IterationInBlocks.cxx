@@ -406,7 +406,7 @@ void IterationInBlocks::GoOnWarm()
 void IterationInBlocks::Leave()
 {
   std::vector<float> moments;
-  if (this->AtFaces || this->Warm->Begins() || this->Cells) // as SourceIteration does
+  if (this->AtFaces || this->Warm->Begins() || this->Cells) // the same condition as in SourceIteration
   {
     const VoxelsAround around(this->Block.Others, this->Block.Partition, this->Block.Settings.periodic, 1);
     CutOffNegative(
