@@ -141,7 +141,7 @@ public:
   ///@{
   /// Directions per face of a cube for unscattered light of shining faces, sky and environment (conservative scheme).
   /// It has shadows with edges and is swept once: it may have many while scattered light does with few. Default -1: as
-  /// many as cost a quarter more time, where faces shine unevenly (UncollidedDirections.h); 0: as DirectionsPerFace;
+  /// many as cost a quarter more time, for light of faces alone (UncollidedDirections.h); 0: as DirectionsPerFace;
   /// else square numbers up to 4096.
   tyndallSetRangeMacro(UncollidedDirections, int, -1, VTK_INT_MAX);
   vtkGetMacro(UncollidedDirections, int);

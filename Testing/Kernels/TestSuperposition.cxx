@@ -49,7 +49,6 @@ Scene UnevenMedium(double thickest, double albedo)
   Scene scene({ 22, 18, 26 });
   scene.Randomise(thickest, 2.0, albedo, 22);
   scene.settings.tolerance = 1e-7;
-  scene.settings.uncollidedDirections = 0; // automatic ones depend on which faces shine
   return scene;
 }
 
@@ -66,7 +65,6 @@ Scene ThickMedium(std::array<int, 3> size)
     scene.sigma_a[i] = absorbs(random);
   }
   scene.settings.tolerance = 1e-6;
-  scene.settings.uncollidedDirections = 0;
   return scene;
 }
 
@@ -124,6 +122,9 @@ TEST_F(Superposition, OfThickVoxelsWhateverShines)
     },
     [](Scene& scene) {
       scene.light.faces[5] = { 0.3, 0.3, 0.3 };
+    },
+    [](Scene& scene) {
+      scene.light.faces[2] = { 0.1, 0.1, 0.1 };
     },
     [](Scene& scene) { scene.ShineFromEverywhere(0.1); },
     [&](Scene& scene) {

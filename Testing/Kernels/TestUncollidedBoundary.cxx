@@ -282,10 +282,11 @@ TEST_F(UncollidedBoundary, TakesPartInTheErrorEstimate)
 
 TEST_F(UncollidedBoundary, HasFinerDirectionsByDefaultWhereAFaceShines)
 {
-  // One face, and two adjacent ones; few orders, many, and accelerated ones.
-  for (int kind = 0; kind < 6; ++kind)
+  // One face, and two adjacent ones; orders that become few, and given ones.
+  for (int kind = 0; kind < 4; ++kind)
   {
-    Scene scene = LitCube(20, kind < 2 ? 1.0 : 5.0, kind < 4 ? 0.9 : 1.0);
+    Scene scene = LitCube(20, kind < 2 ? 1.0 : 3.0, 0.9);
+    scene.settings.maximumOrders = kind < 2 ? 0 : 12;
     scene.light.faces[0] = kind % 2 == 1 ? Rgb{ 0.5, 0.5, 0.5 } : Rgb{};
     const LightField light = scene.Solve(this->GetDevice());
     scene.settings.uncollidedDirections = 0;
@@ -301,17 +302,18 @@ TEST_F(UncollidedBoundary, HasFinerDirectionsByDefaultWhereAFaceShines)
 
 TEST_F(UncollidedBoundary, HasTheUsualDirectionsByDefaultWhereTheyDo)
 {
-  // Under an even sky, where nothing is scattered, in slabs, where faces reflect.
+  // Under an even sky, where nothing is scattered, in slabs, where faces reflect, where cells accelerate orders.
   enum
   {
     Sky,
     Absorber,
     Slab,
-    Ground
+    Ground,
+    Cells
   };
-  for (int kind : { Sky, Absorber, Slab, Ground })
+  for (int kind : { Sky, Absorber, Slab, Ground, Cells })
   {
-    Scene scene = LitCube(12, 2.0, kind == Absorber ? 0.0 : 0.99);
+    Scene scene = LitCube(12, kind == Cells ? 5.0 : 2.0, kind == Absorber ? 0.0 : kind == Cells ? 1.0 : 0.99);
     if (kind == Slab)
     {
       scene = Scene({ 1, 1, 16 }, 0.01f, 0.1f);

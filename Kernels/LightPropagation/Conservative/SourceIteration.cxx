@@ -210,7 +210,7 @@ void SourceIteration::AddUncollided(const Monitor& monitor)
     sources.push_back(std::make_unique<UncollidedBoundary>(this->Settings, *this->Parts.FineBoundary));
   }
   append(this->Parts.VacuumSources());
-  const bool escapes = this->Parts.CorrectsEscape;
+  const bool escapes = this->Parts.Finer.correctsEscape;
   const double all = static_cast<double>(sources.size() + (escapes ? 1 : 0));
   SweepTally tally;
   Buffer<float> firstMoments(

@@ -1,10 +1,8 @@
 #include "LightPropagation/Conservative/TransportParts.h"
 
 #include "LightPropagation/Emission/UncollidedEmission.h"
-#include "LightPropagation/Problem/UncollidedDirections.h"
 #include "LightPropagation/Scattering/MomentScattering.h"
 #include "LightPropagation/Sweep/SweepOfDevice.h"
-#include "LightPropagation/Uncollided/EnvironmentPeaks.h"
 #include "LightPropagation/Uncollided/UncollidedBoundary.h"
 #include "LightPropagation/Uncollided/UncollidedLamp.h"
 #include "Medium/VoxelSums.h"
@@ -37,27 +35,25 @@ MediumOnDevice::Needs NeedsOf(const PropagationProblem& problem, const VolumeLay
   return { !(problem.Settings().leaveOut && (alike || unused)), byBalance };
 }
 
-/// Mean radiance that comes in through the faces.
-Rgb MeanRadiance(const BoundaryLight& boundary)
+/// Adds the mean radiance that comes in through the faces.
+void AddMeanRadiance(const BoundaryLight* boundary, Rgb& mean)
 {
-  Rgb mean = {};
-  for (const Rgb& power : boundary.IncomingPower())
+  for (const Rgb& power : boundary ? boundary->IncomingPower() : std::array<Rgb, 6>())
   {
     for (std::size_t c = 0; c < mean.size(); ++c)
     {
       mean[c] += power[c] / (6.0 * Pi);
     }
   }
-  return mean;
 }
 
 /// Peaks go along rays of their own, but not round periodic axes: of their images there is no end.
-SplitEmission SplitEmissionOf(const PropagationProblem& problem, const BoundaryLight& boundary)
+SplitEmission SplitEmissionOf(const PropagationProblem& problem, const Rgb& comesIn)
 {
   const std::array<bool, 3>& periodic = problem.Settings().periodic;
   const bool endless = periodic[0] || periodic[1] || periodic[2];
   return problem.Traits().emits && problem.Settings().emissionError > 0.0 && !endless
-    ? Split(problem.TheMedium(), MeanRadiance(boundary))
+    ? Split(problem.TheMedium(), comesIn)
     : SplitEmission();
 }
 }
@@ -80,7 +76,10 @@ TransportParts::TransportParts(Device& device, const PropagationProblem& problem
     this->Given = std::make_unique<GivenLight>(image, problem.TheMedium(), problem.Scattering());
   }
   this->FindBoundaryLight();
-  this->Emission = SplitEmissionOf(problem, *this->UsualBoundary);
+  Rgb comesIn = {};
+  AddMeanRadiance(this->UsualBoundary.get(), comesIn);
+  AddMeanRadiance(this->ByBalance() ? nullptr : this->FineBoundary.get(), comesIn);
+  this->Emission = SplitEmissionOf(problem, comesIn);
   this->FindVacuum();
   this->FindFaceLight();
   if (problem.Scattering().Degree() > 0)
@@ -157,44 +156,71 @@ void TransportParts::FindVacuum()
   }
 }
 
+/// Along the directions that the environment's smooth part comes along.
+SplitEnvironment TransportParts::SplitFar(const Environment& environment) const
+{
+  return Split(environment, (this->Fine && !this->Finer.ofFacesAlone ? *this->Fine : this->Usual).Set());
+}
+
 void TransportParts::FindBoundaryLight()
 {
   const PropagationSettings& settings = this->Problem.Settings();
   const Illumination& shining = this->Problem.Shining();
   const Grid& grid = this->Problem.TheGrid();
-  const UncollidedDirections finer = UncollidedDirectionsFor(this->Problem, this->Usual.Set(), this->How);
-  this->CorrectsEscape = finer.correctsEscape && this->Problem.Traits().scatters && !Reflects(shining);
-  if (finer.perFace > 0)
+  this->Finer = UncollidedDirectionsFor(this->Problem, this->Usual.Set(), this->How);
+  if (this->Finer.perFace > 0)
   {
-    this->Fine = FinerDirections(grid, settings, finer.perFace, this->ByBalance());
+    this->Fine = FinerDirections(grid, settings, this->Finer.perFace, this->ByBalance());
   }
-  const SplitEnvironment environment = Split(shining.environment, (this->Fine ? *this->Fine : this->Usual).Set());
+  const SplitEnvironment environment = this->SplitFar(shining.environment);
   this->Lamps = shining.lights;
   this->Lamps.insert(this->Lamps.end(), environment.peaks.begin(), environment.peaks.end());
-  this->UsualBoundary = std::make_unique<BoundaryLight>(grid, settings, this->Usual, shining, environment.smooth);
-  if (this->Fine)
-  {
-    auto fine = std::make_unique<BoundaryLight>(grid, settings, *this->Fine, shining, environment.smooth);
-    // What comes in evenly from everywhere is what accelerated sweeps carry already; and of light that finer directions
-    // bring beyond that, the sweeps' faces could not give back a part.
-    if (fine->Shines() && !(this->ByBalance() && (fine->IsEven() || Reflects(shining))))
-    {
-      // Directions that nobody asked for are left where few of their rays would meet the faces.
-      const bool asked = settings.uncollidedDirections >= 0;
-      if (asked)
-      {
-        fine->CheckRays(this->Layout.channels);
-      }
-      if (asked || fine->HasEnoughRays(this->Layout.channels))
-      {
-        this->FineBoundary = std::move(fine);
-      }
-    }
-  }
+  this->FarAway = environment.smooth;
+  this->FindFineBoundary();
+  const bool all = this->ByBalance() || !this->FineBoundary;
+  this->UsualBoundary = std::make_unique<BoundaryLight>(grid, settings, this->Usual,
+    all ? shining : AlongUsual(this->Finer, shining), all || this->Finer.ofFacesAlone ? this->FarAway : Environment());
   if (this->SweepsAreLit())
   {
     this->UsualBoundary->CheckRays(this->Layout.channels);
   }
+}
+
+/// What faces send in evenly from everywhere goes along the usual directions, as scattered light does, so that a furnace is
+/// even. Nor do the sweeps' faces give back a part of light that accelerated solves have along finer directions.
+void TransportParts::FindFineBoundary()
+{
+  const PropagationSettings& settings = this->Problem.Settings();
+  const Illumination& shining = this->Problem.Shining();
+  if (!this->Fine)
+  {
+    return;
+  }
+  const Grid& grid = this->Problem.TheGrid();
+  const bool ofAll = !this->Finer.ofFacesAlone;
+  auto fine = std::make_unique<BoundaryLight>(
+    grid, settings, *this->Fine, AlongFiner(this->Finer, shining), ofAll ? this->FarAway : Environment());
+  const bool isEven = (this->ByBalance() || !ofAll) && fine->IsEven();
+  if (!fine->Shines() || isEven || (this->ByBalance() && Reflects(shining)))
+  {
+    return;
+  }
+  // Directions that nobody asked for are left where few of their rays would meet the faces.
+  if (ofAll)
+  {
+    fine->CheckRays(this->Layout.channels);
+  }
+  else if (!BoundaryLight::HasEnoughRays(grid, settings, *this->Fine))
+  {
+    return;
+  }
+  this->FineBoundary = std::move(fine);
+}
+
+BoundaryLight TransportParts::FinePartAlongUsual() const
+{
+  return { this->Problem.TheGrid(), this->Problem.Settings(), this->Usual,
+    AlongFiner(this->Finer, this->Problem.Shining()), this->Finer.ofFacesAlone ? Environment() : this->FarAway };
 }
 
 void TransportParts::FindFaceLight()
@@ -236,7 +262,7 @@ std::unique_ptr<SweepOperator> TransportParts::MakeSweep(const SweepRequest& req
 
 std::vector<Light> TransportParts::LampsOf(const Illumination& illumination) const
 {
-  const SplitEnvironment environment = Split(illumination.environment, (this->Fine ? *this->Fine : this->Usual).Set());
+  const SplitEnvironment environment = this->SplitFar(illumination.environment);
   std::vector<Light> lamps = illumination.lights;
   lamps.insert(lamps.end(), environment.peaks.begin(), environment.peaks.end());
   return lamps;

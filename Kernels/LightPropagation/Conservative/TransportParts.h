@@ -9,6 +9,7 @@
 #include "LightPropagation/Problem/MediumOnDevice.h"
 #include "LightPropagation/Problem/PropagationProblem.h"
 #include "LightPropagation/Problem/ScatteringOrders.h"
+#include "LightPropagation/Problem/UncollidedDirections.h"
 #include "LightPropagation/Scattering/BeamsInSource.h"
 #include "LightPropagation/Scattering/ScatteringOperator.h"
 #include "LightPropagation/Scattering/SweptMoments.h"
@@ -16,6 +17,7 @@
 #include "LightPropagation/Sweep/SweepWorkspace.h"
 #include "LightPropagation/Sweep/VolumeLayout.h"
 #include "LightPropagation/Uncollided/BoundaryLight.h"
+#include "LightPropagation/Uncollided/EnvironmentPeaks.h"
 #include "LightPropagation/Uncollided/GivenLight.h"
 #include "LightPropagation/Uncollided/UncollidedSource.h"
 
@@ -46,14 +48,16 @@ public:
 
   /// Along the directions of scattered light.
   const SweptDirections Usual;
-  const AngularBasis* Basis = nullptr; ///< of the moments in which light is scattered; null: all is isotropic
-  /// Along directions of its own until it meets the medium, where they were asked for and differ from the usual ones.
-  std::unique_ptr<const SweptDirections> Fine;
-  bool CorrectsEscape = false; ///< EscapeCorrection.h, where orders are added up one by one
-  std::unique_ptr<const BoundaryLight> UsualBoundary, FineBoundary; ///< FineBoundary: null where there are none
+  const AngularBasis* Basis = nullptr;         ///< of the moments in which light is scattered; null: all is isotropic
+  UncollidedDirections Finer;                  ///< of light from outside until it meets the medium
+  std::unique_ptr<const SweptDirections> Fine; ///< those directions; null: the usual ones
+  /// FineBoundary: along the finer directions; null where nothing comes along them. UsualBoundary: what sweeps carry, all
+  /// the rest; where orders are accelerated by the whole balance all that comes in.
+  std::unique_ptr<const BoundaryLight> UsualBoundary, FineBoundary;
   /// By cells of the box's faces: where they reflect, or face power is asked for; else null.
   std::unique_ptr<FaceLight> Faces;
   std::vector<Light> Lamps; ///< those of the scene and the peaks of the environment
+  Environment FarAway;      ///< the environment without its peaks
   SplitEmission Emission;   ///< of the medium
   /// What empty voxels emit goes along these until it meets the medium; null: none emits, or it goes with the rest.
   std::unique_ptr<const SweptDirections> OfVacuum;
@@ -68,7 +72,9 @@ public:
   bool HasSource() const { return this->MediumShines; }
   /// What sweeps along the usual directions carry of the light from outside; empty: nothing.
   SweepBoundary BoundaryOfSweeps() const;
-  bool SweepsAreLit() const { return this->UsualBoundary->Shines() && (this->ByBalance() || !this->FineBoundary); }
+  bool SweepsAreLit() const { return this->UsualBoundary->Shines(); }
+  /// The light of FineBoundary along the usual directions.
+  BoundaryLight FinePartAlongUsual() const;
 
   /// The light of one source, added to where `deposit` says.
   /// @return all channels
@@ -133,6 +139,8 @@ private:
   void FindVacuum();
   std::vector<float> EmissionOf(bool emptyVoxels) const;
   void FindBoundaryLight();
+  void FindFineBoundary();
+  SplitEnvironment SplitFar(const Environment& environment) const;
   void FindFaceLight();
   int SlotOf(const UncollidedSource& source) const;
 

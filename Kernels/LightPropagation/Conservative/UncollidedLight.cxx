@@ -150,8 +150,8 @@ void UncollidedLight::AddBoundaryDifference(const Monitor& monitor)
   TransportParts& parts = this->Parts;
   const PropagationSettings& settings = parts.Problem.Settings();
   const auto fine = parts.FindUncollided(UncollidedBoundary(settings, *parts.FineBoundary), OfPart(monitor, 0.0, 0.4));
-  const auto usual =
-    parts.FindUncollided(UncollidedBoundary(settings, *parts.UsualBoundary), OfPart(monitor, 0.4, 0.5));
+  const BoundaryLight alongUsual = parts.FinePartAlongUsual();
+  const auto usual = parts.FindUncollided(UncollidedBoundary(settings, alongUsual), OfPart(monitor, 0.4, 0.5));
   const bool staysEven = settings.uncollidedDirections < 0 || ScatteredManyTimes(parts.Problem);
   const TransportParts::EvenSky even =
     staysEven ? parts.FindEvenSky(OfPart(monitor, 0.5, 1.0)) : TransportParts::EvenSky();

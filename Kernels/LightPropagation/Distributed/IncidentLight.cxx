@@ -1,5 +1,7 @@
 #include "LightPropagation/Distributed/IncidentLight.h"
 
+#include <utility>
+
 namespace tyndall
 {
 namespace
@@ -12,53 +14,60 @@ std::vector<Light> WithPeaks(std::vector<Light> lamps, const SplitEnvironment& f
 }
 
 IncidentLight::IncidentLight(const Grid& whole, const PropagationSettings& settings, const Illumination& shining,
-  const UncollidedDirections& finer, int channels, bool scatters)
+  const UncollidedDirections& finer, int channels)
   : OfScattered(whole, settings, DirectionsForVoxels(settings.directionsPerFace, whole.spacing),
       settings.staggeredRays ? RayStarts::Staggered : RayStarts::Middle)
+  , Chosen(finer)
   , OfUnscattered(finer.perFace > 0 ? FinerDirections(whole, settings, finer.perFace, false) : nullptr)
-  , Corrects(finer.correctsEscape && scatters && !Reflects(shining))
-  , Far(Split(shining.environment, this->SetOfUnscattered()))
-  , AlongUsual(whole, settings, this->OfScattered, shining, this->Far.smooth)
+  , Far(this->SplitFar(shining.environment))
   , AllLamps(WithPeaks(shining.lights, this->Far))
 {
   this->MakeFineBoundary(whole, settings, shining, channels);
+  const bool all = !this->AlongFine;
+  this->AlongUsual = std::make_unique<const BoundaryLight>(whole, settings, this->OfScattered,
+    all ? shining : tyndall::AlongUsual(finer, shining), all || finer.ofFacesAlone ? this->Far.smooth : Environment());
+  if (this->SweepsAreLit())
+  {
+    this->AlongUsual->CheckRays(channels);
+  }
 }
 
-const DirectionSet& IncidentLight::SetOfUnscattered() const
+/// As TransportParts does.
+SplitEnvironment IncidentLight::SplitFar(const Environment& environment) const
 {
-  return (this->OfUnscattered ? *this->OfUnscattered : this->OfScattered).Set();
+  return Split(
+    environment, (this->OfUnscattered && !this->Chosen.ofFacesAlone ? *this->OfUnscattered : this->OfScattered).Set());
 }
 
 /// As TransportParts does.
 void IncidentLight::MakeFineBoundary(
   const Grid& whole, const PropagationSettings& settings, const Illumination& shining, int channels)
 {
-  if (!this->AlongUsual.Shines())
+  if (!this->OfUnscattered)
   {
     return;
   }
-  if (this->OfUnscattered)
+  const bool ofAll = !this->Chosen.ofFacesAlone;
+  auto fine = std::make_unique<const BoundaryLight>(
+    whole, settings, *this->OfUnscattered, AlongFiner(this->Chosen, shining), ofAll ? this->Far.smooth : Environment());
+  if (!fine->Shines() || (!ofAll && fine->IsEven()))
   {
-    auto fine = std::make_unique<const BoundaryLight>(whole, settings, *this->OfUnscattered, shining, this->Far.smooth);
-    // Directions that nobody asked for are left where few of their rays would meet the faces.
-    const bool asked = settings.uncollidedDirections >= 0;
-    if (asked)
-    {
-      fine->CheckRays(channels);
-    }
-    if (asked || fine->HasEnoughRays(channels))
-    {
-      this->AlongFine = std::move(fine);
-    }
+    return;
   }
-  if (!this->AlongFine)
+  // Directions that nobody asked for are left where few of their rays would meet the faces.
+  if (ofAll)
   {
-    this->AlongUsual.CheckRays(channels);
+    fine->CheckRays(channels);
   }
+  else if (!BoundaryLight::HasEnoughRays(whole, settings, *this->OfUnscattered))
+  {
+    return;
+  }
+  this->AlongFine = std::move(fine);
 }
 
 std::vector<Light> IncidentLight::LampsOf(const Illumination& shining) const
 {
-  return WithPeaks(shining.lights, Split(shining.environment, this->SetOfUnscattered()));
+  return WithPeaks(shining.lights, this->SplitFar(shining.environment));
 }
 }

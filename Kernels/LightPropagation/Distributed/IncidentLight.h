@@ -20,10 +20,10 @@ class IncidentLight
 public:
   /// @param whole, shining  in the solver's units
   /// @param finer  directions of unscattered light from outside
-  /// @param channels, scatters  of the medium
+  /// @param channels  of the medium
   /// @throws InvalidInput where rays are too few (BoundaryLight.h)
   IncidentLight(const Grid& whole, const PropagationSettings& settings, const Illumination& shining,
-    const UncollidedDirections& finer, int channels, bool scatters);
+    const UncollidedDirections& finer, int channels);
   IncidentLight(const IncidentLight&) = delete; // boundaries see directions that this owns
   IncidentLight& operator=(const IncidentLight&) = delete;
 
@@ -31,15 +31,18 @@ public:
   const SweptDirections& Usual() const { return this->OfScattered; }
   /// Of unscattered light from outside; null: the same.
   const SweptDirections* Fine() const { return this->OfUnscattered.get(); }
+  /// How they were chosen.
+  const UncollidedDirections& Finer() const { return this->Chosen; }
   /// Those that light from outside does come along.
   const SweptDirections& OfBoundary() const { return this->AlongFine ? *this->OfUnscattered : this->OfScattered; }
 
-  const BoundaryLight& UsualBoundary() const { return this->AlongUsual; }
-  /// In its place; null where it is dark, or has too few rays.
+  /// All that does not come along the finer directions.
+  const BoundaryLight& UsualBoundary() const { return *this->AlongUsual; }
+  /// Null where nothing does.
   const BoundaryLight* FineBoundary() const { return this->AlongFine.get(); }
-  bool SweepsAreLit() const { return this->AlongUsual.Shines() && !this->AlongFine; }
+  bool SweepsAreLit() const { return this->AlongUsual->Shines(); }
   /// EscapeCorrection.h is due: scattered light leaves along other directions than light from outside comes in.
-  bool CorrectsEscape() const { return this->Corrects; }
+  bool CorrectsEscape() const { return this->Chosen.correctsEscape; }
 
   /// Those of the scene and the peaks of its environment.
   const std::vector<Light>& Lamps() const { return this->AllLamps; }
@@ -47,16 +50,15 @@ public:
   std::vector<Light> LampsOf(const Illumination& shining) const;
 
 private:
-  const DirectionSet& SetOfUnscattered() const;
+  SplitEnvironment SplitFar(const Environment& environment) const;
   void MakeFineBoundary(
     const Grid& whole, const PropagationSettings& settings, const Illumination& shining, int channels);
 
   const SweptDirections OfScattered;
+  const UncollidedDirections Chosen;
   const std::unique_ptr<const SweptDirections> OfUnscattered;
-  const bool Corrects;
   const SplitEnvironment Far;
-  const BoundaryLight AlongUsual;
-  std::unique_ptr<const BoundaryLight> AlongFine;
+  std::unique_ptr<const BoundaryLight> AlongUsual, AlongFine;
   const std::vector<Light> AllLamps;
 };
 }

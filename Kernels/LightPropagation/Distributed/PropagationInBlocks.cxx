@@ -67,6 +67,22 @@ const BlockPartition& Checked(Communicator& communicator, const BlockPartition& 
   return partition;
 }
 
+/// Light comes in through some of the box's faces, and not the same through all.
+bool FacesShineUnevenly(const Illumination& light, const std::array<bool, 3>& periodic)
+{
+  const Rgb* first = nullptr;
+  bool differ = false;
+  for (int face = 0; face < 6; ++face)
+  {
+    if (!periodic[face / 2])
+    {
+      first = first ? first : &light.faces[face];
+      differ = differ || light.faces[face] != *first;
+    }
+  }
+  return differ;
+}
+
 /// A scene in blocks as it is solved, as PropagationProblem is of the whole.
 class ProblemInBlocks
 {
@@ -131,10 +147,10 @@ UncollidedDirections ProblemInBlocks::FinerDirections(OrdersAdded how) const
     UncollidedDirectionsFor({ this->Settings, scene.illumination, this->Unvarying.IsSlab(), scene.traits.scatters,
                               scene.Scattering().Degree(), [this] { return this->Orders.needed; } },
       usual, how);
-  // A rank without voxels has another idea of what shines: it does not know its channels.
-  const std::vector<double> all =
-    this->Others.Largest({ this->Has ? 1.0 * own.perFace : 0.0, this->Has && own.correctsEscape ? 1.0 : 0.0 });
-  return { static_cast<int>(all[0]), all[1] > 0.0 };
+  // A rank without voxels has another idea of it: it does not know its medium.
+  const std::vector<double> all = this->Others.Largest({ this->Has ? 1.0 * own.perFace : 0.0,
+    this->Has && own.ofFacesAlone ? 1.0 : 0.0, this->Has && own.correctsEscape ? 1.0 : 0.0 });
+  return { static_cast<int>(all[0]), all[1] > 0.0, all[2] > 0.0 };
 }
 
 /// Kernels for CPUs work on what lies in host memory where it is; for GPUs a block that does not fit goes through the
@@ -165,8 +181,7 @@ LightField ProblemInBlocks::Solve(
   std::optional<UncollidedOverRanks> uncollided;
   std::unique_ptr<Iteration> iteration;
   this->Others.Together([&] {
-    incident.emplace(
-      this->Blocks.whole, this->Settings, scene.illumination, finer, scene.channels, scene.traits.scatters);
+    incident.emplace(this->Blocks.whole, this->Settings, scene.illumination, finer, scene.channels);
     block.emplace(ofSolve, this->Others, this->Blocks, scene, this->Settings, *incident);
     uncollided.emplace(*block, *incident);
     if (byBalance)
@@ -218,7 +233,8 @@ std::string ProblemInBlocks::BetterAsWhole(const Medium& medium, const Illuminat
     return "many scattering orders in thin voxels round a periodic axis or along UncollidedDirections, which it "
            "accelerates";
   }
-  if (this->Orders.how == OrdersAdded::ByBalance && this->FinerDirections(this->Orders.how).perFace > 0)
+  if (this->Orders.how == OrdersAdded::ByBalance && FacesShineUnevenly(illumination, this->Settings.periodic) &&
+    this->FinerDirections(this->Orders.how).perFace > 0)
   {
     return "faces that shine unevenly, whose light it has along finer directions";
   }

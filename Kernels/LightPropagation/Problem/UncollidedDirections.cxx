@@ -1,9 +1,6 @@
 #include "LightPropagation/Problem/UncollidedDirections.h"
 
-#include "Medium/BoxFaces.h"
-
 #include <algorithm>
-#include <array>
 #include <iterator>
 #include <utility>
 
@@ -18,46 +15,16 @@ constexpr double SetUp = 0.8;
 constexpr double AcceleratedOrders = 18.0;
 constexpr double OrdersByCells = 12.0; ///< the same with cells: measured 9 in 128^3 voxels, 14 in 64^3
 constexpr double LeastOrders = 3.0;    ///< that are swept however few are needed
+constexpr double Lit = 0.5;            ///< of all directions those that one face shines along
 constexpr int Choices[] = { 36, 49, 64, 100 };
 
-/// Light comes in through some of the box's faces, and not the same through all.
-bool FacesShineUnevenly(const Illumination& light, const std::array<bool, 3>& periodic)
+bool FacesShine(const Illumination& light)
 {
-  const Rgb* first = nullptr;
-  bool differ = false;
-  for (int face = 0; face < 6; ++face)
-  {
-    if (!periodic[face / 2])
-    {
-      first = first ? first : &light.faces[face];
-      differ = differ || light.faces[face] != *first;
-    }
-  }
-  return differ;
-}
-
-/// Of all directions those that light comes in along, by the eight octants of their signs.
-double LitPart(const Illumination& light, const std::array<bool, 3>& periodic)
-{
-  if (Sum(light.sky) > 0.0 || !light.environment.Empty())
-  {
-    return 1.0;
-  }
-  int lit = 0;
-  for (int octant = 0; octant < 8; ++octant)
-  {
-    bool any = false;
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      any = any || (!periodic[axis] && Sum(light.faces[EntryFace(axis, (octant >> axis) % 2 == 0)]) > 0.0);
-    }
-    lit += any ? 1 : 0;
-  }
-  return lit / 8.0;
+  return std::any_of(light.faces.begin(), light.faces.end(), [](const Rgb& face) { return Sum(face) > 0.0; });
 }
 
 /// In orders along all usual directions: a solve's, but for its first sweep.
-double TimeOfLaterOrders(const ShiningScene& scene, OrdersAdded how)
+double TimeOfLaterOrders(const SweptScene& scene, OrdersAdded how)
 {
   const int most = scene.settings.maximumOrders;
   switch (how)
@@ -79,17 +46,17 @@ UncollidedDirections UncollidedDirectionsFor(
     usual, how);
 }
 
-UncollidedDirections UncollidedDirectionsFor(const ShiningScene& scene, const DirectionSet& usual, OrdersAdded how)
+UncollidedDirections UncollidedDirectionsFor(const SweptScene& scene, const DirectionSet& usual, OrdersAdded how)
 {
-  const bool oneByOne = how == OrdersAdded::OneByOne;
   const bool besideUsual = how == OrdersAdded::ByBalance; // else the finer directions take the place of the usual ones
   const PropagationSettings& settings = scene.settings;
   if (settings.uncollidedDirections >= 0)
   {
-    return { settings.uncollidedDirections, settings.uncollidedDirections > 0 };
+    return { settings.uncollidedDirections, false,
+      settings.uncollidedDirections > 0 && !besideUsual && scene.scatters && !Reflects(scene.shining) };
   }
-  if (usual.orbits.empty() || scene.isSlab || !scene.scatters || Reflects(scene.shining) ||
-    !FacesShineUnevenly(scene.shining, settings.periodic))
+  if (!FacesShine(scene.shining) || Reflects(scene.shining) || !scene.scatters || scene.isSlab ||
+    usual.orbits.empty() || how == OrdersAdded::ByCells)
   {
     return {};
   }
@@ -97,21 +64,37 @@ UncollidedDirections UncollidedDirectionsFor(const ShiningScene& scene, const Di
   {
     return {}; // all moments of four lights would be kept at once: hundreds of bytes a voxel
   }
-  const double lit = LitPart(scene.shining, settings.periodic), before = settings.directionsPerFace;
-  const double affordable = More * (TimeOfLaterOrders(scene, how) + lit) * before;
+  const double before = settings.directionsPerFace;
+  const double affordable = More * (TimeOfLaterOrders(scene, how) + Lit) * before;
   UncollidedDirections found;
   for (int choice : Choices)
   {
-    const double light = lit * (besideUsual ? choice + before : choice - before);
-    const double evenSky = choice + before;
-    if (choice > before && light + (oneByOne ? 0.0 : evenSky) <= affordable)
+    const double light = Lit * (besideUsual ? choice + before : choice - before);
+    const double evenSky = besideUsual ? choice + before : 0.0;
+    if (choice > before && light + evenSky <= affordable)
     {
-      // Beside fewer finer directions more of them gain more; but with cells they gain nothing by themselves.
-      const bool most = choice == Choices[std::size(Choices) - 1];
-      found = { choice, !besideUsual && (most || !oneByOne) && light + evenSky <= affordable };
+      found = { choice, true, false };
     }
   }
   return found;
+}
+
+Illumination AlongFiner(const UncollidedDirections& finer, const Illumination& shining)
+{
+  Illumination part = finer.perFace > 0 ? shining : Illumination();
+  part.sky = finer.ofFacesAlone ? Rgb{} : part.sky;
+  return part;
+}
+
+Illumination AlongUsual(const UncollidedDirections& finer, const Illumination& shining)
+{
+  Illumination part = shining;
+  if (finer.perFace > 0)
+  {
+    part.faces = {};
+    part.sky = finer.ofFacesAlone ? shining.sky : Rgb{};
+  }
+  return part;
 }
 
 std::unique_ptr<const SweptDirections> FinerDirections(

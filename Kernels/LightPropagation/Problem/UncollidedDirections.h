@@ -10,32 +10,40 @@
 
 namespace tyndall
 {
-/// Along which directions the unscattered light of faces, sky and environment goes.
+/// Along which directions the unscattered light of faces, sky and environment goes. Chosen by medium and settings alone,
+/// whatever shines, so that lights add up.
 struct UncollidedDirections
 {
   int perFace = 0; ///< of a cube; 0: the same as for scattered light
+  /// Faces alone have them: sky and environment, even or smooth, go along those of scattered light.
+  bool ofFacesAlone = false;
   /// What scattered light lets out otherwise than those is made up for (EscapeCorrection.h): three times as dear.
   bool correctsEscape = false;
 };
 
-/// The settings', or, where these leave it open (-1), as many as make a solve a quarter longer at most, by a forecast
-/// of its scattering orders and of the directions that are lit: 36, 49, 64 or 100, where faces of the box shine
-/// unevenly and none reflects, but not in accelerated solves in angular moments, for memory. Else 0: an even sky and
-/// a smooth environment are right along few directions, and so is the light that is scattered many times.
+/// The settings', or, where these leave it open (-1), for light of the box's faces as many as make a solve with one face
+/// that shines a quarter longer at most, by a forecast of its scattering orders: 36, 49, 64 or 100, where no face
+/// reflects. Else 0; so where orders are accelerated by cells, where more of them gain nothing without the correction of
+/// what escapes, which would change the light of lamps as well, and in accelerated solves in angular moments, for memory.
 /// @param usual  directions of scattered light; only beside fitted ones more of them gain by themselves
 UncollidedDirections UncollidedDirectionsFor(
   const PropagationProblem& problem, const DirectionSet& usual, OrdersAdded how);
 
 /// What that depends on, of a scene that may be spread over ranks.
-struct ShiningScene
+struct SweptScene
 {
   const PropagationSettings& settings;
-  const Illumination& shining;
+  const Illumination& shining; ///< only whether faces shine at all, and reflect
   bool isSlab, scatters;
   int degree;                           ///< of angular moments
   std::function<double()> ordersNeeded; ///< ScatteringOrders.h; asked for orders that are added up one by one
 };
-UncollidedDirections UncollidedDirectionsFor(const ShiningScene& scene, const DirectionSet& usual, OrdersAdded how);
+UncollidedDirections UncollidedDirectionsFor(const SweptScene& scene, const DirectionSet& usual, OrdersAdded how);
+
+/// The part of light from outside that comes along finer directions; its lights and environment are not looked at.
+Illumination AlongFiner(const UncollidedDirections& finer, const Illumination& shining);
+/// The rest, along the usual ones.
+Illumination AlongUsual(const UncollidedDirections& finer, const Illumination& shining);
 
 /// Along which that light is swept.
 /// @param accelerated  by the whole balance: beside the usual directions, and as they are

@@ -174,13 +174,16 @@ std::pair<Rgb, Rgb> BoundaryLight::EnteringPower() const
   return { entering.exact, entering.whole };
 }
 
-bool BoundaryLight::HasEnoughRays(int channels) const
+bool BoundaryLight::HasEnoughRays(
+  const Grid& grid, const PropagationSettings& settings, const SweptDirections& directions)
 {
-  const auto [exact, whole] = this->EnteringPower();
   bool enough = true;
-  for (int c = 0; c < channels; ++c)
+  for (int face = 0; face < 6; ++face)
   {
-    enough = enough && Enough(exact[c], whole[c]);
+    Illumination shining;
+    shining.faces[face][0] = settings.periodic[face / 2] ? 0.0 : 1.0;
+    const auto [exact, whole] = BoundaryLight(grid, settings, directions, shining, {}).EnteringPower();
+    enough = enough && Enough(exact[0], whole[0]);
   }
   return enough;
 }

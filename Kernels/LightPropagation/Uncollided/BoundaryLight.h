@@ -33,7 +33,8 @@ public:
   /// @param channels  that are looked at
   /// @throws InvalidInput where so few of them meet the faces that shine that whole rays would miss 30% of the power
   void CheckRays(int channels) const;
-  bool HasEnoughRays(int channels) const; ///< CheckRays would not throw
+  /// CheckRays would not throw, whichever of the box's open faces shines.
+  static bool HasEnoughRays(const Grid& grid, const PropagationSettings& settings, const SweptDirections& directions);
 
   const SweptDirections& Along() const { return this->Directions; }
 
