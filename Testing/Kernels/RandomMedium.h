@@ -33,6 +33,19 @@ struct RandomMedium
     this->medium.sigma_s = { this->scattering.data(), components };
   }
 
+  /// In place of that: sigma_t of up to `densest`, even in its logarithm.
+  void SpreadOverDecades(double densest, double decades, double albedo, unsigned seed)
+  {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> power(-decades, 0.0);
+    for (std::size_t i = 0; i < this->absorption.size(); ++i)
+    {
+      const double sigma_t = densest * std::pow(10.0, power(random));
+      this->absorption[i] = static_cast<float>((1.0 - albedo) * sigma_t);
+      this->scattering[i] = static_cast<float>(albedo * sigma_t);
+    }
+  }
+
   void Emit(float brightest)
   {
     std::mt19937 random(7);

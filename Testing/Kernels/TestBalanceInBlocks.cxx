@@ -43,7 +43,8 @@ protected:
     EXPECT_LE(LargestDifference(alone.facePower, expected.facePower), tolerance);
     EXPECT_LE(LargestDifference(alone.scatteredMoments, expected.scatteredMoments), tolerance);
     ExpectTheSurface(alone, expected, tolerance);
-    ExpectEnergyKept(alone);
+    ExpectEnergyKept(whole, expected);
+    ExpectEnergyKept(whole, alone);
     for (std::size_t i = 0; i < partitions.size(); ++i)
     {
       SCOPED_TRACE("partition " + std::to_string(i));
@@ -54,7 +55,7 @@ protected:
       EXPECT_LE(LargestDifference(found.facePower, alone.facePower), 1e-6);
       EXPECT_LE(LargestDifference(found.scatteredMoments, alone.scatteredMoments), 1e-6);
       ExpectTheSurface(found, alone, 1e-6);
-      ExpectEnergyKept(found);
+      ExpectEnergyKept(whole, found);
     }
   }
   /// What leaves thick voxels at the box's faces.
@@ -63,9 +64,22 @@ protected:
     EXPECT_EQ(found.surfaceRadiance.empty(), expected.surfaceRadiance.empty());
     EXPECT_LE(LargestDifference(found.surfaceRadiance, expected.surfaceRadiance), tolerance);
   }
-  static void ExpectEnergyKept(const LightField& light)
+  static void ExpectEnergyKept(const RandomMedium& whole, const LightField& light)
   {
     EXPECT_LT(light.balance.RelativeError(light.channels), 1e-5);
+    EXPECT_GE(*std::min_element(light.fluence.begin(), light.fluence.end()), 0.0f);
+    const Field& sigma_a = whole.medium.sigma_a;
+    for (int c = 0; c < light.channels; ++c)
+    {
+      double absorbed = 0.0;
+      for (std::size_t i = 0; i < whole.medium.grid.VoxelCount(); ++i)
+      {
+        absorbed += sigma_a.At(i, c) * light.fluence[i * light.channels + c];
+      }
+      const EnergyBalance& balance = light.balance;
+      EXPECT_NEAR(absorbed * whole.medium.grid.VoxelVolume(), balance.absorbed[c],
+        1e-4 * (balance.entered[c] + balance.emitted[c]));
+    }
   }
   /// Over the largest value.
   static double LargestDifference(const std::vector<float>& found, const std::vector<float>& expected)
@@ -122,6 +136,17 @@ TEST_F(ThickPropagationBlocks, GoOnInBlocksOfOneVoxelBesideRanksWithout)
   PropagationSettings settings = Accelerated();
   settings.source = PropagationSource::Linear;
   ExpectTheLightOfTheWhole(whole, Diffuse(), settings, OnRanks(whole.medium.grid, { 6 }), 1e-4);
+}
+
+/// Beside opaque voxels in thin gas the systems' solution is negative.
+TEST_F(ThickPropagationBlocks, HaveTheLightOfTheWholeBesideOpaqueVoxels)
+{
+  RandomMedium whole(Grid{ { 9, 8, 7 } }, 1, 1.0f);
+  whole.SpreadOverDecades(1e4, 8.0, 0.8, 5);
+  PropagationSettings settings = Accelerated();
+  settings.source = PropagationSource::Linear;
+  settings.tolerance = 1e-6;
+  ExpectTheLightOfTheWhole(whole, Diffuse(), settings, OnRanks(whole.medium.grid, { 3 }), 1e-4);
 }
 
 /// A beam that slants through voxels of all thicknesses, in colour: it is scattered near the faces it comes through.

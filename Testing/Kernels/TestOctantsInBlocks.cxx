@@ -8,9 +8,6 @@
 
 #include <gmock/gmock.h>
 
-#include <cmath>
-#include <random>
-
 using namespace blocks_of_light;
 using namespace tyndall;
 
@@ -111,14 +108,7 @@ TEST_F(OctantsInBlocks, AbsorbWhatTheFluenceSays)
   {
     SCOPED_TRACE(around ? "round an axis" : "open");
     RandomMedium whole(grid, 1, 1.0f, 3);
-    std::mt19937 random(3);
-    std::uniform_real_distribution<double> decades(-2.0, 0.0);
-    for (std::size_t i = 0; i < grid.VoxelCount(); ++i)
-    {
-      const double sigma_t = 1000.0 * std::pow(10.0, decades(random));
-      whole.absorption[i] = static_cast<float>(0.4 * sigma_t);
-      whole.scattering[i] = static_cast<float>(0.6 * sigma_t);
-    }
+    whole.SpreadOverDecades(1000.0, 2.0, 0.6, 3);
     Illumination shining;
     Light sun;
     sun.direction = { 0.3, -0.5, -0.9 };

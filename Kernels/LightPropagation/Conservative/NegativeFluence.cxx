@@ -14,7 +14,9 @@ constexpr int MostTurns = 50; ///< each takes from voxels one farther away, wher
 class OwedPower
 {
 public:
-  OwedPower(const VoxelsAround& around, const std::function<double(std::size_t)>& sigma_a, float* fluence)
+  /// @param instead  of what is negative at first; null: 0
+  OwedPower(
+    const VoxelsAround& around, const std::function<double(std::size_t)>& sigma_a, float* fluence, const float* instead)
     : Around(around)
     , Sigma(sigma_a)
     , Fluence(fluence)
@@ -24,7 +26,7 @@ public:
   {
     for (std::size_t i = 0; i < this->Owed.size(); ++i)
     {
-      this->Borrow(i);
+      this->Borrow(i, instead ? instead[i] : 0.0f);
     }
   }
 
@@ -52,18 +54,18 @@ public:
       if (this->Sigma(i) > 0.0)
       {
         this->Fluence[i] = static_cast<float>(this->Fluence[i] * (1.0 - this->SumBeside(parts, known, at)));
-        this->Borrow(i);
+        this->Borrow(i, 0.0f);
       }
     });
   }
 
 private:
-  void Borrow(std::size_t i)
+  void Borrow(std::size_t i, float instead)
   {
     if (this->Fluence[i] < 0.0f)
     {
-      this->Owed[i] -= this->Sigma(i) * this->Fluence[i];
-      this->Fluence[i] = 0.0f;
+      this->Owed[i] += this->Sigma(i) * (static_cast<double>(instead) - this->Fluence[i]);
+      this->Fluence[i] = instead;
     }
   }
 
@@ -118,19 +120,27 @@ private:
 }
 
 void CutOffNegative(Communicator& communicator, const VoxelsAround& around, const VolumeLayout& layout,
-  const Field& sigma_a, Buffer<float>& fluence)
+  const Field& sigma_a, std::vector<float>& fluence, const std::vector<float>& instead)
 {
-  std::vector<float> values;
-  communicator.Together([&] { values = fluence.Read(); });
   for (int c = 0; c < layout.channels; ++c)
   {
+    const std::size_t first = c * layout.Stride();
     OwedPower owed(
-      around, [&sigma_a, c](std::size_t i) { return sigma_a.At(i, c); }, values.data() + c * layout.Stride());
+      around, [&sigma_a, c](std::size_t i) { return sigma_a.At(i, c); }, fluence.data() + first,
+      instead.empty() ? nullptr : instead.data() + first);
     for (int turn = 0; turn < MostTurns && communicator.Sum({ owed.Any() ? 1.0 : 0.0 })[0] > 0.0; ++turn)
     {
       owed.Collect();
     }
   }
+}
+
+void CutOffNegative(Communicator& communicator, const VoxelsAround& around, const VolumeLayout& layout,
+  const Field& sigma_a, Buffer<float>& fluence)
+{
+  std::vector<float> values;
+  communicator.Together([&] { values = fluence.Read(); });
+  CutOffNegative(communicator, around, layout, sigma_a, values);
   communicator.Together([&] { fluence.Write(values.data()); });
 }
 }

@@ -1,5 +1,6 @@
 #include "LightPropagation/Conservative/Acceleration/DiffusionAcceleration.h"
 
+#include "LightPropagation/Conservative/NegativeFluence.h"
 #include "LightPropagation/Conservative/SurfaceRadiance.h"
 #include "LightPropagation/Convergence.h"
 #include "LightPropagation/Diffusion/FluxLimit.h"
@@ -418,11 +419,12 @@ void DiffusionAcceleration::Leave()
   this->Result.kept = this->Warm.Leave(this->First, moments, { rate, rate, rate });
 }
 
-/// Where the system's solution is negative, the fluence of the last sweep stands.
+/// Where the system's solution is negative, what the last sweep found stands.
 void DiffusionAcceleration::WriteFluence()
 {
   TransportParts& parts = this->Parts;
-  for (int c = 0; c < parts.Layout.channels; ++c)
+  const VolumeLayout& layout = parts.Layout;
+  for (int c = 0; c < layout.channels; ++c)
   {
     if (this->VoxelPower(c) > 0.0)
     {
@@ -430,26 +432,26 @@ void DiffusionAcceleration::WriteFluence()
     }
   }
   this->CountLight();
-  const double perVolume = 1.0 / parts.Layout.grid.VoxelVolume();
-  const std::vector<float> path = parts.Path.Read();
-  std::vector<float> fluence(path.size(), 0.0f);
-  for (int c = 0; c < parts.Layout.channels; ++c)
+  std::vector<float> swept = parts.Path.Read(), fluence(layout.Values(), 0.0f);
+  swept.resize(layout.Values());
+  const double perVolume = 1.0 / layout.grid.VoxelVolume();
+  std::transform(swept.begin(), swept.end(), swept.begin(),
+    [perVolume](float path) { return std::max(static_cast<float>(path * perVolume), 0.0f); });
+  for (int c = 0; c < layout.channels; ++c)
   {
     const std::vector<double> solved = this->Systems[c]->Found();
-    InThreads(parts.Layout.grid.VoxelCount(), 65536, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i)
-      {
-        const std::size_t at = c * parts.Layout.Stride() + i;
-        const double found = solved[i];
-        const double swept = found >= 0.0 ? found : path[at] * perVolume;
-        fluence[at] = std::max(static_cast<float>(swept + this->UncollidedFluence[at]), 0.0f);
-      }
-    });
+    std::copy(solved.begin(), solved.end(), fluence.begin() + static_cast<std::ptrdiff_t>(c * layout.Stride()));
     if (this->Settings.netFlux && !parts.Basis && this->VoxelPower(c) > 0.0)
     {
       this->Systems[c]->AddFlux(parts.Flux);
     }
   }
+  SingleRank alone;
+  const BlockPartition whole = BlockPartition::Even(layout.grid, 1);
+  const VoxelsAround around(alone, whole, this->Settings.periodic, 1);
+  CutOffNegative(alone, around, layout, this->TheMedium.sigma_a, fluence, swept);
+  std::transform(fluence.begin(), fluence.end(), this->UncollidedFluence.begin(), fluence.begin(), std::plus<float>());
+  CutOffNegative(alone, around, layout, this->TheMedium.sigma_a, fluence);
   parts.Fluence.Write(fluence.data());
   if (this->Settings.netFlux)
   {

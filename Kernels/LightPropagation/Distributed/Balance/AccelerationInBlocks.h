@@ -99,6 +99,8 @@ private:
   double VoxelPower(int channel) const;
   bool Done(int iterations) const;
   void WriteFluence();
+  std::vector<float> FluenceOfSystems();
+  std::vector<float> FluxOfSystems() const;
 
   Parts The;
   const bool LinearSource;

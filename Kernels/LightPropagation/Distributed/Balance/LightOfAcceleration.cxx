@@ -1,5 +1,6 @@
 // What AccelerationInBlocks.h finds: its light and where the power went, of the last sweep and the systems' solution.
 
+#include "LightPropagation/Conservative/NegativeFluence.h"
 #include "LightPropagation/Diffusion/FluxLimit.h"
 #include "LightPropagation/Distributed/Balance/AccelerationInBlocks.h"
 #include "LightPropagation/Distributed/Balance/SurfaceInBlocks.h"
@@ -68,7 +69,7 @@ void AccelerationInBlocks::CountLight()
   }
 }
 
-/// Where the system's solution is negative, the fluence of the last sweep stands.
+/// As DiffusionAcceleration does.
 void AccelerationInBlocks::WriteFluence()
 {
   const VolumeLayout& own = this->The.layout;
@@ -80,43 +81,70 @@ void AccelerationInBlocks::WriteFluence()
     }
   }
   this->CountLight();
+  const std::vector<float> fluence = this->FluenceOfSystems();
   this->The.others.Together([&] {
     if (!this->Block.Has())
     {
       return;
     }
-    const double perVolume = 1.0 / own.grid.VoxelVolume();
-    const std::vector<float> path = this->The.path.Read();
-    std::vector<float> fluence(path.size(), 0.0f);
-    const bool withFlux = this->The.flux.Size() > 0;
-    Buffer<float> flux(this->The.device, withFlux ? this->Block.WithGhosts().Floats(3) : 0, "net_flux");
-    flux.Fill(0.0f);
-    for (int c = 0; c < own.channels; ++c)
-    {
-      const std::vector<double> solved = this->Systems[c]->Found();
-      for (std::size_t i = 0; i < solved.size(); ++i)
-      {
-        const std::size_t at = c * own.Stride() + i;
-        const double found = solved[i] >= 0.0 ? solved[i] : path[at] * perVolume;
-        fluence[at] = std::max(static_cast<float>(found + this->UncollidedFluence[at]), 0.0f);
-      }
-      if (withFlux && !this->Moments.Any() && this->VoxelPower(c) > 0.0)
-      {
-        this->Systems[c]->AddFlux(flux);
-      }
-    }
     this->The.fluence.Write(fluence.data());
-    if (withFlux)
+    if (this->The.flux.Size() > 0)
     {
       std::vector<float> all = this->The.flux.Read();
-      // The moments of degree 1 have less of the pattern of rays than the powers through faces.
-      const std::vector<float> found =
-        this->Moments.Any() ? this->FluxOf(this->The.path) : this->Block.TakeOwn(flux, 3 * own.channels);
+      const std::vector<float> found = this->FluxOfSystems();
       std::transform(all.begin(), all.end(), found.begin(), all.begin(), std::plus<float>());
       this->The.flux.Write(all.data());
       LimitFlux(own, fluence, this->The.flux);
     }
   });
+}
+
+/// @return with uncollided light, [channel][stride]
+std::vector<float> AccelerationInBlocks::FluenceOfSystems()
+{
+  const VolumeLayout& own = this->The.layout;
+  const double perVolume = 1.0 / own.grid.VoxelVolume();
+  std::vector<float> fluence, swept;
+  this->The.others.Together([&] {
+    if (!this->Block.Has())
+    {
+      return;
+    }
+    swept = this->The.path.Read();
+    swept.resize(own.Floats());
+    fluence.resize(own.Floats(), 0.0f);
+    std::transform(swept.begin(), swept.end(), swept.begin(),
+      [perVolume](float path) { return std::max(static_cast<float>(path * perVolume), 0.0f); });
+    for (int c = 0; c < own.channels; ++c)
+    {
+      const std::vector<double> solved = this->Systems[c]->Found();
+      std::copy(solved.begin(), solved.end(), fluence.begin() + static_cast<std::ptrdiff_t>(c * own.Stride()));
+    }
+  });
+  const VoxelsAround around(this->The.others, this->The.partition, this->The.settings.periodic, 1);
+  CutOffNegative(this->The.others, around, own, this->The.scene.medium.sigma_a, fluence, swept);
+  std::transform(fluence.begin(), fluence.end(), this->UncollidedFluence.begin(), fluence.begin(), std::plus<float>());
+  CutOffNegative(this->The.others, around, own, this->The.scene.medium.sigma_a, fluence);
+  return fluence;
+}
+
+/// The moments of degree 1 have less of the pattern of rays than the powers through faces.
+std::vector<float> AccelerationInBlocks::FluxOfSystems() const
+{
+  if (this->Moments.Any())
+  {
+    return this->FluxOf(this->The.path);
+  }
+  Buffer<float> flux(this->The.device, this->Block.WithGhosts().Floats(3), "net_flux");
+  flux.Fill(0.0f);
+  for (int c = 0; c < this->The.layout.channels; ++c)
+  {
+    if (this->VoxelPower(c) > 0.0)
+    {
+      this->Systems[c]->AddFlux(flux);
+    }
+  }
+  return this->Block.TakeOwn(flux, 3 * this->The.layout.channels);
 }
 
 std::vector<double> AccelerationInBlocks::LeftByCell() const
