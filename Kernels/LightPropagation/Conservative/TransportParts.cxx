@@ -186,8 +186,8 @@ void TransportParts::FindBoundaryLight()
   }
 }
 
-/// What faces send in evenly from everywhere goes along the usual directions, as scattered light does, so that a furnace is
-/// even. Nor do the sweeps' faces give back a part of light that accelerated solves have along finer directions.
+/// What faces send in evenly from everywhere goes along the usual directions, as scattered light does, so a furnace
+/// is even. Nor do the sweeps' faces give back a part of light that accelerated solves have along finer directions.
 void TransportParts::FindFineBoundary()
 {
   const PropagationSettings& settings = this->Problem.Settings();

@@ -51,8 +51,8 @@ public:
   const AngularBasis* Basis = nullptr;         ///< of the moments in which light is scattered; null: all is isotropic
   UncollidedDirections Finer;                  ///< of light from outside until it meets the medium
   std::unique_ptr<const SweptDirections> Fine; ///< those directions; null: the usual ones
-  /// FineBoundary: along the finer directions; null where nothing comes along them. UsualBoundary: what sweeps carry, all
-  /// the rest; where orders are accelerated by the whole balance all that comes in.
+  /// FineBoundary: along the finer directions; null where nothing comes along them. UsualBoundary: what sweeps carry,
+  /// all the rest; where orders are accelerated by the whole balance all that comes in.
   std::unique_ptr<const BoundaryLight> UsualBoundary, FineBoundary;
   /// By cells of the box's faces: where they reflect, or face power is asked for; else null.
   std::unique_ptr<FaceLight> Faces;

@@ -10,7 +10,7 @@
 
 namespace tyndall
 {
-/// Along which directions the unscattered light of faces, sky and environment goes. Chosen by medium and settings alone,
+/// Along which directions the unscattered light of faces, sky and environment goes. Chosen by medium and settings,
 /// whatever shines, so that lights add up.
 struct UncollidedDirections
 {
@@ -21,10 +21,10 @@ struct UncollidedDirections
   bool correctsEscape = false;
 };
 
-/// The settings', or, where these leave it open (-1), for light of the box's faces as many as make a solve with one face
+/// The settings', or, where these leave it open (-1), for light of faces as many as make a solve with one face
 /// that shines a quarter longer at most, by a forecast of its scattering orders: 36, 49, 64 or 100, where no face
-/// reflects. Else 0; so where orders are accelerated by cells, where more of them gain nothing without the correction of
-/// what escapes, which would change the light of lamps as well, and in accelerated solves in angular moments, for memory.
+/// reflects. Else 0; so where cells accelerate orders (more directions gain nothing without the correction of what
+/// escapes, which would change the light of lamps as well), and in accelerated solves in angular moments, for memory.
 /// @param usual  directions of scattered light; only beside fitted ones more of them gain by themselves
 UncollidedDirections UncollidedDirectionsFor(
   const PropagationProblem& problem, const DirectionSet& usual, OrdersAdded how);
