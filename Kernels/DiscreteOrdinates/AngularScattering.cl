@@ -24,7 +24,7 @@ inline float sum8(float8 values)
   return (four.x + four.y) + (four.z + four.w);
 }
 
-// Moments of eight voxels, [voxel][MOMENTS].
+// Moments of eight voxels, [voxel][MOMENTS]. Sums of sums, for in even light rounding goes the same way in each.
 //   weights  [direction][MOMENTS]: what a direction adds to each
 inline void find_moments(
   const __global float* radiance, const __global float* weights, ulong stride, ulong first, __global float* moments)
@@ -37,12 +37,16 @@ inline void find_moments(
     {
       const __global float* in = radiance + (group * stride + first) * 8;
       const __global float* of = weights + (group * 8) * MOMENTS + row * REAL_WIDTH;
+#define CLEAR_PART(b) real part##b = (real)0.0f;
+      EACH_VOXEL(CLEAR_PART)
       for (int lane = 0; lane < 8; ++lane)
       {
         const real weight = load_real(lane * MOMENTS, of);
-#define GATHER(b) sum##b = multiply_add(weight, (real)in[8 * b + lane], sum##b);
+#define GATHER(b) part##b = multiply_add(weight, (real)in[8 * b + lane], part##b);
         EACH_VOXEL(GATHER)
       }
+#define ADD_PART(b) sum##b += part##b;
+      EACH_VOXEL(ADD_PART)
     }
 #define KEEP(b) store_real(sum##b, (first + b) * MOMENTS + row * REAL_WIDTH, moments);
     EACH_VOXEL(KEEP)

@@ -451,6 +451,25 @@ TEST_F(DiscreteOrdinates, AreTheSameEveryTime)
   EXPECT_EQ(first.balance.escaped, again.balance.escaped);
 }
 
+// In empty space every voxel adds the same numbers up: rounding would not even out.
+TEST_F(DiscreteOrdinates, HaveLightInProportionToWhatShines)
+{
+  std::vector<float> alone;
+  for (const double factor : { 1.0, 22.4159, 3.0, 0.1 })
+  {
+    LitMedium empty({ 3, 8, 8 });
+    empty.ShineFromEverywhere(0.1167527 * factor);
+    empty.light.faces[5] = { 0.0236657 * factor, 0.0236657 * factor, 0.0236657 * factor };
+    std::vector<float> fluence = empty.SolveOrdinates(this->GetDevice()).fluence;
+    for (float& value : fluence)
+    {
+      value = static_cast<float>(value / factor);
+    }
+    alone = alone.empty() ? fluence : alone;
+    EXPECT_LT(LargestDifference(fluence, alone), 1e-6 * *std::max_element(alone.begin(), alone.end())) << factor;
+  }
+}
+
 TEST_F(DiscreteOrdinates, SolveColourAsThreeGreyMedia)
 {
   LitMedium colour({ 5, 6, 7 });

@@ -17,7 +17,7 @@ from paraview.simple import *
 from paraview.vtk import vtkCellArray, vtkDoubleArray, vtkImageData, vtkIntArray, vtkPoints, vtkPolyData
 from paraview.vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from pieces import errors_of, source_of
-from random_scene import Scene, is_finite, scaled
+from random_scene import Scene, is_finite, scaled, with_few_digits
 
 folder, seed, count, seconds = sys.argv[1], int(sys.argv[2]), int(sys.argv[3]), float(sys.argv[4])
 LoadPlugin(os.environ["TYNDALL_PLUGIN"], remote=True, ns=globals())
@@ -188,7 +188,7 @@ def check_alone(number):
     again = Light(scene, scene.sources, extent)
     if claims.is_light(again) and not (again.fluence == light.fluence).all():
         claims.find("solved twice, the bits differ")
-    factor = float(scene.random.uniform(0.01, 100))
+    factor = float(with_few_digits(scene.random.uniform(0.01, 100)))
     brighter = Light(scene, [scaled(s, factor) for s in scene.sources], extent)
     if claims.is_light(brighter):
         claims.differ("%g times the power" % factor, brighter.fluence / factor, light.fluence, LINEAR)

@@ -8,6 +8,12 @@ import numpy
 SOLVERS = ("maps", "maps", "ordinates", "lattice", "photons")
 
 
+def with_few_digits(values):
+    """Rounded so that a product of two such numbers is a float: what illuminates a scene then has exactly so many times the power."""
+    mantissa, exponent = numpy.frexp(values)
+    return numpy.ldexp(numpy.round(mantissa * 4096) / 4096, exponent)
+
+
 class Scene:
     """One random scene. `medium` holds arrays by name, [z][y][x] or [z][y][x][3]; `sources` is what illuminates it, one
     independent part each, so that parts can be solved alone and together."""
@@ -30,7 +36,9 @@ class Scene:
             albedo = self.random.uniform(0, 0.9, 6) * ~numpy.repeat(self.periodic, 2)
             self.face_albedo = [float(a) for a in albedo]
         count = self.random.integers(1, 5)
-        self.sources = [self.make_source() for _ in range(count)]
+        self.sources = []
+        for _ in range(count):
+            self.sources.append(self.make_source())
         self.split = self.random.integers(0, count + 1) if count > 1 else 0
 
     def pick(self, *choices):
@@ -94,6 +102,8 @@ class Scene:
         kinds = ["sun", "point", "spot", "rectangle", "sky", "environment"]
         if self.solver != "photons":  # which send none
             kinds += ["faces", "emission"]
+        elif any(s["kind"] == "environment" for s in self.sources):
+            kinds.remove("environment")  # rounding of the sum to floats would turn photons by a little, and some then go another way
         kind = self.pick(*kinds)
         around = self.periodic.any()
         if kind in ("point", "spot", "rectangle"):
@@ -107,9 +117,9 @@ class Scene:
         if kind == "emission":
             dark = 1 - self.pick(0.0, 0.9)
             shining = self.field() * (self.random.random(self.size[::-1]) < dark)
-            return {"kind": "emission", "values": shining[..., None] * numpy.array(self.power()[:self.colours])}
+            return {"kind": "emission", "values": with_few_digits(shining[..., None] * numpy.array(self.power()[:self.colours]))}
         if kind == "environment":
-            return {"kind": "environment", "values": self.random.random((8, 16, 1)) * numpy.array(self.power())}
+            return {"kind": "environment", "values": with_few_digits(self.random.random((8, 16, 1)) * numpy.array(self.power()))}
         if kind == "faces":
             return {"kind": "faces", "values": [float(v) for v in self.random.random(6) * (self.random.random(6) < 0.4)]}
         return {"kind": "sky", "values": self.power()}

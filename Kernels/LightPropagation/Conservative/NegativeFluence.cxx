@@ -122,6 +122,11 @@ private:
 void CutOffNegative(Communicator& communicator, const VoxelsAround& around, const VolumeLayout& layout,
   const Field& sigma_a, std::vector<float>& fluence, const std::vector<float>& instead)
 {
+  const bool any = std::any_of(fluence.begin(), fluence.end(), [](float value) { return value < 0.0f; });
+  if (communicator.Sum({ any ? 1.0 : 0.0 })[0] == 0.0)
+  {
+    return;
+  }
   for (int c = 0; c < layout.channels; ++c)
   {
     const std::size_t first = c * layout.Stride();
