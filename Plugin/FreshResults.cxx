@@ -5,19 +5,51 @@
 #include "vtkCallbackCommand.h"
 #include "vtkCollection.h"
 #include "vtkNew.h"
+#include "vtkPVSessionBase.h"
 #include "vtkPVXMLElement.h"
 #include "vtkSMPropertyHelper.h"
 #include "vtkSMProxy.h"
 #include "vtkSMProxyManager.h"
+#include "vtkSMSession.h"
 #include "vtkSMSessionProxyManager.h"
+#include "vtkWeakPointer.h"
+
+#include <algorithm>
+#include <vector>
 
 namespace
 {
 using Information = vtkSMProxyManager::RegisteredProxyInformation;
 
+/// Sessions whose server has ended. ParaView 5.11 does not check whether a reply to PullState arrived before it parses
+/// it: asking such a server for properties aborts the client.
+std::vector<vtkWeakPointer<vtkObject>>& LostSessions()
+{
+  static std::vector<vtkWeakPointer<vtkObject>> sessions;
+  return sessions;
+}
+
+bool IsLost(vtkObject* session)
+{
+  const auto& lost = LostSessions();
+  return std::find(lost.begin(), lost.end(), session) != lost.end();
+}
+
+void NoteLoss(vtkObject* session, unsigned long, void*, void*)
+{
+  if (!IsLost(session))
+  {
+    LostSessions().emplace_back(session);
+  }
+}
+
 void ReadResults(vtkObject* caller, unsigned long, void*, void*)
 {
-  vtkSMProxy::SafeDownCast(caller)->UpdatePropertyInformation();
+  auto* const proxy = vtkSMProxy::SafeDownCast(caller);
+  if (!IsLost(proxy->GetSession()))
+  {
+    proxy->UpdatePropertyInformation();
+  }
 }
 
 /// What a frame was drawn with.
@@ -29,7 +61,7 @@ void ReadExposures(vtkObject* view, unsigned long, void*, void* isInteractive)
   {
     vtkSMProxy* const shown = representations.GetAsProxy(i);
     vtkSMProperty* const used = shown ? shown->GetProperty("UsedExposure") : nullptr;
-    if (used && vtkSMPropertyHelper(shown, "Visibility", true).GetAsInt() != 0)
+    if (used && !IsLost(shown->GetSession()) && vtkSMPropertyHelper(shown, "Visibility", true).GetAsInt() != 0)
     {
       shown->UpdatePropertyInformation(used);
     }
@@ -43,11 +75,11 @@ vtkCallbackCommand* CommandOf(void (*function)(vtkObject*, unsigned long, void*,
   return command;
 }
 
-void Observe(vtkSMProxy* proxy, unsigned long event, vtkCallbackCommand* command)
+void Observe(vtkObject* object, unsigned long event, vtkCallbackCommand* command)
 {
-  if (!proxy->HasObserver(event, command))
+  if (!object->HasObserver(event, command))
   {
-    proxy->AddObserver(event, command);
+    object->AddObserver(event, command);
   }
 }
 
@@ -55,12 +87,14 @@ void Notice(vtkObject*, unsigned long, void*, void* data)
 {
   static vtkCallbackCommand* const read = CommandOf(ReadResults);
   static vtkCallbackCommand* const readExposures = CommandOf(ReadExposures);
+  static vtkCallbackCommand* const noteLoss = CommandOf(NoteLoss);
   const auto* registered = static_cast<Information*>(data);
   vtkSMProxy* const proxy = registered->Type == Information::PROXY ? registered->Proxy : nullptr;
   if (!proxy)
   {
     return;
   }
+  Observe(proxy->GetSession(), vtkPVSessionBase::ConnectionLost, noteLoss);
   vtkPVXMLElement* const hints = proxy->GetHints();
   if (hints && hints->FindNestedElementByName("FreshResults"))
   {
