@@ -10,8 +10,11 @@
 #include "vtkAbstractArray.h"
 #include "vtkAlgorithm.h"
 #include "vtkCellData.h"
+#include "vtkCompositeDataIterator.h"
+#include "vtkCompositeDataSet.h"
 #include "vtkDataObject.h"
 #include "vtkDataSetAttributes.h"
+#include "vtkDemandDrivenPipeline.h"
 #include "vtkFieldData.h"
 #include "vtkFloatArray.h"
 #include "vtkIdList.h"
@@ -25,6 +28,7 @@
 #include "vtkInformationUnsignedLongKey.h"
 #include "vtkInformationVector.h"
 #include "vtkMatrix3x3.h"
+#include "vtkMultiProcessController.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
@@ -200,6 +204,11 @@ bool MayBeAroundPoints(vtkAlgorithm* filter, int port, vtkInformation* input)
   return PointDataOf(filter) == VoxelsAroundPoints && ChoosesOnlyPoints(filter, arrays.chosen, input);
 }
 
+std::string NameOfInput(int port)
+{
+  return "The input" + (port > 0 ? " " + std::to_string(port) : std::string());
+}
+
 /// @return which filters of ParaView make an image of such data, as what they do
 std::string HowToMakeAnImage(vtkDataObject* data)
 {
@@ -249,6 +258,72 @@ void TakeOneImage(vtkInformation* port)
   port->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataObject");
 }
 
+namespace
+{
+/// Whether vtkCompositeDataPipeline runs the filter for each block of this input; of several such inputs it does so for
+/// the first, and refuses the others.
+bool IsTakenByBlocks(vtkAlgorithm* filter, int port, vtkDataObject* input)
+{
+  vtkInformation* const information = filter->GetInputPortInformation(port);
+  bool taken = filter->GetNumberOfInputConnections(port) == 1 && vtkCompositeDataSet::SafeDownCast(input);
+  for (int i = 0; taken && i < information->Length(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE()); ++i)
+  {
+    taken = !input->IsA(information->Get(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), i));
+  }
+  return taken;
+}
+
+int CountBlocks(vtkCompositeDataSet* composite)
+{
+  int count = 0;
+  const auto blocks = vtkSmartPointer<vtkCompositeDataIterator>::Take(composite->NewIterator());
+  for (blocks->InitTraversal(); !blocks->IsDoneWithTraversal(); blocks->GoToNextItem())
+  {
+    ++count;
+  }
+  return count;
+}
+
+/// What it means that the filter runs for each block of an input, and what to do about it.
+std::string AboutBlocks(vtkInformation* port)
+{
+  if (IsForImagesOfScene(port))
+  {
+    return "Each is lit as if it were alone: no light goes from one to another. To light them together, make one image "
+           "of them before: the filter ResampleToImage (Resample To Image) does.";
+  }
+  if (port->Has(ForImages()))
+  {
+    return "The light is computed once for each of them. The filter ExtractBlock (Extract Block) chooses one.";
+  }
+  return "The light is computed once for each of them alone. To have it of all together, make one dataset of them "
+         "before: the filter LightGroup (Light Group) does so with lights.";
+}
+}
+
+void WarnOfBlocks(vtkAlgorithm* filter, vtkInformation* request, vtkInformationVector** inputs)
+{
+  vtkMultiProcessController* const ranks = vtkMultiProcessController::GetGlobalController();
+  // With the whole of the input, this request comes once before REQUEST_DATA of all blocks.
+  if (!request->Has(vtkDemandDrivenPipeline::REQUEST_DATA_NOT_GENERATED()) || (ranks && ranks->GetLocalProcessId() > 0))
+  {
+    return;
+  }
+  for (int port = 0; port < filter->GetNumberOfInputPorts(); ++port)
+  {
+    vtkDataObject* const input = vtkDataObject::GetData(inputs[port]);
+    if (input && IsTakenByBlocks(filter, port, input))
+    {
+      if (const int count = CountBlocks(vtkCompositeDataSet::SafeDownCast(input)); count > 1)
+      {
+        vtkWarningWithObjectMacro(filter, << NameOfInput(port) << " is a " << input->GetClassName() << " of " << count
+                                          << " blocks. " << AboutBlocks(filter->GetInputPortInformation(port)));
+      }
+      return;
+    }
+  }
+}
+
 void RequireImages(vtkAlgorithm* filter)
 {
   for (int port = 0; port < filter->GetNumberOfInputPorts(); ++port)
@@ -260,8 +335,8 @@ void RequireImages(vtkAlgorithm* filter)
     vtkDataObject* const input = filter->GetInputDataObject(port, 0);
     if (input && !vtkImageData::SafeDownCast(input))
     {
-      throw InvalidInput("The input" + (port > 0 ? " " + std::to_string(port) : std::string()) + " is a " +
-        input->GetClassName() + "; it must be an image, vtkImageData. " + HowToMakeAnImage(input));
+      throw InvalidInput(NameOfInput(port) + " is a " + input->GetClassName() +
+        "; it must be an image, vtkImageData. " + HowToMakeAnImage(input));
     }
   }
 }

@@ -227,6 +227,13 @@ int vtkPhotonMarcher::FillInputPortInformation(int port, vtkInformation* informa
   return 1;
 }
 
+vtkTypeBool vtkPhotonMarcher::ProcessRequest(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  tyndall::WarnOfBlocks(this, request, inputs);
+  return this->Superclass::ProcessRequest(request, inputs, outputs);
+}
+
 int vtkPhotonMarcher::FillOutputPortInformation(int port, vtkInformation* information)
 {
   information->Set(vtkDataObject::DATA_TYPE_NAME(), port == 0 ? "vtkImageData" : "vtkPolyData");

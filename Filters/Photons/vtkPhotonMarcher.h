@@ -81,6 +81,8 @@ public:
   static vtkPhotonMarcher* New();
   vtkTypeMacro(vtkPhotonMarcher, vtkImageAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
+  vtkTypeBool ProcessRequest(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
 
   enum Schemes
   {

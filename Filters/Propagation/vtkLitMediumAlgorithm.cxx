@@ -74,6 +74,13 @@ int vtkLitMediumAlgorithm::FillInputPortInformation(int port, vtkInformation* in
   return 1;
 }
 
+vtkTypeBool vtkLitMediumAlgorithm::ProcessRequest(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  tyndall::WarnOfBlocks(this, request, inputs);
+  return this->Superclass::ProcessRequest(request, inputs, outputs);
+}
+
 int vtkLitMediumAlgorithm::RequestInformation(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {

@@ -39,6 +39,8 @@ class TYNDALL_EXPORT vtkLitMediumAlgorithm : public vtkDataObjectAlgorithm
 public:
   vtkTypeMacro(vtkLitMediumAlgorithm, vtkDataObjectAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
+  vtkTypeBool ProcessRequest(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
 
   /// Numbers of the input ports.
   enum InputPorts

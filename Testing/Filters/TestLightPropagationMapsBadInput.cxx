@@ -1,14 +1,23 @@
 #include "MediumScene.h"
 
+#include "vtkDiscreteOrdinates.h"
 #include "vtkIntArray.h"
+#include "vtkLatticeBoltzmannLighting.h"
 #include "vtkLightPropagationMaps.h"
 #include "vtkLightRig.h"
+#include "vtkMultiBlockDataSet.h"
+#include "vtkPartitionedDataSet.h"
+#include "vtkPartitionedDataSetCollection.h"
+#include "vtkPhotonEmitter.h"
+#include "vtkPhotonMarcher.h"
 #include "vtkPolyData.h"
 #include "vtkStringArray.h"
 #include "vtkTable.h"
 
 #include <cmath>
 #include <limits>
+#include <string>
+#include <vector>
 
 namespace
 {
@@ -268,6 +277,81 @@ void BadSettings(Refusals& refusals)
   refusals.Says("abacus");
   refusals->SetDevice("");
 }
+
+/// A block, then a gap, then further blocks below another level.
+vtkSmartPointer<vtkMultiBlockDataSet> Blocks(vtkDataObject* first, const std::vector<vtkDataObject*>& others = {})
+{
+  auto blocks = vtkSmartPointer<vtkMultiBlockDataSet>::New();
+  vtkNew<vtkMultiBlockDataSet> below;
+  blocks->SetBlock(0, first);
+  blocks->SetBlock(2, below);
+  for (vtkDataObject* other : others)
+  {
+    below->SetBlock(below->GetNumberOfBlocks(), other);
+  }
+  return blocks;
+}
+
+vtkSmartPointer<vtkPartitionedDataSetCollection> Partitions(vtkDataObject* first, vtkDataObject* second)
+{
+  auto collection = vtkSmartPointer<vtkPartitionedDataSetCollection>::New();
+  vtkNew<vtkPartitionedDataSet> partitions;
+  partitions->SetPartition(0, first);
+  partitions->SetPartition(1, second);
+  collection->SetPartitionedDataSet(0, partitions);
+  return collection;
+}
+
+/// VTK runs a filter for each block of its input, and the light that comes out is not that of all of them.
+void WarnsOfBlocks(test::Claims& claims, vtkAlgorithm* filter)
+{
+  const std::string name = filter->GetClassName();
+  test::Errors errors(filter);
+  const auto medium = Good(), other = Good();
+  filter->SetInputDataObject(0, Blocks(medium, { other, Good() }));
+  filter->Update();
+  claims.That(errors.WasOneWith("The input is a vtkMultiBlockDataSet of 3 blocks. Each is lit as if it were alone"),
+    name + ": one warning of blocks");
+  filter->Update();
+  claims.That(errors.None(), name + ": once with each update");
+  filter->SetInputDataObject(0, Partitions(medium, other));
+  filter->Update();
+  claims.That(errors.WasOneWith("vtkPartitionedDataSetCollection of 2 blocks"), name + ": one of partitions");
+  filter->SetInputDataObject(0, Blocks(medium));
+  filter->Update();
+  claims.That(errors.None(), name + ": a block alone needs none");
+  filter->SetInputDataObject(0, medium);
+  filter->Update();
+  claims.That(errors.None(), name + ": nor does an image");
+}
+
+void MediumOfBlocks(test::Claims& claims)
+{
+  vtkNew<vtkLightRig> rig;
+  WarnsOfBlocks(claims, vtkNew<vtkLightPropagationMaps>());
+  WarnsOfBlocks(claims, vtkNew<vtkDiscreteOrdinates>());
+  WarnsOfBlocks(claims, vtkNew<vtkLatticeBoltzmannLighting>());
+  vtkNew<vtkPhotonEmitter> emitter;
+  emitter->SetPhotonCount(64);
+  emitter->SetLightsConnection(rig->GetOutputPort());
+  WarnsOfBlocks(claims, emitter); // and is left with an image
+  vtkNew<vtkPhotonMarcher> marcher;
+  marcher->SetPhotonsConnection(emitter->GetOutputPort());
+  WarnsOfBlocks(claims, marcher);
+}
+
+void LightsOfBlocks(test::Claims& claims)
+{
+  vtkNew<vtkLightRig> rig;
+  vtkNew<vtkLightPropagationMaps> maps;
+  test::Errors errors(maps);
+  maps->SetInputDataObject(Good());
+  maps->SetLightsData(Blocks(LightsOf(rig), { LightsOf(rig) }));
+  maps->Update();
+  claims.That(
+    errors.WasOneWith("The input 1 is a vtkMultiBlockDataSet of 2 blocks. The light is computed once for each"),
+    "lights in blocks are warned of");
+}
 }
 
 int TestLightPropagationMapsBadInput(int, char*[])
@@ -285,6 +369,8 @@ int TestLightPropagationMapsBadInput(int, char*[])
   BadEnvironment(refusals);
   BadSettings(refusals);
   FailedBefore(claims);
+  MediumOfBlocks(claims);
+  LightsOfBlocks(claims);
   refusals.None("good input after all the bad is solved");
 
   refusals->SetSkyColor(0.0, 0.0, 0.0);

@@ -1,4 +1,5 @@
-"""What is no image is refused from scripts, too, by one error that names Resample To Image; images in blocks are solved one by one."""
+"""What is no image is refused from scripts, too, by one error that names Resample To Image; images in blocks are solved one by one,
+with one warning."""
 import os
 
 from paraview import servermanager
@@ -93,7 +94,10 @@ alone = vtk_to_numpy(servermanager.Fetch(LightPropagationMaps(
     Input=ParticipatingMedium(Input=wavelet, MaximumDensity=100))).GetCellData().GetArray("fluence"))
 for group in ("vtkMultiBlockDataSet", "vtkPartitionedDataSetCollection"):
     medium = ParticipatingMedium(Input=GroupDatasets(Input=[wavelet, wavelet], OutputType=group), MaximumDensity=100)
-    blocks = leaves(LightPropagationMaps(Input=medium))
+    light = LightPropagationMaps(Input=medium)
+    said = messages(light)
+    assert said.count(" is a ") == 1 and group + " of 2 blocks. Each is lit as if it were alone" in said, (group, said)
+    blocks = leaves(light)
     assert len(blocks) == 2, (group, blocks)
     for block in blocks:
         assert (vtk_to_numpy(block.GetCellData().GetArray("fluence")) == alone).all(), group

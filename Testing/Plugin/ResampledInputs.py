@@ -1,4 +1,4 @@
-"""What is no image becomes one by Resample To Image: unstructured grids, adaptive meshes; .pvti is read as it is. The light is that of
+"""What is no image becomes one by Resample To Image: unstructured grids, adaptive meshes, blocks; .pvti is read as it is. The light is that of
 the image that they were made of."""
 import os
 
@@ -33,6 +33,8 @@ same = {"UseInputBounds": 0, "SamplingBounds": [-8, 8, -7, 7, -6, 6], "SamplingD
 check(balance(ResampleToImage(Input=cells, **same)), expected, 1e-3, "tetrahedra")
 adaptive = ImageDataToAMR(Input=image)
 check(balance(ResampleToImage(Input=adaptive, **same)), expected, 1e-3, "adaptive mesh")
+halves = [ExtractSubset(Input=image, VOI=[*ends, -7, 7, -6, 6]) for ends in ([-8, 0], [0, 8])]
+check(balance(ResampleToImage(Input=GroupDatasets(Input=halves), **same)), expected, 1e-6, "blocks")
 path = os.path.join(os.environ["TYNDALL_TEST_OUTPUT"], "ResampledInputs.pvti")
 SaveData(path, proxy=image)
 check(balance(XMLPartitionedImageDataReader(FileName=[path])), expected, 1e-6, ".pvti")
