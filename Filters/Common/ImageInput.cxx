@@ -952,9 +952,9 @@ void TellVoxels(vtkAlgorithm* filter, int port, vtkInformationVector* inputs, vt
 {
   using Pipeline = vtkStreamingDemandDrivenPipeline;
   vtkInformation* const input = inputs->GetInformationObject(0);
-  if (!input)
+  if (!input || IsTakenByBlocks(filter, port, vtkDataObject::GetData(input)))
   {
-    return;
+    return; // each block has voxels of its own
   }
   std::array<int, 6> told = { 0, 1, 0, 1, 0, 1 };
   const bool isKnown = input->Has(Pipeline::WHOLE_EXTENT()) != 0;

@@ -90,10 +90,12 @@ for kind, source in others:
         assert said.count("ERROR") == 0, case + (said,)
         assert make is write or servermanager.Fetch(proxy).GetNumberOfCells() > 0, case
 
+wavelet = Wavelet(WholeExtent=[-6, 0, -3, 3, -3, 3])  # without voxel (0, 0, 0)
 alone = vtk_to_numpy(servermanager.Fetch(LightPropagationMaps(
     Input=ParticipatingMedium(Input=wavelet, MaximumDensity=100))).GetCellData().GetArray("fluence"))
 for group in ("vtkMultiBlockDataSet", "vtkPartitionedDataSetCollection"):
     medium = ParticipatingMedium(Input=GroupDatasets(Input=[wavelet, wavelet], OutputType=group), MaximumDensity=100)
+    assert messages(medium) == "", group
     light = LightPropagationMaps(Input=medium)
     said = messages(light)
     assert said.count(" is a ") == 1 and group + " of 2 blocks. Each is lit as if it were alone" in said, (group, said)
