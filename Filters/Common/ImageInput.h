@@ -123,9 +123,9 @@ void NoteAveraged(vtkAlgorithm* filter, const std::vector<std::string>& arrays);
 /// Adds the same as a line to the settings used.
 void AddAveraged(vtkAlgorithm* filter, std::vector<std::string>& settings);
 
-/// In ProcessRequest of a filter in which light goes from voxel to voxel, with each request: warns, once with each update,
-/// where VTK's pipeline is to run the filter for one block of a composite input after another. RequestData sees the
-/// blocks alone. Where there are several ranks the first one warns, of its blocks.
+/// In ProcessRequest of a filter in which light goes from voxel to voxel, with each request: warns, once with each
+/// update, where VTK's pipeline is to run the filter for one block of a composite input after another. RequestData sees
+/// the blocks alone. Where there are several ranks the first one warns, of its blocks.
 void WarnOfBlocks(vtkAlgorithm* filter, vtkInformation* request, vtkInformationVector** inputs);
 
 /// To be asked before a filter works; Guarded does.
