@@ -119,21 +119,25 @@ TEST_F(PropagationBlocks, HaveTheLightOfFarLampsAndNarrowCones)
   }
 }
 
-/// On a face, on an edge, and where a face is also the border of a block.
-TEST_F(PropagationBlocks, HaveTheLightOfLampsOnTheBorder)
+/// On a face, on an edge, and where a face is also the border of a block; a rectangle that is larger than the box.
+TEST_F(PropagationBlocks, HaveTheLightOfLampsOnTheBorderAndOfLargeRectangles)
 {
   RandomMedium whole(Grid{ { 6, 5, 7 }, { 1.0, 0.8, 1.3 } }, 1, 0.8f, 7);
-  Light lamp = NearLamps()[0];
-  for (const std::array<double, 3>& position :
-    { std::array<double, 3>{ 0.0, 1.7, 9.1 }, { 6.0, 1.7, 4.1 }, { 3.0, 4.0, 4.0 } })
+  std::vector<Light> lamps(3, NearLamps()[0]);
+  lamps[0].position = { 0.0, 1.7, 9.1 };
+  lamps[1].position = { 3.0, 4.0, 4.0 };
+  lamps[2].type = LightType::Rectangle;
+  lamps[2].position = { 2.0, 4.0, 12.0 };
+  lamps[2].size = { 70.0, 40.0 };
+  lamps[2].direction = { 0.0, 0.1, -1.0 };
+  for (const Light& lamp : lamps)
   {
-    lamp.position = position;
     Illumination shining;
     shining.lights = { lamp };
     const LightField expected = SolveConservative(GetDevice(), whole.medium, shining, SettingsOf(2));
     for (const int ranks : { 1, 3 })
     {
-      SCOPED_TRACE(std::to_string(position[2]) + ", " + std::to_string(ranks) + " ranks");
+      SCOPED_TRACE(std::to_string(lamp.position[2]) + ", " + std::to_string(ranks) + " ranks");
       const BlockPartition partition = BlockPartition::Even(whole.medium.grid, ranks);
       const LightField found = LightOfAll(GetDevice(), partition, whole, shining, SettingsOf(2));
       ExpectSame(found, expected);

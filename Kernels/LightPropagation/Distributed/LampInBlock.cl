@@ -9,7 +9,8 @@ static void follow_in_block(const LampInfo* lamp, const BeamRow* row, BeamOnItsW
 {
   lamp_tally tally;
   clear_tally(&tally, cells);
-  beam_state state = { beam->layer, beam->step, beam->left, beam->rest, { beam->stays[0], beam->stays[1] } };
+  beam_state state = { beam->layer, beam->step, beam->left, beam->rest, { beam->stays[0], beam->stays[1] },
+    beam->free };
   float shone = 0.0f, power = 0.0f;
   if (!beam->begun || lamp->periodic[row->axis])
   {
@@ -19,8 +20,7 @@ static void follow_in_block(const LampInfo* lamp, const BeamRow* row, BeamOnItsW
   {
     shone = power;
     tally.entered = row->skipped > 0 ? 0.0f : shone;
-    state.left = shone;
-    state.stays[0] = state.stays[1] = 1.0f;
+    state = beam_of(shone);
   }
   // What is left of one that has come so far may be less than 0 by rounding.
   const bool is_there = beam->begun || shone > 0.0f;
@@ -34,6 +34,7 @@ static void follow_in_block(const LampInfo* lamp, const BeamRow* row, BeamOnItsW
   beam->rest = state.rest;
   beam->stays[0] = state.stays[0];
   beam->stays[1] = state.stays[1];
+  beam->free = state.free;
   for (int a = 0; a < 3 && !beam->ended; ++a)
   {
     beam->voxel[a] = state.voxel[a];

@@ -90,8 +90,8 @@ public:
     lamps.Others.Together([&] {
       if (lamps.Has())
       {
-        this->Sums =
-          std::make_unique<LampSums>(lamps.TheDevice, volume.deposit, this->Box.VoxelCount(), lamps.Partition.whole);
+        this->Sums = std::make_unique<LampSums>(
+          lamps.TheDevice, this->Lamp, volume.deposit, this->Box.VoxelCount(), lamps.Partition.whole);
         this->Kernel =
           this->Lamp.Kernel(lamps.TheDevice, "follow_lamp_in_block", kernel_source::LampInBlock, volume.deposit);
       }
@@ -105,14 +105,13 @@ public:
     };
     const std::array<bool, 3>& periodic = this->All.Stored.Periodic();
     const double even = FollowInPasses(this->All.Partition.whole, periodic, this->Shares, follow, monitor);
-    const double correction = this->Lamp.Correction(this->Shares);
-    this->PutDown(correction, even);
-    return this->Shares.Times(this->Lamp.TheLight().power, this->Volume.channels, correction);
+    const LampFactors factors = this->PutDown(even);
+    return this->Shares.Times(this->Lamp.TheLight().power, this->Volume.channels, factors);
   }
 
 private:
   void FollowPoints(const Pass& pass, double factor, const Monitor& monitor);
-  void Follow(const glm::dvec3& point, const Pass& pass, double part, const Monitor& monitor);
+  void Follow(const std::vector<BeamRow>& rows, const Monitor& monitor);
   std::vector<BeamOnItsWay> SettingOff(const std::vector<BeamRow>& rows) const;
   std::vector<BeamOnItsWay> FollowInBlock(const std::vector<BeamRow>& rows, const LampInfo& info,
     const Buffer<BeamRow>& rowBuffer, const std::vector<BeamOnItsWay>& beams, const Monitor& monitor);
@@ -120,7 +119,7 @@ private:
   void AddToShares();
   std::vector<cl_long> CellsOfAll();
   double ExtinctionOfAll();
-  void PutDown(double correction, double even);
+  LampFactors PutDown(double even);
 
   LampsInBlocks& All;
   const SweepVolume& Volume;
@@ -136,26 +135,25 @@ private:
 /// As LampBeams does, of all ranks together.
 void LampsInBlocks::Beams::FollowPoints(const Pass& pass, double factor, const Monitor& monitor)
 {
-  const std::vector<glm::dvec3> points = this->Lamp.PointsOf(pass);
+  const std::vector<LampPoint>& points = this->Lamp.PointsOf(pass);
   const double all = static_cast<double>(points.size());
-  for (std::size_t p = 0; p < points.size(); ++p)
+  for (std::size_t p = 0, next; p < points.size(); p = next)
   {
-    this->Follow(points[p], pass, factor / all, OfPart(monitor, p / all, (p + 1) / all));
+    const std::vector<BeamRow> rows = this->Lamp.Rows(pass, factor, p, next);
+    this->Follow(rows, OfPart(monitor, p / all, next / all));
   }
   this->AddToShares();
 }
 
-/// From one point, until no beam is left anywhere.
-void LampsInBlocks::Beams::Follow(const glm::dvec3& point, const Pass& pass, double part, const Monitor& monitor)
+/// Until no beam of these rows is left anywhere.
+void LampsInBlocks::Beams::Follow(const std::vector<BeamRow>& rows, const Monitor& monitor)
 {
-  std::vector<BeamRow> rows;
   Buffer<BeamRow> rowBuffer;
-  const LampInfo info = this->Lamp.Describe(part, this->Box, this->All.Own);
+  const LampInfo info = this->Lamp.Describe(this->Box, this->All.Own);
   this->All.Rounds.UntilAllEnd<BeamOnItsWay>(
     [&](int round, std::vector<BeamOnItsWay>&& arrived, const Monitor& ofRound) {
       if (round == 0)
       {
-        rows = this->Lamp.Rows(point, pass);
         arrived = this->SettingOff(rows);
         rowBuffer = Buffer<BeamRow>(this->All.TheDevice, rows.empty() ? std::vector<BeamRow>(1) : rows, "beams");
       }
@@ -174,7 +172,7 @@ std::vector<BeamOnItsWay> LampsInBlocks::Beams::SettingOff(const std::vector<Bea
       const std::array<int, 3> voxel = FirstVoxel(rows[r], b, this->All.Partition.whole, this->All.Stored.Periodic());
       if (Holds(this->All.Own, voxel.data()))
       {
-        own.push_back({ static_cast<cl_int>(r), b, 0, 0, 0, 0.0f, 0.0f, {}, {}, 0 });
+        own.push_back({ static_cast<cl_int>(r), b, 0, 0, 0, 0.0f, 0.0f, {}, 0.0f, {}, 0 });
       }
     }
   }
@@ -242,14 +240,14 @@ void LampsInBlocks::Beams::AddToShares()
 
 /// Sums of the block's voxels, from all ranks whose beams lay over them, into the deposit.
 /// @param even  of the power, to be spread evenly
-void LampsInBlocks::Beams::PutDown(double correction, double even)
+LampFactors LampsInBlocks::Beams::PutDown(double even)
 {
   const LampsInBlocks& all = this->All;
   std::vector<cl_long> found, own;
   all.Others.Together([&] { found = this->Sums ? this->Sums->Sums().Read() : found; });
   // A rank without voxels may not know what the others want.
   const int parts =
-    static_cast<int>(all.Others.Largest({ static_cast<double>(LampSums::Parts(this->Volume.deposit)) })[0]);
+    static_cast<int>(all.Others.Largest({ static_cast<double>(LampSums::Parts(this->Lamp, this->Volume.deposit)) })[0]);
   for (int part = 0; part < parts; ++part)
   {
     const std::size_t count = this->Box.VoxelCount();
@@ -261,23 +259,35 @@ void LampsInBlocks::Beams::PutDown(double correction, double even)
   }
   const std::vector<cl_long> cells = this->CellsOfAll();
   const double extinction = even > 0.0 ? this->ExtinctionOfAll() : 0.0;
+  std::unique_ptr<LampSums> sums;
+  double taken = 0.0;
   all.Others.Together([&] {
-    LampSums sums(all.TheDevice, this->Volume.deposit, this->Volume.stride, all.Partition.whole);
+    sums = std::make_unique<LampSums>(
+      all.TheDevice, this->Lamp, this->Volume.deposit, this->Volume.stride, all.Partition.whole);
     if (all.Has())
     {
-      sums.Sums().Write(own.data());
-      sums.AddTo(this->Volume, this->Lamp, correction);
-      sums.SpreadEvenly(this->Volume, this->Lamp, correction * even, extinction);
+      sums->Sums().Write(own.data());
+      taken = sums->FitToVacuum(this->Volume, this->Lamp, all.Own);
+    }
+  });
+  taken = all.Others.Sum({ taken })[0];
+  const LampFactors factors = this->Lamp.Factors(this->Shares, taken, even);
+  all.Others.Together([&] {
+    if (all.Has())
+    {
+      sums->AddTo(this->Volume, this->Lamp, factors.taken);
+      sums->SpreadEvenly(this->Volume, this->Lamp, factors.out * even, extinction);
     }
     if (!cells.empty())
     {
       const std::size_t faceFirst = this->Volume.firstChannel * BoxFaceCellCount(all.Partition.whole);
-      sums.Cells().Write(cells.data());
-      sums.AddCellsTo(this->Volume, faceFirst, this->Lamp, correction);
+      sums->Cells().Write(cells.data());
+      sums->AddCellsTo(this->Volume, faceFirst, this->Lamp, factors.out);
     }
     all.TheDevice.Finish(); // the sums go
   });
   this->Shares.onTheWay += extinction > 0.0 ? 0.0 : even; // nothing ever takes it
+  return factors;
 }
 
 double LampsInBlocks::Beams::ExtinctionOfAll()

@@ -4,6 +4,8 @@
 //   MOMENTS     1: first moments of the deposit are wanted
 //   NET_FLUX    1: net flux is wanted
 //   FACE_OUT    1: the power that leaves through each cell of the box's faces is wanted
+//   VACUUM      1: a rectangle in parts, each for some voxels; what its beams deposit in vacuum is summed, too, and
+//               where an axis is periodic (AROUND 1) what they deposit before they go around it
 //   THIN        optical length below which light counts as lost evenly
 //   IN_BLOCK    1: beams are followed in a block of the grid, and wait where they leave it; may be left out
 //
@@ -18,31 +20,6 @@
 #include "Numerics/Numerics.cl"
 
 #define STEPS 2 // a layer: a beam moves aside by half a voxel at most
-
-static float corner_angle(float a, float b, float d)
-{
-  return atan2(a * b, d * sqrt(a * a + b * b + d * d));
-}
-
-// Solid angle of the rectangle of this width and height about (a, b) at distance d: in closed form where it is near;
-// far away, where that is a small difference of large angles, by Gauss's rule of 2 x 2 points.
-static float solid_angle(float a, float b, float width, float height, float d)
-{
-  if (a * a + b * b + d * d < 64.0f * fmax(width * width, height * height))
-  {
-    const float a0 = a - 0.5f * width, a1 = a + 0.5f * width, b0 = b - 0.5f * height, b1 = b + 0.5f * height;
-    return corner_angle(a1, b1, d) - corner_angle(a0, b1, d) - corner_angle(a1, b0, d) + corner_angle(a0, b0, d);
-  }
-  float sum = 0.0f;
-  for (int i = 0; i < 4; ++i)
-  {
-    const float x = a + (i & 1 ? 0.288675135f : -0.288675135f) * width;
-    const float y = b + (i & 2 ? 0.288675135f : -0.288675135f) * height;
-    const float inverse = rsqrt(x * x + y * y + d * d);
-    sum += inverse * inverse * inverse;
-  }
-  return 0.25f * sum * width * height * d;
-}
 
 #define INSIDE 0
 #define BEFORE 1 // outside, and coming nearer
@@ -81,10 +58,36 @@ typedef struct
 {
   float entered, escaped[6], stranded;
   bool counts; // the beam has come where it is to be counted and put down
+  int along;   // layer that it is in, periodic axes unrolled
 #if FACE_OUT
   __global long* cells; // W in fixed point, parts of the lamp's power, [cell] (BoxFaces.h)
 #endif
 } lamp_tally;
+
+#if VACUUM
+static float square_distance(const LampInfo* lamp, const int* voxel, const float* place)
+{
+  float sum = 0.0f;
+  for (int a = 0; a < 3; ++a)
+  {
+    const float way = (voxel[a] + 0.5f - place[a]) * lamp->spacing[a];
+    sum += way * way;
+  }
+  return sum;
+}
+#endif
+
+// Whether a voxel, periodic axes unrolled, has the light of a beam's part of a rectangle: not that of the whole which
+// this is a part of, nor that of its own parts.
+static bool is_lit(const LampInfo* lamp, const BeamRow* row, const int* voxel)
+{
+#if VACUUM
+  return square_distance(lamp, voxel, row->part) >= row->partFrom &&
+    square_distance(lamp, voxel, row->whole) < row->wholeFrom;
+#else
+  return true;
+#endif
+}
 
 // Power that leaves through one face of the box at a voxel.
 static void leave_box(const LampInfo* lamp, int face, const int* voxel, float power, lamp_tally* tally)
@@ -211,6 +214,7 @@ typedef struct
   int layer, step;
   float left, rest;
   float stays[2]; // of its cross-section, along u and v, what has not left the box
+  float free;     // what would be left of it in vacuum
 #if IN_BLOCK
   int voxel[3];
 #endif
@@ -260,12 +264,20 @@ static void leave_sides(const LampInfo* lamp, const BeamRow* row, bool first, fl
       else if (through > 0.0f)
       {
         const float gone = up[k] ? lamp->size[axis] + 0.5f : -0.5f, at = beside + q + 0.5f;
-        leave_aside(lamp, row, 2 * axis + up[k], tangent, k == 0 ? (float2)(gone, at) : (float2)(at, gone),
-          0.5f * (way.x + way.y), way.y - way.x, through, tally);
+        int last[3];
+        last[row->axis] = tally->along;
+        last[axis] = up[k] ? lamp->size[axis] - 1 : 0;
+        last[other] = beside + q;
+        if (is_lit(lamp, row, last))
+        {
+          leave_aside(lamp, row, 2 * axis + up[k], tangent, k == 0 ? (float2)(gone, at) : (float2)(at, gone),
+            0.5f * (way.x + way.y), way.y - way.x, through, tally);
+        }
       }
     }
   }
   beam->left *= (1.0f - goes[0]) * (1.0f - goes[1]);
+  beam->free *= (1.0f - goes[0]) * (1.0f - goes[1]);
 }
 
 // One step of a beam: every part of it through its voxel. Changes what is left of it, and what is too small to be seen
@@ -291,13 +303,15 @@ static float step_beam(const LampInfo* lamp, const BeamRow* row, int layer, floa
   {
     const float part = (q & 1 ? 1.0f - part_u : part_u) * (q & 2 ? 1.0f - part_v : part_v);
     const float power = beam->left * part;
-    if (power <= 0.0f)
+    if (part <= 0.0f || (!VACUUM && power <= 0.0f))
     {
       continue;
     }
-    voxel[row->axis] = layer;
+    voxel[row->axis] = tally->along;
     voxel[u] = lowest.x + (q & 1);
     voxel[v] = lowest.y + (q >> 1);
+    const bool counts = tally->counts && is_lit(lamp, row, voxel);
+    voxel[row->axis] = layer;
     const int at_u = place(lamp, u, tangent.x, &voxel[u]);
     const int at_v = place(lamp, v, tangent.y, &voxel[v]);
     if (at_u != INSIDE || at_v != INSIDE)
@@ -311,16 +325,26 @@ static float step_beam(const LampInfo* lamp, const BeamRow* row, int layer, floa
     float through;
     const float lost = extinguished(tau, &through);
     const float mean_length = tau > 1e-20f ? lost / sigma[index] : length;
-    const float counted = tally->counts ? power * (mean_length * units_of(sigma[index], lamp->diagonal)) : 0.0f;
+    const float counted = counts ? power * (mean_length * units_of(sigma[index], lamp->diagonal)) : 0.0f;
     if (counted > 0.0f)
     {
       add_units(path + index, convert_long_sat_rte(counted * lamp->scale));
     }
+#if VACUUM
+    if (counts && tally->along == layer && voxel[u] == lowest.x + (q & 1) && voxel[v] == lowest.y + (q >> 1))
+    {
+      __global long* in_vacuum = path + FIRST_OF_VACUUM * stride + index;
+      add_units(in_vacuum, convert_long_sat_rte(beam->free * part * length * lamp->scale));
+#if AROUND
+      add_units(in_vacuum + stride, convert_long_sat_rte(counted * lamp->scale));
+#endif
+    }
+#endif
 #if NET_FLUX
     add_flux(lamp, row, tangent, way, length, counted, path + FIRST_OF_FLUX * stride + index, stride);
 #endif
 #if MOMENTS
-    if (tally->counts && tau > 0.5f * THIN)
+    if (counts && tau > 0.5f * THIN)
     {
       const float2 mean = (float2)(q & 1 ? 0.5f * (edges_u.y - lowest.x - 1.0f)
                                          : 0.5f * (fmin(edges_u.y - lowest.x, 1.0f) + edges_u.x - lowest.x),
@@ -390,12 +414,58 @@ static void miss_box(const LampInfo* lamp, const BeamRow* row, float2 start, flo
   beam->left -= missed;
 }
 
+#if VACUUM
+#define BEYOND 1 // voxels with its part's light
+#define SHORT_OF 2
+#define AMID 0
+
+// Where the cross-section of a beam is beside the voxels with its part's light.
+static int stretch_of(const LampInfo* lamp, const BeamRow* row, int along, float2 middle)
+{
+  int voxel[3];
+  voxel[row->axis] = along;
+  voxel[(row->axis + 1) % 3] = (int)floor(middle.x);
+  voxel[(row->axis + 2) % 3] = (int)floor(middle.y);
+  const float margin = 2.0f * lamp->diagonal;
+  const float from = sqrt(row->partFrom) - margin, to = sqrt(row->wholeFrom) + margin;
+  if (from > 0.0f && square_distance(lamp, voxel, row->part) < from * from)
+  {
+    return SHORT_OF;
+  }
+  return square_distance(lamp, voxel, row->whole) > to * to ? BEYOND : AMID;
+}
+
+// A step along the middle of a beam where it gives no voxel light.
+// @return whether all of its cross-section is in the box
+static bool pass_through(const LampInfo* lamp, const BeamRow* row, int layer, float2 middle, float2 width, float length,
+  const __global float* sigma, beam_state* beam)
+{
+  const float at[2] = { middle.x, middle.y }, half_width[2] = { 0.5f * width.x, 0.5f * width.y };
+  int voxel[3];
+  voxel[row->axis] = layer;
+  for (int k = 0; k < 2; ++k)
+  {
+    const int axis = (row->axis + 1 + k) % 3;
+    voxel[axis] = (int)floor(at[k]);
+    if (!lamp->periodic[axis] && (at[k] - half_width[k] < 0.0f || at[k] + half_width[k] > lamp->size[axis]))
+    {
+      return false;
+    }
+    place(lamp, axis, 0.0f, &voxel[axis]);
+  }
+  float through;
+  extinguished(sigma[place_in_arrays(lamp, voxel)] * length, &through);
+  beam->left *= through;
+  return true;
+}
+#endif
+
 // What is left of a beam at the far end of its axis, through up to four cells there.
 //   start  its middle where it begins
 static void leave_end(
   const LampInfo* lamp, const BeamRow* row, float2 start, float2 tangent, float t, float left, lamp_tally* tally)
 {
-#if FACE_OUT
+#if FACE_OUT || VACUUM
   const int u = (row->axis + 1) % 3;
   const int v = (row->axis + 2) % 3;
   int voxel[3] = { 0, 0, 0 }, lowest[2];
@@ -409,12 +479,14 @@ static void leave_end(
   overlap(edges_v, &lowest[1], &part_v);
   for (int q = 0; q < 4; ++q)
   {
+    voxel[row->axis] = tally->along;
     voxel[u] = lowest[0] + (q & 1);
     voxel[v] = lowest[1] + (q >> 1);
+    const float part = (q & 1 ? 1.0f - part_u : part_u) * (q & 2 ? 1.0f - part_v : part_v);
+    const float leaving = is_lit(lamp, row, voxel) ? part * left : 0.0f;
     place(lamp, u, tangent.x, &voxel[u]);
     place(lamp, v, tangent.y, &voxel[v]);
-    const float part = (q & 1 ? 1.0f - part_u : part_u) * (q & 2 ? 1.0f - part_v : part_v);
-    leave_box(lamp, 2 * row->axis + row->up, voxel, part * left, tally);
+    leave_box(lamp, 2 * row->axis + row->up, voxel, leaving, tally);
   }
 #else
   tally->escaped[2 * row->axis + row->up] += left;
@@ -455,7 +527,7 @@ static bool follow_beam(const LampInfo* lamp, const BeamRow* row, float2 begin, 
   const int first =
     row->outside ? (row->up ? 0 : n - 1) : clamp((int)(row->up ? floor(start) : ceil(start) - 1.0f), 0, n - 1);
   const int layers = row->up ? n - first : first + 1;
-  const int all = lamp->periodic[row->axis] ? row->layers : layers;
+  const int all = lamp->periodic[row->axis] ? row->layers : min(row->layers, layers);
   // Where an axis is periodic beams go on until next to nothing is left; others leave.
   const float least = lamp->periodic[row->axis] ? 1e-7f * power : 0.0f;
   const int before = beam->layer;
@@ -469,9 +541,10 @@ static bool follow_beam(const LampInfo* lamp, const BeamRow* row, float2 begin, 
   {
     enter_box(lamp, row, begin, tangent, beam, tally);
   }
-  for (int k = before; k < all && beam->left > least; ++k)
+  for (int k = before; k < all && (beam->left > least || (VACUUM && k < layers && beam->free > 0.0f)); ++k)
   {
     tally->counts = k >= row->skipped;
+    tally->along = row->up ? first + k : first - k;
     const int layer = row->up ? (first + k) % n : ((first - k) % n + n) % n;
     const float end = row->up ? first + k + 1 - start : start - (first - k);
     for (int s = k == before ? beam->step : 0; s < STEPS; ++s)
@@ -491,22 +564,39 @@ static bool follow_beam(const LampInfo* lamp, const BeamRow* row, float2 begin, 
       }
       follows = false;
 #endif
-      waiting = step_beam(lamp, row, layer, tangent, middle,
-        fmin((float2)(row->openU, row->openV) + (float2)(row->widthU, row->widthV) * here, 1.0f), (float2)(t0, t1),
-        (t1 - t0) * per_layer, sigma, path, stride, beam, tally);
+      const float2 width = fmin((float2)(row->openU, row->openV) + (float2)(row->widthU, row->widthV) * here, 1.0f);
+      const float length = (t1 - t0) * per_layer;
+#if VACUUM
+      const int stretch = stretch_of(lamp, row, tally->along, middle);
+      if (stretch == BEYOND)
+      {
+        return true;
+      }
+      if (stretch == SHORT_OF && pass_through(lamp, row, layer, middle, width, length, sigma, beam))
+      {
+        continue;
+      }
+#endif
+      waiting =
+        step_beam(lamp, row, layer, tangent, middle, width, (float2)(t0, t1), length, sigma, path, stride, beam, tally);
     }
     now = end;
   }
-  if (row->beside && waiting > 0.0f)
+  if (row->beside && waiting > 0.0f && all >= layers)
   {
     miss_box(lamp, row, begin, tangent, here, now, waiting, beam, tally);
   }
   tally->counts = true;
   if (lamp->periodic[row->axis])
   {
-    tally->stranded += beam->left;
+    const float2 end = begin + tangent * now;
+    int voxel[3];
+    voxel[row->axis] = tally->along;
+    voxel[u] = (int)floor(end.x);
+    voxel[v] = (int)floor(end.y);
+    tally->stranded += is_lit(lamp, row, voxel) ? beam->left : 0.0f;
   }
-  else
+  else if (all == layers)
   {
     leave_end(lamp, row, begin, tangent, now, beam->left, tally);
   }
@@ -650,13 +740,20 @@ static float power_of_beam(const LampInfo* lamp, const BeamRow* row, int beam)
 {
   const float2 spacing = (float2)(lamp->spacing[(row->axis + 1) % 3], lamp->spacing[(row->axis + 2) % 3]);
   const float2 tangent = tangent_of(row, beam), size = (float2)(row->widthU, row->widthV) * spacing;
-  float angle = solid_angle(tangent.x * spacing.x, tangent.y * spacing.y, size.x, size.y, lamp->spacing[row->axis]);
+  float angle =
+    solid_angle(tangent.x * spacing.x, tangent.y * spacing.y, size.x, size.y, lamp->spacing[row->axis], 64.0f);
 #if LAMBERT
   angle *= fmax(cosine_at(lamp, row, tangent), 0.0f);
 #elif CONE
   angle *= part_in_cone(lamp, row, tangent_from_base(row, beam));
 #endif
-  return angle > 0.0f ? lamp->intensity * angle : 0.0f;
+  return angle > 0.0f ? row->share * lamp->intensity * angle : 0.0f;
+}
+
+static beam_state beam_of(float power)
+{
+  beam_state beam = { 0, 0, power, 0.0f, { 1.0f, 1.0f }, power };
+  return beam;
 }
 
 static void clear_tally(lamp_tally* tally, __global long* cells)
@@ -664,6 +761,7 @@ static void clear_tally(lamp_tally* tally, __global long* cells)
   tally->entered = 0.0f;
   tally->stranded = 0.0f;
   tally->counts = true;
+  tally->along = 0;
   for (int face = 0; face < 6; ++face)
   {
     tally->escaped[face] = 0.0f;
@@ -696,7 +794,7 @@ static void follow_row(const LampInfo* lamp, const BeamRow* row, const __global 
     const float power = power_of_beam(lamp, row, i);
     if (power > 0.0f)
     {
-      beam_state beam = { 0, 0, power, 0.0f, { 1.0f, 1.0f } };
+      beam_state beam = beam_of(power);
       tally.entered += row->skipped > 0 ? 0.0f : power;
       shone += power;
       follow_beam(lamp, row, begin_of(row, i), tangent_of(row, i), power, sigma, path, stride, &beam, &tally);
@@ -706,7 +804,8 @@ static void follow_row(const LampInfo* lamp, const BeamRow* row, const __global 
 }
 
 // path  part of the power times length, in fixed point, [voxel], added to; MOMENTS: [path, times distance along x, y,
-//       z][stride]; NET_FLUX: behind that times direction, [x, y, z][stride]
+//       z][stride]; NET_FLUX: behind that times direction, [x, y, z][stride]; VACUUM: behind that path in vacuum, [stride],
+//       of light before it goes around an axis, and where AROUND the path of that light, [stride]
 // cells power that leaves through the box's faces, in fixed point, [cell]; where FACE_OUT
 // sums  [row], as write_sums has them
 __kernel void follow_lamp(LampInfo lamp, const __global float* sigma, ulong sigma_first, __global long* path,

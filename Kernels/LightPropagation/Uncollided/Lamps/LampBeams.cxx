@@ -8,8 +8,6 @@
 #include "LightPropagation/Uncollided/Lamps/LampSums.h"
 #include "TyndallKernelSources.h"
 
-#include <glm/vec3.hpp>
-
 #include <algorithm>
 #include <string_view>
 
@@ -18,6 +16,7 @@ namespace tyndall
 namespace
 {
 constexpr int RowsPerLaunch = 256; ///< keeps a launch well below a tenth of a second for rows of a thousand voxels
+constexpr int BeamsOfRow = 64;     ///< of shorter rows there are more in a launch
 
 /// The beams of one lamp, from all points that stand for it.
 class LampBeams
@@ -28,7 +27,7 @@ public:
     , Volume(volume)
     , Lamp(light, volume.grid, periodic)
     , Periodic(periodic)
-    , Sums(device, volume.deposit, volume.stride, volume.grid)
+    , Sums(device, this->Lamp, volume.deposit, volume.stride, volume.grid)
   {
   }
 
@@ -38,27 +37,30 @@ public:
       this->FollowPoints(pass, factor, ofPass);
     };
     const double even = FollowInPasses(this->Volume.grid, this->Periodic, this->Shares, follow, monitor);
-    const double correction = this->Lamp.Correction(this->Shares);
-    this->Sums.AddTo(this->Volume, this->Lamp, correction);
+    const VoxelBox box = { { 0, 0, 0 }, this->Volume.grid.size };
+    const double taken = this->Sums.FitToVacuum(this->Volume, this->Lamp, box);
+    const LampFactors factors = this->Lamp.Factors(this->Shares, taken, even);
+    this->Sums.AddTo(this->Volume, this->Lamp, factors.taken);
     if (this->Volume.deposit.faceOut)
     {
-      this->Sums.AddCellsTo(this->Volume, this->Volume.faceFirst, this->Lamp, correction);
+      this->Sums.AddCellsTo(this->Volume, this->Volume.faceFirst, this->Lamp, factors.out);
     }
-    if (even > 0.0 && !this->Sums.SpreadEvenly(this->Volume, this->Lamp, correction * even, Extinction(this->Volume)))
+    if (even > 0.0 && !this->Sums.SpreadEvenly(this->Volume, this->Lamp, factors.out * even, Extinction(this->Volume)))
     {
       this->Shares.onTheWay = even; // nothing ever takes it
     }
-    return this->Shares.Times(this->Lamp.TheLight().power, this->Volume.channels, correction);
+    return this->Shares.Times(this->Lamp.TheLight().power, this->Volume.channels, factors);
   }
 
 private:
   void FollowPoints(const Pass& pass, double factor, const Monitor& monitor)
   {
-    const std::vector<glm::dvec3> points = this->Lamp.PointsOf(pass);
+    const std::vector<LampPoint>& points = this->Lamp.PointsOf(pass);
     const double all = static_cast<double>(points.size());
-    for (std::size_t p = 0; p < points.size(); ++p)
+    for (std::size_t p = 0, next; p < points.size(); p = next)
     {
-      this->Follow(points[p], pass, factor / all, [&](double done) { Report(monitor, (p + done) / all); });
+      const std::vector<BeamRow> rows = this->Lamp.Rows(pass, factor, p, next);
+      this->Follow(rows, [&](double done) { Report(monitor, (p + done * (next - p)) / all); });
     }
   }
 
@@ -67,9 +69,8 @@ private:
     return this->Lamp.Kernel(this->TheDevice, name, source, this->Volume.deposit);
   }
 
-  void Follow(const glm::dvec3& point, const Pass& pass, double part, const std::function<void(double)>& report)
+  void Follow(const std::vector<BeamRow>& rows, const std::function<void(double)>& report)
   {
-    const std::vector<BeamRow> rows = this->Lamp.Rows(point, pass);
     if (rows.empty())
     {
       return;
@@ -78,7 +79,7 @@ private:
     Buffer<float> sums(this->TheDevice, rows.size() * LampRowSums, "sums");
     cl::Kernel kernel = this->Kernel("follow_lamp", kernel_source::LampBeams);
     const VoxelBox box = { { 0, 0, 0 }, this->Volume.grid.size };
-    const LampInfo info = this->Lamp.Describe(part, box, box);
+    const LampInfo info = this->Lamp.Describe(box, box);
     for (std::size_t first = 0, count; first < rows.size(); first += count)
     {
       count = std::min<std::size_t>(this->RowsTogether(rows[first]), rows.size() - first);
@@ -100,8 +101,8 @@ private:
   std::size_t RowsTogether(const BeamRow& row) const
   {
     const double layers = this->Periodic[row.axis] ? static_cast<double>(row.count) * row.layers : 1.0;
-    return static_cast<std::size_t>(
-      std::clamp(LampOnGrid::LayersPerLaunch / layers, 1.0, static_cast<double>(RowsPerLaunch)));
+    const double most = static_cast<double>(RowsPerLaunch) * std::max(BeamsOfRow / row.count, 1);
+    return static_cast<std::size_t>(std::clamp(LampOnGrid::LayersPerLaunch / layers, 1.0, most));
   }
 
   Device& TheDevice;

@@ -42,8 +42,13 @@ typedef struct
   float startU, startV;     ///< there the first beam's middle, voxels
   float openU, openV;       ///< and there the width of a beam
   int skipped;              ///< layers that they go before anything is counted and put down
-  int layers;               ///< that they go in all where the axis is periodic
+  int layers;               ///< that they go in all, at most
   int beside;               ///< 1, 2: the lamp is beside the box along u, v; beams may enter through faces there
+  float share;              ///< of the lamp's power, that the point has from which they come
+  float part[3],
+    partFrom; ///< of a near rectangle's part: its middle, and the square of the distance from which on it is
+              ///< not itself taken in parts
+  float whole[3], wholeFrom; ///< the same of the part that was halved for it
 } BeamRow;
 
 /// A beam between two of its steps, on its way from one block of a grid to another.
@@ -55,7 +60,20 @@ typedef struct
   float left;      ///< of its power
   float rest;      ///< too small to be seen in it
   float stays[2];  ///< of its cross-section, along u and v, what has not left the box
+  float free;      ///< what would be left of it in vacuum
   int voxel[3];    ///< that its middle is in then, or the nearest of the grid
   int ended;       ///< 1: it has left the grid
 } BeamOnItsWay;
+
+/// A rectangular lamp and the voxels of a grid, or a block of it, in its light. Lengths.
+typedef struct
+{
+  float corner[3];   ///< of the block, from the rectangle's middle: along its two edges and its normal
+  float edges[3][3]; ///< unit vectors along these
+  float reach[2];    ///< half of the edges' lengths
+  int size[3];       ///< of the block
+  float spacing[3];
+  float path;  ///< of a lamp of 1 W, W length in a voxel and steradian
+  float scale; ///< fixed point units per length
+} RectangleInfo;
 SHARED_END

@@ -12,11 +12,29 @@
 #include <glm/vec3.hpp>
 
 #include <array>
+#include <limits>
 #include <string_view>
 #include <vector>
 
 namespace tyndall
 {
+/// A point that stands for a lamp, or for a part of it.
+struct LampPoint
+{
+  struct Sphere ///< lengths from the grid's corner
+  {
+    glm::dvec3 middle = glm::dvec3(0.0);
+    double radius = 0.0;
+  };
+
+  glm::dvec3 place;   ///< voxels from the grid's corner
+  double share = 1.0; ///< of the lamp's power
+
+  /// Voxels outside the first have its light, but for those outside the second, that of the part which was halved.
+  Sphere part, whole = { glm::dvec3(0.0), std::numeric_limits<double>::infinity() };
+  double reach = std::numeric_limits<double>::infinity(); ///< how far its beams go
+};
+
 /// A point, spot or rectangle lamp beside or in a grid, as the kernels of its beams see it (numerics.md, sections 5.4
 /// and 5.5).
 class LampOnGrid
@@ -29,26 +47,33 @@ public:
 
   const Light& TheLight() const { return this->Lamp; }
 
-  /// What stands for the lamp: a point, or the middles of a rectangle's parts; voxels from the grid's corner.
-  std::vector<glm::dvec3> Points() const;
-  glm::dvec3 Middle() const;                                ///< the same, of the lamp's position
-  std::vector<glm::dvec3> PointsOf(const Pass& pass) const; ///< from far a rectangle is a point
-  bool IsInside(const glm::dvec3& point) const;             ///< the end of a periodic axis is inside, a face is not
+  /// What stands for the lamp in a pass: a point, or those of a rectangle's parts; from far a rectangle is a point.
+  const std::vector<LampPoint>& PointsOf(const Pass& pass) const
+  {
+    return pass.begin == 0 ? this->Points : this->Centre;
+  }
 
-  /// The beams from one of its points.
-  std::vector<BeamRow> Rows(const glm::dvec3& point, const Pass& pass) const;
+  /// The beams from some of its points.
+  /// @param factor  of the power
+  /// @param first  of these points; next: where the following call goes on, for beams are many
+  std::vector<BeamRow> Rows(const Pass& pass, double factor, std::size_t first, std::size_t& next) const;
 
-  /// By what the found shares are multiplied to be parts of the lamp's power: where it is known which part of it is
-  /// followed (all light of a lamp in the box and of a cone that leads into it) or enters (a point outside), that part.
-  double Correction(const LampShares& shares) const;
+  /// Where it is known which part of the lamp's power is followed (all light of a lamp in the box and of a cone that
+  /// leads into it) or enters (that of points and rectangles), the factors make it that.
+  /// @param taken  share that the medium takes, of a rectangle in parts
+  /// @param even  share that is to be spread evenly
+  LampFactors Factors(const LampShares& shares, double taken, double even) const;
 
   /// Of the lamp's power, at least what comes to the box: what is counted in parts of it keeps its digits however far
   /// away the lamp is.
   double Share() const;
 
-  /// @param part  of the lamp's power that the point has
   /// @param stored  the voxels that arrays hold; and of them those in which beams are followed
-  LampInfo Describe(double part, const VoxelBox& stored, const VoxelBox& followed) const;
+  LampInfo Describe(const VoxelBox& stored, const VoxelBox& followed) const;
+
+  /// Sums that a voxel has beside the others, of a rectangle in parts.
+  int SumsOfVacuum() const;
+  RectangleInfo DescribeRectangle(const VoxelBox& own) const;
 
   /// Fixed point units per length (numerics.md, Eq. (36)).
   double UnitsPerLength() const;
@@ -59,12 +84,15 @@ public:
   static bool HasAtomics(Device& device) { return device.HasExtension("cl_khr_int64_base_atomics"); }
 
 private:
-  bool FollowsAll(const glm::dvec3& point) const;
-  double EnteringPart() const;
-  glm::dvec3 PlaceOf(const glm::dvec3& point) const;
+  void DivideRectangle();
+  bool FollowsAll() const;
 
   const Light& Lamp;
   const Grid& TheGrid;
   std::array<bool, 3> Periodic;
+  bool IsNear = false;   ///< a rectangle that is in parts
+  double Entering = 0.0; ///< part of the power of a point or a rectangle
+  double Width = 1.0;    ///< of a rectangle's beams where they end, voxels
+  std::vector<LampPoint> Points, Centre;
 };
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace tyndall
 {
@@ -82,7 +83,7 @@ class Pyramid
 {
 public:
   Pyramid(const Grid& grid, const std::array<bool, 3>& periodic, const Light& light, const glm::dvec3& position,
-    int axis, bool up)
+    int axis, bool up, double reach = std::numeric_limits<double>::infinity())
     : Axis(axis)
     , Up(up)
     , TheGrid(grid)
@@ -90,6 +91,7 @@ public:
     , Position(position)
     , Near(std::max(0.0, up ? -position[axis] : position[axis] - grid.size[axis]))
     , Far(up ? grid.size[axis] - position[axis] : position[axis])
+    , Reach(reach / grid.spacing[axis])
   {
     const std::array<double, 3> weights = WeightsOfAxes(grid, position);
     this->Widest = { weights[axis] / weights[(axis + 1) % 3], weights[axis] / weights[(axis + 2) % 3] };
@@ -108,7 +110,7 @@ public:
   bool IsThere(const Pass& pass) const
   {
     const bool around = this->Periodic[this->Axis];
-    return (this->Far > 0.0 || (around && this->Far == 0.0)) && (pass.begin == 0 || around);
+    return (this->Far > 0.0 || (around && this->Far == 0.0)) && (pass.begin == 0 || around) && this->Near < this->Reach;
   }
 
   /// Of beams that are still in the box in a pass.
@@ -181,6 +183,8 @@ public:
     row.openV = static_cast<float>(width[1] * this->Near);
     row.skipped = pass.begin;
     row.layers = pass.onlyBefore ? pass.begin : pass.end;
+    row.layers = static_cast<cl_int>(std::min(row.layers + 0.0, std::ceil(this->Reach - this->Near) + 1.0));
+    row.share = 1.0f;
     return row;
   }
 
@@ -191,9 +195,9 @@ public:
     const int aside = (this->Axis + k) % 3, other = (this->Axis + 3 - k) % 3;
     const std::array<int, 3>& size = this->TheGrid.size;
     int count = light.type == LightType::Spot ? BeamsAcrossCone : 1;
-    if (!this->Periodic[this->Axis])
+    if (!this->Periodic[this->Axis] || this->Reach < this->Far)
     {
-      return std::max(count, BeamsBetween(seen, this->Far, width));
+      return std::max(count, BeamsBetween(seen, std::min(this->Far, this->Reach), width));
     }
     count = std::max(count, BeamsAtLeast);
     if (!this->Periodic[aside])
@@ -284,6 +288,7 @@ private:
   const std::array<bool, 3>& Periodic;
   const glm::dvec3& Position;
   const double Near, Far;                      ///< layers from the light to the box and to where it ends
+  const double Reach;                          ///< layers from the light to where its beams end at the latest
   std::array<double, 2> Widest = { 1.0, 1.0 }; ///< tangents, from 0, where other pyramids begin
   bool HasBase = false;
   std::array<double, 2> Base = {};
@@ -312,12 +317,12 @@ Pass FirstPass(const Grid& grid)
 }
 
 std::vector<BeamRow> Beams(const Grid& grid, const std::array<bool, 3>& periodic, const Light& light,
-  const glm::dvec3& position, double width, const Pass& pass)
+  const glm::dvec3& position, double width, const Pass& pass, double reach)
 {
   std::vector<BeamRow> rows;
   for (int face = 0; face < 6; ++face)
   {
-    const Pyramid pyramid(grid, periodic, light, position, face / 2, face % 2 == 1);
+    const Pyramid pyramid(grid, periodic, light, position, face / 2, face % 2 == 1, reach);
     if (!pyramid.IsThere(pass))
     {
       continue;

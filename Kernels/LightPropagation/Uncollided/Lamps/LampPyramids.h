@@ -30,8 +30,9 @@ Pass FirstPass(const Grid& grid); ///< twice the box's longest edge
 /// section 5.3).
 ///
 /// @param position  of the point, voxels from the box's corner
+/// @param reach  that they are followed to at most, a length
 std::vector<BeamRow> Beams(const Grid& grid, const std::array<bool, 3>& periodic, const Light& light,
-  const glm::dvec3& position, double width, const Pass& pass);
+  const glm::dvec3& position, double width, const Pass& pass, double reach);
 
 /// Whether the beams of the first pass hold all of a spot's cone.
 bool SeesAllOfCone(const Grid& grid, const Light& spot, const glm::dvec3& position);

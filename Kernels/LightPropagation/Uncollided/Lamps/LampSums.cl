@@ -3,16 +3,180 @@
 #include "LightPropagation/Uncollided/Lamps/LampBeamsShared.h"
 #include "LightPropagation/Uncollided/Lamps/LampUnits.cl"
 
+#if VACUUM
+#define DEEPEST 7 // halvings of a voxel beside a rectangle
+
+// Solid angle of the rectangle seen from a point, lengths along its edges and its normal; 0 from behind.
+static float angle_seen(const RectangleInfo* rectangle, float3 from)
+{
+  return from.z > 0.0f
+    ? solid_angle(-from.x, -from.y, 2.0f * rectangle->reach[0], 2.0f * rectangle->reach[1], from.z, 16.0f)
+    : 0.0f;
+}
+
+// A cell of a voxel: its middle from the rectangle's, along the rectangle's edges and normal, and its edges along x, y,
+// z.
+typedef struct
+{
+  float3 middle;
+  float edge[3];
+  float radius; // of the ball around it
+  float deep;   // half of its extent along the normal
+} voxel_cell;
+
+static float distance_to_border(const RectangleInfo* rectangle, float3 from)
+{
+  const float a = fabs(from.x) - rectangle->reach[0], b = fabs(from.y) - rectangle->reach[1];
+  const float aside = a < 0.0f && b < 0.0f ? fmax(a, b) : length((float2)(fmax(a, 0.0f), fmax(b, 0.0f)));
+  return length((float2)(aside, from.z));
+}
+
+static float3 to_rectangle(const RectangleInfo* rectangle, float x, float y, float z)
+{
+  float along[3];
+  for (int a = 0; a < 3; ++a)
+  {
+    along[a] =
+      rectangle->corner[a] + x * rectangle->edges[a][0] + y * rectangle->edges[a][1] + z * rectangle->edges[a][2];
+  }
+  return (float3)(along[0], along[1], along[2]);
+}
+
+// Integral of the solid angle over a cell, as part of its volume: columns along the axis nearest to the normal, each as
+// far as it is before the rectangle's plane, by Gauss's rule of two points along each axis.
+static float mean_over_cell(const RectangleInfo* rectangle, const voxel_cell* cell)
+{
+  const float gauss = 0.288675135f;
+  int axis = 0;
+  for (int a = 1; a < 3; ++a)
+  {
+    axis = fabs(rectangle->edges[2][a]) > fabs(rectangle->edges[2][axis]) ? a : axis;
+  }
+  const float slope = rectangle->edges[2][axis] * cell->edge[axis];
+  float sum = 0.0f;
+  for (int column = 0; column < 4; ++column)
+  {
+    float offset[3] = { 0.0f, 0.0f, 0.0f };
+    offset[(axis + 1) % 3] = (column & 1 ? gauss : -gauss) * cell->edge[(axis + 1) % 3];
+    offset[(axis + 2) % 3] = (column & 2 ? gauss : -gauss) * cell->edge[(axis + 2) % 3];
+    const float middle = cell->middle.z + rectangle->edges[2][0] * offset[0] + rectangle->edges[2][1] * offset[1] +
+      rectangle->edges[2][2] * offset[2];
+    // The plane goes through the column at this part of its length from its middle.
+    const float plane = clamp(-middle / slope, -0.5f, 0.5f);
+    const float from = slope > 0.0f ? plane : -0.5f, to = slope > 0.0f ? 0.5f : plane;
+    for (int i = 0; i < 2; ++i)
+    {
+      offset[axis] = (0.5f * (from + to) + (i ? gauss : -gauss) * (to - from)) * cell->edge[axis];
+      float3 at = cell->middle;
+      for (int a = 0; a < 3; ++a)
+      {
+        at += offset[a] * (float3)(rectangle->edges[0][a], rectangle->edges[1][a], rectangle->edges[2][a]);
+      }
+      sum += 0.125f * (to - from) * angle_seen(rectangle, at);
+    }
+  }
+  return sum;
+}
+
+// Whether a cell is to be halved: near to the rectangle's border the solid angle varies fast, near to a small
+// rectangle as with the inverse square.
+static bool is_coarse(const RectangleInfo* rectangle, const voxel_cell* cell, int level)
+{
+  const float3 normal =
+    (float3)(fabs(rectangle->edges[2][0]), fabs(rectangle->edges[2][1]), fabs(rectangle->edges[2][2]));
+  const bool slanted = normal.x + normal.y + normal.z > 1.001f;
+  const int levels_cut = cell->middle.z < -0.5f * cell->deep ? 5 : 2; // more where little is before the plane
+  if (slanted && level < levels_cut && fabs(cell->middle.z) < cell->deep)
+  {
+    return true;
+  }
+  const int levels = cell->radius > 0.5f * fmin(rectangle->reach[0], rectangle->reach[1]) ? DEEPEST : 3;
+  return level < levels && distance_to_border(rectangle, cell->middle) < 2.5f * cell->radius;
+}
+
+// Mean over a voxel of the solid angle of the part of the rectangle before which it lies: over cells of the voxel, in
+// their order along a curve, each as large as it may be.
+static float mean_solid_angle(const RectangleInfo* rectangle, const int* voxel)
+{
+  float sum = 0.0f;
+  int level = 0;
+  for (uint at = 0; at < 1u << (3 * DEEPEST);)
+  {
+    const float size = 1.0f / (1 << level);
+    float place[3] = { 0.5f * size, 0.5f * size, 0.5f * size };
+    for (int i = 0; i < level; ++i)
+    {
+      const uint bits = at >> (3 * (DEEPEST - 1 - i));
+      for (int a = 0; a < 3; ++a)
+      {
+        place[a] += (bits >> a & 1) ? 0.5f / (1 << i) : 0.0f;
+      }
+    }
+    voxel_cell cell;
+    cell.deep = 0.0f;
+    for (int a = 0; a < 3; ++a)
+    {
+      cell.edge[a] = size * rectangle->spacing[a];
+      cell.deep += 0.5f * fabs(rectangle->edges[2][a]) * cell.edge[a];
+    }
+    cell.radius = 0.5f * sqrt(cell.edge[0] * cell.edge[0] + cell.edge[1] * cell.edge[1] + cell.edge[2] * cell.edge[2]);
+    cell.middle = to_rectangle(rectangle, (voxel[0] + place[0]) * rectangle->spacing[0],
+      (voxel[1] + place[1]) * rectangle->spacing[1], (voxel[2] + place[2]) * rectangle->spacing[2]);
+    const bool behind = cell.middle.z <= -cell.deep;
+    if (!behind && is_coarse(rectangle, &cell, level))
+    {
+      ++level;
+      continue;
+    }
+    if (!behind)
+    {
+      const bool plain = cell.middle.z > cell.deep && distance_to_border(rectangle, cell.middle) > 10.0f * cell.radius;
+      sum += (plain ? angle_seen(rectangle, cell.middle) : mean_over_cell(rectangle, &cell)) * size * size * size;
+    }
+    at += 1u << (3 * (DEEPEST - level));
+    while (level > 0 && at % (1u << (3 * (DEEPEST - level + 1))) == 0)
+    {
+      --level;
+    }
+  }
+  return sum;
+}
+
+// By what the path that a rectangle's beams put down in each voxel is multiplied, so that it is right in vacuum.
+// fixed_path  as in follow_lamp (LampBeams.cl)
+__kernel void find_gains(
+  RectangleInfo rectangle, const __global long* fixed_path, ulong stride, __global float* gains, ulong first)
+{
+  const ulong i = first + get_global_id(0);
+  const int voxel[] = { (int)(i % rectangle.size[0]), (int)(i / rectangle.size[0] % rectangle.size[1]),
+    (int)(i / rectangle.size[0] / rectangle.size[1]) };
+  const float right = rectangle.path * mean_solid_angle(&rectangle, voxel);
+  const float beams = (float)fixed_path[FIRST_OF_VACUUM * stride + i] / rectangle.scale;
+  float gain = beams > 0.0f ? right / beams : 1.0f;
+#if AROUND
+  // Light that has gone round an axis keeps what beams brought.
+  const float all = (float)fixed_path[i], direct = (float)fixed_path[(FIRST_OF_VACUUM + 1) * stride + i];
+  gain = all > 0.0f ? 1.0f + (gain - 1.0f) * fmin(direct / all, 1.0f) : 1.0f;
+#endif
+  gains[i] = gain;
+}
+#define GAIN(i) gains[i]
+#else
+#define GAIN(i) 1.0f
+#endif
+
+// gains  of each voxel, where VACUUM
 // path   W length, [channel][stride], added to
 // units  [channel] W length of a fixed point unit
 // sigma  1/length, shared by the channels
 __kernel void add_fixed(const __global long* fixed_path, __global float* path, ulong first, ulong stride, float4 units,
-  const __global float* sigma, ulong sigma_first, float diagonal)
+  const __global float* sigma, ulong sigma_first, float diagonal, const __global float* gains)
 {
   const ulong i = get_global_id(0);
   const int channel = get_global_id(1);
   const float unit = channel == 0 ? units.x : channel == 1 ? units.y : units.z;
-  path[first + channel * stride + i] += (float)fixed_path[i] * unit / units_of(sigma[sigma_first + i], diagonal);
+  path[first + channel * stride + i] +=
+    (float)fixed_path[i] * unit * GAIN(i) / units_of(sigma[sigma_first + i], diagonal);
 }
 
 #if FACE_OUT
@@ -33,15 +197,15 @@ __kernel void add_fixed_cells(
 // fixed_path  as in follow_lamp (LampBeams.cl)
 // flux  W length, [channel][x, y, z][stride], added to
 __kernel void add_fixed_flux(const __global long* fixed_path, __global float* flux, ulong first, ulong stride,
-  float4 units, const __global float* sigma, ulong sigma_first, float diagonal)
+  float4 units, const __global float* sigma, ulong sigma_first, float diagonal, const __global float* gains)
 {
   const ulong i = get_global_id(0);
   const int channel = get_global_id(1);
   const float unit = channel == 0 ? units.x : channel == 1 ? units.y : units.z;
   for (int axis = 0; axis < 3; ++axis)
   {
-    flux[3 * (first + channel * stride) + axis * stride + i] +=
-      (float)fixed_path[(FIRST_OF_FLUX + axis) * stride + i] * unit / units_of(sigma[sigma_first + i], diagonal);
+    flux[3 * (first + channel * stride) + axis * stride + i] += (float)fixed_path[(FIRST_OF_FLUX + axis) * stride + i] *
+      unit * GAIN(i) / units_of(sigma[sigma_first + i], diagonal);
   }
 }
 #endif
@@ -50,7 +214,8 @@ __kernel void add_fixed_flux(const __global long* fixed_path, __global float* fl
 // fixed_path  as in follow_lamp (LampBeams.cl)
 // first_moments  W length, [channel][-x, +x, -y, +y, -z, +z][stride], added to
 __kernel void add_fixed_moments(const __global long* fixed_path, __global float* first_moments, ulong first,
-  ulong stride, float4 units, const __global float* sigma, ulong sigma_first, float diagonal)
+  ulong stride, float4 units, const __global float* sigma, ulong sigma_first, float diagonal,
+  const __global float* gains)
 {
   const ulong i = get_global_id(0);
   const int channel = get_global_id(1);
@@ -58,7 +223,7 @@ __kernel void add_fixed_moments(const __global long* fixed_path, __global float*
   for (int axis = 0; axis < 3; ++axis)
   {
     const float towards =
-      (float)fixed_path[(1 + axis) * stride + i] * unit / units_of(sigma[sigma_first + i], diagonal);
+      (float)fixed_path[(1 + axis) * stride + i] * unit * GAIN(i) / units_of(sigma[sigma_first + i], diagonal);
     __global float* of_axis = first_moments + 6 * (first + channel * stride) + 2 * axis * stride + i;
     of_axis[0] += fmax(-towards, 0.0f);
     of_axis[stride] += fmax(towards, 0.0f);

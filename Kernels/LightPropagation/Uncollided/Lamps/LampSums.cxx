@@ -3,19 +3,61 @@
 #include "Medium/BoxFaces.h"
 #include "TyndallKernelSources.h"
 
+#include <algorithm>
 #include <numeric>
 #include <vector>
 
 namespace tyndall
 {
-LampSums::LampSums(Device& device, const Deposit& deposit, std::size_t stride, const Grid& grid)
+namespace
+{
+constexpr std::size_t GainsPerLaunch = 1 << 16; ///< keeps a launch below a tenth of a second
+
+/// What voxels with these sums of path take, as they are multiplied.
+double Taken(
+  const SweepVolume& volume, const LampOnGrid& lamp, const std::vector<cl_long>& sums, const std::vector<float>& gains)
+{
+  const std::vector<float> sigma = volume.sigma_t->Read();
+  double taken = 0.0;
+  for (std::size_t i = 0; i < volume.grid.VoxelCount(); ++i)
+  {
+    const double extinction = sigma[volume.sigma_t_first + i];
+    const double path = static_cast<double>(sums[i]) / std::max(extinction * lamp.Diagonal(), 1.0); // Eq. (35)
+    taken += extinction * path * gains[i];
+  }
+  return taken / lamp.UnitsPerLength();
+}
+}
+
+LampSums::LampSums(Device& device, const LampOnGrid& lamp, const Deposit& deposit, std::size_t stride, const Grid& grid)
   : TheDevice(device)
-  , Fixed(device, Parts(deposit) * stride, "the light of a lamp")
+  , Fixed(device, Parts(lamp, deposit) * stride, "the light of a lamp")
   , OfCells(device, deposit.faceOut ? BoxFaceCellCount(grid) : 1, "the light of a lamp")
+  , Gains(device, lamp.SumsOfVacuum() > 0 ? stride : 1, "the light of a lamp")
   , TheStride(stride)
 {
+  this->Gains.Fill(1.0f);
   this->Fixed.Fill(0);
   this->OfCells.Fill(0);
+}
+
+double LampSums::FitToVacuum(const SweepVolume& volume, const LampOnGrid& lamp, const VoxelBox& own)
+{
+  const std::size_t all = own.VoxelCount();
+  if (lamp.SumsOfVacuum() == 0 || all == 0)
+  {
+    return 0.0;
+  }
+  cl::Kernel kernel = lamp.Kernel(this->TheDevice, "find_gains", kernel_source::LampSums, volume.deposit);
+  const RectangleInfo rectangle = lamp.DescribeRectangle(own);
+  for (std::size_t first = 0; first < all; first += GainsPerLaunch)
+  {
+    With(kernel, rectangle, this->Fixed, cl_ulong(this->TheStride), this->Gains, cl_ulong(first));
+    this->TheDevice.Queue().enqueueNDRangeKernel(
+      kernel, cl::NullRange, cl::NDRange(std::min(GainsPerLaunch, all - first)), cl::NullRange);
+    this->TheDevice.Finish();
+  }
+  return Taken(volume, lamp, this->Fixed.Read(), this->Gains.Read());
 }
 
 void LampSums::AddTo(const SweepVolume& volume, const LampOnGrid& lamp, double factor) const
@@ -32,7 +74,7 @@ void LampSums::AddTo(const SweepVolume& volume, const LampOnGrid& lamp, double f
     }
     cl::Kernel kernel = lamp.Kernel(this->TheDevice, name, kernel_source::LampSums, volume.deposit);
     With(kernel, this->Fixed, *sum, cl_ulong(volume.first), cl_ulong(this->TheStride), units, *volume.sigma_t,
-      cl_ulong(volume.sigma_t_first), static_cast<float>(lamp.Diagonal()));
+      cl_ulong(volume.sigma_t_first), static_cast<float>(lamp.Diagonal()), this->Gains);
     this->TheDevice.Queue().enqueueNDRangeKernel(
       kernel, cl::NullRange, cl::NDRange(this->TheStride, volume.channels), cl::NullRange);
   };
