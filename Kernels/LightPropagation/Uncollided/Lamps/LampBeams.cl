@@ -138,7 +138,9 @@ static float cut_at_face(const LampInfo* lamp, const BeamRow* row, int k, float 
     edges->y = clamp(edges->y, fmin(edges->x, n), n);
     edges->x = fmin(edges->x, edges->y);
   }
-  return all > 0.0f ? clamp((edges->y - edges->x) / all, 0.0f, 1.0f) : 0.0f;
+  const float inside = edges->y - edges->x;
+  *edges = inside > 0.0f ? *edges : (float2)(*up ? n - 0.5f : 0.5f); // floats know no voxel that ends at n
+  return all > 0.0f ? clamp(inside / all, 0.0f, 1.0f) : 0.0f;
 }
 
 #if MOMENTS
