@@ -77,6 +77,14 @@ static float square_distance(const LampInfo* lamp, const int* voxel, const float
 }
 #endif
 
+#if VACUUM
+// Whether light so many voxels around an axis counts as that of the rectangle or of its nearest images.
+static bool is_image(const LampInfo* lamp, int axis, int around)
+{
+  return abs(around) <= (uint)(lamp->images[axis] * lamp->size[axis]);
+}
+#endif
+
 // Whether a voxel, periodic axes unrolled, has the light of a beam's part of a rectangle: not that of the whole which
 // this is a part of, nor that of its own parts.
 static bool is_lit(const LampInfo* lamp, const BeamRow* row, const int* voxel)
@@ -333,7 +341,8 @@ static float step_beam(const LampInfo* lamp, const BeamRow* row, int layer, floa
       add_units(path + index, convert_long_sat_rte(counted * lamp->scale));
     }
 #if VACUUM
-    if (counts && tally->along == layer && voxel[u] == lowest.x + (q & 1) && voxel[v] == lowest.y + (q >> 1))
+    if (counts && is_image(lamp, row->axis, tally->along - layer) && is_image(lamp, u, lowest.x + (q & 1) - voxel[u]) &&
+      is_image(lamp, v, lowest.y + (q >> 1) - voxel[v]))
     {
       __global long* in_vacuum = path + FIRST_OF_VACUUM * stride + index;
       add_units(in_vacuum, convert_long_sat_rte(beam->free * part * length * lamp->scale));
@@ -428,13 +437,9 @@ static int stretch_of(const LampInfo* lamp, const BeamRow* row, int along, float
   voxel[row->axis] = along;
   voxel[(row->axis + 1) % 3] = (int)floor(middle.x);
   voxel[(row->axis + 2) % 3] = (int)floor(middle.y);
-  const float margin = 2.0f * lamp->diagonal;
-  const float from = sqrt(row->partFrom) - margin, to = sqrt(row->wholeFrom) + margin;
-  if (from > 0.0f && square_distance(lamp, voxel, row->part) < from * from)
-  {
-    return SHORT_OF;
-  }
-  return square_distance(lamp, voxel, row->whole) > to * to ? BEYOND : AMID;
+  return square_distance(lamp, voxel, row->part) < row->partSeen ? SHORT_OF
+    : square_distance(lamp, voxel, row->whole) > row->wholeSeen  ? BEYOND
+                                                                 : AMID;
 }
 
 // A step along the middle of a beam where it gives no voxel light.
@@ -530,6 +535,11 @@ static bool follow_beam(const LampInfo* lamp, const BeamRow* row, float2 begin, 
     row->outside ? (row->up ? 0 : n - 1) : clamp((int)(row->up ? floor(start) : ceil(start) - 1.0f), 0, n - 1);
   const int layers = row->up ? n - first : first + 1;
   const int all = lamp->periodic[row->axis] ? row->layers : min(row->layers, layers);
+#if VACUUM
+  const int nearby = layers + lamp->images[row->axis] * n;
+#else
+  const int nearby = 0;
+#endif
   // Where an axis is periodic beams go on until next to nothing is left; others leave.
   const float least = lamp->periodic[row->axis] ? 1e-7f * power : 0.0f;
   const int before = beam->layer;
@@ -543,7 +553,7 @@ static bool follow_beam(const LampInfo* lamp, const BeamRow* row, float2 begin, 
   {
     enter_box(lamp, row, begin, tangent, beam, tally);
   }
-  for (int k = before; k < all && (beam->left > least || (VACUUM && k < layers && beam->free > 0.0f)); ++k)
+  for (int k = before; k < all && (beam->left > least || (VACUUM && k < nearby && beam->free > 0.0f)); ++k)
   {
     tally->counts = k >= row->skipped;
     tally->along = row->up ? first + k : first - k;
@@ -576,6 +586,7 @@ static bool follow_beam(const LampInfo* lamp, const BeamRow* row, float2 begin, 
       }
       if (stretch == SHORT_OF && pass_through(lamp, row, layer, middle, width, length, sigma, beam))
       {
+        waiting = 0.0f;
         continue;
       }
 #endif

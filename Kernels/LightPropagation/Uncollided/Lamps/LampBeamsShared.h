@@ -19,6 +19,7 @@ typedef struct
   int first[3], stored[3];         ///< the voxels that arrays hold: all, or those of a block and some beside it
   int followed[3], followedEnd[3]; ///< and those in which beams are followed (LampInBlock.cl)
   int periodic[3];
+  int images[3]; ///< of a rectangle in a periodic box, to either side, that count as it does
   float spacing[3];
   float direction[3];               ///< unit, in space
   float cosine, sineSquare;         ///< of the cone's half angle
@@ -45,10 +46,10 @@ typedef struct
   int layers;               ///< that they go in all, at most
   int beside;               ///< 1, 2: the lamp is beside the box along u, v; beams may enter through faces there
   float share;              ///< of the lamp's power, that the point has from which they come
-  float part[3],
-    partFrom; ///< of a near rectangle's part: its middle, and the square of the distance from which on it is
-              ///< not itself taken in parts
-  float whole[3], wholeFrom; ///< the same of the part that was halved for it
+  float part[3];            ///< of a near rectangle's part: its middle,
+  float partFrom, partSeen; ///< the square of the distance from which on voxels have its light, and where beams may
+  float whole[3];           ///< come to them; the same of the part that was halved for it, from where on they have not
+  float wholeFrom, wholeSeen;
 } BeamRow;
 
 /// A beam between two of its steps, on its way from one block of a grid to another.
@@ -68,10 +69,11 @@ typedef struct
 /// A rectangular lamp and the voxels of a grid, or a block of it, in its light. Lengths.
 typedef struct
 {
-  float corner[3];   ///< of the block, from the rectangle's middle: along its two edges and its normal
-  float edges[3][3]; ///< unit vectors along these
-  float reach[2];    ///< half of the edges' lengths
-  int size[3];       ///< of the block
+  float corner[3];          ///< of the block, from the rectangle's middle: along its two edges and its normal
+  float edges[3][3];        ///< unit vectors along these
+  float reach[2];           ///< half of the edges' lengths
+  int size[3];              ///< of the block
+  int period[3], images[3]; ///< voxels of the whole grid, and how many images to either side shine, too
   float spacing[3];
   float path;  ///< of a lamp of 1 W, W length in a voxel and steradian
   float scale; ///< fixed point units per length

@@ -20,13 +20,17 @@ namespace
 /// How near a rectangle may be to the box, in its longer edges, for 16 points to do.
 constexpr double FarEnough = 1.25;
 constexpr double PartDistance = 2.0; ///< of voxels from the middle of a part that is not halved for them, in its radii
+constexpr double FinestPart = 2.0;   ///< its longer edge, voxels
 constexpr double PartsAcross = 64.0; ///< of one that lies along the box, at most
-constexpr double Faint = 0.01;       ///< error of a point, of all light, for a part to be a point
-constexpr double WideBeams = 1.5;    ///< of a rectangle as long as the box: in large grids its many points need no more
-constexpr int ManyVoxels = 48;
+constexpr double Faint = 0.1;        ///< error of a point, of all light, for a part to be a point
 constexpr std::size_t BeamsTogether = 1 << 18;
+/// To either side of a rectangle in a periodic box, whose light in vacuum is exact; without faces light has no end.
+constexpr int ImagesAside = 5, ImagesAsideWithoutFaces = 1;
 
-constexpr double BeamWidth = 0.5; ///< of a lamp's beams where they leave the box, voxels; a rectangle's: LampOnGrid.h
+/// Of beams where they leave the box, voxels: of a lamp, of a rectangle, of one in parts, whose points are many.
+constexpr double BeamWidth = 0.5, BeamWidthOfRectangle = 1.0, BeamWidthOfParts = 1.4;
+constexpr double Farthest =
+  1e4; ///< of a rectangle, mean edges of it and the box, for the integral around both in doubles
 constexpr int RoundsAtMost = 64;  ///< that all power may go through one voxel, in fixed point
 constexpr double OnBorder = 1e-6; ///< of the box's edges: so near to a face a lamp is on it, as for photons
 
@@ -42,77 +46,146 @@ glm::dvec3 PlaceOf(const Grid& grid, const glm::dvec3& point)
   return place;
 }
 
-/// Part of the light of a point, or of a plane of this normal there, that meets a face of the box: by solid angle or,
-/// with the cosine, by Lambert's formula for a polygon, of which the part before the plane counts.
-double PartThrough(std::vector<glm::dvec3> corners, const glm::dvec3* normal)
+/// Part of a point's light that enters the box: all of it inside, by the solid angles of the faces that it sees
+/// outside, and what shines inwards on the border.
+double EnteringPart(const Grid& grid, const glm::dvec3& place, const std::array<bool, 3>& periodic)
 {
-  if (!normal)
-  {
-    const glm::dvec3 &a = corners[0], &b = corners[1], &c = corners[2], &d = corners[3];
-    const auto triangle = [](const glm::dvec3& p, const glm::dvec3& q, const glm::dvec3& r) { // Van Oosterom, Strackee
-      const double x = glm::length(p), y = glm::length(q), z = glm::length(r);
-      return 2.0 *
-        std::atan2(std::abs(glm::dot(p, glm::cross(q, r))),
-          x * y * z + glm::dot(p, q) * z + glm::dot(q, r) * x + glm::dot(r, p) * y);
-    };
-    return (triangle(a, b, c) + triangle(a, c, d)) / (4.0 * Pi);
-  }
-  std::vector<glm::dvec3> before;
-  for (std::size_t i = 0; i < corners.size(); ++i)
-  {
-    const glm::dvec3 &a = corners[i], &b = corners[(i + 1) % corners.size()];
-    const double from = glm::dot(a, *normal), to = glm::dot(b, *normal);
-    if (from >= 0.0)
-    {
-      before.push_back(a);
-    }
-    if (from * to < 0.0)
-    {
-      before.push_back(a + (b - a) * (from / (from - to)));
-    }
-  }
-  double sum = 0.0;
-  for (std::size_t i = 0; i < before.size(); ++i)
-  {
-    const glm::dvec3 &a = before[i], &b = before[(i + 1) % before.size()], across = glm::cross(a, b);
-    const double sine = glm::length(across);
-    sum += sine > 0.0 ? std::atan2(sine, glm::dot(a, b)) * glm::dot(across, *normal) / sine : 0.0;
-  }
-  return std::abs(sum) / (2.0 * Pi);
-}
-
-/// Part of a point's light, or of a plane's of this normal there, that enters the box: all of it inside.
-/// @param place  voxels
-double EnteringPart(
-  const Grid& grid, const glm::dvec3& place, const glm::dvec3* normal, const std::array<bool, 3>& periodic = {})
-{
-  double part = 0.0, onFaces = 1.0;
+  double angle = 0.0, onFaces = 1.0;
   bool outside = false;
   for (int face = 0; face < 6; ++face)
   {
     const int axis = face / 2, u = (axis + 1) % 3, v = (axis + 2) % 3;
-    const double size = grid.size[axis], away = face % 2 ? place[axis] - size : -place[axis];
-    if (away == 0.0 && !periodic[axis])
-    {
-      onFaces *= normal ? 0.5 + (face % 2 ? -0.5 : 0.5) * (*normal)[axis] : 0.5;
-    }
-    if (away <= 0.0)
+    const auto reach = [&](int a, double end) { return (end - place[a]) * grid.spacing[a]; };
+    const double near = face % 2 ? -reach(axis, grid.size[axis]) : reach(axis, 0.0);
+    onFaces *= near == 0.0 && !periodic[axis] ? 0.5 : 1.0;
+    if (near <= 0.0)
     {
       continue;
     }
     outside = true;
-    std::vector<glm::dvec3> corners;
-    for (const auto& [first, second] : { std::pair{ 0, 0 }, { 1, 0 }, { 1, 1 }, { 0, 1 } })
+    for (int corner = 0; corner < 4; ++corner)
     {
-      glm::dvec3 corner;
-      corner[axis] = face % 2 ? size : 0.0;
-      corner[u] = first * grid.size[u];
-      corner[v] = second * grid.size[v];
-      corners.push_back((corner - place) * Vector(grid.spacing));
+      const double a = reach(u, corner & 1 ? grid.size[u] : 0.0), b = reach(v, corner & 2 ? grid.size[v] : 0.0);
+      const double seen = std::atan2(a * b, near * std::sqrt(a * a + b * b + near * near));
+      angle += corner == 0 || corner == 3 ? seen : -seen;
     }
-    part += PartThrough(corners, normal);
   }
-  return outside ? part : onFaces;
+  return outside ? angle / (4.0 * Pi) : onFaces;
+}
+
+using Polygon = std::vector<glm::dvec3>; ///< plane and convex
+
+/// What of it is where normal . x >= least.
+Polygon Clip(const Polygon& polygon, const glm::dvec3& normal, double least)
+{
+  Polygon clipped;
+  for (std::size_t i = 0; i < polygon.size(); ++i)
+  {
+    const glm::dvec3 &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
+    const double from = glm::dot(a, normal) - least, to = glm::dot(b, normal) - least;
+    if (from >= 0.0)
+    {
+      clipped.push_back(a);
+    }
+    if (from * to < 0.0)
+    {
+      clipped.push_back(a + (b - a) * (from / (from - to)));
+    }
+  }
+  return clipped;
+}
+
+double SizeOf(const Polygon& polygon)
+{
+  glm::dvec3 sum(0.0);
+  for (std::size_t i = 2; i < polygon.size(); ++i)
+  {
+    sum += glm::cross(polygon[i - 1] - polygon[0], polygon[i] - polygon[0]);
+  }
+  return 0.5 * glm::length(sum);
+}
+
+struct Edge
+{
+  glm::dvec3 from, way;
+};
+
+Edge EdgeOf(const Polygon& polygon, std::size_t i)
+{
+  return { polygon[i], polygon[(i + 1) % polygon.size()] - polygon[i] };
+}
+
+/// Integral of ln |point - x| over x along an edge.
+double LogarithmAlong(const Edge& edge, const glm::dvec3& point)
+{
+  const double length = glm::length(edge.way);
+  const glm::dvec3 to = point - edge.from;
+  const double along = glm::dot(to, edge.way) / length, aside = glm::length(to - along / length * edge.way);
+  const auto upTo = [aside](double t) {
+    const double square = t * t + aside * aside;
+    return (square > 0.0 ? 0.5 * t * std::log(square) : 0.0) - t + (aside > 0.0 ? aside * std::atan(t / aside) : 0.0);
+  };
+  return upTo(length - along) - upTo(-along);
+}
+
+/// Integral of ln |x - y| dx . dy over two edges: over the second by the tanh-sinh rule, in pieces that end where the
+/// first one is near.
+double LogarithmOver(const Edge& first, const Edge& second)
+{
+  constexpr double step = 0.18;
+  constexpr int steps = 17;
+  const double square = glm::dot(second.way, second.way), length = glm::length(first.way);
+  const double dot = glm::dot(first.way, second.way);
+  if (std::abs(dot) <= 1e-12 * length * std::sqrt(square))
+  {
+    return 0.0;
+  }
+  const glm::dvec3 to = first.from - second.from, normal = glm::cross(second.way, first.way);
+  std::array<double, 5> ends = { 0.0, glm::dot(to, second.way) / square, glm::dot(to + first.way, second.way) / square,
+    1.0, 1.0 };
+  const double slant = glm::dot(normal, normal);
+  ends[4] = slant > 1e-12 * square * length * length ? glm::dot(glm::cross(to, first.way), normal) / slant : 1.0;
+  for (double& end : ends)
+  {
+    end = std::clamp(end, 0.0, 1.0);
+  }
+  std::sort(ends.begin(), ends.end());
+  double sum = 0.0;
+  for (std::size_t i = 0; i + 1 < ends.size(); ++i)
+  {
+    const double wide = ends[i + 1] - ends[i];
+    for (int k = -steps; k <= steps && wide > 1e-12; ++k)
+    {
+      const double at = 1.0 / (1.0 + std::exp(-Pi * std::sinh(k * step)));
+      const double weight = step * Pi * std::cosh(k * step) * at * (1.0 - at);
+      sum += wide * weight * LogarithmAlong(first, second.from + (ends[i] + wide * at) * second.way);
+    }
+  }
+  return sum * dot / length;
+}
+
+/// Integral of cos cos / (pi r^2) over two polygons that lie before each other: by Stokes's theorem around both.
+double FormFactor(const Polygon& first, const Polygon& second)
+{
+  double sum = 0.0;
+  for (std::size_t i = 0; i < first.size(); ++i)
+  {
+    for (std::size_t j = 0; j < second.size(); ++j)
+    {
+      const Edge a = EdgeOf(first, i), b = EdgeOf(second, j);
+      sum += glm::length(a.way) > 0.0 && glm::length(b.way) > 0.0 ? LogarithmOver(a, b) : 0.0;
+    }
+  }
+  return std::abs(sum) / (2.0 * Pi);
+}
+
+/// Solid angle of a triangle (van Oosterom, Strackee).
+double SolidAngle(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c)
+{
+  const double x = glm::length(a), y = glm::length(b), z = glm::length(c);
+  return 2.0 *
+    std::atan2(std::abs(glm::dot(a, glm::cross(b, c))),
+      x * y * z + glm::dot(a, b) * z + glm::dot(b, c) * x + glm::dot(c, a) * y);
 }
 
 /// A rectangle, or a part of one. Lengths from the grid's corner.
@@ -154,6 +227,8 @@ struct Area
     return parts;
   }
 
+  Polygon Corners() const { return { this->At(-1, -1), this->At(1, -1), this->At(1, 1), this->At(-1, 1) }; }
+
   /// Gauss's points.
   std::array<glm::dvec3, 4> Points() const
   {
@@ -167,40 +242,44 @@ glm::dvec3 EndOf(const Grid& grid)
   return { grid.Length(0), grid.Length(1), grid.Length(2) };
 }
 
-/// Mean of the part of a rectangle's light that enters the box.
-double EnteringPart(const Grid& grid, const Area& area, const glm::dvec3& normal, int depth)
+/// Part of a rectangle's light that enters the box: all of what is inside, and through each face that of what is beyond.
+double EnteringPart(const Grid& grid, const Area& area, const glm::dvec3& normal)
 {
-  constexpr int deepest = 10; // of what lies on both sides of a face
-  constexpr double small = 0.4;
-  const double radius = area.Radius();
-  const glm::dvec3 end = EndOf(grid), nearest = glm::clamp(area.middle, glm::dvec3(0.0), end);
-  const double distance = glm::distance(area.middle, nearest);
-  double within = std::numeric_limits<double>::infinity();
-  for (int a = 0; a < 3; ++a)
+  const glm::dvec3 end = EndOf(grid);
+  const Polygon corners = area.Corners();
+  Polygon inside = corners;
+  double through = 0.0;
+  for (int face = 0; face < 6; ++face)
   {
-    const double across = std::abs(area.half[0][a]) + std::abs(area.half[1][a]);
-    within = std::min({ within, area.middle[a] - across, end[a] - area.middle[a] - across });
-  }
-  if (within > 0.0)
-  {
-    return 1.0;
-  }
-  if (depth < deepest && distance - radius < radius / small)
-  {
-    const std::vector<Area> parts = area.Parts();
-    double sum = 0.0;
-    for (const Area& part : parts)
+    const int axis = face / 2, u = (axis + 1) % 3, v = (axis + 2) % 3;
+    const double onIt = OnBorder * end[axis], at = face % 2 ? end[axis] : 0.0;
+    glm::dvec3 out(0.0);
+    out[axis] = face % 2 ? 1.0 : -1.0;
+    inside = Clip(inside, -out, -out[axis] * at - onIt);
+    const Polygon beyond = Clip(corners, out, out[axis] * at);
+    double farthest = 0.0;
+    for (const glm::dvec3& corner : beyond)
     {
-      sum += EnteringPart(grid, part, normal, depth + 1) / static_cast<double>(parts.size());
+      farthest = std::max(farthest, out[axis] * (corner[axis] - at));
     }
-    return sum;
+    if (farthest <= onIt)
+    {
+      const bool onFace = !beyond.empty() && SizeOf(beyond) > (1.0 - 1e-9) * area.Size();
+      inside = onFace && glm::dot(out, normal) > 0.0 ? Polygon() : inside;
+      continue;
+    }
+    Polygon ofFace;
+    for (const auto& [first, second] : { std::pair{ 0, 0 }, { 1, 0 }, { 1, 1 }, { 0, 1 } })
+    {
+      glm::dvec3 corner;
+      corner[axis] = at;
+      corner[u] = first * end[u];
+      corner[v] = second * end[v];
+      ofFace.push_back(corner);
+    }
+    through += FormFactor(beyond, Clip(ofFace, normal, glm::dot(area.middle, normal)));
   }
-  double sum = 0.0;
-  for (const glm::dvec3& point : area.Points())
-  {
-    sum += 0.25 * EnteringPart(grid, PlaceOf(grid, point + Vector(grid.origin)), &normal);
-  }
-  return sum;
+  return (SizeOf(inside) + through) / area.Size();
 }
 
 /// A near rectangle in parts: each voxel has the light of parts that are small beside their distance from it, which
@@ -216,7 +295,7 @@ public:
   {
     const double along = std::max({ grid.size[0], grid.size[1], grid.size[2] });
     const double voxel = std::cbrt(grid.spacing[0] * grid.spacing[1] * grid.spacing[2]);
-    this->Finest = voxel * std::max(1.0, along / PartsAcross);
+    this->Finest = FinestPart * voxel * std::max(1.0, along / PartsAcross);
     this->Divide(this->Whole, { this->Whole.middle, std::numeric_limits<double>::infinity() });
   }
 
@@ -240,17 +319,6 @@ private:
     return { least, most };
   }
 
-  /// Solid angle of the rectangle from a point before it.
-  double SolidAngle(const glm::dvec3& eye) const
-  {
-    std::vector<glm::dvec3> corners;
-    for (const auto& [a, b] : { std::pair{ -1.0, -1.0 }, { 1.0, -1.0 }, { 1.0, 1.0 }, { -1.0, 1.0 } })
-    {
-      corners.push_back(this->Whole.At(a, b) - eye);
-    }
-    return 4.0 * Pi * PartThrough(corners, nullptr);
-  }
-
   /// Whether a part adds so little to the light of the box that one point stands for it.
   bool IsFaint(const Area& part) const
   {
@@ -261,7 +329,10 @@ private:
       return false;
     }
     const double square = distance * distance, edge = part.Longer();
-    return part.Size() * cosine / square * (edge * edge / square) < Faint * this->SolidAngle(eye);
+    const Polygon corners = this->Whole.Corners();
+    const double angle = SolidAngle(corners[0] - eye, corners[1] - eye, corners[2] - eye) +
+      SolidAngle(corners[0] - eye, corners[2] - eye, corners[3] - eye);
+    return part.Size() * cosine / square * (edge * edge / square) < Faint * angle;
   }
 
   void Divide(const Area& part, const LampPoint::Sphere& whole)
@@ -332,7 +403,7 @@ LampOnGrid::LampOnGrid(const Light& light, const Grid& grid, const std::array<bo
   this->Points = this->Centre;
   if (light.type == LightType::Point)
   {
-    this->Entering = EnteringPart(grid, middle.place, nullptr, periodic);
+    this->Entering = EnteringPart(grid, middle.place, periodic);
   }
   if (light.type == LightType::Rectangle)
   {
@@ -344,14 +415,26 @@ LampOnGrid::LampOnGrid(const Light& light, const Grid& grid, const std::array<bo
 void LampOnGrid::DivideRectangle()
 {
   const Area area(this->Lamp, this->TheGrid);
-  this->Entering = EnteringPart(this->TheGrid, area, Vector(DirectionOf(this->Lamp)), 0);
-  this->IsNear = DistanceToBox(area, this->TheGrid) < FarEnough * area.Longer();
+  const glm::dvec3 end = EndOf(this->TheGrid);
+  const double distance = DistanceToBox(area, this->TheGrid), edge = area.Longer();
+  if (distance < Farthest * std::sqrt(edge * std::max({ end.x, end.y, end.z })))
+  {
+    this->Entering = EnteringPart(this->TheGrid, area, Vector(DirectionOf(this->Lamp)));
+  }
+  this->IsNear = distance < FarEnough * edge;
   if (this->IsNear)
   {
-    const bool many =
-      area.Longer() >= std::max({ EndOf(this->TheGrid).x, EndOf(this->TheGrid).y, EndOf(this->TheGrid).z });
-    const int along = std::max({ this->TheGrid.size[0], this->TheGrid.size[1], this->TheGrid.size[2] });
-    this->Width = many && along >= ManyVoxels ? WideBeams : this->Width;
+    const bool endless = this->Periodic[0] && this->Periodic[1] && this->Periodic[2];
+    bool inside = true;
+    for (const glm::dvec3& corner : area.Corners())
+    {
+      const glm::dvec3 aside = glm::abs(corner - 0.5 * end) - (0.5 + OnBorder) * end;
+      inside = inside && std::max({ aside.x, aside.y, aside.z }) <= 0.0;
+    }
+    for (int a = 0; a < 3; ++a)
+    {
+      this->Images[a] = inside && this->Periodic[a] ? (endless ? ImagesAsideWithoutFaces : ImagesAside) : 0;
+    }
     this->Points = RectangleParts(this->TheGrid, this->Periodic, this->Lamp).Points;
     return;
   }
@@ -431,7 +514,10 @@ double LampOnGrid::Share() const
 
 std::vector<BeamRow> LampOnGrid::Rows(const Pass& pass, double factor, std::size_t first, std::size_t& next) const
 {
-  const double width = this->Lamp.type == LightType::Rectangle ? this->Width : BeamWidth;
+  const double width = this->IsNear           ? BeamWidthOfParts
+    : this->Lamp.type == LightType::Rectangle ? BeamWidthOfRectangle
+                                              : BeamWidth;
+  const double margin = 2.0 * this->Diagonal(); // of a beam's cross-section and of a step
   const std::vector<LampPoint>& points = this->PointsOf(pass);
   std::vector<BeamRow> rows;
   std::size_t beams = 0;
@@ -446,8 +532,11 @@ std::vector<BeamRow> LampOnGrid::Rows(const Pass& pass, double factor, std::size
         row.part[a] = static_cast<float>(point.part.middle[a] / this->TheGrid.spacing[a]);
         row.whole[a] = static_cast<float>(point.whole.middle[a] / this->TheGrid.spacing[a]);
       }
-      row.partFrom = static_cast<float>(point.part.radius * point.part.radius);
-      row.wholeFrom = static_cast<float>(point.whole.radius * point.whole.radius);
+      const double from = point.part.radius, to = point.whole.radius, seen = std::max(from - margin, 0.0);
+      row.partFrom = static_cast<float>(from * from);
+      row.partSeen = static_cast<float>(seen * seen);
+      row.wholeFrom = static_cast<float>(to * to);
+      row.wholeSeen = static_cast<float>((to + margin) * (to + margin));
       beams += row.count;
       rows.push_back(row);
     }
@@ -477,6 +566,8 @@ RectangleInfo LampOnGrid::DescribeRectangle(const VoxelBox& own) const
       info.edges[a][b] = static_cast<float>(axes[a][b]);
     }
     info.size[a] = own.size[a];
+    info.period[a] = grid.size[a];
+    info.images[a] = this->Images[a];
     info.spacing[a] = static_cast<float>(grid.spacing[a]);
   }
   info.reach[0] = static_cast<float>(0.5 * this->Lamp.size[0]);
@@ -500,6 +591,7 @@ LampInfo LampOnGrid::Describe(const VoxelBox& stored, const VoxelBox& followed) 
     info.followed[a] = followed.first[a];
     info.followedEnd[a] = followed.first[a] + followed.size[a];
     info.periodic[a] = this->Periodic[a];
+    info.images[a] = this->Images[a];
     info.spacing[a] = static_cast<float>(grid.spacing[a]);
     info.direction[a] = static_cast<float>(direction[a]);
   }

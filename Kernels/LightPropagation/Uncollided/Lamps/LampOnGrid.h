@@ -90,9 +90,9 @@ private:
   const Light& Lamp;
   const Grid& TheGrid;
   std::array<bool, 3> Periodic;
-  bool IsNear = false;   ///< a rectangle that is in parts
-  double Entering = 0.0; ///< part of the power of a point or a rectangle
-  double Width = 1.0;    ///< of a rectangle's beams where they end, voxels
+  bool IsNear = false;            ///< a rectangle that is in parts
+  std::array<int, 3> Images = {}; ///< of that, beside it along a periodic axis, whose light is exact in vacuum
+  double Entering = 0.0;          ///< part of the power of a point or a rectangle
   std::vector<LampPoint> Points, Centre;
 };
 }

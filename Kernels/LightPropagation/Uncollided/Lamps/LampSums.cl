@@ -2,6 +2,7 @@
 
 #include "LightPropagation/Uncollided/Lamps/LampBeamsShared.h"
 #include "LightPropagation/Uncollided/Lamps/LampUnits.cl"
+#include "Numerics/Numerics.cl"
 
 #if VACUUM
 #define DEEPEST 7 // halvings of a voxel beside a rectangle
@@ -142,23 +143,51 @@ static float mean_solid_angle(const RectangleInfo* rectangle, const int* voxel)
   return sum;
 }
 
-// By what the path that a rectangle's beams put down in each voxel is multiplied, so that it is right in vacuum.
+// The same of the rectangle and of its images in a periodic box.
+static float mean_of_images(const RectangleInfo* rectangle, const int* voxel)
+{
+  const int* images = rectangle->images;
+  float sum = 0.0f;
+  for (int z = -images[2]; z <= images[2]; ++z)
+  {
+    for (int y = -images[1]; y <= images[1]; ++y)
+    {
+      for (int x = -images[0]; x <= images[0]; ++x)
+      {
+        const int from[] = { voxel[0] + x * rectangle->period[0], voxel[1] + y * rectangle->period[1],
+          voxel[2] + z * rectangle->period[2] };
+        sum += mean_solid_angle(rectangle, from);
+      }
+    }
+  }
+  return sum;
+}
+
+// By what the path that a rectangle's beams put down in each voxel is multiplied, so that it is right in vacuum. Where
+// no beam comes, path as in vacuum is put down.
 // fixed_path  as in follow_lamp (LampBeams.cl)
-__kernel void find_gains(
-  RectangleInfo rectangle, const __global long* fixed_path, ulong stride, __global float* gains, ulong first)
+__kernel void find_gains(RectangleInfo rectangle, __global long* fixed_path, ulong stride, __global float* gains,
+  ulong first, const __global float* sigma, ulong sigma_first, float diagonal)
 {
   const ulong i = first + get_global_id(0);
   const int voxel[] = { (int)(i % rectangle.size[0]), (int)(i / rectangle.size[0] % rectangle.size[1]),
     (int)(i / rectangle.size[0] / rectangle.size[1]) };
-  const float right = rectangle.path * mean_solid_angle(&rectangle, voxel);
+  const float right = rectangle.path * mean_of_images(&rectangle, voxel);
   const float beams = (float)fixed_path[FIRST_OF_VACUUM * stride + i] / rectangle.scale;
   float gain = beams > 0.0f ? right / beams : 1.0f;
 #if AROUND
-  // Light that has gone round an axis keeps what beams brought.
+  // Light that has gone farther around an axis keeps what beams brought.
   const float all = (float)fixed_path[i], direct = (float)fixed_path[(FIRST_OF_VACUUM + 1) * stride + i];
   gain = all > 0.0f ? 1.0f + (gain - 1.0f) * fmin(direct / all, 1.0f) : 1.0f;
 #endif
   gains[i] = gain;
+  if (!(beams > 0.0f) && fixed_path[i] == 0)
+  {
+    const float extinction = sigma[sigma_first + i], tau = 0.5f * extinction * diagonal;
+    float through;
+    const float kept = tau > 1e-6f ? extinguished(tau, &through) / tau : 1.0f;
+    fixed_path[i] = convert_long_sat_rte(right * kept * units_of(extinction, diagonal) * rectangle.scale);
+  }
 }
 #define GAIN(i) gains[i]
 #else

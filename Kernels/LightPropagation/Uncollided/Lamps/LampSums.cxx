@@ -52,7 +52,8 @@ double LampSums::FitToVacuum(const SweepVolume& volume, const LampOnGrid& lamp, 
   const RectangleInfo rectangle = lamp.DescribeRectangle(own);
   for (std::size_t first = 0; first < all; first += GainsPerLaunch)
   {
-    With(kernel, rectangle, this->Fixed, cl_ulong(this->TheStride), this->Gains, cl_ulong(first));
+    With(kernel, rectangle, this->Fixed, cl_ulong(this->TheStride), this->Gains, cl_ulong(first), *volume.sigma_t,
+      cl_ulong(volume.sigma_t_first), static_cast<float>(lamp.Diagonal()));
     this->TheDevice.Queue().enqueueNDRangeKernel(
       kernel, cl::NullRange, cl::NDRange(std::min(GainsPerLaunch, all - first)), cl::NullRange);
     this->TheDevice.Finish();
