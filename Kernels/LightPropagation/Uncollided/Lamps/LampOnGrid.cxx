@@ -73,6 +73,80 @@ double EnteringPart(const Grid& grid, const glm::dvec3& place, const std::array<
   return outside ? angle / (4.0 * Pi) : onFaces;
 }
 
+/// Corners of a face of the box, lengths from `from`.
+std::array<glm::dvec3, 4> CornersOfFace(const Grid& grid, int face, const glm::dvec3& from)
+{
+  std::array<glm::dvec3, 4> corners;
+  for (int i = 0; i < 4; ++i)
+  {
+    const int axis = face / 2, u = (axis + 1) % 3, v = (axis + 2) % 3;
+    corners[i][axis] = face % 2 ? grid.Length(axis) : 0.0;
+    corners[i][u] = i == 1 || i == 2 ? grid.Length(u) : 0.0;
+    corners[i][v] = i >= 2 ? grid.Length(v) : 0.0;
+    corners[i] -= from;
+  }
+  return corners;
+}
+
+/// Signed solid angle of what is between a cone's axis and the arc from a to b, and in the cone. Unit vectors.
+double AngleInCone(const glm::dvec3& axis, double half, const glm::dvec3& a, const glm::dvec3& b)
+{
+  const glm::dvec3 across = glm::cross(glm::cross(a, b), a);
+  const double end = std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b)), aside = glm::length(across);
+  if (!(aside > 0.0))
+  {
+    return 0.0;
+  }
+  const glm::dvec3 t = across / aside;
+  const double most = std::hypot(glm::dot(axis, a), glm::dot(axis, t)), cosine = std::cos(half);
+  const double middle = std::atan2(glm::dot(axis, t), glm::dot(axis, a)); // where the arc is nearest to the axis
+  const double reach = std::acos(std::clamp(most > 0.0 ? cosine / most : cosine * 1e300, -1.0, 1.0));
+  std::vector<double> cuts = { 0.0, end };
+  for (const double cut : { middle - reach, middle + reach, middle - reach + 2.0 * Pi, middle + reach - 2.0 * Pi })
+  {
+    cuts.push_back(std::clamp(cut, 0.0, end));
+  }
+  std::sort(cuts.begin(), cuts.end());
+  double sum = 0.0;
+  for (std::size_t i = 0; i + 1 < cuts.size(); ++i)
+  {
+    const auto at = [&](double s) { return std::cos(s) * a + std::sin(s) * t; };
+    const glm::dvec3 from = at(cuts[i]), to = at(cuts[i + 1]);
+    const double volume = glm::dot(axis, glm::cross(from, to)), x = glm::dot(axis, from), y = glm::dot(axis, to);
+    const bool inside = glm::dot(axis, at(0.5 * (cuts[i] + cuts[i + 1]))) > cosine;
+    sum += inside ? 2.0 * std::atan2(volume, 1.0 + x + y + glm::dot(from, to))
+                  : 2.0 * std::pow(std::sin(0.5 * half), 2.0) * std::atan2(volume, glm::dot(from, to) - x * y);
+  }
+  return sum;
+}
+
+/// Part of a spot's light that enters the box from outside; 0 where that is not known: of a lamp that is not outside,
+/// of a cone that is too narrow for doubles.
+double EnteringPart(const Grid& grid, const Light& spot, const glm::dvec3& place)
+{
+  constexpr double narrow = 1e-6;
+  const double half = HalfAngle(spot), all = 4.0 * Pi * std::pow(std::sin(0.5 * half), 2.0);
+  double angle = 0.0;
+  for (int face = 0; face < 6 && half > narrow; ++face)
+  {
+    const double near = face % 2 ? place[face / 2] - grid.size[face / 2] : -place[face / 2];
+    if (near <= 0.0)
+    {
+      continue;
+    }
+    const std::array<glm::dvec3, 4> corners = CornersOfFace(grid, face, place * Vector(grid.spacing));
+    double seen = 0.0;
+    for (int i = 0; i < 4; ++i)
+    {
+      seen +=
+        AngleInCone(Vector(DirectionOf(spot)), half, glm::normalize(corners[i]), glm::normalize(corners[(i + 1) % 4]));
+    }
+    seen = face % 2 ? -seen : seen;                  // seen from outside
+    angle += seen < -1e-9 * all ? seen + all : seen; // the face is around what is opposite to the axis
+  }
+  return angle / all;
+}
+
 using Polygon = std::vector<glm::dvec3>; ///< plane and convex
 
 /// What of it is where normal . x >= least.
@@ -251,7 +325,7 @@ double EnteringPart(const Grid& grid, const Area& area, const glm::dvec3& normal
   double through = 0.0;
   for (int face = 0; face < 6; ++face)
   {
-    const int axis = face / 2, u = (axis + 1) % 3, v = (axis + 2) % 3;
+    const int axis = face / 2;
     const double onIt = OnBorder * end[axis], at = face % 2 ? end[axis] : 0.0;
     glm::dvec3 out(0.0);
     out[axis] = face % 2 ? 1.0 : -1.0;
@@ -268,16 +342,8 @@ double EnteringPart(const Grid& grid, const Area& area, const glm::dvec3& normal
       inside = onFace && glm::dot(out, normal) > 0.0 ? Polygon() : inside;
       continue;
     }
-    Polygon ofFace;
-    for (const auto& [first, second] : { std::pair{ 0, 0 }, { 1, 0 }, { 1, 1 }, { 0, 1 } })
-    {
-      glm::dvec3 corner;
-      corner[axis] = at;
-      corner[u] = first * end[u];
-      corner[v] = second * end[v];
-      ofFace.push_back(corner);
-    }
-    through += FormFactor(beyond, Clip(ofFace, normal, glm::dot(area.middle, normal)));
+    const std::array<glm::dvec3, 4> ofFace = CornersOfFace(grid, face, glm::dvec3(0.0));
+    through += FormFactor(beyond, Clip({ ofFace.begin(), ofFace.end() }, normal, glm::dot(area.middle, normal)));
   }
   return (SizeOf(inside) + through) / area.Size();
 }
@@ -405,7 +471,11 @@ LampOnGrid::LampOnGrid(const Light& light, const Grid& grid, const std::array<bo
   {
     this->Entering = EnteringPart(grid, middle.place, periodic);
   }
-  if (light.type == LightType::Rectangle)
+  else if (light.type == LightType::Spot)
+  {
+    this->Entering = EnteringPart(grid, light, middle.place);
+  }
+  else
   {
     this->DivideRectangle();
   }

@@ -92,7 +92,7 @@ private:
   std::array<bool, 3> Periodic;
   bool IsNear = false;            ///< a rectangle that is in parts
   std::array<int, 3> Images = {}; ///< of that, beside it along a periodic axis, whose light is exact in vacuum
-  double Entering = 0.0;          ///< part of the power of a point or a rectangle
+  double Entering = 0.0;          ///< part of the power that enters the box; 0 where it is not known
   std::vector<LampPoint> Points, Centre;
 };
 }
