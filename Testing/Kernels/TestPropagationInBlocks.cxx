@@ -119,17 +119,23 @@ TEST_F(PropagationBlocks, HaveTheLightOfFarLampsAndNarrowCones)
   }
 }
 
-/// On a face, on an edge, and where a face is also the border of a block; a rectangle that is larger than the box.
+/// On a face, on an edge, and where a face is also the border of a block; rectangles larger than the box and in it.
 TEST_F(PropagationBlocks, HaveTheLightOfLampsOnTheBorderAndOfLargeRectangles)
 {
   RandomMedium whole(Grid{ { 6, 5, 7 }, { 1.0, 0.8, 1.3 } }, 1, 0.8f, 7);
-  std::vector<Light> lamps(3, NearLamps()[0]);
+  std::vector<Light> lamps(5, NearLamps()[0]);
   lamps[0].position = { 0.0, 1.7, 9.1 };
-  lamps[1].position = { 3.0, 4.0, 4.0 };
-  lamps[2].type = LightType::Rectangle;
-  lamps[2].position = { 2.0, 4.0, 12.0 };
-  lamps[2].size = { 70.0, 40.0 };
-  lamps[2].direction = { 0.0, 0.1, -1.0 };
+  lamps[1].position = { 6.0, 1.7, 4.1 };
+  lamps[2].position = { 3.0, 4.0, 4.0 };
+  for (const int i : { 3, 4 })
+  {
+    lamps[i].type = LightType::Rectangle;
+    lamps[i].direction = { 0.0, 0.1, -1.0 };
+  }
+  lamps[3].position = { 2.0, 4.0, 12.0 };
+  lamps[3].size = { 70.0, 40.0 };
+  lamps[4].position = { 3.0, 2.0, 5.0 };
+  lamps[4].size = { 4.0, 3.0 };
   for (const Light& lamp : lamps)
   {
     Illumination shining;

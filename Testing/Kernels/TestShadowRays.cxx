@@ -240,6 +240,33 @@ TEST_F(ShadowRays, SpotAndRectangleShineToOneSide)
   }
 }
 
+// Radiance times solid angle, however large it is.
+TEST_F(ShadowRays, OfALargeRectangleBringWhatItShines)
+{
+  for (double edge : { 8.0, 24.0, 80.0, 800.0, 8000.0 })
+  {
+    Scene scene(GridOf(8, 8, 8));
+    scene.sigma_s = scene.Everywhere(1e-6);
+    scene.settings.shadowRays = true;
+    scene.settings.showBackground = false;
+    Light light;
+    light.type = LightType::Rectangle;
+    light.position = { 4.0, 4.0, 16.0 };
+    light.direction = { 0.0, 0.0, -1.0 };
+    light.size = { edge, edge };
+    light.power = Times({ 1.0, 1.0, 1.0 }, Pi * edge * edge); // radiance 1
+    scene.illumination.lights = { light };
+    const Picture picture = scene.Seen(this->GetDevice(), FromAbove(scene.grid, 5.0));
+    double exact = 0.0;
+    for (int i = 0; i < 8; ++i)
+    {
+      const double distance = 8.5 + i, half = 0.5 * edge;
+      exact += 4.0 / 8.0 * std::atan2(half * half, distance * std::sqrt(2.0 * half * half + distance * distance));
+    }
+    EXPECT_NEAR(picture.radiance[3 * Middle(picture)] * 4.0 * Pi / 8e-6, exact, 0.06 * exact) << edge;
+  }
+}
+
 // A medium so thin that every voxel gets 3 of the sun, 5 that was scattered and 2 straight from an environment.
 TEST_F(ShadowRays, DirectLightCountsOnce)
 {

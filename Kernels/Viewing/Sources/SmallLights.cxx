@@ -4,12 +4,49 @@
 #include "Numerics/Vectors.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
 namespace tyndall
 {
+namespace
+{
+struct RectangleSample
+{
+  glm::dvec3 place; ///< from the grid's corner
+  double share;     ///< of the power
+};
+
+/// Samples of a rectangle: `perEdge` along each edge, in the middles of equal parts. One that is larger than the box and
+/// than its distance from it is quartered, for as long as that is so: what is nearer has more.
+void AddSamples(const Grid& grid, const glm::dvec3& middle, const std::array<glm::dvec3, 2>& edges, int perEdge,
+  double share, bool whole, std::vector<RectangleSample>& samples)
+{
+  const glm::dvec3 end(grid.Length(0), grid.Length(1), grid.Length(2));
+  const double distance = glm::distance(middle, glm::clamp(middle, glm::dvec3(0.0), end));
+  const double longer = std::max(glm::length(edges[0]), glm::length(edges[1]));
+  const double box = std::max({ end.x, end.y, end.z });
+  const bool quartered = longer > std::max(distance, whole ? box : 0.5 * box) * (1.0 + 1e-9);
+  const int n = quartered ? 2 : whole ? perEdge : std::max(perEdge / 2, 1);
+  for (int i = 0; i < n * n; ++i)
+  {
+    const glm::dvec3 place = middle + ((i % n + 0.5) / n - 0.5) * edges[0] + ((i / n + 0.5) / n - 0.5) * edges[1];
+    if (quartered)
+    {
+      AddSamples(grid, place, { 0.5 * edges[0], 0.5 * edges[1] }, perEdge, 0.25 * share, false, samples);
+    }
+    else
+    {
+      samples.push_back({ place, share / (n * n) });
+    }
+  }
+}
+}
+
 std::vector<SmallLight> SmallLights(const std::vector<Light>& lights, const Grid& grid, int rectangleSamples)
 {
   std::vector<SmallLight> small;
@@ -42,12 +79,11 @@ std::vector<SmallLight> SmallLights(const std::vector<Light>& lights, const Grid
     {
       // Lambertian: radiant intensity along the axis is power / pi.
       const auto edges = RectangleEdges(light);
-      const int n = rectangleSamples;
-      for (int sample = 0; sample < n * n; ++sample)
+      std::vector<RectangleSample> samples;
+      AddSamples(grid, place, { Vector(edges[0]), Vector(edges[1]) }, rectangleSamples, 1.0, true, samples);
+      for (const RectangleSample& sample : samples)
       {
-        const glm::dvec3 offset =
-          ((sample % n + 0.5) / n - 0.5) * Vector(edges[0]) + ((sample / n + 0.5) / n - 0.5) * Vector(edges[1]);
-        add(place + offset, true, axis, 0.0, light.power, 1.0 / (Pi * n * n), true);
+        add(sample.place, true, axis, 0.0, light.power, sample.share / Pi, true);
       }
     }
   }
