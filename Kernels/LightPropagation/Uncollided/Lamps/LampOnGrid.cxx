@@ -17,8 +17,6 @@ namespace tyndall
 {
 namespace
 {
-/// How near a rectangle may be to the box, in its longer edges, for 16 points to do.
-constexpr double FarEnough = 1.25;
 constexpr double PartDistance = 2.0; ///< of voxels from the middle of a part that is not halved for them, in its radii
 constexpr double FinestPart = 2.0;   ///< its longer edge, voxels
 constexpr double PartsAcross = 64.0; ///< of one that lies along the box, at most
@@ -27,8 +25,9 @@ constexpr std::size_t BeamsTogether = 1 << 18;
 /// To either side of a rectangle in a periodic box, whose light in vacuum is exact; without faces light has no end.
 constexpr int ImagesAside = 5, ImagesAsideWithoutFaces = 1;
 
-/// Of beams where they leave the box, voxels: of a lamp, of a rectangle, of one in parts, whose points are many.
-constexpr double BeamWidth = 0.5, BeamWidthOfRectangle = 1.0, BeamWidthOfParts = 1.4;
+/// Of beams where they leave the box, voxels: of a lamp, of a rectangle, of one of many points.
+constexpr double BeamWidth = 0.5, BeamWidthOfRectangle = 1.0, BeamWidthOfMany = 1.4;
+constexpr std::size_t ManyPoints = 64;
 constexpr double Farthest =
   1e4; ///< of a rectangle, mean edges of it and the box, for the integral around both in doubles
 constexpr int RoundsAtMost = 64;  ///< that all power may go through one voxel, in fixed point
@@ -481,47 +480,27 @@ LampOnGrid::LampOnGrid(const Light& light, const Grid& grid, const std::array<bo
   }
 }
 
-/// Far from the box into quarters of four points each.
 void LampOnGrid::DivideRectangle()
 {
   const Area area(this->Lamp, this->TheGrid);
   const glm::dvec3 end = EndOf(this->TheGrid);
-  const double distance = DistanceToBox(area, this->TheGrid), edge = area.Longer();
-  if (distance < Farthest * std::sqrt(edge * std::max({ end.x, end.y, end.z })))
+  const double distance = DistanceToBox(area, this->TheGrid), box = std::max({ end.x, end.y, end.z });
+  if (distance < Farthest * std::sqrt(area.Longer() * box))
   {
     this->Entering = EnteringPart(this->TheGrid, area, Vector(DirectionOf(this->Lamp)));
   }
-  this->IsNear = distance < FarEnough * edge;
-  if (this->IsNear)
+  const bool endless = this->Periodic[0] && this->Periodic[1] && this->Periodic[2];
+  bool inside = true;
+  for (const glm::dvec3& corner : area.Corners())
   {
-    const bool endless = this->Periodic[0] && this->Periodic[1] && this->Periodic[2];
-    bool inside = true;
-    for (const glm::dvec3& corner : area.Corners())
-    {
-      const glm::dvec3 aside = glm::abs(corner - 0.5 * end) - (0.5 + OnBorder) * end;
-      inside = inside && std::max({ aside.x, aside.y, aside.z }) <= 0.0;
-    }
-    for (int a = 0; a < 3; ++a)
-    {
-      this->Images[a] = inside && this->Periodic[a] ? (endless ? ImagesAsideWithoutFaces : ImagesAside) : 0;
-    }
-    this->Points = RectangleParts(this->TheGrid, this->Periodic, this->Lamp).Points;
-    return;
+    const glm::dvec3 aside = glm::abs(corner - 0.5 * end) - (0.5 + OnBorder) * end;
+    inside = inside && std::max({ aside.x, aside.y, aside.z }) <= 0.0;
   }
-  this->Points.clear();
-  Area quarter = area;
-  quarter.half = { 0.5 * area.half[0], 0.5 * area.half[1] };
-  for (int i = 0; i < 4; ++i)
+  for (int a = 0; a < 3; ++a)
   {
-    quarter.middle = area.At(i & 1 ? 0.5 : -0.5, i & 2 ? 0.5 : -0.5);
-    for (const glm::dvec3& point : quarter.Points())
-    {
-      LampPoint sixteenth;
-      sixteenth.place = PlaceOf(this->TheGrid, point + Vector(this->TheGrid.origin));
-      sixteenth.share = 1.0 / 16.0;
-      this->Points.push_back(sixteenth);
-    }
+    this->Images[a] = inside && this->Periodic[a] ? (endless ? ImagesAsideWithoutFaces : ImagesAside) : 0;
   }
+  this->Points = RectangleParts(this->TheGrid, this->Periodic, this->Lamp).Points;
 }
 
 /// Whether its beams take all light: it is in the box, or a cone that leads into it.
@@ -544,23 +523,27 @@ LampFactors LampOnGrid::Factors(const LampShares& shares, double taken, double e
     return { 1.0 / shares.shone, 1.0 / shares.shone, 1.0 / shares.shone };
   }
   const double in = this->Entering > 0.0 && shares.In() > 0.0 ? this->Entering / shares.In() : this->Share();
-  if (!this->IsNear)
+  if (this->Lamp.type != LightType::Rectangle)
   {
     return { in, in, in };
   }
   // The parts of a rectangle do not add up exactly: the larger of what the medium takes and what leaves makes up for it.
   const double share = this->Share(), left = share * (shares.Out() + even), kept = share * taken;
   const double square = kept * kept + left * left;
-  const double rest = square > 0.0 ? (this->Entering - kept - left) / square : 0.0;
+  if (!(square > 0.0))
+  {
+    return { 0.0, 0.0, 0.0 }; // the box is dark
+  }
+  const double rest = (in * shares.In() - kept - left) / square;
   return { in, share * (1.0 + rest * kept), share * (1.0 + rest * left) };
 }
 
 /// By the ball around the box; a power of two.
 double LampOnGrid::Share() const
 {
-  if (this->IsNear)
+  if (this->Lamp.type == LightType::Rectangle && this->Entering > 0.0)
   {
-    return this->Entering > 0.0 ? std::exp2(std::ceil(std::log2(this->Entering))) : 1.0;
+    return std::exp2(std::ceil(std::log2(this->Entering)));
   }
   constexpr double ofNearBall = 1.1; // solid angle of a ball over pi (radius / distance)^2, from twice its radius on
   const Grid& grid = this->TheGrid;
@@ -584,9 +567,9 @@ double LampOnGrid::Share() const
 
 std::vector<BeamRow> LampOnGrid::Rows(const Pass& pass, double factor, std::size_t first, std::size_t& next) const
 {
-  const double width = this->IsNear           ? BeamWidthOfParts
-    : this->Lamp.type == LightType::Rectangle ? BeamWidthOfRectangle
-                                              : BeamWidth;
+  const double width = this->Lamp.type != LightType::Rectangle ? BeamWidth
+    : this->Points.size() < ManyPoints                         ? BeamWidthOfRectangle
+                                                               : BeamWidthOfMany;
   const double margin = 2.0 * this->Diagonal(); // of a beam's cross-section and of a step
   const std::vector<LampPoint>& points = this->PointsOf(pass);
   std::vector<BeamRow> rows;
@@ -616,7 +599,9 @@ std::vector<BeamRow> LampOnGrid::Rows(const Pass& pass, double factor, std::size
 
 int LampOnGrid::SumsOfVacuum() const
 {
-  return !this->IsNear ? 0 : this->Periodic[0] || this->Periodic[1] || this->Periodic[2] ? 2 : 1;
+  return this->Lamp.type != LightType::Rectangle                  ? 0
+    : this->Periodic[0] || this->Periodic[1] || this->Periodic[2] ? 2
+                                                                  : 1;
 }
 
 RectangleInfo LampOnGrid::DescribeRectangle(const VoxelBox& own) const

@@ -90,7 +90,6 @@ private:
   const Light& Lamp;
   const Grid& TheGrid;
   std::array<bool, 3> Periodic;
-  bool IsNear = false;            ///< a rectangle that is in parts
   std::array<int, 3> Images = {}; ///< of that, beside it along a periodic axis, whose light is exact in vacuum
   double Entering = 0.0;          ///< part of the power that enters the box; 0 where it is not known
   std::vector<LampPoint> Points, Centre;

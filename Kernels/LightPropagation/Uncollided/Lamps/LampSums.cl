@@ -81,13 +81,13 @@ static float mean_over_cell(const RectangleInfo* rectangle, const voxel_cell* ce
 
 // Whether a cell is to be halved: near to the rectangle's border the solid angle varies fast, near to a small
 // rectangle as with the inverse square.
-static bool is_coarse(const RectangleInfo* rectangle, const voxel_cell* cell, int level)
+//   before  how far the voxel reaches before the rectangle's plane
+static bool is_coarse(const RectangleInfo* rectangle, const voxel_cell* cell, int level, float before)
 {
   const float3 normal =
     (float3)(fabs(rectangle->edges[2][0]), fabs(rectangle->edges[2][1]), fabs(rectangle->edges[2][2]));
   const bool slanted = normal.x + normal.y + normal.z > 1.001f;
-  const int levels_cut = cell->middle.z < -0.5f * cell->deep ? 5 : 2; // more where little is before the plane
-  if (slanted && level < levels_cut && fabs(cell->middle.z) < cell->deep)
+  if (slanted && level < DEEPEST && fabs(cell->middle.z) < cell->deep && cell->deep > 0.25f * before)
   {
     return true;
   }
@@ -99,7 +99,7 @@ static bool is_coarse(const RectangleInfo* rectangle, const voxel_cell* cell, in
 // their order along a curve, each as large as it may be.
 static float mean_solid_angle(const RectangleInfo* rectangle, const int* voxel)
 {
-  float sum = 0.0f;
+  float sum = 0.0f, before = 0.0f;
   int level = 0;
   for (uint at = 0; at < 1u << (3 * DEEPEST);)
   {
@@ -123,8 +123,9 @@ static float mean_solid_angle(const RectangleInfo* rectangle, const int* voxel)
     cell.radius = 0.5f * sqrt(cell.edge[0] * cell.edge[0] + cell.edge[1] * cell.edge[1] + cell.edge[2] * cell.edge[2]);
     cell.middle = to_rectangle(rectangle, (voxel[0] + place[0]) * rectangle->spacing[0],
       (voxel[1] + place[1]) * rectangle->spacing[1], (voxel[2] + place[2]) * rectangle->spacing[2]);
+    before = level == 0 ? cell.deep + fmin(cell.middle.z, 0.0f) : before;
     const bool behind = cell.middle.z <= -cell.deep;
-    if (!behind && is_coarse(rectangle, &cell, level))
+    if (!behind && is_coarse(rectangle, &cell, level, before))
     {
       ++level;
       continue;
