@@ -664,6 +664,7 @@ const RectangleInBox Rectangles[] = {
   { Rectangle({ 0.0, 5.2, 4.0 }, { 0.2, 0.1, -1.0 }, 5.0, 7.0), { 14, 9, 6 }, { 0.6, 1.0, 2.0 } },
   { Rectangle({ -30.0, 5.0, 22.0 }, { 0.6, 0.0, -0.4 }, 30.0, 12.0) },
   { Rectangle({ 5.0, 5.0, -13.0 }, { 0.0, 0.1, 1.0 }, 10.0, 10.0) },
+  { Rectangle({ 6.0, 2.1, -1.0 }, { -0.3, -0.2, 0.03 }, 0.4, 0.25), { 8, 4, 7 } },
 };
 
 Scene VacuumAround(const RectangleInBox& rectangle)

@@ -21,8 +21,8 @@ struct RectangleSample
   double share;     ///< of the power
 };
 
-/// Samples of a rectangle: `perEdge` along each edge, in the middles of equal parts. One that is larger than the box and
-/// than its distance from it is quartered, for as long as that is so: what is nearer has more.
+/// Samples of a rectangle: `perEdge` along each edge, in the middles of equal parts. One that is larger than the box
+/// and than its distance from it is quartered, for as long as that is so: what is nearer has more.
 void AddSamples(const Grid& grid, const glm::dvec3& middle, const std::array<glm::dvec3, 2>& edges, int perEdge,
   double share, bool whole, std::vector<RectangleSample>& samples)
 {

@@ -4,7 +4,7 @@
 //   MOMENTS     1: first moments of the deposit are wanted
 //   NET_FLUX    1: net flux is wanted
 //   FACE_OUT    1: the power that leaves through each cell of the box's faces is wanted
-//   VACUUM      1: a rectangle in parts, each for some voxels; what its beams deposit in vacuum is summed, too, and
+//   VACUUM      1: a rectangle, in parts, each for some voxels; what its beams deposit in vacuum is summed, too, and
 //               where an axis is periodic (AROUND 1) what they deposit before they go around it
 //   THIN        optical length below which light counts as lost evenly
 //   IN_BLOCK    1: beams are followed in a block of the grid, and wait where they leave it; may be left out
@@ -817,8 +817,8 @@ static void follow_row(const LampInfo* lamp, const BeamRow* row, const __global 
 }
 
 // path  part of the power times length, in fixed point, [voxel], added to; MOMENTS: [path, times distance along x, y,
-//       z][stride]; NET_FLUX: behind that times direction, [x, y, z][stride]; VACUUM: behind that path in vacuum, [stride],
-//       of light before it goes around an axis, and where AROUND the path of that light, [stride]
+//       z][stride]; NET_FLUX: behind that times direction, [x, y, z][stride]; VACUUM: behind that path in vacuum,
+//       [stride], of light before it goes around an axis, and where AROUND the path of that light, [stride]
 // cells power that leaves through the box's faces, in fixed point, [cell]; where FACE_OUT
 // sums  [row], as write_sums has them
 __kernel void follow_lamp(LampInfo lamp, const __global float* sigma, ulong sigma_first, __global long* path,

@@ -46,7 +46,7 @@ typedef struct
   int layers;               ///< that they go in all, at most
   int beside;               ///< 1, 2: the lamp is beside the box along u, v; beams may enter through faces there
   float share;              ///< of the lamp's power, that the point has from which they come
-  float part[3];            ///< of a near rectangle's part: its middle,
+  float part[3];            ///< of a rectangle's part: its middle,
   float partFrom, partSeen; ///< the square of the distance from which on voxels have its light, and where beams may
   float whole[3];           ///< come to them; the same of the part that was halved for it, from where on they have not
   float wholeFrom, wholeSeen;

@@ -18,9 +18,10 @@ namespace tyndall
 namespace
 {
 constexpr double PartDistance = 2.0; ///< of voxels from the middle of a part that is not halved for them, in its radii
-constexpr double FinestPart = 2.0;   ///< its longer edge, voxels
-constexpr double PartsAcross = 64.0; ///< of one that lies along the box, at most
-constexpr double Faint = 0.1;        ///< error of a point, of all light, for a part to be a point
+constexpr int PointsOfPart = 2, PointsOfAll = 3; ///< along an edge
+constexpr double FinestPart = 2.0;               ///< its longer edge, voxels
+constexpr double PartsAcross = 64.0;             ///< of one that lies along the box, at most
+constexpr double Faint = 0.1;                    ///< error of a point, of all light, for a part to be a point
 constexpr std::size_t BeamsTogether = 1 << 18;
 /// To either side of a rectangle in a periodic box, whose light in vacuum is exact; without faces light has no end.
 constexpr int ImagesAside = 5, ImagesAsideWithoutFaces = 1;
@@ -302,11 +303,20 @@ struct Area
 
   Polygon Corners() const { return { this->At(-1, -1), this->At(1, -1), this->At(1, 1), this->At(-1, 1) }; }
 
-  /// Gauss's points.
-  std::array<glm::dvec3, 4> Points() const
+  /// Gauss's points of 1 to 3 along each edge, with their shares of it.
+  std::vector<std::pair<glm::dvec3, double>> Points(int perEdge) const
   {
-    constexpr double g = 0.577350269189626;
-    return { this->At(-g, -g), this->At(g, -g), this->At(-g, g), this->At(g, g) };
+    constexpr double places[][3] = { { 0.0 }, { -0.577350269189626, 0.577350269189626 },
+      { -0.774596669241483, 0.0, 0.774596669241483 } };
+    constexpr double shares[][3] = { { 1.0 }, { 0.5, 0.5 }, { 5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0 } };
+    const auto *place = places[perEdge - 1], *share = shares[perEdge - 1];
+    std::vector<std::pair<glm::dvec3, double>> points;
+    for (int i = 0; i < perEdge * perEdge; ++i)
+    {
+      const int first = i % perEdge, second = i / perEdge;
+      points.push_back({ this->At(place[first], place[second]), share[first] * share[second] });
+    }
+    return points;
   }
 };
 
@@ -315,7 +325,7 @@ glm::dvec3 EndOf(const Grid& grid)
   return { grid.Length(0), grid.Length(1), grid.Length(2) };
 }
 
-/// Part of a rectangle's light that enters the box: all of what is inside, and through each face that of what is beyond.
+/// Part of a rectangle's light that enters the box: all of what is inside, through each face that of what is beyond.
 double EnteringPart(const Grid& grid, const Area& area, const glm::dvec3& normal)
 {
   const glm::dvec3 end = EndOf(grid);
@@ -347,7 +357,7 @@ double EnteringPart(const Grid& grid, const Area& area, const glm::dvec3& normal
   return (SizeOf(inside) + through) / area.Size();
 }
 
-/// A near rectangle in parts: each voxel has the light of parts that are small beside their distance from it, which
+/// A rectangle in parts: each voxel has the light of parts that are small beside their distance from it, which
 /// together are all of the rectangle.
 class RectangleParts
 {
@@ -402,14 +412,16 @@ private:
 
   void Divide(const Area& part, const LampPoint::Sphere& whole)
   {
+    const bool isAll = whole.radius == std::numeric_limits<double>::infinity();
     const std::array<double, 2> distances = this->Distances(part.middle);
-    const bool faint = this->IsFaint(part);
+    const bool faint = !isAll && this->IsFaint(part);
     const double from = PartDistance * part.Radius();
-    const bool undivided = faint || part.Longer() <= this->Finest * (1.0 + 1e-9) || distances[0] >= from;
+    const bool far = distances[0] >= from;
+    const bool undivided = faint || far || part.Longer() <= this->Finest * (1.0 + 1e-9);
     const LampPoint::Sphere own = { part.middle, undivided ? 0.0 : from };
     if (undivided || distances[1] >= from)
     {
-      this->Add(part, own, whole, faint);
+      this->Add(part, own, whole, faint ? 1 : isAll && far ? PointsOfAll : PointsOfPart);
     }
     if (!undivided)
     {
@@ -420,16 +432,12 @@ private:
     }
   }
 
-  void Add(const Area& part, const LampPoint::Sphere& own, const LampPoint::Sphere& whole, bool faint)
+  void Add(const Area& part, const LampPoint::Sphere& own, const LampPoint::Sphere& whole, int perEdge)
   {
-    const std::array<glm::dvec3, 4> all = part.Points();
-    const std::vector<glm::dvec3> points =
-      faint ? std::vector<glm::dvec3>{ part.middle } : std::vector<glm::dvec3>(all.begin(), all.end());
-    for (const glm::dvec3& point : points)
+    for (const auto& [point, share] : part.Points(perEdge))
     {
-      const double share = part.Size() / this->Whole.Size() / static_cast<double>(points.size());
-      this->Points.push_back({ PlaceOf(this->TheGrid, point + Vector(this->TheGrid.origin)), share, own, whole,
-        whole.radius + glm::distance(point, whole.middle) });
+      this->Points.push_back({ PlaceOf(this->TheGrid, point + Vector(this->TheGrid.origin)),
+        share * part.Size() / this->Whole.Size(), own, whole, whole.radius + glm::distance(point, whole.middle) });
     }
   }
 
@@ -527,7 +535,8 @@ LampFactors LampOnGrid::Factors(const LampShares& shares, double taken, double e
   {
     return { in, in, in };
   }
-  // The parts of a rectangle do not add up exactly: the larger of what the medium takes and what leaves makes up for it.
+  // The parts of a rectangle do not add up exactly: the larger of what the medium takes and what leaves makes up for
+  // it (numerics.md, Eq. (34b)).
   const double share = this->Share(), left = share * (shares.Out() + even), kept = share * taken;
   const double square = kept * kept + left * left;
   if (!(square > 0.0))

@@ -47,7 +47,8 @@ public:
 
   const Light& TheLight() const { return this->Lamp; }
 
-  /// What stands for the lamp in a pass: a point, or those of a rectangle's parts; from far a rectangle is a point.
+  /// What stands for the lamp in a pass: a point, or those of a rectangle's parts; in later passes a rectangle is a
+  /// point.
   const std::vector<LampPoint>& PointsOf(const Pass& pass) const
   {
     return pass.begin == 0 ? this->Points : this->Centre;
@@ -59,8 +60,8 @@ public:
   std::vector<BeamRow> Rows(const Pass& pass, double factor, std::size_t first, std::size_t& next) const;
 
   /// Where it is known which part of the lamp's power is followed (all light of a lamp in the box and of a cone that
-  /// leads into it) or enters (that of points and rectangles), the factors make it that.
-  /// @param taken  share that the medium takes, of a rectangle in parts
+  /// leads into it) or enters, the factors make it that.
+  /// @param taken  share that the medium takes, of a rectangle
   /// @param even  share that is to be spread evenly
   LampFactors Factors(const LampShares& shares, double taken, double even) const;
 
@@ -71,7 +72,7 @@ public:
   /// @param stored  the voxels that arrays hold; and of them those in which beams are followed
   LampInfo Describe(const VoxelBox& stored, const VoxelBox& followed) const;
 
-  /// Sums that a voxel has beside the others, of a rectangle in parts.
+  /// Sums that a voxel has beside the others, of a rectangle.
   int SumsOfVacuum() const;
   RectangleInfo DescribeRectangle(const VoxelBox& own) const;
 
@@ -90,7 +91,7 @@ private:
   const Light& Lamp;
   const Grid& TheGrid;
   std::array<bool, 3> Periodic;
-  std::array<int, 3> Images = {}; ///< of that, beside it along a periodic axis, whose light is exact in vacuum
+  std::array<int, 3> Images = {}; ///< of a rectangle, beside it along a periodic axis, whose light is exact in vacuum
   double Entering = 0.0;          ///< part of the power that enters the box; 0 where it is not known
   std::vector<LampPoint> Points, Centre;
 };

@@ -7,7 +7,7 @@ namespace tyndall
 {
 /// What a lamp's beams put down, parts of its power in 64-bit fixed point, so that sums do not depend on the order of
 /// their terms (numerics.md, Eq. (35)): path times length, and behind it first moments and net flux where a deposit
-/// asks for them, [path, 3 first moments, 3 of flux][stride], and of a rectangle that is near what vacuum would have;
+/// asks for them, [path, 3 first moments, 3 of flux][stride], and of a rectangle what vacuum would have;
 /// and what leaves by cells of the grid's faces, where it does.
 class LampSums
 {
@@ -25,7 +25,7 @@ public:
   Buffer<cl_long>& Cells() { return this->OfCells; } ///< BoxFaces.h, in units of LampPowerUnits; or one value
   std::size_t Stride() const { return this->TheStride; }
 
-  /// Of a rectangle that is near: finds by what each voxel's path is to be multiplied to be the exact one in vacuum
+  /// Of a rectangle: finds by what each voxel's path is to be multiplied to be the exact one in vacuum
   /// (numerics.md, section 5.3), which AddTo does then.
   /// @param own  the voxels of the sums
   /// @return what these then take of the lamp's power, 0 of other lamps

@@ -36,8 +36,8 @@ static float solid_angle_far_away(float a, float b, float width, float height, f
   return 0.25f * sum * width * height * d;
 }
 
-// Solid angle of the rectangle of this width and height about (a, b) at distance d: in closed form where it is near; far
-// away that is a small difference of large angles.
+// Solid angle of the rectangle of this width and height about (a, b) at distance d: in closed form where it is near;
+// far away that is a small difference of large angles.
 //   far  square of a distance, in its longer edges
 static float solid_angle(float a, float b, float width, float height, float d, float far)
 {
