@@ -273,13 +273,15 @@ bool IsTakenByBlocks(vtkAlgorithm* filter, int port, vtkDataObject* input)
   return taken;
 }
 
-int CountBlocks(vtkCompositeDataSet* composite)
+/// @return how many blocks the port takes: of one for images no others, each of which is an error
+int CountBlocks(vtkCompositeDataSet* composite, vtkInformation* port)
 {
   int count = 0;
   const auto blocks = vtkSmartPointer<vtkCompositeDataIterator>::Take(composite->NewIterator());
   for (blocks->InitTraversal(); !blocks->IsDoneWithTraversal(); blocks->GoToNextItem())
   {
-    ++count;
+    const bool isImage = vtkImageData::SafeDownCast(blocks->GetCurrentDataObject()) != nullptr;
+    count += isImage || !port->Has(ForImages()) ? 1 : 0;
   }
   return count;
 }
@@ -314,10 +316,11 @@ void WarnOfBlocks(vtkAlgorithm* filter, vtkInformation* request, vtkInformationV
     vtkDataObject* const input = vtkDataObject::GetData(inputs[port]);
     if (input && IsTakenByBlocks(filter, port, input))
     {
-      if (const int count = CountBlocks(vtkCompositeDataSet::SafeDownCast(input)); count > 1)
+      vtkInformation* const information = filter->GetInputPortInformation(port);
+      if (const int count = CountBlocks(vtkCompositeDataSet::SafeDownCast(input), information); count > 1)
       {
         vtkWarningWithObjectMacro(filter, << NameOfInput(port) << " is a " << input->GetClassName() << " of " << count
-                                          << " blocks. " << AboutBlocks(filter->GetInputPortInformation(port)));
+                                          << " blocks. " << AboutBlocks(information));
       }
       return;
     }
