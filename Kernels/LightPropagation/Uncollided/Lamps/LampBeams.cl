@@ -313,7 +313,12 @@ static float step_beam(const LampInfo* lamp, const BeamRow* row, int layer, floa
   {
     const float part = (q & 1 ? 1.0f - part_u : part_u) * (q & 2 ? 1.0f - part_v : part_v);
     const float power = beam->left * part;
-    if (part <= 0.0f || (!VACUUM && power <= 0.0f))
+#if VACUUM
+    const bool is_dark = part <= 0.0f; // in vacuum there would be light
+#else
+    const bool is_dark = power <= 0.0f;
+#endif
+    if (is_dark)
     {
       continue;
     }
@@ -553,7 +558,7 @@ static bool follow_beam(const LampInfo* lamp, const BeamRow* row, float2 begin, 
   {
     enter_box(lamp, row, begin, tangent, beam, tally);
   }
-  for (int k = before; k < all && (beam->left > least || (VACUUM && k < nearby && beam->free > 0.0f)); ++k)
+  for (int k = before; k < all && (beam->left > least || (k < nearby && beam->free > 0.0f)); ++k)
   {
     tally->counts = k >= row->skipped;
     tally->along = row->up ? first + k : first - k;
