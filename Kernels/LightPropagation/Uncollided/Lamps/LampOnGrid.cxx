@@ -18,7 +18,7 @@ namespace tyndall
 namespace
 {
 constexpr double PartDistance = 2.0; ///< of voxels from the middle of a part that is not halved for them, in its radii
-constexpr int PointsOfPart = 2, PointsOfAll = 3; ///< along an edge
+constexpr int PointsOfPart = 2, PointsOfAll = 3; ///< along an edge of a square
 constexpr double FinestPart = 2.0;               ///< its longer edge, voxels
 constexpr double PartsAcross = 64.0;             ///< of one that lies along the box, at most
 constexpr double Faint = 0.1;                    ///< error of a point, of all light, for a part to be a point
@@ -303,18 +303,27 @@ struct Area
 
   Polygon Corners() const { return { this->At(-1, -1), this->At(1, -1), this->At(1, 1), this->At(-1, 1) }; }
 
-  /// Gauss's points of 1 to 3 along each edge, with their shares of it.
+  /// Gauss's points, as many along each edge of a square, with their shares of it: of what is longer than wide as many,
+  /// but more along it and fewer across.
   std::vector<std::pair<glm::dvec3, double>> Points(int perEdge) const
   {
-    constexpr double places[][3] = { { 0.0 }, { -0.577350269189626, 0.577350269189626 },
-      { -0.774596669241483, 0.0, 0.774596669241483 } };
-    constexpr double shares[][3] = { { 1.0 }, { 0.5, 0.5 }, { 5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0 } };
-    const auto *place = places[perEdge - 1], *share = shares[perEdge - 1];
+    constexpr int most = 4;
+    constexpr double places[][most] = { { 0.0 }, { -0.577350269189626, 0.577350269189626 },
+      { -0.774596669241483, 0.0, 0.774596669241483 },
+      { -0.861136311594053, -0.339981043584856, 0.339981043584856, 0.861136311594053 } };
+    constexpr double shares[][most] = { { 1.0 }, { 0.5, 0.5 }, { 5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0 },
+      { 0.173927422568727, 0.326072577431273, 0.326072577431273, 0.173927422568727 } };
+    const double longer = std::sqrt(glm::length(this->half[0]) / glm::length(this->half[1]));
+    const auto along = [=](double stretch) { // the same in a turned scene, whatever rounding does
+      return perEdge == 1 ? 1 : static_cast<int>(std::clamp(perEdge * stretch + 0.5 + 1e-9, 1.0, most + 0.5));
+    };
+    const int counts[] = { along(longer), along(1.0 / longer) };
     std::vector<std::pair<glm::dvec3, double>> points;
-    for (int i = 0; i < perEdge * perEdge; ++i)
+    for (int i = 0; i < counts[0] * counts[1]; ++i)
     {
-      const int first = i % perEdge, second = i / perEdge;
-      points.push_back({ this->At(place[first], place[second]), share[first] * share[second] });
+      const int first = i % counts[0], second = i / counts[0];
+      points.push_back({ this->At(places[counts[0] - 1][first], places[counts[1] - 1][second]),
+        shares[counts[0] - 1][first] * shares[counts[1] - 1][second] });
     }
     return points;
   }
