@@ -140,6 +140,18 @@ void CutOffNegative(Communicator& communicator, const VoxelsAround& around, cons
   }
 }
 
+void MakeFluence(Communicator& communicator, const VoxelsAround& around, const VolumeLayout& layout,
+  const Field& sigma_a, std::vector<float>& solved, std::vector<float> path, const std::vector<float>& uncollided)
+{
+  const double perVolume = 1.0 / layout.grid.VoxelVolume();
+  path.resize(solved.size());
+  std::transform(path.begin(), path.end(), path.begin(),
+    [perVolume](float value) { return std::max(static_cast<float>(value * perVolume), 0.0f); });
+  CutOffNegative(communicator, around, layout, sigma_a, solved, path);
+  std::transform(solved.begin(), solved.end(), uncollided.begin(), solved.begin(), std::plus<float>());
+  CutOffNegative(communicator, around, layout, sigma_a, solved);
+}
+
 void CutOffNegative(Communicator& communicator, const VoxelsAround& around, const VolumeLayout& layout,
   const Field& sigma_a, Buffer<float>& fluence)
 {

@@ -19,7 +19,15 @@ namespace tyndall
 void CutOffNegative(Communicator& communicator, const VoxelsAround& around, const VolumeLayout& layout,
   const Field& sigma_a, std::vector<float>& fluence, const std::vector<float>& instead = {});
 
-/// The same on the device.
+/// Fluence of an accelerated solve (numerics.md, section 7.10): what the system was solved for, or, where that is
+/// negative, what the last sweep found, and uncollided light. All ranks call it.
+/// @param solved      W / length^2, is added to
+/// @param path        W length, of the last sweep; at least as many values
+/// @param uncollided  W / length^2, likewise
+void MakeFluence(Communicator& communicator, const VoxelsAround& around, const VolumeLayout& layout,
+  const Field& sigma_a, std::vector<float>& solved, std::vector<float> path, const std::vector<float>& uncollided);
+
+/// CutOffNegative on the device.
 void CutOffNegative(Communicator& communicator, const VoxelsAround& around, const VolumeLayout& layout,
   const Field& sigma_a, Buffer<float>& fluence);
 }

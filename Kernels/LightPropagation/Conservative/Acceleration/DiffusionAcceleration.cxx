@@ -419,7 +419,6 @@ void DiffusionAcceleration::Leave()
   this->Result.kept = this->Warm.Leave(this->First, moments, { rate, rate, rate });
 }
 
-/// Where the system's solution is negative, what the last sweep found stands.
 void DiffusionAcceleration::WriteFluence()
 {
   TransportParts& parts = this->Parts;
@@ -432,11 +431,7 @@ void DiffusionAcceleration::WriteFluence()
     }
   }
   this->CountLight();
-  std::vector<float> swept = parts.Path.Read(), fluence(layout.Values(), 0.0f);
-  swept.resize(layout.Values());
-  const double perVolume = 1.0 / layout.grid.VoxelVolume();
-  std::transform(swept.begin(), swept.end(), swept.begin(),
-    [perVolume](float path) { return std::max(static_cast<float>(path * perVolume), 0.0f); });
+  std::vector<float> fluence(layout.Values(), 0.0f);
   for (int c = 0; c < layout.channels; ++c)
   {
     const std::vector<double> solved = this->Systems[c]->Found();
@@ -449,9 +444,7 @@ void DiffusionAcceleration::WriteFluence()
   SingleRank alone;
   const BlockPartition whole = BlockPartition::Even(layout.grid, 1);
   const VoxelsAround around(alone, whole, this->Settings.periodic, 1);
-  CutOffNegative(alone, around, layout, this->TheMedium.sigma_a, fluence, swept);
-  std::transform(fluence.begin(), fluence.end(), this->UncollidedFluence.begin(), fluence.begin(), std::plus<float>());
-  CutOffNegative(alone, around, layout, this->TheMedium.sigma_a, fluence);
+  MakeFluence(alone, around, layout, this->TheMedium.sigma_a, fluence, parts.Path.Read(), this->UncollidedFluence);
   parts.Fluence.Write(fluence.data());
   if (this->Settings.netFlux)
   {

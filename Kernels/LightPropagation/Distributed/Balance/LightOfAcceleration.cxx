@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <utility>
 
 namespace tyndall
 {
@@ -103,18 +104,14 @@ void AccelerationInBlocks::WriteFluence()
 std::vector<float> AccelerationInBlocks::FluenceOfSystems()
 {
   const VolumeLayout& own = this->The.layout;
-  const double perVolume = 1.0 / own.grid.VoxelVolume();
-  std::vector<float> fluence, swept;
+  std::vector<float> fluence, path;
   this->The.others.Together([&] {
     if (!this->Block.Has())
     {
       return;
     }
-    swept = this->The.path.Read();
-    swept.resize(own.Floats());
+    path = this->The.path.Read();
     fluence.resize(own.Floats(), 0.0f);
-    std::transform(swept.begin(), swept.end(), swept.begin(),
-      [perVolume](float path) { return std::max(static_cast<float>(path * perVolume), 0.0f); });
     for (int c = 0; c < own.channels; ++c)
     {
       const std::vector<double> solved = this->Systems[c]->Found();
@@ -122,9 +119,8 @@ std::vector<float> AccelerationInBlocks::FluenceOfSystems()
     }
   });
   const VoxelsAround around(this->The.others, this->The.partition, this->The.settings.periodic, 1);
-  CutOffNegative(this->The.others, around, own, this->The.scene.medium.sigma_a, fluence, swept);
-  std::transform(fluence.begin(), fluence.end(), this->UncollidedFluence.begin(), fluence.begin(), std::plus<float>());
-  CutOffNegative(this->The.others, around, own, this->The.scene.medium.sigma_a, fluence);
+  MakeFluence(
+    this->The.others, around, own, this->The.scene.medium.sigma_a, fluence, std::move(path), this->UncollidedFluence);
   return fluence;
 }
 
