@@ -30,8 +30,11 @@ namespace tyndall
 Monitor MonitorOf(vtkAlgorithm* filter)
 {
   return [filter](double fractionDone) {
-    filter->SetProgressText(nullptr);
-    filter->UpdateProgress(fractionDone);
+    if (filter->GetAbortExecute() == 0) // it may have been asked for while a compiler ran
+    {
+      filter->SetProgressText(nullptr);
+      filter->UpdateProgress(fractionDone);
+    }
 #if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 2, 20220823)
     const bool aborted = filter->CheckAbort();
 #else

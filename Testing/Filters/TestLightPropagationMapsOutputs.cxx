@@ -296,7 +296,8 @@ void ReportsAndStops(test::Claims& claims)
   maps->SetDirectionsPerFace(100);
   maps->SetTolerance(1e-6);
   maps->Update();
-  claims.That(watcher->Reports >= 5 && watcher->Reports <= 6, "it stops when told, at once");
+  claims.That(watcher->Reports >= 5 && watcher->Reports <= 6,
+    "it stops when told, at once: " + std::to_string(watcher->Reports) + " reports");
   claims.That(errors.None(), "and that is no error");
   const auto isMarked = [&] {
     return maps->GetOutput()->GetFieldData()->HasArray("aborted") != 0 &&
