@@ -249,6 +249,8 @@ void AxisSweep::Implementation::Launch(const SweepVolume& volume, const Entry& e
   info.shines = entry.source;
   info.border = entry.border;
   info.roundAxis = this->IsPeriodic();
+  info.periodicU = plan.periodic[plan.axes.u];
+  info.periodicV = plan.periodic[plan.axes.v];
   info.bundles = static_cast<int>(plan.bundles.size());
   info.patternPlanes = plan.PatternPlanes();
   info.axis = plan.axes.axis;
@@ -383,8 +385,8 @@ cl::Kernel AxisSweep::Implementation::SweepKernel(const Deposit& to, bool byCell
   const SweepPlan& plan = this->Plan;
   const std::string options = DefinesOf(plan) + ExactOption(this->TheDevice) + Define("NET_FLUX", to.flux != nullptr) +
     Define("FACE_OUT", to.faceOut != nullptr) + Define("FACE_SPREAD", to.spreadsAside) + Define("FACE_IN", byCells) +
-    Define("STREAMED", this->Stream != nullptr) + Define("PERIODIC_U", plan.periodic[plan.axes.u]) +
-    Define("PERIODIC_V", plan.periodic[plan.axes.v]);
+    Define("STREAMED", this->Stream != nullptr) +
+    Define("PERIODIC", plan.periodic[plan.axes.u] || plan.periodic[plan.axes.v]);
   return this->TheDevice.Kernel("sweep", kernel_source::Sweep, options);
 }
 

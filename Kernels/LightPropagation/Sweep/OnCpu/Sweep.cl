@@ -1,7 +1,7 @@
 // Rays through a range of planes, on a CPU: a work-item carries all the rays of its unit (one way along the axis, some
 // or all bundles) and deposits into the volume itself. Units of one launch never share a plane, so nothing is lost and
 // sums have one order. The host gives
-//   MEMBERS_1, MEMBERS_2, MEMBERS_4, MEMBERS_8  defined for each number of members that bundles have
+//   MEMBERS_1, MEMBERS_2, MEMBERS_4, MEMBERS_8  defined for each number of members that bundles may have
 // and what SweepLayout.cl asks for.
 
 #include "LightPropagation/Sweep/OnCpu/SweepCrossing.cl"
@@ -343,6 +343,8 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
   state.shines = info.shines;
   state.border = info.border;
   state.roundAxis = info.roundAxis;
+  state.periodicU = info.periodicU;
+  state.periodicV = info.periodicV;
   state.ring = scratch + unit.scratch;
   state.rings = RINGS_OF(layout.chained);
 #if DEGREE

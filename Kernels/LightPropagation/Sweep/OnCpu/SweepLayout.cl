@@ -10,7 +10,7 @@
 //   NET_FLUX  1 where the net flux is wanted
 //   CURRENTS  1 where the power that enters each voxel through each face is wanted
 //   OCTANT_SOURCE  1 where voxels may shine otherwise into each octant; where DEGREE is 0
-//   PERIODIC_U, PERIODIC_V  1 where rays come back on the other side
+//   PERIODIC  1 where rays come back on the other side of u, of v, or of both, as SweepInfo has it
 //   STREAMED  1 where slices of the volumes are in slots (SliceStream.h)
 //   FACE_OUT, FACE_IN  1 where light leaves and comes in by cells of the box's faces (SweepFaces.cl)
 //   CHAIN_KEEPS  rows of planes that scratch has room for, a power of two; 0: all; may be left out
@@ -49,7 +49,9 @@
 
 // Whether planes may be crossed row by row one behind the other, up to PLANES_CHAINED: not where what comes in or goes
 // out beside rows is kept by plane, or rows come from the other side.
-#define CHAINED (!DEGREE && !FACE_IN && !FACE_OUT && !SIDES && !PERIODIC_U && !PERIODIC_V)
+#define CHAINED (!DEGREE && !FACE_IN && !FACE_OUT && !SIDES && !PERIODIC)
+#define PERIODIC_U (PERIODIC && state->periodicU)
+#define PERIODIC_V (PERIODIC && state->periodicV)
 #define ROWS_KEPT (CHAINED ? CHAIN_KEEPS : 0)
 
 // A plane is [row][quantity][ROW]: what is needed at once lies together, and no stride is a power of two. Where
@@ -96,7 +98,8 @@ typedef struct
 {
   int sizeU, sizeV;                 // voxels of the plane
   int width;                        // sizeU rounded up to whole vectors
-  int shines, border, roundAxis;    // as SweepInfo has them
+  int shines, border, roundAxis;    // as SweepInfo has them, and
+  int periodicU, periodicV;
   const struct plane_place* places; // of planes that are crossed one behind the other
   __global float* planes;           // of the plane that is being crossed
   __global int* thin;               // [row] of it, 1 where all voxels are thin
