@@ -29,7 +29,7 @@ double NumberAfter(const char* path, const std::string& word)
 }
 
 /// The number that a file begins with; Unknown where it does not ("max").
-double NumberIn(const char* path)
+double NumberInFile(const char* path)
 {
   double number = 0.0;
   return std::ifstream(path) >> number ? number : Unknown;
@@ -37,7 +37,7 @@ double NumberIn(const char* path)
 
 double LeftInContainer()
 {
-  const double most = NumberIn("/sys/fs/cgroup/memory.max"), taken = NumberIn("/sys/fs/cgroup/memory.current");
+  const double most = NumberInFile("/sys/fs/cgroup/memory.max"), taken = NumberInFile("/sys/fs/cgroup/memory.current");
   const double cache = NumberAfter("/sys/fs/cgroup/memory.stat", "inactive_file"); // is given back when needed
   return most == Unknown || taken == Unknown ? Unknown : most - taken + (cache == Unknown ? 0.0 : cache);
 }
@@ -45,7 +45,7 @@ double LeftInContainer()
 double LeftOfAddressSpace()
 {
   struct rlimit limit = {};
-  const double pages = NumberIn("/proc/self/statm");
+  const double pages = NumberInFile("/proc/self/statm");
   if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY || pages == Unknown)
   {
     return Unknown;

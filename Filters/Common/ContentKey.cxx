@@ -82,7 +82,7 @@ void AddImage(Digest& digest, vtkImageData* image)
   digest.AddBytes(image->GetDirectionMatrix()->GetData(), 9 * sizeof(double));
 }
 
-void AddCells(Digest& digest, vtkCellArray* cells)
+void AddCellArray(Digest& digest, vtkCellArray* cells)
 {
   if (cells)
   {
@@ -118,7 +118,7 @@ std::uint64_t KeyOf(vtkDataObject* data, const std::vector<int>& kinds)
   {
     for (vtkCellArray* cells : { shape->GetVerts(), shape->GetLines(), shape->GetPolys(), shape->GetStrips() })
     {
-      AddCells(digest, cells);
+      AddCellArray(digest, cells);
     }
   }
   return digest.Value();

@@ -24,11 +24,9 @@ constexpr int Nobody = -1;
 constexpr int ComeTag = 745203, GoTag = 745204; ///< of messages to the first rank, and from it
 constexpr double Slack = 5.0;                   ///< seconds that others wait longer than the first rank, which decides
 
-using Clock = std::chrono::steady_clock;
-
-bool IsPast(const Clock::time_point& start, double seconds)
+bool IsPast(const std::chrono::steady_clock::time_point& start, double seconds)
 {
-  return std::chrono::duration<double>(Clock::now() - start).count() > seconds;
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() > seconds;
 }
 
 void Rest()
@@ -56,7 +54,7 @@ int NumberOf(const char* filter)
 /// to the last meeting has withdrawn from it.
 void Collect(vtkMPIController* ranks, double wait, std::vector<Word>& come)
 {
-  const Clock::time_point start = Clock::now();
+  const std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
   const auto missing = [&] { return std::any_of(come.begin(), come.end(), [](const Word& word) { return !word[0]; }); };
   for (int waits = 1; waits || (missing() && !IsPast(start, wait));)
   {
@@ -105,7 +103,7 @@ Absence Come(vtkMPIController* ranks, double wait, int filter)
 {
   static int meetings = 0;
   const Word own = { ++meetings, filter }, withdrawn = { 0, 0 };
-  const Clock::time_point start = Clock::now();
+  const std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
   ranks->Send(own.data(), 2, 0, ComeTag);
   for (bool gone = false; !gone || !IsPast(start, wait + 2.0 * Slack);)
   {

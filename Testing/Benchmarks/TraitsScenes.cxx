@@ -2,6 +2,7 @@
 
 #include "LightPropagation/Conservative/ConservativePropagation.h"
 #include "LightPropagation/Published/ParallelPropagation.h"
+#include "Numerics/Constants.h"
 #include "Photons/Marching/PhotonMarcher.h"
 #include "Viewing/MediumRayCaster.h"
 
@@ -15,7 +16,6 @@ namespace
 {
 using namespace tyndall;
 
-constexpr double Pi = 3.14159265358979323846;
 constexpr double Thickness = 8.0; ///< of the cloud across the box, mean free paths
 
 /// A few waves: lumps some voxels wide, a good third of the box between them.

@@ -5,6 +5,8 @@
 
 #include "../Kernels/CloudPictures.h"
 
+#include "Numerics/Constants.h"
+
 #include <cmath>
 #include <cstdio>
 #include <string>
@@ -16,8 +18,6 @@ namespace bench
 {
 namespace
 {
-constexpr double Pi = 3.14159265358979323846;
-
 /// Two independent pictures of one view by Monte Carlo.
 struct Reference
 {

@@ -7,11 +7,13 @@
 
 #include "vtkTable.h"
 
+#include "Numerics/Constants.h"
+
 #include <string>
 
 namespace
 {
-constexpr double Pi = 3.14159265358979323846;
+using tyndall::Pi;
 
 void FillsAFurnace(test::Claims& claims, double index)
 {

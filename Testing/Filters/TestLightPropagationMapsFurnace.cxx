@@ -2,11 +2,13 @@
 
 #include "vtkLightPropagationMaps.h"
 
+#include "Numerics/Constants.h"
+
 #include <cmath>
 
 namespace
 {
-constexpr double Pi = 3.14159265358979323846;
+using tyndall::Pi;
 constexpr double Radiance = 0.75; ///< of the walls, and of the medium in equilibrium with them
 
 /// A box whose walls shine, filled with a medium that absorbs, scatters and emits in equilibrium: whatever its shape,

@@ -16,6 +16,8 @@
 #include "vtkUnsignedCharArray.h"
 #include "vtkVersion.h"
 
+#include "Numerics/Constants.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -24,7 +26,7 @@
 
 namespace
 {
-constexpr double Pi = 3.14159265358979323846;
+using tyndall::Pi;
 
 /// An array of `values` in every cell, or function(x, y, z, component) of the cell's place in the unit cube.
 template <class Function>

@@ -3,13 +3,15 @@
 #include "vtkMediumRayCaster.h"
 #include "vtkStringArray.h"
 
+#include "Numerics/Constants.h"
+
 #include <cmath>
 #include <string>
 #include <vector>
 
 namespace
 {
-const double Pi = std::acos(-1.0);
+using tyndall::Pi;
 
 /// A slab of 3 lengths along z, seen from above.
 struct Slab

@@ -6,12 +6,14 @@
 #include "vtkTable.h"
 #include "vtkVariant.h"
 
+#include "Numerics/Constants.h"
+
 #include <cmath>
 #include <string>
 
 namespace
 {
-constexpr double Pi = 3.14159265358979323846;
+using tyndall::Pi;
 
 double Value(vtkTable* table, int row, const char* column)
 {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "Medium/Grid.h"
+#include "Numerics/Constants.h"
 #include "Refraction/Voxelization/TriangleMesh.h"
 
 #include <array>
@@ -12,7 +14,14 @@ namespace shapes
 {
 using tyndall::TriangleMesh;
 using Point = std::array<double, 3>;
-constexpr double Pi = 3.14159265358979323846;
+using tyndall::Pi;
+
+/// A cube of `size` voxels an edge between `low` and `high` along each axis.
+inline tyndall::Grid CubeGrid(int size, double low = -1.0, double high = 1.0)
+{
+  const double spacing = (high - low) / size;
+  return { { size, size, size }, { spacing, spacing, spacing }, { low, low, low } };
+}
 
 /// A closed surface over two angles in [0, 1), `across` times `along` quadrilaterals, each two triangles.
 inline TriangleMesh Wrapped(int across, int along, const std::function<Point(double, double)>& at)

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "Numerics/Constants.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -7,7 +9,7 @@
 /// focus. Lengths of a ball are in its radii, angles in radians.
 namespace optics
 {
-constexpr double Pi = 3.14159265358979323846;
+using tyndall::Pi;
 
 /// How far a ball turns a ray that passes its centre, unbent, at a distance of `b`.
 inline double BallTurn(double n, double b)

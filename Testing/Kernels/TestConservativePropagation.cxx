@@ -1,6 +1,7 @@
 #include "DeviceTest.h"
 #include "MediumScene.h"
 
+#include "Numerics/Constants.h"
 #include "Reference/SlabReference.h"
 
 #include <algorithm>
@@ -11,8 +12,6 @@ using namespace tyndall;
 
 namespace
 {
-constexpr double Pi = 3.14159265358979323846;
-
 double LargestRelativeDifference(const std::vector<float>& a, const std::vector<float>& b)
 {
   EXPECT_EQ(a.size(), b.size());

@@ -2,6 +2,7 @@
 #include "LightPropagation/Angular/RayBundles.h"
 
 #include "Device/Errors.h"
+#include "Numerics/Constants.h"
 
 #include <gtest/gtest.h>
 
@@ -15,8 +16,6 @@ using namespace tyndall;
 
 namespace
 {
-constexpr double Pi = 3.14159265358979323846;
-
 double Moment(const DirectionSet& set, int px, int py, int pz)
 {
   double sum = 0.0;

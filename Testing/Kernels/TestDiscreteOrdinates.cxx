@@ -6,6 +6,7 @@
 #include "Comparison/ComparedRun.h"
 #include "DiscreteOrdinates/OrdinateGroups.h"
 #include "LightPropagation/Angular/DirectionSet.h"
+#include "Numerics/Constants.h"
 #include "Reference/ReferenceTable.h"
 
 #include <gmock/gmock.h>
@@ -19,8 +20,6 @@ using namespace tyndall;
 
 namespace
 {
-constexpr double Pi = 3.14159265358979323846;
-
 void ExpectFiniteAndNotNegative(const std::vector<float>& values)
 {
   for (float value : values)

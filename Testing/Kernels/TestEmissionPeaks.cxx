@@ -4,6 +4,7 @@
 #include "OrdinatesScene.h"
 #include "TransparentBox.h"
 
+#include "Numerics/Constants.h"
 #include "Reference/KobayashiReference.h"
 #include "Reference/OpticalLength.h"
 
@@ -18,8 +19,6 @@ using namespace tyndall;
 
 namespace
 {
-constexpr double Pi = 3.14159265358979323846;
-
 /// A void with a little dust in which a box of voxels shines.
 Scene Hearth(std::array<int, 3> first, std::array<int, 3> size, float sigma_t)
 {

@@ -1,5 +1,6 @@
 #include "Device/Errors.h"
 #include "Lights/Lights.h"
+#include "Numerics/Constants.h"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +11,6 @@ using namespace tyndall;
 
 namespace
 {
-constexpr double Pi = 3.14159265358979323846;
-
 /// Radiance that grows evenly towards the zenith and about it, so that every direction looks different.
 Environment Gradient(int width, int height)
 {

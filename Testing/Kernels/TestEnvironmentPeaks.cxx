@@ -1,4 +1,5 @@
 #include "LightPropagation/Uncollided/EnvironmentPeaks.h"
+#include "Numerics/Constants.h"
 
 #include "DeviceTest.h"
 #include "MediumScene.h"
@@ -12,8 +13,6 @@ using namespace tyndall;
 
 namespace
 {
-constexpr double Pi = 3.14159265358979323846;
-
 /// A dim sky with one pixel of sun.
 Environment SkyWithSun(float sky, float sun, int column, int row)
 {

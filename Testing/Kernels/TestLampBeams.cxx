@@ -2,6 +2,7 @@
 #include "MediumScene.h"
 
 #include "Device/Errors.h"
+#include "Numerics/Constants.h"
 #include "Numerics/Vectors.h"
 #include "Photons/Emission/PhotonPlane.h"
 
@@ -18,8 +19,6 @@ using namespace tyndall;
 
 namespace
 {
-constexpr double Pi = 3.14159265358979323846;
-
 Light Lamp(LightType type, std::array<double, 3> position, double power = 10.0)
 {
   Light lamp;

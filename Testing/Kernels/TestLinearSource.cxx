@@ -1,6 +1,7 @@
 #include "DeviceTest.h"
 #include "MediumScene.h"
 
+#include "Numerics/Constants.h"
 #include "Reference/CubeReference.h"
 #include "Reference/SlabReference.h"
 
@@ -15,8 +16,6 @@ using namespace tyndall;
 
 namespace
 {
-constexpr double Pi = 3.14159265358979323846;
-
 /// A slab across z of 32 voxels, diffuse light of power 1 on its lower face.
 Scene Slab(double tau, double albedo, int voxels = 32)
 {

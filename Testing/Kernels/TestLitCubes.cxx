@@ -3,6 +3,7 @@
 #include "DeviceTest.h"
 #include "MediumScene.h"
 
+#include "Numerics/Constants.h"
 #include "Reference/CubeReference.h"
 
 #include <algorithm>
@@ -15,7 +16,6 @@ using namespace tyndall;
 
 namespace
 {
-constexpr double Pi = 3.14159265358979323846;
 constexpr int Edge = 40; ///< voxels
 
 /// Light of flux 1 through one face of a cube of side 1.

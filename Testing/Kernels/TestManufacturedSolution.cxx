@@ -2,6 +2,7 @@
 #include "MediumScene.h"
 
 #include "LightPropagation/Angular/DirectionSet.h"
+#include "Numerics/Constants.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,7 +19,6 @@ using namespace tyndall;
 // With a set of directions A is the set's mean, which tells the error of voxels from that of directions.
 namespace
 {
-constexpr double Pi = 3.14159265358979323846;
 constexpr double Amplitude = 0.5;
 
 struct Wave

@@ -13,17 +13,12 @@
 #include <random>
 
 using namespace tyndall;
+using shapes::CubeGrid;
 using shapes::Point;
 
 namespace
 {
 using Counts = std::vector<cl_ushort>;
-
-Grid CubeGrid(int size, double low = -1.0, double high = 1.0)
-{
-  const double spacing = (high - low) / size;
-  return { { size, size, size }, { spacing, spacing, spacing }, { low, low, low } };
-}
 
 class MeshVoxelization : public DeviceTest
 {

@@ -3,6 +3,7 @@
 
 #include "LightPropagation/Published/ParallelPropagation.h"
 #include "LightPropagation/Published/SequentialPropagation.h"
+#include "Numerics/Constants.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,8 +12,6 @@ using namespace tyndall;
 
 namespace
 {
-const double Pi = std::acos(-1.0);
-
 class ParallelPropagationTest : public DeviceTest
 {
 protected:

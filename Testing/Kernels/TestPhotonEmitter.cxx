@@ -1,4 +1,5 @@
 #include "Device/Errors.h"
+#include "Numerics/Constants.h"
 #include "Photons/Emission/PhotonEmitter.h"
 
 #include <gtest/gtest.h>
@@ -14,8 +15,6 @@ using namespace tyndall;
 
 namespace
 {
-constexpr double Pi = 3.14159265358979323846;
-
 Grid Box()
 {
   Grid grid;

@@ -3,6 +3,7 @@
 #include "RandomMedium.h"
 
 #include "Device/Errors.h"
+#include "Numerics/Constants.h"
 
 #include <gtest/gtest.h>
 
@@ -14,7 +15,6 @@ using namespace tyndall;
 
 namespace
 {
-const double Pi = std::acos(-1.0);
 }
 
 TEST(GridWalk, FillsEveryPlane)

@@ -11,18 +11,13 @@
 #include <random>
 
 using namespace tyndall;
+using shapes::CubeGrid;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
 namespace
 {
-Grid CubeGrid(int size, double low = -1.0, double high = 1.0)
-{
-  const double spacing = (high - low) / size;
-  return { { size, size, size }, { spacing, spacing, spacing }, { low, low, low } };
-}
-
 Material Glass()
 {
   return { 1.5, { 0.1, 0.1, 0.1 }, { 0.3, 0.3, 0.3 }, 0.0 };

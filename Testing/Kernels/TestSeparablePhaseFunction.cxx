@@ -5,6 +5,7 @@
 #include "Reference/ReferenceTable.h"
 
 #include "Device/Errors.h"
+#include "Numerics/Constants.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -19,8 +20,6 @@ using namespace tyndall;
 
 namespace
 {
-constexpr double Pi = 3.14159265358979323846;
-
 SeparableSettings AsPublished(int terms)
 {
   SeparableSettings settings;

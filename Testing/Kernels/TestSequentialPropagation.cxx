@@ -2,6 +2,7 @@
 #include "RandomMedium.h"
 
 #include "Device/Errors.h"
+#include "Numerics/Constants.h"
 
 #include <gtest/gtest.h>
 
@@ -11,8 +12,6 @@ using namespace tyndall;
 
 namespace
 {
-const double Pi = std::acos(-1.0);
-
 Illumination WhiteSky()
 {
   Illumination illumination;

@@ -8,16 +8,11 @@
 #include <random>
 
 using namespace tyndall;
+using shapes::CubeGrid;
 using shapes::Point;
 
 namespace
 {
-Grid CubeGrid(int size)
-{
-  const double spacing = 2.0 / size;
-  return { { size, size, size }, { spacing, spacing, spacing }, { -1.0, -1.0, -1.0 } };
-}
-
 /// A closed mesh without symmetry, whose points are nowhere near the middle between two of the lattice.
 TriangleMesh RoughTorus(double roughness = 0.1)
 {

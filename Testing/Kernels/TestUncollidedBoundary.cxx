@@ -3,6 +3,7 @@
 #include "MediumScene.h"
 
 #include "LightPropagation/Accuracy/ErrorEstimate.h"
+#include "Numerics/Constants.h"
 #include "Reference/CubeReference.h"
 #include "Reference/SlabReference.h"
 
@@ -19,8 +20,6 @@ using testing::HasSubstr;
 
 namespace
 {
-constexpr double Pi = 3.14159265358979323846;
-
 /// A cube lit from below.
 Scene LitCube(int n, double tau, double albedo)
 {

@@ -4,6 +4,7 @@
 #include "Difference.h"
 
 #include "Medium/BoxFaces.h"
+#include "Numerics/Constants.h"
 #include "Viewing/MediumRayCaster.h"
 
 #include <algorithm>
@@ -16,7 +17,6 @@
 /// Scenes that tests look at, and what they measure in pictures.
 namespace viewing
 {
-inline constexpr double Pi = 3.14159265358979323846;
 using Vec = std::array<double, 3>;
 using namespace tyndall;
 

@@ -30,7 +30,7 @@ namespace
 {
 /// A type of grid: OpenVDB's, and the array of cells with its numbers, N a voxel.
 template <typename G, typename A, int N = 1>
-struct Kind
+struct GridKind
 {
   using Grid = G;
   using Array = A;
@@ -38,20 +38,20 @@ struct Kind
   static constexpr int Count = N;
 };
 
-/// Calls act with the Kind of a type of FindValueType.
+/// Calls act with the GridKind of a type of FindValueType.
 template <typename Do>
 void WithKind(const std::string& type, const Do& act)
 {
   using namespace openvdb;
-  type == "float"      ? act(Kind<FloatGrid, vtkFloatArray>())
-    : type == "double" ? act(Kind<DoubleGrid, vtkDoubleArray>())
-    : type == "int32"  ? act(Kind<Int32Grid, vtkIntArray>())
-    : type == "int64"  ? act(Kind<Int64Grid, vtkTypeInt64Array>())
-    : type == "bool"   ? act(Kind<BoolGrid, vtkUnsignedCharArray>())
-    : type == "mask"   ? act(Kind<MaskGrid, vtkUnsignedCharArray>())
-    : type == "vec3i"  ? act(Kind<Vec3IGrid, vtkIntArray, 3>())
-    : type == "vec3s"  ? act(Kind<Vec3SGrid, vtkFloatArray, 3>())
-                       : act(Kind<Vec3DGrid, vtkDoubleArray, 3>());
+  type == "float"      ? act(GridKind<FloatGrid, vtkFloatArray>())
+    : type == "double" ? act(GridKind<DoubleGrid, vtkDoubleArray>())
+    : type == "int32"  ? act(GridKind<Int32Grid, vtkIntArray>())
+    : type == "int64"  ? act(GridKind<Int64Grid, vtkTypeInt64Array>())
+    : type == "bool"   ? act(GridKind<BoolGrid, vtkUnsignedCharArray>())
+    : type == "mask"   ? act(GridKind<MaskGrid, vtkUnsignedCharArray>())
+    : type == "vec3i"  ? act(GridKind<Vec3IGrid, vtkIntArray, 3>())
+    : type == "vec3s"  ? act(GridKind<Vec3SGrid, vtkFloatArray, 3>())
+                       : act(GridKind<Vec3DGrid, vtkDoubleArray, 3>());
 }
 
 template <typename K>

@@ -29,7 +29,7 @@ namespace
 {
 /// Metadata of OpenVDB's type V, N numbers, and the array of VTK that holds them as one tuple.
 template <typename V, typename A, int N = 1>
-struct Kind
+struct ValueKind
 {
   using Value = V;
   using Array = A;
@@ -37,11 +37,12 @@ struct Kind
 };
 
 using namespace openvdb;
-constexpr std::tuple<Kind<bool, vtkUnsignedCharArray>, Kind<Int32, vtkIntArray>, Kind<Int64, vtkTypeInt64Array>,
-  Kind<float, vtkFloatArray>, Kind<double, vtkDoubleArray>, Kind<Vec2i, vtkIntArray, 2>, Kind<Vec2s, vtkFloatArray, 2>,
-  Kind<Vec2d, vtkDoubleArray, 2>, Kind<Vec3i, vtkIntArray, 3>, Kind<Vec3s, vtkFloatArray, 3>,
-  Kind<Vec3d, vtkDoubleArray, 3>, Kind<Vec4i, vtkIntArray, 4>, Kind<Vec4s, vtkFloatArray, 4>,
-  Kind<Vec4d, vtkDoubleArray, 4>, Kind<Mat4s, vtkFloatArray, 16>, Kind<Mat4d, vtkDoubleArray, 16>>
+constexpr std::tuple<ValueKind<bool, vtkUnsignedCharArray>, ValueKind<Int32, vtkIntArray>,
+  ValueKind<Int64, vtkTypeInt64Array>, ValueKind<float, vtkFloatArray>, ValueKind<double, vtkDoubleArray>,
+  ValueKind<Vec2i, vtkIntArray, 2>, ValueKind<Vec2s, vtkFloatArray, 2>, ValueKind<Vec2d, vtkDoubleArray, 2>,
+  ValueKind<Vec3i, vtkIntArray, 3>, ValueKind<Vec3s, vtkFloatArray, 3>, ValueKind<Vec3d, vtkDoubleArray, 3>,
+  ValueKind<Vec4i, vtkIntArray, 4>, ValueKind<Vec4s, vtkFloatArray, 4>, ValueKind<Vec4d, vtkDoubleArray, 4>,
+  ValueKind<Mat4s, vtkFloatArray, 16>, ValueKind<Mat4d, vtkDoubleArray, 16>>
   Kinds;
 
 /// Does something for each kind until it says that it is done.

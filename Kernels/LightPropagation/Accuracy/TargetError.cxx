@@ -24,7 +24,7 @@ constexpr double LeastRoom = 0.3;     ///< for directions, of what is aimed at, 
 constexpr double MuchTooCoarse = 1.5; ///< voxels, whose error is so many times what is aimed at
 constexpr double TolerancePart = 0.3;
 constexpr double LooseTolerance = 1e-2;
-constexpr double OrderInSpace = 1.7, OrderBesideLamps = 1.4; ///< measured: clouds 1.7, lamps in fog 1.4 to 1.7
+constexpr double OrderOfClouds = 1.7, OrderBesideLamps = 1.4; ///< measured: clouds 1.7, lamps in fog 1.4 to 1.7
 constexpr double MuchUncollided = 0.3; ///< of the error, from which on a solve more tells how much it is
 constexpr int Few = 9, More = 25;
 constexpr double LeastEmissionError = 0.005;
@@ -159,7 +159,7 @@ private:
                                                                    : nullptr;
     const CoarseLight& other = solved == &this->AlongMore ? this->AlongFew : this->AlongMore;
     const double error = this->Forecast->Error(settings);
-    const double order = HasLampsNearby(this->TheScene.illumination) ? OrderBesideLamps : OrderInSpace;
+    const double order = HasLampsNearby(this->TheScene.illumination) ? OrderBesideLamps : OrderOfClouds;
     if (!solved && this->IsMetAtMost(other.fluence, error, order))
     {
       return;

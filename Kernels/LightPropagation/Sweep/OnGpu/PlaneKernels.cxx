@@ -9,14 +9,14 @@ namespace
 {
 /// Work-items of a group: along u, whose voxels mostly lie together, and along v.
 constexpr std::size_t GroupU = 32, GroupV = 4;
-constexpr double SecondsPerRay = 1e-10; ///< through a voxel: only says how often to wait
+constexpr double GpuSecondsPerRay = 1e-10; ///< through a voxel: only says how often to wait
 }
 
 PlaneKernels::PlaneKernels(Device& device, const std::string& options, bool directs, const Size& size)
   : TheDevice(device)
   , Cross(device.Kernel("cross_plane", kernel_source::SweepOnGpu, options))
   , All(RoundUp(Count(size.u), GroupU), RoundUp(Count(size.v), GroupV), Count(size.lanes))
-  , Seconds(SecondsPerRay * size.u * size.v * static_cast<double>(size.rays))
+  , Seconds(GpuSecondsPerRay * size.u * size.v * static_cast<double>(size.rays))
 {
   if (directs)
   {
