@@ -140,12 +140,36 @@ const std::vector<KindOfLight> Kinds = {
 
 using Solver = std::function<LightField(Scene&)>;
 
-void ExpectSymmetric(const Scene& scene, const std::string& what, double limit, const Solver& solve)
+using Turns = std::vector<CubeTurn>;
+
+/// Of each order of the axes one of its eight mirrorings, another for each number: any eight in a row have all 48.
+Turns OneOfEachOrder(std::size_t number)
+{
+  const Turns all = AllCubeTurns();
+  Turns turns;
+  for (std::size_t order = 0; order < 6; ++order)
+  {
+    turns.push_back(all[8 * order + (1 + number + 3 * order) % 8]);
+  }
+  return turns;
+}
+
+/// Each kind of light by itself, and the turns that it is tried with.
+void ForEachKind(bool every, const std::function<void(const KindOfLight&, const Turns&)>& expect)
+{
+  for (std::size_t k = 0; k < Kinds.size(); ++k)
+  {
+    expect(Kinds[k], every ? AllCubeTurns() : OneOfEachOrder(k));
+  }
+}
+
+void ExpectSymmetric(
+  const Scene& scene, const Turns& turns, const std::string& what, double limit, const Solver& solve)
 {
   Scene asItIs = scene;
   const LightField light = solve(asItIs);
   double worst = 0.0, power = 0.0;
-  for (const CubeTurn& turn : AllCubeTurns())
+  for (const CubeTurn& turn : turns)
   {
     Scene turned = Turned(scene, turn);
     const LightField turnedLight = solve(turned);
@@ -163,16 +187,61 @@ void ExpectSymmetric(const Scene& scene, const std::string& what, double limit, 
 
 class Symmetry : public DeviceTest
 {
+protected:
+  void ExpectOfEveryKindOfLight(bool everyTurn)
+  {
+    ForEachKind(everyTurn, [&](const KindOfLight& kind, const Turns& turns) {
+      Scene scene = UnevenMedium({ 8, 8, 8 }, { 0.1, 0.1, 0.1 }, 10.0);
+      kind.shine(scene);
+      ExpectSymmetric(scene, turns, kind.name, 1e-5, [&](Scene& turned) { return turned.Solve(this->GetDevice()); });
+    });
+  }
+
+  void ExpectOfUnequalVoxels(bool everyTurn)
+  {
+    ForEachKind(everyTurn, [&](const KindOfLight& kind, const Turns& turns) {
+      Scene scene = UnevenMedium({ 7, 10, 12 }, { 1.0, 0.7, 0.5 }, 1.0);
+      scene.settings.staggeredRays = true;
+      scene.settings.mapResolution = 2;
+      kind.shine(scene);
+      ExpectSymmetric(scene, turns, kind.name, 1e-5, [&](Scene& turned) { return turned.Solve(this->GetDevice()); });
+    });
+  }
+
+  void ExpectWhereOrdersAreAccelerated(bool everyTurn)
+  {
+    ForEachKind(everyTurn, [&](const KindOfLight& kind, const Turns& turns) {
+      Scene scene = UnevenMedium({ 9, 9, 9 }, { 1.0, 1.0, 1.0 }, 20.0);
+      for (float& sigma_a : scene.sigma_a)
+      {
+        sigma_a *= 0.01f;
+      }
+      kind.shine(scene);
+      ExpectSymmetric(scene, turns, kind.name, 1e-5, [&](Scene& turned) { return turned.Solve(this->GetDevice()); });
+    });
+  }
 };
 
 TEST_F(Symmetry, OfEveryKindOfLight)
 {
-  for (const KindOfLight& kind : Kinds)
-  {
-    Scene scene = UnevenMedium({ 8, 8, 8 }, { 0.1, 0.1, 0.1 }, 10.0);
-    kind.shine(scene);
-    ExpectSymmetric(scene, kind.name, 1e-5, [&](Scene& turned) { return turned.Solve(this->GetDevice()); });
-  }
+  this->ExpectOfEveryKindOfLight(false);
+}
+
+TEST_F(Symmetry, OfUnequalVoxels)
+{
+  this->ExpectOfUnequalVoxels(false);
+}
+
+TEST_F(Symmetry, WhereOrdersAreAccelerated)
+{
+  this->ExpectWhereOrdersAreAccelerated(false);
+}
+
+TEST_F(Symmetry, NightlyOfEveryTurnOfEveryKindOfLight)
+{
+  this->ExpectOfEveryKindOfLight(true);
+  this->ExpectOfUnequalVoxels(true);
+  this->ExpectWhereOrdersAreAccelerated(true);
 }
 
 TEST_F(Symmetry, OfVoxelsOfTwoEqualEdges)
@@ -186,7 +255,7 @@ TEST_F(Symmetry, OfVoxelsOfTwoEqualEdges)
       Scene scene = UnevenMedium({ 9, 8, 7 }, spacing, 10.0);
       scene.settings.maximumOrders = orders;
       scene.light.faces[4] = { 1.0, 1.0, 1.0 };
-      ExpectSymmetric(scene, "a face", 1e-5, [&](Scene& turned) { return turned.Solve(this->GetDevice()); });
+      ExpectSymmetric(scene, AllCubeTurns(), "a face", 1e-5, [&](Scene& turned) { return turned.Solve(this->GetDevice()); });
     }
   }
 }
@@ -265,32 +334,6 @@ TEST_F(Symmetry, OfAnEnvironmentHoweverItStands)
   }
 }
 
-TEST_F(Symmetry, OfUnequalVoxels)
-{
-  for (const KindOfLight& kind : Kinds)
-  {
-    Scene scene = UnevenMedium({ 7, 10, 12 }, { 1.0, 0.7, 0.5 }, 1.0);
-    scene.settings.staggeredRays = true;
-    scene.settings.mapResolution = 2;
-    kind.shine(scene);
-    ExpectSymmetric(scene, kind.name, 1e-5, [&](Scene& turned) { return turned.Solve(this->GetDevice()); });
-  }
-}
-
-TEST_F(Symmetry, WhereOrdersAreAccelerated)
-{
-  for (const KindOfLight& kind : Kinds)
-  {
-    Scene scene = UnevenMedium({ 9, 9, 9 }, { 1.0, 1.0, 1.0 }, 20.0);
-    for (float& sigma_a : scene.sigma_a)
-    {
-      sigma_a *= 0.01f;
-    }
-    kind.shine(scene);
-    ExpectSymmetric(scene, kind.name, 1e-5, [&](Scene& turned) { return turned.Solve(this->GetDevice()); });
-  }
-}
-
 TEST_F(Symmetry, AsPublished)
 {
   for (const KindOfLight& kind : Kinds)
@@ -298,11 +341,11 @@ TEST_F(Symmetry, AsPublished)
     Scene scene = UnevenMedium({ 7, 7, 7 }, { 1.0, 1.0, 1.0 }, 1.0);
     scene.settings.maximumOrders = 3;
     kind.shine(scene);
-    ExpectSymmetric(scene, kind.name + ", sequential", 1e-5, [&](Scene& turned) {
+    ExpectSymmetric(scene, AllCubeTurns(), kind.name + ", sequential", 1e-5, [&](Scene& turned) {
       turned.Attach();
       return SolveSequential(turned.medium, turned.light, turned.settings, {});
     });
-    ExpectSymmetric(scene, kind.name + ", parallel", 1e-5, [&](Scene& turned) {
+    ExpectSymmetric(scene, AllCubeTurns(), kind.name + ", parallel", 1e-5, [&](Scene& turned) {
       turned.Attach();
       return SolveParallel(this->GetDevice(), turned.medium, turned.light, turned.settings, {});
     });

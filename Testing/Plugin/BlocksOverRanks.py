@@ -1,10 +1,11 @@
 """Ranks that each solve their piece, by themselves or as they are told (Decomposition): the light of one rank, of which
 none has more than its part.
 
-    python3 BlocksOverRanks.py
+    python3 BlocksOverRanks.py 1 3
 """
 import glob
 import os
+import sys
 
 import numpy
 from pieces_of_ranks import Runs, difference
@@ -36,9 +37,9 @@ def same_facts(ranks, what, tolerance):
         assert abs(facts - expected).max() < tolerance * abs(expected).max(), (ranks, rank, what)
 
 
-for ranks in (1, 2, 3, 4, 8):
+for ranks in (int(count) for count in sys.argv[1:]):
     more = ["whole_plain", "whole_turbid", "whole_photons", "whole_scattered", "whole_thick", "whole_absorbing", "blocks_estimated", "whole_estimated"] if ranks == 1 else \
-        ["whole_where_better", "whole_where_few"] if ranks == 2 else ["blocks_errors", "blocks_of_wrong_pieces", "blocks_abort", "blocks_ignored", "photons_abort", "photons_differ", "blocks_estimated", "blocks_budget"] if ranks == 3 else []
+        ["whole_where_better", "whole_where_few", "blocks_errors", "blocks_of_wrong_pieces", "blocks_abort", "blocks_ignored", "photons_abort", "photons_differ", "blocks_estimated", "blocks_budget"] if ranks == 3 else []
     code, said = runs.run(ranks, *CASES, *more)
     assert code == 0 and said.count("is done") == ranks, said
     ghost_cells_are_the_neighbours(ranks)

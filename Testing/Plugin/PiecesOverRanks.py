@@ -1,9 +1,10 @@
 """Media of which each rank has only a piece: the light of the whole, whatever the number of ranks; what makes no whole is
 one error on every rank; a rank that is aborted or killed ends the work of all.
 
-    python3 PiecesOverRanks.py
+    python3 PiecesOverRanks.py 1 3
 """
 import os
+import sys
 import time
 
 from pieces_of_ranks import Runs
@@ -14,7 +15,7 @@ from_files = ["tetrahedra", "adaptive", "pvti"]
 cut = ["even", "ghosts", "uneven", "alone"]
 
 
-for ranks in (1, 2, 3, 4, 8):
+for ranks in (int(count) for count in sys.argv[1:]):
     cases = (from_files if ranks != 4 else []) + cut
     more = ["errors", "abort", "elsewhere"] if ranks == 3 else []
     cases += ["no_file"] if ranks == 3 else []

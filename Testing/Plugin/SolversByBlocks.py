@@ -1,9 +1,10 @@
 """Ranks that each solve their piece of a lattice, by discrete ordinates, or by maps as published (Decomposition: blocks):
 the light of one rank, and of the whole.
 
-    python3 SolversByBlocks.py
+    python3 SolversByBlocks.py 1 3
 """
 import math
+import sys
 
 from pieces_of_ranks import Runs, difference
 
@@ -18,7 +19,8 @@ LIKE = {"published_uneven": "published_even", "lattice_uneven": "lattice_even", 
 WHOLE = ["lattice_exact", "lattice_whole", "lattice_turns_whole", "ordinates_whole", "ordinates_faces_whole",
          "ordinates_steps_whole", "published_whole", "published_in_turn_whole", "previews_whole"]
 
-for ranks in (1, 2, 3, 8):
+counts = [int(count) for count in sys.argv[1:]]
+for ranks in counts:
     more = WHOLE if ranks == 1 else []
     previews = ["previews"] if ranks in (1, 3) else []
     code, said = runs.run(ranks, *CASES, *previews, *more)
@@ -55,7 +57,7 @@ for name in ("maps", "ordinates", "lattice"):
         print("%d ranks, a preview of %s in blocks and in the whole: %.1e" % (ranks, name, difference(blocks[0], whole[0])))
         assert difference(blocks[0], whole[0]) < 1e-6
         assert abs(blocks[1] - whole[1]).max() < 1e-6 * whole[1].max(), (ranks, name)
-for ranks in (2, 3, 8):  # differences of light, which agree as that does
+for ranks in counts[1:]:  # differences of light, which agree as that does
     error, expected = (runs.whole(count, "published_estimated", "light")[0] for count in (ranks, 1))
     off = abs(error - expected).max() / (4 * math.pi * runs.whole(1, "published_shown", "light")[0].max())
     print("%d ranks, the error of maps as published differs by %.1e of the light" % (ranks, off))
