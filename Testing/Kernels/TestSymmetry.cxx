@@ -163,8 +163,7 @@ void ForEachKind(bool every, const std::function<void(const KindOfLight&, const 
   }
 }
 
-void ExpectSymmetric(
-  const Scene& scene, const Turns& turns, const std::string& what, double limit, const Solver& solve)
+void ExpectSymmetric(const Scene& scene, const Turns& turns, const std::string& what, double limit, const Solver& solve)
 {
   Scene asItIs = scene;
   const LightField light = solve(asItIs);
@@ -255,7 +254,8 @@ TEST_F(Symmetry, OfVoxelsOfTwoEqualEdges)
       Scene scene = UnevenMedium({ 9, 8, 7 }, spacing, 10.0);
       scene.settings.maximumOrders = orders;
       scene.light.faces[4] = { 1.0, 1.0, 1.0 };
-      ExpectSymmetric(scene, AllCubeTurns(), "a face", 1e-5, [&](Scene& turned) { return turned.Solve(this->GetDevice()); });
+      ExpectSymmetric(
+        scene, AllCubeTurns(), "a face", 1e-5, [&](Scene& turned) { return turned.Solve(this->GetDevice()); });
     }
   }
 }

@@ -25,15 +25,15 @@
 
 #if DEGREE
 #include "LightPropagation/Sweep/OnCpu/SweepMoments.cl"
-// A function for as many frames as the bundle has.
-#define FOR_FRAMES(FUNCTION, y, slot)                  \
-  if (bundle->frames == 2)                             \
-  {                                                    \
-    FUNCTION(state, y, slot, bundle, coefficients, 2); \
-  }                                                    \
-  else                                                 \
-  {                                                    \
-    FUNCTION(state, y, slot, bundle, coefficients, 1); \
+// A function for as many frames as the bundle has: one of one member, two of all eight.
+#define FOR_FRAMES(FUNCTION, y, slot)                       \
+  if (MEMBERS == 8 || (MEMBERS > 1 && bundle->frames == 2)) \
+  {                                                         \
+    FUNCTION(state, y, slot, bundle, coefficients, 2);      \
+  }                                                         \
+  else                                                      \
+  {                                                         \
+    FUNCTION(state, y, slot, bundle, coefficients, 1);      \
   }
 #else
 

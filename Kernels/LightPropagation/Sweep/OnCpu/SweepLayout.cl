@@ -98,8 +98,8 @@ typedef struct
 {
   int sizeU, sizeV;                 // voxels of the plane
   int width;                        // sizeU rounded up to whole vectors
-  int shines, border, roundAxis;    // as SweepInfo has them, and
-  int periodicU, periodicV;
+  int shines, border, roundAxis;    // as SweepInfo has them
+  int periodicU, periodicV;         // likewise
   const struct plane_place* places; // of planes that are crossed one behind the other
   __global float* planes;           // of the plane that is being crossed
   __global int* thin;               // [row] of it, 1 where all voxels are thin
