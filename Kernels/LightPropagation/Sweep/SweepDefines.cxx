@@ -28,12 +28,15 @@ std::string DefinesOf(const SweepPlan& plan)
   std::string options = Define("REAL_WIDTH", plan.vector) + Define("CHANNELS", plan.channels) +
     Define("ROW", plan.row) + Define("CURRENTS", plan.partialCurrents) + Define("CHAIN_KEEPS", plan.rowsKept) +
     Define("OCTANT_SOURCE", plan.octantSource) + DefineMoments(plan);
+  // With moments each number of members takes some 8 s to compile; without, all four take a third longer than one, and
+  // are one program for every set of directions. Blocks have 2, and 1 and 2, by axis.
+  const auto has = [&](int members) {
+    const auto is = [&](const BundleInfo& bundle) { return bundle.members == members; };
+    return std::any_of(plan.bundleRows.begin(), plan.bundleRows.end(), is);
+  };
   for (int members = 1; members <= MaxMembers; members *= 2)
   {
-    // With moments each number takes some 8 s to compile; without, all four take a third longer than one, and are one
-    // program for every set of directions.
-    const auto has = [&](const BundleInfo& bundle) { return bundle.members == members; };
-    if (!plan.angular || std::any_of(plan.bundleRows.begin(), plan.bundleRows.end(), has))
+    if (!plan.angular || has(members) || (members == 1 && has(2)))
     {
       options += Define(("MEMBERS_" + std::to_string(members)).c_str(), 1);
     }
