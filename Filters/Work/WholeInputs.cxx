@@ -41,6 +41,7 @@ using Pipeline = vtkStreamingDemandDrivenPipeline;
 using Extent = std::array<int, 6>;
 
 constexpr Extent NoExtent = { 0, -1, 0, -1, 0, -1 };
+}
 
 /// What ranks tell each other of what one connection gave them.
 struct Glance
@@ -63,6 +64,8 @@ struct RankGlance
   std::vector<Extent> asked; ///< of each output
 };
 
+namespace
+{
 bool HasValues(vtkDataObject* data)
 {
   return data &&
