@@ -27,14 +27,23 @@
 
 namespace tyndall
 {
+namespace
+{
+/// Unless an abort was asked for, after which nothing more is reported.
+void ReportProgress(vtkAlgorithm* filter, const char* text, double fractionDone)
+{
+  if (filter->GetAbortExecute() == 0)
+  {
+    filter->SetProgressText(text);
+    filter->UpdateProgress(fractionDone);
+  }
+}
+}
+
 Monitor MonitorOf(vtkAlgorithm* filter)
 {
   return [filter](double fractionDone) {
-    if (filter->GetAbortExecute() == 0) // it may have been asked for while a compiler ran
-    {
-      filter->SetProgressText(nullptr);
-      filter->UpdateProgress(fractionDone);
-    }
+    ReportProgress(filter, nullptr, fractionDone);
 #if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 2, 20220823)
     const bool aborted = filter->CheckAbort();
 #else
@@ -163,13 +172,8 @@ int GuardedOn(vtkMultiProcessController* ranks, vtkAlgorithm* filter, vtkInforma
     return 1;
   }
   last.Forget();
-  const CompilationListener listener([filter] {
-    if (filter->GetAbortExecute() == 0) // the compiler cannot be stopped; the filter stops when it is done
-    {
-      filter->SetProgressText(Compiling);
-      filter->UpdateProgress(filter->GetProgress());
-    }
-  });
+  // The compiler cannot be stopped; the filter stops when it is done.
+  const CompilationListener listener([filter] { ReportProgress(filter, Compiling, filter->GetProgress()); });
   const Ending ending = EndingOf([&] { WorkOnAllRanks(ranks, filter, work); });
   if (ending.kind == Ending::Aborted)
   {
