@@ -146,7 +146,7 @@ typedef struct
   int shines;    ///< 1: the medium does (emission or scattered light)
   int border;    ///< 1: light comes in through the faces that rays pass sideways
   int roundAxis; ///< 1: rays go round the axis: planes are added to many times, and what rounding loses is kept
-  int periodicU, periodicV; ///< 1: rays come back on the other side of u, of v; where PERIODIC
+  int periodicU, periodicV; ///< 1: the box is periodic along u, along v
   int bundles;
   int patternPlanes; ///< planes of the ray pattern
   int launch;        ///< row of the schedule

@@ -10,7 +10,7 @@
 //   NET_FLUX  1 where the net flux is wanted
 //   CURRENTS  1 where the power that enters each voxel through each face is wanted
 //   OCTANT_SOURCE  1 where voxels may shine otherwise into each octant; where DEGREE is 0
-//   PERIODIC  1 where rays come back on the other side of u, of v, or of both, as SweepInfo has it
+//   PERIODIC  1 where the box is periodic along u or v; SweepInfo says along which
 //   STREAMED  1 where slices of the volumes are in slots (SliceStream.h)
 //   FACE_OUT, FACE_IN  1 where light leaves and comes in by cells of the box's faces (SweepFaces.cl)
 //   CHAIN_KEEPS  rows of planes that scratch has room for, a power of two; 0: all; may be left out
