@@ -3,9 +3,6 @@
 
 #pragma once
 
-#ifdef __clang__ // warns that other machines pass wide vectors otherwise; nobody calls these functions from there
-#pragma clang diagnostic ignored "-Wpsabi"
-#endif
 #if DOUBLES
 #pragma OPENCL EXTENSION cl_khr_fp64 : enable
 typedef double exact;
