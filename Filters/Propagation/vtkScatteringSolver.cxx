@@ -94,12 +94,22 @@ int vtkScatteringSolver::FillOutputPortInformation(int port, vtkInformation* inf
   return 1;
 }
 
+tyndall::IlluminationInput vtkScatteringSolver::ReadAtQuality(vtkInformationVector** inputs, bool emits)
+{
+  tyndall::IlluminationInput input = this->ReadAllIllumination(inputs, emits);
+  if (this->ReadsQuality())
+  {
+    tyndall::SetFineness(input.illumination.lights, static_cast<tyndall::Quality>(this->Quality));
+  }
+  return input;
+}
+
 tyndall::IlluminationInput vtkScatteringSolver::ReadShining(vtkInformationVector** inputs, bool emits)
 {
   vtkImageData* const given = vtkImageData::GetData(inputs[UNCOLLIDED]);
   if (!given)
   {
-    return this->ReadAllIllumination(inputs, emits);
+    return this->ReadAtQuality(inputs, emits);
   }
   tyndall::IlluminationInput input;
   input.uncollided = tyndall::ReadUncollided(given, tyndall::GridOf(vtkImageData::GetData(inputs[MEDIUM])));
@@ -115,7 +125,7 @@ tyndall::IlluminationInput vtkScatteringSolver::ReadShiningOn(
   vtkImageData* const given = vtkImageData::GetData(inputs[UNCOLLIDED]);
   if (inputs[UNCOLLIDED]->GetNumberOfInformationObjects() == 0)
   {
-    return this->ReadAllIllumination(inputs, piece.emits);
+    return this->ReadAtQuality(inputs, piece.emits);
   }
   tyndall::IlluminationInput input;
   if (piece.image)

@@ -98,7 +98,7 @@ public:
   ///@{
   /// How exact the light is to be: chooses, from the scene, those of the properties below that have their default
   /// value, and leaves those that have another one. DRAFT, USUAL (default), FINE or REFERENCE; with USUAL all are taken
-  /// as they stand.
+  /// as they stand. Rectangle lights are divided the finer, too (numerics.md, section 5.3).
   tyndallSetRangeMacro(Quality, int, DRAFT, REFERENCE);
   vtkGetMacro(Quality, int);
   ///@}
@@ -205,6 +205,9 @@ protected:
   virtual tyndall::IlluminationInput ReadShiningOn(
     const tyndall::PieceBlocks& pieces, tyndall::PieceOfMedium& piece, vtkInformationVector** inputs);
 
+  /// Whether Quality chooses anything.
+  virtual bool ReadsQuality() const { return !this->Preview; }
+
   /// Last in RequestData: solved light on output 0 beside the arrays of the medium, its convergence on
   /// output 1; it is noted, and a warning of each doubt. Kept for GiveOrSolve.
   void WriteSolved(tyndall::LightField&& light, vtkInformationVector** inputs, vtkInformationVector* outputs);
@@ -223,6 +226,7 @@ private:
   void operator=(const vtkScatteringSolver&) = delete;
 
   void ColorsModified();
+  tyndall::IlluminationInput ReadAtQuality(vtkInformationVector** inputs, bool emits);
   bool IgnoresIndexOf(vtkImageData* medium);
   void GiveLightBefore(vtkInformationVector* outputs);
   std::string NotOnPiece(const tyndall::PieceBlocks& pieces, tyndall::PieceOfMedium& piece,

@@ -106,6 +106,15 @@ double HalfAngle(const Light& spot)
   return 0.5 * spot.angle * Pi / 180.0;
 }
 
+void SetFineness(std::vector<Light>& lights, Quality quality)
+{
+  const double fineness[] = { 0.7, 1.0, 2.0, 3.0 };
+  for (Light& light : lights)
+  {
+    light.fineness = fineness[static_cast<int>(quality)];
+  }
+}
+
 double AxialIntensity(const Light& lamp)
 {
   const double sine = std::sin(0.5 * HalfAngle(lamp));

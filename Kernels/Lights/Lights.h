@@ -1,5 +1,6 @@
 #pragma once
 
+#include "Light/Quality.h"
 #include "Lights/UncollidedImage.h"
 
 #include <array>
@@ -26,6 +27,9 @@ struct Light
   Rgb power = { 1.0, 1.0, 1.0 }; ///< W; for a directional light W/length^2 through a plane across `direction`
   std::array<double, 2> size = { 0.0, 0.0 }; ///< edges of a rectangle
   double angle = 0.0; ///< full opening angle of a spot; of a rectangle, by which its edges are turned; degrees
+  /// Of a rectangle, how finely solvers on a grid divide it, 0.7 to 3; at 1 uncollided light is within 2% (root mean
+  /// square) in voxels of a third of a mean free path (numerics.md, section 5.3).
+  double fineness = 1.0;
 };
 
 /// A rotation, mirrored or not: rows of an orthogonal matrix.
@@ -64,6 +68,9 @@ struct Illumination
 
 /// The unit vector along which a light shines, whatever the length of its `direction`; 0 where that is 0.
 std::array<double, 3> DirectionOf(const Light& light);
+
+/// Divides rectangles as finely as a quality asks for.
+void SetFineness(std::vector<Light>& lights, Quality quality);
 
 /// W per steradian of a lamp of 1 W along its axis; 0 of a directional light, which has none.
 double AxialIntensity(const Light& lamp);

@@ -3,6 +3,7 @@
 #include "vtkDiscreteOrdinates.h"
 #include "vtkLatticeBoltzmannLighting.h"
 #include "vtkMediumRayCaster.h"
+#include "vtkRectangleLight.h"
 #include "vtkStringArray.h"
 
 #include <cmath>
@@ -101,6 +102,43 @@ void SetsTolerance(test::Claims& claims, const std::string& which)
   claims.That(errors.WasOneWith("Quality is 4"), which + ": a level that there is not");
 }
 
+/// Root of the sum of squares of differences, of uncollided light.
+double Apart(vtkImageData* first, vtkImageData* second)
+{
+  double sum = 0.0;
+  for (vtkIdType i = 0; i < first->GetNumberOfCells(); ++i)
+  {
+    const auto at = [i](vtkImageData* of) { return of->GetCellData()->GetArray("fluence_direct")->GetComponent(i, 0); };
+    sum += std::pow(at(first) - at(second), 2.0);
+  }
+  return std::sqrt(sum);
+}
+
+/// A rectangle beside the medium is divided the finer the better the quality is.
+template <class Solver>
+void DividesRectangles(test::Claims& claims, const std::string& which)
+{
+  vtkNew<vtkRectangleLight> lamp;
+  lamp->SetPosition(-0.4, 1.0, 2.0);
+  lamp->SetDirection(1.0, 0.2, 0.0);
+  lamp->SetSize(9.0, 4.0);
+  vtkSmartPointer<vtkImageData> light[4];
+  for (int quality = Solver::DRAFT; quality <= Solver::REFERENCE; ++quality)
+  {
+    vtkNew<Solver> solver;
+    test::Errors errors(solver);
+    solver->SetInputDataObject(test::MakeMedium({ { 7, 5, 9 }, { 0.5, 0.5, 0.5 } }, 0.6, 0.0));
+    solver->SetLightsConnection(lamp->GetOutputPort());
+    solver->SetQuality(quality);
+    solver->Update();
+    claims.That(errors.None(), which + ": a rectangle without complaint");
+    light[quality] = vtkImageData::SafeDownCast(solver->GetOutputDataObject(0));
+  }
+  const double draft = Apart(light[0], light[3]), usual = Apart(light[1], light[3]), fine = Apart(light[2], light[3]);
+  claims.That(fine < 0.7 * usual && usual < 0.7 * draft && draft > 0.0,
+    which + ": finer rectangles: " + std::to_string(draft) + " " + std::to_string(usual) + " " + std::to_string(fine));
+}
+
 void SetsSteps(test::Claims& claims)
 {
   vtkNew<vtkLightPropagationMaps> maps;
@@ -163,6 +201,9 @@ int TestQuality(int, char*[])
   TellsWhatASlabTook<vtkDiscreteOrdinates>(claims, "ordinates");
   SetsTolerance<vtkDiscreteOrdinates>(claims, "ordinates");
   SetsTolerance<vtkLatticeBoltzmannLighting>(claims, "lattice");
+  DividesRectangles<vtkLightPropagationMaps>(claims, "maps");
+  DividesRectangles<vtkDiscreteOrdinates>(claims, "ordinates");
+  DividesRectangles<vtkLatticeBoltzmannLighting>(claims, "lattice");
   SetsSteps(claims);
   SolvesToATarget(claims);
   return claims.Result();

@@ -380,6 +380,9 @@ public:
     const double along = std::max({ grid.size[0], grid.size[1], grid.size[2] });
     const double voxel = std::cbrt(grid.spacing[0] * grid.spacing[1] * grid.spacing[2]);
     this->Finest = FinestPart * voxel * std::max(1.0, along / PartsAcross);
+    this->Away = PartDistance * std::max(1.0, 0.5 * light.fineness);
+    this->PerEdge = std::max(PointsOfPart, static_cast<int>(light.fineness));
+    this->LeastError = Faint / std::pow(light.fineness, 3.0);
     this->Divide(this->Whole, { this->Whole.middle, std::numeric_limits<double>::infinity() });
   }
 
@@ -416,7 +419,7 @@ private:
     const Polygon corners = this->Whole.Corners();
     const double angle = SolidAngle(corners[0] - eye, corners[1] - eye, corners[2] - eye) +
       SolidAngle(corners[0] - eye, corners[2] - eye, corners[3] - eye);
-    return part.Size() * cosine / square * (edge * edge / square) < Faint * angle;
+    return part.Size() * cosine / square * (edge * edge / square) < this->LeastError * angle;
   }
 
   void Divide(const Area& part, const LampPoint::Sphere& whole)
@@ -424,13 +427,13 @@ private:
     const bool isAll = whole.radius == std::numeric_limits<double>::infinity();
     const std::array<double, 2> distances = this->Distances(part.middle);
     const bool faint = !isAll && this->IsFaint(part);
-    const double from = PartDistance * part.Radius();
+    const double from = this->Away * part.Radius();
     const bool far = distances[0] >= from;
     const bool undivided = faint || far || part.Longer() <= this->Finest * (1.0 + 1e-9);
     const LampPoint::Sphere own = { part.middle, undivided ? 0.0 : from };
     if (undivided || distances[1] >= from)
     {
-      this->Add(part, own, whole, faint ? 1 : isAll && far ? PointsOfAll : PointsOfPart);
+      this->Add(part, own, whole, faint ? 1 : isAll && far ? PointsOfAll : this->PerEdge);
     }
     if (!undivided)
     {
@@ -455,6 +458,9 @@ private:
   Area Whole;
   glm::dvec3 Normal;
   double Finest; ///< edge of a part
+  double Away;   ///< PartDistance, and the others, by the light's fineness
+  int PerEdge;
+  double LeastError;
 };
 
 /// Distance between a rectangle and the box, by the nearest point of each in turn.
@@ -585,9 +591,8 @@ double LampOnGrid::Share() const
 
 std::vector<BeamRow> LampOnGrid::Rows(const Pass& pass, double factor, std::size_t first, std::size_t& next) const
 {
-  const double width = this->Lamp.type != LightType::Rectangle ? BeamWidth
-    : this->Points.size() < ManyPoints                         ? BeamWidthOfRectangle
-                                                               : BeamWidthOfMany;
+  const double ofRectangle = this->Points.size() < ManyPoints ? BeamWidthOfRectangle : BeamWidthOfMany;
+  const double width = this->Lamp.type == LightType::Rectangle ? ofRectangle / this->Lamp.fineness : BeamWidth;
   const double margin = 2.0 * this->Diagonal(); // of a beam's cross-section and of a step
   const std::vector<LampPoint>& points = this->PointsOf(pass);
   std::vector<BeamRow> rows;
