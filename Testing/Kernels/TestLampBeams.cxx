@@ -201,10 +201,10 @@ double ErrorOfInverseSquare(const LightField& light, const Scene& scene, const L
 
 TEST_F(LampBeams, AFarLampFollowsTheInverseSquareInEveryVoxel)
 {
-  for (double distance : { 10.0, 990.0, 9e4, 2.5e10 }) // of the longest edge
+  for (double distance : { 3.0, 10.0, 990.0, 9e4, 2.5e10 }) // of the longest edge
   {
-    for (const std::array<double, 3>& away :
-      { std::array<double, 3>{ 0.0, 0.0, -1.0 }, { 0.6, 0.0, 0.8 }, { -0.3, 0.8, 0.51962 } })
+    for (const std::array<double, 3>& away : { std::array<double, 3>{ 0.0, 0.0, -1.0 }, { 0.6, 0.0, 0.8 },
+           { -0.3, 0.8, 0.51962 }, { 0.57735, -0.57735, 0.57735 } })
     {
       Scene scene({ 13, 10, 11 }, 0.0f, 0.0f);
       scene.medium.grid.spacing = { 1.0, 0.7, 1.3 };

@@ -250,6 +250,8 @@ static void leave_sides(const LampInfo* lamp, const BeamRow* row, bool first, fl
     goes[k] = within[k] < beam->stays[k] ? 1.0f - within[k] / beam->stays[k] : 0.0f;
     beam->stays[k] = fmin(beam->stays[k], within[k]);
   }
+  // It left between the step before and this one: in the mean half way between them.
+  const float ago = 0.5f * fmin(way.y - way.x, 0.5f * (way.x + way.y));
   for (int k = 0; k < 2; ++k)
   {
     if (!(goes[k] > 0.0f))
@@ -259,9 +261,10 @@ static void leave_sides(const LampInfo* lamp, const BeamRow* row, bool first, fl
     // Past an edge of the box: half through either side.
     const float power = beam->left * goes[k] * (1.0f - 0.5f * goes[1 - k]);
     const int axis = (row->axis + 1 + k) % 3, other = (row->axis + 2 - k) % 3;
+    const float moved = tangents[1 - k] * ago;
     int beside;
     float part;
-    overlap(k == 0 ? *edges_v : *edges_u, &beside, &part);
+    overlap((k == 0 ? *edges_v : *edges_u) - moved, &beside, &part);
     for (int q = 0; q < 2; ++q)
     {
       const float through = power * (q ? 1.0f - part : part);
@@ -273,7 +276,7 @@ static void leave_sides(const LampInfo* lamp, const BeamRow* row, bool first, fl
       }
       else if (through > 0.0f)
       {
-        const float gone = up[k] ? lamp->size[axis] + 0.5f : -0.5f, at = beside + q + 0.5f;
+        const float gone = up[k] ? lamp->size[axis] + 0.5f : -0.5f, at = beside + q + 0.5f + moved;
         int last[3];
         last[row->axis] = tally->along;
         last[axis] = up[k] ? lamp->size[axis] - 1 : 0;
