@@ -387,6 +387,8 @@ cl::Program Device::Build(const char* kernel, const std::string& text, const std
   {
     RequireRoom(this->CacheFolder);
   }
+  const WhileCompiling compiling;
+  const BuildMark mark(this->CacheFolder);
   constexpr double ofCompiling = 0.1; // seconds: less is reading from the cache
   const double begun = ClockSeconds();
   cl::Program program;
@@ -563,6 +565,7 @@ void Device::AwaitFirstRuns()
   {
     return;
   }
+  const WhileCompiling compiling;
   cl::Event reached;
   this->TheQueue.enqueueMarkerWithWaitList(nullptr, &reached);
   this->TheQueue.flush();

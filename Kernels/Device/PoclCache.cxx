@@ -3,7 +3,9 @@
 #include "Device/Errors.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
+#include <csignal>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
@@ -13,6 +15,7 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <limits>
 #include <locale>
 #include <map>
 #include <optional>
@@ -378,6 +381,14 @@ public:
     this->Known.Write();
   }
 
+  void ReportAllPrograms(const Report& report)
+  {
+    for (const std::string& program : this->Programs())
+    {
+      report(program, "may be damaged: two starts ended while they built kernels");
+    }
+  }
+
 private:
   static bool IsOfKernels(const fs::path& path) { return path.extension() == ".bc" || path.extension() == ".so"; }
   static bool CanBeUsed(const fs::path& folder) { return access(folder.c_str(), R_OK | W_OK | X_OK) == 0; }
@@ -392,6 +403,18 @@ private:
 
   std::vector<std::string> ChangedPrograms() const
   {
+    std::vector<std::string> programs = this->Programs();
+    const auto isKnown = [this](const std::string& path) {
+      const Note* const before = this->Known.Find(path);
+      const std::optional<Note> found = NoteOf(this->Folder + path);
+      return before && found && found->LooksLike(*before);
+    };
+    programs.erase(std::remove_if(programs.begin(), programs.end(), isKnown), programs.end());
+    return programs;
+  }
+
+  std::vector<std::string> Programs() const
+  {
     std::vector<std::string> programs;
     std::error_code none;
     for (const auto& above : fs::directory_iterator(this->Folder, none))
@@ -402,13 +425,9 @@ private:
       }
       for (const auto& program : fs::directory_iterator(above.path(), none))
       {
-        const std::string path = this->Within(program.path());
-        const Note* const before = this->Known.Find(path);
-        const std::optional<Note> found = NoteOf(program.path().string());
-        if (IsOfHash(program.path(), 20, 64) && program.is_directory(none) &&
-          !(before && found && found->LooksLike(*before)))
+        if (IsOfHash(program.path(), 20, 64) && program.is_directory(none))
         {
-          programs.push_back(path);
+          programs.push_back(this->Within(program.path()));
         }
       }
     }
@@ -507,6 +526,52 @@ private:
   Notes Known;
 };
 
+/// Before its process's number and that of the mark.
+std::string PrefixOfMarks()
+{
+  char host[256] = {};
+  gethostname(host, sizeof host - 1);
+  return std::string("tyndall-building-") + host + "-";
+}
+
+/// Whether two starts or more ended while they built programs, at least seconds apart: ranks of one start end together.
+/// Forgets these, and marks older than an hour.
+bool EndedWhileBuilding(const std::string& folder)
+{
+  constexpr std::int64_t second = 1000000000, apart = 2 * second, old = 3600 * second;
+  const std::string prefix = PrefixOfMarks();
+  std::vector<fs::path> ended;
+  std::int64_t first = std::numeric_limits<std::int64_t>::max(), last = 0;
+  std::error_code none;
+  for (const auto& entry : fs::directory_iterator(folder, none))
+  {
+    const std::string name = entry.path().filename().string();
+    const int process = name.compare(0, prefix.size(), prefix) == 0 ? std::atoi(name.c_str() + prefix.size()) : 0;
+    const std::optional<Note> found = process > 0 ? NoteOf(entry.path().string()) : std::nullopt;
+    if (!found || kill(process, 0) == 0 || errno != ESRCH)
+    {
+      continue;
+    }
+    if (std::time(nullptr) * second - found->written > old)
+    {
+      fs::remove(entry.path(), none);
+      continue;
+    }
+    ended.push_back(entry.path());
+    first = std::min(first, found->written);
+    last = std::max(last, found->written);
+  }
+  if (ended.empty() || last - first < apart)
+  {
+    return false;
+  }
+  for (const fs::path& mark : ended)
+  {
+    fs::remove(mark, none);
+  }
+  return true;
+}
+
 std::string WithoutSlash(std::string folder)
 {
   while (folder.size() > 1 && folder.back() == '/')
@@ -527,11 +592,31 @@ std::string Told(const DamagedFiles& damaged, const std::string& folder)
 }
 }
 
+BuildMark::BuildMark(const std::string& folder)
+{
+  static std::atomic<int> marks{ 0 };
+  if (!folder.empty())
+  {
+    this->File =
+      WithoutSlash(folder) + "/" + PrefixOfMarks() + std::to_string(getpid()) + "-" + std::to_string(++marks);
+    std::ofstream(this->File) << "";
+  }
+}
+
+BuildMark::~BuildMark()
+{
+  if (!this->File.empty())
+  {
+    unlink(this->File.c_str());
+  }
+}
+
 DamagedFiles SetDamagedAside(const std::string& said)
 {
   const std::string folder = WithoutSlash(said);
   DamagedFiles all;
-  CacheInspection(folder).Run([&](const std::string& path, const std::string& how) {
+  CacheInspection inspection(folder);
+  const CacheInspection::Report setAside = [&](const std::string& path, const std::string& how) {
     const std::string place = folder + path;
     std::error_code error;
     fs::remove_all(place + Aside, error);
@@ -543,7 +628,12 @@ DamagedFiles SetDamagedAside(const std::string& said)
     all.first = all.count == 0 ? "\"" + path.substr(1) + "\" " + how : all.first;
     ++all.count;
     return !fs::exists(place);
-  });
+  };
+  inspection.Run(setAside);
+  if (EndedWhileBuilding(folder))
+  {
+    inspection.ReportAllPrograms(setAside);
+  }
   return all;
 }
 

@@ -34,9 +34,24 @@ struct DamagedFiles
   std::string trouble; ///< why one cannot be set aside; empty: all are
 };
 
+/// While one lives, a file in the folder of PoCL's says that this process builds a program. PoCL ends the process where
+/// what it has kept of the program is damaged in a way that cannot be seen; the file is then left.
+class BuildMark
+{
+public:
+  explicit BuildMark(const std::string& folder); ///< empty: nothing is marked
+  ~BuildMark();
+  BuildMark(const BuildMark&) = delete;
+  BuildMark& operator=(const BuildMark&) = delete;
+
+private:
+  std::string File;
+};
+
 /// Renames damaged files below a folder of PoCL's to *.damaged, so that it compiles them anew: bitcode and libraries
 /// that are cut off, overwritten or unreadable, and those that were changed since an earlier call noted their checksums
-/// in the folder. What is as it was noted is not read. Other processes may do so, and PoCL may write, at the same time:
+/// in the folder; and all programs, where within an hour two starts of this machine ended while they built one
+/// (BuildMark). What is as it was noted is not read. Other processes may do so, and PoCL may write, at the same time:
 /// it renames what it has written, and leaves nothing half.
 DamagedFiles SetDamagedAside(const std::string& folder);
 

@@ -19,6 +19,7 @@
 #include <iterator>
 #include <string>
 #include <sys/resource.h>
+#include <sys/wait.h>
 #include <thread>
 #include <unistd.h>
 #include <vector>
@@ -244,6 +245,43 @@ TEST_F(KeptProgram, MayBeReplacedByAnother)
   EXPECT_EQ(this->SetAside().count, 0u);
   fs::last_write_time(this->Linked, fs::file_time_type::clock::now() + std::chrono::hours(1));
   EXPECT_EQ(this->SetAside().count, 0u) << "the same bytes";
+}
+
+namespace
+{
+void EndWhileBuilding(const std::string& folder)
+{
+  const pid_t child = fork();
+  if (child == 0)
+  {
+    new BuildMark(folder);
+    _exit(0);
+  }
+  waitpid(child, nullptr, 0);
+}
+}
+
+TEST_F(KeptProgram, IsSetAsideWhereTwoStartsEndedWhileTheyBuilt)
+{
+  const BuildMark own(this->Folder.string());
+  EndWhileBuilding(this->Folder.string());
+  EXPECT_EQ(this->SetAside().count, 0u) << "one may have been killed";
+  EndWhileBuilding(this->Folder.string());
+  EXPECT_EQ(this->SetAside().count, 0u) << "two ranks of one start";
+  for (const auto& entry : fs::directory_iterator(this->Folder))
+  {
+    const std::string name = entry.path().filename().string();
+    if (name.rfind("tyndall-building-", 0) == 0 && name.find(std::to_string(getpid())) == std::string::npos)
+    {
+      fs::last_write_time(entry.path(), fs::file_time_type::clock::now() - std::chrono::minutes(1));
+      break;
+    }
+  }
+  const DamagedFiles damaged = this->SetAside();
+  EXPECT_EQ(damaged.count, 1u);
+  EXPECT_THAT(damaged.first, testing::HasSubstr("two starts ended"));
+  EXPECT_FALSE(fs::exists(this->Program));
+  EXPECT_EQ(this->SetAside().count, 0u) << "once is enough";
 }
 
 TEST_F(KeptProgram, IsAllThatIsLookedAt)
