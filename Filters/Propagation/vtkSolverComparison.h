@@ -203,8 +203,9 @@ public:
   ///@}
 
   ///@{
-  /// Seconds that all may take: half of it for a converged run, the rest shared by the methods. Runs that do not fit
-  /// are not begun, or stopped; field data `left_out` names them. Default 300, valid above 0.
+  /// Seconds that all may take, without those in which kernels are compiled: half of it for a converged run, the rest
+  /// shared by the methods. Runs that do not fit are not begun, or stopped; field data `left_out` names them. Default
+  /// 300, valid above 0.
   tyndallSetRangeMacro(TimeBudget, double, tyndall::AboveZero, tyndall::AnyHigh);
   vtkGetMacro(TimeBudget, double);
   ///@}

@@ -100,10 +100,7 @@ private:
 
 ReferenceLight ByPropagation(Device& device, const ComparedScene& scene, double seconds, const Monitor& monitor)
 {
-  constexpr double partOfTry = 0.6; // of the time left: a poorer one takes a half or less
-  const double end = device.Now() + seconds;
   const Forecast forecast(device, scene, OfPart(monitor, 0.0, 0.2));
-  std::string stopped;
   for (const Rung& rung : Ladder)
   {
     const bool last = &rung == std::end(Ladder) - 1;
@@ -111,20 +108,9 @@ ReferenceLight ByPropagation(Device& device, const ComparedScene& scene, double 
     {
       continue;
     }
-    const double until = last ? HUGE_VAL : device.Now() + partOfTry * (end - device.Now());
     try
     {
-      ReferenceLight reference = Climb(device, scene, rung, PartUntil(device, until, monitor, 0.2, 1.0));
-      reference.text += stopped;
-      return reference;
-    }
-    catch (const TimeIsUp&)
-    {
-      if (last)
-      {
-        throw;
-      }
-      stopped = "; finer ones were stopped: the machine was too busy for them";
+      return Climb(device, scene, rung, OfPart(monitor, 0.2, 1.0));
     }
     catch (const DeviceError&) // too large; a lower rung may do
     {

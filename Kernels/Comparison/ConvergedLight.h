@@ -22,7 +22,7 @@ struct ReferenceLight
 /// tolerance 1e-6, on the doubled grid; less of it where that would take more than `seconds`, by NominalSeconds. Where
 /// light is bent, photons: of unscattered light, or of all (ComparedSettings::scattersReference).
 /// @throws InvalidInput where photons are asked for always, and cannot make the light of this scene; what the monitor
-///         throws, where the machine is far slower, once nothing poorer is left to try
+///         throws, where the machine is far slower
 ReferenceLight ConvergedLight(Device& device, const ComparedScene& scene, const ComparedSettings& settings,
   double seconds, const Monitor& monitor = {});
 }

@@ -1,5 +1,7 @@
 #include "Device/CompilationListener.h"
 
+#include "Device/Clock.h"
+
 #include <mutex>
 #include <set>
 #include <string>
@@ -40,6 +42,43 @@ void NoteKernel(const void* program, const char* name)
   Made& made = AllMade();
   const std::lock_guard<std::mutex> lock(made.Guard);
   made.Kernels.insert({ program, name });
+}
+
+namespace
+{
+struct Compiling
+{
+  std::mutex Guard;
+  int Threads = 0;
+  double Since = 0.0, Before = 0.0; ///< when the first of these threads began; seconds of earlier ones
+};
+
+Compiling& TheCompiling()
+{
+  static auto& compiling = *new Compiling;
+  return compiling;
+}
+}
+
+double WorkSeconds()
+{
+  Compiling& compiling = TheCompiling();
+  const std::lock_guard<std::mutex> lock(compiling.Guard);
+  return (compiling.Threads > 0 ? compiling.Since : ClockSeconds()) - compiling.Before;
+}
+
+WhileCompiling::WhileCompiling()
+{
+  Compiling& compiling = TheCompiling();
+  const std::lock_guard<std::mutex> lock(compiling.Guard);
+  compiling.Since = compiling.Threads++ == 0 ? ClockSeconds() : compiling.Since;
+}
+
+WhileCompiling::~WhileCompiling()
+{
+  Compiling& compiling = TheCompiling();
+  const std::lock_guard<std::mutex> lock(compiling.Guard);
+  compiling.Before += --compiling.Threads == 0 ? ClockSeconds() - compiling.Since : 0.0;
 }
 
 CompilationListener::CompilationListener(Call call)

@@ -12,6 +12,19 @@ std::size_t KernelsMade();
 /// For devices: of a program, which must stay, one was made.
 void NoteKernel(const void* program, const char* name);
 
+/// ClockSeconds without those in which kernels were compiled: this process's clock of work.
+double WorkSeconds();
+
+/// While one lives, WorkSeconds stands still.
+class WhileCompiling
+{
+public:
+  WhileCompiling();
+  ~WhileCompiling();
+  WhileCompiling(const WhileCompiling&) = delete;
+  WhileCompiling& operator=(const WhileCompiling&) = delete;
+};
+
 /// While one lives, it is called about ten times a second in the thread that made it whenever that thread waits for a
 /// device's compiler, which takes seconds where nobody has compiled the kernels before. Of several in a thread the last
 /// one is called.

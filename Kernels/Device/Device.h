@@ -1,6 +1,7 @@
 #pragma once
 
 #include "Device/Clock.h"
+#include "Device/CompilationListener.h"
 #include "Device/Errors.h"
 #include "Device/MemoryBudget.h"
 #include "Device/MemoryCount.h"
@@ -111,7 +112,7 @@ public:
   /// progress is reported and an abort noticed that often, while short kernels follow each other without the host.
   void Queued(double seconds);
 
-  /// Seconds by the clock that work is shared out by: the machine's, or that of a test, set before work begins.
+  /// Seconds by the clock that work is shared out by: WorkSeconds, or that of a test, set before work begins.
   double Now() const { return this->TheClock(); }
   void SetClock(Clock clock) { this->TheClock = std::move(clock); }
 
@@ -153,7 +154,7 @@ private:
   MemoryCount Memory;
   MemoryCount OnHost;
   std::atomic<double> SecondsQueued{ 0.0 };
-  Clock TheClock = ClockSeconds;
+  Clock TheClock = WorkSeconds;
   std::shared_ptr<KeptPrograms> Programs;
 };
 }

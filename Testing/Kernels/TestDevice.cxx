@@ -198,6 +198,21 @@ std::vector<std::size_t> SizesAt(Device& device, const Batches& batches, double 
   return sizes;
 }
 
+TEST(WorkSeconds, StandStillWhileKernelsAreCompiled)
+{
+  const std::chrono::milliseconds pause(200);
+  const double begun = WorkSeconds();
+  {
+    const WhileCompiling first;
+    std::this_thread::sleep_for(pause);
+    const WhileCompiling second;
+    std::this_thread::sleep_for(pause);
+  }
+  EXPECT_LT(WorkSeconds() - begun, 0.2);
+  std::this_thread::sleep_for(pause);
+  EXPECT_GT(WorkSeconds() - begun, 0.19);
+}
+
 TEST_F(DeviceLayer, SharesWorkOutByItsClock)
 {
   Batches batches;
