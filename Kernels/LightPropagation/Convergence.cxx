@@ -208,9 +208,7 @@ double GoesOnToItsEnd(int maximumOrders, double before, double onTheWay, double 
 
 double GoesOnAsForeseen(double before, double onTheWay, double others)
 {
-  const double ended = before - onTheWay;
-  return ended > SlowestFall * before ? others + std::min(onTheWay, others * onTheWay / ended)
-                                      : GoesOnToItsEnd(0, before, onTheWay, others);
+  return onTheWay < (1.0 - SlowestFall) * before ? others : GoesOnToItsEnd(0, before, onTheWay, others);
 }
 
 double ProgressOf(const PropagationSettings& settings, double residual, double iterations)

@@ -56,7 +56,7 @@ private:
 double GoesOnToItsEnd(int maximumOrders, double before, double onTheWay, double others);
 
 /// Likewise, where an acceleration counts what is on the way as light to come: `others` is then what it did not foresee
-/// of the part that ended in the last order, and as much of the rest is to be expected.
+/// of the part that ended in the last order, and tells by how it falls off how much there is in the rest.
 double GoesOnAsForeseen(double before, double onTheWay, double others);
 
 /// Of a solve, [0, 1]: orders of those asked for, else how far the logarithm of the residual has come, and a little

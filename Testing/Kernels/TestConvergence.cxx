@@ -216,7 +216,7 @@ TEST(Convergence, NamesAccelerationWhereTheSolverHasIt)
 TEST(Convergence, CountsOfLightThatWasForeseenWhatWasNot)
 {
   EXPECT_DOUBLE_EQ(GoesOnAsForeseen(0.0, 0.0, 0.2), 0.2);
-  EXPECT_DOUBLE_EQ(GoesOnAsForeseen(0.0, 0.5, 0.2), 0.7);    // nothing has ended yet
-  EXPECT_DOUBLE_EQ(GoesOnAsForeseen(1.0, 0.75, 0.01), 0.04); // of the quarter that did
+  EXPECT_DOUBLE_EQ(GoesOnAsForeseen(0.0, 0.5, 0.2), 0.7); // nothing has ended yet
+  EXPECT_DOUBLE_EQ(GoesOnAsForeseen(1.0, 0.75, 0.01), 0.01);
   EXPECT_DOUBLE_EQ(GoesOnAsForeseen(1.0, 0.9999999, 1e-4), 1e-4);
 }
