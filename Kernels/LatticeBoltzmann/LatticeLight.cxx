@@ -148,7 +148,7 @@ void JudgeLight(LightField& light, const Illumination& illumination, const Latti
 {
   PropagationSettings judged = AsPropagation(settings);
   judged.tolerance = settings.tolerance;
-  JudgeConvergence(judged, light);
+  JudgeConvergence(judged, light, false);
   if (Reflects(illumination))
   {
     light.doubts.emplace_back(

@@ -55,9 +55,11 @@ enum class Balancing
   Not
 };
 
-/// Part of the power that is lost or made, the worst channel; grey light has nothing in the other channels. A faint
-/// channel is compared with a thousandth of the brightest one.
-double ImbalanceOf(const EnergyBalance& balance)
+/// The largest part of the power, of all channels; grey light has nothing in the other ones. A faint channel is
+/// compared with a thousandth of the brightest one.
+/// @param powerOf  by channel, and what came into it, W
+template <class PowerOf>
+double LargestPart(const EnergyBalance& balance, const PowerOf& powerOf)
 {
   Rgb in = {};
   for (std::size_t c = 0; c < in.size(); ++c)
@@ -68,22 +70,43 @@ double ImbalanceOf(const EnergyBalance& balance)
   double worst = 0.0;
   for (std::size_t c = 0; c < in.size(); ++c)
   {
-    const double error = std::abs(in[c] - balance.absorbed[c] - balance.escaped[c] - balance.leftOver[c]);
-    const double scale = std::max(in[c], least);
-    const double part = scale > 0.0 ? error / scale : error;
+    const double power = powerOf(c, in[c]), scale = std::max(in[c], least);
+    const double part = scale > 0.0 ? power / scale : power;
     worst = part <= worst || std::isnan(worst) ? worst : part;
   }
   return worst;
 }
 
+/// Part of the power that is lost or made.
+double ImbalanceOf(const EnergyBalance& balance)
+{
+  return LargestPart(balance, [&](std::size_t c, double in) {
+    return std::abs(in - balance.absorbed[c] - balance.escaped[c] - balance.leftOver[c]);
+  });
+}
+
+/// By how much powers are what none can be, though their sum may be right: absorbed or gone less than nothing, or left
+/// over more than there was.
+double ImpossiblePart(const EnergyBalance& balance)
+{
+  return LargestPart(balance, [&](std::size_t c, double in) {
+    return std::max({ -balance.absorbed[c], -balance.escaped[c], balance.leftOver[c] - in });
+  });
+}
+
 Balancing BalancingOf(const EnergyBalance& balance)
 {
   const double error = ImbalanceOf(balance);
+  if (ImpossiblePart(balance) > ImbalanceAtMost)
+  {
+    return Balancing::Not;
+  }
   return error <= ImbalanceUnsaid ? Balancing::Well : error <= ImbalanceAtMost ? Balancing::Poorly : Balancing::Not;
 }
 
 /// What may be wrong, and what to do.
-std::string WordsOfImbalance(const ThickestVoxel& thickest)
+/// @param enters  light comes from elsewhere than the medium
+std::string WordsOfImbalance(const ThickestVoxel& thickest, bool enters)
 {
   const std::string thickness = Text("%.3g", thickest.thickness);
   if (thickest.thickness > OpaqueVoxel)
@@ -92,18 +115,37 @@ std::string WordsOfImbalance(const ThickestVoxel& thickest)
       (thickest.name.empty() ? std::string() : ", " + thickest.name + ",") + " has optical thickness " + thickness +
       "; beyond some hundred it is opaque, so give it less.";
   }
+  const std::string others = "resample very flat voxels; another solver shows which light is right.";
   return "more than rounding. " +
     (thickest.thickness > 0.0 ? "Voxels of at most " + thickness + " mean free paths are not the cause: look"
                               : "Look") +
-    " at the lights. Move lamps that are very far away, on a face of the box or "
-    "at a corner of a voxel, make very narrow cones wider, and resample very flat voxels; another solver shows which "
-    "light is right.";
+    (enters
+        ? " at the lights. Move lamps, if any, that are very far away, on a face of the box or at a corner of a voxel, "
+          "make very narrow cones wider, and " +
+          others
+        : " at the emission, for nothing else shines, and " + others);
+}
+
+/// Throws: what is wrong is the way in which the light was found.
+[[noreturn]] void RefuseImpossible(const EnergyBalance& balance)
+{
+  const double in = Sum(balance.entered) + Sum(balance.emitted);
+  const auto text = [](double power) { return Text("%.3g", power) + " W"; };
+  throw InvalidInput("The light has no meaning: of " + text(in) + ", " + text(Sum(balance.absorbed)) +
+    " are absorbed, " + text(Sum(balance.escaped)) + " leave and " + text(Sum(balance.leftOver)) +
+    " are left over, where none may be below 0 or above all, in no channel. The iteration went astray: set "
+    "Acceleration to none where the solver has it, or choose another solver.");
 }
 
 void Judge(LightField& light, Balancing balancing, const ThickestVoxel& thickest)
 {
   const double error = ImbalanceOf(light.balance);
-  const std::string why = WordsOfImbalance(thickest), part = Text("%.2g", error) + " of the power is lost or made, ";
+  if (balancing == Balancing::Not && error <= ImbalanceAtMost)
+  {
+    RefuseImpossible(light.balance);
+  }
+  const std::string why = WordsOfImbalance(thickest, Sum(light.balance.entered) > 0.0),
+                    part = Text("%.2g", error) + " of the power is lost or made, ";
   if (balancing == Balancing::Poorly)
   {
     light.doubts.push_back("The energy balance is off: " + part + why);
@@ -164,6 +206,11 @@ double GoesOnToItsEnd(int maximumOrders, double before, double onTheWay, double 
   return endless ? others : others + onTheWay;
 }
 
+double GoesOnAsForeseen(double before, double onTheWay, double others)
+{
+  return onTheWay < (1.0 - SlowestFall) * before ? others : GoesOnToItsEnd(0, before, onTheWay, others);
+}
+
 double ProgressOf(const PropagationSettings& settings, double residual, double iterations)
 {
   if (settings.maximumOrders > 0)
@@ -204,16 +251,17 @@ void JudgeBalance(LightField& light, Communicator& communicator, bool has, const
   }
 }
 
-void JudgeConvergence(const PropagationSettings& settings, LightField& light)
+void JudgeConvergence(const PropagationSettings& settings, LightField& light, bool accelerates)
 {
   const double residual = light.convergence.empty() ? 0.0 : light.convergence.back().residual;
   light.converged = settings.maximumOrders > 0 || MeetsTolerance(settings, residual);
   if (!light.converged)
   {
+    const bool mayBeSlower = accelerates && settings.acceleration != PropagationAcceleration::None;
     light.doubts.push_back("The light has not converged: after " + std::to_string(light.convergence.size()) +
       " sweeps its estimated relative error is " + Text("%.3g", residual) + ", Tolerance is " +
-      Text("%.3g", settings.tolerance) +
-      ". Set a larger Tolerance, or Acceleration to none, or resample to voxels of more equal edges.");
+      Text("%.3g", settings.tolerance) + ". Set a larger Tolerance, " +
+      (mayBeSlower ? "or Acceleration to none, " : "") + "or resample to voxels of more equal edges.");
   }
   const double left = LeftOver(light.balance);
   if (settings.maximumOrders == 0 && left > std::max(MuchLeftOver, settings.tolerance))

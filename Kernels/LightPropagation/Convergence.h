@@ -55,6 +55,10 @@ private:
 /// @param others  what goes on besides
 double GoesOnToItsEnd(int maximumOrders, double before, double onTheWay, double others);
 
+/// Likewise, where an acceleration counts what is on the way as light to come: `others` is then what it did not foresee
+/// of the part that ended in the last order, and tells by how it falls off how much there is in the rest.
+double GoesOnAsForeseen(double before, double onTheWay, double others);
+
 /// Of a solve, [0, 1]: orders of those asked for, else how far the logarithm of the residual has come, and a little
 /// more with each iteration.
 /// @param residual  of the last iteration, 1 before there is one
@@ -70,12 +74,14 @@ void DoubtGivenLight(const Illumination& illumination, LightField& light);
 /// The energy check of every conservative solver: power is absorbed, escapes or is left over. An error above 1e-4
 /// becomes one of the light's `doubts`.
 /// @param medium  read only where the balance is off, to tell why; without voxels: not known
-/// @throws InvalidInput where the error is above 1e-2, or not a number
+/// @throws InvalidInput where the error is above 1e-2, or not a number; where powers are what none can be by as much:
+///   absorbed or gone below 0, or left over beyond all there was
 void JudgeBalance(LightField& light, const Medium& medium);
 /// The same of light over ranks, each with the balance of all. Collective.
 /// @param has  voxels, this rank
 void JudgeBalance(LightField& light, Communicator& communicator, bool has, const Medium& ofBlock);
 
 /// Sets `converged` of solved light, and adds to its `doubts` where it is not, or where power is left over.
-void JudgeConvergence(const PropagationSettings& settings, LightField& light);
+/// @param accelerates  the solver has a setting for it
+void JudgeConvergence(const PropagationSettings& settings, LightField& light, bool accelerates = true);
 }

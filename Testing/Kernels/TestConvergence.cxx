@@ -157,3 +157,66 @@ TEST(Balance, OfAFaintChannelCountsByTheBrightestOne)
   light.balance.absorbed[0] = 3.9;
   EXPECT_THROW(JudgeBalance(light, Medium()), InvalidInput);
 }
+
+/// Whose sum is right.
+TEST(Balance, RefusesPowersThatNoneCanBe)
+{
+  const auto judge = [](double absorbed, double escaped, double leftOver) -> std::string {
+    LightField light = LightWith(0.0, leftOver);
+    light.balance.absorbed[0] = 4.0 * absorbed;
+    light.balance.escaped[0] = 4.0 * escaped;
+    try
+    {
+      JudgeBalance(light, Medium());
+    }
+    catch (const InvalidInput& error)
+    {
+      return error.what();
+    }
+    return light.doubts.empty() ? "" : light.doubts[0];
+  };
+  EXPECT_EQ(judge(-0.81, 0.0, 1.81).find("The light has no meaning: of 4 W, -3.24 W are absorbed"), 0u);
+  EXPECT_EQ(judge(1.02, -0.02, 0.0).find("The light has no meaning"), 0u);
+  EXPECT_EQ(judge(0.0, 0.0, 1.0), "");
+  EXPECT_EQ(judge(1.0 + 5e-5, 0.0, -5e-5), "");
+}
+
+TEST(Balance, BlamesNoLampWhereTheMediumAloneShines)
+{
+  LightField light = LightWith(0.0, 0.0);
+  for (const bool enters : { false, true })
+  {
+    light.balance.entered[0] = enters ? 3.0 : 0.0;
+    try
+    {
+      JudgeBalance(light, Medium());
+      ADD_FAILURE() << "all power is lost";
+    }
+    catch (const InvalidInput& error)
+    {
+      EXPECT_EQ(std::string(error.what()).find("lamps") != std::string::npos, enters) << error.what();
+    }
+  }
+}
+
+TEST(Convergence, NamesAccelerationWhereTheSolverHasIt)
+{
+  const auto names = [](PropagationAcceleration acceleration, bool accelerates) {
+    PropagationSettings settings;
+    settings.acceleration = acceleration;
+    LightField light = LightWith(1.0, 0.0);
+    JudgeConvergence(settings, light, accelerates);
+    return light.doubts.at(0).find("Acceleration") != std::string::npos;
+  };
+  EXPECT_TRUE(names(PropagationAcceleration::Automatic, true));
+  EXPECT_FALSE(names(PropagationAcceleration::None, true));
+  EXPECT_FALSE(names(PropagationAcceleration::Automatic, false));
+}
+
+TEST(Convergence, CountsOfLightThatWasForeseenWhatWasNot)
+{
+  EXPECT_DOUBLE_EQ(GoesOnAsForeseen(0.0, 0.0, 0.2), 0.2);
+  EXPECT_DOUBLE_EQ(GoesOnAsForeseen(0.0, 0.5, 0.2), 0.7); // nothing has ended yet
+  EXPECT_DOUBLE_EQ(GoesOnAsForeseen(1.0, 0.75, 0.01), 0.01);
+  EXPECT_DOUBLE_EQ(GoesOnAsForeseen(1.0, 0.9999999, 1e-4), 1e-4);
+}

@@ -5,6 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
+#include <string>
+#include <tuple>
 #include <utility>
 
 using namespace tyndall;
@@ -232,6 +235,78 @@ TEST_F(DiffusionOnCells, KeepsEvenLightEven)
   for (const float fluence : scene.Solve(this->GetDevice()).fluence)
   {
     ASSERT_NEAR(fluence / (4.0 * M_PI), 1.0, 2e-5);
+  }
+}
+
+namespace
+{
+/// Uneven haze without faces, in which light goes round hundreds of times, lit by a lamp or by two of its voxels.
+/// @param thickest  mean free paths of a voxel, at most
+/// @param parts  of that, of each channel
+Scene ThinBoxWithoutFaces(double thickest, const std::vector<double>& parts, bool lamp)
+{
+  Scene scene({ 6, 5, 5 });
+  scene.medium.grid.spacing = { 0.4, 0.4, 0.4 };
+  const std::size_t voxels = scene.sigma_a.size();
+  scene.sigma_a.clear();
+  scene.sigma_s.clear();
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  for (std::size_t i = 0; i < voxels; ++i)
+  {
+    const double sigma_t = thickest / 0.4 * unit(random);
+    for (const double part : parts)
+    {
+      scene.sigma_a.push_back(static_cast<float>(0.3 * sigma_t * part));
+      scene.sigma_s.push_back(static_cast<float>(0.7 * sigma_t * part));
+    }
+  }
+  scene.settings.periodic = { true, true, true };
+  if (lamp)
+  {
+    Light point;
+    point.type = LightType::Point;
+    point.position = { 0.7, 1.2, 0.9 };
+    point.power = { 1.0, 1.0, 1.0 };
+    scene.light.lights = { point };
+    return scene;
+  }
+  scene.emission.assign(voxels, 0.0f);
+  scene.emission[20] = scene.emission[77] = 1.0f;
+  return scene;
+}
+}
+
+/// A sweep ends before the medium has taken all of it: what is on the way is light to come, and even.
+TEST_F(DiffusionOnCells, GiveThinBoxesWithoutFacesAllTheirLight)
+{
+  const std::vector<double> grey = { 1.0 }, colours = { 100.0, 10.0, 1.0 };
+  for (const auto& [thickest, parts, lamp] :
+    { std::tuple(1e-3, grey, true), { 1e-3, grey, false }, { 1e-3, colours, true } })
+  {
+    Scene scene = ThinBoxWithoutFaces(thickest, parts, lamp);
+    ASSERT_EQ(How(scene), OrdersAdded::ByCells);
+    const LightField light = scene.Solve(this->GetDevice());
+    for (std::size_t c = 0; c < parts.size(); ++c)
+    {
+      SCOPED_TRACE(std::to_string(thickest) + " channel " + std::to_string(c));
+      const double in = light.balance.entered[c] + light.balance.emitted[c];
+      EXPECT_NEAR(light.balance.absorbed[c] / in, 1.0, 2e-4);
+      double absorbs = 0.0;
+      for (std::size_t i = c; i < scene.sigma_a.size(); i += parts.size())
+      {
+        absorbs += scene.sigma_a[i] * scene.medium.grid.VoxelVolume();
+      }
+      for (std::size_t i = c; i < light.fluence.size(); i += parts.size())
+      {
+        ASSERT_NEAR(light.fluence[i] * absorbs / in, 1.0,
+          parts[c] > 1.0 ? 0.3
+            : lamp       ? 0.02
+                         : 0.15); // voxels that shine
+      }
+    }
+    EXPECT_LT(light.balance.RelativeError(static_cast<int>(parts.size())), 1e-4);
+    EXPECT_TRUE(light.doubts.empty()) << light.doubts[0];
   }
 }
 

@@ -818,6 +818,7 @@ TEST_F(LampBeams, RoundPeriodicAxesLeaveNothingOver)
          Case{ { 4, 4, 32 }, { 1.0, 1.0, 1.0 }, 0.1, { true, true, false }, LightType::Rectangle },
          Case{ { 8, 6, 10 }, { 0.01, 0.01, 1.0 }, 0.3, { true, true, false }, LightType::Point },
          Case{ { 9, 11, 10 }, { 1.0, 1.3, 0.8 }, 0.0, { true, false, false }, LightType::Point },
+         Case{ { 12, 9, 7 }, { 1.0, 1.0, 1.0 }, 0.0, { true, true, false }, LightType::Point },
          Case{ { 9, 7, 8 }, { 1.0, 1.0, 1.0 }, 1e-3, { true, true, true }, LightType::Point } })
   {
     Scene scene(box.size, static_cast<float>(box.tau / (box.size[2] * box.spacing[2])));
@@ -830,7 +831,7 @@ TEST_F(LampBeams, RoundPeriodicAxesLeaveNothingOver)
     lamp.size = { box.spacing[0], box.spacing[0] };
     scene.light.lights = { lamp };
     const LightField light = scene.Solve(this->GetDevice());
-    EXPECT_LT(light.balance.leftOver[0], 1e-3 * light.balance.entered[0]) << box.size[2] << ' ' << box.tau;
+    EXPECT_LT(light.balance.leftOver[0], 5e-5 * light.balance.entered[0]) << box.size[2] << ' ' << box.tau;
     EXPECT_LT(light.balance.RelativeError(1), 1e-5) << box.size[2] << ' ' << box.tau;
     EXPECT_NEAR(light.balance.entered[0], 10.0, 1e-4);
   }
@@ -846,6 +847,13 @@ TEST_F(LampBeams, RoundThreePeriodicAxesLoseNothing)
     scene.light.lights = { Lamp(type, { 4.9, 2.7, 7.7 }, 1.0) };
     const LightField light = scene.Solve(this->GetDevice());
     EXPECT_NEAR(light.balance.absorbed[0], 1.0, 1e-5) << static_cast<int>(type);
+  }
+  for (const float sigma_a : { 0.2f, 0.3f, 0.4f, 0.5f }) // the first pass takes nearly all of it
+  {
+    Scene scene({ 6, 6, 9 }, sigma_a);
+    scene.settings.periodic = { true, true, true };
+    scene.light.lights = { Lamp(LightType::Point, { 1.8, 3.6, 4.1 }, 1.0) };
+    EXPECT_NEAR(scene.Solve(this->GetDevice()).balance.absorbed[0], 1.0, 1e-5) << sigma_a;
   }
 }
 

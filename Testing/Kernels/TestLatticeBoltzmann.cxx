@@ -289,6 +289,24 @@ TEST_F(LatticeBoltzmann, IsTheSameInLargeBoxesAsInTheOneThatTheyRepeat)
   EXPECT_GT(of_one.fluence[0], 0.0f);
 }
 
+TEST_F(LatticeBoltzmann, TakesAllLightOfALampInABoxWithoutFaces)
+{
+  for (const float sigma_t : { 0.2f, 0.3f, 0.4f, 0.5f }) // of which the first pass takes nearly all
+  {
+    Scene scene({ 6, 6, 9 }, 0.1f * sigma_t, 0.9f * sigma_t);
+    Light lamp;
+    lamp.type = LightType::Point;
+    lamp.position = { 1.8, 3.6, 4.1 };
+    lamp.power = { 1.0, 1.0, 1.0 };
+    scene.light.lights = { lamp };
+    LatticeSettings settings;
+    settings.periodic = { true, true, true };
+    const LightField light = this->Solve(scene, settings);
+    EXPECT_NEAR(light.balance.entered[0], 1.0, 1e-5) << sigma_t;
+    EXPECT_NEAR(light.balance.absorbed[0], 1.0, 2e-4) << sigma_t;
+  }
+}
+
 /// A ground of albedo A under a slab that absorbs nothing: T (1 - A) / (1 - A R) of the diffuse light is lost to it.
 TEST_F(LatticeBoltzmann, GivesBackWhatTheGroundDoes)
 {

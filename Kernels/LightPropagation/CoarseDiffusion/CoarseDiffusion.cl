@@ -10,8 +10,9 @@
 
 #define CELLS_AT_ONCE 64
 
-// Sums over the voxels of each cell. Work-items walk along rows of cells.
-__kernel void sum_cells(CoarseCells box, const __global float* values, float scale, __global float* sums, ulong first)
+// Sums over the voxels of each cell, times `scale`, each with `more`. Work-items walk along rows of cells.
+__kernel void sum_cells(
+  CoarseCells box, const __global float* values, float scale, float more, __global float* sums, ulong first)
 {
   values += first;
   FOR_ROWS(box.cells)
@@ -35,7 +36,8 @@ __kernel void sum_cells(CoarseCells box, const __global float* values, float sca
           }
         }
       }
-      row[x] = scale * sum;
+      row[x] =
+        scale * sum + more * ((end_x - begin_x) * (end_y - (y << box.halvings[1])) * (end_z - (z << box.halvings[2])));
     }
   }
 }

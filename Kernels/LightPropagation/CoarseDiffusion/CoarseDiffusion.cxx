@@ -9,6 +9,7 @@
 #include "Numerics/Constants.h"
 #include "TyndallKernelSources.h"
 
+#include <cmath>
 #include <numeric>
 
 namespace tyndall
@@ -66,7 +67,7 @@ cl::Kernel CoarseDiffusion::Kernel(const char* name) const
 std::vector<float> CoarseDiffusion::SumOfVoxels(const Buffer<float>& values, int first)
 {
   cl::Kernel kernel = this->Kernel("sum_cells");
-  With(kernel, this->Box, values, 1.0f, this->Solver.Right(), cl_ulong(first));
+  With(kernel, this->Box, values, 1.0f, 0.0f, this->Solver.Right(), cl_ulong(first));
   MultigridSolver::RunRows(this->TheDevice, kernel, this->Box.cells);
   return OfRows(this->Box.cells, this->Solver.Right().Read());
 }
@@ -82,15 +83,15 @@ void CoarseDiffusion::FindMatrix()
   this->Borders = std::move(matrix.borders);
 }
 
-CoarseDiffusion::Powers CoarseDiffusion::ScatterOrder(
-  const Buffer<float>& path, const Buffer<float>& fluence, const Buffer<float>& source, const Buffer<float>* guess)
+CoarseDiffusion::Powers CoarseDiffusion::ScatterOrder(const Buffer<float>& path, const Buffer<float>& fluence,
+  const Buffer<float>& source, double onTheWay, const Buffer<float>* guess)
 {
   const double perSource = 4.0 * Pi * this->TheGrid.VoxelVolume();
   const Sums swept = this->Scatter(path, source, 1.0, false);
   this->Found.Fill(0.0);
   if (!guess)
   {
-    this->Solve(source, perSource * swept.second);
+    this->Solve(source, perSource * swept.second, onTheWay);
   }
   const Sums absorbed = guess ? this->AddGuess(*guess, path, fluence) : this->AddFound(path, fluence);
   const Sums scattered = this->Scatter(path, source, -1.0, true);
@@ -108,18 +109,20 @@ CoarseDiffusion::Powers CoarseDiffusion::ScatterOrder(
   return powers;
 }
 
-/// Of what the last sweep scattered, W, all orders to come.
-void CoarseDiffusion::Solve(const Buffer<float>& source, double magnitude)
+/// Of what the last sweep scattered, and of what is on the way, W, all light to come.
+void CoarseDiffusion::Solve(const Buffer<float>& source, double magnitude, double onTheWay)
 {
-  if (!(magnitude > 0.0))
+  const double all = magnitude + std::abs(onTheWay);
+  if (!(all > 0.0))
   {
     return;
   }
   cl::Kernel sum = this->Kernel("sum_cells");
-  With(sum, this->Box, source, static_cast<float>(4.0 * Pi * this->TheGrid.VoxelVolume()), this->Solver.Right(),
+  With(sum, this->Box, source, static_cast<float>(4.0 * Pi * this->TheGrid.VoxelVolume()),
+    static_cast<float>(onTheWay / static_cast<double>(this->TheGrid.VoxelCount())), this->Solver.Right(),
     cl_ulong(this->Box.first));
   MultigridSolver::RunRows(this->TheDevice, sum, this->Box.cells);
-  this->Solver.Solve(this->Found, magnitude / static_cast<double>(this->CellGrid().VoxelCount()), Reduction);
+  this->Solver.Solve(this->Found, all / static_cast<double>(this->CellGrid().VoxelCount()), Reduction);
 }
 
 /// What is scattered of path integrals, times a sign, into the source. @return its sums

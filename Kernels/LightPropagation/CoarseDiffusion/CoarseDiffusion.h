@@ -39,9 +39,11 @@ public:
   /// orders to come, and leaves in `path` what the next sweep is to have less. All arrays [channel][stride].
   /// @param path  W length
   /// @param source  W / (length^3 sr), replaced
+  /// @param onTheWay  W, round periodic axes when the sweep ended, that the medium is to take sooner or later: light to
+  ///   come as well, as if it came from all of the box alike
   /// @param guess  W length, of all orders to come, in the place of the cells' solution; null: that
   Powers ScatterOrder(const Buffer<float>& path, const Buffer<float>& fluence, const Buffer<float>& source,
-    const Buffer<float>* guess = nullptr);
+    double onTheWay = 0.0, const Buffer<float>* guess = nullptr);
 
 private:
   struct Sums
@@ -53,7 +55,7 @@ private:
   std::vector<float> SumOfVoxels(const Buffer<float>& values, int first);
   void FindMatrix();
   Sums Scatter(const Buffer<float>& path, const Buffer<float>& source, double sign, bool adds);
-  void Solve(const Buffer<float>& source, double magnitude);
+  void Solve(const Buffer<float>& source, double magnitude, double onTheWay);
   Sums AddFound(const Buffer<float>& path, const Buffer<float>& fluence);
   Sums AddGuess(const Buffer<float>& guess, const Buffer<float>& path, const Buffer<float>& fluence);
   std::array<double, 6> OutThroughFaces() const;

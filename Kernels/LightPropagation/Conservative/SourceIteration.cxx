@@ -353,7 +353,7 @@ void SourceIteration::ScatterByCells()
   }
   const bool guessed = this->Order == 0 && this->Warm.Begins();
   const OrdersByCells::Powers powers =
-    this->Cells->ScatterOrder(this->Result.ledger, guessed ? &this->Warm.Guess() : nullptr);
+    this->Cells->ScatterOrder(this->Result.ledger, this->OnTheWay, guessed ? &this->Warm.Guess() : nullptr);
   this->Scattered = powers.scattered;
   this->Shining = Sum(powers.magnitude) > 0.0;
   this->Residual = 0.0;
@@ -361,8 +361,10 @@ void SourceIteration::ScatterByCells()
   {
     this->Result.ledger.LeaveOver(c, powers.left[c] + this->OnTheWay[c] + this->Stranded[c]);
     this->AllScattered[c] += powers.scattered[c];
-    const double now = GoesOnToItsEnd(
-      this->Settings.maximumOrders, std::abs(this->WasOnTheWay[c]), std::abs(this->OnTheWay[c]), powers.magnitude[c]);
+    const double before = std::abs(this->WasOnTheWay[c]), onTheWay = std::abs(this->OnTheWay[c]);
+    const double now = this->Cells->ForeseeWay()
+      ? GoesOnAsForeseen(before, onTheWay, powers.magnitude[c])
+      : GoesOnToItsEnd(this->Settings.maximumOrders, before, onTheWay, powers.magnitude[c]);
     if (now > 0.0 && this->AllScattered[c] > 0.0)
     {
       this->Residual = std::max(this->Residual, this->Rest[c].After(now, this->AllScattered[c]));

@@ -146,7 +146,7 @@ LightField SolveSequential(
       LightField field = SequentialPropagation(ofChannels, light, settings, count).Solve(monitor);
       field.leftOut = LeftOutAsPublished(medium.phase.IsIsotropic(), traits, illumination.uncollided.IsThere(),
         illumination, settings, static_cast<int>(field.convergence.size()));
-      JudgeConvergence(settings, field);
+      JudgeConvergence(settings, field, false);
       DoubtGivenLight(illumination, field);
       return field;
     });

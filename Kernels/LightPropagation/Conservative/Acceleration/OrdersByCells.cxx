@@ -6,6 +6,7 @@ namespace tyndall
 {
 OrdersByCells::OrdersByCells(const TransportParts& parts)
   : Parts(parts)
+  , Closed(parts.Problem.Settings().periodic == std::array<bool, 3>{ true, true, true })
 {
   const std::array<int, 3> halvings = CellHalvings(parts.Problem);
   for (int c = 0; c < parts.Layout.channels; ++c)
@@ -15,14 +16,14 @@ OrdersByCells::OrdersByCells(const TransportParts& parts)
   }
 }
 
-OrdersByCells::Powers OrdersByCells::ScatterOrder(EnergyLedger& ledger, const Buffer<float>* guess)
+OrdersByCells::Powers OrdersByCells::ScatterOrder(EnergyLedger& ledger, const Rgb& onTheWay, const Buffer<float>* guess)
 {
   Powers all;
   for (std::size_t i = 0; i < this->Cells.size(); ++i)
   {
     const auto c = static_cast<int>(i);
-    const CoarseDiffusion::Powers powers =
-      this->Cells[i]->ScatterOrder(this->Parts.Path, this->Parts.Fluence, this->Parts.Source, guess);
+    const CoarseDiffusion::Powers powers = this->Cells[i]->ScatterOrder(
+      this->Parts.Path, this->Parts.Fluence, this->Parts.Source, this->Closed ? onTheWay[c] : 0.0, guess);
     ledger.Absorb(c, powers.absorbed);
     all.scattered[c] = powers.scattered;
     all.magnitude[c] = powers.magnitude;

@@ -28,14 +28,19 @@ public:
 
   /// From the path integrals of a sweep to fluence and the next source, with all orders to come.
   /// @param ledger  what is absorbed is counted here, and that the sweep let out too much
+  /// @param onTheWay  W, round periodic axes when the sweep ended
   /// @param guess  of all orders to come, in the place of the cells' solution; null: that
-  Powers ScatterOrder(EnergyLedger& ledger, const Buffer<float>* guess);
+  Powers ScatterOrder(EnergyLedger& ledger, const Rgb& onTheWay, const Buffer<float>* guess);
+
+  /// Nothing leaves, so that the medium takes all that is on the way, wherever it is: it is among what is to come.
+  bool ForeseeWay() const { return this->Closed; }
 
   /// A ledger with what leaves of the orders to come.
   EnergyLedger WithOut(const EnergyLedger& ledger) const;
 
 private:
   const TransportParts& Parts;
+  bool Closed;                                         ///< all axes are periodic
   std::vector<std::unique_ptr<CoarseDiffusion>> Cells; ///< by channel
   std::array<Rgb, 6> Kept = {};                        ///< W, through faces, that the next sweep is to let out less
   std::array<Rgb, 6> Out = {};                         ///< W, through faces, of all orders to come

@@ -320,7 +320,7 @@ LightField SolveBy(const MakeRays& make, Communicator& communicator, const Block
   const std::vector<std::string> leftOut = LeftOutOfBlocks(scene, illumination, settings, propagation.Orders());
   light.leftOut.insert(light.leftOut.begin(), leftOut.begin(), leftOut.end());
   light.halfRangeFlux = HalfRangeFlux(model->Directions());
-  JudgeConvergence(settings, light);
+  JudgeConvergence(settings, light, false);
   DoubtGivenLight(illumination, light);
   communicator.Together([&] {
     if (kept)

@@ -9,7 +9,7 @@ namespace
 {
 constexpr int PassesAtMost = 9;     ///< in all
 constexpr int EvenFrom = 3;         ///< passes, after which the light of a box without faces is spread evenly
-constexpr double LeftAtMost = 5e-4; ///< of the power: then no further pass
+constexpr double LeftAtMost = 5e-5; ///< of the power: then no further pass
 }
 
 double FollowInPasses(const Grid& grid, const std::array<bool, 3>& periodic, LampShares& shares,
@@ -18,12 +18,9 @@ double FollowInPasses(const Grid& grid, const std::array<bool, 3>& periodic, Lam
   Pass pass = FirstPass(grid);
   follow(pass, 1.0, OfPart(monitor, 0.0, 0.5));
   const bool endless = periodic[0] && periodic[1] && periodic[2];
-  for (int done = 1; done < PassesAtMost && shares.onTheWay > LeftAtMost * shares.shone; ++done)
+  const int most = endless ? EvenFrom : PassesAtMost;
+  for (int done = 1; done < most && shares.onTheWay > LeftAtMost * shares.shone; ++done)
   {
-    if (endless && done >= EvenFrom)
-    {
-      return std::exchange(shares.onTheWay, 0.0);
-    }
     const Monitor ofPass = OfPart(monitor, 1.0 - std::exp2(-done), 1.0 - std::exp2(-done - 1));
     const double wanted = std::exchange(shares.onTheWay, 0.0);
     pass = pass.Next();
@@ -36,6 +33,6 @@ double FollowInPasses(const Grid& grid, const std::array<bool, 3>& periodic, Lam
     }
     follow(pass, wanted / found, ofPass);
   }
-  return 0.0;
+  return endless ? std::exchange(shares.onTheWay, 0.0) : 0.0;
 }
 }
