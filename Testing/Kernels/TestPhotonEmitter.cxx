@@ -1,3 +1,5 @@
+#include "RectangleSeen.h"
+
 #include "Device/Errors.h"
 #include "Numerics/Constants.h"
 #include "Photons/Emission/PhotonEmitter.h"
@@ -360,6 +362,126 @@ TEST(PhotonEmitter, ARectangleFarAwayShinesByTheCosine)
     EXPECT_NEAR(emitted.power[0] / (10.0 / Pi * std::cos(tilt) * 6.0 / (far * far)), 1.0, 0.02) << tilt;
   }
   EXPECT_EQ(Emit(Lamp(LightType::Rectangle, { 0.0, 2.5, 20.0 }, { 0.0, 0.0, 1.0 }), 100).photons.size(), 0u);
+}
+
+namespace
+{
+struct PlacedRectangle
+{
+  std::array<double, 3> position, direction;
+  std::array<double, 2> size;
+};
+
+/// Of an edge given in lengths of the box: in front of it, beside it, askew, with its border over it, on a face,
+/// through the box.
+std::vector<PlacedRectangle> LargeRectangles(double edges)
+{
+  const double size = 6.0 * edges;
+  return { { { 0.0, 2.5, 9.0 }, { 0.0, 0.0, -1.0 }, { size, size } },
+    { { 0.0, 2.5, 60.0 }, { 0.0, 0.0, -1.0 }, { size, size } },
+    { { 1.5, 3.0, 4.0 }, { -1.0, 0.0, 0.0 }, { size, size } },
+    { { -3.0, 0.0, 10.0 }, { 0.4, 0.3, -1.0 }, { size, 0.7 * size } },
+    { { 0.2 + 0.5 * size, 2.5, 9.0 }, { 0.0, 0.0, -1.0 }, { size, size } },
+    { { 0.0, 2.5, 8.0 }, { 0.0, 0.0, -1.0 }, { size, size } },
+    { { 0.0, 2.5, 8.0 + 1e-7 }, { 0.0, 0.0, -1.0 }, { size, size } },
+    { { 0.1, 2.0, 5.0 }, { 0.3, -0.5, 0.7 }, { size, size } },
+    { { 0.1, 2.0, 5.0 }, { 0.0, 1.0, 0.0 }, { size, size } } };
+}
+
+Light LampOf(const PlacedRectangle& rectangle)
+{
+  Light lamp = Lamp(LightType::Rectangle, rectangle.position, rectangle.direction);
+  lamp.size = rectangle.size;
+  return lamp;
+}
+
+/// Power over what enters, less 1, and the standard error that photons of independent samples would have.
+std::pair<double, double> ErrorOf(const EmittedPhotons& emitted, double exact)
+{
+  double squares = 0.0;
+  for (const Photon& photon : emitted.photons)
+  {
+    squares += std::pow(photon.power[0] / exact, 2.0);
+  }
+  return { emitted.power[0] / exact - 1.0, std::sqrt(squares) };
+}
+}
+
+TEST(PhotonEmitter, OfALargeRectangleEntersWhatItShinesOntoTheBox)
+{
+  for (const double edges : { 1.0, 10.0, 100.0, 1000.0, 1e5 })
+  {
+    for (const PlacedRectangle& rectangle : LargeRectangles(edges))
+    {
+      const Light lamp = LampOf(rectangle);
+      const double exact = lamp.power[0] * RectangleSeen(lamp).PartThatEnters(Box());
+      for (const Sampler sampler : { Sampler::Hammersley, Sampler::Random })
+      {
+        const EmittedPhotons emitted = Emit(lamp, 20000, sampler, 5);
+        const auto [error, deviation] = ErrorOf(emitted, exact);
+        const std::string name = std::to_string(edges) + " boxes, at " + std::to_string(lamp.position[0]) + ' ' +
+          std::to_string(lamp.position[2]) + ", sampler " + std::to_string(static_cast<int>(sampler));
+        EXPECT_NEAR(static_cast<double>(emitted.photons.size()), 20000.0, 600.0) << name;
+        EXPECT_LT(std::abs(error), std::min(3.0 * deviation, sampler == Sampler::Random ? 0.03 : 0.01)) << name;
+        EXPECT_LT(deviation, 0.02) << name;
+      }
+    }
+  }
+}
+
+TEST(PhotonEmitter, PhotonsOfALargeRectangleGoIntoTheBox)
+{
+  for (const PlacedRectangle& rectangle : LargeRectangles(1000.0))
+  {
+    const std::vector<Photon> photons = Emit(LampOf(rectangle), 2000).photons;
+    const auto comesFromIt = [&](const Photon& photon) {
+      glm::dvec3 from = Vector(photon.position) - Vector(rectangle.position);
+      return glm::dot(from, Vector(rectangle.direction)) >= -1e-6 &&
+        photon.direction[0] * rectangle.direction[0] + photon.direction[1] * rectangle.direction[1] +
+          photon.direction[2] * rectangle.direction[2] >
+        0.0;
+    };
+    EXPECT_TRUE(std::all_of(photons.begin(), photons.end(), comesFromIt));
+  }
+}
+
+/// Thin ones, of up to 200 lengths of the box, near to it and far away.
+TEST(PhotonEmitter, OfATubeEntersWhatItShinesOntoTheBox)
+{
+  for (const std::array<double, 2>& size : { std::array<double, 2>{ 1200.0, 0.5 }, { 0.05, 1200.0 }, { 12.0, 0.02 } })
+  {
+    for (const double height : { 8.02, 8.5, 11.0 })
+    {
+      const Light lamp = LampOf({ { 0.3, 2.5, height }, { 0.0, 0.0, -1.0 }, size });
+      const double exact = lamp.power[0] * RectangleSeen(lamp).PartThatEnters(Box());
+      const auto [error, deviation] = ErrorOf(Emit(lamp, 20000), exact);
+      EXPECT_LT(std::abs(error), 3.0 * deviation + 1e-3) << size[0] << " at " << height;
+      EXPECT_LT(deviation, 0.08) << size[0] << " at " << height;
+    }
+  }
+}
+
+TEST(PhotonEmitter, AnImportanceMapBiasesNoLargeRectangle)
+{
+  ImportanceMap map;
+  map.size = 4;
+  map.lights = { 0 };
+  for (int cell = 0; cell < 16; ++cell)
+  {
+    map.density.push_back(cell % 5 == 0 ? 2.5f : 0.5f);
+  }
+  Illumination light;
+  for (const PlacedRectangle& rectangle : LargeRectangles(1000.0))
+  {
+    light.lights = { LampOf(rectangle) };
+    EmissionSettings settings;
+    settings.photonCount = 20000;
+    settings.map = &map;
+    const double exact = 10.0 * RectangleSeen(light.lights[0]).PartThatEnters(Box());
+    const auto [error, deviation] = ErrorOf(EmitPhotons(Box(), light, settings), exact);
+    EXPECT_LT(std::abs(error), std::min(3.0 * deviation, 0.015)) << rectangle.position[2];
+    EXPECT_EQ(EmitPilots(Box(), light, 16)[0].light, 0);
+  }
 }
 
 TEST(PhotonEmitter, AnEvenSkyGivesItsRadianceTimesPiTimesTheSurface)

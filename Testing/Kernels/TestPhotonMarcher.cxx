@@ -1,6 +1,7 @@
 #include "DeviceTest.h"
 #include "MediumScene.h"
 #include "PhotonScene.h"
+#include "RectangleSeen.h"
 
 #include "Photons/Emission/PhotonEmitter.h"
 #include "Photons/Published/PublishedPhotons.h"
@@ -298,6 +299,36 @@ TEST_F(PhotonMarcherTest, ColourIsCarriedWhereItMatters)
   EXPECT_NEAR(at(light, 2) / at(light, 0),
     std::exp(-0.2 * 0.5 * 3) * (-std::expm1(-0.35) / 0.35) / (-std::expm1(-0.25) / 0.25), 1e-4);
   EXPECT_LT(BalanceError(light), 1e-6);
+}
+
+TEST_F(PhotonMarcherTest, ALargeRectangleGivesItsRadianceTimesItsSolidAngle)
+{
+  PhotonScene scene(4);
+  const Grid& grid = scene.medium.grid;
+  for (const double edge : { 20.0, 200.0, 2e5 })
+  {
+    for (const std::array<double, 3>& direction : { std::array<double, 3>{ 0.0, 0.0, -1.0 }, { 0.4, 0.3, -1.0 } })
+    {
+      Light lamp;
+      lamp.type = LightType::Rectangle;
+      lamp.position = { 0.0, 0.0, 1.9 };
+      lamp.direction = direction;
+      lamp.size = { edge, edge };
+      lamp.power = Times({ 1.0, 1.0, 1.0 }, Pi * edge * edge); // radiance 1
+      Illumination light;
+      light.lights = { lamp };
+      const PhotonLight found = scene.March(this->GetDevice(), EmitPhotons(grid, light, { 50000 }).photons);
+      double squares = 0.0;
+      for (std::size_t i = 0; i < grid.VoxelCount(); ++i)
+      {
+        const std::array<int, 3> voxel = grid.VoxelAt(i);
+        const glm::dvec3 low = Vector(grid.origin) + Vector(grid.spacing) * glm::dvec3(voxel[0], voxel[1], voxel[2]);
+        const double exact = RectangleSeen(lamp).Mean(low, Vector(grid.spacing), 2);
+        squares += std::pow(found.light.fluence[i * found.light.channels] / exact - 1.0, 2.0) / grid.VoxelCount();
+      }
+      EXPECT_LT(std::sqrt(squares), 0.02) << edge << ' ' << direction[0];
+    }
+  }
 }
 
 TEST_F(PhotonMarcherTest, MeanDirectionIsWhereTheLightGoes)

@@ -49,7 +49,8 @@ struct EmittedPhotons
 ///  - point: over the solid angle of the faces that the lamp sees, or all around a lamp in the volume; what a lamp on a
 ///    face, an edge or a corner shines outwards is not made (LampView)
 ///  - spot: over its cone or what the lamp sees, whichever is smaller; those outside the other one are not made
-///  - rectangle: from points of it over the faces that each sees, power by the cosine; in the volume over a half-space
+///  - rectangle: from points of it over the faces that each sees, power by the cosine; in the volume over a half-space;
+///    one that is large as seen from the volume over the faces, from each point over the rectangle's solid angle
 ///  - environment and sky: direction by radiance, solid angle and outline of the volume, then over that outline
 ///  - faces: over each face, directions by the cosine
 ///

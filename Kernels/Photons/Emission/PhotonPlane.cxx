@@ -169,8 +169,8 @@ glm::dvec3 PhotonPlane::At(double u, double v) const
   return this->Origin + this->Across * point.x + this->Along * point.y;
 }
 
-SphericalRectangle::SphericalRectangle(
-  const glm::dvec3& eye, const glm::dvec3& corner, const glm::dvec3& firstEdge, const glm::dvec3& secondEdge)
+SphericalRectangle::SphericalRectangle(const glm::dvec3& eye, const glm::dvec3& corner, const glm::dvec3& firstEdge,
+  const glm::dvec3& secondEdge, double smallBelow)
   : Eye(eye)
   , X(glm::normalize(firstEdge))
   , Y(glm::normalize(secondEdge))
@@ -196,7 +196,7 @@ SphericalRectangle::SphericalRectangle(
   this->B1 = n2.z;
   this->K = 2.0 * Pi - g2 - g3;
   this->Angle = g0 + g1 - this->K;
-  if (this->Angle < 1e-6) // a small difference of large angles
+  if (this->Angle < smallBelow) // a small difference of large angles
   {
     const glm::dvec3 middle(0.5 * (this->X0 + this->X1), 0.5 * (this->Y0 + this->Y1), this->Z0);
     const double distance = glm::length(middle);
@@ -224,6 +224,13 @@ glm::dvec3 SphericalRectangle::At(double u, double v) const
     y = h * h < 1.0 - 1e-12 ? h * d / std::sqrt(1.0 - h * h) : h > 0.0 ? this->Y1 : this->Y0;
   }
   return this->Eye + this->X * x + this->Y * y + this->Z * this->Z0;
+}
+
+double SphericalRectangle::SolidAngleBy(const glm::dvec3& point) const
+{
+  const double distance = glm::length(point - this->Eye);
+  return this->Small ? (this->X1 - this->X0) * (this->Y1 - this->Y0) * -this->Z0 / (distance * distance * distance)
+                     : this->Angle;
 }
 
 VisibleFaces::VisibleFaces(const Grid& grid, const glm::dvec3& eye)
@@ -260,7 +267,7 @@ LampView::LampView(const Grid& grid, const glm::dvec3& lamp)
   bool outside = false;
   for (int axis = 0; axis < 3; ++axis)
   {
-    const double slack = 1e-6 * (high[axis] - low[axis]);
+    const double slack = Slack * (high[axis] - low[axis]);
     const bool atLow = std::abs(lamp[axis] - low[axis]) <= slack;
     const bool atHigh = std::abs(lamp[axis] - high[axis]) <= slack;
     outside = outside || lamp[axis] < low[axis] - slack || lamp[axis] > high[axis] + slack;

@@ -51,18 +51,23 @@ class SphericalRectangle
 public:
   /// @param corner                of the rectangle
   /// @param firstEdge,secondEdge  from the corner, at a right angle
-  SphericalRectangle(
-    const glm::dvec3& eye, const glm::dvec3& corner, const glm::dvec3& firstEdge, const glm::dvec3& secondEdge);
+  /// @param smallBelow            solid angle below which the square is mapped onto it in proportion to area
+  SphericalRectangle(const glm::dvec3& eye, const glm::dvec3& corner, const glm::dvec3& firstEdge,
+    const glm::dvec3& secondEdge, double smallBelow = 1e-6);
 
   double SolidAngle() const { return this->Angle; }
   glm::dvec3 At(double u, double v) const; ///< a point on the rectangle
+
+  /// What a point of At counts for: the mean over the square is the solid angle. It is the same for all points, but of
+  /// a rectangle that At maps in proportion to area.
+  double SolidAngleBy(const glm::dvec3& point) const;
 
 private:
   glm::dvec3 Eye, X, Y, Z; ///< axes of the rectangle, Z towards the eye
   double X0, X1, Y0, Y1, Z0;
   double B0, B1, K;
   double Angle = 0.0;
-  bool Small = false; ///< so far away that all of it is seen under the same angle
+  bool Small = false; ///< so far away that all of it is seen under the same angle, or nearly from the side
 };
 
 /// What is seen of the volume from a point outside of it: up to three of its faces.
@@ -85,6 +90,8 @@ private:
 class LampView
 {
 public:
+  static constexpr double Slack = 1e-6;
+
   LampView(const Grid& grid, const glm::dvec3& lamp);
 
   const glm::dvec3& Lamp() const { return this->Place; } ///< where it is; put onto the face that it is on

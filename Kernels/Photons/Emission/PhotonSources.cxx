@@ -4,6 +4,7 @@
 #include "Numerics/Vectors.h"
 #include "Photons/Emission/CumulativeTable.h"
 #include "Photons/Emission/PhotonPlane.h"
+#include "Photons/Emission/SampleSequence.h"
 #include "Photons/Importance/ImportanceMap.h"
 #include "Photons/Marching/PhotonPacking.h"
 
@@ -12,7 +13,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
+#include <utility>
 
 namespace tyndall
 {
@@ -74,25 +77,6 @@ PhotonSource Spot(const Grid& grid, const Light& light)
           } };
 }
 
-PhotonSource Rectangle(const Grid& grid, const Light& light)
-{
-  const glm::dvec3 middle = Vector(light.position);
-  const glm::dvec3 normal = Vector(DirectionOf(light));
-  const auto edges = RectangleEdges(light);
-  return { 0, [=](const PhotonSample& u) -> std::optional<Shot> {
-            const LampView view(grid, middle + Vector(edges[0]) * (u[2] - 0.5) + Vector(edges[1]) * (u[3] - 0.5));
-            const glm::dvec3 direction =
-              view.Outside() ? view.Direction(u[0], u[1]) : Around(normal, 1.0 - std::sqrt(1.0 - u[0]), u[1]);
-            const double cosine = glm::dot(direction, normal);
-            if (cosine <= 0.0 || !view.Enters(direction))
-            {
-              return {};
-            }
-            return Shot{ view.Lamp(), direction,
-              view.Outside() ? Times(light.power, cosine * view.SolidAngle() / Pi) : light.power };
-          } };
-}
-
 /// A face of the volume, and a point of it.
 struct FaceOfGrid
 {
@@ -116,6 +100,222 @@ struct FaceOfGrid
     return point;
   }
 };
+
+/// From places of the rectangle over the faces that each sees.
+PhotonSource RectangleByPlaces(const Grid& grid, const Light& light)
+{
+  const glm::dvec3 middle = Vector(light.position);
+  const glm::dvec3 normal = Vector(DirectionOf(light));
+  const auto edges = RectangleEdges(light);
+  return { 0, [=](const PhotonSample& u) -> std::optional<Shot> {
+            const LampView view(grid, middle + Vector(edges[0]) * (u[2] - 0.5) + Vector(edges[1]) * (u[3] - 0.5));
+            const glm::dvec3 direction =
+              view.Outside() ? view.Direction(u[0], u[1]) : Around(normal, 1.0 - std::sqrt(1.0 - u[0]), u[1]);
+            const double cosine = glm::dot(direction, normal);
+            if (cosine <= 0.0 || !view.Enters(direction))
+            {
+              return {};
+            }
+            return Shot{ view.Lamp(), direction,
+              view.Outside() ? Times(light.power, cosine * view.SolidAngle() / Pi) : light.power };
+          } };
+}
+
+/// Photons of a rectangle that is large as seen from the volume, where most places light next to nothing: from points
+/// of the faces, over the solid angle that the rectangle has there, and from what of it is in the volume.
+class RectangleByFaces
+{
+public:
+  RectangleByFaces(const Grid& grid, const Light& light)
+    : TheGrid(grid)
+    , Power(light.power)
+    , Middle(Vector(light.position))
+    , Normal(Vector(DirectionOf(light)))
+    , First(Vector(RectangleEdges(light)[0]))
+    , Second(Vector(RectangleEdges(light)[1]))
+    , Area(light.size[0] * light.size[1])
+  {
+    const std::vector<glm::dvec2> within = this->InVolume();
+    if (within.size() > 2)
+    {
+      this->Within.emplace(within);
+    }
+    this->SetShares();
+  }
+
+  std::optional<Shot> Shoot(const PhotonSample& u) const
+  {
+    if (this->Shares[Parts] == 0.0)
+    {
+      return {};
+    }
+    double along;
+    const int part = FindStep(this->Shares.data(), Parts, u[0], along);
+    const double share = (this->Shares[part + 1] - this->Shares[part]) / this->Shares[Parts];
+    std::optional<Shot> shot = this->ShootFrom(part, { along, u[1], u[2], u[3] });
+    if (shot)
+    {
+      shot->power = Times(shot->power, 1.0 / share);
+    }
+    return shot;
+  }
+
+private:
+  static constexpr int Parts = 7; ///< faces, and what of the rectangle is in the volume
+
+  std::optional<Shot> ShootFrom(int part, const PhotonSample& u) const
+  {
+    return part < 6 ? this->ThroughFace(part, u) : this->FromWithin(u);
+  }
+
+  std::optional<Shot> ThroughFace(int face, const PhotonSample& u) const
+  {
+    const FaceOfGrid at = { this->TheGrid, face / 2, face % 2 == 1 };
+    const glm::dvec3 point = at.At(u[0], u[1]);
+    if (glm::dot(point - this->Middle, this->Normal) <= 0.0)
+    {
+      return {};
+    }
+    constexpr double inaccurateBelow = 1e-4;
+    const SphericalRectangle seen(
+      point, this->Middle - 0.5 * (this->First + this->Second), this->First, this->Second, inaccurateBelow);
+    const glm::dvec3 from = seen.At(u[2], u[3]);
+    const glm::dvec3 direction = glm::normalize(point - from);
+    const double cosine = at.up ? -direction[at.axis] : direction[at.axis];
+    if (!(cosine > 0.0) || (this->Within && !LampView(this->TheGrid, from).Outside()))
+    {
+      return {};
+    }
+    return Shot{ point, direction,
+      Times(this->Power, cosine * seen.SolidAngleBy(from) * at.Area() / (Pi * this->Area)) };
+  }
+
+  std::optional<Shot> FromWithin(const PhotonSample& u) const
+  {
+    const glm::dvec2 place = this->Within ? this->Within->At(u[0], u[1]) : glm::dvec2(0.0);
+    const LampView view(this->TheGrid, this->Middle + this->First * place.x + this->Second * place.y);
+    const glm::dvec3 direction = Around(this->Normal, 1.0 - std::sqrt(1.0 - u[2]), u[3]);
+    if (!this->Within || view.Outside() || !view.Enters(direction))
+    {
+      return {};
+    }
+    return Shot{ view.Lamp(), direction, Times(this->Power, this->Within->Area()) };
+  }
+
+  /// Corners of what of the rectangle LampView takes as in the volume, in parts of its edges from its middle.
+  std::vector<glm::dvec2> InVolume() const
+  {
+    std::vector<glm::dvec2> corners = { { -0.5, -0.5 }, { 0.5, -0.5 }, { 0.5, 0.5 }, { -0.5, 0.5 } };
+    for (int face = 0; face < 6; ++face)
+    {
+      const int axis = face / 2;
+      const double low = this->TheGrid.origin[axis], length = this->TheGrid.Length(axis);
+      const double sign = face % 2 == 1 ? -1.0 : 1.0, border = face % 2 == 1 ? low + length : low;
+      const auto depth = [&](const glm::dvec2& at) {
+        return sign * (this->Middle[axis] - border + this->First[axis] * at.x + this->Second[axis] * at.y) +
+          LampView::Slack * length;
+      };
+      const std::vector<glm::dvec2> all = std::exchange(corners, {});
+      for (std::size_t i = 0; i < all.size(); ++i)
+      {
+        const glm::dvec2 &a = all[i], &b = all[(i + 1) % all.size()];
+        if (depth(a) >= 0.0)
+        {
+          corners.push_back(a);
+        }
+        if (depth(a) * depth(b) < 0.0)
+        {
+          corners.push_back(a + (b - a) * (depth(a) / (depth(a) - depth(b))));
+        }
+      }
+    }
+    return corners;
+  }
+
+  /// By the root of the mean square of powers: it makes that of all least.
+  void SetShares()
+  {
+    constexpr int samples = 512;
+    constexpr double least = 0.01; // what may shine in, but was not found to
+    const SampleSequence sequence(Sampler::Halton, samples);
+    std::array<double, Parts> shares = {};
+    double sum = 0.0;
+    for (int part = 0; part < Parts; ++part)
+    {
+      double squares = 0.0;
+      for (int i = 0; i < samples; ++i)
+      {
+        const std::optional<Shot> shot = this->ShootFrom(part, sequence[i]);
+        squares += shot ? std::pow(Sum(shot->power) / Sum(this->Power), 2.0) / samples : 0.0;
+      }
+      shares[part] = std::sqrt(squares);
+      sum += shares[part];
+    }
+    for (int part = 0; part < Parts; ++part)
+    {
+      const bool mayShine = part < 6 ? this->SeesFace(part) : this->Within.has_value();
+      this->Shares[part + 1] = this->Shares[part] + (mayShine ? std::max(shares[part], least * sum) : 0.0);
+    }
+  }
+
+  /// Whether a face reaches to before the rectangle, and the rectangle to before the face.
+  bool SeesFace(int face) const
+  {
+    const FaceOfGrid at = { this->TheGrid, face / 2, face % 2 == 1 };
+    bool lit = false, seen = false;
+    for (int corner = 0; corner < 4; ++corner)
+    {
+      const double u = corner % 2, v = corner / 2;
+      lit = lit || glm::dot(at.At(u, v) - this->Middle, this->Normal) > 0.0;
+      const glm::dvec3 from = this->Middle + this->First * (u - 0.5) + this->Second * (v - 0.5) - at.At(0.0, 0.0);
+      seen = seen || (at.up ? from[at.axis] : -from[at.axis]) > 0.0;
+    }
+    return lit && seen;
+  }
+
+  Grid TheGrid;
+  Rgb Power;
+  glm::dvec3 Middle, Normal, First, Second;
+  double Area;
+  std::optional<ConvexPolygon> Within;       ///< what of it is in the volume, in parts of its edges
+  std::array<double, Parts + 1> Shares = {}; ///< cumulative, with a zero before
+};
+
+/// Mean square of the powers of photons over their mean squared: 1 where all reach the volume with the same power,
+/// infinite where none does.
+double Unevenness(const Grid& grid, const PhotonSource& source, const Rgb& power)
+{
+  constexpr int samples = 1024;
+  const SampleSequence sequence(Sampler::Halton, samples);
+  double sum = 0.0, squares = 0.0;
+  for (int i = 0; i < samples; ++i)
+  {
+    const std::optional<Shot> shot = source.shoot(sequence[i]);
+    const double weight = shot && Land(grid, *shot) ? Sum(shot->power) / Sum(power) : 0.0;
+    sum += weight;
+    squares += weight * weight;
+  }
+  return sum > 0.0 ? samples * squares / (sum * sum) : std::numeric_limits<double>::infinity();
+}
+
+PhotonSource Rectangle(const Grid& grid, const Light& light)
+{
+  constexpr double worthIt = 4.0;
+  PhotonSource byPlaces = RectangleByPlaces(grid, light);
+  const double shortest = std::min({ grid.Length(0), grid.Length(1), grid.Length(2) });
+  if (std::max(light.size[0], light.size[1]) <= shortest || Sum(light.power) == 0.0)
+  {
+    return byPlaces;
+  }
+  const double unevenness = Unevenness(grid, byPlaces, light.power);
+  if (unevenness <= worthIt)
+  {
+    return byPlaces;
+  }
+  const auto faces = std::make_shared<RectangleByFaces>(grid, light);
+  const PhotonSource byFaces = { 0, [faces](const PhotonSample& u) { return faces->Shoot(u); } };
+  return worthIt * Unevenness(grid, byFaces, light.power) < unevenness ? byFaces : byPlaces;
+}
 
 PhotonSource DiffuseFace(const Grid& grid, int face, const Rgb& radiance)
 {
