@@ -15,6 +15,7 @@
 #include "vtkDataObject.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkDemandDrivenPipeline.h"
+#include "vtkExecutive.h"
 #include "vtkFieldData.h"
 #include "vtkFloatArray.h"
 #include "vtkIdList.h"
@@ -22,6 +23,7 @@
 #include "vtkInformation.h"
 #include "vtkInformationDoubleKey.h"
 #include "vtkInformationDoubleVectorKey.h"
+#include "vtkInformationExecutivePortKey.h"
 #include "vtkInformationIntegerKey.h"
 #include "vtkInformationStringKey.h"
 #include "vtkInformationStringVectorKey.h"
@@ -951,6 +953,26 @@ void AddAveraged(vtkAlgorithm* filter, std::vector<std::string>& settings)
   }
 }
 
+namespace
+{
+/// The direction matrix of an image before there is any. VTK's filters pass on in what they tell where an image lies and
+/// its spacing, but not its directions, which only the image itself then has: those of the filter before hold, but
+/// where an image is made anew or an imaging filter (vtkImageAlgorithm) loses them.
+/// @return null: the unit matrix
+const double* DirectionTold(vtkInformation* input)
+{
+  while (input && !input->Has(vtkDataObject::DIRECTION()))
+  {
+    vtkExecutive* const producer = vtkExecutive::PRODUCER()->GetExecutive(input);
+    vtkAlgorithm* const filter = producer ? producer->GetAlgorithm() : nullptr;
+    const bool passes = filter && filter->GetNumberOfInputPorts() > 0 && filter->GetNumberOfInputConnections(0) > 0 &&
+      !filter->IsA("vtkImageAlgorithm") && !filter->IsA("vtkResampleToImage");
+    input = passes ? producer->GetInputInformation(0, 0) : nullptr;
+  }
+  return input ? input->Get(vtkDataObject::DIRECTION()) : nullptr;
+}
+}
+
 void TellVoxels(vtkAlgorithm* filter, int port, vtkInformationVector* inputs, vtkInformationVector* outputs)
 {
   using Pipeline = vtkStreamingDemandDrivenPipeline;
@@ -967,7 +989,8 @@ void TellVoxels(vtkAlgorithm* filter, int port, vtkInformationVector* inputs, vt
   }
   const double* const spacing = input->Get(vtkDataObject::SPACING());
   const double* const origin = input->Get(vtkDataObject::ORIGIN());
-  const auto ways = spacing ? WaysOf(spacing, input->Get(vtkDataObject::DIRECTION())) : std::nullopt;
+  const double* const direction = DirectionTold(input);
+  const auto ways = spacing ? WaysOf(spacing, direction) : std::nullopt;
   std::array<int, 6> extent = ways ? ways->Extent(told.data()) : told;
   const bool around = isKnown && told[0] <= told[1] && MayBeAroundPoints(filter, port, input);
   for (int axis = 0; axis < 3 && around; ++axis)
@@ -991,10 +1014,9 @@ void TellVoxels(vtkAlgorithm* filter, int port, vtkInformationVector* inputs, vt
       output->Set(vtkDataObject::SPACING(), ways->spacing.data(), 3);
       output->Set(vtkDataObject::DIRECTION(), aligned, 9);
     }
-    else if (around && spacing && origin && input->Has(vtkDataObject::DIRECTION()))
+    else if (around && spacing && origin && direction)
     {
-      output->Set(
-        vtkDataObject::ORIGIN(), CornerBefore(origin, spacing, input->Get(vtkDataObject::DIRECTION())).data(), 3);
+      output->Set(vtkDataObject::ORIGIN(), CornerBefore(origin, spacing, direction).data(), 3);
     }
   }
 }

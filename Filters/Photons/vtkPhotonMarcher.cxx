@@ -29,6 +29,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <utility>
@@ -270,17 +271,9 @@ int vtkPhotonMarcher::RequestUpdateExtent(
 {
   this->Kept->ForgetIfRan(this, { MediumPort, OctreePort });
   const bool asPiece = tyndall::EachAsksForItsPiece(request, outputs) && this->WantsBlocks(request, inputs, outputs);
-  for (int port = 0; port < InputPortCount; ++port)
-  {
-    if (asPiece) // the pipeline has asked it for what the output is asked for
-    {
-      tyndall::AskTogether(request, outputs, inputs[port]);
-    }
-    else
-    {
-      tyndall::AskForAll(request, inputs[port], outputs);
-    }
-  }
+  std::vector<int> pieces(asPiece ? InputPortCount : 0);
+  std::iota(pieces.begin(), pieces.end(), 0);
+  tyndall::AskForAllBut(-1, request, inputs, InputPortCount, outputs, pieces);
   return 1;
 }
 

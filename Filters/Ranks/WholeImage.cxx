@@ -3,12 +3,15 @@
 #include "Ranks/PieceLayout.h"
 #include "Ranks/Ranks.h"
 
+#include "vtkAlgorithm.h"
 #include "vtkCellData.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkExecutive.h"
 #include "vtkExtentTranslator.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
+#include "vtkInformationDoubleVectorKey.h"
+#include "vtkInformationExecutivePortKey.h"
 #include "vtkInformationIntegerKey.h"
 #include "vtkInformationIntegerVectorKey.h"
 #include "vtkInformationVector.h"
@@ -20,6 +23,8 @@
 
 #include <algorithm>
 #include <functional>
+#include <memory>
+#include <vector>
 
 namespace tyndall
 {
@@ -152,10 +157,114 @@ Part PartAskedFor(vtkInformation* information, const Extent& image)
   part.piece = AskedPieceOf(information, all ? image : update);
   return part;
 }
+
+/// What is asked for, which goes where the extent is told anew: whoever asked for all asks for all of the other extent.
+class Asked
+{
+public:
+  explicit Asked(vtkInformation* information)
+    : Information(information)
+    , All(!information->Has(Pipeline::UPDATE_EXTENT()) || AsksForAll(information))
+  {
+    NoteExtentTold(information); // who is not told will ask for this one again
+    for (vtkInformationKey* key : Keys())
+    {
+      this->Before->CopyEntry(information, key);
+    }
+  }
+
+  void Restore() const
+  {
+    vtkInformation* const now = this->Information;
+    const int* const whole = now->Get(Pipeline::WHOLE_EXTENT());
+    for (vtkInformationKey* key : { Keys()[0], Keys()[1], Keys()[2] })
+    {
+      now->CopyEntry(this->Before, key);
+    }
+    const int* const asked = this->Before->Get(Pipeline::UPDATE_EXTENT());
+    if (whole && asked)
+    {
+      Extent extent;
+      std::copy_n(!this->All && Covers(whole, asked) ? asked : whole, 6, extent.begin());
+      now->Set(Pipeline::UPDATE_EXTENT(), extent.data(), 6);
+    }
+  }
+
+private:
+  static std::array<vtkInformationKey*, 4> Keys()
+  {
+    return { Pipeline::UPDATE_PIECE_NUMBER(), Pipeline::UPDATE_NUMBER_OF_PIECES(),
+      Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), Pipeline::UPDATE_EXTENT() };
+  }
+
+  vtkInformation* Information;
+  vtkNew<vtkInformation> Before;
+  bool All;
+};
+
+/// Has inputs tell of the extent of the time that is asked for. A source of a series hears of it late, and then tells of
+/// that time's extent, which VTK does not hand on to the filters behind it.
+/// @return whether the extent of an input depends on time
+bool HearOfTime(vtkInformationVector* inputs)
+{
+  bool any = false;
+  for (int i = 0; i < inputs->GetNumberOfInformationObjects(); ++i)
+  {
+    vtkInformation* const input = inputs->GetInformationObject(i);
+    vtkExecutive* const producer = vtkExecutive::PRODUCER()->GetExecutive(input);
+    if (producer && input->Has(Pipeline::TIME_DEPENDENT_INFORMATION()))
+    {
+      const Asked asked(input);
+      producer->UpdateInformation();
+      asked.Restore();
+      any = true;
+    }
+  }
+  return any;
+}
+
+/// Tells of outputs as at first, when the pipeline had handed on what the first input tells.
+void TellAgain(vtkExecutive* own, vtkInformationVector* outputs)
+{
+  vtkInformation* const first = own->GetInputInformation()[0]->GetInformationObject(0);
+  for (int i = 0; i < outputs->GetNumberOfInformationObjects(); ++i)
+  {
+    vtkInformation* const output = outputs->GetInformationObject(i);
+    output->CopyEntry(first, Pipeline::WHOLE_EXTENT());
+    output->CopyEntry(first, vtkDataObject::ORIGIN());
+    output->CopyEntry(first, vtkDataObject::SPACING());
+  }
+  vtkNew<vtkInformation> request;
+  request->Set(Pipeline::REQUEST_INFORMATION());
+  own->GetAlgorithm()->ProcessRequest(request, own->GetInputInformation(), outputs);
+}
+
+/// In RequestUpdateExtent: inputs and outputs have the extent of the time that is asked for. Filters behind the outputs
+/// do not hear of it, and may ask for former extents, outside the one there is.
+void FollowTime(vtkInformationVector* inputs, vtkInformationVector* outputs)
+{
+  vtkExecutive* const own = vtkExecutive::PRODUCER()->GetExecutive(outputs->GetInformationObject(0));
+  if (!HearOfTime(inputs) || !own || inputs != own->GetInputInformation()[0])
+  {
+    return;
+  }
+  std::vector<std::unique_ptr<Asked>> asked;
+  for (int i = 0; i < outputs->GetNumberOfInformationObjects(); ++i)
+  {
+    asked.push_back(std::make_unique<Asked>(outputs->GetInformationObject(i)));
+  }
+  TellAgain(own, outputs);
+  for (int i = 0; i < outputs->GetNumberOfInformationObjects(); ++i)
+  {
+    asked[static_cast<std::size_t>(i)]->Restore();
+    outputs->GetInformationObject(i)->Set(Pipeline::UNRESTRICTED_UPDATE_EXTENT(), 1);
+  }
+}
 }
 
 void AskForAll(vtkInformation* request, vtkInformationVector* inputs, vtkInformationVector* outputs)
 {
+  FollowTime(inputs, outputs);
   for (int i = 0; i < inputs->GetNumberOfInformationObjects(); ++i)
   {
     vtkInformation* information = inputs->GetInformationObject(i);
@@ -193,6 +302,7 @@ void AskForAllBut(int piece, vtkInformation* request, vtkInformationVector** inp
     const bool isBeside = std::find(besides.begin(), besides.end(), port) != besides.end();
     if (port == piece || isBeside) // the pipeline has asked it for what the output is asked for
     {
+      FollowTime(inputs[port], outputs);
       AskTogether(request, outputs, inputs[port]);
     }
     else

@@ -6,13 +6,16 @@
 
 #include "vtkDiscreteOrdinates.h"
 #include "vtkFieldData.h"
+#include "vtkInformation.h"
 #include "vtkLatticeBoltzmannLighting.h"
 #include "vtkLightPropagationMaps.h"
 #include "vtkLPMCollect.h"
 #include "vtkLPMPropagate.h"
 #include "vtkMatrix3x3.h"
 #include "vtkMediumRayCaster.h"
+#include "vtkObjectFactory.h"
 #include "vtkParticipatingMedium.h"
+#include "vtkPassInputTypeAlgorithm.h"
 #include "vtkPhotonEmitter.h"
 #include "vtkPhotonImportance.h"
 #include "vtkPhotonMarcher.h"
@@ -20,6 +23,7 @@
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkRefractionOctree.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
 #include <array>
@@ -495,6 +499,49 @@ void OtherImagesAreTurned(test::Claims& claims)
   LiesThere(claims, steps[1], steps[0], Rotated, "light of one step");
 }
 
+/// As most filters of VTK do, this hands on the matrix in the image alone, not in what it tells of the image.
+class Through : public vtkPassInputTypeAlgorithm
+{
+public:
+  static Through* New();
+  vtkTypeMacro(Through, vtkPassInputTypeAlgorithm);
+
+protected:
+  int RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs) override
+  {
+    vtkDataObject::GetData(outputs, 0)->ShallowCopy(vtkDataObject::GetData(inputs[0], 0));
+    return 1;
+  }
+};
+vtkStandardNewMacro(Through);
+
+/// Pieces over ranks and writers are asked for by what is told beforehand.
+void ExtentsAreToldBehindOtherFilters(test::Claims& claims)
+{
+  using Pipeline = vtkStreamingDemandDrivenPipeline;
+  const Turn turns[] = { { "axes exchanged", { 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0 }, {} },
+    { "two axes down", { -1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, -1.0 }, {} } };
+  for (const Turn& turn : turns)
+  {
+    vtkNew<Through> through, again;
+    through->SetInputDataObject(Fog(turn));
+    again->SetInputConnection(through->GetOutputPort());
+    vtkNew<vtkLightPropagationMaps> maps;
+    maps->SetInputConnection(again->GetOutputPort());
+    maps->SetSkyColor(1.0, 1.0, 1.0);
+    test::Errors errors(maps);
+    maps->UpdateInformation();
+    std::array<int, 6> told, made;
+    maps->GetOutputInformation(0)->Get(Pipeline::WHOLE_EXTENT(), told.data());
+    maps->Update();
+    maps->GetOutput()->GetExtent(made.data());
+    claims.That(errors.None() && told == made && maps->GetOutput()->GetNumberOfCells() == 120,
+      std::string("the extent is told as it will be, ") + turn.name);
+    maps->UpdatePiece(1, 2, 0);
+    claims.That(errors.None() && maps->GetOutput()->GetNumberOfCells() == 60, std::string("half of it, ") + turn.name);
+  }
+}
+
 void OthersAreRefused(test::Claims& claims)
 {
   vtkNew<vtkLightPropagationMaps> maps;
@@ -532,6 +579,7 @@ int TestTurnedImages(int, char*[])
   PicturesFollow(claims);
   AnotherMatrixIsSeen(claims);
   OtherImagesAreTurned(claims);
+  ExtentsAreToldBehindOtherFilters(claims);
   OthersAreRefused(claims);
   return claims.Result();
 }

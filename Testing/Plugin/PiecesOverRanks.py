@@ -12,6 +12,8 @@ from pieces_of_ranks import Runs
 runs = Runs("PiecesOverRanks")
 run, whole = runs.run, runs.whole
 from_files = ["tetrahedra", "adaptive", "pvti"]
+from_turned = ["turned", "turned_down"]
+from_series = ["series_%s_%d" % (name, time) for name in ("whole", "blocks", "lattice") for time in range(3)]
 cut = ["even", "ghosts", "uneven", "alone"]
 
 
@@ -21,9 +23,13 @@ for ranks in (int(count) for count in sys.argv[1:]):
     cases += ["no_file"] if ranks == 3 else []
     code, said = run(ranks, *cases, *more)
     assert code == 0 and said.count("is done") == ranks, said
+    if ranks != 4:
+        code, told = run(ranks, "turned", "series")
+        assert code == 0 and told.count("is done") == ranks and "ERR" not in told, told
+        cases += from_turned + from_series
     for case in cases:
         light, balance = whole(ranks, case, "light")
-        expected, wanted = whole(1, case if case in from_files else "even", "light")
+        expected, wanted = whole(1, case if case in from_files + from_turned + from_series else "even", "light")
         assert light.shape == expected.shape, (ranks, case, light.shape)
         error = abs(light - expected).max() / abs(expected).max()
         print("%d ranks, %s: fluence differs by %.1e" % (ranks, case, error), flush=True)

@@ -123,6 +123,53 @@ def pvti():
     keep("pvti", solved(XMLPartitionedImageDataReader(FileName=[path]), ["POINTS", "RTData"]))
 
 
+def turned():
+    """Right angles turn an image, of which its reader tells no directions before it has read it."""
+    for case, matrix in (("turned", [0, 0, 1, 1, 0, 0, 0, 1, 0]), ("turned_down", [-1, 0, 0, 0, 1, 0, 0, 0, -1])):
+        path = os.path.join(folder, "%s%d.vti" % (case, rank))
+        image = piece_of([0, 12, 0, 5, 0, 8])
+        image.SetDirectionMatrix(matrix)
+        writer = vtkXMLImageDataWriter()
+        writer.SetFileName(path)
+        writer.SetInputData(image)
+        writer.Write()
+        light = solved(XMLImageDataReader(FileName=[path]), ["CELLS", "density"], Decomposition="Whole on each rank")
+        keep(case, light)
+        if ranks == 1:  # a writer asks for what was told before
+            SaveData(path, proxy=light)
+            found = XMLImageDataReader(FileName=[path])
+            found.UpdatePipeline()
+            bounds = [proxy.GetClientSideObject().GetOutputDataObject(0).GetBounds() for proxy in (light, found)]
+            assert bounds[0] == bounds[1], bounds
+
+
+BOXES = [[2, 8, 1, 5, 5, 10], [-5, 6, -6, -3, -2, 5], [1, 5, 0, 9, 4, 8]]
+
+
+def series():
+    """Files of which each has another box, through several filters; time and again, and where the reader is asked, too."""
+    files = []
+    for box in BOXES:
+        files.append(os.path.join(folder, "box%d_%d.vdb" % (ranks, len(files))))
+        SaveData(files[-1], proxy=Wavelet(WholeExtent=box))
+    module.GetGlobalController().Barrier()
+    reader = VDBReader(FileName=files)
+    medium = ParticipatingMedium(Input=reader, DensityArray=["CELLS", "RTData"], ExtinctionScale=0.2, MinimumDensity=0, MaximumDensity=277)
+    whole, blocks = ({"Decomposition": how} for how in ("Whole on each rank", "Blocks"))
+    lights = {"whole": LightPropagationMaps(Input=medium, SkyColor=[1, 1, 1], DirectionsPerFace=4, **whole),
+              "blocks": LightPropagationMaps(Input=medium, SkyColor=[1, 1, 1], DirectionsPerFace=4, **(blocks if ranks > 1 else whole)),
+              "lattice": LatticeBoltzmannLighting(Input=medium, SkyColor=[1, 1, 1])}
+    for time, first in ((1, False), (0, False), (2, False), (1, False), (0, True), (2, True), (1, False), (0, False)):
+        if first:
+            reader.UpdatePipeline(time)
+        for name, light in lights.items():
+            light.UpdatePipeline(time)
+            keep("series_%s_%d" % (name, time), light)
+        read = reader.GetClientSideObject().GetOutputDataObject(0).GetExtent()
+        last = [bound + 1 for bound in BOXES[time]]  # of cells around the points
+        assert all(BOXES[time][a] <= read[a] and read[a + 1] <= last[a + 1] for a in (0, 2, 4)), (rank, time, read)
+
+
 def own_pieces(case, pieces, solve=solved):
     keep(case, solve(source_of(pieces[rank]), ["CELLS", "density"]))
 
