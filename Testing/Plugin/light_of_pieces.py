@@ -159,7 +159,7 @@ def series():
     lights = {"whole": LightPropagationMaps(Input=medium, SkyColor=[1, 1, 1], DirectionsPerFace=4, **whole),
               "blocks": LightPropagationMaps(Input=medium, SkyColor=[1, 1, 1], DirectionsPerFace=4, **(blocks if ranks > 1 else whole)),
               "lattice": LatticeBoltzmannLighting(Input=medium, SkyColor=[1, 1, 1])}
-    for time, first in ((1, False), (0, False), (2, False), (1, False), (0, True), (2, True), (1, False), (0, False)):
+    for time, first in ((1, False), (0, False), (2, True), (1, False)):
         if first:
             reader.UpdatePipeline(time)
         for name, light in lights.items():
