@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <utility>
 
@@ -352,8 +353,10 @@ void SourceIteration::ScatterByCells()
     this->LookAtDirect(parts.Path, 1.0 / parts.Layout.grid.VoxelVolume());
   }
   const bool guessed = this->Order == 0 && this->Warm.Begins();
+  Rgb onTheWay = this->OnTheWay;
+  std::transform(onTheWay.begin(), onTheWay.end(), this->Stranded.begin(), onTheWay.begin(), std::plus<>());
   const OrdersByCells::Powers powers =
-    this->Cells->ScatterOrder(this->Result.ledger, this->OnTheWay, guessed ? &this->Warm.Guess() : nullptr);
+    this->Cells->ScatterOrder(this->Result.ledger, onTheWay, guessed ? &this->Warm.Guess() : nullptr);
   this->Scattered = powers.scattered;
   this->Shining = Sum(powers.magnitude) > 0.0;
   this->Residual = 0.0;

@@ -28,7 +28,7 @@ public:
 
   /// From the path integrals of a sweep to fluence and the next source, with all orders to come.
   /// @param ledger  what is absorbed is counted here, and that the sweep let out too much
-  /// @param onTheWay  W, round periodic axes when the sweep ended
+  /// @param onTheWay  W, round periodic axes when the sweep ended, or that no sweep goes on with
   /// @param guess  of all orders to come, in the place of the cells' solution; null: that
   Powers ScatterOrder(EnergyLedger& ledger, const Rgb& onTheWay, const Buffer<float>* guess);
 
