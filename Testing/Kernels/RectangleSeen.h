@@ -109,7 +109,8 @@ struct RectangleSeen
   }
 
   /// All of it that is in the box, and through each face what shines there from beyond it.
-  double PartThatEnters(const tyndall::Grid& grid) const
+  /// @param n  points along a face's edges
+  double PartThatEnters(const tyndall::Grid& grid, int n = 100) const
   {
     const glm::dvec3 first = half.x * axes[0], second = half.y * axes[1];
     const Polygon all = { middle - first - second, middle + first - second, middle + first + second,
@@ -118,7 +119,6 @@ struct RectangleSeen
     double through = 0.0;
     for (int face = 0; face < 6; ++face)
     {
-      constexpr int n = 100;
       const int axis = face / 2, u = (axis + 1) % 3, v = (axis + 2) % 3;
       const double at = grid.origin[axis] + (face % 2 ? grid.Length(axis) : 0.0), sign = face % 2 ? 1.0 : -1.0;
       inside = Beyond(inside, axis, at, -sign);

@@ -305,7 +305,7 @@ TEST_F(PhotonMarcherTest, ALargeRectangleGivesItsRadianceTimesItsSolidAngle)
 {
   PhotonScene scene(4);
   const Grid& grid = scene.medium.grid;
-  for (const double edge : { 20.0, 200.0, 2e5 })
+  for (const double edge : { 200.0, 2e5 })
   {
     for (const std::array<double, 3>& direction : { std::array<double, 3>{ 0.0, 0.0, -1.0 }, { 0.4, 0.3, -1.0 } })
     {
