@@ -49,8 +49,9 @@ struct VoxelArrays
 VoxelArrays VoxelArraysOf(vtkInformation* port);
 
 /// Whether the voxels that a filter reads of an image are around its points (PropertyRange.h, tyndallPointDataMacro):
-/// it reads arrays of points, and none of cells.
-/// @param averaged  where it reads both: the names of those of points
+/// it reads arrays of points, and none of cells. An image at another port than the medium's, 0, that has the points of
+/// a medium of which the cells are read has voxels there, too.
+/// @param averaged  where arrays of points are read, and voxels are cells: the names of those
 bool AreAroundPoints(vtkAlgorithm* filter, int port, vtkImageData* image, std::vector<std::string>* averaged = nullptr);
 
 /// An image with a voxel around each point: arrays of points are its arrays of cells, those of cells are left out.
