@@ -750,6 +750,19 @@ vtkDataArray* BeforeTurning(vtkDataArray* turned, vtkImageData* image)
 }
 }
 
+vtkSmartPointer<vtkImageData> WithSpacingsAbove0(vtkImageData* image)
+{
+  const double* const spacing = image->GetSpacing();
+  if (std::none_of(spacing, spacing + 3, [](double along) { return along < 0.0; }))
+  {
+    return image;
+  }
+  auto same = vtkSmartPointer<vtkImageData>::New();
+  same->ShallowCopy(image);
+  SetDirection(same, DirectionOf(image));
+  return same;
+}
+
 bool OwnAxes::AreMirrored() const
 {
   const Rotation& a = this->axes;

@@ -78,6 +78,10 @@ std::optional<AxisWays> WaysOf(const double* spacing, const double* direction);
 /// where it has them already, or cannot have them.
 vtkSmartPointer<vtkImageData> Aligned(vtkImageData* image);
 
+/// The same image, cell for cell, with a spacing above 0 along each axis: where it is below, the direction matrix has
+/// the axis the other way.
+vtkSmartPointer<vtkImageData> WithSpacingsAbove0(vtkImageData* image);
+
 /// The axes of an image that its direction matrix turns otherwise than by right angles, mirrored or not. A filter works
 /// in these (WholeInputs.h): there its medium has the unit matrix and the origin that it has in the scene, and lights,
 /// photons, cameras and vectors of inputs are turned into them. What filters give out is in the scene again.
