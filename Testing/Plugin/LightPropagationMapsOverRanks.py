@@ -1,5 +1,5 @@
-"""Two ranks: each solves the whole and hands on its piece, so that there is no seam where the pieces meet. Points are voxels,
-as they are without --symmetric: proxies begin with arrays that have ParaView average nothing."""
+"""Two ranks: each solves the whole and hands on its piece, so that there is no seam where the pieces meet. Points are
+voxels, as they are without --symmetric: proxies begin with arrays that have ParaView average nothing."""
 import os
 
 import numpy as np
