@@ -402,6 +402,17 @@ VoxelArrays VoxelArraysOf(vtkInformation* port)
   return { TextsOf(port, ChosenArrays()), TextsOf(port, NamedArrays()) };
 }
 
+namespace
+{
+/// Whether an image at another port has the points of the medium at port 0, which is read as the cells between them.
+bool MediumHasCellsBetween(vtkAlgorithm* filter, vtkImageData* image)
+{
+  const bool any = filter->GetNumberOfInputConnections(0) > 0;
+  auto* const medium = any ? vtkImageData::SafeDownCast(filter->GetInputDataObject(0, 0)) : nullptr;
+  return medium && medium->GetNumberOfPoints() == image->GetNumberOfPoints() && !AreAroundPoints(filter, 0, medium);
+}
+}
+
 bool AreAroundPoints(vtkAlgorithm* filter, int port, vtkImageData* image, std::vector<std::string>* averaged)
 {
   const VoxelArrays arrays = VoxelArraysOf(filter->GetInputPortInformation(port));
@@ -417,7 +428,16 @@ bool AreAroundPoints(vtkAlgorithm* filter, int port, vtkImageData* image, std::v
   }
   const bool any = std::find(arrays.named.begin(), arrays.named.end(), AnyArray) != arrays.named.end();
   const bool onlyPoints = any && !HasArrays(image->GetCellData()) && HasArrays(image->GetPointData());
-  return read.ofCells.empty() && (!read.ofPoints.empty() || onlyPoints);
+  const bool areAround = read.ofCells.empty() && (!read.ofPoints.empty() || onlyPoints);
+  if (areAround && port > 0 && MediumHasCellsBetween(filter, image))
+  {
+    if (averaged)
+    {
+      *averaged = read.ofPoints;
+    }
+    return false;
+  }
+  return areAround;
 }
 
 vtkSmartPointer<vtkImageData> VoxelsAround(vtkImageData* points)
@@ -730,6 +750,19 @@ vtkDataArray* BeforeTurning(vtkDataArray* turned, vtkImageData* image)
   }
   return nullptr;
 }
+}
+
+vtkSmartPointer<vtkImageData> WithSpacingsAbove0(vtkImageData* image)
+{
+  const double* const spacing = image->GetSpacing();
+  if (std::none_of(spacing, spacing + 3, [](double along) { return along < 0.0; }))
+  {
+    return image;
+  }
+  auto same = vtkSmartPointer<vtkImageData>::New();
+  same->ShallowCopy(image);
+  SetDirection(same, DirectionOf(image));
+  return same;
 }
 
 bool OwnAxes::AreMirrored() const

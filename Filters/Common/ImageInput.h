@@ -49,8 +49,9 @@ struct VoxelArrays
 VoxelArrays VoxelArraysOf(vtkInformation* port);
 
 /// Whether the voxels that a filter reads of an image are around its points (PropertyRange.h, tyndallPointDataMacro):
-/// it reads arrays of points, and none of cells.
-/// @param averaged  where it reads both: the names of those of points
+/// it reads arrays of points, and none of cells. An image at another port than the medium's, 0, that has the points of
+/// a medium of which the cells are read has voxels there, too.
+/// @param averaged  where arrays of points are read, and voxels are cells: the names of those
 bool AreAroundPoints(vtkAlgorithm* filter, int port, vtkImageData* image, std::vector<std::string>* averaged = nullptr);
 
 /// An image with a voxel around each point: arrays of points are its arrays of cells, those of cells are left out.
@@ -76,6 +77,10 @@ std::optional<AxisWays> WaysOf(const double* spacing, const double* direction);
 /// The same image with axes along those of the world: its cells and points in another order, at the same places. Itself
 /// where it has them already, or cannot have them.
 vtkSmartPointer<vtkImageData> Aligned(vtkImageData* image);
+
+/// The same image, cell for cell, with a spacing above 0 along each axis: where it is below, the direction matrix has
+/// the axis the other way.
+vtkSmartPointer<vtkImageData> WithSpacingsAbove0(vtkImageData* image);
 
 /// The axes of an image that its direction matrix turns otherwise than by right angles, mirrored or not. A filter works
 /// in these (WholeInputs.h): there its medium has the unit matrix and the origin that it has in the scene, and lights,

@@ -234,6 +234,7 @@ void vtkVDBWriter::WriteData()
       {
         voxels = tyndall::VoxelsAround(voxels);
       }
+      voxels = voxels ? tyndall::WithSpacingsAbove0(voxels) : voxels;
       arrays = CellArraysOf(voxels);
     });
     tyndall::GatheredImage image(

@@ -26,8 +26,9 @@ class vtkMultiProcessController;
  * extent, spacing, origin and direction become the grid's index space and transform (see vtkVDBReader: a voxel's index
  * is the cell's), and what a grid cannot say becomes its metadata image_extent_min, image_extent_max, image_cells,
  * image_origin and image_spacing, so that vtkVDBReader gives the image back bit for bit: values (NaN, infinity and -0
- * too), extent, origin, spacing. Of a direction that is not along the axes the last bit may change, and SaveAsHalf and
- * Tolerance change values.
+ * too), extent, origin, spacing. Where a spacing is below 0 it is written above 0, and the direction of its axis the
+ * other way: the same cells at the same places. Of a direction that is not along the axes the last bit may change, and
+ * SaveAsHalf and Tolerance change values.
  *
  * Field data `vdb::<key>`, `vdb:<array>:<key>`, `vdb:<array>:type` and `vdb:<array>:background`, as vtkVDBReader makes
  * them, become metadata, type (bool and mask from uint8) and background; field data `g`, `phase_function`,

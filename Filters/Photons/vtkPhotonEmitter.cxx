@@ -66,6 +66,7 @@ int vtkPhotonEmitter::FillInputPortInformation(int port, vtkInformation* informa
   if (port == IMPORTANCE_MAP)
   {
     tyndall::TakePictures(information);
+    tyndall::ReadsVoxels(information, {}, { "importance" });
   }
   return done;
 }

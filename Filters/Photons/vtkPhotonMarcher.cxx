@@ -223,6 +223,7 @@ int vtkPhotonMarcher::FillInputPortInformation(int port, vtkInformation* informa
   }
   if (port == OctreePort)
   {
+    tyndall::ReadsVoxels(information, {}, { "octree_level" });
     information->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
   }
   return 1;

@@ -69,6 +69,10 @@ int vtkLitMediumAlgorithm::FillInputPortInformation(int port, vtkInformation* in
   }
   else
   {
+    if (port > ENVIRONMENT) // light of another filter in the same voxels, where a filter has such a port
+    {
+      tyndall::ReadsVoxels(information, {}, { "fluence", "fluence_direct", "mean_direction" });
+    }
     information->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
   }
   return 1;

@@ -6,10 +6,14 @@
 #include "vtkDataArray.h"
 #include "vtkDiscreteOrdinates.h"
 #include "vtkFieldData.h"
+#include "vtkImageData.h"
+#include "vtkLatticeBoltzmannLighting.h"
 #include "vtkLightPropagationMaps.h"
 #include "vtkLightRig.h"
 #include "vtkPhotonEmitter.h"
 #include "vtkPhotonMarcher.h"
+#include "vtkPointData.h"
+#include "vtkRefractionOctree.h"
 
 #include <cmath>
 #include <string>
@@ -124,6 +128,84 @@ void RefusesOtherVoxels(test::Claims& claims, const std::string& name)
 }
 }
 
+/// The same cells' values as those of points in their middles.
+vtkSmartPointer<vtkImageData> AsPoints(vtkImageData* cells)
+{
+  const int* const size = cells->GetDimensions();
+  const double* const spacing = cells->GetSpacing();
+  double corner[3];
+  cells->GetPoint(0, corner);
+  auto points = vtkSmartPointer<vtkImageData>::New();
+  points->SetDimensions(size[0] - 1, size[1] - 1, size[2] - 1);
+  points->SetSpacing(cells->GetSpacing());
+  points->SetOrigin(corner[0] + 0.5 * spacing[0], corner[1] + 0.5 * spacing[1], corner[2] + 0.5 * spacing[2]);
+  points->GetPointData()->ShallowCopy(cells->GetCellData());
+  points->SetFieldData(cells->GetFieldData());
+  return points;
+}
+
+template <class Filter>
+double SumOfFluence(test::Claims& claims, Filter* filter, const std::string& what)
+{
+  test::Errors errors(filter);
+  filter->Update();
+  claims.That(errors.None(), what + ": no error");
+  auto* const light = vtkImageData::SafeDownCast(filter->GetOutputDataObject(0));
+  vtkDataArray* const fluence = light->GetCellData()->GetArray("fluence");
+  double sum = 0.0;
+  for (vtkIdType i = 0; fluence && i < fluence->GetNumberOfTuples(); ++i)
+  {
+    sum += fluence->GetComponent(i, 0) * (1.0 + i % 7);
+  }
+  return sum;
+}
+
+template <class Solver>
+void TakesLightAroundPoints(test::Claims& claims, Caustic& caustic, const std::string& name)
+{
+  vtkNew<vtkImageData> medium;
+  medium->ShallowCopy(caustic.medium);
+  medium->GetCellData()->RemoveArray("ior"); // of which most solvers warn
+  vtkNew<Solver> solver;
+  solver->SetInputDataObject(medium);
+  solver->SetUncollidedLightData(caustic.Light());
+  const double wanted = SumOfFluence(claims, solver.Get(), name);
+  solver->SetUncollidedLightData(AsPoints(caustic.Light()));
+  claims.Near(
+    SumOfFluence(claims, solver.Get(), name + ", points") / wanted, 1.0, 1e-6, name + ": light around points");
+  solver->SetInputDataObject(AsPoints(medium));
+  claims.Near(
+    SumOfFluence(claims, solver.Get(), name + ", all points") / wanted, 1.0, 1e-6, name + ": and a medium around them");
+}
+
+/// Second images have a voxel around each of their points, as the medium has; beside a medium whose cells are read,
+/// those that lie between its points.
+void SecondImagesAreAroundPoints(test::Claims& claims)
+{
+  Caustic caustic;
+  caustic.emitter->SetPhotonCount(2000);
+  caustic.marcher->Update();
+  TakesLightAroundPoints<vtkLightPropagationMaps>(claims, caustic, "maps");
+  TakesLightAroundPoints<vtkDiscreteOrdinates>(claims, caustic, "ordinates");
+  TakesLightAroundPoints<vtkLatticeBoltzmannLighting>(claims, caustic, "lattice");
+
+  vtkNew<vtkRefractionOctree> octree;
+  octree->SetInputDataObject(caustic.medium);
+  octree->Update();
+  auto* const levels = vtkImageData::SafeDownCast(octree->GetOutputDataObject(0));
+  caustic.marcher->SetOctreeData(levels);
+  const double wanted = SumOfFluence(claims, caustic.marcher.Get(), "octree");
+  caustic.marcher->SetOctreeData(AsPoints(levels));
+  claims.Near(SumOfFluence(claims, caustic.marcher.Get(), "octree of points") / wanted, 1.0, 1e-6, "levels of points");
+
+  vtkNew<vtkImageData> between; // a level at each point of the medium, of which cells are read
+  between->CopyStructure(caustic.medium);
+  test::AddValues<vtkFloatArray>(
+    between->GetPointData(), "octree_level", between->GetNumberOfPoints(), 1, [](vtkIdType, int) { return 0.0; });
+  caustic.marcher->SetOctreeData(between);
+  claims.That(SumOfFluence(claims, caustic.marcher.Get(), "octree between") > 0.0, "levels are averaged to the cells");
+}
+
 int TestUncollidedLight(int, char*[])
 {
   if (!test::HasDevice())
@@ -135,5 +217,6 @@ int TestUncollidedLight(int, char*[])
   ScattersACaustic<vtkDiscreteOrdinates>(claims, "ordinates");
   RefusesOtherVoxels<vtkLightPropagationMaps>(claims, "maps");
   RefusesOtherVoxels<vtkDiscreteOrdinates>(claims, "ordinates");
+  SecondImagesAreAroundPoints(claims);
   return claims.Result();
 }

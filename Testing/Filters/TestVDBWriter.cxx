@@ -17,6 +17,7 @@
 #include "vtkVDBReader.h"
 #include "vtkVDBWriter.h"
 
+#include <algorithm>
 #include <cmath>
 #include <csignal>
 #include <cstring>
@@ -261,6 +262,46 @@ void OtherImagesAreWritten(test::Claims& claims)
   claims.That(errors.WasOneWith("\"huge\""), "an integer that does not fit is an error");
 }
 
+/// Along an axis whose spacing is below 0, turned or not, cells come back where they were.
+void ASpacingBelow0IsWritten(test::Claims& claims)
+{
+  const auto image = AwkwardImage();
+  const double matrix[9] = { 0.0, 0.0, 1.0, 0.6, 0.8, 0.0, -0.8, 0.6, 0.0 };
+  for (const bool isTurned : { false, true })
+  {
+    image->SetSpacing(0.3, -0.25, -1e-3);
+    if (isTurned)
+    {
+      image->SetDirectionMatrix(matrix);
+    }
+    vtkNew<vtkVDBWriter> writer;
+    test::Errors errors(writer);
+    writer->SetInputData(image);
+    writer->SetFileName(Path("down.vdb").c_str());
+    writer->Write();
+    claims.That(errors.None(), "a spacing below 0 is written");
+    vtkNew<vtkVDBReader> reader;
+    reader->SetFileName(Path("down.vdb").c_str());
+    reader->Update();
+    vtkImageData* const again = reader->GetOutput();
+    const vtkIdType first = 0, last = again->GetNumberOfPoints() - 1;
+    claims.That(again->GetNumberOfPoints() == image->GetNumberOfPoints(), "as many points");
+    for (const vtkIdType point : { first, last })
+    {
+      double found[3], wanted[3];
+      again->GetPoint(point, found);
+      image->GetPoint(point, wanted);
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        claims.Near(found[axis], wanted[axis], 1e-11 * std::abs(wanted[axis]) + 1e-9, "a corner's place");
+      }
+    }
+    claims.That(*std::min_element(again->GetSpacing(), again->GetSpacing() + 3) > 0.0, "spacings are above 0");
+    claims.That(
+      SameBits(image->GetCellData()->GetArray("density"), again->GetCellData()->GetArray("density")), "the same cells");
+  }
+}
+
 void AFailedWriteLeavesNothing(test::Claims& claims)
 {
   vtkNew<vtkVDBWriter> writer;
@@ -311,6 +352,7 @@ int TestVDBWriter(int argc, char* argv[])
     ARoundTripKeepsEveryBit(claims, compression);
   }
   OtherImagesAreWritten(claims);
+  ASpacingBelow0IsWritten(claims);
   AFailedWriteLeavesNothing(claims);
   return claims.Result();
 }

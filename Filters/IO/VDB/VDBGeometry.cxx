@@ -252,7 +252,7 @@ VDBPlacement PlacementOf(vtkImageData* image)
     matrix(3, row) = centre[row];
     if (!std::isfinite(centre[row]) || !(spacing[row] > 0.0) || !std::isfinite(spacing[row]))
     {
-      throw InvalidInput("The image's spacing must be positive, and its spacing and origin finite.");
+      throw InvalidInput("The image's spacing must not be 0, and its spacing and origin must be finite.");
     }
   }
   openvdb::math::MapBase::Ptr map;
