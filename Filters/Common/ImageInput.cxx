@@ -988,8 +988,8 @@ void AddAveraged(vtkAlgorithm* filter, std::vector<std::string>& settings)
 
 namespace
 {
-/// The direction matrix of an image before there is any. VTK's filters pass on in what they tell where an image lies and
-/// its spacing, but not its directions, which only the image itself then has: those of the filter before hold, but
+/// The direction matrix of an image before there is any. VTK's filters pass on in what they tell where an image lies
+/// and its spacing, but not its directions, which only the image itself then has: those of the filter before hold, but
 /// where an image is made anew or an imaging filter (vtkImageAlgorithm) loses them.
 /// @return null: the unit matrix
 const double* DirectionTold(vtkInformation* input)

@@ -202,8 +202,8 @@ private:
   bool All;
 };
 
-/// Has inputs tell of the extent of the time that is asked for. A source of a series hears of it late, and then tells of
-/// that time's extent, which VTK does not hand on to the filters behind it.
+/// Has inputs tell of the extent of the time that is asked for. A source of a series hears of it late, and then tells
+/// of that time's extent, which VTK does not hand on to the filters behind it.
 /// @return whether the extent of an input depends on time
 bool HearOfTime(vtkInformationVector* inputs)
 {
