@@ -50,6 +50,7 @@ struct Glance
   bool isImage = false;
   Extent extent = NoExtent;
   Extent whole = NoExtent;           ///< that its source says there is
+  bool changes = false;              ///< with time, and may have been said of another
   std::uint64_t key = 0;             ///< of its content
   std::array<std::string, 2> active; ///< names of active scalars, of cells and points
   bool aroundPoints = false;         ///< its voxels are
@@ -97,6 +98,7 @@ Glance GlanceAt(vtkInformation* connection)
   auto* const image = vtkImageData::SafeDownCast(data);
   glance.isImage = image != nullptr;
   glance.whole = ExtentIn(connection, Pipeline::WHOLE_EXTENT());
+  glance.changes = connection->Has(Pipeline::TIME_DEPENDENT_INFORMATION()) != 0;
   glance.isThere = image ? image->GetNumberOfCells() > 0 : HasValues(data);
   if (!glance.isThere)
   {
@@ -131,7 +133,8 @@ void Write(const RankGlance& rank, vtkMultiProcessStream& stream)
   {
     stream << static_cast<int>(glance.isThere) << static_cast<int>(glance.isImage) << glance.extent << glance.whole
            << static_cast<int>(glance.key >> 32) << static_cast<int>(glance.key & 0xFFFFFFFFu) << glance.active[0]
-           << glance.active[1] << static_cast<int>(glance.aroundPoints) << glance.points;
+           << glance.active[1] << static_cast<int>(glance.aroundPoints) << glance.points
+           << static_cast<int>(glance.changes);
   }
   stream << static_cast<int>(rank.asked.size());
   std::for_each(rank.asked.begin(), rank.asked.end(), [&](const Extent& extent) { stream << extent; });
@@ -151,9 +154,10 @@ RankGlance Read(vtkMultiProcessStream& stream)
   rank.inputs.resize(static_cast<std::size_t>(inputs));
   for (Glance& glance : rank.inputs)
   {
-    int isThere = 0, isImage = 0, high = 0, low = 0, aroundPoints = 0;
+    int isThere = 0, isImage = 0, high = 0, low = 0, aroundPoints = 0, changes = 0;
     stream >> isThere >> isImage >> glance.extent >> glance.whole >> high >> low >> glance.active[0] >>
-      glance.active[1] >> aroundPoints >> glance.points;
+      glance.active[1] >> aroundPoints >> glance.points >> changes;
+    glance.changes = changes != 0;
     glance.aroundPoints = aroundPoints != 0;
     glance.isThere = isThere != 0;
     glance.isImage = isImage != 0;
@@ -263,15 +267,18 @@ void CheckExtent(const OnRanks& glances, const std::string& named)
   }
   Extent all = first->extent;
   std::string without;
+  std::size_t cells = 0;
   for (std::size_t rank = 0; rank < glances.size(); ++rank)
   {
     without += isPiece(glances[rank]) ? "" : (without.empty() ? "" : ", ") + std::to_string(rank);
+    cells += isPiece(glances[rank]) ? CellBoxOf(glances[rank].extent).Count() : 0;
     for (int i = 0; i < 6 && isPiece(glances[rank]); ++i)
     {
       all[i] = i % 2 == 0 ? std::min(all[i], glances[rank].extent[i]) : std::max(all[i], glances[rank].extent[i]);
     }
   }
-  Require(all == first->whole,
+  const bool isAll = first->changes && cells >= CellBoxOf(all).Count();
+  Require(all == first->whole || isAll,
     named + " lies in pieces on several ranks, which together have the extent " + Words(all) + " of " +
       Words(first->whole) + ". Give the ranks all pieces." +
       (without.empty() ? ""

@@ -162,6 +162,7 @@ def series():
     for time, first in ((1, False), (0, False), (2, True), (1, False)):
         if first:
             reader.UpdatePipeline(time)
+            medium.UpdatePipeline(time)
         for name, light in lights.items():
             light.UpdatePipeline(time)
             keep("series_%s_%d" % (name, time), light)
