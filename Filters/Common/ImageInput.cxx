@@ -409,7 +409,8 @@ bool MediumHasCellsBetween(vtkAlgorithm* filter, vtkImageData* image)
 {
   const bool any = filter->GetNumberOfInputConnections(0) > 0;
   auto* const medium = any ? vtkImageData::SafeDownCast(filter->GetInputDataObject(0, 0)) : nullptr;
-  return medium && medium->GetNumberOfPoints() == image->GetNumberOfPoints() && !AreAroundPoints(filter, 0, medium);
+  return medium && std::equal(medium->GetDimensions(), medium->GetDimensions() + 3, image->GetDimensions()) &&
+    !AreAroundPoints(filter, 0, medium);
 }
 }
 

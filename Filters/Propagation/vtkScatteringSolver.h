@@ -98,7 +98,7 @@ public:
   ///@{
   /// How exact the light is to be: chooses, from the scene, those of the properties below that have their default
   /// value, and leaves those that have another one. DRAFT, USUAL (default), FINE or REFERENCE; with USUAL all are taken
-  /// as they stand. Rectangle lights are divided the finer, too (numerics.md, section 5.3).
+  /// as they stand. FINE and REFERENCE divide rectangle lights, too, more finely.
   tyndallSetRangeMacro(Quality, int, DRAFT, REFERENCE);
   vtkGetMacro(Quality, int);
   ///@}

@@ -158,7 +158,8 @@ Part PartAskedFor(vtkInformation* information, const Extent& image)
   return part;
 }
 
-/// What is asked for, which goes where the extent is told anew: whoever asked for all asks for all of the other extent.
+/// Keeps an update request, which VTK resets when a source tells of a new extent. A request for all of the old extent
+/// becomes one for all of the new.
 class Asked
 {
 public:
@@ -202,8 +203,8 @@ private:
   bool All;
 };
 
-/// Has inputs tell of the extent of the time that is asked for. A source of a series hears of it late, and then tells
-/// of that time's extent, which VTK does not hand on to the filters behind it.
+/// Updates what inputs tell to the time step that is asked for. VTK does not hand a series' new extent on to filters
+/// behind its source. Not collective.
 /// @return whether the extent of an input depends on time
 bool HearOfTime(vtkInformationVector* inputs)
 {
@@ -223,7 +224,7 @@ bool HearOfTime(vtkInformationVector* inputs)
   return any;
 }
 
-/// Tells of outputs as at first, when the pipeline had handed on what the first input tells.
+/// Repeats REQUEST_INFORMATION of the outputs, from the first input's extent, origin and spacing.
 void TellAgain(vtkExecutive* own, vtkInformationVector* outputs)
 {
   vtkInformation* const first = own->GetInputInformation()[0]->GetInformationObject(0);

@@ -50,7 +50,7 @@ struct Glance
   bool isImage = false;
   Extent extent = NoExtent;
   Extent whole = NoExtent;           ///< that its source says there is
-  bool changes = false;              ///< with time, and may have been said of another
+  bool changes = false;              ///< `whole` does with time, and may be that of another time step
   std::uint64_t key = 0;             ///< of its content
   std::array<std::string, 2> active; ///< names of active scalars, of cells and points
   bool aroundPoints = false;         ///< its voxels are
@@ -277,7 +277,7 @@ void CheckExtent(const OnRanks& glances, const std::string& named)
       all[i] = i % 2 == 0 ? std::min(all[i], glances[rank].extent[i]) : std::max(all[i], glances[rank].extent[i]);
     }
   }
-  const bool isAll = first->changes && cells >= CellBoxOf(all).Count();
+  const bool isAll = first->changes && without.empty() && cells > 0 && cells >= CellBoxOf(all).Count();
   Require(all == first->whole || isAll,
     named + " lies in pieces on several ranks, which together have the extent " + Words(all) + " of " +
       Words(first->whole) + ". Give the ranks all pieces." +

@@ -3,9 +3,7 @@
 #include "Device/Errors.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cerrno>
-#include <csignal>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
@@ -19,6 +17,7 @@
 #include <locale>
 #include <map>
 #include <optional>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <sys/statvfs.h>
 #include <unistd.h>
@@ -385,8 +384,14 @@ public:
   {
     for (const std::string& program : this->Programs())
     {
-      report(program, "may be damaged: two starts ended while they built kernels");
+      report(program, "was set aside, for two runs ended while they built kernels");
+      const std::map<std::string, Note> known = this->Known.All();
+      for (auto note = known.lower_bound(program); note != known.end() && note->first.rfind(program, 0) == 0; ++note)
+      {
+        this->Known.Forget(note->first);
+      }
     }
+    this->Known.Write();
   }
 
 private:
@@ -526,50 +531,52 @@ private:
   Notes Known;
 };
 
-/// Before its process's number and that of the mark.
-std::string PrefixOfMarks()
-{
-  char host[256] = {};
-  gethostname(host, sizeof host - 1);
-  return std::string("tyndall-building-") + host + "-";
-}
+constexpr const char* PrefixOfMarks = "tyndall-building-";
 
-/// Whether two starts or more ended while they built programs, at least seconds apart: ranks of one start end together.
-/// Forgets these, and marks older than an hour.
+/// When this process began, about: ranks of one job begin together.
+const std::time_t Begun = std::time(nullptr);
+
+/// Whether two runs or more ended while they built programs, and had begun apart from each other. Forgets these, and
+/// marks older than an hour. What can be locked belongs to a process that has ended.
 bool EndedWhileBuilding(const std::string& folder)
 {
-  constexpr std::int64_t second = 1000000000, apart = 2 * second, old = 3600 * second;
-  const std::string prefix = PrefixOfMarks();
-  std::vector<fs::path> ended;
+  constexpr std::int64_t second = 1000000000, apart = 10 * second, old = 3600 * second;
+  std::vector<std::pair<std::string, int>> ended; // and its descriptor
   std::int64_t first = std::numeric_limits<std::int64_t>::max(), last = 0;
   std::error_code none;
   for (const auto& entry : fs::directory_iterator(folder, none))
   {
-    const std::string name = entry.path().filename().string();
-    const int process = name.compare(0, prefix.size(), prefix) == 0 ? std::atoi(name.c_str() + prefix.size()) : 0;
-    const std::optional<Note> found = process > 0 ? NoteOf(entry.path().string()) : std::nullopt;
-    if (!found || kill(process, 0) == 0 || errno != ESRCH)
+    const std::string mark = entry.path().string();
+    const std::optional<Note> found = NoteOf(mark);
+    if (entry.path().filename().string().rfind(PrefixOfMarks, 0) != 0 || !found)
     {
       continue;
     }
+    const int file = open(mark.c_str(), O_RDONLY | O_CLOEXEC);
+    if (file < 0 || flock(file, LOCK_EX | LOCK_NB) != 0)
+    {
+      close(file);
+      continue;
+    }
+    ended.emplace_back(mark, file);
     if (std::time(nullptr) * second - found->written > old)
     {
-      fs::remove(entry.path(), none);
+      unlink(mark.c_str());
       continue;
     }
-    ended.push_back(entry.path());
     first = std::min(first, found->written);
     last = std::max(last, found->written);
   }
-  if (ended.empty() || last - first < apart)
+  const bool twice = last - first >= apart && last > 0;
+  for (const auto& [mark, file] : ended)
   {
-    return false;
+    if (twice)
+    {
+      unlink(mark.c_str());
+    }
+    close(file);
   }
-  for (const fs::path& mark : ended)
-  {
-    fs::remove(mark, none);
-  }
-  return true;
+  return twice;
 }
 
 std::string WithoutSlash(std::string folder)
@@ -594,13 +601,20 @@ std::string Told(const DamagedFiles& damaged, const std::string& folder)
 
 BuildMark::BuildMark(const std::string& folder)
 {
-  static std::atomic<int> marks{ 0 };
-  if (!folder.empty())
+  if (folder.empty())
   {
-    this->File =
-      WithoutSlash(folder) + "/" + PrefixOfMarks() + std::to_string(getpid()) + "-" + std::to_string(++marks);
-    std::ofstream(this->File) << "";
+    return;
   }
+  std::string name = WithoutSlash(folder) + "/" + PrefixOfMarks + "XXXXXX";
+  this->Descriptor = mkostemp(name.data(), O_CLOEXEC);
+  if (this->Descriptor < 0)
+  {
+    return;
+  }
+  this->File = name;
+  flock(this->Descriptor, LOCK_EX);
+  const timespec times[] = { { Begun, 0 }, { Begun, 0 } };
+  futimens(this->Descriptor, times);
 }
 
 BuildMark::~BuildMark()
@@ -608,6 +622,7 @@ BuildMark::~BuildMark()
   if (!this->File.empty())
   {
     unlink(this->File.c_str());
+    close(this->Descriptor);
   }
 }
 

@@ -34,8 +34,8 @@ struct DamagedFiles
   std::string trouble; ///< why one cannot be set aside; empty: all are
 };
 
-/// While one lives, a file in the folder of PoCL's says that this process builds a program. PoCL ends the process where
-/// what it has kept of the program is damaged in a way that cannot be seen; the file is then left.
+/// While one lives, a locked file in the folder of PoCL's says that this process builds a program. PoCL ends the
+/// process where the bitcode that it has kept is damaged in a way that cannot be seen; the file is then left.
 class BuildMark
 {
 public:
@@ -46,13 +46,14 @@ public:
 
 private:
   std::string File;
+  int Descriptor = -1; ///< locked, for as long as the process lives
 };
 
 /// Renames damaged files below a folder of PoCL's to *.damaged, so that it compiles them anew: bitcode and libraries
 /// that are cut off, overwritten or unreadable, and those that were changed since an earlier call noted their checksums
-/// in the folder; and all programs, where within an hour two starts of this machine ended while they built one
-/// (BuildMark). What is as it was noted is not read. Other processes may do so, and PoCL may write, at the same time:
-/// it renames what it has written, and leaves nothing half.
+/// in the folder; and all programs, where two runs that began within the last hour, seconds apart, ended while they
+/// built one (BuildMark). What is as it was noted is not read. Other processes may do so, and PoCL may write, at the
+/// same time: it renames what it has written, and leaves nothing half.
 DamagedFiles SetDamagedAside(const std::string& folder);
 
 /// Notes the checksums of what PoCL has written to the folder since they were noted last.

@@ -144,7 +144,7 @@ void Judge(LightField& light, Balancing balancing, const ThickestVoxel& thickest
   {
     RefuseImpossible(light.balance);
   }
-  const std::string why = WordsOfImbalance(thickest, Sum(light.balance.entered) > 0.0),
+  const std::string why = WordsOfImbalance(thickest, !(Sum(light.balance.entered) <= 0.0)),
                     part = Text("%.2g", error) + " of the power is lost or made, ";
   if (balancing == Balancing::Poorly)
   {

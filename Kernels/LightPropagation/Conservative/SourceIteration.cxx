@@ -353,10 +353,10 @@ void SourceIteration::ScatterByCells()
     this->LookAtDirect(parts.Path, 1.0 / parts.Layout.grid.VoxelVolume());
   }
   const bool guessed = this->Order == 0 && this->Warm.Begins();
-  Rgb onTheWay = this->OnTheWay;
-  std::transform(onTheWay.begin(), onTheWay.end(), this->Stranded.begin(), onTheWay.begin(), std::plus<>());
+  Rgb foreseen = this->OnTheWay;
+  std::transform(foreseen.begin(), foreseen.end(), this->Stranded.begin(), foreseen.begin(), std::plus<>());
   const OrdersByCells::Powers powers =
-    this->Cells->ScatterOrder(this->Result.ledger, onTheWay, guessed ? &this->Warm.Guess() : nullptr);
+    this->Cells->ScatterOrder(this->Result.ledger, foreseen, guessed ? &this->Warm.Guess() : nullptr);
   this->Scattered = powers.scattered;
   this->Shining = Sum(powers.magnitude) > 0.0;
   this->Residual = 0.0;
