@@ -113,6 +113,7 @@ openvdb::CoordBBox CellsIn(const int* extent)
   return box;
 }
 
+using Pipeline = vtkStreamingDemandDrivenPipeline;
 constexpr int NoExtent[6] = { 0, -1, 0, -1, 0, -1 };
 
 std::array<int, 6> WholeExtentOf(const tyndall::VDBGeometry& image)
@@ -126,7 +127,6 @@ std::array<int, 6> WholeExtentOf(const tyndall::VDBGeometry& image)
 /// One file has no time, of more each has the one of its place.
 void TellTimes(vtkInformation* info, int files)
 {
-  using Pipeline = vtkStreamingDemandDrivenPipeline;
   if (files < 2)
   {
     info->Remove(Pipeline::TIME_STEPS());
@@ -363,41 +363,6 @@ vtkVDBReader::Internals::Limit vtkVDBReader::Internals::LimitOfMemory(vtkIdType 
   return limit;
 }
 
-namespace
-{
-using Pipeline = vtkStreamingDemandDrivenPipeline;
-
-/// What an output is asked for, which goes when its extent is told anew.
-struct Request
-{
-  int piece, pieces, ghostLevels;
-  std::array<int, 6> extent;
-  bool isPart; ///< of the extent
-
-  explicit Request(vtkInformation* output)
-    : piece(output->Get(Pipeline::UPDATE_PIECE_NUMBER()))
-    , pieces(output->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()))
-    , ghostLevels(output->Get(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS()))
-  {
-    const int *part = output->Get(Pipeline::UPDATE_EXTENT()), *whole = output->Get(Pipeline::WHOLE_EXTENT());
-    this->isPart = part && whole && !std::equal(part, part + 6, whole);
-    std::copy_n(this->isPart ? part : NoExtent, 6, this->extent.begin());
-  }
-
-  void Restore(vtkInformation* output) const
-  {
-    output->Set(Pipeline::UPDATE_PIECE_NUMBER(), this->piece);
-    output->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), this->pieces);
-    output->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), this->ghostLevels);
-    const int* const whole = output->Get(Pipeline::WHOLE_EXTENT());
-    if (this->isPart && whole && tyndall::Covers(whole, this->extent.data()))
-    {
-      output->Set(Pipeline::UPDATE_EXTENT(), this->extent.data(), 6);
-    }
-  }
-};
-}
-
 /// VTK asks what extent there is before it says of what time it wants data. Where that time has another file than the
 /// one that was told of, this tells of it anew; filters between here and who asks still ask for a former extent, and
 /// get all that there is. (VTK keeps a list of consumers, too, but also of those that are gone: they cannot be told.)
@@ -416,10 +381,10 @@ public:
       reader->FileAskedFor(output) != reader->Internal->ListedFile)
     {
       this->IsTelling = true;
-      const Request asked(output);
+      const tyndall::UpdateRequest asked(output);
       reader->Modified();
       this->UpdateInformation();
-      asked.Restore(output);
+      asked.Restore();
       this->IsTelling = false;
       return 1;
     }

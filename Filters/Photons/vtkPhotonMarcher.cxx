@@ -29,7 +29,6 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <numeric>
 #include <optional>
 #include <string>
 #include <utility>
@@ -272,9 +271,11 @@ int vtkPhotonMarcher::RequestUpdateExtent(
 {
   this->Kept->ForgetIfRan(this, { MediumPort, OctreePort });
   const bool asPiece = tyndall::EachAsksForItsPiece(request, outputs) && this->WantsBlocks(request, inputs, outputs);
-  std::vector<int> pieces(asPiece ? InputPortCount : 0);
-  std::iota(pieces.begin(), pieces.end(), 0);
-  tyndall::AskForAllBut(-1, request, inputs, InputPortCount, outputs, pieces);
+  for (int port = 0; port < InputPortCount; ++port)
+  {
+    const auto ask = asPiece ? tyndall::AskForSame : tyndall::AskForAll;
+    ask(request, inputs[port], outputs);
+  }
   return 1;
 }
 

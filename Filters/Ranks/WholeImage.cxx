@@ -158,51 +158,6 @@ Part PartAskedFor(vtkInformation* information, const Extent& image)
   return part;
 }
 
-/// Keeps an update request, which VTK resets when a source tells of a new extent. A request for all of the old extent
-/// becomes one for all of the new.
-class Asked
-{
-public:
-  explicit Asked(vtkInformation* information)
-    : Information(information)
-    , All(!information->Has(Pipeline::UPDATE_EXTENT()) || AsksForAll(information))
-  {
-    NoteExtentTold(information); // who is not told will ask for this one again
-    for (vtkInformationKey* key : Keys())
-    {
-      this->Before->CopyEntry(information, key);
-    }
-  }
-
-  void Restore() const
-  {
-    vtkInformation* const now = this->Information;
-    const int* const whole = now->Get(Pipeline::WHOLE_EXTENT());
-    for (vtkInformationKey* key : { Keys()[0], Keys()[1], Keys()[2] })
-    {
-      now->CopyEntry(this->Before, key);
-    }
-    const int* const asked = this->Before->Get(Pipeline::UPDATE_EXTENT());
-    if (whole && asked)
-    {
-      Extent extent;
-      std::copy_n(!this->All && Covers(whole, asked) ? asked : whole, 6, extent.begin());
-      now->Set(Pipeline::UPDATE_EXTENT(), extent.data(), 6);
-    }
-  }
-
-private:
-  static std::array<vtkInformationKey*, 4> Keys()
-  {
-    return { Pipeline::UPDATE_PIECE_NUMBER(), Pipeline::UPDATE_NUMBER_OF_PIECES(),
-      Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), Pipeline::UPDATE_EXTENT() };
-  }
-
-  vtkInformation* Information;
-  vtkNew<vtkInformation> Before;
-  bool All;
-};
-
 /// Updates what inputs tell to the time step that is asked for. VTK does not hand a series' new extent on to filters
 /// behind its source. Not collective.
 /// @return whether the extent of an input depends on time
@@ -215,7 +170,7 @@ bool HearOfTime(vtkInformationVector* inputs)
     vtkExecutive* const producer = vtkExecutive::PRODUCER()->GetExecutive(input);
     if (producer && input->Has(Pipeline::TIME_DEPENDENT_INFORMATION()))
     {
-      const Asked asked(input);
+      const UpdateRequest asked(input);
       producer->UpdateInformation();
       asked.Restore();
       any = true;
@@ -249,10 +204,10 @@ void FollowTime(vtkInformationVector* inputs, vtkInformationVector* outputs)
   {
     return;
   }
-  std::vector<std::unique_ptr<Asked>> asked;
+  std::vector<std::unique_ptr<UpdateRequest>> asked;
   for (int i = 0; i < outputs->GetNumberOfInformationObjects(); ++i)
   {
-    asked.push_back(std::make_unique<Asked>(outputs->GetInformationObject(i)));
+    asked.push_back(std::make_unique<UpdateRequest>(outputs->GetInformationObject(i)));
   }
   TellAgain(own, outputs);
   for (int i = 0; i < outputs->GetNumberOfInformationObjects(); ++i)
@@ -261,6 +216,44 @@ void FollowTime(vtkInformationVector* inputs, vtkInformationVector* outputs)
     outputs->GetInformationObject(i)->Set(Pipeline::UNRESTRICTED_UPDATE_EXTENT(), 1);
   }
 }
+}
+
+UpdateRequest::UpdateRequest(vtkInformation* information)
+  : Information(information)
+  , All(!information->Has(Pipeline::UPDATE_EXTENT()) || AsksForAll(information))
+{
+  NoteExtentTold(information); // who is not told will ask for this one again
+  for (vtkInformationKey* key : Keys())
+  {
+    this->Before->CopyEntry(information, key);
+  }
+}
+
+void UpdateRequest::Restore() const
+{
+  vtkInformation* const now = this->Information;
+  const int* const whole = now->Get(Pipeline::WHOLE_EXTENT());
+  const std::array<vtkInformationKey*, 4> keys = Keys();
+  std::for_each(keys.begin(), keys.end() - 1, [&](vtkInformationKey* key) { now->CopyEntry(this->Before, key); });
+  const int* const asked = this->Before->Get(Pipeline::UPDATE_EXTENT());
+  if (whole && asked)
+  {
+    Extent extent;
+    std::copy_n(!this->All && Covers(whole, asked) ? asked : whole, 6, extent.begin());
+    now->Set(Pipeline::UPDATE_EXTENT(), extent.data(), 6);
+  }
+}
+
+std::array<vtkInformationKey*, 4> UpdateRequest::Keys()
+{
+  return { Pipeline::UPDATE_PIECE_NUMBER(), Pipeline::UPDATE_NUMBER_OF_PIECES(),
+    Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), Pipeline::UPDATE_EXTENT() };
+}
+
+void AskForSame(vtkInformation* request, vtkInformationVector* inputs, vtkInformationVector* outputs)
+{
+  FollowTime(inputs, outputs);
+  AskTogether(request, outputs, inputs);
 }
 
 void AskForAll(vtkInformation* request, vtkInformationVector* inputs, vtkInformationVector* outputs)
@@ -301,10 +294,9 @@ void AskForAllBut(int piece, vtkInformation* request, vtkInformationVector** inp
   for (int port = 0; port < ports; ++port)
   {
     const bool isBeside = std::find(besides.begin(), besides.end(), port) != besides.end();
-    if (port == piece || isBeside) // the pipeline has asked it for what the output is asked for
+    if (port == piece || isBeside)
     {
-      FollowTime(inputs[port], outputs);
-      AskTogether(request, outputs, inputs[port]);
+      AskForSame(request, inputs[port], outputs);
     }
     else
     {

@@ -1,10 +1,13 @@
 #pragma once
 
+#include "vtkInformation.h"
+#include "vtkNew.h"
+
 #include <array>
 #include <vector>
 
 class vtkImageData;
-class vtkInformation;
+class vtkInformationKey;
 class vtkInformationVector;
 
 /// For filters in parallel pipelines whose light crosses the borders of pieces: they ask for the whole of their inputs
@@ -14,7 +17,9 @@ namespace tyndall
 /// In RequestUpdateExtent: ask the inputs of a port for all of their image, or all pieces of their polydata.
 /// @param request, outputs  as RequestUpdateExtent is given them
 void AskForAll(vtkInformation* request, vtkInformationVector* inputs, vtkInformationVector* outputs);
-/// The same of all ports but one, of which each rank is to have what its output is asked for.
+/// The inputs of a port are asked for what the output is: the pipeline has done so.
+void AskForSame(vtkInformation* request, vtkInformationVector* inputs, vtkInformationVector* outputs);
+/// AskForAll of all ports but one, of which each rank is to have what its output is asked for.
 /// @param ports  their number
 /// @param piece  that one; -1: there is none
 /// @param besides  others; the same
@@ -70,6 +75,22 @@ bool Covers(const int* extent, const int* other);
 bool AsksForAll(vtkInformation* information);
 /// In RequestData; KeepWhatIsAskedFor does it.
 void NoteExtentTold(vtkInformation* information);
+
+/// Keeps an update request, which VTK resets when a source tells of a new extent. A request for all of the old extent
+/// becomes one for all of the new.
+class UpdateRequest
+{
+public:
+  explicit UpdateRequest(vtkInformation* information); ///< must stay
+  void Restore() const;
+
+private:
+  static std::array<vtkInformationKey*, 4> Keys(); ///< the extent last
+
+  vtkInformation* Information;
+  vtkNew<vtkInformation> Before;
+  bool All;
+};
 
 /// In RequestData: what KeepWhatIsAskedFor leaves of an image; its last bounds are less than its first ones where that
 /// is nothing.

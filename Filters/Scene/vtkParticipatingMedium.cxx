@@ -443,7 +443,7 @@ int vtkParticipatingMedium::RequestUpdateExtent(
   const int done = this->Superclass::RequestUpdateExtent(request, inputs, outputs);
   if (tyndall::EachAsksForItsPiece(request, outputs))
   {
-    tyndall::AskForAllBut(DENSITY, request, inputs, 1, outputs);
+    tyndall::AskForSame(request, inputs[DENSITY], outputs);
   }
   else
   {
