@@ -5,12 +5,35 @@
 #include <glm/vec3.hpp>
 
 #include <array>
+#include <cstddef>
+#include <vector>
 
 namespace tyndall
 {
 inline glm::dvec3 Vector(const std::array<double, 3>& v)
 {
   return { v[0], v[1], v[2] };
+}
+
+/// The part of a convex polygon in which depth(point), linear in the point, is not below 0.
+template <class Point, class Depth>
+std::vector<Point> Clipped(const std::vector<Point>& polygon, const Depth& depth)
+{
+  std::vector<Point> clipped;
+  for (std::size_t i = 0; i < polygon.size(); ++i)
+  {
+    const Point &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
+    const double from = depth(a), to = depth(b);
+    if (from >= 0.0)
+    {
+      clipped.push_back(a);
+    }
+    if (from * to < 0.0)
+    {
+      clipped.push_back(a + (b - a) * (from / (from - to)));
+    }
+  }
+  return clipped;
 }
 
 /// As kernels take them.

@@ -201,7 +201,7 @@ SphericalRectangle::SphericalRectangle(const glm::dvec3& eye, const glm::dvec3& 
     const glm::dvec3 middle(0.5 * (this->X0 + this->X1), 0.5 * (this->Y0 + this->Y1), this->Z0);
     const double distance = glm::length(middle);
     this->Small = true;
-    this->Angle = (this->X1 - this->X0) * (this->Y1 - this->Y0) * -this->Z0 / (distance * distance * distance);
+    this->Angle = this->AngleByArea(distance);
   }
 }
 
@@ -228,9 +228,12 @@ glm::dvec3 SphericalRectangle::At(double u, double v) const
 
 double SphericalRectangle::SolidAngleBy(const glm::dvec3& point) const
 {
-  const double distance = glm::length(point - this->Eye);
-  return this->Small ? (this->X1 - this->X0) * (this->Y1 - this->Y0) * -this->Z0 / (distance * distance * distance)
-                     : this->Angle;
+  return this->Small ? this->AngleByArea(glm::length(point - this->Eye)) : this->Angle;
+}
+
+double SphericalRectangle::AngleByArea(double distance) const
+{
+  return (this->X1 - this->X0) * (this->Y1 - this->Y0) * -this->Z0 / (distance * distance * distance);
 }
 
 VisibleFaces::VisibleFaces(const Grid& grid, const glm::dvec3& eye)

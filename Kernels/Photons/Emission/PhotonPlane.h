@@ -58,11 +58,13 @@ public:
   double SolidAngle() const { return this->Angle; }
   glm::dvec3 At(double u, double v) const; ///< a point on the rectangle
 
-  /// What a point of At counts for: the mean over the square is the solid angle. It is the same for all points, but of
-  /// a rectangle that At maps in proportion to area.
+  /// Weight of a point of At, sr: its mean over the unit square is the solid angle. It is the same for all points where
+  /// the square is not mapped by area.
   double SolidAngleBy(const glm::dvec3& point) const;
 
 private:
+  double AngleByArea(double distance) const; ///< of all of it, as if it were as far away as one of its points
+
   glm::dvec3 Eye, X, Y, Z; ///< axes of the rectangle, Z towards the eye
   double X0, X1, Y0, Y1, Z0;
   double B0, B1, K;

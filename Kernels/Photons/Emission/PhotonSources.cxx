@@ -15,7 +15,6 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <utility>
 
 namespace tyndall
 {
@@ -75,6 +74,28 @@ PhotonSource Spot(const Grid& grid, const Light& light)
               : AngleFromAxis(light, { direction.x, direction.y, direction.z }) <= HalfAngle(light);
             return isThere ? std::optional<Shot>({ view->Lamp(), direction, power }) : std::nullopt;
           } };
+}
+
+/// Means of a photon's power, in parts of its light's, and of its square.
+struct Moments
+{
+  double mean = 0.0, square = 0.0;
+};
+
+/// @param shoot  from a sample to a photon, or none
+template <class Shoot>
+Moments MomentsOf(int samples, const Rgb& power, const Shoot& shoot)
+{
+  const SampleSequence sequence(Sampler::Halton, samples);
+  Moments moments;
+  for (int i = 0; i < samples; ++i)
+  {
+    const std::optional<Shot> shot = shoot(sequence[i]);
+    const double part = shot ? Sum(shot->power) / Sum(power) : 0.0;
+    moments.mean += part / samples;
+    moments.square += part * part / samples;
+  }
+  return moments;
 }
 
 /// A face of the volume, and a point of it.
@@ -215,40 +236,22 @@ private:
         return sign * (this->Middle[axis] - border + this->First[axis] * at.x + this->Second[axis] * at.y) +
           LampView::Slack * length;
       };
-      const std::vector<glm::dvec2> all = std::exchange(corners, {});
-      for (std::size_t i = 0; i < all.size(); ++i)
-      {
-        const glm::dvec2 &a = all[i], &b = all[(i + 1) % all.size()];
-        if (depth(a) >= 0.0)
-        {
-          corners.push_back(a);
-        }
-        if (depth(a) * depth(b) < 0.0)
-        {
-          corners.push_back(a + (b - a) * (depth(a) / (depth(a) - depth(b))));
-        }
-      }
+      corners = Clipped(corners, depth);
     }
     return corners;
   }
 
-  /// By the root of the mean square of powers: it makes that of all least.
+  /// In proportion to each part's root mean square power, which makes the variance of the sum least.
   void SetShares()
   {
     constexpr int samples = 512;
     constexpr double least = 0.01; // what may shine in, but was not found to
-    const SampleSequence sequence(Sampler::Halton, samples);
     std::array<double, Parts> shares = {};
     double sum = 0.0;
     for (int part = 0; part < Parts; ++part)
     {
-      double squares = 0.0;
-      for (int i = 0; i < samples; ++i)
-      {
-        const std::optional<Shot> shot = this->ShootFrom(part, sequence[i]);
-        squares += shot ? std::pow(Sum(shot->power) / Sum(this->Power), 2.0) / samples : 0.0;
-      }
-      shares[part] = std::sqrt(squares);
+      const auto shoot = [&](const PhotonSample& u) { return this->ShootFrom(part, u); };
+      shares[part] = std::sqrt(MomentsOf(samples, this->Power, shoot).square);
       sum += shares[part];
     }
     for (int part = 0; part < Parts; ++part)
@@ -286,16 +289,11 @@ private:
 double Unevenness(const Grid& grid, const PhotonSource& source, const Rgb& power)
 {
   constexpr int samples = 1024;
-  const SampleSequence sequence(Sampler::Halton, samples);
-  double sum = 0.0, squares = 0.0;
-  for (int i = 0; i < samples; ++i)
-  {
-    const std::optional<Shot> shot = source.shoot(sequence[i]);
-    const double weight = shot && Land(grid, *shot) ? Sum(shot->power) / Sum(power) : 0.0;
-    sum += weight;
-    squares += weight * weight;
-  }
-  return sum > 0.0 ? samples * squares / (sum * sum) : std::numeric_limits<double>::infinity();
+  const Moments moments = MomentsOf(samples, power, [&](const PhotonSample& u) {
+    const std::optional<Shot> shot = source.shoot(u);
+    return shot && Land(grid, *shot) ? shot : std::nullopt;
+  });
+  return moments.mean > 0.0 ? moments.square / (moments.mean * moments.mean) : std::numeric_limits<double>::infinity();
 }
 
 PhotonSource Rectangle(const Grid& grid, const Light& light)

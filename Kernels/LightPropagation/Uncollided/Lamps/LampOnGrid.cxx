@@ -152,21 +152,7 @@ using Polygon = std::vector<glm::dvec3>; ///< plane and convex
 /// What of it is where normal . x >= least.
 Polygon Clip(const Polygon& polygon, const glm::dvec3& normal, double least)
 {
-  Polygon clipped;
-  for (std::size_t i = 0; i < polygon.size(); ++i)
-  {
-    const glm::dvec3 &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
-    const double from = glm::dot(a, normal) - least, to = glm::dot(b, normal) - least;
-    if (from >= 0.0)
-    {
-      clipped.push_back(a);
-    }
-    if (from * to < 0.0)
-    {
-      clipped.push_back(a + (b - a) * (from / (from - to)));
-    }
-  }
-  return clipped;
+  return Clipped(polygon, [&](const glm::dvec3& x) { return glm::dot(x, normal) - least; });
 }
 
 double SizeOf(const Polygon& polygon)
