@@ -553,21 +553,24 @@ bool EndedWhileBuilding(const std::string& folder)
       continue;
     }
     const int file = open(mark.c_str(), O_RDONLY | O_CLOEXEC);
-    if (file < 0 || flock(file, LOCK_EX | LOCK_NB) != 0)
-    {
-      close(file);
-      continue;
-    }
-    ended.emplace_back(mark, file);
-    if (std::time(nullptr) * second - found->written > old)
+    const bool hasEnded = file >= 0 && flock(file, LOCK_EX | LOCK_NB) == 0;
+    if (hasEnded && std::time(nullptr) * second - found->written > old)
     {
       unlink(mark.c_str());
+    }
+    else if (hasEnded)
+    {
+      ended.emplace_back(mark, file);
+      first = std::min(first, found->written);
+      last = std::max(last, found->written);
       continue;
     }
-    first = std::min(first, found->written);
-    last = std::max(last, found->written);
+    if (file >= 0)
+    {
+      close(file);
+    }
   }
-  const bool twice = last - first >= apart && last > 0;
+  const bool twice = !ended.empty() && last - first >= apart;
   for (const auto& [mark, file] : ended)
   {
     if (twice)
