@@ -55,8 +55,8 @@ private:
 /// @param others  what goes on besides
 double GoesOnToItsEnd(int maximumOrders, double before, double onTheWay, double others);
 
-/// Likewise, where an acceleration counts what is on the way as light to come: `others` is then what it did not foresee
-/// of the part that ended in the last order, and tells by how it falls off how much there is in the rest.
+/// Likewise, where an acceleration counts what is on the way as light to come. `others` is the unforeseen part of what
+/// ended in the last order; its decrease tells how much is still to come, so light on the way is not added.
 double GoesOnAsForeseen(double before, double onTheWay, double others);
 
 /// Of a solve, [0, 1]: orders of those asked for, else how far the logarithm of the residual has come, and a little
@@ -74,8 +74,8 @@ void DoubtGivenLight(const Illumination& illumination, LightField& light);
 /// The energy check of every conservative solver: power is absorbed, escapes or is left over. An error above 1e-4
 /// becomes one of the light's `doubts`.
 /// @param medium  read only where the balance is off, to tell why; without voxels: not known
-/// @throws InvalidInput where the error is above 1e-2, or not a number; where powers are what none can be by as much:
-///   absorbed or gone below 0, or left over beyond all there was
+/// @throws InvalidInput where the error is above 1e-2, or not a number; where more than 1e-2 of the power is
+///   impossible: absorbed or escaped power below 0, or more left over than came in
 void JudgeBalance(LightField& light, const Medium& medium);
 /// The same of light over ranks, each with the balance of all. Collective.
 /// @param has  voxels, this rank

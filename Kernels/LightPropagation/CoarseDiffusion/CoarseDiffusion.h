@@ -39,8 +39,8 @@ public:
   /// orders to come, and leaves in `path` what the next sweep is to have less. All arrays [channel][stride].
   /// @param path  W length
   /// @param source  W / (length^3 sr), replaced
-  /// @param onTheWay  W, round periodic axes when the sweep ended, that the medium is to take sooner or later: light to
-  ///   come as well, as if it came from all of the box alike
+  /// @param onTheWay  W, that rays round periodic axes still carry; it is added to the right-hand side, evenly over the
+  ///   box
   /// @param guess  W length, of all orders to come, in the place of the cells' solution; null: that
   Powers ScatterOrder(const Buffer<float>& path, const Buffer<float>& fluence, const Buffer<float>& source,
     double onTheWay = 0.0, const Buffer<float>* guess = nullptr);

@@ -32,7 +32,7 @@ public:
   /// @param guess  of all orders to come, in the place of the cells' solution; null: that
   Powers ScatterOrder(EnergyLedger& ledger, const Rgb& onTheWay, const Buffer<float>* guess);
 
-  /// Nothing leaves, so that the medium takes all that is on the way, wherever it is: it is among what is to come.
+  /// Whether all axes are periodic: power on the way can only be absorbed, so the cells' solution includes it.
   bool ForeseeWay() const { return this->Closed; }
 
   /// A ledger with what leaves of the orders to come.
