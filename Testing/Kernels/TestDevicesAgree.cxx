@@ -1,6 +1,6 @@
 // The same scenes on PoCL and on another OpenCL of this machine: run by on_intel, with Intel's. Where the other is a
-// machine without PoCL (a GPU that was lent), PoCL's values are brought along: TYNDALL_POCL_VALUES is a folder that a
-// run where PoCL alone is chosen fills, and another run reads.
+// machine without PoCL (a GPU that was lent), or PoCL itself with what GPUs get (TYNDALL_AS_GPU), PoCL's values are
+// brought along: TYNDALL_POCL_VALUES is a folder that a run where PoCL alone is chosen fills, and another run reads.
 
 #include "DeviceTest.h"
 #include "Difference.h"
@@ -91,10 +91,10 @@ private:
       std::to_string(this->Comparisons++);
   }
 
-  /// PoCL's values, that were brought along: `found`, and kept, where PoCL itself found them.
+  /// PoCL's values, that were brought along: `found`, and kept, where PoCL itself found them as a CPU.
   Values Brought(const Values& found)
   {
-    if (this->Other->Name().find(PoclName) == std::string::npos)
+    if (this->Other->Name().find(PoclName) == std::string::npos || !this->Other->IsCpu())
     {
       return this->Read();
     }

@@ -259,8 +259,7 @@ void AxisSweep::Implementation::Launch(const SweepVolume& volume, const Entry& e
   const cl::Buffer& faceOut = this->CellsOf(volume.deposit);
   const Buffer<float>& faceIn = volume.faceIn ? *volume.faceIn : *volume.deposit.path;
   const Buffer<float>& octantSource = volume.octantSource ? *volume.octantSource : *volume.deposit.path;
-  info.moments = plan.moments;
-  info.packedMoments = plan.momentRow;
+  plan.DescribeMoments(info);
   info.sizeY = plan.grid.size[1];
   info.firstChannel = volume.firstChannel;
   if (this->Stream)

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
 
 namespace tyndall
@@ -497,6 +498,13 @@ std::vector<CrossingInfo> SweepPlan::Crossings(int firstPlane, int planes) const
 void SweepPlan::LetRaysGoOn()
 {
   this->plane.thin = static_cast<float>(Thin / LongestWay(this->bundles));
+}
+
+void SweepPlan::DescribeMoments(SweepInfo& info) const
+{
+  info.moments = this->moments;
+  info.packedMoments = this->momentRow;
+  std::partial_sum(this->order.counts.begin(), this->order.counts.end(), info.parityEnds);
 }
 
 std::vector<cl_int> SweepPlan::FunctionPlaces() const

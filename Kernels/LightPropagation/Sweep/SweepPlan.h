@@ -78,6 +78,7 @@ struct SweepPlan
   /// Where each angular function is in a group of moments (MomentPlacesShared.h), in the order of this axis; of the
   /// first, which is not in one, and where light has no moments, 0.
   std::vector<cl_int> FunctionPlaces() const;
+  void DescribeMoments(SweepInfo& info) const;
   /// Rays go on from the end of the grid in planes of the pattern beyond those of its own; before OwnLight().
   void LetRaysGoOn();
 

@@ -156,6 +156,7 @@ typedef struct
   MomentPlaces moments;
   int sizeY;         ///< voxels of the grid along y, or of a slot
   int packedMoments; ///< floats of a packed row of moments
+  int parityEnds[4]; ///< where those of each parity end among the angular functions (SweepLayout.cl)
   int firstChannel;
   ulong sourceSlot, pathSlot; ///< floats of a slot of source and of path, where volumes are streamed
 } SweepInfo;

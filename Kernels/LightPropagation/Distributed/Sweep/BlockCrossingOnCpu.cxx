@@ -103,8 +103,7 @@ SweepInfo BlockCrossingOnCpu::InfoOf(const SweepVolume& volume) const
   info.shines = volume.source != nullptr;
   info.roundAxis = this->Rays.around;
   info.planes = plan.plane;
-  info.moments = plan.moments;
-  info.packedMoments = plan.momentRow;
+  plan.DescribeMoments(info);
   info.sizeY = this->SizeY;
   info.firstChannel = volume.firstChannel;
   return info;

@@ -1,8 +1,6 @@
 // Rays through a range of planes, on a CPU: a work-item carries all the rays of its unit (one way along the axis, some
 // or all bundles) and deposits into the volume itself. Units of one launch never share a plane, so nothing is lost and
-// sums have one order. The host gives
-//   MEMBERS_1, MEMBERS_2, MEMBERS_4, MEMBERS_8  defined for each number of members that bundles may have
-// and what SweepLayout.cl asks for.
+// sums have one order. The host gives what SweepLayout.cl asks for.
 
 #include "LightPropagation/Sweep/OnCpu/SweepCrossing.cl"
 #include "LightPropagation/Sweep/OnCpu/SweepFaces.cl"
@@ -29,26 +27,18 @@ static void go_to_plane(sweep_state* state, int k)
 }
 
 // One bundle through planes, once for each number of members.
-#ifdef MEMBERS_1
 #define MEMBERS 1
 #include "LightPropagation/Sweep/OnCpu/SweepBundle.cl"
 #undef MEMBERS
-#endif
-#ifdef MEMBERS_2
 #define MEMBERS 2
 #include "LightPropagation/Sweep/OnCpu/SweepBundle.cl"
 #undef MEMBERS
-#endif
-#ifdef MEMBERS_4
 #define MEMBERS 4
 #include "LightPropagation/Sweep/OnCpu/SweepBundle.cl"
 #undef MEMBERS
-#endif
-#ifdef MEMBERS_8
 #define MEMBERS 8
 #include "LightPropagation/Sweep/OnCpu/SweepBundle.cl"
 #undef MEMBERS
-#endif
 
 // The volume that a unit sweeps, see `sweep`.
 typedef struct
@@ -130,7 +120,7 @@ static void begin_rows(const swept_volume* volume, const packed_planes* packed, 
 #endif
 }
 
-#if !DEGREE
+#if !ANGULAR
 // Adds to a row the path of the medium's own light in the voxel where it starts (numerics.md, Eq. (26)):
 // (length - taken) / sigma, or a polynomial where that would cancel or `taken` was not kept.
 static void add_own_light(const PlaneInfo* layout, __global float* row, const __global OwnLightInfo* light)
@@ -164,7 +154,7 @@ static void end_rows(const swept_volume* volume, const packed_planes* packed, in
   const PlaneInfo* layout = &info->planes;
   const ulong stride = info->stride;
   const int axis = info->axis, backward = volume->backward, first = packed->first, count = packed->count;
-#if !DEGREE
+#if !ANGULAR
   for (int j = 0; info->shines && j < count; ++j)
   {
     for (int v = rows.x; v < rows.y; ++v)
@@ -211,18 +201,10 @@ static void cross_planes(sweep_state* state, int planes, __global float* maps, c
   cross_planes_##n(state, planes, map, rows, values, bundle, crossings, all_bundles, coefficients, first_row, end_row)
   switch (bundle->members)
   {
-#ifdef MEMBERS_1
     case 1: CROSS(1); break;
-#endif
-#ifdef MEMBERS_2
     case 2: CROSS(2); break;
-#endif
-#ifdef MEMBERS_4
     case 4: CROSS(4); break;
-#endif
-#ifdef MEMBERS_8
     case 8: CROSS(8); break;
-#endif
   }
 #undef CROSS
 }
@@ -239,7 +221,7 @@ static void cross_bundles(sweep_state* state, const swept_volume* volume, const 
   const __global float* coefficients)
 {
   __global float* const kept = state->ring;
-#if DEGREE
+#if ANGULAR
   const int tile = TILE, floats_of_bundle = BUNDLE_FLOATS(CHANNELS, ROW);
 #else
   const int tile = state->tile, floats_of_bundle = state->rings * RingRows * RAYS_OF_ROW;
@@ -265,7 +247,7 @@ static void cross_bundles(sweep_state* state, const swept_volume* volume, const 
     for (int b = 0; b < count; ++b)
     {
       state->ring = kept + b * floats_of_bundle;
-#if DEGREE
+#if ANGULAR
       state->sources = state->ring + state->rings * RingRows * RAYS_OF_ROW;
       state->paths = state->sources + MomentRows * RAYS_OF_ROW;
       state->ownPath = state->paths + MomentRows * RAYS_OF_ROW;
@@ -347,7 +329,7 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
   state.periodicV = info.periodicV;
   state.ring = scratch + unit.scratch;
   state.rings = RINGS_OF(layout.chained);
-#if DEGREE
+#if ANGULAR
   const int together = min(unit.bundles, (int)BundlesTogether);
   const int rings = together * BUNDLE_FLOATS(CHANNELS, ROW);
 #else
@@ -378,8 +360,9 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
 #endif
   __global int* thin = (__global int*)(planes + layout.together * plane_floats(&layout));
   float escaped[PLANES_TOGETHER][4][CHANNELS], rounding[PLANES_TOGETHER][4][CHANNELS];
-#if DEGREE
-  const ulong channel = (ulong)info.moments.groups * GROUP;
+#if ANGULAR
+  const int higher_functions = info.moments.functions - 1;
+  const ulong channel = (ulong)info.moments.groups * higher_functions * MomentGroup;
   const ulong higher = info.moments.second + info.firstChannel * channel;
   const __global float* higher_source = source + higher;
   __global float* higher_path = path + higher;
@@ -392,10 +375,12 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
 #else
   const __global float* beams = source;
 #endif
-#if DEGREE
-  for (int k = 0; k < MOMENTS; ++k)
+#if ANGULAR
+  state.functions = info.moments.functions;
+  state.functionPlaces = function_places;
+  for (int p = 0; p < 4; ++p)
   {
-    state.functionPlaces[k] = function_places[k];
+    state.parityEnds[p] = info.parityEnds[p];
   }
 #endif
   for (int i = 0; i < MeanLengthTerms; ++i)
@@ -429,7 +414,7 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
   {
     const int lap = begin / layout.sizeP * layout.sizeP; // planes already marched when the axis began anew
     count = min(min(layout.together, range.y - begin), lap + layout.sizeP - begin);
-#if DEGREE && !MOMENTS_IN_PLACE
+#if ANGULAR && !MOMENTS_IN_PLACE
     count = min(count, of_one_group(&layout, begin - lap, unit.backward));
 #endif
     const int first = unit.backward ? layout.sizeP - (begin - lap) - count : begin - lap;
@@ -437,7 +422,7 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
 #if !ROWS_KEPT
     begin_rows(&volume, &packed, all_rows);
 #endif
-#if DEGREE && !MOMENTS_IN_PLACE
+#if ANGULAR && !MOMENTS_IN_PLACE
     if (info.shines)
     {
       pack_moments(&info, packed_source, first, count, higher_source);
@@ -472,7 +457,7 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
       state.sidesIn = sides_in + sides_of_plane;
       state.sidesOut = sides_out + sides_of_plane;
 #endif
-#if DEGREE
+#if ANGULAR
       const int plane = state.places->plane;
 #if MOMENTS_IN_PLACE
       const ulong line = info.moments.channels * channel;
@@ -518,7 +503,7 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
 #if !ROWS_KEPT
     end_rows(&volume, &packed, all_rows);
 #endif
-#if DEGREE && !MOMENTS_IN_PLACE
+#if ANGULAR && !MOMENTS_IN_PLACE
     unpack_moments(&info, packed_path, first, count, higher_path);
 #endif
   }

@@ -23,7 +23,7 @@
 #define BLOCK (MEMBERS * CHANNELS * ROW)
 #define FIRST(member, channel) (((member)*CHANNELS + (channel)) * ROW + PAD)
 
-#if DEGREE
+#if ANGULAR
 #include "LightPropagation/Sweep/OnCpu/SweepMoments.cl"
 // A function for as many frames as the bundle has: one of one member, two of all eight.
 #define FOR_FRAMES(FUNCTION, y, slot)                       \
@@ -156,7 +156,7 @@ static inline __attribute__((always_inline)) void CROSS_VOXELS(sweep_state* stat
 static void STAGE_ROW(sweep_state* state, int y, int slot, bool first, bool deposit, const __global float** in,
   __global float* out, float length, const __global BundleInfo* bundle)
 {
-#if DEGREE
+#if ANGULAR
 #define CROSS_ROW(thin) CROSS_MOMENTS(state, y, slot, first, thin, in, out, length, bundle)
 #else
 #if CURRENTS
@@ -512,7 +512,7 @@ static void CROSS_PLANES(sweep_state* state, int planes, __global float* map, co
       __global float* out =
         g == stages - 1 ? map + y * BLOCK : state->ring + (g * RingRows + (y & (RingRows - 1))) * RAYS_OF_ROW;
 #if CURRENTS
-      if (inside && (DEGREE || s > 0)) // else where voxels are crossed
+      if (inside && (ANGULAR || s > 0)) // else where voxels are crossed
       {
         COUNT_CURRENTS(state, y, s == 0, in, own, bundle, crossing->moveU[s], crossing->moveV[s], crossing->part[s]);
       }
@@ -522,7 +522,7 @@ static void CROSS_PLANES(sweep_state* state, int planes, __global float* map, co
         MOVE_PART(state, crossing->part[s], own, in);
       }
       const int slot = y & (MomentRows - 1);
-#if DEGREE
+#if ANGULAR
       if (s == 0)
       {
         if (state->shines)
@@ -543,7 +543,7 @@ static void CROSS_PLANES(sweep_state* state, int planes, __global float* map, co
       {
         ENTER_ROW(state, wrapped, s + 1, radiance, bundle, crossing, out);
       }
-#if DEGREE
+#if ANGULAR
       if (inside && s == stages - 1)
       {
         FOR_FRAMES(GATHER_MOMENTS, y, slot)

@@ -2,14 +2,13 @@
 //   REAL_WIDTH  4, 8 or 16 floats of a vector
 //   CHANNELS  1 or 3 colours that share sigma_t
 //   ROW       floats in a padded row; the floats after a row's voxels and before the next row's are its border
-//   DEGREE    of the angular moments in which light is gathered and scattered; 0: fluence alone
-//   BEAMS     sources with an angular distribution of their own, besides the moments; where DEGREE is not 0
-//   EVEN_EVEN, ODD_EVEN, EVEN_ODD, ODD_ODD  how many of the angular functions are even or odd along u and v; where
-//             DEGREE is not 0, as is
-//   MOMENTS_IN_PLACE  1: they are read and added to where they are; 0: they are packed like the rest of a plane
+//   ANGULAR   1 where light is gathered and scattered in angular moments, 0: fluence alone
+//   BEAMS     sources with an angular distribution of their own, besides the moments; where ANGULAR
+//   MOMENTS_IN_PLACE  1: they are read and added to where they are; 0: they are packed like the rest of a plane; where
+//             ANGULAR, as is
 //   NET_FLUX  1 where the net flux is wanted
 //   CURRENTS  1 where the power that enters each voxel through each face is wanted
-//   OCTANT_SOURCE  1 where voxels may shine otherwise into each octant; where DEGREE is 0
+//   OCTANT_SOURCE  1 where voxels may shine otherwise into each octant; where ANGULAR is 0
 //   PERIODIC  1 where the box is periodic along u or v; SweepInfo says along which
 //   STREAMED  1 where slices of the volumes are in slots (SliceStream.h)
 //   FACE_OUT, FACE_IN  1 where light leaves and comes in by cells of the box's faces (SweepFaces.cl)
@@ -38,7 +37,6 @@
 #define FLUX (NET_FLUX ? 3 : 0)
 
 // The quantities of one plane, behind those of SweepShared.h.
-#define MOMENTS ((DEGREE + 1) * (DEGREE + 1))
 #define PLANE_BEAMS (PlaneSource + CHANNELS)
 #define PLANE_PATH (PLANE_BEAMS + BEAMS * CHANNELS) // the path integral of power, W length
 #define PLANE_FLUX (PLANE_PATH + CHANNELS)
@@ -49,7 +47,7 @@
 
 // Whether planes may be crossed row by row one behind the other, up to PLANES_CHAINED: not where what comes in or goes
 // out beside rows is kept by plane, or rows come from the other side.
-#define CHAINED (!DEGREE && !FACE_IN && !FACE_OUT && !SIDES && !PERIODIC)
+#define CHAINED (!ANGULAR && !FACE_IN && !FACE_OUT && !SIDES && !PERIODIC)
 #define PERIODIC_U (PERIODIC && state->periodicU)
 #define PERIODIC_V (PERIODIC && state->periodicV)
 #define ROWS_KEPT (CHAINED ? CHAIN_KEEPS : 0)
@@ -63,11 +61,9 @@
 #endif
 #define ROW_OF(planes, quantity, row) ((planes) + (PLACE_OF_ROW(row) * PLANES + (quantity)) * ROW)
 
-#if DEGREE
-// Of the functions from the second on, as MomentPlacesShared.h has them: floats of a group, and where voxel x is.
-#define HIGHER (MOMENTS - 1)
-#define GROUP (HIGHER * MomentGroup)
-#define IN_ROW(x) ((x) / MomentGroup * GROUP + (x) % MomentGroup)
+#if ANGULAR
+// Where voxel x is among so many functions from the second on, as MomentPlacesShared.h has them.
+#define IN_ROW(x, higher) ((x) / MomentGroup * ((higher)*MomentGroup) + (x) % MomentGroup)
 #endif
 
 // Planes of a chain, their stages, and how far the last one stays behind.
@@ -112,7 +108,7 @@ typedef struct
   int tile;             // rows that bundles cross in turns; 0: each crosses all of them
   int rings;            // one behind each stage but the last
   __global float* ring; // so many of RingRows rows of RAYS_OF_ROW floats
-#if DEGREE
+#if ANGULAR
   __global float* sources; // MomentRows rows of RAYS_OF_ROW floats: W / (length^3 sr) in the members' directions
   __global float* paths;   // the same: W length, of the members
   __global float* ownPath; // MomentRows rows: of a source of 1 in its own voxel
@@ -120,8 +116,11 @@ typedef struct
   const __global float* momentSource;
   __global float* momentPath;
   ulong momentStep, momentChannel;
-  // Where each function is in a group of moments, by parity: even and even, odd and even, even and odd, odd and odd.
-  int functionPlaces[MOMENTS];
+  // The angular functions, and where each is in a group of moments, by parity along u and v: even and even, odd and
+  // even, even and odd, odd and odd; and where those of each parity end.
+  int functions;
+  const __global int* functionPlaces;
+  int parityEnds[4];
 #endif
   __global float* moving;     // the rays of a row of which a part moves
   float (*escaped)[CHANNELS]; // of the plane, through -u, +u, -v, +v, W; with the rounding errors

@@ -6,32 +6,34 @@
 // each member. A bundle has one frame or two; a value of a function is read once for both.
 
 #define MOST_OF_FRAME (MEMBERS < 4 ? MEMBERS : 4)
+#define BEGIN_OF_FRAME(f) (MEMBERS == 8 ? 4 * (f) : bundle->firstOfFrame[f]) // eight are two full frames
 
-// What follows for each function k of one parity in turn.
-#define OF_EVEN_EVEN(MACRO) FUNCTIONS_OF(MACRO, 1, EVEN_EVEN, 0)
-#define OF_ODD_EVEN(MACRO) FUNCTIONS_OF(MACRO, EVEN_EVEN, EVEN_EVEN + ODD_EVEN, 1)
-#define OF_EVEN_ODD(MACRO) FUNCTIONS_OF(MACRO, EVEN_EVEN + ODD_EVEN, EVEN_EVEN + ODD_EVEN + EVEN_ODD, 2)
-#define OF_ODD_ODD(MACRO) FUNCTIONS_OF(MACRO, EVEN_EVEN + ODD_EVEN + EVEN_ODD, MOMENTS, 3)
-#define FUNCTIONS_OF(MACRO, begin, end, parity)       \
-  _Pragma("unroll") for (int k = begin; k < end; ++k) \
-  {                                                   \
-    const int place = state->functionPlaces[k];       \
-    MACRO(parity)                                     \
+// What follows for each function k, from the second on, of each parity in turn; a parity is left out where its
+// functions are zero in all of the bundle's directions. BEGIN_PARITIES has what it reads in registers.
+#define BEGIN_PARITIES                                                  \
+  const int functions = state->functions, parities = bundle->parities;  \
+  const int end_0 = state->parityEnds[0], end_1 = state->parityEnds[1]; \
+  const int end_2 = state->parityEnds[2], end_3 = state->parityEnds[3]; \
+  const __global int* const places = state->functionPlaces;
+#define FUNCTIONS_OF(MACRO, begin, end, parity) \
+  for (int k = begin; k < end; ++k)             \
+  {                                             \
+    const int place = places[k];                \
+    MACRO(parity)                               \
   }
-// Those of a parity are left out where they are zero in all of the bundle's directions.
-#define OF_ALL_PARITIES(MACRO) \
-  OF_EVEN_EVEN(MACRO)          \
-  if (parities & 2)            \
-  {                            \
-    OF_ODD_EVEN(MACRO)         \
-  }                            \
-  if (parities & 4)            \
-  {                            \
-    OF_EVEN_ODD(MACRO)         \
-  }                            \
-  if (parities & 8)            \
-  {                            \
-    OF_ODD_ODD(MACRO)          \
+#define OF_ALL_PARITIES(MACRO)           \
+  FUNCTIONS_OF(MACRO, 1, end_0, 0)       \
+  if (parities & 2)                      \
+  {                                      \
+    FUNCTIONS_OF(MACRO, end_0, end_1, 1) \
+  }                                      \
+  if (parities & 4)                      \
+  {                                      \
+    FUNCTIONS_OF(MACRO, end_1, end_2, 2) \
+  }                                      \
+  if (parities & 8)                      \
+  {                                      \
+    FUNCTIONS_OF(MACRO, end_2, end_3, 3) \
   }
 
 // The source in the direction of each member, in row y, into slot `slot`. Rows lie as those of the rings, whose last
@@ -41,8 +43,8 @@ static inline __attribute__((always_inline)) void FIND_SOURCES(sweep_state* stat
   const __global BundleInfo* bundle, const __global float* coefficients, const int frames)
 {
   __global float* out = state->sources + slot * RAYS_OF_ROW;
-  const __global float* of_beams = coefficients + frames * MOMENTS;
-  const int parities = bundle->parities;
+  BEGIN_PARITIES
+  const __global float* of_beams = coefficients + frames * functions;
   for (int c = 0; c < CHANNELS; ++c)
   {
     const __global float* fluence = ROW_OF(state->planes, PlaneSource + c, y);
@@ -50,27 +52,26 @@ static inline __attribute__((always_inline)) void FIND_SOURCES(sweep_state* stat
     const __global float* beams = ROW_OF(state->planes, PLANE_BEAMS + c, y);
     for (int x = 0; x < state->width; x += REAL_WIDTH)
     {
-      const int group = IN_ROW(x);
+      const int group = IN_ROW(x, functions - 1);
       real sums[MaxFrames][4];
 #pragma unroll
       for (int f = 0; f < frames; ++f)
       {
-        sums[f][0] = load_real(x, fluence) * (real)coefficients[f * MOMENTS];
+        sums[f][0] = load_real(x, fluence) * (real)coefficients[f * functions];
         sums[f][1] = sums[f][2] = sums[f][3] = (real)0.0f;
       }
-#define ADD_FUNCTION(parity)                                                                     \
-  const real value = load_real(group, higher + place);                                           \
-  _Pragma("unroll") for (int f = 0; f < frames; ++f)                                             \
-  {                                                                                              \
-    sums[f][parity] = multiply_add(value, (real)coefficients[f * MOMENTS + k], sums[f][parity]); \
+#define ADD_FUNCTION(parity)                                                                       \
+  const real value = load_real(group, higher + place);                                             \
+  _Pragma("unroll") for (int f = 0; f < frames; ++f)                                               \
+  {                                                                                                \
+    sums[f][parity] = multiply_add(value, (real)coefficients[f * functions + k], sums[f][parity]); \
   }
       OF_ALL_PARITIES(ADD_FUNCTION)
 #undef ADD_FUNCTION
 #pragma unroll
       for (int f = 0; f < frames; ++f)
       {
-        const int first = f == 0 ? 0 : bundle->firstOfFrame[1];
-        const int count = bundle->firstOfFrame[f + 1] - first;
+        const int first = BEGIN_OF_FRAME(f), count = BEGIN_OF_FRAME(f + 1) - first;
 #pragma unroll
         for (int i = 0; i < MOST_OF_FRAME; ++i)
         {
@@ -133,20 +134,19 @@ static inline __attribute__((always_inline)) void GATHER_MOMENTS(sweep_state* st
   const __global float* sources = state->sources + slot * RAYS_OF_ROW;
   const __global float* paths = state->paths + slot * RAYS_OF_ROW;
   const __global float* own_row = state->ownPath + slot * ROW;
-  const int parities = bundle->parities;
+  BEGIN_PARITIES
   for (int c = 0; c < CHANNELS; ++c)
   {
     __global float* fluence = ROW_OF(state->planes, PLANE_PATH + c, y);
     __global float* higher = state->momentPath + y * state->momentStep + c * state->momentChannel;
     for (int x = 0; x < state->width; x += REAL_WIDTH)
     {
-      const int group = IN_ROW(x);
+      const int group = IN_ROW(x, functions - 1);
       real sums[MaxFrames][4];
 #pragma unroll
       for (int f = 0; f < frames; ++f)
       {
-        const int first = f == 0 ? 0 : bundle->firstOfFrame[1];
-        const int count = bundle->firstOfFrame[f + 1] - first;
+        const int first = BEGIN_OF_FRAME(f), count = BEGIN_OF_FRAME(f + 1) - first;
         sums[f][0] = sums[f][1] = sums[f][2] = sums[f][3] = (real)0.0f;
 #pragma unroll
         for (int i = 0; i < MOST_OF_FRAME; ++i)
@@ -169,15 +169,15 @@ static inline __attribute__((always_inline)) void GATHER_MOMENTS(sweep_state* st
 #pragma unroll
       for (int f = 0; f < frames; ++f)
       {
-        sum = multiply_add(sums[f][0], (real)coefficients[f * MOMENTS], sum);
+        sum = multiply_add(sums[f][0], (real)coefficients[f * functions], sum);
       }
       store_real(sum, x, fluence);
-#define ADD_SUM(parity)                                                                  \
-  real moment = load_real(group, higher + place);                                        \
-  _Pragma("unroll") for (int f = 0; f < frames; ++f)                                     \
-  {                                                                                      \
-    moment = multiply_add(sums[f][parity], (real)coefficients[f * MOMENTS + k], moment); \
-  }                                                                                      \
+#define ADD_SUM(parity)                                                                    \
+  real moment = load_real(group, higher + place);                                          \
+  _Pragma("unroll") for (int f = 0; f < frames; ++f)                                       \
+  {                                                                                        \
+    moment = multiply_add(sums[f][parity], (real)coefficients[f * functions + k], moment); \
+  }                                                                                        \
   store_real(moment, group, higher + place);
       OF_ALL_PARITIES(ADD_SUM)
 #undef ADD_SUM
@@ -186,8 +186,6 @@ static inline __attribute__((always_inline)) void GATHER_MOMENTS(sweep_state* st
 }
 #undef OF_ALL_PARITIES
 #undef FUNCTIONS_OF
-#undef OF_ODD_ODD
-#undef OF_EVEN_ODD
-#undef OF_ODD_EVEN
-#undef OF_EVEN_EVEN
+#undef BEGIN_PARITIES
+#undef BEGIN_OF_FRAME
 #undef MOST_OF_FRAME

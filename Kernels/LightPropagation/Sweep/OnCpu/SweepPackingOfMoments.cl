@@ -3,19 +3,21 @@
 #pragma once
 #include "LightPropagation/Sweep/OnCpu/SweepPacking.cl"
 
-#if DEGREE && !MOMENTS_IN_PLACE
+#if ANGULAR && !MOMENTS_IN_PLACE
 // Of the functions from the second on, where planes from `first` on, all of one group, have row (u, v) of a channel.
 static ulong moments_of(const SweepInfo* info, int channel, int u, int v, int first)
 {
   const PlaneInfo* layout = &info->planes;
   const ulong line = (ulong)(layout->firstV + v) * info->sizeY + layout->firstU + u; // along x rows are y and z
-  return (line * info->moments.channels + channel) * info->moments.groups * GROUP + IN_ROW(layout->firstP + first);
+  const int higher = info->moments.functions - 1;
+  return (line * info->moments.channels + channel) * info->moments.groups * (higher * MomentGroup) +
+    IN_ROW(layout->firstP + first, higher);
 }
 
 // And where packed planes have it.
 static int packed_moments_of(const SweepInfo* info, int channel, int u, int v)
 {
-  return v * info->packedMoments + channel * (info->packedMoments / CHANNELS) + IN_ROW(u);
+  return v * info->packedMoments + channel * (info->packedMoments / CHANNELS) + IN_ROW(u, info->moments.functions - 1);
 }
 
 // How many planes, from the one that rays come to next, are of one group.
@@ -28,7 +30,8 @@ static int of_one_group(const PlaneInfo* layout, int next, int backward)
 static void pack_moments(const SweepInfo* info, __global float* to, int first, int count, const __global float* source)
 {
   const PlaneInfo* layout = &info->planes;
-  const ulong step = (ulong)info->moments.channels * info->moments.groups * GROUP;
+  const int higher = info->moments.functions - 1;
+  const ulong step = (ulong)info->moments.channels * info->moments.groups * (higher * MomentGroup);
   const int plane = layout->sizeV * info->packedMoments;
   for (int v = 0; v < layout->sizeV; ++v)
   {
@@ -39,7 +42,7 @@ static void pack_moments(const SweepInfo* info, __global float* to, int first, i
       {
         const __global float* from = source + moments_of(info, c, u, v, first);
         __global float* here = to + packed_moments_of(info, c, u, v);
-        for (int k = 0; k < HIGHER; ++k)
+        for (int k = 0; k < higher; ++k)
         {
           pack_block(from + k * MomentGroup, step, layout->sizeU - 1 - u, beyond, here + k * MomentGroup, plane, count);
         }
@@ -52,7 +55,8 @@ static void unpack_moments(
   const SweepInfo* info, const __global float* from, int first, int count, __global float* path)
 {
   const PlaneInfo* layout = &info->planes;
-  const ulong step = (ulong)info->moments.channels * info->moments.groups * GROUP;
+  const int higher = info->moments.functions - 1;
+  const ulong step = (ulong)info->moments.channels * info->moments.groups * (higher * MomentGroup);
   const int plane = layout->sizeV * info->packedMoments;
   for (int v = 0; v < layout->sizeV; ++v)
   {
@@ -63,7 +67,7 @@ static void unpack_moments(
       {
         const __global float* here = from + packed_moments_of(info, c, u, v);
         __global float* to = path + moments_of(info, c, u, v, first);
-        for (int k = 0; k < HIGHER; ++k, here += MomentGroup, to += MomentGroup)
+        for (int k = 0; k < higher; ++k, here += MomentGroup, to += MomentGroup)
         {
           if (count == REAL_WIDTH)
           {
