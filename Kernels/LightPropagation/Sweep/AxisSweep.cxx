@@ -382,10 +382,12 @@ cl::Kernel AxisSweep::Implementation::MapsKernel(const char* name)
 cl::Kernel AxisSweep::Implementation::SweepKernel(const Deposit& to, bool byCells)
 {
   const SweepPlan& plan = this->Plan;
+  // Where planes are not chained anyway one program serves periodic boxes, too.
+  const bool alone = plan.angular || to.faceOut || byCells;
   const std::string options = DefinesOf(plan) + ExactOption(this->TheDevice) + Define("NET_FLUX", to.flux != nullptr) +
     Define("FACE_OUT", to.faceOut != nullptr) + Define("FACE_SPREAD", to.spreadsAside) + Define("FACE_IN", byCells) +
     Define("STREAMED", this->Stream != nullptr) +
-    Define("PERIODIC", plan.periodic[plan.axes.u] || plan.periodic[plan.axes.v]);
+    Define("PERIODIC", alone || plan.periodic[plan.axes.u] || plan.periodic[plan.axes.v]);
   return this->TheDevice.Kernel("sweep", kernel_source::Sweep, options);
 }
 

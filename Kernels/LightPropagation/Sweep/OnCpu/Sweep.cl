@@ -59,7 +59,7 @@ typedef struct
 } packed_planes;
 
 // Which of the rows are thin throughout.
-static void find_thin_rows(const PlaneInfo* layout, const __global float* plane, int2 rows, __global int* thin)
+static BY_ROW void find_thin_rows(const PlaneInfo* layout, const __global float* plane, int2 rows, __global int* thin)
 {
   for (int v = rows.x; v < rows.y; ++v)
   {
@@ -74,7 +74,7 @@ static void find_thin_rows(const PlaneInfo* layout, const __global float* plane,
 }
 
 // Make rows [rows.x, rows.y) of planes ready to be crossed.
-static void begin_rows(const swept_volume* volume, const packed_planes* packed, int2 rows)
+static BY_ROW void begin_rows(const swept_volume* volume, const packed_planes* packed, int2 rows)
 {
   const SweepInfo* info = volume->info;
   const PlaneInfo* layout = &info->planes;
@@ -123,7 +123,7 @@ static void begin_rows(const swept_volume* volume, const packed_planes* packed, 
 #if !ANGULAR
 // Adds to a row the path of the medium's own light in the voxel where it starts (numerics.md, Eq. (26)):
 // (length - taken) / sigma, or a polynomial where that would cancel or `taken` was not kept.
-static void add_own_light(const PlaneInfo* layout, __global float* row, const __global OwnLightInfo* light)
+static BY_ROW void add_own_light(const PlaneInfo* layout, __global float* row, const __global OwnLightInfo* light)
 {
   for (int at = 0; at < ROW; at += REAL_WIDTH)
   {
@@ -148,7 +148,7 @@ static void add_own_light(const PlaneInfo* layout, __global float* row, const __
 #endif
 
 // Add what rows of the planes gathered to the volume.
-static void end_rows(const swept_volume* volume, const packed_planes* packed, int2 rows)
+static BY_ROW void end_rows(const swept_volume* volume, const packed_planes* packed, int2 rows)
 {
   const SweepInfo* info = volume->info;
   const PlaneInfo* layout = &info->planes;

@@ -187,8 +187,8 @@ static void STAGE_ROW(sweep_state* state, int y, int slot, bool first, bool depo
 // faces, and half of what comes in beside it goes straight through.
 // across_u, across_v  rays that come in through the faces across u and v, at [FIRST(m, c)] of the row and at [m][c],
 //                     but those that come in by cells
-static void COUNT_ESCAPED(sweep_state* state, const __global float* row, int y, int m, int du, int dv, float part,
-  const __global BundleInfo* bundle, const __global float* across_u, const __global float* across_v)
+static BY_ROW void COUNT_ESCAPED(sweep_state* state, const __global float* row, int y, int m, int du, int dv,
+  float part, const __global BundleInfo* bundle, const __global float* across_u, const __global float* across_v)
 {
   const bool through_v =
     !PERIODIC_V && ((dv < 0 && y == 0) || (dv > 0 && y == state->sizeV - 1)) && LEAVES_GRID(state, dv > 0 ? 3 : 2);
@@ -236,7 +236,7 @@ static void COUNT_ESCAPED(sweep_state* state, const __global float* row, int y, 
 }
 
 // Rays of a row of which a part moves: `in` is where they come from, `own` the row itself.
-static void MOVE_PART(sweep_state* state, float part, const __global float* own, const __global float** in)
+static BY_ROW void MOVE_PART(sweep_state* state, float part, const __global float* own, const __global float** in)
 {
   for (int m = 0; m < MEMBERS; ++m)
   {
@@ -256,7 +256,7 @@ static void MOVE_PART(sweep_state* state, float part, const __global float* own,
 }
 
 // Rays that come in from the side within a row: the column beside it, on both ends of every row in the rings.
-static void FILL_BORDER(sweep_state* state, const __global float* radiance)
+static BY_ROW void FILL_BORDER(sweep_state* state, const __global float* radiance)
 {
   for (int i = 0; i < MEMBERS * CHANNELS; ++i)
   {
@@ -271,8 +271,8 @@ static void FILL_BORDER(sweep_state* state, const __global float* radiance)
 
 #if FACE_IN
 // Rays that come in through the faces across u by cells, into the columns beside row y.
-static void ENTER_ASIDE(sweep_state* state, int y, const __global float* radiance, const __global BundleInfo* bundle,
-  int moveU, int moveV, __global float* out)
+static BY_ROW void ENTER_ASIDE(sweep_state* state, int y, const __global float* radiance,
+  const __global BundleInfo* bundle, int moveU, int moveV, __global float* out)
 {
   for (int m = 0; m < MEMBERS; ++m)
   {
@@ -287,7 +287,7 @@ static void ENTER_ASIDE(sweep_state* state, int y, const __global float* radianc
 }
 
 // The row of rays that come in through the faces across v, with those that come in by cells.
-static void FILL_OUTSIDE(sweep_state* state, const __global float* outside, const __global float* radiance,
+static BY_ROW void FILL_OUTSIDE(sweep_state* state, const __global float* outside, const __global float* radiance,
   const __global BundleInfo* bundle, const __global CrossingInfo* crossing)
 {
   const int size = state->sizeU;
@@ -332,8 +332,8 @@ static void FILL_OUTSIDE(sweep_state* state, const __global float* outside, cons
 #if CURRENTS
 // The rays of row y by the face they come through, see SweepPartialCurrents.cl: those of one face together. `own` is
 // the row itself, where rays come from.
-static void COUNT_CURRENTS(sweep_state* state, int y, bool first, const __global float** in, const __global float* own,
-  const __global BundleInfo* bundle, int moveU, int moveV, float part)
+static BY_ROW void COUNT_CURRENTS(sweep_state* state, int y, bool first, const __global float** in,
+  const __global float* own, const __global BundleInfo* bundle, int moveU, int moveV, float part)
 {
   const __global float* through[CurrentFaces][MEMBERS];
   int counts[CurrentFaces] = { 0, 0, 0, 0, 0 };

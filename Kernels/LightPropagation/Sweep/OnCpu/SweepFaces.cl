@@ -12,7 +12,7 @@
   ((state)->faceFirst[side] + (i) * (state)->faces->along[side] + (c) * (state)->faces->stride)
 
 // To the cells of plane `plane` of the grid.
-static void go_to_faces(sweep_state* state, int plane)
+static BY_ROW void go_to_faces(sweep_state* state, int plane)
 {
   for (int side = 0; side < 4; ++side)
   {
@@ -63,7 +63,7 @@ static float part_of_plane(face_planes of, int p)
   return (fmin(of.end, p + 1.0f) - fmax(of.begin, (float)p)) / (of.end - of.begin);
 }
 
-static void leave_through(const sweep_state* state, int side, int i, int c, face_planes of, float power)
+static BY_ROW void leave_through(const sweep_state* state, int side, int i, int c, face_planes of, float power)
 {
   for (int p = (int)floor(of.begin); p < of.end; ++p)
   {
@@ -72,7 +72,7 @@ static void leave_through(const sweep_state* state, int side, int i, int c, face
 }
 
 // A row of rays, through the cells of one side.
-static void leave_all_through(
+static BY_ROW void leave_all_through(
   const sweep_state* state, int side, int c, face_planes of, const __global float* rays, float part)
 {
   const int along = state->faces->along[side];
@@ -96,7 +96,7 @@ static float light_of_cell(const sweep_state* state, int side, int i, int c)
 
 // In the mean over cell i and the one at i + move, where it is on the face: of rays that move both ways at once half
 // pass either.
-static float light_of_cells(const sweep_state* state, int side, int i, int move, int c)
+static BY_ROW float light_of_cells(const sweep_state* state, int side, int i, int move, int c)
 {
   const int size = side < 2 ? state->sizeV : state->sizeU;
   const float here = light_of_cell(state, side, i, c);

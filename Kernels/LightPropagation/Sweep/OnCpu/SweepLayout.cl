@@ -9,7 +9,7 @@
 //   NET_FLUX  1 where the net flux is wanted
 //   CURRENTS  1 where the power that enters each voxel through each face is wanted
 //   OCTANT_SOURCE  1 where voxels may shine otherwise into each octant; where ANGULAR is 0
-//   PERIODIC  1 where the box is periodic along u or v; SweepInfo says along which
+//   PERIODIC  1 where the box may be periodic along u or v; SweepInfo says along which it is
 //   STREAMED  1 where slices of the volumes are in slots (SliceStream.h)
 //   FACE_OUT, FACE_IN  1 where light leaves and comes in by cells of the box's faces (SweepFaces.cl)
 //   CHAIN_KEEPS  rows of planes that scratch has room for, a power of two; 0: all; may be left out
@@ -31,6 +31,8 @@
 #ifndef CHAIN_KEEPS
 #define CHAIN_KEEPS 0
 #endif
+// Of functions that are called once a row, or less often: copies of them in loops that are unrolled cost compilation.
+#define BY_ROW __attribute__((noinline))
 #define PAD REAL_WIDTH
 #define LAG 2 // rows a stage stays behind the one before
 #define PLANES_TOGETHER (REAL_WIDTH > MostChained ? REAL_WIDTH : MostChained) // at most

@@ -112,16 +112,19 @@ static inline __attribute__((always_inline)) void CROSS_MOMENTS(sweep_state* sta
     const real shine = mean_length * power;
     const real own = own_path_of(x, &crossing, inverse_row, length) * power;
     store_real(first ? own : own + load_real(x, own_row), x, own_row);
-#pragma unroll
-    for (int i = 0; i < MEMBERS * CHANNELS; ++i)
+    for (int c = 0; c < CHANNELS; ++c)
     {
-      const int at = i * ROW + PAD;
-      const real ray = load_real(x, in[i / CHANNELS] + i % CHANNELS * ROW);
-      const real gain = shine * load_real(x, sources + at);
-      const real kept = thin ? ray + gain : multiply_add(ray, keep, gain);
-      store_real(multiply_add(ray, change, kept), x, out + at);
-      const real before = first ? (real)0.0f : load_real(x, paths + at);
-      store_real(multiply_add(mean_length, ray, before), x, paths + at);
+#pragma unroll
+      for (int m = 0; m < MEMBERS; ++m)
+      {
+        const int at = FIRST(m, c);
+        const real ray = load_real(x, in[m] + c * ROW);
+        const real gain = shine * load_real(x, sources + at);
+        const real kept = thin ? ray + gain : multiply_add(ray, keep, gain);
+        store_real(multiply_add(ray, change, kept), x, out + at);
+        const real before = first ? (real)0.0f : load_real(x, paths + at);
+        store_real(multiply_add(mean_length, ray, before), x, paths + at);
+      }
     }
   }
 }

@@ -49,7 +49,7 @@ static int plane_floats(const PlaneInfo* layout)
 }
 
 // Set floats, a multiple of a vector, to zero.
-static void clear(__global float* floats, int count)
+static BY_ROW void clear(__global float* floats, int count)
 {
   for (int i = 0; i < count; i += REAL_WIDTH)
   {
@@ -83,7 +83,7 @@ static inline __attribute__((always_inline)) void pack_block(
 
 // Copy one quantity of rows [rows.x, rows.y) of planes [first, first + count) into scratch, filled up with zeros. May
 // read, not use, a vector beyond the last voxel.
-static void pack(
+static BY_ROW void pack(
   const PlaneInfo* layout, __global float* to, int first, int count, int2 rows, const __global float* volume)
 {
   for (int v = rows.x; v < rows.y; ++v)
@@ -157,8 +157,8 @@ static inline __attribute__((always_inline)) void unpack_block(
 
 // Add one quantity of rows of the planes, with a sign, to the volume; exactly their voxels are touched, as others may
 // be in work elsewhere.
-static void unpack(const PlaneInfo* layout, const __global float* from, int first, int count, int2 rows, float sign,
-  __global float* volume, __global float* lost)
+static BY_ROW void unpack(const PlaneInfo* layout, const __global float* from, int first, int count, int2 rows,
+  float sign, __global float* volume, __global float* lost)
 {
   const int plane = plane_floats(layout);
   for (int v = rows.x; v < rows.y; ++v)

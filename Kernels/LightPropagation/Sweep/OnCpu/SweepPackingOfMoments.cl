@@ -27,7 +27,8 @@ static int of_one_group(const PlaneInfo* layout, int next, int backward)
   return backward ? plane % MomentGroup + 1 : MomentGroup - plane % MomentGroup;
 }
 
-static void pack_moments(const SweepInfo* info, __global float* to, int first, int count, const __global float* source)
+static BY_ROW void pack_moments(
+  const SweepInfo* info, __global float* to, int first, int count, const __global float* source)
 {
   const PlaneInfo* layout = &info->planes;
   const int higher = info->moments.functions - 1;
@@ -51,7 +52,7 @@ static void pack_moments(const SweepInfo* info, __global float* to, int first, i
   }
 }
 
-static void unpack_moments(
+static BY_ROW void unpack_moments(
   const SweepInfo* info, const __global float* from, int first, int count, __global float* path)
 {
   const PlaneInfo* layout = &info->planes;

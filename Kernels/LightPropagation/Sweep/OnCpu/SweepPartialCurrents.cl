@@ -23,14 +23,14 @@ inline __attribute__((always_inline)) void add_currents(
     }
   }
 }
-static void add_current(sweep_state* state, int y, int face, const __global float* rays, float part)
+static BY_ROW void add_current(sweep_state* state, int y, int face, const __global float* rays, float part)
 {
   add_currents(state, y, face, &rays, 1, part);
 }
 
 // Part of the rays on their way to column x through column x - du of row y, which they enter through v; they enter x
 // itself through u after that, or leave the box.
-static void add_beside(sweep_state* state, int y, int du, int face, const __global float* rays, float part)
+static BY_ROW void add_beside(sweep_state* state, int y, int du, int face, const __global float* rays, float part)
 {
   const int size = state->sizeU;
   for (int c = 0; c < CHANNELS; ++c)
@@ -52,7 +52,7 @@ static void add_beside(sweep_state* state, int y, int du, int face, const __glob
 // before.
 //   rays  by where they come to
 //   own   row y, by where they come from
-static void add_through_edge(
+static BY_ROW void add_through_edge(
   sweep_state* state, int y, int du, int dv, const __global float* rays, const __global float* own, float part)
 {
   const float half_part = 0.5f * part;

@@ -16,7 +16,7 @@
 #define SIDE_OF_RAY(state, sides, bundle, ray) ((sides) + ((bundle)->border + (ray)) * SIDE_FLOATS(state))
 
 // The row of rays that come in across v, of all members, as `outside` is laid out.
-static void take_across_v(sweep_state* state, const __global BundleInfo* bundle, int rays)
+static BY_ROW void take_across_v(sweep_state* state, const __global BundleInfo* bundle, int rays)
 {
   for (int ray = 0; ray < rays; ++ray)
   {
@@ -32,7 +32,7 @@ static void take_across_v(sweep_state* state, const __global BundleInfo* bundle,
 }
 
 // A member's rays that come in across u at a move of `du`, into the column beside row y.
-static void take_across_u(
+static BY_ROW void take_across_u(
   sweep_state* state, const __global BundleInfo* bundle, int member, int y, int du, __global float* out)
 {
   for (int ray = member * CHANNELS; ray < (member + 1) * CHANNELS; ++ray)
@@ -43,7 +43,7 @@ static void take_across_u(
 }
 
 // What a member's row y holds of rays that go out at a move of (du, dv).
-static void give_sides(
+static BY_ROW void give_sides(
   sweep_state* state, const __global BundleInfo* bundle, int member, const __global float* row, int y, int du, int dv)
 {
   const bool across_v = (dv < 0 && y == 0) || (dv > 0 && y == state->sizeV - 1);
