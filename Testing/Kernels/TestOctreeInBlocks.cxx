@@ -109,7 +109,7 @@ TEST_F(OctreeInBlocksTest, HasTheLevelsOfTheWhole)
     for (const bool sharp : { false, true })
     {
       const Waves waves(size, 1, sharp);
-      for (const int ranks : { 1, 2, 3, 8 })
+      for (const int ranks : { 1, 3, 8 })
       {
         ExpectTheWhole(waves, { 0.02 }, BlockPartition::Even(waves.medium.grid, ranks));
       }
@@ -175,7 +175,7 @@ TEST(BrickedBytes, AreOfAllRanksWhatEachHas)
     const std::array<int, 3> at = grid.VoxelAt(i);
     all.push_back(static_cast<std::uint8_t>(at[0] > 9 ? 3 : at[2] < 8 ? 200 : i % 5));
   }
-  for (const int ranks : { 1, 2, 3, 7 })
+  for (const int ranks : { 1, 3, 7 })
   {
     const BlockPartition partition = BlockPartition::Even(grid, ranks);
     for (const bool some : { false, true })

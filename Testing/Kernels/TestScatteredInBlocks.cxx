@@ -75,7 +75,7 @@ class ScatteredBlocks : public DeviceTest
 TEST_F(ScatteredBlocks, HaveTheLightOfTheWholeBitForBit)
 {
   PhotonScene scene = ScatteringScene();
-  ExpectSameOnRanks(GetDevice(), scene, AnyPhotons(scene.medium.grid, 3000), { 1, 2, 3, 5, 8 });
+  ExpectSameOnRanks(GetDevice(), scene, AnyPhotons(scene.medium.grid, 3000), { 1, 3, 8 });
 }
 
 TEST_F(ScatteredBlocks, HaveItForSoManyOrders)
