@@ -48,8 +48,8 @@
 // Whether planes may be crossed row by row one behind the other, up to PLANES_CHAINED: not where what comes in or goes
 // out beside rows is kept by plane, or rows come from the other side.
 #define CHAINED (!ANGULAR && !FACE_IN && !FACE_OUT && !SIDES && !PERIODIC)
-// Of functions that are called once a row, or less often: copies of them in loops that are unrolled take a third of the
-// time to compile. Where planes may be chained calls cost 10% of a sweep of 64 voxels a row.
+// Of functions that are called once a row, or less often: with copies of them in unrolled loops compiling took a third
+// longer. Where planes may be chained calls cost 10% of a sweep of 64 voxels a row.
 #if CHAINED
 #define BY_ROW
 #else
