@@ -1,11 +1,15 @@
 #include "DeviceTest.h"
-#include "MediumScene.h"
+#include "MediumInBlocks.h"
 #include "PhotonScene.h"
 
+#include "DiscreteOrdinates/DiscreteOrdinates.h"
+#include "LatticeBoltzmann/LatticeBoltzmann.h"
+#include "LightPropagation/Distributed/PropagationInBlocks.h"
 #include "Photons/Emission/PhotonEmitter.h"
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <string>
 
 using namespace tyndall;
@@ -43,6 +47,34 @@ Light LampAt(std::array<double, 3> position)
   lamp.power = { 1.0, 1.0, 1.0 };
   return lamp;
 }
+
+/// So many times the power, all numbers with few digits so that their products are floats, is the same light but for the
+/// last digit. The tolerance is what is left over of the last order, so that the least rounding decides on one more.
+void ExpectSameSteps(const char* name, const std::function<LightField(MediumToCut&, double)>& solve)
+{
+  const auto lit = [&](double power, double tolerance) {
+    MediumToCut medium({ 6, 5, 7 });
+    Scene& scene = medium.scene;
+    scene.Randomise(5.0, 2.0, 0.9);
+    scene.light.lights = { LampAt({ 3.2, 2.9, 4.1 }) };
+    scene.light.lights[0].power = { 3.0 * power, 3.0 * power, 3.0 * power };
+    scene.ShineAlong({ 0.3, -0.1, -1.0 }, 0.25 * power);
+    scene.ShineFromEverywhere(0.125 * power);
+    scene.emission.assign(scene.sigma_a.size(), static_cast<float>(0.01171875 * power));
+    return solve(medium, tolerance);
+  };
+  const double tolerance = lit(1.0, 1e-6).convergence.back().residual * (1.0 + 1e-9);
+  const LightField usual = lit(1.0, tolerance);
+  for (const double power : { 2.640625, 0.37109375, 17.0, 81.3125 })
+  {
+    const LightField light = lit(power, tolerance);
+    EXPECT_EQ(light.convergence.size(), usual.convergence.size()) << name << ", " << power;
+    for (std::size_t i = 0; i < light.fluence.size(); ++i)
+    {
+      ASSERT_NEAR(light.fluence[i] / power / usual.fluence[i], 1.0, 2.5e-7) << name << ", " << power;
+    }
+  }
+}
 }
 
 TEST_F(Extremes, LightIsInProportionToPowerWhateverThatIs)
@@ -66,6 +98,35 @@ TEST_F(Extremes, LightIsInProportionToPowerWhateverThatIs)
       ASSERT_NEAR(light.fluence[i] / power / usual.fluence[i], 1.0, 1e-3) << power;
     }
   }
+}
+
+TEST_F(Extremes, ScenesOfSoManyTimesThePowerAreSolvedByTheSameSteps)
+{
+  Device& device = this->GetDevice();
+  ExpectSameSteps("maps", [&](MediumToCut& medium, double tolerance) {
+    medium.scene.settings.tolerance = tolerance;
+    return medium.scene.Solve(device);
+  });
+  ExpectSameSteps("ordinates", [&](MediumToCut& medium, double tolerance) {
+    OrdinatesSettings settings;
+    settings.tolerance = tolerance;
+    medium.Attach();
+    return SolveDiscreteOrdinates(device, medium.scene.medium, medium.scene.light, settings);
+  });
+  ExpectSameSteps("lattice", [&](MediumToCut& medium, double tolerance) {
+    LatticeSettings settings;
+    settings.tolerance = tolerance;
+    medium.Attach();
+    return SolveLatticeBoltzmann(device, medium.scene.medium, {}, medium.scene.light, settings);
+  });
+  ExpectSameSteps("maps on three ranks", [&](MediumToCut& medium, double tolerance) {
+    const BlockPartition partition = BlockPartition::Even(medium.scene.medium.grid, 3);
+    return LightOfBlocks(partition, medium, [&](Communicator& communicator, MediumToCut& part) {
+      PropagationSettings settings;
+      settings.tolerance = tolerance;
+      return SolveInBlocks(device, communicator, partition, part.scene.medium, part.scene.light, settings);
+    });
+  });
 }
 
 TEST_F(Extremes, FluenceDoesNotDependOnTheUnitOfLength)

@@ -186,6 +186,24 @@ TEST_F(OrdinatesBlocks, HaveTheLightThatIsGivenToTheWhole)
   }
 }
 
+/// So little that it is solved in another unit of power, which ranks without voxels have no light to turn into.
+TEST_F(OrdinatesBlocks, HaveFaintLightThatIsGivenToTheWhole)
+{
+  MediumToCut medium({ 4, 3, 3 });
+  medium.scene.Randomise(2.0, 1.0, 0.5);
+  GiveLight(medium, false);
+  for (float& value : medium.given)
+  {
+    value *= 1e-25f;
+  }
+  for (Rgb& face : medium.scene.light.uncollided.escaped)
+  {
+    face = { 1e-25, 1e-25, 1e-25 };
+  }
+  const LightField whole = this->Whole(medium, SettingsOf());
+  ExpectSame(this->OfBlocks(Slices(medium.scene.medium.grid, { 0, 1 }), medium, SettingsOf()), whole);
+}
+
 /// A slab between faces that give back light, and in more directions than asked for.
 TEST_F(OrdinatesBlocks, HaveTheSlabOfTheWhole)
 {

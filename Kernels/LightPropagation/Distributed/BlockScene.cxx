@@ -109,7 +109,10 @@ BlockScene::BlockScene(Communicator& communicator, bool has, const BlockPartitio
       this->illumination = this->InLengths->illumination;
     }
   });
-  this->powerUnit = communicator.Largest({ has ? PowerUnitOf(this->medium, this->illumination) : 0.0 })[0];
+  const Grid whole = this->WholeOf(partition.whole);
+  const AllThatShines here = has ? ShiningOn(whole, this->medium, this->illumination) : AllThatShines();
+  const std::vector<double> all = communicator.Largest({ here.power, here.first });
+  this->powerUnit = PowerUnitFor({ all[0], all[1] });
   if (this->powerUnit != 1.0)
   {
     this->InUnits.emplace(this->medium, this->illumination, this->powerUnit);

@@ -135,7 +135,7 @@ void PropagationProblem::TakeUnits(const Medium& wide, const Illumination& illum
     this->Solved = this->InLengths->medium;
     this->SolvedLight = this->InLengths->illumination;
   }
-  this->PowerUnit = PowerUnitOf(this->Solved, this->SolvedLight);
+  this->PowerUnit = PowerUnitFor(ShiningOn(this->Solved.grid, this->Solved, this->SolvedLight));
   if (this->PowerUnit != 1.0)
   {
     this->InUnits.emplace(this->Solved, this->SolvedLight, this->PowerUnit);

@@ -6,14 +6,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 namespace tyndall
 {
 namespace
 {
-constexpr int UsualExponent = 40;       ///< powers up to 2^40 W, and down to 2^-40 W, are solved as they are
-constexpr int UsualLengthExponent = 20; ///< the same of spacings
+constexpr int UsualExponent = 40;       ///< powers up to 2^40 W, and down to 2^-40 W, are solved about as they are
+constexpr int UsualLengthExponent = 20; ///< spacings up to 2^20, and down to 2^-20, are solved as they are
 
 double Largest(const Rgb& values)
 {
@@ -42,21 +43,23 @@ void Divide(Rgb& values, double unit)
 
 void Multiply(std::vector<float>& values, double unit, const char* name)
 {
-  for (float& value : values)
+  const auto isBeyond = [=](float value) { return std::abs(value * unit) > std::numeric_limits<float>::max(); };
+  if (std::count_if(values.begin(), values.end(), isBeyond) > 0) // counts in vectors, where any_of would not
   {
-    const double watts = value * unit;
-    value = static_cast<float>(watts);
-    if (std::isinf(value))
-    {
-      throw InvalidInput("The " + std::string(name) + " would be " + Text("%.5g", watts) +
-        ", which is more than a float holds. Give lights, sky and emission less power: light is in proportion to it.");
-    }
+    const double watts = *std::max_element(values.begin(), values.end()) * unit;
+    throw InvalidInput("The " + std::string(name) + " would be " + Text("%.5g", watts) +
+      ", which is more than a float holds. Give lights, sky and emission less power: light is in proportion to it.");
   }
+  std::transform(
+    values.begin(), values.end(), values.begin(), [=](float value) { return static_cast<float>(value * unit); });
 }
 
 void Multiply(Rgb& values, double unit)
 {
-  Divide(values, 1.0 / unit);
+  for (double& value : values)
+  {
+    value *= unit;
+  }
 }
 
 /// W that a light sends into the box, or around it if it stands outside; the sum of its channels.
@@ -72,44 +75,59 @@ double PowerInto(const Grid& grid, const Light& light)
 }
 }
 
-double PowerUnitOf(const Medium& medium, const Illumination& illumination)
+AllThatShines ShiningOn(const Grid& grid, const Medium& medium, const Illumination& illumination)
 {
-  const Grid& grid = medium.grid;
   const std::array<double, 3> area = FaceAreas(grid);
-  double power = 4.0 * Pi * LargestEmission(medium) * grid.VoxelVolume() * static_cast<double>(grid.VoxelCount());
+  AllThatShines all;
+  const auto take = [&all](double value) { all.first = all.first > 0.0 ? all.first : value; };
   for (const Light& light : illumination.lights)
   {
-    power += PowerInto(grid, light);
+    all.power += PowerInto(grid, light);
+    take(Largest(light.power));
   }
   double radiance = Largest(illumination.sky);
+  take(radiance);
   for (const Rgb& face : illumination.faces)
   {
     radiance = std::max(radiance, Largest(face));
+    take(Largest(face));
   }
   const std::vector<float>& pixels = illumination.environment.radiance;
   if (!pixels.empty())
   {
-    radiance += *std::max_element(pixels.begin(), pixels.end());
+    const double brightest = *std::max_element(pixels.begin(), pixels.end());
+    radiance += brightest;
+    take(brightest);
   }
-  power += 2.0 * Pi * radiance * (area[0] + area[1] + area[2]);
+  const double emission = LargestEmission(medium);
+  take(emission);
+  all.power += 4.0 * Pi * emission * grid.VoxelVolume() * static_cast<double>(grid.VoxelCount()) +
+    2.0 * Pi * radiance * (area[0] + area[1] + area[2]);
   for (int c = 0; c < 3 && illumination.uncollided.IsThere(); ++c)
   {
-    power += PowerLost(illumination.uncollided, medium, c);
+    all.power += PowerLost(illumination.uncollided, medium, c);
+    all.first = 0.0; // it stays as it is given, bit for bit
   }
-  if (!(power > 0.0) || std::isinf(power))
+  return all;
+}
+
+double PowerUnitFor(const AllThatShines& all)
+{
+  const double digits = all.first > 0.0 ? std::scalbn(all.first, -std::ilogb(all.first)) : 1.0;
+  if (!(all.power > 0.0) || std::isinf(all.power))
   {
     return 1.0;
   }
-  const int exponent = std::ilogb(power);
+  const int exponent = std::ilogb(all.power);
   // All light together is then 2^40: next to what shines most, something else may shine 1e-36 times as much.
-  return std::abs(exponent) <= UsualExponent ? 1.0 : std::exp2(exponent - UsualExponent);
+  return std::abs(exponent) <= UsualExponent ? digits : std::scalbn(digits, exponent - UsualExponent);
 }
 
 SceneInUnits::SceneInUnits(const Medium& inWatts, const Illumination& shining, double unit)
   : medium(inWatts)
   , illumination(shining)
 {
-  if (inWatts.emission.values)
+  if (inWatts.emission.values && inWatts.grid.VoxelCount() > 0)
   {
     const std::size_t count = inWatts.grid.VoxelCount() * static_cast<std::size_t>(inWatts.emission.components);
     this->emission.resize(count);
@@ -136,11 +154,11 @@ SceneInUnits::SceneInUnits(const Medium& inWatts, const Illumination& shining, d
 void SceneInUnits::TakeUncollided(double unit)
 {
   UncollidedImage& image = this->illumination.uncollided;
-  if (!image.IsThere())
+  const std::size_t count = this->medium.grid.VoxelCount() * static_cast<std::size_t>(image.fluence.components);
+  if (!image.IsThere() || count == 0) // what a rank without voxels is given stays there, without values
   {
     return;
   }
-  const std::size_t count = this->medium.grid.VoxelCount() * static_cast<std::size_t>(image.fluence.components);
   this->uncollided.resize(count);
   std::transform(image.fluence.values, image.fluence.values + count, this->uncollided.begin(),
     [=](float value) { return static_cast<float>(value / unit); });

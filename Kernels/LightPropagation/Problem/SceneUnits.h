@@ -8,11 +8,21 @@
 namespace tyndall
 {
 /// Units of power and length that the solver chooses (numerics.md, Eq. (85)). Light is linear in its power, but floats
-/// end at 3e38: rays carry W, path integrals W length. Scenes of powers far from 1 W are solved in a unit of their own,
-/// a power of two, so that no digit is lost.
+/// end at 3e38: rays carry W, path integrals W length. And they round: a scene is solved in a unit of power that has
+/// the digits of what shines in it, so that so many times the power is rounded alike, and solved by the same steps.
 
-/// W to solve a scene in: 1 where the power of all that shines is not far from that.
-double PowerUnitOf(const Medium& medium, const Illumination& illumination);
+/// What the unit of power is made of. Ranks take the largest of each: only what emits, or is given, differs on them.
+struct AllThatShines
+{
+  double power = 0.0; ///< W, at most
+  double first = 0.0; ///< of what shines, the first: a light's power, a radiance, or emission. 0: none, or light is given
+};
+
+/// @param medium  in all of the grid, or in a block of it
+AllThatShines ShiningOn(const Grid& grid, const Medium& medium, const Illumination& illumination);
+
+/// W to solve a scene in: from 1 to 2 where the power of all that shines is not far from that.
+double PowerUnitFor(const AllThatShines& all);
 
 /// A scene in another unit of power.
 struct SceneInUnits
