@@ -4,7 +4,7 @@
 #include "Viewing/Samples/VoxelChannels.cl"
 
 // Calls DO(neighbour) for the voxels around one, it included, that scatter in any channel.
-#define FOR_SCATTERING_AROUND(voxel, size, scattering, DO)                                                  \
+#define FOR_SCATTERING_AROUND(voxel, size, scattering, components, DO)                                       \
   {                                                                                                         \
     const int3 at = { (voxel) % (size).x, (voxel) / (size).x % (size).y, (voxel) / ((size).x * (size).y) }; \
     for (int z = max(at.z - 1, 0); z <= min(at.z + 1, (size).z - 1); ++z)                                   \
@@ -12,25 +12,25 @@
         for (int x = max(at.x - 1, 0); x <= min(at.x + 1, (size).x - 1); ++x)                               \
         {                                                                                                   \
           const int neighbour = (z * (size).y + y) * (size).x + x;                                          \
-          if (scatters_at(scattering, neighbour))                                                           \
+          if (scatters_at(scattering, neighbour, components))                                                         \
           {                                                                                                 \
             DO(neighbour)                                                                                   \
           }                                                                                                 \
         }                                                                                                   \
   }
 
-inline int scatters_at(__global const float* scattering, int voxel)
+inline int scatters_at(__global const float* scattering, int voxel, int components)
 {
-  return channel_of(scattering, voxel, SCATTERING, 0) + channel_of(scattering, voxel, SCATTERING, 1) +
-    channel_of(scattering, voxel, SCATTERING, 2) >
+  return channel_of(scattering, voxel, components, 0) + channel_of(scattering, voxel, components, 1) +
+    channel_of(scattering, voxel, components, 2) >
     0.0f;
 }
 
-inline int is_beside_scattering(__global const float* scattering, int voxel, int4 size)
+inline int is_beside_scattering(__global const float* scattering, int voxel, int components, int4 size)
 {
   int found = 0;
 #define COUNT(neighbour) found = 1;
-  FOR_SCATTERING_AROUND(voxel, size, scattering, COUNT)
+  FOR_SCATTERING_AROUND(voxel, size, scattering, components, COUNT)
 #undef COUNT
   return found;
 }

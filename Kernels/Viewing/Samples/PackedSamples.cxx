@@ -131,12 +131,14 @@ void PackedSamples::PackSources(const SceneOnDevice& scene, const Buffer<float>&
   const ViewTraits& traits = this->Traits;
   const bool forShadowRays = this->For == Packing::ForShadowRays;
   const bool bends = traits.bends && !forShadowRays; // shadow rays go straight on
-  const std::string options = traits.PackingOptions() + traits.PhaseOptions(traits.knowsFlow) +
-    Define("SHADOW_RAYS", traits.shadowRays && !forShadowRays) + Define("BENDS", bends);
+  const std::string options = traits.SampleOptions() + Define("FLOW", traits.knowsFlow) +
+    Define("FLOW_WITH_G", traits.knowsFlow && traits.FlowHasG()) + Define("VARIED_G", traits.PacksCosines()) +
+    Define("GLOW", traits.GlowsApart()) + Define("SHADOW_RAYS", traits.shadowRays && !forShadowRays) +
+    Define("BENDS", bends);
   const cl_int single = traits.singleScatteringOnly ? 1 : 0;
 
   cl::Kernel pack = this->TheDevice.Kernel("pack_samples", kernel_source::ScatteredLight, options);
-  With(pack, Int4(traits.grid.size), single, traits.phase.parameters.first.s[0], scene.arrays[0].Handle(),
+  With(pack, Int4(traits.grid.size), traits.Components(), single, traits.phase.parameters.first.s[0], scene.arrays[0].Handle(),
     scene.arrays[1].Handle(), scene.arrays[2].Handle(), scene.arrays[3].Handle(), scene.arrays[4].Handle(), direct,
     scene.meanDirection.Handle(), scene.ior, scene.meanCosines, this->Samples(), this->Extinctions(), this->Flow(),
     this->Glow(), this->Cosines(), this->SeenGroups, this->BricksOfRecords);
@@ -156,11 +158,12 @@ void PackedSamples::PackShown(const SceneOnDevice& scene, const Buffer<float>& d
 {
   const ViewTraits& traits = this->Traits;
   const bool bends = traits.bends && this->For != Packing::ForShadowRays;
-  const std::string options = traits.PackingOptions() + traits.PhaseOptions(false) + Define("SHADOW_RAYS", 0) +
-    Define("BENDS", bends) + Define("STRAIGHT_ON", this->For == Packing::Unscattered ? 0 : traits.straightOnChannels) +
-    Define("AUREOLE", traits.aureoleChannels);
+  const std::string options = traits.SampleOptions() + Define("GLOW", traits.GlowsApart()) + Define("BENDS", bends) +
+    Define("AUREOLE", traits.aureoleChannels > 0);
+  ViewedComponents components = traits.Components();
+  components.straightOn = this->For == Packing::Unscattered ? 0 : components.straightOn;
   cl::Kernel pack = this->TheDevice.Kernel("pack_shown", kernel_source::ShownSamples, options + this->ShownOptions());
-  With(pack, Int4(traits.grid.size), scene.arrays[0].Handle(), scene.arrays[1].Handle(), scene.arrays[2].Handle(),
+  With(pack, Int4(traits.grid.size), components, scene.arrays[0].Handle(), scene.arrays[1].Handle(), scene.arrays[2].Handle(),
     scene.straightOn, diffuse, direct, scene.ior, this->Samples(), this->Extinctions(), this->Flow(), this->Glow(),
     this->SeenGroups);
   this->Launch(pack, traits.grid.size);

@@ -3,8 +3,6 @@
 // extinction between voxel centres (numerics.md, section 14.7).
 //
 // The host gives
-//   ABSORPTION, SCATTERING, EMISSION   components of each array: 0 (there is none), 1 or 3
-//   STRAIGHT_ON  of the part of what is scattered that goes straight on; 0: extinction is that of all light
 //   SHOWN        0 nothing; 1 diffuse light, and lamps' light; 2 what lamps' light is scattered forwards more than once
 //   BEAMS        1: `direct` holds lamps' light
 //   AUREOLE      0: it holds none of SHOWN 2
@@ -13,6 +11,7 @@
 #include "Viewing/Samples/Beside.cl"
 #include "Viewing/Samples/Border.cl"
 #include "Viewing/Samples/VoxelChannels.cl"
+#include "Viewing/Scene/ViewShared.h"
 
 #define DARKEST 80.0f
 
@@ -22,27 +21,22 @@ typedef struct
   float4 sigma_t, albedo;
 } coefficients;
 
-inline coefficients coefficients_of(
-  __global const float* absorption, __global const float* scattering, __global const float* straight_on, int voxel)
+inline coefficients coefficients_of(__global const float* absorption, __global const float* scattering,
+  __global const float* straight_on, const ViewedComponents* of, int voxel)
 {
   coefficients here;
   here.sigma_t.w = here.albedo.w = 0.0f;
-#if STRAIGHT_ON
-#define TURNED(s, n) ((s) * (1.0f - channel_of(straight_on, voxel, STRAIGHT_ON, n)))
-#else
-#define TURNED(s, n) (s)
-#endif
-#define CHANNEL(c, n)                                                             \
-  {                                                                               \
-    const float s = channel_of(scattering, voxel, SCATTERING, n);                 \
-    here.sigma_t.c = TURNED(s, n) + channel_of(absorption, voxel, ABSORPTION, n); \
-    here.albedo.c = here.sigma_t.c > 0.0f ? s / here.sigma_t.c : 0.0f;            \
+#define CHANNEL(c, n)                                                                        \
+  {                                                                                          \
+    const float s = channel_of(scattering, voxel, of->scattering, n);                        \
+    const float turned = s * (1.0f - channel_of(straight_on, voxel, of->straightOn, n));     \
+    here.sigma_t.c = turned + channel_of(absorption, voxel, of->absorption, n);              \
+    here.albedo.c = here.sigma_t.c > 0.0f ? s / here.sigma_t.c : 0.0f;                       \
   }
   CHANNEL(x, 0)
   CHANNEL(y, 1)
   CHANNEL(z, 2)
 #undef CHANNEL
-#undef TURNED
   return here;
 }
 
@@ -55,7 +49,8 @@ inline float4 triple(__global const float* values, int voxel)
 //   samples  SHOWN 1: diffuse light times albedo; 2: what is scattered more than once over what lamps' is first; and
 //            grey extinction
 //   beams    - ln of lamps' light times albedo
-__kernel void pack_shown(int4 size, __global const float* restrict absorption,
+//   of       straightOn 0: extinction is that of all light
+__kernel void pack_shown(int4 size, ViewedComponents of, __global const float* restrict absorption,
   __global const float* restrict scattering, __global const float* restrict emission,
   __global const float* restrict straight_on, __global const float* restrict diffuse,
   __global const float* restrict direct, __global const float* restrict ior, __global float4* restrict samples,
@@ -68,7 +63,7 @@ __kernel void pack_shown(int4 size, __global const float* restrict absorption,
   }
   const int voxel = voxel_index(size);
   const int place = padded_index(size);
-  const coefficients here = coefficients_of(absorption, scattering, straight_on, voxel);
+  const coefficients here = coefficients_of(absorption, scattering, straight_on, &of, voxel);
   float4 source = (float4)(0.0f);
   float perSquare = 1.0f;
 #if BENDS
@@ -79,15 +74,15 @@ __kernel void pack_shown(int4 size, __global const float* restrict absorption,
 #if SHOWN == 1
   float4 light = triple(diffuse, voxel);
 #endif
-  if (!scatters_at(scattering, voxel))
+  if (!scatters_at(scattering, voxel, of.scattering))
   {
     float4 albedos = (float4)(0.0f), lights = (float4)(0.0f);
     float count = 0.0f;
 #define ADD(neighbour)                                                               \
-  albedos += coefficients_of(absorption, scattering, straight_on, neighbour).albedo; \
+  albedos += coefficients_of(absorption, scattering, straight_on, &of, neighbour).albedo; \
   lights += SHOWN == 1 ? triple(diffuse, neighbour) : (float4)(0.0f);                \
   count += 1.0f;
-    FOR_SCATTERING_AROUND(voxel, size, scattering, ADD)
+    FOR_SCATTERING_AROUND(voxel, size, scattering, of.scattering, ADD)
 #undef ADD
     // A voxel that absorbs and does not scatter is black.
     albedo = any(here.sigma_t.xyz > (float3)(0.0f)) ? here.albedo : albedos / fmax(count, 1.0f);
@@ -116,8 +111,8 @@ __kernel void pack_shown(int4 size, __global const float* restrict absorption,
 #if GLOW
   float4 emitted = (float4)(0.0f);
 #if SHOWN == 1
-  emitted = (float4)(channel_of(emission, voxel, EMISSION, 0), channel_of(emission, voxel, EMISSION, 1),
-              channel_of(emission, voxel, EMISSION, 2), 0.0f) *
+  emitted = (float4)(channel_of(emission, voxel, of.emission, 0), channel_of(emission, voxel, of.emission, 1),
+              channel_of(emission, voxel, of.emission, 2), 0.0f) *
     perSquare;
 #endif
   glow[place] = emitted;

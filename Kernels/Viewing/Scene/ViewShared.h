@@ -24,6 +24,12 @@ typedef struct
   float4 part;   ///< of the light in the first lobe
 } PhaseInfo;
 
+/// Components of each array of the medium and its light: 0 (there is none), 1 or 3.
+typedef struct
+{
+  int absorption, scattering, emission, fluence, unscattered, meanCosines, straightOn, unused;
+} ViewedComponents;
+
 /// A block of a larger grid, see GridBlock; voxels of the whole.
 typedef struct
 {
@@ -119,6 +125,7 @@ typedef struct
   int4 asked;               ///< by whom depths are asked for: the first voxel of the whole
   int4 askedSize;           ///< and how many voxels
   PhaseInfo phase;          ///< where it is the same everywhere
+  ViewedComponents components;
   float step;               ///< voxels
   float nearestSquare;      ///< keeps a voxel that holds a light finite: its mean of 1/r^2 is 3/R^2 of a ball as large
   int firstLight, lights;   ///< those from the first on, before the other

@@ -97,20 +97,19 @@ bool ViewTraits::Reflects(const ViewSettings& settings) const
 
 std::string ViewTraits::PacketOptions() const
 {
-  return Define("REAL_WIDTH", this->packetWidth) + Define("COLOURED", this->coloured) + Define("GREY", this->grey) +
-    Define("BRICKED", this->bricked);
+  return Define("REAL_WIDTH", this->packetWidth) + this->SampleOptions();
 }
 
-std::string ViewTraits::PackingOptions() const
+std::string ViewTraits::SampleOptions() const
 {
-  const std::array<const char*, 5> names = { "ABSORPTION", "SCATTERING", "EMISSION", "FLUENCE", "UNSCATTERED" };
-  std::string options = this->PacketOptions();
-  for (std::size_t i = 0; i < names.size(); ++i)
-  {
-    options += Define(names[i], this->components[i]);
-  }
-  return options + Define("FLOW", this->knowsFlow) + Define("GLOW", this->GlowsApart()) +
-    Define("MEAN_COSINE", this->ReadsMeanCosines() ? this->phase.channels : 0);
+  return Define("COLOURED", this->coloured) + Define("GREY", this->grey) + Define("BRICKED", this->bricked);
+}
+
+ViewedComponents ViewTraits::Components() const
+{
+  const std::array<int, 5>& of = this->components;
+  return { of[0], of[1], of[2], of[3], of[4], this->ReadsMeanCosines() ? this->phase.channels : 0,
+    this->straightOnChannels, 0 };
 }
 
 std::string ViewTraits::PhaseOptions(bool needed) const

@@ -5,6 +5,7 @@
 #include "Viewing/Scene/BlockOfScene.h"
 #include "Viewing/Scene/SeenBricks.h"
 #include "Viewing/Scene/SolvedLight.h"
+#include "Viewing/Scene/ViewShared.h"
 #include "Viewing/Scene/ViewedPhase.h"
 #include "Viewing/Scene/ViewSettings.h"
 
@@ -66,12 +67,13 @@ struct ViewTraits
   {
     return settings.surfaceIndex > 0.0 ? settings.surfaceIndex : 0.5 * (this->index.least + this->index.largest);
   }
+  ViewedComponents Components() const;
   bool Reflects(const ViewSettings& settings) const;
   bool SkipsBricks(const ViewSettings& settings) const { return settings.skipEmptyBricks && this->leaveOut; }
 
   // Options that kernels are compiled with.
   std::string PacketOptions() const;
-  std::string PackingOptions() const; ///< of what reads the medium's arrays
+  std::string SampleOptions() const; ///< of what packs samples
   /// @param needed  whether light has a direction where this is asked
   std::string PhaseOptions(bool needed) const;
 };

@@ -59,6 +59,7 @@ ShadowInfo SeenSources::InfoOfVoxels() const
   info.size = Int4(grid.size);
   info.block = this->Block ? BlockInfoOf(this->Block->block) : BlockInfo{};
   info.phase = this->Traits.phase.parameters;
+  info.components = this->Traits.Components();
   info.nearestSquare = static_cast<float>(radius * radius / 3.0);
   info.lights = this->LightCount;
   return info;
@@ -76,9 +77,8 @@ ShadowInfo SeenSources::MakeShadowInfo(const Camera& camera) const
 std::string SeenSources::Options(double steps, bool given) const
 {
   const ViewTraits& traits = this->Traits;
-  return traits.PackingOptions() + traits.PhaseOptions(true) + StepOption(steps) +
-    Define("AUREOLE", traits.aureoleChannels) + Define("STRAIGHT_ON", traits.straightOnChannels) +
-    Define("BESIDE", traits.ShowsMoments()) + Define("GIVEN", given);
+  return traits.PacketOptions() + traits.PhaseOptions(true) + StepOption(steps) +
+    Define("AUREOLE", traits.aureoleChannels) + Define("BESIDE", traits.ShowsMoments()) + Define("GIVEN", given);
 }
 
 void SeenSources::SeeLights(const Camera& camera, double stepSize, const SceneOnDevice& scene,

@@ -1,10 +1,7 @@
 // What the lights send straight to each voxel, and what is scattered of it towards the eye. The host gives
-//   SCATTERING  components of sigma_s: 1 or 3
 //   PHASE, PHASE_CHANNELS  see PhaseFunction.cl
-//   MEAN_COSINE  components of g by voxel; 0: it is the same everywhere
 //   AUREOLE      tables of what is scattered forwards more than once: 0, 1, or 3 for red, green and blue
 //   BESIDE       1: also in voxels beside such that scatter
-//   ABSORPTION, STRAIGHT_ON  with AUREOLE: components of these arrays
 //   GIVEN        1: the medium is a block of a larger grid, and optical lengths towards a light are added up from what
 //                each block finds of them
 
@@ -163,15 +160,15 @@ inline real aureole_at(real cosine, real depth, __global const float* rows)
 // Optical length of all scattering, straight on or not, over that of the extinction that rays are marched with: taken
 // as the voxel's own on the whole way.
 inline real scattering_over_depth(__global const float* absorption, __global const float* scattering,
-  __global const float* straight_on, integer voxel, int channel)
+  __global const float* straight_on, const ViewedComponents* of, integer voxel, int channel)
 {
   real over;
-#define RATIO(n)                                                                                     \
-  {                                                                                                  \
-    const float s = channel_of(scattering, LANE(voxel, n), SCATTERING, channel);                     \
-    const float turned = s * (1.0f - channel_of(straight_on, LANE(voxel, n), STRAIGHT_ON, channel)); \
-    const float all = turned + channel_of(absorption, LANE(voxel, n), ABSORPTION, channel);          \
-    LANE(over, n) = all > 0.0f ? s / all : 0.0f;                                                     \
+#define RATIO(n)                                                                                        \
+  {                                                                                                     \
+    const float s = channel_of(scattering, LANE(voxel, n), of->scattering, channel);                    \
+    const float turned = s * (1.0f - channel_of(straight_on, LANE(voxel, n), of->straightOn, channel)); \
+    const float all = turned + channel_of(absorption, LANE(voxel, n), of->absorption, channel);         \
+    LANE(over, n) = all > 0.0f ? s / all : 0.0f;                                                        \
   }
   EACH_LANE(RATIO)
 #undef RATIO
@@ -183,14 +180,16 @@ inline real scattering_over_depth(__global const float* absorption, __global con
 inline phase_parameters phases_of(const ShadowInfo* info, integer voxel, __global const float* mean_cosines)
 {
   phase_parameters p = parameters_of(&info->phase);
-#if MEAN_COSINE
-#define READ(n)                                                                  \
-  LANE(p.first.r, n) = channel_of(mean_cosines, LANE(voxel, n), MEAN_COSINE, 0); \
-  LANE(p.first.g, n) = channel_of(mean_cosines, LANE(voxel, n), MEAN_COSINE, 1); \
-  LANE(p.first.b, n) = channel_of(mean_cosines, LANE(voxel, n), MEAN_COSINE, 2);
-  EACH_LANE(READ)
+  const int components = info->components.meanCosines;
+  if (components > 0) // g differs by voxel
+  {
+#define READ(n)                                                                 \
+  LANE(p.first.r, n) = channel_of(mean_cosines, LANE(voxel, n), components, 0); \
+  LANE(p.first.g, n) = channel_of(mean_cosines, LANE(voxel, n), components, 1); \
+  LANE(p.first.b, n) = channel_of(mean_cosines, LANE(voxel, n), components, 2);
+    EACH_LANE(READ)
 #undef READ
-#endif
+  }
   return p;
 }
 
@@ -279,16 +278,17 @@ __kernel void see_lights(ShadowInfo info, __global const SmallLight* restrict li
   const integer i = packet_along_x(first, info.size.x);
   const integer voxel = i + (k * info.size.y + j) * info.size.x;
   real scatters = (real)0.0f;
+  const int components = info.components.scattering;
 #define SCATTERS(n)                                                           \
-  LANE(scatters, n) = channel_of(scattering, LANE(voxel, n), SCATTERING, 0) + \
-    channel_of(scattering, LANE(voxel, n), SCATTERING, 1) + channel_of(scattering, LANE(voxel, n), SCATTERING, 2);
+  LANE(scatters, n) = channel_of(scattering, LANE(voxel, n), components, 0) + \
+    channel_of(scattering, LANE(voxel, n), components, 1) + channel_of(scattering, LANE(voxel, n), components, 2);
   EACH_LANE(SCATTERS)
 #undef SCATTERS
 #if BESIDE
-#define SCATTERS_BESIDE(n)                                                                         \
-  if (!(LANE(scatters, n) > 0.0f))                                                                 \
-  {                                                                                                \
-    LANE(scatters, n) = is_beside_scattering(scattering, LANE(voxel, n), info.size) ? 1.0f : 0.0f; \
+#define SCATTERS_BESIDE(n)                                                                                     \
+  if (!(LANE(scatters, n) > 0.0f))                                                                             \
+  {                                                                                                            \
+    LANE(scatters, n) = is_beside_scattering(scattering, LANE(voxel, n), components, info.size) ? 1.0f : 0.0f; \
   }
   EACH_LANE(SCATTERS_BESIDE)
 #undef SCATTERS_BESIDE
@@ -341,7 +341,9 @@ __kernel void see_lights(ShadowInfo info, __global const SmallLight* restrict li
 #define SPREAD(c, n)                                                                                                 \
   irradiance.c = fma(arrived.c,                                                                                      \
     aureole_at(                                                                                                      \
-      cosine, DEPTH(c) * scattering_over_depth(absorption, scattering, straight_on, voxel, n), aureole + n * apart), \
+      cosine,                                                                                                        \
+      DEPTH(c) * scattering_over_depth(absorption, scattering, straight_on, &info.components, voxel, n),             \
+      aureole + n * apart),                                                                                          \
     irradiance.c);
     SPREAD(r, 0)
     SPREAD(g, 1)
