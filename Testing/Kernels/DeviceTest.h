@@ -1,5 +1,7 @@
 #pragma once
 
+#include "OneCore.h"
+
 #include "Device/Buffer.h"
 #include "Device/Device.h"
 #include "Device/Errors.h"
@@ -9,6 +11,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <memory>
+#include <string>
 #include <vector>
 
 /// A test that needs an OpenCL device: skipped where there is none, failed there if TYNDALL_REQUIRE_DEVICE is set.
@@ -20,6 +23,10 @@ protected:
     try
     {
       this->TheDevice = tyndall::Device::Find();
+      if (!ThreadsMeet())
+      {
+        KeepToOneCore();
+      }
     }
     catch (const tyndall::DeviceError& error)
     {
@@ -29,6 +36,16 @@ protected:
       }
       GTEST_SKIP() << error.what();
     }
+  }
+
+  /// Whether threads of the device write to the same places, or wait for each other within a kernel: on two cores they
+  /// do so at the same time.
+  static bool ThreadsMeet()
+  {
+    const std::string suite = testing::UnitTest::GetInstance()->current_test_info()->test_suite_name();
+    const std::vector<std::string> suites = { "ChainedPlanes", "Photon", "Streaming" };
+    return std::any_of(
+      suites.begin(), suites.end(), [&](const std::string& name) { return suite.find(name) != std::string::npos; });
   }
 
   tyndall::Device& GetDevice() { return *this->TheDevice; }

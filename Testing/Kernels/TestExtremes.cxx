@@ -48,8 +48,8 @@ Light LampAt(std::array<double, 3> position)
   return lamp;
 }
 
-/// So many times the power, all numbers with few digits so that their products are floats, is the same light but for the
-/// last digit. The tolerance is what is left over of the last order, so that the least rounding decides on one more.
+/// So many times the power, all numbers with few digits so that their products are floats, is the same light but for
+/// the last digit. The tolerance is what is left over of the last order: the least rounding decides on one more.
 void ExpectSameSteps(const char* name, const std::function<LightField(MediumToCut&, double)>& solve)
 {
   const auto lit = [&](double power, double tolerance) {

@@ -4,7 +4,7 @@
 #include "Viewing/Samples/VoxelChannels.cl"
 
 // Calls DO(neighbour) for the voxels around one, it included, that scatter in any channel.
-#define FOR_SCATTERING_AROUND(voxel, size, scattering, components, DO)                                       \
+#define FOR_SCATTERING_AROUND(voxel, size, scattering, components, DO)                                      \
   {                                                                                                         \
     const int3 at = { (voxel) % (size).x, (voxel) / (size).x % (size).y, (voxel) / ((size).x * (size).y) }; \
     for (int z = max(at.z - 1, 0); z <= min(at.z + 1, (size).z - 1); ++z)                                   \
@@ -12,7 +12,7 @@
         for (int x = max(at.x - 1, 0); x <= min(at.x + 1, (size).x - 1); ++x)                               \
         {                                                                                                   \
           const int neighbour = (z * (size).y + y) * (size).x + x;                                          \
-          if (scatters_at(scattering, neighbour, components))                                                         \
+          if (scatters_at(scattering, neighbour, components))                                               \
           {                                                                                                 \
             DO(neighbour)                                                                                   \
           }                                                                                                 \

@@ -138,10 +138,10 @@ void PackedSamples::PackSources(const SceneOnDevice& scene, const Buffer<float>&
   const cl_int single = traits.singleScatteringOnly ? 1 : 0;
 
   cl::Kernel pack = this->TheDevice.Kernel("pack_samples", kernel_source::ScatteredLight, options);
-  With(pack, Int4(traits.grid.size), traits.Components(), single, traits.phase.parameters.first.s[0], scene.arrays[0].Handle(),
-    scene.arrays[1].Handle(), scene.arrays[2].Handle(), scene.arrays[3].Handle(), scene.arrays[4].Handle(), direct,
-    scene.meanDirection.Handle(), scene.ior, scene.meanCosines, this->Samples(), this->Extinctions(), this->Flow(),
-    this->Glow(), this->Cosines(), this->SeenGroups, this->BricksOfRecords);
+  With(pack, Int4(traits.grid.size), traits.Components(), single, traits.phase.parameters.first.s[0],
+    scene.arrays[0].Handle(), scene.arrays[1].Handle(), scene.arrays[2].Handle(), scene.arrays[3].Handle(),
+    scene.arrays[4].Handle(), direct, scene.meanDirection.Handle(), scene.ior, scene.meanCosines, this->Samples(),
+    this->Extinctions(), this->Flow(), this->Glow(), this->Cosines(), this->SeenGroups, this->BricksOfRecords);
   this->Launch(pack, traits.grid.size);
   this->FindBricks(bends, false);
 }
@@ -163,9 +163,9 @@ void PackedSamples::PackShown(const SceneOnDevice& scene, const Buffer<float>& d
   ViewedComponents components = traits.Components();
   components.straightOn = this->For == Packing::Unscattered ? 0 : components.straightOn;
   cl::Kernel pack = this->TheDevice.Kernel("pack_shown", kernel_source::ShownSamples, options + this->ShownOptions());
-  With(pack, Int4(traits.grid.size), components, scene.arrays[0].Handle(), scene.arrays[1].Handle(), scene.arrays[2].Handle(),
-    scene.straightOn, diffuse, direct, scene.ior, this->Samples(), this->Extinctions(), this->Flow(), this->Glow(),
-    this->SeenGroups);
+  With(pack, Int4(traits.grid.size), components, scene.arrays[0].Handle(), scene.arrays[1].Handle(),
+    scene.arrays[2].Handle(), scene.straightOn, diffuse, direct, scene.ior, this->Samples(), this->Extinctions(),
+    this->Flow(), this->Glow(), this->SeenGroups);
   this->Launch(pack, traits.grid.size);
   this->FindBricks(bends, true);
 }

@@ -52,7 +52,7 @@ inline float4 source_of(const ingredients* from, int voxel, int single, float4* 
   float4 sigma_s = (float4)(0.0f);
   float4 source = (float4)(0.0f);
   *sigma_t = *emitted = (float4)(0.0f);
-#define CHANNEL(c, n)                                                          \
+#define CHANNEL(c, n)                                                             \
   sigma_s.c = channel_of(from->scattering, voxel, of.scattering, n);              \
   sigma_t->c = sigma_s.c + channel_of(from->absorption, voxel, of.absorption, n); \
   emitted->c = channel_of(from->emission, voxel, of.emission, n);                 \
@@ -115,10 +115,11 @@ static void put_nothing(int place, __global float4* samples, __global float4* ex
 // cosines  with VARIED_G: red, green, blue of g
 // glow     with GLOW: emission, which is then no part of `samples`
 // ior      with BENDS: sources are divided by n^2
-__kernel void pack_samples(int4 size, ViewedComponents of, int single, float g, __global const float* restrict absorption,
-  __global const float* restrict scattering, __global const float* restrict emission,
-  __global const float* restrict fluence, __global const float* restrict unscattered,
-  __global const float* restrict direct, __global const float* restrict direction, __global const float* restrict ior,
+__kernel void pack_samples(int4 size, ViewedComponents of, int single, float g,
+  __global const float* restrict absorption, __global const float* restrict scattering,
+  __global const float* restrict emission, __global const float* restrict fluence,
+  __global const float* restrict unscattered, __global const float* restrict direct,
+  __global const float* restrict direction, __global const float* restrict ior,
   __global const float* restrict mean_cosines, __global float4* restrict samples, __global float4* restrict extinctions,
   __global float4* restrict flow, __global float4* restrict glow, __global float4* restrict cosines,
   __global const uchar* restrict seen, __global const int* restrict bricks)

@@ -26,12 +26,12 @@ inline coefficients coefficients_of(__global const float* absorption, __global c
 {
   coefficients here;
   here.sigma_t.w = here.albedo.w = 0.0f;
-#define CHANNEL(c, n)                                                                        \
-  {                                                                                          \
-    const float s = channel_of(scattering, voxel, of->scattering, n);                        \
-    const float turned = s * (1.0f - channel_of(straight_on, voxel, of->straightOn, n));     \
-    here.sigma_t.c = turned + channel_of(absorption, voxel, of->absorption, n);              \
-    here.albedo.c = here.sigma_t.c > 0.0f ? s / here.sigma_t.c : 0.0f;                       \
+#define CHANNEL(c, n)                                                                    \
+  {                                                                                      \
+    const float s = channel_of(scattering, voxel, of->scattering, n);                    \
+    const float turned = s * (1.0f - channel_of(straight_on, voxel, of->straightOn, n)); \
+    here.sigma_t.c = turned + channel_of(absorption, voxel, of->absorption, n);          \
+    here.albedo.c = here.sigma_t.c > 0.0f ? s / here.sigma_t.c : 0.0f;                   \
   }
   CHANNEL(x, 0)
   CHANNEL(y, 1)
@@ -78,9 +78,9 @@ __kernel void pack_shown(int4 size, ViewedComponents of, __global const float* r
   {
     float4 albedos = (float4)(0.0f), lights = (float4)(0.0f);
     float count = 0.0f;
-#define ADD(neighbour)                                                               \
+#define ADD(neighbour)                                                                    \
   albedos += coefficients_of(absorption, scattering, straight_on, &of, neighbour).albedo; \
-  lights += SHOWN == 1 ? triple(diffuse, neighbour) : (float4)(0.0f);                \
+  lights += SHOWN == 1 ? triple(diffuse, neighbour) : (float4)(0.0f);                     \
   count += 1.0f;
     FOR_SCATTERING_AROUND(voxel, size, scattering, of.scattering, ADD)
 #undef ADD

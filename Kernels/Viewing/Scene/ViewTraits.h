@@ -5,9 +5,9 @@
 #include "Viewing/Scene/BlockOfScene.h"
 #include "Viewing/Scene/SeenBricks.h"
 #include "Viewing/Scene/SolvedLight.h"
-#include "Viewing/Scene/ViewShared.h"
 #include "Viewing/Scene/ViewedPhase.h"
 #include "Viewing/Scene/ViewSettings.h"
+#include "Viewing/Scene/ViewShared.h"
 
 #include <array>
 #include <string>

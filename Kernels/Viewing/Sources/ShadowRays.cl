@@ -338,12 +338,11 @@ __kernel void see_lights(ShadowInfo info, __global const SmallLight* restrict li
 #else
 #define DEPTH(c) depths.r
 #endif
-#define SPREAD(c, n)                                                                                                 \
-  irradiance.c = fma(arrived.c,                                                                                      \
-    aureole_at(                                                                                                      \
-      cosine,                                                                                                        \
-      DEPTH(c) * scattering_over_depth(absorption, scattering, straight_on, &info.components, voxel, n),             \
-      aureole + n * apart),                                                                                          \
+#define SPREAD(c, n)                                                                                     \
+  irradiance.c = fma(arrived.c,                                                                          \
+    aureole_at(cosine,                                                                                   \
+      DEPTH(c) * scattering_over_depth(absorption, scattering, straight_on, &info.components, voxel, n), \
+      aureole + n * apart),                                                                              \
     irradiance.c);
     SPREAD(r, 0)
     SPREAD(g, 1)
