@@ -116,17 +116,17 @@ typedef struct
 /// What shadow rays are told.
 typedef struct
 {
-  float4 spacing;  ///< length per voxel
-  float4 eye;      ///< world, from the same corner; w: 0 the rays come from one point, 1 they are parallel
-  float4 forward;  ///< unit vector, world
-  int4 size;       ///< voxels
-  int4 bricks;     ///< bricks
-  BlockInfo block; ///< of which the medium is one; without other blocks `first` is 0
-  int4 asked;      ///< by whom depths are asked for: the first voxel of the whole
-  int4 askedSize;  ///< and how many voxels
-  PhaseInfo phase; ///< where it is the same everywhere
+  float4 spacing;              ///< length per voxel
+  float4 eye;                  ///< world, from the same corner; w: 0 the rays come from one point, 1 they are parallel
+  float4 forward;              ///< unit vector, world
+  int4 size;                   ///< voxels
+  int4 bricks;                 ///< bricks
+  BlockInfo block;             ///< of which the medium is one; without other blocks `first` is 0
+  int4 asked;                  ///< by whom depths are asked for: the first voxel of the whole
+  int4 askedSize;              ///< and how many voxels
+  PhaseInfo phase;             ///< where it is the same everywhere
   ViewedComponents components; ///< of the medium's arrays
-  float step;               ///< voxels
+  float step;                  ///< voxels
   float nearestSquare;      ///< keeps a voxel that holds a light finite: its mean of 1/r^2 is 3/R^2 of a ball as large
   int firstLight, lights;   ///< those from the first on, before the other
   int firstSlice, firstRow; ///< of the launch
