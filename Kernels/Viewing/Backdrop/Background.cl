@@ -1,13 +1,9 @@
 // What is behind the medium: an environment, a colour, or nothing.
-//
-// The host gives
-//   ENVIRONMENT  1: the background is a picture; 0: one colour
 
 #pragma once
 #include "Viewing/Samples/Sampling.cl"
 #include "Viewing/Scene/ViewShared.h"
 
-#if ENVIRONMENT
 // Angle of (x, y) from +x, in [-pi, pi], to 1e-7. PoCL's atan2 is scalar and costs ten times this.
 inline real angle_of(real y, real x)
 {
@@ -46,20 +42,20 @@ inline rgb look_up(__global const float4* environment, real3 d, int4 size)
   const integer j1 = to_integer(lesser(greater(below + (real)1.0f, (real)0.0f), last)) * (size.x + 2) + i;
   return between_four(environment, j0, j1, x, y);
 }
-#endif
 
 // Radiance that comes from behind against each (world) direction.
 inline rgb look_behind(const ViewInfo* v, real3 d, __global const float4* environment)
 {
   rgb behind = { (real)v->background.x, (real)v->background.y, (real)v->background.z };
-#if ENVIRONMENT
-  const float4* m = v->toPicture;
-  const real3 turned = { d.x * m[0].x + d.y * m[0].y + d.z * m[0].z, d.x * m[1].x + d.y * m[1].y + d.z * m[1].z,
-    d.x * m[2].x + d.y * m[2].y + d.z * m[2].z };
-  const rgb seen = look_up(environment, turned, v->environment);
-  behind.r += seen.r;
-  behind.g += seen.g;
-  behind.b += seen.b;
-#endif
+  if (v->environment.x > 0)
+  {
+    const float4* m = v->toPicture;
+    const real3 turned = { d.x * m[0].x + d.y * m[0].y + d.z * m[0].z, d.x * m[1].x + d.y * m[1].y + d.z * m[1].z,
+      d.x * m[2].x + d.y * m[2].y + d.z * m[2].z };
+    const rgb seen = look_up(environment, turned, v->environment);
+    behind.r += seen.r;
+    behind.g += seen.g;
+    behind.b += seen.b;
+  }
   return behind;
 }

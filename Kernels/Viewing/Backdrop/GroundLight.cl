@@ -1,21 +1,18 @@
 // Faces of the box that give back light, seen from within: matt ground, snow, a table.
-//
-// The host gives
-//   GROUND  a bit for each face, -x to +z, that does; 0: none
 
 #pragma once
 #include "Viewing/Backdrop/BoxFacePlaces.cl"
 
-#if GROUND
 // What rays see that leave the box, if they do, through such a face; else what is behind.
 //   ground  radiance, see GroundLight.h
+//   faces   a bit for each face, -x to +z, that gives back light
 //   p       a place on the way out from which they go straight on, in voxels
 inline rgb ground_or_behind(
-  __global const float4* ground, real3 p, real3 direction, integer leaves, int4 size, rgb behind)
+  __global const float4* ground, int faces, real3 p, real3 direction, integer leaves, int4 size, rgb behind)
 {
   const real3 back = { -direction.x, -direction.y, -direction.z };
   const face_place to = face_behind(p, back, size);
-  const integer is_ground = leaves & (((integer)GROUND >> to.face & (integer)1) != (integer)0);
+  const integer is_ground = leaves & (((integer)faces >> to.face & (integer)1) != (integer)0);
 #if SHOWN == 2
   const rgb seen = { (real)0.0f, (real)0.0f, (real)0.0f }; // it is in the picture already
 #else
@@ -24,4 +21,3 @@ inline rgb ground_or_behind(
   const rgb light = { is_ground ? seen.r : behind.r, is_ground ? seen.g : behind.g, is_ground ? seen.b : behind.b };
   return light;
 }
-#endif

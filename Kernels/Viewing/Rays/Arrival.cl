@@ -106,9 +106,12 @@ inline void arrive(const surroundings* s, const ray_packets* t, integer ends_her
   const real where = left > (real)0.5f ? (real)s->v->marching.z : distance_to_half(*half_way);
   to->depth = seen ? where : to->depth;
   rgb behind = look_behind(s->v, towards, environment);
-#if GROUND
-  behind = ground_or_behind(ground, in_block(s, t->at), t->velocity, out & (ends == 0), SAMPLES_SIZE(s), behind);
-#endif
+  const int faces = s->v->environment.z;
+  if (faces != 0)
+  {
+    behind =
+      ground_or_behind(ground, faces, in_block(s, t->at), t->velocity, out & (ends == 0), SAMPLES_SIZE(s), behind);
+  }
   part = ends_here ? part : (real)0.0f;
   add_background(behind, part * (real)s->v->background.w / square, &to->l);
 }

@@ -38,7 +38,7 @@ ViewInfo RayCasting::ViewOf(const Camera& camera, const ViewSettings& settings, 
   const std::array<int, 2> environment = this->Behind.EnvironmentSize();
   view.background = Float4(Vector(this->Behind.Colour(settings)), settings.showBackground ? 1.0 : 0.0);
   view.bricks = Int4(this->Samples.BrickCount());
-  view.environment = Int4({ environment[0], environment[1], 0 });
+  view.environment = Int4({ environment[0], environment[1], this->Behind.FacesOfGround() });
   for (int row = 0; row < 3; ++row)
   {
     view.toPicture[row] = Float4(Vector(this->Behind.ToPicture()[row]));
@@ -94,7 +94,6 @@ std::string RayCasting::Options(const ViewSettings& settings) const
   const double longest = traits.largestSigmaT * settings.stepSize *
     *std::max_element(traits.grid.spacing.begin(), traits.grid.spacing.end());
   return traits.PacketOptions() + Define("SKIP_BRICKS", traits.SkipsBricks(settings)) +
-    Define("ENVIRONMENT", this->Behind.HasEnvironment()) + Define("GROUND", this->Behind.FacesOfGround()) +
     Define("THIN_STEPS", longest <= (traits.bends ? 1.5 : 2.0)) + Define("GLOW", traits.GlowsApart()) +
     traits.PhaseOptions(traits.knowsFlow) + StepOption(LongestSteps(traits.grid, settings.stepSize)) +
     this->Samples.ShownOptions();

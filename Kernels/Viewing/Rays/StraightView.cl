@@ -113,10 +113,11 @@ __kernel void cast_rays(ViewInfo v, __global const float4* restrict samples,
   add_surface_light(surface_light(surface, packet, seen.d, before, v.size), &l);
 #endif
   rgb behind = look_behind(&v, seen.d, environment);
-#if GROUND
-  behind =
-    ground_or_behind(ground, along(packet, packet.length), direction, packet.length > (real)0.0f, v.size, behind);
-#endif
+  if (v.environment.z != 0)
+  {
+    behind = ground_or_behind(
+      ground, v.environment.z, along(packet, packet.length), direction, packet.length > (real)0.0f, v.size, behind);
+  }
   add_background(behind, sees_behind ? (real)v.background.w : (real)0.0f, &l);
   const real where = left > (real)0.5f ? (real)v.marching.z : (distance_to_half(half_way) + before) * seen.cosine;
   const canvas picture = { radiance, alpha, depth };

@@ -53,7 +53,7 @@ typedef struct
   int4 size;             ///< voxels; of rays that go from block to block (RayRounds.h) those of the whole
   int4 held;             ///< voxels of the arrays of such a block
   int4 bricks;           ///< bricks
-  int4 environment;      ///< width, height in pixels
+  int4 environment;      ///< width, height in pixels, 0: there is none; a bit for each face that gives back light
   float4 toPicture[3];   ///< of the environment: rows of the matrix from the world's axes to the picture's
   BlockInfo block;
   PhaseInfo phase;
