@@ -53,9 +53,7 @@ protected:
       EXPECT_LT(LargestDifference(found.fluence, alone.fluence), 1e-6);
       EXPECT_LT(RelativeRmse(found.netFlux, alone.netFlux), 1e-5);
       EXPECT_LE(LargestDifference(found.facePower, alone.facePower), 1e-6);
-      // Means over directions of functions that are as large as this.
-      const double largestFunction = std::sqrt(2.0 * std::max(settings.angularDegree, 0) + 1.0);
-      EXPECT_LE(LargestDifference(found.scatteredMoments, alone.scatteredMoments), 1e-6 * largestFunction);
+      EXPECT_LE(LargestDifference(found.scatteredMoments, alone.scatteredMoments), 1e-6);
       ExpectTheSurface(found, alone, 1e-6);
       ExpectEnergyKept(whole, found);
     }
@@ -223,6 +221,7 @@ TEST_F(ThickPropagationBlocks, HaveTheLightOfTheWholeInAngularMoments)
   settings.source = PropagationSource::Linear;
   settings.angularDegree = 2;
   settings.storeMoments = true;
+  settings.tolerance = 1e-5; // at 1e-4 rounding moves the last orders by as much as is asked here
   ExpectTheLightOfTheWhole(
     whole, LitFromOutside(), settings, { BlockPartition::Even(whole.medium.grid, 2), Anyhow(whole.medium.grid) }, 1e-4);
   RandomMedium grey(Grid{ { 4, 3, 5 } }, 1, 6.0f, 11);
