@@ -54,14 +54,6 @@ void Multiply(std::vector<float>& values, double unit, const char* name)
     values.begin(), values.end(), values.begin(), [=](float value) { return static_cast<float>(value * unit); });
 }
 
-void Multiply(Rgb& values, double unit)
-{
-  for (double& value : values)
-  {
-    value *= unit;
-  }
-}
-
 /// W that a light sends into the box, or around it if it stands outside; the sum of its channels.
 double PowerInto(const Grid& grid, const Light& light)
 {
@@ -103,10 +95,13 @@ AllThatShines ShiningOn(const Grid& grid, const Medium& medium, const Illuminati
   take(emission);
   all.power += 4.0 * Pi * emission * grid.VoxelVolume() * static_cast<double>(grid.VoxelCount()) +
     2.0 * Pi * radiance * (area[0] + area[1] + area[2]);
-  for (int c = 0; c < 3 && illumination.uncollided.IsThere(); ++c)
+  if (illumination.uncollided.IsThere())
   {
-    all.power += PowerLost(illumination.uncollided, medium, c);
     all.first = 0.0; // it stays as it is given, bit for bit
+    for (int c = 0; c < 3; ++c)
+    {
+      all.power += PowerLost(illumination.uncollided, medium, c);
+    }
   }
   return all;
 }
@@ -232,11 +227,11 @@ void MultiplyPowers(LightField& light, double factor)
   EnergyBalance& balance = light.balance;
   for (Rgb* watts : { &balance.entered, &balance.emitted, &balance.absorbed, &balance.escaped, &balance.leftOver })
   {
-    Multiply(*watts, factor);
+    *watts = Times(*watts, factor);
   }
   for (Rgb& watts : light.facePowerOut)
   {
-    Multiply(watts, factor);
+    watts = Times(watts, factor);
   }
   for (ConvergenceRow& row : light.convergence)
   {

@@ -15,8 +15,7 @@ namespace tyndall
 struct AllThatShines
 {
   double power = 0.0; ///< W, at most
-  double first =
-    0.0; ///< of what shines, the first: a light's power, a radiance, or emission. 0: none, or light is given
+  double first = 0.0; ///< a light's power, else a radiance, else emission. 0: nothing shines, or light is given
 };
 
 /// @param medium  in all of the grid, or in a block of it
