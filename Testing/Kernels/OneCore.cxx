@@ -14,7 +14,8 @@ namespace
 bool Take(int core)
 {
   const std::string name = "/tyndall_tests_core_" + std::to_string(core) + "_of_" + std::to_string(getuid());
-  const int file = open((std::filesystem::temp_directory_path().string() + name).c_str(), O_CREAT | O_RDWR, 0600);
+  const int file =
+    open((std::filesystem::temp_directory_path().string() + name).c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0600);
   return file >= 0 && flock(file, LOCK_EX | LOCK_NB) == 0;
 }
 
