@@ -256,6 +256,7 @@ void AxisSweep::Implementation::Launch(const SweepVolume& volume, const Entry& e
   info.axis = plan.axes.axis;
   info.planes = plan.plane;
   info.faces = this->Faces(volume.faceFirst, volume.deposit);
+  info.faces.in = entry.byCells;
   const cl::Buffer& faceOut = this->CellsOf(volume.deposit);
   const Buffer<float>& faceIn = volume.faceIn ? *volume.faceIn : *volume.deposit.path;
   const Buffer<float>& octantSource = volume.octantSource ? *volume.octantSource : *volume.deposit.path;
@@ -302,6 +303,8 @@ FaceInfo AxisSweep::Implementation::Faces(std::size_t firstChannel, const Deposi
   faces.firstChannel = firstChannel;
   faces.stride = BoxFaceCellCount(this->Plan.grid);
   faces.unit = to.faceOut && to.spreadsAside ? to.faceOut->Size() : 0;
+  faces.out = to.faceOut != nullptr;
+  faces.spread = to.spreadsAside;
   for (int side = 0; side < 4; ++side)
   {
     const int aside = side < 2 ? axes.u : axes.v;
@@ -385,8 +388,7 @@ cl::Kernel AxisSweep::Implementation::SweepKernel(const Deposit& to, bool byCell
   // Where planes are not chained anyway one program serves periodic boxes, too.
   const bool alone = plan.angular || to.faceOut || byCells;
   const std::string options = DefinesOf(plan) + ExactOption(this->TheDevice) + Define("NET_FLUX", to.flux != nullptr) +
-    Define("FACE_OUT", to.faceOut != nullptr) + Define("FACE_SPREAD", to.spreadsAside) + Define("FACE_IN", byCells) +
-    Define("STREAMED", this->Stream != nullptr) +
+    Define("FACES", to.faceOut || byCells) +
     Define("PERIODIC", alone || plan.periodic[plan.axes.u] || plan.periodic[plan.axes.v]);
   return this->TheDevice.Kernel("sweep", kernel_source::Sweep, options);
 }

@@ -503,6 +503,7 @@ void SweepPlan::LetRaysGoOn()
 void SweepPlan::DescribeMoments(SweepInfo& info) const
 {
   info.moments = this->moments;
+  info.momentsInPlace = this->momentsInPlace;
   info.packedMoments = this->momentRow;
   std::partial_sum(this->order.counts.begin(), this->order.counts.end(), info.parityEnds);
 }

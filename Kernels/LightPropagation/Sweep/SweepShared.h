@@ -14,7 +14,8 @@ enum
   BundlesTogether = 16, ///< that cross planes in turns: where light has angular moments, or planes are chained
   MomentRows = 8,       ///< of which a bundle's sources are kept: of the rows that its stages are at
   MostChained = 2,      ///< planes that a bundle crosses row by row one behind the other
-  RowsOfChain = 32,     ///< of those, that bundles cross in turns: the planes' rows stay in the cache for all of them
+  RowsTogether = 8,     ///< of a plane with many moments: they stay in the cache for all bundles
+  RowsOfChain = 32,     ///< of a chain, that bundles cross in turns: the planes' rows stay in the cache for all of them
   RowsOfChainKept = 64, ///< a power of two: of a turn, and those that its last stage is behind
   RowsAhead = 2,        ///< from where a chain begins a row to the row of its map that is asked for
   FloatsOfLine = 16,    ///< of a cache
@@ -130,7 +131,10 @@ typedef struct
 {
   int first[4], plane[4], along[4];
   ulong firstChannel, stride; ///< where the first channel begins, and the way to the next
-  ulong unit;                 ///< values of one unit's own cells, where FACE_SPREAD: units cross planes side by side
+  ulong unit;                 ///< values of one unit's own cells, where it spreads: units cross planes side by side
+  int out;                    ///< 1: the power that leaves through each cell is wanted
+  int spread;                 ///< 1: of each ray, in all cells that it stands for; where out
+  int in;                     ///< 1: light comes in by cells, besides that which is the same for a whole face
 } FaceInfo;
 
 /// A launch of the kernel `sweep`.
@@ -154,10 +158,12 @@ typedef struct
   PlaneInfo planes;
   FaceInfo faces;
   MomentPlaces moments;
-  int sizeY;         ///< voxels of the grid along y, or of a slot
-  int packedMoments; ///< floats of a packed row of moments
-  int parityEnds[4]; ///< where those of each parity end among the angular functions (SweepLayout.cl)
+  int sizeY;          ///< voxels of the grid along y, or of a slot
+  int momentsInPlace; ///< 1: they are read and added to where they are; 0: they are packed like the rest of a plane
+  int packedMoments;  ///< floats of a packed row of moments
+  int parityEnds[4];  ///< where those of each parity end among the angular functions (SweepLayout.cl)
   int firstChannel;
-  ulong sourceSlot, pathSlot; ///< floats of a slot of source and of path, where volumes are streamed
+  int streamed;               ///< 1: slices of the volumes are in slots (SliceStream.h)
+  ulong sourceSlot, pathSlot; ///< floats of a slot of source and of path, where streamed
 } SweepInfo;
 SHARED_END

@@ -83,8 +83,7 @@ cl::Kernel BlockCrossingOnCpu::Kernel()
 {
   const SweepPlan& plan = this->Plan;
   const std::string options = DefinesOf(plan) + ExactOption(this->TheDevice) + Define("SIDES", 1) +
-    Define("STREAMED", 0) + Define("NET_FLUX", plan.netFlux) + Define("FACE_OUT", 0) + Define("FACE_SPREAD", 0) +
-    Define("FACE_IN", 0) + Define("PERIODIC", 0);
+    Define("NET_FLUX", plan.netFlux) + Define("FACES", 0) + Define("PERIODIC", 0);
   return this->TheDevice.Kernel("sweep", kernel_source::Sweep, options);
 }
 

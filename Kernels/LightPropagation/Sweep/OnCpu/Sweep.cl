@@ -18,10 +18,8 @@ static void go_to_plane(sweep_state* state, int k)
   state->thin = place->thin;
   state->escaped = place->escaped;
   state->rounding = place->rounding;
-#if FACE_OUT || FACE_IN
+#if FACES
   go_to_faces(state, state->firstPlane + place->plane);
-#endif
-#if FACE_OUT
   state->facePlane = place->plane;
 #endif
 }
@@ -222,7 +220,7 @@ static void cross_bundles(sweep_state* state, const swept_volume* volume, const 
 {
   __global float* const kept = state->ring;
 #if ANGULAR
-  const int tile = TILE, floats_of_bundle = BUNDLE_FLOATS(CHANNELS, ROW);
+  const int tile = RowsTogether, floats_of_bundle = BUNDLE_FLOATS(CHANNELS, ROW);
 #else
   const int tile = state->tile, floats_of_bundle = state->rings * RingRows * RAYS_OF_ROW;
 #endif
@@ -291,11 +289,11 @@ static void clear_tallies(float (*escaped)[4][CHANNELS], float (*rounding)[4][CH
 // crossings [plane of the ray pattern][bundle]
 // own       [unit][plane from where rays start], see add_own_light
 // schedule  [launch][unit] first plane and end, counted from where rays start; beyond the last plane the axis begins
-//           anew; where STREAMED [launch][planes, slots][unit], see go_to_slot
+//           anew; where streamed [launch][planes, slots][unit], see go_to_slot
 // tally     [plane from where rays start][unit][-u, +u, -v, +v][channel] W that left
 // octants   see SweepRequest::octantSource
-// face_out, face_in  see Deposit.h, SweepOperator.h; where FACE_OUT, FACE_IN; face_out is the sweep's own, and
-//           [unit][channel][cell] where FACE_SPREAD
+// face_out, face_in  see Deposit.h, SweepOperator.h; where FaceInfo has out, in; face_out is the sweep's own, and
+//           [unit][channel][cell] where rays spread
 // function_places  see SweepPlan::FunctionPlaces
 // sides_in, sides_out  [plane from the box's first on][ray], see SweepSides.cl; outer_sides: bit i, of light through
 //           its side i, that it leaves the whole grid; where SIDES
@@ -310,12 +308,13 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
   const int u = get_global_id(0);
   const int unit_count = get_global_size(0);
   const UnitInfo unit = units[u];
-  const int2 range = schedule[(STREAMED ? 2 : 1) * info.launch * unit_count + u];
+  const int2 range = schedule[(info.streamed ? 2 : 1) * info.launch * unit_count + u];
   const int first_plane = info.planes.firstP; // of the box, in the grid
-#if STREAMED
-  const int2 slot = schedule[(2 * info.launch + 1) * unit_count + u];
-  go_to_slot(&info, slot, &sigma, &source, &path, &lost, &flux, &currents, &octants);
-#endif
+  if (info.streamed)
+  {
+    const int2 slot = schedule[(2 * info.launch + 1) * unit_count + u];
+    go_to_slot(&info, slot, &sigma, &source, &path, &lost, &flux, &currents, &octants);
+  }
   const PlaneInfo layout = info.planes;
 
   sweep_state state;
@@ -339,22 +338,18 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
 #endif
   state.moving = state.ring + rings;
   __global float* planes = state.moving + RAYS_OF_ROW + PAD; // past the last row's border
-#if FACE_OUT || FACE_IN
   const FaceInfo faces = info.faces;
+#if FACES
   state.faces = &faces;
   state.firstPlane = first_plane;
-#endif
-#if FACE_OUT
   state.faceOut = face_out + u * faces.unit;
   state.facePlanes = layout.sizeP;
-#endif
-#if FACE_IN
   state.faceIn = face_in;
 #endif
-#if FACE_IN || SIDES
+#if FACES || SIDES
   state.outside = planes;
-  planes += RAYS_OF_ROW + PAD;
 #endif
+  planes += SIDES || faces.in ? RAYS_OF_ROW + PAD : 0;
 #if SIDES
   state.outerSides = outer_sides;
 #endif
@@ -367,11 +362,9 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
   const __global float* higher_source = source + higher;
   __global float* higher_path = path + higher;
   const __global float* beams = source + info.moments.beams + info.first;
-#if !MOMENTS_IN_PLACE
   const int moment_plane = layout.sizeV * info.packedMoments;
   __global float* packed_source = (__global float*)thin + layout.together * layout.sizeV + REAL_WIDTH;
   __global float* packed_path = packed_source + layout.together * moment_plane;
-#endif
 #else
   const __global float* beams = source;
 #endif
@@ -414,20 +407,23 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
   {
     const int lap = begin / layout.sizeP * layout.sizeP; // planes already marched when the axis began anew
     count = min(min(layout.together, range.y - begin), lap + layout.sizeP - begin);
-#if ANGULAR && !MOMENTS_IN_PLACE
-    count = min(count, of_one_group(&layout, begin - lap, unit.backward));
+#if ANGULAR
+    count = info.momentsInPlace ? count : min(count, of_one_group(&layout, begin - lap, unit.backward));
 #endif
     const int first = unit.backward ? layout.sizeP - (begin - lap) - count : begin - lap;
     packed_planes packed = { planes, thin, first, count, own + u * info.patternPlanes + begin };
 #if !ROWS_KEPT
     begin_rows(&volume, &packed, all_rows);
 #endif
-#if ANGULAR && !MOMENTS_IN_PLACE
-    if (info.shines)
+#if ANGULAR
+    if (!info.momentsInPlace)
     {
-      pack_moments(&info, packed_source, first, count, higher_source);
+      if (info.shines)
+      {
+        pack_moments(&info, packed_source, first, count, higher_source);
+      }
+      clear(packed_path, count * moment_plane);
     }
-    clear(packed_path, count * moment_plane);
 #endif
     clear_tallies(escaped, rounding);
     struct plane_place places[PLANES_TOGETHER];
@@ -459,21 +455,24 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
 #endif
 #if ANGULAR
       const int plane = state.places->plane;
-#if MOMENTS_IN_PLACE
-      const ulong line = info.moments.channels * channel;
-      const ulong across = info.axis == 2 ? 1 : info.sizeY; // lines from one row of the plane to the next
-      const ulong along = info.axis == 2 ? info.sizeY : 1;
-      const ulong here = line * ((layout.firstP + plane) * along + layout.firstV * across);
-      state.momentSource = higher_source + here;
-      state.momentPath = higher_path + here;
-      state.momentStep = line * across;
-      state.momentChannel = channel;
-#else
-      state.momentSource = packed_source + (plane - first) * moment_plane;
-      state.momentPath = packed_path + (plane - first) * moment_plane;
-      state.momentStep = info.packedMoments;
-      state.momentChannel = info.packedMoments / CHANNELS;
-#endif
+      if (info.momentsInPlace)
+      {
+        const ulong line = info.moments.channels * channel;
+        const ulong across = info.axis == 2 ? 1 : info.sizeY; // lines from one row of the plane to the next
+        const ulong along = info.axis == 2 ? info.sizeY : 1;
+        const ulong here = line * ((layout.firstP + plane) * along + layout.firstV * across);
+        state.momentSource = higher_source + here;
+        state.momentPath = higher_path + here;
+        state.momentStep = line * across;
+        state.momentChannel = channel;
+      }
+      else
+      {
+        state.momentSource = packed_source + (plane - first) * moment_plane;
+        state.momentPath = packed_path + (plane - first) * moment_plane;
+        state.momentStep = info.packedMoments;
+        state.momentChannel = info.packedMoments / CHANNELS;
+      }
 #endif
 #if ROWS_KEPT
       packed.first = min(state.places[0].plane, state.places[chained - 1].plane);
@@ -503,8 +502,11 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
 #if !ROWS_KEPT
     end_rows(&volume, &packed, all_rows);
 #endif
-#if ANGULAR && !MOMENTS_IN_PLACE
-    unpack_moments(&info, packed_path, first, count, higher_path);
+#if ANGULAR
+    if (!info.momentsInPlace)
+    {
+      unpack_moments(&info, packed_path, first, count, higher_path);
+    }
 #endif
   }
 }

@@ -201,35 +201,44 @@ static BY_ROW void COUNT_ESCAPED(sweep_state* state, const __global float* row, 
     if (through_u)
     {
       const int side = du > 0 ? 1 : 0;
-#if FACE_IN
-      const float beyond = across_v[FIRST(m, c)] + bundle->power * light_of_cell(state, dv > 0 ? 2 : 3, edge, c);
-#else
-      const float beyond = across_v[FIRST(m, c)];
+      float beyond = across_v[FIRST(m, c)];
+#if FACES
+      if (state->faces->in)
+      {
+        beyond += bundle->power * light_of_cell(state, dv > 0 ? 2 : 3, edge, c);
+      }
 #endif
       add_exactly(
         &state->escaped[side][c], &state->rounding[side][c], part * (rays[edge] - turned * (rays[edge] - beyond)));
-#if FACE_OUT
-      const face_planes of = planes_of_ray(state, bundle->move[m][0] != 0 ? bundle->planesU : bundle->planesV);
-      leave_through(state, side, y, c, of, part * (1.0f - turned) * rays[edge]);
-      leave_through(state, side, dv > 0 ? 0 : state->sizeV - 1, c, of, part * turned * beyond);
+#if FACES
+      if (state->faces->out)
+      {
+        const face_planes of = planes_of_ray(state, bundle->move[m][0] != 0 ? bundle->planesU : bundle->planesV);
+        leave_through(state, side, y, c, of, part * (1.0f - turned) * rays[edge]);
+        leave_through(state, side, dv > 0 ? 0 : state->sizeV - 1, c, of, part * turned * beyond);
+      }
 #endif
     }
     if (through_v)
     {
       const int side = dv > 0 ? 3 : 2;
-#if FACE_IN
-      const float beyond = across_u[m * CHANNELS + c] +
-        (turned > 0.0f ? bundle->power * light_of_cell(state, du > 0 ? 0 : 1, y, c) : 0.0f);
-#else
-      const float beyond = across_u[m * CHANNELS + c];
+      float beyond = across_u[m * CHANNELS + c];
+#if FACES
+      if (state->faces->in && turned > 0.0f)
+      {
+        beyond += bundle->power * light_of_cell(state, du > 0 ? 0 : 1, y, c);
+      }
 #endif
       const float all = sum_of_row(rays, state->sizeU);
       add_exactly(&state->escaped[side][c], &state->rounding[side][c], part * (all - turned * (rays[edge] - beyond)));
-#if FACE_OUT
-      const face_planes of = planes_of_ray(state, bundle->move[m][2] != 0 ? bundle->planesU : bundle->planesV);
-      leave_all_through(state, side, c, of, rays, part);
-      leave_through(state, side, edge, c, of, -part * turned * rays[edge]);
-      leave_through(state, side, du > 0 ? 0 : state->sizeU - 1, c, of, part * turned * beyond);
+#if FACES
+      if (state->faces->out)
+      {
+        const face_planes of = planes_of_ray(state, bundle->move[m][2] != 0 ? bundle->planesU : bundle->planesV);
+        leave_all_through(state, side, c, of, rays, part);
+        leave_through(state, side, edge, c, of, -part * turned * rays[edge]);
+        leave_through(state, side, du > 0 ? 0 : state->sizeU - 1, c, of, part * turned * beyond);
+      }
 #endif
     }
   }
@@ -269,7 +278,7 @@ static BY_ROW void FILL_BORDER(sweep_state* state, const __global float* radianc
   }
 }
 
-#if FACE_IN
+#if FACES
 // Rays that come in through the faces across u by cells, into the columns beside row y.
 static BY_ROW void ENTER_ASIDE(sweep_state* state, int y, const __global float* radiance,
   const __global BundleInfo* bundle, int moveU, int moveV, __global float* out)
@@ -416,8 +425,8 @@ static void TAKE_ROW(sweep_state* state, int y, bool inside, int s, const __glob
 static void ENTER_ROW(sweep_state* state, int y, int s, const __global float* radiance,
   const __global BundleInfo* bundle, const __global CrossingInfo* crossing, __global float* out)
 {
-#if FACE_IN
-  if (!PERIODIC_U)
+#if FACES
+  if (state->faces->in && !PERIODIC_U)
   {
     ENTER_ASIDE(state, y, radiance, bundle, crossing->moveU[s], crossing->moveV[s], out);
   }
@@ -468,9 +477,12 @@ static void CROSS_PLANES(sweep_state* state, int planes, __global float* map, co
   }
   go_to_plane(state, 0);
   const int height = state->sizeV;
-#if FACE_IN
-  FILL_OUTSIDE(state, outside, radiance, bundle, crossings);
-  const __global float* const beside = state->outside;
+#if FACES
+  if (state->faces->in)
+  {
+    FILL_OUTSIDE(state, outside, radiance, bundle, crossings);
+  }
+  const __global float* const beside = state->faces->in ? state->outside : outside;
 #elif SIDES
   if (stages > 1)
   {

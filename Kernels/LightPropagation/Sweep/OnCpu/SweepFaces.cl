@@ -1,13 +1,12 @@
 // The cells of the box's faces, in a sweep: what leaves through each, and what comes in through each. The host gives
-//   FACE_OUT  1 where the power that leaves through each cell is wanted
-//   FACE_IN   1 where light comes in by cells, besides that which is the same for a whole face
+//   FACES  1 where either may be wanted; FaceInfo says which is
 //
 // Side 0 to 3 is the face -u, +u, -v, +v; cell i of a side is row i or column i of the plane that is crossed.
 
 #pragma once
 #include "LightPropagation/Sweep/OnCpu/SweepLayout.cl"
 
-#if FACE_OUT || FACE_IN
+#if FACES
 #define FACE_CELL(state, side, i, c) \
   ((state)->faceFirst[side] + (i) * (state)->faces->along[side] + (c) * (state)->faces->stride)
 
@@ -20,11 +19,9 @@ static BY_ROW void go_to_faces(sweep_state* state, int plane)
       state->faces->firstChannel + state->faces->first[side] + (ulong)plane * state->faces->plane[side];
   }
 }
-#endif
 
-#if FACE_OUT
 // The planes whose cells a ray leaves through. Rays that run nearly along a face reach it only every so many planes;
-// with FACE_SPREAD each leaves through all cells that lie between it and the next.
+// where they spread each leaves through all cells that lie between it and the next.
 typedef struct
 {
   float begin, end;
@@ -33,26 +30,20 @@ typedef struct
 // @param planes  from one ray to the next
 static face_planes planes_of_ray(const sweep_state* state, float planes)
 {
-#if FACE_SPREAD
-  const float middle = state->facePlane + 0.5f;
-  face_planes found = { middle - 0.5f * planes, middle + 0.5f * planes };
+  const float middle = state->facePlane + 0.5f, reach = state->faces->spread ? 0.5f * planes : 0.5f;
+  face_planes found = { middle - reach, middle + reach };
   if (!state->roundAxis)
   {
     found.begin = fmax(found.begin, 0.0f);
     found.end = fmin(found.end, (float)state->facePlanes);
   }
-#else
-  const face_planes found = { state->facePlane, state->facePlane + 1.0f };
-#endif
   return found;
 }
 
 // Where the cells of plane p of a side begin.
 static __global exact* cells_of_plane(const sweep_state* state, int side, int p, int c)
 {
-#if FACE_SPREAD
   p = (p + state->facePlanes) % state->facePlanes; // beyond an axis that rays go round
-#endif
   const long planes = p - state->facePlane;
   return state->faceOut + FACE_CELL(state, side, 0, c) + planes * state->faces->plane[side];
 }
@@ -86,9 +77,7 @@ static BY_ROW void leave_all_through(
     }
   }
 }
-#endif
 
-#if FACE_IN
 static float light_of_cell(const sweep_state* state, int side, int i, int c)
 {
   return state->faceIn[FACE_CELL(state, side, i, c)];

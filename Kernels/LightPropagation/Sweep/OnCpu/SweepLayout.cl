@@ -4,14 +4,11 @@
 //   ROW       floats in a padded row; the floats after a row's voxels and before the next row's are its border
 //   ANGULAR   1 where light is gathered and scattered in angular moments, 0: fluence alone
 //   BEAMS     sources with an angular distribution of their own, besides the moments; where ANGULAR
-//   MOMENTS_IN_PLACE  1: they are read and added to where they are; 0: they are packed like the rest of a plane; where
-//             ANGULAR, as is
 //   NET_FLUX  1 where the net flux is wanted
 //   CURRENTS  1 where the power that enters each voxel through each face is wanted
 //   OCTANT_SOURCE  1 where voxels may shine otherwise into each octant; where ANGULAR is 0
 //   PERIODIC  1 where the box may be periodic along u or v; SweepInfo says along which it is
-//   STREAMED  1 where slices of the volumes are in slots (SliceStream.h)
-//   FACE_OUT, FACE_IN  1 where light leaves and comes in by cells of the box's faces (SweepFaces.cl)
+//   FACES     1 where light may leave and come in by cells of the box's faces (SweepFaces.cl); FaceInfo says which
 //   CHAIN_KEEPS  rows of planes that scratch has room for, a power of two; 0: all; may be left out
 //   SIDES     1 where the box is a block of a larger one (SweepSides.cl); may be left out
 // What costs next to nothing to ask is not among them but in SweepInfo: a sweep of the light that comes in and those of
@@ -47,7 +44,7 @@
 
 // Whether planes may be crossed row by row one behind the other, up to PLANES_CHAINED: not where what comes in or goes
 // out beside rows is kept by plane, or rows come from the other side.
-#define CHAINED (!ANGULAR && !FACE_IN && !FACE_OUT && !SIDES && !PERIODIC)
+#define CHAINED (!ANGULAR && !FACES && !SIDES && !PERIODIC)
 // Of functions that are called once a row, or less often: with copies of them in unrolled loops compiling took a third
 // longer. Where planes may be chained calls cost 10% of a sweep of 64 voxels a row.
 #if CHAINED
@@ -132,19 +129,15 @@ typedef struct
   __global float* moving;     // the rays of a row of which a part moves
   float (*escaped)[CHANNELS]; // of the plane, through -u, +u, -v, +v, W; with the rounding errors
   float (*rounding)[CHANNELS];
-#if FACE_OUT || FACE_IN
+#if FACES
   const FaceInfo* faces;
-  ulong faceFirst[4]; // of the plane that is being crossed, first channel
-  int firstPlane;     // of the box, in the grid
-#endif
-#if FACE_OUT
+  ulong faceFirst[4];        // of the plane that is being crossed, first channel
+  int firstPlane;            // of the box, in the grid
   __global exact* faceOut;   // the unit's own
   int facePlane, facePlanes; // that is being crossed; all of them
-#endif
-#if FACE_IN
   const __global float* faceIn;
 #endif
-#if FACE_IN || SIDES
+#if FACES || SIDES
   __global float* outside; // the row of rays that come in through the faces across v, of the bundle in this plane
 #endif
 #if SIDES

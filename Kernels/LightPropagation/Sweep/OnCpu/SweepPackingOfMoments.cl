@@ -3,7 +3,7 @@
 #pragma once
 #include "LightPropagation/Sweep/OnCpu/SweepPacking.cl"
 
-#if ANGULAR && !MOMENTS_IN_PLACE
+#if ANGULAR
 // Of the functions from the second on, where planes from `first` on, all of one group, have row (u, v) of a channel.
 static ulong moments_of(const SweepInfo* info, int channel, int u, int v, int first)
 {

@@ -1,6 +1,6 @@
 // A box that is a block of a larger one: what rays bring in through its sides from the blocks beside it, and what they
 // take out to those. The host gives
-//   SIDES  1 where the box is such a block; not set: 0. PERIODIC and FACE_IN are 0 then, as is
+//   SIDES  1 where the box is such a block; not set: 0. PERIODIC and FACES are 0 then, as is
 //          SweepInfo's border
 //
 // Of each ray of a bundle and each plane, [plane][ray][SIDE_FLOATS]: rays by where they come from, or are, before they

@@ -3,7 +3,6 @@
 #pragma once
 #include "LightPropagation/Sweep/OnCpu/SweepLayout.cl"
 
-#if STREAMED
 // Of volumes that are streamed there are slices in slots: the steps of PlaneInfo are a slot's, and
 // plane `slot.y` of the box is the first one there.
 static void go_to_slot(SweepInfo* info, int2 slot, const __global float** sigma, const __global float** source,
@@ -20,4 +19,3 @@ static void go_to_slot(SweepInfo* info, int2 slot, const __global float** sigma,
   *currents += 6 * voxels;
   *octants += 8 * voxels;
 }
-#endif

@@ -183,6 +183,7 @@ void SliceStream::Describe(SweepInfo& info) const
 {
   const std::array<int, 3> step = { 1, this->Extent[0], this->Extent[0] * this->Extent[1] };
   const PlaneAxes& axes = this->Plan.axes;
+  info.streamed = 1;
   info.planes.firstU = 0;
   info.planes.firstV = 0;
   info.planes.stepU = step[axes.u];
