@@ -1,13 +1,9 @@
 // Light at the surface of thick voxels, where rays enter the box.
-//
-// The host gives
-//   SURFACE_LIGHT  1: there is some
 
 #pragma once
 #include "Viewing/Backdrop/BoxFacePlaces.cl"
 #include "Viewing/Samples/Sampling.cl"
 
-#if SURFACE_LIGHT
 // The cubic through values at cosines 0.05, 0.25, 0.6 and 1, see SurfaceCosines in BoxFaces.h: part of the value at `a`
 // at cosine x.
 #define PART_AT(x, a, b, c, d) (((x)-b) * ((x)-c) * ((x)-d) * (1.0f / ((a - b) * (a - c) * (a - d))))
@@ -39,4 +35,3 @@ inline rgb surface_light(__global const float4* table, rays packet, real3 d, rea
 #undef ADD
   return sum;
 }
-#endif

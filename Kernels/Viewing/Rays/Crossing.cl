@@ -9,7 +9,7 @@
 //   VARIED_G    1: `cosines` holds g by voxel
 //   GLOW        1: emission is kept apart from what is scattered
 //   SHOWN       0, or what ShownSamples.cl packed; BEAMS 1: with lamps' light, in `flow`
-//   SURFACE_LIGHT  1: there is light at the surface of thick voxels
+//   BLOCK       1: the medium is a block of a larger grid, whose rays go straight; may be left out
 
 #pragma once
 #include "Viewing/Rays/View.cl"
@@ -49,7 +49,7 @@ typedef struct
   spectrum leftRest; // see add_to
   rgb radianceRest;
 #endif
-#if STARTS
+#if BLOCK
   rgb before; // what was left where the block begins
 #endif
 } light;
@@ -62,10 +62,10 @@ inline real mean_of(rgb s)
 // What is left since the ray came from the eye.
 inline real mean_left(light l)
 {
-#if STARTS && COLOURED
+#if BLOCK && COLOURED
   const rgb all = { l.before.r * l.left.r, l.before.g * l.left.g, l.before.b * l.left.b };
   return mean_of(all);
-#elif STARTS
+#elif BLOCK
   return mean_of(l.before) * l.left;
 #elif COLOURED
   return mean_of(l.left);
@@ -76,9 +76,9 @@ inline real mean_left(light l)
 
 inline real most_left(light l)
 {
-#if STARTS && COLOURED
+#if BLOCK && COLOURED
   return greater(greater(l.before.r * l.left.r, l.before.g * l.left.g), l.before.b * l.left.b);
-#elif STARTS
+#elif BLOCK
   return greater(greater(l.before.r, l.before.g), l.before.b) * l.left;
 #elif COLOURED
   return greater(greater(l.left.r, l.left.g), l.left.b);
@@ -98,12 +98,16 @@ inline rgb passed_of(light l)
 #endif
 }
 
-#if STARTS
-// What blocks before this one let through.
+#if BLOCK
+// What blocks before this one let through; all where there are none.
 inline rgb starts_of(const ViewInfo* v, __global const float* starts, int column, int row)
 {
+  rgb part = { (real)1.0f, (real)1.0f, (real)1.0f };
+  if (v->has.y == 0)
+  {
+    return part;
+  }
   const integer pixel = nearest_pixels(v, column, row);
-  rgb part;
 #define FETCH(n)                                    \
   LANE(part.r, n) = starts[3 * LANE(pixel, n)];     \
   LANE(part.g, n) = starts[3 * LANE(pixel, n) + 1]; \
@@ -157,7 +161,6 @@ inline void add_background(rgb behind, real part, light* l)
 #endif
 }
 
-#if SURFACE_LIGHT
 // As much of the light at the surface (SurfaceLight.cl) as the ray has met of the medium.
 inline void add_surface_light(rgb missing, light* l)
 {
@@ -173,7 +176,6 @@ inline void add_surface_light(rgb missing, light* l)
 #undef ADD
 #undef MET
 }
-#endif
 
 // Over a length of constant coefficients: what a unit of source adds to the radiance, and what is left of the light
 // behind.

@@ -108,15 +108,13 @@ std::string RayCasting::BentOptions(const ViewSettings& settings) const
 
 cl::Kernel RayCasting::Kernel(const ViewSettings& settings, bool ofBlock) const
 {
-  const std::string ends = Define("ENDS", this->Ends.Size() > 0);
   if (this->Traits.OnlyStraight())
   {
-    return this->TheDevice.Kernel("cast_rays", kernel_source::StraightView,
-      this->Options(settings) + ends + Define("SURFACE_LIGHT", this->Behind.HasSurfaceLight()) +
-        Define("BLOCK", ofBlock) + Define("STARTS", this->Starts.Size() > 0));
+    return this->TheDevice.Kernel(
+      "cast_rays", kernel_source::StraightView, this->Options(settings) + Define("BLOCK", ofBlock));
   }
-  return this->TheDevice.Kernel(
-    "cast_bent_rays", kernel_source::BentView, this->BentOptions(settings) + ends + Define("ROUNDS", 0));
+  return this->TheDevice.Kernel("cast_bent_rays", kernel_source::BentView,
+    this->BentOptions(settings) + Define("ENDS", this->Ends.Size() > 0) + Define("ROUNDS", 0));
 }
 
 const Buffer<cl_float4>& RayCasting::Environment() const
@@ -133,6 +131,7 @@ void RayCasting::Cast(
   const Buffer<cl_float4>& environment = this->Environment();
   const std::array<int, 2> packet = PacketPixels(this->Traits.packetWidth);
   cl::Kernel cast = this->Kernel(settings, view.block.whole.s[0] > 0);
+  view.has = { { this->Ends.Size() > 0, this->Starts.Size() > 0, b.HasSurfaceLight(), 0 } };
   // Batches of whole work-groups: else the last rows of one would be cast again by the next.
   const int group = 4;
   const std::size_t across = RoundUp<std::size_t>(view.picture.s[0], group * packet[0]) / (group * packet[0]);

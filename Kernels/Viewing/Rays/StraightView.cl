@@ -3,7 +3,6 @@
 // The host gives
 //   SKIP_BRICKS  1: rays leap over bricks in which nothing extinguishes or shines
 //   BLOCK        1: the medium is a block of a larger grid
-//   STARTS       1: other blocks are before it, through which rays have come
 
 #include "Viewing/Backdrop/Background.cl"
 #include "Viewing/Backdrop/GroundLight.cl"
@@ -32,13 +31,8 @@ __kernel void cast_rays(ViewInfo v, __global const float4* restrict samples,
   const camera_rays seen = rays_through(&v, column, row);
   const real3 direction = { seen.d.x * (real)v.inverseSpacing.x, seen.d.y * (real)v.inverseSpacing.y,
     seen.d.z * (real)v.inverseSpacing.z };
-#if ENDS
-  const real end = ends_of(&v, ends, column, row);
+  const real end = v.has.x ? ends_of(&v, ends, column, row) : (real)ENDLESS;
   const integer open = end >= (real)ENDLESS; // to what is behind
-#else
-  const real end = (real)ENDLESS;
-  const integer open = (integer)-1;
-#endif
   real before;
 #if BLOCK
   integer enters, leaves;
@@ -60,7 +54,7 @@ __kernel void cast_rays(ViewInfo v, __global const float4* restrict samples,
   const real3 strides = strides_per_voxel(direction, step);
 #endif
   light l = unlit((real)1.0f);
-#if STARTS
+#if BLOCK
   l.before = starts_of(&v, starts, column, row);
 #endif
   crossed half_way = { (real)0.0f, (real)0.0f, (real)1.0f, (real)1.0f };
@@ -106,12 +100,15 @@ __kernel void cast_rays(ViewInfo v, __global const float4* restrict samples,
 
   // What is behind, and the picture.
   const real left = mean_left(l);
-#if SURFACE_LIGHT && BLOCK
-  // How much of it is seen follows from all that the ray meets, in other blocks too.
-  paint_part(&v, missing, column, row, surface_light(surface, packet, seen.d, enters ? before : (real)0.0f, v.size));
-#elif SURFACE_LIGHT
-  add_surface_light(surface_light(surface, packet, seen.d, before, v.size), &l);
+  if (v.has.z)
+  {
+#if BLOCK
+    // How much of it is seen follows from all that the ray meets, in other blocks too.
+    paint_part(&v, missing, column, row, surface_light(surface, packet, seen.d, enters ? before : (real)0.0f, v.size));
+#else
+    add_surface_light(surface_light(surface, packet, seen.d, before, v.size), &l);
 #endif
+  }
   rgb behind = look_behind(&v, seen.d, environment);
   if (v.environment.z != 0)
   {

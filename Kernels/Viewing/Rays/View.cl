@@ -1,7 +1,4 @@
 // The picture and the rays through its pixels.
-//
-// The host gives
-//   ENDS  1: each pixel has a depth at which its ray ends
 
 #pragma once
 #include "Viewing/Samples/Sampling.cl"
@@ -71,7 +68,6 @@ inline integer nearest_pixels(const ViewInfo* v, int column, int row)
   return j * v->picture.x + i;
 }
 
-#if ENDS
 // Where a packet's rays end, along the view axis; ENDLESS where they do not.
 inline real ends_of(const ViewInfo* v, __global const float* ends, int column, int row)
 {
@@ -82,7 +78,6 @@ inline real ends_of(const ViewInfo* v, __global const float* ends, int column, i
 #undef FETCH
   return end;
 }
-#endif
 
 // Where pictures go.
 //   radiance  3 per pixel, W / (length^2 sr)

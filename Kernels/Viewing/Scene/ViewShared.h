@@ -55,6 +55,9 @@ typedef struct
   int4 bricks;           ///< bricks
   int4 environment;      ///< width, height in pixels, 0: there is none; a bit for each face that gives back light
   float4 toPicture[3];   ///< of the environment: rows of the matrix from the world's axes to the picture's
+  /// 1: pixels have depths at which their rays end; other blocks are before this one, through which rays have come;
+  /// there is light at the surface of thick voxels.
+  int4 has;
   BlockInfo block;
   PhaseInfo phase;
 } ViewInfo;
