@@ -261,14 +261,14 @@ inline void ExpectSame(const LightField& found, const LightField& expected, bool
   }
 }
 
-/// In blocks of all kinds.
+/// In one block, and in uneven ones.
 inline void ExpectTheLightOfTheWhole(
   Device& device, const RandomMedium& whole, const Illumination& shining, const PropagationSettings& settings)
 {
   const bool around = settings.periodic[0] || settings.periodic[1] || settings.periodic[2];
   const LightField expected = SolveConservative(device, whole.medium, shining, settings);
   const Grid& grid = whole.medium.grid;
-  for (const BlockPartition& partition : { BlockPartition::Even(grid, 1), BlockPartition::Even(grid, 8), Uneven(grid) })
+  for (const BlockPartition& partition : { BlockPartition::Even(grid, 1), Uneven(grid) })
   {
     SCOPED_TRACE(std::to_string(partition.blocks.size()) + " ranks");
     ExpectSame(LightOfAll(device, partition, whole, shining, settings), expected, around);

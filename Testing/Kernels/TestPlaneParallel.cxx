@@ -256,7 +256,7 @@ TEST_P(PlaneParallelBesideRays, FindsWhatTheyFind)
   ASSERT_GT(light.polarNodes, 0);
   Scene scene = ColumnsAlong(axis, 1, PhaseFunction::Rayleigh(), 7, 10);
   scene.settings.angularDegree = 2; // of Rayleigh's function nothing is beyond
-  scene.settings.directionsPerFace = 1600;
+  scene.settings.directionsPerFace = 900;
   const LightField along = scene.Solve(this->GetDevice());
   ASSERT_EQ(along.polarNodes, 0);
   EXPECT_LT(RelativeRms(MeansOf(along.fluence, 10, 3), light.fluence), 0.004);

@@ -242,7 +242,7 @@ TEST_F(Streaming, SaysWhatABudgetIsShortOf)
   }
 }
 
-/// At the size that the issue names; takes a minute.
+/// At the size of a usual grid.
 TEST_F(Streaming, SlowAtOneHundredAndTwentyEightVoxelsIsTheSameLightBitForBit)
 {
   Scene scene = RandomScene(LargeSize);
@@ -250,7 +250,7 @@ TEST_F(Streaming, SlowAtOneHundredAndTwentyEightVoxelsIsTheSameLightBitForBit)
   this->ExpectSameLight(scene, { 2, 4, 16 });
 }
 
-TEST_F(Streaming, SlowInColourAtOneHundredAndTwentyEightVoxelsIsTheSameLightBitForBit)
+TEST_F(Streaming, NightlyInColourAtOneHundredAndTwentyEightVoxelsIsTheSameLightBitForBit)
 {
   Scene scene = RandomScene(LargeSize);
   Colour(scene);

@@ -44,9 +44,9 @@ const std::vector<Shine> Lights = {
   },
 };
 
-Scene UnevenMedium(double thickest, double albedo)
+Scene UnevenMedium(double thickest, double albedo, std::array<int, 3> size = { 22, 18, 26 })
 {
-  Scene scene({ 22, 18, 26 });
+  Scene scene(size);
   scene.Randomise(thickest, 2.0, albedo, 22);
   scene.settings.tolerance = 1e-7;
   return scene;
@@ -157,7 +157,7 @@ TEST_F(Superposition, OfFacesAlongFinerDirections)
 {
   for (const double thickest : { 1.0, 20.0 })
   {
-    Scene medium = UnevenMedium(thickest, thickest == 1.0 ? 0.7 : 0.999);
+    Scene medium = UnevenMedium(thickest, thickest == 1.0 ? 0.7 : 0.999, { 13, 9, 11 });
     medium.settings.uncollidedDirections = 100;
     EXPECT_LT(Nonlinearity(this->GetDevice(), medium), 1e-3) << thickest;
   }
