@@ -8,10 +8,9 @@
 
 namespace tyndall
 {
-std::string CrossingOptions(int axis, int samplesOfVoxel, bool fromAbove, bool winding)
+std::string CrossingOptions(int samplesOfVoxel, bool winding)
 {
-  return Define("AXIS", axis) + Define("SAMPLES", samplesOfVoxel) + Define("FROM_ABOVE", fromAbove) +
-    Define("WINDING", winding);
+  return Define("SAMPLES", samplesOfVoxel) + Define("WINDING", winding);
 }
 
 cl::NDRange CrossingRange(std::size_t items)
@@ -19,10 +18,12 @@ cl::NDRange CrossingRange(std::size_t items)
   return cl::NDRange(RoundUp(items, CrossingGroup().get()[0]));
 }
 
-CrossingMarker::CrossingMarker(Device& device, const SampleColumns& columns, int words, const std::string& options)
+CrossingMarker::CrossingMarker(
+  Device& device, const SampleColumns& columns, int words, bool fromAbove, const std::string& options)
   : TheDevice(device)
   , Columns(columns)
   , Words(words)
+  , FromAbove(fromAbove)
   , Kernel(device.Kernel("mark_crossings", kernel_source::Voxelization, options))
 {
 }
@@ -43,7 +44,8 @@ void CrossingMarker::Mark(
   }
   this->Tiles.Write(tiles.data(), tiles.size());
   With(this->Kernel, static_cast<cl_int>(tiles.size()), this->Tiles, mesh.Points(), mesh.Triangles(),
-    this->Columns.pitch, this->Columns.samples, this->Columns.count[0], this->Words, firstRow, marks, sums);
+    this->Columns.axis, this->Columns.pitch, this->Columns.samples, static_cast<cl_int>(this->FromAbove),
+    this->Columns.count[0], this->Words, firstRow, marks, sums);
   this->TheDevice.Queue().enqueueNDRangeKernel(
     this->Kernel, cl::NullRange, CrossingRange(tiles.size()), CrossingGroup());
 }

@@ -8,14 +8,15 @@
 namespace tyndall
 {
 /// Options of Voxelization.cl.
-std::string CrossingOptions(int axis, int samplesOfVoxel, bool fromAbove, bool winding);
+std::string CrossingOptions(int samplesOfVoxel, bool winding);
 
 /// Puts the crossings of meshes with some rows of columns into a buffer (mark_crossings of Voxelization.cl).
 class CrossingMarker
 {
 public:
-  /// @param words  of 32 bits in a column
-  CrossingMarker(Device& device, const SampleColumns& columns, int words, const std::string& options);
+  /// @param words      of 32 bits in a column
+  /// @param fromAbove  what lies after a crossing is marked, in place of what lies before
+  CrossingMarker(Device& device, const SampleColumns& columns, int words, bool fromAbove, const std::string& options);
 
   /// Queues the kernel.
   /// @param marks  cleared before; `words` for each column of the rows
@@ -26,6 +27,7 @@ private:
   Device& TheDevice;
   SampleColumns Columns;
   int Words;
+  bool FromAbove;
   cl::Kernel Kernel;
   Buffer<cl_uint4> Tiles;
 };

@@ -30,7 +30,7 @@ SurfaceFraction::SurfaceFraction(
 {
   const auto kernel = [&](const char* name, int axis) {
     const std::string options =
-      CrossingOptions(axis, columns.samplesOfVoxel, false, false) + Define("BIT_AXIS", columns.axis);
+      CrossingOptions(columns.samplesOfVoxel, false) + Define("AXIS", axis) + Define("BIT_AXIS", columns.axis);
     return device.Kernel(name, kernel_source::SurfaceFraction, options);
   };
   for (int axis = 0; axis < 3; ++axis)

@@ -10,24 +10,16 @@
 // column so never meets an edge or a corner, and which samples are inside is the same whichever axis the columns run
 // along.
 //
-// Defined before: AXIS, 0 to 2, along which the columns run; SAMPLES, samples per edge of a voxel; FROM_ABOVE, 1 where
-// what lies after a crossing is toggled instead; WINDING, 1 where crossings are counted with their sign instead.
+// Defined before: SAMPLES, samples per edge of a voxel; WINDING, 1 where crossings are counted with their sign instead.
 
 #pragma once
 
-#if AXIS == 0
+// Points as columns along an axis, 0 to 2, have them: along, across and up; and back.
+#define BY_COLUMNS(p, axis) ((axis) == 0 ? (p) : (axis) == 1 ? (p).yxz : (p).zxy)
+#define FROM_COLUMNS(p, axis) ((axis) == 0 ? (p) : (axis) == 1 ? (p).yxz : (p).yzx)
 #define ALONG(p) ((p).x)
 #define ACROSS(p) ((p).y)
 #define UP(p) ((p).z)
-#elif AXIS == 1
-#define ALONG(p) ((p).y)
-#define ACROSS(p) ((p).x)
-#define UP(p) ((p).z)
-#else
-#define ALONG(p) ((p).z)
-#define ACROSS(p) ((p).x)
-#define UP(p) ((p).y)
-#endif
 
 #if WINDING
 // The winding number of the mesh about each sample: a byte counts the crossings between it and the next one, +1
@@ -91,7 +83,8 @@ inline uint weight_of(int sample)
 }
 #endif
 
-inline void mark_crossing(__global uint* column, __global uint* sum, int before, int samples, int leaving)
+inline void mark_crossing(
+  __global uint* column, __global uint* sum, int before, int samples, int leaving, int from_above)
 {
 #if WINDING
   if (before > 0)
@@ -100,7 +93,7 @@ inline void mark_crossing(__global uint* column, __global uint* sum, int before,
     atomic_add(column + sample / 4, (uint)leaving << (8 * (sample % 4)));
   }
 #else
-  const int sample = FROM_ABOVE ? before : before - 1;
+  const int sample = from_above ? before : before - 1;
   if (sample >= 0 && sample < samples)
   {
     atomic_xor(column + sample / BITS, 1u << (sample % BITS));
@@ -109,7 +102,8 @@ inline void mark_crossing(__global uint* column, __global uint* sum, int before,
 #endif
 }
 
-// A triangle over the columns of a tile: which of them its edges enclose, and where its plane crosses them.
+// A triangle over the columns of a tile: which of them its edges enclose, and where its plane crosses them. All is as
+// the columns have it.
 typedef struct
 {
   edge e0, e1, e2;             // in the first column of a row
@@ -122,12 +116,13 @@ typedef struct
 } sheet;
 
 // Returns 0 where the triangle crosses no column.
-inline int start_sheet(sheet* s, uint4 tile, __global const int* points, __global const int* triangles, int pitch)
+inline int start_sheet(
+  sheet* s, uint4 tile, __global const int* points, __global const int* triangles, int axis, int pitch)
 {
   const int3 corner = vload3(tile.x, triangles);
-  const int3 a = vload3(corner.x, points);
-  int3 b = vload3(corner.y, points);
-  int3 c = vload3(corner.z, points);
+  const int3 a = BY_COLUMNS(vload3(corner.x, points), axis);
+  int3 b = BY_COLUMNS(vload3(corner.y, points), axis);
+  int3 c = BY_COLUMNS(vload3(corner.z, points), axis);
 
   const long3 ab = convert_long3(b - a);
   const long3 ac = convert_long3(c - a);
@@ -136,10 +131,12 @@ inline int start_sheet(sheet* s, uint4 tile, __global const int* points, __globa
   {
     return 0; // no column, moved as they are, crosses it
   }
-  s->leaving = ALONG(normal) > 0 ? 1 : -1;
-  normal *= s->leaving;
+  const int turned = ALONG(normal) > 0 ? 1 : -1;
+  s->leaving = axis == 1 ? -turned : turned; // across and along are exchanged
+  normal *= turned;
   s->normal = normal;
-  const int towards = normal.x != 0 ? normal.x > 0 : normal.y != 0 ? normal.y > 0 : normal.z > 0;
+  const long3 facing = FROM_COLUMNS(normal, axis);
+  const int towards = facing.x != 0 ? facing.x > 0 : facing.y != 0 ? facing.y > 0 : facing.z > 0;
   s->tie = towards ? 0 : 1;
 
   // The edges, run counterclockwise in (across, up).
@@ -173,13 +170,15 @@ inline void next_row(sheet* s)
 
 // Marks where a triangle crosses the columns of a tile.
 //   tiles          a work-item each: triangle, first column and row, (columns << 16) | rows
+//   axis           along which the columns run
+//   from_above     1: what lies after a crossing is toggled instead; not used with WINDING
 //   pitch          of the samples, in units of the lattice
 //   samples        of a column; columns: of a row; words: of a column
 //   firstRow       the first row of columns in `marks`
 //   sums           of the weights of a column's crossings, each with its sign, see fill_columns; not used with WINDING
 __kernel void mark_crossings(int tileCount, __global const uint4* tiles, __global const int* points,
-  __global const int* triangles, int pitch, int samples, int columns, int words, int firstRow, __global uint* marks,
-  __global uint* sums)
+  __global const int* triangles, int axis, int pitch, int samples, int from_above, int columns, int words, int firstRow,
+  __global uint* marks, __global uint* sums)
 {
   const int id = get_global_id(0);
   if (id >= tileCount)
@@ -188,7 +187,7 @@ __kernel void mark_crossings(int tileCount, __global const uint4* tiles, __globa
   }
   const uint4 tile = tiles[id];
   sheet s;
-  if (!start_sheet(&s, tile, points, triangles, pitch))
+  if (!start_sheet(&s, tile, points, triangles, axis, pitch))
   {
     return;
   }
@@ -208,8 +207,8 @@ __kernel void mark_crossings(int tileCount, __global const uint4* tiles, __globa
     {
       if ((v0 | v1 | v2) >= 0)
       {
-        mark_crossing(
-          row + (ulong)i * words, rowOfSums + i, samples_before(excess, s.step, samples), samples, s.leaving);
+        mark_crossing(row + (ulong)i * words, rowOfSums + i, samples_before(excess, s.step, samples), samples,
+          s.leaving, from_above);
       }
       v0 += s.e0.across;
       v1 += s.e1.across;
@@ -273,12 +272,13 @@ __kernel void find_windings(
 // turns, and the crossings' weights with their signs add up to those of the marks that are left, with signs by turns.
 // Weights are random: other crossings have another sum, but for one in 2^32.
 //   columns   of a row
+//   from_above  as in mark_crossings
 //   sums      of mark_crossings
 //   sign      1, -1 where the mesh is inside out, 0 where nothing is to be found
 //   odd       from firstOdd on a number for each row of voxels of the grid: set where it has such a column
 //   firstRow  of the columns
-__kernel void fill_columns(int columnCount, int columns, int words, __global uint* marks, __global const uint* sums,
-  int sign, __global int* odd, int firstOdd, int firstRow)
+__kernel void fill_columns(int columnCount, int columns, int words, int from_above, __global uint* marks,
+  __global const uint* sums, int sign, __global int* odd, int firstOdd, int firstRow)
 {
   const int id = get_global_id(0);
   if (id >= columnCount)
@@ -288,9 +288,8 @@ __kernel void fill_columns(int columnCount, int columns, int words, __global uin
   __global uint* column = marks + (ulong)id * words;
   uint carried = 0;
   uint sum = 0;
-#if FROM_ABOVE
-  uint turn = (uint)-1;
-  for (int w = 0; w < words; ++w)
+  uint turn = from_above ? (uint)-1 : 1;
+  for (int w = 0; from_above && w < words; ++w)
   {
     uint bits = column[w];
     for (uint rest = bits; rest != 0; rest &= rest - 1)
@@ -307,9 +306,7 @@ __kernel void fill_columns(int columnCount, int columns, int words, __global uin
     column[w] = bits;
     carried = (bits >> (BITS - 1)) != 0 ? ALL_BITS : 0;
   }
-#else
-  uint turn = 1;
-  for (int w = words - 1; w >= 0; --w)
+  for (int w = words - 1; !from_above && w >= 0; --w)
   {
     uint bits = column[w];
     for (uint rest = bits; rest != 0;)
@@ -328,7 +325,6 @@ __kernel void fill_columns(int columnCount, int columns, int words, __global uin
     column[w] = bits;
     carried = (bits & 1) != 0 ? ALL_BITS : 0;
   }
-#endif
   if (sign != 0 && sums[id] != (uint)sign * sum)
   {
     atomic_or(odd + firstOdd + (firstRow + id / columns) / SAMPLES, 1);

@@ -63,10 +63,10 @@ public:
     , Columns(TheGrid, settings.columnAxis, settings.samples, this->Lattice.Pitch())
     , Words(WordsOf(TheGrid, settings.columnAxis, 32 / settings.samples))
     , Rows(RowsOfSlab(this->Columns, TheGrid, this->Words, settings.slabBytes))
-    , Options(CrossingOptions(settings.columnAxis, settings.samples, settings.fromAbove, false))
-    , Marker(device, this->Columns, this->Words, this->Options)
-    , Fill(device.Kernel("fill_columns", kernel_source::Voxelization, this->Options))
-    , Count(device.Kernel("count_samples", kernel_source::Voxelization, this->Options))
+    , FromAbove(settings.fromAbove)
+    , Marker(device, this->Columns, this->Words, settings.fromAbove, CrossingOptions(settings.samples, false))
+    , Fill(device.Kernel("fill_columns", kernel_source::Voxelization, CrossingOptions(settings.samples, false)))
+    , Count(device.Kernel("count_samples", kernel_source::Voxelization, CrossingOptions(settings.samples, false)))
     , Oriented(meshes)
     , Odd(device, meshes.size() * TheGrid.size[this->Columns.up],
         "rows of voxels with samples that a mesh encloses twice")
@@ -155,7 +155,7 @@ private:
       this->Marker.Mark(this->Meshes[m], slab.firstRow, slab.endRow, this->Bits, this->Sums);
       const int columns = this->Columns.count[0] * (slab.endRow - slab.firstRow);
       const int firstOdd = static_cast<int>(m) * this->TheGrid.size[this->Columns.up];
-      With(this->Fill, columns, this->Columns.count[0], this->Words, this->Bits, this->Sums,
+      With(this->Fill, columns, this->Columns.count[0], this->Words, this->FromAbove, this->Bits, this->Sums,
         this->Oriented[m].orientation, this->Odd, firstOdd, slab.firstRow);
       this->TheDevice.Queue().enqueueNDRangeKernel(
         this->Fill, cl::NullRange, CrossingRange(static_cast<std::size_t>(columns)), CrossingGroup());
@@ -207,7 +207,7 @@ private:
   SampleColumns Columns;
   int Words;
   int Rows; ///< of voxels in a slab
-  std::string Options;
+  cl_int FromAbove;
   CrossingMarker Marker;
   cl::Kernel Fill, Count;
   std::vector<OrientedMesh> Oriented;

@@ -77,8 +77,8 @@ WindingNumbers FindWindings(Device& device, const Grid& grid, const VoxelBox& bo
   const auto across = static_cast<std::size_t>(columns.count[0]);
   const int atOnce = static_cast<int>(std::clamp<std::size_t>(
     SlabBytes / (across * words * sizeof(cl_uint)), 1, static_cast<std::size_t>(columns.samplesOfVoxel)));
-  const std::string options = CrossingOptions(columns.axis, columns.samplesOfVoxel, false, true);
-  CrossingMarker marker(device, columns, words, options);
+  const std::string options = CrossingOptions(columns.samplesOfVoxel, true);
+  CrossingMarker marker(device, columns, words, false, options);
   cl::Kernel find = device.Kernel("find_windings", kernel_source::Voxelization, options);
   Buffer<cl_uint> marks(device, across * atOnce * words, "crossings of the mesh");
   Buffer<cl_uint> noSums(device, 0, "no sums");
