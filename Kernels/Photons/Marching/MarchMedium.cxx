@@ -1,6 +1,7 @@
 #include "Photons/Marching/MarchMedium.h"
 
 #include "Device/Defines.h"
+#include "Photons/Marching/MarchLaunch.h"
 #include "Refraction/Index/SquaredIndex.h"
 #include "TyndallKernelSources.h"
 
@@ -12,6 +13,7 @@ namespace tyndall
 {
 namespace
 {
+constexpr const char* MultiplyAdds = " -cl-mad-enable";
 constexpr int RoundsAtMost = 64;      ///< of a photon through the volume, in sums of its edges
 constexpr float DarkUnits = 1e-3f;    ///< power that no sum would show
 constexpr double FilledAtMost = 0.25; ///< of bricks: where more are filled, to go by bricks saves little
@@ -228,7 +230,7 @@ IndexGrid MarchMedium::DescribeGrid() const
   return SizeOf(this->grid.size);
 }
 
-LightSumsInfo MarchMedium::DescribeSums(const PackedPhotons& packed, float weightUnit) const
+LightSumsInfo MarchMedium::DescribeSums(const PackedPhotons& packed, const MarchShares& shares, float weightUnit) const
 {
   LightSumsInfo info = {};
   info.grid = this->DescribeGrid();
@@ -237,6 +239,10 @@ LightSumsInfo MarchMedium::DescribeSums(const PackedPhotons& packed, float weigh
     static_cast<float>(std::frexp(packed.unit * this->Diagonal() / this->grid.VoxelVolume(), &info.exponent));
   std::copy(packed.colour.begin(), packed.colour.end(), info.colour);
   info.weight = weightUnit;
+  info.absorption = this->AComponents;
+  info.scattering = this->SComponents;
+  info.copies = shares.copies;
+  info.batches = shares.batches;
   return info;
 }
 
@@ -268,7 +274,7 @@ MarchInfo MarchMedium::Describe() const
 std::string MarchMedium::Options() const
 {
   return Define("MEDIUM_CHANNELS", this->channels) + Define("BENDS", this->bends) + Define("LEVELS", this->hasLevels) +
-    Define("NODE_BRICKS", this->nodesOfWhole) + Define("BRICKS", this->bricks.AreThere()) + " -cl-mad-enable";
+    Define("NODE_BRICKS", this->nodesOfWhole) + Define("BRICKS", this->bricks.AreThere()) + MultiplyAdds;
 }
 
 cl::Kernel MarchMedium::MediumKernel(const char* name) const
@@ -280,8 +286,7 @@ cl::Kernel MarchMedium::MediumKernel(const char* name) const
 cl::Kernel MarchMedium::SumsKernel(const char* name, int lightChannels, const std::string& options) const
 {
   return this->device.Kernel(name, kernel_source::PhotonSums,
-    this->Options() + Define("CHANNELS", lightChannels) + Define("A_CHANNELS", this->AComponents) +
-      Define("S_CHANNELS", this->SComponents) + options);
+    Define("BRICKS", this->bricks.AreThere()) + Define("CHANNELS", lightChannels) + options + MultiplyAdds);
 }
 
 cl::Kernel MarchMedium::MarchKernel(

@@ -18,6 +18,8 @@
 
 namespace tyndall
 {
+struct MarchShares;
+
 /// What decides how photons are marched through a medium, all of it: blocks of one grid have it alike.
 struct MarchTraits : MediumTraits
 {
@@ -66,7 +68,7 @@ public:
   IndexGrid DescribeGrid() const;
   /// How the sums of these photons become light.
   /// @param weightUnit  weight of one of the units that voxels sum up, where photons count
-  LightSumsInfo DescribeSums(const PackedPhotons& packed, float weightUnit = 0.0f) const;
+  LightSumsInfo DescribeSums(const PackedPhotons& packed, const MarchShares& shares, float weightUnit = 0.0f) const;
   int EventLimit() const { return MarchEventLimit(this->block.whole, this->settings); }
   double Diagonal() const;                                                        ///< of a voxel
   bool IsBlock() const { return this->block.own.size != this->block.whole.size; } ///< of a larger grid

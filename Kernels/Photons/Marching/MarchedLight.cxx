@@ -17,7 +17,6 @@ namespace tyndall
 namespace
 {
 // A voxel's count of photons stands above the sum of their weights, in the same 64 bits.
-constexpr int CountShift = 40;
 constexpr std::size_t CountedAtMost = (std::size_t(1) << (64 - CountShift)) - 1;
 constexpr double WeightUnits = 65536.0; ///< of the largest weight
 
@@ -91,17 +90,15 @@ cl::Kernel MarchedLight::SumsKernel(
   const char* name, const PackedPhotons& packed, const MarchSums& target, const LightField& light) const
 {
   return this->Medium.SumsKernel(name, packed.channels,
-    Define("DIRECTIONS", target.directions) + Define("COUNTS", target.counts) + Define("COUNT_SHIFT", CountShift) +
-      Define("COLOURS", light.channels) + Define("COPIES", target.shares.copies) +
-      Define("BATCHES", target.shares.batches));
+    Define("DIRECTIONS", target.directions) + Define("COUNTS", target.counts) + Define("COLOURS", light.channels));
 }
 
 cl::Kernel MarchedLight::Show(
   const PackedPhotons& packed, const MarchSums& target, const LightField& light, const Buffer<float>& fluence) const
 {
   cl::Kernel show = this->SumsKernel("show_light", packed, target, light);
-  return With(show, this->Medium.DescribeSums(packed), this->Medium.sigmaA, this->Medium.sigmaS, this->Sums,
-    cl_ulong(target.records * static_cast<std::size_t>(target.numbers)), fluence);
+  return With(show, this->Medium.DescribeSums(packed, target.shares), this->Medium.sigmaA, this->Medium.sigmaS,
+    this->Sums, cl_ulong(target.records * static_cast<std::size_t>(target.numbers)), fluence);
 }
 
 void MarchedLight::FinishVoxels(const PackedPhotons& packed, const MarchSums& target, float weightUnit,
@@ -125,7 +122,7 @@ void MarchedLight::FinishVoxels(const PackedPhotons& packed, const MarchSums& ta
   const HostMappedBuffer<float> weight = lend(result.photonWeight, "photon weight");
   const HostMappedBuffer<float> batchFluence = lend(result.batchFluence, "fluence by batches");
 
-  const LightSumsInfo info = this->Medium.DescribeSums(packed, weightUnit);
+  const LightSumsInfo info = this->Medium.DescribeSums(packed, target.shares, weightUnit);
   cl::Kernel finish = this->SumsKernel("finish_light", packed, target, light);
   With(finish, info, this->Medium.sigmaA, this->Medium.sigmaS, this->Sums,
     cl_ulong(target.records * static_cast<std::size_t>(target.numbers)), fluence.Handle(), direction.Handle(),
@@ -150,11 +147,12 @@ void MarchedLight::FinishBricks(
   const HostMappedBuffer<float> direction(
     device, result.meanDirection.data(), result.meanDirection.size(), "mean direction");
   cl::Kernel finish = this->SumsKernel("finish_bricks", packed, target, light);
-  With(finish, through.DescribeSums(packed), through.bricks.First(), through.sigmaA, through.sigmaS, this->Sums,
-    cl_ulong(target.records * static_cast<std::size_t>(target.numbers)), fluence.Handle(), direction.Handle(), taken);
+  With(finish, through.DescribeSums(packed, target.shares), through.bricks.First(), through.sigmaA, through.sigmaS,
+    this->Sums, cl_ulong(target.records * static_cast<std::size_t>(target.numbers)), fluence.Handle(),
+    direction.Handle(), taken);
   through.Launch(finish, cl::NDRange(through.bricks.Count()));
   cl::Kernel fill = this->SumsKernel("fill_empty", packed, target, light);
-  With(fill, through.DescribeSums(packed), through.bricks.First(), fluence.Handle(), direction.Handle());
+  With(fill, through.DescribeSums(packed, target.shares), through.bricks.First(), fluence.Handle(), direction.Handle());
   through.Launch(fill, cl::NDRange(voxels / Count(grid.size[0])));
   fluence.Fetch();
   direction.Fetch();

@@ -1,8 +1,5 @@
 // The light that photons left. The host gives
-//   CHANNELS, MEDIUM_CHANNELS, DIRECTIONS, COUNTS  as PhotonMarch.cl wants them
-//   COPIES, BATCHES         of the sums: copy c is for batch c modulo BATCHES
-//   COUNT_SHIFT             of the bits of counts, above those of weights
-//   A_CHANNELS, S_CHANNELS  components of sigma_a and sigma_s, 0: there is none
+//   CHANNELS, DIRECTIONS, COUNTS  as PhotonMarch.cl wants them
 //   CARRIES                 where it is defined: what is less than a unit of a voxel's power counts in the next one
 //                           of its row. Sums in large units need it: half a unit of each voxel would be lost
 //   BRICKS                  1: the sums stand by bricks (PhotonBricks.h)
@@ -11,7 +8,6 @@
 #include "Medium/BrickShared.h"
 #include "Numerics/Numerics.cl"
 #include "Photons/Marching/PhotonSumsShared.h"
-#include "Refraction/Index/SquaredIndex.cl"
 
 #define RECORD (CHANNELS + 3 * DIRECTIONS + COUNTS)
 #define component(values, count, voxel, c) \
@@ -46,14 +42,14 @@ static long taken_by(const LightSumsInfo* info, float sum, float coefficient, fl
 }
 
 // The sum over a batch's copies of a voxel's record, which is zero afterwards. False where it was all along.
-static bool take_batch(__global long* record, ulong copyStride, int batch, long* sum)
+static bool take_batch(const LightSumsInfo* info, __global long* record, ulong copyStride, int batch, long* sum)
 {
   for (int c = 0; c < RECORD; ++c)
   {
     sum[c] = 0;
   }
   bool any = false;
-  for (int w = batch; w < COPIES; w += BATCHES)
+  for (int w = batch; w < info->copies; w += info->batches)
   {
     __global long* here = record + w * copyStride;
     long bits = 0;
@@ -116,47 +112,45 @@ __kernel void finish_light(LightSumsInfo info, const __global float* sigma_a, co
     float extinction[CHANNELS], thickness[CHANNELS]; // the medium's own: photons met one cut to what they can follow
     for (int c = 0; c < CHANNELS; ++c)
     {
-      extinction[c] = component(sigma_a, A_CHANNELS, voxel, c) + component(sigma_s, S_CHANNELS, voxel, c);
+      extinction[c] = component(sigma_a, info.absorption, voxel, c) + component(sigma_s, info.scattering, voxel, c);
       thickness[c] = fmax(info.diagonal * extinction[c], 1.0f);
     }
     long sum[RECORD];
-#if BATCHES == 1
-    take_batch(record, copyStride, 0, sum);
-#else
     for (int c = 0; c < RECORD; ++c)
     {
       sum[c] = 0;
     }
-    for (int b = 0; b < BATCHES; ++b)
+    for (int b = 0; b < info.batches; ++b)
     {
       long part[RECORD];
-      take_batch(record, copyStride, b, part);
+      take_batch(&info, record, copyStride, b, part);
       for (int c = 0; c < RECORD; ++c)
       {
         sum[c] += part[c];
       }
-      __global float* to = batch_fluence + (voxel * BATCHES + b) * COLOURS;
-      for (int c = 0; c < CHANNELS; ++c)
+      __global float* to = batch_fluence + (voxel * info.batches + b) * COLOURS;
+      for (int c = 0; c < CHANNELS && info.batches > 1; ++c)
       {
-        put_fluence(&info, to, c, (float)part[c] / thickness[c] * BATCHES);
+        put_fluence(&info, to, c, (float)part[c] / thickness[c] * info.batches);
       }
     }
-#endif
     float total = 0.0f;
     for (int c = 0; c < CHANNELS; ++c)
     {
       const float path = (float)sum[c] / thickness[c]; // power times diagonals
       total += sum[c];
       put_fluence(&info, fluence + voxel * COLOURS, c, path);
-      absorbed[c] += taken_by(&info, sum[c], component(sigma_a, A_CHANNELS, voxel, c), extinction[c], &carried[0][c]);
-      scattered[c] += taken_by(&info, sum[c], component(sigma_s, S_CHANNELS, voxel, c), extinction[c], &carried[1][c]);
+      absorbed[c] +=
+        taken_by(&info, sum[c], component(sigma_a, info.absorption, voxel, c), extinction[c], &carried[0][c]);
+      scattered[c] +=
+        taken_by(&info, sum[c], component(sigma_s, info.scattering, voxel, c), extinction[c], &carried[1][c]);
     }
 #if DIRECTIONS
     put_direction(mean_direction + voxel * 3, sum, total);
 #endif
 #if COUNTS
-    const ulong counted = sum[RECORD - 1], weights = counted & (((ulong)1 << COUNT_SHIFT) - 1);
-    const float photons = counted >> COUNT_SHIFT;
+    const ulong counted = sum[RECORD - 1], weights = counted & (((ulong)1 << CountShift) - 1);
+    const float photons = counted >> CountShift;
     photon_count[voxel] = photons;
     photon_weight[voxel] = photons > 0.0f ? weights / photons * info.weight : 0.0f;
 #endif
@@ -223,7 +217,7 @@ __kernel void finish_bricks(LightSumsInfo info, const __global int* bricks, cons
         const size_t voxel = low + z * strideZ + y * strideY + x;
         const size_t record = first < 0 ? -first : first + (z * BrickEdge + y) * BrickEdge + x;
         long sum[RECORD];
-        if (!take_batch(sums + record * RECORD, copyStride, 0, sum)) // most of them: photons are few
+        if (!take_batch(&info, sums + record * RECORD, copyStride, 0, sum)) // most of them: photons are few
         {
           leave_dark(fluence, mean_direction, voxel);
           continue;
@@ -231,7 +225,8 @@ __kernel void finish_bricks(LightSumsInfo info, const __global int* bricks, cons
         float total = 0.0f;
         for (int c = 0; c < CHANNELS; ++c)
         {
-          const float a = component(sigma_a, A_CHANNELS, record, c), s = component(sigma_s, S_CHANNELS, record, c);
+          const float a = component(sigma_a, info.absorption, record, c),
+                      s = component(sigma_s, info.scattering, record, c);
           total += sum[c];
           put_fluence(
             &info, fluence + voxel * COLOURS, c, (float)sum[c] / (fmax(info.diagonal * (a + s), 1.0f) * voxels));
@@ -339,11 +334,12 @@ __kernel void show_light(LightSumsInfo info, const __global float* sigma_a, cons
     for (int c = 0; c < CHANNELS; ++c)
     {
       long sum = 0;
-      for (int w = 0; w < COPIES; ++w)
+      for (int w = 0; w < info.copies; ++w)
       {
         sum += sums[(first + x) * RECORD + c + w * copyStride];
       }
-      const float extinction = component(sigma_a, A_CHANNELS, voxel, c) + component(sigma_s, S_CHANNELS, voxel, c);
+      const float extinction =
+        component(sigma_a, info.absorption, voxel, c) + component(sigma_s, info.scattering, voxel, c);
       put_fluence(&info, fluence + voxel * COLOURS, c, (float)sum / fmax(info.diagonal * extinction, 1.0f));
     }
   }

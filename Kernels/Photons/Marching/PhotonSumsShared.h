@@ -5,6 +5,11 @@
 #include "Refraction/Index/IndexShared.h"
 
 SHARED_BEGIN
+enum
+{
+  CountShift = 40 ///< of the bits of counts, above those of weights
+};
+
 /// How sums become light.
 typedef struct
 {
@@ -14,5 +19,7 @@ typedef struct
   int exponent;    ///< this one: it may be less than a float holds
   float colour[3]; ///< of what CHANNELS 1 stands for
   float weight;    ///< of a photon, one unit
+  int absorption, scattering; ///< components of sigma_a and sigma_s, 0: there is none
+  int copies, batches;        ///< of the sums: copy c is for batch c modulo batches
 } LightSumsInfo;
 SHARED_END

@@ -150,9 +150,8 @@ void ScatteringRun::TakeLight()
   const Buffer<float> none(device, 0, "what is not asked for");
   const Buffer<cl_long> taken(device, 2 * rows, "tallies");
   cl::Kernel finish = through.SumsKernel("finish_light", 1,
-    Define("DIRECTIONS", directions) + Define("COUNTS", 0) + Define("COUNT_SHIFT", 0) + Define("COLOURS", 1) +
-      Define("COPIES", this->Shares.copies) + Define("BATCHES", 1) + Define("CARRIES", 1));
-  With(finish, through.DescribeSums(this->Packed), through.sigmaA, through.sigmaS, this->Sums,
+    Define("DIRECTIONS", directions) + Define("COUNTS", 0) + Define("COLOURS", 1) + Define("CARRIES", 1));
+  With(finish, through.DescribeSums(this->Packed, this->Shares), through.sigmaA, through.sigmaS, this->Sums,
     cl_ulong(through.PaddedCount() * static_cast<std::size_t>(this->Numbers)), toFluence.Handle(), toDirection.Handle(),
     none, none, none, taken);
   through.Launch(finish, cl::NDRange(rows));
