@@ -11,6 +11,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <string>
 #include <vector>
 
 namespace
@@ -154,6 +156,33 @@ void SourceAndAccelerationReachTheSolver(test::Claims& claims)
   maps->SetSource(vtkLightPropagationMaps::LINEAR);
   maps->Update();
   claims.That(errors.WasOneWith("Acceleration"), "the linear source needs the acceleration");
+}
+
+/// By what each changes in the light of a face.
+void RaysAreAsTheyAreSet(test::Claims& claims)
+{
+  vtkNew<vtkLightPropagationMaps> maps;
+  maps->SetInputDataObject(test::MakeMedium({ { 5, 4, 6 } }, 0.1, 0.5));
+  maps->SetFaceRadiance(0, 0, 0, 0, 1.0, 0);
+  maps->SetTolerance(1e-6);
+  const auto fluence = [&] {
+    maps->Update();
+    return maps->GetOutput()->GetCellData()->GetArray("fluence")->GetComponent(17, 0);
+  };
+  const double usual = fluence();
+  const auto changes = [&](const char* what, const std::function<void()>& set, const std::function<void()>& setBack) {
+    set();
+    claims.That(fluence() != usual, std::string(what) + " reaches the solver");
+    setBack();
+    claims.That(fluence() == usual, std::string(what) + " can be taken back");
+  };
+  changes(
+    "StaggeredRays", [&] { maps->StaggeredRaysOn(); }, [&] { maps->StaggeredRaysOff(); });
+  const int resolution = maps->GetMapResolution(), directions = maps->GetDirectionsPerFace();
+  changes(
+    "MapResolution", [&] { maps->SetMapResolution(resolution + 2); }, [&] { maps->SetMapResolution(resolution); });
+  changes(
+    "DirectionsPerFace", [&] { maps->SetDirectionsPerFace(9); }, [&] { maps->SetDirectionsPerFace(directions); });
 }
 
 void LightOfAnEarlierSolveGoes(test::Claims& claims)
@@ -340,6 +369,7 @@ int TestLightPropagationMapsOutputs(int, char*[])
   ColourAndFluxComeOnRequest(claims);
   TellsItsErrorOnRequest(claims);
   SourceAndAccelerationReachTheSolver(claims);
+  RaysAreAsTheyAreSet(claims);
   LightOfAnEarlierSolveGoes(claims);
   ABoxWithoutFacesIsSaidToBeDark(claims);
   EnvironmentStandsAsTold(claims);

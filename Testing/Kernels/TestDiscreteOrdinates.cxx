@@ -15,6 +15,7 @@
 #include <cmath>
 #include <set>
 #include <string>
+#include <vector>
 
 using namespace tyndall;
 
@@ -240,6 +241,30 @@ TEST_F(DiscreteOrdinates, ScatterALampTheSameToAllSides)
     EXPECT_NEAR(light.facePowerOut[face][0], light.facePowerOut[0][0], 1e-5 * light.facePowerOut[0][0]);
   }
   EXPECT_LT(light.balance.RelativeError(1), 1e-5);
+}
+
+/// Its light is scattered voxel by voxel, that of a beam by one table: power and mean cosine are right in both.
+TEST_F(DiscreteOrdinates, ScatterALampFarAwayAsABeam)
+{
+  for (double g : { 0.8, -0.6 })
+  {
+    LitMedium beam({ 1, 1, 1 }, 0.0f, 0.3f);
+    beam.ScatterWith(g);
+    beam.how.directionsPerFace = 4;
+    beam.how.terms = 16;
+    LitMedium far = beam;
+    beam.ShineAlong({ 0.0, 0.0, -1.0 }, 1.0);
+    Light lamp;
+    lamp.type = LightType::Point;
+    lamp.position = { 0.5, 0.5, 1e4 };
+    lamp.power.fill(4.0 * Pi * 1e8);
+    far.light.lights.push_back(lamp);
+    const LightField expected = beam.SolveOrdinates(this->GetDevice()), found = far.SolveOrdinates(this->GetDevice());
+    for (int face = 0; face < 6; ++face)
+    {
+      EXPECT_NEAR(found.facePowerOut[face][0] / expected.facePowerOut[face][0], 1.0, 5e-3) << g << ' ' << face;
+    }
+  }
 }
 
 TEST_F(DiscreteOrdinates, HaveNarrowSpotsFarLampsAndDirectionsOfAnyLength)

@@ -61,6 +61,19 @@ TEST(EnvironmentPeaks, TheSunBecomesALightAndNoPowerIsLost)
   EXPECT_NEAR(std::atan2(-d[1], -d[0]), 2.0 * Pi * 20.5 / 128.0, 1e-6);
 }
 
+TEST(EnvironmentPeaks, AnUnevenSunShinesFromItsBrighterSide)
+{
+  Environment environment = SkyWithSun(0.1f, 3e4f, 20, 48);
+  for (int c = 0; c < 3; ++c)
+  {
+    environment.radiance[3 * (48 * 128 + 21) + c] = 1e4f * (c + 1);
+  }
+  const SplitEnvironment split = Split(environment, FittedDirections(25));
+  ASSERT_EQ(split.peaks.size(), 1u);
+  const std::array<double, 3>& d = split.peaks[0].direction;
+  EXPECT_NEAR(std::atan2(-d[1], -d[0]), 2.0 * Pi * 20.75 / 128.0, 1e-4);
+}
+
 TEST(EnvironmentPeaks, ASkyThatVariesSlowlyHasNone)
 {
   Environment environment = SkyWithSun(1.0f, 1.0f, 0, 0);
