@@ -3,7 +3,7 @@
 //   CHANNELS         of light; MEDIUM_CHANNELS of sigma_t, 1 or CHANNELS
 //   WORKERS          0: a work-item per packet, all add to the same sums; else so many take blocks as they come, each
 //                    to its sums
-//   COUNTS           1: voxels also count photons and their weights, by photons' marks: 1 << COUNT_SHIFT and units of
+//   COUNTS           1: voxels also count photons and their weights, by photons' marks: 1 << CountShift and units of
 //                    weight
 //   CELLS            1: what is deposited are coarse cells, which also count photons, and sum up the columns and rows
 //                    that these set out from, by their marks: column and row << 16
