@@ -645,6 +645,32 @@ TEST_F(LampBeams, OfARectanglesLightEntersWhatMeetsTheBox)
   }
 }
 
+TEST_F(LampBeams, ARectangleThatShinesOutAtThePeriodicEndOfAnAxisShinesInAtTheOther)
+{
+  for (int face = 0; face < 6; ++face)
+  {
+    const int axis = face / 2;
+    const double end = UnevenLengths[axis];
+    std::array<double, 3> position = { 3.3, 2.9, 3.6 }, out = {};
+    out[axis] = face % 2 ? 1.0 : -1.0;
+    for (bool all : { false, true })
+    {
+      std::array<bool, 3> periodic = { all, all, all };
+      periodic[axis] = true;
+      position[axis] = face % 2 ? end : 0.0;
+      const LightField light = LitBy(this->GetDevice(), Rectangle(position, out, 2.0, 1.6), periodic);
+      EXPECT_NEAR(light.balance.entered[0], 10.0, 1e-2) << face << all;
+      position[axis] = face % 2 ? 1e-5 * end : (1.0 - 1e-5) * end;
+      const LightField within = LitBy(this->GetDevice(), Rectangle(position, out, 2.0, 1.6), periodic);
+      const double largest = *std::max_element(light.fluence.begin(), light.fluence.end());
+      for (std::size_t i = 0; i < light.fluence.size(); ++i)
+      {
+        EXPECT_NEAR(light.fluence[i], within.fluence[i], 1e-3 * largest) << face << all << ' ' << i;
+      }
+    }
+  }
+}
+
 TEST_F(LampBeams, ARectangleOverAllOfAPeriodicBoxShinesAsAPlane)
 {
   Scene scene({ 6, 6, 5 });

@@ -464,15 +464,38 @@ double DistanceToBox(const Area& area, const Grid& grid)
   }
   return glm::distance(at, inBox);
 }
+
+/// A rectangle that lies on an end of a periodic axis and shines out there is the same at the other end, where it shines
+/// in.
+Light ShiningIn(Light light, const Grid& grid, const std::array<bool, 3>& periodic)
+{
+  if (light.type != LightType::Rectangle)
+  {
+    return light;
+  }
+  const Polygon corners = Area(light, grid).Corners();
+  const glm::dvec3 normal = Vector(DirectionOf(light));
+  for (int a = 0; a < 3; ++a)
+  {
+    const double end = normal[a] > 0.0 ? grid.Length(a) : 0.0;
+    const bool lies = std::all_of(corners.begin(), corners.end(),
+      [&](const glm::dvec3& corner) { return std::abs(corner[a] - end) <= OnBorder * grid.Length(a); });
+    if (periodic[a] && lies)
+    {
+      light.position[a] += end > 0.0 ? -grid.Length(a) : grid.Length(a);
+    }
+  }
+  return light;
+}
 }
 
 LampOnGrid::LampOnGrid(const Light& light, const Grid& grid, const std::array<bool, 3>& periodic)
-  : Lamp(light)
+  : Lamp(ShiningIn(light, grid, periodic))
   , TheGrid(grid)
   , Periodic(periodic)
 {
   LampPoint middle;
-  middle.place = PlaceOf(grid, Vector(light.position));
+  middle.place = PlaceOf(grid, Vector(this->Lamp.position));
   this->Centre = { middle };
   this->Points = this->Centre;
   if (light.type == LightType::Point)

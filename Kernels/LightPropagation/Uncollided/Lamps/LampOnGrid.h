@@ -42,7 +42,7 @@ class LampOnGrid
 public:
   static constexpr double LayersPerLaunch = 4e6; ///< of beams that go far, for less than a tenth of a second
 
-  /// @param grid  the whole; must stay, as the light
+  /// @param grid  the whole; must stay
   LampOnGrid(const Light& light, const Grid& grid, const std::array<bool, 3>& periodic);
 
   const Light& TheLight() const { return this->Lamp; }
@@ -88,7 +88,7 @@ private:
   void DivideRectangle();
   bool FollowsAll() const;
 
-  const Light& Lamp;
+  Light Lamp;
   const Grid& TheGrid;
   std::array<bool, 3> Periodic;
   std::array<int, 3> Images = {}; ///< of a rectangle, beside it along a periodic axis, whose light is exact in vacuum
