@@ -54,11 +54,12 @@ Uncollided FindUncollided(
   found.fluence = std::move(light.fluenceDirect);
   found.firstMoments = std::move(light.firstMoments);
   found.image.fluence = { found.fluence.data(), light.channels };
-  found.image.escaped = light.facePowerOut;
-  for (std::size_t c = 0; c < 3; ++c)
+  found.image.escaped = EscapedByChannel(light);
+  for (int c = 0; c < problem.Channels(); ++c)
   {
     const EnergyBalance& sums = light.balance;
-    found.lost[c] = sums.entered[c] - sums.absorbed[c] - sums.escaped[c] - sums.leftOver[c];
+    const int of = light.channels > 1 ? c : 0;
+    found.lost[c] = sums.entered[of] - sums.absorbed[of] - sums.escaped[of] - sums.leftOver[of];
   }
   for (std::size_t i = 0; settings.netFlux && i < problem.TheGrid().VoxelCount(); ++i)
   {

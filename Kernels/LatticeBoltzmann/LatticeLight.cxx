@@ -81,12 +81,22 @@ void CheckPhotonsGoNotRound(const LatticeSettings& settings)
   }
 }
 
+std::array<Rgb, 6> EscapedByChannel(const LightField& light)
+{
+  std::array<Rgb, 6> escaped = light.facePowerOut;
+  for (Rgb& face : escaped)
+  {
+    face = light.channels == 1 ? Rgb{ face[0], face[0], face[0] } : face;
+  }
+  return escaped;
+}
+
 UncollidedImage ImageOf(const PhotonLight& photons)
 {
   UncollidedImage image;
   image.fluence = { photons.light.fluence.data(), photons.light.channels };
   image.meanDirection = { photons.meanDirection.empty() ? nullptr : photons.meanDirection.data(), 3 };
-  image.escaped = photons.light.facePowerOut;
+  image.escaped = EscapedByChannel(photons.light);
   return image;
 }
 

@@ -24,6 +24,9 @@ PropagationSettings AsPropagation(const LatticeSettings& settings);
 /// @throws InvalidInput where an axis is periodic
 void CheckPhotonsGoNotRound(const LatticeSettings& settings);
 
+/// W that left through each face in three channels, which those of grey light are alike.
+std::array<Rgb, 6> EscapedByChannel(const LightField& light);
+
 /// Photons' light as uncollided light; its arrays are theirs.
 UncollidedImage ImageOf(const PhotonLight& photons);
 
