@@ -2,6 +2,7 @@
 
 #include "Device/Errors.h"
 #include "LatticeBoltzmann/LatticeShared.h"
+#include "LatticeBoltzmann/WhereLightIsLost.h"
 #include "Numerics/Constants.h"
 
 #include <algorithm>
@@ -97,6 +98,12 @@ double Uncollided::Nearer(std::size_t voxel, int channel, std::size_t face) cons
   const double fluence = this->image.fluence.At(voxel, channel);
   const double moment = this->firstMoments.empty() ? 0.0 : this->firstMoments[6 * (voxel * channels + of) + face];
   return fluence > 0.0 ? std::min(moment / fluence, 0.5) : 0.0;
+}
+
+double NearerOfNormalBeam(const Medium& medium, std::size_t voxel, int channel)
+{
+  const double sigma_t = static_cast<double>(medium.sigma_a.At(voxel, channel)) + medium.sigma_s.At(voxel, channel);
+  return NearerBy(medium.grid.spacing[0] * sigma_t);
 }
 
 std::size_t VoxelBeyond(const Grid& grid, const std::array<bool, 3>& periodic, std::size_t voxel, std::size_t face)
@@ -254,7 +261,8 @@ void LatticeVoxels::Shine(const LatticeScene& scene, const Uncollided& direct, i
 }
 
 /// What is first scattered beside the middle of a voxel drives the lattice's light as if a part of it began beyond the
-/// face that it is nearer to, Eq. (L13). What is scattered forwards does not turn back at once: it stays.
+/// face that it is nearer to, Eq. (L13), in proportion to how near it is, so that lights add up. What is scattered
+/// forwards does not turn back at once: it stays.
 /// @param begin  W / length^2 that are first scattered in each voxel, changed
 void LatticeVoxels::CrossFaces(const Medium& medium, const Uncollided& direct, int channel, std::vector<double>& begin)
 {
@@ -268,11 +276,12 @@ void LatticeVoxels::CrossFaces(const Medium& medium, const Uncollided& direct, i
     }
     std::array<double, 6> parts = {};
     const double decays = 0.5 * DecaysAcross(medium, i, channel); // from the middle to a face
+    const double normal = NearerOfNormalBeam(medium, i, channel);
     for (std::size_t face = 0; face < 6; ++face)
     {
-      const double nearer = 2.0 * direct.Nearer(i, channel, face);
+      const double nearer = direct.Nearer(i, channel, face);
       const double part = nearer > 0.0 ? this->PartWithin(medium.grid, i, face) : 0.0;
-      parts[face] = part > 0.0 ? PartThatCrosses(nearer * part, decays / part) : 0.0;
+      parts[face] = part > 0.0 ? nearer / normal * PartThatCrosses(2.0 * normal * part, decays / part) : 0.0;
     }
     // Of a corner no more can cross than there is.
     const double all = std::max(std::accumulate(parts.begin(), parts.end(), 0.0), 1.0);

@@ -19,12 +19,6 @@ double MeanOf(double k)
   return k > 1e-6 ? -std::expm1(-k) / k : 1.0 - 0.5 * k;
 }
 
-/// Distance of the mean place where exp(-k x) is lost from the middle, towards where it comes from.
-double NearerBy(double k)
-{
-  return k > 1e-2 ? std::min(0.5 - 1.0 / k + 1.0 / std::expm1(k), 0.5) : k / 12.0;
-}
-
 /// k of a voxel, at most `most`, where the next voxel on the way, `ratio` times as thick, has the part `passes` of its
 /// fluence: exp(-k) MeanOf(ratio k) / MeanOf(k) falls as k grows.
 double FallOff(double passes, double ratio, double most)
@@ -98,6 +92,11 @@ private:
   const std::array<bool, 3>& Periodic;
   int Channel;
 };
+}
+
+double NearerBy(double k)
+{
+  return k > 1e-2 ? std::min(0.5 - 1.0 / k + 1.0 / std::expm1(k), 0.5) : k / 12.0;
 }
 
 std::vector<float> EstimatedFirstMoments(

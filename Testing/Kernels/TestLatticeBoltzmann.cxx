@@ -213,6 +213,91 @@ TEST_F(LatticeBoltzmann, KeepsPowerOfBeamsIntoThickVoxelsOfEveryKind)
   }
 }
 
+/// Sums of lights that come into thick voxels from different sides, each brighter near another face.
+TEST_F(LatticeBoltzmann, AddsUpLightsInThickVoxels)
+{
+  for (const double albedo : { 0.5, 0.9 })
+  {
+    Scene dark({ 7, 8, 6 });
+    dark.Randomise(8.0, 1.0, albedo, 20261129);
+    LatticeSettings settings;
+    settings.tolerance = 1e-7;
+    settings.netFlux = true;
+    const auto solve = [&](bool sun, bool other, bool lamp) {
+      Scene scene = dark;
+      if (sun)
+      {
+        scene.ShineAlong({ 0.4, -0.3, -0.8 }, 2.0);
+      }
+      if (other)
+      {
+        scene.ShineAlong({ -0.9, 0.05, 0.2 }, 1.3);
+      }
+      if (lamp)
+      {
+        Light point;
+        point.type = LightType::Point;
+        point.position = { 2.3, 9.0, 4.4 };
+        point.power = { 30.0, 30.0, 30.0 };
+        scene.light.lights.push_back(point);
+      }
+      return this->Solve(scene, settings);
+    };
+    const LightField all = solve(true, true, true);
+    const std::array<LightField, 3> each = { solve(true, false, false), solve(false, true, false),
+      solve(false, false, true) };
+    const double largest = *std::max_element(all.fluence.begin(), all.fluence.end());
+    for (std::size_t i = 0; i < all.fluence.size(); ++i)
+    {
+      const double sum = each[0].fluence[i] + each[1].fluence[i] + each[2].fluence[i];
+      ASSERT_NEAR(all.fluence[i], sum, 1e-5 * largest) << albedo << ' ' << i;
+      for (std::size_t a = 3 * i; a < 3 * i + 3; ++a)
+      {
+        const double flux = each[0].netFlux[a] + each[1].netFlux[a] + each[2].netFlux[a];
+        ASSERT_NEAR(all.netFlux[a], flux, 1e-5 * largest) << albedo << ' ' << i;
+      }
+    }
+  }
+}
+
+/// A channel's powers are those of a solve of that channel alone, where a lamp and photons are white and the sky is
+/// not.
+TEST_F(LatticeBoltzmann, CountsThePowerOfEachChannelOfWhiteLightBesideColour)
+{
+  Photon photon;
+  photon.position = { 3.5, 4.2, 0.0 };
+  photon.power = { 0.2f, 0.2f, 0.2f };
+  const std::vector<Photon> photons(100, photon);
+  for (const bool marches : { false, true })
+  {
+    Scene scene({ 7, 8, 6 });
+    scene.Randomise(1.0, 2.0, 0.9, 20261129);
+    const auto solve = [&](const Rgb& sky) {
+      scene.light.sky = sky;
+      scene.Attach();
+      return marches
+        ? SolveLatticeBoltzmann(this->GetDevice(), scene.medium, {}, photons, scene.light, LatticeSettings())
+        : this->Solve(scene);
+    };
+    if (!marches)
+    {
+      scene.ShineAlong({ 0.4, -0.3, -0.8 }, 2.0);
+    }
+    const Rgb sky = { 0.1, 0.2, 0.3 };
+    const LightField light = solve(sky);
+    for (std::size_t c = 0; c < 3; ++c)
+    {
+      const LightField one = solve({ sky[c], sky[c], sky[c] });
+      const double entered = one.balance.entered[0];
+      EXPECT_NEAR(light.balance.entered[c], entered, 1e-6 * entered) << marches << c;
+      for (std::size_t face = 0; face < 6; ++face)
+      {
+        EXPECT_NEAR(light.facePowerOut[face][c], one.facePowerOut[face][0], 1e-5 * entered) << marches << c << face;
+      }
+    }
+  }
+}
+
 TEST_F(LatticeBoltzmann, TakesNarrowSpotsFarLampsAndDirectionsOfAnyLength)
 {
   for (double length : { 1e-165, 1e160 })
