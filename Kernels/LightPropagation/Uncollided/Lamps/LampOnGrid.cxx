@@ -465,8 +465,8 @@ double DistanceToBox(const Area& area, const Grid& grid)
   return glm::distance(at, inBox);
 }
 
-/// A rectangle that lies on an end of a periodic axis and shines out there is the same at the other end, where it shines
-/// in.
+/// A rectangle that lies on an end of a periodic axis and shines out there is the same at the other end, where it
+/// shines in.
 Light ShiningIn(Light light, const Grid& grid, const std::array<bool, 3>& periodic)
 {
   if (light.type != LightType::Rectangle)
