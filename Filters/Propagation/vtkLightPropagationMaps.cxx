@@ -32,6 +32,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace
 {
@@ -68,6 +69,13 @@ tyndall::PropagationSettings SettingsOf(vtkLightPropagationMaps* filter)
   settings.leaveOut = filter->GetLeaveOut();
   settings.memoryBudget = static_cast<std::size_t>(filter->GetMemoryBudget()) << 20;
   return settings;
+}
+
+std::vector<std::string> UsedFor(
+  const tyndall::LightField& light, const tyndall::PropagationSettings& settings, vtkLightPropagationMaps* filter)
+{
+  return filter->GetScheme() == vtkLightPropagationMaps::PUBLISHED ? tyndall::WordsAsPublished(settings)
+                                                                   : tyndall::Words(settings, light);
 }
 
 tyndall::LightField LightOf(tyndall::TargetLight&& found)
@@ -152,7 +160,7 @@ tyndall::LightField Solve(vtkLightPropagationMaps* filter, const tyndall::Medium
                                      : solve(medium, illumination, settings, monitor);
   if (light.settingsUsed.empty())
   {
-    light.settingsUsed = tyndall::Words(settings, light);
+    light.settingsUsed = UsedFor(light, settings, filter);
   }
   return light;
 }
@@ -200,7 +208,7 @@ tyndall::LightField SolvePublishedPiece(vtkLightPropagationMaps* filter, tyndall
   tyndall::LightField light = filter->GetEstimateError()
     ? tyndall::SolveWithErrorEstimate(scene, settings, monitor, solve)
     : solve(scene, settings, monitor);
-  light.settingsUsed = tyndall::Words(settings, light);
+  light.settingsUsed = UsedFor(light, settings, filter);
   return light;
 }
 
@@ -214,7 +222,7 @@ tyndall::LightField SolvePreviewOfPiece(vtkLightPropagationMaps* filter, const t
   tyndall::LightField light = tyndall::SolvePreviewOnFirst(scene, {}, settings,
     tyndall::PreviewGrid(scene.partition.whole),
     [&](const tyndall::PreviewScene& coarse) { return solve(coarse.medium, coarse.illumination, settings, monitor); });
-  light.settingsUsed = tyndall::Words(settings, light);
+  light.settingsUsed = UsedFor(light, settings, filter);
   return light;
 }
 
@@ -297,7 +305,7 @@ tyndall::LightField vtkLightPropagationMaps::SolvePiece(tyndall::Communicator& c
     ? tyndall::SolveInBlocksWithErrorEstimate(*device, scene, settings, monitor, last)
     : tyndall::SolveInBlocks(
         *device, communicator, scene.partition, scene.medium, scene.illumination, settings, monitor, last);
-  light.settingsUsed = tyndall::Words(settings, light);
+  light.settingsUsed = UsedFor(light, settings, this);
   return light;
 }
 

@@ -62,8 +62,15 @@ OrdinatesSettings AtQuality(
 
 std::vector<std::string> Words(const OrdinatesSettings& settings)
 {
-  return { "DirectionsPerFace = " + std::to_string(settings.directionsPerFace),
-    "Terms = " + std::to_string(settings.terms), "Tolerance = " + Text("%g", settings.tolerance) };
+  std::vector<std::string> words = { settings.spiralDirections > 0
+      ? "SpiralDirections = " + std::to_string(settings.spiralDirections)
+      : "DirectionsPerFace = " + std::to_string(settings.directionsPerFace) };
+  if (settings.scattering != OrdinatesScattering::Matrix)
+  {
+    words.push_back("Terms = " + std::to_string(settings.terms));
+  }
+  words.push_back("Tolerance = " + Text("%g", settings.tolerance));
+  return words;
 }
 
 std::vector<std::string> Words(OrdinatesSettings settings, const LightField& light)

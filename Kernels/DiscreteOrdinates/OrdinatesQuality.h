@@ -26,7 +26,8 @@ struct MediumOfQuality
 OrdinatesSettings AtQuality(
   Quality quality, OrdinatesSettings settings, const MediumOfQuality& medium, const DeviceMemory& memory);
 
-/// "Name = value" of each setting that a quality may choose.
+/// "Name = value" of each setting that a quality may choose and that plays a part: spiralDirections in place of those
+/// of a cube, no terms where every pair of directions is multiplied.
 std::vector<std::string> Words(const OrdinatesSettings& settings);
 /// The same as the light was solved with: more directions, where a slab needs them (UnvaryingAxes.h).
 std::vector<std::string> Words(OrdinatesSettings settings, const LightField& light);

@@ -33,7 +33,11 @@ void ForNumbers(LightField& light, const Visit& visit)
 template <class Visit>
 void ForWholeNumbers(LightField& light, const Visit& visit)
 {
-  visit(light.channels);
+  for (int* const number :
+    { &light.channels, &light.polarNodes, &light.directionsPerFace, &light.uncollidedDirections })
+  {
+    visit(*number);
+  }
   for (ConvergenceRow& row : light.convergence)
   {
     visit(row.iteration);

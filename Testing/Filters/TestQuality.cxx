@@ -28,6 +28,13 @@ bool Has(const std::string& text, const std::string& line)
   return text.find(line + "\n") != std::string::npos;
 }
 
+/// -2 where there is no such line.
+int NumberOf(const std::string& text, const std::string& name)
+{
+  const std::size_t at = ("\n" + text).find("\n" + name + " = ");
+  return at == std::string::npos ? -2 : std::stoi(text.substr(at + name.size() + 3));
+}
+
 vtkSmartPointer<vtkImageData> Medium()
 {
   return test::MakeMedium({ { 7, 5, 9 }, { 0.5, 0.5, 0.5 } }, 0.02, 0.3);
@@ -42,16 +49,17 @@ void SetsWhatNobodySet(test::Claims& claims)
   maps->Update();
   const std::string usual = Used(maps->GetOutputDataObject(0));
   claims.That(maps->GetQuality() == vtkLightPropagationMaps::USUAL, "default by default");
-  claims.That(Has(usual, "DirectionsPerFace = 25") && Has(usual, "Tolerance = 0.0001") &&
-      Has(usual, "UncollidedDirections = -1") && Has(usual, "MapResolution = 1"),
+  claims.That(
+    Has(usual, "DirectionsPerFace = 25") && Has(usual, "Tolerance = 0.0001") && Has(usual, "MapResolution = 1"),
     "by default properties stand for themselves: " + usual);
+  claims.That(NumberOf(usual, "UncollidedDirections") > 25, "automatic ones are told as they were: " + usual);
   const std::string shown = maps->GetSettingsUsed();
   claims.That(shown + "\n" == usual, "the panel shows the same as the field data");
 
   maps->SetQuality(vtkLightPropagationMaps::FINE);
   maps->Update();
   const std::string fine = Used(maps->GetOutputDataObject(0));
-  claims.That(!Has(fine, "DirectionsPerFace = 25") && !Has(fine, "UncollidedDirections = -1"), "fine: " + fine);
+  claims.That(!Has(fine, "DirectionsPerFace = 25") && NumberOf(fine, "UncollidedDirections") > 25, "fine: " + fine);
   claims.That(maps->GetDirectionsPerFace() == 25, "the property keeps its value");
   maps->SetDirectionsPerFace(16);
   maps->SetTolerance(0.02);
@@ -81,6 +89,89 @@ void TellsWhatASlabTook(test::Claims& claims, const std::string& which)
     claims.That(
       leftOut.find("solved with 36 a face") != std::string::npos, which + ": a slab of 36 directions: " + leftOut);
     claims.That(Has(used, "DirectionsPerFace = 36"), which + ": which the settings say: " + used);
+  }
+}
+
+/// Layers that are solved in the cosine alone have no directions and no tolerance.
+void TellsCosinesOfLayers(test::Claims& claims)
+{
+  vtkNew<vtkLightPropagationMaps> maps;
+  test::Errors errors(maps);
+  maps->SetInputDataObject(Medium());
+  maps->PeriodicXOn();
+  maps->PeriodicYOn();
+  for (const double target : { 0.0, 0.05 })
+  {
+    maps->SetTargetError(target);
+    maps->Update();
+    const std::string used = Used(maps->GetOutputDataObject(0)), leftOut = maps->GetLeftOut();
+    claims.That(leftOut.find("with 16 cosines up and as many down") != std::string::npos,
+      "layers are solved in the cosine alone: " + leftOut);
+    claims.That(Has(used, "PolarNodes = 16") && used.find("Directions") == std::string::npos &&
+        used.find("Tolerance") == std::string::npos,
+      "which the settings say: " + used);
+  }
+  claims.That(errors.None(), "without complaint");
+}
+
+/// Settings that play no part in a scene or a scheme are not told as if they did.
+void TellsWhatWasUsed(test::Claims& claims)
+{
+  vtkNew<vtkLightPropagationMaps> maps;
+  maps->SetInputDataObject(Medium());
+  maps->SetUncollidedDirections(100);
+  maps->SetSkyColor(1.0, 1.0, 1.0);
+  maps->PeriodicXOn();
+  maps->PeriodicYOn();
+  maps->PeriodicZOn();
+  maps->DefaultSkyOff();
+  maps->Update();
+  const std::string closed = Used(maps->GetOutputDataObject(0));
+  claims.That(Has(closed, "UncollidedDirections = 0"), "no light comes in along finer directions: " + closed);
+  maps->PeriodicXOff();
+  maps->PeriodicYOff();
+  maps->PeriodicZOff();
+  maps->SetScheme(vtkLightPropagationMaps::PUBLISHED);
+  maps->SetQuality(vtkLightPropagationMaps::REFERENCE);
+  maps->SetDirectionsPerFace(9);
+  for (const int algorithm : { vtkLightPropagationMaps::PARALLEL, vtkLightPropagationMaps::SEQUENTIAL })
+  {
+    maps->SetAlgorithm(algorithm);
+    maps->Update();
+    const std::string published = Used(maps->GetOutputDataObject(0));
+    claims.That(Has(published, "DirectionsPerFace = 9") && Has(published, "Tolerance = 1e-05") &&
+        Has(published, "MapResolution = 1") && NumberOf(published, "UncollidedDirections") == -2 &&
+        NumberOf(published, "StaggeredRays") == -2 && published.find("EmissionError") == std::string::npos,
+      "the published scheme has only some of the settings: " + published);
+  }
+}
+
+void TellsDirectionsOfASpiral(test::Claims& claims)
+{
+  for (const int decomposition : { vtkDiscreteOrdinates::WHOLE, vtkDiscreteOrdinates::BLOCKS })
+  {
+    vtkNew<vtkDiscreteOrdinates> ordinates;
+    ordinates->SetInputDataObject(Medium());
+    ordinates->SetSkyColor(1.0, 1.0, 1.0);
+    ordinates->SetDecomposition(decomposition);
+    ordinates->SetSpiralDirections(40);
+    ordinates->Update();
+    const std::string spiral = Used(ordinates->GetOutputDataObject(0));
+    claims.That(
+      Has(spiral, "SpiralDirections = 40") && NumberOf(spiral, "DirectionsPerFace") == -2 && Has(spiral, "Terms = 25"),
+      "directions of a spiral are none of a cube: " + spiral);
+    ordinates->SetScattering(vtkDiscreteOrdinates::MATRIX);
+    ordinates->Update();
+    const std::string matrix = Used(ordinates->GetOutputDataObject(0));
+    claims.That(NumberOf(matrix, "Terms") == -2, "a whole matrix has no terms: " + matrix);
+    ordinates->SetInputDataObject(test::MakeMedium({ { 1, 1, 9 }, { 0.5, 0.5, 0.5 } }, 0.02, 0.3));
+    ordinates->PeriodicXOn();
+    ordinates->PeriodicYOn();
+    ordinates->PreviewOn();
+    ordinates->Update();
+    const std::string preview = Used(ordinates->GetOutputDataObject(0)), leftOut = ordinates->GetLeftOut();
+    claims.That(leftOut.find("solved with 144 a face") != std::string::npos && Has(preview, "DirectionsPerFace = 144"),
+      "a preview of a slab: " + preview + leftOut);
   }
 }
 
@@ -209,6 +300,9 @@ int TestQuality(int, char*[])
   SetsWhatNobodySet(claims);
   TellsWhatASlabTook<vtkLightPropagationMaps>(claims, "maps");
   TellsWhatASlabTook<vtkDiscreteOrdinates>(claims, "ordinates");
+  TellsCosinesOfLayers(claims);
+  TellsWhatWasUsed(claims);
+  TellsDirectionsOfASpiral(claims);
   SetsTolerance<vtkDiscreteOrdinates>(claims, "ordinates");
   SetsTolerance<vtkLatticeBoltzmannLighting>(claims, "lattice");
   DividesRectangles(claims);

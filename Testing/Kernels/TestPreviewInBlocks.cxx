@@ -54,6 +54,9 @@ void AddFigures(LightField& light, const Illumination& illumination)
   light.balance.escaped = { 1.0, 2.0, 3.0 };
   light.facePowerOut = illumination.uncollided.escaped;
   light.halfRangeFlux = 0.25;
+  light.directionsPerFace = 36;
+  light.uncollidedDirections = 100;
+  light.polarNodes = 16;
   light.convergence = { { 0, 0.1, 0.5, 0.4, 1.0, 2.0, 3.0 }, { 4, 0.2, 0.25, 0.2, 1.5, 2.5, 3.5 } };
   light.sweepsSaved = { 0, 2 };
   light.device = "a device";
@@ -75,6 +78,9 @@ void ExpectSame(const LightField& found, const LightField& expected)
   EXPECT_EQ(found.balance.escaped, expected.balance.escaped);
   EXPECT_EQ(found.facePowerOut, expected.facePowerOut);
   EXPECT_EQ(found.halfRangeFlux, expected.halfRangeFlux);
+  EXPECT_EQ(found.directionsPerFace, expected.directionsPerFace);
+  EXPECT_EQ(found.uncollidedDirections, expected.uncollidedDirections);
+  EXPECT_EQ(found.polarNodes, expected.polarNodes);
   ASSERT_EQ(found.convergence.size(), expected.convergence.size());
   EXPECT_EQ(found.convergence.back().iteration, expected.convergence.back().iteration);
   EXPECT_EQ(found.convergence.back().leftOver, expected.convergence.back().leftOver);

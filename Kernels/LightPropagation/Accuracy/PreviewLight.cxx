@@ -77,6 +77,9 @@ LightField Shown(LightField&& found, const CoarseBlocks& blocks)
   light.balance = found.balance;
   light.facePowerOut = found.facePowerOut;
   light.halfRangeFlux = found.halfRangeFlux;
+  light.directionsPerFace = found.directionsPerFace;
+  light.uncollidedDirections = found.uncollidedDirections;
+  light.polarNodes = found.polarNodes;
   light.convergence = std::move(found.convergence);
   light.sweepsSaved = std::move(found.sweepsSaved);
   light.device = std::move(found.device);

@@ -80,7 +80,18 @@ std::vector<std::string> Words(const PropagationSettings& settings)
 
 std::vector<std::string> Words(PropagationSettings settings, const LightField& light)
 {
+  if (light.polarNodes > 0)
+  {
+    return { "PolarNodes = " + std::to_string(light.polarNodes) };
+  }
   settings.directionsPerFace = light.directionsPerFace > 0 ? light.directionsPerFace : settings.directionsPerFace;
+  settings.uncollidedDirections = light.uncollidedDirections;
   return Words(settings);
+}
+
+std::vector<std::string> WordsAsPublished(const PropagationSettings& settings)
+{
+  return { "DirectionsPerFace = " + std::to_string(settings.directionsPerFace),
+    "MapResolution = " + std::to_string(settings.mapResolution), "Tolerance = " + Text("%g", settings.tolerance) };
 }
 }

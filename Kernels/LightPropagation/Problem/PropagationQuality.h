@@ -33,6 +33,10 @@ bool Scatters(const Medium& medium); ///< in any voxel
 
 /// "Name = value" of each setting that a quality may choose.
 std::vector<std::string> Words(const PropagationSettings& settings);
-/// The same as the light was solved with: more directions, where a slab needs them (UnvaryingAxes.h).
+/// The same as SolveConservative used them for the light: more directions, where a slab needs them (UnvaryingAxes.h),
+/// and the uncollidedDirections that were chosen, 0 where no light came along them. Layers that were solved in the
+/// cosine alone used none of these settings, but "PolarNodes = value".
 std::vector<std::string> Words(PropagationSettings settings, const LightField& light);
+/// Those that the published scheme uses.
+std::vector<std::string> WordsAsPublished(const PropagationSettings& settings);
 }
