@@ -28,8 +28,8 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
-  /// Relative error of fluence at which to stop. Default 1e-4, valid above 0.
-  tyndallSetRangeMacro(Tolerance, double, tyndall::AboveZero, tyndall::AnyHigh);
+  /// Relative error of fluence at which to stop. Default 1e-4, valid [1e-9, 0.5].
+  tyndallSetRangeMacro(Tolerance, double, 1e-9, 0.5);
   vtkGetMacro(Tolerance, double);
   ///@}
 

@@ -251,8 +251,11 @@ void BadSettings(Refusals& refusals)
   refusals->SetMaximumOrders(-1);
   refusals.Says("MaximumOrders");
   refusals->SetMaximumOrders(0);
-  refusals->SetTolerance(0.0);
-  refusals.Says("Tolerance");
+  for (const double tolerance : { 0.0, 0.9e-9, 0.51, 1e300 })
+  {
+    refusals->SetTolerance(tolerance);
+    refusals.Says("; it must be at least 1e-09 and at most 0.5");
+  }
   refusals->SetTolerance(1e-4);
   refusals->SetStoredDirections(0);
   refusals.Says("StoredDirections");

@@ -95,7 +95,7 @@ with a_server.started(RANKS, LOG) as (port, server):
     LoadPlugin(PLUGIN, remote=True, ns=globals())
     ranks = ranks_of(server)
     assert len(ranks) == RANKS, ranks
-    endless = solver(DirectionsPerFace=64, Acceleration=0, MaximumOrders=1000000, Tolerance=1e-12)
+    endless = solver(DirectionsPerFace=64, Acceleration=0, MaximumOrders=1000000, Tolerance=1e-9)
     lose_a_rank(servermanager.ActiveConnection.Session, endless, ranks)
     assert server.wait(30) != 0
     assert endless.GetDataInformation().GetNumberOfPoints() == 0

@@ -23,7 +23,6 @@ window = vtkOutputWindow.GetInstance()  # Python prints there, too
 WIDER = {
     "EnvironmentAzimuth": "below above",  # any angle
     "SunAzimuth": "below above",
-    "Tolerance": "below above",  # above 0; of RefractionOctree see below
     "LPMPropagate.MapResolution": "above",  # to 16
     "StoredDirections": "above",
     "SpotLight.Angle": "below",  # above 0
@@ -58,7 +57,6 @@ AT_THE_END = {
     "PhaseFunction",  # the last one needs a table
     "Terms",  # as many as there are directions at most
 }
-NARROWER = {"RefractionOctree.Tolerance", "VDBWriter.Tolerance"}
 
 faults = []
 keep = []
@@ -198,7 +196,7 @@ def bad_values(name, prop):
     """(value, component) beyond the range, and whether it must be refused; else it may be worked with as it is."""
     whole = prop.tag == "IntVectorProperty"
     names = [name, prop.get("name")]
-    sides = WIDER.get(".".join(names), WIDER.get(names[1], "")) if ".".join(names) not in NARROWER else ""
+    sides = WIDER.get(".".join(names), WIDER.get(names[1], ""))
     count = int(prop.get("number_of_elements", 1))
     choices = [int(entry.get("value")) for entry in prop.findall("EnumerationDomain/Entry")]
     ranges = prop.findall("IntRangeDomain") + prop.findall("DoubleRangeDomain") + prop.findall("ArrayRangeDomain")

@@ -948,7 +948,7 @@ def abort():
     medium = ParticipatingMedium(Input=source_of(piece_of(parts(even_cuts())[rank])),
                                  DensityArray=["CELLS", "density"])
     light = LightPropagationMaps(Input=medium, SkyColor=[1, 1, 1], DirectionsPerFace=16, Acceleration=0,
-                                 MaximumOrders=100000, Tolerance=1e-12)
+                                 MaximumOrders=100000, Tolerance=1e-9)
     solver = light.GetClientSideObject()
     if rank == ranks - 1:
         solver.AddObserver("ProgressEvent", lambda caller, event: caller.SetAbortExecute(1))
