@@ -83,7 +83,7 @@ class WholeInputs;
  *
  * | array | type | unit | meaning |
  * |---|---|---|---|
- * | `color` | uint8 x 4 | sRGB | the picture for a screen, active scalars; opaque if ShowBackground |
+ * | `color` | uint8 x 4 | sRGB | the picture for a screen, active scalars; see ShowBackground |
  * | `radiance` | float x 3 | W/(length^2 sr) | what arrives at the camera |
  * | `alpha` | float | 1 | 1 - transmittance (mean of the channels) |
  * | `depth` | float | length | along the view, to where the channels' mean transmittance falls to 1/2 |
@@ -214,7 +214,9 @@ public:
   ///@}
 
   ///@{
-  /// Whether the environment, or else BackgroundRadiance or BackgroundColor, is seen behind the medium. Default on.
+  /// Whether the environment, or else BackgroundRadiance or BackgroundColor, is seen behind the medium. Default on:
+  /// `color` is opaque. Off: laid over black it looks as before black; its own alpha is that of the array `alpha`, and
+  /// larger where bright thin smoke would be more than white.
   vtkSetMacro(ShowBackground, bool);
   vtkGetMacro(ShowBackground, bool);
   vtkBooleanMacro(ShowBackground, bool);

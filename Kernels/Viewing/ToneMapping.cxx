@@ -5,7 +5,9 @@
 #include "Numerics/NumberText.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstring>
 #include <functional>
 #include <mutex>
@@ -178,14 +180,18 @@ std::vector<std::uint8_t> ToneMap(
   InThreads(pixels, PixelsOfThread, [&](std::size_t begin, std::size_t end) {
     for (std::size_t pixel = begin; pixel < end; ++pixel)
     {
-      const float opaque = alpha.empty() ? 1.0f : alpha[pixel];
-      const float scale = opaque > 0.0f ? 1.0f / opaque : 0.0f;
+      std::array<float, 3> shown;
+      std::transform(radiance.begin() + static_cast<std::ptrdiff_t>(3 * pixel),
+        radiance.begin() + static_cast<std::ptrdiff_t>(3 * pixel + 3), shown.begin(),
+        [&](float value) { return std::floor(std::min(screen(value * exposure), 255.0f) + 0.5f); });
+      const float hidden = alpha.empty() ? 255.0f : std::floor(255.0f * alpha[pixel] + 0.5f);
+      const float opaque = std::max({ hidden, shown[0], shown[1], shown[2] });
+      const float scale = opaque > 0.0f ? 255.0f / opaque : 0.0f;
       for (int c = 0; c < 3; ++c)
       {
-        const float encoded = screen(radiance[3 * pixel + c] * exposure);
-        colour[4 * pixel + c] = static_cast<std::uint8_t>(std::min(encoded * scale, 255.0f) + 0.5f);
+        colour[4 * pixel + c] = static_cast<std::uint8_t>(shown[c] * scale + 0.5f);
       }
-      colour[4 * pixel + 3] = static_cast<std::uint8_t>(255.0f * opaque + 0.5f);
+      colour[4 * pixel + 3] = static_cast<std::uint8_t>(opaque);
     }
   });
   return colour;

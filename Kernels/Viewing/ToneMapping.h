@@ -50,7 +50,9 @@ double ExposedAs(double shown, ToneCurve curve);
 float ShownValue(float exposed, ToneCurve curve);
 
 /// Eight bits per channel, red, green, blue and alpha, for a screen that follows sRGB (IEC 61966-2-1). Colours are not
-/// multiplied by alpha: laid over black, the picture is what the radiance says.
+/// multiplied by alpha: laid over black, the picture is what the radiance says. What is brighter than a white of its
+/// alpha, as thin smoke in the light is, has the alpha of its brightest channel: it hides more of what is behind it
+/// than the medium does.
 /// @param alpha  one per pixel in [0, 1]; empty: opaque
 std::vector<std::uint8_t> ToneMap(
   const std::vector<float>& radiance, const std::vector<float>& alpha, const ToneMapping& settings);

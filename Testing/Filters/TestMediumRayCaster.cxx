@@ -119,8 +119,44 @@ void SlabFollowsTheClosedForm(test::Claims& claims)
   caster->SetToneCurve(vtkMediumRayCaster::LINEAR);
   caster->Update();
   claims.Near(MiddlePixel(caster, "radiance", 0), 0.8 * (1.0 - left), 1e-5, "red radiance alone");
-  claims.Near(MiddlePixel(caster, "color", 3), 255.0 * (1.0 - left), 0.6, "color's alpha without the background");
   claims.Near(caster->GetUsedExposure(), 0.5, 0.0, "the exposure that was set");
+  caster->SetExposure(0.2);
+  caster->Update();
+  claims.Near(MiddlePixel(caster, "color", 3), 255.0 * (1.0 - left), 0.6, "color's alpha without the background");
+}
+
+/// Whatever it is exposed to, and however little of what is behind it hides.
+void SmokeLaidOverBlackLooksAsBeforeBlack(test::Claims& claims)
+{
+  for (const double sigma_t : { 0.001, 0.01, 0.1, 2.0 })
+  {
+    const vtkNew<vtkImageData> image = Homogeneous(0.2 * sigma_t, 0.8 * sigma_t, 4.0 * Pi);
+    vtkNew<vtkMediumRayCaster> caster;
+    caster->SetInputData(image);
+    caster->SetImageSize(9, 9);
+    LookDown(caster, image);
+    for (const double exposure : { 0.0, 0.5 })
+    {
+      const std::string which = ": sigma_t " + std::to_string(sigma_t) + ", exposure " + std::to_string(exposure);
+      caster->SetExposure(exposure);
+      double before[3];
+      caster->ShowBackgroundOn();
+      caster->Update();
+      for (int c = 0; c < 3; ++c)
+      {
+        before[c] = MiddlePixel(caster, "color", c);
+      }
+      caster->ShowBackgroundOff();
+      caster->Update();
+      const double opacity = MiddlePixel(caster, "color", 3) / 255.0;
+      for (int c = 0; c < 3; ++c)
+      {
+        claims.Near(MiddlePixel(caster, "color", c) * opacity, before[c], 1.0, "smoke laid over black" + which);
+      }
+      claims.Near(
+        MiddlePixel(caster, "alpha"), 1.0 - std::exp(-3.0 * sigma_t), 1e-5, "alpha is what the smoke hides" + which);
+    }
+  }
 }
 
 void PointArraysAndChosenNamesServe(test::Claims& claims)
@@ -447,6 +483,7 @@ int TestMediumRayCaster(int argc, char* argv[])
   }
   test::Claims claims;
   SlabFollowsTheClosedForm(claims);
+  SmokeLaidOverBlackLooksAsBeforeBlack(claims);
   PointArraysAndChosenNamesServe(claims);
   UntouchedCameraSeesTheWholeBox(claims);
   LightsServeWhereThereIsNoFluence(claims);

@@ -94,11 +94,30 @@ TEST(ToneMapping, IsNotBlindedByWhatIsNearlyBlack)
 
 TEST(ToneMapping, ColoursLaidOverBlackAreThePicture)
 {
+  for (const ToneCurve curve : { ToneCurve::Linear, ToneCurve::Filmic })
+  {
+    ToneMapping settings;
+    settings.exposure = 1.0;
+    settings.curve = curve;
+    for (const float alpha : { 1.0f, 0.9f, 0.5f, 0.2f, 0.03f, 0.001f, 0.0f })
+    {
+      const std::vector<float> radiance = { 0.1f, 0.03f, 0.002f };
+      const auto opaque = ToneMap(radiance, {}, settings), seen = ToneMap(radiance, { alpha }, settings);
+      for (int c = 0; c < 3; ++c)
+      {
+        EXPECT_NEAR(opaque[c], seen[c] * seen[3] / 255.0, 1.0) << "alpha " << alpha;
+      }
+      EXPECT_GE(seen[3], std::floor(255.0f * alpha + 0.5f)) << "hides what its alpha says at least";
+    }
+  }
+}
+
+TEST(ToneMapping, HidesWhatIsBehindAsTheMediumDoes)
+{
   ToneMapping settings;
   settings.exposure = 1.0;
-  const int opaque = ToneMap({ 0.1f, 0.1f, 0.1f }, {}, settings)[0];
-  const auto half = ToneMap({ 0.1f, 0.1f, 0.1f }, { 0.5f }, settings);
-  EXPECT_EQ(128, half[3]);
-  EXPECT_NEAR(opaque, half[0] * half[3] / 255.0, 1.0);
+  EXPECT_EQ(128, ToneMap({ 0.1f, 0.1f, 0.1f }, { 0.5f }, settings)[3]);
+  EXPECT_EQ(26, ToneMap({ 0.0f, 0.0f, 0.0f }, { 0.1f }, settings)[3]) << "smoke in the dark";
+  EXPECT_EQ(0, ToneMap({ 0.0f, 0.0f, 0.0f }, { 0.0f }, settings)[3]);
 }
 }
