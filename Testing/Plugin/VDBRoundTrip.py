@@ -52,9 +52,12 @@ for time in series.TimestepValues:
     maxima.append(values(servermanager.Fetch(series), "RTData").max())
 assert maxima[0] < maxima[1] < maxima[2], maxima
 
-# A series whose boxes change, with an empty one: in UpdatePipeline, in a view, and as an animation, to and fro.
+# A series whose boxes change, with an empty one and one that meets no other: in UpdatePipeline, in a view, and as an
+# animation, to and fro. What the view draws as Surface are the faces of that time's box.
 boxes = []
-for step, extent in enumerate(([0, 5] * 3, None, [3, 9] * 3, [-2, 8] * 3)):
+edges = [(0, 5), None, (3, 9), (-2, 8), (20, 24)]
+for step, edge in enumerate(edges):
+    extent = edge and [*edge] * 3
     boxes.append(os.path.join(folder, f"box_{step}.vdb"))
     if extent is None:
         nothing = Calculator(Input=cells, AttributeType="Cell Data", ResultArrayName="d", Function="0*RTData")
@@ -68,26 +71,43 @@ for step, extent in enumerate(([0, 5] * 3, None, [3, 9] * 3, [-2, 8] * 3)):
         continue
     density = PointDatatoCellData(Input=Wavelet(WholeExtent=extent))
     SaveData(boxes[-1], proxy=Calculator(Input=density, AttributeType="Cell Data", ResultArrayName="d", Function="1"))
-counts = [125, 0, 216, 1000]
+counts = [125, 0, 216, 1000, 64]
+
+
+def has_faces_of(representation, edge):
+    drawn = representation.GetClientSideObject().GetActiveRepresentation().GetRenderedDataObject(0)
+    bounds = [0.0] * 6
+    drawn.GetBounds(bounds)
+    cells = drawn.GetNumberOfCells()
+    return cells == 0 if edge is None else cells == 6 * (edge[1] - edge[0]) ** 2 and bounds == [*edge] * 3
+
+
 changing = VDBReader(FileName=boxes)
 changing.Grids = ["d"]
-light = LightPropagationMaps(Input=ParticipatingMedium(Input=changing), DirectionsPerFace=1, MaximumOrders=1)
-for time in (0, 1, 3, 2, 1, 0, 3):
+medium = ParticipatingMedium(Input=changing)
+light = LightPropagationMaps(Input=medium, DirectionsPerFace=1, MaximumOrders=1)
+for time in (0, 1, 3, 2, 4, 1, 0, 3):
     light.UpdatePipeline(time)
     assert servermanager.Fetch(changing).GetNumberOfCells() == counts[time], (time, "reader")
     assert servermanager.Fetch(light).GetNumberOfCells() == counts[time], (time, "solver")
-view = CreateRenderView(ViewSize=[60, 60])
-Show(light, view, "UniformGridRepresentation").Representation = "Surface"
 scene = GetAnimationScene()
 scene.UpdateAnimationUsingDataTimeSteps()
-for time in (3, 0, 1, 2):
-    scene.AnimationTime = time
+for of in (changing, medium, light):  # each alone: a view of the reader would have it read before the others ask
+    name = of.SMProxy.GetXMLName()
+    view = CreateRenderView(ViewSize=[60, 60])
+    shown = Show(of, view, "UniformGridRepresentation")
+    shown.Representation = "Surface"
     Render(view)
-    assert light.GetDataInformation().GetNumberOfCells() == counts[time], (time, "view")
-scene.GoToFirst()
-scene.Play()
-assert light.GetDataInformation().GetNumberOfCells() == counts[3], "animation"
-Delete(view)
+    for time in (3, 0, 4, 1, 2, 4, 0, 2):
+        scene.AnimationTime = time
+        Render(view)
+        assert of.GetDataInformation().GetNumberOfCells() == counts[time], (time, name, "view")
+        assert has_faces_of(shown, edges[time]), (time, name, "faces")
+    scene.GoToFirst()
+    scene.Play()
+    assert of.GetDataInformation().GetNumberOfCells() == counts[4], (name, "animation")
+    assert has_faces_of(shown, edges[4]), (name, "faces after the animation")
+    Delete(view)
 
 # A damaged one: no data, and the session lives on.
 damaged = os.path.join(folder, "damaged.vdb")

@@ -169,6 +169,28 @@ def series():
         read = reader.GetClientSideObject().GetOutputDataObject(0).GetExtent()
         last = [bound + 1 for bound in BOXES[time]]  # of cells around the points
         assert all(BOXES[time][a] <= read[a] and read[a + 1] <= last[a + 1] for a in (0, 2, 4)), (rank, time, read)
+    for shown in (medium, lights["whole"]):
+        faces_follow(shown)
+
+
+def faces_follow(series):
+    """Surface of each time, in any order, has the faces of that time's box and no other, on all ranks together."""
+    view = CreateRenderView(ViewSize=[40, 40])
+    shown = Show(series, view, "UniformGridRepresentation")
+    shown.Representation = "Surface"
+    Render(view)
+    for time in (0, 1, 2, 0, 2, 1):
+        view.ViewTime = time
+        Render(view)
+        drawn = shown.GetClientSideObject().GetActiveRepresentation().GetRenderedDataObject(0)
+        own, faces = vtkDoubleArray(), vtkDoubleArray()
+        own.InsertNextValue(drawn.GetNumberOfCells())
+        faces.SetNumberOfValues(1)
+        module.GetGlobalController().AllReduce(own, faces, 2)  # 2: their sum
+        nx, ny, nz = (BOXES[time][a + 1] - BOXES[time][a] + 1 for a in (0, 2, 4))  # voxels around the points
+        expected = 2 * (nx * ny + ny * nz + nz * nx)
+        assert faces.GetValue(0) == expected, (rank, series.SMProxy.GetXMLName(), time, faces.GetValue(0), expected)
+    Delete(view)
 
 
 def own_pieces(case, pieces, solve=solved):
