@@ -156,14 +156,14 @@ struct vtkVDBReader::Internals
 
   std::vector<const VDBGrid*> Chosen;
   tyndall::VDBGeometry Image;
-  bool IsBare = false; ///< no chosen grid has an active voxel
+  bool IsBare = false;    ///< no chosen grid has an active voxel
+  std::string NoImageYet; ///< why the chosen grids are no image unless Resample is on; empty: they are
 
   bool Resample = false;    ///< where axes go aslant
   bool Resampled = false;   ///< Image is along the world's axes, and not along the grids'
   tyndall::VDBGeometry Own; ///< of the grids then
 
   bool IsSeries() const { return this->Files.size() > 1; }
-  std::string FaultOf(const VDBGrid& grid) const;
   void Look(int file, vtkDataArraySelection* selection, vtkIdType maximumMemory);
   void List(int file);
   void Offer(vtkDataArraySelection* selection);
@@ -178,18 +178,11 @@ struct vtkVDBReader::Internals
   Limit LimitOfMemory(vtkIdType maximum) const;
 };
 
-/// Why a grid cannot become an image; empty: it can.
-std::string vtkVDBReader::Internals::FaultOf(const VDBGrid& grid) const
-{
-  return grid.Shears && !this->Resample && grid.Unusable.empty()
-    ? "its transform shears; an image needs axes at right angles. Switch Resample on"
-    : grid.Unusable;
-}
-
 /// Lists one of the files, and finds out which image its chosen grids are.
 void vtkVDBReader::Internals::Look(int file, vtkDataArraySelection* selection, vtkIdType maximumMemory)
 {
   this->Chosen.clear();
+  this->NoImageYet.clear();
   this->List(file);
   this->Offer(selection);
   this->Choose(selection);
@@ -212,8 +205,25 @@ void vtkVDBReader::Internals::List(int file)
   this->Summary = ::Summary(*this->File);
 }
 
-/// Brings the file's grids into the selection. Those that share the first one's transform are chosen at first. Of a
-/// series those of other files stay.
+namespace
+{
+/// The grid of whose transform grids are chosen at first: the first that needs no Resample, or else the first that can
+/// be resampled. So the choice is the same whether Resample is set before the file or after it.
+/// @return null: none can become an image
+const VDBGrid* FirstToChoose(const std::vector<VDBGrid>& grids)
+{
+  const VDBGrid* chosen = nullptr;
+  for (const VDBGrid& grid : grids)
+  {
+    const bool isBetter = chosen == nullptr || (chosen->Shears && !grid.Shears);
+    chosen = grid.Unusable.empty() && isBetter ? &grid : chosen;
+  }
+  return chosen;
+}
+}
+
+/// Brings the file's grids into the selection. At first those are chosen that share the transform of FirstToChoose.
+/// Those of other files of a series stay.
 void vtkVDBReader::Internals::Offer(vtkDataArraySelection* selection)
 {
   for (auto name = this->Listed.begin(); name != this->Listed.end();)
@@ -228,14 +238,12 @@ void vtkVDBReader::Internals::Offer(vtkDataArraySelection* selection)
       ++name;
     }
   }
-  const VDBGrid* first = nullptr;
+  const VDBGrid* const first = FirstToChoose(this->File->Grids());
   for (const VDBGrid& grid : this->File->Grids())
   {
-    const bool usable = this->FaultOf(grid).empty();
-    first = usable && first == nullptr ? &grid : first;
     if (!selection->ArrayExists(grid.Name.c_str()))
     {
-      selection->AddArray(grid.Name.c_str(), usable && tyndall::SharesTransform(*first, grid));
+      selection->AddArray(grid.Name.c_str(), first && grid.Unusable.empty() && tyndall::SharesTransform(*first, grid));
       this->Listed.insert(grid.Name);
     }
   }
@@ -258,12 +266,12 @@ void vtkVDBReader::Internals::Choose(vtkDataArraySelection* selection)
     this->IsBare = true;
     return;
   }
-  if (std::none_of(grids.begin(), grids.end(), [&](const VDBGrid& grid) { return this->FaultOf(grid).empty(); }) &&
+  if (std::none_of(grids.begin(), grids.end(), [](const VDBGrid& grid) { return grid.Unusable.empty(); }) &&
     selection->GetNumberOfArraysEnabled() == 0)
   {
     throw InvalidInput(grids.empty() ? "\"" + this->Path + "\" holds no grid."
                                      : "No grid of \"" + this->Path + "\" can become an image. Of \"" +
-          grids.front().Name + "\", " + this->FaultOf(grids.front()) + ".");
+          grids.front().Name + "\", " + grids.front().Unusable + ".");
   }
   for (int i = 0; i < selection->GetNumberOfArrays(); ++i)
   {
@@ -287,10 +295,15 @@ void vtkVDBReader::Internals::Choose(vtkDataArraySelection* selection)
       throw InvalidInput("\"" + this->Path + "\" has no grid \"" + name + "\". It has " +
         (available.empty() ? "none" : available) + ".");
     }
-    if (const std::string fault = this->FaultOf(*grid); !fault.empty())
+    const std::string cannot = "Grid \"" + name + "\" of \"" + this->Path + "\" cannot become an image: ";
+    if (!grid->Unusable.empty())
     {
-      throw InvalidInput(
-        "Grid \"" + name + "\" of \"" + this->Path + "\" cannot become an image: " + fault + ", or switch it off.");
+      throw InvalidInput(cannot + grid->Unusable + ", or switch it off.");
+    }
+    if (grid->Shears && !this->Resample && this->NoImageYet.empty())
+    {
+      this->NoImageYet =
+        cannot + "its transform shears; an image needs axes at right angles. Switch Resample on, or the grid off.";
     }
     if (!this->Chosen.empty() && !tyndall::SharesTransform(*this->Chosen.front(), *grid))
     {
@@ -299,6 +312,11 @@ void vtkVDBReader::Internals::Choose(vtkDataArraySelection* selection)
         "reader.");
     }
     this->Chosen.push_back(grid);
+  }
+  if (!this->NoImageYet.empty())
+  {
+    this->Chosen.clear();
+    return;
   }
   // In the order of the file, whatever the order in which they were chosen.
   std::sort(this->Chosen.begin(), this->Chosen.end());
@@ -586,6 +604,10 @@ int vtkVDBReader::RequestData(vtkInformation*, vtkInformationVector**, vtkInform
     image->Initialize();
     Internals& internal = *this->Internal;
     std::array<int, 6> extent = this->ExtentToRead(info);
+    if (!internal.NoImageYet.empty())
+    {
+      throw InvalidInput(internal.NoImageYet); // not before: Resample may be set after the file was listed
+    }
     if (internal.IsSeries())
     {
       image->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), internal.ListedFile);

@@ -31,7 +31,8 @@ class vtkDataArraySelection;
  *
  * The extent is the box of the active voxels of the chosen grids, or the extent that vtkVDBWriter noted. A cell that is
  * not active has the value that the grid gives it: the background, or inside a level set its negative.
- * Grids that share the first grid's transform are chosen at first; chosen grids must share one.
+ * Chosen grids must share one transform: at first those that share that of the first grid that needs no Resample, or
+ * where all need it, of the first.
  *
  * Field data, from which vtkVDBWriter restores them:
  * `vdb::<key>` the file's metadata; `vdb:<grid>:<key>` a grid's (`class`, `name`, `creator`, ...);

@@ -391,6 +391,67 @@ void AslantGridsAreResampled(test::Claims& claims)
   }
 }
 
+/// Gives the reader's first choice of grids back to it as a choice of the user's, as ParaView does.
+void GiveGridsBack(vtkVDBReader* reader)
+{
+  reader->UpdateInformation();
+  for (int i = 0; i < reader->GetNumberOfGridArrays(); ++i)
+  {
+    const std::string name = reader->GetGridArrayName(i);
+    reader->SetGridArrayStatus(name.c_str(), reader->GetGridArrayStatus(name.c_str()));
+  }
+}
+
+void ResampleMayBeSetAtAnyTime(test::Claims& claims)
+{
+  auto sheared = openvdb::math::Transform::createLinearTransform(1.0);
+  sheared->postShear(0.5, openvdb::math::X_AXIS, openvdb::math::Y_AXIS);
+  auto first = SmallFog(), second = SmallFog("smoke");
+  first->setTransform(sheared);
+  second->setTransform(sheared);
+  WriteGrids(Path("sheared.vdb"), { first, second });
+  WriteGrids(Path("mixed.vdb"), { first, SmallFog("straight") });
+
+  vtkNew<vtkVDBReader> before;
+  before->ResampleOn();
+  before->SetFileName(Path("sheared.vdb").c_str());
+  before->Update();
+  const std::vector<int> expected(before->GetOutput()->GetExtent(), before->GetOutput()->GetExtent() + 6);
+  const auto isRead = [&](vtkImageData* image) {
+    return image->GetCellData()->GetNumberOfArrays() == 2 &&
+      std::equal(expected.begin(), expected.end(), image->GetExtent());
+  };
+  claims.That(isRead(before->GetOutput()), "Resample before the file reads all of its grids");
+
+  vtkNew<vtkVDBReader> after;
+  test::Errors errors(after);
+  after->SetFileName(Path("sheared.vdb").c_str());
+  GiveGridsBack(after);
+  claims.That(errors.None(), "that a grid shears is no error before it is read");
+  after->ResampleOn();
+  after->Update();
+  claims.That(errors.None() && isRead(after->GetOutput()), "Resample after the file reads the same");
+  after->ResampleOff();
+  after->Update();
+  claims.That(errors.WasOneWith("Switch Resample on") && IsEmpty(after->GetOutput()), "without it they are an error");
+  after->ResampleOn();
+  after->Update();
+  claims.That(errors.None() && isRead(after->GetOutput()), "Resample after the error reads the same");
+
+  for (const bool isFirst : { true, false })
+  {
+    vtkNew<vtkVDBReader> reader;
+    reader->SetResample(isFirst);
+    reader->SetFileName(Path("mixed.vdb").c_str());
+    GiveGridsBack(reader);
+    reader->ResampleOn();
+    reader->Update();
+    vtkCellData* const cells = reader->GetOutput()->GetCellData();
+    claims.That(cells->GetNumberOfArrays() == 1 && cells->HasArray("straight"),
+      "grids that need no Resample are chosen at first, whether or not it is on");
+  }
+}
+
 /// A cube of `edge` voxels, each with its edge as value, from index `edge` on; 0: a grid without active voxels, -1:
 /// none.
 void WriteCube(const std::string& name, int edge)
@@ -515,6 +576,7 @@ int TestVDBReader(int argc, char* argv[])
   WrongQuestionsAreErrors(claims);
   LevelSetsKeepTheirInside(claims);
   AslantGridsAreResampled(claims);
+  ResampleMayBeSetAtAnyTime(claims);
   EachTimeOfASeriesIsItsFile(claims);
   ATimeThatNobodyWasToldOfIsItsFile(claims);
   GridsOfASeriesAreKept(claims);
