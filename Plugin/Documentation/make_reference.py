@@ -26,7 +26,7 @@ documentation there, then run the script. How the filters go together is in the 
 Names are those of Python and of ParaView's traces; the panel writes them with spaces. The C++ class of a filter `X` is
 `vtkX`; a property `P` is set by `SetP` and a result `R` read by `GetR`. Properties marked *advanced* are on the panel
 after a click on the gear beside its search field. Lengths are in the dataset's own unit. A number outside its valid
-values is refused with an error, never replaced. Choices take their text or their number: `Scheme="Conservative"` or
+values is refused with an error, never replaced (some classes take more than panels offer: angles beyond a turn, more directions). Choices take their text or their number: `Scheme="Conservative"` or
 `Scheme=1`.
 """
 
