@@ -1,5 +1,6 @@
 #include "LatticeBoltzmann/LatticeAccount.h"
 
+#include "LatticeBoltzmann/WhereLightIsLost.h"
 #include "Numerics/Constants.h"
 
 #include <algorithm>
@@ -106,7 +107,8 @@ double LatticeAccount::FluxOfCrossing(std::size_t known, std::size_t face) const
   const std::size_t beyond = VoxelBeyond(this->Box.known, this->Settings.periodic, known, face);
   const double out = face % 2 == 0 ? -1.0 : 1.0, crosses = this->Voxels.crossing[6 * known + face];
   const double comes = beyond == Outside ? 0.0 : this->Voxels.crossing[6 * beyond + (face ^ 1)];
-  const double nearer = NearerOfNormalBeam(this->Scene.medium, known, static_cast<int>(this->Channel));
+  const double nearer =
+    crosses > 0.0 ? NearerOfNormalBeam(this->Scene.medium, known, static_cast<int>(this->Channel)) : 0.0;
   return (0.5 - nearer) * out * crosses - 0.5 * out * comes;
 }
 

@@ -100,12 +100,6 @@ double Uncollided::Nearer(std::size_t voxel, int channel, std::size_t face) cons
   return fluence > 0.0 ? std::min(moment / fluence, 0.5) : 0.0;
 }
 
-double NearerOfNormalBeam(const Medium& medium, std::size_t voxel, int channel)
-{
-  const double sigma_t = static_cast<double>(medium.sigma_a.At(voxel, channel)) + medium.sigma_s.At(voxel, channel);
-  return NearerBy(medium.grid.spacing[0] * sigma_t);
-}
-
 std::size_t VoxelBeyond(const Grid& grid, const std::array<bool, 3>& periodic, std::size_t voxel, std::size_t face)
 {
   const std::size_t axis = face / 2;

@@ -24,9 +24,6 @@ struct Uncollided
   double Nearer(std::size_t voxel, int channel, std::size_t face) const;
 };
 
-/// That distance of a beam along an axis.
-double NearerOfNormalBeam(const Medium& medium, std::size_t voxel, int channel);
-
 constexpr auto Outside = static_cast<std::size_t>(-1); ///< of the box
 
 /// The voxel past a face -x, +x, ... +z of another one, or Outside.

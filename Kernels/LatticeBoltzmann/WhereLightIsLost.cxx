@@ -19,6 +19,18 @@ double MeanOf(double k)
   return k > 1e-6 ? -std::expm1(-k) / k : 1.0 - 0.5 * k;
 }
 
+/// sigma_t times the voxel's edge along an axis.
+double ThicknessOf(const Medium& medium, std::size_t voxel, std::size_t axis, int channel)
+{
+  return medium.grid.spacing[axis] * (medium.sigma_a.At(voxel, channel) + medium.sigma_s.At(voxel, channel));
+}
+
+/// Distance of the mean place where exp(-k x) is lost from the middle, towards where it comes from.
+double NearerBy(double k)
+{
+  return k > 1e-2 ? std::min(0.5 - 1.0 / k + 1.0 / std::expm1(k), 0.5) : k / 12.0;
+}
+
 /// k of a voxel, at most `most`, where the next voxel on the way, `ratio` times as thick, has the part `passes` of its
 /// fluence: exp(-k) MeanOf(ratio k) / MeanOf(k) falls as k grows.
 double FallOff(double passes, double ratio, double most)
@@ -83,8 +95,7 @@ private:
 
   double Thickness(std::size_t voxel, std::size_t axis) const
   {
-    return this->TheMedium.grid.spacing[axis] *
-      (this->TheMedium.sigma_a.At(voxel, this->Channel) + this->TheMedium.sigma_s.At(voxel, this->Channel));
+    return ThicknessOf(this->TheMedium, voxel, axis, this->Channel);
   }
 
   const UncollidedImage& Image;
@@ -94,9 +105,9 @@ private:
 };
 }
 
-double NearerBy(double k)
+double NearerOfNormalBeam(const Medium& medium, std::size_t voxel, int channel)
 {
-  return k > 1e-2 ? std::min(0.5 - 1.0 / k + 1.0 / std::expm1(k), 0.5) : k / 12.0;
+  return NearerBy(ThicknessOf(medium, voxel, 0, channel));
 }
 
 std::vector<float> EstimatedFirstMoments(
