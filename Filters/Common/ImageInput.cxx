@@ -441,7 +441,7 @@ bool AreAroundPoints(vtkAlgorithm* filter, int port, vtkImageData* image, std::v
   return areAround;
 }
 
-vtkSmartPointer<vtkImageData> VoxelsAround(vtkImageData* points)
+vtkSmartPointer<vtkImageData> Halo(vtkImageData* points)
 {
   auto voxels = vtkSmartPointer<vtkImageData>::New();
   int extent[6];

@@ -320,7 +320,7 @@ std::vector<Photon> ShareOfPhotons(Communicator& communicator, vtkPolyData* give
 {
   std::vector<Photon> photons;
   std::uint64_t key = 0;
-  communicator.Together([&] {
+  communicator.Collective([&] {
     photons = ReadPhotons(given, axes);
     key = ContentKeyButFacts(given);
   });

@@ -172,7 +172,7 @@ std::optional<tyndall::Importance> vtkPhotonImportance::FindInPieces(
   vtkSmartPointer<vtkImageData> own;
   tyndall::RefractiveInput read;
   std::shared_ptr<tyndall::Device> device;
-  communicator.Together([&] {
+  communicator.Collective([&] {
     light = this->ReadLight(inputs);
     device = tyndall::FindWithin(this->Within, this->Device, this->MemoryBudget);
     if (pieces.HasOwn())

@@ -319,7 +319,7 @@ bool vtkPhotonMarcher::ReadPiece(tyndall::Communicator& communicator, const tynd
   std::vector<tyndall::Photon> photons =
     tyndall::ShareOfPhotons(communicator, vtkPolyData::GetData(inputs[PhotonsPort]), tyndall::OwnAxesOf(this));
   const bool batches = HaveBatches(communicator, photons);
-  communicator.Together([&] {
+  communicator.Collective([&] {
     piece.photons = std::move(photons);
     if (pieces.HasOwn())
     {
@@ -395,7 +395,7 @@ bool vtkPhotonMarcher::MarchPiece(vtkInformation* request, vtkMultiProcessContro
   }
   this->Kept->Forget();
   std::shared_ptr<tyndall::Device> device;
-  communicator->Together([&] { device = tyndall::FindWithin(this->Within, this->Device, this->MemoryBudget); });
+  communicator->Collective([&] { device = tyndall::FindWithin(this->Within, this->Device, this->MemoryBudget); });
   Marched marched = this->MarchInBlocks(*device, *communicator, pieces.Partition(), piece);
   this->WarnOfBox(inputs, pieces.Partition().whole);
   this->Note(marched);

@@ -253,7 +253,7 @@ bool vtkPhotonReconstruction::ReconstructPiece(vtkInformation* request, vtkMulti
   vtkSmartPointer<vtkImageData> own;
   LightOfImage of;
   std::shared_ptr<tyndall::Device> device;
-  communicator.Together([&] {
+  communicator.Collective([&] {
     if (pieces.HasOwn())
     {
       own = pieces.OwnImage(image);

@@ -105,7 +105,7 @@ vtkIdType FillWithTrees(tyndall::Communicator& communicator, const tyndall::Bloc
   }
   const tyndall::BrickedBytes levels = tyndall::BytesOfBoxes(communicator, partition, octree.levels, wanted);
   double count = 0.0;
-  communicator.Together([&] {
+  communicator.Collective([&] {
     const tyndall::VoxelBox own = roots.Of(partition.blocks[static_cast<std::size_t>(communicator.Rank())]);
     count = static_cast<double>(tyndall::FillWithNodes(roots, own, levels, nodes));
   });
@@ -195,7 +195,7 @@ bool vtkRefractionOctree::BuildPiece(vtkInformation* request, vtkMultiProcessCon
   const tyndall::PieceBlocks& pieces = *agreed->pieces;
   vtkSmartPointer<vtkImageData> own;
   Quantities read;
-  communicator.Together([&] {
+  communicator.Collective([&] {
     own = pieces.HasOwn() ? pieces.OwnImage(image) : nullptr;
     if (own)
     {

@@ -10,7 +10,7 @@ namespace tyndall
 PieceOfMedium::PieceOfMedium(
   Communicator& communicator, const PieceBlocks& pieces, vtkAlgorithm* filter, vtkImageData* given)
 {
-  communicator.Together([&] {
+  communicator.Collective([&] {
     if (pieces.HasOwn())
     {
       this->image = pieces.OwnImage(given);

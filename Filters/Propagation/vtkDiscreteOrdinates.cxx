@@ -93,7 +93,7 @@ tyndall::LightField vtkDiscreteOrdinates::SolvePiece(tyndall::Communicator& comm
 {
   tyndall::KeptLight* const last = this->Last->Where(this->WarmStart && !this->Preview);
   std::shared_ptr<tyndall::Device> device;
-  communicator.Together([&] { device = tyndall::Device::Find(this->GetDevice()); });
+  communicator.Collective([&] { device = tyndall::Device::Find(this->GetDevice()); });
   tyndall::Device within(*device, tyndall::BudgetOf(this->MemoryBudget, false));
   const tyndall::OrdinatesSettings settings = SettingsOn(this, communicator, pieces, piece.medium, *device);
   const tyndall::Monitor monitor = tyndall::MonitorOf(this);
@@ -113,7 +113,7 @@ tyndall::LightField vtkDiscreteOrdinates::SolvePiece(tyndall::Communicator& comm
 int vtkDiscreteOrdinates::RequestData(
   vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs)
 {
-  return this->GiveOrSolve(request, given, outputs, [&](vtkInformationVector** inputs) {
+  return this->UpdateCachedOrSolve(request, given, outputs, [&](vtkInformationVector** inputs) {
     vtkImageData* image = vtkImageData::GetData(inputs[MEDIUM]);
     const tyndall::MediumInput input = tyndall::ReadMedium(this, image);
     const bool emits = input.Emits();

@@ -223,7 +223,7 @@ tyndall::LightField vtkLatticeBoltzmannLighting::SolvePiece(tyndall::Communicato
   const tyndall::LatticeSettings settings = SettingsOf(this);
   tyndall::FloatField ior;
   std::shared_ptr<tyndall::Device> device;
-  communicator.Together([&] {
+  communicator.Collective([&] {
     device = tyndall::Device::Find(this->GetDevice());
     if (piece.image)
     {
@@ -261,7 +261,7 @@ tyndall::LightField vtkLatticeBoltzmannLighting::SolvePiece(tyndall::Communicato
 int vtkLatticeBoltzmannLighting::RequestData(
   vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs)
 {
-  return this->GiveOrSolve(request, given, outputs, [&](vtkInformationVector** inputs) {
+  return this->UpdateCachedOrSolve(request, given, outputs, [&](vtkInformationVector** inputs) {
     tyndall::LightField light = this->Solve(inputs);
     light.settingsUsed = tyndall::Words(SettingsOf(this));
     this->WriteSolved(std::move(light), inputs, outputs);

@@ -171,7 +171,7 @@ namespace
 std::shared_ptr<tyndall::Device> DeviceOnAll(vtkLightPropagationMaps* filter, tyndall::Communicator& communicator)
 {
   std::shared_ptr<tyndall::Device> device;
-  communicator.Together([&] { device = tyndall::Device::Find(filter->GetDevice()); });
+  communicator.Collective([&] { device = tyndall::Device::Find(filter->GetDevice()); });
   return device;
 }
 
@@ -190,7 +190,7 @@ tyndall::LightField SolvePublishedPiece(vtkLightPropagationMaps* filter, tyndall
   tyndall::KeptLight* last)
 {
   std::optional<tyndall::Device> within; // none of the sequential algorithm
-  scene.others.Together([&] {
+  scene.others.Collective([&] {
     CheckTarget(filter);
     if (device)
     {
@@ -216,7 +216,7 @@ tyndall::LightField SolvePublishedPiece(vtkLightPropagationMaps* filter, tyndall
 tyndall::LightField SolvePreviewOfPiece(vtkLightPropagationMaps* filter, const tyndall::SceneInBlocks& scene)
 {
   tyndall::PropagationSolver solve;
-  scene.others.Together([&] { solve = SolverOf(filter, nullptr, nullptr); });
+  scene.others.Collective([&] { solve = SolverOf(filter, nullptr, nullptr); });
   const tyndall::PropagationSettings settings = OfPreview(SettingsOf(filter));
   const tyndall::Monitor monitor = tyndall::MonitorOf(filter);
   tyndall::LightField light = tyndall::SolvePreviewOnFirst(scene, {}, settings,
@@ -267,7 +267,7 @@ std::string vtkLightPropagationMaps::NotInBlocks(const tyndall::PieceOfMedium&, 
   return this->Scheme == PUBLISHED || this->Preview ? std::string() : tyndall::NotInBlocks(SettingsOf(this));
 }
 
-std::string vtkLightPropagationMaps::BetterAsWhole(tyndall::Communicator& communicator,
+std::string vtkLightPropagationMaps::ReasonNotToDecompose(tyndall::Communicator& communicator,
   const tyndall::PieceBlocks& pieces, const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining)
 {
   if (IsPublishedOnAll(this, communicator))
@@ -275,7 +275,7 @@ std::string vtkLightPropagationMaps::BetterAsWhole(tyndall::Communicator& commun
     return {}; // the same light, to rounding
   }
   const std::shared_ptr<tyndall::Device> device = DeviceOnAll(this, communicator);
-  return tyndall::BetterAsWhole(*device, communicator, pieces.Partition(), piece.medium, shining.illumination,
+  return tyndall::ReasonNotToDecompose(*device, communicator, pieces.Partition(), piece.medium, shining.illumination,
     SettingsOn(this, communicator, pieces, piece, shining));
 }
 
@@ -312,7 +312,7 @@ tyndall::LightField vtkLightPropagationMaps::SolvePiece(tyndall::Communicator& c
 int vtkLightPropagationMaps::RequestData(
   vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs)
 {
-  return this->GiveOrSolve(request, given, outputs, [&](vtkInformationVector** inputs) {
+  return this->UpdateCachedOrSolve(request, given, outputs, [&](vtkInformationVector** inputs) {
     vtkImageData* image = vtkImageData::GetData(inputs[MEDIUM]);
     const tyndall::MediumInput input = tyndall::ReadMedium(this, image);
     const bool emits = input.Emits();

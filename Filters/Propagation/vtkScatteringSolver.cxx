@@ -174,7 +174,7 @@ vtkMTimeType vtkScatteringSolver::GetMTime()
   return std::max(this->Superclass::GetMTime(), this->ColorsTime.GetMTime());
 }
 
-int vtkScatteringSolver::GiveOrSolve(vtkInformation* request, vtkInformationVector** given,
+int vtkScatteringSolver::UpdateCachedOrSolve(vtkInformation* request, vtkInformationVector** given,
   vtkInformationVector* outputs, const std::function<void(vtkInformationVector** inputs)>& solve)
 {
   this->WholeFor.clear();
@@ -193,7 +193,7 @@ int vtkScatteringSolver::GiveOrSolve(vtkInformation* request, vtkInformationVect
     if (this->Solved->GiveBack(
           this->Superclass::GetMTime(), tyndall::OwnAxesOf(this), inputs, this->GetNumberOfInputPorts(), outputs))
     {
-      this->HandOn(inputs, outputs);
+      this->CropToRequest(inputs, outputs);
       return;
     }
     this->Note({});
@@ -278,7 +278,7 @@ std::string vtkScatteringSolver::NotOnPiece(const tyndall::PieceBlocks& pieces, 
   return refused;
 }
 
-std::string vtkScatteringSolver::BetterAsWhole(
+std::string vtkScatteringSolver::ReasonNotToDecompose(
   tyndall::Communicator&, const tyndall::PieceBlocks&, const tyndall::PieceOfMedium&, const tyndall::IlluminationInput&)
 {
   return {};
@@ -315,7 +315,7 @@ bool vtkScatteringSolver::GiveOrSolvePiece(vtkInformation* request, vtkMultiProc
   tyndall::IlluminationInput shining;
   std::string refused;
   bool ignoresIndex = false;
-  communicator.Together([&] {
+  communicator.Collective([&] {
     ignoresIndex = this->IgnoresIndexOf(piece.image);
     refused = this->NotOnPiece(pieces, piece, shining, inputs);
     tyndall::Require(refused.empty() || this->Decomposition != BLOCKS,
@@ -328,7 +328,7 @@ bool vtkScatteringSolver::GiveOrSolvePiece(vtkInformation* request, vtkMultiProc
   const bool chooses = !this->Preview && !tyndall::OnAnyRank(communicator, this->Decomposition == BLOCKS);
   if (this->WholeFor.empty() && chooses)
   {
-    this->WholeFor = this->BetterAsWhole(communicator, pieces, piece, shining);
+    this->WholeFor = this->ReasonNotToDecompose(communicator, pieces, piece, shining);
   }
   if (!this->WholeFor.empty())
   {
@@ -397,7 +397,7 @@ void vtkScatteringSolver::WritePiece(tyndall::Communicator& communicator, const 
   pieces.SpreadToHeld(communicator, light.scatteredMoments, static_cast<int>(ofMoments[0]));
   pieces.SpreadToHeld(communicator, light.straightOn, static_cast<int>(ofMoments[1]));
   std::vector<std::string> doubts;
-  communicator.Together([&] {
+  communicator.Collective([&] {
     doubts = Write(this, std::move(light), this->Ignored, vtkImageData::GetData(inputs[MEDIUM]), outputs, &pieces);
   });
   this->WarnOnce(doubts);
@@ -414,7 +414,7 @@ void vtkScatteringSolver::WriteSolved(
   vtkImageData* const medium = vtkImageData::GetData(inputs[MEDIUM]);
   this->WarnOnce(Write(this, std::move(light), this->Ignored, medium, outputs, nullptr));
   this->Solved->Keep(outputs);
-  this->HandOn(inputs, outputs);
+  this->CropToRequest(inputs, outputs);
 }
 
 /// Warns on the first rank alone: the light is that of all.
@@ -448,7 +448,7 @@ void vtkScatteringSolver::ColorPiece(tyndall::Communicator& communicator, const 
   const tyndall::PieceOfMedium piece(communicator, pieces, this, vtkImageData::GetData(inputs[MEDIUM]));
   vtkSmartPointer<vtkImageData> own; // whose array the fluence may be
   tyndall::FloatField fluence;
-  communicator.Together([&] {
+  communicator.Collective([&] {
     if (pieces.HasOwn())
     {
       own = pieces.OwnImage(output);
@@ -467,7 +467,7 @@ void vtkScatteringSolver::ColorPiece(tyndall::Communicator& communicator, const 
 }
 
 /// What is made of the light of the whole image, and the piece that was asked for.
-void vtkScatteringSolver::HandOn(vtkInformationVector** inputs, vtkInformationVector* outputs)
+void vtkScatteringSolver::CropToRequest(vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   vtkImageData* const output = vtkImageData::GetData(outputs, 0);
   if (this->LitColor)

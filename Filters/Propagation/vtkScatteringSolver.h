@@ -176,7 +176,7 @@ protected:
   /// RequestData: gives out the light of the last solve where that is asked for again, or solves, the pieces that ranks
   /// have (Decomposition) or the whole. What fails is one error (Work/GuardedWork.h).
   /// @param solve  is given all inputs as wholes, by port; ends with WriteSolved
-  int GiveOrSolve(vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs,
+  int UpdateCachedOrSolve(vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs,
     const std::function<void(vtkInformationVector** inputs)>& solve);
 
   /// What of a solve is told on the panel; of an empty one before solving, and where it failed.
@@ -192,7 +192,7 @@ protected:
   virtual std::string NotInBlocks(const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining);
   /// What of a scene that pieces can be solved of the whole is solved more exactly or much sooner for, in words that
   /// follow "better for"; empty: nothing is. Not asked of previews. All ranks call it, and are told the same.
-  virtual std::string BetterAsWhole(tyndall::Communicator& communicator, const tyndall::PieceBlocks& pieces,
+  virtual std::string ReasonNotToDecompose(tyndall::Communicator& communicator, const tyndall::PieceBlocks& pieces,
     const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining);
   /// Solves this rank's piece. All ranks call it; none has been refused.
   /// @return the light of the rank's own voxels
@@ -209,7 +209,7 @@ protected:
   virtual bool ReadsQuality() const { return !this->Preview; }
 
   /// Last in RequestData: solved light on output 0 beside the arrays of the medium, its convergence on
-  /// output 1; it is noted, and a warning of each doubt. Kept for GiveOrSolve.
+  /// output 1; it is noted, and a warning of each doubt. Kept for UpdateCachedOrSolve.
   void WriteSolved(tyndall::LightField&& light, vtkInformationVector** inputs, vtkInformationVector* outputs);
 
   int Decomposition = AUTOMATIC_DECOMPOSITION;
@@ -243,7 +243,7 @@ private:
     vtkInformationVector** inputs, vtkInformationVector* outputs);
   tyndall::ToneMapping Tones() const;
   void WarnOnce(const std::vector<std::string>& doubts);
-  void HandOn(vtkInformationVector** inputs, vtkInformationVector* outputs);
+  void CropToRequest(vtkInformationVector** inputs, vtkInformationVector* outputs);
 
   std::unique_ptr<tyndall::LastOutputs> Solved;
   bool SolvedInPieces = false;      ///< that is of this rank's piece

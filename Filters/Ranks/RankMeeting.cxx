@@ -72,7 +72,7 @@ void Collect(vtkMPIController* ranks, double wait, std::vector<Word>& come)
 }
 
 /// The first rank collects who has come, and tells them what it decides.
-Absence Decide(vtkMPIController* ranks, double wait, int filter)
+MissingRank Decide(vtkMPIController* ranks, double wait, int filter)
 {
   std::vector<Word> come(static_cast<std::size_t>(ranks->GetNumberOfProcesses()), Word{ 0, 0 });
   come[0] = { 1, filter };
@@ -81,7 +81,7 @@ Absence Decide(vtkMPIController* ranks, double wait, int filter)
     const auto found = std::find_if(come.begin(), come.end(), isAbsent);
     return found == come.end() ? Nobody : static_cast<int>(found - come.begin());
   };
-  Absence absence{ first([](const Word& word) { return word[0] == 0; }), false };
+  MissingRank absence{ first([](const Word& word) { return word[0] == 0; }), false };
   if (absence.rank == Nobody)
   {
     absence.rank = first([&](const Word& word) { return word[1] != filter; });
@@ -99,7 +99,7 @@ Absence Decide(vtkMPIController* ranks, double wait, int filter)
 }
 
 /// Others come, and wait for what it decides. One that waits no longer says so; what was decided just then counts.
-Absence Come(vtkMPIController* ranks, double wait, int filter)
+MissingRank Come(vtkMPIController* ranks, double wait, int filter)
 {
   static int meetings = 0;
   const Word own = { ++meetings, filter }, withdrawn = { 0, 0 };
@@ -138,7 +138,7 @@ double SecondsToWait()
   return seconds > 0.0 ? std::min(seconds, LongestWait) : UsualWait;
 }
 
-Absence AbsentRank(vtkMultiProcessController* ranks, const char* filter)
+MissingRank FindMissingRank(vtkMultiProcessController* ranks, const char* filter)
 {
 #ifdef TYNDALL_HAS_MPI
   if (auto* const mpi = vtkMPIController::SafeDownCast(ranks))

@@ -51,7 +51,7 @@ public:
   }
 };
 
-vtkInformationIntegerKey* Together()
+vtkInformationIntegerKey* Collective()
 {
   static auto* const key = new TogetherKey; // VTK deletes it
   return key;
@@ -74,7 +74,7 @@ int PiecesAsked(vtkInformation* request, vtkInformationVector* outputs)
 int Asking(vtkInformation* request, vtkInformationVector* outputs)
 {
   vtkInformation* const asking = AskingPort(request, outputs);
-  return asking ? std::max(PiecesAsked(request, outputs), asking->Get(Together())) : 1;
+  return asking ? std::max(PiecesAsked(request, outputs), asking->Get(Collective())) : 1;
 }
 
 /// Makes how one rank ended that of all.
@@ -82,7 +82,7 @@ void EndTogether(Communicator& communicator, const Ending& own)
 {
   try
   {
-    communicator.Together([&] {
+    communicator.Collective([&] {
       Require(own.kind != Ending::InputFailed, "The filter before failed, and says why there.");
       Require(own.kind != Ending::Empty, "The input image is empty.");
       Throw(own);
@@ -194,7 +194,7 @@ void AskTogether(vtkInformation* request, vtkInformationVector* outputs, vtkInfo
   for (int i = 0; i < inputs->GetNumberOfInformationObjects(); ++i)
   {
     vtkInformation* const input = inputs->GetInformationObject(i);
-    input->Set(Together(), asking);
+    input->Set(Collective(), asking);
     // An output with voxels around points, or with axes in another order, is asked for more than its input has.
     const int* const whole = input->Get(Pipeline::WHOLE_EXTENT());
     const int* const asked = input->Get(Pipeline::UPDATE_EXTENT());

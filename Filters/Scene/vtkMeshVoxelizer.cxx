@@ -364,7 +364,7 @@ int vtkMeshVoxelizer::RequestData(vtkInformation* request, vtkInformationVector*
     tyndall::RefractiveMediumSettings settings;
     AskedVoxels asked;
     tyndall::VoxelizedPart part;
-    communicator->Together([&] {
+    communicator->Collective([&] {
       solids = this->ReadSolids(inputs);
       settings = SettingsOf(this, solids);
       asked = VoxelsAskedFor(asking, settings.grid, divided);

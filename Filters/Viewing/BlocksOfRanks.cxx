@@ -40,7 +40,7 @@ OwnAxes AxesOfFirst(Communicator& communicator, vtkImageData* image)
 }
 
 BlocksOfRanks::BlocksOfRanks(Communicator& communicator, vtkImageData* image)
-  : Others(communicator)
+  : Comm(communicator)
   , Rank(static_cast<std::size_t>(communicator.Rank()))
   , Blocks(static_cast<std::size_t>(communicator.Ranks()))
   , AxesOfAll(AxesOfFirst(communicator, image))
@@ -109,7 +109,7 @@ std::optional<BlocksOfRanks::Seen> BlocksOfRanks::Exchange(
   const BlockPixels& own, const PixelRect& wanted, bool failed, const Camera& camera) const
 {
   constexpr std::size_t words = 9;
-  const std::vector<double> said = SaidByAll(this->Others,
+  const std::vector<double> said = SaidByAll(this->Comm,
     { failed ? 1.0 : 0.0, 1.0 * own.rect.begin[0], 1.0 * own.rect.begin[1], 1.0 * own.rect.end[0],
       1.0 * own.rect.end[1], 1.0 * wanted.begin[0], 1.0 * wanted.begin[1], 1.0 * wanted.end[0], 1.0 * wanted.end[1] });
   const auto rectOf = [&](std::size_t rank, std::size_t from) {
@@ -135,7 +135,7 @@ std::optional<BlocksOfRanks::Seen> BlocksOfRanks::Exchange(
       partners.push_back(static_cast<int>(rank));
     }
   }
-  auto arrived = this->Others.Exchange<BlockPixel>(partners, [&] {
+  auto arrived = this->Comm.Exchange<BlockPixel>(partners, [&] {
     std::vector<std::vector<BlockPixel>> parcels;
     for (const int partner : partners)
     {

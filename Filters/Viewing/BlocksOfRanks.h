@@ -63,7 +63,7 @@ public:
 private:
   Seen InOrder(const std::vector<std::size_t>& ranks, std::vector<BlockPixels> pixels, const Camera& camera) const;
 
-  Communicator& Others;
+  Communicator& Comm;
   std::size_t Rank;
   std::vector<GridBlock> Blocks; ///< by rank
   BlockPartition Parts;

@@ -37,14 +37,14 @@ std::unique_ptr<CasterScene> MakeSceneOfBlock(
   const auto rank = static_cast<std::size_t>(communicator.Rank());
   ViewedInputs viewed;
   SharedScene own;
-  communicator.Together([&] {
+  communicator.Collective([&] {
     if (pieces.HasOwn())
     {
       viewed = ReadViewed(pieces.filter, pieces.image, partition.whole);
     }
   });
   AgreeOnMeanCosine(communicator, pieces.HasOwn(), viewed.medium.g, viewed.medium.medium);
-  communicator.Together([&] {
+  communicator.Collective([&] {
     if (pieces.HasOwn())
     {
       own = SharedSceneOf(viewed.medium.medium, viewed.Light(), viewed.ior, pieces.settings);
@@ -75,7 +75,7 @@ std::unique_ptr<CasterScene> MakeSceneOfBlock(
     viewed = SpreadTo(held, given, communicator, partition, pieces.image, viewed);
   }
   std::unique_ptr<CasterScene> scene;
-  communicator.Together([&] {
+  communicator.Collective([&] {
     if (pieces.HasOwn())
     {
       ofScene.block = pieces.blocks.Own();

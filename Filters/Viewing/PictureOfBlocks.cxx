@@ -77,7 +77,7 @@ BlockPixels PictureOfBlocks::CastOwn(double& farDepth) const
   const Picture picture = this->Seen.ofBlock.Take(this->TheCamera, this->Size, MonitorOf(this->Seen.filter));
   farDepth = picture.farDepth;
   BlockPixels own;
-  this->Seen.communicator.Together([&] { own = SeenPart(picture); });
+  this->Seen.communicator.Collective([&] { own = SeenPart(picture); });
   return own;
 }
 
@@ -86,7 +86,7 @@ void PictureOfBlocks::LookAgain(BlockPixels& own) const
 {
   MediumRayCaster* const caster = this->Seen.caster;
   const auto seen = this->Seen.blocks.Exchange(own, own.rect, false, this->TheCamera);
-  this->Seen.communicator.Together([&] {
+  this->Seen.communicator.Collective([&] {
     const Starts starts =
       caster ? StartsBehind(seen->frontToBack, seen->own, this->Size, caster->MinimumTransmittance()) : Starts();
     if (!starts.IsEmpty())

@@ -142,7 +142,7 @@ std::vector<float> SpreadTo(const std::vector<VoxelBox>& wanted, const VoxelBox&
   }
   const VoxelBox& own = partition.blocks[static_cast<std::size_t>(communicator.Rank())];
   std::vector<float> values;
-  communicator.Together([&] {
+  communicator.Collective([&] {
     if (own.VoxelCount() > 0)
     {
       const std::size_t count = given.VoxelCount() * static_cast<std::size_t>(components);
@@ -166,7 +166,7 @@ ViewedInputs SpreadTo(const std::vector<VoxelBox>& wanted, const VoxelBox& given
       *field = FloatField(ArrayOf<vtkFloatArray>("", std::move(values), components));
     }
   }
-  communicator.Together([&] {
+  communicator.Collective([&] {
     if (box.VoxelCount() > 0)
     {
       MediumInput& medium = spread.medium;

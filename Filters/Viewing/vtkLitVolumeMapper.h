@@ -67,7 +67,7 @@ public:
   /// under what the others draw, in the order in which the pieces are seen: the ranks, and this rank's piece with a
   /// layer of its neighbours' cells, flagged as duplicates; the input is the piece without that. Then all ranks have to
   /// call AgreeOnExposure when the medium has changed, and SeePieces before each frame, also those that have no piece.
-  /// Together they show what one mapper would show of the whole.
+  /// Collective they show what one mapper would show of the whole.
   ///
   /// Where rays bend or meet a table, or pieces are no parts of one grid, they cannot: each mapper then shows its piece
   /// alone, radiance divided by alpha, and multiplies the screen's value by alpha, so that there is no seam.

@@ -304,7 +304,7 @@ std::unique_ptr<tyndall::CasterScene> vtkMediumRayCaster::FindSceneOfBlock(
   this->ForgetOldScene();
   tyndall::InputsKey key;
   std::unique_ptr<tyndall::CasterScene> scene;
-  pieces.communicator.Together([&] {
+  pieces.communicator.Collective([&] {
     if (pieces.HasOwn())
     {
       key = this->KeyOf(inputs, Use::Block, &pieces.blocks.Own());
@@ -352,7 +352,7 @@ std::optional<vtkMediumRayCaster::Shot> vtkMediumRayCaster::SeeBlocks(
     return std::nullopt;
   }
   tyndall::Illumination illumination;
-  communicator->Together([&] { illumination = this->ReadIllumination(inputs.Vectors()); });
+  communicator->Collective([&] { illumination = this->ReadIllumination(inputs.Vectors()); });
   const tyndall::RankPieces pieces = { this, *communicator, blocks, image, illumination,
     tyndall::SettingsOf(this, exposure) };
   std::vector<tyndall::VoxelBox> held;
@@ -384,7 +384,7 @@ std::optional<vtkMediumRayCaster::Shot> vtkMediumRayCaster::SeeBlocks(
   return shot;
 }
 
-void vtkMediumRayCaster::HandOn(Shot&& shot, vtkInformationVector* outputs)
+void vtkMediumRayCaster::CropToRequest(Shot&& shot, vtkInformationVector* outputs)
 {
   tyndall::ToneMapping toneMapping;
   toneMapping.exposure = shot.exposure;
@@ -439,7 +439,7 @@ int vtkMediumRayCaster::RequestData(
     {
       this->FirstExposure = this->AutoExposure == FIRST_PICTURE ? shot->exposure : 0.0;
     }
-    this->HandOn(std::move(*shot), outputs);
+    this->CropToRequest(std::move(*shot), outputs);
   };
   return tyndall::GuardedInPieces(this, request, given, outputs, MEDIUM, work);
 }
@@ -462,7 +462,7 @@ bool vtkMediumRayCaster::See(const tyndall::AskedView& view, tyndall::Picture& p
       vtkSmartPointer<vtkImageData> voxels = block ? vtkSmartPointer<vtkImageData>(image) : tyndall::Aligned(image);
       axes = tyndall::OwnAxesOf(voxels.GetPointer());
       voxels = tyndall::InOwnAxes(voxels, axes, this, MEDIUM);
-      voxels = !block && tyndall::AreAroundPoints(this, MEDIUM, voxels) ? tyndall::VoxelsAround(voxels) : voxels;
+      voxels = !block && tyndall::AreAroundPoints(this, MEDIUM, voxels) ? tyndall::Halo(voxels) : voxels;
       const vtkNew<vtkInformation> asVoxels;
       asVoxels->Set(vtkDataObject::DATA_OBJECT(), voxels);
       medium->Append(asVoxels);

@@ -379,7 +379,7 @@ private:
     const tyndall::RankPieces& pieces, vtkInformationVector** inputs, std::vector<tyndall::VoxelBox>& held);
   std::optional<Shot> SeeBlocks(
     vtkMultiProcessController* ranks, tyndall::WholeInputs& inputs, double exposure, const std::array<int, 6>& asked);
-  void HandOn(Shot&& shot, vtkInformationVector* outputs);
+  void CropToRequest(Shot&& shot, vtkInformationVector* outputs);
 
   int Quality = USUAL;
   int ImageSize[2];

@@ -121,7 +121,7 @@ bool IsKnownToMiss(vtkAlgorithm* filter, const LastFailure& last)
 }
 
 /// That a rank does not come, or came to another filter: nobody waits for it twice.
-void FailWithout(const Absence& absence, vtkAlgorithm* filter, vtkInformationVector* outputs, LastFailure& last)
+void FailWithout(const MissingRank& absence, vtkAlgorithm* filter, vtkInformationVector* outputs, LastFailure& last)
 {
   EmptyWithout(outputs);
   if (absence.elsewhere)
@@ -161,7 +161,8 @@ int GuardedOn(vtkMultiProcessController* ranks, vtkAlgorithm* filter, vtkInforma
     EmptyWithout(outputs);
     return 1;
   }
-  if (const Absence absence = ranks ? AbsentRank(ranks, filter->GetClassName()) : Absence(); absence.rank >= 0)
+  if (const MissingRank absence = ranks ? FindMissingRank(ranks, filter->GetClassName()) : MissingRank();
+      absence.rank >= 0)
   {
     FailWithout(absence, filter, outputs, last);
     return 1;

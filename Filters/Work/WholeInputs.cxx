@@ -44,7 +44,7 @@ constexpr Extent NoExtent = { 0, -1, 0, -1, 0, -1 };
 }
 
 /// What ranks tell each other of what one connection gave them.
-struct Glance
+struct InputSummary
 {
   bool isThere = false; ///< with any value
   bool isImage = false;
@@ -58,10 +58,10 @@ struct Glance
 };
 
 /// Of all connections of a rank, and what it is asked for.
-struct RankGlance
+struct RankSummary
 {
   std::vector<int> connections; ///< of each port
-  std::vector<Glance> inputs;
+  std::vector<InputSummary> inputs;
   std::vector<Extent> asked; ///< of each output
 };
 
@@ -91,9 +91,9 @@ std::string ActiveName(vtkDataSetAttributes* attributes)
 }
 
 /// All but the key.
-Glance GlanceAt(vtkInformation* connection)
+InputSummary Summarize(vtkInformation* connection)
 {
-  Glance glance;
+  InputSummary glance;
   vtkDataObject* const data = vtkDataObject::GetData(connection);
   auto* const image = vtkImageData::SafeDownCast(data);
   glance.isImage = image != nullptr;
@@ -125,11 +125,11 @@ vtkMultiProcessStream& operator>>(vtkMultiProcessStream& stream, Extent& extent)
   return stream;
 }
 
-void Write(const RankGlance& rank, vtkMultiProcessStream& stream)
+void Write(const RankSummary& rank, vtkMultiProcessStream& stream)
 {
   stream << static_cast<int>(rank.connections.size());
   std::for_each(rank.connections.begin(), rank.connections.end(), [&](int count) { stream << count; });
-  for (const Glance& glance : rank.inputs)
+  for (const InputSummary& glance : rank.inputs)
   {
     stream << static_cast<int>(glance.isThere) << static_cast<int>(glance.isImage) << glance.extent << glance.whole
            << static_cast<int>(glance.key >> 32) << static_cast<int>(glance.key & 0xFFFFFFFFu) << glance.active[0]
@@ -140,9 +140,9 @@ void Write(const RankGlance& rank, vtkMultiProcessStream& stream)
   std::for_each(rank.asked.begin(), rank.asked.end(), [&](const Extent& extent) { stream << extent; });
 }
 
-RankGlance Read(vtkMultiProcessStream& stream)
+RankSummary Read(vtkMultiProcessStream& stream)
 {
-  RankGlance rank;
+  RankSummary rank;
   int count = 0, inputs = 0;
   stream >> count;
   rank.connections.resize(static_cast<std::size_t>(count));
@@ -152,7 +152,7 @@ RankGlance Read(vtkMultiProcessStream& stream)
     inputs += connections;
   }
   rank.inputs.resize(static_cast<std::size_t>(inputs));
-  for (Glance& glance : rank.inputs)
+  for (InputSummary& glance : rank.inputs)
   {
     int isThere = 0, isImage = 0, high = 0, low = 0, aroundPoints = 0, changes = 0;
     stream >> isThere >> isImage >> glance.extent >> glance.whole >> high >> low >> glance.active[0] >>
@@ -170,11 +170,11 @@ RankGlance Read(vtkMultiProcessStream& stream)
 }
 
 /// The same connection on all ranks.
-using OnRanks = std::vector<Glance>;
+using OnRanks = std::vector<InputSummary>;
 
 bool Alike(const OnRanks& glances)
 {
-  return std::all_of(glances.begin(), glances.end(), [&](const Glance& glance) {
+  return std::all_of(glances.begin(), glances.end(), [&](const InputSummary& glance) {
     return glance.isThere == glances[0].isThere && glance.key == glances[0].key && glance.extent == glances[0].extent;
   });
 }
@@ -237,7 +237,8 @@ vtkSmartPointer<vtkDataObject> WholeImageOf(
   }
   AddHidden(whole->GetCellData(), gathered.HiddenCells());
   AddHidden(whole->GetPointData(), gathered.HiddenPoints());
-  const auto first = std::find_if(glances.begin(), glances.end(), [](const Glance& glance) { return glance.isThere; });
+  const auto first =
+    std::find_if(glances.begin(), glances.end(), [](const InputSummary& glance) { return glance.isThere; });
   whole->GetCellData()->SetActiveScalars(first->active[0].c_str());
   whole->GetPointData()->SetActiveScalars(first->active[1].c_str());
   return whole;
@@ -257,10 +258,10 @@ std::string Words(const Extent& extent)
 /// one rank alone has gives it the piece that it is asked for, and nobody the others.
 void CheckExtent(const OnRanks& glances, const std::string& named)
 {
-  const auto isPiece = [](const Glance& glance) { return glance.isThere && glance.isImage; };
+  const auto isPiece = [](const InputSummary& glance) { return glance.isThere && glance.isImage; };
   const auto first = std::find_if(glances.begin(), glances.end(), isPiece);
   const bool oneExtent = std::all_of(glances.begin(), glances.end(),
-    [&](const Glance& glance) { return !isPiece(glance) || glance.whole == first->whole; });
+    [&](const InputSummary& glance) { return !isPiece(glance) || glance.whole == first->whole; });
   if (first == glances.end() || !oneExtent || PointBoxOf(first->whole).Count() == 0)
   {
     return;
@@ -291,10 +292,10 @@ void CheckExtent(const OnRanks& glances, const std::string& named)
 vtkSmartPointer<vtkDataObject> FromOneRank(
   vtkMultiProcessController* ranks, vtkDataObject* own, const OnRanks& glances, const std::string& named)
 {
-  const auto hasAny = [](const Glance& glance) { return glance.isThere; };
+  const auto hasAny = [](const InputSummary& glance) { return glance.isThere; };
   const auto first = std::find_if(glances.begin(), glances.end(), hasAny);
   const auto other = std::find_if(
-    first + 1, glances.end(), [&](const Glance& glance) { return glance.isThere && glance.key != first->key; });
+    first + 1, glances.end(), [&](const InputSummary& glance) { return glance.isThere && glance.key != first->key; });
   if (other != glances.end())
   {
     throw InvalidInput(named + " is different on ranks " + std::to_string(first - glances.begin()) + " and " +
@@ -344,13 +345,14 @@ vtkSmartPointer<vtkDataObject> AllShares(vtkMultiProcessController* ranks, vtkDa
 vtkSmartPointer<vtkDataObject> WholeOf(
   vtkMultiProcessController* ranks, vtkDataObject* own, const OnRanks& glances, const std::string& named)
 {
-  const bool any = std::any_of(glances.begin(), glances.end(), [](const Glance& glance) { return glance.isThere; });
+  const bool any =
+    std::any_of(glances.begin(), glances.end(), [](const InputSummary& glance) { return glance.isThere; });
   if (!any || Alike(glances))
   {
     return own;
   }
-  const bool images =
-    std::any_of(glances.begin(), glances.end(), [](const Glance& glance) { return glance.isThere && glance.isImage; });
+  const bool images = std::any_of(
+    glances.begin(), glances.end(), [](const InputSummary& glance) { return glance.isThere && glance.isImage; });
   if (!images)
   {
     return FromOneRank(ranks, own, glances, named);
@@ -367,7 +369,7 @@ void RequireAll(vtkAlgorithm* filter, vtkInformationVector** given)
   {
     for (int i = 0; i < given[port]->GetNumberOfInformationObjects(); ++i)
     {
-      const Glance glance = GlanceAt(given[port]->GetInformationObject(i));
+      const InputSummary glance = Summarize(given[port]->GetInformationObject(i));
       ValueBox both = PointBoxOf(glance.extent);
       both.Add(PointBoxOf(glance.whole));
       Require(!glance.isImage || !glance.isThere || both.Count() == PointBoxOf(glance.extent).Count(),
@@ -427,8 +429,8 @@ bool IsIn(const Extent& points, const std::array<int, 3>& at)
 /// duplicates.
 vtkSmartPointer<vtkImageData> VoxelsOfPiece(vtkImageData* piece, const OnRanks& glances, int rank)
 {
-  const vtkSmartPointer<vtkImageData> voxels = VoxelsAround(piece);
-  if (Alike(glances) || std::all_of(glances.begin(), glances.end(), [&](const Glance& glance) {
+  const vtkSmartPointer<vtkImageData> voxels = Halo(piece);
+  if (Alike(glances) || std::all_of(glances.begin(), glances.end(), [&](const InputSummary& glance) {
         return !glance.isThere || glance.points == glances[static_cast<std::size_t>(rank)].extent;
       })) // each has all
   {
@@ -449,7 +451,7 @@ vtkSmartPointer<vtkImageData> VoxelsOfPiece(vtkImageData* piece, const OnRanks& 
         bool duplicate = !IsIn(glances[static_cast<std::size_t>(rank)].points, at);
         for (int lower = 0; lower < rank && !duplicate; ++lower)
         {
-          const Glance& other = glances[static_cast<std::size_t>(lower)];
+          const InputSummary& other = glances[static_cast<std::size_t>(lower)];
           duplicate = other.isThere && IsIn(other.points, at);
         }
         const unsigned char kept = given ? given->GetValue(flags->GetNumberOfValues()) : 0;
@@ -466,16 +468,16 @@ vtkSmartPointer<vtkImageData> VoxelsOfPiece(vtkImageData* piece, const OnRanks& 
   return voxels;
 }
 
-RankGlance GlanceAtAll(vtkAlgorithm* filter, vtkInformationVector** given, vtkInformationVector* outputs, int inShares)
+RankSummary GlanceAtAll(vtkAlgorithm* filter, vtkInformationVector** given, vtkInformationVector* outputs, int inShares)
 {
-  RankGlance rank;
+  RankSummary rank;
   for (int port = 0; port < filter->GetNumberOfInputPorts(); ++port)
   {
     rank.connections.push_back(given[port]->GetNumberOfInformationObjects());
     for (int i = 0; i < rank.connections.back(); ++i)
     {
       vtkInformation* const connection = given[port]->GetInformationObject(i);
-      rank.inputs.push_back(GlanceAt(connection));
+      rank.inputs.push_back(Summarize(connection));
       vtkDataObject* const data = vtkDataObject::GetData(connection);
       rank.inputs.back().key = port == inShares ? ContentKeyButFacts(data) : ContentKey(data);
       auto* const image = vtkImageData::SafeDownCast(data);
@@ -493,13 +495,13 @@ RankGlance GlanceAtAll(vtkAlgorithm* filter, vtkInformationVector** given, vtkIn
   return rank;
 }
 
-std::vector<RankGlance> Share(vtkMultiProcessController* ranks, const RankGlance& own)
+std::vector<RankSummary> Share(vtkMultiProcessController* ranks, const RankSummary& own)
 {
   vtkMultiProcessStream stream;
   Write(own, stream);
   std::vector<vtkMultiProcessStream> streams;
   ranks->AllGather(stream, streams);
-  std::vector<RankGlance> all;
+  std::vector<RankSummary> all;
   for (std::size_t rank = 0; rank < streams.size(); ++rank)
   {
     all.push_back(Read(streams[rank]));
@@ -510,12 +512,12 @@ std::vector<RankGlance> Share(vtkMultiProcessController* ranks, const RankGlance
 }
 
 /// What ranks were given by one of a port's connections.
-OnRanks GlancesOf(const std::vector<RankGlance>& all, int port, int connection)
+OnRanks GlancesOf(const std::vector<RankSummary>& all, int port, int connection)
 {
   const std::vector<int>& connections = all[0].connections;
   const int before = std::accumulate(connections.begin(), connections.begin() + port, 0);
   OnRanks glances;
-  for (const RankGlance& of : all)
+  for (const RankSummary& of : all)
   {
     glances.push_back(of.inputs[static_cast<std::size_t>(before + connection)]);
   }
@@ -533,15 +535,15 @@ Extent Around(Extent points)
 }
 
 /// Where ranks are asked for parts of their own, as those of sources that know no other.
-void NoteParts(const std::vector<RankGlance>& all, int rank, vtkInformationVector* outputs)
+void NoteParts(const std::vector<RankSummary>& all, int rank, vtkInformationVector* outputs)
 {
   for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
   {
     std::vector<Extent> parts;
-    for (const RankGlance& of : all)
+    for (const RankSummary& of : all)
     {
       parts.push_back(of.asked[static_cast<std::size_t>(port)]);
-      const Glance medium = of.inputs.empty() ? Glance() : of.inputs.front();
+      const InputSummary medium = of.inputs.empty() ? InputSummary() : of.inputs.front();
       if (medium.aroundPoints &&
         parts.back() == medium.whole) // as told before it was known that voxels are around points
       {
@@ -559,7 +561,7 @@ struct WholeInputs::Seen
   vtkMultiProcessController* ranks;
   int inPieces, inShares;
   std::vector<int> alsoInPieces;
-  std::vector<RankGlance> all;
+  std::vector<RankSummary> all;
 };
 
 namespace
@@ -609,12 +611,12 @@ WholeInputs::WholeInputs(vtkMultiProcessController* ranks, vtkAlgorithm* filter,
     {
       this->Change(port, [&](int, vtkDataObject* data) -> vtkSmartPointer<vtkDataObject> {
         auto* const image = vtkImageData::SafeDownCast(data);
-        return AreAroundPoints(filter, port, image) ? VoxelsAround(image).GetPointer() : data;
+        return AreAroundPoints(filter, port, image) ? Halo(image).GetPointer() : data;
       });
     }
     return;
   }
-  RankGlance own;
+  RankSummary own;
   OnAllRanks(ranks, [&] { own = GlanceAtAll(filter, aligned.data(), outputs, inShares); });
   this->AllSeen = std::make_unique<Seen>(Seen{ ranks, inPieces, inShares, alsoInPieces, Share(ranks, own) });
   NoteParts(this->AllSeen->all, ranks->GetLocalProcessId(), outputs);
@@ -801,11 +803,11 @@ void WholeInputs::MakeWhole(int port)
     vtkSmartPointer<vtkDataObject> whole =
       port == seen.inShares ? AllShares(seen.ranks, data, glances) : WholeOf(seen.ranks, data, glances, Named(port));
     const bool around =
-      std::any_of(glances.begin(), glances.end(), [](const Glance& glance) { return glance.aroundPoints; });
+      std::any_of(glances.begin(), glances.end(), [](const InputSummary& glance) { return glance.aroundPoints; });
     auto* const image = vtkImageData::SafeDownCast(whole);
     if (around && image && image->GetNumberOfPoints() > 0)
     {
-      whole = VoxelsAround(image);
+      whole = Halo(image);
     }
     return whole;
   });

@@ -64,7 +64,7 @@ void ChannelArrays::TakeVacuumApart(PropagationSettings settings)
   }
   settings.netFlux = true; // it tells which way light goes that is scattered
   bool any = false;
-  this->Scene.Together([&] {
+  this->Scene.Collective([&] {
     this->OfVacuum = VacuumEmission::DirectionsFor(whole, settings);
     for (std::size_t i = 0; i < this->Voxels; ++i)
     {
@@ -107,7 +107,7 @@ void ChannelArrays::AddLamps(
   }
   std::optional<LampScattering> scattering;
   Buffer<float> sigma_t, sigma_s, path;
-  this->Scene.Together([&] {
+  this->Scene.Collective([&] {
     scattering.emplace(this->TheDevice, this->Layout.grid, this->Angles.groups, this->Angles.function);
     sigma_t = this->Load("sigma_t", 1.0, 1.0);
     sigma_s = this->Load("sigma_s", 0.0, 1.0);
@@ -128,14 +128,14 @@ void ChannelArrays::AddLamps(
   const double all = static_cast<double>(this->Scene.lamps.size() + (this->OfVacuum ? 1 : 0));
   for (std::size_t i = 0; i < this->Scene.lamps.size(); ++i)
   {
-    this->Scene.Together([&] { path.Fill(0.0f); });
+    this->Scene.Collective([&] { path.Fill(0.0f); });
     const Monitor ofLamp = OfPart(monitor, i / all, (i + 1) / all);
     this->CountLamp(UncollidedLamp(this->Scene.lamps[i]).AddTo(volumeHere(), ofLamp), result.ledger);
-    this->Scene.Together([&] { scattering->Add(this->Scene.lamps[i], path, sigma_s, target); });
+    this->Scene.Collective([&] { scattering->Add(this->Scene.lamps[i], path, sigma_s, target); });
   }
   if (this->OfVacuum)
   {
-    this->Scene.Together([&] { path.Fill(0.0f); });
+    this->Scene.Collective([&] { path.Fill(0.0f); });
     const Monitor ofVacuum = OfPart(monitor, (all - 1.0) / all, 1.0);
     this->CountLamp(this->AddVacuum(volumeHere(), *scattering, sigma_s, target, ofVacuum), result.ledger);
   }
@@ -152,7 +152,7 @@ SweepTally ChannelArrays::AddVacuum(UncollidedVolume volume, const LampScatterin
 {
   Buffer<float> flux;
   std::optional<VacuumEmission> emission;
-  this->Scene.Together([&] {
+  this->Scene.Collective([&] {
     flux = Buffer<float>(this->TheDevice, this->Layout.Floats(3), "the net flux of what empty voxels emit");
     flux.Fill(0.0f);
     emission.emplace(
@@ -160,7 +160,7 @@ SweepTally ChannelArrays::AddVacuum(UncollidedVolume volume, const LampScatterin
   });
   volume.deposit.flux = &flux;
   const SweepTally tally = emission->AddTo(volume, monitor);
-  this->Scene.Together([&] {
+  this->Scene.Collective([&] {
     const std::vector<float> paths = volume.deposit.path->Read(), fluxes = flux.Read();
     std::vector<float> ways(3 * this->Voxels + 1, 0.0f);
     for (std::size_t i = 0; i < 3 * this->Voxels; ++i)
@@ -181,7 +181,7 @@ std::unique_ptr<SweepOperator> ChannelArrays::SweepOf(
     return SweepOfDevice(this->TheDevice, this->Layout, sigma_t, periodic, request, this->Workspace);
   }
   std::unique_ptr<SweepOperator> sweep;
-  this->Scene.Together([&] {
+  this->Scene.Collective([&] {
     sweep = std::make_unique<SweepInBlocks>(this->TheDevice, this->Scene.ranks->others, this->Scene.ranks->partition,
       this->Layout, sigma_t, periodic, request, this->BlocksWorkspace);
   });
@@ -194,7 +194,7 @@ void ChannelArrays::SpreadOverRanks(UncollidedVolume& volume, std::unique_ptr<La
 {
   const OrdinatesRanks& ranks = *this->Scene.ranks;
   volume.whole = &ranks.partition.whole;
-  volume.together = [&ranks](const std::function<void()>& work) { ranks.others.Together(work); };
+  volume.together = [&ranks](const std::function<void()>& work) { ranks.others.Collective(work); };
   volume.followLamp = [this, &ranks, &nearLamps, periodic = volume.periodic, &sigma_t = volume.sigma_t](
                         const SweepVolume& ofChannels, const tyndall::Light& lamp, const Monitor& monitor) {
     if (!nearLamps)
@@ -214,7 +214,7 @@ void ChannelArrays::AddGiven(
 {
   UncollidedImage image = this->Scene.uncollided;
   const double size = this->Layout.grid.VoxelVolume();
-  this->Scene.Together([&] {
+  this->Scene.Collective([&] {
     const Buffer<float> path = PlanarOnDevice(
       this->TheDevice, this->Layout, 1,
       [&](std::size_t i, int) { return static_cast<float>(size * image.fluence.At(i, this->Scene.channel)); },
@@ -288,7 +288,7 @@ void ChannelArrays::ScatterEvenly(const std::vector<float>& values, double facto
 void ChannelArrays::EmitEvenly(const Buffer<float>& source, EnergyLedger& ledger) const
 {
   double sum = 0.0;
-  this->Scene.Together([&] {
+  this->Scene.Collective([&] {
     std::vector<float> emission(this->Voxels);
     for (std::size_t i = 0; i < this->Voxels; ++i)
     {

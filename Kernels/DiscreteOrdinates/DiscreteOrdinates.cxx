@@ -100,7 +100,7 @@ LightField SolveDiscreteOrdinates(Device& device, const Medium& medium, const Il
     light.leftOut.push_back("orders: those after " + std::to_string(settings.seriesAfter) + " are a geometric series");
   }
   problem.Undo(light);
-  DoubtGivenLight(illumination, light);
+  WarnAboutInputLight(illumination, light);
   return light;
 }
 }

@@ -61,7 +61,10 @@ struct OrdinatesScene
     return this->ranks ? this->ranks->others.Sum(own) : own;
   }
   /// What may fail on one rank (Communicator.h).
-  void Together(const std::function<void()>& work) const { this->ranks ? this->ranks->others.Together(work) : work(); }
+  void Collective(const std::function<void()>& work) const
+  {
+    this->ranks ? this->ranks->others.Collective(work) : work();
+  }
 };
 
 /// Directions and how light is scattered between them.

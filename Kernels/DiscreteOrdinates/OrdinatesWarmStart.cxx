@@ -37,7 +37,7 @@ OrdinatesGuess OrdinatesWarmStart::Begin(
   else
   {
     why = WhyNotBegunOnAny(ranks->others, *this->Kept, why);
-    ranks->others.Together([&] { guess = this->GuessOf(channel, why.empty()); });
+    ranks->others.Collective([&] { guess = this->GuessOf(channel, why.empty()); });
   }
   this->WhyNot = this->WhyNot.empty() ? why : this->WhyNot;
   return guess;

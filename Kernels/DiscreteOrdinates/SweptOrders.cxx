@@ -68,11 +68,11 @@ public:
       const double done = this->Settings.maximumOrders > 0
         ? static_cast<double>(this->Record.All().size()) / this->Settings.maximumOrders
         : std::log(residual) / std::log(std::min(this->Settings.tolerance, 0.5));
-      this->Scene.Together([&] { Report(monitor, std::clamp(0.1 + 0.9 * done, 0.1, 0.99)); });
+      this->Scene.Collective([&] { Report(monitor, std::clamp(0.1 + 0.9 * done, 0.1, 0.99)); });
       this->Order(
         monitor ? Monitor([&](double) { return monitor(std::clamp(0.1 + 0.9 * done, 0.1, 0.99)); }) : Monitor());
     }
-    this->Scene.Together([&] { this->Finish(); });
+    this->Scene.Collective([&] { this->Finish(); });
     return std::move(this->Result);
   }
 
@@ -83,7 +83,7 @@ private:
   void FirstOrder(const Monitor& monitor)
   {
     const bool swept = this->Scene.incoming || this->Arrays.Emits() || !this->Settings.leaveOut;
-    this->Scene.Together([&] { this->Radiance.Fill(0.0f); });
+    this->Scene.Collective([&] { this->Radiance.Fill(0.0f); });
     if (this->Arrays.Emits())
     {
       this->Arrays.EmitEvenly(this->Radiance, this->Result.ledger);
@@ -92,7 +92,7 @@ private:
     {
       this->SweepAndScatter(this->Scene.incoming, OfPart(monitor, 0.0, 0.5));
     }
-    this->Scene.Together([&] {
+    this->Scene.Collective([&] {
       if (swept)
       {
         this->Result.direct = this->Arrays.Light.order.Read();
@@ -103,7 +103,7 @@ private:
     });
     this->Arrays.AddLamps(this->Out(), this->Settings.periodic, this->Result, OfPart(monitor, 0.5, 1.0));
     std::vector<float> lamps;
-    this->Scene.Together([&] { lamps = this->Arrays.Direct.Read(); });
+    this->Scene.Collective([&] { lamps = this->Arrays.Direct.Read(); });
     const ChannelArrays::Powers unscattered = this->Arrays.PowersOf(this->Result.direct, false);
     const ChannelArrays::Powers ofLamps = this->Arrays.PowersOf(lamps, true);
     this->Count(unscattered, ofLamps);
@@ -126,7 +126,7 @@ private:
     }
     const double before = this->Scene.guess.firstScattered;
     const double scale = before > 0.0 ? this->Result.firstScattered / before : 0.0;
-    this->Scene.Together([&] {
+    this->Scene.Collective([&] {
       for (float value : this->Scene.guess.values)
       {
         this->Guess.push_back(static_cast<float>(scale * value));
@@ -141,7 +141,7 @@ private:
   {
     this->SweepAndScatter({}, monitor);
     std::vector<float> found;
-    this->Scene.Together([&] { found = this->Arrays.Light.order.Read(); });
+    this->Scene.Collective([&] { found = this->Arrays.Light.order.Read(); });
     const ChannelArrays::Powers powers = this->Arrays.PowersOf(found, false);
     if (!this->IsWarm())
     {
@@ -152,11 +152,11 @@ private:
     if (!this->Guess.empty())
     {
       guessed = this->Arrays.PowersOf(this->Guess, false).scattered;
-      this->Scene.Together([&] { this->Arrays.ScatterEvenly(this->Guess, -1.0, this->Out()); });
+      this->Scene.Collective([&] { this->Arrays.ScatterEvenly(this->Guess, -1.0, this->Out()); });
     }
     this->Reflect();
     this->Result.ledger.Absorb(0, powers.absorbed);
-    this->Result.ledger.LeaveOver(
+    this->Result.ledger.SetUnaccounted(
       0, powers.scattered - guessed + this->OnTheWay + this->Reflected + this->Arrays.Stranded());
     const double reflected = this->Arrays.Faces ? this->Arrays.Faces->Magnitude()[0] : 0.0;
     this->GoesOn = GoesOnToItsEnd(this->Settings.maximumOrders, std::abs(this->WasOnTheWay), std::abs(this->OnTheWay),
@@ -220,13 +220,13 @@ private:
     this->WasOnTheWay = std::exchange(this->OnTheWay, powers.onTheWay);
     if (this->Arrays.Scatters() || !this->Settings.leaveOut)
     {
-      this->Scene.Together([&] {
+      this->Scene.Collective([&] {
         this->Scattering.Scatter(
           this->Radiance, this->Arrays.SigmaS, this->Out(), this->Arrays.Scale, this->Arrays.Light, monitor);
       });
       return;
     }
-    this->Scene.Together([&] {
+    this->Scene.Collective([&] {
       this->Scattering.Gather(this->Radiance, this->Arrays.Light, monitor);
       this->Radiance.Fill(0.0f); // only what goes round periodic axes is left
       this->Source.Fill(0.0f);
@@ -241,7 +241,7 @@ private:
       return;
     }
     std::array<Rgb, 6> back = {};
-    this->Scene.Together([&] { back = this->Arrays.Faces->Reflect(); });
+    this->Scene.Collective([&] { back = this->Arrays.Faces->Reflect(); });
     this->Reflected = 0.0;
     for (int face = 0; face < 6; ++face)
     {
@@ -256,7 +256,7 @@ private:
     this->Result.ledger.Absorb(0, swept.absorbed + ofLamps.absorbed);
     const double others = swept.scattered + ofLamps.scattered + this->Reflected;
     this->GoesOn = GoesOnToItsEnd(this->Settings.maximumOrders, this->WasOnTheWay, this->OnTheWay, others);
-    this->Result.ledger.LeaveOver(0, others + this->OnTheWay + this->Arrays.Stranded());
+    this->Result.ledger.SetUnaccounted(0, others + this->OnTheWay + this->Arrays.Stranded());
     this->Record.Add(this->GoesOn, this->Result.ledger);
   }
 
@@ -296,7 +296,7 @@ OrdinatesResult SolveSweptOrders(Device& device, const OrdinatesScene& scene, co
   const OrdinatesSettings& settings, const Monitor& monitor)
 {
   std::unique_ptr<SweptOrders> orders;
-  scene.Together([&] { orders = std::make_unique<SweptOrders>(device, scene, angles, settings); });
+  scene.Collective([&] { orders = std::make_unique<SweptOrders>(device, scene, angles, settings); });
   return orders->Run(monitor);
 }
 

@@ -24,7 +24,7 @@ public:
   {
   }
 
-  Communicator& Others() const { return this->TheCommunicator; }
+  Communicator& Comm() const { return this->TheCommunicator; }
   const BlockPartition& Fine() const { return this->FinePartition; }
   const BlockPartition& Coarse() const { return this->CoarsePartition; }
   /// Of the whole grids.

@@ -20,7 +20,7 @@ namespace
 enum class Trouble : char
 {
   None,
-  OfOthers, ///< NothingCame
+  OfOthers, ///< MissingMessage
   Stopped,  ///< Aborted
   OfInput,  ///< InvalidInput
   OfDevice,
@@ -43,7 +43,7 @@ Outcome Try(const std::function<void()>& work)
   {
     work();
   }
-  catch (const NothingCame& error)
+  catch (const MissingMessage& error)
   {
     outcome = { Trouble::OfOthers, error.what(), std::current_exception() };
   }
@@ -193,7 +193,7 @@ std::vector<char> Communicator::Agree(const std::vector<char>& own)
   return worst;
 }
 
-void Communicator::Together(const std::function<void()>& work)
+void Communicator::Collective(const std::function<void()>& work)
 {
   const Outcome own = Try(work);
   if (this->Ranks() == 1)

@@ -43,7 +43,7 @@ public:
   /// To each of some ranks a parcel of values, and from each of them one; parcels may be empty. All ranks call it,
   /// those that have nobody to exchange with as well; a rank names all that name it.
   /// @param with  different ranks; this one may be among them
-  /// @param pack  makes the parcels, one for each of `with`. Where it throws on one rank, it does on all (Together),
+  /// @param pack  makes the parcels, one for each of `with`. Where it throws on one rank, it does on all (Collective),
   ///   and nothing is sent
   /// @return by the ranks of `with`, whatever comes first
   template <class T>
@@ -51,7 +51,7 @@ public:
     const std::vector<int>& with, const std::function<std::vector<std::vector<T>>()>& pack)
   {
     std::vector<std::vector<char>> bytes;
-    this->Together([&] {
+    this->Collective([&] {
       std::vector<std::vector<T>> parcels = pack();
       for (std::vector<T>& parcel : parcels)
       {
@@ -80,7 +80,7 @@ public:
   /// where the worst went wrong (an abort is no error), with its number where it is not the same on all. All ranks call
   /// it; what they send each other in `work` they must send although something has gone wrong (SweepInBlocks.cxx does).
   /// @throws Aborted where a rank was, InvalidInput, DeviceError and others likewise
-  void Together(const std::function<void()>& work);
+  void Collective(const std::function<void()>& work);
 
   const Traffic& Sent() const { return this->Counted; }
 

@@ -50,7 +50,7 @@ std::array<int, 3> PeriodsOf(const VoxelBox& box, const std::array<int, 3>& grid
 
 GhostCells::GhostCells(Communicator& communicator, const std::vector<VoxelBox>& own,
   const std::vector<std::vector<VoxelBox>>& ghosts, const VoxelBox& held, const std::array<int, 3>& gridSize)
-  : Others(communicator)
+  : Comm(communicator)
 {
   const int self = communicator.Rank();
   const auto shared = [&](int owner, int holder, int other) {
@@ -93,11 +93,11 @@ void GhostCells::Exchange(Value* values, int arrays, std::size_t stride) const
       std::transform(owned.places.begin(), owned.places.end(), std::back_inserter(message),
         [from](std::size_t place) { return from[place]; });
     }
-    this->Others.Send(owned.rank, MessageTag::GhostCells, message);
+    this->Comm.Send(owned.rank, MessageTag::GhostCells, message);
   }
   for (const Shared& copied : this->Copied)
   {
-    const std::vector<Value> message = this->Others.Receive<Value>(copied.rank, MessageTag::GhostCells);
+    const std::vector<Value> message = this->Comm.Receive<Value>(copied.rank, MessageTag::GhostCells);
     auto next = message.begin();
     for (int array = 0; array < arrays; ++array)
     {
@@ -119,11 +119,11 @@ void GhostCells::AddToOwners(std::vector<double>& values) const
     std::vector<double> message(copied.places.size());
     std::transform(
       copied.places.begin(), copied.places.end(), message.begin(), [&](std::size_t place) { return values[place]; });
-    this->Others.Send(copied.rank, MessageTag::GhostCells, message);
+    this->Comm.Send(copied.rank, MessageTag::GhostCells, message);
   }
   for (const Shared& owned : this->Owned)
   {
-    const std::vector<double> message = this->Others.Receive<double>(owned.rank, MessageTag::GhostCells);
+    const std::vector<double> message = this->Comm.Receive<double>(owned.rank, MessageTag::GhostCells);
     for (std::size_t i = 0; i < message.size(); ++i)
     {
       values[owned.places[i]] += message[i];

@@ -39,7 +39,7 @@ private:
   template <class Value>
   void Exchange(Value* values, int arrays, std::size_t stride) const;
 
-  Communicator& Others;
+  Communicator& Comm;
   std::vector<Shared> Owned;  ///< of this rank's own cells, those that are ghosts of another
   std::vector<Shared> Copied; ///< of this rank's ghosts, those that another owns
 };

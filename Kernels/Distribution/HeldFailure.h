@@ -6,10 +6,10 @@
 
 namespace tyndall
 {
-/// A rank was sent less than it waits for. Communicator::Together tells what went wrong elsewhere before it.
-struct NothingCame : std::runtime_error
+/// A rank was sent less than it waits for. Communicator::Collective tells what went wrong elsewhere before it.
+struct MissingMessage : std::runtime_error
 {
-  NothingCame()
+  MissingMessage()
     : std::runtime_error("Ranks were not sent as much as they wait for, and none says why: something that they were "
                          "given differs. Give all ranks the same properties.")
   {
@@ -37,7 +37,7 @@ struct HeldFailure
     }
   }
 
-  /// In the end, within Communicator::Together.
+  /// In the end, within Communicator::Collective.
   void Throw() const
   {
     if (this->error)
@@ -46,7 +46,7 @@ struct HeldFailure
     }
     if (this->broken)
     {
-      throw NothingCame();
+      throw MissingMessage();
     }
   }
 

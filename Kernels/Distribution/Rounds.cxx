@@ -7,7 +7,7 @@ namespace tyndall
 {
 Rounds::Rounds(
   Communicator& communicator, const BlockPartition& partition, int reach, const std::array<bool, 3>& periodic)
-  : Others(communicator)
+  : Comm(communicator)
   , Partition(partition)
   , Neighbours(NeighboursOf(partition, communicator.Rank(), reach, periodic))
 {

@@ -48,7 +48,7 @@ public:
     double done = 0.0;
     for (bool left = true; left; ++round)
     {
-      const std::vector<std::vector<OnItsWay>> parcels = this->Others.Exchange<OnItsWay>(this->Neighbours, [&] {
+      const std::vector<std::vector<OnItsWay>> parcels = this->Comm.Exchange<OnItsWay>(this->Neighbours, [&] {
         const Monitor ofRound = OfPart(monitor, done, 0.5 * (1.0 + done));
         std::vector<std::vector<OnItsWay>> gone = this->Sorted(follow(round, std::move(arrived), ofRound));
         Report(monitor, done = 0.5 * (1.0 + done));
@@ -59,7 +59,7 @@ public:
       {
         arrived.insert(arrived.end(), parcel.begin(), parcel.end());
       }
-      left = this->Others.Largest({ arrived.empty() ? 0.0 : 1.0 })[0] > 0.0;
+      left = this->Comm.Largest({ arrived.empty() ? 0.0 : 1.0 })[0] > 0.0;
     }
     this->Handed.rounds += round;
   }
@@ -83,7 +83,7 @@ private:
 
   std::size_t NeighbourWith(const int* voxel) const;
 
-  Communicator& Others;
+  Communicator& Comm;
   const BlockPartition& Partition;
   std::vector<int> Neighbours; ///< ranks
   RoundsTraffic Handed;

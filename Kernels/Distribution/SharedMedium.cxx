@@ -58,13 +58,14 @@ void AgreeOnMeanCosine(Communicator& communicator, bool has, const Field& g, Med
 {
   const bool given = has && g.values;
   MeanCosineRange range;
-  communicator.Together([&] { range = given ? MeanCosineRange(g, medium.sigma_s, medium.grid.VoxelCount()) : range; });
+  communicator.Collective(
+    [&] { range = given ? MeanCosineRange(g, medium.sigma_s, medium.grid.VoxelCount()) : range; });
   std::vector<double> ends(range.greatest.begin(), range.greatest.end());
   std::transform(range.least.begin(), range.least.end(), std::back_inserter(ends), std::negate<double>());
   ends = communicator.Largest(ends);
   std::copy_n(ends.begin(), 3, range.greatest.begin());
   std::transform(ends.begin() + 3, ends.end(), range.least.begin(), std::negate<double>());
-  communicator.Together([&] {
+  communicator.Collective([&] {
     if (given)
     {
       medium.phase = PhaseByVoxel(medium.phase.OfChannel(0), g, range);

@@ -223,7 +223,7 @@ double ProgressOf(const PropagationSettings& settings, double residual, double i
   return std::min(std::max(creeping, way), 0.99);
 }
 
-void DoubtGivenLight(const Illumination& illumination, LightField& light)
+void WarnAboutInputLight(const Illumination& illumination, LightField& light)
 {
   if (illumination.uncollided.IsThere() && Reflects(illumination))
   {

@@ -69,7 +69,7 @@ double ProgressOf(const PropagationSettings& settings, double residual, double i
 constexpr double UncollidedPart = 0.5;
 
 /// Adds to a light's `doubts` what faces that reflect do not know of light that another solver found.
-void DoubtGivenLight(const Illumination& illumination, LightField& light);
+void WarnAboutInputLight(const Illumination& illumination, LightField& light);
 
 /// The energy check of every conservative solver: power is absorbed, escapes or is left over. An error above 1e-4
 /// becomes one of the light's `doubts`.

@@ -412,7 +412,7 @@ LitColor ColorLitMediumInBlocks(Communicator& communicator, const BlockPartition
 {
   const Spread spread = { communicator, partition };
   SourceFunction source;
-  communicator.Together([&] {
+  communicator.Collective([&] {
     Check(tones);
     source = spread.Own().VoxelCount() > 0 ? SourceFunctionOf(medium, fluence) : SourceFunction();
   });

@@ -207,7 +207,7 @@ void LaterMeshesWin(test::Claims& claims)
 
   // Both in one mesh, with numbers.
   const tyndall::TriangleMesh outer = shapes::Sphere({ 0, 0, 0 }, 1.0, 4);
-  const auto both = test::ToPolyData(shapes::Together(outer, shapes::Sphere({ 0.3, 0, 0 }, 0.5, 4)));
+  const auto both = test::ToPolyData(shapes::Collective(outer, shapes::Sphere({ 0.3, 0, 0 }, 0.5, 4)));
   const auto first = static_cast<vtkIdType>(outer.triangles.size());
   test::AddValues<vtkFloatArray>(both->GetCellData(), "kind", both->GetNumberOfCells(), 1,
     [&](vtkIdType cell, int) { return cell < first ? 4.0 : 1.0; });

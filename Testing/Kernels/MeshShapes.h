@@ -147,7 +147,7 @@ inline TriangleMesh TurnedBox(const Point& low, const Point& high, double aboutZ
 }
 
 /// Both meshes in one.
-inline TriangleMesh Together(TriangleMesh first, const TriangleMesh& second)
+inline TriangleMesh Collective(TriangleMesh first, const TriangleMesh& second)
 {
   const int offset = static_cast<int>(first.points.size());
   first.points.insert(first.points.end(), second.points.begin(), second.points.end());

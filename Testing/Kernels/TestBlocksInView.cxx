@@ -109,7 +109,7 @@ TEST_F(BlocksInView, ShowWhatIsBehindOnce)
 namespace
 {
 /// The picture that ranks make together: each looks again where what is before its block changes what it sees.
-Picture Together(Device& device, const Scene& scene, const std::vector<GridBlock>& blocks, std::size_t& lookedAgain)
+Picture Collective(Device& device, const Scene& scene, const std::vector<GridBlock>& blocks, std::size_t& lookedAgain)
 {
   const Camera camera = scene.Framed();
   const std::vector<int> order = FrontToBack(blocks, camera);
@@ -146,7 +146,7 @@ TEST_F(BlocksInView, HaveTheAlphaAndDepthOfTheWhole)
       for (const auto& cuts : Cuts)
       {
         SCOPED_TRACE(testing::Message() << components << ", " << minimum << ", " << testing::PrintToString(cuts));
-        const Picture together = Together(this->GetDevice(), scene, Cut(scene.grid, cuts), lookedAgain);
+        const Picture together = Collective(this->GetDevice(), scene, Cut(scene.grid, cuts), lookedAgain);
         EXPECT_EQ(together.farDepth, whole.farDepth);
         EXPECT_LT(LargestDifference(together.radiance, whole.radiance), 1e-5);
         EXPECT_LT(LargestDifference(together.alpha, whole.alpha), 1e-5);

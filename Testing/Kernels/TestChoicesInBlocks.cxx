@@ -248,7 +248,7 @@ protected:
     RunInThreads(ranks, [&](Communicator& communicator) {
       const int rank = communicator.Rank();
       PartOf part(whole, partition.blocks[rank]);
-      told[rank] = BetterAsWhole(GetDevice(), communicator, partition, part.medium, part.Of(shining), settings);
+      told[rank] = ReasonNotToDecompose(GetDevice(), communicator, partition, part.medium, part.Of(shining), settings);
     });
     EXPECT_EQ(std::count(told.begin(), told.end(), told[0]), ranks);
     return told[0];

@@ -82,7 +82,7 @@ TEST(Communicator, ExchangesParcelsOfAnyLengthWithItselfToo)
 TEST(Communicator, CountsParcelsForOthers)
 {
   RunInThreads(3, [](Communicator& ranks) {
-    ranks.Together([] {});
+    ranks.Collective([] {});
     const Communicator::Traffic agreed = ranks.Sent();
     ExpectParcelsFrom(ranks, { 0, 1, 2 });
     const std::size_t own = static_cast<std::size_t>(ranks.Rank());
@@ -120,10 +120,10 @@ TEST(Communicator, GivesAllRanksTheSameSumsAndLargestValues)
 TEST(Communicator, ThrowsOnAllRanksWhatOneThrows)
 {
   RunInThreads(3, [](Communicator& ranks) {
-    ranks.Together([] {});
+    ranks.Collective([] {});
     try
     {
-      ranks.Together([&] { Require(ranks.Rank() != 1, "no medium"); });
+      ranks.Collective([&] { Require(ranks.Rank() != 1, "no medium"); });
       ADD_FAILURE() << "rank " << ranks.Rank() << " goes on";
     }
     catch (const InvalidInput& error)
@@ -132,14 +132,14 @@ TEST(Communicator, ThrowsOnAllRanksWhatOneThrows)
     }
     try
     {
-      ranks.Together([&] { throw DeviceError("no device"); });
+      ranks.Collective([&] { throw DeviceError("no device"); });
       ADD_FAILURE() << "rank " << ranks.Rank() << " goes on";
     }
     catch (const DeviceError& error)
     {
       EXPECT_EQ(error.what(), std::string("no device")); // on all of them
     }
-    EXPECT_THROW(ranks.Together([&] {
+    EXPECT_THROW(ranks.Collective([&] {
       if (ranks.Rank() == 2)
       {
         throw Aborted();
@@ -166,7 +166,7 @@ TEST(Communicator, ThrowsOnAllRanksWhereOneIsNotSentWhatItWaitsFor)
       };
       try
       {
-        ranks.Together(work);
+        ranks.Collective(work);
         ADD_FAILURE() << "rank " << ranks.Rank() << " goes on";
       }
       catch (const Aborted&)

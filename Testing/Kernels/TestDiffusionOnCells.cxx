@@ -66,10 +66,10 @@ std::vector<float> Means(const Scene& scene, const LightField& light, int divide
   return means;
 }
 
-OrdersAdded How(Scene scene)
+IterationScheme How(Scene scene)
 {
   scene.Attach();
-  return HowOrdersAreAdded(PropagationProblem(scene.medium, scene.light, scene.settings, {}));
+  return ChooseIterationScheme(PropagationProblem(scene.medium, scene.light, scene.settings, {}));
 }
 
 /// Cubes of eight voxels, each a hundred times as thick as the next one or as thin.
@@ -135,7 +135,7 @@ TEST_F(DiffusionOnCells, EndsAtTheLightOfManyOrders)
       scene.settings.uncollidedDirections = 0;
       scene.settings.tolerance = 1e-6;
       scene.settings.netFlux = true;
-      ASSERT_EQ(How(scene), OrdersAdded::ByCells) << haze;
+      ASSERT_EQ(How(scene), IterationScheme::CoarseMeshDsa) << haze;
       const LightField light = scene.Solve(this->GetDevice());
       const LightField exact = Plain(scene).Solve(this->GetDevice());
       EXPECT_LE(light.convergence.size(), 16u) << haze;
@@ -163,7 +163,7 @@ TEST_F(DiffusionOnCells, TellsItsErrorAndCountsItsPower)
     {
       Scene scene = Cloud(tau, albedo, 0.05);
       scene.settings.source = PropagationSource::Linear;
-      ASSERT_EQ(How(scene), OrdersAdded::ByCells) << tau;
+      ASSERT_EQ(How(scene), IterationScheme::CoarseMeshDsa) << tau;
       const LightField light = scene.Solve(this->GetDevice());
       scene.settings.tolerance = 1e-7;
       const LightField exact = scene.Solve(this->GetDevice());
@@ -187,7 +187,7 @@ TEST_F(DiffusionOnCells, CrossesGapsInFewSweeps)
     Scene scene = cases[i].first;
     scene.settings.source = PropagationSource::Constant;
     scene.settings.uncollidedDirections = 0;
-    ASSERT_EQ(How(scene), OrdersAdded::ByCells) << i;
+    ASSERT_EQ(How(scene), IterationScheme::CoarseMeshDsa) << i;
     const LightField light = scene.Solve(this->GetDevice());
     EXPECT_LE(light.convergence.size(), cases[i].second) << i;
     scene.settings.tolerance = 1e-6;
@@ -216,11 +216,11 @@ TEST_F(DiffusionOnCells, IsAsRightAsTheBalanceOfVoxels)
   const std::vector<float> right = Means(fine, fine.Solve(this->GetDevice()), 3);
   Scene scene = Cloud(4.5, 0.995, 0.05);
   scene.settings.uncollidedDirections = 0;
-  ASSERT_EQ(How(scene), OrdersAdded::ByCells);
+  ASSERT_EQ(How(scene), IterationScheme::CoarseMeshDsa);
   const double byCells = Difference(scene.Solve(this->GetDevice()).fluence, right);
   scene.settings.source = PropagationSource::Linear;
   scene.light.faceAlbedo[0] = { 1e-9, 1e-9, 1e-9 }; // faces that reflect are not for cells
-  ASSERT_EQ(How(scene), OrdersAdded::ByBalance);
+  ASSERT_EQ(How(scene), IterationScheme::Dsa);
   const double byBalance = Difference(scene.Solve(this->GetDevice()).fluence, right);
   EXPECT_LT(byCells, 1.1 * byBalance);
 }
@@ -231,7 +231,7 @@ TEST_F(DiffusionOnCells, KeepsEvenLightEven)
   scene.light = {};
   scene.ShineFromEverywhere(1.0);
   scene.settings.tolerance = 1e-6;
-  ASSERT_EQ(How(scene), OrdersAdded::ByCells);
+  ASSERT_EQ(How(scene), IterationScheme::CoarseMeshDsa);
   for (const float fluence : scene.Solve(this->GetDevice()).fluence)
   {
     ASSERT_NEAR(fluence / (4.0 * M_PI), 1.0, 2e-5);
@@ -285,7 +285,7 @@ TEST_F(DiffusionOnCells, GiveThinBoxesWithoutFacesAllTheirLight)
     { std::tuple(1e-3, grey, true), { 1e-3, grey, false }, { 1e-6, grey, false }, { 1e-3, colours, true } })
   {
     Scene scene = ThinBoxWithoutFaces(thickest, parts, lamp);
-    ASSERT_EQ(How(scene), OrdersAdded::ByCells);
+    ASSERT_EQ(How(scene), IterationScheme::CoarseMeshDsa);
     const LightField light = scene.Solve(this->GetDevice());
     for (std::size_t c = 0; c < parts.size(); ++c)
     {
@@ -311,7 +311,7 @@ TEST_F(DiffusionOnCells, TellsWhatLeavesThroughEachCellOfAFace)
 {
   Scene scene = Cloud(4.5, 0.995, 0.05);
   scene.settings.facePower = true;
-  ASSERT_EQ(How(scene), OrdersAdded::ByCells);
+  ASSERT_EQ(How(scene), IterationScheme::CoarseMeshDsa);
   const LightField light = scene.Solve(this->GetDevice());
   const Grid& grid = scene.medium.grid;
   std::size_t cell = 0;

@@ -416,7 +416,7 @@ TEST_F(Windings, OfNestedAndOverlappingMeshes)
   const TriangleMesh small = shapes::Sphere({ 0.1, 0, 0 }, 0.4, 4);
   EXPECT_EQ(this->Of(grid, large).oddSamples, 0u);
 
-  const WindingNumbers twice = this->Of(grid, shapes::Together(large, small));
+  const WindingNumbers twice = this->Of(grid, shapes::Collective(large, small));
   const Counts inSmall = this->Samples(grid, small, 1);
   EXPECT_EQ(twice.lowest, 0);
   EXPECT_EQ(twice.highest, 2);
@@ -428,7 +428,7 @@ TEST_F(Windings, OfNestedAndOverlappingMeshes)
   }
   EXPECT_EQ(first, static_cast<std::size_t>(std::find(inSmall.begin(), inSmall.end(), 1) - inSmall.begin()));
 
-  EXPECT_EQ(this->Of(grid, shapes::Together(large, shapes::Inverted(small))).oddSamples, 0u); // a hollow ball
+  EXPECT_EQ(this->Of(grid, shapes::Collective(large, shapes::Inverted(small))).oddSamples, 0u); // a hollow ball
   EXPECT_EQ(this->Of(grid, shapes::Inverted(large)).lowest, -1);
   EXPECT_EQ(this->Of(grid, shapes::Inverted(large), -1).oddSamples, 0u);
   EXPECT_EQ(this->Of(grid, shapes::Inverted(large), 0).oddSamples, 0u); // not looked for
@@ -475,9 +475,10 @@ TEST_F(Windings, OfWhatIsThinnerThanAVoxel)
       const auto odd = [&](const TriangleMesh& mesh) {
         return CountWhole(this->GetDevice(), grid, { { &mesh } }, settings).windings[0].oddSamples;
       };
-      EXPECT_EQ(odd(shapes::Together(left, shapes::Box({ 0.0, -0.5, -0.5 }, { 0.75, 0.5, 0.5 }))), 32u * 32u);
-      EXPECT_EQ(odd(shapes::Together(left, shapes::Box({ 0.0, 0.5 - pitch, 0.5 - pitch }, { 0.75, 0.9, 0.9 }))), 1u);
-      EXPECT_EQ(odd(shapes::Together(left, shapes::Box({ pitch, -0.5, -0.5 }, { 0.75, 0.5, 0.5 }))), 0u); // they touch
+      EXPECT_EQ(odd(shapes::Collective(left, shapes::Box({ 0.0, -0.5, -0.5 }, { 0.75, 0.5, 0.5 }))), 32u * 32u);
+      EXPECT_EQ(odd(shapes::Collective(left, shapes::Box({ 0.0, 0.5 - pitch, 0.5 - pitch }, { 0.75, 0.9, 0.9 }))), 1u);
+      EXPECT_EQ(
+        odd(shapes::Collective(left, shapes::Box({ pitch, -0.5, -0.5 }, { 0.75, 0.5, 0.5 }))), 0u); // they touch
     }
   }
 }
@@ -487,9 +488,9 @@ TEST_F(Windings, ThatBalanceAreFound)
   // In each column of y and z as many samples are enclosed twice as are inside out: what parity leaves out here it adds
   // there.
   const Grid grid = CubeGrid(16);
-  const TriangleMesh twice = shapes::Together(
+  const TriangleMesh twice = shapes::Collective(
     shapes::Box({ -0.9, -0.5, -0.5 }, { -0.2, 0.5, 0.5 }), shapes::Box({ -0.7, -0.5, -0.5 }, { -0.5, 0.5, 0.5 }));
   const TriangleMesh inverted = shapes::Inverted(shapes::Box({ 0.5, -0.5, -0.5 }, { 0.7, 0.5, 0.5 }));
-  EXPECT_GT(this->Of(grid, shapes::Together(twice, inverted), 1, 4).oddSamples, 0u);
+  EXPECT_GT(this->Of(grid, shapes::Collective(twice, inverted), 1, 4).oddSamples, 0u);
 }
 }

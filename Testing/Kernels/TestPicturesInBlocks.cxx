@@ -82,7 +82,7 @@ Picture SeenBy(Device& device, const Scene& scene, const Spread& spread, const C
       own = SharedSceneOf(held.MediumSeen(), held.LightSeen(), Scene::See(held.ior, 1), scene.settings);
     }
     ofScene.shared = PictureInBlocks::Shared(communicator, has ? &own : nullptr);
-    communicator.Together([&] {
+    communicator.Collective([&] {
       const std::lock_guard<std::mutex> lock(one);
       casters[rank].reset(has ? new MediumRayCaster(part.Caster(device, &ofScene)) : nullptr);
     });

@@ -256,7 +256,7 @@ TEST_F(RefractiveMediumTest, OddMeshesGiveWarnings)
   const TriangleMesh small = shapes::Sphere({ 0.5, 0, 0 }, 0.4, 4);
   EXPECT_THAT(warnings(large), IsEmpty());
   EXPECT_THAT(warnings(shapes::Inverted(large)), ElementsAre(HasSubstr("Mesh is inverted")));
-  EXPECT_THAT(warnings(shapes::Together(large, small)),
+  EXPECT_THAT(warnings(shapes::Collective(large, small)),
     ElementsAre(testing::AllOf(HasSubstr("intersects itself"), HasSubstr("but from 0 to 2 times"))));
   TriangleMesh turned = large;
   std::swap(turned.triangles[3][0], turned.triangles[3][1]);
@@ -271,7 +271,7 @@ TEST_F(RefractiveMediumTest, IntersectionsThinnerThanAVoxelGiveAWarning)
 {
   // Two unit boxes that overlap by 0.04: no voxel's centre is where they do, but a sample of four is.
   const Solid boxes = { "Mesh",
-    shapes::Together(shapes::Box({ 0, 0, 0 }, { 1, 1, 1 }), shapes::Box({ 0.96, 0, 0 }, { 1.9, 1, 1 })), Glass() };
+    shapes::Collective(shapes::Box({ 0, 0, 0 }, { 1, 1, 1 }), shapes::Box({ 0.96, 0, 0 }, { 1.9, 1, 1 })), Glass() };
   for (int size : { 8, 12, 16, 24, 32, 48 })
   {
     RefractiveMediumSettings settings = FogAround();

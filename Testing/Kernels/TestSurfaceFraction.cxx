@@ -224,8 +224,8 @@ TEST_F(SurfaceFractionTest, GoesByParityAsSamplesDo)
   const TriangleMesh inverted = shapes::Inverted(large);
   EXPECT_TRUE(this->Parts(grid, { { &inverted, -1 } }) == this->Parts(grid, { { &large } }));
   EXPECT_TRUE(this->Parts(grid, { { &inverted, 0 } }) == this->Parts(grid, { { &large, 0 } }));
-  const std::vector<double> hollow = this->Occupancy(grid, shapes::Together(large, shapes::Inverted(small)));
-  EXPECT_TRUE(this->Occupancy(grid, shapes::Together(large, small)) == hollow);
+  const std::vector<double> hollow = this->Occupancy(grid, shapes::Collective(large, shapes::Inverted(small)));
+  EXPECT_TRUE(this->Occupancy(grid, shapes::Collective(large, small)) == hollow);
   const std::vector<double> ofLarge = this->Occupancy(grid, large), ofSmall = this->Occupancy(grid, small);
   for (std::size_t i = 0; i < hollow.size(); ++i)
   {

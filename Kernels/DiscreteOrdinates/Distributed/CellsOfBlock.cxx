@@ -58,7 +58,7 @@ void CellsOfBlock::LetIn()
 void CellsOfBlock::LetOut(const std::function<void()>& leave)
 {
   std::vector<double> left;
-  this->Ranks.others.Together([&] {
+  this->Ranks.others.Collective([&] {
     left.resize(this->OfWhole.out.Size(), 0.0);
     this->Out.Fill(0.0f);
     leave();

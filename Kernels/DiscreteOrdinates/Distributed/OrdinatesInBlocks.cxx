@@ -34,7 +34,7 @@ public:
   OrdinatesOfBlock(Device& device, Communicator& communicator, const BlockPartition& partition, bool has,
     const PropagationSettings& asPropagation, const OrdinatesSettings& settings)
     : TheDevice(device)
-    , Others(communicator)
+    , Comm(communicator)
     , Partition(partition)
     , Has(has)
     , AsSolved(asPropagation)
@@ -48,11 +48,11 @@ public:
     const Medium& medium, const Illumination& illumination, const Monitor& monitor, KeptLight* kept) const
   {
     Medium own = this->Has ? medium : Medium();
-    own.grid = this->Partition.OwnGrid(this->Others.Rank());
+    own.grid = this->Partition.OwnGrid(this->Comm.Rank());
     Illumination known = illumination;
     known.uncollided = this->UncollidedKnown(illumination.uncollided);
     const BlockScene scene(
-      this->Others, this->Has, this->Partition, own, known, this->AsSolved, MemoryOf(this->TheDevice));
+      this->Comm, this->Has, this->Partition, own, known, this->AsSolved, MemoryOf(this->TheDevice));
     const Illumination& shining = scene.illumination; // grey where one channel does for three, without voxels too
     const FarLight far = FarLightOf(shining, this->AsSolved.directionsPerFace, this->Settings);
     LightField light;
@@ -72,9 +72,9 @@ public:
       light.netFlux.clear();
     }
     this->Describe(light, scene, far);
-    const OrdinatesRanks ranks = { this->Others, this->Partition };
+    const OrdinatesRanks ranks = { this->Comm, this->Partition };
     Judge(this->Settings, diverged, scene.medium, &ranks, light);
-    this->Others.Together([&] { scene.Undo(light); });
+    this->Comm.Collective([&] { scene.Undo(light); });
     warm.Finish(diverged, light, kept);
     return light;
   }
@@ -87,18 +87,18 @@ private:
     BlockPartition inUnits = this->Partition;
     inUnits.whole = scene.WholeOf(this->Partition.whole);
     const Medium solved = this->Has ? scene.medium : VoxelOfVacuum(inUnits.whole);
-    const OrdinatesRanks ranks = { this->Others, inUnits };
+    const OrdinatesRanks ranks = { this->Comm, inUnits };
     const PhaseFunction function = FunctionOf(solved, channel, &ranks);
     const OrdinatesAngles angles = { OrdinateGroups(far.directions),
       SeparableOf(function, far.directions, this->Settings), function };
-    this->Others.Together([&] { CheckMemory(this->TheDevice, solved.grid, angles, this->Settings, true); });
+    this->Comm.Collective([&] { CheckMemory(this->TheDevice, solved.grid, angles, this->Settings, true); });
     const OrdinatesScene ofChannel = { solved, channel, LampsOf(far, shining, channel),
       IncomingOf(far, shining, channel), FaceAlbedoOf(shining, channel), UncollidedOf(shining, channel),
       warm.Begin(channel, this->KindOf(inUnits, light.channels), angles, &ranks), &ranks };
     const OrdinatesResult found = IsPublished(this->Settings)
       ? SolvePublishedOrders(this->TheDevice, ofChannel, angles, this->Settings, monitor)
       : SolveSweptOrders(this->TheDevice, ofChannel, angles, this->Settings, monitor);
-    this->Others.Together([&] {
+    this->Comm.Collective([&] {
       TakeChannel(light, found, channel);
       warm.Take(found, channel);
     });
@@ -112,7 +112,7 @@ private:
     kind.spacing = inUnits.whole.spacing;
     kind.channels = channels;
     kind.periodic = this->Settings.periodic;
-    kind.block = inUnits.blocks[this->Others.Rank()];
+    kind.block = inUnits.blocks[this->Comm.Rank()];
     return kind;
   }
 
@@ -120,7 +120,7 @@ private:
   UncollidedImage UncollidedKnown(const UncollidedImage& own) const
   {
     static const float nothing = 0.0f;
-    const bool any = OnAnyRank(this->Others, this->Has && own.IsThere());
+    const bool any = OnAnyRank(this->Comm, this->Has && own.IsThere());
     UncollidedImage image;
     image.fluence = any ? Field{ &nothing, 1 } : Field();
     return this->Has ? own : image;
@@ -138,14 +138,14 @@ private:
     {
       thickest = std::max(thickest, ThickestStep(scene.medium, c));
     }
-    thickest = this->Others.Largest({ thickest })[0];
-    const bool varies = OnAnyRank(this->Others, this->Has && scene.medium.phase.Varies());
+    thickest = this->Comm.Largest({ thickest })[0];
+    const bool varies = OnAnyRank(this->Comm, this->Has && scene.medium.phase.Varies());
     light.doubts = DoubtsOf(this->Settings, thickest, varies);
     light.directionsPerFace = this->AsSolved.directionsPerFace;
   }
 
   Device& TheDevice;
-  Communicator& Others;
+  Communicator& Comm;
   const BlockPartition& Partition;
   const bool Has;
   const PropagationSettings& AsSolved;
@@ -173,7 +173,7 @@ LightField SolveOrdinatesInBlocks(Device& device, Communicator& communicator, co
   RequireSame(communicator, "WarmStart", true, { kept ? 1.0 : 0.0 });
   const bool has = partition.blocks.at(communicator.Rank()).VoxelCount() > 0;
   PropagationSettings asPropagation = AsPropagation(settings);
-  communicator.Together([&] {
+  communicator.Collective([&] {
     partition.Check();
     Require(static_cast<int>(partition.blocks.size()) == communicator.Ranks(), "There is not a block for each rank.");
     Check(settings);
@@ -187,7 +187,7 @@ LightField SolveOrdinatesInBlocks(Device& device, Communicator& communicator, co
   RequireSame(communicator, partition);
   RequireSame(communicator, has, medium, illumination, asPropagation);
   RequireSameOrdinates(communicator, settings);
-  CheckLightHasAnEnd(LightEndsOnAny(communicator, has, medium, illumination), illumination, asPropagation);
+  RequireSink(LightEndsOnAny(communicator, has, medium, illumination), illumination, asPropagation);
   const UnvaryingAxes unvarying(partition.whole, illumination, asPropagation);
   BlockPartition wide = partition;
   wide.whole = unvarying.Widened(partition.whole);
@@ -206,7 +206,7 @@ LightField SolveOrdinatesInBlocks(Device& device, Communicator& communicator, co
     light.leftOut.push_back(left_out::DirectionsAlongSlab(asPropagation.directionsPerFace));
   }
   light.faceAlbedo = illumination.faceAlbedo;
-  DoubtGivenLight(illumination, light);
+  WarnAboutInputLight(illumination, light);
   return light;
 }
 }

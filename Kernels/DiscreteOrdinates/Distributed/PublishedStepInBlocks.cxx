@@ -64,26 +64,26 @@ void PublishedStepInBlocks::SpreadToKnown(const Buffer<float>& radiance)
   const std::size_t own = OrdinateStride(voxels) * OrdinateLanes;
   const std::size_t known = OrdinateStride(this->Around.Known().VoxelCount()) * OrdinateLanes;
   std::vector<float> values, all, ofGroup;
-  this->Ranks.others.Together([&] {
+  this->Ranks.others.Collective([&] {
     values = this->Ranks.Has() ? radiance.Read() : values;
     all.resize(this->Known.Size());
   });
   for (std::size_t g = 0; g < static_cast<std::size_t>(this->Groups.Count()); ++g)
   {
-    this->Ranks.others.Together([&] {
+    this->Ranks.others.Collective([&] {
       const auto first = values.begin() + static_cast<std::ptrdiff_t>(voxels > 0 ? g * own : 0);
       ofGroup.assign(first, first + static_cast<std::ptrdiff_t>(voxels * OrdinateLanes));
     });
     const std::vector<float> spread = this->Around.Spread(ofGroup, OrdinateLanes);
     std::copy(spread.begin(), spread.end(), all.begin() + static_cast<std::ptrdiff_t>(voxels > 0 ? g * known : 0));
   }
-  this->Ranks.others.Together([&] { this->Known.Write(all.data()); });
+  this->Ranks.others.Collective([&] { this->Known.Write(all.data()); });
 }
 
 void PublishedStepInBlocks::Apply(const Buffer<float>& radiance, const Buffer<float>& scattered,
   const Buffer<float>& steady, const Buffer<float>& sigma_t, const Buffer<float>& after)
 {
-  this->Ranks.others.Together([&] {
+  this->Ranks.others.Collective([&] {
     if (this->Cells)
     {
       this->Cells->LetIn();
@@ -91,13 +91,13 @@ void PublishedStepInBlocks::Apply(const Buffer<float>& radiance, const Buffer<fl
     this->Step.Change(radiance, scattered, steady, sigma_t);
   });
   this->SpreadToKnown(radiance);
-  this->Ranks.others.Together([&] { this->Step.MoveOn(this->Ranks.Has() ? this->Known : radiance, after); });
+  this->Ranks.others.Collective([&] { this->Step.MoveOn(this->Ranks.Has() ? this->Known : radiance, after); });
 }
 
 FacePowers PublishedStepInBlocks::Powers(const Buffer<float>& radiance) const
 {
   FacePowers powers;
-  this->Ranks.others.Together([&] { powers = this->Step.Powers(radiance); });
+  this->Ranks.others.Collective([&] { powers = this->Step.Powers(radiance); });
   // What comes in all know, but ranks without voxels.
   const bool counts = IsFirstThatHas(this->Ranks.others, this->Ranks.partition);
   std::vector<double> sums(powers.out.begin(), powers.out.end());

@@ -3,7 +3,7 @@
 #include "DiscreteOrdinates/Distributed/CellsOfBlock.h"
 #include "DiscreteOrdinates/OrdinatesScene.h"
 #include "DiscreteOrdinates/Published/PublishedStep.h"
-#include "Distribution/VoxelsAround.h"
+#include "Distribution/Halo.h"
 
 #include <optional>
 #include <vector>
@@ -39,7 +39,7 @@ private:
   const OrdinatesRanks& Ranks;
   const Grid TheGrid;
   const OrdinateGroups& Groups;
-  const VoxelsAround Around;
+  const Halo Around;
   std::optional<CellsOfBlock> Cells; ///< where faces give back light
   PublishedStep Step;
   Buffer<float> Known; ///< radiance of all known voxels; empty where there are no own ones

@@ -200,7 +200,7 @@ FacePowers UpwindSweepInBlocks::Apply(const Buffer<float>& radiance, const Buffe
     this->GiveTo(octant, this->Order[i]);
   }
   this->TakeFromAround();
-  this->Ranks.others.Together([&] {
+  this->Ranks.others.Collective([&] {
     this->Failure.Throw();
     if (this->Ranks.Has() && !this->Failure.broken)
     {

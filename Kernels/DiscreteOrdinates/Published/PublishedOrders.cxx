@@ -61,17 +61,17 @@ public:
     {
       const double done = static_cast<double>(this->Record.All().size()) / (this->Record.All().size() + 20.0);
       const double share = 0.1 + 0.9 * done;
-      this->Scene.Together([&] { Report(monitor, share); });
+      this->Scene.Collective([&] { Report(monitor, share); });
       this->StepOnce(monitor ? Monitor([&](double) { return monitor(share); }) : Monitor());
     } while (!this->Done());
-    this->Scene.Together([&] { this->Finish(); });
+    this->Scene.Collective([&] { this->Finish(); });
     return std::move(this->Result);
   }
 
 private:
   void Begin(const Monitor& monitor)
   {
-    this->Scene.Together([&] {
+    this->Scene.Collective([&] {
       for (Buffer<float>* field : { &this->Radiance, &this->Scattered, &this->Steady })
       {
         field->Fill(0.0f);
@@ -83,7 +83,7 @@ private:
     }
     this->Arrays.AddLamps(this->Steady, this->Settings.periodic, this->Result, monitor);
     this->OfLamps = this->Result.ledger;
-    this->Scene.Together([&] {
+    this->Scene.Collective([&] {
       if (this->Arrays.Faces)
       {
         this->LampsThroughCells = this->Arrays.Faces->TakeOut();
@@ -97,7 +97,7 @@ private:
       this->MoveOn(); // from darkness: nothing is scattered yet
       return;
     }
-    this->Scene.Together([&] { this->Radiance.Write(this->Scene.guess.values.data()); });
+    this->Scene.Collective([&] { this->Radiance.Write(this->Scene.guess.values.data()); });
   }
 
   /// What leaves the box now comes back with the next step.
@@ -108,7 +108,7 @@ private:
       return;
     }
     this->Step->LeaveByCells(this->Radiance);
-    this->Scene.Together([&] { this->LetBackIn(*this->Arrays.Faces); });
+    this->Scene.Collective([&] { this->LetBackIn(*this->Arrays.Faces); });
   }
 
   void LetBackIn(FaceLight& faces)
@@ -128,7 +128,7 @@ private:
   void StepOnce(const Monitor& monitor)
   {
     std::vector<float> now;
-    this->Scene.Together([&] {
+    this->Scene.Collective([&] {
       this->Scattering.Scatter(
         this->Radiance, this->Arrays.SigmaS, this->Scattered, this->Arrays.Scale, this->Arrays.Light, monitor);
       now = this->Arrays.Light.order.Read();
@@ -180,7 +180,7 @@ private:
     }
     this->Result.ledger.Absorb(0,
       this->Arrays.PowersOf(this->Fluence, false).absorbed + this->Arrays.PowersOf(this->LampFluence, true).absorbed);
-    this->Result.ledger.LeaveOver(0, this->Arrays.Stranded());
+    this->Result.ledger.SetUnaccounted(0, this->Arrays.Stranded());
   }
 
   bool Done() const
@@ -247,7 +247,7 @@ OrdinatesResult SolvePublishedOrders(Device& device, const OrdinatesScene& scene
   const OrdinatesSettings& settings, const Monitor& monitor)
 {
   std::unique_ptr<PublishedOrders> orders;
-  scene.Together([&] { orders = std::make_unique<PublishedOrders>(device, scene, angles, settings); });
+  scene.Collective([&] { orders = std::make_unique<PublishedOrders>(device, scene, angles, settings); });
   return orders->Run(monitor);
 }
 

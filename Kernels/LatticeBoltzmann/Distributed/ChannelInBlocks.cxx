@@ -31,7 +31,7 @@ class SteadyInBlocks : public SteadySystem
 public:
   SteadyInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition, const LatticeBox& box,
     const LatticeSettings& settings, const LatticeVoxels& voxels, const Lattice* lattice)
-    : Others(communicator)
+    : Comm(communicator)
     , Lines(device, communicator, partition, box, settings, voxels, lattice)
     , Diffusion(device, communicator, partition, box, settings, voxels)
   {
@@ -42,11 +42,11 @@ public:
     return this->Lines.Sweep(even, shines, writes, monitor);
   }
   Values Diffuse(const Values& residual, double) override { return this->Diffusion.Solve(residual); }
-  void Alone(const std::function<void()>& work) override { this->Others.Together(work); }
-  Values Sum(const Values& ofRank) override { return this->Others.Sum(ofRank); }
+  void Alone(const std::function<void()>& work) override { this->Comm.Collective(work); }
+  Values Sum(const Values& ofRank) override { return this->Comm.Sum(ofRank); }
 
 private:
-  Communicator& Others;
+  Communicator& Comm;
   LinesInBlocks Lines;
   DiffusionInBlocks Diffusion;
 };
@@ -71,7 +71,7 @@ std::vector<cl_ulong> PlacesOf(const VoxelBox& box, const LatticeInfo& info, int
 ChannelInBlocks::ChannelInBlocks(Device& device, Communicator& communicator, const LatticeSceneInBlocks& scene,
   const LatticeSettings& settings, const Uncollided& direct, int channel)
   : TheDevice(device)
-  , Others(communicator)
+  , Comm(communicator)
   , Scene(scene)
   , Settings(settings)
   , OfKnown(InKnownVoxels(settings))
@@ -81,10 +81,10 @@ ChannelInBlocks::ChannelInBlocks(Device& device, Communicator& communicator, con
   , Box(scene.Box())
   , Stepped(scene.Stepped(settings, communicator.Rank()))
 {
-  communicator.Together(
+  communicator.Collective(
     [&] { this->Voxels.emplace(scene.OfKnown(), scene.known.index, this->OfKnown, direct, channel); });
-  this->TakeWhatIsOfAll();
-  communicator.Together([&] {
+  this->ReduceGlobals();
+  communicator.Collective([&] {
     if (scene.has)
     {
       LatticeBox box = BoxOf(scene.around, this->Stepped);
@@ -95,13 +95,13 @@ ChannelInBlocks::ChannelInBlocks(Device& device, Communicator& communicator, con
 }
 
 /// What kernels leave out they do for all voxels of the grid, and what comes in depends on it.
-void ChannelInBlocks::TakeWhatIsOfAll()
+void ChannelInBlocks::ReduceGlobals()
 {
   LatticeVoxels& voxels = *this->Voxels;
   const bool has = this->Scene.has;
   const auto ends = std::minmax_element(voxels.squared.begin(), voxels.squared.end());
   const std::vector<double> all =
-    this->Others.Largest({ voxels.passesAll ? 0.0 : 1.0, has ? static_cast<double>(*ends.second) : 0.0,
+    this->Comm.Largest({ voxels.passesAll ? 0.0 : 1.0, has ? static_cast<double>(*ends.second) : 0.0,
       has ? 1.0 / static_cast<double>(*ends.first) : 0.0, voxels.thickest });
   voxels.passesAll = all[0] == 0.0;
   voxels.bends = static_cast<float>(all[1]) != static_cast<float>(1.0 / all[2]);
@@ -109,23 +109,23 @@ void ChannelInBlocks::TakeWhatIsOfAll()
   voxels.TakeOutside(this->Scene.scene.illumination, this->Channel);
   if (this->Settings.scheme == LatticeScheme::Conservative)
   {
-    const auto ofAll = [this](const std::vector<double>& sums) { return this->Others.Sum(sums); };
+    const auto ofAll = [this](const std::vector<double>& sums) { return this->Comm.Sum(sums); };
     voxels.FindEndless(this->Scene.partition.whole, this->Settings.periodic, this->Box,
-      this->Scene.partition.blocks[this->Others.Rank()].first, ofAll);
-    this->Others.Together([&] { voxels.CheckLightEnds(this->Box.known); });
+      this->Scene.partition.blocks[this->Comm.Rank()].first, ofAll);
+    this->Comm.Collective([&] { voxels.CheckLightEnds(this->Box.known); });
   }
 }
 
 void ChannelInBlocks::Solve(const Monitor& monitor)
 {
-  if (this->Others.Sum({ this->Voxels->Given() })[0] == 0.0)
+  if (this->Comm.Sum({ this->Voxels->Given() })[0] == 0.0)
   {
     this->Fluence.assign(this->Box.Count(), 0.0f);
   }
   else if (this->Settings.Solves())
   {
-    SteadyInBlocks system(this->TheDevice, this->Others, this->Scene.partition, this->Box, this->Settings,
-      *this->Voxels, this->TheLattice());
+    SteadyInBlocks system(
+      this->TheDevice, this->Comm, this->Scene.partition, this->Box, this->Settings, *this->Voxels, this->TheLattice());
     this->Fluence = SteadyLattice(this->Box, this->Settings, *this->Voxels, system).Solve(monitor, this->Rows);
   }
   else
@@ -139,7 +139,7 @@ SteppedInBlocks& ChannelInBlocks::Stepping()
   if (!this->Steps)
   {
     this->Steps.emplace(
-      this->TheDevice, this->Others, this->Scene.partition, this->Settings, this->Stepped, this->TheLattice());
+      this->TheDevice, this->Comm, this->Scene.partition, this->Settings, this->Stepped, this->TheLattice());
   }
   return *this->Steps;
 }
@@ -188,14 +188,14 @@ void ChannelInBlocks::KeepOwn()
 void ChannelInBlocks::EndSteps()
 {
   this->Steps.reset();
-  this->Others.Together([&] {
+  this->Comm.Collective([&] {
     if (this->Photons && this->Settings.blockSize > 0)
     {
       this->KeepOwn();
     }
   });
   SteppedInBlocks(
-    this->TheDevice, this->Others, this->Scene.partition, this->Settings, this->Scene.around.Own(), this->TheLattice())
+    this->TheDevice, this->Comm, this->Scene.partition, this->Settings, this->Scene.around.Own(), this->TheLattice())
     .FillAround();
 }
 
@@ -205,7 +205,7 @@ void ChannelInBlocks::AddTo(LightField& light)
   {
     this->EndSteps();
   }
-  this->Others.Together([&] {
+  this->Comm.Collective([&] {
     if (this->Photons)
     {
       LatticeAccount(

@@ -43,13 +43,13 @@ public:
   void AddTo(LightField& light);
 
 private:
-  void TakeWhatIsOfAll();
+  void ReduceGlobals();
   SteppedInBlocks& Stepping();
   void KeepOwn();
   void EndSteps();
 
   Device& TheDevice;
-  Communicator& Others;
+  Communicator& Comm;
   const LatticeSceneInBlocks& Scene;
   const LatticeSettings& Settings;
   const LatticeSettings OfKnown, OfOwn; ///< of lattices of all voxels that this rank steps, and of its own ones

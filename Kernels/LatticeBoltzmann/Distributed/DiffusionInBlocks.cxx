@@ -45,14 +45,14 @@ std::array<int, 3> HalvingsFor(const Grid& grid)
 DiffusionInBlocks::DiffusionInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition,
   const LatticeBox& box, const LatticeSettings& settings, const LatticeVoxels& voxels)
   : TheDevice(device)
-  , Others(communicator)
+  , Comm(communicator)
   , Around(communicator, partition, settings.periodic, 1)
   , Whole(partition.whole)
   , Periodic(settings.periodic)
   , Box(box)
   , Halvings(HalvingsFor(partition.whole))
 {
-  communicator.Together([&] { this->LoadVoxels(settings, voxels); });
+  communicator.Collective([&] { this->LoadVoxels(settings, voxels); });
   this->LoadCells();
 }
 
@@ -135,9 +135,9 @@ void DiffusionInBlocks::LoadCells()
       }
     }
   }
-  sums = this->Others.Sum(sums);
-  this->Others.Together([&] {
-    if (this->Others.Rank() > 0)
+  sums = this->Comm.Sum(sums);
+  this->Comm.Collective([&] {
+    if (this->Comm.Rank() > 0)
     {
       return;
     }
@@ -182,10 +182,10 @@ DiffusionInBlocks::Values DiffusionInBlocks::ByCells(const Values& residual)
   {
     sums[this->CellOf(this->InWhole(i))] += residual[i];
   }
-  sums = this->Others.Sum(sums);
+  sums = this->Comm.Sum(sums);
   const double square = std::inner_product(sums.begin(), sums.end(), sums.begin(), 0.0);
   Values found(sums.size(), 0.0);
-  this->Others.Together([&] {
+  this->Comm.Collective([&] {
     if (this->Solver && square > 0.0)
     {
       this->Solver->Right().Write(InRows(this->Solver->Rows(), sums).data());
@@ -194,7 +194,7 @@ DiffusionInBlocks::Values DiffusionInBlocks::ByCells(const Values& residual)
       found = this->Found.Read();
     }
   });
-  return this->Others.Sum(found); // the other ranks have zeros
+  return this->Comm.Sum(found); // the other ranks have zeros
 }
 
 /// In float, as ranks tell each other, so that it is the same whoever has which voxel.
@@ -202,7 +202,7 @@ std::vector<float> DiffusionInBlocks::Preconditioned(const Values& residual)
 {
   std::vector<float> own;
   const auto jacobi = [&](std::size_t i, double left) { return Damping * left / this->Diagonal[i]; };
-  this->Others.Together([&] {
+  this->Comm.Collective([&] {
     own.resize(residual.size());
     for (std::size_t i = 0; i < own.size(); ++i)
     {
@@ -211,13 +211,13 @@ std::vector<float> DiffusionInBlocks::Preconditioned(const Values& residual)
   });
   std::vector<float> around = this->Around.Spread(own, 1);
   Values left;
-  this->Others.Together([&] {
+  this->Comm.Collective([&] {
     left = residual;
     const Values applied = this->Applied(around);
     std::transform(left.begin(), left.end(), applied.begin(), left.begin(), std::minus<double>());
   });
   const Values byCells = this->ByCells(left);
-  this->Others.Together([&] {
+  this->Comm.Collective([&] {
     this->AddCells(byCells, around);
     const Values corrected = this->Applied(around);
     const LatticeBox box = BoxOf(this->Around);
@@ -247,25 +247,25 @@ void DiffusionInBlocks::AddCells(const Values& byCells, std::vector<float>& arou
 /// Of all ranks.
 double DiffusionInBlocks::Dot(const Values& a, const std::vector<float>& b)
 {
-  return this->Others.Sum({ std::inner_product(a.begin(), a.end(), b.begin(), 0.0) })[0];
+  return this->Comm.Sum({ std::inner_product(a.begin(), a.end(), b.begin(), 0.0) })[0];
 }
 
 DiffusionInBlocks::Values DiffusionInBlocks::Solve(const Values& residual)
 {
   Values left, found;
-  this->Others.Together([&] {
+  this->Comm.Collective([&] {
     left = residual;
     found.assign(residual.size(), 0.0);
   });
   std::vector<float> better = this->Preconditioned(left), direction;
-  this->Others.Together([&] { direction = better; });
+  this->Comm.Collective([&] { direction = better; });
   double norm = this->Dot(left, better);
   const double first = norm;
   for (int iteration = 0; iteration < MostIterations && norm > Reduction * Reduction * first; ++iteration)
   {
     const std::vector<float> around = this->Around.Spread(direction, 1);
     Values applied;
-    this->Others.Together([&] { applied = this->Applied(around); });
+    this->Comm.Collective([&] { applied = this->Applied(around); });
     const double curvature = this->Dot(applied, direction);
     if (!(curvature > 0.0))
     {

@@ -44,8 +44,8 @@ private:
   double Dot(const Values& a, const std::vector<float>& b);
 
   Device& TheDevice;
-  Communicator& Others;
-  const VoxelsAround Around; ///< one layer
+  Communicator& Comm;
+  const Halo Around; ///< one layer
   const Grid Whole;
   const std::array<bool, 3> Periodic;
   const LatticeBox& Box;

@@ -16,7 +16,7 @@ namespace tyndall
 InterleavedInBlocks::InterleavedInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition,
   const Medium& medium, const Field& ior, const Illumination& illumination, const LatticeSettings& settings)
   : TheDevice(device)
-  , Others(communicator)
+  , Comm(communicator)
   , Partition(partition)
   , TheMedium(medium)
   , Index(ior)
@@ -27,13 +27,11 @@ InterleavedInBlocks::InterleavedInBlocks(Device& device, Communicator& communica
 
 void InterleavedInBlocks::Begin(const PackedPhotons& packed, int channels)
 {
-  this->Others.Together([&] {
-    this->ToCome.emplace(packed, channels, this->Partition.whole, this->Partition.blocks[this->Others.Rank()]);
-  });
+  this->Comm.Collective(
+    [&] { this->ToCome.emplace(packed, channels, this->Partition.whole, this->Partition.blocks[this->Comm.Rank()]); });
   Illumination lit = this->Shining;
   lit.uncollided = this->ToCome->Image();
-  this->Scene.emplace(
-    this->TheDevice, this->Others, this->Partition, this->TheMedium, this->Index, lit, this->Settings);
+  this->Scene.emplace(this->TheDevice, this->Comm, this->Partition, this->TheMedium, this->Index, lit, this->Settings);
   const LatticeScene ofKnown = this->Scene->OfKnown();
   this->Light.fluence.assign(ofKnown.medium.grid.VoxelCount() * static_cast<std::size_t>(ofKnown.channels), 0.0f);
   this->Light.image.fluence = { this->Light.fluence.data(), ofKnown.channels };
@@ -41,13 +39,13 @@ void InterleavedInBlocks::Begin(const PackedPhotons& packed, int channels)
   {
     Channel channel;
     channel.lattice =
-      std::make_unique<ChannelInBlocks>(this->TheDevice, this->Others, *this->Scene, this->Settings, this->Light, c);
-    this->Others.Together([&] {
+      std::make_unique<ChannelInBlocks>(this->TheDevice, this->Comm, *this->Scene, this->Settings, this->Light, c);
+    this->Comm.Collective([&] {
       if (const Lattice* lattice = channel.lattice->TheLattice())
       {
         const LatticeVoxels& voxels = channel.lattice->TheVoxels();
         channel.takes =
-          TakenOfPhotons(*this->ToCome, ofKnown.shining.uncollided, this->Scene->Box().Known(0), ofKnown.channels, c);
+          PhotonChannelMap(*this->ToCome, ofKnown.shining.uncollided, this->Scene->Box().Known(0), ofKnown.channels, c);
         channel.scatters = lattice->Placed(
           ScattersOf(ofKnown.medium, c, channel.takes.fluence, voxels.begins), "how voxels scatter photons");
         channel.glows = lattice->Placed(voxels.source, "what voxels emit");
@@ -83,20 +81,20 @@ void InterleavedInBlocks::Take(const Buffer<float>& fluence)
 {
   if (this->Settings.blockSize == 0)
   {
-    this->Others.Together([&] { this->ShineBy(fluence); });
+    this->Comm.Collective([&] { this->ShineBy(fluence); });
     return;
   }
   std::vector<float> values;
   std::vector<VoxelBox> stepped;
-  this->Others.Together([&] {
+  this->Comm.Collective([&] {
     values = fluence.Size() > 0 ? fluence.Read() : values;
-    for (int rank = 0; rank < this->Others.Ranks(); ++rank)
+    for (int rank = 0; rank < this->Comm.Ranks(); ++rank)
     {
       stepped.push_back(this->Scene->Stepped(this->Settings, rank));
     }
   });
-  values = ValuesInBox(this->Others, this->Partition, stepped, values, this->ToCome->channels);
-  this->Others.Together([&] {
+  values = ValuesInBox(this->Comm, this->Partition, stepped, values, this->ToCome->channels);
+  this->Comm.Collective([&] {
     if (!values.empty())
     {
       this->ShineBy(Buffer<float>(this->TheDevice, values, "fluence of photons on their way"));
@@ -113,26 +111,26 @@ void InterleavedInBlocks::TakeAll(const PhotonLight& photons)
   std::vector<float> own(this->Scene->Box().Count() * all);
   for (std::size_t c = 0; c < all; ++c)
   {
-    const TakenOfPhotons& takes = this->Channels[c].takes;
+    const PhotonChannelMap& takes = this->Channels[c].takes;
     const std::size_t from = std::min(static_cast<std::size_t>(takes.from), given - 1);
     for (std::size_t i = 0; i < own.size() / all; ++i)
     {
       own[i * all + c] = static_cast<float>(takes.fluence * photons.light.fluence[i * given + from]);
     }
-    for (std::size_t face = 0; face < 6 && IsFirstThatHas(this->Others, this->Partition); ++face)
+    for (std::size_t face = 0; face < 6 && IsFirstThatHas(this->Comm, this->Partition); ++face)
     {
       this->Light.image.escaped[face][c] = takes.power * photons.light.facePowerOut[face][from];
     }
   }
   const std::vector<float> known = this->Scene->around.Spread(own, ofKnown.channels);
   std::copy(known.begin(), known.end(), this->Light.fluence.begin()); // the image sees these
-  const bool needs = OnAnyRank(this->Others, this->Scene->has && NeedsFirstMoments(ofKnown.medium, this->Settings));
-  if (OnAnyRank(this->Others, !photons.meanDirection.empty()))
+  const bool needs = OnAnyRank(this->Comm, this->Scene->has && NeedsFirstMoments(ofKnown.medium, this->Settings));
+  if (OnAnyRank(this->Comm, !photons.meanDirection.empty()))
   {
     this->Directions = this->Scene->around.Spread(photons.meanDirection, 3);
     this->Light.image.meanDirection = { this->Directions.data(), 3 };
   }
-  this->Others.Together([&] {
+  this->Comm.Collective([&] {
     if (needs)
     {
       this->Light.firstMoments = EstimatedFirstMoments(this->Light.image, ofKnown.medium, {});
@@ -172,8 +170,8 @@ LightField InterleavedInBlocks::Solve(
     channel.AddTo(light);
     thickest = std::max(thickest, channel.Thickest());
   }
-  FinishLight(light, this->TheDevice, this->Others, *this->Scene, this->Shining, this->Settings, thickest);
-  DoubtPhotons(found, PlaceAmong(this->Others, share.size()).all, light);
+  FinishLight(light, this->TheDevice, this->Comm, *this->Scene, this->Shining, this->Settings, thickest);
+  DoubtPhotons(found, PlaceAmong(this->Comm, share.size()).all, light);
   if (this->Settings.sideBySide)
   {
     light.leftOut.emplace_back(left_out::NotSideBySide);

@@ -45,12 +45,12 @@ private:
   struct Channel
   {
     std::unique_ptr<ChannelInBlocks> lattice;
-    TakenOfPhotons takes;
+    PhotonChannelMap takes;
     Buffer<float> scatters, glows;
   };
 
   Device& TheDevice;
-  Communicator& Others;
+  Communicator& Comm;
   const BlockPartition& Partition;
   const Medium& TheMedium;
   const Field& Index;

@@ -37,7 +37,7 @@ void RequireSameLattice(
 void CheckInBlocks(Communicator& communicator, const BlockPartition& partition, const Medium& medium, const Field& ior,
   const Illumination& illumination, const LatticeSettings& settings)
 {
-  communicator.Together([&] {
+  communicator.Collective([&] {
     partition.Check();
     Require(static_cast<int>(partition.blocks.size()) == communicator.Ranks(), "There is not a block for each rank.");
     Check(settings);
@@ -61,7 +61,7 @@ void CheckTogether(Communicator& communicator, const BlockPartition& partition, 
   RequireSame(communicator, partition);
   RequireSame(communicator, has, medium, illumination, AsPropagationInBlocks(settings));
   RequireSameLattice(communicator, has, ior, illumination, settings);
-  CheckLightHasAnEnd(LightEndsOnAny(communicator, has, medium, illumination), illumination, AsPropagation(settings));
+  RequireSink(LightEndsOnAny(communicator, has, medium, illumination), illumination, AsPropagation(settings));
 }
 }
 
@@ -70,7 +70,7 @@ LightField SolveLatticeInBlocks(Device& device, Communicator& communicator, cons
   const LatticeSettings& settings, const Monitor& monitor)
 {
   CheckInBlocks(communicator, partition, medium, ior, illumination, settings);
-  communicator.Together([&] { CheckPhotonsGoNotRound(settings); });
+  communicator.Collective([&] { CheckPhotonsGoNotRound(settings); });
   CheckTogether(communicator, partition, medium, ior, illumination, settings);
   const bool has = partition.blocks[communicator.Rank()].VoxelCount() > 0;
   MarchSettings march;

@@ -111,12 +111,12 @@ void FinishLight(LightField& light, const Device& device, Communicator& communic
   const BlockScene& solved = scene.scene;
   const bool anisotropic =
     OnAnyRank(communicator, scene.has && !solved.medium.phase.IsIsotropic()) && solved.traits.scatters;
-  communicator.Together([&] { DescribeLight(light, device, anisotropic, settings, thickest); });
+  communicator.Collective([&] { DescribeLight(light, device, anisotropic, settings, thickest); });
   if (settings.scheme == LatticeScheme::Conservative)
   {
     JudgeBalance(light, communicator, scene.has, solved.medium);
   }
-  communicator.Together([&] {
+  communicator.Collective([&] {
     solved.Undo(light);
     JudgeLight(light, illumination, settings);
   });

@@ -3,7 +3,7 @@
 #include "Device/Device.h"
 #include "Distribution/BlockPartition.h"
 #include "Distribution/Communicator.h"
-#include "Distribution/VoxelsAround.h"
+#include "Distribution/Halo.h"
 #include "LatticeBoltzmann/Distributed/MediumAround.h"
 #include "LatticeBoltzmann/LatticeScene.h"
 #include "LatticeBoltzmann/LatticeSettings.h"
@@ -37,7 +37,7 @@ struct LatticeSceneInBlocks
   VoxelBox Stepped(const LatticeSettings& settings, int rank) const;
 
   const bool has; ///< voxels
-  const VoxelsAround around;
+  const Halo around;
   const MediumAround known;
   const BlockScene scene;
   const BlockPartition partition; ///< in the units of the scene

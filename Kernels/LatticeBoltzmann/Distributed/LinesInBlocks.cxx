@@ -30,13 +30,13 @@ std::vector<float> OwnOf(const LatticeBox& box, const std::vector<float>& known)
 LinesInBlocks::LinesInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition,
   const LatticeBox& box, const LatticeSettings& settings, const LatticeVoxels& voxels, const Lattice* lattice)
   : TheDevice(device)
-  , Others(communicator)
+  , Comm(communicator)
   , Box(box)
   , Settings(settings)
   , Voxels(voxels)
   , Densities(lattice)
 {
-  communicator.Together([&] {
+  communicator.Collective([&] {
     if (box.Count() > 0)
     {
       this->FindLines(partition, settings.periodic);
@@ -60,9 +60,9 @@ void LinesInBlocks::FindLines(const BlockPartition& partition, const std::array<
 LinesInBlocks::Pair LinesInBlocks::LinesFrom(const PiecesOfLines& pieces) const
 {
   Pair pair;
-  pair.range = pieces.Range(this->Others.Rank());
-  const std::vector<PiecesOfLines::Line> lines = pieces.LinesFrom(this->Others.Rank());
-  std::vector<Shared> byRank(this->Others.Ranks());
+  pair.range = pieces.Range(this->Comm.Rank());
+  const std::vector<PiecesOfLines::Line> lines = pieces.LinesFrom(this->Comm.Rank());
+  std::vector<Shared> byRank(this->Comm.Ranks());
   for (const PiecesOfLines::Line& line : lines)
   {
     for (const PiecesOfLines::Piece& piece : line.pieces)
@@ -99,7 +99,7 @@ void LinesInBlocks::TellWhoJoins(const BlockPartition& partition)
   {
     return;
   }
-  std::vector<std::vector<std::size_t>> toEach(this->Others.Ranks());
+  std::vector<std::vector<std::size_t>> toEach(this->Comm.Ranks());
   for (const Pair& pair : this->Pairs)
   {
     std::vector<std::vector<std::size_t>> ofPair(toEach.size());
@@ -113,7 +113,7 @@ void LinesInBlocks::TellWhoJoins(const BlockPartition& partition)
       toEach[rank].insert(toEach[rank].end(), ofPair[rank].begin(), ofPair[rank].end());
     }
   }
-  const std::vector<std::vector<std::size_t>> ofEach = NumbersOfEach(this->Others, partition, toEach);
+  const std::vector<std::vector<std::size_t>> ofEach = NumbersOfEach(this->Comm, partition, toEach);
   for (std::size_t rank = 0; rank < ofEach.size(); ++rank)
   {
     auto next = ofEach[rank].begin();
@@ -154,7 +154,7 @@ void LinesInBlocks::Load(const BlockPartition& partition, const std::array<bool,
   {
     Pair& of = this->Pairs[pair];
     of.below = values(2 * of.range[0] * of.range[1]);
-    of.below.Write(this->Below(PiecesOfLines(partition, periodic, pair), partition.blocks[this->Others.Rank()], pair));
+    of.below.Write(this->Below(PiecesOfLines(partition, periodic, pair), partition.blocks[this->Comm.Rank()], pair));
   }
 }
 
@@ -163,7 +163,7 @@ LinesInBlocks::Values LinesInBlocks::Below(const PiecesOfLines& pieces, const Vo
 {
   const std::array<std::size_t, 2>& range = this->Pairs[pair].range;
   Values below(2 * range[0] * range[1], 1.0);
-  pieces.ForPieces(this->Others.Rank(), [&](std::size_t piece, std::array<int, 3> voxel) {
+  pieces.ForPieces(this->Comm.Rank(), [&](std::size_t piece, std::array<int, 3> voxel) {
     bool isFace = false;
     for (int axis = 0; axis < 3; ++axis)
     {
@@ -201,7 +201,7 @@ void LinesInBlocks::LearnParts()
       }
     });
   }
-  this->Others.Together([&] { this->Failure.Throw(); });
+  this->Comm.Collective([&] { this->Failure.Throw(); });
 }
 
 /// Numbers of the pieces that others are to know of; nothing where something has gone wrong.
@@ -222,7 +222,7 @@ void LinesInBlocks::Give(const std::vector<Shared>& to, int tag, Part part, cons
         message.insert(message.end(), first, next);
       }
     });
-    this->Others.Send(other.rank, tag, this->Failure.broken ? Values() : message);
+    this->Comm.Send(other.rank, tag, this->Failure.broken ? Values() : message);
   }
 }
 
@@ -232,7 +232,7 @@ LinesInBlocks::Values LinesInBlocks::Take(const std::vector<Shared>& from, int t
   Values all;
   for (const Shared& other : from)
   {
-    const Values message = this->Others.Receive<double>(other.rank, tag);
+    const Values message = this->Comm.Receive<double>(other.rank, tag);
     this->Failure.broken = this->Failure.broken || message.size() != width * other.pieces.size();
     this->Failure.Attempt([&] { all.insert(all.end(), message.begin(), message.end()); });
   }
@@ -301,7 +301,7 @@ void LinesInBlocks::Join(int pair)
   this->Give(of.heardOf, 2 * pair + 1, { 0, Hears, 0 }, joined);
 }
 
-void LinesInBlocks::GoDown(int pair, Slot& slot, double shines, bool writes)
+void LinesInBlocks::SolveCg(int pair, Slot& slot, double shines, bool writes)
 {
   const std::vector<Shared>& joinedBy = this->Pairs[pair].joinedBy;
   const Values heard = this->Take(joinedBy, 2 * pair + 1, Hears);
@@ -349,13 +349,13 @@ SteadySystem::Values LinesInBlocks::Sweep(
     }
     for (int pair = begin; pair < end; ++pair)
     {
-      this->GoDown(pair, this->Slots[pair - begin], shines, writes);
+      this->SolveCg(pair, this->Slots[pair - begin], shines, writes);
     }
     this->Work += end - begin;
     this->Failure.Attempt([&] { Report(monitor, 1.0 - 1.0 / (1.0 + 0.01 * this->Work)); }); // as SteadyInMemory does
   }
   SteadySystem::Values arrives;
-  this->Others.Together([&] {
+  this->Comm.Collective([&] {
     this->Failure.Throw();
     if (pairs > 0 && !this->Failure.broken)
     {

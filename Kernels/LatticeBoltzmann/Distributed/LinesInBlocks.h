@@ -78,12 +78,12 @@ private:
   Values Take(const std::vector<Shared>& from, int tag, std::size_t width);
   void GoUp(int pair, Slot& slot, double shines, Part says);
   void Join(int pair);
-  void GoDown(int pair, Slot& slot, double shines, bool writes);
+  void SolveCg(int pair, Slot& slot, double shines, bool writes);
   cl::Kernel Kernel(const char* name, int pair, double shines) const;
   void Run(cl::Kernel& kernel, int pair);
 
   Device& TheDevice;
-  Communicator& Others;
+  Communicator& Comm;
   const LatticeBox& Box;
   const LatticeSettings& Settings;
   const LatticeVoxels& Voxels;

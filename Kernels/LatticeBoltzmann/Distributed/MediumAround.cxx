@@ -2,12 +2,12 @@
 
 namespace tyndall
 {
-LatticeBox BoxOf(const VoxelsAround& around)
+LatticeBox BoxOf(const Halo& around)
 {
   return BoxOf(around, around.Own());
 }
 
-LatticeBox BoxOf(const VoxelsAround& around, VoxelBox box)
+LatticeBox BoxOf(const Halo& around, VoxelBox box)
 {
   int inner = 0;
   for (int axis = 0; axis < 3; ++axis)
@@ -20,8 +20,7 @@ LatticeBox BoxOf(const VoxelsAround& around, VoxelBox box)
   return { around.KnownGrid(), box, inner };
 }
 
-MediumAround::MediumAround(
-  const VoxelsAround& voxels, const Medium& own, const Field& ior, const UncollidedImage& image)
+MediumAround::MediumAround(const Halo& voxels, const Medium& own, const Field& ior, const UncollidedImage& image)
   : medium(own)
 {
   this->medium.grid = voxels.KnownGrid();

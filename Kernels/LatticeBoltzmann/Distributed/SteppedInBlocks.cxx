@@ -16,14 +16,14 @@ constexpr int StepTag = 0;
 SteppedInBlocks::SteppedInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition,
   const LatticeSettings& settings, const VoxelBox& box, Lattice* lattice)
   : TheDevice(device)
-  , Others(communicator)
+  , Comm(communicator)
   , Settings(settings)
   , Own(partition.blocks[communicator.Rank()])
   , Box(box)
   , TheLattice(lattice)
 {
   this->FindParcels(partition);
-  communicator.Together([&] { this->FindProbes(partition); });
+  communicator.Collective([&] { this->FindProbes(partition); });
 }
 
 /// @param voxel  of the lattice, from -1 on, one beyond its end
@@ -71,7 +71,7 @@ void SteppedInBlocks::FindParcels(const BlockPartition& partition)
   const std::size_t ranks = partition.blocks.size();
   std::vector<std::vector<std::size_t>> asks(ranks);
   std::vector<std::vector<cl_ulong>> gets(ranks), sends(ranks);
-  this->Others.Together([&] {
+  this->Comm.Collective([&] {
     this->ForComing(partition, [&](int direction, const Voxel& from, const Voxel& inWhole) {
       const auto owner = std::find_if(partition.blocks.begin(), partition.blocks.end(),
         [&](const VoxelBox& other) { return Holds(other, inWhole.data()); });
@@ -82,7 +82,7 @@ void SteppedInBlocks::FindParcels(const BlockPartition& partition)
     });
   });
   const std::vector<std::vector<std::size_t>> asked =
-    this->Has() ? NumbersOfEach(this->Others, partition, asks) : std::vector<std::vector<std::size_t>>(ranks);
+    this->Has() ? NumbersOfEach(this->Comm, partition, asks) : std::vector<std::vector<std::size_t>>(ranks);
   for (std::size_t rank = 0; rank < ranks; ++rank)
   {
     for (auto next = asked[rank].begin(); next != asked[rank].end(); next += 2)
@@ -103,7 +103,7 @@ void SteppedInBlocks::FindParcels(const BlockPartition& partition)
     parcels.places = all.empty() ? Buffer<cl_ulong>() : Buffer<cl_ulong>(this->TheDevice, all, "light between blocks");
     return parcels;
   };
-  this->Others.Together([&] {
+  this->Comm.Collective([&] {
     this->Sends = packed(sends);
     this->Gets = packed(gets);
   });
@@ -143,7 +143,7 @@ void SteppedInBlocks::Exchange()
     const auto count = static_cast<std::ptrdiff_t>(this->Failure.broken ? 0 : this->Sends.counts[rank]);
     if (this->Sends.counts[rank] > 0)
     {
-      this->Others.Send(static_cast<int>(rank), StepTag, std::vector<float>(next, next + count));
+      this->Comm.Send(static_cast<int>(rank), StepTag, std::vector<float>(next, next + count));
       next += count;
     }
   }
@@ -151,7 +151,7 @@ void SteppedInBlocks::Exchange()
   {
     if (this->Gets.counts[rank] > 0)
     {
-      const std::vector<float> message = this->Others.Receive<float>(static_cast<int>(rank), StepTag);
+      const std::vector<float> message = this->Comm.Receive<float>(static_cast<int>(rank), StepTag);
       this->Failure.broken = this->Failure.broken || message.size() != this->Gets.counts[rank];
       this->Failure.Attempt([&] { in.insert(in.end(), message.begin(), message.end()); });
     }
@@ -177,14 +177,14 @@ void SteppedInBlocks::Step(int steps, double done, const Monitor& monitor)
       Report(monitor, done);
     });
   }
-  this->Others.Together([&] { this->Failure.Throw(); });
+  this->Comm.Collective([&] { this->Failure.Throw(); });
 }
 
 void SteppedInBlocks::FillAround()
 {
   this->Failure = {};
   this->Exchange();
-  this->Others.Together([&] { this->Failure.Throw(); });
+  this->Comm.Collective([&] { this->Failure.Throw(); });
 }
 
 std::vector<float> SteppedInBlocks::Probed() const

@@ -36,8 +36,8 @@ public:
   void FillAround();
   std::vector<float> Probed() const override;
   std::vector<float> Fluence() const override; ///< of the rank's block
-  std::vector<double> Sum(const std::vector<double>& ofRank) override { return this->Others.Sum(ofRank); }
-  void Alone(const std::function<void()>& work) override { this->Others.Together(work); }
+  std::vector<double> Sum(const std::vector<double>& ofRank) override { return this->Comm.Sum(ofRank); }
+  void Alone(const std::function<void()>& work) override { this->Comm.Collective(work); }
 
 private:
   using Voxel = std::array<int, 3>;
@@ -57,7 +57,7 @@ private:
   void Exchange();
 
   Device& TheDevice;
-  Communicator& Others;
+  Communicator& Comm;
   const LatticeSettings& Settings;
   const VoxelBox Own, Box;
   Lattice* TheLattice;

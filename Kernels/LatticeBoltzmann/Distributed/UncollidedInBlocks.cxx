@@ -46,9 +46,9 @@ BlockPartition Widened(BlockPartition partition, const UnvaryingAxes& unvarying)
 }
 
 UncollidedInBlocks::UncollidedInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition,
-  const VoxelsAround& around, const LatticeScene& scene, const LatticeSettings& settings, bool firstMoments)
+  const Halo& around, const LatticeScene& scene, const LatticeSettings& settings, bool firstMoments)
   : TheDevice(device)
-  , Others(communicator)
+  , Comm(communicator)
   , Unvarying(partition.whole, scene.shining, AsOfWhole(settings))
   , Partition(Widened(partition, this->Unvarying))
   , Narrowing(partition.whole.VoxelVolume() / this->Partition.whole.VoxelVolume())
@@ -66,7 +66,7 @@ UncollidedInBlocks::UncollidedInBlocks(Device& device, Communicator& communicato
   {
     return;
   }
-  communicator.Together([&] {
+  communicator.Collective([&] {
     const LatticeBox box = BoxOf(around);
     this->SigmaT = this->SigmaTOf(this->Layout, box);
     this->Path = this->Zeros(this->Layout, 1, "the light gathered");
@@ -111,8 +111,8 @@ std::vector<float> UncollidedInBlocks::Known(const Buffer<float>& planar, double
 std::unique_ptr<SweepOperator> UncollidedInBlocks::MakeSweep(const SweepRequest& request)
 {
   std::unique_ptr<SweepOperator> sweep;
-  this->Others.Together([&] {
-    sweep = std::make_unique<SweepInBlocks>(this->TheDevice, this->Others, this->Partition, this->Layout, this->SigmaT,
+  this->Comm.Collective([&] {
+    sweep = std::make_unique<SweepInBlocks>(this->TheDevice, this->Comm, this->Partition, this->Layout, this->SigmaT,
       this->Settings.periodic, request, this->Workspace);
   });
   return sweep;
@@ -151,12 +151,12 @@ UncollidedVolume UncollidedInBlocks::Volume()
   UncollidedVolume volume = { this->TheDevice, this->Layout, this->SigmaT, this->Settings.periodic, sweeps,
     this->ToOwn() };
   volume.whole = &this->Partition.whole;
-  volume.together = [this](const std::function<void()>& work) { this->Others.Together(work); };
+  volume.together = [this](const std::function<void()>& work) { this->Comm.Collective(work); };
   volume.followLamp = [this](const SweepVolume& ofChannels, const Light& lamp, const Monitor& monitor) {
     if (!this->NearLamps)
     {
       this->NearLamps = std::make_unique<LampsInBlocks>(
-        this->TheDevice, this->Others, this->Partition, this->Settings.periodic, this->Layout, this->SigmaT);
+        this->TheDevice, this->Comm, this->Partition, this->Settings.periodic, this->Layout, this->SigmaT);
     }
     return this->NearLamps->Deposit(ofChannels, lamp, monitor);
   };
@@ -177,7 +177,7 @@ void UncollidedInBlocks::AddLamp(const Light& lamp, const Monitor& monitor)
     return;
   }
   Buffer<float> path, currents;
-  this->Others.Together([&] {
+  this->Comm.Collective([&] {
     path = this->Zeros(this->Layout, 1, "the light of a beam");
     currents = this->Zeros(this->Layout, 6, "the light of a beam");
   });
@@ -194,7 +194,7 @@ void UncollidedInBlocks::AddMoments(const Light& lamp, const Buffer<float>& path
   const int channels = this->Scene.channels;
   const std::vector<float> knownPath = this->Known(path, 1.0, channels);
   const std::vector<float> knownCurrents = this->Known(currents, 1.0, 6 * channels);
-  this->Others.Together([&] {
+  this->Comm.Collective([&] {
     if (this->Around.Own().VoxelCount() == 0)
     {
       return;
@@ -236,7 +236,7 @@ Uncollided UncollidedInBlocks::Given() const
 {
   Uncollided found;
   found.image = this->Scene.shining.uncollided;
-  if (!IsFirstThatHas(this->Others, this->Partition))
+  if (!IsFirstThatHas(this->Comm, this->Partition))
   {
     found.image.escaped = {}; // all ranks have that of the whole
   }
@@ -276,7 +276,7 @@ Rgb UncollidedInBlocks::Lost() const
       return static_cast<double>(path[c * this->Layout.Stride() + i]) * sigma_t[this->Layout.ExtinctionFirst(c) + i];
     });
   }
-  collides = this->Others.Sum(collides);
+  collides = this->Comm.Sum(collides);
   Rgb lost = {};
   for (int c = 0; c < this->Layout.channels; ++c)
   {
@@ -315,7 +315,7 @@ Uncollided UncollidedInBlocks::Find(const Monitor& monitor)
     found.firstMoments = this->FoundMoments(inverse);
   }
   const Rgb lost = this->Lost();
-  if (IsFirstThatHas(this->Others, this->Partition))
+  if (IsFirstThatHas(this->Comm, this->Partition))
   {
     found.lost = Times(lost, this->Narrowing);
     found.image.escaped = this->Tally.out;

@@ -28,8 +28,8 @@ public:
   /// @param partition  in the units of the scene
   /// @param scene  of the known voxels
   /// @param firstMoments  of lamps' light are asked for
-  UncollidedInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition,
-    const VoxelsAround& around, const LatticeScene& scene, const LatticeSettings& settings, bool firstMoments);
+  UncollidedInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition, const Halo& around,
+    const LatticeScene& scene, const LatticeSettings& settings, bool firstMoments);
 
   /// By known voxel; power that escaped or was lost on the first rank that has voxels, on the others 0. Collective.
   Uncollided Find(const Monitor& monitor);
@@ -51,11 +51,11 @@ private:
   Deposit ToOwn() const { return { &this->Path, this->Flux.Size() > 0 ? &this->Flux : nullptr }; }
 
   Device& TheDevice;
-  Communicator& Others;
+  Communicator& Comm;
   const UnvaryingAxes Unvarying;
   const BlockPartition Partition; ///< as rays go through it: wide along axes on which nothing changes
   const double Narrowing;         ///< volume of a voxel over that
-  const VoxelsAround& Around;
+  const Halo& Around;
   const LatticeScene Scene;
   const LatticeSettings& Settings;
   const bool FirstMoments, SharedExtinction;

@@ -12,7 +12,7 @@ namespace tyndall
 {
 namespace
 {
-constexpr double Together = 0.05; ///< of the shorter part's time: with less, a device does one after the other
+constexpr double Collective = 0.05; ///< of the shorter part's time: with less, a device does one after the other
 }
 
 int StepsOfTurn(const LatticeSettings& settings, int done)
@@ -47,7 +47,7 @@ void InterleavedLattice::Begin(const PackedPhotons& packed, int channels)
     Channel channel;
     channel.lattice = std::make_unique<LatticeChannel>(
       this->TheDevice, SceneOf(*this->Problem), this->Index, this->Settings, this->Light, c);
-    channel.takes = TakenOfPhotons(*this->ToCome, solved, 0, all, c);
+    channel.takes = PhotonChannelMap(*this->ToCome, solved, 0, all, c);
     Lattice& lattice = channel.lattice->TheLattice();
     channel.scatters = lattice.Placed(
       ScattersOf(this->Problem->TheMedium(), c, channel.takes.fluence, channel.lattice->TheVoxels().begins),
@@ -151,7 +151,7 @@ LightField InterleavedLattice::Solve(PhotonMarcher& marcher, const std::vector<P
   }
   FinishLight(light, this->TheDevice, *this->Problem, this->Shining, this->Settings, thickest);
   DoubtPhotons(found, photons.size(), light);
-  if (this->Settings.sideBySide && times.together < Together * std::min(times.marching, times.meanwhile))
+  if (this->Settings.sideBySide && times.together < Collective * std::min(times.marching, times.meanwhile))
   {
     light.leftOut.emplace_back(left_out::NotSideBySide);
   }

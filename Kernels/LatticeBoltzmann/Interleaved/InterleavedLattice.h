@@ -45,7 +45,7 @@ private:
   struct Channel
   {
     std::unique_ptr<LatticeChannel> lattice;
-    TakenOfPhotons takes;
+    PhotonChannelMap takes;
     Buffer<float> scatters, glows;
   };
 

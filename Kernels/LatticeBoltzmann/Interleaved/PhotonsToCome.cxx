@@ -46,7 +46,7 @@ UncollidedImage PhotonsToCome::Image() const
   return image;
 }
 
-TakenOfPhotons::TakenOfPhotons(
+PhotonChannelMap::PhotonChannelMap(
   const PhotonsToCome& photons, const UncollidedImage& solved, std::size_t voxel, int channels, int channel)
 {
   const Rgb& escaped = photons.escaped[0];

@@ -29,14 +29,14 @@ struct PhotonsToCome
 };
 
 /// What a channel of a problem takes of photons' light.
-struct TakenOfPhotons
+struct PhotonChannelMap
 {
-  TakenOfPhotons() = default;
+  PhotonChannelMap() = default;
   /// @param photons  in whose place the problem is put
   /// @param solved  what the problem has made of them
   /// @param voxel  of `solved`, the first of the box; the box is not empty
   /// @param channels, channel  of the problem
-  TakenOfPhotons(
+  PhotonChannelMap(
     const PhotonsToCome& photons, const UncollidedImage& solved, std::size_t voxel, int channels, int channel);
 
   int from = 0;         ///< channel of the photons' light

@@ -9,7 +9,7 @@ CoarseSceneInBlocks::CoarseSceneInBlocks(
   : Light(illumination)
 {
   Medium fine = medium;
-  if (blocks.Straddle() && blocks.Fine().blocks[blocks.Others().Rank()].VoxelCount() > 0)
+  if (blocks.Straddle() && blocks.Fine().blocks[blocks.Comm().Rank()].VoxelCount() > 0)
   {
     fine.grid = blocks.Own().Fine();
     for (Field* field : { &fine.sigma_a, &fine.sigma_s, &fine.emission, &this->Light.uncollided.fluence,
@@ -22,7 +22,7 @@ CoarseSceneInBlocks::CoarseSceneInBlocks(
       fine.phase = medium.phase.WithG(this->Around(blocks, medium.phase.G()));
     }
   }
-  blocks.Others().Together([&] {
+  blocks.Comm().Collective([&] {
     if (blocks.HasOwn())
     {
       this->Coarse.emplace(fine, this->Light, blocks.Own());
@@ -39,7 +39,7 @@ Field CoarseSceneInBlocks::Around(const CoarseBlocks& blocks, const Field& field
   {
     return field;
   }
-  const std::size_t voxels = blocks.Fine().blocks[blocks.Others().Rank()].VoxelCount();
+  const std::size_t voxels = blocks.Fine().blocks[blocks.Comm().Rank()].VoxelCount();
   this->Arrays.push_back(blocks.Around(
     { field.values, field.values + voxels * static_cast<std::size_t>(field.components) }, field.components));
   Field around = field;

@@ -136,14 +136,14 @@ struct VarianceOfAverages
 void WriteError(LightField& light, const CoarseBlocks& blocks, const VarianceOfAverages& own, VarianceOfAverages seen)
 {
   const Coarsening& toSeen = blocks.Seen();
-  std::vector<double> sums = blocks.Others().Sum({ SumOfSquares(light.fluence), SumOfSquares(own.averages),
+  std::vector<double> sums = blocks.Comm().Sum({ SumOfSquares(light.fluence), SumOfSquares(own.averages),
     SumOf(own.variance), SumOf(InVoxels(light, seen.averages, seen.variance, toSeen)) });
   const double fluences = sums[0], ofAverages = sums[1];
   const double asAverages = ofAverages > 0.0 ? fluences * sums[2] / ofAverages : 0.0;
   const double all = std::max(asAverages, sums[3]);
   Smooth(seen.variance, toSeen.Coarse(), light.channels);
   const std::vector<double> squares = InVoxels(light, seen.averages, seen.variance, toSeen);
-  const double smoothed = blocks.Others().Sum({ SumOf(squares) })[0], scale = smoothed > 0.0 ? all / smoothed : 1.0;
+  const double smoothed = blocks.Comm().Sum({ SumOf(squares) })[0], scale = smoothed > 0.0 ? all / smoothed : 1.0;
   const double residual = light.convergence.empty() ? 0.0 : light.convergence.back().residual;
   light.fluenceError.resize(light.fluence.size());
   double errors = 0.0;
@@ -154,7 +154,7 @@ void WriteError(LightField& light, const CoarseBlocks& blocks, const VarianceOfA
     light.fluenceError[i] = static_cast<float>(std::sqrt(square));
     errors += square;
   }
-  errors = blocks.Others().Sum({ errors })[0];
+  errors = blocks.Comm().Sum({ errors })[0];
   light.relativeError = fluences > 0.0 ? std::sqrt(errors / fluences) : 0.0;
 }
 }
@@ -189,7 +189,7 @@ ErrorParts WriteErrorEstimate(LightField& light, const CoarseBlocks& blocks, con
     ofSpace += space * space;
     ofDirections += directions * directions;
   }
-  const std::vector<double> sums = blocks.Others().Sum({ ofSpace, ofDirections, SumOfSquares(fine) });
+  const std::vector<double> sums = blocks.Comm().Sum({ ofSpace, ofDirections, SumOfSquares(fine) });
   const std::vector<float> seen = blocks.SeenOf(fine, light.channels);
   WriteError(light, blocks, { fine, errors.Variance(fine, same, other) },
     { seen, errors.Variance(seen, blocks.SeenOf(same, light.channels), blocks.SeenOf(other, light.channels)) });

@@ -70,7 +70,7 @@ LightField Shown(LightField&& found, const CoarseBlocks& blocks)
   LightField light;
   light.channels = found.channels;
   light.fluence = blocks.Seen().Refine(blocks.SeenOf(found.fluence, found.channels), found.channels);
-  if (OnAnyRank(blocks.Others(), !found.fluenceDirect.empty()))
+  if (OnAnyRank(blocks.Comm(), !found.fluenceDirect.empty()))
   {
     light.fluenceDirect = blocks.Seen().Refine(blocks.SeenOf(found.fluenceDirect, found.channels), found.channels);
   }
@@ -120,7 +120,7 @@ LightField SolvePreviewOnFirst(const SceneInBlocks& own, const Field& index, con
   const CoarseOfPreview averages(blocks, own, index);
   const SceneOnFirst first(blocks, averages.Own(), own.medium);
   LightField found;
-  own.others.Together([&] {
+  own.others.Collective([&] {
     if (first.IsHere())
     {
       found = solve(first.Whole());

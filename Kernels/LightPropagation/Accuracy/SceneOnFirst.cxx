@@ -10,7 +10,7 @@ namespace tyndall
 {
 SceneOnFirst::SceneOnFirst(const CoarseBlocks& blocks, const PreviewScene& own, const Medium& fine)
   : Blocks(blocks)
-  , Here(IsFirstThatHas(blocks.Others(), blocks.Fine()))
+  , Here(IsFirstThatHas(blocks.Comm(), blocks.Fine()))
   , TheMedium(fine)
   , Light(own.illumination)
   , Index(own.index)
@@ -32,7 +32,7 @@ SceneOnFirst::SceneOnFirst(const CoarseBlocks& blocks, const PreviewScene& own, 
   {
     components.push_back(blocks.HasOwn() && from.values ? from.components : 0.0);
   }
-  components = blocks.Others().Largest(components);
+  components = blocks.Comm().Largest(components);
   for (std::size_t i = 0; i < fields.size(); ++i)
   {
     *fields[i].second = this->Gathered(fields[i].first, static_cast<int>(components[i]), this->Arrays[i]);
@@ -56,13 +56,13 @@ Field SceneOnFirst::Gathered(const Field& own, int components, std::vector<float
     const std::size_t voxels = this->Blocks.Own().Coarse().VoxelCount();
     ofBlock.assign(own.values, own.values + voxels * static_cast<std::size_t>(components));
   }
-  values = ValuesInBox(this->Blocks.Others(), this->Blocks.Coarse(), this->Boxes, ofBlock, components);
+  values = ValuesInBox(this->Blocks.Comm(), this->Blocks.Coarse(), this->Boxes, ofBlock, components);
   return { this->Here ? values.data() : nullptr, components };
 }
 
 void SceneOnFirst::Spread(LightField& light) const
 {
-  Communicator& others = this->Blocks.Others();
+  Communicator& others = this->Blocks.Comm();
   ShareFigures(others, this->Here, light);
   const BlockPartition onFirst = { this->Blocks.Coarse().whole, this->Boxes };
   for (std::vector<float>* const values : { &light.fluence, &light.fluenceDirect })

@@ -244,7 +244,7 @@ private:
   {
     std::optional<DividedScene> divided;
     LightField light;
-    this->TheScene.others.Together([&] {
+    this->TheScene.others.Collective([&] {
       divided.emplace(
         this->TheScene.medium, this->TheScene.illumination, this->Asked.periodic, this->TheScene.partition.whole);
     });

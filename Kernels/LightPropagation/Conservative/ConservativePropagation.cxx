@@ -11,8 +11,8 @@
 #include "LightPropagation/Convergence.h"
 #include "LightPropagation/PlaneParallel/IsPlaneParallel.h"
 #include "LightPropagation/PlaneParallel/PlaneParallelPropagation.h"
+#include "LightPropagation/Problem/AxisPermutation.h"
 #include "LightPropagation/Problem/ScatteringOrders.h"
-#include "LightPropagation/Problem/SlabTurn.h"
 #include "Numerics/Constants.h"
 
 #include <algorithm>
@@ -41,8 +41,8 @@ std::vector<std::string> LeftOutOf(const TransportParts& parts, const IterationR
   say(!traits.scatters, left_out::NoScattering);
   say(!traits.absorbs, left_out::NoAbsorption);
   say(!traits.emits, left_out::NoEmission);
-  say(!parts.SweepsAreLit() && !parts.FineBoundary, left_out::DarkOutside);
-  say(parts.Fine && parts.SweepsAreLit() && !parts.FineBoundary, left_out::EvenOutside);
+  say(!parts.SweepCarriesBoundarySource() && !parts.FineBoundary, left_out::DarkOutside);
+  say(parts.Fine && parts.SweepCarriesBoundarySource() && !parts.FineBoundary, left_out::EvenOutside);
   say(parts.Lamps.empty(), left_out::NoLights);
   say(traits.emits && parts.Emission.peaks.empty(), left_out::NoEmissionPeaks);
   say(!parts.FacesReflect(), left_out::BlackFaces);
@@ -69,11 +69,11 @@ std::vector<std::string> Words(const TransportParts& parts, const IterationResul
     const std::vector<std::string> ofScene = LeftOutOf(parts, found);
     words.insert(words.end(), ofScene.begin(), ofScene.end());
   }
-  if (parts.FacesReflect() && parts.Fine && parts.How == OrdersAdded::ByBalance)
+  if (parts.FacesReflect() && parts.Fine && parts.How == IterationScheme::Dsa)
   {
     words.emplace_back("finer directions of light from outside: the box's faces reflect");
   }
-  if (parts.How == OrdersAdded::OneByOne)
+  if (parts.How == IterationScheme::SourceIteration)
   {
     words.emplace_back("acceleration: few scattering orders do");
   }
@@ -113,7 +113,7 @@ LightField LightOf(TransportParts& parts, IterationResult&& found)
     shown.AddTo(light, parts.TheDevice, found.shown, parts.Path);
   }
   light.halfRangeFlux =
-    HalfRangeFlux((parts.FineBoundary && parts.How != OrdersAdded::ByBalance ? *parts.Fine : parts.Usual).Set());
+    HalfRangeFlux((parts.FineBoundary && parts.How != IterationScheme::Dsa ? *parts.Fine : parts.Usual).Set());
   light.uncollidedDirections = parts.FineBoundary ? parts.Fine->Set().PerFace() : 0;
   light.balance = found.ledger.Balance();
   light.facePowerOut = found.ledger.FacePowerOut();
@@ -134,11 +134,11 @@ LightField Solve(Device& device, const Medium& medium, const Illumination& illum
   const PropagationSettings& settings, const Monitor& monitor, KeptLight* kept)
 {
   const PropagationProblem problem(medium, illumination, settings, MemoryOf(device));
-  const OrdersAdded how = HowOrdersAreAdded(problem);
+  const IterationScheme how = ChooseIterationScheme(problem);
   Device ofSolve(device, BudgetOfSolve(device, ExtentOf(problem, how)));
   TransportParts parts(ofSolve, problem, how);
   std::unique_ptr<Iteration> iteration;
-  if (parts.How == OrdersAdded::ByBalance)
+  if (parts.How == IterationScheme::Dsa)
   {
     iteration = std::make_unique<DiffusionAcceleration>(parts, kept);
   }
@@ -162,7 +162,7 @@ LightField Solve(Device& device, const Medium& medium, const Illumination& illum
     light.lampsApart = parts.LampsOf(illumination);
   }
   JudgeConvergence(settings, light);
-  DoubtGivenLight(illumination, light);
+  WarnAboutInputLight(illumination, light);
   return light;
 }
 }
@@ -176,7 +176,7 @@ LightField SolveConservative(Device& device, const Medium& medium, const Illumin
     JudgeBalance(light, medium);
     return light;
   }
-  const SlabTurn turn(medium.grid, illumination, settings);
+  const AxisPermutation turn(medium.grid, illumination, settings);
   if (!turn)
   {
     return Solve(device, medium, illumination, settings, monitor, kept);

@@ -27,7 +27,7 @@ public:
   /// Shares W that escaped through unknown faces among the faces, in proportion to what is known of each.
   void ShareEscaped(const Rgb& watts);
   /// Sets the W left over, and does not add to them.
-  void LeaveOver(int channel, double watts) { this->Sums.leftOver[channel] = watts; }
+  void SetUnaccounted(int channel, double watts) { this->Sums.leftOver[channel] = watts; }
 
   /// What came in and went out, of the channels of a volume.
   void Count(const SweepTally& tally);

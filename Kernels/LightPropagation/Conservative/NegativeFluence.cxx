@@ -15,8 +15,7 @@ class OwedPower
 {
 public:
   /// @param instead  of what is negative at first; null: 0
-  OwedPower(
-    const VoxelsAround& around, const std::function<double(std::size_t)>& sigma_a, float* fluence, const float* instead)
+  OwedPower(const Halo& around, const std::function<double(std::size_t)>& sigma_a, float* fluence, const float* instead)
     : Around(around)
     , Sigma(sigma_a)
     , Fluence(fluence)
@@ -111,7 +110,7 @@ private:
     return sum;
   }
 
-  const VoxelsAround& Around;
+  const Halo& Around;
   const std::function<double(std::size_t)> Sigma;
   float* Fluence;
   const VoxelBox Own, Known;
@@ -119,8 +118,8 @@ private:
 };
 }
 
-void CutOffNegative(Communicator& communicator, const VoxelsAround& around, const VolumeLayout& layout,
-  const Field& sigma_a, std::vector<float>& fluence, const std::vector<float>& instead)
+void CutOffNegative(Communicator& communicator, const Halo& around, const VolumeLayout& layout, const Field& sigma_a,
+  std::vector<float>& fluence, const std::vector<float>& instead)
 {
   const bool any = std::any_of(fluence.begin(), fluence.end(), [](float value) { return value < 0.0f; });
   if (communicator.Sum({ any ? 1.0 : 0.0 })[0] == 0.0)
@@ -140,8 +139,8 @@ void CutOffNegative(Communicator& communicator, const VoxelsAround& around, cons
   }
 }
 
-void MakeFluence(Communicator& communicator, const VoxelsAround& around, const VolumeLayout& layout,
-  const Field& sigma_a, std::vector<float>& solved, std::vector<float> path, const std::vector<float>& uncollided)
+void MakeFluence(Communicator& communicator, const Halo& around, const VolumeLayout& layout, const Field& sigma_a,
+  std::vector<float>& solved, std::vector<float> path, const std::vector<float>& uncollided)
 {
   const double perVolume = 1.0 / layout.grid.VoxelVolume();
   path.resize(solved.size());
@@ -152,12 +151,12 @@ void MakeFluence(Communicator& communicator, const VoxelsAround& around, const V
   CutOffNegative(communicator, around, layout, sigma_a, solved);
 }
 
-void CutOffNegative(Communicator& communicator, const VoxelsAround& around, const VolumeLayout& layout,
-  const Field& sigma_a, Buffer<float>& fluence)
+void CutOffNegative(Communicator& communicator, const Halo& around, const VolumeLayout& layout, const Field& sigma_a,
+  Buffer<float>& fluence)
 {
   std::vector<float> values;
-  communicator.Together([&] { values = fluence.Read(); });
+  communicator.Collective([&] { values = fluence.Read(); });
   CutOffNegative(communicator, around, layout, sigma_a, values);
-  communicator.Together([&] { fluence.Write(values.data()); });
+  communicator.Collective([&] { fluence.Write(values.data()); });
 }
 }

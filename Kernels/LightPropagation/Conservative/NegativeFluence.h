@@ -1,6 +1,6 @@
 #pragma once
 
-#include "Distribution/VoxelsAround.h"
+#include "Distribution/Halo.h"
 #include "LightPropagation/Sweep/VolumeLayout.h"
 #include "Medium/Field.h"
 
@@ -16,18 +16,18 @@ namespace tyndall
 /// @param sigma_a  of the same
 /// @param fluence  planar, as the layout has it; nothing on a rank without voxels
 /// @param instead  values of 0 or more, likewise; empty: 0
-void CutOffNegative(Communicator& communicator, const VoxelsAround& around, const VolumeLayout& layout,
-  const Field& sigma_a, std::vector<float>& fluence, const std::vector<float>& instead = {});
+void CutOffNegative(Communicator& communicator, const Halo& around, const VolumeLayout& layout, const Field& sigma_a,
+  std::vector<float>& fluence, const std::vector<float>& instead = {});
 
 /// Fluence of an accelerated solve (numerics.md, section 7.10): what the system was solved for, or, where that is
 /// negative, what the last sweep found, and uncollided light. All ranks call it.
 /// @param solved      W / length^2, is added to
 /// @param path        W length, of the last sweep; at least as many values
 /// @param uncollided  W / length^2, likewise
-void MakeFluence(Communicator& communicator, const VoxelsAround& around, const VolumeLayout& layout,
-  const Field& sigma_a, std::vector<float>& solved, std::vector<float> path, const std::vector<float>& uncollided);
+void MakeFluence(Communicator& communicator, const Halo& around, const VolumeLayout& layout, const Field& sigma_a,
+  std::vector<float>& solved, std::vector<float> path, const std::vector<float>& uncollided);
 
 /// CutOffNegative on the device.
-void CutOffNegative(Communicator& communicator, const VoxelsAround& around, const VolumeLayout& layout,
-  const Field& sigma_a, Buffer<float>& fluence);
+void CutOffNegative(Communicator& communicator, const Halo& around, const VolumeLayout& layout, const Field& sigma_a,
+  Buffer<float>& fluence);
 }

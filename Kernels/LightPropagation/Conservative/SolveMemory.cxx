@@ -32,8 +32,8 @@ std::size_t ArraysOfOrders(const SolveExtent& solve)
   constexpr std::size_t OfOctants = 28, OfCells = 2, OfBalance = 34;
   switch (solve.how)
   {
-    case OrdersAdded::ByBalance: return OfBalance + 2 * moments + (solve.settings.netFlux ? 6 : 0);
-    case OrdersAdded::ByCells: return OfCells;
+    case IterationScheme::Dsa: return OfBalance + 2 * moments + (solve.settings.netFlux ? 6 : 0);
+    case IterationScheme::CoarseMeshDsa: return OfCells;
     default: return solve.byOctant ? OfOctants : 0;
   }
 }
@@ -73,7 +73,7 @@ std::size_t BytesOfSweep(const Device& device, const SolveExtent& solve)
 }
 }
 
-SolveExtent ExtentOf(const PropagationProblem& problem, OrdersAdded how)
+SolveExtent ExtentOf(const PropagationProblem& problem, IterationScheme how)
 {
   SolveExtent solve = { problem.TheGrid().size, problem.Settings(), problem.Channels(), problem.Scattering().Degree(),
     how };

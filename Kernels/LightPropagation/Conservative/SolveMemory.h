@@ -17,12 +17,12 @@ struct SolveExtent
   const PropagationSettings& settings;
   int channels = 1;
   int degree = 0; ///< of angular moments
-  OrdersAdded how = OrdersAdded::OneByOne;
+  IterationScheme how = IterationScheme::SourceIteration;
   bool byOctant = false; ///< voxels shine otherwise into each octant
   bool byCells = false;  ///< light comes or goes by cells of the faces
   bool ofBlock = false;  ///< a rank's block is swept, by one set of rays after the other
 };
-SolveExtent ExtentOf(const PropagationProblem& problem, OrdersAdded how);
+SolveExtent ExtentOf(const PropagationProblem& problem, IterationScheme how);
 
 /// Bytes that a solve takes of a device where nothing is streamed: at most, and about a quarter more than most solves.
 /// GPUs take more where there is room: arrays of their own of all ways at once (SweepOnGpu.h).

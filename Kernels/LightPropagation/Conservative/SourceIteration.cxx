@@ -30,7 +30,7 @@ constexpr int OrdersExpected = 6;     ///< to tell whether it pays to sweep empt
 SourceIteration::SourceIteration(TransportParts& parts, const KeptLight* kept)
   : Parts(parts)
   , Settings(parts.Problem.Settings())
-  , Warm(parts, kept, parts.How == OrdersAdded::ByCells ? "diffusion on cells" : "source iteration")
+  , Warm(parts, kept, parts.How == IterationScheme::CoarseMeshDsa ? "diffusion on cells" : "source iteration")
   , Shining(parts.HasSource())
 {
   if (this->Warm.Keeps() && parts.Basis)
@@ -38,13 +38,13 @@ SourceIteration::SourceIteration(TransportParts& parts, const KeptLight* kept)
     this->Moments = Buffer<float>(parts.TheDevice, parts.Layout.MomentFloats(parts.Functions()), "the light to keep");
     this->Moments.Fill(0.0f);
   }
-  if (parts.How == OrdersAdded::OneByOne && OctantSources::Matter(parts.Problem))
+  if (parts.How == IterationScheme::SourceIteration && OctantSources::Matter(parts.Problem))
   {
     const Grid& grid = parts.Layout.grid;
     this->AtFaces.emplace(OctantSources::Scene{ parts.TheDevice, this->Settings, parts.Layout, parts.OnDevice, grid,
       { { 0, 0, 0 }, grid.size }, !parts.Lamps.empty() });
   }
-  if (parts.How == OrdersAdded::ByCells)
+  if (parts.How == IterationScheme::CoarseMeshDsa)
   {
     this->Cells.emplace(parts);
     for (RestOfOrders& rest : this->Rest)
@@ -108,7 +108,7 @@ IterationResult SourceIteration::Run(const Monitor& monitor)
   {
     SingleRank alone;
     const BlockPartition whole = BlockPartition::Even(this->Parts.Layout.grid, 1);
-    CutOffNegative(alone, VoxelsAround(alone, whole, this->Settings.periodic, 1), this->Parts.Layout,
+    CutOffNegative(alone, Halo(alone, whole, this->Settings.periodic, 1), this->Parts.Layout,
       this->Parts.Problem.TheMedium().sigma_a, this->Parts.Fluence);
   }
   this->Result.ledger.ShareEscaped(this->Escaped);
@@ -138,7 +138,7 @@ void SourceIteration::MakeSweeps()
   request.faceIn = this->Parts.LightByCells();
   this->Whole = this->Parts.MakeSweep(request);
   this->MakeFilledSweep();
-  if (this->Settings.leaveOut && this->Parts.SweepsAreLit() && !this->Shining)
+  if (this->Settings.leaveOut && this->Parts.SweepCarriesBoundarySource() && !this->Shining)
   {
     this->MakeLitSweep();
   }
@@ -362,7 +362,7 @@ void SourceIteration::ScatterByCells()
   this->Residual = 0.0;
   for (int c = 0; c < parts.Layout.channels; ++c)
   {
-    this->Result.ledger.LeaveOver(c, powers.left[c] + this->OnTheWay[c] + this->Stranded[c]);
+    this->Result.ledger.SetUnaccounted(c, powers.left[c] + this->OnTheWay[c] + this->Stranded[c]);
     this->AllScattered[c] += powers.scattered[c];
     const double before = std::abs(this->WasOnTheWay[c]), onTheWay = std::abs(this->OnTheWay[c]);
     const double now = this->Cells->ForeseeWay()
@@ -434,7 +434,8 @@ void SourceIteration::ScatterOrder()
   }
   for (int c = 0; c < 3; ++c)
   {
-    this->Result.ledger.LeaveOver(c, this->Scattered[c] + this->OnTheWay[c] + this->Reflected[c] + this->Stranded[c]);
+    this->Result.ledger.SetUnaccounted(
+      c, this->Scattered[c] + this->OnTheWay[c] + this->Reflected[c] + this->Stranded[c]);
   }
   if (this->Order == 0)
   {

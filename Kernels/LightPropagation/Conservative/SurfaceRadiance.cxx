@@ -89,7 +89,7 @@ double OfHalfSpace(const Surface& s, double mu, double ofBeams = 1.0)
   return radiance;
 }
 
-double FromDeepWithin(double albedo, double mu)
+double DiffuseExitance(double albedo, double mu)
 {
   const double k = std::min(std::sqrt(3.0 * (1.0 - albedo)), LargestExponent);
   return HalfSpaceH(albedo, mu) / (1.0 - k * mu);
@@ -102,7 +102,7 @@ std::array<double, 4> Leaving(const Surface& s)
   for (std::size_t n = 0; n < Nodes.size(); ++n)
   {
     halfSpace += 2.0 * Nodes[n] * Weights[n] * OfHalfSpace(s, Nodes[n], s.brought);
-    deep += 2.0 * Nodes[n] * Weights[n] * FromDeepWithin(s.albedo, Nodes[n]);
+    deep += 2.0 * Nodes[n] * Weights[n] * DiffuseExitance(s.albedo, Nodes[n]);
   }
   // The same as diffusion with Marshak's condition has it (numerics.md, Eq. (79)).
   double exact = 0.0;
@@ -128,7 +128,7 @@ std::array<double, 4> Leaving(const Surface& s)
   for (std::size_t n = 0; n < radiance.size(); ++n)
   {
     const double mu = SurfaceCosines[n];
-    radiance[n] = std::max(OfHalfSpace(s, mu) + amplitude * FromDeepWithin(s.albedo, mu), 0.0);
+    radiance[n] = std::max(OfHalfSpace(s, mu) + amplitude * DiffuseExitance(s.albedo, mu), 0.0);
   }
   return radiance;
 }

@@ -58,7 +58,7 @@ SplitEmission SplitEmissionOf(const PropagationProblem& problem, const Rgb& come
 }
 }
 
-TransportParts::TransportParts(Device& device, const PropagationProblem& problem, OrdersAdded how)
+TransportParts::TransportParts(Device& device, const PropagationProblem& problem, IterationScheme how)
   : TheDevice(device)
   , Problem(problem)
   , How(how)
@@ -180,7 +180,7 @@ void TransportParts::FindBoundaryLight()
   const bool all = this->ByBalance() || !this->FineBoundary;
   this->UsualBoundary = std::make_unique<BoundaryLight>(grid, settings, this->Usual,
     all ? shining : AlongUsual(this->Finer, shining), all || this->Finer.ofFacesAlone ? this->FarAway : Environment());
-  if (this->SweepsAreLit())
+  if (this->SweepCarriesBoundarySource())
   {
     this->UsualBoundary->CheckRays(this->Layout.channels);
   }
@@ -236,7 +236,7 @@ void TransportParts::FindFaceLight()
 
 SweepBoundary TransportParts::BoundaryOfSweeps() const
 {
-  if (this->SweepsAreLit())
+  if (this->SweepCarriesBoundarySource())
   {
     return this->UsualBoundary->Boundary();
   }

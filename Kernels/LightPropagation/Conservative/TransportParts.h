@@ -35,13 +35,13 @@ public:
   /// @param problem  must stay
   /// @param how  scattering orders are to be added up
   /// @throws DeviceError if the arrays do not fit; InvalidInput where rays are too few (BoundaryLight.h)
-  TransportParts(Device& device, const PropagationProblem& problem, OrdersAdded how);
+  TransportParts(Device& device, const PropagationProblem& problem, IterationScheme how);
   TransportParts(const TransportParts&) = delete; // lights see directions that this owns
   TransportParts& operator=(const TransportParts&) = delete;
 
   Device& TheDevice;
   const PropagationProblem& Problem;
-  const OrdersAdded How;
+  const IterationScheme How;
   const VolumeLayout Layout;
   const MediumOnDevice OnDevice;
   const std::unique_ptr<const ScatteringOperator> Scattering;
@@ -72,7 +72,7 @@ public:
   bool HasSource() const { return this->MediumShines; }
   /// What sweeps along the usual directions carry of the light from outside; empty: nothing.
   SweepBoundary BoundaryOfSweeps() const;
-  bool SweepsAreLit() const { return this->UsualBoundary->Shines(); }
+  bool SweepCarriesBoundarySource() const { return this->UsualBoundary->Shines(); }
   /// The light of FineBoundary along the usual directions.
   BoundaryLight FinePartAlongUsual() const;
 
@@ -134,7 +134,7 @@ public:
   std::unique_ptr<SweepOperator> MakeSweep(const SweepRequest& request);
 
 private:
-  bool ByBalance() const { return this->How == OrdersAdded::ByBalance; }
+  bool ByBalance() const { return this->How == IterationScheme::Dsa; }
   void LoadSource();
   void FindVacuum();
   std::vector<float> EmissionOf(bool emptyVoxels) const;

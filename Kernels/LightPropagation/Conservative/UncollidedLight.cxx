@@ -213,7 +213,7 @@ void UncollidedLight::CountAbsorbed()
     this->Counted.Absorb(c, SumOverVoxels(layout.grid, [&](std::size_t i) {
       return static_cast<double>(this->TheMedium.sigma_a.At(i, c)) * this->Lengths[c * layout.Stride() + i];
     }));
-    this->Counted.LeaveOver(c, this->OfSources.onTheWay[c]);
+    this->Counted.SetUnaccounted(c, this->OfSources.onTheWay[c]);
   }
 }
 }

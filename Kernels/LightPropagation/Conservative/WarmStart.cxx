@@ -40,9 +40,9 @@ WarmStart::WarmStart(const Scene& scene, const KeptLight* kept, const char* meth
 }
 
 /// What may fail on one rank (Communicator.h).
-void WarmStart::Together(const std::function<void()>& work) const
+void WarmStart::Collective(const std::function<void()>& work) const
 {
-  this->The.others ? this->The.others->Together(work) : work();
+  this->The.others ? this->The.others->Collective(work) : work();
 }
 
 Rgb WarmStart::SumOverRanks(const Rgb& own) const
@@ -95,7 +95,7 @@ void WarmStart::Prepare(const std::vector<float>& direct)
     return;
   }
   const MomentPlaces places = layout.Places(this->The.functions);
-  this->Together([&] {
+  this->Collective([&] {
     this->Scaled = this->Kept->scattered;
     for (std::size_t i = 0; i < places.beams; ++i)
     {
@@ -111,7 +111,7 @@ void WarmStart::Prepare(const std::vector<float>& direct)
 
 void WarmStart::AddGuessTo(const Buffer<float>& source) const
 {
-  this->Together([&] {
+  this->Collective([&] {
     if (this->Has())
     {
       this->The.scattering.AddFirstScattered({ &this->Path, nullptr, nullptr, nullptr }, source);
@@ -121,7 +121,7 @@ void WarmStart::AddGuessTo(const Buffer<float>& source) const
 
 void WarmStart::TakeGuessFrom(const Buffer<float>& source)
 {
-  this->Together([&] {
+  this->Collective([&] {
     for (float& value : this->Scaled)
     {
       value = -value;
@@ -138,7 +138,7 @@ Rgb WarmStart::MagnitudeOf(const Buffer<float>& source) const
   const VolumeLayout& layout = this->The.layout;
   Device& device = this->The.device;
   Rgb sums = {};
-  this->Together([&] {
+  this->Collective([&] {
     if (!this->Has())
     {
       return;
@@ -169,7 +169,7 @@ KeptLight WarmStart::Leave(const std::vector<float>& base, const std::vector<flo
     left.rate[c] = std::max(std::min(rate[c], SlowestRate), this->Begins() ? this->Rate(c) : 0.0);
   }
   left.firstScattered = this->First;
-  this->Together([&] {
+  this->Collective([&] {
     left.scattered.assign(layout.MomentFloats(this->The.functions), 0.0f);
     const std::vector<float> fluence = this->The.fluence.Read();
     const auto volume = static_cast<float>(layout.grid.VoxelVolume());

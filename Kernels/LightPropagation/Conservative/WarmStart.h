@@ -75,7 +75,7 @@ private:
   LightKind Kind(const char* method) const;
   Rgb ScatteredOf(const std::vector<float>& values) const;
   Rgb SumOverRanks(const Rgb& own) const;
-  void Together(const std::function<void()>& work) const;
+  void Collective(const std::function<void()>& work) const;
   bool Has() const { return this->The.layout.grid.VoxelCount() > 0; } ///< voxels
 
   Scene The;

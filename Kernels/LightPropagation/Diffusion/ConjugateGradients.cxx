@@ -14,10 +14,10 @@ constexpr double Looser = 10.0;      ///< root mean square of a residual, than i
 constexpr double Negligible = 1e-12; ///< residual, of the first one
 
 /// Whether a residual is above a bound and has not stopped falling. Asked once an iteration.
-class StillTooLarge
+class StagnationTest
 {
 public:
-  explicit StillTooLarge(double most)
+  explicit StagnationTest(double most)
     : Most(most)
   {
   }
@@ -37,13 +37,13 @@ private:
 };
 }
 
-int GoDown(const GradientSteps& steps, double left, const GradientBounds& bounds, double& firstResidual)
+int SolveCg(const GradientSteps& steps, double left, const GradientBounds& bounds, double& firstResidual)
 {
   double rz = steps.precondition();
   firstResidual = std::max(firstResidual, rz);
   const double enough = std::max(rz * bounds.reduction * bounds.reduction, firstResidual * Negligible * Negligible);
   const double least = Looser * bounds.reduction;
-  StillTooLarge tooLarge(std::min(bounds.leftAtMost * bounds.leftAtMost * bounds.count, least * least * left));
+  StagnationTest tooLarge(std::min(bounds.leftAtMost * bounds.leftAtMost * bounds.count, least * least * left));
   bool tooMuchLeft = tooLarge(left);
   double part = 0.0;
   int iteration = 0;

@@ -25,5 +25,5 @@ struct GradientBounds
 /// @param left  square of the residual
 /// @param firstResidual  of the first solve, in the norm of the preconditioner, squared: kept here
 /// @return iterations
-int GoDown(const GradientSteps& steps, double left, const GradientBounds& bounds, double& firstResidual);
+int SolveCg(const GradientSteps& steps, double left, const GradientBounds& bounds, double& firstResidual);
 }

@@ -280,6 +280,6 @@ int MultigridSolver::Iterate(const ExactValues& values, double left, double unit
   const GradientSteps steps = { [&] { return this->Precondition(); }, [&](double part) { this->Turn(part); },
     [&] { return this->Curvature(); }, [&](double length) { return this->Step(values, length, unit); } };
   const auto voxels = static_cast<double>(this->Rows().size[0]) * this->Rows().size[1] * this->Rows().size[2];
-  return GoDown(steps, left, { reduction, leftAtMost, voxels }, this->FirstResidual);
+  return SolveCg(steps, left, { reduction, leftAtMost, voxels }, this->FirstResidual);
 }
 }

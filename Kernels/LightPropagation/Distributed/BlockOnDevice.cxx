@@ -7,7 +7,7 @@ namespace tyndall
 BlockOnDevice::BlockOnDevice(Device& device, Communicator& communicator, const BlockPartition& partition,
   const BlockScene& scene, const PropagationSettings& settings, const IncidentLight& incident)
   : TheDevice(device)
-  , Others(communicator)
+  , Comm(communicator)
   , Partition(partition)
   , Scene(scene)
   , Settings(settings)
@@ -58,8 +58,8 @@ Deposit BlockOnDevice::WholeDeposit() const
 std::unique_ptr<SweepOperator> BlockOnDevice::MakeSweep(const SweepRequest& request)
 {
   std::unique_ptr<SweepOperator> sweep;
-  this->Others.Together([&] {
-    sweep = std::make_unique<SweepInBlocks>(this->TheDevice, this->Others, this->Partition, this->Layout,
+  this->Comm.Collective([&] {
+    sweep = std::make_unique<SweepInBlocks>(this->TheDevice, this->Comm, this->Partition, this->Layout,
       this->OnDevice.SigmaT(), this->Settings.periodic, request, this->Workspace);
   });
   return sweep;
@@ -69,6 +69,6 @@ WarmStart::Scene SceneOf(const BlockOnDevice& block, const IncidentLight& incide
 {
   return { block.TheDevice, block.Layout, block.Scene.Scattering(), *block.Scattering, block.Settings, block.Fluence,
     block.Scene.traits.scatters, block.Functions(), static_cast<int>(incident.Usual().Set().directions.size()),
-    block.Partition.whole, &block.Others, block.Partition.blocks[block.Others.Rank()] };
+    block.Partition.whole, &block.Comm, block.Partition.blocks[block.Comm.Rank()] };
 }
 }

@@ -30,7 +30,7 @@ public:
   BlockOnDevice& operator=(const BlockOnDevice&) = delete;
 
   Device& TheDevice;
-  Communicator& Others;
+  Communicator& Comm;
   const BlockPartition& Partition;
   const BlockScene& Scene;
   const PropagationSettings& Settings;

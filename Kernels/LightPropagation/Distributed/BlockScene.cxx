@@ -98,7 +98,7 @@ BlockScene::BlockScene(Communicator& communicator, bool has, const BlockPartitio
   , traits(TraitsOfAll(communicator, has ? TraitsOf(ofBlock, true) : MediumTraits()))
   , lengthUnit(LengthUnitOf(partition.whole))
 {
-  communicator.Together([&] {
+  communicator.Collective([&] {
     this->illumination.lights = SeenFrom(partition.whole, shining.lights);
     if (this->lengthUnit != 1.0)
     {
@@ -150,10 +150,10 @@ void BlockScene::Truncate(Communicator& communicator, const BlockPartition& part
     most = std::max(most, block.VoxelCount());
   }
   int degree = 0;
-  communicator.Together(
+  communicator.Collective(
     [&] { degree = this->traits.scatters ? AngularDegreeFor(detail, whole, settings, false, most, memory) : 0; });
   degree = -static_cast<int>(communicator.Largest({ -1.0 * degree })[0]); // that fits all
-  communicator.Together([&] {
+  communicator.Collective([&] {
     std::optional<DirectionKernel> kernel;
     if (degree > 0 && IsMuchThinnerAlongOneAxis(detail, whole, this->channels, settings.periodic))
     {

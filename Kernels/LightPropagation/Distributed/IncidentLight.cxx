@@ -26,7 +26,7 @@ IncidentLight::IncidentLight(const Grid& whole, const PropagationSettings& setti
   const bool all = !this->AlongFine;
   this->AlongUsual = std::make_unique<const BoundaryLight>(whole, settings, this->OfScattered,
     all ? shining : tyndall::AlongUsual(finer, shining), all || finer.ofFacesAlone ? this->Far.smooth : Environment());
-  if (this->SweepsAreLit())
+  if (this->SweepCarriesBoundarySource())
   {
     this->AlongUsual->CheckRays(channels);
   }

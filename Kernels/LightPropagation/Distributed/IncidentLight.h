@@ -40,7 +40,7 @@ public:
   const BoundaryLight& UsualBoundary() const { return *this->AlongUsual; }
   /// Null where nothing does.
   const BoundaryLight* FineBoundary() const { return this->AlongFine.get(); }
-  bool SweepsAreLit() const { return this->AlongUsual->Shines(); }
+  bool SweepCarriesBoundarySource() const { return this->AlongUsual->Shines(); }
   /// EscapeCorrection.h is due: scattered light leaves along other directions than light from outside comes in.
   bool CorrectsEscape() const { return this->Chosen.correctsEscape; }
 

@@ -2,7 +2,7 @@
 
 #include "Light/LeftOut.h"
 #include "LightPropagation/Conservative/NegativeFluence.h"
-#include "LightPropagation/Distributed/Balance/WhatWholeHas.h"
+#include "LightPropagation/Distributed/Balance/GlobalStatistics.h"
 #include "LightPropagation/Scattering/MomentScattering.h"
 
 #include <algorithm>
@@ -73,8 +73,8 @@ void IterationInBlocks::MakeWarm()
 {
   BlockOnDevice& block = this->Block;
   this->Warm.emplace(SceneOf(block, this->Incident), this->Kept,
-    this->Orders.how == OrdersAdded::ByCells ? "diffusion on cells" : "source iteration");
-  block.Others.Together([&] {
+    this->Orders.how == IterationScheme::CoarseMeshDsa ? "diffusion on cells" : "source iteration");
+  block.Comm.Collective([&] {
     if (this->Warm->Keeps() && block.Angular)
     {
       this->Moments = Buffer<float>(block.TheDevice, block.Layout.MomentFloats(block.Functions()), "the light to keep");
@@ -85,7 +85,7 @@ void IterationInBlocks::MakeWarm()
 
 void IterationInBlocks::MakeCells()
 {
-  if (this->Orders.how != OrdersAdded::ByCells)
+  if (this->Orders.how != IterationScheme::CoarseMeshDsa)
   {
     return;
   }
@@ -100,16 +100,16 @@ void IterationInBlocks::MakeCells()
 void IterationInBlocks::MakeAtFaces()
 {
   BlockOnDevice& block = this->Block;
-  if (!this->Cells && OctantSourcesMatter(block.Others, block.Scene, block.Settings))
+  if (!this->Cells && OctantSourcesMatter(block.Comm, block.Scene, block.Settings))
   {
-    block.Others.Together([&] {
+    block.Comm.Collective([&] {
       this->AtFaces.emplace(OctantSources::Scene{ block.TheDevice, block.Settings, block.Layout, block.OnDevice,
-        block.Partition.whole, block.Partition.blocks[block.Others.Rank()], !this->Incident.Lamps().empty() });
+        block.Partition.whole, block.Partition.blocks[block.Comm.Rank()], !this->Incident.Lamps().empty() });
     });
   }
   else if (block.Settings.source == PropagationSource::Octants)
   {
-    const bool thick = OctantSources::AreThick(CountThickVoxels(block.Others, block.Scene));
+    const bool thick = OctantSources::AreThick(CountThickVoxels(block.Comm, block.Scene));
     this->NotByOctant = { thick ? left_out::NotByOctant : left_out::ThinVoxels };
   }
 }
@@ -142,7 +142,7 @@ void IterationInBlocks::AddUncollided(const Monitor& monitor)
   const double part = corrects ? sources / (sources + 1.0) : 1.0; // of the time
   const SweepTally tally = this->Uncollided.AddAll(this->Block.StoresMoments() ? &this->Result.shown : nullptr,
     this->AtFaces ? &*this->AtFaces : nullptr, OfPart(monitor, 0.0, part));
-  this->Block.Others.Together([&] {
+  this->Block.Comm.Collective([&] {
     if (this->Block.Faces)
     {
       this->Block.Faces->TakeUncollided();
@@ -161,7 +161,7 @@ void IterationInBlocks::FindEscaping(const Monitor& monitor)
 {
   BlockOnDevice& block = this->Block;
   const UncollidedOverRanks::EvenSky sky = this->Uncollided.FindEvenSky(monitor);
-  block.Others.Together([&] {
+  block.Comm.Collective([&] {
     this->Escaping.emplace(
       block.TheDevice, block.Layout, block.Scene.Scattering(), block.OnDevice.SigmaT(), sky.fine, sky.usual);
   });
@@ -169,7 +169,7 @@ void IterationInBlocks::FindEscaping(const Monitor& monitor)
 
 void IterationInBlocks::SweepOrder(SweepOperator& sweep, BeamsInSource& beams, const Monitor& monitor)
 {
-  const bool lit = this->Order == 0 && this->Incident.SweepsAreLit();
+  const bool lit = this->Order == 0 && this->Incident.SweepCarriesBoundarySource();
   const SweepBoundary boundary = lit ? this->Incident.UsualBoundary().Boundary() : SweepBoundary();
   const bool goesOn = Sum(this->OnTheWay) != 0.0 || Sum(this->Reflected) != 0.0; // of a guess they can be negative
   this->WasOnTheWay = std::exchange(this->OnTheWay, {});
@@ -177,7 +177,7 @@ void IterationInBlocks::SweepOrder(SweepOperator& sweep, BeamsInSource& beams, c
   {
     return;
   }
-  this->Block.Others.Together([&] {
+  this->Block.Comm.Collective([&] {
     if (this->Order == 0)
     {
       beams.Hold();
@@ -194,8 +194,8 @@ void IterationInBlocks::LetEscape()
 {
   BlockOnDevice& block = this->Block;
   Rgb own = {};
-  block.Others.Together([&] { own = block.Has ? this->Escaping->Apply(block.Path, block.Source) : Rgb{}; });
-  const std::vector<double> all = block.Others.Sum({ own[0], own[1], own[2] });
+  block.Comm.Collective([&] { own = block.Has ? this->Escaping->Apply(block.Path, block.Source) : Rgb{}; });
+  const std::vector<double> all = block.Comm.Sum({ own[0], own[1], own[2] });
   for (int c = 0; c < 3; ++c)
   {
     this->Escaped[c] += all[c];
@@ -212,7 +212,7 @@ void IterationInBlocks::Reflect()
     return;
   }
   std::array<Rgb, 6> back = {};
-  this->Block.Others.Together([&] { back = this->Block.Faces->Reflect(); });
+  this->Block.Comm.Collective([&] { back = this->Block.Faces->Reflect(); });
   for (int face = 0; face < 6; ++face)
   {
     for (int c = 0; c < 3; ++c)
@@ -230,7 +230,7 @@ void IterationInBlocks::TakeDirect(const Buffer<float>& fluence, double scale)
   {
     return;
   }
-  this->Block.Others.Together([&] {
+  this->Block.Comm.Collective([&] {
     if (this->Block.Has)
     {
       this->Result.fluenceDirect = Interleaved(this->Block.Layout, fluence, scale);
@@ -261,7 +261,7 @@ void IterationInBlocks::Scatter()
   this->ShineByOctant();
   std::vector<double> powers = this->ScatterOwn();
   this->TakeDirect(this->Block.Fluence, 1.0);
-  powers = this->Block.Others.Sum(powers);
+  powers = this->Block.Comm.Sum(powers);
   for (int c = 0; c < 3; ++c)
   {
     this->Result.ledger.Absorb(c, powers[c]);
@@ -278,7 +278,8 @@ void IterationInBlocks::Scatter()
   }
   for (int c = 0; c < 3; ++c)
   {
-    this->Result.ledger.LeaveOver(c, this->Scattered[c] + this->OnTheWay[c] + this->Reflected[c] + this->Stranded[c]);
+    this->Result.ledger.SetUnaccounted(
+      c, this->Scattered[c] + this->OnTheWay[c] + this->Reflected[c] + this->Stranded[c]);
   }
   const double all = Sum(this->AllScattered);
   this->Result.convergence.Add(this->Residual, all > 0.0 ? Sum(this->Scattered) / all : 0.0, this->Result.ledger);
@@ -291,9 +292,9 @@ void IterationInBlocks::ShineByOctant()
   {
     return;
   }
-  this->Block.Others.Together([&] { this->AtFaces->TakeIncoming(this->Incident.Usual()); });
+  this->Block.Comm.Collective([&] { this->AtFaces->TakeIncoming(this->Incident.Usual()); });
   const BeyondFaces beyond = this->Block.Across.Fetch(this->AtFaces->CameInThroughFaces());
-  this->Block.Others.Together([&] { this->AtFaces->Find(this->Block.Source, beyond); });
+  this->Block.Comm.Collective([&] { this->AtFaces->Find(this->Block.Source, beyond); });
 }
 
 /// @return W of this rank, three that its voxels absorbed and three that they scattered
@@ -301,7 +302,7 @@ std::vector<double> IterationInBlocks::ScatterOwn()
 {
   BlockOnDevice& block = this->Block;
   std::vector<double> powers(6, 0.0);
-  block.Others.Together([&] {
+  block.Comm.Collective([&] {
     if (!block.Has)
     {
       return;
@@ -408,11 +409,10 @@ void IterationInBlocks::Leave()
   std::vector<float> moments;
   if (this->AtFaces || this->Warm->Begins() || this->Cells) // the same condition as in SourceIteration
   {
-    const VoxelsAround around(this->Block.Others, this->Block.Partition, this->Block.Settings.periodic, 1);
-    CutOffNegative(
-      this->Block.Others, around, this->Block.Layout, this->Block.Scene.medium.sigma_a, this->Block.Fluence);
+    const Halo around(this->Block.Comm, this->Block.Partition, this->Block.Settings.periodic, 1);
+    CutOffNegative(this->Block.Comm, around, this->Block.Layout, this->Block.Scene.medium.sigma_a, this->Block.Fluence);
   }
-  this->Block.Others.Together(
+  this->Block.Comm.Collective(
     [&] { moments = this->Moments.Size() > 0 ? this->Moments.Read() : std::vector<float>(); });
   this->Result.leftOut = this->Warm->LeftOut();
   this->Result.leftOut.insert(this->Result.leftOut.end(), this->NotByOctant.begin(), this->NotByOctant.end());

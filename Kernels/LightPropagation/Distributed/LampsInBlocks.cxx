@@ -50,7 +50,7 @@ std::array<int, 3> FirstVoxel(const BeamRow& row, int beam, const Grid& grid, co
 LampsInBlocks::LampsInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition,
   const std::array<bool, 3>& periodic, const VolumeLayout& layout, const Buffer<float>& sigma_t)
   : TheDevice(device)
-  , Others(communicator)
+  , Comm(communicator)
   , Partition(partition)
   , Own(partition.blocks[communicator.Rank()])
   , Stored(communicator, partition, periodic, Reach)
@@ -58,7 +58,7 @@ LampsInBlocks::LampsInBlocks(Device& device, Communicator& communicator, const B
   , OwnStride(layout.Stride())
 {
   std::vector<float> own;
-  communicator.Together([&] { own = this->Has() ? sigma_t.Read() : own; });
+  communicator.Collective([&] { own = this->Has() ? sigma_t.Read() : own; });
   std::vector<float> stored;
   for (const ChannelGroup& group : layout.Groups())
   {
@@ -68,7 +68,7 @@ LampsInBlocks::LampsInBlocks(Device& device, Communicator& communicator, const B
     const std::vector<float> around = this->Stored.Spread(ofGroup, 1);
     stored.insert(stored.end(), around.begin(), around.end());
   }
-  communicator.Together([&] {
+  communicator.Collective([&] {
     if (this->Has())
     {
       this->SigmaT = Buffer<float>(device, stored, "sigma_t around a block");
@@ -87,7 +87,7 @@ public:
     , Box(lamps.Stored.Known())
     , SigmaFirst(volume.sigma_t_first / std::max<std::size_t>(lamps.OwnStride, 1) * this->Box.VoxelCount())
   {
-    lamps.Others.Together([&] {
+    lamps.Comm.Collective([&] {
       if (lamps.Has())
       {
         this->Sums = std::make_unique<LampSums>(
@@ -227,7 +227,7 @@ void LampsInBlocks::Beams::AddToShares()
   std::vector<double> values = { this->Found.shone, this->Found.onTheWay };
   values.insert(values.end(), this->Found.in.begin(), this->Found.in.end());
   values.insert(values.end(), this->Found.out.begin(), this->Found.out.end());
-  values = this->All.Others.Sum(values);
+  values = this->All.Comm.Sum(values);
   this->Shares.shone += values[0];
   this->Shares.onTheWay += values[1];
   for (std::size_t face = 0; face < 6; ++face)
@@ -244,10 +244,10 @@ LampFactors LampsInBlocks::Beams::PutDown(double even)
 {
   const LampsInBlocks& all = this->All;
   std::vector<cl_long> found, own;
-  all.Others.Together([&] { found = this->Sums ? this->Sums->Sums().Read() : found; });
+  all.Comm.Collective([&] { found = this->Sums ? this->Sums->Sums().Read() : found; });
   // A rank without voxels may not know what the others want.
   const int parts =
-    static_cast<int>(all.Others.Largest({ static_cast<double>(LampSums::Parts(this->Lamp, this->Volume.deposit)) })[0]);
+    static_cast<int>(all.Comm.Largest({ static_cast<double>(LampSums::Parts(this->Lamp, this->Volume.deposit)) })[0]);
   for (int part = 0; part < parts; ++part)
   {
     const std::size_t count = this->Box.VoxelCount();
@@ -261,7 +261,7 @@ LampFactors LampsInBlocks::Beams::PutDown(double even)
   const double extinction = even > 0.0 ? this->ExtinctionOfAll() : 0.0;
   std::unique_ptr<LampSums> sums;
   double taken = 0.0;
-  all.Others.Together([&] {
+  all.Comm.Collective([&] {
     sums = std::make_unique<LampSums>(
       all.TheDevice, this->Lamp, this->Volume.deposit, this->Volume.stride, all.Partition.whole);
     if (all.Has())
@@ -270,9 +270,9 @@ LampFactors LampsInBlocks::Beams::PutDown(double even)
       taken = sums->FitToVacuum(this->Volume, this->Lamp, all.Own);
     }
   });
-  taken = all.Others.Sum({ taken })[0];
+  taken = all.Comm.Sum({ taken })[0];
   const LampFactors factors = this->Lamp.Factors(this->Shares, taken, even);
-  all.Others.Together([&] {
+  all.Comm.Collective([&] {
     if (all.Has())
     {
       sums->AddTo(this->Volume, this->Lamp, factors.taken);
@@ -293,8 +293,8 @@ LampFactors LampsInBlocks::Beams::PutDown(double even)
 double LampsInBlocks::Beams::ExtinctionOfAll()
 {
   double own = 0.0;
-  this->All.Others.Together([&] { own = this->All.Has() ? Extinction(this->Volume) : 0.0; });
-  return this->All.Others.Sum({ own })[0];
+  this->All.Comm.Collective([&] { own = this->All.Has() ? Extinction(this->Volume) : 0.0; });
+  return this->All.Comm.Sum({ own })[0];
 }
 
 /// What leaves by cells of the whole grid's faces, which each rank knows; empty where nobody asks.
@@ -305,14 +305,14 @@ std::vector<cl_long> LampsInBlocks::Beams::CellsOfAll()
     return {};
   }
   std::vector<double> values(BoxFaceCellCount(this->All.Partition.whole), 0.0);
-  this->All.Others.Together([&] {
+  this->All.Comm.Collective([&] {
     if (this->Sums)
     {
       const std::vector<cl_long> own = this->Sums->Cells().Read();
       std::copy(own.begin(), own.end(), values.begin());
     }
   });
-  values = this->All.Others.Sum(values);
+  values = this->All.Comm.Sum(values);
   return { values.begin(), values.end() };
 }
 

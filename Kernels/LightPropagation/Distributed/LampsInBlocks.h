@@ -3,8 +3,8 @@
 #include "Device/Monitor.h"
 #include "Distribution/BlockPartition.h"
 #include "Distribution/Communicator.h"
+#include "Distribution/Halo.h"
 #include "Distribution/Rounds.h"
-#include "Distribution/VoxelsAround.h"
 #include "LightPropagation/Sweep/SweepTally.h"
 #include "LightPropagation/Sweep/SweepVolume.h"
 #include "Lights/Lights.h"
@@ -39,10 +39,10 @@ private:
   bool Has() const { return this->Own.VoxelCount() > 0; }
 
   Device& TheDevice;
-  Communicator& Others;
+  Communicator& Comm;
   const BlockPartition& Partition;
   VoxelBox Own;
-  VoxelsAround Stored; ///< the block and what its beams may reach beside it
+  Halo Stored; ///< the block and what its beams may reach beside it
   tyndall::Rounds Rounds;
   std::size_t OwnStride; ///< of an extinction of the block in its layout, and
   Buffer<float> SigmaT;  ///< 1/length, of the stored voxels, one extinction after the other

@@ -42,7 +42,7 @@ void AddShown(const BlockOnDevice& block, const Buffer<float>& ofOrders, LightFi
     }
     shown = std::make_unique<ShownLight>(block.Scene.medium, block.Scene.Scattering(), *basis, block.Layout, most);
   }
-  const bool coloured = OnAnyRank(block.Others, shown && shown->HasColour());
+  const bool coloured = OnAnyRank(block.Comm, shown && shown->HasColour());
   if (shown)
   {
     shown->TakeColour(coloured);
@@ -66,9 +66,9 @@ void SayWhatLightLacks(const BlockOnDevice& block, LightField& light)
   }
 }
 
-void SayWhatSolveLacks(const BlockOnDevice& block, OrdersAdded how, LightField& light)
+void SayWhatSolveLacks(const BlockOnDevice& block, IterationScheme how, LightField& light)
 {
-  if (how == OrdersAdded::OneByOne)
+  if (how == IterationScheme::SourceIteration)
   {
     light.leftOut.emplace_back("acceleration: few scattering orders do");
   }
@@ -83,7 +83,8 @@ void SayWhatSolveLacks(const BlockOnDevice& block, OrdersAdded how, LightField& 
 }
 }
 
-LightField LightOfBlock(BlockOnDevice& block, const IncidentLight& incident, IterationResult&& found, OrdersAdded how)
+LightField LightOfBlock(
+  BlockOnDevice& block, const IncidentLight& incident, IterationResult&& found, IterationScheme how)
 {
   LightField light;
   light.channels = block.Layout.channels;

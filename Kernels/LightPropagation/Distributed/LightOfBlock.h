@@ -13,5 +13,6 @@ namespace tyndall
 /// @param block  its Path is written over
 /// @param found  is used up
 /// @param how  orders were added up
-LightField LightOfBlock(BlockOnDevice& block, const IncidentLight& incident, IterationResult&& found, OrdersAdded how);
+LightField LightOfBlock(
+  BlockOnDevice& block, const IncidentLight& incident, IterationResult&& found, IterationScheme how);
 }

@@ -5,8 +5,8 @@
 #include "Light/LeftOut.h"
 #include "LightPropagation/Conservative/SolveMemory.h"
 #include "LightPropagation/Convergence.h"
+#include "LightPropagation/Distributed/Balance/GlobalStatistics.h"
 #include "LightPropagation/Distributed/Balance/IterationByBalance.h"
-#include "LightPropagation/Distributed/Balance/WhatWholeHas.h"
 #include "LightPropagation/Distributed/IterationInBlocks.h"
 #include "LightPropagation/Distributed/LightOfBlock.h"
 #include "LightPropagation/PlaneParallel/IsPlaneParallel.h"
@@ -39,7 +39,7 @@ void CheckBlocks(Communicator& communicator, const BlockPartition& partition, co
 {
   const int rank = communicator.Rank();
   bool has = false;
-  communicator.Together([&] {
+  communicator.Collective([&] {
     partition.Check();
     Require(static_cast<int>(partition.blocks.size()) == communicator.Ranks(), "There is not a block for each rank.");
     has = partition.blocks[rank].VoxelCount() > 0;
@@ -54,7 +54,7 @@ void CheckBlocks(Communicator& communicator, const BlockPartition& partition, co
   });
   RequireSame(communicator, partition);
   RequireSame(communicator, has, medium, illumination, settings);
-  CheckLightHasAnEnd(LightEndsOnAny(communicator, has, medium, illumination), illumination, settings);
+  RequireSink(LightEndsOnAny(communicator, has, medium, illumination), illumination, settings);
 }
 
 namespace
@@ -90,7 +90,7 @@ public:
   /// All ranks make one together.
   ProblemInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition, const Medium& medium,
     const Illumination& illumination, const PropagationSettings& settings)
-    : Others(communicator)
+    : Comm(communicator)
     , Given(Checked(communicator, partition, medium, illumination, settings))
     , Has(partition.blocks[communicator.Rank()].VoxelCount() > 0)
     , Unvarying(partition.whole, illumination, settings)
@@ -108,14 +108,14 @@ public:
     }
     this->Scene.emplace(communicator, this->Has, this->Blocks, own, this->Shining, this->Settings, MemoryOf(device));
     this->Blocks.whole = this->Scene->WholeOf(this->Blocks.whole);
-    this->Orders = HowOrdersAreAdded(communicator, this->Blocks, *this->Scene, this->Settings);
+    this->Orders = ChooseIterationScheme(communicator, this->Blocks, *this->Scene, this->Settings);
   }
   ProblemInBlocks(const ProblemInBlocks&) = delete; // the scene sees its light
   ProblemInBlocks& operator=(const ProblemInBlocks&) = delete;
 
   LightField Solve(Device& device, const Illumination& illumination, const Monitor& monitor, KeptLight* kept);
-  std::string BetterAsWhole(const Medium& medium, const Illumination& illumination) const;
-  bool BalancesVoxels() const { return this->Orders.how == OrdersAdded::ByBalance; }
+  std::string ReasonNotToDecompose(const Medium& medium, const Illumination& illumination) const;
+  bool BalancesVoxels() const { return this->Orders.how == IterationScheme::Dsa; }
 
 private:
   /// Volume of a voxel over that which is solved.
@@ -123,11 +123,11 @@ private:
   {
     return this->Given.whole.VoxelVolume() / this->Unvarying.Widened(this->Given.whole).VoxelVolume();
   }
-  UncollidedDirections FinerDirections(OrdersAdded how) const;
+  UncollidedDirections FinerDirections(IterationScheme how) const;
   MemoryBudget Budget(const Device& device) const;
   bool IsInLayers(const Medium& medium, const Illumination& illumination) const;
 
-  Communicator& Others;
+  Communicator& Comm;
   const BlockPartition& Given;
   const bool Has; ///< voxels
   const UnvaryingAxes Unvarying;
@@ -139,7 +139,7 @@ private:
 };
 
 /// Of unscattered light from outside, as the whole would have them where it added up orders like this.
-UncollidedDirections ProblemInBlocks::FinerDirections(OrdersAdded how) const
+UncollidedDirections ProblemInBlocks::FinerDirections(IterationScheme how) const
 {
   const BlockScene& scene = *this->Scene;
   const DirectionSet usual = DirectionsForVoxels(this->Settings.directionsPerFace, this->Blocks.whole.spacing);
@@ -148,7 +148,7 @@ UncollidedDirections ProblemInBlocks::FinerDirections(OrdersAdded how) const
                               scene.Scattering().Degree(), [this] { return this->Orders.needed; } },
       usual, how);
   // A rank without voxels has another idea of it: it does not know its medium.
-  const std::vector<double> all = this->Others.Largest({ this->Has ? 1.0 * own.perFace : 0.0,
+  const std::vector<double> all = this->Comm.Largest({ this->Has ? 1.0 * own.perFace : 0.0,
     this->Has && own.ofFacesAlone ? 1.0 : 0.0, this->Has && own.correctsEscape ? 1.0 : 0.0 });
   return { static_cast<int>(all[0]), all[1] > 0.0, all[2] > 0.0 };
 }
@@ -162,7 +162,7 @@ MemoryBudget ProblemInBlocks::Budget(const Device& device) const
     return BudgetAskedFor(device, this->Settings.memoryBudget);
   }
   const BlockScene& scene = *this->Scene;
-  SolveExtent solve = { this->Blocks.blocks[this->Others.Rank()].size, this->Settings, scene.channels,
+  SolveExtent solve = { this->Blocks.blocks[this->Comm.Rank()].size, this->Settings, scene.channels,
     this->Has ? scene.Scattering().Degree() : 0, this->Orders.how };
   solve.byOctant = this->Settings.source == PropagationSource::Octants;
   solve.ofBlock = true;
@@ -174,15 +174,15 @@ LightField ProblemInBlocks::Solve(
 {
   const BlockScene& scene = *this->Scene;
   Device ofSolve(device, this->Budget(device));
-  const bool byBalance = this->Orders.how == OrdersAdded::ByBalance;
+  const bool byBalance = this->Orders.how == IterationScheme::Dsa;
   const UncollidedDirections finer = byBalance ? UncollidedDirections() : this->FinerDirections(this->Orders.how);
   std::optional<IncidentLight> incident;
   std::optional<BlockOnDevice> block;
   std::optional<UncollidedOverRanks> uncollided;
   std::unique_ptr<Iteration> iteration;
-  this->Others.Together([&] {
+  this->Comm.Collective([&] {
     incident.emplace(this->Blocks.whole, this->Settings, scene.illumination, finer, scene.channels);
-    block.emplace(ofSolve, this->Others, this->Blocks, scene, this->Settings, *incident);
+    block.emplace(ofSolve, this->Comm, this->Blocks, scene, this->Settings, *incident);
     uncollided.emplace(*block, *incident);
     if (byBalance)
     {
@@ -197,8 +197,8 @@ LightField ProblemInBlocks::Solve(
   const bool warm = found.warm;
   KeptLight left = std::move(found.kept);
   LightField light = LightOfBlock(*block, *incident, std::move(found), this->Orders.how);
-  JudgeBalance(light, this->Others, this->Has, scene.medium);
-  this->Others.Together([&] {
+  JudgeBalance(light, this->Comm, this->Has, scene.medium);
+  this->Comm.Collective([&] {
     this->Scene->Undo(light);
     MultiplyPowers(light, this->Narrowing());
   });
@@ -217,28 +217,28 @@ LightField ProblemInBlocks::Solve(
 bool ProblemInBlocks::IsInLayers(const Medium& medium, const Illumination& illumination) const
 {
   const bool varies = this->Has && !IsPlaneParallel(medium, illumination, this->Settings);
-  return this->Unvarying.IsSlab() || !OnAnyRank(this->Others, varies);
+  return this->Unvarying.IsSlab() || !OnAnyRank(this->Comm, varies);
 }
 
-std::string ProblemInBlocks::BetterAsWhole(const Medium& medium, const Illumination& illumination) const
+std::string ProblemInBlocks::ReasonNotToDecompose(const Medium& medium, const Illumination& illumination) const
 {
   const BlockScene& scene = *this->Scene;
-  const bool oneByOne = this->Orders.how == OrdersAdded::OneByOne;
+  const bool oneByOne = this->Orders.how == IterationScheme::SourceIteration;
   if (this->IsInLayers(medium, illumination))
   {
     return "layers, which it solves in the cosine alone";
   }
-  if (oneByOne && this->Orders.ofWhole != OrdersAdded::OneByOne)
+  if (oneByOne && this->Orders.ofWhole != IterationScheme::SourceIteration)
   {
     return "many scattering orders in thin voxels round a periodic axis or along UncollidedDirections, which it "
            "accelerates";
   }
-  if (this->Orders.how == OrdersAdded::ByBalance && FacesShineUnevenly(illumination, this->Settings.periodic) &&
+  if (this->Orders.how == IterationScheme::Dsa && FacesShineUnevenly(illumination, this->Settings.periodic) &&
     this->FinerDirections(this->Orders.how).perFace > 0)
   {
     return "faces that shine unevenly, whose light it has along finer directions";
   }
-  if (MayHaveEmissionPeaks(this->Others, this->Has, scene, this->Settings))
+  if (MayHaveEmissionPeaks(this->Comm, this->Has, scene, this->Settings))
   {
     return "small bright emission, whose light it has along exact rays";
   }
@@ -259,7 +259,7 @@ LightField SolveInBlocks(Device& device, Communicator& communicator, const Block
   }
   light.faceAlbedo = illumination.faceAlbedo;
   JudgeConvergence(settings, light);
-  DoubtGivenLight(illumination, light);
+  WarnAboutInputLight(illumination, light);
   return light;
 }
 
@@ -279,10 +279,10 @@ bool BalancesVoxels(Device& device, Communicator& communicator, const BlockParti
   return ProblemInBlocks(device, communicator, partition, medium, illumination, settings).BalancesVoxels();
 }
 
-std::string BetterAsWhole(Device& device, Communicator& communicator, const BlockPartition& partition,
+std::string ReasonNotToDecompose(Device& device, Communicator& communicator, const BlockPartition& partition,
   const Medium& medium, const Illumination& illumination, const PropagationSettings& settings)
 {
   return ProblemInBlocks(device, communicator, partition, medium, illumination, settings)
-    .BetterAsWhole(medium, illumination);
+    .ReasonNotToDecompose(medium, illumination);
 }
 }

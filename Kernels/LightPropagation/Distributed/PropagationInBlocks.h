@@ -21,7 +21,8 @@ namespace tyndall
 /// cells of several voxels, and where faces reflect or face power is asked for those of the cells of the box's faces.
 /// All ranks call it together.
 ///
-/// Orders are added up as HowOrdersAreAdded (OrdersOverRanks.h) has it: one by one; where voxels are thin and light is
+/// Orders are added up as ChooseIterationScheme (OrdersOverRanks.h) has it: one by one; where voxels are thin
+/// and light is
 /// scattered many times each with what diffusion on cells says of the rest (CellsOverRanks.h); where voxels are thicker
 /// by their balance (AccelerationInBlocks.h), both with the source that the settings ask for. One by one thick voxels
 /// shine by octant, as in the whole (OctantSources.h). Cells are for isotropic scattering in an open box without faces
@@ -70,6 +71,6 @@ PropagationSettings AtQualityInBlocks(Communicator& communicator, const BlockPar
 /// follow "the whole is better for"; empty: nothing, the light is the same to the tolerance. All ranks call it, and
 /// are told the same.
 /// @throws as SolveInBlocks
-std::string BetterAsWhole(Device& device, Communicator& communicator, const BlockPartition& partition,
+std::string ReasonNotToDecompose(Device& device, Communicator& communicator, const BlockPartition& partition,
   const Medium& medium, const Illumination& illumination, const PropagationSettings& settings);
 }

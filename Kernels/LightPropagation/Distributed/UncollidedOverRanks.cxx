@@ -43,8 +43,8 @@ bool UncollidedOverRanks::LoadSource(EnergyLedger& ledger)
     return scene.traits.emits;
   }
   bool any = false;
-  this->Block.Others.Together([&] { any = this->AddStraightOn(this->Block.Source); });
-  return OnAnyRank(this->Block.Others, any || scene.traits.emits);
+  this->Block.Comm.Collective([&] { any = this->AddStraightOn(this->Block.Source); });
+  return OnAnyRank(this->Block.Comm, any || scene.traits.emits);
 }
 
 /// @return W, of all ranks
@@ -62,7 +62,7 @@ Rgb UncollidedOverRanks::LoadEmission()
         SumOverVoxels(layout.grid, [&](std::size_t i) { return emission.At(i, c); });
     }
   }
-  emitted = this->Block.Others.Sum(emitted);
+  emitted = this->Block.Comm.Sum(emitted);
   return { emitted[0], emitted[1], emitted[2] };
 }
 
@@ -97,12 +97,12 @@ void UncollidedOverRanks::FindVacuum()
     return;
   }
   bool any = false;
-  block.Others.Together([&] {
+  block.Comm.Collective([&] {
     this->OfVacuum = VacuumEmission::DirectionsFor(whole, block.Settings);
     const std::vector<float> own = block.Has ? this->EmissionOf(true) : std::vector<float>();
     any = std::any_of(own.begin(), own.end(), [](float value) { return value > 0.0f; });
   });
-  if (!OnAnyRank(block.Others, any))
+  if (!OnAnyRank(block.Comm, any))
   {
     this->OfVacuum.reset();
   }
@@ -129,7 +129,7 @@ SweepTally UncollidedOverRanks::AddAll(const Buffer<float>* shown, OctantSources
     const Monitor ofLamp = OfPart(monitor, i / all, (i + 1) / all);
     Add(tally, this->OnAllRanks([&] { return this->AddLampAt(i, atFaces, ofLamp); }));
   }
-  this->Block.Others.Together([&] {
+  this->Block.Comm.Collective([&] {
     if (this->Block.Has && shown)
     {
       this->Block.Scattering->AddFirstScattered(this->Block.WholeDeposit(), *shown);
@@ -140,7 +140,7 @@ SweepTally UncollidedOverRanks::AddAll(const Buffer<float>* shown, OctantSources
     Deposit deposit = this->Block.WholeDeposit();
     deposit.partialCurrents = atFaces ? &atFaces->Currents() : nullptr;
     Add(tally, this->AddBoundary(*boundary, deposit, OfPart(monitor, lamps / all, (lamps + 1.0) / all)));
-    this->Block.Others.Together([&] {
+    this->Block.Comm.Collective([&] {
       if (atFaces)
       {
         atFaces->TakeIncoming(*this->Incident.Fine());
@@ -167,9 +167,9 @@ SweepTally UncollidedOverRanks::AddVacuum(OctantSources* atFaces, const Monitor&
   Deposit deposit = this->Block.WholeDeposit();
   deposit.partialCurrents = atFaces ? &atFaces->Currents() : nullptr;
   std::optional<VacuumEmission> emission;
-  this->Block.Others.Together([&] { emission.emplace(*this->OfVacuum, this->EmissionOf(true)); });
+  this->Block.Comm.Collective([&] { emission.emplace(*this->OfVacuum, this->EmissionOf(true)); });
   const SweepTally tally = this->OnAllRanks([&] { return emission->AddTo(this->VolumeOf(deposit), monitor); });
-  this->Block.Others.Together([&] {
+  this->Block.Comm.Collective([&] {
     if (atFaces)
     {
       atFaces->TakeIncoming(*this->OfVacuum);
@@ -180,7 +180,7 @@ SweepTally UncollidedOverRanks::AddVacuum(OctantSources* atFaces, const Monitor&
 
 /// What goes wrong on one rank does on all: light is swept by all together.
 /// @param add  throws on one rank alone after the last step that all take together, and not before: what may fail there
-///   stands in Together
+///   stands in Collective
 SweepTally UncollidedOverRanks::OnAllRanks(const std::function<SweepTally()>& add)
 {
   SweepTally tally;
@@ -193,7 +193,7 @@ SweepTally UncollidedOverRanks::OnAllRanks(const std::function<SweepTally()>& ad
   {
     error = std::current_exception();
   }
-  this->Block.Others.Together([&] {
+  this->Block.Comm.Collective([&] {
     if (error)
     {
       std::rethrow_exception(error);
@@ -211,12 +211,12 @@ UncollidedVolume UncollidedOverRanks::VolumeOf(const Deposit& deposit)
   volume.whole = &block.Partition.whole;
   volume.basis = block.Basis();
   volume.fetchBeyond = [&block](const Buffer<float>& byFaces) { return block.Across.Fetch(byFaces); };
-  volume.together = [&block](const std::function<void()>& work) { block.Others.Together(work); };
+  volume.together = [&block](const std::function<void()>& work) { block.Comm.Collective(work); };
   volume.followLamp = [this, &block](const SweepVolume& ofChannels, const Light& lamp, const Monitor& ofLamp) {
     if (!this->NearLamps)
     {
       this->NearLamps = std::make_unique<LampsInBlocks>(
-        block.TheDevice, block.Others, block.Partition, block.Settings.periodic, block.Layout, block.OnDevice.SigmaT());
+        block.TheDevice, block.Comm, block.Partition, block.Settings.periodic, block.Layout, block.OnDevice.SigmaT());
     }
     return this->NearLamps->Deposit(ofChannels, lamp, ofLamp);
   };
@@ -233,7 +233,7 @@ SweepTally UncollidedOverRanks::FollowLamp(std::size_t lamp, const Deposit& depo
 {
   UncollidedVolume volume = this->VolumeOf(deposit);
   const SweptMoments* const angular = this->Block.Angular.get();
-  this->Block.Others.Together([&] { // without voxels there are no moments
+  this->Block.Comm.Collective([&] { // without voxels there are no moments
     if (angular)
     {
       this->OfLamp.Fill(0.0f);
@@ -274,7 +274,7 @@ SweepTally UncollidedOverRanks::AddBoundary(const BoundaryLight& light, const De
 SweepTally UncollidedOverRanks::AddGiven(const Monitor& monitor)
 {
   SweepTally own;
-  this->Block.Others.Together([&] {
+  this->Block.Comm.Collective([&] {
     if (this->Given)
     {
       own = this->Given->AddTo(this->VolumeOf(this->Block.WholeDeposit()), monitor);
@@ -291,8 +291,8 @@ SweepTally UncollidedOverRanks::AddGiven(const Monitor& monitor)
       left.push_back(own.out[face][c]);
     }
   }
-  taken = this->Block.Others.Sum(taken);
-  left = this->Block.Others.Largest(left);
+  taken = this->Block.Comm.Sum(taken);
+  left = this->Block.Comm.Largest(left);
   for (int c = 0; c < 3; ++c)
   {
     all.in[0][c] = taken[c];
@@ -313,7 +313,7 @@ UncollidedOverRanks::EvenSky UncollidedOverRanks::FindEvenSky(const Monitor& mon
   evenly.sky = { 1.0, 1.0, 1.0 };
   const auto along = [&](const SweptDirections& directions, const Monitor& ofThese) {
     Buffer<float> path;
-    block.Others.Together([&] {
+    block.Comm.Collective([&] {
       path = Buffer<float>(block.TheDevice, block.Layout.MomentFloats(block.Functions()), "uncollided light");
       path.Fill(0.0f);
     });

@@ -241,7 +241,7 @@ bool IsOpaque(const Medium& medium, const std::vector<std::size_t>& group)
 }
 
 /// It absorbs about as much of the light that comes in as it emits, in every voxel and channel.
-bool HidesWhatItSends(const Medium& medium, const std::vector<std::size_t>& group, const Rgb& comesIn)
+bool IsSelfAbsorbing(const Medium& medium, const std::vector<std::size_t>& group, const Rgb& comesIn)
 {
   return std::all_of(group.begin(), group.end(), [&](std::size_t voxel) {
     bool hides = true;
@@ -310,7 +310,7 @@ SplitEmission Split(const Medium& medium, const Rgb& comesIn)
     }
     const EmissionPeak peak = BoxAround(medium.grid, group);
     if (IsSmall(medium.grid, peak) && !IsOpaque(medium, group) && IsSeen(medium, peak) &&
-      !HidesWhatItSends(medium, group, comesIn))
+      !IsSelfAbsorbing(medium, group, comesIn))
     {
       candidates.push_back({ power, std::move(group), peak });
     }

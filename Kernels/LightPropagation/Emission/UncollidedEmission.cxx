@@ -79,7 +79,7 @@ VacuumEmission::VacuumEmission(const SweptDirections& along, std::vector<float> 
 SweepTally VacuumEmission::AddTo(const UncollidedVolume& volume, const Monitor& monitor) const
 {
   Buffer<float> source;
-  volume.Together([&] {
+  volume.Collective([&] {
     const int functions = volume.basis ? volume.basis->Count() : 1;
     source = Buffer<float>(volume.device, volume.layout.MomentFloats(functions), "what empty voxels emit");
     source.Fill(0.0f);

@@ -80,7 +80,7 @@ public:
   StackSolution Solve()
   {
     this->GoUp();
-    return this->GoDown();
+    return this->SolveCg();
   }
 
 private:
@@ -187,7 +187,7 @@ private:
     }
   }
 
-  StackSolution GoDown()
+  StackSolution SolveCg()
   {
     const StackLight& light = this->Shining;
     const Eigen::MatrixXd above = this->Lambert(light.albedoAtTop);

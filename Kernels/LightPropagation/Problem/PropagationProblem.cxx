@@ -39,7 +39,7 @@ LightEnds LightEndsIn(const Medium& medium, const Illumination& illumination)
   return ends;
 }
 
-void CheckLightHasAnEnd(const LightEnds& ends, const Illumination& illumination, const PropagationSettings& settings)
+void RequireSink(const LightEnds& ends, const Illumination& illumination, const PropagationSettings& settings)
 {
   const std::array<bool, 3>& periodic = settings.periodic;
   const bool anyFace = !periodic[0] || !periodic[1] || !periodic[2];
@@ -75,7 +75,7 @@ void CheckBlock(const Medium& medium, const Illumination& illumination, const Pr
 void Check(const Medium& medium, const Illumination& illumination, const PropagationSettings& settings)
 {
   CheckBlock(medium, illumination, settings);
-  CheckLightHasAnEnd(LightEndsIn(medium, illumination), illumination, settings);
+  RequireSink(LightEndsIn(medium, illumination), illumination, settings);
 }
 
 PropagationProblem::PropagationProblem(const Medium& medium, const Illumination& illumination,

@@ -30,7 +30,7 @@ struct LightEnds
 };
 LightEnds LightEndsIn(const Medium& medium, const Illumination& illumination);
 /// @throws InvalidInput where light can neither leave the box nor be absorbed, and goes on until it does
-void CheckLightHasAnEnd(const LightEnds& ends, const Illumination& illumination, const PropagationSettings& settings);
+void RequireSink(const LightEnds& ends, const Illumination& illumination, const PropagationSettings& settings);
 
 /// A scene as it is solved: in units of length and of power that floats hold well, wide along axes on which nothing
 /// changes, with as many channels as it needs. Made once from what the user gave; Undo() turns the light that was found

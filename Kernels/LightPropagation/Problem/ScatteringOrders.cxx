@@ -242,21 +242,22 @@ bool MayBeAccelerated(const PropagationSettings& settings, bool scatters)
     (settings.acceleration == PropagationAcceleration::Automatic && settings.maximumOrders == 0 && scatters);
 }
 
-OrdersAdded HowOrdersAreAdded(const PropagationSettings& settings, bool scatters, const ScatteringOfScene& scene)
+IterationScheme ChooseIterationScheme(
+  const PropagationSettings& settings, bool scatters, const ScatteringOfScene& scene)
 {
   if (!MayBeAccelerated(settings, scatters) ||
     (settings.source != PropagationSource::Linear && !ScatteredManyTimes(scene)))
   {
-    return OrdersAdded::OneByOne;
+    return IterationScheme::SourceIteration;
   }
-  return CanUseCells(scene) ? OrdersAdded::ByCells : OrdersAdded::ByBalance;
+  return CanUseCells(scene) ? IterationScheme::CoarseMeshDsa : IterationScheme::Dsa;
 }
 
-OrdersAdded HowOrdersAreAdded(const PropagationProblem& problem)
+IterationScheme ChooseIterationScheme(const PropagationProblem& problem)
 {
   const bool scatters = problem.Traits().scatters;
   return MayBeAccelerated(problem.Settings(), scatters)
-    ? HowOrdersAreAdded(problem.Settings(), scatters, ScatteringOf(problem))
-    : OrdersAdded::OneByOne;
+    ? ChooseIterationScheme(problem.Settings(), scatters, ScatteringOf(problem))
+    : IterationScheme::SourceIteration;
 }
 }

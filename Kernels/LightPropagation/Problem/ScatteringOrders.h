@@ -39,16 +39,17 @@ double OrdersNeeded(const PropagationProblem& problem);
 bool ScatteredManyTimes(const ScatteringOfScene& scene);
 bool ScatteredManyTimes(const PropagationProblem& problem);
 
-/// How scattering orders are added up.
-enum class OrdersAdded
+/// How the fluence of all scattering orders is found.
+enum class IterationScheme
 {
-  OneByOne,  ///< Conservative/SourceIteration.h
-  ByCells,   ///< the same, each with what diffusion on cells of several voxels says of the rest: where voxels are thin
-  ByBalance, ///< between sweeps by the balance of each voxel, Conservative/Acceleration/DiffusionAcceleration.h
+  SourceIteration, ///< one sweep a scattering order; Conservative/SourceIteration.h
+  CoarseMeshDsa,   ///< the same with a diffusion correction on cells of several voxels, for optically thin voxels
+  Dsa, ///< diffusion synthetic acceleration on the voxels; Conservative/Acceleration/DiffusionAcceleration.h
 };
-OrdersAdded HowOrdersAreAdded(const PropagationProblem& problem);
+IterationScheme ChooseIterationScheme(const PropagationProblem& problem);
 /// @param scene  not looked at unless MayBeAccelerated
-OrdersAdded HowOrdersAreAdded(const PropagationSettings& settings, bool scatters, const ScatteringOfScene& scene);
+IterationScheme ChooseIterationScheme(
+  const PropagationSettings& settings, bool scatters, const ScatteringOfScene& scene);
 /// Whether settings let it depend on the scene, or ask for acceleration.
 bool MayBeAccelerated(const PropagationSettings& settings, bool scatters);
 

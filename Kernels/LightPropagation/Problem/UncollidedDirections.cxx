@@ -24,14 +24,14 @@ bool FacesShine(const Illumination& light)
 }
 
 /// In orders along all usual directions: a solve's, but for its first sweep.
-double TimeOfLaterOrders(const SweptScene& scene, OrdersAdded how)
+double TimeOfLaterOrders(const SweptScene& scene, IterationScheme how)
 {
   const int most = scene.settings.maximumOrders;
   switch (how)
   {
-    case OrdersAdded::ByBalance: return AcceleratedOrders - 1.0;
-    case OrdersAdded::ByCells: return OrdersByCells - 1.0;
-    case OrdersAdded::OneByOne: break;
+    case IterationScheme::Dsa: return AcceleratedOrders - 1.0;
+    case IterationScheme::CoarseMeshDsa: return OrdersByCells - 1.0;
+    case IterationScheme::SourceIteration: break;
   }
   const double orders = std::max(scene.ordersNeeded(), LeastOrders);
   return SetUp + (most > 0 ? std::min<double>(orders, most) : orders) - 1.0;
@@ -39,16 +39,16 @@ double TimeOfLaterOrders(const SweptScene& scene, OrdersAdded how)
 }
 
 UncollidedDirections UncollidedDirectionsFor(
-  const PropagationProblem& problem, const DirectionSet& usual, OrdersAdded how)
+  const PropagationProblem& problem, const DirectionSet& usual, IterationScheme how)
 {
   return UncollidedDirectionsFor({ problem.Settings(), problem.Shining(), problem.IsSlab(), problem.Traits().scatters,
                                    problem.Scattering().Degree(), [&] { return OrdersNeeded(problem); } },
     usual, how);
 }
 
-UncollidedDirections UncollidedDirectionsFor(const SweptScene& scene, const DirectionSet& usual, OrdersAdded how)
+UncollidedDirections UncollidedDirectionsFor(const SweptScene& scene, const DirectionSet& usual, IterationScheme how)
 {
-  const bool besideUsual = how == OrdersAdded::ByBalance; // else the finer directions take the place of the usual ones
+  const bool besideUsual = how == IterationScheme::Dsa; // else the finer directions take the place of the usual ones
   const PropagationSettings& settings = scene.settings;
   if (settings.uncollidedDirections >= 0)
   {
@@ -56,7 +56,7 @@ UncollidedDirections UncollidedDirectionsFor(const SweptScene& scene, const Dire
       settings.uncollidedDirections > 0 && !besideUsual && scene.scatters && !Reflects(scene.shining) };
   }
   if (!FacesShine(scene.shining) || Reflects(scene.shining) || !scene.scatters || scene.isSlab ||
-    usual.orbits.empty() || how == OrdersAdded::ByCells)
+    usual.orbits.empty() || how == IterationScheme::CoarseMeshDsa)
   {
     return {};
   }

@@ -27,7 +27,7 @@ struct UncollidedDirections
 /// escapes, which would change the light of lamps as well), and in accelerated solves in angular moments, for memory.
 /// @param usual  directions of scattered light; only beside fitted ones more of them gain by themselves
 UncollidedDirections UncollidedDirectionsFor(
-  const PropagationProblem& problem, const DirectionSet& usual, OrdersAdded how);
+  const PropagationProblem& problem, const DirectionSet& usual, IterationScheme how);
 
 /// What that depends on, of a scene that may be spread over ranks.
 struct SweptScene
@@ -38,7 +38,7 @@ struct SweptScene
   int degree;                           ///< of angular moments
   std::function<double()> ordersNeeded; ///< ScatteringOrders.h; asked for orders that are added up one by one
 };
-UncollidedDirections UncollidedDirectionsFor(const SweptScene& scene, const DirectionSet& usual, OrdersAdded how);
+UncollidedDirections UncollidedDirectionsFor(const SweptScene& scene, const DirectionSet& usual, IterationScheme how);
 
 /// The part of light from outside that comes along finer directions; its lights and environment are not looked at.
 Illumination AlongFiner(const UncollidedDirections& finer, const Illumination& shining);

@@ -208,7 +208,7 @@ LightField ParallelPropagation::Implementation::Result() const
   field.halfRangeFlux = HalfRangeFlux(this->Model.Directions());
   field.device = this->TheDevice.Name();
   JudgeConvergence(this->Settings, field, false);
-  DoubtGivenLight(this->Outside, field);
+  WarnAboutInputLight(this->Outside, field);
   return field;
 }
 

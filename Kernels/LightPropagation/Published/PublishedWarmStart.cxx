@@ -23,9 +23,9 @@ PublishedWarmStart::PublishedWarmStart(const Scene& scene, const KeptLight* kept
 }
 
 /// What may fail on one rank (Communicator.h).
-void PublishedWarmStart::Together(const std::function<void()>& work) const
+void PublishedWarmStart::Collective(const std::function<void()>& work) const
 {
-  this->The.others ? this->The.others->Together(work) : work();
+  this->The.others ? this->The.others->Collective(work) : work();
 }
 
 /// Some of the kept light, scaled as the first scattered light has changed.
@@ -45,7 +45,7 @@ std::vector<float> PublishedWarmStart::GuessOf(std::size_t first, std::size_t co
 
 void PublishedWarmStart::AddTo(std::vector<float>& moments, PublishedFaces& faces, const std::vector<float>& direct)
 {
-  this->Together([&] { this->Direct = moments; });
+  this->Collective([&] { this->Direct = moments; });
   const std::size_t channels = static_cast<std::size_t>(this->The.model.Channels());
   for (std::size_t i = 0; i < direct.size(); ++i)
   {
@@ -61,7 +61,7 @@ void PublishedWarmStart::AddTo(std::vector<float>& moments, PublishedFaces& face
   {
     return;
   }
-  this->Together([&] { this->AddGuessTo(moments, faces); });
+  this->Collective([&] { this->AddGuessTo(moments, faces); });
 }
 
 void PublishedWarmStart::AddGuessTo(std::vector<float>& moments, PublishedFaces& faces)

@@ -51,7 +51,7 @@ public:
   KeptLight Leave(std::vector<float> totals, const PublishedFaces& faces, const Rgb& rate) const;
 
 private:
-  void Together(const std::function<void()>& work) const;
+  void Collective(const std::function<void()>& work) const;
   void AddGuessTo(std::vector<float>& moments, PublishedFaces& faces);
   std::vector<float> GuessOf(std::size_t first, std::size_t count, std::size_t perChannel) const;
 

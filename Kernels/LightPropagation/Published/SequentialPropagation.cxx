@@ -147,7 +147,7 @@ LightField SolveSequential(
       field.leftOut = LeftOutAsPublished(medium.phase.IsIsotropic(), traits, illumination.uncollided.IsThere(),
         illumination, settings, static_cast<int>(field.convergence.size()));
       JudgeConvergence(settings, field, false);
-      DoubtGivenLight(illumination, field);
+      WarnAboutInputLight(illumination, field);
       return field;
     });
 }

@@ -21,7 +21,7 @@ constexpr double Many = 0.25; ///< of the voxels that scatter: few are walls, an
 constexpr double Opaque = 1e4;
 
 /// Whether an automatic source is to be by octant.
-bool MatterUnasked(const OctantSources::Voxels& voxels)
+bool NeededByDefault(const OctantSources::Voxels& voxels)
 {
   return voxels.scattering > 0.0 && voxels.thick >= Many * voxels.scattering;
 }
@@ -66,7 +66,7 @@ bool OctantSources::MayMatter(const PropagationSettings& settings, bool scatters
 
 bool OctantSources::Matter(const Voxels& voxels, const PropagationSettings& settings, bool scatters, int degree)
 {
-  const bool wanted = settings.source == PropagationSource::Octants ? AreThick(voxels) : MatterUnasked(voxels);
+  const bool wanted = settings.source == PropagationSource::Octants ? AreThick(voxels) : NeededByDefault(voxels);
   return MayMatter(settings, scatters, degree) && wanted && voxels.thickest <= Opaque;
 }
 

@@ -80,7 +80,7 @@ SweepTally DepositBeam(const UncollidedVolume& volume, const Light& light, const
     return SweepBeam(volume, light, false, volume.deposit, monitor);
   }
   Buffer<float> path, partialCurrents;
-  volume.Together([&] {
+  volume.Collective([&] {
     path = Buffer<float>(volume.device, volume.layout.Floats(), "the light of a beam");
     partialCurrents = Buffer<float>(volume.device, volume.layout.Floats(6), "the light of a beam");
     path.Fill(0.0f);

@@ -30,12 +30,12 @@ SweepTally SweepAlong(const UncollidedVolume& volume, const SweptDirections& alo
   const Grid& grid = volume.Whole();
   const int channels = volume.layout.Groups().front().count; // that are swept at once
   AngularValues values;
-  volume.Together([&] { values = volume.basis ? along.Values(*volume.basis) : AngularValues(); });
+  volume.Collective([&] { values = volume.basis ? along.Values(*volume.basis) : AngularValues(); });
   SweepTally tally;
   for (int part = 0; part < 6; ++part)
   {
     std::vector<Bundle> bundles;
-    volume.Together([&] { bundles = along.LitAlong(part / 2, part % 2, isLit); });
+    volume.Collective([&] { bundles = along.LitAlong(part / 2, part % 2, isLit); });
     if (!incoming)
     {
       MoveAsLines(bundles);

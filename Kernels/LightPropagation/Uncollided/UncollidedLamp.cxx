@@ -21,7 +21,7 @@ SweepTally UncollidedLamp::AddTo(const UncollidedVolume& volume, const Monitor& 
   }
   const bool parallel = this->Lamp.type == LightType::Directional;
   std::optional<NarrowLight> light;
-  volume.Together([&] { // a rank without voxels has no basis, and no light of its own
+  volume.Collective([&] { // a rank without voxels has no basis, and no light of its own
     if (volume.basis)
     {
       light.emplace(volume, !parallel);

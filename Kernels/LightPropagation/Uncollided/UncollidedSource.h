@@ -32,11 +32,11 @@ struct UncollidedVolume
   const Grid* whole = nullptr;
   /// Of such a block, of what goes in through voxels' faces; empty: the layout's grid is the whole.
   FetchBeyondFaces fetchBeyond = {};
-  /// Of such a block, Communicator::Together of all ranks that share the grid; empty: the medium is in one memory.
+  /// Of such a block, Communicator::Collective of all ranks that share the grid; empty: the medium is in one memory.
   std::function<void(const std::function<void()>& work)> together = {};
 
   /// What may fail on one rank before light is swept by all together. All ranks call it.
-  void Together(const std::function<void()>& work) const { this->together ? this->together(work) : work(); }
+  void Collective(const std::function<void()>& work) const { this->together ? this->together(work) : work(); }
   const Grid& Whole() const { return this->whole ? *this->whole : this->layout.grid; }
 };
 
@@ -49,7 +49,7 @@ public:
   virtual ~UncollidedSource() = default;
 
   /// Adds its path integrals, and flux and first moments where the deposit has arrays for them, to the deposit. By
-  /// blocks all ranks call it: arrays that do not fit on one fail on all of them (UncollidedVolume::Together) before
+  /// blocks all ranks call it: arrays that do not fit on one fail on all of them (UncollidedVolume::Collective) before
   /// their last step together; what goes wrong after it perhaps does on one alone.
   /// @return what came in, what left, what still goes round a periodic axis
   virtual SweepTally AddTo(const UncollidedVolume& volume, const Monitor& monitor) const = 0;

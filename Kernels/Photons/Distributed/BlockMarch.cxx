@@ -46,7 +46,7 @@ BlockMarch::BlockMarch(const MarchMedium& medium, const MarchSums& target, const
 {
 }
 
-void BlockMarch::GoAsFarAs(const StretchesOfTurns& turn)
+void BlockMarch::GoAsFarAs(const TurnSchedule& turn)
 {
   this->Info.pause = static_cast<cl_int>(turn.gone);
   this->Info.eventLimit = turn.last ? this->Info.pause : this->Medium.EventLimit();

@@ -29,7 +29,7 @@ public:
     std::vector<PhotonOnItsWay> gone; ///< into other blocks, or that wait in this one, in any order
   };
   /// From now on photons wait after so many stretches of their ways, or in the last turn are given up.
-  void GoAsFarAs(const StretchesOfTurns& turn);
+  void GoAsFarAs(const TurnSchedule& turn);
 
   /// Of photons that set off in the block.
   /// @param marks  by which they count, or none

@@ -46,7 +46,7 @@ struct PathsInBlocks::Parts
 };
 
 PathsInBlocks::PathsInBlocks(Communicator& communicator, const BlockPartition& partition, const MarchMedium* through)
-  : Others(communicator)
+  : Comm(communicator)
   , Partition(partition)
   , Through(through)
 {
@@ -55,10 +55,10 @@ PathsInBlocks::PathsInBlocks(Communicator& communicator, const BlockPartition& p
 /// @param packed  all of them
 PathsInBlocks::Parts PathsInBlocks::TraceParts(const PackedPhotons& packed)
 {
-  const VoxelBox& own = this->Partition.blocks[static_cast<std::size_t>(this->Others.Rank())];
+  const VoxelBox& own = this->Partition.blocks[static_cast<std::size_t>(this->Comm.Rank())];
   Parts found;
   std::unique_ptr<BlockPaths> block;
-  Rounds rounds(this->Others, this->Partition);
+  Rounds rounds(this->Comm, this->Partition);
   rounds.UntilAllEnd<PhotonOnItsWay>(
     [&](int round, std::vector<PhotonOnItsWay>&& arrived, const Monitor&) {
       std::vector<PhotonOnItsWay> gone;
@@ -84,21 +84,21 @@ std::vector<PhotonPath> PathsInBlocks::Trace(
   const std::vector<Photon>& photons, const std::vector<std::size_t>& numbers, int eventLimit)
 {
   PackedPhotons packed;
-  this->Others.Together([&] { packed = Pack(photons, this->Partition.whole, true, eventLimit); });
+  this->Comm.Collective([&] { packed = Pack(photons, this->Partition.whole, true, eventLimit); });
   const Parts own = this->TraceParts(packed);
-  if (this->Others.Rank() > 0)
+  if (this->Comm.Rank() > 0)
   {
-    this->Others.Send(0, MessageTag::CornersOfPaths, own.keys);
-    this->Others.Send(0, MessageTag::CornersOfPaths, own.corners);
+    this->Comm.Send(0, MessageTag::CornersOfPaths, own.keys);
+    this->Comm.Send(0, MessageTag::CornersOfPaths, own.corners);
     return {};
   }
   std::map<PartKey, std::vector<cl_float4>> all;
   own.PutInto(all);
-  for (int rank = 1; rank < this->Others.Ranks(); ++rank)
+  for (int rank = 1; rank < this->Comm.Ranks(); ++rank)
   {
     Parts others;
-    others.keys = this->Others.Receive<cl_ulong>(rank, MessageTag::CornersOfPaths);
-    others.corners = this->Others.Receive<cl_float4>(rank, MessageTag::CornersOfPaths);
+    others.keys = this->Comm.Receive<cl_ulong>(rank, MessageTag::CornersOfPaths);
+    others.corners = this->Comm.Receive<cl_float4>(rank, MessageTag::CornersOfPaths);
     others.PutInto(all);
   }
   std::vector<PhotonPath> paths;

@@ -25,7 +25,7 @@ private:
   struct Parts;
   Parts TraceParts(const PackedPhotons& packed);
 
-  Communicator& Others;
+  Communicator& Comm;
   const BlockPartition& Partition;
   const MarchMedium* Through;
 };

@@ -233,11 +233,11 @@ StartingPhotons SendToTheirBlocks(Communicator& communicator, const BlockPartiti
   const std::vector<Photon>& share, const PhotonNumbers& numbers, const MarchTraits& traits,
   const MarchSettings& settings)
 {
-  communicator.Together([&] { CheckPhotons(share, settings.batches); });
+  communicator.Collective([&] { CheckPhotons(share, settings.batches); });
   const PhotonTotals totals = TotalsOf(communicator, share, settings.batches);
   const auto largestWeight = static_cast<float>(communicator.Largest({ CountedPhotons::LargestWeight(share) })[0]);
   StartingPhotons starting;
-  communicator.Together([&] {
+  communicator.Collective([&] {
     starting.packed = PackingOf(totals, traits.Channels(settings) == 3, MarchEventLimit(partition.whole, settings));
     FillPacking(starting.packed, share, partition.whole);
   });

@@ -66,7 +66,7 @@ public:
   Rank(Device& device, Communicator& communicator, const BlockPartition& partition, const MarchSettings& settings)
     : Settings(settings)
     , TheDevice(device)
-    , Others(communicator)
+    , Comm(communicator)
     , Partition(partition)
     , Own(BlockOf(partition, communicator.Rank()))
     , Has(this->Own.VoxelCount() > 0)
@@ -103,7 +103,7 @@ private:
     const PhotonScattering::Settings& settings, const Monitor& monitor);
 
   Device& TheDevice;
-  Communicator& Others;
+  Communicator& Comm;
   const BlockPartition& Partition;
   const VoxelBox Own;
   const bool Has; ///< voxels
@@ -118,7 +118,7 @@ private:
 void PhotonMarcherInBlocks::Rank::CheckInput(
   const Medium& medium, const Field& ior, const std::uint8_t* levels, bool octree) const
 {
-  CheckMarchedBlock(this->Others, this->Partition, medium, ior, levels, octree);
+  CheckMarchedBlock(this->Comm, this->Partition, medium, ior, levels, octree);
   Check(this->Settings);
   const std::string refused = NotInBlocks(this->Settings);
   Require(refused.empty(), "A medium that is spread over ranks is not marched through with " + refused + ".");
@@ -127,9 +127,9 @@ void PhotonMarcherInBlocks::Rank::CheckInput(
 MarchTraits PhotonMarcherInBlocks::Rank::TraitsOfAllRanks(const Medium& medium, const Field& ior)
 {
   MarchTraits traits = this->Has ? MarchTraitsOf(medium, ior, FindFilledBricks(medium)) : MarchTraits();
-  static_cast<MediumTraits&>(traits) = TraitsOfAll(this->Others, traits);
-  traits.coloured = OnAnyRank(this->Others, traits.coloured);
-  traits.index = IndexRangeOfAll(this->Others, this->Has, traits.index);
+  static_cast<MediumTraits&>(traits) = TraitsOfAll(this->Comm, traits);
+  traits.coloured = OnAnyRank(this->Comm, traits.coloured);
+  traits.index = IndexRangeOfAll(this->Comm, this->Has, traits.index);
   return traits;
 }
 
@@ -149,7 +149,7 @@ std::vector<float> PhotonMarcherInBlocks::Rank::IndexAround(const Field& ior, in
     return {};
   }
   std::vector<VoxelBox> known;
-  for (int rank = 0; rank < this->Others.Ranks(); ++rank)
+  for (int rank = 0; rank < this->Comm.Ranks(); ++rank)
   {
     known.push_back(this->KnownOf(rank, reach));
   }
@@ -158,16 +158,16 @@ std::vector<float> PhotonMarcherInBlocks::Rank::IndexAround(const Field& ior, in
   {
     std::copy_n(ior.values, own.size(), own.begin());
   }
-  return ValuesInBox(this->Others, this->Partition, known, own, 1);
+  return ValuesInBox(this->Comm, this->Partition, known, own, 1);
 }
 
 /// The nodes of all ranks' octree levels, on each.
 void PhotonMarcherInBlocks::Rank::ShareNodes(const std::uint8_t* levels)
 {
   std::vector<std::uint8_t> own;
-  this->Others.Together([&] { own = this->Has ? this->Through->OwnNodes(levels) : own; });
-  this->Nodes = std::make_unique<BrickedBytes>(BytesOfAll(this->Others, this->Partition, own));
-  this->Others.Together([&] {
+  this->Comm.Collective([&] { own = this->Has ? this->Through->OwnNodes(levels) : own; });
+  this->Nodes = std::make_unique<BrickedBytes>(BytesOfAll(this->Comm, this->Partition, own));
+  this->Comm.Collective([&] {
     if (this->Has)
     {
       this->Through->SetNodes(*this->Nodes);
@@ -183,10 +183,10 @@ void PhotonMarcherInBlocks::Rank::Prepare(
   const int reach = bends ? ReachOfIndex(this->Settings, octree) : 0;
   const std::vector<float> index = this->IndexAround(ior, reach);
   const Field known = { index.empty() ? nullptr : index.data(), 1 };
-  this->Others.Together([&] {
+  this->Comm.Collective([&] {
     if (this->Has)
     {
-      const MarchedPart block = { this->Partition.whole, this->Own, this->KnownOf(this->Others.Rank(), reach) };
+      const MarchedPart block = { this->Partition.whole, this->Own, this->KnownOf(this->Comm.Rank(), reach) };
       this->Through =
         std::make_unique<MarchMedium>(this->TheDevice, medium, known, this->Settings, this->Traits, block, octree);
     }
@@ -195,7 +195,7 @@ void PhotonMarcherInBlocks::Rank::Prepare(
   {
     this->ShareNodes(levels);
   }
-  this->Others.Together([&] { this->Light = this->Has ? std::make_unique<MarchedLight>(*this->Through) : nullptr; });
+  this->Comm.Collective([&] { this->Light = this->Has ? std::make_unique<MarchedLight>(*this->Through) : nullptr; });
   if (this->Settings.maximumOrders != 1 && this->Traits.scatters)
   {
     this->PrepareScattering(medium, known);
@@ -206,12 +206,11 @@ void PhotonMarcherInBlocks::Rank::PrepareScattering(const Medium& medium, const 
 {
   const bool varies = this->Has && medium.phase.Varies();
   const auto cosine = [&](int c) { return this->Has && !varies ? medium.phase.MeanCosine(0, c) : 0.0; };
-  tyndall::RequireSame(this->Others, "g", this->Has, { varies ? 1.0 : 0.0, cosine(0), cosine(1), cosine(2) });
+  tyndall::RequireSame(this->Comm, "g", this->Has, { varies ? 1.0 : 0.0, cosine(0), cosine(1), cosine(2) });
   const double part = this->Through ? ScatteringStepPart(index, this->Through->block.known.size) : 1.0;
-  const std::vector<double> largest =
-    this->Others.Largest({ -part, this->Has && medium.phase.HasColour() ? 1.0 : 0.0 });
+  const std::vector<double> largest = this->Comm.Largest({ -part, this->Has && medium.phase.HasColour() ? 1.0 : 0.0 });
   const bool coloured = this->Traits.coloured || largest[1] > 0.0;
-  this->Others.Together([&] {
+  this->Comm.Collective([&] {
     this->Scattering = std::make_unique<ScatteredChannels>(this->TheDevice,
       ScatteredChannels::Block{
         this->Through.get(), medium, index, this->Settings, -largest[0], coloured, this->Nodes.get() });
@@ -240,7 +239,7 @@ void PhotonMarcherInBlocks::Rank::FollowByTurns(const StartingPhotons& starting,
 {
   Buffer<float> fluence;
   cl::Kernel show;
-  this->Others.Together([&] {
+  this->Comm.Collective([&] {
     if (march)
     {
       fluence = Buffer<float>(this->TheDevice, this->Own.VoxelCount() * static_cast<std::size_t>(result.light.channels),
@@ -249,7 +248,7 @@ void PhotonMarcherInBlocks::Rank::FollowByTurns(const StartingPhotons& starting,
     }
   });
   turns.begin(starting.packed, result.light.channels);
-  WaitingPhotons photons(this->Others, *this->Rounds, this->Own, march, starting,
+  WaitingPhotons photons(this->Comm, *this->Rounds, this->Own, march, starting,
     [&](const std::vector<cl_int>& ends) { Tally(starting.packed, ends, result); });
   photons.ToTheirEnds(
     turns, MarchEventLimit(this->Partition.whole, this->Settings),
@@ -271,7 +270,7 @@ void PhotonMarcherInBlocks::Rank::Follow(
   const PackedPhotons& packed = starting.packed;
   MarchSums target;
   std::unique_ptr<BlockMarch> march;
-  this->Others.Together([&] {
+  this->Comm.Collective([&] {
     if (this->Has)
     {
       target = this->Light->Prepare(packed);
@@ -286,14 +285,14 @@ void PhotonMarcherInBlocks::Rank::Follow(
   {
     this->FollowAtOnce(starting, march.get(), result, monitor);
   }
-  this->Others.Together([&] {
+  this->Comm.Collective([&] {
     if (this->Has)
     {
       this->Light->Finish(packed, target, starting.weightUnit, result);
       SayWhatIsLeftOut(*this->Through, packed, result.light);
     }
   });
-  AddUpTallies(this->Others, result);
+  AddUpTallies(this->Comm, result);
 }
 
 /// This rank's share of one channel's scattered light and tallies.
@@ -312,7 +311,7 @@ ScatteredPhotons PhotonMarcherInBlocks::Rank::FollowScattered(
     },
     monitor);
   ScatteredPhotons found;
-  this->Others.Together([&] { found = run ? run->Finish() : found; });
+  this->Comm.Collective([&] { found = run ? run->Finish() : found; });
   return found;
 }
 
@@ -324,7 +323,7 @@ void PhotonMarcherInBlocks::Rank::AddScattered(const PackedPhotons& packed, Phot
     this->Scattering->AddTo(result, packed, {}, monitor,
       [this](const PhotonScattering* in, PackedPhotons photons, const PhotonScattering::Settings& settings,
         const Monitor& ofRun) { return this->FollowScattered(in, std::move(photons), settings, ofRun); });
-    AddUpScattered(this->Others, result);
+    AddUpScattered(this->Comm, result);
   }
   else if (this->Settings.maximumOrders != 1)
   {
@@ -337,7 +336,7 @@ PhotonLight PhotonMarcherInBlocks::Rank::MarchThese(
   const std::vector<Photon>& share, const PhotonNumbers& numbers, const TurnsInBlocks* turns, const Monitor& monitor)
 {
   const StartingPhotons starting =
-    SendToTheirBlocks(this->Others, this->Partition, share, numbers, this->Traits, this->Settings);
+    SendToTheirBlocks(this->Comm, this->Partition, share, numbers, this->Traits, this->Settings);
   const PackedPhotons& packed = starting.packed;
   PhotonLight result;
   const int colours = this->Scattering && this->Scattering->HasColour() ? 3 : this->Traits.ColoursOf(packed);
@@ -345,7 +344,7 @@ PhotonLight PhotonMarcherInBlocks::Rank::MarchThese(
   result.light.device = this->TheDevice.Name();
   result.light.balance.entered = packed.entered;
   result.missed = packed.missed;
-  result.batches = static_cast<int>(this->Others.Largest({ 1.0 * BatchesOf(share) })[0]);
+  result.batches = static_cast<int>(this->Comm.Largest({ 1.0 * BatchesOf(share) })[0]);
   result.secondsMarching = -ClockSeconds();
   this->Follow(starting, turns, result, this->Scattering ? OfPart(monitor, 0.0, 0.05) : monitor);
   PutIntoColours(packed, colours, result);
@@ -382,8 +381,8 @@ PhotonLight PhotonMarcherInBlocks::Rank::March(
   const std::vector<Photon>& share, const TurnsInBlocks* turns, const Monitor& monitor)
 {
   const double start = ClockSeconds();
-  this->Rounds = std::make_unique<tyndall::Rounds>(this->Others, this->Partition);
-  const PlaceOfShare place = PlaceAmong(this->Others, share.size());
+  this->Rounds = std::make_unique<tyndall::Rounds>(this->Comm, this->Partition);
+  const PlaceOfShare place = PlaceAmong(this->Comm, share.size());
   PhotonLight result;
   if (this->Settings.errorBatches > 0)
   {
@@ -403,17 +402,17 @@ PhotonLight PhotonMarcherInBlocks::Rank::March(
 
 std::vector<PhotonPath> PhotonMarcherInBlocks::Rank::Paths(const std::vector<Photon>& share, std::size_t count)
 {
-  const PlaceOfShare place = PlaceAmong(this->Others, share.size());
+  const PlaceOfShare place = PlaceAmong(this->Comm, share.size());
   const std::vector<std::size_t> chosen = ChooseEvenly(place.all, count);
-  const std::vector<Photon> some = ChosenOnEachRank(this->Others, share, place, chosen);
-  PathsInBlocks paths(this->Others, this->Partition, this->Through.get());
+  const std::vector<Photon> some = ChosenOnEachRank(this->Comm, share, place, chosen);
+  PathsInBlocks paths(this->Comm, this->Partition, this->Through.get());
   return paths.Trace(some, chosen, MarchEventLimit(this->Partition.whole, this->Settings));
 }
 
 PilotLight PhotonMarcherInBlocks::Rank::Gather(const std::vector<Photon>& photons,
   const std::vector<std::array<int, 2>>& origins, const std::array<int, 3>& cells, const Monitor& monitor)
 {
-  return GatherInBlocks({ this->Others, this->Partition, this->Through.get(), this->Traits, this->Settings }, photons,
+  return GatherInBlocks({ this->Comm, this->Partition, this->Through.get(), this->Traits, this->Settings }, photons,
     origins, cells, monitor);
 }
 
@@ -423,7 +422,7 @@ PhotonMarcherInBlocks::PhotonMarcherInBlocks(Device& device, Communicator& commu
   : Inside(std::make_unique<Rank>(device, communicator, partition, settings))
 {
   const bool octree = OnAnyRank(communicator, levels);
-  communicator.Together([&] { this->Inside->CheckInput(medium, ior, levels, octree); });
+  communicator.Collective([&] { this->Inside->CheckInput(medium, ior, levels, octree); });
   RequireSameInput(communicator, partition, medium, ior);
   RequireSame(communicator, settings);
   this->Inside->Prepare(medium, ior, levels, octree);

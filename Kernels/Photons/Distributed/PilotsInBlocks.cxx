@@ -39,7 +39,7 @@ PilotLight GatherInBlocks(const PilotBlocks& blocks, const std::vector<Photon>& 
   PackedPhotons all, own;
   PilotLight light;
   std::unique_ptr<PilotMarch> pilots;
-  communicator.Together([&] {
+  communicator.Collective([&] {
     CheckOrigins(photons, origins);
     all = Pack(photons, whole, blocks.traits.Channels(blocks.settings) == 3, MarchEventLimit(whole, blocks.settings));
     light = DarkPilotLight(whole, cells, blocks.traits.ColoursOf(all));
@@ -62,7 +62,7 @@ PilotLight GatherInBlocks(const PilotBlocks& blocks, const std::vector<Photon>& 
     },
     monitor);
   std::vector<std::int64_t> sums(light.grid.VoxelCount() * NumbersOfCell(all), 0);
-  communicator.Together([&] { sums = pilots ? pilots->sums.AddUp() : sums; });
+  communicator.Collective([&] { sums = pilots ? pilots->sums.AddUp() : sums; });
   const double diagonal = std::hypot(whole.spacing[0], whole.spacing[1], whole.spacing[2]);
   PutCells(SumExactly(communicator, sums), whole, all, all.unit * diagonal, light);
   light.seconds = ClockSeconds() - start;

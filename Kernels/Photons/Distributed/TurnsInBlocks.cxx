@@ -7,7 +7,7 @@
 namespace tyndall
 {
 /// Those that have gone as far as this turn goes, and are in the block.
-void WaitingPhotons::KeepThoseThatWait(const StretchesOfTurns& turn, std::vector<PhotonOnItsWay>& photons)
+void WaitingPhotons::KeepThoseThatWait(const TurnSchedule& turn, std::vector<PhotonOnItsWay>& photons)
 {
   const auto waiting = std::partition(photons.begin(), photons.end(), [&](const PhotonOnItsWay& photon) {
     return turn.last || photon.crossings < turn.gone || !Holds(this->Own, WhereIs(photon));
@@ -17,7 +17,7 @@ void WaitingPhotons::KeepThoseThatWait(const StretchesOfTurns& turn, std::vector
 }
 
 std::vector<PhotonOnItsWay> WaitingPhotons::Follow(
-  const StretchesOfTurns& turn, int round, std::vector<PhotonOnItsWay>&& arrived, const Monitor& monitor)
+  const TurnSchedule& turn, int round, std::vector<PhotonOnItsWay>&& arrived, const Monitor& monitor)
 {
   if (!this->March)
   {
@@ -38,8 +38,8 @@ void WaitingPhotons::ToTheirEnds(
   const TurnsInBlocks& turns, int limit, const std::function<const Buffer<float>&()>& show, const Monitor& monitor)
 {
   constexpr double part = 0.1; // of what is left to do, as far as is known
-  const std::size_t all = PlaceAmong(this->Others, this->Starting.packed.Count()).all;
-  StretchesOfTurns turn(turns.stretches, limit, all);
+  const std::size_t all = PlaceAmong(this->Comm, this->Starting.packed.Count()).all;
+  TurnSchedule turn(turns.stretches, limit, all);
   double done = 0.0;
   bool first = true;
   for (std::size_t left = all; left > 0; first = false)
@@ -56,9 +56,9 @@ void WaitingPhotons::ToTheirEnds(
       turns.meanwhile();
     }
     const Buffer<float>* fluence = nullptr;
-    this->Others.Together([&] { fluence = &show(); });
+    this->Comm.Collective([&] { fluence = &show(); });
     turns.take(*fluence);
-    left = PlaceAmong(this->Others, this->Waiting.size()).all;
+    left = PlaceAmong(this->Comm, this->Waiting.size()).all;
     done = std::max(next, 1.0 - static_cast<double>(left) / static_cast<double>(all));
   }
 }

@@ -37,7 +37,7 @@ public:
   /// @param ended  takes the ends of photons that have come to them, and of those that wait or have left the block
   WaitingPhotons(Communicator& communicator, Rounds& rounds, const VoxelBox& own, BlockMarch* march,
     const StartingPhotons& starting, const Ended& ended)
-    : Others(communicator)
+    : Comm(communicator)
     , TheRounds(rounds)
     , Own(own)
     , March(march)
@@ -55,10 +55,10 @@ public:
 
 private:
   std::vector<PhotonOnItsWay> Follow(
-    const StretchesOfTurns& turn, int round, std::vector<PhotonOnItsWay>&& arrived, const Monitor& monitor);
-  void KeepThoseThatWait(const StretchesOfTurns& turn, std::vector<PhotonOnItsWay>& photons);
+    const TurnSchedule& turn, int round, std::vector<PhotonOnItsWay>&& arrived, const Monitor& monitor);
+  void KeepThoseThatWait(const TurnSchedule& turn, std::vector<PhotonOnItsWay>& photons);
 
-  Communicator& Others;
+  Communicator& Comm;
   Rounds& TheRounds;
   const VoxelBox& Own;
   BlockMarch* const March;

@@ -99,7 +99,7 @@ void AddTimes(const cl::Event& marched, const std::array<cl::Event, 2>& meanwhil
 }
 }
 
-void StretchesOfTurns::Next(std::size_t left)
+void TurnSchedule::Next(std::size_t left)
 {
   constexpr std::size_t few = 100;
   const double before = static_cast<double>(this->gone);
@@ -117,7 +117,7 @@ TurnTimes MarchInTurns(const MarchMedium& medium, const PackedPhotons& packed, c
   const cl::CommandQueue theirs = turns.sideBySide ? medium.device.AnotherQueue() : mine;
   TurnsOfPhotons all(medium, packed, photons, target);
   medium.device.Finish(); // what is on the device's own queue
-  StretchesOfTurns turn(turns.stretches, medium.EventLimit(), packed.Count());
+  TurnSchedule turn(turns.stretches, medium.EventLimit(), packed.Count());
   std::size_t left = packed.Count();
   for (; left > 0; ++times.turns)
   {

@@ -28,13 +28,13 @@ struct MarchTurns
 };
 
 /// How far photons go in each turn: the last one takes them to their ends.
-class StretchesOfTurns
+class TurnSchedule
 {
 public:
   /// @param each  stretches of a turn, as MarchTurns has them
   /// @param limit  walls and turns of a photon at most
   /// @param all  photons
-  StretchesOfTurns(int each, int limit, std::size_t all)
+  TurnSchedule(int each, int limit, std::size_t all)
     : Each(each)
     , Limit(limit)
     , All(all)

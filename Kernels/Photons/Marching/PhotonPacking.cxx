@@ -146,15 +146,15 @@ double UnitOfPower(double brightest)
 }
 
 /// Photons that meet the grid.
-struct MetPhotons
+struct IncomingPhotons
 {
   std::vector<Ray> rays;
   std::vector<std::size_t> numbers; ///< which of the photons given each is
 };
 
-MetPhotons ThoseThatMeet(const Grid& grid, const std::vector<Photon>& photons)
+IncomingPhotons ClipToVolume(const Grid& grid, const std::vector<Photon>& photons)
 {
-  MetPhotons met;
+  IncomingPhotons met;
   met.rays.reserve(photons.size());
   met.numbers.reserve(photons.size());
   for (std::size_t i = 0; i < photons.size(); ++i)
@@ -175,7 +175,7 @@ MetPhotons ThoseThatMeet(const Grid& grid, const std::vector<Photon>& photons)
 }
 
 /// Put the photons into `packed`, in this order, and add up what enters.
-void FillInOrder(PackedPhotons& packed, const std::vector<Photon>& photons, const MetPhotons& met,
+void FillInOrder(PackedPhotons& packed, const std::vector<Photon>& photons, const IncomingPhotons& met,
   const std::vector<std::uint32_t>& order)
 {
   packed.numbers.resize(met.rays.size());
@@ -325,7 +325,7 @@ void CheckPhotons(const std::vector<Photon>& photons, bool batches)
 
 void FillPacking(PackedPhotons& packed, const std::vector<Photon>& photons, const Grid& grid)
 {
-  const MetPhotons met = ThoseThatMeet(grid, photons);
+  const IncomingPhotons met = ClipToVolume(grid, photons);
   packed.missed = photons.size() - met.numbers.size();
   std::vector<std::uint32_t> order = Order(met.rays);
   if (packed.Batches() > 1)

@@ -3,8 +3,8 @@
 #include "Device/Clock.h"
 #include "Device/Errors.h"
 #include "Distribution/BoxExchange.h"
+#include "Distribution/Halo.h"
 #include "Distribution/SharedMedium.h"
-#include "Distribution/VoxelsAround.h"
 #include "Photons/Distributed/BlockInput.h"
 #include "Photons/Distributed/PhotonShares.h"
 #include "Photons/Distributed/PhotonTallies.h"
@@ -109,7 +109,7 @@ public:
   PublishedOfBlock(Device& device, Communicator& communicator, const BlockPartition& partition, const Medium& medium,
     const Field& ior, const std::uint8_t* levels, const PublishedSettings& settings)
     : TheDevice(device)
-    , Others(communicator)
+    , Comm(communicator)
     , Partition(partition)
     , TheMedium(medium)
     , Settings(settings)
@@ -124,7 +124,7 @@ public:
   {
     const double start = ClockSeconds();
     const StartingPhotons starting = this->Starting(share);
-    const double unit = TypicalPower(starting.packed.entered, PlaceAmong(this->Others, starting.packed.Count()).all);
+    const double unit = TypicalPower(starting.packed.entered, PlaceAmong(this->Comm, starting.packed.Count()).all);
     PhotonLight result;
     result.light.channels = 3;
     result.light.device = this->TheDevice.Name();
@@ -136,8 +136,8 @@ public:
     this->Gain(unit, result, loss);
     result.secondsMarching = ClockSeconds() - marching;
     this->Finish(result);
-    AddUpTallies(this->Others, result);
-    AddUp(this->Others, loss);
+    AddUpTallies(this->Comm, result);
+    AddUp(this->Comm, loss);
     result.seconds = ClockSeconds() - start;
     return result;
   }
@@ -145,22 +145,22 @@ public:
 private:
   void Check(const Field& ior, const std::uint8_t* levels) const
   {
-    const bool octree = OnAnyRank(this->Others, levels != nullptr);
-    this->Others.Together([&] {
-      CheckMarchedBlock(this->Others, this->Partition, this->TheMedium, ior, levels, octree);
+    const bool octree = OnAnyRank(this->Comm, levels != nullptr);
+    this->Comm.Collective([&] {
+      CheckMarchedBlock(this->Comm, this->Partition, this->TheMedium, ior, levels, octree);
       RequireAtomics(this->TheDevice);
     });
-    RequireSameInput(this->Others, this->Partition, this->TheMedium, ior);
-    RequireSame(this->Others, "settings", true, { 1.0 * this->Settings.tries, this->Settings.smooth ? 1.0 : 0.0 });
+    RequireSameInput(this->Comm, this->Partition, this->TheMedium, ior);
+    RequireSame(this->Comm, "settings", true, { 1.0 * this->Settings.tries, this->Settings.smooth ? 1.0 : 0.0 });
   }
 
   void Prepare(const Field& ior, const std::uint8_t* levels)
   {
     const IndexRange own = this->Has ? IndexRangeOf(ior, this->TheMedium.grid) : IndexRange();
-    const bool bends = IndexRangeOfAll(this->Others, this->Has, own).Varies();
-    const VoxelsAround around(this->Others, this->Partition, {}, PublishedMarch::Reach);
+    const bool bends = IndexRangeOfAll(this->Comm, this->Has, own).Varies();
+    const Halo around(this->Comm, this->Partition, {}, PublishedMarch::Reach);
     std::vector<float> index;
-    this->Others.Together([&] {
+    this->Comm.Collective([&] {
       index.assign(bends ? this->Own.VoxelCount() : 0, 1.0f);
       if (ior.values)
       {
@@ -168,7 +168,7 @@ private:
       }
     });
     index = bends ? around.Spread(index, 1) : std::vector<float>();
-    this->Others.Together([&] {
+    this->Comm.Collective([&] {
       if (this->Has)
       {
         this->Through = std::make_unique<PublishedMarch>(this->TheDevice, this->TheMedium,
@@ -181,15 +181,15 @@ private:
   StartingPhotons Starting(const std::vector<Photon>& share)
   {
     PhotonNumbers numbers(share.size());
-    std::iota(numbers.begin(), numbers.end(), PlaceAmong(this->Others, share.size()).first);
-    return SendToTheirBlocks(this->Others, this->Partition, share, numbers, {}, PackingSettings());
+    std::iota(numbers.begin(), numbers.end(), PlaceAmong(this->Comm, share.size()).first);
+    return SendToTheirBlocks(this->Comm, this->Partition, share, numbers, {}, PackingSettings());
   }
 
   /// Photons to their ends. @param unit  W of one unit of the power that they have on their way
   RoundsTraffic Follow(
     const PackedPhotons& packed, double unit, PhotonLight& result, PackingLoss& loss, const Monitor& monitor)
   {
-    Rounds rounds(this->Others, this->Partition, VoxelsPassed);
+    Rounds rounds(this->Comm, this->Partition, VoxelsPassed);
     rounds.UntilAllEnd<PublishedPhoton>(
       [&](int round, std::vector<PublishedPhoton>&& arrived, const Monitor& ofRound) {
         std::vector<PublishedPhoton> going = round == 0 ? PhotonsOf(packed, unit / packed.unit) : std::move(arrived);
@@ -210,7 +210,7 @@ private:
   /// The light of the block, not smoothed.
   void Gain(double unit, PhotonLight& result, PackingLoss& loss)
   {
-    this->Others.Together([&] {
+    this->Comm.Collective([&] {
       if (this->Through)
       {
         PublishedMarch::Light light = this->Through->Unpack(unit);
@@ -226,7 +226,7 @@ private:
   {
     if (this->Settings.smooth)
     {
-      const VoxelsAround around(this->Others, this->Partition, {}, 1);
+      const Halo around(this->Comm, this->Partition, {}, 1);
       this->Smooth(around, result.light.fluence);
       this->Smooth(around, result.meanDirection);
     }
@@ -237,10 +237,10 @@ private:
     result.scattered = this->Total(result, [&](std::size_t voxel, int c) { return volume * s.At(voxel, c); });
   }
 
-  void Smooth(const VoxelsAround& around, std::vector<float>& values)
+  void Smooth(const Halo& around, std::vector<float>& values)
   {
     const std::vector<float> known = around.Spread(values, 3);
-    this->Others.Together([&] {
+    this->Comm.Collective([&] {
       if (this->Through)
       {
         values = PartOf(this->Through->Smoothed(around.Known(), known), around.Known(), this->Own, 3);
@@ -262,7 +262,7 @@ private:
   }
 
   Device& TheDevice;
-  Communicator& Others;
+  Communicator& Comm;
   const BlockPartition& Partition;
   const Medium& TheMedium;
   const PublishedSettings& Settings;

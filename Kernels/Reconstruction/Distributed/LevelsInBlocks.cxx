@@ -47,7 +47,7 @@ struct LevelsInBlocks::Around
 struct LevelsInBlocks::Local
 {
   Local(const LevelsInBlocks& all, const PyramidBlocks& blocks, Around&& arrays, int channels, bool directions)
-    : box(blocks.Around(all.Others.Rank()))
+    : box(blocks.Around(all.Comm.Rank()))
     , around(std::move(arrays))
     , light(this->LightOf(blocks, channels, directions))
     , result(MakeRoom(this->light, false))
@@ -85,7 +85,7 @@ struct LevelsInBlocks::Local
 LevelsInBlocks::LevelsInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition,
   const ReconstructionSettings& settings, const Monitor& monitor)
   : TheDevice(device)
-  , Others(communicator)
+  , Comm(communicator)
   , Partition(partition)
   , Settings(settings)
   , TheMonitor(monitor)
@@ -96,11 +96,11 @@ LevelsInBlocks::LevelsInBlocks(Device& device, Communicator& communicator, const
 
 LevelsInBlocks::Around LevelsInBlocks::Gather(const NoisyLight& light, int channels, bool directions) const
 {
-  const std::size_t voxels = this->Partition.blocks[static_cast<std::size_t>(this->Others.Rank())].VoxelCount();
+  const std::size_t voxels = this->Partition.blocks[static_cast<std::size_t>(this->Comm.Rank())].VoxelCount();
   const auto gathered = [&](const float* values, int components, bool needed) {
     const std::vector<float> own =
       voxels > 0 && needed ? std::vector<float>(values, values + voxels * components) : std::vector<float>();
-    return needed ? ValuesInBox(this->Others, this->Partition, this->Blocks.around, own, components) : own;
+    return needed ? ValuesInBox(this->Comm, this->Partition, this->Blocks.around, own, components) : own;
   };
   Around around;
   around.fluence = gathered(light.fluence, channels, true);
@@ -114,12 +114,12 @@ LevelsInBlocks::Around LevelsInBlocks::Gather(const NoisyLight& light, int chann
 double LevelsInBlocks::WeightStep(const NoisyLight& light) const
 {
   WeightsOfVoxels weights;
-  const std::size_t voxels = this->Partition.blocks[static_cast<std::size_t>(this->Others.Rank())].VoxelCount();
+  const std::size_t voxels = this->Partition.blocks[static_cast<std::size_t>(this->Comm.Rank())].VoxelCount();
   if (NeedsWeights(this->Settings.estimator) && voxels > 0)
   {
     weights = WeightsOfVoxels(light.photonWeight, voxels);
   }
-  const std::vector<double> all = this->Others.Sum({ weights.total, weights.lit });
+  const std::vector<double> all = this->Comm.Sum({ weights.total, weights.lit });
   weights.total = all[0];
   weights.lit = all[1];
   return WeightStepOf(this->Settings, weights);
@@ -136,9 +136,9 @@ void LevelsInBlocks::CompletePyramids(Local* local, int channels, bool direction
   for (std::size_t pyramid = 0; pyramid < fields.size(); ++pyramid)
   {
     std::vector<float> cells;
-    this->Others.Together([&] { cells = local ? local->passes.Shared(pyramid) : cells; });
-    cells = this->Blocks.Gather(this->Others, cells, fields[pyramid]);
-    this->Others.Together([&] {
+    this->Comm.Collective([&] { cells = local ? local->passes.Shared(pyramid) : cells; });
+    cells = this->Blocks.Gather(this->Comm, cells, fields[pyramid]);
+    this->Comm.Collective([&] {
       if (local)
       {
         local->passes.BuildAbove(pyramid, cells);
@@ -150,10 +150,10 @@ void LevelsInBlocks::CompletePyramids(Local* local, int channels, bool direction
 /// Of the rank's own voxels, and scaled as the settings say.
 ReconstructedLight LevelsInBlocks::Kept(Local* local, const NoisyLight& light, int channels)
 {
-  const VoxelBox& own = this->Partition.blocks[static_cast<std::size_t>(this->Others.Rank())];
+  const VoxelBox& own = this->Partition.blocks[static_cast<std::size_t>(this->Comm.Rank())];
   ReconstructedLight kept;
   std::array<double, 3> was = {}, is = {};
-  this->Others.Together([&] {
+  this->Comm.Collective([&] {
     if (local)
     {
       const auto keep = [&](const std::vector<float>& values, int components) {
@@ -166,7 +166,7 @@ ReconstructedLight LevelsInBlocks::Kept(Local* local, const NoisyLight& light, i
       is = TotalsOf(kept.fluence.data(), kept.fluence.size(), channels);
     }
   });
-  const std::vector<double> sums = this->Others.Sum({ was[0], was[1], was[2], is[0], is[1], is[2] });
+  const std::vector<double> sums = this->Comm.Sum({ was[0], was[1], was[2], is[0], is[1], is[2] });
   const HostMappedBuffer<float> none(this->TheDevice, static_cast<const float*>(nullptr), 0, "nothing");
   NoisyLight described;
   described.channels = channels;
@@ -185,7 +185,7 @@ ReconstructedLight LevelsInBlocks::Run(const NoisyLight& light, int channels, bo
   Around around = this->Gather(light, channels, directions);
   const double step = this->WeightStep(light);
   std::unique_ptr<Local> local;
-  this->Others.Together([&] {
+  this->Comm.Collective([&] {
     if (!around.fluence.empty())
     {
       local = std::make_unique<Local>(*this, this->Blocks, std::move(around), channels, directions);
@@ -193,7 +193,7 @@ ReconstructedLight LevelsInBlocks::Run(const NoisyLight& light, int channels, bo
     }
   });
   this->CompletePyramids(local.get(), channels, directions);
-  this->Others.Together([&] {
+  this->Comm.Collective([&] {
     if (local)
     {
       local->passes.Choose(step);

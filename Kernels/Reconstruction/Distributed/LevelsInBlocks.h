@@ -35,7 +35,7 @@ private:
   ReconstructedLight Kept(Local* local, const NoisyLight& light, int channels);
 
   Device& TheDevice;
-  Communicator& Others;
+  Communicator& Comm;
   const BlockPartition& Partition;
   const ReconstructionSettings& Settings;
   const Monitor& TheMonitor;

@@ -65,7 +65,7 @@ public:
   BlockReconstruction(Device& device, Communicator& communicator, const BlockPartition& partition,
     const ReconstructionSettings& settings, const Monitor& monitor)
     : TheDevice(device)
-    , Others(communicator)
+    , Comm(communicator)
     , Partition(partition)
     , Settings(settings)
     , TheMonitor(monitor)
@@ -85,10 +85,10 @@ private:
   struct Local;
   struct Above;
 
-  const VoxelBox& Box() const { return this->Blocks.Around(this->Others.Rank()); }
+  const VoxelBox& Box() const { return this->Blocks.Around(this->Comm.Rank()); }
 
   Device& TheDevice;
-  Communicator& Others;
+  Communicator& Comm;
   const BlockPartition& Partition;
   const ReconstructionSettings& Settings;
   const Monitor& TheMonitor;
@@ -168,14 +168,14 @@ ReconstructedLight BlockReconstruction::Run(
   const Described& what, const std::vector<float>& batches, const std::vector<float>& directions)
 {
   const int width = what.batches * what.channels;
-  std::vector<float> around = ValuesInBox(this->Others, this->Partition, this->Blocks.around, batches, width);
+  std::vector<float> around = ValuesInBox(this->Comm, this->Partition, this->Blocks.around, batches, width);
   std::vector<float> vectors = what.directions
-    ? ValuesInBox(this->Others, this->Partition, this->Blocks.around, directions, 3)
+    ? ValuesInBox(this->Comm, this->Partition, this->Blocks.around, directions, 3)
     : std::vector<float>();
   const VoxelBox all = { {}, this->Blocks.SharedSize() }, cells = this->Blocks.CellsIn(this->Box());
   std::unique_ptr<Local> local;
   std::vector<float> known;
-  this->Others.Together([&] {
+  this->Comm.Collective([&] {
     if (this->Has)
     {
       local = std::make_unique<Local>(*this, what, std::move(around), std::move(vectors));
@@ -183,9 +183,9 @@ ReconstructedLight BlockReconstruction::Run(
       known = local->passes.LightOf(this->Shared).Read();
     }
   });
-  known = this->Blocks.Gather(this->Others, known, what.batches + what.channels + (what.directions ? 3 : 0));
+  known = this->Blocks.Gather(this->Comm, known, what.batches + what.channels + (what.directions ? 3 : 0));
   std::array<double, 3> total = {};
-  this->Others.Together([&] {
+  this->Comm.Collective([&] {
     if (this->Has)
     {
       Above above(*this, what);
@@ -204,9 +204,9 @@ ReconstructedLight BlockReconstruction::Run(
       }
     }
   });
-  const std::vector<double> sum = this->Others.Sum({ total[0], total[1], total[2] });
+  const std::vector<double> sum = this->Comm.Sum({ total[0], total[1], total[2] });
   ReconstructedLight result;
-  this->Others.Together([&] {
+  this->Comm.Collective([&] {
     if (this->Has)
     {
       ReconstructedLight& made = local->result;
@@ -221,7 +221,7 @@ ReconstructedLight BlockReconstruction::Run(
       result.bias = made.bias;
     }
   });
-  result.bias = -this->Others.Largest({ this->Has ? -result.bias : -std::numeric_limits<double>::infinity() })[0];
+  result.bias = -this->Comm.Largest({ this->Has ? -result.bias : -std::numeric_limits<double>::infinity() })[0];
   return result;
 }
 
@@ -343,7 +343,7 @@ ReconstructedLight ReconstructInBlocks(Device& device, Communicator& communicato
   const double start = ClockSeconds();
   const VoxelBox& own = partition.blocks[static_cast<std::size_t>(communicator.Rank())];
   const bool has = own.VoxelCount() > 0;
-  communicator.Together([&] {
+  communicator.Collective([&] {
     partition.Check();
     Check(settings);
     if (has)

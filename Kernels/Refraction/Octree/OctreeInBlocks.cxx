@@ -82,7 +82,7 @@ class PyramidInBlocks
 {
 public:
   PyramidInBlocks(Communicator& communicator, const BlockPartition& voxels)
-    : Others(communicator)
+    : Comm(communicator)
     , Layout(voxels.whole.size)
     , Levels(1, voxels)
   {
@@ -119,18 +119,18 @@ public:
 
 private:
   const BlockPartition& At(int level) const { return this->Levels[static_cast<std::size_t>(level)]; }
-  const VoxelBox& Own(int level) const { return this->At(level).blocks[static_cast<std::size_t>(this->Others.Rank())]; }
+  const VoxelBox& Own(int level) const { return this->At(level).blocks[static_cast<std::size_t>(this->Comm.Rank())]; }
 
   /// What a rank needs of a level in which others have a part, too.
   template <class Wanted>
   std::vector<float> Fetched(int level, const std::vector<float>& own, int components, const Wanted& wanted) const
   {
     std::vector<VoxelBox> boxes;
-    for (int rank = 0; rank < this->Others.Ranks(); ++rank)
+    for (int rank = 0; rank < this->Comm.Ranks(); ++rank)
     {
       boxes.push_back(wanted(rank));
     }
-    return ValuesInBox(this->Others, this->At(level), boxes, own, components);
+    return ValuesInBox(this->Comm, this->At(level), boxes, own, components);
   }
 
   /// Ranges of the own nodes above a level: least and largest.
@@ -140,7 +140,7 @@ private:
     const auto wanted = [&](int rank) {
       return ChildrenOf(this->At(level + 1).blocks[static_cast<std::size_t>(rank)], this->At(level).whole.size);
     };
-    const VoxelBox box = wanted(this->Others.Rank()), &nodes = this->Own(level + 1);
+    const VoxelBox box = wanted(this->Comm.Rank()), &nodes = this->Own(level + 1);
     const int components = level == 0 ? 1 : 2;
     const std::vector<float> children = this->Fetched(level, own, components, wanted);
     std::vector<float> ranges;
@@ -195,7 +195,7 @@ private:
     return levels;
   }
 
-  Communicator& Others;
+  Communicator& Comm;
   PyramidLayout Layout;
   std::vector<BlockPartition> Levels; ///< nodes of each level, those of level 0 voxels
 };
@@ -221,7 +221,7 @@ Octree BuildOctreeInBlocks(Communicator& communicator, const BlockPartition& par
   using Clock = std::chrono::steady_clock;
   const Clock::time_point start = Clock::now();
   const bool has = partition.blocks[static_cast<std::size_t>(communicator.Rank())].VoxelCount() > 0;
-  communicator.Together([&] {
+  communicator.Collective([&] {
     partition.Check();
     Check(settings);
     if (has)
@@ -262,7 +262,7 @@ Octree BuildOctreeInBlocks(Communicator& communicator, const BlockPartition& par
   bool uneven = false;
   for (int channel = 0; channel < channels; ++channel)
   {
-    communicator.Together([&] { Report(monitor, (1.0 + channel) / (1.0 + channels)); });
+    communicator.Collective([&] { Report(monitor, (1.0 + channel) / (1.0 + channels)); });
     const std::vector<float> tolerances =
       ExtinctionTolerances(partition.whole, levelCount, settings.extinctionTolerance);
     uneven |= restrict(has ? Extinction(medium, channel) : std::vector<float>(), tolerances);

@@ -67,13 +67,13 @@ SharedScene PictureInBlocks::Shared(Communicator& communicator, const SharedScen
 
 PictureInBlocks::PictureInBlocks(Communicator& communicator, const BlockPartition& partition,
   const std::vector<VoxelBox>& held, MediumRayCaster* own, const WorkAtOnce& atOnce)
-  : Others(communicator)
+  : Comm(communicator)
   , Partition(partition)
   , Own(own)
   , Shadows(communicator, partition, held, own, atOnce.voxels)
   , RaysAtOnce(atOnce.rays)
 {
-  const std::vector<double> any = this->Others.Largest(
+  const std::vector<double> any = this->Comm.Largest(
     { own && !own->CastsBlocks() ? 1.0 : 0.0, own && own->ShowsMoments() ? 1.0 : 0.0, own ? own->StepSize() : 0.0 });
   this->InRounds = any[0] > 0.0;
   this->ByMoments = any[1] > 0.0;
@@ -82,12 +82,12 @@ PictureInBlocks::PictureInBlocks(Communicator& communicator, const BlockPartitio
 
 void PictureInBlocks::FindSources(const Camera& camera, const Monitor& monitor)
 {
-  if (!OnAnyRank(this->Others, this->Own && this->Own->NeedsSources()))
+  if (!OnAnyRank(this->Comm, this->Own && this->Own->NeedsSources()))
   {
     return;
   }
   this->Shadows.Find(camera, monitor);
-  this->Others.Together([&] {
+  this->Comm.Collective([&] {
     if (this->Own)
     {
       this->Own->FinishSources(camera);
@@ -111,7 +111,7 @@ std::vector<RayOnItsWay> PictureInBlocks::InOrder(std::vector<RayOnItsWay> rays,
 std::vector<RayOnItsWay> PictureInBlocks::Follow(const MediumRayCaster::Pass& pass, std::vector<RayOnItsWay> rays,
   bool sharp, Picture& picture, const Monitor& monitor)
 {
-  const VoxelBox& own = this->Partition.blocks[static_cast<std::size_t>(this->Others.Rank())];
+  const VoxelBox& own = this->Partition.blocks[static_cast<std::size_t>(this->Comm.Rank())];
   std::vector<RayOnItsWay> gone;
   while (!rays.empty())
   {
@@ -144,7 +144,7 @@ void PictureInBlocks::CastInRounds(const Camera& camera, bool sharp, Picture& pi
 {
   MediumRayCaster::Pass pass = {};
   auto rays = static_cast<double>(this->RaysAtOnce);
-  this->Others.Together([&] {
+  this->Comm.Collective([&] {
     if (this->Own)
     {
       pass = this->Own->BeginPass(camera, sharp);
@@ -152,7 +152,7 @@ void PictureInBlocks::CastInRounds(const Camera& camera, bool sharp, Picture& pi
       rays = std::min(rays, static_cast<double>(this->Own->RaysThatFit()));
     }
   });
-  const double fit = -this->Others.Largest({ -rays })[0];
+  const double fit = -this->Comm.Largest({ -rays })[0];
   const int rows = TileEdge * std::max(static_cast<int>(fit / (1.0 * TileEdge * picture.width)), 1);
   for (int begin = 0; begin < picture.height; begin += rows)
   {
@@ -185,7 +185,7 @@ Picture PictureInBlocks::Take(const Camera& camera, const std::array<int, 2>& si
     }
     return picture;
   }
-  this->Others.Together([&] {
+  this->Comm.Collective([&] {
     if (this->Own)
     {
       picture = this->Own->CastStraight(camera, OfPart(monitor, seen, 1.0));

@@ -69,7 +69,7 @@ private:
     const MediumRayCaster::Pass& pass, std::vector<RayOnItsWay> rays, bool sharp, Picture& picture, const Monitor& of);
   std::vector<RayOnItsWay> InOrder(std::vector<RayOnItsWay> rays, int width) const;
 
-  Communicator& Others;
+  Communicator& Comm;
   const BlockPartition& Partition;
   MediumRayCaster* Own;
   ShadowsInBlocks Shadows;

@@ -88,7 +88,7 @@ std::vector<SmallLight> LightsOfAll(Communicator& communicator, const std::vecto
 
 ShadowsInBlocks::ShadowsInBlocks(Communicator& communicator, const BlockPartition& partition,
   const std::vector<VoxelBox>& held, MediumRayCaster* own, std::size_t portion)
-  : Others(communicator)
+  : Comm(communicator)
   , Partition(partition)
   , Held(held)
   , Own(own)
@@ -108,22 +108,22 @@ void ShadowsInBlocks::AwaitReceipt()
 {
   if (const std::optional<int> receiver = std::exchange(this->Receiver, std::nullopt))
   {
-    this->Others.Receive<char>(*receiver, MessageTag::ReceiptsOfDepths);
+    this->Comm.Receive<char>(*receiver, MessageTag::ReceiptsOfDepths);
   }
 }
 
 /// Nothing where something has gone wrong.
 void ShadowsInBlocks::SendDepths(const Portion& portion, const Monitor& monitor)
 {
-  if (!this->LeadsThrough(portion, this->Others.Rank()))
+  if (!this->LeadsThrough(portion, this->Comm.Rank()))
   {
     return;
   }
   std::vector<float> depths;
   this->Failure.Attempt([&] { depths = this->Own->DepthsTowards(portion.light, portion.voxels, monitor); });
   this->AwaitReceipt();
-  this->Others.Send(portion.rank, MessageTag::DepthsOfLamps, depths);
-  if (portion.rank != this->Others.Rank())
+  this->Comm.Send(portion.rank, MessageTag::DepthsOfLamps, depths);
+  if (portion.rank != this->Comm.Rank())
   {
     this->Receiver = portion.rank;
   }
@@ -133,16 +133,16 @@ void ShadowsInBlocks::SendDepths(const Portion& portion, const Monitor& monitor)
 void ShadowsInBlocks::SeeLight(const Portion& portion, const Camera& camera)
 {
   std::vector<float> depths(3 * portion.voxels.VoxelCount(), 0.0f);
-  for (int rank = 0; rank < this->Others.Ranks(); ++rank)
+  for (int rank = 0; rank < this->Comm.Ranks(); ++rank)
   {
     if (!this->LeadsThrough(portion, rank))
     {
       continue;
     }
-    const std::vector<float> part = this->Others.Receive<float>(rank, MessageTag::DepthsOfLamps);
-    if (rank != this->Others.Rank())
+    const std::vector<float> part = this->Comm.Receive<float>(rank, MessageTag::DepthsOfLamps);
+    if (rank != this->Comm.Rank())
     {
-      this->Others.Send<char>(rank, MessageTag::ReceiptsOfDepths, {});
+      this->Comm.Send<char>(rank, MessageTag::ReceiptsOfDepths, {});
     }
     if (part.size() == depths.size())
     {
@@ -159,7 +159,7 @@ void ShadowsInBlocks::SeeLight(const Portion& portion, const Camera& camera)
 void ShadowsInBlocks::Follow(int light, const Camera& camera, const Monitor& monitor)
 {
   this->Failure = {};
-  const int ranks = this->Others.Ranks();
+  const int ranks = this->Comm.Ranks();
   for (int rank = 0; this->Own && rank < ranks; ++rank)
   {
     const auto number = static_cast<std::size_t>(rank);
@@ -175,14 +175,14 @@ void ShadowsInBlocks::Follow(int light, const Camera& camera, const Monitor& mon
       const Portion portion = { light, rank, voxels };
       this->SendDepths(portion, OfPart(monitor, done, done + each));
       done += each;
-      if (rank == this->Others.Rank())
+      if (rank == this->Comm.Rank())
       {
         this->SeeLight(portion, camera);
       }
     }
   }
   this->AwaitReceipt();
-  this->Others.Together([&] { this->Failure.Throw(); });
+  this->Comm.Collective([&] { this->Failure.Throw(); });
 }
 
 void ShadowsInBlocks::Find(const Camera& camera, const Monitor& monitor)
@@ -191,7 +191,7 @@ void ShadowsInBlocks::Find(const Camera& camera, const Monitor& monitor)
   {
     return;
   }
-  this->Others.Together([&] {
+  this->Comm.Collective([&] {
     if (this->Own)
     {
       this->Own->PackForShadowRays();

@@ -58,7 +58,7 @@ private:
   void SeeLight(const Portion& portion, const Camera& camera);
   void AwaitReceipt();
 
-  Communicator& Others;
+  Communicator& Comm;
   const BlockPartition& Partition;
   const std::vector<VoxelBox>& Held;
   MediumRayCaster* Own;

@@ -206,7 +206,7 @@ std::vector<double> DiffusionAcceleration::LeftByCell() const
       grid, [&](const BoxFaceCell& cell) { tau.push_back(longest * this->TheMedium.TransportSigmaT(cell.voxel, c)); });
   }
   const std::array<Rgb, 6> incoming =
-    this->Parts.SweepsAreLit() ? this->Parts.UsualBoundary->IncomingPower() : std::array<Rgb, 6>{};
+    this->Parts.SweepCarriesBoundarySource() ? this->Parts.UsualBoundary->IncomingPower() : std::array<Rgb, 6>{};
   return this->Box->LeftWithoutPattern(incoming, tau, this->Parts.SpreadsAside());
 }
 
@@ -243,7 +243,7 @@ void DiffusionAcceleration::MakeSystems()
   const CrossingPattern pattern = FindCrossingPattern(
     parts.Layout.grid, parts.Usual.Set(), this->Settings.mapResolution, parts.Usual.Starts(), this->Settings.periodic);
   const std::array<Rgb, 6> incoming =
-    parts.SweepsAreLit() ? parts.UsualBoundary->IncomingPower() : std::array<Rgb, 6>{};
+    parts.SweepCarriesBoundarySource() ? parts.UsualBoundary->IncomingPower() : std::array<Rgb, 6>{};
   const bool passes = this->Uncollided->Passed().Size() > 0;
   if (passes)
   {
@@ -443,7 +443,7 @@ void DiffusionAcceleration::WriteFluence()
   }
   SingleRank alone;
   const BlockPartition whole = BlockPartition::Even(layout.grid, 1);
-  const VoxelsAround around(alone, whole, this->Settings.periodic, 1);
+  const Halo around(alone, whole, this->Settings.periodic, 1);
   MakeFluence(alone, around, layout, this->TheMedium.sigma_a, fluence, parts.Path.Read(), this->UncollidedFluence);
   parts.Fluence.Write(fluence.data());
   if (this->Settings.netFlux)

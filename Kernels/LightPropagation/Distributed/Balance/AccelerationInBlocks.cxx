@@ -22,7 +22,7 @@ AccelerationInBlocks::AccelerationInBlocks(const Parts& parts)
   , Block(parts.others, parts.partition, parts.settings.periodic, parts.layout.channels, parts.layout.sharedExtinction)
   , Moments(parts.others, this->Block, parts.functions)
 {
-  parts.others.Together([&] {
+  parts.others.Collective([&] {
     const char* what = "the diffusion system";
     const VolumeLayout& held = this->Block.WithGhosts();
     const int extinctions = held.sharedExtinction ? 1 : held.channels;
@@ -47,7 +47,7 @@ void AccelerationInBlocks::SpreadMedium()
   const VolumeLayout& own = this->The.layout;
   const int extinctions = own.sharedExtinction ? 1 : own.channels;
   std::vector<float> sigmaT, swept, sigmaA;
-  this->The.others.Together([&] {
+  this->The.others.Collective([&] {
     sigmaT = this->The.medium.TransportSigmaT().Read();
     swept = this->The.medium.SigmaT().Read();
     this->OwnSigmaS = this->The.medium.SigmaS().Read();
@@ -132,7 +132,7 @@ void AccelerationInBlocks::GiveFirstScattered()
   const VolumeLayout& own = this->The.layout;
   const double volume = own.grid.VoxelVolume();
   std::vector<double> sums(6, 0.0); // scattered, and absorbed before
-  this->The.others.Together([&] {
+  this->The.others.Collective([&] {
     this->UncollidedFluence = this->The.path.Read();
     this->UncollidedFluence.resize(own.Floats());
     for (int c = 0; c < own.channels; ++c)
@@ -163,7 +163,7 @@ void AccelerationInBlocks::FindGiven()
 {
   const VolumeLayout& own = this->The.layout;
   std::vector<float> given, flux;
-  this->The.others.Together([&] {
+  this->The.others.Collective([&] {
     if (this->Moments.Any() && this->Block.Has() && this->The.flux.Size() > 0)
     {
       AddFluxOfMoments(this->The.device, own, this->The.functions, this->The.path, this->The.flux);
@@ -263,7 +263,7 @@ void AccelerationInBlocks::MakeSystems()
 /// The source of the next sweep: what is given, and what is scattered of the fluence that the systems found.
 void AccelerationInBlocks::ScatterFound()
 {
-  this->The.others.Together([&] {
+  this->The.others.Collective([&] {
     for (int c = 0; c < this->The.layout.channels && this->Block.Has(); ++c)
     {
       if (this->VoxelPower(c) > 0.0)
@@ -279,7 +279,7 @@ void AccelerationInBlocks::ScatterFound()
 void AccelerationInBlocks::SpreadSource()
 {
   std::vector<float> source;
-  this->The.others.Together([&] { source = this->The.source.Read(); });
+  this->The.others.Collective([&] { source = this->The.source.Read(); });
   this->Block.Spread(source, this->The.layout.channels, this->Source);
 }
 
@@ -288,7 +288,7 @@ void AccelerationInBlocks::ShapeSource()
 {
   const VolumeLayout& own = this->The.layout;
   this->SpreadSource();
-  this->The.others.Together([&] {
+  this->The.others.Collective([&] {
     for (int c = 0; c < own.channels; ++c)
     {
       if (this->VoxelPower(c) > 0.0)
@@ -308,7 +308,7 @@ void AccelerationInBlocks::Sweep(int iteration, const Monitor& monitor)
   const VolumeLayout& own = this->The.layout;
   if (iteration == 1)
   {
-    this->The.others.Together([&] {
+    this->The.others.Collective([&] {
       if (this->BeamValues() > 0)
       {
         this->The.source.CopyFrom(this->OwnGiven, own.Places(this->The.functions).beams, this->BeamValues());
@@ -324,7 +324,7 @@ void AccelerationInBlocks::Sweep(int iteration, const Monitor& monitor)
   {
     this->SpreadSource();
   }
-  this->The.others.Together([&] {
+  this->The.others.Collective([&] {
     this->The.path.Fill(0.0f);
     this->OwnCurrents.Fill(0.0f);
   });
@@ -333,7 +333,7 @@ void AccelerationInBlocks::Sweep(int iteration, const Monitor& monitor)
   this->Swept->Forget();
   this->Tally = this->Swept->Apply(shines ? &this->The.source : nullptr, boundary, monitor);
   std::vector<float> currents;
-  this->The.others.Together([&] { currents = this->OwnCurrents.Read(); });
+  this->The.others.Collective([&] { currents = this->OwnCurrents.Read(); });
   if (this->Faces)
   {
     this->Faces->TakeSwept();
@@ -346,7 +346,7 @@ void AccelerationInBlocks::Sweep(int iteration, const Monitor& monitor)
 void AccelerationInBlocks::BeginWarm()
 {
   const VolumeLayout& own = this->The.layout;
-  this->The.others.Together([&] {
+  this->The.others.Collective([&] {
     this->First = this->UncollidedFluence;
     this->First.resize(own.Values());
     this->FirstMoments = this->Moments.Any() ? this->The.path.Read() : std::vector<float>();
@@ -365,10 +365,10 @@ void AccelerationInBlocks::BeginWarm()
   }
   const VolumeLayout& held = this->Block.WithGhosts();
   Buffer<float> guess;
-  this->The.others.Together([&] { guess = Buffer<float>(this->The.device, held.Floats(), "the last light"); });
+  this->The.others.Collective([&] { guess = Buffer<float>(this->The.device, held.Floats(), "the last light"); });
   this->Block.SpreadWithGhosts(this->The.warm.Guessed(), own.channels, guess);
   std::vector<float> values;
-  this->The.others.Together([&] { values = guess.Read(); });
+  this->The.others.Collective([&] { values = guess.Read(); });
   for (int c = 0; c < own.channels; ++c)
   {
     const auto begin = values.begin() + static_cast<std::ptrdiff_t>(c * held.Stride());
@@ -380,7 +380,7 @@ void AccelerationInBlocks::BeginWarm()
     }
     this->Systems[c]->BeginBeyond(ofChannel);
   }
-  this->The.others.Together([&] {
+  this->The.others.Collective([&] {
     if (this->Moments.Any() && this->Block.Has())
     {
       AddMoments(this->The.device, own, this->The.functions, this->The.warm.Guess(), this->The.path);
@@ -392,7 +392,7 @@ KeptLight AccelerationInBlocks::Leave() const
 {
   const double rate = std::clamp(this->Rest.Ratio(), 0.5, 0.95);
   std::vector<float> moments;
-  this->The.others.Together([&] {
+  this->The.others.Collective([&] {
     moments = this->Moments.Any() ? this->The.path.Read() : std::vector<float>();
     std::transform(moments.begin(), moments.end(), this->FirstMoments.begin(), moments.begin(), std::minus<>());
   });
@@ -417,7 +417,7 @@ void AccelerationInBlocks::Correct(int iteration)
     Rgb given = this->GivenPower;
     std::transform(given.begin(), given.end(), this->PowerIn.begin(), given.begin(), std::plus<>());
     double ofFaces = 0.0;
-    this->The.others.Together([&] { ofFaces = this->Faces->OfBox().Reflect(iteration, given); });
+    this->The.others.Collective([&] { ofFaces = this->Faces->OfBox().Reflect(iteration, given); });
     // Which each rank has found for itself, and not to the last bit where their devices are of other kinds.
     change = std::max(change, this->The.others.Largest({ ofFaces })[0]);
   }
@@ -433,7 +433,7 @@ void AccelerationInBlocks::PutNextFlux()
   {
     return;
   }
-  this->The.others.Together([&] {
+  this->The.others.Collective([&] {
     for (int c = 0; c < this->The.layout.channels; ++c)
     {
       if (this->VoxelPower(c) > 0.0)

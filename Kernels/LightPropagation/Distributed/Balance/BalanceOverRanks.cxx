@@ -40,7 +40,7 @@ BalanceOverRanks::BalanceOverRanks(Device& device, Communicator& communicator, c
   const BlockWithGhosts& block, const DirectionSet& directions, const CrossingPattern& pattern,
   const DiffusionSystem::Arrays& arrays, const std::array<double, 6>& incoming, const std::array<bool, 3>& periodic,
   bool linear)
-  : Others(communicator)
+  : Comm(communicator)
   , Block(block)
   , Periodic(periodic)
   , SigmaA(arrays.sigma_a)
@@ -48,7 +48,7 @@ BalanceOverRanks::BalanceOverRanks(Device& device, Communicator& communicator, c
 {
   std::array<std::vector<float>, 3> conductance;
   std::vector<float> loss;
-  communicator.Together([&] {
+  communicator.Collective([&] {
     this->Solver = std::make_unique<MultigridOverRanks>(communicator, partition, periodic);
     this->Fluence.assign(block.WithGhosts().grid.VoxelCount(), 0.0);
     if (!block.Has())
@@ -72,7 +72,7 @@ BalanceOverRanks::BalanceOverRanks(Device& device, Communicator& communicator, c
 double BalanceOverRanks::Correct(double unit)
 {
   Buffer<float> none;
-  this->Others.Together([&] {
+  this->Comm.Collective([&] {
     if (this->System)
     {
       this->System->FindModel();
@@ -80,7 +80,7 @@ double BalanceOverRanks::Correct(double unit)
   });
   this->Block.FillGhosts(this->System ? this->System->TheModel() : none);
   std::vector<float> right;
-  this->Others.Together([&] {
+  this->Comm.Collective([&] {
     if (this->System)
     {
       this->System->Balance();
@@ -90,7 +90,7 @@ double BalanceOverRanks::Correct(double unit)
   const double reduction = DiffusionSystem::ReductionAfter(this->Corrections++);
   this->Solver->Solve(this->Fluence, right, unit, reduction);
   AndersonMixing::Sums sums = {};
-  this->Others.Together([&] {
+  this->Comm.Collective([&] {
     if (this->System)
     {
       this->System->SetFound(this->Fluence);
@@ -98,9 +98,9 @@ double BalanceOverRanks::Correct(double unit)
       sums = this->System->SumsOfChange();
     }
   });
-  const std::vector<double> all = this->Others.Sum({ sums.begin(), sums.end() });
+  const std::vector<double> all = this->Comm.Sum({ sums.begin(), sums.end() });
   std::copy(all.begin(), all.end(), sums.begin());
-  this->Others.Together([&] {
+  this->Comm.Collective([&] {
     if (this->System)
     {
       this->System->MixBy(sums);
@@ -112,7 +112,7 @@ double BalanceOverRanks::Correct(double unit)
 void BalanceOverRanks::Refine(double unit)
 {
   this->Solver->GoOn(this->Fluence, unit, DiffusionSystem::RefinedBy, DiffusionSystem::RefinedTo);
-  this->Others.Together([&] {
+  this->Comm.Collective([&] {
     if (this->System)
     {
       this->System->SetFound(this->Fluence);
@@ -122,7 +122,7 @@ void BalanceOverRanks::Refine(double unit)
 
 void BalanceOverRanks::BeginBeyond(const std::vector<double>& guessed)
 {
-  this->Others.Together([&] {
+  this->Comm.Collective([&] {
     for (std::size_t i = 0; i < this->Fluence.size(); ++i)
     {
       this->Fluence[i] += guessed[i];
@@ -163,7 +163,7 @@ std::vector<double> BalanceOverRanks::NextFluence() const
 double BalanceOverRanks::Absorbed() const
 {
   double own = 0.0;
-  this->Others.Together([&] {
+  this->Comm.Collective([&] {
     if (this->System)
     {
       const Grid& grid = this->Block.Own().grid;
@@ -174,13 +174,13 @@ double BalanceOverRanks::Absorbed() const
       });
     }
   });
-  return this->Others.Sum({ own })[0];
+  return this->Comm.Sum({ own })[0];
 }
 
 std::array<double, 6> BalanceOverRanks::Outflow(double entered, const std::array<double, 6>& ofSweep)
 {
   DiffusionSystem::BorderSums sums;
-  this->Others.Together([&] {
+  this->Comm.Collective([&] {
     if (this->System)
     {
       const std::array<int, 3>& size = this->Block.WithGhosts().grid.size;
@@ -199,7 +199,7 @@ std::array<double, 6> BalanceOverRanks::Outflow(double entered, const std::array
   {
     values.insert(values.end(), ofFaces->begin(), ofFaces->end());
   }
-  values = this->Others.Sum(values);
+  values = this->Comm.Sum(values);
   sums.transportWeight = values[0];
   sums.shared = values[1];
   auto next = values.begin() + 2;

@@ -53,7 +53,7 @@ public:
 private:
   std::vector<double> OwnOf(const std::vector<double>& held) const;
 
-  Communicator& Others;
+  Communicator& Comm;
   const BlockWithGhosts& Block;
   const std::array<bool, 3> Periodic;
   const Buffer<float>* SigmaA;

@@ -12,11 +12,11 @@ namespace tyndall
 BeamsInThickBlocks::BeamsInThickBlocks(Device& device, Communicator& communicator, const BlockWithGhosts& block,
   std::size_t pathFloats, const Coefficients& medium)
   : TheDevice(device)
-  , Others(communicator)
+  , Comm(communicator)
   , Block(block)
   , TheMedium(medium)
 {
-  communicator.Together([&] {
+  communicator.Collective([&] {
     const char* what = "light of lamps";
     this->OwnPath = Buffer<float>(device, pathFloats, what);
     this->OwnMoments = Buffer<float>(device, block.Own().Floats(6), what);
@@ -37,14 +37,14 @@ BeamsInThickBlocks::BeamsInThickBlocks(Device& device, Communicator& communicato
 SweepTally BeamsInThickBlocks::Add(
   std::size_t lamp, const LampAdder& add, Buffer<float>& path, const Deposit& more, const Monitor& monitor)
 {
-  this->Others.Together([&] {
+  this->Comm.Collective([&] {
     this->OwnPath.Fill(0.0f);
     this->OwnMoments.Fill(0.0f);
   });
   const SweepTally tally =
     add(lamp, { &this->OwnPath, more.flux, nullptr, &this->OwnMoments, more.faceOut, more.spreadsAside }, monitor);
   std::vector<float> lengths, moments;
-  this->Others.Together([&] {
+  this->Comm.Collective([&] {
     lengths = this->OwnPath.Read();
     moments = this->OwnMoments.Read();
     std::vector<float> all = path.Read();
@@ -54,7 +54,7 @@ SweepTally BeamsInThickBlocks::Add(
   const int channels = this->Block.Own().channels;
   this->Block.Spread(lengths, channels, this->Path);
   this->Block.SpreadWithGhosts(moments, 6 * channels, this->FirstMoments);
-  this->Others.Together([&] {
+  this->Comm.Collective([&] {
     if (this->Block.Has())
     {
       this->PassFaces();
@@ -80,7 +80,7 @@ void BeamsInThickBlocks::Finish()
 {
   const VolumeLayout& own = this->Block.Own();
   std::vector<float> passed, scattered;
-  this->Others.Together([&] {
+  this->Comm.Collective([&] {
     passed = this->Block.TakeOwn(this->ThroughFaces, 6 * own.channels);
     const std::vector<float> lengths = this->Block.TakeOwn(this->PathOfAll, own.channels);
     scattered = this->Block.TakeOwn(this->TheMedium.sigma_s, own.channels);

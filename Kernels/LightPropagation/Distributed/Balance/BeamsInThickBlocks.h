@@ -47,7 +47,7 @@ private:
   void PassFaces();
 
   Device& TheDevice;
-  Communicator& Others;
+  Communicator& Comm;
   const BlockWithGhosts& Block;
   Coefficients TheMedium;
   Buffer<float> OwnPath, OwnMoments;               ///< of a lamp, over the block, as Deposit has them

@@ -18,7 +18,7 @@ Grid GridOf(const Grid& whole, const VoxelBox& box)
 
 BlockWithGhosts::BlockWithGhosts(Communicator& communicator, const BlockPartition& partition,
   const std::array<bool, 3>& periodic, int channels, bool sharedExtinction)
-  : Others(communicator)
+  : Comm(communicator)
   , Block(partition.blocks[communicator.Rank()])
   , Alone(GoesRoundAlone(this->Block, partition.whole.size, periodic))
 {
@@ -82,7 +82,7 @@ std::vector<float> BlockWithGhosts::Placed(const std::vector<float>& own, int pa
 
 void BlockWithGhosts::Spread(const std::vector<float>& own, int parts, Buffer<float>& held, float elsewhere) const
 {
-  this->Others.Together([&] {
+  this->Comm.Collective([&] {
     const std::vector<float> values = this->Placed(own, parts, elsewhere);
     held.Write(values.data(), values.size());
   });
@@ -92,15 +92,15 @@ void BlockWithGhosts::SpreadWithGhosts(const std::vector<float>& own, int parts,
 {
   std::vector<float> values = this->Placed(own, parts, 0.0f);
   this->Ghosts->Fill(values.data(), parts, this->OfBox.Stride());
-  this->Others.Together([&] { held.Write(values.data(), values.size()); });
+  this->Comm.Collective([&] { held.Write(values.data(), values.size()); });
 }
 
 void BlockWithGhosts::FillGhosts(Buffer<float>& ofVoxels) const
 {
   std::vector<float> values;
-  this->Others.Together([&] { values = ofVoxels.Read(); });
+  this->Comm.Collective([&] { values = ofVoxels.Read(); });
   this->Ghosts->Fill(values.data(), 1, 0);
-  this->Others.Together([&] { ofVoxels.Write(values.data()); });
+  this->Comm.Collective([&] { ofVoxels.Write(values.data()); });
 }
 
 std::vector<float> BlockWithGhosts::TakeOwn(const Buffer<float>& held, int parts) const

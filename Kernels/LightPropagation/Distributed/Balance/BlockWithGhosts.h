@@ -47,7 +47,7 @@ public:
 private:
   std::vector<float> Placed(const std::vector<float>& own, int parts, float elsewhere) const;
 
-  Communicator& Others;
+  Communicator& Comm;
   VoxelBox Block, Box;
   std::array<bool, 3> Alone;
   VolumeLayout OfBlock, OfBox;

@@ -54,7 +54,7 @@ CellsOverRanks::CellsOverRanks(Device& device, Communicator& communicator, const
   const VolumeLayout& layout, int channel, const MediumOnDevice& medium, const std::array<int, 3>& halvings,
   bool linear)
   : TheDevice(device)
-  , Others(communicator)
+  , Comm(communicator)
   , Partition(partition)
   , Layout(layout)
   , First(channel * layout.Stride())
@@ -79,7 +79,7 @@ CellsOverRanks::CellsOverRanks(Device& device, Communicator& communicator, const
   CoarseMatrix matrix = FindCoarseMatrix(partition.whole, this->Box, this->Cells,
     std::vector<float>(sigmaT.begin(), sigmaT.end()), std::vector<float>(sigmaS.begin(), sigmaS.end()));
   this->Borders = std::move(matrix.borders);
-  communicator.Together([&] {
+  communicator.Collective([&] {
     if (communicator.Rank() == 0)
     {
       this->Solver = std::make_unique<MultigridSolver>(device, this->Cells.size, edges);
@@ -120,7 +120,7 @@ std::size_t CellsOverRanks::PlaceOf(const std::array<int, 3>& voxel) const
 std::vector<double> CellsOverRanks::SumByCells(const Values& ofVoxels)
 {
   std::vector<double> sums(this->Cells.VoxelCount(), 0.0);
-  const VoxelBox& block = this->Partition.blocks[this->Others.Rank()];
+  const VoxelBox& block = this->Partition.blocks[this->Comm.Rank()];
   for (std::size_t i = 0; i < ofVoxels.size(); ++i)
   {
     std::array<int, 3> cell = this->Layout.grid.VoxelAt(i);
@@ -130,7 +130,7 @@ std::vector<double> CellsOverRanks::SumByCells(const Values& ofVoxels)
     }
     sums[this->Cells.IndexOf(cell)] += ofVoxels[i];
   }
-  return this->Others.Sum(sums);
+  return this->Comm.Sum(sums);
 }
 
 /// Of what the last sweep scattered, W by voxel, all orders to come; none where they are guessed.
@@ -141,7 +141,7 @@ double CellsOverRanks::Solve(const Values& scattered, bool guessed)
   const auto magnitude = [](double sum, double value) { return sum + std::abs(value); };
   const double all = std::accumulate(byCells.begin(), byCells.end(), 0.0, magnitude);
   std::vector<double> found(byCells.size(), 0.0);
-  this->Others.Together([&] {
+  this->Comm.Collective([&] {
     if (this->Solver && all > 0.0 && !guessed)
     {
       this->FoundOnDevice.Fill(0.0);
@@ -150,7 +150,7 @@ double CellsOverRanks::Solve(const Values& scattered, bool guessed)
       found = this->FoundOnDevice.Read();
     }
   });
-  this->Found = this->Others.Sum(found); // the other ranks have zeros
+  this->Found = this->Comm.Sum(found); // the other ranks have zeros
   return std::accumulate(byCells.begin(), byCells.end(), 0.0);
 }
 
@@ -188,7 +188,7 @@ CellsOverRanks::Values CellsOverRanks::WithNeighbours(const Values& own)
 {
   if (!this->Linear)
   {
-    this->Held = this->Partition.blocks[this->Others.Rank()];
+    this->Held = this->Partition.blocks[this->Comm.Rank()];
     return own;
   }
   std::vector<VoxelBox> wanted;
@@ -196,8 +196,8 @@ CellsOverRanks::Values CellsOverRanks::WithNeighbours(const Values& own)
   {
     wanted.push_back(block.VoxelCount() > 0 ? Grown(block, 1, this->Partition.whole) : VoxelBox());
   }
-  this->Held = wanted[this->Others.Rank()];
-  return ValuesInBox(this->Others, this->Partition, wanted, own, 1);
+  this->Held = wanted[this->Comm.Rank()];
+  return ValuesInBox(this->Comm, this->Partition, wanted, own, 1);
 }
 
 /// W that a voxel scatters of light, W length, that its neighbours have too; as scatter_row of CoarseDiffusion.cl.
@@ -237,7 +237,7 @@ void CellsOverRanks::AddComing(Values& light, const Buffer<float>* guess)
   if (guess)
   {
     Values own;
-    this->Others.Together([&] { own = ChannelOf(*guess, this->First, this->Layout.grid.VoxelCount()); });
+    this->Comm.Collective([&] { own = ChannelOf(*guess, this->First, this->Layout.grid.VoxelCount()); });
     const Values coming = this->WithNeighbours(own);
     std::transform(light.begin(), light.end(), coming.begin(), light.begin(), std::plus<float>());
     return;
@@ -256,7 +256,7 @@ CellsOverRanks::Powers CellsOverRanks::ScatterOrder(
   const double volume = this->Layout.grid.VoxelVolume();
   Values gathered = ChannelOf(path, this->First, count), light = ChannelOf(fluence, this->First, count);
   Values all = this->WithNeighbours(gathered), shines(count);
-  const VoxelBox& block = this->Partition.blocks[this->Others.Rank()];
+  const VoxelBox& block = this->Partition.blocks[this->Comm.Rank()];
   std::array<double, 6> keptOfSwept = {}, kept = {};
   for (std::size_t i = 0; i < count; ++i)
   {
@@ -283,7 +283,7 @@ CellsOverRanks::Powers CellsOverRanks::ScatterOrder(
   WriteChannel(source, this->First, shines);
   std::copy(keptOfSwept.begin(), keptOfSwept.end(), sums.begin() + 4);
   std::copy(kept.begin(), kept.end(), sums.begin() + 10);
-  sums = this->Others.Sum(sums);
+  sums = this->Comm.Sum(sums);
   Powers powers;
   powers.absorbed = sums[0];
   powers.scattered = sums[2];

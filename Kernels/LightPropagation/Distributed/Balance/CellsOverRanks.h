@@ -59,7 +59,7 @@ private:
   double ScatteredIn(const std::array<int, 3>& voxel, const Values& light, std::array<double, 6>& kept) const;
 
   Device& TheDevice;
-  Communicator& Others;
+  Communicator& Comm;
   const BlockPartition& Partition;
   VolumeLayout Layout;
   Grid Cells;           ///< their number alone

@@ -9,7 +9,7 @@ namespace tyndall
 {
 FaceBalanceInBlocks::FaceBalanceInBlocks(
   Device& device, Communicator& communicator, FaceLight& faces, const BlockWithGhosts& block)
-  : Others(communicator)
+  : Comm(communicator)
   , Faces(faces)
   , HeldCells(block.Has() ? BoxFaceCellCount(block.WithGhosts().grid) : 0)
 {
@@ -30,7 +30,7 @@ FaceBalanceInBlocks::FaceBalanceInBlocks(
       }
     });
   }
-  communicator.Together([&] {
+  communicator.Collective([&] {
     this->Box.emplace(faces);
     for (int c = 0; c < faces.Channels(); ++c)
     {
@@ -42,7 +42,7 @@ FaceBalanceInBlocks::FaceBalanceInBlocks(
 
 void FaceBalanceInBlocks::TakeSwept()
 {
-  this->Others.Together([&] {
+  this->Comm.Collective([&] {
     this->Box->TakeSwept();
     for (std::size_t c = 0; c < this->OfBlock.size(); ++c)
     {
@@ -63,7 +63,7 @@ void FaceBalanceInBlocks::TakeSwept()
 void FaceBalanceInBlocks::TakeLeaving(const std::vector<bool>& lit)
 {
   std::vector<double> leaves(this->Faces.Cells() * lit.size(), 0.0);
-  this->Others.Together([&] {
+  this->Comm.Collective([&] {
     for (std::size_t c = 0; c < lit.size(); ++c)
     {
       const std::vector<float> rows = this->OfBlock[c].Read();
@@ -73,7 +73,7 @@ void FaceBalanceInBlocks::TakeLeaving(const std::vector<bool>& lit)
       }
     }
   });
-  leaves = this->Others.Sum(leaves);
+  leaves = this->Comm.Sum(leaves);
   for (std::size_t c = 0; c < lit.size(); ++c)
   {
     const auto begin = leaves.begin() + static_cast<std::ptrdiff_t>(c * this->Faces.Cells());
@@ -96,6 +96,6 @@ std::vector<double> FaceBalanceInBlocks::LeftByCell(const std::array<Rgb, 6>& in
       tau[c * this->Faces.Cells() + cell.whole] = longest * medium.TransportSigmaT(cell.voxel, static_cast<int>(c));
     }
   }
-  return this->Box->LeftWithoutPattern(incoming, this->Others.Sum(tau), !this->Faces.Reflects());
+  return this->Box->LeftWithoutPattern(incoming, this->Comm.Sum(tau), !this->Faces.Reflects());
 }
 }

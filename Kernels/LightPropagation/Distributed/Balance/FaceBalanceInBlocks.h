@@ -40,7 +40,7 @@ private:
     std::size_t voxel; ///< of the block
   };
 
-  Communicator& Others;
+  Communicator& Comm;
   const FaceLight& Faces;
   std::optional<FaceBalance> Box;
   std::vector<Cell> Cells;

@@ -20,7 +20,7 @@ IterationResult IterationByBalance::Run(const Monitor& monitor)
   IterationResult result;
   const bool shines = this->Uncollided.LoadSource(result.ledger);
   WarmStart warm(SceneOf(block, this->Incident), this->Kept, "diffusion acceleration");
-  AccelerationInBlocks acceleration({ block.TheDevice, block.Others, block.Partition, block.Scene, block.Settings,
+  AccelerationInBlocks acceleration({ block.TheDevice, block.Comm, block.Partition, block.Scene, block.Settings,
     block.Layout, block.OnDevice, this->Incident.Usual(), this->Incident.UsualBoundary(), this->Incident.Lamps(),
     *block.Scattering, block.Angular.get(), block.Functions(),
     [&block](const SweepRequest& request) { return block.MakeSweep(request); },
@@ -38,7 +38,7 @@ IterationResult IterationByBalance::Run(const Monitor& monitor)
   result.ledger.Count(ofUncollided);
   for (int c = 0; c < 3; ++c)
   {
-    result.ledger.LeaveOver(c, ofUncollided.onTheWay[c]);
+    result.ledger.SetUnaccounted(c, ofUncollided.onTheWay[c]);
   }
   result.convergence = acceleration.Run(monitor);
   result.fluenceDirect = acceleration.Direct();
@@ -65,7 +65,7 @@ IterationResult IterationByBalance::Run(const Monitor& monitor)
 void IterationByBalance::MakeShown(IterationResult& result)
 {
   const BlockOnDevice& block = this->Block;
-  block.Others.Together([&] {
+  block.Comm.Collective([&] {
     if (block.StoresMoments())
     {
       result.shown = Buffer<float>(block.TheDevice, block.Layout.MomentFloats(block.Functions()), "the light shown");
@@ -81,7 +81,7 @@ SweepTally IterationByBalance::AddNearFaces(
 {
   const BlockOnDevice& block = this->Block;
   SweepTally tally = acceleration.AddBeams(monitor);
-  block.Others.Together([&] {
+  block.Comm.Collective([&] {
     if (block.StoresMoments() && block.Has)
     {
       block.Scattering->AddFirstScattered(block.WholeDeposit(), shown);
@@ -99,7 +99,7 @@ void IterationByBalance::FindShown(AccelerationInBlocks& acceleration, const Buf
 {
   const BlockOnDevice& block = this->Block;
   acceleration.ScatterFound();
-  block.Others.Together([&] {
+  block.Comm.Collective([&] {
     if (block.Has)
     {
       const std::size_t values = block.Layout.Places(block.Functions()).beams;

@@ -15,7 +15,7 @@ void AccelerationInBlocks::TakeDirect()
 {
   const VolumeLayout& own = this->The.layout;
   std::vector<float> direct;
-  this->The.others.Together([&] {
+  this->The.others.Collective([&] {
     if (!this->Block.Has())
     {
       return;
@@ -83,7 +83,7 @@ void AccelerationInBlocks::WriteFluence()
   }
   this->CountLight();
   const std::vector<float> fluence = this->FluenceOfSystems();
-  this->The.others.Together([&] {
+  this->The.others.Collective([&] {
     if (!this->Block.Has())
     {
       return;
@@ -105,7 +105,7 @@ std::vector<float> AccelerationInBlocks::FluenceOfSystems()
 {
   const VolumeLayout& own = this->The.layout;
   std::vector<float> fluence, path;
-  this->The.others.Together([&] {
+  this->The.others.Collective([&] {
     if (!this->Block.Has())
     {
       return;
@@ -118,7 +118,7 @@ std::vector<float> AccelerationInBlocks::FluenceOfSystems()
       std::copy(solved.begin(), solved.end(), fluence.begin() + static_cast<std::ptrdiff_t>(c * own.Stride()));
     }
   });
-  const VoxelsAround around(this->The.others, this->The.partition, this->The.settings.periodic, 1);
+  const Halo around(this->The.others, this->The.partition, this->The.settings.periodic, 1);
   MakeFluence(
     this->The.others, around, own, this->The.scene.medium.sigma_a, fluence, std::move(path), this->UncollidedFluence);
   return fluence;
@@ -158,7 +158,7 @@ std::vector<float> AccelerationInBlocks::FindSurfaceRadiance() const
   }
   const VolumeLayout& own = this->The.layout;
   std::vector<SurfacePowers> powers;
-  this->The.others.Together([&] {
+  this->The.others.Collective([&] {
     for (int c = 0; c < own.channels && this->Block.Has(); ++c)
     {
       powers.push_back(this->VoxelPower(c) > 0.0 ? this->Systems[c]->PowersAtSurface() : SurfacePowers());

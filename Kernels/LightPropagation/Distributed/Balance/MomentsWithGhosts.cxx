@@ -8,7 +8,7 @@ constexpr int OfDegreesToOne = 4; ///< functions
 }
 
 MomentsWithGhosts::MomentsWithGhosts(Communicator& communicator, const BlockWithGhosts& block, int functions)
-  : Others(communicator)
+  : Comm(communicator)
   , Block(block)
   , Own(block.Own().Places(functions))
   , Held(block.WithGhosts().Places(functions > 1 ? OfDegreesToOne : 1))
@@ -17,7 +17,7 @@ MomentsWithGhosts::MomentsWithGhosts(Communicator& communicator, const BlockWith
 
 void MomentsWithGhosts::Spread(const Buffer<float>& own, Buffer<float>& held) const
 {
-  this->Others.Together([&] {
+  this->Comm.Collective([&] {
     if (!this->Block.Has())
     {
       return;
@@ -44,7 +44,7 @@ void MomentsWithGhosts::Spread(const Buffer<float>& own, Buffer<float>& held) co
 
 void MomentsWithGhosts::TakeFirstDegree(const Buffer<float>& held, Buffer<float>& own) const
 {
-  this->Others.Together([&] {
+  this->Comm.Collective([&] {
     if (!this->Block.Has())
     {
       return;

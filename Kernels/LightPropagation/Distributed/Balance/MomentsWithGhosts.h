@@ -37,7 +37,7 @@ public:
 private:
   static int FunctionAlong(int axis) { return axis == 0 ? 3 : axis; } ///< y, z, x, as AngularBasis has them
 
-  Communicator& Others;
+  Communicator& Comm;
   const BlockWithGhosts& Block;
   MomentPlaces Own, Held;
 };

@@ -72,7 +72,7 @@ struct MultigridOverRanks::Row
 
 MultigridOverRanks::MultigridOverRanks(Communicator& communicator, const BlockPartition& partition,
   const std::array<bool, 3>& periodic, std::size_t gatherAtMost)
-  : Others(communicator)
+  : Comm(communicator)
   , Periodic(periodic)
 {
   std::vector<MultigridLevel> layouts = MultigridLevels(partition.whole.size, partition.whole.spacing);
@@ -113,7 +113,7 @@ void MultigridOverRanks::AddLevel(const std::array<int, 3>& size, const std::arr
     beside.push_back(LayersBeside(own[rank], size, this->Periodic));
     ofOthers.push_back(TouchedOfOthers(own[rank], touched[rank]));
   }
-  const auto self = static_cast<std::size_t>(this->Others.Rank());
+  const auto self = static_cast<std::size_t>(this->Comm.Rank());
   Level level;
   level.size = size;
   level.halved = halved;
@@ -121,8 +121,8 @@ void MultigridOverRanks::AddLevel(const std::array<int, 3>& size, const std::arr
   level.periodic = this->Periodic;
   level.alone = GoesRoundAlone(own[self], size, this->Periodic);
   level.held = Hull(Hull(own[self], beside[self]), ofOthers[self]);
-  level.beside = std::make_unique<GhostCells>(this->Others, own, beside, level.held, size);
-  level.shared = std::make_unique<GhostCells>(this->Others, own, ofOthers, level.held);
+  level.beside = std::make_unique<GhostCells>(this->Comm, own, beside, level.held, size);
+  level.shared = std::make_unique<GhostCells>(this->Comm, own, ofOthers, level.held);
   const std::size_t count = level.held.VoxelCount();
   for (std::vector<double>& ofAxis : level.conductance)
   {
@@ -482,7 +482,7 @@ int MultigridOverRanks::Iterate(
   const GradientSteps steps = { [&] { return this->Precondition(); }, turn, curvature,
     [&](double length) { return this->GoAlong(values, length, unit); } };
   const auto count = static_cast<double>(CellsOf(finest.size));
-  const int iterations = GoDown(steps, left, { reduction, leftAtMost, count }, this->FirstResidual);
+  const int iterations = SolveCg(steps, left, { reduction, leftAtMost, count }, this->FirstResidual);
   finest.beside->Fill(values);
   return iterations;
 }

@@ -77,7 +77,7 @@ private:
   static void ForParents(const Level& fine, const Level& coarse, const Act& act);
   void CoarsenMatrix(const Level& fine, Level& coarse) const;
   void InvertDiagonal(Level& level) const;
-  double SumOfAll(double own) const { return this->Others.Sum({ own })[0]; }
+  double SumOfAll(double own) const { return this->Comm.Sum({ own })[0]; }
 
   void Visit(std::size_t level);
   void VisitTwice(std::size_t level);
@@ -89,7 +89,7 @@ private:
   double GoAlong(std::vector<double>& values, double length, double unit);
   int Iterate(std::vector<double>& values, double left, double unit, double reduction, double leftAtMost);
 
-  Communicator& Others;
+  Communicator& Comm;
   const std::array<bool, 3> Periodic;
   std::vector<Level> Levels;
   std::vector<double> Direction, Applied; ///< over the finest level's box

@@ -7,7 +7,7 @@ OrdersByCellsInBlocks::OrdersByCellsInBlocks(BlockOnDevice& block, const std::ar
 {
   for (int c = 0; c < block.Layout.channels; ++c)
   {
-    this->Cells.push_back(std::make_unique<CellsOverRanks>(block.TheDevice, block.Others, block.Partition, block.Layout,
+    this->Cells.push_back(std::make_unique<CellsOverRanks>(block.TheDevice, block.Comm, block.Partition, block.Layout,
       c, block.OnDevice, halvings, block.Settings.source != PropagationSource::Constant));
   }
 }
@@ -21,7 +21,7 @@ OrdersByCellsInBlocks::Powers OrdersByCellsInBlocks::ScatterOrder(EnergyLedger& 
     const CellsOverRanks::Powers powers =
       this->Cells[i]->ScatterOrder(this->Block.Path, this->Block.Fluence, this->Block.Source, guess);
     ledger.Absorb(c, powers.absorbed);
-    ledger.LeaveOver(c, powers.left);
+    ledger.SetUnaccounted(c, powers.left);
     all.scattered[c] = powers.scattered;
     all.magnitude[c] = powers.magnitude;
     for (int face = 0; face < 6; ++face)

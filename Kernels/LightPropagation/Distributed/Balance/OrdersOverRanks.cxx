@@ -39,7 +39,7 @@ ThickLines LinesOfAll(
   Communicator& communicator, const BlockPartition& partition, const Grid& own, const VoxelValue& sigma_t)
 {
   std::vector<double> ofBlock;
-  communicator.Together([&] {
+  communicator.Collective([&] {
     const LineSums sums = SumAlongLines(own, sigma_t);
     for (const std::vector<double>& ofAxis : sums)
     {
@@ -128,20 +128,20 @@ bool GoesRound(const PropagationSettings& settings)
 }
 
 /// How blocks do it.
-OrdersAdded InBlocks(OrdersAdded ofWhole, const PropagationSettings& settings)
+IterationScheme InBlocks(IterationScheme ofWhole, const PropagationSettings& settings)
 {
   if (settings.source == PropagationSource::Linear)
   {
-    return OrdersAdded::ByBalance;
+    return IterationScheme::Dsa;
   }
   const bool balances = settings.uncollidedDirections <= 0;
-  const bool has = ofWhole == OrdersAdded::ByBalance ? balances : !GoesRound(settings);
-  return has ? ofWhole : OrdersAdded::OneByOne;
+  const bool has = ofWhole == IterationScheme::Dsa ? balances : !GoesRound(settings);
+  return has ? ofWhole : IterationScheme::SourceIteration;
 }
 }
 
-OrdersOverRanks HowOrdersAreAdded(Communicator& communicator, const BlockPartition& partition, const BlockScene& scene,
-  const PropagationSettings& settings)
+OrdersOverRanks ChooseIterationScheme(Communicator& communicator, const BlockPartition& partition,
+  const BlockScene& scene, const PropagationSettings& settings)
 {
   OrdersOverRanks orders;
   const bool accelerates = MayBeAccelerated(settings, scene.traits.scatters);
@@ -152,7 +152,7 @@ OrdersOverRanks HowOrdersAreAdded(Communicator& communicator, const BlockPartiti
   const ScatteringOfScene all = ScatteringOfAll(communicator, partition, scene, settings);
   orders.needed = OrdersNeeded(all);
   orders.halvings = CellHalvings(all.grid, all.thickest);
-  orders.ofWhole = HowOrdersAreAdded(settings, scene.traits.scatters, all);
+  orders.ofWhole = ChooseIterationScheme(settings, scene.traits.scatters, all);
   orders.how = InBlocks(orders.ofWhole, settings);
   return orders;
 }

@@ -59,7 +59,7 @@ std::vector<float> SurfaceRadianceInBlocks(Communicator& communicator, const Blo
     return {};
   }
   std::vector<double> all;
-  communicator.Together([&] {
+  communicator.Collective([&] {
     all.assign(BoxFaceCellCount(partition.whole) * SurfaceCosines.size() * channels, 0.0);
     if (has)
     {

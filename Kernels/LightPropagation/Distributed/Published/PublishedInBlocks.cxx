@@ -63,7 +63,7 @@ public:
   PublishedOfBlock(Communicator& communicator, const BlockPartition& partition, bool has, const Medium& medium,
     const Illumination& illumination, const PropagationSettings& settings, const PublishedModel& model,
     const SceneOfAll& scene, const MakeRays& make, const KeptLight* kept)
-    : Others(communicator)
+    : Comm(communicator)
     , Has(has)
     , CountsGiven(IsFirstThatHas(communicator, partition))
     , TheMedium(medium)
@@ -147,7 +147,7 @@ private:
         this->LookAtDirect();
       }
     });
-    this->Others.Together([&] { failure.Throw(); });
+    this->Comm.Collective([&] { failure.Throw(); });
   }
 
   void LookAtDirect()
@@ -189,7 +189,7 @@ private:
     {
       this->Sweep.WriteSources([this](int d) { return this->SourceOf(d); }, failure);
     }
-    this->Others.Together([&] { failure.Throw(); });
+    this->Comm.Collective([&] { failure.Throw(); });
   }
 
   std::vector<float> SourceOf(int sourceDirection) const
@@ -218,14 +218,14 @@ private:
         tally.out[face][c] = this->Given.escaped[face][c];
       }
     }
-    return SumOverRanks(this->Others, tally);
+    return SumOverRanks(this->Comm, tally);
   }
 
   void Close()
   {
     if (this->Faces.Count())
     {
-      this->Faces.PowersLeft() = this->Others.Sum(this->Faces.PowersLeft());
+      this->Faces.PowersLeft() = this->Comm.Sum(this->Faces.PowersLeft());
     }
     this->Faces.CloseOrder(this->Ledger);
     const OrderSums own =
@@ -235,7 +235,7 @@ private:
     {
       values.insert(values.end(), rgb->begin(), rgb->end());
     }
-    values = this->Others.Sum(values);
+    values = this->Comm.Sum(values);
     OrderSums all;
     auto from = values.begin();
     for (Rgb* rgb : { &all.fluence, &all.magnitude, &all.absorbed, &all.scattered })
@@ -246,7 +246,7 @@ private:
     this->Ledger.CloseOrder(all);
   }
 
-  Communicator& Others;
+  Communicator& Comm;
   const bool Has, CountsGiven;
   const Medium& TheMedium;
   const UncollidedImage& Given;
@@ -267,7 +267,7 @@ private:
 void CheckPublishedBlocks(Communicator& communicator, const BlockPartition& partition, bool has, const Medium& medium,
   const Illumination& illumination, const PropagationSettings& settings)
 {
-  communicator.Together([&] {
+  communicator.Collective([&] {
     partition.Check();
     Require(static_cast<int>(partition.blocks.size()) == communicator.Ranks(), "There is not a block for each rank.");
     if (has)
@@ -281,7 +281,7 @@ void CheckPublishedBlocks(Communicator& communicator, const BlockPartition& part
   RequireSame(communicator, partition);
   RequireSame(communicator, has, medium, illumination, settings);
   RequireSame(communicator, "StoredDirections", true, { 1.0 * settings.storedDirections });
-  CheckLightHasAnEnd(LightEndsOnAny(communicator, has, medium, illumination), illumination, settings);
+  RequireSink(LightEndsOnAny(communicator, has, medium, illumination), illumination, settings);
 }
 
 std::vector<std::string> LeftOutOfBlocks(
@@ -308,7 +308,7 @@ LightField SolveBy(const MakeRays& make, Communicator& communicator, const Block
   own.grid = partition.OwnGrid(communicator.Rank());
   const SceneOfAll scene = SceneOf(communicator, has, own, illumination);
   std::optional<PublishedModel> model;
-  communicator.Together(
+  communicator.Collective(
     [&] { model.emplace(has ? medium.phase : PhaseOfMedium(), illumination, settings, scene.channels); });
   PublishedOfBlock propagation(communicator, partition, has, own, illumination, settings, *model, scene, make, kept);
   do
@@ -316,13 +316,13 @@ LightField SolveBy(const MakeRays& make, Communicator& communicator, const Block
     propagation.RunOrder(monitor);
   } while (!propagation.Done());
   LightField light;
-  communicator.Together([&] { light = propagation.Result(); });
+  communicator.Collective([&] { light = propagation.Result(); });
   const std::vector<std::string> leftOut = LeftOutOfBlocks(scene, illumination, settings, propagation.Orders());
   light.leftOut.insert(light.leftOut.begin(), leftOut.begin(), leftOut.end());
   light.halfRangeFlux = HalfRangeFlux(model->Directions());
   JudgeConvergence(settings, light, false);
-  DoubtGivenLight(illumination, light);
-  communicator.Together([&] {
+  WarnAboutInputLight(illumination, light);
+  communicator.Collective([&] {
     if (kept)
     {
       Keep(propagation.Left(), propagation.BeganWarm(), light, *kept);

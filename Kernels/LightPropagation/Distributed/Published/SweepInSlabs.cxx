@@ -49,7 +49,7 @@ SweepTally SumOverRanks(Communicator& communicator, const SweepTally& own)
 
 SweepInSlabs::SweepInSlabs(Communicator& communicator, const BlockPartition& blocks, const Medium& own,
   const PublishedModel& model, const PropagationSettings& settings, SlabRays& rays)
-  : Others(communicator)
+  : Comm(communicator)
   , Blocks(blocks)
   , Model(model)
   , Settings(settings)
@@ -61,7 +61,7 @@ SweepInSlabs::SweepInSlabs(Communicator& communicator, const BlockPartition& blo
     this->TakePlanes(axis, own);
   }
   const int perBatch = this->DirectionsPerBatch();
-  communicator.Together([&] {
+  communicator.Collective([&] {
     this->Rays.MakeBatches(perBatch);
     this->MakeTasks();
   });
@@ -71,23 +71,23 @@ SweepInSlabs::SweepInSlabs(Communicator& communicator, const BlockPartition& blo
 void SweepInSlabs::TakePlanes(int axis, const Medium& own)
 {
   const SlabsAcross& slabs = this->Slabs[axis];
-  const std::size_t voxels = this->Blocks.blocks[this->Others.Rank()].VoxelCount();
+  const std::size_t voxels = this->Blocks.blocks[this->Comm.Rank()].VoxelCount();
   std::array<std::vector<float>, 3> arrays;
   Medium medium;
-  medium.grid = slabs.boxes.OwnGrid(this->Others.Rank());
+  medium.grid = slabs.boxes.OwnGrid(this->Comm.Rank());
   const auto take = [&](Field Medium::*which, std::vector<float>& values) {
     const Field& field = own.*which;
     if (voxels > 0 && field.values)
     {
       const int components = field.HasColour() ? 3 : 1;
-      values = ValuesInBox(this->Others, this->Blocks, slabs.boxes.blocks, ValuesOf(field, voxels), components);
+      values = ValuesInBox(this->Comm, this->Blocks, slabs.boxes.blocks, ValuesOf(field, voxels), components);
       medium.*which = { values.data(), components };
     }
   };
   take(&Medium::sigma_a, arrays[0]);
   take(&Medium::sigma_s, arrays[1]);
   take(&Medium::emission, arrays[2]);
-  this->Others.Together([&] {
+  this->Comm.Collective([&] {
     if (this->HasPlanes(axis))
     {
       const VoxelBox& planes = this->PlanesOf(axis);
@@ -105,7 +105,7 @@ int SweepInSlabs::DirectionsPerBatch() const
   {
     ranks = std::max(ranks, slabs.ranks.size());
   }
-  const int most = -static_cast<int>(this->Others.Largest({ -1.0 * this->Rays.MostPerBatch() })[0]);
+  const int most = -static_cast<int>(this->Comm.Largest({ -1.0 * this->Rays.MostPerBatch() })[0]);
   const int groups = std::min(static_cast<int>(ranks), perFace);
   return std::min(most, (perFace + groups - 1) / groups);
 }
@@ -134,7 +134,7 @@ SweepInSlabs::Task SweepInSlabs::TaskOf(int axis, std::size_t batch) const
   const int count = static_cast<int>(ranks.size());
   const int batches = static_cast<int>(this->Rays.Batches(axis)), ofFace = batches / 2;
   const bool forward = this->Rays.IsForward(axis, batch);
-  const int place = this->Slabs[axis].PlaceOf(this->Others.Rank());
+  const int place = this->Slabs[axis].PlaceOf(this->Comm.Rank());
   const int gone = forward ? place : count - 1 - place;
   const auto rank = [&](int there) { return ranks[forward ? there : count - 1 - there]; };
   const bool begins = gone == 0, ends = gone == count - 1;
@@ -167,8 +167,8 @@ SweepTally SweepInSlabs::Run(int order, bool emits, PublishedFaces& faces, const
     this->RunTask(t, running, OfPart(monitor, t / all, (t + 1) / all));
   }
   this->TakeFromAround(running);
-  this->Others.Together([&] { running.failure.Throw(); });
-  return SumOverRanks(this->Others, running.tally);
+  this->Comm.Collective([&] { running.failure.Throw(); });
+  return SumOverRanks(this->Comm, running.tally);
 }
 
 void SweepInSlabs::RunTask(std::size_t number, Running& running, const Monitor& monitor)
@@ -182,7 +182,7 @@ void SweepInSlabs::RunTask(std::size_t number, Running& running, const Monitor& 
     std::vector<float> given = std::exchange(this->Waiting[number][p], {});
     if (task.from >= 0)
     {
-      given = this->Others.Receive<float>(task.from, task.tag);
+      given = this->Comm.Receive<float>(task.from, task.tag);
       running.failure.broken = running.failure.broken || given.size() != this->Rays.FloatsOfMap(task.axis, task.batch);
     }
     std::vector<float> rays;
@@ -193,7 +193,7 @@ void SweepInSlabs::RunTask(std::size_t number, Running& running, const Monitor& 
     const bool ends = task.to < 0;
     if (const int to = ends && this->Settings.periodic[task.axis] ? task.around : task.to; to >= 0)
     {
-      this->Others.Send(to, task.tag, rays);
+      this->Comm.Send(to, task.tag, rays);
     }
   }
   running.failure.Attempt([&] { this->Rays.End(way, running.faces); });
@@ -211,7 +211,7 @@ void SweepInSlabs::TakeFromAround(Running& running)
     }
     for (std::vector<float>& rays : this->Waiting[number])
     {
-      rays = this->Others.Receive<float>(task.around, task.tag);
+      rays = this->Comm.Receive<float>(task.around, task.tag);
       running.failure.broken = running.failure.broken || rays.size() != this->Rays.FloatsOfMap(task.axis, task.batch);
     }
   }
@@ -219,7 +219,7 @@ void SweepInSlabs::TakeFromAround(Running& running)
 
 std::vector<float> SweepInSlabs::Moment(int moment, HeldFailure& failure) const
 {
-  const VoxelBox& block = this->Blocks.blocks[this->Others.Rank()];
+  const VoxelBox& block = this->Blocks.blocks[this->Comm.Rank()];
   std::vector<float> sum(block.VoxelCount() * this->Model.Channels(), 0.0f);
   for (int axis = 0; axis < 3; ++axis)
   {
@@ -231,7 +231,7 @@ std::vector<float> SweepInSlabs::Moment(int moment, HeldFailure& failure) const
       }
     });
     const std::vector<float> found =
-      ValuesInBox(this->Others, this->Slabs[axis].boxes, this->Blocks.blocks, own, this->Model.Channels());
+      ValuesInBox(this->Comm, this->Slabs[axis].boxes, this->Blocks.blocks, own, this->Model.Channels());
     std::transform(found.begin(), found.end(), sum.begin(), sum.begin(), [](float a, float b) { return a + b; });
   }
   return sum;
@@ -248,7 +248,7 @@ void SweepInSlabs::WriteSources(const std::function<std::vector<float>(int)>& so
       if (const int moment = this->Model.Source(d).moment; moment != std::exchange(known, moment))
       {
         values =
-          ValuesInBox(this->Others, this->Blocks, this->Slabs[axis].boxes.blocks, source(d), this->Model.Channels());
+          ValuesInBox(this->Comm, this->Blocks, this->Slabs[axis].boxes.blocks, source(d), this->Model.Channels());
       }
       failure.Attempt([&] {
         if (this->HasPlanes(axis))

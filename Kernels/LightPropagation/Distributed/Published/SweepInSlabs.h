@@ -82,10 +82,10 @@ private:
   SlabRays::Way WayOf(const Task& task, const Running& running) const;
   void RunTask(std::size_t number, Running& running, const Monitor& monitor);
   void TakeFromAround(Running& running);
-  bool HasPlanes(int axis) const { return this->Slabs[axis].PlaceOf(this->Others.Rank()) >= 0; }
-  const VoxelBox& PlanesOf(int axis) const { return this->Slabs[axis].boxes.blocks[this->Others.Rank()]; }
+  bool HasPlanes(int axis) const { return this->Slabs[axis].PlaceOf(this->Comm.Rank()) >= 0; }
+  const VoxelBox& PlanesOf(int axis) const { return this->Slabs[axis].boxes.blocks[this->Comm.Rank()]; }
 
-  Communicator& Others;
+  Communicator& Comm;
   const BlockPartition& Blocks;
   const PublishedModel& Model;
   PropagationSettings Settings;

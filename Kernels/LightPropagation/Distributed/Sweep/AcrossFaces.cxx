@@ -10,7 +10,7 @@ namespace tyndall
 AcrossFaces::AcrossFaces(Device& device, Communicator& communicator, const BlockPartition& partition,
   const VolumeLayout& layout, const std::array<bool, 3>& periodic)
   : TheDevice(device)
-  , Others(communicator)
+  , Comm(communicator)
   , Partition(partition)
   , Layout(layout)
   , Periodic(periodic)
@@ -49,7 +49,7 @@ BeyondFaces AcrossFaces::Fetch(const Buffer<float>& byFaces)
   const int channels = this->Layout.channels;
   const std::size_t voxels = this->Layout.grid.VoxelCount(), stride = this->Layout.Stride();
   std::vector<float> all, own, values;
-  this->Others.Together([&] {
+  this->Comm.Collective([&] {
     all = byFaces.Read();
     own.resize(voxels * channels);
     values.resize(std::max<std::size_t>(this->Info.stride * channels, 1));
@@ -61,13 +61,13 @@ BeyondFaces AcrossFaces::Fetch(const Buffer<float>& byFaces)
     {
       own[i] = all[(6 * (i % channels) + touching) * stride + i / channels];
     }
-    const std::vector<float> found = ValuesInBox(this->Others, this->Partition, this->Wanted[face], own, channels);
+    const std::vector<float> found = ValuesInBox(this->Comm, this->Partition, this->Wanted[face], own, channels);
     for (std::size_t i = 0; i < found.size(); ++i)
     {
       values[i % channels * this->Info.stride + this->Info.first[face] + i / channels] = found[i];
     }
   }
-  this->Others.Together([&] { this->Values = Buffer<float>(this->TheDevice, values, "light beyond a block's faces"); });
+  this->Comm.Collective([&] { this->Values = Buffer<float>(this->TheDevice, values, "light beyond a block's faces"); });
   return { &this->Values, this->Info };
 }
 }

@@ -29,7 +29,7 @@ private:
   VoxelBox LayerBeyond(const VoxelBox& block, int face) const;
 
   Device& TheDevice;
-  Communicator& Others;
+  Communicator& Comm;
   const BlockPartition& Partition;
   const VolumeLayout& Layout;
   const std::array<bool, 3> Periodic;

@@ -45,7 +45,7 @@ SweepInBlocks::SweepInBlocks(Device& device, Communicator& communicator, const B
   const VolumeLayout& layout, const Buffer<float>& sigma_t, const std::array<bool, 3>& periodic,
   const SweepRequest& request, BlockWorkspace& workspace, int mostRays)
   : TheDevice(device)
-  , Others(communicator)
+  , Comm(communicator)
   , Partition(partition)
   , Layout(layout)
   , SigmaT(sigma_t)
@@ -87,7 +87,7 @@ int SweepInBlocks::Laps(int axis) const
 
 SweepInBlocks::Task SweepInBlocks::MakeTask(const ParallelBundles& rays, BlockWorkspace& workspace) const
 {
-  const int own = this->Others.Rank();
+  const int own = this->Comm.Rank();
   Task task;
   const SweepVolume volume = this->VolumeOf(this->Layout.Groups()[0], nullptr);
   task.sweep =
@@ -101,7 +101,7 @@ SweepInBlocks::Task SweepInBlocks::MakeTask(const ParallelBundles& rays, BlockWo
     }
     return found;
   };
-  for (int rank = 0; rank < this->Others.Ranks(); ++rank)
+  for (int rank = 0; rank < this->Comm.Ranks(); ++rank)
   {
     auto [from, asideFrom, aheadFrom] = sorted(rank, own);
     auto [to, asideTo, aheadTo] = sorted(own, rank);
@@ -174,14 +174,14 @@ SweepTally SweepInBlocks::Apply(const Buffer<float>* source, const SweepBoundary
     this->SweepGroup(sweeping, error, OfPart(monitor, g / all, (g + 1) / all));
     Add(tally, sweeping.tally, first);
   }
-  this->Others.Together([&] {
+  this->Comm.Collective([&] {
     if (error)
     {
       std::rethrow_exception(error);
     }
   });
-  AddUp(this->Others, tally.in);
-  AddUp(this->Others, tally.out);
+  AddUp(this->Comm, tally.in);
+  AddUp(this->Comm, tally.out);
   this->AddToFaces(left);
   return tally;
 }
@@ -230,7 +230,7 @@ bool SweepInBlocks::SweepLap(Sweeping& sweeping, std::exception_ptr& error, cons
   while (this->IsAnyPeriodic())
   {
     std::vector<double> flags = { more ? 1.0 : 0.0, error ? 1.0 : 0.0 };
-    flags = this->Others.Largest(flags);
+    flags = this->Comm.Largest(flags);
     if (flags[1] > 0.0)
     {
       return false;
@@ -247,7 +247,7 @@ bool SweepInBlocks::SweepLap(Sweeping& sweeping, std::exception_ptr& error, cons
   {
     ahead.insert(ahead.end(), power.begin(), power.end());
   }
-  ahead = this->IsAnyPeriodic() ? this->Others.Sum(ahead) : ahead;
+  ahead = this->IsAnyPeriodic() ? this->Comm.Sum(ahead) : ahead;
   for (std::size_t i = 0; i < ahead.size(); ++i)
   {
     sweeping.ahead[i / 3][i % 3] = ahead[i];
@@ -259,7 +259,7 @@ bool SweepInBlocks::SweepLap(Sweeping& sweeping, std::exception_ptr& error, cons
 /// @return any rays have come round sideways to this rank
 bool SweepInBlocks::SweepPass(Sweeping& sweeping, std::exception_ptr& error, const Monitor& monitor)
 {
-  const std::vector<int>& order = this->TheSchedule.OrderOf(this->Others.Rank());
+  const std::vector<int>& order = this->TheSchedule.OrderOf(this->Comm.Rank());
   const double all = static_cast<double>(order.size());
   for (std::size_t t = 0; t < order.size(); ++t)
   {
@@ -288,13 +288,13 @@ void SweepInBlocks::AddToFaces(const std::vector<double>& left) const
   {
     return;
   }
-  AddOverRanks(this->TheDevice, this->Others, left, *this->To.faceOut);
+  AddOverRanks(this->TheDevice, this->Comm, left, *this->To.faceOut);
 }
 
 /// Whether this rank says what comes in: all know it, but those without voxels.
 bool SweepInBlocks::CountsPowerIn() const
 {
-  return IsFirstThatHas(this->Others, this->Partition);
+  return IsFirstThatHas(this->Comm, this->Partition);
 }
 
 void SweepInBlocks::SweepTask(int number, Sweeping& sweeping, std::exception_ptr& error, const Monitor& monitor)
@@ -305,7 +305,7 @@ void SweepInBlocks::SweepTask(int number, Sweeping& sweeping, std::exception_ptr
   std::vector<std::vector<float>> messages;
   for (const Contacts& sender : task.senders)
   {
-    messages.push_back(this->Others.Receive<float>(sender.front().from, number));
+    messages.push_back(this->Comm.Receive<float>(sender.front().from, number));
   }
   State state = State::Failed;
   RaysAtFaces rays;
@@ -360,7 +360,7 @@ void SweepInBlocks::SendOn(int number, State state, const RaysAtFaces& rays)
         }
       }
     }
-    this->Others.Send(to, number, message);
+    this->Comm.Send(to, number, message);
   };
   for (const Contacts& receiver : task.receivers)
   {
@@ -387,7 +387,7 @@ bool SweepInBlocks::TakeFromAround(const Sweeping& sweeping, std::exception_ptr&
         continue;
       }
       const int from = (around.aside.empty() ? around.ahead : around.aside).front().from;
-      const std::vector<float> message = this->Others.Receive<float>(from, static_cast<int>(number));
+      const std::vector<float> message = this->Comm.Receive<float>(from, static_cast<int>(number));
       const State state = static_cast<State>(static_cast<int>(message.at(0)));
       around.rays.clear();
       if (state != State::Lit || error)

@@ -102,7 +102,7 @@ private:
   void AddToFaces(const std::vector<double>& left) const;
 
   Device& TheDevice;
-  Communicator& Others;
+  Communicator& Comm;
   const BlockPartition& Partition;
   VolumeLayout Layout;
   const Buffer<float>& SigmaT;

@@ -13,15 +13,14 @@ namespace tyndall
 {
 /// A rank's block with some layers of its neighbours' voxels, as far as the grid goes, and values of these. Round a
 /// periodic axis the grid goes on: voxels beyond its end are those of its other side, the block's own ones as well.
-class VoxelsAround
+class Halo
 {
 public:
-  VoxelsAround(
-    Communicator& communicator, const BlockPartition& partition, const std::array<bool, 3>& periodic, int layers);
+  Halo(Communicator& communicator, const BlockPartition& partition, const std::array<bool, 3>& periodic, int layers);
 
   /// In voxels of the whole grid, beyond its ends too; without any where the block is empty.
-  const VoxelBox& Own() const { return this->Partition.blocks[this->Others.Rank()]; }
-  const VoxelBox& Known() const { return this->Boxes[this->Others.Rank()]; }
+  const VoxelBox& Own() const { return this->Partition.blocks[this->Comm.Rank()]; }
+  const VoxelBox& Known() const { return this->Boxes[this->Comm.Rank()]; }
   Grid KnownGrid() const; ///< of no voxels where the block is empty
   const std::array<bool, 3>& Periodic() const { return this->Around; }
   const Grid& Whole() const { return this->Partition.whole; }
@@ -39,7 +38,7 @@ private:
   std::vector<VoxelBox> Images(const std::array<int, 3>& periods) const;
   VoxelBox PlaceOf(const VoxelBox& image, const std::array<int, 3>& periods) const;
 
-  Communicator& Others;
+  Communicator& Comm;
   const BlockPartition& Partition;
   const std::array<bool, 3> Around;        ///< the periodic axes
   std::vector<VoxelBox> Boxes;             ///< by rank

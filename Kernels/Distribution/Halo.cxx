@@ -1,4 +1,4 @@
-#include "Distribution/VoxelsAround.h"
+#include "Distribution/Halo.h"
 
 #include "Distribution/BoxExchange.h"
 
@@ -7,9 +7,8 @@
 
 namespace tyndall
 {
-VoxelsAround::VoxelsAround(
-  Communicator& communicator, const BlockPartition& partition, const std::array<bool, 3>& periodic, int layers)
-  : Others(communicator)
+Halo::Halo(Communicator& communicator, const BlockPartition& partition, const std::array<bool, 3>& periodic, int layers)
+  : Comm(communicator)
   , Partition(partition)
   , Around(periodic)
 {
@@ -40,7 +39,7 @@ VoxelsAround::VoxelsAround(
 }
 
 /// Of a box the part that is so many periods away, as voxels of the grid.
-VoxelBox VoxelsAround::Image(const VoxelBox& box, const std::array<int, 3>& periods) const
+VoxelBox Halo::Image(const VoxelBox& box, const std::array<int, 3>& periods) const
 {
   VoxelBox moved = box;
   for (int axis = 0; axis < 3; ++axis)
@@ -50,13 +49,13 @@ VoxelBox VoxelsAround::Image(const VoxelBox& box, const std::array<int, 3>& peri
   return Common(moved, { { 0, 0, 0 }, this->Partition.whole.size });
 }
 
-Grid VoxelsAround::KnownGrid() const
+Grid Halo::KnownGrid() const
 {
   return BlockPartition{ this->Partition.whole, { this->Known() } }.OwnGrid(0);
 }
 
 /// Of all ranks' known voxels.
-std::vector<VoxelBox> VoxelsAround::Images(const std::array<int, 3>& periods) const
+std::vector<VoxelBox> Halo::Images(const std::array<int, 3>& periods) const
 {
   std::vector<VoxelBox> images;
   for (const VoxelBox& box : this->Boxes)
@@ -67,7 +66,7 @@ std::vector<VoxelBox> VoxelsAround::Images(const std::array<int, 3>& periods) co
 }
 
 /// Where the voxels of an image are among the known ones.
-VoxelBox VoxelsAround::PlaceOf(const VoxelBox& image, const std::array<int, 3>& periods) const
+VoxelBox Halo::PlaceOf(const VoxelBox& image, const std::array<int, 3>& periods) const
 {
   VoxelBox place = image;
   for (int axis = 0; axis < 3; ++axis)
@@ -77,34 +76,34 @@ VoxelBox VoxelsAround::PlaceOf(const VoxelBox& image, const std::array<int, 3>& 
   return place;
 }
 
-std::vector<float> VoxelsAround::Spread(const std::vector<float>& own, int components) const
+std::vector<float> Halo::Spread(const std::vector<float>& own, int components) const
 {
   const VoxelBox& known = this->Known();
   std::vector<float> values(known.VoxelCount() * static_cast<std::size_t>(components));
   for (const std::array<int, 3>& periods : this->Periods)
   {
     const std::vector<VoxelBox> wanted = this->Images(periods);
-    const std::vector<float> part = ValuesInBox(this->Others, this->Partition, wanted, own, components);
-    PutPart(part, values, known, this->PlaceOf(wanted[this->Others.Rank()], periods), components);
+    const std::vector<float> part = ValuesInBox(this->Comm, this->Partition, wanted, own, components);
+    PutPart(part, values, known, this->PlaceOf(wanted[this->Comm.Rank()], periods), components);
   }
   return values;
 }
 
-std::vector<std::int64_t> VoxelsAround::Gather(const std::vector<std::int64_t>& known) const
+std::vector<std::int64_t> Halo::Gather(const std::vector<std::int64_t>& known) const
 {
   std::vector<std::int64_t> sums(this->Own().VoxelCount(), 0);
   for (const std::array<int, 3>& periods : this->Periods)
   {
     const std::vector<VoxelBox> found = this->Images(periods);
-    const VoxelBox place = this->PlaceOf(found[this->Others.Rank()], periods);
+    const VoxelBox place = this->PlaceOf(found[this->Comm.Rank()], periods);
     const std::vector<std::int64_t> part =
-      SumsInBlock(this->Others, this->Partition, found, PartOf(known, this->Known(), place));
+      SumsInBlock(this->Comm, this->Partition, found, PartOf(known, this->Known(), place));
     std::transform(part.begin(), part.end(), sums.begin(), sums.begin(), std::plus<std::int64_t>());
   }
   return sums;
 }
 
-Field VoxelsAround::Spread(const Field& own, std::vector<float>& values) const
+Field Halo::Spread(const Field& own, std::vector<float>& values) const
 {
   if (!own.values)
   {

@@ -1,4 +1,4 @@
-#include "LightPropagation/Problem/SlabTurn.h"
+#include "LightPropagation/Problem/AxisPermutation.h"
 
 #include "LightPropagation/Problem/UnvaryingAxes.h"
 #include "Medium/BoxFaces.h"
@@ -11,7 +11,8 @@
 
 namespace tyndall
 {
-SlabTurn::SlabTurn(const Grid& grid, const Illumination& illumination, const PropagationSettings& settings)
+AxisPermutation::AxisPermutation(
+  const Grid& grid, const Illumination& illumination, const PropagationSettings& settings)
 {
   if (!UnvaryingAxes(grid, illumination, settings).IsSlab() || !illumination.environment.Empty() ||
     illumination.uncollided.IsThere())
@@ -25,24 +26,24 @@ SlabTurn::SlabTurn(const Grid& grid, const Illumination& illumination, const Pro
 }
 
 template <class Value>
-std::array<Value, 3> SlabTurn::Turned(const std::array<Value, 3>& given) const
+std::array<Value, 3> AxisPermutation::Turned(const std::array<Value, 3>& given) const
 {
   return { given[this->Along], given[(this->Along + 1) % 3], given[(this->Along + 2) % 3] };
 }
 
 template <class Value>
-std::array<Value, 3> SlabTurn::TurnedBack(const std::array<Value, 3>& turned) const
+std::array<Value, 3> AxisPermutation::TurnedBack(const std::array<Value, 3>& turned) const
 {
   return { turned[(3 - this->Along) % 3], turned[(4 - this->Along) % 3], turned[(5 - this->Along) % 3] };
 }
 
 /// What a face of the scene as it stands is called in the turned one.
-int SlabTurn::FaceWhenTurned(int face) const
+int AxisPermutation::FaceWhenTurned(int face) const
 {
   return (face / 2 + 3 - this->Along) % 3 * 2 + face % 2;
 }
 
-Medium SlabTurn::Of(const Medium& medium) const
+Medium AxisPermutation::Of(const Medium& medium) const
 {
   Medium turned = medium;
   turned.grid.size = this->Turned(medium.grid.size);
@@ -51,7 +52,7 @@ Medium SlabTurn::Of(const Medium& medium) const
   return turned;
 }
 
-Illumination SlabTurn::Of(const Illumination& illumination) const
+Illumination AxisPermutation::Of(const Illumination& illumination) const
 {
   Illumination turned = illumination;
   for (Light& light : turned.lights)
@@ -67,7 +68,7 @@ Illumination SlabTurn::Of(const Illumination& illumination) const
   return turned;
 }
 
-PropagationSettings SlabTurn::Of(const PropagationSettings& settings) const
+PropagationSettings AxisPermutation::Of(const PropagationSettings& settings) const
 {
   PropagationSettings turned = settings;
   turned.periodic = this->Turned(settings.periodic);
@@ -75,7 +76,7 @@ PropagationSettings SlabTurn::Of(const PropagationSettings& settings) const
 }
 
 /// Of the cells of the box's faces: those of one face follow each other in the same order.
-void SlabTurn::TurnBackCells(std::vector<float>& values, const Grid& grid) const
+void AxisPermutation::TurnBackCells(std::vector<float>& values, const Grid& grid) const
 {
   const std::size_t each = values.size() / BoxFaceCellCount(grid);
   Grid turnedGrid = grid;
@@ -92,7 +93,7 @@ void SlabTurn::TurnBackCells(std::vector<float>& values, const Grid& grid) const
 
 /// Harmonics of turned directions in harmonics of directions as they stand, degree by degree: integrals of their
 /// products over all directions, by a rule that is exact.
-void SlabTurn::TurnBackMoments(LightField& light, const Grid& grid) const
+void AxisPermutation::TurnBackMoments(LightField& light, const Grid& grid) const
 {
   const std::size_t channels = static_cast<std::size_t>(light.channels);
   const std::size_t harmonics = light.scatteredMoments.size() / (grid.VoxelCount() * channels);
@@ -137,7 +138,7 @@ void SlabTurn::TurnBackMoments(LightField& light, const Grid& grid) const
   }
 }
 
-void SlabTurn::Undo(LightField& light, const Grid& grid) const
+void AxisPermutation::Undo(LightField& light, const Grid& grid) const
 {
   for (std::size_t i = 0; i < light.netFlux.size(); i += 3)
   {

@@ -1,4 +1,4 @@
-#include "LightPropagation/Distributed/Balance/WhatWholeHas.h"
+#include "LightPropagation/Distributed/Balance/GlobalStatistics.h"
 
 #include "LightPropagation/Emission/EmissionPeaks.h"
 #include "Medium/VoxelSums.h"
@@ -39,7 +39,7 @@ public:
 
   /// Whether what the brightest `most` voxels have beyond all others may be half of all power: a voxel is taken to be
   /// among them with all others of its bin.
-  bool FewOutshineTheOthers(double most) const
+  bool IsDominatedByFewVoxels(double most) const
   {
     double all = 0.0, bright = 0.0, counted = 0.0, voxels = 0.0;
     std::size_t end = 0; // past the bin that has the last of them
@@ -108,6 +108,6 @@ bool MayHaveEmissionPeaks(
   }
   const double voxels = communicator.Sum({ has ? 1.0 * scene.medium.grid.VoxelCount() : 0.0 })[0];
   const double most = std::floor(voxels / EmissionBrightPart);
-  return most > 0.0 && BrightnessBins(communicator, scene.medium).FewOutshineTheOthers(most);
+  return most > 0.0 && BrightnessBins(communicator, scene.medium).IsDominatedByFewVoxels(most);
 }
 }

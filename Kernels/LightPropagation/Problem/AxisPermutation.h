@@ -11,11 +11,11 @@ namespace tyndall
 /// A plane-parallel slab with its layers along x: rows of voxels are then as long as the slab, where rows of one voxel
 /// fill a tenth of a vector, and a slab of 1024 layers along z takes twenty times as long. Axes are renamed in their
 /// cyclic order, so arrays over the voxels, and over the cells of one face, stay as they are.
-class SlabTurn
+class AxisPermutation
 {
 public:
   /// Of slabs along y and z (UnvaryingAxes.h) that no environment shines on: its pixels know only one up.
-  SlabTurn(const Grid& grid, const Illumination& illumination, const PropagationSettings& settings);
+  AxisPermutation(const Grid& grid, const Illumination& illumination, const PropagationSettings& settings);
 
   explicit operator bool() const { return this->Along != 0; }
 

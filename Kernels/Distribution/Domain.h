@@ -1,0 +1,47 @@
+#pragma once
+
+#include "Distribution/BlockPartition.h"
+#include "Distribution/Communicator.h"
+#include "Lights/Rgb.h"
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+namespace tyndall
+{
+/// A grid that is divided among ranks, as one rank sees it: its own block, the whole grid, and reductions. On one rank
+/// the block is the whole grid, a reduction returns its argument and a collective step is a plain call, so that a
+/// solver need not know how many ranks there are. A block may have no voxels.
+class Domain
+{
+public:
+  /// All of a grid on one rank.
+  explicit Domain(const Grid& grid);
+  /// One block a rank. @param communicator  must outlive the domain
+  Domain(Communicator& communicator, BlockPartition partition);
+
+  const Grid& Whole() const { return this->Blocks.whole; }
+  const BlockPartition& Partition() const { return this->Blocks; }
+  int Rank() const { return this->Ranks->Rank(); }
+  /// This rank's block, in voxels of the whole grid, and its grid.
+  const VoxelBox& Own() const { return this->Blocks.blocks[this->Rank()]; }
+  Grid OwnGrid() const { return this->Blocks.OwnGrid(this->Rank()); }
+  bool IsEmpty() const { return this->Own().VoxelCount() == 0; }
+  bool IsSerial() const { return this->Ranks->Ranks() == 1; }
+  Communicator& Comm() const { return *this->Ranks; }
+
+  // Collective: all ranks call these, with as many values.
+  double Sum(double own) const;
+  Rgb Sum(const Rgb& own) const;
+  std::vector<double> Sum(const std::vector<double>& own) const;
+  double Max(double own) const;
+  bool Any(bool own) const;
+  /// Runs `step`; if it throws on one rank, all ranks throw the same error (Communicator::Collective).
+  void Collective(const std::function<void()>& step) const;
+
+private:
+  std::shared_ptr<Communicator> Ranks;
+  BlockPartition Blocks;
+};
+}
