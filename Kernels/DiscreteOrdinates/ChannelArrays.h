@@ -4,10 +4,10 @@
 #include "DiscreteOrdinates/LampScattering.h"
 #include "DiscreteOrdinates/OrdinatesScene.h"
 #include "LightPropagation/Angular/SweptDirections.h"
-#include "LightPropagation/Distributed/LampsInBlocks.h"
-#include "LightPropagation/Distributed/Sweep/SweepInBlocks.h"
+#include "LightPropagation/Sweep/Pipelined/SweepInBlocks.h"
 #include "LightPropagation/Sweep/SweepWorkspace.h"
 #include "LightPropagation/Sweep/VolumeLayout.h"
+#include "LightPropagation/Uncollided/Lamps/LampsInBlocks.h"
 #include "LightPropagation/Uncollided/UncollidedSource.h"
 
 #include "Device/Monitor.h"

@@ -17,6 +17,14 @@ Domain::Domain(Communicator& communicator, BlockPartition partition)
 {
 }
 
+Domain Domain::WithGrid(const Grid& whole) const
+{
+  Domain other = *this;
+  other.Blocks.whole.origin = whole.origin;
+  other.Blocks.whole.spacing = whole.spacing;
+  return other;
+}
+
 double Domain::Sum(double own) const
 {
   return this->Ranks->Sum({ own })[0];
@@ -36,6 +44,11 @@ std::vector<double> Domain::Sum(const std::vector<double>& own) const
 double Domain::Max(double own) const
 {
   return this->Ranks->Largest({ own })[0];
+}
+
+std::vector<double> Domain::Max(const std::vector<double>& own) const
+{
+  return this->Ranks->Largest(own);
 }
 
 bool Domain::Any(bool own) const

@@ -21,6 +21,9 @@ public:
   /// One block a rank. @param communicator  must outlive the domain
   Domain(Communicator& communicator, BlockPartition partition);
 
+  /// The same blocks of the same voxels, with another origin and spacing.
+  Domain WithGrid(const Grid& whole) const;
+
   const Grid& Whole() const { return this->Blocks.whole; }
   const BlockPartition& Partition() const { return this->Blocks; }
   int Rank() const { return this->Ranks->Rank(); }
@@ -36,6 +39,7 @@ public:
   Rgb Sum(const Rgb& own) const;
   std::vector<double> Sum(const std::vector<double>& own) const;
   double Max(double own) const;
+  std::vector<double> Max(const std::vector<double>& own) const;
   bool Any(bool own) const;
   /// Runs `step`; if it throws on one rank, all ranks throw the same error (Communicator::Collective).
   void Collective(const std::function<void()>& step) const;

@@ -10,7 +10,6 @@ constexpr int ListsOfWords = 29990;     ///< PictureOfBlocks.cxx
 constexpr int ReceiptsOfDepths = 29991; ///< ShadowsInBlocks.cxx
 constexpr int ColumnsOfSight = 29992;   ///< LitColor.cxx
 constexpr int DepthsOfLamps = 29993;    ///< ShadowsInBlocks.cxx
-constexpr int SumsAlongLines = 29994;   ///< OrdersOverRanks.cxx
 constexpr int CornersOfPaths = 29995;   ///< PathsInBlocks.cxx
 constexpr int RunsOfBytes = 29996;      ///< BrickedBytes.cxx
 constexpr int NumbersOfEach = 29997;    ///< BoxExchange.cxx

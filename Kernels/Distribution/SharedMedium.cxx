@@ -84,4 +84,33 @@ MediumTraits TraitsOfAll(Communicator& communicator, MediumTraits traits)
   traits.greyExtinction = any[4] == 0.0;
   return traits;
 }
+
+SceneChannels ChannelsOfAll(const Domain& domain, const SceneChannels& here)
+{
+  SceneChannels all = here;
+  if (domain.IsSerial())
+  {
+    return all;
+  }
+  const std::size_t ranks = domain.Partition().blocks.size(), own = domain.Rank();
+  std::vector<double> colours(3 * ranks, 0.0); // 0, 0, 0: black
+  if (!here.colour.IsBlack())
+  {
+    const Rgb relative = here.colour.Relative();
+    std::copy(relative.begin(), relative.end(), colours.begin() + static_cast<std::ptrdiff_t>(3 * own));
+  }
+  colours = domain.Sum(colours);
+  all.colour = {};
+  for (std::size_t rank = 0; rank < ranks; ++rank)
+  {
+    all.colour.Add(Rgb{ colours[3 * rank], colours[3 * rank + 1], colours[3 * rank + 2] });
+  }
+  if (domain.Any(!here.colour.IsOne()))
+  {
+    all.colour.AddNone();
+  }
+  all.given = static_cast<int>(domain.Max(here.given));
+  all.one = !domain.Any(!here.one) && all.colour.IsOne();
+  return all;
+}
 }

@@ -2,6 +2,8 @@
 
 #include "Distribution/BlockPartition.h"
 #include "Distribution/Communicator.h"
+#include "Distribution/Domain.h"
+#include "Light/ChannelReduction.h"
 #include "Medium/Medium.h"
 #include "Medium/Traits.h"
 
@@ -32,4 +34,8 @@ void AgreeOnMeanCosine(Communicator& communicator, bool has, const Field& g, Med
 /// Of the medium of all ranks, as far as solvers leave things out: absorbs, scatters, emits, grey and greyExtinction.
 /// @param ofBlock  the others of it are kept
 MediumTraits TraitsOfAll(Communicator& communicator, MediumTraits ofBlock);
+
+/// The channels of a scene of which each rank has a block.
+/// @param here  of this rank's block
+SceneChannels ChannelsOfAll(const Domain& domain, const SceneChannels& here);
 }

@@ -28,7 +28,8 @@ struct ThickestVoxel
   std::string name;       ///< empty: not known
 };
 
-ThickestVoxel ThickestOf(const Medium& medium)
+/// @param named, first  the grid that the voxel is named in, and where the medium begins in it
+ThickestVoxel ThickestOf(const Medium& medium, const Grid& named, const std::array<int, 3>& first = {})
 {
   const Grid& grid = medium.grid;
   const int channels = medium.Channels();
@@ -43,9 +44,22 @@ ThickestVoxel ThickestOf(const Medium& medium)
       largest = std::max(largest, sigma_t);
     }
   }
-  return grid.VoxelCount() == 0
-    ? ThickestVoxel()
-    : ThickestVoxel{ largest * *std::max_element(grid.spacing.begin(), grid.spacing.end()), VoxelName(grid, thickest) };
+  if (grid.VoxelCount() == 0)
+  {
+    return {};
+  }
+  const std::array<int, 3> at = grid.VoxelAt(thickest);
+  return { largest * *std::max_element(grid.spacing.begin(), grid.spacing.end()),
+    VoxelName(named, named.IndexOf({ first[0] + at[0], first[1] + at[1], first[2] + at[2] })) };
+}
+
+/// Of the media of all ranks. Collective.
+ThickestVoxel ThickestOf(const Domain& domain, const Medium& medium)
+{
+  const ThickestVoxel own = domain.IsEmpty() ? ThickestVoxel() : ThickestOf(medium, domain.Whole(), domain.Own().first);
+  const double thickest = domain.Max(own.thickness);
+  const bool has = own.thickness == thickest;
+  return { thickest, WordsOfAny(domain.Comm(), has ? own.name : std::string()) };
 }
 
 enum class Balancing
@@ -237,7 +251,7 @@ void JudgeBalance(LightField& light, const Medium& medium)
   const Balancing balancing = BalancingOf(light.balance);
   if (balancing != Balancing::Well)
   {
-    Judge(light, balancing, ThickestOf(medium));
+    Judge(light, balancing, ThickestOf(medium, medium.grid));
   }
 }
 
@@ -246,8 +260,17 @@ void JudgeBalance(LightField& light, Communicator& communicator, bool has, const
   const double worst = communicator.Largest({ static_cast<double>(BalancingOf(light.balance)) })[0];
   if (worst > 0.0)
   {
-    const double own = has ? ThickestOf(ofBlock).thickness : 0.0;
+    const double own = has ? ThickestOf(ofBlock, ofBlock.grid).thickness : 0.0;
     Judge(light, static_cast<Balancing>(static_cast<int>(worst)), { communicator.Largest({ own })[0], {} });
+  }
+}
+
+void JudgeBalance(LightField& light, const Domain& domain, const Medium& medium)
+{
+  const double worst = domain.Max(static_cast<double>(BalancingOf(light.balance)));
+  if (worst > 0.0)
+  {
+    Judge(light, static_cast<Balancing>(static_cast<int>(worst)), ThickestOf(domain, medium));
   }
 }
 

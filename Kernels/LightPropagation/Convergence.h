@@ -1,6 +1,6 @@
 #pragma once
 
-#include "Distribution/Communicator.h"
+#include "Distribution/Domain.h"
 #include "Light/LightField.h"
 #include "LightPropagation/PropagationSettings.h"
 #include "Medium/Medium.h"
@@ -73,13 +73,14 @@ void WarnAboutInputLight(const Illumination& illumination, LightField& light);
 
 /// The energy check of every conservative solver: power is absorbed, escapes or is left over. An error above 1e-4
 /// becomes one of the light's `doubts`.
-/// @param medium  read only where the balance is off, to tell why; without voxels: not known
+/// @param medium  of this rank's block; read only where the balance is off, to tell why; without voxels: not known
 /// @throws InvalidInput where the error is above 1e-2, or not a number; where more than 1e-2 of the power is
 ///   impossible: absorbed or escaped power below 0, or more left over than came in
 void JudgeBalance(LightField& light, const Medium& medium);
-/// The same of light over ranks, each with the balance of all. Collective.
+/// The same over ranks, each with the balance of all. Collective.
 /// @param has  voxels, this rank
 void JudgeBalance(LightField& light, Communicator& communicator, bool has, const Medium& ofBlock);
+void JudgeBalance(LightField& light, const Domain& domain, const Medium& medium);
 
 /// Sets `converged` of solved light, and adds to its `doubts` where it is not, or where power is left over.
 /// @param accelerates  the solver has a setting for it

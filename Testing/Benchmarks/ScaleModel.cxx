@@ -14,7 +14,7 @@
 
 #include "Distribution/RanksInThreads.h"
 #include "LightPropagation/Angular/DirectionSet.h"
-#include "LightPropagation/Distributed/Sweep/SweepInBlocks.h"
+#include "LightPropagation/Sweep/Pipelined/SweepInBlocks.h"
 #include "LightPropagation/Sweep/SweepInMemory.h"
 
 #include <algorithm>

@@ -6,7 +6,7 @@
 #include "Distribution/BoxExchange.h"
 #include "Distribution/GhostCells.h"
 #include "Distribution/RanksInThreads.h"
-#include "LightPropagation/Distributed/Balance/MultigridOverRanks.h"
+#include "LightPropagation/Diffusion/MultigridOverRanks.h"
 
 #include <algorithm>
 #include <mutex>

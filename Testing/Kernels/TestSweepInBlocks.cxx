@@ -5,8 +5,8 @@
 
 #include "Distribution/RanksInThreads.h"
 #include "LightPropagation/Angular/DirectionSet.h"
-#include "LightPropagation/Distributed/Sweep/SweepInBlocks.h"
 #include "LightPropagation/Problem/MediumOnDevice.h"
+#include "LightPropagation/Sweep/Pipelined/SweepInBlocks.h"
 #include "LightPropagation/Sweep/SweepInMemory.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "DiscreteOrdinates/Distributed/CellsOfBlock.h"
 
-#include "LightPropagation/Distributed/Sweep/SweepInBlocks.h"
+#include "LightPropagation/Sweep/Pipelined/SweepInBlocks.h"
 #include "Medium/BoxFaces.h"
 
 namespace tyndall

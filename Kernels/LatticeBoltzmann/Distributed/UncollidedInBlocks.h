@@ -8,10 +8,10 @@
 #include "LatticeBoltzmann/LatticeScene.h"
 #include "LatticeBoltzmann/LatticeSettings.h"
 #include "LatticeBoltzmann/LatticeVoxels.h"
-#include "LightPropagation/Distributed/LampsInBlocks.h"
-#include "LightPropagation/Distributed/Sweep/SweepInBlocks.h"
 #include "LightPropagation/Problem/UnvaryingAxes.h"
+#include "LightPropagation/Sweep/Pipelined/SweepInBlocks.h"
 #include "LightPropagation/Sweep/VolumeLayout.h"
+#include "LightPropagation/Uncollided/Lamps/LampsInBlocks.h"
 #include "LightPropagation/Uncollided/UncollidedSource.h"
 
 #include <memory>

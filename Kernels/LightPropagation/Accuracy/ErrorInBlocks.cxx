@@ -12,7 +12,7 @@ PropagationSettings AsBlocksCan(Device& device, const SceneInBlocks& scene, cons
   PropagationSettings alike = settings;
   alike.uncollidedDirections = 0;
   const bool balances = settings.uncollidedDirections > 0 &&
-    BalancesVoxels(device, scene.others, scene.partition, scene.medium, scene.illumination, alike);
+    BalancesVoxels(device, Domain(scene.others, scene.partition), scene.medium, scene.illumination, alike);
   return balances ? alike : settings;
 }
 
@@ -37,7 +37,7 @@ LightField SolveInBlocksWithErrorEstimate(Device& device, const SceneInBlocks& s
 TargetLight SolveInBlocksToTargetError(Device& device, const SceneInBlocks& scene, const PropagationSettings& settings,
   double target, const Monitor& monitor, KeptLight* kept)
 {
-  CheckBlocks(scene.others, scene.partition, scene.medium, scene.illumination, settings); // which goes to coarse ones
+  Check(Domain(scene.others, scene.partition), scene.medium, scene.illumination, settings); // which goes to coarse ones
   return SolveToTargetError(scene, settings, target, monitor, SolverOf(device, scene, settings, kept));
 }
 }

@@ -3,15 +3,20 @@
 #include "Device/DeviceWords.h"
 #include "Device/HostMemory.h"
 #include "Device/HostThreads.h"
+#include "Distribution/SharedMedium.h"
 #include "Light/LeftOut.h"
 #include "LightPropagation/Conservative/Acceleration/DiffusionAcceleration.h"
+#include "LightPropagation/Conservative/Acceleration/IterationByBalance.h"
 #include "LightPropagation/Conservative/ShownLight.h"
 #include "LightPropagation/Conservative/SolveMemory.h"
 #include "LightPropagation/Conservative/SourceIteration.h"
 #include "LightPropagation/Convergence.h"
+#include "LightPropagation/Emission/GlobalStatistics.h"
 #include "LightPropagation/PlaneParallel/IsPlaneParallel.h"
 #include "LightPropagation/PlaneParallel/PlaneParallelPropagation.h"
+#include "LightPropagation/Problem/AngularDegree.h"
 #include "LightPropagation/Problem/AxisPermutation.h"
+#include "LightPropagation/Problem/PropagationQuality.h"
 #include "LightPropagation/Problem/ScatteringOrders.h"
 #include "Numerics/Constants.h"
 
@@ -77,6 +82,10 @@ std::vector<std::string> Words(const TransportParts& parts, const IterationResul
   {
     words.emplace_back("acceleration: few scattering orders do");
   }
+  if (parts.Problem.Traits().emits && parts.Problem.Settings().emissionError > 0.0 && !parts.TheDomain().IsSerial())
+  {
+    words.emplace_back("exact rays of small bright emission: the medium is spread over ranks");
+  }
   if (!parts.Problem.Settings().netFlux)
   {
     words.emplace_back(left_out::NetFlux);
@@ -88,10 +97,34 @@ std::vector<std::string> Words(const TransportParts& parts, const IterationResul
   return words;
 }
 
-LightField LightOf(TransportParts& parts, IterationResult&& found)
+/// What cameras show of scattered light, in the same form on all ranks.
+void AddShown(const TransportParts& parts, const Buffer<float>& ofOrders, LightField& light)
 {
-  LightField light;
-  light.channels = parts.Layout.channels;
+  const Domain& domain = parts.TheDomain();
+  std::unique_ptr<ShownLight> shown;
+  if (parts.Basis)
+  {
+    std::size_t most = 0; // of one function in the largest block
+    for (const VoxelBox& block : domain.Partition().blocks)
+    {
+      most = std::max(most, parts.Layout.channels * block.VoxelCount());
+    }
+    shown = std::make_unique<ShownLight>(
+      parts.Problem.TheMedium(), parts.Problem.Scattering(), *parts.Basis, parts.Layout, most);
+  }
+  const bool coloured = domain.Any(shown && shown->HasColour());
+  domain.Collective([&] {
+    if (shown)
+    {
+      shown->TakeColour(coloured);
+      shown->AddTo(light, parts.TheDevice, ofOrders, parts.Path);
+    }
+  });
+}
+
+/// By voxel.
+void TakeVoxels(const TransportParts& parts, LightField& light)
+{
   light.fluence = Interleaved(parts.Layout, parts.Fluence, 1.0);
   if (parts.Problem.Settings().netFlux)
   {
@@ -104,13 +137,18 @@ LightField LightOf(TransportParts& parts, IterationResult&& found)
       light.scatteredRadiance.begin() + static_cast<std::ptrdiff_t>(begin),
       [](float fluence) { return static_cast<float>(fluence / (4.0 * Pi)); });
   });
+}
+
+LightField LightOf(const TransportParts& parts, IterationResult&& found)
+{
+  LightField light;
+  light.channels = parts.Layout.channels;
+  parts.TheDomain().Collective([&] { TakeVoxels(parts, light); });
   light.storedDirections = { { 0.0, 0.0, 0.0 } };
   light.leftOut = Words(parts, found);
   if (parts.StoresMoments())
   {
-    const ShownLight shown(
-      parts.Problem.TheMedium(), parts.Problem.Scattering(), *parts.Basis, parts.Layout, parts.Layout.Values());
-    shown.AddTo(light, parts.TheDevice, found.shown, parts.Path);
+    AddShown(parts, found.shown, light);
   }
   light.halfRangeFlux =
     HalfRangeFlux((parts.FineBoundary && parts.How != IterationScheme::Dsa ? *parts.Fine : parts.Usual).Set());
@@ -129,37 +167,41 @@ LightField LightOf(TransportParts& parts, IterationResult&& found)
   return light;
 }
 
-/// Of a scene whose axes are as the sweeps like them.
-LightField Solve(Device& device, const Medium& medium, const Illumination& illumination,
+std::unique_ptr<Iteration> MakeIteration(TransportParts& parts, const KeptLight* kept)
+{
+  if (parts.How != IterationScheme::Dsa)
+  {
+    return std::make_unique<SourceIteration>(parts, kept);
+  }
+  if (parts.TheDomain().IsSerial())
+  {
+    return std::make_unique<DiffusionAcceleration>(parts, kept);
+  }
+  return std::make_unique<IterationByBalance>(parts, kept);
+}
+
+/// Of a scene whose axes are in the order that sweeps take best.
+LightField Solve(Device& device, const Domain& domain, const Medium& medium, const Illumination& illumination,
   const PropagationSettings& settings, const Monitor& monitor, KeptLight* kept)
 {
-  const PropagationProblem problem(medium, illumination, settings, MemoryOf(device));
+  const PropagationProblem problem(domain, medium, illumination, settings, MemoryOf(device));
   const IterationScheme how = ChooseIterationScheme(problem);
   Device ofSolve(device, BudgetOfSolve(device, ExtentOf(problem, how)));
-  TransportParts parts(ofSolve, problem, how);
-  std::unique_ptr<Iteration> iteration;
-  if (parts.How == IterationScheme::Dsa)
-  {
-    iteration = std::make_unique<DiffusionAcceleration>(parts, kept);
-  }
-  else
-  {
-    iteration = std::make_unique<SourceIteration>(parts, kept);
-  }
-  IterationResult found = iteration->Run(monitor);
+  const std::unique_ptr<TransportParts> parts = MakeParts(ofSolve, problem, how);
+  IterationResult found = MakeIteration(*parts, kept)->Run(monitor);
   const bool warm = found.warm;
   KeptLight left = std::move(found.kept);
-  LightField light = LightOf(parts, std::move(found));
-  JudgeBalance(light, problem.TheMedium());
+  LightField light = LightOf(*parts, std::move(found));
+  JudgeBalance(light, problem.TheDomain(), problem.TheMedium());
   if (kept)
   {
     Keep(std::move(left), warm, light, *kept);
   }
   light.faceAlbedo = illumination.faceAlbedo;
-  problem.Undo(light);
-  if (parts.StoresMoments())
+  domain.Collective([&] { problem.Undo(light); });
+  if (parts->StoresMoments())
   {
-    light.lampsApart = parts.LampsOf(illumination);
+    light.lampsApart = parts->LampsOf(illumination);
   }
   JudgeConvergence(settings, light);
   WarnAboutInputLight(illumination, light);
@@ -167,9 +209,14 @@ LightField Solve(Device& device, const Medium& medium, const Illumination& illum
 }
 }
 
-LightField SolveConservative(Device& device, const Medium& medium, const Illumination& illumination,
-  const PropagationSettings& settings, const Monitor& monitor, KeptLight* kept)
+LightField SolveConservative(Device& device, const Domain& domain, const Medium& medium,
+  const Illumination& illumination, const PropagationSettings& settings, const Monitor& monitor, KeptLight* kept)
 {
+  if (!domain.IsSerial())
+  {
+    RequireSame(domain.Comm(), "WarmStart", true, { kept ? 1.0 : 0.0 });
+    return Solve(device, domain, medium, illumination, settings, monitor, kept);
+  }
   if (IsPlaneParallel(medium, illumination, settings))
   {
     LightField light = SolvePlaneParallel(medium, illumination, settings, monitor);
@@ -179,11 +226,83 @@ LightField SolveConservative(Device& device, const Medium& medium, const Illumin
   const AxisPermutation turn(medium.grid, illumination, settings);
   if (!turn)
   {
-    return Solve(device, medium, illumination, settings, monitor, kept);
+    return Solve(device, domain, medium, illumination, settings, monitor, kept);
   }
   Check(medium, illumination, settings); // before axes have other names
-  LightField light = Solve(device, turn.Of(medium), turn.Of(illumination), turn.Of(settings), monitor, kept);
+  const Medium turned = turn.Of(medium);
+  LightField light =
+    Solve(device, Domain(turned.grid), turned, turn.Of(illumination), turn.Of(settings), monitor, kept);
   turn.Undo(light, medium.grid);
   return light;
+}
+
+namespace
+{
+/// Boundary sources differ between the faces that are open.
+bool BoundaryIsUneven(const PropagationProblem& problem)
+{
+  const std::array<Rgb, 6>& faces = problem.Shining().faces;
+  const Rgb* first = nullptr;
+  bool differ = false;
+  for (int face = 0; face < 6; ++face)
+  {
+    if (!problem.Settings().periodic[face / 2])
+    {
+      first = first ? first : &faces[face];
+      differ = differ || faces[face] != *first;
+    }
+  }
+  return differ;
+}
+
+/// A serial solve would have finer directions of the boundary's light. Collective.
+bool HasFinerBoundary(const PropagationProblem& problem)
+{
+  const DirectionSet usual = DirectionsForVoxels(problem.Settings().directionsPerFace, problem.Whole().spacing);
+  return BoundaryIsUneven(problem) && FinerDirectionsOfSerial(problem, usual, IterationScheme::Dsa).perFace > 0;
+}
+}
+
+bool BalancesVoxels(Device& device, const Domain& domain, const Medium& medium, const Illumination& illumination,
+  const PropagationSettings& settings)
+{
+  const PropagationProblem problem(domain, medium, illumination, settings, MemoryOf(device));
+  return ChooseIterationScheme(problem) == IterationScheme::Dsa;
+}
+
+std::string ReasonNotToDecompose(Device& device, const Domain& domain, const Medium& medium,
+  const Illumination& illumination, const PropagationSettings& settings)
+{
+  const PropagationProblem problem(domain, medium, illumination, settings, MemoryOf(device));
+  const IterationScheme how = ChooseIterationScheme(problem);
+  // Blocks in which nothing varies along two axes may differ from each other: then a solve goes along all rays.
+  const bool varies = !domain.IsEmpty() && !IsPlaneParallel(medium, illumination, settings);
+  if (problem.IsSlab() || !domain.Any(varies))
+  {
+    return "layers, which it solves in the cosine alone";
+  }
+  if (how == IterationScheme::SourceIteration && FastestScheme(problem) != how)
+  {
+    return "many scattering orders in thin voxels round a periodic axis or along UncollidedDirections, which it "
+           "accelerates";
+  }
+  if (how == IterationScheme::Dsa && HasFinerBoundary(problem))
+  {
+    return "faces that shine unevenly, whose light it has along finer directions";
+  }
+  if (MayHaveEmissionPeaks(problem))
+  {
+    return "small bright emission, whose light it has along exact rays";
+  }
+  return {};
+}
+
+PropagationSettings AtQuality(const Domain& domain, Quality quality, const PropagationSettings& settings,
+  const Medium& medium, const Illumination& illumination)
+{
+  const double extinction = domain.Sum(domain.IsEmpty() ? 0.0 : SumOfExtinction(medium, 0));
+  const bool scatters = domain.Any(!domain.IsEmpty() && Scatters(medium));
+  return AtQuality(
+    quality, settings, { ShinesThroughFaces(illumination), scatters, MeanThickness(domain.Whole(), extinction) });
 }
 }

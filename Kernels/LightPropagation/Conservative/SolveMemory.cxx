@@ -78,6 +78,7 @@ SolveExtent ExtentOf(const PropagationProblem& problem, IterationScheme how)
   SolveExtent solve = { problem.TheGrid().size, problem.Settings(), problem.Channels(), problem.Scattering().Degree(),
     how };
   solve.byOctant = OctantSources::Matter(problem);
+  solve.ofBlock = !problem.TheDomain().IsSerial();
   solve.byCells = Reflects(problem.Shining()) || problem.Settings().facePower;
   return solve;
 }
@@ -105,7 +106,8 @@ MemoryBudget BudgetAskedFor(const Device& device, std::size_t asked)
 MemoryBudget BudgetOfSolve(const Device& device, const SolveExtent& solve)
 {
   MemoryBudget budget = BudgetAskedFor(device, solve.settings.memoryBudget);
-  if (budget.spills && BytesOfSolve(device, solve) > budget.bytes)
+  const bool streams = !(solve.ofBlock && device.IsCpu()); // else kernels work on host memory where it is
+  if (streams && budget.spills && BytesOfSolve(device, solve) > budget.bytes)
   {
     budget.hostFrom = sizeof(float) * Grid{ solve.size }.VoxelCount();
   }

@@ -22,6 +22,7 @@ struct SolveExtent
   bool byCells = false;  ///< light comes or goes by cells of the faces
   bool ofBlock = false;  ///< a rank's block is swept, by one set of rays after the other
 };
+/// Collective.
 SolveExtent ExtentOf(const PropagationProblem& problem, IterationScheme how);
 
 /// Bytes that a solve takes of a device where nothing is streamed: at most, and about a quarter more than most solves.

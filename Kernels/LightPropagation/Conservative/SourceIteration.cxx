@@ -29,21 +29,30 @@ constexpr int OrdersExpected = 6;     ///< to tell whether it pays to sweep empt
 
 SourceIteration::SourceIteration(TransportParts& parts, const KeptLight* kept)
   : Parts(parts)
+  , TheDomain(parts.TheDomain())
   , Settings(parts.Problem.Settings())
   , Warm(parts, kept, parts.How == IterationScheme::CoarseMeshDsa ? "diffusion on cells" : "source iteration")
   , Shining(parts.HasSource())
 {
-  if (this->Warm.Keeps() && parts.Basis)
-  {
-    this->Moments = Buffer<float>(parts.TheDevice, parts.Layout.MomentFloats(parts.Functions()), "the light to keep");
-    this->Moments.Fill(0.0f);
-  }
-  if (parts.How == IterationScheme::SourceIteration && OctantSources::Matter(parts.Problem))
-  {
-    const Grid& grid = parts.Layout.grid;
-    this->AtFaces.emplace(OctantSources::Scene{ parts.TheDevice, this->Settings, parts.Layout, parts.OnDevice, grid,
-      { { 0, 0, 0 }, grid.size }, !parts.Lamps.empty() });
-  }
+  const bool thick = parts.How == IterationScheme::SourceIteration && OctantSources::Matter(parts.Problem);
+  this->TheDomain.Collective([&] {
+    if (this->Warm.Keeps() && parts.Basis)
+    {
+      this->Moments = Buffer<float>(parts.TheDevice, parts.Layout.MomentFloats(parts.Functions()), "the light to keep");
+      this->Moments.Fill(0.0f);
+    }
+    if (thick)
+    {
+      this->AtFaces.emplace(OctantSources::Scene{ parts.TheDevice, this->Settings, parts.Layout, parts.OnDevice,
+        this->TheDomain.Whole(), this->TheDomain.Own(), !parts.Lamps.empty() });
+    }
+    if (parts.StoresMoments())
+    {
+      this->Result.shown =
+        Buffer<float>(parts.TheDevice, parts.Layout.MomentFloats(parts.Functions()), "the light shown");
+      this->Result.shown.Fill(0.0f);
+    }
+  });
   if (parts.How == IterationScheme::CoarseMeshDsa)
   {
     this->Cells.emplace(parts);
@@ -53,12 +62,6 @@ SourceIteration::SourceIteration(TransportParts& parts, const KeptLight* kept)
     }
   }
   this->MakeSweeps();
-  if (parts.StoresMoments())
-  {
-    this->Result.shown =
-      Buffer<float>(parts.TheDevice, parts.Layout.MomentFloats(parts.Functions()), "the light shown");
-    this->Result.shown.Fill(0.0f);
-  }
 }
 
 IterationResult SourceIteration::Run(const Monitor& monitor)
@@ -77,12 +80,7 @@ IterationResult SourceIteration::Run(const Monitor& monitor)
     this->SweepOrder(OfPart(ofOrder, uncollided, 1.0));
     if (this->Escaping && scatteredShines)
     {
-      const Rgb escaped = this->Escaping->Apply(this->Parts.Path, this->Parts.Source);
-      for (int c = 0; c < 3; ++c)
-      {
-        this->Escaped[c] += escaped[c];
-        this->Result.ledger.Escape(c, escaped[c]);
-      }
+      this->LetEscape();
     }
     this->ReflectOrder();
     this->ScatterOrder();
@@ -106,9 +104,8 @@ IterationResult SourceIteration::Run(const Monitor& monitor)
   // out of thick voxels, behind them.
   if (this->AtFaces || this->Warm.Begins() || this->Cells)
   {
-    SingleRank alone;
-    const BlockPartition whole = BlockPartition::Even(this->Parts.Layout.grid, 1);
-    CutOffNegative(alone, Halo(alone, whole, this->Settings.periodic, 1), this->Parts.Layout,
+    Communicator& comm = this->TheDomain.Comm();
+    CutOffNegative(comm, Halo(comm, this->TheDomain.Partition(), this->Settings.periodic, 1), this->Parts.Layout,
       this->Parts.Problem.TheMedium().sigma_a, this->Parts.Fluence);
   }
   this->Result.ledger.ShareEscaped(this->Escaped);
@@ -125,6 +122,20 @@ IterationResult SourceIteration::Run(const Monitor& monitor)
       : faces.LeftInAll();
   }
   return std::move(this->Result);
+}
+
+/// Of what was scattered and just swept.
+void SourceIteration::LetEscape()
+{
+  Rgb escaped = {};
+  this->TheDomain.Collective(
+    [&] { escaped = this->TheDomain.IsEmpty() ? Rgb{} : this->Escaping->Apply(this->Parts.Path, this->Parts.Source); });
+  escaped = this->TheDomain.Sum(escaped);
+  for (int c = 0; c < 3; ++c)
+  {
+    this->Escaped[c] += escaped[c];
+    this->Result.ledger.Escape(c, escaped[c]);
+  }
 }
 
 void SourceIteration::MakeSweeps()
@@ -152,8 +163,9 @@ void SourceIteration::MakeFilledSweep()
 {
   const std::array<bool, 3>& periodic = this->Settings.periodic;
   const MediumTraits& traits = this->Parts.Problem.Traits();
-  if (!this->Settings.leaveOut || !traits.scatters || !this->Parts.Scattering->CanScatterAllOrders() || periodic[0] ||
-    periodic[1] || periodic[2] || this->Parts.Faces || this->AtFaces || this->Cells)
+  if (!this->Parts.SweepsParts() || !this->Settings.leaveOut || !traits.scatters ||
+    !this->Parts.Scattering->CanScatterAllOrders() || periodic[0] || periodic[1] || periodic[2] || this->Parts.Faces ||
+    this->AtFaces || this->Cells)
   {
     return;
   }
@@ -214,14 +226,17 @@ void SourceIteration::AddUncollided(const Monitor& monitor)
   const bool escapes = this->Parts.Finer.correctsEscape;
   const double all = static_cast<double>(sources.size() + (escapes ? 1 : 0));
   SweepTally tally;
-  Buffer<float> firstMoments(
-    this->Parts.TheDevice, this->Settings.firstMoments ? this->Parts.Layout.Floats(6) : 1, "where light is lost");
-  firstMoments.Fill(0.0f);
+  Buffer<float> firstMoments;
+  this->TheDomain.Collective([&] {
+    firstMoments = Buffer<float>(
+      this->Parts.TheDevice, this->Settings.firstMoments ? this->Parts.Layout.Floats(6) : 1, "where light is lost");
+    firstMoments.Fill(0.0f);
+  });
   for (std::size_t i = 0; i < sources.size(); ++i)
   {
     const Monitor ofSource = OfPart(monitor, i / all, (i + 1) / all);
     const bool isLamp = i < this->Parts.Lamps.size();
-    if (this->AtFaces && isLamp)
+    if (this->AtFaces && isLamp) // never with moments to show
     {
       Add(tally, this->AddLamp(*sources[i], ofSource));
       continue;
@@ -233,31 +248,47 @@ void SourceIteration::AddUncollided(const Monitor& monitor)
     if (this->AtFaces && isSwept)
     {
       const bool ofVacuum = this->Parts.OfVacuum && i + 1 == sources.size();
-      this->AtFaces->TakeIncoming(ofVacuum ? *this->Parts.OfVacuum : *this->Parts.Fine);
+      this->TheDomain.Collective(
+        [&] { this->AtFaces->TakeIncoming(ofVacuum ? *this->Parts.OfVacuum : *this->Parts.Fine); });
     }
-    if (this->Parts.StoresMoments() && i + 1 == this->Parts.Lamps.size())
+    if (i + 1 == this->Parts.Lamps.size())
     {
-      this->Parts.Scattering->AddFirstScattered(this->Parts.WholeDeposit(), this->Result.shown);
+      this->ShowLamps();
     }
   }
-  if (this->Settings.firstMoments)
-  {
-    const VolumeLayout& layout = this->Parts.Layout;
-    this->Result.firstMoments = Interleaved(layout, firstMoments, 1.0 / layout.grid.VoxelVolume());
-  }
+  this->TheDomain.Collective([&] {
+    if (this->Settings.firstMoments)
+    {
+      const VolumeLayout& layout = this->Parts.Layout;
+      this->Result.firstMoments = Interleaved(layout, firstMoments, 1.0 / layout.grid.VoxelVolume());
+    }
+    if (this->Parts.Faces)
+    {
+      this->Parts.Faces->TakeUncollided();
+    }
+  });
   this->Result.ledger.Count(tally);
   this->Stranded = tally.onTheWay;
-  if (this->Parts.Faces)
-  {
-    this->Parts.Faces->TakeUncollided();
-  }
   if (escapes)
   {
     // Whatever shines: lights add up.
     const TransportParts::EvenSky sky = this->Parts.FindEvenSky(OfPart(monitor, sources.size() / all, 1.0));
-    this->Escaping.emplace(this->Parts.TheDevice, this->Parts.Layout, this->Parts.Problem.Scattering(),
-      this->Parts.OnDevice.SigmaT(), sky.fine.path, sky.usual.path);
+    this->TheDomain.Collective([&] {
+      this->Escaping.emplace(this->Parts.TheDevice, this->Parts.Layout, this->Parts.Problem.Scattering(),
+        this->Parts.OnDevice.SigmaT(), sky.fine.path, sky.usual.path);
+    });
   }
+}
+
+/// What lamps' uncollided light, the only light so far, is first scattered.
+void SourceIteration::ShowLamps()
+{
+  this->TheDomain.Collective([&] {
+    if (this->Parts.StoresMoments() && !this->TheDomain.IsEmpty())
+    {
+      this->Parts.Scattering->AddFirstScattered(this->Parts.WholeDeposit(), this->Result.shown);
+    }
+  });
 }
 
 /// Beside it, where in thick voxels its light is first scattered.
@@ -267,7 +298,7 @@ SweepTally SourceIteration::AddLamp(const UncollidedSource& lamp, const Monitor&
   const Deposit ofLamp = { &this->AtFaces->LampPath(), whole.flux, nullptr, &this->AtFaces->LampMoments(),
     whole.faceOut, whole.spreadsAside };
   const SweepTally tally = this->Parts.AddUncollided(lamp, ofLamp, monitor);
-  this->AtFaces->TakeLamp(this->Parts.Path);
+  this->TheDomain.Collective([&] { this->AtFaces->TakeLamp(this->Parts.Path); });
   return tally;
 }
 
@@ -290,10 +321,12 @@ void SourceIteration::SweepOrder(const Monitor& monitor)
   const Buffer<float>* const source = this->Shining ? &this->Parts.Source : nullptr;
   SweepOperator& sweep = this->InFilledPart() ? *this->Filled : this->Lit ? *this->Lit : *this->Whole;
   BeamsInSource beams = this->Parts.BeamsOfSource();
-  if (this->Order == 0)
-  {
-    beams.Hold();
-  }
+  this->TheDomain.Collective([&] {
+    if (this->Order == 0)
+    {
+      beams.Hold();
+    }
+  });
   const SweepTally tally = sweep.Apply(source, boundary, monitor);
   beams.GoOn();
   this->OnTheWay = tally.onTheWay;
@@ -319,7 +352,8 @@ void SourceIteration::ReflectOrder()
   {
     return;
   }
-  const std::array<Rgb, 6> back = this->Parts.Faces->Reflect();
+  std::array<Rgb, 6> back = {};
+  this->TheDomain.Collective([&] { back = this->Parts.Faces->Reflect(); });
   for (int face = 0; face < 6; ++face)
   {
     for (int c = 0; c < 3; ++c)
@@ -381,13 +415,18 @@ void SourceIteration::ScatterByCells()
 /// @param scale  to W / length^2
 void SourceIteration::LookAtDirect(const Buffer<float>& fluence, double scale)
 {
-  this->Result.fluenceDirect = Interleaved(this->Parts.Layout, fluence, scale);
+  this->TheDomain.Collective([&] {
+    this->Result.fluenceDirect = Interleaved(this->Parts.Layout, fluence, scale);
+    if (this->Warm.Keeps())
+    {
+      this->Direct = fluence.Read();
+      this->Direct.resize(this->Parts.Fluence.Size());
+      std::transform(this->Direct.begin(), this->Direct.end(), this->Direct.begin(),
+        [scale](float value) { return static_cast<float>(scale * value); });
+    }
+  });
   if (this->Warm.Keeps())
   {
-    this->Direct = fluence.Read();
-    this->Direct.resize(this->Parts.Fluence.Size());
-    std::transform(this->Direct.begin(), this->Direct.end(), this->Direct.begin(),
-      [scale](float value) { return static_cast<float>(scale * value); });
     this->Warm.Prepare(this->Direct);
   }
 }
@@ -399,25 +438,8 @@ void SourceIteration::ScatterOrder()
     this->ScatterByCells();
     return;
   }
-  const TransportParts& parts = this->Parts;
-  this->GatherMoments();
-  if (this->AtFaces)
-  {
-    this->AtFaces->TakeIncoming(parts.Usual);
-    this->AtFaces->Find(parts.Source);
-  }
-  const ScatteringOperator::Powers powers =
-    parts.Scattering->ScatterOrder(parts.WholeDeposit(), parts.Fluence, parts.Source, this->SweptValues());
-  if (parts.StoresMoments())
-  {
-    // What is shown holds lamps' light alone before the first order.
-    AddToShown(parts.TheDevice, parts.Layout.Places(parts.Functions()).beams, parts.Source, this->Result.shown,
-      this->Order == 0 ? -1.0f : 1.0f);
-    if (this->Order == 0 && parts.Given)
-    {
-      parts.Given->AddStraightOn(parts.TheDevice, parts.Layout, parts.Basis, this->Result.shown);
-    }
-  }
+  this->FindOctantSources();
+  const ScatteringOperator::Powers powers = this->ScatterSwept();
   this->Scattered = powers.scattered;
   for (int c = 0; c < 3; ++c)
   {
@@ -443,6 +465,45 @@ void SourceIteration::ScatterOrder()
   }
   const double all = Sum(this->AllScattered);
   this->Result.convergence.Add(this->Residual, all > 0.0 ? Sum(this->Scattered) / all : 0.0, this->Result.ledger);
+}
+
+/// Of all incident light, with that in the voxels beyond the block's faces.
+void SourceIteration::FindOctantSources()
+{
+  if (!this->AtFaces)
+  {
+    return;
+  }
+  this->TheDomain.Collective([&] { this->AtFaces->TakeIncoming(this->Parts.Usual); });
+  const BeyondFaces beyond = this->Parts.FetchBeyond(this->AtFaces->CameInThroughFaces());
+  this->TheDomain.Collective([&] { this->AtFaces->Find(this->Parts.Source, beyond); });
+}
+
+/// From path integrals to fluence and the next source.
+/// @return W of all ranks
+ScatteringOperator::Powers SourceIteration::ScatterSwept()
+{
+  const TransportParts& parts = this->Parts;
+  ScatteringOperator::Powers powers;
+  this->TheDomain.Collective([&] {
+    if (this->TheDomain.IsEmpty())
+    {
+      return;
+    }
+    this->GatherMoments();
+    powers = parts.Scattering->ScatterOrder(parts.WholeDeposit(), parts.Fluence, parts.Source, this->SweptValues());
+    if (parts.StoresMoments())
+    {
+      // What is shown holds lamps' light alone before the first order.
+      AddToShown(parts.TheDevice, parts.Layout.Places(parts.Functions()).beams, parts.Source, this->Result.shown,
+        this->Order == 0 ? -1.0f : 1.0f);
+      if (this->Order == 0 && parts.Given)
+      {
+        parts.Given->AddStraightOn(parts.TheDevice, parts.Layout, parts.Basis, this->Result.shown);
+      }
+    }
+  });
+  return { this->TheDomain.Sum(powers.absorbed), this->TheDomain.Sum(powers.scattered) };
 }
 
 /// What the orders to come will add to the light that is scattered, over what there is. The worst channel counts.
@@ -513,7 +574,9 @@ void SourceIteration::Leave()
 {
   this->Result.warm = this->Warm.Begins();
   const Rgb rates = { this->Rest[0].Ratio(), this->Rest[1].Ratio(), this->Rest[2].Ratio() };
-  this->Result.kept = this->Warm.Leave(this->Direct, this->Moments.Read(), rates);
+  std::vector<float> moments;
+  this->TheDomain.Collective([&] { moments = this->Moments.Size() > 0 ? this->Moments.Read() : std::vector<float>(); });
+  this->Result.kept = this->Warm.Leave(this->Direct, moments, rates);
 }
 
 bool SourceIteration::Done() const

@@ -14,25 +14,29 @@
 namespace tyndall
 {
 /// Source iteration: one scattering order after the other. Each sweep carries what the one before scattered; the
-/// fluence is their sum (numerics.md, section 6).
+/// fluence is their sum (numerics.md, section 6). Made and run collectively.
 class SourceIteration : public Iteration
 {
 public:
   /// @param parts  must stay
-  /// @param kept  light of the last solve (WarmStart.h), must stay; null: none, and none is to be kept
+  /// @param kept  light of the last solve (WarmStart.h), must stay; null, on all ranks: none, and none is to be kept
   explicit SourceIteration(TransportParts& parts, const KeptLight* kept = nullptr);
   IterationResult Run(const Monitor& monitor) override;
 
 private:
+  void LetEscape();
   void MakeSweeps();
   void MakeLitSweep();
   void MakeFilledSweep();
   void AddUncollided(const Monitor& monitor);
+  void ShowLamps();
   SweepTally AddLamp(const UncollidedSource& lamp, const Monitor& monitor);
   Deposit DepositOfSweep() const;
   void SweepOrder(const Monitor& monitor);
   void ReflectOrder();
   void ScatterOrder();
+  void FindOctantSources();
+  ScatteringOperator::Powers ScatterSwept();
   void ScatterByCells();
   void LookAtDirect(const Buffer<float>& fluence, double scale);
   void EstimateResidual();
@@ -48,6 +52,7 @@ private:
   std::vector<std::string> LeftOut() const;
 
   TransportParts& Parts;
+  const Domain& TheDomain;
   const PropagationSettings& Settings;
   std::unique_ptr<SweepOperator> Whole;
   /// Of the first order, where much of the outside is dark and the medium too; else null.

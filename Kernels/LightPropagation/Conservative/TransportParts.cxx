@@ -9,6 +9,8 @@
 #include "Numerics/Constants.h"
 
 #include <algorithm>
+#include <exception>
+#include <functional>
 #include <utility>
 
 namespace tyndall
@@ -47,18 +49,20 @@ void AddMeanRadiance(const BoundaryLight* boundary, Rgb& mean)
   }
 }
 
-/// Peaks go along rays of their own, but not round periodic axes: of their images there is no end.
+/// Peaks go along exact rays, but do not wrap around periodic axes, for then their images have no end, nor from block
+/// to block.
 SplitEmission SplitEmissionOf(const PropagationProblem& problem, const Rgb& comesIn)
 {
   const std::array<bool, 3>& periodic = problem.Settings().periodic;
   const bool endless = periodic[0] || periodic[1] || periodic[2];
-  return problem.Traits().emits && problem.Settings().emissionError > 0.0 && !endless
-    ? Split(problem.TheMedium(), comesIn)
-    : SplitEmission();
+  const bool has = problem.TheDomain().IsSerial() && !endless;
+  return problem.Traits().emits && problem.Settings().emissionError > 0.0 && has ? Split(problem.TheMedium(), comesIn)
+                                                                                 : SplitEmission();
 }
 }
 
-TransportParts::TransportParts(Device& device, const PropagationProblem& problem, IterationScheme how)
+TransportParts::TransportParts(Device& device, const PropagationProblem& problem, IterationScheme how,
+  DirectionSet usual, const UncollidedDirections& finer)
   : TheDevice(device)
   , Problem(problem)
   , How(how)
@@ -67,22 +71,25 @@ TransportParts::TransportParts(Device& device, const PropagationProblem& problem
       NeedsOf(problem, this->Layout, this->ByBalance()))
   , Scattering(
       MakeScattering(device, this->Layout, this->OnDevice, problem.Scattering().Degree(), problem.ComputesScattering()))
-  , Usual(problem.TheGrid(), problem.Settings(),
-      DirectionsForVoxels(problem.Settings().directionsPerFace, problem.TheGrid().spacing),
-      StartsOf(problem.Settings()))
+  , Usual(problem.Whole(), problem.Settings(), std::move(usual), StartsOf(problem.Settings()))
+  , Finer(finer)
 {
-  if (const UncollidedImage& image = problem.Shining().uncollided; image.IsThere())
+  if (problem.HasGivenLight())
   {
-    this->Given = std::make_unique<GivenLight>(image, problem.TheMedium(), problem.Scattering());
+    this->Given = std::make_unique<GivenLight>(problem.Shining().uncollided, problem.TheMedium(), problem.Scattering());
   }
   this->FindBoundaryLight();
   Rgb comesIn = {};
   AddMeanRadiance(this->UsualBoundary.get(), comesIn);
   AddMeanRadiance(this->ByBalance() ? nullptr : this->FineBoundary.get(), comesIn);
   this->Emission = SplitEmissionOf(problem, comesIn);
-  this->FindVacuum();
   this->FindFaceLight();
-  if (problem.Scattering().Degree() > 0)
+  if (!this->TheDomain().IsSerial())
+  {
+    this->Across = std::make_unique<AcrossFaces>(
+      device, this->TheDomain().Comm(), this->TheDomain().Partition(), this->Layout, problem.Settings().periodic);
+  }
+  if (problem.Scattering().Degree() > 0 && !this->IsEmpty())
   {
     this->Angular =
       std::make_unique<SweptMoments>(this->Usual, problem.TheMedium().phase, problem.Scattering(), this->Lamps);
@@ -100,25 +107,35 @@ TransportParts::TransportParts(Device& device, const PropagationProblem& problem
     this->Flux = Buffer<float>(device, this->Layout.Floats(3), "net_flux");
     this->Flux.Fill(0.0f);
   }
+  this->Source.Fill(0.0f);
   this->Path.Fill(0.0f);
   this->Fluence.Fill(0.0f);
-  this->LoadSource();
+}
+
+int TransportParts::Functions() const
+{
+  const int degree = this->Problem.Scattering().Degree();
+  return (degree + 1) * (degree + 1);
 }
 
 void TransportParts::LoadSource()
 {
-  this->Source.Fill(0.0f);
-  this->MediumShines = this->LoadEmission(this->Source) || !this->Problem.Settings().leaveOut;
-  if (this->Given && this->Problem.ComputesScattering())
-  {
-    const bool more = this->Given->AddStraightOn(this->TheDevice, this->Layout, this->Basis, this->Source);
-    this->MediumShines = this->MediumShines || more;
-  }
+  this->FindVacuum();
+  bool shines = false;
+  this->TheDomain().Collective([&] {
+    shines = this->LoadEmission(this->Source);
+    if (this->Given && this->Problem.ComputesScattering())
+    {
+      const bool more = this->Given->AddStraightOn(this->TheDevice, this->Layout, this->Basis, this->Source);
+      shines = shines || more;
+    }
+  });
+  this->MediumShines = this->TheDomain().Any(shines) || !this->Problem.Settings().leaveOut;
 }
 
 bool TransportParts::LoadEmission(Buffer<float>& source) const
 {
-  if (!this->Problem.Traits().emits)
+  if (!this->Problem.Traits().emits || this->IsEmpty())
   {
     return false;
   }
@@ -143,14 +160,18 @@ std::vector<float> TransportParts::EmissionOf(bool emptyVoxels) const
 void TransportParts::FindVacuum()
 {
   const PropagationSettings& settings = this->Problem.Settings();
-  const Grid& grid = this->Layout.grid;
+  const Grid& grid = this->Problem.Whole();
   if (!this->Problem.Traits().emits || !VacuumEmission::IsApart(grid, settings))
   {
     return;
   }
-  this->OfVacuum = VacuumEmission::DirectionsFor(grid, settings);
-  const std::vector<float> emitted = this->EmissionOf(true);
-  if (std::none_of(emitted.begin(), emitted.end(), [](float value) { return value > 0.0f; }))
+  bool any = false;
+  this->TheDomain().Collective([&] {
+    this->OfVacuum = VacuumEmission::DirectionsFor(grid, settings);
+    const std::vector<float> emitted = this->EmissionOf(true);
+    any = std::any_of(emitted.begin(), emitted.end(), [](float value) { return value > 0.0f; });
+  });
+  if (!this->TheDomain().Any(any))
   {
     this->OfVacuum.reset();
   }
@@ -166,8 +187,7 @@ void TransportParts::FindBoundaryLight()
 {
   const PropagationSettings& settings = this->Problem.Settings();
   const Illumination& shining = this->Problem.Shining();
-  const Grid& grid = this->Problem.TheGrid();
-  this->Finer = UncollidedDirectionsFor(this->Problem, this->Usual.Set(), this->How);
+  const Grid& grid = this->Problem.Whole();
   if (this->Finer.perFace > 0)
   {
     this->Fine = FinerDirections(grid, settings, this->Finer.perFace, this->ByBalance());
@@ -196,7 +216,7 @@ void TransportParts::FindFineBoundary()
   {
     return;
   }
-  const Grid& grid = this->Problem.TheGrid();
+  const Grid& grid = this->Problem.Whole();
   const bool ofAll = !this->Finer.ofFacesAlone;
   auto fine = std::make_unique<BoundaryLight>(
     grid, settings, *this->Fine, AlongFiner(this->Finer, shining), ofAll ? this->FarAway : Environment());
@@ -219,7 +239,7 @@ void TransportParts::FindFineBoundary()
 
 BoundaryLight TransportParts::FinePartAlongUsual() const
 {
-  return { this->Problem.TheGrid(), this->Problem.Settings(), this->Usual,
+  return { this->Problem.Whole(), this->Problem.Settings(), this->Usual,
     AlongFiner(this->Finer, this->Problem.Shining()), this->Finer.ofFacesAlone ? Environment() : this->FarAway };
 }
 
@@ -228,7 +248,7 @@ void TransportParts::FindFaceLight()
   const Illumination& shining = this->Problem.Shining();
   if (Reflects(shining) || this->Problem.Settings().facePower)
   {
-    const Grid& grid = this->Layout.grid;
+    const Grid& grid = this->Problem.Whole();
     this->Faces = std::make_unique<FaceLight>(this->TheDevice, grid, this->Layout.channels,
       SweptPowerIn(grid, this->Problem.Settings().periodic, this->Usual, !Reflects(shining)), shining.faceAlbedo);
   }
@@ -256,8 +276,24 @@ std::vector<AxisBundles> TransportParts::AllRays() const
 
 std::unique_ptr<SweepOperator> TransportParts::MakeSweep(const SweepRequest& request)
 {
-  return SweepOfDevice(this->TheDevice, this->Layout, this->OnDevice.SigmaT(), this->Problem.Settings().periodic,
-    request, this->Workspace);
+  const Domain& domain = this->TheDomain();
+  const std::array<bool, 3>& periodic = this->Problem.Settings().periodic;
+  std::unique_ptr<SweepOperator> sweep;
+  domain.Collective([&] {
+    if (domain.IsSerial())
+    {
+      sweep = SweepOfDevice(this->TheDevice, this->Layout, this->OnDevice.SigmaT(), periodic, request, this->Workspace);
+      return;
+    }
+    sweep = std::make_unique<SweepInBlocks>(this->TheDevice, domain.Comm(), domain.Partition(), this->Layout,
+      this->OnDevice.SigmaT(), periodic, request, this->PipelineWorkspace);
+  });
+  return sweep;
+}
+
+BeyondFaces TransportParts::FetchBeyond(const Buffer<float>& byFaces)
+{
+  return this->Across ? this->Across->Fetch(byFaces) : BeyondFaces();
 }
 
 std::vector<Light> TransportParts::LampsOf(const Illumination& illumination) const
@@ -311,31 +347,113 @@ TransportParts::Sources TransportParts::VacuumSources() const
 void TransportParts::CountEmission(EnergyLedger& ledger) const
 {
   const double volume = this->Layout.grid.VoxelVolume();
+  Rgb emitted = {};
   for (int c = 0; c < this->Layout.channels && this->Problem.Traits().emits; ++c)
   {
-    ledger.Emit(c, SumOverVoxels(this->Layout.grid, [&](std::size_t i) {
-      return 4.0 * Pi * this->Problem.TheMedium().emission.At(i, c) * volume;
-    }));
+    emitted[c] = SumOverVoxels(this->Layout.grid,
+      [&](std::size_t i) { return 4.0 * Pi * this->Problem.TheMedium().emission.At(i, c) * volume; });
   }
+  emitted = this->TheDomain().Sum(emitted);
+  for (int c = 0; c < this->Layout.channels; ++c)
+  {
+    ledger.Emit(c, emitted[c]);
+  }
+}
+
+UncollidedVolume TransportParts::VolumeOf(const Deposit& deposit)
+{
+  const Domain& domain = this->TheDomain();
+  const std::array<bool, 3>& periodic = this->Problem.Settings().periodic;
+  const SweepMaker sweeps = [this](const SweepRequest& request) { return this->MakeSweep(request); };
+  UncollidedVolume volume = { this->TheDevice, this->Layout, this->OnDevice.SigmaT(), periodic, sweeps, deposit,
+    this->Basis, nullptr };
+  if (domain.IsSerial())
+  {
+    return volume;
+  }
+  volume.whole = &this->Problem.Whole();
+  volume.fetchBeyond = [this](const Buffer<float>& byFaces) { return this->FetchBeyond(byFaces); };
+  volume.together = [&domain](const std::function<void()>& step) { domain.Collective(step); };
+  volume.followLamp = [this, &domain, &periodic](
+                        const SweepVolume& ofChannels, const Light& lamp, const Monitor& monitor) {
+    if (!this->NearLamps)
+    {
+      this->NearLamps = std::make_unique<LampsInBlocks>(
+        this->TheDevice, domain.Comm(), domain.Partition(), periodic, this->Layout, this->OnDevice.SigmaT());
+    }
+    return this->NearLamps->Deposit(ofChannels, lamp, monitor);
+  };
+  return volume;
 }
 
 SweepTally TransportParts::AddUncollided(const UncollidedSource& source, const Deposit& deposit, const Monitor& monitor)
 {
-  const SweepMaker sweeps = [this](const SweepRequest& request) { return this->MakeSweep(request); };
-  const std::array<bool, 3>& periodic = this->Problem.Settings().periodic;
-  UncollidedVolume volume = { this->TheDevice, this->Layout, this->OnDevice.SigmaT(), periodic, sweeps, deposit,
-    this->Basis, nullptr };
+  UncollidedVolume volume = this->VolumeOf(deposit);
   const int beam = this->SlotOf(source);
-  if (beam < 0)
+  Buffer<float> path;
+  this->TheDomain().Collective([&] {
+    if (beam >= 0)
+    {
+      path = Buffer<float>(this->TheDevice, this->Layout.Floats(), "the light of a beam");
+      path.Fill(0.0f);
+      volume.beamPath = &path;
+    }
+  });
+  // A source that needs several ranks agrees on its failures but after its last collective.
+  SweepTally tally;
+  std::exception_ptr error;
+  try
   {
-    return source.AddTo(volume, monitor);
+    tally = source.AddTo(volume, monitor);
   }
-  Buffer<float> path(this->TheDevice, this->Layout.Floats(), "the light of a beam");
-  path.Fill(0.0f);
-  volume.beamPath = &path;
-  const SweepTally tally = source.AddTo(volume, monitor);
-  this->Scattering->AddBeam(path, this->Source, beam);
-  return tally;
+  catch (...)
+  {
+    error = std::current_exception();
+  }
+  this->TheDomain().Collective([&] {
+    if (error)
+    {
+      std::rethrow_exception(error);
+    }
+    if (beam >= 0)
+    {
+      this->Scattering->AddBeam(path, this->Source, beam);
+    }
+  });
+  return source.TalliesOwnVoxels() ? this->SumOfVoxels(tally) : tally;
+}
+
+/// Of all ranks, what came in being what their voxels take and what left, which each knows.
+SweepTally TransportParts::SumOfVoxels(const SweepTally& own) const
+{
+  if (this->TheDomain().IsSerial())
+  {
+    return own;
+  }
+  Rgb taken = {};
+  std::vector<double> left;
+  for (int c = 0; c < 3; ++c)
+  {
+    taken[c] = own.in[0][c];
+    for (int face = 0; face < 6; ++face)
+    {
+      taken[c] -= own.out[face][c];
+      left.push_back(own.out[face][c]);
+    }
+  }
+  taken = this->TheDomain().Sum(taken);
+  left = this->TheDomain().Max(left);
+  SweepTally all;
+  for (int c = 0; c < 3; ++c)
+  {
+    all.in[0][c] = taken[c];
+    for (int face = 0; face < 6; ++face)
+    {
+      all.out[face][c] = left[6 * c + face];
+      all.in[0][c] += all.out[face][c];
+    }
+  }
+  return all;
 }
 
 /// Of a beam with an angular distribution of its own, which one; -1: it has none.
@@ -376,11 +494,14 @@ void TransportParts::LightBeams(const Buffer<float>& given) const
 TransportParts::UncollidedPath TransportParts::FindUncollidedPath(
   const UncollidedSource& source, const Monitor& monitor)
 {
-  Buffer<float> path(this->TheDevice, this->Layout.MomentFloats(this->Functions()), "uncollided light");
-  path.Fill(0.0f);
+  Buffer<float> path;
+  this->TheDomain().Collective([&] {
+    path = Buffer<float>(this->TheDevice, this->Layout.MomentFloats(this->Functions()), "uncollided light");
+    path.Fill(0.0f);
+  });
   UncollidedPath found;
   found.tally = this->AddUncollided(source, { &path }, monitor);
-  found.path = path.Read();
+  this->TheDomain().Collective([&] { found.path = path.Read(); });
   return found;
 }
 
@@ -409,9 +530,19 @@ TransportParts::EvenSky TransportParts::FindEvenSky(const Monitor& monitor)
   evenly.sky = { 1.0, 1.0, 1.0 };
   const PropagationSettings& settings = this->Problem.Settings();
   const auto along = [&](const SweptDirections& directions, const Monitor& ofThese) {
-    const BoundaryLight light(this->Problem.TheGrid(), settings, directions, evenly, {});
+    const BoundaryLight light(this->Problem.Whole(), settings, directions, evenly, {});
     return this->FindUncollidedPath(UncollidedBoundary(settings, light), ofThese);
   };
   return { along(*this->Fine, OfPart(monitor, 0.0, 0.8)), along(this->Usual, OfPart(monitor, 0.8, 1.0)) };
+}
+
+std::unique_ptr<TransportParts> MakeParts(Device& device, const PropagationProblem& problem, IterationScheme how)
+{
+  const DirectionSet usual = DirectionsForVoxels(problem.Settings().directionsPerFace, problem.Whole().spacing);
+  const UncollidedDirections finer = UncollidedDirectionsFor(problem, usual, how);
+  std::unique_ptr<TransportParts> parts;
+  problem.TheDomain().Collective([&] { parts = std::make_unique<TransportParts>(device, problem, how, usual, finer); });
+  parts->LoadSource();
+  return parts;
 }
 }

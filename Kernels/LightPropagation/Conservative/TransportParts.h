@@ -13,12 +13,15 @@
 #include "LightPropagation/Scattering/BeamsInSource.h"
 #include "LightPropagation/Scattering/ScatteringOperator.h"
 #include "LightPropagation/Scattering/SweptMoments.h"
+#include "LightPropagation/Sweep/Pipelined/AcrossFaces.h"
+#include "LightPropagation/Sweep/Pipelined/SweepInBlocks.h"
 #include "LightPropagation/Sweep/SweepOperator.h"
 #include "LightPropagation/Sweep/SweepWorkspace.h"
 #include "LightPropagation/Sweep/VolumeLayout.h"
 #include "LightPropagation/Uncollided/BoundaryLight.h"
 #include "LightPropagation/Uncollided/EnvironmentPeaks.h"
 #include "LightPropagation/Uncollided/GivenLight.h"
+#include "LightPropagation/Uncollided/Lamps/LampsInBlocks.h"
 #include "LightPropagation/Uncollided/UncollidedSource.h"
 
 #include <memory>
@@ -27,15 +30,19 @@
 
 namespace tyndall
 {
-/// A problem on a device, with the directions it is solved along and the lights that shine: what the iterations are
-/// made of. Holds no state of a solve but the arrays that they work in.
+/// A rank's block of a problem on its device, with the quadratures it is solved with and the sources of its light: what
+/// the iterations are made of. Holds no state of a solve but the arrays that they work in. Directions, boundary sources
+/// and the cells of the box's faces are those of the whole domain; arrays over voxels are of the block.
 class TransportParts
 {
 public:
+  /// Not collective: what may fail here fails on one rank alone.
   /// @param problem  must stay
-  /// @param how  scattering orders are to be added up
+  /// @param usual  directions of scattered light
+  /// @param finer  of light from outside until it meets the medium
   /// @throws DeviceError if the arrays do not fit; InvalidInput where rays are too few (BoundaryLight.h)
-  TransportParts(Device& device, const PropagationProblem& problem, IterationScheme how);
+  TransportParts(Device& device, const PropagationProblem& problem, IterationScheme how, DirectionSet usual,
+    const UncollidedDirections& finer);
   TransportParts(const TransportParts&) = delete; // lights see directions that this owns
   TransportParts& operator=(const TransportParts&) = delete;
 
@@ -48,8 +55,9 @@ public:
 
   /// Along the directions of scattered light.
   const SweptDirections Usual;
-  const AngularBasis* Basis = nullptr;         ///< of the moments in which light is scattered; null: all is isotropic
-  UncollidedDirections Finer;                  ///< of light from outside until it meets the medium
+  /// Of the moments in which light is scattered; null: all is isotropic, or the block has no voxels.
+  const AngularBasis* Basis = nullptr;
+  const UncollidedDirections Finer;            ///< of light from outside until it meets the medium
   std::unique_ptr<const SweptDirections> Fine; ///< those directions; null: the usual ones
   /// FineBoundary: along the finer directions; null where nothing comes along them. UsualBoundary: what sweeps carry,
   /// all the rest; where orders are accelerated by the whole balance all that comes in.
@@ -66,8 +74,11 @@ public:
   /// [channel][stride]; flux [channel][x, y, z][stride], empty where net flux is not asked for. Where light has angular
   /// moments, Source and Path have them [function][channel][stride], and Source those of beams behind them.
   Buffer<float> Source, Path, Flux, Fluence;
-  SweepWorkspace Workspace;
 
+  const Domain& TheDomain() const { return this->Problem.TheDomain(); }
+  bool IsEmpty() const { return this->TheDomain().IsEmpty(); } ///< the block has no voxels
+  /// Writes what the medium emits, and what of given light goes straight on, to Source. Collective; to be called first.
+  void LoadSource();
   /// Sweeps read Source from the first on: it shines, or nothing is left out.
   bool HasSource() const { return this->MediumShines; }
   /// What sweeps along the usual directions carry of the light from outside; empty: nothing.
@@ -76,8 +87,8 @@ public:
   /// The light of FineBoundary along the usual directions.
   BoundaryLight FinePartAlongUsual() const;
 
-  /// The light of one source, added to where `deposit` says.
-  /// @return all channels
+  /// The light of one source, added to where `deposit` says. Collective, as all that adds or finds uncollided light.
+  /// @return all channels, of all ranks
   SweepTally AddUncollided(const UncollidedSource& source, const Deposit& deposit, const Monitor& monitor);
   /// The same into arrays of its own, read back.
   struct UncollidedPath
@@ -117,7 +128,7 @@ public:
   /// What the usual directions carry of what the medium emits, into a source; nothing where it does not.
   /// @return whether any of it shines
   bool LoadEmission(Buffer<float>& source) const;
-  void CountEmission(EnergyLedger& ledger) const; ///< all that the medium emits, however it is carried
+  void CountEmission(EnergyLedger& ledger) const; ///< all that the medium emits, however it is carried; collective
 
   Deposit WholeDeposit() const;             ///< path, and flux where it is asked for
   std::vector<AxisBundles> AllRays() const; ///< of the usual directions
@@ -128,14 +139,21 @@ public:
   void LightBeams(const Buffer<float>& given) const; ///< in Source, as they are in another one
   std::size_t BeamValues() const { return this->Angular ? this->Angular->Beams() * this->Layout.Values() : 0; }
   /// What is scattered is handed out in angular moments.
-  bool StoresMoments() const { return this->Basis && this->Problem.Settings().storeMoments; }
-  int Functions() const { return this->Basis ? this->Basis->Count() : 1; }
-  /// The one place where an implementation of the sweep is chosen.
+  bool StoresMoments() const
+  {
+    return this->Problem.Scattering().Degree() > 0 && this->Problem.Settings().storeMoments;
+  }
+  int Functions() const;                                              ///< of the basis; 1: none
+  const SweptMoments* Moments() const { return this->Angular.get(); } ///< null where Basis is
+  /// The one place where an implementation of the sweep is chosen. Collective.
   std::unique_ptr<SweepOperator> MakeSweep(const SweepRequest& request);
+  /// Whether MakeSweep sweeps a part of the grid (SweepRequest::box).
+  bool SweepsParts() const { return this->TheDomain().IsSerial(); }
+  /// Of values by voxels' faces, [channel][face][stride], those beyond the block's faces. Collective.
+  BeyondFaces FetchBeyond(const Buffer<float>& byFaces);
 
 private:
   bool ByBalance() const { return this->How == IterationScheme::Dsa; }
-  void LoadSource();
   void FindVacuum();
   std::vector<float> EmissionOf(bool emptyVoxels) const;
   void FindBoundaryLight();
@@ -143,8 +161,17 @@ private:
   SplitEnvironment SplitFar(const Environment& environment) const;
   void FindFaceLight();
   int SlotOf(const UncollidedSource& source) const;
+  UncollidedVolume VolumeOf(const Deposit& deposit);
+  SweepTally SumOfVoxels(const SweepTally& own) const;
 
   bool MediumShines = false;
-  std::unique_ptr<const SweptMoments> Angular; ///< null: all is isotropic
+  std::unique_ptr<const SweptMoments> Angular; ///< null: all is isotropic, or the block has no voxels
+  SweepWorkspace Workspace;
+  BlockWorkspace PipelineWorkspace;
+  std::unique_ptr<AcrossFaces> Across;      ///< null: the block is the whole grid
+  std::unique_ptr<LampsInBlocks> NearLamps; ///< null until there is one
 };
+
+/// A problem's parts, with the quadratures that suit it. Collective.
+std::unique_ptr<TransportParts> MakeParts(Device& device, const PropagationProblem& problem, IterationScheme how);
 }

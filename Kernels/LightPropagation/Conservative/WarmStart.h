@@ -1,10 +1,8 @@
 #pragma once
 
-#include "Distribution/Communicator.h"
 #include "Light/KeptLight.h"
 #include "LightPropagation/Conservative/TransportParts.h"
 
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -13,41 +11,21 @@ namespace tyndall
 /// Where a solve begins: in the dark, or at the scattered light of the last one (numerics.md, section 6.4). Unscattered
 /// light is found anew in any case. A guess changes how many sweeps there are, not what they lead to: iterations go on
 /// from its error, which is measured as anywhere else.
-///
-/// Of a grid that is spread over ranks each has one, of its block: all make it together, and call together what is said
-/// below.
+/// Made and called collectively; a rank keeps the light of its block.
 class WarmStart
 {
 public:
-  /// What is solved, of a rank's block where there are several; must stay.
-  struct Scene
-  {
-    Device& device;
-    const VolumeLayout& layout;
-    const TruncatedScattering& medium;
-    const ScatteringOperator& scattering;
-    const PropagationSettings& settings;
-    const Buffer<float>& fluence; ///< W / length^2, that is found
-    bool scatters;                ///< on any rank
-    int functions;                ///< of angular moments
-    int directions;
-    const Grid& whole;
-    Communicator* others = nullptr; ///< null: the whole is here
-    VoxelBox block = {};            ///< of the whole; without others none
-  };
-
   /// @param parts  must stay
-  /// @param kept  null: nothing is begun from or kept; must stay
+  /// @param kept  null, on all ranks: nothing is begun from or kept; must stay
   /// @param method  in words, how orders are added up
-  WarmStart(TransportParts& parts, const KeptLight* kept, const char* method);
-  WarmStart(const Scene& scene, const KeptLight* kept, const char* method);
+  WarmStart(const TransportParts& parts, const KeptLight* kept, const char* method);
 
   bool Keeps() const { return this->Kept != nullptr; } ///< this solve's light is wanted
   /// Whether this solve begins from kept light; all ranks or none.
   bool Begins() const { return this->Keeps() && this->WhyNot.empty(); }
   std::vector<std::string> LeftOut() const;
 
-  /// To be told where light is kept. Scales kept light by how what is scattered first has changed. All ranks call it.
+  /// To be told where light is kept. Scales kept light by how what is scattered first has changed.
   /// @param direct  unscattered fluence, W / length^2, [channel][stride]
   void Prepare(const std::vector<float>& direct);
   /// Kept light as it is guessed, W length, [function][channel][stride].
@@ -58,14 +36,13 @@ public:
   /// By which the last iterations of the last solves fell, each over the one before; 0: not known, it was dark.
   double Rate(int channel) const { return this->Kept->rate[channel]; }
 
-  /// Adds what is scattered of the guess to a source, and takes that away again. All ranks call them.
+  /// Adds what is scattered of the guess to a source, and takes that away again.
   void AddGuessTo(const Buffer<float>& source) const;
   void TakeGuessFrom(const Buffer<float>& source);
-  /// Of a source that can be negative, W by channel: its root mean square over all directions, summed over voxels. All
-  /// ranks call it.
+  /// Of a source that can be negative, W by channel: its root mean square over all directions, summed over voxels.
   Rgb MagnitudeOf(const Buffer<float>& source) const;
 
-  /// What is left for the next solve. All ranks call it.
+  /// What is left for the next solve.
   /// @param base  fluence that the next solve finds without a guess; its guess is what all fluence has beyond that
   /// @param moments  what the others have beyond it, as Guess() is; the first function is not read. Empty: none
   /// @param rate  of the last iteration over the one before
@@ -74,11 +51,10 @@ public:
 private:
   LightKind Kind(const char* method) const;
   Rgb ScatteredOf(const std::vector<float>& values) const;
-  Rgb SumOverRanks(const Rgb& own) const;
-  void Collective(const std::function<void()>& work) const;
-  bool Has() const { return this->The.layout.grid.VoxelCount() > 0; } ///< voxels
 
-  Scene The;
+  const TransportParts& Parts;
+  const Domain& TheDomain;
+  const VolumeLayout& Layout;
   const KeptLight* Kept;
   LightKind TheKind;
   std::string WhyNot;

@@ -17,15 +17,6 @@
 
 namespace tyndall
 {
-/// All ranks call it together.
-/// @throws InvalidInput  on each, where they differ in what all must have alike of a scene
-/// @param has  voxels; without any the medium is not looked at
-void RequireSame(Communicator& communicator, bool has, const Medium& medium, const Illumination& illumination,
-  const PropagationSettings& settings);
-
-/// LightEndsIn of the medium of all ranks. All ranks call it together.
-LightEnds LightEndsOnAny(Communicator& communicator, bool has, const Medium& medium, const Illumination& illumination);
-
 /// A medium for a rank whose block has no voxels: what is found there counts nowhere.
 Medium VoxelOfVacuum(const Grid& whole);
 

@@ -1,141 +1,109 @@
 #include "LightPropagation/Problem/PropagationProblem.h"
 
-#include "Device/Errors.h"
+#include "Distribution/SharedMedium.h"
 #include "Light/LeftOut.h"
+
+#include <algorithm>
 
 namespace tyndall
 {
 namespace
 {
 /// So that the first member of a problem is made of what has been looked at.
-const Grid& Checked(const Medium& medium, const Illumination& illumination, const PropagationSettings& settings)
+const Domain& Checked(
+  const Domain& domain, const Medium& medium, const Illumination& illumination, const PropagationSettings& settings)
 {
-  Check(medium, illumination, settings);
-  return medium.grid;
+  Check(domain, medium, illumination, settings);
+  return domain;
 }
 }
 
-LightEnds LightEndsIn(const Medium& medium, const Illumination& illumination)
-{
-  LightEnds ends;
-  const auto any = [&](const Field& field, int channel) {
-    bool found = false;
-    for (std::size_t i = 0; i < medium.grid.VoxelCount() && field.values && !found; ++i)
-    {
-      found = field.At(i, channel) > 0.0f;
-    }
-    return found;
-  };
-  for (int c = 0; c < 3; ++c)
-  {
-    bool meets = illumination.uncollided.IsThere();
-    for (const Light& light : illumination.lights)
-    {
-      meets = meets || (light.type != LightType::Directional && light.power[c] > 0.0);
-    }
-    ends.absorbs[c] = any(medium.sigma_a, c);
-    ends.begins[c] = !ends.absorbs[c] && (any(medium.emission, c) || (meets && any(medium.sigma_s, c)));
-  }
-  return ends;
-}
-
-void RequireSink(const LightEnds& ends, const Illumination& illumination, const PropagationSettings& settings)
-{
-  const std::array<bool, 3>& periodic = settings.periodic;
-  const bool anyFace = !periodic[0] || !periodic[1] || !periodic[2];
-  for (int c = 0; c < 3; ++c)
-  {
-    bool closed = true;
-    for (int face = 0; face < 6; ++face)
-    {
-      closed = closed && (periodic[face / 2] || illumination.faceAlbedo[face][c] >= 1.0);
-    }
-    if (closed && anyFace && !ends.absorbs[c])
-    {
-      throw InvalidInput("Every face gives back all light (FaceAlbedo 1) and the medium absorbs none: light would grow "
-                         "without end. Give a face an albedo below 1, or the medium some sigma_a.");
-    }
-    if (!anyFace && !ends.absorbs[c] && ends.begins[c] && settings.maximumOrders == 0)
-    {
-      throw InvalidInput("All three axes are periodic and the medium absorbs no light: what begins in it would grow "
-                         "without end. Leave an axis open, give the medium some sigma_a, or set MaximumOrders.");
-    }
-  }
-}
-
-void CheckBlock(const Medium& medium, const Illumination& illumination, const PropagationSettings& settings)
-{
-  Check(medium);
-  Check(illumination);
-  Check(illumination.uncollided, medium);
-  Check(settings);
-  CheckFaceAlbedo(illumination, settings.periodic);
-}
-
-void Check(const Medium& medium, const Illumination& illumination, const PropagationSettings& settings)
-{
-  CheckBlock(medium, illumination, settings);
-  RequireSink(LightEndsIn(medium, illumination), illumination, settings);
-}
-
-PropagationProblem::PropagationProblem(const Medium& medium, const Illumination& illumination,
+PropagationProblem::PropagationProblem(const Domain& domain, const Medium& medium, const Illumination& illumination,
   const PropagationSettings& settings, const DeviceMemory& memory)
-  : Unvarying(Checked(medium, illumination, settings), illumination, settings)
+  : Unvarying(Checked(domain, medium, illumination, settings).Whole(), illumination, settings)
+  , Solving(domain.WithGrid(this->Unvarying.Widened(domain.Whole())))
   , TheSettings(settings)
   , DirectionsAskedFor(settings.directionsPerFace)
+  , Solved(domain.IsEmpty() ? Medium() : medium)
 {
-  Medium wide = medium;
-  wide.grid = this->Unvarying.Widened(medium.grid);
-  this->Narrowing = medium.grid.VoxelVolume() / wide.grid.VoxelVolume();
+  this->Narrowing = domain.Whole().VoxelVolume() / this->Whole().VoxelVolume();
   this->TheSettings.directionsPerFace = DirectionsPerFaceFor(settings, this->Unvarying);
-  this->TakeUnits(wide, illumination);
-  this->TheTraits = TraitsOf(this->Solved, true);
-  this->Reduction.emplace(this->Solved, this->TheTraits, this->SolvedLight);
-  this->ChannelCount = this->Reduction->Solved(settings.leaveOut);
-  if (this->ChannelCount == 1)
-  {
-    const OneChannelScene scene(this->Solved, this->SolvedLight, *this->Reduction);
-    this->Solved = scene.medium;
-    this->SolvedLight = scene.light;
-  }
+  this->TakeUnits(illumination);
+  this->TheTraits = TraitsOfAll(domain.Comm(), domain.IsEmpty() ? MediumTraits() : TraitsOf(this->Solved, true));
+  this->TakeChannels();
+  this->Given = domain.Any(this->SolvedLight.uncollided.IsThere());
   this->Truncate(memory);
   // The traits know of extinction by the similarity relation alone.
   this->TheTraits.greyExtinction =
     this->TheTraits.grey || (this->TheTraits.greyExtinction && this->Truncated->Degree() == 0);
 }
 
-void PropagationProblem::Truncate(const DeviceMemory& memory)
+void PropagationProblem::TakeChannels()
 {
-  const Grid& grid = this->TheGrid();
-  const AngularDetail detail = AngularDetailOf(this->Solved, this->ChannelCount);
-  const int degree = this->TheTraits.scatters
-    ? AngularDegreeFor(detail, grid, this->TheSettings, this->IsSlab(), grid.VoxelCount(), memory)
-    : 0;
-  std::optional<DirectionKernel> kernel;
-  if (degree > 0 && IsMuchThinnerAlongOneAxis(detail, grid, this->ChannelCount, this->TheSettings.periodic))
+  const SceneChannels own(this->Solved, this->TheTraits, this->SolvedLight);
+  this->Reduction.emplace(ChannelsOfAll(this->Solving, own));
+  this->ChannelCount = this->Reduction->Solved(this->TheSettings.leaveOut);
+  if (this->ChannelCount == 1)
   {
-    kernel.emplace(DirectionsForVoxels(this->TheSettings.directionsPerFace, grid.spacing), degree);
+    const OneChannelScene scene(this->Solved, this->SolvedLight, *this->Reduction);
+    this->Solved = scene.medium;
+    this->SolvedLight = scene.light;
   }
-  this->Truncated.emplace(this->Solved, degree, this->ChannelCount, kernel ? &*kernel : nullptr);
 }
 
-void PropagationProblem::TakeUnits(const Medium& wide, const Illumination& illumination)
+/// By what all ranks have together.
+void PropagationProblem::Truncate(const DeviceMemory& memory)
 {
-  this->Solved = wide;
+  const Domain& domain = this->Solving;
+  AngularDetail detail = AngularDetailOf(this->Solved, this->ChannelCount);
+  detail.moments = domain.Max(detail.moments);
+  detail.extinction = domain.Sum(detail.extinction);
+  std::size_t most = 0;
+  for (const VoxelBox& block : domain.Partition().blocks)
+  {
+    most = std::max(most, block.VoxelCount());
+  }
+  int degree = 0;
+  domain.Collective([&] {
+    degree = this->TheTraits.scatters
+      ? AngularDegreeFor(detail, this->Whole(), this->TheSettings, this->IsSlab(), most, memory)
+      : 0;
+  });
+  degree = -static_cast<int>(domain.Max(-1.0 * degree)); // that fits all
+  domain.Collective([&] {
+    std::optional<DirectionKernel> kernel;
+    if (degree > 0 && IsMuchThinnerAlongOneAxis(detail, this->Whole(), this->ChannelCount, this->TheSettings.periodic))
+    {
+      kernel.emplace(DirectionsForVoxels(this->TheSettings.directionsPerFace, this->Whole().spacing), degree);
+    }
+    this->Truncated.emplace(this->Solved, degree, this->ChannelCount, kernel ? &*kernel : nullptr);
+  });
+  this->Truncated->RaiseDegree(static_cast<int>(domain.Max(1.0 * this->Truncated->Degree())));
+}
+
+void PropagationProblem::TakeUnits(const Illumination& illumination)
+{
+  this->Solved.grid = this->Solving.OwnGrid();
   this->SolvedLight = illumination;
-  this->SolvedLight.lights = SeenFrom(wide.grid, illumination.lights);
+  this->SolvedLight.lights = SeenFrom(this->Whole(), illumination.lights);
   for (Rgb& face : this->SolvedLight.uncollided.escaped)
   {
     face = Times(face, 1.0 / this->Narrowing);
   }
-  this->LengthUnit = LengthUnitOf(wide.grid);
-  if (this->LengthUnit != 1.0)
-  {
-    this->InLengths.emplace(this->Solved, this->SolvedLight, this->LengthUnit);
-    this->Solved = this->InLengths->medium;
-    this->SolvedLight = this->InLengths->illumination;
-  }
-  this->PowerUnit = PowerUnitFor(ShiningOn(this->Solved.grid, this->Solved, this->SolvedLight));
+  this->LengthUnit = LengthUnitOf(this->Whole());
+  this->Solving.Collective([&] {
+    if (this->LengthUnit != 1.0)
+    {
+      this->InLengths.emplace(this->Solved, this->SolvedLight, this->LengthUnit);
+      this->Solved = this->InLengths->medium;
+      this->SolvedLight = this->InLengths->illumination;
+    }
+  });
+  this->Solving = this->Solving.WithGrid(InUnit(this->Whole(), this->LengthUnit));
+  const AllThatShines here =
+    this->Solving.IsEmpty() ? AllThatShines() : ShiningOn(this->Whole(), this->Solved, this->SolvedLight);
+  const std::vector<double> all = this->Solving.Max(std::vector<double>{ here.power, here.first });
+  this->PowerUnit = PowerUnitFor({ all[0], all[1] });
   if (this->PowerUnit != 1.0)
   {
     this->InUnits.emplace(this->Solved, this->SolvedLight, this->PowerUnit);

@@ -1,8 +1,10 @@
 #pragma once
 
+#include "Distribution/Domain.h"
 #include "Light/ChannelReduction.h"
 #include "Light/LightField.h"
 #include "LightPropagation/Problem/AngularDegree.h"
+#include "LightPropagation/Problem/SceneChecks.h"
 #include "LightPropagation/Problem/SceneUnits.h"
 #include "LightPropagation/Problem/TruncatedScattering.h"
 #include "LightPropagation/Problem/UnvaryingAxes.h"
@@ -13,46 +15,45 @@
 
 #include <array>
 #include <optional>
+#include <string>
 
 namespace tyndall
 {
-/// @throws InvalidInput what Check() of the three throw, where a face that gives back light lies across a periodic
-///   axis, and where light could not end: all faces give back all of it and nothing absorbs
-void Check(const Medium& medium, const Illumination& illumination, const PropagationSettings& settings);
-
-/// The same of a medium that is one of several blocks, but for what only all of them tell: whether light ends.
-void CheckBlock(const Medium& medium, const Illumination& illumination, const PropagationSettings& settings);
-/// Whether light ends in a medium, and whether it begins there: is emitted, or scattered of lamps within or of light
-/// that is given. By channel, in any voxel.
-struct LightEnds
-{
-  std::array<bool, 3> absorbs = {}, begins = {};
-};
-LightEnds LightEndsIn(const Medium& medium, const Illumination& illumination);
-/// @throws InvalidInput where light can neither leave the box nor be absorbed, and goes on until it does
-void RequireSink(const LightEnds& ends, const Illumination& illumination, const PropagationSettings& settings);
-
 /// A scene as it is solved: in units of length and of power that floats hold well, wide along axes on which nothing
-/// changes, with as many channels as it needs. Made once from what the user gave; Undo() turns the light that was found
-/// back into what the user asked for.
+/// changes, with as many channels as it needs. Each rank has the medium of its block; all that a solve decides by
+/// (traits, channels, degree of the moments) is of the whole domain. Made once from what the user gave; Undo() turns
+/// the light that was found back into what the user asked for.
 class PropagationProblem
 {
 public:
+  /// Collective.
+  /// @param domain  of the grid as it is given
+  /// @param medium  of this rank's block, with its grid; of a block without voxels nothing else is read
   /// @param medium, illumination  their arrays must stay
   /// @throws InvalidInput what Check() above throws
-  /// @param memory  for angular moments, where the settings leave open how many
+  /// @param memory  of this rank, for angular moments, where the settings leave open how many
+  PropagationProblem(const Domain& domain, const Medium& medium, const Illumination& illumination,
+    const PropagationSettings& settings, const DeviceMemory& memory = {});
+  /// Of a serial domain.
   PropagationProblem(const Medium& medium, const Illumination& illumination, const PropagationSettings& settings,
-    const DeviceMemory& memory = {});
+    const DeviceMemory& memory = {})
+    : PropagationProblem(Domain(medium.grid), medium, illumination, settings, memory)
+  {
+  }
   PropagationProblem(const PropagationProblem&) = delete; // the medium sees arrays that this owns
   PropagationProblem& operator=(const PropagationProblem&) = delete;
 
+  const Domain& TheDomain() const { return this->Solving; }
+  const Grid& Whole() const { return this->Solving.Whole(); } ///< the domain's grid
   const Medium& TheMedium() const { return this->Solved; }
-  const Grid& TheGrid() const { return this->Solved.grid; }
-  const MediumTraits& Traits() const { return this->TheTraits; }
+  const Grid& TheGrid() const { return this->Solved.grid; }                  ///< of this rank's block
+  const MediumTraits& Traits() const { return this->TheTraits; }             ///< `filled` alone is of this rank's block
   const TruncatedScattering& Scattering() const { return *this->Truncated; } ///< as sweeps carry it
   const Illumination& Shining() const { return this->SolvedLight; }
   const PropagationSettings& Settings() const { return this->TheSettings; }
   int Channels() const { return this->ChannelCount; } ///< 1 or 3
+  /// Uncollided light is given by voxel.
+  bool HasGivenLight() const { return this->Given; }
   /// The scattered light of a voxel is taken as linear across it, not as constant as published.
   bool HasLinearSource() const { return this->TheSettings.source != PropagationSource::Constant; }
   /// The medium scatters, or nothing is to be left out.
@@ -63,10 +64,12 @@ public:
   void Undo(LightField& light) const;
 
 private:
-  void TakeUnits(const Medium& wide, const Illumination& illumination);
+  void TakeUnits(const Illumination& illumination);
+  void TakeChannels();
   void Truncate(const DeviceMemory& memory);
 
   UnvaryingAxes Unvarying;
+  Domain Solving; ///< in the unit of length
   PropagationSettings TheSettings;
   int DirectionsAskedFor;
   double Narrowing = 1.0; ///< volume of a voxel over that which is solved
@@ -79,5 +82,6 @@ private:
   std::optional<SceneChannels> Reduction;
   std::optional<TruncatedScattering> Truncated;
   int ChannelCount = 3;
+  bool Given = false;
 };
 }

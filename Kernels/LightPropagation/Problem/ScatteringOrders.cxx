@@ -59,7 +59,32 @@ double BothExtrapolations(const ScatteringOfScene& scene, int axis, int channel,
   return std::min(low, longest + high) + std::min(high, longest + low);
 }
 
-/// Of what is scattered as sweeps carry it, in the mean.
+/// Sums along the lines of voxels of the whole domain. Collective.
+/// @param value  of this rank's voxels
+template <class Value>
+ThickLines LinesOf(const Domain& domain, const Value& value)
+{
+  const LineSums own = SumAlongLines(domain.OwnGrid(), value);
+  const VoxelBox& block = domain.Own();
+  const std::array<int, 3>& n = domain.Whole().size;
+  LineSums all;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const PlaneAxes axes = AcrossAxis(axis);
+    all[axis].assign(static_cast<std::size_t>(n[axes.u]) * n[axes.v], 0.0);
+    auto next = own[axis].begin();
+    for (int v = 0; v < block.size[axes.v] && next != own[axis].end(); ++v)
+    {
+      const std::size_t row = static_cast<std::size_t>(block.first[axes.v] + v) * n[axes.u] + block.first[axes.u];
+      std::copy_n(next, block.size[axes.u], all[axis].begin() + static_cast<std::ptrdiff_t>(row));
+      next += block.size[axes.u];
+    }
+    all[axis] = domain.Sum(all[axis]);
+  }
+  return { domain.Whole(), all };
+}
+
+/// Of what is scattered as sweeps carry it, in the mean. Collective.
 double AlbedoOf(const PropagationProblem& problem, int channel)
 {
   const Medium& medium = problem.TheMedium();
@@ -69,7 +94,8 @@ double AlbedoOf(const PropagationProblem& problem, int channel)
     const double s = problem.Scattering().SigmaS(i, channel);
     return s > 0.0 ? s * s / (s + medium.sigma_a.At(i, channel)) : 0.0;
   });
-  return scattering > 0.0 ? albedo / scattering : 0.0;
+  const std::vector<double> sums = problem.TheDomain().Sum(std::vector<double>{ scattering, albedo });
+  return sums[0] > 0.0 ? sums[1] / sums[0] : 0.0;
 }
 
 /// What leaks out along axes that are not periodic, of the slowest mode, over what is extinguished (numerics.md,
@@ -90,7 +116,7 @@ double Leak(const ScatteringOfScene& scene, int channel)
   return leak;
 }
 
-/// As sweeps carry light, 1/length, of all voxels and channels.
+/// As sweeps carry light, 1/length, of all voxels and channels. Collective.
 double ThickestExtinction(const PropagationProblem& problem)
 {
   double largest = 0.0;
@@ -101,7 +127,7 @@ double ThickestExtinction(const PropagationProblem& problem)
       largest = std::max<double>(largest, problem.Scattering().SigmaT(i, c));
     }
   }
-  return largest;
+  return problem.TheDomain().Max(largest);
 }
 
 bool HasThickVoxels(const ScatteringOfScene& scene)
@@ -157,22 +183,35 @@ AcceleratedTime AcceleratedTimeOf(const ScatteringOfScene& scene)
     [](const ScatteringOfChannel& channel) { return channel.diffusing.uneven; });
   return uneven ? InUnevenMedia : InEvenMedia;
 }
+
+/// The scheme that several ranks have in the place of a serial solve's: cells do not wrap around periodic axes, and DSA
+/// has no directions of its own for uncollided light.
+IterationScheme AvailableInBlocks(IterationScheme serial, const PropagationSettings& settings)
+{
+  if (settings.source == PropagationSource::Linear)
+  {
+    return IterationScheme::Dsa;
+  }
+  const bool wraps = settings.periodic[0] || settings.periodic[1] || settings.periodic[2];
+  const bool has = serial == IterationScheme::Dsa ? settings.uncollidedDirections <= 0 : !wraps;
+  return has ? serial : IterationScheme::SourceIteration;
+}
 }
 
 ScatteringOfScene ScatteringOf(const PropagationProblem& problem)
 {
-  const Grid& grid = problem.TheGrid();
+  const Domain& domain = problem.TheDomain();
   const TruncatedScattering& swept = problem.Scattering();
-  ScatteringOfScene scene = { grid, problem.Settings().periodic, problem.Shining().faceAlbedo, swept.Degree(),
-    problem.IsSlab(), ThickestExtinction(problem), {} };
+  ScatteringOfScene scene = { problem.Whole(), problem.Settings().periodic, problem.Shining().faceAlbedo,
+    swept.Degree(), problem.IsSlab(), ThickestExtinction(problem), {} };
   for (int c = 0; c < problem.Channels(); ++c)
   {
     ScatteringOfChannel channel;
-    channel.diffusing = ThickLines(
-      grid, SumAlongLines(grid, [&](std::size_t i) { return double(problem.TheMedium().TransportSigmaT(i, c)); }));
+    channel.diffusing =
+      LinesOf(domain, [&](std::size_t i) { return double(problem.TheMedium().TransportSigmaT(i, c)); });
     if (scene.degree > 0)
     {
-      channel.swept = ThickLines(grid, SumAlongLines(grid, [&](std::size_t i) { return double(swept.SigmaT(i, c)); }));
+      channel.swept = LinesOf(domain, [&](std::size_t i) { return double(swept.SigmaT(i, c)); });
     }
     channel.albedo = AlbedoOf(problem, c);
     scene.channels.push_back(channel);
@@ -218,7 +257,7 @@ bool AreThinEnough(const Grid& grid, const std::array<int, 3>& halvings)
 
 std::array<int, 3> CellHalvings(const PropagationProblem& problem)
 {
-  return CellHalvings(problem.TheGrid(), ThickestExtinction(problem));
+  return CellHalvings(problem.Whole(), ThickestExtinction(problem));
 }
 
 std::array<int, 3> CellHalvings(const Grid& grid, double thickest)
@@ -242,11 +281,15 @@ bool MayBeAccelerated(const PropagationSettings& settings, bool scatters)
     (settings.acceleration == PropagationAcceleration::Automatic && settings.maximumOrders == 0 && scatters);
 }
 
-IterationScheme ChooseIterationScheme(
-  const PropagationSettings& settings, bool scatters, const ScatteringOfScene& scene)
+IterationScheme FastestScheme(const PropagationProblem& problem)
 {
-  if (!MayBeAccelerated(settings, scatters) ||
-    (settings.source != PropagationSource::Linear && !ScatteredManyTimes(scene)))
+  const PropagationSettings& settings = problem.Settings();
+  if (!MayBeAccelerated(settings, problem.Traits().scatters))
+  {
+    return IterationScheme::SourceIteration;
+  }
+  const ScatteringOfScene scene = ScatteringOf(problem);
+  if (settings.source != PropagationSource::Linear && !ScatteredManyTimes(scene))
   {
     return IterationScheme::SourceIteration;
   }
@@ -255,9 +298,7 @@ IterationScheme ChooseIterationScheme(
 
 IterationScheme ChooseIterationScheme(const PropagationProblem& problem)
 {
-  const bool scatters = problem.Traits().scatters;
-  return MayBeAccelerated(problem.Settings(), scatters)
-    ? ChooseIterationScheme(problem.Settings(), scatters, ScatteringOf(problem))
-    : IterationScheme::SourceIteration;
+  const IterationScheme fastest = FastestScheme(problem);
+  return problem.TheDomain().IsSerial() ? fastest : AvailableInBlocks(fastest, problem.Settings());
 }
 }

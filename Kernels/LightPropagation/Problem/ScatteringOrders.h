@@ -16,7 +16,7 @@ struct ScatteringOfChannel
   double albedo = 0.0;  ///< of what is scattered as sweeps carry it, in the mean
 };
 
-/// The same of a whole scene, which may be spread over ranks.
+/// The same of a whole scene.
 struct ScatteringOfScene
 {
   Grid grid;
@@ -27,6 +27,7 @@ struct ScatteringOfScene
   double thickest = 0.0; ///< extinction of a voxel as sweeps carry light, 1/length, of all channels
   std::vector<ScatteringOfChannel> channels;
 };
+/// Collective, as all that is asked of a problem here.
 ScatteringOfScene ScatteringOf(const PropagationProblem& problem);
 
 /// Scattering orders, as sweeps carry them, until 1e-4 is left, about: those of diffusion in a slab with extrapolated
@@ -46,10 +47,10 @@ enum class IterationScheme
   CoarseMeshDsa,   ///< the same with a diffusion correction on cells of several voxels, for optically thin voxels
   Dsa, ///< diffusion synthetic acceleration on the voxels; Conservative/Acceleration/DiffusionAcceleration.h
 };
+/// That a serial solve takes. Collective.
+IterationScheme FastestScheme(const PropagationProblem& problem);
+/// That a solve on the problem's domain takes: the fastest that it has. Collective.
 IterationScheme ChooseIterationScheme(const PropagationProblem& problem);
-/// @param scene  not looked at unless MayBeAccelerated
-IterationScheme ChooseIterationScheme(
-  const PropagationSettings& settings, bool scatters, const ScatteringOfScene& scene);
 /// Whether settings let it depend on the scene, or ask for acceleration.
 bool MayBeAccelerated(const PropagationSettings& settings, bool scatters);
 

@@ -170,16 +170,21 @@ double LengthUnitOf(const Grid& grid)
   return std::abs(exponent) <= UsualLengthExponent ? 1.0 : std::exp2(exponent);
 }
 
-SceneInLengths::SceneInLengths(const Medium& inLengths, const Illumination& shining, double unit)
-  : medium(inLengths)
-  , illumination(shining)
+Grid InUnit(Grid grid, double unit)
 {
-  Grid& grid = this->medium.grid;
   for (int axis = 0; axis < 3; ++axis)
   {
     grid.spacing[axis] /= unit;
     grid.origin[axis] /= unit;
   }
+  return grid;
+}
+
+SceneInLengths::SceneInLengths(const Medium& inLengths, const Illumination& shining, double unit)
+  : medium(inLengths)
+  , illumination(shining)
+{
+  const Grid& grid = this->medium.grid = InUnit(inLengths.grid, unit);
   const auto scale = [&](Field& field, std::vector<float>& values) {
     if (field.values)
     {
@@ -192,7 +197,10 @@ SceneInLengths::SceneInLengths(const Medium& inLengths, const Illumination& shin
   scale(this->medium.sigma_a, this->sigma_a);
   scale(this->medium.sigma_s, this->sigma_s);
   scale(this->medium.emission, this->emission);
-  Check(this->medium); // they may be beyond floats now
+  if (grid.VoxelCount() > 0)
+  {
+    Check(this->medium); // they may be beyond floats now
+  }
   for (Light& light : this->illumination.lights)
   {
     std::for_each(light.position.begin(), light.position.end(), [=](double& length) { length /= unit; });

@@ -47,6 +47,9 @@ void ToWatts(LightField& light, double unit);
 /// Unit of length to solve a box in: 1 where its longest spacing is not far from that.
 double LengthUnitOf(const Grid& grid);
 
+/// A grid in such a unit.
+Grid InUnit(Grid grid, double unit);
+
 /// A scene in another unit of length: what is counted in W comes out over the unit's square (MultiplyPowers).
 struct SceneInLengths
 {

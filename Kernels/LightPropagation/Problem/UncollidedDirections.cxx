@@ -24,16 +24,16 @@ bool FacesShine(const Illumination& light)
 }
 
 /// In orders along all usual directions: a solve's, but for its first sweep.
-double TimeOfLaterOrders(const SweptScene& scene, IterationScheme how)
+double TimeOfLaterOrders(const PropagationProblem& problem, IterationScheme how)
 {
-  const int most = scene.settings.maximumOrders;
+  const int most = problem.Settings().maximumOrders;
   switch (how)
   {
     case IterationScheme::Dsa: return AcceleratedOrders - 1.0;
     case IterationScheme::CoarseMeshDsa: return OrdersByCells - 1.0;
     case IterationScheme::SourceIteration: break;
   }
-  const double orders = std::max(scene.ordersNeeded(), LeastOrders);
+  const double orders = std::max(OrdersNeeded(problem), LeastOrders);
   return SetUp + (most > 0 ? std::min<double>(orders, most) : orders) - 1.0;
 }
 }
@@ -41,31 +41,33 @@ double TimeOfLaterOrders(const SweptScene& scene, IterationScheme how)
 UncollidedDirections UncollidedDirectionsFor(
   const PropagationProblem& problem, const DirectionSet& usual, IterationScheme how)
 {
-  return UncollidedDirectionsFor({ problem.Settings(), problem.Shining(), problem.IsSlab(), problem.Traits().scatters,
-                                   problem.Scattering().Degree(), [&] { return OrdersNeeded(problem); } },
-    usual, how);
+  const bool has = how != IterationScheme::Dsa || problem.TheDomain().IsSerial();
+  return has ? FinerDirectionsOfSerial(problem, usual, how) : UncollidedDirections();
 }
 
-UncollidedDirections UncollidedDirectionsFor(const SweptScene& scene, const DirectionSet& usual, IterationScheme how)
+UncollidedDirections FinerDirectionsOfSerial(
+  const PropagationProblem& problem, const DirectionSet& usual, IterationScheme how)
 {
   const bool besideUsual = how == IterationScheme::Dsa; // else the finer directions take the place of the usual ones
-  const PropagationSettings& settings = scene.settings;
+  const PropagationSettings& settings = problem.Settings();
+  const Illumination& shining = problem.Shining();
+  const bool scatters = problem.Traits().scatters;
   if (settings.uncollidedDirections >= 0)
   {
     return { settings.uncollidedDirections, false,
-      settings.uncollidedDirections > 0 && !besideUsual && scene.scatters && !Reflects(scene.shining) };
+      settings.uncollidedDirections > 0 && !besideUsual && scatters && !Reflects(shining) };
   }
-  if (!FacesShine(scene.shining) || Reflects(scene.shining) || !scene.scatters || scene.isSlab ||
-    usual.orbits.empty() || how == IterationScheme::CoarseMeshDsa)
+  if (!FacesShine(shining) || Reflects(shining) || !scatters || problem.IsSlab() || usual.orbits.empty() ||
+    how == IterationScheme::CoarseMeshDsa)
   {
     return {};
   }
-  if (besideUsual && scene.degree > 0)
+  if (besideUsual && problem.Scattering().Degree() > 0)
   {
     return {}; // all moments of four lights would be kept at once: hundreds of bytes a voxel
   }
   const double before = settings.directionsPerFace;
-  const double affordable = More * (TimeOfLaterOrders(scene, how) + Lit) * before;
+  const double affordable = More * (TimeOfLaterOrders(problem, how) + Lit) * before;
   UncollidedDirections found;
   for (int choice : Choices)
   {

@@ -5,7 +5,6 @@
 #include "LightPropagation/Problem/PropagationProblem.h"
 #include "LightPropagation/Problem/ScatteringOrders.h"
 
-#include <functional>
 #include <memory>
 
 namespace tyndall
@@ -26,19 +25,12 @@ struct UncollidedDirections
 /// reflects. Else 0; so where cells accelerate orders (more directions gain nothing without the correction of what
 /// escapes, which would change the light of lamps as well), and in accelerated solves in angular moments, for memory.
 /// @param usual  directions of scattered light; only beside fitted ones more of them gain by themselves
+/// Collective.
 UncollidedDirections UncollidedDirectionsFor(
   const PropagationProblem& problem, const DirectionSet& usual, IterationScheme how);
-
-/// What that depends on, of a scene that may be spread over ranks.
-struct SweptScene
-{
-  const PropagationSettings& settings;
-  const Illumination& shining; ///< only whether faces shine at all, and reflect
-  bool isSlab, scatters;
-  int degree;                           ///< of angular moments
-  std::function<double()> ordersNeeded; ///< ScatteringOrders.h; asked for orders that are added up one by one
-};
-UncollidedDirections UncollidedDirectionsFor(const SweptScene& scene, const DirectionSet& usual, IterationScheme how);
+/// Those that a serial solve of it has: several ranks have none in DSA. Collective.
+UncollidedDirections FinerDirectionsOfSerial(
+  const PropagationProblem& problem, const DirectionSet& usual, IterationScheme how);
 
 /// The part of light from outside that comes along finer directions; its lights and environment are not looked at.
 Illumination AlongFiner(const UncollidedDirections& finer, const Illumination& shining);

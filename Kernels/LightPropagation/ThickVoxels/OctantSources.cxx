@@ -20,29 +20,21 @@ constexpr double Many = 0.25; ///< of the voxels that scatter: few are walls, an
 /// floats do not tell it.
 constexpr double Opaque = 1e4;
 
-/// Whether an automatic source is to be by octant.
-bool NeededByDefault(const OctantSources::Voxels& voxels)
+/// What of a medium's voxels decides it; of all channels.
+struct ThickVoxels
 {
-  return voxels.scattering > 0.0 && voxels.thick >= Many * voxels.scattering;
-}
-}
+  double scattering = 0.0, thick = 0.0; ///< how many scatter, and of these are thick
+  double thickest = 0.0;                ///< mean free paths of transport along a voxel's longest edge
+};
 
-bool OctantSources::AreThick(const PropagationProblem& problem)
+/// Of all ranks. Collective.
+ThickVoxels Count(const PropagationProblem& problem)
 {
-  return AnyVoxelIsThickerThan(Thick, problem.TheMedium());
-}
-
-bool OctantSources::AreThick(const Voxels& voxels)
-{
-  return voxels.thickest > Thick;
-}
-
-OctantSources::Voxels OctantSources::Count(const Medium& medium, const TruncatedScattering& scattering, int channels)
-{
-  const Grid& grid = medium.grid;
+  const Grid& grid = problem.TheGrid();
+  const TruncatedScattering& scattering = problem.Scattering();
   const double longest = *std::max_element(grid.spacing.begin(), grid.spacing.end());
-  Voxels voxels;
-  for (int c = 0; c < channels; ++c)
+  ThickVoxels voxels;
+  for (int c = 0; c < problem.Channels(); ++c)
   {
     const auto scatters = [&](std::size_t i) { return scattering.SigmaS(i, c) > 0.0f; };
     voxels.scattering += SumOverVoxels(grid, [&](std::size_t i) { return scatters(i) ? 1.0 : 0.0; });
@@ -50,32 +42,35 @@ OctantSources::Voxels OctantSources::Count(const Medium& medium, const Truncated
       grid, [&](std::size_t i) { return scatters(i) && scattering.SigmaT(i, c) * longest > ThickUnasked ? 1.0 : 0.0; });
     for (std::size_t i = 0; i < grid.VoxelCount(); ++i)
     {
-      voxels.thickest = std::max(voxels.thickest, longest * medium.TransportSigmaT(i, c));
+      voxels.thickest = std::max<double>(voxels.thickest, longest * problem.TheMedium().TransportSigmaT(i, c));
     }
   }
-  return voxels;
+  const Domain& domain = problem.TheDomain();
+  const std::vector<double> sums = domain.Sum(std::vector<double>{ voxels.scattering, voxels.thick });
+  return { sums[0], sums[1], domain.Max(voxels.thickest) };
+}
 }
 
-bool OctantSources::MayMatter(const PropagationSettings& settings, bool scatters, int degree)
+bool OctantSources::AreThick(const PropagationProblem& problem)
 {
-  const bool unasked = settings.source == PropagationSource::Automatic && settings.maximumOrders == 0 &&
-    settings.acceleration == PropagationAcceleration::Automatic;
-  return (settings.source == PropagationSource::Octants || unasked) && scatters && degree == 0 &&
-    !settings.firstMoments && settings.maximumOrders != 1;
-}
-
-bool OctantSources::Matter(const Voxels& voxels, const PropagationSettings& settings, bool scatters, int degree)
-{
-  const bool wanted = settings.source == PropagationSource::Octants ? AreThick(voxels) : NeededByDefault(voxels);
-  return MayMatter(settings, scatters, degree) && wanted && voxels.thickest <= Opaque;
+  return problem.TheDomain().Any(AnyVoxelIsThickerThan(Thick, problem.TheMedium()));
 }
 
 bool OctantSources::Matter(const PropagationProblem& problem)
 {
-  const bool scatters = problem.Traits().scatters;
-  const int degree = problem.Scattering().Degree();
-  return MayMatter(problem.Settings(), scatters, degree) &&
-    Matter(Count(problem.TheMedium(), problem.Scattering(), problem.Channels()), problem.Settings(), scatters, degree);
+  const PropagationSettings& settings = problem.Settings();
+  const bool asked = settings.source == PropagationSource::Octants;
+  const bool automatic = settings.source == PropagationSource::Automatic && settings.maximumOrders == 0 &&
+    settings.acceleration == PropagationAcceleration::Automatic;
+  if (!(asked || automatic) || !problem.Traits().scatters || problem.Scattering().Degree() > 0 ||
+    settings.firstMoments || settings.maximumOrders == 1)
+  {
+    return false;
+  }
+  const ThickVoxels voxels = Count(problem);
+  const bool wanted =
+    asked ? voxels.thickest > Thick : voxels.scattering > 0.0 && voxels.thick >= Many * voxels.scattering;
+  return wanted && voxels.thickest <= Opaque;
 }
 
 OctantSources::OctantSources(const Scene& scene)

@@ -20,26 +20,13 @@ namespace tyndall
 class OctantSources
 {
 public:
-  /// What of a medium's voxels, or those of a block, decides it; of all channels.
-  struct Voxels
-  {
-    double scattering = 0.0, thick = 0.0; ///< how many scatter, and of these are thick
-    double thickest = 0.0;                ///< mean free paths of transport along a voxel's longest edge
-  };
-
-  /// Whether any voxel is so thick that it matters.
+  /// Whether any voxel is so thick that it matters. Collective.
   static bool AreThick(const PropagationProblem& problem);
-  static bool AreThick(const Voxels& voxels);
   /// Whether the source is to be by octant, some voxels are thick, none is opaque, and scattering is isotropic. Of an
   /// automatic source: where a quarter of the voxels that scatter are thick or more, and the orders are as many as the
   /// tolerance asks for. Whatever shines: lights add up. What of exact rays of bright emission or of given light is
-  /// first scattered shines evenly out of a voxel, and all later orders by octant.
+  /// first scattered shines evenly out of a voxel, and all later orders by octant. Collective.
   static bool Matter(const PropagationProblem& problem);
-
-  /// Whether it may matter, whatever the voxels are: to be asked before they are counted.
-  static bool MayMatter(const PropagationSettings& settings, bool scatters, int degree);
-  static Voxels Count(const Medium& medium, const TruncatedScattering& scattering, int channels);
-  static bool Matter(const Voxels& voxels, const PropagationSettings& settings, bool scatters, int degree);
 
   /// Voxels on a device, of a whole medium or of a rank's block of it; all must stay.
   struct Scene

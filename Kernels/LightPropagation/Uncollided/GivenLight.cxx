@@ -90,6 +90,10 @@ GivenLight::GivenLight(const UncollidedImage& image, const Medium& medium, const
 SweepTally GivenLight::AddTo(const UncollidedVolume& volume, const Monitor&) const
 {
   const VolumeLayout& layout = volume.layout;
+  if (layout.grid.VoxelCount() == 0)
+  {
+    return {};
+  }
   const double size = layout.grid.VoxelVolume();
   const std::vector<float> path = Planar(layout, layout.channels,
     [&](std::size_t i, int c) { return static_cast<float>(size * this->Image.fluence.At(i, c)); });

@@ -18,6 +18,7 @@ public:
   GivenLight(const UncollidedImage& image, const Medium& medium, const TruncatedScattering& scattering);
 
   SweepTally AddTo(const UncollidedVolume& volume, const Monitor& monitor) const override;
+  bool TalliesOwnVoxels() const override { return true; }
 
   /// Adds what goes straight on to a source, with its angular moments where there is a basis.
   /// @return whether anything does

@@ -53,6 +53,9 @@ public:
   /// their last step together; what goes wrong after it perhaps does on one alone.
   /// @return what came in, what left, what still goes round a periodic axis
   virtual SweepTally AddTo(const UncollidedVolume& volume, const Monitor& monitor) const = 0;
+
+  /// AddTo returns what a rank's own voxels take, not the tally of all ranks.
+  virtual bool TalliesOwnVoxels() const { return false; }
 };
 
 /// Follows light through the channels of each sigma_t in turn.

@@ -4,26 +4,37 @@
 
 namespace tyndall
 {
-OrdersByCells::OrdersByCells(const TransportParts& parts)
+OrdersByCells::OrdersByCells(TransportParts& parts)
   : Parts(parts)
   , Closed(parts.Problem.Settings().periodic == std::array<bool, 3>{ true, true, true })
 {
+  const Domain& domain = parts.TheDomain();
   const std::array<int, 3> halvings = CellHalvings(parts.Problem);
+  const bool linear = parts.Problem.HasLinearSource();
   for (int c = 0; c < parts.Layout.channels; ++c)
   {
-    this->Cells.push_back(std::make_unique<CoarseDiffusion>(parts.TheDevice, parts.Layout, c, parts.OnDevice,
-      parts.Problem.Settings().periodic, halvings, parts.Problem.HasLinearSource()));
+    if (domain.IsSerial())
+    {
+      this->Cells.push_back(std::make_unique<CoarseDiffusion>(
+        parts.TheDevice, parts.Layout, c, parts.OnDevice, parts.Problem.Settings().periodic, halvings, linear));
+    }
+    else
+    {
+      this->CellsOfRanks.push_back(std::make_unique<CellsOverRanks>(
+        parts.TheDevice, domain.Comm(), domain.Partition(), parts.Layout, c, parts.OnDevice, halvings, linear));
+    }
   }
 }
 
 OrdersByCells::Powers OrdersByCells::ScatterOrder(EnergyLedger& ledger, const Rgb& onTheWay, const Buffer<float>* guess)
 {
   Powers all;
-  for (std::size_t i = 0; i < this->Cells.size(); ++i)
+  TransportParts& parts = this->Parts;
+  for (int c = 0; c < parts.Layout.channels; ++c)
   {
-    const auto c = static_cast<int>(i);
-    const CoarseDiffusion::Powers powers = this->Cells[i]->ScatterOrder(
-      this->Parts.Path, this->Parts.Fluence, this->Parts.Source, this->Closed ? onTheWay[c] : 0.0, guess);
+    const CoarseDiffusion::Powers powers = this->Cells.empty()
+      ? this->CellsOfRanks[c]->ScatterOrder(parts.Path, parts.Fluence, parts.Source, guess)
+      : this->Cells[c]->ScatterOrder(parts.Path, parts.Fluence, parts.Source, this->Closed ? onTheWay[c] : 0.0, guess);
     ledger.Absorb(c, powers.absorbed);
     all.scattered[c] = powers.scattered;
     all.magnitude[c] = powers.magnitude;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "LightPropagation/CoarseDiffusion/CellsOverRanks.h"
 #include "LightPropagation/CoarseDiffusion/CoarseDiffusion.h"
 #include "LightPropagation/Conservative/EnergyLedger.h"
 #include "LightPropagation/Conservative/TransportParts.h"
@@ -10,13 +11,14 @@
 
 namespace tyndall
 {
-/// What diffusion on cells of voxels (CoarseDiffusion.h) says of all orders to come, for each channel of a solve, and
-/// how its power is counted.
+/// The correction of coarse-mesh DSA (CoarseDiffusion.h; over ranks CellsOverRanks.h): what diffusion on cells of
+/// voxels finds of all orders to come, for each channel of a solve, and how its power is counted. Made and called
+/// collectively.
 class OrdersByCells
 {
 public:
   /// @param parts  must stay
-  explicit OrdersByCells(const TransportParts& parts);
+  explicit OrdersByCells(TransportParts& parts);
 
   /// W.
   struct Powers
@@ -39,10 +41,11 @@ public:
   EnergyLedger WithOut(const EnergyLedger& ledger) const;
 
 private:
-  const TransportParts& Parts;
-  bool Closed;                                         ///< all axes are periodic
-  std::vector<std::unique_ptr<CoarseDiffusion>> Cells; ///< by channel
-  std::array<Rgb, 6> Kept = {};                        ///< W, through faces, that the next sweep is to let out less
-  std::array<Rgb, 6> Out = {};                         ///< W, through faces, of all orders to come
+  TransportParts& Parts;
+  bool Closed;                                               ///< all axes are periodic
+  std::vector<std::unique_ptr<CoarseDiffusion>> Cells;       ///< by channel, of a serial domain
+  std::vector<std::unique_ptr<CellsOverRanks>> CellsOfRanks; ///< the same of several ranks
+  std::array<Rgb, 6> Kept = {}; ///< W, through faces, that the next sweep is to let out less
+  std::array<Rgb, 6> Out = {};  ///< W, through faces, of all orders to come
 };
 }

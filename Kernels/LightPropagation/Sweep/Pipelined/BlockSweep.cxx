@@ -1,0 +1,356 @@
+#include "LightPropagation/Sweep/Pipelined/BlockSweep.h"
+
+#include "LightPropagation/Sweep/Pipelined/BlockSweepByCells.h"
+#include "Medium/BoxFaces.h"
+
+#include <algorithm>
+
+namespace tyndall
+{
+namespace
+{
+/// The ray pattern is that of the whole grid, arrays are the block's own.
+SweepPlan PlanOf(
+  Device& device, const BlockPartition& partition, int rank, const ParallelBundles& rays, const SweepVolume& volume)
+{
+  SweepPlan plan(device, partition.whole, partition.blocks[rank], rays.axis, rays.bundles, volume.channels,
+    { false, false, false }, volume.deposit.flux != nullptr, volume.deposit.partialCurrents != nullptr, volume.angular,
+    volume.moments, true, volume.octantSource != nullptr);
+  const std::array<int, 3>& n = partition.blocks[rank].size;
+  const std::array<int, 3> step = { 1, n[0], n[0] * n[1] };
+  PlaneInfo& plane = plan.plane;
+  plane.firstU = plane.firstV = plane.firstP = 0;
+  plane.stepU = step[plan.axes.u];
+  plane.stepV = step[plan.axes.v];
+  plane.stepP = step[plan.axes.axis];
+  return plan;
+}
+}
+
+BlockSweep::BlockSweep(Device& device, const BlockPartition& partition, int rank, const ParallelBundles& rays,
+  const std::array<bool, 3>& periodic, const SweepVolume& volume, BlockWorkspace& workspace)
+  : Bundles(rays)
+  , Periodic(periodic)
+  , Whole(partition.whole)
+  , Block(partition.blocks[rank])
+  , Plan(PlanOf(device, partition, rank, rays, volume))
+  , Rays{ this->Plan, rays.way, periodic[rays.axis] }
+  , SideFloats(this->Rays.SideFloats())
+  , RayCount(this->Plan.radianceEachWay)
+{
+  if (this->Rays.around)
+  {
+    this->Plan.LetRaysGoOn();
+  }
+  this->Carrier = MakeBlockCrossing(device, this->Rays, volume, workspace);
+  this->LayPattern();
+}
+
+void BlockSweep::BeginLap(int planes)
+{
+  if (planes != this->LapPlanes)
+  {
+    this->LapPlanes = planes;
+    this->LayPattern();
+  }
+}
+
+/// How rays cross planes in this lap.
+void BlockSweep::LayPattern()
+{
+  const SweepPlan& plan = this->Plan;
+  this->Crossings = plan.Crossings(this->LapPlanes + plan.PlanesBefore(this->Bundles.way), plan.Planes());
+  this->Moves.clear();
+  for (const Bundle& bundle : plan.bundles)
+  {
+    std::array<double, 2> moves = {};
+    for (int k = 0; k < this->Whole.size[plan.axes.axis]; ++k)
+    {
+      const PlaneCrossing crossing = bundle.Crossing(this->LapPlanes + k);
+      for (int s = 1; s < crossing.count; ++s)
+      {
+        moves[0] += crossing.segments[s].part * crossing.segments[s].moveU;
+        moves[1] += crossing.segments[s].part * crossing.segments[s].moveV;
+      }
+    }
+    this->Moves.push_back(moves);
+  }
+  this->Carrier->LayPattern(this->LapPlanes);
+}
+
+int BlockSweep::DirectionOf(const Member& member) const
+{
+  return this->Bundles.way == 0 ? member.direction : member.opposite;
+}
+
+bool BlockSweep::IsAtEnd(int axis, bool entry) const
+{
+  const bool low = (this->Bundles.signs[axis] > 0) == entry;
+  return low ? this->Block.first[axis] == 0 : EndOf(this->Block, axis) == this->Whole.size[axis];
+}
+
+BlockSweep::Light BlockSweep::LightOf(const SweepBoundary& boundary, std::size_t b, const Member& member) const
+{
+  const PlaneAxes& axes = this->Plan.axes;
+  const float power = static_cast<float>(this->Plan.bundles[b].power);
+  const auto through = [&](int axis) {
+    Rgb light = boundary && !this->Periodic[axis]
+      ? boundary(this->DirectionOf(member), EntryFace(axis, this->Bundles.signs[axis] > 0))
+      : Rgb{};
+    for (double& value : light)
+    {
+      value = static_cast<float>(value * power);
+    }
+    return light;
+  };
+  return { through(axes.u), through(axes.v), through(axes.axis) };
+}
+
+/// Calls act(light, the bundle's row, ray of the bundle, channel) for each ray of a voxel and each channel.
+template <class Act>
+void BlockSweep::ForRaysFrom(const SweepBoundary& boundary, const Act& act) const
+{
+  const SweepPlan& plan = this->Plan;
+  for (std::size_t b = 0; boundary && b < plan.bundles.size(); ++b)
+  {
+    const BundleInfo& bundle = plan.bundleRows[b];
+    for (int m = 0; m < bundle.members; ++m)
+    {
+      const Light light = this->LightOf(boundary, b, plan.bundles[b].members[m]);
+      for (int c = 0; c < plan.channels; ++c)
+      {
+        act(light, bundle, static_cast<std::size_t>(m) * plan.channels + c, c);
+      }
+    }
+  }
+}
+
+RaysAtFaces BlockSweep::FromOutside(const SweepBoundary& boundary, const LightByCells& cells) const
+{
+  const SweepPlan& plan = this->Plan;
+  RaysAtFaces rays;
+  rays.maps.assign(this->Carrier->MapFloats(), 0.0f);
+  rays.sides.assign(this->Rays.Sides(), 0.0f);
+  const bool beginHere = this->IsOuter(plan.axes.axis, true);
+  this->ForRaysFrom(boundary, [&](const Light& light, const BundleInfo& bundle, std::size_t slot, int c) {
+    this->FillSides(light, bundle.border + slot, c, rays);
+    for (int v = 0; beginHere && v < plan.plane.sizeV; ++v)
+    {
+      float* row = rays.maps.data() + this->Carrier->RowOfMap(bundle, slot, v);
+      std::fill(row, row + plan.plane.sizeU, static_cast<float>(light.along[c]));
+    }
+  });
+  if (cells.in)
+  {
+    ByCells(*this, cells).Enter(rays);
+  }
+  return rays;
+}
+
+/// Beyond an edge of the grid half comes in through either face.
+void BlockSweep::FillSides(const Light& light, std::size_t ray, int c, RaysAtFaces& rays) const
+{
+  const bool outerU = this->IsOuter(this->Plan.axes.u, true), outerV = this->IsOuter(this->Plan.axes.v, true);
+  const float u = outerU ? static_cast<float>(light.u[c]) : 0.0f, v = outerV ? static_cast<float>(light.v[c]) : 0.0f;
+  for (int k = 0; k < this->Plan.Planes(); ++k)
+  {
+    float* side = rays.sides.data() + (k * this->RayCount + ray) * this->SideFloats;
+    float* acrossU = side + this->Plan.plane.sizeU;
+    float* edge = acrossU + this->Plan.plane.sizeV;
+    std::fill(side, acrossU, v);
+    std::fill(acrossU, edge, u);
+    *edge = outerU && outerV ? 0.5f * (u + v) : u + v;
+  }
+}
+
+std::array<Rgb, 6> BlockSweep::PowerIn(const SweepBoundary& boundary) const
+{
+  std::array<Rgb, 6> power = {};
+  const PlaneAxes& axes = this->Plan.axes;
+  const auto face = [this](int axis) { return EntryFace(axis, this->Bundles.signs[axis] > 0); };
+  const double sizeU = this->Whole.size[axes.u], sizeV = this->Whole.size[axes.v];
+  for (std::size_t b = 0; boundary && b < this->Plan.bundles.size(); ++b)
+  {
+    for (const Member& member : this->Plan.bundles[b].members)
+    {
+      const Light light = this->LightOf(boundary, b, member);
+      const bool swapped = member.uFromU == 0;
+      for (int c = 0; c < this->Plan.channels; ++c)
+      {
+        power[face(axes.axis)][c] += light.along[c] * sizeU * sizeV;
+        power[face(axes.u)][c] += light.u[c] * this->Moves[b][swapped ? 1 : 0] * sizeV;
+        power[face(axes.v)][c] += light.v[c] * this->Moves[b][swapped ? 0 : 1] * sizeU;
+      }
+    }
+  }
+  return power;
+}
+
+RaysAtFaces BlockSweep::Cross(const SweepVolume& volume, RaysAtFaces in, const SweepBoundary& boundary,
+  const LightByCells& cells, SweepTally& tally, const Monitor& monitor)
+{
+  const std::vector<float> aside =
+    this->Carrier->Cross(volume, this->LightBeyond(boundary), this->OuterSides(), in, monitor);
+  this->CountLeft(aside, in, tally);
+  if (cells.in || cells.left)
+  {
+    ByCells(*this, cells).Leave(in, boundary, tally);
+  }
+  return in;
+}
+
+std::vector<cl_float4> BlockSweep::LightBeyond(const SweepBoundary& boundary) const
+{
+  std::vector<cl_float4> beyond(this->RayCount, cl_float4{});
+  this->ForRaysFrom(boundary, [&](const Light& light, const BundleInfo& bundle, std::size_t slot, int c) {
+    cl_float4& ofRay = beyond[bundle.border + slot];
+    ofRay.s[0] = static_cast<float>(light.u[c]);
+    ofRay.s[1] = static_cast<float>(light.v[c]);
+  });
+  return beyond;
+}
+
+/// Of -u, +u, -v, +v those where rays leave the whole grid, as BlockCrossing takes them.
+int BlockSweep::OuterSides() const
+{
+  int outer = 0;
+  for (int side = 0; side < 4; ++side)
+  {
+    const int axis = side < 2 ? this->Plan.axes.u : this->Plan.axes.v;
+    const bool exit = (side % 2 == 1) == (this->Bundles.signs[axis] > 0);
+    outer |= exit && this->IsOuter(axis, false) ? 1 << side : 0;
+  }
+  return outer;
+}
+
+/// @param aside  W that left sideways, see BlockCrossing::Cross
+void BlockSweep::CountLeft(const std::vector<float>& aside, const RaysAtFaces& out, SweepTally& tally) const
+{
+  const SweepPlan& plan = this->Plan;
+  const PlaneAxes& axes = plan.axes;
+  const std::array<int, 4> faces = { 2 * axes.u, 2 * axes.u + 1, 2 * axes.v, 2 * axes.v + 1 };
+  for (std::size_t i = 0; i < aside.size(); ++i)
+  {
+    tally.out[faces[i / plan.channels % 4]][i % plan.channels] += aside[i];
+  }
+  if (!this->IsAtEnd(axes.axis, false))
+  {
+    return;
+  }
+  Rgb& ahead = this->Periodic[axes.axis] ? tally.onTheWay : tally.out[2 * axes.axis + 1 - this->Bundles.way];
+  for (const BundleInfo& bundle : plan.bundleRows)
+  {
+    const int slots = bundle.members * plan.channels;
+    for (int row = 0; row < plan.plane.sizeV * slots; ++row)
+    {
+      const float* rays = out.maps.data() + this->Carrier->RowOfMap(bundle, row % slots, row / slots);
+      double& sum = ahead[row % plan.channels];
+      for (int u = 0; u < plan.plane.sizeU; ++u)
+      {
+        sum += rays[u];
+      }
+    }
+  }
+}
+
+/// visit(whether it is in sides, else in maps, place) for each ray that goes through a contact, in the order of the
+/// whole grid's cells, so that sender and receiver agree.
+/// @param out  places are those of rays that go out, else of those that come in
+template <class Visit>
+void BlockSweep::ForEachPlace(const BlockContact& contact, bool out, const Visit& visit) const
+{
+  const SweepPlan& plan = this->Plan;
+  const PlaneAxes& axes = plan.axes;
+  const VoxelBox& cells = contact.cells;
+  const int firstU = cells.first[axes.u] - this->Block.first[axes.u], endU = firstU + cells.size[axes.u];
+  const int firstV = cells.first[axes.v] - this->Block.first[axes.v], endV = firstV + cells.size[axes.v];
+  if (contact.kind == BlockContact::Along)
+  {
+    for (const BundleInfo& bundle : plan.bundleRows)
+    {
+      const int slots = bundle.members * plan.channels;
+      for (int v = firstV; v < endV; ++v)
+      {
+        for (int slot = 0; slot < slots; ++slot)
+        {
+          const std::size_t row = this->Carrier->RowOfMap(bundle, slot, v);
+          for (int u = firstU; u < endU; ++u)
+          {
+            visit(false, row + u);
+          }
+        }
+      }
+    }
+    return;
+  }
+  const int edgeU = this->Bundles.signs[axes.u] > 0 ? plan.plane.sizeU - 1 : 0; // where rays leave across u
+  for (int plane = 0; plane < cells.size[axes.axis]; ++plane)
+  {
+    const int inBlock = cells.first[axes.axis] - this->Block.first[axes.axis] + plane;
+    const int k = this->Bundles.way == 0 ? inBlock : plan.Planes() - 1 - inBlock;
+    for (std::size_t b = 0; b < plan.bundles.size(); ++b)
+    {
+      const BundleInfo& bundle = plan.bundleRows[b];
+      const CrossingInfo& crossing = this->Crossings[k * plan.bundles.size() + b];
+      for (int slot = 0; slot < bundle.members * plan.channels; ++slot)
+      {
+        bool goes = false;
+        for (int s = 1; s < crossing.stages; ++s)
+        {
+          const auto [du, dv] = MoveOf(bundle, slot / plan.channels, crossing, s);
+          goes = goes ||
+            (contact.kind == BlockContact::AsideU      ? du != 0
+                : contact.kind == BlockContact::AsideV ? dv != 0
+                                                       : du != 0 && dv != 0);
+        }
+        if (!goes)
+        {
+          continue;
+        }
+        const std::size_t acrossV = (k * this->RayCount + bundle.border + slot) * this->SideFloats;
+        const std::size_t acrossU = acrossV + plan.plane.sizeU;
+        for (int v = firstV; contact.kind == BlockContact::AsideU && v < endV; ++v)
+        {
+          visit(true, acrossU + v);
+        }
+        for (int u = firstU; contact.kind == BlockContact::AsideV && u < endU; ++u)
+        {
+          visit(true, acrossV + u);
+        }
+        if (contact.kind == BlockContact::Edge)
+        {
+          visit(true, !out ? acrossU + plan.plane.sizeV : firstU == edgeU ? acrossU + firstV : acrossV + firstU);
+        }
+      }
+    }
+  }
+}
+
+void BlockSweep::Pack(const BlockContact& contact, const RaysAtFaces& out, std::vector<float>& message) const
+{
+  this->ForEachPlace(
+    contact, true, [&](bool aside, std::size_t place) { message.push_back((aside ? out.sides : out.maps)[place]); });
+}
+
+void BlockSweep::Unpack(
+  const BlockContact& contact, const std::vector<float>& message, std::size_t& at, RaysAtFaces& in) const
+{
+  this->ForEachPlace(
+    contact, false, [&](bool aside, std::size_t place) { (aside ? in.sides : in.maps)[place] = message.at(at++); });
+}
+
+std::size_t BlockSweep::Values(const std::vector<BlockContact>& contacts) const
+{
+  std::size_t values = 0;
+  for (const BlockContact& contact : contacts)
+  {
+    this->ForEachPlace(contact, false, [&](bool, std::size_t) { ++values; });
+  }
+  return values;
+}
+
+std::size_t BlockSweep::Bytes() const
+{
+  return 2 * (this->Carrier->MapFloats() + this->Rays.Sides()) * sizeof(float);
+}
+}

@@ -1,0 +1,481 @@
+#include "LightPropagation/Sweep/Pipelined/SweepInBlocks.h"
+
+#include "Distribution/SharedMedium.h"
+#include "Medium/BoxFaces.h"
+
+#include <algorithm>
+#include <exception>
+#include <functional>
+#include <initializer_list>
+#include <utility>
+
+namespace tyndall
+{
+namespace
+{
+
+/// Sums of all ranks, of what each counted.
+void AddUp(Communicator& communicator, std::array<Rgb, 6>& power)
+{
+  std::vector<double> values;
+  for (const Rgb& face : power)
+  {
+    values.insert(values.end(), face.begin(), face.end());
+  }
+  values = communicator.Sum(values);
+  for (std::size_t i = 0; i < values.size(); ++i)
+  {
+    power[i / 3][i % 3] = values[i];
+  }
+}
+
+void AddTo(std::array<Rgb, 6>& sum, const std::array<Rgb, 6>& power)
+{
+  for (int face = 0; face < 6; ++face)
+  {
+    for (int c = 0; c < 3; ++c)
+    {
+      sum[face][c] += power[face][c];
+    }
+  }
+}
+}
+
+SweepInBlocks::SweepInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition,
+  const VolumeLayout& layout, const Buffer<float>& sigma_t, const std::array<bool, 3>& periodic,
+  const SweepRequest& request, BlockWorkspace& workspace, int mostRays)
+  : TheDevice(device)
+  , Comm(communicator)
+  , Partition(partition)
+  , Layout(layout)
+  , SigmaT(sigma_t)
+  , Periodic(periodic)
+  , Workspace(workspace)
+  , MostPlanes(request.mostPlanes)
+  , To(request.deposit)
+  , Angular(request.angular)
+  , OctantSource(request.octantSource)
+  , FaceIn(request.faceIn)
+  , Parts(mostRays > 0 ? SortByOctant(request.rays, mostRays) : FastestParts(partition, request.rays))
+  , TheSchedule(partition, this->Parts, {})
+{
+  for (ParallelBundles& part : this->Parts)
+  {
+    for (Bundle& bundle : part.bundles)
+    {
+      bundle.power /= this->Laps(part.axis);
+    }
+  }
+  if (partition.blocks[communicator.Rank()].VoxelCount() > 0)
+  {
+    if (this->IsAnyPeriodic())
+    {
+      workspace.sweep.ReserveLost(device, this->To.path->Size());
+    }
+    for (const ParallelBundles& part : this->Parts)
+    {
+      this->Tasks.push_back(this->MakeTask(part, workspace));
+    }
+  }
+}
+
+int SweepInBlocks::Laps(int axis) const
+{
+  const int size = this->Partition.whole.size[axis];
+  return PlanesOfPattern(size, this->Periodic[axis]) / size;
+}
+
+SweepInBlocks::Task SweepInBlocks::MakeTask(const ParallelBundles& rays, BlockWorkspace& workspace) const
+{
+  const int own = this->Comm.Rank();
+  Task task;
+  const SweepVolume volume = this->VolumeOf(this->Layout.Groups()[0], nullptr);
+  task.sweep =
+    std::make_unique<BlockSweep>(this->TheDevice, this->Partition, own, rays, this->Periodic, volume, workspace);
+  /// Those that go straight, and of those that go round sideways and ahead.
+  const auto sorted = [&](int from, int to) {
+    std::array<Contacts, 3> found;
+    for (const BlockContact& contact : ContactsBetween(this->Partition, rays, from, to, this->Periodic))
+    {
+      found[!contact.around ? 0 : contact.kind == BlockContact::Along ? 2 : 1].push_back(contact);
+    }
+    return found;
+  };
+  for (int rank = 0; rank < this->Comm.Ranks(); ++rank)
+  {
+    auto [from, asideFrom, aheadFrom] = sorted(rank, own);
+    auto [to, asideTo, aheadTo] = sorted(own, rank);
+    if (!from.empty())
+    {
+      task.senders.push_back(std::move(from));
+    }
+    if (!to.empty())
+    {
+      task.receivers.push_back(std::move(to));
+    }
+    if (!asideFrom.empty() || !aheadFrom.empty())
+    {
+      task.aroundFrom.push_back({ std::move(asideFrom), std::move(aheadFrom), {}, {} });
+      task.aroundFrom.back().waiting.resize(this->Layout.Groups().size());
+    }
+    if (!asideTo.empty() || !aheadTo.empty())
+    {
+      task.aroundTo.push_back({ std::move(asideTo), std::move(aheadTo) });
+    }
+  }
+  return task;
+}
+
+void SweepInBlocks::Forget()
+{
+  for (Task& task : this->Tasks)
+  {
+    for (Around& around : task.aroundFrom)
+    {
+      for (std::vector<float>& rays : around.waiting)
+      {
+        rays.clear();
+      }
+    }
+  }
+}
+
+SweepVolume SweepInBlocks::VolumeOf(const ChannelGroup& group, const Buffer<float>* source) const
+{
+  SweepVolume volume = GroupVolume(this->Layout, group, this->SigmaT, this->To);
+  volume.source = source;
+  volume.octantSource = this->OctantSource;
+  volume.angular = this->Angular;
+  volume.moments = this->Layout.Places(this->Angular ? this->Angular->Functions() : 1);
+  volume.deposit.flux = this->Angular ? nullptr : volume.deposit.flux; // it is among the moments
+  return volume;
+}
+
+/// Rays that this rank waits for come although something has gone wrong, here or on the rank that sends them: told so.
+SweepTally SweepInBlocks::Apply(const Buffer<float>* source, const SweepBoundary& boundary, const Monitor& monitor)
+{
+  SweepTally tally;
+  std::exception_ptr error;
+  const std::vector<ChannelGroup> groups = this->Layout.Groups();
+  const std::vector<float> faceIn = this->FaceIn ? this->FaceIn->Read() : std::vector<float>();
+  const bool faceLit = std::any_of(faceIn.begin(), faceIn.end(), [](float value) { return value != 0.0f; });
+  std::vector<double> left(this->To.faceOut ? this->To.faceOut->Size() : 0, 0.0);
+  for (std::size_t g = 0; g < groups.size(); ++g)
+  {
+    const int first = groups[g].first;
+    Sweeping sweeping;
+    sweeping.volume = this->VolumeOf(groups[g], source);
+    sweeping.boundary = OfGroup(boundary, first);
+    sweeping.group = g;
+    const std::size_t ofFaces = first * BoxFaceCellCount(this->Partition.whole);
+    sweeping.cells = { faceLit ? faceIn.data() + ofFaces : nullptr, left.empty() ? nullptr : left.data() + ofFaces,
+      this->To.spreadsAside };
+    const double all = static_cast<double>(groups.size());
+    this->SweepGroup(sweeping, error, OfPart(monitor, g / all, (g + 1) / all));
+    Add(tally, sweeping.tally, first);
+  }
+  this->Comm.Collective([&] {
+    if (error)
+    {
+      std::rethrow_exception(error);
+    }
+  });
+  AddUp(this->Comm, tally.in);
+  AddUp(this->Comm, tally.out);
+  this->AddToFaces(left);
+  return tally;
+}
+
+/// Axes that are open in one lap; others until next to nothing is on the way, as AxisSweep does.
+void SweepInBlocks::SweepGroup(Sweeping& sweeping, std::exception_ptr& error, const Monitor& monitor)
+{
+  if (this->IsAnyPeriodic() && !this->Tasks.empty())
+  {
+    this->Workspace.sweep.lost.Fill(0.0f);
+  }
+  std::array<double, 3> atFirst = {};
+  sweeping.goesOn = { true, true, true };
+  for (bool any = true; any; ++sweeping.lap)
+  {
+    if (!this->SweepLap(sweeping, error, sweeping.lap == 0 ? monitor : OfPart(monitor, 1.0, 1.0)))
+    {
+      return;
+    }
+    any = false;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const int laps = this->Laps(axis), gone = sweeping.lap + 1;
+      const double onTheWay = Sum(sweeping.ahead[axis]);
+      atFirst[axis] = gone == laps ? onTheWay : atFirst[axis];
+      const bool far = gone % laps == 0 &&
+        (gone * this->Partition.whole.size[axis] >= this->MostPlanes || onTheWay <= NothingLeft * atFirst[axis]);
+      const bool goesOn = this->Periodic[axis] && sweeping.goesOn[axis] && !far;
+      for (int c = 0; c < 3 && sweeping.goesOn[axis] && !goesOn; ++c)
+      {
+        sweeping.tally.onTheWay[c] += sweeping.ahead[axis][c];
+      }
+      sweeping.goesOn[axis] = goesOn;
+      any = any || goesOn;
+    }
+  }
+}
+
+/// What comes in and shines, where rays still start; then what goes round sideways alone, until nothing does.
+/// @return false: something has gone wrong on any rank
+bool SweepInBlocks::SweepLap(Sweeping& sweeping, std::exception_ptr& error, const Monitor& monitor)
+{
+  sweeping.ahead = {};
+  sweeping.again = false;
+  bool more = this->SweepPass(sweeping, error, monitor);
+  while (this->IsAnyPeriodic())
+  {
+    std::vector<double> flags = { more ? 1.0 : 0.0, error ? 1.0 : 0.0 };
+    flags = this->Comm.Largest(flags);
+    if (flags[1] > 0.0)
+    {
+      return false;
+    }
+    if (flags[0] == 0.0)
+    {
+      break;
+    }
+    sweeping.again = true;
+    more = this->SweepPass(sweeping, error, OfPart(monitor, 1.0, 1.0));
+  }
+  std::vector<double> ahead;
+  for (const Rgb& power : sweeping.ahead)
+  {
+    ahead.insert(ahead.end(), power.begin(), power.end());
+  }
+  ahead = this->IsAnyPeriodic() ? this->Comm.Sum(ahead) : ahead;
+  for (std::size_t i = 0; i < ahead.size(); ++i)
+  {
+    sweeping.ahead[i / 3][i % 3] = ahead[i];
+  }
+  return true;
+}
+
+/// All blocks, along all rays of the lap.
+/// @return any rays have come round sideways to this rank
+bool SweepInBlocks::SweepPass(Sweeping& sweeping, std::exception_ptr& error, const Monitor& monitor)
+{
+  const std::vector<int>& order = this->TheSchedule.OrderOf(this->Comm.Rank());
+  const double all = static_cast<double>(order.size());
+  for (std::size_t t = 0; t < order.size(); ++t)
+  {
+    if (sweeping.goesOn[this->Parts[order[t]].axis])
+    {
+      this->SweepTask(order[t], sweeping, error, OfPart(monitor, t / all, (t + 1) / all));
+    }
+  }
+  return this->IsAnyPeriodic() && this->TakeFromAround(sweeping, error);
+}
+
+void AddOverRanks(Device& device, Communicator& communicator, const std::vector<double>& left, const Buffer<float>& to)
+{
+  const std::vector<double> ofAll = communicator.Sum(left);
+  std::vector<float> out = to.Read();
+  std::transform(out.begin(), out.end(), ofAll.begin(), out.begin(),
+    [](float before, double more) { return static_cast<float>(before + more); });
+  to.CopyFrom(Buffer<float>(device, out, "the light that leaves by cells"), 0, out.size());
+  device.Finish(); // the buffer goes
+}
+
+/// What left by cells on any rank.
+void SweepInBlocks::AddToFaces(const std::vector<double>& left) const
+{
+  if (!this->To.faceOut)
+  {
+    return;
+  }
+  AddOverRanks(this->TheDevice, this->Comm, left, *this->To.faceOut);
+}
+
+/// Whether this rank says what comes in: all know it, but those without voxels.
+bool SweepInBlocks::CountsPowerIn() const
+{
+  return IsFirstThatHas(this->Comm, this->Partition);
+}
+
+void SweepInBlocks::SweepTask(int number, Sweeping& sweeping, std::exception_ptr& error, const Monitor& monitor)
+{
+  Task& task = this->Tasks[number];
+  const int axis = this->Parts[number].axis;
+  const bool starts = !sweeping.again && sweeping.lap < this->Laps(axis);
+  std::vector<std::vector<float>> messages;
+  for (const Contacts& sender : task.senders)
+  {
+    messages.push_back(this->Comm.Receive<float>(sender.front().from, number));
+  }
+  State state = State::Failed;
+  RaysAtFaces rays;
+  try
+  {
+    if (!error)
+    {
+      task.sweep->BeginLap(sweeping.lap * this->Partition.whole.size[axis]);
+      state = this->Enter(task, messages, sweeping, rays);
+    }
+    const SweepBoundary boundary = starts ? sweeping.boundary : SweepBoundary();
+    if (state != State::Failed && this->CountsPowerIn())
+    {
+      AddTo(sweeping.tally.in, task.sweep->PowerIn(boundary));
+    }
+    SweepVolume volume = sweeping.volume;
+    volume.source = starts ? volume.source : nullptr;
+    if (state == State::Lit || (state == State::Dark && volume.source))
+    {
+      const LightByCells cells = { starts ? sweeping.cells.in : nullptr, sweeping.cells.left, sweeping.cells.spreads };
+      SweepTally tally;
+      rays = task.sweep->Cross(volume, std::move(rays), boundary, cells, tally, monitor);
+      for (int c = 0; c < 3; ++c)
+      {
+        sweeping.ahead[axis][c] += std::exchange(tally.onTheWay[c], 0.0);
+      }
+      Add(sweeping.tally, tally);
+      state = State::Lit;
+    }
+  }
+  catch (...)
+  {
+    error = std::current_exception();
+    state = State::Failed;
+  }
+  this->SendOn(number, state, rays);
+}
+
+/// To ranks downwind, and round periodic axes.
+void SweepInBlocks::SendOn(int number, State state, const RaysAtFaces& rays)
+{
+  const Task& task = this->Tasks[number];
+  const auto send = [&](int to, std::initializer_list<const Contacts*> groups) {
+    std::vector<float> message = { static_cast<float>(state) };
+    for (const Contacts* contacts : groups)
+    {
+      for (const BlockContact& contact : *contacts)
+      {
+        if (state == State::Lit)
+        {
+          task.sweep->Pack(contact, rays, message);
+        }
+      }
+    }
+    this->Comm.Send(to, number, message);
+  };
+  for (const Contacts& receiver : task.receivers)
+  {
+    send(receiver.front().to, { &receiver });
+  }
+  for (const auto& [aside, ahead] : task.aroundTo)
+  {
+    send((aside.empty() ? ahead : aside).front().to, { &aside, &ahead });
+  }
+}
+
+/// What this pass of all ranks has sent round, once it is through here.
+/// @return any of it goes on in another pass
+bool SweepInBlocks::TakeFromAround(const Sweeping& sweeping, std::exception_ptr& error)
+{
+  const auto isLit = [](float value) { return value != 0.0f; };
+  bool any = false;
+  for (std::size_t number = 0; number < this->Tasks.size(); ++number)
+  {
+    for (Around& around : this->Tasks[number].aroundFrom)
+    {
+      if (!sweeping.goesOn[this->Parts[number].axis])
+      {
+        continue;
+      }
+      const int from = (around.aside.empty() ? around.ahead : around.aside).front().from;
+      const std::vector<float> message = this->Comm.Receive<float>(from, static_cast<int>(number));
+      const State state = static_cast<State>(static_cast<int>(message.at(0)));
+      around.rays.clear();
+      if (state != State::Lit || error)
+      {
+        continue;
+      }
+      const std::size_t aside = this->Tasks[number].sweep->Values(around.aside);
+      around.rays.assign(message.begin() + 1, message.begin() + 1 + static_cast<std::ptrdiff_t>(aside));
+      any = any || std::any_of(around.rays.begin(), around.rays.end(), isLit);
+      std::vector<float>& waiting = around.waiting[sweeping.group];
+      waiting.resize(message.size() - 1 - aside, 0.0f);
+      std::transform(waiting.begin(), waiting.end(), message.begin() + 1 + static_cast<std::ptrdiff_t>(aside),
+        waiting.begin(), std::plus<>());
+    }
+  }
+  return any;
+}
+
+/// The rays that come in, from outside and from other ranks.
+SweepInBlocks::State SweepInBlocks::Enter(
+  Task& task, const std::vector<std::vector<float>>& messages, const Sweeping& sweeping, RaysAtFaces& rays) const
+{
+  const bool starts = !sweeping.again && sweeping.lap < this->Laps(task.sweep->Axis());
+  const SweepBoundary boundary = starts ? sweeping.boundary : SweepBoundary();
+  LightByCells cells = sweeping.cells;
+  cells.in = starts ? cells.in : nullptr;
+  rays = task.sweep->FromOutside(boundary, cells);
+  const auto isLit = [](const std::vector<float>& values) {
+    return std::any_of(values.begin(), values.end(), [](float value) { return value != 0.0f; });
+  };
+  State state = (boundary || cells.in) && (isLit(rays.maps) || isLit(rays.sides)) ? State::Lit : State::Dark;
+  for (std::size_t i = 0; i < messages.size(); ++i)
+  {
+    const State ofSender = static_cast<State>(static_cast<int>(messages[i].at(0)));
+    if (ofSender == State::Failed)
+    {
+      return State::Failed;
+    }
+    std::size_t at = 1;
+    for (const BlockContact& contact : task.senders[i])
+    {
+      if (ofSender == State::Lit)
+      {
+        task.sweep->Unpack(contact, messages[i], at, rays);
+        state = State::Lit;
+      }
+    }
+  }
+  return this->EnterFromAround(task, sweeping, rays) == State::Lit ? State::Lit : state;
+}
+
+/// Those that wait: aside for each pass but the first of a lap, ahead for that one.
+SweepInBlocks::State SweepInBlocks::EnterFromAround(Task& task, const Sweeping& sweeping, RaysAtFaces& rays) const
+{
+  State state = State::Dark;
+  const auto enter = [&](const Contacts& contacts, std::vector<float>& waiting) {
+    std::size_t at = 0;
+    for (const BlockContact& contact : contacts)
+    {
+      if (!waiting.empty())
+      {
+        task.sweep->Unpack(contact, waiting, at, rays);
+        state = State::Lit;
+      }
+    }
+    waiting.clear();
+  };
+  for (Around& around : task.aroundFrom)
+  {
+    if (sweeping.again)
+    {
+      enter(around.aside, around.rays);
+    }
+    else
+    {
+      enter(around.ahead, around.waiting[sweeping.group]);
+    }
+  }
+  return state;
+}
+
+std::size_t SweepInBlocks::FaceBytes() const
+{
+  std::size_t most = 0;
+  for (const Task& task : this->Tasks)
+  {
+    most = std::max(most, task.sweep->Bytes());
+  }
+  return most;
+}
+}

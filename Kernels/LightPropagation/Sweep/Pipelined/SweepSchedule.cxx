@@ -1,0 +1,257 @@
+#include "LightPropagation/Sweep/Pipelined/SweepSchedule.h"
+
+#include "Device/Errors.h"
+#include "LightPropagation/Sweep/Pipelined/BlockContact.h"
+
+#include <algorithm>
+#include <functional>
+#include <map>
+#include <queue>
+#include <set>
+#include <tuple>
+#include <utility>
+
+namespace tyndall
+{
+namespace
+{
+/// Whom a block sends to when it is swept along a set of bundles.
+struct Receiver
+{
+  int rank = 0;
+  std::size_t rays = 0;
+};
+
+/// One set of bundles: who sends to whom, and how many blocks wait in a line behind each.
+struct TaskGraph
+{
+  std::vector<std::vector<Receiver>> receivers; ///< by rank
+  std::vector<int> waitsFor;                    ///< senders, by rank
+  std::vector<int> behind;
+};
+
+/// Of rays through one layer of cells; `bundles` tell how often they move.
+std::size_t RaysThrough(const ParallelBundles& bundles, const BlockContact& contact)
+{
+  const double cells = static_cast<double>(contact.cells.VoxelCount());
+  double rays = 0.0;
+  for (const Bundle& bundle : bundles.bundles)
+  {
+    for (const Member& member : bundle.members)
+    {
+      const bool swapped = member.uFromU == 0;
+      const double moves[] = { 1.0, swapped ? bundle.tangentV : bundle.tangentU,
+        swapped ? bundle.tangentU : bundle.tangentV, bundle.MovesBothWaysAtOnce() ? bundle.tangentU : 0.0 };
+      rays += cells * moves[contact.kind];
+    }
+  }
+  return static_cast<std::size_t>(rays);
+}
+
+/// Blocks on the longest way from a block to the end, found from the end on.
+int FindBehind(TaskGraph& graph, int rank)
+{
+  int& behind = graph.behind[rank];
+  Require(behind != -2, "Blocks lie such that each waits for another: cut the grid by planes, one after the other.");
+  if (behind == -1)
+  {
+    behind = -2; // being looked at
+    int most = 0;
+    for (const Receiver& receiver : graph.receivers[rank])
+    {
+      most = std::max(most, 1 + FindBehind(graph, receiver.rank));
+    }
+    graph.behind[rank] = most;
+    return most;
+  }
+  return behind;
+}
+
+/// Or share a face, an edge or a corner: only then is there anything to look at.
+bool Touch(const VoxelBox& a, const VoxelBox& b)
+{
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    if (a.first[axis] > EndOf(b, axis) || b.first[axis] > EndOf(a, axis))
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
+TaskGraph GraphOf(const BlockPartition& partition, const ParallelBundles& bundles)
+{
+  const int ranks = static_cast<int>(partition.blocks.size());
+  TaskGraph graph = { std::vector<std::vector<Receiver>>(ranks), std::vector<int>(ranks, 0),
+    std::vector<int>(ranks, -1) };
+  for (int from = 0; from < ranks; ++from)
+  {
+    for (int to = 0; to < ranks; ++to)
+    {
+      if (!Touch(partition.blocks[from], partition.blocks[to]))
+      {
+        continue;
+      }
+      Receiver receiver = { to, 0 };
+      const std::vector<BlockContact> contacts = ContactsBetween(partition, bundles, from, to);
+      for (const BlockContact& contact : contacts)
+      {
+        receiver.rays += RaysThrough(bundles, contact);
+      }
+      if (!contacts.empty())
+      {
+        graph.receivers[from].push_back(receiver);
+        ++graph.waitsFor[to];
+      }
+    }
+  }
+  for (int rank = 0; rank < ranks; ++rank)
+  {
+    FindBehind(graph, rank);
+  }
+  return graph;
+}
+
+/// The sweep as it is played through.
+class Play
+{
+public:
+  Play(const BlockPartition& partition, const std::vector<ParallelBundles>& tasks, const SweepCosts& costs)
+    : orders(partition.blocks.size())
+    , Partition(partition)
+    , Tasks(tasks)
+    , Costs(costs)
+    , Ready(partition.blocks.size())
+    , Busy(partition.blocks.size(), false)
+  {
+    for (const ParallelBundles& task : tasks)
+    {
+      this->Graphs.push_back(GraphOf(partition, task));
+      const std::vector<int>& behind = this->Graphs.back().behind;
+      this->inALine = std::max(this->inALine, 1 + *std::max_element(behind.begin(), behind.end()));
+    }
+  }
+
+  void Run()
+  {
+    for (std::size_t rank = 0; rank < this->Partition.blocks.size(); ++rank)
+    {
+      for (std::size_t task = 0; task < this->Tasks.size(); ++task)
+      {
+        if (this->Graphs[task].waitsFor[rank] == 0 && this->Partition.blocks[rank].VoxelCount() > 0)
+        {
+          this->Events.push({ 0.0, 0, static_cast<int>(rank), static_cast<int>(task) });
+        }
+      }
+    }
+    while (!this->Events.empty())
+    {
+      const auto [now, kind, rank, task] = this->Events.top();
+      this->Events.pop();
+      this->time = std::max(this->time, now);
+      this->Touched.insert(rank);
+      if (kind == 1)
+      {
+        this->Finish(now, rank, task);
+      }
+      else
+      {
+        this->Ready[rank].insert({ -this->Graphs[task].behind[rank], task });
+      }
+      // Whatever else comes at the same time may go first.
+      if (this->Events.empty() || std::get<0>(this->Events.top()) > now)
+      {
+        this->StartAll(now);
+      }
+    }
+  }
+
+  std::vector<std::vector<int>> orders;
+  double time = 0.0, work = 0.0;
+  std::size_t messages = 0, rays = 0;
+  int inALine = 0;
+
+private:
+  void StartAll(double now)
+  {
+    for (const int rank : std::exchange(this->Touched, {}))
+    {
+      if (this->Busy[rank] || this->Ready[rank].empty())
+      {
+        continue;
+      }
+      const int task = this->Ready[rank].begin()->second;
+      this->Ready[rank].erase(this->Ready[rank].begin());
+      this->Busy[rank] = true;
+      this->orders[rank].push_back(task);
+      const double takes = this->Costs.ofTask +
+        this->Costs.ofRay * this->Tasks[task].Rays() * static_cast<double>(this->Partition.blocks[rank].VoxelCount());
+      this->work += takes;
+      this->Events.push({ now + takes, 1, rank, task });
+    }
+  }
+
+  void Finish(double now, int rank, int task)
+  {
+    this->Busy[rank] = false;
+    TaskGraph& graph = this->Graphs[task];
+    for (const Receiver& receiver : graph.receivers[rank])
+    {
+      ++this->messages;
+      this->rays += receiver.rays;
+      const double arrives = now + this->Costs.ofMessage + this->Costs.ofValue * static_cast<double>(receiver.rays);
+      double& last = this->LastArrival[{ receiver.rank, task }];
+      last = std::max(last, arrives);
+      if (--graph.waitsFor[receiver.rank] == 0)
+      {
+        this->Events.push({ last, 0, receiver.rank, task });
+      }
+    }
+  }
+
+  const BlockPartition& Partition;
+  const std::vector<ParallelBundles>& Tasks;
+  const SweepCosts& Costs;
+  std::vector<TaskGraph> Graphs;
+  std::vector<std::set<std::pair<int, int>>> Ready; ///< by rank: the most urgent first
+  std::vector<bool> Busy;
+  std::set<int> Touched;                             ///< ranks to which something has happened at this time
+  std::map<std::pair<int, int>, double> LastArrival; ///< by rank and task
+  using Event = std::tuple<double, int, int, int>;   ///< time; 0 ready, 1 finished; rank; task
+  std::priority_queue<Event, std::vector<Event>, std::greater<Event>> Events;
+};
+}
+
+SweepSchedule::SweepSchedule(
+  const BlockPartition& partition, const std::vector<ParallelBundles>& tasks, const SweepCosts& costs)
+{
+  Play play(partition, tasks, costs);
+  play.Run();
+  this->Orders = play.orders;
+  this->Makespan = play.time;
+  this->Work = play.work;
+  this->Sent = play.messages;
+  this->SentRays = play.rays;
+  this->InALine = play.inALine;
+}
+
+std::vector<ParallelBundles> FastestParts(const BlockPartition& partition, const std::vector<AxisBundles>& rays)
+{
+  // In rays through a voxel, some 2 to 3 ns: queueing a block's launches was measured to take about 1 ms.
+  const SweepCosts costs = { 1.0, 4e5, 2e3, 1.0 };
+  std::vector<ParallelBundles> fastest = SortByOctant(rays, 0);
+  double least = SweepSchedule(partition, fastest, costs).Time();
+  for (const int mostRays : { 4, 2, 1 })
+  {
+    std::vector<ParallelBundles> parts = SortByOctant(rays, mostRays);
+    const double time = SweepSchedule(partition, parts, costs).Time();
+    if (time < least)
+    {
+      least = time;
+      fastest.swap(parts);
+    }
+  }
+  return fastest;
+}
+}
