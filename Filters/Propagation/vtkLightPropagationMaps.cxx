@@ -262,11 +262,6 @@ vtkLightPropagationMaps::vtkLightPropagationMaps()
 
 vtkLightPropagationMaps::~vtkLightPropagationMaps() = default;
 
-std::string vtkLightPropagationMaps::NotInBlocks(const tyndall::PieceOfMedium&, const tyndall::IlluminationInput&)
-{
-  return this->Scheme == PUBLISHED || this->Preview ? std::string() : tyndall::NotInBlocks(SettingsOf(this));
-}
-
 std::string vtkLightPropagationMaps::ReasonNotToDecompose(tyndall::Communicator& communicator,
   const tyndall::PieceBlocks& pieces, const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining)
 {

@@ -130,6 +130,20 @@ TEST_F(ThickPropagationBlocks, HaveTheLightOfTheWholeInUnevenBlocksOfAnyMedium)
   ExpectTheLightOfTheWhole(whole, Diffuse(), settings, { uneven, BlockPartition::Even(whole.medium.grid, 4) }, 1e-4);
 }
 
+TEST_F(ThickPropagationBlocks, HaveTheLightOfTheWholeAlongFinerDirections)
+{
+  RandomMedium whole(Grid{ { 8, 7, 9 } }, 1, 8.0f, 4);
+  Share(whole, 0.001f, 0.999f);
+  PropagationSettings settings = Accelerated();
+  settings.source = PropagationSource::Linear;
+  for (const int perFace : { 36, -1 })
+  {
+    SCOPED_TRACE(std::to_string(perFace) + " directions a face");
+    settings.uncollidedDirections = perFace;
+    ExpectTheLightOfTheWhole(whole, Diffuse(), settings, OnRanks(whole.medium.grid, { 3 }), 1e-4);
+  }
+}
+
 TEST_F(ThickPropagationBlocks, GoOnInBlocksOfOneVoxelBesideRanksWithout)
 {
   RandomMedium whole(Grid{ { 2, 2, 1 } }, 1, 12.0f, 6);

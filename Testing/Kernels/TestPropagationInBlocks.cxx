@@ -461,15 +461,6 @@ TEST_F(PropagationBlocksFail, TogetherWhereOneIsStopped)
   }
 }
 
-TEST_F(PropagationBlocksFail, WithWordsOnWhatIsNotCarriedFromRankToRank)
-{
-  ExpectErrors("a linear source besides", [](int, PartOf&, Illumination&, PropagationSettings& settings, Monitor&) {
-    settings.source = PropagationSource::Linear;
-    settings.acceleration = PropagationAcceleration::Automatic;
-    settings.uncollidedDirections = 16;
-  });
-}
-
 // A lamp within an opaque block in vacuum, more than floats can carry: the whole refuses it (Extremes).
 TEST_F(PropagationBlocks, RefuseLightThatDoesNotBalanceOnAnyNumberOfRanks)
 {

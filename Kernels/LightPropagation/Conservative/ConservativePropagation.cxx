@@ -6,7 +6,6 @@
 #include "Distribution/SharedMedium.h"
 #include "Light/LeftOut.h"
 #include "LightPropagation/Conservative/Acceleration/DiffusionAcceleration.h"
-#include "LightPropagation/Conservative/Acceleration/IterationByBalance.h"
 #include "LightPropagation/Conservative/ShownLight.h"
 #include "LightPropagation/Conservative/SolveMemory.h"
 #include "LightPropagation/Conservative/SourceIteration.h"
@@ -173,11 +172,7 @@ std::unique_ptr<Iteration> MakeIteration(TransportParts& parts, const KeptLight*
   {
     return std::make_unique<SourceIteration>(parts, kept);
   }
-  if (parts.TheDomain().IsSerial())
-  {
-    return std::make_unique<DiffusionAcceleration>(parts, kept);
-  }
-  return std::make_unique<IterationByBalance>(parts, kept);
+  return std::make_unique<DiffusionAcceleration>(parts, kept);
 }
 
 /// Of a scene whose axes are in the order that sweeps take best.
@@ -236,40 +231,6 @@ LightField SolveConservative(Device& device, const Domain& domain, const Medium&
   return light;
 }
 
-namespace
-{
-/// Boundary sources differ between the faces that are open.
-bool BoundaryIsUneven(const PropagationProblem& problem)
-{
-  const std::array<Rgb, 6>& faces = problem.Shining().faces;
-  const Rgb* first = nullptr;
-  bool differ = false;
-  for (int face = 0; face < 6; ++face)
-  {
-    if (!problem.Settings().periodic[face / 2])
-    {
-      first = first ? first : &faces[face];
-      differ = differ || faces[face] != *first;
-    }
-  }
-  return differ;
-}
-
-/// A serial solve would have finer directions of the boundary's light. Collective.
-bool HasFinerBoundary(const PropagationProblem& problem)
-{
-  const DirectionSet usual = DirectionsForVoxels(problem.Settings().directionsPerFace, problem.Whole().spacing);
-  return BoundaryIsUneven(problem) && FinerDirectionsOfSerial(problem, usual, IterationScheme::Dsa).perFace > 0;
-}
-}
-
-bool BalancesVoxels(Device& device, const Domain& domain, const Medium& medium, const Illumination& illumination,
-  const PropagationSettings& settings)
-{
-  const PropagationProblem problem(domain, medium, illumination, settings, MemoryOf(device));
-  return ChooseIterationScheme(problem) == IterationScheme::Dsa;
-}
-
 std::string ReasonNotToDecompose(Device& device, const Domain& domain, const Medium& medium,
   const Illumination& illumination, const PropagationSettings& settings)
 {
@@ -283,12 +244,7 @@ std::string ReasonNotToDecompose(Device& device, const Domain& domain, const Med
   }
   if (how == IterationScheme::SourceIteration && FastestScheme(problem) != how)
   {
-    return "many scattering orders in thin voxels round a periodic axis or along UncollidedDirections, which it "
-           "accelerates";
-  }
-  if (how == IterationScheme::Dsa && HasFinerBoundary(problem))
-  {
-    return "faces that shine unevenly, whose light it has along finer directions";
+    return "many scattering orders in thin voxels round a periodic axis, which it accelerates";
   }
   if (MayHaveEmissionPeaks(problem))
   {

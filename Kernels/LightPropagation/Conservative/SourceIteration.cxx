@@ -88,7 +88,7 @@ IterationResult SourceIteration::Run(const Monitor& monitor)
     {
       this->BeginWarm();
     }
-    Report(ofOrder, 1.0);
+    this->TheDomain.Collective([&] { Report(ofOrder, 1.0); });
     ++this->Order;
     this->Lit.reset();
   } while (!this->Done());

@@ -231,4 +231,62 @@ std::vector<float> SurfaceRadiance(const Medium& medium, const std::array<bool, 
   });
   return radiance;
 }
+
+namespace
+{
+/// Which faces of a block lie on the box's.
+std::array<bool, 6> FacesAtBox(const VoxelBox& block, const Grid& whole, const std::array<bool, 3>& periodic)
+{
+  std::array<bool, 6> faces;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    faces[2 * axis] = !periodic[axis] && block.first[axis] == 0;
+    faces[2 * axis + 1] = !periodic[axis] && EndOf(block, axis) == whole.size[axis];
+  }
+  return faces;
+}
+
+/// Values of the cells of a block's faces, as many each, to those of the box's.
+void PutCells(const std::vector<float>& ofBlock, const VoxelBox& block, const std::array<bool, 6>& faces,
+  const Grid& grid, const Grid& whole, std::vector<double>& all)
+{
+  const std::size_t width = ofBlock.size() / BoxFaceCellCount(grid);
+  ForBoxFaceCells(grid, [&](const BoxFaceCell& cell) {
+    if (!faces[cell.face])
+    {
+      return;
+    }
+    const BoxFaceLayout layout = LayoutOfFace(whole, cell.face);
+    const std::array<int, 3> voxel = grid.VoxelAt(cell.voxel);
+    std::size_t place = layout.first;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      place += (block.first[axis] + voxel[axis]) * layout.step[axis];
+    }
+    std::copy_n(ofBlock.begin() + static_cast<std::ptrdiff_t>(cell.number * width), width,
+      all.begin() + static_cast<std::ptrdiff_t>(place * width));
+  });
+}
+}
+
+std::vector<float> SurfaceRadiance(const Domain& domain, const std::array<bool, 3>& periodic, const Medium& medium,
+  int channels, const std::vector<Light>& lamps, const std::vector<SurfacePowers>& powers)
+{
+  const std::array<bool, 6> faces = FacesAtBox(domain.Own(), domain.Whole(), periodic);
+  const bool has = !domain.IsEmpty();
+  if (!domain.Any(has && IsThickAtFaces(medium, faces, channels)))
+  {
+    return {};
+  }
+  std::vector<double> all;
+  domain.Collective([&] {
+    all.assign(BoxFaceCellCount(domain.Whole()) * SurfaceCosines.size() * channels, 0.0);
+    if (has)
+    {
+      PutCells(SurfaceRadiance(medium, faces, lamps, powers), domain.Own(), faces, medium.grid, domain.Whole(), all);
+    }
+  });
+  all = domain.Sum(all);
+  return { all.begin(), all.end() };
+}
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "Distribution/Domain.h"
 #include "LightPropagation/Diffusion/SurfacePowers.h"
 #include "Lights/Lights.h"
 #include "Medium/Medium.h"
@@ -22,6 +23,13 @@ namespace tyndall
 /// @param powers  by channel; without entries: the channel is dark
 std::vector<float> SurfaceRadiance(const Medium& medium, const std::array<bool, 6>& faces,
   const std::vector<Light>& lamps, const std::vector<SurfacePowers>& powers);
+
+/// The same of the domain's faces, known to all ranks; empty where no voxel at them is thick. Collective.
+/// @param periodic  axes of the domain, which have no faces
+/// @param medium  of this rank's block
+/// @param powers  by channel and cell of the block's faces; empty without voxels
+std::vector<float> SurfaceRadiance(const Domain& domain, const std::array<bool, 3>& periodic, const Medium& medium,
+  int channels, const std::vector<Light>& lamps, const std::vector<SurfacePowers>& powers);
 
 /// Whether a voxel at one of these faces is thicker across it than ThickAtSurface in any channel: only then is that
 /// radiance known better than from the voxels' light.

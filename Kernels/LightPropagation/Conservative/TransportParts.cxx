@@ -507,20 +507,25 @@ TransportParts::UncollidedPath TransportParts::FindUncollidedPath(
 
 TransportParts::UncollidedFlux TransportParts::FindUncollided(const UncollidedSource& source, const Monitor& monitor)
 {
-  const bool netFlux = this->Problem.Settings().netFlux;
-  Buffer<float> path(this->TheDevice, this->Layout.MomentFloats(this->Functions()), "uncollided light");
-  Buffer<float> flux(this->TheDevice, netFlux ? this->Layout.Floats(3) : 0, "its net flux");
-  path.Fill(0.0f);
-  flux.Fill(0.0f);
+  const bool netFlux = this->Problem.Settings().netFlux, inMoments = this->Functions() > 1;
+  Buffer<float> path, flux;
+  this->TheDomain().Collective([&] {
+    path = Buffer<float>(this->TheDevice, this->Layout.MomentFloats(this->Functions()), "uncollided light");
+    flux = Buffer<float>(this->TheDevice, netFlux ? this->Layout.Floats(3) : 0, "its net flux");
+    path.Fill(0.0f);
+    flux.Fill(0.0f);
+  });
   UncollidedFlux found;
-  const bool withFlux = netFlux && !this->Basis;
-  found.tally = this->AddUncollided(source, { &path, withFlux ? &flux : nullptr, nullptr, nullptr }, monitor);
-  if (netFlux && this->Basis)
-  {
-    AddFluxOfMoments(this->TheDevice, this->Layout, this->Functions(), path, flux);
-  }
-  found.path = path.Read();
-  found.flux = flux.Read();
+  found.tally =
+    this->AddUncollided(source, { &path, netFlux && !inMoments ? &flux : nullptr, nullptr, nullptr }, monitor);
+  this->TheDomain().Collective([&] {
+    if (netFlux && this->Basis)
+    {
+      AddFluxOfMoments(this->TheDevice, this->Layout, this->Functions(), path, flux);
+    }
+    found.path = path.Read();
+    found.flux = flux.Read();
+  });
   return found;
 }
 

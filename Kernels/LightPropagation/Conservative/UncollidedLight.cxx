@@ -13,26 +13,53 @@ namespace tyndall
 {
 namespace
 {
+constexpr float Elsewhere = -1.0f; ///< sigma_s of ghost cells, which are excluded from sums
+
 double Ratio(double of, double to)
 {
   return to > 0.0 ? of / to : 1.0;
 }
 }
 
-UncollidedLight::UncollidedLight(TransportParts& parts, const Monitor& monitor)
+GhostedMedium::GhostedMedium(TransportParts& parts, const BlockWithGhosts& block)
+  : hasMoments(parts.Functions() > 1)
+{
+  const char* what = "the diffusion system";
+  Device& device = parts.TheDevice;
+  const int extinctions = parts.Layout.sharedExtinction ? 1 : parts.Layout.channels;
+  this->sigma_t = { device, block, parts.OnDevice.TransportSigmaT(), extinctions, what };
+  this->sigma_a = { device, block, parts.OnDevice.SigmaA(), parts.Layout.channels, what };
+  this->sigma_s = { device, block, parts.OnDevice.SigmaS(), parts.Layout.channels, what };
+  this->sigma_t.Fill();
+  this->sigma_a.Fill();
+  this->sigma_s.FillOwn(Elsewhere);
+  if (this->hasMoments)
+  {
+    this->swept = { device, block, parts.OnDevice.SigmaT(), extinctions, what };
+    this->swept.Fill();
+  }
+}
+
+UncollidedLight::UncollidedLight(
+  TransportParts& parts, const BlockWithGhosts& block, const GhostedMedium& medium, const Monitor& monitor)
   : Parts(parts)
+  , TheDomain(parts.TheDomain())
   , TheMedium(parts.Problem.TheMedium())
   , LinearSource(parts.Problem.HasLinearSource())
+  , Block(block)
+  , Coefficients(medium)
 {
   parts.CountEmission(this->Counted);
   const double sources = parts.FineBoundary ? 0.5 : 1.0; // of the time
   this->AddSources(OfPart(monitor, 0.0, sources));
-  if (parts.Basis && parts.Problem.Settings().netFlux)
-  {
-    AddFluxOfMoments(parts.TheDevice, parts.Layout, parts.Functions(), parts.Path, parts.Flux);
-  }
+  this->TheDomain.Collective([&] {
+    if (parts.Basis && parts.Problem.Settings().netFlux)
+    {
+      AddFluxOfMoments(parts.TheDevice, parts.Layout, parts.Functions(), parts.Path, parts.Flux);
+    }
+    this->Lengths = parts.Path.Read();
+  });
   this->Counted.Count(this->OfSources);
-  this->Lengths = parts.Path.Read();
   if (parts.FineBoundary)
   {
     this->AddBoundaryDifference(OfPart(monitor, sources, 1.0));
@@ -44,21 +71,31 @@ UncollidedLight::UncollidedLight(TransportParts& parts, const Monitor& monitor)
 bool UncollidedLight::NeedsFirstMoments() const
 {
   return this->LinearSource && !this->Parts.Lamps.empty() &&
-    AnyVoxelIsThickerThan(ThickForFirstMoments, this->TheMedium);
+    this->TheDomain.Any(AnyVoxelIsThickerThan(ThickForFirstMoments, this->TheMedium));
+}
+
+void UncollidedLight::MakePassing()
+{
+  TransportParts& parts = this->Parts;
+  Device& device = parts.TheDevice;
+  const char* what = "light of lamps";
+  this->TheDomain.Collective([&] {
+    this->MomentsOfLamp = Buffer<float>(device, parts.Layout.Floats(6), what);
+    this->PathOfLamp = Buffer<float>(device, parts.Layout.MomentFloats(parts.Functions()), what);
+    this->ThroughFaces = Buffer<float>(device, parts.Layout.Floats(6), what);
+    this->ThroughFaces.Fill(0.0f);
+  });
+  const int channels = parts.Layout.channels;
+  this->PathWithGhosts = { device, this->Block, this->PathOfLamp, channels, what };
+  this->MomentsWithGhosts = { device, this->Block, this->MomentsOfLamp, 6 * channels, what };
+  this->AllPathWithGhosts = { device, this->Block, parts.Path, channels, what };
+  this->PassedWithGhosts = { device, this->Block, this->ThroughFaces, 6 * channels, what };
 }
 
 /// Lamps and bright emission, into the arrays of all sources.
 void UncollidedLight::AddSources(const Monitor& monitor)
 {
   TransportParts& parts = this->Parts;
-  Buffer<float> firstMoments, path; // of one lamp
-  if (this->NeedsFirstMoments())
-  {
-    firstMoments = Buffer<float>(parts.TheDevice, parts.Layout.Floats(6), "light of lamps");
-    path = Buffer<float>(parts.TheDevice, parts.Layout.MomentFloats(parts.Functions()), "light of lamps");
-    this->ThroughFaces = Buffer<float>(parts.TheDevice, parts.Layout.Floats(6), "light of lamps");
-    this->ThroughFaces.Fill(0.0f);
-  }
   const TransportParts::Sources lamps = parts.LampSources();
   TransportParts::Sources others = parts.OtherSources();
   for (std::unique_ptr<UncollidedSource>& vacuum : parts.VacuumSources())
@@ -71,27 +108,26 @@ void UncollidedLight::AddSources(const Monitor& monitor)
     ++done;
     return OfPart(monitor, (done - 1) / all, done / all);
   };
+  const bool passes = this->NeedsFirstMoments();
+  if (passes)
+  {
+    this->MakePassing();
+  }
   for (const std::unique_ptr<UncollidedSource>& lamp : lamps)
   {
-    if (firstMoments.Size() == 0)
-    {
-      Add(this->OfSources, parts.AddUncollided(*lamp, parts.WholeDeposit(), monitorOfNext()));
-      continue;
-    }
-    firstMoments.Fill(0.0f);
-    path.Fill(0.0f);
-    const Deposit whole = parts.WholeDeposit();
-    const Deposit ofLamp = { &path, whole.flux, nullptr, &firstMoments, whole.faceOut, whole.spreadsAside };
-    Add(this->OfSources, parts.AddUncollided(*lamp, ofLamp, monitorOfNext()));
-    this->PassFaces(path, firstMoments);
-    if (parts.Basis)
-    {
-      AddMoments(parts.TheDevice, parts.Layout, parts.Functions(), path, parts.Path);
-    }
+    Add(this->OfSources,
+      passes ? this->AddLampThroughFaces(*lamp, monitorOfNext())
+             : parts.AddUncollided(*lamp, parts.WholeDeposit(), monitorOfNext()));
   }
-  if (!lamps.empty())
+  this->TheDomain.Collective([&] {
+    if (!lamps.empty())
+    {
+      this->LengthsOfLamps = parts.Path.Read();
+    }
+  });
+  if (passes)
   {
-    this->LengthsOfLamps = parts.Path.Read();
+    this->FindScatteredInVoxels();
   }
   for (const std::unique_ptr<UncollidedSource>& other : others)
   {
@@ -99,33 +135,70 @@ void UncollidedLight::AddSources(const Monitor& monitor)
   }
 }
 
-/// Adds the part of a lamp's light that passes voxels' faces at once where it is first scattered.
-void UncollidedLight::PassFaces(const Buffer<float>& path, const Buffer<float>& firstMoments)
+SweepTally UncollidedLight::AddLampThroughFaces(const UncollidedSource& lamp, const Monitor& monitor)
 {
-  const TransportParts& parts = this->Parts;
-  for (int c = 0; c < parts.Layout.channels; ++c)
+  TransportParts& parts = this->Parts;
+  this->TheDomain.Collective([&] {
+    this->MomentsOfLamp.Fill(0.0f);
+    this->PathOfLamp.Fill(0.0f);
+  });
+  const Deposit whole = parts.WholeDeposit();
+  const Deposit ofLamp = { &this->PathOfLamp, whole.flux, nullptr, &this->MomentsOfLamp, whole.faceOut,
+    whole.spreadsAside };
+  const SweepTally tally = parts.AddUncollided(lamp, ofLamp, monitor);
+  this->PathWithGhosts.FillOwn();
+  this->MomentsWithGhosts.Fill();
+  this->TheDomain.Collective([&] {
+    if (parts.IsEmpty())
+    {
+      return;
+    }
+    this->PassFaces();
+    if (parts.Basis)
+    {
+      AddMoments(parts.TheDevice, parts.Layout, parts.Functions(), this->PathOfLamp, parts.Path);
+    }
+  });
+  this->AllPathWithGhosts.TakeOwn();
+  return tally;
+}
+
+/// Adds the part of a lamp's light that passes voxels' faces at once where it is first scattered.
+void UncollidedLight::PassFaces()
+{
+  const VolumeLayout& held = this->Block.WithGhosts();
+  for (int c = 0; c < held.channels; ++c)
   {
-    const std::size_t first = c * parts.Layout.Stride();
-    PassLampLight(parts.TheDevice, parts.Layout.grid, parts.Problem.Settings().periodic,
-      { parts.Layout.Stride(), parts.Layout.ExtinctionFirst(c), first, &parts.OnDevice.TransportSigmaT(),
-        &parts.OnDevice.SigmaA(), &parts.OnDevice.SigmaS(), &parts.OnDevice.SigmaT(), &path, &firstMoments,
-        &this->ThroughFaces, &parts.Path });
+    PassLampLight(this->Parts.TheDevice, held.grid, this->Block.Periodic(),
+      { held.Stride(), held.ExtinctionFirst(c), c * held.Stride(), &this->Coefficients.sigma_t.Values(),
+        &this->Coefficients.sigma_a.Values(), &this->Coefficients.sigma_s.Values(), &this->Coefficients.Swept(),
+        &this->PathWithGhosts.Values(), &this->MomentsWithGhosts.Values(), &this->PassedWithGhosts.Values(),
+        &this->AllPathWithGhosts.Values() });
   }
 }
 
-Buffer<float> UncollidedLight::ScatteredInVoxels() const
+/// What lamps' light is first scattered, less what passes faces at once.
+void UncollidedLight::FindScatteredInVoxels()
 {
   const VolumeLayout& layout = this->Parts.Layout;
-  const std::vector<float> passed = this->ThroughFaces.Read();
-  const auto scattered = [&](std::size_t i, int c) {
-    double power = this->Parts.Problem.Scattering().SigmaS(i, c) * this->LengthsOfLamps[c * layout.Stride() + i];
-    for (int d = 0; d < 6; ++d)
-    {
-      power -= passed[(6 * c + d) * layout.Stride() + i];
-    }
-    return static_cast<float>(power / (4.0 * Pi * layout.grid.VoxelVolume()));
-  };
-  return PlanarOnDevice(this->Parts.TheDevice, layout, layout.channels, scattered, "light of lamps");
+  this->PassedWithGhosts.TakeOwn();
+  this->PassedWithGhosts.Fill();
+  this->TheDomain.Collective([&] {
+    const std::vector<float> passed = this->ThroughFaces.Read();
+    const auto scattered = [&](std::size_t i, int c) {
+      double power = this->Parts.Problem.Scattering().SigmaS(i, c) * this->LengthsOfLamps[c * layout.Stride() + i];
+      for (int d = 0; d < 6; ++d)
+      {
+        power -= passed[(6 * c + d) * layout.Stride() + i];
+      }
+      return static_cast<float>(power / (4.0 * Pi * layout.grid.VoxelVolume()));
+    };
+    this->ScatteredInVoxels =
+      PlanarOnDevice(this->Parts.TheDevice, layout, layout.channels, scattered, "light of lamps");
+  });
+  this->OfLampsWithGhosts = { this->Parts.TheDevice, this->Block, this->ScatteredInVoxels, layout.channels,
+    "light of lamps" };
+  this->OfLampsWithGhosts.FillOwn();
 }
 
 /// Weight of the difference of finer and usual directions (numerics.md, Eqs. (55), (76)): little in thick voxels, where
@@ -185,7 +258,7 @@ void UncollidedLight::AddBoundaryDifference(const Monitor& monitor)
       }
       return parts.Problem.Scattering().SigmaT(i, c) * difference;
     };
-    more += SumOverVoxels(parts.Layout.grid, addToVoxel);
+    more += this->TheDomain.Sum(SumOverVoxels(parts.Layout.grid, addToVoxel));
     std::array<double, 6> leaves;
     for (int face = 0; face < 6; ++face)
     {
@@ -208,11 +281,17 @@ void UncollidedLight::AddBoundaryDifference(const Monitor& monitor)
 void UncollidedLight::CountAbsorbed()
 {
   const VolumeLayout& layout = this->Parts.Layout;
+  Rgb absorbed = {};
   for (int c = 0; c < layout.channels; ++c)
   {
-    this->Counted.Absorb(c, SumOverVoxels(layout.grid, [&](std::size_t i) {
+    absorbed[c] = SumOverVoxels(layout.grid, [&](std::size_t i) {
       return static_cast<double>(this->TheMedium.sigma_a.At(i, c)) * this->Lengths[c * layout.Stride() + i];
-    }));
+    });
+  }
+  absorbed = this->TheDomain.Sum(absorbed);
+  for (int c = 0; c < layout.channels; ++c)
+  {
+    this->Counted.Absorb(c, absorbed[c]);
     this->Counted.SetUnaccounted(c, this->OfSources.onTheWay[c]);
   }
 }

@@ -16,21 +16,22 @@ Grid GridOf(const Grid& whole, const VoxelBox& box)
 }
 }
 
-BlockWithGhosts::BlockWithGhosts(Communicator& communicator, const BlockPartition& partition,
-  const std::array<bool, 3>& periodic, int channels, bool sharedExtinction)
-  : Comm(communicator)
-  , Block(partition.blocks[communicator.Rank()])
-  , Alone(GoesRoundAlone(this->Block, partition.whole.size, periodic))
+BlockWithGhosts::BlockWithGhosts(
+  const Domain& domain, const std::array<bool, 3>& periodic, int channels, bool sharedExtinction)
+  : Of(domain)
+  , Alone(GoesRoundAlone(domain.Own(), domain.Whole().size, periodic))
 {
+  const Grid& whole = domain.Whole();
+  const std::vector<VoxelBox>& blocks = domain.Partition().blocks;
   std::vector<std::vector<VoxelBox>> ghosts;
-  for (const VoxelBox& block : partition.blocks)
+  for (const VoxelBox& block : blocks)
   {
-    ghosts.push_back(LayersBeside(block, partition.whole.size, periodic));
+    ghosts.push_back(LayersBeside(block, whole.size, periodic));
   }
-  this->Box = Hull(this->Block, ghosts[communicator.Rank()]);
-  this->OfBlock = { GridOf(partition.whole, this->Block), channels, sharedExtinction };
-  this->OfBox = { GridOf(partition.whole, this->Box), channels, sharedExtinction };
-  this->Ghosts = std::make_unique<GhostCells>(communicator, partition.blocks, ghosts, this->Box, partition.whole.size);
+  this->Box = Hull(domain.Own(), ghosts[domain.Rank()]);
+  this->OfBlock = { GridOf(whole, domain.Own()), channels, sharedExtinction };
+  this->OfBox = { GridOf(whole, this->Box), channels, sharedExtinction };
+  this->Ghosts = std::make_unique<GhostCells>(domain.Comm(), blocks, ghosts, this->Box, whole.size);
 }
 
 std::size_t BlockWithGhosts::PlaceOf(std::size_t ownVoxel) const
@@ -38,7 +39,7 @@ std::size_t BlockWithGhosts::PlaceOf(std::size_t ownVoxel) const
   std::array<int, 3> voxel = this->OfBlock.grid.VoxelAt(ownVoxel);
   for (int axis = 0; axis < 3; ++axis)
   {
-    voxel[axis] += this->Block.first[axis] - this->Box.first[axis];
+    voxel[axis] += this->Of.Own().first[axis] - this->Box.first[axis];
   }
   return this->OfBox.grid.IndexOf(voxel);
 }
@@ -49,7 +50,7 @@ bool BlockWithGhosts::IsOwn(const std::array<int, 3>& voxel) const
   for (int axis = 0; axis < 3; ++axis)
   {
     const int place = voxel[axis] + this->Box.first[axis];
-    own = own && place >= this->Block.first[axis] && place < EndOf(this->Block, axis);
+    own = own && place >= this->Of.Own().first[axis] && place < EndOf(this->Of.Own(), axis);
   }
   return own;
 }
@@ -59,7 +60,7 @@ std::size_t BlockWithGhosts::OwnAt(const std::array<int, 3>& voxel) const
   std::array<int, 3> own = voxel;
   for (int axis = 0; axis < 3; ++axis)
   {
-    own[axis] += this->Box.first[axis] - this->Block.first[axis];
+    own[axis] += this->Box.first[axis] - this->Of.Own().first[axis];
   }
   return this->OfBlock.grid.IndexOf(own);
 }
@@ -80,43 +81,83 @@ std::vector<float> BlockWithGhosts::Placed(const std::vector<float>& own, int pa
   return held;
 }
 
-void BlockWithGhosts::Spread(const std::vector<float>& own, int parts, Buffer<float>& held, float elsewhere) const
+std::vector<float> BlockWithGhosts::TakeOwn(const std::vector<float>& held, int parts) const
 {
-  this->Comm.Collective([&] {
-    const std::vector<float> values = this->Placed(own, parts, elsewhere);
-    held.Write(values.data(), values.size());
-  });
-}
-
-void BlockWithGhosts::SpreadWithGhosts(const std::vector<float>& own, int parts, Buffer<float>& held) const
-{
-  std::vector<float> values = this->Placed(own, parts, 0.0f);
-  this->Ghosts->Fill(values.data(), parts, this->OfBox.Stride());
-  this->Comm.Collective([&] { held.Write(values.data(), values.size()); });
+  const std::array<int, 3>& n = this->OfBlock.grid.size;
+  std::vector<float> own(parts * this->OfBlock.Stride(), 0.0f);
+  for (int part = 0; part < parts; ++part)
+  {
+    for (int row = 0; row < n[1] * n[2]; ++row)
+    {
+      const std::size_t first = static_cast<std::size_t>(row) * n[0];
+      std::copy_n(held.begin() + static_cast<std::ptrdiff_t>(part * this->OfBox.Stride() + this->PlaceOf(first)), n[0],
+        own.begin() + static_cast<std::ptrdiff_t>(part * this->OfBlock.Stride() + first));
+    }
+  }
+  return own;
 }
 
 void BlockWithGhosts::FillGhosts(Buffer<float>& ofVoxels) const
 {
   std::vector<float> values;
-  this->Comm.Collective([&] { values = ofVoxels.Read(); });
+  this->Of.Collective([&] { values = this->HasGhosts() ? ofVoxels.Read() : values; });
   this->Ghosts->Fill(values.data(), 1, 0);
-  this->Comm.Collective([&] { ofVoxels.Write(values.data()); });
+  this->Of.Collective([&] {
+    if (this->HasGhosts())
+    {
+      ofVoxels.Write(values.data());
+    }
+  });
 }
 
-std::vector<float> BlockWithGhosts::TakeOwn(const Buffer<float>& held, int parts) const
+GhostedBuffer::GhostedBuffer(
+  Device& device, const BlockWithGhosts& block, const Buffer<float>& own, int parts, const char* what)
+  : Block(&block)
+  , Own(&own)
+  , Parts(parts)
 {
-  const std::array<int, 3>& n = this->OfBlock.grid.size;
-  std::vector<float> own(parts * this->OfBlock.Stride() + SweepPadding, 0.0f);
-  const std::vector<float> values = this->Has() ? held.Read() : std::vector<float>();
-  for (int part = 0; part < parts && this->Has(); ++part)
-  {
-    for (int row = 0; row < n[1] * n[2]; ++row)
+  block.TheDomain().Collective([&] {
+    if (block.HasGhosts())
     {
-      const std::size_t first = static_cast<std::size_t>(row) * n[0];
-      std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(part * this->OfBox.Stride() + this->PlaceOf(first)),
-        n[0], own.begin() + static_cast<std::ptrdiff_t>(part * this->OfBlock.Stride() + first));
+      this->Held = Buffer<float>(device, parts * block.WithGhosts().Stride() + SweepPadding, what);
+      this->Held.Fill(0.0f);
     }
-  }
-  return own;
+  });
+}
+
+void GhostedBuffer::Fill()
+{
+  const bool has = this->Held.Size() > 0;
+  std::vector<float> values;
+  this->Block->TheDomain().Collective(
+    [&] { values = has ? this->Block->Placed(this->Own->Read(), this->Parts, 0.0f) : values; });
+  this->Block->Ghosts->Fill(values.data(), this->Parts, this->Block->WithGhosts().Stride());
+  this->Block->TheDomain().Collective([&] {
+    if (has)
+    {
+      this->Held.Write(values.data());
+    }
+  });
+}
+
+void GhostedBuffer::FillOwn(float elsewhere)
+{
+  this->Block->TheDomain().Collective([&] {
+    if (this->Held.Size() > 0)
+    {
+      this->Held.Write(this->Block->Placed(this->Own->Read(), this->Parts, elsewhere).data());
+    }
+  });
+}
+
+void GhostedBuffer::TakeOwn()
+{
+  this->Block->TheDomain().Collective([&] {
+    if (this->Held.Size() > 0)
+    {
+      const std::vector<float> values = this->Block->TakeOwn(this->Held.Read(), this->Parts);
+      this->Target->Write(values.data(), values.size());
+    }
+  });
 }
 }

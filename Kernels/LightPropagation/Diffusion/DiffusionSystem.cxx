@@ -201,15 +201,6 @@ void DiffusionSystem::Balance()
   this->RunBorder(border);
 }
 
-double DiffusionSystem::Correct(double unit)
-{
-  this->FindModel();
-  this->Balance();
-  this->Solver.Solve(this->Solution, unit, ReductionAfter(this->Corrections));
-  this->FindFlux();
-  return this->MixBy(this->SumsOfChange());
-}
-
 void DiffusionSystem::SetFound(const std::vector<double>& fluence)
 {
   std::vector<double> state = fluence;
@@ -248,10 +239,9 @@ AndersonMixing::Sums DiffusionSystem::SumsOfChange() const
   return this->Mixing.SumsOf(this->Next, this->Solution, this->WeightingOfChange());
 }
 
-double DiffusionSystem::MixBy(const AndersonMixing::Sums& sums)
+void DiffusionSystem::MixBy(const AndersonMixing::Sums& sums)
 {
-  ++this->Corrections;
-  return this->Mixing.Mix(this->Next, this->Solution, sums);
+  this->Mixing.Mix(this->Next, this->Solution, sums);
 }
 
 void DiffusionSystem::Refine(double unit)
@@ -279,14 +269,6 @@ std::vector<double> DiffusionSystem::Found() const
   std::vector<double> found = this->Solution.Read();
   found.resize(this->Count);
   return found;
-}
-
-std::array<double, 6> DiffusionSystem::Outflow(double entered, const std::array<double, 6>& ofSweep)
-{
-  BorderSums sums = this->SumBorders([](int, int, int) { return true; });
-  sums.shared = this->The.faces ? 0.0 : sums.shared; // known by cells
-  const auto& periodic = this->Layout.periodic;
-  return OutflowBy(sums, entered, ofSweep, { periodic[0] != 0, periodic[1] != 0, periodic[2] != 0 });
 }
 
 DiffusionSystem::BorderSums DiffusionSystem::SumBorders(const std::function<bool(int face, int u, int v)>& counts)

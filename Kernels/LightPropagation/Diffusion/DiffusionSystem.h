@@ -54,7 +54,7 @@ public:
     /// there
     const Buffer<float>* ofLamps;
     /// W, [row of DiffusionShared.h][cell of BoxFaces.h]: light by cells of the box's faces, the last row of which
-    /// Outflow() writes; null: no face gives back light, and it is not asked for
+    /// SumBorders() writes; null: no face gives back light, and it is not asked for
     const Buffer<float>* faces = nullptr;
     std::array<double, 6> albedo = {}; ///< of the faces
   };
@@ -78,25 +78,21 @@ public:
   /// Changes that source at the surfaces of thick voxels such that a sweep finds the outward current of diffusion.
   void ShapeSource();
 
-  /// Solve for the light after a sweep.
-  /// @param unit  W of a voxel, about
-  /// @return |found - given| / |found|
-  double Correct(double unit);
-
-  // The steps of Correct, where the system is one part of one that is spread over ranks, with a layer of the others'
-  // voxels around its own (Distributed/Balance/BalanceOverRanks.h): between them values go from rank to rank. `sigma_s`
-  // of the others' voxels is below 0: they are counted where they are at home.
+  // The steps of a correction (DiffusionSolver.h). The system of a rank's block has ghost cells around its own, whose
+  // `sigma_s` is below 0: they are excluded from sums.
 
   void FindModel();                                  ///< of the fluence that the sweep is compared with
   Buffer<float>& TheModel() { return this->Model; }  ///< W / length^2, [voxel]
   void Balance();                                    ///< of each voxel: the right-hand side, from the model
   MultigridSolver& Matrix() { return this->Solver; } ///< and right-hand side
+  /// Solves the system of a serial domain on the device, as MultigridSolver::Solve.
+  void Solve(double unit, double reduction) { this->Solver.Solve(this->Solution, unit, reduction); }
   static double ReductionAfter(int corrections);     ///< of the residual, in the next solution
-  void SetFound(const std::vector<double>& fluence);
+  void SetFound(const std::vector<double>& fluence); ///< or takes the solution from the host
   void FindFlux(); ///< that goes with it, the moments of degree 1, where there are angular moments
   static constexpr double RefinedBy = 0.1, RefinedTo = 1e-6; ///< what Refine asks for, of the residual and in units
   AndersonMixing::Sums SumsOfChange() const;                 ///< once the solution is there
-  double MixBy(const AndersonMixing::Sums& sums);            ///< @return as Correct
+  void MixBy(const AndersonMixing::Sums& sums);
 
   /// Sums over cells of the box's faces: those of which the last correction finds what leaves, W.
   struct BorderSums
@@ -106,11 +102,15 @@ public:
   };
   /// @param counts  whether a cell of a face (by face, and place along the other two axes in order) does
   BorderSums SumBorders(const std::function<bool(int face, int u, int v)>& counts);
-  /// As Outflow, from the sums of all.
+  /// W out of the box through each of its faces, by the last correction; 0 where it is periodic.
+  /// @param sums  of all ranks
+  /// @param entered  W that came in in the sweep
+  /// @param ofSweep  W that left through each face in the sweep, by which power at the box's edges is shared among
+  /// faces
   static std::array<double, 6> OutflowBy(const BorderSums& sums, double entered, const std::array<double, 6>& ofSweep,
     const std::array<bool, 3>& periodic = {});
 
-  /// Solve on, for what the last correction found to more digits.
+  /// Solves on, on the device, for what the last correction found to more digits.
   void Refine(double unit);
 
   /// W, of what the last correction found.
@@ -118,13 +118,7 @@ public:
 
   /// W / length^2, what the last correction found.
   std::vector<double> Found() const;
-  /// W out of the box through each of its faces, by the last correction; 0 where it is periodic.
-  /// @param entered  W that came in in the sweep
-  /// @param ofSweep  W that left through each face in the sweep, by which power at the box's edges is shared among
-  /// faces
-  std::array<double, 6> Outflow(double entered, const std::array<double, 6>& ofSweep);
-
-  /// W through each voxel's faces at the box's, of the last Outflow.
+  /// W through each voxel's faces at the box's, of the last SumBorders.
   SurfacePowers PowersAtSurface() const;
 
   /// Put into the first moments of a sweep's path those that go with NextFluence(): what the sweep found, and by how
@@ -160,7 +154,6 @@ private:
   Buffer<float> FlatSource, Pattern, Model;
   Buffer<cl_int> Skins; ///< by row: whether thick voxels lie beside thinner ones in it
   bool AnySkin = false;
-  int Corrections = 0; ///< made so far
   AndersonMixing Mixing;
   ExactValues Borders;
   ExactValues Next, Solution; ///< of voxels; behind them, where there are moments, those of degree 1, [x, y, z][voxel]

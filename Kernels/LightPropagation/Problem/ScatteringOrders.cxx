@@ -184,17 +184,11 @@ AcceleratedTime AcceleratedTimeOf(const ScatteringOfScene& scene)
   return uneven ? InUnevenMedia : InEvenMedia;
 }
 
-/// The scheme that several ranks have in the place of a serial solve's: cells do not wrap around periodic axes, and DSA
-/// has no directions of its own for uncollided light.
+/// The scheme that several ranks have in the place of a serial solve's: cells do not wrap around periodic axes.
 IterationScheme AvailableInBlocks(IterationScheme serial, const PropagationSettings& settings)
 {
-  if (settings.source == PropagationSource::Linear)
-  {
-    return IterationScheme::Dsa;
-  }
   const bool wraps = settings.periodic[0] || settings.periodic[1] || settings.periodic[2];
-  const bool has = serial == IterationScheme::Dsa ? settings.uncollidedDirections <= 0 : !wraps;
-  return has ? serial : IterationScheme::SourceIteration;
+  return serial == IterationScheme::CoarseMeshDsa && wraps ? IterationScheme::SourceIteration : serial;
 }
 }
 

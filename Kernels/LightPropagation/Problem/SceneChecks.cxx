@@ -137,15 +137,6 @@ void Check(const Medium& medium, const Illumination& illumination, const Propaga
   RequireSink(LightEndsIn(medium, illumination), illumination, settings);
 }
 
-std::string NotInBlocks(const PropagationSettings& settings)
-{
-  if (settings.source == PropagationSource::Linear && settings.uncollidedDirections > 0)
-  {
-    return "a linear source besides UncollidedDirections";
-  }
-  return {};
-}
-
 void Check(
   const Domain& domain, const Medium& medium, const Illumination& illumination, const PropagationSettings& settings)
 {
@@ -164,8 +155,6 @@ void Check(
       Require(medium.grid.size == domain.OwnGrid().size,
         "The medium of rank " + std::to_string(domain.Rank()) + " does not have the size of its block.");
     }
-    const std::string refused = NotInBlocks(settings);
-    Require(refused.empty(), "A medium that is spread over ranks is not solved with " + refused + ".");
   });
   RequireSame(comm, domain.Partition());
   RequireSame(comm, has, medium, illumination, settings);

@@ -14,12 +14,9 @@ namespace tyndall
 ///   axis, and where light could not end: all faces give back all of it and nothing absorbs
 void Check(const Medium& medium, const Illumination& illumination, const PropagationSettings& settings);
 /// The same of a medium of which each rank has its block; ranks must agree on all but their voxels. Collective.
-/// @throws InvalidInput  also where `medium` has not the size of its block, and where several ranks are asked for a
-///   linear source beside UncollidedDirections
+/// @throws InvalidInput  also where `medium` has not the size of its block
 void Check(
   const Domain& domain, const Medium& medium, const Illumination& illumination, const PropagationSettings& settings);
-/// What of the settings only a serial solve can do, in words for an error; empty: nothing.
-std::string NotInBlocks(const PropagationSettings& settings);
 
 /// The same of a medium that is one of several blocks, but for what only all of them tell: whether light ends.
 void CheckBlock(const Medium& medium, const Illumination& illumination, const PropagationSettings& settings);

@@ -41,13 +41,6 @@ double TimeOfLaterOrders(const PropagationProblem& problem, IterationScheme how)
 UncollidedDirections UncollidedDirectionsFor(
   const PropagationProblem& problem, const DirectionSet& usual, IterationScheme how)
 {
-  const bool has = how != IterationScheme::Dsa || problem.TheDomain().IsSerial();
-  return has ? FinerDirectionsOfSerial(problem, usual, how) : UncollidedDirections();
-}
-
-UncollidedDirections FinerDirectionsOfSerial(
-  const PropagationProblem& problem, const DirectionSet& usual, IterationScheme how)
-{
   const bool besideUsual = how == IterationScheme::Dsa; // else the finer directions take the place of the usual ones
   const PropagationSettings& settings = problem.Settings();
   const Illumination& shining = problem.Shining();

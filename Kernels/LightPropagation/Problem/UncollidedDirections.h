@@ -28,9 +28,6 @@ struct UncollidedDirections
 /// Collective.
 UncollidedDirections UncollidedDirectionsFor(
   const PropagationProblem& problem, const DirectionSet& usual, IterationScheme how);
-/// Those that a serial solve of it has: several ranks have none in DSA. Collective.
-UncollidedDirections FinerDirectionsOfSerial(
-  const PropagationProblem& problem, const DirectionSet& usual, IterationScheme how);
 
 /// The part of light from outside that comes along finer directions; its lights and environment are not looked at.
 Illumination AlongFiner(const UncollidedDirections& finer, const Illumination& shining);

@@ -21,16 +21,20 @@ constexpr int MostSweeps = 200;
 
 DiffusionAcceleration::DiffusionAcceleration(TransportParts& parts, const KeptLight* kept)
   : Parts(parts)
+  , TheDomain(parts.TheDomain())
   , Settings(parts.Problem.Settings())
   , TheMedium(parts.Problem.TheMedium())
   , LinearSource(parts.Problem.HasLinearSource())
+  , Block(this->TheDomain, this->Settings.periodic, parts.Layout.channels, parts.Layout.sharedExtinction)
+  , Coefficients(parts, this->Block)
+  , Moments(this->Block, parts.Functions())
   , Warm(parts, kept, "diffusion acceleration")
 {
 }
 
 IterationResult DiffusionAcceleration::Run(const Monitor& monitor)
 {
-  this->Uncollided.emplace(this->Parts,
+  this->Uncollided.emplace(this->Parts, this->Block, this->Coefficients,
     OfPart(monitor, [this](double done) { return ProgressOf(this->Settings, 1.0, UncollidedPart * done); }));
   this->GiveFirstScattered();
   this->ReflectUncollided();
@@ -45,17 +49,15 @@ IterationResult DiffusionAcceleration::Run(const Monitor& monitor)
     this->Sweep(iteration, ofSweep);
     if (iteration == 0)
     {
-      this->Parts.Fluence.Write(this->SweptFluence().data());
-      this->Result.fluenceDirect = Interleaved(this->Parts.Layout, this->Parts.Fluence, 1.0);
-      this->MakeSystems();
       this->LookAtDirect();
+      this->MakeSystems();
     }
     this->Correct(iteration);
     if (iteration == 0 && this->Warm.Keeps())
     {
       this->BeginWarm();
     }
-    Report(ofSweep, 1.0);
+    this->TheDomain.Collective([&] { Report(ofSweep, 1.0); });
     ++iteration;
   } while (!this->Done(iteration));
   this->WriteFluence();
@@ -71,7 +73,9 @@ IterationResult DiffusionAcceleration::Run(const Monitor& monitor)
   }
   if (this->Box)
   {
-    this->Result.leftByCell = this->LeftByCell();
+    const bool shines = this->Parts.SweepCarriesBoundarySource();
+    this->Result.leftByCell = this->Box->LeftByCell(
+      shines ? this->Parts.UsualBoundary->IncomingPower() : std::array<Rgb, 6>{}, this->TheMedium);
   }
   return std::move(this->Result);
 }
@@ -81,51 +85,79 @@ void DiffusionAcceleration::FindShown()
 {
   TransportParts& parts = this->Parts;
   this->ScatterFound();
-  Buffer<float> shown(parts.TheDevice, parts.Layout.MomentFloats(parts.Functions()), "the light shown");
-  shown.Fill(0.0f);
-  parts.LoadEmission(shown);
-  if (!this->Uncollided->PathOfLamps().empty())
-  {
-    parts.Path.Write(this->Uncollided->PathOfLamps().data());
-    parts.Scattering->AddFirstScattered(parts.WholeDeposit(), shown);
-  }
-  AddToShown(parts.TheDevice, parts.Layout.Places(parts.Functions()).beams, parts.Source, shown, -1.0f);
-  this->Result.shown = std::move(shown);
+  this->TheDomain.Collective([&] {
+    Buffer<float> shown(parts.TheDevice, parts.Layout.MomentFloats(parts.Functions()), "the light shown");
+    shown.Fill(0.0f);
+    if (!parts.IsEmpty())
+    {
+      parts.LoadEmission(shown);
+      if (!this->Uncollided->PathOfLamps().empty())
+      {
+        parts.Path.Write(this->Uncollided->PathOfLamps().data());
+        parts.Scattering->AddFirstScattered(parts.WholeDeposit(), shown);
+      }
+      AddToShown(parts.TheDevice, parts.Layout.Places(parts.Functions()).beams, parts.Source, shown, -1.0f);
+    }
+    this->Result.shown = std::move(shown);
+  });
 }
 
 /// What of uncollided light is scattered is a given source, like what the medium emits.
 void DiffusionAcceleration::GiveFirstScattered()
 {
   TransportParts& parts = this->Parts;
-  this->Given = Buffer<float>(parts.TheDevice, parts.Source.Read(), "the light given");
-  parts.DarkenBeams(); // until what is first scattered shines
-  this->GivenPower = this->Uncollided->Ledger().Balance().emitted;
+  const int channels = parts.Layout.channels;
   std::vector<float> path = this->Uncollided->Path();
-  parts.Path.Write(path.data());
-  parts.Scattering->AddFirstScattered(parts.WholeDeposit(), this->Given);
-  if (parts.Basis)
-  {
-    this->GivenFlux = Buffer<float>(parts.TheDevice, parts.Layout.Floats(3), "the net flux given");
+  Rgb scattered = {};
+  this->TheDomain.Collective([&] {
+    this->Given = Buffer<float>(parts.TheDevice, parts.Source.Read(), "the light given");
+    parts.DarkenBeams(); // until what is first scattered shines
+    parts.Path.Write(path.data());
+    if (!parts.IsEmpty())
+    {
+      parts.Scattering->AddFirstScattered(parts.WholeDeposit(), this->Given);
+    }
+    this->GivenFlux =
+      Buffer<float>(parts.TheDevice, this->HasMoments() ? parts.Layout.Floats(3) : 0, "the net flux given");
     this->GivenFlux.Fill(0.0f);
-    AddFluxOfMoments(parts.TheDevice, parts.Layout, parts.Functions(), this->Given, this->GivenFlux);
-  }
-  const double volume = parts.Layout.grid.VoxelVolume();
-  for (int c = 0; c < parts.Layout.channels; ++c)
-  {
-    this->GivenPower[c] += SumOverVoxels(parts.Layout.grid, [&](std::size_t i) {
-      float& here = path[c * parts.Layout.Stride() + i];
-      const double scattered = static_cast<double>(parts.Problem.Scattering().SigmaS(i, c)) * here;
-      here = static_cast<float>(here / volume);
-      return scattered;
-    });
-  }
+    if (parts.Basis)
+    {
+      AddFluxOfMoments(parts.TheDevice, parts.Layout, parts.Functions(), this->Given, this->GivenFlux);
+    }
+    const double volume = parts.Layout.grid.VoxelVolume();
+    for (int c = 0; c < channels; ++c)
+    {
+      scattered[c] = SumOverVoxels(parts.Layout.grid, [&](std::size_t i) {
+        float& here = path[c * parts.Layout.Stride() + i];
+        const double power = static_cast<double>(parts.Problem.Scattering().SigmaS(i, c)) * here;
+        here = static_cast<float>(here / volume);
+        return power;
+      });
+    }
+  });
+  scattered = this->TheDomain.Sum(scattered);
+  this->GivenPower = this->Uncollided->Ledger().Balance().emitted;
+  std::transform(scattered.begin(), scattered.end(), this->GivenPower.begin(), this->GivenPower.begin(), std::plus<>());
   this->UncollidedFluence.swap(path);
+  const char* what = "the diffusion system";
+  this->GivenInSystems = { parts.TheDevice, this->Block, this->Given, channels, what };
+  this->GivenInSystems.FillOwn();
+  if (this->HasMoments())
+  {
+    this->GivenFluxInSystems = { parts.TheDevice, this->Block, this->GivenFlux, 3 * channels, what };
+    this->GivenFluxInSystems.Fill();
+  }
 }
 
 void DiffusionAcceleration::MakeSweep()
 {
   TransportParts& parts = this->Parts;
-  this->PartialCurrents = Buffer<float>(parts.TheDevice, parts.Layout.Floats(6), "the power from voxel to voxel");
+  const char* what = "the power from voxel to voxel";
+  this->TheDomain.Collective(
+    [&] { this->PartialCurrents = Buffer<float>(parts.TheDevice, parts.Layout.Floats(6), what); });
+  this->SourceInSystems = { parts.TheDevice, this->Block, parts.Source, parts.Layout.channels, "the diffusion system" };
+  this->Currents = { parts.TheDevice, this->Block, this->PartialCurrents, 6 * parts.Layout.channels, what };
+  this->Moments.Allocate(parts.TheDevice, "the diffusion system");
   SweepRequest request = { this->DepositOfSweep(), parts.AllRays() };
   request.sameBoundary = true;
   request.angular = parts.UsualValues();
@@ -144,24 +176,47 @@ Deposit DiffusionAcceleration::DepositOfSweep() const
 /// every time.
 void DiffusionAcceleration::Sweep(int iteration, const Monitor& monitor)
 {
-  if (iteration == 1)
-  {
-    this->Parts.LightBeams(this->Given);
-  }
-  this->ScatterFound();
-  for (std::size_t c = 0; c < this->Systems.size(); ++c)
-  {
-    if (this->VoxelPower(static_cast<int>(c)) > 0.0)
+  this->TheDomain.Collective([&] {
+    if (iteration == 1)
     {
-      this->Systems[c]->ShapeSource();
+      this->Parts.LightBeams(this->Given);
     }
-  }
-  this->Parts.Path.Fill(0.0f);
-  this->PartialCurrents.Fill(0.0f);
-  this->Swept->Forget();
+  });
+  this->ScatterFound();
+  this->ShapeSource();
+  this->TheDomain.Collective([&] {
+    this->Parts.Path.Fill(0.0f);
+    this->PartialCurrents.Fill(0.0f);
+    this->Swept->Forget();
+  });
   const bool shines = iteration > 0 || this->Parts.HasSource();
   this->Tally = this->Swept->Apply(shines ? &this->Parts.Source : nullptr, this->Parts.BoundaryOfSweeps(), monitor);
-  this->TakeSweptFaces();
+  if (this->Box)
+  {
+    this->Box->TakeSwept();
+  }
+  this->Moments.Spread(this->Parts.Path);
+  this->Currents.Fill();
+}
+
+/// At the surfaces of thick voxels.
+void DiffusionAcceleration::ShapeSource()
+{
+  this->SourceInSystems.FillOwn();
+  if (this->Systems.empty())
+  {
+    return;
+  }
+  this->TheDomain.Collective([&] {
+    for (std::size_t c = 0; c < this->Systems.size(); ++c)
+    {
+      if (this->VoxelPower(static_cast<int>(c)) > 0.0)
+      {
+        this->Systems[c]->ShapeSource();
+      }
+    }
+  });
+  this->SourceInSystems.TakeOwn();
 }
 
 /// What of uncollided light comes back comes back every time.
@@ -172,55 +227,26 @@ void DiffusionAcceleration::ReflectUncollided()
   {
     return;
   }
-  this->Box.emplace(*parts.Faces);
+  this->Box.emplace(parts.TheDevice, *parts.Faces, this->Block);
   for (int c = 0; c < parts.Layout.channels; ++c)
   {
-    this->GivenPower[c] += this->Box->GivenBack()[c];
-    this->Faces.emplace_back(parts.TheDevice, (FaceLeaves + 1) * parts.Faces->Cells(), "the light at the box's faces");
+    this->GivenPower[c] += this->Box->OfBox().GivenBack()[c];
   }
-}
-
-/// What came back and left in the sweep, for the diffusion systems.
-void DiffusionAcceleration::TakeSweptFaces()
-{
-  if (!this->Box)
-  {
-    return;
-  }
-  this->Box->TakeSwept();
-  for (std::size_t c = 0; c < this->Faces.size(); ++c)
-  {
-    this->Faces[c].Write(this->Box->RowsOf(static_cast<int>(c)).data());
-  }
-}
-
-/// By cell of the box's faces, without the pattern of rays.
-std::vector<double> DiffusionAcceleration::LeftByCell() const
-{
-  const Grid& grid = this->Parts.Layout.grid;
-  const double longest = *std::max_element(grid.spacing.begin(), grid.spacing.end());
-  std::vector<double> tau;
-  for (int c = 0; c < this->Parts.Layout.channels; ++c)
-  {
-    ForBoxFaceCells(
-      grid, [&](const BoxFaceCell& cell) { tau.push_back(longest * this->TheMedium.TransportSigmaT(cell.voxel, c)); });
-  }
-  const std::array<Rgb, 6> incoming =
-    this->Parts.SweepCarriesBoundarySource() ? this->Parts.UsualBoundary->IncomingPower() : std::array<Rgb, 6>{};
-  return this->Box->LeftWithoutPattern(incoming, tau, this->Parts.SpreadsAside());
 }
 
 /// The source of the next sweep, of what the last one and the systems found.
 void DiffusionAcceleration::ScatterFound()
 {
-  for (std::size_t c = 0; c < this->Systems.size(); ++c)
-  {
-    if (this->VoxelPower(static_cast<int>(c)) > 0.0)
+  this->TheDomain.Collective([&] {
+    for (std::size_t c = 0; c < this->Systems.size() && !this->Parts.IsEmpty(); ++c)
     {
-      this->Parts.Scattering->ScatterFluence(
-        static_cast<int>(c), this->DepositOfSweep(), this->Systems[c]->NextFluence(), this->Given, this->Parts.Source);
+      if (this->VoxelPower(static_cast<int>(c)) > 0.0)
+      {
+        this->Parts.Scattering->ScatterFluence(static_cast<int>(c), this->DepositOfSweep(),
+          this->Systems[c]->NextFluence(), this->Given, this->Parts.Source);
+      }
     }
-  }
+  });
 }
 
 /// Of the last sweep, with uncollided light; [channel][stride].
@@ -240,15 +266,13 @@ std::vector<float> DiffusionAcceleration::SweptFluence() const
 void DiffusionAcceleration::MakeSystems()
 {
   TransportParts& parts = this->Parts;
-  const CrossingPattern pattern = FindCrossingPattern(
-    parts.Layout.grid, parts.Usual.Set(), this->Settings.mapResolution, parts.Usual.Starts(), this->Settings.periodic);
+  const CrossingPattern pattern = FindCrossingPattern(this->TheDomain.Whole(), parts.Usual.Set(),
+    this->Settings.mapResolution, parts.Usual.Starts(), this->Settings.periodic);
   const std::array<Rgb, 6> incoming =
     parts.SweepCarriesBoundarySource() ? parts.UsualBoundary->IncomingPower() : std::array<Rgb, 6>{};
-  const bool passes = this->Uncollided->Passed().Size() > 0;
-  if (passes)
-  {
-    this->OfLamps = this->Uncollided->ScatteredInVoxels();
-  }
+  const VolumeLayout& held = this->Block.WithGhosts();
+  const GhostedMedium& medium = this->Coefficients;
+  const bool passes = this->Uncollided->Passes();
   for (int c = 0; c < parts.Layout.channels; ++c)
   {
     std::array<double, 6> ofChannel, albedo = {};
@@ -258,21 +282,21 @@ void DiffusionAcceleration::MakeSystems()
       ofChannel[face] = incoming[face][c];
       this->PowerIn[c] += this->Tally.in[face][c];
     }
-    const DiffusionSystem::Arrays arrays = { parts.Layout.Stride(), parts.Layout.ExtinctionFirst(c),
-      c * parts.Layout.Stride(), &parts.OnDevice.TransportSigmaT(), &parts.OnDevice.SigmaT(), &parts.OnDevice.SigmaA(),
-      &parts.OnDevice.SigmaS(), &this->Given, parts.Layout.Places(parts.Functions()), c,
-      parts.Basis ? &this->GivenFlux : nullptr, &parts.Source, &parts.Path, &this->PartialCurrents,
-      passes ? &this->Uncollided->Passed() : nullptr, passes ? &this->OfLamps : nullptr,
-      parts.Faces ? &this->Faces[c] : nullptr, albedo };
-    this->Systems.push_back(std::make_unique<DiffusionSystem>(parts.TheDevice, parts.Layout.grid,
-      this->Settings.periodic, parts.Usual.Set(), pattern, arrays, ofChannel, this->LinearSource));
+    const DiffusionSystem::Arrays arrays = { held.Stride(), held.ExtinctionFirst(c), c * held.Stride(),
+      &medium.sigma_t.Values(), &medium.Swept(), &medium.sigma_a.Values(), &medium.sigma_s.Values(),
+      &this->GivenInSystems.Values(), this->Moments.Places(), c,
+      this->HasMoments() ? &this->GivenFluxInSystems.Values() : nullptr, &this->SourceInSystems.Values(),
+      &this->Moments.Values(parts.Path), &this->Currents.Values(), passes ? &this->Uncollided->Passed() : nullptr,
+      passes ? &this->Uncollided->OfLamps() : nullptr, this->Box ? &this->Box->Rows(c) : nullptr, albedo };
+    this->Systems.push_back(std::make_unique<DiffusionSolver>(parts.TheDevice, this->Block, parts.Usual.Set(), pattern,
+      arrays, ofChannel, this->Settings.periodic, this->LinearSource));
   }
 }
 
 /// W of a voxel, about: the unit that the system's solver works in.
 double DiffusionAcceleration::VoxelPower(int c) const
 {
-  return (this->GivenPower[c] + this->PowerIn[c]) / static_cast<double>(this->Parts.Layout.grid.VoxelCount());
+  return (this->GivenPower[c] + this->PowerIn[c]) / static_cast<double>(this->TheDomain.Whole().VoxelCount());
 }
 
 /// Solve for the light of each channel and estimate how far it is from that of an endless iteration (numerics.md,
@@ -282,22 +306,32 @@ void DiffusionAcceleration::Correct(int iteration)
   double change = 0.0;
   for (int c = 0; c < this->Parts.Layout.channels; ++c)
   {
-    const double power = this->VoxelPower(c);
-    if (power > 0.0)
+    if (this->VoxelPower(c) > 0.0)
     {
-      change = std::max(change, this->Systems[c]->Correct(power));
-      if (this->Parts.Basis)
-      {
-        this->Systems[c]->PutNextFlux(this->Parts.Path);
-      }
+      change = std::max(change, this->Systems[c]->Correct(this->VoxelPower(c)));
     }
+  }
+  if (this->HasMoments())
+  {
+    this->TheDomain.Collective([&] {
+      for (int c = 0; c < this->Parts.Layout.channels; ++c)
+      {
+        if (this->VoxelPower(c) > 0.0)
+        {
+          this->Systems[c]->PutNextFlux(this->Moments.Values(this->Parts.Path));
+        }
+      }
+    });
+    this->Moments.TakeFirstDegree(this->Parts.Path);
   }
   this->CountLight();
   if (this->Parts.FacesReflect())
   {
     Rgb given = this->GivenPower;
     std::transform(given.begin(), given.end(), this->PowerIn.begin(), given.begin(), std::plus<>());
-    change = std::max(change, this->Box->Reflect(iteration, given));
+    double ofFaces = 0.0;
+    this->TheDomain.Collective([&] { ofFaces = this->Box->OfBox().Reflect(iteration, given); });
+    change = std::max(change, this->TheDomain.Max(ofFaces)); // ranks' devices may round differently
   }
   const bool guessed = iteration == 1 && this->Warm.Begins() && this->Warm.Rate(0) > 0.0;
   this->Residual = this->Rest.After(change, guessed ? this->Warm.Rate(0) : 0.0);
@@ -309,6 +343,7 @@ void DiffusionAcceleration::Correct(int iteration)
 void DiffusionAcceleration::CountLight()
 {
   this->Result.ledger = this->Uncollided->Ledger();
+  std::vector<bool> lit(this->Parts.Layout.channels, false);
   for (int c = 0; c < this->Parts.Layout.channels; ++c)
   {
     double entered = 0.0;
@@ -323,14 +358,9 @@ void DiffusionAcceleration::CountLight()
     {
       continue; // dark: never solved for
     }
+    lit[c] = true;
     this->Result.ledger.Absorb(c, this->Systems[c]->Absorbed());
     const std::array<double, 6> outflow = this->Systems[c]->Outflow(entered, ofSweep);
-    if (this->Box)
-    {
-      const std::vector<float> rows = this->Faces[c].Read();
-      this->Box->SetLeaving(
-        c, { rows.begin() + static_cast<std::ptrdiff_t>(FaceLeaves * this->Parts.Faces->Cells()), rows.end() });
-    }
     for (int face = 0; face < 6 && !this->Box; ++face)
     {
       this->Result.ledger.Escape(c, face, outflow[face]);
@@ -338,7 +368,8 @@ void DiffusionAcceleration::CountLight()
   }
   if (this->Box)
   {
-    this->Box->Count(this->Result.ledger);
+    this->Box->TakeLeaving(lit);
+    this->Box->OfBox().Count(this->Result.ledger);
   }
 }
 
@@ -346,16 +377,23 @@ bool DiffusionAcceleration::Done(int iterations) const
 {
   const int most = this->Settings.maximumOrders > 0 ? this->Settings.maximumOrders : MostSweeps;
   // A guess has shown already how fast changes fall, but angular moments are not among them.
-  const int least = this->Warm.Begins() && !this->Parts.Basis ? 2 : 3;
+  const int least = this->Warm.Begins() && !this->HasMoments() ? 2 : 3;
   return iterations >= most || this->Residual == 0.0 ||
     (iterations >= least && MeetsTolerance(this->Settings, this->Residual));
 }
 
+/// Unscattered fluence.
 void DiffusionAcceleration::LookAtDirect()
 {
+  std::vector<float> direct;
+  this->TheDomain.Collective([&] {
+    this->Parts.Fluence.Write(this->SweptFluence().data());
+    this->Result.fluenceDirect = Interleaved(this->Parts.Layout, this->Parts.Fluence, 1.0);
+    direct = this->Parts.Fluence.Read();
+  });
   if (this->Warm.Keeps())
   {
-    this->Warm.Prepare(this->Parts.Fluence.Read());
+    this->Warm.Prepare(direct);
   }
 }
 
@@ -363,57 +401,63 @@ void DiffusionAcceleration::LookAtDirect()
 /// the second sweep (numerics.md, Eq. (46d)).
 void DiffusionAcceleration::BeginWarm()
 {
-  const TransportParts& parts = this->Parts;
+  TransportParts& parts = this->Parts;
   const VolumeLayout& layout = parts.Layout;
-  this->First = this->UncollidedFluence;
-  this->First.resize(layout.Values());
-  this->FirstMoments = parts.Basis ? parts.Path.Read() : std::vector<float>();
+  this->TheDomain.Collective([&] {
+    this->First = this->UncollidedFluence;
+    this->First.resize(layout.Values());
+    this->FirstMoments = this->HasMoments() ? parts.Path.Read() : std::vector<float>();
+    for (int c = 0; c < layout.channels; ++c)
+    {
+      const std::vector<double> found = this->Systems[c]->Found();
+      for (std::size_t i = 0; i < layout.grid.VoxelCount(); ++i)
+      {
+        this->First[c * layout.Stride() + i] += static_cast<float>(found[i]);
+      }
+    }
+  });
+  if (!this->Warm.Begins())
+  {
+    return;
+  }
+  GhostedBuffer guess(parts.TheDevice, this->Block, this->Warm.Guess(), layout.channels, "the last light");
+  guess.Fill();
+  std::vector<float> values;
+  this->TheDomain.Collective([&] { values = guess.Values().Read(); });
   for (int c = 0; c < layout.channels; ++c)
   {
-    const std::vector<double> found = this->Systems[c]->Found();
-    for (std::size_t i = 0; i < layout.grid.VoxelCount(); ++i)
-    {
-      this->First[c * layout.Stride() + i] += static_cast<float>(found[i]);
-    }
-    if (this->Warm.Begins())
-    {
-      this->Systems[c]->Begin(this->WithGuess(c));
-    }
+    this->Systems[c]->BeginBeyond(this->GuessOf(c, values));
   }
-  if (this->Warm.Begins() && parts.Basis)
-  {
-    AddMoments(parts.TheDevice, layout, parts.Functions(), this->Warm.Guess(), parts.Path);
-  }
+  this->TheDomain.Collective([&] {
+    if (parts.Basis)
+    {
+      AddMoments(parts.TheDevice, layout, parts.Functions(), this->Warm.Guess(), parts.Path);
+    }
+  });
 }
 
-/// What a channel's system has solved for, and what is guessed beyond it.
-std::vector<double> DiffusionAcceleration::WithGuess(int c) const
+/// What is guessed beyond what a channel's system has solved for, as its state.
+/// @param fluence  with ghosts, W length
+std::vector<double> DiffusionAcceleration::GuessOf(int c, const std::vector<float>& fluence) const
 {
-  const VolumeLayout& layout = this->Parts.Layout;
-  const MomentPlaces places = layout.Places(this->Parts.Functions());
-  const std::size_t voxels = layout.grid.VoxelCount();
-  const double volume = layout.grid.VoxelVolume();
-  std::vector<double> values = this->Systems[c]->State();
-  for (std::size_t i = 0; i < voxels; ++i)
+  const VolumeLayout& held = this->Block.WithGhosts();
+  const auto begin = fluence.begin() + static_cast<std::ptrdiff_t>(c * held.Stride());
+  std::vector<double> state = this->Moments.StateOf(
+    c, this->Warm.Guessed(), { begin, begin + static_cast<std::ptrdiff_t>(held.grid.VoxelCount()) });
+  for (double& value : state)
   {
-    values[i] += this->Warm.Guessed()[c * layout.Stride() + i] / volume;
-    for (int axis = 0; axis < 3 && this->Parts.Basis; ++axis)
-    {
-      const int function = axis == 0 ? 3 : axis;
-      values[(axis + 1) * voxels + i] +=
-        this->Warm.Guessed()[VolumeLayout::MomentPlace(places, function, c, i)] / volume;
-    }
+    value /= held.grid.VoxelVolume();
   }
-  return values;
+  return state;
 }
 
 void DiffusionAcceleration::Leave()
 {
-  std::vector<float> moments = this->Parts.Basis ? this->Parts.Path.Read() : std::vector<float>();
-  for (std::size_t i = 0; i < moments.size(); ++i)
-  {
-    moments[i] -= this->FirstMoments[i];
-  }
+  std::vector<float> moments;
+  this->TheDomain.Collective([&] {
+    moments = this->HasMoments() ? this->Parts.Path.Read() : std::vector<float>();
+    std::transform(moments.begin(), moments.end(), this->FirstMoments.begin(), moments.begin(), std::minus<>());
+  });
   const double rate = std::clamp(this->Rest.Ratio(), 0.5, 0.95);
   this->Result.warm = this->Warm.Begins();
   this->Result.kept = this->Warm.Leave(this->First, moments, { rate, rate, rate });
@@ -421,9 +465,7 @@ void DiffusionAcceleration::Leave()
 
 void DiffusionAcceleration::WriteFluence()
 {
-  TransportParts& parts = this->Parts;
-  const VolumeLayout& layout = parts.Layout;
-  for (int c = 0; c < layout.channels; ++c)
+  for (int c = 0; c < this->Parts.Layout.channels; ++c)
   {
     if (this->VoxelPower(c) > 0.0)
     {
@@ -431,52 +473,85 @@ void DiffusionAcceleration::WriteFluence()
     }
   }
   this->CountLight();
-  std::vector<float> fluence(layout.Values(), 0.0f);
-  for (int c = 0; c < layout.channels; ++c)
-  {
-    const std::vector<double> solved = this->Systems[c]->Found();
-    std::copy(solved.begin(), solved.end(), fluence.begin() + static_cast<std::ptrdiff_t>(c * layout.Stride()));
-    if (this->Settings.netFlux && !parts.Basis && this->VoxelPower(c) > 0.0)
-    {
-      this->Systems[c]->AddFlux(parts.Flux);
-    }
-  }
-  SingleRank alone;
-  const BlockPartition whole = BlockPartition::Even(layout.grid, 1);
-  const Halo around(alone, whole, this->Settings.periodic, 1);
-  MakeFluence(alone, around, layout, this->TheMedium.sigma_a, fluence, parts.Path.Read(), this->UncollidedFluence);
-  parts.Fluence.Write(fluence.data());
+  const std::vector<float> fluence = this->FluenceOfSystems();
+  this->TheDomain.Collective([&] { this->Parts.Fluence.Write(fluence.data()); });
   if (this->Settings.netFlux)
   {
-    if (parts.Basis) // the moments of degree 1 have less of the pattern of rays than the powers through faces
+    this->WriteFlux(fluence);
+  }
+}
+
+/// With uncollided light, [channel][stride].
+std::vector<float> DiffusionAcceleration::FluenceOfSystems()
+{
+  const VolumeLayout& layout = this->Parts.Layout;
+  std::vector<float> fluence(layout.Floats(), 0.0f), path;
+  this->TheDomain.Collective([&] {
+    for (int c = 0; c < layout.channels; ++c)
+    {
+      const std::vector<double> solved = this->Systems[c]->Found();
+      std::copy(solved.begin(), solved.end(), fluence.begin() + static_cast<std::ptrdiff_t>(c * layout.Stride()));
+    }
+    path = this->Parts.Path.Read();
+  });
+  const Halo around(this->TheDomain.Comm(), this->TheDomain.Partition(), this->Settings.periodic, 1);
+  MakeFluence(
+    this->TheDomain.Comm(), around, layout, this->TheMedium.sigma_a, fluence, std::move(path), this->UncollidedFluence);
+  fluence.resize(layout.Values());
+  fluence.resize(layout.Floats(), 0.0f);
+  return fluence;
+}
+
+/// Adds that of the systems; with angular moments, whose degree 1 has less of the pattern of rays, that of the sweep.
+void DiffusionAcceleration::WriteFlux(const std::vector<float>& fluence)
+{
+  TransportParts& parts = this->Parts;
+  GhostedBuffer flux(parts.TheDevice, this->Block, parts.Flux, 3 * parts.Layout.channels, "net_flux");
+  flux.FillOwn();
+  this->TheDomain.Collective([&] {
+    for (int c = 0; c < parts.Layout.channels; ++c)
+    {
+      if (!this->HasMoments() && this->VoxelPower(c) > 0.0)
+      {
+        this->Systems[c]->AddFlux(flux.Values());
+      }
+    }
+  });
+  flux.TakeOwn();
+  this->TheDomain.Collective([&] {
+    if (parts.Basis)
     {
       AddFluxOfMoments(parts.TheDevice, parts.Layout, parts.Functions(), parts.Path, parts.Flux);
     }
-    LimitFlux(parts.Layout, fluence, parts.Flux);
-  }
+    if (!parts.IsEmpty())
+    {
+      LimitFlux(parts.Layout, fluence, parts.Flux);
+    }
+  });
 }
 
 /// Of thick voxels, from the powers of the system.
 void DiffusionAcceleration::FindSurfaceRadiance()
 {
-  const std::array<bool, 3>& periodic = this->Settings.periodic;
-  const std::array<bool, 6> open = { !periodic[0], !periodic[0], !periodic[1], !periodic[1], !periodic[2],
-    !periodic[2] };
-  if (!this->LinearSource || !IsThickAtFaces(this->TheMedium, open, this->Parts.Layout.channels))
+  if (!this->LinearSource)
   {
     return;
   }
+  const VolumeLayout& layout = this->Parts.Layout;
   std::vector<float> lamps = this->Uncollided->PathOfLamps();
   for (float& fluence : lamps)
   {
-    fluence = static_cast<float>(fluence / this->Parts.Layout.grid.VoxelVolume());
+    fluence = static_cast<float>(fluence / layout.grid.VoxelVolume());
   }
-  std::vector<SurfacePowers> powers(this->Parts.Layout.channels);
-  for (std::size_t c = 0; c < powers.size(); ++c)
-  {
-    powers[c] = this->VoxelPower(static_cast<int>(c)) > 0.0 ? this->Systems[c]->PowersAtSurface() : SurfacePowers();
-    powers[c].lamps = lamps.empty() ? nullptr : lamps.data() + c * this->Parts.Layout.Stride();
-  }
-  this->Result.surfaceRadiance = SurfaceRadiance(this->TheMedium, open, this->Parts.Lamps, powers);
+  std::vector<SurfacePowers> powers;
+  this->TheDomain.Collective([&] {
+    for (int c = 0; c < layout.channels && !this->Parts.IsEmpty(); ++c)
+    {
+      powers.push_back(this->VoxelPower(c) > 0.0 ? this->Systems[c]->PowersAtSurface() : SurfacePowers());
+      powers.back().lamps = lamps.empty() ? nullptr : lamps.data() + c * layout.Stride();
+    }
+  });
+  this->Result.surfaceRadiance = SurfaceRadiance(
+    this->TheDomain, this->Settings.periodic, this->TheMedium, layout.channels, this->Parts.Lamps, powers);
 }
 }

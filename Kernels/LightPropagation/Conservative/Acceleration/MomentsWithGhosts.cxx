@@ -7,24 +7,33 @@ namespace
 constexpr int OfDegreesToOne = 4; ///< functions
 }
 
-MomentsWithGhosts::MomentsWithGhosts(Communicator& communicator, const BlockWithGhosts& block, int functions)
-  : Comm(communicator)
-  , Block(block)
+MomentsWithGhosts::MomentsWithGhosts(const BlockWithGhosts& block, int functions)
+  : Block(block)
   , Own(block.Own().Places(functions))
-  , Held(block.WithGhosts().Places(functions > 1 ? OfDegreesToOne : 1))
+  , Held(block.HasGhosts() ? block.WithGhosts().Places(functions > 1 ? OfDegreesToOne : 1) : this->Own)
 {
 }
 
-void MomentsWithGhosts::Spread(const Buffer<float>& own, Buffer<float>& held) const
+void MomentsWithGhosts::Allocate(Device& device, const char* what)
 {
-  this->Comm.Collective([&] {
-    if (!this->Block.Has())
+  this->Block.TheDomain().Collective([&] {
+    if (this->Block.HasGhosts())
+    {
+      this->Array = Buffer<float>(device, this->Block.WithGhosts().MomentFloats(this->Held.functions), what);
+    }
+  });
+}
+
+void MomentsWithGhosts::Spread(const Buffer<float>& own)
+{
+  this->Block.TheDomain().Collective([&] {
+    if (this->Array.Size() == 0)
     {
       return;
     }
     const VolumeLayout& layout = this->Block.Own();
     const std::vector<float> from = own.Read();
-    std::vector<float> to(held.Size(), 0.0f);
+    std::vector<float> to(this->Array.Size(), 0.0f);
     for (int c = 0; c < layout.channels; ++c)
     {
       for (std::size_t i = 0; i < layout.grid.VoxelCount(); ++i)
@@ -38,19 +47,19 @@ void MomentsWithGhosts::Spread(const Buffer<float>& own, Buffer<float>& held) co
         }
       }
     }
-    held.Write(to.data());
+    this->Array.Write(to.data());
   });
 }
 
-void MomentsWithGhosts::TakeFirstDegree(const Buffer<float>& held, Buffer<float>& own) const
+void MomentsWithGhosts::TakeFirstDegree(Buffer<float>& own) const
 {
-  this->Comm.Collective([&] {
-    if (!this->Block.Has())
+  this->Block.TheDomain().Collective([&] {
+    if (this->Array.Size() == 0)
     {
       return;
     }
     const VolumeLayout& layout = this->Block.Own();
-    const std::vector<float> from = held.Read();
+    const std::vector<float> from = this->Array.Read();
     std::vector<float> to = own.Read();
     for (int c = 0; c < layout.channels; ++c)
     {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "Device/Buffer.h"
-#include "Distribution/Communicator.h"
 #include "LightPropagation/Diffusion/BlockWithGhosts.h"
 
 #include <cstddef>
@@ -14,19 +13,21 @@ namespace tyndall
 class MomentsWithGhosts
 {
 public:
-  /// @param communicator, block  must stay
+  /// @param block  must stay
   /// @param functions  of the block's angular moments, the same on all ranks; 1: all is isotropic
-  MomentsWithGhosts(Communicator& communicator, const BlockWithGhosts& block, int functions);
+  MomentsWithGhosts(const BlockWithGhosts& block, int functions);
 
   bool Any() const { return this->Own.functions > 1; }
   /// Where moments are in arrays with ghosts.
   const MomentPlaces& Places() const { return this->Held; }
-  std::size_t HeldFloats() const { return this->Block.WithGhosts().MomentFloats(this->Held.functions); }
 
-  /// Writes what the block has to the array with ghosts, which are dark. All ranks call these.
-  void Spread(const Buffer<float>& own, Buffer<float>& held) const;
+  /// Makes the array with ghosts, where the block has any: else the systems read the block's own. Collective, as all.
+  void Allocate(Device& device, const char* what);
+  const Buffer<float>& Values(const Buffer<float>& own) const { return this->Array.Size() > 0 ? this->Array : own; }
+  /// Writes what the block has to the array with ghosts, which are dark.
+  void Spread(const Buffer<float>& own);
   /// The moments of degree 1 the other way.
-  void TakeFirstDegree(const Buffer<float>& held, Buffer<float>& own) const;
+  void TakeFirstDegree(Buffer<float>& own) const;
 
   /// Of values as path integrals have them those of a channel as DiffusionSystem::State has them, in ghosts 0 but for
   /// degree 0.
@@ -37,8 +38,8 @@ public:
 private:
   static int FunctionAlong(int axis) { return axis == 0 ? 3 : axis; } ///< y, z, x, as AngularBasis has them
 
-  Communicator& Comm;
   const BlockWithGhosts& Block;
   MomentPlaces Own, Held;
+  Buffer<float> Array; ///< empty: there are no ghosts
 };
 }

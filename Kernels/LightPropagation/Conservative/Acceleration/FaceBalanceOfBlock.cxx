@@ -1,4 +1,4 @@
-#include "LightPropagation/Conservative/Acceleration/FaceBalanceInBlocks.h"
+#include "LightPropagation/Conservative/Acceleration/FaceBalanceOfBlock.h"
 
 #include "LightPropagation/Diffusion/DiffusionShared.h"
 #include "Medium/BoxFaces.h"
@@ -7,9 +7,8 @@
 
 namespace tyndall
 {
-FaceBalanceInBlocks::FaceBalanceInBlocks(
-  Device& device, Communicator& communicator, FaceLight& faces, const BlockWithGhosts& block)
-  : Comm(communicator)
+FaceBalanceOfBlock::FaceBalanceOfBlock(Device& device, FaceLight& faces, const BlockWithGhosts& block)
+  : TheDomain(block.TheDomain())
   , Faces(faces)
   , HeldCells(block.Has() ? BoxFaceCellCount(block.WithGhosts().grid) : 0)
 {
@@ -30,7 +29,7 @@ FaceBalanceInBlocks::FaceBalanceInBlocks(
       }
     });
   }
-  communicator.Collective([&] {
+  this->TheDomain.Collective([&] {
     this->Box.emplace(faces);
     for (int c = 0; c < faces.Channels(); ++c)
     {
@@ -40,9 +39,9 @@ FaceBalanceInBlocks::FaceBalanceInBlocks(
   });
 }
 
-void FaceBalanceInBlocks::TakeSwept()
+void FaceBalanceOfBlock::TakeSwept()
 {
-  this->Comm.Collective([&] {
+  this->TheDomain.Collective([&] {
     this->Box->TakeSwept();
     for (std::size_t c = 0; c < this->OfBlock.size(); ++c)
     {
@@ -60,10 +59,10 @@ void FaceBalanceInBlocks::TakeSwept()
   });
 }
 
-void FaceBalanceInBlocks::TakeLeaving(const std::vector<bool>& lit)
+void FaceBalanceOfBlock::TakeLeaving(const std::vector<bool>& lit)
 {
   std::vector<double> leaves(this->Faces.Cells() * lit.size(), 0.0);
-  this->Comm.Collective([&] {
+  this->TheDomain.Collective([&] {
     for (std::size_t c = 0; c < lit.size(); ++c)
     {
       const std::vector<float> rows = this->OfBlock[c].Read();
@@ -73,7 +72,7 @@ void FaceBalanceInBlocks::TakeLeaving(const std::vector<bool>& lit)
       }
     }
   });
-  leaves = this->Comm.Sum(leaves);
+  leaves = this->TheDomain.Sum(leaves);
   for (std::size_t c = 0; c < lit.size(); ++c)
   {
     const auto begin = leaves.begin() + static_cast<std::ptrdiff_t>(c * this->Faces.Cells());
@@ -84,7 +83,7 @@ void FaceBalanceInBlocks::TakeLeaving(const std::vector<bool>& lit)
   }
 }
 
-std::vector<double> FaceBalanceInBlocks::LeftByCell(const std::array<Rgb, 6>& incoming, const Medium& medium) const
+std::vector<double> FaceBalanceOfBlock::LeftByCell(const std::array<Rgb, 6>& incoming, const Medium& medium) const
 {
   const std::array<double, 3>& h = this->Faces.Box().spacing;
   const double longest = *std::max_element(h.begin(), h.end());
@@ -96,6 +95,6 @@ std::vector<double> FaceBalanceInBlocks::LeftByCell(const std::array<Rgb, 6>& in
       tau[c * this->Faces.Cells() + cell.whole] = longest * medium.TransportSigmaT(cell.voxel, static_cast<int>(c));
     }
   }
-  return this->Box->LeftWithoutPattern(incoming, this->Comm.Sum(tau), !this->Faces.Reflects());
+  return this->Box->LeftWithoutPattern(incoming, this->TheDomain.Sum(tau), !this->Faces.Reflects());
 }
 }

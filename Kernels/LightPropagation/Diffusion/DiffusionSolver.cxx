@@ -1,9 +1,10 @@
-#include "LightPropagation/Diffusion/BalanceOverRanks.h"
+#include "LightPropagation/Diffusion/DiffusionSolver.h"
 
 #include "Medium/BoxFaces.h"
 #include "Medium/VoxelSums.h"
 
 #include <algorithm>
+#include <functional>
 #include <utility>
 
 namespace tyndall
@@ -36,27 +37,41 @@ std::vector<float> ArrayOf(const MultigridLevel& rows, const std::vector<float>&
 }
 }
 
-BalanceOverRanks::BalanceOverRanks(Device& device, Communicator& communicator, const BlockPartition& partition,
-  const BlockWithGhosts& block, const DirectionSet& directions, const CrossingPattern& pattern,
-  const DiffusionSystem::Arrays& arrays, const std::array<double, 6>& incoming, const std::array<bool, 3>& periodic,
-  bool linear)
-  : Comm(communicator)
-  , Block(block)
+DiffusionSolver::DiffusionSolver(Device& device, const BlockWithGhosts& block, const DirectionSet& directions,
+  const CrossingPattern& pattern, const DiffusionSystem::Arrays& arrays, const std::array<double, 6>& incoming,
+  const std::array<bool, 3>& periodic, bool linear)
+  : Block(block)
+  , TheDomain(block.TheDomain())
   , Periodic(periodic)
   , SigmaA(arrays.sigma_a)
   , First(arrays.first)
+  , ByCells(arrays.faces != nullptr)
 {
+  this->TheDomain.Collective([&] {
+    if (block.Has())
+    {
+      this->System = std::make_unique<DiffusionSystem>(device, block.WithGhosts().grid, block.Periodic(), directions,
+        PatternOf(pattern, block.Held(), this->TheDomain.Whole().size), arrays, incoming, linear);
+    }
+    if (block.HasGhosts())
+    {
+      this->OwnNext = ExactValues(device, block.Own().grid.VoxelCount(), "the diffusion system");
+    }
+  });
+  if (this->TheDomain.IsSerial())
+  {
+    return;
+  }
   std::array<std::vector<float>, 3> conductance;
   std::vector<float> loss;
-  communicator.Collective([&] {
-    this->Solver = std::make_unique<MultigridOverRanks>(communicator, partition, periodic);
+  this->TheDomain.Collective([&] {
+    this->OverRanks =
+      std::make_unique<MultigridOverRanks>(this->TheDomain.Comm(), this->TheDomain.Partition(), periodic);
     this->Fluence.assign(block.WithGhosts().grid.VoxelCount(), 0.0);
-    if (!block.Has())
+    if (!this->System)
     {
       return;
     }
-    this->System = std::make_unique<DiffusionSystem>(device, block.WithGhosts().grid, block.Periodic(), directions,
-      PatternOf(pattern, block.Held(), partition.whole.size), arrays, incoming, linear);
     MultigridSolver& matrix = this->System->Matrix();
     const std::vector<float> all = matrix.Conductance().Read();
     for (int axis = 0; axis < 3; ++axis)
@@ -65,42 +80,42 @@ BalanceOverRanks::BalanceOverRanks(Device& device, Communicator& communicator, c
     }
     loss = ArrayOf(matrix.Rows(), matrix.Loss().Read(), 0);
   });
-  this->Solver->SetMatrix(conductance, loss);
+  this->OverRanks->SetMatrix(conductance, loss);
 }
 
-/// As DiffusionSystem::Correct.
-double BalanceOverRanks::Correct(double unit)
+double DiffusionSolver::Correct(double unit)
 {
   Buffer<float> none;
-  this->Comm.Collective([&] {
+  this->TheDomain.Collective([&] {
     if (this->System)
     {
       this->System->FindModel();
     }
   });
   this->Block.FillGhosts(this->System ? this->System->TheModel() : none);
-  std::vector<float> right;
-  this->Comm.Collective([&] {
+  const double reduction = DiffusionSystem::ReductionAfter(this->Corrections++);
+  this->TheDomain.Collective([&] {
     if (this->System)
     {
       this->System->Balance();
-      right = ArrayOf(this->System->Matrix().Rows(), this->System->Matrix().Right().Read(), 0);
+    }
+    if (this->OnDevice())
+    {
+      this->System->Solve(unit, reduction);
     }
   });
-  const double reduction = DiffusionSystem::ReductionAfter(this->Corrections++);
-  this->Solver->Solve(this->Fluence, right, unit, reduction);
+  this->SolveOverRanks(unit, reduction);
   AndersonMixing::Sums sums = {};
-  this->Comm.Collective([&] {
+  this->TheDomain.Collective([&] {
     if (this->System)
     {
-      this->System->SetFound(this->Fluence);
       this->System->FindFlux();
       sums = this->System->SumsOfChange();
     }
   });
-  const std::vector<double> all = this->Comm.Sum({ sums.begin(), sums.end() });
+  const std::vector<double> all = this->TheDomain.Sum(std::vector<double>{ sums.begin(), sums.end() });
   std::copy(all.begin(), all.end(), sums.begin());
-  this->Comm.Collective([&] {
+  this->TheDomain.Collective([&] {
     if (this->System)
     {
       this->System->MixBy(sums);
@@ -109,10 +124,21 @@ double BalanceOverRanks::Correct(double unit)
   return AndersonMixing::ChangeBy(sums);
 }
 
-void BalanceOverRanks::Refine(double unit)
+void DiffusionSolver::SolveOverRanks(double unit, double reduction)
 {
-  this->Solver->GoOn(this->Fluence, unit, DiffusionSystem::RefinedBy, DiffusionSystem::RefinedTo);
-  this->Comm.Collective([&] {
+  if (!this->OverRanks)
+  {
+    return;
+  }
+  std::vector<float> right;
+  this->TheDomain.Collective([&] {
+    if (this->System)
+    {
+      right = ArrayOf(this->System->Matrix().Rows(), this->System->Matrix().Right().Read(), 0);
+    }
+  });
+  this->OverRanks->Solve(this->Fluence, right, unit, reduction);
+  this->TheDomain.Collective([&] {
     if (this->System)
     {
       this->System->SetFound(this->Fluence);
@@ -120,27 +146,40 @@ void BalanceOverRanks::Refine(double unit)
   });
 }
 
-void BalanceOverRanks::BeginBeyond(const std::vector<double>& guessed)
+void DiffusionSolver::Refine(double unit)
 {
-  this->Comm.Collective([&] {
-    for (std::size_t i = 0; i < this->Fluence.size(); ++i)
+  if (this->OverRanks)
+  {
+    this->OverRanks->GoOn(this->Fluence, unit, DiffusionSystem::RefinedBy, DiffusionSystem::RefinedTo);
+  }
+  this->TheDomain.Collective([&] {
+    if (this->OnDevice())
     {
-      this->Fluence[i] += guessed[i];
+      this->System->Refine(unit);
     }
-    if (this->System)
+    else if (this->System)
     {
-      std::vector<double> state = this->System->State();
-      std::copy(this->Fluence.begin(), this->Fluence.end(), state.begin());
-      for (std::size_t i = this->Fluence.size(); i < state.size(); ++i)
-      {
-        state[i] += guessed[i];
-      }
-      this->System->Begin(state);
+      this->System->SetFound(this->Fluence);
     }
   });
 }
 
-std::vector<double> BalanceOverRanks::OwnOf(const std::vector<double>& held) const
+void DiffusionSolver::BeginBeyond(const std::vector<double>& guessed)
+{
+  this->TheDomain.Collective([&] {
+    if (!this->System)
+    {
+      return;
+    }
+    std::vector<double> state = this->System->State();
+    std::copy(this->Fluence.begin(), this->Fluence.end(), state.begin()); // which has no rounding
+    std::transform(state.begin(), state.end(), guessed.begin(), state.begin(), std::plus<>());
+    std::copy_n(state.begin(), this->Fluence.size(), this->Fluence.begin());
+    this->System->Begin(state);
+  });
+}
+
+std::vector<double> DiffusionSolver::OwnOf(const std::vector<double>& held) const
 {
   std::vector<double> own(this->Block.Own().grid.VoxelCount());
   for (std::size_t i = 0; i < own.size(); ++i)
@@ -150,21 +189,30 @@ std::vector<double> BalanceOverRanks::OwnOf(const std::vector<double>& held) con
   return own;
 }
 
-std::vector<double> BalanceOverRanks::Found() const
+std::vector<double> DiffusionSolver::Found() const
 {
-  return this->OwnOf(this->Fluence);
+  return this->OnDevice() ? this->System->Found() : this->OwnOf(this->Fluence);
 }
 
-std::vector<double> BalanceOverRanks::NextFluence() const
+const ExactValues& DiffusionSolver::NextFluence()
 {
-  return this->System ? this->OwnOf(this->System->NextFluence().Read()) : std::vector<double>();
+  if (!this->Block.HasGhosts())
+  {
+    return this->System->NextFluence();
+  }
+  this->OwnNext.Write(this->OwnOf(this->System->NextFluence().Read()));
+  return this->OwnNext;
 }
 
-double BalanceOverRanks::Absorbed() const
+double DiffusionSolver::Absorbed() const
 {
   double own = 0.0;
-  this->Comm.Collective([&] {
-    if (this->System)
+  this->TheDomain.Collective([&] {
+    if (this->OnDevice())
+    {
+      own = this->System->Absorbed();
+    }
+    else if (this->System)
     {
       const Grid& grid = this->Block.Own().grid;
       const std::vector<float> sigmaA = this->SigmaA->Read();
@@ -174,13 +222,13 @@ double BalanceOverRanks::Absorbed() const
       });
     }
   });
-  return this->Comm.Sum({ own })[0];
+  return this->TheDomain.Sum(own);
 }
 
-std::array<double, 6> BalanceOverRanks::Outflow(double entered, const std::array<double, 6>& ofSweep)
+std::array<double, 6> DiffusionSolver::Outflow(double entered, const std::array<double, 6>& ofSweep)
 {
   DiffusionSystem::BorderSums sums;
-  this->Comm.Collective([&] {
+  this->TheDomain.Collective([&] {
     if (this->System)
     {
       const std::array<int, 3>& size = this->Block.WithGhosts().grid.size;
@@ -199,9 +247,9 @@ std::array<double, 6> BalanceOverRanks::Outflow(double entered, const std::array
   {
     values.insert(values.end(), ofFaces->begin(), ofFaces->end());
   }
-  values = this->Comm.Sum(values);
+  values = this->TheDomain.Sum(values);
   sums.transportWeight = values[0];
-  sums.shared = values[1];
+  sums.shared = this->ByCells ? 0.0 : values[1]; // else known by cell
   auto next = values.begin() + 2;
   for (std::array<double, 6>* ofFaces : { &sums.out, &sums.seeming, &sums.came })
   {
@@ -211,7 +259,7 @@ std::array<double, 6> BalanceOverRanks::Outflow(double entered, const std::array
   return DiffusionSystem::OutflowBy(sums, entered, ofSweep, this->Periodic);
 }
 
-void BalanceOverRanks::ShapeSource()
+void DiffusionSolver::ShapeSource()
 {
   if (this->System)
   {
@@ -219,7 +267,7 @@ void BalanceOverRanks::ShapeSource()
   }
 }
 
-void BalanceOverRanks::PutNextFlux(const Buffer<float>& path)
+void DiffusionSolver::PutNextFlux(const Buffer<float>& path)
 {
   if (this->System)
   {
@@ -227,7 +275,7 @@ void BalanceOverRanks::PutNextFlux(const Buffer<float>& path)
   }
 }
 
-SurfacePowers BalanceOverRanks::PowersAtSurface() const
+SurfacePowers DiffusionSolver::PowersAtSurface() const
 {
   SurfacePowers powers = this->System->PowersAtSurface();
   const std::vector<double> held = std::exchange(powers.net, {}), back = std::exchange(powers.back, {});
@@ -246,7 +294,7 @@ SurfacePowers BalanceOverRanks::PowersAtSurface() const
   return powers;
 }
 
-void BalanceOverRanks::AddFlux(const Buffer<float>& flux)
+void DiffusionSolver::AddFlux(const Buffer<float>& flux)
 {
   if (this->System)
   {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "Device/Buffer.h"
-#include "Distribution/Communicator.h"
 #include "LightPropagation/Conservative/Acceleration/FaceBalance.h"
 #include "LightPropagation/Diffusion/BlockWithGhosts.h"
 #include "Medium/Medium.h"
@@ -12,23 +11,22 @@
 
 namespace tyndall
 {
-/// FaceBalance.h of a box that is spread over ranks: each has the light of all cells of the box's faces on the host,
-/// and that of its block's voxels on the device, where the systems of blocks with ghosts look for it.
-class FaceBalanceInBlocks
+/// FaceBalance.h on a domain: each rank has the light of all cells of the box's faces on the host, and that of its own
+/// voxels' cells on the device, where its diffusion system reads it. Made and called collectively.
+class FaceBalanceOfBlock
 {
 public:
-  /// All ranks make one together.
-  /// @param device, communicator, faces, block  must stay
-  FaceBalanceInBlocks(Device& device, Communicator& communicator, FaceLight& faces, const BlockWithGhosts& block);
+  /// @param device, faces, block  must stay
+  FaceBalanceOfBlock(Device& device, FaceLight& faces, const BlockWithGhosts& block);
 
   FaceBalance& OfBox() { return *this->Box; }
-  void TakeSwept(); ///< as FaceBalance, and writes Rows. All ranks call it
+  void TakeSwept(); ///< as FaceBalance, and writes Rows.
   /// As DiffusionSystem::Arrays has it, by cells of the faces of the block with ghosts; those of ghosts are dark.
   const Buffer<float>& Rows(int channel) const { return this->OfBlock[channel]; }
-  /// From rows that the systems wrote. All ranks call it.
+  /// From rows that the systems wrote.
   /// @param lit  channels that were solved for, the same on all
   void TakeLeaving(const std::vector<bool>& lit);
-  /// As FaceBalance::LeftWithoutPattern. All ranks call it.
+  /// As FaceBalance::LeftWithoutPattern.
   /// @param medium  of the block
   std::vector<double> LeftByCell(const std::array<Rgb, 6>& incoming, const Medium& medium) const;
 
@@ -40,7 +38,7 @@ private:
     std::size_t voxel; ///< of the block
   };
 
-  Communicator& Comm;
+  const Domain& TheDomain;
   const FaceLight& Faces;
   std::optional<FaceBalance> Box;
   std::vector<Cell> Cells;
