@@ -20,14 +20,16 @@ NAME = re.compile(r"\b[A-Za-z]+(?:_[A-Za-z0-9]+)+\b")
 
 HEAD = """# Reference
 
-Every filter and every property. This page is made by `make_reference.py` from `Plugin/ServerManager/*.xml`: change the
-documentation there, then run the script. How the filters go together is in the [guide](guide.md).
+Every filter and every property. `make_reference.py` generates this page from `Plugin/ServerManager/*.xml`: change the
+documentation there, then run the script. How to combine the filters is in the [guide](guide.md).
 
 Names are those of Python and of ParaView's traces; the panel writes them with spaces. The C++ class of a filter `X` is
 `vtkX`; a property `P` is set by `SetP` and a result `R` read by `GetR`. Properties marked *advanced* are on the panel
 after a click on the gear beside its search field. Lengths are in the dataset's own unit. A number outside its valid
-values is refused with an error, never replaced (some classes take more than panels offer: angles beyond a turn, more directions). Choices take their text or their number: `Scheme="Conservative"` or
-`Scheme=1`.
+values is refused with an error, never replaced (some classes accept more than panels offer: angles beyond a turn, more
+directions). Choices accept their text or their number: `Scheme="Conservative"` or `Scheme=1`.
+
+The *domain* is the whole grid, a *subdomain* its part on one rank, a *halo* the layer of ghost cells around it.
 """
 
 
@@ -130,7 +132,7 @@ def condition(proxy, prop):
         other = next(each for each in proxy if each.get("name") == widget.get("property"))
         value = dict(entries(other)).get(widget.get("value"), widget.get("value"))
         verb = "is not" if widget.get("inverse") == "1" else "is"
-        return " On the panel where `%s` %s %s." % (other.get("name"), verb, escaped(value))
+        return " Shown if `%s` %s %s." % (other.get("name"), verb, escaped(value))
     return ""
 
 
@@ -216,7 +218,7 @@ def all_proxies():
 
 def reference():
     seen, proxies = all_proxies()
-    lines = [HEAD, row("filter", "what it does"), "|---|---|"]
+    lines = [HEAD, row("filter", "purpose"), "|---|---|"]
     for proxy in seen:
         name = proxy.get("name")
         short = escaped(words(proxy.find("Documentation").get("short_help")))
