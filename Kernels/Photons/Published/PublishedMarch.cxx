@@ -17,7 +17,7 @@ int Components(const Field& field)
   return field.values ? field.components : 0;
 }
 
-IndexGrid MarchGridOf(const std::array<int, 3>& size)
+IndexGrid IndexSizeOf(const std::array<int, 3>& size)
 {
   return { { size[0], size[1], size[2] } };
 }
@@ -75,9 +75,9 @@ PublishedMarch::Light PublishedMarch::Unpack(double unit)
 PublishedMarchInfo PublishedMarch::Describe(const MarchedPart& part, int stepLimit) const
 {
   PublishedMarchInfo info = {};
-  info.whole = MarchGridOf(part.whole.size);
-  info.own = MarchGridOf(part.own.size);
-  info.known = MarchGridOf(part.known.size);
+  info.whole = IndexSizeOf(part.whole.size);
+  info.own = IndexSizeOf(part.own.size);
+  info.known = IndexSizeOf(part.known.size);
   for (int a = 0; a < 3; ++a)
   {
     info.first[a] = part.own.first[a];
@@ -126,7 +126,7 @@ std::vector<float> PublishedMarch::Smoothed(const VoxelBox& box, const std::vect
   cl::Kernel kernel = this->Kernel("smooth_along");
   for (int axis = 0; axis < 3; ++axis)
   {
-    With(kernel, cl_int(axis), MarchGridOf(box.size), from, to);
+    With(kernel, cl_int(axis), IndexSizeOf(box.size), from, to);
     this->Launch(kernel, RangeOf(box.size));
     from.Swap(to);
   }

@@ -16,7 +16,7 @@ namespace tyndall
 namespace
 {
 constexpr int Block = 16; ///< photons that a work-item takes one after the other
-constexpr double SecondsPerStretch = 0.1;
+constexpr double SecondsPerScattering = 0.1;
 
 std::vector<cl_ulong> StreamsOf(const PackedPhotons& packed, const PhotonNumbers& numbers)
 {
@@ -81,7 +81,7 @@ Batches ScatteringRun::LaunchesOf(std::size_t photons) const
   Batches launches;
   launches.count = photons;
   launches.first = launches.whole = static_cast<std::size_t>(Block) * Count(std::max(this->Workers(), 1));
-  launches.seconds = SecondsPerStretch;
+  launches.seconds = SecondsPerScattering;
   launches.growth = 8.0;
   if (this->In.Through.IsBlock())
   {
