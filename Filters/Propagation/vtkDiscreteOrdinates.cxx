@@ -88,6 +88,11 @@ vtkDiscreteOrdinates::vtkDiscreteOrdinates()
 
 vtkDiscreteOrdinates::~vtkDiscreteOrdinates() = default;
 
+std::string vtkDiscreteOrdinates::NotByBlocks(vtkInformationVector**) const
+{
+  return this->Scheme == PUBLISHED && !this->Preview ? "Scheme as published" : "";
+}
+
 tyndall::LightField vtkDiscreteOrdinates::SolvePiece(tyndall::Communicator& communicator,
   const tyndall::PieceBlocks& pieces, const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining)
 {

@@ -54,8 +54,8 @@ class LastLight;
  * all directions has to fit the device: what it takes is said before any is taken. EstimateError is not used.
  *
  * With Decomposition BLOCKS radiance goes from rank to rank (numerics.md, section 10 b): the same light, order by
- * order, or as published step by step. A Quality has no more directions than half the smallest memory of all ranks
- * would hold of the whole.
+ * order. A Quality has no more directions than half the smallest memory of all ranks would hold of the whole. Blocks
+ * cannot do Scheme PUBLISHED.
  *
  * @sa vtkSeparablePhaseFunction vtkLightPropagationMaps vtkParticipatingMedium vtkLightRig
  * @par Thanks
@@ -83,7 +83,7 @@ public:
   };
 
   ///@{
-  /// How to compute: PUBLISHED, or CONSERVATIVE (default).
+  /// How to compute: PUBLISHED, or CONSERVATIVE (default). PUBLISHED refuses a FaceAlbedo other than 0.
   tyndallSetRangeMacro(Scheme, int, PUBLISHED, CONSERVATIVE);
   vtkGetMacro(Scheme, int);
   ///@}
@@ -124,8 +124,8 @@ public:
   ///@{
   /// Whether the light of the last update is the first guess of the next one: fewer sweeps where medium or lights
   /// changed a little, the same light within the tolerance. It is kept in memory until an update with WarmStart off: a
-  /// float a voxel and channel, as published of each direction; conservative where light is scattered evenly. By
-  /// blocks each rank keeps that of its own, and all begin in the dark where blocks have changed. Default off.
+  /// float a voxel and channel. It is used where scattering is isotropic, and not as published. By blocks each rank
+  /// keeps that of its own, and all begin in the dark where blocks have changed. Default off.
   vtkSetMacro(WarmStart, bool);
   vtkGetMacro(WarmStart, bool);
   vtkBooleanMacro(WarmStart, bool);
@@ -166,6 +166,7 @@ protected:
 
   int RequestData(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
   void Note(const tyndall::LightField& light) override;
+  std::string NotByBlocks(vtkInformationVector** inputs) const override;
   tyndall::LightField SolvePiece(tyndall::Communicator& communicator, const tyndall::PieceBlocks& pieces,
     const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining) override;
 

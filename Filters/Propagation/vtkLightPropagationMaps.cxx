@@ -11,7 +11,6 @@
 #include "LightPropagation/Accuracy/TargetError.h"
 #include "LightPropagation/Conservative/ConservativePropagation.h"
 #include "LightPropagation/Distributed/PropagationInBlocks.h"
-#include "LightPropagation/Distributed/Published/PublishedInBlocks.h"
 #include "LightPropagation/Problem/PropagationQuality.h"
 #include "LightPropagation/Published/ParallelPropagation.h"
 #include "LightPropagation/Published/SequentialPropagation.h"
@@ -29,7 +28,6 @@
 
 #include <algorithm>
 #include <memory>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -118,13 +116,13 @@ tyndall::PropagationSettings OfPreview(tyndall::PropagationSettings settings)
   return settings;
 }
 
-/// What does not fit the budget is an error: this scheme keeps a volume a direction.
+/// A medium that does not fit the budget is an error: this scheme stores a volume a direction.
 tyndall::LightField SolvePublished(vtkLightPropagationMaps* filter, tyndall::Device& device,
   const tyndall::Medium& medium, const tyndall::Illumination& illumination,
-  const tyndall::PropagationSettings& settings, const tyndall::Monitor& monitor, tyndall::KeptLight* kept)
+  const tyndall::PropagationSettings& settings, const tyndall::Monitor& monitor)
 {
   tyndall::Device within(device, tyndall::BudgetOf(filter->GetMemoryBudget(), false));
-  return tyndall::SolveParallel(within, medium, illumination, settings, monitor, 0, kept);
+  return tyndall::SolveParallel(within, medium, illumination, settings, monitor);
 }
 
 /// By the scheme that is asked for, the whole.
@@ -139,7 +137,7 @@ tyndall::PropagationSolver SolverOf(
            const tyndall::PropagationSettings& how, const tyndall::Monitor& watch) {
     tyndall::KeptLight* const kept = &inside == ofGrid ? last : nullptr;
     return sequential ? tyndall::SolveSequential(inside, shining, how, watch)
-      : published     ? SolvePublished(filter, *device, inside, shining, how, watch, kept)
+      : published     ? SolvePublished(filter, *device, inside, shining, how, watch)
                       : tyndall::SolveConservative(*device, inside, shining, how, watch, kept);
   };
 }
@@ -162,6 +160,10 @@ tyndall::LightField Solve(vtkLightPropagationMaps* filter, const tyndall::Medium
   {
     light.settingsUsed = UsedFor(light, settings, filter);
   }
+  if (filter->GetScheme() == vtkLightPropagationMaps::PUBLISHED && filter->GetWarmStart() && !filter->GetPreview())
+  {
+    light.leftOut.push_back(tyndall::WordsOfWarmStart(tyndall::NotBegunAsPublished));
+  }
   return light;
 }
 }
@@ -173,43 +175,6 @@ std::shared_ptr<tyndall::Device> DeviceOnAll(vtkLightPropagationMaps* filter, ty
   std::shared_ptr<tyndall::Device> device;
   communicator.Collective([&] { device = tyndall::Device::Find(filter->GetDevice()); });
   return device;
-}
-
-bool IsPublishedOnAll(vtkLightPropagationMaps* filter, tyndall::Communicator& communicator)
-{
-  const bool published = filter->GetScheme() == vtkLightPropagationMaps::PUBLISHED;
-  tyndall::RequireSame(communicator, "Scheme or Algorithm", true,
-    { 1.0 * filter->GetScheme(), published ? 1.0 * filter->GetAlgorithm() : 0.0 });
-  return filter->GetScheme() == vtkLightPropagationMaps::PUBLISHED;
-}
-
-/// As of the whole, what does not fit a rank's budget is an error.
-/// @param device  null: by the sequential algorithm
-tyndall::LightField SolvePublishedPiece(vtkLightPropagationMaps* filter, tyndall::Device* device,
-  const tyndall::SceneInBlocks& scene, const tyndall::PropagationSettings& settings, const tyndall::Monitor& monitor,
-  tyndall::KeptLight* last)
-{
-  std::optional<tyndall::Device> within; // none of the sequential algorithm
-  scene.others.Collective([&] {
-    CheckTarget(filter);
-    if (device)
-    {
-      within.emplace(*device, tyndall::BudgetOf(filter->GetMemoryBudget(), false));
-    }
-  });
-  const tyndall::SolverInBlocks solve = [&](const tyndall::SceneInBlocks& inside,
-                                          const tyndall::PropagationSettings& how, const tyndall::Monitor& watch) {
-    tyndall::KeptLight* const kept = &inside.medium == &scene.medium ? last : nullptr; // not of coarser ones
-    return within ? tyndall::SolvePublishedInBlocks(
-                      *within, inside.others, inside.partition, inside.medium, inside.illumination, how, watch, kept)
-                  : tyndall::SolveSequentialInBlocks(
-                      inside.others, inside.partition, inside.medium, inside.illumination, how, watch);
-  };
-  tyndall::LightField light = filter->GetEstimateError()
-    ? tyndall::SolveWithErrorEstimate(scene, settings, monitor, solve)
-    : solve(scene, settings, monitor);
-  light.settingsUsed = UsedFor(light, settings, filter);
-  return light;
 }
 
 /// The first rank solves the coarse grid as a whole, so that nothing is what blocks cannot do.
@@ -262,13 +227,14 @@ vtkLightPropagationMaps::vtkLightPropagationMaps()
 
 vtkLightPropagationMaps::~vtkLightPropagationMaps() = default;
 
+std::string vtkLightPropagationMaps::NotByBlocks(vtkInformationVector**) const
+{
+  return this->Scheme == PUBLISHED && !this->Preview ? "Scheme as published" : "";
+}
+
 std::string vtkLightPropagationMaps::ReasonNotToDecompose(tyndall::Communicator& communicator,
   const tyndall::PieceBlocks& pieces, const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining)
 {
-  if (IsPublishedOnAll(this, communicator))
-  {
-    return {}; // the same light, to rounding
-  }
   const std::shared_ptr<tyndall::Device> device = DeviceOnAll(this, communicator);
   return tyndall::ReasonNotToDecompose(*device, communicator, pieces.Partition(), piece.medium, shining.illumination,
     SettingsOn(this, communicator, pieces, piece, shining));
@@ -281,17 +247,11 @@ tyndall::LightField vtkLightPropagationMaps::SolvePiece(tyndall::Communicator& c
   {
     return SolvePreviewOfPiece(this, { communicator, pieces.Partition(), piece.medium, shining.illumination });
   }
-  const bool published = IsPublishedOnAll(this, communicator);
   tyndall::KeptLight* const last = this->Last->Where(this->WarmStart);
-  const bool inTurn = published && this->Algorithm == SEQUENTIAL;
-  const std::shared_ptr<tyndall::Device> device = inTurn ? nullptr : DeviceOnAll(this, communicator);
+  const std::shared_ptr<tyndall::Device> device = DeviceOnAll(this, communicator);
   const tyndall::PropagationSettings settings = SettingsOn(this, communicator, pieces, piece, shining);
   const tyndall::SceneInBlocks scene = { communicator, pieces.Partition(), piece.medium, shining.illumination };
   const tyndall::Monitor monitor = tyndall::MonitorOf(this);
-  if (published)
-  {
-    return SolvePublishedPiece(this, device.get(), scene, settings, monitor, last);
-  }
   if (this->TargetError > 0.0)
   {
     return LightOf(tyndall::SolveInBlocksToTargetError(*device, scene, settings, this->TargetError, monitor, last));

@@ -61,10 +61,10 @@ class LastLight;
  * With Decomposition BLOCKS rays go from rank to rank (numerics.md, section 4.9). Orders are accelerated as in the
  * whole, but not in thin voxels of isotropic scattering round periodic axes and not in thick ones with
  * UncollidedDirections: there, and where the whole does so, they are added up one by one, by octant where the whole
- * would be. Blocks cannot do: Source LINEAR with UncollidedDirections. Errors are estimated, and targets met, as of
- * the whole (numerics.md, section 9.2). The published scheme has the light of the whole, by either Algorithm (section
- * 3). AUTOMATIC_DECOMPOSITION leaves to the whole, beside that: those many orders, which it accelerates; small bright
- * emission, which it follows along exact rays; finer UncollidedDirections beside accelerated sweeps; and layers.
+ * would be. Blocks cannot do: Scheme PUBLISHED, and Source LINEAR with UncollidedDirections. Errors are estimated, and
+ * targets met, as of the whole (numerics.md, section 9.2). AUTOMATIC_DECOMPOSITION leaves to the whole, beside that:
+ * those many orders, which it accelerates; small bright emission, which it follows along exact rays; finer
+ * UncollidedDirections beside accelerated sweeps; and layers.
  *
  * @sa vtkParticipatingMedium vtkLightRig vtkEnvironmentReader vtkMediumRayCaster
  * @par Thanks
@@ -106,7 +106,8 @@ public:
   };
 
   ///@{
-  /// How to compute: PUBLISHED, or CONSERVATIVE (default).
+  /// How to compute: PUBLISHED, or CONSERVATIVE (default). PUBLISHED refuses a FaceAlbedo other than 0, and begins in
+  /// the dark whatever WarmStart is.
   tyndallSetRangeMacro(Scheme, int, PUBLISHED, CONSERVATIVE);
   vtkGetMacro(Scheme, int);
   ///@}
@@ -206,8 +207,8 @@ public:
   ///@{
   /// Whether the light of the last update is the first guess of the next one: fewer sweeps where medium or lights
   /// changed a little, the same light within the tolerance. It is kept in memory until an update with WarmStart off: a
-  /// float a voxel and channel, times (degree + 1)^2 with AngularDegree; not by the sequential algorithm. By blocks
-  /// each rank keeps that of its own, and all begin in the dark where blocks have changed. Default off.
+  /// float a voxel and channel, times (degree + 1)^2 with AngularDegree; not as published. By blocks each rank keeps
+  /// that of its own, and all begin in the dark where blocks have changed. Default off.
   vtkSetMacro(WarmStart, bool);
   vtkGetMacro(WarmStart, bool);
   vtkBooleanMacro(WarmStart, bool);
@@ -261,6 +262,7 @@ protected:
   int RequestData(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
   void Note(const tyndall::LightField& light) override;
   bool ReadsQuality() const override { return this->TargetError == 0.0 && this->Superclass::ReadsQuality(); }
+  std::string NotByBlocks(vtkInformationVector** inputs) const override;
   std::string ReasonNotToDecompose(tyndall::Communicator& communicator, const tyndall::PieceBlocks& pieces,
     const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining) override;
   tyndall::LightField SolvePiece(tyndall::Communicator& communicator, const tyndall::PieceBlocks& pieces,

@@ -124,7 +124,7 @@ std::string WhyNot(ComparedMethod method, const ComparedScene& scene, const Comp
   const bool published = method == ComparedMethod::Published || method == ComparedMethod::PublishedSequential;
   return scene.BendsLight()   ? "it does not bend light, and the index of this medium varies"
     : !comparator.Has(method) ? "the reference has no 'fluence'"
-    : published               ? WhyNotPublished(scene.medium)
+    : published               ? WhyNotPublished(scene.medium, scene.illumination)
                               : "";
 }
 

@@ -8,6 +8,7 @@
 #include "Light/LeftOut.h"
 #include "LightPropagation/Convergence.h"
 #include "LightPropagation/Problem/PropagationProblem.h"
+#include "LightPropagation/Published/PublishedModel.h"
 
 #include <algorithm>
 #include <string>
@@ -59,6 +60,10 @@ LightField SolveDiscreteOrdinates(Device& device, const Medium& medium, const Il
   const OrdinatesSettings& settings, const Monitor& monitor, KeptLight* kept)
 {
   Check(settings);
+  if (IsPublished(settings))
+  {
+    CheckPublishedFaces(illumination);
+  }
   const PropagationProblem problem(medium, illumination, AsPropagation(settings));
   const FarLight far = FarLightOf(problem.Shining(), problem.Settings().directionsPerFace, settings);
   OrdinatesSettings solved = settings;
@@ -78,7 +83,7 @@ LightField SolveDiscreteOrdinates(Device& device, const Medium& medium, const Il
     const PhaseFunction function = FunctionOf(problem.TheMedium(), c, nullptr);
     const OrdinatesAngles angles = { OrdinateGroups(far.directions), SeparableOf(function, far.directions, settings),
       function };
-    CheckMemory(device, problem.TheGrid(), angles, settings, false);
+    CheckMemory(device, problem.TheGrid(), angles, settings);
     const OrdinatesScene scene = { problem.TheMedium(), c, LampsOf(far, problem.Shining(), c),
       IncomingOf(far, problem.Shining(), c), FaceAlbedoOf(problem.Shining(), c), UncollidedOf(problem.Shining(), c),
       warm.Begin(c, KindOf(problem, settings), angles, nullptr) };
@@ -93,7 +98,7 @@ LightField SolveDiscreteOrdinates(Device& device, const Medium& medium, const Il
   DescribeLight(light, device, far);
   light.faceAlbedo = illumination.faceAlbedo;
   Judge(settings, diverged, problem.TheMedium(), nullptr, light);
-  warm.Finish(diverged, light, kept);
+  warm.Finish(light, kept);
   if (!IsPublished(settings) && settings.seriesAfter > 0 &&
     light.convergence.size() >= static_cast<std::size_t>(settings.seriesAfter))
   {

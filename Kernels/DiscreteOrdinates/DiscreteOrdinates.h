@@ -27,9 +27,10 @@ namespace tyndall
 /// Channels are solved one after the other; a row of `convergence` counts all of them.
 ///
 /// @param kept  the light of the last solve is the first guess of this one, and the light of this one is left there
-/// (KeptLight.h); null: begins in the dark, and keeps nothing. Conservative orders begin from it where light is
-/// scattered evenly; as published the radiance along all directions is kept.
-/// @throws InvalidInput  what Check(medium), Check(illumination) say, or settings out of range
+/// (KeptLight.h); null: begins in the dark, and keeps nothing. Conservative orders begin from it where scattering is
+/// isotropic; as published orders always begin in the dark.
+/// @throws InvalidInput  what Check(medium), Check(illumination) say, settings out of range, or as published faces that
+///   reflect
 /// @throws DeviceError  if the buffers do not fit: says how many bytes are needed before it takes any
 /// @throws Aborted  when the monitor says so
 LightField SolveDiscreteOrdinates(Device& device, const Medium& medium, const Illumination& illumination,

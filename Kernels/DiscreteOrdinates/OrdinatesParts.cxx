@@ -169,11 +169,10 @@ std::vector<std::string> DoubtsOf(const OrdinatesSettings& settings, double thic
   return doubts;
 }
 
-void CheckMemory(
-  Device& device, const Grid& grid, const OrdinatesAngles& angles, const OrdinatesSettings& settings, bool inBlocks)
+void CheckMemory(Device& device, const Grid& grid, const OrdinatesAngles& angles, const OrdinatesSettings& settings)
 {
-  const std::size_t bytes = IsPublished(settings) ? BytesOfPublishedOrders(grid, angles, settings, inBlocks)
-                                                  : BytesOfSweptOrders(grid, angles, settings);
+  const std::size_t bytes =
+    IsPublished(settings) ? BytesOfPublishedOrders(grid, angles, settings) : BytesOfSweptOrders(grid, angles, settings);
   const std::size_t radiance = sizeof(float) * AngularScattering::Floats(angles.groups, grid.VoxelCount());
   const std::size_t free = device.MemoryLimit() - device.BytesInUse();
   if (bytes <= free && radiance <= device.AllocationLimit())

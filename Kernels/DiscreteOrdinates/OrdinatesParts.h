@@ -47,10 +47,8 @@ UncollidedImage UncollidedOf(const Illumination& shining, int channel);
 SeparablePhaseFunction SeparableOf(
   const PhaseFunction& function, const std::vector<Direction>& directions, const OrdinatesSettings& settings);
 
-/// @throws DeviceError that says what is needed
-/// @param inBlocks  the grid is one of several ranks'
-void CheckMemory(
-  Device& device, const Grid& grid, const OrdinatesAngles& angles, const OrdinatesSettings& settings, bool inBlocks);
+/// @throws DeviceError that says how much memory is needed
+void CheckMemory(Device& device, const Grid& grid, const OrdinatesAngles& angles, const OrdinatesSettings& settings);
 
 /// Sees `far` and `shining`, which must stay. Empty: nothing comes in.
 IncomingRadiance IncomingOf(const FarLight& far, const Illumination& shining, int channel);

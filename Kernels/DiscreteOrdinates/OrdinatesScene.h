@@ -84,9 +84,8 @@ struct OrdinatesResult
   std::vector<float> facePower;       ///< W / length^2, by cell of the box's faces; empty: none reflects
   std::vector<ConvergenceRow> convergence;
   bool diverged = false;
-  /// For the next solve, where it is wanted: fluence that was scattered; as published the radiance of all directions.
-  std::vector<float> left;
-  double firstScattered = 0.0; ///< W, that the guess is scaled by; as published 1
+  std::vector<float> left;     ///< scattered fluence, for the next solve; empty: not wanted
+  double firstScattered = 0.0; ///< W, that the guess is scaled by
   double rate = 0.0;           ///< of the last order to the one before
 };
 

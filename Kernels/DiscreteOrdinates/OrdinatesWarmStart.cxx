@@ -23,7 +23,7 @@ OrdinatesGuess OrdinatesWarmStart::Begin(
   }
   if (channel == 0)
   {
-    kind.method = IsPublished(this->Settings) ? "discrete ordinates as published" : "discrete ordinates";
+    kind.method = "discrete ordinates";
     kind.degree = angles.phase.Terms();
     kind.directions = angles.phase.DirectionCount();
     this->Left.kind = std::move(kind);
@@ -45,7 +45,11 @@ OrdinatesGuess OrdinatesWarmStart::Begin(
 
 std::string OrdinatesWarmStart::WhyNotOf(const OrdinatesAngles& angles) const
 {
-  if (!IsPublished(this->Settings) && !CanBeginWarm(angles, this->Settings))
+  if (IsPublished(this->Settings))
+  {
+    return NotBegunAsPublished;
+  }
+  if (!CanBeginWarm(angles, this->Settings))
   {
     return "sources that terms of the phase function make negative are set to 0 order by order, from darkness on";
   }
@@ -75,14 +79,13 @@ void OrdinatesWarmStart::Take(const OrdinatesResult& found, int channel)
   this->Left.rate[channel] = this->Settings.maximumOrders > 0 ? 0.0 : std::min(found.rate, SlowestRate);
 }
 
-void OrdinatesWarmStart::Finish(bool diverged, LightField& light, KeptLight* kept)
+void OrdinatesWarmStart::Finish(LightField& light, KeptLight* kept)
 {
   if (!kept)
   {
     return;
   }
   this->Left.fromDarkness = kept->fromDarkness;
-  this->Left.scattered = diverged ? std::vector<float>() : std::move(this->Left.scattered);
   light.leftOut.push_back(WordsOfWarmStart(this->WhyNot));
   Keep(std::move(this->Left), this->WhyNot.empty(), light, *kept);
 }

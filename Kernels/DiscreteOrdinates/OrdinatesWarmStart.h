@@ -29,8 +29,7 @@ public:
   void Take(const OrdinatesResult& found, int channel);
   /// Puts what all channels left in the place of what was kept, and says of light how it began. Nothing where nothing
   /// is kept.
-  /// @param diverged  it is no guess for another
-  void Finish(bool diverged, LightField& light, KeptLight* kept);
+  void Finish(LightField& light, KeptLight* kept);
 
 private:
   std::string WhyNotOf(const OrdinatesAngles& angles) const;

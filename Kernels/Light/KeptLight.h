@@ -50,6 +50,9 @@ std::string WhyNotBegun(const KeptLight& kept, const LightKind& kind, int maximu
 /// @param warm  the solve began from kept light; else it is what the next ones are measured by
 void Keep(KeptLight&& left, bool warm, LightField& light, KeptLight& kept);
 
+/// Such a clause: no paper starts from a guess.
+constexpr const char* const NotBegunAsPublished = "orders as published begin in the dark";
+
 /// Words of `left_out` for a solve that was to begin from kept light.
 /// @param whyNot  a clause; empty: it did
 std::string WordsOfWarmStart(const std::string& whyNot);

@@ -272,7 +272,14 @@ void BadSettings(Refusals& refusals)
   refusals.Says("FaceAlbedo is (0, 0, 0, -0.1, 0, 0)");
   refusals->SetFaceAlbedo(0.0, 0.0, 0.0, 0.0, 1.5, 0.0);
   refusals.Says("FaceAlbedo is (0, 0, 0, 0, 1.5, 0)");
+  refusals->SetFaceAlbedo(0.0, 0.0, 0.0, 0.0, 0.5, 0.0);
+  refusals->SetScheme(vtkLightPropagationMaps::PUBLISHED);
+  refusals.Says("set FaceAlbedo to 0");
   refusals->SetFaceAlbedo(0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+  refusals->SetDecomposition(vtkLightPropagationMaps::BLOCKS);
+  refusals.Says("(Decomposition: blocks) with Scheme as published");
+  refusals->SetDecomposition(vtkLightPropagationMaps::AUTOMATIC_DECOMPOSITION);
+  refusals->SetScheme(vtkLightPropagationMaps::CONSERVATIVE);
   refusals->SetEnvironmentAzimuth(Infinite);
   refusals.Says("EnvironmentAzimuth is inf; it must be finite");
   refusals->SetEnvironmentAzimuth(0.0);

@@ -94,6 +94,25 @@ void KeepsItsLight(test::Claims& claims, const char* name)
   claims.That(Says(solver->GetLeftOut(), "there is none"), which("off drops what was kept"));
 }
 
+/// Papers begin in the dark.
+template <class Solver>
+void BeginsInTheDarkAsPublished(test::Claims& claims)
+{
+  vtkNew<Solver> solver;
+  test::Errors errors(solver);
+  solver->SetInputDataObject(test::MakeMedium({ { 5, 4, 3 } }, 0.02, 0.4));
+  solver->SetSkyColor(1.0, 1.0, 1.0);
+  solver->SetScheme(Solver::PUBLISHED);
+  solver->WarmStartOn();
+  solver->Update();
+  const int orders = solver->GetOrders();
+  solver->Modified();
+  solver->Update();
+  claims.That(errors.None() && solver->GetOrders() == orders && solver->GetSweepsSaved() == 0 &&
+      Says(solver->GetLeftOut(), "WarmStart"),
+    "as published WarmStart has no effect, and left_out says so");
+}
+
 void EstimatesTheErrorOfAllOfIt(test::Claims& claims)
 {
   vtkNew<vtkLightPropagationMaps> maps;
@@ -120,6 +139,8 @@ int TestWarmStart(int, char*[])
   test::Claims claims;
   KeepsItsLight<vtkLightPropagationMaps>(claims, "maps");
   KeepsItsLight<vtkDiscreteOrdinates>(claims, "ordinates");
+  BeginsInTheDarkAsPublished<vtkLightPropagationMaps>(claims);
+  BeginsInTheDarkAsPublished<vtkDiscreteOrdinates>(claims);
   EstimatesTheErrorOfAllOfIt(claims);
   return claims.Result();
 }

@@ -312,13 +312,6 @@ MediumToCut Thin(std::array<int, 3> size)
   return medium;
 }
 
-OrdinatesSettings AsPublished(int steps = 0)
-{
-  OrdinatesSettings settings = SettingsOf(steps);
-  settings.scheme = OrdinatesScheme::Published;
-  return settings;
-}
-
 TEST_F(OrdinatesBlocks, FailTogetherWhereMemoryEnds)
 {
   MediumToCut medium = Thin({ 4, 3, 3 });
@@ -332,72 +325,6 @@ TEST_F(OrdinatesBlocks, FailTogetherWhereMemoryEnds)
     });
   };
   expect(SettingsOf(2), 140000); // that nobody says no to beforehand
-  expect(AsPublished(2), 290000);
-}
-
-/// Step by step: with near lamps, in blocks of all kinds, between dark faces and such as give back light.
-TEST_F(OrdinatesBlocks, HaveThePublishedStepsOfTheWhole)
-{
-  MediumToCut medium = Thin({ 7, 6, 5 });
-  AddNearLamps(medium.scene);
-  for (const double albedo : { 0.0, 0.4 })
-  {
-    SCOPED_TRACE(albedo);
-    medium.scene.light.faceAlbedo[1].fill(albedo);
-    medium.scene.light.faceAlbedo[4].fill(0.5 * albedo);
-    const LightField whole = this->Whole(medium, AsPublished());
-    EXPECT_TRUE(whole.converged);
-    const Grid& grid = medium.scene.medium.grid;
-    for (const BlockPartition& partition : { BlockPartition::Even(grid, 1), BlockPartition::Even(grid, 2),
-           BlockPartition::Even(grid, 8), Slices(grid, { 0, 1, 2 }) })
-    {
-      SCOPED_TRACE(std::to_string(partition.blocks.size()) + " ranks");
-      const LightField light = this->OfBlocks(partition, medium, AsPublished());
-      ExpectSameLight(light, whole, 1e-6);
-      EXPECT_EQ(light.convergence.size(), whole.convergence.size());
-      EXPECT_NEAR(light.balance.RelativeError(1), whole.balance.RelativeError(1), 1e-6);
-      EXPECT_LT(RelativeDifference(light.facePower, whole.facePower), 1e-6);
-    }
-  }
-}
-
-/// Of light that is given, in colour, with a mean cosine that varies; blocks of single voxels and grids of one layer.
-TEST_F(OrdinatesBlocks, HaveThePublishedStepsRoundPeriodicAxes)
-{
-  const std::array<bool, 3> some[] = { { true, false, false }, { false, true, true } };
-  for (const std::array<int, 3>& size : { std::array<int, 3>{ 5, 3, 4 }, { 1, 6, 1 }, { 2, 1, 1 } })
-  {
-    MediumToCut medium = Thin(size);
-    medium.scene.medium.grid.spacing = { 1.0, 0.7, 1.2 };
-    medium.scene.sigma_s = RandomValues(3 * medium.scene.sigma_a.size(), 0.0, 0.4, 9);
-    medium.g = RandomValues(medium.scene.sigma_a.size(), -0.7, 0.7, 13);
-    GiveLight(medium, true);
-    for (const std::array<bool, 3>& periodic : some)
-    {
-      SCOPED_TRACE(std::to_string(size[0]) + " " + std::to_string(periodic[0]));
-      OrdinatesSettings settings = AsPublished(9);
-      settings.periodic = periodic;
-      const LightField whole = this->Whole(medium, settings);
-      const Grid& grid = medium.scene.medium.grid;
-      for (const BlockPartition& partition : { BlockPartition::Even(grid, 3), Slices(grid, { 0, 1 }) })
-      {
-        const LightField light = this->OfBlocks(partition, medium, settings);
-        ExpectSameLight(light, whole, 1e-6);
-        EXPECT_EQ(light.doubts, whole.doubts);
-      }
-    }
-  }
-}
-
-TEST_F(OrdinatesBlocks, StopPublishedStepsThatGrowWithoutEnd)
-{
-  MediumToCut medium = Everything({ 4, 3, 2 });
-  medium.scene.sigma_a[5] = 30.0f;
-  const LightField whole = this->Whole(medium, AsPublished());
-  ASSERT_EQ(whole.doubts.size(), 2U);
-  const LightField light = this->OfBlocks(Slices(medium.scene.medium.grid, { 0, 1 }), medium, AsPublished());
-  EXPECT_EQ(light.doubts, whole.doubts);
-  EXPECT_FALSE(light.converged);
 }
 
 TEST_F(OrdinatesBlocks, FailTogetherWithWordsOnWhatIsNotCarried)
@@ -429,16 +356,12 @@ TEST_F(OrdinatesBlocks, FailTogetherWithWordsOnWhatIsNotCarried)
   });
   expectErrors("disagree about settings",
     [](int rank, MediumToCut&, OrdinatesSettings& settings, Monitor&) { settings.terms = rank == 2 ? 9 : 16; });
-  expectErrors("disagree about settings", [](int rank, MediumToCut&, OrdinatesSettings& settings, Monitor&) {
+  expectErrors("cannot be solved as published", [](int rank, MediumToCut&, OrdinatesSettings& settings, Monitor&) {
     settings.scheme = rank == 1 ? OrdinatesScheme::Published : OrdinatesScheme::Conservative;
   });
-  for (const OrdinatesScheme scheme : { OrdinatesScheme::Conservative, OrdinatesScheme::Published })
-  {
-    expectErrors("aborted", [scheme](int rank, MediumToCut&, OrdinatesSettings& settings, Monitor& monitor) {
-      settings.scheme = scheme;
-      monitor = rank == 1 ? Monitor([](double done) { return done < 0.3; }) : Monitor();
-    });
-  }
+  expectErrors("aborted", [](int rank, MediumToCut&, OrdinatesSettings&, Monitor& monitor) {
+    monitor = rank == 1 ? Monitor([](double done) { return done < 0.3; }) : Monitor();
+  });
 }
 
 TEST(BalanceOfOrdinates, IsJudgedOnAnyNumberOfRanks)

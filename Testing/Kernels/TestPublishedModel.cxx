@@ -5,7 +5,7 @@
 #include "Device/Errors.h"
 #include "Numerics/Constants.h"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <algorithm>
 #include <cmath>
@@ -158,6 +158,20 @@ TEST(PublishedModel, HasOnePhaseFunction)
     PhaseFunction::HenyeyGreenstein(0.1), PhaseFunction::HenyeyGreenstein(0.1), PhaseFunction::HenyeyGreenstein(0.2) });
   EXPECT_THROW(PublishedModel(even.medium, {}, {}), InvalidInput);
   EXPECT_THROW(SolveSequential(even.medium, {}, {}), InvalidInput);
+}
+
+TEST(PublishedModel, HasNoFacesThatReflect)
+{
+  EvenMedium even({ { 2, 1, 1 } }, 0.1f, 1.0f);
+  Illumination reflected;
+  reflected.faceAlbedo[2] = { 0.0, 0.5, 0.0 };
+  const std::string remedy = "set FaceAlbedo to 0";
+  EXPECT_THAT([&] { PublishedModel(even.medium, reflected, {}); },
+    testing::ThrowsMessage<InvalidInput>(testing::HasSubstr(remedy)));
+  EXPECT_THAT([&] { SolveSequential(even.medium, reflected, {}); },
+    testing::ThrowsMessage<InvalidInput>(testing::HasSubstr(remedy)));
+  EXPECT_NE(WhyNotPublished(even.medium, reflected), "");
+  EXPECT_EQ(WhyNotPublished(even.medium, {}), "");
 }
 
 TEST(PublishedModel, IsotropicScatteringIsTheSameIntoAllDirections)

@@ -6,8 +6,6 @@
 #include "DiscreteOrdinates/DiscreteOrdinates.h"
 #include "DiscreteOrdinates/Distributed/OrdinatesInBlocks.h"
 #include "LightPropagation/Accuracy/ErrorInBlocks.h"
-#include "LightPropagation/Distributed/Published/PublishedInBlocks.h"
-#include "LightPropagation/Published/ParallelPropagation.h"
 
 #include <gmock/gmock.h>
 
@@ -340,46 +338,22 @@ TEST_F(WarmStartsInBlocks, AreOfAllRanksOrOfNone)
   EXPECT_THAT(errors, testing::Each(testing::HasSubstr("disagree about WarmStart")));
 }
 
-/// Of voxels and of what faces give back; these are counted by cell also where none does, round an axis.
-TEST_F(WarmStartsInBlocks, TakeTheOrdersOfTheWholeAsPublished)
-{
-  const Grid grid = { { 7, 6, 5 } };
-  Change change(grid, 3, 0.5f, 0.9f, ToTolerance(1e-4));
-  PropagationSettings& settings = change.settings;
-  settings.directionsPerFace = 4;
-  settings.facePower = true;
-  ExpectTheOrdersOfTheWhole(
-    change, settings, { BlockPartition::Even(grid, 3), UnevenSlices(grid) },
-    [&](const RandomMedium& medium, const Illumination& light, KeptLight* kept) {
-      return SolveParallel(GetDevice(), medium.medium, light, settings, {}, 0, kept);
-    },
-    [&](const BlockPartition& partition, Communicator& communicator, const Medium& medium, const Illumination& shining,
-      KeptLight* kept) {
-      return SolvePublishedInBlocks(GetDevice(), communicator, partition, medium, shining, settings, {}, kept);
-    });
-}
-
 TEST_F(WarmStartsInBlocks, TakeTheOrdersOfTheWholeOfDiscreteOrdinates)
 {
   const Grid grid = { { 4, 5, 3 } };
   OrdinatesSettings settings;
   settings.directionsPerFace = 4;
   settings.terms = 16;
-  for (const OrdinatesScheme scheme : { OrdinatesScheme::Conservative, OrdinatesScheme::Published })
-  {
-    SCOPED_TRACE(scheme == OrdinatesScheme::Published ? "as published" : "conservative");
-    settings.scheme = scheme;
-    Change change(grid, 3, 0.5f, 0.9f, {});
-    ExpectTheOrdersOfTheWhole(
-      change, settings, { UnevenSlices(grid), Uneven(grid) },
-      [&](const RandomMedium& medium, const Illumination& light, KeptLight* kept) {
-        return SolveDiscreteOrdinates(GetDevice(), medium.medium, light, settings, {}, kept);
-      },
-      [&](const BlockPartition& partition, Communicator& communicator, const Medium& medium,
-        const Illumination& shining, KeptLight* kept) {
-        return SolveOrdinatesInBlocks(GetDevice(), communicator, partition, medium, shining, settings, {}, kept);
-      });
-  }
+  Change change(grid, 3, 0.5f, 0.9f, {});
+  ExpectTheOrdersOfTheWhole(
+    change, settings, { UnevenSlices(grid), Uneven(grid) },
+    [&](const RandomMedium& medium, const Illumination& light, KeptLight* kept) {
+      return SolveDiscreteOrdinates(GetDevice(), medium.medium, light, settings, {}, kept);
+    },
+    [&](const BlockPartition& partition, Communicator& communicator, const Medium& medium, const Illumination& shining,
+      KeptLight* kept) {
+      return SolveOrdinatesInBlocks(GetDevice(), communicator, partition, medium, shining, settings, {}, kept);
+    });
 }
 
 TEST_F(WarmStartsInBlocks, TakeFewerSweepsByTheBalanceOfVoxelsInMoments)

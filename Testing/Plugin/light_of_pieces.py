@@ -479,7 +479,8 @@ def whole_where_few():
 def whole_where_better():
     """What pieces cannot do, or not as well, each rank solves as a whole, says why, and does not solve again."""
     medium = ParticipatingMedium(Input=Wavelet(WholeExtent=SIZE), DensityArray=["POINTS", "RTData"])
-    for why, settings in (("many scattering orders", {"FaceAlbedo": [0.9] * 6, "UncollidedDirections": 36}),):
+    for why, settings in (("many scattering orders", {"FaceAlbedo": [0.9] * 6, "UncollidedDirections": 36}),
+                          ("Scheme as published", {"Scheme": 0})):
         light = LightPropagationMaps(**{**dict(Input=medium, SkyColor=[1, 1, 1], DirectionsPerFace=4), **settings})
         errors = errors_of(light)
         light.UpdatePipeline()
@@ -707,16 +708,6 @@ def ordinates_around():
                solve=lambda density, array: ordinates_by_blocks(density, array, PeriodicX=1, FaceAlbedo=[0, 0, 0, 0, 0.3, 0]))
 
 
-def ordinates_steps():
-    """As published."""
-    own_pieces("ordinates_steps", uneven_pieces(), solve=lambda density, array: ordinates_by_blocks(density, array, Scheme="As published"))
-
-
-def ordinates_steps_whole():
-    own_pieces("ordinates_steps_whole", [piece_of([0, 12, 0, 5, 0, 4])],
-               solve=lambda density, array: by_ordinates(density, array, Scheme="As published"))
-
-
 def ordinates_even():
     own_pieces("ordinates_even", [piece_of(extent) for extent in parts(even_cuts())], solve=ordinates_by_blocks)
 
@@ -748,31 +739,6 @@ def previews_whole():
                                               Decomposition="Whole on each rank", **settings))
 
 
-PUBLISHED = dict(Scheme="As published")
-
-
-def published_even():
-    own_pieces("published_even", [piece_of(extent) for extent in parts(even_cuts())],
-               solve=lambda *what: by_blocks(*what, **PUBLISHED))
-
-
-def published_uneven():
-    own_pieces("published_uneven", uneven_pieces(), solve=lambda *what: by_blocks(*what, **PUBLISHED))
-
-
-def published_whole():
-    own_pieces("published_whole", [piece_of([0, 12, 0, 5, 0, 4])], solve=lambda *what: solved(*what, **PUBLISHED))
-
-
-def published_shown():
-    """Scattered radiance in several directions, round an axis, with the error that fluence has."""
-    settings = dict(PUBLISHED, StoredDirections=6, EstimateError=1, PeriodicX=1)
-    light = wavelet("Blocks", **settings)
-    keep("published_shown", light, array="scattered_radiance")
-    keep("published_estimated", light, array="fluence_error")
-    assert "Decomposition = 2" in facts_of(light, "settings_used")
-
-
 def warm_by_blocks(case, solver, **settings):
     """Where an albedo was edited, light begins from the last one, of which each rank has kept its own part."""
     medium = ParticipatingMedium(Input=source_of(uneven_pieces()[rank]), DensityArray=["CELLS", "density"],
@@ -797,26 +763,11 @@ def ordinates_warm():
     warm_by_blocks("ordinates_warm", DiscreteOrdinates, Terms=16)
 
 
-def published_in_turn():
-    """The sequential algorithm, round an axis."""
-    own_pieces("published_in_turn", uneven_pieces(), solve=lambda *what: by_blocks(*what, Algorithm=0, PeriodicX=1, **PUBLISHED))
-
-
-def published_in_turn_whole():
-    own_pieces("published_in_turn_whole", [piece_of([0, 12, 0, 5, 0, 4])],
-               solve=lambda *what: solved(*what, Algorithm=0, PeriodicX=1, **PUBLISHED))
-
-
-def published_warm():
-    warm_by_blocks("published_warm", LightPropagationMaps, **PUBLISHED)
-
-
 def blocks_errors():
     """What cannot be solved by pieces is one error that names it; what one rank lacks, on all of them."""
     medium = ParticipatingMedium(Input=Wavelet(WholeExtent=SIZE), DensityArray=["POINTS", "RTData"])
     for named, settings in (("blocks) with a linear source besides", {"Source": 1, "UncollidedDirections": 36}),
-                            ("TargetError is for the conservative scheme", {"Scheme": 0, "TargetError": 0.1}),
-                            ("disagree about Scheme or Algorithm", {"Scheme": 0, "Algorithm": rank % 2})):
+                            ("blocks) with Scheme as published", {"Scheme": rank % 2})):
         light = LightPropagationMaps(Input=medium, SkyColor=[1, 1, 1], Decomposition="Blocks", **settings)
         errors = errors_of(light)
         light.UpdatePipeline()

@@ -3,7 +3,6 @@
 #include "Device/Errors.h"
 #include "DiscreteOrdinates/OrdinatesParts.h"
 #include "DiscreteOrdinates/OrdinatesWarmStart.h"
-#include "DiscreteOrdinates/Published/PublishedOrders.h"
 #include "DiscreteOrdinates/SweptOrders.h"
 #include "Distribution/SharedMedium.h"
 #include "Light/LeftOut.h"
@@ -22,8 +21,7 @@ namespace
 void RequireSameOrdinates(Communicator& communicator, const OrdinatesSettings& settings)
 {
   RequireSame(communicator, "settings of the ordinates", true,
-    { 1.0 * static_cast<int>(settings.scheme), 1.0 * static_cast<int>(settings.scattering),
-      1.0 * settings.spiralDirections, 1.0 * settings.terms });
+    { 1.0 * static_cast<int>(settings.scattering), 1.0 * settings.spiralDirections, 1.0 * settings.terms });
 }
 
 /// A scene of blocks as it is solved: in the units and channels of all.
@@ -58,12 +56,11 @@ public:
     LightField light;
     light.channels = scene.channels;
     OrdinatesWarmStart warm(kept, this->Settings);
-    bool diverged = false;
     for (int c = 0; c < light.channels; ++c)
     {
       const double all = light.channels;
       const Monitor ofChannel = OfPart(monitor, c / all, (c + 1) / all);
-      diverged = this->SolveChannel(light, c, scene, shining, far, warm, ofChannel) || diverged;
+      this->SolveChannel(light, c, scene, shining, far, warm, ofChannel);
     }
     if (!this->Has)
     {
@@ -73,15 +70,14 @@ public:
     }
     this->Describe(light, scene, far);
     const OrdinatesRanks ranks = { this->Comm, this->Partition };
-    Judge(this->Settings, diverged, scene.medium, &ranks, light);
+    Judge(this->Settings, false, scene.medium, &ranks, light);
     this->Comm.Collective([&] { scene.Undo(light); });
-    warm.Finish(diverged, light, kept);
+    warm.Finish(light, kept);
     return light;
   }
 
 private:
-  /// @return whether it has diverged
-  bool SolveChannel(LightField& light, int channel, const BlockScene& scene, const Illumination& shining,
+  void SolveChannel(LightField& light, int channel, const BlockScene& scene, const Illumination& shining,
     const FarLight& far, OrdinatesWarmStart& warm, const Monitor& monitor) const
   {
     BlockPartition inUnits = this->Partition;
@@ -91,18 +87,15 @@ private:
     const PhaseFunction function = FunctionOf(solved, channel, &ranks);
     const OrdinatesAngles angles = { OrdinateGroups(far.directions),
       SeparableOf(function, far.directions, this->Settings), function };
-    this->Comm.Collective([&] { CheckMemory(this->TheDevice, solved.grid, angles, this->Settings, true); });
+    this->Comm.Collective([&] { CheckMemory(this->TheDevice, solved.grid, angles, this->Settings); });
     const OrdinatesScene ofChannel = { solved, channel, LampsOf(far, shining, channel),
       IncomingOf(far, shining, channel), FaceAlbedoOf(shining, channel), UncollidedOf(shining, channel),
       warm.Begin(channel, this->KindOf(inUnits, light.channels), angles, &ranks), &ranks };
-    const OrdinatesResult found = IsPublished(this->Settings)
-      ? SolvePublishedOrders(this->TheDevice, ofChannel, angles, this->Settings, monitor)
-      : SolveSweptOrders(this->TheDevice, ofChannel, angles, this->Settings, monitor);
+    const OrdinatesResult found = SolveSweptOrders(this->TheDevice, ofChannel, angles, this->Settings, monitor);
     this->Comm.Collective([&] {
       TakeChannel(light, found, channel);
       warm.Take(found, channel);
     });
-    return found.diverged;
   }
 
   LightKind KindOf(const BlockPartition& inUnits, int channels) const
@@ -133,14 +126,8 @@ private:
     {
       light.leftOut.emplace_back(left_out::NetFlux);
     }
-    double thickest = 0.0;
-    for (int c = 0; c < light.channels && this->Has; ++c)
-    {
-      thickest = std::max(thickest, ThickestStep(scene.medium, c));
-    }
-    thickest = this->Comm.Largest({ thickest })[0];
     const bool varies = OnAnyRank(this->Comm, this->Has && scene.medium.phase.Varies());
-    light.doubts = DoubtsOf(this->Settings, thickest, varies);
+    light.doubts = DoubtsOf(this->Settings, 0.0, varies);
     light.directionsPerFace = this->AsSolved.directionsPerFace;
   }
 
@@ -175,6 +162,7 @@ LightField SolveOrdinatesInBlocks(Device& device, Communicator& communicator, co
   PropagationSettings asPropagation = AsPropagation(settings);
   communicator.Collective([&] {
     partition.Check();
+    Require(!IsPublished(settings), "Blocks cannot be solved as published: take the conservative scheme.");
     Require(static_cast<int>(partition.blocks.size()) == communicator.Ranks(), "There is not a block for each rank.");
     Check(settings);
     if (has)

@@ -14,10 +14,9 @@
 namespace tyndall
 {
 /// The light of a medium that is spread over ranks by blocks, by discrete ordinates (DiscreteOrdinates.h): sweeps go
-/// from rank to rank (UpwindSweepInBlocks.h), or as published what stands beside blocks (PublishedStepInBlocks.h),
-/// scattering is by voxel, and what counts power is the same on all. No rank holds more than its block, as published
-/// with a layer round it. All ranks call it together. The light is that of SolveDiscreteOrdinates, order by order, but
-/// for rounding.
+/// from rank to rank (UpwindSweepInBlocks.h), scattering is by voxel, and powers are sums over ranks. No rank holds
+/// more than its block. Collective. The light is that of SolveDiscreteOrdinates, order by order, but for rounding.
+/// Conservative only.
 ///
 /// @param medium  of the rank's block, with the grid that partition.OwnGrid() has; looked at by nobody where that has
 ///   no voxels

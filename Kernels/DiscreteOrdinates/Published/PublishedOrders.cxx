@@ -1,38 +1,132 @@
 #include "DiscreteOrdinates/Published/PublishedOrders.h"
 
+#include "Device/Defines.h"
 #include "DiscreteOrdinates/ChannelArrays.h"
-#include "DiscreteOrdinates/Distributed/PublishedStepInBlocks.h"
-#include "DiscreteOrdinates/Published/PublishedStep.h"
+#include "DiscreteOrdinates/UpwindSweep.h"
+#include "Medium/BoxFaces.h"
+#include "Numerics/Vectors.h"
+#include "TyndallKernelSources.h"
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
-#include <optional>
+#include <utility>
 
 namespace tyndall
 {
 namespace
 {
 constexpr int MostSteps = 10000;
-constexpr double SlowestRateOfSteps = 0.99; ///< that is told the next solve: light on its way does not fall off at all
-constexpr double WithoutEnd = 1e4;          ///< a step's change over the first one's
+constexpr double WithoutEnd = 1e4; ///< a step's change over the first one's
+
+/// One explicit step along every direction, as long as the shortest edge of a voxel (Gong et al., Eqs. (7) and (9)).
+/// The paper leaves open how a grid is read between its voxels; here linearly, as its textures are. Where sigma_t times
+/// the step is above 1, radiance becomes negative; above 2 it grows without end (numerics.md, Eq. (D13)).
+class ExplicitStep
+{
+public:
+  ExplicitStep(Device& device, const Grid& grid, const OrdinateGroups& groups, const IncomingRadiance& incoming,
+    const std::array<bool, 3>& periodic)
+    : TheDevice(device)
+    , TheGrid(grid)
+    , Groups(groups)
+    , Periodic(periodic)
+    , Step(*std::min_element(grid.spacing.begin(), grid.spacing.end()))
+  {
+    std::vector<float> parts, outside;
+    std::vector<cl_int> up;
+    for (int g = 0; g < groups.Count(); ++g)
+    {
+      for (int a = 0; a < 3; ++a)
+      {
+        const int face = EntryFace(a, groups.All()[g].up[a]);
+        up.push_back(groups.All()[g].up[a]);
+        for (int lane = 0; lane < OrdinateLanes; ++lane)
+        {
+          const double radiance = incoming && !periodic[a] ? incoming(groups.All()[g].direction[lane], face) : 0.0;
+          this->Entering[face] += this->Across(g, lane, a) * radiance * grid.VoxelCount() / grid.size[a];
+          parts.push_back(static_cast<float>(std::abs(groups.Of(g, lane).omega[a]) * this->Step / grid.spacing[a]));
+          outside.push_back(static_cast<float>(radiance));
+        }
+      }
+    }
+    this->Parts = Buffer<float>(device, parts, "the directions");
+    this->Incoming = Buffer<float>(device, outside, "light through the faces");
+    this->Up = Buffer<cl_int>(device, up, "the directions");
+  }
+
+  /// @param radiance  becomes scratch
+  /// @param scattered, steady  sources, W / (length^3 sr)
+  void Apply(const Buffer<float>& radiance, const Buffer<float>& scattered, const Buffer<float>& steady,
+    const Buffer<float>& sigma_t, const Buffer<float>& after) const
+  {
+    const cl::NDRange all(this->TheGrid.VoxelCount(), this->Groups.Count());
+    const cl_ulong stride = OrdinateStride(this->TheGrid.VoxelCount());
+    cl::Kernel change = this->Kernel("change_radiance");
+    With(change, radiance, scattered, steady, sigma_t, static_cast<float>(this->Step), stride);
+    this->TheDevice.Queue().enqueueNDRangeKernel(change, cl::NullRange, all);
+    const cl_int periodic = this->Periodic[0] + 2 * this->Periodic[1] + 4 * this->Periodic[2];
+    cl::Kernel move = this->Kernel("move_on");
+    With(move, radiance, after, this->Parts, this->Up, this->Incoming, Int4(this->TheGrid.size), stride, periodic);
+    this->TheDevice.Queue().enqueueNDRangeKernel(move, cl::NullRange, all);
+    this->TheDevice.Finish();
+  }
+
+  /// W through each face.
+  FacePowers Powers(const Buffer<float>& radiance) const
+  {
+    FacePowers powers;
+    powers.in = this->Entering;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const std::vector<float> sums = this->Periodic[axis] ? std::vector<float>() : this->SumsLeaving(radiance, axis);
+      const std::size_t rows = this->TheGrid.size[AcrossAxis(axis).v];
+      for (std::size_t i = 0; i < sums.size(); ++i)
+      {
+        const int g = static_cast<int>(i / OrdinateLanes / rows), lane = i % OrdinateLanes;
+        powers.out[EntryFace(axis, !this->Groups.All()[g].up[axis])] += this->Across(g, lane, axis) * sums[i];
+      }
+    }
+    return powers;
+  }
+
+private:
+  cl::Kernel Kernel(const char* name) const { return this->TheDevice.Kernel(name, kernel_source::PublishedOrders, ""); }
+
+  /// W that radiance 1 carries across a voxel's face.
+  double Across(int group, int lane, int axis) const
+  {
+    return this->Groups.Weight(group, lane) * std::abs(this->Groups.Of(group, lane).omega[axis]) *
+      this->TheGrid.VoxelVolume() / this->TheGrid.spacing[axis];
+  }
+
+  /// Radiance in the voxels at the faces across an axis through which each group leaves, summed along rows.
+  std::vector<float> SumsLeaving(const Buffer<float>& radiance, int axis) const
+  {
+    const std::array<std::size_t, 3> strides = this->TheGrid.Strides();
+    const PlaneAxes across = AcrossAxis(axis);
+    const std::size_t rows = this->TheGrid.size[across.v];
+    Buffer<float> sums(this->TheDevice, this->Groups.Lanes() * rows, "sums");
+    cl::Kernel sum = this->Kernel("sum_leaving");
+    With(sum, radiance, sums, this->Up, cl_ulong(OrdinateStride(this->TheGrid.VoxelCount())), axis,
+      cl_ulong(strides[axis] * (this->TheGrid.size[axis] - 1)), cl_ulong(strides[across.v]),
+      cl_ulong(strides[across.u]), this->TheGrid.size[across.u]);
+    this->TheDevice.Queue().enqueueNDRangeKernel(sum, cl::NullRange, cl::NDRange(rows, this->Groups.Count()));
+    return sums.Read();
+  }
+
+  Device& TheDevice;
+  Grid TheGrid;
+  const OrdinateGroups& Groups;
+  const std::array<bool, 3> Periodic;
+  double Step;
+  std::array<double, 6> Entering = {};
+  Buffer<float> Parts, Incoming;
+  Buffer<cl_int> Up;
+};
 
 PairSums SumsOfSteps(const OrdinatesSettings& settings)
 {
   return settings.scattering == OrdinatesScattering::Matrix ? PairSums::Passes : PairSums::Terms;
-}
-
-std::unique_ptr<OrdinateStep> StepOf(Device& device, const OrdinatesScene& scene, const OrdinatesAngles& angles,
-  const OrdinatesSettings& settings, const LightOfCells* reflecting)
-{
-  const Grid& grid = scene.medium.grid;
-  if (scene.ranks)
-  {
-    return std::make_unique<PublishedStepInBlocks>(
-      device, *scene.ranks, grid, angles.groups, settings.periodic, scene.incoming, reflecting);
-  }
-  return std::make_unique<PublishedStep>(
-    device, grid, angles.groups, scene.incoming, SteppedFaces::Of(grid, settings.periodic, reflecting));
 }
 
 class PublishedOrders
@@ -40,143 +134,77 @@ class PublishedOrders
 public:
   PublishedOrders(
     Device& device, const OrdinatesScene& scene, const OrdinatesAngles& angles, const OrdinatesSettings& settings)
-    : Scene(scene)
-    , Settings(settings)
+    : Settings(settings)
     , Arrays(device, scene, angles, settings.netFlux)
-    , Cells(CellsOf(this->Arrays.Faces.get()))
-    , Step(StepOf(device, scene, angles, settings, this->Cells ? &*this->Cells : nullptr))
+    , Step(device, scene.medium.grid, angles.groups, scene.incoming, settings.periodic)
     , Scattering(
         device, angles.groups, angles.phase, SumsOfSteps(settings), false, settings.netFlux, this->Arrays.Voxels)
     , Radiance(device, AngularScattering::Floats(angles.groups, this->Arrays.Voxels), "radiance of all directions")
     , Scattered(device, this->Radiance.Size(), "scattered light of all directions")
     , Steady(device, this->Radiance.Size(), "sources of all directions")
+    , Fluence(this->Arrays.Voxels)
   {
+    for (Buffer<float>* field : { &this->Radiance, &this->Scattered, &this->Steady })
+    {
+      field->Fill(0.0f);
+    }
   }
 
   OrdinatesResult Run(const Monitor& monitor)
   {
-    this->Arrays.LookAtAllRanks();
-    this->Begin(OfPart(monitor, 0.0, 0.1));
+    this->AddSteadySources(OfPart(monitor, 0.0, 0.1));
     do
     {
+      this->Step.Apply(this->Radiance, this->Scattered, this->Steady, this->Arrays.SigmaT, this->Scattered);
+      this->Radiance.Swap(this->Scattered);
       const double done = static_cast<double>(this->Record.All().size()) / (this->Record.All().size() + 20.0);
       const double share = 0.1 + 0.9 * done;
-      this->Scene.Collective([&] { Report(monitor, share); });
-      this->StepOnce(monitor ? Monitor([&](double) { return monitor(share); }) : Monitor());
+      Report(monitor, share);
+      this->Scatter(monitor ? Monitor([&](double) { return monitor(share); }) : Monitor());
     } while (!this->Done());
-    this->Scene.Collective([&] { this->Finish(); });
+    this->Finish();
     return std::move(this->Result);
   }
 
 private:
-  void Begin(const Monitor& monitor)
+  void AddSteadySources(const Monitor& monitor)
   {
-    this->Scene.Collective([&] {
-      for (Buffer<float>* field : { &this->Radiance, &this->Scattered, &this->Steady })
-      {
-        field->Fill(0.0f);
-      }
-    });
     if (this->Arrays.Emits())
     {
       this->Arrays.EmitEvenly(this->Steady, this->Result.ledger);
     }
     this->Arrays.AddLamps(this->Steady, this->Settings.periodic, this->Result, monitor);
-    this->OfLamps = this->Result.ledger;
-    this->Scene.Collective([&] {
-      if (this->Arrays.Faces)
-      {
-        this->LampsThroughCells = this->Arrays.Faces->TakeOut();
-      }
-      this->LampFluence = this->Arrays.Direct.Read();
-      this->LampFlux = this->Arrays.Light.flux.Read();
-      this->Fluence.assign(this->Arrays.Voxels, 0.0f);
-    });
-    if (this->Scene.guess.values.empty())
-    {
-      this->MoveOn(); // from darkness: nothing is scattered yet
-      return;
-    }
-    this->Scene.Collective([&] { this->Radiance.Write(this->Scene.guess.values.data()); });
+    this->OfSources = this->Result.ledger;
+    this->LampFluence = this->Arrays.Direct.Read();
+    this->LampFlux = this->Arrays.Light.flux.Read();
   }
 
-  /// What leaves the box now comes back with the next step.
-  void Reflect()
+  /// After a step: what is scattered in the next, and the powers.
+  void Scatter(const Monitor& monitor)
   {
-    if (!this->Arrays.Faces)
-    {
-      return;
-    }
-    this->Step->LeaveByCells(this->Radiance);
-    this->Scene.Collective([&] { this->LetBackIn(*this->Arrays.Faces); });
-  }
-
-  void LetBackIn(FaceLight& faces)
-  {
-    const std::vector<float> swept = faces.TakeOut();
-    this->ThroughCells.resize(swept.size());
-    std::vector<double> back(swept.size());
-    for (std::size_t i = 0; i < swept.size(); ++i)
-    {
-      this->ThroughCells[i] = static_cast<double>(swept[i]) + this->LampsThroughCells[i];
-      back[i] = faces.Albedo()[faces.FaceOf(i)][0] * this->ThroughCells[i];
-    }
-    faces.LetIn(back, std::vector<double>(back.size(), 0.0));
-    this->Returned = faces.PowerOfFaces(back);
-  }
-
-  void StepOnce(const Monitor& monitor)
-  {
-    std::vector<float> now;
-    this->Scene.Collective([&] {
-      this->Scattering.Scatter(
-        this->Radiance, this->Arrays.SigmaS, this->Scattered, this->Arrays.Scale, this->Arrays.Light, monitor);
-      now = this->Arrays.Light.order.Read();
-    });
-    const double change = this->ChangeTo(now);
-    this->FirstChange = this->Record.All().empty() ? change : this->FirstChange;
-    this->Result.diverged = !(change <= WithoutEnd * this->FirstChange);
-    this->Fluence = now;
-    this->Change = change;
-    this->Result.ledger = this->OfLamps;
-    this->Reflect();
-    this->CountSteady();
-    this->Record.Add(change, this->Result.ledger);
-    if (this->Record.All().size() == 1 && !this->Scene.guess.values.empty())
-    {
-      this->Record.BeginWarm(this->Scene.guess.rate); // from darkness to the guess was no step
-    }
-    if (!this->Done())
-    {
-      this->MoveOn();
-    }
-  }
-
-  /// Of fluence, in all voxels.
-  double ChangeTo(const std::vector<float>& now) const
-  {
-    double change = 0.0;
+    this->Scattering.Scatter(
+      this->Radiance, this->Arrays.SigmaS, this->Scattered, this->Arrays.Scale, this->Arrays.Light, monitor);
+    const std::vector<float> now = this->Arrays.Light.order.Read();
+    this->Change = 0.0;
     for (std::size_t i = 0; i < now.size(); ++i)
     {
-      change += std::abs(static_cast<double>(now[i]) - this->Fluence[i]);
+      this->Change += std::abs(static_cast<double>(now[i]) - this->Fluence[i]);
     }
-    const bool counts = !this->Scene.ranks || this->Scene.ranks->Has();
-    return this->Scene.Sum({ counts ? change : 0.0 })[0];
-  }
-
-  void MoveOn()
-  {
-    this->Step->Apply(this->Radiance, this->Scattered, this->Steady, this->Arrays.SigmaT, this->Scattered);
-    this->Radiance.Swap(this->Scattered);
+    this->FirstChange = this->Record.All().empty() ? this->Change : this->FirstChange;
+    this->Result.diverged = !(this->Change <= WithoutEnd * this->FirstChange);
+    this->Fluence = now;
+    this->CountSteady();
+    this->Record.Add(this->Change, this->Result.ledger);
   }
 
   void CountSteady()
   {
-    const FacePowers powers = this->Step->Powers(this->Radiance);
+    this->Result.ledger = this->OfSources;
+    const FacePowers powers = this->Step.Powers(this->Radiance);
     for (int face = 0; face < 6; ++face)
     {
       this->Result.ledger.Enter(0, powers.in[face]);
-      this->Result.ledger.Escape(0, face, powers.out[face] - this->Returned[face][0]);
+      this->Result.ledger.Escape(0, face, powers.out[face]);
     }
     this->Result.ledger.Absorb(0,
       this->Arrays.PowersOf(this->Fluence, false).absorbed + this->Arrays.PowersOf(this->LampFluence, true).absorbed);
@@ -196,10 +224,6 @@ private:
 
   void Finish()
   {
-    if (this->Arrays.Faces)
-    {
-      this->Result.facePower = this->Arrays.Faces->PerArea(this->ThroughCells);
-    }
     if (this->Settings.netFlux)
     {
       this->Arrays.Light.flux.Fill(0.0f); // of all steps
@@ -216,27 +240,16 @@ private:
     {
       this->Result.flux[i] += this->LampFlux[i];
     }
-    if (this->Scene.guess.keeps && !this->Result.diverged)
-    {
-      this->Result.left = this->Radiance.Read();
-      this->Result.firstScattered = 1.0;
-      this->Result.rate = std::max(std::min(this->Record.Rate(), SlowestRateOfSteps), this->Scene.guess.rate);
-    }
     this->Result.convergence = std::move(this->Record.All());
   }
 
-  const OrdinatesScene& Scene;
   const OrdinatesSettings& Settings;
   ChannelArrays Arrays;
-  const std::optional<LightOfCells> Cells;
-  std::unique_ptr<OrdinateStep> Step;
+  ExplicitStep Step;
   AngularScattering Scattering;
   Buffer<float> Radiance, Scattered, Steady;
   std::vector<float> Fluence, LampFluence, LampFlux;
-  std::vector<float> LampsThroughCells; ///< W
-  std::vector<double> ThroughCells;     ///< W, with what leaves now
-  std::array<Rgb, 6> Returned = {};     ///< W
-  EnergyLedger OfLamps;                 ///< and of emission
+  EnergyLedger OfSources; ///< of lamps and emission
   OrdinatesRecord Record;
   OrdinatesResult Result;
   double Change = 0.0, FirstChange = 0.0;
@@ -246,17 +259,13 @@ private:
 OrdinatesResult SolvePublishedOrders(Device& device, const OrdinatesScene& scene, const OrdinatesAngles& angles,
   const OrdinatesSettings& settings, const Monitor& monitor)
 {
-  std::unique_ptr<PublishedOrders> orders;
-  scene.Collective([&] { orders = std::make_unique<PublishedOrders>(device, scene, angles, settings); });
-  return orders->Run(monitor);
+  return PublishedOrders(device, scene, angles, settings).Run(monitor);
 }
 
-std::size_t BytesOfPublishedOrders(
-  const Grid& grid, const OrdinatesAngles& angles, const OrdinatesSettings& settings, bool inBlocks)
+std::size_t BytesOfPublishedOrders(const Grid& grid, const OrdinatesAngles& angles, const OrdinatesSettings& settings)
 {
   const std::size_t voxels = grid.VoxelCount();
-  const std::size_t around = inBlocks ? PublishedStepInBlocks::Floats(grid, angles.groups) : 0;
-  return sizeof(float) * (3 * AngularScattering::Floats(angles.groups, voxels) + around) +
+  return sizeof(float) * 3 * AngularScattering::Floats(angles.groups, voxels) +
     ChannelArrays::Bytes(grid, settings.netFlux) +
     AngularScattering::Bytes(angles.groups, angles.phase.Terms(), SumsOfSteps(settings), voxels);
 }

@@ -4,7 +4,7 @@
 #include "Numerics/Constants.h"
 
 #include <algorithm>
-#include <cmath>
+#include <utility>
 
 namespace tyndall
 {
@@ -13,167 +13,83 @@ namespace
 /// No problem that converges at all needs more; those that do not must end.
 constexpr int MostOrders = 10000;
 
-constexpr double NothingToWaitFor = 1e-3; ///< of what is left over, beside what goes round without end
-
-constexpr double WarmMargin = 1.5; ///< the error of a guess does not fall evenly
+constexpr double Negligible = 1e-3;     ///< of the power left over, beside light that wraps around without end
+constexpr double LargestRatio = 0.9999; ///< of an order to the one before, of a series that converges
 }
 
-OrderSums SumsOf(const Medium& medium, int channels, const float* fluence)
-{
-  OrderSums sums;
-  for (std::size_t voxel = 0; voxel < medium.grid.VoxelCount(); ++voxel)
-  {
-    for (int c = 0; c < channels; ++c)
-    {
-      const double value = fluence[voxel * channels + c];
-      sums.fluence[c] += value;
-      sums.magnitude[c] += std::abs(value);
-      sums.absorbed[c] += value * medium.sigma_a.At(voxel, c);
-      sums.scattered[c] += value * medium.sigma_s.At(voxel, c);
-    }
-  }
-  return sums;
-}
-
-Rgb EmittedBy(const Medium& medium, int channels)
-{
-  const double power = 4.0 * Pi * medium.grid.VoxelVolume();
-  Rgb emitted = {};
-  for (std::size_t voxel = 0; voxel < medium.grid.VoxelCount(); ++voxel)
-  {
-    for (int c = 0; c < channels; ++c)
-    {
-      emitted[c] += power * medium.emission.At(voxel, c);
-    }
-  }
-  return emitted;
-}
-
-OrderLedger::OrderLedger(const Medium& medium, const PublishedModel& model, const PropagationSettings& settings)
-  : OrderLedger(medium.grid.VoxelVolume(), EmittedBy(medium, model.Channels()), model, settings)
-{
-}
-
-OrderLedger::OrderLedger(
-  double voxelVolume, const Rgb& emitted, const PublishedModel& model, const PropagationSettings& settings)
-  : VoxelVolume(voxelVolume)
+OrderLedger::OrderLedger(const Medium& medium, int channels, const PropagationSettings& settings)
+  : TheMedium(medium)
   , Settings(settings)
-  , Channels(model.Channels())
-  , FacesReflect(model.FacesReflect())
+  , Channels(channels)
   , Start(std::chrono::steady_clock::now())
 {
-  this->Balance.emitted = emitted;
+  const double power = 4.0 * Pi * medium.grid.VoxelVolume();
+  for (std::size_t voxel = 0; voxel < medium.grid.VoxelCount(); ++voxel)
+  {
+    for (int c = 0; c < channels; ++c)
+    {
+      this->Powers.Emit(c, power * medium.emission.At(voxel, c));
+    }
+  }
 }
 
 void OrderLedger::Count(const SweepTally& tally)
 {
+  this->Powers.Count(tally);
   for (int c = 0; c < this->Channels; ++c)
   {
-    for (std::size_t face = 0; face < tally.out.size(); ++face)
-    {
-      this->Entered[c] += tally.in[face][c];
-      this->FacePowerOut[face][c] += tally.out[face][c];
-    }
     this->Carried[c] += tally.onTheWay[c];
   }
 }
 
-void OrderLedger::BeginWarm(const Rgb& rate)
+void OrderLedger::CloseOrder(const std::vector<float>& fluence)
 {
-  this->Warm = true;
-  this->LeastRatio = rate;
-}
-
-void OrderLedger::GiveBack(const std::array<Rgb, 6>& powers)
-{
-  this->ComingBack = {};
-  for (std::size_t face = 0; face < powers.size(); ++face)
+  const double volume = this->TheMedium.grid.VoxelVolume();
+  Rgb sum = {}, absorbed = {}, scattered = {};
+  for (std::size_t i = 0; i < fluence.size(); ++i)
   {
-    for (int c = 0; c < this->Channels; ++c)
-    {
-      this->FacePowerOut[face][c] -= powers[face][c];
-      this->ComingBack[c] += powers[face][c];
-    }
+    const std::size_t voxel = i / this->Channels, c = i % this->Channels;
+    const double value = fluence[i];
+    sum[c] += value;
+    absorbed[c] += value * this->TheMedium.sigma_a.At(voxel, static_cast<int>(c));
+    scattered[c] += value * this->TheMedium.sigma_s.At(voxel, static_cast<int>(c));
   }
-}
-
-void OrderLedger::CloseOrder(const OrderSums& sums)
-{
-  ConvergenceRow row;
-  row.iteration = this->Orders();
-  row.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - this->Start).count();
-  this->Balance.entered = this->Entered;
-  this->Balance.escaped = {};
+  bool goesOn = false;
   for (int c = 0; c < this->Channels; ++c)
   {
-    this->Balance.absorbed[c] += this->VoxelVolume * sums.absorbed[c];
-    this->Balance.leftOver[c] = this->VoxelVolume * sums.scattered[c] + this->Carried[c] + this->ComingBack[c];
-    for (const Rgb& face : this->FacePowerOut)
-    {
-      this->Balance.escaped[c] += face[c];
-    }
-    this->TotalSum[c] += sums.fluence[c];
-    row.absorbed += this->Balance.absorbed[c];
-    row.escaped += this->Balance.escaped[c];
-    row.leftOver += this->Balance.leftOver[c];
-  }
-  const Rgb& counted = this->Warm ? sums.magnitude : sums.fluence;
-  bool goesOn = this->Warm && Sum(sums.magnitude) > 0.0;
-  for (int c = 0; c < this->Channels && !this->Warm; ++c)
-  {
-    const double others = this->VoxelVolume * sums.scattered[c] + this->ComingBack[c];
+    const double next = volume * scattered[c], leftOver = next + this->Carried[c];
+    this->Powers.Absorb(c, volume * absorbed[c]);
+    this->Powers.SetUnaccounted(c, leftOver);
+    this->TotalSum[c] += sum[c];
     goesOn = goesOn ||
-      GoesOnToItsEnd(this->Settings.maximumOrders, this->CarriedBefore[c], this->Carried[c], others) >
-        NothingToWaitFor * this->Balance.leftOver[c];
+      GoesOnToItsEnd(this->Settings.maximumOrders, this->CarriedBefore[c], this->Carried[c], next) >
+        Negligible * leftOver;
   }
-  row.residual = goesOn ? this->EstimateResidual(counted) : 0.0;
-  this->SumBefore = this->LastSum;
-  this->LastSum = this->Warm && this->Rows.empty() ? Rgb{} : counted; // with a guess it tells nothing
+  const EnergyBalance& balance = this->Powers.Balance();
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - this->Start).count();
+  const double residual = goesOn ? this->EstimateResidual(sum) : 0.0;
+  this->Rows.push_back(
+    { this->Orders(), seconds, residual, 0.0, Sum(balance.absorbed), Sum(balance.escaped), Sum(balance.leftOver) });
+  this->LastSum = sum;
   this->CarriedBefore = std::exchange(this->Carried, {});
-  this->Rows.push_back(row);
-  this->Finished = row.residual == 0.0 ||
+  this->Finished = residual == 0.0 ||
     (this->Settings.maximumOrders > 0 ? this->Orders() >= this->Settings.maximumOrders
-                                      : MeetsTolerance(this->Settings, row.residual) || this->Orders() >= MostOrders);
+                                      : MeetsTolerance(this->Settings, residual) || this->Orders() >= MostOrders);
 }
 
-/// Orders shrink like a geometric series in the end: what is still to come is its rest.
-double OrderLedger::EstimateResidual(const Rgb& orderSum)
+/// Orders fall like a geometric series in the end: estimates its remainder.
+double OrderLedger::EstimateResidual(const Rgb& orderSum) const
 {
   double residual = this->Rows.empty() ? 1.0 : 0.0;
   for (int c = 0; c < this->Channels; ++c)
   {
-    if (orderSum[c] > 0.0 && (this->LastSum[c] > 0.0 || (this->Warm && !this->Rows.empty())))
+    if (orderSum[c] > 0.0 && this->LastSum[c] > 0.0)
     {
-      const double known = this->LeastRatio[c] > 0.0 ? this->LeastRatio[c] : 1.0;
-      const double found =
-        this->LastSum[c] > 0.0 ? std::max(orderSum[c] / this->LastSum[c], this->LeastRatio[c]) : known;
-      const double ratio = std::min(found, 0.9999);
-      const double growth = this->Ratio[c] > 0.0 && !this->Warm ? std::max(0.0, ratio - this->Ratio[c]) : 0.0;
-      this->Limit[c] = std::min(ratio + growth, 0.9999);
-      this->Ratio[c] = ratio;
-      double rest = orderSum[c] * ratio / (1.0 - ratio) / this->TotalSum[c];
-      if (this->FacesReflect)
-      {
-        rest = std::max(rest, this->RestOfPairs(c, orderSum[c]) / this->TotalSum[c]);
-      }
-      residual = std::max(residual, this->Warm ? WarmMargin * rest : rest);
+      const double ratio = std::min(orderSum[c] / this->LastSum[c], LargestRatio);
+      residual = std::max(residual, orderSum[c] * ratio / (1.0 - ratio) / this->TotalSum[c]);
     }
   }
   return residual;
-}
-
-/// Light that goes to and fro between a face that gives back much and one that gives back little falls by much and by
-/// little in turn, but evenly from pair to pair of orders: what the pairs to come add up to.
-double OrderLedger::RestOfPairs(int channel, double orderSum)
-{
-  const double before = this->SumBefore[channel];
-  if (before <= 0.0)
-  {
-    return orderSum; // no pair is known yet
-  }
-  const double ratio = std::min(orderSum / before, 0.9998);
-  this->Limit[channel] = std::max(this->Limit[channel], std::sqrt(ratio));
-  return (this->LastSum[channel] + orderSum) * ratio / (1.0 - ratio);
 }
 
 double OrderLedger::Progress(double fractionOfOrder) const
@@ -184,8 +100,8 @@ double OrderLedger::Progress(double fractionOfOrder) const
 
 void OrderLedger::WriteTo(LightField& field) const
 {
-  field.balance = this->Balance;
-  field.facePowerOut = this->FacePowerOut;
+  field.balance = this->Powers.Balance();
+  field.facePowerOut = this->Powers.FacePowerOut();
   field.convergence = this->Rows;
 }
 }

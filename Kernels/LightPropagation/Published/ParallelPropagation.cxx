@@ -4,13 +4,9 @@
 #include "Light/ChannelReduction.h"
 #include "LightPropagation/Convergence.h"
 #include "LightPropagation/Published/OrderLedger.h"
-#include "LightPropagation/Published/PublishedBorders.h"
-#include "LightPropagation/Published/PublishedFaces.h"
-#include "LightPropagation/Published/PublishedLight.h"
 #include "LightPropagation/Published/PublishedPlan.h"
 #include "LightPropagation/Published/PublishedSweep.h"
 #include "LightPropagation/Published/PublishedVolumes.h"
-#include "LightPropagation/Published/PublishedWarmStart.h"
 #include "LightPropagation/Uncollided/GivenLight.h"
 #include "TyndallKernelSources.h"
 
@@ -24,47 +20,33 @@ namespace tyndall
 namespace
 {
 using Batch = PublishedPlan::Batch;
-using Pass = PublishedPlan::Pass;
 }
 
 struct ParallelPropagation::Implementation
 {
   Implementation(Device& device, const Medium& medium, const Illumination& illumination,
-    const PropagationSettings& settings, std::size_t temporaryBytes, int channels, const KeptLight* kept)
+    const PropagationSettings& settings, std::size_t temporaryBytes, int channels)
     : TheDevice(device)
     , TheMedium(medium)
     , Outside(illumination)
     , Settings(settings)
     , Model(medium, illumination, settings, channels)
     , Traits(TraitsOf(medium))
-    , Ledger(medium, this->Model, settings)
-    , Channels(this->Model.Channels())
+    , Ledger(medium, this->Model.Channels(), settings)
     , Volumes(device, medium, this->Model, device.KernelWidth(8, 16))
     , Plan(device, medium.grid, this->Model, settings, this->Volumes, temporaryBytes)
-    , Borders(this->Model, settings, this->Plan)
-    , Faces(medium.grid, this->Model, settings)
-    , Warm(
-        { medium, this->Model, this->Settings, medium.grid, static_cast<std::size_t>(this->Volumes.Layouts.volume[0]) },
-        kept)
-    , Sweep(
-        device, this->Volumes, this->Model, settings, this->Plan.sizes, this->Faces.Count() ? this->Faces.Cells() : 0)
+    , Sweep(device, this->Volumes, this->Plan, this->Model, settings)
     , UpdateSources(device.Kernel("update_sources", kernel_source::PublishedCollect,
-        Define("REAL_WIDTH", this->Volumes.Width) + Define("CHANNELS", this->Channels) +
+        Define("REAL_WIDTH", this->Volumes.Width) + Define("CHANNELS", this->Model.Channels()) +
           Define("COLOURED", this->Volumes.Coloured) + Define("MOMENTS", this->Model.MomentCount())))
     , Emits(this->Traits.emits || !settings.leaveOut)
   {
   }
 
-  // One order
-  bool FirstOrder() const { return this->Ledger.Orders() == 0 && !this->SourceGiven; }
   void Propagate(int number, const Monitor& monitor);
   void Collect(int number);
   void FinishOrder();
   void UpdateSourcesOfOrder();
-  void LookAtDirect();
-  void BeginFrom(const std::vector<float>& moments);
-
-  // What came of it
   LightField Result() const;
 
   Device& TheDevice;
@@ -74,49 +56,34 @@ struct ParallelPropagation::Implementation
   PublishedModel Model;
   MediumTraits Traits;
   OrderLedger Ledger;
-  int Channels;
   PublishedVolumes Volumes;
   PublishedPlan Plan;
-  PublishedBorders Borders;
-  PublishedFaces Faces;
-  PublishedWarmStart Warm;
   PublishedSweep Sweep;
   cl::Kernel UpdateSources;
-  SweepTally Tally; ///< of the order that runs
+  SweepTally Tally; ///< of the current order
   bool Emits;       ///< U is not zero
   bool SourceGiven = false;
   std::vector<float> FluenceDirect;
 };
 
-/// Light from outside belongs to the first order.
+/// Light is incident on the boundary in the first order.
 void ParallelPropagation::Implementation::Propagate(int number, const Monitor& monitor)
 {
   Batch& batch = this->Plan.batches[number];
   const double batches = static_cast<double>(this->Plan.batches.size());
-  const bool goesOn = this->Settings.periodic[batch.Map().axis];
-  if (this->Ledger.Orders() > 0 && goesOn)
+  if (this->Ledger.Orders() > 0 && this->Settings.periodic[batch.Map().axis])
   {
-    this->Plan.MakePasses(batch, this->Ledger.Orders()); // rays go on from where they were
+    this->Plan.MakePasses(batch, this->Ledger.Orders()); // rays continue from their last place
   }
-  const bool first = this->FirstOrder();
-  this->Sweep.Begin(first ? this->Borders.Radiance(batch) : std::vector<float>(), this->Faces.Radiance());
-  if (first)
-  {
-    this->Borders.TallyEntered(batch, this->Tally);
-  }
+  const bool first = this->Ledger.Orders() == 0 && !this->SourceGiven;
+  this->Sweep.Begin(batch, first, this->Tally);
   const double passes = static_cast<double>(batch.passes.size());
   for (std::size_t p = 0; p < batch.passes.size(); ++p)
   {
     const auto report = [&](double part) {
       Report(monitor, this->Ledger.Progress((number + (static_cast<double>(p) + part) / passes) / batches));
     };
-    const std::vector<float> escaped = this->Sweep.Send(
-      this->Volumes, this->Plan, batch, batch.passes[p], { goesOn, goesOn }, !first || this->Emits, report);
-    this->Borders.TallyEscaped(batch, escaped, this->Tally);
-  }
-  if (this->Faces.Count())
-  {
-    this->Borders.TallyLeft(batch, this->Sweep.LeftThroughCells(), this->Faces);
+    this->Sweep.Send(batch, batch.passes[p], !first || this->Emits, this->Tally, report);
   }
   Report(monitor, this->Ledger.Progress((number + 1.0) / batches));
 }
@@ -124,33 +91,22 @@ void ParallelPropagation::Implementation::Propagate(int number, const Monitor& m
 void ParallelPropagation::Implementation::Collect(int number)
 {
   const Batch& batch = this->Plan.batches[number];
-  const bool begins = number == 0 || this->Plan.batches[number - 1].Layout() != batch.Layout();
-  this->Sweep.Collect(this->Volumes, this->Plan, batch, begins);
+  this->Sweep.Collect(batch, number == 0 || this->Plan.batches[number - 1].Layout() != batch.Layout());
 }
 
 void ParallelPropagation::Implementation::FinishOrder()
 {
-  if (this->Ledger.Orders() == 1 && this->Warm.Begins())
-  {
-    std::vector<float> moments = this->Volumes.OrderMoments[0].Read();
-    this->Warm.TakeFrom(moments);
-    this->Volumes.OrderMoments[0].Write(moments.data());
-  }
-  if (this->Ledger.Orders() == 0 && this->Outside.uncollided.IsThere())
+  const bool first = this->Ledger.Orders() == 0;
+  if (first && this->Outside.uncollided.IsThere())
   {
     this->Volumes.AddGiven(this->Outside.uncollided);
-    Add(this->Tally, TallyOf(this->Outside.uncollided, this->TheMedium, 0, this->Channels));
+    Add(this->Tally, TallyOf(this->Outside.uncollided, this->TheMedium, 0, this->Model.Channels()));
   }
   this->UpdateSourcesOfOrder();
-  if (this->Ledger.Orders() == 0)
-  {
-    this->LookAtDirect();
-  }
+  std::vector<float> fluence = this->Volumes.ReadMoment(this->Volumes.OrderMoments[0], 0);
   this->Ledger.Count(std::exchange(this->Tally, {}));
-  this->Faces.CloseOrder(this->Ledger);
-  this->Ledger.CloseOrder(
-    SumsOf(this->TheMedium, this->Channels, this->Volumes.ReadMoment(this->Volumes.OrderMoments[0], 0).data()));
-  std::swap(this->Sweep.Carried[0], this->Sweep.Carried[1]);
+  this->Ledger.CloseOrder(fluence);
+  this->FluenceDirect = first ? std::move(fluence) : this->FluenceDirect;
   this->Emits = true; // from now on U is not zero
 }
 
@@ -164,57 +120,25 @@ void ParallelPropagation::Implementation::UpdateSourcesOfOrder()
     With(this->UpdateSources, volumes.Layouts, static_cast<cl_int>(volumes.Parts.Size()), volumes.Parts,
       volumes.Scattering[0], volumes.OrderMoments[0], volumes.OrderMoments[1], volumes.Totals, volumes.Sources[0],
       volumes.Sources[1]),
-    cl::NullRange, cl::NDRange(size(0, 1, 32), size(1, 1, 8), size(2, this->Channels, 1)), cl::NDRange(32, 8, 1));
-}
-
-void ParallelPropagation::Implementation::LookAtDirect()
-{
-  this->FluenceDirect = this->Volumes.ReadMoment(this->Volumes.OrderMoments[0], 0);
-  if (this->Warm.Keeps())
-  {
-    std::vector<float> moments = this->Volumes.OrderMoments[0].Read();
-    this->Warm.AddTo(moments, this->Faces, this->FluenceDirect);
-    this->BeginFrom(moments);
-  }
-}
-
-/// @param moments  of the first order, with a guess where there is one
-void ParallelPropagation::Implementation::BeginFrom(const std::vector<float>& moments)
-{
-  if (this->Warm.Begins())
-  {
-    this->Volumes.OrderMoments[0].Write(moments.data());
-    this->Volumes.OrderMoments[1].Fill(0.0f); // it is in the other already
-    this->Volumes.Totals.Fill(0.0f);
-    this->UpdateSourcesOfOrder();
-    this->Ledger.BeginWarm(this->Warm.Rate());
-  }
+    cl::NullRange, cl::NDRange(size(0, 1, 32), size(1, 1, 8), size(2, this->Model.Channels(), 1)),
+    cl::NDRange(32, 8, 1));
 }
 
 LightField ParallelPropagation::Implementation::Result() const
 {
   LightField field;
-  const auto moment = [this](int k) { return this->Volumes.ReadMoment(this->Volumes.Totals, k); };
-  TakeMoments(this->Model, this->Settings.netFlux, moment, field);
-  field.fluenceDirect = this->FluenceDirect;
   this->Ledger.WriteTo(field);
-  this->Faces.WriteTo(field);
-  field.leftOut = LeftOutAsPublished(this->TheMedium.phase.IsIsotropic(), this->Traits,
-    this->Outside.uncollided.IsThere(), this->Outside, this->Settings, this->Ledger.Orders());
-  if (this->Warm.Keeps())
-  {
-    field.leftOut.push_back(this->Warm.Words());
-  }
-  field.halfRangeFlux = HalfRangeFlux(this->Model.Directions());
+  WritePublishedLight(
+    this->Model, this->TheMedium, this->Traits, this->Outside, this->Settings,
+    [this](int k) { return this->Volumes.ReadMoment(this->Volumes.Totals, k); }, field);
+  field.fluenceDirect = this->FluenceDirect;
   field.device = this->TheDevice.Name();
-  JudgeConvergence(this->Settings, field, false);
-  WarnAboutInputLight(this->Outside, field);
   return field;
 }
 
 ParallelPropagation::ParallelPropagation(Device& device, const Medium& medium, const Illumination& illumination,
-  const PropagationSettings& settings, std::size_t temporaryBytes, int channels, const KeptLight* kept)
-  : Inner(std::make_unique<Implementation>(device, medium, illumination, settings, temporaryBytes, channels, kept))
+  const PropagationSettings& settings, std::size_t temporaryBytes, int channels)
+  : Inner(std::make_unique<Implementation>(device, medium, illumination, settings, temporaryBytes, channels))
 {
 }
 
@@ -309,36 +233,21 @@ LightField ParallelPropagation::Result() const
   return this->Inner->Result();
 }
 
-KeptLight ParallelPropagation::Left() const
-{
-  return this->Inner->Warm.Leave(this->Inner->Volumes.Totals.Read(), this->Inner->Faces, this->Inner->Ledger.Rate());
-}
-
-bool ParallelPropagation::BeganWarm() const
-{
-  return this->Inner->Warm.Begins();
-}
-
 LightField SolveParallel(Device& device, const Medium& medium, const Illumination& illumination,
-  const PropagationSettings& settings, const Monitor& monitor, std::size_t temporaryBytes, KeptLight* kept)
+  const PropagationSettings& settings, const Monitor& monitor, std::size_t temporaryBytes)
 {
   Check(medium);
-  CheckPublishedPhase(medium); // before channels become one
   Check(illumination);
+  CheckPublished(medium, illumination); // before channels become one
   const SceneChannels channels(medium, TraitsOf(medium), illumination);
   return SolveChannels(settings.leaveOut, channels, medium, illumination,
     [&](const Medium& ofChannels, const Illumination& light, int count) {
-      ParallelPropagation propagation(device, ofChannels, light, settings, temporaryBytes, count, kept);
+      ParallelPropagation propagation(device, ofChannels, light, settings, temporaryBytes, count);
       do
       {
         propagation.RunOrder(monitor);
       } while (!propagation.Done());
-      LightField found = propagation.Result();
-      if (kept)
-      {
-        Keep(propagation.Left(), propagation.BeganWarm(), found, *kept);
-      }
-      return found;
+      return propagation.Result();
     });
 }
 }

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "Light/KeptLight.h"
 #include "LightPropagation/Published/PublishedModel.h"
 
 #include "Device/Buffer.h"
@@ -27,12 +26,10 @@ public:
   /// @param medium  its arrays must stay
   /// @param temporaryBytes  most that T may take; 0: what is left on the device
   /// @param channels  3: as if something had colour; 1: as the scene needs
-  /// @param kept  light of the last solve, must stay; null: none, and none is to be kept
   /// @throws InvalidInput for a medium, illumination or settings without meaning; DeviceError if it does not fit even
   ///   with one direction a batch
   ParallelPropagation(Device& device, const Medium& medium, const Illumination& illumination,
-    const PropagationSettings& settings, std::size_t temporaryBytes = 0, int channels = 1,
-    const KeptLight* kept = nullptr);
+    const PropagationSettings& settings, std::size_t temporaryBytes = 0, int channels = 1);
   ~ParallelPropagation();
 
   const PublishedModel& Model() const;
@@ -60,8 +57,6 @@ public:
   void SetSource(const std::vector<float>& source);
 
   LightField Result() const; ///< of all orders so far
-  KeptLight Left() const;    ///< for the next solve, of a propagation that was given kept light
-  bool BeganWarm() const;
 
 private:
   struct Implementation;
@@ -70,9 +65,6 @@ private:
 
 /// All orders on the device.
 /// @param temporaryBytes  as above
-/// @param kept  the light of the last solve is the first guess of this one, and the light of this one is left there
-/// (KeptLight.h); null: begins in the dark, and keeps nothing
 LightField SolveParallel(Device& device, const Medium& medium, const Illumination& illumination,
-  const PropagationSettings& settings, const Monitor& monitor = {}, std::size_t temporaryBytes = 0,
-  KeptLight* kept = nullptr);
+  const PropagationSettings& settings, const Monitor& monitor = {}, std::size_t temporaryBytes = 0);
 }

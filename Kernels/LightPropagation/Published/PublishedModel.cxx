@@ -2,6 +2,7 @@
 
 #include "Device/Errors.h"
 #include "Light/LeftOut.h"
+#include "LightPropagation/Convergence.h"
 #include "LightPropagation/Problem/PropagationProblem.h"
 #include "Medium/BoxFaces.h"
 #include "Numerics/Constants.h"
@@ -225,53 +226,15 @@ std::vector<std::string> LeftOutAsPublished(const Illumination& illumination)
   };
 }
 
-std::vector<std::string> LeftOutAsPublished(bool isotropic, const MediumTraits& traits, bool uncollidedGiven,
-  const Illumination& illumination, const PropagationSettings& settings, int orders)
+namespace
 {
-  std::vector<std::string> words = LeftOutAsPublished(illumination);
-  const auto say = [&](bool condition, const char* text) {
-    if (condition)
-    {
-      words.push_back(text);
-    }
-  };
-  const bool leaveOut = settings.leaveOut;
-  say(uncollidedGiven, left_out::OwnUncollided);
-  say(leaveOut && isotropic && traits.scatters, left_out::Isotropic);
-  say(leaveOut && !traits.scatters, left_out::NoScattering);
-  say(leaveOut && !traits.emits, left_out::NoEmission);
-  say(leaveOut && !Reflects(illumination), left_out::BlackFaces);
-  say(leaveOut && traits.scatters && orders == 1, left_out::OneOrder);
-  say(!settings.netFlux, left_out::NetFlux);
-  return words;
-}
+using Moment = std::function<std::vector<float>(int)>;
 
-std::string WhyNotPublished(const Medium& medium)
+std::string WhyNotPublished(const PhaseOfMedium& phase)
 {
-  const PhaseOfMedium& phase = medium.phase;
   return phase.Varies() ? "the mean cosine g differs between voxels, and the published scheme has one phase function"
     : phase.HasColour() ? "the phase function (g) differs between channels, and the published scheme has one for all"
                         : "";
-}
-
-void CheckPublishedPhase(const Medium& medium)
-{
-  const std::string why = WhyNotPublished(medium);
-  if (!why.empty())
-  {
-    throw InvalidInput("This medium cannot be solved as published: " + why +
-      ". Take the conservative scheme (Scheme 1), or give the medium one.");
-  }
-}
-
-namespace
-{
-const PhaseOfMedium& CheckedPhase(
-  const Medium& medium, const Illumination& illumination, const PropagationSettings& settings)
-{
-  Check(medium, illumination, settings);
-  CheckPublishedPhase(medium);
-  return medium.phase;
 }
 
 int ChannelsOf(const Medium& medium, const Illumination& illumination)
@@ -280,22 +243,122 @@ int ChannelsOf(const Medium& medium, const Illumination& illumination)
     medium.Channels() == 3 || illumination.uncollided.fluence.HasColour() || !ColourOf(illumination).IsGrey();
   return coloured ? 3 : 1;
 }
+
+std::vector<float> ScatteredRadiance(const PublishedModel& model, const Moment& moment)
+{
+  const std::size_t stored = model.StoredDirections().size();
+  const std::size_t channels = static_cast<std::size_t>(model.Channels());
+  std::vector<float> radiance;
+  for (std::size_t d = 0; d < stored; ++d)
+  {
+    const PublishedModel::Part part = model.ScatteredRadiance(static_cast<int>(d));
+    const std::vector<float> values = moment(part.moment);
+    radiance.resize(values.size() * stored);
+    for (std::size_t i = 0; i < values.size(); ++i)
+    {
+      radiance[(i / channels * stored + d) * channels + i % channels] = static_cast<float>(part.factor) * values[i];
+    }
+  }
+  return radiance;
+}
+
+std::vector<float> NetFlux(const PublishedModel& model, const Moment& moment)
+{
+  std::vector<float> netFlux;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const std::vector<float> flux = moment(model.NetFlux(axis));
+    netFlux.resize(3 * flux.size());
+    for (std::size_t i = 0; i < flux.size(); ++i)
+    {
+      netFlux[3 * i + axis] = flux[i];
+    }
+  }
+  return netFlux;
+}
+
+std::vector<std::string> LeftOut(const Medium& medium, const MediumTraits& traits, const Illumination& illumination,
+  const PropagationSettings& settings, std::size_t orders)
+{
+  std::vector<std::string> words = LeftOutAsPublished(illumination);
+  const auto say = [&](bool condition, const char* text) {
+    if (condition)
+    {
+      words.emplace_back(text);
+    }
+  };
+  const bool leaveOut = settings.leaveOut;
+  say(illumination.uncollided.IsThere(), left_out::OwnUncollided);
+  say(leaveOut && medium.phase.IsIsotropic() && traits.scatters, left_out::Isotropic);
+  say(leaveOut && !traits.scatters, left_out::NoScattering);
+  say(leaveOut && !traits.emits, left_out::NoEmission);
+  say(leaveOut, left_out::BlackFaces);
+  say(leaveOut && traits.scatters && orders == 1, left_out::OneOrder);
+  say(!settings.netFlux, left_out::NetFlux);
+  return words;
+}
+}
+
+std::string WhyNotPublished(const Medium& medium, const Illumination& illumination)
+{
+  return Reflects(illumination) ? "faces reflect (FaceAlbedo), and no published scheme has such faces"
+                                : WhyNotPublished(medium.phase);
+}
+
+void CheckPublished(const Medium& medium, const Illumination& illumination)
+{
+  CheckPublishedFaces(illumination);
+  const std::string why = WhyNotPublished(medium.phase);
+  Require(why.empty(),
+    "This medium cannot be solved as published: " + why +
+      ". Take the conservative scheme (Scheme 1), or give the medium one.");
+}
+
+void CheckPublishedFaces(const Illumination& illumination)
+{
+  Require(!Reflects(illumination),
+    "FaceAlbedo is not 0, and the published scheme has no faces that reflect. Take the conservative scheme (Scheme 1), "
+    "or set FaceAlbedo to 0.");
+}
+
+void AddGiven(const PublishedModel& model, const UncollidedImage& image, std::size_t voxels,
+  const std::function<void(std::size_t, std::size_t, int, double)>& add)
+{
+  const Field& mean = image.meanDirection;
+  for (std::size_t voxel = 0; voxel < voxels; ++voxel)
+  {
+    const std::vector<double> moments = model.MomentsAlong({ mean.At(voxel, 0), mean.At(voxel, 1), mean.At(voxel, 2) });
+    for (std::size_t k = 0; k < moments.size(); ++k)
+    {
+      for (int c = 0; c < model.Channels(); ++c)
+      {
+        add(k, voxel, c, moments[k] * image.fluence.At(voxel, c));
+      }
+    }
+  }
+}
+
+void WritePublishedLight(const PublishedModel& model, const Medium& medium, const MediumTraits& traits,
+  const Illumination& illumination, const PropagationSettings& settings, const Moment& moment, LightField& field)
+{
+  field.channels = model.Channels();
+  field.fluence = moment(0);
+  field.storedDirections = model.StoredDirections();
+  field.scatteredRadiance = ScatteredRadiance(model, moment);
+  field.netFlux = settings.netFlux ? NetFlux(model, moment) : std::vector<float>();
+  field.leftOut = LeftOut(medium, traits, illumination, settings, field.convergence.size());
+  field.halfRangeFlux = HalfRangeFlux(model.Directions());
+  JudgeConvergence(settings, field, false);
 }
 
 PublishedModel::PublishedModel(
   const Medium& medium, const Illumination& illumination, const PropagationSettings& settings, int channels)
-  : PublishedModel(CheckedPhase(medium, illumination, settings), illumination, settings,
-      std::max(channels, ChannelsOf(medium, illumination)))
+  : ChannelCount(std::max(channels, ChannelsOf(medium, illumination)))
+  , Isotropic(medium.phase.IsIsotropic())
 {
-}
-
-PublishedModel::PublishedModel(
-  const PhaseOfMedium& phase, const Illumination& illumination, const PropagationSettings& settings, int channels)
-  : ChannelCount(channels)
-{
-  this->Isotropic = phase.IsIsotropic();
+  Check(medium, illumination, settings);
+  CheckPublished(medium, illumination);
   this->Set = PublishedDirections(settings.directionsPerFace);
-  this->AlbedoOfFaces = illumination.faceAlbedo;
   this->BoundaryRadiances = BoundaryOf(this->Set, illumination, settings.periodic);
   if (settings.storedDirections == 1)
   {
@@ -315,7 +378,7 @@ PublishedModel::PublishedModel(
   this->Coefficients.push_back(fluence);
   if (!this->Isotropic)
   {
-    for (std::vector<double>& row : ScatteringFactors(phase.OfChannel(0), this->Set, this->Sources))
+    for (std::vector<double>& row : ScatteringFactors(medium.phase.OfChannel(0), this->Set, this->Sources))
     {
       this->Coefficients.push_back(std::move(row));
     }
@@ -330,11 +393,6 @@ PublishedModel::PublishedModel(
     }
     this->Coefficients.push_back(flux);
   }
-}
-
-bool PublishedModel::FacesReflect() const
-{
-  return !std::all_of(this->AlbedoOfFaces.begin(), this->AlbedoOfFaces.end(), IsBlack);
 }
 
 std::vector<double> PublishedModel::MomentsAlong(const std::array<double, 3>& mean) const
@@ -362,17 +420,6 @@ std::vector<double> PublishedModel::MomentsAlong(const std::array<double, 3>& me
     moments[this->FirstFlux + axis] = mean[axis];
   }
   return moments;
-}
-
-std::vector<int> PublishedModel::SourcesReadAlong(int axis) const
-{
-  const std::size_t ofAxis = 2 * static_cast<std::size_t>(this->Set.PerFace());
-  const std::size_t first = axis < 0 ? 0 : axis * ofAxis, count = axis < 0 ? this->NearestSource.size() : ofAxis;
-  const auto from = this->NearestSource.begin() + static_cast<std::ptrdiff_t>(first);
-  std::vector<int> sources(from, from + static_cast<std::ptrdiff_t>(count));
-  std::sort(sources.begin(), sources.end());
-  sources.erase(std::unique(sources.begin(), sources.end()), sources.end());
-  return sources;
 }
 
 PublishedModel::Part PublishedModel::Source(int sourceDirection) const

@@ -1,13 +1,16 @@
 #pragma once
 
+#include "Light/LightField.h"
 #include "LightPropagation/Angular/DirectionSet.h"
 #include "LightPropagation/PropagationSettings.h"
 #include "Lights/Lights.h"
+#include "Lights/UncollidedImage.h"
 
 #include "Medium/Medium.h"
 #include "Medium/Traits.h"
 
 #include <array>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -26,20 +29,12 @@ class PublishedModel
 public:
   /// @param channels  3: as if something had colour; 1: as the scene needs
   /// @throws InvalidInput what Check() of medium, illumination and settings throws (PropagationProblem.h), and
-  /// CheckPublishedPhase; directions that are not a square number
+  /// CheckPublished; directions that are not a square number
   PublishedModel(
     const Medium& medium, const Illumination& illumination, const PropagationSettings& settings, int channels = 1);
-  /// Of a scene that has been checked, of which a rank may have a part (Distributed/Published/PublishedInBlocks.h).
-  /// @param channels  1 or 3
-  PublishedModel(
-    const PhaseOfMedium& phase, const Illumination& illumination, const PropagationSettings& settings, int channels);
 
   int Channels() const { return this->ChannelCount; } ///< 3 where medium or light is coloured, else 1
   const DirectionSet& Directions() const { return this->Set; }
-
-  /// Part of what leaves through each face in an order that comes back in the next (PublishedFaces.h).
-  const std::array<Rgb, 6>& FaceAlbedo() const { return this->AlbedoOfFaces; }
-  bool FacesReflect() const;
 
   /// Radiance that enters along `direction` through the face across `axis` in order 0.
   const Rgb& Boundary(int direction, int axis) const { return this->BoundaryRadiances[direction][axis]; }
@@ -50,8 +45,6 @@ public:
   const std::vector<std::array<double, 3>>& SourceDirections() const { return this->Sources; }
   /// d(i) of Eq. (3), an index into SourceDirections.
   int SourceOf(int direction) const { return this->NearestSource[direction]; }
-  /// Those of the maps along an axis, sorted; -1: of all maps.
-  std::vector<int> SourcesReadAlong(int axis) const;
 
   /// A moment is a sum over directions of a coefficient times a voxel's mean radiance in that direction. Moment 0 is
   /// the fluence; the scattered radiance per source direction and the net flux follow where they are not multiples of
@@ -78,7 +71,6 @@ private:
   bool Isotropic = true;
   int FirstFlux = 0;
   DirectionSet Set;
-  std::array<Rgb, 6> AlbedoOfFaces = {};
   std::vector<std::array<Rgb, 3>> BoundaryRadiances;
   std::vector<std::array<double, 3>> Stored;
   std::vector<std::array<double, 3>> Sources;
@@ -86,24 +78,32 @@ private:
   std::vector<std::vector<double>> Coefficients;
 };
 
-/// Why the published scheme cannot solve a medium, in words: where its phase function varies by voxel or channel. Empty
-/// where it can.
-std::string WhyNotPublished(const Medium& medium);
+/// Why a scene cannot be solved as published: the phase function varies by voxel or channel, or faces reflect. Empty:
+/// it can.
+std::string WhyNotPublished(const Medium& medium, const Illumination& illumination);
 /// @throws InvalidInput with that
-void CheckPublishedPhase(const Medium& medium);
+void CheckPublished(const Medium& medium, const Illumination& illumination);
+/// @throws InvalidInput where a face reflects: no paper has such faces
+void CheckPublishedFaces(const Illumination& illumination);
 
 /// `count` directions spread evenly over the sphere: the cells of a cube's faces where count is 6 n^2, else Fibonacci
 /// points.
 std::vector<std::array<double, 3>> EvenDirections(int count);
 
-/// What of the illumination the published method cannot carry, in words; empty if nothing.
+/// Lights that the published scheme cannot carry, for LightField::leftOut; empty if none.
 std::vector<std::string> LeftOutAsPublished(const Illumination& illumination);
 
-/// That, and what the scene did not need but that one channel does for three.
-/// @param isotropic  scattering is
-/// @param orders     that were propagated
-std::vector<std::string> LeftOutAsPublished(bool isotropic, const MediumTraits& traits, bool uncollidedGiven,
-  const Illumination& illumination, const PropagationSettings& settings, int orders);
+/// Adds to the moments of an order light that another solver found.
+/// @param add  adds a value to a moment of a voxel and channel
+void AddGiven(const PublishedModel& model, const UncollidedImage& image, std::size_t voxels,
+  const std::function<void(std::size_t moment, std::size_t voxel, int channel, double value)>& add);
+
+/// Fluence, scattered radiance and, on request, net flux from the moments of all orders; what was left out, and whether
+/// the light has converged. `field` has its convergence.
+/// @param moment  by number: by voxel with channels interleaved
+void WritePublishedLight(const PublishedModel& model, const Medium& medium, const MediumTraits& traits,
+  const Illumination& illumination, const PropagationSettings& settings,
+  const std::function<std::vector<float>(int)>& moment, LightField& field);
 
 class GridWalk;
 
@@ -121,6 +121,7 @@ struct MapGeometry
   double beamPower;      ///< W that a ray carries at radiance 1: weight, area across the ray
   double density;        ///< mean radiance in a voxel that a ray deposits per radiance times length, 1/length
 
+  int PlaneAt(int crossed) const { return this->forward ? crossed : this->planes - 1 - crossed; } ///< after so many
   int EntryFace(int entryAxis) const; ///< 2 axis (+ 1 on the upper side): through which light of this direction enters
   int ExitFace(int exitAxis) const { return this->EntryFace(exitAxis) ^ 1; }
   /// Where in its voxel, [0, 1], a ray begins an order that it began at `start` in order 0. Other than `start` where it

@@ -14,42 +14,35 @@ PublishedPlan::PublishedPlan(Device& device, const Grid& grid, const PublishedMo
   , Settings(settings)
   , Volumes(volumes)
 {
-  const int perBatch = DirectionsPerBatch(device, grid, model, settings, volumes, temporaryBytes);
+  const int perBatch = this->DirectionsPerBatch(temporaryBytes);
   this->MakeBatches(perBatch);
   this->MeasureBuffers(perBatch);
 }
 
-PublishedPlan::PublishedPlan(Device& device, const Grid& grid, const PublishedSlab& slab, const PublishedModel& model,
-  const PropagationSettings& settings, const PublishedVolumes& volumes, int perBatch)
-  : TheDevice(device)
-  , TheGrid(grid)
-  , Slab(slab)
-  , Model(model)
-  , Settings(settings)
-  , Volumes(volumes)
+/// All of a face where they fit into the memory left; at least one.
+int PublishedPlan::DirectionsPerBatch(std::size_t temporaryBytes) const
 {
-  this->MakeBatches(perBatch);
-  this->MeasureBuffers(perBatch);
-}
-
-int PublishedPlan::DirectionsPerBatch(const Device& device, const Grid& grid, const PublishedModel& model,
-  const PropagationSettings& settings, const PublishedVolumes& volumes, std::size_t temporaryBytes)
-{
-  const int perFace = model.Directions().PerFace();
-  const std::size_t one = volumes.LargestLayout() * sizeof(float);
-  const bool countsCells = model.FacesReflect() || settings.facePower;
-  const double maps = countsCells ? 7.0 : 4.0; // two ray maps; as much again for tables; the cells of three faces
+  const int perFace = this->Model.Directions().PerFace();
+  const std::size_t one = this->LargestLayout() * sizeof(float);
+  const double maps = 4.0; // two ray maps; as much again for tables
   const std::size_t map =
-    static_cast<std::size_t>(maps * volumes.Channels() * sizeof(float) * LargestRayMap(grid, volumes.Width));
-  const std::size_t taken = device.BytesInUse() + map * perFace;
-  const std::size_t left = device.MemoryLimit() - std::min(taken, device.MemoryLimit());
-  std::size_t most = std::min(left, device.AllocationLimit());
+    static_cast<std::size_t>(maps * this->Volumes.Channels() * sizeof(float) * this->LargestRayMap());
+  const std::size_t taken = this->TheDevice.BytesInUse() + map * perFace;
+  const std::size_t left = this->TheDevice.MemoryLimit() - std::min(taken, this->TheDevice.MemoryLimit());
+  std::size_t most = std::min(left, this->TheDevice.AllocationLimit());
   most = temporaryBytes > 0 ? std::min(most, temporaryBytes) : most;
   return static_cast<int>(std::clamp<std::size_t>(most / one, 1, perFace));
 }
 
-double PublishedPlan::LargestRayMap(const Grid& grid, int width)
+std::size_t PublishedPlan::LargestLayout() const
 {
+  return std::max(this->Volumes.LayoutSize(0), this->Volumes.LayoutSize(1));
+}
+
+double PublishedPlan::LargestRayMap() const
+{
+  const Grid& grid = this->TheGrid;
+  const int width = this->Volumes.Width;
   double largest = 0.0;
   for (int axis = 0; axis < 3; ++axis)
   {
@@ -67,10 +60,6 @@ void PublishedPlan::MakeBatches(int perBatch)
   std::vector<float> factors;
   for (int face = 0; face < 6; ++face)
   {
-    if (this->Slab && this->Slab->axis != face / 2)
-    {
-      continue;
-    }
     for (int first = 0; first < perFace; first += perBatch)
     {
       Batch batch;
@@ -80,27 +69,17 @@ void PublishedPlan::MakeBatches(int perBatch)
       {
         batch.maps.emplace_back(this->TheGrid, this->Settings, set.directions[i], i, perFace);
       }
-      this->MakeRoomToCarry(batch);
+      if (this->Settings.periodic[batch.Map().axis])
+      {
+        batch.carriedFirst = this->sizes.carried;
+        this->sizes.carried += this->CarriedStride(batch) * batch.count;
+      }
       this->MakePasses(batch, 0);
       this->AppendCoefficients(batch, factors);
       this->batches.push_back(std::move(batch));
     }
   }
   this->coefficients = Buffer<float>(this->TheDevice, factors, "the scattering factors");
-}
-
-void PublishedPlan::MakeRoomToCarry(Batch& batch)
-{
-  const std::size_t floats = this->CarriedStride(batch) * batch.count;
-  if (this->Slab)
-  {
-    this->sizes.carried = std::max(this->sizes.carried, floats);
-  }
-  else if (this->Settings.periodic[batch.Map().axis])
-  {
-    batch.carriedFirst = this->sizes.carried;
-    this->sizes.carried += floats;
-  }
 }
 
 void PublishedPlan::MeasureBuffers(int perBatch)
@@ -111,9 +90,8 @@ void PublishedPlan::MeasureBuffers(int perBatch)
     const std::size_t rows = batch.Map().sizeV;
     this->sizes.rays = std::max(this->sizes.rays, 2 * slots * (rows + 2) * this->RayRow(batch)); // two ray maps
     this->sizes.escaped = std::max(this->sizes.escaped, slots * (2 * rows + 1));
-    this->sizes.left = std::max(this->sizes.left, slots * this->LeftStride(batch));
   }
-  this->sizes.contributions = perBatch * this->Volumes.LargestLayout();
+  this->sizes.contributions = perBatch * this->LargestLayout();
   this->sizes.boundary = static_cast<std::size_t>(this->Model.Directions().PerFace()) * 3 * this->Volumes.Channels();
 }
 
@@ -122,17 +100,9 @@ int PublishedPlan::RayRow(const Batch& batch) const
   return RoundUp(batch.Map().sizeU, this->Volumes.Width) + 2 * this->Volumes.Width;
 }
 
-std::size_t PublishedPlan::LeftStride(const Batch& batch) const
-{
-  const MapGeometry& map = batch.Map();
-  return static_cast<std::size_t>(this->Planes(batch)) * (map.sizeU + map.sizeV) +
-    static_cast<std::size_t>(map.sizeU) * map.sizeV;
-}
-
 std::size_t PublishedPlan::CarriedStride(const Batch& batch) const
 {
-  const int subMaps = this->Slab ? 1 : this->SubMaps();
-  return static_cast<std::size_t>(batch.Map().sizeU) * batch.Map().sizeV * this->Volumes.Channels() * subMaps;
+  return static_cast<std::size_t>(batch.Map().sizeU) * batch.Map().sizeV * this->Volumes.Channels() * this->SubMaps();
 }
 
 void PublishedPlan::AppendCoefficients(Batch& batch, std::vector<float>& to) const
@@ -147,14 +117,14 @@ void PublishedPlan::AppendCoefficients(Batch& batch, std::vector<float>& to) con
   }
 }
 
-/// For all sub-maps and planes the crossings of all directions, launch by launch.
+/// The crossings of all directions, by sub-map, plane and launch.
 void PublishedPlan::MakePasses(Batch& batch, int order) const
 {
   std::vector<PublishedCrossing> crossings;
   batch.passes.clear();
   for (int subMap = 0; subMap < this->SubMaps(); ++subMap)
   {
-    CrossingsByPlane byPlane(batch.Map().planes); // none of those that the volumes lack
+    CrossingsByPlane byPlane(batch.Map().planes);
     std::vector<PublishedCrossing> ends;
     for (int i = 0; i < batch.count; ++i)
     {
@@ -166,29 +136,17 @@ void PublishedPlan::MakePasses(Batch& batch, int order) const
       for (std::size_t voxel = 0; voxel < byPlane[plane].size(); ++voxel)
       {
         const std::vector<PublishedCrossing>& together = byPlane[plane][voxel];
-        pass.launches.push_back({ this->PlaneInVolumes(batch, plane), static_cast<int>(crossings.size()),
+        pass.launches.push_back({ batch.Map().PlaneAt(plane), static_cast<int>(crossings.size()),
           static_cast<int>(together.size()), subMap > 0 || voxel > 0 });
         crossings.insert(crossings.end(), together.begin(), together.end());
       }
     }
     pass.end = static_cast<int>(crossings.size());
     crossings.insert(crossings.end(), ends.begin(), ends.end());
-    pass.carriedFirst = this->Slab ? 0 : batch.carriedFirst + subMap * (this->CarriedStride(batch) / this->SubMaps());
+    pass.carriedFirst = batch.carriedFirst + subMap * (this->CarriedStride(batch) / this->SubMaps());
     batch.passes.push_back(std::move(pass));
   }
   batch.crossings = Buffer<PublishedCrossing>(this->TheDevice, crossings, "the table of voxel crossings");
-}
-
-int PublishedPlan::PlaneInVolumes(const Batch& batch, int onTheWay) const
-{
-  const MapGeometry& map = batch.Map();
-  return (map.forward ? onTheWay : map.planes - 1 - onTheWay) - this->FirstPlane();
-}
-
-bool PublishedPlan::HasPlane(const Batch& batch, int onTheWay) const
-{
-  const int plane = this->PlaneInVolumes(batch, onTheWay);
-  return plane >= 0 && plane < this->Planes(batch);
 }
 
 GridWalk PublishedPlan::Walk(const MapGeometry& map, int subMap, int order) const
@@ -196,7 +154,7 @@ GridWalk PublishedPlan::Walk(const MapGeometry& map, int subMap, int order) cons
   return map.Walk(this->Settings.mapResolution, subMap, order);
 }
 
-/// Adds the crossings of the batch's direction i, and where it ends.
+/// Adds the crossings of the batch's direction i, and its end.
 void PublishedPlan::WalkThrough(const Batch& batch, int i, int subMap, int order, CrossingsByPlane& byPlane,
   std::vector<PublishedCrossing>& ends) const
 {
@@ -209,10 +167,6 @@ void PublishedPlan::WalkThrough(const Batch& batch, int i, int subMap, int order
   {
     voxel = walk.plane == plane ? voxel + 1 : 0;
     plane = walk.plane;
-    if (!this->HasPlane(batch, plane))
-    {
-      continue;
-    }
     byPlane[plane].resize(std::max(byPlane[plane].size(), voxel + 1));
     byPlane[plane][voxel].push_back(
       { i, parity, walk.moveU, walk.moveV, source, static_cast<float>(walk.fraction * batch.maps[i].length) });

@@ -5,37 +5,29 @@
 
 #include "Device/Buffer.h"
 
-#include <optional>
 #include <vector>
 
 namespace tyndall
 {
-/// Consecutive planes across an axis: all that a rank has of the grid for the sweeps along it (Distributed).
-struct PublishedSlab
-{
-  int axis = 0, first = 0, planes = 0;
-};
-
 /// Floats of the buffers that all batches share.
 struct PublishedSizes
 {
   std::size_t rays = 0, escaped = 0, carried = 0, contributions = 0, boundary = 0;
-  std::size_t left = 0; ///< of what leaves through the cells of faces, where they are counted
 };
 
-/// Which rays the published algorithm sends together, and where they go: directions in batches, their ways through the
-/// grid as tables of voxel crossings, and how much memory all that takes.
+/// The order of the published algorithm's work: directions in batches, their paths through the grid as tables of voxel
+/// crossings, and the memory that takes.
 class PublishedPlan
 {
 public:
   /// One launch: some of the crossings in one plane.
   struct Launch
   {
-    int plane, first, count; ///< the plane counted from the first of the volumes
-    bool add;                ///< to what earlier launches left in the plane
+    int plane, first, count;
+    bool add; ///< to the deposits of earlier launches in the plane
   };
 
-  /// A batch's way through the volume on one of the N x N sub-maps ("divide the LPM into N smaller sub-LPM", section
+  /// A batch's path through the volume on one of the N x N sub-maps ("divide the LPM into N smaller sub-LPM", section
   /// 5).
   struct Pass
   {
@@ -62,44 +54,26 @@ public:
   PublishedPlan(Device& device, const Grid& grid, const PublishedModel& model, const PropagationSettings& settings,
     const PublishedVolumes& volumes, std::size_t temporaryBytes);
 
-  /// Of the maps along one axis, through a part of the grid: what rays have behind it is kept of one pass alone.
-  /// @param grid  the whole
-  /// @param volumes  of the slab
-  PublishedPlan(Device& device, const Grid& grid, const PublishedSlab& slab, const PublishedModel& model,
-    const PropagationSettings& settings, const PublishedVolumes& volumes, int perBatch);
-
-  /// All of a face where they fit into what may be taken; at least one.
-  static int DirectionsPerBatch(const Device& device, const Grid& grid, const PublishedModel& model,
-    const PropagationSettings& settings, const PublishedVolumes& volumes, std::size_t temporaryBytes);
-
   std::vector<Batch> batches;
   Buffer<float> coefficients; ///< [batch][moment][direction], times the map's density
   PublishedSizes sizes;
 
-  const Grid& Whole() const { return this->TheGrid; }
-  int FirstPlane() const { return this->Slab ? this->Slab->first : 0; } ///< of those that the volumes have
-  /// Whether maps go out of the grid behind the volumes' planes, or come into it ahead of them.
-  bool Ends(const Batch& batch) const { return this->HasPlane(batch, batch.Map().planes - 1); }
-  bool Begins(const Batch& batch) const { return this->HasPlane(batch, 0); }
-  int Planes(const Batch& batch) const { return this->Slab ? this->Slab->planes : batch.Map().planes; }
   int SubMaps() const { return this->Settings.mapResolution * this->Settings.mapResolution; }
   int RayRow(const Batch& batch) const;                ///< floats of a row of a ray map
-  std::size_t LeftStride(const Batch& batch) const;    ///< of what leaves one direction's map through cells, a channel
-  std::size_t CarriedStride(const Batch& batch) const; ///< floats kept of one direction's map, all channels
+  std::size_t CarriedStride(const Batch& batch) const; ///< floats stored of one direction's map, all channels
 
-  /// Rays that went on through a periodic axis are elsewhere in their voxels in each order.
+  /// Rays that wrap around a periodic axis start elsewhere in their voxels in each order.
   void MakePasses(Batch& batch, int order) const;
-  /// The way of a ray of a map.
+  /// The path of a ray of a map.
   GridWalk Walk(const MapGeometry& map, int subMap, int order) const;
 
 private:
   using CrossingsByPlane = std::vector<std::vector<std::vector<PublishedCrossing>>>; ///< [plane][voxel in it]
 
-  static double LargestRayMap(const Grid& grid, int width);
+  int DirectionsPerBatch(std::size_t temporaryBytes) const;
+  std::size_t LargestLayout() const;
+  double LargestRayMap() const;
   void MakeBatches(int perBatch);
-  void MakeRoomToCarry(Batch& batch);
-  int PlaneInVolumes(const Batch& batch, int onTheWay) const;
-  bool HasPlane(const Batch& batch, int onTheWay) const; ///< else it is another rank's
   void MeasureBuffers(int perBatch);
   void AppendCoefficients(Batch& batch, std::vector<float>& to) const;
   void WalkThrough(const Batch& batch, int i, int subMap, int order, CrossingsByPlane& byPlane,
@@ -107,7 +81,6 @@ private:
 
   Device& TheDevice;
   Grid TheGrid;
-  std::optional<PublishedSlab> Slab; ///< none: the whole grid
   const PublishedModel& Model;
   PropagationSettings Settings;
   const PublishedVolumes& Volumes;

@@ -1,13 +1,12 @@
-// Propagation as published (Gruson et al. 2012, Algorithm 2, first half): all rays of a direction go through the grid
-// plane by plane, one ray a voxel, and leave what they deposit in the direction's own buffer T. The host gives
+// Propagation as published (Gruson et al. 2012, Algorithm 2, first half): all rays of a direction cross the grid plane
+// by plane, one ray a voxel, and leave their deposits in the direction's own buffer T. The host defines
 //   CHANNELS  1 or 3
 //   COLOURED  1 where sigma has CHANNELS channels, 0 where all share one
 //   SOURCE    1 where U is not zero
-//   FACES     1 where what leaves through the cells of the box's faces is counted, and can come back through them
 //
-// The paper holds the rays of a block together with __syncthreads; here a launch is one voxel crossing of all rays of
-// all directions, and the order of launches holds them together. Rays are kept by the voxel they are in: a ray map is
-// [row -1 .. size_v][PAD | column 0 .. size_u - 1 | PAD], with a border that holds what enters through the sides.
+// The paper synchronises the rays of a work-group by __syncthreads; here a launch is one voxel crossing of all rays of
+// all directions, and the order of launches synchronises them. Rays are stored by the voxel they are in: a ray map is
+// [row -1 .. size_v][PAD | column 0 .. size_u - 1 | PAD], with a border for the light incident through the sides.
 // REAL_WIDTH > 1 (CPU): a work-item crosses a row. REAL_WIDTH 1 (GPU): a work-item crosses a voxel.
 
 #include "LightPropagation/Published/PublishedShared.h"
@@ -15,16 +14,9 @@
 
 #define PAD REAL_WIDTH
 
-// Where light leaves a direction's map, W / (length^2 sr) summed over rays: [through u by row][through v][at the end by
-// row].
+// Outgoing radiance of a direction's map, W / (length^2 sr) summed over rays: [through u by row][through v][behind the
+// last plane by row].
 #define ESCAPED(map) (2 * (map).sizeV + 1)
-
-#if FACES
-#include "LightPropagation/Published/PublishedFaces.cl"
-
-// What kernels are given for it; `left` has this many floats a direction.
-#define LEFT(map, faces) ((ulong)(faces).planes * ((map).sizeU + (map).sizeV) + (ulong)(map).sizeU * (map).sizeV)
-#endif
 
 static __global float* ray_row(__global float* rays, const PublishedMap* map, int parity, int slot, int v)
 {
@@ -38,16 +30,11 @@ inline real depth(real gone, real tau, float length)
   return length * (max(gone, (real)1e-37f) / max(tau, (real)1e-37f));
 }
 
-// What rays have as they start; both maps get it, so that the border is there in both.
-//   boundary  radiance entering across w, u, v: [direction][3][CHANNELS]
-//   carried   where rays are given: radiance by voxel, [direction][carried_stride], from carried_first on
+// Initial radiance of the rays, written to both maps, so that the border is in both.
+//   boundary  incident radiance across w, u, v: [direction][3][CHANNELS]
+//   carried   across a periodic axis: radiance by voxel, [direction][carried_stride], from carried_first on
 __kernel void start_rays(const PublishedMap map, __global float* rays, __global const float* boundary,
-  __global const float* carried, const ulong carried_first, const ulong carried_stride
-#if FACES
-  ,
-  const PublishedFaceCells faces, __global const float* face_in
-#endif
-)
+  __global const float* carried, const ulong carried_first, const ulong carried_stride)
 {
   const int u = (int)get_global_id(0) - 1;
   const int v = (int)get_global_id(1) - 1;
@@ -69,24 +56,18 @@ __kernel void start_rays(const PublishedMap map, __global float* rays, __global 
     radiance = (side_u ? boundary[CHANNELS] : 0.0f) + (side_v ? boundary[2 * CHANNELS] : 0.0f);
     radiance *= side_u && side_v ? 0.5f : 1.0f;
   }
-  else if (map.given)
+  else if (map.periodicW)
   {
     const int from_u = (u + map.sizeU) % map.sizeU;
     const int from_v = (v + map.sizeV) % map.sizeV;
     radiance =
       carried[carried_first + direction * carried_stride + (channel * map.sizeV + from_v) * map.sizeU + from_u];
   }
-#if FACES
-  else if (!outside_u && !outside_v)
-  {
-    radiance += face_in[(ulong)channel * faces.cells + faces.firstW + u * faces.stepWU + v * faces.stepWV];
-  }
-#endif
   ray_row(rays, &map, 0, slot, v)[u] = radiance;
   ray_row(rays, &map, 1, slot, v)[u] = radiance;
 }
 
-// What leaves through the sides as rays move into the next voxel; through an edge, half through either side.
+// Radiance that leaves through the sides as rays move into the next voxel; through an edge, half through either side.
 static void leave_sides(
   const PublishedMap* map, const PublishedCrossing* crossing, __global const float* row, int v, __global float* escaped)
 {
@@ -130,13 +111,7 @@ inline real deposit(real radiance, real sigma_s, float length)
 //   add               0: the first ray in these voxels, T is set; 1: T is added to
 __kernel void cross_voxels(const PublishedMap map, const int plane, const int add, const int first,
   __global const PublishedCrossing* crossings, __global const float* sigma_t, __global const float* sigma_s,
-  __global const float* sources, __global float* rays, __global float* contributions, __global float* escaped
-#if FACES
-  ,
-  const PublishedFaceCells faces, const int level, __global const float* boundary, __global const float* face_in,
-  __global float* left
-#endif
-)
+  __global const float* sources, __global float* rays, __global float* contributions, __global float* escaped)
 {
   const int v = get_global_id(1);
   if (v >= map.sizeV)
@@ -155,18 +130,9 @@ __kernel void cross_voxels(const PublishedMap map, const int plane, const int ad
   __global float* from = ray_row(rays, &map, crossing.parity, slot, v - crossing.moveV) - crossing.moveU;
   __global float* to = ray_row(rays, &map, !crossing.parity, slot, v);
   const float length = crossing.length;
-#if FACES
-  left += (ulong)slot * LEFT(map, faces);
-  boundary += crossing.direction * 3 * CHANNELS + channel;
-  face_in += (ulong)channel * faces.cells;
-#endif
 
 #if REAL_WIDTH > 1
   leave_sides(&map, &crossing, ray_row(rays, &map, crossing.parity, slot, v), v, escaped);
-#if FACES
-  leave_cells(&map, &faces, &crossing, level, ray_row(rays, &map, crossing.parity, slot, v), v, left);
-  enter_row(&map, &faces, &crossing, level, v, boundary, face_in, from);
-#endif
   const float right_border = to[map.sizeU]; // the last vector of the row may run over it
   for (int u = 0; u < map.sizeU; u += REAL_WIDTH)
   {
@@ -202,18 +168,7 @@ __kernel void cross_voxels(const PublishedMap map, const int plane, const int ad
   {
     leave_sides(&map, &crossing, ray_row(rays, &map, crossing.parity, slot, v), v, escaped);
   }
-  float before = from[u];
-#if FACES
-  if (u == 0)
-  {
-    leave_cells(&map, &faces, &crossing, level, ray_row(rays, &map, crossing.parity, slot, v), v, left);
-  }
-  if (comes_in(crossing.moveU, map.periodicU, u, map.sizeU) || comes_in(crossing.moveV, map.periodicV, v, map.sizeV))
-  {
-    before = entering(&map, &faces, &crossing, level, u, v, boundary, face_in);
-  }
-#endif
-  const float radiance = cross_voxel(before, sigma_t[u], SOURCE ? sources[u] : 0.0f, length);
+  const float radiance = cross_voxel(from[u], sigma_t[u], SOURCE ? sources[u] : 0.0f, length);
   const float gained = deposit(radiance, sigma_s[u], length);
   contributions[u] = add ? contributions[u] + gained : gained;
   for (int dv = -1; dv <= 1; ++dv) // the voxel itself and its images in the border
@@ -232,17 +187,12 @@ __kernel void cross_voxels(const PublishedMap map, const int plane, const int ad
 #endif
 }
 
-// Behind the last plane: adds up what leaves, and where rays are kept (for the next order round a periodic axis, or for
-// the rank that has the next planes) keeps it, [direction][carried_stride].
+// Behind the last plane: sums what leaves, and stores the rays that wrap around a periodic axis for the next order,
+// [direction][carried_stride].
 //   crossings  one a direction: parity says which map
-__kernel void end_rays(
-  const PublishedMap map, const int first, __global const PublishedCrossing* crossings, __global float* rays,
-  __global float* escaped, __global float* carried, const ulong carried_first, const ulong carried_stride
-#if FACES
-  ,
-  const PublishedFaceCells faces, __global float* left
-#endif
-)
+__kernel void end_rays(const PublishedMap map, const int first, __global const PublishedCrossing* crossings,
+  __global float* rays, __global float* escaped, __global float* carried, const ulong carried_first,
+  const ulong carried_stride)
 {
   const int v = get_global_id(0);
   if (v >= map.sizeV)
@@ -259,10 +209,7 @@ __kernel void end_rays(
     sum += row[u];
   }
   escaped[(ulong)slot * ESCAPED(map) + map.sizeV + 1 + v] = sum;
-#if FACES
-  leave_ahead(&map, &faces, row, v, left + (ulong)slot * LEFT(map, faces));
-#endif
-  if (map.kept)
+  if (map.periodicW)
   {
     carried += carried_first + crossing.direction * carried_stride + (ulong)(channel * map.sizeV + v) * map.sizeU;
     for (int u = 0; u < map.sizeU; ++u)

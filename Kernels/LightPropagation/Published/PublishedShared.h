@@ -11,7 +11,7 @@ typedef struct
   int row[2], plane[2], volume[2]; ///< floats from row to row, plane to plane and channel to channel, by layout
 } PublishedLayouts;
 
-/// A U as a multiple of a moment, and where it goes.
+/// A source U as a multiple of a moment, and its place.
 typedef struct
 {
   int moment;
@@ -28,11 +28,11 @@ typedef struct
   int volume;    ///< floats of a volume of one channel
   int rayRow;    ///< floats of a row of a ray map
   int periodicU, periodicV;
-  int given, kept; ///< rays begin with the radiance that they had behind the planes before; it is kept for those after
-  int directions;  ///< in the batch
+  int periodicW;  ///< rays start with the radiance they had behind the last plane in the order before
+  int directions; ///< in the batch
 } PublishedMap;
 
-/// What the rays of one direction do in one launch.
+/// The rays of one direction in one launch.
 typedef struct
 {
   int direction; ///< within the batch
@@ -41,14 +41,4 @@ typedef struct
   int source;   ///< which U
   float length; ///< in the voxel
 } PublishedCrossing;
-
-/// How the cells of the box's faces are numbered (BoxFaces.h), as a map's rays meet them; steps between numbers.
-typedef struct
-{
-  int planes;                    ///< that rays march through
-  int cells;                     ///< of all faces
-  int firstW, stepWU, stepWV;    ///< of the face through which they come in ahead
-  int firstU[2], stepUW, stepUV; ///< of the low and the high face across u
-  int firstV[2], stepVW, stepVU; ///< of those across v
-} PublishedFaceCells;
 SHARED_END

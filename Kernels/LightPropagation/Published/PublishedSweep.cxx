@@ -2,7 +2,6 @@
 
 #include "Device/Defines.h"
 #include "Device/Sizes.h"
-#include "Medium/BoxFaces.h"
 #include "TyndallKernelSources.h"
 
 #include <string>
@@ -13,130 +12,162 @@ namespace
 {
 /// Voxel crossings between two reports; about 50 ms on two cores.
 constexpr double CrossingsPerReport = 3e7;
-
-/// Which argument of cross_voxels is the first that only kernels with FACES have.
-constexpr cl_uint FacesOfCrossVoxels = 11;
 }
 
-PublishedSweep::PublishedSweep(Device& device, const PublishedVolumes& volumes, const PublishedModel& model,
-  const PropagationSettings& settings, const PublishedSizes& sizes, std::size_t cellsOfFaces)
+PublishedSweep::PublishedSweep(Device& device, const PublishedVolumes& volumes, const PublishedPlan& plan,
+  const PublishedModel& model, const PropagationSettings& settings)
   : TheDevice(device)
+  , Volumes(volumes)
+  , Plan(plan)
+  , Model(model)
   , Periodic(settings.periodic)
   , Channels(model.Channels())
-  , CellsOfFaces(cellsOfFaces)
 {
+  const PublishedSizes& sizes = plan.sizes;
   this->Rays = Buffer<float>(device, sizes.rays, "the light propagation maps");
   this->Rays.Fill(0.0f);
   this->Escaped = Buffer<float>(device, sizes.escaped, "the light that leaves");
-  for (Buffer<float>& buffer : this->Carried)
-  {
-    buffer = Buffer<float>(device, sizes.carried, "the light on its way through a periodic axis");
-    buffer.Fill(0.0f);
-  }
+  this->Carried = Buffer<float>(device, sizes.carried, "the light on its way through a periodic axis");
+  this->Carried.Fill(0.0f);
   this->Contributions = Buffer<float>(device, sizes.contributions, "the temporary buffers T");
   this->Boundary = Buffer<float>(device, sizes.boundary, "the boundary");
-  if (this->CountsCells())
-  {
-    this->FaceIn = Buffer<float>(device, cellsOfFaces * this->Channels, "the light that faces give back");
-    this->Left = Buffer<float>(device, sizes.left, "the light that leaves through the faces");
-  }
-  this->MakeKernels(volumes, model);
+  this->MakeKernels();
 }
 
-void PublishedSweep::MakeKernels(const PublishedVolumes& volumes, const PublishedModel& model)
+void PublishedSweep::MakeKernels()
 {
-  const std::string common =
-    Define("REAL_WIDTH", volumes.Width) + Define("CHANNELS", this->Channels) + Define("COLOURED", volumes.Coloured);
-  const std::string faces = Define("FACES", this->CountsCells());
+  const std::string common = Define("REAL_WIDTH", this->Volumes.Width) + Define("CHANNELS", this->Channels) +
+    Define("COLOURED", this->Volumes.Coloured);
   const auto propagate = [&](const char* name, int source) {
-    return this->TheDevice.Kernel(name, kernel_source::PublishedPropagate, common + faces + Define("SOURCE", source));
+    return this->TheDevice.Kernel(name, kernel_source::PublishedPropagate, common + Define("SOURCE", source));
   };
   this->StartRays = propagate("start_rays", 1);
   this->CrossVoxels[0] = propagate("cross_voxels", 0);
   this->CrossVoxels[1] = propagate("cross_voxels", 1);
   this->EndRays = propagate("end_rays", 1);
   this->AddDirections = this->TheDevice.Kernel(
-    "add_directions", kernel_source::PublishedCollect, common + Define("MOMENTS", model.MomentCount()));
+    "add_directions", kernel_source::PublishedCollect, common + Define("MOMENTS", this->Model.MomentCount()));
 }
 
-PublishedMap PublishedSweep::Describe(
-  const PublishedVolumes& volumes, const PublishedPlan& plan, const Batch& batch, const Ends& ends) const
+PublishedMap PublishedSweep::Describe(const Batch& batch) const
 {
   const MapGeometry& map = batch.Map();
-  const VolumeLayouts& layouts = volumes.Layouts;
+  const VolumeLayouts& layouts = this->Volumes.Layouts;
   const int rowStride = map.axis == 0 ? layouts.row[1] : map.axis == 1 ? layouts.plane[0] : layouts.row[0];
-  return { map.sizeU, map.sizeV, rowStride, layouts.volume[batch.Layout()], plan.RayRow(batch),
-    this->Periodic[map.axisU], this->Periodic[map.axisV], ends.given, ends.kept, batch.count };
+  return { map.sizeU, map.sizeV, rowStride, layouts.volume[batch.Layout()], this->Plan.RayRow(batch),
+    this->Periodic[map.axisU], this->Periodic[map.axisV], this->Periodic[map.axis], batch.count };
 }
 
-PublishedFaceCells PublishedSweep::DescribeFaces(const PublishedPlan& plan, const Batch& batch) const
+void PublishedSweep::Begin(const Batch& batch, bool incident, SweepTally& tally)
 {
-  const MapGeometry& map = batch.Map();
-  const auto layout = [&](int face) { return LayoutOfFace(plan.Whole(), face); };
-  const auto step = [&](int face, int axis) { return static_cast<cl_int>(layout(face).step[axis]); };
-  const auto first = [&](int face) { return static_cast<cl_int>(layout(face).first); };
-  const auto aside = [&](int face) { return first(face) + plan.FirstPlane() * step(face, map.axis); };
-  const int w = map.EntryFace(map.axis), u = 2 * map.axisU, v = 2 * map.axisV;
-  return { plan.Planes(batch), static_cast<cl_int>(this->CellsOfFaces), first(w), step(w, map.axisU),
-    step(w, map.axisV), { aside(u), aside(u + 1) }, step(u, map.axis), step(u, map.axisV), { aside(v), aside(v + 1) },
-    step(v, map.axis), step(v, map.axisU) };
-}
-
-void PublishedSweep::Begin(const std::vector<float>& boundary, const std::vector<float>& faceRadiance)
-{
-  if (boundary.empty())
+  if (!incident)
   {
     this->Boundary.Fill(0.0f);
+    return;
   }
-  else
+  const std::vector<float> radiance = this->IncidentRadiance(batch);
+  this->Boundary.Write(radiance.data(), radiance.size());
+  this->TallyIncident(batch, tally);
+}
+
+/// Across w, u, v: [direction][3][channel].
+std::vector<float> PublishedSweep::IncidentRadiance(const Batch& batch) const
+{
+  std::vector<float> radiance;
+  for (int i = 0; i < batch.count; ++i)
   {
-    this->Boundary.Write(boundary.data(), boundary.size());
+    for (int axis : { batch.maps[i].axis, batch.maps[i].axisU, batch.maps[i].axisV })
+    {
+      const Rgb& boundary = this->Model.Boundary(batch.first + i, axis);
+      radiance.insert(radiance.end(), boundary.begin(), boundary.begin() + this->Channels);
+    }
   }
-  if (this->CountsCells())
+  radiance.resize(this->Plan.sizes.boundary);
+  return radiance;
+}
+
+/// Rays that start on the map, and those that start anew at a side.
+void PublishedSweep::TallyIncident(const Batch& batch, SweepTally& tally) const
+{
+  for (int i = 0; i < batch.count; ++i)
   {
-    this->FaceIn.Write(faceRadiance.data());
-    this->Left.Fill(0.0f);
+    const MapGeometry& map = batch.maps[i];
+    const auto enter = [&](int axis, double rays) {
+      const Rgb& boundary = this->Model.Boundary(batch.first + i, axis);
+      for (int c = 0; c < this->Channels; ++c)
+      {
+        tally.in[map.EntryFace(axis)][c] += rays * map.beamPower * boundary[c];
+      }
+    };
+    enter(map.axis, static_cast<double>(map.sizeU) * map.sizeV * this->Plan.SubMaps());
+    for (int subMap = 0; subMap < this->Plan.SubMaps(); ++subMap)
+    {
+      GridWalk walk = this->Plan.Walk(map, subMap, 0);
+      while (walk.Next())
+      {
+        const bool entersU = walk.moveU != 0 && !this->Periodic[map.axisU];
+        const bool entersV = walk.moveV != 0 && !this->Periodic[map.axisV];
+        const double edge = entersU && entersV ? 0.5 : 0.0; // one ray enters half through either side
+        enter(map.axisU, entersU ? map.sizeV - edge : 0.0);
+        enter(map.axisV, entersV ? map.sizeU - edge : 0.0);
+      }
+    }
   }
 }
 
-std::vector<float> PublishedSweep::Send(const PublishedVolumes& volumes, const PublishedPlan& plan, const Batch& batch,
-  const Pass& pass, const Ends& ends, bool emits, const std::function<void(double)>& report)
+/// Reads what a pass left at the borders, laid out as PublishedPropagate.cl says.
+void PublishedSweep::TallyEscaped(const Batch& batch, SweepTally& tally) const
 {
-  const PublishedMap info = this->Describe(volumes, plan, batch, ends);
+  const std::vector<float> escaped = this->Escaped.Read();
+  const int rows = batch.Map().sizeV;
+  std::size_t at = 0;
+  for (const MapGeometry& map : batch.maps)
+  {
+    const auto take = [&](int count) {
+      double sum = 0.0;
+      for (int k = 0; k < count; ++k)
+      {
+        sum += escaped[at++];
+      }
+      return map.beamPower * sum;
+    };
+    for (int c = 0; c < this->Channels; ++c)
+    {
+      tally.out[map.ExitFace(map.axisU)][c] += take(rows);
+      tally.out[map.ExitFace(map.axisV)][c] += take(1);
+      (this->Periodic[map.axis] ? tally.onTheWay[c] : tally.out[map.ExitFace(map.axis)][c]) += take(rows);
+    }
+  }
+}
+
+void PublishedSweep::Send(
+  const Batch& batch, const Pass& pass, bool emits, SweepTally& tally, const std::function<void(double)>& report)
+{
+  const PublishedMap info = this->Describe(batch);
   const int slots = batch.count * this->Channels;
   const cl_ulong carriedFirst = pass.carriedFirst;
-  const cl_ulong carriedStride = plan.CarriedStride(batch);
+  const cl_ulong carriedStride = this->Plan.CarriedStride(batch);
   this->Escaped.Fill(0.0f);
-  With(this->StartRays, info, this->Rays, this->Boundary, this->Carried[0], carriedFirst, carriedStride);
-  With(this->EndRays, info, static_cast<cl_int>(pass.end), batch.crossings, this->Rays, this->Escaped, this->Carried[1],
+  With(this->StartRays, info, this->Rays, this->Boundary, this->Carried, carriedFirst, carriedStride);
+  With(this->EndRays, info, static_cast<cl_int>(pass.end), batch.crossings, this->Rays, this->Escaped, this->Carried,
     carriedFirst, carriedStride);
-  if (this->CountsCells())
-  {
-    SetFrom(this->StartRays, 6, this->DescribeFaces(plan, batch), this->FaceIn);
-    SetFrom(this->EndRays, 8, this->DescribeFaces(plan, batch), this->Left);
-  }
   this->Enqueue(this->StartRays, { info.sizeU + 2, info.sizeV + 2, slots }, { 32, 8, 1 });
-  this->CrossPlanes(volumes, plan, batch, pass, info, emits, report);
+  this->CrossPlanes(batch, pass, info, emits, report);
   this->Enqueue(this->EndRays, { info.sizeV, slots, 1 }, { 16, 1, 1 });
-  return this->Escaped.Read();
+  this->TallyEscaped(batch, tally);
 }
 
-void PublishedSweep::CrossPlanes(const PublishedVolumes& volumes, const PublishedPlan& plan, const Batch& batch,
-  const Pass& pass, const PublishedMap& info, bool emits, const std::function<void(double)>& report)
+void PublishedSweep::CrossPlanes(
+  const Batch& batch, const Pass& pass, const PublishedMap& info, bool emits, const std::function<void(double)>& report)
 {
-  const VolumeLayouts& layouts = volumes.Layouts;
+  const VolumeLayouts& layouts = this->Volumes.Layouts;
   const int axis = batch.Map().axis;
   const int planeStride = axis == 0 ? layouts.plane[1] : axis == 1 ? layouts.row[0] : layouts.plane[0];
   const int layout = batch.Layout();
   cl::Kernel& kernel = this->CrossVoxels[emits ? 1 : 0];
-  With(kernel, info, cl_int(0), cl_int(0), cl_int(0), batch.crossings, volumes.Extinction[layout],
-    volumes.Scattering[layout], volumes.Sources[layout], this->Rays, this->Contributions, this->Escaped);
-  if (this->CountsCells())
-  {
-    SetFrom(kernel, FacesOfCrossVoxels, this->DescribeFaces(plan, batch), cl_int(0), this->Boundary, this->FaceIn,
-      this->Left);
-  }
-  const bool rows = volumes.Width > 1; // a work-item a row, else a voxel
+  With(kernel, info, cl_int(0), cl_int(0), cl_int(0), batch.crossings, this->Volumes.Extinction[layout],
+    this->Volumes.Scattering[layout], this->Volumes.Sources[layout], this->Rays, this->Contributions, this->Escaped);
+  const bool rows = this->Volumes.Width > 1; // a work-item a row, else a voxel
   double sinceReport = 0.0;
   for (std::size_t l = 0; l < pass.launches.size(); ++l)
   {
@@ -144,10 +175,6 @@ void PublishedSweep::CrossPlanes(const PublishedVolumes& volumes, const Publishe
     kernel.setArg(1, launch.plane * planeStride);
     kernel.setArg(2, static_cast<cl_int>(launch.add));
     kernel.setArg(3, static_cast<cl_int>(launch.first));
-    if (this->CountsCells())
-    {
-      kernel.setArg(FacesOfCrossVoxels + 1, static_cast<cl_int>(launch.plane));
-    }
     const int slots = launch.count * this->Channels;
     rows ? this->Enqueue(kernel, { 1, info.sizeV, slots }, { 1, 16, 1 })
          : this->Enqueue(kernel, { info.sizeU, info.sizeV, slots }, { 32, 8, 1 });
@@ -161,14 +188,14 @@ void PublishedSweep::CrossPlanes(const PublishedVolumes& volumes, const Publishe
   }
 }
 
-void PublishedSweep::Collect(
-  const PublishedVolumes& volumes, const PublishedPlan& plan, const Batch& batch, bool begins)
+void PublishedSweep::Collect(const Batch& batch, bool begins)
 {
   const int layout = batch.Layout();
-  const cl_int volume = volumes.Layouts.volume[layout];
-  this->Enqueue(With(this->AddDirections, volume, static_cast<cl_int>(batch.count), static_cast<cl_int>(!begins),
-                  batch.firstCoefficient, plan.coefficients, this->Contributions, volumes.OrderMoments[layout]),
-    { volume / volumes.Width, this->Channels, 1 }, { 64, 1, 1 });
+  const cl_int volume = this->Volumes.Layouts.volume[layout];
+  this->Enqueue(
+    With(this->AddDirections, volume, static_cast<cl_int>(batch.count), static_cast<cl_int>(!begins),
+      batch.firstCoefficient, this->Plan.coefficients, this->Contributions, this->Volumes.OrderMoments[layout]),
+    { volume / this->Volumes.Width, this->Channels, 1 }, { 64, 1, 1 });
   this->TheDevice.Finish();
 }
 

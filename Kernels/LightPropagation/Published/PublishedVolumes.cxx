@@ -1,7 +1,6 @@
 #include "LightPropagation/Published/PublishedVolumes.h"
 
 #include "Device/Sizes.h"
-#include "LightPropagation/Published/PublishedLight.h"
 
 #include <algorithm>
 #include <string>
@@ -47,30 +46,28 @@ std::size_t VolumeLayouts::Index(int layout, int x, int y, int z) const
                      : static_cast<std::size_t>(x) * this->plane[1] + z * this->row[1] + y;
 }
 
-PublishedVolumes::PublishedVolumes(
-  Device& device, const Medium& medium, const PublishedModel& model, int width, const std::array<bool, 3>& axes)
+PublishedVolumes::PublishedVolumes(Device& device, const Medium& medium, const PublishedModel& model, int width)
   : Width(width)
   , Layouts(Addressable(device, medium.grid, width), width)
   , Coloured(medium.sigma_a.HasColour() || medium.sigma_s.HasColour())
   , TheDevice(device)
   , TheGrid(medium.grid)
   , Model(model)
-  , Axes(axes)
 {
   this->MakeMedium(medium);
   this->FindSlots();
   this->MakeSources(medium);
-  this->MakeMoments();
+  for (Buffer<float>* moments : { &this->OrderMoments[0], &this->OrderMoments[1], &this->Totals })
+  {
+    const std::size_t size = this->LayoutSize(moments == &this->OrderMoments[1] ? 1 : 0);
+    *moments = Buffer<float>(device, size * model.MomentCount(), "the moments");
+    moments->Fill(0.0f);
+  }
 }
 
 std::size_t PublishedVolumes::LayoutSize(int layout) const
 {
   return static_cast<std::size_t>(this->Layouts.volume[layout]) * this->Channels();
-}
-
-std::size_t PublishedVolumes::LargestLayout() const
-{
-  return std::max(this->Has(0) ? this->LayoutSize(0) : 0, this->Has(1) ? this->LayoutSize(1) : 0);
 }
 
 /// visit(index in the layout, voxel x fastest, channel)
@@ -128,10 +125,6 @@ void PublishedVolumes::MakeMedium(const Medium& medium)
   };
   for (int layout = 0; layout < 2; ++layout)
   {
-    if (!this->Has(layout))
-    {
-      continue;
-    }
     this->Extinction[layout] =
       Buffer<float>(this->TheDevice, this->ArrangeValues(layout, channels, extinction), "the extinction coefficient");
     this->Scattering[layout] =
@@ -150,12 +143,12 @@ void PublishedVolumes::FindSlots()
     {
       const int axis = static_cast<int>(i) / set.PerFace() / 2;
       int& slot = this->Slots[layout][this->Model.SourceOf(static_cast<int>(i))];
-      slot = this->Axes[axis] && (layout == 1) == (axis == 0) && slot < 0 ? slots++ : slot;
+      slot = (layout == 1) == (axis == 0) && slot < 0 ? slots++ : slot;
     }
   }
 }
 
-/// U in the layouts in which the maps read it, at first the medium's emission.
+/// U in the layouts in which the maps read it, initially the medium's emission.
 void PublishedVolumes::MakeSources(const Medium& medium)
 {
   std::vector<PublishedPart> parts;
@@ -175,34 +168,10 @@ void PublishedVolumes::MakeSources(const Medium& medium)
       Buffer<float>(this->TheDevice, this->LayoutSize(layout) * slots, "the unscattered radiance U");
     this->Sources[layout].Fill(0.0f);
   }
-  if (this->IsWhole())
-  {
-    this->Parts = Buffer<PublishedPart>(this->TheDevice, parts, "the list of U");
-  }
+  this->Parts = Buffer<PublishedPart>(this->TheDevice, parts, "the list of U");
   if (medium.emission.values)
   {
     this->WriteSources([&](std::size_t voxel, int, int c) { return medium.emission.At(voxel, c); });
-  }
-}
-
-void PublishedVolumes::MakeMoments()
-{
-  const int moments = this->Model.MomentCount();
-  const auto dark = [&](int layout, const char* what) {
-    Buffer<float> buffer(this->TheDevice, this->LayoutSize(layout) * moments, what);
-    buffer.Fill(0.0f);
-    return buffer;
-  };
-  for (int layout = 0; layout < 2; ++layout)
-  {
-    if (this->Has(layout))
-    {
-      this->OrderMoments[layout] = dark(layout, "the moments of an order");
-    }
-  }
-  if (this->IsWhole())
-  {
-    this->Totals = dark(0, "the moments");
   }
 }
 
@@ -231,19 +200,6 @@ void PublishedVolumes::WriteSource(const std::vector<float>& source)
   const std::size_t channels = static_cast<std::size_t>(this->Channels());
   const std::size_t directions = this->Model.SourceDirections().size();
   this->WriteSources([&](std::size_t voxel, int d, int c) { return source[(voxel * directions + d) * channels + c]; });
-}
-
-void PublishedVolumes::WriteSourceOf(int sourceDirection, const std::vector<float>& source)
-{
-  for (int layout = 0; layout < 2; ++layout)
-  {
-    if (const int slot = this->Slots[layout][sourceDirection]; slot >= 0)
-    {
-      const std::vector<float> arranged = this->Arrange(layout, source.data());
-      this->TheDevice.Queue().enqueueWriteBuffer(this->Sources[layout].Handle(), CL_TRUE,
-        slot * arranged.size() * sizeof(float), arranged.size() * sizeof(float), arranged.data());
-    }
-  }
 }
 
 void PublishedVolumes::AddGiven(const UncollidedImage& image)
@@ -281,10 +237,10 @@ std::vector<float> PublishedVolumes::ReadSource() const
   return all;
 }
 
-std::vector<float> PublishedVolumes::ReadMoment(const Buffer<float>& moments, int moment, int layout) const
+std::vector<float> PublishedVolumes::ReadMoment(const Buffer<float>& moments, int moment) const
 {
-  const std::size_t size = this->LayoutSize(layout);
-  return this->Interleave(layout, this->ReadPart(moments, moment * size, size).data());
+  const std::size_t size = this->LayoutSize(0);
+  return this->Interleave(0, this->ReadPart(moments, moment * size, size).data());
 }
 
 std::vector<float> PublishedVolumes::ReadPart(const Buffer<float>& buffer, std::size_t first, std::size_t count) const

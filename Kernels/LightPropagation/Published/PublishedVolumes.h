@@ -5,7 +5,6 @@
 
 #include "Device/Buffer.h"
 
-#include <array>
 #include <vector>
 
 namespace tyndall
@@ -19,22 +18,18 @@ struct VolumeLayouts : PublishedLayouts
   std::size_t Index(int layout, int x, int y, int z) const;
 };
 
-/// What stays on the device from one scattering order to the next of the published algorithm: the medium, U, and the
-/// moments of I and fluence. All in both layouts, [...][channel][volume], the padding zero.
+/// Arrays that stay on the device from one scattering order to the next: the medium, U, and the moments of I and
+/// fluence. All in both layouts, [...][channel][volume], the padding zero.
 struct PublishedVolumes
 {
   /// @param medium  copied
   /// @param model  must stay
   /// @param width  floats a work-item handles at once
-  /// @param axes  along which maps march through them. Without all three there are neither Totals nor Parts, and
-  ///   layouts and U that none of the maps reads are left out
   /// @throws DeviceError if they do not fit or have more voxels than the kernels can address
-  PublishedVolumes(Device& device, const Medium& medium, const PublishedModel& model, int width,
-    const std::array<bool, 3>& axes = { true, true, true });
+  PublishedVolumes(Device& device, const Medium& medium, const PublishedModel& model, int width);
 
   int Channels() const { return this->Model.Channels(); }
   std::size_t LayoutSize(int layout) const; ///< floats of a quantity, all channels
-  std::size_t LargestLayout() const;        ///< of those that are there
 
   /// U of a direction is at this place in Sources, in quantities; -1 where no map reads it in this layout.
   int SourceSlot(int layout, int sourceDirection) const { return this->Slots[layout][sourceDirection]; }
@@ -43,14 +38,12 @@ struct PublishedVolumes
   std::vector<float> Arrange(int layout, const float* interleaved) const;
   std::vector<float> Interleave(int layout, const float* arranged) const;
   void WriteSource(const std::vector<float>& source);
-  /// U of one direction, channels interleaved.
-  void WriteSourceOf(int sourceDirection, const std::vector<float>& source);
   /// Adds light that another solver found to the moments of the order that was propagated.
   void AddGiven(const UncollidedImage& image);
   std::vector<float> ReadSource() const;
-  std::vector<float> ReadMoment(const Buffer<float>& moments, int moment, int layout = 0) const;
+  std::vector<float> ReadMoment(const Buffer<float>& moments, int moment) const; ///< in layout 0
 
-  /// Floats of a buffer of which the rest is not wanted; waits for the device.
+  /// Some floats of a buffer; waits for the device.
   std::vector<float> ReadPart(const Buffer<float>& buffer, std::size_t first, std::size_t count) const;
 
   int Width;
@@ -66,19 +59,15 @@ private:
   std::vector<float> ArrangeValues(int layout, int channels, Value value) const;
   template <class Visit>
   void ForEach(int layout, int channels, Visit visit) const;
-  bool Has(int layout) const { return layout == 1 ? this->Axes[0] : this->Axes[1] || this->Axes[2]; }
-  bool IsWhole() const { return this->Axes[0] && this->Axes[1] && this->Axes[2]; }
   void MakeMedium(const Medium& medium);
   void FindSlots();
   void MakeSources(const Medium& medium);
-  void MakeMoments();
   template <class Value>
   void WriteSources(Value value);
 
   Device& TheDevice;
   Grid TheGrid;
   const PublishedModel& Model;
-  std::array<bool, 3> Axes;
   std::vector<int> Slots[2];
 };
 }

@@ -1,36 +1,68 @@
 #include "LightPropagation/Published/SequentialPropagation.h"
 
 #include "Light/ChannelReduction.h"
-#include "LightPropagation/Convergence.h"
-#include "LightPropagation/Published/PublishedFaces.h"
-#include "LightPropagation/Published/PublishedLight.h"
-#include "LightPropagation/Published/SequentialRays.h"
+#include "LightPropagation/Published/OrderLedger.h"
+#include "LightPropagation/Sweep/SweepTally.h"
 #include "LightPropagation/Uncollided/GivenLight.h"
 
 #include <algorithm>
-#include <optional>
+#include <array>
+#include <cmath>
+#include <vector>
 
 namespace tyndall
 {
 namespace
 {
+/// (1 - exp(-sigma length)) / sigma; its series where the difference would cancel.
+double Depth(double sigma, double left, double length)
+{
+  return sigma * length > 1e-6 ? (1.0 - left) / sigma : length * (1.0 - 0.5 * sigma * length);
+}
+
+/// Moves one voxel across a map of `size`, whose ends are joined.
+/// @return whether it has crossed the end
+bool Step(int& position, int move, int size)
+{
+  position += move;
+  const bool outside = position < 0 || position == size;
+  position = outside ? (position < 0 ? size - 1 : 0) : position;
+  return outside;
+}
+
 class SequentialPropagation
 {
 public:
   SequentialPropagation(
     const Medium& medium, const Illumination& illumination, const PropagationSettings& settings, int channels)
     : TheMedium(medium)
+    , Outside(illumination)
     , Settings(settings)
     , Model(medium, illumination, settings, channels)
-    , Ledger(medium, this->Model, settings)
-    , Faces(medium.grid, this->Model, settings)
     , Channels(this->Model.Channels())
-    , Given(illumination.uncollided)
+    , Ledger(medium, this->Channels, settings)
     , Values(medium.grid.VoxelCount() * this->Channels)
-    , Rays(medium.grid, std::nullopt, medium, this->Model, this->Settings)
-    , Moments(this->Model.MomentCount(), std::vector<float>(this->Values))
+    , Extinction(this->Values)
+    , Scattering(this->Values)
+    , OrderMoments(this->Model.MomentCount(), std::vector<double>(this->Values))
+    , Totals(this->Model.MomentCount(), std::vector<float>(this->Values))
     , Carried(this->Model.Directions().directions.size())
+    , Coefficients(this->Model.MomentCount())
   {
+    std::vector<float> emission(this->Values);
+    for (std::size_t i = 0; i < this->Values; ++i)
+    {
+      const std::size_t voxel = i / this->Channels;
+      const int c = static_cast<int>(i % this->Channels);
+      this->Scattering[i] = medium.sigma_s.At(voxel, c);
+      this->Extinction[i] = medium.sigma_a.At(voxel, c) + this->Scattering[i];
+      emission[i] = medium.emission.At(voxel, c);
+    }
+    this->Sources.resize(this->Model.SourceDirections().size());
+    for (std::size_t i = 0; i < this->Carried.size(); ++i)
+    {
+      this->Sources[this->Model.SourceOf(static_cast<int>(i))] = emission; // "Initialize U with medium emitted light"
+    }
   }
 
   LightField Solve(const Monitor& monitor)
@@ -39,97 +71,217 @@ public:
     do
     {
       this->Propagate(monitor);
-      if (this->Ledger.Orders() == 0 && this->Given.IsThere())
+      if (this->Ledger.Orders() == 0 && this->Outside.uncollided.IsThere())
       {
         this->AddGiven();
       }
-      this->Ledger.Count(this->Tally);
-      const std::vector<double>& ofOrder = this->Rays.Moment(0);
-      const std::vector<float> fluence(ofOrder.begin(), ofOrder.end());
-      this->Faces.CloseOrder(this->Ledger);
-      this->Ledger.CloseOrder(SumsOf(this->TheMedium, this->Channels, fluence.data()));
       this->UpdateSources();
-      if (this->Ledger.Orders() == 1)
-      {
-        field.fluenceDirect = fluence;
-      }
+      const std::vector<float> fluence(this->OrderMoments[0].begin(), this->OrderMoments[0].end());
+      this->Ledger.Count(this->Tally);
+      this->Ledger.CloseOrder(fluence);
+      field.fluenceDirect = this->Ledger.Orders() == 1 ? fluence : field.fluenceDirect;
     } while (!this->Ledger.Done());
-    this->WriteTo(field);
+    this->Ledger.WriteTo(field);
+    WritePublishedLight(
+      this->Model, this->TheMedium, TraitsOf(this->TheMedium), this->Outside, this->Settings,
+      [this](int k) { return this->Totals[k]; }, field);
+    field.device = SequentialDevice;
     return field;
   }
 
 private:
+  struct Ray
+  {
+    int direction;
+    int u, v;
+    std::array<float, 3> radiance;
+  };
+
   /// All rays of all maps, once.
   void Propagate(const Monitor& monitor)
   {
-    this->Rays.DarkenMoments();
+    for (std::vector<double>& moment : this->OrderMoments)
+    {
+      std::fill(moment.begin(), moment.end(), 0.0);
+    }
     this->Tally = {};
     const std::size_t directions = this->Carried.size();
     for (std::size_t i = 0; i < directions; ++i)
     {
-      const Monitor ofMap = OfPart(monitor, [this, i, directions](double done) {
+      this->SendMap(static_cast<int>(i), OfPart(monitor, [this, i, directions](double done) {
         return this->Ledger.Progress((static_cast<double>(i) + done) / static_cast<double>(directions));
-      });
-      this->Carried[i] =
-        this->Rays.Send(static_cast<int>(i), this->Ledger.Orders(), this->Carried[i], this->Faces, this->Tally, ofMap);
+      }));
     }
   }
 
-  /// Light that another solver found, to the moments of the first order.
-  void AddGiven()
+  /// All rays of one direction's map.
+  void SendMap(int direction, const Monitor& monitor)
   {
-    tyndall::AddGiven(this->Model, this->Given, this->TheMedium.grid.VoxelCount(),
-      [this](std::size_t k, std::size_t voxel, int c, double value) {
-        this->Rays.Moment(static_cast<int>(k))[voxel * this->Channels + c] += value;
-      });
-    tyndall::Add(this->Tally, TallyOf(this->Given, this->TheMedium, 0, this->Channels));
-  }
-
-  /// The rest of Eq. (4): U of the next order from what this one left in the voxels.
-  void UpdateSources()
-  {
-    for (std::size_t k = 0; k < this->Moments.size(); ++k)
+    const DirectionSet& set = this->Model.Directions();
+    const MapGeometry map(this->TheMedium.grid, this->Settings, set.directions[direction], direction, set.PerFace());
+    for (std::size_t k = 0; k < this->Coefficients.size(); ++k)
     {
-      const std::vector<double>& moment = this->Rays.Moment(static_cast<int>(k));
-      std::transform(this->Moments[k].begin(), this->Moments[k].end(), moment.begin(), this->Moments[k].begin(),
-        [](float sum, double more) { return sum + static_cast<float>(more); });
+      this->Coefficients[k] = static_cast<float>(this->Model.Coefficient(static_cast<int>(k), direction));
     }
-    const int sources = static_cast<int>(this->Model.SourceDirections().size());
-    for (int d = 0; d < sources; ++d)
+    const bool wraps = this->Settings.periodic[map.axis];
+    const int order = this->Ledger.Orders(), resolution = this->Settings.mapResolution;
+    const int elementsU = map.sizeU * resolution, elementsV = map.sizeV * resolution;
+    std::vector<float> behind(wraps ? static_cast<std::size_t>(elementsU) * elementsV * this->Channels : 0);
+    std::vector<float>& carried = this->Carried[direction];
+    for (int s = 0; s < elementsV; ++s)
     {
-      const PublishedModel::Part part = this->Model.Source(d);
-      const std::vector<double>& moment = this->Rays.Moment(part.moment);
-      std::vector<float>& source = this->Rays.Source(d);
-      for (std::size_t i = 0; i < source.size(); ++i)
+      const double startV = map.StartOfOrder((s % resolution + 0.5) / resolution, map.slopeV, order);
+      Report(monitor, static_cast<double>(s) / elementsV);
+      for (int r = 0; r < elementsU; ++r)
       {
-        const float scattered = this->TheMedium.sigma_s.At(i / this->Channels, static_cast<int>(i % this->Channels));
-        source[i] = static_cast<float>(part.factor * scattered * moment[i]);
+        const double startU = map.StartOfOrder((r % resolution + 0.5) / resolution, map.slopeU, order);
+        const std::size_t element = static_cast<std::size_t>(s) * elementsU + r;
+        Ray ray{ direction, r / resolution, s / resolution, {} };
+        if (order == 0)
+        {
+          this->Enter(ray, this->Model.Boundary(direction, map.axis), map);
+        }
+        else if (wraps)
+        {
+          std::copy_n(carried.begin() + static_cast<std::ptrdiff_t>(element * this->Channels), this->Channels,
+            ray.radiance.begin());
+        }
+        this->Follow(ray, startU, startV, map);
+        this->AddTo(wraps ? this->Tally.onTheWay : this->Tally.out[map.ExitFace(map.axis)], ray, map.beamPower);
+        if (wraps)
+        {
+          const std::size_t u = ray.u * resolution + r % resolution, v = ray.v * resolution + s % resolution;
+          std::copy_n(ray.radiance.begin(), this->Channels,
+            behind.begin() + static_cast<std::ptrdiff_t>((v * elementsU + u) * this->Channels));
+        }
+      }
+    }
+    carried = std::move(behind);
+  }
+
+  /// Through all voxels of its path.
+  void Follow(Ray& ray, double startU, double startV, const MapGeometry& map)
+  {
+    const std::array<int, 3>& size = this->TheMedium.grid.size;
+    const std::array<std::size_t, 3> stride = { 1, static_cast<std::size_t>(size[0]),
+      static_cast<std::size_t>(size[0]) * size[1] };
+    const float* const source = this->Sources[this->Model.SourceOf(ray.direction)].data();
+    GridWalk walk(startU, startV, map.slopeU, map.slopeV, map.planes);
+    while (walk.Next())
+    {
+      if (walk.moveU != 0 || walk.moveV != 0)
+      {
+        this->Move(ray, walk.moveU, walk.moveV, map);
+      }
+      const std::size_t voxel =
+        ray.u * stride[map.axisU] + ray.v * stride[map.axisV] + map.PlaneAt(walk.plane) * stride[map.axis];
+      this->CrossVoxel(ray, source, voxel * this->Channels, walk.fraction * map.length, map.density);
+    }
+  }
+
+  /// Into the next voxel; a ray that leaves through a side enters anew on the other (Fig. 2).
+  void Move(Ray& ray, int moveU, int moveV, const MapGeometry& map)
+  {
+    const bool leavesU = Step(ray.u, moveU, map.sizeU) && !this->Settings.periodic[map.axisU];
+    const bool leavesV = Step(ray.v, moveV, map.sizeV) && !this->Settings.periodic[map.axisV];
+    if (!leavesU && !leavesV)
+    {
+      return;
+    }
+    const double share = leavesU && leavesV ? 0.5 : 1.0;
+    Rgb boundary = {};
+    for (const int axis : { leavesU ? map.axisU : -1, leavesV ? map.axisV : -1 })
+    {
+      if (axis >= 0)
+      {
+        this->AddTo(this->Tally.out[map.ExitFace(axis)], ray, share * map.beamPower);
+        for (int c = 0; c < 3; ++c)
+        {
+          boundary[c] += share * this->Model.Boundary(ray.direction, axis)[c];
+        }
+      }
+    }
+    this->Enter(ray, this->Ledger.Orders() == 0 ? boundary : Rgb{}, map);
+  }
+
+  void Enter(Ray& ray, const Rgb& boundary, const MapGeometry& map)
+  {
+    std::copy(boundary.begin(), boundary.end(), ray.radiance.begin());
+    this->AddTo(this->Tally.in[0], ray, map.beamPower);
+  }
+
+  void AddTo(Rgb& power, const Ray& ray, double beamPower) const
+  {
+    for (int c = 0; c < this->Channels; ++c)
+    {
+      power[c] += beamPower * ray.radiance[c];
+    }
+  }
+
+  /// Eq. (3), then the ray's part of Eq. (4).
+  void CrossVoxel(Ray& ray, const float* source, std::size_t first, double length, double density)
+  {
+    for (int c = 0; c < this->Channels; ++c)
+    {
+      const double sigma_t = this->Extinction[first + c];
+      const double left = std::exp(-length * sigma_t);
+      const float radiance =
+        static_cast<float>(ray.radiance[c] * left + source[first + c] * Depth(sigma_t, left, length));
+      ray.radiance[c] = radiance;
+      const double sigma_s = this->Scattering[first + c];
+      const double deposit = density * radiance * Depth(sigma_s, std::exp(-length * sigma_s), length);
+      for (std::size_t k = 0; k < this->OrderMoments.size(); ++k)
+      {
+        this->OrderMoments[k][first + c] += this->Coefficients[k] * deposit;
       }
     }
   }
 
-  void WriteTo(LightField& field) const
+  /// Adds light that another solver found to the moments of the first order.
+  void AddGiven()
   {
-    TakeMoments(
-      this->Model, this->Settings.netFlux, [this](int k) { return this->Moments[k]; }, field);
-    this->Ledger.WriteTo(field);
-    this->Faces.WriteTo(field);
-    field.halfRangeFlux = HalfRangeFlux(this->Model.Directions());
-    field.device = SequentialDevice;
+    const UncollidedImage& image = this->Outside.uncollided;
+    tyndall::AddGiven(this->Model, image, this->TheMedium.grid.VoxelCount(),
+      [this](std::size_t k, std::size_t voxel, int c, double value) {
+        this->OrderMoments[k][voxel * this->Channels + c] += value;
+      });
+    tyndall::Add(this->Tally, TallyOf(image, this->TheMedium, 0, this->Channels));
+  }
+
+  /// The rest of Eq. (4): U of the next order from the moments of this one.
+  void UpdateSources()
+  {
+    for (std::size_t k = 0; k < this->Totals.size(); ++k)
+    {
+      std::transform(this->Totals[k].begin(), this->Totals[k].end(), this->OrderMoments[k].begin(),
+        this->Totals[k].begin(), [](float sum, double more) { return sum + static_cast<float>(more); });
+    }
+    for (std::size_t d = 0; d < this->Sources.size(); ++d)
+    {
+      const PublishedModel::Part part = this->Model.Source(static_cast<int>(d));
+      for (std::size_t i = 0; i < this->Sources[d].size(); ++i)
+      {
+        this->Sources[d][i] =
+          static_cast<float>(part.factor * this->Scattering[i] * this->OrderMoments[part.moment][i]);
+      }
+    }
   }
 
   const Medium& TheMedium;
+  const Illumination& Outside;
   PropagationSettings Settings;
   PublishedModel Model;
-  OrderLedger Ledger;
-  SweepTally Tally; ///< of the order that runs
-  PublishedFaces Faces;
   int Channels;
-  UncollidedImage Given;
+  OrderLedger Ledger;
+  SweepTally Tally;   ///< of the current order
   std::size_t Values; ///< voxels times channels
-  SequentialRays Rays;
-  std::vector<std::vector<float>> Moments; ///< of all orders
-  std::vector<std::vector<float>> Carried; ///< by direction: radiance on its way through a periodic axis
+  std::vector<float> Extinction, Scattering;
+  std::vector<std::vector<float>> Sources; ///< U by direction, channels interleaved; empty: no map reads it
+  /// Of this order. Where voxels are flat thousands of rays cross one: sums in float were off by 6e-4.
+  std::vector<std::vector<double>> OrderMoments;
+  std::vector<std::vector<float>> Totals;  ///< moments of all orders
+  std::vector<std::vector<float>> Carried; ///< by direction: radiance that wraps around a periodic axis
+  std::vector<float> Coefficients;         ///< of the moments, for the current direction
 };
 }
 
@@ -137,18 +289,12 @@ LightField SolveSequential(
   const Medium& medium, const Illumination& illumination, const PropagationSettings& settings, const Monitor& monitor)
 {
   Check(medium);
-  CheckPublishedPhase(medium); // before channels become one
   Check(illumination);
-  const MediumTraits traits = TraitsOf(medium);
-  const SceneChannels channels(medium, traits, illumination);
+  CheckPublished(medium, illumination); // before channels become one
+  const SceneChannels channels(medium, TraitsOf(medium), illumination);
   return SolveChannels(settings.leaveOut, channels, medium, illumination,
     [&](const Medium& ofChannels, const Illumination& light, int count) {
-      LightField field = SequentialPropagation(ofChannels, light, settings, count).Solve(monitor);
-      field.leftOut = LeftOutAsPublished(medium.phase.IsIsotropic(), traits, illumination.uncollided.IsThere(),
-        illumination, settings, static_cast<int>(field.convergence.size()));
-      JudgeConvergence(settings, field, false);
-      WarnAboutInputLight(illumination, field);
-      return field;
+      return SequentialPropagation(ofChannels, light, settings, count).Solve(monitor);
     });
 }
 }
