@@ -4,8 +4,6 @@
 #include "Common/LightTransportData.h"
 #include "Device/Device.h"
 #include "DiscreteOrdinates/DiscreteOrdinates.h"
-#include "DiscreteOrdinates/Distributed/OrdinatesInBlocks.h"
-#include "DiscreteOrdinates/OrdinatesParts.h"
 #include "DiscreteOrdinates/OrdinatesQuality.h"
 #include "LightPropagation/Accuracy/PreviewLight.h"
 #include "Ranks/PieceBlocks.h"
@@ -53,22 +51,38 @@ tyndall::OrdinatesSettings OfPreview(tyndall::OrdinatesSettings settings)
   return settings;
 }
 
-tyndall::OrdinatesSettings SettingsOf(
-  vtkDiscreteOrdinates* filter, const tyndall::Medium& medium, const tyndall::Device& device)
+/// @param medium  of this rank
+tyndall::OrdinatesSettings SettingsOf(vtkDiscreteOrdinates* filter, const tyndall::Domain& domain,
+  const tyndall::Medium& medium, const tyndall::Device& device)
 {
   const auto quality = static_cast<tyndall::Quality>(filter->GetQuality());
-  return filter->GetPreview() ? OfPreview(GivenSettings(filter))
-                              : tyndall::AtQuality(quality, GivenSettings(filter), medium, tyndall::MemoryOf(device));
+  return filter->GetPreview()
+    ? OfPreview(GivenSettings(filter))
+    : tyndall::AtQuality(domain, quality, GivenSettings(filter), medium, tyndall::MemoryOf(device));
 }
 
-/// As that of the whole medium of all ranks.
-tyndall::OrdinatesSettings SettingsOn(vtkDiscreteOrdinates* filter, tyndall::Communicator& communicator,
-  const tyndall::PieceBlocks& pieces, const tyndall::Medium& medium, const tyndall::Device& device)
+/// The light of this rank's block. Collective.
+/// @param last  null: begin in the dark
+tyndall::LightField Solve(vtkDiscreteOrdinates* filter, const tyndall::Domain& domain, const tyndall::Medium& medium,
+  const tyndall::Illumination& illumination, tyndall::KeptLight* last)
 {
-  const auto quality = static_cast<tyndall::Quality>(filter->GetQuality());
-  return filter->GetPreview() ? OfPreview(GivenSettings(filter))
-                              : tyndall::AtQualityInBlocks(communicator, pieces.Partition(), quality,
-                                  GivenSettings(filter), medium, tyndall::MemoryOf(device));
+  std::shared_ptr<tyndall::Device> device;
+  domain.Collective([&] { device = tyndall::Device::Find(filter->GetDevice()); });
+  tyndall::Device within(*device, tyndall::BudgetOf(filter->GetMemoryBudget(), false));
+  const tyndall::OrdinatesSettings settings = SettingsOf(filter, domain, medium, *device);
+  const tyndall::Monitor monitor = tyndall::MonitorOf(filter);
+  const tyndall::PreviewSolver solve = [&](const tyndall::PreviewScene& scene) {
+    return tyndall::SolveDiscreteOrdinates(
+      within, tyndall::Domain(scene.medium.grid), scene.medium, scene.illumination, settings, monitor);
+  };
+  const tyndall::Grid coarse = tyndall::PreviewGrid(domain.Whole());
+  tyndall::LightField light = !filter->GetPreview()
+    ? tyndall::SolveDiscreteOrdinates(within, domain, medium, illumination, settings, monitor, last)
+    : domain.IsSerial() ? tyndall::SolvePreview({ medium, illumination, {} }, coarse, solve)
+                        : tyndall::SolvePreviewOnFirst({ domain.Comm(), domain.Partition(), medium, illumination }, {},
+                            tyndall::AsPropagation(settings), coarse, solve);
+  light.settingsUsed = tyndall::Words(settings, light);
+  return light;
 }
 }
 
@@ -96,23 +110,9 @@ std::string vtkDiscreteOrdinates::NotByBlocks(vtkInformationVector**) const
 tyndall::LightField vtkDiscreteOrdinates::SolvePiece(tyndall::Communicator& communicator,
   const tyndall::PieceBlocks& pieces, const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining)
 {
+  const tyndall::Domain domain(communicator, pieces.Partition());
   tyndall::KeptLight* const last = this->Last->Where(this->WarmStart && !this->Preview);
-  std::shared_ptr<tyndall::Device> device;
-  communicator.Collective([&] { device = tyndall::Device::Find(this->GetDevice()); });
-  tyndall::Device within(*device, tyndall::BudgetOf(this->MemoryBudget, false));
-  const tyndall::OrdinatesSettings settings = SettingsOn(this, communicator, pieces, piece.medium, *device);
-  const tyndall::Monitor monitor = tyndall::MonitorOf(this);
-  const tyndall::BlockPartition& partition = pieces.Partition();
-  tyndall::LightField light = this->Preview
-    ? tyndall::SolvePreviewOnFirst({ communicator, partition, piece.medium, shining.illumination }, {},
-        tyndall::AsPropagation(settings), tyndall::PreviewGrid(partition.whole),
-        [&](const tyndall::PreviewScene& scene) {
-          return tyndall::SolveDiscreteOrdinates(within, scene.medium, scene.illumination, settings, monitor);
-        })
-    : tyndall::SolveOrdinatesInBlocks(
-        within, communicator, partition, piece.medium, shining.illumination, settings, monitor, last);
-  light.settingsUsed = tyndall::Words(settings, light);
-  return light;
+  return Solve(this, domain, piece.medium, shining.illumination, last);
 }
 
 int vtkDiscreteOrdinates::RequestData(
@@ -123,20 +123,10 @@ int vtkDiscreteOrdinates::RequestData(
     const tyndall::MediumInput input = tyndall::ReadMedium(this, image);
     const bool emits = input.Emits();
     const tyndall::IlluminationInput shining = this->ReadShining(inputs, emits);
-    const tyndall::Illumination& illumination = shining.illumination;
-    this->WarnWhereDark(illumination, emits);
-    const std::shared_ptr<tyndall::Device> device = tyndall::Device::Find(this->GetDevice());
-    const tyndall::OrdinatesSettings settings = SettingsOf(this, input.medium, *device);
-    tyndall::Device within(*device, tyndall::BudgetOf(this->MemoryBudget, false));
+    this->WarnWhereDark(shining.illumination, emits);
     tyndall::KeptLight* const last = this->Last->Where(this->WarmStart && !this->Preview);
-    const tyndall::PreviewSolver solve = [&](const tyndall::PreviewScene& scene) {
-      return tyndall::SolveDiscreteOrdinates(
-        within, scene.medium, scene.illumination, settings, tyndall::MonitorOf(this), last);
-    };
-    const tyndall::PreviewScene scene = { input.medium, illumination, {} };
     tyndall::LightField light =
-      this->Preview ? tyndall::SolvePreview(scene, tyndall::PreviewGrid(input.medium.grid), solve) : solve(scene);
-    light.settingsUsed = tyndall::Words(settings, light);
+      Solve(this, tyndall::Domain(input.medium.grid), input.medium, shining.illumination, last);
     TellOfDefaultSky(shining, light.leftOut);
     this->WriteSolved(std::move(light), inputs, outputs);
   });

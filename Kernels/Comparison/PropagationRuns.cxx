@@ -81,7 +81,8 @@ PropagationSolver SolverOf(ComparedMethod method, Device& device)
       case ComparedMethod::Published: return SolveParallel(device, medium, illumination, settings, monitor);
       case ComparedMethod::PublishedSequential: return SolveSequential(medium, illumination, settings, monitor);
       case ComparedMethod::DiscreteOrdinates:
-        return SolveDiscreteOrdinates(device, medium, illumination, AsOrdinates(settings), monitor);
+        return SolveDiscreteOrdinates(
+          device, Domain(medium.grid), medium, illumination, AsOrdinates(settings), monitor);
       default: return SolveConservative(device, medium, illumination, settings, monitor);
     }
   };

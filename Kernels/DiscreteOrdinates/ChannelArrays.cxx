@@ -57,21 +57,21 @@ float ChannelArrays::EmissionOf(std::size_t voxel, bool emptyVoxels) const
 
 void ChannelArrays::TakeVacuumApart(PropagationSettings settings)
 {
-  const Grid& whole = this->Scene.WholeGrid();
+  const Grid& whole = this->Scene.domain.Whole();
   if (!VacuumEmission::IsApart(whole, settings))
   {
     return;
   }
   settings.netFlux = true; // it tells which way light goes that is scattered
   bool any = false;
-  this->Scene.Collective([&] {
+  this->Scene.domain.Collective([&] {
     this->OfVacuum = VacuumEmission::DirectionsFor(whole, settings);
     for (std::size_t i = 0; i < this->Voxels; ++i)
     {
       any = any || this->EmissionOf(i, true) > 0.0f;
     }
   });
-  if (this->Scene.Sum({ any ? 1.0 : 0.0 })[0] == 0.0)
+  if (!this->Scene.domain.Any(any))
   {
     this->OfVacuum.reset();
   }
@@ -79,9 +79,8 @@ void ChannelArrays::TakeVacuumApart(PropagationSettings settings)
 
 void ChannelArrays::LookAtAllRanks()
 {
-  const std::vector<double> any = this->Scene.Sum({ this->AnyScattering ? 1.0 : 0.0, this->AnyEmission ? 1.0 : 0.0 });
-  this->AnyScattering = any[0] > 0.0;
-  this->AnyEmission = any[1] > 0.0;
+  this->AnyScattering = this->Scene.domain.Any(this->AnyScattering);
+  this->AnyEmission = this->Scene.domain.Any(this->AnyEmission);
 }
 
 Buffer<float> ChannelArrays::Load(const char* what, double absorbed, double scattered) const
@@ -107,7 +106,7 @@ void ChannelArrays::AddLamps(
   }
   std::optional<LampScattering> scattering;
   Buffer<float> sigma_t, sigma_s, path;
-  this->Scene.Collective([&] {
+  this->Scene.domain.Collective([&] {
     scattering.emplace(this->TheDevice, this->Layout.grid, this->Angles.groups, this->Angles.function);
     sigma_t = this->Load("sigma_t", 1.0, 1.0);
     sigma_s = this->Load("sigma_s", 0.0, 1.0);
@@ -118,7 +117,7 @@ void ChannelArrays::AddLamps(
   const auto volumeHere = [&] {
     UncollidedVolume volume = { this->TheDevice, this->Layout, sigma_t, periodic, sweeps,
       { &path, nullptr, nullptr, nullptr, this->Faces ? &this->Faces->Out() : nullptr } };
-    if (this->Scene.ranks)
+    if (!this->Scene.domain.IsSerial())
     {
       this->SpreadOverRanks(volume, nearLamps);
     }
@@ -128,14 +127,14 @@ void ChannelArrays::AddLamps(
   const double all = static_cast<double>(this->Scene.lamps.size() + (this->OfVacuum ? 1 : 0));
   for (std::size_t i = 0; i < this->Scene.lamps.size(); ++i)
   {
-    this->Scene.Collective([&] { path.Fill(0.0f); });
+    this->Scene.domain.Collective([&] { path.Fill(0.0f); });
     const Monitor ofLamp = OfPart(monitor, i / all, (i + 1) / all);
     this->CountLamp(UncollidedLamp(this->Scene.lamps[i]).AddTo(volumeHere(), ofLamp), result.ledger);
-    this->Scene.Collective([&] { scattering->Add(this->Scene.lamps[i], path, sigma_s, target); });
+    this->Scene.domain.Collective([&] { scattering->Add(this->Scene.lamps[i], path, sigma_s, target); });
   }
   if (this->OfVacuum)
   {
-    this->Scene.Collective([&] { path.Fill(0.0f); });
+    this->Scene.domain.Collective([&] { path.Fill(0.0f); });
     const Monitor ofVacuum = OfPart(monitor, (all - 1.0) / all, 1.0);
     this->CountLamp(this->AddVacuum(volumeHere(), *scattering, sigma_s, target, ofVacuum), result.ledger);
   }
@@ -152,7 +151,7 @@ SweepTally ChannelArrays::AddVacuum(UncollidedVolume volume, const LampScatterin
 {
   Buffer<float> flux;
   std::optional<VacuumEmission> emission;
-  this->Scene.Collective([&] {
+  this->Scene.domain.Collective([&] {
     flux = Buffer<float>(this->TheDevice, this->Layout.Floats(3), "the net flux of what empty voxels emit");
     flux.Fill(0.0f);
     emission.emplace(
@@ -160,7 +159,7 @@ SweepTally ChannelArrays::AddVacuum(UncollidedVolume volume, const LampScatterin
   });
   volume.deposit.flux = &flux;
   const SweepTally tally = emission->AddTo(volume, monitor);
-  this->Scene.Collective([&] {
+  this->Scene.domain.Collective([&] {
     const std::vector<float> paths = volume.deposit.path->Read(), fluxes = flux.Read();
     std::vector<float> ways(3 * this->Voxels + 1, 0.0f);
     for (std::size_t i = 0; i < 3 * this->Voxels; ++i)
@@ -176,13 +175,13 @@ SweepTally ChannelArrays::AddVacuum(UncollidedVolume volume, const LampScatterin
 std::unique_ptr<SweepOperator> ChannelArrays::SweepOf(
   const Buffer<float>& sigma_t, const std::array<bool, 3>& periodic, const SweepRequest& request)
 {
-  if (!this->Scene.ranks)
+  if (this->Scene.domain.IsSerial())
   {
     return SweepOfDevice(this->TheDevice, this->Layout, sigma_t, periodic, request, this->Workspace);
   }
   std::unique_ptr<SweepOperator> sweep;
-  this->Scene.Collective([&] {
-    sweep = std::make_unique<SweepInBlocks>(this->TheDevice, this->Scene.ranks->others, this->Scene.ranks->partition,
+  this->Scene.domain.Collective([&] {
+    sweep = std::make_unique<SweepInBlocks>(this->TheDevice, this->Scene.domain.Comm(), this->Scene.domain.Partition(),
       this->Layout, sigma_t, periodic, request, this->BlocksWorkspace);
   });
   return sweep;
@@ -192,19 +191,19 @@ std::unique_ptr<SweepOperator> ChannelArrays::SweepOf(
 /// @param nearLamps  of the volume's sigma_t: made where a lamp asks for them
 void ChannelArrays::SpreadOverRanks(UncollidedVolume& volume, std::unique_ptr<LampsInBlocks>& nearLamps) const
 {
-  const OrdinatesRanks& ranks = *this->Scene.ranks;
-  volume.whole = &ranks.partition.whole;
-  volume.together = [&ranks](const std::function<void()>& work) { ranks.others.Collective(work); };
-  volume.followLamp = [this, &ranks, &nearLamps, periodic = volume.periodic, &sigma_t = volume.sigma_t](
+  const Domain& domain = this->Scene.domain;
+  volume.whole = &domain.Whole();
+  volume.together = [&domain](const std::function<void()>& work) { domain.Collective(work); };
+  volume.followLamp = [this, &domain, &nearLamps, periodic = volume.periodic, &sigma_t = volume.sigma_t](
                         const SweepVolume& ofChannels, const tyndall::Light& lamp, const Monitor& monitor) {
     if (!nearLamps)
     {
       nearLamps = std::make_unique<LampsInBlocks>(
-        this->TheDevice, ranks.others, ranks.partition, periodic, this->Layout, sigma_t);
+        this->TheDevice, domain.Comm(), domain.Partition(), periodic, this->Layout, sigma_t);
     }
     const SweepTally tally = nearLamps->Deposit(ofChannels, lamp, monitor);
-    // Of all already; a rank without voxels may not know the channel's power.
-    return ranks.Sum(IsFirstThatHas(ranks.others, ranks.partition) ? tally : SweepTally());
+    // The tally is that of all ranks already, but an empty block may not know the channel's power.
+    return SumOf(domain, IsFirstThatHas(domain.Comm(), domain.Partition()) ? tally : SweepTally());
   };
 }
 
@@ -214,7 +213,7 @@ void ChannelArrays::AddGiven(
 {
   UncollidedImage image = this->Scene.uncollided;
   const double size = this->Layout.grid.VoxelVolume();
-  this->Scene.Collective([&] {
+  this->Scene.domain.Collective([&] {
     const Buffer<float> path = PlanarOnDevice(
       this->TheDevice, this->Layout, 1,
       [&](std::size_t i, int) { return static_cast<float>(size * image.fluence.At(i, this->Scene.channel)); },
@@ -227,12 +226,13 @@ void ChannelArrays::AddGiven(
     scattering.AddAlong(Buffer<float>(this->TheDevice, ways, "mean directions"), path, sigma_s,
       { source, this->Scale, this->Direct, this->Light });
   });
-  if (this->Scene.ranks && !IsFirstThatHas(this->Scene.ranks->others, this->Scene.ranks->partition))
+  const Domain& domain = this->Scene.domain;
+  if (!IsFirstThatHas(domain.Comm(), domain.Partition()))
   {
-    image.escaped = {}; // all ranks have that of the whole
+    image.escaped = {}; // every rank has the sum over all
   }
   const SweepTally tally = TallyOf(image, this->TheMedium, this->Scene.channel, 1);
-  this->CountLamp(this->Scene.ranks ? this->Scene.ranks->Sum(tally) : tally, result.ledger);
+  this->CountLamp(SumOf(domain, tally), result.ledger);
 }
 
 void ChannelArrays::CountLamp(const SweepTally& tally, EnergyLedger& ledger)
@@ -254,8 +254,8 @@ ChannelArrays::Powers ChannelArrays::PowersOf(const std::vector<float>& values, 
     powers.scattered += static_cast<double>(values[i]) * this->Scattering[i];
   }
   const double volume = this->Layout.grid.VoxelVolume();
-  const std::vector<double> sums =
-    this->Scene.Sum({ powers.absorbed * volume, powers.scattered * volume * (lamps ? 1.0 : this->ScatteredAway) });
+  const std::vector<double> sums = this->Scene.domain.Sum(
+    std::vector<double>{ powers.absorbed * volume, powers.scattered * volume * (lamps ? 1.0 : this->ScatteredAway) });
   return { sums[0], sums[1] };
 }
 
@@ -267,7 +267,7 @@ double ChannelArrays::MagnitudeOf(const std::vector<float>& values, const std::v
     const double other = others.empty() ? 0.0 : others[i];
     sum += std::abs(values[i] - other) * this->Scattering[i];
   }
-  return this->Scene.Sum({ sum * this->Layout.grid.VoxelVolume() * this->ScatteredAway })[0];
+  return this->Scene.domain.Sum(sum * this->Layout.grid.VoxelVolume() * this->ScatteredAway);
 }
 
 void ChannelArrays::ScatterEvenly(const std::vector<float>& values, double factor, const Buffer<float>& source) const
@@ -288,7 +288,7 @@ void ChannelArrays::ScatterEvenly(const std::vector<float>& values, double facto
 void ChannelArrays::EmitEvenly(const Buffer<float>& source, EnergyLedger& ledger) const
 {
   double sum = 0.0;
-  this->Scene.Collective([&] {
+  this->Scene.domain.Collective([&] {
     std::vector<float> emission(this->Voxels);
     for (std::size_t i = 0; i < this->Voxels; ++i)
     {
@@ -302,7 +302,7 @@ void ChannelArrays::EmitEvenly(const Buffer<float>& source, EnergyLedger& ledger
       even, cl::NullRange, cl::NDRange(this->Voxels, this->Angles.groups.Count()));
     this->TheDevice.Finish(); // the values go
   });
-  ledger.Emit(0, 4.0 * Pi * this->Scene.Sum({ sum * this->Layout.grid.VoxelVolume() })[0]);
+  ledger.Emit(0, 4.0 * Pi * this->Scene.domain.Sum(sum * this->Layout.grid.VoxelVolume()));
 }
 
 void ChannelArrays::Read(OrdinatesResult& result) const

@@ -1,13 +1,18 @@
 #include "DiscreteOrdinates/DiscreteOrdinates.h"
 
+#include "Device/Errors.h"
 #include "DiscreteOrdinates/OrdinatesParts.h"
 #include "DiscreteOrdinates/OrdinatesScene.h"
-#include "DiscreteOrdinates/OrdinatesWarmStart.h"
 #include "DiscreteOrdinates/Published/PublishedOrders.h"
 #include "DiscreteOrdinates/SweptOrders.h"
+#include "Distribution/KeptInBlocks.h"
+#include "Distribution/SharedMedium.h"
 #include "Light/LeftOut.h"
 #include "LightPropagation/Convergence.h"
+#include "LightPropagation/Distributed/BlockScene.h"
+#include "LightPropagation/Problem/AngularDegree.h"
 #include "LightPropagation/Problem/PropagationProblem.h"
+#include "LightPropagation/Problem/UnvaryingAxes.h"
 #include "LightPropagation/Published/PublishedModel.h"
 
 #include <algorithm>
@@ -18,7 +23,117 @@ namespace tyndall
 {
 namespace
 {
-std::vector<std::string> Words(const PropagationProblem& problem, const FarLight& far, const OrdinatesAngles& angles)
+constexpr double SlowestRate = 1.0 - 1e-6; ///< of orders, that is told the next solve
+
+/// The light of the last solve as the first guess of this one, channel by channel (numerics.md, section 6.4). Each rank
+/// keeps that of its block; all ranks begin from theirs, or none does.
+class OrdinatesWarmStart
+{
+public:
+  /// @param kept  null: nothing is begun from or kept; must stay, as settings
+  OrdinatesWarmStart(const KeptLight* kept, const OrdinatesSettings& settings)
+    : Kept(kept)
+    , Settings(settings)
+  {
+  }
+
+  /// The first guess of a channel. Collective.
+  /// @param channels  of the solve
+  OrdinatesGuess Begin(int channel, int channels, const Domain& domain, const OrdinatesAngles& angles);
+  /// What it left for the next solve; of one channel after the other.
+  void Take(const OrdinatesResult& found, int channel);
+  /// Puts what all channels left in the place of what was kept, and says of light how it began. Nothing where nothing
+  /// is kept.
+  void Finish(LightField& light, KeptLight* kept);
+
+private:
+  std::string WhyNotOf(const OrdinatesAngles& angles) const;
+  OrdinatesGuess GuessOf(int channel, bool begins) const;
+
+  const KeptLight* Kept;
+  const OrdinatesSettings& Settings;
+  KeptLight Left;
+  std::string WhyNot; ///< of the first channel that has a reason
+};
+
+OrdinatesGuess OrdinatesWarmStart::Begin(int channel, int channels, const Domain& domain, const OrdinatesAngles& angles)
+{
+  if (!this->Kept)
+  {
+    return {};
+  }
+  if (channel == 0)
+  {
+    this->Left.kind = { "discrete ordinates", domain.Whole().size, domain.Whole().spacing, channels,
+      angles.phase.Terms(), angles.phase.DirectionCount(), this->Settings.periodic, domain.Own() };
+  }
+  const std::string why = WhyNotBegunOnAny(domain.Comm(), *this->Kept, this->WhyNotOf(angles));
+  OrdinatesGuess guess;
+  domain.Collective([&] { guess = this->GuessOf(channel, why.empty()); });
+  this->WhyNot = this->WhyNot.empty() ? why : this->WhyNot;
+  return guess;
+}
+
+std::string OrdinatesWarmStart::WhyNotOf(const OrdinatesAngles& angles) const
+{
+  if (IsPublished(this->Settings))
+  {
+    return NotBegunAsPublished;
+  }
+  if (!CanBeginWarm(angles, this->Settings))
+  {
+    return "sources that terms of the phase function make negative are set to 0 order by order, from darkness on";
+  }
+  return WhyNotBegun(*this->Kept, this->Left.kind, this->Settings.maximumOrders);
+}
+
+/// One channel's part of kept light.
+OrdinatesGuess OrdinatesWarmStart::GuessOf(int channel, bool begins) const
+{
+  OrdinatesGuess guess;
+  guess.keeps = true;
+  if (begins)
+  {
+    const std::vector<float>& all = this->Kept->scattered;
+    const auto values = static_cast<std::ptrdiff_t>(all.size()) / this->Left.kind.channels;
+    guess.values.assign(all.begin() + channel * values, all.begin() + (channel + 1) * values);
+    guess.firstScattered = this->Kept->firstScattered[channel];
+    guess.rate = this->Kept->rate[channel];
+  }
+  return guess;
+}
+
+void OrdinatesWarmStart::Take(const OrdinatesResult& found, int channel)
+{
+  this->Left.scattered.insert(this->Left.scattered.end(), found.left.begin(), found.left.end());
+  this->Left.firstScattered[channel] = found.firstScattered;
+  this->Left.rate[channel] = this->Settings.maximumOrders > 0 ? 0.0 : std::min(found.rate, SlowestRate);
+}
+
+void OrdinatesWarmStart::Finish(LightField& light, KeptLight* kept)
+{
+  if (!kept)
+  {
+    return;
+  }
+  this->Left.fromDarkness = kept->fromDarkness;
+  light.leftOut.push_back(WordsOfWarmStart(this->WhyNot));
+  Keep(std::move(this->Left), this->WhyNot.empty(), light, *kept);
+}
+
+/// A scene as it is solved: in its units and channels.
+struct SolvedScene
+{
+  const Domain& domain;
+  const Medium& medium; ///< one voxel of vacuum in an empty block
+  const MediumTraits& traits;
+  const Illumination& shining;
+  int channels;
+  int directionsPerFace;
+};
+
+std::vector<std::string> Words(
+  const SolvedScene& scene, const FarLight& far, bool scattersEvenly, const OrdinatesSettings& settings)
 {
   std::vector<std::string> words;
   const auto say = [&](bool condition, const char* text) {
@@ -27,84 +142,178 @@ std::vector<std::string> Words(const PropagationProblem& problem, const FarLight
       words.emplace_back(text);
     }
   };
-  const MediumTraits& traits = problem.Traits();
-  say(problem.Shining().uncollided.IsThere(), left_out::OwnUncollided);
-  if (problem.Settings().leaveOut)
+  const MediumTraits& traits = scene.traits;
+  const auto isDark = [&](int channel) { return !IncomingOf(far, scene.shining, channel); };
+  say(scene.shining.uncollided.IsThere(), left_out::OwnUncollided);
+  if (settings.leaveOut)
   {
-    say(angles.phase.Terms() == 1 && traits.scatters, left_out::Isotropic);
+    say(scattersEvenly && traits.scatters, left_out::Isotropic);
     say(!traits.scatters, left_out::NoScattering);
     say(!traits.absorbs, left_out::NoAbsorption);
     say(!traits.emits, left_out::NoEmission);
-    say(!IncomingOf(far, problem.Shining(), 0) && !IncomingOf(far, problem.Shining(), 1) &&
-        !IncomingOf(far, problem.Shining(), 2),
-      left_out::DarkOutside);
-    say(problem.Shining().lights.empty() && far.peaks.empty(), left_out::NoLights);
-    say(!Reflects(problem.Shining()), left_out::BlackFaces);
+    say(isDark(0) && isDark(1) && isDark(2), left_out::DarkOutside);
+    say(scene.shining.lights.empty() && far.peaks.empty(), left_out::NoLights);
+    say(!Reflects(scene.shining), left_out::BlackFaces);
   }
-  say(!problem.Settings().netFlux, left_out::NetFlux);
+  say(!settings.netFlux, left_out::NetFlux);
   return words;
 }
 
-LightKind KindOf(const PropagationProblem& problem, const OrdinatesSettings& settings)
+/// One channel after the other, in the units of the scene. Collective.
+LightField SolveChannels(
+  Device& device, const SolvedScene& scene, const OrdinatesSettings& settings, const Monitor& monitor, KeptLight* kept)
 {
-  LightKind kind;
-  kind.size = problem.TheGrid().size;
-  kind.spacing = problem.TheGrid().spacing;
-  kind.channels = problem.Channels();
-  kind.periodic = settings.periodic;
-  return kind;
-}
-}
-
-LightField SolveDiscreteOrdinates(Device& device, const Medium& medium, const Illumination& illumination,
-  const OrdinatesSettings& settings, const Monitor& monitor, KeptLight* kept)
-{
-  Check(settings);
-  if (IsPublished(settings))
-  {
-    CheckPublishedFaces(illumination);
-  }
-  const PropagationProblem problem(medium, illumination, AsPropagation(settings));
-  const FarLight far = FarLightOf(problem.Shining(), problem.Settings().directionsPerFace, settings);
-  OrdinatesSettings solved = settings;
-  solved.periodic = problem.Settings().periodic;
+  const Domain& domain = scene.domain;
+  const FarLight far = FarLightOf(scene.shining, scene.directionsPerFace, settings);
   LightField light;
-  light.channels = problem.Channels();
+  light.channels = scene.channels;
+  OrdinatesWarmStart warm(kept, settings);
+  bool diverged = false;
   double thickest = 0.0;
   for (int c = 0; c < light.channels; ++c)
   {
-    thickest = std::max(thickest, ThickestStep(problem.TheMedium(), c));
-  }
-  light.doubts = DoubtsOf(settings, thickest, problem.TheMedium().phase.Varies());
-  bool diverged = false;
-  OrdinatesWarmStart warm(kept, settings);
-  for (int c = 0; c < light.channels; ++c)
-  {
-    const PhaseFunction function = FunctionOf(problem.TheMedium(), c, nullptr);
+    thickest = std::max(thickest, domain.Max(ThickestStep(scene.medium, c)));
+    const PhaseFunction function = FunctionOf(domain, scene.medium, c);
     const OrdinatesAngles angles = { OrdinateGroups(far.directions), SeparableOf(function, far.directions, settings),
       function };
-    CheckMemory(device, problem.TheGrid(), angles, settings);
-    const OrdinatesScene scene = { problem.TheMedium(), c, LampsOf(far, problem.Shining(), c),
-      IncomingOf(far, problem.Shining(), c), FaceAlbedoOf(problem.Shining(), c), UncollidedOf(problem.Shining(), c),
-      warm.Begin(c, KindOf(problem, settings), angles, nullptr) };
-    const Monitor ofChannel = OfPart(monitor, static_cast<double>(c) / light.channels, (c + 1.0) / light.channels);
-    const OrdinatesResult found = IsPublished(settings) ? SolvePublishedOrders(device, scene, angles, solved, ofChannel)
-                                                        : SolveSweptOrders(device, scene, angles, solved, ofChannel);
-    TakeChannel(light, found, c);
-    warm.Take(found, c);
+    domain.Collective([&] { CheckMemory(device, scene.medium.grid, angles, settings); });
+    const OrdinatesScene ofChannel = { domain, scene.medium, c, LampsOf(far, scene.shining, c),
+      IncomingOf(far, scene.shining, c), FaceAlbedoOf(scene.shining, c), UncollidedOf(scene.shining, c),
+      warm.Begin(c, light.channels, domain, angles) };
+    const Monitor part = OfPart(monitor, static_cast<double>(c) / light.channels, (c + 1.0) / light.channels);
+    const OrdinatesResult found = IsPublished(settings)
+      ? SolvePublishedOrders(device, ofChannel, angles, settings, part)
+      : SolveSweptOrders(device, ofChannel, angles, settings, part);
+    domain.Collective([&] {
+      TakeChannel(light, found, c);
+      warm.Take(found, c);
+    });
     diverged = diverged || found.diverged;
-    light.leftOut = c == 0 ? Words(problem, far, angles) : light.leftOut;
+    light.leftOut = c == 0 ? Words(scene, far, angles.phase.Terms() == 1, settings) : light.leftOut;
+  }
+  if (domain.IsEmpty())
+  {
+    light.fluence.clear();
+    light.fluenceDirect.clear();
+    light.netFlux.clear();
   }
   DescribeLight(light, device, far);
-  light.faceAlbedo = illumination.faceAlbedo;
-  Judge(settings, diverged, problem.TheMedium(), nullptr, light);
+  light.doubts = DoubtsOf(settings, thickest, domain.Any(!domain.IsEmpty() && scene.medium.phase.Varies()));
+  Judge(settings, diverged, domain, scene.medium, light);
   warm.Finish(light, kept);
   if (!IsPublished(settings) && settings.seriesAfter > 0 &&
     light.convergence.size() >= static_cast<std::size_t>(settings.seriesAfter))
   {
     light.leftOut.push_back("orders: those after " + std::to_string(settings.seriesAfter) + " are a geometric series");
   }
+  return light;
+}
+
+/// @throws InvalidInput where the medium is not that of the block
+void CheckSize(const Domain& domain, const Medium& medium)
+{
+  Require(medium.grid.size == domain.OwnGrid().size,
+    "The medium of rank " + std::to_string(domain.Rank()) + " does not have the size of its block.");
+}
+
+LightField SolveSerial(Device& device, const Domain& whole, const Medium& medium, const Illumination& illumination,
+  const OrdinatesSettings& settings, const Monitor& monitor, KeptLight* kept)
+{
+  Check(settings);
+  CheckSize(whole, medium);
+  if (IsPublished(settings))
+  {
+    CheckPublishedFaces(illumination);
+  }
+  Medium own = medium;
+  own.grid = whole.Whole();
+  const PropagationProblem problem(own, illumination, AsPropagation(settings));
+  const Domain domain(problem.TheGrid());
+  LightField light = SolveChannels(device,
+    { domain, problem.TheMedium(), problem.Traits(), problem.Shining(), problem.Channels(),
+      problem.Settings().directionsPerFace },
+    settings, monitor, kept);
   problem.Undo(light);
+  return light;
+}
+
+/// Ranks must agree on all inputs. Collective.
+void RequireSame(const Domain& domain, const Medium& medium, const Illumination& illumination,
+  const OrdinatesSettings& settings, bool warm)
+{
+  Communicator& comm = domain.Comm();
+  const PropagationSettings asPropagation = AsPropagation(settings);
+  RequireSame(comm, "WarmStart", true, { warm ? 1.0 : 0.0 });
+  domain.Collective([&] {
+    domain.Partition().Check();
+    Require(static_cast<int>(domain.Partition().blocks.size()) == comm.Ranks(), "There is not a block for each rank.");
+    Require(!IsPublished(settings), "Blocks cannot be solved as published: take the conservative scheme.");
+    Check(settings);
+    if (!domain.IsEmpty())
+    {
+      CheckBlock(medium, illumination, asPropagation);
+      CheckSize(domain, medium);
+    }
+  });
+  RequireSame(comm, domain.Partition());
+  RequireSame(comm, !domain.IsEmpty(), medium, illumination, asPropagation);
+  RequireSame(comm, "settings of the ordinates", true,
+    { 1.0 * static_cast<int>(settings.scattering), 1.0 * settings.spiralDirections, 1.0 * settings.terms });
+  RequireSink(LightEndsOnAny(comm, !domain.IsEmpty(), medium, illumination), illumination, asPropagation);
+}
+
+/// Uncollided light as given on any rank, for an empty block as well.
+UncollidedImage UncollidedKnown(const Domain& domain, const UncollidedImage& own)
+{
+  static const float nothing = 0.0f;
+  const bool any = domain.Any(!domain.IsEmpty() && own.IsThere());
+  UncollidedImage image;
+  image.fluence = any ? Field{ &nothing, 1 } : Field();
+  return domain.IsEmpty() ? image : own;
+}
+
+LightField SolveDecomposed(Device& device, const Domain& domain, const Medium& medium, const Illumination& illumination,
+  const OrdinatesSettings& settings, const Monitor& monitor, KeptLight* kept)
+{
+  RequireSame(domain, medium, illumination, settings, kept != nullptr);
+  PropagationSettings asPropagation = AsPropagation(settings);
+  const UnvaryingAxes unvarying(domain.Whole(), illumination, asPropagation);
+  BlockPartition partition = domain.Partition();
+  partition.whole = unvarying.Widened(domain.Whole());
+  asPropagation.directionsPerFace = DirectionsPerFaceFor(asPropagation, unvarying);
+  const double narrowing = domain.Whole().VoxelVolume() / partition.whole.VoxelVolume();
+  Medium own = domain.IsEmpty() ? Medium() : medium;
+  own.grid = partition.OwnGrid(domain.Rank());
+  Illumination shining = illumination;
+  for (Rgb& face : shining.uncollided.escaped)
+  {
+    face = Times(face, 1.0 / narrowing);
+  }
+  shining.uncollided = UncollidedKnown(domain, shining.uncollided);
+  const BlockScene scene(domain.Comm(), !domain.IsEmpty(), partition, own, shining, asPropagation, MemoryOf(device));
+  partition.whole = scene.WholeOf(partition.whole);
+  const Medium solved = domain.IsEmpty() ? VoxelOfVacuum(partition.whole) : scene.medium;
+  const Domain inUnits(domain.Comm(), partition);
+  LightField light = SolveChannels(device,
+    { inUnits, solved, scene.traits, scene.illumination, scene.channels, asPropagation.directionsPerFace }, settings,
+    monitor, kept);
+  domain.Collective([&] { scene.Undo(light); });
+  MultiplyPowers(light, narrowing);
+  light.directionsPerFace = asPropagation.directionsPerFace;
+  if (light.directionsPerFace != settings.directionsPerFace)
+  {
+    light.leftOut.push_back(left_out::DirectionsAlongSlab(light.directionsPerFace));
+  }
+  return light;
+}
+}
+
+LightField SolveDiscreteOrdinates(Device& device, const Domain& domain, const Medium& medium,
+  const Illumination& illumination, const OrdinatesSettings& settings, const Monitor& monitor, KeptLight* kept)
+{
+  LightField light = domain.IsSerial() ? SolveSerial(device, domain, medium, illumination, settings, monitor, kept)
+                                       : SolveDecomposed(device, domain, medium, illumination, settings, monitor, kept);
+  light.faceAlbedo = illumination.faceAlbedo;
   WarnAboutInputLight(illumination, light);
   return light;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "DiscreteOrdinates/OrdinatesSettings.h"
+#include "Distribution/Domain.h"
 #include "Light/KeptLight.h"
 #include "Light/LightField.h"
 #include "Lights/Lights.h"
@@ -26,13 +27,20 @@ namespace tyndall
 ///
 /// Channels are solved one after the other; a row of `convergence` counts all of them.
 ///
+/// A decomposed grid is swept in a pipeline over ranks (PipelinedSweep.h), the conservative scheme alone. The light is
+/// that of one rank, order by order, to rounding. Collective.
+///
+/// @param medium  of this rank's block, on the grid that domain.OwnGrid() has; not read where that is empty
+/// @param illumination, settings  the same on all ranks
 /// @param kept  the light of the last solve is the first guess of this one, and the light of this one is left there
-/// (KeptLight.h); null: begins in the dark, and keeps nothing. Conservative orders begin from it where scattering is
-/// isotropic; as published orders always begin in the dark.
-/// @throws InvalidInput  what Check(medium), Check(illumination) say, settings out of range, or as published faces that
-///   reflect
+///   (KeptLight.h); null, on all ranks or none: begins in the dark, and keeps nothing. Conservative orders begin from
+///   it where scattering is isotropic; as published orders always begin in the dark.
+/// @return the light of the block; balance, face powers and convergence are of the whole grid
+/// @throws InvalidInput  what Check(medium), Check(illumination) say, settings out of range, as published faces that
+///   reflect or several ranks; where ranks disagree, or blocks wait for each other in a cycle
 /// @throws DeviceError  if the buffers do not fit: says how many bytes are needed before it takes any
 /// @throws Aborted  when the monitor says so
-LightField SolveDiscreteOrdinates(Device& device, const Medium& medium, const Illumination& illumination,
-  const OrdinatesSettings& settings, const Monitor& monitor = {}, KeptLight* kept = nullptr);
+LightField SolveDiscreteOrdinates(Device& device, const Domain& domain, const Medium& medium,
+  const Illumination& illumination, const OrdinatesSettings& settings, const Monitor& monitor = {},
+  KeptLight* kept = nullptr);
 }

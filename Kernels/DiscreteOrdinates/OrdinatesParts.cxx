@@ -56,26 +56,6 @@ void AddRows(std::vector<ConvergenceRow>& sum, const std::vector<ConvergenceRow>
 }
 }
 
-bool IsPublished(const OrdinatesSettings& settings)
-{
-  return settings.scheme == OrdinatesScheme::Published;
-}
-
-PropagationSettings AsPropagation(const OrdinatesSettings& settings)
-{
-  PropagationSettings as;
-  as.directionsPerFace = settings.directionsPerFace;
-  as.adaptDirections = !IsPublished(settings) && settings.spiralDirections == 0;
-  as.source = IsPublished(settings) ? PropagationSource::Constant : PropagationSource::Automatic;
-  as.maximumOrders = settings.maximumOrders;
-  as.tolerance = settings.tolerance;
-  as.periodic = settings.periodic;
-  as.netFlux = settings.netFlux;
-  as.leaveOut = settings.leaveOut;
-  as.angularDegree = 0; // scatters by direction, not in moments
-  return as;
-}
-
 FarLight FarLightOf(const Illumination& shining, int perFace, const OrdinatesSettings& settings)
 {
   const bool spiral = settings.spiralDirections > 0;
@@ -101,7 +81,7 @@ FarLight FarLightOf(const Illumination& shining, int perFace, const OrdinatesSet
   return far;
 }
 
-PhaseFunction FunctionOf(const Medium& medium, int channel, const OrdinatesRanks* ranks)
+PhaseFunction FunctionOf(const Domain& domain, const Medium& medium, int channel)
 {
   std::vector<double> sums = { 0.0, 0.0 }; // scattered, forwards
   for (std::size_t i = 0; medium.phase.Varies() && i < medium.grid.VoxelCount(); ++i)
@@ -109,7 +89,7 @@ PhaseFunction FunctionOf(const Medium& medium, int channel, const OrdinatesRanks
     sums[0] += medium.sigma_s.At(i, channel);
     sums[1] += static_cast<double>(medium.sigma_s.At(i, channel)) * medium.phase.MeanCosine(i, channel);
   }
-  sums = ranks ? ranks->others.Sum(sums) : sums;
+  sums = domain.Sum(sums);
   const PhaseFunction function = medium.phase.OfChannel(channel);
   return medium.phase.Varies() ? function.WithMeanCosine(sums[0] > 0.0 ? sums[1] / sums[0] : 0.0) : function;
 }
@@ -257,16 +237,12 @@ void DescribeLight(LightField& light, const Device& device, const FarLight& far)
   light.device = device.Name();
 }
 
-void Judge(const OrdinatesSettings& settings, bool diverged, const Medium& medium, const OrdinatesRanks* ranks,
-  LightField& light)
+void Judge(
+  const OrdinatesSettings& settings, bool diverged, const Domain& domain, const Medium& medium, LightField& light)
 {
-  if (!IsPublished(settings) && ranks)
+  if (!IsPublished(settings))
   {
-    JudgeBalance(light, ranks->others, ranks->Has(), medium);
-  }
-  else if (!IsPublished(settings))
-  {
-    JudgeBalance(light, medium);
+    domain.IsSerial() ? JudgeBalance(light, medium) : JudgeBalance(light, domain.Comm(), !domain.IsEmpty(), medium);
   }
   const double residual = light.convergence.empty() ? 0.0 : light.convergence.back().residual;
   const bool isAsked = settings.maximumOrders > 0 || (settings.seriesAfter > 0 && !IsPublished(settings));

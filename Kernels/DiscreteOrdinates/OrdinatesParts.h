@@ -14,13 +14,6 @@
 
 namespace tyndall
 {
-// What solves of the whole and of blocks have alike: from a scene to its channels, and from these to light.
-
-bool IsPublished(const OrdinatesSettings& settings);
-
-/// What light propagation maps would be told of the same scene: units, channels and axes are found alike.
-PropagationSettings AsPropagation(const OrdinatesSettings& settings);
-
 /// Directions of one solve, and what comes along them from far away.
 struct FarLight
 {
@@ -32,11 +25,10 @@ struct FarLight
 /// @param perFace  directions per face of a cube, as they are solved with
 FarLight FarLightOf(const Illumination& shining, int perFace, const OrdinatesSettings& settings);
 
-/// Of a mean cosine that varies by voxel the mean, weighted by what is scattered with it.
-/// @param ranks  of all of which; all call it. Null: the medium is the whole
-PhaseFunction FunctionOf(const Medium& medium, int channel, const OrdinatesRanks* ranks);
+/// The phase function; of a mean cosine that varies by voxel, with the mean weighted by sigma_s. Collective.
+PhaseFunction FunctionOf(const Domain& domain, const Medium& medium, int channel);
 
-/// What of a medium makes light doubtful.
+/// Properties of a medium that make the light doubtful.
 /// @param thickestStep  ThickestStep of all channels
 std::vector<std::string> DoubtsOf(const OrdinatesSettings& settings, double thickestStep, bool cosineVaries);
 
@@ -64,8 +56,7 @@ void DescribeLight(LightField& light, const Device& device, const FarLight& far)
 
 /// Whether it has converged, and, but as published, whether it balances (Convergence.h). Collective.
 /// @param medium  solved, of this rank
-/// @param ranks   null: there is one
 /// @throws InvalidInput where it does not balance
-void Judge(const OrdinatesSettings& settings, bool diverged, const Medium& medium, const OrdinatesRanks* ranks,
-  LightField& light);
+void Judge(
+  const OrdinatesSettings& settings, bool diverged, const Domain& domain, const Medium& medium, LightField& light);
 }

@@ -17,24 +17,24 @@ struct Level
 constexpr Level Draft = { 3, 9, 1e-2 }, Fine = { 8, 49, 1e-4 }, Reference = { 12, 100, 1e-5 };
 
 /// Rows of directions whose radiance, one channel of every voxel, takes at most half of the memory.
-int RowsThatFit(int rows, int atLeast, std::size_t voxels, const DeviceMemory& memory)
+int RowsThatFit(int rows, int atLeast, std::size_t voxels, double memory)
 {
   constexpr std::size_t Faces = 6;
-  while (rows > atLeast && Faces * rows * rows * sizeof(float) * voxels > memory.all / 2)
+  while (rows > atLeast && static_cast<double>(Faces * rows * rows * sizeof(float) * voxels) > 0.5 * memory)
   {
     --rows;
   }
   return rows;
 }
 
-void SetLevel(
-  const Level& level, OrdinatesSettings& settings, const MediumOfQuality& medium, const DeviceMemory& memory)
+/// @param voxels  of the whole grid
+void SetLevel(const Level& level, OrdinatesSettings& settings, std::size_t voxels, bool isIsotropic, double memory)
 {
   const OrdinatesSettings byDefault;
-  const int rows = RowsThatFit(level.rows, Draft.rows, medium.voxels, memory);
+  const int rows = RowsThatFit(level.rows, Draft.rows, voxels, memory);
   SetUnlessChosen(settings.directionsPerFace, byDefault.directionsPerFace, rows * rows);
   SetUnlessChosen(settings.tolerance, byDefault.tolerance, level.tolerance);
-  if (!medium.isIsotropic)
+  if (!isIsotropic)
   {
     SetUnlessChosen(settings.terms, byDefault.terms, level.terms);
   }
@@ -42,20 +42,19 @@ void SetLevel(
 }
 
 OrdinatesSettings AtQuality(
-  Quality quality, OrdinatesSettings settings, const Medium& medium, const DeviceMemory& memory)
+  const Domain& domain, Quality quality, OrdinatesSettings settings, const Medium& medium, const DeviceMemory& memory)
 {
-  return AtQuality(quality, settings, MediumOfQuality{ medium.grid.VoxelCount(), medium.phase.IsIsotropic() }, memory);
-}
-
-OrdinatesSettings AtQuality(
-  Quality quality, OrdinatesSettings settings, const MediumOfQuality& medium, const DeviceMemory& memory)
-{
+  const bool isIsotropic = !domain.Any(!domain.IsEmpty() && !medium.phase.IsIsotropic());
+  const double least = -domain.Max(-static_cast<double>(memory.all));
+  const auto set = [&](const Level& level) {
+    SetLevel(level, settings, domain.Whole().VoxelCount(), isIsotropic, least);
+  };
   switch (quality)
   {
-    case Quality::Draft: SetLevel(Draft, settings, medium, memory); break;
+    case Quality::Draft: set(Draft); break;
     case Quality::Default: break;
-    case Quality::Fine: SetLevel(Fine, settings, medium, memory); break;
-    case Quality::Reference: SetLevel(Reference, settings, medium, memory); break;
+    case Quality::Fine: set(Fine); break;
+    case Quality::Reference: set(Reference); break;
   }
   return settings;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "DiscreteOrdinates/OrdinatesSettings.h"
+#include "Distribution/Domain.h"
 #include "Light/LightField.h"
 #include "Light/Quality.h"
 #include "LightPropagation/Problem/AngularDegree.h"
@@ -13,18 +14,12 @@
 namespace tyndall
 {
 /// Settings of a quality for a medium: directions, terms of its phase function where it has one, and tolerance, as far
-/// as `settings` has them at their default values. No more directions than half the device's memory holds.
+/// as `settings` has them at their default values. No more directions than half the smallest memory of all ranks would
+/// hold of the whole grid. Collective.
+/// @param medium  of this rank's block
+/// @param memory  of this rank's device
 OrdinatesSettings AtQuality(
-  Quality quality, OrdinatesSettings settings, const Medium& medium, const DeviceMemory& memory);
-
-/// What of a medium that matters for.
-struct MediumOfQuality
-{
-  std::size_t voxels = 0;  ///< of the whole grid
-  bool isIsotropic = true; ///< the phase function
-};
-OrdinatesSettings AtQuality(
-  Quality quality, OrdinatesSettings settings, const MediumOfQuality& medium, const DeviceMemory& memory);
+  const Domain& domain, Quality quality, OrdinatesSettings settings, const Medium& medium, const DeviceMemory& memory);
 
 /// "Name = value" of each setting that a quality may choose and that plays a part: spiralDirections in place of those
 /// of a cube, no terms where every pair of directions is multiplied.

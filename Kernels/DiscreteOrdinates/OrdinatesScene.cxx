@@ -13,7 +13,7 @@ std::unique_ptr<FaceLight> FaceLightOf(Device& device, const OrdinatesScene& sce
   {
     return nullptr;
   }
-  const Grid& grid = scene.WholeGrid();
+  const Grid& grid = scene.domain.Whole();
   std::array<double, 6> powerIn = {};
   for (int g = 0; g < groups.Count(); ++g)
   {
@@ -36,7 +36,7 @@ std::optional<LightOfCells> CellsOf(const FaceLight* faces)
   return faces ? std::optional<LightOfCells>({ faces->Out(), faces->In() }) : std::nullopt;
 }
 
-SweepTally OrdinatesRanks::Sum(const SweepTally& own) const
+SweepTally SumOf(const Domain& domain, const SweepTally& own)
 {
   SweepTally sum = own;
   std::vector<Rgb*> powers = { &sum.onTheWay };
@@ -50,7 +50,7 @@ SweepTally OrdinatesRanks::Sum(const SweepTally& own) const
   {
     values.insert(values.end(), power->begin(), power->end());
   }
-  values = this->others.Sum(values);
+  values = domain.Sum(values);
   for (std::size_t i = 0; i < values.size(); ++i)
   {
     (*powers[i / 3])[i % 3] = values[i];

@@ -2,8 +2,7 @@
 
 #include "DiscreteOrdinates/OrdinateGroups.h"
 #include "DiscreteOrdinates/UpwindSweep.h"
-#include "Distribution/BlockPartition.h"
-#include "Distribution/Communicator.h"
+#include "Distribution/Domain.h"
 #include "Light/LightField.h"
 #include "LightPropagation/Conservative/EnergyLedger.h"
 #include "LightPropagation/Conservative/FaceLight.h"
@@ -31,41 +30,21 @@ struct OrdinatesGuess
   double rate = 0.0;
 };
 
-/// Ranks among which a grid is spread by blocks.
-struct OrdinatesRanks
-{
-  Communicator& others;
-  const BlockPartition& partition;
-
-  bool Has() const { return this->partition.blocks[this->others.Rank()].VoxelCount() > 0; }
-  /// Of all ranks, channel by channel. All ranks call it.
-  SweepTally Sum(const SweepTally& own) const;
-};
-
-/// One channel of a scene as discrete ordinates see it: what is solved.
+/// One channel of a scene, as it is solved.
 struct OrdinatesScene
 {
-  const Medium& medium;
+  const Domain& domain;
+  const Medium& medium; ///< of this rank's block; one voxel of vacuum where that is empty
   int channel = 0;
   std::vector<Light> lamps;  ///< of the scene, and the peaks of the environment; power of the channel in all three
   IncomingRadiance incoming; ///< empty: no environment, sky or face shines
   std::array<Rgb, 6> faceAlbedo = {}; ///< of the channel in all three
   UncollidedImage uncollided;         ///< the channel's alone
   OrdinatesGuess guess;
-  const OrdinatesRanks* ranks = nullptr; ///< of which the medium is this one's block; null: it is the whole
-
-  const Grid& WholeGrid() const { return this->ranks ? this->ranks->partition.whole : this->medium.grid; }
-  /// Sums over ranks of what each has of them.
-  std::vector<double> Sum(const std::vector<double>& own) const
-  {
-    return this->ranks ? this->ranks->others.Sum(own) : own;
-  }
-  /// What may fail on one rank (Communicator.h).
-  void Collective(const std::function<void()>& work) const
-  {
-    this->ranks ? this->ranks->others.Collective(work) : work();
-  }
 };
+
+/// Sum over all ranks. Collective.
+SweepTally SumOf(const Domain& domain, const SweepTally& own);
 
 /// Directions and how light is scattered between them.
 struct OrdinatesAngles

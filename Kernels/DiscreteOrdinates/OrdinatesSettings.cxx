@@ -28,4 +28,24 @@ void Check(const OrdinatesSettings& settings)
     throw InvalidInput("Tolerance is " + Text("%g", settings.tolerance) + "; it must be positive.");
   }
 }
+
+bool IsPublished(const OrdinatesSettings& settings)
+{
+  return settings.scheme == OrdinatesScheme::Published;
+}
+
+PropagationSettings AsPropagation(const OrdinatesSettings& settings)
+{
+  PropagationSettings as;
+  as.directionsPerFace = settings.directionsPerFace;
+  as.adaptDirections = !IsPublished(settings) && settings.spiralDirections == 0;
+  as.source = IsPublished(settings) ? PropagationSource::Constant : PropagationSource::Automatic;
+  as.maximumOrders = settings.maximumOrders;
+  as.tolerance = settings.tolerance;
+  as.periodic = settings.periodic;
+  as.netFlux = settings.netFlux;
+  as.leaveOut = settings.leaveOut;
+  as.angularDegree = 0; // scatters by direction, not in moments
+  return as;
+}
 }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "LightPropagation/PropagationSettings.h"
+
 #include <array>
 
 namespace tyndall
@@ -37,4 +39,9 @@ struct OrdinatesSettings
 
 /// @throws InvalidInput where a number is out of its range (numbers of directions are looked at by the direction sets)
 void Check(const OrdinatesSettings& settings);
+
+bool IsPublished(const OrdinatesSettings& settings);
+
+/// The settings of light propagation maps for the same scene: units, channels and axes are found alike.
+PropagationSettings AsPropagation(const OrdinatesSettings& settings);
 }

@@ -1,7 +1,6 @@
 #include "DiscreteOrdinates/SweptOrders.h"
 
-#include "DiscreteOrdinates/Distributed/UpwindSweepInBlocks.h"
-#include "DiscreteOrdinates/OrdinatesParts.h"
+#include "DiscreteOrdinates/PipelinedSweep.h"
 #include "DiscreteOrdinates/UpwindSweep.h"
 
 #include <algorithm>
@@ -31,13 +30,13 @@ bool CanBeNegative(const OrdinatesAngles& angles, const OrdinatesSettings& setti
 std::unique_ptr<OrdinateSweep> SweepOf(Device& device, const OrdinatesScene& scene, const OrdinatesAngles& angles,
   const OrdinatesSettings& settings, const LightOfCells* reflecting)
 {
-  const SweptFaces faces = SweptFaces::Of(scene.WholeGrid(), settings.periodic, reflecting);
+  const SweptFaces faces = SweptFaces::Of(scene.domain.Whole(), settings.periodic, reflecting);
   const Grid& grid = scene.medium.grid;
-  if (scene.ranks)
+  if (scene.domain.IsSerial())
   {
-    return std::make_unique<UpwindSweepInBlocks>(device, *scene.ranks, grid, angles.groups, faces);
+    return std::make_unique<UpwindSweep>(device, grid, angles.groups, faces);
   }
-  return std::make_unique<UpwindSweep>(device, grid, angles.groups, faces);
+  return std::make_unique<PipelinedSweep>(device, scene.domain, grid, angles.groups, faces);
 }
 
 class SweptOrders
@@ -68,11 +67,11 @@ public:
       const double done = this->Settings.maximumOrders > 0
         ? static_cast<double>(this->Record.All().size()) / this->Settings.maximumOrders
         : std::log(residual) / std::log(std::min(this->Settings.tolerance, 0.5));
-      this->Scene.Collective([&] { Report(monitor, std::clamp(0.1 + 0.9 * done, 0.1, 0.99)); });
+      this->Scene.domain.Collective([&] { Report(monitor, std::clamp(0.1 + 0.9 * done, 0.1, 0.99)); });
       this->Order(
         monitor ? Monitor([&](double) { return monitor(std::clamp(0.1 + 0.9 * done, 0.1, 0.99)); }) : Monitor());
     }
-    this->Scene.Collective([&] { this->Finish(); });
+    this->Scene.domain.Collective([&] { this->Finish(); });
     return std::move(this->Result);
   }
 
@@ -83,7 +82,7 @@ private:
   void FirstOrder(const Monitor& monitor)
   {
     const bool swept = this->Scene.incoming || this->Arrays.Emits() || !this->Settings.leaveOut;
-    this->Scene.Collective([&] { this->Radiance.Fill(0.0f); });
+    this->Scene.domain.Collective([&] { this->Radiance.Fill(0.0f); });
     if (this->Arrays.Emits())
     {
       this->Arrays.EmitEvenly(this->Radiance, this->Result.ledger);
@@ -92,7 +91,7 @@ private:
     {
       this->SweepAndScatter(this->Scene.incoming, OfPart(monitor, 0.0, 0.5));
     }
-    this->Scene.Collective([&] {
+    this->Scene.domain.Collective([&] {
       if (swept)
       {
         this->Result.direct = this->Arrays.Light.order.Read();
@@ -103,7 +102,7 @@ private:
     });
     this->Arrays.AddLamps(this->Out(), this->Settings.periodic, this->Result, OfPart(monitor, 0.5, 1.0));
     std::vector<float> lamps;
-    this->Scene.Collective([&] { lamps = this->Arrays.Direct.Read(); });
+    this->Scene.domain.Collective([&] { lamps = this->Arrays.Direct.Read(); });
     const ChannelArrays::Powers unscattered = this->Arrays.PowersOf(this->Result.direct, false);
     const ChannelArrays::Powers ofLamps = this->Arrays.PowersOf(lamps, true);
     this->Count(unscattered, ofLamps);
@@ -126,7 +125,7 @@ private:
     }
     const double before = this->Scene.guess.firstScattered;
     const double scale = before > 0.0 ? this->Result.firstScattered / before : 0.0;
-    this->Scene.Collective([&] {
+    this->Scene.domain.Collective([&] {
       for (float value : this->Scene.guess.values)
       {
         this->Guess.push_back(static_cast<float>(scale * value));
@@ -141,7 +140,7 @@ private:
   {
     this->SweepAndScatter({}, monitor);
     std::vector<float> found;
-    this->Scene.Collective([&] { found = this->Arrays.Light.order.Read(); });
+    this->Scene.domain.Collective([&] { found = this->Arrays.Light.order.Read(); });
     const ChannelArrays::Powers powers = this->Arrays.PowersOf(found, false);
     if (!this->IsWarm())
     {
@@ -152,7 +151,7 @@ private:
     if (!this->Guess.empty())
     {
       guessed = this->Arrays.PowersOf(this->Guess, false).scattered;
-      this->Scene.Collective([&] { this->Arrays.ScatterEvenly(this->Guess, -1.0, this->Out()); });
+      this->Scene.domain.Collective([&] { this->Arrays.ScatterEvenly(this->Guess, -1.0, this->Out()); });
     }
     this->Reflect();
     this->Result.ledger.Absorb(0, powers.absorbed);
@@ -220,13 +219,13 @@ private:
     this->WasOnTheWay = std::exchange(this->OnTheWay, powers.onTheWay);
     if (this->Arrays.Scatters() || !this->Settings.leaveOut)
     {
-      this->Scene.Collective([&] {
+      this->Scene.domain.Collective([&] {
         this->Scattering.Scatter(
           this->Radiance, this->Arrays.SigmaS, this->Out(), this->Arrays.Scale, this->Arrays.Light, monitor);
       });
       return;
     }
-    this->Scene.Collective([&] {
+    this->Scene.domain.Collective([&] {
       this->Scattering.Gather(this->Radiance, this->Arrays.Light, monitor);
       this->Radiance.Fill(0.0f); // only what goes round periodic axes is left
       this->Source.Fill(0.0f);
@@ -241,7 +240,7 @@ private:
       return;
     }
     std::array<Rgb, 6> back = {};
-    this->Scene.Collective([&] { back = this->Arrays.Faces->Reflect(); });
+    this->Scene.domain.Collective([&] { back = this->Arrays.Faces->Reflect(); });
     this->Reflected = 0.0;
     for (int face = 0; face < 6; ++face)
     {
@@ -296,7 +295,7 @@ OrdinatesResult SolveSweptOrders(Device& device, const OrdinatesScene& scene, co
   const OrdinatesSettings& settings, const Monitor& monitor)
 {
   std::unique_ptr<SweptOrders> orders;
-  scene.Collective([&] { orders = std::make_unique<SweptOrders>(device, scene, angles, settings); });
+  scene.domain.Collective([&] { orders = std::make_unique<SweptOrders>(device, scene, angles, settings); });
   return orders->Run(monitor);
 }
 

@@ -77,7 +77,7 @@ Timed Measure(Device& device, const Cloud& cloud, const OrdinatesSettings& setti
   for (int i = repetitions > 1 ? -1 : 0; i < repetitions; ++i)
   {
     const double start = WallSeconds(), coreStart = CoreSeconds();
-    timed.light = SolveDiscreteOrdinates(device, cloud.medium, cloud.light, settings);
+    timed.light = SolveDiscreteOrdinates(device, Domain(cloud.medium.grid), cloud.medium, cloud.light, settings);
     if (i >= 0)
     {
       wall.push_back(WallSeconds() - start);

@@ -123,7 +123,7 @@ void CompareOne(const PhotonBench& bench, Table& table, double index, double tau
     { "maps, photons' light handed on",
       [&] { return SolveConservative(bench.device, medium, given, PropagationSettings()); } },
     { "ordinates, photons' light handed on",
-      [&] { return SolveDiscreteOrdinates(bench.device, medium, given, OrdinatesSettings()); } },
+      [&] { return SolveDiscreteOrdinates(bench.device, Domain(medium.grid), medium, given, OrdinatesSettings()); } },
     { "lattice, photons' light handed on",
       [&] { return SolveLatticeBoltzmann(bench.device, medium, scene.Index(), given, LatticeSettings()); } },
     { "maps, straight light of their own",

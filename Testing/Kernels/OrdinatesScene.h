@@ -16,6 +16,7 @@ struct LitMedium : Scene
     tyndall::Device& device, const tyndall::Monitor& monitor = {}, tyndall::KeptLight* kept = nullptr)
   {
     this->Attach();
-    return tyndall::SolveDiscreteOrdinates(device, this->medium, this->light, this->how, monitor, kept);
+    return tyndall::SolveDiscreteOrdinates(
+      device, tyndall::Domain(this->medium.grid), this->medium, this->light, this->how, monitor, kept);
   }
 };

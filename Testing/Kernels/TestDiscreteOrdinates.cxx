@@ -599,7 +599,7 @@ TEST_F(DiscreteOrdinates, SayHowMuchMemoryTheyNeedBeforeTheyTakeIt)
   this->GetDevice().ResetPeak();
   try
   {
-    SolveDiscreteOrdinates(this->GetDevice(), large.medium, large.light, large.how);
+    SolveDiscreteOrdinates(this->GetDevice(), Domain(large.medium.grid), large.medium, large.light, large.how);
     FAIL() << "Radiance of 150 directions in 700^3 voxels is 200 GB.";
   }
   catch (const DeviceError& error)

@@ -111,7 +111,8 @@ TEST_F(Extremes, ScenesOfSoManyTimesThePowerAreSolvedByTheSameSteps)
     OrdinatesSettings settings;
     settings.tolerance = tolerance;
     medium.Attach();
-    return SolveDiscreteOrdinates(device, medium.scene.medium, medium.scene.light, settings);
+    return SolveDiscreteOrdinates(
+      device, Domain(medium.scene.medium.grid), medium.scene.medium, medium.scene.light, settings);
   });
   ExpectSameSteps("lattice", [&](MediumToCut& medium, double tolerance) {
     LatticeSettings settings;

@@ -89,8 +89,9 @@ protected:
       { "accelerated",
         [=, &device](const Medium& m, const Illumination& l) { return SolveConservative(device, m, l, accelerated); } },
       { "ordinates",
-        [=, &device](
-          const Medium& m, const Illumination& l) { return SolveDiscreteOrdinates(device, m, l, ordinates); } },
+        [=, &device](const Medium& m, const Illumination& l) {
+          return SolveDiscreteOrdinates(device, Domain(m.grid), m, l, ordinates);
+        } },
       { "published",
         [=, &device](const Medium& m, const Illumination& l) { return SolveParallel(device, m, l, published); } },
       { "sequential", [=](const Medium& m, const Illumination& l) { return SolveSequential(m, l, published); } },

@@ -6,8 +6,8 @@
 
 #include "Device/Errors.h"
 #include "DiscreteOrdinates/DiscreteOrdinates.h"
-#include "DiscreteOrdinates/Distributed/OrdinatesInBlocks.h"
 #include "DiscreteOrdinates/OrdinatesParts.h"
+#include "DiscreteOrdinates/OrdinatesQuality.h"
 
 #include <algorithm>
 #include <string>
@@ -51,14 +51,15 @@ protected:
   LightField Whole(MediumToCut& medium, const OrdinatesSettings& settings)
   {
     medium.Attach();
-    return SolveDiscreteOrdinates(this->GetDevice(), medium.scene.medium, medium.scene.light, settings);
+    return SolveDiscreteOrdinates(
+      this->GetDevice(), Domain(medium.scene.medium.grid), medium.scene.medium, medium.scene.light, settings);
   }
 
   LightField OfBlocks(const BlockPartition& partition, const MediumToCut& medium, const OrdinatesSettings& settings)
   {
     return LightOfBlocks(partition, medium, [&](Communicator& communicator, MediumToCut& part) {
-      return SolveOrdinatesInBlocks(
-        this->GetDevice(), communicator, partition, part.scene.medium, part.scene.light, settings);
+      return SolveDiscreteOrdinates(
+        this->GetDevice(), Domain(communicator, partition), part.scene.medium, part.scene.light, settings);
     });
   }
 
@@ -287,14 +288,15 @@ TEST(QualityOfOrdinatesInBlocks, IsThatOfTheWhole)
   const DeviceMemory large, small = { 2 * bytes + 1, large.one };
   for (const Quality quality : { Quality::Draft, Quality::Default, Quality::Fine })
   {
-    const OrdinatesSettings expected = AtQuality(quality, {}, medium.scene.medium, small);
+    const OrdinatesSettings expected =
+      AtQuality(Domain(medium.scene.medium.grid), quality, {}, medium.scene.medium, small);
     const BlockPartition partition = Slices(medium.scene.medium.grid, { 0, 5 });
     RunInThreads(3, [&](Communicator& communicator) {
       MediumToCut part = medium.Part(partition.blocks[communicator.Rank()]);
       part.Attach();
       part.scene.medium.phase = communicator.Rank() > 0 ? part.scene.medium.phase : PhaseFunction();
-      const OrdinatesSettings found = AtQualityInBlocks(
-        communicator, partition, quality, {}, part.scene.medium, communicator.Rank() == 1 ? small : large);
+      const OrdinatesSettings found = AtQuality(
+        Domain(communicator, partition), quality, {}, part.scene.medium, communicator.Rank() == 1 ? small : large);
       EXPECT_EQ(Words(found), Words(expected));
     });
     EXPECT_EQ(expected.directionsPerFace, quality == Quality::Draft ? 9 : quality == Quality::Fine ? 49 : 25);
@@ -321,7 +323,7 @@ TEST_F(OrdinatesBlocks, FailTogetherWhereMemoryEnds)
     ExpectToFailTogether(this->GetDevice(), 2, bytes, [&](Device& device, Communicator& communicator) {
       MediumToCut part = medium.Part(partition.blocks[communicator.Rank()]);
       part.Attach();
-      SolveOrdinatesInBlocks(device, communicator, partition, part.scene.medium, part.scene.light, settings);
+      SolveDiscreteOrdinates(device, Domain(communicator, partition), part.scene.medium, part.scene.light, settings);
     });
   };
   expect(SettingsOf(2), 140000); // that nobody says no to beforehand
@@ -341,8 +343,8 @@ TEST_F(OrdinatesBlocks, FailTogetherWithWordsOnWhatIsNotCarried)
       std::string said;
       try
       {
-        SolveOrdinatesInBlocks(
-          this->GetDevice(), communicator, partition, part.scene.medium, part.scene.light, settings, monitor);
+        SolveDiscreteOrdinates(
+          this->GetDevice(), Domain(communicator, partition), part.scene.medium, part.scene.light, settings, monitor);
       }
       catch (const std::exception& error)
       {
@@ -374,18 +376,15 @@ TEST(BalanceOfOrdinates, IsJudgedOnAnyNumberOfRanks)
   given.balance.absorbed[0] = 3.0; // a quarter is lost
   const std::string words = "The light does not balance: 0.25 of the power is lost or made";
   OrdinatesSettings settings;
-  LightField alone = given;
-  EXPECT_THROW(Judge(settings, false, scene.medium, nullptr, alone), InvalidInput);
   for (const int count : { 1, 3 })
   {
     const BlockPartition partition = BlockPartition::Even(scene.medium.grid, count);
     RunInThreads(count, [&](Communicator& communicator) {
-      const OrdinatesRanks ranks = { communicator, partition };
       LightField light = given;
       std::string said;
       try
       {
-        Judge(settings, false, scene.medium, &ranks, light);
+        Judge(settings, false, Domain(communicator, partition), scene.medium, light);
       }
       catch (const InvalidInput& error)
       {
@@ -395,5 +394,5 @@ TEST(BalanceOfOrdinates, IsJudgedOnAnyNumberOfRanks)
     });
   }
   settings.scheme = OrdinatesScheme::Published; // loses power, as its paper has it
-  Judge(settings, false, scene.medium, nullptr, given);
+  Judge(settings, false, Domain(scene.medium.grid), scene.medium, given);
 }

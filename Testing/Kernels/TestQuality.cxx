@@ -39,7 +39,8 @@ TEST(Quality, DefaultIsEveryNumberAsItStands)
   const Scene scene = Cloud(0.3);
   EXPECT_EQ(
     Words(AtQuality(Quality::Default, PropagationSettings(), scene.medium, scene.light)), Words(PropagationSettings()));
-  EXPECT_EQ(Words(AtQuality(Quality::Default, OrdinatesSettings(), scene.medium, {})), Words(OrdinatesSettings()));
+  EXPECT_EQ(Words(AtQuality(Domain(scene.medium.grid), Quality::Default, OrdinatesSettings(), scene.medium, {})),
+    Words(OrdinatesSettings()));
   EXPECT_EQ(Words(AtQuality(Quality::Default, LatticeSettings())), Words(LatticeSettings()));
   EXPECT_EQ(Words(AtQuality(Quality::Default, ViewSettings())), Words(ViewSettings()));
 }
@@ -62,7 +63,7 @@ TEST(Quality, LeavesWhatWasChosen)
   {
     const PropagationSettings found = AtQuality(quality, chosen, scene.medium, scene.light);
     EXPECT_EQ(Words(found), Words(chosen));
-    EXPECT_EQ(AtQuality(quality, ordinates, scene.medium, {}).terms, 4);
+    EXPECT_EQ(AtQuality(Domain(scene.medium.grid), quality, ordinates, scene.medium, {}).terms, 4);
     EXPECT_EQ(AtQuality(quality, lattice).tolerance, 0.2);
     EXPECT_EQ(AtQuality(quality, view).stepSize, 3.0);
   }
@@ -88,10 +89,12 @@ TEST(Quality, LooksAtTheScene)
 TEST(Quality, OfOrdinatesFitsTheDevice)
 {
   const Scene scene = Cloud(0.3);
-  const OrdinatesSettings best = AtQuality(Quality::Reference, OrdinatesSettings(), scene.medium, {});
+  const OrdinatesSettings best =
+    AtQuality(Domain(scene.medium.grid), Quality::Reference, OrdinatesSettings(), scene.medium, {});
   DeviceMemory little;
   little.all = 6 * sizeof(float) * scene.medium.grid.VoxelCount() * best.directionsPerFace; // twice the half
-  const OrdinatesSettings fitting = AtQuality(Quality::Reference, OrdinatesSettings(), scene.medium, little);
+  const OrdinatesSettings fitting =
+    AtQuality(Domain(scene.medium.grid), Quality::Reference, OrdinatesSettings(), scene.medium, little);
   EXPECT_LT(fitting.directionsPerFace, best.directionsPerFace);
   EXPECT_LE(2 * fitting.directionsPerFace, best.directionsPerFace);
   EXPECT_GT(fitting.directionsPerFace, 25);

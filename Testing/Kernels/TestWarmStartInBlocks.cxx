@@ -4,7 +4,6 @@
 #include "BlocksOfLight.h"
 
 #include "DiscreteOrdinates/DiscreteOrdinates.h"
-#include "DiscreteOrdinates/Distributed/OrdinatesInBlocks.h"
 #include "LightPropagation/Accuracy/ErrorInBlocks.h"
 
 #include <gmock/gmock.h>
@@ -348,11 +347,11 @@ TEST_F(WarmStartsInBlocks, TakeTheOrdersOfTheWholeOfDiscreteOrdinates)
   ExpectTheOrdersOfTheWhole(
     change, settings, { UnevenSlices(grid), Uneven(grid) },
     [&](const RandomMedium& medium, const Illumination& light, KeptLight* kept) {
-      return SolveDiscreteOrdinates(GetDevice(), medium.medium, light, settings, {}, kept);
+      return SolveDiscreteOrdinates(GetDevice(), Domain(medium.medium.grid), medium.medium, light, settings, {}, kept);
     },
     [&](const BlockPartition& partition, Communicator& communicator, const Medium& medium, const Illumination& shining,
       KeptLight* kept) {
-      return SolveOrdinatesInBlocks(GetDevice(), communicator, partition, medium, shining, settings, {}, kept);
+      return SolveDiscreteOrdinates(GetDevice(), Domain(communicator, partition), medium, shining, settings, {}, kept);
     });
 }
 

@@ -1,4 +1,7 @@
-#include "DiscreteOrdinates/Distributed/UpwindSweepInBlocks.h"
+#include "DiscreteOrdinates/PipelinedSweep.h"
+
+#include "LightPropagation/Distributed/Sweep/SweepInBlocks.h"
+#include "Medium/BoxFaces.h"
 
 #include <algorithm>
 #include <utility>
@@ -7,6 +10,21 @@ namespace tyndall
 {
 namespace
 {
+constexpr int AllFaces = 0x3f; ///< bits of the faces -x, +x, ... +z
+
+/// Bits of the faces of this rank's block that are no faces of the grid; all of an empty block.
+int InnerFacesOf(const Domain& domain)
+{
+  const VoxelBox& block = domain.Own();
+  int inner = !domain.IsEmpty() ? 0 : AllFaces;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    inner |= block.first[axis] > 0 ? 1 << (2 * axis) : 0;
+    inner |= EndOf(block, axis) < domain.Whole().size[axis] ? 1 << (2 * axis + 1) : 0;
+  }
+  return inner;
+}
+
 /// Axis across which light goes from one block to another. Rays march along z.
 int AxisOf(BlockContact::Kind kind)
 {
@@ -14,10 +32,64 @@ int AxisOf(BlockContact::Kind kind)
 }
 }
 
-UpwindSweepInBlocks::UpwindSweepInBlocks(
-  Device& device, const OrdinatesRanks& ranks, const Grid& grid, const OrdinateGroups& groups, const SweptFaces& faces)
+CellsOfBlock::CellsOfBlock(Device& device, const Domain& domain, const Grid& own, const std::array<bool, 3>& periodic,
+  const LightOfCells& ofWhole)
   : TheDevice(device)
-  , Ranks(ranks)
+  , TheDomain(domain)
+  , OfWhole(ofWhole)
+  , Out(device, BoxFaceCellCount(own), "the light that leaves by cells")
+  , In(device, BoxFaceCellCount(own), "the light that faces give back")
+  , OfBlock{ this->Out, this->In }
+{
+  const VoxelBox& block = domain.Own();
+  const int inner = InnerFacesOf(domain);
+  ForBoxFaceCells(own, [&](const BoxFaceCell& cell) {
+    if (!(inner >> cell.face & 1) && !periodic[cell.face / 2])
+    {
+      const std::array<int, 3> at = own.VoxelAt(cell.voxel);
+      const BoxFaceLayout layout = LayoutOfFace(domain.Whole(), cell.face);
+      std::size_t there = layout.first;
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        there += static_cast<std::size_t>(block.first[axis] + at[axis]) * layout.step[axis];
+      }
+      this->Places.push_back({ cell.number, there });
+    }
+  });
+  this->Out.Fill(0.0f);
+}
+
+void CellsOfBlock::LetIn()
+{
+  const std::vector<float> ofWhole = this->OfWhole.in.Read();
+  std::vector<float> in(this->In.Size(), 0.0f);
+  for (const auto& [here, there] : this->Places)
+  {
+    in[here] = ofWhole[there];
+  }
+  this->In.Write(in.data());
+}
+
+void CellsOfBlock::LetOut(const std::function<void()>& leave)
+{
+  std::vector<double> left;
+  this->TheDomain.Collective([&] {
+    left.resize(this->OfWhole.out.Size(), 0.0);
+    this->Out.Fill(0.0f);
+    leave();
+    const std::vector<float> out = this->Out.Read();
+    for (const auto& [here, there] : this->Places)
+    {
+      left[there] = out[here];
+    }
+  });
+  AddOverRanks(this->TheDevice, this->TheDomain.Comm(), left, this->OfWhole.out);
+}
+
+PipelinedSweep::PipelinedSweep(
+  Device& device, const Domain& domain, const Grid& grid, const OrdinateGroups& groups, const SweptFaces& faces)
+  : TheDevice(device)
+  , TheDomain(domain)
   , TheGrid(grid)
   , Sweep(device, grid, groups, this->FacesOfBlock(faces))
 {
@@ -41,14 +113,15 @@ UpwindSweepInBlocks::UpwindSweepInBlocks(
   }
   SweepCosts costs;
   costs.ofTask = 1.0;
-  this->Order = SweepSchedule(ranks.partition, ways, costs).OrderOf(ranks.others.Rank());
+  this->Order = SweepSchedule(domain.Partition(), ways, costs).OrderOf(domain.Rank());
 }
 
-void UpwindSweepInBlocks::FindContacts(Octant& octant, const SweptFaces& faces) const
+void PipelinedSweep::FindContacts(Octant& octant, const SweptFaces& faces) const
 {
-  const int self = this->Ranks.others.Rank();
+  const int self = this->TheDomain.Rank();
   const auto add = [&](int from, int to, std::vector<BlockContact>& straight, std::vector<BlockContact>& around) {
-    for (const BlockContact& contact : ContactsBetween(this->Ranks.partition, octant.way, from, to, faces.periodic))
+    for (const BlockContact& contact :
+      ContactsBetween(this->TheDomain.Partition(), octant.way, from, to, faces.periodic))
     {
       if (!faces.unvarying[AxisOf(contact.kind)])
       {
@@ -56,7 +129,7 @@ void UpwindSweepInBlocks::FindContacts(Octant& octant, const SweptFaces& faces) 
       }
     }
   };
-  for (int rank = 0; rank < this->Ranks.others.Ranks(); ++rank)
+  for (int rank = 0; rank < this->TheDomain.Comm().Ranks(); ++rank)
   {
     add(rank, self, octant.senders, octant.aroundFrom);
     add(self, rank, octant.receivers, octant.aroundTo);
@@ -65,13 +138,13 @@ void UpwindSweepInBlocks::FindContacts(Octant& octant, const SweptFaces& faces) 
 }
 
 /// With cells of its own, where some of the whole grid's give back light.
-SweptFaces UpwindSweepInBlocks::FacesOfBlock(const SweptFaces& ofWhole)
+SweptFaces PipelinedSweep::FacesOfBlock(const SweptFaces& ofWhole)
 {
   SweptFaces faces = ofWhole;
-  faces.inner = InnerFacesOf(this->Ranks);
+  faces.inner = InnerFacesOf(this->TheDomain);
   if (ofWhole.reflecting)
   {
-    this->Cells.emplace(this->TheDevice, this->Ranks, this->TheGrid, faces.periodic, *ofWhole.reflecting);
+    this->Cells.emplace(this->TheDevice, this->TheDomain, this->TheGrid, faces.periodic, *ofWhole.reflecting);
     faces.reflecting = &this->Cells->Seen();
   }
   return faces;
@@ -81,11 +154,11 @@ SweptFaces UpwindSweepInBlocks::FacesOfBlock(const SweptFaces& ofWhole)
 /// know.
 /// @param cells  of this block's layer at the face
 template <class Visit>
-void UpwindSweepInBlocks::ForFace(
+void PipelinedSweep::ForFace(
   const Octant& octant, const BlockContact& contact, const VoxelBox& cells, const Visit& visit) const
 {
   const int axis = AxisOf(contact.kind), u = axis == 0 ? 1 : 0, v = axis == 2 ? 1 : 2; // u along rows
-  const VoxelBox& block = this->Ranks.partition.blocks[this->Ranks.others.Rank()];
+  const VoxelBox& block = this->TheDomain.Own();
   const std::size_t rows = block.size[v], row = block.size[u];
   for (std::size_t g = 0; g < static_cast<std::size_t>(octant.groups); ++g)
   {
@@ -102,7 +175,7 @@ void UpwindSweepInBlocks::ForFace(
 }
 
 /// What has come through a contact, to the light through the block's faces, which is read when it is wanted first.
-void UpwindSweepInBlocks::Enter(
+void PipelinedSweep::Enter(
   const Octant& octant, const BlockContact& contact, const std::vector<float>& message, Faces& faces) const
 {
   const int axis = AxisOf(contact.kind);
@@ -115,12 +188,12 @@ void UpwindSweepInBlocks::Enter(
   });
 }
 
-void UpwindSweepInBlocks::TakeFrom(const Octant& octant, int number)
+void PipelinedSweep::TakeFrom(const Octant& octant, int number)
 {
   Faces faces;
   for (const BlockContact& contact : octant.senders)
   {
-    const std::vector<float> message = this->Ranks.others.Receive<float>(contact.from, number);
+    const std::vector<float> message = this->TheDomain.Comm().Receive<float>(contact.from, number);
     this->Failure.broken = this->Failure.broken || message.empty();
     this->Failure.Attempt([&] { this->Enter(octant, contact, message, faces); });
   }
@@ -143,20 +216,20 @@ void UpwindSweepInBlocks::TakeFrom(const Octant& octant, int number)
 }
 
 /// What has left through the ends of periodic axes, when all octants are through.
-void UpwindSweepInBlocks::TakeFromAround()
+void PipelinedSweep::TakeFromAround()
 {
   for (const int number : this->Order)
   {
     Octant& octant = this->Octants[number];
     for (std::size_t i = 0; i < octant.aroundFrom.size(); ++i)
     {
-      octant.waiting[i] = this->Ranks.others.Receive<float>(octant.aroundFrom[i].from, number);
+      octant.waiting[i] = this->TheDomain.Comm().Receive<float>(octant.aroundFrom[i].from, number);
       this->Failure.broken = this->Failure.broken || octant.waiting[i].empty();
     }
   }
 }
 
-void UpwindSweepInBlocks::GiveTo(const Octant& octant, int number)
+void PipelinedSweep::GiveTo(const Octant& octant, int number)
 {
   Faces faces;
   const auto give = [&](const BlockContact& contact) {
@@ -170,13 +243,13 @@ void UpwindSweepInBlocks::GiveTo(const Octant& octant, int number)
         message.insert(message.end(), from, from + OrdinateLanes);
       });
     });
-    this->Ranks.others.Send(contact.to, number, this->Failure.broken ? std::vector<float>() : message);
+    this->TheDomain.Comm().Send(contact.to, number, this->Failure.broken ? std::vector<float>() : message);
   };
   std::for_each(octant.receivers.begin(), octant.receivers.end(), give);
   std::for_each(octant.aroundTo.begin(), octant.aroundTo.end(), give);
 }
 
-FacePowers UpwindSweepInBlocks::Apply(const Buffer<float>& radiance, const Buffer<float>& sigma_t,
+FacePowers PipelinedSweep::Apply(const Buffer<float>& radiance, const Buffer<float>& sigma_t,
   const Buffer<float>& scale, const IncomingRadiance& incoming, const Monitor& monitor)
 {
   this->Failure = {};
@@ -200,9 +273,9 @@ FacePowers UpwindSweepInBlocks::Apply(const Buffer<float>& radiance, const Buffe
     this->GiveTo(octant, this->Order[i]);
   }
   this->TakeFromAround();
-  this->Ranks.others.Collective([&] {
+  this->TheDomain.Collective([&] {
     this->Failure.Throw();
-    if (this->Ranks.Has() && !this->Failure.broken)
+    if (!this->TheDomain.IsEmpty() && !this->Failure.broken)
     {
       this->Sweep.Count(powers);
     }
@@ -210,7 +283,7 @@ FacePowers UpwindSweepInBlocks::Apply(const Buffer<float>& radiance, const Buffe
   std::vector<double> sums(powers.in.begin(), powers.in.end());
   sums.insert(sums.end(), powers.out.begin(), powers.out.end());
   sums.push_back(powers.onTheWay);
-  sums = this->Ranks.others.Sum(sums);
+  sums = this->TheDomain.Sum(sums);
   std::copy_n(sums.begin(), 6, powers.in.begin());
   std::copy_n(sums.begin() + 6, 6, powers.out.begin());
   powers.onTheWay = sums.back();
