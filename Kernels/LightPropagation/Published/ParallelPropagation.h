@@ -1,11 +1,14 @@
 #pragma once
 
+#include "LightPropagation/Published/OrderLedger.h"
 #include "LightPropagation/Published/PublishedModel.h"
+#include "LightPropagation/Published/PublishedPlan.h"
+#include "LightPropagation/Published/PublishedSweep.h"
+#include "LightPropagation/Published/PublishedVolumes.h"
 
 #include "Device/Buffer.h"
 #include "Device/Monitor.h"
 
-#include <memory>
 #include <vector>
 
 namespace tyndall
@@ -30,10 +33,11 @@ public:
   ///   with one direction a batch
   ParallelPropagation(Device& device, const Medium& medium, const Illumination& illumination,
     const PropagationSettings& settings, std::size_t temporaryBytes = 0, int channels = 1);
-  ~ParallelPropagation();
+  ParallelPropagation(const ParallelPropagation&) = delete; // its parts refer to each other
+  ParallelPropagation& operator=(const ParallelPropagation&) = delete;
 
-  const PublishedModel& Model() const;
-  int BatchCount() const;
+  const PublishedModel& Model() const { return this->TheModel; }
+  int BatchCount() const { return static_cast<int>(this->Plan.batches.size()); }
   int FirstDirection(int batch) const; ///< BatchCount() gives the number of directions
 
   /// All rays of the batch's directions once through the volume, T filled.
@@ -43,7 +47,8 @@ public:
   /// U of the next order, I and fluence of all orders so far, powers and convergence.
   void FinishOrder();
   void RunOrder(const Monitor& monitor = {});
-  bool Done() const; ///< the orders or the tolerance of the settings are reached
+  /// The orders or the tolerance of the settings are reached.
+  bool Done() const { return this->Ledger.Done(); }
 
   /// T of a batch, each direction x fastest with channels interleaved: a deposit divided by sigma_s (so that vacuum has
   /// one too), length W / (length^2 sr). T of Eq. (6) is sigma_s times that.
@@ -53,14 +58,30 @@ public:
   /// U that the next order propagates, W / (length^3 sr): channels * SourceDirections() a voxel, channels fastest. At
   /// first the medium's emission. Setting it makes the next order one without light from outside, as all but the first
   /// are.
-  std::vector<float> Source() const;
+  std::vector<float> Source() const { return this->Volumes.ReadSource(); }
   void SetSource(const std::vector<float>& source);
 
   LightField Result() const; ///< of all orders so far
 
 private:
-  struct Implementation;
-  std::unique_ptr<Implementation> Inner;
+  using Batch = PublishedPlan::Batch;
+  void UpdateSourcesOfOrder();
+
+  Device& TheDevice;
+  const Medium& TheMedium;
+  Illumination Outside;
+  PropagationSettings Settings;
+  PublishedModel TheModel;
+  MediumTraits Traits;
+  OrderLedger Ledger;
+  PublishedVolumes Volumes;
+  PublishedPlan Plan;
+  PublishedSweep Sweep;
+  cl::Kernel UpdateSources;
+  SweepTally Tally; ///< of the current order
+  bool Emits;       ///< U is not zero
+  bool SourceGiven = false;
+  std::vector<float> FluenceDirect;
 };
 
 /// All orders on the device.
