@@ -1,4 +1,4 @@
-// What arrives in a voxel along each direction, scattered into each: by N terms or by the whole matrix (numerics.md,
+// Scattering between the directions in a voxel: by N terms or by the full matrix (numerics.md,
 // Eqs. (D7), (D8)). Radiance is [group][stride][8 directions].
 //
 //   REAL_WIDTH  moments handled at once
@@ -25,7 +25,7 @@ inline float sum8(float8 values)
 }
 
 // Moments of eight voxels, [voxel][MOMENTS]. Sums of sums, for in even light rounding goes the same way in each.
-//   weights  [direction][MOMENTS]: what a direction adds to each
+//   weights  [direction][MOMENTS]: of a direction in each moment
 inline void find_moments(
   const __global float* radiance, const __global float* weights, ulong stride, ulong first, __global float* moments)
 {
@@ -134,7 +134,7 @@ __kernel void scatter_terms(const __global float* radiance, __global float* sour
   EACH_VOXEL(NOTE_SCALE)
 }
 
-// The same by the whole matrix; source is not radiance.
+// The same by the full matrix; source is not radiance.
 //   matrix  [group][direction][8], 1/sr times the solid angle of the direction that light comes along
 __kernel void scatter_matrix(const __global float* radiance, __global float* source, __global float* moments,
   const __global float* weights, const __global float* matrix, const __global float* angles,
@@ -180,7 +180,7 @@ __kernel void scatter_along(const __global float* radiance, __global float* sour
   source[(group * stride + i) * 8 + lane] = sigma_s[i] * sum8(sum);
 }
 
-// The light that was found along all directions, where nothing is scattered.
+// The light along all directions, where nothing is scattered.
 __kernel void gather_light(const __global float* radiance, __global float* moments, const __global float* weights,
   __global float* order, __global float* fluence, __global float* flux, ulong voxels, ulong stride, ulong begin)
 {

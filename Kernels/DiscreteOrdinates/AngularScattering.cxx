@@ -82,7 +82,7 @@ void AngularScattering::LoadTables(const OrdinateGroups& groups, const Separable
   this->LoadPhase(groups, phase);
 }
 
-/// What goes into each direction: factors of terms, or of the matrix [group][direction][lane], or its rows for passes.
+/// Factors into each direction: of terms, or the matrix [group][direction][lane], or its rows for passes.
 void AngularScattering::LoadPhase(const OrdinateGroups& groups, const SeparablePhaseFunction& phase)
 {
   const auto ofMatrix = [&](int to, std::size_t from) {

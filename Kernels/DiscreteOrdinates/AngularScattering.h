@@ -14,8 +14,8 @@ namespace tyndall
 enum class PairSums
 {
   Terms,  ///< by the terms of the separable phase function: N + N a direction
-  Matrix, ///< by its whole matrix, eight directions and eight voxels at once
-  Passes  ///< by its whole matrix, one pass over the volume a direction, as published without factorisation
+  Matrix, ///< by the full matrix, eight directions and eight voxels at once
+  Passes  ///< by the full matrix, one pass over the volume a direction, as published without factorisation
 };
 
 /// Light of one order, or of all so far.
@@ -26,7 +26,7 @@ struct OrdinatesLight
   Buffer<float> flux;    ///< W / length^2, [x, y, z][voxel], added to; empty: not wanted
 };
 
-/// Scatters what arrives along each direction in each voxel into all directions.
+/// Scatters the radiance along each direction in each voxel into all directions.
 class AngularScattering
 {
 public:

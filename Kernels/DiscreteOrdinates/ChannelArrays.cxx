@@ -47,7 +47,7 @@ ChannelArrays::ChannelArrays(Device& device, const OrdinatesScene& scene, const 
   }
 }
 
-/// @param emptyVoxels  of those that are swept apart, else of the others; W / (length^3 sr)
+/// @param emptyVoxels  emission that is swept apart, else the rest; W / (length^3 sr)
 float ChannelArrays::EmissionOf(std::size_t voxel, bool emptyVoxels) const
 {
   const double sigma_t = static_cast<double>(this->Absorption[voxel]) + this->Scattering[voxel];
@@ -62,7 +62,7 @@ void ChannelArrays::TakeVacuumApart(PropagationSettings settings)
   {
     return;
   }
-  settings.netFlux = true; // it tells which way light goes that is scattered
+  settings.netFlux = true; // the direction of the light before it scatters
   bool any = false;
   this->Scene.domain.Collective([&] {
     this->OfVacuum = VacuumEmission::DirectionsFor(whole, settings);
@@ -144,7 +144,7 @@ void ChannelArrays::AddLamps(
   }
 }
 
-/// What empty voxels emit. It is scattered by its mean direction.
+/// Light that empty voxels emit. It scatters by its mean direction.
 /// @param volume  its deposit has a path alone, which is 0
 SweepTally ChannelArrays::AddVacuum(UncollidedVolume volume, const LampScattering& scattering,
   const Buffer<float>& sigma_s, const LampTarget& target, const Monitor& monitor) const
@@ -187,7 +187,7 @@ std::unique_ptr<SweepOperator> ChannelArrays::SweepOf(
   return sweep;
 }
 
-/// Rays are those through the whole grid, and beams of lamps are handed on from rank to rank.
+/// Rays are those of the whole grid, and beams of lamps pass from rank to rank.
 /// @param nearLamps  of the volume's sigma_t: made where a lamp asks for them
 void ChannelArrays::SpreadOverRanks(UncollidedVolume& volume, std::unique_ptr<LampsInBlocks>& nearLamps) const
 {

@@ -17,9 +17,9 @@
 
 namespace tyndall
 {
-/// One channel of a medium on a device, with the light that is found in it and what both schemes do alike: the
-/// uncollided light of lamps, and counting. What goes straight on where light is scattered is taken out of sigma_s and
-/// sigma_t (numerics.md, Eq. (D6)), but of those that uncollided light of lamps meets: that is exact.
+/// One channel of a medium on a device, its light, and the parts that both schemes share: uncollided light of lamps,
+/// and powers. The forward peak of the phase function is removed from sigma_s and sigma_t (numerics.md, Eq. (D6)),
+/// except for the uncollided light of lamps, which is exact.
 class ChannelArrays
 {
 public:
@@ -27,36 +27,36 @@ public:
   /// @param scene, angles  must stay
   ChannelArrays(Device& device, const OrdinatesScene& scene, const OrdinatesAngles& angles, bool netFlux);
 
-  /// From now on what empty voxels emit is not among EmitEvenly's, but of AddLamps: uncollided light along rays of its
-  /// own (UncollidedEmission.h). All ranks call it.
+  /// Moves the emission of empty voxels from EmitEvenly to AddLamps: uncollided light along rays of its own
+  /// (UncollidedEmission.h). Collective.
   void TakeVacuumApart(PropagationSettings settings);
-  /// Whether any rank's voxels emit or scatter: before anybody asks. All ranks call it, as most of what follows.
+  /// Finds whether voxels of any rank emit or scatter; first. Collective, as most of the following.
   void LookAtAllRanks();
 
   /// Bytes that these arrays take on the device.
   static std::size_t Bytes(const Grid& grid, bool netFlux);
 
-  /// Uncollided light of all lamps, of empty voxels and of another solver: counts it, and adds what of it is scattered
-  /// for the first time.
+  /// Uncollided light of all lamps, of empty voxels and of another solver: counts it, and adds its first-collision
+  /// source.
   /// @param source  of all directions, over Scale
   void AddLamps(
     const Buffer<float>& source, const std::array<bool, 3>& periodic, OrdinatesResult& result, const Monitor& monitor);
-  /// W of lamps whose rays go round periodic axes without end.
+  /// W of lamps whose rays wrap around periodic axes without end.
   double Stranded() const { return this->GoingRound; }
 
-  /// W that the fluence `values` loses to absorption, and that are scattered of it.
+  /// Absorbed and scattered power of a fluence, W.
   struct Powers
   {
     double absorbed = 0.0, scattered = 0.0;
   };
   /// @param lamps  whether it is uncollided light of lamps
   Powers PowersOf(const std::vector<float>& values, bool lamps) const;
-  /// W that are scattered of the difference of two fluences, its magnitude in each voxel. All ranks call it.
+  /// Scattered power of the magnitude of the difference of two fluences, W. Collective.
   double MagnitudeOf(const std::vector<float>& values, const std::vector<float>& others) const;
-  /// Emission of the voxels into every direction. W / (length^3 sr). All ranks call it, where any emits.
+  /// Emission of the voxels into every direction. W / (length^3 sr). Collective, where any voxel emits.
   /// @param ledger  all emission is counted
   void EmitEvenly(const Buffer<float>& source, EnergyLedger& ledger) const;
-  /// Adds what is scattered evenly of a fluence, which may be negative.
+  /// Adds the isotropic scattering source of a fluence, which may be negative.
   void ScatterEvenly(const std::vector<float>& values, double factor, const Buffer<float>& source) const;
   bool Emits() const { return this->AnyEmission; }
   bool Scatters() const { return this->AnyScattering; }
@@ -86,7 +86,7 @@ private:
   Device& TheDevice;
   const OrdinatesScene& Scene;
   const OrdinatesAngles& Angles;
-  double ScatteredAway; ///< part of what is scattered that does not go straight on
+  double ScatteredAway; ///< 1 less the forward peak
   std::vector<float> Absorption, Scattering;
   bool AnyEmission = false, AnyScattering = false;
   std::unique_ptr<const SweptDirections> OfVacuum; ///< along which empty voxels emit; null: none does, or not apart

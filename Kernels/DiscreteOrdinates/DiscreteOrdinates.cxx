@@ -23,14 +23,14 @@ namespace tyndall
 {
 namespace
 {
-constexpr double SlowestRate = 1.0 - 1e-6; ///< of orders, that is told the next solve
+constexpr double SlowestRate = 1.0 - 1e-6; ///< of orders, that is passed to the next solve
 
 /// The light of the last solve as the first guess of this one, channel by channel (numerics.md, section 6.4). Each rank
 /// keeps that of its block; all ranks begin from theirs, or none does.
 class OrdinatesWarmStart
 {
 public:
-  /// @param kept  null: nothing is begun from or kept; must stay, as settings
+  /// @param kept  null: begin in the dark and keep nothing; must stay, as settings
   OrdinatesWarmStart(const KeptLight* kept, const OrdinatesSettings& settings)
     : Kept(kept)
     , Settings(settings)
@@ -40,10 +40,9 @@ public:
   /// The first guess of a channel. Collective.
   /// @param channels  of the solve
   OrdinatesGuess Begin(int channel, int channels, const Domain& domain, const OrdinatesAngles& angles);
-  /// What it left for the next solve; of one channel after the other.
+  /// Takes the light for the next solve, channel by channel.
   void Take(const OrdinatesResult& found, int channel);
-  /// Puts what all channels left in the place of what was kept, and says of light how it began. Nothing where nothing
-  /// is kept.
+  /// Replaces the kept light, and writes to left_out how the solve began. Does nothing where no light is kept.
   void Finish(LightField& light, KeptLight* kept);
 
 private:

@@ -3,7 +3,7 @@
 //
 //   GROUPS  of eight directions
 //   TABLE   values of the phase function over the angle, evenly from 0 to pi
-//   WAYS    1: each voxel has a mean direction of its own, whose length is the part of the light that goes that way;
+//   WAYS    1: each voxel has a mean direction of its own, whose length is the part of the light along it;
 //           0: rays of a lamp
 #include "DiscreteOrdinates/LampScatteringShared.h"
 
@@ -17,7 +17,7 @@
 #define ALONG from_lamp(&lamp, i)
 #endif
 
-// The way of its light in a voxel; 0 in the voxel that it is in, where light goes every way.
+// Direction of the lamp's light in a voxel; 0 in the voxel of the lamp, where light is isotropic.
 inline float3 from_lamp(const LampInRays* lamp, ulong i)
 {
   const float3 place = (float3)(lamp->place[0], lamp->place[1], lamp->place[2]);
@@ -76,7 +76,7 @@ __kernel void add_lamp(const __global float* path, __global float* fluence, __gl
   }
 }
 
-// Parallel light goes into each direction by the same part in every voxel.
+// Parallel light scatters into each direction by the same factor in every voxel.
 //   source  W / (length^3 sr), over scale; afterwards over 1
 //   parts   [group][8], 1/sr
 __kernel void scatter_parallel(__global float* source, const __global float* scale, const __global float* path,

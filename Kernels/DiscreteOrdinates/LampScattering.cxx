@@ -22,7 +22,7 @@ namespace
 constexpr double MostTilt = 0.98; ///< as LampScattering.cl has it
 constexpr double Least = 1e-9;    ///< of the phase function, 1/sr
 constexpr int TableSize = 1024;
-constexpr int MeansDegree = 256; ///< of moments; a cell's mean has forgotten those beyond
+constexpr int MeansDegree = 256; ///< of moments; higher ones vanish in a cell's mean
 
 /// The phase function averaged over a cell, over the angle from 0 to pi; nowhere negative, and nowhere 0: parts of what
 /// is all in one place can still be taken. 1/sr
@@ -69,7 +69,7 @@ LampScattering::LampScattering(
   this->Table = Buffer<float>(device, this->ByAngle, "the phase function");
 }
 
-/// What goes into each direction of light along a ray, 1/sr, [group][lane]: the directions' sums of 1, the cosine and
+/// Scattering from a ray into each direction, 1/sr, [group][lane]: the directions' sums of 1, the cosine and
 /// its square make it have its power and, as far as no direction gets less than nothing, its mean cosine.
 std::vector<float> LampScattering::PartsAlong(const std::array<double, 3>& ray) const
 {

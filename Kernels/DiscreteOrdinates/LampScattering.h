@@ -12,7 +12,7 @@
 
 namespace tyndall
 {
-/// Where the light of a lamp that was scattered for the first time goes.
+/// Destination of the first-collision source of a lamp.
 struct LampTarget
 {
   const Buffer<float>& source; ///< of all directions, over `scale`; added to
@@ -35,7 +35,7 @@ public:
 
   /// @param path  W length, of the lamp's light in each voxel
   void Add(const Light& lamp, const Buffer<float>& path, const Buffer<float>& sigma_s, const LampTarget& target) const;
-  /// The same of light that goes along a mean direction of each voxel, as far as that is long, and evenly for the rest.
+  /// The same for light along a mean direction of each voxel, to the part of its length; the rest is isotropic.
   /// @param ways  mean directions, 3 a voxel
   void AddAlong(
     const Buffer<float>& ways, const Buffer<float>& path, const Buffer<float>& sigma_s, const LampTarget& target) const;

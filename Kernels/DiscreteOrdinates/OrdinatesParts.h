@@ -14,7 +14,7 @@
 
 namespace tyndall
 {
-/// Directions of one solve, and what comes along them from far away.
+/// Directions of one solve, and the incident radiance from far away.
 struct FarLight
 {
   std::vector<Direction> directions;
@@ -32,7 +32,7 @@ PhaseFunction FunctionOf(const Domain& domain, const Medium& medium, int channel
 /// @param thickestStep  ThickestStep of all channels
 std::vector<std::string> DoubtsOf(const OrdinatesSettings& settings, double thickestStep, bool cosineVaries);
 
-/// Those of a channel in all three.
+/// One channel's values in all three.
 std::array<Rgb, 6> FaceAlbedoOf(const Illumination& shining, int channel);
 UncollidedImage UncollidedOf(const Illumination& shining, int channel);
 
@@ -42,16 +42,16 @@ SeparablePhaseFunction SeparableOf(
 /// @throws DeviceError that says how much memory is needed
 void CheckMemory(Device& device, const Grid& grid, const OrdinatesAngles& angles, const OrdinatesSettings& settings);
 
-/// Sees `far` and `shining`, which must stay. Empty: nothing comes in.
+/// `far` and `shining` must stay. Empty: no light is incident.
 IncomingRadiance IncomingOf(const FarLight& far, const Illumination& shining, int channel);
 
 /// Of the scene and of the environment, power of the channel in all three.
 std::vector<Light> LampsOf(const FarLight& far, const Illumination& shining, int channel);
 
-/// Puts the light of a channel beside that of the others.
+/// Stores the light of a channel among all channels.
 void TakeChannel(LightField& light, const OrdinatesResult& found, int channel);
 
-/// What light has beside fluence, before it is in the user's units.
+/// Sets the derived quantities of light, before it is in the user's units.
 void DescribeLight(LightField& light, const Device& device, const FarLight& far);
 
 /// Whether it has converged, and, but as published, whether it balances (Convergence.h). Collective.

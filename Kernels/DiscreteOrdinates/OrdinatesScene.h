@@ -37,7 +37,7 @@ struct OrdinatesScene
   const Medium& medium; ///< of this rank's block; one voxel of vacuum where that is empty
   int channel = 0;
   std::vector<Light> lamps;  ///< of the scene, and the peaks of the environment; power of the channel in all three
-  IncomingRadiance incoming; ///< empty: no environment, sky or face shines
+  IncomingRadiance incoming; ///< empty: no light is incident
   std::array<Rgb, 6> faceAlbedo = {}; ///< of the channel in all three
   UncollidedImage uncollided;         ///< the channel's alone
   OrdinatesGuess guess;
@@ -54,7 +54,7 @@ struct OrdinatesAngles
   PhaseFunction function;
 };
 
-/// What a solve of one channel found. Arrays by voxel.
+/// Result of one channel. Arrays by voxel.
 struct OrdinatesResult
 {
   std::vector<float> fluence, direct; ///< W / length^2
@@ -68,22 +68,22 @@ struct OrdinatesResult
   double rate = 0.0;           ///< of the last order to the one before
 };
 
-/// What the box's faces give back along the directions of a solve: of what leaves through a cell their albedo, the same
-/// radiance along all that come in (numerics.md, Eq. (D14)). Null: none gives back any.
+/// Reflection by the box's faces along the directions of a solve: the albedo times the outgoing power of a cell comes
+/// back as the same radiance along all incident directions (numerics.md, Eq. (D14)). Null: no face reflects.
 std::unique_ptr<FaceLight> FaceLightOf(Device& device, const OrdinatesScene& scene, const OrdinateGroups& groups);
 
-/// What whoever carries light sees of that; nothing where no face gives back any.
+/// The arrays of that for a sweep; none where no face reflects.
 std::optional<LightOfCells> CellsOf(const FaceLight* faces);
 
-/// Rows of the convergence table, with an estimate of what is still to come from how fast orders become smaller.
+/// Rows of the convergence table, with an estimate of the remainder from the ratio of orders.
 class OrdinatesRecord
 {
 public:
   /// The next order is the first to show the error of a first guess (RestOfOrders).
   void BeginWarm(double rate) { this->Rest.BeginWarm(rate); }
-  /// @param goesOn  W (as published: change of fluence); of a first guess the magnitude of what may be negative
+  /// @param goesOn  W (as published: change of fluence); from a first guess a magnitude, as orders may be negative
   void Add(double goesOn, const EnergyLedger& ledger) { this->Add(goesOn, goesOn, ledger); }
-  /// @param more  what goesOn adds to all that did
+  /// @param more  the increment of the sum of all orders
   void Add(double goesOn, double more, const EnergyLedger& ledger);
   double Rate() const { return this->Rest.Ratio(); }
   double Residual() const { return this->Left; }

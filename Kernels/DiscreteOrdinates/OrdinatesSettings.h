@@ -6,14 +6,14 @@
 
 namespace tyndall
 {
-/// How light goes from voxel to voxel.
+/// The spatial scheme.
 enum class OrdinatesScheme
 {
   Published = 0,   ///< one explicit step along each direction in an iteration (Gong et al., Eqs. (7) and (9))
   Conservative = 1 ///< a sweep along each direction by exponentials, which keeps the power (numerics.md, Eq. (D10))
 };
 
-/// How what arrives along each direction is scattered into each.
+/// How radiance is scattered between directions.
 enum class OrdinatesScattering
 {
   Matrix = 0,            ///< every pair of directions: D x D multiplications a voxel

@@ -137,7 +137,7 @@ void PipelinedSweep::FindContacts(Octant& octant, const SweptFaces& faces) const
   octant.waiting.resize(octant.aroundFrom.size());
 }
 
-/// With cells of its own, where some of the whole grid's give back light.
+/// With its own cells, where faces of the whole grid reflect.
 SweptFaces PipelinedSweep::FacesOfBlock(const SweptFaces& ofWhole)
 {
   SweptFaces faces = ofWhole;
@@ -174,7 +174,7 @@ void PipelinedSweep::ForFace(
   }
 }
 
-/// What has come through a contact, to the light through the block's faces, which is read when it is wanted first.
+/// Writes received radiance to the block's faces, which are read on first use.
 void PipelinedSweep::Enter(
   const Octant& octant, const BlockContact& contact, const std::vector<float>& message, Faces& faces) const
 {
@@ -215,7 +215,7 @@ void PipelinedSweep::TakeFrom(const Octant& octant, int number)
   });
 }
 
-/// What has left through the ends of periodic axes, when all octants are through.
+/// Receives the radiance that wraps around periodic axes, when all octants are done.
 void PipelinedSweep::TakeFromAround()
 {
   for (const int number : this->Order)

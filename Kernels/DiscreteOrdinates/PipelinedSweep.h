@@ -66,8 +66,8 @@ private:
     ParallelBundles way; ///< without rays
     int first = 0, groups = 0;
     std::vector<BlockContact> senders, receivers;
-    std::vector<BlockContact> aroundFrom, aroundTo; ///< past the ends of periodic axes
-    std::vector<std::vector<float>> waiting;        ///< from these, to come in with the next sweep; empty: nothing
+    std::vector<BlockContact> aroundFrom, aroundTo; ///< across the ends of periodic axes
+    std::vector<std::vector<float>> waiting;        ///< from these, incident in the next sweep; empty: nothing
   };
   using Faces = std::array<std::vector<float>, 3>;
 
@@ -83,7 +83,7 @@ private:
   Device& TheDevice;
   const Domain& TheDomain;
   const Grid TheGrid;
-  std::optional<CellsOfBlock> Cells; ///< where faces give back light
+  std::optional<CellsOfBlock> Cells; ///< where faces reflect
   std::vector<Octant> Octants;
   std::vector<int> Order; ///< of this rank
   UpwindSweep Sweep;

@@ -78,7 +78,7 @@ public:
 private:
   const Buffer<float>& Out() const { return this->Source.Size() > 0 ? this->Source : this->Radiance; }
 
-  /// Light that was not scattered: what comes in and what the medium emits by a sweep, lamps along rays of their own.
+  /// Uncollided light: incident light and emission by a sweep, lamps along rays of their own.
   void FirstOrder(const Monitor& monitor)
   {
     const bool swept = this->Scene.incoming || this->Arrays.Emits() || !this->Settings.leaveOut;
@@ -116,7 +116,7 @@ private:
 
   bool IsWarm() const { return !this->Scene.guess.values.empty(); }
 
-  /// Beside what is first scattered the next sweep carries what is scattered of the guess (numerics.md, section 6.4).
+  /// Adds the scattering source of the guess to the first-collision source (numerics.md, section 6.4).
   void BeginWarm()
   {
     if (!this->IsWarm())
@@ -197,7 +197,7 @@ private:
   {
     for (float& value : this->Result.fluence)
     {
-      value = this->IsWarm() ? std::max(value, 0.0f) : value; // what the last sweeps would have taken away
+      value = this->IsWarm() ? std::max(value, 0.0f) : value; // a remainder that later sweeps would remove
     }
     for (std::size_t i = 0; i < this->Result.fluence.size() && this->Scene.guess.keeps; ++i)
     {
@@ -227,12 +227,12 @@ private:
     }
     this->Scene.domain.Collective([&] {
       this->Scattering.Gather(this->Radiance, this->Arrays.Light, monitor);
-      this->Radiance.Fill(0.0f); // only what goes round periodic axes is left
+      this->Radiance.Fill(0.0f); // only light that wraps around periodic axes is left
       this->Source.Fill(0.0f);
     });
   }
 
-  /// What faces give back of the light that left in this order, and of lamps before, has not left.
+  /// Reflects this order's outgoing light, and that of lamps before; reflected power has not escaped.
   void Reflect()
   {
     if (!this->Arrays.Faces)

@@ -12,8 +12,8 @@ namespace tyndall
 OrdinatesResult SolveSweptOrders(Device& device, const OrdinatesScene& scene, const OrdinatesAngles& angles,
   const OrdinatesSettings& settings, const Monitor& monitor);
 
-/// Whether light can begin from that of another solve: sources are never negative. What N terms make negative is set to
-/// 0 order by order, so that the light is not the sum that a guess would need it to be.
+/// Whether a solve can begin from the light of another: sources are never negative. Sources that N terms make negative
+/// are set to 0 order by order, so that the light is not linear in its orders, as a guess needs it to be.
 bool CanBeginWarm(const OrdinatesAngles& angles, const OrdinatesSettings& settings);
 
 /// Bytes on the device.

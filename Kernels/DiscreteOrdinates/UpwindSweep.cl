@@ -1,4 +1,4 @@
-// One sweep along all directions: from source and what comes in through the faces to mean radiance and what leaves
+// One sweep along all directions: from source and incident radiance to mean radiance and what leaves
 // (numerics.md, Eqs. (D9) to (D11)). Radiance is [group][stride][8 directions].
 //
 //   REAL_WIDTH  8: a work-item handles the directions of a group; 1: one of them
@@ -8,10 +8,10 @@
 
 // A voxel that light crosses along its mean chord.
 //   tau   optical length, >= 0
-//   in    radiance that comes in, in the mean over the faces
+//   in    incident radiance, the mean over the faces
 //   gain  source times length of the chord
 //   mean  of the radiance in the voxel
-// Returns the radiance that leaves. What comes in, gain - tau mean, and what leaves add up.
+// Returns the outgoing radiance: incident radiance plus gain - tau mean.
 inline real cross_voxel(real tau, real in, real gain, real* mean)
 {
   // (1 - exp(-tau)) / tau and (tau - 1 + exp(-tau)) / tau^2 by series
@@ -44,13 +44,13 @@ inline real cross_voxel(real tau, real in, real gain, real* mean)
   return multiply_add(in, transmitted, gain * p1);
 }
 
-// Layers `begin` to `end` along z, counted the way each group goes.
+// Layers `begin` to `end` along z, counted in the direction of each group.
 //   radiance  source in, W / (length^3 sr) over scale; mean radiance out
 //   scale     a factor of all sources of a voxel
-//   shares    [group][x, y, z, chord][8]: of each axis in what comes in; length of the mean chord
+//   shares    [group][x, y, z, chord][8]: of each axis in the incident radiance; length of the mean chord
 //   up        [group][3]: whether the group goes up an axis
-//   x, y, z   radiance through the faces, [group][z][y][8], [group][z][x][8], [group][y][x][8]: what comes in on the
-//             way in, what leaves on the way out
+//   x, y, z   radiance through the faces, [group][z][y][8], [group][z][x][8], [group][y][x][8]: incident before
+//             the sweep, outgoing after it
 __kernel void sweep_upwind(__global float* radiance, const __global float* sigma_t, const __global float* scale,
   const __global float* shares, const __global int* up, __global float* x, __global float* y, __global float* z, int nx,
   int ny, int nz, ulong stride, int begin, int end)
@@ -109,7 +109,7 @@ __kernel void sum_rows(const __global float* face, __global float* sums, int cou
   ((__global float8*)sums)[row] = sum;
 }
 
-// Every voxel of a face: what comes in along each direction.
+// Incident radiance along each direction for every voxel of a face.
 //   values  [group][8]
 //   count   voxels of the face
 __kernel void fill_face(__global float* face, const __global float* values, int count)
@@ -118,7 +118,7 @@ __kernel void fill_face(__global float* face, const __global float* values, int 
   ((__global float8*)face)[i] = ((const __global float8*)values)[i / count];
 }
 
-// Adds what the cells of the two faces of an axis give back, along every direction that comes in through them.
+// Adds the radiance reflected by the cells of the two faces of an axis, along every incident direction.
 //   face       [group][cell][8], as in fill_face
 //   in         radiance, by cell of the box's faces, of which the axis's begin at `low` and `high`
 __kernel void enter_by_cells(
@@ -128,7 +128,7 @@ __kernel void enter_by_cells(
   ((__global float8*)face)[group * cells + cell] += (float8)in[(up[3 * group + axis] ? low : high) + cell];
 }
 
-// Adds what leaves through each cell of the two faces of an axis.
+// Adds the outgoing power of each cell of the two faces of an axis.
 //   out     W, by cell of the box's faces
 //   across  [group][3][8]: W that radiance 1 carries through a cell across each axis
 __kernel void leave_by_cells(const __global float* face, __global float* out, const __global float* across,

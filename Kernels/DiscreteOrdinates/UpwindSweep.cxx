@@ -13,7 +13,7 @@ namespace tyndall
 {
 namespace
 {
-constexpr double LongestChord = 1e6; ///< in edges, of directions along which nothing changes
+constexpr double LongestChord = 1e6; ///< in edges, of directions along which nothing varies
 
 std::size_t FaceVoxels(const Grid& grid, int axis)
 {
@@ -180,7 +180,7 @@ void UpwindSweep::LeaveByCells() const
   }
 }
 
-/// Of a periodic face nothing: what left the other side is in its place already.
+/// Periodic faces hold the radiance that left at the other end already.
 void UpwindSweep::LetIn(const IncomingRadiance& incoming, FacePowers& powers)
 {
   for (int axis = 0; axis < 3; ++axis)

@@ -11,14 +11,14 @@
 
 namespace tyndall
 {
-/// Radiance that comes in along a direction (an index) through a face -x, +x, -y, +y, -z, +z. W / (length^2 sr)
+/// Incident radiance along a direction (an index) through a face -x, +x, -y, +y, -z, +z. W / (length^2 sr)
 using IncomingRadiance = std::function<double(int direction, int face)>;
 
 /// Power of one channel through the faces -x, +x, -y, +y, -z, +z, W.
 struct FacePowers
 {
   std::array<double, 6> in = {}, out = {};
-  double onTheWay = 0.0; ///< left through a periodic face, comes in on the other side in the next sweep
+  double onTheWay = 0.0; ///< left through a periodic face, wraps around in the next sweep
 };
 
 /// Carries light once along all directions through the grid.
@@ -28,8 +28,8 @@ public:
   virtual ~OrdinateSweep() = default;
 
   /// @param radiance  source over `scale`, W / (length^3 sr); becomes the mean radiance, W / (length^2 sr)
-  /// @param incoming  empty: nothing but what faces give back
-  /// @return what leaves, before faces give back their part, and what comes in beside that
+  /// @param incoming  empty: none but reflected light
+  /// @return outgoing power before reflection, and incident power without reflection
   virtual FacePowers Apply(const Buffer<float>& radiance, const Buffer<float>& sigma_t, const Buffer<float>& scale,
     const IncomingRadiance& incoming, const Monitor& monitor) = 0;
 };
@@ -38,15 +38,15 @@ public:
 struct LightOfCells
 {
   const Buffer<float>& out; ///< W that leave are added to
-  const Buffer<float>& in;  ///< radiance that comes in
+  const Buffer<float>& in;  ///< incident radiance
 };
 
-/// What lies at the faces of a box that is swept.
+/// Boundary conditions of a box that is swept.
 struct SweptFaces
 {
-  /// Axes: light that leaves comes in on the other side in the next sweep.
+  /// Periodic axes: light wraps around in the next sweep.
   std::array<bool, 3> periodic = {};
-  /// Those of one voxel in the whole grid: nothing changes along them, and no light is carried.
+  /// Axes of one voxel in the whole grid: nothing varies along them, and no light is transported.
   std::array<bool, 3> unvarying = {};
   const LightOfCells* reflecting = nullptr; ///< null: no face gives back light
   /// Bits of the faces -x, +x, ... +z that are no faces of the whole grid: their power is not counted.
@@ -59,9 +59,9 @@ struct SweptFaces
 /// Carries light once along all directions through a box of voxels, upwind (numerics.md, Eqs. (D9) to (D11)).
 ///
 /// Each voxel is crossed by the direction's mean chord, and light is attenuated along it by an exponential: it is
-/// stable and positive for every optical thickness, and exact along an axis. What leaves a voxel enters the next ones
-/// in equal radiance, so the power is kept to rounding; light spreads aside, so it is of first order in the voxels'
-/// edges where it goes askew.
+/// stable and positive for every optical thickness, and exact along an axis. Light that leaves a voxel enters the next
+/// ones in equal radiance, so the power is kept to rounding; light spreads aside, so it is of first order in the
+/// voxels' edges in oblique directions.
 class UpwindSweep : public OrdinateSweep
 {
 public:
@@ -73,16 +73,15 @@ public:
   FacePowers Apply(const Buffer<float>& radiance, const Buffer<float>& sigma_t, const Buffer<float>& scale,
     const IncomingRadiance& incoming, const Monitor& monitor) override;
 
-  // Its steps, for those who have light from elsewhere between them: what comes in from outside; some of the groups
-  // after the others; what has left.
+  // The steps of Apply, for a pipeline over ranks: boundary source, some groups of directions, outgoing powers.
   void LetIn(const IncomingRadiance& incoming, FacePowers& powers);
   void SweepGroups(int first, int count, const Buffer<float>& radiance, const Buffer<float>& sigma_t,
     const Buffer<float>& scale, const Monitor& monitor);
   void Count(FacePowers& powers) const;
-  void LeaveByCells() const; ///< nothing where no face gives back light
+  void LeaveByCells() const; ///< nothing where no face reflects
 
-  /// Radiance through the faces across an axis, [group][row][voxel of the row][8]: of a group what comes in until it is
-  /// swept, what leaves after that. Across z rows are along y, else along z.
+  /// Radiance through the faces across an axis, [group][row][voxel of the row][8]: incident until the group is swept,
+  /// outgoing after that. Across z rows are along y, else along z.
   std::vector<float> ReadFace(int axis, int firstGroup, int groups) const;
   void WriteFace(int axis, int firstGroup, const std::vector<float>& values);
 

@@ -179,7 +179,7 @@ private:
     this->LampFlux = this->Arrays.Light.flux.Read();
   }
 
-  /// After a step: what is scattered in the next, and the powers.
+  /// After a step: the scattering source of the next, and the powers.
   void Scatter(const Monitor& monitor)
   {
     this->Scattering.Scatter(
