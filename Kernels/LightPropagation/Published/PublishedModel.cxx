@@ -185,8 +185,9 @@ std::vector<std::vector<double>> ScatteringFactors(
   }
   return factors;
 }
-}
 
+/// `count` directions spread evenly over the sphere: the cells of a cube's faces where count is 6 n^2, else Fibonacci
+/// points.
 std::vector<std::array<double, 3>> EvenDirections(int count)
 {
   std::vector<std::array<double, 3>> directions;
@@ -207,6 +208,7 @@ std::vector<std::array<double, 3>> EvenDirections(int count)
     directions.push_back({ sine * std::cos(goldenAngle * i), sine * std::sin(goldenAngle * i), z });
   }
   return directions;
+}
 }
 
 std::vector<std::string> LeftOutAsPublished(const Illumination& illumination)

@@ -86,10 +86,6 @@ void CheckPublished(const Medium& medium, const Illumination& illumination);
 /// @throws InvalidInput where a face reflects: no paper has such faces
 void CheckPublishedFaces(const Illumination& illumination);
 
-/// `count` directions spread evenly over the sphere: the cells of a cube's faces where count is 6 n^2, else Fibonacci
-/// points.
-std::vector<std::array<double, 3>> EvenDirections(int count);
-
 /// Lights that the published scheme cannot carry, for LightField::leftOut; empty if none.
 std::vector<std::string> LeftOutAsPublished(const Illumination& illumination);
 
