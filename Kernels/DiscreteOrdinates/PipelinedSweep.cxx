@@ -1,6 +1,6 @@
 #include "DiscreteOrdinates/PipelinedSweep.h"
 
-#include "LightPropagation/Distributed/Sweep/SweepInBlocks.h"
+#include "LightPropagation/Sweep/Pipelined/SweepInBlocks.h"
 #include "Medium/BoxFaces.h"
 
 #include <algorithm>

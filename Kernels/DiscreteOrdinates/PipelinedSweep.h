@@ -3,8 +3,8 @@
 #include "DiscreteOrdinates/UpwindSweep.h"
 #include "Distribution/Domain.h"
 #include "Distribution/HeldFailure.h"
-#include "LightPropagation/Distributed/Sweep/BlockContact.h"
-#include "LightPropagation/Distributed/Sweep/SweepSchedule.h"
+#include "LightPropagation/Sweep/Pipelined/BlockContact.h"
+#include "LightPropagation/Sweep/Pipelined/SweepSchedule.h"
 
 #include <array>
 #include <functional>
