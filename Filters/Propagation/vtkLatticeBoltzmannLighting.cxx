@@ -38,56 +38,31 @@ tyndall::LightField Timed(double& seconds, const Solve& solve)
   return light;
 }
 
-tyndall::LatticeSettings SettingsOf(vtkLatticeBoltzmannLighting* filter)
-{
-  tyndall::LatticeSettings settings;
-  settings.directions = filter->GetLattice();
-  settings.scheme = static_cast<tyndall::LatticeScheme>(filter->GetScheme());
-  settings.blockSize = filter->GetBlockSize();
-  settings.stepsPerExchange = filter->GetStepsPerExchange();
-  settings.interleaves = filter->GetInterleaved();
-  settings.stretches = filter->GetVoxelsPerTurn();
-  settings.probes = filter->GetProbes();
-  settings.maximumSteps = filter->GetMaximumOrders();
-  settings.tolerance = filter->GetTolerance();
-  settings.periodic = { filter->GetPeriodicX(), filter->GetPeriodicY(), filter->GetPeriodicZ() };
-  settings.netFlux = filter->GetNetFlux();
-  if (filter->GetPreview())
-  {
-    settings.directions = 6;
-    settings.tolerance = std::max(settings.tolerance, tyndall::PreviewTolerance);
-    settings.netFlux = false;
-    return settings;
-  }
-  return tyndall::AtQuality(static_cast<tyndall::Quality>(filter->GetQuality()), settings);
-}
-
 /// Whether a preview is of fewer voxels: grids that cannot be halved to cubes have their own.
 bool IsOnCoarse(vtkLatticeBoltzmannLighting* filter, const tyndall::Grid& grid)
 {
   return filter->GetPreview() && tyndall::CubicPreviewGrid(grid).size != grid.size;
 }
 
-tyndall::PreviewSolver SolverOfWhole(vtkLatticeBoltzmannLighting* filter)
+tyndall::PreviewSolver SolverOfWhole(vtkLatticeBoltzmannLighting* filter, const tyndall::LatticeSettings& settings)
 {
-  return [filter](const tyndall::PreviewScene& scene) {
+  return [filter, settings](const tyndall::PreviewScene& scene) {
     const std::shared_ptr<tyndall::Device> device = tyndall::Device::Find(filter->GetDevice());
     tyndall::Device within(*device, tyndall::BudgetOf(filter->GetMemoryBudget(), true));
     return tyndall::SolveLatticeBoltzmann(
-      within, scene.medium, scene.index, scene.illumination, SettingsOf(filter), tyndall::MonitorOf(filter));
+      within, scene.medium, scene.index, scene.illumination, settings, tyndall::MonitorOf(filter));
   };
 }
 
 /// Of few voxels as a whole, of more by blocks.
 tyndall::LightField SolvePreviewOfPiece(vtkLatticeBoltzmannLighting* filter, tyndall::Device& device,
-  const tyndall::SceneInBlocks& own, const tyndall::Field& ior)
+  const tyndall::SceneInBlocks& own, const tyndall::Field& ior, const tyndall::LatticeSettings& settings)
 {
-  const tyndall::LatticeSettings settings = SettingsOf(filter);
   const tyndall::PropagationSettings alike = tyndall::AsPropagation(settings);
   const tyndall::Grid coarse = tyndall::CubicPreviewGrid(own.partition.whole);
   if (coarse.VoxelCount() <= tyndall::PreviewVoxels)
   {
-    return tyndall::SolvePreviewOnFirst(own, ior, alike, coarse, SolverOfWhole(filter));
+    return tyndall::SolvePreviewOnFirst(own, ior, alike, coarse, SolverOfWhole(filter, settings));
   }
   return tyndall::SolvePreviewInBlocks(
     own, ior, alike, coarse, [&](const tyndall::PreviewScene& scene, const tyndall::BlockPartition& blocks) {
@@ -150,6 +125,30 @@ int vtkLatticeBoltzmannLighting::FillInputPortInformation(int port, vtkInformati
   return 1;
 }
 
+tyndall::LatticeSettings vtkLatticeBoltzmannLighting::Settings() const
+{
+  tyndall::LatticeSettings settings;
+  settings.directions = this->Lattice;
+  settings.scheme = static_cast<tyndall::LatticeScheme>(this->Scheme);
+  settings.blockSize = this->BlockSize;
+  settings.stepsPerExchange = this->StepsPerExchange;
+  settings.interleaves = this->Interleaved;
+  settings.stretches = this->VoxelsPerTurn;
+  settings.probes = this->Probes;
+  settings.maximumSteps = this->MaximumOrders;
+  settings.tolerance = this->Tolerance;
+  settings.periodic = { this->PeriodicX, this->PeriodicY, this->PeriodicZ };
+  settings.netFlux = this->NetFlux;
+  if (this->Preview)
+  {
+    settings.directions = 6;
+    settings.tolerance = std::max(settings.tolerance, tyndall::PreviewTolerance);
+    settings.netFlux = false;
+    return settings;
+  }
+  return tyndall::AtQuality(static_cast<tyndall::Quality>(this->Quality), settings);
+}
+
 tyndall::LightField vtkLatticeBoltzmannLighting::SolveWithPhotons(
   vtkInformationVector** inputs, const tyndall::MediumInput& input, const tyndall::FloatField& ior)
 {
@@ -171,7 +170,7 @@ tyndall::LightField vtkLatticeBoltzmannLighting::SolveWithPhotons(
     const std::shared_ptr<tyndall::Device> device = tyndall::Device::Find(this->GetDevice());
     tyndall::Device within(*device, tyndall::BudgetOf(this->MemoryBudget, true));
     return tyndall::SolveLatticeBoltzmann(
-      within, input.medium, ior, photons, illumination, SettingsOf(this), tyndall::MonitorOf(this));
+      within, input.medium, ior, photons, illumination, this->Settings(), tyndall::MonitorOf(this));
   });
 }
 
@@ -190,7 +189,7 @@ tyndall::LightField vtkLatticeBoltzmannLighting::Solve(vtkInformationVector** in
   this->WarnWhereDark(shining.illumination, emits);
   const tyndall::PreviewScene scene = { input.medium, shining.illumination, ior };
   tyndall::LightField light = Timed(this->Seconds, [&] {
-    const tyndall::PreviewSolver solve = SolverOfWhole(this);
+    const tyndall::PreviewSolver solve = SolverOfWhole(this, this->Settings());
     const tyndall::Grid& grid = input.medium.grid;
     return IsOnCoarse(this, grid) ? tyndall::SolvePreview(scene, tyndall::CubicPreviewGrid(grid), solve) : solve(scene);
   });
@@ -201,8 +200,8 @@ tyndall::LightField vtkLatticeBoltzmannLighting::Solve(vtkInformationVector** in
 std::string vtkLatticeBoltzmannLighting::NotByBlocks(vtkInformationVector** inputs) const
 {
   const bool both = inputs[PHOTONS]->GetNumberOfInformationObjects() > 0 &&
-    inputs[UNCOLLIDED]->GetNumberOfInformationObjects() > 0; // which is an error of the whole
-  return both ? "Photons beside UncollidedLight" : "";
+    inputs[UNCOLLIDED]->GetNumberOfInformationObjects() > 0; // an error on one rank, too
+  return both ? "Photons beside UncollidedLight" : tyndall::NotInBlocks(this->Settings());
 }
 
 tyndall::IlluminationInput vtkLatticeBoltzmannLighting::ReadShiningOn(
@@ -220,7 +219,7 @@ tyndall::IlluminationInput vtkLatticeBoltzmannLighting::ReadShiningOn(
 tyndall::LightField vtkLatticeBoltzmannLighting::SolvePiece(tyndall::Communicator& communicator,
   const tyndall::PieceBlocks& pieces, const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining)
 {
-  const tyndall::LatticeSettings settings = SettingsOf(this);
+  const tyndall::LatticeSettings settings = this->Settings();
   tyndall::FloatField ior;
   std::shared_ptr<tyndall::Device> device;
   communicator.Collective([&] {
@@ -247,7 +246,8 @@ tyndall::LightField vtkLatticeBoltzmannLighting::SolvePiece(tyndall::Communicato
     tyndall::Device within(*device, tyndall::BudgetOf(this->MemoryBudget, true));
     if (!piece.share && IsOnCoarse(this, blocks.whole))
     {
-      return SolvePreviewOfPiece(this, within, { communicator, blocks, piece.medium, shining.illumination }, ior);
+      return SolvePreviewOfPiece(
+        this, within, { communicator, blocks, piece.medium, shining.illumination }, ior, settings);
     }
     return piece.share ? tyndall::SolveLatticeInBlocks(within, communicator, blocks, piece.medium, ior, photons,
                            shining.illumination, settings, monitor)
@@ -263,7 +263,7 @@ int vtkLatticeBoltzmannLighting::RequestData(
 {
   return this->UpdateCachedOrSolve(request, given, outputs, [&](vtkInformationVector** inputs) {
     tyndall::LightField light = this->Solve(inputs);
-    light.settingsUsed = tyndall::Words(SettingsOf(this));
+    light.settingsUsed = tyndall::Words(this->Settings());
     this->WriteSolved(std::move(light), inputs, outputs);
   });
 }

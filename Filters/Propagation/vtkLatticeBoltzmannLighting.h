@@ -10,6 +10,7 @@
 namespace tyndall
 {
 class FloatField;
+struct LatticeSettings;
 struct LightField;
 struct MediumInput;
 }
@@ -56,8 +57,8 @@ struct MediumInput;
  * +x, -y, +y, -z, +z), `left_out` (what the scene did not need), `device`, `stored_directions`.
  * Output 1: vtkTable, one row an iteration (of steps: every 16 or so): `iteration`, `seconds`, `residual`, `change`.
  *
- * With Decomposition BLOCKS lines of links go on from rank to rank, or what voxels send each other in a step
- * (numerics.md, section 10 c): the steady light, and steps of both schemes.
+ * With Decomposition BLOCKS lines of links continue from rank to rank (numerics.md, section 10 c). Only the steady
+ * state is solved so: PUBLISHED, BlockSize, Interleaved and MaximumOrders, which take steps, are an error then.
  *
  * EstimateError is not used.
  *
@@ -182,6 +183,7 @@ private:
   vtkLatticeBoltzmannLighting(const vtkLatticeBoltzmannLighting&) = delete;
   void operator=(const vtkLatticeBoltzmannLighting&) = delete;
 
+  tyndall::LatticeSettings Settings() const;
   tyndall::LightField Solve(vtkInformationVector** inputs);
   tyndall::LightField SolveWithPhotons(
     vtkInformationVector** inputs, const tyndall::MediumInput& input, const tyndall::FloatField& ior);

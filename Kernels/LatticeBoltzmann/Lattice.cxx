@@ -221,24 +221,6 @@ std::vector<float> Lattice::FluenceAt(const Buffer<cl_int>& voxels) const
   return seen.Read();
 }
 
-std::vector<float> Lattice::At(const Buffer<cl_ulong>& places, const Buffer<float>& of) const
-{
-  cl::Kernel take = this->Kernel("take_densities");
-  const Buffer<float> values(this->TheDevice, places.Size(), "densities for others");
-  With(take, of, places, values);
-  this->Queue.enqueueNDRangeKernel(take, cl::NullRange, cl::NDRange(places.Size()));
-  return values.Read();
-}
-
-void Lattice::Put(const std::vector<float>& values, const Buffer<cl_ulong>& places, const Buffer<float>& to)
-{
-  cl::Kernel put = this->Kernel("put_densities");
-  const Buffer<float> given(this->TheDevice, values, "densities of others");
-  With(put, to, places, given);
-  this->Queue.enqueueNDRangeKernel(put, cl::NullRange, cl::NDRange(places.Size()));
-  this->TheDevice.Finish(); // the buffer goes
-}
-
 void Lattice::Shine(const std::vector<float>& source)
 {
   this->Source = this->Placed(source, "sources");

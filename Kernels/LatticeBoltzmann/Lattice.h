@@ -39,12 +39,6 @@ public:
 
   /// Densities, [direction][stride], for what leaves and flows.
   const Buffer<float>& Densities() const { return this->Now; }
-  /// What the next step takes from voxels beside: densities, or of blocks the means that they sent each other.
-  const Buffer<float>& Sent() const { return this->Settings.blockSize > 0 ? this->Next : this->Now; }
-
-  /// Of one of these what is at some places, and others to such places.
-  std::vector<float> At(const Buffer<cl_ulong>& places, const Buffer<float>& of) const;
-  void Put(const std::vector<float>& values, const Buffer<cl_ulong>& places, const Buffer<float>& to);
   const LatticeInfo& Info() const { return this->TheInfo; }
 
   /// W / length^2 that leave in a step, [face][voxel].

@@ -42,8 +42,8 @@ void LatticeChannel::Solve(const Monitor& monitor)
 
 void LatticeChannel::Settle(const StepsBefore& before, const Monitor& monitor)
 {
-  SteppedInMemory lattice(this->TheDevice, this->Photons, this->Box.known, this->Settings);
-  this->Fluence = Settling(lattice, this->Settings).Run(before, monitor, this->Rows);
+  this->Fluence =
+    Settling(this->TheDevice, this->Photons, this->Box.known, this->Settings).Run(before, monitor, this->Rows);
 }
 
 void LatticeChannel::Shine()

@@ -43,4 +43,15 @@ void Check(const LatticeSettings& settings)
     throw InvalidInput("Tolerance is " + Text("%g", settings.tolerance) + "; it must be positive.");
   }
 }
+
+std::string NotInBlocks(const LatticeSettings& settings)
+{
+  const bool published = settings.scheme == LatticeScheme::Published;
+  return published              ? "the scheme as published"
+    : settings.blockSize > 0    ? "BlockSize"
+    : settings.interleaves      ? "Interleaved"
+    : settings.maximumSteps > 0 ? "MaximumOrders"
+    : !settings.solvesSteady    ? "steps"
+                                : "";
+}
 }

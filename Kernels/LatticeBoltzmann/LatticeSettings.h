@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <string>
 
 namespace tyndall
 {
@@ -47,4 +48,8 @@ struct LatticeSettings
 /// @throws InvalidInput where there are not 6 or 18 directions, a number is out of its range or the tolerance is not
 ///   positive
 void Check(const LatticeSettings& settings);
+
+/// The setting that takes steps instead of solving for the steady state, which is done on one rank only, in words for
+/// an error; empty: none does.
+std::string NotInBlocks(const LatticeSettings& settings);
 }

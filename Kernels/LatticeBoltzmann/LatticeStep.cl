@@ -113,18 +113,6 @@ __kernel void shine_lattice(LatticeInfo lattice, const __global float* scatters,
   }
 }
 
-// Densities at some places, to give them to another block, and those of another block to places round the box.
-__kernel void take_densities(const __global float* densities, const __global ulong* places, __global float* values)
-{
-  const int i = get_global_id(0);
-  values[i] = densities[places[i]];
-}
-__kernel void put_densities(__global float* densities, const __global ulong* places, const __global float* values)
-{
-  const int i = get_global_id(0);
-  densities[places[i]] = values[i];
-}
-
 // Fluence at some voxels.
 __kernel void look_at_lattice(const __global float* fluence, const __global int* voxels, __global float* seen)
 {

@@ -12,37 +12,26 @@ namespace tyndall
 {
 namespace
 {
-constexpr int StepsPerLook = 16;   ///< after which it is looked at how much changes, at least
+constexpr int StepsPerLook = 16;   ///< between two readings of the probes, at least
 constexpr int MostSteps = 200000;  ///< where the tolerance is not met
-constexpr double Slowest = 0.9999; ///< of changes from look to look: beyond, their rest is not known
+constexpr double Slowest = 0.9999; ///< ratio of successive changes: above it the error is not known
 }
 
-std::vector<std::size_t> ProbesOf(const Grid& grid, const LatticeSettings& settings)
-{
-  const auto probes = static_cast<std::size_t>(settings.probes);
-  return probes > 0 && probes < grid.VoxelCount() ? ChooseEvenly(grid.VoxelCount(), probes)
-                                                  : std::vector<std::size_t>();
-}
-
-SteppedInMemory::SteppedInMemory(Device& device, Lattice& lattice, const Grid& grid, const LatticeSettings& settings)
+Settling::Settling(Device& device, Lattice& lattice, const Grid& grid, const LatticeSettings& settings)
   : TheDevice(device)
   , TheLattice(lattice)
   , Settings(settings)
 {
-  const std::vector<std::size_t> probes = ProbesOf(grid, settings);
-  if (!probes.empty())
+  const auto probes = static_cast<std::size_t>(settings.probes);
+  if (probes > 0 && probes < grid.VoxelCount())
   {
-    this->Places = Buffer<cl_int>(device, std::vector<cl_int>(probes.begin(), probes.end()), "probes");
+    const std::vector<std::size_t> chosen = ChooseEvenly(grid.VoxelCount(), probes);
+    this->Probes = Buffer<cl_int>(device, std::vector<cl_int>(chosen.begin(), chosen.end()), "probes");
   }
 }
 
-std::vector<float> SteppedInMemory::Probed() const
-{
-  return this->Places.Size() > 0 ? this->TheLattice.FluenceAt(this->Places) : this->TheLattice.Fluence();
-}
-
-/// Queued in parts of about 50 ms.
-void SteppedInMemory::Step(int steps, double done, const Monitor& monitor)
+/// Queued in batches of about 50 ms.
+void Settling::Step(int steps, double done, const Monitor& monitor)
 {
   Batches batches;
   batches.count = static_cast<std::size_t>(steps);
@@ -54,31 +43,29 @@ void SteppedInMemory::Step(int steps, double done, const Monitor& monitor)
   });
 }
 
-/// Of fluence at the probes since it was looked at last, relative.
+/// Relative change of the fluence at the probes since the last call.
 double Settling::Change()
 {
-  std::vector<double> sums = { 0.0, 0.0 }; // of changes, and of all
-  this->TheLattice.Alone([&] {
-    const std::vector<float> now = this->TheLattice.Probed();
-    this->Last.resize(now.size(), 0.0f);
-    for (std::size_t i = 0; i < now.size(); ++i)
-    {
-      sums[0] += std::abs(static_cast<double>(now[i]) - this->Last[i]);
-      sums[1] += std::abs(now[i]);
-    }
-    this->Last = now;
-  });
-  sums = this->TheLattice.Sum(sums);
-  if (!std::isfinite(sums[1]))
+  double changed = 0.0, all = 0.0;
+  const std::vector<float> now =
+    this->Probes.Size() > 0 ? this->TheLattice.FluenceAt(this->Probes) : this->TheLattice.Fluence();
+  this->Last.resize(now.size(), 0.0f);
+  for (std::size_t i = 0; i < now.size(); ++i)
+  {
+    changed += std::abs(static_cast<double>(now[i]) - this->Last[i]);
+    all += std::abs(now[i]);
+  }
+  this->Last = now;
+  if (!std::isfinite(all))
   {
     throw InvalidInput(
       "Steps as published have grown beyond all floats: sigma_t times a voxel's edge is above 1. Choose "
       "the conservative scheme, or smaller voxels.");
   }
-  return sums[1] > 0.0 ? sums[0] / sums[1] : 0.0;
+  return all > 0.0 ? changed / all : 0.0;
 }
 
-/// What is still to come, from how changes fall.
+/// Estimated relative error, from the rate at which changes fall.
 double Settling::Estimate(double change)
 {
   const double ratio = this->LastChange > 0.0 ? std::min(change / this->LastChange, Slowest) : 1.0;
@@ -92,18 +79,18 @@ std::vector<float> Settling::Run(const StepsBefore& before, const Monitor& monit
   const double start = ClockSeconds() - before.seconds;
   const bool asked = this->Settings.maximumSteps > 0;
   const int most = asked ? this->Settings.maximumSteps : MostSteps;
-  // A look costs about as much as a step; blocks are looked at after whole exchanges.
+  // Reading the probes costs about a step; blocks are read after whole exchanges.
   const int exchange = this->Settings.blockSize > 0 ? this->Settings.stepsPerExchange : 1;
   const int look = (StepsPerLook + exchange - 1) / exchange * exchange;
   double residual = 1.0, done = 0.0;
   if (before.steps > 0)
   {
-    this->Change(); // since now, not since it was dark: how changes fall would seem much too fast
+    this->Change(); // the next change is measured from here, not from darkness
   }
   for (int step = before.steps; step < most && (asked || residual > this->Settings.tolerance);)
   {
     const int steps = std::min(look, most - step);
-    this->TheLattice.Step(steps, done, monitor);
+    this->Step(steps, done, monitor);
     step += steps;
     ConvergenceRow row;
     row.change = this->Change();
@@ -115,7 +102,7 @@ std::vector<float> Settling::Run(const StepsBefore& before, const Monitor& monit
     done = asked
       ? static_cast<double>(step) / most
       : std::clamp(std::log(std::max(residual, 1e-30)) / std::log(std::min(this->Settings.tolerance, 0.9)), done, 1.0);
-    this->TheLattice.Alone([&] { Report(monitor, done); });
+    Report(monitor, done);
   }
   return this->TheLattice.Fluence();
 }

@@ -147,6 +147,11 @@ void SaysWhatIsWrong(test::Claims& claims)
   lattice->SetBlockSize(1);
   lattice->Update();
   claims.That(errors.WasOneWith("BlockSize is 1"), "refuses blocks of one voxel");
+  lattice->SetBlockSize(4);
+  lattice->SetDecomposition(vtkLatticeBoltzmannLighting::BLOCKS);
+  lattice->Update();
+  claims.That(errors.WasOneWith("(Decomposition: blocks) with BlockSize"), "takes no steps by blocks of ranks");
+  lattice->SetDecomposition(vtkLatticeBoltzmannLighting::AUTOMATIC_DECOMPOSITION);
   lattice->SetBlockSize(0);
   auto bent = test::MakeMedium({ { 3, 3, 3 } }, 1.0, 1.0);
   test::AddCells(bent, "ior", -1.0);

@@ -263,13 +263,26 @@ TEST_F(LatticeBlocks, SayThatPhotonsMissTheMedium)
   std::vector<Photon> photons = AnyPhotons(5);
   photons[1].position = photons[4].position = { -9.0, 0.0, 0.0 };
   photons[1].direction = photons[4].direction = { -1.0f, 0.0f, 0.0f };
-  for (const bool interleaves : { false, true })
+  const LightField light =
+    this->OfBlocks(BlockPartition::Even(medium.scene.medium.grid, 3), medium, photons, SettingsOf());
+  EXPECT_TRUE(Says(light.doubts, " photons do not meet the medium"));
+}
+
+/// The error names the setting.
+TEST_F(LatticeBlocks, TakeNoSteps)
+{
+  const std::vector<std::pair<const char*, std::function<void(LatticeSettings&)>>> cases = {
+    { "the scheme as published", [](LatticeSettings& settings) { settings.scheme = LatticeScheme::Published; } },
+    { "BlockSize", [](LatticeSettings& settings) { settings.blockSize = 4; } },
+    { "Interleaved", [](LatticeSettings& settings) { settings.interleaves = true; } },
+    { "MaximumOrders", [](LatticeSettings& settings) { settings.maximumSteps = 20; } },
+  };
+  for (const auto& [name, choose] : cases)
   {
-    LatticeSettings settings = SettingsOf();
-    settings.interleaves = interleaves;
-    const LightField light =
-      this->OfBlocks(BlockPartition::Even(medium.scene.medium.grid, 3), medium, photons, settings);
-    EXPECT_TRUE(Says(light.doubts, " photons do not meet the medium"));
+    SCOPED_TRACE(name);
+    const std::function<void(LatticeSettings&)>& set = choose;
+    ExpectErrors(std::string("not solved with ") + name,
+      [&set](int, MediumToCut&, LatticeSettings& settings, Monitor&) { set(settings); });
   }
 }
 
@@ -339,7 +352,6 @@ TEST_F(LatticeBlocks, LightRowsThatAreEmptyAlongPeriodicAxes)
     }
     steps.solvesSteady = false;
     ExpectSameLight(this->Whole(medium, steps), whole, 3e-4);
-    ExpectSameLight(this->OnRanks(3, medium, steps), whole, 3e-4);
     steps.blockSize = 3;
     ExpectSameLight(this->Whole(medium, steps), whole, 3e-4);
   }

@@ -9,13 +9,12 @@ from pieces_of_ranks import Runs, difference
 
 runs = Runs("SolversByBlocks")
 CASES = ["lattice_wavelet", "lattice_even", "lattice_uneven", "lattice_lamps", "lattice_around",
-         "lattice_steps", "lattice_photons", "lattice_photons_few", "lattice_photons_whole", "lattice_turns", "ordinates_even",
+         "lattice_photons", "lattice_photons_few", "lattice_photons_whole", "lattice_turns", "ordinates_even",
          "ordinates_uneven", "ordinates_faces", "ordinates_around", "ordinates_warm", "lattice_cosines",
          "ordinates_cosines", "blocks_cosines"]
 LIKE = {"lattice_uneven": "lattice_even", "lattice_photons_few": "lattice_photons",
         "ordinates_uneven": "ordinates_even"}
-WHOLE = ["lattice_exact", "lattice_whole", "lattice_turns_whole", "ordinates_whole", "ordinates_faces_whole",
-         "previews_whole"]
+WHOLE = ["lattice_exact", "lattice_whole", "ordinates_whole", "ordinates_faces_whole", "previews_whole"]
 
 counts = [int(count) for count in sys.argv[1:]]
 for ranks in counts:
@@ -37,9 +36,6 @@ assert difference(blocks, whole) < 2e-6
 blocks, whole = runs.whole(3, "lattice_photons", "light")[0], runs.whole(1, "lattice_photons_whole", "light")[0]
 print("photons on a lattice in blocks and in the whole: %.1e" % difference(blocks, whole))
 assert difference(blocks, whole) < 2e-6
-blocks, whole = runs.whole(3, "lattice_turns", "light")[0], runs.whole(1, "lattice_turns_whole", "light")[0]
-print("photons beside the steps of a lattice in blocks and in the whole: %.1e" % difference(blocks, whole))
-assert difference(blocks, whole) < 1e-6
 for case, of_whole in (("ordinates_even", "ordinates_whole"), ("ordinates_faces", "ordinates_faces_whole")):
     ordinates, whole = runs.whole(1, case, "light")[0], runs.whole(1, of_whole, "light")[0]
     print("%s in blocks and in the whole: %.1e" % (case, difference(ordinates, whole)))

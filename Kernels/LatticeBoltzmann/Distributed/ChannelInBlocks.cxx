@@ -19,12 +19,6 @@ LatticeSettings InKnownVoxels(LatticeSettings settings)
   return settings;
 }
 
-LatticeSettings WithoutBlocks(LatticeSettings settings)
-{
-  settings.blockSize = 0;
-  return settings;
-}
-
 /// The equations of a steady lattice whose blocks lie on several ranks.
 class SteadyInBlocks : public SteadySystem
 {
@@ -50,22 +44,6 @@ private:
   LinesInBlocks Lines;
   DiffusionInBlocks Diffusion;
 };
-
-/// Where a lattice has the densities of a box of its voxels along one direction.
-std::vector<cl_ulong> PlacesOf(const VoxelBox& box, const LatticeInfo& info, int direction)
-{
-  Grid grid;
-  grid.size = box.size;
-  std::vector<cl_ulong> places;
-  for (std::size_t i = 0; i < box.VoxelCount(); ++i)
-  {
-    const std::array<int, 3> voxel = grid.VoxelAt(i);
-    const auto at = [&](int axis) { return static_cast<cl_ulong>(box.first[axis] + voxel[axis]); };
-    places.push_back(static_cast<cl_ulong>(direction) * info.stride + (at(2) + 1) * static_cast<cl_ulong>(info.layer) +
-      (at(1) + 1) * static_cast<cl_ulong>(info.row) + at(0) + LatticeFirst);
-  }
-  return places;
-}
 }
 
 ChannelInBlocks::ChannelInBlocks(Device& device, Communicator& communicator, const LatticeSceneInBlocks& scene,
@@ -75,11 +53,9 @@ ChannelInBlocks::ChannelInBlocks(Device& device, Communicator& communicator, con
   , Scene(scene)
   , Settings(settings)
   , OfKnown(InKnownVoxels(settings))
-  , OfOwn(WithoutBlocks(this->OfKnown))
   , Direct(direct)
   , Channel(channel)
   , Box(scene.Box())
-  , Stepped(scene.Stepped(settings, communicator.Rank()))
 {
   communicator.Collective(
     [&] { this->Voxels.emplace(scene.OfKnown(), scene.known.index, this->OfKnown, direct, channel); });
@@ -87,9 +63,7 @@ ChannelInBlocks::ChannelInBlocks(Device& device, Communicator& communicator, con
   communicator.Collective([&] {
     if (scene.has)
     {
-      LatticeBox box = BoxOf(scene.around, this->Stepped);
-      box.known = scene.scene.medium.grid;
-      this->Photons.emplace(device, box, this->OfKnown, *this->Voxels);
+      this->Photons.emplace(device, this->Box, this->OfKnown, *this->Voxels);
     }
   });
 }
@@ -122,89 +96,16 @@ void ChannelInBlocks::Solve(const Monitor& monitor)
   {
     this->Fluence.assign(this->Box.Count(), 0.0f);
   }
-  else if (this->Settings.Solves())
-  {
-    SteadyInBlocks system(
-      this->TheDevice, this->Comm, this->Scene.partition, this->Box, this->Settings, *this->Voxels, this->TheLattice());
-    this->Fluence = SteadyLattice(this->Box, this->Settings, *this->Voxels, system).Solve(monitor, this->Rows);
-  }
   else
   {
-    this->Settle({}, monitor);
+    SteadyInBlocks system(this->TheDevice, this->Comm, this->Scene.partition, this->Box, this->Settings, *this->Voxels,
+      this->Photons ? &*this->Photons : nullptr);
+    this->Fluence = SteadyLattice(this->Box, this->Settings, *this->Voxels, system).Solve(monitor, this->Rows);
   }
-}
-
-SteppedInBlocks& ChannelInBlocks::Stepping()
-{
-  if (!this->Steps)
-  {
-    this->Steps.emplace(
-      this->TheDevice, this->Comm, this->Scene.partition, this->Settings, this->Stepped, this->TheLattice());
-  }
-  return *this->Steps;
-}
-
-void ChannelInBlocks::Step(int steps)
-{
-  this->Stepping().Step(steps, 0.0, {});
-}
-
-void ChannelInBlocks::Shine()
-{
-  this->Voxels->Shine(this->Scene.OfKnown(), this->Direct, this->Channel);
-  if (this->Photons)
-  {
-    this->Photons->Shine(this->Voxels->source);
-  }
-}
-
-void ChannelInBlocks::Settle(const StepsBefore& before, const Monitor& monitor)
-{
-  this->Fluence = Settling(this->Stepping(), this->Settings).Run(before, monitor, this->Rows);
-}
-
-/// Of blocks that step by themselves: the lattice of all voxels that this rank steps gives way to one of its own ones.
-void ChannelInBlocks::KeepOwn()
-{
-  VoxelBox own = this->Scene.around.Own();
-  std::transform(own.first.begin(), own.first.end(), this->Stepped.first.begin(), own.first.begin(), std::minus<int>());
-  std::vector<std::vector<float>> densities;
-  const auto places = [&](int direction) {
-    return Buffer<cl_ulong>(this->TheDevice, PlacesOf(own, this->Photons->Info(), direction), "the rank's voxels");
-  };
-  for (int i = 0; i < this->Settings.directions; ++i)
-  {
-    densities.push_back(this->Photons->At(places(i), this->Photons->Densities()));
-  }
-  this->Photons.emplace(this->TheDevice, this->Box, this->OfOwn, *this->Voxels);
-  own.first = {};
-  for (int i = 0; i < this->Settings.directions; ++i)
-  {
-    this->Photons->Put(densities[i], places(i), this->Photons->Densities());
-  }
-}
-
-/// What leaves and flows is told by the rank's own voxels and what comes into them from around.
-void ChannelInBlocks::EndSteps()
-{
-  this->Steps.reset();
-  this->Comm.Collective([&] {
-    if (this->Photons && this->Settings.blockSize > 0)
-    {
-      this->KeepOwn();
-    }
-  });
-  SteppedInBlocks(
-    this->TheDevice, this->Comm, this->Scene.partition, this->Settings, this->Scene.around.Own(), this->TheLattice())
-    .FillAround();
 }
 
 void ChannelInBlocks::AddTo(LightField& light)
 {
-  if (!this->Settings.Solves())
-  {
-    this->EndSteps();
-  }
   this->Comm.Collective([&] {
     if (this->Photons)
     {

@@ -4,12 +4,10 @@
 #include "Device/Monitor.h"
 #include "Distribution/Communicator.h"
 #include "LatticeBoltzmann/Distributed/LatticeSceneInBlocks.h"
-#include "LatticeBoltzmann/Distributed/SteppedInBlocks.h"
 #include "LatticeBoltzmann/Lattice.h"
 #include "LatticeBoltzmann/LatticeBox.h"
 #include "LatticeBoltzmann/LatticeSettings.h"
 #include "LatticeBoltzmann/LatticeVoxels.h"
-#include "LatticeBoltzmann/Settling.h"
 #include "Light/LightField.h"
 
 #include <optional>
@@ -29,37 +27,24 @@ public:
   ChannelInBlocks(const ChannelInBlocks&) = delete;
   ChannelInBlocks& operator=(const ChannelInBlocks&) = delete;
 
-  double Thickest() const { return this->Voxels->thickest; }                  ///< sigma_t h, of all voxels of all ranks
-  Lattice* TheLattice() { return this->Photons ? &*this->Photons : nullptr; } ///< null: the rank has no voxels
-  const LatticeVoxels& TheVoxels() const { return *this->Voxels; }            ///< the known ones
-  /// The steady lattice, or one that steps.
+  double Thickest() const { return this->Voxels->thickest; } ///< sigma_t h, of all voxels of all ranks
   void Solve(const Monitor& monitor);
-  void Step(int steps);
-  /// Takes uncollided light that has changed, on this rank.
-  void Shine();
-  /// Steps on, from densities that other steps have left.
-  void Settle(const StepsBefore& before, const Monitor& monitor);
   /// Scattered light of the rank's block beside the uncollided one, and where all power of that went.
   void AddTo(LightField& light);
 
 private:
   void ReduceGlobals();
-  SteppedInBlocks& Stepping();
-  void KeepOwn();
-  void EndSteps();
 
   Device& TheDevice;
   Communicator& Comm;
   const LatticeSceneInBlocks& Scene;
   const LatticeSettings& Settings;
-  const LatticeSettings OfKnown, OfOwn; ///< of lattices of all voxels that this rank steps, and of its own ones
+  const LatticeSettings OfKnown; ///< of the known voxels, which go on beyond periodic ends
   const Uncollided& Direct;
   const int Channel;
   const LatticeBox Box; ///< the rank's own voxels
-  const VoxelBox Stepped;
   std::optional<LatticeVoxels> Voxels;
-  std::optional<Lattice> Photons; ///< of the stepped voxels, in the end of the rank's own ones; none without voxels
-  std::optional<SteppedInBlocks> Steps;
+  std::optional<Lattice> Photons; ///< of the rank's block; none without voxels
   std::vector<float> Fluence;
   std::vector<ConvergenceRow> Rows;
 };

@@ -3,7 +3,6 @@
 #include "Device/Errors.h"
 #include "Distribution/SharedMedium.h"
 #include "LatticeBoltzmann/Distributed/ChannelInBlocks.h"
-#include "LatticeBoltzmann/Distributed/InterleavedInBlocks.h"
 #include "LatticeBoltzmann/Distributed/LatticeSceneInBlocks.h"
 #include "LatticeBoltzmann/Distributed/UncollidedInBlocks.h"
 #include "LatticeBoltzmann/LatticeLight.h"
@@ -41,6 +40,8 @@ void CheckInBlocks(Communicator& communicator, const BlockPartition& partition, 
     partition.Check();
     Require(static_cast<int>(partition.blocks.size()) == communicator.Ranks(), "There is not a block for each rank.");
     Check(settings);
+    const std::string refused = NotInBlocks(settings);
+    Require(refused.empty(), "A lattice that is spread over ranks is not solved with " + refused + ".");
     Check(illumination);
     CheckFaceAlbedo(illumination, settings.periodic);
     if (partition.blocks[communicator.Rank()].VoxelCount() > 0)
@@ -76,12 +77,6 @@ LightField SolveLatticeInBlocks(Device& device, Communicator& communicator, cons
   MarchSettings march;
   const bool needs = settings.netFlux || (has && NeedsFirstMoments(medium, settings));
   march.meanDirection = OnAnyRank(communicator, needs);
-  if (settings.interleaves)
-  {
-    PhotonMarcherInBlocks marcher(device, communicator, partition, medium, ior, march);
-    return InterleavedInBlocks(device, communicator, partition, medium, ior, illumination, settings)
-      .Solve(marcher, share, monitor);
-  }
   const PhotonLight found =
     PhotonMarcherInBlocks(device, communicator, partition, medium, ior, march).March(share, OfPart(monitor, 0.0, 0.5));
   Illumination lit = illumination;

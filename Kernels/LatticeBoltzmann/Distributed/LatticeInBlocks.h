@@ -22,10 +22,8 @@ namespace tyndall
 /// together.
 ///
 /// The light is that of SolveLatticeBoltzmann to the tolerance, with its refraction, colours, faces' albedo, periodic
-/// axes, first moments of lamps' light or of light that is given, and net flux; by steps it is that of as many steps,
-/// to rounding. It does not depend on the number of ranks, but for rounding. Where blocks of voxels step by themselves
-/// (blockSize), a rank steps all voxels of those of which it has a part, and holds blockSize - 1 more layers around its
-/// own.
+/// axes, first moments of lamps' light or of light that is given, and net flux. It does not depend on the number of
+/// ranks, but for rounding. Steps are not taken over ranks (NotInBlocks, LatticeSettings.h).
 ///
 /// @param medium, ior  of the rank's block, with the grid that partition.OwnGrid() has; looked at by nobody where that
 ///   has no voxels
@@ -40,8 +38,7 @@ LightField SolveLatticeInBlocks(Device& device, Communicator& communicator, cons
   const Monitor& monitor = {});
 
 /// The same of the light of photons, as SolveLatticeBoltzmann has it of the whole: they march to their ends, handed on
-/// from rank to rank (PhotonMarcherInBlocks), before their light diffuses, or by turns (LatticeSettings::interleaves)
-/// between which it does.
+/// from rank to rank (PhotonMarcherInBlocks), before their light diffuses.
 /// @param share  of this rank: all photons are those of rank 0, then those of rank 1, and so on
 /// @throws InvalidInput  also where an axis is periodic, or what PhotonMarcherInBlocks says
 LightField SolveLatticeInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition,

@@ -1,6 +1,5 @@
 #include "LatticeBoltzmann/Distributed/LatticeSceneInBlocks.h"
 
-#include "Device/Sizes.h"
 #include "LatticeBoltzmann/LatticeLight.h"
 #include "LightPropagation/Convergence.h"
 
@@ -14,11 +13,6 @@ namespace
 {
 /// Known round what a rank steps: what lamps' light does in voxels depends on those next to the next ones.
 constexpr int Layers = 2;
-
-int LayersFor(const LatticeSettings& settings)
-{
-  return Layers + std::max(settings.blockSize - 1, 0);
-}
 
 Medium OwnOf(const BlockPartition& partition, int rank, bool has, const Medium& medium)
 {
@@ -75,7 +69,7 @@ PropagationSettings AsPropagationInBlocks(const LatticeSettings& settings)
 LatticeSceneInBlocks::LatticeSceneInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition,
   const Medium& medium, const Field& ior, const Illumination& illumination, const LatticeSettings& settings)
   : has(partition.blocks[communicator.Rank()].VoxelCount() > 0)
-  , around(communicator, partition, settings.periodic, LayersFor(settings))
+  , around(communicator, partition, settings.periodic, Layers)
   , known(this->around, OwnOf(partition, communicator.Rank(), this->has, medium), this->has ? ior : Field(),
       this->has ? illumination.uncollided : UncollidedImage())
   , scene(communicator, this->has, partition, this->known.medium, WithKnown(illumination, this->known),
@@ -88,18 +82,6 @@ LatticeBox LatticeSceneInBlocks::Box() const
 {
   const LatticeBox own = BoxOf(this->around);
   return { this->scene.medium.grid, own.own, own.innerFaces };
-}
-
-VoxelBox LatticeSceneInBlocks::Stepped(const LatticeSettings& settings, int rank) const
-{
-  VoxelBox box = this->partition.blocks[rank];
-  for (int axis = 0; axis < 3 && settings.blockSize > 0 && box.VoxelCount() > 0; ++axis)
-  {
-    const int end = RoundUp(EndOf(box, axis), settings.blockSize);
-    box.first[axis] = box.first[axis] / settings.blockSize * settings.blockSize;
-    box.size[axis] = std::min(end, this->partition.whole.size[axis]) - box.first[axis];
-  }
-  return box;
 }
 
 void FinishLight(LightField& light, const Device& device, Communicator& communicator, const LatticeSceneInBlocks& scene,

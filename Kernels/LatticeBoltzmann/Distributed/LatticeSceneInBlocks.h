@@ -31,10 +31,6 @@ struct LatticeSceneInBlocks
 
   LatticeScene OfKnown() const { return { this->scene.medium, this->scene.illumination, this->scene.channels }; }
   LatticeBox Box() const; ///< the rank's block among the known voxels
-  /// The voxels that a rank steps, in the whole grid: its own ones, or all of the blocks that step by themselves
-  /// (LatticeSettings::blockSize) and of which it has a part. Such blocks begin at the grid's first voxel, wherever
-  /// ranks' ones are cut.
-  VoxelBox Stepped(const LatticeSettings& settings, int rank) const;
 
   const bool has; ///< voxels
   const Halo around;
