@@ -14,9 +14,9 @@ namespace tyndall
 namespace
 {
 
-constexpr int FewestParts = 48;    ///< of a face's edge, of cells that are no grid
-constexpr double Aside = 1e-9;     ///< relative, of what lies on a border
-constexpr double LeastMode = 1e-3; ///< of fluxes, beside the largest: what less light can make up for
+constexpr int FewestParts = 48;          ///< of a face's edge, of cells that are no grid
+constexpr double BorderTolerance = 1e-9; ///< relative, of what lies on a border
+constexpr double LeastMode = 1e-3;       ///< of fluxes, beside the largest: what less light can make up for
 
 int CellsPerEdge(int perFace, const std::string& name)
 {
@@ -148,8 +148,8 @@ Seen LookAround(const DirectionSet& set, const Environment& environment)
         }
         else if (a == b || a + b == n * parts - 1) // a border of the face's eighths
         {
-          seen.Add(first + NearestOnFace(set, s * (1.0 + Aside), t), omega, 0.5 * weight, radiance);
-          seen.Add(first + NearestOnFace(set, s, t * (1.0 + Aside)), omega, 0.5 * weight, radiance);
+          seen.Add(first + NearestOnFace(set, s * (1.0 + BorderTolerance), t), omega, 0.5 * weight, radiance);
+          seen.Add(first + NearestOnFace(set, s, t * (1.0 + BorderTolerance)), omega, 0.5 * weight, radiance);
         }
         else
         {
