@@ -4,10 +4,9 @@
 #include "Common/LightTransportData.h"
 #include "Device/Clock.h"
 #include "Device/Device.h"
-#include "LatticeBoltzmann/Distributed/LatticeInBlocks.h"
+#include "Distribution/Domain.h"
 #include "LatticeBoltzmann/LatticeBoltzmann.h"
-#include "LatticeBoltzmann/LatticeLight.h"
-#include "LatticeBoltzmann/LatticeQuality.h"
+#include "LatticeBoltzmann/LatticeSettings.h"
 #include "LightPropagation/Accuracy/PreviewLight.h"
 #include "Photons/PhotonData.h"
 #include "Propagation/PieceOfMedium.h"
@@ -22,56 +21,43 @@
 #include "vtkPolyData.h"
 
 #include <algorithm>
+#include <functional>
 #include <memory>
-#include <utility>
 #include <vector>
 
 namespace
 {
-/// Light, and how long it took to find.
-template <class Solve>
-tyndall::LightField Timed(double& seconds, const Solve& solve)
-{
-  const double start = tyndall::ClockSeconds();
-  tyndall::LightField light = solve();
-  seconds = tyndall::ClockSeconds() - start;
-  return light;
-}
+using Solver = std::function<tyndall::LightField(const tyndall::Domain&, const tyndall::PreviewScene&)>;
 
-/// Whether a preview is of fewer voxels: grids that cannot be halved to cubes have their own.
-bool IsOnCoarse(vtkLatticeBoltzmannLighting* filter, const tyndall::Grid& grid)
+/// On fewer voxels where these can be halved to cubes; those of few voxels on the first rank. Collective.
+tyndall::LightField SolvePreviewOf(const tyndall::Domain& domain, const tyndall::PreviewScene& scene,
+  const tyndall::LatticeSettings& settings, const Solver& solve)
 {
-  return filter->GetPreview() && tyndall::CubicPreviewGrid(grid).size != grid.size;
-}
-
-tyndall::PreviewSolver SolverOfWhole(vtkLatticeBoltzmannLighting* filter, const tyndall::LatticeSettings& settings)
-{
-  return [filter, settings](const tyndall::PreviewScene& scene) {
-    const std::shared_ptr<tyndall::Device> device = tyndall::Device::Find(filter->GetDevice());
-    tyndall::Device within(*device, tyndall::BudgetOf(filter->GetMemoryBudget(), true));
-    return tyndall::SolveLatticeBoltzmann(
-      within, scene.medium, scene.index, scene.illumination, settings, tyndall::MonitorOf(filter));
+  const tyndall::Grid coarse = tyndall::CubicPreviewGrid(domain.Whole());
+  const tyndall::PreviewSolver onFirst = [&](const tyndall::PreviewScene& of) {
+    return solve(tyndall::Domain(of.medium.grid), of);
   };
-}
-
-/// Of few voxels as a whole, of more by blocks.
-tyndall::LightField SolvePreviewOfPiece(vtkLatticeBoltzmannLighting* filter, tyndall::Device& device,
-  const tyndall::SceneInBlocks& own, const tyndall::Field& ior, const tyndall::LatticeSettings& settings)
-{
+  if (coarse.size == domain.Whole().size)
+  {
+    return solve(domain, scene);
+  }
+  if (domain.IsSerial())
+  {
+    return tyndall::SolvePreview(scene, coarse, onFirst);
+  }
+  const tyndall::SceneInBlocks own = { domain.Comm(), domain.Partition(), scene.medium, scene.illumination };
   const tyndall::PropagationSettings alike = tyndall::AsPropagation(settings);
-  const tyndall::Grid coarse = tyndall::CubicPreviewGrid(own.partition.whole);
   if (coarse.VoxelCount() <= tyndall::PreviewVoxels)
   {
-    return tyndall::SolvePreviewOnFirst(own, ior, alike, coarse, SolverOfWhole(filter, settings));
+    return tyndall::SolvePreviewOnFirst(own, scene.index, alike, coarse, onFirst);
   }
   return tyndall::SolvePreviewInBlocks(
-    own, ior, alike, coarse, [&](const tyndall::PreviewScene& scene, const tyndall::BlockPartition& blocks) {
-      return tyndall::SolveLatticeInBlocks(device, own.others, blocks, scene.medium, scene.index, scene.illumination,
-        settings, tyndall::MonitorOf(filter));
+    own, scene.index, alike, coarse, [&](const tyndall::PreviewScene& of, const tyndall::BlockPartition& blocks) {
+      return solve(tyndall::Domain(domain.Comm(), blocks), of);
     });
 }
 
-/// Of all power, what has neither been absorbed nor escaped, the worst channel.
+/// The part of all power that was neither absorbed nor escaped, in the worst channel.
 double UnaccountedPart(const tyndall::LightField& light)
 {
   tyndall::EnergyBalance balance = light.balance;
@@ -149,6 +135,35 @@ tyndall::LatticeSettings vtkLatticeBoltzmannLighting::Settings() const
   return tyndall::AtQuality(static_cast<tyndall::Quality>(this->Quality), settings);
 }
 
+/// Collective. @param photons  null: none are connected
+tyndall::LightField vtkLatticeBoltzmannLighting::LightOf(
+  const tyndall::Domain& domain, const tyndall::PreviewScene& scene, const std::vector<tyndall::Photon>* photons)
+{
+  const double start = tyndall::ClockSeconds();
+  const tyndall::LatticeSettings settings = this->Settings();
+  std::shared_ptr<tyndall::Device> device;
+  domain.Collective([&] { device = tyndall::Device::Find(this->GetDevice()); });
+  tyndall::Device within(*device, tyndall::BudgetOf(this->MemoryBudget, true));
+  const tyndall::Monitor monitor = tyndall::MonitorOf(this);
+  const auto solve = [&](const tyndall::Domain& of, const tyndall::PreviewScene& solved) {
+    return tyndall::SolveLatticeBoltzmann(
+      within, of, solved.medium, solved.index, solved.illumination, settings, monitor);
+  };
+  tyndall::LightField light;
+  if (photons)
+  {
+    light = tyndall::SolveLatticeBoltzmann(
+      within, domain, scene.medium, scene.index, *photons, scene.illumination, settings, monitor);
+  }
+  else
+  {
+    light = this->Preview ? SolvePreviewOf(domain, scene, settings, solve) : solve(domain, scene);
+  }
+  light.settingsUsed = tyndall::Words(settings);
+  this->Seconds = tyndall::ClockSeconds() - start;
+  return light;
+}
+
 tyndall::LightField vtkLatticeBoltzmannLighting::SolveWithPhotons(
   vtkInformationVector** inputs, const tyndall::MediumInput& input, const tyndall::FloatField& ior)
 {
@@ -166,12 +181,7 @@ tyndall::LightField vtkLatticeBoltzmannLighting::SolveWithPhotons(
   tyndall::Illumination illumination;
   tyndall::AddFaceAlbedo(illumination, this->FaceAlbedo, this->FaceAlbedoColor);
   const std::vector<tyndall::Photon> photons = tyndall::ReadPhotons(given, tyndall::OwnAxesOf(this));
-  return Timed(this->Seconds, [&] {
-    const std::shared_ptr<tyndall::Device> device = tyndall::Device::Find(this->GetDevice());
-    tyndall::Device within(*device, tyndall::BudgetOf(this->MemoryBudget, true));
-    return tyndall::SolveLatticeBoltzmann(
-      within, input.medium, ior, photons, illumination, this->Settings(), tyndall::MonitorOf(this));
-  });
+  return this->LightOf(tyndall::Domain(input.medium.grid), { input.medium, illumination, ior }, &photons);
 }
 
 tyndall::LightField vtkLatticeBoltzmannLighting::Solve(vtkInformationVector** inputs)
@@ -187,12 +197,8 @@ tyndall::LightField vtkLatticeBoltzmannLighting::Solve(vtkInformationVector** in
   const bool emits = input.Emits();
   const tyndall::IlluminationInput shining = this->ReadShining(inputs, emits);
   this->WarnWhereDark(shining.illumination, emits);
-  const tyndall::PreviewScene scene = { input.medium, shining.illumination, ior };
-  tyndall::LightField light = Timed(this->Seconds, [&] {
-    const tyndall::PreviewSolver solve = SolverOfWhole(this, this->Settings());
-    const tyndall::Grid& grid = input.medium.grid;
-    return IsOnCoarse(this, grid) ? tyndall::SolvePreview(scene, tyndall::CubicPreviewGrid(grid), solve) : solve(scene);
-  });
+  tyndall::LightField light =
+    this->LightOf(tyndall::Domain(input.medium.grid), { input.medium, shining.illumination, ior }, nullptr);
   TellOfDefaultSky(shining, light.leftOut);
   return light;
 }
@@ -219,11 +225,8 @@ tyndall::IlluminationInput vtkLatticeBoltzmannLighting::ReadShiningOn(
 tyndall::LightField vtkLatticeBoltzmannLighting::SolvePiece(tyndall::Communicator& communicator,
   const tyndall::PieceBlocks& pieces, const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining)
 {
-  const tyndall::LatticeSettings settings = this->Settings();
   tyndall::FloatField ior;
-  std::shared_ptr<tyndall::Device> device;
   communicator.Collective([&] {
-    device = tyndall::Device::Find(this->GetDevice());
     if (piece.image)
     {
       ior =
@@ -240,32 +243,15 @@ tyndall::LightField vtkLatticeBoltzmannLighting::SolvePiece(tyndall::Communicato
       vtkWarningMacro(<< doubt);
     }
   }
-  tyndall::LightField light = Timed(this->Seconds, [&] {
-    const tyndall::BlockPartition& blocks = pieces.Partition();
-    const tyndall::Monitor monitor = tyndall::MonitorOf(this);
-    tyndall::Device within(*device, tyndall::BudgetOf(this->MemoryBudget, true));
-    if (!piece.share && IsOnCoarse(this, blocks.whole))
-    {
-      return SolvePreviewOfPiece(
-        this, within, { communicator, blocks, piece.medium, shining.illumination }, ior, settings);
-    }
-    return piece.share ? tyndall::SolveLatticeInBlocks(within, communicator, blocks, piece.medium, ior, photons,
-                           shining.illumination, settings, monitor)
-                       : tyndall::SolveLatticeInBlocks(
-                           within, communicator, blocks, piece.medium, ior, shining.illumination, settings, monitor);
-  });
-  light.settingsUsed = tyndall::Words(settings);
-  return light;
+  const tyndall::Domain domain(communicator, pieces.Partition());
+  return this->LightOf(domain, { piece.medium, shining.illumination, ior }, piece.share ? &photons : nullptr);
 }
 
 int vtkLatticeBoltzmannLighting::RequestData(
   vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs)
 {
-  return this->UpdateCachedOrSolve(request, given, outputs, [&](vtkInformationVector** inputs) {
-    tyndall::LightField light = this->Solve(inputs);
-    light.settingsUsed = tyndall::Words(this->Settings());
-    this->WriteSolved(std::move(light), inputs, outputs);
-  });
+  return this->UpdateCachedOrSolve(request, given, outputs,
+    [&](vtkInformationVector** inputs) { this->WriteSolved(this->Solve(inputs), inputs, outputs); });
 }
 
 void vtkLatticeBoltzmannLighting::Note(const tyndall::LightField& light)

@@ -6,13 +6,17 @@
 #include "vtkTyndallModule.h" // for export macro
 
 #include <string>
+#include <vector>
 
 namespace tyndall
 {
+class Domain;
 class FloatField;
 struct LatticeSettings;
 struct LightField;
 struct MediumInput;
+struct Photon;
+struct PreviewScene;
 }
 
 /**
@@ -184,6 +188,8 @@ private:
   void operator=(const vtkLatticeBoltzmannLighting&) = delete;
 
   tyndall::LatticeSettings Settings() const;
+  tyndall::LightField LightOf(
+    const tyndall::Domain& domain, const tyndall::PreviewScene& scene, const std::vector<tyndall::Photon>* photons);
   tyndall::LightField Solve(vtkInformationVector** inputs);
   tyndall::LightField SolveWithPhotons(
     vtkInformationVector** inputs, const tyndall::MediumInput& input, const tyndall::FloatField& ior);

@@ -20,7 +20,8 @@ LightField SolveWithPhotons(
   Illumination handed;
   handed.uncollided.fluence = { direct.fluence.data(), direct.channels };
   handed.uncollided.escaped = direct.facePowerOut;
-  return SolveLatticeBoltzmann(device, scene.medium, scene.ior, handed, settings, OfPart(monitor, 0.5, 1.0));
+  return SolveLatticeBoltzmann(
+    device, Domain(scene.medium.grid), scene.medium, scene.ior, handed, settings, OfPart(monitor, 0.5, 1.0));
 }
 
 LatticeSettings SettingsOf(int directions, const ComparedScene& scene, const ComparedSettings& settings)
@@ -60,7 +61,8 @@ void AddStraight(std::vector<ComparedRun>& runs, int directions, Device& device,
     run.setting += coarse ? ", voxels x " + std::to_string(coarsening) : "";
     run.solve = [=, &device](bool, const Monitor& monitor) {
       (void)scaled; // which owns what is solved
-      return SolveLatticeBoltzmann(device, solved->medium, solved->ior, solved->illumination, of, monitor);
+      return SolveLatticeBoltzmann(
+        device, Domain(solved->medium.grid), solved->medium, solved->ior, solved->illumination, of, monitor);
     };
     runs.push_back(std::move(run));
   }

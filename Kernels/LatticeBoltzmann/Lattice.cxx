@@ -13,8 +13,9 @@ namespace tyndall
 {
 namespace
 {
-constexpr int Width = 16;                               ///< of the vectors of LatticeStep.cl
-constexpr std::size_t Cached = std::size_t{ 48 } << 20; ///< bytes of densities that caches may hold: with more, none do
+constexpr int Width = 16; ///< of the vectors of LatticeStep.cl
+constexpr std::size_t Cached = std::size_t{ 48 }
+  << 20; ///< bytes of densities that fit a cache; beyond that stores bypass it
 
 cl::NDRange WholeBlocks(const std::array<int, 3>& size, int edge)
 {
@@ -52,7 +53,7 @@ void Lattice::LayOut(const LatticeVoxels& voxels)
     this->TheInfo.offset[i] =
       LatticeWays[i][0] + LatticeWays[i][1] * this->TheInfo.row + LatticeWays[i][2] * this->TheInfo.layer;
   }
-  const std::array<bool, 3>& periodic = this->Settings.periodic;
+  const std::array<bool, 3>& periodic = this->Box.periodic;
   this->TheInfo.periodic = periodic[0] + 2 * periodic[1] + 4 * periodic[2];
   this->TheInfo.inner = this->Box.innerFaces;
   std::copy(voxels.albedo.begin(), voxels.albedo.end(), this->TheInfo.albedo);
@@ -73,13 +74,13 @@ std::vector<float> Lattice::Arrange(const Inside& inside, const Outside& outside
       for (at[0] = -1; at[0] <= this->Size[0]; ++at[0])
       {
         int faces = 0;
-        float beyondThem = 0.0f; // of a corner: halfway between its faces
+        float beyondThem = 0.0f; // at an edge of the box: the mean of its faces
         std::array<int, 3> near = at;
         for (int a = 0; a < 3; ++a)
         {
           const int face = 2 * a + (at[a] < 0 ? 0 : 1);
           const bool beyond = (at[a] < 0 || at[a] >= this->Size[a]) && !(this->Box.innerFaces >> face & 1);
-          if (beyond && !this->Settings.periodic[a])
+          if (beyond && !this->Box.periodic[a])
           {
             beyondThem += outside(face);
             ++faces;
@@ -108,7 +109,7 @@ void Lattice::Load(const LatticeVoxels& voxels)
       this->Arrange([&](std::size_t voxel) { return values[voxel]; }, [&](int) { return beyond; }), what);
   };
   this->Turning = arranged(voxels.turning, 0.0f, "how voxels scatter");
-  this->Shine(voxels.source);
+  this->SetSource(voxels.source);
   this->Kept = arranged(voxels.kept, 1.0f, "how voxels absorb");
   this->Resistance = Buffer<float>(this->TheDevice,
     this->Arrange([&](std::size_t voxel) { return 1.0f / voxels.passes[voxel]; }, [](int) { return 1.0f; }),
@@ -129,7 +130,7 @@ void Lattice::Load(const LatticeVoxels& voxels)
   }
 }
 
-/// Dark, but for what comes in from outside.
+/// Darkness, but for incident light.
 void Lattice::FillDensities()
 {
   const std::vector<float> incoming =
@@ -154,14 +155,14 @@ cl::Kernel Lattice::Kernel(const char* name) const
   return this->TheDevice.Kernel(name, kernel_source::LatticeStep, this->Options);
 }
 
-/// Voxels round the box take what those on the other side of periodic axes hold.
+/// Fills the layer around the box across periodic axes.
 void Lattice::Wrap(const Buffer<float>& densities)
 {
   const int steps[3] = { 1, this->TheInfo.row, this->TheInfo.layer };
   cl::Kernel wrap = this->Kernel("wrap_lattice");
   for (int a = 0; a < 3; ++a)
   {
-    if (this->Settings.periodic[a])
+    if (this->Box.periodic[a])
     {
       const int u = (a + 1) % 3, v = (a + 2) % 3;
       With(wrap, densities, this->TheInfo.stride, cl_int(steps[u]), cl_int(steps[v]), cl_int(steps[a]),
@@ -221,17 +222,17 @@ std::vector<float> Lattice::FluenceAt(const Buffer<cl_int>& voxels) const
   return seen.Read();
 }
 
-void Lattice::Shine(const std::vector<float>& source)
+void Lattice::SetSource(const std::vector<float>& source)
 {
   this->Source = this->Placed(source, "sources");
 }
 
-void Lattice::ShineBy(
-  const Buffer<float>& scatters, const Buffer<float>& glows, const Buffer<float>& fluence, int channels, int channel)
+void Lattice::SetSourceOf(
+  const Buffer<float>& scatters, const Buffer<float>& emits, const Buffer<float>& fluence, int channels, int channel)
 {
-  cl::Kernel shine = this->Kernel("shine_lattice");
-  With(shine, this->TheInfo, scatters, glows, fluence, cl_int(channels), cl_int(channel), this->Source);
-  this->Queue.enqueueNDRangeKernel(shine, cl::NullRange, cl::NDRange(this->Size[1], this->Size[2]));
+  cl::Kernel kernel = this->Kernel("source_of_fluence");
+  With(kernel, this->TheInfo, scatters, emits, fluence, cl_int(channels), cl_int(channel), this->Source);
+  this->Queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(this->Size[1], this->Size[2]));
 }
 
 std::vector<float> Lattice::Leaving(const Buffer<float>& densities, const LatticeInfo& info)

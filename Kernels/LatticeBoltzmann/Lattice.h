@@ -12,39 +12,38 @@
 
 namespace tyndall
 {
-/// Photon density of one channel on a device, that goes from voxel to voxel by steps.
+/// Photon density of one channel on a device, which moves from voxel to voxel in steps.
 class Lattice
 {
 public:
   /// @param voxels  the known ones of the box
   Lattice(Device& device, const LatticeBox& box, const LatticeSettings& settings, const LatticeVoxels& voxels);
 
-  /// So many steps, dark before the first but for what comes in. Queued, not waited for.
-  /// @param writes  fluence of the last of them is to be there
+  /// Queues so many steps, from darkness but for incident light.
+  /// @param writes  whether the last one writes Fluence()
   void Step(int steps, bool writes);
   std::vector<float> Fluence() const { return this->Shown.Read(); } ///< W / length^2, by voxel
-  /// The same at these voxels alone.
+  /// At these voxels only.
   std::vector<float> FluenceAt(const Buffer<cl_int>& voxels) const;
 
-  /// Steps are queued here from now on, and not on the device's own queue.
+  /// From now on steps are queued on this queue instead of the device's.
   void StepOn(const cl::CommandQueue& queue) { this->Queue = queue; }
-  void Shine(const std::vector<float>& source); ///< by known voxel, as LatticeVoxels has it
-  /// Light that has its fluence on the device is scattered, beside what the medium emits. Queued.
+  void SetSource(const std::vector<float>& source); ///< by known voxel, as LatticeVoxels has it
+  /// Sets the source to what is scattered of a fluence on the device, and what is emitted. Queued.
   /// @param scatters  by place of the lattice: part of the fluence that a step's way through a voxel scatters, times
   ///   what its units are in the lattice's
-  /// @param glows     by place: what begins in a voxel without that light
-  /// @param fluence   [voxel][channels], of which `channel` is taken
-  void ShineBy(
-    const Buffer<float>& scatters, const Buffer<float>& glows, const Buffer<float>& fluence, int channels, int channel);
+  /// @param emits     by place: the source without that light
+  /// @param fluence   [voxel][channels], of which `channel` is used
+  void SetSourceOf(
+    const Buffer<float>& scatters, const Buffer<float>& emits, const Buffer<float>& fluence, int channels, int channel);
 
-  /// Densities, [direction][stride], for what leaves and flows.
+  /// [direction][stride]
   const Buffer<float>& Densities() const { return this->Now; }
   const LatticeInfo& Info() const { return this->TheInfo; }
 
-  /// W / length^2 that leave in a step, [face][voxel].
+  /// W / length^2 that escape in a step, [face][voxel].
   std::vector<float> Leaving();
-  /// The same, of what would leave through black faces if there were fluence 1 everywhere. Overwrites what the next
-  /// step would begin with elsewhere than in Densities().
+  /// The same for fluence 1 everywhere and black faces. Overwrites scratch of the next step, but not Densities().
   std::vector<float> LeavingOfOne();
   /// W / length^2, [x, y, z][voxel].
   std::vector<float> NetFlux();
@@ -73,7 +72,7 @@ private:
   LatticeInfo TheInfo = {};
   std::string Options;
   Buffer<float> Resistance, Turning, Kept, Squared, Albedo, Source, Endless, Shown;
-  Buffer<float> Now, Next; ///< densities; of blocks `Next` is what they send each other
-  Buffer<float> Sends;     ///< of blocks: what they are about to send
+  Buffer<float> Now, Next; ///< densities; with blocks, `Next` is what they exchange
+  Buffer<float> Sends;     ///< with blocks: what they send next
 };
 }

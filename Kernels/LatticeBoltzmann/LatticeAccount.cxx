@@ -7,23 +7,10 @@
 
 namespace tyndall
 {
-void AddRows(const std::vector<ConvergenceRow>& rows, LightField& light)
-{
-  light.convergence.resize(std::max(light.convergence.size(), rows.size()));
-  for (std::size_t row = 0; row < rows.size(); ++row)
-  {
-    ConvergenceRow& sum = light.convergence[row];
-    sum.iteration = rows[row].iteration;
-    sum.seconds += rows[row].seconds;
-    sum.residual = std::max(sum.residual, rows[row].residual);
-    sum.change = std::max(sum.change, rows[row].change);
-  }
-}
-
-/// Fluence, and what voxels absorb and emit. @return W that entered as light that collides or is absorbed
+/// Fluence, absorbed and emitted power. @return W of uncollided light that collides in voxels
 double LatticeAccount::CountVoxels(LightField& light, const std::vector<float>& fluence) const
 {
-  const Medium& medium = this->Scene.medium;
+  const Medium& medium = this->TheMedium;
   const int channel = static_cast<int>(this->Channel);
   const double edge = this->Edge(), area = edge * edge;
   double entered = 0.0;
@@ -32,10 +19,10 @@ double LatticeAccount::CountVoxels(LightField& light, const std::vector<float>& 
     const std::size_t known = this->Box.Known(i);
     const double tau = edge * medium.sigma_a.At(known, channel);
     const double direct = this->Direct.image.fluence.At(known, channel), lost = this->Voxels.lost[known];
-    // Of what begins in a voxel, what is absorbed before it is in the lattice's light.
+    // Part of the source that is absorbed within its first step, before it is in the lattice's fluence.
     const double own = this->Voxels.source[known] * (1.0 / this->Voxels.begins[known] - 1.0);
     const double absorbed = lost * fluence[i] + own;
-    // Where much is absorbed in a step, fluence is the mean over that.
+    // Where much is absorbed in a step, fluence is the mean over the step.
     const double scattered = tau > 1e-6 ? absorbed / tau : fluence[i];
     light.fluence[this->Place(light, i)] = static_cast<float>(direct + scattered);
     light.fluenceDirect[this->Place(light, i)] = static_cast<float>(direct);
@@ -46,13 +33,13 @@ double LatticeAccount::CountVoxels(LightField& light, const std::vector<float>& 
   return entered;
 }
 
-/// What leaves through the faces. @return W that came in through them, or left without having met anything
+/// Escaped power. @return W incident through the faces, or escaped uncollided
 double LatticeAccount::CountFaces(LightField& light) const
 {
   const std::size_t voxels = this->Box.Count();
   const double area = this->Edge() * this->Edge();
   const std::vector<float> through = this->Photons.Leaving();
-  const std::vector<float> inwards = this->Photons.LeavingOfOne(); // light of fluence 1 outside comes in the same way
+  const std::vector<float> inwards = this->Photons.LeavingOfOne(); // as much of fluence 1 outside enters
   double entered = 0.0;
   for (std::size_t face = 0; face < 6; ++face)
   {
@@ -61,14 +48,13 @@ double LatticeAccount::CountFaces(LightField& light) const
     for (std::size_t i = 0; i < voxels; ++i)
     {
       const std::size_t known = this->Box.Known(i);
-      // Of what comes in through links that give back a part, that leaves at once.
+      // Links that give back a part reflect some incident light at once.
       const double squared = this->Voxels.bends ? this->Voxels.squared[known] : 1.0;
       const double entering = area * this->Voxels.incoming[face] * squared * inwards[face * voxels + i];
       const double passed = 2.0 * this->Voxels.passes[known] / (this->Voxels.passes[known] + 1.0);
       power += area * through[face * voxels + i] + entering * (1.0 / passed - 1.0);
       entered += entering / passed;
-      if (!this->Voxels.crossing.empty() &&
-        VoxelBeyond(this->Box.known, this->Settings.periodic, known, face) == Outside)
+      if (!this->Voxels.crossing.empty() && this->Box.Beyond(known, face) == Outside)
       {
         power += area * this->Voxels.crossing[6 * known + face];
       }
@@ -86,7 +72,7 @@ void LatticeAccount::AddFlux(LightField& light) const
   for (std::size_t i = 0; i < voxels; ++i)
   {
     const std::size_t known = this->Box.Known(i);
-    const double tau = this->Edge() * this->Scene.medium.sigma_a.At(known, static_cast<int>(this->Channel));
+    const double tau = this->Edge() * this->TheMedium.sigma_a.At(known, static_cast<int>(this->Channel));
     const double mean = tau > 1e-6 ? this->Voxels.lost[known] / tau : 1.0; // as fluence
     for (std::size_t a = 0; a < 3; ++a)
     {
@@ -100,15 +86,15 @@ void LatticeAccount::AddFlux(LightField& light) const
   }
 }
 
-/// What crosses a face at once goes from where it is first scattered to the face, and half of the way through the voxel
-/// beyond: of a voxel what it sends through one of its faces, and what comes through that from there.
+/// Flux of light that crosses a face at once, from where it is first scattered to the face, and on to the middle of the
+/// next voxel: in a voxel that sends it or receives it.
 double LatticeAccount::FluxOfCrossing(std::size_t known, std::size_t face) const
 {
-  const std::size_t beyond = VoxelBeyond(this->Box.known, this->Settings.periodic, known, face);
+  const std::size_t beyond = this->Box.Beyond(known, face);
   const double out = face % 2 == 0 ? -1.0 : 1.0, crosses = this->Voxels.crossing[6 * known + face];
   const double comes = beyond == Outside ? 0.0 : this->Voxels.crossing[6 * beyond + (face ^ 1)];
   const double nearer =
-    crosses > 0.0 ? NearerOfNormalBeam(this->Scene.medium, known, static_cast<int>(this->Channel)) : 0.0;
+    crosses > 0.0 ? NearerOfNormalBeam(this->TheMedium, known, static_cast<int>(this->Channel)) : 0.0;
   return (0.5 - nearer) * out * crosses - 0.5 * out * comes;
 }
 

@@ -2,7 +2,7 @@
 
 #include "LatticeBoltzmann/Lattice.h"
 #include "LatticeBoltzmann/LatticeBox.h"
-#include "LatticeBoltzmann/LatticeScene.h"
+#include "LatticeBoltzmann/LatticeProblem.h"
 #include "LatticeBoltzmann/LatticeSettings.h"
 #include "LatticeBoltzmann/LatticeVoxels.h"
 #include "Light/LightField.h"
@@ -12,19 +12,16 @@
 
 namespace tyndall
 {
-/// Rows of one channel to those of all.
-void AddRows(const std::vector<ConvergenceRow>& rows, LightField& light);
-
-/// Where the light of one channel of a lattice is and where its power went: of the lattice's own voxels.
+/// Fluence, flux and energy balance of one channel of a lattice, from its densities: of the own voxels.
 class LatticeAccount
 {
 public:
-  /// All of it must stay.
+  /// All must outlive it.
   /// @param direct, voxels  by known voxel
-  LatticeAccount(const LatticeScene& scene, const LatticeBox& box, const LatticeSettings& settings,
-    const Uncollided& direct, const LatticeVoxels& voxels, Lattice& lattice, int channel)
-    : Scene(scene)
-    , Box(box)
+  LatticeAccount(const LatticeProblem& problem, const LatticeSettings& settings, const Uncollided& direct,
+    const LatticeVoxels& voxels, Lattice& lattice, int channel)
+    : TheMedium(problem.TheMedium())
+    , Box(problem.Box())
     , Settings(settings)
     , Direct(direct)
     , Voxels(voxels)
@@ -33,8 +30,8 @@ public:
   {
   }
 
-  /// Adds scattered light beside the uncollided one, face powers, and all of the balance but what is left over.
-  /// @param fluence  of the lattice, by its voxels
+  /// Adds scattered and uncollided light, face powers, and all of the balance but what is left over.
+  /// @param fluence  of the lattice, by own voxel
   void AddTo(LightField& light, const std::vector<float>& fluence) const;
 
 private:
@@ -42,13 +39,13 @@ private:
   {
     return voxel * static_cast<std::size_t>(light.channels) + this->Channel;
   }
-  double Edge() const { return this->Scene.medium.grid.spacing[0]; }
+  double Edge() const { return this->TheMedium.grid.spacing[0]; }
   double CountVoxels(LightField& light, const std::vector<float>& fluence) const;
   double CountFaces(LightField& light) const;
   void AddFlux(LightField& light) const;
   double FluxOfCrossing(std::size_t known, std::size_t face) const;
 
-  const LatticeScene Scene;
+  const Medium& TheMedium;
   const LatticeBox& Box;
   const LatticeSettings& Settings;
   const Uncollided& Direct;

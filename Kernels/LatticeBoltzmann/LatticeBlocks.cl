@@ -26,9 +26,9 @@ static int neighbour_in_block(LatticeInfo lattice, int i, int sign)
 }
 
 // A work-group a block, a work-item a voxel. Arrays are those of step_lattice, and
-//   came       densities that other blocks, or the outside, send along each link in each of these steps: the mean over
-//              their last ones
-//   goes       the same of this block, for the next time; other links' are left as they are
+//   came       densities that other blocks, or the boundary, send along each link in each of these steps: the mean over
+//              their last steps
+//   goes       the same from this block, for the next exchange; other links are left as they are
 //   densities  of all voxels, before and after
 __kernel __attribute__((reqd_work_group_size(BLOCK, BLOCK, BLOCK))) void step_blocks(LatticeInfo lattice,
   const __global float* resistance, const __global float* squared, const __global float* albedo,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "Distribution/Halo.h"
 #include "Medium/Grid.h"
 #include "Medium/VoxelBox.h"
 
@@ -8,26 +9,38 @@
 
 namespace tyndall
 {
-/// The voxels of a lattice, among those of which it is known what they do to light: all of them, or those of a rank's
-/// block, of which the ones around it are known too.
+constexpr auto Outside = static_cast<std::size_t>(-1); ///< no voxel
+
+/// The voxels of a lattice among those whose coefficients are known: a whole grid, or a block and its ghost voxels,
+/// which continue beyond the ends of periodic axes.
 struct LatticeBox
 {
-  explicit LatticeBox(const Grid& all)
-    : known(all)
-    , own({ { 0, 0, 0 }, all.size })
+  /// Of a whole grid, whose periodic axes wrap around.
+  LatticeBox(const Grid& whole, const std::array<bool, 3>& periodicAxes)
+    : known(whole)
+    , own({ { 0, 0, 0 }, whole.size })
+    , periodic(periodicAxes)
   {
   }
-  /// @param inner  bits of the faces -x, +x, ... +z of `voxels` behind which others lie
-  LatticeBox(const Grid& all, const VoxelBox& voxels, int inner)
-    : known(all)
-    , own(voxels)
-    , innerFaces(inner)
+  /// Of a rank's block with its ghost voxels.
+  explicit LatticeBox(const Halo& halo)
+    : known(halo.KnownGrid())
+    , own(halo.Own())
   {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const bool wraps = halo.Periodic()[axis];
+      const bool below = wraps || this->own.first[axis] > 0;
+      const bool above = wraps || EndOf(this->own, axis) < halo.Whole().size[axis];
+      this->innerFaces |= (below ? 1 : 0) << 2 * axis | (above ? 2 : 0) << 2 * axis;
+      this->own.first[axis] -= halo.Known().first[axis];
+    }
   }
 
   std::size_t Count() const { return this->own.VoxelCount(); }
   bool IsAll() const { return this->Count() == this->known.VoxelCount(); }
-  /// Place among the known voxels of one of the lattice.
+
+  /// Number, among the known voxels, of an own voxel.
   std::size_t Known(std::size_t voxel) const
   {
     if (this->IsAll())
@@ -38,7 +51,7 @@ struct LatticeBox
     grid.size = this->own.size;
     return this->Known(grid.VoxelAt(voxel));
   }
-  /// @param at  from -1 on, as far as voxels are known
+  /// @param at  from the first own voxel; ghost voxels included
   std::size_t Known(std::array<int, 3> at) const
   {
     for (int axis = 0; axis < 3; ++axis)
@@ -48,8 +61,24 @@ struct LatticeBox
     return this->known.IndexOf(at);
   }
 
+  /// The known voxel across a face -x, +x, ... +z of a known voxel, or Outside.
+  std::size_t Beyond(std::size_t voxel, std::size_t face) const
+  {
+    const std::size_t axis = face / 2;
+    std::array<int, 3> at = this->known.VoxelAt(voxel);
+    at[axis] += face % 2 == 0 ? -1 : 1;
+    const int size = this->known.size[axis];
+    if ((at[axis] < 0 || at[axis] >= size) && !this->periodic[axis])
+    {
+      return Outside;
+    }
+    at[axis] = (at[axis] + size) % size;
+    return this->known.IndexOf(at);
+  }
+
   Grid known;
-  VoxelBox own;
-  int innerFaces = 0;
+  VoxelBox own;                      ///< in voxels of `known`
+  int innerFaces = 0;                ///< bits of the faces -x, +x, ... +z of `own` beyond which ghost voxels lie
+  std::array<bool, 3> periodic = {}; ///< axes that wrap around within the known voxels
 };
 }

@@ -1,38 +1,58 @@
 #include "LatticeBoltzmann/LatticeChannel.h"
 
 #include "LatticeBoltzmann/LatticeAccount.h"
-#include "LatticeBoltzmann/Steady/SteadyInMemory.h"
 #include "LatticeBoltzmann/Steady/SteadyLattice.h"
+
+#include <algorithm>
 
 namespace tyndall
 {
-std::vector<float> NetFluxOf(const UncollidedImage& image, const Grid& grid, int channels)
+namespace
 {
-  std::vector<float> flux;
-  for (std::size_t i = 0; i < grid.VoxelCount(); ++i)
+/// Rows of one channel to those of all.
+void AddRows(const std::vector<ConvergenceRow>& rows, LightField& light)
+{
+  light.convergence.resize(std::max(light.convergence.size(), rows.size()));
+  for (std::size_t row = 0; row < rows.size(); ++row)
   {
-    for (int c = 0; c < channels; ++c)
-    {
-      for (int a = 0; a < 3; ++a)
-      {
-        const float along = image.meanDirection.values ? image.meanDirection.values[3 * i + a] : 0.0f;
-        flux.push_back(along * image.fluence.At(i, c));
-      }
-    }
+    ConvergenceRow& sum = light.convergence[row];
+    sum.iteration = rows[row].iteration;
+    sum.seconds += rows[row].seconds;
+    sum.residual = std::max(sum.residual, rows[row].residual);
+    sum.change = std::max(sum.change, rows[row].change);
   }
-  return flux;
+}
+}
+
+LatticeChannel::LatticeChannel(
+  Device& device, const LatticeProblem& problem, const LatticeSettings& settings, const Uncollided& direct, int channel)
+  : TheDevice(device)
+  , Problem(problem)
+  , Settings(settings)
+  , Direct(direct)
+  , Channel(channel)
+  , Voxels(problem, settings, direct, channel)
+{
+  problem.TheDomain().Collective([&] {
+    if (problem.Box().Count() > 0)
+    {
+      this->Densities.emplace(device, problem.Box(), settings, this->Voxels);
+    }
+  });
 }
 
 void LatticeChannel::Solve(const Monitor& monitor)
 {
-  if (this->Voxels.Given() == 0.0)
+  const LatticeBox& box = this->Problem.Box();
+  if (this->Problem.TheDomain().Sum(this->Voxels.Given()) == 0.0)
   {
-    this->Fluence.assign(this->Box.Count(), 0.0f);
+    this->Fluence.assign(box.Count(), 0.0f);
   }
   else if (this->Settings.Solves())
   {
-    SteadyInMemory system(this->TheDevice, this->Box.known, this->Settings, this->Voxels, this->Photons);
-    this->Fluence = SteadyLattice(this->Box, this->Settings, this->Voxels, system).Solve(monitor, this->Rows);
+    const Lattice* const densities = this->Densities ? &*this->Densities : nullptr;
+    SteadyLattice steady(this->TheDevice, this->Problem, this->Settings, this->Voxels, densities);
+    this->Fluence = steady.Solve(monitor, this->Rows);
   }
   else
   {
@@ -42,25 +62,25 @@ void LatticeChannel::Solve(const Monitor& monitor)
 
 void LatticeChannel::Settle(const StepsBefore& before, const Monitor& monitor)
 {
-  this->Fluence =
-    Settling(this->TheDevice, this->Photons, this->Box.known, this->Settings).Run(before, monitor, this->Rows);
+  Settling settling(this->TheDevice, *this->Densities, this->Problem.Box().known, this->Settings);
+  this->Fluence = settling.Run(before, monitor, this->Rows);
 }
 
-void LatticeChannel::Shine()
+void LatticeChannel::UpdateSources()
 {
-  this->Voxels.Shine(this->Scene, this->Direct, static_cast<int>(this->Channel));
-  this->Photons.Shine(this->Voxels.source);
+  this->Voxels.LoadSources(this->Direct);
+  this->Densities->SetSource(this->Voxels.source);
 }
 
 void LatticeChannel::AddTo(LightField& light)
 {
-  LatticeAccount(
-    this->Scene, this->Box, this->Settings, this->Direct, this->Voxels, this->Photons, static_cast<int>(this->Channel))
-    .AddTo(light, this->Fluence);
-  EnergyBalance& balance = light.balance;
-  const std::size_t c = this->Channel;
-  // What densities still gain in a step.
-  balance.leftOver[c] = balance.entered[c] + balance.emitted[c] - balance.absorbed[c] - balance.escaped[c];
+  this->Problem.TheDomain().Collective([&] {
+    if (this->Densities)
+    {
+      LatticeAccount(this->Problem, this->Settings, this->Direct, this->Voxels, *this->Densities, this->Channel)
+        .AddTo(light, this->Fluence);
+    }
+  });
   AddRows(this->Rows, light);
 }
 }

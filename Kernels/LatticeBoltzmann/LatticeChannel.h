@@ -1,56 +1,48 @@
 #pragma once
 
+#include "Device/Device.h"
 #include "Device/Monitor.h"
 #include "LatticeBoltzmann/Lattice.h"
-#include "LatticeBoltzmann/LatticeBox.h"
-#include "LatticeBoltzmann/LatticeScene.h"
+#include "LatticeBoltzmann/LatticeProblem.h"
+#include "LatticeBoltzmann/LatticeSettings.h"
+#include "LatticeBoltzmann/LatticeVoxels.h"
 #include "LatticeBoltzmann/Settling.h"
 #include "Light/LightField.h"
 
+#include <optional>
 #include <vector>
 
 namespace tyndall
 {
-/// Mean directions times fluence, as LightField::netFlux has it.
-std::vector<float> NetFluxOf(const UncollidedImage& image, const Grid& grid, int channels);
-
-/// One channel: solved for, and added to the light of all.
+/// One channel of a lattice: this rank's block of it is solved, and added to the light of all channels. Collective.
 class LatticeChannel
 {
 public:
-  LatticeChannel(Device& device, const LatticeScene& scene, const Field& ior, const LatticeSettings& settings,
-    const Uncollided& direct, int channel)
-    : TheDevice(device)
-    , Scene(scene)
-    , Box(scene.medium.grid)
-    , Settings(settings)
-    , Direct(direct)
-    , Voxels(scene, ior, settings, direct, channel)
-    , Photons(device, this->Box, settings, this->Voxels)
-    , Channel(static_cast<std::size_t>(channel))
-  {
-  }
+  /// All that is given must outlive it.
+  LatticeChannel(Device& device, const LatticeProblem& problem, const LatticeSettings& settings,
+    const Uncollided& direct, int channel);
 
-  double Thickest() const { return this->Voxels.thickest; }
-  Lattice& TheLattice() { return this->Photons; }
+  double Thickest() const { return this->Voxels.thickest; } ///< sigma_t h, of all ranks
+  Lattice& TheLattice() { return *this->Densities; }        ///< of a block that has voxels
   const LatticeVoxels& TheVoxels() const { return this->Voxels; }
+
+  /// The steady state, or steps, as the settings say.
   void Solve(const Monitor& monitor);
   /// Takes uncollided light that has changed.
-  void Shine();
-  /// Steps on, from densities that other steps have left.
+  void UpdateSources();
+  /// Continues to step, from the densities that earlier steps left. On one rank.
   void Settle(const StepsBefore& before, const Monitor& monitor);
-  /// Scattered light beside the uncollided one, and where all power went.
+  /// Adds fluence, flux, powers of this rank's voxels and the rows of convergence.
   void AddTo(LightField& light);
 
 private:
   Device& TheDevice;
-  const LatticeScene Scene;
-  const LatticeBox Box;
+  const LatticeProblem& Problem;
   const LatticeSettings& Settings;
   const Uncollided& Direct;
+  const int Channel;
   LatticeVoxels Voxels;
-  Lattice Photons;
-  std::size_t Channel;
+  std::optional<Lattice> Densities; ///< of the block; none where it has no voxels
   std::vector<float> Fluence;
   std::vector<ConvergenceRow> Rows;
 };

@@ -2,15 +2,20 @@
 
 #include "Device/DeviceWords.h"
 #include "Device/Errors.h"
+#include "Distribution/SharedMedium.h"
 #include "LatticeBoltzmann/CubicVoxels.h"
 #include "Light/LeftOut.h"
 #include "LightPropagation/Convergence.h"
+#include "LightPropagation/Distributed/BlockScene.h"
+#include "LightPropagation/Problem/PropagationProblem.h"
 #include "Numerics/Constants.h"
 #include "Numerics/NumberText.h"
 #include "Refraction/Index/IndexRange.h"
 
 #include <algorithm>
+#include <functional>
 #include <string>
+#include <vector>
 
 namespace tyndall
 {
@@ -25,7 +30,7 @@ void CheckCubes(const Grid& grid)
   }
 }
 
-/// Light stays for so many collisions in voxels that absorb nothing.
+/// Double precision resolves only so many collisions in a voxel that absorbs nothing.
 void CheckThickness(const Medium& medium)
 {
   constexpr double thickest = 1e10, absorbsAtLeast = 1e-3; // of doubles 1e-16 are left
@@ -45,15 +50,55 @@ void CheckThickness(const Medium& medium)
   }
 }
 
-}
-
-void CheckLattice(const Medium& medium, const Field& ior, const LatticeSettings& settings)
+void CheckOwnBlock(const Domain& domain, const Medium& medium, const Field& ior, const Illumination& illumination,
+  const LatticeSettings& settings)
 {
   Check(settings);
+  const std::string refused = domain.IsSerial() ? "" : NotInBlocks(settings);
+  Require(refused.empty(), "A lattice that is spread over ranks is not solved with " + refused + ".");
+  Check(illumination);
+  CheckFaceAlbedo(illumination, settings.periodic);
+  if (domain.IsEmpty())
+  {
+    return;
+  }
   Check(medium);
   CheckCubes(medium.grid);
   CheckThickness(medium);
   CheckIndex(ior, medium.grid);
+  Check(illumination.uncollided, medium);
+  Require(medium.grid.size == domain.Own().size,
+    "The medium of rank " + std::to_string(domain.Rank()) + " does not have the size of its block.");
+}
+
+/// Of settings that the maps do not have.
+void RequireSameLattice(
+  const Domain& domain, const Field& ior, const Illumination& illumination, const LatticeSettings& settings)
+{
+  std::vector<double> numbers = { 1.0 * settings.directions, settings.tolerance, 1.0 * settings.interleaves };
+  for (const Rgb& face : illumination.faceAlbedo)
+  {
+    numbers.insert(numbers.end(), face.begin(), face.end());
+  }
+  RequireSame(domain.Comm(), "settings of the lattice", true, numbers);
+  RequireSame(domain.Comm(), "whether there is a refractive index", !domain.IsEmpty(), { ior.values ? 1.0 : 0.0 });
+}
+}
+
+void CheckLattice(const Domain& domain, const Medium& medium, const Field& ior, const Illumination& illumination,
+  const LatticeSettings& settings)
+{
+  domain.Collective([&] {
+    domain.Partition().Check();
+    Require(static_cast<int>(domain.Partition().blocks.size()) == domain.Comm().Ranks(),
+      "There is not a block for each rank.");
+    CheckOwnBlock(domain, medium, ior, illumination, settings);
+  });
+  const bool has = !domain.IsEmpty();
+  RequireSame(domain.Comm(), domain.Partition());
+  RequireSame(domain.Comm(), has, medium, illumination, AsPropagation(settings, 0));
+  RequireSameLattice(domain, ior, illumination, settings);
+  RequireSink(LightEndsOnAny(domain.Comm(), has, medium, illumination), illumination, AsPropagation(settings));
 }
 
 bool NeedsFirstMoments(const Medium& medium, const LatticeSettings& settings)
@@ -62,17 +107,7 @@ bool NeedsFirstMoments(const Medium& medium, const LatticeSettings& settings)
   return settings.scheme == LatticeScheme::Conservative && AnyVoxelIsThickerThan(thick, medium);
 }
 
-PropagationSettings AsPropagation(const LatticeSettings& settings)
-{
-  PropagationSettings of;
-  of.periodic = settings.periodic;
-  of.maximumOrders = settings.maximumSteps;
-  of.netFlux = settings.netFlux;
-  of.source = PropagationSource::Constant; // voxels stay cubes in slabs, too
-  return of;
-}
-
-void CheckPhotonsGoNotRound(const LatticeSettings& settings)
+void RequireOpenAxes(const LatticeSettings& settings)
 {
   if (settings.periodic[0] || settings.periodic[1] || settings.periodic[2])
   {
@@ -110,16 +145,19 @@ void DoubtPhotons(const PhotonLight& photons, std::size_t all, LightField& light
   }
 }
 
-LightField BeginLight(std::size_t voxels, int channels, const LatticeSettings& settings)
+LightField BeginLight(const LatticeProblem& problem, const LatticeSettings& settings)
 {
   LightField light;
-  light.channels = channels;
-  light.fluence.resize(voxels * static_cast<std::size_t>(channels));
+  light.channels = problem.Channels();
+  light.fluence.resize(problem.Box().Count() * static_cast<std::size_t>(light.channels));
   light.fluenceDirect = light.fluence;
   light.netFlux.resize(settings.netFlux ? 3 * light.fluence.size() : 0);
   return light;
 }
 
+namespace
+{
+/// Adds what follows from fluence, and what was left out, in the units of the solve.
 void DescribeLight(
   LightField& light, const Device& device, bool anisotropic, const LatticeSettings& settings, double thickest)
 {
@@ -146,14 +184,32 @@ void DescribeLight(
   }
 }
 
-void CountLost(const Rgb& lost, EnergyBalance& balance)
+/// Sums powers over ranks. What densities still gain in a step is left over.
+void SumPowers(const Domain& domain, LightField& light)
 {
-  for (std::size_t c = 0; c < lost.size(); ++c)
+  EnergyBalance& balance = light.balance;
+  std::vector<Rgb*> powers = { &balance.entered, &balance.emitted, &balance.absorbed, &balance.escaped };
+  for (Rgb& face : light.facePowerOut)
   {
-    balance.entered[c] += lost[c];
+    powers.push_back(&face);
+  }
+  std::vector<double> values;
+  for (const Rgb* power : powers)
+  {
+    values.insert(values.end(), power->begin(), power->end());
+  }
+  values = domain.Sum(values);
+  for (std::size_t i = 0; i < values.size(); ++i)
+  {
+    (*powers[i / 3])[i % 3] = values[i];
+  }
+  for (std::size_t c = 0; c < 3; ++c)
+  {
+    balance.leftOver[c] = balance.entered[c] + balance.emitted[c] - balance.absorbed[c] - balance.escaped[c];
   }
 }
 
+/// Sets `converged`, and adds warnings, of light in the user's units.
 void JudgeLight(LightField& light, const Illumination& illumination, const LatticeSettings& settings)
 {
   PropagationSettings judged = AsPropagation(settings);
@@ -166,17 +222,23 @@ void JudgeLight(LightField& light, const Illumination& illumination, const Latti
   }
   light.faceAlbedo = illumination.faceAlbedo;
 }
+}
 
-void FinishLight(LightField& light, const Device& device, const PropagationProblem& problem,
-  const Illumination& illumination, const LatticeSettings& settings, double thickest)
+void FinishLight(LightField& light, const Device& device, const LatticeProblem& problem,
+  const Illumination& illumination, const LatticeSettings& settings, double thickest, const Rgb& lost)
 {
-  const bool anisotropic = !problem.TheMedium().phase.IsIsotropic() && problem.Traits().scatters;
-  DescribeLight(light, device, anisotropic, settings, thickest);
+  const Domain& domain = problem.TheDomain();
+  SumPowers(domain, light);
+  const Rgb allLost = domain.Sum(lost);
+  std::transform(light.balance.entered.begin(), light.balance.entered.end(), allLost.begin(),
+    light.balance.entered.begin(), std::plus<double>());
+  const bool anisotropic = problem.IsAnisotropic();
+  domain.Collective([&] { DescribeLight(light, device, anisotropic, settings, thickest); });
   if (settings.scheme == LatticeScheme::Conservative)
   {
-    JudgeBalance(light, problem.TheMedium());
+    JudgeBalance(light, domain.Comm(), !domain.IsEmpty(), problem.TheMedium());
   }
   problem.Undo(light);
-  JudgeLight(light, illumination, settings);
+  domain.Collective([&] { JudgeLight(light, illumination, settings); });
 }
 }

@@ -7,14 +7,14 @@
 //   ENDLESS     1: along some lines no light is sent
 //
 // Densities are what leaves a voxel along each of its links, [direction][stride]. Their sum is fluence, W / length^2.
-// The voxels round the box hold what comes in.
+// The layer of voxels around the box holds incident light.
 #pragma once
 #include "LatticeBoltzmann/LatticeShared.h"
 
 #define WEIGHT(i) (DIRECTIONS == 6 ? 1.0f / 6.0f : (i) < 6 ? 1.0f / 12.0f : 1.0f / 24.0f)
 #define FOR_DIRECTIONS(i) _Pragma("unroll") for (int i = 0; i < DIRECTIONS; ++i)
 
-// Links hand on what is sent, and nothing else.
+// Links pass what is sent, and add nothing.
 #if PASSES_ALL && !BENDS && !REFLECTS
 #define PLAIN 1
 #else
@@ -27,7 +27,7 @@ __constant char Ways[18][3] = LATTICE_WAYS;
 // gives back (numerics.md, Eqs. (L3), (L5)).
 //   sent, back  densities of the neighbour along the link, and of the voxel itself against it
 //   own, other  resistance of both: inverse of the part that a link lets through between two like them
-//   here, there n^2 of both; there 0: outside, where it is the voxel's own, and light comes as n^2 times `sent`
+//   here, there n^2 of both; there 0: outside, where n^2 is the voxel's, times which `sent` is incident
 //   albedo      of the face between; 0 inside
 #define DEFINE_ARRIVING(name, type)                                                                                \
   static type name(type sent, type back, type own, type other, type here, type there, type albedo)                 \
@@ -50,7 +50,7 @@ __constant char Ways[18][3] = LATTICE_WAYS;
     return PLAIN ? sent : part * sent + (1.0f - returns) * back;                                                   \
   }
 
-// Of even light that voxels send nothing goes along endless lines (LatticeVoxels.h), and all of it along the others.
+// Voxels send none of their even light along endless lines (LatticeVoxels.h), and all of it along the other lines.
 //   closed  bits of the pairs of directions of endless lines
 #define DEFINE_OPEN(name, type, whole)                                                    \
   static type name(whole closed)                                                          \

@@ -7,6 +7,16 @@
 
 namespace tyndall
 {
+namespace
+{
+void SetLevel(LatticeSettings& settings, int directions, double tolerance)
+{
+  const LatticeSettings byDefault;
+  SetUnlessChosen(settings.directions, byDefault.directions, directions);
+  SetUnlessChosen(settings.tolerance, byDefault.tolerance, tolerance);
+}
+}
+
 void Check(const LatticeSettings& settings)
 {
   if (settings.directions != 6 && settings.directions != 18)
@@ -53,5 +63,33 @@ std::string NotInBlocks(const LatticeSettings& settings)
     : settings.maximumSteps > 0 ? "MaximumOrders"
     : !settings.solvesSteady    ? "steps"
                                 : "";
+}
+
+PropagationSettings AsPropagation(const LatticeSettings& settings, int angularDegree)
+{
+  PropagationSettings of;
+  of.periodic = settings.periodic;
+  of.maximumOrders = settings.maximumSteps;
+  of.netFlux = settings.netFlux;
+  of.angularDegree = angularDegree;
+  of.source = PropagationSource::Constant; // voxels of slabs stay cubes, too
+  return of;
+}
+
+LatticeSettings AtQuality(Quality quality, LatticeSettings settings)
+{
+  switch (quality)
+  {
+    case Quality::Draft: SetLevel(settings, 6, 1e-2); break;
+    case Quality::Default: break;
+    case Quality::Fine: SetLevel(settings, 18, 1e-5); break;
+    case Quality::Reference: SetLevel(settings, 18, 1e-6); break;
+  }
+  return settings;
+}
+
+std::vector<std::string> Words(const LatticeSettings& settings)
+{
+  return { "Lattice = " + std::to_string(settings.directions), "Tolerance = " + Text("%g", settings.tolerance) };
 }
 }

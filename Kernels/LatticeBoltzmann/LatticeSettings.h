@@ -1,7 +1,11 @@
 #pragma once
 
+#include "Light/Quality.h"
+#include "LightPropagation/PropagationSettings.h"
+
 #include <array>
 #include <string>
+#include <vector>
 
 namespace tyndall
 {
@@ -22,19 +26,19 @@ struct LatticeSettings
   int blockSize = 0;
   int stepsPerExchange =
     8;                     ///< steps in a block before it exchanges light with its neighbours, and of a turn of photons
-  int maximumSteps = 0;    ///< so many; 0: as many as the tolerance takes
+  int maximumSteps = 0;    ///< number of steps; 0: until the tolerance is met
   double tolerance = 1e-4; ///< relative error of fluence at which to stop, estimated
-  /// The steady equations are solved, where the scheme is conservative, there are no blocks and maximumSteps is 0;
-  /// false: steps are done until the tolerance is met.
+  /// Solve for the steady state, if the scheme is conservative, there are no blocks and maximumSteps is 0; false: step
+  /// until the tolerance is met.
   bool solvesSteady = true;
-  /// Voxels, spread evenly, at which it is looked how much steps change; 0: all. A look at all costs about a step.
+  /// Number of evenly spread voxels at which changes are measured; 0: all. Reading all costs about a step.
   int probes = 4096;
-  /// Photons (where they are given) march, and light that they have left diffuses by steps while they march on;
+  /// Photons (if any are given) march while the light that they have deposited diffuses in steps;
   /// stepsPerExchange of these to `stretches` of a photon's way from voxel wall to voxel wall (0: to its end). False:
   /// they march to their ends first.
   bool interleaves = false;
   int stretches = 16;
-  bool sideBySide = true; ///< where it interleaves; false: photons and lattice take turns on the device
+  bool sideBySide = true; ///< if interleaved; false: photons and lattice take turns on the device
   std::array<bool, 3> periodic = {};
   bool netFlux = false; ///< compute net_flux too
 
@@ -52,4 +56,15 @@ void Check(const LatticeSettings& settings);
 /// The setting that takes steps instead of solving for the steady state, which is done on one rank only, in words for
 /// an error; empty: none does.
 std::string NotInBlocks(const LatticeSettings& settings);
+
+/// Settings for the parts of light propagation maps that serve the lattice.
+/// @param angularDegree  as PropagationSettings has it
+PropagationSettings AsPropagation(const LatticeSettings& settings, int angularDegree = -1);
+
+/// Settings of a quality: directions and tolerance, as far as `settings` has them at their default values. No quality
+/// removes the error of diffusion itself.
+LatticeSettings AtQuality(Quality quality, LatticeSettings settings);
+
+/// "Name = value" of each setting that a quality may choose.
+std::vector<std::string> Words(const LatticeSettings& settings);
 }

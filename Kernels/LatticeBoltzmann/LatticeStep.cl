@@ -14,7 +14,7 @@ DEFINE_COLLIDED(collided, float16)
 DEFINE_OPEN(open_weight, float16, int16)
 DEFINE_SENT(sent_weight, float16, int16)
 
-// Of sixteen voxels beginning at `at`: to those of the row's end that are voxels.
+// Stores sixteen values from `at` on, up to the row's last voxel.
 static void store_some(float16 values, __global float* to, ulong at, int voxels)
 {
   if (voxels >= WIDTH)
@@ -30,7 +30,7 @@ static void store_some(float16 values, __global float* to, ulong at, int voxels)
   }
 }
 
-// The same of densities, whose rows are aligned. What is not read before it is written need not come from memory first.
+// The same for densities, whose rows are aligned. A streaming store saves reading the lines that it overwrites.
 static void store_densities(float16 values, __global float* to, ulong at, int voxels)
 {
 #ifdef STORE_PAST_CACHES
@@ -99,9 +99,9 @@ __kernel void step_lattice(LatticeInfo lattice, LINKS, const __global float* tur
   }
 }
 
-// What begins in voxels where light of a fluence ([voxel][channels], of which one channel counts) is scattered. A
-// work-item a row of voxels; ShineBy in Lattice.h says what arrays are.
-__kernel void shine_lattice(LatticeInfo lattice, const __global float* scatters, const __global float* glows,
+// The source from a fluence ([voxel][channels], of which one channel is used) and emission; arguments are described at
+// Lattice::SetSourceOf. A work-item a row of voxels.
+__kernel void source_of_fluence(LatticeInfo lattice, const __global float* scatters, const __global float* emits,
   const __global float* fluence, int channels, int channel, __global float* source)
 {
   const int y = get_global_id(0), z = get_global_id(1), nx = lattice.size[0];
@@ -109,7 +109,7 @@ __kernel void shine_lattice(LatticeInfo lattice, const __global float* scatters,
   const __global float* row = fluence + ((ulong)z * lattice.size[1] + y) * nx * channels + channel;
   for (int x = 0; x < nx; ++x)
   {
-    source[line + x] = glows[line + x] + scatters[line + x] * row[x * channels];
+    source[line + x] = emits[line + x] + scatters[line + x] * row[x * channels];
   }
 }
 
@@ -146,8 +146,7 @@ __kernel void flux_lattice(LatticeInfo lattice, LINKS, const __global float* fro
   }
 }
 
-// Voxels round the box take what those on the other side of a periodic axis hold. A work-item a value of a plane, by
-// direction.
+// Fills the layer around the box across a periodic axis. A work-item a value of a plane, by direction.
 //   u, v  steps in memory along the plane, and `along` the axis; n: voxels along it
 __kernel void wrap_lattice(__global float* densities, ulong stride, int u, int v, int along, int n)
 {

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace tyndall
@@ -17,7 +18,7 @@ namespace
 /// all lines close, and thin media end light in many laps.
 constexpr double LeastEnding = 1e-3, LeastEndingInClosedBox = 1e-12;
 
-/// Of light that begins between two places, what comes to the farther one before it comes to the nearer or is absorbed.
+/// Part of light from between two places that reaches the farther one before the nearer, and is not absorbed.
 /// @param way     from the nearer one, of all resistance between them
 /// @param decays  how many e-folds diffuse light falls by from one to the other
 double PartThatCrosses(double way, double decays)
@@ -100,20 +101,6 @@ double Uncollided::Nearer(std::size_t voxel, int channel, std::size_t face) cons
   return fluence > 0.0 ? std::min(moment / fluence, 0.5) : 0.0;
 }
 
-std::size_t VoxelBeyond(const Grid& grid, const std::array<bool, 3>& periodic, std::size_t voxel, std::size_t face)
-{
-  const std::size_t axis = face / 2;
-  std::array<int, 3> at = grid.VoxelAt(voxel);
-  at[axis] += face % 2 == 0 ? -1 : 1;
-  const int size = grid.size[axis];
-  if ((at[axis] < 0 || at[axis] >= size) && !periodic[axis])
-  {
-    return Outside;
-  }
-  at[axis] = (at[axis] + size) % size;
-  return grid.IndexOf(at);
-}
-
 double LatticeWeight(int directions, int i)
 {
   return directions == 6 ? 1.0 / 6.0 : i < 6 ? 1.0 / 12.0 : 1.0 / 24.0;
@@ -125,18 +112,36 @@ double LatticeSquares(int directions)
 }
 
 LatticeVoxels::LatticeVoxels(
-  const LatticeScene& scene, const Field& ior, const LatticeSettings& settings, const Uncollided& direct, int channel)
-  : Directions(settings.directions)
-  , Periodic(settings.periodic)
+  const LatticeProblem& problem, const LatticeSettings& settings, const Uncollided& direct, int channel)
+  : Problem(problem)
+  , Channel(channel)
+  , Directions(settings.directions)
 {
-  const Medium& medium = scene.medium;
+  const Domain& domain = problem.TheDomain();
+  domain.Collective([&] { this->Load(settings); });
+  this->ReduceGlobals();
+  this->LoadBoundary();
+  domain.Collective([&] { this->LoadSources(direct); });
+  const bool anyPeriodic = settings.periodic[0] || settings.periodic[1] || settings.periodic[2];
+  if (anyPeriodic && settings.scheme == LatticeScheme::Conservative)
+  {
+    this->FindEndless(settings.periodic);
+    domain.Collective([&] { this->CheckLightEnds(); });
+  }
+}
+
+void LatticeVoxels::Load(const LatticeSettings& settings)
+{
+  const Medium& medium = this->Problem.TheMedium();
+  const Field& ior = this->Problem.Index();
   const double edge = medium.grid.spacing[0];
   const bool published = settings.scheme == LatticeScheme::Published;
-  // Thickness of which every collision is even, and links pass all.
+  // Thickness at which a collision makes all of the density even, and up to which links let all light through.
   const double most = 2.0 / (3.0 * LatticeSquares(settings.directions));
   for (std::size_t i = 0; i < medium.grid.VoxelCount(); ++i)
   {
-    const double s = edge * medium.TransportSigmaT(i, channel), absorbs = edge * medium.sigma_a.At(i, channel);
+    const double s = edge * medium.TransportSigmaT(i, this->Channel);
+    const double absorbs = edge * medium.sigma_a.At(i, this->Channel);
     this->thickest = std::max(this->thickest, s);
     const double even = s > 0.0 ? std::min(1.0, 1.0 / (0.5 + 0.5 * most / s)) : 0.0;
     this->turning.push_back(static_cast<float>(published ? s - absorbs : even));
@@ -147,27 +152,34 @@ LatticeVoxels::LatticeVoxels(
     this->begins.push_back(published || absorbs < 1e-6 ? 1.0 : 2.0 * lost / ((2.0 - lost) * absorbs));
     this->squared.push_back(ior.values && !published ? ior.At(i, 0) * ior.At(i, 0) : 1.0f);
     this->passesAll = this->passesAll && this->passes.back() == 1.0f;
-    this->bends = this->bends || this->squared.back() != this->squared.front();
-  }
-  this->TakeOutside(scene.shining, channel);
-  this->Shine(scene, direct, channel);
-  if (!published && (settings.periodic[0] || settings.periodic[1] || settings.periodic[2]))
-  {
-    const auto ofAll = [](const std::vector<double>& sums) { return sums; };
-    this->FindEndless(medium.grid, settings.periodic, LatticeBox(medium.grid), { 0, 0, 0 }, ofAll);
-    this->CheckLightEnds(medium.grid);
   }
 }
 
-void LatticeVoxels::FindEndless(const Grid& whole, const std::array<bool, 3>& periodic, const LatticeBox& box,
-  const std::array<int, 3>& first, const std::function<std::vector<double>(const std::vector<double>&)>& sum)
+/// Kernels omit only what no voxel of any rank needs.
+void LatticeVoxels::ReduceGlobals()
 {
+  const bool has = !this->squared.empty();
+  const auto ends = std::minmax_element(this->squared.begin(), this->squared.end());
+  const std::vector<double> all =
+    this->Problem.TheDomain().Comm().Largest({ this->passesAll ? 0.0 : 1.0, has ? 1.0 * *ends.second : 0.0,
+      has ? -1.0 * *ends.first : -std::numeric_limits<double>::infinity(), this->thickest });
+  this->passesAll = all[0] == 0.0;
+  this->bends = all[1] != -all[2];
+  this->thickest = all[3];
+}
+
+/// Marks closed lines on which light would hardly end. Collective.
+void LatticeVoxels::FindEndless(const std::array<bool, 3>& periodic)
+{
+  const Domain& domain = this->Problem.TheDomain();
+  const LatticeBox& box = this->Problem.Box();
+  const Grid& whole = domain.Whole();
   const double ofVoxel = periodic[0] && periodic[1] && periodic[2] ? LeastEndingInClosedBox : LeastEnding;
   const auto inWhole = [&](std::size_t i) {
     std::array<int, 3> at = box.known.VoxelAt(i);
     for (int axis = 0; axis < 3; ++axis)
     {
-      at[axis] += first[axis] - box.own.first[axis];
+      at[axis] += domain.Own().first[axis] - box.own.first[axis];
     }
     return at;
   };
@@ -186,24 +198,26 @@ void LatticeVoxels::FindEndless(const Grid& whole, const std::array<bool, 3>& pe
       const std::size_t voxel = box.Known(i);
       inALap[lines.Through(inWhole(voxel))] += 1.0 - (1.0 - this->lost[voxel]) * (1.0 - this->turning[voxel]);
     }
-    inALap = sum(inALap);
+    inALap = domain.Sum(inALap);
     for (std::size_t i = 0; i < bits.size(); ++i)
     {
       bits[i] += inALap[lines.Through(inWhole(i))] < least ? static_cast<float>(1 << pair) : 0.0f;
     }
   }
-  const bool any = std::any_of(bits.begin(), bits.end(), [](float bit) { return bit > 0.0f; });
-  this->endless = any ? std::move(bits) : std::vector<float>();
+  if (std::any_of(bits.begin(), bits.end(), [](float bit) { return bit > 0.0f; }))
+  {
+    this->endless = std::move(bits);
+  }
 }
 
-void LatticeVoxels::CheckLightEnds(const Grid& known) const
+void LatticeVoxels::CheckLightEnds() const
 {
   const auto all = static_cast<float>((1 << this->Directions / 2) - 1);
   for (std::size_t i = 0; i < this->endless.size(); ++i)
   {
     if (this->endless[i] == all && this->source[i] > 0.0f)
     {
-      throw InvalidInput("What begins in voxel " + VoxelName(known, i) +
+      throw InvalidInput("What begins in voxel " + VoxelName(this->Problem.Box().known, i) +
         " meets nothing round the three periodic axes: light would grow without end. Leave an axis open, or give the "
         "medium some sigma_a there.");
     }
@@ -218,12 +232,14 @@ double LatticeVoxels::OpenWeight(std::size_t voxel) const
   {
     open -= bits >> pair & 1 ? 2.0 * LatticeWeight(this->Directions, 2 * pair) : 0.0;
   }
-  return std::max(open, LatticeWeight(this->Directions, this->Directions - 1)); // what is dark goes nowhere
+  return std::max(open, LatticeWeight(this->Directions, this->Directions - 1)); // above 0 where all lines are endless
 }
 
-void LatticeVoxels::TakeOutside(const Illumination& shining, int channel)
+/// Incident light, and the faces' albedo.
+void LatticeVoxels::LoadBoundary()
 {
-  const auto c = static_cast<std::size_t>(channel);
+  const Illumination& shining = this->Problem.TheIllumination();
+  const auto c = static_cast<std::size_t>(this->Channel);
   const double even = this->bends || this->squared.empty() ? 1.0 : this->squared.front();
   for (std::size_t face = 0; face < 6; ++face)
   {
@@ -232,9 +248,10 @@ void LatticeVoxels::TakeOutside(const Illumination& shining, int channel)
   }
 }
 
-void LatticeVoxels::Shine(const LatticeScene& scene, const Uncollided& direct, int channel)
+void LatticeVoxels::LoadSources(const Uncollided& direct)
 {
-  const Medium& medium = scene.medium;
+  const Medium& medium = this->Problem.TheMedium();
+  const int channel = this->Channel;
   const double edge = medium.grid.spacing[0];
   std::vector<double> begin(medium.grid.VoxelCount());
   for (std::size_t i = 0; i < begin.size(); ++i)
@@ -244,7 +261,7 @@ void LatticeVoxels::Shine(const LatticeScene& scene, const Uncollided& direct, i
   this->crossing.clear();
   if (!direct.firstMoments.empty())
   {
-    this->CrossFaces(medium, direct, channel, begin);
+    this->CrossFaces(direct, begin);
   }
   this->source.resize(begin.size());
   for (std::size_t i = 0; i < begin.size(); ++i)
@@ -254,12 +271,13 @@ void LatticeVoxels::Shine(const LatticeScene& scene, const Uncollided& direct, i
   }
 }
 
-/// What is first scattered beside the middle of a voxel drives the lattice's light as if a part of it began beyond the
-/// face that it is nearer to, Eq. (L13), in proportion to how near it is, so that lights add up. What is scattered
-/// forwards does not turn back at once: it stays.
-/// @param begin  W / length^2 that are first scattered in each voxel, changed
-void LatticeVoxels::CrossFaces(const Medium& medium, const Uncollided& direct, int channel, std::vector<double>& begin)
+/// Moves a part of the first-collision source across the face that it is nearer to, Eq. (L13), in proportion to how
+/// near it is, so that lights add up. Forward scattering does not turn light back at once: its source stays.
+/// @param begin  W / length^2 that are first scattered in each voxel
+void LatticeVoxels::CrossFaces(const Uncollided& direct, std::vector<double>& begin)
 {
+  const Medium& medium = this->Problem.TheMedium();
+  const int channel = this->Channel;
   const std::vector<double> scattered = begin;
   this->crossing.assign(6 * begin.size(), 0.0f);
   for (std::size_t i = 0; i < begin.size(); ++i)
@@ -274,15 +292,15 @@ void LatticeVoxels::CrossFaces(const Medium& medium, const Uncollided& direct, i
     for (std::size_t face = 0; face < 6; ++face)
     {
       const double nearer = direct.Nearer(i, channel, face);
-      const double part = nearer > 0.0 ? this->PartWithin(medium.grid, i, face) : 0.0;
+      const double part = nearer > 0.0 ? this->PartWithin(i, face) : 0.0;
       parts[face] = part > 0.0 ? nearer / normal * PartThatCrosses(2.0 * normal * part, decays / part) : 0.0;
     }
-    // Of a corner no more can cross than there is.
+    // In a corner no more can cross than there is.
     const double all = std::max(std::accumulate(parts.begin(), parts.end(), 0.0), 1.0);
     for (std::size_t face = 0; face < 6; ++face)
     {
       const double crosses = parts[face] / all * scattered[i];
-      const std::size_t beyond = VoxelBeyond(medium.grid, this->Periodic, i, face);
+      const std::size_t beyond = this->Problem.Box().Beyond(i, face);
       this->crossing[6 * i + face] = static_cast<float>(crosses);
       begin[i] = std::max(begin[i] - crosses, 0.0);
       if (beyond != Outside)
@@ -294,9 +312,9 @@ void LatticeVoxels::CrossFaces(const Medium& medium, const Uncollided& direct, i
 }
 
 /// Of the resistance from a voxel's centre to the next one's, or out of the box, the part that lies within it.
-double LatticeVoxels::PartWithin(const Grid& grid, std::size_t voxel, std::size_t face) const
+double LatticeVoxels::PartWithin(std::size_t voxel, std::size_t face) const
 {
-  const std::size_t beyond = VoxelBeyond(grid, this->Periodic, voxel, face);
+  const std::size_t beyond = this->Problem.Box().Beyond(voxel, face);
   const double within = this->ResistanceWithin(voxel);
   const double all = beyond == Outside ? this->ResistanceOfFace(voxel, face) : this->ResistanceBetween(voxel, beyond);
   return within > 0.0 && beyond != voxel ? within / all : 0.0;

@@ -1,7 +1,5 @@
 #include "LatticeBoltzmann/WhereLightIsLost.h"
 
-#include "LatticeBoltzmann/LatticeVoxels.h"
-
 #include <algorithm>
 #include <cmath>
 
@@ -9,8 +7,8 @@ namespace tyndall
 {
 namespace
 {
-/// Less of the direction along an axis says nothing: shadows' edges fall off, too. From the first to the second it says
-/// more and more, so that rounding decides nothing.
+/// A smaller component of the mean direction along an axis is ignored, for shadows' edges fall off, too. From the first
+/// to the second its weight grows linearly, so that rounding decides nothing.
 constexpr double SaysNothing = 0.15, SaysAll = 0.25;
 
 /// Mean of exp(-k x) over x from 0 to 1.
@@ -48,10 +46,10 @@ double FallOff(double passes, double ratio, double most)
 class LostLight
 {
 public:
-  LostLight(const UncollidedImage& image, const Medium& medium, const std::array<bool, 3>& periodic, int channel)
+  LostLight(const UncollidedImage& image, const Medium& medium, const LatticeBox& box, int channel)
     : Image(image)
     , TheMedium(medium)
-    , Periodic(periodic)
+    , Box(box)
     , Channel(channel)
   {
   }
@@ -74,19 +72,19 @@ private:
     const double thickness = this->Thickness(voxel, axis);
     const double most = thickness / std::abs(along);
     const std::size_t ahead = along > 0.0 ? 1 : 0; // of the two faces across the axis
-    const std::size_t next = VoxelBeyond(this->TheMedium.grid, this->Periodic, voxel, 2 * axis + ahead);
+    const std::size_t next = this->Box.Beyond(voxel, 2 * axis + ahead);
     if (next != Outside)
     {
       const double here = this->Fluence(voxel);
       return NearerBy(FallOff(this->Fluence(next) / here, this->Thickness(next, axis) / thickness, most));
     }
-    const std::size_t last = VoxelBeyond(this->TheMedium.grid, this->Periodic, voxel, 2 * axis + 1 - ahead);
+    const std::size_t last = this->Box.Beyond(voxel, 2 * axis + 1 - ahead);
     if (last != Outside)
     {
-      // Seen from the voxel before, whose thickness is the measure of k.
+      // From the preceding voxel, in whose thickness k is measured.
       const double before = this->Thickness(last, axis), there = this->Fluence(last);
       const double ratio = before > 0.0 ? thickness / before : 0.0;
-      const double passes = there > 0.0 ? this->Fluence(voxel) / there : 1.0; // nothing came from there
+      const double passes = there > 0.0 ? this->Fluence(voxel) / there : 1.0; // no light passed there
       return before > 0.0 ? NearerBy(std::min(ratio * FallOff(passes, ratio, before / std::abs(along)), most))
                           : NearerBy(most);
     }
@@ -100,7 +98,7 @@ private:
 
   const UncollidedImage& Image;
   const Medium& TheMedium;
-  const std::array<bool, 3>& Periodic;
+  const LatticeBox& Box;
   int Channel;
 };
 }
@@ -110,8 +108,7 @@ double NearerOfNormalBeam(const Medium& medium, std::size_t voxel, int channel)
   return NearerBy(ThicknessOf(medium, voxel, 0, channel));
 }
 
-std::vector<float> EstimatedFirstMoments(
-  const UncollidedImage& image, const Medium& medium, const std::array<bool, 3>& periodic)
+std::vector<float> EstimatedFirstMoments(const UncollidedImage& image, const Medium& medium, const LatticeBox& box)
 {
   if (!image.meanDirection.values)
   {
@@ -121,7 +118,7 @@ std::vector<float> EstimatedFirstMoments(
   std::vector<float> moments(6 * channels * medium.grid.VoxelCount(), 0.0f);
   for (std::size_t c = 0; c < channels; ++c)
   {
-    const LostLight light(image, medium, periodic, static_cast<int>(c));
+    const LostLight light(image, medium, box, static_cast<int>(c));
     for (std::size_t i = 0; i < medium.grid.VoxelCount(); ++i)
     {
       const double fluence = light.Fluence(i);

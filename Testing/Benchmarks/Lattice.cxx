@@ -77,9 +77,10 @@ void TimeStep(Device& device, bool quick, Table& table, const StepCase& of)
   settings.directions = of.directions;
   Uncollided uncollided;
   uncollided.image.fluence = { direct.data(), 1 };
-  const PropagationProblem problem(box.medium, box.light, PropagationSettings());
-  const LatticeVoxels voxels(SceneOf(problem), { of.bends ? ior.data() : nullptr, 1 }, settings, uncollided, 0);
-  Lattice lattice(device, LatticeBox(problem.TheGrid()), settings, voxels);
+  const Field index = { of.bends ? ior.data() : nullptr, 1 };
+  const LatticeProblem problem(device, Domain(box.medium.grid), box.medium, index, box.light, settings);
+  const LatticeVoxels voxels(problem, settings, uncollided, 0);
+  Lattice lattice(device, problem.Box(), settings, voxels);
   const double bytes = BytesOfStep(voxels, of.directions, count);
   std::vector<double> seconds, ratios, bandwidths;
   for (int i = -1; i < repetitions; ++i) // the first compiles
@@ -138,10 +139,10 @@ Run Solve(Device& device, const Box& box, const LatticeSettings& settings)
   LatticeSettings compiles = settings;
   compiles.maximumSteps = settings.Solves() ? 0 : 1;
   compiles.tolerance = 0.5;
-  SolveLatticeBoltzmann(device, box.medium, {}, box.light, compiles);
+  SolveLatticeBoltzmann(device, Domain(box.medium.grid), box.medium, {}, box.light, compiles);
   Run run;
   const double start = WallSeconds();
-  run.light = SolveLatticeBoltzmann(device, box.medium, {}, box.light, settings);
+  run.light = SolveLatticeBoltzmann(device, Domain(box.medium.grid), box.medium, {}, box.light, settings);
   run.seconds = WallSeconds() - start;
   return run;
 }

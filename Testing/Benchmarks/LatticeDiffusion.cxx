@@ -158,9 +158,9 @@ Difference DifferenceOf(const Cube& cube, const LightField& light, const Truth& 
 LightField Timed(Device& device, const Cube& cube, double& seconds)
 {
   LatticeSettings settings;
-  SolveLatticeBoltzmann(device, cube.medium, {}, cube.light, settings);
+  SolveLatticeBoltzmann(device, Domain(cube.medium.grid), cube.medium, {}, cube.light, settings);
   const double start = WallSeconds();
-  LightField light = SolveLatticeBoltzmann(device, cube.medium, {}, cube.light, settings);
+  LightField light = SolveLatticeBoltzmann(device, Domain(cube.medium.grid), cube.medium, {}, cube.light, settings);
   seconds = WallSeconds() - start;
   return light;
 }

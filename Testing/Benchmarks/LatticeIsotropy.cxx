@@ -69,7 +69,7 @@ void PrintPoint(Device& device, bool quick, Table& table, int directions, const 
   settings.directions = directions;
   settings.maximumSteps = of.steps;
   settings.tolerance = 1e-7; // far off there is little light
-  const LightField light = SolveLatticeBoltzmann(device, point.medium, {}, {}, settings);
+  const LightField light = SolveLatticeBoltzmann(device, Domain(point.medium.grid), point.medium, {}, {}, settings);
   const std::string scene = "isotropy, sigma_t h " + Text("%g", of.thickness) + ", albedo " + Text("%g", of.albedo) +
     (of.steps == 0 ? ", steady" : ", after " + std::to_string(of.steps) + " steps");
   const std::string method = std::to_string(directions) + " directions";

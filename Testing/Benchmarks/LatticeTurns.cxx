@@ -61,8 +61,8 @@ struct Run
   void Solve(Device& device, const Cube& cube, const LatticeSettings& settings)
   {
     const double start = WallSeconds();
-    const LightField light =
-      SolveLatticeBoltzmann(device, cube.medium, { cube.ior.data(), 1 }, cube.photons, {}, settings);
+    const LightField light = SolveLatticeBoltzmann(
+      device, Domain(cube.medium.grid), cube.medium, { cube.ior.data(), 1 }, cube.photons, {}, settings);
     this->seconds.push_back(WallSeconds() - start);
     this->steps = light.convergence.back().iteration;
     for (const std::string& what : light.leftOut)

@@ -125,7 +125,10 @@ void CompareOne(const PhotonBench& bench, Table& table, double index, double tau
     { "ordinates, photons' light handed on",
       [&] { return SolveDiscreteOrdinates(bench.device, Domain(medium.grid), medium, given, OrdinatesSettings()); } },
     { "lattice, photons' light handed on",
-      [&] { return SolveLatticeBoltzmann(bench.device, medium, scene.Index(), given, LatticeSettings()); } },
+      [&] {
+        return SolveLatticeBoltzmann(
+          bench.device, Domain(medium.grid), medium, scene.Index(), given, LatticeSettings());
+      } },
     { "maps, straight light of their own",
       [&] { return SolveConservative(bench.device, medium, sun, PropagationSettings()); } },
   };

@@ -17,8 +17,8 @@ protected:
     const std::vector<float>& ior = {}, const tyndall::Monitor& monitor = {})
   {
     scene.Attach();
-    return tyndall::SolveLatticeBoltzmann(
-      this->GetDevice(), scene.medium, { ior.empty() ? nullptr : ior.data(), 1 }, scene.light, settings, monitor);
+    return tyndall::SolveLatticeBoltzmann(this->GetDevice(), tyndall::Domain(scene.medium.grid), scene.medium,
+      { ior.empty() ? nullptr : ior.data(), 1 }, scene.light, settings, monitor);
   }
 
   /// Mean powers of the place of a pulse's light, of equal voxels of albedo 1, after some steps.

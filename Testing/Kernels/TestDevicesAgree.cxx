@@ -191,7 +191,7 @@ TEST_F(DevicesAgree, OnALattice)
   this->Compare([](Device& device) {
     Scene scene = Cloud();
     scene.Attach();
-    return SolveLatticeBoltzmann(device, scene.medium, {}, scene.light, {}).fluence;
+    return SolveLatticeBoltzmann(device, Domain(scene.medium.grid), scene.medium, {}, scene.light, {}).fluence;
   });
 }
 

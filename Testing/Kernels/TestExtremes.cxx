@@ -118,7 +118,8 @@ TEST_F(Extremes, ScenesOfSoManyTimesThePowerAreSolvedByTheSameSteps)
     LatticeSettings settings;
     settings.tolerance = tolerance;
     medium.Attach();
-    return SolveLatticeBoltzmann(device, medium.scene.medium, {}, medium.scene.light, settings);
+    return SolveLatticeBoltzmann(
+      device, Domain(medium.scene.medium.grid), medium.scene.medium, {}, medium.scene.light, settings);
   });
   ExpectSameSteps("maps on three ranks", [&](MediumToCut& medium, double tolerance) {
     const BlockPartition partition = BlockPartition::Even(medium.scene.medium.grid, 3);

@@ -43,8 +43,8 @@ protected:
   LightField Solve(PhotonScene& scene, const std::vector<Photon>& photons, const LatticeSettings& settings,
     const Monitor& monitor = {})
   {
-    return SolveLatticeBoltzmann(
-      this->GetDevice(), scene.Medium(), scene.Index(), photons, this->Illumination, settings, monitor);
+    return SolveLatticeBoltzmann(this->GetDevice(), Domain(scene.Medium().grid), scene.Medium(), scene.Index(), photons,
+      this->Illumination, settings, monitor);
   }
 
   /// Fog round a ball of glass, no axis as long as another.

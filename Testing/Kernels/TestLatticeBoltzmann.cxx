@@ -275,9 +275,9 @@ TEST_F(LatticeBoltzmann, CountsThePowerOfEachChannelOfWhiteLightBesideColour)
     const auto solve = [&](const Rgb& sky) {
       scene.light.sky = sky;
       scene.Attach();
-      return marches
-        ? SolveLatticeBoltzmann(this->GetDevice(), scene.medium, {}, photons, scene.light, LatticeSettings())
-        : this->Solve(scene);
+      return marches ? SolveLatticeBoltzmann(this->GetDevice(), Domain(scene.medium.grid), scene.medium, {}, photons,
+                         scene.light, LatticeSettings())
+                     : this->Solve(scene);
     };
     if (!marches)
     {

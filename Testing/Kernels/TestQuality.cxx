@@ -3,7 +3,7 @@
 #include "MediumScene.h"
 
 #include "DiscreteOrdinates/OrdinatesQuality.h"
-#include "LatticeBoltzmann/LatticeQuality.h"
+#include "LatticeBoltzmann/LatticeSettings.h"
 #include "LightPropagation/Problem/DividedScene.h"
 #include "LightPropagation/Problem/PropagationQuality.h"
 #include "Viewing/Scene/ViewQuality.h"

@@ -1,8 +1,8 @@
 #include "LatticeBoltzmann/Interleaved/InterleavedLattice.h"
 
 #include "Device/Clock.h"
+#include "LatticeBoltzmann/FindUncollided.h"
 #include "LatticeBoltzmann/LatticeLight.h"
-#include "LatticeBoltzmann/WhereLightIsLost.h"
 #include "Light/LeftOut.h"
 
 #include <algorithm>
@@ -12,18 +12,20 @@ namespace tyndall
 {
 namespace
 {
-constexpr double Collective = 0.05; ///< of the shorter part's time: with less, a device does one after the other
-}
+constexpr double Overlap = 0.05; ///< of the shorter part's time: with less, the device does one after the other
 
+/// Steps of a turn of photons, after `done` steps. The last one that is asked for is done when all photons have ended.
 int StepsOfTurn(const LatticeSettings& settings, int done)
 {
   const int most = settings.stepsPerExchange, asked = settings.maximumSteps;
   return asked > 0 ? std::clamp(asked - 1 - done, 0, most) : most;
 }
+}
 
-InterleavedLattice::InterleavedLattice(Device& device, const Medium& medium, const Field& ior,
+InterleavedLattice::InterleavedLattice(Device& device, const Domain& domain, const Medium& medium, const Field& ior,
   const Illumination& illumination, const LatticeSettings& settings)
   : TheDevice(device)
+  , TheDomain(domain)
   , TheMedium(medium)
   , Index(ior)
   , Shining(illumination)
@@ -34,25 +36,24 @@ InterleavedLattice::InterleavedLattice(Device& device, const Medium& medium, con
 void InterleavedLattice::Begin(const PackedPhotons& packed, int channels)
 {
   const Grid& grid = this->TheMedium.grid;
-  this->ToCome.emplace(packed, channels, grid, VoxelBox{ { 0, 0, 0 }, grid.size });
+  this->ToCome.emplace(packed, channels, grid);
   Illumination lit = this->Shining;
   lit.uncollided = this->ToCome->Image();
-  this->Problem.emplace(this->TheMedium, lit, AsPropagation(this->Settings));
-  const UncollidedImage& solved = this->Problem->Shining().uncollided;
+  this->Problem.emplace(this->TheDevice, this->TheDomain, this->TheMedium, this->Index, lit, this->Settings);
+  const UncollidedImage& solved = this->Problem->TheIllumination().uncollided;
   const int all = this->Problem->Channels();
   this->Light.fluence.assign(grid.VoxelCount() * static_cast<std::size_t>(all), 0.0f);
   this->Light.image.fluence = { this->Light.fluence.data(), all };
   for (int c = 0; c < all; ++c)
   {
     Channel channel;
-    channel.lattice = std::make_unique<LatticeChannel>(
-      this->TheDevice, SceneOf(*this->Problem), this->Index, this->Settings, this->Light, c);
-    channel.takes = PhotonChannelMap(*this->ToCome, solved, 0, all, c);
+    channel.lattice = std::make_unique<LatticeChannel>(this->TheDevice, *this->Problem, this->Settings, this->Light, c);
+    channel.takes = PhotonChannelMap(*this->ToCome, solved, all, c);
     Lattice& lattice = channel.lattice->TheLattice();
     channel.scatters = lattice.Placed(
       ScattersOf(this->Problem->TheMedium(), c, channel.takes.fluence, channel.lattice->TheVoxels().begins),
       "how voxels scatter photons");
-    channel.glows = lattice.Placed(channel.lattice->TheVoxels().source, "what voxels emit");
+    channel.emits = lattice.Placed(channel.lattice->TheVoxels().source, "what voxels emit");
     this->Channels.push_back(std::move(channel));
   }
 }
@@ -80,11 +81,11 @@ void InterleavedLattice::Take(const cl::CommandQueue& queue, const Buffer<float>
   {
     Lattice& lattice = channel.lattice->TheLattice();
     lattice.StepOn(queue);
-    lattice.ShineBy(channel.scatters, channel.glows, fluence, this->ToCome->channels, channel.takes.from);
+    lattice.SetSourceOf(channel.scatters, channel.emits, fluence, this->ToCome->channels, channel.takes.from);
   }
 }
 
-/// The light of photons that have all come to their ends, as the problem has it.
+/// The light of all photons, in the problem's units and channels.
 void InterleavedLattice::TakeAll(const PhotonLight& photons)
 {
   const auto all = static_cast<std::size_t>(this->Problem->Channels());
@@ -108,21 +109,14 @@ void InterleavedLattice::TakeAll(const PhotonLight& photons)
   {
     this->Light.image.meanDirection = { photons.meanDirection.data(), 3 };
   }
-  if (NeedsFirstMoments(this->Problem->TheMedium(), this->Settings))
-  {
-    this->Light.firstMoments =
-      EstimatedFirstMoments(this->Light.image, this->Problem->TheMedium(), this->Settings.periodic);
-  }
-  if (this->Settings.netFlux)
-  {
-    this->Light.netFlux = NetFluxOf(this->Light.image, this->TheMedium.grid, static_cast<int>(all));
-  }
+  AddMomentsOfImage(
+    this->Light, *this->Problem, this->Settings, NeedsFirstMoments(this->Problem->TheMedium(), this->Settings));
   for (Channel& channel : this->Channels)
   {
     channel.lattice->TheLattice().StepOn(this->TheDevice.Queue());
     channel.scatters = Buffer<float>();
-    channel.glows = Buffer<float>();
-    channel.lattice->Shine();
+    channel.emits = Buffer<float>();
+    channel.lattice->UpdateSources();
   }
 }
 
@@ -139,7 +133,7 @@ LightField InterleavedLattice::Solve(PhotonMarcher& marcher, const std::vector<P
   const PhotonLight found = marcher.MarchByTurns(photons, turns, times, OfPart(monitor, 0.0, 0.3));
   this->TakeAll(found);
   const double marched = (ClockSeconds() - start) / static_cast<double>(this->Channels.size()); // rows add them up
-  LightField light = BeginLight(this->TheMedium.grid.VoxelCount(), this->Problem->Channels(), this->Settings);
+  LightField light = BeginLight(*this->Problem, this->Settings);
   double thickest = 0.0;
   for (std::size_t c = 0; c < this->Channels.size(); ++c)
   {
@@ -151,7 +145,7 @@ LightField InterleavedLattice::Solve(PhotonMarcher& marcher, const std::vector<P
   }
   FinishLight(light, this->TheDevice, *this->Problem, this->Shining, this->Settings, thickest);
   DoubtPhotons(found, photons.size(), light);
-  if (this->Settings.sideBySide && times.together < Collective * std::min(times.marching, times.meanwhile))
+  if (this->Settings.sideBySide && times.together < Overlap * std::min(times.marching, times.meanwhile))
   {
     light.leftOut.emplace_back(left_out::NotSideBySide);
   }

@@ -2,11 +2,12 @@
 
 #include "Device/Device.h"
 #include "Device/Monitor.h"
+#include "Distribution/Domain.h"
 #include "LatticeBoltzmann/Interleaved/PhotonsToCome.h"
 #include "LatticeBoltzmann/LatticeChannel.h"
+#include "LatticeBoltzmann/LatticeProblem.h"
 #include "LatticeBoltzmann/LatticeSettings.h"
 #include "Light/LightField.h"
-#include "LightPropagation/Problem/PropagationProblem.h"
 #include "Lights/Lights.h"
 #include "Medium/Medium.h"
 #include "Photons/Marching/PhotonMarcher.h"
@@ -18,19 +19,16 @@
 
 namespace tyndall
 {
-/// Steps of a turn of photons, after so many that were done. The last one that is asked for is done when all photons
-/// have come to their ends.
-int StepsOfTurn(const LatticeSettings& settings, int done);
-
-/// Photons that march, and the light that they have left so far, which diffuses by steps while they march on (Bernabei
-/// et al., section III; numerics.md, section 10 c). The light is that of the lattice under all the photons' light, to
-/// the tolerance: steps go on after the last photon has come to its end.
+/// Photons that march while the light that they have deposited so far diffuses in steps (Bernabei et al., section III;
+/// numerics.md, section 10 c). Steps continue after the last photon has ended, so that the light is that of the lattice
+/// under all photons' light, to the tolerance.
 class InterleavedLattice
 {
 public:
-  /// What is given must stay.
-  InterleavedLattice(Device& device, const Medium& medium, const Field& ior, const Illumination& illumination,
-    const LatticeSettings& settings);
+  /// All must outlive it.
+  /// @param domain  serial
+  InterleavedLattice(Device& device, const Domain& domain, const Medium& medium, const Field& ior,
+    const Illumination& illumination, const LatticeSettings& settings);
 
   /// @param marcher  of the same medium, of one order and without batches
   LightField Solve(PhotonMarcher& marcher, const std::vector<Photon>& photons, const Monitor& monitor);
@@ -41,22 +39,23 @@ private:
   void Take(const cl::CommandQueue& queue, const Buffer<float>& fluence);
   void TakeAll(const PhotonLight& photons);
 
-  /// A channel, and what it takes of the photons.
+  /// A channel, and its part of the photons' light.
   struct Channel
   {
     std::unique_ptr<LatticeChannel> lattice;
     PhotonChannelMap takes;
-    Buffer<float> scatters, glows;
+    Buffer<float> scatters, emits;
   };
 
   Device& TheDevice;
+  const Domain& TheDomain;
   const Medium& TheMedium;
   const Field& Index;
   const Illumination& Shining;
   const LatticeSettings& Settings;
 
   std::optional<PhotonsToCome> ToCome;
-  std::optional<PropagationProblem> Problem;
+  std::optional<LatticeProblem> Problem;
   Uncollided Light; ///< in the problem's units
   std::vector<Channel> Channels;
   int Steps = 0;

@@ -6,7 +6,7 @@ namespace tyndall
 {
 namespace
 {
-/// W / length^2 that are usual for light of so much power.
+/// Order of magnitude of the fluence, W / length^2, of light of so much power.
 double UsualFluence(const Rgb& power, const Grid& grid)
 {
   const double x = grid.Length(0), y = grid.Length(1), z = grid.Length(2), area = x * y + y * z + z * x;
@@ -15,24 +15,20 @@ double UsualFluence(const Rgb& power, const Grid& grid)
 }
 }
 
-PhotonsToCome::PhotonsToCome(const PackedPhotons& packed, int given, const Grid& whole, const VoxelBox& box)
+PhotonsToCome::PhotonsToCome(const PackedPhotons& packed, int given, const Grid& grid)
   : channels(given)
 {
-  const double usual = UsualFluence(packed.entered, whole);
+  const double usual = UsualFluence(packed.entered, grid);
   const bool colours = packed.channels == 3;
   Rgb colour = colours ? Rgb{ 1.0, 0.75, 0.5 } : packed.colour;
   std::for_each(colour.begin(), colour.end(), [&](double& value) { value *= usual; });
   this->escaped.fill(colour);
-  Grid own;
-  own.size = box.size;
-  for (std::size_t i = 0; i < box.VoxelCount(); ++i)
+  for (std::size_t i = 0; i < grid.VoxelCount(); ++i)
   {
-    std::array<int, 3> voxel = own.VoxelAt(i);
-    std::transform(voxel.begin(), voxel.end(), box.first.begin(), voxel.begin(), std::plus<int>());
     for (int c = 0; c < this->channels; ++c)
     {
       const std::size_t period = colours ? 5 + static_cast<std::size_t>(c) : 5;
-      const auto place = static_cast<double>(whole.IndexOf(voxel) % period);
+      const auto place = static_cast<double>(i % period);
       this->fluence.push_back(static_cast<float>(colour[c] * (1.0 + 0.125 * place)));
     }
   }
@@ -47,14 +43,14 @@ UncollidedImage PhotonsToCome::Image() const
 }
 
 PhotonChannelMap::PhotonChannelMap(
-  const PhotonsToCome& photons, const UncollidedImage& solved, std::size_t voxel, int channels, int channel)
+  const PhotonsToCome& photons, const UncollidedImage& solved, int channels, int channel)
 {
   const Rgb& escaped = photons.escaped[0];
   const auto brightest = std::max_element(escaped.begin(), escaped.end()) - escaped.begin();
   const auto colour = static_cast<std::size_t>(channels == 1 ? brightest : channel);
   this->from = photons.channels == 1 ? 0 : static_cast<int>(colour);
   const double given = photons.fluence[static_cast<std::size_t>(this->from)];
-  this->fluence = given > 0.0 ? solved.fluence.At(voxel, channel) / given : 0.0;
+  this->fluence = given > 0.0 ? solved.fluence.At(0, channel) / given : 0.0;
   this->power = escaped[colour] > 0.0 ? solved.escaped[0][static_cast<std::size_t>(channel)] / escaped[colour] : 0.0;
 }
 

@@ -1,10 +1,10 @@
-// One line of links, as sweep_lines and the lines of blocks go along it (numerics.md, Eqs. (L7) to (L10)). The host
-// gives what LatticeLink.cl and Numerics/Exact.cl want.
+// One line of links (numerics.md, Eqs. (L7) to (L10)), for LatticeLines.cl and CutLines.cl. The host gives what
+// LatticeLink.cl and Numerics/Exact.cl require.
 #pragma once
 #include "LatticeBoltzmann/LatticeLink.cl"
 #include "Numerics/Exact.cl"
 
-// Of floats, which add up to 1 only to 1e-8, thick voxels would gain or lose as much in every collision.
+// In float weights add up to 1 only to 1e-8, and thick voxels would gain or lose as much in every collision.
 #define EXACT_WEIGHT(i) (DIRECTIONS == 6 ? (exact)1 / 6 : (i) < 6 ? (exact)1 / 12 : (exact)1 / 24)
 
 // By voxel: part of the density that goes straight on, part that links let through, n^2, and W / length^2 that each
@@ -75,19 +75,19 @@ static Link link_between(MEDIUM, ulong a, ulong b)
   return link_of(passes[a], passes[b], BENDS ? squared[a] : 1, BENDS ? squared[b] : 1);
 }
 
-// Of a face, or the mean of a corner's two: what it lets in of what shines on it, and the part of what meets it from
-// inside that comes back.
+// A face of the grid, or the mean of two at an edge: incident light that it lets in, and the part of what meets it from
+// inside that it reflects.
 typedef struct
 {
   exact in, back;
 } Border;
 
-static Border border_at(LatticeInfo lattice, MEDIUM, ulong voxel, Place past, exact shines, int i)
+static Border border_at(LatticeInfo lattice, MEDIUM, ulong voxel, Place past, exact incident, int i)
 {
   const exact incoming = 0.5f * (lattice.incoming[past.face] + lattice.incoming[past.other]);
   const exact albedo = 0.5f * (lattice.albedo[past.face] + lattice.albedo[past.other]);
   const exact passing = 2 / (1 / (exact)passes[voxel] + 1);
-  const Border border = { passing * shines * EXACT_WEIGHT(i) * incoming * (BENDS ? squared[voxel] : 1.0f),
+  const Border border = { passing * incident * EXACT_WEIGHT(i) * incoming * (BENDS ? squared[voxel] : 1.0f),
     1 - passing * (1 - albedo) };
   return border;
 }
@@ -141,7 +141,7 @@ static bool begin_line(LatticeInfo lattice, int i, Place* place, bool* closed)
   return u < size_a ? !round_b : !round_a && (round_b || u - size_a != first_b);
 }
 
-// What the way up knows of a voxel: U and R.
+// U and R of a voxel, from the way up.
 typedef struct
 {
   exact sends, returns;
@@ -183,7 +183,7 @@ typedef struct
   exact arrived, back, part;
 } Beginning;
 
-// Behind a grid's face; and behind a cut, of which it is not known yet what goes up it.
+// At a face of the grid; and at a cut, where what is sent up is not known yet.
 static Beginning begin_at_border(Border low)
 {
   const Beginning begin = { low.in, low.back, 0 };
@@ -195,14 +195,14 @@ static Beginning begin_at_cut(Link link)
   return begin;
 }
 
-// What comes down to where a line is cut, by what goes up there, x, and what comes from ahead, B: sent + round x +
+// What is sent down to the cut of a line, with x sent up there and B sent down to the last voxel: sent + round x +
 // gives_back B.
 typedef struct
 {
   exact sent, round, gives_back;
 } Cut;
 
-// The last voxel of a line; of one that is cut, how much more that sends by what goes up the cut.
+// The last voxel of a line, and its response to what is sent up the cut.
 typedef struct
 {
   Place place;
@@ -215,7 +215,7 @@ typedef struct
 // The way up.
 //   is_cut  1: behind the first voxel
 //   behind  [voxel][2], U and R
-//   share   [voxel], of a line that is cut: how much more a voxel sends by what goes up the cut, T
+//   share   [voxel], if the line is cut: T, a voxel's response to what is sent up the cut
 static Top go_up(LatticeInfo lattice, MEDIUM, Place place, int i, Beginning begin, bool is_cut, __global exact* behind,
   __global exact* share)
 {
@@ -265,9 +265,9 @@ static ulong density_at(LatticeInfo lattice, const int* at)
 }
 
 // The way down.
-//   comes     down to the last voxel
-//   round     what goes up the cut, of a line that is cut; else 0
-//   first     what arrives in the first voxel from behind, and what comes back of what that sends down
+//   comes     sent down to the last voxel
+//   round     sent up the cut, if the line is cut; else 0
+//   first     what arrives in the first voxel from before it, and the part of what it sends down that is returned
 //   sum       [voxel], W / length^2: what arrives is added
 //   writes    1: densities are written, too, as step_lattice has them
 static void go_down(LatticeInfo lattice, MEDIUM, Top top, int i, exact comes, exact round, Border first, bool is_cut,

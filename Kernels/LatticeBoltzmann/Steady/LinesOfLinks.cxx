@@ -1,23 +1,39 @@
 #include "LatticeBoltzmann/Steady/LinesOfLinks.h"
 
 #include "Device/Defines.h"
-#include "Device/ExactValues.h"
+#include "Distribution/BoxExchange.h"
 #include "LatticeBoltzmann/LatticeShared.h"
+#include "TyndallKernelSources.h"
+
+#include <algorithm>
+#include <functional>
+#include <string>
+#include <utility>
 
 namespace tyndall
 {
 namespace
 {
-constexpr double Thinnest = 0.05; ///< sigma_t h as which the preconditioner takes thinner voxels
-}
+constexpr int PairsAtOnce = 3; ///< of cut lines
+constexpr std::size_t PieceValues = 8, JoinedValues = 3,
+                      SweepValues = 2; ///< numbers of a piece, as CutLines.cl has them
 
-std::string OptionsOfLines(const Device& device, const LatticeSettings& settings, const LatticeVoxels& voxels)
+/// Values of the box's own voxels.
+std::vector<float> OwnOf(const LatticeBox& box, const std::vector<float>& known)
 {
-  return ExactOption(device) + Define("DIRECTIONS", settings.directions) + Define("BENDS", voxels.bends) +
-    Define("PASSES_ALL", voxels.passesAll) + Define("REFLECTS", voxels.Reflects()) + Define("PUBLISHED", 0) +
-    Define("ENDLESS", !voxels.endless.empty());
+  if (box.IsAll() || known.empty())
+  {
+    return known;
+  }
+  std::vector<float> own;
+  for (std::size_t i = 0; i < box.Count(); ++i)
+  {
+    own.push_back(known[box.Known(i)]);
+  }
+  return own;
 }
 
+/// Part of a density that continues straight on in each own voxel, Eq. (L7).
 std::vector<double> GoesStraight(const LatticeBox& box, const LatticeVoxels& voxels)
 {
   std::vector<double> straight;
@@ -28,22 +44,389 @@ std::vector<double> GoesStraight(const LatticeBox& box, const LatticeVoxels& vox
   }
   return straight;
 }
-
-std::array<std::size_t, 2> LinesOfPair(const std::array<int, 3>& size, int pair)
-{
-  std::vector<int> moving, still;
-  for (int a = 0; a < 3; ++a)
-  {
-    (LatticeWays[2 * pair][a] != 0 ? moving : still).push_back(size[a]);
-  }
-  const auto lines = [](int first, int second) {
-    return std::array<std::size_t, 2>{ static_cast<std::size_t>(first), static_cast<std::size_t>(second) };
-  };
-  return moving.size() == 1 ? lines(still[0], still[1]) : lines(moving[0] + moving[1], still[0]);
 }
 
-double LeastForDiffusion(const LatticeSettings& settings)
+LinesOfLinks::LinesOfLinks(Device& device, const LatticeProblem& problem, const LatticeSettings& settings,
+  const LatticeVoxels& voxels, const Lattice* lattice)
+  : TheDevice(device)
+  , TheDomain(problem.TheDomain())
+  , Box(problem.Box())
+  , Settings(settings)
+  , Voxels(voxels)
+  , Densities(lattice)
 {
-  return 1.0 / (0.5 + 1.0 / (3.0 * LatticeSquares(settings.directions) * Thinnest));
+  const bool cuts = !this->TheDomain.IsSerial();
+  this->TheDomain.Collective([&] {
+    if (this->Box.Count() > 0)
+    {
+      this->Load();
+      if (cuts)
+      {
+        this->LoadCutLines();
+      }
+    }
+  });
+  if (cuts)
+  {
+    this->ExchangeJoins();
+    this->ExchangeParts();
+  }
+}
+
+void LinesOfLinks::Load()
+{
+  const char* what = "lines of the lattice";
+  const std::size_t count = this->Box.Count();
+  const auto values = [&](std::size_t number) { return ExactValues(this->TheDevice, number, what); };
+  this->Straight = values(count);
+  this->Even = values(count);
+  this->Arriving = values(count);
+  this->Straight.Write(GoesStraight(this->Box, this->Voxels));
+  this->Passes = Buffer<float>(this->TheDevice, OwnOf(this->Box, this->Voxels.passes), "how links pass light");
+  this->Squared = Buffer<float>(this->TheDevice, OwnOf(this->Box, this->Voxels.squared), "n^2");
+  this->Endless = Buffer<float>(this->TheDevice, OwnOf(this->Box, this->Voxels.endless), "lines without an end");
+  const std::array<bool, 3>& periodic = this->Box.periodic;
+  const bool closes = periodic[0] || periodic[1] || periodic[2];
+  const bool cuts = !this->TheDomain.IsSerial();
+  for (int pair = 0; pair < this->Settings.directions / 2; ++pair)
+  {
+    this->Pairs.emplace_back();
+    this->Pairs.back().range = LinesOfPair(this->Box.own.size, pair);
+    this->MostPieces = std::max(this->MostPieces, this->Pairs.back().range[0] * this->Pairs.back().range[1]);
+  }
+  for (int slot = 0; slot < (cuts ? PairsAtOnce : 1); ++slot)
+  {
+    this->Slots.push_back({ values(2 * count), values(closes || cuts ? count : 1),
+      values(cuts ? PieceValues * this->MostPieces : 1), values(cuts ? JoinedValues * this->MostPieces : 1) });
+  }
+}
+
+void LinesOfLinks::LoadCutLines()
+{
+  for (int pair = 0; pair < static_cast<int>(this->Pairs.size()); ++pair)
+  {
+    const PiecesOfLines pieces(this->TheDomain.Partition(), this->Settings.periodic, pair);
+    Pair& of = this->Pairs[pair];
+    of = this->LinesFrom(pieces);
+    of.below = ExactValues(this->TheDevice, 2 * of.range[0] * of.range[1], "lines of the lattice");
+    of.below.Write(this->Below(pieces, pair));
+  }
+}
+
+/// Those that this rank joins, and all its pieces.
+LinesOfLinks::Pair LinesOfLinks::LinesFrom(const PiecesOfLines& pieces) const
+{
+  Pair pair;
+  pair.range = pieces.Range(this->TheDomain.Rank());
+  const std::vector<PiecesOfLines::Line> lines = pieces.LinesFrom(this->TheDomain.Rank());
+  std::vector<Shared> byRank(this->TheDomain.Comm().Ranks());
+  for (const PiecesOfLines::Line& line : lines)
+  {
+    for (const PiecesOfLines::Piece& piece : line.pieces)
+    {
+      byRank[piece.rank].pieces.push_back(piece.number);
+    }
+  }
+  std::vector<std::size_t> next; // place of the first piece of a rank that is not placed yet
+  std::size_t all = 0;
+  for (std::size_t rank = 0; rank < byRank.size(); ++rank)
+  {
+    next.push_back(all);
+    all += byRank[rank].pieces.size();
+    if (!byRank[rank].pieces.empty())
+    {
+      pair.receivedFrom.push_back({ static_cast<int>(rank), std::move(byRank[rank].pieces) });
+    }
+  }
+  for (const PiecesOfLines::Line& line : lines)
+  {
+    pair.lines.push_back({ {}, line.closed });
+    for (const PiecesOfLines::Piece& piece : line.pieces)
+    {
+      pair.lines.back().places.push_back(next[piece.rank]++);
+    }
+  }
+  return pair;
+}
+
+/// Tells each rank which of its pieces this rank joins: for each pair how many, and which.
+void LinesOfLinks::ExchangeJoins()
+{
+  if (this->Box.Count() == 0)
+  {
+    return;
+  }
+  std::vector<std::vector<std::size_t>> toEach(this->TheDomain.Comm().Ranks());
+  for (const Pair& pair : this->Pairs)
+  {
+    std::vector<std::vector<std::size_t>> ofPair(toEach.size());
+    for (const Shared& shared : pair.receivedFrom)
+    {
+      ofPair[shared.rank] = shared.pieces;
+    }
+    for (std::size_t rank = 0; rank < toEach.size(); ++rank)
+    {
+      toEach[rank].push_back(ofPair[rank].size());
+      toEach[rank].insert(toEach[rank].end(), ofPair[rank].begin(), ofPair[rank].end());
+    }
+  }
+  const std::vector<std::vector<std::size_t>> ofEach =
+    NumbersOfEach(this->TheDomain.Comm(), this->TheDomain.Partition(), toEach);
+  for (std::size_t rank = 0; rank < ofEach.size(); ++rank)
+  {
+    auto next = ofEach[rank].begin();
+    for (auto pair = this->Pairs.begin(); pair != this->Pairs.end() && next != ofEach[rank].end(); ++pair)
+    {
+      const auto first = next + 1;
+      next = first + static_cast<std::ptrdiff_t>(*next);
+      if (first != next)
+      {
+        pair->sentTo.push_back({ static_cast<int>(rank), { first, next } });
+      }
+    }
+  }
+}
+
+/// `below` of CutLines.cl; 1 where a piece begins at a face of the grid.
+LinesOfLinks::Values LinesOfLinks::Below(const PiecesOfLines& pieces, int pair) const
+{
+  const VoxelBox& block = this->TheDomain.Own();
+  const std::array<std::size_t, 2>& range = this->Pairs[pair].range;
+  Values below(2 * range[0] * range[1], 1.0);
+  pieces.ForPieces(this->TheDomain.Rank(), [&](std::size_t piece, std::array<int, 3> voxel) {
+    bool isFace = false;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      voxel[axis] -= block.first[axis] + LatticeWays[2 * pair][axis];
+      const bool isOut = voxel[axis] < 0 || voxel[axis] >= block.size[axis];
+      isFace = isFace || (isOut && !(this->Box.innerFaces >> (2 * axis + (voxel[axis] < 0 ? 0 : 1)) & 1));
+    }
+    if (!isFace)
+    {
+      const std::size_t known = this->Box.Known(voxel);
+      below[2 * piece] = this->Voxels.passes[known];
+      below[2 * piece + 1] = this->Voxels.squared[known];
+    }
+  });
+  return below;
+}
+
+/// Sends what pieces do to light to the ranks that join them. It does not change from sweep to sweep.
+void LinesOfLinks::ExchangeParts()
+{
+  this->Failure = {};
+  const int pairs = static_cast<int>(this->Pairs.size());
+  if (pairs > 0)
+  {
+    this->Failure.Attempt([&] { this->Even.Fill(0.0); });
+  }
+  for (int pair = 0; pair < pairs; ++pair)
+  {
+    this->GoUp(pair, this->Slots.front(), 0.0, { SweepValues, PieceValues - SweepValues, PieceValues });
+    const Values received = this->Receive(this->Pairs[pair].receivedFrom, 2 * pair, PieceValues - SweepValues);
+    this->Failure.Attempt([&] {
+      for (auto next = received.begin(); next != received.end(); next += PieceValues - SweepValues)
+      {
+        this->Pairs[pair].parts.push_back({ next[0], next[1], next[2], next[3], next[4], next[5] });
+      }
+    });
+  }
+  this->TheDomain.Collective([&] { this->Failure.Throw(); });
+}
+
+/// Sends numbers of pieces to the ranks that wait for them; empty messages after a failure.
+/// @param values  of all of this rank's pieces, by number; or, if `part.of` is 0, of the pieces sent, in that order
+void LinesOfLinks::Send(const std::vector<Shared>& to, int tag, Part part, const Values& values)
+{
+  auto next = values.begin();
+  for (const Shared& other : to)
+  {
+    Values message;
+    this->Failure.Attempt([&] {
+      for (const std::size_t piece : other.pieces)
+      {
+        const auto first =
+          part.of > 0 ? values.begin() + static_cast<std::ptrdiff_t>(piece * part.of + part.first) : next;
+        next = first + static_cast<std::ptrdiff_t>(part.count);
+        message.insert(message.end(), first, next);
+      }
+    });
+    this->TheDomain.Comm().Send(other.rank, tag, this->Failure.broken ? Values() : message);
+  }
+}
+
+/// @return `width` numbers of each piece, side by side; undefined after a failure
+LinesOfLinks::Values LinesOfLinks::Receive(const std::vector<Shared>& from, int tag, std::size_t width)
+{
+  Values all;
+  for (const Shared& other : from)
+  {
+    const Values message = this->TheDomain.Comm().Receive<double>(other.rank, tag);
+    this->Failure.broken = this->Failure.broken || message.size() != width * other.pieces.size();
+    this->Failure.Attempt([&] { all.insert(all.end(), message.begin(), message.end()); });
+  }
+  return all;
+}
+
+std::string LinesOfLinks::Options() const
+{
+  const LatticeVoxels& voxels = this->Voxels;
+  return ExactOption(this->TheDevice) + Define("DIRECTIONS", this->Settings.directions) +
+    Define("BENDS", voxels.bends) + Define("PASSES_ALL", voxels.passesAll) + Define("REFLECTS", voxels.Reflects()) +
+    Define("PUBLISHED", 0) + Define("ENDLESS", !voxels.endless.empty());
+}
+
+/// One of CutLines.cl with its first arguments, up to `endless`.
+cl::Kernel LinesOfLinks::Kernel(const char* name, int pair, double incident) const
+{
+  cl::Kernel lines = this->TheDevice.Kernel(name, kernel_source::CutLines, this->Options());
+  With(lines, this->Densities->Info(), this->Straight.Handle(), this->Passes, this->Squared, this->Even.Handle(),
+    cl_int(pair));
+  SetExact(this->TheDevice, lines, 6, incident);
+  SetFrom(lines, 7, this->Pairs[pair].below.Handle(), this->Endless);
+  return lines;
+}
+
+void LinesOfLinks::Run(cl::Kernel& kernel, int pair)
+{
+  const std::array<std::size_t, 2>& range = this->Pairs[pair].range;
+  this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(range[0], range[1]));
+  this->TheDevice.Finish();
+}
+
+void LinesOfLinks::GoUp(int pair, Slot& slot, double incident, Part part)
+{
+  const std::vector<Shared>& sentTo = this->Pairs[pair].sentTo;
+  Values values;
+  this->Failure.Attempt([&] {
+    cl::Kernel up = this->Kernel("pieces_up", pair, incident);
+    SetFrom(up, 9, slot.behind.Handle(), slot.share.Handle(), slot.sent.Handle());
+    this->Run(up, pair);
+    values = sentTo.empty() ? Values() : slot.sent.Read();
+  });
+  this->Send(sentTo, 2 * pair, part, values);
+}
+
+/// Joins the lines that begin in this rank's block.
+void LinesOfLinks::Join(int pair)
+{
+  const Pair& of = this->Pairs[pair];
+  const Values received = this->Receive(of.receivedFrom, 2 * pair, SweepValues);
+  Values joined;
+  this->Failure.Attempt([&] {
+    joined.resize(received.size() / SweepValues * JoinedValues);
+    for (const Line& line : of.lines)
+    {
+      std::vector<PieceOfLine> parts;
+      std::vector<SentByPiece> sent;
+      for (const std::size_t place : line.places)
+      {
+        parts.push_back(of.parts[place]);
+        sent.push_back({ received[SweepValues * place], received[SweepValues * place + 1] });
+      }
+      const std::vector<ComesToPiece> comes = JoinLine(parts, sent, line.closed);
+      for (std::size_t k = 0; k < comes.size(); ++k)
+      {
+        const auto to = joined.begin() + static_cast<std::ptrdiff_t>(JoinedValues * line.places[k]);
+        to[0] = comes[k].up;
+        to[1] = comes[k].down;
+        to[2] = comes[k].sentBeyond;
+      }
+    }
+  });
+  this->Send(of.receivedFrom, 2 * pair + 1, { 0, JoinedValues, 0 }, joined);
+}
+
+void LinesOfLinks::GoDown(int pair, Slot& slot, double incident, bool writes)
+{
+  const std::vector<Shared>& sentTo = this->Pairs[pair].sentTo;
+  const Values received = this->Receive(sentTo, 2 * pair + 1, JoinedValues);
+  this->Failure.Attempt([&] {
+    Values joined(JoinedValues * this->MostPieces, 0.0);
+    auto next = received.begin();
+    for (const Shared& other : sentTo)
+    {
+      for (const std::size_t piece : other.pieces)
+      {
+        std::copy_n(next, JoinedValues, joined.begin() + static_cast<std::ptrdiff_t>(JoinedValues * piece));
+        next += JoinedValues;
+      }
+    }
+    slot.joined.Write(joined);
+    cl::Kernel down = this->Kernel("pieces_down", pair, incident);
+    SetFrom(down, 9, slot.behind.Handle(), slot.share.Handle(), slot.joined.Handle(), this->Arriving.Handle(),
+      this->Densities->Densities(), cl_int(writes));
+    this->Run(down, pair);
+  });
+}
+
+/// Up and down lines that no block cuts.
+void LinesOfLinks::SweepWhole(int pair, double incident, bool writes)
+{
+  cl::Kernel lines = this->TheDevice.Kernel("sweep_lines", kernel_source::LatticeLines, this->Options());
+  Slot& slot = this->Slots.front();
+  With(lines, this->Densities->Info(), this->Straight.Handle(), this->Passes, this->Squared, this->Even.Handle(),
+    cl_int(pair));
+  SetExact(this->TheDevice, lines, 6, incident);
+  SetFrom(lines, 7, slot.behind.Handle(), slot.share.Handle(), this->Arriving.Handle(), this->Densities->Densities(),
+    this->Endless, cl_int(writes));
+  this->Run(lines, pair);
+}
+
+/// Some pairs at once, so that a rank need not wait for each.
+void LinesOfLinks::SweepCut(int begin, int end, double incident, bool writes)
+{
+  for (int pair = begin; pair < end; ++pair)
+  {
+    this->GoUp(pair, this->Slots[pair - begin], incident, { 0, SweepValues, PieceValues });
+  }
+  for (int pair = begin; pair < end; ++pair)
+  {
+    this->Join(pair);
+  }
+  for (int pair = begin; pair < end; ++pair)
+  {
+    this->GoDown(pair, this->Slots[pair - begin], incident, writes);
+  }
+}
+
+LinesOfLinks::Values LinesOfLinks::Sweep(const Values& even, double incident, bool writes, const Monitor& monitor)
+{
+  this->Failure = {};
+  const int pairs = static_cast<int>(this->Pairs.size());
+  this->Failure.Attempt([&] {
+    if (pairs > 0)
+    {
+      this->Even.Write(even);
+      this->Arriving.Fill(0.0);
+    }
+  });
+  const bool cuts = !this->TheDomain.IsSerial();
+  const int atOnce = cuts ? PairsAtOnce : 1;
+  for (int begin = 0; begin < pairs; begin += atOnce)
+  {
+    const int end = std::min(begin + atOnce, pairs);
+    if (cuts)
+    {
+      this->SweepCut(begin, end, incident, writes);
+    }
+    this->Failure.Attempt([&] {
+      if (!cuts)
+      {
+        this->SweepWhole(begin, incident, writes);
+      }
+      this->Work += end - begin;
+      Report(monitor, 1.0 - 1.0 / (1.0 + 0.01 * this->Work)); // how many sweeps it takes is not known
+    });
+  }
+  Values arrives;
+  this->TheDomain.Collective([&] {
+    this->Failure.Throw();
+    if (pairs > 0 && !this->Failure.broken)
+    {
+      arrives = this->Arriving.Read();
+    }
+  });
+  return arrives;
 }
 }

@@ -12,7 +12,7 @@ namespace
 {
 constexpr double Imbalance = 1e-6; ///< of all power, that may be missing
 constexpr int MostIterations = 400;
-constexpr int Patience = 40; ///< iterations without a better estimate, after which rounding is taken as the reason
+constexpr int Patience = 40; ///< iterations without a better estimate, after which rounding limits it
 
 /// a += factor b
 void Add(std::vector<double>& a, double factor, const std::vector<double>& b)
@@ -26,14 +26,16 @@ double SumOfMagnitudes(const std::vector<double>& values)
 }
 }
 
-SteadyLattice::SteadyLattice(
-  const LatticeBox& box, const LatticeSettings& settings, const LatticeVoxels& voxels, SteadySystem& system)
-  : Box(box)
+SteadyLattice::SteadyLattice(Device& device, const LatticeProblem& problem, const LatticeSettings& settings,
+  const LatticeVoxels& voxels, const Lattice* densities)
+  : TheDomain(problem.TheDomain())
+  , Box(problem.Box())
   , Settings(settings)
   , Voxels(voxels)
-  , System(system)
-  , Count(box.Count())
-  , CountOfAll(system.Sum({ static_cast<double>(box.Count()) })[0])
+  , Lines(device, problem, settings, voxels, densities)
+  , Diffusion(device, problem, settings, voxels)
+  , Count(problem.Box().Count())
+  , CountOfAll(static_cast<double>(problem.TheDomain().Whole().VoxelCount()))
   , Start(ClockSeconds())
 {
 }
@@ -43,14 +45,14 @@ double SteadyLattice::Turns(std::size_t known) const
   return (1.0 - this->Voxels.lost[known]) * this->Voxels.turning[known] / this->Voxels.OpenWeight(known);
 }
 
-/// Of all ranks.
+/// Over all ranks.
 double SteadyLattice::Dot(const Values& a, const Values& b) const
 {
-  return this->System.Sum({ std::inner_product(a.begin(), a.end(), b.begin(), 0.0) })[0];
+  return this->TheDomain.Sum(std::inner_product(a.begin(), a.end(), b.begin(), 0.0));
 }
 
-/// What collisions make even, and sources, of fluence over n^2.
-SteadyLattice::Values SteadyLattice::EvenOf(const Values& scaled, bool withSources) const
+/// What collisions of this fluence over n^2 send evenly, with or without sources.
+std::vector<double> SteadyLattice::EvenOf(const Values& scaled, bool withSources) const
 {
   Values even(this->Count);
   for (std::size_t i = 0; i < this->Count; ++i)
@@ -63,17 +65,16 @@ SteadyLattice::Values SteadyLattice::EvenOf(const Values& scaled, bool withSourc
   return even;
 }
 
-/// Of a sweep, with or without all that shines.
-SteadyLattice::Values SteadyLattice::Arriving(
-  const Values& scaled, bool withSources, bool writes, const Monitor& monitor)
+/// What a sweep brings to each voxel, with or without sources and incident light.
+std::vector<double> SteadyLattice::Arriving(const Values& scaled, bool withSources, bool writes, const Monitor& monitor)
 {
   Values even;
-  this->System.Alone([&] { even = this->EvenOf(scaled, withSources); });
-  return this->System.Sweep(even, withSources ? 1.0 : 0.0, writes, monitor);
+  this->TheDomain.Collective([&] { even = this->EvenOf(scaled, withSources); });
+  return this->Lines.Sweep(even, withSources ? 1.0 : 0.0, writes, monitor);
 }
 
-/// W / length^2 that collisions would make even, less what they were taken to.
-SteadyLattice::Values SteadyLattice::Residual(const Values& scaled, const Monitor& monitor)
+/// The residual of Eq. (L9), W / length^2.
+std::vector<double> SteadyLattice::Residual(const Values& scaled, const Monitor& monitor)
 {
   Values residual = this->Arriving(scaled, true, false, monitor);
   for (std::size_t i = 0; i < this->Count; ++i)
@@ -86,7 +87,7 @@ SteadyLattice::Values SteadyLattice::Residual(const Values& scaled, const Monito
 }
 
 /// The system's matrix times fluence over n^2, Eq. (L9).
-SteadyLattice::Values SteadyLattice::Applied(const Values& scaled, const Monitor& monitor)
+std::vector<double> SteadyLattice::Applied(const Values& scaled, const Monitor& monitor)
 {
   Values applied = this->Arriving(scaled, false, false, monitor);
   for (std::size_t i = 0; i < this->Count; ++i)
@@ -98,14 +99,14 @@ SteadyLattice::Values SteadyLattice::Applied(const Values& scaled, const Monitor
 }
 
 /// Eq. (L11).
-SteadyLattice::Values SteadyLattice::Preconditioned(const Values& residual)
+std::vector<double> SteadyLattice::Preconditioned(const Values& residual)
 {
   const double unit = std::sqrt(this->Dot(residual, residual) / this->CountOfAll);
   if (!(unit > 0.0))
   {
     return Values(this->Count, 0.0);
   }
-  Values corrected = this->System.Diffuse(residual, unit);
+  Values corrected = this->Diffusion.Solve(residual, unit);
   for (std::size_t i = 0; i < this->Count; ++i)
   {
     const std::size_t known = this->Box.Known(i);
@@ -128,11 +129,11 @@ void SteadyLattice::Note(double estimate, double change, int iteration, std::vec
 std::vector<float> SteadyLattice::Solve(const Monitor& monitor, std::vector<ConvergenceRow>& rows)
 {
   Values scaled;
-  this->System.Alone([&] { scaled.assign(this->Count, 0.0); });
+  this->TheDomain.Collective([&] { scaled.assign(this->Count, 0.0); });
   Values residual = this->Residual(scaled, monitor);
-  const double power = this->System.Sum({ SumOfMagnitudes(residual) })[0];
+  const double power = this->TheDomain.Sum(SumOfMagnitudes(residual));
   Values better = this->Preconditioned(residual), direction;
-  this->System.Alone([&] { direction = better; });
+  this->TheDomain.Collective([&] { direction = better; });
   double rz = this->Dot(residual, better), smallest = 1.0, change = 1.0;
   int sinceBetter = 0;
   for (int iteration = 1; iteration <= MostIterations && power > 0.0 && rz > 0.0; ++iteration)
@@ -147,8 +148,8 @@ std::vector<float> SteadyLattice::Solve(const Monitor& monitor, std::vector<Conv
     Add(scaled, length, direction);
     Add(residual, -length, applied);
     better = this->Preconditioned(residual);
-    const Values sums = this->System.Sum(
-      { SumOfMagnitudes(scaled), SumOfMagnitudes(better), SumOfMagnitudes(direction), SumOfMagnitudes(residual) });
+    const Values sums = this->TheDomain.Sum(Values{
+      SumOfMagnitudes(scaled), SumOfMagnitudes(better), SumOfMagnitudes(direction), SumOfMagnitudes(residual) });
     const double estimate = sums[1] / sums[0], imbalance = sums[3] / power;
     change = length * sums[2] / sums[0];
     this->Note(estimate, change, iteration, rows);
@@ -162,7 +163,7 @@ std::vector<float> SteadyLattice::Solve(const Monitor& monitor, std::vector<Conv
     {
       break;
     }
-    // Flexible: the preconditioner is itself an iteration.
+    // Flexible conjugate gradients: the preconditioner is itself an iteration.
     const double part = -length * this->Dot(better, applied) / rz;
     rz = this->Dot(residual, better);
     std::transform(better.begin(), better.end(), direction.begin(), direction.begin(),
@@ -171,7 +172,7 @@ std::vector<float> SteadyLattice::Solve(const Monitor& monitor, std::vector<Conv
   std::transform(scaled.begin(), scaled.end(), scaled.begin(), [](double x) { return std::max(x, 0.0); });
   const Values arrives = this->Arriving(scaled, true, true, monitor);
   std::vector<float> fluence;
-  this->System.Alone([&] {
+  this->TheDomain.Collective([&] {
     for (std::size_t i = 0; i < this->Count; ++i)
     {
       fluence.push_back(static_cast<float>(arrives[i] + 0.5 * this->Voxels.source[this->Box.Known(i)]));

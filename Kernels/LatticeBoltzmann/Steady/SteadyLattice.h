@@ -1,10 +1,13 @@
 #pragma once
 
+#include "Device/Device.h"
 #include "Device/Monitor.h"
-#include "LatticeBoltzmann/LatticeBox.h"
+#include "LatticeBoltzmann/Lattice.h"
+#include "LatticeBoltzmann/LatticeProblem.h"
 #include "LatticeBoltzmann/LatticeSettings.h"
 #include "LatticeBoltzmann/LatticeVoxels.h"
-#include "LatticeBoltzmann/Steady/SteadySystem.h"
+#include "LatticeBoltzmann/Steady/LatticeDiffusion.h"
+#include "LatticeBoltzmann/Steady/LinesOfLinks.h"
 #include "Light/LightField.h"
 
 #include <vector>
@@ -13,23 +16,25 @@ namespace tyndall
 {
 /// The steady densities of one channel's lattice, where the scheme is conservative (numerics.md, Eqs. (L7) to (L12)).
 ///
-/// Unknown is what collisions make even, by voxel. Between collisions light goes along lines of links, which are solved
-/// at once; the rest is symmetric and positive definite, and solved by conjugate gradients whose preconditioner is the
-/// diffusion of the same lattice. So the work hardly grows with thickness, albedo and voxels.
+/// The unknown is fluence over n^2, by voxel. Between collisions light moves along lines of links, which are solved
+/// directly (LinesOfLinks); what is left is symmetric and positive definite, and solved by conjugate gradients that the
+/// diffusion of the same lattice preconditions (LatticeDiffusion). So the number of iterations hardly depends on
+/// thickness, albedo or the number of voxels.
 class SteadyLattice
 {
 public:
-  /// @param voxels  the known ones of the box
-  /// @param system  of the same; Solve() has it write densities
-  SteadyLattice(
-    const LatticeBox& box, const LatticeSettings& settings, const LatticeVoxels& voxels, SteadySystem& system);
+  /// Collective. All must outlive it.
+  /// @param densities  of the block, written by Solve(); null where the block has no voxels
+  SteadyLattice(Device& device, const LatticeProblem& problem, const LatticeSettings& settings,
+    const LatticeVoxels& voxels, const Lattice* densities);
 
-  /// Fluence of the steady lattice, W / length^2 by voxel, never negative; densities to the lattice.
+  /// Collective.
   /// @param rows  of convergence, one an iteration
+  /// @return fluence of the steady lattice, W / length^2 by own voxel, never negative
   std::vector<float> Solve(const Monitor& monitor, std::vector<ConvergenceRow>& rows);
 
 private:
-  using Values = SteadySystem::Values;
+  using Values = std::vector<double>;
 
   /// Part of a density that is made even and not absorbed, over the weight of the directions that it is sent along.
   double Turns(std::size_t known) const;
@@ -41,10 +46,12 @@ private:
   Values Preconditioned(const Values& residual);
   void Note(double estimate, double change, int iteration, std::vector<ConvergenceRow>& rows) const;
 
+  const Domain& TheDomain;
   const LatticeBox& Box;
   const LatticeSettings& Settings;
   const LatticeVoxels& Voxels;
-  SteadySystem& System;
+  LinesOfLinks Lines;
+  LatticeDiffusion Diffusion;
   const std::size_t Count;
   const double CountOfAll;
   double Start;

@@ -8,8 +8,11 @@
 
 namespace tyndall
 {
+/// Work-items that follow the lines of a pair of directions through a box, two numbers; some have none.
+std::array<std::size_t, 2> LinesOfPair(const std::array<int, 3>& size, int pair);
+
 /// Lines of links of one pair of directions through a grid in blocks: each block has pieces of them, numbered as the
-/// work-items of BlockLines.cl. Where axes are periodic a line may come through a block several times, and close.
+/// work-items of CutLines.cl. With periodic axes a line may pass through a block several times, and close.
 class PiecesOfLines
 {
 public:
@@ -25,10 +28,10 @@ public:
     bool closed = false;
   };
 
-  /// @param partition  must stay
+  /// @param partition  must outlive it
   PiecesOfLines(const BlockPartition& partition, const std::array<bool, 3>& periodic, int pair);
 
-  /// Lines that begin in the block of a rank, or are cut there, but for those that no other piece belongs to.
+  /// Lines of several pieces, or closed ones, that begin in the block of a rank.
   std::vector<Line> LinesFrom(int rank) const;
 
   std::array<std::size_t, 2> Range(int rank) const; ///< of work-items
@@ -38,7 +41,7 @@ public:
 
 private:
   using Voxel = std::array<int, 3>;
-  /// Along an axis that lines go along, where they come into a box.
+  /// Coordinate, along an axis that lines move along, at which they enter a box.
   int Entry(const VoxelBox& box, int axis) const
   {
     return this->Way[axis] > 0 ? box.first[axis] : EndOf(box, axis) - 1;

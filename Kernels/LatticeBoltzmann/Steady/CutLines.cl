@@ -1,6 +1,6 @@
-// Lines of links through a rank's block: pieces of lines, of which others lie in other blocks, or in this one again
-// where an axis is periodic. What a piece does to light, and what it sends by itself, is found on its way up; when all
-// pieces of a line have been joined (JoinedLines.h), densities follow on its way down.
+// Pieces of lines of links in a rank's block; their other pieces lie in other blocks, or across a periodic axis in this
+// one. On the way up a piece's response to light at its ends, and what it sends without any, are found; when all pieces
+// of a line have been joined (JoinedLine.h), densities follow on the way down.
 #include "LatticeBoltzmann/Steady/LatticeLine.cl"
 
 #define PIECE (get_global_id(1) * get_global_size(0) + get_global_id(0))
@@ -8,15 +8,15 @@
 typedef struct
 {
   Place place; // the first voxel
-  bool is_cut; // behind it lies another block
+  bool is_cut; // before it lies another piece
   Link link;   // to that
-  Border low;  // or the grid's face
+  Border low;  // or else the grid's face
 } Piece;
 
-// below    [piece][2], of the voxel behind it: part that links let through, n^2
-// endless  as of sweep_lines
-// @return false: none begins here, or it is of a line that stays dark
-static bool begin_piece(LatticeInfo lattice, MEDIUM, int pair, exact shines, const __global exact* below,
+// below    [piece][2], of the voxel before it: part that links let through, n^2
+// endless  as in sweep_lines
+// @return false: no piece begins here, or its line is endless
+static bool begin_piece(LatticeInfo lattice, MEDIUM, int pair, exact incident, const __global exact* below,
   const __global float* endless, Piece* piece)
 {
   const int i = 2 * pair;
@@ -40,7 +40,7 @@ static bool begin_piece(LatticeInfo lattice, MEDIUM, int pair, exact shines, con
   }
   else
   {
-    piece->low = border_at(lattice, straight, passes, squared, even, voxel, before, shines, i);
+    piece->low = border_at(lattice, straight, passes, squared, even, voxel, before, incident, i);
   }
   return true;
 }
@@ -62,19 +62,18 @@ static Top last_of_piece(LatticeInfo lattice, Place place, int i)
   return top;
 }
 
-// Up the pieces of a pair of directions. A work-item a piece; arrays as of sweep_lines, and
-//   says  [piece][8], of x that goes up the cut behind it and B that comes down to its last voxel (PieceOfLine): what
-//         the last voxel sends up, 0 + 2 x + 3 B; what the first sends down, 1 + 4 x + 5 B; parts that the link behind
-//         lets up and down
-__kernel void pieces_up(LatticeInfo lattice, MEDIUM, int pair, exact shines, const __global exact* below,
-  const __global float* endless, __global exact* behind, __global exact* share, __global exact* says)
+// Up the pieces of a pair of directions. A work-item a piece; arrays as in sweep_lines, and
+//   sent  [piece][8], with x sent up the cut before it and B sent down to its last voxel (PieceOfLine): the last voxel
+//         sends up 0 + 2 x + 3 B, the first one sends down 1 + 4 x + 5 B; the link before it lets 6 up and 7 down
+__kernel void pieces_up(LatticeInfo lattice, MEDIUM, int pair, exact incident, const __global exact* below,
+  const __global float* endless, __global exact* behind, __global exact* share, __global exact* sent)
 {
   Piece piece;
-  if (!begin_piece(lattice, straight, passes, squared, even, pair, shines, below, endless, &piece))
+  if (!begin_piece(lattice, straight, passes, squared, even, pair, incident, below, endless, &piece))
   {
     for (int k = 0; k < 8; ++k)
     {
-      says[8 * PIECE + k] = 0;
+      sent[8 * PIECE + k] = 0;
     }
     return;
   }
@@ -85,14 +84,14 @@ __kernel void pieces_up(LatticeInfo lattice, MEDIUM, int pair, exact shines, con
   const Place past = next_along(lattice, top.place, i);
   if (past.face != OtherBlock)
   {
-    const Border high = border_at(lattice, straight, passes, squared, even, top.voxel, past, shines, i);
+    const Border high = border_at(lattice, straight, passes, squared, even, top.voxel, past, incident, i);
     const exact rest = 1 - high.back * returns;
     const exact again = rest > 0 ? top.cut.gives_back / rest : 0;
     top.cut.sent += again * (high.in + high.back * sends);
     top.cut.round += again * high.back * top.part;
     top.cut.gives_back = 0;
   }
-  __global exact* of = says + 8 * PIECE;
+  __global exact* of = sent + 8 * PIECE;
   of[0] = sends;
   of[1] = top.cut.sent;
   of[2] = top.part;
@@ -103,15 +102,15 @@ __kernel void pieces_up(LatticeInfo lattice, MEDIUM, int pair, exact shines, con
   of[7] = piece.link.down;
 }
 
-// Down them, after pieces_up.
-//   joined  [piece][3]: x, B, and what the first voxel of the piece beyond sends down
-//   densities  those of the voxels behind and beyond, too, on the way to these
-__kernel void pieces_down(LatticeInfo lattice, MEDIUM, int pair, exact shines, const __global exact* below,
+// Down the pieces, after pieces_up.
+//   joined  [piece][3]: x, B, and what the first voxel of the next piece sends down
+//   densities  also those that the voxels before and beyond send into the piece
+__kernel void pieces_down(LatticeInfo lattice, MEDIUM, int pair, exact incident, const __global exact* below,
   const __global float* endless, const __global exact* behind, const __global exact* share,
   const __global exact* joined, __global exact* sum, __global float* densities, int writes)
 {
   Piece piece;
-  if (!begin_piece(lattice, straight, passes, squared, even, pair, shines, below, endless, &piece))
+  if (!begin_piece(lattice, straight, passes, squared, even, pair, incident, below, endless, &piece))
   {
     return;
   }
@@ -125,7 +124,7 @@ __kernel void pieces_down(LatticeInfo lattice, MEDIUM, int pair, exact shines, c
   const Place past = next_along(lattice, top.place, i);
   if (past.face != OtherBlock)
   {
-    const Border high = border_at(lattice, straight, passes, squared, even, top.voxel, past, shines, i);
+    const Border high = border_at(lattice, straight, passes, squared, even, top.voxel, past, incident, i);
     const exact sends = behind[2 * top.voxel] + (piece.is_cut ? share[top.voxel] * round : 0);
     const exact rest = 1 - high.back * behind[2 * top.voxel + 1];
     comes = rest > 0 ? (high.in + high.back * sends) / rest : 0;

@@ -1,7 +1,6 @@
-#include "LatticeBoltzmann/Distributed/PiecesOfLines.h"
+#include "LatticeBoltzmann/Steady/PiecesOfLines.h"
 
 #include "LatticeBoltzmann/LatticeShared.h"
-#include "LatticeBoltzmann/Steady/LinesOfLinks.h"
 
 #include <algorithm>
 #include <functional>
@@ -10,6 +9,17 @@
 
 namespace tyndall
 {
+std::array<std::size_t, 2> LinesOfPair(const std::array<int, 3>& size, int pair)
+{
+  std::vector<std::size_t> moving, still;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    (LatticeWays[2 * pair][axis] != 0 ? moving : still).push_back(static_cast<std::size_t>(size[axis]));
+  }
+  return moving.size() == 1 ? std::array<std::size_t, 2>{ still[0], still[1] }
+                            : std::array<std::size_t, 2>{ moving[0] + moving[1], still[0] };
+}
+
 PiecesOfLines::PiecesOfLines(const BlockPartition& partition, const std::array<bool, 3>& periodic, int pair)
   : Partition(partition)
   , Periodic(periodic)
@@ -93,13 +103,13 @@ bool PiecesOfLines::Closes() const
   return std::all_of(this->Moving.begin(), this->Moving.end(), [&](int axis) { return this->Periodic[axis]; });
 }
 
-/// Where lines through a box begin, as begin_line has it; of closed ones in a plane that they all cross.
+/// First voxels of lines through a box, as begin_line has them; closed lines begin in a plane that they all cross.
 std::vector<PiecesOfLines::Voxel> PiecesOfLines::FirstVoxels(
   const VoxelBox& box, const std::array<bool, 3>& periodic) const
 {
   const int a = this->Moving.front(), b = this->Moving.back();
   std::vector<Voxel> found;
-  // Of the plane in which lines enter along an axis, those that begin there.
+  // In the plane in which lines enter along an axis, the voxels in which they begin.
   const auto addFrom = [&](int axis, const auto& begins) {
     VoxelBox plane = box;
     plane.first[axis] = this->Entry(box, axis);
