@@ -4,7 +4,7 @@
 #include "Common/LightTransportData.h"
 #include "IO/RadianceFile.h"
 #include "IO/ReadableFile.h"
-#include "Work/GuardedWork.h"
+#include "Pieces/GuardedWork.h"
 
 #include "vtkFloatArray.h"
 #include "vtkImageData.h"

@@ -10,8 +10,8 @@
 #include "IO/VDB/VDBGeometry.h"
 #include "IO/VDB/VDBMetadata.h"
 #include "Numerics/NumberText.h"
-#include "Ranks/WholeImage.h"
-#include "Work/GuardedWork.h"
+#include "Pieces/GuardedWork.h"
+#include "Pieces/UpdateExtent.h"
 
 #include "vtkCellData.h"
 #include "vtkCompositeDataPipeline.h"

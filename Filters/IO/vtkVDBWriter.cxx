@@ -7,8 +7,8 @@
 #include "IO/VDB/VDBGeometry.h"
 #include "IO/VDB/VDBMetadata.h"
 #include "IO/WholeFile.h"
-#include "Ranks/GatheredImage.h"
-#include "Ranks/Ranks.h"
+#include "Pieces/GatheredImage.h"
+#include "Pieces/Ranks.h"
 
 #include "vtkCellData.h"
 #include "vtkDataArray.h"

@@ -1,7 +1,7 @@
 #include "Propagation/PieceOfMedium.h"
 
 #include "Distribution/SharedMedium.h"
-#include "Ranks/PieceBlocks.h"
+#include "Pieces/PieceBlocks.h"
 
 #include "vtkImageData.h"
 

@@ -6,8 +6,8 @@
 #include "DiscreteOrdinates/DiscreteOrdinates.h"
 #include "DiscreteOrdinates/OrdinatesQuality.h"
 #include "LightPropagation/Accuracy/PreviewLight.h"
-#include "Ranks/PieceBlocks.h"
-#include "Work/GuardedWork.h"
+#include "Pieces/GuardedWork.h"
+#include "Pieces/PieceBlocks.h"
 
 #include "Propagation/LastLight.h"
 #include "Propagation/PieceOfMedium.h"

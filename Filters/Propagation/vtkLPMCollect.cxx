@@ -4,9 +4,9 @@
 #include "Common/LightTransportData.h"
 #include "Device/Device.h"
 #include "LightPropagation/Published/ParallelPropagation.h"
+#include "Pieces/GuardedWork.h"
+#include "Pieces/WholeInputs.h"
 #include "Propagation/LPMBuffers.h"
-#include "Work/GuardedWork.h"
-#include "Work/WholeInputs.h"
 
 #include "vtkCellData.h"
 #include "vtkDataArray.h"

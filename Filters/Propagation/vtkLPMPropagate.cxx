@@ -3,9 +3,9 @@
 #include "Common/LightTransportData.h"
 #include "Device/Device.h"
 #include "LightPropagation/Published/ParallelPropagation.h"
+#include "Pieces/GuardedWork.h"
+#include "Pieces/UpdateExtent.h"
 #include "Propagation/LPMBuffers.h"
-#include "Ranks/WholeImage.h"
-#include "Work/GuardedWork.h"
 
 #include "vtkFieldData.h"
 #include "vtkImageData.h"

@@ -9,9 +9,9 @@
 #include "LatticeBoltzmann/LatticeSettings.h"
 #include "LightPropagation/Accuracy/PreviewLight.h"
 #include "Photons/PhotonData.h"
+#include "Pieces/GuardedWork.h"
+#include "Pieces/PieceBlocks.h"
 #include "Propagation/PieceOfMedium.h"
-#include "Ranks/PieceBlocks.h"
-#include "Work/GuardedWork.h"
 
 #include "vtkDataObject.h"
 #include "vtkImageData.h"

@@ -14,8 +14,8 @@
 #include "LightPropagation/Problem/PropagationQuality.h"
 #include "LightPropagation/Published/ParallelPropagation.h"
 #include "LightPropagation/Published/SequentialPropagation.h"
-#include "Ranks/PieceBlocks.h"
-#include "Work/GuardedWork.h"
+#include "Pieces/GuardedWork.h"
+#include "Pieces/PieceBlocks.h"
 
 #include "Propagation/LastLight.h"
 #include "Propagation/PieceOfMedium.h"

@@ -3,7 +3,7 @@
 #include "Common/ImageInput.h"
 #include "Common/LightTransportData.h"
 #include "Lights/Lights.h"
-#include "Ranks/WholeImage.h"
+#include "Pieces/UpdateExtent.h"
 
 #include "vtkImageData.h"
 #include "vtkInformation.h"

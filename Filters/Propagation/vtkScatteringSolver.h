@@ -174,7 +174,7 @@ protected:
   tyndall::IlluminationInput ReadShining(vtkInformationVector** inputs, bool emits);
 
   /// RequestData: gives out the light of the last solve where that is asked for again, or solves, the pieces that ranks
-  /// have (Decomposition) or the whole. What fails is one error (Work/GuardedWork.h).
+  /// have (Decomposition) or the whole. What fails is one error (Pieces/GuardedWork.h).
   /// @param solve  is given all inputs as wholes, by port; ends with WriteSolved
   int UpdateCachedOrSolve(vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs,
     const std::function<void(vtkInformationVector** inputs)>& solve);

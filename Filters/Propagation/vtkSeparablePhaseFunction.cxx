@@ -2,7 +2,7 @@
 
 #include "LightPropagation/Angular/DirectionSet.h"
 #include "PhaseFunction/SeparablePhaseFunction.h"
-#include "Work/GuardedWork.h"
+#include "Pieces/GuardedWork.h"
 
 #include "vtkDoubleArray.h"
 #include "vtkInformationVector.h"

@@ -6,8 +6,8 @@
 #include "Comparison/SolverComparison.h"
 #include "Device/Clock.h"
 #include "Photons/RefractiveInput.h"
-#include "Ranks/WholeImage.h"
-#include "Work/GuardedWork.h"
+#include "Pieces/GuardedWork.h"
+#include "Pieces/UpdateExtent.h"
 
 #include "vtkDataObject.h"
 #include "vtkDoubleArray.h"

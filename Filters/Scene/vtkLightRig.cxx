@@ -2,9 +2,9 @@
 
 #include "Common/LightTransportData.h"
 #include "Lights/Lights.h"
-#include "Ranks/WholeImage.h"
+#include "Pieces/GuardedWork.h"
+#include "Pieces/UpdateExtent.h"
 #include "Scene/LightShapes.h"
-#include "Work/GuardedWork.h"
 
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"

@@ -1,8 +1,8 @@
 #include "vtkLightSource.h"
 
 #include "Common/LightTransportData.h"
+#include "Pieces/GuardedWork.h"
 #include "Scene/LightShapes.h"
-#include "Work/GuardedWork.h"
 
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"

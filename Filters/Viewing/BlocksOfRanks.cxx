@@ -1,7 +1,7 @@
 #include "BlocksOfRanks.h"
 
 #include "CasterProperties.h"
-#include "Ranks/PieceBlocks.h"
+#include "Pieces/PieceBlocks.h"
 #include "Viewing/Blocks/BlockOrder.h"
 #include "Viewing/Scene/BlockOfScene.h"
 

@@ -1,10 +1,10 @@
 #include "PictureOfBlocks.h"
 
 #include "Distribution/MessageTags.h"
-#include "Ranks/Ranks.h"
-#include "Ranks/WholeImage.h"
+#include "Pieces/GuardedWork.h"
+#include "Pieces/Ranks.h"
+#include "Pieces/UpdateExtent.h"
 #include "Viewing/ToneMapping.h"
-#include "Work/GuardedWork.h"
 
 #include <algorithm>
 #include <iterator>

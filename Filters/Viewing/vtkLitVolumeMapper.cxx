@@ -6,7 +6,7 @@
 #include "Common/LightTransportData.h"
 #include "Device/Clock.h"
 #include "PictureOverlay.h"
-#include "Ranks/ControllerCommunicator.h"
+#include "Pieces/ControllerCommunicator.h"
 #include "RenderedCamera.h"
 #include "Viewing/Blocks/ShownBlock.h"
 #include "Viewing/Rays/Picture.h"

@@ -2,11 +2,7 @@
 // whatever its length. Run by mpiexec; a program by itself. With the word `alone` the last rank stays away from an
 // exchange, and the others must not wait for it.
 
-#include "Ranks/ControllerCommunicator.h"
-
-#ifdef TYNDALL_HAS_DIY
-#include "Ranks/RankExchange.h"
-#endif
+#include "Pieces/ControllerCommunicator.h"
 
 #include "Device/Errors.h"
 

@@ -1,7 +1,7 @@
 // A medium that ParaView's extent translator spreads over MPI ranks, solved block by block, and marched through by
 // photons, against the whole on one. Run by mpiexec; a program by itself.
 
-#include "Ranks/ControllerCommunicator.h"
+#include "Pieces/ControllerCommunicator.h"
 
 #include "LightPropagation/Distributed/PropagationInBlocks.h"
 #include "Photons/Distributed/PhotonsInBlocks.h"

@@ -43,8 +43,7 @@ LAYERS = {
     ],
     "Filters": [
         ["Common"],
-        ["Ranks"],
-        ["Work"],
+        ["Pieces"],
         ["IO", "Scene", "Propagation", "Photons", "Viewing"],
     ],
 }

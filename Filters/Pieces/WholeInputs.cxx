@@ -1,13 +1,13 @@
-#include "Work/WholeInputs.h"
+#include "Pieces/WholeInputs.h"
 
 #include "Common/ContentKey.h"
 #include "Common/FilterBefore.h"
 #include "Common/ImageInput.h"
 #include "Device/Errors.h"
-#include "Ranks/GatheredImage.h"
-#include "Ranks/Ranks.h"
-#include "Ranks/WholeImage.h"
-#include "Work/GuardedWork.h"
+#include "Pieces/GatheredImage.h"
+#include "Pieces/GuardedWork.h"
+#include "Pieces/Ranks.h"
+#include "Pieces/UpdateExtent.h"
 
 #include "vtkAlgorithm.h"
 #include "vtkAppendPolyData.h"

@@ -4,6 +4,7 @@
 #include "vtkNew.h"
 
 #include <array>
+#include <cstddef>
 #include <vector>
 
 class vtkImageData;
@@ -14,6 +15,26 @@ class vtkInformationVector;
 /// (where a source does not give it to each rank: WholeInputs.h), work on that, and keep the piece that is asked for.
 namespace tyndall
 {
+/// Numbers of cells or of points along the axes, from the lowest to the highest of each, x fastest.
+struct ValueBox
+{
+  std::array<int, 3> low = { 0, 0, 0 };
+  std::array<int, 3> high = { -1, -1, -1 };
+
+  bool IsEmpty() const
+  {
+    return this->low[0] > this->high[0] || this->low[1] > this->high[1] || this->low[2] > this->high[2];
+  }
+  std::size_t Along(int axis) const { return static_cast<std::size_t>(this->high[axis] - this->low[axis] + 1); }
+  std::size_t Count() const { return this->IsEmpty() ? 0 : this->Along(0) * this->Along(1) * this->Along(2); }
+  void Add(const ValueBox& other); ///< so that the other is in it, too
+};
+
+/// The points of an extent.
+ValueBox PointBoxOf(const std::array<int, 6>& extent);
+/// Its cells; a flat one has one layer of them.
+ValueBox CellBoxOf(const std::array<int, 6>& extent);
+
 /// In RequestUpdateExtent: ask the inputs of a port for all of their image, or all pieces of their polydata.
 /// @param request, outputs  as RequestUpdateExtent is given them
 void AskForAll(vtkInformation* request, vtkInformationVector* inputs, vtkInformationVector* outputs);

@@ -1,7 +1,6 @@
-#include "Ranks/WholeImage.h"
+#include "Pieces/UpdateExtent.h"
 
-#include "Ranks/PieceLayout.h"
-#include "Ranks/Ranks.h"
+#include "Pieces/Ranks.h"
 
 #include "vtkAlgorithm.h"
 #include "vtkCellData.h"
@@ -28,6 +27,35 @@
 
 namespace tyndall
 {
+void ValueBox::Add(const ValueBox& other)
+{
+  if (this->IsEmpty())
+  {
+    *this = other;
+    return;
+  }
+  for (int axis = 0; axis < 3 && !other.IsEmpty(); ++axis)
+  {
+    this->low[axis] = std::min(this->low[axis], other.low[axis]);
+    this->high[axis] = std::max(this->high[axis], other.high[axis]);
+  }
+}
+
+ValueBox PointBoxOf(const std::array<int, 6>& extent)
+{
+  return { { extent[0], extent[2], extent[4] }, { extent[1], extent[3], extent[5] } };
+}
+
+ValueBox CellBoxOf(const std::array<int, 6>& extent)
+{
+  ValueBox box = PointBoxOf(extent);
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    box.high[axis] = box.high[axis] > box.low[axis] ? box.high[axis] - 1 : box.high[axis];
+  }
+  return box;
+}
+
 namespace
 {
 using Pipeline = vtkStreamingDemandDrivenPipeline;

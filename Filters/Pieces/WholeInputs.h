@@ -17,19 +17,18 @@ class vtkMultiProcessController;
 
 namespace tyndall
 {
-/// In RequestData: what a filter is given, the same on all ranks that run it together (Ranks.h).
+/// In RequestData: a filter's inputs, the same on all ranks that run it together (Ranks.h).
 ///
-/// Filters whose light crosses the borders of pieces ask for the whole of their inputs (AskForAll, WholeImage.h). Many
-/// sources give it to every rank; then nothing is copied and nothing is sent but a number that says so. Others have
-/// only what lies on their rank: Resample To Image, a source of pieces of one's own, a file's reader where the file is
-/// on one rank alone. Then each rank gets all of it: pieces of an image are put together (GatheredImage.h), with cell
-/// and point arrays, ghost cells once; of other data, as tables and lights, what one rank alone has goes to all.
-/// Points in shares are put one after the other, by rank.
+/// Light crosses the boundaries between pieces, so most filters ask for all of their inputs (AskForAll,
+/// UpdateExtent.h). If the source gives every rank all of it, only a digest is exchanged. If ranks have pieces, as from
+/// Resample To Image or a file that only one rank can read, every rank gets all of them: an image is gathered
+/// (GatheredImage.h) with its cell and point arrays, ghost cells once; other data, such as tables and lights, are
+/// broadcast from the rank that has them. Points that are distributed among ranks are appended in the order of ranks.
 ///
-/// Images that a filter reads as voxels have axes along those of the world, where theirs are so in another order. Where
-/// the first input is turned otherwise, the filter works in its axes (OwnAxes), which all ranks know. Those
-/// of which it reads arrays of points have a voxel around each of them (Common/ImageInput.h), also where
-/// one process is alone. Of a plane of points that pieces share, the voxels are those of the lowest rank.
+/// Images that a filter reads as voxels get axes along those of the world if they are a permutation of those. If the
+/// first input is rotated otherwise, the filter works in its axes (OwnAxes), the same on all ranks. Images of which
+/// point arrays are read get a voxel around each point (Common/ImageInput.h), on one rank, too; the voxels of a plane
+/// of points that pieces share belong to the lowest rank.
 ///
 /// Memory of each rank: the whole image, and one piece of one array.
 class WholeInputs

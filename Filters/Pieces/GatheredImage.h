@@ -1,7 +1,5 @@
 #pragma once
 
-#include "Ranks/PieceLayout.h"
-
 #include "vtkSmartPointer.h"
 
 #include <array>
@@ -18,10 +16,13 @@ class vtkMultiProcessStream;
 
 namespace tyndall
 {
+class PieceLayout;
+struct PieceValues;
+
 /// An image whose pieces lie on several ranks, put together on the first or on each: one array after the other, so that
 /// no more than one is there twice.
 ///
-/// Pieces may overlap, and may have ghost cells (vtkGhostType): PieceLayout.h says which piece a cell or point is taken
+/// Pieces may overlap, and may have ghost cells (vtkGhostType): PieceLayout says which piece a cell or point is taken
 /// from. What others have as their own there has to be the same. Ranks without cells have no part in it. Field data are
 /// those of the first piece; those of the phase function have to be the same on all. With one rank nothing is copied.
 ///
@@ -103,7 +104,7 @@ private:
   void CheckArrays(int first, int other, Kind kind) const;
   void Sort(Kind kind, const Piece& first);
   void MakeWhole(int first);
-  std::vector<PieceLayout::Piece> ShareFlags(Kind kind, const std::vector<unsigned char>& own) const;
+  std::vector<PieceValues> ShareFlags(Kind kind, const std::vector<unsigned char>& own) const;
   void LayOut(Kind kind, const std::vector<unsigned char>& own);
   void ShareFieldData(vtkImageData* piece, int from);
   vtkIdType CountOf(Kind kind, int rank) const;

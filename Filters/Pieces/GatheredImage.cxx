@@ -1,9 +1,10 @@
-#include "Ranks/GatheredImage.h"
+#include "Pieces/GatheredImage.h"
 
 #include "Common/ContentKey.h"
 #include "Common/PhaseFunctionData.h"
 #include "Device/Errors.h"
-#include "Ranks/Ranks.h"
+#include "Pieces/Ranks.h"
+#include "Pieces/UpdateExtent.h"
 
 #include "vtkDataSetAttributes.h"
 #include "vtkFieldData.h"
@@ -21,6 +22,138 @@
 
 namespace tyndall
 {
+namespace
+{
+constexpr int NoPiece = -1;
+}
+
+struct PieceValues
+{
+  ValueBox values;
+  std::vector<unsigned char> flags; ///< vtkGhostType of each value; empty: there is none
+};
+
+/// Which of an image's values come from which of its pieces, where those may overlap. A value is taken from the first
+/// piece that flags it (vtkGhostType) neither as a duplicate nor as hidden, else from the first that has it hidden,
+/// else from one that has a copy.
+class PieceLayout
+{
+public:
+  /// @param duplicate, hidden  what flags say so
+  PieceLayout(const ValueBox& whole, std::vector<PieceValues> pieces, unsigned char duplicate, unsigned char hidden);
+
+  /// The first value, in the order of the whole, that no piece has; as many as values: there is none.
+  std::size_t FirstGap() const;
+
+  /// The piece that a value comes from.
+  int OwnerOf(std::size_t value) const { return this->Owners[value]; }
+
+  /// Of each value, where it comes from.
+  std::vector<unsigned char> Flags() const;
+
+  /// Copies what comes from a piece into the whole.
+  /// @param size  bytes of a value
+  void Paste(int piece, const char* values, std::size_t size, char* whole) const;
+
+  /// Calls act with the number in the piece and in the whole of each value that a piece has as its own, neither
+  /// duplicate nor hidden, and that comes from another.
+  template <typename Do>
+  void ForOverlap(int piece, const Do& act) const
+  {
+    this->ForValues(piece, [&](std::size_t value, std::size_t at) {
+      if (this->Owners[at] != piece && !(this->FlagsOf(piece, value) & (this->Duplicate | this->HiddenFlag)))
+      {
+        act(value, at);
+      }
+    });
+  }
+
+private:
+  unsigned char FlagsOf(int piece, std::size_t value) const
+  {
+    const std::vector<unsigned char>& flags = this->AllPieces[static_cast<std::size_t>(piece)].flags;
+    return flags.empty() ? 0 : flags[value];
+  }
+
+  template <typename Do>
+  void ForValues(int piece, const Do& act) const
+  {
+    const ValueBox& box = this->AllPieces[static_cast<std::size_t>(piece)].values;
+    std::size_t value = 0;
+    for (int k = box.low[2]; !box.IsEmpty() && k <= box.high[2]; ++k)
+    {
+      for (int j = box.low[1]; j <= box.high[1]; ++j)
+      {
+        std::size_t at = (static_cast<std::size_t>(k - this->Whole.low[2]) * this->Whole.Along(1) +
+                           static_cast<std::size_t>(j - this->Whole.low[1])) *
+            this->Whole.Along(0) +
+          static_cast<std::size_t>(box.low[0] - this->Whole.low[0]);
+        for (int i = box.low[0]; i <= box.high[0]; ++i)
+        {
+          act(value++, at++);
+        }
+      }
+    }
+  }
+
+  ValueBox Whole;
+  std::vector<PieceValues> AllPieces;
+  unsigned char Duplicate, HiddenFlag;
+  std::vector<int> Owners;
+};
+
+PieceLayout::PieceLayout(
+  const ValueBox& whole, std::vector<PieceValues> pieces, unsigned char duplicate, unsigned char hidden)
+  : Whole(whole)
+  , AllPieces(std::move(pieces))
+  , Duplicate(duplicate)
+  , HiddenFlag(hidden)
+  , Owners(whole.Count(), NoPiece)
+{
+  const int count = static_cast<int>(this->AllPieces.size());
+  const auto take = [&](auto may) {
+    for (int piece = 0; piece < count; ++piece)
+    {
+      this->ForValues(piece, [&](std::size_t value, std::size_t at) {
+        if (this->Owners[at] == NoPiece && may(this->FlagsOf(piece, value)))
+        {
+          this->Owners[at] = piece;
+        }
+      });
+    }
+  };
+  take([&](unsigned char flags) { return (flags & (duplicate | hidden)) == 0; });
+  take([&](unsigned char flags) { return (flags & duplicate) == 0; });
+  take([](unsigned char) { return true; });
+}
+
+std::size_t PieceLayout::FirstGap() const
+{
+  return static_cast<std::size_t>(std::find(this->Owners.begin(), this->Owners.end(), NoPiece) - this->Owners.begin());
+}
+
+std::vector<unsigned char> PieceLayout::Flags() const
+{
+  std::vector<unsigned char> flags(this->Owners.size(), 0);
+  for (int piece = 0; piece < static_cast<int>(this->AllPieces.size()); ++piece)
+  {
+    this->ForValues(piece, [&](std::size_t value, std::size_t at) {
+      flags[at] = this->Owners[at] == piece ? this->FlagsOf(piece, value) : flags[at];
+    });
+  }
+  return flags;
+}
+
+void PieceLayout::Paste(int piece, const char* values, std::size_t size, char* whole) const
+{
+  this->ForValues(piece, [&](std::size_t value, std::size_t at) {
+    if (this->Owners[at] == piece)
+    {
+      std::memcpy(whole + at * size, values + value * size, size);
+    }
+  });
+}
+
 namespace
 {
 constexpr int Tag = 745201;                      ///< of our messages
@@ -102,7 +235,7 @@ GatheredImage::GatheredImage(vtkMultiProcessController* controller, vtkImageData
   OnAllRanks(controller, [&] { own = this->Describe(piece); });
   this->ShareDescriptions(own);
   const int first = this->FirstWithCells();
-  if (first == PieceLayout::Nobody)
+  if (first == NoPiece)
   {
     return;
   }
@@ -211,7 +344,7 @@ int GatheredImage::FirstWithCells() const
 {
   const auto found =
     std::find_if(this->Pieces.begin(), this->Pieces.end(), [](const Piece& piece) { return piece.HasCells(); });
-  return found == this->Pieces.end() ? PieceLayout::Nobody : static_cast<int>(found - this->Pieces.begin());
+  return found == this->Pieces.end() ? NoPiece : static_cast<int>(found - this->Pieces.begin());
 }
 
 void GatheredImage::CheckPieces(int first) const
@@ -315,9 +448,9 @@ void GatheredImage::MakeWhole(int first)
 
 /// Where the values of each piece are, and, where the whole is, their flags.
 /// @param own  flags of the own piece
-std::vector<PieceLayout::Piece> GatheredImage::ShareFlags(Kind kind, const std::vector<unsigned char>& own) const
+std::vector<PieceValues> GatheredImage::ShareFlags(Kind kind, const std::vector<unsigned char>& own) const
 {
-  std::vector<PieceLayout::Piece> pieces(this->Pieces.size());
+  std::vector<PieceValues> pieces(this->Pieces.size());
   OnAllRanks(this->Controller, [&] {
     for (int rank = 0; rank < this->Ranks; ++rank)
     {
@@ -353,7 +486,7 @@ void GatheredImage::LayOut(Kind kind, const std::vector<unsigned char>& own)
     this->Hidden[kind] = Only(hiddens[kind], own);
     return;
   }
-  std::vector<PieceLayout::Piece> pieces = this->ShareFlags(kind, own);
+  std::vector<PieceValues> pieces = this->ShareFlags(kind, own);
   OnAllRanks(this->Controller, [&] {
     if (!this->IsHere())
     {
