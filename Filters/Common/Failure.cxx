@@ -1,5 +1,6 @@
 #include "Common/Failure.h"
 
+#include "Common/LightTransportData.h"
 #include "Device/Errors.h"
 #include "Device/OpenCL.h"
 
@@ -63,6 +64,22 @@ void Throw(const Ending& ending)
     case Ending::InputFailed: throw InputFailed();
     case Ending::Empty: throw InputIsEmpty();
     case Ending::Failed: throw InvalidInput(ending.why);
+  }
+}
+
+void StopIfUpstreamFailed(vtkDataObject* input)
+{
+  if (ReadFact(input, AbortedFact, 0.0) > 0.0)
+  {
+    throw Aborted();
+  }
+  if (ReadFact(input, FailedFact, 0.0) > 0.0)
+  {
+    throw InputFailed();
+  }
+  if (ReadFact(input, EmptyFact, 0.0) > 0.0)
+  {
+    throw InputIsEmpty();
   }
 }
 }

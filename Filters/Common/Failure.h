@@ -3,15 +3,17 @@
 #include <functional>
 #include <string>
 
-/// How work ends that may fail.
+class vtkDataObject;
+
+/// Outcomes of work that may fail.
 namespace tyndall
 {
-/// Thrown where an input is empty because the filter before failed, which has said why.
+/// Thrown for an input that is empty because the filter upstream failed, which has reported why.
 struct InputFailed
 {
 };
 
-/// Thrown where an input is empty, and is meant to be.
+/// Thrown for an input that is empty on purpose.
 struct InputIsEmpty
 {
 };
@@ -22,7 +24,7 @@ struct Ending
   {
     Done,
     Aborted,     ///< no error: nothing is to be shown
-    InputFailed, ///< the filter before has said why
+    InputFailed, ///< reported by the filter upstream
     Empty,       ///< no error: there is nothing to work on
     Failed,
   };
@@ -31,9 +33,21 @@ struct Ending
   std::string why; ///< of Failed: a text for users
 };
 
-/// Does something and catches whatever it throws.
+/// Runs `work` and catches whatever it throws.
 Ending EndingOf(const std::function<void()>& work);
 
-/// Throws what EndingOf makes the same ending of; of Failed InvalidInput.
+/// Throws what EndingOf turns into the same outcome; for Failed, InvalidInput.
 void Throw(const Ending& ending);
+
+/// Field data by which the empty outputs of a filter that failed or was aborted inform filters downstream.
+constexpr const char* AbortedFact = "aborted";
+constexpr const char* FailedFact = "failed";
+/// The output is empty because the file it was read from is, which is no error.
+constexpr const char* EmptyFact = "nothing_in_file";
+/// Beside FailedFact: a rank did not reach the filter, so that filters downstream do not wait for it again.
+constexpr const char* MissingFact = "rank_missing";
+
+/// For an empty input: ends the work of Guarded (Pieces/GuardedWork.h) without an error if the filter upstream failed,
+/// was aborted, or read an empty file.
+void StopIfUpstreamFailed(vtkDataObject* input);
 }

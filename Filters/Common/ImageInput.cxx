@@ -1,7 +1,7 @@
 #include "Common/ImageInput.h"
 
 #include "Common/ArrayRanges.h"
-#include "Common/ArrayTimes.h"
+#include "Common/InputsKey.h"
 #include "Common/LightTransportData.h"
 #include "Device/Errors.h"
 #include "Device/HostThreads.h"
@@ -441,7 +441,7 @@ bool AreAroundPoints(vtkAlgorithm* filter, int port, vtkImageData* image, std::v
   return areAround;
 }
 
-vtkSmartPointer<vtkImageData> Halo(vtkImageData* points)
+vtkSmartPointer<vtkImageData> PointsAsVoxels(vtkImageData* points)
 {
   auto voxels = vtkSmartPointer<vtkImageData>::New();
   int extent[6];

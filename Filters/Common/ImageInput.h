@@ -56,7 +56,7 @@ bool AreAroundPoints(vtkAlgorithm* filter, int port, vtkImageData* image, std::v
 
 /// An image with a voxel around each point: arrays of points are its arrays of cells, those of cells are left out.
 /// Where an image has one point along an axis it has one voxel.
-vtkSmartPointer<vtkImageData> Halo(vtkImageData* points);
+vtkSmartPointer<vtkImageData> PointsAsVoxels(vtkImageData* points);
 
 /// Which way the axes of an image go where each goes along one of the world's, up or down: by a direction matrix, a
 /// negative spacing, or both.

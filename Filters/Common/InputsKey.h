@@ -1,22 +1,74 @@
 #pragma once
 
-#include "Common/ArrayTimes.h"
 #include "Device/Device.h"
 #include "Medium/Grid.h"
 
+#include "vtkAbstractArray.h"
 #include "vtkAlgorithm.h"
 #include "vtkDataArray.h"
+#include "vtkDataObject.h"
 #include "vtkDemandDrivenPipeline.h"
+#include "vtkFieldData.h"
 #include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationUnsignedLongKey.h"
+#include "vtkPoints.h"
+#include "vtkPointSet.h"
 #include "vtkUnsignedCharArray.h"
 
+#include <cstdint>
 #include <initializer_list>
 #include <memory>
 #include <vector>
 
-/// For filters that keep what they made of their inputs between updates.
+/// Keys for what filters keep between updates: by times of change, or by content.
 namespace tyndall
 {
+/// Of a copy of an array whose vectors were turned into other axes (ImageInput.h): when that array was last changed.
+inline vtkInformationUnsignedLongKey* TimeBeforeTurning()
+{
+  static auto* const key = vtkInformationUnsignedLongKey::MakeKey("TIME_BEFORE_TURNING", "Tyndall");
+  return key;
+}
+
+/// When an array was last changed, or that of which it is a turned copy.
+inline vtkMTimeType TimeOf(vtkAbstractArray* array)
+{
+  const bool isCopy = array->HasInformation() && array->GetInformation()->Has(TimeBeforeTurning());
+  return isCopy ? array->GetInformation()->Get(TimeBeforeTurning()) : array->GetMTime();
+}
+
+/// When the arrays and the points of a dataset were last changed: point, cell and field data in their order. Two
+/// datasets of the same times hold the same: no two objects have the same time.
+inline std::vector<vtkMTimeType> TimesOfArrays(vtkDataObject* data)
+{
+  std::vector<vtkMTimeType> times;
+  for (int kind : { vtkDataObject::POINT, vtkDataObject::CELL, vtkDataObject::FIELD })
+  {
+    vtkFieldData* arrays = data ? data->GetAttributesAsFieldData(kind) : nullptr;
+    for (int i = 0; arrays && i < arrays->GetNumberOfArrays(); ++i)
+    {
+      times.push_back(arrays->GetAbstractArray(i)->GetMTime());
+    }
+  }
+  auto* const set = vtkPointSet::SafeDownCast(data);
+  if (set && set->GetPoints())
+  {
+    times.push_back(set->GetPoints()->GetMTime());
+  }
+  return times;
+}
+
+/// A number that two datasets have in common only if all that they hold is the same, byte by byte: place, grid, points,
+/// arrays with their names. Unlike times it does not change where a filter before ran again and made the same, as
+/// ParaView's readers do, which read a file twice for two ways to ask for one time step.
+/// @param data  null: that there is none
+std::uint64_t ContentKey(vtkDataObject* data);
+
+/// The same without the arrays of the field data: ranks that hold the same photons know other facts of the medium where
+/// one has no piece of it.
+std::uint64_t ContentKeyButFacts(vtkDataObject* data);
+
 /// Tells whether what was made on a device of a filter's inputs is still up to date: keys are equal as long as nothing
 /// has changed. No two objects of VTK have the same time.
 struct InputsKey

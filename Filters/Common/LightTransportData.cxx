@@ -1,10 +1,9 @@
 #include "Common/LightTransportData.h"
 
 #include "Common/Failure.h"
-#include "Common/FilterBefore.h"
 #include "Common/GhostFlags.h"
 #include "Common/PhaseFunctionData.h"
-#include "Common/SameVoxels.h"
+#include "Device/Errors.h"
 #include "Device/HostThreads.h"
 #include "Numerics/Constants.h"
 #include "Numerics/NumberText.h"
@@ -25,6 +24,7 @@
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -293,7 +293,7 @@ Grid GridOf(vtkImageData* image)
     grid.spacing[axis] = image->GetSpacing()[axis];
     if (grid.size[axis] < 0)
     {
-      StopWithFilterBefore(image);
+      StopIfUpstreamFailed(image);
       throw InvalidInput("The input image is empty.");
     }
     if (grid.size[axis] == 0)
@@ -607,7 +607,7 @@ std::vector<Light> ReadLights(vtkPolyData* data)
   }
   if (data->GetNumberOfPoints() == 0)
   {
-    StopWithFilterBefore(data);
+    StopIfUpstreamFailed(data);
     return {};
   }
   vtkDataArray* type = LightArray(data, "light_type", Need::Required, { 1 });
@@ -692,7 +692,7 @@ Environment ReadEnvironment(vtkImageData* image)
   image->GetDimensions(size);
   if (image->GetNumberOfPoints() == 0)
   {
-    StopWithFilterBefore(image);
+    StopIfUpstreamFailed(image);
   }
   if (size[0] < 1 || size[1] < 1 || size[2] != 1)
   {
@@ -757,5 +757,41 @@ void AddFaceAlbedo(Illumination& illumination, const double* albedo, const doubl
     }
   }
   Check(illumination);
+}
+
+namespace
+{
+std::string Numbers(const std::array<double, 3>& values)
+{
+  return "(" + Text("%.9g", values[0]) + ", " + Text("%.9g", values[1]) + ", " + Text("%.9g", values[2]) + ")";
+}
+
+std::string Described(const Grid& grid)
+{
+  const std::array<int, 3>& size = grid.size;
+  return std::to_string(size[0]) + " x " + std::to_string(size[1]) + " x " + std::to_string(size[2]) +
+    " voxels of spacing " + Numbers(grid.spacing) + " from origin " + Numbers(grid.origin);
+}
+}
+
+bool AreSameVoxels(const Grid& a, const Grid& b)
+{
+  constexpr double part = 1e-3; // of a voxel
+  bool agree = a.size == b.size;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double low = std::abs(a.origin[axis] - b.origin[axis]);
+    const double high = std::abs(a.origin[axis] + a.Length(axis) - b.origin[axis] - b.Length(axis));
+    agree = agree && std::max(low, high) <= part * b.spacing[axis];
+  }
+  return agree;
+}
+
+void CheckSameVoxels(const Grid& grid, const Grid& medium, const std::string& whose, const std::string& remedy)
+{
+  if (!AreSameVoxels(grid, medium))
+  {
+    throw InvalidInput(whose + " has " + Described(grid) + ", the medium " + Described(medium) + ". " + remedy);
+  }
 }
 }

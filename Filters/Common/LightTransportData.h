@@ -4,6 +4,7 @@
 #include "Common/LightTransportWriting.h"
 #include "Device/Errors.h"
 #include "Lights/Lights.h"
+#include "Medium/Grid.h"
 #include "Medium/Medium.h"
 
 #include "vtkFloatArray.h"
@@ -230,4 +231,11 @@ void AddDiffuse(Illumination& illumination, const double* sky, const double* fac
 /// Adds what these faces give back of the light that leaves: a part for each, times factors red, green, blue for each.
 /// Checked.
 void AddFaceAlbedo(Illumination& illumination, const double* albedo, const double* colour);
+
+/// Whether a grid's voxels have the same corners as those of the medium, but for rounding.
+bool AreSameVoxels(const Grid& grid, const Grid& medium);
+
+/// @param whose, remedy  for the message: "The octree", "Make the octree of the same medium."
+/// @throws InvalidInput where a grid's voxels do not have the same corners as those of the medium, but for rounding
+void CheckSameVoxels(const Grid& grid, const Grid& medium, const std::string& whose, const std::string& remedy);
 }

@@ -1,10 +1,13 @@
 #pragma once
 
+#include "Common/ArrayRanges.h"
 #include "Light/LightField.h"
 #include "Lights/Lights.h"
 #include "Viewing/LitColor.h"
 
 #include <array>
+#include <cstddef>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -84,4 +87,15 @@ void WriteLights(const std::vector<Light>& lights, vtkPolyData* output);
 /// Make the output the input's arrays, with field data of its own: a shallow copy alone would share that, so that what
 /// a filter adds would appear in its input, and vanish when that is made again.
 void PassOn(vtkDataObject* input, vtkDataObject* output);
+
+/// @param place   of a tuple, as a user finds it: "voxel (1, 2, 3)", "photon 5"
+/// @param advice  what to do; null: what holds for light and coefficients of a medium
+/// @return ranges, to be left in the array
+/// @throws InvalidInput where a value is not finite: names the array, the first such place, the value, the likely cause
+ArrayRanges RequireFinite(const char* array, const float* values, std::size_t count, int components,
+  const std::function<std::string(std::size_t)>& place, const char* advice = nullptr);
+
+/// The same of the cells of an image.
+ArrayRanges RequireFiniteCells(vtkImageData* image, const char* array, const float* values, std::size_t count,
+  int components, const char* advice = nullptr);
 }

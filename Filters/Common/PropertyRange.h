@@ -7,6 +7,7 @@
 
 #include <initializer_list>
 #include <limits>
+#include <string>
 
 class vtkAlgorithm;
 
@@ -137,6 +138,23 @@ bool SetInRange(vtkAlgorithm* filter, const char* property, Type* heldValues, st
   virtual int GetPointData()                                \
   {                                                         \
     return this->PointData;                                 \
+  }
+
+/// The property Device, of the member of that name: part of the name of the OpenCL device to use, of any case. Default
+/// empty: what the variable TYNDALL_DEVICE names, or else PoCL's CPU device.
+#define tyndallDeviceMacro()                     \
+  virtual void SetDevice(const char* name)       \
+  {                                              \
+    const std::string device = name ? name : ""; \
+    if (this->Device != device)                  \
+    {                                            \
+      this->Device = device;                     \
+      this->Modified();                          \
+    }                                            \
+  }                                              \
+  virtual const char* GetDevice()                \
+  {                                              \
+    return this->Device.c_str();                 \
   }
 
 #endif

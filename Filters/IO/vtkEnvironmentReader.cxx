@@ -1,7 +1,7 @@
 #include "vtkEnvironmentReader.h"
 
-#include "Common/FiniteValues.h"
 #include "Common/LightTransportData.h"
+#include "Common/LightTransportWriting.h"
 #include "IO/RadianceFile.h"
 #include "IO/ReadableFile.h"
 #include "Pieces/GuardedWork.h"

@@ -1,7 +1,7 @@
 #include "vtkVDBReader.h"
 
 #include "Common/AvailableMemory.h"
-#include "Common/FilterBefore.h"
+#include "Common/Failure.h"
 #include "Common/ImageInput.h"
 #include "Common/LightTransportData.h"
 #include "Device/HostMemory.h"

@@ -232,7 +232,7 @@ void vtkVDBWriter::WriteData()
       voxels = this->GetImageInput();
       if (voxels && tyndall::AreAroundPoints(this, 0, voxels))
       {
-        voxels = tyndall::Halo(voxels);
+        voxels = tyndall::PointsAsVoxels(voxels);
       }
       voxels = voxels ? tyndall::WithSpacingsAbove0(voxels) : voxels;
       arrays = CellArraysOf(voxels);

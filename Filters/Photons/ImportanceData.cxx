@@ -1,6 +1,6 @@
 #include "Photons/ImportanceData.h"
 
-#include "Common/FilterBefore.h"
+#include "Common/Failure.h"
 #include "Common/LightTransportData.h"
 #include "Numerics/NumberText.h"
 
@@ -131,7 +131,7 @@ ImportanceMap ReadImportanceMap(vtkImageData* image, const Illumination& illumin
   }
   if (image->GetNumberOfPoints() == 0)
   {
-    StopWithFilterBefore(image);
+    StopIfUpstreamFailed(image);
     return {}; // of lights that do not reach the volume
   }
   const std::array<int, 3> size = GridOf(image).size;

@@ -1,10 +1,10 @@
 #include "Photons/PhotonData.h"
 
-#include "Common/ContentKey.h"
-#include "Common/FilterBefore.h"
-#include "Common/FiniteValues.h"
+#include "Common/Failure.h"
 #include "Common/GhostFlags.h"
+#include "Common/InputsKey.h"
 #include "Common/LightTransportData.h"
+#include "Common/LightTransportWriting.h"
 #include "Device/HostThreads.h"
 #include "Distribution/Communicator.h"
 #include "Numerics/NumberText.h"
@@ -230,7 +230,7 @@ std::vector<Photon> ReadPhotons(vtkPolyData* data, const OwnAxes& axes)
   }
   if (data->GetNumberOfPoints() == 0)
   {
-    StopWithFilterBefore(data);
+    StopIfUpstreamFailed(data);
     return {};
   }
   CheckBoxFact(data);

@@ -1,7 +1,7 @@
 #include "Photons/RefractiveInput.h"
 
+#include "Common/LightTransportData.h"
 #include "Common/PhaseFunctionData.h"
-#include "Common/SameVoxels.h"
 #include "Photons/PhotonData.h"
 
 #include "vtkCellData.h"

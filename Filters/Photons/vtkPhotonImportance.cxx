@@ -279,6 +279,7 @@ void vtkPhotonImportance::Note(const tyndall::Importance& importance)
 void vtkPhotonImportance::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
+  os << indent << "Device: " << this->Device << "\n";
   os << indent << "PilotCount: " << this->PilotCount << "\n";
   os << indent << "PilotDimensions: " << this->PilotDimensions[0] << " " << this->PilotDimensions[1] << " "
      << this->PilotDimensions[2] << "\n";

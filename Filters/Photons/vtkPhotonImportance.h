@@ -2,7 +2,7 @@
 #define vtkPhotonImportance_h
 
 #include "PropertyRange.h"
-#include "vtkLitImageAlgorithm.h"
+#include "vtkLitMediumAlgorithm.h"
 #include "vtkTyndallModule.h" // for export macro
 
 #include <memory>
@@ -61,12 +61,14 @@ class vtkMultiProcessController;
  * @par Thanks
  * M. Pfeuti, Real-time Rendering of Refractive Objects in Participating Media, 2009, sections 3.2.1 and 3.2.2.
  */
-class TYNDALL_EXPORT vtkPhotonImportance : public vtkLitImageAlgorithm
+class TYNDALL_EXPORT vtkPhotonImportance : public vtkLitMediumAlgorithm
 {
 public:
   static vtkPhotonImportance* New();
-  vtkTypeMacro(vtkPhotonImportance, vtkLitImageAlgorithm);
+  vtkTypeMacro(vtkPhotonImportance, vtkLitMediumAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  tyndallDeviceMacro();
 
   enum ThresholdKinds
   {
@@ -166,6 +168,7 @@ private:
   void Write(vtkInformation* request, vtkInformationVector* outputs, tyndall::Importance&& importance);
   void Note(const tyndall::Importance& importance);
 
+  std::string Device;
   int PilotCount;
   int PilotDimensions[3];
   int Thresholds = AUTOMATIC;

@@ -3,7 +3,6 @@
 #include "Common/DeviceBudget.h"
 #include "Common/ImageInput.h"
 #include "Common/LightTransportData.h"
-#include "Common/SameVoxels.h"
 #include "Device/Device.h"
 #include "Distribution/SharedMedium.h"
 #include "Numerics/ChooseEvenly.h"

@@ -232,12 +232,7 @@ public:
   vtkGetMacro(MemoryBudget, int);
   ///@}
 
-  ///@{
-  /// Part of the name of the OpenCL device to use, of any case. Default empty: what the variable TYNDALL_DEVICE names,
-  /// or else PoCL's CPU device.
-  vtkSetStdStringFromCharMacro(Device);
-  vtkGetCharFromStdStringMacro(Device);
-  ///@}
+  tyndallDeviceMacro();
 
   ///@{
   /// What came of the last update: stretches of path deposited to voxels, steps of the integrator, photons that miss

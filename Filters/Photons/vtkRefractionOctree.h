@@ -91,12 +91,7 @@ public:
   tyndallPointDataMacro();
   ///@}
 
-  ///@{
-  /// Part of the name of the OpenCL device to use, of any case. Default empty: what the variable TYNDALL_DEVICE names,
-  /// or else PoCL's CPU device.
-  vtkSetStdStringFromCharMacro(Device);
-  vtkGetCharFromStdStringMacro(Device);
-  ///@}
+  tyndallDeviceMacro();
 
   ///@{
   /// What came of the last update: the number of nodes, the seconds that their levels took, the name of the device

@@ -1,6 +1,6 @@
 #include "Pieces/GatheredImage.h"
 
-#include "Common/ContentKey.h"
+#include "Common/InputsKey.h"
 #include "Common/PhaseFunctionData.h"
 #include "Device/Errors.h"
 #include "Pieces/Ranks.h"

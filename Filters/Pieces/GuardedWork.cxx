@@ -1,11 +1,10 @@
 #include "Pieces/GuardedWork.h"
 
 // How filters do their work, report and fail: see LightTransportData.h.
-#include "Common/ArrayTimes.h"
 #include "Common/Failure.h"
-#include "Common/FilterBefore.h"
 #include "Common/GhostFlags.h"
 #include "Common/ImageInput.h"
+#include "Common/InputsKey.h"
 #include "Common/LightTransportWriting.h"
 #include "Device/CompilationListener.h"
 #include "Device/Device.h"

@@ -1,8 +1,8 @@
 #include "Pieces/WholeInputs.h"
 
-#include "Common/ContentKey.h"
-#include "Common/FilterBefore.h"
+#include "Common/Failure.h"
 #include "Common/ImageInput.h"
+#include "Common/InputsKey.h"
 #include "Device/Errors.h"
 #include "Pieces/GatheredImage.h"
 #include "Pieces/GuardedWork.h"
@@ -102,7 +102,7 @@ InputSummary Summarize(vtkInformation* connection)
   glance.isThere = image ? image->GetNumberOfCells() > 0 : HasValues(data);
   if (!glance.isThere)
   {
-    StopWithFilterBefore(data);
+    StopIfUpstreamFailed(data);
     return glance;
   }
   if (image)
@@ -429,7 +429,7 @@ bool IsIn(const Extent& points, const std::array<int, 3>& at)
 /// duplicates.
 vtkSmartPointer<vtkImageData> VoxelsOfPiece(vtkImageData* piece, const OnRanks& glances, int rank)
 {
-  const vtkSmartPointer<vtkImageData> voxels = Halo(piece);
+  const vtkSmartPointer<vtkImageData> voxels = PointsAsVoxels(piece);
   if (Alike(glances) || std::all_of(glances.begin(), glances.end(), [&](const InputSummary& glance) {
         return !glance.isThere || glance.points == glances[static_cast<std::size_t>(rank)].extent;
       })) // each has all
@@ -611,7 +611,7 @@ WholeInputs::WholeInputs(vtkMultiProcessController* ranks, vtkAlgorithm* filter,
     {
       this->Change(port, [&](int, vtkDataObject* data) -> vtkSmartPointer<vtkDataObject> {
         auto* const image = vtkImageData::SafeDownCast(data);
-        return AreAroundPoints(filter, port, image) ? Halo(image).GetPointer() : data;
+        return AreAroundPoints(filter, port, image) ? PointsAsVoxels(image).GetPointer() : data;
       });
     }
     return;
@@ -807,7 +807,7 @@ void WholeInputs::MakeWhole(int port)
     auto* const image = vtkImageData::SafeDownCast(whole);
     if (around && image && image->GetNumberOfPoints() > 0)
     {
-      whole = Halo(image);
+      whole = PointsAsVoxels(image);
     }
     return whole;
   });

@@ -1,7 +1,7 @@
 #include "Propagation/LastOutputs.h"
 
-#include "Common/ContentKey.h"
-#include "Common/FilterBefore.h"
+#include "Common/Failure.h"
+#include "Common/InputsKey.h"
 #include "Common/LightTransportWriting.h"
 
 #include "vtkDataObject.h"

@@ -19,7 +19,7 @@ namespace tyndall
 constexpr const char* LightOfBefore = "light: that of before, for the solve was stopped";
 
 /// What a filter made last, to be given out again where it is asked for the same of the same: the pipeline may run it
-/// twice for one time step (ContentKey.h). The arrays are those of the outputs, not copies. Outputs are whole when they
+/// twice for one time step (ContentKey). The arrays are those of the outputs, not copies. Outputs are whole when they
 /// are kept and when they come back: the filter then hands on the piece that it was asked for.
 class LastOutputs
 {

@@ -1,6 +1,7 @@
 #ifndef vtkLPMCollect_h
 #define vtkLPMCollect_h
 
+#include "PropertyRange.h"
 #include "vtkImageAlgorithm.h"
 #include "vtkTyndallModule.h" // for export macro
 
@@ -43,12 +44,7 @@ public:
   vtkTypeMacro(vtkLPMCollect, vtkImageAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  ///@{
-  /// Part of the name of the OpenCL device to use, of any case. Default empty: what the variable TYNDALL_DEVICE names,
-  /// or else PoCL's CPU device.
-  vtkSetStdStringFromCharMacro(Device);
-  vtkGetCharFromStdStringMacro(Device);
-  ///@}
+  tyndallDeviceMacro();
 
 protected:
   vtkLPMCollect();

@@ -155,6 +155,7 @@ int vtkLPMPropagate::RequestData(vtkInformation* request, vtkInformationVector**
 void vtkLPMPropagate::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
+  os << indent << "Device: " << this->Device << "\n";
   os << indent << "DirectionsPerFace: " << this->DirectionsPerFace << "\n";
   os << indent << "MapResolution: " << this->MapResolution << "\n";
   os << indent << "StoredDirections: " << this->StoredDirections << "\n";

@@ -2,7 +2,7 @@
 #define vtkLPMPropagate_h
 
 #include "PropertyRange.h"
-#include "vtkLitImageAlgorithm.h"
+#include "vtkLitMediumAlgorithm.h"
 #include "vtkTyndallModule.h" // for export macro
 
 /**
@@ -46,12 +46,14 @@
  * A. Gruson, A. Hakke Patil, R. Cozot, K. Bouatouch, S. Pattanaik: Light Propagation Maps on Parallel Graphics
  * Architectures, EGPGV 2012.
  */
-class TYNDALL_EXPORT vtkLPMPropagate : public vtkLitImageAlgorithm
+class TYNDALL_EXPORT vtkLPMPropagate : public vtkLitMediumAlgorithm
 {
 public:
   static vtkLPMPropagate* New();
-  vtkTypeMacro(vtkLPMPropagate, vtkLitImageAlgorithm);
+  vtkTypeMacro(vtkLPMPropagate, vtkLitMediumAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  tyndallDeviceMacro();
 
   ///@{
   /// Directions per face of a cube. Default 25, valid square numbers: 1, 4, 9, 16, 25, ...
@@ -102,6 +104,7 @@ private:
   vtkLPMPropagate(const vtkLPMPropagate&) = delete;
   void operator=(const vtkLPMPropagate&) = delete;
 
+  std::string Device;
   int DirectionsPerFace;
   int MapResolution;
   int StoredDirections;

@@ -5,6 +5,7 @@
 #include "Lights/Lights.h"
 #include "Pieces/UpdateExtent.h"
 
+#include "vtkDataObject.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
@@ -18,6 +19,11 @@ vtkLitMediumAlgorithm::vtkLitMediumAlgorithm()
 }
 
 vtkLitMediumAlgorithm::~vtkLitMediumAlgorithm() = default;
+
+vtkImageData* vtkLitMediumAlgorithm::GetOutput()
+{
+  return vtkImageData::SafeDownCast(this->GetOutputDataObject(0));
+}
 
 void vtkLitMediumAlgorithm::SetLightsConnection(vtkAlgorithmOutput* lights)
 {
@@ -75,6 +81,12 @@ int vtkLitMediumAlgorithm::FillInputPortInformation(int port, vtkInformation* in
     }
     information->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
   }
+  return 1;
+}
+
+int vtkLitMediumAlgorithm::FillOutputPortInformation(int, vtkInformation* information)
+{
+  information->Set(vtkDataObject::DATA_TYPE_NAME(), "vtkImageData");
   return 1;
 }
 

@@ -5,6 +5,8 @@
 #include "vtkDataObjectAlgorithm.h"
 #include "vtkTyndallModule.h" // for export macro
 
+class vtkImageData;
+
 namespace tyndall
 {
 struct Illumination;
@@ -14,8 +16,8 @@ struct Illumination;
  * @class vtkLitMediumAlgorithm
  * @brief superclass of the filters that take a medium and what shines on it
  *
- * It has their input ports and how the environment stands, whatever they make of them; vtkLitImageAlgorithm is for
- * those that make an image on an OpenCL device.
+ * It has their input ports and the orientation of the environment. Outputs are vtkImageData unless a subclass says
+ * otherwise.
  *
  * Input 0, the medium: vtkImageData; see the subclass for its arrays.
  * Input 1, optional: lights as vtkLightRig makes them, vtkPolyData.
@@ -29,10 +31,9 @@ struct Illumination;
  * goes from rank to rank (vtkScatteringSolver, vtkMediumRayCaster, vtkPhotonImportance), or of the medium only the box
  * counts (vtkPhotonEmitter): their ranks ask for their pieces of the medium.
  *
- * A subclass says the type of its outputs and implements RequestData, and reads there the lights and the environment by
- * ReadIllumination.
+ * A subclass implements RequestData, and reads there the lights and the environment by ReadIllumination.
  *
- * @sa vtkLitImageAlgorithm vtkPhotonEmitter
+ * @sa vtkPropagationAlgorithm vtkPhotonEmitter vtkMediumRayCaster
  */
 class TYNDALL_EXPORT vtkLitMediumAlgorithm : public vtkDataObjectAlgorithm
 {
@@ -41,6 +42,8 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
   vtkTypeBool ProcessRequest(
     vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+
+  vtkImageData* GetOutput();
 
   /// Numbers of the input ports.
   enum InputPorts
@@ -90,6 +93,7 @@ protected:
   ~vtkLitMediumAlgorithm() override;
 
   int FillInputPortInformation(int port, vtkInformation* information) override;
+  int FillOutputPortInformation(int port, vtkInformation* information) override;
   int RequestInformation(
     vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
   int RequestUpdateExtent(

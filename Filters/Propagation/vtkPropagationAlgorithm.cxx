@@ -103,6 +103,7 @@ void vtkPropagationAlgorithm::WarnWhereDark(const tyndall::Illumination& illumin
 void vtkPropagationAlgorithm::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
+  os << indent << "Device: " << this->Device << "\n";
   os << indent << "Tolerance: " << this->Tolerance << "\n";
   os << indent << "PeriodicX: " << this->PeriodicX << "\n";
   os << indent << "PeriodicY: " << this->PeriodicY << "\n";

@@ -1,7 +1,8 @@
 #ifndef vtkPropagationAlgorithm_h
 #define vtkPropagationAlgorithm_h
 
-#include "vtkLitImageAlgorithm.h"
+#include "PropertyRange.h"
+#include "vtkLitMediumAlgorithm.h"
 #include "vtkTyndallModule.h" // for export macro
 
 #include <string>
@@ -21,11 +22,13 @@ struct IlluminationInput;
  *
  * @sa vtkScatteringSolver vtkSolverComparison
  */
-class TYNDALL_EXPORT vtkPropagationAlgorithm : public vtkLitImageAlgorithm
+class TYNDALL_EXPORT vtkPropagationAlgorithm : public vtkLitMediumAlgorithm
 {
 public:
-  vtkTypeMacro(vtkPropagationAlgorithm, vtkLitImageAlgorithm);
+  vtkTypeMacro(vtkPropagationAlgorithm, vtkLitMediumAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  tyndallDeviceMacro();
 
   ///@{
   /// Relative error of fluence at which to stop. Default 1e-4, valid [1e-9, 0.5].
@@ -105,6 +108,7 @@ protected:
   /// Warns where neither the medium nor anything else shines, or no light can come in.
   void WarnWhereDark(const tyndall::Illumination& illumination, bool emits);
 
+  std::string Device;
   double Tolerance;
   bool PeriodicX;
   bool PeriodicY;

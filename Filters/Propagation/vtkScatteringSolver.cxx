@@ -1,6 +1,6 @@
 #include "vtkScatteringSolver.h"
 
-#include "Common/FilterBefore.h"
+#include "Common/Failure.h"
 #include "Common/LightTransportData.h"
 #include "Device/Errors.h"
 #include "Distribution/SharedMedium.h"

@@ -1,6 +1,6 @@
 #include "vtkSolverComparison.h"
 
-#include "Common/FilterBefore.h"
+#include "Common/Failure.h"
 #include "Common/GhostFlags.h"
 #include "Common/LightTransportData.h"
 #include "Comparison/SolverComparison.h"
@@ -169,7 +169,7 @@ std::optional<tyndall::ReferenceLight> ReadReference(vtkImageData* image)
   {
     return std::nullopt;
   }
-  tyndall::StopWithFilterBefore(image);
+  tyndall::StopIfUpstreamFailed(image);
   const tyndall::FloatField fluence = tyndall::ReadCells(image, "fluence", tyndall::Need::Optional);
   const tyndall::FloatField direct = tyndall::ReadCells(image, "fluence_direct", tyndall::Need::Optional);
   if (!fluence.IsThere() && !direct.IsThere())

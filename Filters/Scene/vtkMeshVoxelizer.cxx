@@ -1,6 +1,6 @@
 #include "vtkMeshVoxelizer.h"
 
-#include "Common/FilterBefore.h"
+#include "Common/Failure.h"
 #include "Common/LightTransportData.h"
 #include "Common/PhaseFunctionData.h"
 #include "Device/Device.h"
@@ -73,7 +73,7 @@ std::vector<vtkPolyData*> MeshesOf(vtkInformationVector* inputs)
     meshes.push_back(vtkPolyData::GetData(inputs, i));
     if (meshes.back()->GetNumberOfCells() == 0)
     {
-      tyndall::StopWithFilterBefore(meshes.back());
+      tyndall::StopIfUpstreamFailed(meshes.back());
     }
   }
   return meshes;

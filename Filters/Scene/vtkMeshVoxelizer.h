@@ -177,12 +177,7 @@ public:
   vtkGetMacro(FilterSize, int);
   ///@}
 
-  ///@{
-  /// Part of the name of the OpenCL device to use, of any case. Default empty: what the variable TYNDALL_DEVICE names,
-  /// or else PoCL's CPU device.
-  vtkSetStdStringFromCharMacro(Device);
-  vtkGetCharFromStdStringMacro(Device);
-  ///@}
+  tyndallDeviceMacro();
 
   ///@{
   /// What came of the last update: the volume inside meshes (length^3; with its discretisation), sigma_s outside (red,

@@ -1,9 +1,9 @@
 #include "vtkParticipatingMedium.h"
 
-#include "Common/FiniteValues.h"
 #include "Common/GhostFlags.h"
 #include "Common/ImageInput.h"
 #include "Common/LightTransportData.h"
+#include "Common/LightTransportWriting.h"
 #include "Common/PhaseFunctionData.h"
 #include "Device/HostThreads.h"
 #include "Medium/OpticalSize.h"

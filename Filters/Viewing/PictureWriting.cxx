@@ -1,7 +1,7 @@
 #include "PictureWriting.h"
 
-#include "Common/FiniteValues.h"
 #include "Common/LightTransportData.h"
+#include "Common/LightTransportWriting.h"
 #include "Common/VectorArray.h"
 
 #include "vtkFloatArray.h"

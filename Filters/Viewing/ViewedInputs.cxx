@@ -1,6 +1,6 @@
 #include "ViewedInputs.h"
 
-#include "Common/ContentKey.h"
+#include "Common/InputsKey.h"
 #include "Common/PhaseFunctionData.h"
 #include "Common/VectorArray.h"
 #include "Distribution/BoxExchange.h"

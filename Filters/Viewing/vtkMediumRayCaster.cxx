@@ -462,7 +462,7 @@ bool vtkMediumRayCaster::See(const tyndall::AskedView& view, tyndall::Picture& p
       vtkSmartPointer<vtkImageData> voxels = block ? vtkSmartPointer<vtkImageData>(image) : tyndall::Aligned(image);
       axes = tyndall::OwnAxesOf(voxels.GetPointer());
       voxels = tyndall::InOwnAxes(voxels, axes, this, MEDIUM);
-      voxels = !block && tyndall::AreAroundPoints(this, MEDIUM, voxels) ? tyndall::Halo(voxels) : voxels;
+      voxels = !block && tyndall::AreAroundPoints(this, MEDIUM, voxels) ? tyndall::PointsAsVoxels(voxels) : voxels;
       const vtkNew<vtkInformation> asVoxels;
       asVoxels->Set(vtkDataObject::DATA_OBJECT(), voxels);
       medium->Append(asVoxels);
@@ -484,6 +484,7 @@ bool vtkMediumRayCaster::See(const tyndall::AskedView& view, tyndall::Picture& p
 void vtkMediumRayCaster::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
+  os << indent << "Device: " << this->Device << "\n";
   os << indent << "Quality: " << this->Quality << "\n";
   os << indent << "ImageSize: " << this->ImageSize[0] << " " << this->ImageSize[1] << "\n";
   PrintNumbers(os, indent, "CameraPosition", this->CameraPosition, 3);

@@ -2,7 +2,7 @@
 #define vtkMediumRayCaster_h
 
 #include "PropertyRange.h"
-#include "vtkLitImageAlgorithm.h"
+#include "vtkLitMediumAlgorithm.h"
 #include "vtkTyndallModule.h" // for export macro
 
 #include <array>
@@ -112,12 +112,14 @@ class WholeInputs;
  * (1993). Tone mapping: K. Narkowicz, ACES Filmic Tone Mapping Curve, 2015; E. Reinhard et al., Photographic Tone
  * Reproduction for Digital Images, SIGGRAPH 2002 (exposure).
  */
-class TYNDALL_EXPORT vtkMediumRayCaster : public vtkLitImageAlgorithm
+class TYNDALL_EXPORT vtkMediumRayCaster : public vtkLitMediumAlgorithm
 {
 public:
   static vtkMediumRayCaster* New();
-  vtkTypeMacro(vtkMediumRayCaster, vtkLitImageAlgorithm);
+  vtkTypeMacro(vtkMediumRayCaster, vtkLitMediumAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  tyndallDeviceMacro();
 
   enum ToneCurves
   {
@@ -381,6 +383,7 @@ private:
     vtkMultiProcessController* ranks, tyndall::WholeInputs& inputs, double exposure, const std::array<int, 6>& asked);
   void CropToRequest(Shot&& shot, vtkInformationVector* outputs);
 
+  std::string Device;
   int Quality = USUAL;
   int ImageSize[2];
   double CameraPosition[3] = { 0.0, 0.0, 0.0 };

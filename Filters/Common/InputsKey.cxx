@@ -1,4 +1,4 @@
-#include "Common/ContentKey.h"
+#include "Common/InputsKey.h"
 
 #include "vtkAbstractArray.h"
 #include "vtkCellArray.h"
