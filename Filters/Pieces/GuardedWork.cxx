@@ -8,6 +8,7 @@
 #include "Common/LightTransportWriting.h"
 #include "Device/CompilationListener.h"
 #include "Device/Device.h"
+#include "Pieces/PieceBlocks.h"
 #include "Pieces/Ranks.h"
 #include "Pieces/UpdateExtent.h"
 #include "Pieces/WholeInputs.h"
@@ -28,6 +29,7 @@
 #include "vtkVersionMacros.h"
 
 #include <algorithm>
+#include <optional>
 #include <vector>
 
 namespace tyndall
@@ -352,6 +354,29 @@ int Guarded(vtkAlgorithm* filter, vtkInformation* request, vtkInformationVector*
       }
     },
     onPieces.shares, onPieces.others);
+}
+
+int Guarded(vtkAlgorithm* filter, vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs,
+  const WorkOnSubdomains& work)
+{
+  return GuardedInPieces(
+    filter, request, given, outputs, work.port,
+    [&](vtkMultiProcessController* ranks, WholeInputs& inputs) {
+      const auto image = [&] { return vtkImageData::GetData(inputs.Vectors()[work.port]); };
+      const std::optional<AgreedBlocks> agreed =
+        AgreeOnBlocks(ranks, filter, work.wantsPieces(inputs.Vectors()), AskingPort(request, outputs), image());
+      const bool decomposed = agreed && work.work(*agreed->pieces, inputs.Vectors());
+      if (!decomposed)
+      {
+        inputs.MakeWhole();
+        work.work(PieceBlocks(image()), inputs.Vectors());
+      }
+      if (!decomposed || !ranks)
+      {
+        KeepWhatIsAskedFor(outputs->GetInformationObject(0), vtkImageData::GetData(outputs, 0));
+      }
+    },
+    work.shares, work.others);
 }
 
 bool AreEmptied(vtkInformationVector* outputs)

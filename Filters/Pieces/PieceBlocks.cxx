@@ -180,12 +180,26 @@ Grid GridFrom(const Extent& whole, const Piece& piece)
 }
 }
 
-PieceBlocks::PieceBlocks(Communicator& communicator, vtkInformation* asked, vtkImageData* given)
-  : Rank(communicator.Rank())
+PieceBlocks::PieceBlocks(vtkImageData* whole)
+  : Tiled(true)
 {
-  const int ranks = communicator.Ranks();
-  const std::vector<double> said =
-    communicator.Sum(WordsOf(PieceOf(asked, given, this->Rank, ranks), this->Rank, ranks));
+  Grid grid;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    grid.size[axis] = whole ? std::max(0, whole->GetDimensions()[axis] - 1) : 0;
+    grid.spacing[axis] = whole ? whole->GetSpacing()[axis] : 1.0;
+    this->Base[axis] = whole ? whole->GetExtent()[2 * axis] : 0;
+    grid.origin[axis] = whole ? whole->GetOrigin()[axis] + this->Base[axis] * grid.spacing[axis] : 0.0;
+  }
+  this->OfRanks = std::make_shared<Domain>(grid);
+  this->OfOutputs = this->Partition().blocks;
+}
+
+PieceBlocks::PieceBlocks(Communicator& communicator, vtkInformation* asked, vtkImageData* given)
+  : Decomposed(true)
+{
+  const int rank = communicator.Rank(), ranks = communicator.Ranks();
+  const std::vector<double> said = communicator.Sum(WordsOf(PieceOf(asked, given, rank, ranks), rank, ranks));
   std::vector<Piece> pieces;
   for (std::size_t at = 0; at < said.size(); at += WordsOfPiece)
   {
@@ -195,6 +209,7 @@ PieceBlocks::PieceBlocks(Communicator& communicator, vtkInformation* asked, vtkI
   const auto first = std::find_if(pieces.begin(), pieces.end(), isThere);
   if (first == pieces.end())
   {
+    this->OfRanks = std::make_shared<Domain>(communicator, BlockPartition());
     return;
   }
   Extent whole = first->own;
@@ -211,16 +226,18 @@ PieceBlocks::PieceBlocks(Communicator& communicator, vtkInformation* asked, vtkI
   }
   this->GivenAll = alike && pieces.size() > 1;
   this->Base = { whole[0], whole[2], whole[4] };
-  this->Blocks.whole = GridFrom(whole, *first);
+  BlockPartition partition;
+  partition.whole = GridFrom(whole, *first);
   for (const Piece& piece : pieces)
   {
-    this->Blocks.blocks.push_back(BoxOf(this->GivenAll ? piece.asked.own : piece.own, this->Base));
+    partition.blocks.push_back(BoxOf(this->GivenAll ? piece.asked.own : piece.own, this->Base));
     this->OfOutputs.push_back(BoxOf(this->GivenAll ? piece.asked.withGhosts : piece.given, this->Base));
   }
-  const VoxelBox all = { { 0, 0, 0 }, this->Blocks.whole.size };
+  const VoxelBox all = { { 0, 0, 0 }, partition.whole.size };
   const bool within = std::all_of(this->OfOutputs.begin(), this->OfOutputs.end(),
     [&](const VoxelBox& box) { return Common(box, all).VoxelCount() == box.VoxelCount(); });
-  this->Tiled = oneGrid && within && Tile(this->Blocks);
+  this->Tiled = oneGrid && within && Tile(partition);
+  this->OfRanks = std::make_shared<Domain>(communicator, std::move(partition));
 }
 
 std::array<int, 6> PieceBlocks::ExtentOf(const VoxelBox& box) const
@@ -243,7 +260,7 @@ bool PieceBlocks::HasOwnOf(vtkImageData* image) const
 
 vtkSmartPointer<vtkImageData> PieceBlocks::OwnImage(vtkImageData* given) const
 {
-  if (given->GetNumberOfCells() == static_cast<vtkIdType>(this->Own().VoxelCount()))
+  if (!this->Decomposed || given->GetNumberOfCells() == static_cast<vtkIdType>(this->Own().VoxelCount()))
   {
     return given;
   }
@@ -276,10 +293,10 @@ void PieceBlocks::SpreadToHeld(Communicator& communicator, std::vector<float>& v
     return std::accumulate(boxes.begin(), boxes.end(), std::size_t{ 0 },
       [](std::size_t sum, const VoxelBox& box) { return sum + box.VoxelCount(); });
   };
-  const bool more = voxels(this->OfOutputs) != voxels(this->Blocks.blocks);
+  const bool more = voxels(this->OfOutputs) != voxels(this->Partition().blocks);
   if (more && communicator.Largest({ values.empty() ? 0.0 : 1.0 })[0] > 0.0)
   {
-    values = ValuesInBox(communicator, this->Blocks, this->OfOutputs, values, components);
+    values = ValuesInBox(communicator, this->Partition(), this->OfOutputs, values, components);
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include "Distribution/BlockPartition.h"
 #include "Distribution/Communicator.h"
+#include "Distribution/Domain.h"
 #include "Medium/VoxelBox.h"
 
 #include "vtkSmartPointer.h"
@@ -19,78 +20,83 @@ class vtkMultiProcessController;
 
 namespace tyndall
 {
-/// The blocks of one grid that ranks have of an image, for filters that work on pieces of it. All ranks make one.
+/// The subdomains that ranks have of an image, for filters that work on pieces of it; or all of it on one rank.
 ///
-/// Each rank is given a piece, in which cells that it has of its neighbours are flagged as duplicates (vtkGhostType);
-/// or each is given all of it by a source that knows no pieces, and its block is what it is asked for.
+/// Each rank has a piece in which the cells of its neighbours are flagged as duplicates (vtkGhostType). If the source
+/// knows no pieces and gives all of the image to each rank, a rank's subdomain is what it is asked for.
 class PieceBlocks
 {
 public:
-  /// @param asked  the output that is made; null: nothing is, and pieces are what ranks are given
-  /// @param given  null or without cells: this rank has no block
+  /// Serial: the subdomain is all of the image, duplicates as well. Its grid is not checked (GridOf).
+  explicit PieceBlocks(vtkImageData* whole);
+  /// Collective.
+  /// @param asked  the output that is made; null: none is, and subdomains are the pieces
+  /// @param given  null or without cells: this rank has no voxels
   PieceBlocks(Communicator& communicator, vtkInformation* asked, vtkImageData* given);
 
-  /// Whether the blocks are parts of one grid, and together each of its voxels once. The same on all ranks; if not,
-  /// nothing else is to be asked.
+  /// Whether the subdomains belong to one grid and hold each of its voxels once. The same on all ranks; if not, nothing
+  /// else may be called.
   bool MakeUpTheWhole() const { return this->Tiled; }
+  /// Made of pieces; if not, the domain is serial.
+  bool IsDecomposed() const { return this->Decomposed; }
 
-  const BlockPartition& Partition() const { return this->Blocks; }
-  const VoxelBox& Own() const { return this->Blocks.blocks[this->Rank]; }
+  const Domain& GetDomain() const { return *this->OfRanks; }
+  const BlockPartition& Partition() const { return this->OfRanks->Partition(); }
+  const VoxelBox& Own() const { return this->OfRanks->Own(); }
   bool HasOwn() const { return this->Own().VoxelCount() > 0; }
-  /// What the output is to have: the block, and what is asked for of others.
-  const VoxelBox& Held() const { return this->OfOutputs[this->Rank]; }
+  /// The voxels of this rank's output: its subdomain and the ghost cells that are asked for.
+  const VoxelBox& Held() const { return this->OfOutputs[static_cast<std::size_t>(this->OfRanks->Rank())]; }
   const std::vector<VoxelBox>& HeldByRanks() const { return this->OfOutputs; }
 
   /// Whether this rank's own voxels are among those of an image; true where it has none.
   bool HasOwnOf(vtkImageData* image) const;
 
-  /// Of what this rank is given its own voxels, with their arrays; itself where it is no more. Not where it has none.
+  /// The part of an image that is this rank's subdomain, with its arrays; the image itself if that is all of it, or not
+  /// decomposed. Only if the rank has voxels.
   vtkSmartPointer<vtkImageData> OwnImage(vtkImageData* given) const;
 
-  /// Of values of each voxel that this rank is given those of its own.
+  /// Values of the subdomain's voxels, out of those of all voxels of an image.
   std::vector<float> OwnOf(vtkImageData* given, std::vector<float>&& values) const;
 
-  /// Crops an output with the arrays of what is given to what the output is to have.
+  /// Crops an output that has the arrays of the given image to Held().
   void KeepHeld(vtkImageData* output) const;
 
-  /// Values of each own voxel become those of each voxel that the output is to have; none stay none, where no rank has
-  /// any. All ranks call it.
+  /// Extends values of Own() to Held(), from the ranks that own the ghost cells; no values stay none if no rank has
+  /// any. Collective.
   /// @param components  of a voxel, the same on all ranks
   void SpreadToHeld(Communicator& communicator, std::vector<float>& values, int components) const;
 
 private:
   std::array<int, 6> ExtentOf(const VoxelBox& box) const;
 
-  int Rank;
-  BlockPartition Blocks;
+  std::shared_ptr<Domain> OfRanks;
   std::vector<VoxelBox> OfOutputs; ///< by rank
-  std::array<int, 3> Base = {};    ///< where the whole begins, in the numbers of extents
-  bool Tiled = false, GivenAll = false;
+  std::array<int, 3> Base = {};    ///< first voxel of the grid, as extents count
+  bool Tiled = false, GivenAll = false, Decomposed = false;
 };
 
-/// Blocks that ranks, each with its piece, have agreed to work on.
+/// Subdomains on which ranks have agreed to work.
 struct AgreedBlocks
 {
   std::unique_ptr<Communicator> communicator;
   std::unique_ptr<PieceBlocks> pieces;
 };
 
-/// All ranks that run a filter together call it.
+/// Collective.
 /// @param ranks   null: this process is alone
-/// @param wanted  whether this rank would work so: one is enough
-/// @return where none would, or pieces make no whole, on all ranks nothing
+/// @param wanted  whether this rank would work on its piece; one is enough
+/// @return nothing, on all ranks, if none would, or if pieces do not make up one grid
 std::optional<AgreedBlocks> AgreeOnBlocks(
   vtkMultiProcessController* ranks, vtkAlgorithm* filter, bool wanted, vtkInformation* asked, vtkImageData* given);
 
-/// Whether ranks that choose work on pieces of an image: it has more voxels than 64^3. Less each rank has done sooner
-/// than ranks say to each other what crosses between them. The environment variable TYNDALL_PIECES_FROM is another
-/// number of voxels. A rank that its source tells of no voxels holds none anyway, and leaves it to the others.
+/// Whether an image has enough voxels to be worth decomposing: more than 64^3, or than the variable
+/// TYNDALL_PIECES_FROM; below that communication costs more than each rank's solve of all of it. True on a rank whose
+/// source announces no voxels, which leaves the decision to the other ranks.
 bool IsWorthPieces(vtkInformationVector* image);
 
-/// In RequestUpdateExtent or RequestData: whether each rank asks for its piece, and the whole of an image, once for
-/// each rank of this machine, does not fit in what it has available now (AvailableMemory.h). Ranks may differ in it.
-/// @param image  of the input's port
-/// @param bytesOfVoxel  that a rank takes which works on the whole
+/// In RequestUpdateExtent or RequestData: whether each rank asks for its piece, and copies of all of the image for each
+/// rank of this machine do not fit its available memory (AvailableMemory.h). Ranks may differ.
+/// @param bytesOfVoxel  that a rank needs to work on all of it
 bool NeedsPieces(
   vtkInformation* request, vtkInformationVector* image, vtkInformationVector* outputs, double bytesOfVoxel);
 }

@@ -19,7 +19,7 @@ namespace tyndall
 {
 namespace
 {
-/// The time is that of the input that was asked for, not of when the same was made.
+/// The time step stays that of the input that is asked for now.
 void CopyButTime(vtkDataObject* from, vtkDataObject* to)
 {
   vtkInformation* const facts = to->GetInformation();
@@ -56,15 +56,11 @@ LastOutputs::Key LastOutputs::KeyOf(
   return key;
 }
 
-bool LastOutputs::GiveBack(
-  vtkMTimeType settings, const OwnAxes& axes, vtkInformationVector** inputs, int ports, vtkInformationVector* outputs)
+bool LastOutputs::GiveBack(const Key& key, vtkInformationVector* outputs)
 {
-  Key key = KeyOf(settings, axes, inputs, ports);
   if (key != this->MadeOf || this->Outputs.empty())
   {
     this->LetGo();
-    this->MadeOf = std::move(key);
-    this->Axes = axes;
     return false;
   }
   for (std::size_t port = 0; port < this->Outputs.size(); ++port)
@@ -72,14 +68,6 @@ bool LastOutputs::GiveBack(
     CopyButTime(this->Outputs[port], vtkDataObject::GetData(outputs, static_cast<int>(port)));
   }
   return true;
-}
-
-void LastOutputs::Keep(
-  vtkMTimeType settings, const OwnAxes& axes, vtkInformationVector** inputs, int ports, vtkInformationVector* outputs)
-{
-  this->MadeOf = KeyOf(settings, axes, inputs, ports);
-  this->Axes = axes;
-  this->Keep(outputs);
 }
 
 namespace
@@ -125,9 +113,11 @@ void LastOutputs::Forget()
   this->Before.clear();
 }
 
-void LastOutputs::Keep(vtkInformationVector* outputs)
+void LastOutputs::Keep(Key key, const OwnAxes& axes, vtkInformationVector* outputs)
 {
   this->Forget();
+  this->MadeOf = std::move(key);
+  this->Axes = axes;
   this->Told = ExtentTold(outputs);
   for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
   {

@@ -7,10 +7,9 @@
 #include "DiscreteOrdinates/OrdinatesQuality.h"
 #include "LightPropagation/Accuracy/PreviewLight.h"
 #include "Pieces/GuardedWork.h"
-#include "Pieces/PieceBlocks.h"
 
-#include "Propagation/LastLight.h"
-#include "Propagation/PieceOfMedium.h"
+#include "Propagation/LastOutputs.h"
+#include "Propagation/SolverScene.h"
 
 #include "vtkDataObject.h"
 #include "vtkImageData.h"
@@ -51,38 +50,28 @@ tyndall::OrdinatesSettings OfPreview(tyndall::OrdinatesSettings settings)
   return settings;
 }
 
-/// @param medium  of this rank
-tyndall::OrdinatesSettings SettingsOf(vtkDiscreteOrdinates* filter, const tyndall::Domain& domain,
-  const tyndall::Medium& medium, const tyndall::Device& device)
+tyndall::OrdinatesSettings SettingsOf(
+  vtkDiscreteOrdinates* filter, const tyndall::SolverScene& scene, const tyndall::Device& device)
 {
   const auto quality = static_cast<tyndall::Quality>(filter->GetQuality());
   return filter->GetPreview()
     ? OfPreview(GivenSettings(filter))
-    : tyndall::AtQuality(domain, quality, GivenSettings(filter), medium, tyndall::MemoryOf(device));
+    : tyndall::AtQuality(scene.domain, quality, GivenSettings(filter), scene.medium, tyndall::MemoryOf(device));
 }
 
-/// The light of this rank's block. Collective.
-/// @param last  null: begin in the dark
-tyndall::LightField Solve(vtkDiscreteOrdinates* filter, const tyndall::Domain& domain, const tyndall::Medium& medium,
-  const tyndall::Illumination& illumination, tyndall::KeptLight* last)
+tyndall::LightField SolvePreview(vtkDiscreteOrdinates* filter, tyndall::Device& device,
+  const tyndall::SolverScene& scene, const tyndall::OrdinatesSettings& settings)
 {
-  std::shared_ptr<tyndall::Device> device;
-  domain.Collective([&] { device = tyndall::Device::Find(filter->GetDevice()); });
-  tyndall::Device within(*device, tyndall::BudgetOf(filter->GetMemoryBudget(), false));
-  const tyndall::OrdinatesSettings settings = SettingsOf(filter, domain, medium, *device);
-  const tyndall::Monitor monitor = tyndall::MonitorOf(filter);
-  const tyndall::PreviewSolver solve = [&](const tyndall::PreviewScene& scene) {
-    return tyndall::SolveDiscreteOrdinates(
-      within, tyndall::Domain(scene.medium.grid), scene.medium, scene.illumination, settings, monitor);
+  const tyndall::Illumination& illumination = scene.shining.illumination;
+  const tyndall::Grid coarse = tyndall::PreviewGrid(scene.domain.Whole());
+  const tyndall::PreviewSolver solve = [&](const tyndall::PreviewScene& ofCoarse) {
+    return tyndall::SolveDiscreteOrdinates(device, tyndall::Domain(ofCoarse.medium.grid), ofCoarse.medium,
+      ofCoarse.illumination, settings, tyndall::MonitorOf(filter));
   };
-  const tyndall::Grid coarse = tyndall::PreviewGrid(domain.Whole());
-  tyndall::LightField light = !filter->GetPreview()
-    ? tyndall::SolveDiscreteOrdinates(within, domain, medium, illumination, settings, monitor, last)
-    : domain.IsSerial() ? tyndall::SolvePreview({ medium, illumination, {} }, coarse, solve)
-                        : tyndall::SolvePreviewOnFirst({ domain.Comm(), domain.Partition(), medium, illumination }, {},
-                            tyndall::AsPropagation(settings), coarse, solve);
-  light.settingsUsed = tyndall::Words(settings, light);
-  return light;
+  return scene.decomposed
+    ? tyndall::SolvePreviewOnFirst({ scene.domain.Comm(), scene.domain.Partition(), scene.medium, illumination }, {},
+        tyndall::AsPropagation(settings), coarse, solve)
+    : tyndall::SolvePreview({ scene.medium, illumination, {} }, coarse, solve);
 }
 }
 
@@ -107,29 +96,20 @@ std::string vtkDiscreteOrdinates::NotByBlocks(vtkInformationVector**) const
   return this->Scheme == PUBLISHED && !this->Preview ? "Scheme as published" : "";
 }
 
-tyndall::LightField vtkDiscreteOrdinates::SolvePiece(tyndall::Communicator& communicator,
-  const tyndall::PieceBlocks& pieces, const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining)
+tyndall::LightField vtkDiscreteOrdinates::Solve(const tyndall::SolverScene& scene)
 {
-  const tyndall::Domain domain(communicator, pieces.Partition());
   tyndall::KeptLight* const last = this->Last->Where(this->WarmStart && !this->Preview);
-  return Solve(this, domain, piece.medium, shining.illumination, last);
-}
-
-int vtkDiscreteOrdinates::RequestData(
-  vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs)
-{
-  return this->UpdateCachedOrSolve(request, given, outputs, [&](vtkInformationVector** inputs) {
-    vtkImageData* image = vtkImageData::GetData(inputs[MEDIUM]);
-    const tyndall::MediumInput input = tyndall::ReadMedium(this, image);
-    const bool emits = input.Emits();
-    const tyndall::IlluminationInput shining = this->ReadShining(inputs, emits);
-    this->WarnWhereDark(shining.illumination, emits);
-    tyndall::KeptLight* const last = this->Last->Where(this->WarmStart && !this->Preview);
-    tyndall::LightField light =
-      Solve(this, tyndall::Domain(input.medium.grid), input.medium, shining.illumination, last);
-    TellOfDefaultSky(shining, light.leftOut);
-    this->WriteSolved(std::move(light), inputs, outputs);
-  });
+  std::shared_ptr<tyndall::Device> device;
+  scene.domain.Collective([&] { device = tyndall::Device::Find(this->GetDevice()); });
+  tyndall::Device within(*device, tyndall::BudgetOf(this->MemoryBudget, false));
+  const tyndall::OrdinatesSettings settings = SettingsOf(this, scene, *device);
+  const tyndall::Illumination& illumination = scene.shining.illumination;
+  const tyndall::Monitor monitor = tyndall::MonitorOf(this);
+  tyndall::LightField light = this->Preview
+    ? SolvePreview(this, within, scene, settings)
+    : tyndall::SolveDiscreteOrdinates(within, scene.domain, scene.medium, illumination, settings, monitor, last);
+  light.settingsUsed = tyndall::Words(settings, light);
+  return light;
 }
 
 void vtkDiscreteOrdinates::Note(const tyndall::LightField& light)

@@ -164,11 +164,9 @@ protected:
   vtkDiscreteOrdinates();
   ~vtkDiscreteOrdinates() override;
 
-  int RequestData(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
   void Note(const tyndall::LightField& light) override;
   std::string NotByBlocks(vtkInformationVector** inputs) const override;
-  tyndall::LightField SolvePiece(tyndall::Communicator& communicator, const tyndall::PieceBlocks& pieces,
-    const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining) override;
+  tyndall::LightField Solve(const tyndall::SolverScene& scene) override;
 
 private:
   vtkDiscreteOrdinates(const vtkDiscreteOrdinates&) = delete;

@@ -10,8 +10,7 @@
 #include "LightPropagation/Accuracy/PreviewLight.h"
 #include "Photons/PhotonData.h"
 #include "Pieces/GuardedWork.h"
-#include "Pieces/PieceBlocks.h"
-#include "Propagation/PieceOfMedium.h"
+#include "Propagation/SolverScene.h"
 
 #include "vtkDataObject.h"
 #include "vtkImageData.h"
@@ -164,45 +163,6 @@ tyndall::LightField vtkLatticeBoltzmannLighting::LightOf(
   return light;
 }
 
-tyndall::LightField vtkLatticeBoltzmannLighting::SolveWithPhotons(
-  vtkInformationVector** inputs, const tyndall::MediumInput& input, const tyndall::FloatField& ior)
-{
-  vtkPolyData* const given = vtkPolyData::GetData(inputs[PHOTONS]);
-  if (vtkImageData::GetData(inputs[UNCOLLIDED]))
-  {
-    throw tyndall::InvalidInput(
-      "Photons and UncollidedLight are both connected, and are the same light in two forms. Disconnect one of them.");
-  }
-  const std::string doubt = tyndall::DoubtOfBox(given, input.medium.grid);
-  if (!doubt.empty())
-  {
-    vtkWarningMacro(<< doubt);
-  }
-  tyndall::Illumination illumination;
-  tyndall::AddFaceAlbedo(illumination, this->FaceAlbedo, this->FaceAlbedoColor);
-  const std::vector<tyndall::Photon> photons = tyndall::ReadPhotons(given, tyndall::OwnAxesOf(this));
-  return this->LightOf(tyndall::Domain(input.medium.grid), { input.medium, illumination, ior }, &photons);
-}
-
-tyndall::LightField vtkLatticeBoltzmannLighting::Solve(vtkInformationVector** inputs)
-{
-  vtkImageData* image = vtkImageData::GetData(inputs[MEDIUM]);
-  const tyndall::MediumInput input = tyndall::ReadMedium(this, image);
-  const tyndall::FloatField ior =
-    tyndall::ReadChosenCells(this, tyndall::RefractiveIndex, image, "ior", tyndall::Need::Optional, { 1 });
-  if (vtkPolyData::GetData(inputs[PHOTONS]))
-  {
-    return this->SolveWithPhotons(inputs, input, ior);
-  }
-  const bool emits = input.Emits();
-  const tyndall::IlluminationInput shining = this->ReadShining(inputs, emits);
-  this->WarnWhereDark(shining.illumination, emits);
-  tyndall::LightField light =
-    this->LightOf(tyndall::Domain(input.medium.grid), { input.medium, shining.illumination, ior }, nullptr);
-  TellOfDefaultSky(shining, light.leftOut);
-  return light;
-}
-
 std::string vtkLatticeBoltzmannLighting::NotByBlocks(vtkInformationVector** inputs) const
 {
   const bool both = inputs[PHOTONS]->GetNumberOfInformationObjects() > 0 &&
@@ -210,48 +170,42 @@ std::string vtkLatticeBoltzmannLighting::NotByBlocks(vtkInformationVector** inpu
   return both ? "Photons beside UncollidedLight" : tyndall::NotInBlocks(this->Settings());
 }
 
-tyndall::IlluminationInput vtkLatticeBoltzmannLighting::ReadShiningOn(
-  const tyndall::PieceBlocks& pieces, tyndall::PieceOfMedium& piece, vtkInformationVector** inputs)
+tyndall::IlluminationInput vtkLatticeBoltzmannLighting::ReadShining(
+  tyndall::SolverScene& scene, vtkInformationVector** inputs)
 {
-  if (!piece.share)
+  if (!scene.share)
   {
-    return this->Superclass::ReadShiningOn(pieces, piece, inputs);
+    return this->Superclass::ReadShining(scene, inputs);
   }
+  tyndall::Require(!vtkImageData::GetData(inputs[UNCOLLIDED]),
+    "Photons and UncollidedLight are both connected, and are the same light in two forms. Disconnect one of them.");
   tyndall::IlluminationInput ofFaces;
   tyndall::AddFaceAlbedo(ofFaces.illumination, this->FaceAlbedo, this->FaceAlbedoColor);
   return ofFaces;
 }
 
-tyndall::LightField vtkLatticeBoltzmannLighting::SolvePiece(tyndall::Communicator& communicator,
-  const tyndall::PieceBlocks& pieces, const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining)
+tyndall::LightField vtkLatticeBoltzmannLighting::Solve(const tyndall::SolverScene& scene)
 {
   tyndall::FloatField ior;
-  communicator.Collective([&] {
-    if (piece.image)
+  scene.domain.Collective([&] {
+    if (scene.image)
     {
       ior =
-        tyndall::ReadChosenCells(this, tyndall::RefractiveIndex, piece.image, "ior", tyndall::Need::Optional, { 1 });
+        tyndall::ReadChosenCells(this, tyndall::RefractiveIndex, scene.image, "ior", tyndall::Need::Optional, { 1 });
     }
   });
   std::vector<tyndall::Photon> photons;
-  if (piece.share)
+  if (scene.share)
   {
-    photons = tyndall::ShareOfPhotons(communicator, piece.share, tyndall::OwnAxesOf(this));
-    const std::string doubt = tyndall::DoubtOfBox(piece.share, pieces.Partition().whole);
-    if (!doubt.empty() && communicator.Rank() == 0)
+    photons = tyndall::ShareOfPhotons(scene.domain.Comm(), scene.share, tyndall::OwnAxesOf(this));
+    const std::string doubt = tyndall::DoubtOfBox(scene.share, scene.domain.Whole());
+    if (!doubt.empty() && scene.domain.Rank() == 0)
     {
       vtkWarningMacro(<< doubt);
     }
   }
-  const tyndall::Domain domain(communicator, pieces.Partition());
-  return this->LightOf(domain, { piece.medium, shining.illumination, ior }, piece.share ? &photons : nullptr);
-}
-
-int vtkLatticeBoltzmannLighting::RequestData(
-  vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs)
-{
-  return this->UpdateCachedOrSolve(request, given, outputs,
-    [&](vtkInformationVector** inputs) { this->WriteSolved(this->Solve(inputs), inputs, outputs); });
+  return this->LightOf(
+    scene.domain, { scene.medium, scene.shining.illumination, ior }, scene.share ? &photons : nullptr);
 }
 
 void vtkLatticeBoltzmannLighting::Note(const tyndall::LightField& light)

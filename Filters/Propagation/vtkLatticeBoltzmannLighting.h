@@ -173,15 +173,12 @@ protected:
   ~vtkLatticeBoltzmannLighting() override;
 
   int FillInputPortInformation(int port, vtkInformation* information) override;
-  int RequestData(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
   void Note(const tyndall::LightField& light) override;
   bool KnowsIndex() const override { return this->Scheme == CONSERVATIVE; }
   std::string NotByBlocks(vtkInformationVector** inputs) const override;
-  tyndall::LightField SolvePiece(tyndall::Communicator& communicator, const tyndall::PieceBlocks& pieces,
-    const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining) override;
+  tyndall::LightField Solve(const tyndall::SolverScene& scene) override;
   int PortOfShares() const override { return PHOTONS; }
-  tyndall::IlluminationInput ReadShiningOn(
-    const tyndall::PieceBlocks& pieces, tyndall::PieceOfMedium& piece, vtkInformationVector** inputs) override;
+  tyndall::IlluminationInput ReadShining(tyndall::SolverScene& scene, vtkInformationVector** inputs) override;
 
 private:
   vtkLatticeBoltzmannLighting(const vtkLatticeBoltzmannLighting&) = delete;
@@ -190,9 +187,6 @@ private:
   tyndall::LatticeSettings Settings() const;
   tyndall::LightField LightOf(
     const tyndall::Domain& domain, const tyndall::PreviewScene& scene, const std::vector<tyndall::Photon>* photons);
-  tyndall::LightField Solve(vtkInformationVector** inputs);
-  tyndall::LightField SolveWithPhotons(
-    vtkInformationVector** inputs, const tyndall::MediumInput& input, const tyndall::FloatField& ior);
 
   int Lattice;
   int Scheme;

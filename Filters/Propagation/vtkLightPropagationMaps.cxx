@@ -10,15 +10,13 @@
 #include "LightPropagation/Accuracy/PreviewLight.h"
 #include "LightPropagation/Accuracy/TargetError.h"
 #include "LightPropagation/Conservative/ConservativePropagation.h"
-#include "LightPropagation/Distributed/PropagationInBlocks.h"
 #include "LightPropagation/Problem/PropagationQuality.h"
 #include "LightPropagation/Published/ParallelPropagation.h"
 #include "LightPropagation/Published/SequentialPropagation.h"
 #include "Pieces/GuardedWork.h"
-#include "Pieces/PieceBlocks.h"
 
-#include "Propagation/LastLight.h"
-#include "Propagation/PieceOfMedium.h"
+#include "Propagation/LastOutputs.h"
+#include "Propagation/SolverScene.h"
 
 #include "vtkDataObject.h"
 #include "vtkImageData.h"
@@ -192,17 +190,16 @@ tyndall::LightField SolvePreviewOfPiece(vtkLightPropagationMaps* filter, const t
 }
 
 /// As Quality has them for the medium of all ranks; a target chooses by itself.
-tyndall::PropagationSettings SettingsOn(vtkLightPropagationMaps* filter, tyndall::Communicator& communicator,
-  const tyndall::PieceBlocks& pieces, const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining)
+tyndall::PropagationSettings SettingsOn(vtkLightPropagationMaps* filter, const tyndall::SolverScene& scene)
 {
-  tyndall::RequireSame(communicator, "TargetError or EstimateError", true,
+  tyndall::RequireSame(scene.domain.Comm(), "TargetError or EstimateError", true,
     { filter->GetTargetError(), filter->GetEstimateError() ? 1.0 : 0.0 });
   if (filter->GetTargetError() > 0.0)
   {
     return SettingsOf(filter);
   }
-  return tyndall::AtQualityInBlocks(communicator, pieces.Partition(),
-    static_cast<tyndall::Quality>(filter->GetQuality()), SettingsOf(filter), piece.medium, shining.illumination);
+  return tyndall::AtQuality(scene.domain, static_cast<tyndall::Quality>(filter->GetQuality()), SettingsOf(filter),
+    scene.medium, scene.shining.illumination);
 }
 }
 
@@ -232,25 +229,29 @@ std::string vtkLightPropagationMaps::NotByBlocks(vtkInformationVector**) const
   return this->Scheme == PUBLISHED && !this->Preview ? "Scheme as published" : "";
 }
 
-std::string vtkLightPropagationMaps::ReasonNotToDecompose(tyndall::Communicator& communicator,
-  const tyndall::PieceBlocks& pieces, const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining)
+std::string vtkLightPropagationMaps::ReasonNotToDecompose(const tyndall::SolverScene& scene)
 {
-  const std::shared_ptr<tyndall::Device> device = DeviceOnAll(this, communicator);
-  return tyndall::ReasonNotToDecompose(*device, communicator, pieces.Partition(), piece.medium, shining.illumination,
-    SettingsOn(this, communicator, pieces, piece, shining));
+  const std::shared_ptr<tyndall::Device> device = DeviceOnAll(this, scene.domain.Comm());
+  return tyndall::ReasonNotToDecompose(
+    *device, scene.domain, scene.medium, scene.shining.illumination, SettingsOn(this, scene));
 }
 
-tyndall::LightField vtkLightPropagationMaps::SolvePiece(tyndall::Communicator& communicator,
-  const tyndall::PieceBlocks& pieces, const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining)
+tyndall::LightField vtkLightPropagationMaps::Solve(const tyndall::SolverScene& ofFilter)
 {
+  const tyndall::Illumination& illumination = ofFilter.shining.illumination;
+  if (!ofFilter.decomposed)
+  {
+    return ::Solve(this, ofFilter.medium, illumination, this->Last->Where(this->WarmStart));
+  }
+  tyndall::Communicator& communicator = ofFilter.domain.Comm();
+  const tyndall::SceneInBlocks scene = { communicator, ofFilter.domain.Partition(), ofFilter.medium, illumination };
   if (this->Preview)
   {
-    return SolvePreviewOfPiece(this, { communicator, pieces.Partition(), piece.medium, shining.illumination });
+    return SolvePreviewOfPiece(this, scene);
   }
   tyndall::KeptLight* const last = this->Last->Where(this->WarmStart);
   const std::shared_ptr<tyndall::Device> device = DeviceOnAll(this, communicator);
-  const tyndall::PropagationSettings settings = SettingsOn(this, communicator, pieces, piece, shining);
-  const tyndall::SceneInBlocks scene = { communicator, pieces.Partition(), piece.medium, shining.illumination };
+  const tyndall::PropagationSettings settings = SettingsOn(this, ofFilter);
   const tyndall::Monitor monitor = tyndall::MonitorOf(this);
   if (this->TargetError > 0.0)
   {
@@ -258,28 +259,9 @@ tyndall::LightField vtkLightPropagationMaps::SolvePiece(tyndall::Communicator& c
   }
   tyndall::LightField light = this->EstimateError
     ? tyndall::SolveInBlocksWithErrorEstimate(*device, scene, settings, monitor, last)
-    : tyndall::SolveInBlocks(
-        *device, communicator, scene.partition, scene.medium, scene.illumination, settings, monitor, last);
+    : tyndall::SolveConservative(*device, ofFilter.domain, ofFilter.medium, illumination, settings, monitor, last);
   light.settingsUsed = UsedFor(light, settings, this);
   return light;
-}
-
-int vtkLightPropagationMaps::RequestData(
-  vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs)
-{
-  return this->UpdateCachedOrSolve(request, given, outputs, [&](vtkInformationVector** inputs) {
-    vtkImageData* image = vtkImageData::GetData(inputs[MEDIUM]);
-    const tyndall::MediumInput input = tyndall::ReadMedium(this, image);
-    const bool emits = input.Emits();
-    const tyndall::IlluminationInput shining = this->ReadShining(inputs, emits);
-    const tyndall::Illumination& illumination = shining.illumination;
-    this->WarnWhereDark(illumination, emits);
-
-    tyndall::LightField light = Solve(this, input.medium, illumination, this->Last->Where(this->WarmStart));
-
-    TellOfDefaultSky(shining, light.leftOut);
-    this->WriteSolved(std::move(light), inputs, outputs);
-  });
 }
 
 void vtkLightPropagationMaps::Note(const tyndall::LightField& light)

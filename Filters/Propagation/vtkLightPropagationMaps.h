@@ -259,14 +259,11 @@ protected:
   vtkLightPropagationMaps();
   ~vtkLightPropagationMaps() override;
 
-  int RequestData(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
   void Note(const tyndall::LightField& light) override;
   bool ReadsQuality() const override { return this->TargetError == 0.0 && this->Superclass::ReadsQuality(); }
   std::string NotByBlocks(vtkInformationVector** inputs) const override;
-  std::string ReasonNotToDecompose(tyndall::Communicator& communicator, const tyndall::PieceBlocks& pieces,
-    const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining) override;
-  tyndall::LightField SolvePiece(tyndall::Communicator& communicator, const tyndall::PieceBlocks& pieces,
-    const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining) override;
+  std::string ReasonNotToDecompose(const tyndall::SolverScene& scene) override;
+  tyndall::LightField Solve(const tyndall::SolverScene& scene) override;
 
 private:
   vtkLightPropagationMaps(const vtkLightPropagationMaps&) = delete;

@@ -10,7 +10,7 @@
 #include "Pieces/Ranks.h"
 #include "Pieces/UpdateExtent.h"
 #include "Propagation/LastOutputs.h"
-#include "Propagation/PieceOfMedium.h"
+#include "Propagation/SolverScene.h"
 #include "Viewing/LitColor.h"
 
 #include "vtkCommand.h"
@@ -28,38 +28,58 @@
 #include <utility>
 #include <vector>
 
+namespace tyndall
+{
+SolverScene::SolverScene(const PieceBlocks& ofRanks, vtkAlgorithm* filter, vtkImageData* given)
+  : pieces(ofRanks)
+  , domain(ofRanks.GetDomain())
+  , decomposed(ofRanks.IsDecomposed())
+{
+  this->domain.Collective([&] {
+    if (!this->decomposed || this->pieces.HasOwn())
+    {
+      this->image = this->pieces.OwnImage(given);
+      this->input = ReadMedium(filter, this->image);
+    }
+  });
+  if (this->decomposed)
+  {
+    AgreeOnMeanCosine(this->domain.Comm(), this->pieces.HasOwn(), this->input.g, this->input.medium);
+  }
+  this->medium = this->input.medium;
+  this->emits = this->domain.Any(this->pieces.HasOwn() && this->input.Emits());
+}
+}
+
 namespace
 {
-/// Light beside the arrays of the medium, and its convergence.
-/// @param ignored  of the medium
-/// @param pieces   of which the light is this rank's; null: it is the whole
-/// @return its doubts
-std::vector<std::string> Write(vtkAlgorithm* filter, tyndall::LightField&& light,
-  const std::vector<std::string>& ignored, vtkImageData* medium, vtkInformationVector* outputs,
-  const tyndall::PieceBlocks* pieces)
+/// Extends what was found for a subdomain to the voxels of the output. Collective.
+void SpreadToHeld(const tyndall::PieceBlocks& pieces, tyndall::LightField& light)
 {
-  std::vector<std::string> doubts = light.doubts;
-  if (!ignored.empty())
-  {
-    doubts.push_back(tyndall::WarningOf(ignored));
-  }
-  tyndall::WriteConvergence(light.convergence, light.sweepsSaved, vtkTable::GetData(outputs, 1));
-  vtkImageData* const output = vtkImageData::GetData(outputs, 0);
-  tyndall::PassOn(medium, output);
-  if (pieces)
-  {
-    pieces->KeepHeld(output);
-  }
-  if (!pieces || pieces->Held().VoxelCount() > 0)
-  {
-    tyndall::WriteLight(std::move(light), output); // light that is not finite is an error, with no warnings before
-    tyndall::NoteChoices(filter, tyndall::QuantitiesOfMedium(), medium, output);
-    if (!ignored.empty())
-    {
-      tyndall::AddFact(output, tyndall::IgnoredFact, ignored);
-    }
-  }
-  return doubts;
+  tyndall::Communicator& communicator = pieces.GetDomain().Comm();
+  const auto spread = [&](std::vector<float>& values, int components) {
+    pieces.SpreadToHeld(communicator, values, components);
+  };
+  const std::size_t voxels = std::max<std::size_t>(pieces.Own().VoxelCount(), 1);
+  const int stored = std::max(static_cast<int>(light.storedDirections.size()), 1);
+  spread(light.fluence, light.channels);
+  spread(light.fluenceDirect, light.channels);
+  spread(light.fluenceError, light.channels);
+  spread(light.netFlux, 3 * light.channels);
+  spread(light.scatteredRadiance, light.channels * stored);
+  const std::vector<double> ofMoments =
+    communicator.Largest({ static_cast<double>(light.scatteredMoments.size() / voxels),
+      static_cast<double>(light.straightOn.size() / voxels) }); // a rank without voxels does not know
+  spread(light.scatteredMoments, static_cast<int>(ofMoments[0]));
+  spread(light.straightOn, static_cast<int>(ofMoments[1]));
+}
+
+tyndall::LitColor ColorOf(
+  const tyndall::SolverScene& scene, const tyndall::FloatField& fluence, const tyndall::ToneMapping& tones)
+{
+  return scene.decomposed
+    ? tyndall::ColorLitMediumInBlocks(scene.domain.Comm(), scene.domain.Partition(), scene.medium, fluence, tones)
+    : tyndall::ColorLitMedium(scene.medium, fluence, tones);
 }
 }
 
@@ -93,44 +113,22 @@ int vtkScatteringSolver::FillOutputPortInformation(int port, vtkInformation* inf
   return 1;
 }
 
-tyndall::IlluminationInput vtkScatteringSolver::ReadAtQuality(vtkInformationVector** inputs, bool emits)
+tyndall::IlluminationInput vtkScatteringSolver::ReadShining(tyndall::SolverScene& scene, vtkInformationVector** inputs)
 {
-  tyndall::IlluminationInput input = this->ReadAllIllumination(inputs, emits);
-  if (this->ReadsQuality())
-  {
-    tyndall::SetFineness(input.illumination.lights, static_cast<tyndall::Quality>(this->Quality));
-  }
-  return input;
-}
-
-tyndall::IlluminationInput vtkScatteringSolver::ReadShining(vtkInformationVector** inputs, bool emits)
-{
-  vtkImageData* const given = vtkImageData::GetData(inputs[UNCOLLIDED]);
-  if (!given)
-  {
-    return this->ReadAtQuality(inputs, emits);
-  }
   tyndall::IlluminationInput input;
-  input.uncollided = tyndall::ReadUncollided(given, tyndall::GridOf(vtkImageData::GetData(inputs[MEDIUM])));
-  input.illumination.uncollided = input.uncollided.image;
-  tyndall::AddFaceAlbedo(input.illumination, this->FaceAlbedo, this->FaceAlbedoColor);
-  return input;
-}
-
-/// The same of this rank's piece.
-tyndall::IlluminationInput vtkScatteringSolver::ReadShiningOn(
-  const tyndall::PieceBlocks& pieces, tyndall::PieceOfMedium& piece, vtkInformationVector** inputs)
-{
-  vtkImageData* const given = vtkImageData::GetData(inputs[UNCOLLIDED]);
   if (inputs[UNCOLLIDED]->GetNumberOfInformationObjects() == 0)
   {
-    return this->ReadAtQuality(inputs, piece.emits);
+    input = this->ReadAllIllumination(inputs, scene.emits);
+    if (this->ReadsQuality())
+    {
+      tyndall::SetFineness(input.illumination.lights, static_cast<tyndall::Quality>(this->Quality));
+    }
+    return input;
   }
-  tyndall::IlluminationInput input;
-  if (piece.image)
+  if (scene.image)
   {
-    piece.uncollided = pieces.OwnImage(given);
-    input.uncollided = tyndall::ReadUncollided(piece.uncollided, tyndall::GridOf(piece.image));
+    scene.uncollided = scene.pieces.OwnImage(vtkImageData::GetData(inputs[UNCOLLIDED]));
+    input.uncollided = tyndall::ReadUncollided(scene.uncollided, tyndall::GridOf(scene.image));
     input.illumination.uncollided = input.uncollided.image;
   }
   tyndall::AddFaceAlbedo(input.illumination, this->FaceAlbedo, this->FaceAlbedoColor);
@@ -173,41 +171,36 @@ vtkMTimeType vtkScatteringSolver::GetMTime()
   return std::max(this->Superclass::GetMTime(), this->ColorsTime.GetMTime());
 }
 
-int vtkScatteringSolver::UpdateCachedOrSolve(vtkInformation* request, vtkInformationVector** given,
-  vtkInformationVector* outputs, const std::function<void(vtkInformationVector** inputs)>& solve)
+int vtkScatteringSolver::RequestData(
+  vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs)
 {
+  vtkMultiProcessController* const ranks = tyndall::RanksTogether(request, outputs);
+  this->OverRanks = ranks != nullptr;
+  this->IsFirstRank = !ranks || ranks->GetLocalProcessId() == 0;
   this->WholeFor.clear();
-  tyndall::WorkOnPieces onPieces = { MEDIUM, [&](vtkMultiProcessController* ranks, vtkInformationVector** inputs) {
-                                      this->OverRanks = ranks != nullptr;
-                                      this->IsFirstRank = !ranks || ranks->GetLocalProcessId() == 0;
-                                      return this->GiveOrSolvePiece(request, ranks, inputs, outputs);
-                                    } };
-  onPieces.shares = this->PortOfShares();
-  onPieces.others = { UNCOLLIDED };
-  const int done = tyndall::Guarded(this, request, given, outputs, onPieces, [&](vtkInformationVector** inputs) {
-    if (std::exchange(this->SolvedInPieces, false))
+  const bool chooses = this->Decomposition == AUTOMATIC_DECOMPOSITION && tyndall::EachAsksForItsPiece(request, outputs);
+  tyndall::WorkOnSubdomains work;
+  work.port = MEDIUM;
+  work.shares = this->PortOfShares();
+  work.others = { UNCOLLIDED };
+  work.wantsPieces = [&](vtkInformationVector** inputs) { return this->WantsPieces(request, inputs, outputs); };
+  work.work = [&](const tyndall::PieceBlocks& pieces, vtkInformationVector** inputs) {
+    if (!pieces.IsDecomposed() && chooses && this->WholeFor.empty())
     {
-      this->Solved->Forget();
+      this->WholeFor = this->ReasonNotToAgree(inputs);
     }
-    if (this->Solved->GiveBack(
-          this->Superclass::GetMTime(), tyndall::OwnAxesOf(this), inputs, this->GetNumberOfInputPorts(), outputs))
-    {
-      this->CropToRequest(inputs, outputs);
-      return;
-    }
-    this->Note({});
-    this->Ignored = tyndall::IgnoredIndex(this->IgnoresIndexOf(vtkImageData::GetData(inputs[MEDIUM])));
-    solve(inputs);
-  });
+    return this->UpdateCachedOrSolve(pieces, inputs, outputs);
+  };
+  const int done = tyndall::Guarded(this, request, given, outputs, work);
   if (tyndall::AreEmptied(outputs))
   {
-    this->GiveLightBefore(outputs);
+    this->RestoreLightBefore(outputs);
   }
   return done;
 }
 
-/// After a solve that failed, or was stopped: nothing, or the light of before, which stays in views.
-void vtkScatteringSolver::GiveLightBefore(vtkInformationVector* outputs)
+/// After a solve that failed or was stopped: nothing, or the light of before, which stays in views.
+void vtkScatteringSolver::RestoreLightBefore(vtkInformationVector* outputs)
 {
   tyndall::LightField nothing;
   vtkImageData* const output = vtkImageData::GetData(outputs, 0);
@@ -224,8 +217,8 @@ void vtkScatteringSolver::GiveLightBefore(vtkInformationVector* outputs)
   this->Note(nothing);
 }
 
-/// Without WHOLE, whether this rank would have each solve its piece; ranks may differ in it.
-bool vtkScatteringSolver::WantsBlocks(
+/// Whether this rank would solve on its piece; ranks may differ.
+bool vtkScatteringSolver::WantsPieces(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) const
 {
   return this->Decomposition == AUTOMATIC_DECOMPOSITION ? tyndall::EachAsksForItsPiece(request, outputs) &&
@@ -233,16 +226,35 @@ bool vtkScatteringSolver::WantsBlocks(
                                                         : this->Decomposition == BLOCKS;
 }
 
+/// Why ranks that may choose did not agree on a decomposition.
+std::string vtkScatteringSolver::ReasonNotToAgree(vtkInformationVector** inputs) const
+{
+  const std::string refused = this->NotByBlocks(inputs);
+  return !refused.empty()                    ? refused
+    : tyndall::IsWorthPieces(inputs[MEDIUM]) ? "pieces that are not parts of one grid"
+                                             : "a medium of few voxels";
+}
+
 int vtkScatteringSolver::RequestUpdateExtent(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  const bool asPiece = tyndall::EachAsksForItsPiece(request, outputs) && this->WantsBlocks(request, inputs, outputs);
+  const bool asPiece = tyndall::EachAsksForItsPiece(request, outputs) && this->WantsPieces(request, inputs, outputs);
   const std::vector<int> besides = asPiece ? std::vector<int>{ UNCOLLIDED, this->PortOfShares() } : std::vector<int>();
   tyndall::AskForAllBut(asPiece ? MEDIUM : -1, request, inputs, this->GetNumberOfInputPorts(), outputs, besides);
   return 1;
 }
 
 std::string vtkScatteringSolver::NotByBlocks(vtkInformationVector**) const
+{
+  return {};
+}
+
+std::string vtkScatteringSolver::NotInBlocks(const tyndall::SolverScene&)
+{
+  return {};
+}
+
+std::string vtkScatteringSolver::ReasonNotToDecompose(const tyndall::SolverScene&)
 {
   return {};
 }
@@ -254,189 +266,141 @@ bool vtkScatteringSolver::IgnoresIndexOf(vtkImageData* medium)
     tyndall::IsUnusual(this, tyndall::RefractiveIndex, medium, "ior", 1.0f);
 }
 
-std::string vtkScatteringSolver::NotInBlocks(const tyndall::PieceOfMedium&, const tyndall::IlluminationInput&)
+/// Reads what lights the subdomain, or returns what rules out a decomposition.
+std::string vtkScatteringSolver::ReadShiningOrRefuse(tyndall::SolverScene& scene, vtkInformationVector** inputs)
 {
-  return {};
-}
-
-/// What keeps this rank from solving its piece, in words; empty: nothing, and what shines on it is read.
-std::string vtkScatteringSolver::NotOnPiece(const tyndall::PieceBlocks& pieces, tyndall::PieceOfMedium& piece,
-  tyndall::IlluminationInput& shining, vtkInformationVector** inputs)
-{
-  std::string refused = this->NotByBlocks(inputs);
-  vtkImageData* const given = vtkImageData::GetData(inputs[UNCOLLIDED]);
-  if (refused.empty() && given && !pieces.HasOwnOf(given))
+  std::string refused = scene.decomposed ? this->NotByBlocks(inputs) : "";
+  vtkImageData* const uncollided = vtkImageData::GetData(inputs[UNCOLLIDED]);
+  if (scene.decomposed && refused.empty() && uncollided && !scene.pieces.HasOwnOf(uncollided))
   {
     refused = "UncollidedLight in other pieces than the medium";
   }
   if (refused.empty())
   {
-    shining = this->ReadShiningOn(pieces, piece, inputs);
-    refused = this->NotInBlocks(piece, shining);
+    scene.shining = this->ReadShining(scene, inputs);
+    refused = scene.decomposed ? this->NotInBlocks(scene) : "";
   }
   return refused;
 }
 
-std::string vtkScatteringSolver::ReasonNotToDecompose(
-  tyndall::Communicator&, const tyndall::PieceBlocks&, const tyndall::PieceOfMedium&, const tyndall::IlluminationInput&)
+/// Reads what lights the subdomain. Collective.
+/// @return false, on all ranks, if each is to solve serially
+bool vtkScatteringSolver::ReadOrRefuse(tyndall::SolverScene& scene, vtkInformationVector** inputs)
 {
-  return {};
-}
-
-/// @return false, on all ranks, where each is to solve the whole
-bool vtkScatteringSolver::GiveOrSolvePiece(vtkInformation* request, vtkMultiProcessController* ranks,
-  vtkInformationVector** inputs, vtkInformationVector* outputs)
-{
-  vtkImageData* const image = vtkImageData::GetData(inputs[MEDIUM]);
-  const std::optional<tyndall::AgreedBlocks> agreed = tyndall::AgreeOnBlocks(
-    ranks, this, this->WantsBlocks(request, inputs, outputs), tyndall::AskingPort(request, outputs), image);
-  if (!agreed)
-  {
-    const bool asked = this->Decomposition == AUTOMATIC_DECOMPOSITION && tyndall::EachAsksForItsPiece(request, outputs);
-    std::string refused = this->NotByBlocks(inputs);
-    if (refused.empty())
-    {
-      refused =
-        tyndall::IsWorthPieces(inputs[MEDIUM]) ? "pieces that are not parts of one grid" : "a medium of few voxels";
-    }
-    this->WholeFor = asked ? refused : "";
-    return false;
-  }
-  tyndall::Communicator& communicator = *agreed->communicator;
-  const tyndall::PieceBlocks& pieces = *agreed->pieces;
-  if (this->GivePiece(communicator, pieces, inputs, outputs))
-  {
-    this->ColorPiece(communicator, pieces, inputs, outputs);
-    return true;
-  }
-  tyndall::PieceOfMedium piece(communicator, pieces, this, image);
-  piece.share = this->PortOfShares() < 0 ? nullptr : vtkPolyData::GetData(inputs[this->PortOfShares()]);
-  tyndall::IlluminationInput shining;
+  scene.share = this->PortOfShares() < 0 ? nullptr : vtkPolyData::GetData(inputs[this->PortOfShares()]);
   std::string refused;
   bool ignoresIndex = false;
-  communicator.Collective([&] {
-    ignoresIndex = this->IgnoresIndexOf(piece.image);
-    refused = this->NotOnPiece(pieces, piece, shining, inputs);
+  scene.domain.Collective([&] {
+    ignoresIndex = this->IgnoresIndexOf(scene.image);
+    refused = this->ReadShiningOrRefuse(scene, inputs);
     tyndall::Require(refused.empty() || this->Decomposition != BLOCKS,
       "Ranks cannot solve their pieces (Decomposition: blocks) with " + refused +
         ". Leave it out, or let each rank solve the whole.");
   });
-  this->Ignored = tyndall::IgnoredIndex(tyndall::OnAnyRank(communicator, ignoresIndex));
-  this->WholeFor = tyndall::WordsOfAny(communicator, refused);
-  tyndall::RequireSame(communicator, "Preview", true, { this->Preview ? 1.0 : 0.0 });
-  const bool chooses = !this->Preview && !tyndall::OnAnyRank(communicator, this->Decomposition == BLOCKS);
+  this->Ignored = tyndall::IgnoredIndex(scene.domain.Any(ignoresIndex));
+  if (!scene.decomposed)
+  {
+    return true;
+  }
+  this->WholeFor = tyndall::WordsOfAny(scene.domain.Comm(), refused);
+  tyndall::RequireSame(scene.domain.Comm(), "Preview", true, { this->Preview ? 1.0 : 0.0 });
+  const bool chooses = !this->Preview && !scene.domain.Any(this->Decomposition == BLOCKS);
   if (this->WholeFor.empty() && chooses)
   {
-    this->WholeFor = this->ReasonNotToDecompose(communicator, pieces, piece, shining);
+    this->WholeFor = this->ReasonNotToDecompose(scene);
   }
-  if (!this->WholeFor.empty())
+  return this->WholeFor.empty();
+}
+
+/// The last light of this subdomain if nothing has changed on any rank, or a new one. Collective.
+/// @return false, on all ranks, if each is to solve serially
+bool vtkScatteringSolver::UpdateCachedOrSolve(
+  const tyndall::PieceBlocks& pieces, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  const tyndall::OwnAxes axes = tyndall::OwnAxesOf(this);
+  tyndall::LastOutputs::Key key =
+    tyndall::LastOutputs::KeyOf(this->Superclass::GetMTime(), axes, inputs, this->GetNumberOfInputPorts());
+  if (!pieces.IsDecomposed() && std::exchange(this->SolvedInPieces, false))
   {
-    return false;
+    this->Solved->Forget();
   }
-  this->Note({});
-  if (!piece.share)
+  const bool kept = this->SolvedInPieces == pieces.IsDecomposed() && this->Solved->GiveBack(key, outputs);
+  const vtkIdType cells = vtkImageData::GetData(outputs, 0)->GetNumberOfCells();
+  const bool same = kept && (!pieces.IsDecomposed() || cells == static_cast<vtkIdType>(pieces.Held().VoxelCount()));
+  if (pieces.GetDomain().Any(!same))
   {
-    this->WarnWhereDark(shining.illumination, piece.emits);
+    if (kept)
+    {
+      this->Solved->LetGo();
+    }
+    this->Note({});
+    tyndall::SolverScene scene(pieces, this, vtkImageData::GetData(inputs[MEDIUM]));
+    if (!this->ReadOrRefuse(scene, inputs))
+    {
+      return false;
+    }
+    if (!scene.share)
+    {
+      this->WarnWhereDark(scene.shining.illumination, scene.emits);
+    }
+    tyndall::LightField light = this->Solve(scene);
+    TellOfDefaultSky(scene.shining, light.leftOut);
+    this->Write(pieces, std::move(light), inputs, outputs);
+    this->Solved->Keep(std::move(key), axes, outputs);
+    this->SolvedInPieces = pieces.IsDecomposed();
   }
-  tyndall::LightField light = this->SolvePiece(communicator, pieces, piece, shining);
-  TellOfDefaultSky(shining, light.leftOut);
-  this->TellOfPieces(light, true);
-  this->Note(light);
-  this->WritePiece(communicator, pieces, std::move(light), inputs, outputs);
-  this->ColorPiece(communicator, pieces, inputs, outputs);
+  this->Color(pieces, inputs, outputs);
   return true;
 }
 
-/// The last light of this rank's block, where on no rank anything has changed. All ranks call it.
-/// @return whether the outputs are there
-bool vtkScatteringSolver::GivePiece(tyndall::Communicator& communicator, const tyndall::PieceBlocks& pieces,
+/// Solved light on output 0 beside the arrays of the medium, its convergence on output 1; reports it, and warns of each
+/// doubt on the first rank. Collective.
+void vtkScatteringSolver::Write(const tyndall::PieceBlocks& pieces, tyndall::LightField&& light,
   vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  const bool kept = this->SolvedInPieces &&
-    this->Solved->GiveBack(
-      this->Superclass::GetMTime(), tyndall::OwnAxesOf(this), inputs, this->GetNumberOfInputPorts(), outputs);
-  const vtkIdType cells = vtkImageData::GetData(outputs, 0)->GetNumberOfCells();
-  const bool same = kept && cells == static_cast<vtkIdType>(pieces.Held().VoxelCount());
-  const bool onAll = communicator.Largest({ same ? 0.0 : 1.0 })[0] == 0.0;
-  if (kept && !onAll)
+  if (this->OverRanks || pieces.IsDecomposed())
   {
-    this->Solved->LetGo();
-  }
-  return onAll;
-}
-
-/// That over several ranks, and why each solved the whole, where they were to choose.
-void vtkScatteringSolver::TellOfPieces(tyndall::LightField& light, bool inBlocks)
-{
-  if (this->OverRanks || inBlocks)
-  {
-    light.settingsUsed.push_back("Decomposition = " + std::to_string(inBlocks ? BLOCKS : WHOLE));
+    light.settingsUsed.push_back("Decomposition = " + std::to_string(pieces.IsDecomposed() ? BLOCKS : WHOLE));
   }
   tyndall::AddAveraged(this, light.settingsUsed);
   if (this->OverRanks && !this->WholeFor.empty())
   {
     light.leftOut.push_back("pieces: each rank solved the whole, for " + this->WholeFor);
   }
-}
-
-/// WriteSolved of the light of this rank's block. All ranks call it.
-void vtkScatteringSolver::WritePiece(tyndall::Communicator& communicator, const tyndall::PieceBlocks& pieces,
-  tyndall::LightField&& light, vtkInformationVector** inputs, vtkInformationVector* outputs)
-{
-  pieces.SpreadToHeld(communicator, light.fluence, light.channels);
-  pieces.SpreadToHeld(communicator, light.fluenceDirect, light.channels);
-  pieces.SpreadToHeld(communicator, light.fluenceError, light.channels);
-  pieces.SpreadToHeld(communicator, light.netFlux, 3 * light.channels);
-  const int stored = std::max(static_cast<int>(light.storedDirections.size()), 1);
-  pieces.SpreadToHeld(communicator, light.scatteredRadiance, light.channels * stored);
-  const std::size_t voxels = std::max<std::size_t>(pieces.Own().VoxelCount(), 1);
-  const std::vector<double> ofMoments =
-    communicator.Largest({ 1.0 * static_cast<double>(light.scatteredMoments.size() / voxels),
-      1.0 * static_cast<double>(light.straightOn.size() / voxels) }); // a rank without voxels does not know
-  pieces.SpreadToHeld(communicator, light.scatteredMoments, static_cast<int>(ofMoments[0]));
-  pieces.SpreadToHeld(communicator, light.straightOn, static_cast<int>(ofMoments[1]));
-  std::vector<std::string> doubts;
-  communicator.Collective([&] {
-    doubts = Write(this, std::move(light), this->Ignored, vtkImageData::GetData(inputs[MEDIUM]), outputs, &pieces);
-  });
-  this->WarnOnce(doubts);
-  this->Solved->Keep(
-    this->Superclass::GetMTime(), tyndall::OwnAxesOf(this), inputs, this->GetNumberOfInputPorts(), outputs);
-  this->SolvedInPieces = true;
-}
-
-void vtkScatteringSolver::WriteSolved(
-  tyndall::LightField&& light, vtkInformationVector** inputs, vtkInformationVector* outputs)
-{
-  this->TellOfPieces(light, false);
   this->Note(light);
-  vtkImageData* const medium = vtkImageData::GetData(inputs[MEDIUM]);
-  this->WarnOnce(Write(this, std::move(light), this->Ignored, medium, outputs, nullptr));
-  this->Solved->Keep(outputs);
-  this->CropToRequest(inputs, outputs);
-}
-
-/// Warns on the first rank alone: the light is that of all.
-void vtkScatteringSolver::WarnOnce(const std::vector<std::string>& doubts)
-{
+  SpreadToHeld(pieces, light);
+  std::vector<std::string> doubts = light.doubts;
+  if (!this->Ignored.empty())
+  {
+    doubts.push_back(tyndall::WarningOf(this->Ignored));
+  }
+  pieces.GetDomain().Collective([&] {
+    tyndall::WriteConvergence(light.convergence, light.sweepsSaved, vtkTable::GetData(outputs, 1));
+    vtkImageData* const medium = vtkImageData::GetData(inputs[MEDIUM]);
+    vtkImageData* const output = vtkImageData::GetData(outputs, 0);
+    tyndall::PassOn(medium, output);
+    pieces.KeepHeld(output);
+    if (pieces.Held().VoxelCount() > 0)
+    {
+      tyndall::WriteLight(std::move(light), output); // light that is not finite is an error, with no warnings before
+      tyndall::NoteChoices(this, tyndall::QuantitiesOfMedium(), medium, output);
+      if (!this->Ignored.empty())
+      {
+        tyndall::AddFact(output, tyndall::IgnoredFact, this->Ignored);
+      }
+    }
+  });
   for (const std::string& doubt : this->IsFirstRank ? doubts : std::vector<std::string>())
   {
     vtkWarningMacro(<< doubt);
   }
 }
 
-tyndall::ToneMapping vtkScatteringSolver::Tones() const
+/// Adds `lit_color` to the light of a subdomain, if asked for. Collective.
+void vtkScatteringSolver::Color(
+  const tyndall::PieceBlocks& pieces, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  tyndall::ToneMapping tones;
-  tones.exposure = this->Exposure;
-  tones.curve = static_cast<tyndall::ToneCurve>(this->ToneCurve);
-  return tones;
-}
-
-/// What is made of the light of this rank's piece. All ranks call it.
-void vtkScatteringSolver::ColorPiece(tyndall::Communicator& communicator, const tyndall::PieceBlocks& pieces,
-  vtkInformationVector** inputs, vtkInformationVector* outputs)
-{
+  tyndall::Communicator& communicator = pieces.GetDomain().Comm();
   tyndall::RequireSame(communicator, "LitColor, Exposure or ToneCurve", true,
     { this->LitColor ? 1.0 : 0.0, this->Exposure, 1.0 * this->ToneCurve });
   if (!this->LitColor)
@@ -444,7 +408,7 @@ void vtkScatteringSolver::ColorPiece(tyndall::Communicator& communicator, const 
     return;
   }
   vtkImageData* const output = vtkImageData::GetData(outputs, 0);
-  const tyndall::PieceOfMedium piece(communicator, pieces, this, vtkImageData::GetData(inputs[MEDIUM]));
+  const tyndall::SolverScene scene(pieces, this, vtkImageData::GetData(inputs[MEDIUM]));
   vtkSmartPointer<vtkImageData> own; // whose array the fluence may be
   tyndall::FloatField fluence;
   communicator.Collective([&] {
@@ -454,28 +418,20 @@ void vtkScatteringSolver::ColorPiece(tyndall::Communicator& communicator, const 
       fluence = tyndall::ReadCells(own, "fluence", tyndall::Need::Required);
     }
   });
-  tyndall::LitColor lit =
-    tyndall::ColorLitMediumInBlocks(communicator, pieces.Partition(), piece.medium, fluence, this->Tones());
-  std::vector<float> rgba(lit.rgba.begin(), lit.rgba.end());
-  pieces.SpreadToHeld(communicator, rgba, 4);
-  lit.rgba.assign(rgba.begin(), rgba.end());
+  tyndall::ToneMapping tones;
+  tones.exposure = this->Exposure;
+  tones.curve = static_cast<tyndall::ToneCurve>(this->ToneCurve);
+  tyndall::LitColor lit = ColorOf(scene, fluence, tones);
+  if (pieces.IsDecomposed())
+  {
+    std::vector<float> rgba(lit.rgba.begin(), lit.rgba.end());
+    pieces.SpreadToHeld(communicator, rgba, 4);
+    lit.rgba.assign(rgba.begin(), rgba.end());
+  }
   if (pieces.Held().VoxelCount() > 0)
   {
     tyndall::WriteLitColor(std::move(lit), output);
   }
-}
-
-/// What is made of the light of the whole image, and the piece that was asked for.
-void vtkScatteringSolver::CropToRequest(vtkInformationVector** inputs, vtkInformationVector* outputs)
-{
-  vtkImageData* const output = vtkImageData::GetData(outputs, 0);
-  if (this->LitColor)
-  {
-    const tyndall::MediumInput input = tyndall::ReadMedium(this, vtkImageData::GetData(inputs[MEDIUM]));
-    const tyndall::FloatField fluence = tyndall::ReadCells(output, "fluence", tyndall::Need::Required);
-    tyndall::WriteLitColor(tyndall::ColorLitMedium(input.medium, fluence, this->Tones()), output);
-  }
-  tyndall::KeepWhatIsAskedFor(outputs->GetInformationObject(0), output);
 }
 
 void vtkScatteringSolver::PrintSelf(ostream& os, vtkIndent indent)

@@ -6,24 +6,19 @@
 #include "vtkTimeStamp.h"
 #include "vtkTyndallModule.h" // for export macro
 
-#include <cstddef>
-#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
 class vtkImageData;
-class vtkMultiProcessController;
 
 namespace tyndall
 {
 struct IlluminationInput;
 struct LightField;
-class Communicator;
 class LastOutputs;
 class PieceBlocks;
-struct PieceOfMedium;
-struct ToneMapping;
+struct SolverScene;
 }
 
 /**
@@ -168,49 +163,36 @@ protected:
   int RequestUpdateExtent(
     vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
 
-  /// All that shines: uncollided light, or else lights, environment, the sky and what comes in through the faces, or
-  /// the default sky. Checked.
-  /// @param emits  whether the medium does
-  tyndall::IlluminationInput ReadShining(vtkInformationVector** inputs, bool emits);
+  /// Returns the light of the last solve if that is asked for again, or solves on subdomains of ranks (Decomposition)
+  /// or serially. An error is reported once (Pieces/GuardedWork.h).
+  int RequestData(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
 
-  /// RequestData: gives out the light of the last solve where that is asked for again, or solves, the pieces that ranks
-  /// have (Decomposition) or the whole. What fails is one error (Pieces/GuardedWork.h).
-  /// @param solve  is given all inputs as wholes, by port; ends with WriteSolved
-  int UpdateCachedOrSolve(vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs,
-    const std::function<void(vtkInformationVector** inputs)>& solve);
+  /// Solves on this rank's subdomain. Collective.
+  /// @return the light of its voxels; settingsUsed is set
+  virtual tyndall::LightField Solve(const tyndall::SolverScene& scene) = 0;
 
-  /// What of a solve is told on the panel; of an empty one before solving, and where it failed.
+  /// Sets the properties that report a solve; with an empty one before solving, and if it failed.
   virtual void Note(const tyndall::LightField& light) = 0;
 
-  /// Whether the light depends on the medium's cells `ior`. The frame's: no, which is warned of where they are not 1.
+  /// Whether the light depends on the medium's cells `ior`. Default: no, and a warning if they are not 1.
   virtual bool KnowsIndex() const { return false; }
 
-  /// What among properties and inputs keeps this solver from solving pieces, in words for an error; empty: nothing
-  /// does.
+  /// Which properties and inputs rule out a decomposition, in words for an error; empty: none.
   virtual std::string NotByBlocks(vtkInformationVector** inputs) const;
-  /// The same of a scene that was read.
-  virtual std::string NotInBlocks(const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining);
-  /// What of a scene that pieces can be solved of the whole is solved more exactly or much sooner for, in words that
-  /// follow "better for"; empty: nothing is. Not asked of previews. All ranks call it, and are told the same.
-  virtual std::string ReasonNotToDecompose(tyndall::Communicator& communicator, const tyndall::PieceBlocks& pieces,
-    const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining);
-  /// Solves this rank's piece. All ranks call it; none has been refused.
-  /// @return the light of the rank's own voxels
-  virtual tyndall::LightField SolvePiece(tyndall::Communicator& communicator, const tyndall::PieceBlocks& pieces,
-    const tyndall::PieceOfMedium& piece, const tyndall::IlluminationInput& shining) = 0;
+  /// The same for the scene of a rank.
+  virtual std::string NotInBlocks(const tyndall::SolverScene& scene);
+  /// Why the serial solver would be more accurate or much faster for a scene that can be decomposed, in words that
+  /// follow "better for"; empty if it would not. Not for previews. Collective, the same on all ranks.
+  virtual std::string ReasonNotToDecompose(const tyndall::SolverScene& scene);
 
-  /// An input of points (photons) of which ranks have some each: PieceOfMedium::share; -1: there is none.
+  /// An input of points (photons) that are distributed among ranks: SolverScene::share; -1: there is none.
   virtual int PortOfShares() const { return -1; }
-  /// What shines on this rank's piece. The frame's: UncollidedLight, or else all lights.
-  virtual tyndall::IlluminationInput ReadShiningOn(
-    const tyndall::PieceBlocks& pieces, tyndall::PieceOfMedium& piece, vtkInformationVector** inputs);
+  /// What lights a subdomain: by default UncollidedLight, or else lights, environment, sky and faces, or the default
+  /// sky. Checked.
+  virtual tyndall::IlluminationInput ReadShining(tyndall::SolverScene& scene, vtkInformationVector** inputs);
 
   /// Whether Quality chooses anything.
   virtual bool ReadsQuality() const { return !this->Preview; }
-
-  /// Last in RequestData: solved light on output 0 beside the arrays of the medium, its convergence on
-  /// output 1; it is noted, and a warning of each doubt. Kept for UpdateCachedOrSolve.
-  void WriteSolved(tyndall::LightField&& light, vtkInformationVector** inputs, vtkInformationVector* outputs);
 
   int Decomposition = AUTOMATIC_DECOMPOSITION;
   int Quality = USUAL;
@@ -226,32 +208,26 @@ private:
   void operator=(const vtkScatteringSolver&) = delete;
 
   void ColorsModified();
-  tyndall::IlluminationInput ReadAtQuality(vtkInformationVector** inputs, bool emits);
   bool IgnoresIndexOf(vtkImageData* medium);
-  void GiveLightBefore(vtkInformationVector* outputs);
-  std::string NotOnPiece(const tyndall::PieceBlocks& pieces, tyndall::PieceOfMedium& piece,
-    tyndall::IlluminationInput& shining, vtkInformationVector** inputs);
-  void TellOfPieces(tyndall::LightField& light, bool inBlocks);
-  bool WantsBlocks(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) const;
-  bool GiveOrSolvePiece(vtkInformation* request, vtkMultiProcessController* ranks, vtkInformationVector** inputs,
+  bool WantsPieces(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) const;
+  std::string ReasonNotToAgree(vtkInformationVector** inputs) const;
+  std::string ReadShiningOrRefuse(tyndall::SolverScene& scene, vtkInformationVector** inputs);
+  bool ReadOrRefuse(tyndall::SolverScene& scene, vtkInformationVector** inputs);
+  bool UpdateCachedOrSolve(
+    const tyndall::PieceBlocks& pieces, vtkInformationVector** inputs, vtkInformationVector* outputs);
+  void Write(const tyndall::PieceBlocks& pieces, tyndall::LightField&& light, vtkInformationVector** inputs,
     vtkInformationVector* outputs);
-  bool GivePiece(tyndall::Communicator& communicator, const tyndall::PieceBlocks& pieces, vtkInformationVector** inputs,
-    vtkInformationVector* outputs);
-  void WritePiece(tyndall::Communicator& communicator, const tyndall::PieceBlocks& pieces, tyndall::LightField&& light,
-    vtkInformationVector** inputs, vtkInformationVector* outputs);
-  void ColorPiece(tyndall::Communicator& communicator, const tyndall::PieceBlocks& pieces,
-    vtkInformationVector** inputs, vtkInformationVector* outputs);
-  tyndall::ToneMapping Tones() const;
-  void WarnOnce(const std::vector<std::string>& doubts);
-  void CropToRequest(vtkInformationVector** inputs, vtkInformationVector* outputs);
+  void Color(const tyndall::PieceBlocks& pieces, vtkInformationVector** inputs, vtkInformationVector* outputs);
+  void RestoreLightBefore(vtkInformationVector* outputs);
 
   std::unique_ptr<tyndall::LastOutputs> Solved;
-  bool SolvedInPieces = false;      ///< that is of this rank's piece
-  bool OverRanks = false;           ///< of the light that is being made: several ranks make it together
-  bool IsFirstRank = true;          ///< the same: the rank that warns for all of them
-  std::vector<std::string> Ignored; ///< the same: of the medium
-  std::string WholeFor;             ///< the same: why each solves the whole, though it was left to choose
-  vtkTimeStamp ColorsTime;          ///< of LitColor, Exposure, ToneCurve: they do not change the light
+  bool SolvedInPieces = false; ///< that is of this rank's piece
+  // Of the current update:
+  bool OverRanks = false;           ///< several ranks run it together
+  bool IsFirstRank = true;          ///< the rank that warns for all of them
+  std::vector<std::string> Ignored; ///< arrays of the medium that the light does not depend on
+  std::string WholeFor;             ///< why each rank solves serially although Decomposition was automatic
+  vtkTimeStamp ColorsTime;          ///< of LitColor, Exposure, ToneCurve, which do not change the light
 };
 
 #endif
