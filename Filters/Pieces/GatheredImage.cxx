@@ -11,7 +11,6 @@
 #include "vtkImageData.h"
 #include "vtkMatrix3x3.h"
 #include "vtkMultiProcessController.h"
-#include "vtkMultiProcessStream.h"
 #include "vtkNew.h"
 #include "vtkUnsignedCharArray.h"
 
@@ -233,7 +232,7 @@ GatheredImage::GatheredImage(vtkMultiProcessController* controller, vtkImageData
   }
   Piece own;
   OnAllRanks(controller, [&] { own = this->Describe(piece); });
-  this->ShareDescriptions(own);
+  this->Pieces = this->Ranks == 1 ? std::vector<Piece>{ own } : AllGather(controller, own);
   const int first = this->FirstWithCells();
   if (first == NoPiece)
   {
@@ -297,47 +296,20 @@ GatheredImage::Piece GatheredImage::Describe(vtkImageData* piece) const
   return own;
 }
 
-/// Brings the description of each piece to all ranks.
-void GatheredImage::ShareDescriptions(const Piece& own)
+void GatheredImage::ArrayKind::Stream(StreamedMembers& members)
 {
-  if (this->Ranks == 1)
-  {
-    this->Pieces.push_back(own);
-    return;
-  }
-  vtkMultiProcessStream stream;
-  std::for_each(own.Extent.begin(), own.Extent.end(), [&](int bound) { stream << bound; });
-  std::for_each(own.Place.begin(), own.Place.end(), [&](double number) { stream << number; });
-  for (const Kind kind : { Cells, Points })
-  {
-    stream << static_cast<int>(own.HasFlags[kind]) << static_cast<int>(own.Arrays[kind].size());
-    for (const ArrayKind& array : own.Arrays[kind])
-    {
-      stream << array.Name << array.Type << array.Components;
-    }
-  }
-  stream << own.Phase;
-  std::vector<vtkMultiProcessStream> streams;
-  this->Controller->AllGather(stream, streams);
-  for (vtkMultiProcessStream& from : streams)
-  {
-    Piece piece;
-    std::for_each(piece.Extent.begin(), piece.Extent.end(), [&](int& bound) { from >> bound; });
-    std::for_each(piece.Place.begin(), piece.Place.end(), [&](double& number) { from >> number; });
-    for (const Kind kind : { Cells, Points })
-    {
-      int hasFlags = 0, arrays = 0;
-      from >> hasFlags >> arrays;
-      piece.HasFlags[kind] = hasFlags != 0;
-      piece.Arrays[kind].resize(static_cast<std::size_t>(arrays));
-      for (ArrayKind& array : piece.Arrays[kind])
-      {
-        from >> array.Name >> array.Type >> array.Components;
-      }
-    }
-    from >> piece.Phase;
-    this->Pieces.push_back(std::move(piece));
-  }
+  members(this->Name);
+  members(this->Type);
+  members(this->Components);
+}
+
+void GatheredImage::Piece::Stream(StreamedMembers& members)
+{
+  members(this->Extent);
+  members(this->Place);
+  members(this->Arrays);
+  members(this->HasFlags);
+  members(this->Phase);
 }
 
 int GatheredImage::FirstWithCells() const

@@ -12,11 +12,11 @@ class vtkDataArray;
 class vtkDataSetAttributes;
 class vtkImageData;
 class vtkMultiProcessController;
-class vtkMultiProcessStream;
 
 namespace tyndall
 {
 class PieceLayout;
+class StreamedMembers;
 struct PieceValues;
 
 /// An image whose pieces lie on several ranks, put together on the first or on each: one array after the other, so that
@@ -77,6 +77,8 @@ private:
     std::string Name;
     int Type = 0;
     int Components = 0;
+
+    void Stream(StreamedMembers& members);
   };
 
   /// What is known of each piece on every rank.
@@ -88,6 +90,7 @@ private:
     std::array<bool, Kinds> HasFlags = {};
     std::string Phase; ///< what its field data say of the phase function
 
+    void Stream(StreamedMembers& members);
     bool HasCells() const { return this->Extent[0] <= this->Extent[1]; }
   };
 
@@ -98,7 +101,6 @@ private:
   }
   [[noreturn]] void Refuse(const std::string& why) const;
   Piece Describe(vtkImageData* piece) const;
-  void ShareDescriptions(const Piece& own);
   int FirstWithCells() const;
   void CheckPieces(int first) const;
   void CheckArrays(int first, int other, Kind kind) const;

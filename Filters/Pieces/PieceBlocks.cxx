@@ -53,27 +53,7 @@ std::size_t CellsOf(const Extent& extent)
 Extent OwnExtentOf(vtkImageData* image, const Extent& all)
 {
   vtkUnsignedCharArray* const ghosts = image->GetCellGhostArray();
-  if (!ghosts)
-  {
-    return all;
-  }
-  Extent own = { all[1], all[0], all[3], all[2], all[5], all[4] };
-  vtkIdType cell = 0;
-  std::array<int, 3> at;
-  for (at[2] = all[4]; at[2] < all[5]; ++at[2])
-  {
-    for (at[1] = all[2]; at[1] < all[3]; ++at[1])
-    {
-      for (at[0] = all[0]; at[0] < all[1]; ++at[0], ++cell)
-      {
-        for (int axis = 0; axis < 3 && !(ghosts->GetValue(cell) & vtkDataSetAttributes::DUPLICATECELL); ++axis)
-        {
-          own[2 * axis] = std::min(own[2 * axis], at[axis]);
-          own[2 * axis + 1] = std::max(own[2 * axis + 1], at[axis] + 1);
-        }
-      }
-    }
-  }
+  const Extent own = ghosts ? ExtentWithoutDuplicates(all, ghosts, false) : all;
   return CellsOf(own) > 0 ? own : Nothing;
 }
 

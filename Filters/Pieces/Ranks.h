@@ -1,11 +1,18 @@
 #pragma once
 
+#include "vtkMultiProcessController.h"
+#include "vtkMultiProcessStream.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
 #include <functional>
+#include <string>
+#include <vector>
 
 class vtkAlgorithm;
 class vtkInformation;
 class vtkInformationVector;
-class vtkMultiProcessController;
 
 /// The ranks of MPI that run a filter together, each for its piece of the output.
 ///
@@ -35,6 +42,92 @@ void OnAllRanks(vtkMultiProcessController* controller, const std::function<void(
 /// The same of long work that can be stopped: where it ends early on one rank, the Monitor of the filter (MonitorOf)
 /// stops it on the others. A part of it may be such work itself.
 void WorkOnAllRanks(vtkMultiProcessController* controller, vtkAlgorithm* filter, const std::function<void()>& work);
+
+/// Writes the members of a struct to a stream, or reads them: one function names them for both.
+class StreamedMembers
+{
+public:
+  StreamedMembers(vtkMultiProcessStream& stream, bool reads)
+    : Stream(stream)
+    , Reads(reads)
+  {
+  }
+
+  void operator()(int& value) { this->Pass(value); }
+  void operator()(double& value) { this->Pass(value); }
+  void operator()(std::string& value) { this->Pass(value); }
+  void operator()(bool& value)
+  {
+    int number = value;
+    this->Pass(number);
+    value = number != 0;
+  }
+  void operator()(std::uint64_t& value)
+  {
+    int high = static_cast<int>(value >> 32), low = static_cast<int>(value & 0xFFFFFFFFu);
+    this->Pass(high);
+    this->Pass(low);
+    value = static_cast<std::uint64_t>(static_cast<std::uint32_t>(high)) << 32 | static_cast<std::uint32_t>(low);
+  }
+  template <class Value, std::size_t Size>
+  void operator()(std::array<Value, Size>& values)
+  {
+    for (Value& value : values)
+    {
+      (*this)(value);
+    }
+  }
+  template <class Value>
+  void operator()(std::vector<Value>& values)
+  {
+    int size = static_cast<int>(values.size());
+    this->Pass(size);
+    values.resize(static_cast<std::size_t>(size));
+    for (Value& value : values)
+    {
+      (*this)(value);
+    }
+  }
+  /// Any other struct has a member function Stream(StreamedMembers&).
+  template <class Struct>
+  void operator()(Struct& value)
+  {
+    value.Stream(*this);
+  }
+
+private:
+  template <class Value>
+  void Pass(Value& value)
+  {
+    if (this->Reads)
+    {
+      this->Stream >> value;
+    }
+    else
+    {
+      this->Stream << value;
+    }
+  }
+
+  vtkMultiProcessStream& Stream;
+  bool Reads;
+};
+
+/// A struct of each rank, on every rank. Collective.
+template <class Struct>
+std::vector<Struct> AllGather(vtkMultiProcessController* ranks, Struct own)
+{
+  vtkMultiProcessStream sent;
+  StreamedMembers(sent, false)(own);
+  std::vector<vtkMultiProcessStream> streams;
+  ranks->AllGather(sent, streams);
+  std::vector<Struct> all(streams.size());
+  for (std::size_t rank = 0; rank < all.size(); ++rank)
+  {
+    StreamedMembers(streams[rank], true)(all[rank]);
+  }
+  return all;
+}
 
 /// Whether other ranks want a filter's work to stop, which is in WorkOnAllRanks.
 bool IsStoppedByOthers(vtkAlgorithm* filter);

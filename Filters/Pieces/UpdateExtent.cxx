@@ -27,6 +27,38 @@
 
 namespace tyndall
 {
+std::array<int, 6> ExtentWithoutDuplicates(
+  const std::array<int, 6>& extent, vtkUnsignedCharArray* flags, bool flagsPoints)
+{
+  static_assert(static_cast<int>(vtkDataSetAttributes::DUPLICATECELL) == vtkDataSetAttributes::DUPLICATEPOINT, "");
+  std::array<int, 6> own = { extent[1], extent[0], extent[3], extent[2], extent[5], extent[4] };
+  const int beyond = flagsPoints ? 0 : 1;
+  (flagsPoints ? PointBoxOf(extent) : CellBoxOf(extent)).ForEach([&](vtkIdType index, const std::array<int, 3>& at) {
+    for (int axis = 0; axis < 3 && !(flags->GetValue(index) & vtkDataSetAttributes::DUPLICATECELL); ++axis)
+    {
+      own[2 * axis] = std::min(own[2 * axis], at[axis]);
+      own[2 * axis + 1] = std::max(own[2 * axis + 1], std::min(at[axis] + beyond, extent[2 * axis + 1]));
+    }
+  });
+  return own;
+}
+
+void FlagDuplicates(vtkDataSetAttributes* attributes, const ValueBox& box, unsigned char flag,
+  const std::function<bool(const std::array<int, 3>&)>& isDuplicate)
+{
+  auto* const before =
+    vtkArrayDownCast<vtkUnsignedCharArray>(attributes->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()));
+  vtkNew<vtkUnsignedCharArray> flags;
+  flags->SetName(vtkDataSetAttributes::GhostArrayName());
+  flags->SetNumberOfTuples(static_cast<vtkIdType>(box.Count()));
+  box.ForEach([&](vtkIdType index, const std::array<int, 3>& at) {
+    const unsigned char kept = before ? before->GetValue(index) : 0;
+    flags->SetValue(index, isDuplicate(at) ? kept | flag : kept);
+  });
+  attributes->RemoveArray(vtkDataSetAttributes::GhostArrayName());
+  attributes->AddArray(flags);
+}
+
 void ValueBox::Add(const ValueBox& other)
 {
   if (this->IsEmpty())
@@ -75,43 +107,6 @@ vtkInformationIntegerVectorKey* ExtentsTold()
   return key;
 }
 
-/// Flags values that a neighbouring piece has, too. Other flags stay, and so do the arrays of the input, which the
-/// image may share.
-/// @param box  numbers of the values
-void Mark(vtkDataSetAttributes* of, const ValueBox& box, unsigned char flag,
-  const std::function<bool(const std::array<int, 3>&)>& isDuplicate)
-{
-  auto* const before =
-    vtkArrayDownCast<vtkUnsignedCharArray>(of->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()));
-  vtkNew<vtkUnsignedCharArray> flags;
-  flags->SetName(vtkDataSetAttributes::GhostArrayName());
-  vtkIdType number = 0;
-  std::array<int, 3> at;
-  for (at[2] = box.low[2]; at[2] <= box.high[2]; ++at[2])
-  {
-    for (at[1] = box.low[1]; at[1] <= box.high[1]; ++at[1])
-    {
-      for (at[0] = box.low[0]; at[0] <= box.high[0]; ++at[0], ++number)
-      {
-        const unsigned char kept = before ? before->GetValue(number) : 0;
-        flags->InsertNextValue(isDuplicate(at) ? kept | flag : kept);
-      }
-    }
-  }
-  of->RemoveArray(vtkDataSetAttributes::GhostArrayName());
-  of->AddArray(flags);
-}
-
-bool IsIn(const ValueBox& box, const std::array<int, 3>& at)
-{
-  bool in = true;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    in = in && at[axis] >= box.low[axis] && at[axis] <= box.high[axis];
-  }
-  return in;
-}
-
 Extent ExtentOf(vtkImageData* image)
 {
   Extent extent;
@@ -123,10 +118,10 @@ Extent ExtentOf(vtkImageData* image)
 void MarkDuplicates(vtkImageData* image, const Extent& own)
 {
   const Extent all = ExtentOf(image);
-  Mark(image->GetCellData(), CellBoxOf(all), vtkDataSetAttributes::DUPLICATECELL,
-    [&](const auto& cell) { return !IsIn(CellBoxOf(own), cell); });
-  Mark(image->GetPointData(), PointBoxOf(all), vtkDataSetAttributes::DUPLICATEPOINT,
-    [&](const auto& point) { return !IsIn(PointBoxOf(own), point); });
+  FlagDuplicates(image->GetCellData(), CellBoxOf(all), vtkDataSetAttributes::DUPLICATECELL,
+    [&](const auto& cell) { return !CellBoxOf(own).Holds(cell); });
+  FlagDuplicates(image->GetPointData(), PointBoxOf(all), vtkDataSetAttributes::DUPLICATEPOINT,
+    [&](const auto& point) { return !PointBoxOf(own).Holds(point); });
 }
 
 /// Of parts that ranks are asked for.
@@ -147,13 +142,13 @@ void MarkThoseBefore(vtkInformation* information, vtkImageData* output)
     for (int other = 0; other < std::min(rank, ranks); ++other)
     {
       const Extent part = PartOfRank(information, other);
-      before = before || (PointBoxOf(part).Count() > 0 && IsIn(CellBoxOf(part), cell));
+      before = before || (PointBoxOf(part).Count() > 0 && CellBoxOf(part).Holds(cell));
     }
     return before;
   };
   if (rank > 0)
   {
-    Mark(output->GetCellData(), CellBoxOf(ExtentOf(output)), vtkDataSetAttributes::DUPLICATECELL, isBefore);
+    FlagDuplicates(output->GetCellData(), CellBoxOf(ExtentOf(output)), vtkDataSetAttributes::DUPLICATECELL, isBefore);
   }
 }
 

@@ -2,14 +2,18 @@
 
 #include "vtkInformation.h"
 #include "vtkNew.h"
+#include "vtkType.h"
 
 #include <array>
 #include <cstddef>
+#include <functional>
 #include <vector>
 
+class vtkDataSetAttributes;
 class vtkImageData;
 class vtkInformationKey;
 class vtkInformationVector;
+class vtkUnsignedCharArray;
 
 /// For filters in parallel pipelines whose light crosses the borders of pieces: they ask for the whole of their inputs
 /// (where a source does not give it to each rank: WholeInputs.h), work on that, and keep the piece that is asked for.
@@ -27,13 +31,46 @@ struct ValueBox
   }
   std::size_t Along(int axis) const { return static_cast<std::size_t>(this->high[axis] - this->low[axis] + 1); }
   std::size_t Count() const { return this->IsEmpty() ? 0 : this->Along(0) * this->Along(1) * this->Along(2); }
+  bool Holds(const std::array<int, 3>& at) const
+  {
+    return at[0] >= this->low[0] && at[0] <= this->high[0] && at[1] >= this->low[1] && at[1] <= this->high[1] &&
+      at[2] >= this->low[2] && at[2] <= this->high[2];
+  }
   void Add(const ValueBox& other); ///< so that the other is in it, too
+
+  /// Calls act with the index of each value and its place.
+  template <typename Do>
+  void ForEach(const Do& act) const
+  {
+    vtkIdType index = 0;
+    std::array<int, 3> at;
+    for (at[2] = this->low[2]; at[2] <= this->high[2]; ++at[2])
+    {
+      for (at[1] = this->low[1]; at[1] <= this->high[1]; ++at[1])
+      {
+        for (at[0] = this->low[0]; at[0] <= this->high[0]; ++at[0])
+        {
+          act(index++, at);
+        }
+      }
+    }
+  }
 };
 
 /// The points of an extent.
 ValueBox PointBoxOf(const std::array<int, 6>& extent);
 /// Its cells; a flat one has one layer of them.
 ValueBox CellBoxOf(const std::array<int, 6>& extent);
+
+/// The least extent of the points of cells that are no duplicates, or of the points if these are flagged
+/// (vtkGhostType); inverted if there are none.
+std::array<int, 6> ExtentWithoutDuplicates(
+  const std::array<int, 6>& extent, vtkUnsignedCharArray* flags, bool flagsPoints);
+
+/// Adds a flag to vtkGhostType of the values that are duplicates. Other flags stay, and so do the arrays of the input,
+/// which the image may share.
+void FlagDuplicates(vtkDataSetAttributes* attributes, const ValueBox& box, unsigned char flag,
+  const std::function<bool(const std::array<int, 3>&)>& isDuplicate);
 
 /// In RequestUpdateExtent: ask the inputs of a port for all of their image, or all pieces of their polydata.
 /// @param request, outputs  as RequestUpdateExtent is given them

@@ -19,7 +19,6 @@
 #include "vtkInformationVector.h"
 #include "vtkMatrix3x3.h"
 #include "vtkMultiProcessController.h"
-#include "vtkMultiProcessStream.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
@@ -43,26 +42,46 @@ using Extent = std::array<int, 6>;
 constexpr Extent NoExtent = { 0, -1, 0, -1, 0, -1 };
 }
 
-/// What ranks tell each other of what one connection gave them.
+/// What one connection provides on a rank.
 struct InputSummary
 {
   bool isThere = false; ///< with any value
   bool isImage = false;
   Extent extent = NoExtent;
-  Extent whole = NoExtent;           ///< that its source says there is
+  Extent whole = NoExtent;           ///< that its source announces
   bool changes = false;              ///< `whole` does with time, and may be that of another time step
   std::uint64_t key = 0;             ///< of its content
   std::array<std::string, 2> active; ///< names of active scalars, of cells and points
   bool aroundPoints = false;         ///< its voxels are
   Extent points = NoExtent;          ///< those that are no duplicates
+
+  void Stream(StreamedMembers& members)
+  {
+    members(this->isThere);
+    members(this->isImage);
+    members(this->extent);
+    members(this->whole);
+    members(this->changes);
+    members(this->key);
+    members(this->active);
+    members(this->aroundPoints);
+    members(this->points);
+  }
 };
 
-/// Of all connections of a rank, and what it is asked for.
+/// All connections of a rank, and what is asked of it.
 struct RankSummary
 {
   std::vector<int> connections; ///< of each port
   std::vector<InputSummary> inputs;
   std::vector<Extent> asked; ///< of each output
+
+  void Stream(StreamedMembers& members)
+  {
+    members(this->connections);
+    members(this->inputs);
+    members(this->asked);
+  }
 };
 
 namespace
@@ -93,89 +112,34 @@ std::string ActiveName(vtkDataSetAttributes* attributes)
 /// All but the key.
 InputSummary Summarize(vtkInformation* connection)
 {
-  InputSummary glance;
+  InputSummary summary;
   vtkDataObject* const data = vtkDataObject::GetData(connection);
   auto* const image = vtkImageData::SafeDownCast(data);
-  glance.isImage = image != nullptr;
-  glance.whole = ExtentIn(connection, Pipeline::WHOLE_EXTENT());
-  glance.changes = connection->Has(Pipeline::TIME_DEPENDENT_INFORMATION()) != 0;
-  glance.isThere = image ? image->GetNumberOfCells() > 0 : HasValues(data);
-  if (!glance.isThere)
+  summary.isImage = image != nullptr;
+  summary.whole = ExtentIn(connection, Pipeline::WHOLE_EXTENT());
+  summary.changes = connection->Has(Pipeline::TIME_DEPENDENT_INFORMATION()) != 0;
+  summary.isThere = image ? image->GetNumberOfCells() > 0 : HasValues(data);
+  if (!summary.isThere)
   {
     StopIfUpstreamFailed(data);
-    return glance;
+    return summary;
   }
   if (image)
   {
-    std::copy_n(image->GetExtent(), 6, glance.extent.begin());
-    glance.active = { ActiveName(image->GetCellData()), ActiveName(image->GetPointData()) };
+    std::copy_n(image->GetExtent(), 6, summary.extent.begin());
+    summary.active = { ActiveName(image->GetCellData()), ActiveName(image->GetPointData()) };
   }
-  return glance;
-}
-
-vtkMultiProcessStream& operator<<(vtkMultiProcessStream& stream, const Extent& extent)
-{
-  std::for_each(extent.begin(), extent.end(), [&](int bound) { stream << bound; });
-  return stream;
-}
-
-vtkMultiProcessStream& operator>>(vtkMultiProcessStream& stream, Extent& extent)
-{
-  std::for_each(extent.begin(), extent.end(), [&](int& bound) { stream >> bound; });
-  return stream;
-}
-
-void Write(const RankSummary& rank, vtkMultiProcessStream& stream)
-{
-  stream << static_cast<int>(rank.connections.size());
-  std::for_each(rank.connections.begin(), rank.connections.end(), [&](int count) { stream << count; });
-  for (const InputSummary& glance : rank.inputs)
-  {
-    stream << static_cast<int>(glance.isThere) << static_cast<int>(glance.isImage) << glance.extent << glance.whole
-           << static_cast<int>(glance.key >> 32) << static_cast<int>(glance.key & 0xFFFFFFFFu) << glance.active[0]
-           << glance.active[1] << static_cast<int>(glance.aroundPoints) << glance.points
-           << static_cast<int>(glance.changes);
-  }
-  stream << static_cast<int>(rank.asked.size());
-  std::for_each(rank.asked.begin(), rank.asked.end(), [&](const Extent& extent) { stream << extent; });
-}
-
-RankSummary Read(vtkMultiProcessStream& stream)
-{
-  RankSummary rank;
-  int count = 0, inputs = 0;
-  stream >> count;
-  rank.connections.resize(static_cast<std::size_t>(count));
-  for (int& connections : rank.connections)
-  {
-    stream >> connections;
-    inputs += connections;
-  }
-  rank.inputs.resize(static_cast<std::size_t>(inputs));
-  for (InputSummary& glance : rank.inputs)
-  {
-    int isThere = 0, isImage = 0, high = 0, low = 0, aroundPoints = 0, changes = 0;
-    stream >> isThere >> isImage >> glance.extent >> glance.whole >> high >> low >> glance.active[0] >>
-      glance.active[1] >> aroundPoints >> glance.points >> changes;
-    glance.changes = changes != 0;
-    glance.aroundPoints = aroundPoints != 0;
-    glance.isThere = isThere != 0;
-    glance.isImage = isImage != 0;
-    glance.key = static_cast<std::uint64_t>(static_cast<std::uint32_t>(high)) << 32 | static_cast<std::uint32_t>(low);
-  }
-  stream >> count;
-  rank.asked.resize(static_cast<std::size_t>(count));
-  std::for_each(rank.asked.begin(), rank.asked.end(), [&](Extent& extent) { stream >> extent; });
-  return rank;
+  return summary;
 }
 
 /// The same connection on all ranks.
 using OnRanks = std::vector<InputSummary>;
 
-bool Alike(const OnRanks& glances)
+bool Alike(const OnRanks& summaries)
 {
-  return std::all_of(glances.begin(), glances.end(), [&](const InputSummary& glance) {
-    return glance.isThere == glances[0].isThere && glance.key == glances[0].key && glance.extent == glances[0].extent;
+  return std::all_of(summaries.begin(), summaries.end(), [&](const InputSummary& summary) {
+    return summary.isThere == summaries[0].isThere && summary.key == summaries[0].key &&
+      summary.extent == summaries[0].extent;
   });
 }
 
@@ -215,7 +179,7 @@ void AddHidden(vtkDataSetAttributes* attributes, const std::vector<unsigned char
 
 /// Pieces of an image as one, on each rank.
 vtkSmartPointer<vtkDataObject> WholeImageOf(
-  vtkMultiProcessController* ranks, vtkImageData* piece, const OnRanks& glances, const std::string& named)
+  vtkMultiProcessController* ranks, vtkImageData* piece, const OnRanks& summaries, const std::string& named)
 {
   const bool any = piece && piece->GetNumberOfCells() > 0;
   GatheredImage::Arrays cells, points;
@@ -238,7 +202,7 @@ vtkSmartPointer<vtkDataObject> WholeImageOf(
   AddHidden(whole->GetCellData(), gathered.HiddenCells());
   AddHidden(whole->GetPointData(), gathered.HiddenPoints());
   const auto first =
-    std::find_if(glances.begin(), glances.end(), [](const InputSummary& glance) { return glance.isThere; });
+    std::find_if(summaries.begin(), summaries.end(), [](const InputSummary& summary) { return summary.isThere; });
   whole->GetCellData()->SetActiveScalars(first->active[0].c_str());
   whole->GetPointData()->SetActiveScalars(first->active[1].c_str());
   return whole;
@@ -256,26 +220,26 @@ std::string Words(const Extent& extent)
 
 /// All that the source says there is must be on some rank, where all that have any are told of one extent. A file that
 /// one rank alone has gives it the piece that it is asked for, and nobody the others.
-void CheckExtent(const OnRanks& glances, const std::string& named)
+void CheckExtent(const OnRanks& summaries, const std::string& named)
 {
-  const auto isPiece = [](const InputSummary& glance) { return glance.isThere && glance.isImage; };
-  const auto first = std::find_if(glances.begin(), glances.end(), isPiece);
-  const bool oneExtent = std::all_of(glances.begin(), glances.end(),
-    [&](const InputSummary& glance) { return !isPiece(glance) || glance.whole == first->whole; });
-  if (first == glances.end() || !oneExtent || PointBoxOf(first->whole).Count() == 0)
+  const auto isPiece = [](const InputSummary& summary) { return summary.isThere && summary.isImage; };
+  const auto first = std::find_if(summaries.begin(), summaries.end(), isPiece);
+  const bool oneExtent = std::all_of(summaries.begin(), summaries.end(),
+    [&](const InputSummary& summary) { return !isPiece(summary) || summary.whole == first->whole; });
+  if (first == summaries.end() || !oneExtent || PointBoxOf(first->whole).Count() == 0)
   {
     return;
   }
   Extent all = first->extent;
   std::string without;
   std::size_t cells = 0;
-  for (std::size_t rank = 0; rank < glances.size(); ++rank)
+  for (std::size_t rank = 0; rank < summaries.size(); ++rank)
   {
-    without += isPiece(glances[rank]) ? "" : (without.empty() ? "" : ", ") + std::to_string(rank);
-    cells += isPiece(glances[rank]) ? CellBoxOf(glances[rank].extent).Count() : 0;
-    for (int i = 0; i < 6 && isPiece(glances[rank]); ++i)
+    without += isPiece(summaries[rank]) ? "" : (without.empty() ? "" : ", ") + std::to_string(rank);
+    cells += isPiece(summaries[rank]) ? CellBoxOf(summaries[rank].extent).Count() : 0;
+    for (int i = 0; i < 6 && isPiece(summaries[rank]); ++i)
     {
-      all[i] = i % 2 == 0 ? std::min(all[i], glances[rank].extent[i]) : std::max(all[i], glances[rank].extent[i]);
+      all[i] = i % 2 == 0 ? std::min(all[i], summaries[rank].extent[i]) : std::max(all[i], summaries[rank].extent[i]);
     }
   }
   const bool isAll = first->changes && without.empty() && cells > 0 && cells >= CellBoxOf(all).Count();
@@ -290,20 +254,20 @@ void CheckExtent(const OnRanks& glances, const std::string& named)
 
 /// Data that are no image: those of the one rank that has any.
 vtkSmartPointer<vtkDataObject> FromOneRank(
-  vtkMultiProcessController* ranks, vtkDataObject* own, const OnRanks& glances, const std::string& named)
+  vtkMultiProcessController* ranks, vtkDataObject* own, const OnRanks& summaries, const std::string& named)
 {
-  const auto hasAny = [](const InputSummary& glance) { return glance.isThere; };
-  const auto first = std::find_if(glances.begin(), glances.end(), hasAny);
-  const auto other = std::find_if(
-    first + 1, glances.end(), [&](const InputSummary& glance) { return glance.isThere && glance.key != first->key; });
-  if (other != glances.end())
+  const auto hasAny = [](const InputSummary& summary) { return summary.isThere; };
+  const auto first = std::find_if(summaries.begin(), summaries.end(), hasAny);
+  const auto other = std::find_if(first + 1, summaries.end(),
+    [&](const InputSummary& summary) { return summary.isThere && summary.key != first->key; });
+  if (other != summaries.end())
   {
-    throw InvalidInput(named + " is different on ranks " + std::to_string(first - glances.begin()) + " and " +
-      std::to_string(other - glances.begin()) +
+    throw InvalidInput(named + " is different on ranks " + std::to_string(first - summaries.begin()) + " and " +
+      std::to_string(other - summaries.begin()) +
       ". Light crosses the borders of pieces, so that every rank needs all of it: give all ranks the same, or one rank "
       "all and the others nothing.");
   }
-  const int from = static_cast<int>(first - glances.begin());
+  const int from = static_cast<int>(first - summaries.begin());
   const bool mine = ranks->GetLocalProcessId() == from;
   const auto all = vtkSmartPointer<vtkDataObject>::Take(own->NewInstance());
   if (mine)
@@ -315,14 +279,14 @@ vtkSmartPointer<vtkDataObject> FromOneRank(
 }
 
 /// Points of all ranks, one rank's after the other's; those that all have alike once.
-vtkSmartPointer<vtkDataObject> AllShares(vtkMultiProcessController* ranks, vtkDataObject* own, const OnRanks& glances)
+vtkSmartPointer<vtkDataObject> AllShares(vtkMultiProcessController* ranks, vtkDataObject* own, const OnRanks& summaries)
 {
-  if (!own || Alike(glances))
+  if (!own || Alike(summaries))
   {
     return own;
   }
   vtkNew<vtkAppendPolyData> all;
-  for (int rank = 0; rank < static_cast<int>(glances.size()); ++rank)
+  for (int rank = 0; rank < static_cast<int>(summaries.size()); ++rank)
   {
     vtkNew<vtkPolyData> share;
     if (rank == ranks->GetLocalProcessId())
@@ -343,22 +307,22 @@ vtkSmartPointer<vtkDataObject> AllShares(vtkMultiProcessController* ranks, vtkDa
 }
 
 vtkSmartPointer<vtkDataObject> WholeOf(
-  vtkMultiProcessController* ranks, vtkDataObject* own, const OnRanks& glances, const std::string& named)
+  vtkMultiProcessController* ranks, vtkDataObject* own, const OnRanks& summaries, const std::string& named)
 {
   const bool any =
-    std::any_of(glances.begin(), glances.end(), [](const InputSummary& glance) { return glance.isThere; });
-  if (!any || Alike(glances))
+    std::any_of(summaries.begin(), summaries.end(), [](const InputSummary& summary) { return summary.isThere; });
+  if (!any || Alike(summaries))
   {
     return own;
   }
   const bool images = std::any_of(
-    glances.begin(), glances.end(), [](const InputSummary& glance) { return glance.isThere && glance.isImage; });
+    summaries.begin(), summaries.end(), [](const InputSummary& summary) { return summary.isThere && summary.isImage; });
   if (!images)
   {
-    return FromOneRank(ranks, own, glances, named);
+    return FromOneRank(ranks, own, summaries, named);
   }
-  CheckExtent(glances, named);
-  return WholeImageOf(ranks, vtkImageData::SafeDownCast(own), glances, named);
+  CheckExtent(summaries, named);
+  return WholeImageOf(ranks, vtkImageData::SafeDownCast(own), summaries, named);
 }
 
 /// Where one of several ranks looks at the whole alone, nobody can help it with what its source does not give it.
@@ -369,10 +333,10 @@ void RequireAll(vtkAlgorithm* filter, vtkInformationVector** given)
   {
     for (int i = 0; i < given[port]->GetNumberOfInformationObjects(); ++i)
     {
-      const InputSummary glance = Summarize(given[port]->GetInformationObject(i));
-      ValueBox both = PointBoxOf(glance.extent);
-      both.Add(PointBoxOf(glance.whole));
-      Require(!glance.isImage || !glance.isThere || both.Count() == PointBoxOf(glance.extent).Count(),
+      const InputSummary summary = Summarize(given[port]->GetInformationObject(i));
+      ValueBox both = PointBoxOf(summary.extent);
+      both.Add(PointBoxOf(summary.whole));
+      Require(!summary.isImage || !summary.isThere || both.Count() == PointBoxOf(summary.extent).Count(),
         Named(port) +
           " has a piece of its image only: its source gives no rank the whole. Ask for pieces on all ranks, as a view "
           "or "
@@ -388,87 +352,41 @@ Extent OwnPointsOf(vtkImageData* image)
   image->GetExtent(extent.data());
   vtkUnsignedCharArray* const ofPoints = image->GetPointGhostArray();
   vtkUnsignedCharArray* const flags = ofPoints ? ofPoints : image->GetCellGhostArray();
-  if (!flags)
-  {
-    return extent;
-  }
-  const unsigned char duplicate = vtkDataSetAttributes::DUPLICATECELL; // the same number as DUPLICATEPOINT
-  const ValueBox box = ofPoints ? PointBoxOf(extent) : CellBoxOf(extent);
-  Extent own = { extent[1], extent[0], extent[3], extent[2], extent[5], extent[4] };
-  vtkIdType number = 0;
-  std::array<int, 3> at;
-  for (at[2] = box.low[2]; at[2] <= box.high[2]; ++at[2])
-  {
-    for (at[1] = box.low[1]; at[1] <= box.high[1]; ++at[1])
-    {
-      for (at[0] = box.low[0]; at[0] <= box.high[0]; ++at[0], ++number)
-      {
-        for (int axis = 0; axis < 3 && !(flags->GetValue(number) & duplicate); ++axis)
-        {
-          const int last = at[axis] + (ofPoints || box.Along(axis) == 0 ? 0 : 1);
-          own[2 * axis] = std::min(own[2 * axis], at[axis]);
-          own[2 * axis + 1] = std::max(own[2 * axis + 1], std::min(last, extent[2 * axis + 1]));
-        }
-      }
-    }
-  }
-  return own;
-}
-
-bool IsIn(const Extent& points, const std::array<int, 3>& at)
-{
-  bool in = true;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    in = in && at[axis] >= points[2 * axis] && at[axis] <= points[2 * axis + 1];
-  }
-  return in;
+  return flags ? ExtentWithoutDuplicates(extent, flags, ofPoints != nullptr) : extent;
 }
 
 /// The voxels around the points of a rank's piece: those that others have as their own, or lower ranks too, are
 /// duplicates.
-vtkSmartPointer<vtkImageData> VoxelsOfPiece(vtkImageData* piece, const OnRanks& glances, int rank)
+vtkSmartPointer<vtkImageData> VoxelsOfPiece(vtkImageData* piece, const OnRanks& summaries, int rank)
 {
   const vtkSmartPointer<vtkImageData> voxels = PointsAsVoxels(piece);
-  if (Alike(glances) || std::all_of(glances.begin(), glances.end(), [&](const InputSummary& glance) {
-        return !glance.isThere || glance.points == glances[static_cast<std::size_t>(rank)].extent;
+  if (Alike(summaries) || std::all_of(summaries.begin(), summaries.end(), [&](const InputSummary& summary) {
+        return !summary.isThere || summary.points == summaries[static_cast<std::size_t>(rank)].extent;
       })) // each has all
   {
     return voxels;
   }
-  vtkUnsignedCharArray* const given = voxels->GetCellGhostArray();
-  vtkNew<vtkUnsignedCharArray> flags;
-  flags->SetName(vtkDataSetAttributes::GhostArrayName());
-  const ValueBox box = PointBoxOf(glances[static_cast<std::size_t>(rank)].extent);
-  bool any = false;
-  std::array<int, 3> at;
-  for (at[2] = box.low[2]; at[2] <= box.high[2]; ++at[2])
-  {
-    for (at[1] = box.low[1]; at[1] <= box.high[1]; ++at[1])
+  const auto isDuplicate = [&](const std::array<int, 3>& at) {
+    bool duplicate = !PointBoxOf(summaries[static_cast<std::size_t>(rank)].points).Holds(at);
+    for (int lower = 0; lower < rank && !duplicate; ++lower)
     {
-      for (at[0] = box.low[0]; at[0] <= box.high[0]; ++at[0])
-      {
-        bool duplicate = !IsIn(glances[static_cast<std::size_t>(rank)].points, at);
-        for (int lower = 0; lower < rank && !duplicate; ++lower)
-        {
-          const InputSummary& other = glances[static_cast<std::size_t>(lower)];
-          duplicate = other.isThere && IsIn(other.points, at);
-        }
-        const unsigned char kept = given ? given->GetValue(flags->GetNumberOfValues()) : 0;
-        flags->InsertNextValue(duplicate ? kept | vtkDataSetAttributes::DUPLICATECELL : kept);
-        any = any || duplicate;
-      }
+      const InputSummary& other = summaries[static_cast<std::size_t>(lower)];
+      duplicate = other.isThere && PointBoxOf(other.points).Holds(at);
     }
-  }
+    return duplicate;
+  };
+  const ValueBox box = PointBoxOf(summaries[static_cast<std::size_t>(rank)].extent);
+  bool any = false;
+  box.ForEach([&](vtkIdType, const std::array<int, 3>& at) { any = any || isDuplicate(at); });
   if (any)
   {
-    voxels->GetCellData()->RemoveArray(vtkDataSetAttributes::GhostArrayName());
-    voxels->GetCellData()->AddArray(flags);
+    FlagDuplicates(voxels->GetCellData(), box, vtkDataSetAttributes::DUPLICATECELL, isDuplicate);
   }
   return voxels;
 }
 
-RankSummary GlanceAtAll(vtkAlgorithm* filter, vtkInformationVector** given, vtkInformationVector* outputs, int inShares)
+RankSummary SummarizeAll(
+  vtkAlgorithm* filter, vtkInformationVector** given, vtkInformationVector* outputs, int inShares)
 {
   RankSummary rank;
   for (int port = 0; port < filter->GetNumberOfInputPorts(); ++port)
@@ -497,14 +415,9 @@ RankSummary GlanceAtAll(vtkAlgorithm* filter, vtkInformationVector** given, vtkI
 
 std::vector<RankSummary> Share(vtkMultiProcessController* ranks, const RankSummary& own)
 {
-  vtkMultiProcessStream stream;
-  Write(own, stream);
-  std::vector<vtkMultiProcessStream> streams;
-  ranks->AllGather(stream, streams);
-  std::vector<RankSummary> all;
-  for (std::size_t rank = 0; rank < streams.size(); ++rank)
+  std::vector<RankSummary> all = AllGather(ranks, own);
+  for (std::size_t rank = 0; rank < all.size(); ++rank)
   {
-    all.push_back(Read(streams[rank]));
     Require(all[rank].connections == all[0].connections,
       "Ranks 0 and " + std::to_string(rank) + " have other inputs connected. Make the same pipeline on all ranks.");
   }
@@ -512,16 +425,16 @@ std::vector<RankSummary> Share(vtkMultiProcessController* ranks, const RankSumma
 }
 
 /// What ranks were given by one of a port's connections.
-OnRanks GlancesOf(const std::vector<RankSummary>& all, int port, int connection)
+OnRanks SummariesOf(const std::vector<RankSummary>& all, int port, int connection)
 {
   const std::vector<int>& connections = all[0].connections;
   const int before = std::accumulate(connections.begin(), connections.begin() + port, 0);
-  OnRanks glances;
+  OnRanks summaries;
   for (const RankSummary& of : all)
   {
-    glances.push_back(of.inputs[static_cast<std::size_t>(before + connection)]);
+    summaries.push_back(of.inputs[static_cast<std::size_t>(before + connection)]);
   }
-  return glances;
+  return summaries;
 }
 
 /// The extent of voxels around the points of another.
@@ -617,7 +530,7 @@ WholeInputs::WholeInputs(vtkMultiProcessController* ranks, vtkAlgorithm* filter,
     return;
   }
   RankSummary own;
-  OnAllRanks(ranks, [&] { own = GlanceAtAll(filter, aligned.data(), outputs, inShares); });
+  OnAllRanks(ranks, [&] { own = SummarizeAll(filter, aligned.data(), outputs, inShares); });
   this->AllSeen = std::make_unique<Seen>(Seen{ ranks, inPieces, inShares, alsoInPieces, Share(ranks, own) });
   NoteParts(this->AllSeen->all, ranks->GetLocalProcessId(), outputs);
   for (int port = 0; port < ports; ++port)
@@ -630,13 +543,13 @@ WholeInputs::WholeInputs(vtkMultiProcessController* ranks, vtkAlgorithm* filter,
     }
     for (int i = 0; i < this->AllSeen->all[0].connections[static_cast<std::size_t>(port)]; ++i)
     {
-      CheckExtent(GlancesOf(this->AllSeen->all, port, i), Named(port));
+      CheckExtent(SummariesOf(this->AllSeen->all, port, i), Named(port));
     }
     this->Change(port, [&](int connection, vtkDataObject* data) -> vtkSmartPointer<vtkDataObject> {
-      const OnRanks glances = GlancesOf(this->AllSeen->all, port, connection);
+      const OnRanks summaries = SummariesOf(this->AllSeen->all, port, connection);
       const int rank = ranks->GetLocalProcessId();
-      return glances[static_cast<std::size_t>(rank)].aroundPoints
-        ? VoxelsOfPiece(vtkImageData::SafeDownCast(data), glances, rank).GetPointer()
+      return summaries[static_cast<std::size_t>(rank)].aroundPoints
+        ? VoxelsOfPiece(vtkImageData::SafeDownCast(data), summaries, rank).GetPointer()
         : data;
     });
   }
@@ -799,11 +712,11 @@ void WholeInputs::MakeWhole(int port)
 {
   const Seen& seen = *this->AllSeen;
   this->Change(port, [&](int connection, vtkDataObject* data) {
-    const OnRanks glances = GlancesOf(seen.all, port, connection);
-    vtkSmartPointer<vtkDataObject> whole =
-      port == seen.inShares ? AllShares(seen.ranks, data, glances) : WholeOf(seen.ranks, data, glances, Named(port));
+    const OnRanks summaries = SummariesOf(seen.all, port, connection);
+    vtkSmartPointer<vtkDataObject> whole = port == seen.inShares ? AllShares(seen.ranks, data, summaries)
+                                                                 : WholeOf(seen.ranks, data, summaries, Named(port));
     const bool around =
-      std::any_of(glances.begin(), glances.end(), [](const InputSummary& glance) { return glance.aroundPoints; });
+      std::any_of(summaries.begin(), summaries.end(), [](const InputSummary& summary) { return summary.aroundPoints; });
     auto* const image = vtkImageData::SafeDownCast(whole);
     if (around && image && image->GetNumberOfPoints() > 0)
     {

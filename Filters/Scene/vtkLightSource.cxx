@@ -1,12 +1,23 @@
 #include "vtkLightSource.h"
 
 #include "Common/LightTransportData.h"
+#include "Device/Errors.h"
 #include "Pieces/GuardedWork.h"
 #include "Scene/LightShapes.h"
 
+#include "vtkAimedLight.h"
+#include "vtkPointLight.h"
+#include "vtkRectangleLight.h"
+#include "vtkSpotLight.h"
+#include "vtkSun.h"
+
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkMath.h"
+#include "vtkObjectFactory.h"
 #include "vtkPolyData.h"
+
+#include <cmath>
 
 vtkLightSource::vtkLightSource(double x, double y, double z)
   : Position{ x, y, z }
@@ -36,4 +47,118 @@ void vtkLightSource::PrintSelf(ostream& os, vtkIndent indent)
   this->Superclass::PrintSelf(os, indent);
   os << indent << "Power: " << this->Power[0] << " " << this->Power[1] << " " << this->Power[2] << "\n";
   os << indent << "Position: " << this->Position[0] << " " << this->Position[1] << " " << this->Position[2] << "\n";
+}
+
+vtkAimedLight::~vtkAimedLight() = default;
+
+tyndall::DrawnLight vtkAimedLight::MakeLight() const
+{
+  tyndall::DrawnLight drawn;
+  double* const direction = drawn.light.direction.data();
+  vtkMath::Subtract(this->FocalPoint, this->Position, direction);
+  drawn.length = std::hypot(direction[0], direction[1], direction[2]);
+  drawn.light.direction = tyndall::DirectionOf(drawn.light);
+  if (!(drawn.length > 0.0))
+  {
+    throw tyndall::InvalidInput(
+      "Position and FocalPoint are the same place; the light shines from the first towards the second: move one.");
+  }
+  return drawn;
+}
+
+void vtkAimedLight::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "FocalPoint: " << this->FocalPoint[0] << " " << this->FocalPoint[1] << " " << this->FocalPoint[2]
+     << "\n";
+}
+
+vtkStandardNewMacro(vtkSun);
+
+vtkSun::vtkSun()
+  : Superclass(-0.5, -0.5, 0.7071)
+{
+}
+
+vtkSun::~vtkSun() = default;
+
+tyndall::DrawnLight vtkSun::MakeLight() const
+{
+  tyndall::DrawnLight drawn = this->Superclass::MakeLight();
+  drawn.light.type = tyndall::LightType::Directional;
+  drawn.length *= 0.5;
+  return drawn;
+}
+
+vtkStandardNewMacro(vtkPointLight);
+
+vtkPointLight::vtkPointLight()
+  : Superclass(0.0, 0.0, 0.7)
+{
+}
+
+vtkPointLight::~vtkPointLight() = default;
+
+tyndall::DrawnLight vtkPointLight::MakeLight() const
+{
+  tyndall::DrawnLight drawn;
+  drawn.light.type = tyndall::LightType::Point;
+  drawn.light.direction = { 0.0, 0.0, 0.0 };
+  drawn.length = this->ShapeSize;
+  return drawn;
+}
+
+void vtkPointLight::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "ShapeSize: " << this->ShapeSize << "\n";
+}
+
+vtkStandardNewMacro(vtkSpotLight);
+
+vtkSpotLight::vtkSpotLight()
+  : Superclass(0.5, -0.5, 0.5)
+{
+}
+
+vtkSpotLight::~vtkSpotLight() = default;
+
+tyndall::DrawnLight vtkSpotLight::MakeLight() const
+{
+  tyndall::DrawnLight drawn = this->Superclass::MakeLight();
+  drawn.light.type = tyndall::LightType::Spot;
+  drawn.light.angle = this->Angle;
+  return drawn;
+}
+
+void vtkSpotLight::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "Angle: " << this->Angle << "\n";
+}
+
+vtkStandardNewMacro(vtkRectangleLight);
+
+vtkRectangleLight::vtkRectangleLight()
+  : Superclass(-0.5, 0.0, 0.5)
+{
+}
+
+vtkRectangleLight::~vtkRectangleLight() = default;
+
+tyndall::DrawnLight vtkRectangleLight::MakeLight() const
+{
+  tyndall::DrawnLight drawn;
+  drawn.light.type = tyndall::LightType::Rectangle;
+  drawn.light.direction = tyndall::Triple(this->Direction);
+  drawn.light.direction = tyndall::DirectionOf(drawn.light);
+  drawn.light.size = { this->Size[0], this->Size[1] };
+  return drawn;
+}
+
+void vtkRectangleLight::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "Direction: " << this->Direction[0] << " " << this->Direction[1] << " " << this->Direction[2] << "\n";
+  os << indent << "Size: " << this->Size[0] << " " << this->Size[1] << "\n";
 }
