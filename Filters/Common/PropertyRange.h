@@ -81,6 +81,36 @@ bool SetInRange(vtkAlgorithm* filter, const char* property, Type* heldValues, st
     }                                                                              \
   }
 
+/// The same with its Get.
+#define tyndallRangeMacro(name, type, low, high)                       \
+  tyndallSetRangeMacro(name, type, low, high) virtual type Get##name() \
+  {                                                                    \
+    return this->name;                                                 \
+  }
+
+/// Instead of vtkSetMacro, vtkGetMacro and vtkBooleanMacro of a bool.
+#define tyndallFlagMacro(name)    \
+  virtual void Set##name(bool on) \
+  {                               \
+    if (this->name != on)         \
+    {                             \
+      this->name = on;            \
+      this->Modified();           \
+    }                             \
+  }                               \
+  virtual bool Get##name()        \
+  {                               \
+    return this->name;            \
+  }                               \
+  virtual void name##On()         \
+  {                               \
+    this->Set##name(true);        \
+  }                               \
+  virtual void name##Off()        \
+  {                               \
+    this->Set##name(false);       \
+  }
+
 /// Instead of vtkSetVector2Macro: two numbers, each in [low, high].
 #define tyndallSetRange2Macro(name, type, low, high)                                      \
   virtual void Set##name(type first, type second)                                         \

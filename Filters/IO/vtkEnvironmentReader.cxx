@@ -2,6 +2,7 @@
 
 #include "Common/LightTransportData.h"
 #include "Common/LightTransportWriting.h"
+#include "Common/PrintMembers.h"
 #include "IO/RadianceFile.h"
 #include "IO/ReadableFile.h"
 #include "Pieces/GuardedWork.h"
@@ -233,7 +234,5 @@ void vtkEnvironmentReader::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   os << indent << "FileName: " << (this->FileName ? this->FileName : "(none)") << "\n";
-  os << indent << "Exposure: " << this->Exposure << "\n";
-  os << indent << "MaximumRadiance: " << this->MaximumRadiance << "\n";
-  os << indent << "Width: " << this->Width << "\n";
+  tyndallPrintMacro(Exposure, MaximumRadiance, Width);
 }

@@ -43,22 +43,19 @@ public:
 
   ///@{
   /// Stops by which the light is brightened: radiance times 2^Exposure. Default 0, valid [-64, 64].
-  tyndallSetRangeMacro(Exposure, double, -64.0, 64.0);
-  vtkGetMacro(Exposure, double);
+  tyndallRangeMacro(Exposure, double, -64.0, 64.0);
   ///@}
 
   ///@{
   /// Pixels whose brightest channel is above this are scaled down to it (the hue stays), after Exposure,
   /// W / (length^2 sr). Tames a sun that is a few pixels. Default 0: no limit. Valid [0, infinity).
-  tyndallSetRangeMacro(MaximumRadiance, double, 0.0, tyndall::AnyHigh);
-  vtkGetMacro(MaximumRadiance, double);
+  tyndallRangeMacro(MaximumRadiance, double, 0.0, tyndall::AnyHigh);
   ///@}
 
   ///@{
   /// Most pixels around. A wider picture is averaged over the solid angle of the wider pixels, so that the power from
   /// every part of the sky stays. Default 0: no limit.
-  tyndallSetRangeMacro(Width, int, 0, VTK_INT_MAX);
-  vtkGetMacro(Width, int);
+  tyndallRangeMacro(Width, int, 0, VTK_INT_MAX);
   ///@}
 
 protected:

@@ -4,6 +4,7 @@
 #include "Common/Failure.h"
 #include "Common/ImageInput.h"
 #include "Common/LightTransportData.h"
+#include "Common/PrintMembers.h"
 #include "Device/HostMemory.h"
 #include "IO/VDB/VDBCells.h"
 #include "IO/VDB/VDBFile.h"
@@ -670,9 +671,7 @@ void vtkVDBReader::PrintSelf(ostream& os, vtkIndent indent)
   this->Superclass::PrintSelf(os, indent);
   os << indent << "FileName: " << (this->GetFileName() ? this->GetFileName() : "(none)") << "\n";
   os << indent << "Files: " << this->GetNumberOfFileNames() << "\n";
-  os << indent << "Resample: " << this->Resample << "\n";
-  os << indent << "LevelSetsAsFog: " << this->LevelSetsAsFog << "\n";
-  os << indent << "MaximumMemory: " << this->MaximumMemory << "\n";
+  tyndallPrintMacro(Resample, LevelSetsAsFog, MaximumMemory);
   os << indent << "GridSelection:\n";
   this->GridSelection->PrintSelf(os, indent.GetNextIndent());
 }

@@ -99,9 +99,7 @@ public:
   /// Whether level sets (grids of real numbers whose class says so, or whose class is not known, with a positive
   /// background and values below 0) become fog: 1 inside of the surface, less in proportion within a voxel of it, 0
   /// outside. Default off: the distances, as they are.
-  vtkSetMacro(LevelSetsAsFog, bool);
-  vtkGetMacro(LevelSetsAsFog, bool);
-  vtkBooleanMacro(LevelSetsAsFog, bool);
+  tyndallFlagMacro(LevelSetsAsFog);
   ///@}
 
   ///@{
@@ -109,9 +107,7 @@ public:
   /// to an image along the world's axes, which holds their voxels: with the shortest edge of a voxel, linear between
   /// the middles of voxels (integers: the nearest). Default off: aslant ones have a direction matrix, and are solved in
   /// their own axes; those that shear are an error.
-  vtkSetMacro(Resample, bool);
-  vtkGetMacro(Resample, bool);
-  vtkBooleanMacro(Resample, bool);
+  tyndallFlagMacro(Resample);
   ///@}
 
   ///@{
@@ -119,8 +115,7 @@ public:
   /// 90% of what is available, and, unless vtkVDBWriter noted that the file was an image of that size, 1 GiB or 1000
   /// times the file's length, whichever is more: one changed bit of a small file can put a voxel thousands of voxels
   /// away.
-  tyndallSetRangeMacro(MaximumMemory, vtkIdType, 0, VTK_ID_MAX >> 20);
-  vtkGetMacro(MaximumMemory, vtkIdType);
+  tyndallRangeMacro(MaximumMemory, vtkIdType, 0, VTK_ID_MAX >> 20);
   ///@}
 
   /// Stays with the reader's own, which a series needs: ParaView gives every source another one.

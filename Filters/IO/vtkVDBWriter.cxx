@@ -1,6 +1,7 @@
 #include "vtkVDBWriter.h"
 
 #include "Common/ImageInput.h"
+#include "Common/PrintMembers.h"
 #include "Device/Errors.h"
 #include "IO/VDB/VDBCells.h"
 #include "IO/VDB/VDBFile.h"
@@ -271,9 +272,6 @@ void vtkVDBWriter::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   os << indent << "FileName: " << (this->FileName ? this->FileName : "(none)") << "\n";
-  os << indent << "PointData: " << this->PointData << "\n";
-  os << indent << "Compression: " << this->Compression << "\n";
-  os << indent << "Background: " << this->Background << "\n";
-  os << indent << "Tolerance: " << this->Tolerance << "\n";
+  tyndallPrintMacro(PointData, Compression, Background, Tolerance);
   os << indent << "SaveAsHalf: " << (this->SaveAsHalf ? "on" : "off") << "\n";
 }

@@ -78,31 +78,26 @@ public:
   ///@{
   /// How blocks of values are compressed, without loss. Default BLOSC; where OpenVDB was built without it, ZIP. OpenVDB
   /// does not apply ZIP to fog volumes and level sets.
-  tyndallSetRangeMacro(Compression, int, NONE, BLOSC);
-  vtkGetMacro(Compression, int);
+  tyndallRangeMacro(Compression, int, NONE, BLOSC);
   ///@}
 
   ///@{
   /// Value of voxels that take no room, in the unit of the array; every component of a vector. Default 0. Field data
   /// `vdb:<array>:background` come first.
-  tyndallSetRangeMacro(Background, double, tyndall::AnyLow, tyndall::AnyHigh);
-  vtkGetMacro(Background, double);
+  tyndallRangeMacro(Background, double, tyndall::AnyLow, tyndall::AnyHigh);
   ///@}
 
   ///@{
   /// Values this near to the background become background, and blocks of 8^3 voxels that are this near to their first
   /// one become one value; in the unit of the array. Default 0: nothing is changed. Valid [0, infinity).
-  tyndallSetRangeMacro(Tolerance, double, 0.0, tyndall::AnyHigh);
-  vtkGetMacro(Tolerance, double);
+  tyndallRangeMacro(Tolerance, double, 0.0, tyndall::AnyHigh);
   ///@}
 
   ///@{
   /// Stores real numbers in 16 bits: 11 significant bits, at most 65504 (65520 and more are an error), and below 6.1e-5
   /// fewer bits: a number that would lose more than 0.1% is an error, the background too. Infinity and NaN are kept.
   /// Default off; off or on, how the file that an image was read from stored its numbers is of no account.
-  vtkSetMacro(SaveAsHalf, bool);
-  vtkGetMacro(SaveAsHalf, bool);
-  vtkBooleanMacro(SaveAsHalf, bool);
+  tyndallFlagMacro(SaveAsHalf);
   ///@}
 
   ///@{

@@ -2,6 +2,7 @@
 
 #include "Common/ImageInput.h"
 #include "Common/LightTransportData.h"
+#include "Common/PrintMembers.h"
 #include "Device/Device.h"
 #include "LightPropagation/Published/ParallelPropagation.h"
 #include "Pieces/GuardedWork.h"
@@ -181,5 +182,5 @@ int vtkLPMCollect::RequestData(vtkInformation* request, vtkInformationVector** g
 void vtkLPMCollect::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "Device: " << this->Device << "\n";
+  tyndallPrintMacro(Device);
 }

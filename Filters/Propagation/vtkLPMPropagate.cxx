@@ -1,6 +1,7 @@
 #include "vtkLPMPropagate.h"
 
 #include "Common/LightTransportData.h"
+#include "Common/PrintMembers.h"
 #include "Device/Device.h"
 #include "LightPropagation/Published/ParallelPropagation.h"
 #include "Pieces/GuardedWork.h"
@@ -155,12 +156,5 @@ int vtkLPMPropagate::RequestData(vtkInformation* request, vtkInformationVector**
 void vtkLPMPropagate::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "Device: " << this->Device << "\n";
-  os << indent << "DirectionsPerFace: " << this->DirectionsPerFace << "\n";
-  os << indent << "MapResolution: " << this->MapResolution << "\n";
-  os << indent << "StoredDirections: " << this->StoredDirections << "\n";
-  PrintNumbers(os, indent, "FaceRadiance", this->FaceRadiance, 6);
-  PrintNumbers(os, indent, "SkyColor", this->SkyColor, 3);
-  os << indent << "Order: " << this->Order << "\n";
-  os << indent << "Bytes: " << this->Bytes << "\n";
+  tyndallPrintMacro(Device, DirectionsPerFace, MapResolution, StoredDirections, FaceRadiance, SkyColor, Order, Bytes);
 }

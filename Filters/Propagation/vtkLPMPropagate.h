@@ -57,21 +57,18 @@ public:
 
   ///@{
   /// Directions per face of a cube. Default 25, valid square numbers: 1, 4, 9, 16, 25, ...
-  tyndallSetRangeMacro(DirectionsPerFace, int, 1, VTK_INT_MAX);
-  vtkGetMacro(DirectionsPerFace, int);
+  tyndallRangeMacro(DirectionsPerFace, int, 1, VTK_INT_MAX);
   ///@}
 
   ///@{
   /// Rays of a direction per voxel edge. Default 1, valid from 1 on.
-  tyndallSetRangeMacro(MapResolution, int, 1, 16);
-  vtkGetMacro(MapResolution, int);
+  tyndallRangeMacro(MapResolution, int, 1, 16);
   ///@}
 
   ///@{
   /// Directions of `scattered_radiance`, and, if not 1, of `unscattered`. Default 1 (enough for isotropic scattering),
   /// valid from 1 on.
-  tyndallSetRangeMacro(StoredDirections, int, 1, VTK_INT_MAX);
-  vtkGetMacro(StoredDirections, int);
+  tyndallRangeMacro(StoredDirections, int, 1, VTK_INT_MAX);
   ///@}
 
   ///@{

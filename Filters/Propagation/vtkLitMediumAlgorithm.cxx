@@ -2,6 +2,7 @@
 
 #include "Common/ImageInput.h"
 #include "Common/LightTransportData.h"
+#include "Common/PrintMembers.h"
 #include "Lights/Lights.h"
 #include "Pieces/UpdateExtent.h"
 
@@ -137,7 +138,5 @@ void vtkLitMediumAlgorithm::PrintNumbers(
 void vtkLitMediumAlgorithm::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "PointData: " << this->PointData << "\n";
-  os << indent << "EnvironmentUp: " << this->EnvironmentUp << "\n";
-  os << indent << "EnvironmentAzimuth: " << this->EnvironmentAzimuth << "\n";
+  tyndallPrintMacro(PointData, EnvironmentUp, EnvironmentAzimuth);
 }

@@ -78,14 +78,12 @@ public:
 
   ///@{
   /// Axis of the scene along which the environment's up points: 0, 1, 2 for x, y, z. Default 2.
-  tyndallSetRangeMacro(EnvironmentUp, int, 0, 2);
-  vtkGetMacro(EnvironmentUp, int);
+  tyndallRangeMacro(EnvironmentUp, int, 0, 2);
   ///@}
 
   ///@{
   /// By how much the environment is turned about its up, degrees. Default 0.
-  tyndallSetRangeMacro(EnvironmentAzimuth, double, tyndall::AnyLow, tyndall::AnyHigh);
-  vtkGetMacro(EnvironmentAzimuth, double);
+  tyndallRangeMacro(EnvironmentAzimuth, double, tyndall::AnyLow, tyndall::AnyHigh);
   ///@}
 
 protected:

@@ -1,6 +1,7 @@
 #include "vtkPropagationAlgorithm.h"
 
 #include "Common/LightTransportData.h"
+#include "Common/PrintMembers.h"
 #include "Light/LeftOut.h"
 #include "LightPropagation/PropagationSettings.h"
 #include "Scene/vtkLightRig.h"
@@ -103,15 +104,6 @@ void vtkPropagationAlgorithm::WarnWhereDark(const tyndall::Illumination& illumin
 void vtkPropagationAlgorithm::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "Device: " << this->Device << "\n";
-  os << indent << "Tolerance: " << this->Tolerance << "\n";
-  os << indent << "PeriodicX: " << this->PeriodicX << "\n";
-  os << indent << "PeriodicY: " << this->PeriodicY << "\n";
-  os << indent << "PeriodicZ: " << this->PeriodicZ << "\n";
-  PrintNumbers(os, indent, "FaceRadiance", this->FaceRadiance, 6);
-  PrintNumbers(os, indent, "FaceAlbedo", this->FaceAlbedo, 6);
-  PrintNumbers(os, indent, "FaceAlbedoColor", this->FaceAlbedoColor, 18);
-  PrintNumbers(os, indent, "SkyColor", this->SkyColor, 3);
-  os << indent << "DefaultSky: " << this->DefaultSky << "\n";
-  os << indent << "EstimateError: " << this->EstimateError << "\n";
+  tyndallPrintMacro(Device, Tolerance, PeriodicX, PeriodicY, PeriodicZ, FaceRadiance, FaceAlbedo, FaceAlbedoColor,
+    SkyColor, DefaultSky, EstimateError);
 }

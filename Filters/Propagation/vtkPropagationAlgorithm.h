@@ -32,22 +32,15 @@ public:
 
   ///@{
   /// Relative error of fluence at which to stop. Default 1e-4, valid [1e-9, 0.5].
-  tyndallSetRangeMacro(Tolerance, double, 1e-9, 0.5);
-  vtkGetMacro(Tolerance, double);
+  tyndallRangeMacro(Tolerance, double, 1e-9, 0.5);
   ///@}
 
   ///@{
   /// Whether rays that leave along an axis return on the other side. Default off. Where two axes are and nothing varies
   /// along them, vtkLightPropagationMaps solves layers in the cosine alone (numerics.md, section 10 d).
-  vtkSetMacro(PeriodicX, bool);
-  vtkGetMacro(PeriodicX, bool);
-  vtkBooleanMacro(PeriodicX, bool);
-  vtkSetMacro(PeriodicY, bool);
-  vtkGetMacro(PeriodicY, bool);
-  vtkBooleanMacro(PeriodicY, bool);
-  vtkSetMacro(PeriodicZ, bool);
-  vtkGetMacro(PeriodicZ, bool);
-  vtkBooleanMacro(PeriodicZ, bool);
+  tyndallFlagMacro(PeriodicX);
+  tyndallFlagMacro(PeriodicY);
+  tyndallFlagMacro(PeriodicZ);
   ///@}
 
   ///@{
@@ -82,16 +75,12 @@ public:
   /// and FaceRadiance are 0, and the medium does not emit. It is the sun of an untouched vtkLightRig (irradiance 1
   /// W/length^2) and a grey sky of radiance 0.1 W/(length^2 sr) from every direction; `left_out` says that it shines.
   /// Default on.
-  vtkSetMacro(DefaultSky, bool);
-  vtkGetMacro(DefaultSky, bool);
-  vtkBooleanMacro(DefaultSky, bool);
+  tyndallFlagMacro(DefaultSky);
   ///@}
 
   ///@{
   /// Whether solvers estimate the error of fluence from coarser solves. Default: see the subclass.
-  vtkSetMacro(EstimateError, bool);
-  vtkGetMacro(EstimateError, bool);
-  vtkBooleanMacro(EstimateError, bool);
+  tyndallFlagMacro(EstimateError);
   ///@}
 
 protected:

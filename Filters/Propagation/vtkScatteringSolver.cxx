@@ -2,6 +2,7 @@
 
 #include "Common/Failure.h"
 #include "Common/LightTransportData.h"
+#include "Common/PrintMembers.h"
 #include "Device/Errors.h"
 #include "Distribution/SharedMedium.h"
 #include "Lights/Lights.h"
@@ -437,12 +438,5 @@ void vtkScatteringSolver::Color(
 void vtkScatteringSolver::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "Decomposition: " << this->Decomposition << "\n";
-  os << indent << "Quality: " << this->Quality << "\n";
-  os << indent << "Preview: " << this->Preview << "\n";
-  os << indent << "MemoryBudget: " << this->MemoryBudget << "\n";
-  os << indent << "SettingsUsed: " << this->SettingsUsed << "\n";
-  os << indent << "LitColor: " << this->LitColor << "\n";
-  os << indent << "Exposure: " << this->Exposure << "\n";
-  os << indent << "ToneCurve: " << this->ToneCurve << "\n";
+  tyndallPrintMacro(Decomposition, Quality, Preview, MemoryBudget, SettingsUsed, LitColor, Exposure, ToneCurve);
 }

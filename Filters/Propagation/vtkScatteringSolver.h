@@ -86,16 +86,14 @@ public:
   /// what blocks cannot do, which the subclass says.
   /// AUTOMATIC_DECOMPOSITION (default): BLOCKS where each of several ranks is asked for its piece of more than 64^3
   /// voxels, the scene can be solved so, and the whole would not be solved more exactly or much sooner; else WHOLE.
-  tyndallSetRangeMacro(Decomposition, int, AUTOMATIC_DECOMPOSITION, BLOCKS);
-  vtkGetMacro(Decomposition, int);
+  tyndallRangeMacro(Decomposition, int, AUTOMATIC_DECOMPOSITION, BLOCKS);
   ///@}
 
   ///@{
   /// How exact the light is to be: chooses, from the scene, those of the properties below that have their default
   /// value, and leaves those that have another one. DRAFT, USUAL (default), FINE or REFERENCE; with USUAL all are taken
   /// as they stand. FINE and REFERENCE divide rectangle lights, too, more finely.
-  tyndallSetRangeMacro(Quality, int, DRAFT, REFERENCE);
-  vtkGetMacro(Quality, int);
+  tyndallRangeMacro(Quality, int, DRAFT, REFERENCE);
   ///@}
 
   ///@{
@@ -104,9 +102,7 @@ public:
   /// `fluence_direct` alone, linear between the coarse voxels' middles. Quality, TargetError and WarmStart are not read
   /// then. By blocks (Decomposition) each rank averages its piece, and the first that has voxels solves the coarse grid
   /// for all. Default off.
-  vtkSetMacro(Preview, bool);
-  vtkGetMacro(Preview, bool);
-  vtkBooleanMacro(Preview, bool);
+  tyndallFlagMacro(Preview);
   ///@}
 
   ///@{
@@ -117,8 +113,7 @@ public:
   /// which works on host memory in place, it bounds what a solve takes beside these arrays. By blocks (Decomposition)
   /// it is of each rank, and vtkLightPropagationMaps reads what does not fit from host memory. DeviceName and field
   /// data `device` say how much lay where. Valid [0, 2^31).
-  tyndallSetRangeMacro(MemoryBudget, int, 0, VTK_INT_MAX);
-  vtkGetMacro(MemoryBudget, int);
+  tyndallRangeMacro(MemoryBudget, int, 0, VTK_INT_MAX);
   ///@}
 
   ///@{

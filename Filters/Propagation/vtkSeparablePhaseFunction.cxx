@@ -1,5 +1,6 @@
 #include "vtkSeparablePhaseFunction.h"
 
+#include "Common/PrintMembers.h"
 #include "LightPropagation/Angular/DirectionSet.h"
 #include "PhaseFunction/SeparablePhaseFunction.h"
 #include "Pieces/GuardedWork.h"
@@ -141,15 +142,6 @@ int vtkSeparablePhaseFunction::RequestData(vtkInformation*, vtkInformationVector
 void vtkSeparablePhaseFunction::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "PhaseFunction: " << this->PhaseFunction << "\n";
-  os << indent << "G: " << this->G << "\n";
-  os << indent << "SecondG: " << this->SecondG << "\n";
-  os << indent << "FirstPart: " << this->FirstPart << "\n";
-  os << indent << "DirectionSet: " << this->DirectionSet << "\n";
-  os << indent << "DirectionsPerFace: " << this->DirectionsPerFace << "\n";
-  os << indent << "SpiralDirections: " << this->SpiralDirections << "\n";
-  os << indent << "Terms: " << this->Terms << "\n";
-  os << indent << "Factorisation: " << this->Factorisation << "\n";
-  os << indent << "Sampling: " << this->Sampling << "\n";
-  os << indent << "Repaired: " << this->Repaired << "\n";
+  tyndallPrintMacro(PhaseFunction, G, SecondG, FirstPart, DirectionSet, DirectionsPerFace, SpiralDirections, Terms,
+    Factorisation, Sampling, Repaired);
 }

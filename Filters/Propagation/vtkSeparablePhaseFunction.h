@@ -78,69 +78,57 @@ public:
 
   ///@{
   /// Which phase function: HENYEY_GREENSTEIN (default), DOUBLE_HENYEY_GREENSTEIN, SCHLICK or RAYLEIGH.
-  tyndallSetRangeMacro(PhaseFunction, int, HENYEY_GREENSTEIN, RAYLEIGH);
-  vtkGetMacro(PhaseFunction, int);
+  tyndallRangeMacro(PhaseFunction, int, HENYEY_GREENSTEIN, RAYLEIGH);
   ///@}
 
   ///@{
   /// Mean cosine; of a double one of its first part. Default 0.5, as the paper's clouds, valid (-1, 1).
-  tyndallSetRangeMacro(G, double, -0.999, 0.999);
-  vtkGetMacro(G, double);
+  tyndallRangeMacro(G, double, -0.999, 0.999);
   ///@}
 
   ///@{
   /// Mean cosine of the second part of a double one. Default -0.3.
-  tyndallSetRangeMacro(SecondG, double, -0.999, 0.999);
-  vtkGetMacro(SecondG, double);
+  tyndallRangeMacro(SecondG, double, -0.999, 0.999);
   ///@}
 
   ///@{
   /// Of a double one, the part that the first is. Default 0.9, valid [0, 1].
-  tyndallSetRangeMacro(FirstPart, double, 0.0, 1.0);
-  vtkGetMacro(FirstPart, double);
+  tyndallRangeMacro(FirstPart, double, 0.0, 1.0);
   ///@}
 
   ///@{
   /// Which directions: CUBE, SPIRAL (default) or PUBLISHED_SPIRAL.
-  tyndallSetRangeMacro(DirectionSet, int, CUBE, PUBLISHED_SPIRAL);
-  vtkGetMacro(DirectionSet, int);
+  tyndallRangeMacro(DirectionSet, int, CUBE, PUBLISHED_SPIRAL);
   ///@}
 
   ///@{
   /// Directions per face of the cube. Default 25, valid square numbers.
-  tyndallSetRangeMacro(DirectionsPerFace, int, 1, 144);
-  vtkGetMacro(DirectionsPerFace, int);
+  tyndallRangeMacro(DirectionsPerFace, int, 1, 144);
   ///@}
 
   ///@{
   /// Directions on the spiral. Default 128, valid [16, 1024].
-  tyndallSetRangeMacro(SpiralDirections, int, 16, 1024);
-  vtkGetMacro(SpiralDirections, int);
+  tyndallRangeMacro(SpiralDirections, int, 16, 1024);
   ///@}
 
   ///@{
   /// Terms that are kept. Default 24, as published; at most as many as there are directions.
-  tyndallSetRangeMacro(Terms, int, 1, 1024);
-  vtkGetMacro(Terms, int);
+  tyndallRangeMacro(Terms, int, 1, 1024);
   ///@}
 
   ///@{
   /// Of what terms are made: SINGULAR_VALUES (default) or SPHERICAL_HARMONICS.
-  tyndallSetRangeMacro(Factorisation, int, SINGULAR_VALUES, SPHERICAL_HARMONICS);
-  vtkGetMacro(Factorisation, int);
+  tyndallRangeMacro(Factorisation, int, SINGULAR_VALUES, SPHERICAL_HARMONICS);
   ///@}
 
   ///@{
   /// What the matrix holds: POINT_VALUES (default) or CELL_MEANS.
-  tyndallSetRangeMacro(Sampling, int, POINT_VALUES, CELL_MEANS);
-  vtkGetMacro(Sampling, int);
+  tyndallRangeMacro(Sampling, int, POINT_VALUES, CELL_MEANS);
   ///@}
 
   ///@{
   /// Whether terms scatter exactly the power there is, with exactly the mean cosine. Default on; off: as published.
-  vtkSetMacro(Repaired, bool);
-  vtkGetMacro(Repaired, bool);
-  vtkBooleanMacro(Repaired, bool);
+  tyndallFlagMacro(Repaired);
   ///@}
 
 protected:

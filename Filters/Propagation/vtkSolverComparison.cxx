@@ -3,6 +3,7 @@
 #include "Common/Failure.h"
 #include "Common/GhostFlags.h"
 #include "Common/LightTransportData.h"
+#include "Common/PrintMembers.h"
 #include "Comparison/SolverComparison.h"
 #include "Device/Clock.h"
 #include "Photons/RefractiveInput.h"
@@ -192,15 +193,6 @@ std::optional<tyndall::ReferenceLight> ReadReference(vtkImageData* image)
   return reference;
 }
 
-void PrintList(ostream& os, vtkIndent indent, const char* name, const std::vector<int>& values)
-{
-  os << indent << name << ":";
-  for (int value : values)
-  {
-    os << " " << value;
-  }
-  os << "\n";
-}
 }
 
 vtkStandardNewMacro(vtkSolverComparison);
@@ -371,27 +363,8 @@ void vtkSolverComparison::Note(const tyndall::Comparison& comparison, double sec
 void vtkSolverComparison::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "LightPropagationMaps: " << this->LightPropagationMaps << "\n";
-  os << indent << "ConstantSource: " << this->ConstantSource << "\n";
-  os << indent << "AsPublished: " << this->AsPublished << "\n";
-  os << indent << "AsPublishedSequential: " << this->AsPublishedSequential << "\n";
-  os << indent << "DiscreteOrdinates: " << this->DiscreteOrdinates << "\n";
-  os << indent << "LatticeBoltzmann: " << this->LatticeBoltzmann << "\n";
-  os << indent << "Photons: " << this->Photons << "\n";
-  os << indent << "AdaptivePhotons: " << this->AdaptivePhotons << "\n";
-  os << indent << "PublishedPhotons: " << this->PublishedPhotons << "\n";
-  os << indent << "MonteCarlo: " << this->MonteCarlo << "\n";
-  PrintList(os, indent, "Directions", this->Directions);
-  PrintList(os, indent, "MapResolutions", this->MapResolutions);
-  PrintList(os, indent, "Coarsenings", this->Coarsenings);
-  PrintList(os, indent, "Orders", this->Orders);
-  PrintList(os, indent, "PhotonCounts", this->PhotonCounts);
-  os << indent << "AllSamplers: " << this->AllSamplers << "\n";
-  os << indent << "MonteCarloReference: " << this->MonteCarloReference << "\n";
-  os << indent << "Repeats: " << this->Repeats << "\n";
-  os << indent << "TimeBudget: " << this->TimeBudget << "\n";
-  os << indent << "ReferenceText: " << this->ReferenceText << "\n";
-  os << indent << "Seconds: " << this->Seconds << "\n";
-  os << indent << "DeviceName: " << this->DeviceName << "\n";
-  os << indent << "LeftOut: " << this->LeftOut << "\n";
+  tyndallPrintMacro(LightPropagationMaps, ConstantSource, AsPublished, AsPublishedSequential, DiscreteOrdinates,
+    LatticeBoltzmann, Photons, AdaptivePhotons, PublishedPhotons, MonteCarlo, Directions, MapResolutions, Coarsenings,
+    Orders, PhotonCounts, AllSamplers, MonteCarloReference, Repeats, TimeBudget, ReferenceText, Seconds, DeviceName,
+    LeftOut);
 }

@@ -98,30 +98,14 @@ public:
   /// Methods: light propagation maps as they are by default (default on); with a constant source and no acceleration
   /// (on); as published, on the device (on), and one ray after the other (off: slow); photons with reconstruction (on),
   /// with an importance map (off), and as published (off).
-  vtkSetMacro(LightPropagationMaps, bool);
-  vtkGetMacro(LightPropagationMaps, bool);
-  vtkBooleanMacro(LightPropagationMaps, bool);
-  vtkSetMacro(ConstantSource, bool);
-  vtkGetMacro(ConstantSource, bool);
-  vtkBooleanMacro(ConstantSource, bool);
-  vtkSetMacro(AsPublished, bool);
-  vtkGetMacro(AsPublished, bool);
-  vtkBooleanMacro(AsPublished, bool);
-  vtkSetMacro(AsPublishedSequential, bool);
-  vtkGetMacro(AsPublishedSequential, bool);
-  vtkBooleanMacro(AsPublishedSequential, bool);
-  vtkSetMacro(DiscreteOrdinates, bool);
-  vtkGetMacro(DiscreteOrdinates, bool);
-  vtkBooleanMacro(DiscreteOrdinates, bool);
-  vtkSetMacro(Photons, bool);
-  vtkGetMacro(Photons, bool);
-  vtkBooleanMacro(Photons, bool);
-  vtkSetMacro(AdaptivePhotons, bool);
-  vtkGetMacro(AdaptivePhotons, bool);
-  vtkBooleanMacro(AdaptivePhotons, bool);
-  vtkSetMacro(PublishedPhotons, bool);
-  vtkGetMacro(PublishedPhotons, bool);
-  vtkBooleanMacro(PublishedPhotons, bool);
+  tyndallFlagMacro(LightPropagationMaps);
+  tyndallFlagMacro(ConstantSource);
+  tyndallFlagMacro(AsPublished);
+  tyndallFlagMacro(AsPublishedSequential);
+  tyndallFlagMacro(DiscreteOrdinates);
+  tyndallFlagMacro(Photons);
+  tyndallFlagMacro(AdaptivePhotons);
+  tyndallFlagMacro(PublishedPhotons);
   ///@}
 
   ///@{
@@ -129,18 +113,14 @@ public:
   /// without bias, by the medium's own phase function and along bent rays. Default off. Where light is bent and there
   /// is no input 3, such photons make the reference then. Left out where the medium emits, axes are periodic or faces
   /// give back light.
-  vtkSetMacro(MonteCarlo, bool);
-  vtkGetMacro(MonteCarlo, bool);
-  vtkBooleanMacro(MonteCarlo, bool);
+  tyndallFlagMacro(MonteCarlo);
   ///@}
 
   ///@{
   /// Whether lattices of 18 and of 6 directions are compared, as vtkLatticeBoltzmannLighting solves them by default:
   /// diffusion. Default off. Left out where voxels are not cubes. Where light is bent the lattice is given the
   /// uncollided light of photons, of each of the numbers that are tried, and left out where Monte Carlo is.
-  vtkSetMacro(LatticeBoltzmann, bool);
-  vtkGetMacro(LatticeBoltzmann, bool);
-  vtkBooleanMacro(LatticeBoltzmann, bool);
+  tyndallFlagMacro(LatticeBoltzmann);
   ///@}
 
   ///@{
@@ -190,24 +170,20 @@ public:
 
   ///@{
   /// Whether photons are tried by all samplers. Default off.
-  vtkSetMacro(AllSamplers, bool);
-  vtkGetMacro(AllSamplers, bool);
-  vtkBooleanMacro(AllSamplers, bool);
+  tyndallFlagMacro(AllSamplers);
   ///@}
 
   ///@{
   /// Runs whose median is the time, after one that does not count; fewer where TimeBudget does not allow them. Default
   /// 3, valid [1, 100].
-  tyndallSetRangeMacro(Repeats, int, 1, 100);
-  vtkGetMacro(Repeats, int);
+  tyndallRangeMacro(Repeats, int, 1, 100);
   ///@}
 
   ///@{
   /// Seconds that all may take, without those in which kernels are compiled: half of it for a converged run, the rest
   /// shared by the methods. Runs that do not fit are not begun, or stopped; field data `left_out` names them. Default
   /// 300, valid above 0.
-  tyndallSetRangeMacro(TimeBudget, double, tyndall::AboveZero, tyndall::AnyHigh);
-  vtkGetMacro(TimeBudget, double);
+  tyndallRangeMacro(TimeBudget, double, tyndall::AboveZero, tyndall::AnyHigh);
   ///@}
 
   ///@{

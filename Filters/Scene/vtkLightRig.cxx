@@ -1,6 +1,7 @@
 #include "vtkLightRig.h"
 
 #include "Common/LightTransportData.h"
+#include "Common/PrintMembers.h"
 #include "Lights/Lights.h"
 #include "Pieces/GuardedWork.h"
 #include "Pieces/UpdateExtent.h"
@@ -307,12 +308,7 @@ void vtkLightRig::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   os << indent << "Sun: " << (this->Sun ? "on" : "off") << "\n";
-  os << indent << "SunElevation: " << this->SunElevation << "\n";
-  os << indent << "SunAzimuth: " << this->SunAzimuth << "\n";
-  os << indent << "SunPower: " << this->SunPower[0] << " " << this->SunPower[1] << " " << this->SunPower[2] << "\n";
-  os << indent << "ShapeCenter: " << this->ShapeCenter[0] << " " << this->ShapeCenter[1] << " " << this->ShapeCenter[2]
-     << "\n";
-  os << indent << "ShapeSize: " << this->ShapeSize << "\n";
+  tyndallPrintMacro(SunElevation, SunAzimuth, SunPower, ShapeCenter, ShapeSize);
   os << indent << "Directional lights: " << this->GetNumberOfDirectionalLights() << "\n";
   os << indent << "Point lights: " << this->GetNumberOfPointLights() << "\n";
   os << indent << "Spot lights: " << this->GetNumberOfSpotLights() << "\n";

@@ -61,21 +61,17 @@ public:
 
   ///@{
   /// Whether the rig has a sun: a directional light that is placed by its angles. Default on.
-  vtkSetMacro(Sun, bool);
-  vtkGetMacro(Sun, bool);
-  vtkBooleanMacro(Sun, bool);
+  tyndallFlagMacro(Sun);
   ///@}
 
   ///@{
   /// Height of the sun above the x-y plane, degrees. Default 45, valid [-90, 90]; 90 is overhead (+z).
-  tyndallSetRangeMacro(SunElevation, double, -90.0, 90.0);
-  vtkGetMacro(SunElevation, double);
+  tyndallRangeMacro(SunElevation, double, -90.0, 90.0);
   ///@}
 
   ///@{
   /// Where the sun stands, degrees about +z from +x (towards +y). Default 225.
-  tyndallSetRangeMacro(SunAzimuth, double, tyndall::AnyLow, tyndall::AnyHigh);
-  vtkGetMacro(SunAzimuth, double);
+  tyndallRangeMacro(SunAzimuth, double, tyndall::AnyLow, tyndall::AnyHigh);
   ///@}
 
   ///@{
@@ -132,8 +128,7 @@ public:
   ///@{
   /// How output 1 draws: arrows of directional lights, and cones of spots, have their length by ShapeSize (default 1,
   /// valid above 0); arrows point at ShapeCenter (default (0, 0, 0)). Light does not depend on it.
-  tyndallSetRangeMacro(ShapeSize, double, tyndall::AboveZero, tyndall::AnyHigh);
-  vtkGetMacro(ShapeSize, double);
+  tyndallRangeMacro(ShapeSize, double, tyndall::AboveZero, tyndall::AnyHigh);
   tyndallSetRange3Macro(ShapeCenter, double, tyndall::AnyLow, tyndall::AnyHigh);
   vtkGetVector3Macro(ShapeCenter, double);
   ///@}

@@ -1,6 +1,7 @@
 #include "vtkLightSource.h"
 
 #include "Common/LightTransportData.h"
+#include "Common/PrintMembers.h"
 #include "Device/Errors.h"
 #include "Pieces/GuardedWork.h"
 #include "Scene/LightShapes.h"
@@ -45,8 +46,7 @@ int vtkLightSource::RequestData(vtkInformation*, vtkInformationVector**, vtkInfo
 void vtkLightSource::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "Power: " << this->Power[0] << " " << this->Power[1] << " " << this->Power[2] << "\n";
-  os << indent << "Position: " << this->Position[0] << " " << this->Position[1] << " " << this->Position[2] << "\n";
+  tyndallPrintMacro(Power, Position);
 }
 
 vtkAimedLight::~vtkAimedLight() = default;
@@ -69,8 +69,7 @@ tyndall::DrawnLight vtkAimedLight::MakeLight() const
 void vtkAimedLight::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "FocalPoint: " << this->FocalPoint[0] << " " << this->FocalPoint[1] << " " << this->FocalPoint[2]
-     << "\n";
+  tyndallPrintMacro(FocalPoint);
 }
 
 vtkStandardNewMacro(vtkSun);
@@ -111,7 +110,7 @@ tyndall::DrawnLight vtkPointLight::MakeLight() const
 void vtkPointLight::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "ShapeSize: " << this->ShapeSize << "\n";
+  tyndallPrintMacro(ShapeSize);
 }
 
 vtkStandardNewMacro(vtkSpotLight);
@@ -134,7 +133,7 @@ tyndall::DrawnLight vtkSpotLight::MakeLight() const
 void vtkSpotLight::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "Angle: " << this->Angle << "\n";
+  tyndallPrintMacro(Angle);
 }
 
 vtkStandardNewMacro(vtkRectangleLight);
@@ -159,6 +158,5 @@ tyndall::DrawnLight vtkRectangleLight::MakeLight() const
 void vtkRectangleLight::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "Direction: " << this->Direction[0] << " " << this->Direction[1] << " " << this->Direction[2] << "\n";
-  os << indent << "Size: " << this->Size[0] << " " << this->Size[1] << "\n";
+  tyndallPrintMacro(Direction, Size);
 }

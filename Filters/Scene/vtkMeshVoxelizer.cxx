@@ -3,6 +3,7 @@
 #include "Common/Failure.h"
 #include "Common/LightTransportData.h"
 #include "Common/PhaseFunctionData.h"
+#include "Common/PrintMembers.h"
 #include "Device/Device.h"
 #include "Numerics/NumberText.h"
 #include "Pieces/ControllerCommunicator.h"
@@ -386,34 +387,10 @@ int vtkMeshVoxelizer::RequestData(vtkInformation* request, vtkInformationVector*
 
 void vtkMeshVoxelizer::PrintSelf(ostream& os, vtkIndent indent)
 {
-  const auto print = [&](const char* name, const auto* values, int count) {
-    os << indent << name << ":";
-    std::for_each(values, values + count, [&](auto value) { os << " " << value; });
-    os << "\n";
-  };
   this->Superclass::PrintSelf(os, indent);
-  print("SampleDimensions", this->SampleDimensions, 3);
-  print("ModelBounds", this->ModelBounds, 6);
-  print("Margin", &this->Margin, 1);
-  print("InsideIndex", &this->InsideIndex, 1);
-  print("OutsideIndex", &this->OutsideIndex, 1);
-  print("InsideScattering", this->InsideScattering, 3);
-  print("OutsideScattering", this->OutsideScattering, 3);
-  print("InsideAbsorption", this->InsideAbsorption, 3);
-  print("OutsideAbsorption", this->OutsideAbsorption, 3);
-  print("InsideMeanCosine", &this->InsideMeanCosine, 1);
-  print("OutsideMeanCosine", &this->OutsideMeanCosine, 1);
+  tyndallPrintMacro(SampleDimensions, ModelBounds, Margin, InsideIndex, OutsideIndex, InsideScattering,
+    OutsideScattering, InsideAbsorption, OutsideAbsorption, InsideMeanCosine, OutsideMeanCosine);
   os << indent << "Materials: " << this->GetNumberOfMaterials() << "\n";
-  print("IndexNoise", &this->IndexNoise, 1);
-  print("ScatteringNoise", &this->ScatteringNoise, 1);
-  print("NoiseSize", &this->NoiseSize, 1);
-  print("NoiseSeed", &this->NoiseSeed, 1);
-  print("SupersamplingFactor", &this->SupersamplingFactor, 1);
-  print("FilterSize", &this->FilterSize, 1);
-  print("Device", &this->Device, 1);
-  print("OccupiedVolume", &this->OccupiedVolume, 1);
-  print("UsedOutsideScattering", this->UsedOutsideScattering, 3);
-  print("Seconds", &this->Seconds, 1);
-  print("DeviceName", &this->DeviceName, 1);
-  print("LeftOut", &this->LeftOut, 1);
+  tyndallPrintMacro(IndexNoise, ScatteringNoise, NoiseSize, NoiseSeed, SupersamplingFactor, FilterSize, Device,
+    OccupiedVolume, UsedOutsideScattering, Seconds, DeviceName, LeftOut);
 }

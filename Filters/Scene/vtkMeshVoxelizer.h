@@ -89,16 +89,13 @@ public:
   ///@{
   /// Room on each side of the meshes where ModelBounds are 0, as a part of the longest edge of their bounds; there is
   /// always as much as the filter reaches. Default 0.125, valid [0, infinity).
-  tyndallSetRangeMacro(Margin, double, 0.0, tyndall::AnyHigh);
-  vtkGetMacro(Margin, double);
+  tyndallRangeMacro(Margin, double, 0.0, tyndall::AnyHigh);
   ///@}
 
   ///@{
   /// Refractive index n inside the meshes and outside. Default 1.5 (glass) and 1, valid (0, infinity).
-  tyndallSetRangeMacro(InsideIndex, double, tyndall::AboveZero, 1e6);
-  vtkGetMacro(InsideIndex, double);
-  tyndallSetRangeMacro(OutsideIndex, double, tyndall::AboveZero, 1e6);
-  vtkGetMacro(OutsideIndex, double);
+  tyndallRangeMacro(InsideIndex, double, tyndall::AboveZero, 1e6);
+  tyndallRangeMacro(OutsideIndex, double, tyndall::AboveZero, 1e6);
   ///@}
 
   ///@{
@@ -121,10 +118,8 @@ public:
 
   ///@{
   /// Mean cosine g of the angle by which light is scattered. Default 0, valid (-1, 1).
-  tyndallSetRangeMacro(InsideMeanCosine, double, -1.0, 1.0);
-  vtkGetMacro(InsideMeanCosine, double);
-  tyndallSetRangeMacro(OutsideMeanCosine, double, -1.0, 1.0);
-  vtkGetMacro(OutsideMeanCosine, double);
+  tyndallRangeMacro(InsideMeanCosine, double, -1.0, 1.0);
+  tyndallRangeMacro(OutsideMeanCosine, double, -1.0, 1.0);
   ///@}
 
   ///@{
@@ -141,20 +136,17 @@ public:
   ///@{
   /// Gradient noise on the index inside: n becomes n + IndexNoise times a smooth random number in [-1, 1]. Default 0,
   /// valid from 0 to less than the index.
-  tyndallSetRangeMacro(IndexNoise, double, 0.0, tyndall::AnyHigh);
-  vtkGetMacro(IndexNoise, double);
+  tyndallRangeMacro(IndexNoise, double, 0.0, tyndall::AnyHigh);
   ///@}
 
   ///@{
   /// The same noise on scattering inside: sigma_s becomes sigma_s (1 + ScatteringNoise noise). Default 0, valid [0, 1].
-  tyndallSetRangeMacro(ScatteringNoise, double, 0.0, 1.0);
-  vtkGetMacro(ScatteringNoise, double);
+  tyndallRangeMacro(ScatteringNoise, double, 0.0, 1.0);
   ///@}
 
   ///@{
   /// Size of the noise's features, length. Default 0: an eighth of the box's longest edge. Valid [0, infinity).
-  tyndallSetRangeMacro(NoiseSize, double, 0.0, tyndall::AnyHigh);
-  vtkGetMacro(NoiseSize, double);
+  tyndallRangeMacro(NoiseSize, double, 0.0, tyndall::AnyHigh);
   ///@}
 
   ///@{
@@ -166,15 +158,13 @@ public:
   ///@{
   /// Fine voxels per edge of a voxel. Occupancy has no steps: where the surface lies between their centres counts too.
   /// The factor sets how well it follows edges and bends. Default 4, valid [1, 16].
-  tyndallSetRangeMacro(SupersamplingFactor, int, 1, 16);
-  vtkGetMacro(SupersamplingFactor, int);
+  tyndallRangeMacro(SupersamplingFactor, int, 1, 16);
   ///@}
 
   ///@{
   /// Width of the Gaussian that smooths n, voxels; its standard deviation is a sixth of that. Default 9, valid odd
   /// numbers from 1 (not smoothed) to 65.
-  tyndallSetRangeMacro(FilterSize, int, 1, 65);
-  vtkGetMacro(FilterSize, int);
+  tyndallRangeMacro(FilterSize, int, 1, 65);
   ///@}
 
   tyndallDeviceMacro();

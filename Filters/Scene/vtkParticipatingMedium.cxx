@@ -5,11 +5,11 @@
 #include "Common/LightTransportData.h"
 #include "Common/LightTransportWriting.h"
 #include "Common/PhaseFunctionData.h"
+#include "Common/PrintMembers.h"
 #include "Device/HostThreads.h"
 #include "Medium/OpticalSize.h"
 #include "Medium/Presets.h"
 #include "Numerics/NumberText.h"
-#include "Pieces/ControllerCommunicator.h"
 #include "Pieces/GuardedWork.h"
 #include "Pieces/PieceBlocks.h"
 #include "Pieces/Ranks.h"
@@ -321,7 +321,7 @@ const tyndall::MediumPreset* PresetOf(int preset)
 
 /// Makes an output of an input.
 /// @return the relative density of each voxel
-std::vector<float> MakeMedium(vtkParticipatingMedium* filter, const Recipe& recipe, vtkImageData* input,
+std::vector<float> FillMedium(vtkParticipatingMedium* filter, const Recipe& recipe, vtkImageData* input,
   vtkInformationVector* phaseTable, vtkImageData* output)
 {
   const tyndall::PhaseDescription phase = DescriptionOf(filter, recipe.g, vtkTable::GetData(phaseTable));
@@ -472,8 +472,10 @@ void vtkParticipatingMedium::NoteSize(const tyndall::Grid& grid, const tyndall::
   }
 }
 
+/// Warns if the density looks like a level set. Collective.
+/// @param box  voxels of the image in the whole grid
 void vtkParticipatingMedium::DoubtLevelSet(
-  vtkImageData* image, const tyndall::VoxelBox& box, const tyndall::Grid& whole, tyndall::Communicator* ranks)
+  const tyndall::Domain& domain, vtkImageData* image, const tyndall::VoxelBox& box)
 {
   constexpr double small = 0.01; // of the largest value: noise about 0
   if (this->LevelSet)
@@ -485,12 +487,11 @@ void vtkParticipatingMedium::DoubtLevelSet(
   if (box.VoxelCount() > 0)
   {
     const tyndall::FloatField density = tyndall::ReadChosenCells(this, 0, image, "", tyndall::Need::Required, { 1 });
-    signs = SignsOf(density.Values(), box, whole);
+    signs = SignsOf(density.Values(), box, domain.Whole());
     vtkDataArray* const array = tyndall::ChosenArray(this, 0, image, "");
     said = WasLevelSet(image, array->GetName() ? array->GetName() : "") ? 1.0 : 0.0;
   }
-  std::vector<double> all = { -signs.lowest, signs.highest, -signs.lowestOnBorder, said };
-  all = ranks ? ranks->Largest(all) : all;
+  const std::vector<double> all = domain.Comm().Largest({ -signs.lowest, signs.highest, -signs.lowestOnBorder, said });
   const bool isInside = -all[0] < 0.0 && all[1] > 0.0;
   const bool looksSo = -all[2] > 0.0 && all[0] > small * all[1] && this->MinimumDensity >= 0.0;
   if (isInside && (all[3] > 0.0 || looksSo))
@@ -508,83 +509,52 @@ int vtkParticipatingMedium::RequestData(
   this->PhysicalExtent.clear();
   this->OpticalThickness = 0.0;
   this->MeanFreePath = 0.0;
-  const tyndall::WorkOnPieces onPieces = { DENSITY,
-    [&](vtkMultiProcessController* ranks, vtkInformationVector** inputs) {
-      return ranks && this->MakePiece(request, ranks, inputs, outputs);
-    } };
-  return tyndall::Guarded(this, request, given, outputs, onPieces, [&](vtkInformationVector** inputs) {
-    vtkImageData* const input = vtkImageData::GetData(inputs[DENSITY]);
-    vtkImageData* const output = vtkImageData::GetData(outputs);
-    const Recipe recipe = RecipeOf(this, this->ChannelMeanCosines);
-    const std::vector<float> relative = MakeMedium(this, recipe, input, inputs[PHASE_TABLE], output);
-    const tyndall::Grid grid = tyndall::GridOf(input);
-    this->DoubtLevelSet(input, { { 0, 0, 0 }, grid.size }, grid, nullptr);
-    this->NoteSize(grid, tyndall::OpticalSizeOf(relative.data(), grid, LargestExtinction(recipe)));
-    tyndall::KeepWhatIsAskedFor(outputs->GetInformationObject(0), output);
-  });
+  const bool asksForPiece = tyndall::EachAsksForItsPiece(request, outputs);
+  tyndall::WorkOnSubdomains work;
+  work.port = DENSITY;
+  work.wantsPieces = [&](vtkInformationVector**) { return asksForPiece; };
+  work.work = [&](const tyndall::PieceBlocks& pieces, vtkInformationVector** inputs) {
+    if (pieces.GetDomain().Any(pieces.IsDecomposed() && !asksForPiece))
+    {
+      return false;
+    }
+    this->MakeMedium(pieces, inputs, vtkImageData::GetData(outputs));
+    return true;
+  };
+  return tyndall::Guarded(this, request, given, outputs, work);
 }
 
-/// This rank's piece of the medium, of its piece of the density; its size is that of all pieces.
-/// @return false, on all ranks, where one is asked for the whole, or pieces make none
-bool vtkParticipatingMedium::MakePiece(vtkInformation* request, vtkMultiProcessController* ranks,
-  vtkInformationVector** inputs, vtkInformationVector* outputs)
+/// The medium of this rank's piece of the density; its size is that of the whole grid. Collective.
+void vtkParticipatingMedium::MakeMedium(
+  const tyndall::PieceBlocks& pieces, vtkInformationVector** inputs, vtkImageData* output)
 {
   vtkImageData* const input = vtkImageData::GetData(inputs[DENSITY]);
-  vtkImageData* const output = vtkImageData::GetData(outputs);
-  const std::unique_ptr<tyndall::Communicator> communicator =
-    tyndall::CommunicatorOf(ranks, [this] { return tyndall::IsStoppedByOthers(this); });
-  if (communicator->Largest({ tyndall::EachAsksForItsPiece(request, outputs) ? 0.0 : 1.0 })[0] > 0.0)
-  {
-    return false;
-  }
-  const tyndall::PieceBlocks pieces(*communicator, outputs->GetInformationObject(0), input);
-  if (!pieces.MakeUpTheWhole())
-  {
-    return false;
-  }
-  const tyndall::Grid& whole = pieces.Partition().whole;
+  const tyndall::Domain& domain = pieces.GetDomain();
   Recipe recipe;
   std::vector<double> sums;
-  tyndall::OnAllRanks(ranks, [&] {
+  domain.Collective([&] {
     recipe = RecipeOf(this, this->ChannelMeanCosines);
     std::vector<float> relative;
-    if (pieces.HasOwn())
+    if (pieces.HasOwn() || !pieces.IsDecomposed())
     {
-      relative = pieces.OwnOf(input, MakeMedium(this, recipe, input, inputs[PHASE_TABLE], output));
+      relative = pieces.OwnOf(input, FillMedium(this, recipe, input, inputs[PHASE_TABLE], output));
     }
-    sums = tyndall::OpticalSumsOf(relative.data(), pieces.Own(), whole);
+    sums = tyndall::OpticalSumsOf(relative.data(), pieces.Own(), domain.Whole());
   });
-  const tyndall::VoxelBox all = { { 0, 0, 0 }, whole.size };
+  const tyndall::VoxelBox all = { { 0, 0, 0 }, domain.Whole().size };
   const bool hasAll = input && input->GetNumberOfCells() == static_cast<vtkIdType>(all.VoxelCount());
-  this->DoubtLevelSet(input, hasAll ? all : pieces.Held(), whole, communicator.get());
-  this->NoteSize(whole, tyndall::OpticalSizeOf(communicator->Sum(sums), whole, LargestExtinction(recipe)));
+  this->DoubtLevelSet(domain, input, hasAll ? all : pieces.Held());
+  this->NoteSize(domain.Whole(), tyndall::OpticalSizeOf(domain.Sum(sums), domain.Whole(), LargestExtinction(recipe)));
   pieces.KeepHeld(output);
-  return true;
 }
 
 void vtkParticipatingMedium::PrintSelf(ostream& os, vtkIndent indent)
 {
-  const auto print = [&](const char* name, const double* rgb) {
-    os << indent << name << ": " << rgb[0] << " " << rgb[1] << " " << rgb[2] << "\n";
-  };
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "PointData: " << this->PointData << "\n";
+  tyndallPrintMacro(PointData);
   os << indent << "Preset: " << (this->Preset == CUSTOM ? "custom" : GetPresetName(this->Preset)) << "\n";
-  os << indent << "MinimumDensity: " << this->MinimumDensity << "\n";
-  os << indent << "MaximumDensity: " << this->MaximumDensity << "\n";
-  os << indent << "LevelSet: " << this->LevelSet << "\n";
-  os << indent << "ExtinctionScale: " << this->ExtinctionScale << "\n";
-  print("Albedo", this->Albedo);
-  os << indent << "PhaseFunction: " << this->PhaseFunction << "\n";
-  os << indent << "MeanCosine: " << this->MeanCosine << "\n";
+  tyndallPrintMacro(MinimumDensity, MaximumDensity, LevelSet, ExtinctionScale, Albedo, PhaseFunction, MeanCosine);
   os << indent << "ChannelMeanCosines: " << this->ChannelMeanCosines.size() << " numbers\n";
-  os << indent << "SecondMeanCosine: " << this->SecondMeanCosine << "\n";
-  os << indent << "FirstPart: " << this->FirstPart << "\n";
-  os << indent << "EmissionScale: " << this->EmissionScale << "\n";
-  print("EmissionColor", this->EmissionColor);
-  os << indent << "LengthUnit: " << this->LengthUnit << "\n";
-  os << indent << "PhysicalExtent: " << this->PhysicalExtent << "\n";
-  os << indent << "OpticalThickness: " << this->OpticalThickness << "\n";
-  os << indent << "MeanFreePath: " << this->MeanFreePath << "\n";
-  os << indent << "MillimetresPerUnit: " << this->MillimetresPerUnit << "\n";
+  tyndallPrintMacro(SecondMeanCosine, FirstPart, EmissionScale, EmissionColor, LengthUnit, PhysicalExtent,
+    OpticalThickness, MeanFreePath, MillimetresPerUnit);
 }

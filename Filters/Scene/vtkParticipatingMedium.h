@@ -8,13 +8,12 @@
 #include <string>
 #include <vector>
 
-class vtkMultiProcessController;
-
 namespace tyndall
 {
-class Communicator;
+class Domain;
 struct Grid;
 struct OpticalSize;
+class PieceBlocks;
 struct VoxelBox;
 }
 
@@ -88,8 +87,7 @@ public:
   ///@{
   /// The medium, one of Presets. Default CUSTOM: Albedo and MeanCosine. PhaseFunction counts with presets, too: theirs
   /// is HENYEY_GREENSTEIN, which with g 0 is isotropic.
-  tyndallSetRangeMacro(Preset, int, CUSTOM, SKIN_2);
-  vtkGetMacro(Preset, int);
+  tyndallRangeMacro(Preset, int, CUSTOM, SKIN_2);
   ///@}
 
   ///@{
@@ -114,31 +112,26 @@ public:
 
   ///@{
   /// Density that is vacuum, as is what lies below it. Default 0.
-  tyndallSetRangeMacro(MinimumDensity, double, tyndall::AnyLow, tyndall::AnyHigh);
-  vtkGetMacro(MinimumDensity, double);
+  tyndallRangeMacro(MinimumDensity, double, tyndall::AnyLow, tyndall::AnyHigh);
   ///@}
 
   ///@{
   /// Density with relative density 1; what lies above it is denser in proportion. Default 1, valid from MinimumDensity
   /// on; if equal to it, everything above it has relative density 1.
-  tyndallSetRangeMacro(MaximumDensity, double, tyndall::AnyLow, tyndall::AnyHigh);
-  vtkGetMacro(MaximumDensity, double);
+  tyndallRangeMacro(MaximumDensity, double, tyndall::AnyLow, tyndall::AnyHigh);
   ///@}
 
   ///@{
   /// Whether the array is a level set, the distance from a surface in the dataset's unit, negative inside. Default off.
   /// On: fog fills the inside, with a ramp of a voxel (the shortest edge) at the surface; MinimumDensity and
   /// MaximumDensity are not read.
-  vtkSetMacro(LevelSet, bool);
-  vtkGetMacro(LevelSet, bool);
-  vtkBooleanMacro(LevelSet, bool);
+  tyndallFlagMacro(LevelSet);
   ///@}
 
   ///@{
   /// Extinction coefficient sigma_t at relative density 1, 1/length; with a preset the multiple of its coefficients.
   /// Default 1, valid [0, infinity).
-  tyndallSetRangeMacro(ExtinctionScale, double, 0.0, tyndall::LargestFloat);
-  vtkGetMacro(ExtinctionScale, double);
+  tyndallRangeMacro(ExtinctionScale, double, 0.0, tyndall::LargestFloat);
   ///@}
 
   ///@{
@@ -161,16 +154,14 @@ public:
 
   ///@{
   /// How light is scattered by angle, one of PhaseFunctions. Default HENYEY_GREENSTEIN.
-  tyndallSetRangeMacro(PhaseFunction, int, ISOTROPIC, TABULATED);
-  vtkGetMacro(PhaseFunction, int);
+  tyndallRangeMacro(PhaseFunction, int, ISOTROPIC, TABULATED);
   ///@}
 
   ///@{
   /// Mean cosine g of the angle by which light is scattered (Henyey-Greenstein, Schlick; of
   /// DOUBLE_HENYEY_GREENSTEIN that of its first lobe): 0 isotropic, near 1 forward. Default 0, valid (-1, 1). Not used
   /// with a preset, which has its own.
-  tyndallSetRangeMacro(MeanCosine, double, -1.0, 1.0);
-  vtkGetMacro(MeanCosine, double);
+  tyndallRangeMacro(MeanCosine, double, -1.0, 1.0);
   ///@}
 
   ///@{
@@ -183,14 +174,12 @@ public:
 
   ///@{
   /// Mean cosine of the second lobe of DOUBLE_HENYEY_GREENSTEIN. Default 0, valid (-1, 1).
-  tyndallSetRangeMacro(SecondMeanCosine, double, -1.0, 1.0);
-  vtkGetMacro(SecondMeanCosine, double);
+  tyndallRangeMacro(SecondMeanCosine, double, -1.0, 1.0);
   ///@}
 
   ///@{
   /// Part of the scattered light that the first lobe of DOUBLE_HENYEY_GREENSTEIN has. Default 1, valid [0, 1].
-  tyndallSetRangeMacro(FirstPart, double, 0.0, 1.0);
-  vtkGetMacro(FirstPart, double);
+  tyndallRangeMacro(FirstPart, double, 0.0, 1.0);
   ///@}
 
   ///@{
@@ -204,8 +193,7 @@ public:
   ///@{
   /// Radiance emitted per unit length at relative density 1, W/(length^3 sr), times EmissionColor. Default 0, valid
   /// [0, infinity).
-  tyndallSetRangeMacro(EmissionScale, double, 0.0, tyndall::AnyHigh);
-  vtkGetMacro(EmissionScale, double);
+  tyndallRangeMacro(EmissionScale, double, 0.0, tyndall::AnyHigh);
   ///@}
 
   ///@{
@@ -227,15 +215,13 @@ public:
 
   ///@{
   /// The dataset's unit of length, for presets, one of LengthUnits. Default AS_GIVEN.
-  tyndallSetRangeMacro(LengthUnit, int, AS_GIVEN, KILOMETRES);
-  vtkGetMacro(LengthUnit, int);
+  tyndallRangeMacro(LengthUnit, int, AS_GIVEN, KILOMETRES);
   ///@}
 
   ///@{
   /// Length of the dataset's unit in millimetres where LengthUnit is AS_GIVEN: 1 for a scan in mm, 1000 for metres.
   /// Default 1, valid (0, infinity).
-  tyndallSetRangeMacro(MillimetresPerUnit, double, tyndall::AboveZero, tyndall::AnyHigh);
-  vtkGetMacro(MillimetresPerUnit, double);
+  tyndallRangeMacro(MillimetresPerUnit, double, tyndall::AboveZero, tyndall::AnyHigh);
   ///@}
 
   ///@{
@@ -269,15 +255,10 @@ private:
   vtkParticipatingMedium(const vtkParticipatingMedium&) = delete;
   void operator=(const vtkParticipatingMedium&) = delete;
 
-  /// Of the medium that was made; warns where it is too thin or too thick to be meant.
+  /// Sets the properties that report the optical size; warns if the medium is too thin or too thick to be meant.
   void NoteSize(const tyndall::Grid& grid, const tyndall::OpticalSize& size);
-  /// Warns where the density is a level set.
-  /// @param box  voxels of the image in the whole; of a rank without any nothing
-  /// @param ranks  null: this process is alone. All of them call it
-  void DoubtLevelSet(
-    vtkImageData* image, const tyndall::VoxelBox& box, const tyndall::Grid& whole, tyndall::Communicator* ranks);
-  bool MakePiece(vtkInformation* request, vtkMultiProcessController* ranks, vtkInformationVector** inputs,
-    vtkInformationVector* outputs);
+  void DoubtLevelSet(const tyndall::Domain& domain, vtkImageData* image, const tyndall::VoxelBox& box);
+  void MakeMedium(const tyndall::PieceBlocks& pieces, vtkInformationVector** inputs, vtkImageData* output);
 
   int Preset = CUSTOM;
   int PointData = VOXELS_AROUND_POINTS;

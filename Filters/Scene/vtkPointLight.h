@@ -21,8 +21,7 @@ public:
 
   ///@{
   /// Radius of the ball, length. The light does not depend on it. Default 0.02, valid above 0.
-  tyndallSetRangeMacro(ShapeSize, double, tyndall::AboveZero, tyndall::AnyHigh);
-  vtkGetMacro(ShapeSize, double);
+  tyndallRangeMacro(ShapeSize, double, tyndall::AboveZero, tyndall::AnyHigh);
   ///@}
 
 protected:

@@ -21,8 +21,7 @@ public:
 
   ///@{
   /// Full opening of the cone, degrees. Default 40, valid (0, 180], at least 1e-12 for a solve.
-  tyndallSetRangeMacro(Angle, double, tyndall::AboveZero, 180.0);
-  vtkGetMacro(Angle, double);
+  tyndallRangeMacro(Angle, double, tyndall::AboveZero, 180.0);
   ///@}
 
 protected:
