@@ -1,15 +1,14 @@
 #pragma once
 
-#include "Lights/Lights.h"
+#include "Common/ImageAxes.h"
 
 #include "vtkSmartPointer.h"
 
-#include <array>
 #include <initializer_list>
-#include <optional>
 #include <string>
 #include <vector>
 
+class vtkPolyData;
 class vtkAlgorithm;
 class vtkDataObject;
 class vtkImageData;
@@ -34,6 +33,7 @@ void TakeOneImage(vtkInformation* port);
 /// has no place in the scene, so that it is not turned along with a medium (OwnAxes).
 void TakePictures(vtkInformation* port);
 
+bool TakesPictures(vtkInformation* port);
 bool IsForImagesOfScene(vtkInformation* port); ///< for images, not for pictures
 
 /// Also in FillInputPortInformation: the image is read as voxels, by these arrays.
@@ -57,71 +57,6 @@ bool AreAroundPoints(vtkAlgorithm* filter, int port, vtkImageData* image, std::v
 /// An image with a voxel around each point: arrays of points are its arrays of cells, those of cells are left out.
 /// Where an image has one point along an axis it has one voxel.
 vtkSmartPointer<vtkImageData> PointsAsVoxels(vtkImageData* points);
-
-/// Which way the axes of an image go where each goes along one of the world's, up or down: by a direction matrix, a
-/// negative spacing, or both.
-struct AxisWays
-{
-  std::array<int, 3> world = { 0, 1, 2 };             ///< axis of the world, of each axis of the image
-  std::array<bool, 3> down = { false, false, false }; ///< of each axis of the image
-  std::array<double, 3> spacing = { 1.0, 1.0, 1.0 };  ///< of each axis of the world
-
-  bool AreAlike() const;                               ///< those of the world already
-  std::array<int, 6> Extent(const int* ofImage) const; ///< the same extent in numbers along the world's axes
-};
-
-/// @param direction  null: the unit matrix
-/// @return nothing where axes go aslant, or a spacing is 0 or not finite
-std::optional<AxisWays> WaysOf(const double* spacing, const double* direction);
-
-/// The same image with axes along those of the world: its cells and points in another order, at the same places. Itself
-/// where it has them already, or cannot have them.
-vtkSmartPointer<vtkImageData> Aligned(vtkImageData* image);
-
-/// The same image, cell for cell, with a spacing above 0 along each axis: where it is below, the direction matrix has
-/// the axis the other way.
-vtkSmartPointer<vtkImageData> WithSpacingsAbove0(vtkImageData* image);
-
-/// The axes of an image that its direction matrix turns otherwise than by right angles, mirrored or not. A filter works
-/// in these (WholeInputs.h): there its medium has the unit matrix and the origin that it has in the scene, and lights,
-/// photons, cameras and vectors of inputs are turned into them. What filters give out is in the scene again.
-struct OwnAxes
-{
-  using Vec = std::array<double, 3>;
-
-  Vec origin = { 0.0, 0.0, 0.0 }; ///< of the image: the place that has the same coordinates in both
-  Rotation axes = { { { 1.0, 0.0, 0.0 }, { 0.0, 1.0, 0.0 }, { 0.0, 0.0, 1.0 } } };   ///< a row each, in the scene
-  std::array<double, 9> direction = { 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0 }; ///< the matrix, spacings above 0
-
-  bool AreThoseOfScene() const { return this->direction == OwnAxes().direction; }
-  bool AreMirrored() const;
-  Vec Place(const Vec& inScene) const;
-  Vec Way(const Vec& inScene) const;
-  Vec PlaceInScene(const Vec& place) const;
-  Vec WayInScene(const Vec& way) const;
-
-  std::vector<double> Words() const;
-  static OwnAxes From(const std::vector<double>& words);
-};
-
-/// @return the scene's, too, where right angles turn the image, its matrix is that of no rotation (which GridOf
-///   refuses), or it is null or empty
-OwnAxes OwnAxesOf(vtkImageData* image);
-
-/// Those in which a filter works, and saying so, before it does.
-OwnAxes OwnAxesOf(vtkAlgorithm* filter);
-void NoteOwnAxes(vtkAlgorithm* filter, const OwnAxes& axes);
-
-/// An image of the scene as it lies in such axes, with vectors (net_flux, mean_direction, ior_gradient, what is chosen
-/// for the mean direction by a filter that reads the port, and field data of directions) that are turned, too.
-vtkSmartPointer<vtkImageData> InOwnAxes(vtkImageData* image, const OwnAxes& axes, vtkAlgorithm* filter, int port);
-
-/// The other way round, of an image that a filter gives out.
-/// @param given  what it was made of, as it is in the scene: arrays that were handed on are those of it; may be null
-void PutIntoScene(vtkImageData* output, const OwnAxes& axes, vtkImageData* given);
-
-/// Of all outputs of a filter but pictures, and photons, which are written in the scene. @param given  as above
-void PutIntoScene(vtkAlgorithm* filter, const OwnAxes& axes, vtkInformationVector* outputs, vtkImageData* given);
 
 /// That a filter averages arrays of points, for they meet others of cells; none: it does not.
 void NoteAveraged(vtkAlgorithm* filter, const std::vector<std::string>& arrays);
@@ -147,4 +82,28 @@ void RequireWholeArrays(vtkAlgorithm* filter);
 /// around points, as far as is known before the image, the output has one more than there are between them; its axes
 /// are aligned.
 void TellVoxels(vtkAlgorithm* filter, int port, vtkInformationVector* inputs, vtkInformationVector* outputs);
+
+// What vtkGhostType of an input image means.
+//
+// Hidden cells (HIDDENCELL, and as everywhere in VTK cells with a hidden point, HIDDENPOINT) are empty: every array
+// read of them is 0, their refractive index 1, in all filters (ReadCells, ReadChosenCells). Their values may be
+// anything, also NaN, which is what ResampleToImage leaves outside of its input.
+//
+// Duplicates (DUPLICATECELL) are cells that another rank has, too. In an image that one process has as a whole they are
+// part of the medium like others, and their power counts once. If ranks run a filter together, each is taken from the
+// rank that owns it (WholeInputs.h). If the output is divided otherwise, as one process streams it, each piece would be
+// solved with cells of its neighbours, and their power would count twice: that is refused.
+//
+// Hidden and duplicate lights and photons are left out: every rank asks for all of them, so that the one that a
+// duplicate repeats is there.
+
+/// A number for each cell, not 0 if it is hidden; empty: none is.
+std::vector<unsigned char> HiddenCells(vtkImageData* image);
+
+/// Numbers of the points that count, in their order.
+std::vector<long long> PointsThatCount(vtkPolyData* data);
+
+/// @throws InvalidInput where an input image has duplicate cells and more than one piece of the output is asked for,
+///   unless the filter works cell by cell
+void CheckDuplicates(vtkAlgorithm* filter, vtkInformationVector* outputs);
 }

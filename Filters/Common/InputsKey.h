@@ -87,7 +87,7 @@ struct InputsKey
     }
   }
 
-  /// Which cells of an image are hidden (GhostFlags.h).
+  /// Which cells of an image are hidden (ImageInput.h).
   void AddGhosts(vtkImageData* image)
   {
     this->Add(image->GetCellGhostArray());

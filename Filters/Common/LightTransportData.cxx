@@ -1,7 +1,7 @@
 #include "Common/LightTransportData.h"
 
 #include "Common/Failure.h"
-#include "Common/GhostFlags.h"
+#include "Common/ImageInput.h"
 #include "Common/PhaseFunctionData.h"
 #include "Device/Errors.h"
 #include "Device/HostThreads.h"

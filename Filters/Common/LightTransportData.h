@@ -89,7 +89,7 @@ using Components = std::initializer_list<int>;
 
 /// Values of the image's cells: the cell array of that name, or its point array averaged to cells (of an image that has
 /// voxels around its points, ImageInput.h, Guarded has made its points cells before). Float arrays are
-/// used where they are, others are converted. Hidden cells (GhostFlags.h) have 0, of the refractive index 1.
+/// used where they are, others are converted. Hidden cells (ImageInput.h) have 0, of the refractive index 1.
 /// @throws InvalidInput naming the array, the components it has, or the arrays that there are
 FloatField ReadCells(vtkImageData* image, const std::string& name, Need need, Components components = { 1, 3 });
 

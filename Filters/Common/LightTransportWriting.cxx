@@ -203,43 +203,29 @@ void WriteMoments(LightField& light, vtkImageData* output)
 }
 }
 
-void WriteLight(LightField&& light, vtkImageData* output)
+namespace
 {
-  const int channels = light.channels;
-  vtkCellData* cells = output->GetCellData();
-  for (const char* earlier :
+/// Removes the light of another solve that the input has been through.
+void RemoveLight(vtkImageData* output)
+{
+  for (const char* array :
     { "fluence", "fluence_direct", "fluence_error", "fluence_batches", "net_flux", "scattered_radiance",
       "mean_direction", "photon_count", "photon_weight", "mip_level", MomentsArray, StraightOnArray, LitColorArray })
   {
-    cells->RemoveArray(earlier); // of another solve that the input has been through
+    output->GetCellData()->RemoveArray(array);
   }
-  for (const char* earlier :
+  for (const char* fact :
     { "stored_directions", "scattered", "packing_loss", "fluence_bias", "half_range_flux", "settings_used", IgnoredFact,
       SurfaceRadianceFact, LampsApartFact, FacePowerFact, FaceAlbedoFact, LitColorDistanceFact, LitColorExposureFact })
   {
-    output->GetFieldData()->RemoveArray(earlier);
+    output->GetFieldData()->RemoveArray(fact);
   }
-  AddLight(output, "fluence", std::move(light.fluence), channels);
-  cells->SetActiveScalars("fluence");
-  if (!light.fluenceDirect.empty())
-  {
-    AddLight(output, "fluence_direct", std::move(light.fluenceDirect), channels);
-  }
-  if (!light.fluenceError.empty())
-  {
-    AddLight(output, "fluence_error", std::move(light.fluenceError), channels);
-  }
-  if (!light.netFlux.empty())
-  {
-    AddNamedCells(output, "net_flux", std::move(light.netFlux), 3 * channels, NameFluxComponents);
-  }
-  if (!light.scatteredRadiance.empty())
-  {
-    const int stored = std::max(1, static_cast<int>(light.storedDirections.size()));
-    AddCells(output, "scattered_radiance", std::move(light.scatteredRadiance), channels * stored);
-  }
-  WriteMoments(light, output);
+}
 
+/// Field data of light.
+void WriteFacts(const LightField& light, vtkImageData* output)
+{
+  const int channels = light.channels;
   const EnergyBalance& balance = light.balance;
   AddFact(output, "energy_balance",
     Channels({ balance.entered, balance.emitted, balance.absorbed, balance.escaped, balance.leftOver }, channels),
@@ -271,6 +257,28 @@ void WriteLight(LightField&& light, vtkImageData* output)
     AddFact(output, "settings_used", light.settingsUsed);
   }
   AddFact(output, "device", std::vector<std::string>{ light.device });
+}
+}
+
+void WriteLight(LightField&& light, vtkImageData* output)
+{
+  const int channels = light.channels;
+  RemoveLight(output);
+  const auto add = [&](const char* name, std::vector<float>& values, int components, NameComponents nameComponents) {
+    if (!values.empty())
+    {
+      AddNamedCells(output, name, std::move(values), components, nameComponents);
+    }
+  };
+  AddLight(output, "fluence", std::move(light.fluence), channels);
+  output->GetCellData()->SetActiveScalars("fluence");
+  const int stored = std::max(1, static_cast<int>(light.storedDirections.size()));
+  add("fluence_direct", light.fluenceDirect, channels, NameChannels);
+  add("fluence_error", light.fluenceError, channels, NameChannels);
+  add("net_flux", light.netFlux, 3 * channels, NameFluxComponents);
+  add("scattered_radiance", light.scatteredRadiance, channels * stored, [](vtkDataArray*) {});
+  WriteMoments(light, output);
+  WriteFacts(light, output);
 }
 
 void WriteLitColor(LitColor&& lit, vtkImageData* output)

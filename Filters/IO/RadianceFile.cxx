@@ -1,7 +1,7 @@
 #include "IO/RadianceFile.h"
 
 #include "Device/Errors.h"
-#include "IO/ReadableFile.h"
+#include "IO/Files.h"
 #include "Numerics/NumberText.h"
 
 #include <ImfChannelList.h>

@@ -3,8 +3,8 @@
 #include "Common/LightTransportData.h"
 #include "Common/LightTransportWriting.h"
 #include "Common/PrintMembers.h"
+#include "IO/Files.h"
 #include "IO/RadianceFile.h"
-#include "IO/ReadableFile.h"
 #include "Pieces/GuardedWork.h"
 
 #include "vtkFloatArray.h"

@@ -169,6 +169,7 @@ struct vtkVDBReader::Internals
   void List(int file);
   void Offer(vtkDataArraySelection* selection);
   void Choose(vtkDataArraySelection* selection);
+  void ChooseGrid(const std::string& name);
   void CheckMemory(vtkIdType maximum) const;
 
   struct Limit
@@ -256,6 +257,40 @@ void vtkVDBReader::Internals::Offer(vtkDataArraySelection* selection)
   }
 }
 
+/// Adds a grid to the chosen ones. Grids of other files of a series are skipped.
+void vtkVDBReader::Internals::ChooseGrid(const std::string& name)
+{
+  const VDBGrid* const grid = this->File->Find(name);
+  if (grid == nullptr && this->IsSeries() && this->Listed.count(name) > 0)
+  {
+    return;
+  }
+  if (grid == nullptr)
+  {
+    std::string available;
+    for (const VDBGrid& other : this->File->Grids())
+    {
+      available += (available.empty() ? "\"" : ", \"") + other.Name + "\"";
+    }
+    throw InvalidInput(
+      "\"" + this->Path + "\" has no grid \"" + name + "\". It has " + (available.empty() ? "none" : available) + ".");
+  }
+  const std::string cannot = "Grid \"" + name + "\" of \"" + this->Path + "\" cannot become an image: ";
+  tyndall::Require(grid->Unusable.empty(), cannot + grid->Unusable + ", or switch it off.");
+  if (grid->Shears && !this->Resample && this->NoImageYet.empty())
+  {
+    this->NoImageYet =
+      cannot + "its transform shears; an image needs axes at right angles. Switch Resample on, or the grid off.";
+  }
+  if (!this->Chosen.empty() && !tyndall::SharesTransform(*this->Chosen.front(), *grid))
+  {
+    throw InvalidInput("Grids \"" + this->Chosen.front()->Name + "\" and \"" + name + "\" of \"" + this->Path +
+      "\" have different transforms, so one image cannot hold both. Switch one off, and read it with a second "
+      "reader.");
+  }
+  this->Chosen.push_back(grid);
+}
+
 void vtkVDBReader::Internals::Choose(vtkDataArraySelection* selection)
 {
   this->Chosen.clear();
@@ -276,43 +311,10 @@ void vtkVDBReader::Internals::Choose(vtkDataArraySelection* selection)
   }
   for (int i = 0; i < selection->GetNumberOfArrays(); ++i)
   {
-    const std::string name = selection->GetArrayName(i);
-    if (!selection->GetArraySetting(i))
+    if (selection->GetArraySetting(i))
     {
-      continue;
+      this->ChooseGrid(selection->GetArrayName(i));
     }
-    const VDBGrid* grid = this->File->Find(name);
-    if (grid == nullptr && this->IsSeries() && this->Listed.count(name) > 0)
-    {
-      continue; // another file has it
-    }
-    if (grid == nullptr)
-    {
-      std::string available;
-      for (const VDBGrid& other : this->File->Grids())
-      {
-        available += (available.empty() ? "\"" : ", \"") + other.Name + "\"";
-      }
-      throw InvalidInput("\"" + this->Path + "\" has no grid \"" + name + "\". It has " +
-        (available.empty() ? "none" : available) + ".");
-    }
-    const std::string cannot = "Grid \"" + name + "\" of \"" + this->Path + "\" cannot become an image: ";
-    if (!grid->Unusable.empty())
-    {
-      throw InvalidInput(cannot + grid->Unusable + ", or switch it off.");
-    }
-    if (grid->Shears && !this->Resample && this->NoImageYet.empty())
-    {
-      this->NoImageYet =
-        cannot + "its transform shears; an image needs axes at right angles. Switch Resample on, or the grid off.";
-    }
-    if (!this->Chosen.empty() && !tyndall::SharesTransform(*this->Chosen.front(), *grid))
-    {
-      throw InvalidInput("Grids \"" + this->Chosen.front()->Name + "\" and \"" + name + "\" of \"" + this->Path +
-        "\" have different transforms, so one image cannot hold both. Switch one off, and read it with a second "
-        "reader.");
-    }
-    this->Chosen.push_back(grid);
   }
   if (!this->NoImageYet.empty())
   {
@@ -597,6 +599,49 @@ std::array<int, 6> vtkVDBReader::ExtentToRead(vtkInformation* info)
   return extent;
 }
 
+/// Reads the chosen grids into the cells of an extent.
+void vtkVDBReader::ReadGrids(const std::array<int, 6>& extent, vtkImageData* image)
+{
+  Internals& internal = *this->Internal;
+  const tyndall::VDBGeometry& geometry = internal.Image;
+  image->SetExtent(std::array<int, 6>(extent).data());
+  image->SetOrigin(geometry.Origin.data());
+  image->SetSpacing(geometry.Spacing.data());
+  image->SetDirectionMatrix(geometry.Direction.data());
+
+  const std::array<int, 6> own = internal.Resampled ? WholeExtentOf(internal.Own) : extent;
+  const openvdb::CoordBBox box = CellsIn(own.data());
+  double done = 0.0;
+  for (const VDBGrid* grid : internal.Chosen)
+  {
+    if (this->GetAbortExecute())
+    {
+      throw tyndall::Aborted();
+    }
+    vtkNew<vtkImageData> cells;
+    vtkImageData* const asRead = internal.Resampled ? cells.Get() : image;
+    if (internal.Resampled)
+    {
+      cells->SetExtent(std::array<int, 6>(own).data());
+    }
+    tyndall::AddGridCells(*internal.File->Read(*grid, box), grid->Type, grid->Name, box, asRead);
+    if (internal.Resampled)
+    {
+      tyndall::AddResampled(cells, *grid, box, image);
+    }
+    tyndall::AddMetadata(image, tyndall::FieldName(grid->Name, ""), grid->Metadata);
+    if (this->LevelSetsAsFog)
+    {
+      tyndall::MakeFogOfLevelSet(image, grid->Name);
+    }
+    this->UpdateProgress(++done / static_cast<double>(internal.Chosen.size()));
+  }
+  tyndall::AddMetadata(image, tyndall::FieldName("", ""), internal.File->Metadata());
+  tyndall::AddFact(image, tyndall::ActivePartFact, std::vector<double>{ ActivePart(internal.Chosen, geometry.Extent) });
+  tyndall::AddMediumFacts(image, internal.File->Metadata());
+  image->GetCellData()->SetActiveScalars(internal.Chosen.front()->Name.c_str());
+}
+
 int vtkVDBReader::RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
 {
   return tyndall::Guarded(this, outputs, [&] {
@@ -625,44 +670,7 @@ int vtkVDBReader::RequestData(vtkInformation*, vtkInformationVector**, vtkInform
     {
       return;
     }
-    const tyndall::VDBGeometry& geometry = internal.Image;
-    image->SetExtent(extent.data());
-    image->SetOrigin(geometry.Origin.data());
-    image->SetSpacing(geometry.Spacing.data());
-    image->SetDirectionMatrix(geometry.Direction.data());
-
-    const std::array<int, 6> own = internal.Resampled ? WholeExtentOf(internal.Own) : extent;
-    const openvdb::CoordBBox box = CellsIn(own.data());
-    double done = 0.0;
-    for (const VDBGrid* grid : internal.Chosen)
-    {
-      if (this->GetAbortExecute())
-      {
-        throw tyndall::Aborted();
-      }
-      vtkNew<vtkImageData> cells;
-      vtkImageData* const asRead = internal.Resampled ? cells.Get() : image;
-      if (internal.Resampled)
-      {
-        cells->SetExtent(std::array<int, 6>(own).data());
-      }
-      tyndall::AddGridCells(*internal.File->Read(*grid, box), grid->Type, grid->Name, box, asRead);
-      if (internal.Resampled)
-      {
-        tyndall::AddResampled(cells, *grid, box, image);
-      }
-      tyndall::AddMetadata(image, tyndall::FieldName(grid->Name, ""), grid->Metadata);
-      if (this->LevelSetsAsFog)
-      {
-        tyndall::MakeFogOfLevelSet(image, grid->Name);
-      }
-      this->UpdateProgress(++done / static_cast<double>(internal.Chosen.size()));
-    }
-    tyndall::AddMetadata(image, tyndall::FieldName("", ""), internal.File->Metadata());
-    tyndall::AddFact(
-      image, tyndall::ActivePartFact, std::vector<double>{ ActivePart(internal.Chosen, geometry.Extent) });
-    tyndall::AddMediumFacts(image, internal.File->Metadata());
-    image->GetCellData()->SetActiveScalars(internal.Chosen.front()->Name.c_str());
+    this->ReadGrids(extent, image);
   });
 }
 

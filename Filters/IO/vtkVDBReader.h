@@ -139,6 +139,7 @@ private:
   class SeriesPipeline;
   int FileAskedFor(vtkInformation* output) const;
   std::array<int, 6> ExtentToRead(vtkInformation* output);
+  void ReadGrids(const std::array<int, 6>& extent, vtkImageData* image);
 
   bool LevelSetsAsFog = false;
   bool Resample = false;

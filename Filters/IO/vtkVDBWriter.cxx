@@ -3,11 +3,11 @@
 #include "Common/ImageInput.h"
 #include "Common/PrintMembers.h"
 #include "Device/Errors.h"
+#include "IO/Files.h"
 #include "IO/VDB/VDBCells.h"
 #include "IO/VDB/VDBFile.h"
 #include "IO/VDB/VDBGeometry.h"
 #include "IO/VDB/VDBMetadata.h"
-#include "IO/WholeFile.h"
 #include "Pieces/GatheredImage.h"
 #include "Pieces/Ranks.h"
 

@@ -1,7 +1,7 @@
 #include "Photons/PhotonData.h"
 
 #include "Common/Failure.h"
-#include "Common/GhostFlags.h"
+#include "Common/ImageInput.h"
 #include "Common/InputsKey.h"
 #include "Common/LightTransportData.h"
 #include "Common/LightTransportWriting.h"

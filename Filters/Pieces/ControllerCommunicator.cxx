@@ -37,10 +37,10 @@ double SecondsToWait()
 #ifdef TYNDALL_HAS_MPI
 namespace
 {
-constexpr int FirstOfAll = 1000000; ///< tags, behind those of VTK and of the other messages of ranks
-constexpr double Grace = 1.0;       ///< seconds in which what others have sent before they stopped still arrives
+constexpr int FirstOfAll = 1000000; ///< first tag, above those of VTK and of Ranks.cxx
+constexpr double Grace = 1.0;       ///< seconds in which messages that were sent before a stop may still arrive
 
-/// What is still being sent when an error ends a conversation: MPI may read it for as long as the process lives.
+/// Keeps messages that were still being sent when an error occurred: MPI may read them as long as the process lives.
 template <class Messages>
 void LeaveBehind(Messages& messages)
 {
@@ -48,7 +48,7 @@ void LeaveBehind(Messages& messages)
   left.splice(left.end(), messages);
 }
 
-/// What an MPI call says that did not do what it should.
+/// Turns the failure of an MPI call into an error.
 void RequireSent(bool done, const char* what, int rank)
 {
   if (!done)
@@ -94,8 +94,7 @@ int ControllerCommunicator::Ranks() const
   return this->Controller->GetNumberOfProcesses();
 }
 
-/// A send that waits for its receiver could wait for one that waits for this rank to receive: rays of different octants
-/// go both ways between two blocks.
+/// Not blocking: rays of different octants go both ways between two blocks, so that blocking sends could deadlock.
 void ControllerCommunicator::Give(int to, int tag, std::vector<char> bytes)
 {
   this->ForgetSent();
@@ -162,7 +161,7 @@ std::vector<char> ControllerCommunicator::Take(int from, int tag)
 std::vector<std::vector<char>> ControllerCommunicator::Swap(
   const std::vector<int>& with, std::vector<std::vector<char>> parcels)
 {
-  if (this->Stopped && this->Stopped()) // one has left: the others would wait for it inside DIY
+  if (this->Stopped && this->Stopped()) // a rank has left: DIY would wait for it
   {
     throw Aborted();
   }
@@ -219,7 +218,7 @@ std::unique_ptr<Communicator> CommunicatorAtEnd(vtkMultiProcessController* ranks
 #ifdef TYNDALL_HAS_DIY
 namespace
 {
-/// The last resort, of which MPI takes notice wherever this process is.
+/// The last resort; MPI then ends all ranks.
 [[noreturn]] void EndAllRanks(int rank, const std::string& why)
 {
   std::cerr << "Tyndall, rank " << rank << ": " << why << " All ranks are ended." << std::endl;
@@ -260,15 +259,15 @@ private:
   std::thread Watch; // last: it uses the others
 };
 
-/// What a rank's block has for others, and then what they had for it.
+/// What a rank's block sends to other ranks, then what it has received.
 struct Parcels
 {
   std::vector<std::vector<char>> ofRanks;
 };
 
-/// DIY's master of the ranks of a controller, with a block on each. It is made by all of them when they first exchange
-/// something, with a communicator of its own: DIY's tags are small numbers, as others' may be. MPI keeps it beside the
-/// controller's communicator; it is never deleted, for MPI may have ended before.
+/// DIY's master for the ranks of a controller, with one block a rank. Made collectively at the first exchange, with a
+/// communicator of its own because DIY's tags are small numbers. Kept as an attribute of the controller's communicator,
+/// and never deleted, for MPI may have ended before.
 diy::Master& MasterOf(vtkMPIController* controller)
 {
   static int key = MPI_KEYVAL_INVALID;
@@ -290,7 +289,7 @@ diy::Master& MasterOf(vtkMPIController* controller)
   return *static_cast<diy::Master*>(kept);
 }
 
-/// Parcels are DIY's queues as they are, for what is put into these is copied.
+/// Parcels become DIY's queues without a copy.
 std::vector<std::vector<char>> Exchange(
   diy::Master& master, const std::vector<int>& with, std::vector<std::vector<char>> parcels)
 {
@@ -329,7 +328,7 @@ std::vector<std::vector<char>> ExchangeByDIY(
     const Deadline deadline(rank, patience);
     return Exchange(MasterOf(controller), with, std::move(parcels));
   }
-  catch (const std::exception& error) // others wait for this rank, without an end
+  catch (const std::exception& error) // other ranks would wait forever
   {
     EndAllRanks(rank, std::string("an exchange has failed: ") + error.what() + ".");
   }

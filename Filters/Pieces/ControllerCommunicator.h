@@ -23,33 +23,32 @@ namespace tyndall
 /// filter upstream may take that much longer on one rank than on another.
 double SecondsToWait();
 
-/// Ranks begin to work together (WorkOnAllRanks): what communicators of earlier work left behind is not taken for
-/// theirs.
+/// At the start of WorkOnAllRanks: communicators get new tags, so that messages left from earlier work are not
+/// received.
 void BeginConversations();
 
-/// What the ranks that work together say to each other. All of them make the same ones, one after the other.
-/// @param ranks  must stay; null: this process is alone
+/// Message passing among the ranks that work together. Collective: all ranks make the same ones, in the same order.
+/// @param ranks  must outlive it; null: this process is alone
 /// @param stopped  whether a rank that waits for another is to give up (Aborted), a second later
 std::unique_ptr<Communicator> CommunicatorOf(vtkMultiProcessController* ranks, std::function<bool()> stopped = {});
 
-/// Of ranks that draw a frame together, outside of any work: with tags of its own, so that nothing that work left
-/// behind is taken for its messages.
+/// The same for ranks that draw a frame together, outside WorkOnAllRanks: with tags of its own.
 std::unique_ptr<Communicator> CommunicatorOfFrame(vtkMultiProcessController* ranks);
 
-/// The last one of the work, however many a rank made before something went wrong.
+/// The last one of WorkOnAllRanks, however many a rank made before an error.
 std::unique_ptr<Communicator> CommunicatorAtEnd(vtkMultiProcessController* ranks);
 
 #ifdef TYNDALL_HAS_MPI
-/// By VTK's controller of MPI; exchanges by DIY, where the host has it.
+/// By VTK's MPI controller; exchanges by DIY if the host has it.
 class ControllerCommunicator : public Communicator
 {
 public:
-  /// @param controller  must stay
-  /// @param patience  seconds that a rank waits for another that says nothing before it gives up: none hangs
-  /// @param conversation  the same on all ranks, from 0 on; messages of another are not received
+  /// @param controller  must outlive it
+  /// @param patience  timeout of a receive, seconds
+  /// @param conversation  the same on all ranks, from 0 on; selects the tags
   explicit ControllerCommunicator(vtkMPIController* controller, double patience = SecondsToWait(),
     std::function<bool()> stopped = {}, int conversation = 0);
-  /// Waits until what was sent is on its way, but where an error ends all: then for nobody.
+  /// Completes pending sends, unless an error is being thrown.
   ~ControllerCommunicator() override;
 
   int Rank() const override;
@@ -63,7 +62,7 @@ protected:
 #endif
 
 private:
-  /// A message that is still being sent: its memory must stay.
+  /// A message that is still being sent.
   struct Underway
   {
     std::vector<char> bytes;
@@ -80,15 +79,14 @@ private:
 #endif
 
 #ifdef TYNDALL_HAS_DIY
-/// What each rank has for some others, and what they have for it, all at once: an exchange of DIY's, of one block a
-/// rank. All ranks call it. Of any length: DIY cuts messages into parts of 2 GiB.
+/// One parcel to each of some ranks and one from each of them, by DIY with one block a rank. Collective. Of any length:
+/// DIY cuts messages into parts of 2 GiB.
 ///
-/// DIY waits for others as long as it takes. So ranks agree before that none of them fails (Communicator::Exchange).
-/// One that has not heard of others within the time, or cannot hold what comes, ends its process, and MPI those of
-/// all: none hangs.
-/// @param with  ranks that have something for each other, if only nothing; not this one
+/// DIY has no timeout, so ranks agree beforehand that none fails (Communicator::Exchange). A rank that times out, or
+/// lacks memory for what it receives, ends its process, and MPI those of all ranks: none hangs.
+/// @param with  ranks that exchange with this one, which is not among them
 /// @param parcels  one for each of them
-/// @param patience  seconds
+/// @param patience  timeout, seconds
 /// @return by the ranks of `with`
 std::vector<std::vector<char>> ExchangeByDIY(
   vtkMPIController* controller, const std::vector<int>& with, std::vector<std::vector<char>> parcels, double patience);

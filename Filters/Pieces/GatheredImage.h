@@ -19,14 +19,14 @@ class PieceLayout;
 class StreamedMembers;
 struct PieceValues;
 
-/// An image whose pieces lie on several ranks, put together on the first or on each: one array after the other, so that
-/// no more than one is there twice.
+/// An image in pieces on several ranks, gathered on the first rank or on each: one array at a time, so that only one is
+/// in memory twice.
 ///
-/// Pieces may overlap, and may have ghost cells (vtkGhostType): PieceLayout says which piece a cell or point is taken
-/// from. What others have as their own there has to be the same. Ranks without cells have no part in it. Field data are
-/// those of the first piece; those of the phase function have to be the same on all. With one rank nothing is copied.
+/// Pieces may overlap and may have ghost cells (vtkGhostType): PieceLayout chooses the piece that a cell or point is
+/// taken from; the values that other pieces own there must be the same. Ranks without cells take no part. Field data
+/// are those of the first piece; the phase function in them must be the same on all. On one rank nothing is copied.
 ///
-/// All ranks have to construct it and to ask for the arrays in the same order; what fails on one throws InvalidInput on
+/// Construction and access to the arrays, in the same order, are collective; an error on one rank is InvalidInput on
 /// all.
 class GatheredImage
 {
@@ -42,8 +42,8 @@ public:
   /// @param controller  null: there is one rank
   /// @param piece       may be null or without cells
   /// @param cells, points  its arrays, each with a value for each cell or point, in any order
-  /// @param refusal     how messages begin, as "The image is not written"
-  /// @throws InvalidInput where pieces leave a gap, lie on different grids or have different arrays
+  /// @param refusal     beginning of messages, e.g. "The image is not written"
+  /// @throws InvalidInput if pieces leave a gap, lie on different grids or have different arrays
   GatheredImage(vtkMultiProcessController* controller, vtkImageData* piece, Arrays cells, Arrays points, On where,
     const std::string& refusal);
   ~GatheredImage();
@@ -52,15 +52,15 @@ public:
   int NumberOfCellArrays() const { return static_cast<int>(this->Own[Cells].size()); }
   int NumberOfPointArrays() const { return static_cast<int>(this->Own[Points].size()); }
 
-  /// Where the whole is: its extent, place and field data, without arrays. Null where no piece has cells, and on ranks
-  /// that have no whole.
+  /// Extent, place and field data of the whole image, without arrays. Null if no piece has cells, and on ranks on which
+  /// the image is not gathered.
   vtkImageData* Frame() const { return this->Whole; }
 
-  /// Where the whole is: a flag for each cell, or point, that is hidden by vtkGhostType; null: none is.
+  /// A flag for each cell, or point, that is hidden by vtkGhostType; null: none is, or it is not gathered here.
   const std::vector<unsigned char>* HiddenCells() const { return this->HiddenOf(Cells); }
   const std::vector<unsigned char>* HiddenPoints() const { return this->HiddenOf(Points); }
 
-  /// The whole array; null on ranks that have no whole.
+  /// The whole array; null on ranks on which the image is not gathered.
   vtkSmartPointer<vtkDataArray> CellArray(int index) { return this->Array(Cells, index); }
   vtkSmartPointer<vtkDataArray> PointArray(int index) { return this->Array(Points, index); }
 
@@ -81,14 +81,14 @@ private:
     void Stream(StreamedMembers& members);
   };
 
-  /// What is known of each piece on every rank.
+  /// Description of a piece, known to every rank.
   struct Piece
   {
     std::array<int, 6> Extent = { 0, -1, 0, -1, 0, -1 };
     std::array<double, 15> Place = {}; ///< origin, spacing, direction
     std::array<std::vector<ArrayKind>, Kinds> Arrays;
     std::array<bool, Kinds> HasFlags = {};
-    std::string Phase; ///< what its field data say of the phase function
+    std::string Phase; ///< the phase function in its field data
 
     void Stream(StreamedMembers& members);
     bool HasCells() const { return this->Extent[0] <= this->Extent[1]; }
@@ -118,10 +118,10 @@ private:
   On Where;
   std::string Refusal;
   int Rank = 0, Ranks = 1;
-  std::array<Arrays, Kinds> Own; ///< of the own piece, or null
+  std::array<Arrays, Kinds> Own; ///< of this rank's piece, or null
   vtkSmartPointer<vtkImageData> Whole;
   std::vector<Piece> Pieces;
-  std::array<std::unique_ptr<PieceLayout>, Kinds> Layouts; ///< where the whole is
+  std::array<std::unique_ptr<PieceLayout>, Kinds> Layouts; ///< where the image is gathered
   std::array<std::vector<unsigned char>, Kinds> Hidden;
 };
 }

@@ -2,7 +2,6 @@
 
 // How filters do their work, report and fail: see LightTransportData.h.
 #include "Common/Failure.h"
-#include "Common/GhostFlags.h"
 #include "Common/ImageInput.h"
 #include "Common/InputsKey.h"
 #include "Common/LightTransportWriting.h"

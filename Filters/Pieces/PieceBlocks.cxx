@@ -29,7 +29,7 @@ namespace
 using Extent = std::array<int, 6>;
 constexpr Extent Nothing = { 0, 0, 0, 0, 0, 0 };
 
-/// What a rank says of what it is given.
+/// The piece of a rank.
 struct Piece
 {
   Extent given = Nothing;
@@ -57,7 +57,7 @@ Extent OwnExtentOf(vtkImageData* image, const Extent& all)
   return CellsOf(own) > 0 ? own : Nothing;
 }
 
-/// Where ranks are all asked for the whole, each has its part of the work.
+/// If each rank is asked for all, each still gets a part of the work.
 AskedPiece AskedOf(vtkInformation* asked, const Extent& given, int rank, int ranks)
 {
   AskedPiece piece = AskedPieceOf(asked, given);
@@ -82,7 +82,7 @@ Piece PieceOf(vtkInformation* asked, vtkImageData* image, int rank, int ranks)
   return piece;
 }
 
-/// In the place of the rank, among those of all.
+/// At the rank's place among those of all ranks.
 std::vector<double> WordsOf(const Piece& piece, int rank, int ranks)
 {
   std::vector<double> words(WordsOfPiece * static_cast<std::size_t>(ranks), 0.0);
@@ -131,7 +131,7 @@ VoxelBox BoxOf(const Extent& extent, const std::array<int, 3>& base)
   return box;
 }
 
-/// Voxels of blocks are as many as those of the grid, and no two have one in common.
+/// Whether blocks are disjoint and have as many voxels as the grid.
 bool Tile(const BlockPartition& partition)
 {
   std::size_t voxels = 0;
@@ -301,7 +301,7 @@ namespace
 {
 constexpr double FewVoxels = 64.0 * 64.0 * 64.0;
 
-/// Processes of this MPI run, as its launcher says; where it does not, those of VTK's global controller.
+/// Processes of this MPI run on this machine, by its launcher's variables; else those of VTK's global controller.
 int RanksOnThisMachine()
 {
   for (const char* said : { "OMPI_COMM_WORLD_LOCAL_SIZE", "MPI_LOCALNRANKS", "PMI_LOCAL_SIZE" }) // Open MPI, MPICH, PMI
@@ -315,7 +315,7 @@ int RanksOnThisMachine()
   return all ? all->GetNumberOfProcesses() : 1;
 }
 
-/// That its source says there are.
+/// As announced by the source.
 double VoxelsOf(vtkInformationVector* image)
 {
   vtkInformation* const input = image->GetInformationObject(0);

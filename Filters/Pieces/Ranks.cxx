@@ -34,7 +34,7 @@ using Pipeline = vtkStreamingDemandDrivenPipeline;
 
 constexpr int StopTag = 745202; ///< of a message: stop the work
 
-/// A request's number of ranks that ask together, which goes upstream through all filters.
+/// Number of ranks that ask together; a request carries it upstream through all filters.
 class TogetherKey : public vtkInformationIntegerKey
 {
 public:
@@ -60,7 +60,7 @@ vtkInformationIntegerKey* Collective()
   return key;
 }
 
-/// Of a filter's own information while it works: the controller of the ranks that do.
+/// In a filter's information while it works: the controller of the ranks that work together.
 vtkInformationObjectBaseKey* WorkingRanks()
 {
   static auto* const key = vtkInformationObjectBaseKey::MakeKey("WORKING_RANKS", "Tyndall");
@@ -73,14 +73,14 @@ int PiecesAsked(vtkInformation* request, vtkInformationVector* outputs)
   return asking ? std::max(1, asking->Get(Pipeline::UPDATE_NUMBER_OF_PIECES())) : 1;
 }
 
-/// Pieces that are asked for, or ranks that ask together; 1: neither.
+/// Number of pieces that are asked for, or of ranks that ask together; 1: neither.
 int Asking(vtkInformation* request, vtkInformationVector* outputs)
 {
   vtkInformation* const asking = AskingPort(request, outputs);
   return asking ? std::max(PiecesAsked(request, outputs), asking->Get(Collective())) : 1;
 }
 
-/// Makes how one rank ended that of all.
+/// Makes the outcome of one rank the outcome of all.
 void EndTogether(Communicator& communicator, const Ending& own)
 {
   try
@@ -106,7 +106,7 @@ bool IsOne(vtkMultiProcessController* controller)
   return controller == nullptr || controller->GetNumberOfProcesses() == 1;
 }
 
-/// Messages that tell other ranks to stop: few, and all received before the ranks part.
+/// Messages that ask other ranks to stop. All are received before the ranks finish.
 class StopMessages
 {
 public:
@@ -259,8 +259,8 @@ namespace
 {
 #ifdef TYNDALL_HAS_MPI
 constexpr int Nobody = -1;
-constexpr int ComeTag = 745203, GoTag = 745204; ///< of messages to the first rank, and from it
-constexpr double Slack = 5.0;                   ///< seconds that others wait longer than the first rank, which decides
+constexpr int ArriveTag = 745203, AnswerTag = 745204; ///< of messages to the first rank, and from it
+constexpr double Slack = 5.0; ///< seconds that other ranks wait longer than the first, which decides
 
 bool IsPast(const std::chrono::steady_clock::time_point& start, double seconds)
 {
@@ -272,10 +272,10 @@ void Rest()
   std::this_thread::sleep_for(std::chrono::milliseconds(1));
 }
 
-/// What a rank says that comes: the number of the meeting as it counts them itself, 0 where it withdraws, and a number
-/// for the class of its filter.
-using Word = std::array<int, 2>;
-/// What the first rank answers: that number, and who is absent.
+/// Sent on arrival: the number of the barrier as this rank counts them, 0 to withdraw, and a hash of the class of its
+/// filter.
+using Arrival = std::array<int, 2>;
+/// The first rank's answer: that number, and MissingRank.
 using Decision = std::array<int, 3>;
 
 int NumberOf(const char* filter)
@@ -288,19 +288,21 @@ int NumberOf(const char* filter)
   return static_cast<int>(number >> 1);
 }
 
-/// Receives who has come until all have, or the time is over, and what has been sent by then: a rank that came too late
-/// to the last meeting has withdrawn from it.
-void Collect(vtkMPIController* ranks, double wait, std::vector<Word>& come)
+/// Receives arrivals until all ranks have arrived or time is up, and whatever has been sent by then: a rank that was
+/// too late for the last barrier has withdrawn from it.
+void Collect(vtkMPIController* ranks, double wait, std::vector<Arrival>& arrived)
 {
   const std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
-  const auto missing = [&] { return std::any_of(come.begin(), come.end(), [](const Word& word) { return !word[0]; }); };
+  const auto missing = [&] {
+    return std::any_of(arrived.begin(), arrived.end(), [](const Arrival& word) { return !word[0]; });
+  };
   for (int waits = 1; waits || (missing() && !IsPast(start, wait));)
   {
     int from = 0;
-    ranks->Iprobe(vtkMultiProcessController::ANY_SOURCE, ComeTag, &waits, &from);
+    ranks->Iprobe(vtkMultiProcessController::ANY_SOURCE, ArriveTag, &waits, &from);
     if (waits)
     {
-      ranks->Receive(come[static_cast<std::size_t>(from)].data(), 2, from, ComeTag);
+      ranks->Receive(arrived[static_cast<std::size_t>(from)].data(), 2, from, ArriveTag);
     }
     else
     {
@@ -309,49 +311,49 @@ void Collect(vtkMPIController* ranks, double wait, std::vector<Word>& come)
   }
 }
 
-/// The first rank collects who has come, and tells them what it decides.
+/// The first rank collects arrivals and answers them.
 MissingRank Decide(vtkMPIController* ranks, double wait, int filter)
 {
-  std::vector<Word> come(static_cast<std::size_t>(ranks->GetNumberOfProcesses()), Word{ 0, 0 });
-  come[0] = { 1, filter };
-  Collect(ranks, wait, come);
-  const auto first = [&](auto isAbsent) {
-    const auto found = std::find_if(come.begin(), come.end(), isAbsent);
-    return found == come.end() ? Nobody : static_cast<int>(found - come.begin());
+  std::vector<Arrival> arrived(static_cast<std::size_t>(ranks->GetNumberOfProcesses()), Arrival{ 0, 0 });
+  arrived[0] = { 1, filter };
+  Collect(ranks, wait, arrived);
+  const auto first = [&](auto test) {
+    const auto found = std::find_if(arrived.begin(), arrived.end(), test);
+    return found == arrived.end() ? Nobody : static_cast<int>(found - arrived.begin());
   };
-  MissingRank absence{ first([](const Word& word) { return word[0] == 0; }), false };
-  if (absence.rank == Nobody)
+  MissingRank missingRank{ first([](const Arrival& word) { return word[0] == 0; }), false };
+  if (missingRank.rank == Nobody)
   {
-    absence.rank = first([&](const Word& word) { return word[1] != filter; });
-    absence.elsewhere = absence.rank != Nobody;
+    missingRank.rank = first([&](const Arrival& word) { return word[1] != filter; });
+    missingRank.elsewhere = missingRank.rank != Nobody;
   }
-  for (std::size_t rank = 1; rank < come.size(); ++rank)
+  for (std::size_t rank = 1; rank < arrived.size(); ++rank)
   {
-    if (come[rank][0] != 0)
+    if (arrived[rank][0] != 0)
     {
-      const Decision decision = { come[rank][0], absence.rank, absence.elsewhere };
-      ranks->Send(decision.data(), 3, static_cast<int>(rank), GoTag);
+      const Decision decision = { arrived[rank][0], missingRank.rank, missingRank.elsewhere };
+      ranks->Send(decision.data(), 3, static_cast<int>(rank), AnswerTag);
     }
   }
-  return absence;
+  return missingRank;
 }
 
-/// Others come, and wait for what it decides. One that waits no longer says so; what was decided just then counts.
-MissingRank Come(vtkMPIController* ranks, double wait, int filter)
+/// Other ranks arrive and wait for the answer. One that gives up withdraws; an answer that was on its way still counts.
+MissingRank Arrive(vtkMPIController* ranks, double wait, int filter)
 {
-  static int meetings = 0;
-  const Word own = { ++meetings, filter }, withdrawn = { 0, 0 };
+  static int barriers = 0;
+  const Arrival own = { ++barriers, filter }, withdrawn = { 0, 0 };
   const std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
-  ranks->Send(own.data(), 2, 0, ComeTag);
+  ranks->Send(own.data(), 2, 0, ArriveTag);
   for (bool gone = false; !gone || !IsPast(start, wait + 2.0 * Slack);)
   {
     int waits = 0, from = 0;
-    ranks->Iprobe(0, GoTag, &waits, &from);
+    ranks->Iprobe(0, AnswerTag, &waits, &from);
     if (waits)
     {
       Decision decision = {};
-      ranks->Receive(decision.data(), 3, 0, GoTag);
-      if (decision[0] == own[0]) // else of a meeting that this rank did not wait for
+      ranks->Receive(decision.data(), 3, 0, AnswerTag);
+      if (decision[0] == own[0]) // else of a barrier for which this rank did not wait
       {
         return { decision[1], decision[2] != 0 };
       }
@@ -359,7 +361,7 @@ MissingRank Come(vtkMPIController* ranks, double wait, int filter)
     }
     if (!gone && IsPast(start, wait + Slack))
     {
-      ranks->Send(withdrawn.data(), 2, 0, ComeTag);
+      ranks->Send(withdrawn.data(), 2, 0, ArriveTag);
       gone = true;
     }
     Rest();
@@ -375,7 +377,7 @@ MissingRank FindMissingRank(vtkMultiProcessController* ranks, const char* filter
   if (auto* const mpi = vtkMPIController::SafeDownCast(ranks))
   {
     const int number = NumberOf(filter);
-    return mpi->GetLocalProcessId() == 0 ? Decide(mpi, SecondsToWait(), number) : Come(mpi, SecondsToWait(), number);
+    return mpi->GetLocalProcessId() == 0 ? Decide(mpi, SecondsToWait(), number) : Arrive(mpi, SecondsToWait(), number);
   }
 #endif
   (void)ranks;

@@ -16,31 +16,30 @@ class vtkInformationVector;
 
 /// The ranks of MPI that run a filter together, each for its piece of the output.
 ///
-/// They do where ParaView spreads data (pvbatch --symmetric, pvserver), and in programs of VTK's whose ranks each ask
-/// for one of as many pieces as there are ranks. Then all that they agree on is agreed by operations of VTK's global
-/// controller that each of them reaches, whether its own part of the work failed or not. Where fewer pieces are asked
-/// for, as by a rank that looks at the whole alone, nothing is agreed on, and nobody waits.
+/// This is so where ParaView distributes data (pvbatch --symmetric, pvserver), and in VTK programs whose ranks each ask
+/// for one of as many pieces as there are ranks. They then agree by collective operations of VTK's global controller,
+/// which every rank reaches even if its own part of the work failed. If fewer pieces are asked for, as by one rank that
+/// updates alone, there is no communication and nobody waits.
 namespace tyndall
 {
-/// In RequestUpdateExtent: tells the filters before a port whether all ranks ask them, though each for the whole.
+/// In RequestUpdateExtent: tells filters upstream of a port whether all ranks ask, though each for the whole.
 void AskTogether(vtkInformation* request, vtkInformationVector* outputs, vtkInformationVector* inputs);
 
 /// In RequestData.
-/// @return of the ranks that run the filter together; null: this process runs it alone
+/// @return the controller of the ranks that run the filter together; null: this process runs it alone
 vtkMultiProcessController* RanksTogether(vtkInformation* request, vtkInformationVector* outputs);
 
-/// In RequestUpdateExtent or RequestData: whether each rank asks for a piece of its own, as many as there are ranks.
+/// In RequestUpdateExtent or RequestData: whether as many pieces are asked for as there are ranks.
 bool EachAsksForItsPiece(vtkInformation* request, vtkInformationVector* outputs);
 
-/// Does something on each rank. All of them have to call it.
+/// Runs `act` on each rank. Collective.
 /// @param controller  null: there is one rank
-/// @throws what it threw, on every rank, where it threw on any of them: InvalidInput with the same words; where those
-///   are not of all ranks, they say of which. An abort (Aborted) and a filter before that failed (InputFailed) are no
-///   errors of their own
+/// @throws on every rank what it threw on any: InvalidInput with the same message, which names the rank if it was not
+///   all of them. An abort (Aborted) and a failure upstream (InputFailed) are no errors of their own
 void OnAllRanks(vtkMultiProcessController* controller, const std::function<void()>& act);
 
-/// The same of long work that can be stopped: where it ends early on one rank, the Monitor of the filter (MonitorOf)
-/// stops it on the others. A part of it may be such work itself.
+/// The same for long work that can be stopped: if it ends early on one rank, the filter's Monitor (MonitorOf) stops it
+/// on the other ranks. Calls may be nested.
 void WorkOnAllRanks(vtkMultiProcessController* controller, vtkAlgorithm* filter, const std::function<void()>& work);
 
 /// Writes the members of a struct to a stream, or reads them: one function names them for both.
@@ -129,21 +128,18 @@ std::vector<Struct> AllGather(vtkMultiProcessController* ranks, Struct own)
   return all;
 }
 
-/// Whether other ranks want a filter's work to stop, which is in WorkOnAllRanks.
+/// Whether another rank has ended early, in a filter's WorkOnAllRanks.
 bool IsStoppedByOthers(vtkAlgorithm* filter);
 
-/// Who is not where the others are.
+/// A rank that did not reach the barrier.
 struct MissingRank
 {
-  int rank = -1; ///< the first that did not come, or 0 on a rank that comes when the others have gone; -1: none
-  bool elsewhere = false; ///< it came to another filter than the first rank
+  int rank = -1;          ///< the first one; 0 on a rank that arrives after the others gave up; -1: none
+  bool elsewhere = false; ///< it reached another filter than the first rank
 };
 
-/// Waits until all ranks are here, which are about to work together, but not forever: a rank whose script does not
-/// update the filter, or where the pipeline stopped before it, never comes.
-///
-/// They wait 600 seconds, or as many as the variable TYNDALL_RANKS_WAIT says: a filter before may take that much longer
-/// on one rank than on another. Without MPI nobody waits here.
-/// @param filter  that this rank is at: its class
+/// A barrier with a timeout (SecondsToWait): a rank whose script does not update the filter, or whose pipeline stopped
+/// upstream, never arrives. Without MPI there is no barrier.
+/// @param filter  class of the filter that this rank has reached
 MissingRank FindMissingRank(vtkMultiProcessController* ranks, const char* filter);
 }

@@ -93,14 +93,14 @@ namespace
 using Pipeline = vtkStreamingDemandDrivenPipeline;
 using Extent = std::array<int, 6>;
 
-/// Of an output: number of this rank, then an extent for each.
+/// Of an output: the number of this rank, then an extent for each rank.
 vtkInformationIntegerVectorKey* PartsOfRanks()
 {
   static auto* const key = vtkInformationIntegerVectorKey::MakeKey("PARTS_OF_RANKS", "Tyndall");
   return key;
 }
 
-/// Of an output: the whole extents that were told of it when its data were made.
+/// Of an output: the whole extents that were announced when its data were made.
 vtkInformationIntegerVectorKey* ExtentsTold()
 {
   static auto* const key = vtkInformationIntegerVectorKey::MakeKey("EXTENTS_TOLD", "Tyndall");
@@ -132,7 +132,7 @@ Extent PartOfRank(vtkInformation* information, int rank)
   return extent;
 }
 
-/// Flags cells that ranks before this one are asked for, too, as their duplicates.
+/// Flags cells that are asked of lower ranks, too, as duplicates.
 void MarkThoseBefore(vtkInformation* information, vtkImageData* output)
 {
   const int rank = information->Get(PartsOfRanks())[0];
@@ -152,17 +152,18 @@ void MarkThoseBefore(vtkInformation* information, vtkImageData* output)
   }
 }
 
-/// What of an output is asked for.
+/// The requested part of an output.
 struct Part
 {
   bool isOfRank = false; ///< see NotePartsOfRanks
   bool divided = false;
-  AskedPiece piece; ///< empty: nothing, or where it is not divided all that there is
+  AskedPiece piece; ///< empty: nothing, or if it is not divided all of it
 };
 
-/// @param image  extent of what there is. Whoever asks for all that was told of asks for all of this: a file of another
-///               time, or voxels around points that were not known to be. So do those who ask for pieces of all where
-///               this is more (where it is not, it may be the piece alone that was made).
+/// @param image  its extent. A request for all of an announced extent is one for all of this: it may be a file of
+/// another
+///   time step, or have voxels around points that was not known. So is a request for pieces of all if this is more (if
+///   not, only the piece may have been made).
 Part PartAskedFor(vtkInformation* information, const Extent& image)
 {
   Part part;
@@ -181,8 +182,8 @@ Part PartAskedFor(vtkInformation* information, const Extent& image)
   return part;
 }
 
-/// Updates what inputs tell to the time step that is asked for. VTK does not hand a series' new extent on to filters
-/// behind its source. Not collective.
+/// Updates the information of inputs to the time step that is asked for. VTK does not pass a series' new extent on to
+/// filters downstream of its source. Not collective.
 /// @return whether the extent of an input depends on time
 bool HearOfTime(vtkInformationVector* inputs)
 {
@@ -218,8 +219,8 @@ void TellAgain(vtkExecutive* own, vtkInformationVector* outputs)
   own->GetAlgorithm()->ProcessRequest(request, own->GetInputInformation(), outputs);
 }
 
-/// In RequestUpdateExtent: inputs and outputs have the extent of the time that is asked for. Filters behind the outputs
-/// do not hear of it, and may ask for former extents, outside the one there is.
+/// In RequestUpdateExtent: gives inputs and outputs the extent of the time step that is asked for. Filters downstream
+/// do not learn of it, and may ask for former extents, outside the current one.
 void FollowTime(vtkInformationVector* inputs, vtkInformationVector* outputs)
 {
   vtkExecutive* const own = vtkExecutive::PRODUCER()->GetExecutive(outputs->GetInformationObject(0));
@@ -245,7 +246,7 @@ UpdateRequest::UpdateRequest(vtkInformation* information)
   : Information(information)
   , All(!information->Has(Pipeline::UPDATE_EXTENT()) || AsksForAll(information))
 {
-  NoteExtentTold(information); // who is not told will ask for this one again
+  NoteExtentTold(information); // consumers that are not informed ask for this one again
   for (vtkInformationKey* key : Keys())
   {
     this->Before->CopyEntry(information, key);
@@ -456,7 +457,7 @@ void KeepWhatIsAskedFor(vtkInformation* information, vtkImageData* output)
   NoteExtentTold(information);
   const Extent image = ExtentOf(output);
   const Part part = PartAskedFor(information, image);
-  if (!part.divided && part.piece.own == image) // which may be more than was told of
+  if (!part.divided && part.piece.own == image) // which may be more than was announced
   {
     information->Set(Pipeline::WHOLE_EXTENT(), image.data(), 6);
     information->Set(Pipeline::UPDATE_EXTENT(), image.data(), 6);

@@ -15,11 +15,11 @@ class vtkInformationKey;
 class vtkInformationVector;
 class vtkUnsignedCharArray;
 
-/// For filters in parallel pipelines whose light crosses the borders of pieces: they ask for the whole of their inputs
-/// (where a source does not give it to each rank: WholeInputs.h), work on that, and keep the piece that is asked for.
+/// Update extents of filters whose light crosses the boundaries between pieces: they ask for all of their inputs (if a
+/// source does not give it to each rank: WholeInputs.h), work on that, and keep the piece that is asked for.
 namespace tyndall
 {
-/// Numbers of cells or of points along the axes, from the lowest to the highest of each, x fastest.
+/// A box of cells or of points, with its bounds; x fastest.
 struct ValueBox
 {
   std::array<int, 3> low = { 0, 0, 0 };
@@ -72,38 +72,36 @@ std::array<int, 6> ExtentWithoutDuplicates(
 void FlagDuplicates(vtkDataSetAttributes* attributes, const ValueBox& box, unsigned char flag,
   const std::function<bool(const std::array<int, 3>&)>& isDuplicate);
 
-/// In RequestUpdateExtent: ask the inputs of a port for all of their image, or all pieces of their polydata.
-/// @param request, outputs  as RequestUpdateExtent is given them
+/// In RequestUpdateExtent: asks the inputs of a port for all of their image, or all pieces of their polydata.
+/// @param request, outputs  those of RequestUpdateExtent
 void AskForAll(vtkInformation* request, vtkInformationVector* inputs, vtkInformationVector* outputs);
-/// The inputs of a port are asked for what the output is: the pipeline has done so.
+/// The inputs of a port are asked for what is asked of the output, as the pipeline does.
 void AskForSame(vtkInformation* request, vtkInformationVector* inputs, vtkInformationVector* outputs);
-/// AskForAll of all ports but one, of which each rank is to have what its output is asked for.
+/// AskForAll for all ports but one, for which it is AskForSame.
 /// @param ports  their number
-/// @param piece  that one; -1: there is none
-/// @param besides  others; the same
+/// @param piece  that one; -1: none
+/// @param besides  further ones
 void AskForAllBut(int piece, vtkInformation* request, vtkInformationVector** inputs, int ports,
   vtkInformationVector* outputs, const std::vector<int>& besides = {});
 
-/// The same for this rank's piece, with a layer of its neighbours' cells, where ranks run the filter together; else for
-/// all.
+/// Asks for this rank's piece with one layer of ghost cells if ranks run the filter together; else AskForAll.
 void AskForPiece(vtkInformation* request, vtkInformationVector* inputs, vtkInformationVector* outputs);
 
 /// In RequestData: the output port that asks.
 vtkInformation* AskingPort(vtkInformation* request, vtkInformationVector* outputs);
 
-/// In RequestData: whether the piece that is asked for is the first, the one that has what is not divided. The port
-/// that asks says so; other ports may not know their piece yet.
+/// In RequestData: whether the first piece is asked for, which gets what is not divided. Taken from the port that asks;
+/// other ports may not know their piece yet.
 bool IsFirstPiece(vtkInformation* request, vtkInformationVector* outputs);
 
-/// In RequestData: notes that ranks are asked for parts of an output that are not the translator's pieces of one
-/// extent, but those that the source of each rank knows.
+/// In RequestData: records that ranks are asked for parts of an output that are not the extent translator's pieces, but
+/// those that the source of each rank announces.
 /// @param parts  an extent for each rank; none: they are pieces
 /// @param rank   this one
 void NotePartsOfRanks(vtkInformation* information, const std::vector<std::array<int, 6>>& parts, int rank);
 
-/// What is asked for of an image: a piece of its extent, with ghost cells and without; the same where it is not
-/// divided.
-/// Empty where there are more pieces than cells.
+/// The requested piece of an image's extent, with ghost cells and without; all of it if it is not divided. Empty if
+/// there are more pieces than cells.
 struct AskedPiece
 {
   static constexpr std::array<int, 6> Nothing = { 0, -1, 0, -1, 0, -1 };
@@ -118,28 +116,27 @@ struct AskedPiece
 };
 AskedPiece AskedPieceOf(vtkInformation* information, const std::array<int, 6>& whole);
 
-/// The part of an extent that is piece number `piece` of as many; empty where there are more pieces than cells.
+/// A piece of an extent by VTK's translator; empty if there are more pieces than cells.
 std::array<int, 6> PartOfExtent(const std::array<int, 6>& whole, int piece, int pieces, int ghostLevels = 0);
 
-/// Crops an image to a piece of it, and marks its ghost cells (vtkGhostType); empties it where the piece is.
+/// Crops an image to a piece of it, and marks its ghost cells (vtkGhostType); empties it if the piece is empty.
 void KeepPiece(const AskedPiece& piece, vtkImageData* output);
 
-/// Whether one extent has all points of another; six numbers each.
+/// Whether one extent contains another; six numbers each.
 bool Covers(const int* extent, const int* other);
 
-/// Whether the update extent of an output is all of it: the whole extent, or one that was told when its data were made
-/// at another time. Whoever asks may not know of the new one: VTK tells of extents before it says of what time data are
-/// wanted.
+/// Whether the update extent of an output is all of it: the whole extent, or an earlier one of another time step. A
+/// consumer may not know the new one: VTK announces extents before it requests a time step.
 bool AsksForAll(vtkInformation* information);
 /// In RequestData; KeepWhatIsAskedFor does it.
 void NoteExtentTold(vtkInformation* information);
 
-/// Keeps an update request, which VTK resets when a source tells of a new extent. A request for all of the old extent
-/// becomes one for all of the new.
+/// Restores an update request, which VTK resets when a source announces a new extent. A request for all of the old
+/// extent becomes one for all of the new.
 class UpdateRequest
 {
 public:
-  explicit UpdateRequest(vtkInformation* information); ///< must stay
+  explicit UpdateRequest(vtkInformation* information); ///< must outlive it
   void Restore() const;
 
 private:
@@ -150,19 +147,18 @@ private:
   bool All;
 };
 
-/// In RequestData: what KeepWhatIsAskedFor leaves of an image; its last bounds are less than its first ones where that
-/// is nothing.
+/// In RequestData: the extent that KeepWhatIsAskedFor leaves of an image; inverted if it is empty.
 std::array<int, 6> ExtentAskedFor(vtkInformation* information, const std::array<int, 6>& image);
 
-/// In RequestData: crop the output to the extent, or the piece of it, that was asked for; other ranks hold the rest.
-/// Cells that a neighbouring piece has, too, are marked (vtkGhostType), so that sums over pieces have them once.
+/// In RequestData: crops the output to the extent, or the piece of it, that was asked for. Ghost cells are marked
+/// (vtkGhostType), so that sums over pieces count them once.
 void KeepWhatIsAskedFor(vtkInformation* information, vtkImageData* output);
 
-/// In RequestData: the extent of an output that shows only when it is made. The pipeline had to guess it, and would run
-/// the filter again for what the guess has beyond it.
-/// @param asking  the port that asks: VTK takes it that all ports then have its piece
+/// In RequestData: announces the extent of an output that is not known before it is made. Otherwise the pipeline would
+/// run the filter again for what its guess has beyond it.
+/// @param asking  the port that asks: VTK assumes that all ports then have its piece
 void TellExtent(vtkInformation* asking, vtkInformation* information, const int extent[6]);
 
-/// The same of an image, of which then the piece that was asked for is kept.
+/// The same for an image, which is then cropped to the piece that was asked for.
 void TellExtentAndKeepWhatIsAskedFor(vtkInformation* asking, vtkInformation* information, vtkImageData* output);
 }

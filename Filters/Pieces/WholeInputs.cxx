@@ -132,7 +132,7 @@ InputSummary Summarize(vtkInformation* connection)
   return summary;
 }
 
-/// The same connection on all ranks.
+/// One connection on all ranks.
 using OnRanks = std::vector<InputSummary>;
 
 bool Alike(const OnRanks& summaries)
@@ -148,7 +148,7 @@ std::string Named(int port)
   return "The input" + (port > 0 ? " " + std::to_string(port) : std::string());
 }
 
-/// The arrays that can be put together: those of numbers that have a value for each cell or point.
+/// The arrays that can be gathered: numbers, one tuple for each cell or point.
 GatheredImage::Arrays ArraysOf(vtkDataSetAttributes* attributes, vtkIdType values)
 {
   GatheredImage::Arrays arrays;
@@ -177,7 +177,7 @@ void AddHidden(vtkDataSetAttributes* attributes, const std::vector<unsigned char
   }
 }
 
-/// Pieces of an image as one, on each rank.
+/// Gathers an image on each rank.
 vtkSmartPointer<vtkDataObject> WholeImageOf(
   vtkMultiProcessController* ranks, vtkImageData* piece, const OnRanks& summaries, const std::string& named)
 {
@@ -218,8 +218,8 @@ std::string Words(const Extent& extent)
   return text;
 }
 
-/// All that the source says there is must be on some rank, where all that have any are told of one extent. A file that
-/// one rank alone has gives it the piece that it is asked for, and nobody the others.
+/// Everything that the source announces must be on some rank if all pieces have the same whole extent: a file that only
+/// one rank can read gives it the piece that it is asked for, and nobody the other ones.
 void CheckExtent(const OnRanks& summaries, const std::string& named)
 {
   const auto isPiece = [](const InputSummary& summary) { return summary.isThere && summary.isImage; };
@@ -252,7 +252,7 @@ void CheckExtent(const OnRanks& summaries, const std::string& named)
             "whole on each rank."));
 }
 
-/// Data that are no image: those of the one rank that has any.
+/// Broadcasts data that are no image from the one rank that has any.
 vtkSmartPointer<vtkDataObject> FromOneRank(
   vtkMultiProcessController* ranks, vtkDataObject* own, const OnRanks& summaries, const std::string& named)
 {
@@ -355,8 +355,8 @@ Extent OwnPointsOf(vtkImageData* image)
   return flags ? ExtentWithoutDuplicates(extent, flags, ofPoints != nullptr) : extent;
 }
 
-/// The voxels around the points of a rank's piece: those that others have as their own, or lower ranks too, are
-/// duplicates.
+/// The voxels around the points of a rank's piece. Those of points that this rank does not own, or lower ranks own too,
+/// are duplicates.
 vtkSmartPointer<vtkImageData> VoxelsOfPiece(vtkImageData* piece, const OnRanks& summaries, int rank)
 {
   const vtkSmartPointer<vtkImageData> voxels = PointsAsVoxels(piece);
@@ -424,7 +424,7 @@ std::vector<RankSummary> Share(vtkMultiProcessController* ranks, const RankSumma
   return all;
 }
 
-/// What ranks were given by one of a port's connections.
+/// One of a port's connections on all ranks.
 OnRanks SummariesOf(const std::vector<RankSummary>& all, int port, int connection)
 {
   const std::vector<int>& connections = all[0].connections;
@@ -437,7 +437,7 @@ OnRanks SummariesOf(const std::vector<RankSummary>& all, int port, int connectio
   return summaries;
 }
 
-/// The extent of voxels around the points of another.
+/// The extent of the voxels around points.
 Extent Around(Extent points)
 {
   for (int axis = 0; axis < 3 && PointBoxOf(points).Count() > 0; ++axis)
@@ -447,7 +447,7 @@ Extent Around(Extent points)
   return points;
 }
 
-/// Where ranks are asked for parts of their own, as those of sources that know no other.
+/// Records the parts of outputs that are asked of ranks if these differ, as for sources that know only their own.
 void NoteParts(const std::vector<RankSummary>& all, int rank, vtkInformationVector* outputs)
 {
   for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
@@ -479,8 +479,8 @@ struct WholeInputs::Seen
 
 namespace
 {
-/// Puts other data in the place of a port's.
-/// @return null: there is none
+/// Replaces data of a port's connections.
+/// @return null if none changes
 vtkSmartPointer<vtkInformationVector> Changed(
   vtkInformationVector* given, const std::function<vtkSmartPointer<vtkDataObject>(int, vtkDataObject*)>& change)
 {
@@ -555,7 +555,7 @@ WholeInputs::WholeInputs(vtkMultiProcessController* ranks, vtkAlgorithm* filter,
   }
 }
 
-/// Images that are read as voxels with axes along those of the world, and the extents that were told of them.
+/// Aligns images that are read as voxels with the world's axes, and their announced extents.
 void WholeInputs::AlignGiven(vtkInformationVector** given)
 {
   const int ports = this->Filter->GetNumberOfInputPorts();
@@ -592,7 +592,7 @@ void WholeInputs::AlignGiven(vtkInformationVector** given)
   }
 }
 
-/// Those of the first port's image, of whichever rank has any of it.
+/// The axes of the first port's image, on whichever rank it has points.
 void WholeInputs::AgreeOnAxes(vtkMultiProcessController* ranks)
 {
   const bool reads =
@@ -625,7 +625,7 @@ void WholeInputs::AgreeOnAxes(vtkMultiProcessController* ranks)
   NoteOwnAxes(this->Filter, this->Axes);
 }
 
-/// Images of the scene into the axes of the first one.
+/// Rotates images into the axes of the first one.
 void WholeInputs::TurnGiven()
 {
   for (int port = 0; port < this->Filter->GetNumberOfInputPorts() && !this->Axes.AreThoseOfScene(); ++port)
@@ -653,7 +653,7 @@ void WholeInputs::PutIntoScene(vtkInformationVector* outputs)
   tyndall::PutIntoScene(this->Filter, this->Axes, outputs, vtkImageData::SafeDownCast(this->Medium));
 }
 
-/// Of arrays of points that are read beside others of cells.
+/// Names of point arrays that are read beside cell arrays, and so averaged.
 void WholeInputs::NoteAveragedArrays()
 {
   std::vector<std::string> averaged;
@@ -668,7 +668,7 @@ void WholeInputs::NoteAveragedArrays()
   NoteAveraged(this->Filter, averaged);
 }
 
-/// Puts other data on a port than are given.
+/// Replaces the data of a port.
 void WholeInputs::Change(int port, const ToOther& change)
 {
   const auto number = static_cast<std::size_t>(port);

@@ -1,7 +1,7 @@
 #include "vtkSolverComparison.h"
 
 #include "Common/Failure.h"
-#include "Common/GhostFlags.h"
+#include "Common/ImageInput.h"
 #include "Common/LightTransportData.h"
 #include "Common/PrintMembers.h"
 #include "Comparison/SolverComparison.h"

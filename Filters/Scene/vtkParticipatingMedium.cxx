@@ -1,6 +1,5 @@
 #include "vtkParticipatingMedium.h"
 
-#include "Common/GhostFlags.h"
 #include "Common/ImageInput.h"
 #include "Common/LightTransportData.h"
 #include "Common/LightTransportWriting.h"

@@ -1,7 +1,7 @@
 #include "IO/VDB/VDBFile.h"
 
 #include "Device/Errors.h"
-#include "IO/ReadableFile.h"
+#include "IO/Files.h"
 #include "IO/VDB/VDBBytes.h"
 
 #include <algorithm>
