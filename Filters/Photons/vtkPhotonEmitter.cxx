@@ -1,6 +1,7 @@
 #include "vtkPhotonEmitter.h"
 
 #include "Common/LightTransportData.h"
+#include "Common/PrintMembers.h"
 #include "Photons/ImportanceData.h"
 #include "Photons/PhotonData.h"
 #include "Pieces/ControllerCommunicator.h"
@@ -170,13 +171,5 @@ int vtkPhotonEmitter::RequestData(vtkInformation* request, vtkInformationVector*
 void vtkPhotonEmitter::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "PhotonCount: " << this->PhotonCount << "\n";
-  os << indent << "Sampler: " << this->Sampler << "\n";
-  os << indent << "Seed: " << this->Seed << "\n";
-  os << indent << "Batches: " << this->Batches << "\n";
-  os << indent << "MaximumDensity: " << this->MaximumDensity << "\n";
-  PrintNumbers(os, indent, "SkyColor", this->SkyColor, 3);
-  os << indent << "Photons: " << this->Photons << "\n";
-  PrintNumbers(os, indent, "Power", this->Power, 3);
-  os << indent << "Seconds: " << this->Seconds << "\n";
+  tyndallPrintMacro(PhotonCount, Sampler, Seed, Batches, MaximumDensity, SkyColor, Photons, Power, Seconds);
 }

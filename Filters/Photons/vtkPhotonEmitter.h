@@ -76,35 +76,30 @@ public:
   /// Photons that reach the volume, of all lights together, which share them in proportion to the power with which they
   /// reach it. Default 100000, valid [1, infinity). Spots and rectangles of which a part misses the volume meet it
   /// within a percent.
-  tyndallSetRangeMacro(PhotonCount, vtkIdType, 1, VTK_ID_MAX);
-  vtkGetMacro(PhotonCount, vtkIdType);
+  tyndallRangeMacro(PhotonCount, vtkIdType, 1, VTK_ID_MAX);
   ///@}
 
   ///@{
   /// How photons are spread: HAMMERSLEY (default), HALTON, JITTERED, GRID or RANDOM.
-  tyndallSetRangeMacro(Sampler, int, HAMMERSLEY, RANDOM);
-  vtkGetMacro(Sampler, int);
+  tyndallRangeMacro(Sampler, int, HAMMERSLEY, RANDOM);
   ///@}
 
   ///@{
   /// Another seed gives other photons, the same seed the same ones. Default 0.
-  tyndallSetRangeMacro(Seed, int, 0, VTK_INT_MAX);
-  vtkGetMacro(Seed, int);
+  tyndallRangeMacro(Seed, int, 0, VTK_INT_MAX);
   ///@}
 
   ///@{
   /// Independent sets that the photons are made of, each with its part of all the power: their differences tell
   /// vtkPhotonReconstruction the error of the light. Default 0: two with an importance map (even if that is even), one
   /// without; valid [0, 16].
-  tyndallSetRangeMacro(Batches, int, 0, 16);
-  vtkGetMacro(Batches, int);
+  tyndallRangeMacro(Batches, int, 0, 16);
   ///@}
 
   ///@{
   /// How dense photons may become by the importance map, in those spread evenly: what it asks for above that goes to
   /// other places. Default 8, valid [1, infinity).
-  tyndallSetRangeMacro(MaximumDensity, double, 1.0, tyndall::AnyHigh);
-  vtkGetMacro(MaximumDensity, double);
+  tyndallRangeMacro(MaximumDensity, double, 1.0, tyndall::AnyHigh);
   ///@}
 
   ///@{

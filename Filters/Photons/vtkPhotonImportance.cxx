@@ -2,6 +2,7 @@
 
 #include "Common/DeviceBudget.h"
 #include "Common/LightTransportData.h"
+#include "Common/PrintMembers.h"
 #include "Device/Device.h"
 #include "Distribution/SharedMedium.h"
 #include "Photons/Distributed/PhotonsInBlocks.h"
@@ -279,21 +280,10 @@ void vtkPhotonImportance::Note(const tyndall::Importance& importance)
 void vtkPhotonImportance::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "Device: " << this->Device << "\n";
-  os << indent << "PilotCount: " << this->PilotCount << "\n";
+  tyndallPrintMacro(Device, PilotCount);
   os << indent << "PilotDimensions: " << this->PilotDimensions[0] << " " << this->PilotDimensions[1] << " "
      << this->PilotDimensions[2] << "\n";
   os << indent << "Thresholds: " << (this->Thresholds == OWN ? "own" : "automatic") << "\n";
-  os << indent << "GradientThreshold: " << this->GradientThreshold << "\n";
-  os << indent << "LuminanceThreshold: " << this->LuminanceThreshold << "\n";
-  os << indent << "Background: " << this->Background << "\n";
-  os << indent << "Seed: " << this->Seed << "\n";
-  PrintNumbers(os, indent, "SkyColor", this->SkyColor, 3);
-  os << indent << "MemoryBudget: " << this->MemoryBudget << "\n";
-  os << indent << "Even: " << this->Even << "\n";
-  os << indent << "UsedGradientThreshold: " << this->UsedGradientThreshold << "\n";
-  os << indent << "UsedLuminanceThreshold: " << this->UsedLuminanceThreshold << "\n";
-  os << indent << "Seconds: " << this->Seconds << "\n";
-  os << indent << "DeviceName: " << this->DeviceName << "\n";
-  os << indent << "LeftOut: " << this->LeftOut << "\n";
+  tyndallPrintMacro(GradientThreshold, LuminanceThreshold, Background, Seed, SkyColor, MemoryBudget, Even,
+    UsedGradientThreshold, UsedLuminanceThreshold, Seconds, DeviceName, LeftOut);
 }

@@ -79,8 +79,7 @@ public:
   ///@{
   /// Pilot photons of each light; the largest square number that is not above it is made. Default 1024, valid [1,
   /// 2^20]; below it is an error.
-  tyndallSetRangeMacro(PilotCount, int, 1, VTK_INT_MAX);
-  vtkGetMacro(PilotCount, int);
+  tyndallRangeMacro(PilotCount, int, 1, VTK_INT_MAX);
   ///@}
 
   ///@{
@@ -91,29 +90,24 @@ public:
 
   ///@{
   /// Where the thresholds come from: OWN or AUTOMATIC (default).
-  tyndallSetRangeMacro(Thresholds, int, OWN, AUTOMATIC);
-  vtkGetMacro(Thresholds, int);
+  tyndallRangeMacro(Thresholds, int, OWN, AUTOMATIC);
   ///@}
 
   ///@{
   /// With own thresholds: cells whose light changes by this or more to the next are chosen, and lit cells of this light
   /// or less. W/length^2, default 0, valid [0, infinity).
-  tyndallSetRangeMacro(GradientThreshold, double, 0.0, tyndall::AnyHigh);
-  vtkGetMacro(GradientThreshold, double);
-  tyndallSetRangeMacro(LuminanceThreshold, double, 0.0, tyndall::AnyHigh);
-  vtkGetMacro(LuminanceThreshold, double);
+  tyndallRangeMacro(GradientThreshold, double, 0.0, tyndall::AnyHigh);
+  tyndallRangeMacro(LuminanceThreshold, double, 0.0, tyndall::AnyHigh);
   ///@}
 
   ///@{
   /// Part of the photons that are spread evenly all the same. Default 0.3, valid (0, 1].
-  tyndallSetRangeMacro(Background, double, tyndall::AboveZero, 1.0);
-  vtkGetMacro(Background, double);
+  tyndallRangeMacro(Background, double, tyndall::AboveZero, 1.0);
   ///@}
 
   ///@{
   /// Another seed gives other pilot photons, the same seed the same ones. Default 0.
-  tyndallSetRangeMacro(Seed, int, 0, VTK_INT_MAX);
-  vtkGetMacro(Seed, int);
+  tyndallRangeMacro(Seed, int, 0, VTK_INT_MAX);
   ///@}
 
   ///@{
@@ -126,8 +120,7 @@ public:
   ///@{
   /// MiB of the device's memory that the filter may take, with what it keeps from update to update; what is needed
   /// beyond is one error that says how much. Default 0: what the device has. Valid [0, 2^31).
-  tyndallSetRangeMacro(MemoryBudget, int, 0, VTK_INT_MAX);
-  vtkGetMacro(MemoryBudget, int);
+  tyndallRangeMacro(MemoryBudget, int, 0, VTK_INT_MAX);
   ///@}
 
   ///@{

@@ -3,6 +3,7 @@
 #include "Common/DeviceBudget.h"
 #include "Common/ImageInput.h"
 #include "Common/LightTransportData.h"
+#include "Common/PrintMembers.h"
 #include "Device/Device.h"
 #include "Distribution/SharedMedium.h"
 #include "Numerics/ChooseEvenly.h"
@@ -563,29 +564,7 @@ void vtkPhotonMarcher::Warn(const tyndall::PhotonLight& light, std::size_t photo
 void vtkPhotonMarcher::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "PointData: " << this->PointData << "\n";
-  os << indent << "Scheme: " << this->Scheme << "\n";
-  os << indent << "IntegratorOrder: " << this->IntegratorOrder << "\n";
-  os << indent << "StepSize: " << this->StepSize << "\n";
-  os << indent << "LeaveOut: " << this->LeaveOut << "\n";
-  os << indent << "EmptySpace: " << this->EmptySpace << "\n";
-  os << indent << "Decomposition: " << this->Decomposition << "\n";
-  os << indent << "PhotonCounts: " << this->PhotonCounts << "\n";
-  os << indent << "MaximumOrders: " << this->MaximumOrders << "\n";
-  os << indent << "Seed: " << this->Seed << "\n";
-  os << indent << "ErrorBatches: " << this->ErrorBatches << "\n";
-  os << indent << "PathCount: " << this->PathCount << "\n";
-  os << indent << "Smoothing: " << this->Smoothing << "\n";
-  os << indent << "MemoryBudget: " << this->MemoryBudget << "\n";
-  os << indent << "Device: " << this->Device << "\n";
-  os << indent << "Deposits: " << this->Deposits << "\n";
-  os << indent << "Steps: " << this->Steps << "\n";
-  os << indent << "Scatterings: " << this->Scatterings << "\n";
-  os << indent << "Missed: " << this->Missed << "\n";
-  os << indent << "BalanceError: " << this->BalanceError << "\n";
-  os << indent << "PackingLoss: " << this->PackingLoss << "\n";
-  os << indent << "MediumKept: " << this->MediumKept << "\n";
-  os << indent << "Seconds: " << this->Seconds << "\n";
-  os << indent << "DeviceName: " << this->DeviceName << "\n";
-  os << indent << "LeftOut: " << this->LeftOut << "\n";
+  tyndallPrintMacro(PointData, Scheme, IntegratorOrder, StepSize, LeaveOut, EmptySpace, Decomposition, PhotonCounts,
+    MaximumOrders, Seed, ErrorBatches, PathCount, Smoothing, MemoryBudget, Device, Deposits, Steps, Scatterings, Missed,
+    BalanceError, PackingLoss, MediumKept, Seconds, DeviceName, LeftOut);
 }

@@ -103,8 +103,7 @@ public:
 
   ///@{
   /// How to compute: PUBLISHED, or CONSERVATIVE (default).
-  tyndallSetRangeMacro(Scheme, int, PUBLISHED, CONSERVATIVE);
-  vtkGetMacro(Scheme, int);
+  tyndallRangeMacro(Scheme, int, PUBLISHED, CONSERVATIVE);
   ///@}
 
   enum Decompositions
@@ -125,8 +124,7 @@ public:
   /// AUTOMATIC_DECOMPOSITION (default): BLOCKS where each of several ranks asks for its piece and the scene can be
   /// marched through so; else WHOLE, and also where EmptySpace asks for bricks, unless the whole, once for each rank of
   /// a machine, is more than the memory that it has available.
-  tyndallSetRangeMacro(Decomposition, int, AUTOMATIC_DECOMPOSITION, BLOCKS);
-  vtkGetMacro(Decomposition, int);
+  tyndallRangeMacro(Decomposition, int, AUTOMATIC_DECOMPOSITION, BLOCKS);
   ///@}
 
   ///@{
@@ -145,22 +143,18 @@ public:
   ///@{
   /// Order of the conservative scheme's integrator: 1 (explicit Euler, to compare), 2 (leapfrog; default) or 4
   /// (Yoshida; where the index is smooth over several voxels; crosses 16 voxels of an octree's node in a step at most).
-  tyndallSetRangeMacro(IntegratorOrder, int, 1, 4);
-  vtkGetMacro(IntegratorOrder, int);
+  tyndallRangeMacro(IntegratorOrder, int, 1, 4);
   ///@}
 
   ///@{
   /// Length of a step where the index varies and the octree has single voxels, in voxels. Default 1, valid [0.05, 1e4].
-  tyndallSetRangeMacro(StepSize, double, 0.05, 1e4);
-  vtkGetMacro(StepSize, double);
+  tyndallRangeMacro(StepSize, double, 0.05, 1e4);
   ///@}
 
   ///@{
   /// Whether to count photons: `photon_count` and `photon_weight`, one more number per voxel in the same pass. Default
   /// off. The published scheme cannot: an error.
-  vtkSetMacro(PhotonCounts, bool);
-  vtkGetMacro(PhotonCounts, bool);
-  vtkBooleanMacro(PhotonCounts, bool);
+  tyndallFlagMacro(PhotonCounts);
   ///@}
 
   ///@{
@@ -168,30 +162,25 @@ public:
   /// randomness; m, through m - 1 scatterings; 0, until they are absorbed or have left. Valid [0, infinity). Scattered
   /// photons are an unbiased reference for every other solver: Monte Carlo along bent rays, by the medium's phase
   /// function. The published scheme has order 1 only: an error.
-  tyndallSetRangeMacro(MaximumOrders, int, 0, VTK_INT_MAX);
-  vtkGetMacro(MaximumOrders, int);
+  tyndallRangeMacro(MaximumOrders, int, 0, VTK_INT_MAX);
   ///@}
 
   ///@{
   /// Of the random numbers by which photons are scattered: the same seed gives the same light, bit for bit. Default 1,
   /// valid [0, infinity).
-  tyndallSetRangeMacro(Seed, int, 0, VTK_INT_MAX);
-  vtkGetMacro(Seed, int);
+  tyndallRangeMacro(Seed, int, 0, VTK_INT_MAX);
   ///@}
 
   ///@{
   /// Batches of scattered photons whose differences make `fluence_error`: 2 to 64, default 16; 0: it is not wanted. Of
   /// other orders than 1, without PhotonCounts.
-  tyndallSetRangeMacro(ErrorBatches, int, 0, 64);
-  vtkGetMacro(ErrorBatches, int);
+  tyndallRangeMacro(ErrorBatches, int, 0, 64);
   ///@}
 
   ///@{
   /// Whether to leave out what the scene does not need. Default on; off computes everything, for comparison: the same
   /// light, later. Of the conservative scheme.
-  vtkSetMacro(LeaveOut, bool);
-  vtkGetMacro(LeaveOut, bool);
-  vtkBooleanMacro(LeaveOut, bool);
+  tyndallFlagMacro(LeaveOut);
   ///@}
 
   /// Where light in empty space is kept by bricks of 8^3 voxels.
@@ -208,28 +197,23 @@ public:
   /// is mostly empty; in bricks that hold anything `fluence` is the same, to rounding. Applies where the index is
   /// constant and three quarters of the bricks are empty at least, of order 1 and the conservative scheme, without
   /// PhotonCounts and photons of several batches. Default AS_READ.
-  tyndallSetRangeMacro(EmptySpace, int, BY_VOXEL, BY_BRICK);
-  vtkGetMacro(EmptySpace, int);
+  tyndallRangeMacro(EmptySpace, int, BY_VOXEL, BY_BRICK);
   ///@}
 
   ///@{
   /// Number of photons, spread evenly over all, whose paths go to the second output. Default 0, valid [0, infinity).
-  tyndallSetRangeMacro(PathCount, int, 0, VTK_INT_MAX);
-  vtkGetMacro(PathCount, int);
+  tyndallRangeMacro(PathCount, int, 0, VTK_INT_MAX);
   ///@}
 
   ///@{
   /// Whether the published scheme ends with its 3x3x3 Gauss filter. Default on.
-  vtkSetMacro(Smoothing, bool);
-  vtkGetMacro(Smoothing, bool);
-  vtkBooleanMacro(Smoothing, bool);
+  tyndallFlagMacro(Smoothing);
   ///@}
 
   ///@{
   /// MiB of the device's memory that the filter may take, with what it keeps from update to update; what is needed
   /// beyond is one error that says how much. Default 0: what the device has. Valid [0, 2^31).
-  tyndallSetRangeMacro(MemoryBudget, int, 0, VTK_INT_MAX);
-  vtkGetMacro(MemoryBudget, int);
+  tyndallRangeMacro(MemoryBudget, int, 0, VTK_INT_MAX);
   ///@}
 
   tyndallDeviceMacro();

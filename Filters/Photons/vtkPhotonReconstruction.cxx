@@ -2,6 +2,7 @@
 
 #include "Common/ImageInput.h"
 #include "Common/LightTransportData.h"
+#include "Common/PrintMembers.h"
 #include "Device/Device.h"
 #include "Device/HostThreads.h"
 #include "Pieces/GuardedWork.h"
@@ -312,17 +313,6 @@ void vtkPhotonReconstruction::Note(const tyndall::ReconstructedLight& light, dou
 void vtkPhotonReconstruction::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "PointData: " << this->PointData << "\n";
-  os << indent << "Scheme: " << this->Scheme << "\n";
-  os << indent << "Levels: " << this->Levels << "\n";
-  os << indent << "WeightStep: " << this->WeightStep << "\n";
-  os << indent << "Level: " << this->Level << "\n";
-  os << indent << "NearestPhotons: " << this->NearestPhotons << "\n";
-  os << indent << "ConserveFluence: " << this->ConserveFluence << "\n";
-  os << indent << "Device: " << this->Device << "\n";
-  os << indent << "Bias: " << this->Bias << "\n";
-  os << indent << "MeanError: " << this->MeanError << "\n";
-  os << indent << "Seconds: " << this->Seconds << "\n";
-  os << indent << "DeviceName: " << this->DeviceName << "\n";
-  os << indent << "LeftOut: " << this->LeftOut << "\n";
+  tyndallPrintMacro(PointData, Scheme, Levels, WeightStep, Level, NearestPhotons, ConserveFluence, Device, Bias,
+    MeanError, Seconds, DeviceName, LeftOut);
 }

@@ -75,40 +75,34 @@ public:
 
   ///@{
   /// How the level is chosen: PUBLISHED, CONSERVATIVE (default), CONSTANT_RADIUS or NEAREST_PHOTONS.
-  tyndallSetRangeMacro(Scheme, int, PUBLISHED, NEAREST_PHOTONS);
-  vtkGetMacro(Scheme, int);
+  tyndallRangeMacro(Scheme, int, PUBLISHED, NEAREST_PHOTONS);
   ///@}
 
   ///@{
   /// Levels of the pyramid above the voxels, at most; no more than the grid has are made. Default 5, valid [1, 8].
-  tyndallSetRangeMacro(Levels, int, 1, 8);
-  vtkGetMacro(Levels, int);
+  tyndallRangeMacro(Levels, int, 1, 8);
   ///@}
 
   ///@{
   /// Published scheme: weight of photons from a level to the next. Default 0: the mean weight of lit voxels; valid
   /// [0, infinity).
-  tyndallSetRangeMacro(WeightStep, double, 0.0, tyndall::AnyHigh);
-  vtkGetMacro(WeightStep, double);
+  tyndallRangeMacro(WeightStep, double, 0.0, tyndall::AnyHigh);
   ///@}
 
   ///@{
   /// Constant radius: the level. Default 1, valid [0, 8].
-  tyndallSetRangeMacro(Level, int, 0, 8);
-  vtkGetMacro(Level, int);
+  tyndallRangeMacro(Level, int, 0, 8);
   ///@}
 
   ///@{
   /// Nearest photons: how many. Default 20, valid [1, infinity).
-  tyndallSetRangeMacro(NearestPhotons, int, 1, VTK_INT_MAX);
-  vtkGetMacro(NearestPhotons, int);
+  tyndallRangeMacro(NearestPhotons, int, 1, VTK_INT_MAX);
   ///@}
 
   ///@{
   /// Whether the light is scaled such that that of all voxels together is what it was: NEVER, ALWAYS, or BY_SCHEME
   /// (default).
-  tyndallSetRangeMacro(ConserveFluence, int, NEVER, BY_SCHEME);
-  vtkGetMacro(ConserveFluence, int);
+  tyndallRangeMacro(ConserveFluence, int, NEVER, BY_SCHEME);
   ///@}
 
   ///@{

@@ -3,6 +3,7 @@
 #include "Common/ArrayRanges.h"
 #include "Common/ImageInput.h"
 #include "Common/LightTransportData.h"
+#include "Common/PrintMembers.h"
 #include "Common/VectorArray.h"
 #include "Distribution/BrickedBytes.h"
 #include "Photons/OctreeNodes.h"
@@ -245,13 +246,6 @@ int vtkRefractionOctree::RequestData(
 void vtkRefractionOctree::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "PointData: " << this->PointData << "\n";
-  os << indent << "Tolerance: " << this->Tolerance << "\n";
-  os << indent << "IncludeExtinction: " << this->IncludeExtinction << "\n";
-  os << indent << "ExtinctionTolerance: " << this->ExtinctionTolerance << "\n";
-  os << indent << "Device: " << this->Device << "\n";
-  os << indent << "NodeCount: " << this->NodeCount << "\n";
-  os << indent << "Seconds: " << this->Seconds << "\n";
-  os << indent << "DeviceName: " << this->DeviceName << "\n";
-  os << indent << "LeftOut: " << this->LeftOut << "\n";
+  tyndallPrintMacro(
+    PointData, Tolerance, IncludeExtinction, ExtinctionTolerance, Device, NodeCount, Seconds, DeviceName, LeftOut);
 }

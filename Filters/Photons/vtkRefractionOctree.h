@@ -60,22 +60,18 @@ public:
   ///@{
   /// Largest difference of refractive index within a node. Default 0.01, valid [0, 1]; with 0 only voxels of the
   /// very same index are one node.
-  tyndallSetRangeMacro(Tolerance, double, 0.0, 1.0);
-  vtkGetMacro(Tolerance, double);
+  tyndallRangeMacro(Tolerance, double, 0.0, 1.0);
   ///@}
 
   ///@{
   /// Whether extinction, too, has to be nearly equal within a node. Default off.
-  vtkSetMacro(IncludeExtinction, bool);
-  vtkGetMacro(IncludeExtinction, bool);
-  vtkBooleanMacro(IncludeExtinction, bool);
+  tyndallFlagMacro(IncludeExtinction);
   ///@}
 
   ///@{
   /// With IncludeExtinction: by how much the optical thickness of a straight way through a node may be off where
   /// extinction is taken as constant in it. Default 0.1, valid [0, infinity).
-  tyndallSetRangeMacro(ExtinctionTolerance, double, 0.0, tyndall::AnyHigh);
-  vtkGetMacro(ExtinctionTolerance, double);
+  tyndallRangeMacro(ExtinctionTolerance, double, 0.0, tyndall::AnyHigh);
   ///@}
 
   ///@{

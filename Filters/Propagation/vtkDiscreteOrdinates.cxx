@@ -2,6 +2,7 @@
 
 #include "Common/DeviceBudget.h"
 #include "Common/LightTransportData.h"
+#include "Common/PrintMembers.h"
 #include "Device/Device.h"
 #include "DiscreteOrdinates/DiscreteOrdinates.h"
 #include "DiscreteOrdinates/OrdinatesQuality.h"
@@ -129,21 +130,6 @@ void vtkDiscreteOrdinates::Note(const tyndall::LightField& light)
 void vtkDiscreteOrdinates::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "Scheme: " << this->Scheme << "\n";
-  os << indent << "Scattering: " << this->Scattering << "\n";
-  os << indent << "DirectionsPerFace: " << this->DirectionsPerFace << "\n";
-  os << indent << "SpiralDirections: " << this->SpiralDirections << "\n";
-  os << indent << "Terms: " << this->Terms << "\n";
-  os << indent << "MaximumOrders: " << this->MaximumOrders << "\n";
-  os << indent << "WarmStart: " << this->WarmStart << "\n";
-  os << indent << "NetFlux: " << this->NetFlux << "\n";
-  os << indent << "LeaveOut: " << this->LeaveOut << "\n";
-  os << indent << "Orders: " << this->Orders << "\n";
-  os << indent << "SweepsSaved: " << this->SweepsSaved << "\n";
-  os << indent << "Residual: " << this->Residual << "\n";
-  os << indent << "BalanceError: " << this->BalanceError << "\n";
-  os << indent << "HalfRangeFlux: " << this->HalfRangeFlux << "\n";
-  os << indent << "Seconds: " << this->Seconds << "\n";
-  os << indent << "DeviceName: " << this->DeviceName << "\n";
-  os << indent << "LeftOut: " << this->LeftOut << "\n";
+  tyndallPrintMacro(Scheme, Scattering, DirectionsPerFace, SpiralDirections, Terms, MaximumOrders, WarmStart, NetFlux,
+    LeaveOut, Orders, SweepsSaved, Residual, BalanceError, HalfRangeFlux, Seconds, DeviceName, LeftOut);
 }

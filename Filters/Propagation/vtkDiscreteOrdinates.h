@@ -84,41 +84,35 @@ public:
 
   ///@{
   /// How to compute: PUBLISHED, or CONSERVATIVE (default). PUBLISHED refuses a FaceAlbedo other than 0.
-  tyndallSetRangeMacro(Scheme, int, PUBLISHED, CONSERVATIVE);
-  vtkGetMacro(Scheme, int);
+  tyndallRangeMacro(Scheme, int, PUBLISHED, CONSERVATIVE);
   ///@}
 
   ///@{
   /// How what arrives along each direction is scattered into each: MATRIX, SINGULAR_VALUES or SPHERICAL_HARMONICS
   /// (default).
-  tyndallSetRangeMacro(Scattering, int, MATRIX, SPHERICAL_HARMONICS);
-  vtkGetMacro(Scattering, int);
+  tyndallRangeMacro(Scattering, int, MATRIX, SPHERICAL_HARMONICS);
   ///@}
 
   ///@{
   /// Directions per face of a cube. Default 25, valid square numbers: 1, 4, 9, 16, 25, ... Slabs are solved with more.
-  tyndallSetRangeMacro(DirectionsPerFace, int, 1, VTK_INT_MAX);
-  vtkGetMacro(DirectionsPerFace, int);
+  tyndallRangeMacro(DirectionsPerFace, int, 1, VTK_INT_MAX);
   ///@}
 
   ///@{
   /// Directions on a spiral instead, any number from 16 on. Default 0: those of the cube, whose light turns with its
   /// scene.
-  tyndallSetRangeMacro(SpiralDirections, int, 0, VTK_INT_MAX);
-  vtkGetMacro(SpiralDirections, int);
+  tyndallRangeMacro(SpiralDirections, int, 0, VTK_INT_MAX);
   ///@}
 
   ///@{
   /// Terms of the separable phase function. Default 25, at most as many as there are directions; of spherical
   /// harmonics square numbers: 1, 4, 9, 16, ...
-  tyndallSetRangeMacro(Terms, int, 1, VTK_INT_MAX);
-  vtkGetMacro(Terms, int);
+  tyndallRangeMacro(Terms, int, 1, VTK_INT_MAX);
   ///@}
 
   ///@{
   /// Scattering orders (as published: steps) at most. Default 0: as many as Tolerance takes.
-  tyndallSetRangeMacro(MaximumOrders, int, 0, VTK_INT_MAX);
-  vtkGetMacro(MaximumOrders, int);
+  tyndallRangeMacro(MaximumOrders, int, 0, VTK_INT_MAX);
   ///@}
 
   ///@{
@@ -126,23 +120,17 @@ public:
   /// changed a little, the same light within the tolerance. It is kept in memory until an update with WarmStart off: a
   /// float a voxel and channel. It is used where scattering is isotropic, and not as published. By blocks each rank
   /// keeps that of its own, and all begin in the dark where blocks have changed. Default off.
-  vtkSetMacro(WarmStart, bool);
-  vtkGetMacro(WarmStart, bool);
-  vtkBooleanMacro(WarmStart, bool);
+  tyndallFlagMacro(WarmStart);
   ///@}
 
   ///@{
   /// Whether to compute `net_flux` too. Default off.
-  vtkSetMacro(NetFlux, bool);
-  vtkGetMacro(NetFlux, bool);
-  vtkBooleanMacro(NetFlux, bool);
+  tyndallFlagMacro(NetFlux);
   ///@}
 
   ///@{
   /// Whether to leave out what the scene does not need. Default on.
-  vtkSetMacro(LeaveOut, bool);
-  vtkGetMacro(LeaveOut, bool);
-  vtkBooleanMacro(LeaveOut, bool);
+  tyndallFlagMacro(LeaveOut);
   ///@}
 
   ///@{

@@ -2,6 +2,7 @@
 
 #include "Common/DeviceBudget.h"
 #include "Common/LightTransportData.h"
+#include "Common/PrintMembers.h"
 #include "Device/Clock.h"
 #include "Device/Device.h"
 #include "Distribution/Domain.h"
@@ -223,19 +224,6 @@ void vtkLatticeBoltzmannLighting::Note(const tyndall::LightField& light)
 void vtkLatticeBoltzmannLighting::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "Lattice: " << this->Lattice << "\n";
-  os << indent << "Scheme: " << this->Scheme << "\n";
-  os << indent << "BlockSize: " << this->BlockSize << "\n";
-  os << indent << "Interleaved: " << this->Interleaved << "\n";
-  os << indent << "VoxelsPerTurn: " << this->VoxelsPerTurn << "\n";
-  os << indent << "Probes: " << this->Probes << "\n";
-  os << indent << "StepsPerExchange: " << this->StepsPerExchange << "\n";
-  os << indent << "MaximumOrders: " << this->MaximumOrders << "\n";
-  os << indent << "NetFlux: " << this->NetFlux << "\n";
-  os << indent << "Steps: " << this->Steps << "\n";
-  os << indent << "Residual: " << this->Residual << "\n";
-  os << indent << "BalanceError: " << this->BalanceError << "\n";
-  os << indent << "Seconds: " << this->Seconds << "\n";
-  os << indent << "DeviceName: " << this->DeviceName << "\n";
-  os << indent << "LeftOut: " << this->LeftOut << "\n";
+  tyndallPrintMacro(Lattice, Scheme, BlockSize, Interleaved, VoxelsPerTurn, Probes, StepsPerExchange, MaximumOrders,
+    NetFlux, Steps, Residual, BalanceError, Seconds, DeviceName, LeftOut);
 }

@@ -96,64 +96,53 @@ public:
 
   ///@{
   /// Directions of the lattice: 18 (default), along axes and diagonals, or 6 along axes alone.
-  tyndallSetRangeMacro(Lattice, int, 6, 18);
-  vtkGetMacro(Lattice, int);
+  tyndallRangeMacro(Lattice, int, 6, 18);
   ///@}
 
   ///@{
   /// How light collides: PUBLISHED, or CONSERVATIVE (default).
-  tyndallSetRangeMacro(Scheme, int, PUBLISHED, CONSERVATIVE);
-  vtkGetMacro(Scheme, int);
+  tyndallRangeMacro(Scheme, int, PUBLISHED, CONSERVATIVE);
   ///@}
 
   ///@{
   /// Edge of blocks, voxels, 2 to 8, that step by themselves, as published with 4. Default 0: all voxels together.
-  tyndallSetRangeMacro(BlockSize, int, 0, 8);
-  vtkGetMacro(BlockSize, int);
+  tyndallRangeMacro(BlockSize, int, 0, 8);
   ///@}
 
   ///@{
   /// Whether photons, where there are any, march while what they have left so far diffuses, by StepsPerExchange steps
   /// to VoxelsPerTurn voxels of their ways, as published (Bernabei et al.); steps go on until Tolerance is met.
   /// Default off: they march to their ends first.
-  vtkSetMacro(Interleaved, bool);
-  vtkGetMacro(Interleaved, bool);
-  vtkBooleanMacro(Interleaved, bool);
+  tyndallFlagMacro(Interleaved);
   ///@}
 
   ///@{
   /// Voxels that photons cross in a turn, where Interleaved. Default 16, valid [0, 1000000]; 0: to the end of their
   /// ways.
-  tyndallSetRangeMacro(VoxelsPerTurn, int, 0, 1000000);
-  vtkGetMacro(VoxelsPerTurn, int);
+  tyndallRangeMacro(VoxelsPerTurn, int, 0, 1000000);
   ///@}
 
   ///@{
   /// Voxels, spread evenly, at which it is looked how much light changes by steps. Default 4096, valid [0, infinity);
   /// 0: all.
-  tyndallSetRangeMacro(Probes, int, 0, VTK_INT_MAX);
-  vtkGetMacro(Probes, int);
+  tyndallRangeMacro(Probes, int, 0, VTK_INT_MAX);
   ///@}
 
   ///@{
   /// Steps of a block before it exchanges light with its neighbours, and steps of the lattice to a turn of photons.
   /// Default 8, valid [1, 1000].
-  tyndallSetRangeMacro(StepsPerExchange, int, 1, 1000);
-  vtkGetMacro(StepsPerExchange, int);
+  tyndallRangeMacro(StepsPerExchange, int, 1, 1000);
   ///@}
 
   ///@{
   /// Steps to do. Default 0: until Tolerance is met; of the conservative scheme without blocks the steady state is then
   /// solved for.
-  tyndallSetRangeMacro(MaximumOrders, int, 0, VTK_INT_MAX);
-  vtkGetMacro(MaximumOrders, int);
+  tyndallRangeMacro(MaximumOrders, int, 0, VTK_INT_MAX);
   ///@}
 
   ///@{
   /// Whether to compute `net_flux` too. Default off.
-  vtkSetMacro(NetFlux, bool);
-  vtkGetMacro(NetFlux, bool);
-  vtkBooleanMacro(NetFlux, bool);
+  tyndallFlagMacro(NetFlux);
   ///@}
 
   ///@{

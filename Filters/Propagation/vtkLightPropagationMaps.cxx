@@ -2,6 +2,7 @@
 
 #include "Common/DeviceBudget.h"
 #include "Common/LightTransportData.h"
+#include "Common/PrintMembers.h"
 #include "Device/Device.h"
 #include "Device/Errors.h"
 #include "Distribution/SharedMedium.h"
@@ -285,29 +286,8 @@ void vtkLightPropagationMaps::PrintSelf(ostream& os, vtkIndent indent)
   this->Superclass::PrintSelf(os, indent);
   os << indent << "Scheme: " << (this->Scheme == CONSERVATIVE ? "conservative" : "as published") << "\n";
   os << indent << "Algorithm: " << (this->Algorithm == SEQUENTIAL ? "sequential" : "parallel") << "\n";
-  os << indent << "Source: " << this->Source << "\n";
-  os << indent << "Acceleration: " << this->Acceleration << "\n";
-  os << indent << "DirectionsPerFace: " << this->DirectionsPerFace << "\n";
-  os << indent << "UncollidedDirections: " << this->UncollidedDirections << "\n";
-  os << indent << "AngularDegree: " << this->AngularDegree << "\n";
-  os << indent << "StoreMoments: " << this->StoreMoments << "\n";
-  os << indent << "EmissionError: " << this->EmissionError << "\n";
-  os << indent << "StaggeredRays: " << this->StaggeredRays << "\n";
-  os << indent << "MapResolution: " << this->MapResolution << "\n";
-  os << indent << "MaximumOrders: " << this->MaximumOrders << "\n";
-  os << indent << "WarmStart: " << this->WarmStart << "\n";
-  os << indent << "NetFlux: " << this->NetFlux << "\n";
-  os << indent << "LeaveOut: " << this->LeaveOut << "\n";
-  os << indent << "StoredDirections: " << this->StoredDirections << "\n";
-  os << indent << "TargetError: " << this->TargetError << "\n";
-  os << indent << "Solves: " << this->Solves << "\n";
-  os << indent << "Orders: " << this->Orders << "\n";
-  os << indent << "SweepsSaved: " << this->SweepsSaved << "\n";
-  os << indent << "Residual: " << this->Residual << "\n";
-  os << indent << "EstimatedError: " << this->EstimatedError << "\n";
-  os << indent << "BalanceError: " << this->BalanceError << "\n";
-  os << indent << "HalfRangeFlux: " << this->HalfRangeFlux << "\n";
-  os << indent << "Seconds: " << this->Seconds << "\n";
-  os << indent << "DeviceName: " << this->DeviceName << "\n";
-  os << indent << "LeftOut: " << this->LeftOut << "\n";
+  tyndallPrintMacro(Source, Acceleration, DirectionsPerFace, UncollidedDirections, AngularDegree, StoreMoments,
+    EmissionError, StaggeredRays, MapResolution, MaximumOrders, WarmStart, NetFlux, LeaveOut, StoredDirections,
+    TargetError, Solves, Orders, SweepsSaved, Residual, EstimatedError, BalanceError, HalfRangeFlux, Seconds,
+    DeviceName, LeftOut);
 }

@@ -108,35 +108,30 @@ public:
   ///@{
   /// How to compute: PUBLISHED, or CONSERVATIVE (default). PUBLISHED refuses a FaceAlbedo other than 0, and begins in
   /// the dark whatever WarmStart is.
-  tyndallSetRangeMacro(Scheme, int, PUBLISHED, CONSERVATIVE);
-  vtkGetMacro(Scheme, int);
+  tyndallRangeMacro(Scheme, int, PUBLISHED, CONSERVATIVE);
   ///@}
 
   ///@{
   /// Which algorithm of the published scheme: SEQUENTIAL, or PARALLEL (default). The conservative scheme has one only.
-  tyndallSetRangeMacro(Algorithm, int, SEQUENTIAL, PARALLEL);
-  vtkGetMacro(Algorithm, int);
+  tyndallRangeMacro(Algorithm, int, SEQUENTIAL, PARALLEL);
   ///@}
 
   ///@{
   /// How the light that a voxel sends out is spread over it (conservative scheme): CONSTANT, LINEAR,
   /// AUTOMATIC_SOURCE (default), or OCTANTS.
-  tyndallSetRangeMacro(Source, int, CONSTANT, OCTANTS);
-  vtkGetMacro(Source, int);
+  tyndallRangeMacro(Source, int, CONSTANT, OCTANTS);
   ///@}
 
   ///@{
   /// How scattering orders are added up (conservative scheme, where MaximumOrders is 0): NONE, or
   /// AUTOMATIC_ACCELERATION (default). LINEAR needs it.
-  tyndallSetRangeMacro(Acceleration, int, NONE, AUTOMATIC_ACCELERATION);
-  vtkGetMacro(Acceleration, int);
+  tyndallRangeMacro(Acceleration, int, NONE, AUTOMATIC_ACCELERATION);
   ///@}
 
   ///@{
   /// Directions per face of a cube. Default 25, valid square numbers: 1, 4, 9, 16, 25, ... Slabs are solved with more
   /// (UnvaryingAxes.h).
-  tyndallSetRangeMacro(DirectionsPerFace, int, 1, VTK_INT_MAX);
-  vtkGetMacro(DirectionsPerFace, int);
+  tyndallRangeMacro(DirectionsPerFace, int, 1, VTK_INT_MAX);
   ///@}
 
   ///@{
@@ -144,16 +139,14 @@ public:
   /// It has shadows with edges and is swept once: it may have many while scattered light does with few. Default -1: as
   /// many as cost a quarter more time, for light of faces alone (UncollidedDirections.h); 0: as DirectionsPerFace;
   /// else square numbers up to 4096.
-  tyndallSetRangeMacro(UncollidedDirections, int, -1, VTK_INT_MAX);
-  vtkGetMacro(UncollidedDirections, int);
+  tyndallRangeMacro(UncollidedDirections, int, -1, VTK_INT_MAX);
   ///@}
 
   ///@{
   /// Relative error, voxel by voxel, of the unscattered light of small bright parts of the medium, which is followed
   /// along exact rays (conservative scheme, no periodic axis). Default 0.02; 0.005 costs five to ten times as much,
   /// less gains nothing; 0: they are swept like all else, as they are where other light has more power.
-  tyndallSetRangeMacro(EmissionError, double, 0.0, tyndall::AnyHigh);
-  vtkGetMacro(EmissionError, double);
+  tyndallRangeMacro(EmissionError, double, 0.0, tyndall::AnyHigh);
   ///@}
 
   ///@{
@@ -161,38 +154,31 @@ public:
   /// in finer detail, and take longer. -1 (default): 3, in thin media 6, in slabs 9, or less, as the phase function,
   /// Tolerance and memory ask for; 0: scattering is taken as isotropic with sigma_s (1 - g), the similarity relation.
   /// Valid [-1, 15]; DirectionsPerFace of n x n tell 2 n - 1 degrees apart, no more are used.
-  tyndallSetRangeMacro(AngularDegree, int, -1, 15);
-  vtkGetMacro(AngularDegree, int);
+  tyndallRangeMacro(AngularDegree, int, -1, 15);
   ///@}
 
   ///@{
   /// Whether to keep the angular moments of what is scattered (cells `scattered_moments`, `straight_on`, field data
   /// `lamps_apart`), where light is scattered in moments: vtkMediumRayCaster shows them. Four bytes times (degree +
   /// 1)^2 a voxel and channel, a gigabyte at most. Default on.
-  vtkSetMacro(StoreMoments, bool);
-  vtkGetMacro(StoreMoments, bool);
-  vtkBooleanMacro(StoreMoments, bool);
+  tyndallFlagMacro(StoreMoments);
   ///@}
 
   ///@{
   /// Whether rays of each direction start in a place of their own within a voxel (conservative scheme), those of
   /// more than 100 UncollidedDirections always. From 144 directions per face on up to half the error, with fewer up to
   /// twice. Default off.
-  vtkSetMacro(StaggeredRays, bool);
-  vtkGetMacro(StaggeredRays, bool);
-  vtkBooleanMacro(StaggeredRays, bool);
+  tyndallFlagMacro(StaggeredRays);
   ///@}
 
   ///@{
   /// Rays of a direction per voxel edge. Default 1, valid [1, 16].
-  tyndallSetRangeMacro(MapResolution, int, 1, 16);
-  vtkGetMacro(MapResolution, int);
+  tyndallRangeMacro(MapResolution, int, 1, 16);
   ///@}
 
   ///@{
   /// Scattering orders at most. Default 0: as many as Tolerance takes.
-  tyndallSetRangeMacro(MaximumOrders, int, 0, VTK_INT_MAX);
-  vtkGetMacro(MaximumOrders, int);
+  tyndallRangeMacro(MaximumOrders, int, 0, VTK_INT_MAX);
   ///@}
 
   ///@{
@@ -200,8 +186,7 @@ public:
   /// (conservative scheme): it chooses directions and tolerance where they have their default values, divides voxels
   /// where these are too coarse, and warns where the estimate stays above. Quality is not read then. Default 0: not
   /// asked for; valid [0, 0.5].
-  tyndallSetRangeMacro(TargetError, double, 0.0, 0.5);
-  vtkGetMacro(TargetError, double);
+  tyndallRangeMacro(TargetError, double, 0.0, 0.5);
   ///@}
 
   ///@{
@@ -209,30 +194,23 @@ public:
   /// changed a little, the same light within the tolerance. It is kept in memory until an update with WarmStart off: a
   /// float a voxel and channel, times (degree + 1)^2 with AngularDegree; not as published. By blocks each rank keeps
   /// that of its own, and all begin in the dark where blocks have changed. Default off.
-  vtkSetMacro(WarmStart, bool);
-  vtkGetMacro(WarmStart, bool);
-  vtkBooleanMacro(WarmStart, bool);
+  tyndallFlagMacro(WarmStart);
   ///@}
 
   ///@{
   /// Whether to compute `net_flux` too; it costs time and memory. Default off.
-  vtkSetMacro(NetFlux, bool);
-  vtkGetMacro(NetFlux, bool);
-  vtkBooleanMacro(NetFlux, bool);
+  tyndallFlagMacro(NetFlux);
   ///@}
 
   ///@{
   /// Whether to leave out what the scene does not need. Default on; off computes everything, for comparison: the same
   /// light, later.
-  vtkSetMacro(LeaveOut, bool);
-  vtkGetMacro(LeaveOut, bool);
-  vtkBooleanMacro(LeaveOut, bool);
+  tyndallFlagMacro(LeaveOut);
   ///@}
 
   ///@{
   /// Directions for which `scattered_radiance` is kept. Default 1 (enough for isotropic scattering), valid from 1 on.
-  tyndallSetRangeMacro(StoredDirections, int, 1, VTK_INT_MAX);
-  vtkGetMacro(StoredDirections, int);
+  tyndallRangeMacro(StoredDirections, int, 1, VTK_INT_MAX);
   ///@}
 
   ///@{

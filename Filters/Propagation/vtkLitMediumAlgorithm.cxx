@@ -124,17 +124,6 @@ tyndall::Illumination vtkLitMediumAlgorithm::ReadIllumination(vtkInformationVect
   return tyndall::InOwnAxes(std::move(illumination), tyndall::OwnAxesOf(this));
 }
 
-void vtkLitMediumAlgorithm::PrintNumbers(
-  ostream& os, vtkIndent indent, const char* name, const double* values, int count)
-{
-  os << indent << name << ":";
-  for (int i = 0; i < count; ++i)
-  {
-    os << " " << values[i];
-  }
-  os << "\n";
-}
-
 void vtkLitMediumAlgorithm::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);

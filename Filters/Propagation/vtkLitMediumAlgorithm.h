@@ -101,9 +101,6 @@ protected:
   /// The lights, and the environment as it stands in the scene. Checked.
   tyndall::Illumination ReadIllumination(vtkInformationVector** inputs);
 
-  /// A line of PrintSelf: the name, then the numbers.
-  static void PrintNumbers(ostream& os, vtkIndent indent, const char* name, const double* values, int count);
-
   int EnvironmentUp = 2;
   double EnvironmentAzimuth = 0.0;
   int PointData = VOXELS_AROUND_POINTS;

@@ -4,6 +4,7 @@
 #include "BlocksOfRanks.h"
 #include "CasterProperties.h"
 #include "Common/LightTransportData.h"
+#include "Common/PrintMembers.h"
 #include "Device/Clock.h"
 #include "PictureOverlay.h"
 #include "Pieces/ControllerCommunicator.h"
@@ -557,12 +558,9 @@ void vtkLitVolumeMapper::ReleaseGraphicsResources(vtkWindow* window)
 void vtkLitVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "FrameTime: " << this->FrameTime << "\n";
-  os << indent << "CommonExposure: " << this->CommonExposure << "\n";
+  tyndallPrintMacro(FrameTime, CommonExposure);
   os << indent << "IsPiece: " << this->IsPiece() << "\n";
-  os << indent << "UsedExposure: " << this->UsedExposure << "\n";
-  os << indent << "CastSize: " << this->CastSize[0] << " " << this->CastSize[1] << "\n";
-  os << indent << "Seconds: " << this->Seconds << "\n";
+  tyndallPrintMacro(UsedExposure, CastSize, Seconds);
   os << indent << "RayCaster:\n";
   this->RayCaster->PrintSelf(os, indent.GetNextIndent());
 }

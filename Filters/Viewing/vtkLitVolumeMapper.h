@@ -58,8 +58,7 @@ public:
 
   ///@{
   /// Seconds that the rays of a frame are to take while the camera moves. Default 0.025, valid [0.001, 10].
-  tyndallSetRangeMacro(FrameTime, double, 0.001, 10.0);
-  vtkGetMacro(FrameTime, double);
+  tyndallRangeMacro(FrameTime, double, 0.001, 10.0);
   ///@}
 
   ///@{

@@ -9,6 +9,7 @@
 #include "Common/InputsKey.h"
 #include "Common/LightTransportData.h"
 #include "Common/PhaseFunctionData.h"
+#include "Common/PrintMembers.h"
 #include "Device/Clock.h"
 #include "Device/Device.h"
 #include "PictureOfBlocks.h"
@@ -484,37 +485,10 @@ bool vtkMediumRayCaster::See(const tyndall::AskedView& view, tyndall::Picture& p
 void vtkMediumRayCaster::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "Device: " << this->Device << "\n";
-  os << indent << "Quality: " << this->Quality << "\n";
-  os << indent << "ImageSize: " << this->ImageSize[0] << " " << this->ImageSize[1] << "\n";
-  PrintNumbers(os, indent, "CameraPosition", this->CameraPosition, 3);
-  PrintNumbers(os, indent, "CameraFocalPoint", this->CameraFocalPoint, 3);
-  PrintNumbers(os, indent, "CameraViewUp", this->CameraViewUp, 3);
-  os << indent << "CameraViewAngle: " << this->CameraViewAngle << "\n";
-  os << indent << "CameraParallelProjection: " << this->CameraParallelProjection << "\n";
-  os << indent << "CameraParallelScale: " << this->CameraParallelScale << "\n";
-  os << indent << "StepSize: " << this->StepSize << "\n";
-  os << indent << "SingleScatteringOnly: " << this->SingleScatteringOnly << "\n";
-  os << indent << "ShadowRays: " << this->ShadowRays << "\n";
-  os << indent << "RectangleSamples: " << this->RectangleSamples << "\n";
-  os << indent << "ShowBackground: " << this->ShowBackground << "\n";
-  PrintNumbers(os, indent, "BackgroundColor", this->BackgroundColor, 3);
-  PrintNumbers(os, indent, "BackgroundRadiance", this->BackgroundRadiance, 3);
-  os << indent << "Exposure: " << this->Exposure << "\n";
-  os << indent << "AutoExposure: " << this->AutoExposure << "\n";
+  tyndallPrintMacro(Device, Quality, ImageSize, CameraPosition, CameraFocalPoint, CameraViewUp, CameraViewAngle,
+    CameraParallelProjection, CameraParallelScale, StepSize, SingleScatteringOnly, ShadowRays, RectangleSamples,
+    ShowBackground, BackgroundColor, BackgroundRadiance, Exposure, AutoExposure);
   os << indent << "ToneCurve: " << (this->ToneCurve == LINEAR ? "linear" : "filmic") << "\n";
-  os << indent << "SurfaceReflection: " << this->SurfaceReflection << "\n";
-  os << indent << "SurfaceIndex: " << this->SurfaceIndex << "\n";
-  os << indent << "SurfaceReflectance: " << this->SurfaceReflectance << "\n";
-  os << indent << "TableFace: " << this->TableFace << "\n";
-  PrintNumbers(os, indent, "TableColor", this->TableColor, 3);
-  os << indent << "TableReflectance: " << this->TableReflectance << "\n";
-  os << indent << "LeaveOut: " << this->LeaveOut << "\n";
-  os << indent << "Seconds: " << this->Seconds << "\n";
-  os << indent << "UsedExposure: " << this->UsedExposure << "\n";
-  os << indent << "SceneKept: " << this->SceneKept << "\n";
-  os << indent << "MemoryBudget: " << this->MemoryBudget << "\n";
-  os << indent << "DeviceName: " << this->DeviceName << "\n";
-  os << indent << "LeftOut: " << this->LeftOut << "\n";
-  os << indent << "SettingsUsed: " << this->SettingsUsed << "\n";
+  tyndallPrintMacro(SurfaceReflection, SurfaceIndex, SurfaceReflectance, TableFace, TableColor, TableReflectance,
+    LeaveOut, Seconds, UsedExposure, SceneKept, MemoryBudget, DeviceName, LeftOut, SettingsUsed);
 }

@@ -146,8 +146,7 @@ public:
   /// How exact the picture is to be: chooses StepSize and RectangleSamples where they have their default value, and
   /// leaves those that have another one. DRAFT, USUAL (default), FINE or REFERENCE; with USUAL both are taken as they
   /// stand.
-  tyndallSetRangeMacro(Quality, int, DRAFT, REFERENCE);
-  vtkGetMacro(Quality, int);
+  tyndallRangeMacro(Quality, int, DRAFT, REFERENCE);
   ///@}
 
   ///@{
@@ -173,55 +172,43 @@ public:
 
   ///@{
   /// Angle between the picture's lower and upper edge, degrees. Default 30, valid (0, 180).
-  tyndallSetRangeMacro(CameraViewAngle, double, tyndall::AboveZero, 180.0);
-  vtkGetMacro(CameraViewAngle, double);
+  tyndallRangeMacro(CameraViewAngle, double, tyndall::AboveZero, 180.0);
   ///@}
 
   ///@{
   /// Whether rays are parallel, and then half the picture's height, length. Default off; 1, valid (0, infinity). A
   /// camera that frames the medium finds the height itself.
-  vtkSetMacro(CameraParallelProjection, bool);
-  vtkGetMacro(CameraParallelProjection, bool);
-  vtkBooleanMacro(CameraParallelProjection, bool);
-  tyndallSetRangeMacro(CameraParallelScale, double, 0.0, tyndall::AnyHigh);
-  vtkGetMacro(CameraParallelScale, double);
+  tyndallFlagMacro(CameraParallelProjection);
+  tyndallRangeMacro(CameraParallelScale, double, 0.0, tyndall::AnyHigh);
   ///@}
 
   ///@{
   /// Voxels that a ray advances between two samples. Default 0.5, valid [0.01, 10]. The error falls with its square.
-  tyndallSetRangeMacro(StepSize, double, 0.01, 10.0);
-  vtkGetMacro(StepSize, double);
+  tyndallRangeMacro(StepSize, double, 0.01, 10.0);
   ///@}
 
   ///@{
   /// Whether to show only light that was scattered once. Default off.
-  vtkSetMacro(SingleScatteringOnly, bool);
-  vtkGetMacro(SingleScatteringOnly, bool);
-  vtkBooleanMacro(SingleScatteringOnly, bool);
+  tyndallFlagMacro(SingleScatteringOnly);
   ///@}
 
   ///@{
   /// Whether to follow the lights' direct light by shadow rays, scattered by the medium's phase function. Default off:
   /// it is in `fluence`, scattered evenly or as `mean_direction` says. Where no lamp and no sun shines the picture is
   /// the same and no time goes into it; `left_out` says so.
-  vtkSetMacro(ShadowRays, bool);
-  vtkGetMacro(ShadowRays, bool);
-  vtkBooleanMacro(ShadowRays, bool);
+  tyndallFlagMacro(ShadowRays);
   ///@}
 
   ///@{
   /// Samples along each edge of a rectangular light. Default 3, valid [1, 32].
-  tyndallSetRangeMacro(RectangleSamples, int, 1, 32);
-  vtkGetMacro(RectangleSamples, int);
+  tyndallRangeMacro(RectangleSamples, int, 1, 32);
   ///@}
 
   ///@{
   /// Whether the environment, or else BackgroundRadiance or BackgroundColor, is seen behind the medium. Default on:
   /// `color` is opaque. Off: laid over black it looks as before black; its own alpha is that of the array `alpha`, and
   /// larger where bright thin smoke would be more than white.
-  vtkSetMacro(ShowBackground, bool);
-  vtkGetMacro(ShowBackground, bool);
-  vtkBooleanMacro(ShowBackground, bool);
+  tyndallFlagMacro(ShowBackground);
   ///@}
 
   ///@{
@@ -242,26 +229,22 @@ public:
   ///@{
   /// What the surface of refractive objects mirrors of a ray that meets it from the side of the smaller index: NONE
   /// (default), FRESNEL or FIXED. Without an `ior` that varies there is no surface.
-  tyndallSetRangeMacro(SurfaceReflection, int, NONE, FIXED);
-  vtkGetMacro(SurfaceReflection, int);
+  tyndallRangeMacro(SurfaceReflection, int, NONE, FIXED);
   ///@}
 
   ///@{
   /// The surface is where n has this value. Default 0: midway between the least and the largest n. Valid [0, infinity).
-  tyndallSetRangeMacro(SurfaceIndex, double, 0.0, tyndall::AnyHigh);
-  vtkGetMacro(SurfaceIndex, double);
+  tyndallRangeMacro(SurfaceIndex, double, 0.0, tyndall::AnyHigh);
   ///@}
 
   ///@{
   /// Part that the surface mirrors if SurfaceReflection is FIXED. Default 0.1, valid [0, 1].
-  tyndallSetRangeMacro(SurfaceReflectance, double, 0.0, 1.0);
-  vtkGetMacro(SurfaceReflectance, double);
+  tyndallRangeMacro(SurfaceReflectance, double, 0.0, 1.0);
   ///@}
 
   ///@{
   /// Face of the box that is a table, seen from within: 0 to 5 for -x, +x, -y, +y, -z, +z. Default -1: none.
-  tyndallSetRangeMacro(TableFace, int, -1, 5);
-  vtkGetMacro(TableFace, int);
+  tyndallRangeMacro(TableFace, int, -1, 5);
   ///@}
 
   ///@{
@@ -273,30 +256,25 @@ public:
 
   ///@{
   /// Part that the table mirrors. Default 0.1, valid from 0 to 1 less TableColor.
-  tyndallSetRangeMacro(TableReflectance, double, 0.0, 1.0);
-  vtkGetMacro(TableReflectance, double);
+  tyndallRangeMacro(TableReflectance, double, 0.0, 1.0);
   ///@}
 
   ///@{
   /// MiB of the device's memory that the filter may take, with what it keeps from update to update; what is needed
   /// beyond is one error that says how much. Default 0: what the device has. Valid [0, 2^31).
-  tyndallSetRangeMacro(MemoryBudget, int, 0, VTK_INT_MAX);
-  vtkGetMacro(MemoryBudget, int);
+  tyndallRangeMacro(MemoryBudget, int, 0, VTK_INT_MAX);
   ///@}
 
   ///@{
   /// Whether to leave out what the scene does not need. Default on; off computes everything, for comparison: the same
   /// picture, later.
-  vtkSetMacro(LeaveOut, bool);
-  vtkGetMacro(LeaveOut, bool);
-  vtkBooleanMacro(LeaveOut, bool);
+  tyndallFlagMacro(LeaveOut);
   ///@}
 
   ///@{
   /// What radiance is multiplied by for `color`. Default 0: so that the mean of the picture's lit part becomes a medium
   /// grey. Valid [0, 1e30].
-  tyndallSetRangeMacro(Exposure, double, 0.0, 1e30);
-  vtkGetMacro(Exposure, double);
+  tyndallRangeMacro(Exposure, double, 0.0, 1e30);
   ///@}
 
   enum AutoExposures
@@ -308,14 +286,12 @@ public:
   ///@{
   /// What an Exposure of 0 is found from: EACH_PICTURE (default), or the FIRST_PICTURE after this was chosen, whose
   /// exposure all later ones have, so that an animation does not flicker.
-  tyndallSetRangeMacro(AutoExposure, int, EACH_PICTURE, FIRST_PICTURE);
-  vtkGetMacro(AutoExposure, int);
+  tyndallRangeMacro(AutoExposure, int, EACH_PICTURE, FIRST_PICTURE);
   ///@}
 
   ///@{
   /// How `color` follows radiance: LINEAR, or FILMIC (default).
-  tyndallSetRangeMacro(ToneCurve, int, LINEAR, FILMIC);
-  vtkGetMacro(ToneCurve, int);
+  tyndallRangeMacro(ToneCurve, int, LINEAR, FILMIC);
   ///@}
 
   ///@{
