@@ -15,30 +15,29 @@ class vtkImageData;
 class vtkInformation;
 class vtkInformationVector;
 
-/// What is asked of inputs before a filter works.
+/// Input ports for images, and checks of inputs before a filter works.
 ///
-/// For filters that work on images: a port that takes vtkImageData alone refuses other data by an error of VTK's
-/// executive for each pass of the pipeline, none of which says what to do. These ports take any data, and refuse them
-/// once.
+/// A port that accepts only vtkImageData refuses other data by an error of VTK's executive in each pass of the
+/// pipeline, none of which says what to do. These ports accept any data, and refuse them once with advice.
 namespace tyndall
 {
-/// In FillInputPortInformation: the port is for images. Of blocks of images, vtkMultiBlockDataSet and the partitioned
-/// datasets, the pipeline hands on one after the other. Those of adaptive meshes (AMR) overlap, so these are refused.
+/// In FillInputPortInformation: the port is for images. The pipeline runs the filter once for each block of a
+/// vtkMultiBlockDataSet or partitioned dataset. Blocks of adaptive meshes (AMR) overlap, so these are refused.
 void TakeImages(vtkInformation* port);
 
-/// The same of a filter without outputs, a writer, to which VTK does not hand on blocks one by one: they are refused.
+/// The same for a writer, which VTK does not run once for each block: blocks are refused.
 void TakeOneImage(vtkInformation* port);
 
-/// Of an input or an output port, in FillInputPortInformation or FillOutputPortInformation: its image is a picture that
-/// has no place in the scene, so that it is not turned along with a medium (OwnAxes).
+/// In FillInputPortInformation or FillOutputPortInformation: the image is a picture without a place in the scene, so
+/// that it is not rotated along with a medium (OwnAxes).
 void TakePictures(vtkInformation* port);
 
 bool TakesPictures(vtkInformation* port);
 bool IsForImagesOfScene(vtkInformation* port); ///< for images, not for pictures
 
-/// Also in FillInputPortInformation: the image is read as voxels, by these arrays.
+/// In FillInputPortInformation: the image is read as voxels, by these arrays.
 /// @param chosen  default names of those that SetInputArrayToProcess chooses, by number; "": the active scalars
-/// @param named   others, which have no other names; AnyArray: all, where there are none of these
+/// @param named   further ones, with fixed names; AnyArray: all, if there are none of these
 void ReadsVoxels(
   vtkInformation* port, std::initializer_list<const char*> chosen, std::initializer_list<const char*> named = {});
 constexpr const char* AnyArray = "";
@@ -48,39 +47,37 @@ struct VoxelArrays
 };
 VoxelArrays VoxelArraysOf(vtkInformation* port);
 
-/// Whether the voxels that a filter reads of an image are around its points (PropertyRange.h, tyndallPointDataMacro):
-/// it reads arrays of points, and none of cells. An image at another port than the medium's, 0, that has the points of
-/// a medium of which the cells are read has voxels there, too.
-/// @param averaged  where arrays of points are read, and voxels are cells: the names of those
+/// Whether a filter reads voxels around an image's points (PropertyRange.h, tyndallPointDataMacro): it reads point
+/// arrays and no cell arrays. An image at another port than the medium's, 0, with as many points as a medium whose
+/// cells are read is read as cells, too.
+/// @param averaged  set to the names of point arrays that are averaged to cells
 bool AreAroundPoints(vtkAlgorithm* filter, int port, vtkImageData* image, std::vector<std::string>* averaged = nullptr);
 
-/// An image with a voxel around each point: arrays of points are its arrays of cells, those of cells are left out.
-/// Where an image has one point along an axis it has one voxel.
+/// An image with a voxel around each point: point arrays become its cell arrays, cell arrays are dropped. One point
+/// along an axis is one voxel.
 vtkSmartPointer<vtkImageData> PointsAsVoxels(vtkImageData* points);
 
-/// That a filter averages arrays of points, for they meet others of cells; none: it does not.
+/// Records which point arrays a filter averages because it reads cell arrays beside them.
 void NoteAveraged(vtkAlgorithm* filter, const std::vector<std::string>& arrays);
-/// Adds the same as a line to the settings used.
+/// Adds them as a line to the settings used.
 void AddAveraged(vtkAlgorithm* filter, std::vector<std::string>& settings);
 
-/// In ProcessRequest of a filter in which light goes from voxel to voxel, with each request: warns, once with each
-/// update, where VTK's pipeline is to run the filter for one block of a composite input after another. RequestData sees
-/// the blocks alone. Where there are several ranks the first one warns, of its blocks.
+/// In ProcessRequest of a filter in which light goes from voxel to voxel, for each request: warns once an update if
+/// VTK's pipeline is to run the filter for each block of a composite input. RequestData sees only the blocks. With
+/// several ranks the first one warns, of its blocks.
 void WarnOfBlocks(vtkAlgorithm* filter, vtkInformation* request, vtkInformationVector** inputs);
 
-/// To be asked before a filter works; Guarded does.
-/// @throws InvalidInput where a port for images has other data, with what to do about it
+/// Called before a filter works, by Guarded.
+/// @throws InvalidInput if a port for images has other data, with advice
 void RequireImages(vtkAlgorithm* filter);
 
-/// The same for the arrays of all inputs, images or not: who reads an array that is shorter than its dataset reads
-/// memory behind it. Guarded asks this, too, before anything reads them.
-/// @throws InvalidInput where an array has not a value for each point, cell or row
+/// Called by Guarded before anything reads arrays: one that is shorter than its dataset would be read beyond its end.
+/// @throws InvalidInput if an array has not a value for each point, cell or row
 void RequireWholeArrays(vtkAlgorithm* filter);
 
-/// In RequestInformation of a filter whose output has the voxels of its input at a port: where the input has no extent,
-/// as data that are no image, the output has a voxel, so that the pipeline asks the filter for it. Where voxels are
-/// around points, as far as is known before the image, the output has one more than there are between them; its axes
-/// are aligned.
+/// In RequestInformation of a filter whose output has the voxels of its input at a port: announces their extent, with
+/// aligned axes, and one voxel more along each axis if they are around points, as far as that is known. If the input
+/// has no extent, as data that are no image, it announces one voxel, so that the pipeline runs the filter.
 void TellVoxels(vtkAlgorithm* filter, int port, vtkInformationVector* inputs, vtkInformationVector* outputs);
 
 // What vtkGhostType of an input image means.

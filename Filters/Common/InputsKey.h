@@ -24,14 +24,14 @@
 /// Keys for what filters keep between updates: by times of change, or by content.
 namespace tyndall
 {
-/// Of a copy of an array whose vectors were turned into other axes (ImageInput.h): when that array was last changed.
+/// In a copy of an array whose vectors were rotated into other axes (ImageAxes.h): when that array was last changed.
 inline vtkInformationUnsignedLongKey* TimeBeforeTurning()
 {
   static auto* const key = vtkInformationUnsignedLongKey::MakeKey("TIME_BEFORE_TURNING", "Tyndall");
   return key;
 }
 
-/// When an array was last changed, or that of which it is a turned copy.
+/// When an array was last changed, or the one of which it is a rotated copy.
 inline vtkMTimeType TimeOf(vtkAbstractArray* array)
 {
   const bool isCopy = array->HasInformation() && array->GetInformation()->Has(TimeBeforeTurning());

@@ -24,11 +24,11 @@ class vtkDataSetAttributes;
 class vtkImageData;
 class vtkPolyData;
 
-/// The one place where filters read what flows between them: arrays, their names, shapes and units. What they write:
+/// Reading of the data that flow between filters: arrays, their names, shapes and units. Writing:
 /// LightTransportWriting.h.
 ///
-/// What reads throws InvalidInput with a text for the user; a filter does all its work within Guarded, which turns that
-/// into an error of VTK. A filter's RequestData then reads:
+/// These functions throw InvalidInput with a message for users; a filter does all its work within Guarded, which turns
+/// it into an error of VTK:
 ///
 ///     int vtkX::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 ///     {
@@ -43,20 +43,20 @@ class vtkPolyData;
 ///     }
 namespace tyndall
 {
-/// The three numbers of a property: a colour or a place.
+/// The three numbers of a property: a colour or a position.
 inline std::array<double, 3> Triple(const double* values)
 {
   return { values[0], values[1], values[2] };
 }
 
 /// The cells of an image, wherever its extent starts.
-/// @throws InvalidInput where there is no image, no cell, a spacing that is not a positive number, or a rotation
+/// @throws InvalidInput if there is no image or no cell, a spacing is not a positive number, or it is rotated
 Grid GridOf(vtkImageData* image);
 
-/// The array itself where it is of floats, else a copy that is; null of null.
+/// The array itself if it is of floats, else a copy; null for null.
 vtkSmartPointer<vtkFloatArray> AsFloats(vtkDataArray* array);
 
-/// An array as floats, and the memory they are in.
+/// An array as floats; keeps its memory.
 class FloatField
 {
 public:
@@ -87,31 +87,31 @@ std::string NamesOf(vtkDataSetAttributes* attributes);
 /// Shapes an array may have; empty: any.
 using Components = std::initializer_list<int>;
 
-/// Values of the image's cells: the cell array of that name, or its point array averaged to cells (of an image that has
-/// voxels around its points, ImageInput.h, Guarded has made its points cells before). Float arrays are
-/// used where they are, others are converted. Hidden cells (ImageInput.h) have 0, of the refractive index 1.
-/// @throws InvalidInput naming the array, the components it has, or the arrays that there are
+/// Values of the image's cells: the cell array of that name, or its point array averaged to cells (Guarded has turned
+/// points into cells before if there are voxels around them, ImageInput.h). Float arrays are used in place, other types
+/// are converted. Hidden cells (ImageInput.h) have 0, or refractive index 1.
+/// @throws InvalidInput naming the array, its components, or the arrays that there are
 FloatField ReadCells(vtkImageData* image, const std::string& name, Need need, Components components = { 1, 3 });
 
-/// The same for the array that SetInputArrayToProcess chose as number `index`, by name or by attribute. Where points
-/// were chosen, the point array is preferred to a cell array of the same name. Where nothing was chosen, which is
-/// SCALARS to VTK and "" to ParaView before it knows the input, or the name `otherwise`, the array is read that the
-/// filter before took for it (NoteChoices), or else `otherwise`; "" there stands for the active scalars. An array of
-/// another name that was chosen is never optional.
+/// The same for the array that SetInputArrayToProcess chose as number `index`, by name or by attribute. If points were
+/// chosen, the point array is preferred to a cell array of the same name. If nothing was chosen (SCALARS for VTK, ""
+/// for ParaView before it knows the input), or the name `otherwise`, the array is read that the filter upstream took
+/// for the quantity (NoteChoices), or else `otherwise`; "" there stands for the active scalars. An array that was
+/// chosen by another name is never optional.
 FloatField ReadChosenCells(vtkAlgorithm* filter, int index, vtkImageData* image, const std::string& otherwise,
   Need need, Components components = { 1, 3 });
 
-/// The array that ReadChosenCells would read, or null; it is not looked at.
+/// The array that ReadChosenCells would read, or null; not checked.
 vtkDataArray* ChosenArray(vtkAlgorithm* filter, int index, vtkImageData* image, const std::string& otherwise);
 
-/// Names of the arrays that a filter reads of an image: all that are there.
+/// Names of the arrays that a filter reads of an image, as far as it has them.
 struct ArraysRead
 {
   std::vector<std::string> ofCells, ofPoints;
 };
 ArraysRead FindArrays(vtkAlgorithm* filter, const VoxelArrays& arrays, vtkImageData* image);
 
-/// Whether arrays were chosen by SetInputArrayToProcess, or are active as `input` tells, and all of them are of points.
+/// Whether arrays were chosen by SetInputArrayToProcess, or are announced as active, and all of them are of points.
 /// @param chosen  VoxelArrays
 bool ChoosesOnlyPoints(vtkAlgorithm* filter, const std::vector<std::string>& chosen, vtkInformation* input);
 
@@ -138,27 +138,27 @@ constexpr int RefractiveIndex = 3;
 using Quantities = std::vector<std::pair<int, std::string>>;
 Quantities QuantitiesOfMedium(); ///< those of MediumArray, and RefractiveIndex
 
-/// Have an output say which of its arrays the filter took for these quantities, so that filters after it take the same:
-/// field data `sigma_a_array` and so on, a text with the array's name, and "points" where that was preferred to cells
-/// of its name. None where it is the usual array.
+/// Records in an output which of its arrays the filter took for these quantities, so that filters downstream take the
+/// same: field data `sigma_a_array` and so on, a text with the array's name, and "points" if these were preferred to
+/// cells of that name. None for the default array.
 /// @param input  of the filter; the output has its arrays
 void NoteChoices(vtkAlgorithm* filter, const Quantities& quantities, vtkImageData* input, vtkImageData* output);
 
-/// For a filter that makes a medium's arrays itself: what its input said of other ones holds no more.
+/// For a filter that makes a medium's arrays itself: removes what its input recorded.
 void ForgetChoices(vtkImageData* output);
 
-/// Whether the array that ReadChosenCells would read is there and has another value than the usual one in a cell that
-/// is not hidden. Not checked otherwise: for filters that do not know the quantity.
+/// Whether the array that ReadChosenCells would read exists and differs from the usual value in a cell that is not
+/// hidden: for filters that ignore the quantity. Not checked otherwise.
 bool IsUnusual(vtkAlgorithm* filter, int index, vtkImageData* image, const std::string& name, float usual);
 
-/// What a filter that takes light as going straight on ignores of this medium, and one whose photons come from lights
-/// alone: texts of field data `ignored` (IgnoredFact); empty where that is nothing.
+/// Texts of field data `ignored` (IgnoredFact) for a filter without refraction, and for one whose photons come from
+/// lights alone; empty if nothing is ignored.
 std::vector<std::string> IgnoredIndex(bool isUnusual);
 std::vector<std::string> IgnoredEmission(bool isUnusual);
 /// The same as a warning.
 std::string WarningOf(const std::vector<std::string>& ignored);
 
-/// A medium and the arrays that it sees.
+/// A medium and the arrays that it refers to.
 struct MediumInput
 {
   Medium medium;
@@ -173,39 +173,38 @@ struct MediumInput
 /// its companions (PhaseFunctionData.h; missing: Henyey and Greenstein's). Checked.
 MediumInput ReadMedium(vtkAlgorithm* filter, vtkImageData* image);
 
-/// What WriteLight wrote of scattered light by direction; not there where the solver found none, or part of it is gone.
+/// Angular moments that WriteLight wrote; without values if the solver found none, or part of them is gone.
 struct MomentsInput
 {
   FloatField moments, straightOn;
   std::vector<Light> lampsApart;
 };
 
-/// Uncollided light of another solver, and the arrays that it sees.
+/// Uncollided light of another solver, and the arrays that it refers to.
 struct UncollidedInput
 {
   UncollidedImage image;
   FloatField fluence, meanDirection;
 };
 
-/// All that shines, and the arrays that it sees.
+/// Everything that lights a medium, and the arrays that it refers to.
 struct IlluminationInput
 {
   Illumination illumination;
   UncollidedInput uncollided;
-  bool isDefaultSky = false; ///< nothing was given, see vtkPropagationAlgorithm
+  bool isDefaultSky = false; ///< no light is given, see vtkPropagationAlgorithm
 };
 
-/// What PhotonMarcher or PhotonReconstruction found of light that is not scattered: cells `fluence_direct` (1 or 3
-/// components), optional cells `mean_direction` (3; missing: every way alike), optional field data `face_power_out`
-/// (missing: 0).
-/// @throws InvalidInput where its voxels are not those of the medium, or an array is missing or has the wrong shape
+/// Uncollided light of PhotonMarcher or PhotonReconstruction: cells `fluence_direct` (1 or 3 components), optional
+/// cells `mean_direction` (3; missing: isotropic), optional field data `face_power_out` (missing: 0).
+/// @throws InvalidInput if its voxels are not those of the medium, or an array is missing or has the wrong shape
 UncollidedInput ReadUncollided(vtkImageData* image, const Grid& medium);
 
-/// @throws InvalidInput where one is there and has the wrong shape
+/// @throws InvalidInput if one has the wrong shape
 MomentsInput ReadMoments(vtkImageData* image);
 
 /// Field data `name`: one number.
-/// @throws InvalidInput where it is there and is not one number
+/// @throws InvalidInput if it is not one number
 double ReadFact(vtkDataObject* data, const char* name, double missing);
 
 /// Lights as LightRig makes them: point data `light_type` and `power` (1 or 3 components); `direction`, `size` and
@@ -213,7 +212,7 @@ double ReadFact(vtkDataObject* data, const char* name, double missing);
 /// lights. Checked.
 std::vector<Light> ReadLights(vtkPolyData* lights);
 
-/// Lights of the scene, and with its sky, as they shine on an image in axes of its own.
+/// Lights of the scene, and illumination with its sky, in the axes of an image.
 std::vector<Light> InOwnAxes(std::vector<Light> lights, const OwnAxes& axes);
 Illumination InOwnAxes(Illumination illumination, const OwnAxes& axes);
 
@@ -221,15 +220,14 @@ Illumination InOwnAxes(Illumination illumination, const OwnAxes& axes);
 /// 1 points; hidden ones are black. No image: an empty environment. Checked.
 Environment ReadEnvironment(vtkImageData* image);
 
-/// Whether there is neither a lamp nor an environment, and the sky and all faces are black.
+/// Whether there is neither a lamp nor an environment, and sky and all faces are black.
 bool NothingShines(const Illumination& illumination);
 
-/// Adds light without a source: radiance from every direction alike (red, green, blue) and through the faces -x, +x,
-/// -y, +y, -z, +z, W/(length^2 sr). Checked.
+/// Adds isotropic radiance (red, green, blue) and that through the faces -x, +x, -y, +y, -z, +z, W/(length^2 sr).
+/// Checked.
 void AddDiffuse(Illumination& illumination, const double* sky, const double* faceRadiance);
 
-/// Adds what these faces give back of the light that leaves: a part for each, times factors red, green, blue for each.
-/// Checked.
+/// Adds reflecting boundaries: an albedo for each face, times factors red, green, blue for each. Checked.
 void AddFaceAlbedo(Illumination& illumination, const double* albedo, const double* colour);
 
 /// Whether a grid's voxels have the same corners as those of the medium, but for rounding.
