@@ -32,30 +32,29 @@ struct PieceValues
   std::vector<unsigned char> flags; ///< vtkGhostType of each value; empty: there is none
 };
 
-/// Which of an image's values come from which of its pieces, where those may overlap. A value is taken from the first
-/// piece that flags it (vtkGhostType) neither as a duplicate nor as hidden, else from the first that has it hidden,
-/// else from one that has a copy.
+/// Assigns each value of an image to one of its pieces, which may overlap: to the first piece that flags it
+/// (vtkGhostType) neither as a duplicate nor as hidden, else the first that has it hidden, else one that has a copy.
 class PieceLayout
 {
 public:
   /// @param duplicate, hidden  what flags say so
   PieceLayout(const ValueBox& whole, std::vector<PieceValues> pieces, unsigned char duplicate, unsigned char hidden);
 
-  /// The first value, in the order of the whole, that no piece has; as many as values: there is none.
+  /// The first value of the image that no piece has; the number of values if there is none.
   std::size_t FirstGap() const;
 
-  /// The piece that a value comes from.
+  /// The piece to which a value is assigned.
   int OwnerOf(std::size_t value) const { return this->Owners[value]; }
 
-  /// Of each value, where it comes from.
+  /// Flags of each value in that piece.
   std::vector<unsigned char> Flags() const;
 
-  /// Copies what comes from a piece into the whole.
+  /// Copies the values that are assigned to a piece into the image.
   /// @param size  bytes of a value
   void Paste(int piece, const char* values, std::size_t size, char* whole) const;
 
-  /// Calls act with the number in the piece and in the whole of each value that a piece has as its own, neither
-  /// duplicate nor hidden, and that comes from another.
+  /// Calls act with the index in the piece and in the image of each value that the piece owns, neither duplicate nor
+  /// hidden, but that is assigned to another piece.
   template <typename Do>
   void ForOverlap(int piece, const Do& act) const
   {
@@ -160,7 +159,7 @@ constexpr vtkIdType LongestMessage = 1073741824; ///< bytes; MPI counts in int
 constexpr const char* KindNames[] = { "cell", "point" };
 using Flags = vtkDataSetAttributes;
 
-/// Bytes of a tuple; 0 for types of less than a byte, which no writer takes.
+/// Bytes of a tuple; 0 for types of less than a byte, which no writer accepts.
 vtkIdType TupleSize(vtkDataArray* array)
 {
   return static_cast<vtkIdType>(array->GetDataTypeSize()) * array->GetNumberOfComponents();
@@ -172,7 +171,7 @@ std::vector<unsigned char> FlagsOf(vtkUnsignedCharArray* ghosts)
                 : std::vector<unsigned char>();
 }
 
-/// One flag of each value; empty: none has it.
+/// One of the flags of each value; empty: none has it.
 std::vector<unsigned char> Only(unsigned char flag, std::vector<unsigned char> flags)
 {
   bool any = false;
@@ -184,7 +183,7 @@ std::vector<unsigned char> Only(unsigned char flag, std::vector<unsigned char> f
   return any ? flags : std::vector<unsigned char>();
 }
 
-/// Whether two pieces are parts of one lattice, to rounding.
+/// Whether two pieces belong to one grid, to rounding.
 bool SamePlace(const std::array<double, 15>& a, const std::array<double, 15>& b)
 {
   for (int i = 0; i < 15; ++i)
@@ -370,7 +369,7 @@ void GatheredImage::CheckArrays(int first, int other, Kind kind) const
   check(other, first);
 }
 
-/// Brings arrays into the order of the first piece. Ranks without cells have none of them.
+/// Sorts arrays in the order of the first piece. Ranks without cells have none of them.
 void GatheredImage::Sort(Kind kind, const Piece& first)
 {
   Arrays sorted;
@@ -383,7 +382,7 @@ void GatheredImage::Sort(Kind kind, const Piece& first)
   this->Own[kind] = std::move(sorted);
 }
 
-/// The extent of all pieces, where the first of them lies.
+/// An image of the extent of all pieces, placed as the first of them.
 void GatheredImage::MakeWhole(int first)
 {
   OnAllRanks(this->Controller, [&] {
@@ -418,7 +417,7 @@ void GatheredImage::MakeWhole(int first)
   });
 }
 
-/// Where the values of each piece are, and, where the whole is, their flags.
+/// The boxes of all pieces and, where the image is gathered, their flags.
 /// @param own  flags of the own piece
 std::vector<PieceValues> GatheredImage::ShareFlags(Kind kind, const std::vector<unsigned char>& own) const
 {
@@ -447,7 +446,7 @@ std::vector<PieceValues> GatheredImage::ShareFlags(Kind kind, const std::vector<
   return pieces;
 }
 
-/// Finds out where each value comes from, and which are hidden.
+/// Assigns values to pieces, and finds the hidden ones.
 /// @param own  flags of the own piece
 void GatheredImage::LayOut(Kind kind, const std::vector<unsigned char>& own)
 {
@@ -469,7 +468,7 @@ void GatheredImage::LayOut(Kind kind, const std::vector<unsigned char>& own)
     for (std::size_t rank = 0; rank < pieces.size(); ++rank)
     {
       const std::array<int, 6>& extent = this->Pieces[rank].Extent;
-      for (int axis = 0; axis < 3; ++axis) // a piece without thickness has no cells where the whole has some
+      for (int axis = 0; axis < 3; ++axis) // a flat piece has no cells of an image that is not flat
       {
         if (kind == Cells && extent[2 * axis] == extent[2 * axis + 1] && all[2 * axis] < all[2 * axis + 1])
         {
@@ -527,9 +526,9 @@ vtkIdType GatheredImage::CountOf(Kind kind, int rank) const
   return static_cast<vtkIdType>((kind == Cells ? CellBoxOf(extent) : PointBoxOf(extent)).Count());
 }
 
-/// Brings bytes of one rank to where the whole is.
+/// Sends bytes of one rank to the ranks on which the image is gathered.
 /// @param own     on that rank: they
-/// @param values  where the whole is: where they come
+/// @param values  where the image is gathered: to receive them
 void GatheredImage::Bring(const char* own, char* values, vtkIdType bytes, int from) const
 {
   const bool mine = this->Rank == from;
@@ -600,7 +599,7 @@ vtkSmartPointer<vtkDataArray> GatheredImage::Array(Kind kind, int index)
   return this->IsHere() ? whole : nullptr;
 }
 
-/// @throws InvalidInput where the own piece has another value as its own than the one that was taken
+/// @throws InvalidInput if this rank's piece owns a value that differs from the assigned one
 void GatheredImage::CheckOverlap(Kind kind, vtkDataArray* own, vtkDataArray* whole) const
 {
   if (own == nullptr)

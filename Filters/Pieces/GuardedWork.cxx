@@ -36,8 +36,8 @@ namespace tyndall
 namespace
 {
 /// When a filter's last run failed, and how. VTK runs a filter again with every update while its output does not cover
-/// the extent that was asked for, and that is so while the output is empty; ParaView makes several updates. This keeps
-/// them from reporting the same error each time.
+/// the requested extent, as an empty one does not; ParaView makes several updates. This keeps them from reporting the
+/// same error each time.
 class LastFailure
 {
 public:
@@ -46,7 +46,7 @@ public:
     Error,
     Abort,
     Information, ///< an error already of RequestInformation
-    Missing,     ///< a rank did not come
+    Missing,     ///< a rank did not arrive
   };
 
   explicit LastFailure(vtkAlgorithm* filter)
@@ -160,7 +160,7 @@ void ForgetAbort(vtkAlgorithm* filter)
 
 namespace
 {
-/// By whichever filter opened the device, once in a process.
+/// Once in a process, by the filter that opened the device.
 void WarnOfDevices(vtkAlgorithm* filter)
 {
   for (const std::string& warning : Device::TakeWarnings())
@@ -184,7 +184,7 @@ void EmptyWithout(vtkInformationVector* outputs)
   }
 }
 
-/// Whether a rank did not come to this filter, and nothing has changed since, or to one before it.
+/// Whether a rank is known to be missing: at this filter, if nothing has changed since, or at one upstream.
 bool IsKnownToMiss(vtkAlgorithm* filter, const LastFailure& last)
 {
   bool known = last.Was(LastFailure::Missing) && last.StillHolds();
@@ -199,20 +199,20 @@ bool IsKnownToMiss(vtkAlgorithm* filter, const LastFailure& last)
   return known;
 }
 
-/// That a rank does not come, or came to another filter: nobody waits for it twice.
-void FailWithout(const MissingRank& absence, vtkAlgorithm* filter, vtkInformationVector* outputs, LastFailure& last)
+/// Reports a rank that did not arrive, or is at another filter; nobody waits for it twice.
+void FailWithout(const MissingRank& missing, vtkAlgorithm* filter, vtkInformationVector* outputs, LastFailure& last)
 {
   EmptyWithout(outputs);
-  if (absence.elsewhere)
+  if (missing.elsewhere)
   {
-    vtkErrorWithObjectMacro(filter, << "Rank " << absence.rank
+    vtkErrorWithObjectMacro(filter, << "Rank " << missing.rank
                                     << " came to another filter than rank 0 (on this rank: " << filter->GetClassName()
                                     << "). Make the same pipeline on all ranks, and update it in the same order.");
   }
   else
   {
     vtkErrorWithObjectMacro(
-      filter, << "Rank " << absence.rank << " did not come to this filter within " << SecondsToWait()
+      filter, << "Rank " << missing.rank << " did not come to this filter within " << SecondsToWait()
               << " seconds. All ranks have to update the same filters: look at the script, and for an "
                  "error of a filter before on that rank. If it only takes longer, set "
                  "TYNDALL_RANKS_WAIT (seconds).");
@@ -240,10 +240,10 @@ int GuardedOn(vtkMultiProcessController* ranks, vtkAlgorithm* filter, vtkInforma
     EmptyWithout(outputs);
     return 1;
   }
-  if (const MissingRank absence = ranks ? FindMissingRank(ranks, filter->GetClassName()) : MissingRank();
-      absence.rank >= 0)
+  if (const MissingRank missing = ranks ? FindMissingRank(ranks, filter->GetClassName()) : MissingRank();
+      missing.rank >= 0)
   {
-    FailWithout(absence, filter, outputs, last);
+    FailWithout(missing, filter, outputs, last);
     return 1;
   }
   if (StillHolds(ranks, last))
@@ -282,7 +282,7 @@ int GuardedOn(vtkMultiProcessController* ranks, vtkAlgorithm* filter, vtkInforma
 
 namespace
 {
-/// In field data of filters that do not tell of their settings themselves.
+/// Adds averaged arrays to field data `settings_used` of filters that do not write it themselves.
 void TellAveraged(vtkAlgorithm* filter, vtkInformationVector* outputs)
 {
   std::vector<std::string> settings;
@@ -389,7 +389,7 @@ bool GuardedInformation(vtkAlgorithm* filter, const std::function<void()>& work)
   LastFailure last(filter);
   try
   {
-    if (filter->GetNumberOfInputPorts() == 0) // others are told by Guarded: what they read may be newer than this
+    if (filter->GetNumberOfInputPorts() == 0) // filters with inputs report it in Guarded
     {
       CheckProperties(filter);
     }

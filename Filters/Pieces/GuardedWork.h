@@ -45,8 +45,8 @@ struct WorkOnSubdomains
   std::vector<int> others = {}; ///< further inputs that stay in pieces
   /// Whether this rank would work on its piece; one rank is enough.
   std::function<bool(vtkInformationVector** inputs)> wantsPieces;
-  /// The work. Collective where the subdomain is decomposed; then false, on all ranks, asks to be called again with all
-  /// of the inputs on each rank. The output is cropped to what is asked for unless it is decomposed.
+  /// The work. Collective if the domain is decomposed; then it may return false, on all ranks, to be called again with
+  /// all of the inputs on each rank. Output 0 is cropped to what is asked for, unless several ranks have made it.
   std::function<bool(const PieceBlocks& pieces, vtkInformationVector** inputs)> work;
 };
 int Guarded(vtkAlgorithm* filter, vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs,
@@ -65,7 +65,7 @@ int GuardedInPieces(vtkAlgorithm* filter, vtkInformation* request, vtkInformatio
 /// Work on the piece of an input that a rank has, without any rank having all of it.
 struct WorkOnPieces
 {
-  int port = 0; ///< the input of which ranks have pieces; the others are whole
+  int port = 0; ///< the input of which ranks have pieces; other inputs are whole
   /// Called first. Collective; returns the same on all ranks: false if it does nothing.
   /// @param ranks  null: this process is alone; output 0 is then cropped to what was asked for
   std::function<bool(vtkMultiProcessController* ranks, vtkInformationVector** inputs)> work;

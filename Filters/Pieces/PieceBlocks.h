@@ -48,7 +48,7 @@ public:
   const VoxelBox& Held() const { return this->OfOutputs[static_cast<std::size_t>(this->OfRanks->Rank())]; }
   const std::vector<VoxelBox>& HeldByRanks() const { return this->OfOutputs; }
 
-  /// Whether this rank's own voxels are among those of an image; true where it has none.
+  /// Whether an image contains this rank's subdomain.
   bool HasOwnOf(vtkImageData* image) const;
 
   /// The part of an image that is this rank's subdomain, with its arrays; the image itself if that is all of it, or not

@@ -325,7 +325,7 @@ vtkSmartPointer<vtkDataObject> WholeOf(
   return WholeImageOf(ranks, vtkImageData::SafeDownCast(own), summaries, named);
 }
 
-/// Where one of several ranks looks at the whole alone, nobody can help it with what its source does not give it.
+/// If one of several ranks updates alone, there is no rank to gather from what its source does not give it.
 void RequireAll(vtkAlgorithm* filter, vtkInformationVector** given)
 {
   vtkMultiProcessController* const all = vtkMultiProcessController::GetGlobalController();
@@ -458,7 +458,7 @@ void NoteParts(const std::vector<RankSummary>& all, int rank, vtkInformationVect
       parts.push_back(of.asked[static_cast<std::size_t>(port)]);
       const InputSummary medium = of.inputs.empty() ? InputSummary() : of.inputs.front();
       if (medium.aroundPoints &&
-        parts.back() == medium.whole) // as told before it was known that voxels are around points
+        parts.back() == medium.whole) // announced before it was known that voxels are around points
       {
         parts.back() = Around(parts.back());
       }

@@ -36,13 +36,13 @@ class WholeInputs
 public:
   static constexpr int NoPort = -1;
 
-  /// @param ranks  null: this process is alone, and has what it is given
+  /// @param ranks  null: this process is alone
   /// @param given  by port
-  /// @param outputs  notes for KeepWhatIsAskedFor what each rank is asked for
-  /// @param inPieces  a port that stays as it is given until MakeWhole, and which Replace is of
-  /// @param alsoInPieces  others that stay so, too
-  /// @param inShares  another, of points of which ranks may have some each (photons): together they are all
-  /// @throws InvalidInput on all ranks with the same words where pieces make no whole
+  /// @param outputs  get the parts that are asked of each rank, for KeepWhatIsAskedFor
+  /// @param inPieces  a port that stays in pieces until MakeWhole, and whose data Replace sets
+  /// @param alsoInPieces  further ones
+  /// @param inShares  another, of points (photons) that are distributed among ranks
+  /// @throws InvalidInput the same on all ranks if pieces cannot be gathered
   WholeInputs(vtkMultiProcessController* ranks, vtkAlgorithm* filter, vtkInformationVector** given,
     vtkInformationVector* outputs, int inPieces = NoPort, int inShares = NoPort,
     const std::vector<int>& alsoInPieces = {});
@@ -51,18 +51,18 @@ public:
   /// By port.
   vtkInformationVector** Vectors() { return this->Ports.data(); }
 
-  /// Puts outputs that were made in axes of the medium's own into the scene.
+  /// Rotates outputs from the medium's own axes into the scene.
   void PutIntoScene(vtkInformationVector* outputs);
 
-  /// Data instead of those of the first port that was left in pieces; until MakeWhole.
+  /// Replaces the data of the port that stays in pieces, until MakeWhole.
   void Replace(vtkDataObject* data);
 
-  /// Of the ports that were left as they are given. All ranks have to call it.
+  /// Gathers the ports that stayed in pieces. Collective.
   /// @throws InvalidInput as the constructor
   void MakeWhole();
 
 private:
-  struct Seen; ///< of the inputs, on all ranks
+  struct Seen; ///< summaries of the inputs on all ranks
   void MakeWhole(int port);
   using ToOther = std::function<vtkSmartPointer<vtkDataObject>(int connection, vtkDataObject* data)>;
   void AlignGiven(vtkInformationVector** given);
@@ -74,7 +74,7 @@ private:
   vtkAlgorithm* Filter;
   std::vector<vtkSmartPointer<vtkInformationVector>> Given; ///< by port, images with aligned axes
   OwnAxes Axes;                                             ///< of the first port's
-  vtkSmartPointer<vtkDataObject> Medium;                    ///< the same image as it is in the scene; null: none is
+  vtkSmartPointer<vtkDataObject> Medium;                    ///< the same image in the scene; null: none
 
   std::unique_ptr<Seen> AllSeen; ///< null: this process is alone
   std::vector<vtkSmartPointer<vtkInformationVector>> Kept;

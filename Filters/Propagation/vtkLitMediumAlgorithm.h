@@ -14,7 +14,7 @@ struct Illumination;
 
 /**
  * @class vtkLitMediumAlgorithm
- * @brief superclass of the filters that take a medium and what shines on it
+ * @brief superclass of the filters that take a medium and its illumination
  *
  * It has their input ports and the orientation of the environment. Outputs are vtkImageData unless a subclass says
  * otherwise.
@@ -26,10 +26,10 @@ struct Illumination;
  *
  * Cells of the medium that are hidden by `vtkGhostType` are empty, hidden pixels of the environment black.
  *
- * Light crosses the borders of pieces. In a parallel pipeline every rank therefore asks for all of each input and works
- * on the whole, and RequestData of a subclass hands on the piece it was asked for; but for subclasses in which light
- * goes from rank to rank (vtkScatteringSolver, vtkMediumRayCaster, vtkPhotonImportance), or of the medium only the box
- * counts (vtkPhotonEmitter): their ranks ask for their pieces of the medium.
+ * Light crosses the boundaries between pieces. In a parallel pipeline every rank therefore asks for all of each input,
+ * and RequestData of a subclass returns the piece that was asked for. Exceptions are subclasses whose ranks exchange
+ * light (vtkScatteringSolver, vtkMediumRayCaster, vtkPhotonImportance), or that need only the medium's box
+ * (vtkPhotonEmitter): their ranks ask for their pieces of the medium.
  *
  * A subclass implements RequestData, and reads there the lights and the environment by ReadIllumination.
  *
@@ -64,10 +64,10 @@ public:
   ///@}
 
   ///@{
-  /// What arrays of points are: 0 (default): each is in the middle of a voxel of its value, so that n points are n
-  /// voxels, the output has arrays of cells, and its bounds are half a spacing wider than the input's; 1: their mean is
-  /// that of the voxel between them, and n points are n - 1 voxels. Where an array of cells is read as well, voxels are
-  /// the cells and points are averaged; field data `settings_used` then say so.
+  /// How point arrays are read. 0 (default): each point is the centre of a voxel of its value, so that n points are n
+  /// voxels, the output has cell arrays, and its bounds are half a spacing wider than the input's; 1: points are
+  /// averaged to the voxels between them, n points to n - 1 voxels. If a cell array is read as well, voxels are the
+  /// cells and points are averaged; field data `settings_used` then say so.
   enum PointDataKinds
   {
     VOXELS_AROUND_POINTS = 0,
@@ -82,7 +82,7 @@ public:
   ///@}
 
   ///@{
-  /// By how much the environment is turned about its up, degrees. Default 0.
+  /// Rotation of the environment about its up, degrees. Default 0.
   tyndallRangeMacro(EnvironmentAzimuth, double, tyndall::AnyLow, tyndall::AnyHigh);
   ///@}
 
@@ -98,7 +98,7 @@ protected:
     vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
   int RequestData(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override = 0;
 
-  /// The lights, and the environment as it stands in the scene. Checked.
+  /// The lights, and the environment as it is oriented in the scene. Checked.
   tyndall::Illumination ReadIllumination(vtkInformationVector** inputs);
 
   int EnvironmentUp = 2;

@@ -18,14 +18,14 @@
 
 namespace
 {
-/// Whether all light comes in through faces of the box.
+/// Whether all light enters through the faces of the box.
 bool OnlyFromFarAway(const tyndall::Illumination& illumination)
 {
   return std::all_of(illumination.lights.begin(), illumination.lights.end(),
     [](const tyndall::Light& light) { return light.type == tyndall::LightType::Directional; });
 }
 
-/// A sun gives white media, which are all alike under an even sky, a bright and a dark side.
+/// A sun gives white media, which look uniform under an isotropic sky, a bright and a dark side.
 void AddDefaultSky(tyndall::Illumination& illumination, const tyndall::OwnAxes& axes)
 {
   constexpr double radiance = 0.1; // a third of the sun's irradiance, as a clear sky has

@@ -17,8 +17,8 @@ struct IlluminationInput;
  * @class vtkPropagationAlgorithm
  * @brief superclass of the filters that propagate light through a medium until little is left
  *
- * It has what vtkLightPropagationMaps and vtkDiscreteOrdinates, which solve once, and vtkSolverComparison, which solves
- * by many settings, are all told of the box and of when to stop.
+ * It has the properties of boundaries and of convergence that vtkScatteringSolver, which solves once, and
+ * vtkSolverComparison, which solves with many settings, share.
  *
  * @sa vtkScatteringSolver vtkSolverComparison
  */
@@ -36,8 +36,8 @@ public:
   ///@}
 
   ///@{
-  /// Whether rays that leave along an axis return on the other side. Default off. Where two axes are and nothing varies
-  /// along them, vtkLightPropagationMaps solves layers in the cosine alone (numerics.md, section 10 d).
+  /// Periodic axes: rays wrap around. Default off. If two axes are periodic and nothing varies along them,
+  /// vtkLightPropagationMaps solves plane-parallel layers (numerics.md, section 10 d).
   tyndallFlagMacro(PeriodicX);
   tyndallFlagMacro(PeriodicY);
   tyndallFlagMacro(PeriodicZ);
@@ -51,8 +51,8 @@ public:
   ///@}
 
   ///@{
-  /// Part of the light that leaves through the faces -x, +x, -y, +y, -z, +z that comes back where it left, spread as by
-  /// a matt surface (Lambert), beside FaceRadiance. Default 0, valid [0, 1]; 0 on the faces of a periodic axis.
+  /// Albedo of the faces -x, +x, -y, +y, -z, +z: the part of the outgoing light that each reflects, as a Lambertian
+  /// surface, beside FaceRadiance. Default 0, valid [0, 1]; 0 on the faces of a periodic axis.
   tyndallSetRange6Macro(FaceAlbedo, double, 0.0, 1.0);
   vtkGetVector6Macro(FaceAlbedo, double);
   ///@}
@@ -64,16 +64,16 @@ public:
   ///@}
 
   ///@{
-  /// Radiance from every direction alike, red, green, blue, added to the environment, W/(length^2 sr). Default 0, valid
+  /// Isotropic incident radiance, red, green, blue, added to the environment, W/(length^2 sr). Default 0, valid
   /// [0, infinity).
   tyndallSetRange3Macro(SkyColor, double, 0.0, tyndall::LargestFloat);
   vtkGetVector3Macro(SkyColor, double);
   ///@}
 
   ///@{
-  /// Whether a default sky shines where nothing else does: no Lights, Environment or other light is connected, SkyColor
-  /// and FaceRadiance are 0, and the medium does not emit. It is the sun of an untouched vtkLightRig (irradiance 1
-  /// W/length^2) and a grey sky of radiance 0.1 W/(length^2 sr) from every direction; `left_out` says that it shines.
+  /// Whether a default sky lights a scene without any other light: no Lights, Environment or other light is connected,
+  /// SkyColor and FaceRadiance are 0, and the medium does not emit. It is the sun of an untouched vtkLightRig
+  /// (irradiance 1 W/length^2) and an isotropic grey sky of radiance 0.1 W/(length^2 sr); `left_out` reports it.
   /// Default on.
   tyndallFlagMacro(DefaultSky);
   ///@}
@@ -87,14 +87,14 @@ protected:
   vtkPropagationAlgorithm();
   ~vtkPropagationAlgorithm() override;
 
-  /// The lights and the environment, with the sky and what shines through the faces, or else the default sky. Checked.
+  /// Lights, environment, sky and boundary radiance, or else the default sky. Checked.
   /// @param emits  whether the medium does
   tyndall::IlluminationInput ReadAllIllumination(vtkInformationVector** inputs, bool emits);
 
-  /// Says first in a solve's `left_out` where the default sky shone.
+  /// Reports the default sky first in a solve's `left_out`.
   static void TellOfDefaultSky(const tyndall::IlluminationInput& shining, std::vector<std::string>& leftOut);
 
-  /// Warns where neither the medium nor anything else shines, or no light can come in.
+  /// Warns if nothing lights the medium, or no light can enter.
   void WarnWhereDark(const tyndall::Illumination& illumination, bool emits);
 
   std::string Device;

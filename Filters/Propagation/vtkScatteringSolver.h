@@ -23,35 +23,34 @@ struct SolverScene;
 
 /**
  * @class vtkScatteringSolver
- * @brief superclass of the filters that solve for scattered light, from uncollided light of their own or of another
+ * @brief superclass of the filters that solve for scattered light, from their own uncollided light or another filter's
  *
- * Input 3, optional: uncollided light that another filter found, vtkImageData of the medium's voxels, as
- * vtkPhotonMarcher and vtkPhotonReconstruction make it: cell arrays `fluence_direct` (1 or 3 components, W/length^2)
- * and `mean_direction` (3 components, power-weighted mean direction; missing: light goes every way alike), field data
- * `face_power_out` (W that left unscattered through -x, +x, -y, +y, -z, +z; missing: 0). It is taken instead of the
- * uncollided light of lights, environment, SkyColor and FaceRadiance, which are then not read; what the medium emits is
- * added as always. What it lost and what left count as having come in, to 1e-5.
+ * Input 3, optional: uncollided light of another filter, vtkImageData of the medium's voxels, as vtkPhotonMarcher and
+ * vtkPhotonReconstruction make it: cell arrays `fluence_direct` (1 or 3 components, W/length^2) and `mean_direction` (3
+ * components, power-weighted mean direction; missing: isotropic), field data `face_power_out` (W that left unscattered
+ * through -x, +x, -y, +y, -z, +z; missing: 0). It replaces the uncollided light of lights, environment, SkyColor and
+ * FaceRadiance, which are then not read; emission of the medium is added as always. What it lost and what left count as
+ * incident power, to 1e-5.
  *
  * Output 1 is the table of convergence, vtkTable.
  *
- * Asked again for the light of the same medium under the same light, even where filters before have made them anew,
- * it gives out the light that it has; so it does where another piece is asked for, or LitColor, Exposure or ToneCurve
- * has changed. Each rank keeps the light of the whole image for that, or with blocks that of its piece.
+ * The last light is returned again for the same inputs, even if filters upstream have made them anew, for another
+ * piece, and if only LitColor, Exposure or ToneCurve has changed. Each rank keeps the light of the whole image for
+ * that, or of its piece.
  *
- * In a parallel pipeline light crosses the borders of pieces: each rank solves its piece, and light goes from rank to
- * rank; or, by Decomposition or where that is better, every rank solves the whole and hands on the piece it was asked
- * for.
+ * In a parallel pipeline light crosses the boundaries between pieces: each rank solves its piece, and ranks exchange
+ * light; or, by Decomposition or if that is better, every rank solves the whole domain and returns the piece that it
+ * was asked for.
  *
- * With LitColor output 0 has the cell array `lit_color` too, unsigned char, 4 components: what each voxel sends to the
- * eye as a screen shows it, red, green, blue, not multiplied by alpha, and an opacity. A volume mapper that takes them
- * as they are (vtkVolumeProperty with IndependentComponents off, an opacity function from 0 to 1 over 0 to 255, and
+ * With LitColor output 0 has the cell array `lit_color` too, unsigned char, 4 components: the colour that each voxel
+ * shows on a screen, red, green, blue, not multiplied by alpha, and an opacity. A volume mapper that uses them directly
+ * (vtkVolumeProperty with IndependentComponents off, an opacity function from 0 to 1 over 0 to 255, and
  * SetScalarOpacityUnitDistance(3, d)) shows the lit medium without OpenCL, about as vtkMediumRayCaster does over black
- * (numerics.md, section 14.8). d is field data `lit_color_distance`, length; field data `lit_color_exposure` is what
- * radiance was multiplied by.
+ * (numerics.md, section 14.8). d is field data `lit_color_distance`, length; field data `lit_color_exposure` is the
+ * factor of radiance.
  *
- * Field data `settings_used` of output 0: "Name = value" of each property that Quality chooses, as it was used, and
- * over several ranks of Decomposition. Where that was left to choose and each rank solved the whole, `left_out` says
- * why.
+ * Field data `settings_used` of output 0: "Name = value" of each property that Quality chooses, as it was used, and on
+ * several ranks of Decomposition. If that was automatic and each rank solved the whole domain, `left_out` says why.
  *
  * @sa vtkLightPropagationMaps vtkDiscreteOrdinates vtkPhotonMarcher
  */
@@ -66,33 +65,32 @@ public:
 
   enum Qualities
   {
-    DRAFT = 0, ///< to look at while settings are chosen
-    USUAL = 1, ///< every property as it stands
+    DRAFT = 0, ///< while settings are chosen
+    USUAL = 1, ///< every property as it is
     FINE = 2,
-    REFERENCE = 3 ///< to compare others with
+    REFERENCE = 3 ///< for comparisons
   };
 
   enum Decompositions
   {
-    AUTOMATIC_DECOMPOSITION = 0, ///< into blocks wherever they do as well
-    WHOLE = 1,                   ///< none: each rank solves the whole
+    AUTOMATIC_DECOMPOSITION = 0, ///< BLOCKS unless WHOLE is better
+    WHOLE = 1,                   ///< each rank solves the whole domain
     BLOCKS = 2                   ///< each rank solves its piece
   };
 
   ///@{
-  /// What each of several ranks of MPI solves. With WHOLE all of the medium, which each then holds. With BLOCKS its
-  /// piece: light is handed on from rank to rank, and no rank holds another's voxels but for a layer or two; one rank
-  /// alone solves the same way then, so that light does not depend on their number, but for rounding. An error names
-  /// what blocks cannot do, which the subclass says.
-  /// AUTOMATIC_DECOMPOSITION (default): BLOCKS where each of several ranks is asked for its piece of more than 64^3
-  /// voxels, the scene can be solved so, and the whole would not be solved more exactly or much sooner; else WHOLE.
+  /// What each of several MPI ranks solves. WHOLE: the whole domain, which each then holds. BLOCKS: its piece; ranks
+  /// exchange light, and hold a halo of one or two voxels. One rank alone solves the same way then, so that light does
+  /// not depend on their number, but for rounding. An error names what blocks cannot do; see the subclass.
+  /// AUTOMATIC_DECOMPOSITION (default): BLOCKS if each of several ranks is asked for its piece of more than 64^3
+  /// voxels, the scene can be decomposed, and WHOLE would not be more accurate or much faster; else WHOLE.
   tyndallRangeMacro(Decomposition, int, AUTOMATIC_DECOMPOSITION, BLOCKS);
   ///@}
 
   ///@{
-  /// How exact the light is to be: chooses, from the scene, those of the properties below that have their default
-  /// value, and leaves those that have another one. DRAFT, USUAL (default), FINE or REFERENCE; with USUAL all are taken
-  /// as they stand. FINE and REFERENCE divide rectangle lights, too, more finely.
+  /// Accuracy: chooses, from the scene, those of the properties below that have their default value, and leaves the
+  /// other ones. DRAFT, USUAL (default), FINE or REFERENCE; USUAL changes none. FINE and REFERENCE also divide
+  /// rectangle lights more finely.
   tyndallRangeMacro(Quality, int, DRAFT, REFERENCE);
   ///@}
 
@@ -137,7 +135,7 @@ public:
   vtkGetMacro(ToneCurve, int);
   ///@}
 
-  /// That of the properties, those of `lit_color` as well.
+  /// Includes the properties of `lit_color`.
   vtkMTimeType GetMTime() override;
 
   /// "Name = value" of each property that Quality chooses, as the last update used it, one per line.

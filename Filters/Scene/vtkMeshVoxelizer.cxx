@@ -110,11 +110,11 @@ double LongestEdge(const tyndall::Grid& grid)
   return std::max({ grid.Length(0), grid.Length(1), grid.Length(2) });
 }
 
-/// The scattering asked for, or such that light which crosses the box shows and is not lost.
+/// The scattering that is set, or one by which light that crosses the box is visible without being lost.
 Rgb OutsideScattering(const double asked[3], const tyndall::Grid& grid)
 {
   const bool automatic = std::all_of(asked, asked + 3, [](double value) { return value < 0.0; });
-  const double edge = LongestEdge(grid); // 0 where there are no voxels, which the kernels refuse
+  const double edge = LongestEdge(grid); // 0 without voxels, which the kernels refuse
   const double suiting = edge > 0.0 ? 0.5 / edge : 0.0;
   return automatic ? Rgb{ suiting, suiting, suiting } : Triple(asked);
 }
@@ -136,12 +136,12 @@ tyndall::RefractiveMediumSettings SettingsOf(vtkMeshVoxelizer* filter, const std
   return settings;
 }
 
-/// What of the output is to be made.
+/// The voxels that are asked for.
 struct AskedVoxels
 {
-  tyndall::VoxelBox made; ///< with ghost cells; without voxels where there are more ranks
+  tyndall::VoxelBox made; ///< with ghost cells; none if there are more ranks than voxels
   tyndall::VoxelBox own;
-  bool ofWhole = false; ///< those that all ranks are asked for make up the grid, or this is all of it
+  bool ofWhole = false; ///< all ranks together are asked for all of the grid
 };
 
 /// The voxels of an extent of points; a flat one has one layer of them.
@@ -187,7 +187,7 @@ void Pack(const tyndall::RefractiveMediumSettings& settings, const tyndall::Voxe
   const bool constant = medium.ior.empty();
   if (constant)
   {
-    medium.ior.assign(box.VoxelCount(), static_cast<float>(settings.outside.n)); // who asks for n is told
+    medium.ior.assign(box.VoxelCount(), static_cast<float>(settings.outside.n)); // for filters that read n
   }
   tyndall::AddCells(output, "ior", std::move(medium.ior), 1);
   if (!constant)

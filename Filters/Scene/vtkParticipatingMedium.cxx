@@ -96,7 +96,7 @@ tyndall::PhaseDescription DescriptionOf(vtkParticipatingMedium* filter, const Rg
     description.cosines = ColumnOf(table, "cosine");
     description.values = ColumnOf(table, "value");
   }
-  description.Functions(); // says what is wrong with it
+  description.Functions(); // throws if it is invalid
   return description;
 }
 
@@ -227,7 +227,7 @@ std::vector<float> RelativeDensity(
   return relative;
 }
 
-/// The same of a level set.
+/// The same for a level set.
 std::vector<float> FogOfLevelSet(const tyndall::FloatField& distance, const tyndall::Grid& grid)
 {
   const float* const values = distance.Values();
@@ -241,14 +241,14 @@ std::vector<float> FogOfLevelSet(const tyndall::FloatField& distance, const tynd
   return relative;
 }
 
-/// What makes an array look like a level set.
+/// Values by which an array is recognised as a level set.
 struct Signs
 {
   double lowest = AnyValue, highest = -AnyValue, lowestOnBorder = AnyValue;
   static constexpr double AnyValue = std::numeric_limits<double>::max();
 };
 
-/// @param box  voxels of the array in the whole
+/// @param box  voxels of the array in the whole grid
 Signs SignsOf(const float* values, const tyndall::VoxelBox& box, const tyndall::Grid& whole)
 {
   Signs signs;
@@ -344,7 +344,7 @@ std::vector<float> FillMedium(vtkParticipatingMedium* filter, const Recipe& reci
   const tyndall::FloatField scattering = tyndall::ReadCells(output, "sigma_s", tyndall::Need::Required);
   if (const tyndall::FloatField g = tyndall::ReadMeanCosines(output, scattering); g.IsThere())
   {
-    tyndall::ReadPhase(output, g, scattering); // says what is wrong with the input's
+    tyndall::ReadPhase(output, g, scattering); // throws if the input's is invalid
   }
   return relative;
 }
@@ -435,7 +435,7 @@ int vtkParticipatingMedium::RequestInformation(
   return done;
 }
 
-/// Where ranks each ask for their piece that of the density; else all of it, for the size is told of the whole.
+/// If ranks each ask for their piece, that of the density; else all of it, whose size is reported.
 int vtkParticipatingMedium::RequestUpdateExtent(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
