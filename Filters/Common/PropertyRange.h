@@ -170,6 +170,21 @@ bool SetInRange(vtkAlgorithm* filter, const char* property, Type* heldValues, st
     return this->PointData;                                 \
   }
 
+/// An optional input by connection or as data; null: none.
+#define tyndallInputMacro(name, port)                    \
+  void Set##name##Connection(vtkAlgorithmOutput* output) \
+  {                                                      \
+    this->SetInputConnection(port, output);              \
+  }                                                      \
+  void Set##name##Data(vtkDataObject* data)              \
+  {                                                      \
+    this->SetInputDataObject(port, data);                \
+  }                                                      \
+  void Remove##name()                                    \
+  {                                                      \
+    this->SetInputConnection(port, nullptr);             \
+  }
+
 /// The property Device, of the member of that name: part of the name of the OpenCL device to use, of any case. Default
 /// empty: what the variable TYNDALL_DEVICE names, or else PoCL's CPU device.
 #define tyndallDeviceMacro()                     \

@@ -36,21 +36,6 @@ vtkPhotonEmitter::vtkPhotonEmitter()
 
 vtkPhotonEmitter::~vtkPhotonEmitter() = default;
 
-void vtkPhotonEmitter::SetImportanceMapConnection(vtkAlgorithmOutput* map)
-{
-  this->SetInputConnection(IMPORTANCE_MAP, map);
-}
-
-void vtkPhotonEmitter::SetImportanceMapData(vtkDataObject* map)
-{
-  this->SetInputDataObject(IMPORTANCE_MAP, map);
-}
-
-void vtkPhotonEmitter::RemoveImportanceMap()
-{
-  this->SetInputConnection(IMPORTANCE_MAP, nullptr);
-}
-
 vtkPolyData* vtkPhotonEmitter::GetOutput()
 {
   return vtkPolyData::SafeDownCast(this->GetOutputDataObject(0));

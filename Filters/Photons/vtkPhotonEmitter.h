@@ -67,9 +67,7 @@ public:
 
   ///@{
   /// The importance map (vtkImageData) by connection or as data; null: none.
-  void SetImportanceMapConnection(vtkAlgorithmOutput* map);
-  void SetImportanceMapData(vtkDataObject* map);
-  void RemoveImportanceMap();
+  tyndallInputMacro(ImportanceMap, IMPORTANCE_MAP);
   ///@}
 
   ///@{

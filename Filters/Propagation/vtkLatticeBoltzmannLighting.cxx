@@ -85,21 +85,6 @@ vtkLatticeBoltzmannLighting::vtkLatticeBoltzmannLighting()
 
 vtkLatticeBoltzmannLighting::~vtkLatticeBoltzmannLighting() = default;
 
-void vtkLatticeBoltzmannLighting::SetPhotonsConnection(vtkAlgorithmOutput* photons)
-{
-  this->SetInputConnection(PHOTONS, photons);
-}
-
-void vtkLatticeBoltzmannLighting::SetPhotonsData(vtkDataObject* photons)
-{
-  this->SetInputDataObject(PHOTONS, photons);
-}
-
-void vtkLatticeBoltzmannLighting::RemovePhotons()
-{
-  this->SetInputConnection(PHOTONS, nullptr);
-}
-
 int vtkLatticeBoltzmannLighting::FillInputPortInformation(int port, vtkInformation* information)
 {
   if (port != PHOTONS)

@@ -89,9 +89,7 @@ public:
 
   ///@{
   /// Photons (vtkPolyData) by connection or as data; null: none.
-  void SetPhotonsConnection(vtkAlgorithmOutput* photons);
-  void SetPhotonsData(vtkDataObject* photons);
-  void RemovePhotons();
+  tyndallInputMacro(Photons, PHOTONS);
   ///@}
 
   ///@{

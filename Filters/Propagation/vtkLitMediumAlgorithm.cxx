@@ -26,36 +26,6 @@ vtkImageData* vtkLitMediumAlgorithm::GetOutput()
   return vtkImageData::SafeDownCast(this->GetOutputDataObject(0));
 }
 
-void vtkLitMediumAlgorithm::SetLightsConnection(vtkAlgorithmOutput* lights)
-{
-  this->SetInputConnection(LIGHTS, lights);
-}
-
-void vtkLitMediumAlgorithm::SetLightsData(vtkDataObject* lights)
-{
-  this->SetInputDataObject(LIGHTS, lights);
-}
-
-void vtkLitMediumAlgorithm::RemoveLights()
-{
-  this->SetInputConnection(LIGHTS, nullptr);
-}
-
-void vtkLitMediumAlgorithm::SetEnvironmentConnection(vtkAlgorithmOutput* environment)
-{
-  this->SetInputConnection(ENVIRONMENT, environment);
-}
-
-void vtkLitMediumAlgorithm::SetEnvironmentData(vtkDataObject* environment)
-{
-  this->SetInputDataObject(ENVIRONMENT, environment);
-}
-
-void vtkLitMediumAlgorithm::RemoveEnvironment()
-{
-  this->SetInputConnection(ENVIRONMENT, nullptr);
-}
-
 int vtkLitMediumAlgorithm::FillInputPortInformation(int port, vtkInformation* information)
 {
   if (port == LIGHTS)

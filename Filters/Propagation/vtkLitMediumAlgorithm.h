@@ -55,12 +55,8 @@ public:
 
   ///@{
   /// Lights (vtkPolyData) and environment (vtkImageData) by connection or as data; null: none.
-  void SetLightsConnection(vtkAlgorithmOutput* lights);
-  void SetLightsData(vtkDataObject* lights);
-  void RemoveLights();
-  void SetEnvironmentConnection(vtkAlgorithmOutput* environment);
-  void SetEnvironmentData(vtkDataObject* environment);
-  void RemoveEnvironment();
+  tyndallInputMacro(Lights, LIGHTS);
+  tyndallInputMacro(Environment, ENVIRONMENT);
   ///@}
 
   ///@{

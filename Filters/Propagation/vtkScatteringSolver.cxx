@@ -93,21 +93,6 @@ vtkScatteringSolver::vtkScatteringSolver()
 
 vtkScatteringSolver::~vtkScatteringSolver() = default;
 
-void vtkScatteringSolver::SetUncollidedLightConnection(vtkAlgorithmOutput* light)
-{
-  this->SetInputConnection(UNCOLLIDED, light);
-}
-
-void vtkScatteringSolver::SetUncollidedLightData(vtkDataObject* light)
-{
-  this->SetInputDataObject(UNCOLLIDED, light);
-}
-
-void vtkScatteringSolver::RemoveUncollidedLight()
-{
-  this->SetInputConnection(UNCOLLIDED, nullptr);
-}
-
 int vtkScatteringSolver::FillOutputPortInformation(int port, vtkInformation* information)
 {
   information->Set(vtkDataObject::DATA_TYPE_NAME(), port == 0 ? "vtkImageData" : "vtkTable");

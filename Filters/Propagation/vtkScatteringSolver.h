@@ -143,9 +143,7 @@ public:
 
   ///@{
   /// Uncollided light (vtkImageData) by connection or as data; null: the solver's own.
-  void SetUncollidedLightConnection(vtkAlgorithmOutput* light);
-  void SetUncollidedLightData(vtkDataObject* light);
-  void RemoveUncollidedLight();
+  tyndallInputMacro(UncollidedLight, UNCOLLIDED);
   ///@}
 
 protected:

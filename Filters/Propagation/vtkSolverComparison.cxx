@@ -219,21 +219,6 @@ vtkTable* vtkSolverComparison::GetOutput()
   return vtkTable::SafeDownCast(this->GetOutputDataObject(0));
 }
 
-void vtkSolverComparison::SetReferenceConnection(vtkAlgorithmOutput* reference)
-{
-  this->SetInputConnection(REFERENCE, reference);
-}
-
-void vtkSolverComparison::SetReferenceData(vtkDataObject* reference)
-{
-  this->SetInputDataObject(REFERENCE, reference);
-}
-
-void vtkSolverComparison::RemoveReference()
-{
-  this->SetInputConnection(REFERENCE, nullptr);
-}
-
 // VTK's own macros have none for lists.
 #define LIST_OF_NUMBERS(add, removeAll, list) \
   void vtkSolverComparison::add(int value)    \

@@ -89,9 +89,7 @@ public:
 
   ///@{
   /// The reference (vtkImageData) by connection or as data; null: a converged run.
-  void SetReferenceConnection(vtkAlgorithmOutput* reference);
-  void SetReferenceData(vtkDataObject* reference);
-  void RemoveReference();
+  tyndallInputMacro(Reference, REFERENCE);
   ///@}
 
   ///@{

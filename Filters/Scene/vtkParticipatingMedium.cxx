@@ -397,21 +397,6 @@ int vtkParticipatingMedium::GetNumberOfChannelMeanCosines() const
   return static_cast<int>(this->ChannelMeanCosines.size());
 }
 
-void vtkParticipatingMedium::SetPhaseTableConnection(vtkAlgorithmOutput* table)
-{
-  this->SetInputConnection(PHASE_TABLE, table);
-}
-
-void vtkParticipatingMedium::SetPhaseTableData(vtkDataObject* table)
-{
-  this->SetInputDataObject(PHASE_TABLE, table);
-}
-
-void vtkParticipatingMedium::RemovePhaseTable()
-{
-  this->SetInputConnection(PHASE_TABLE, nullptr);
-}
-
 int vtkParticipatingMedium::FillInputPortInformation(int port, vtkInformation* information)
 {
   if (port == DENSITY)

@@ -185,9 +185,7 @@ public:
   ///@{
   /// The phase function of TABULATED: a table with the columns `cosine` (of the scattering angle, from -1 to 1, rising
   /// or falling) and `value` (not negative, in any unit). Linear between its rows.
-  void SetPhaseTableConnection(vtkAlgorithmOutput* table);
-  void SetPhaseTableData(vtkDataObject* table);
-  void RemovePhaseTable();
+  tyndallInputMacro(PhaseTable, PHASE_TABLE);
   ///@}
 
   ///@{
