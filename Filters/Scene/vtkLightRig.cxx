@@ -58,36 +58,52 @@ constexpr NumbersOfLight NumbersOfLights[] = {
   { "spot", 10, "x, y, z, dx, dy, dz, red, green, blue, angle" },
   { "rectangle", 11, "x, y, z, dx, dy, dz, red, green, blue, width, height" },
 };
+
+/// @param numbers  as NumbersOfLights lists them
+Light LightOf(int type, const double* numbers)
+{
+  const auto next = [&numbers] {
+    numbers += 3;
+    return tyndall::Triple(numbers - 3);
+  };
+  Light light;
+  light.type = static_cast<LightType>(type);
+  if (light.type != LightType::Directional)
+  {
+    light.position = next();
+  }
+  light.direction = light.type == LightType::Point ? std::array<double, 3>{} : Normalized(next());
+  light.power = next();
+  if (light.type == LightType::Spot)
+  {
+    light.angle = numbers[0];
+  }
+  else if (light.type == LightType::Rectangle)
+  {
+    light.size = { numbers[0], numbers[1] };
+  }
+  return light;
+}
 }
 
 struct vtkLightRig::AddedLights
 {
-  std::vector<Light> Directional;
-  std::vector<Light> Point;
-  std::vector<Light> Spot;
-  std::vector<Light> Rectangle;
-  std::array<std::vector<double>, 4> Numbers; ///< of a light of each type that is not whole yet
+  std::array<std::vector<Light>, 4> Lights;   ///< by type
+  std::array<std::vector<double>, 4> Numbers; ///< of a light of each type that is not complete yet
 
-  void Clear(LightTypes type, std::vector<Light>& lights)
-  {
-    lights.clear();
-    this->Numbers[type].clear();
-  }
-
-  /// Calls add with the numbers of a light when they are all there.
-  template <typename Add>
-  void Take(LightTypes type, double number, const Add& add)
+  /// Adds a light when all of its numbers are there.
+  void Add(int type, double number)
   {
     std::vector<double>& numbers = this->Numbers[type];
     numbers.push_back(number);
     if (numbers.size() == NumbersOfLights[type].Count)
     {
-      add(numbers.data());
+      this->Lights[type].push_back(LightOf(type, numbers.data()));
       numbers.clear();
     }
   }
 
-  /// @throws InvalidInput where a light lacks numbers
+  /// @throws InvalidInput if a light lacks numbers
   void CheckNumbers() const
   {
     for (std::size_t type = 0; type < this->Numbers.size(); ++type)
@@ -117,127 +133,60 @@ vtkLightRig::~vtkLightRig() = default;
 
 void vtkLightRig::AddDirectionalLight(double dx, double dy, double dz, double r, double g, double b)
 {
-  Light light;
-  light.type = LightType::Directional;
-  light.direction = Normalized({ dx, dy, dz });
-  light.power = { r, g, b };
-  this->Added->Directional.push_back(light);
+  const double numbers[] = { dx, dy, dz, r, g, b };
+  this->Added->Lights[DIRECTIONAL].push_back(LightOf(DIRECTIONAL, numbers));
   this->Modified();
 }
 
 void vtkLightRig::AddPointLight(double x, double y, double z, double r, double g, double b)
 {
-  Light light;
-  light.type = LightType::Point;
-  light.position = { x, y, z };
-  light.direction = { 0.0, 0.0, 0.0 };
-  light.power = { r, g, b };
-  this->Added->Point.push_back(light);
+  const double numbers[] = { x, y, z, r, g, b };
+  this->Added->Lights[POINT].push_back(LightOf(POINT, numbers));
   this->Modified();
 }
 
 void vtkLightRig::AddSpotLight(
   double x, double y, double z, double dx, double dy, double dz, double r, double g, double b, double angle)
 {
-  Light light;
-  light.type = LightType::Spot;
-  light.position = { x, y, z };
-  light.direction = Normalized({ dx, dy, dz });
-  light.power = { r, g, b };
-  light.angle = angle;
-  this->Added->Spot.push_back(light);
+  const double numbers[] = { x, y, z, dx, dy, dz, r, g, b, angle };
+  this->Added->Lights[SPOT].push_back(LightOf(SPOT, numbers));
   this->Modified();
 }
 
 void vtkLightRig::AddRectangleLight(double x, double y, double z, double dx, double dy, double dz, double r, double g,
   double b, double width, double height)
 {
-  Light light;
-  light.type = LightType::Rectangle;
-  light.position = { x, y, z };
-  light.direction = Normalized({ dx, dy, dz });
-  light.power = { r, g, b };
-  light.size = { width, height };
-  this->Added->Rectangle.push_back(light);
+  const double numbers[] = { x, y, z, dx, dy, dz, r, g, b, width, height };
+  this->Added->Lights[RECTANGLE].push_back(LightOf(RECTANGLE, numbers));
   this->Modified();
 }
 
-void vtkLightRig::AddDirectionalLightNumber(double number)
-{
-  this->Added->Take(
-    DIRECTIONAL, number, [&](const double* n) { this->AddDirectionalLight(n[0], n[1], n[2], n[3], n[4], n[5]); });
-  this->Modified();
-}
-
-void vtkLightRig::AddPointLightNumber(double number)
-{
-  this->Added->Take(POINT, number, [&](const double* n) { this->AddPointLight(n[0], n[1], n[2], n[3], n[4], n[5]); });
-  this->Modified();
-}
-
-void vtkLightRig::AddSpotLightNumber(double number)
-{
-  this->Added->Take(SPOT, number,
-    [&](const double* n) { this->AddSpotLight(n[0], n[1], n[2], n[3], n[4], n[5], n[6], n[7], n[8], n[9]); });
-  this->Modified();
-}
-
-void vtkLightRig::AddRectangleLightNumber(double number)
-{
-  this->Added->Take(RECTANGLE, number, [&](const double* n) {
-    this->AddRectangleLight(n[0], n[1], n[2], n[3], n[4], n[5], n[6], n[7], n[8], n[9], n[10]);
-  });
-  this->Modified();
-}
-
-void vtkLightRig::RemoveAllDirectionalLights()
-{
-  this->Added->Clear(DIRECTIONAL, this->Added->Directional);
-  this->Modified();
-}
-
-void vtkLightRig::RemoveAllPointLights()
-{
-  this->Added->Clear(POINT, this->Added->Point);
-  this->Modified();
-}
-
-void vtkLightRig::RemoveAllSpotLights()
-{
-  this->Added->Clear(SPOT, this->Added->Spot);
-  this->Modified();
-}
-
-void vtkLightRig::RemoveAllRectangleLights()
-{
-  this->Added->Clear(RECTANGLE, this->Added->Rectangle);
-  this->Modified();
-}
+#define LIGHTS_OF_TYPE(Kind, TYPE)                             \
+  void vtkLightRig::Add##Kind##LightNumber(double number)      \
+  {                                                            \
+    this->Added->Add(TYPE, number);                            \
+    this->Modified();                                          \
+  }                                                            \
+  void vtkLightRig::RemoveAll##Kind##Lights()                  \
+  {                                                            \
+    this->Added->Lights[TYPE].clear();                         \
+    this->Added->Numbers[TYPE].clear();                        \
+    this->Modified();                                          \
+  }                                                            \
+  int vtkLightRig::GetNumberOf##Kind##Lights() const           \
+  {                                                            \
+    return static_cast<int>(this->Added->Lights[TYPE].size()); \
+  }
+LIGHTS_OF_TYPE(Directional, DIRECTIONAL)
+LIGHTS_OF_TYPE(Point, POINT)
+LIGHTS_OF_TYPE(Spot, SPOT)
+LIGHTS_OF_TYPE(Rectangle, RECTANGLE)
+#undef LIGHTS_OF_TYPE
 
 void vtkLightRig::RemoveAllLights()
 {
   *this->Added = AddedLights();
   this->Modified();
-}
-
-int vtkLightRig::GetNumberOfDirectionalLights() const
-{
-  return static_cast<int>(this->Added->Directional.size());
-}
-
-int vtkLightRig::GetNumberOfPointLights() const
-{
-  return static_cast<int>(this->Added->Point.size());
-}
-
-int vtkLightRig::GetNumberOfSpotLights() const
-{
-  return static_cast<int>(this->Added->Spot.size());
-}
-
-int vtkLightRig::GetNumberOfRectangleLights() const
-{
-  return static_cast<int>(this->Added->Rectangle.size());
 }
 
 int vtkLightRig::FillInputPortInformation(int, vtkInformation* information)
@@ -264,10 +213,9 @@ int vtkLightRig::RequestData(vtkInformation* request, vtkInformationVector** giv
     {
       lights.push_back(SunLight(this->SunElevation, this->SunAzimuth, this->SunPower));
     }
-    for (const auto* kind :
-      { &this->Added->Directional, &this->Added->Point, &this->Added->Spot, &this->Added->Rectangle })
+    for (const std::vector<Light>& ofType : this->Added->Lights)
     {
-      lights.insert(lights.end(), kind->begin(), kind->end());
+      lights.insert(lights.end(), ofType.begin(), ofType.end());
     }
     tyndall::Illumination own;
     own.lights = lights;
