@@ -208,57 +208,24 @@ LightField SolveChannels(
   return light;
 }
 
-/// @throws InvalidInput where the medium is not that of the block
-void CheckSize(const Domain& domain, const Medium& medium)
-{
-  Require(medium.grid.size == domain.OwnGrid().size,
-    "The medium of rank " + std::to_string(domain.Rank()) + " does not have the size of its block.");
-}
-
-LightField SolveSerial(Device& device, const Domain& whole, const Medium& medium, const Illumination& illumination,
-  const OrdinatesSettings& settings, const Monitor& monitor, KeptLight* kept)
-{
-  Check(settings);
-  CheckSize(whole, medium);
-  if (IsPublished(settings))
-  {
-    CheckPublishedFaces(illumination);
-  }
-  Medium own = medium;
-  own.grid = whole.Whole();
-  const PropagationProblem problem(own, illumination, AsPropagation(settings));
-  const Domain domain(problem.TheGrid());
-  LightField light = SolveChannels(device,
-    { domain, problem.TheMedium(), problem.Traits(), problem.Shining(), problem.Channels(),
-      problem.Settings().directionsPerFace },
-    settings, monitor, kept);
-  problem.Undo(light);
-  return light;
-}
-
-/// Ranks must agree on all inputs. Collective.
-void RequireSame(const Domain& domain, const Medium& medium, const Illumination& illumination,
+/// What PropagationProblem does not check. Collective.
+void CheckOrdinates(const Domain& domain, const Medium& medium, const Illumination& illumination,
   const OrdinatesSettings& settings, bool warm)
 {
-  Communicator& comm = domain.Comm();
-  const PropagationSettings asPropagation = AsPropagation(settings);
-  RequireSame(comm, "WarmStart", true, { warm ? 1.0 : 0.0 });
   domain.Collective([&] {
-    domain.Partition().Check();
-    Require(static_cast<int>(domain.Partition().blocks.size()) == comm.Ranks(), "There is not a block for each rank.");
-    Require(!IsPublished(settings), "Blocks cannot be solved as published: take the conservative scheme.");
     Check(settings);
-    if (!domain.IsEmpty())
+    if (IsPublished(settings))
     {
-      CheckBlock(medium, illumination, asPropagation);
-      CheckSize(domain, medium);
+      Require(domain.IsSerial(), "Blocks cannot be solved as published: take the conservative scheme.");
+      CheckPublishedFaces(illumination);
     }
+    Require(domain.IsEmpty() || medium.grid.size == domain.OwnGrid().size,
+      "The medium of rank " + std::to_string(domain.Rank()) + " does not have the size of its block.");
   });
-  RequireSame(comm, domain.Partition());
-  RequireSame(comm, !domain.IsEmpty(), medium, illumination, asPropagation);
+  Communicator& comm = domain.Comm();
+  RequireSame(comm, "WarmStart", true, { warm ? 1.0 : 0.0 });
   RequireSame(comm, "settings of the ordinates", true,
     { 1.0 * static_cast<int>(settings.scattering), 1.0 * settings.spiralDirections, 1.0 * settings.terms });
-  RequireSink(LightEndsOnAny(comm, !domain.IsEmpty(), medium, illumination), illumination, asPropagation);
 }
 
 /// Uncollided light as given on any rank, for an empty block as well.
@@ -270,48 +237,21 @@ UncollidedImage UncollidedKnown(const Domain& domain, const UncollidedImage& own
   image.fluence = any ? Field{ &nothing, 1 } : Field();
   return domain.IsEmpty() ? image : own;
 }
-
-LightField SolveDecomposed(Device& device, const Domain& domain, const Medium& medium, const Illumination& illumination,
-  const OrdinatesSettings& settings, const Monitor& monitor, KeptLight* kept)
-{
-  RequireSame(domain, medium, illumination, settings, kept != nullptr);
-  PropagationSettings asPropagation = AsPropagation(settings);
-  const UnvaryingAxes unvarying(domain.Whole(), illumination, asPropagation);
-  BlockPartition partition = domain.Partition();
-  partition.whole = unvarying.Widened(domain.Whole());
-  asPropagation.directionsPerFace = DirectionsPerFaceFor(asPropagation, unvarying);
-  const double narrowing = domain.Whole().VoxelVolume() / partition.whole.VoxelVolume();
-  Medium own = domain.IsEmpty() ? Medium() : medium;
-  own.grid = partition.OwnGrid(domain.Rank());
-  Illumination shining = illumination;
-  for (Rgb& face : shining.uncollided.escaped)
-  {
-    face = Times(face, 1.0 / narrowing);
-  }
-  shining.uncollided = UncollidedKnown(domain, shining.uncollided);
-  const BlockScene scene(domain.Comm(), !domain.IsEmpty(), partition, own, shining, asPropagation, MemoryOf(device));
-  partition.whole = scene.WholeOf(partition.whole);
-  const Medium solved = domain.IsEmpty() ? VoxelOfVacuum(partition.whole) : scene.medium;
-  const Domain inUnits(domain.Comm(), partition);
-  LightField light = SolveChannels(device,
-    { inUnits, solved, scene.traits, scene.illumination, scene.channels, asPropagation.directionsPerFace }, settings,
-    monitor, kept);
-  domain.Collective([&] { scene.Undo(light); });
-  MultiplyPowers(light, narrowing);
-  light.directionsPerFace = asPropagation.directionsPerFace;
-  if (light.directionsPerFace != settings.directionsPerFace)
-  {
-    light.leftOut.push_back(left_out::DirectionsAlongSlab(light.directionsPerFace));
-  }
-  return light;
-}
 }
 
 LightField SolveDiscreteOrdinates(Device& device, const Domain& domain, const Medium& medium,
   const Illumination& illumination, const OrdinatesSettings& settings, const Monitor& monitor, KeptLight* kept)
 {
-  LightField light = domain.IsSerial() ? SolveSerial(device, domain, medium, illumination, settings, monitor, kept)
-                                       : SolveDecomposed(device, domain, medium, illumination, settings, monitor, kept);
+  CheckOrdinates(domain, medium, illumination, settings, kept != nullptr);
+  const PropagationProblem problem(domain, medium, illumination, AsPropagation(settings));
+  Illumination shining = problem.Shining();
+  shining.uncollided = UncollidedKnown(domain, shining.uncollided);
+  const Medium solved = domain.IsEmpty() ? VoxelOfVacuum(problem.Whole()) : problem.TheMedium();
+  LightField light = SolveChannels(device,
+    { problem.TheDomain(), solved, problem.Traits(), shining, problem.Channels(),
+      problem.Settings().directionsPerFace },
+    settings, monitor, kept);
+  domain.Collective([&] { problem.Undo(light); });
   light.faceAlbedo = illumination.faceAlbedo;
   WarnAboutInputLight(illumination, light);
   return light;
