@@ -64,15 +64,18 @@ struct LatticeBox
   /// The known voxel across a face -x, +x, ... +z of a known voxel, or Outside.
   std::size_t Beyond(std::size_t voxel, std::size_t face) const
   {
+    return this->Beyond(this->known.VoxelAt(voxel), face);
+  }
+  std::size_t Beyond(std::array<int, 3> at, std::size_t face) const
+  {
     const std::size_t axis = face / 2;
-    std::array<int, 3> at = this->known.VoxelAt(voxel);
     at[axis] += face % 2 == 0 ? -1 : 1;
     const int size = this->known.size[axis];
     if ((at[axis] < 0 || at[axis] >= size) && !this->periodic[axis])
     {
       return Outside;
     }
-    at[axis] = (at[axis] + size) % size;
+    at[axis] = at[axis] < 0 ? size - 1 : at[axis] < size ? at[axis] : 0;
     return this->known.IndexOf(at);
   }
 

@@ -158,7 +158,7 @@ def series():
     whole, blocks = ({"Decomposition": how} for how in ("Whole on each rank", "Blocks"))
     lights = {"whole": LightPropagationMaps(Input=medium, SkyColor=[1, 1, 1], DirectionsPerFace=4, **whole),
               "blocks": LightPropagationMaps(Input=medium, SkyColor=[1, 1, 1], DirectionsPerFace=4, **(blocks if ranks > 1 else whole)),
-              "lattice": LatticeBoltzmannLighting(Input=medium, SkyColor=[1, 1, 1])}
+              "lattice": LatticeBoltzmannLighting(Input=medium, SkyColor=[1, 1, 1], Tolerance=1e-8)}
     for time, first in ((1, False), (0, False), (2, True), (1, False)):
         if first:
             reader.UpdatePipeline(time)
@@ -554,7 +554,7 @@ def on_lattice(density, array, full=1, **settings):
 
 
 def lattice_by_blocks(density, array, **settings):
-    return by_blocks(density, array, solve=on_lattice, **settings)
+    return by_blocks(density, array, solve=on_lattice, **{"Tolerance": 1e-8, **settings})
 
 
 def lattice_wavelet():
@@ -628,7 +628,7 @@ def lattice_of_photons(**settings):
     medium = ParticipatingMedium(Input=source_of(uneven_pieces()[rank]), DensityArray=["CELLS", "density"], ExtinctionScale=2,
                                  MinimumDensity=0, MaximumDensity=1, Albedo=[0.99, 0.9, 0.7])
     emitter = PhotonEmitter(Input=medium, Lights=LightRig(SunElevation=50), PhotonCount=20000)
-    light = LatticeBoltzmannLighting(Input=medium, Photons=emitter, NetFlux=1, **{"Tolerance": 1e-7, **settings})
+    light = LatticeBoltzmannLighting(Input=medium, Photons=emitter, NetFlux=1, **{"Tolerance": 1e-8, **settings})
     light.UpdatePipeline()
     return light
 

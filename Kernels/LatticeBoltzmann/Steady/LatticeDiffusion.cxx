@@ -87,10 +87,12 @@ std::size_t LatticeDiffusion::CellAt(const std::array<int, 3>& inWhole) const
 
 void LatticeDiffusion::LoadVoxels(const LatticeSettings& settings, const LatticeVoxels& voxels)
 {
+  this->Conductance.reserve(this->Box.Count());
   const double thin = 1.0 / (0.5 + 1.0 / (3.0 * LatticeSquares(settings.directions) * Thinnest));
   for (std::size_t i = 0; i < this->Box.Count(); ++i)
   {
     const std::size_t known = this->Box.Known(i);
+    const std::array<int, 3> at = this->Box.known.VoxelAt(known);
     std::array<float, 6> conductance = {};
     double loss = voxels.lost[known] * voxels.squared[known];
     for (std::size_t face = 0; face < 6; ++face)
@@ -99,7 +101,7 @@ void LatticeDiffusion::LoadVoxels(const LatticeSettings& settings, const Lattice
       {
         continue; // beyond it lies the voxel itself
       }
-      const std::size_t beyond = this->Box.Beyond(known, face);
+      const std::size_t beyond = this->Box.Beyond(at, face);
       if (beyond == Outside)
       {
         loss += 1.0 / voxels.ResistanceOfFace(known, face, thin);
