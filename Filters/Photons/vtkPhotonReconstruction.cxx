@@ -9,7 +9,6 @@
 #include "Pieces/PieceBlocks.h"
 #include "Pieces/Ranks.h"
 #include "Pieces/UpdateExtent.h"
-#include "Reconstruction/Distributed/ReconstructionInBlocks.h"
 #include "Reconstruction/PhotonReconstruction.h"
 
 #include "vtkCellData.h"
@@ -126,8 +125,8 @@ LightOfImage Read(vtkPhotonReconstruction* filter, vtkImageData* image)
 tyndall::ReconstructedLight Reconstruct(vtkPhotonReconstruction* filter, vtkImageData* image)
 {
   const LightOfImage of = Read(filter, image);
-  return tyndall::Reconstruct(
-    *tyndall::Device::Find(filter->GetDevice()), of.light, SettingsOf(filter), tyndall::MonitorOf(filter));
+  return tyndall::Reconstruct(*tyndall::Device::Find(filter->GetDevice()), tyndall::Domain(of.light.grid), of.light,
+    SettingsOf(filter), tyndall::MonitorOf(filter));
 }
 
 /// What was left out before, and here.
@@ -262,8 +261,8 @@ bool vtkPhotonReconstruction::ReconstructPiece(vtkInformation* request, vtkMulti
     }
     device = tyndall::Device::Find(this->Device);
   });
-  tyndall::ReconstructedLight light = tyndall::ReconstructInBlocks(
-    *device, communicator, pieces.Partition(), of.light, SettingsOf(this), tyndall::MonitorOf(this));
+  tyndall::ReconstructedLight light = tyndall::Reconstruct(
+    *device, tyndall::Domain(communicator, pieces.Partition()), of.light, SettingsOf(this), tyndall::MonitorOf(this));
   const std::vector<double> squares =
     communicator.Sum({ SumOfSquares(light.fluence), SumOfSquares(light.fluenceError) });
   this->Note(light, squares[0], squares[1]);

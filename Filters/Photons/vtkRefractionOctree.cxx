@@ -11,7 +11,7 @@
 #include "Pieces/PieceBlocks.h"
 #include "Pieces/Ranks.h"
 #include "Pieces/UpdateExtent.h"
-#include "Refraction/Octree/OctreeInBlocks.h"
+#include "Refraction/Octree/RefractionOctree.h"
 
 #include "vtkCellData.h"
 #include "vtkHyperTreeGrid.h"
@@ -78,8 +78,8 @@ Quantities Read(vtkRefractionOctree* filter, vtkImageData* image)
 tyndall::Octree Build(vtkRefractionOctree* filter, vtkImageData* image)
 {
   const Quantities read = Read(filter, image);
-  return tyndall::BuildOctree(
-    read.medium, read.index, SettingsOf(filter), filter->GetDevice(), tyndall::MonitorOf(filter));
+  return tyndall::BuildOctree(tyndall::Domain(read.medium.grid), read.medium, read.index, SettingsOf(filter),
+    filter->GetDevice(), tyndall::MonitorOf(filter));
 }
 
 /// Levels of a rank's block as those of the voxels that its output is to have. All ranks call it.
@@ -203,8 +203,8 @@ bool vtkRefractionOctree::BuildPiece(vtkInformation* request, vtkMultiProcessCon
       read = Read(this, own);
     }
   });
-  tyndall::Octree octree = tyndall::BuildOctreeInBlocks(
-    communicator, pieces.Partition(), read.medium, read.index, SettingsOf(this), tyndall::MonitorOf(this));
+  tyndall::Octree octree = tyndall::BuildOctree(tyndall::Domain(communicator, pieces.Partition()), read.medium,
+    read.index, SettingsOf(this), this->Device, tyndall::MonitorOf(this));
   vtkHyperTreeGrid* const nodes = vtkHyperTreeGrid::GetData(outputs, 1);
   this->NodeCount = FillWithTrees(communicator, pieces.Partition(), octree, nodes);
   octree.levels = SpreadToHeld(communicator, pieces, octree.levels);

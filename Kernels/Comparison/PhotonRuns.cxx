@@ -62,13 +62,12 @@ LightField Rebuilt(Device& device, const Grid& grid, PhotonLight&& photons, cons
     return std::move(photons.light);
   }
   NoisyLight noisy;
-  noisy.grid = grid;
   noisy.channels = photons.light.channels;
   noisy.fluence = photons.light.fluence.data();
   noisy.meanDirection = photons.meanDirection.empty() ? nullptr : photons.meanDirection.data();
   noisy.batches = photons.batches;
   noisy.batchFluence = photons.batchFluence.data();
-  ReconstructedLight rebuilt = Reconstruct(device, noisy, {}, monitor);
+  ReconstructedLight rebuilt = Reconstruct(device, Domain(grid), noisy, {}, monitor);
   LightField light = std::move(photons.light);
   const double size = RootOfSquares(rebuilt.fluence);
   light.relativeError = size > 0.0 ? RootOfSquares(rebuilt.fluenceError) / size : 0.0;

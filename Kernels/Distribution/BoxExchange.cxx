@@ -60,6 +60,11 @@ std::vector<std::int64_t> PartOf(const std::vector<std::int64_t>& values, const 
   return TakeFrom(values, box, part, 1);
 }
 
+std::vector<std::uint8_t> PartOf(const std::vector<std::uint8_t>& values, const VoxelBox& box, const VoxelBox& part)
+{
+  return TakeFrom(values, box, part, 1);
+}
+
 std::vector<std::vector<std::size_t>> NumbersOfEach(
   Communicator& communicator, const BlockPartition& partition, const std::vector<std::vector<std::size_t>>& toEach)
 {

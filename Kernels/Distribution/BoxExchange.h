@@ -13,6 +13,7 @@ namespace tyndall
 /// Of values of a box those of a part of it, `components` a voxel, x fastest.
 std::vector<float> PartOf(const std::vector<float>& values, const VoxelBox& box, const VoxelBox& part, int components);
 std::vector<std::int64_t> PartOf(const std::vector<std::int64_t>& values, const VoxelBox& box, const VoxelBox& part);
+std::vector<std::uint8_t> PartOf(const std::vector<std::uint8_t>& values, const VoxelBox& box, const VoxelBox& part);
 
 /// The other way round.
 void PutPart(const std::vector<float>& taken, std::vector<float>& values, const VoxelBox& box, const VoxelBox& part,

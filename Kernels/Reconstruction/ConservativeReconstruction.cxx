@@ -1,15 +1,331 @@
 #include "Reconstruction/ConservativeReconstruction.h"
 
-#include "Reconstruction/ConservativePasses.h"
+#include "Device/Batches.h"
+#include "Device/Defines.h"
+#include "Device/Sizes.h"
+#include "Distribution/BoxExchange.h"
+#include "Numerics/PyramidLayout.h"
+#include "Reconstruction/ConservativeReconstructionShared.h"
+#include "Reconstruction/LightRows.h"
+#include "TyndallKernelSources.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
 
 namespace tyndall
 {
+namespace
+{
+/// What the device keeps of a level of the pyramid, from level 1 on.
+struct ConservativeLevel
+{
+  LightRows light;            ///< each batch's, then what is smoothed
+  LightRows results;          ///< what is smoothed, level, squared error
+  LightRows gains;            ///< with which the level below adds its details
+  LightRows measured, across; ///< to find them
+};
+
+/// The light of the grid's voxels: the host's own, or a copy batch by batch, with rows that are whole vectors.
+class BatchedLight
+{
+public:
+  BatchedLight(const RowKernels& kernels, const HostMappedBuffer<float>& given, const NoisyLight& light);
+
+  const cl::Buffer& Handle() const { return this->Apart.Size() > 0 ? this->Apart.Handle() : this->Given.Handle(); }
+
+private:
+  const HostMappedBuffer<float>& Given;
+  Buffer<float> Apart;
+};
+
+/// The passes of the conservative estimator over the levels of a pyramid (numerics.md, Eqs. (101) to (104)): up with
+/// Build, Begin at the top, and down again. They are done in two parts: the levels of this rank's box up to the shared
+/// one, and those of the whole grid from there on.
+class ConservativePasses
+{
+public:
+  /// All that is given must outlive this.
+  /// @param light   of the box; or, without arrays, of the whole grid
+  /// @param result  arrays of the light's voxels
+  /// @param first, top  levels with which the pyramid begins and ends
+  ConservativePasses(
+    const Reconstruction& task, const NoisyLight& light, ReconstructedLight& result, int first, int top);
+
+  void Build();                                        ///< all levels, from the voxels or from Light of the first level
+  void Begin();                                        ///< results of the top level
+  void Refine(int from, int downTo);                   ///< results of these levels, from those of the level above
+  void FetchFluence() const { this->Fluence.Fetch(); } ///< the voxels' light, before it is scaled
+  void Finish(const std::array<float, 3>& factors);
+
+  /// Of a level, to read or to write instead of what makes it.
+  LightRows& LightOf(int level) { return this->At(level).light; }
+  LightRows& ResultsOf(int level) { return this->At(level).results; }
+
+private:
+  void FindGains(int level);
+  void Blend(int level);
+  cl::Kernel Kernel(const char* name, bool finest = false) const;
+  ConservativeLevel& At(int level) { return this->Levels[static_cast<std::size_t>(level - this->First)]; }
+  const cl::Buffer& LightAt(int level)
+  {
+    return level > 0 ? this->At(level).light.Values().Handle() : this->Light.Handle();
+  }
+  cl_int4 LayoutAt(int level) { return level > 0 ? this->At(level).light.Layout() : this->Voxels; }
+  cl_float ScaleAt(int level) const { return level > 0 ? 1.0f : this->Scale; }
+  void RunAbove(int below, const cl::Kernel& kernel, double from = 0.0, double to = 0.0);
+  void SmoothAcross(ConservativeLevel& level, const LightRows& from, int first, int fields);
+
+  const Reconstruction& Task;
+  const std::array<int, 3>& Size;
+  RowKernels Kernels;
+  float Scale;
+  cl_int4 Voxels;
+  HostMappedBuffer<float> BatchesIn, DirectionsIn, FluenceOut, DirectionOut, MipLevelOut, ErrorOut;
+  BatchedLight Light;
+  WholeRows Direction, Fluence, MeanDirection, MipLevel, Error;
+  int First, Top; ///< levels that Levels begin and end with
+  bool FromVoxels;
+  std::vector<ConservativeLevel> Levels;
+};
+
+/// Part of the light taken for noise that the error counts (numerics.md, Eq. (104), which says how it was fitted).
+constexpr float Honesty = 0.4f;
+
+constexpr std::size_t VoxelsOfFirstLaunch = std::size_t(1)
+  << 22; // voxels per launch, until it is known how long that takes
+
+ConservativeLevel MakeLevel(const Reconstruction& task, const std::array<int, 3>& size, int width)
+{
+  Device& device = task.device;
+  const int fields = task.light.batches + task.Fields();
+  const char* what = "a level of the pyramid of light";
+  return { LightRows(device, size, fields, width, what),
+    LightRows(device, size, task.Fields() + BesideResults, width, what),
+    LightRows(device, size, GainFields, width, what), LightRows(device, size, 2, width, what),
+    LightRows(device, size, 2, width, what) };
+}
+
+/// Whether kernels read the light of batches as the host has it: two, in whole vectors. Of more, they would gather each
+/// value by itself.
+bool AreWoven(const NoisyLight& light, int width)
+{
+  return light.batches == 2 && WholeVectors(light.grid.size[0], width) == light.grid.size[0];
+}
+
+std::string Options(const Reconstruction& task, int width)
+{
+  const NoisyLight& light = task.light;
+  return Define("BATCHES", light.batches) + Define("WOVEN", AreWoven(light, width)) +
+    Define("CHANNELS", light.channels) + Define("DIRECTIONS", task.directions);
+}
+
+/// A power of two that brings the light near 1, so that its squares neither overflow nor vanish.
+float ScaleOf(float largest)
+{
+  return std::ldexp(1.0f, -std::clamp(largest > 0.0f ? std::ilogb(largest) : 0, -126, 126));
+}
+
+BatchedLight::BatchedLight(const RowKernels& kernels, const HostMappedBuffer<float>& given, const NoisyLight& light)
+  : Given(given)
+{
+  if (!light.batchFluence || AreWoven(light, kernels.Width()))
+  {
+    return;
+  }
+  const int pitch = WholeVectors(light.grid.size[0], kernels.Width());
+  const std::size_t rows = Count(light.grid.size[1]) * Count(light.grid.size[2]);
+  this->Apart =
+    Buffer<float>(kernels.On(), rows * Count(pitch) * Count(light.batches * light.channels), "light of batches");
+  cl::Kernel copy = kernels.Kernel("copy_batches", kernel_source::LightPyramid);
+  With(copy, given.Handle(), cl_int(light.grid.size[0]), this->Apart, cl_int(pitch), cl_int(light.batches),
+    cl_int(light.channels));
+  kernels.On().Queue().enqueueNDRangeKernel(copy, cl::NullRange, cl::NDRange(rows), cl::NullRange);
+}
+
+ConservativePasses::ConservativePasses(
+  const Reconstruction& task, const NoisyLight& light, ReconstructedLight& result, int first, int top)
+  : Task(task)
+  , Size(light.grid.size)
+  , Kernels(task.device, RowWidth(task.device, task.domain.Whole()),
+      Options(task, RowWidth(task.device, task.domain.Whole())))
+  , Scale(ScaleOf(task.largest))
+  , Voxels(VoxelLayout(this->Size, this->Kernels.Width()))
+  , BatchesIn(task.device, light.batchFluence,
+      light.batchFluence ? light.grid.VoxelCount() * Count(light.batches * light.channels) : 0, "fluence")
+  , DirectionsIn(
+      task.device, light.meanDirection, light.meanDirection ? 3 * light.grid.VoxelCount() : 0, "mean directions")
+  , FluenceOut(task.device, result.fluence.data(), result.fluence.size(), "fluence")
+  , DirectionOut(task.device, result.meanDirection.data(), result.meanDirection.size(), "mean directions")
+  , MipLevelOut(task.device, result.mipLevel.data(), result.mipLevel.size(), "levels")
+  , ErrorOut(task.device, result.fluenceError.data(), result.fluenceError.size(), "errors")
+  , Light(Kernels, BatchesIn, light)
+  , Direction(Kernels, DirectionsIn, Size, light.meanDirection ? 1 : 0, 3, false, "mean directions")
+  , Fluence(Kernels, FluenceOut, Size, first == 0 ? 1 : 0, light.channels, true, "fluence")
+  , MeanDirection(Kernels, DirectionOut, Size, light.meanDirection ? 1 : 0, 3, true, "mean directions")
+  , MipLevel(Kernels, MipLevelOut, Size, first == 0 ? 1 : 0, 1, true, "levels")
+  , Error(Kernels, ErrorOut, Size, first == 0 ? 1 : 0, light.channels, true, "errors")
+  , First(std::max(first, 1))
+  , Top(top)
+  , FromVoxels(light.batchFluence != nullptr)
+{
+  const PyramidLayout layout(light.grid.size);
+  for (int level = this->First; level <= top; ++level)
+  {
+    const std::array<int, 3>& size = layout.sizes[std::min(level, layout.Top())];
+    this->Levels.push_back(MakeLevel(task, size, this->Kernels.Width()));
+  }
+}
+
+cl::Kernel ConservativePasses::Kernel(const char* name, bool finest) const
+{
+  return this->Kernels.Kernel(name, kernel_source::ConservativeReconstruction, Define("FINEST", finest));
+}
+
+/// Queue a kernel that looks at level `below` for the cells of the level above it.
+void ConservativePasses::RunAbove(int below, const cl::Kernel& kernel, double from, double to)
+{
+  const std::array<int, 3>& cells = this->At(below + 1).light.Cells();
+  if (below > 0)
+  {
+    this->Kernels.Run(kernel, cells);
+    return;
+  }
+  Batches parts;
+  parts.count = Count(cells[2]);
+  parts.first = std::max<std::size_t>(VoxelsOfFirstLaunch / (8 * Count(cells[0]) * Count(cells[1])), 1);
+  parts.from = from;
+  parts.to = to;
+  InBatches(this->Task.device, parts, this->Task.monitor,
+    [&](std::size_t first, std::size_t count) { this->Kernels.Run(kernel, cells, first, count); });
+}
+
+void ConservativePasses::SmoothAcross(ConservativeLevel& level, const LightRows& from, int first, int fields)
+{
+  cl::Kernel smooth = this->Kernel("smooth_across");
+  With(smooth, from.Values(), from.Layout(), level.across.Values(), cl_int(first), cl_int(fields));
+  this->Kernels.Run(smooth, from.Cells());
+}
+
+void ConservativePasses::Build()
+{
+  if (this->FromVoxels)
+  {
+    const ConservativeLevel& first = this->At(1);
+    cl::Kernel ofVoxels = this->Kernel("voxels_down", true);
+    With(ofVoxels, this->Light.Handle(), this->Direction.Handle(), this->Voxels, first.light.Values(),
+      first.light.Layout(), this->Scale);
+    this->RunAbove(0, ofVoxels, 0.05, 0.3);
+  }
+
+  cl::Kernel down = this->Kernels.Kernel("smooth_down", kernel_source::LightPyramid);
+  for (int level = this->First; level < this->Top; ++level)
+  {
+    const LightRows &fine = this->At(level).light, &coarse = this->At(level + 1).light;
+    With(down, fine.Values(), fine.Layout(), coarse.Values(), coarse.Layout(), cl_int(fine.Fields()));
+    this->Kernels.Run(down, coarse.Cells());
+  }
+}
+
+void ConservativePasses::Begin()
+{
+  ConservativeLevel& top = this->At(this->Top);
+  cl::Kernel begin = this->Kernel("begin_results");
+  With(begin, top.light.Values(), top.light.Layout(), top.results.Values(), cl_float(this->Top), top.measured.Values());
+  this->Kernels.Run(begin, top.light.Cells());
+  this->SmoothAcross(top, top.measured, 0, 1);
+  cl::Kernel errors = this->Kernel("begin_errors");
+  With(errors, top.across.Values(), top.light.Layout(), top.results.Values());
+  this->Kernels.Run(errors, top.light.Cells());
+}
+
+/// How much of a level's details is kept, and the error of that.
+void ConservativePasses::FindGains(int level)
+{
+  ConservativeLevel& above = this->At(level + 1);
+  const cl_int4 cells = above.light.Layout();
+  cl::Kernel measure = this->Kernel("measure_details", level == 0);
+  With(measure, this->LightAt(level), this->Direction.Handle(), this->LayoutAt(level), this->ScaleAt(level),
+    above.light.Values(), cells, above.measured.Values());
+  this->RunAbove(level, measure, 0.3, 0.5);
+
+  this->SmoothAcross(above, above.measured, 0, 2);
+  cl::Kernel gains = this->Kernel("find_gains");
+  With(gains, above.across.Values(), cells, above.gains.Values());
+  this->Kernels.Run(gains, above.light.Cells());
+
+  this->SmoothAcross(above, above.gains, RemovedField, 1);
+  cl::Kernel errors = this->Kernel("add_errors");
+  With(errors, above.across.Values(), cells, Honesty, above.results.Values(), above.gains.Values());
+  this->Kernels.Run(errors, above.light.Cells());
+}
+
+void ConservativePasses::Blend(int level)
+{
+  const ConservativeLevel& above = this->At(level + 1);
+  cl::Kernel blend = this->Kernel("blend_level", level == 0);
+  const cl::Buffer& to = level > 0 ? this->At(level).results.Values().Handle() : above.across.Values().Handle();
+  With(blend, this->LightAt(level), this->Direction.Handle(), this->LayoutAt(level), this->ScaleAt(level),
+    above.light.Values(), above.results.Values(), above.gains.Values(), above.light.Layout(), cl_float(level), to,
+    this->Fluence.Handle(), this->MeanDirection.Handle(), this->MipLevel.Handle());
+  this->RunAbove(level, blend, 0.5, 0.9);
+}
+
+void ConservativePasses::Refine(int from, int downTo)
+{
+  for (int level = from; level >= downTo; --level)
+  {
+    this->FindGains(level);
+    this->Blend(level);
+  }
+}
+
+void ConservativePasses::Finish(const std::array<float, 3>& factors)
+{
+  const ConservativeLevel& first = this->At(1);
+  cl::Kernel finish = this->Kernel("finish_light");
+  With(finish, first.gains.Values(), first.light.Layout(), cl_float4{ { factors[0], factors[1], factors[2], 0.0f } },
+    cl_float(1.0f / this->Scale), this->Fluence.Handle(), this->Error.Handle(), this->Voxels);
+  this->RunAbove(0, finish, 0.9, 1.0);
+  this->Fluence.Fetch();
+  this->Error.Fetch();
+  this->MipLevel.Fetch();
+  if (this->Task.directions)
+  {
+    this->MeanDirection.Fetch();
+  }
+}
+}
+
 void ReconstructConservative(const Reconstruction& task, ReconstructedLight& result)
 {
-  ConservativePasses passes(task, result);
-  passes.Build();
-  passes.Begin();
-  passes.Refine(task.levels - 1, 0);
-  passes.Finish(task.Conserve(passes.Totals(), result));
+  const PyramidBlocks& blocks = task.blocks;
+  std::optional<ConservativePasses> passes;
+  std::vector<float> cells;
+  task.OnVoxels([&] {
+    passes.emplace(task, task.light, result, 0, blocks.Shared());
+    passes->Build();
+    cells = passes->LightOf(blocks.Shared()).Read();
+  });
+  cells = blocks.GatherCells(cells, task.light.batches + task.Fields());
+  task.OnVoxels([&] {
+    NoisyLight whole = task.light;
+    whole.grid = task.domain.Whole();
+    whole.batchFluence = whole.meanDirection = nullptr;
+    ReconstructedLight none;
+    ConservativePasses above(task, whole, none, blocks.Shared(), task.levels);
+    above.LightOf(blocks.Shared()).Write(cells);
+    above.Build();
+    above.Begin();
+    above.Refine(task.levels - 1, blocks.Shared());
+    LightRows& results = passes->ResultsOf(blocks.Shared());
+    results.Write(
+      PartOf(above.ResultsOf(blocks.Shared()).Read(), blocks.AllCells(), blocks.BoxCells(), results.Fields()));
+    passes->Refine(blocks.Shared() - 1, 0);
+    passes->FetchFluence();
+  });
+  const std::array<float, 3> factors = task.Conserve(result);
+  task.OnVoxels([&] { passes->Finish(factors); });
 }
 }

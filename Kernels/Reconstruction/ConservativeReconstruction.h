@@ -4,7 +4,8 @@
 
 namespace tyndall
 {
-/// Light of all batches, of each level's detail what they agree on (Estimator::Conservative). The result's arrays have
-/// their sizes.
+/// The mean light of all batches, with as much of each level's detail as they agree on (Estimator::Conservative).
+/// Collective.
+/// @param result  arrays of the box (Reconstruction::MakeRoom)
 void ReconstructConservative(const Reconstruction& task, ReconstructedLight& result);
 }

@@ -249,16 +249,3 @@ __kernel void choose_level(const __global float* light, const __global PyramidLe
     store_real(level, begin + x, chosen);
   }
 }
-
-// Light so that each channel's total is what it was.
-__kernel void scale_light(__global float* fluence, float4 factors)
-{
-  const size_t at = get_global_id(0);
-#if CHANNELS == 3
-  fluence[3 * at] *= factors.x;
-  fluence[3 * at + 1] *= factors.y;
-  fluence[3 * at + 2] *= factors.z;
-#else
-  fluence[at] *= factors.x;
-#endif
-}

@@ -2,14 +2,16 @@
 
 #include "Device/Batches.h"
 #include "Device/Defines.h"
+#include "Device/HostMappedBuffer.h"
 #include "Device/HostThreads.h"
 #include "Device/Sizes.h"
-#include "Reconstruction/ReconstructionChecks.h"
+#include "Reconstruction/LightPyramid.h"
+#include "Reconstruction/LightRows.h"
 #include "TyndallKernelSources.h"
 
 #include <algorithm>
-#include <limits>
 #include <numeric>
+#include <optional>
 
 namespace tyndall
 {
@@ -23,73 +25,91 @@ constexpr std::size_t FirstPart = std::size_t(1) << 18; // voxels per launch, un
 constexpr LightPyramid::Down Downs[] = { LightPyramid::Down::Gauss, LightPyramid::Down::Sum,
   LightPyramid::Down::MeanOfLit };
 
-std::size_t VoxelsOf(const Reconstruction& task, bool needed)
+std::size_t CountOf(const Reconstruction& task, const float* values, int components)
 {
-  return needed ? task.light.grid.VoxelCount() : 0;
-}
-}
-
-PhotonsOfVoxels::PhotonsOfVoxels(const Reconstruction& task)
-  : counts(task.device, task.light.photonCount, VoxelsOf(task, NeedsCounts(task.settings.estimator)), "photon_count")
-  , weights(
-      task.device, task.light.photonWeight, VoxelsOf(task, NeedsWeights(task.settings.estimator)), "photon_weight")
-{
+  return values ? task.light.grid.VoxelCount() * Count(components) : 0;
 }
 
-WeightsOfVoxels::WeightsOfVoxels(const float* values, std::size_t voxels)
+/// Takes the light of each voxel from one level of its pyramid (the estimators other than the conservative one).
+class LevelPasses
 {
-  constexpr std::size_t piece = 1 << 16;
-  this->total = SumInThreads(voxels, piece,
-    [&](std::size_t begin, std::size_t end) { return std::accumulate(values + begin, values + end, 0.0); });
-  this->lit = static_cast<double>(voxels) - static_cast<double>(std::count(values, values + voxels, 0.0f));
+public:
+  /// @param task, result  must outlive this; the result's arrays are those of the box
+  LevelPasses(const Reconstruction& task, ReconstructedLight& result);
+
+  void Build(); ///< pyramids up to the shared level
+  /// Cells of a pyramid's shared level: those of this rank's box, and those of the whole grid.
+  std::vector<float> Shared(std::size_t pyramid) const { return this->Pyramids[pyramid].Read(this->Part.shared); }
+  void BuildAbove(std::size_t pyramid, const std::vector<float>& cells);
+
+  void Choose(double weightStep); ///< light, levels and directions of the result
+
+private:
+  void Fill(std::size_t pyramid, const HostMappedBuffer<float>& array, int components, int first, const char* what);
+  void InParts(const cl::Kernel& kernel) const;
+  cl::Kernel Kernel(const char* name) const;
+
+  const Reconstruction& Task;
+  ReconstructedLight& Result;
+  const std::array<int, 3>& Size;
+  RowKernels Kernels;
+  const PartOfPyramid Part;
+  std::vector<LightPyramid> Pyramids;                         ///< those of FieldsOfPyramids
+  HostMappedBuffer<float> Light, Directions, Counts, Weights; ///< of photons; without values where not needed
+};
+
+/// The weight of photons from a level to the next: where it is not given the mean weight of lit voxels, less than
+/// marching rounds weights to, so that equal ones all reach the first step. Collective.
+/// @param own  weights of the block's voxels
+double WeightStepOf(const Reconstruction& task, const float* own)
+{
+  double total = 0.0, lit = 0.0;
+  const std::size_t voxels = NeedsWeights(task.settings.estimator) ? task.domain.Own().VoxelCount() : 0;
+  if (voxels > 0)
+  {
+    total = SumInThreads(voxels, 1 << 16,
+      [&](std::size_t begin, std::size_t end) { return std::accumulate(own + begin, own + end, 0.0); });
+    lit = static_cast<double>(voxels) - static_cast<double>(std::count(own, own + voxels, 0.0f));
+  }
+  total = task.domain.Sum(total);
+  lit = task.domain.Sum(lit);
+  return task.settings.weightStep > 0.0 ? task.settings.weightStep : total > 0.0 ? 0.999 * total / lit : 1.0;
 }
 
-double WeightStepOf(const ReconstructionSettings& settings, const WeightsOfVoxels& weights)
+/// Fields of the pyramids that an estimator looks at: of light and its directions, of photon counts, of their weights.
+std::vector<int> FieldsOfPyramids(const Reconstruction& task)
 {
-  const double mean = weights.total > 0.0 ? 0.999 * weights.total / weights.lit : 1.0;
-  return settings.weightStep > 0.0 ? settings.weightStep : mean;
-}
-
-int TopLevelOf(const ReconstructionSettings& settings, int levels)
-{
-  return settings.estimator == Estimator::ConstantRadius ? std::min(settings.level, levels) : levels;
-}
-
-std::vector<int> FieldsOfPyramids(Estimator estimator, int channels, bool directions)
-{
-  std::vector<int> fields = { channels + (directions ? 3 : 0) };
-  fields.resize(NeedsWeights(estimator) ? 3 : NeedsCounts(estimator) ? 2 : 1, 1);
+  std::vector<int> fields = { task.Fields() };
+  fields.resize(NeedsWeights(task.settings.estimator) ? 3 : NeedsCounts(task.settings.estimator) ? 2 : 1, 1);
   return fields;
 }
 
-LevelPasses::LevelPasses(const Reconstruction& task, const PhotonsOfVoxels& photons, ReconstructedLight& result,
-  int width, const PartOfPyramid& part)
+LevelPasses::LevelPasses(const Reconstruction& task, ReconstructedLight& result)
   : Task(task)
-  , Photons(photons)
   , Result(result)
   , Size(task.light.grid.size)
-  , HasDirections(task.light.meanDirection != nullptr)
-  , Published(task.settings.estimator == Estimator::Published)
-  , ConstantRadius(task.settings.estimator == Estimator::ConstantRadius)
-  , Top(TopLevelOf(task.settings, task.levels))
-  , Kernels(task.device, width)
-  , Part(part)
-  , Fluence(task.device, result.fluence.data(), result.fluence.size(), "fluence")
+  , Kernels(task.device, RowWidth(task.device, task.domain.Whole()))
+  , Part{ task.domain.Whole().size, task.blocks.Box().first, task.blocks.Shared() }
+  , Light(task.device, task.light.fluence, CountOf(task, task.light.fluence, task.light.channels), "fluence")
+  , Directions(task.device, task.light.meanDirection, CountOf(task, task.light.meanDirection, 3), "mean directions")
+  , Counts(task.device, task.light.photonCount, CountOf(task, task.light.photonCount, 1), "photon_count")
+  , Weights(task.device, task.light.photonWeight, CountOf(task, task.light.photonWeight, 1), "photon_weight")
 {
   const char* const what[] = { "the pyramid of light", "the pyramid of photon counts", "the pyramid of weights" };
-  for (const int fields : FieldsOfPyramids(task.settings.estimator, task.light.channels, this->HasDirections))
+  for (const int fields : FieldsOfPyramids(task))
   {
     this->Pyramids.emplace_back(
-      this->Kernels, task.light.grid, fields, this->Top, what[this->Pyramids.size()], this->Part);
+      this->Kernels, task.light.grid, fields, task.top, what[this->Pyramids.size()], this->Part);
   }
 }
 
 cl::Kernel LevelPasses::Kernel(const char* name) const
 {
+  const Estimator estimator = this->Task.settings.estimator;
   return this->Kernels.Kernel(name, kernel_source::LevelReconstruction,
-    Define("CHANNELS", this->Task.light.channels) + Define("DIRECTIONS", this->HasDirections) +
-      Define("PUBLISHED", this->Published) + Define("CONSTANT_RADIUS", this->ConstantRadius) +
-      Define("TOP", this->Top));
+    Define("CHANNELS", this->Task.light.channels) + Define("DIRECTIONS", this->Task.directions) +
+      Define("PUBLISHED", estimator == Estimator::Published) +
+      Define("CONSTANT_RADIUS", estimator == Estimator::ConstantRadius) + Define("TOP", this->Task.top));
 }
 
 void LevelPasses::Fill(
@@ -101,18 +121,18 @@ void LevelPasses::Fill(
 void LevelPasses::Build()
 {
   const int channels = this->Task.light.channels;
-  this->Fill(0, this->Task.fluence, channels, 0, "fluence");
-  if (this->HasDirections)
+  this->Fill(0, this->Light, channels, 0, "fluence");
+  if (this->Task.directions)
   {
-    this->Fill(0, this->Task.direction, 3, channels, "mean directions");
+    this->Fill(0, this->Directions, 3, channels, "mean directions");
   }
   if (this->Pyramids.size() > 1)
   {
-    this->Fill(1, this->Photons.counts, 1, 0, "photon counts");
+    this->Fill(1, this->Counts, 1, 0, "photon counts");
   }
   if (this->Pyramids.size() > 2)
   {
-    this->Fill(2, this->Photons.weights, 1, 0, "weights");
+    this->Fill(2, this->Weights, 1, 0, "weights");
   }
   for (std::size_t pyramid = 0; pyramid < this->Pyramids.size(); ++pyramid)
   {
@@ -140,10 +160,12 @@ void LevelPasses::Choose(double weightStep)
   Device& device = this->Task.device;
   std::vector<float>& ways = this->Result.meanDirection;
   std::vector<float>& levels = this->Result.mipLevel;
+  std::vector<float>& fluence = this->Result.fluence;
+  const HostMappedBuffer<float> found(device, fluence.data(), fluence.size(), "fluence");
   const HostMappedBuffer<float> direction(device, ways.data(), ways.size(), "directions");
   const HostMappedBuffer<float> chosen(device, levels.data(), levels.size(), "levels");
-  const int volumes = this->HasDirections ? 1 : 0;
-  const WholeRows fluenceRows(this->Kernels, this->Fluence, this->Size, 1, this->Task.light.channels, true, "fluence");
+  const int volumes = this->Task.directions ? 1 : 0;
+  const WholeRows fluenceRows(this->Kernels, found, this->Size, 1, this->Task.light.channels, true, "fluence");
   const WholeRows directionRows(this->Kernels, direction, this->Size, volumes, 3, true, "mean directions");
   const WholeRows chosenRows(this->Kernels, chosen, this->Size, 1, 1, true, "levels");
 
@@ -153,30 +175,51 @@ void LevelPasses::Choose(double weightStep)
   const LightPyramid& photons = this->Pyramids[std::min<std::size_t>(1, this->Pyramids.size() - 1)];
   cl::Kernel choose = this->Kernel("choose_level");
   With(choose, light.Values(), light.Levels(), photons.Values(), heavy.Values(), photons.Levels(),
-    cl_float(this->Published ? weightStep : this->Task.settings.nearest), fluenceRows.Handle(), directionRows.Handle(),
-    chosenRows.Handle(), VoxelLayout(this->Size, this->Kernels.Width()));
+    cl_float(this->Task.settings.estimator == Estimator::Published ? weightStep : this->Task.settings.nearest),
+    fluenceRows.Handle(), directionRows.Handle(), chosenRows.Handle(), VoxelLayout(this->Size, this->Kernels.Width()));
   this->InParts(choose);
   fluenceRows.Fetch();
   chosenRows.Fetch();
-  if (this->HasDirections)
+  if (this->Task.directions)
   {
     directionRows.Fetch();
   }
 }
 
-void LevelPasses::Conserve()
+/// Pyramids from the shared level on.
+void CompletePyramids(const Reconstruction& task, std::optional<LevelPasses>& passes)
 {
-  const std::vector<float>& found = this->Result.fluence;
-  const ArrayRange range = RangeOf(this->Task.device, this->Fluence, found.data(), found.size(),
-    this->Task.light.channels, 0.0f, std::numeric_limits<float>::max());
-  const std::array<float, 3> factors = this->Task.Conserve(range.total, this->Result);
-  if (this->Task.settings.conserve)
+  const std::vector<int> fields = FieldsOfPyramids(task);
+  for (std::size_t pyramid = 0; pyramid < fields.size(); ++pyramid)
   {
-    cl::Kernel scale = this->Kernel("scale_light");
-    With(scale, this->Fluence.Handle(), cl_float4{ { factors[0], factors[1], factors[2], 0.0f } });
-    this->Task.device.Queue().enqueueNDRangeKernel(
-      scale, cl::NullRange, cl::NDRange(this->Task.light.grid.VoxelCount()), cl::NullRange);
-    this->Fluence.Fetch();
+    std::vector<float> cells;
+    task.OnVoxels([&] { cells = passes->Shared(pyramid); });
+    cells = task.blocks.GatherCells(cells, fields[pyramid]);
+    task.OnVoxels([&] { passes->BuildAbove(pyramid, cells); });
   }
+}
+}
+
+void ReconstructFromLevels(const Reconstruction& task, const float* ownWeights, ReconstructedLight& result)
+{
+  const double step = WeightStepOf(task, ownWeights);
+  std::optional<LevelPasses> passes;
+  task.OnVoxels([&] {
+    passes.emplace(task, result);
+    passes->Build();
+  });
+  if (task.top > task.blocks.Shared())
+  {
+    CompletePyramids(task, passes);
+  }
+  task.OnVoxels([&] { passes->Choose(step); });
+  const std::array<float, 3> factors = task.Conserve(result);
+  const auto channels = static_cast<std::size_t>(task.light.channels);
+  InThreads(result.fluence.size() / channels, 1 << 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin * channels; i < end * channels; ++i)
+    {
+      result.fluence[i] *= factors[i % channels];
+    }
+  });
 }
 }

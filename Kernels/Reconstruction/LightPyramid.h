@@ -1,7 +1,7 @@
 #pragma once
 
 #include "Reconstruction/LightPyramidShared.h"
-#include "Reconstruction/WholeRows.h"
+#include "Reconstruction/LightRows.h"
 
 #include <vector>
 

@@ -1,19 +1,19 @@
 #include "Reconstruction/PhotonReconstruction.h"
 
 #include "Device/Clock.h"
+#include "Device/Errors.h"
 #include "Device/HostMemory.h"
+#include "Distribution/SharedMedium.h"
+#include "Light/LeftOut.h"
 #include "Medium/Medium.h"
-#include "Medium/Traits.h"
 #include "Numerics/NumberText.h"
-#include "Numerics/PyramidLayout.h"
 #include "Reconstruction/ConservativeReconstruction.h"
 #include "Reconstruction/LevelReconstruction.h"
-#include "Reconstruction/LightRows.h"
-#include "Reconstruction/ReconstructionChecks.h"
+#include "Reconstruction/LightPyramidShared.h"
+#include "Reconstruction/Reconstruction.h"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 namespace tyndall
@@ -22,70 +22,142 @@ namespace
 {
 using Estimator = ReconstructionSettings::Estimator;
 
-constexpr float Most = std::numeric_limits<float>::max();
-constexpr float LongestDirection = 1.001f; // rounding may make a unit vector's component a little longer than 1
-
-/// What an array holds, once it is known that all of it means something.
-ArrayRange Checked(Device& device, const HostMappedBuffer<float>& array, const float* values, std::size_t count,
-  int components, const Grid& grid, const char* name, float low, float high)
+const char* NameOf(Estimator estimator)
 {
-  const std::size_t width = count / grid.VoxelCount(); // of a voxel: components of one batch or of several
-  const ArrayRange range = RangeOf(device, array, values, count, components, low, high);
-  if (range.unfit)
+  switch (estimator)
   {
-    const std::size_t voxel = *range.unfit / width;
-    throw InvalidInput(std::string(name) + " is " + Text("%g", values[*range.unfit]) + " in voxel " +
-      VoxelName(grid, voxel) + " (the first such voxel); it must be finite and " +
-      (low < 0.0f ? "no longer than 1." : "not negative.") + " Clean the light, or march the photons anew.");
+    case Estimator::Published: return "published";
+    case Estimator::Conservative: return "conservative";
+    case Estimator::ConstantRadius: return "constant radius";
+    default: return "nearest photons";
   }
-  return range;
 }
 
-/// Of the result and of what is made on the way, roughly.
-void RequireMemory(const Device& device, const NoisyLight& light, bool conservative)
+void RequireArray(const float* values, Estimator estimator, const char* what, const char* advice)
+{
+  if (!values)
+  {
+    throw InvalidInput(
+      "There is no " + std::string(what) + ", which the " + NameOf(estimator) + " estimator needs. " + advice);
+  }
+}
+
+/// @throws InvalidInput where a setting is out of its range
+void Check(const ReconstructionSettings& settings)
+{
+  const auto require = [](bool fits, const std::string& what, double value, const std::string& range) {
+    if (!fits)
+    {
+      throw InvalidInput(what + " is " + Text("%g", value) + "; it must be " + range + ".");
+    }
+  };
+  const std::string most = std::to_string(LevelsAtMost);
+  require(
+    settings.levels >= 1 && settings.levels <= LevelsAtMost, "The number of levels", settings.levels, "1 to " + most);
+  require(settings.level >= 0 && settings.level <= LevelsAtMost, "The level of the constant radius", settings.level,
+    "0 to " + most);
+  require(settings.nearest >= 1, "The number of nearest photons", settings.nearest, "at least 1");
+  require(settings.weightStep >= 0.0 && std::isfinite(settings.weightStep), "The weight of photons from level to level",
+    settings.weightStep, "a number of 0 (found from the photons) or more");
+}
+
+/// @throws InvalidInput where what the estimator needs is not there: says what
+void CheckPresence(const NoisyLight& light, Estimator estimator)
+{
+  if (light.channels != 1 && light.channels != 3)
+  {
+    throw InvalidInput(
+      "The light has " + std::to_string(light.channels) + " channels; it must have 1 (grey) or 3 (RGB).");
+  }
+  if (estimator == Estimator::Conservative)
+  {
+    const char* advice =
+      "Let PhotonEmitter make at least two Batches and PhotonMarcher's conservative scheme gather them, or "
+      "choose another estimator.";
+    RequireArray(light.batchFluence, estimator, "fluence_batches", advice);
+    if (light.batches < 2 || light.batches > ComparedBatchesAtMost)
+    {
+      throw InvalidInput("The photons are of " + std::to_string(light.batches) +
+        (light.batches == 1 ? " batch" : " batches") + "; the conservative estimator compares 2 to " +
+        std::to_string(ComparedBatchesAtMost) + " of them. " + advice);
+    }
+    return;
+  }
+  RequireArray(light.fluence, estimator, "fluence", "Give it the light of PhotonMarcher.");
+  const char* advice = "Switch on PhotonCounts of PhotonMarcher, or choose another estimator.";
+  if (NeedsCounts(estimator))
+  {
+    RequireArray(light.photonCount, estimator, "photon_count", advice);
+  }
+  if (NeedsWeights(estimator))
+  {
+    RequireArray(light.photonWeight, estimator, "photon_weight", advice);
+  }
+}
+
+/// What is made on the way and the result, roughly.
+void RequireMemory(const Device& device, const NoisyLight& light, bool conservative, std::size_t voxels)
 {
   const double direction = light.meanDirection ? 3.0 : 0.0;
   const double result = light.channels * (conservative ? 2.0 : 1.0) + direction + 1.0;
   const double made =
     conservative ? 2.0 * (light.batches + light.channels + direction) + 9.0 : 8.0 * (light.channels + direction + 2.0);
-  const double voxels = static_cast<double>(light.grid.VoxelCount());
-  RequireHostMemory(sizeof(float) * voxels * (result + (device.IsCpu() ? made / 7.0 : 0.0)),
-    "Reconstructing light on " + std::to_string(light.grid.VoxelCount()) + " voxels",
-    "Use a coarser grid or fewer batches.");
+  RequireHostMemory(sizeof(float) * static_cast<double>(voxels) * (result + (device.IsCpu() ? made / 7.0 : 0.0)),
+    "Reconstructing light on " + std::to_string(voxels) + " voxels", "Use a coarser grid or fewer batches.");
 }
 
-/// Whether the light is of one colour everywhere, so that its channels share their noise.
-bool OneColour(const NoisyLight& light)
+/// Sets channels and batches on ranks without voxels to those of the others, and tells whether there are directions.
+/// Collective.
+/// @throws InvalidInput where ranks disagree
+bool AgreeOnKind(const Domain& domain, NoisyLight& light)
+{
+  const bool has = !domain.IsEmpty();
+  RequireSame(domain.Comm(), "channels, batches and directions of light", has,
+    { 1.0 * light.channels, 1.0 * light.batches, light.meanDirection ? 1.0 : 0.0 });
+  light.channels = static_cast<int>(domain.Max(has ? light.channels : 0));
+  light.batches = static_cast<int>(domain.Max(has ? light.batches : 0));
+  return domain.Any(has && light.meanDirection);
+}
+
+/// Whether light of three channels is of one colour everywhere, so that its channels share their noise. Collective.
+bool IsOneColour(const Domain& domain, const NoisyLight& light)
 {
   constexpr float part = 1e-4f;
-  const std::size_t count = light.grid.VoxelCount() * static_cast<std::size_t>(light.batches);
-  const float* brightest = light.batchFluence;
+  const std::size_t count = domain.Own().VoxelCount() * static_cast<std::size_t>(light.batches);
   const auto sum = [](const float* rgb) { return rgb[0] + rgb[1] + rgb[2]; };
+  const float* brightest = count > 0 ? light.batchFluence : nullptr;
   for (std::size_t i = 0; i < count; ++i)
   {
     const float* rgb = light.batchFluence + 3 * i;
     brightest = sum(rgb) > sum(brightest) ? rgb : brightest;
   }
-  const float whole = sum(brightest);
-  for (std::size_t i = 0; i < count && whole > 0.0f; ++i)
+  const double most = domain.Max(brightest ? sum(brightest) : -1.0);
+  const bool isMost = brightest && sum(brightest) == most;
+  const bool isFirst = -domain.Max(isMost ? -domain.Rank() : -domain.Comm().Ranks()) == domain.Rank();
+  std::array<double, 3> own = {};
+  if (isFirst && most > 0.0)
+  {
+    std::transform(brightest, brightest + 3, own.begin(), [&](float value) { return value / most; });
+  }
+  const std::array<double, 3> colour = domain.Sum(own);
+  bool differs = false;
+  for (std::size_t i = 0; i < count && most > 0.0 && !differs; ++i)
   {
     const float* rgb = light.batchFluence + 3 * i;
-    for (int c = 0; c < 3; ++c)
+    for (std::size_t c = 0; c < 3; ++c)
     {
-      if (std::abs(rgb[c] - sum(rgb) * (brightest[c] / whole)) > part * sum(rgb))
-      {
-        return false;
-      }
+      differs |= std::abs(rgb[c] - sum(rgb) * static_cast<float>(colour[c])) > part * sum(rgb);
     }
   }
-  return true;
+  return !domain.Any(differs);
 }
 
 /// Each channel as grey light by itself: gains and errors of its own. Directions and levels stay those of all together.
-void ReconstructChannels(Device& device, const NoisyLight& light, const ReconstructionSettings& settings,
-  const Monitor& monitor, ReconstructedLight& result)
+/// Collective.
+void ReconstructChannels(Device& device, const Domain& domain, const NoisyLight& light,
+  const ReconstructionSettings& settings, const Monitor& monitor, ReconstructedLight& result)
 {
-  const std::size_t voxels = light.grid.VoxelCount();
+  const std::size_t voxels = domain.Own().VoxelCount();
   std::vector<float> values(voxels * static_cast<std::size_t>(light.batches));
   NoisyLight one = light;
   one.channels = 1;
@@ -98,8 +170,8 @@ void ReconstructChannels(Device& device, const NoisyLight& light, const Reconstr
     {
       values[i] = light.batchFluence[3 * i + c];
     }
-    const double total = std::accumulate(values.begin(), values.end(), 0.0);
-    const ReconstructedLight channel = Reconstruct(device, one, settings, monitor);
+    const double total = domain.Sum(std::accumulate(values.begin(), values.end(), 0.0));
+    const ReconstructedLight channel = Reconstruct(device, domain, one, settings, monitor);
     before += total;
     after += total * (1.0 + channel.bias);
     for (std::size_t i = 0; i < voxels; ++i)
@@ -110,92 +182,60 @@ void ReconstructChannels(Device& device, const NoisyLight& light, const Reconstr
   }
   result.bias = before > 0.0 ? after / before - 1.0 : 0.0;
 }
-}
 
-std::array<float, 3> Reconstruction::Conserve(const std::array<double, 3>& total, ReconstructedLight& result) const
+void SayWhatIsLeftOut(const NoisyLight& light, bool directions, ReconstructedLight& result)
 {
-  const double sets = this->settings.estimator == Estimator::Conservative ? this->light.batches : 1.0;
-  std::array<float, 3> factors = { 1.0f, 1.0f, 1.0f };
-  double before = 0.0, after = 0.0;
-  for (int c = 0; c < this->light.channels; ++c)
+  if (!directions)
   {
-    const double was = this->range.total[c] / sets;
-    before += was;
-    after += total[c];
-    if (this->settings.conserve && total[c] > 0.0)
-    {
-      factors[c] = static_cast<float>(was / total[c]);
-    }
+    result.leftOut.push_back("mean direction: there is none");
   }
-  result.bias = before > 0.0 ? after / before - 1.0 : 0.0;
-  return factors;
-}
-
-namespace
-{
-/// By the estimators that take each voxel's light from one level.
-void ReconstructFromLevels(const Reconstruction& task, ReconstructedLight& result)
-{
-  const NoisyLight& light = task.light;
-  const std::size_t voxels = light.grid.VoxelCount();
-  const PhotonsOfVoxels photons(task);
-  WeightsOfVoxels weights;
-  if (NeedsCounts(task.settings.estimator))
+  if (light.channels == 1)
   {
-    Checked(task.device, photons.counts, light.photonCount, voxels, 1, light.grid, "photon_count", 0.0f, Most);
+    result.leftOut.push_back(left_out::Grey);
   }
-  if (NeedsWeights(task.settings.estimator))
-  {
-    Checked(task.device, photons.weights, light.photonWeight, voxels, 1, light.grid, "photon_weight", 0.0f, Most);
-    weights = WeightsOfVoxels(light.photonWeight, voxels);
-  }
-  LevelPasses passes(task, photons, result, RowWidth(task.device, light.grid));
-  passes.Build();
-  passes.Choose(WeightStepOf(task.settings, weights));
-  passes.Conserve();
 }
 }
 
-ReconstructedLight Reconstruct(
-  Device& device, const NoisyLight& light, const ReconstructionSettings& settings, const Monitor& monitor)
+ReconstructedLight Reconstruct(Device& device, const Domain& domain, const NoisyLight& given,
+  const ReconstructionSettings& settings, const Monitor& monitor)
 {
   const double start = ClockSeconds();
   const bool conservative = settings.estimator == Estimator::Conservative;
-  Check(settings);
-  CheckPresence(light, settings.estimator);
-  RequireMemory(device, light, conservative);
-  Report(monitor, 0.0);
-
-  const Grid& grid = light.grid;
-  const std::size_t voxels = grid.VoxelCount();
-  const std::size_t vectors = light.meanDirection ? 3 * voxels : 0;
-  const float* given = conservative ? light.batchFluence : light.fluence;
-  const std::size_t count = voxels * static_cast<std::size_t>(light.channels * (conservative ? light.batches : 1));
-  ReconstructedLight result = MakeRoom(light, conservative);
-  const HostMappedBuffer<float> fluence(device, given, count, "fluence");
-  const HostMappedBuffer<float> direction(device, light.meanDirection, vectors, "mean directions");
-  const ArrayRange range = Checked(
-    device, fluence, given, count, light.channels, grid, conservative ? "fluence_batches" : "fluence", 0.0f, Most);
-  if (vectors > 0)
-  {
-    Checked(
-      device, direction, light.meanDirection, vectors, 3, grid, "mean_direction", -LongestDirection, LongestDirection);
-  }
-  const Reconstruction task = { device, light, settings, monitor, fluence, direction, range,
-    LevelsOf(grid, settings.levels) };
-  if (!conservative)
-  {
-    ReconstructFromLevels(task, result);
-  }
-  else
-  {
-    ReconstructConservative(task, result);
-    if (light.channels == 3 && !OneColour(light))
+  domain.Collective([&] {
+    Check(domain.Whole());
+    domain.Partition().Check();
+    Check(settings);
+    if (!domain.IsEmpty())
     {
-      ReconstructChannels(device, light, settings, monitor, result);
+      CheckPresence(given, settings.estimator);
+      RequireMemory(device, given, conservative, domain.Own().VoxelCount());
     }
+    Report(monitor, 0.0);
+  });
+  RequireSame(domain.Comm(), "settings", true,
+    { 1.0 * static_cast<int>(settings.estimator), 1.0 * settings.levels, settings.weightStep, 1.0 * settings.level,
+      1.0 * settings.nearest, 1.0 * settings.conserve });
+  NoisyLight light = given;
+  const bool directions = AgreeOnKind(domain, light);
+  ReconstructedLight result;
+  {
+    const Reconstruction task(device, domain, light, directions, settings, monitor);
+    result = task.MakeRoom();
+    if (conservative)
+    {
+      ReconstructConservative(task, result);
+    }
+    else
+    {
+      ReconstructFromLevels(task, light.photonWeight, result);
+    }
+    task.Crop(result);
   }
-  SayWhatIsLeftOut(light, result);
+  if (conservative && light.channels == 3 && !IsOneColour(domain, light))
+  {
+    ReconstructChannels(device, domain, light, settings, monitor, result);
+  }
+  SayWhatIsLeftOut(light, directions, result);
   result.device = device.Name();
   result.seconds = ClockSeconds() - start;
   return result;

@@ -2,7 +2,7 @@
 
 #include "Device/Device.h"
 #include "Device/Monitor.h"
-#include "Medium/Grid.h"
+#include "Distribution/Domain.h"
 
 #include <string>
 #include <vector>
@@ -11,10 +11,11 @@ namespace tyndall
 {
 constexpr int ComparedBatchesAtMost = 16; ///< that the conservative estimator compares
 
-/// Light as photons left it, not filtered. Arrays are over the grid's voxels, x fastest; null where there is none.
+/// Light as photons left it, not filtered. Arrays are over the voxels of a rank's block, x fastest; null where there is
+/// none.
 struct NoisyLight
 {
-  Grid grid;
+  Grid grid;                            ///< of the arrays; Reconstruct takes that of its domain
   int channels = 1;                     ///< of fluence: 1 or 3
   const float* fluence = nullptr;       ///< W / length^2; not read by the conservative estimator
   const float* meanDirection = nullptr; ///< 3 per voxel; optional
@@ -73,8 +74,15 @@ struct ReconstructedLight
 /// first level with at least one photon. Its light and directions, those of constant radius and of nearest photons are
 /// trilinear in a pyramid by a Gauss kernel of 4x4x4.
 ///
-/// @throws InvalidInput where what the estimator needs is missing (says what), a setting is out of its range, or a
-///   number of the light is not finite (names the voxel); DeviceError; Aborted
-ReconstructedLight Reconstruct(
-  Device& device, const NoisyLight& light, const ReconstructionSettings& settings = {}, const Monitor& monitor = {});
+/// Collective. Each rank has its block and 32 voxels around it (16 for the estimators other than the conservative one),
+/// of which it makes two levels of each pyramid; the levels above, a 64th of the grid, are made on every rank that has
+/// voxels (numerics.md, section 13.2). The light does not depend on the blocks, to rounding.
+///
+/// @param domain  the grid; `Domain(grid)` for serial light
+/// @param light   of the rank's block
+/// @return arrays of the block; bias and leftOut of the whole grid
+/// @throws InvalidInput where what the estimator needs is missing (says what), a setting is out of its range, a number
+///   of the light is not finite (names the voxel), or ranks disagree; DeviceError; Aborted
+ReconstructedLight Reconstruct(Device& device, const Domain& domain, const NoisyLight& light,
+  const ReconstructionSettings& settings = {}, const Monitor& monitor = {});
 }

@@ -54,7 +54,6 @@ std::vector<float> FirstChannel(std::vector<float> values, int channels)
 ReconstructedLight Rebuild(Device& device, Way way, const PhotonLight& light, const Grid& grid)
 {
   NoisyLight noisy;
-  noisy.grid = grid;
   noisy.channels = light.light.channels;
   noisy.fluence = light.light.fluence.data();
   noisy.meanDirection = light.meanDirection.data();
@@ -71,7 +70,7 @@ ReconstructedLight Rebuild(Device& device, Way way, const PhotonLight& light, co
     noisy.batches = light.batches;
     noisy.batchFluence = light.batchFluence.data();
   }
-  return Reconstruct(device, noisy, settings);
+  return Reconstruct(device, Domain(grid), noisy, settings);
 }
 }
 

@@ -49,7 +49,7 @@ void PaperScene::Group(double tolerance)
 {
   OctreeSettings octreeSettings;
   octreeSettings.tolerance = tolerance;
-  this->octree = BuildOctree(this->Medium(), this->Index(), octreeSettings);
+  this->octree = BuildOctree(Domain(this->Medium().grid), this->Medium(), this->Index(), octreeSettings);
 }
 
 void PaperScene::Emit(std::size_t count, Sampler sampler, std::uint64_t seed)

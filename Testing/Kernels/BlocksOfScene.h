@@ -194,7 +194,8 @@ inline void SetOctree(PhotonScene& scene, double tolerance)
 {
   tyndall::OctreeSettings settings;
   settings.tolerance = tolerance;
-  scene.levels = tyndall::BuildOctree(scene.Medium(), scene.Index(), settings).levels;
+  scene.levels =
+    tyndall::BuildOctree(tyndall::Domain(scene.medium.grid), scene.Medium(), scene.Index(), settings).levels;
 }
 
 /// A scene whose octree has nodes as large as blocks: waves, or a ball of glass.

@@ -54,12 +54,11 @@ protected:
     emission.batches = 2;
     this->Noisy = this->March(emission);
     NoisyLight noisy;
-    noisy.grid = this->Scene.medium.grid;
     noisy.fluence = this->Noisy.light.fluence.data();
     noisy.meanDirection = this->Noisy.meanDirection.data();
     noisy.batches = this->Noisy.batches;
     noisy.batchFluence = this->Noisy.batchFluence.data();
-    return Reconstruct(this->GetDevice(), noisy);
+    return Reconstruct(this->GetDevice(), Domain(this->Scene.medium.grid), noisy);
   }
 
   const std::vector<float>& Reference()

@@ -1,4 +1,5 @@
 #include "Distribution/BoxExchange.h"
+#include "Distribution/BrickedBytes.h"
 #include "Distribution/RanksInThreads.h"
 
 #include <gtest/gtest.h>
@@ -60,6 +61,54 @@ TEST(BoxExchange, BringsValuesOfNeighboursHoweverManyLayersAreWanted)
         const std::vector<float> own = NumbersOf(grid, partition.blocks[rank]);
         EXPECT_EQ(ValuesInBox(communicator, partition, wanted, own, 2), NumbersOf(grid, wanted[rank]))
           << ranks << " ranks, " << layers << " layers, rank " << rank;
+      });
+    }
+  }
+}
+
+TEST(BrickedBytes, AreOfAllRanksWhatEachHas)
+{
+  Grid grid;
+  grid.size = { 21, 9, 17 };
+  std::vector<std::uint8_t> all;
+  for (std::size_t i = 0; i < grid.VoxelCount(); ++i)
+  {
+    const std::array<int, 3> at = grid.VoxelAt(i);
+    all.push_back(static_cast<std::uint8_t>(at[0] > 9 ? 3 : at[2] < 8 ? 200 : i % 5));
+  }
+  for (const int ranks : { 1, 3, 7 })
+  {
+    const BlockPartition partition = BlockPartition::Even(grid, ranks);
+    for (const bool some : { false, true })
+    {
+      RunInThreads(ranks, [&](Communicator& communicator) {
+        const VoxelBox& box = partition.blocks[static_cast<std::size_t>(communicator.Rank())];
+        std::vector<std::uint8_t> own;
+        for (std::size_t i = 0; i < all.size(); ++i)
+        {
+          if (Holds(box, grid.VoxelAt(i).data()))
+          {
+            own.push_back(all[i]);
+          }
+        }
+        // The first rank wants a box whose bricks are not uniform, and the others nothing.
+        std::vector<VoxelBox> wanted(partition.blocks.size());
+        wanted[0] = { { 1, 0, 7 }, { 9, 9, 10 } };
+        const BrickedBytes bytes =
+          some ? BytesOfBoxes(communicator, partition, own, wanted) : BytesOfAll(communicator, partition, own);
+        const VoxelBox there =
+          some ? wanted[static_cast<std::size_t>(communicator.Rank())] : VoxelBox{ { 0, 0, 0 }, grid.size };
+        for (std::size_t i = 0; i < all.size(); ++i)
+        {
+          if (Holds(there, grid.VoxelAt(i).data()))
+          {
+            ASSERT_EQ(bytes.At(grid.VoxelAt(i)), all[i]) << i << " of " << ranks;
+          }
+        }
+        if (!some || there.VoxelCount() == 0)
+        {
+          EXPECT_EQ(bytes.Dense().size(), (some ? 0 : 10) * BrickedBytes::Voxels); // of 18
+        }
       });
     }
   }

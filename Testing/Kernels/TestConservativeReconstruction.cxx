@@ -11,7 +11,7 @@ class ConservativeReconstruction : public DeviceTest
 protected:
   ReconstructedLight Of(const ReconstructionScene& scene, const ReconstructionSettings& settings = {})
   {
-    return Reconstruct(this->GetDevice(), scene.Seen(), settings);
+    return Reconstruct(this->GetDevice(), Domain(scene.grid), scene.Seen(), settings);
   }
 };
 
@@ -248,7 +248,7 @@ TEST_F(ConservativeReconstruction, ACausticOfFewPhotonsComesNearerToThatOfMany)
     return std::sqrt(sum);
   };
   EXPECT_LT(2.0 * error(light.fluence), error(scene.fluence));
-  const ReconstructedLight wide =
-    Reconstruct(this->GetDevice(), scene.Seen(), By(ReconstructionSettings::Estimator::ConstantRadius));
+  const ReconstructedLight wide = Reconstruct(
+    this->GetDevice(), Domain(scene.grid), scene.Seen(), By(ReconstructionSettings::Estimator::ConstantRadius));
   EXPECT_LT(error(light.fluence), error(wide.fluence));
 }

@@ -31,9 +31,9 @@ int CountOf(const std::string& what, std::string_view text)
 // Of a file that includes none.
 TEST(EmbeddedKernels, AreTheirFilesByteForByte)
 {
-  const std::string file = ReadFile(TYNDALL_KERNELS_FOLDER "/Refraction/Octree/MinMaxPyramid.cl");
+  const std::string file = ReadFile(TYNDALL_KERNELS_FOLDER "/Refraction/Octree/RefractionOctree.cl");
   ASSERT_FALSE(file.empty());
-  EXPECT_EQ(tyndall::kernel_source::MinMaxPyramid, file);
+  EXPECT_EQ(tyndall::kernel_source::RefractionOctree, file);
 }
 
 // BentView.cl includes View.cl directly and through three others, and all need Numerics.cl.

@@ -84,7 +84,7 @@ TEST_F(OctreeMarching, ErrsByLessThanTheToleranceInFewerSteps)
   {
     OctreeSettings settings;
     settings.tolerance = tolerance;
-    scene.levels = BuildOctree(scene.Medium(), scene.Index(), settings).levels;
+    scene.levels = BuildOctree(Domain(scene.medium.grid), scene.Medium(), scene.Index(), settings).levels;
     const Way coarse = Go(this->GetDevice(), scene, photons);
     const double displaced = Displaced(coarse.light, fine.light);
     std::printf("Tolerance %g: %.2f of the steps, %.5f of the light displaced, directions differ by %.5f at most\n",
@@ -108,7 +108,7 @@ TEST_F(OctreeMarching, WithoutAToleranceIsMarchingVoxelByVoxel)
   const Way fine = Go(this->GetDevice(), scene, photons);
   OctreeSettings settings;
   settings.tolerance = 0.0;
-  scene.levels = BuildOctree(scene.Medium(), scene.Index(), settings).levels;
+  scene.levels = BuildOctree(Domain(scene.medium.grid), scene.Medium(), scene.Index(), settings).levels;
   EXPECT_EQ(Go(this->GetDevice(), scene, photons).light.light.fluence, fine.light.light.fluence);
 }
 

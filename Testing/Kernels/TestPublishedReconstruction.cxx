@@ -175,7 +175,7 @@ TEST_F(PublishedReconstruction, TheGaussPyramidIsThatOfDoubles)
     {
       ReconstructionSettings settings = Raw(Estimator::ConstantRadius);
       settings.level = level;
-      const ReconstructedLight light = Reconstruct(this->GetDevice(), scene.Seen(), settings);
+      const ReconstructedLight light = Reconstruct(this->GetDevice(), Domain(scene.grid), scene.Seen(), settings);
       for (std::size_t i = 0; i < light.fluence.size(); ++i)
       {
         ASSERT_NEAR(light.fluence[i], Interpolated(pyramid, level, scene.Place(i)), 1e-5) << level << ' ' << i;
@@ -191,7 +191,8 @@ TEST_F(PublishedReconstruction, NearestPhotonsTakesTheFirstLevelWithEnough)
   {
     const ReconstructionScene scene = Sparse(size);
     const std::vector<Volume> counts = Pyramid(scene, scene.count, 4, Sum);
-    const ReconstructedLight light = Reconstruct(this->GetDevice(), scene.Seen(), Raw(Estimator::NearestPhotons));
+    const ReconstructedLight light =
+      Reconstruct(this->GetDevice(), Domain(scene.grid), scene.Seen(), Raw(Estimator::NearestPhotons));
     for (std::size_t i = 0; i < light.fluence.size(); ++i)
     {
       int level = 0;
@@ -218,7 +219,7 @@ TEST_F(PublishedReconstruction, LevelsAreThoseOfTheListing)
     const std::vector<Volume> weights = Pyramid(scene, scene.weight, 4, MeanOfLit);
     ReconstructionSettings settings = Raw(Estimator::Published);
     settings.weightStep = 0.7;
-    const ReconstructedLight filtered = Reconstruct(this->GetDevice(), scene.Seen(), settings);
+    const ReconstructedLight filtered = Reconstruct(this->GetDevice(), Domain(scene.grid), scene.Seen(), settings);
     std::size_t others = 0;
     std::array<int, 5> taken = {};
     for (std::size_t i = 0; i < filtered.fluence.size(); ++i)
@@ -242,7 +243,8 @@ TEST_F(PublishedReconstruction, AHoleIsFilled)
   scene.Light([](std::size_t) { return 1.0; }, 0.0);
   const std::size_t hole = (16 * 32 + 15) * 32 + 17;
   scene.fluence[hole] = scene.count[hole] = scene.weight[hole] = 0.0f;
-  const ReconstructedLight light = Reconstruct(this->GetDevice(), scene.Seen(), Raw(Estimator::Published));
+  const ReconstructedLight light =
+    Reconstruct(this->GetDevice(), Domain(scene.grid), scene.Seen(), Raw(Estimator::Published));
   EXPECT_GE(light.mipLevel[hole], 1.0f);
   EXPECT_NEAR(light.fluence[hole], 1.0, 0.05);
 }
@@ -256,12 +258,12 @@ TEST_F(PublishedReconstruction, StaysLowAtAnEdgeAndClimbsInEvenNoise)
   settings.weightStep = 1.0;
   settings.levels = 5;
   const auto level = [&](const ReconstructedLight& light, int x) { return light.mipLevel[(16 * 32 + 16) * 64 + x]; };
-  const ReconstructedLight edge = Reconstruct(this->GetDevice(), scene.Seen(), settings);
+  const ReconstructedLight edge = Reconstruct(this->GetDevice(), Domain(scene.grid), scene.Seen(), settings);
   EXPECT_EQ(level(edge, 29), 0.0f); // two levels of it differ more than none
   EXPECT_GE(level(edge, 4), 1.0f);
 
   scene.Light([](std::size_t) { return 1.0; }, 0.5);
-  const ReconstructedLight noise = Reconstruct(this->GetDevice(), scene.Seen(), settings);
+  const ReconstructedLight noise = Reconstruct(this->GetDevice(), Domain(scene.grid), scene.Seen(), settings);
   double mean = 0.0;
   for (float l : noise.mipLevel)
   {
@@ -280,18 +282,18 @@ TEST_F(PublishedReconstruction, WithoutAStepTheMeanWeightIsOne)
     lit += weight > 0.0f;
   }
   ReconstructionSettings settings = Raw(Estimator::Published);
-  const ReconstructedLight byItself = Reconstruct(this->GetDevice(), scene.Seen(), settings);
+  const ReconstructedLight byItself = Reconstruct(this->GetDevice(), Domain(scene.grid), scene.Seen(), settings);
   settings.weightStep = 0.999 * sum / lit;
-  EXPECT_EQ(byItself.mipLevel, Reconstruct(this->GetDevice(), scene.Seen(), settings).mipLevel);
+  EXPECT_EQ(byItself.mipLevel, Reconstruct(this->GetDevice(), Domain(scene.grid), scene.Seen(), settings).mipLevel);
 }
 
 TEST_F(PublishedReconstruction, ScalesToTheTotalWhereAsked)
 {
   const ReconstructionScene scene = Sparse({ 33, 18, 9 });
   ReconstructionSettings settings = Raw(Estimator::Published);
-  const ReconstructedLight raw = Reconstruct(this->GetDevice(), scene.Seen(), settings);
+  const ReconstructedLight raw = Reconstruct(this->GetDevice(), Domain(scene.grid), scene.Seen(), settings);
   settings.conserve = true;
-  const ReconstructedLight scaled = Reconstruct(this->GetDevice(), scene.Seen(), settings);
+  const ReconstructedLight scaled = Reconstruct(this->GetDevice(), Domain(scene.grid), scene.Seen(), settings);
   const double before = Total(scene.fluence, 1, 0);
   EXPECT_NEAR(raw.bias, Total(raw.fluence, 1, 0) / before - 1.0, 1e-6);
   EXPECT_GT(std::abs(raw.bias), 1e-4);

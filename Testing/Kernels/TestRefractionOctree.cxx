@@ -1,7 +1,7 @@
 #include "DeviceTest.h"
+#include "OnRanks.h"
 
 #include "Numerics/NumberText.h"
-#include "Refraction/Octree/MinMaxPyramid.h"
 #include "Refraction/Octree/RefractionOctree.h"
 
 #include <gmock/gmock.h>
@@ -73,7 +73,7 @@ std::vector<float> Ball(const Size& size)
   });
 }
 
-/// What LevelPyramid says, word by word: no pyramid, each node's range from its voxels.
+/// What Octree promises, word by word: no pyramid, each node's range from its voxels.
 /// @param tolerance  (level)
 std::vector<std::uint8_t> BruteForce(
   const Size& size, const std::vector<float>& values, const std::function<double(int)>& tolerance)
@@ -106,13 +106,49 @@ std::vector<std::uint8_t> BruteForce(
   return levels;
 }
 
-Octree Build(const Size& size, const std::vector<float>& index, double tolerance, const std::string& device = {})
+/// The octree of a grid, built on so many ranks. All of them say the same but for levels.
+Octree BuildOn(int ranks, const Medium& medium, const std::vector<float>& index, const OctreeSettings& settings = {},
+  const std::string& device = {}, const Monitor& monitor = {})
+{
+  Octree joined;
+  joined.levels.resize(medium.grid.VoxelCount());
+  OnRanks(medium.grid, ranks, [&](const Domain& domain) {
+    const auto cut = [&](const Field& field) {
+      const std::size_t count = medium.grid.VoxelCount() * static_cast<std::size_t>(field.components);
+      return field.values ? BlockOf(domain, std::vector<float>(field.values, field.values + count))
+                          : std::vector<float>();
+    };
+    const std::vector<float> own = BlockOf(domain, index), absorption = cut(medium.sigma_a),
+                             scattering = cut(medium.sigma_s);
+    Medium part = medium;
+    part.grid = domain.OwnGrid();
+    part.sigma_a.values = medium.sigma_a.values ? absorption.data() : nullptr;
+    part.sigma_s.values = medium.sigma_s.values ? scattering.data() : nullptr;
+    const Octree octree =
+      BuildOctree(domain, part, { index.empty() ? nullptr : own.data(), 1 }, settings, device, monitor);
+    PutBlock(domain, octree.levels, joined.levels);
+    if (domain.Rank() == 0)
+    {
+      joined.topLevel = octree.topLevel;
+      joined.device = octree.device;
+      joined.leftOut = octree.leftOut;
+    }
+    domain.Comm().Sum({ 0.0 }); // the first rank has told
+    EXPECT_EQ(octree.topLevel, joined.topLevel);
+    EXPECT_EQ(octree.device, joined.device);
+    EXPECT_EQ(octree.leftOut, joined.leftOut);
+  });
+  return joined;
+}
+
+Octree Build(
+  int ranks, const Size& size, const std::vector<float>& index, double tolerance, const std::string& device = {})
 {
   Medium medium;
   medium.grid = GridOf(size);
   OctreeSettings settings;
   settings.tolerance = tolerance;
-  return BuildOctree(medium, { index.data() }, settings, device);
+  return BuildOn(ranks, medium, index, settings, device);
 }
 
 std::string Named(const Size& size, double tolerance)
@@ -136,51 +172,18 @@ std::string ComplaintOf(const std::function<void()>& call)
 }
 }
 
-class RefractionOctree : public DeviceTest
+class RefractionOctree
+  : public DeviceTest
+  , public testing::WithParamInterface<int>
 {
 };
-
-TEST_F(RefractionOctree, MinMaxPyramidHoldsTheRangeOfEachNodesVoxels)
+class OctreeWithoutDevice : public testing::TestWithParam<int>
 {
-  for (const Size& size : Sizes)
-  {
-    const std::vector<float> values = Random(size);
-    const Buffer<float> onDevice(this->GetDevice(), values, "a test");
-    const MinMaxPyramid pyramid(this->GetDevice(), GridOf(size), onDevice);
-    const std::vector<cl_float2> nodes = pyramid.Nodes().Read();
-    for (int level = 1; level <= pyramid.Layout().Top(); ++level)
-    {
-      const Size across = pyramid.Layout().sizes[level];
-      for (int z = 0; z < across[2]; ++z)
-      {
-        for (int y = 0; y < across[1]; ++y)
-        {
-          for (int x = 0; x < across[0]; ++x)
-          {
-            float lowest = 9.0f, highest = 0.0f;
-            for (int k = z << level; k < std::min(size[2], (z + 1) << level); ++k)
-            {
-              for (int j = y << level; j < std::min(size[1], (y + 1) << level); ++j)
-              {
-                for (int i = x << level; i < std::min(size[0], (x + 1) << level); ++i)
-                {
-                  lowest = std::min(lowest, values[(k * size[1] + j) * size[0] + i]);
-                  highest = std::max(highest, values[(k * size[1] + j) * size[0] + i]);
-                }
-              }
-            }
-            const cl_float2 node = nodes[pyramid.Layout().offsets[level] + (z * across[1] + y) * across[0] + x];
-            ASSERT_EQ(node.s[0], lowest) << Named(size, 0) << ", level " << level;
-            ASSERT_EQ(node.s[1], highest) << Named(size, 0) << ", level " << level;
-          }
-        }
-      }
-    }
-    EXPECT_EQ(pyramid.Layout().sizes.back(), (Size{ 1, 1, 1 })) << "one node at the top";
-  }
-}
+};
+INSTANTIATE_TEST_SUITE_P(Ranks, RefractionOctree, SomeRanks());
+INSTANTIATE_TEST_SUITE_P(Ranks, OctreeWithoutDevice, SomeRanks());
 
-TEST_F(RefractionOctree, LevelsEqualABruteForceConstruction)
+TEST_P(RefractionOctree, LevelsEqualABruteForceConstruction)
 {
   for (const Size& size : Sizes)
   {
@@ -188,7 +191,7 @@ TEST_F(RefractionOctree, LevelsEqualABruteForceConstruction)
     {
       for (const std::vector<float>& index : { Random(size), Smooth(size), Ball(size) })
       {
-        const Octree octree = Build(size, index, tolerance);
+        const Octree octree = Build(this->GetParam(), size, index, tolerance);
         const auto expected = BruteForce(size, index, [&](int) { return tolerance; });
         EXPECT_EQ(octree.levels, expected) << Named(size, tolerance);
       }
@@ -196,10 +199,10 @@ TEST_F(RefractionOctree, LevelsEqualABruteForceConstruction)
   }
 }
 
-TEST_F(RefractionOctree, VoxelsOfANodeShareItsLevel)
+TEST_P(RefractionOctree, VoxelsOfANodeShareItsLevel)
 {
   const Size size = { 40, 24, 65 };
-  const std::vector<std::uint8_t> levels = Build(size, Smooth(size), 0.05).levels;
+  const std::vector<std::uint8_t> levels = Build(this->GetParam(), size, Smooth(size), 0.05).levels;
   EXPECT_GE(std::set<std::uint8_t>(levels.begin(), levels.end()).size(), 4u) << "nodes of several levels";
   for (std::size_t i = 0; i < levels.size(); ++i)
   {
@@ -211,32 +214,32 @@ TEST_F(RefractionOctree, VoxelsOfANodeShareItsLevel)
   }
 }
 
-TEST_F(RefractionOctree, ADifferenceOfJustTheToleranceIsAllowed)
+TEST_P(RefractionOctree, ADifferenceOfJustTheToleranceIsAllowed)
 {
   const std::vector<float> index = { 1.0f, 1.25f };
-  EXPECT_THAT(Build({ 2, 1, 1 }, index, 0.25).levels, Each(1));
-  EXPECT_THAT(Build({ 2, 1, 1 }, index, std::nextafter(0.25, 0.0)).levels, Each(0));
+  EXPECT_THAT(Build(this->GetParam(), { 2, 1, 1 }, index, 0.25).levels, Each(1));
+  EXPECT_THAT(Build(this->GetParam(), { 2, 1, 1 }, index, std::nextafter(0.25, 0.0)).levels, Each(0));
   const double apart = static_cast<double>(1.01f) - 1.0; // between two floats near 0.01
-  EXPECT_THAT(Build({ 2, 1, 1 }, { 1.0f, 1.01f }, apart).levels, Each(1));
-  EXPECT_THAT(Build({ 2, 1, 1 }, { 1.0f, 1.01f }, std::nextafter(apart, 0.0)).levels, Each(0));
+  EXPECT_THAT(Build(this->GetParam(), { 2, 1, 1 }, { 1.0f, 1.01f }, apart).levels, Each(1));
+  EXPECT_THAT(Build(this->GetParam(), { 2, 1, 1 }, { 1.0f, 1.01f }, std::nextafter(apart, 0.0)).levels, Each(0));
 }
 
-TEST_F(RefractionOctree, WithoutToleranceEqualVoxelsMakeNodes)
+TEST_P(RefractionOctree, WithoutToleranceEqualVoxelsMakeNodes)
 {
   // Glass in the first half, air in the second: two nodes, though nothing may differ.
   const Size size = { 16, 8, 8 };
   const auto halves = Fill(size, [](int x, int, int) { return x < 8 ? 1.5 : 1.0; });
-  EXPECT_THAT(Build(size, halves, 0.0).levels, Each(3));
+  EXPECT_THAT(Build(this->GetParam(), size, halves, 0.0).levels, Each(3));
 }
 
-TEST_F(RefractionOctree, ANodeThatSticksOutOfTheGridIsWholeWhereItsVoxelsAre)
+TEST_P(RefractionOctree, ANodeThatSticksOutOfTheGridIsWholeWhereItsVoxelsAre)
 {
   // 5 voxels: the node of the last one has 4 voxels an edge, 3 of which are not there.
   const std::vector<float> index = { 1.0f, 1.5f, 1.0f, 1.0f, 1.2f };
-  EXPECT_EQ(Build({ 5, 1, 1 }, index, 0.1).levels, (std::vector<std::uint8_t>{ 0, 0, 1, 1, 2 }));
+  EXPECT_EQ(Build(this->GetParam(), { 5, 1, 1 }, index, 0.1).levels, (std::vector<std::uint8_t>{ 0, 0, 1, 1, 2 }));
 }
 
-TEST(ConstantIndex, IsOneNodeAndRunsNothingOnTheDevice)
+TEST_P(OctreeWithoutDevice, IsOneNodeWhereTheIndexIsConstant)
 {
   const std::vector<std::pair<Size, int>> tops = { { { 1, 1, 1 }, 0 }, { { 2, 2, 2 }, 1 }, { { 64, 64, 64 }, 6 },
     { { 65, 2, 3 }, 7 }, { { 1, 100, 37 }, 7 } };
@@ -245,7 +248,7 @@ TEST(ConstantIndex, IsOneNodeAndRunsNothingOnTheDevice)
     for (double tolerance : { 0.0, 0.01 })
     {
       const std::vector<float> index(GridOf(size).VoxelCount(), 1.33f);
-      const Octree octree = Build(size, index, tolerance, "no such device");
+      const Octree octree = Build(this->GetParam(), size, index, tolerance, "no such device");
       EXPECT_THAT(octree.levels, Each(top)) << Named(size, tolerance);
       EXPECT_EQ(octree.levels.size(), index.size());
       EXPECT_EQ(octree.topLevel, top);
@@ -254,13 +257,15 @@ TEST(ConstantIndex, IsOneNodeAndRunsNothingOnTheDevice)
       EXPECT_THAT(octree.leftOut[0], HasSubstr("refractive index is constant"));
     }
   }
-  EXPECT_THAT(ComplaintOf([] {
-    Build({ 2, 1, 1 }, { 1.0f, 1.5f }, 0.1, "no such device");
+  EXPECT_THAT(ComplaintOf([&] {
+    Build(this->GetParam(), { 2, 1, 1 }, { 1.0f, 1.5f }, 0.1, "no such device");
   }),
     HasSubstr("no such device"));
 }
 
-class OctreeOfExtinction : public DeviceTest
+class OctreeOfExtinction
+  : public DeviceTest
+  , public testing::WithParamInterface<int>
 {
 protected:
   Octree Build(const Size& size, double extinctionTolerance, bool include = true)
@@ -271,14 +276,16 @@ protected:
     settings.tolerance = 0.05;
     settings.includeExtinction = include;
     settings.extinctionTolerance = extinctionTolerance;
-    return BuildOctree(this->TheMedium, { this->Index.data() }, settings);
+    return BuildOn(this->GetParam(), this->TheMedium, this->Index, settings);
   }
 
   Medium TheMedium;
   std::vector<float> Index;
 };
 
-TEST_F(OctreeOfExtinction, RestrictsNodesByTheOpticalThicknessOfTheirDiagonal)
+INSTANTIATE_TEST_SUITE_P(Ranks, OctreeOfExtinction, SomeRanks());
+
+TEST_P(OctreeOfExtinction, RestrictsNodesByTheOpticalThicknessOfTheirDiagonal)
 {
   for (const Size& size : { Size{ 32, 32, 32 }, Size{ 13, 21, 6 } })
   {
@@ -317,7 +324,7 @@ TEST_F(OctreeOfExtinction, RestrictsNodesByTheOpticalThicknessOfTheirDiagonal)
   }
 }
 
-TEST_F(OctreeOfExtinction, RestrictsNodesWhereTheIndexIsConstant)
+TEST_P(OctreeOfExtinction, RestrictsNodesWhereTheIndexIsConstant)
 {
   const Size size = { 16, 16, 16 };
   this->Index.assign(4096, 1.0f);
@@ -328,7 +335,7 @@ TEST_F(OctreeOfExtinction, RestrictsNodesWhereTheIndexIsConstant)
   EXPECT_EQ(this->Build(size, 0.01, false).device, "");
 }
 
-TEST_F(OctreeOfExtinction, IsLeftOutWhereItIsConstant)
+TEST_P(OctreeOfExtinction, IsLeftOutWhereItIsConstant)
 {
   const Size size = { 16, 16, 16 };
   this->Index.assign(4096, 1.0f);
@@ -340,7 +347,7 @@ TEST_F(OctreeOfExtinction, IsLeftOutWhereItIsConstant)
   EXPECT_EQ(octree.leftOut.size(), 2u);
 }
 
-TEST(OctreeRefuses, WhatHasNoMeaning)
+TEST_P(OctreeWithoutDevice, RefusesWhatHasNoMeaning)
 {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const float infinite = std::numeric_limits<float>::infinity();
@@ -350,22 +357,22 @@ TEST(OctreeRefuses, WhatHasNoMeaning)
     index[31] = wrong;
     index[59] = wrong;
     EXPECT_THAT(ComplaintOf([&] {
-      Build({ 3, 4, 5 }, index, 0.01);
+      Build(this->GetParam(), { 3, 4, 5 }, index, 0.01);
     }),
       testing::AllOf(HasSubstr("refractive index is " + Text("%g", wrong)), HasSubstr("voxel (1, 2, 2)")));
   }
   const std::vector<float> index = { 1.0f, 1.5f };
   for (double wrong : { -0.1, 1.1, static_cast<double>(nan) })
   {
-    EXPECT_THAT(ComplaintOf([&] { Build({ 2, 1, 1 }, index, wrong); }), HasSubstr("Tolerance is"));
+    EXPECT_THAT(ComplaintOf([&] { Build(this->GetParam(), { 2, 1, 1 }, index, wrong); }), HasSubstr("Tolerance is"));
   }
-  EXPECT_THAT(ComplaintOf([&] { Build({ 2, 0, 1 }, index, 0.1); }), HasSubstr("no voxels along y"));
+  EXPECT_THAT(ComplaintOf([&] { Build(this->GetParam(), { 2, 0, 1 }, index, 0.1); }), HasSubstr("no voxels along y"));
 
   Medium medium;
   medium.grid = GridOf({ 2, 1, 1 });
   OctreeSettings settings;
-  const auto complaint = [&] { return ComplaintOf([&] { BuildOctree(medium, { index.data() }, settings); }); };
-  EXPECT_THAT(ComplaintOf([&] { BuildOctree(medium, {}, settings); }), HasSubstr("must be given"));
+  const auto complaint = [&] { return ComplaintOf([&] { BuildOn(this->GetParam(), medium, index, settings); }); };
+  EXPECT_THAT(ComplaintOf([&] { BuildOn(this->GetParam(), medium, {}, settings); }), HasSubstr("must be given"));
   settings.extinctionTolerance = nan;
   EXPECT_THAT(complaint(), HasSubstr("ExtinctionTolerance is nan"));
   settings.extinctionTolerance = 0.1;
@@ -374,10 +381,10 @@ TEST(OctreeRefuses, WhatHasNoMeaning)
   EXPECT_THAT(complaint(), HasSubstr("sigma_s is -1"));
 }
 
-TEST(OctreeStops, WhenItsMonitorSaysSo)
+TEST_P(OctreeWithoutDevice, StopsWhenItsMonitorSaysSo)
 {
   const std::vector<float> index = { 1.0f, 1.5f };
   Medium medium;
   medium.grid = GridOf({ 2, 1, 1 });
-  EXPECT_THROW(BuildOctree(medium, { index.data() }, {}, {}, [](double) { return false; }), Aborted);
+  EXPECT_THROW(BuildOn(this->GetParam(), medium, index, {}, {}, [](double) { return false; }), Aborted);
 }

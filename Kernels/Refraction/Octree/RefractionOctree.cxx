@@ -1,107 +1,362 @@
 #include "Refraction/Octree/RefractionOctree.h"
 
-#include "Refraction/Octree/LevelPyramid.h"
-#include "Refraction/Octree/OctreeQuantities.h"
+#include "Device/Buffer.h"
+#include "Device/Clock.h"
+#include "Device/Errors.h"
+#include "Device/HostThreads.h"
+#include "Device/Sizes.h"
+#include "Distribution/PyramidBlocks.h"
+#include "Distribution/SharedMedium.h"
+#include "Numerics/NumberText.h"
+#include "Numerics/PyramidLayout.h"
+#include "Numerics/Vectors.h"
+#include "TyndallKernelSources.h"
 
-#include <chrono>
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
 #include <memory>
+#include <optional>
 #include <utility>
 
 namespace tyndall
 {
 namespace
 {
-bool IsConstant(const float* values, std::size_t count)
+/// Levels that a rank makes of its own block, which is widened to whole nodes of the last of them: 8 voxels an edge.
+constexpr int LevelsOfBlock = 3;
+
+std::array<int, 3> Plus(const std::array<int, 3>& a, const std::array<int, 3>& b)
 {
-  std::size_t i = 0;
-  while (i < count && values[i] == values[0])
-  {
-    ++i;
-  }
-  return i == count;
+  return { a[0] + b[0], a[1] + b[1], a[2] + b[2] };
 }
 
-/// Builds on a device, which it looks for when the first quantity comes that is not constant.
-class Builder
+/// The float for which float <= AsBound(bound) says the same as float <= bound.
+float AsBound(double bound)
+{
+  const float nearest = static_cast<float>(bound);
+  return nearest > bound ? std::nextafter(nearest, -std::numeric_limits<float>::infinity()) : nearest;
+}
+
+/// @throws InvalidInput where a setting is out of its range
+void Check(const OctreeSettings& settings)
+{
+  if (!(settings.tolerance >= 0.0 && settings.tolerance <= 1.0))
+  {
+    throw InvalidInput("Tolerance is " + Text("%g", settings.tolerance) + "; it must lie in [0, 1].");
+  }
+  if (!(settings.extinctionTolerance >= 0.0) || std::isinf(settings.extinctionTolerance))
+  {
+    throw InvalidInput(
+      "ExtinctionTolerance is " + Text("%g", settings.extinctionTolerance) + "; it must be finite and not negative.");
+  }
+}
+
+/// @throws InvalidInput where the index is not there, or not finite and above 0 in a voxel: names the first
+void CheckIndex(const Field& index, const Domain& domain)
+{
+  if (!index.values || index.components != 1)
+  {
+    throw InvalidInput("The refractive index must be given, with one component a voxel.");
+  }
+  const Grid grid = domain.OwnGrid();
+  const std::size_t count = grid.VoxelCount();
+  std::atomic<bool> good(true);
+  InThreads(count, 65536, [&](std::size_t begin, std::size_t end) {
+    bool all = true;
+    for (std::size_t i = begin; i < end; ++i)
+    {
+      all &= index.values[i] > 0.0f && index.values[i] <= std::numeric_limits<float>::max();
+    }
+    if (!all)
+    {
+      good = false;
+    }
+  });
+  for (std::size_t i = 0; !good && i < count; ++i)
+  {
+    if (!(index.values[i] > 0.0f) || std::isinf(index.values[i]))
+    {
+      const std::size_t voxel = domain.Whole().IndexOf(Plus(grid.VoxelAt(i), domain.Own().first));
+      throw InvalidInput("The refractive index is " + Text("%g", index.values[i]) + " in voxel " +
+        VoxelName(domain.Whole(), voxel) +
+        " (the first such voxel); it must be finite and above 0. Clean the input, for example with a "
+        "Calculator.");
+    }
+  }
+}
+
+/// Largest differences of the index, and of sigma_t, in the nodes of each level: as floats, for which <= says the same.
+std::vector<float> IndexTolerances(int levels, double tolerance)
+{
+  return std::vector<float>(static_cast<std::size_t>(levels), AsBound(tolerance));
+}
+
+std::vector<float> ExtinctionTolerances(const Grid& grid, int levels, double tolerance)
+{
+  const double diagonal = std::hypot(grid.spacing[0], grid.spacing[1], grid.spacing[2]);
+  std::vector<float> tolerances;
+  for (int level = 0; level < levels; ++level)
+  {
+    tolerances.push_back(AsBound(tolerance / std::ldexp(diagonal, level)));
+  }
+  return tolerances;
+}
+
+/// How many channels of extinction restrict nodes: 0 where it is not included.
+int ExtinctionChannels(const Medium& medium, const OctreeSettings& settings)
+{
+  const bool coloured = medium.sigma_a.components == 3 || medium.sigma_s.components == 3;
+  return !settings.includeExtinction ? 0 : coloured ? 3 : 1;
+}
+
+/// sigma_t = sigma_a + sigma_s of a channel.
+std::vector<float> Extinction(const Medium& medium, int channel, std::size_t voxels)
+{
+  std::vector<float> extinction(voxels);
+  for (std::size_t i = 0; i < voxels; ++i)
+  {
+    extinction[i] = medium.sigma_a.At(i, channel) + medium.sigma_s.At(i, channel);
+  }
+  return extinction;
+}
+
+/// Whether a quantity is the same in all voxels of the domain. Collective.
+bool IsConstant(const Domain& domain, const float* values)
+{
+  const std::size_t count = domain.Own().VoxelCount();
+  const double endless = std::numeric_limits<double>::infinity();
+  const bool here = std::all_of(values, values + count, [&](float value) { return value == values[0]; });
+  const double least = count == 0 ? endless : here ? values[0] : -endless;
+  const double largest = count == 0 ? -endless : here ? values[0] : endless;
+  return domain.Max(largest) == -domain.Max(-least);
+}
+
+/// Min-max pyramids over a domain, and the levels found from the top of them down (Pfeuti 2009, section 3.1.3).
+///
+/// A voxel's level is the largest k for which its node, the cube of 2^k voxels per edge that begins at multiples of
+/// 2^k, has max - min <= tolerance in every pyramid; 0, a single voxel, where there is none. A grid whose size is not a
+/// power of two is treated as if its last voxel were repeated, so that a node's range is that of its voxels.
+class OctreePyramid
 {
 public:
-  Builder(const Grid& grid, std::string device)
-    : TheGrid(grid)
-    , DeviceName(std::move(device))
+  /// @param domain  of more than one voxel
+  OctreePyramid(Device& device, const Domain& domain)
+    : TheDevice(device)
+    , TheDomain(domain)
+    , Layout(domain.Whole().size)
+    , Blocks(domain, std::min(LevelsOfBlock, this->Layout.Top()), 0, 1 << std::min(LevelsOfBlock, this->Layout.Top()))
   {
+    const PyramidLayout ofBox(this->Blocks.Box().size);
+    for (int level = 0; level <= this->Blocks.Shared(); ++level)
+    {
+      this->Add(level, ofBox.sizes[static_cast<std::size_t>(std::min(level, ofBox.Top()))]);
+    }
+    for (int level = this->Blocks.Shared(); level <= this->Layout.Top(); ++level)
+    {
+      this->Add(level, this->Layout.sizes[static_cast<std::size_t>(level)]);
+    }
+    domain.Collective([&] {
+      const std::size_t nodes = domain.IsEmpty() ? 0 : this->NodeCount;
+      this->Ranges = Buffer<cl_float2>(device, nodes, "the pyramid of smallest and largest values");
+      this->Nodes = Buffer<cl_uchar>(device, nodes, "the octree's pyramid of levels");
+      this->Levels = Buffer<cl_uchar>(device, this->Blocks.Box().VoxelCount(), "the octree's levels");
+    });
   }
 
-  /// @return whether the quantity restricts nodes: not where it is constant, or the grid is one voxel
-  bool Restrict(const float* values, const char* what, const std::vector<float>& tolerances)
+  /// Keeps nodes whole only where the range of one more quantity allows it, too. Collective.
+  /// @param values      of the block's voxels
+  /// @param tolerances  [level] of the quantity; must not grow with the level. [0] is not used
+  void Restrict(const float* values, const char* what, const std::vector<float>& tolerances)
   {
-    const std::size_t count = this->TheGrid.VoxelCount();
-    if (IsConstant(values, count))
-    {
-      return false;
-    }
-    if (!this->Levels)
-    {
-      this->TheDevice = Device::Find(this->DeviceName);
-      this->Levels = std::make_unique<LevelPyramid>(*this->TheDevice, this->TheGrid);
-    }
-    const Buffer<float> onDevice(*this->TheDevice, values, count, what);
-    const MinMaxPyramid ranges(*this->TheDevice, this->TheGrid, onDevice);
-    this->Levels->Restrict(ranges, tolerances);
-    return true;
+    std::vector<float> storage, cells;
+    const float* const ofBox = this->Blocks.Gather(values, 1, storage);
+    this->OnVoxels([&] {
+      const Buffer<float> voxels(this->TheDevice, ofBox, this->Blocks.Box().VoxelCount(), what);
+      this->FindRangesOfBox(voxels);
+      cells = this->RangesOfCells();
+    });
+    cells = this->Blocks.GatherCells(cells, 2);
+    this->OnVoxels([&] {
+      this->FindRangesAbove(cells);
+      this->FindLevels(tolerances);
+    });
+    this->Restricted = true;
   }
 
-  void Result(Octree& octree) const
+  /// Levels of the block's voxels; after Restrict. Collective.
+  std::vector<std::uint8_t> Result() const
   {
-    octree.levels.assign(this->TheGrid.VoxelCount(), static_cast<std::uint8_t>(octree.topLevel));
-    if (this->Levels)
-    {
-      this->Levels->Levels().Read(octree.levels.data());
-      octree.device = this->TheDevice->Name();
-    }
+    std::vector<std::uint8_t> levels;
+    this->OnVoxels([&] { levels = this->Levels.Read(); });
+    this->Blocks.Crop(levels);
+    return levels;
   }
 
 private:
-  Grid TheGrid;
-  std::string DeviceName;
-  std::shared_ptr<Device> TheDevice;
-  std::unique_ptr<LevelPyramid> Levels;
+  /// Nodes of one level: of this rank's box up to the shared level, then, from the shared level on, of the whole grid.
+  struct NodesOfLevel
+  {
+    int level;
+    std::array<int, 3> size;
+    std::size_t first; ///< in the buffers; the voxels of level 0 are not in them
+  };
+
+  void Add(int level, const std::array<int, 3>& size)
+  {
+    this->Pyramid.push_back({ level, size, this->NodeCount });
+    this->NodeCount += level > 0 ? Count(size[0]) * Count(size[1]) * Count(size[2]) : 0;
+  }
+  /// The shared level, of this rank's box and of the whole grid.
+  const NodesOfLevel& OwnShared() const { return this->Pyramid[static_cast<std::size_t>(this->Blocks.Shared())]; }
+  const NodesOfLevel& AllShared() const { return (&this->OwnShared())[1]; }
+
+  template <class Step>
+  void OnVoxels(const Step& step) const
+  {
+    this->TheDomain.Collective([&] {
+      if (!this->TheDomain.IsEmpty())
+      {
+        step();
+      }
+    });
+  }
+
+  void Run(const cl::Kernel& kernel, const std::array<int, 3>& nodes) const
+  {
+    this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, PyramidRange(nodes), PyramidGroup());
+  }
+
+  void FindRanges(const NodesOfLevel& of, const NodesOfLevel& below)
+  {
+    cl::Kernel kernel = this->TheDevice.Kernel("min_max_of_nodes", kernel_source::RefractionOctree);
+    With(kernel, this->Ranges, cl_ulong(below.first), Int4(below.size), cl_ulong(of.first), Int4(of.size));
+    this->Run(kernel, of.size);
+  }
+
+  void FindRangesOfBox(const Buffer<float>& voxels)
+  {
+    cl::Kernel kernel = this->TheDevice.Kernel("min_max_of_voxels", kernel_source::RefractionOctree);
+    const NodesOfLevel& first = this->Pyramid[1];
+    With(kernel, voxels, Int4(this->Pyramid[0].size), this->Ranges, cl_ulong(first.first), Int4(first.size));
+    this->Run(kernel, first.size);
+    for (const NodesOfLevel* of = &first; of != &this->OwnShared(); ++of)
+    {
+      this->FindRanges(of[1], of[0]);
+    }
+  }
+
+  std::vector<float> RangesOfCells() const
+  {
+    const NodesOfLevel& cells = this->OwnShared();
+    std::vector<float> ranges(2 * (this->AllShared().first - cells.first));
+    this->TheDevice.AwaitFirstRuns();
+    this->TheDevice.Queue().enqueueReadBuffer(
+      this->Ranges.Handle(), CL_TRUE, cells.first * sizeof(cl_float2), ranges.size() * sizeof(float), ranges.data());
+    return ranges;
+  }
+
+  void FindRangesAbove(const std::vector<float>& cells)
+  {
+    this->TheDevice.Queue().enqueueWriteBuffer(this->Ranges.Handle(), CL_TRUE,
+      this->AllShared().first * sizeof(cl_float2), cells.size() * sizeof(float), cells.data());
+    for (const NodesOfLevel* of = &this->AllShared(); of != &this->Pyramid.back(); ++of)
+    {
+      this->FindRanges(of[1], of[0]);
+    }
+  }
+
+  void FindLevels(const std::vector<float>& tolerances)
+  {
+    cl::Kernel ofNodes = this->TheDevice.Kernel("levels_of_nodes", kernel_source::RefractionOctree);
+    for (const NodesOfLevel* of = &this->Pyramid.back(); of->level > 0; --of)
+    {
+      const bool atTop = of == &this->Pyramid.back(), entersBox = of == &this->OwnShared();
+      const NodesOfLevel& above = atTop ? *of : of[1];
+      const cl_int4 from = entersBox ? Int4(this->Blocks.BoxCells().first) : Int4({ 0, 0, 0 });
+      With(ofNodes, this->Ranges, this->Nodes, cl_ulong(of->first), Int4(of->size), cl_ulong(above.first),
+        Int4(above.size), from, entersBox ? 0 : 1, of->level, atTop ? of->level : of->level + 1,
+        tolerances[static_cast<std::size_t>(of->level)]);
+      this->Run(ofNodes, of->size);
+    }
+    cl::Kernel ofVoxels = this->TheDevice.Kernel("levels_of_voxels", kernel_source::RefractionOctree);
+    const std::array<int, 3>& first = this->Pyramid[1].size;
+    With(ofVoxels, this->Nodes, Int4(first), this->Levels, Int4(this->Pyramid[0].size), this->Restricted ? 1 : 0);
+    this->Run(ofVoxels, first);
+  }
+
+  Device& TheDevice;
+  const Domain& TheDomain;
+  PyramidLayout Layout; ///< of the whole grid
+  PyramidBlocks Blocks;
+  std::vector<NodesOfLevel> Pyramid; ///< from the voxels up
+  std::size_t NodeCount = 0;
+  Buffer<cl_float2> Ranges;
+  Buffer<cl_uchar> Nodes, Levels;
+  bool Restricted = false;
 };
 }
 
-Octree BuildOctree(const Medium& medium, const Field& index, const OctreeSettings& settings, const std::string& device,
-  const Monitor& monitor)
+Octree BuildOctree(const Domain& domain, const Medium& medium, const Field& index, const OctreeSettings& settings,
+  const std::string& device, const Monitor& monitor)
 {
-  using Clock = std::chrono::steady_clock;
-  const Clock::time_point start = Clock::now();
-  Check(settings);
-  Check(medium);
-  CheckIndex(index, medium.grid, medium.grid, { 0, 0, 0 });
-  Report(monitor, 0.0);
+  const double start = ClockSeconds();
+  domain.Collective([&] {
+    Check(domain.Whole());
+    domain.Partition().Check();
+    Check(settings);
+    if (!domain.IsEmpty())
+    {
+      Check(medium);
+      CheckIndex(index, domain);
+    }
+    Report(monitor, 0.0);
+  });
+  RequireSame(domain.Comm(), "settings", true,
+    { settings.tolerance, 1.0 * settings.includeExtinction, settings.extinctionTolerance });
 
-  const PyramidLayout layout(medium.grid.size);
+  const std::size_t voxels = domain.Own().VoxelCount();
+  const int levels = PyramidLayout(domain.Whole().size).LevelCount();
   Octree octree;
-  octree.topLevel = layout.Top();
-  Builder builder(medium.grid, device);
-  const std::vector<float> tolerances = IndexTolerances(layout.LevelCount(), settings.tolerance);
-  if (!builder.Restrict(index.values, "the refractive index", tolerances))
+  octree.topLevel = levels - 1;
+  std::shared_ptr<Device> found; // when the first quantity comes that is not constant
+  std::optional<OctreePyramid> pyramid;
+  /// @return whether the quantity restricts nodes: not where it is constant, or the grid is one voxel
+  const auto restrict = [&](const float* values, const char* what, const std::vector<float>& tolerances) {
+    if (IsConstant(domain, values))
+    {
+      return false;
+    }
+    if (!pyramid)
+    {
+      domain.Collective([&] { found = Device::Find(device); });
+      pyramid.emplace(*found, domain);
+    }
+    pyramid->Restrict(values, what, tolerances);
+    return true;
+  };
+  if (!restrict(index.values, "the refractive index", IndexTolerances(levels, settings.tolerance)))
   {
     octree.leftOut.emplace_back("the refractive index is constant: no pyramid of it");
   }
-  const int channels = ExtinctionChannels(medium, settings);
+  const int channels = static_cast<int>(domain.Max(domain.IsEmpty() ? 0 : ExtinctionChannels(medium, settings)));
   bool uneven = false;
   for (int channel = 0; channel < channels; ++channel)
   {
-    Report(monitor, (1.0 + channel) / (1.0 + channels));
-    uneven |= builder.Restrict(Extinction(medium, channel).data(), "the extinction",
-      ExtinctionTolerances(medium.grid, layout.LevelCount(), settings.extinctionTolerance));
+    domain.Collective([&] { Report(monitor, (1.0 + channel) / (1.0 + channels)); });
+    uneven |= restrict(Extinction(medium, channel, voxels).data(), "the extinction",
+      ExtinctionTolerances(domain.Whole(), levels, settings.extinctionTolerance));
   }
   if (channels > 0 && !uneven)
   {
     octree.leftOut.emplace_back("the extinction is constant: no pyramid of it");
   }
-  builder.Result(octree);
-  octree.seconds = std::chrono::duration<double>(Clock::now() - start).count();
-  Report(monitor, 1.0);
+  octree.levels =
+    pyramid ? pyramid->Result() : std::vector<std::uint8_t>(voxels, static_cast<std::uint8_t>(octree.topLevel));
+  octree.device = found ? found->Name() : std::string();
+  octree.seconds = ClockSeconds() - start;
+  domain.Collective([&] { Report(monitor, 1.0); });
   return octree;
 }
 }

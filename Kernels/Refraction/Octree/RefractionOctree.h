@@ -1,6 +1,7 @@
 #pragma once
 
 #include "Device/Monitor.h"
+#include "Distribution/Domain.h"
 #include "Medium/Medium.h"
 
 #include <cstdint>
@@ -31,20 +32,24 @@ struct OctreeSettings
 /// stick out of it, up to the top level, the smallest k whose node holds the whole grid. Ranges are compared in float.
 struct Octree
 {
-  std::vector<std::uint8_t> levels; ///< one per voxel, x fastest; 0: a single voxel, k: a node of 2^k voxels per edge
-  int topLevel = 0;                 ///< ceil(log2(longest edge in voxels))
-  double seconds = 0.0;             ///< of BuildOctree
-  std::string device;               ///< that ran; empty: none had to
+  std::vector<std::uint8_t>
+    levels;             ///< one per voxel of the block, x fastest; 0: a single voxel, k: a node of 2^k voxels per edge
+  int topLevel = 0;     ///< ceil(log2(longest edge in voxels))
+  double seconds = 0.0; ///< of BuildOctree
+  std::string device;   ///< that ran; empty: none had to
   std::vector<std::string> leftOut; ///< what the scene did not need
 };
 
-/// @param medium  its grid, and where extinction is included its coefficients
-/// @param index   refractive index n, one component; finite and above 0
+/// Collective. Each rank makes three levels of its own block; those above, a 512th of the grid, are made on every rank
+/// from the ranges of all (numerics.md, section 11.4). The levels do not depend on the blocks.
+/// @param domain  the grid; `Domain(grid)` for a serial build
+/// @param medium  of the rank's block, its grid domain.OwnGrid(); where extinction is included its coefficients
+/// @param index   of the rank's block: refractive index n, one component; finite and above 0
 /// @param device  part of the device's name as Device::Find takes it; looked for only where there is something to
 ///   compute: where everything is constant, the octree is one node and nothing runs on the device
 /// @throws InvalidInput where a setting, the grid, n (names the first such voxel) or a coefficient has no meaning
 /// @throws DeviceError if there is no such device, or its memory does not suffice: about 7 bytes per voxel of a large
 /// cube
-Octree BuildOctree(const Medium& medium, const Field& index, const OctreeSettings& settings,
+Octree BuildOctree(const Domain& domain, const Medium& medium, const Field& index, const OctreeSettings& settings,
   const std::string& device = {}, const Monitor& monitor = {});
 }

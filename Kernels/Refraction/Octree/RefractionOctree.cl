@@ -1,0 +1,141 @@
+// The octree of a quantity (Pfeuti 2009, listings 3.2 and 3.3): the smallest and largest value of each node, from the
+// voxels up, and the levels from the top down. A work-item is a node.
+
+inline size_t index_of(int4 node, int4 size)
+{
+  return ((size_t)node.z * size.y + node.y) * size.x + node.x;
+}
+
+// Ranges. A child beyond the grid's end is its neighbour within once more.
+//
+//   children_size  children per axis
+//   nodes          levels from 1 on, (min, max) a node
+//   first          of the level that is written
+//   size           nodes of it per axis
+
+typedef struct
+{
+  size_t at[4];  // (0, 0), (1, 0), (0, 1), (1, 1) of y and z
+  size_t across; // to the second child along x
+} children;
+
+inline children children_of(int4 node, int4 children_size)
+{
+  const size_t row = children_size.x;
+  const size_t layer = row * children_size.y;
+  const int4 first = node * 2;
+  const size_t up = first.y + 1 < children_size.y ? row : 0;
+  const size_t back = first.z + 1 < children_size.z ? layer : 0;
+  children c;
+  c.at[0] = first.z * layer + first.y * row + first.x;
+  c.at[1] = c.at[0] + up;
+  c.at[2] = c.at[0] + back;
+  c.at[3] = c.at[1] + back;
+  c.across = first.x + 1 < children_size.x ? 1 : 0;
+  return c;
+}
+
+// Not fmin and fmax, which look for NaN.
+inline float smaller(float a, float b)
+{
+  return a < b ? a : b;
+}
+inline float larger(float a, float b)
+{
+  return a > b ? a : b;
+}
+inline float2 joined(float2 a, float2 b)
+{
+  return (float2)(smaller(a.x, b.x), larger(a.y, b.y));
+}
+
+__kernel void min_max_of_voxels(
+  const __global float* voxels, int4 children_size, __global float2* nodes, ulong first, int4 size)
+{
+  const int4 node = (int4)(get_global_id(0), get_global_id(1), get_global_id(2), 0);
+  if (node.x >= size.x || node.y >= size.y || node.z >= size.z)
+  {
+    return;
+  }
+  const children c = children_of(node, children_size);
+  float2 range = (float2)(voxels[c.at[0]]);
+  range = joined(range, (float2)(voxels[c.at[0] + c.across]));
+  range = joined(range, (float2)(voxels[c.at[1]]));
+  range = joined(range, (float2)(voxels[c.at[1] + c.across]));
+  range = joined(range, (float2)(voxels[c.at[2]]));
+  range = joined(range, (float2)(voxels[c.at[2] + c.across]));
+  range = joined(range, (float2)(voxels[c.at[3]]));
+  range = joined(range, (float2)(voxels[c.at[3] + c.across]));
+  nodes[first + index_of(node, size)] = range;
+}
+
+//   below  first of the level below
+__kernel void min_max_of_nodes(__global float2* nodes, ulong below, int4 children_size, ulong first, int4 size)
+{
+  const int4 node = (int4)(get_global_id(0), get_global_id(1), get_global_id(2), 0);
+  if (node.x >= size.x || node.y >= size.y || node.z >= size.z)
+  {
+    return;
+  }
+  const children c = children_of(node, children_size);
+  const __global float2* from = nodes + below;
+  float2 range = joined(from[c.at[0]], from[c.at[0] + c.across]);
+  range = joined(range, joined(from[c.at[1]], from[c.at[1] + c.across]));
+  range = joined(range, joined(from[c.at[2]], from[c.at[2] + c.across]));
+  range = joined(range, joined(from[c.at[3]], from[c.at[3] + c.across]));
+  nodes[first + index_of(node, size)] = range;
+}
+
+// Levels. A node's level is that of the largest node over it that is kept whole, itself included; 0 where none is.
+//
+//   ranges        (min, max) of the nodes of all levels
+//   first, size   of this level: first node, nodes per axis
+//   above, above_size  the same of the level that nodes inherit from; unused at the top
+//   from, shift   node (i, j, k) inherits from node (from + (i, j, k)) >> shift
+//   tolerance     a node is whole where max - min is no more
+__kernel void levels_of_nodes(const __global float2* ranges, __global uchar* levels, ulong first, int4 size,
+  ulong above, int4 above_size, int4 from, int shift, int level, int top, float tolerance)
+{
+  const int4 node = (int4)(get_global_id(0), get_global_id(1), get_global_id(2), 0);
+  if (node.x >= size.x || node.y >= size.y || node.z >= size.z)
+  {
+    return;
+  }
+  const size_t i = first + index_of(node, size);
+  const uchar inherited = level < top ? levels[above + index_of((from + node) >> shift, above_size)] : 0;
+  const uchar own = ranges[i].y - ranges[i].x <= tolerance ? level : 0;
+  levels[i] = inherited > 0 ? inherited : own;
+}
+
+inline void give(__global uchar* levels, size_t voxel, uchar level, int restrict_it)
+{
+  levels[voxel] = restrict_it ? min(level, levels[voxel]) : level;
+}
+
+// A work-item per node of level 1.
+//   nodes    levels of the pyramid's nodes, level 1 first
+//   levels   of the voxels: written, or where `restrict_them` made smaller
+__kernel void levels_of_voxels(
+  const __global uchar* nodes, int4 nodes_size, __global uchar* levels, int4 size, int restrict_them)
+{
+  const int4 node = (int4)(get_global_id(0), get_global_id(1), get_global_id(2), 0);
+  if (node.x >= nodes_size.x || node.y >= nodes_size.y || node.z >= nodes_size.z)
+  {
+    return;
+  }
+  const uchar level = nodes[index_of(node, nodes_size)];
+  const int4 voxel = 2 * node;
+  // Beyond the grid's end: the neighbour within once more.
+  const size_t x = voxel.x + 1 < size.x ? 1 : 0;
+  const size_t y = voxel.y + 1 < size.y ? size.x : 0;
+  const size_t z = voxel.z + 1 < size.z ? (size_t)size.x * size.y : 0;
+  const size_t i = index_of(voxel, size);
+  give(levels, i, level, restrict_them);
+  give(levels, i + x, level, restrict_them);
+  give(levels, i + y, level, restrict_them);
+  give(levels, i + y + x, level, restrict_them);
+  give(levels, i + z, level, restrict_them);
+  give(levels, i + z + x, level, restrict_them);
+  give(levels, i + z + y, level, restrict_them);
+  give(levels, i + z + y + x, level, restrict_them);
+}
