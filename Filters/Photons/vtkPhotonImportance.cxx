@@ -5,7 +5,6 @@
 #include "Common/PrintMembers.h"
 #include "Device/Device.h"
 #include "Distribution/SharedMedium.h"
-#include "Photons/Distributed/PhotonsInBlocks.h"
 #include "Photons/ImportanceData.h"
 #include "Photons/PhotonData.h"
 #include "Photons/RefractiveInput.h"
@@ -194,14 +193,10 @@ std::optional<tyndall::Importance> vtkPhotonImportance::FindInPieces(
   {
     return tyndall::Importance();
   }
-  tyndall::PhotonMarcherInBlocks marcher(
-    *device, communicator, pieces.Partition(), read.input.medium, read.ior, tyndall::MarchSettings{}, read.Levels());
-  const tyndall::Gatherer gather = [&](const auto& photons, const auto& origins, const auto& cells,
-                                     const tyndall::Monitor& monitor) {
-    return marcher.Gather(photons, origins, cells, monitor);
-  };
+  tyndall::PhotonMarcher marcher(*device, tyndall::Domain(communicator, pieces.Partition()), read.input.medium,
+    read.ior, tyndall::MarchSettings{}, read.Levels());
   tyndall::Importance importance =
-    tyndall::FindImportance(gather, pieces.Partition().whole, *light, settings, tyndall::MonitorOf(this));
+    tyndall::FindImportance(marcher, pieces.Partition().whole, *light, settings, tyndall::MonitorOf(this));
   this->DeviceName = device->Name();
   return importance;
 }

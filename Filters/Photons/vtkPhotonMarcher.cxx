@@ -7,8 +7,7 @@
 #include "Device/Device.h"
 #include "Distribution/SharedMedium.h"
 #include "Numerics/ChooseEvenly.h"
-#include "Photons/Distributed/PhotonShares.h"
-#include "Photons/Distributed/PhotonsInBlocks.h"
+#include "Photons/Marching/PhotonShares.h"
 #include "Photons/PhotonData.h"
 #include "Photons/Published/PublishedPhotons.h"
 #include "Photons/RefractiveInput.h"
@@ -278,16 +277,6 @@ int vtkPhotonMarcher::RequestUpdateExtent(
   return 1;
 }
 
-/// What keeps ranks from marching through their pieces, in words; empty: nothing does.
-std::string vtkPhotonMarcher::NotByBlocks(const PieceOfMarch& piece) const
-{
-  if (piece.octreeElsewhere)
-  {
-    return "an octree that lies in other pieces on ranks than the medium";
-  }
-  return tyndall::NotInBlocks(piece.settings);
-}
-
 namespace
 {
 /// The part of an octree's image that has the voxels of a piece of the medium; null where it has not.
@@ -313,7 +302,6 @@ bool HaveBatches(tyndall::Communicator& communicator, const std::vector<tyndall:
 bool vtkPhotonMarcher::ReadPiece(tyndall::Communicator& communicator, const tyndall::PieceBlocks& pieces,
   vtkInformationVector** inputs, bool needsPieces, PieceOfMarch& piece)
 {
-  std::string refused;
   bool rather = false; // whole, though it can be marched through so
   std::vector<tyndall::Photon> photons =
     tyndall::ShareOfPhotons(communicator, vtkPolyData::GetData(inputs[PhotonsPort]), tyndall::OwnAxesOf(this));
@@ -331,46 +319,38 @@ bool vtkPhotonMarcher::ReadPiece(tyndall::Communicator& communicator, const tynd
     piece.emits = piece.read.input.Emits();
     piece.settings = SettingsOf(this, piece.image, batches);
     rather = this->Decomposition == AUTOMATIC_DECOMPOSITION && piece.settings.byBricks && !needsPieces;
-    refused = this->NotByBlocks(piece);
-    tyndall::Require(refused.empty() || this->Decomposition != BLOCKS,
-      "Ranks cannot march photons through their pieces (Decomposition: blocks) with " + refused +
-        ". Leave it out, or let each rank have the whole.");
+    tyndall::Require(!piece.octreeElsewhere || this->Decomposition != BLOCKS,
+      "Ranks cannot march photons through their pieces (Decomposition: blocks) with an octree that lies in other "
+      "pieces on ranks than the medium. Leave it out, or let each rank have the whole.");
   });
   tyndall::MediumInput& input = piece.read.input;
   tyndall::AgreeOnMeanCosine(communicator, pieces.HasOwn(), input.g, input.medium);
-  return communicator.Largest({ refused.empty() && !rather ? 0.0 : 1.0 })[0] == 0.0;
+  return !tyndall::OnAnyRank(communicator, piece.octreeElsewhere || rather);
 }
 
-/// All ranks call it.
-vtkPhotonMarcher::Marched vtkPhotonMarcher::MarchInBlocks(tyndall::Device& device, tyndall::Communicator& communicator,
-  const tyndall::BlockPartition& partition, const PieceOfMarch& piece)
+/// As published. Collective.
+void vtkPhotonMarcher::MarchAsPublished(tyndall::Device& device, const tyndall::Domain& domain,
+  const tyndall::RefractiveInput& read, const std::vector<tyndall::Photon>& photons, Marched& marched)
 {
-  const tyndall::Medium& medium = piece.read.input.medium;
-  tyndall::RequireSame(
-    communicator, "Scheme or PathCount", true, { 1.0 * this->Scheme, static_cast<double>(this->PathCount) });
-  const bool published = this->Scheme == PUBLISHED;
-  Marched marched;
-  if (published)
+  tyndall::PackingLoss loss;
+  marched.light = tyndall::MarchPublished(device, domain, read.input.medium, read.ior, read.Levels(), photons,
+    PublishedSettingsOf(this), &loss, tyndall::MonitorOf(this));
+  marched.packingLoss = loss.Relative();
+}
+
+/// Light by the conservative scheme, and paths. Collective.
+void vtkPhotonMarcher::MarchThrough(tyndall::PhotonMarcher& marcher, tyndall::Communicator& communicator,
+  const std::vector<tyndall::Photon>& photons, Marched& marched)
+{
+  if (this->Scheme != PUBLISHED)
   {
-    tyndall::PackingLoss loss;
-    marched.light = tyndall::MarchPublishedInBlocks(device, communicator, partition, medium, piece.read.ior,
-      piece.read.Levels(), piece.photons, PublishedSettingsOf(this), &loss, tyndall::MonitorOf(this));
-    marched.packingLoss = loss.Relative();
+    marched.light = marcher.March(photons, tyndall::MonitorOf(this));
   }
-  if (!published || this->PathCount > 0)
+  if (this->PathCount > 0)
   {
-    tyndall::PhotonMarcherInBlocks marcher(
-      device, communicator, partition, medium, piece.read.ior, piece.settings, piece.read.Levels());
-    if (!published)
-    {
-      marched.light = marcher.March(piece.photons, tyndall::MonitorOf(this));
-    }
-    if (this->PathCount > 0)
-    {
-      marched.paths = marcher.Paths(piece.photons, static_cast<std::size_t>(this->PathCount));
-    }
+    const std::size_t all = tyndall::PlaceAmong(communicator, photons.size()).all;
+    marched.paths = marcher.Paths(photons, tyndall::ChooseEvenly(all, static_cast<std::size_t>(this->PathCount)));
   }
-  return marched;
 }
 
 /// @return false, on all ranks, where each is to march through the whole
@@ -395,7 +375,20 @@ bool vtkPhotonMarcher::MarchPiece(vtkInformation* request, vtkMultiProcessContro
   this->Kept->Forget();
   std::shared_ptr<tyndall::Device> device;
   communicator->Collective([&] { device = tyndall::FindWithin(this->Within, this->Device, this->MemoryBudget); });
-  Marched marched = this->MarchInBlocks(*device, *communicator, pieces.Partition(), piece);
+  tyndall::RequireSame(
+    *communicator, "Scheme or PathCount", true, { 1.0 * this->Scheme, static_cast<double>(this->PathCount) });
+  const tyndall::Domain domain(*communicator, pieces.Partition());
+  Marched marched;
+  if (this->Scheme == PUBLISHED)
+  {
+    this->MarchAsPublished(*device, domain, piece.read, piece.photons, marched);
+  }
+  if (this->Scheme != PUBLISHED || this->PathCount > 0)
+  {
+    tyndall::PhotonMarcher marcher(
+      *device, domain, piece.read.input.medium, piece.read.ior, piece.settings, piece.read.Levels());
+    this->MarchThrough(marcher, *communicator, piece.photons, marched);
+  }
   this->WarnOfBox(inputs, pieces.Partition().whole);
   this->Note(marched);
   this->Ignored = tyndall::IgnoredEmission(tyndall::OnAnyRank(*communicator, piece.emits));
@@ -415,30 +408,19 @@ bool vtkPhotonMarcher::MarchPiece(vtkInformation* request, vtkMultiProcessContro
   return true;
 }
 
-vtkPhotonMarcher::Marched vtkPhotonMarcher::MarchAsPublished(
-  vtkInformationVector** inputs, const std::vector<tyndall::Photon>& photons)
-{
-  const tyndall::RefractiveInput read = tyndall::ReadRefractiveMedium(
-    this, vtkImageData::GetData(inputs[MediumPort]), vtkImageData::GetData(inputs[OctreePort]));
-  tyndall::PackingLoss loss;
-  Marched marched;
-  marched.light = tyndall::MarchPublished(*tyndall::FindWithin(this->Within, this->Device, this->MemoryBudget),
-    read.input.medium, read.ior, read.Levels(), photons, PublishedSettingsOf(this), &loss, tyndall::MonitorOf(this));
-  marched.packingLoss = loss.Relative();
-  return marched;
-}
-
 vtkPhotonMarcher::Marched vtkPhotonMarcher::March(
   vtkInformationVector** inputs, const std::vector<tyndall::Photon>& photons)
 {
   this->Kept->ForgetIfRan(this, { MediumPort, OctreePort });
   const tyndall::MarchSettings settings = SettingsOf(
     this, vtkImageData::GetData(inputs[MediumPort]), std::any_of(photons.begin(), photons.end(), IsOfLaterBatch));
-  const bool published = this->Scheme == PUBLISHED;
   Marched marched;
-  if (published)
+  if (this->Scheme == PUBLISHED)
   {
-    marched = this->MarchAsPublished(inputs, photons);
+    const tyndall::RefractiveInput read = tyndall::ReadRefractiveMedium(
+      this, vtkImageData::GetData(inputs[MediumPort]), vtkImageData::GetData(inputs[OctreePort]));
+    this->MarchAsPublished(*tyndall::FindWithin(this->Within, this->Device, this->MemoryBudget),
+      tyndall::Domain(read.input.medium.grid), read, photons, marched);
     if (this->PathCount == 0)
     {
       this->Kept->Forget();
@@ -448,12 +430,8 @@ vtkPhotonMarcher::Marched vtkPhotonMarcher::March(
   tyndall::KeptMarcher::Found found =
     this->Kept->Find(this, tyndall::FindWithin(this->Within, this->Device, this->MemoryBudget),
       vtkImageData::GetData(inputs[MediumPort]), vtkImageData::GetData(inputs[OctreePort]), settings);
-  if (!published)
-  {
-    marched.light = found.marcher->March(photons, tyndall::MonitorOf(this));
-  }
-  marched.paths =
-    found.marcher->Paths(photons, tyndall::ChooseEvenly(photons.size(), static_cast<std::size_t>(this->PathCount)));
+  tyndall::SingleRank single;
+  this->MarchThrough(*found.marcher, single, photons, marched);
   this->MediumKept = found.kept;
   this->Kept->Keep(std::move(found));
   return marched;

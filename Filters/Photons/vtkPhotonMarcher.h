@@ -14,13 +14,15 @@ namespace tyndall
 {
 class Communicator;
 class Device;
+class Domain;
 class KeptMarcher;
+class PhotonMarcher;
 class PieceBlocks;
-struct BlockPartition;
 struct Grid;
 struct MarchSettings;
 struct Photon;
 struct PhotonLight;
+struct RefractiveInput;
 }
 
 class vtkImageData;
@@ -262,12 +264,12 @@ private:
 
   struct Marched;
   Marched March(vtkInformationVector** inputs, const std::vector<tyndall::Photon>& photons);
-  Marched MarchAsPublished(vtkInformationVector** inputs, const std::vector<tyndall::Photon>& photons);
+  void MarchAsPublished(tyndall::Device& device, const tyndall::Domain& domain, const tyndall::RefractiveInput& read,
+    const std::vector<tyndall::Photon>& photons, Marched& marched);
+  void MarchThrough(tyndall::PhotonMarcher& marcher, tyndall::Communicator& communicator,
+    const std::vector<tyndall::Photon>& photons, Marched& marched);
   struct PieceOfMarch;
-  Marched MarchInBlocks(tyndall::Device& device, tyndall::Communicator& communicator,
-    const tyndall::BlockPartition& partition, const PieceOfMarch& piece);
   bool WantsBlocks(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) const;
-  std::string NotByBlocks(const PieceOfMarch& piece) const;
   bool ReadPiece(tyndall::Communicator& communicator, const tyndall::PieceBlocks& pieces, vtkInformationVector** inputs,
     bool needsPieces, PieceOfMarch& piece);
   bool MarchPiece(vtkInformation* request, vtkMultiProcessController* ranks, vtkInformationVector** inputs,

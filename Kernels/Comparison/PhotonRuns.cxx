@@ -83,8 +83,8 @@ LightField Trace(
   if (method == ComparedMethod::PublishedPhotons)
   {
     const EmittedPhotons emitted = EmitPhotons(grid, scene.illumination, emission, OfPart(monitor, 0.0, 0.3));
-    return MarchPublished(
-      device, scene.medium, scene.ior, scene.levels, emitted.photons, {}, nullptr, OfPart(monitor, 0.3, 1.0))
+    return MarchPublished(device, Domain(grid), scene.medium, scene.ior, scene.levels, emitted.photons, {}, nullptr,
+      OfPart(monitor, 0.3, 1.0))
       .light;
   }
   MarchSettings marching;

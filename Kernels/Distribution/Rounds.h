@@ -49,9 +49,10 @@ public:
     for (bool left = true; left; ++round)
     {
       const std::vector<std::vector<OnItsWay>> parcels = this->Comm.Exchange<OnItsWay>(this->Neighbours, [&] {
-        const Monitor ofRound = OfPart(monitor, done, 0.5 * (1.0 + done));
+        const double next = this->Neighbours.empty() ? 1.0 : 0.5 * (1.0 + done); // how far the round goes
+        const Monitor ofRound = OfPart(monitor, done, next);
         std::vector<std::vector<OnItsWay>> gone = this->Sorted(follow(round, std::move(arrived), ofRound));
-        Report(monitor, done = 0.5 * (1.0 + done));
+        Report(monitor, done = next);
         return gone;
       });
       arrived.clear();

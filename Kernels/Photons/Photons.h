@@ -1,6 +1,7 @@
 #pragma once
 
 #include "Light/LightField.h"
+#include "Medium/Grid.h"
 
 #include <array>
 #include <cstdint>
@@ -108,5 +109,18 @@ struct PhotonLight
   std::size_t steps = 0;        ///< of the integrator
   double secondsMarching = 0.0; ///< from sorted photons to sums on the device
   double seconds = 0.0;         ///< from photons to light
+};
+
+/// Light of pilot photons in coarse cells that fill the medium's box (Pfeuti 2009, section 3.2.2). Arrays have x
+/// fastest.
+struct PilotLight
+{
+  Grid grid; ///< the coarse cells; where they do not divide the voxels evenly, some have a voxel more than others
+  int channels = 1;           ///< of fluence
+  std::vector<float> fluence; ///< W / length^2, the mean over each cell's voxels
+  std::vector<float> count;   ///< photons that crossed each cell, each once
+  /// 2 per cell: mean column and row that its photons start from, 0 where there is none; their standard deviation.
+  std::vector<float> originMean, originDeviation;
+  double seconds = 0.0;
 };
 }

@@ -112,8 +112,8 @@ PhotonLight WayRunner::March(Way way)
 {
   if (way == Way::Published)
   {
-    return MarchPublished(
-      this->Device, this->Scene.Medium(), this->Scene.Index(), this->Scene.octree.levels.data(), this->Scene.photons);
+    return MarchPublished(this->Device, Domain(this->Scene.Medium().grid), this->Scene.Medium(), this->Scene.Index(),
+      this->Scene.octree.levels.data(), this->Scene.photons);
   }
   return this->MarcherFor(way).March(this->Scene.photons);
 }

@@ -104,8 +104,8 @@ void TimeWays(const PhotonBench& bench)
     .Add("against", "plain")
     .Print();
   way("as published", [&] {
-    return MarchPublished(
-      device, scene.Medium(), scene.Index(), scene.octree.levels.data(), scene.photons, { 10, false });
+    return MarchPublished(device, Domain(scene.Medium().grid), scene.Medium(), scene.Index(),
+      scene.octree.levels.data(), scene.photons, { 10, false });
   });
   PaperScene straight = scene;
   std::fill(straight.voxels.ior.begin(), straight.voxels.ior.end(), 1.0f);
@@ -160,8 +160,8 @@ void AddLoss(Table& table, const char* where, PhotonScene& scene, Device& device
 {
   PackingLoss loss;
   const std::uint8_t* levels = scene.levels.empty() ? nullptr : scene.levels.data();
-  const PhotonLight published =
-    MarchPublished(device, scene.Medium(), scene.Index(), levels, photons, { 10, false }, &loss);
+  const PhotonLight published = MarchPublished(
+    device, Domain(scene.Medium().grid), scene.Medium(), scene.Index(), levels, photons, { 10, false }, &loss);
   const PhotonLight conservative = scene.March(device, photons);
   const double count = static_cast<double>(photons.size());
   const double givenUp = static_cast<double>(loss.givenUp) / static_cast<double>(loss.deposits);

@@ -4,7 +4,7 @@
 #include "Pieces/ControllerCommunicator.h"
 
 #include "LightPropagation/Distributed/PropagationInBlocks.h"
-#include "Photons/Distributed/PhotonsInBlocks.h"
+#include "Photons/Marching/PhotonMarcher.h"
 
 #include "vtkExtentTranslator.h"
 #include "vtkMPIController.h"
@@ -155,7 +155,7 @@ bool March(Communicator& communicator)
     const Waves block(blocks, ranks.Rank());
     MarchSettings settings;
     settings.maximumOrders = 0;
-    PhotonMarcherInBlocks marcher(*device, ranks, blocks, block.medium, { block.index.data(), 1 }, settings);
+    PhotonMarcher marcher(*device, Domain(ranks, blocks), block.medium, { block.index.data(), 1 }, settings);
     const PhotonLight light = marcher.March(ranks.Rank() == 0 ? photons : std::vector<Photon>());
     traffic = marcher.Traffic();
     return light;

@@ -4,7 +4,7 @@
 
 #include "Distribution/BoxExchange.h"
 #include "Distribution/RanksInThreads.h"
-#include "Photons/Distributed/PhotonsInBlocks.h"
+#include "Photons/Marching/PhotonMarcher.h"
 #include "Refraction/Octree/RefractionOctree.h"
 
 #include <gtest/gtest.h>
@@ -93,7 +93,7 @@ inline std::vector<tyndall::Photon> ShareOf(const std::vector<tyndall::Photon>& 
 }
 
 /// How a rank marches its share of the photons through its part of a scene.
-using MarchOfRank = std::function<tyndall::PhotonLight(tyndall::Communicator& communicator, const BlockOfScene& part,
+using MarchOfRank = std::function<tyndall::PhotonLight(const tyndall::Domain& domain, const BlockOfScene& part,
   const std::vector<tyndall::Photon>& share, tyndall::RoundsTraffic& traffic)>;
 
 /// Arrays of the blocks put together; all else must be the same on all ranks.
@@ -107,7 +107,7 @@ inline tyndall::PhotonLight LightOfAll(const PhotonScene& scene, const tyndall::
   tyndall::RunInThreads(ranks, [&](tyndall::Communicator& communicator) {
     const int rank = communicator.Rank();
     const BlockOfScene part(scene, partition.blocks[rank]);
-    found[rank] = march(communicator, part, ShareOf(photons, rank, ranks), handed[rank]);
+    found[rank] = march(tyndall::Domain(communicator, partition), part, ShareOf(photons, rank, ranks), handed[rank]);
   });
   tyndall::PhotonLight all = found[0];
   const std::size_t voxels = scene.medium.grid.VoxelCount();
@@ -138,10 +138,9 @@ inline tyndall::PhotonLight LightOfAll(tyndall::Device& device, const PhotonScen
   const tyndall::BlockPartition& partition, const std::vector<tyndall::Photon>& photons,
   std::vector<tyndall::RoundsTraffic>* traffic = nullptr)
 {
-  const auto march = [&](tyndall::Communicator& communicator, const BlockOfScene& part,
+  const auto march = [&](const tyndall::Domain& domain, const BlockOfScene& part,
                        const std::vector<tyndall::Photon>& share, tyndall::RoundsTraffic& handed) {
-    tyndall::PhotonMarcherInBlocks marcher(
-      device, communicator, partition, part.medium, part.Index(), scene.settings, part.Levels());
+    tyndall::PhotonMarcher marcher(device, domain, part.medium, part.Index(), scene.settings, part.Levels());
     tyndall::PhotonLight light = marcher.March(share);
     handed = marcher.Traffic();
     return light;

@@ -225,8 +225,8 @@ TEST_F(PhotonMarcherTest, AllPhotonsThroughOneVoxelLoseNothingAndThePublishedPac
     EXPECT_NEAR(light.light.balance.absorbed[0], -std::expm1(-0.6), 1e-5);
   }
   PackingLoss loss;
-  const PhotonLight published =
-    MarchPublished(this->GetDevice(), scene.Medium(), scene.Index(), nullptr, photons, { 10, false }, &loss);
+  const PhotonLight published = MarchPublished(this->GetDevice(), Domain(scene.medium.grid), scene.Medium(),
+    scene.Index(), nullptr, photons, { 10, false }, &loss);
   EXPECT_GT(loss.Relative(), 0.5);
   EXPECT_GT(BalanceError(published), 0.1);
   std::printf(
@@ -470,8 +470,10 @@ TEST_F(PhotonMarcherTest, RefusesLevelsThatTheGridCannotHave)
     }
   };
   expectRefusal([&] { scene.Marcher(this->GetDevice()); });
-  expectRefusal(
-    [&] { MarchPublished(this->GetDevice(), scene.Medium(), scene.Index(), scene.levels.data(), { photon }, {}); });
+  expectRefusal([&] {
+    MarchPublished(
+      this->GetDevice(), Domain(scene.medium.grid), scene.Medium(), scene.Index(), scene.levels.data(), { photon }, {});
+  });
 }
 
 TEST_F(PhotonMarcherTest, ReportsOftenWhereEveryVoxelBends)
@@ -513,8 +515,8 @@ TEST_F(PhotonMarcherTest, ThePublishedSchemeGivesTheSameLightAlongAnAxis)
   PhotonScene scene({ 16, 16, 16 }, 0.125, 1.0, 0.2f, 0.3f);
   const std::vector<Photon> photons = Beam(scene.medium.grid, { 0.0, 0.0, 1.0 }, 256 * 4, Sampler::Grid);
   const PhotonLight conservative = scene.March(this->GetDevice(), photons);
-  const PhotonLight published =
-    MarchPublished(this->GetDevice(), scene.Medium(), scene.Index(), nullptr, photons, { 10, false });
+  const PhotonLight published = MarchPublished(
+    this->GetDevice(), Domain(scene.medium.grid), scene.Medium(), scene.Index(), nullptr, photons, { 10, false });
   for (std::size_t i : { 100u, 1000u, 3000u })
   {
     EXPECT_NEAR(published.light.fluence[3 * i] / conservative.light.fluence[i], 1.0, 0.05);

@@ -4,6 +4,8 @@
 #include "DeviceTest.h"
 #include "PhotonWays.h"
 
+#include "Photons/Distributed/TurnsInBlocks.h"
+
 #include <algorithm>
 #include <array>
 #include <mutex>
@@ -46,8 +48,8 @@ protected:
     RunInThreads(ranks, [&](Communicator& communicator) {
       const int rank = communicator.Rank();
       const BlockOfScene part(scene, partition.blocks[rank]);
-      PhotonMarcherInBlocks marcher(
-        this->GetDevice(), communicator, partition, part.medium, part.Index(), scene.settings, part.Levels());
+      PhotonMarcher marcher(
+        this->GetDevice(), Domain(communicator, partition), part.medium, part.Index(), scene.settings, part.Levels());
       std::size_t turn = 0, meanwhiles = 0;
       TurnsInBlocks turns;
       turns.stretches = stretches;

@@ -26,7 +26,7 @@ std::vector<PhotonOnItsWay> WaitingPhotons::Follow(
   std::vector<PhotonOnItsWay> going = round == 0 ? std::exchange(this->Waiting, {}) : std::move(arrived);
   this->KeepThoseThatWait(turn, going); // who has come into this block with the last stretch of the turn
   this->March->GoAsFarAs(turn);
-  BlockMarch::Outcome outcome = std::exchange(this->Started, true)
+  MarchRun::Outcome outcome = std::exchange(this->Started, true)
     ? this->March->Resume(std::move(going), monitor)
     : this->March->Start(this->Starting.packed, this->Starting.marks, monitor);
   this->TellEnds(outcome.ends);

@@ -5,8 +5,8 @@
 #include "Distribution/BlockPartition.h"
 #include "Distribution/Communicator.h"
 #include "Distribution/Rounds.h"
-#include "Photons/Distributed/BlockMarch.h"
-#include "Photons/Distributed/PhotonShares.h"
+#include "Photons/Marching/MarchRun.h"
+#include "Photons/Marching/PhotonShares.h"
 
 #include <functional>
 #include <vector>
@@ -35,7 +35,7 @@ public:
   /// What is given must stay.
   /// @param march  null: the rank has no voxels
   /// @param ended  takes the ends of photons that have come to them, and of those that wait or have left the block
-  WaitingPhotons(Communicator& communicator, Rounds& rounds, const VoxelBox& own, BlockMarch* march,
+  WaitingPhotons(Communicator& communicator, Rounds& rounds, const VoxelBox& own, MarchRun* march,
     const StartingPhotons& starting, const Ended& ended)
     : Comm(communicator)
     , TheRounds(rounds)
@@ -61,7 +61,7 @@ private:
   Communicator& Comm;
   Rounds& TheRounds;
   const VoxelBox& Own;
-  BlockMarch* const March;
+  MarchRun* const March;
   const StartingPhotons& Starting;
   const Ended TellEnds;
   bool Started = false;

@@ -326,15 +326,6 @@ void MakeMaps(const std::vector<PilotPhotons>& pilots, const std::vector<PilotLi
 Importance FindImportance(PhotonMarcher& marcher, const Grid& grid, const Illumination& illumination,
   const ImportanceSettings& settings, const Monitor& monitor)
 {
-  const Gatherer gather = [&](const std::vector<Photon>& photons, const std::vector<std::array<int, 2>>& origins,
-                            const std::array<int, 3>& cells,
-                            const Monitor& ofPart) { return marcher.Gather(photons, origins, cells, ofPart); };
-  return FindImportance(gather, grid, illumination, settings, monitor);
-}
-
-Importance FindImportance(const Gatherer& gather, const Grid& grid, const Illumination& illumination,
-  const ImportanceSettings& settings, const Monitor& monitor)
-{
   const double start = ClockSeconds();
   Check(settings);
   Importance importance;
@@ -349,7 +340,7 @@ Importance FindImportance(const Gatherer& gather, const Grid& grid, const Illumi
   std::vector<PilotLight> lights;
   for (const PilotPhotons& pilot : pilots)
   {
-    lights.push_back(gather(pilot.photons, pilot.origins, settings.cells, monitor));
+    lights.push_back(marcher.Gather(pilot.photons, pilot.origins, settings.cells, monitor));
     Add(lights.back(), importance.pilot);
   }
   const std::vector<double> luminance = LuminanceOf(importance.pilot);

@@ -4,7 +4,6 @@
 #include "Photons/Importance/ImportanceMap.h"
 #include "Photons/Marching/PhotonMarcher.h"
 
-#include <functional>
 #include <string>
 
 namespace tyndall
@@ -44,14 +43,8 @@ struct Importance
 /// the map as a circle about the mean origin of its photons, as wide as they deviate from it; a 5x5 Gauss filter of
 /// variance 2 smooths the map, and a background is added.
 ///
-/// @param marcher  of the medium
+/// Collective. @param marcher  of the medium @param illumination, settings  the same on all ranks
 /// @throws InvalidInput where a setting is out of its range; Aborted
 Importance FindImportance(PhotonMarcher& marcher, const Grid& grid, const Illumination& illumination,
-  const ImportanceSettings& settings = {}, const Monitor& monitor = {});
-
-/// How pilot photons are gathered: PhotonMarcher::Gather, or that of ranks (PilotsInBlocks.h).
-using Gatherer = std::function<PilotLight(const std::vector<Photon>& photons,
-  const std::vector<std::array<int, 2>>& origins, const std::array<int, 3>& cells, const Monitor& monitor)>;
-Importance FindImportance(const Gatherer& gather, const Grid& grid, const Illumination& illumination,
   const ImportanceSettings& settings = {}, const Monitor& monitor = {});
 }

@@ -1,11 +1,16 @@
 #include "Photons/Importance/PilotGathering.h"
 
 #include "Device/Clock.h"
+#include "Distribution/Rounds.h"
 #include "Photons/Marching/MarchLaunch.h"
+#include "Photons/Marching/MarchRun.h"
+#include "Photons/Marching/PhotonShares.h"
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <string>
+#include <utility>
 
 namespace tyndall
 {
@@ -43,8 +48,8 @@ void PutMoments(std::int64_t count, std::int64_t sum, std::int64_t squares, floa
   mean = static_cast<float>(s / n);
   deviation = static_cast<float>(std::sqrt(std::max((static_cast<double>(squares) - s * s / n) / n, 0.0)));
 }
-}
 
+/// @throws InvalidInput where there are not as many origins as photons, or one is out of its range
 void CheckOrigins(const std::vector<Photon>& photons, const std::vector<std::array<int, 2>>& origins)
 {
   if (origins.size() != photons.size())
@@ -65,6 +70,7 @@ void CheckOrigins(const std::vector<Photon>& photons, const std::vector<std::arr
   }
 }
 
+/// Column and row that each photon set out from, as kernels sum them up.
 std::vector<cl_ulong> MarksOfOrigins(const std::vector<std::array<int, 2>>& origins, const PackedPhotons& packed)
 {
   std::vector<cl_ulong> marks;
@@ -76,6 +82,9 @@ std::vector<cl_ulong> MarksOfOrigins(const std::vector<std::array<int, 2>>& orig
   return marks;
 }
 
+/// Cells without light.
+/// @param cells  asked for, along each axis; more than voxels are cut to them
+/// @throws InvalidInput where there are none
 PilotLight DarkPilotLight(const Grid& voxels, const std::array<int, 3>& cells, int channels)
 {
   PilotLight light;
@@ -93,6 +102,24 @@ PilotLight DarkPilotLight(const Grid& voxels, const std::array<int, 3>& cells, i
   light.originDeviation.resize(2 * count);
   return light;
 }
+
+/// What pilot photons leave in cells.
+class PilotSums
+{
+public:
+  /// @param cellOfVoxel  MarchMedium::Cells; must stay
+  PilotSums(
+    const MarchMedium& medium, const PackedPhotons& packed, const Buffer<cl_int>& cellOfVoxel, std::size_t cells);
+  PilotSums(const PilotSums&) = delete;
+  PilotSums& operator=(const PilotSums&) = delete;
+
+  const MarchSums& Target() const { return this->Into; }
+  std::vector<std::int64_t> AddUp() const; ///< NumbersOfCell of each cell
+
+private:
+  MarchSums Into;
+  Buffer<cl_long> Memory;
+};
 
 PilotSums::PilotSums(
   const MarchMedium& medium, const PackedPhotons& packed, const Buffer<cl_int>& cellOfVoxel, std::size_t cells)
@@ -127,6 +154,8 @@ std::size_t NumbersOfCell(const PackedPhotons& packed)
   return static_cast<std::size_t>(packed.channels + OriginNumbers);
 }
 
+/// The light that such sums are.
+/// @param unit  W length, of one unit of power times path
 void PutCells(const std::vector<std::int64_t>& sums, const Grid& voxels, const PackedPhotons& packed, double unit,
   PilotLight& light)
 {
@@ -158,23 +187,61 @@ void PutCells(const std::vector<std::int64_t>& sums, const Grid& voxels, const P
   }
 }
 
+/// What one rank's photons leave, on their ways through its block.
+struct PilotMarch
+{
+  PilotMarch(
+    const MarchMedium& medium, const PackedPhotons& packed, const Buffer<cl_int>& cellOfVoxel, std::size_t cells)
+    : sums(medium, packed, cellOfVoxel, cells)
+    , run(medium, this->sums.Target(), packed)
+  {
+  }
+
+  const PilotSums sums;
+  MarchRun run;
+};
+}
+
 PilotLight PilotGathering::Gather(const std::vector<Photon>& photons, const std::vector<std::array<int, 2>>& origins,
   const std::array<int, 3>& cells, const Monitor& monitor)
 {
   const double start = ClockSeconds();
-  const MarchMedium& medium = this->TheMedium;
-  CheckOrigins(photons, origins);
-  const PackedPhotons packed = Pack(photons, medium.grid, medium.channels == 3, medium.EventLimit());
-  PilotLight light = DarkPilotLight(medium.grid, cells, medium.traits.ColoursOf(packed));
-  if (this->Cells != light.grid.size)
-  {
-    this->CellOfVoxel = medium.Cells(light.grid.size);
-    this->Cells = light.grid.size;
-  }
-  const PilotSums sums(medium, packed, this->CellOfVoxel, light.grid.VoxelCount());
-  const PhotonsOnDevice onDevice(medium.device, packed, MarksOfOrigins(origins, packed));
-  MarchPhotons(medium, packed, onDevice, sums.Target(), monitor);
-  PutCells(sums.AddUp(), medium.grid, packed, packed.unit * medium.Diagonal(), light);
+  const Domain& domain = this->TheDomain;
+  const Grid& whole = domain.Whole();
+  PackedPhotons all, own;
+  PilotLight light;
+  std::unique_ptr<PilotMarch> pilots;
+  domain.Collective([&] {
+    CheckOrigins(photons, origins);
+    all = Pack(photons, whole, this->Traits.Channels(this->Settings) == 3, MarchEventLimit(whole, this->Settings));
+    light = DarkPilotLight(whole, cells, this->Traits.ColoursOf(all));
+    if (!this->Through)
+    {
+      return;
+    }
+    if (this->Cells != light.grid.size)
+    {
+      this->CellOfVoxel = this->Through->Cells(light.grid.size);
+      this->Cells = light.grid.size;
+    }
+    own = ThoseIn(domain.Own(), whole, all);
+    pilots = std::make_unique<PilotMarch>(*this->Through, own, this->CellOfVoxel, light.grid.VoxelCount());
+  });
+  Rounds rounds(domain.Comm(), domain.Partition());
+  rounds.UntilAllEnd<PhotonOnItsWay>(
+    [&](int round, std::vector<PhotonOnItsWay>&& arrived, const Monitor& ofRound) {
+      if (!pilots)
+      {
+        return std::vector<PhotonOnItsWay>();
+      }
+      return round == 0 ? pilots->run.Start(own, MarksOfOrigins(origins, own), ofRound).gone
+                        : pilots->run.Resume(std::move(arrived), ofRound).gone;
+    },
+    monitor);
+  std::vector<std::int64_t> sums(light.grid.VoxelCount() * NumbersOfCell(all), 0);
+  domain.Collective([&] { sums = pilots ? pilots->sums.AddUp() : sums; });
+  const double diagonal = std::hypot(whole.spacing[0], whole.spacing[1], whole.spacing[2]);
+  PutCells(SumExactly(domain.Comm(), sums), whole, all, all.unit * diagonal, light);
   light.seconds = ClockSeconds() - start;
   return light;
 }

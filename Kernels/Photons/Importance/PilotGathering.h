@@ -1,65 +1,42 @@
 #pragma once
 
 #include "Device/Monitor.h"
-#include "Photons/Importance/PilotLight.h"
-#include "Photons/Marching/MarchLaunch.h"
+#include "Distribution/Domain.h"
 #include "Photons/Marching/MarchMedium.h"
+#include "Photons/Photons.h"
 
 #include <array>
-#include <cstdint>
 #include <vector>
 
 namespace tyndall
 {
-/// @throws InvalidInput where there are not as many origins as photons, or one is out of its range
-void CheckOrigins(const std::vector<Photon>& photons, const std::vector<std::array<int, 2>>& origins);
-/// Column and row that each photon set out from, as kernels sum them up.
-std::vector<cl_ulong> MarksOfOrigins(const std::vector<std::array<int, 2>>& origins, const PackedPhotons& packed);
-
-/// Cells without light.
-/// @param cells  asked for, along each axis; more than voxels are cut to them
-/// @throws InvalidInput where there are none
-PilotLight DarkPilotLight(const Grid& voxels, const std::array<int, 3>& cells, int channels);
-
-/// What pilot photons leave in cells.
-class PilotSums
-{
-public:
-  /// @param cellOfVoxel  MarchMedium::Cells; must stay
-  PilotSums(
-    const MarchMedium& medium, const PackedPhotons& packed, const Buffer<cl_int>& cellOfVoxel, std::size_t cells);
-  PilotSums(const PilotSums&) = delete;
-  PilotSums& operator=(const PilotSums&) = delete;
-
-  const MarchSums& Target() const { return this->Into; }
-  std::vector<std::int64_t> AddUp() const; ///< NumbersOfCell of each cell
-
-private:
-  MarchSums Into;
-  Buffer<cl_long> Memory;
-};
-std::size_t NumbersOfCell(const PackedPhotons& packed);
-
-/// The light that such sums are.
-/// @param unit  W length, of one unit of power times path
-void PutCells(const std::vector<std::int64_t>& sums, const Grid& voxels, const PackedPhotons& packed, double unit,
-  PilotLight& light);
-
-/// What PhotonMarcher::Gather does. Keeps between calls which voxels belong to which cell.
+/// Gathers pilot photons in coarse cells (PhotonMarcher::Gather). Each rank starts those that set off in its block;
+/// what they leave in cells, whole numbers, is summed over ranks. Keeps between calls which voxels belong to which
+/// cell.
 class PilotGathering
 {
 public:
-  /// @param medium  must outlive this
-  explicit PilotGathering(const MarchMedium& medium)
-    : TheMedium(medium)
+  /// What is given must outlive this.
+  /// @param through  this rank's block; null: it has no voxels
+  /// @param traits   of all blocks
+  PilotGathering(
+    const Domain& domain, const MarchMedium* through, const MarchTraits& traits, const MarchSettings& settings)
+    : TheDomain(domain)
+    , Through(through)
+    , Traits(traits)
+    , Settings(settings)
   {
   }
 
+  /// Collective. @param photons, origins  the same on all ranks @return the light of the whole grid, on each rank
   PilotLight Gather(const std::vector<Photon>& photons, const std::vector<std::array<int, 2>>& origins,
     const std::array<int, 3>& cells, const Monitor& monitor);
 
 private:
-  const MarchMedium& TheMedium;
+  const Domain& TheDomain;
+  const MarchMedium* Through;
+  const MarchTraits& Traits;
+  const MarchSettings& Settings;
   std::array<int, 3> Cells = {}; ///< along each axis, that CellOfVoxel is of
   Buffer<cl_int> CellOfVoxel;
 };

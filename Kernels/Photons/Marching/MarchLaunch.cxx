@@ -12,8 +12,7 @@ namespace tyndall
 {
 namespace
 {
-constexpr int PrivateSumsAtMost = 8; ///< beyond, adding up the copies costs more than atomics do
-constexpr double SecondsPerLaunch = 0.1;
+constexpr int PrivateSumsAtMost = 8;    ///< beyond, adding up the copies costs more than atomics do
 constexpr double EventsPerLaunch = 4e7; ///< of straight ways, which two cores follow in less
 constexpr double FirstBent = 16384;     ///< photons on bent ways in the first launch
 

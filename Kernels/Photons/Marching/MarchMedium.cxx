@@ -76,28 +76,27 @@ MarchMedium::MarchMedium(Device& onDevice, const Medium& medium, const MarchSett
 }
 
 MarchMedium::MarchMedium(Device& onDevice, const Medium& medium, const Field& ior, const MarchSettings& with,
-  const FilledBricks& filled, const std::uint8_t* levels)
-  : MarchMedium(onDevice, medium, with, MarchTraitsOf(medium, ior, filled),
-      { medium.grid, { { 0, 0, 0 }, medium.grid.size }, { { 0, 0, 0 }, medium.grid.size } }, levels != nullptr)
+  const MarchTraits& ofAll, const MarchedPart& ofGrid, const FilledBricks* filled, const std::uint8_t* levels)
+  : MarchMedium(onDevice, medium, with, ofAll, ofGrid, levels != nullptr)
 {
-  this->bricks = BricksOf(this->device, medium.grid, filled, with, this->bends, this->traits.scatters);
+  if (filled && !this->IsBlock())
+  {
+    this->bricks = BricksOf(this->device, medium.grid, *filled, with, this->bends, this->traits.scatters);
+  }
   if (this->bricks.AreThere())
   {
     this->PackBricks(medium);
+  }
+  else if (this->IsBlock() && this->hasLevels)
+  {
+    const std::vector<std::uint8_t> single(this->block.known.VoxelCount(), 0); // until SetNodes
+    this->PackVoxels(medium, ior, single.data());
   }
   else
   {
     this->PackVoxels(medium, ior, levels);
   }
   this->device.Finish();
-}
-
-MarchMedium::MarchMedium(Device& onDevice, const Medium& medium, const Field& ior, const MarchSettings& with,
-  const MarchTraits& ofAll, const MarchedPart& ofGrid, bool octree)
-  : MarchMedium(onDevice, medium, with, ofAll, ofGrid, octree)
-{
-  const std::vector<std::uint8_t> single(this->hasLevels ? this->block.known.VoxelCount() : 0, 0); // until SetNodes
-  this->PackVoxels(medium, ior, single.data());
 }
 
 std::vector<std::uint8_t> MarchMedium::OwnNodes(const std::uint8_t* levels) const

@@ -47,16 +47,15 @@ int MarchEventLimit(const Grid& whole, const MarchSettings& settings);
 class MarchMedium
 {
 public:
-  /// @param ior, levels  as PhotonMarcher has them, and checked
-  /// @param filled       the medium's bricks
-  MarchMedium(Device& device, const Medium& medium, const Field& ior, const MarchSettings& settings,
-    const FilledBricks& filled, const std::uint8_t* levels);
-  /// Of a block of the whole grid. Voxel by voxel.
-  /// @param medium  of block.own
+  /// A rank's block of a grid, or all of it.
+  /// @param medium  of block.own, and checked
   /// @param ior     of block.known
-  /// @param octree  whether steps are those of an octree: SetNodes is to follow
+  /// @param traits  of all blocks
+  /// @param filled  the medium's bricks: without them light is kept voxel by voxel, as in a block of a larger grid
+  /// @param levels  of the octree in block.own; null: there is none. Of a larger grid: SetNodes is to follow
   MarchMedium(Device& device, const Medium& medium, const Field& ior, const MarchSettings& settings,
-    const MarchTraits& traits, const MarchedPart& block, bool octree = false);
+    const MarchTraits& traits, const MarchedPart& block, const FilledBricks* filled = nullptr,
+    const std::uint8_t* levels = nullptr);
 
   /// Of a block: whether n varies in each of its voxels, and then in which node of the octree it is (PhotonSteps.cl).
   /// @param levels  of the block's voxels

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <iterator>
 #include <string>
 
 namespace tyndall
@@ -43,6 +44,29 @@ std::vector<cl_ulong> Marks(const std::vector<Photon>& photons, const PackedPhot
     marks.push_back((cl_ulong(1) << CountShift) + static_cast<cl_ulong>(std::min(units + 0.5, WeightUnits)));
   }
   return marks;
+}
+
+/// Replaces this rank's powers and numbers by their sums over all ranks.
+void SumUp(const Domain& domain, const std::vector<Rgb*>& powers, const std::vector<double*>& numbers)
+{
+  std::vector<double> values;
+  for (const Rgb* power : powers)
+  {
+    values.insert(values.end(), power->begin(), power->end());
+  }
+  std::transform(
+    numbers.begin(), numbers.end(), std::back_inserter(values), [](const double* number) { return *number; });
+  values = domain.Sum(values);
+  auto value = values.cbegin();
+  for (Rgb* power : powers)
+  {
+    std::copy_n(value, 3, power->begin());
+    value += 3;
+  }
+  for (double* number : numbers)
+  {
+    *number = *value++;
+  }
 }
 
 void CheckCounted(std::size_t photons)
@@ -186,14 +210,6 @@ void MarchedLight::Finish(
   }
 }
 
-CountedPhotons::CountedPhotons(const std::vector<Photon>& photons, const PackedPhotons& packed, bool counts)
-{
-  if (counts)
-  {
-    *this = CountedPhotons(photons, packed, LargestWeight(photons), photons.size() - packed.missed);
-  }
-}
-
 CountedPhotons::CountedPhotons(
   const std::vector<Photon>& some, const PackedPhotons& packed, float largestWeight, std::size_t count)
 {
@@ -244,6 +260,34 @@ void Tally(const PackedPhotons& packed, const std::vector<cl_int>& ends, PhotonL
     }
     balance.leftOver[c] += static_cast<double>(out[StillGoing][c]) * packed.unit;
   }
+}
+
+void AddUpTallies(const Domain& domain, PhotonLight& result)
+{
+  EnergyBalance& balance = result.light.balance;
+  std::vector<Rgb*> powers = { &balance.absorbed, &balance.escaped, &balance.leftOver, &result.scattered };
+  for (Rgb& face : result.light.facePowerOut)
+  {
+    powers.push_back(&face);
+  }
+  double deposits = static_cast<double>(result.deposits), steps = static_cast<double>(result.steps);
+  SumUp(domain, powers, { &deposits, &steps });
+  result.deposits = static_cast<std::size_t>(deposits);
+  result.steps = static_cast<std::size_t>(steps);
+}
+
+void AddUpScattered(const Domain& domain, PhotonLight& result)
+{
+  EnergyBalance& balance = result.light.balance;
+  std::vector<Rgb*> powers = { &balance.entered, &balance.absorbed, &balance.escaped, &balance.leftOver,
+    &result.exchanged };
+  for (Rgb& face : result.light.facePowerOut)
+  {
+    powers.push_back(&face);
+  }
+  double scatterings = static_cast<double>(result.scatterings);
+  SumUp(domain, powers, { &scatterings });
+  result.scatterings = static_cast<std::uint64_t>(scatterings);
 }
 
 void PutIntoColours(const PackedPhotons& packed, int colours, PhotonLight& result)

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "Device/Buffer.h"
+#include "Distribution/Domain.h"
 #include "Photons/Marching/MarchLaunch.h"
 #include "Photons/Marching/MarchMedium.h"
 #include "Photons/Photons.h"
@@ -48,11 +49,9 @@ private:
 struct CountedPhotons
 {
   CountedPhotons() = default;
-  /// @param packed  those of them that marks are wanted of
-  /// @param counts  whether they do; else there are no marks
+  /// @param packed  those of `some` that marks are wanted of
+  /// @param largestWeight, count  of the photons of all ranks
   /// @throws InvalidInput where there are more than voxels can count
-  CountedPhotons(const std::vector<Photon>& photons, const PackedPhotons& packed, bool counts);
-  /// The same of some of them. @param largestWeight, count  of all
   CountedPhotons(const std::vector<Photon>& some, const PackedPhotons& packed, float largestWeight, std::size_t count);
   static float LargestWeight(const std::vector<Photon>& photons);
 
@@ -64,6 +63,11 @@ struct CountedPhotons
 /// units, whose sums do not depend on the order of the photons. Those that go on elsewhere do not count.
 /// @param ends  PhotonEnd and powers of each
 void Tally(const PackedPhotons& packed, const std::vector<cl_int>& ends, PhotonLight& result);
+
+/// Sums over all ranks of what this rank's photons became: up to where they were first scattered, and beyond.
+/// Collective.
+void AddUpTallies(const Domain& domain, PhotonLight& result);
+void AddUpScattered(const Domain& domain, PhotonLight& result);
 
 /// Arrays and tallies of photons of `packed.channels` as those of the channels that the light has, or of one where
 /// `colours` is 1.

@@ -1,148 +1,418 @@
 #include "Photons/Marching/PhotonMarcher.h"
 
 #include "Device/Clock.h"
+#include "Device/Errors.h"
+#include "Device/Sizes.h"
+#include "Distribution/BoxExchange.h"
+#include "Distribution/SharedMedium.h"
 #include "LightPropagation/Convergence.h"
+#include "Photons/Distributed/TurnsInBlocks.h"
 #include "Photons/Importance/PilotGathering.h"
 #include "Photons/Marching/MarchedBatches.h"
 #include "Photons/Marching/MarchedLight.h"
-#include "Photons/Marching/MarchLaunch.h"
+#include "Photons/Marching/MarchInput.h"
+#include "Photons/Marching/MarchRun.h"
 #include "Photons/Marching/PhotonPaths.h"
+#include "Photons/Marching/PhotonShares.h"
 #include "Photons/Scattering/ScatteredChannels.h"
+#include "Photons/Scattering/ScatteringRun.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <functional>
+#include <numeric>
 #include <string>
+#include <utility>
 
 namespace tyndall
 {
+namespace
+{
+/// Voxels round a block whose index has a part in the ways of photons in it (numerics.md, Eq. (99f)): three of each
+/// spline's, and those of the places that the integrator looks at before it goes there. Beyond, the index counts as
+/// constant.
+/// @param octree  whether steps are those of an octree
+int ReachOfIndex(const MarchSettings& settings, bool octree)
+{
+  constexpr int OfSpline = 3;
+  if (settings.order == 1)
+  {
+    return OfSpline;
+  }
+  const double steps = 0.5 * (settings.order == 2 ? LeapfrogLooksAhead : YoshidaLooksAhead) * settings.stepSize;
+  const double ahead = octree && settings.order == 4 ? std::max(steps, 1.0 * (1 << YoshidaLevel)) : steps;
+  return OfSpline + 1 + static_cast<int>(ahead); // also from a voxel's upper wall
+}
+
+void RequireSame(const Domain& domain, const MarchSettings& settings)
+{
+  tyndall::RequireSame(domain.Comm(), "settings", true,
+    { 1.0 * settings.order, settings.stepSize, 1.0 * settings.meanDirection, 1.0 * settings.counts,
+      1.0 * settings.maximumOrders, 1.0 * settings.leaveOut, static_cast<double>(settings.seed),
+      1.0 * settings.errorBatches, 1.0 * settings.batches });
+}
+
+/// Whether some rank has a part of the grid only: then photons go from block to block. The same on all ranks.
+bool IsDivided(const Domain& domain)
+{
+  const std::vector<VoxelBox>& blocks = domain.Partition().blocks;
+  return std::any_of(blocks.begin(), blocks.end(),
+    [&](const VoxelBox& block) { return block.VoxelCount() > 0 && block.size != domain.Whole().size; });
+}
+}
+
 class PhotonMarcher::Implementation
 {
 public:
-  Implementation(Device& device, const Medium& medium, const FilledBricks& filled, const Field& ior,
-    const MarchSettings& settings, const std::uint8_t* levels)
-    : medium(device, medium, ior, settings, filled, levels)
-    , pilots(this->medium)
-    , Sums(this->medium)
-  {
-    this->Sums.Share(1, 1); // says what the device lacks
-    if (settings.maximumOrders != 1 && this->medium.traits.scatters)
-    {
-      this->Scattering = std::make_unique<ScatteredChannels>(device, this->medium, medium, ior, levels);
-    }
-  }
+  Implementation(Device& device, const Domain& domain, const Medium& medium, const Field& ior,
+    const MarchSettings& settings, const std::uint8_t* levels);
 
-  /// What a march in turns is given, and gives.
-  struct Turns
-  {
-    const MarchTurns& how;
-    TurnTimes& times;
-  };
-  PhotonLight March(const std::vector<Photon>& photons, const PhotonNumbers& numbers, const Monitor& monitor,
-    const Turns* turns = nullptr);
-  /// @throws InvalidInput where light is kept by bricks
-  void RequireVoxels(const char* what) const
-  {
-    if (this->medium.bricks.AreThere())
-    {
-      throw InvalidInput(std::string(what) + " voxel by voxel. Do not ask for light by bricks.");
-    }
-  }
-  PhotonLight MarchInBatches(const std::vector<Photon>& photons, const Monitor& monitor);
+  /// How photons get to where they are first scattered, and what became of them there.
+  using Way = std::function<void(
+    const StartingPhotons& starting, const MarchSums& target, PhotonLight& result, const Monitor& monitor)>;
+  PhotonLight March(const std::vector<Photon>& share, const Way& way, const Monitor& monitor);
+  void AtOnce(
+    const StartingPhotons& starting, const MarchSums& target, PhotonLight& result, const Monitor& monitor) const;
+  void ByTurns(const StartingPhotons& starting, const MarchSums& target, PhotonLight& result, const MarchTurns& turns,
+    TurnTimes& times, const Monitor& monitor) const;
+  void ByTurns(const StartingPhotons& starting, const MarchSums& target, PhotonLight& result,
+    const TurnsInBlocks& turns, const Monitor& monitor) const;
+  std::vector<PhotonPath> Paths(const std::vector<Photon>& share, const std::vector<std::size_t>& chosen) const;
+  /// @throws InvalidInput where turns are not possible, or light is kept by bricks
+  void RequireTurns() const;
+  void RequireVoxels(const char* what) const;
 
-  MarchMedium medium;
-  PilotGathering pilots;
+  const Domain TheDomain;
+  const MarchSettings Settings;
+  RoundsTraffic Handed; ///< of the last march
+  std::unique_ptr<PilotGathering> Pilots;
 
 private:
-  void MarchTo(const MarchSums& target, const PackedPhotons& packed, const PhotonsOnDevice& photons,
-    const LightField& light, const Turns* turns, const Monitor& monitor);
+  MarchTraits TraitsOfAllRanks(const Medium& medium, const Field& ior, const FilledBricks& filled) const;
+  VoxelBox KnownOf(const VoxelBox& block, int reach) const;
+  Field IndexAround(const Field& ior, int reach, std::vector<float>& values) const;
+  void ShareNodes(const std::uint8_t* levels);
+  void PrepareScattering(const Medium& medium, const Field& index, const std::uint8_t* levels);
+  PhotonLight MarchThese(
+    const std::vector<Photon>& share, const PhotonNumbers& numbers, const Way& way, const Monitor& monitor);
+  PhotonLight MarchInBatches(
+    const std::vector<Photon>& share, const PlaceOfShare& place, const Way& way, const Monitor& monitor);
+  void FollowUncollided(const StartingPhotons& starting, const Way& way, PhotonLight& result, const Monitor& monitor);
+  void AddScattered(const PackedPhotons& packed, PhotonLight& result, const Monitor& monitor) const;
+  ScatteredPhotons FollowScattered(const PhotonScattering* in, PackedPhotons photons,
+    const PhotonScattering::Settings& settings, const Monitor& monitor) const;
+  cl::Kernel Show(
+    const StartingPhotons& starting, const MarchSums& target, const PhotonLight& result, Buffer<float>& fluence) const;
 
-  MarchedLight Sums;
+  Device& TheDevice;
+  const bool Divided;                            ///< the grid, among ranks
+  MarchTraits Traits;                            ///< of all ranks
+  std::unique_ptr<BrickedBytes> Nodes;           ///< of the octree of a divided grid; null: there is none
+  std::unique_ptr<MarchMedium> Through;          ///< null without voxels
+  std::unique_ptr<MarchedLight> Light;           ///< likewise
   std::unique_ptr<ScatteredChannels> Scattering; ///< null: photons are followed to where they are first scattered
+  std::unique_ptr<Rounds> TheRounds;             ///< of a march
 };
 
-/// All at once, or in turns between which the light so far is shown.
-void PhotonMarcher::Implementation::MarchTo(const MarchSums& target, const PackedPhotons& packed,
-  const PhotonsOnDevice& photons, const LightField& light, const Turns* turns, const Monitor& monitor)
+PhotonMarcher::Implementation::Implementation(Device& device, const Domain& domain, const Medium& medium,
+  const Field& ior, const MarchSettings& settings, const std::uint8_t* levels)
+  : TheDomain(domain)
+  , Settings(settings)
+  , TheDevice(device)
+  , Divided(IsDivided(domain))
 {
-  if (!turns)
+  const bool octree = domain.Any(levels != nullptr);
+  FilledBricks filled;
+  domain.Collective([&] {
+    filled = CheckMarchedMedium(domain, medium, ior, levels, octree);
+    Check(settings);
+    Require(!this->Divided || settings.sums != MarchSettings::Sums::Unsafe,
+      "A medium that is divided among ranks is not marched through with Unsafe sums.");
+  });
+  RequireSameMedium(domain, medium, ior);
+  RequireSame(domain, settings);
+  this->Traits = this->TraitsOfAllRanks(medium, ior, filled);
+  const bool bends = !settings.leaveOut || this->Traits.index.Varies();
+  const int reach = bends ? ReachOfIndex(settings, octree) : 0;
+  std::vector<float> around;
+  const Field index = this->IndexAround(ior, reach, around);
+  domain.Collective([&] {
+    if (!domain.IsEmpty())
+    {
+      const MarchedPart block = { domain.Whole(), domain.Own(), this->KnownOf(domain.Own(), reach) };
+      this->Through =
+        std::make_unique<MarchMedium>(device, medium, index, settings, this->Traits, block, &filled, levels);
+    }
+  });
+  if (octree && bends && this->Divided)
   {
-    MarchPhotons(this->medium, packed, photons, target, monitor);
-    return;
+    this->ShareNodes(levels);
   }
-  const std::size_t voxels = this->medium.grid.VoxelCount();
-  const Buffer<float> fluence(
-    this->medium.device, voxels * static_cast<std::size_t>(light.channels), "fluence of photons on their way");
-  const cl::Kernel show = this->Sums.Show(packed, target, light, fluence);
-  turns->how.begin(packed, light.channels);
-  turns->times = MarchInTurns(
-    this->medium, packed, photons, target, turns->how,
+  domain.Collective([&] {
+    if (this->Through)
+    {
+      this->Light = std::make_unique<MarchedLight>(*this->Through);
+      this->Light->Share(1, 1); // throws where the device lacks something
+    }
+  });
+  if (settings.maximumOrders != 1 && this->Traits.scatters)
+  {
+    this->PrepareScattering(medium, index, levels);
+  }
+  this->Pilots = std::make_unique<PilotGathering>(this->TheDomain, this->Through.get(), this->Traits, this->Settings);
+}
+
+MarchTraits PhotonMarcher::Implementation::TraitsOfAllRanks(
+  const Medium& medium, const Field& ior, const FilledBricks& filled) const
+{
+  const Domain& domain = this->TheDomain;
+  MarchTraits traits = domain.IsEmpty() ? MarchTraits() : MarchTraitsOf(medium, ior, filled);
+  static_cast<MediumTraits&>(traits) = TraitsOfAll(domain.Comm(), traits);
+  traits.coloured = domain.Any(traits.coloured);
+  traits.index = IndexRangeOfAll(domain, traits.index);
+  return traits;
+}
+
+/// The voxels whose index a rank needs.
+VoxelBox PhotonMarcher::Implementation::KnownOf(const VoxelBox& block, int reach) const
+{
+  return block.VoxelCount() > 0 ? Grown(block, reach, this->TheDomain.Whole()) : block;
+}
+
+/// Their index, from all ranks; null values where nothing depends on it.
+/// @param reach  0: nothing does
+/// @param values  holds it, where the grid is divided
+Field PhotonMarcher::Implementation::IndexAround(const Field& ior, int reach, std::vector<float>& values) const
+{
+  const Domain& domain = this->TheDomain;
+  if (!this->Divided)
+  {
+    return ior;
+  }
+  if (reach == 0)
+  {
+    return {};
+  }
+  std::vector<VoxelBox> known;
+  for (const VoxelBox& block : domain.Partition().blocks)
+  {
+    known.push_back(this->KnownOf(block, reach));
+  }
+  std::vector<float> own(domain.Own().VoxelCount(), 1.0f);
+  if (ior.values)
+  {
+    std::copy_n(ior.values, own.size(), own.begin());
+  }
+  values = ValuesInBox(domain.Comm(), domain.Partition(), known, own, 1);
+  return { values.empty() ? nullptr : values.data(), 1 };
+}
+
+/// The nodes of all ranks' octree levels, on each.
+void PhotonMarcher::Implementation::ShareNodes(const std::uint8_t* levels)
+{
+  const Domain& domain = this->TheDomain;
+  std::vector<std::uint8_t> own;
+  domain.Collective([&] { own = this->Through ? this->Through->OwnNodes(levels) : own; });
+  this->Nodes = std::make_unique<BrickedBytes>(BytesOfAll(domain.Comm(), domain.Partition(), own));
+  domain.Collective([&] {
+    if (this->Through)
+    {
+      this->Through->SetNodes(*this->Nodes);
+    }
+  });
+}
+
+void PhotonMarcher::Implementation::PrepareScattering(
+  const Medium& medium, const Field& index, const std::uint8_t* levels)
+{
+  const Domain& domain = this->TheDomain;
+  const bool has = !domain.IsEmpty(), varies = has && medium.phase.Varies();
+  const auto cosine = [&](int c) { return has && !varies ? medium.phase.MeanCosine(0, c) : 0.0; };
+  tyndall::RequireSame(domain.Comm(), "g", has, { varies ? 1.0 : 0.0, cosine(0), cosine(1), cosine(2) });
+  const double part = -domain.Max(has ? -ScatteringStepPart(index, this->Through->block.known.size) : -1.0);
+  const bool coloured = domain.Any(this->Traits.coloured || (has && medium.phase.HasColour()));
+  domain.Collective([&] {
+    this->Scattering = std::make_unique<ScatteredChannels>(this->TheDevice,
+      ScatteredChannels::Block{
+        this->Through.get(), medium, index, levels, this->Settings, part, coloured, this->Nodes.get() });
+  });
+}
+
+void PhotonMarcher::Implementation::RequireTurns() const
+{
+  const MarchSettings& settings = this->Settings;
+  Require(settings.maximumOrders == 1 && !settings.batches && settings.errorBatches == 0,
+    "Photons march in turns up to where they are first scattered, and without batches.");
+  this->RequireVoxels("Photons march in turns");
+}
+
+void PhotonMarcher::Implementation::RequireVoxels(const char* what) const
+{
+  Require(!this->Through || !this->Through->bricks.AreThere(),
+    std::string(what) + " voxel by voxel. Do not ask for light by bricks.");
+}
+
+void PhotonMarcher::Implementation::AtOnce(
+  const StartingPhotons& starting, const MarchSums& target, PhotonLight& result, const Monitor& monitor) const
+{
+  std::unique_ptr<MarchRun> run;
+  this->TheDomain.Collective(
+    [&] { run = this->Through ? std::make_unique<MarchRun>(*this->Through, target, starting.packed) : nullptr; });
+  this->TheRounds->UntilAllEnd<PhotonOnItsWay>(
+    [&](int round, std::vector<PhotonOnItsWay>&& arrived, const Monitor& ofRound) {
+      MarchRun::Outcome outcome;
+      if (run)
+      {
+        outcome =
+          round == 0 ? run->Start(starting.packed, starting.marks, ofRound) : run->Resume(std::move(arrived), ofRound);
+      }
+      Tally(starting.packed, outcome.ends, result);
+      return std::move(outcome.gone);
+    },
+    monitor);
+}
+
+/// A kernel that makes fluence of the sums so far.
+cl::Kernel PhotonMarcher::Implementation::Show(
+  const StartingPhotons& starting, const MarchSums& target, const PhotonLight& result, Buffer<float>& fluence) const
+{
+  fluence =
+    Buffer<float>(this->TheDevice, this->TheDomain.Own().VoxelCount() * static_cast<std::size_t>(result.light.channels),
+      "fluence of photons on their way");
+  return this->Light->Show(starting.packed, target, result.light, fluence);
+}
+
+void PhotonMarcher::Implementation::ByTurns(const StartingPhotons& starting, const MarchSums& target,
+  PhotonLight& result, const MarchTurns& turns, TurnTimes& times, const Monitor& monitor) const
+{
+  Buffer<float> fluence;
+  const cl::Kernel show = this->Show(starting, target, result, fluence);
+  const PhotonsOnDevice onDevice(this->TheDevice, starting.packed, starting.marks);
+  const std::array<int, 3>& size = this->TheDomain.Own().size;
+  turns.begin(starting.packed, result.light.channels);
+  times = MarchInTurns(
+    *this->Through, starting.packed, onDevice, target, turns,
     [&](const cl::CommandQueue& queue) -> const Buffer<float>& {
-      queue.enqueueNDRangeKernel(
-        show, cl::NullRange, cl::NDRange(voxels / static_cast<std::size_t>(this->medium.grid.size[0])));
+      queue.enqueueNDRangeKernel(show, cl::NullRange, cl::NDRange(Count(size[1]) * Count(size[2])));
+      return fluence;
+    },
+    monitor);
+  Tally(starting.packed, onDevice.ends.Read(), result);
+}
+
+void PhotonMarcher::Implementation::ByTurns(const StartingPhotons& starting, const MarchSums& target,
+  PhotonLight& result, const TurnsInBlocks& turns, const Monitor& monitor) const
+{
+  Buffer<float> fluence;
+  cl::Kernel show;
+  std::unique_ptr<MarchRun> run;
+  this->TheDomain.Collective([&] {
+    if (this->Through)
+    {
+      show = this->Show(starting, target, result, fluence);
+      run = std::make_unique<MarchRun>(*this->Through, target, starting.packed);
+    }
+  });
+  turns.begin(starting.packed, result.light.channels);
+  WaitingPhotons photons(this->TheDomain.Comm(), *this->TheRounds, this->TheDomain.Own(), run.get(), starting,
+    [&](const std::vector<cl_int>& ends) { Tally(starting.packed, ends, result); });
+  photons.ToTheirEnds(
+    turns, MarchEventLimit(this->TheDomain.Whole(), this->Settings),
+    [&]() -> const Buffer<float>& {
+      if (run)
+      {
+        const std::array<int, 3>& size = this->TheDomain.Own().size;
+        this->TheDevice.Queue().enqueueNDRangeKernel(show, cl::NullRange, cl::NDRange(Count(size[1]) * Count(size[2])));
+      }
       return fluence;
     },
     monitor);
 }
 
-PhotonLight PhotonMarcher::Implementation::MarchInBatches(const std::vector<Photon>& photons, const Monitor& monitor)
+/// Up to where they are first scattered.
+void PhotonMarcher::Implementation::FollowUncollided(
+  const StartingPhotons& starting, const Way& way, PhotonLight& result, const Monitor& monitor)
 {
-  const auto batches = static_cast<std::size_t>(this->medium.settings.errorBatches);
-  MarchedBatches all;
-  for (std::size_t b = 0; b < batches; ++b)
-  {
-    const PhotonNumbers numbers = NumbersOfBatch(photons.size(), b, batches);
-    std::vector<Photon> some;
-    for (const std::size_t number : numbers)
-    {
-      some.push_back(photons[number]);
-    }
-    const double parts = static_cast<double>(batches);
-    all.Add(this->March(some, numbers, OfPart(monitor, b / parts, (b + 1) / parts)));
-  }
-  return std::move(all).Sum();
-}
-
-PhotonLight PhotonMarcher::Implementation::March(
-  const std::vector<Photon>& photons, const PhotonNumbers& numbers, const Monitor& monitor, const Turns* turns)
-{
-  const double start = ClockSeconds();
-  const MarchSettings& settings = this->medium.settings;
-  const PackedPhotons packed =
-    Pack(photons, this->medium.grid, this->medium.channels == 3, this->medium.EventLimit(), settings.batches);
-  const CountedPhotons counted(photons, packed, settings.counts);
-  PhotonLight result;
-  result.missed = packed.missed;
-  result.batches = BatchesOf(photons);
-  const int colours = this->Scattering && this->Scattering->HasColour() ? 3 : this->medium.traits.ColoursOf(packed);
-  result.light.channels = std::max(packed.channels, colours);
-  result.light.device = this->medium.device.Name();
-  result.light.balance.entered = packed.entered;
-
-  const MarchSums target = this->Sums.Prepare(packed);
-  const PhotonsOnDevice onDevice(this->medium.device, packed, counted.marks);
-  result.secondsMarching = -ClockSeconds();
+  MarchSums target;
   try
   {
-    this->MarchTo(
-      target, packed, onDevice, result.light, turns, this->Scattering ? OfPart(monitor, 0.0, 0.05) : monitor);
+    this->TheDomain.Collective([&] { target = this->Light ? this->Light->Prepare(starting.packed) : target; });
+    way(starting, target, result, monitor);
   }
   catch (...)
   {
-    this->Sums.Forget();
+    if (this->Light)
+    {
+      this->Light->Forget();
+    }
     throw;
   }
-  this->Sums.Finish(packed, target, counted.weightUnit, result);
-  Tally(packed, onDevice.ends.Read(), result);
-  PutIntoColours(packed, colours, result);
+  this->TheDomain.Collective([&] {
+    if (this->Light)
+    {
+      this->Light->Finish(starting.packed, target, starting.weightUnit, result);
+      SayWhatIsLeftOut(*this->Through, starting.packed, result.light);
+    }
+  });
+  AddUpTallies(this->TheDomain, result);
+}
+
+/// This rank's share of one channel's scattered light and tallies.
+ScatteredPhotons PhotonMarcher::Implementation::FollowScattered(const PhotonScattering* in, PackedPhotons photons,
+  const PhotonScattering::Settings& settings, const Monitor& monitor) const
+{
+  std::unique_ptr<ScatteringRun> run;
+  this->TheRounds->UntilAllEnd<ScatteredOnItsWay>(
+    [&](int round, std::vector<ScatteredOnItsWay>&& arrived, const Monitor& ofRound) {
+      if (in && round == 0)
+      {
+        run = std::make_unique<ScatteringRun>(*in, std::move(photons), settings);
+        return run->Start(ofRound);
+      }
+      return in ? run->Resume(arrived, ofRound) : std::vector<ScatteredOnItsWay>();
+    },
+    monitor);
+  ScatteredPhotons found;
+  this->TheDomain.Collective([&] { found = run ? run->Finish() : found; });
+  return found;
+}
+
+/// What more orders than one ask for.
+void PhotonMarcher::Implementation::AddScattered(
+  const PackedPhotons& packed, PhotonLight& result, const Monitor& monitor) const
+{
   if (this->Scattering)
   {
-    this->Scattering->AddTo(result, packed, numbers, OfPart(monitor, 0.05, 1.0));
+    this->Scattering->AddTo(result, packed, monitor,
+      [this](const PhotonScattering* in, PackedPhotons photons, const PhotonScattering::Settings& settings,
+        const Monitor& ofRun) { return this->FollowScattered(in, std::move(photons), settings, ofRun); });
+    AddUpScattered(this->TheDomain, result);
   }
-  else if (settings.maximumOrders != 1)
+  else if (this->Settings.maximumOrders != 1)
   {
     result.light.fluenceDirect = result.light.fluence; // nothing scatters
   }
-  SayWhatIsLeftOut(this->medium, packed, result.light);
-  if (settings.batches && packed.Batches() == 1)
+}
+
+/// @param numbers  of the photons among all
+PhotonLight PhotonMarcher::Implementation::MarchThese(
+  const std::vector<Photon>& share, const PhotonNumbers& numbers, const Way& way, const Monitor& monitor)
+{
+  const double start = ClockSeconds();
+  const StartingPhotons starting = SendToTheirBlocks(this->TheDomain, share, numbers, this->Traits, this->Settings);
+  const PackedPhotons& packed = starting.packed;
+  PhotonLight result;
+  const int colours = this->Scattering && this->Scattering->HasColour() ? 3 : this->Traits.ColoursOf(packed);
+  result.light.channels = std::max(packed.channels, colours);
+  result.light.device = this->TheDevice.Name();
+  result.light.balance.entered = packed.entered;
+  result.missed = packed.missed;
+  result.batches = static_cast<int>(this->TheDomain.Max(BatchesOf(share)));
+  result.secondsMarching = -ClockSeconds();
+  this->FollowUncollided(starting, way, result, this->Scattering ? OfPart(monitor, 0.0, 0.05) : monitor);
+  PutIntoColours(packed, colours, result);
+  this->AddScattered(packed, result, OfPart(monitor, 0.05, 1.0));
+  if (this->Settings.batches && packed.Batches() == 1)
   {
     result.batchFluence = result.light.fluence;
   }
@@ -150,52 +420,115 @@ PhotonLight PhotonMarcher::Implementation::March(
   return result;
 }
 
-PhotonMarcher::PhotonMarcher(
-  Device& device, const Medium& medium, const Field& ior, const MarchSettings& settings, const std::uint8_t* levels)
+PhotonLight PhotonMarcher::Implementation::MarchInBatches(
+  const std::vector<Photon>& share, const PlaceOfShare& place, const Way& way, const Monitor& monitor)
 {
-  const FilledBricks filled = CheckedBricks(medium);
-  tyndall::Check(settings);
-  CheckIndex(ior, medium.grid);
-  CheckLevels(levels, medium.grid);
-  this->Inside = std::make_unique<Implementation>(device, medium, filled, ior, settings, levels);
+  const auto batches = static_cast<std::size_t>(this->Settings.errorBatches);
+  MarchedBatches all;
+  for (std::size_t b = 0; b < batches; ++b)
+  {
+    const PhotonNumbers numbers = NumbersOfBatch(place.all, b, batches);
+    const auto begin = std::lower_bound(numbers.begin(), numbers.end(), place.first);
+    const PhotonNumbers own(begin, std::lower_bound(begin, numbers.end(), place.first + share.size()));
+    std::vector<Photon> some;
+    for (const std::size_t number : own)
+    {
+      some.push_back(share[number - place.first]);
+    }
+    const double parts = static_cast<double>(batches);
+    all.Add(this->MarchThese(some, own, way, OfPart(monitor, b / parts, (b + 1) / parts)));
+  }
+  return std::move(all).Sum();
+}
+
+PhotonLight PhotonMarcher::Implementation::March(
+  const std::vector<Photon>& share, const Way& way, const Monitor& monitor)
+{
+  this->TheRounds = std::make_unique<Rounds>(this->TheDomain.Comm(), this->TheDomain.Partition());
+  const PlaceOfShare place = PlaceAmong(this->TheDomain.Comm(), share.size());
+  PhotonLight result;
+  if (this->Settings.errorBatches > 0)
+  {
+    result = this->MarchInBatches(share, place, way, monitor);
+  }
+  else
+  {
+    PhotonNumbers numbers(share.size());
+    std::iota(numbers.begin(), numbers.end(), place.first);
+    result = this->MarchThese(share, numbers, way, monitor);
+  }
+  this->Handed = this->TheRounds->Traffic();
+  JudgeBalance(result.light, Medium()); // the same on all ranks
+  return result;
+}
+
+std::vector<PhotonPath> PhotonMarcher::Implementation::Paths(
+  const std::vector<Photon>& share, const std::vector<std::size_t>& chosen) const
+{
+  const Domain& domain = this->TheDomain;
+  const PlaceOfShare place = PlaceAmong(domain.Comm(), share.size());
+  return TracePaths(domain, this->Through.get(), ChosenOnEachRank(domain.Comm(), share, place, chosen), chosen,
+    MarchEventLimit(domain.Whole(), this->Settings));
+}
+
+PhotonMarcher::PhotonMarcher(Device& device, const Domain& domain, const Medium& medium, const Field& ior,
+  const MarchSettings& settings, const std::uint8_t* levels)
+  : Inside(std::make_unique<Implementation>(device, domain, medium, ior, settings, levels))
+{
 }
 
 PhotonMarcher::~PhotonMarcher() = default;
 PhotonMarcher::PhotonMarcher(PhotonMarcher&&) noexcept = default;
 
-PhotonLight PhotonMarcher::March(const std::vector<Photon>& photons, const Monitor& monitor)
+PhotonLight PhotonMarcher::March(const std::vector<Photon>& share, const Monitor& monitor)
 {
-  const bool batches = this->Inside->medium.settings.errorBatches > 0;
-  PhotonLight found =
-    batches ? this->Inside->MarchInBatches(photons, monitor) : this->Inside->March(photons, {}, monitor);
-  JudgeBalance(found.light, Medium());
-  return found;
+  return this->Inside->March(
+    share,
+    [this](const StartingPhotons& starting, const MarchSums& target, PhotonLight& result, const Monitor& ofPart) {
+      this->Inside->AtOnce(starting, target, result, ofPart);
+    },
+    monitor);
 }
 
 PhotonLight PhotonMarcher::MarchByTurns(
   const std::vector<Photon>& photons, const MarchTurns& turns, TurnTimes& times, const Monitor& monitor)
 {
-  const MarchSettings& settings = this->Inside->medium.settings;
-  if (settings.maximumOrders != 1 || settings.batches)
-  {
-    throw InvalidInput("Photons march in turns up to where they are first scattered, and without batches.");
-  }
-  this->Inside->RequireVoxels("Photons march in turns");
-  const Implementation::Turns inTurns = { turns, times };
-  PhotonLight found = this->Inside->March(photons, {}, monitor, &inTurns);
-  JudgeBalance(found.light, Medium());
-  return found;
+  this->Inside->RequireTurns();
+  Require(this->Inside->TheDomain.IsSerial(), "Photons march in turns on one rank.");
+  return this->Inside->March(
+    photons,
+    [&](const StartingPhotons& starting, const MarchSums& target, PhotonLight& result, const Monitor& ofPart) {
+      this->Inside->ByTurns(starting, target, result, turns, times, ofPart);
+    },
+    monitor);
 }
 
-std::vector<PhotonPath> PhotonMarcher::Paths(const std::vector<Photon>& photons, const std::vector<std::size_t>& chosen)
+PhotonLight PhotonMarcher::MarchByTurns(
+  const std::vector<Photon>& share, const TurnsInBlocks& turns, const Monitor& monitor)
 {
-  return TracePaths(this->Inside->medium, photons, chosen);
+  this->Inside->RequireTurns();
+  return this->Inside->March(
+    share,
+    [&](const StartingPhotons& starting, const MarchSums& target, PhotonLight& result, const Monitor& ofPart) {
+      this->Inside->ByTurns(starting, target, result, turns, ofPart);
+    },
+    monitor);
+}
+
+std::vector<PhotonPath> PhotonMarcher::Paths(const std::vector<Photon>& share, const std::vector<std::size_t>& chosen)
+{
+  return this->Inside->Paths(share, chosen);
 }
 
 PilotLight PhotonMarcher::Gather(const std::vector<Photon>& photons, const std::vector<std::array<int, 2>>& origins,
   const std::array<int, 3>& cells, const Monitor& monitor)
 {
   this->Inside->RequireVoxels("Pilot photons are gathered");
-  return this->Inside->pilots.Gather(photons, origins, cells, monitor);
+  return this->Inside->Pilots->Gather(photons, origins, cells, monitor);
+}
+
+const RoundsTraffic& PhotonMarcher::Traffic() const
+{
+  return this->Inside->Handed;
 }
 }

@@ -30,7 +30,7 @@ struct PackedPhotons
   std::size_t LargestBatch() const; ///< photons
 };
 
-/// Which of all photons some are; empty: they are all.
+/// Which of all photons some are.
 using PhotonNumbers = std::vector<std::size_t>;
 
 /// The largest batch that photons are of, and one.

@@ -2,13 +2,29 @@
 
 #include "Device/Defines.h"
 #include "Device/GroupSize.h"
+#include "Distribution/MessageTags.h"
+#include "Distribution/Rounds.h"
 #include "Photons/Marching/MarchLaunch.h"
+#include "Photons/Marching/MarchRun.h"
+#include "Photons/Marching/PhotonShares.h"
 
 #include <algorithm>
+#include <functional>
+#include <map>
+#include <memory>
 #include <numeric>
+#include <utility>
 
 namespace tyndall
 {
+namespace
+{
+/// Corners of ways: place in voxels, power that is left there.
+using CornersOfWays = std::vector<std::vector<cl_float4>>;
+
+/// Those that a kernel with PATHS finds.
+/// @param ways   a work-item each
+/// @param queue  queues it, twice: first it only counts corners
 CornersOfWays TraceCorners(const MarchMedium& medium, std::size_t ways,
   const std::function<void(bool counting, const Buffer<cl_int>& offsets, const Buffer<cl_float4>& corners,
     const Buffer<cl_int>& counts)>& queue)
@@ -32,12 +48,14 @@ CornersOfWays TraceCorners(const MarchMedium& medium, std::size_t ways,
   return ofWays;
 }
 
+/// Options of such a kernel.
 std::string PathOptions()
 {
   return Define("REAL_WIDTH", 1) + Define("ATOMICS", 0) + Define("WORKERS", 0) + Define("PATHS", 1) +
     Define("COUNTS", 0) + Define("CELLS", 0);
 }
 
+/// A packed photon's path.
 PhotonPath PathOf(const Grid& grid, const PackedPhotons& packed, std::size_t i, const std::vector<cl_float4>& corners)
 {
   const float* const power = packed.values.data() + i * static_cast<std::size_t>(packed.FloatsEach()) + 6;
@@ -57,35 +75,189 @@ PhotonPath PathOf(const Grid& grid, const PackedPhotons& packed, std::size_t i, 
   return path;
 }
 
-std::vector<PhotonPath> TracePaths(
-  const MarchMedium& medium, const std::vector<Photon>& photons, const std::vector<std::size_t>& chosen)
+/// Corners of a photon's way through a rank's block: where it sets off, turns and ends.
+struct PathPart
 {
-  std::vector<Photon> some;
-  for (const std::size_t i : chosen)
+  cl_ulong photon = 0; ///< its mark
+  std::vector<cl_float4> corners;
+};
+
+/// Follows the ways of photons through what a rank has of a grid, as far as that goes.
+class PathRun
+{
+public:
+  /// @param medium  must outlive this
+  PathRun(const MarchMedium& medium, int channels)
+    : Medium(medium)
+    , Channels(channels)
+    , Kernel(medium.MarchKernel(medium.IsBlock() ? "trace_in_block" : "trace_paths", channels, false,
+        PathOptions() + (medium.IsBlock() ? Define("BLOCKS", 1) : std::string())))
   {
-    some.push_back(photons.at(i));
   }
-  const PackedPhotons packed = Pack(some, medium.grid, true, medium.EventLimit());
-  if (packed.Count() == 0)
+
+  /// Follows photons that set off here, or have arrived from other blocks. @return those that go on in others
+  std::vector<PhotonOnItsWay> Start(
+    const PackedPhotons& photons, const std::vector<cl_ulong>& marks, std::vector<PathPart>& parts);
+  std::vector<PhotonOnItsWay> Resume(const std::vector<PhotonOnItsWay>& arrived, std::vector<PathPart>& parts);
+
+private:
+  std::vector<PhotonOnItsWay> Trace(const PackedPhotons& photons, const std::vector<PhotonOnItsWay>& arrived,
+    const std::vector<cl_ulong>& marks, bool resumes, std::vector<PathPart>& parts);
+
+  const MarchMedium& Medium;
+  int Channels;
+  cl::Kernel Kernel;
+};
+
+std::vector<PhotonOnItsWay> PathRun::Start(
+  const PackedPhotons& photons, const std::vector<cl_ulong>& marks, std::vector<PathPart>& parts)
+{
+  return this->Trace(photons, {}, marks, false, parts);
+}
+
+std::vector<PhotonOnItsWay> PathRun::Resume(const std::vector<PhotonOnItsWay>& arrived, std::vector<PathPart>& parts)
+{
+  PackedPhotons none;
+  none.channels = this->Channels;
+  none.batchBegin = { 0, 0 };
+  none.numbers.resize(arrived.size()); // for as many ends
+  std::vector<cl_ulong> marks;
+  for (const PhotonOnItsWay& photon : arrived)
   {
+    marks.push_back(photon.mark);
+  }
+  return this->Trace(none, arrived, marks, true, parts);
+}
+
+std::vector<PhotonOnItsWay> PathRun::Trace(const PackedPhotons& photons, const std::vector<PhotonOnItsWay>& arrived,
+  const std::vector<cl_ulong>& marks, bool resumes, std::vector<PathPart>& parts)
+{
+  std::vector<PhotonOnItsWay> into;
+  if (marks.empty())
+  {
+    return into;
+  }
+  Device& device = this->Medium.device;
+  const PhotonsOnDevice onDevice(device, photons, marks);
+  const Buffer<PhotonOnItsWay> come(device, arrived, "photons from other blocks");
+  const Buffer<cl_int> none(device, 0, "cells of the voxels");
+  const Buffer<cl_int>& cells = this->Medium.bricks.AreThere() ? this->Medium.bricks.First() : none;
+  GonePhotons<PhotonOnItsWay> gone(device, this->Medium.IsBlock() ? marks.size() : 0);
+  gone.Empty();
+  CornersOfWays corners = TraceCorners(this->Medium, marks.size(),
+    [&](bool counting, const Buffer<cl_int>& offsets, const Buffer<cl_float4>& to, const Buffer<cl_int>& counts) {
+      if (!this->Medium.IsBlock())
+      {
+        With(this->Kernel, this->Medium.Describe(), this->Medium.sigma, this->Medium.coefficients, this->Medium.nodes,
+          onDevice.values, cells, onDevice.ends, cl_int(counting), offsets, to, counts);
+        this->Medium.Launch(this->Kernel, cl::NDRange(marks.size()), GroupOfLargeItems(device));
+        return;
+      }
+      gone.Empty();
+      With(this->Kernel, this->Medium.Describe(), this->Medium.sigma, this->Medium.coefficients, this->Medium.nodes,
+        onDevice.values, onDevice.marks, come, gone.Room(), gone.Number(), onDevice.ends, cl_int(counting), offsets, to,
+        counts, cl_int(resumes));
+      this->Medium.Launch(this->Kernel, cl::NDRange(marks.size()), GroupOfLargeItems(device));
+    });
+  gone.AppendTo(into);
+  for (std::size_t i = 0; i < marks.size(); ++i)
+  {
+    parts.push_back({ marks[i], std::move(corners[i]) });
+  }
+  return into;
+}
+
+/// Which part of a way: its photon's mark and the round in which it was gone.
+using PartKey = std::pair<cl_ulong, cl_ulong>;
+
+/// Those that one rank has.
+struct PathParts
+{
+  std::vector<cl_ulong> keys; ///< photon, round and number of corners of each
+  std::vector<cl_float4> corners;
+
+  void Add(const std::vector<PathPart>& parts, int round)
+  {
+    for (const PathPart& part : parts)
+    {
+      this->keys.insert(
+        this->keys.end(), { part.photon, static_cast<cl_ulong>(round), static_cast<cl_ulong>(part.corners.size()) });
+      this->corners.insert(this->corners.end(), part.corners.begin(), part.corners.end());
+    }
+  }
+  void PutInto(std::map<PartKey, std::vector<cl_float4>>& all) const
+  {
+    auto corner = this->corners.begin();
+    for (std::size_t i = 0; i < this->keys.size(); i += 3)
+    {
+      const auto end = corner + static_cast<std::ptrdiff_t>(this->keys[i + 2]);
+      all[{ this->keys[i], this->keys[i + 1] }].assign(corner, end);
+      corner = end;
+    }
+  }
+};
+
+/// The parts of all ways in this rank's block. Collective.
+/// @param packed  the same on all ranks
+PathParts TraceParts(const Domain& domain, const MarchMedium* through, const PackedPhotons& packed)
+{
+  PathParts found;
+  std::unique_ptr<PathRun> block;
+  Rounds rounds(domain.Comm(), domain.Partition());
+  rounds.UntilAllEnd<PhotonOnItsWay>(
+    [&](int round, std::vector<PhotonOnItsWay>&& arrived, const Monitor&) {
+      std::vector<PhotonOnItsWay> gone;
+      std::vector<PathPart> parts;
+      if (through && round == 0)
+      {
+        const PackedPhotons starting = ThoseIn(domain.Own(), domain.Whole(), packed);
+        block = std::make_unique<PathRun>(*through, packed.channels);
+        gone = block->Start(starting, { starting.numbers.begin(), starting.numbers.end() }, parts);
+      }
+      else if (through)
+      {
+        gone = block->Resume(arrived, parts);
+      }
+      found.Add(parts, round);
+      return gone;
+    },
+    {});
+  return found;
+}
+}
+
+std::vector<PhotonPath> TracePaths(const Domain& domain, const MarchMedium* through, const std::vector<Photon>& photons,
+  const std::vector<std::size_t>& numbers, int eventLimit)
+{
+  PackedPhotons packed;
+  domain.Comm().Collective([&] { packed = Pack(photons, domain.Whole(), true, eventLimit); });
+  const PathParts own = TraceParts(domain, through, packed);
+  if (domain.Comm().Rank() > 0)
+  {
+    domain.Comm().Send(0, MessageTag::CornersOfPaths, own.keys);
+    domain.Comm().Send(0, MessageTag::CornersOfPaths, own.corners);
     return {};
   }
-  cl::Kernel trace = medium.MarchKernel("trace_paths", packed.channels, false, PathOptions());
-  Device& device = medium.device;
-  const PhotonsOnDevice onDevice(device, packed);
-  const Buffer<cl_int> none(device, 0, "cells of the voxels");
-  const Buffer<cl_int>& cells = medium.bricks.AreThere() ? medium.bricks.First() : none;
-  const CornersOfWays corners = TraceCorners(medium, packed.Count(),
-    [&](bool counting, const Buffer<cl_int>& offsets, const Buffer<cl_float4>& to, const Buffer<cl_int>& counts) {
-      With(trace, medium.Describe(), medium.sigma, medium.coefficients, medium.nodes, onDevice.values, cells,
-        onDevice.ends, cl_int(counting), offsets, to, counts);
-      medium.Launch(trace, cl::NDRange(packed.Count()), GroupOfLargeItems(device));
-    });
+  std::map<PartKey, std::vector<cl_float4>> all;
+  own.PutInto(all);
+  for (int rank = 1; rank < domain.Comm().Ranks(); ++rank)
+  {
+    PathParts others;
+    others.keys = domain.Comm().Receive<cl_ulong>(rank, MessageTag::CornersOfPaths);
+    others.corners = domain.Comm().Receive<cl_float4>(rank, MessageTag::CornersOfPaths);
+    others.PutInto(all);
+  }
   std::vector<PhotonPath> paths;
   for (std::size_t i = 0; i < packed.Count(); ++i)
   {
-    paths.push_back(PathOf(medium.grid, packed, i, corners[i]));
-    paths.back().photon = chosen[paths.back().photon];
+    const cl_ulong photon = packed.numbers[i];
+    std::vector<cl_float4> corners;
+    for (auto part = all.lower_bound({ photon, 0 }); part != all.end() && part->first.first == photon; ++part)
+    {
+      corners.insert(corners.end(), part->second.begin(), part->second.end());
+    }
+    paths.push_back(PathOf(domain.Whole(), packed, i, corners));
+    paths.back().photon = numbers[paths.back().photon];
   }
   std::sort(paths.begin(), paths.end(), [](const PhotonPath& a, const PhotonPath& b) { return a.photon < b.photon; });
   return paths;

@@ -5,9 +5,9 @@
 #include "Distribution/BoxExchange.h"
 #include "Distribution/Halo.h"
 #include "Distribution/SharedMedium.h"
-#include "Photons/Distributed/BlockInput.h"
-#include "Photons/Distributed/PhotonShares.h"
-#include "Photons/Distributed/PhotonTallies.h"
+#include "Photons/Marching/MarchedLight.h"
+#include "Photons/Marching/MarchInput.h"
+#include "Photons/Marching/PhotonShares.h"
 #include "Photons/Published/PublishedMarch.h"
 
 #include <algorithm>
@@ -88,14 +88,14 @@ void Tally(const PublishedPhoton& photon, double unit, PhotonLight& result, Pack
   }
 }
 
-/// What ranks have found, added up on each.
-void AddUp(Communicator& communicator, PackingLoss& loss)
+/// Sums over all ranks.
+void AddUp(const Domain& domain, PackingLoss& loss)
 {
   std::vector<double> values(loss.deposited.begin(), loss.deposited.end());
   values.insert(values.end(), loss.kept.begin(), loss.kept.end());
   values.push_back(static_cast<double>(loss.deposits));
   values.push_back(static_cast<double>(loss.givenUp));
-  values = communicator.Sum(values);
+  values = domain.Sum(values);
   std::copy_n(values.begin(), 3, loss.deposited.begin());
   std::copy_n(values.begin() + 3, 3, loss.kept.begin());
   loss.deposits = static_cast<std::size_t>(values[6]);
@@ -106,15 +106,12 @@ void AddUp(Communicator& communicator, PackingLoss& loss)
 class PublishedOfBlock
 {
 public:
-  PublishedOfBlock(Device& device, Communicator& communicator, const BlockPartition& partition, const Medium& medium,
-    const Field& ior, const std::uint8_t* levels, const PublishedSettings& settings)
+  PublishedOfBlock(Device& device, const Domain& domain, const Medium& medium, const Field& ior,
+    const std::uint8_t* levels, const PublishedSettings& settings)
     : TheDevice(device)
-    , Comm(communicator)
-    , Partition(partition)
+    , TheDomain(domain)
     , TheMedium(medium)
     , Settings(settings)
-    , Own(BlockOf(partition, communicator.Rank()))
-    , Has(this->Own.VoxelCount() > 0)
   {
     this->Check(ior, levels);
     this->Prepare(ior, levels);
@@ -124,7 +121,8 @@ public:
   {
     const double start = ClockSeconds();
     const StartingPhotons starting = this->Starting(share);
-    const double unit = TypicalPower(starting.packed.entered, PlaceAmong(this->Comm, starting.packed.Count()).all);
+    const double unit =
+      TypicalPower(starting.packed.entered, PlaceAmong(this->TheDomain.Comm(), starting.packed.Count()).all);
     PhotonLight result;
     result.light.channels = 3;
     result.light.device = this->TheDevice.Name();
@@ -136,8 +134,8 @@ public:
     this->Gain(unit, result, loss);
     result.secondsMarching = ClockSeconds() - marching;
     this->Finish(result);
-    AddUpTallies(this->Comm, result);
-    AddUp(this->Comm, loss);
+    AddUpTallies(this->TheDomain, result);
+    AddUp(this->TheDomain, loss);
     result.seconds = ClockSeconds() - start;
     return result;
   }
@@ -145,35 +143,37 @@ public:
 private:
   void Check(const Field& ior, const std::uint8_t* levels) const
   {
-    const bool octree = OnAnyRank(this->Comm, levels != nullptr);
-    this->Comm.Collective([&] {
-      CheckMarchedBlock(this->Comm, this->Partition, this->TheMedium, ior, levels, octree);
+    const bool octree = this->TheDomain.Any(levels != nullptr);
+    this->TheDomain.Collective([&] {
+      CheckMarchedMedium(this->TheDomain, this->TheMedium, ior, levels, octree);
       RequireAtomics(this->TheDevice);
     });
-    RequireSameInput(this->Comm, this->Partition, this->TheMedium, ior);
-    RequireSame(this->Comm, "settings", true, { 1.0 * this->Settings.tries, this->Settings.smooth ? 1.0 : 0.0 });
+    RequireSameMedium(this->TheDomain, this->TheMedium, ior);
+    RequireSame(
+      this->TheDomain.Comm(), "settings", true, { 1.0 * this->Settings.tries, this->Settings.smooth ? 1.0 : 0.0 });
   }
 
   void Prepare(const Field& ior, const std::uint8_t* levels)
   {
-    const IndexRange own = this->Has ? IndexRangeOf(ior, this->TheMedium.grid) : IndexRange();
-    const bool bends = IndexRangeOfAll(this->Comm, this->Has, own).Varies();
-    const Halo around(this->Comm, this->Partition, {}, PublishedMarch::Reach);
+    const IndexRange own = !this->TheDomain.IsEmpty() ? IndexRangeOf(ior, this->TheMedium.grid) : IndexRange();
+    const bool bends = IndexRangeOfAll(this->TheDomain, own).Varies();
+    const Halo around(this->TheDomain.Comm(), this->TheDomain.Partition(), {}, PublishedMarch::Reach);
     std::vector<float> index;
-    this->Comm.Collective([&] {
-      index.assign(bends ? this->Own.VoxelCount() : 0, 1.0f);
+    this->TheDomain.Collective([&] {
+      index.assign(bends ? this->TheDomain.Own().VoxelCount() : 0, 1.0f);
       if (ior.values)
       {
         std::copy_n(ior.values, index.size(), index.begin());
       }
     });
     index = bends ? around.Spread(index, 1) : std::vector<float>();
-    this->Comm.Collective([&] {
-      if (this->Has)
+    this->TheDomain.Collective([&] {
+      if (!this->TheDomain.IsEmpty())
       {
-        this->Through = std::make_unique<PublishedMarch>(this->TheDevice, this->TheMedium,
-          bends ? index.data() : nullptr, levels, MarchedPart{ this->Partition.whole, this->Own, around.Known() },
-          MarchEventLimit(this->Partition.whole, PackingSettings()), this->Settings.tries);
+        this->Through =
+          std::make_unique<PublishedMarch>(this->TheDevice, this->TheMedium, bends ? index.data() : nullptr, levels,
+            MarchedPart{ this->TheDomain.Whole(), this->TheDomain.Own(), around.Known() },
+            MarchEventLimit(this->TheDomain.Whole(), PackingSettings()), this->Settings.tries);
       }
     });
   }
@@ -181,15 +181,15 @@ private:
   StartingPhotons Starting(const std::vector<Photon>& share)
   {
     PhotonNumbers numbers(share.size());
-    std::iota(numbers.begin(), numbers.end(), PlaceAmong(this->Comm, share.size()).first);
-    return SendToTheirBlocks(this->Comm, this->Partition, share, numbers, {}, PackingSettings());
+    std::iota(numbers.begin(), numbers.end(), PlaceAmong(this->TheDomain.Comm(), share.size()).first);
+    return SendToTheirBlocks(this->TheDomain, share, numbers, {}, PackingSettings());
   }
 
   /// Photons to their ends. @param unit  W of one unit of the power that they have on their way
   RoundsTraffic Follow(
     const PackedPhotons& packed, double unit, PhotonLight& result, PackingLoss& loss, const Monitor& monitor)
   {
-    Rounds rounds(this->Comm, this->Partition, VoxelsPassed);
+    Rounds rounds(this->TheDomain.Comm(), this->TheDomain.Partition(), VoxelsPassed);
     rounds.UntilAllEnd<PublishedPhoton>(
       [&](int round, std::vector<PublishedPhoton>&& arrived, const Monitor& ofRound) {
         std::vector<PublishedPhoton> going = round == 0 ? PhotonsOf(packed, unit / packed.unit) : std::move(arrived);
@@ -210,7 +210,7 @@ private:
   /// The light of the block, not smoothed.
   void Gain(double unit, PhotonLight& result, PackingLoss& loss)
   {
-    this->Comm.Collective([&] {
+    this->TheDomain.Collective([&] {
       if (this->Through)
       {
         PublishedMarch::Light light = this->Through->Unpack(unit);
@@ -218,7 +218,7 @@ private:
         result.meanDirection = std::move(light.direction);
       }
     });
-    const double volume = this->Partition.whole.VoxelVolume();
+    const double volume = this->TheDomain.Whole().VoxelVolume();
     loss.kept = this->Total(result, [&](std::size_t, int) { return volume / std::cbrt(volume); });
   }
 
@@ -226,11 +226,11 @@ private:
   {
     if (this->Settings.smooth)
     {
-      const Halo around(this->Comm, this->Partition, {}, 1);
+      const Halo around(this->TheDomain.Comm(), this->TheDomain.Partition(), {}, 1);
       this->Smooth(around, result.light.fluence);
       this->Smooth(around, result.meanDirection);
     }
-    const double volume = this->Partition.whole.VoxelVolume();
+    const double volume = this->TheDomain.Whole().VoxelVolume();
     const Field &a = this->TheMedium.sigma_a, &s = this->TheMedium.sigma_s;
     result.light.balance.absorbed =
       this->Total(result, [&](std::size_t voxel, int c) { return volume * (a.At(voxel, c) + s.At(voxel, c)); });
@@ -240,10 +240,10 @@ private:
   void Smooth(const Halo& around, std::vector<float>& values)
   {
     const std::vector<float> known = around.Spread(values, 3);
-    this->Comm.Collective([&] {
+    this->TheDomain.Collective([&] {
       if (this->Through)
       {
-        values = PartOf(this->Through->Smoothed(around.Known(), known), around.Known(), this->Own, 3);
+        values = PartOf(this->Through->Smoothed(around.Known(), known), around.Known(), this->TheDomain.Own(), 3);
       }
     });
   }
@@ -262,12 +262,9 @@ private:
   }
 
   Device& TheDevice;
-  Communicator& Comm;
-  const BlockPartition& Partition;
+  const Domain& TheDomain;
   const Medium& TheMedium;
   const PublishedSettings& Settings;
-  const VoxelBox Own;
-  const bool Has;                          ///< voxels
   std::unique_ptr<PublishedMarch> Through; ///< null without voxels
 };
 }
@@ -278,11 +275,11 @@ double PackingLoss::Relative() const
   return in > 0.0 ? 1.0 - Sum(this->kept) / in : 0.0;
 }
 
-PhotonLight MarchPublishedInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition,
-  const Medium& medium, const Field& ior, const std::uint8_t* levels, const std::vector<Photon>& share,
-  const PublishedSettings& settings, PackingLoss* loss, const Monitor& monitor, RoundsTraffic* traffic)
+PhotonLight MarchPublished(Device& device, const Domain& domain, const Medium& medium, const Field& ior,
+  const std::uint8_t* levels, const std::vector<Photon>& share, const PublishedSettings& settings, PackingLoss* loss,
+  const Monitor& monitor, RoundsTraffic* traffic)
 {
-  PublishedOfBlock march(device, communicator, partition, medium, ior, levels, settings);
+  PublishedOfBlock march(device, domain, medium, ior, levels, settings);
   PackingLoss packing;
   RoundsTraffic handed;
   PhotonLight result = march.March(share, packing, handed, monitor);
@@ -295,13 +292,5 @@ PhotonLight MarchPublishedInBlocks(Device& device, Communicator& communicator, c
     *traffic = handed;
   }
   return result;
-}
-
-PhotonLight MarchPublished(Device& device, const Medium& medium, const Field& ior, const std::uint8_t* levels,
-  const std::vector<Photon>& photons, const PublishedSettings& settings, PackingLoss* loss, const Monitor& monitor)
-{
-  SingleRank alone;
-  const BlockPartition whole = { medium.grid, { { { 0, 0, 0 }, medium.grid.size } } };
-  return MarchPublishedInBlocks(device, alone, whole, medium, ior, levels, photons, settings, loss, monitor);
 }
 }

@@ -2,8 +2,7 @@
 
 #include "Device/Device.h"
 #include "Device/Monitor.h"
-#include "Distribution/BlockPartition.h"
-#include "Distribution/Communicator.h"
+#include "Distribution/Domain.h"
 #include "Distribution/Rounds.h"
 #include "Medium/Medium.h"
 #include "Photons/Photons.h"
@@ -37,26 +36,17 @@ struct PackingLoss
 /// fluence, so that the balance shows what the packing loses. The result is not the same twice, since threads come in
 /// any order.
 ///
-/// @throws InvalidInput as PhotonMarcher; DeviceError where the device has no 64-bit atomics
-PhotonLight MarchPublished(Device& device, const Medium& medium, const Field& ior, const std::uint8_t* levels,
-  const std::vector<Photon>& photons, const PublishedSettings& settings = {}, PackingLoss* loss = nullptr,
-  const Monitor& monitor = {});
-
-/// The same through a medium that is spread over ranks by blocks. All ranks call it.
+/// Collective. A photon is handed on as it stands where the line of a step comes to another block's voxel, and makes
+/// the same steps and deposits, bit for bit, whatever the blocks. Voxels get their deposits in another order, as they
+/// do from call to call: light does not depend on the blocks but for what the packing loses. Each rank gets two voxels
+/// of the index around its block, and of the octree the levels of its block.
 ///
-/// A photon is handed on as it stands where the line of a step comes to another block's voxel, and makes the same steps
-/// and deposits, bit for bit, whatever the blocks. Voxels get their deposits in another order, as they do from call to
-/// call: light is that of one rank but for what the packing loses, and the same where it loses nothing. Of the index a
-/// rank gets two voxels round its block, of the octree nothing but its block's levels.
-///
-/// @param medium, ior, levels  of the rank's block, as PhotonMarcherInBlocks has them
+/// @param domain  the grid; `Domain(grid)` for a serial march
+/// @param medium, ior, levels  of the rank's block, as PhotonMarcher has them
 /// @param share  some of the photons: all of them are those of rank 0, then those of rank 1, and so on
-/// @param settings  the same on all ranks
-/// @return arrays of the rank's block, none where that is empty; `loss`, balance, face powers and counts are of the
-///   whole
-/// @throws InvalidInput, DeviceError, Aborted  on every rank what one of them throws
-PhotonLight MarchPublishedInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition,
-  const Medium& medium, const Field& ior, const std::uint8_t* levels, const std::vector<Photon>& share,
-  const PublishedSettings& settings = {}, PackingLoss* loss = nullptr, const Monitor& monitor = {},
-  RoundsTraffic* traffic = nullptr);
+/// @return arrays of the rank's block; `loss`, balance, face powers and counts of the whole grid
+/// @throws InvalidInput as PhotonMarcher; DeviceError where the device has no 64-bit atomics
+PhotonLight MarchPublished(Device& device, const Domain& domain, const Medium& medium, const Field& ior,
+  const std::uint8_t* levels, const std::vector<Photon>& share, const PublishedSettings& settings = {},
+  PackingLoss* loss = nullptr, const Monitor& monitor = {}, RoundsTraffic* traffic = nullptr);
 }

@@ -1,7 +1,5 @@
 #include "Photons/Scattering/PhotonScattering.h"
 
-#include "Photons/Scattering/ScatteringRun.h"
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -60,12 +58,5 @@ PhotonScattering::PhotonScattering(const MarchMedium& through, const Medium& med
   , Optical(through.device, OpticalOf(through, medium), "how voxels scatter")
   , Phase(through.device, medium)
 {
-}
-
-ScatteredPhotons PhotonScattering::Follow(PackedPhotons photons, const Settings& settings, const Monitor& monitor) const
-{
-  ScatteringRun run(*this, std::move(photons), settings);
-  run.Start(monitor);
-  return run.Finish();
 }
 }

@@ -23,8 +23,8 @@ struct ScatteredPhotons
   std::uint64_t scatterings = 0;
 };
 
-/// Follows photons along bent rays through scattering after scattering, as analog Monte Carlo with absorption by weight
-/// and Russian roulette (numerics.md, section 12.5): without bias for any medium.
+/// What photons are followed in along bent rays, through scattering after scattering (ScatteringRun), as analog Monte
+/// Carlo with absorption by weight and Russian roulette (numerics.md, section 12.5): without bias for any medium.
 ///
 /// Random numbers are drawn by counter, of the seed and a photon's number: the same seed gives the same light, bit for
 /// bit, whatever the threads and the parts in which photons are marched.
@@ -40,11 +40,7 @@ public:
   {
     std::uint64_t seed = 1;
     int mostScatterings = 0x7fffffff; ///< that a photon goes through
-    PhotonNumbers numbers;            ///< that random numbers belong to
   };
-  /// @param photons  of one channel, in units of DepositsPerEvent times those of uncollided light
-  /// @throws DeviceError where sums do not fit; Aborted
-  ScatteredPhotons Follow(PackedPhotons photons, const Settings& settings, const Monitor& monitor) const;
 
   /// Of a photon, which may come back to a voxel: power is scaled such that no sum of so many can exceed 2^62.
   static constexpr double DepositsPerEvent = 4096.0;

@@ -6,7 +6,7 @@
 //   PHASE     how light is scattered: 0 isotropic, 1 Henyey and Greenstein's, 2 Schlick's, 3 by a table of cosines
 //   VARIES    1: the parameter of these two is by voxel
 //   COSINES   of the table, less one
-//   BLOCKS    1: photons go as far as their block of the grid (ScatterInBlock.cl)
+//   BLOCKS    1: photons go as far as their block of the grid
 //
 // The optical depth of the next scattering is drawn, and spent along the path; what is absorbed on the way is taken
 // from the photon's power, and what is left of that is deposited times its path, from the first scattering on: a mean
@@ -101,7 +101,65 @@ typedef struct
 } scattered_flight;
 
 #if BLOCKS
-#include "Photons/Distributed/ScatteredOnward.cl"
+#include "Photons/Marching/WaysOnward.cl"
+
+// Whether a photon that sets off from a place does so in another block, to which rounding may have put it. It then has
+// place and direction as its way; it sets off there.
+static bool sets_off_elsewhere(const march_arrays* arrays, photon_lanes* lanes, float3 place, float3 direction)
+{
+  const MarchInfo* info = arrays->info;
+  const real p[3] = { place.x, place.y, place.z };
+  integer voxel[3];
+  voxels_of_starts(info, p, voxel);
+  FOR_AXES(a)
+  {
+    voxel[a] = clamp(voxel[a], info->first[a] - 1, info->first[a] + info->grid.size[a]);
+  }
+  const int at = padded(info, voxel);
+  const bool elsewhere = arrays->sigma[at] == OUTSIDE;
+  if (elsewhere)
+  {
+    lanes->at[0] = at;
+    lanes->start[0][0] = place.x;
+    lanes->start[1][0] = place.y;
+    lanes->start[2][0] = place.z;
+    lanes->velocity[0][0] = direction.x;
+    lanes->velocity[1][0] = direction.y;
+    lanes->velocity[2][0] = direction.z;
+  }
+  return elsewhere;
+}
+
+static void hand_on(
+  const march_arrays* arrays, const photon_lanes* lanes, const scattered_flight* flight, __global ScatteredOnItsWay* to)
+{
+  hand_way_on(arrays, lanes, 0, &to->way);
+  to->number = flight->random.stream;
+  to->blocks = flight->random.block;
+  to->drawn = flight->random.left;
+  to->events = flight->events;
+  to->scatterings = flight->end.scatterings;
+  to->depth = flight->depth;
+  to->dim = flight->dim;
+  to->power = flight->end.power;
+  to->absorbedAtFirst = flight->end.absorbedAtFirst;
+  to->exchanged = flight->end.exchanged;
+}
+
+static void take_over(const march_arrays* arrays, const ScatterInfo* how, const __global ScatteredOnItsWay* from,
+  photon_lanes* lanes, scattered_flight* flight)
+{
+  const ScatterEnd end = { -1, from->scatterings, from->power, from->absorbedAtFirst, from->exchanged };
+  flight->end = end;
+  flight->random = random_after(how->seed, from->number, from->blocks, from->drawn);
+  flight->dim = from->dim;
+  flight->depth = from->depth;
+  flight->events = from->events;
+  take_way_over(lanes, 0, &from->way);
+  const integer voxel[3] = { from->way.voxel[0], from->way.voxel[1], from->way.voxel[2] };
+  go_on_in(arrays, lanes, voxel);
+  lanes->steps[0] = 0;
+}
 #endif
 
 // The photon, `way` diagonals on, is scattered.
@@ -250,7 +308,69 @@ static void follow(const march_arrays* arrays, const scattering* medium, const S
 }
 
 #if BLOCKS
-#include "Photons/Distributed/ScatterInBlock.cl"
+typedef struct
+{
+  const __global float* photons;             // that set out, as of scatter_photons
+  const __global ulong* numbers;             // of these
+  const __global ScatteredOnItsWay* arrived; // others, that have come from other blocks
+  __global ScatteredOnItsWay* gone;          // into other blocks, in any order
+  volatile __global int* gone_count;
+} photons_of_block;
+
+// Photon i of those that set out or, with `resumes`, of those that have arrived.
+static ScatterEnd end_in_block(const march_arrays* arrays, const scattering* medium, const ScatterInfo* how,
+  const photons_of_block* photons, int resumes, int i)
+{
+  photon_lanes lanes;
+  scattered_flight flight;
+  if (!resumes)
+  {
+    set_out(arrays, how, photons->photons + (ulong)i * PHOTON_FLOATS, photons->numbers[i], &lanes, &flight);
+  }
+  else
+  {
+    take_over(arrays, how, photons->arrived + i, &lanes, &flight);
+    if (flight.events > 0)
+    {
+      arrive(arrays, &lanes, &flight.end);
+    }
+    else
+    {
+      begin(arrays, &lanes, vload3(0, photons->arrived[i].way.start), vload3(0, photons->arrived[i].way.velocity));
+    }
+  }
+  follow(arrays, medium, how, &lanes, &flight);
+  if (flight.end.face == Elsewhere)
+  {
+    hand_on(arrays, &lanes, &flight, photons->gone + atomic_add(photons->gone_count, 1));
+  }
+  return flight.end;
+}
+
+__kernel void scatter_in_block(MarchInfo info, ScatterInfo how, const __global float* sigma,
+  const __global float* coefficients, const __global uchar* nodes, const __global float2* optical,
+  const __global float* phase, const __global float* photons, const __global ulong* numbers,
+  const __global ScatteredOnItsWay* arrived, __global ScatteredOnItsWay* gone, volatile __global int* gone_count,
+  int resumes, __global ScatterEnd* ends, __global long* sums, ulong copyStride, volatile __global int* next, int first,
+  int count)
+{
+  const scattering medium = { optical, phase };
+  const photons_of_block all = { photons, numbers, arrived, gone, gone_count };
+#if WORKERS > 0
+  const march_arrays arrays = { &info, sigma, coefficients, nodes, sums + get_global_id(0) * copyStride };
+  for (int block = atomic_add(next, BLOCK); block < count; block = atomic_add(next, BLOCK))
+  {
+    for (int i = first + block; i < first + min(block + BLOCK, count); ++i)
+    {
+      ends[i] = end_in_block(&arrays, &medium, &how, &all, resumes, i);
+    }
+  }
+#else
+  const march_arrays arrays = { &info, sigma, coefficients, nodes, sums };
+  const int i = first + get_global_id(0);
+  ends[i] = end_in_block(&arrays, &medium, &how, &all, resumes, i);
+#endif
+}
 #else
 static ScatterEnd end_of(const march_arrays* arrays, const scattering* medium, const ScatterInfo* how,
   const __global float* photon, ulong number)

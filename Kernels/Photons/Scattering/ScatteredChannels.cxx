@@ -58,26 +58,6 @@ void AddRun(const ScatteredPhotons& found, const Rgb& colour, PhotonLight& light
 }
 }
 
-ScatteredChannels::ScatteredChannels(
-  Device& device, const MarchMedium& through, const Medium& medium, const Field& ior, const std::uint8_t* levels)
-  : Settings(through.settings)
-{
-  const bool coloured = through.traits.coloured || medium.phase.HasColour();
-  const double stepPart = ScatteringStepPart(ior, medium.grid.size);
-  for (int c = 0; c < (coloured ? 3 : 1); ++c)
-  {
-    const OneChannelMedium one(medium, c);
-    Channel channel;
-    if (coloured)
-    {
-      channel.own = std::make_unique<const MarchMedium>(
-        device, one.seen, ior, through.settings, FindFilledBricks(one.seen), levels);
-    }
-    channel.photons = std::make_unique<PhotonScattering>(coloured ? *channel.own : through, one.seen, stepPart);
-    this->Channels.push_back(std::move(channel));
-  }
-}
-
 ScatteredChannels::ScatteredChannels(Device& device, const Block& block)
   : Settings(block.settings)
 {
@@ -93,7 +73,7 @@ ScatteredChannels::ScatteredChannels(Device& device, const Block& block)
         traits.coloured = false;
         traits.grey = traits.greyExtinction = true;
         auto own = std::make_unique<MarchMedium>(
-          device, one.seen, block.ior, block.settings, traits, through->block, block.nodes != nullptr);
+          device, one.seen, block.ior, block.settings, traits, through->block, nullptr, block.levels);
         if (block.nodes)
         {
           own->SetNodes(*block.nodes);
@@ -107,12 +87,6 @@ ScatteredChannels::ScatteredChannels(Device& device, const Block& block)
   }
 }
 
-ScatteredPhotons ScatteredChannels::FollowToTheEnd(
-  const PhotonScattering* in, PackedPhotons photons, const PhotonScattering::Settings& settings, const Monitor& monitor)
-{
-  return in->Follow(std::move(photons), settings, monitor);
-}
-
 /// What one unit of a run's light is in each channel.
 Rgb ScatteredChannels::ColourOfRun(const PackedPhotons& packed, bool oneRun, int run)
 {
@@ -121,14 +95,13 @@ Rgb ScatteredChannels::ColourOfRun(const PackedPhotons& packed, bool oneRun, int
   return oneRun ? packed.colour : colour;
 }
 
-void ScatteredChannels::AddTo(PhotonLight& light, const PackedPhotons& packed, const PhotonNumbers& numbers,
-  const Monitor& monitor, const Follower& follow) const
+void ScatteredChannels::AddTo(
+  PhotonLight& light, const PackedPhotons& packed, const Monitor& monitor, const Follower& follow) const
 {
   const MarchSettings& march = this->Settings;
   PhotonScattering::Settings settings;
   settings.seed = march.seed;
   settings.mostScatterings = march.maximumOrders == 0 ? settings.mostScatterings : march.maximumOrders - 1;
-  settings.numbers = numbers;
   light.light.fluenceDirect = light.light.fluence;
   light.light.balance = {};
   light.light.facePowerOut = {};

@@ -4,7 +4,7 @@
 #include "Device/HostMappedBuffer.h"
 #include "Device/HostMemory.h"
 #include "Device/Sizes.h"
-#include "Photons/Distributed/GonePhotons.h"
+#include "Photons/Marching/MarchLaunch.h"
 #include "TyndallKernelSources.h"
 
 #include <algorithm>
@@ -16,16 +16,11 @@ namespace tyndall
 namespace
 {
 constexpr int Block = 16; ///< photons that a work-item takes one after the other
-constexpr double SecondsPerScattering = 0.1;
 
-std::vector<cl_ulong> StreamsOf(const PackedPhotons& packed, const PhotonNumbers& numbers)
+/// Numbers of the photons, which random numbers belong to.
+std::vector<cl_ulong> StreamsOf(const PackedPhotons& packed)
 {
-  std::vector<cl_ulong> streams;
-  for (const std::size_t number : packed.numbers)
-  {
-    streams.push_back(numbers.empty() ? number : numbers[number]);
-  }
-  return streams;
+  return { packed.numbers.begin(), packed.numbers.end() };
 }
 }
 
@@ -37,7 +32,7 @@ ScatteringRun::ScatteringRun(
   , Numbers(in.Through.settings.meanDirection ? 4 : 1)
   , Shares(ShareSums(in.Through, in.Through.PaddedCount(), Numbers, 1, 0))
   , Photons(in.Through.device, Packed.values, "photons")
-  , Streams(in.Through.device, StreamsOf(Packed, settings.numbers), "numbers of photons")
+  , Streams(in.Through.device, StreamsOf(Packed), "numbers of photons")
   , Sums(in.Through.device,
       in.Through.PaddedCount() * static_cast<std::size_t>(Numbers) * static_cast<std::size_t>(Shares.copies),
       "sums of the photons' light")

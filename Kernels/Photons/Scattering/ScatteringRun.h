@@ -15,12 +15,13 @@ inline const int* WhereIs(const ScatteredOnItsWay& photon)
 }
 
 /// Photons that are followed through scattering after scattering, as far as their medium goes: to their ends or, where
-/// it is a block of a grid, into other blocks. What PhotonScattering::Follow does, in parts.
+/// it is a block of a grid, into other blocks.
 class ScatteringRun
 {
 public:
-  /// @param in, settings  must stay
-  /// @param photons  those that set out here, as of Follow
+  /// @param in, settings  must outlive this
+  /// @param photons  those that set out here, of one channel, in units of DepositsPerEvent times those of uncollided
+  ///   light
   /// @throws DeviceError where sums do not fit
   ScatteringRun(const PhotonScattering& in, PackedPhotons photons, const PhotonScattering::Settings& settings);
 

@@ -1,7 +1,7 @@
 // Photons that go from one block of a grid into another: part of PhotonMarch.cl, with BLOCKS.
 
 #pragma once
-#include "Photons/Distributed/WaysOnward.cl"
+#include "Photons/Marching/WaysOnward.cl"
 
 static void keep_owed(photon_lanes* lanes, const photon_flight* flight)
 {

@@ -1,10 +1,10 @@
-#include "Photons/Distributed/BlockMarch.h"
+#include "Photons/Marching/MarchRun.h"
 
 #include "Device/Batches.h"
 #include "Device/Defines.h"
 #include "Device/GroupSize.h"
 #include "Device/Sizes.h"
-#include "Photons/Distributed/GonePhotons.h"
+#include "Photons/Marching/MarchLaunch.h"
 
 #include <algorithm>
 #include <numeric>
@@ -13,7 +13,6 @@ namespace tyndall
 {
 namespace
 {
-constexpr double SecondsPerLaunch = 0.1;
 constexpr std::size_t FirstLaunch = 16384; ///< photons; how long they take says how many go next
 
 /// Places of the first of each batch, and beyond the last one, of photons in the order of their batches.
@@ -30,38 +29,45 @@ std::vector<int> BeginsOf(const std::vector<PhotonOnItsWay>& photons, int batche
 }
 
 /// Photons of one round.
-struct BlockMarch::Marched
+struct MarchRun::Marched
 {
   PhotonsOnDevice starting;
   Buffer<PhotonOnItsWay> arrived;
   bool resumes; ///< those that arrived march, else those that start
 };
 
-BlockMarch::BlockMarch(const MarchMedium& medium, const MarchSums& target, const PackedPhotons& packed)
+MarchRun::MarchRun(const MarchMedium& medium, const MarchSums& target, const PackedPhotons& packed)
   : Medium(medium)
   , Info(medium.Describe())
   , Target(target)
   , Channels(packed.channels)
-  , Kernel(MarchKernelFor(medium, target, packed.channels, "march_block", Define("BLOCKS", 1)))
+  , Kernel(medium.IsBlock() ? MarchKernelFor(medium, target, packed.channels, "march_block", Define("BLOCKS", 1))
+                            : cl::Kernel())
 {
 }
 
-void BlockMarch::GoAsFarAs(const TurnSchedule& turn)
+void MarchRun::GoAsFarAs(const TurnSchedule& turn)
 {
   this->Info.pause = static_cast<cl_int>(turn.gone);
   this->Info.eventLimit = turn.last ? this->Info.pause : this->Medium.EventLimit();
 }
 
-BlockMarch::Outcome BlockMarch::Start(
+MarchRun::Outcome MarchRun::Start(
   const PackedPhotons& photons, const std::vector<cl_ulong>& marks, const Monitor& monitor)
 {
   Device& device = this->Medium.device;
+  if (!this->Medium.IsBlock())
+  {
+    const PhotonsOnDevice onDevice(device, photons, marks);
+    MarchPhotons(this->Medium, photons, onDevice, this->Target, monitor);
+    return { onDevice.ends.Read(), {} };
+  }
   return this->March(
     { PhotonsOnDevice(device, photons, marks), Buffer<PhotonOnItsWay>(device, 0, "photons from other blocks"), false },
     photons.batchBegin, monitor);
 }
 
-BlockMarch::Outcome BlockMarch::Resume(std::vector<PhotonOnItsWay> arrived, const Monitor& monitor)
+MarchRun::Outcome MarchRun::Resume(std::vector<PhotonOnItsWay> arrived, const Monitor& monitor)
 {
   std::stable_sort(
     arrived.begin(), arrived.end(), [](const PhotonOnItsWay& a, const PhotonOnItsWay& b) { return a.batch < b.batch; });
@@ -75,8 +81,7 @@ BlockMarch::Outcome BlockMarch::Resume(std::vector<PhotonOnItsWay> arrived, cons
     BeginsOf(arrived, this->Target.shares.batches), monitor);
 }
 
-BlockMarch::Outcome BlockMarch::March(
-  const Marched& photons, const std::vector<int>& batchBegin, const Monitor& monitor)
+MarchRun::Outcome MarchRun::March(const Marched& photons, const std::vector<int>& batchBegin, const Monitor& monitor)
 {
   Outcome outcome;
   const double all = batchBegin.back();
@@ -93,8 +98,8 @@ BlockMarch::Outcome BlockMarch::March(
 }
 
 /// Photons `begin` to `end`, which are of one batch.
-void BlockMarch::MarchBatch(const Marched& photons, int batch, std::size_t begin, std::size_t end,
-  const Monitor& monitor, std::vector<PhotonOnItsWay>& gone)
+void MarchRun::MarchBatch(const Marched& photons, int batch, std::size_t begin, std::size_t end, const Monitor& monitor,
+  std::vector<PhotonOnItsWay>& gone)
 {
   Device& device = this->Medium.device;
   const MarchShares& shares = this->Target.shares;

@@ -1,4 +1,4 @@
-#include "Photons/Distributed/PhotonShares.h"
+#include "Photons/Marching/PhotonShares.h"
 
 #include "Photons/Marching/MarchedLight.h"
 
@@ -194,6 +194,7 @@ void Join(const std::vector<Parcel>& parcels, StartingPhotons& starting)
   const auto each = static_cast<std::ptrdiff_t>(packed.FloatsEach());
   packed.values.clear();
   packed.numbers.clear();
+  starting.marks.clear();
   for (int batch = 0; batch < packed.Batches(); ++batch)
   {
     packed.batchBegin[static_cast<std::size_t>(batch)] = static_cast<int>(packed.numbers.size());
@@ -229,10 +230,11 @@ PlaceOfShare PlaceAmong(Communicator& communicator, std::size_t share)
     static_cast<std::size_t>(std::accumulate(begin, counts.end(), 0.0)) };
 }
 
-StartingPhotons SendToTheirBlocks(Communicator& communicator, const BlockPartition& partition,
-  const std::vector<Photon>& share, const PhotonNumbers& numbers, const MarchTraits& traits,
-  const MarchSettings& settings)
+StartingPhotons SendToTheirBlocks(const Domain& domain, const std::vector<Photon>& share, const PhotonNumbers& numbers,
+  const MarchTraits& traits, const MarchSettings& settings)
 {
+  Communicator& communicator = domain.Comm();
+  const BlockPartition& partition = domain.Partition();
   communicator.Collective([&] { CheckPhotons(share, settings.batches); });
   const PhotonTotals totals = TotalsOf(communicator, share, settings.batches);
   const auto largestWeight = static_cast<float>(communicator.Largest({ CountedPhotons::LargestWeight(share) })[0]);
@@ -243,21 +245,28 @@ StartingPhotons SendToTheirBlocks(Communicator& communicator, const BlockPartiti
   });
   AddUpEntered(communicator, starting.packed);
   const std::size_t met = PlaceAmong(communicator, starting.packed.Count()).all;
-  std::vector<std::vector<char>> arrived = communicator.Exchange<char>(EveryRank(communicator), [&] {
+  communicator.Collective([&] {
     CountedPhotons counted;
     if (settings.counts)
     {
       counted = CountedPhotons(share, starting.packed, largestWeight, met);
     }
     starting.weightUnit = counted.weightUnit;
+    starting.marks = std::move(counted.marks);
     for (std::size_t& number : starting.packed.numbers)
     {
       number = numbers[number];
     }
+  });
+  if (domain.IsSerial())
+  {
+    return starting; // they are where they set off
+  }
+  std::vector<std::vector<char>> arrived = communicator.Exchange<char>(EveryRank(communicator), [&] {
     std::vector<std::vector<char>> parcels;
     for (const std::vector<PlacedPhoton>& some : ByBlocks(partition, starting.packed))
     {
-      parcels.push_back(Parcel(starting.packed, counted.marks, some).Bytes());
+      parcels.push_back(Parcel(starting.packed, starting.marks, some).Bytes());
     }
     return parcels;
   });

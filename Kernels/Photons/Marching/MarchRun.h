@@ -14,21 +14,21 @@ inline const int* WhereIs(const PhotonOnItsWay& photon)
   return photon.way.voxel;
 }
 
-/// Marches photons through one block of a grid, as far as the block goes.
-class BlockMarch
+/// Marches photons through what a rank has of a grid: to their ends or, in a block of it, as far as that goes.
+class MarchRun
 {
 public:
   /// @param medium, target  must stay
   /// @param packed  its channels are those of all photons
-  BlockMarch(const MarchMedium& medium, const MarchSums& target, const PackedPhotons& packed);
+  MarchRun(const MarchMedium& medium, const MarchSums& target, const PackedPhotons& packed);
 
   /// What became of photons.
   struct Outcome
   {
     std::vector<cl_int> ends;         ///< PhotonEnd and powers of each (Tally)
-    std::vector<PhotonOnItsWay> gone; ///< into other blocks, or that wait in this one, in any order
+    std::vector<PhotonOnItsWay> gone; ///< into other blocks, or waiting in this one, in any order
   };
-  /// From now on photons wait after so many stretches of their ways, or in the last turn are given up.
+  /// From now on photons in a block wait after so many stretches of their ways, or in the last turn are given up.
   void GoAsFarAs(const TurnSchedule& turn);
 
   /// Of photons that set off in the block.
