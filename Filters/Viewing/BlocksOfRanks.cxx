@@ -2,8 +2,8 @@
 
 #include "CasterProperties.h"
 #include "Pieces/PieceBlocks.h"
-#include "Viewing/Blocks/BlockOrder.h"
 #include "Viewing/Scene/BlockOfScene.h"
+#include "Viewing/Scene/GridBlock.h"
 
 #include "vtkImageData.h"
 

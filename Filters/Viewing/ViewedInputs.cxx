@@ -7,7 +7,7 @@
 #include "Distribution/SharedMedium.h"
 #include "Medium/BoxFaces.h"
 #include "Medium/GridOfBox.h"
-#include "Viewing/Blocks/BlockFaces.h"
+#include "Viewing/Scene/GridBlock.h"
 #include "vtkMediumRayCaster.h"
 
 #include "vtkCellData.h"

@@ -7,7 +7,6 @@
 #include "Viewing/Backdrop/Backdrop.h"
 #include "Viewing/Rays/Picture.h"
 #include "Viewing/Rays/RayCasting.h"
-#include "Viewing/Rays/Starts.h"
 #include "Viewing/Samples/PackedSamples.h"
 #include "Viewing/Scene/BlockOfScene.h"
 #include "Viewing/Scene/Camera.h"
@@ -49,7 +48,7 @@ namespace tyndall
 /// scatters evenly. Shadow rays go straight on, through glass as well.
 ///
 /// Where voxels at the faces of the box are thicker than a mean free path, rays that come in through such a face show
-/// the radiance that the solver says leaves there (`surface`), see SurfaceLight.h: in straight views of all light,
+/// the radiance that the solver says leaves there (`surface`), see BackdropTables.h: in straight views of all light,
 /// without shadow rays, directions of light or a table.
 ///
 /// sigma_s and sigma_t are the medium's own in every term, also where a solver worked with sigma_s (1 - g).

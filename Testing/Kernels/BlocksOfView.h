@@ -3,8 +3,8 @@
 #include "ViewScene.h"
 
 #include "Distribution/BoxExchange.h"
-#include "Viewing/Blocks/BlockFaces.h"
 #include "Viewing/Scene/BlockOfScene.h"
+#include "Viewing/Scene/GridBlock.h"
 
 /// Scenes that are spread over blocks.
 namespace viewing

@@ -2,9 +2,9 @@
 
 #include "BlocksOfView.h"
 
-#include "Viewing/Blocks/BlockOrder.h"
 #include "Viewing/Blocks/BlockPixels.h"
 #include "Viewing/Blocks/ShownBlock.h"
+#include "Viewing/Scene/GridBlock.h"
 
 using namespace viewing;
 

@@ -3,9 +3,9 @@
 #include "BlocksOfView.h"
 
 #include "Distribution/RanksInThreads.h"
-#include "Viewing/Blocks/BlockOrder.h"
 #include "Viewing/Blocks/BlockPixels.h"
 #include "Viewing/Blocks/PictureInBlocks.h"
+#include "Viewing/Scene/GridBlock.h"
 
 #include <memory>
 #include <mutex>

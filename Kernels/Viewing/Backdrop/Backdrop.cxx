@@ -1,9 +1,6 @@
 #include "Viewing/Backdrop/Backdrop.h"
 
-#include "Viewing/Backdrop/EnvironmentPixels.h"
-#include "Viewing/Backdrop/GroundLight.h"
-#include "Viewing/Backdrop/SurfaceLight.h"
-#include "Viewing/Backdrop/TableLight.h"
+#include "Viewing/Backdrop/BackdropTables.h"
 
 #include <vector>
 

@@ -32,10 +32,10 @@ public:
   const Buffer<cl_float4>& SharpEnvironment() const { return this->SharpPixels; }
 
   int FacesOfGround() const { return this->GroundBits; }                ///< a bit for each
-  const Buffer<cl_float4>& Ground() const { return this->GroundCells; } ///< see GroundLight.h
-  const Buffer<cl_float4>& Table() const { return this->TableCells; }   ///< see TableLight.h
+  const Buffer<cl_float4>& Ground() const { return this->GroundCells; } ///< see BackdropTables.h
+  const Buffer<cl_float4>& Table() const { return this->TableCells; }   ///< see BackdropTables.h
   bool HasSurfaceLight() const { return this->SurfaceCells.Size() > 0; }
-  const Buffer<cl_float4>& SurfaceLight() const { return this->SurfaceCells; } ///< see SurfaceLight.h
+  const Buffer<cl_float4>& SurfaceLight() const { return this->SurfaceCells; } ///< see BackdropTables.h
 
 private:
   bool UnderSky = false;

@@ -4,7 +4,7 @@
 #include "Viewing/Backdrop/BoxFacePlaces.cl"
 
 // What rays see that leave the box, if they do, through such a face; else what is behind.
-//   ground  radiance, see GroundLight.h
+//   ground  radiance, see BackdropTables.h
 //   faces   a bit for each face, -x to +z, that gives back light
 //   p       a place on the way out from which they go straight on, in voxels
 inline rgb ground_or_behind(

@@ -9,7 +9,7 @@
 #define PART_AT(x, a, b, c, d) (((x)-b) * ((x)-c) * ((x)-d) * (1.0f / ((a - b) * (a - c) * (a - d))))
 
 // What is missing in the march of rays that enter the box: radiance at the eye, 0 for those that start within.
-//   table   see SurfaceLight.h
+//   table   see BackdropTables.h
 //   d       unit vectors of the rays, world
 //   before  length before each enters; 0 where it does not
 inline rgb surface_light(__global const float4* table, rays packet, real3 d, real before, int4 size)

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "Viewing/Rays/Picture.h"
-#include "Viewing/Rays/Starts.h"
 
 #include <algorithm>
 #include <array>

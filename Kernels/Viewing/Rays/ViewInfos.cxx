@@ -2,7 +2,7 @@
 
 #include "Numerics/Constants.h"
 #include "Numerics/Vectors.h"
-#include "Viewing/Backdrop/BoxFaceTables.h"
+#include "Viewing/Backdrop/BackdropTables.h"
 #include "Viewing/Scene/ViewChecks.h"
 
 #include <algorithm>

@@ -47,7 +47,7 @@ public:
   const cl::Buffer& Glow() const { return this->Emission.Handle(); }     ///< where ViewTraits::GlowsApart
   const cl::Buffer& Cosines() const { return this->ColouredG.Handle(); } ///< coloured g by voxel
   const Buffer<cl_float4>& Bending() const { return this->Gradients; }   ///< gradient of n^2, and n^2
-  const Buffer<cl_char>& Bricks() const { return this->Distances; }      ///< see Bricks.h
+  const Buffer<cl_char>& Bricks() const { return this->Distances; }      ///< see FindDistances
   const Buffer<cl_int>& Records() const { return this->First; }          ///< SampleBricks::first
   const std::array<int, 3>& BrickCount() const { return this->Count; }
 

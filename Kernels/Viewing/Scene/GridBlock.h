@@ -1,9 +1,11 @@
 #pragma once
 
 #include "Medium/Grid.h"
+#include "Viewing/Scene/Camera.h"
 
 #include <array>
 #include <cstddef>
+#include <vector>
 
 namespace tyndall
 {
@@ -24,4 +26,15 @@ struct GridBlock
       (this->end[2] - this->begin[2]);
   }
 };
+
+/// What belongs to a block of values on the faces of the whole (BoxFaces.h); 0 on the block's other faces.
+/// @param ofWhole     values of each cell of its faces
+/// @param components  values of a cell
+/// @param size        voxels of the block's arrays
+std::vector<float> FacesOfBlock(
+  const std::vector<float>& ofWhole, int components, const GridBlock& block, const std::array<int, 3>& size);
+
+/// The numbers of blocks of one grid, from front to back: no ray of the camera meets one of them after one that stands
+/// later. Where blocks hide each other in a circle, which those of a tree of planes do not, that cannot be for all.
+std::vector<int> FrontToBack(const std::vector<GridBlock>& blocks, const Camera& camera);
 }

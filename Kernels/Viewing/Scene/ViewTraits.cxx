@@ -1,12 +1,170 @@
 #include "Viewing/Scene/ViewTraits.h"
 
 #include "Device/Defines.h"
+#include "Numerics/Constants.h"
+#include "Numerics/Legendre.h"
+#include "Numerics/Vectors.h"
 #include "Viewing/Scene/ViewChecks.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/vec3.hpp>
 
 namespace tyndall
 {
+namespace
+{
+using Kind = PhaseFunction::Kind;
+using Functions = std::array<PhaseFunction, 3>;
+
+constexpr int MomentCount = 1024; ///< of functions of no formula; resolves 0.2 degrees
+constexpr double NoMore = 1e-7;   ///< moments times the anisotropy's power below this are left out
+constexpr double Resolved = 1e-6; ///< of the light may be missed by the rule of moments
+constexpr int RowLength = CosineRows + 2;
+
+bool AllOf(const Functions& functions, std::initializer_list<Kind> kinds)
+{
+  return std::all_of(functions.begin(), functions.end(), [&](const PhaseFunction& function) {
+    return std::find(kinds.begin(), kinds.end(), function.TheKind()) != kinds.end();
+  });
+}
+
+ViewedPhase::Formula FormulaOf(const Functions& functions)
+{
+  return std::all_of(functions.begin(), functions.end(), [](const PhaseFunction& f) { return f.IsIsotropic(); })
+    ? ViewedPhase::Even
+    : AllOf(functions, { Kind::Isotropic, Kind::HenyeyGreenstein }) ? ViewedPhase::HenyeyGreenstein
+    : AllOf(functions, { Kind::Isotropic, Kind::Schlick })          ? ViewedPhase::Schlick
+    : AllOf(functions, { Kind::Isotropic, Kind::HenyeyGreenstein, Kind::DoubleHenyeyGreenstein })
+    ? ViewedPhase::TwoLobes
+    : AllOf(functions, { Kind::Rayleigh }) ? ViewedPhase::Rayleigh
+                                           : ViewedPhase::Rows;
+}
+
+/// k/g of Schlick's function of mean cosine g, by sqrt(1 - g).
+std::vector<float> RowsOfSchlick()
+{
+  std::vector<float> rows;
+  for (int row = 0; row <= SchlickRows; ++row)
+  {
+    const double aside = static_cast<double>(row) / SchlickRows;
+    const double g = 1.0 - aside * aside;
+    rows.push_back(static_cast<float>(row == 0 ? 1.0
+        : row == SchlickRows                   ? 1.5
+                                               : PhaseFunction::Schlick(g).Shape().first / g));
+  }
+  rows.push_back(rows.back());
+  return rows;
+}
+
+/// The cosine of a row, as in PhaseFunction.cl.
+double CosineOfRow(int row)
+{
+  const double aside = 2.0 * std::min(row, CosineRows - row) / CosineRows;
+  return 2 * row < CosineRows ? 1.0 - aside * aside : aside * aside - 1.0;
+}
+
+/// (2 l + 1) times the Legendre moments of a function, by a rule that sees all that the rows can show. What it misses,
+/// of a peak that is narrower, is added as a beam in the mean direction of that.
+std::vector<double> WeightedMoments(const PhaseFunction& function)
+{
+  static const GaussLegendre rule(MomentCount);
+  std::vector<double> moments(MomentCount, 0.0);
+  const auto add = [&](double part, double cosine) {
+    const std::vector<double> p = LegendrePolynomials(MomentCount - 1, cosine);
+    for (int l = 0; l < MomentCount; ++l)
+    {
+      moments[l] += part * p[l];
+    }
+  };
+  for (std::size_t i = 0; i < rule.points.size(); ++i)
+  {
+    add(2.0 * Pi * rule.weights[i] * function.Value(rule.points[i]), rule.points[i]);
+  }
+  const double missed = 1.0 - moments[0];
+  if (missed > Resolved)
+  {
+    add(missed, std::clamp((function.MeanCosine() - moments[1]) / missed, -1.0, 1.0));
+  }
+  for (int l = MomentCount - 1; l >= 0; --l)
+  {
+    moments[l] *= (2 * l + 1) / moments[0];
+  }
+  return moments;
+}
+
+/// 4 pi times the function, averaged over light spread about its mean direction: sum of (2 l + 1) chi_l a^l P_l(c),
+/// numerics.md, Eq. (108a).
+void AddSpreadRows(const PhaseFunction& function, std::vector<float>& rows)
+{
+  const std::vector<double> moments = WeightedMoments(function);
+  std::vector<std::vector<double>> factors(SpreadRows + 1);
+  for (int row = 1; row <= SpreadRows; ++row)
+  {
+    const double aside = static_cast<double>(row) / SpreadRows;
+    double power = 1.0;
+    for (int l = 0; l < MomentCount && power > NoMore; ++l, power *= 1.0 - aside * aside)
+    {
+      factors[row].push_back(moments[l] * power);
+    }
+  }
+  const std::size_t first = rows.size();
+  rows.resize(first + static_cast<std::size_t>(SpreadRows + 2) * RowLength);
+  for (int column = 0; column < RowLength; ++column)
+  {
+    const double cosine = CosineOfRow(std::min<int>(column, CosineRows));
+    const std::vector<double> p = LegendrePolynomials(MomentCount - 1, cosine);
+    rows[first + column] = static_cast<float>(4.0 * Pi * function.Value(cosine)); // light of one direction
+    for (int row = 1; row <= SpreadRows + 1; ++row)
+    {
+      const std::vector<double>& factor = factors[std::min<int>(row, SpreadRows)];
+      double sum = 0.0;
+      for (std::size_t l = 0; l < factor.size(); ++l)
+      {
+        sum += factor[l] * p[l];
+      }
+      rows[first + static_cast<std::size_t>(row) * RowLength + column] = static_cast<float>(std::max(sum, 0.0));
+    }
+  }
+}
+}
+
+ViewedPhase ViewedPhaseOf(const PhaseOfMedium& phase)
+{
+  const Functions functions = { phase.OfChannel(0), phase.OfChannel(1), phase.OfChannel(2) };
+  ViewedPhase viewed;
+  viewed.varies = phase.Varies();
+  viewed.channels = phase.HasColour() ? 3 : 1;
+  viewed.formula = !viewed.varies             ? FormulaOf(functions)
+    : functions[0].TheKind() == Kind::Schlick ? ViewedPhase::Schlick
+                                              : ViewedPhase::HenyeyGreenstein;
+  glm::dvec3 first, second, part;
+  for (int c = 0; c < 3; ++c)
+  {
+    const PhaseFunction::Parameters& shape = functions[c].Shape();
+    first[c] = viewed.formula == ViewedPhase::Schlick ? functions[c].MeanCosine() : shape.first;
+    second[c] = shape.second;
+    part[c] = shape.part;
+  }
+  viewed.parameters = { Float4(first), Float4(second), Float4(part) };
+  return viewed;
+}
+
+std::vector<float> RowsOf(const ViewedPhase& viewed, const PhaseOfMedium& phase)
+{
+  if (viewed.formula == ViewedPhase::Schlick)
+  {
+    return RowsOfSchlick();
+  }
+  std::vector<float> rows;
+  for (int c = 0; c < viewed.channels && viewed.formula == ViewedPhase::Rows; ++c)
+  {
+    AddSpreadRows(phase.OfChannel(c), rows);
+  }
+  return rows;
+}
+
 namespace
 {
 constexpr double FilledAtMost = 0.25; ///< of bricks: samples at their faces are there twice, and take memory, too

@@ -1,15 +1,103 @@
-#include "Viewing/Backdrop/SurfaceLight.h"
+#include "Viewing/Backdrop/BackdropTables.h"
 
+#include "LightPropagation/Uncollided/EnvironmentPeaks.h"
 #include "Medium/BoxFaces.h"
 #include "Numerics/Constants.h"
-#include "Viewing/Backdrop/BoxFaceTables.h"
+#include "Numerics/Vectors.h"
 #include "Viewing/Scene/BlockOfScene.h"
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
 
 namespace tyndall
 {
+std::array<int, 2> FaceSize(const Grid& grid, int face)
+{
+  const PlaneAxes axes = AcrossAxis(face / 2);
+  return { grid.size[axes.u], grid.size[axes.v] };
+}
+
+std::vector<cl_float4> WithBorders(const Grid& grid, const std::vector<cl_float4>& cells)
+{
+  std::vector<cl_float4> padded;
+  std::size_t first = 0;
+  for (int face = 0; face < 6; ++face)
+  {
+    const std::array<int, 2> size = FaceSize(grid, face);
+    for (int j = -1; j <= size[1]; ++j)
+    {
+      for (int i = -1; i <= size[0]; ++i)
+      {
+        const std::size_t row = std::clamp(j, 0, size[1] - 1);
+        padded.push_back(cells[first + row * size[0] + std::clamp(i, 0, size[0] - 1)]);
+      }
+    }
+    first += static_cast<std::size_t>(size[0]) * size[1];
+  }
+  return padded;
+}
+
+int GroundFaces(const SolvedLight& light)
+{
+  int faces = 0;
+  for (int face = 0; face < 6 && light.facePower.values; ++face)
+  {
+    faces |= IsBlack(light.faceAlbedo[face]) ? 0 : 1 << face;
+  }
+  return faces;
+}
+
+std::vector<cl_float4> GroundLight(const Grid& grid, const SolvedLight& light)
+{
+  if (GroundFaces(light) == 0)
+  {
+    return {};
+  }
+  std::vector<cl_float4> cells(BoxFaceCellCount(grid));
+  ForBoxFaceCells(grid, [&](const BoxFaceCell& cell) {
+    for (int c = 0; c < 3; ++c)
+    {
+      const double leaves = light.facePower.At(cell.number, light.facePower.components == 3 ? c : 0);
+      cells[cell.number].s[c] = static_cast<float>(light.faceAlbedo[cell.face][c] * leaves / Pi);
+    }
+  });
+  return WithBorders(grid, cells);
+}
+
+std::vector<cl_float4> TableLight(
+  const Grid& grid, const Field& fluence, const Field& meanDirection, const Field& ior, int face, bool fromBelow)
+{
+  const int axis = face / 2;
+  const double outwards = face % 2 ? 1.0 : -1.0;
+  const std::array<int, 2> size = FaceSize(grid, face);
+  const std::array<std::size_t, 3> strides = grid.Strides();
+  std::vector<cl_float4> lit;
+  lit.reserve(static_cast<std::size_t>(size[0] + 2) * (size[1] + 2));
+  for (int j = -1; j <= size[1]; ++j)
+  {
+    for (int i = -1; i <= size[0]; ++i)
+    {
+      const std::size_t voxel = std::clamp(i, 0, size[0] - 1) * strides[AcrossAxis(axis).u] +
+        std::clamp(j, 0, size[1] - 1) * strides[AcrossAxis(axis).v] +
+        (face % 2 ? grid.size[axis] - 1 : 0) * strides[axis];
+      const double n = ior.values ? ior.values[voxel] : 1.0;
+      glm::dvec3 mean(0.0);
+      if (meanDirection.values)
+      {
+        const float* m = meanDirection.values + 3 * voxel;
+        mean = glm::dvec3(m[0], m[1], m[2]) / std::max(1.0, glm::length(glm::dvec3(m[0], m[1], m[2])));
+      }
+      const double even = fromBelow || !meanDirection.values ? 0.25 * (1.0 - glm::length(mean)) : 0.0;
+      const double part = even + std::max(outwards * mean[axis], 0.0);
+      const glm::dvec3 all(fluence.At(voxel, 0), fluence.At(voxel, 1), fluence.At(voxel, 2));
+      lit.push_back(Float4(all * (part / (Pi * n * n)), 0.0));
+    }
+  }
+  return lit;
+}
+
 namespace
 {
 constexpr double AllOfIt = 2.0;                   ///< in ThickAtSurface
@@ -162,5 +250,47 @@ std::vector<cl_float4> SurfaceLight(const Medium& medium, const SolvedLight& lig
     table.insert(table.end(), padded.begin(), padded.end());
   }
   return table;
+}
+
+namespace
+{
+constexpr int DirectionsOfPeaks = 25; ///< a face, by which the environment's peaks are told from the rest
+
+/// A column more on both sides.
+std::vector<cl_float4> ClosedEnvironment(const Environment& environment)
+{
+  const int width = environment.width;
+  std::vector<cl_float4> pixels(static_cast<std::size_t>(width + 2) * environment.height);
+  for (int j = 0; j < environment.height; ++j)
+  {
+    for (int i = 0; i < width + 2; ++i)
+    {
+      const std::size_t from = 3 * (static_cast<std::size_t>(j) * width + (i + width - 1) % width);
+      pixels[static_cast<std::size_t>(j) * (width + 2) + i] = { { environment.radiance[from],
+        environment.radiance[from + 1], environment.radiance[from + 2], 0.0f } };
+    }
+  }
+  return pixels;
+}
+}
+
+EnvironmentPixels PixelsOf(const Environment& environment, bool peaksApart)
+{
+  EnvironmentPixels pixels;
+  pixels.shown = ClosedEnvironment(environment);
+  if (peaksApart)
+  {
+    // What is small and bright is one of the lamps: what of it comes straight on without being scattered is seen apart.
+    pixels.sharp = pixels.shown;
+    pixels.shown = ClosedEnvironment(Split(environment, EquiangularDirections(DirectionsOfPeaks)).smooth);
+    for (std::size_t i = 0; i < pixels.sharp.size(); ++i)
+    {
+      for (int c = 0; c < 3; ++c)
+      {
+        pixels.sharp[i].s[c] -= pixels.shown[i].s[c];
+      }
+    }
+  }
+  return pixels;
 }
 }
