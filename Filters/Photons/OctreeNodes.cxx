@@ -25,23 +25,6 @@ namespace
 {
 using Voxel = std::array<int, 3>;
 
-/// Levels of voxels, one after the other.
-struct LevelsOfVoxels
-{
-  int At(const Voxel& voxel) const { return this->levels[this->grid.IndexOf(voxel)]; }
-
-  const Grid& grid;
-  const std::vector<std::uint8_t>& levels;
-};
-
-/// Levels in bricks.
-struct LevelsInBricks
-{
-  int At(const Voxel& voxel) const { return this->levels.At(voxel); }
-
-  const BrickedBytes& levels;
-};
-
 /// Borders of the roots along an axis.
 vtkSmartPointer<vtkDoubleArray> Borders(const Grid& grid, int axis, int rootLevel)
 {
@@ -64,11 +47,10 @@ struct Tree
   vtkIdType nodes = 0;
 };
 
-template <class Levels>
 class TreeDescriber
 {
 public:
-  TreeDescriber(const Grid& grid, const Levels& levels)
+  TreeDescriber(const Grid& grid, const BrickedBytes& levels)
     : TheGrid(grid)
     , TheLevels(levels)
   {
@@ -123,16 +105,15 @@ private:
   }
 
   const Grid& TheGrid;
-  const Levels& TheLevels;
+  const BrickedBytes& TheLevels;
 };
 
 /// Trees of some roots. They are apart from each other: each is described and built on some core.
-template <class Levels>
 std::vector<Tree> Build(
-  const Grid& grid, const Levels& all, int rootLevel, const VoxelBox& roots, vtkHyperTreeGrid* nodes)
+  const Grid& grid, const BrickedBytes& all, int rootLevel, const VoxelBox& roots, vtkHyperTreeGrid* nodes)
 {
   const auto count = roots.VoxelCount();
-  const TreeDescriber<Levels> describer(grid, all);
+  const TreeDescriber describer(grid, all);
   std::vector<Tree> trees(count);
   std::vector<vtkHyperTree*> built(count);
   std::vector<Voxel> places(count);
@@ -171,44 +152,6 @@ std::vector<Tree> Build(
   }
   return trees;
 }
-
-template <class Levels>
-vtkIdType FillFrom(const OctreeRoots& roots, const VoxelBox& some, const Levels& all, vtkHyperTreeGrid* nodes)
-{
-  const Grid& grid = roots.grid;
-  const int rootLevel = roots.level;
-  nodes->Initialize();
-  nodes->SetBranchFactor(2);
-  nodes->SetXCoordinates(Borders(grid, 0, rootLevel));
-  nodes->SetYCoordinates(Borders(grid, 1, rootLevel));
-  nodes->SetZCoordinates(Borders(grid, 2, rootLevel));
-  nodes->SetDimensions(static_cast<unsigned int>(nodes->GetXCoordinates()->GetNumberOfTuples()),
-    static_cast<unsigned int>(nodes->GetYCoordinates()->GetNumberOfTuples()),
-    static_cast<unsigned int>(nodes->GetZCoordinates()->GetNumberOfTuples()));
-
-  std::vector<unsigned char> levels, outside;
-  vtkIdType count = 0;
-  for (const Tree& tree : Build(grid, all, rootLevel, some, nodes))
-  {
-    levels.insert(levels.end(), tree.levels.begin(), tree.levels.end());
-    outside.insert(outside.end(), tree.outside.begin(), tree.outside.end());
-    count += tree.nodes;
-  }
-  if (std::find(outside.begin(), outside.end(), 1) != outside.end())
-  {
-    vtkNew<vtkBitArray> mask;
-    mask->SetNumberOfValues(static_cast<vtkIdType>(outside.size()));
-    for (std::size_t i = 0; i < outside.size(); ++i)
-    {
-      mask->SetValue(static_cast<vtkIdType>(i), outside[i]);
-    }
-    nodes->SetMask(mask);
-  }
-  const auto levelOfVertices = ArrayOf<vtkUnsignedCharArray>("octree_level", std::move(levels), 1);
-  LeaveRanges(levelOfVertices);
-  nodes->GetCellData()->SetScalars(levelOfVertices);
-  return count;
-}
 }
 
 OctreeRoots::OctreeRoots(const Grid& whole, int topLevel, int largest)
@@ -241,20 +184,45 @@ VoxelBox OctreeRoots::VoxelsOf(const VoxelBox& roots) const
   return voxels;
 }
 
-vtkIdType FillWithNodes(const Grid& grid, const Octree& octree, vtkHyperTreeGrid* nodes)
-{
-  const OctreeRoots all(grid, octree.topLevel, *std::max_element(octree.levels.begin(), octree.levels.end()));
-  return FillFrom(all, all.Of({ { 0, 0, 0 }, grid.size }), LevelsOfVoxels{ grid, octree.levels }, nodes);
-}
-
 vtkIdType FillWithNodes(
-  const OctreeRoots& all, const VoxelBox& roots, const BrickedBytes& levels, vtkHyperTreeGrid* nodes)
+  const OctreeRoots& all, const VoxelBox& roots, const BrickedBytes& ofRoots, vtkHyperTreeGrid* nodes)
 {
+  nodes->Initialize();
   if (roots.VoxelCount() == 0)
   {
-    nodes->Initialize();
     return 0;
   }
-  return FillFrom(all, roots, LevelsInBricks{ levels }, nodes);
+  const Grid& grid = all.grid;
+  const int rootLevel = all.level;
+  nodes->SetBranchFactor(2);
+  nodes->SetXCoordinates(Borders(grid, 0, rootLevel));
+  nodes->SetYCoordinates(Borders(grid, 1, rootLevel));
+  nodes->SetZCoordinates(Borders(grid, 2, rootLevel));
+  nodes->SetDimensions(static_cast<unsigned int>(nodes->GetXCoordinates()->GetNumberOfTuples()),
+    static_cast<unsigned int>(nodes->GetYCoordinates()->GetNumberOfTuples()),
+    static_cast<unsigned int>(nodes->GetZCoordinates()->GetNumberOfTuples()));
+
+  std::vector<unsigned char> levels, outside;
+  vtkIdType count = 0;
+  for (const Tree& tree : Build(grid, ofRoots, rootLevel, roots, nodes))
+  {
+    levels.insert(levels.end(), tree.levels.begin(), tree.levels.end());
+    outside.insert(outside.end(), tree.outside.begin(), tree.outside.end());
+    count += tree.nodes;
+  }
+  if (std::find(outside.begin(), outside.end(), 1) != outside.end())
+  {
+    vtkNew<vtkBitArray> mask;
+    mask->SetNumberOfValues(static_cast<vtkIdType>(outside.size()));
+    for (std::size_t i = 0; i < outside.size(); ++i)
+    {
+      mask->SetValue(static_cast<vtkIdType>(i), outside[i]);
+    }
+    nodes->SetMask(mask);
+  }
+  const auto levelOfVertices = ArrayOf<vtkUnsignedCharArray>("octree_level", std::move(levels), 1);
+  LeaveRanges(levelOfVertices);
+  nodes->GetCellData()->SetScalars(levelOfVertices);
+  return count;
 }
 }

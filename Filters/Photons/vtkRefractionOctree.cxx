@@ -75,11 +75,10 @@ Quantities Read(vtkRefractionOctree* filter, vtkImageData* image)
   return read;
 }
 
-tyndall::Octree Build(vtkRefractionOctree* filter, vtkImageData* image)
+tyndall::Octree Build(vtkRefractionOctree* filter, const tyndall::Domain& domain, const Quantities& read)
 {
-  const Quantities read = Read(filter, image);
-  return tyndall::BuildOctree(tyndall::Domain(read.medium.grid), read.medium, read.index, SettingsOf(filter),
-    filter->GetDevice(), tyndall::MonitorOf(filter));
+  return tyndall::BuildOctree(
+    domain, read.medium, read.index, SettingsOf(filter), filter->GetDevice(), tyndall::MonitorOf(filter));
 }
 
 /// Levels of a rank's block as those of the voxels that its output is to have. All ranks call it.
@@ -91,26 +90,22 @@ std::vector<std::uint8_t> SpreadToHeld(
   return std::vector<std::uint8_t>(values.begin(), values.end());
 }
 
-/// Each rank the trees whose roots begin in its block. @return the nodes of all. All ranks call it.
-vtkIdType FillWithTrees(tyndall::Communicator& communicator, const tyndall::BlockPartition& partition,
-  const tyndall::Octree& octree, vtkHyperTreeGrid* nodes)
+/// Makes the trees whose roots begin in this rank's block. Collective. @return the nodes of all ranks
+vtkIdType FillWithTrees(const tyndall::Domain& domain, const tyndall::Octree& octree, vtkHyperTreeGrid* nodes)
 {
   const auto largest = std::max_element(octree.levels.begin(), octree.levels.end());
-  const std::vector<double> ofAll =
-    communicator.Largest({ largest != octree.levels.end() ? 1.0 * *largest : 0.0, 1.0 * octree.topLevel });
-  const tyndall::OctreeRoots roots(partition.whole, static_cast<int>(ofAll[1]), static_cast<int>(ofAll[0]));
+  const double ofAll = domain.Max(largest != octree.levels.end() ? *largest : 0);
+  const tyndall::OctreeRoots roots(domain.Whole(), octree.topLevel, static_cast<int>(ofAll));
   std::vector<tyndall::VoxelBox> wanted;
-  for (const tyndall::VoxelBox& block : partition.blocks)
+  for (const tyndall::VoxelBox& block : domain.Partition().blocks)
   {
     wanted.push_back(roots.VoxelsOf(roots.Of(block)));
   }
-  const tyndall::BrickedBytes levels = tyndall::BytesOfBoxes(communicator, partition, octree.levels, wanted);
+  const tyndall::BrickedBytes levels = tyndall::BytesOfBoxes(domain.Comm(), domain.Partition(), octree.levels, wanted);
   double count = 0.0;
-  communicator.Collective([&] {
-    const tyndall::VoxelBox own = roots.Of(partition.blocks[static_cast<std::size_t>(communicator.Rank())]);
-    count = static_cast<double>(tyndall::FillWithNodes(roots, own, levels, nodes));
-  });
-  return static_cast<vtkIdType>(communicator.Sum({ count })[0]);
+  domain.Collective(
+    [&] { count = static_cast<double>(tyndall::FillWithNodes(roots, roots.Of(domain.Own()), levels, nodes)); });
+  return static_cast<vtkIdType>(domain.Sum(count));
 }
 
 void AddLevels(vtkImageData* output, std::vector<std::uint8_t>&& levels)
@@ -203,10 +198,10 @@ bool vtkRefractionOctree::BuildPiece(vtkInformation* request, vtkMultiProcessCon
       read = Read(this, own);
     }
   });
-  tyndall::Octree octree = tyndall::BuildOctree(tyndall::Domain(communicator, pieces.Partition()), read.medium,
-    read.index, SettingsOf(this), this->Device, tyndall::MonitorOf(this));
+  const tyndall::Domain domain(communicator, pieces.Partition());
+  tyndall::Octree octree = Build(this, domain, read);
   vtkHyperTreeGrid* const nodes = vtkHyperTreeGrid::GetData(outputs, 1);
-  this->NodeCount = FillWithTrees(communicator, pieces.Partition(), octree, nodes);
+  this->NodeCount = FillWithTrees(domain, octree, nodes);
   octree.levels = SpreadToHeld(communicator, pieces, octree.levels);
   tyndall::TellExtent(asking, outputs->GetInformationObject(1), nodes->GetExtent());
   vtkImageData* const output = vtkImageData::GetData(outputs, 0);
@@ -228,12 +223,13 @@ int vtkRefractionOctree::RequestData(
                                           } };
   return tyndall::Guarded(this, request, given, outputs, onPieces, [&](vtkInformationVector** inputs) {
     vtkImageData* image = vtkImageData::GetData(inputs[0]);
-    tyndall::Octree octree = Build(this, image);
+    const tyndall::Domain domain(tyndall::GridOf(image));
+    tyndall::Octree octree = Build(this, domain, Read(this, image));
 
     vtkHyperTreeGrid* const nodes = vtkHyperTreeGrid::GetData(outputs, 1);
     if (tyndall::IsFirstPiece(request, outputs))
     {
-      this->NodeCount = tyndall::FillWithNodes(tyndall::GridOf(image), octree, nodes);
+      this->NodeCount = FillWithTrees(domain, octree, nodes);
     }
     tyndall::TellExtent(tyndall::AskingPort(request, outputs), outputs->GetInformationObject(1), nodes->GetExtent());
     vtkImageData* output = vtkImageData::GetData(outputs, 0);
