@@ -1,7 +1,7 @@
 #include "CasterProperties.h"
 
 #include "Common/LightTransportData.h"
-#include "Viewing/Scene/ViewQuality.h"
+#include "Viewing/Scene/ViewSettings.h"
 #include "Viewing/ToneMapping.h"
 #include "vtkMediumRayCaster.h"
 

@@ -22,7 +22,7 @@
 #include "ViewedInputs.h"
 #include "Viewing/Blocks/PictureInBlocks.h"
 #include "Viewing/MediumRayCaster.h"
-#include "Viewing/Scene/ViewQuality.h"
+#include "Viewing/Scene/ViewSettings.h"
 #include "Viewing/ToneMapping.h"
 
 #include "vtkCellData.h"

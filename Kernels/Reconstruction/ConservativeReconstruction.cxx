@@ -6,7 +6,7 @@
 #include "Distribution/BoxExchange.h"
 #include "Numerics/PyramidLayout.h"
 #include "Reconstruction/ConservativeReconstructionShared.h"
-#include "Reconstruction/LightRows.h"
+#include "Reconstruction/LightPyramid.h"
 #include "TyndallKernelSources.h"
 
 #include <algorithm>

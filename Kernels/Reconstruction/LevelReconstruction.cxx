@@ -6,7 +6,6 @@
 #include "Device/HostThreads.h"
 #include "Device/Sizes.h"
 #include "Reconstruction/LightPyramid.h"
-#include "Reconstruction/LightRows.h"
 #include "TyndallKernelSources.h"
 
 #include <algorithm>

@@ -1,6 +1,7 @@
 #include "Reconstruction/LightPyramid.h"
 
 #include "Device/Defines.h"
+#include "Device/GroupSize.h"
 #include "Numerics/PyramidLayout.h"
 #include "TyndallKernelSources.h"
 
@@ -8,6 +9,161 @@
 
 namespace tyndall
 {
+int RowWidth(const Device& device, const Grid& grid)
+{
+  return grid.size[0] >= 16 ? device.KernelWidth(8, 8) : 1;
+}
+
+namespace
+{
+/// As layer_of and field_of in LightRows.cl. Rows of one place in all layers and quantities are used together; with
+/// strides that are multiples of 4 kB they would all want the same few places of the cache. So a
+/// layer ends with 3 and a quantity with 41 lines of 64 bytes that are not used.
+std::size_t LayerStride(const std::array<int, 3>& size, int stride)
+{
+  const std::size_t layer = Count(size[1]) * Count(stride);
+  return layer < 1024 ? layer : layer + 48;
+}
+
+std::size_t FieldStride(const std::array<int, 3>& size, int stride)
+{
+  const std::size_t field = LayerStride(size, stride) * Count(size[2]);
+  return field < 1024 ? field : field + 656;
+}
+}
+
+cl_int4 LightRows::LayoutOf(const std::array<int, 3>& size, int width)
+{
+  return { { size[0], size[1], size[2], WholeVectors(size[0], width) + 2 * (width > 1 ? width : 2) } };
+}
+
+std::size_t LightRows::CountOf(const std::array<int, 3>& size, int fields, int width)
+{
+  return FieldStride(size, LayoutOf(size, width).s[3]) * Count(fields);
+}
+
+LightRows::LightRows(Device& device, const std::array<int, 3>& size, int fields, int width, const char* what)
+  : Size(size)
+  , FieldCount(fields)
+  , Stride(LayoutOf(size, width).s[3])
+  , Width(width)
+  , Memory(device, CountOf(size, fields, width), what)
+{
+}
+
+template <class Act>
+void LightRows::ForValues(const Act& act) const
+{
+  const std::size_t layer = LayerStride(this->Size, this->Stride), field = FieldStride(this->Size, this->Stride);
+  const int guard = this->Width > 1 ? this->Width : 2;
+  std::size_t cell = 0;
+  for (int z = 0; z < this->Size[2]; ++z)
+  {
+    for (int y = 0; y < this->Size[1]; ++y)
+    {
+      for (int x = 0; x < this->Size[0]; ++x, ++cell)
+      {
+        for (int f = 0; f < this->FieldCount; ++f)
+        {
+          act(cell, x, f, Count(f) * field + Count(z) * layer + Count(y) * Count(this->Stride) + Count(guard + x));
+        }
+      }
+    }
+  }
+}
+
+std::vector<float> LightRows::Read() const
+{
+  const std::vector<float> memory = this->Memory.Read();
+  std::vector<float> cells(
+    Count(this->Size[0]) * Count(this->Size[1]) * Count(this->Size[2]) * Count(this->FieldCount));
+  this->ForValues([&](std::size_t cell, int, int field, std::size_t place) {
+    cells[cell * Count(this->FieldCount) + Count(field)] = memory[place];
+  });
+  return cells;
+}
+
+void LightRows::Write(const std::vector<float>& cells)
+{
+  std::vector<float> memory(CountOf(this->Size, this->FieldCount, this->Width), 0.0f);
+  const int end = WholeVectors(this->Size[0], this->Width) + 2;
+  this->ForValues([&](std::size_t cell, int x, int field, std::size_t place) {
+    const float value = cells[cell * Count(this->FieldCount) + Count(field)];
+    memory[place] = value;
+    if (x == 0)
+    {
+      memory[place - 1] = memory[place - 2] = value;
+    }
+    for (int beyond = 1; x == this->Size[0] - 1 && x + beyond < end; ++beyond)
+    {
+      memory[place + Count(beyond)] = value;
+    }
+  });
+  this->Memory.Write(memory.data(), memory.size());
+}
+
+RowKernels::RowKernels(Device& device, int width, const std::string& options)
+  : TheDevice(device)
+  , RowWidth(width)
+  , Options(Define("REAL_WIDTH", width) + options)
+{
+}
+
+cl::Kernel RowKernels::Kernel(const char* name, std::string_view source, const std::string& options) const
+{
+  return this->TheDevice.Kernel(name, source, this->Options + options);
+}
+
+void RowKernels::Run(
+  const cl::Kernel& kernel, const std::array<int, 3>& cells, std::size_t first, std::size_t layers) const
+{
+  if (this->RowWidth > 1)
+  {
+    this->TheDevice.Queue().enqueueNDRangeKernel(
+      kernel, cl::NDRange(0, first), cl::NDRange(Count(cells[1]), layers), GroupOfLargeItems(this->TheDevice, 2));
+  }
+  else
+  {
+    this->TheDevice.Queue().enqueueNDRangeKernel(
+      kernel, cl::NDRange(0, 0, first), cl::NDRange(Count(cells[0]), Count(cells[1]), layers), cl::NullRange);
+  }
+}
+
+WholeRows::WholeRows(const RowKernels& kernels, const HostMappedBuffer<float>& array, const std::array<int, 3>& size,
+  int volumes, int components, bool written, const char* what)
+  : Kernels(kernels)
+  , Own(array)
+  , Voxels(size[0])
+  , Components(components)
+  , Rows(Count(size[1]) * Count(size[2]) * Count(volumes))
+  , Pitch(WholeVectors(size[0], kernels.Width()))
+{
+  if (this->Pitch != this->Voxels)
+  {
+    this->Wide = Buffer<float>(kernels.On(), this->Rows * Count(this->Pitch) * Count(components), what);
+    if (!written)
+    {
+      this->Copy(this->Own.Handle(), this->Voxels, this->Wide.Handle(), this->Pitch);
+    }
+  }
+}
+
+void WholeRows::Fetch() const
+{
+  if (this->Wide.Size() > 0)
+  {
+    this->Copy(this->Wide.Handle(), this->Pitch, this->Own.Handle(), this->Voxels);
+  }
+  this->Own.Fetch();
+}
+
+void WholeRows::Copy(const cl::Buffer& from, int fromRow, const cl::Buffer& to, int toRow) const
+{
+  cl::Kernel kernel = this->Kernels.Kernel("copy_rows", kernel_source::LightPyramid);
+  With(kernel, from, cl_int(this->Voxels), cl_int(fromRow), to, cl_int(toRow), cl_int(this->Components));
+  this->Kernels.On().Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(this->Rows), cl::NullRange);
+}
+
 namespace
 {
 constexpr std::size_t Alignment = 1024; // floats at which a part of a buffer may begin, on every device

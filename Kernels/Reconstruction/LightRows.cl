@@ -130,7 +130,7 @@ inline int within(int i, int count)
 }
 
 // Floats from a layer of rows to the next, and from a quantity to the next. Not multiples of 4 kB, where they would
-// push each other out of the cache: see LightRows.cxx.
+// push each other out of the cache: see LightPyramid.cxx.
 inline size_t layer_of(int4 size)
 {
   const size_t layer = (size_t)size.y * size.w;

@@ -6,7 +6,7 @@
 #include "LatticeBoltzmann/LatticeSettings.h"
 #include "LightPropagation/Problem/DividedScene.h"
 #include "LightPropagation/Problem/PropagationQuality.h"
-#include "Viewing/Scene/ViewQuality.h"
+#include "Viewing/Scene/ViewSettings.h"
 
 #include <cmath>
 #include <string>

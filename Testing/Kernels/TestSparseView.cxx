@@ -1,7 +1,7 @@
 #include "ViewScene.h"
 
 #include "Viewing/Samples/SampleBricks.h"
-#include "Viewing/Scene/SeenBricks.h"
+#include "Viewing/Scene/ViewTraits.h"
 
 #include <cstdlib>
 #ifdef __GLIBC__

@@ -14,8 +14,8 @@
 #include "Photons/Marching/MarchRun.h"
 #include "Photons/Marching/PhotonPaths.h"
 #include "Photons/Marching/PhotonShares.h"
+#include "Photons/Scattering/PhotonScattering.h"
 #include "Photons/Scattering/ScatteredChannels.h"
-#include "Photons/Scattering/ScatteringRun.h"
 
 #include <algorithm>
 #include <cstdint>

@@ -28,7 +28,7 @@ static int is_filled(
 }
 
 // Whether anything extinguishes or shines in a brick, or bends with BENDS, or does so close enough to be interpolated
-// into it (seen: SeenBricks.h; the others are empty):
+// into it (seen: ViewTraits.h; the others are empty):
 // 1 it is empty, -1 it is not, 0 rays bend.
 //   known   voxels of `bending`, `before` of which lie before the first of the samples
 #if BRICKED

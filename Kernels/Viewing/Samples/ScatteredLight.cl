@@ -105,7 +105,7 @@ static void put_nothing(int place, __global float4* samples, __global float4* ex
 }
 #endif
 
-// Of voxels that rays do not see (SeenBricks.h) nothing is packed.
+// Of voxels that rays do not see (ViewTraits.h) nothing is packed.
 //
 // bricks   with BRICKED: of each record (SampleBricks.h)
 // single   1: only light that scatters once

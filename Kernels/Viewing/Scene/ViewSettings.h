@@ -1,8 +1,11 @@
 #pragma once
 
+#include "Light/Quality.h"
 #include "Lights/Lights.h"
 
 #include <array>
+#include <string>
+#include <vector>
 
 namespace tyndall
 {
@@ -44,4 +47,11 @@ struct ViewSettings
   double tableReflectance = 0.1; ///< part that the table mirrors, [0, 1]
   int packetWidth = 0; ///< rays marched together: 1, 4, 8 or 16; 0: what the device does best. Changes the time only
 };
+
+/// Settings of a quality: the step of rays and the samples of rectangular lights, as far as `settings` has them at
+/// their default values.
+ViewSettings AtQuality(Quality quality, ViewSettings settings);
+
+/// "Name = value" of each setting that a quality may choose.
+std::vector<std::string> Words(const ViewSettings& settings);
 }

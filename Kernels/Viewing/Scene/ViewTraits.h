@@ -1,10 +1,10 @@
 #pragma once
 
+#include "Medium/FilledBricks.h"
 #include "Medium/Traits.h"
 #include "PhaseFunction/PhaseOfMedium.h"
 #include "Refraction/Index/IndexRange.h"
 #include "Viewing/Scene/BlockOfScene.h"
-#include "Viewing/Scene/SeenBricks.h"
 #include "Viewing/Scene/SolvedLight.h"
 #include "Viewing/Scene/ViewSettings.h"
 #include "Viewing/Scene/ViewShared.h"
@@ -15,6 +15,18 @@
 
 namespace tyndall
 {
+/// Which bricks of a medium's grid rays have to look into: those that are filled, and their neighbours, into which
+/// values between voxel centres reach. Of the voxels of the others it is enough that they hold nothing.
+struct SeenBricks
+{
+  std::array<int, 3> count = { 0, 0, 0 };
+  std::vector<unsigned char> seen; ///< 1 or 0 of each, x fastest
+  bool all = true;                 ///< are
+};
+
+/// @param everywhere  rays do not leap over empty bricks: all are seen
+SeenBricks SeenBricksOf(const FilledBricks& filled, bool everywhere);
+
 /// How the ray caster's kernels evaluate a medium's phase function (Samples/PhaseFunction.cl): by a formula where there
 /// is one for light that is spread about its mean direction, else by a table.
 struct ViewedPhase

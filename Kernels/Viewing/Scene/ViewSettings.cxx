@@ -1,4 +1,4 @@
-#include "Viewing/Scene/ViewQuality.h"
+#include "Viewing/Scene/ViewSettings.h"
 
 #include "Numerics/NumberText.h"
 
