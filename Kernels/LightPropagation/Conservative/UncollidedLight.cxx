@@ -199,6 +199,12 @@ void UncollidedLight::FindScatteredInVoxels()
   this->OfLampsWithGhosts = { this->Parts.TheDevice, this->Block, this->ScatteredInVoxels, layout.channels,
     "light of lamps" };
   this->OfLampsWithGhosts.FillOwn();
+  for (GhostedBuffer* ofOneLamp : { &this->PathWithGhosts, &this->MomentsWithGhosts, &this->AllPathWithGhosts })
+  {
+    *ofOneLamp = {};
+  }
+  this->PathOfLamp = {};
+  this->MomentsOfLamp = {};
 }
 
 /// Weight of the difference of finer and usual directions (numerics.md, Eqs. (55), (76)): little in thick voxels, where
