@@ -1,5 +1,5 @@
 # Debian packages by CPack (./run package), of this build tree as it is: for ParaView tyndall-paraview, for plain VTK
-# libtyndall0.1, libtyndall-dev and python3-tyndall. They are packed for /usr, where Debian's programs look.
+# libtyndall0.2, libtyndall-dev and python3-tyndall. They are packed for /usr, where Debian's programs look.
 set(library_package "libtyndall${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}")
 set(opencl "pocl-opencl-icd | opencl-icd")
 if (Python3_VERSION_MINOR) # compiled for one Python
