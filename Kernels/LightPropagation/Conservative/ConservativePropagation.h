@@ -31,7 +31,8 @@ namespace tyndall
 /// (SweepInBlocks.h), and all that is decided or counted is so for the whole domain, so that the light is that of a
 /// serial solve, to rounding or, accelerated, to the tolerance. A rank holds its block, a halo of one voxel where the
 /// source is linear, and values by cells of the box's faces where these reflect or face power is asked for. Not over
-/// ranks: exact rays to small bright emission, DSA on cells round periodic axes, layers in the cosine alone (ReasonNotToDecompose).
+/// ranks: exact rays to small bright emission, DSA on cells round periodic axes, layers in the cosine alone
+/// (ReasonNotToDecompose).
 ///
 /// @param domain  of the grid. Collective: illumination and settings are the same on all ranks, but for memoryBudget
 /// @param medium  of this rank's block; of a block without voxels only the grid is read

@@ -26,8 +26,8 @@ public:
   bool HasGhosts() const { return this->Box.size != this->Of.Own().size; }
   /// In voxels of the whole grid, round periodic axes beyond its ends.
   const VoxelBox& Held() const { return this->Box; }
-  /// Periodic axes that the block spans from end to end: along these it needs no ghosts, and arrays with ghosts are of a
-  /// grid that is periodic.
+  /// Periodic axes that the block spans from end to end: along these it needs no ghosts, and arrays with ghosts are of
+  /// a grid that is periodic.
   const std::array<bool, 3>& Periodic() const { return this->Alone; }
   const VolumeLayout& Own() const { return this->OfBlock; }
   const VolumeLayout& WithGhosts() const { return this->OfBox; }

@@ -13,7 +13,8 @@ namespace tyndall
 /// The low-order solve of one channel (DiffusionSystem.h, numerics.md, section 7) on a domain: each rank has the
 /// balance of its own voxels, from the values of those beside them, and all solve it together by conjugate gradients
 /// and multigrid; a serial domain on its device (MultigridSolver.h), several ranks on their hosts
-/// (MultigridOverRanks.h). The same solution but for rounding and what the linear solver leaves. Made and called collectively.
+/// (MultigridOverRanks.h). The same solution but for rounding and what the linear solver leaves. Made and called
+/// collectively.
 class DiffusionSolver
 {
 public:
