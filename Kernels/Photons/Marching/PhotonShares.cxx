@@ -18,6 +18,10 @@ constexpr double Half = 0x1p31;
 
 std::vector<std::int64_t> SumExactly(Communicator& communicator, const std::vector<std::int64_t>& numbers)
 {
+  if (communicator.Ranks() == 1)
+  {
+    return numbers;
+  }
   std::vector<double> halves;
   for (const std::int64_t number : numbers)
   {
@@ -301,6 +305,10 @@ std::vector<Photon> ChosenOnEachRank(Communicator& communicator, const std::vect
 
 PackedPhotons ThoseIn(const VoxelBox& block, const Grid& whole, const PackedPhotons& packed)
 {
+  if (block.size == whole.size)
+  {
+    return packed;
+  }
   std::vector<PlacedPhoton> own = ByBlocks({ whole, { block, { { 0, 0, 0 }, whole.size } } }, packed)[0];
   StartingPhotons starting;
   starting.packed = packed;
