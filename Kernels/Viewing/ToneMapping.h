@@ -14,9 +14,9 @@ enum class ToneCurve
 
 struct ToneMapping
 {
-  /// What radiance is multiplied by before the curve; 0 chooses it so that the picture's logarithmic mean luminance
-  /// becomes the 0.18 of a photographer's grey card (Reinhard et al. 2002, "Photographic tone reproduction", equations
-  /// 1 and 2).
+  /// Factor applied to radiance before the curve; 0: chosen such that the picture's logarithmic mean luminance becomes
+  /// 0.18, that of a photographer's grey card (Reinhard et al. 2002, "Photographic tone reproduction", equations 1 and
+  /// 2).
   double exposure = 0.0; ///< [0, 1e30]
   ToneCurve curve = ToneCurve::Filmic;
 };
@@ -24,35 +24,36 @@ struct ToneMapping
 /// @throws InvalidInput for an exposure out of its range
 void Check(const ToneMapping& settings);
 
-/// The exposure that `exposure` = 0 stands for. It is that of what is lit, not of the black behind it: a pixel that the
-/// medium fills in part counts for that part, with the radiance of that part, so that thin smoke is exposed as thick
-/// smoke is, and as before a background as bright. What fills less than ThinnestPart of a pixel may shine by itself,
-/// and is taken to fill so much of it. Of the lit pixels those a thousand times darker than the 95th percentile, or
-/// darker still, do not count: what is nearly black would make the rest white. 1 where no pixel is lit.
-/// @param radiance  3 per pixel, not negative
-/// @param alpha     one per pixel in [0, 1]; empty: all is filled, as by a background
+/// The exposure that is used if `exposure` is 0. It is determined by lit pixels, not by the black background: a pixel
+/// that the medium covers in part counts with that part as weight and with the radiance of that part, so that thin
+/// smoke is exposed like thick smoke or like smoke in front of an equally bright background. Coverage below
+/// ThinnestPart counts as ThinnestPart, because such a pixel may show a bright emitter. Lit pixels darker than a
+/// thousandth of the 95th percentile do not count: nearly black pixels would overexpose the rest. Returns 1 if no pixel
+/// is lit.
+/// @param radiance  3 per pixel, >= 0
+/// @param alpha     one per pixel in [0, 1]; empty: all pixels are fully covered, as by a background
 double AutomaticExposure(const std::vector<float>& radiance, const std::vector<float>& alpha);
 constexpr float ThinnestPart = 0.2f;
 
-/// How much of a picture, in 16ths of pixels, has which luminance: 256 classes for every doubling. Of parts of a
-/// picture they add up.
+/// Luminance histogram of a picture: covered area in sixteenths of a pixel, with 256 classes per factor of two.
+/// Histograms of parts of a picture can be added.
 std::vector<int> LuminanceCounts(const std::vector<float>& radiance, const std::vector<float>& alpha);
 
-/// The same exposure, of all that was counted.
+/// AutomaticExposure from a histogram of LuminanceCounts.
 double ExposureOfCounts(const std::vector<int>& luminanceCounts);
 
-/// The radiance times exposure that a screen shows as a channel of this value: ToneMap makes 255 times that of it.
-/// @param shown  [0, 1], encoded as sRGB
+/// Inverse of the tone curve: the exposed radiance (radiance times exposure) that is displayed as `shown`.
+/// @param shown  display value in [0, 1], sRGB-encoded; ToneMap writes 255 times this value
 double ExposedAs(double shown, ToneCurve curve);
 
-/// What a screen shows of it, [0, 255], before it is rounded.
+/// Display value of a channel, [0, 255], before rounding.
 /// @param exposed  radiance times exposure
 float ShownValue(float exposed, ToneCurve curve);
 
-/// Eight bits per channel, red, green, blue and alpha, for a screen that follows sRGB (IEC 61966-2-1). Colours are not
-/// multiplied by alpha: laid over black, the picture is what the radiance says. What is brighter than a white of its
-/// alpha, as thin smoke in the light is, has the alpha of its brightest channel: it hides more of what is behind it
-/// than the medium does.
+/// Converts a picture to eight bits per channel, red, green, blue and alpha, for an sRGB display (IEC 61966-2-1).
+/// Colours are not multiplied by alpha: composited over black, the picture has the tone-mapped radiance. A pixel
+/// brighter than white at its alpha, such as thin smoke in bright light, gets the alpha of its brightest channel: it
+/// then hides more of the background than the medium does.
 /// @param alpha  one per pixel in [0, 1]; empty: opaque
 std::vector<std::uint8_t> ToneMap(
   const std::vector<float>& radiance, const std::vector<float>& alpha, const ToneMapping& settings);

@@ -9,7 +9,7 @@
 
 namespace tyndall
 {
-/// A rectangle of a picture's pixels: columns and rows from begin on, before end.
+/// A rectangle of pixels: columns and rows in [begin, end).
 struct PixelRect
 {
   std::array<int, 2> begin = {}, end = {};
@@ -28,29 +28,31 @@ struct PixelRect
 
 PixelRect Overlap(const PixelRect& a, const PixelRect& b);
 
-/// What a camera's ray finds in a block of a larger grid, or in several, one behind the other.
+/// Contribution to one pixel by a block of a larger grid, or by several blocks one behind the other.
 struct BlockPixel
 {
   std::array<float, 3> radiance = {};                        ///< W / (length^2 sr)
-  std::array<float, 3> transmittance = { 1.0f, 1.0f, 1.0f }; ///< of the radiance behind
-  std::array<float, 3> seen = { 1.0f, 1.0f, 1.0f };          ///< of the scene behind, through the medium
-  std::array<float, 3> sharp = {};                           ///< radiance that is dimmed by `seen` of what is before
-  std::array<float, 3> missing = {};                         ///< see Picture
-  float open = 1.0f;                                         ///< 0 where the background is seen behind that
-  float depth = FarAway;                                     ///< as Picture::depth; there or farther: nowhere
+  std::array<float, 3> transmittance = { 1.0f, 1.0f, 1.0f }; ///< for radiance from behind
+  /// unscattered transmittance for the scene behind, through the medium
+  std::array<float, 3> seen = { 1.0f, 1.0f, 1.0f };
+  std::array<float, 3> sharp = {};   ///< radiance that blocks in front attenuate by their `seen`
+  std::array<float, 3> missing = {}; ///< see Picture
+  float open = 1.0f;                 ///< 0 if the background, which hides all behind it, is included
+  float depth = FarAway;             ///< as Picture::depth; FarAway or more: none
 
   static constexpr float FarAway = 1e30f;
 
-  /// Part of what is behind that the medium lets through.
+  /// Mean transmittance of the medium.
   float Left() const { return (this->seen[0] + this->seen[1] + this->seen[2]) / 3.0f; }
 
-  float MostLeft() const { return std::max({ this->seen[0], this->seen[1], this->seen[2] }); } ///< of any channel
+  /// largest of the channels
+  float MostLeft() const { return std::max({ this->seen[0], this->seen[1], this->seen[2] }); }
   float MostThrough() const
   {
     return std::max({ this->transmittance[0], this->transmittance[1], this->transmittance[2] });
   }
 
-  /// What is seen where nothing is before this.
+  /// Total radiance if nothing is in front.
   std::array<float, 3> All() const
   {
     std::array<float, 3> all;
@@ -65,10 +67,10 @@ struct BlockPixel
     return all;
   }
 
-  /// Part of the scene behind that is not seen, background and all.
+  /// Opacity for the scene behind, including the background.
   float Hidden() const { return 1.0f - this->open * this->Left(); }
 
-  /// Adds what is behind this.
+  /// Composites this pixel over the pixel `behind`.
   void LayBefore(const BlockPixel& behind)
   {
     for (int c = 0; c < 3; ++c)
@@ -84,13 +86,13 @@ struct BlockPixel
   }
 };
 
-/// The part of a picture in which a block is seen. Numbers of pixels are what is sent from rank to rank.
+/// The part of a picture that a block covers. Ranks exchange the number of pixels.
 struct BlockPixels
 {
   PixelRect rect;
   std::vector<BlockPixel> pixels; ///< row by row
 
-  /// Of a pixel outside of the rectangle: nothing.
+  /// Returns an empty pixel outside the rectangle.
   BlockPixel At(int column, int row) const
   {
     const int width = this->rect.end[0] - this->rect.begin[0];
@@ -100,27 +102,28 @@ struct BlockPixels
   }
 };
 
-/// A pixel of a block's picture.
+/// Extracts one pixel of a block's picture.
 BlockPixel PixelOf(const Picture& picture, std::size_t pixel);
 
-/// The least rectangle outside of which a block's picture is empty.
+/// Crops a block's picture to the smallest rectangle outside of which it is empty.
 BlockPixels SeenPart(const Picture& picture);
 
-/// Their common part.
+/// Crops pixels to a rectangle.
 BlockPixels PartIn(const PixelRect& rect, const BlockPixels& pixels);
 
-/// Where a block has to be looked at again, because of those before it: where rays lose half of their light in it but
-/// not in it alone (its own depth is not theirs), and where in it, or before, they have lost so much that they end.
-/// @param own      which of the blocks it is
+/// Finds the pixels for which a block must be rendered again because of the blocks in front of it: pixels whose
+/// transmittance, accumulated over all blocks, falls below 1/2 in this block (the block's own depth is then wrong), and
+/// pixels whose transmittance falls below `minimum` in this block or before it.
+/// @param own      index of the block in `frontToBack`
 /// @param size     of the picture, pixels
-/// @param minimum  part of their light at which rays end
+/// @param minimum  transmittance at which rays end
 Starts StartsBehind(
   const std::vector<BlockPixels>& frontToBack, std::size_t own, const std::array<int, 2>& size, double minimum);
 
-/// Takes those pixels from a picture that was made so.
+/// Replaces the pixels that `starts` selects by those of the picture `again`, which was rendered with these starts.
 void TakeFrom(const Picture& again, const Starts& starts, BlockPixels& pixels);
 
-/// What all blocks show in a rectangle: radiance, alpha (of the medium, without the background) and depth.
-/// @param farDepth  of the pictures of blocks
+/// Composites all blocks in a rectangle: radiance, alpha (of the medium, without the background) and depth.
+/// @param farDepth  Picture::farDepth of the blocks' pictures
 Picture PictureOfAll(const std::vector<BlockPixels>& frontToBack, const PixelRect& rect, float farDepth);
 }

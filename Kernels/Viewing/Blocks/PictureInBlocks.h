@@ -16,50 +16,54 @@
 
 namespace tyndall
 {
-/// What ranks work on at once beside their blocks, at most: what that takes does not grow with the medium, the picture
-/// or the number of ranks.
+/// Upper limits of the work in progress on a rank, in addition to its block: the memory for it does not grow with the
+/// medium, the picture or the number of ranks.
 struct WorkAtOnce
 {
-  std::size_t voxels = ShadowsInBlocks::PortionVoxels; ///< of one block, to which shadow rays are followed
-  /// Of pixels, on all ranks together, that go from rank to rank, but at least those of four rows; fewer where a device
-  /// has no room for them. What is split off them comes besides. 140 bytes each.
+  /// voxels of one block for which shadow rays are traced at a time
+  std::size_t voxels = ShadowsInBlocks::PortionVoxels;
+  /// Primary rays that travel between ranks at a time, summed over all ranks: at least those of four rows of pixels,
+  /// fewer if a device has too little memory. Rays split off from them are not counted. 140 bytes each.
   std::size_t rays = 131072;
 };
 
-/// A rank's part of a picture of a medium that is spread over ranks by blocks (numerics.md, section 14.9). None holds
-/// another's voxels, but for layers round its own.
+/// A rank's contribution to the picture of a domain that is decomposed into blocks (numerics.md, section 14.9). A rank
+/// stores its own block with halos only.
 ///
-///  - Rays that go straight on: each rank casts its block, and pictures are laid over each other (BlockPixels.h).
-///  - Rays that bend, or meet a table: they go from rank to rank, in rounds, as photons do, those of some rows
-///    after others. A step is taken where its middle is, a ray begins where it enters the grid and ends where
-///    it leaves it: by the numbers that the whole has.
-///  - Shadow rays: each rank finds the optical length, in its block, of the ways from other blocks' voxels to a light;
-///    these are added up (ShadowsInBlocks.h).
+///  - Straight rays: each rank renders its block, and the pictures are composited (BlockPixels.h).
+///  - Rays that bend, or meet a table: they travel from rank to rank in rounds, as photons do, a few rows of pixels at
+///    a time. A step is taken on the rank whose block contains its midpoint; entry into and exit from the grid are
+///    computed with the coordinates of the whole domain, so that the rays do not depend on the decomposition.
+///  - Shadow rays: each rank computes the optical length, within its block, of the paths from other blocks' voxels to a
+///    light; these are summed (ShadowsInBlocks.h).
 ///
-/// All ranks construct it and call Take together, also one without voxels.
+/// The constructor and Take are collective; ranks without voxels take part.
 class PictureInBlocks
 {
 public:
-  /// What ranks say to each other before they make their casters: the same for all.
-  /// @param own  of a rank's block; null: it has no voxels
+  /// Combines the ranks' shared scene properties, before they construct their casters; the result is the same on all
+  /// ranks. Collective.
+  /// @param own  properties of this rank's block; null: it has no voxels
   static SharedScene Shared(Communicator& communicator, const SharedScene* own);
 
-  /// @param communicator, partition, held  must stay
-  /// @param held  by rank, the voxels that its arrays have
-  /// @param own   of this rank's block, whose medium has its `held`; null: it has no voxels
+  /// @param communicator, partition, held  must outlive this object
+  /// @param held  for each rank, the voxels its arrays cover, ghost cells included
+  /// @param own   caster of this rank's block, for the medium in the box held[rank]; null: it has no voxels
   /// @param atOnce  the same on all ranks
   PictureInBlocks(Communicator& communicator, const BlockPartition& partition, const std::vector<VoxelBox>& held,
     MediumRayCaster* own, const WorkAtOnce& atOnce = {});
 
-  /// Whether rays go from rank to rank: the same on all. What one shows is not dimmed by others then.
+  /// Whether rays travel from rank to rank; the same on all ranks. If so, a rank's picture is already attenuated by the
+  /// other blocks.
   bool GoesInRounds() const { return this->InRounds; }
 
-  /// What this rank adds to the picture, as of a block: in rounds, what of rays that end here.
+  /// Computes this rank's contribution to the picture: that of its block, or, if GoesInRounds(), of the rays that end
+  /// in it. Collective.
   /// @param size  pixels
-  /// @throws on all ranks what one of them throws
+  /// @throws  collective error: what one rank throws, all throw
   Picture Take(const Camera& camera, const std::array<int, 2>& size, const Monitor& monitor = {});
 
-  /// Rays that were handed on by this rank so far.
+  /// Rays that this rank has sent to others so far.
   const RoundsTraffic& Traffic() const { return this->Between->Traffic(); }
 
 private:

@@ -15,34 +15,34 @@
 
 namespace tyndall
 {
-/// Light that comes straight from lamps to the voxels of a medium that is spread over ranks by blocks: shadow rays go
-/// through the blocks of others.
+/// Direct light of lamps in the voxels of a domain that is decomposed into blocks: shadow rays cross the blocks of
+/// other ranks.
 ///
-/// The voxels of each rank are gone through in portions. Ranks through whose blocks ways lead from a portion to a light
-/// find their part of the optical length and send it to the rank whose voxels these are, which adds the parts up in the
-/// order of ranks. It says that it has one before its sender gives it, or anyone else, the next: a rank holds two
-/// portions that it has found and one that it has been sent, however many ranks there are.
+/// Each rank's voxels are processed in portions. Every rank whose block is crossed by shadow rays of a portion computes
+/// its part of their optical length and sends it to the rank that owns the voxels, which adds up the parts in the order
+/// of ranks. The owner acknowledges each part, and the sender sends no further part, to any rank, before: a rank thus
+/// stores two computed portions and one received portion, for any number of ranks.
 ///
-/// All ranks construct it and call Find together, also one without voxels.
+/// The constructor and Find are collective; ranks without voxels take part.
 class ShadowsInBlocks
 {
 public:
-  /// Voxels of a portion, at most, but for a row that has more; 12 bytes each.
+  /// Largest number of voxels of a portion (one row may exceed it); 12 bytes each.
   static constexpr std::size_t PortionVoxels = 65536;
 
-  /// @param communicator, partition, held  must stay
-  /// @param held  by rank, the voxels that its arrays have
-  /// @param own   of this rank's block; null: it has no voxels
+  /// @param communicator, partition, held  must outlive this object
+  /// @param held  for each rank, the voxels its arrays cover, ghost cells included
+  /// @param own   caster of this rank's block; null: it has no voxels
   /// @param portion  voxels
-  /// @throws InvalidInput  on all ranks where one has not as many lights as another
+  /// @throws InvalidInput  on all ranks, if the number of lights differs between ranks
   ShadowsInBlocks(Communicator& communicator, const BlockPartition& partition, const std::vector<VoxelBox>& held,
     MediumRayCaster* own, std::size_t portion = PortionVoxels);
 
-  bool AreThere() const { return !this->Lights.empty(); } ///< lights; the same on all
+  bool AreThere() const { return !this->Lights.empty(); } ///< whether there are lights; the same on all ranks
 
-  /// What light comes straight from each light to each voxel of this block, and what is scattered of it towards the
-  /// eye.
-  /// @throws on all ranks what one of them throws
+  /// Computes the direct irradiance of each light in each voxel of this block, and the radiance that is scattered from
+  /// it towards the eye. Collective.
+  /// @throws  collective error: what one rank throws, all throw
   void Find(const Camera& camera, const Monitor& monitor);
 
 private:
@@ -63,8 +63,8 @@ private:
   const std::vector<VoxelBox>& Held;
   MediumRayCaster* Own;
   std::size_t VoxelsAtOnce;
-  std::vector<SmallLight> Lights; ///< the same on all ranks, which decide by them who waits for whom
-  HeldFailure Failure;            ///< of a light
-  std::optional<int> Receiver;    ///< who has not said yet that it has the last portion
+  std::vector<SmallLight> Lights; ///< the same on all ranks, which derive the order of messages from them
+  HeldFailure Failure;            ///< error while processing the current light
+  std::optional<int> Receiver;    ///< rank that has not yet acknowledged the last portion
 };
 }

@@ -10,40 +10,41 @@
 
 namespace tyndall
 {
-/// What one of several blocks adds to a screen on which their pictures are laid over each other, eight bits a channel,
-/// each dimmed by the alpha of those before it, so that together they show the picture of the whole.
+/// One block's share of a display picture with eight bits per channel, for programs that composite the blocks' pictures
+/// by alpha blending, so that together they show the picture of the whole domain.
 ///
-/// A screen's values are not proportional to radiance: what a block adds depends on the light of the blocks before it.
-/// With L_k, V_k the radiance of the first k blocks and what of the scene is seen through them, S the screen's value of
-/// a radiance, block k adds
+/// Display values are not proportional to radiance, so the share of a block depends on the light of the blocks in front
+/// of it. Let L_k be the radiance of the first k blocks, V_k the transmittance of these blocks for the scene behind,
+/// and S the display value of a radiance. Block k contributes
 ///
 ///   (S(L_k) - S(L_k-1)) / V'_k-1,  V'_k = max(V_k, largest of S(L_j) - S(L_j-1), j > k),
 ///
-/// and dims what is behind by V'_k / V'_k-1. V' is V where the blocks behind are not brighter than a screen can be
-/// behind these; else a block hides less, and one behind it hides more.
+/// and attenuates what is behind it by V'_k / V'_k-1. V' equals V unless a block behind is brighter than the display
+/// can show through the blocks in front; these then hide less, and a block behind hides more.
 class ShownBlock
 {
 public:
-  ShownBlock() = default; ///< there is none
+  ShownBlock() = default; ///< no block
 
-  /// @param frontToBack  what is seen of the blocks where this one is, which is number `own` of them
-  /// @param width        of the picture, pixels
-  /// @param tones        its exposure is known
+  /// @param frontToBack  pixels of all blocks within this block's rectangle
+  /// @param own          index of this block in `frontToBack`
+  /// @param size         of the picture, pixels
+  /// @param tones        with a given exposure, > 0
   ShownBlock(
     std::vector<BlockPixels> frontToBack, std::size_t own, const std::array<int, 2>& size, const ToneMapping& tones);
 
   const std::array<int, 2>& Size() const { return this->PictureSize; }
 
-  /// Red, green, blue, multiplied by alpha, and alpha of each pixel of the picture.
+  /// RGBA of each pixel of the picture; colours are multiplied by alpha.
   std::vector<std::uint8_t> Pixels() const;
 
-  /// The same where opaque surfaces end rays in this block.
-  /// @param ended    the block's picture up to there
-  /// @param isEnded  by pixel
+  /// Pixels() for a picture in which opaque surfaces end rays in this block.
+  /// @param ended    the block's picture up to these surfaces
+  /// @param isEnded  whether the pixel's ray is ended, one per pixel
   std::vector<std::uint8_t> Pixels(const Picture& ended, const std::vector<bool>& isEnded) const;
 
 private:
-  struct Column; ///< the blocks behind a pixel
+  struct Column; ///< the blocks at one pixel, from front to back
 
   std::array<std::uint8_t, 4> Share(Column& blocks, int column, int row, const BlockPixel* ended) const;
   void Fill(const PixelRect& rect, const Picture* ended, const std::vector<bool>& isEnded,

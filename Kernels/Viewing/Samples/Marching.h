@@ -8,26 +8,28 @@
 
 namespace tyndall
 {
-/// Steps of the longest straight ray.
+/// Number of steps of the longest straight ray through the grid.
 /// @param stepSize  voxels
 double LongestSteps(const Grid& grid, double stepSize);
 
-/// MANY_STEPS of the kernels that march along rays of so many steps.
+/// Compiler option that sets MANY_STEPS in the marching kernels, for rays of up to `longestSteps` steps.
 std::string StepOption(double longestSteps);
 
-/// Rows of cells of work: whole rows in a batch, or parts of them where a row takes too long to be stopped.
-/// @param samples  that a cell takes, at most
-/// @param from, to  fractions done that are reported
+/// Splits a grid of work (rows of cells) into batches: whole rows, or parts of rows where a whole row would run too
+/// long to be aborted.
+/// @param samples  largest number of samples per cell
+/// @param from, to  progress that is reported at the begin and the end, in [0, 1]
 Batches BatchesOfRows(std::size_t rows, std::size_t cells, double samples, double from, double to);
 
-/// A part of such a batch that is a rectangle.
+/// A rectangular part of such a batch.
 struct Patch
 {
   int column, row;
   std::size_t columns, rows;
 };
 
-/// Calls launch(patch) for the rectangles that cells [begin, begin + size) of rows of `cells` consist of.
+/// Splits cells [begin, begin + size), numbered row by row in rows of `cells`, into rectangles and calls launch(patch)
+/// for each.
 template <class Launch>
 void InPatches(std::size_t begin, std::size_t size, std::size_t cells, const Launch& launch)
 {

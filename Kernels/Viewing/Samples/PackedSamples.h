@@ -11,40 +11,42 @@
 
 namespace tyndall
 {
-/// What samples are packed for.
+/// What the packed samples are used for.
 enum class Packing
 {
   ForShadowRays,
-  Scattered,  ///< what the camera's rays meet
-  Unscattered ///< the same in the dark: how much of what is behind comes through without being scattered at all
+  Scattered,  ///< camera rays that collect scattered and emitted light
+  Unscattered ///< camera rays through the unlit medium: transmittance for light that is not scattered at all
 };
 
-/// What rays meet: source and extinction by voxel, with a border of one voxel around, and bricks in which there is
-/// nothing. Arrays that the scene does not need are empty. Of voxels that rays do not see nothing is packed: those
-/// samples are zero (packets step as long as one of their rays sees something), and on a CPU they take no memory.
+/// Source and extinction of every voxel as the marching kernels read them, with a border of one voxel, and the map of
+/// empty bricks. Arrays that the scene does not need are empty. Voxels that no ray can see are not packed: their
+/// samples stay zero, because a packet keeps stepping while one of its rays sees something; on a CPU they take no
+/// memory.
 class PackedSamples
 {
 public:
-  /// Takes the memory, and packs how rays bend.
-  /// @param traits  must stay
-  /// @param block   of which the medium is one; null: of none
+  /// Allocates the samples, and packs the gradient of n^2.
+  /// @param traits  must outlive this object
+  /// @param block   the medium's place in a larger grid; null: the medium is the whole domain
   /// @throws DeviceError if the samples do not fit
   PackedSamples(Device& device, const FilledBricks& filled, const SceneOnDevice& scene, const ViewTraits& traits,
     const BlockOfScene* block);
 
-  /// @param direct, diffuse  see SeenSources.h; read where `what` is for the camera's rays
+  /// @param direct, diffuse  see SeenSources.h; read if `what` is for camera rays
   void Pack(Packing what, const SceneOnDevice& scene, const Buffer<float>& direct, const Buffer<float>& diffuse);
 
-  // Of the last packing.
+  // State after the last call of Pack.
   Packing PackedFor() const { return this->For; }
-  std::string ShownOptions() const; ///< SHOWN and BEAMS of the kernels
+  std::string ShownOptions() const; ///< compiler options SHOWN and BEAMS
   bool HasEmptyBricks() const { return this->EmptyBricks; }
 
-  const cl::Buffer& Samples() const { return this->Sources.Handle(); } ///< source, grey extinction: ScatteredLight.cl
+  /// source and grey extinction, see ScatteredLight.cl
+  const cl::Buffer& Samples() const { return this->Sources.Handle(); }
   const cl::Buffer& Extinctions() const { return this->ColouredExtinctions.Handle(); }
-  /// Mean direction, times g where ViewTraits::FlowHasG; of ShownSamples.cl lamps' light.
+  /// The light's mean direction, times g if ViewTraits::FlowHasG; with ShownSamples.cl, the lamps' light.
   const cl::Buffer& Flow() const { return this->Directions.Handle(); }
-  const cl::Buffer& Glow() const { return this->Emission.Handle(); }     ///< where ViewTraits::GlowsApart
+  const cl::Buffer& Glow() const { return this->Emission.Handle(); }     ///< emission, if ViewTraits::GlowsApart
   const cl::Buffer& Cosines() const { return this->ColouredG.Handle(); } ///< coloured g by voxel
   const Buffer<cl_float4>& Bending() const { return this->Gradients; }   ///< gradient of n^2, and n^2
   const Buffer<cl_char>& Bricks() const { return this->Distances; }      ///< see FindDistances
@@ -61,9 +63,9 @@ private:
   Device& TheDevice;
   const ViewTraits& Traits;
   std::array<int, 3> Count;
-  std::array<int, 3> KnownSize;        ///< voxels of which it is known how rays bend
-  std::array<int, 3> KnownBefore = {}; ///< how many of them are before the first of the samples
-  SampleBricks InBricks;               ///< where ViewTraits::bricked
+  std::array<int, 3> KnownSize;        ///< voxels whose gradient of n^2 is stored
+  std::array<int, 3> KnownBefore = {}; ///< how many of them precede the first sample, along each axis
+  SampleBricks InBricks;               ///< used if ViewTraits::bricked
   Packing For = Packing::ForShadowRays;
   bool EmptyBricks = false;
   ZeroedBuffer<cl_float4> Sources, ColouredExtinctions, Directions, ColouredG, Emission;

@@ -1,4 +1,4 @@
-// Shared by C++ and the kernels that pack samples, or take them, by bricks.
+// Shared by C++ and the kernels that write or read samples in bricks.
 #pragma once
 
 #include "Medium/BrickShared.h"

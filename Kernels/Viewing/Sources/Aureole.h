@@ -6,13 +6,14 @@
 
 namespace tyndall
 {
-/// What a parallel beam's light that was scattered forwards several times adds to its first scattering by the whole
-/// phase function, where a part of what is scattered was taken as light that goes straight on (numerics.md, Eq.
-/// (112c)): per steradian, beam, and optical length of scattering that the beam has come through, by the scattering
-/// angle and that length. Negative near the beam: the light that went straight on is there, but spread.
+/// Radiance that repeated forward scattering adds to the first scattering of a parallel beam (with the whole phase
+/// function), where the solver treats a part of scattering as unscattered (numerics.md, Eq. (112c)). Values are per
+/// steradian, per unit of beam irradiance and per optical length of scattering along the beam's path, tabulated by
+/// scattering angle and that optical length. Negative near the beam: the light treated as unscattered is in fact spread
+/// in angle.
 ///
-/// AureoleRows + 2 stretches of AureoleColumns + 2 numbers, see ShadowRays.cl.
-/// @param straightOn  that part
-/// @param degree      of the moments that are solved for, where straightOn is no moment of the function
+/// The table has AureoleRows + 2 rows of AureoleColumns + 2 numbers, see ShadowRays.cl.
+/// @param straightOn  fraction of scattering that is treated as unscattered
+/// @param degree      degree of the moments that were solved for, used where straightOn is not a moment of the function
 std::vector<float> AureoleTable(const PhaseFunction& function, double straightOn, int degree);
 }

@@ -17,43 +17,44 @@
 
 namespace tyndall
 {
-/// What each voxel scatters towards the eye: of the lamps' light, found by shadow rays, and of light whose angular
-/// moments are known. Empty for what the scene does not have.
+/// Light that each voxel scatters towards the eye: the lamps' direct light, computed by shadow rays, and scattered
+/// light given by angular moments. Arrays that the scene does not need are empty.
 class SeenSources
 {
 public:
-  /// @param lamps   that shadow rays find, where ViewTraits::shadowRays
-  /// @param rectangleSamples  per edge of a rectangular light
-  /// @param traits  must stay
-  /// @param block   of which the medium is one, must stay; null: of none
+  /// @param lamps   lights for shadow rays; used if ViewTraits::shadowRays
+  /// @param rectangleSamples  samples along each edge of a rectangular light
+  /// @param traits  must outlive this object
+  /// @param block   the medium's place in a larger grid; must outlive this object. Null: the medium is the whole domain
   /// @throws DeviceError if they do not fit
   SeenSources(Device& device, const Medium& medium, const std::vector<Light>& lamps, int rectangleSamples,
     const ViewTraits& traits, const BlockOfScene* block);
 
-  /// Reports the first half of a picture.
-  /// @param stepSize  voxels that shadow rays advance between samples
+  /// Computes Direct() by shadow rays. Reports progress from 0 to 1/2 of a picture.
+  /// @param stepSize  step of shadow rays, voxels
   /// @param samples   packed for shadow rays
   /// @throws Aborted
   void SeeLights(const Camera& camera, double stepSize, const SceneOnDevice& scene, const PackedSamples& samples,
     const Monitor& monitor);
   void SeeMoments(const Camera& camera, const SceneOnDevice& scene);
 
-  // The same as SeeLights light by light and part by part, where the medium is one of several blocks of a grid: what
-  // these find, each of its own part of the way, is added up in between.
+  // SeeLights split by light and by part of the block, for a medium that is one of several blocks: each block computes
+  // the optical length of its own section of each shadow ray, and the sections are summed in between.
   const std::vector<SmallLight>& LightsOfBlock() const { return this->Small; }
-  /// Of a light: optical length in this block of the ways to it from voxels of the whole, 3 each.
+  /// Optical length, within this block, of the paths from the voxels `asked` (indices of the whole grid) to a light, 3
+  /// per voxel.
   /// @throws Aborted
   std::vector<float> DepthsTowards(
     int light, const VoxelBox& asked, double stepSize, const PackedSamples& samples, const Monitor& monitor);
-  /// @param part    voxels of the whole that follow each other in the medium: some of its rows along x in one slice, or
-  ///   some of its slices
-  /// @param depths  towards the light from each of them
+  /// @param part    voxels (indices of the whole grid) that are contiguous in the medium's arrays: some rows along x of
+  ///   one slice, or some slices
+  /// @param depths  total optical length from each of these voxels to the light, 3 per voxel
   void SeeLight(int light, const Camera& camera, const VoxelBox& part, const std::vector<float>& depths,
     const SceneOnDevice& scene, const PackedSamples& samples);
 
-  /// 6 per voxel: what the lights scatter towards the eye, and their irradiance.
+  /// Six values per voxel: light scattered towards the eye (3), and irradiance by the lights (3).
   const Buffer<float>& Direct() const { return this->OfLights; }
-  /// 3 per voxel: what is scattered towards the eye of light that moments tell of.
+  /// Three values per voxel: radiance scattered towards the eye, from the angular moments.
   const Buffer<float>& Diffuse() const { return this->OfMoments; }
 
 private:
@@ -66,7 +67,7 @@ private:
   const BlockOfScene* Block;
   int LightCount = 0;
   std::vector<SmallLight> Small;
-  Buffer<float> AureoleTables; ///< where moments are shown and g does not vary
+  Buffer<float> AureoleTables; ///< only if moments are shown and g does not vary
   Buffer<float> OfLights, OfMoments;
   Buffer<SmallLight> Lights;
 };

@@ -9,11 +9,12 @@
 
 namespace tyndall
 {
-/// Points and parallel beams that stand for the lights.
+/// Replaces the lights by point lights and parallel beams.
 std::vector<SmallLight> SmallLights(const std::vector<Light>& lights, const Grid& grid, int rectangleSamples);
 
-/// Whether ways from the centres of these voxels to a light may lead through a block: the box of all of them meets it.
-/// @param grid  the whole, of which both are parts
-/// @param from, block  false where one of them has no voxels
+/// Whether shadow rays from the centres of the voxels `from` to a light can cross a block: tests whether the box around
+/// all of these rays meets the block.
+/// @param grid  the whole domain, to which the indices of both boxes refer
+/// @param from, block  boxes of voxels; the result is false if one is empty
 bool MayLeadThrough(const SmallLight& light, const Grid& grid, const VoxelBox& from, const VoxelBox& block);
 }
