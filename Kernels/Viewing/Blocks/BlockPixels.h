@@ -86,7 +86,7 @@ struct BlockPixel
   }
 };
 
-/// The part of a picture that a block covers. Ranks exchange the number of pixels.
+/// The part of a picture that a block covers. The values of its pixels are what ranks exchange.
 struct BlockPixels
 {
   PixelRect rect;

@@ -13,50 +13,52 @@
 
 namespace tyndall
 {
-/// What pictures of a block take from the whole grid, the same for all of its blocks.
+/// Properties of the whole domain that the pictures of its blocks depend on; the same for all blocks.
 struct SharedScene
 {
-  IndexRange index;                                     ///< of the whole
-  bool coloured = false;                                ///< extinction differs between channels in any block
-  std::array<double, 3> straightOn = { 1.0, 1.0, 1.0 }; ///< least that goes straight on, where any block scatters
+  IndexRange index;      ///< range of the refractive index in the domain
+  bool coloured = false; ///< extinction differs between the channels in some block
+  /// smallest straightOn of the scattering voxels of all blocks, per channel
+  std::array<double, 3> straightOn = { 1.0, 1.0, 1.0 };
 };
 
-/// What a block has to say for it; joined over blocks: least, largest and any.
-/// @param ior  of the block's voxels, one component; null: 1
+/// SharedScene of one block, to be reduced over the blocks by minimum, maximum and logical or.
+/// @param ior  refractive index of the block's voxels, one component; null: 1
 SharedScene SharedSceneOf(
   const Medium& medium, const SolvedLight& light, const Field& ior, const ViewSettings& settings);
 
-/// Least of the voxels that scatter in a channel; 1 where none does, or it is not known.
+/// Smallest straightOn of the voxels that scatter in a channel; 1 if none does or if straightOn is not known.
 double LeastStraightOn(const Medium& medium, const SolvedLight& light, int channel);
 
-/// A block whose pictures are those of the whole to rounding, together with those of the other blocks.
+/// A block that is rendered such that the pictures of all blocks combine to the picture of the whole domain, to
+/// rounding.
 struct BlockOfScene
 {
   GridBlock block;
-  VoxelBox known; ///< voxels of the whole whose refractive index is given: the block's arrays and more (KnownBox)
+  VoxelBox known; ///< voxels whose refractive index is given: the block's arrays and more (KnownBox)
   SharedScene shared;
 };
 
-/// Of the known index that of the block's arrays; empty where it is not given.
+/// Crops the known refractive index to the block's arrays; empty if the index is not given.
 std::vector<float> HeldIndex(const Field& known, const BlockOfScene& block, const std::array<int, 3>& size);
 
-/// The voxels that the arrays of a block need: its own, layers of its neighbours', and where it is at a face of the
-/// whole VoxelsBehindSurface from there on, if light at the surface is shown.
-/// @param own      not empty
+/// The box of voxels that the arrays of a block must cover: its own voxels and a halo; at a face of the domain also
+/// VoxelsBehindSurface voxels inwards, if the light at the surface is shown.
+/// @param own      the block's own voxels, not empty
 /// @param moments  light is shown by angular moments
-/// @param surface  light at the surface may be shown
+/// @param surface  outgoing radiance at the surface (SolvedLight::surface) may be shown
 VoxelBox HeldBox(const VoxelBox& own, const Grid& whole, const ViewSettings& settings, bool moments, bool surface);
 
-/// The same for the refractive index, where it varies: these and more.
+/// The box of voxels whose refractive index must be known if it varies: HeldBox and a wider halo.
 VoxelBox KnownBox(const VoxelBox& own, const VoxelBox& held, const Grid& whole, const ViewSettings& settings);
 
-/// Voxels behind a face of the box that light at the surface looks at: more than enough where one is ThickAtSurface.
+/// Number of voxels behind a face that the surface light depends on; more than enough if one voxel reaches
+/// ThickAtSurface.
 constexpr int VoxelsBehindSurface = 6;
 
-/// As kernels have it.
+/// The kernels' description of a block.
 BlockInfo BlockInfoOf(const GridBlock& block);
 
-/// Whether a face (-x, +x, ...) of a block's arrays is on that of the whole.
-/// @param size  voxels of the arrays
+/// Whether a face (0: -x, 1: +x, ...) of a block's arrays lies on the boundary of the domain.
 bool IsOnFace(const GridBlock& block, const std::array<int, 3>& size, int face);
 }

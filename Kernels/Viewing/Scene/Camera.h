@@ -6,35 +6,36 @@
 
 namespace tyndall
 {
-/// Where the picture is taken from; named as vtkCamera names it, lengths in the dataset's own unit.
+/// Camera parameters, named as in vtkCamera; lengths in the dataset's own unit.
 struct Camera
 {
   std::array<double, 3> position = { 0.0, 0.0, 1.0 };
-  std::array<double, 3> focalPoint = { 0.0, 0.0, 0.0 }; ///< seen in the picture's centre
-  std::array<double, 3> viewUp = { 0.0, 0.0, 1.0 };     ///< upwards in the picture; not along the view
-  double viewAngle = 30.0;         ///< between the picture's lower and upper edge, degrees, in (0, 180)
-  bool parallelProjection = false; ///< parallel rays instead of rays from `position`
-  double parallelScale = 1.0;      ///< then half the picture's height, length, > 0
-  double aspect = 0.0;             ///< the picture's width over its height; 0: as pixels that are square have it
-  /// From the focal point to the picture's middle, to the right and upwards, in halves of its width and height: of a
-  /// part of a larger picture, or one for the left or right eye.
+  std::array<double, 3> focalPoint = { 0.0, 0.0, 0.0 }; ///< projected to the picture's centre
+  std::array<double, 3> viewUp = { 0.0, 0.0, 1.0 }; ///< up direction of the picture; not parallel to the view direction
+  double viewAngle = 30.0;                          ///< full vertical angle of view, degrees, in (0, 180)
+  bool parallelProjection = false;                  ///< parallel rays instead of rays from `position`
+  double parallelScale = 1.0;                       ///< half the picture's height in a parallel projection, length, > 0
+  double aspect = 0.0; ///< width over height of the picture; 0: from the image size, for square pixels
+  /// Offset of the picture's centre from the focal point, to the right and upwards, in units of half the picture's
+  /// width and height: for a tile of a larger picture, or for one eye of a stereo pair.
   std::array<double, 2> shift = { 0.0, 0.0 };
-  bool mirrored = false; ///< the scene is: what is to the right in the picture is to the left of it
+  bool mirrored = false; ///< the picture is flipped left to right
 };
 
-/// The direction of the default view: three quarters from the front and a little from above, with the axis nearest
-/// to `viewUp` upwards; for z the sides -y and +x and the top are seen.
+/// The direction towards the camera of the default view: three-quarter view from the front and slightly from above,
+/// with the axis nearest to `viewUp` upwards; for z the sides -y and +x and the top are visible.
 std::array<double, 3> ThreeQuarterView(const std::array<double, 3>& viewUp);
 
-/// A camera that looks at the grid's centre and sees all of the box, with a margin of 5% of the picture.
+/// A camera that looks at the grid's centre and shows the whole box with a margin of 5% of the picture.
 /// @param aspect   width over height of the picture
 /// @param towards  from the grid's centre to the camera, any length but 0
-/// @param viewUp   replaced by y where it is along the view
+/// @param viewUp   replaced by y if it is parallel to the view direction
 Camera FrameGrid(const Grid& grid, double aspect, double viewAngle = 30.0,
   const std::array<double, 3>& towards = ThreeQuarterView({ 0.0, 0.0, 1.0 }),
   const std::array<double, 3>& viewUp = { 0.0, 0.0, 1.0 });
 
-/// The camera's axes in the world, unit vectors: to the right, upwards in the picture, and forward.
-/// @throws InvalidInput where position and focal point coincide, viewUp is along the view, or a number is not usable
+/// The camera's axes in world coordinates, unit vectors: right and up in the picture, and forward.
+/// @throws InvalidInput if position and focal point coincide, viewUp is parallel to the view direction, or a number is
+///   invalid
 std::array<std::array<double, 3>, 3> Axes(const Camera& camera);
 }

@@ -9,16 +9,16 @@
 
 namespace tyndall
 {
-/// A block of a larger grid: one of several, in the memory of several ranks, that each see their part of a picture.
+/// A block of a domain that is decomposed over several ranks, each of which renders its own block.
 ///
-/// Its arrays hold its own voxels and, where it has neighbours, a layer of theirs: light between the centres of two
-/// voxels of two blocks is interpolated from both.
+/// Its arrays hold its own voxels and, towards neighbouring blocks, a layer of ghost cells: between the centres of two
+/// voxels of different blocks, light is interpolated from both.
 struct GridBlock
 {
   Grid whole;
-  std::array<int, 3> first = {};           ///< voxel of the whole at which the arrays begin
-  std::array<int, 3> begin = {}, end = {}; ///< its own voxels of the whole: from begin on, before end
-  bool showsBackgroundBeside = false;      ///< to rays that miss the whole; one of the blocks does
+  std::array<int, 3> first = {};           ///< index in the whole grid of the arrays' first voxel
+  std::array<int, 3> begin = {}, end = {}; ///< its own voxels, [begin, end) in indices of the whole grid
+  bool showsBackgroundBeside = false;      ///< shows the background to rays that miss the domain; true for one block
 
   std::size_t OwnVoxels() const
   {
@@ -27,14 +27,14 @@ struct GridBlock
   }
 };
 
-/// What belongs to a block of values on the faces of the whole (BoxFaces.h); 0 on the block's other faces.
-/// @param ofWhole     values of each cell of its faces
-/// @param components  values of a cell
-/// @param size        voxels of the block's arrays
+/// Restricts values on the faces of the domain (BoxFaces.h) to a block; 0 on block faces inside the domain.
+/// @param ofWhole     values of all face cells of the domain
+/// @param components  values per cell
+/// @param size        of the block's arrays, voxels
 std::vector<float> FacesOfBlock(
   const std::vector<float>& ofWhole, int components, const GridBlock& block, const std::array<int, 3>& size);
 
-/// The numbers of blocks of one grid, from front to back: no ray of the camera meets one of them after one that stands
-/// later. Where blocks hide each other in a circle, which those of a tree of planes do not, that cannot be for all.
+/// Indices of the blocks, sorted from front to back: no camera ray crosses a block after one that is later in the list.
+/// Blocks that occlude each other cyclically have no such order; those of a k-d partition never do.
 std::vector<int> FrontToBack(const std::vector<GridBlock>& blocks, const Camera& camera);
 }

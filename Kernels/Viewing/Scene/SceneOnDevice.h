@@ -11,13 +11,13 @@
 
 namespace tyndall
 {
-/// An array that kernels read: a copy on the device, or one that its owner lends, of which a CPU needs no copy.
+/// A read-only array for kernels: a copy on the device, or memory lent by its owner, which a CPU reads without a copy.
 class ViewedArray
 {
 public:
   ViewedArray() = default;
 
-  /// @param lent  the values stay until this goes
+  /// @param lent  `values` outlive this object, so no copy is needed
   ViewedArray(Device& device, const float* values, std::size_t count, bool lent, const char* what)
     : Copy(device, lent ? nullptr : values, lent ? 0 : count, what)
     , Lent(lent ? std::make_unique<HostMappedBuffer<float>>(device, values, count, what) : nullptr)
@@ -31,25 +31,27 @@ private:
   std::unique_ptr<HostMappedBuffer<float>> Lent;
 };
 
-/// Arrays of a medium and its light on a device, voxel by voxel, as far as pictures show them; the others are empty.
+/// Arrays of a medium and its light on a device, voxel by voxel; those that the picture does not need are empty.
 struct SceneOnDevice
 {
-  /// Where samples are packed once (ViewTraits::PacksOnce) medium and light must stay until GiveBackWhatIsPacked: no
-  /// copies are made of them.
+  /// If samples are packed only once (ViewTraits::PacksOnce), no copies are made: medium and light must then outlive
+  /// the call of GiveBackWhatIsPacked.
   /// @throws DeviceError if they do not fit
-  /// @param block  of which the medium is one: `ior` is of the voxels that it says; null: of none
+  /// @param block  the medium's place in a larger grid, with `ior` covering BlockOfScene::known; null: the medium is
+  ///   the whole domain
   SceneOnDevice(Device& device, const Medium& medium, const SolvedLight& light, const Field& ior,
     const ViewTraits& traits, const BlockOfScene* block);
 
-  /// Gives back the memory of what is read only where samples are packed.
+  /// Frees the arrays that are read only while samples are packed.
   void GiveBackWhatIsPacked();
 
-  Buffer<float> moments, straightOn; ///< where moments are shown
+  Buffer<float> moments, straightOn; ///< if moments are shown
   std::array<ViewedArray, 5> arrays; ///< ViewedFields
   ViewedArray meanDirection;
   Buffer<float> phaseRows;   ///< tables of the phase function, see Samples/PhaseFunction.cl
-  Buffer<float> meanCosines; ///< g as all channels are seen
-  Buffer<float> ior;         ///< 1 where rays could bend and it is not given
-  Buffer<float> knownIor;    ///< of a block: that of more voxels, by which rays bend
+  Buffer<float> meanCosines; ///< g by voxel, with the components that the picture needs
+  Buffer<float> ior;         ///< refractive index; 1 if rays could bend but no index is given
+  /// for a block: refractive index of the larger box KnownBox, from which the bending is computed
+  Buffer<float> knownIor;
 };
 }

@@ -10,27 +10,28 @@
 
 namespace tyndall
 {
-/// @throws InvalidInput for a setting that has no meaning, whatever the scene
+/// @throws InvalidInput for a setting that is invalid in every scene
 void Check(const ViewSettings& settings);
 
-/// @throws InvalidInput for an array of light that is not finite or has components of another number, and where the
-///   settings ask for one that is not there
+/// @throws InvalidInput for a light array that is not finite or has a wrong number of components, or if the settings
+///   need an array that is missing
 void Check(const SolvedLight& light, const Grid& grid, const ViewSettings& settings);
 
-/// Degree of moments by their number of components, (degree + 1)^2 or 3 times as many.
-/// @throws InvalidInput for another number
+/// Degree of angular moments with (degree + 1)^2 or 3 (degree + 1)^2 components.
+/// @throws InvalidInput for any other number of components
 int DegreeOf(const Field& moments);
 
-/// Warnings of what may not look as it was meant to, a sentence each: a table without light, a surface where the index
-/// is never, an index that varies over the box's faces.
-/// @param ior    null: constant
-/// @param index  its range
+/// Warnings about what may not look as intended, a sentence each: an unlit table, a surface index that the medium never
+/// has, an index that varies over the box's faces.
+/// @param ior    refractive index; null: constant
+/// @param index  the range of `ior`
 std::vector<std::string> DoubtsAbout(
   const ViewSettings& settings, const SolvedLight& light, const Field& ior, const IndexRange& index, const Grid& grid);
 
-/// @throws InvalidInput for a camera so far from the grid, or a picture so wide, that the numbers of its rays end
+/// @throws InvalidInput if the camera is so far from the grid, or the picture so wide, that ray coordinates overflow
 void CheckDistance(const Camera& camera, const Grid& grid);
 
-/// @throws InvalidInput for an index that has not one component, is not finite, below 1e-3 or above 1e3
+/// @throws InvalidInput for a refractive index that is not finite, lies outside [1e-3, 1e3] or does not have exactly
+///   one component
 void CheckViewedIndex(const Field& ior, const Grid& grid);
 }
