@@ -4,8 +4,8 @@
 
 namespace tyndall
 {
-/// The mean light of all batches, with as much of each level's detail as they agree on (Estimator::Conservative).
-/// Collective.
-/// @param result  arrays of the box (Reconstruction::MakeRoom)
+/// Computes the mean light of all batches; the detail of each pyramid level is kept as far as the batches agree on it
+/// (Estimator::Conservative). Collective.
+/// @param result  its arrays must have the size of the box (Reconstruction::MakeRoom)
 void ReconstructConservative(const Reconstruction& task, ReconstructedLight& result);
 }

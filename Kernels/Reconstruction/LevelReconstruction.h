@@ -4,8 +4,9 @@
 
 namespace tyndall
 {
-/// Light of each voxel from one level of its pyramid (the estimators other than the conservative one). Collective.
-/// @param ownWeights  of photons in the block's voxels, where the estimator needs them
-/// @param result      arrays of the box (Reconstruction::MakeRoom)
+/// Computes the light of each voxel from one level of its pyramid (all estimators except the conservative one).
+/// Collective.
+/// @param ownWeights  mean photon weight of each voxel of the block, if the estimator needs it
+/// @param result      its arrays must have the size of the box (Reconstruction::MakeRoom)
 void ReconstructFromLevels(const Reconstruction& task, const float* ownWeights, ReconstructedLight& result);
 }

@@ -12,16 +12,16 @@
 
 namespace tyndall
 {
-/// How wide the vectors are that the reconstruction's kernels work on: 8 on a CPU, 1 on a GPU and where rows are short.
+/// Vector width of the reconstruction's kernels: 8 on a CPU, 1 on a GPU and for grids with short rows.
 int RowWidth(const Device& device, const Grid& grid);
 
-/// Voxels from a row to the next that these kernels need in arrays of voxels: rounded up to a multiple of two vectors.
+/// Row pitch, in voxels, that these kernels need in voxel arrays: `voxels` rounded up to a multiple of two vectors.
 inline int WholeVectors(int voxels, int width)
 {
   return RoundUp(voxels, 2 * width);
 }
 
-/// Volumes of rows, one for each of `fields` quantities, laid out as LightRows.cl has it.
+/// A device buffer of `fields` volumes, one for each quantity, with rows laid out as in LightRows.cl.
 class LightRows
 {
 public:
@@ -32,16 +32,17 @@ public:
   int Fields() const { return this->FieldCount; }
   const Buffer<float>& Values() const { return this->Memory; }
 
-  /// All cells on the host, x fastest, their fields side by side; and back, with what rows repeat of their ends.
+  /// Copies all cells to the host, x fastest, with the fields of a cell adjacent; Write copies them back and fills the
+  /// padding of the rows.
   std::vector<float> Read() const;
   void Write(const std::vector<float>& cells);
 
-  /// Cells and floats per row, as kernels take them; floats of all fields.
+  /// Layout for kernels: cells along x, y, z and floats per row; and the number of floats of all fields.
   static cl_int4 LayoutOf(const std::array<int, 3>& size, int width);
   static std::size_t CountOf(const std::array<int, 3>& size, int fields, int width);
 
 private:
-  /// Calls act with a cell's number, its x, a field, and the place of that in memory.
+  /// Calls act(cell index, x, field, offset in memory) for every value.
   template <class Act>
   void ForValues(const Act& act) const;
 
@@ -52,7 +53,7 @@ private:
   Buffer<float> Memory;
 };
 
-/// Makes and runs the kernels that work on rows.
+/// Compiles and launches kernels that work on rows.
 class RowKernels
 {
 public:
@@ -61,10 +62,10 @@ public:
   int Width() const { return this->RowWidth; }
   Device& On() const { return this->TheDevice; }
 
-  /// A kernel of `source`, with rows as wide as these.
+  /// Compiles a kernel of `source` for this vector width.
   cl::Kernel Kernel(const char* name, std::string_view source, const std::string& options = {}) const;
 
-  /// Queue it for all cells of these rows, or for `layers` of them from z = `first` on.
+  /// Enqueues a kernel for all cells of these rows, or for `layers` layers from z = `first` on.
   void Run(const cl::Kernel& kernel, const std::array<int, 3>& cells) const { this->Run(kernel, cells, 0, cells[2]); }
   void Run(const cl::Kernel& kernel, const std::array<int, 3>& cells, std::size_t first, std::size_t layers) const;
 
@@ -74,19 +75,20 @@ private:
   std::string Options;
 };
 
-/// An array over voxels whose rows are whole vectors: the host's own where it has such rows, else a copy with longer
-/// ones that repeat the last voxel.
+/// A voxel array whose rows are whole vectors: the host's own array if its rows are, else a copy with longer rows,
+/// padded with the row's last voxel.
 class WholeRows
 {
 public:
-  /// @param array    over `volumes` grids of `size` voxels, x fastest, `components` per voxel; must outlive this
-  /// @param written  kernels write it: Fetch() when they are done. Else they read it.
+  /// @param array    values of `volumes` grids of `size` voxels, x fastest, `components` per voxel; must outlive this
+  ///   object
+  /// @param written  true: kernels write the array, and Fetch() copies it back; false: kernels read it
   WholeRows(const RowKernels& kernels, const HostMappedBuffer<float>& array, const std::array<int, 3>& size,
     int volumes, int components, bool written, const char* what);
 
   const cl::Buffer& Handle() const { return this->Wide.Size() > 0 ? this->Wide.Handle() : this->Own.Handle(); }
 
-  /// Wait for the device; then the host's array holds what kernels wrote.
+  /// Waits for the device, so that the host's array holds what kernels wrote.
   void Fetch() const;
 
 private:
@@ -100,47 +102,48 @@ private:
   Buffer<float> Wide;
 };
 
-/// The layout of a grid's voxels in such rows, as kernels take it.
+/// Layout of a grid's voxels in such rows, for kernels.
 inline cl_int4 VoxelLayout(const std::array<int, 3>& size, int width)
 {
   return { { size[0], size[1], size[2], WholeVectors(size[0], width) } };
 }
 
-/// A pyramid over a part of a grid, whose upper levels are those of all of it.
+/// Position of a block in the grid, for a pyramid over the block: its lower levels cover the block, its upper levels
+/// the whole grid.
 struct PartOfPyramid
 {
   std::array<int, 3> whole = {}; ///< voxels of the grid
-  std::array<int, 3> first = {}; ///< the part's first one, multiples of 8
-  int shared = LevelsAtMost;     ///< the highest level that is of the part
+  std::array<int, 3> first = {}; ///< first voxel of the block, multiples of 8
+  int shared = LevelsAtMost;     ///< the highest level that covers only the block
 };
 
-/// Volumes over a grid and their means or sums over 2x2x2, 4x4x4, ... voxels, level after level in one buffer, as rows
-/// of LightRows.cl. A grid of an odd size is treated as if its last voxel were repeated.
+/// A pyramid of volumes: a grid and its means or sums over 2x2x2, 4x4x4, ... voxels, level after level in one buffer,
+/// in rows as in LightRows.cl. If a grid has an odd size, its last voxel is treated as if it were repeated.
 class LightPyramid
 {
 public:
-  /// How a level follows from the one below.
+  /// How a level is computed from the next finer one.
   enum class Down
   {
-    Gauss,     ///< 4x4x4 of variance four, separable (Pfeuti 2009, section 3.2.4)
-    Sum,       ///< of 2x2x2
-    MeanOfLit, ///< of those of 2x2x2 that are not 0 (listing B.2)
+    Gauss,     ///< Gaussian filter of 4x4x4 cells with variance four, separable (Pfeuti 2009, section 3.2.4)
+    Sum,       ///< sum of 2x2x2 cells
+    MeanOfLit, ///< mean of the nonzero ones of 2x2x2 cells (listing B.2)
   };
 
-  /// @param levels  above the grid, at most LevelsAtMost
-  /// @param part    of which the grid is
+  /// @param levels  number of levels above the grid, at most LevelsAtMost
+  /// @param part    the grid's place in a larger grid
   LightPyramid(const RowKernels& kernels, const Grid& grid, int fields, int levels, const char* what,
     const PartOfPyramid& part = {});
 
-  /// Put an array of voxels of 1 or 3 components into fields `first` and on of level 0.
+  /// Copies a voxel array of 1 or 3 components into the fields of level 0, from field `first` on.
   void Fill(const WholeRows& voxels, int components, int first);
 
-  /// Queue the making of all levels of the grid from level 0.
+  /// Enqueues the kernels that compute all levels of the block from level 0.
   void Build(Down down);
-  /// The others, of a part.
-  /// @param cells  of the whole's shared level
+  /// Computes the levels of the whole grid, above the shared level.
+  /// @param cells  the shared level of the whole grid
   void BuildAbove(Down down, const std::vector<float>& cells);
-  /// All cells of a level on the host, x fastest, their fields side by side.
+  /// Copies all cells of a level to the host, x fastest, with the fields of a cell adjacent.
   std::vector<float> Read(int level) const;
 
   const cl::Buffer& Values() const { return this->Memory.Handle(); }
@@ -157,6 +160,6 @@ private:
   PyramidLevels Where = {};
   Buffer<PyramidLevels> Told; ///< Where, for kernels
   Buffer<float> Memory;
-  std::vector<cl::Buffer> Parts; ///< of Memory, a level each
+  std::vector<cl::Buffer> Parts; ///< subbuffers of Memory, one per level
 };
 }

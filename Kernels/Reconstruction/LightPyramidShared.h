@@ -6,14 +6,14 @@
 SHARED_BEGIN
 enum
 {
-  LevelsAtMost = 8 ///< of a pyramid, above the grid
+  LevelsAtMost = 8 ///< largest number of levels above the grid
 };
 
-/// Where the levels lie.
+/// Position and layout of the levels in memory.
 typedef struct
 {
-  int4 size[LevelsAtMost + 1];  ///< as in LightRows.cl
-  int4 first[LevelsAtMost + 1]; ///< voxel of the level's grid that the first voxel looked at is; 0 but of a block
+  int4 size[LevelsAtMost + 1];  ///< layout as in LightRows.cl
+  int4 first[LevelsAtMost + 1]; ///< index, in the level's voxel grid, of the first voxel of the block; 0 without blocks
   ulong offset[LevelsAtMost + 1];
 } PyramidLevels;
 SHARED_END

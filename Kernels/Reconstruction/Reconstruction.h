@@ -10,28 +10,29 @@
 
 namespace tyndall
 {
-bool NeedsCounts(ReconstructionSettings::Estimator estimator);  ///< of photons
-bool NeedsWeights(ReconstructionSettings::Estimator estimator); ///< of photons
+bool NeedsCounts(ReconstructionSettings::Estimator estimator);  ///< whether the estimator needs photon counts
+bool NeedsWeights(ReconstructionSettings::Estimator estimator); ///< whether the estimator needs photon weights
 
-/// Light that was checked, of this rank's box (PyramidBlocks), and what reconstructs it.
+/// The validated light of this rank's box (the block and its halo, PyramidBlocks), and the settings of the
+/// reconstruction.
 class Reconstruction
 {
 public:
-  /// Gathers the light of the box, and checks its values. Collective.
-  /// @param given  of the rank's block; channels, batches and whether there are directions the same on all ranks
-  /// @param directions  whether there are directions
+  /// Copies the halo's light from other ranks and checks all values. Collective.
+  /// @param given  light of the rank's block; channels, batches and presence of directions are the same on all ranks
+  /// @param directions  whether there are mean directions
   Reconstruction(Device& device, const Domain& domain, const NoisyLight& given, bool directions,
     const ReconstructionSettings& settings, const Monitor& monitor);
 
-  /// What the block's light is scaled by in each channel. Collective.
-  /// @param result  of the box; its bias is set
+  /// Factor for each channel by which the light is scaled to conserve its total. Collective.
+  /// @param result  light of the box; its bias is set
   std::array<float, 3> Conserve(ReconstructedLight& result) const;
 
-  /// A result whose arrays have the sizes of the box, and one that has become that of the block.
+  /// MakeRoom allocates a result for the box; Crop reduces it to the block.
   ReconstructedLight MakeRoom() const;
   void Crop(ReconstructedLight& result) const;
 
-  /// Runs `step` on ranks that have voxels. Collective.
+  /// Runs `step` on ranks that have voxels; errors are collective. Collective.
   template <class Step>
   void OnVoxels(const Step& step) const
   {
@@ -43,7 +44,7 @@ public:
     });
   }
 
-  /// Quantities that are smoothed together.
+  /// Number of quantities that are smoothed together.
   int Fields() const { return this->light.channels + (this->directions ? 3 : 0); }
   bool IsConservative() const { return this->settings.estimator == ReconstructionSettings::Estimator::Conservative; }
 
@@ -52,17 +53,17 @@ public:
   const ReconstructionSettings& settings;
   const Monitor& monitor;
   const bool directions;
-  const int levels;                 ///< of the pyramid above the whole grid
-  const int top;                    ///< the highest of them that light is taken from
-  const PyramidBlocks blocks;       ///< of the pyramid
-  float largest = 0.0f;             ///< value of the light on any rank
-  std::array<double, 3> total = {}; ///< of the light over the domain, by channel
+  const int levels;                 ///< number of pyramid levels above the whole grid
+  const int top;                    ///< the highest level that light is taken from
+  const PyramidBlocks blocks;       ///< decomposition of the pyramid
+  float largest = 0.0f;             ///< largest value of the light on any rank
+  std::array<double, 3> total = {}; ///< total of the light over the domain, per channel
 
 private:
-  std::array<std::vector<float>, 4> Storage; ///< of `light`, where a box is larger than its block
+  std::array<std::vector<float>, 4> Storage; ///< memory of `light`, if the box is larger than the block
 
 public:
-  const NoisyLight light; ///< of the box; null what the estimator does not need
+  const NoisyLight light; ///< light of the box; null where the estimator needs no array
 
 private:
   NoisyLight Gathered(const NoisyLight& given);

@@ -11,8 +11,8 @@
 
 namespace tyndall
 {
-/// What rays see that leave the medium or enter it: environment and sky, ground, table, and light at the surface of
-/// thick voxels. Arrays of what the scene does not have are empty.
+/// What rays see when they leave or enter the medium: environment and sky, ground, table, and surface light of
+/// optically thick voxels. Arrays that the scene does not need are empty.
 class Backdrop
 {
 public:
@@ -20,18 +20,18 @@ public:
   Backdrop(Device& device, const Medium& medium, const SolvedLight& light, const Illumination& illumination,
     const Field& ior, const ViewSettings& settings, const ViewTraits& traits, const BlockOfScene* block = nullptr);
 
-  /// Whether the background is the illumination's, not the settings'.
+  /// Whether the background is the illumination's sky and not the settings' background colour.
   bool IsSky() const { return this->UnderSky; }
   Rgb Colour(const ViewSettings& settings) const { return this->UnderSky ? this->Sky : settings.backgroundColor; }
 
   bool HasEnvironment() const { return this->Width > 0; }
   std::array<int, 2> EnvironmentSize() const { return { this->Width, this->Height }; } ///< pixels
-  const Rotation& ToPicture() const { return this->Turn; }                             ///< of the environment
+  const Rotation& ToPicture() const { return this->Turn; } ///< from world axes to the environment's axes
   const Buffer<cl_float4>& Environment() const { return this->Pixels; }
-  /// Where moments are shown: what of the environment is seen without being scattered at all.
+  /// If moments are shown: the part of the environment that is seen only by unscattered light.
   const Buffer<cl_float4>& SharpEnvironment() const { return this->SharpPixels; }
 
-  int FacesOfGround() const { return this->GroundBits; }                ///< a bit for each
+  int FacesOfGround() const { return this->GroundBits; }                ///< bit mask of the reflecting faces
   const Buffer<cl_float4>& Ground() const { return this->GroundCells; } ///< see BackdropTables.h
   const Buffer<cl_float4>& Table() const { return this->TableCells; }   ///< see BackdropTables.h
   bool HasSurfaceLight() const { return this->SurfaceCells.Size() > 0; }

@@ -12,50 +12,54 @@
 
 namespace tyndall
 {
-/// Voxels of a face's rows, and how many rows it has: along y and z, x and z, or x and y.
+/// Voxels per row and number of rows of a face: along y and z, x and z, or x and y.
 std::array<int, 2> FaceSize(const Grid& grid, int face);
 
-/// Values of the cells of the box's faces (BoxFaces.h), each face with a border of one cell that repeats the outermost.
+/// Adds to each face of a table over the box's face cells (BoxFaces.h) a border of one cell that repeats the outermost
+/// cells.
 std::vector<cl_float4> WithBorders(const Grid& grid, const std::vector<cl_float4>& cells);
 
-/// Radiance that the faces of the box show from within which give back light (numerics.md, Eq. (111a)): albedo / pi
-/// times what leaves through each cell. W / (length^2 sr), [face][row][cell of the row] with borders (WithBorders).
-/// Empty where no face does, or it is not known what leaves.
+/// Radiance of the reflecting faces, seen from inside (numerics.md, Eq. (111a)): albedo / pi times the power per area
+/// that leaves through each cell. W / (length^2 sr), [face][row][cell of the row] with borders (WithBorders). Empty if
+/// no face reflects or facePower is not known.
 std::vector<cl_float4> GroundLight(const Grid& grid, const SolvedLight& light);
 
-/// A bit for each face, -x to +z, that gives back light.
+/// Bit mask of the reflecting faces, bit 0 for -x to bit 5 for +z.
 int GroundFaces(const SolvedLight& light);
 
-/// Irradiance on a face of the box by the light in the voxels on it, over pi and n^2: the radiance of a white table.
-/// With a border of one voxel that repeats the outermost ones.
+/// Radiance of a white table on a face of the box: irradiance by the light in the voxels at the face, divided by pi and
+/// n^2. With a border of one voxel that repeats the outermost ones.
 ///
-/// By fluence and mean direction, as numerics.md, Eq. (111).
-/// @param ior        null: 1
-/// @param fromBelow  light may come from the table's side: an environment shines
+/// Computed from fluence and mean direction by numerics.md, Eq. (111).
+/// @param ior        refractive index; null: 1
+/// @param fromBelow  light may enter through the table's face, because there is an environment
 std::vector<cl_float4> TableLight(
   const Grid& grid, const Field& fluence, const Field& meanDirection, const Field& ior, int face, bool fromBelow);
 
-/// What is to be added to the light of a march that enters the box through thick voxels (numerics.md, Eq. (112)): the
-/// radiance that leaves there, as solvers give it (`surface`), less what the march finds in the same place, which takes
-/// a thick voxel's light from centre to centre. From ThickAtSurface on, all of it where voxels are twice as thick, and
-/// where some mean free paths of medium are behind: light through thin media is not that of a half-space.
+/// Correction for rays that enter the box through optically thick voxels (numerics.md, Eq. (112)): the outgoing
+/// radiance that the solver computed there (`surface`), minus the radiance that the march finds at the same place with
+/// the thick voxels' light interpolated from centre to centre. It is applied gradually from an optical thickness
+/// ThickAtSurface of the voxel on, and fully at twice that, and only where the medium behind is some mean free paths
+/// thick: light through a thin medium is not that of a half-space.
 ///
 /// W / (length^2 sr), [cosine][face][row][cell of the row], each face with a border of one cell that repeats the
-/// outermost. Empty where there is nothing to add.
+/// outermost. Empty if no correction is needed.
 ///
-/// @param step   of the march, voxels
-/// @param block  of which the medium is one: only where it is at a face of the whole; null: of none. It has
-///   VoxelsBehindSurface from there on, or all of the whole's
+/// @param step   step of the march, voxels
+/// @param block  the medium's place in a larger grid: only its faces on the domain's boundary are corrected. Its arrays
+///   must cover VoxelsBehindSurface voxels behind them, or all of the domain. Null: the medium is the whole domain
 std::vector<cl_float4> SurfaceLight(
   const Medium& medium, const SolvedLight& light, double step, const GridBlock* block = nullptr);
 
-/// An environment's pixels as rays look them up: with a column more on both sides, so that it closes.
+/// An environment's pixels for the kernels' look-up, with an additional column on either side for periodic
+/// interpolation.
 struct EnvironmentPixels
 {
-  std::vector<cl_float4> shown; ///< what rays see that meet the medium; all of it, or what is not among the peaks
-  std::vector<cl_float4> sharp; ///< the peaks, where they are apart
+  /// seen through scattering and all other paths: the whole environment, or that without its peaks
+  std::vector<cl_float4> shown;
+  std::vector<cl_float4> sharp; ///< the peaks, which only unscattered light shows, if they are separate
 };
 
-/// @param peaksApart  as where angular moments are shown (numerics.md, section 14.7)
+/// @param peaksApart  separate the peaks, as is needed with angular moments (numerics.md, section 14.7)
 EnvironmentPixels PixelsOf(const Environment& environment, bool peaksApart);
 }

@@ -17,17 +17,18 @@
 
 namespace tyndall
 {
-/// Rows of a picture: from begin on, before end.
+/// Rows [begin, end) of a picture.
 struct PixelRows
 {
   int begin, end;
 };
 
-/// Rays through every pixel of a picture, straight or bent: they gather what samples shine and what is behind.
+/// Marches straight or bent rays through every pixel of a picture, and accumulates the packed sources and the
+/// background.
 class RayCasting
 {
 public:
-  /// What is given must stay.
+  /// All arguments must outlive this object.
   RayCasting(Device& device, const SceneOnDevice& scene, const PackedSamples& samples, const Backdrop& backdrop,
     const ViewTraits& traits)
     : TheDevice(device)
@@ -42,40 +43,41 @@ public:
   {
   }
 
-  /// The picture and its camera as the kernels have them, seen against the backdrop.
-  /// @throws InvalidInput for a camera that looks nowhere or is too far away
+  /// Kernel parameters of the picture, its camera and the backdrop.
+  /// @throws InvalidInput for a degenerate camera or one too far away
   ViewInfo ViewOf(const Camera& camera, const ViewSettings& settings, const GridBlock* block) const;
 
-  /// Takes the memory of a picture, and where its rays end (MediumRayCaster::Render); keeps it for the next of that
+  /// Allocates a picture and uploads the depths at which rays end (MediumRayCaster::Render); reuses buffers of the same
   /// size.
-  /// @param starts  of a block's rays: what comes through blocks before it, 3 per pixel; empty: all
-  /// @throws InvalidInput for ends of another number than pixels; DeviceError if it does not fit
+  /// @param starts  transmittance of the blocks in front, 3 per pixel; empty: 1
+  /// @throws InvalidInput if `ends` does not have one value per pixel; DeviceError if memory does not suffice
   void Reserve(
     const ViewSettings& settings, const std::vector<float>& ends, bool ofBlock, const std::vector<float>& starts = {});
 
-  /// A picture of what was packed, and of what of the environment belongs to that.
-  /// @param from, to  fractions done that are reported
+  /// Renders a picture from the current samples, with the part of the environment that belongs to them.
+  /// @param from, to  progress that is reported at the begin and the end, in [0, 1]
   /// @throws Aborted
   void Cast(const ViewSettings& settings, ViewInfo view, const OpticsInfo& optics, double from, double to,
     const Monitor& monitor);
 
-  // Rays that bend, or meet a table or a surface, through a block of a larger grid, where they go from block to block.
-  // A view and optics of OfRounds.
+  // For bent rays, and rays that meet a table or a surface, through a block of a larger grid: they travel from block to
+  // block. These functions need a view that OfRounds has changed.
   static void OfRounds(ViewInfo& view);
-  /// Rays of pixels that may be here at once, with all that may be split off them, for a quarter of the memory that the
-  /// device has left; at least one.
+  /// Number of primary rays, with all rays that may be split off them, that fit into a quarter of the device's free
+  /// memory; at least 1.
   std::size_t CountThatFits(const ViewSettings& settings) const;
-  /// @param rows  to the picture's end, or multiples of four
-  /// @return those through their pixels that enter the whole here, or show the background beside it.
+  /// @param rows  rows up to the picture's end, or a multiple of four rows
+  /// @return the rays through these pixels that enter the domain in this block, or that miss it and show the background
+  ///   here
   std::vector<RayOnItsWay> Start(
     const ViewSettings& settings, ViewInfo view, const OpticsInfo& optics, const PixelRows& rows) const;
-  /// Takes each as far as the block goes, or to its end.
-  /// @return those that were split off on the way
+  /// Marches each ray to the block's boundary or to its end.
+  /// @return rays that were split off on the way
   /// @throws Aborted
   std::vector<RayOnItsWay> March(const ViewSettings& settings, const ViewInfo& view, const OpticsInfo& optics,
     std::vector<RayOnItsWay>& rays, const Monitor& monitor) const;
 
-  // What was cast last, see Picture.
+  // Results of the last call of Cast, see Picture.
   std::vector<float> ReadRadiance() const { return this->Radiance.Read(); }
   std::vector<float> ReadAlpha() const { return this->Alpha.Read(); }
   std::vector<float> ReadDepth() const { return this->Depth.Read(); }

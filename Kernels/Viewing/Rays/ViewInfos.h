@@ -9,14 +9,14 @@
 
 namespace tyndall
 {
-/// The picture and its camera, and the phase function, as kernels have them; background, environment and bricks are
-/// left to who has them.
-/// @param block  null: the medium is no block of a larger grid
-/// @throws InvalidInput for a camera that looks nowhere or is too far away
+/// Kernel parameters of the picture, its camera and the phase function; the caller sets background, environment and
+/// bricks.
+/// @param block  the medium's place in a larger grid; null: the medium is the whole domain
+/// @throws InvalidInput for a degenerate camera or one too far away
 ViewInfo ViewInfoOf(
   const Camera& camera, const ViewSettings& settings, const ViewTraits& traits, const GridBlock* block = nullptr);
 
-/// Surface and table, and how rays bend.
-/// @param ofWhole  where rays go from block to block: the block
+/// Kernel parameters of surface, table and bent rays.
+/// @param ofWhole  the block, if rays travel from block to block; else null
 OpticsInfo OpticsInfoOf(const ViewSettings& settings, const ViewTraits& traits, const BlockOfScene* ofWhole = nullptr);
 }

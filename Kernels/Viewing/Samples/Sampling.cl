@@ -1,7 +1,11 @@
-// Rays through a medium, REAL_WIDTH of them at a time, and what they meet there.
+// Packets of REAL_WIDTH rays, and interpolation of the samples along them.
 //
 // The host gives
-//   COLOURED  1: extinction differs between red, green and blue; 0: one extinction serves all three
+//   COLOURED  1: extinction differs between red, green and blue; 0: one extinction for all three
+//   GREY      1: the source is the same in all channels too; `samples` then hold source and extinction of a voxel, and
+//             those of the next voxel along y
+//   BRICKED   1: samples are stored in bricks (SampleBricks.h); 0: in the order of voxels
+//   MANY_STEPS 1: rays take so many steps that rounding errors accumulate noticeably
 //   GREY      1: so do sources; `samples` then hold source and extinction of a voxel, and those of the next one along y
 //
 //   BRICKED   1: samples stand by bricks (SampleBricks.h); else in the order of voxels

@@ -60,5 +60,6 @@ constexpr int VoxelsBehindSurface = 6;
 BlockInfo BlockInfoOf(const GridBlock& block);
 
 /// Whether a face (0: -x, 1: +x, ...) of a block's arrays lies on the boundary of the domain.
+/// @param size  of the arrays, voxels
 bool IsOnFace(const GridBlock& block, const std::array<int, 3>& size, int face);
 }
