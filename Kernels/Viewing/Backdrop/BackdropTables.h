@@ -55,7 +55,7 @@ std::vector<cl_float4> SurfaceLight(
 /// interpolation.
 struct EnvironmentPixels
 {
-  /// seen through scattering and all other paths: the whole environment, or that without its peaks
+  /// Seen together with scattered light: the whole environment, or that without its peaks.
   std::vector<cl_float4> shown;
   std::vector<cl_float4> sharp; ///< the peaks, which only unscattered light shows, if they are separate
 };

@@ -1,19 +1,20 @@
-// How rays bend: half the gradient of n^2, and n^2, of the tricubic spline that photons follow as well, at voxel
-// centres with a border of one voxel that repeats the outermost ones.
+// Packs the field that bends rays: half the gradient of n^2, and n^2, of the tricubic spline that photons follow too,
+// at voxel centres with a border of one voxel that repeats the outermost voxels.
 //
-// Between centres both are interpolated linearly, so that rays through a plane layer leave it as Snell's law has it,
-// however steep it is (numerics.md, section 14.3).
+// Between centres both are interpolated linearly; rays through a plane layer then leave it according to Snell's law,
+// for any gradient (numerics.md, section 14.3).
 
 #include "Refraction/Index/SquaredIndex.cl"
 
-#define FLAT 2e-6f // of n^2: what rounding makes of a constant
+#define FLAT 2e-6f // relative to n^2: gradients up to this are rounding errors of a constant
 
-// The spline along a row of three coefficients, in the middle: its value and its slope.
+// Value and slope of the cubic spline at the middle of three coefficients.
 #define SPLINE_VALUE(low, middle, high) (((low) + (high)) * (1.0f / 6.0f) + (middle) * (2.0f / 3.0f))
 #define SPLINE_SLOPE(low, high) (0.5f * ((high) - (low)))
 
-// bending  x, y, z: half the gradient in voxels by squared spacing: what a velocity in voxels gains per time; w: n^2
-// No loops and no branches, so that PoCL takes voxels side by side.
+// bending  x, y, z: half the gradient in voxels, divided by the squared spacing, which is the acceleration in voxels
+//          per time squared; w: n^2
+// There are no loops or branches, so that PoCL vectorises over voxels.
 __kernel void pack_bending(IndexGrid grid, float4 inverse_spacing, __global const float* restrict coefficients,
   __global float4* restrict bending)
 {

@@ -1,9 +1,10 @@
-// Voxels around a voxel that scatter.
+// Finds scattering voxels in the 3 x 3 x 3 neighbourhood of a voxel.
 
 #pragma once
 #include "Viewing/Samples/VoxelChannels.cl"
 
-// Calls DO(neighbour) for the voxels around one, it included, that scatter in any channel.
+// Calls DO(neighbour) for all voxels of the 3 x 3 x 3 neighbourhood, including the voxel itself, that scatter in any
+// channel.
 #define FOR_SCATTERING_AROUND(voxel, size, scattering, components, DO)                                      \
   {                                                                                                         \
     const int3 at = { (voxel) % (size).x, (voxel) / (size).x % (size).y, (voxel) / ((size).x * (size).y) }; \

@@ -1,15 +1,15 @@
-// Rays through a block of a larger grid.
+// Clips rays to one block of a larger grid.
 //
-// A ray takes the steps that it would take through the whole, and each of them belongs to the block in which its middle
-// lies: samples are where they would be in the whole, and none is taken twice or not at all.
+// A ray takes the same steps as through the whole grid; each step belongs to the block that contains its midpoint.
+// Samples thus lie at the same places as in the whole grid, and every step is taken exactly once.
 
 #pragma once
 #include "Viewing/Samples/Sampling.cl"
 #include "Viewing/Scene/ViewShared.h"
 
-#define BEYOND 1e30f // a length that no ray has
+#define BEYOND 1e30f // longer than any ray
 
-// Steps of a ray whose middles are nearer than `distance` to where it enters the whole.
+// Number of steps of a ray whose midpoints are closer than `distance` to its entry into the whole grid.
 inline real steps_before(real distance, real step, real steps, real last_middle)
 {
   const real nominal = ceil(distance / step - (real)0.5f);
@@ -18,12 +18,13 @@ inline real steps_before(real distance, real step, real steps, real last_middle)
   return full + (all ? (real)1.0f : (real)0.0f);
 }
 
-// The part of each ray that lies in the block, in the block's voxels.
-//   from    in voxels of the whole
-//   stride  voxels that a step advances
-//   before  length before the ray enters the block
-//   enters  whether that is where it enters the whole
-//   leaves  whether it leaves the whole from this block, or shows the background beside it here
+// Computes the section of each ray that belongs to the block, in the block's voxel coordinates.
+//   from    start of the rays, voxels of the whole grid
+//   stride  step, voxels
+//   before  receives the length of the ray in front of the block
+//   enters  whether the ray enters the whole grid in this block
+//   leaves  whether it leaves the whole grid from this block, or misses the grid while this block shows the background
+//           to such rays
 inline rays clip_to_block(real3 from, real3 direction, real farthest, const BlockInfo* b, float stride, real* before,
   integer* enters, integer* leaves)
 {
@@ -32,7 +33,7 @@ inline rays clip_to_block(real3 from, real3 direction, real farthest, const Bloc
   const real steps = ceil(whole.length / step);
   const real last_middle = (real)0.5f * (whole.length + (steps - (real)1.0f) * step);
 
-  // From the entry to the planes between blocks: the same numbers on both sides of each.
+  // Distances from the entry to the planes between blocks: bitwise the same in both adjacent blocks.
   real in = (real)-BEYOND, out = (real)BEYOND;
 #define CLIP(c)                                                                                            \
   {                                                                                                        \

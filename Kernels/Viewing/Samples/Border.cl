@@ -1,5 +1,5 @@
-// Samples have a border of one voxel that repeats the outermost ones. A work-item's place among them, and the voxel
-// that stands there.
+// Indexing of samples, which have a border of one voxel that repeats the outermost voxels: the sample of a work-item,
+// and the voxel whose values it holds.
 
 #pragma once
 #include "Medium/BrickShared.h"
@@ -9,7 +9,7 @@ inline int padded_index(int4 size)
 {
   return ((int)get_global_id(2) * (size.y + 2) + (int)get_global_id(1)) * (size.x + 2) + (int)get_global_id(0);
 }
-// @param sample  of the grid with its border
+// @param sample  index in the grid with its border
 inline int voxel_of(int3 sample, int4 size)
 {
   const int i = clamp(sample.x - 1, 0, size.x - 1);
@@ -25,8 +25,8 @@ inline int voxel_index(int4 size)
 {
   return voxel_of(sample_of_item(), size);
 }
-// Whether rays have to look at voxels of this work-group, which is PackedAlong voxels of a row.
-// @param seen  of such groups in 8 x 8 rows, which are one brick across (PackedSamples.cxx)
+// Whether rays can see voxels of this work-group, which is PackedAlong voxels of a row.
+// @param seen  1 for each seen group in blocks of 8 x 8 rows, the cross-section of a brick (PackedSamples.cxx)
 inline int is_seen(__global const uchar* seen, int4 size)
 {
   const int j = clamp((int)get_global_id(1) - 1, 0, size.y - 1) >> BrickBits;
@@ -36,13 +36,14 @@ inline int is_seen(__global const uchar* seen, int4 size)
 }
 
 #if BRICKED
-// Work-items are samples of records: SampleEdge of a row, rows of a slice, slices of one record after the other.
+// Work-items are the samples of records: x along a row of SampleEdge samples, y over rows, z over the slices of all
+// records in turn.
 inline int place_in_records()
 {
   return ((int)get_global_id(2) * SAMPLE_ROWS + (int)get_global_id(1)) * SampleEdge + (int)get_global_id(0);
 }
-// The sample that stands there. @param bricks  of each record
-// @return false: it belongs to no brick, and is zero
+// Finds the grid index of a work-item's sample. @param bricks  the brick of each record
+// @return false if the record belongs to no brick; the sample is then zero
 inline int find_sample_in_brick(__global const int* bricks, int4 size, int3* sample)
 {
   const int record = (int)get_global_id(2) / SampleEdge;

@@ -1,15 +1,16 @@
-// Bricks of samples that rays may skip: a program of its own, since of all that samples are packed by it needs little.
+// Finds empty bricks, which rays may skip. A program of its own, because it needs few of the options with which samples
+// are packed.
 //
 // The host gives
 //   COLOURED, GREY, BRICKED  as in Sampling.cl
-//   GLOW         1: emission is packed apart
+//   GLOW         1: emission is packed separately
 //   BENDS        1: the refractive index varies
-//   SHOWN        of what ShownSamples.cl packed: only the extinction tells what is empty
+//   SHOWN        nonzero: samples were packed by ShownSamples.cl, and only the extinction tells whether they are empty
 
 #include "Viewing/Samples/SamplePlaces.cl"
 #include "Viewing/Scene/ViewShared.h"
 
-// Whether a sample extinguishes or shines.
+// Whether a sample has extinction or a source.
 static int is_filled(
   int place, __global const float4* samples, __global const float4* extinctions, __global const float4* glow)
 {
@@ -27,13 +28,12 @@ static int is_filled(
   return filled;
 }
 
-// Whether anything extinguishes or shines in a brick, or bends with BENDS, or does so close enough to be interpolated
-// into it (seen: ViewTraits.h; the others are empty):
-// 1 it is empty, -1 it is not, 0 rays bend.
-//   known   voxels of `bending`, `before` of which lie before the first of the samples
+// Classifies each brick: 1 if it is empty, -1 if it, or a neighbouring sample that is interpolated into it, has
+// extinction or a source, 0 with BENDS if rays bend in it. Bricks that are not `seen` (ViewTraits.h) are empty.
+//   known   size of `bending`, voxels; `before` of them precede the first sample along each axis
 #if BRICKED
-// The same of samples that stand by bricks. Those around a brick of voxels are in the record of its number, and the
-// first two along an axis of the next one.
+// find_empty_bricks for samples stored in bricks. The samples around a brick of voxels are those in the record of the
+// same number, and the first two along an axis of the next record.
 __kernel void find_empty_bricks(int4 size, int4 brick_count, int4 known, int4 before,
   __global const float4* restrict samples, __global const float4* restrict extinctions,
   __global const float4* restrict glow, __global const float4* restrict bending, __global const uchar* restrict seen,

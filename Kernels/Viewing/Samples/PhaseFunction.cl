@@ -1,15 +1,15 @@
-// How much of the light that travels one way, or is spread about it, is scattered towards the eye: 4 pi times the
-// phase function, averaged over that light's directions (numerics.md, section 14.1).
+// Evaluates 4 pi times the phase function for scattering towards the eye, averaged over the directions of light that is
+// spread about a mean direction (numerics.md, section 14.1).
 //
 // The host gives
-//   PHASE           0 evenly, 1 Henyey and Greenstein, 2 Schlick, 3 two of Henyey and Greenstein's, 4 Rayleigh, 5 rows
+//   PHASE           0 isotropic, 1 Henyey-Greenstein, 2 Schlick, 3 two Henyey-Greenstein lobes, 4 Rayleigh, 5 tabulated
 //   PHASE_CHANNELS  1, or 3: red, green and blue scatter differently
 
 #pragma once
 #include "Viewing/Samples/Sampling.cl"
 #include "Viewing/Scene/ViewShared.h"
 
-// Between two rows of a table, `place` in [0, last] from its first; there is a row behind the last.
+// Linear interpolation in a table at `place`, clamped to [0, last]; the table has one more entry after the last.
 inline real between_rows(__global const float* rows, real place, int last)
 {
   const real at = lesser(greater(place, (real)0.0f), (real)(float)last);
@@ -24,8 +24,8 @@ inline real between_rows(__global const float* rows, real place, int last)
   return fma(part, high - low, low);
 }
 
-// Of a table, bilinear: at `spread` rows from its first one, and by a cosine c, sqrt(1 - c) forwards and
-// 2 - sqrt(1 + c) backwards in `columns` of equal width; there are two columns more.
+// Bilinear interpolation in a table, at row `spread` and at the column of a cosine c. The `columns` intervals have
+// equal width in sqrt(1 - c) for c > 0 and in 2 - sqrt(1 + c) else; each row has two additional entries.
 inline real between_cosines(__global const float* rows, real spread, real cosine, int columns)
 {
   const real c = lesser(greater(cosine, (real)(-1.0f)), (real)1.0f);
@@ -50,7 +50,7 @@ inline real between_cosines(__global const float* rows, real spread, real cosine
   return fma(part, fma(beside, far_high - far_low, far_low) - near, near);
 }
 
-// Henyey and Greenstein's of mean cosine |b|, Eq. (107).
+// Henyey-Greenstein function of mean cosine |b|, Eq. (107).
 //   square  b.b, b the light's mean direction times g
 //   along   b.v, v the ray's direction, away from the eye
 inline real henyey_greenstein(real square, real along)
@@ -60,8 +60,8 @@ inline real henyey_greenstein(real square, real along)
 }
 
 #if PHASE == 2
-// Schlick's of mean cosine |b|, Eq. (108).
-//   rows  k/|b| by sqrt(1 - |b|)
+// Schlick's function of mean cosine |b|, Eq. (108).
+//   rows  table of k/|b| over sqrt(1 - |b|)
 inline real schlick(real square, real along, __global const float* rows)
 {
   const real size = lesser(sqrt(square), (real)1.0f);
@@ -72,9 +72,9 @@ inline real schlick(real square, real along, __global const float* rows)
 #endif
 
 #if PHASE == 5
-// Of a table of any function, bilinear.
-//   rows  by the cosine c of the scattering angle, sqrt(1 - c) forwards and 2 - sqrt(1 + c) backwards, in stretches of
-//         CosineRows + 2 by sqrt(1 - |m|)
+// A tabulated phase function, interpolated bilinearly.
+//   rows  columns over the cosine c of the scattering angle: sqrt(1 - c) forwards and 2 - sqrt(1 + c) backwards; rows
+//         of CosineRows + 2 entries over sqrt(1 - |m|)
 inline real spread_rows(real square, real along, __global const float* rows)
 {
   const real size = lesser(sqrt(square), (real)1.0f);
@@ -83,15 +83,15 @@ inline real spread_rows(real square, real along, __global const float* rows)
 }
 #endif
 
-// What tells functions of one kind apart: of red, green and blue.
+// Parameters of a phase function, for red, green and blue.
 typedef struct
 {
   rgb first, second, part; // see PhaseInfo
 } phase_parameters;
 
-// Of one channel.
-//   square  m.m of the light's mean direction
-//   along   m.v
+// Evaluates one channel.
+//   square  m.m, m the light's mean direction
+//   along   m.v, v the ray's direction, away from the eye
 inline real scattered_of_channel(
   real square, real along, real first, real second, real part, __global const float* rows)
 {
@@ -116,7 +116,7 @@ inline rgb scattered_of_channels(real square, real along, phase_parameters p, __
   rgb f;
   f.r = scattered_of_channel(square, along, p.first.r, p.second.r, p.part.r, rows);
 #if PHASE_CHANNELS == 3
-  // Each channel has rows of its own where there are rows of scattering.
+  // With a tabulated function each channel has its own table.
   const int apart = PHASE == 5 ? (SpreadRows + 2) * (CosineRows + 2) : 0;
   f.g = scattered_of_channel(square, along, p.first.g, p.second.g, p.part.g, rows + apart);
   f.b = scattered_of_channel(square, along, p.first.b, p.second.b, p.part.b, rows + 2 * apart);

@@ -1,4 +1,4 @@
-// Where samples stand in memory: in the order of voxels with a border of one, or by bricks (SampleBricks.h).
+// Memory layout of samples: in the order of voxels with a border of one voxel, or in bricks (SampleBricks.h).
 
 #pragma once
 #include "Viewing/Samples/SampleBricksShared.h"

@@ -6,17 +6,13 @@
 //             those of the next voxel along y
 //   BRICKED   1: samples are stored in bricks (SampleBricks.h); 0: in the order of voxels
 //   MANY_STEPS 1: rays take so many steps that rounding errors accumulate noticeably
-//   GREY      1: so do sources; `samples` then hold source and extinction of a voxel, and those of the next one along y
 //
-//   BRICKED   1: samples stand by bricks (SampleBricks.h); else in the order of voxels
-//   MANY_STEPS 1: rays take so many steps that what rounding loses in each adds up
-//
-// Every result is rounded as written: else the compiler fuses multiply and add here but not there, and two variants of
-// a kernel (skipping bricks or not) would give pictures that differ in the last place.
+// Floating-point contraction is off: the compiler would fuse multiply and add in some places only, and two variants of
+// a kernel (skipping bricks or not) would give pictures that differ in the last bit.
 //
 // Positions are in voxels from the box's lower corner, so that voxel (i, j, k) covers [i, i+1] x [j, j+1] x [k, k+1].
-// Arrays named `samples` and `extinctions` have a border of one voxel that repeats the outermost ones: an interpolation
-// never has to ask where the box ends, and the medium ends at the box's faces, not half a voxel before.
+// Arrays named `samples` and `extinctions` have a border of one voxel that repeats the outermost voxels: interpolation
+// needs no bounds checks, and the medium ends at the faces of the box, not half a voxel inside.
 
 #pragma once
 #include "Numerics/Numerics.cl"
@@ -40,11 +36,11 @@
 #endif
 #endif
 
-// min and max as the hardware has them, one instruction for all lanes; not for NaN.
+// min and max as single vector instructions; wrong for NaN.
 #define lesser(a, b) ((a) < (b) ? (a) : (b))
 #define greater(a, b) ((a) > (b) ? (a) : (b))
 
-// Half the lanes with the other half, until four are left.
+// Combines the two halves of a vector until four lanes are left.
 #if REAL_WIDTH == 16
 #define REDUCED_TO_FOUR(type, v, operation)    \
   const type##8 eight = operation(v.lo, v.hi); \
@@ -65,7 +61,7 @@ inline float least_lane(real v)
   const float2 two = lesser(four.lo, four.hi);
   return lesser(two.x, two.y);
 }
-// PoCL's any tests lane by lane.
+// PoCL's any() tests lane by lane, which is slow.
 inline int any_lane(integer condition)
 {
   REDUCED_TO_FOUR(int, condition, either)
@@ -86,7 +82,7 @@ typedef struct
   real r, g, b;
 } rgb;
 
-// sum + more; with MANY_STEPS `rest` keeps what the sum was rounded by (Kahan 1965).
+// Adds `more` to a sum; with MANY_STEPS by Kahan summation (1965), with the compensation in `rest`.
 inline void add_to(real* sum, real* rest, real more)
 {
 #if MANY_STEPS
@@ -99,8 +95,8 @@ inline void add_to(real* sum, real* rest, real more)
 #endif
 }
 
-// Packets of rays: where each enters the box, its direction in voxels per unit length, and how long it stays inside (0:
-// it misses).
+// A packet of rays: entry point into the box (voxels), direction (voxels per unit length), and path length inside the
+// box (0: the ray misses the box).
 typedef struct
 {
   real3 entry;
@@ -119,7 +115,10 @@ inline real within(real v, int size)
   return lesser(greater(v, (real)0.0f), (real)(float)size);
 }
 
-// The part of each ray from `from`, at most `farthest` long, that lies in the box.
+// Clips rays to the box.
+//   from      start of the rays, voxels
+//   farthest  length at which the rays end
+//   before    receives the length from the start to the entry
 inline rays clip_to_box(real3 from, real3 direction, real farthest, int4 size, real* before)
 {
   const real ix = (real)1.0f / at_least_tiny(direction.x);
@@ -133,7 +132,7 @@ inline rays clip_to_box(real3 from, real3 direction, real farthest, int4 size, r
   const real z1 = ((real)(float)size.z - from.z) * iz;
   const real in = greater(greater(lesser(x0, x1), lesser(y0, y1)), greater(lesser(z0, z1), (real)0.0f));
   const real out = lesser(lesser(greater(x0, x1), greater(y0, y1)), lesser(greater(z0, z1), farthest));
-  // A far camera's rounding errors may not carry a ray out of the box.
+  // Rounding errors of a distant camera must not move the entry point out of the box.
   rays result;
   result.direction = direction;
   result.entry.x = within(fma(in, direction.x, from.x), size.x);
@@ -148,7 +147,7 @@ inline rays clip_to_box(real3 from, real3 direction, real farthest, int4 size, r
   return result;
 }
 
-// A length along each ray that advances by `step` voxels.
+// Length along each ray that corresponds to `step` voxels.
 inline real step_length(real3 direction, float step)
 {
   return (real)step / sqrt(fma(direction.x, direction.x, fma(direction.y, direction.y, direction.z * direction.z)));
@@ -156,7 +155,7 @@ inline real step_length(real3 direction, float step)
 
 inline real3 along(rays packet, real distance)
 {
-  // Rays that have left stay where they left.
+  // Rays that have left the box stay at their exit point.
   const real d = lesser(distance, packet.length);
   real3 p;
   p.x = fma(d, packet.direction.x, packet.entry.x);
@@ -165,8 +164,8 @@ inline real3 along(rays packet, real distance)
   return p;
 }
 
-// The eight voxel centres around each point of a packet: twice the first one's index, and the weights of the four pairs
-// along x and of the upper of a pair.
+// The eight voxel centres around each point of a packet: twice the index of the first one; the interpolation weights of
+// the four pairs along x; and the weight of the upper centre of each pair.
 typedef struct
 {
   integer twiceFirst;
@@ -177,11 +176,11 @@ typedef struct
 #endif
 } corners;
 
-// The weights, and the first centre itself: j and k are whole numbers.
+// Computes the weights, and the first centre's indices; j and k are whole numbers stored as real.
 __attribute__((always_inline)) inline void weigh_corners(real3 p, corners* at, integer* first_i, real* j, real* k)
 {
-  // Points of the box are at least half a voxel above the border's centres: cutting the fraction off is floor, of which
-  // PoCL makes eleven instructions.
+  // Truncation equals floor here, because points in the box are at least half a voxel above the border's centres; PoCL
+  // compiles floor to eleven instructions.
   const real px = p.x + (real)0.5f;
   const real py = p.y + (real)0.5f;
   const real pz = p.z + (real)0.5f;
@@ -205,13 +204,13 @@ __attribute__((always_inline)) inline void weigh_corners(real3 p, corners* at, i
 #endif
 }
 
-// @param first  the voxel at which the arrays begin, size their voxels
+// Finds the corners in arrays of `size` voxels that begin at voxel `first`.
 __attribute__((always_inline)) inline void find_corners_from(real3 p, int4 first, int4 size, corners* at)
 {
   integer i;
   real j, k;
   weigh_corners(p, at, &i, &j, &k);
-  // Rows are counted in floats, which hold whole numbers up to 16 million.
+  // Row indices are computed in floats, which represent integers up to 16 million exactly.
   const integer row = to_integer(fma(k - (real)(float)first.z, (real)(float)(size.y + 2), j - (real)(float)first.y));
   at->twiceFirst = (row * (size.x + 2) + (i - first.x)) * 2;
 }
@@ -222,7 +221,7 @@ __attribute__((always_inline)) inline void find_corners(real3 p, int4 size, corn
 }
 
 #if BRICKED
-// As find_corners. @param records  of each brick of cells: where its samples begin
+// find_corners for samples in bricks. @param records  index of the first sample of each brick's record
 __attribute__((always_inline)) inline void find_corners_in_bricks(
   real3 p, int4 size, __global const int* records, corners* at)
 {
@@ -245,7 +244,7 @@ __attribute__((always_inline)) inline void find_corners_in_bricks(
 #endif
 
 #if REAL_WIDTH > 1
-// Asks for the rows of samples around a point that a packet will come to, before they are needed. May be anything.
+// Prefetches the rows of samples around a point that the packet will reach. Any address is allowed.
 inline void fetch_ahead(__global const float4* samples, real3 p, int4 size)
 {
   const int row = size.x + 2;
@@ -279,8 +278,9 @@ inline float8 neighbours(__global const float2* row, uint twice_first)
 }
 
 #if REAL_WIDTH == 16
-// Four rays' v = (a at the lower x, a at the upper x), a of four values, in the order 0, 4, 8, c of a quarter each,
-// taken between the two by x: 16 lanes that hold the four values of one ray, of the next, ...
+// Interpolates along x for four rays. Each v holds (a at the lower x, a at the upper x) of one ray, a being four
+// values; the rays are lanes 0, 4, 8, c of x. Result: 16 lanes with the four values of the first ray, of the second,
+// ...
 inline float16 four_between(float8 v0, float8 v4, float8 v8, float8 vc, float16 x)
 {
   const float16 left = (float16)(v0, v4);
@@ -291,10 +291,11 @@ inline float16 four_between(float8 v0, float8 v4, float8 v8, float8 vc, float16 
 }
 #endif
 
-// The values at each ray's corners, between the voxel centres: colour and w. Neighbours along x lie side by side in
-// memory, so that four loads of eight floats bring all corners of a ray; two, and nothing is taken between along y,
-// where values hold two numbers and those of the next voxel along y (`paired`, a constant). size.w is 0, which the
-// compiler cannot know: so `at` stays in memory, from where a CPU broadcasts single lanes for nothing.
+// Interpolates values trilinearly at each ray's point: colour and w. Neighbours along x are adjacent in memory, so four
+// loads of eight floats fetch all corners of a ray. If `paired` (a compile-time constant), each value holds two numbers
+// and those of the next voxel along y; then two loads suffice, and the interpolation along y is left to the caller.
+// size.w is 0, which the compiler cannot know: this keeps `at` in memory, from where a CPU broadcasts single lanes at
+// no cost.
 __attribute__((always_inline)) inline void gather_values(
   __global const float4* values, const corners* at, int4 size, const int paired, rgb* colour, real* w)
 {
@@ -332,7 +333,7 @@ __attribute__((always_inline)) inline void gather_values(
   FETCH(1) FETCH(5) FETCH(9) FETCH(d) const float16 b = four_between(v1, v5, v9, vd, x.s111155559999dddd);
   FETCH(2) FETCH(6) FETCH(a) FETCH(e) const float16 c = four_between(v2, v6, va, ve, x.s22226666aaaaeeee);
   FETCH(3) FETCH(7) FETCH(b) FETCH(f) const float16 d = four_between(v3, v7, vb, vf, x.s33337777bbbbffff);
-  // All that follows stays within quarters of a register.
+  // All following permutations stay within quarters of a register.
   const float16 ab_low =
     (float16)(a.s0, b.s0, a.s1, b.s1, a.s4, b.s4, a.s5, b.s5, a.s8, b.s8, a.s9, b.s9, a.sc, b.sc, a.sd, b.sd);
   const float16 cd_low =
@@ -341,7 +342,7 @@ __attribute__((always_inline)) inline void gather_values(
     (float16)(a.s2, b.s2, a.s3, b.s3, a.s6, b.s6, a.s7, b.s7, a.sa, b.sa, a.sb, b.sb, a.se, b.se, a.sf, b.sf);
   const float16 cd_high =
     (float16)(c.s2, d.s2, c.s3, d.s3, c.s6, d.s6, c.s7, d.s7, c.sa, d.sa, c.sb, d.sb, c.se, d.se, c.sf, d.sf);
-  // Pairs move as longs: else PoCL makes ten instructions of each of these.
+  // Pairs are moved as longs; otherwise PoCL makes ten instructions of each of these.
 #define FIRST_PAIRS(p, q)                                                                                            \
   as_float16((long8)(as_long8(p).s0, as_long8(q).s0, as_long8(p).s2, as_long8(q).s2, as_long8(p).s4, as_long8(q).s4, \
     as_long8(p).s6, as_long8(q).s6))
@@ -383,7 +384,7 @@ inline void gather(__global const float4* values, const corners* at, int4 size, 
   gather_values(values, at, size, 0, colour, w);
 }
 
-// Sources and grey extinction.
+// Interpolates source and grey extinction.
 inline void gather_samples(__global const float4* samples, const corners* at, int4 size, rgb* source, real* sigma)
 {
 #if GREY
@@ -397,8 +398,8 @@ inline void gather_samples(__global const float4* samples, const corners* at, in
 #endif
 }
 
-// Between four values of a picture for each ray: two side by side from `lower` on and two from `upper`; x goes from the
-// first of two to the second, y from the lower to the upper.
+// Bilinear interpolation in a table for each ray: between two adjacent values from index `lower` on and two from
+// `upper` on; x is the weight of the second value of a pair, y that of the upper pair.
 inline rgb between_four(__global const float4* values, integer lower, integer upper, real x, real y)
 {
   rgb seen;
@@ -418,13 +419,12 @@ inline rgb between_four(__global const float4* values, integer lower, integer up
   return seen;
 }
 
-// Edge of a brick in voxels. Each brick has a number: how many bricks one has to go (as a chess king does) to one of
-// another kind; positive for a brick that is empty, negative for one where anything extinguishes or shines. It is 0
-// where rays bend.
+// Each brick has a signed distance: its absolute value is the number of king's moves to the nearest brick of another
+// kind. It is positive for empty bricks, negative for bricks with extinction or emission, and 0 where rays bend.
 
-// What is ahead of a packet: how many steps, from the sample at p on, every ray can take before one of them leaves the
-// bricks around it that are known to be alike; whether all those steps are through nothing; whether a ray bends. Rays
-// that are done do not count.
+// What lies ahead of a packet: `steps`, how many steps from the sample at p every ray can take before one of them
+// leaves the surrounding bricks of the same kind; `empty`, whether all those steps are through empty bricks; `bends`,
+// whether a ray bends. Finished rays are ignored.
 typedef struct
 {
   int steps, empty, bends;
@@ -456,7 +456,7 @@ __attribute__((always_inline)) inline stretch stretch_ahead(
   return s;
 }
 
-// How many steps take a ray on by a voxel along each axis.
+// Number of steps, with sign, in which a ray advances by one voxel along each axis.
 inline real3 strides_per_voxel(real3 direction, real step)
 {
   real3 strides;

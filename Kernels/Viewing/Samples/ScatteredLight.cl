@@ -1,13 +1,13 @@
-// What the rays meet: every voxel's source radiance per unit length and its extinction, made from the medium's arrays
-// and from the light that a solver left in them or that shadow rays find.
+// Packs the samples for camera rays: every voxel's source radiance per unit length and its extinction, from the
+// medium's arrays and from the light that a solver computed or that shadow rays find.
 //
 // The host gives
-//   SHADOW_RAYS  1: `direct` holds what the lights scatter towards the eye
-//   FLOW         1: the light's mean direction is packed, FLOW_WITH_G 1: times g
-//   VARIED_G     1: g by voxel is packed apart
-//   GLOW         1: emission is packed apart
+//   SHADOW_RAYS  1: `direct` holds light of the lamps scattered towards the eye
+//   FLOW         1: the light's mean direction is packed; FLOW_WITH_G 1: multiplied by g
+//   VARIED_G     1: g varies by voxel and is packed separately
+//   GLOW         1: emission is packed separately
 //   BENDS        1: the refractive index varies
-//   BRICKED      1: samples stand by bricks
+//   BRICKED      1: samples are stored in bricks
 
 #include "Numerics/Prefetch.cl"
 #include "Viewing/Samples/Border.cl"
@@ -16,7 +16,7 @@
 
 #define LARGEST_FLOW 0.9999f
 
-// What the medium and its light are made of, as the kernels' arguments.
+// Input arrays of the medium and its light, as passed to the kernels.
 typedef struct
 {
   __global const float* absorption;
@@ -29,8 +29,9 @@ typedef struct
   ViewedComponents components;
 } ingredients;
 
-// In-scattered radiance of one channel. `fluence` holds everything, `unscattered` what of it came straight from a
-// light; what is seen of the lights by shadow rays is taken out of fluence, so that it does not count twice.
+// In-scattered radiance of one channel. `fluence` is the total fluence, `unscattered` its uncollided part; what shadow
+// rays show of the lamps is subtracted from the fluence, so that it does not count twice.
+//   single  1: only single scattering
 inline float in_scattered(const ingredients* from, int voxel, int channel, int single)
 {
   const float whole = channel_of(from->fluence, voxel, from->components.fluence, channel);
@@ -44,8 +45,8 @@ inline float in_scattered(const ingredients* from, int voxel, int channel, int s
 #endif
 }
 
-// Source of a voxel, by n^2 with BENDS: red, green, blue, and grey extinction; besides all of the extinction, and what
-// is emitted, which with GLOW is no part of the source.
+// Source of a voxel (red, green, blue) and its grey extinction; with BENDS divided by n^2. Also returns the extinction
+// of all channels, and the emission, which with GLOW is not included in the source.
 inline float4 source_of(const ingredients* from, int voxel, int single, float4* sigma_t, float4* emitted)
 {
   const ViewedComponents of = from->components;
@@ -74,7 +75,8 @@ inline float4 source_of(const ingredients* from, int voxel, int single, float4* 
 }
 
 #if BRICKED
-// Rows of a brick are far from each other in memory: those of its next slice are asked for, by the ends of each row.
+// Prefetches the rows of the brick's next slice, by the ends of each row, because rows of a brick are far apart in
+// memory.
 static void ask_for_next_slice(const ingredients* from, int4 size, int voxel)
 {
   if (get_local_id(0) == 0 || get_local_id(0) == BrickEdge)
@@ -105,16 +107,16 @@ static void put_nothing(int place, __global float4* samples, __global float4* ex
 }
 #endif
 
-// Of voxels that rays do not see (ViewTraits.h) nothing is packed.
+// Packs samples. Voxels that rays do not see (ViewTraits.h) are skipped.
 //
-// bricks   with BRICKED: of each record (SampleBricks.h)
-// single   1: only light that scatters once
-// samples  red, green, blue of the source, and grey extinction; with GREY source and extinction here and at the next
-//          voxel along y
-// flow     with FLOW: the light's mean direction; with FLOW_WITH_G times g, at most LARGEST_FLOW long
-// cosines  with VARIED_G: red, green, blue of g
-// glow     with GLOW: emission, which is then no part of `samples`
-// ior      with BENDS: sources are divided by n^2
+// bricks   with BRICKED: the brick of each record (SampleBricks.h)
+// single   1: only light that was scattered once
+// samples  source (red, green, blue) and grey extinction; with GREY source and extinction here and at the next voxel
+//          along y
+// flow     with FLOW: the light's mean direction; with FLOW_WITH_G multiplied by g, length at most LARGEST_FLOW
+// cosines  with VARIED_G: g of red, green, blue
+// glow     with GLOW: emission, which is then not part of `samples`
+// ior      with BENDS: sources are divided by its square
 __kernel void pack_samples(int4 size, ViewedComponents of, int single, float g,
   __global const float* restrict absorption, __global const float* restrict scattering,
   __global const float* restrict emission, __global const float* restrict fluence,
@@ -160,7 +162,7 @@ __kernel void pack_samples(int4 size, ViewedComponents of, int single, float g,
 #endif
 #if FLOW
   const float3 mean = (float3)(direction[3 * voxel], direction[3 * voxel + 1], direction[3 * voxel + 2]);
-  // No light is more than one beam.
+  // A mean direction is at most 1 long.
   const float3 held = mean / fmax(length(mean), 1.0f);
 #if FLOW_WITH_G
   const float here = of.meanCosines ? mean_cosines[voxel] : g;

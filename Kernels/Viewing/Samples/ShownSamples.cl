@@ -1,11 +1,12 @@
-// What the rays meet where scattered light is known by direction: instead of a source its ratio to the extinction,
-// which varies slowly where both fall off steeply, as behind the surface of a cloud, and is multiplied by the
-// extinction between voxel centres (numerics.md, section 14.7).
+// Packs the samples for camera rays if scattered light is known by direction: instead of a source, the ratio of source
+// to extinction. It varies slowly where both decay steeply, as behind the surface of a cloud; it is multiplied by the
+// interpolated extinction during the march (numerics.md, section 14.7).
 //
 // The host gives
-//   SHOWN        0 nothing; 1 diffuse light, and lamps' light; 2 what lamps' light is scattered forwards more than once
-//   BEAMS        1: `direct` holds lamps' light
-//   AUREOLE      0: it holds none of SHOWN 2
+//   SHOWN        0 no source; 1 diffuse light and first-scattered light of lamps; 2 repeated forward scattering of
+//                lamps' light
+//   BEAMS        1: `direct` holds light of lamps
+//   AUREOLE      0: `direct` has no values for SHOWN 2
 //   COLOURED, BENDS, GLOW  as in ScatteredLight.cl
 
 #include "Viewing/Samples/Beside.cl"
@@ -15,7 +16,7 @@
 
 #define DARKEST 80.0f
 
-// What a voxel scatters over what it extinguishes; of one that does neither, the mean of those around it that do.
+// Extinction of a voxel, and its ratio of scattering to extinction.
 typedef struct
 {
   float4 sigma_t, albedo;
@@ -45,11 +46,13 @@ inline float4 triple(__global const float* values, int voxel)
   return (float4)(values[3 * voxel], values[3 * voxel + 1], values[3 * voxel + 2], 0.0f);
 }
 
-// Of the voxel's light: `diffuse` 3 a voxel, `direct` 6 (ShadowRays.cl), W / (length^2 sr).
-//   samples  SHOWN 1: diffuse light times albedo; 2: what is scattered more than once over what lamps' is first; and
-//            grey extinction
-//   beams    - ln of lamps' light times albedo
-//   of       straightOn 0: extinction is that of all light
+// Packs the samples from each voxel's light: `diffuse` with 3 values a voxel and `direct` with 6 (ShadowRays.cl), W /
+// (length^2 sr). A voxel without scattering gets the mean light of its scattering neighbours, and their mean albedo if
+// it does not absorb either.
+//   samples  SHOWN 1: diffuse light times albedo; SHOWN 2: ratio of lamps' light scattered more than once to that
+//            scattered once; w: grey extinction
+//   beams    -ln of (lamps' light times albedo)
+//   of       straightOn 0: the extinction includes all scattering
 __kernel void pack_shown(int4 size, ViewedComponents of, __global const float* restrict absorption,
   __global const float* restrict scattering, __global const float* restrict emission,
   __global const float* restrict straight_on, __global const float* restrict diffuse,
@@ -84,7 +87,7 @@ __kernel void pack_shown(int4 size, ViewedComponents of, __global const float* r
   count += 1.0f;
     FOR_SCATTERING_AROUND(voxel, size, scattering, of.scattering, ADD)
 #undef ADD
-    // A voxel that absorbs and does not scatter is black.
+    // A voxel that absorbs but does not scatter is black.
     albedo = any(here.sigma_t.xyz > (float3)(0.0f)) ? here.albedo : albedos / fmax(count, 1.0f);
 #if SHOWN == 1
     light = lights / fmax(count, 1.0f);

@@ -1,4 +1,4 @@
-// Arrays of voxels as the host has them, of 1 or 3 channels, or none.
+// Access to voxel arrays in the host's layout, with 1 or 3 channels, or without values (0 components).
 
 #pragma once
 

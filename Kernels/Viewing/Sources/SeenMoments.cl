@@ -1,17 +1,16 @@
-// What is scattered towards the eye in each voxel, of light whose angular moments are known.
+// Computes the radiance that each voxel scatters towards the eye from the angular moments of scattered light.
 //
 // The host gives
-//   DEGREE           of the moments
-//   MOMENT_CHANNELS  1 or 3
+//   DEGREE           degree of the moments
 
 #include "Numerics/SphericalHarmonics.cl"
 #include "Viewing/Scene/ViewShared.h"
 
 #define HARMONICS ((DEGREE + 1) * (DEGREE + 1))
 
-// A work-item a voxel.
+// One work-item per voxel.
 //   moments  W / (length^2 sr), [voxel][harmonic][channel]
-//   seen     3 per voxel
+//   seen     radiance towards the eye, 3 per voxel
 __kernel void see_moments(ShadowInfo info, __global const float* restrict moments, __global float* restrict seen)
 {
   const int i = get_global_id(0);
@@ -25,7 +24,7 @@ __kernel void see_moments(ShadowInfo info, __global const float* restrict moment
   const int4 first = info.block.first;
   const float3 place = (float3)((i + first.x + 0.5f) * info.spacing.x, (j + first.y + 0.5f) * info.spacing.y,
     (k + first.z + 0.5f) * info.spacing.z);
-  // Towards the eye: back along the view axis where rays are parallel.
+  // Direction towards the eye; opposite to the view axis in a parallel projection.
   const float3 out = (1.0f - info.eye.w) * (info.eye.xyz - place) - info.eye.w * info.forward.xyz;
   float harmonics[HARMONICS];
   find_harmonics(out / sqrt(fmax(dot(out, out), 1e-30f)), harmonics);
