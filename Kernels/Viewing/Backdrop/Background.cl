@@ -23,8 +23,8 @@ inline real angle_of(real y, real x)
   return copysign(p, y);
 }
 
-// Radiance seen along each direction in the axes of the environment's picture, as Lookup in Lights.h has it. The
-// picture has a column more on both sides, so that it closes around z.
+// Radiance of the environment in each direction, given in the environment's axes; the same as Lookup in Lights.h. The
+// picture has an additional column on either side, for periodic interpolation around z.
 inline rgb look_up(__global const float4* environment, real3 d, int4 size)
 {
   const real polar = angle_of(sqrt(fma(d.x, d.x, d.y * d.y)), d.z);
@@ -43,7 +43,7 @@ inline rgb look_up(__global const float4* environment, real3 d, int4 size)
   return between_four(environment, j0, j1, x, y);
 }
 
-// Radiance that comes from behind against each (world) direction.
+// Background radiance seen in each direction d, in world coordinates.
 inline rgb look_behind(const ViewInfo* v, real3 d, __global const float4* environment)
 {
   rgb behind = { (real)v->background.x, (real)v->background.y, (real)v->background.z };

@@ -1,21 +1,21 @@
-// Where rays cross the faces of the box, among tables of their cells: [face][row][cell of the row], faces -x to +z,
-// each with a border of one cell that repeats the outermost.
+// Finds the point at which a ray crosses a face of the box, in tables over the face cells: [face][row][cell of the
+// row], faces -x to +z, each with a border of one cell that repeats the outermost cells.
 
 #pragma once
 #include "Viewing/Samples/Sampling.cl"
 
 typedef struct
 {
-  integer by_x, by_y; // the axis across the face; neither: z
+  integer by_x, by_y; // whether the face's normal is along x, along y; neither: along z
   integer face;       // -x, +x, -y, +y, -z, +z
-  integer at, row;    // cell below and to the left, cells of a row
-  real a, b;          // from its centre to the next along the row, and to the next row
+  integer at, row;    // index of the cell below and to the left, and cells per row
+  real a, b;          // interpolation weights of the next cell along the row, and of the next row
 } face_place;
 
-// The face that lies behind a place within the box, against the direction.
+// Finds the face that a ray through point p, traced back against its direction, meets first.
 inline face_place face_behind(real3 p, real3 direction, int4 size)
 {
-  // The one that the ray has just come from, in time.
+  // The face with the shortest time since the ray crossed its plane.
 #define SINCE(c) \
   ((direction.c > (real)0.0f ? p.c : (real)(float)size.c - p.c) / greater(fabs(direction.c), (real)1e-20f))
   const real x = SINCE(x), y = SINCE(y), z = SINCE(z);

@@ -1,12 +1,12 @@
-// Faces of the box that give back light, seen from within: matt ground, snow, a table.
+// Reflecting faces of the box, seen from inside: matt ground, snow, a table.
 
 #pragma once
 #include "Viewing/Backdrop/BoxFacePlaces.cl"
 
-// What rays see that leave the box, if they do, through such a face; else what is behind.
+// Radiance that rays see behind the medium: that of a reflecting face if they leave through one, else `behind`.
 //   ground  radiance, see BackdropTables.h
-//   faces   a bit for each face, -x to +z, that gives back light
-//   p       a place on the way out from which they go straight on, in voxels
+//   faces   bit mask of the reflecting faces, -x to +z
+//   p       a point, in voxels, from which the ray leaves the box in a straight line
 inline rgb ground_or_behind(
   __global const float4* ground, int faces, real3 p, real3 direction, integer leaves, int4 size, rgb behind)
 {

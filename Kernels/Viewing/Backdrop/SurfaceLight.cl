@@ -1,17 +1,17 @@
-// Light at the surface of thick voxels, where rays enter the box.
+// Surface light of optically thick voxels, added where rays enter the box.
 
 #pragma once
 #include "Viewing/Backdrop/BoxFacePlaces.cl"
 #include "Viewing/Samples/Sampling.cl"
 
-// The cubic through values at cosines 0.05, 0.25, 0.6 and 1, see SurfaceCosines in BoxFaces.h: part of the value at `a`
-// at cosine x.
+// Lagrange basis polynomial at cosine x, for the node a among the cosines 0.05, 0.25, 0.6 and 1 (SurfaceCosines in
+// BoxFaces.h).
 #define PART_AT(x, a, b, c, d) (((x)-b) * ((x)-c) * ((x)-d) * (1.0f / ((a - b) * (a - c) * (a - d))))
 
-// What is missing in the march of rays that enter the box: radiance at the eye, 0 for those that start within.
+// Correction for the march of rays that enter the box: radiance at the eye; 0 for rays that start inside.
 //   table   see BackdropTables.h
-//   d       unit vectors of the rays, world
-//   before  length before each enters; 0 where it does not
+//   d       unit vectors along the rays, world
+//   before  length in front of the entry; 0 for rays that do not enter
 inline rgb surface_light(__global const float4* table, rays packet, real3 d, real before, int4 size)
 {
   const face_place to = face_behind(packet.entry, packet.direction, size);

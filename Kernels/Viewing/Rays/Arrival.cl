@@ -1,7 +1,7 @@
-// Where rays enter the box and what they come to: part of BentView.cl and RayRounds.cl.
+// Entry of rays into the box, and what they see when they leave it: part of BentView.cl and RayRounds.cl.
 //
-// Along a bent ray L / n^2 is conserved but for what the medium does (numerics.md, Eq. (109)): sources and backgrounds
-// are divided by n^2 of their place, and the picture is multiplied by n^2 where the ray enters.
+// Along a bent ray L / n^2 changes only by emission, scattering and absorption (numerics.md, Eq. (109)): sources and
+// backgrounds are divided by the local n^2, and the picture is multiplied by n^2 at the ray's entry.
 
 #pragma once
 #include "Viewing/Backdrop/Background.cl"
@@ -14,17 +14,18 @@
 #include "Viewing/Rays/View.cl"
 #include "Viewing/Samples/Sampling.cl"
 
-// What all marches gather together: light with n^2 divided out, and transmittance and depth along the camera's own ray.
+// Result accumulated over all marches of a pixel: light divided by n^2, and transmittance and depth along the primary
+// ray.
 typedef struct
 {
   light l;
-  real entrySquare; // n^2 where the ray enters
+  real entrySquare; // n^2 at the ray's entry
   real left, depth;
   waiting mirrored;
 } seeing;
 
-// Rays from the camera where they enter the box, as fast as the index there has it.
-//   end  depth at which they end
+// Initial state of camera rays at their entry into the box, with the speed |T| = n set by the index there.
+//   end  depth along the view axis at which the rays end
 inline ray_packets enter(const surroundings* s, camera_rays seen, real end, real* entry_square)
 {
   const real3 direction = stretched(seen.d, s->v->inverseSpacing);
@@ -58,9 +59,9 @@ inline spectrum mirrored_part(integer mirrors, spectrum now, spectrum before)
 }
 #endif
 
-// What a march comes to: background, or table. Rays that did not find out see the background as if the index were there
-// what it is at their entry.
-//   ends_here  rays that have come to it; nothing happens to others
+// Adds what rays see at the end of their march: background, ground or table. A ray that never left the box sees the
+// background, with the index taken as that at its entry.
+//   ends_here  rays whose march ends now; others are not changed
 //   set_off    those of them that were in the box
 //   primary    those that come from the camera
 inline void arrive(const surroundings* s, const ray_packets* t, integer ends_here, integer set_off, integer primary,

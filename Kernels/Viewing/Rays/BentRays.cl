@@ -1,17 +1,17 @@
-// The march of rays that bend where the refractive index varies.
+// March of rays that bend where the refractive index varies.
 //
-// With dt = ds / n a ray follows dr/dt = T, dT/dt = grad(n^2) / 2, |T| = n, as photons do: a leapfrog (numerics.md,
-// Eq. (91)) whose gradient is taken in the middle of each step. Where the index is constant that is a straight step,
-// and the gradient is not fetched.
+// With dt = ds / n a ray obeys dr/dt = T, dT/dt = grad(n^2) / 2, |T| = n, as photons do. The integrator is a leapfrog
+// (numerics.md, Eq. (91)) that takes the gradient at the midpoint of each step. Where the index is constant, steps are
+// straight and the gradient is not read.
 //
 // The host gives
-//   SKIP_BRICKS  1: rays leap over bricks in which nothing extinguishes, shines or bends
+//   SKIP_BRICKS  1: rays skip bricks without extinction, emission or bending
 
 #pragma once
 #include "Viewing/Rays/RayPackets.cl"
 #include "Viewing/Rays/SurfaceReflection.cl"
 
-// To the nearest face, voxels.
+// Distance to the nearest face of the box, voxels.
 inline real room_around(real3 p, int4 size)
 {
 #define ROOM(c) lesser(p.c, (real)(float)size.c - p.c)
@@ -19,7 +19,7 @@ inline real room_around(real3 p, int4 size)
 #undef ROOM
 }
 
-// Lanes of `last` that have come to the face which ends their step are no more inside.
+// Marks lanes of `last` as outside once they have reached the face at which their step ends.
 inline integer leave(ray_packets* t, integer last, int4 size)
 {
   const real to_go = time_to_face(t->at, t->velocity, size) * sqrt(product(t->velocity, t->velocity));
@@ -37,7 +37,7 @@ inline integer leave(ray_packets* t, integer last, int4 size)
 #endif
 
 #if BENDS
-// A few steps by the leapfrog. Samples outside the box are never read.
+// A few leapfrog steps. Samples outside the box are never read.
 __attribute__((always_inline)) inline void bend(
   const surroundings* s, integer done, ray_packets* t, light* l, crossed* half_way, watch* w)
 {
@@ -47,7 +47,7 @@ __attribute__((always_inline)) inline void bend(
   const float enough = s->v->marching.y;
   const int steps = s->o->limits.y;
   integer moves = done == 0;
-  // Most stretches lie so far inside that nothing can leave.
+  // Usually the rays are so far inside that none can leave within these steps.
   const int may_leave = any_lane(moves & (room_around(t->at, size) < (real)(stride * (float)(steps + 1) + 1.0f)));
 #if SURFACE
   const integer asks = moves & w->forgotten;
@@ -131,8 +131,8 @@ __attribute__((always_inline)) inline void bend(
 }
 #endif
 
-// Steps through a region of constant index, or a leap. Returns how many.
-//   leaves  of the rays that go the packet's whole length: those that then are out of the box
+// Steps through a region of constant index, or skips it if it is empty. Returns the number of steps.
+//   leaves  rays that leave the box if they travel the packet's whole length
 __attribute__((always_inline)) inline int go_straight(const surroundings* s, const rays* packet, real step,
   stretch ahead, integer done, integer leaves, ray_packets* t, light* l, crossed* half_way)
 {
@@ -168,7 +168,7 @@ __attribute__((always_inline)) inline int go_straight(const surroundings* s, con
   return steps;
 }
 
-// Marches rays until they leave the box, have too little light left or have gone round for long.
+// Marches rays until they leave the box, have too little transmittance left, or exceed the maximum number of steps.
 __attribute__((always_inline)) inline void march(
   const surroundings* s, ray_packets* t, light* l, crossed* half_way, watch* w)
 {

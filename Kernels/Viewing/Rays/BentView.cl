@@ -1,6 +1,5 @@
-// What a camera sees of a medium that bends rays, of a surface and of a table: rays from the camera, what the surface
-// reflects of them, and what the table mirrors of them, one march each. One work-item is a packet of neighbouring
-// pixels.
+// Renders a medium that bends rays, with a surface and a table. Three marches in turn: primary rays, rays reflected by
+// the surface, and rays mirrored by the table. One work-item is a packet of neighbouring pixels.
 
 #include "Viewing/Rays/Arrival.cl"
 #include "Viewing/Rays/BentRays.cl"
@@ -9,7 +8,7 @@
 
 #define PASSES (1 + (SURFACE > 0) + TABLE)
 
-// Sends off what waits for a later march; false where nothing does.
+// Starts the rays that wait for a later march; returns false if there are none.
 inline int send_off(const waiting* next, ray_packets* t, light* l)
 {
   l->left = next->left;
@@ -17,13 +16,13 @@ inline int send_off(const waiting* next, ray_packets* t, light* l)
   t->velocity = next->velocity;
   t->inside = most_left(*l) > (real)0.0f;
 #if ENDS
-  t->end = (real)ENDLESS; // what ends the camera's rays is not known to be in the way of others
+  t->end = (real)ENDLESS; // opaque surfaces that end the camera's rays are not known along other rays
   t->stopped = (integer)0;
 #endif
   return any_lane(t->inside);
 }
 
-// lit      what a white table shines by n^2, a float4 a voxel with a border
+// lit      radiance of a white table divided by n^2, a float4 a voxel with a border
 // bending  see surroundings
 __kernel void cast_bent_rays(ViewInfo v, OpticsInfo o, __global const float4* restrict samples,
   __global const float4* restrict extinctions, __global const float4* restrict flow,

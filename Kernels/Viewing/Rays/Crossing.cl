@@ -1,15 +1,15 @@
-// What rays meet on their way and what it does to them:
+// Radiative transfer along rays:
 //   radiance = integral over the ray of T(t) q(t) dt + T(end) background,  T(t) = exp(-integral of sigma_t)
 // with q = sigma_s times in-scattered radiance plus emission, both interpolated between voxel centres.
 //
 // The host gives
-//   THIN_STEPS  1: no step's optical length is above 2
-//   PHASE, PHASE_CHANNELS  how light of a known direction scatters, see PhaseFunction.cl
+//   THIN_STEPS  1: the optical length of every step is at most 2
+//   PHASE, PHASE_CHANNELS  scattering of light of a known direction, see PhaseFunction.cl
 //   FLOW_WITH_G 1: `flow` is the light's mean direction times g; 0: the mean direction alone
 //   VARIED_G    1: `cosines` holds g by voxel
-//   GLOW        1: emission is kept apart from what is scattered
-//   SHOWN       0, or what ShownSamples.cl packed; BEAMS 1: with lamps' light, in `flow`
-//   BLOCK       1: the medium is a block of a larger grid, whose rays go straight; may be left out
+//   GLOW        1: emission is stored separately from scattered light
+//   SHOWN       0, or the value with which ShownSamples.cl packed; BEAMS 1: with lamps' light, in `flow`
+//   BLOCK       1: the medium is a block of a larger grid, whose rays are straight; may be omitted
 
 #pragma once
 #include "Viewing/Rays/View.cl"
@@ -22,7 +22,7 @@ typedef rgb spectrum;
 typedef real spectrum;
 #endif
 
-// What is packed of the medium and its light, with a border of one voxel.
+// Packed samples of the medium and its light, with a border of one voxel.
 typedef struct
 {
   __global const float4*
@@ -40,7 +40,7 @@ inline real product(real3 a, real3 b)
   return fma(a.x, b.x, fma(a.y, b.y, a.z * b.z));
 }
 
-// What is left of a ray's light, and what it has gathered.
+// Transmittance of a ray so far, and its accumulated radiance.
 typedef struct
 {
   spectrum left;
@@ -50,7 +50,7 @@ typedef struct
   rgb radianceRest;
 #endif
 #if BLOCK
-  rgb before; // what was left where the block begins
+  rgb before; // transmittance in front of the block
 #endif
 } light;
 
@@ -59,7 +59,7 @@ inline real mean_of(rgb s)
   return (s.r + s.g + s.b) * (real)(1.0f / 3.0f);
 }
 
-// What is left since the ray came from the eye.
+// Mean transmittance since the eye.
 inline real mean_left(light l)
 {
 #if BLOCK && COLOURED
@@ -87,7 +87,7 @@ inline real most_left(light l)
 #endif
 }
 
-// What comes through of what other blocks have behind.
+// Transmittance for light of blocks behind this one.
 inline rgb passed_of(light l)
 {
 #if COLOURED
@@ -99,7 +99,7 @@ inline rgb passed_of(light l)
 }
 
 #if BLOCK
-// What blocks before this one let through; all where there are none.
+// Transmittance of the blocks in front of this one; 1 if there are none.
 inline rgb starts_of(const ViewInfo* v, __global const float* starts, int column, int row)
 {
   rgb part = { (real)1.0f, (real)1.0f, (real)1.0f };
@@ -146,7 +146,7 @@ inline light unlit(real left)
   return l;
 }
 
-// What comes through from behind, `part` of it.
+// Adds `part` of the radiance behind, attenuated.
 inline void add_background(rgb behind, real part, light* l)
 {
 #if COLOURED
@@ -161,7 +161,7 @@ inline void add_background(rgb behind, real part, light* l)
 #endif
 }
 
-// As much of the light at the surface (SurfaceLight.cl) as the ray has met of the medium.
+// Adds the surface light (SurfaceLight.cl), multiplied by 1 - transmittance of the ray.
 inline void add_surface_light(rgb missing, light* l)
 {
 #if COLOURED
@@ -177,9 +177,8 @@ inline void add_surface_light(rgb missing, light* l)
 #undef MET
 }
 
-// Over a length of constant coefficients: what a unit of source adds to the radiance, and what is left of the light
-// behind.
-//   length (1 - exp(-tau)) / tau; tau = 0 is vacuum, where the fraction is 1.
+// Crosses a length of constant coefficients. Returns the radiance gained per unit of source, length (1 - exp(-tau)) /
+// tau, where the fraction is 1 in vacuum (tau = 0); `remains` receives exp(-tau).
 inline real cross_length(real sigma, real length, real* remains)
 {
 #if THIN_STEPS
@@ -200,14 +199,14 @@ inline real cross_length(real sigma, real length, real* remains)
   return length * fraction;
 }
 
-// The step in which half of a ray's light was lost: where it starts, how far it goes, and what was left before and
-// after. Where: along the ray, or along the view.
+// The step in which a ray's transmittance falls below 1/2: start and length (along the ray, or along the view axis),
+// and transmittance before and after.
 typedef struct
 {
   real start, length, before, after;
 } crossed;
 
-// The coefficients in the middle of a step.
+// Coefficients at the midpoint of a step.
 typedef struct
 {
   rgb source;
@@ -215,8 +214,8 @@ typedef struct
 } sample;
 
 #if PHASE
-// 4 pi times the phase function of light that is itself spread about its mean direction (numerics.md, section 14.1),
-// seen along unit vectors v away from the eye.
+// 4 pi times the phase function for light that is itself spread about its mean direction (numerics.md, section 14.1),
+// for rays along unit vectors v away from the eye.
 __attribute__((always_inline)) inline rgb scattered_towards_eye(
   const scenery* scene, const corners* at, int4 size, real3 v)
 {
@@ -250,7 +249,7 @@ __attribute__((always_inline)) inline rgb scattered_towards_eye(
 #else
 #define SIGMA_OF(c) s->sigma
 #endif
-// From ratios of source to extinction to the source.
+// Converts the sampled ratios of source to extinction to sources.
 __attribute__((always_inline)) inline void multiply_by_extinction(
   const scenery* scene, const corners* at, int4 size, sample* s)
 {
@@ -284,7 +283,8 @@ __attribute__((always_inline)) inline void multiply_by_extinction(
 #undef SIGMA_OF
 #endif
 
-// v  unit vectors of the rays, away from the eye
+// Samples source and extinction at each ray's point.
+//   v  unit vectors along the rays, away from the eye
 __attribute__((always_inline)) inline sample take_sample(const scenery* scene, const corners* at, int4 size, real3 v)
 {
   sample s;
@@ -318,7 +318,7 @@ __attribute__((always_inline)) inline sample take_sample(const scenery* scene, c
 }
 
 #if MANY_STEPS
-// What a step takes is subtracted, not what it leaves multiplied: one less a thousandth of a millionth is one.
+// Subtracts the light that a step removes instead of multiplying by what remains: in single precision 1 - 1e-9 is 1.
 inline void lose(real* left, real* rest, real part)
 {
   add_to(left, rest, -lesser(part, (real)1.0f) * *left);
@@ -326,8 +326,9 @@ inline void lose(real* left, real* rest, real part)
 }
 #endif
 
-// Over `length` from place `start`, along which the ray goes on by `gain`. Rays that have less light left than `enough`
-// stop. Nothing but the last product waits for what was left before.
+// Crosses one step of `length`. `start` is the step's position and `gain` its extent, along the ray or the view axis.
+// Rays whose transmittance is at most `enough` stop. Only the last product depends on the transmittance before the
+// step, so that consecutive steps overlap.
 __attribute__((always_inline)) inline void cross_sample(
   sample s, real length, real start, real gain, float enough, light* l, crossed* half_way)
 {
@@ -391,7 +392,7 @@ __attribute__((always_inline)) inline void cross_sample(
   half_way->after = crossing ? after : half_way->after;
 }
 
-// Half of the light is lost at one place.
+// Records that the transmittance falls below 1/2 at one place.
 inline void lose_half(integer where, real place, crossed* half_way)
 {
   half_way->start = where ? place : half_way->start;
@@ -400,7 +401,7 @@ inline void lose_half(integer where, real place, crossed* half_way)
   half_way->after = where ? (real)0.0f : half_way->after;
 }
 
-// ln(a/b) = 2 (a-b)/(a+b) but for the third order.
+// Distance at which the transmittance is 1/2, with ln(a/b) = 2 (a-b)/(a+b), exact up to third order.
 inline real distance_to_half(crossed c)
 {
   const real part = (c.before - (real)0.5f) * (c.before + c.after) /

@@ -1,8 +1,8 @@
-// Rays on their way through a medium that bends them, and what they are given on it.
+// State of packets of rays that march through a medium with bending, and the inputs of the march.
 //
 // The host gives
 //   BENDS   1: the index varies
-//   ROUNDS  1: the medium is a block of a larger grid, and rays go on from block to block
+//   ROUNDS  1: the medium is a block of a larger grid, and rays travel from block to block
 
 #pragma once
 #include "Viewing/Rays/Crossing.cl"
@@ -10,38 +10,38 @@
 #include "Viewing/Samples/Sampling.cl"
 #include "Viewing/Scene/ViewShared.h"
 
-// Where rays are (voxels), how fast (voxels per unit of t) and whether inside of the box.
+// Position of rays (voxels), velocity (voxels per unit of t) and whether they are inside the box.
 typedef struct
 {
   real3 at, velocity;
   integer inside;
 #if ROUNDS
-  integer steps; // taken
+  integer steps; // number of steps so far
 #endif
 #if ENDS
   real end;        // depth at which they end
-  integer stopped; // there
+  integer stopped; // they have ended there
 #endif
 } ray_packets;
 
-// Rays that are marched later; without light left there are none.
+// Rays that are marched later; lanes with zero transmittance hold no ray.
 typedef struct
 {
   real3 at, velocity;
   spectrum left;
 } waiting;
 
-// What primary rays remember of n^2, so that they see where they meet the surface, and what is reflected there.
+// Memory of primary rays of n^2, to detect the surface; and the rays reflected there.
 typedef struct
 {
-  integer met;       // it was met, or is not looked for
-  real square;       // n^2 in the middle of the last bent step
+  integer met;       // the surface was met, or is not searched for
+  real square;       // n^2 at the midpoint of the last bent step
   real since;        // time since then
-  integer forgotten; // n^2 is to be asked for first
+  integer forgotten; // n^2 must be sampled first
   waiting reflected;
 } watch;
 
-// What each march is given, besides the rays.
+// Inputs of each march, besides the rays.
 typedef struct
 {
   const ViewInfo* v;
@@ -63,7 +63,7 @@ inline real3 kept_within(real3 p, int4 size)
   return q;
 }
 
-// Voxels of arrays, and the voxel of the whole at which they begin: of samples, and of how rays bend.
+// Size of the arrays of samples and of the bending field, and the voxel of the whole grid at which they begin.
 #if ROUNDS
 #define SAMPLES_SIZE(s) (s)->v->held
 #define SAMPLES_FIRST(s) (s)->v->block.first
@@ -75,7 +75,7 @@ inline real3 kept_within(real3 p, int4 size)
 #endif
 
 #if ROUNDS
-// Rays that are in another block ask for nothing that is there.
+// Clamps points to the array: rays in another block must not read outside it.
 inline real3 kept_in_array(real3 p, int4 first, int4 size)
 {
 #define KEPT(c) lesser(greater(p.c, (real)(float)first.c), (real)(float)(first.c + size.c))
@@ -84,7 +84,7 @@ inline real3 kept_in_array(real3 p, int4 first, int4 size)
   return q;
 }
 
-// From voxels of the whole to those of the block's arrays.
+// Converts voxel coordinates of the whole grid to those of the block's arrays.
 inline real3 in_block(const surroundings* s, real3 p)
 {
   const int4 first = s->v->block.first;
@@ -93,7 +93,7 @@ inline real3 in_block(const surroundings* s, real3 p)
   return q;
 }
 
-// Places in the block's own voxels.
+// Whether points lie in the block's own voxels.
 inline integer is_own(const surroundings* s, real3 p)
 {
   const BlockInfo* b = &s->v->block;
@@ -145,7 +145,7 @@ inline real3 chosen(integer first, real3 a, real3 b)
   return c;
 }
 
-// Until each ray that goes straight on leaves the box.
+// Time until each ray, continued in a straight line, leaves the box.
 inline real time_to_face(real3 p, real3 velocity, int4 size)
 {
   const real3 v = { at_least_tiny(velocity.x), at_least_tiny(velocity.y), at_least_tiny(velocity.z) };
@@ -155,8 +155,8 @@ inline real time_to_face(real3 p, real3 velocity, int4 size)
 }
 
 #if ROUNDS
-// In the middle of its next step a ray is in the block that takes it: one that bends or goes straight on, whose step is
-// as long.
+// Midpoint of each ray's next step, which decides the block that takes the step. Bent and straight steps have the same
+// length.
 inline real3 middle_of_next(const surroundings* s, const ray_packets* t)
 {
   const real per_voxel = (real)1.0f / sqrt(greater(product(t->velocity, t->velocity), (real)1e-30f));
@@ -164,7 +164,7 @@ inline real3 middle_of_next(const surroundings* s, const ray_packets* t)
   return kept_within(further(t->at, (real)0.5f * time, t->velocity), s->v->size);
 }
 
-// How far rays go straight on by steps that have their middles in the block; one step at least.
+// Length of the straight steps whose midpoints are in the block; at least one step.
 inline real own_stretch(const surroundings* s, real3 p, real3 direction, real step)
 {
   const BlockInfo* b = &s->v->block;
@@ -193,7 +193,7 @@ inline real depth_of(real3 p, const ViewInfo* v, float4 spacing)
 }
 
 #if ENDS
-// Until each ray that goes straight on comes to its end.
+// Time until each ray, continued in a straight line, reaches its end.
 inline real time_to_end(const ray_packets* t, real3 velocity, const surroundings* s)
 {
   const real3 forward = { (real)s->v->forward.x, (real)s->v->forward.y, (real)s->v->forward.z };

@@ -1,6 +1,7 @@
-// Rays that bend, are reflected by a surface or mirrored by a table, through one block of a larger grid: each as far as
-// the block goes. What happens at a place, the entry, the middle of a step, the exit, happens in the block that has the
-// place as its own. Places are in voxels of the whole, so that a block finds the numbers that the whole would.
+// Marches rays that bend, are reflected by a surface or mirrored by a table through one block of a larger grid, each up
+// to the block's boundary. The entry, each step and the exit are processed by the block that contains the entry point,
+// the step's midpoint or the exit point. Positions are in voxels of the whole grid, so that a block computes the same
+// numbers as a serial run.
 //
 // The host gives
 //   ROUNDS  1
@@ -10,11 +11,12 @@
 #include "Viewing/Rays/View.cl"
 #include "Viewing/Samples/Sampling.cl"
 
-#define BORN ((SURFACE > 0) + TABLE) // rays that one can leave behind
+#define BORN ((SURFACE > 0) + TABLE) // largest number of rays that are split off one ray
 
-// The rays through pixels that enter the whole in this block, or miss it and show the background here; of other pixels
-// none (pixel -1). A work-item is a packet of pixels of a picture's rows from v.picture.z on.
-//   rays  of each pixel of these rows
+// Starts the rays through pixels that enter the domain in this block, or that miss it while this block shows the
+// background to them; for other pixels there is no ray (pixel -1). A work-item is a packet of pixels in rows from
+// v.picture.z on.
+//   rays  one for each pixel of these rows
 __kernel void start_rays(
   ViewInfo v, OpticsInfo o, __global const float4* restrict bending, __global RayOnItsWay* restrict rays)
 {
@@ -62,7 +64,7 @@ __kernel void start_rays(
 #undef START
 }
 
-// A packet of rays that have come here.
+// A packet of rays that have arrived in this block.
 typedef struct
 {
   integer pixel, kind, state;
@@ -86,7 +88,7 @@ typedef struct
 #define STORE_SPECTRUM(s, n) ray->left[0] = ray->left[1] = ray->left[2] = LANE(s, n);
 #endif
 
-// Beyond the last of `count` rays its lane rests.
+// Loads a packet of rays from index `first` on. Lanes beyond the last of `count` rays are idle.
 inline arrivals load(__global const RayOnItsWay* rays, int first, int count)
 {
   arrivals a;
@@ -128,8 +130,8 @@ inline arrivals load(__global const RayOnItsWay* rays, int first, int count)
   return a;
 }
 
-// Back to where they were loaded from.
-//   middle  of the next step of those that go on
+// Stores a packet where it was loaded from.
+//   middle  midpoint of the next step, for rays that continue
 inline void store(const arrivals* a, real3 middle, __global RayOnItsWay* rays, int first, int count)
 {
   const integer goes_on = a->state == (integer)RayGoesOn;
@@ -168,8 +170,8 @@ inline void store(const arrivals* a, real3 middle, __global RayOnItsWay* rays, i
 }
 
 #if BORN
-// Rays that set off where others were split in two; none (pixel -1) where nothing is left of their light.
-//   slot  among BORN of each ray
+// Stores the rays that were split off from a packet; pixel -1 where a split-off ray carries no light.
+//   slot  index among the BORN rays of each ray
 inline void store_born(const surroundings* s, const arrivals* a, const waiting* born, int kind, int slot,
   __global RayOnItsWay* rays, int first, int count)
 {
@@ -213,8 +215,8 @@ inline void store_born(const surroundings* s, const arrivals* a, const waiting* 
 }
 #endif
 
-// Rays first to first + count, as far as the block goes or to their ends. A work-item is a packet of them.
-//   born  BORN a ray, see store_born
+// Marches rays first to first + count - 1 up to the block's boundary or their end. A work-item is a packet of rays.
+//   born  receives BORN rays per ray, see store_born
 __kernel void march_rays(ViewInfo v, OpticsInfo o, __global const float4* restrict samples,
   __global const float4* restrict extinctions, __global const float4* restrict flow,
   __global const float4* restrict glow, __global const float4* restrict cosines,

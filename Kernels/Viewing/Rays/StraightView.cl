@@ -1,7 +1,7 @@
 // Primary rays through a medium of constant index, one work-item per packet of neighbouring pixels.
 //
 // The host gives
-//   SKIP_BRICKS  1: rays leap over bricks in which nothing extinguishes or shines
+//   SKIP_BRICKS  1: rays skip bricks without extinction or emission
 //   BLOCK        1: the medium is a block of a larger grid
 
 #include "Viewing/Backdrop/Background.cl"
@@ -32,7 +32,7 @@ __kernel void cast_rays(ViewInfo v, __global const float4* restrict samples,
   const real3 direction = { seen.d.x * (real)v.inverseSpacing.x, seen.d.y * (real)v.inverseSpacing.y,
     seen.d.z * (real)v.inverseSpacing.z };
   const real end = v.has.x ? ends_of(&v, ends, column, row) : (real)ENDLESS;
-  const integer open = end >= (real)ENDLESS; // to what is behind
+  const integer open = end >= (real)ENDLESS; // no opaque surface hides what is behind
   real before;
 #if BLOCK
   integer enters, leaves;
@@ -81,7 +81,7 @@ __kernel void cast_rays(ViewInfo v, __global const float4* restrict samples,
 #endif
     for (; n < stop; ++n)
     {
-      // What is sampled does not depend on how much light is left, so that the next sample overlaps this one.
+      // Sampling does not depend on the transmittance so far, so that it overlaps the previous step.
       const real start = step * (real)(float)n;
       const real length = lesser(greater(packet.length - start, (real)0.0f), step);
       corners at;
@@ -98,12 +98,12 @@ __kernel void cast_rays(ViewInfo v, __global const float4* restrict samples,
     }
   }
 
-  // What is behind, and the picture.
+  // Background, and output.
   const real left = mean_left(l);
   if (v.has.z)
   {
 #if BLOCK
-    // How much of it is seen follows from all that the ray meets, in other blocks too.
+    // How much of it is visible depends on all that the ray meets, in other blocks too.
     paint_part(&v, missing, column, row, surface_light(surface, packet, seen.d, enters ? before : (real)0.0f, v.size));
 #else
     add_surface_light(surface_light(surface, packet, seen.d, before, v.size), &l);
@@ -119,7 +119,7 @@ __kernel void cast_rays(ViewInfo v, __global const float4* restrict samples,
   const real where = left > (real)0.5f ? (real)v.marching.z : (distance_to_half(half_way) + before) * seen.cosine;
   const canvas picture = { radiance, alpha, depth };
 #if BLOCK
-  // Behind the background there is no other block: there alpha is 1.
+  // The background hides all blocks behind it: alpha is 1 there.
   const real kept = sees_behind ? (real)(1.0f - v.background.w) : (real)1.0f;
   paint_part(&v, passed, column, row, passed_of(l));
   paint(&v, picture, column, row, l.radiance, (real)1.0f - left * kept, where);

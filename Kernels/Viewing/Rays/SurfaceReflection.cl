@@ -1,14 +1,14 @@
-// The surface where the index rises through a given one: it splits primary rays in two.
+// Splits primary rays at the surface where the index rises through a given value.
 //
 // The host gives
-//   SURFACE  what it reflects: 0 there is none, 1 as Fresnel's equations have it, 2 a fixed part
+//   SURFACE  its reflectance: 0 no surface, 1 by Fresnel's equations, 2 constant
 
 #pragma once
 #include "Viewing/Rays/RayPackets.cl"
 
 #if SURFACE
-// Unpolarised light from an index of square n1 to one of n2, the square of n sin(theta) being `across` (numerics.md,
-// Eq. (110)).
+// Fresnel reflectance for unpolarised light from a medium of squared index n1 into one of squared index n2; `across` is
+// the square of n sin(theta) (numerics.md, Eq. (110)).
 inline real fresnel(real n1, real n2, real across)
 {
   const real in = sqrt(greater(n1 - across, (real)0.0f)); // n cos(theta)
@@ -18,21 +18,23 @@ inline real fresnel(real n1, real n2, real across)
   return (real)0.5f * fma(s, s, p * p);
 }
 
-// The last step's middle and velocity until there, half its time, and the time from the middle before.
+// Midpoint of the current step, velocity in its first half, half its time, and time since the midpoint of the previous
+// step.
 typedef struct
 {
   real3 middle, velocity;
   real halfTime, since;
 } met_step;
 
-// Splits the rays that meet the surface in this step (`meets`). Light is known where the step starts; the surface lies
-// a little before or behind that: what the medium does between the two belongs to both parts or to one.
+// Splits the rays that meet the surface in this step (`meets`) into a transmitted and a reflected part. The
+// transmittance is known at the step's start, but the surface lies somewhat before or behind: the medium between the
+// two acts on both parts or on one.
 inline void split_at_surface(
   const surroundings* s, const met_step* step, integer meets, light* l, crossed* half_way, waiting* reflected)
 {
   const int4 size = s->v->size;
   const float4 spacing = s->o->spacing;
-  // Times before the middle: `outer` where the index is below the surface's, `inner` where it is not.
+  // Bisection in the time before the midpoint: at `outer` the index is below that of the surface, at `inner` it is not.
   real outer = step->halfTime + step->since;
   real inner = (real)0.0f;
   real3 bend;
@@ -48,7 +50,7 @@ inline void split_at_surface(
   const real3 at = kept_within(further(step->middle, -before, step->velocity), size);
   index_at(s, at, &bend);
 
-  // Directions in the world.
+  // Directions in world coordinates.
   const real after_start = step->halfTime - before;
   const real3 t = stretched(further(step->velocity, after_start, bend), spacing);
   const real3 gradient = stretched(bend, spacing);

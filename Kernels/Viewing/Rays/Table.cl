@@ -1,4 +1,4 @@
-// A face of the box that is a table.
+// Rays that meet the table, a face of the box.
 //
 // The host gives
 //   TABLE  1: there is one
@@ -7,9 +7,9 @@
 #include "Viewing/Rays/RayPackets.cl"
 
 #if TABLE
-#define REACH_OF_TABLE 2e-3f // voxels; what rounding leaves between a ray's end and the face
+#define REACH_OF_TABLE 2e-3f // voxels; rounding error of a ray's exit point relative to the face
 
-// Radiance per reflectance of the table where rays meet it, between voxel centres.
+// Radiance of a white table where rays meet it, interpolated between voxel centres.
 inline rgb table_light(const surroundings* s, __global const float4* lit, real3 place)
 {
   const real3 p = in_block(s, place);
@@ -25,7 +25,7 @@ inline rgb table_light(const surroundings* s, __global const float4* lit, real3 
   return between_four(lit, first, first + row, across, up);
 }
 
-// Rays that leave the box through the table.
+// Selects the rays that leave the box through the table.
 inline integer meet_table(const surroundings* s, const ray_packets* t, integer left_box)
 {
   const int axis = s->o->face.x;
@@ -36,7 +36,7 @@ inline integer meet_table(const surroundings* s, const ray_packets* t, integer l
   return left_box & (fabs(place - (real)face) < (real)REACH_OF_TABLE) & (heading * sign > (real)0.0f);
 }
 
-// What rays that end on the table gain of its light; `towards` becomes what they mirror.
+// Adds the table's diffuse radiance to rays that end on it; `towards` becomes their mirrored direction.
 //   lit  see table_light
 inline void end_on_table(
   const surroundings* s, __global const float4* lit, real3 p, integer ends, light* l, real3* towards)

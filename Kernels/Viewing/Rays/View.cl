@@ -1,10 +1,10 @@
-// The picture and the rays through its pixels.
+// Camera rays through the pixels of a packet, and output to the picture.
 
 #pragma once
 #include "Viewing/Samples/Sampling.cl"
 #include "Viewing/Scene/ViewShared.h"
 
-// Pixels of a packet.
+// Shape of a packet in pixels.
 #if REAL_WIDTH == 16
 #define PACKET_WIDTH 4
 #define PACKET_HEIGHT 4
@@ -27,8 +27,7 @@
 #define UPWARDS 0.0f
 #endif
 
-// The rays through a packet's pixels: where they come from (voxels), their unit vectors in the world, and the cosine to
-// the view axis.
+// Camera rays of a packet: start (voxels), unit vectors in world coordinates, and cosine to the view axis.
 typedef struct
 {
   real3 from, d;
@@ -58,9 +57,9 @@ inline camera_rays rays_through(const ViewInfo* v, int column, int row)
   return r;
 }
 
-#define ENDLESS 1e30f // a depth that no ray comes to
+#define ENDLESS 1e30f // larger than any depth
 
-// The pixels of a packet whose first is at (column, row); where the picture ends, its last ones.
+// Pixel indices of a packet whose first pixel is (column, row), clamped to the picture.
 inline integer nearest_pixels(const ViewInfo* v, int column, int row)
 {
   const integer i = to_integer(lesser(ACROSS + (real)(float)column, (real)(float)(v->picture.x - 1)));
@@ -68,7 +67,7 @@ inline integer nearest_pixels(const ViewInfo* v, int column, int row)
   return j * v->picture.x + i;
 }
 
-// Where a packet's rays end, along the view axis; ENDLESS where they do not.
+// Depths along the view axis at which a packet's rays end; ENDLESS for rays that do not.
 inline real ends_of(const ViewInfo* v, __global const float* ends, int column, int row)
 {
   const integer pixel = nearest_pixels(v, column, row);
@@ -79,10 +78,10 @@ inline real ends_of(const ViewInfo* v, __global const float* ends, int column, i
   return end;
 }
 
-// Where pictures go.
+// Output arrays of a picture.
 //   radiance  3 per pixel, W / (length^2 sr)
 //   alpha     1 - mean transmittance
-//   depth     where the mean transmittance falls to a half, along the view axis
+//   depth     along the view axis, where the mean transmittance falls to 1/2
 typedef struct
 {
   __global float* radiance;
@@ -90,7 +89,7 @@ typedef struct
   __global float* depth;
 } canvas;
 
-// The pixels of a packet whose first is at (column, row), and which of them the picture has.
+// Pixel indices of a packet whose first pixel is (column, row). See in_picture for those outside the picture.
 inline integer pixels_of(const ViewInfo* v, int column, int row)
 {
   return (integer)(row * v->picture.x + column) + to_integer(UPWARDS) * v->picture.x + to_integer(ACROSS);
@@ -101,7 +100,7 @@ inline integer in_picture(const ViewInfo* v, int column, int row)
   return (to_integer(ACROSS) + column < (integer)v->picture.x) & (to_integer(UPWARDS) + row < (integer)v->picture.y);
 }
 
-// 3 per pixel: what a block lets through, and other things that are said of it.
+// Writes 3 values per pixel: a block's transmittance or its surface light.
 inline void paint_part(const ViewInfo* v, __global float* parts, int column, int row, rgb part)
 {
   const integer pixel = pixels_of(v, column, row), inside = in_picture(v, column, row);

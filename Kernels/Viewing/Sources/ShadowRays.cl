@@ -1,9 +1,9 @@
-// What the lights send straight to each voxel, and what is scattered of it towards the eye. The host gives
+// Direct light of the lamps in each voxel, and the part of it that is scattered towards the eye. The host gives
 //   PHASE, PHASE_CHANNELS  see PhaseFunction.cl
-//   AUREOLE      tables of what is scattered forwards more than once: 0, 1, or 3 for red, green and blue
-//   BESIDE       1: also in voxels beside such that scatter
-//   GIVEN        1: the medium is a block of a larger grid, and optical lengths towards a light are added up from what
-//                each block finds of them
+//   AUREOLE      number of tables of repeated forward scattering: 0, 1, or 3 for red, green and blue
+//   BESIDE       1: also in voxels that have a scattering neighbour
+//   GIVEN        1: the medium is a block of a larger grid, and the optical length towards a light is the given sum of
+//                what each block finds
 
 #include "Viewing/Samples/Beside.cl"
 #include "Viewing/Samples/BlockRays.cl"
@@ -12,7 +12,8 @@
 #include "Viewing/Samples/VoxelChannels.cl"
 #include "Viewing/Scene/ViewShared.h"
 
-// A packet's way to a light: unit vectors to it and distances (world), and what would arrive through vacuum.
+// Shadow rays of a packet: unit vectors to the light and distances (world), and the irradiance per unit of power that
+// would arrive through vacuum.
 typedef struct
 {
   real3 d;
@@ -32,7 +33,7 @@ inline way_to_light towards(const SmallLight* light, real3 place, real scatters,
   const real to_axis = -fma(d.x, (real)light->axis.x, fma(d.y, (real)light->axis.y, d.z * (real)light->axis.z));
   real arriving = point > (real)0.0f ? (real)1.0f / greater(square, (real)nearest_square) : (real)1.0f;
   arriving *= light->power.w > 0.0f ? greater(to_axis, (real)0.0f) : (real)1.0f;
-  // tan(angle / 2) = sine / (1 + cosine): a cosine alone does not tell small angles from 0.
+  // Uses tan(angle / 2) = sine / (1 + cosine): the cosine alone does not resolve small angles.
   const real3 across = { fma(d.y, (real)light->axis.z, -d.z * light->axis.y),
     fma(d.z, (real)light->axis.x, -d.x * light->axis.z), fma(d.x, (real)light->axis.y, -d.y * light->axis.x) };
   const real sine = sqrt(fma(across.x, across.x, fma(across.y, across.y, across.z * across.z)));
@@ -48,8 +49,9 @@ inline way_to_light towards(const SmallLight* light, real3 place, real scatters,
 #else
 #define PASS(sigma, sum, rest) sum = fma(sigma, length, sum);
 #endif
-// Optical length of the medium on the way, by channel where COLOURED, else in `r`; 30 and more is as good as any.
-//   centre  of voxels; with GIVEN of the whole, and only what of the way lies in the block counts
+// Optical length along the shadow rays, by channel with COLOURED, else in `r`; the march stops above 30, where nothing
+// arrives.
+//   centre  voxel centres; with GIVEN in the whole grid, and only the section of the ray in the block counts
 inline rgb depths_on_the_way(const ShadowInfo* info, const way_to_light* way, real3 centre,
   __global const float4* samples, __global const float4* extinctions, __global const char* bricks)
 {
@@ -107,7 +109,7 @@ inline rgb depths_on_the_way(const ShadowInfo* info, const way_to_light* way, re
 }
 #undef PASS
 
-// What arrives of a light's power through the medium, W / length^2.
+// Irradiance that arrives from a light through the medium, W / length^2.
 inline rgb arriving_through(const SmallLight* light, real arriving, rgb depths)
 {
   rgb left;
@@ -124,7 +126,7 @@ inline rgb arriving_through(const SmallLight* light, real arriving, rgb depths)
   return power;
 }
 
-// The phase function of one channel, per steradian, by the cosine of the scattering angle.
+// Phase function of one channel, per steradian, for a cosine of the scattering angle.
 inline real phase_of_channel(real cosine, real first, real second, real part, __global const float* rows)
 {
 #if PHASE == 1
@@ -150,15 +152,16 @@ inline rgb phase_at(real cosine, phase_parameters p, __global const float* rows)
 }
 
 #if AUREOLE
-// Of a table of Aureole.h times the depth: by the cosine, and by the root of the depth.
+// Value of a table of Aureole.h times the optical length: interpolated over the cosine and the square root of the
+// length.
 inline real aureole_at(real cosine, real depth, __global const float* rows)
 {
   const real deep = sqrt(lesser(depth * (real)(1.0f / AureoleDepth), (real)1.0f)) * (real)(float)AureoleRows;
   return depth * between_cosines(rows, deep, cosine, AureoleColumns);
 }
 
-// Optical length of all scattering, straight on or not, over that of the extinction that rays are marched with: taken
-// as the voxel's own on the whole way.
+// Ratio of the optical length of all scattering (including the part treated as unscattered) to the optical length of
+// the extinction with which rays are marched; the voxel's own ratio is used along the whole ray.
 inline real scattering_over_depth(__global const float* absorption, __global const float* scattering,
   __global const float* straight_on, const ViewedComponents* of, integer voxel, int channel)
 {
@@ -176,7 +179,7 @@ inline real scattering_over_depth(__global const float* absorption, __global con
 }
 #endif
 
-// How the voxels of a packet scatter.
+// Phase function parameters of a packet's voxels.
 inline phase_parameters phases_of(const ShadowInfo* info, integer voxel, __global const float* mean_cosines)
 {
   phase_parameters p = parameters_of(&info->phase);
@@ -193,7 +196,8 @@ inline phase_parameters phases_of(const ShadowInfo* info, integer voxel, __globa
   return p;
 }
 
-// The voxels of a packet along x; beyond the row's end its last one, which is then written several times alike.
+// Voxel indices of a packet along x. Lanes beyond the row's end repeat its last voxel, so that several lanes write the
+// same values.
 inline integer packet_along_x(int first, int size)
 {
 #if REAL_WIDTH == 16
@@ -207,7 +211,7 @@ inline integer packet_along_x(int first, int size)
 #endif
 }
 
-// Three numbers of each of a packet's voxels.
+// Reads three adjacent numbers for each voxel of a packet.
 inline rgb triples_of(__global const float* values, integer voxel, int stride, int first)
 {
   rgb found;
@@ -221,8 +225,8 @@ inline rgb triples_of(__global const float* values, integer voxel, int stride, i
 }
 
 #if GIVEN
-// What the block adds to the optical lengths between the voxels of a box of the whole and the light `firstLight`.
-// Work-items by packets of a slice.
+// Computes the block's part of the optical lengths between the voxels of a box of the whole grid and the light
+// `firstLight`. One work-item per packet of a slice.
 //   depths  3 per voxel, see depths_on_the_way
 __kernel void find_depths(ShadowInfo info, __global const SmallLight* restrict lights,
   __global const float4* restrict samples, __global const float4* restrict extinctions,
@@ -256,11 +260,12 @@ __kernel void find_depths(ShadowInfo info, __global const SmallLight* restrict l
 }
 #endif
 
-// Scatters towards the eye what the lights send straight to each voxel's centre. Work-items by packets of a slice.
+// Computes the direct light of the lamps at each voxel's centre, and its scattering towards the eye. One work-item per
+// packet of a slice.
 //   direct  6 per voxel: sum of irradiance times phase function, W / (length^2 sr), and sum of irradiance, W /
-//           length^2; with AUREOLE instead what scattering forwards more than once adds, W / (length^2 sr). Added to
-//           what is there where firstLight is not the first
-//   given   with GIVEN: 3 for each voxel from the first row of the launch on, optical lengths towards the only light
+//           length^2; with AUREOLE, in place of the irradiance, the radiance added by repeated forward scattering, W /
+//           (length^2 sr). Added to the present values if firstLight > 0
+//   given   with GIVEN: optical lengths towards the only light, 3 for each voxel from the launch's first row on
 __kernel void see_lights(ShadowInfo info, __global const SmallLight* restrict lights,
   __global const float* restrict scattering, __global const float* restrict mean_cosines,
   __global const float* restrict phase_rows, __global const float4* restrict samples,
@@ -295,10 +300,10 @@ __kernel void see_lights(ShadowInfo info, __global const SmallLight* restrict li
 #endif
   const int4 begin = info.block.first;
   const real3 centre = { to_real(i + begin.x) + (real)0.5f, (real)((float)(j + begin.y) + 0.5f),
-    (real)((float)(k + begin.z) + 0.5f) }; // in the whole
+    (real)((float)(k + begin.z) + 0.5f) }; // in the whole grid
   const real3 place = { centre.x * (real)info.spacing.x, centre.y * (real)info.spacing.y,
     centre.z * (real)info.spacing.z };
-  // Towards the eye: back along the view axis where rays are parallel.
+  // Direction towards the eye; opposite to the view axis in a parallel projection.
   const real perspective = (real)(1.0f - info.eye.w);
   const real3 out = { fma(perspective, (real)info.eye.x - place.x, (real)(-info.eye.w * info.forward.x)),
     fma(perspective, (real)info.eye.y - place.y, (real)(-info.eye.w * info.forward.y)),
