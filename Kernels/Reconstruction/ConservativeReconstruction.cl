@@ -1,19 +1,19 @@
-// The conservative estimator. The host gives
-//   BATCHES     independent ones, at least 2
-//   CHANNELS    of the light, 1 or 3
+// Kernels of the conservative estimator. The host gives
+//   BATCHES     number of independent batches, at least 2
+//   CHANNELS    channels of the light, 1 or 3
 //   DIRECTIONS  1: there are mean directions
-//   WOVEN       1: the grid's light is [voxel][batch][channel] of two batches; 0: [batch][voxel][channel]
-//   FINEST      1: the finer level is the grid itself, as the host has it; 0: rows of a level
+//   WOVEN       1: the grid's light is [voxel][batch][channel] with two batches; 0: [batch][voxel][channel]
+//   FINEST      1: the finer level is the grid itself, in the host's layout; 0: rows of a level
 //
-// Fields of a level of the pyramid: each batch's light (sum of channels), then what is smoothed: the light's channels,
-// then its flux (light times mean direction).
+// Fields of a pyramid level: the light of each batch (sum of channels), then the smoothed quantities: the light's
+// channels and its flux (light times mean direction).
 
 #include "Reconstruction/ConservativeReconstructionShared.h"
 #include "Reconstruction/LightRows.cl"
 
 #define CARRIED (CHANNELS + 3 * DIRECTIONS)
 #define FIELDS (BATCHES + CARRIED)
-// Fields of a level of the result: what is smoothed, the level it was taken from, and the squared error.
+// Fields of a level of the result: the smoothed quantities, the source level, and the squared error.
 #define BLENDED CARRIED
 #define SQUARED (BLENDED + 1)
 #define RESULTS (CARRIED + BesideResults)
@@ -24,7 +24,7 @@ typedef struct
   pair carried[CARRIED];
 } light_pair;
 
-// The channels of a batch in two vectors of voxels.
+// Loads the channels of both batches for two vectors of voxels.
 #if WOVEN && CHANNELS == 1
 inline void load_batches(const __global float* batches, size_t voxel, pair* light)
 {
@@ -45,7 +45,7 @@ inline void load_batches(const __global float* batches, size_t voxel, pair_of_th
 }
 #endif
 
-// Two vectors of voxels of the grid, in units of 1 / scale.
+// Loads two vectors of voxels of the grid, multiplied by `scale`.
 inline light_pair load_voxels(
   const __global float* batches, const __global float* directions, int4 size, size_t voxel, float scale)
 {
@@ -144,7 +144,7 @@ inline void add_voxels(pair* sum, const __global float* batches, const __global 
 #define last_of(p) ((p).y)
 #endif
 
-// The grid's voxels to level 1: all fields in one pass, by weights 1 3 3 1 along each axis.
+// Computes level 1 from the grid's voxels: all fields in one pass, by weights 1 3 3 1 along each axis.
 __kernel void voxels_down(const __global float* batches, const __global float* directions, int4 fine_size,
   __global float* coarse, int4 size, float scale)
 {
@@ -189,7 +189,7 @@ __kernel void voxels_down(const __global float* batches, const __global float* d
   }
 }
 
-// The light of a row's pairs of cells, at FINEST from the grid's voxels, else from rows.
+// Loads pairs of cells of a row: with FINEST from the grid's voxels, else from rows.
 inline light_pair load_light(
   const __global float* fine, const __global float* directions, int4 size, int x, int y, int z, float scale)
 {
@@ -213,8 +213,8 @@ inline light_pair load_light(
 #endif
 }
 
-// How much the details of the batches agree, in cells of 2 x 2 x 2 (numerics.md, Eq. (101)): field 0 the noise that
-// their mean d has, sum (d_b - d)^2 / (B (B - 1)), field 1 its square d^2.
+// Measures how far the details of the batches agree, in cells of 2 x 2 x 2 (numerics.md, Eq. (101)): field 0 is the
+// variance of their mean d by noise, sum (d_b - d)^2 / (B (B - 1)); field 1 is d^2.
 __kernel void measure_details(const __global float* fine, const __global float* directions, int4 fine_size, float scale,
   const __global float* coarse, int4 size, __global float* measured)
 {
@@ -245,7 +245,7 @@ __kernel void measure_details(const __global float* fine, const __global float* 
           {
             first[i] = detail[i];
           }
-          else // of differences from the first batch: nothing cancels
+          else // relative to the first batch, to avoid cancellation
           {
             const real other = detail[i] - first[i];
             sum[i] += other;
@@ -270,7 +270,7 @@ __kernel void measure_details(const __global float* fine, const __global float* 
   }
 }
 
-// Binomial smoothing by 1 4 6 4 1, along y and z here, along x where the result is used.
+// Binomial smoothing by 1 4 6 4 1, here along y and z; the kernels that read the result smooth along x.
 __kernel void smooth_across(const __global float* from, int4 size, __global float* to, int first, int fields)
 {
   const float weights[5] = { 0.0625f, 0.25f, 0.375f, 0.25f, 0.0625f };
@@ -310,8 +310,8 @@ inline real smoothed(const __global float* row, int x)
     0.0625f * (load_real(x - 2, row) + load_real(x + 2, row));
 }
 
-// How much of the details is kept (Wiener's filter; numerics.md, Eq. (102)). The noise is taken off twice, so that what
-// is left by chance is not taken for light.
+// Computes the Wiener gain of the details (numerics.md, Eq. (102)). Twice the noise is subtracted, so that random
+// excess is not mistaken for light.
 __kernel void find_gains(const __global float* measured, int4 size, __global float* gains)
 {
   const int y = ROW_Y, z = ROW_Z;
@@ -331,8 +331,8 @@ __kernel void find_gains(const __global float* measured, int4 size, __global flo
   }
 }
 
-// Squared error of the details (numerics.md, Eq. (104)): noise that was kept, light that was taken for noise (times
-// `honesty`), and that of the levels above.
+// Squared error of the details (numerics.md, Eq. (104)): noise that was kept, light that was mistaken for noise (times
+// `honesty`), and the error of the levels above.
 __kernel void add_errors(
   const __global float* removed, int4 size, float honesty, const __global float* results, __global float* gains)
 {
@@ -350,7 +350,7 @@ __kernel void add_errors(
   }
 }
 
-// The top of the pyramid: taken whole. Its noise is smoothed before it counts.
+// Result of the top level: its light without any gain. Its noise is smoothed before it enters the error (begin_errors).
 __kernel void begin_results(
   const __global float* level, int4 size, __global float* results, float top, __global float* noise)
 {
@@ -402,12 +402,13 @@ __kernel void begin_errors(const __global float* noise, int4 size, __global floa
 }
 
 #if DIRECTIONS
-// What brings a flux to the mean direction of light `total`: no longer than 1, 0 where there is no light.
+// Factor that converts a flux to the mean direction of light `total`: limits its length to 1; 0 where there is no
+// light.
 inline real direction_of(real total, real x, real y, real z)
 {
   const real cut = select((real)0.0f, 1.0f / total, total > 0.0f);
   const real square = (x * cut) * (x * cut) + (y * cut) * (y * cut) + (z * cut) * (z * cut);
-  if (any_of(square > 1.0f)) // which is rare
+  if (any_of(square > 1.0f)) // rare
   {
     return select(cut, cut / sqrt(square), square > 1.0f);
   }
@@ -415,7 +416,7 @@ inline real direction_of(real total, real x, real y, real z)
 }
 #endif
 
-// The light of two vectors of voxels and its direction, from what is smoothed.
+// Stores the light and mean direction of two vectors of voxels, from the smoothed quantities.
 inline __attribute__((always_inline)) void store_voxels(
   const children* smooth, float unit, size_t voxel, __global float* fluence, __global float* mean_direction)
 {
@@ -443,12 +444,12 @@ inline __attribute__((always_inline)) void store_voxels(
 #endif
 }
 
-// Interpolated results of the level above, and what of this level's details is kept.
+// Computes the result of a level: the interpolated result of the level above plus the gain times this level's details.
 //   fine, fine_size, directions, scale   this level's light
 //   coarse, results, gains               of the level above, `size`
-//   to          rows of RESULTS fields of this level; at FINEST not used
-//   number      of this level
-//   fluence, mean_direction, blended     FINEST: of the grid's voxels
+//   to          rows of RESULTS fields of this level; not used with FINEST
+//   number      number of this level
+//   fluence, mean_direction, blended     with FINEST: output arrays over the grid's voxels
 __kernel void blend_level(const __global float* fine, const __global float* directions, int4 fine_size, float scale,
   const __global float* coarse, const __global float* results, const __global float* gains, int4 size, float number,
   __global float* to, __global float* fluence, __global float* mean_direction, __global float* blended)
@@ -460,7 +461,7 @@ __kernel void blend_level(const __global float* fine, const __global float* dire
 #else
   const size_t fine_field = field_of(fine_size);
 #endif
-  for (int k = 0; k < 4; ++k) // outside: memory is read ahead for a few rows, not for four of every quantity
+  for (int k = 0; k < 4; ++k) // outer loop, because hardware prefetches a few rows, but not four of every quantity
   {
     const rows_about rows = rows_for_children(size, y, z, k);
     const int fy = min(2 * y + k % 2, fine_size.y - 1), fz = min(2 * z + k / 2, fine_size.z - 1);
@@ -507,8 +508,8 @@ __kernel void blend_level(const __global float* fine, const __global float* dire
   }
 }
 
-// The last pass: light so that each channel's total is what it was, and its error, which channels share as they share
-// the light.
+// Last pass: scales each channel of the light to conserve its total, and computes the error; channels share the error
+// in proportion to their light.
 __kernel void finish_light(const __global float* gains, int4 size, float4 conserve, float unit, __global float* fluence,
   __global float* errors, int4 fine_size)
 {

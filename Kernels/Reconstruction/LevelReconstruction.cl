@@ -1,22 +1,23 @@
-// A level of the pyramid for each voxel: a work-item per row (or voxel). The host gives
+// Chooses a pyramid level for each voxel and samples the light there; one work-item per row (or voxel). The host gives
 //   PUBLISHED        1: the published estimator
-//   CONSTANT_RADIUS  1: that of one level everywhere; where both are 0, that of the nearest photons
-//   CHANNELS, DIRECTIONS  of the light; fields of its pyramid are its channels, then the mean direction
+//   CONSTANT_RADIUS  1: the same level everywhere; if both are 0, the nearest-photons estimator
+//   CHANNELS, DIRECTIONS  channels of the light, and whether there are mean directions; the fields of its pyramid are
+//                         its channels, then the mean direction
 //   TOP         the highest level
 //
-// Voxels of a row that are next to each other lie between the same cells of a level. So levels are taken one after the
-// other, and each voxel keeps what it took so far: nothing is gathered.
+// Adjacent voxels of a row lie between the same cells of a level. Levels are therefore processed in turn, and each
+// voxel keeps the value of its chosen level: no gather is needed.
 
 #include "Reconstruction/LightPyramidShared.h"
 #include "Reconstruction/LightRows.cl"
 
-// The four rows of a level that a row of voxels lies between, y fastest, and where between them.
+// The four rows of a level between which a row of voxels lies, y fastest, and the interpolation weights along y and z.
 typedef struct
 {
   size_t at[4];
   size_t field;
   float y, z;
-  int first; // voxel of the level's grid that the row's first one is, a multiple of 8
+  int first; // index of the row's first voxel in the level's voxel grid, a multiple of 8
 } rows_between;
 
 inline rows_between rows_beside(const __global PyramidLevels* where, int level, int y, int z)
@@ -43,7 +44,7 @@ inline real between(real low, real high, real part)
   return multiply_add(part, high - low, low);
 }
 
-// REAL_WIDTH cells of a level from x on, interpolated across the row.
+// REAL_WIDTH cells of a level from x on, interpolated along y and z.
 inline real cells_across(const __global float* values, const rows_between* rows, int x)
 {
   const real low = between(load_real(x, values + rows->at[0]), load_real(x, values + rows->at[1]), (real)rows->y);
@@ -51,8 +52,8 @@ inline real cells_across(const __global float* values, const rows_between* rows,
   return between(low, high, (real)rows->z);
 }
 
-// Trilinear interpolation between the cells of a level where REAL_WIDTH voxels from x on are: getInterpolatedValue of
-// listing B.3. `level` is known when this is compiled.
+// Trilinear interpolation of a level at REAL_WIDTH voxels from x on: getInterpolatedValue of listing B.3. `level` is a
+// compile-time constant.
 inline real sample(const __global float* values, const rows_between* rows, int level, int x)
 {
   if (level == 0)
@@ -60,7 +61,7 @@ inline real sample(const __global float* values, const rows_between* rows, int l
     return load_real(x, values + rows->at[0]);
   }
   x += rows->first;
-  const int first = (x - (1 << level) / 2) >> level; // cell left of the first voxel
+  const int first = (x - (1 << level) / 2) >> level; // cell to the left of the first voxel
 #if REAL_WIDTH == 8
   const float8 cells = cells_across(values, rows, first);
   if (level == 1)
@@ -114,7 +115,7 @@ inline void take(real* taken, const real* channels, integer where)
   }
 }
 
-// The first level at which `least` photons are found, the top where none has so many, and what `wanted` is there: the
+// Finds the lowest level with at least `least` photons (the top level if none has), and samples `wanted` there: the
 // light (its channels) or the photons' weight.
 inline real populated(const __global float* counts, const rows_between* rows_of_counts, float least,
   const __global float* wanted, const rows_between* rows, int x, real* found)
@@ -145,8 +146,8 @@ inline real populated(const __global float* counts, const rows_between* rows_of_
   return level;
 }
 
-// Up as long as the difference of two levels does not grow (listing B.3), and no higher than `highest`; `taken` is the
-// light there.
+// Goes up as long as the difference of successive levels does not grow (listing B.3), but not above `highest`; `taken`
+// receives the light of the level.
 inline real by_surround(const __global float* light, const rows_between* rows, real highest, int x, real* taken)
 {
   real level = 0.0f;
@@ -202,14 +203,14 @@ inline void store_direction(
   }
   const real square = way[0] * way[0] + way[1] * way[1] + way[2] * way[2];
   real cut = 1.0f;
-  if (any_of(square > 1.0f)) // which is rare
+  if (any_of(square > 1.0f)) // rare
   {
     cut = select(cut, 1.0f / sqrt(square), square > 1.0f);
   }
   store_reals_of_three(way[0] * cut, way[1] * cut, way[2] * cut, voxel, direction);
 }
 
-//   voxels   the grid's, and from a row of them to the next
+//   voxels   voxels of the grid along x, y, z, and the pitch of its rows
 __kernel void choose_level(const __global float* light, const __global PyramidLevels* where,
   const __global float* counts, const __global float* weights, const __global PyramidLevels* where_counts,
   float parameter, __global float* fluence, __global float* direction, __global float* chosen, int4 voxels)

@@ -1,11 +1,11 @@
-// From a level of a light pyramid to the next, a work-item per row (or cell). The host gives
-//   GAUSS        1: by a Gauss filter of 4 cells along each axis
-//   MEAN_OF_LIT  1: the mean of the cells that are not dark; else, and without GAUSS, the sum
+// Computes a level of a light pyramid from the next finer one, one work-item per row (or cell). The host gives
+//   GAUSS        1: Gaussian filter of 4 cells along each axis; 0: weights 1 3 3 1
+//   MEAN_OF_LIT  1: mean of the nonzero cells; 0 (and no GAUSS): sum
 
 #include "Reconstruction/LightRows.cl"
 
 #if GAUSS
-// exp(-x^2 / (2 * 4)) at 0.5 and 1.5, so that four add up to 1 (Pfeuti 2009, section 3.2.4)
+// exp(-x^2 / (2 * 4)) at 0.5 and 1.5, normalised so that the four weights add up to 1 (Pfeuti 2009, section 3.2.4)
 #define NEAR 0.281088549f
 #define FAR 0.218911451f
 #else
@@ -13,7 +13,8 @@
 #define FAR 0.125f
 #endif
 
-// Voxels of 1 or 3 components as the host has them, rows of `pitch`, to rows of a level's fields `first` and on.
+// Copies voxels of 1 or 3 components from the host's layout, with rows of `pitch` voxels, to the rows of a level, from
+// field `first` on.
 __kernel void split_voxels(
   const __global float* voxels, int components, int pitch, __global float* level, int4 size, int first)
 {
@@ -41,7 +42,7 @@ __kernel void split_voxels(
   }
 }
 
-// 4 x 4 x 4 finer cells by a separable kernel.
+// Filters 4 x 4 x 4 finer cells with a separable kernel.
 __kernel void smooth_down(const __global float* fine, int4 fine_size, __global float* coarse, int4 size, int fields)
 {
   const float weights[4] = { FAR, NEAR, NEAR, FAR };
@@ -72,7 +73,7 @@ __kernel void smooth_down(const __global float* fine, int4 fine_size, __global f
   }
 }
 
-// 2 x 2 x 2 finer cells: their sum, or (MEAN_OF_LIT) the mean of those that are not 0 (listing B.2).
+// Joins 2 x 2 x 2 finer cells to their sum or, with MEAN_OF_LIT, to the mean of those that are not 0 (listing B.2).
 __kernel void join_down(const __global float* fine, int4 fine_size, __global float* coarse, int4 size, int fields)
 {
   const int y = ROW_Y, z = ROW_Z;
@@ -97,7 +98,7 @@ __kernel void join_down(const __global float* fine, int4 fine_size, __global flo
 #endif
       store_real(sum, x, row);
 #if !MEAN_OF_LIT
-      if (x + REAL_WIDTH >= size.x && 2 * size.x > fine_size.x) // the last cell once, not with its repetition
+      if (x + REAL_WIDTH >= size.x && 2 * size.x > fine_size.x) // counts the last cell once, without its repetition
       {
         float last = 0.0f;
         for (int k = 0; k < 4; ++k)
@@ -116,8 +117,8 @@ __kernel void join_down(const __global float* fine, int4 fine_size, __global flo
   }
 }
 
-// Rows of voxels [voxel][batch][channel] as the host has them, to [batch][voxel][channel] with rows of another length;
-// what is too long repeats the last.
+// Copies rows of voxels from the host's layout [voxel][batch][channel] to [batch][voxel][channel] with another pitch;
+// padding repeats the last voxel.
 __kernel void copy_batches(
   const __global float* from, int count, __global float* to, int to_row, int batches, int channels)
 {
@@ -136,8 +137,7 @@ __kernel void copy_batches(
   }
 }
 
-// Rows of voxels as the host has them, with `components` each, to rows of another length; what is too long repeats the
-// last.
+// Copies rows of voxels with `components` each to rows of another pitch; padding repeats the last voxel.
 __kernel void copy_rows(
   const __global float* from, int count, int from_row, __global float* to, int to_row, int components)
 {

@@ -1,11 +1,11 @@
-// Rows of light for every kernel of the reconstruction, with REAL_WIDTH 8 (CPUs) or 1.
+// Row layout and vector access for every kernel of the reconstruction, with REAL_WIDTH 8 (CPUs) or 1.
 //
-// A level of a pyramid holds `fields` volumes of rows, one quantity each. A row has GUARD values before and after it
-// that repeat its ends, as the values do that fill it up to a multiple of 2 REAL_WIDTH: no load along x asks where a
-// row ends. `size` is cells along x, y, z, then floats from a row to the next.
+// A level of a pyramid holds `fields` volumes of rows, one per quantity. A row has GUARD values before and after it
+// that repeat its end values, as does the padding that extends it to a multiple of 2 REAL_WIDTH: loads along x need no
+// bounds checks. `size` is cells along x, y, z, then the pitch of rows in floats.
 //
-// Arrays of voxels as the host has them are not split into quantities and have no guards; their size.w is voxels from a
-// row to the next, a multiple of 2 REAL_WIDTH.
+// Voxel arrays in the host's layout interleave their components and have no guards; their size.w is the pitch of rows
+// in voxels, a multiple of 2 REAL_WIDTH.
 
 #pragma once
 #include "Numerics/Numerics.cl"
@@ -32,7 +32,7 @@ typedef pair __attribute__((aligned(4))) pair_anywhere;
 #define FOR_CELLS(x, count) for (int x = get_global_id(0), end_ = x + 1; x < end_; ++x)
 #endif
 
-// The values of even and odd places in the order of their places.
+// Interleaves the values of even and odd places.
 inline pair woven(real even, real odd)
 {
 #if REAL_WIDTH == 8
@@ -43,7 +43,7 @@ inline pair woven(real even, real odd)
 #endif
 }
 
-// Voxels of three components from `values`, split into components, and back.
+// Loads voxels of three interleaved components from `values`, split into components, and stores them.
 typedef struct
 {
   real x, y, z;
@@ -54,8 +54,9 @@ typedef struct
 } pair_of_three;
 
 #if REAL_WIDTH == 8
-// Lanes 0, 3, 6 of the first, 1, 4, 7 of the second, 2, 5 of the third. In three vectors of eight voxels each component
-// has every lane once, so that this and one permutation sort them; written as one shuffle they become sixteen moves.
+// Selects lanes 0, 3, 6 of the first, 1, 4, 7 of the second, and 2, 5 of the third vector. In three vectors of eight
+// voxels each component occupies every lane once, so this selection and one permutation sort them; written as a single
+// shuffle, they compile to sixteen moves.
 inline float8 lanes_of(float8 a, float8 b, float8 c)
 {
   const int8 second = (int8)(0, -1, 0, 0, -1, 0, 0, -1), third = (int8)(0, 0, -1, 0, 0, -1, 0, 0);
@@ -95,7 +96,7 @@ inline void store_reals_of_three(real x, real y, real z, size_t voxel, __global 
 #endif
 }
 
-// 2 REAL_WIDTH of them.
+// Loads 2 REAL_WIDTH voxels of three components.
 inline pair_of_three load_three(size_t voxel, const __global float* values)
 {
   const real_of_three low = load_reals_of_three(voxel, values), high = load_reals_of_three(voxel + REAL_WIDTH, values);
@@ -121,7 +122,7 @@ inline void store_three(pair x, pair y, pair z, size_t voxel, __global float* va
 #define any_of(condition) any(condition)
 #endif
 
-// Not fmax, which looks for NaN.
+// Not fmax, which tests for NaN.
 #define positive_part(x) ((x) > 0.0f ? (x) : 0.0f)
 
 inline int within(int i, int count)
@@ -129,8 +130,8 @@ inline int within(int i, int count)
   return i < 0 ? 0 : i < count ? i : count - 1;
 }
 
-// Floats from a layer of rows to the next, and from a quantity to the next. Not multiples of 4 kB, where they would
-// push each other out of the cache: see LightPyramid.cxx.
+// Pitch in floats of a layer of rows, and of a quantity. Not multiples of 4 kB, with which layers would evict each
+// other from the cache: see LightPyramid.cxx.
 inline size_t layer_of(int4 size)
 {
   const size_t layer = (size_t)size.y * size.w;
@@ -142,13 +143,13 @@ inline size_t field_of(int4 size)
   return field < 1024 ? field : field + 656;
 }
 
-// First value of a row of a level, from the level's beginning. y and z beyond the ends: the end's row.
+// Offset of the first value of a row from the beginning of its level. y and z outside the level are clamped.
 inline size_t row_of(int4 size, int field, int y, int z)
 {
   return field * field_of(size) + within(z, size.z) * layer_of(size) + (size_t)within(y, size.y) * size.w + GUARD;
 }
 
-// After `width` cells from x on were written: repeat the row's ends if they are among them.
+// Repeats a row's end values, if they are among the `width` cells that were written from x on.
 inline void repeat_ends(__global float* row, int x, int width, int count)
 {
   if (x == 0)
@@ -172,8 +173,8 @@ inline real nearer(real near, real far)
   return multiply_add((real)0.25f, far, (real)0.75f * near);
 }
 
-// Cells have eight children, four rows of pairs; row k is at y = k % 2, z = k / 2. Of the cells' level, from field 0
-// on: the rows that row k of the children of row (y, z) lies between.
+// A cell has eight children, in four rows of pairs; row k is at y = k % 2, z = k / 2. Offsets, in field 0 of the cell's
+// level, of the four rows between which row k of the children of row (y, z) is interpolated.
 typedef struct
 {
   size_t here, beside, behind, opposite;
@@ -198,8 +199,8 @@ inline real cells_for_children(const __global float* field, const rows_about* ro
     nearer(load_real(rows->behind + x, field), load_real(rows->opposite + x, field)));
 }
 
-// Trilinear interpolation of REAL_WIDTH cells from x on to a row of their children. A row at a time, for all eight
-// children of several quantities do not fit into a CPU's registers.
+// Trilinear interpolation from REAL_WIDTH cells from x on to one row of their children. One row at a time, because all
+// eight children of several quantities do not fit into a CPU's registers.
 inline children interpolate(const __global float* field, const rows_about* rows, int x)
 {
   const real middle = cells_for_children(field, rows, x);

@@ -401,7 +401,7 @@ inline void lose_half(integer where, real place, crossed* half_way)
   half_way->after = where ? (real)0.0f : half_way->after;
 }
 
-// Distance at which the transmittance is 1/2, with ln(a/b) = 2 (a-b)/(a+b), exact up to third order.
+// Distance at which the transmittance is 1/2, with ln(a/b) = 2 (a-b)/(a+b) up to terms of third order.
 inline real distance_to_half(crossed c)
 {
   const real part = (c.before - (real)0.5f) * (c.before + c.after) /

@@ -36,7 +36,7 @@ typedef struct
 {
   integer met;       // the surface was met, or is not searched for
   real square;       // n^2 at the midpoint of the last bent step
-  real since;        // time since then
+  real since;        // time since that midpoint
   integer forgotten; // n^2 must be sampled first
   waiting reflected;
 } watch;
