@@ -18,16 +18,16 @@ namespace tyndall
 {
 namespace
 {
-/// What the device keeps of a level of the pyramid, from level 1 on.
+/// Device memory of a pyramid level, from level 1 on.
 struct ConservativeLevel
 {
-  LightRows light;            ///< each batch's, then what is smoothed
-  LightRows results;          ///< what is smoothed, level, squared error
-  LightRows gains;            ///< with which the level below adds its details
-  LightRows measured, across; ///< to find them
+  LightRows light;            ///< light of each batch, then the smoothed quantities
+  LightRows results;          ///< smoothed quantities, source level, squared error
+  LightRows gains;            ///< gains for the details of the level below
+  LightRows measured, across; ///< intermediate results for the gains
 };
 
-/// The light of the grid's voxels: the host's own, or a copy batch by batch, with rows that are whole vectors.
+/// The light of the grid's voxels: the host's own array, or a copy batch by batch with rows of whole vectors.
 class BatchedLight
 {
 public:
@@ -40,26 +40,26 @@ private:
   Buffer<float> Apart;
 };
 
-/// The passes of the conservative estimator over the levels of a pyramid (numerics.md, Eqs. (101) to (104)): up with
-/// Build, Begin at the top, and down again. They are done in two parts: the levels of this rank's box up to the shared
-/// one, and those of the whole grid from there on.
+/// Passes of the conservative estimator over the levels of a pyramid (numerics.md, Eqs. (101) to (104)): up with Build,
+/// Begin at the top, and down with Refine. They run in two parts: over the levels of this rank's box up to the shared
+/// level, and over those of the whole grid from there on.
 class ConservativePasses
 {
 public:
-  /// All that is given must outlive this.
-  /// @param light   of the box; or, without arrays, of the whole grid
-  /// @param result  arrays of the light's voxels
-  /// @param first, top  levels with which the pyramid begins and ends
+  /// All arguments must outlive this object.
+  /// @param light   light of the box; without arrays: of the whole grid
+  /// @param result  its arrays must have the light's size
+  /// @param first, top  lowest and highest level of this part
   ConservativePasses(
     const Reconstruction& task, const NoisyLight& light, ReconstructedLight& result, int first, int top);
 
   void Build();                                        ///< all levels, from the voxels or from Light of the first level
-  void Begin();                                        ///< results of the top level
+  void Begin();                                        ///< computes the result of the top level
   void Refine(int from, int downTo);                   ///< results of these levels, from those of the level above
-  void FetchFluence() const { this->Fluence.Fetch(); } ///< the voxels' light, before it is scaled
+  void FetchFluence() const { this->Fluence.Fetch(); } ///< copies the voxels' light to the host, before it is scaled
   void Finish(const std::array<float, 3>& factors);
 
-  /// Of a level, to read or to write instead of what makes it.
+  /// Light of a level, to be read, or to be set instead of being computed.
   LightRows& LightOf(int level) { return this->At(level).light; }
   LightRows& ResultsOf(int level) { return this->At(level).results; }
 
@@ -85,7 +85,7 @@ private:
   HostMappedBuffer<float> BatchesIn, DirectionsIn, FluenceOut, DirectionOut, MipLevelOut, ErrorOut;
   BatchedLight Light;
   WholeRows Direction, Fluence, MeanDirection, MipLevel, Error;
-  int First, Top; ///< levels that Levels begin and end with
+  int First, Top; ///< lowest and highest level in Levels
   bool FromVoxels;
   std::vector<ConservativeLevel> Levels;
 };
@@ -94,7 +94,7 @@ private:
 constexpr float Honesty = 0.4f;
 
 constexpr std::size_t VoxelsOfFirstLaunch = std::size_t(1)
-  << 22; // voxels per launch, until it is known how long that takes
+  << 22; // voxels in the first launch, until its run time is known
 
 ConservativeLevel MakeLevel(const Reconstruction& task, const std::array<int, 3>& size, int width)
 {
@@ -107,8 +107,8 @@ ConservativeLevel MakeLevel(const Reconstruction& task, const std::array<int, 3>
     LightRows(device, size, 2, width, what) };
 }
 
-/// Whether kernels read the light of batches as the host has it: two, in whole vectors. Of more, they would gather each
-/// value by itself.
+/// Whether kernels read the light of batches in the host's layout: for two batches with rows of whole vectors. With
+/// more batches they would have to gather single values.
 bool AreWoven(const NoisyLight& light, int width)
 {
   return light.batches == 2 && WholeVectors(light.grid.size[0], width) == light.grid.size[0];
@@ -121,7 +121,7 @@ std::string Options(const Reconstruction& task, int width)
     Define("CHANNELS", light.channels) + Define("DIRECTIONS", task.directions);
 }
 
-/// A power of two that brings the light near 1, so that its squares neither overflow nor vanish.
+/// A power of two that scales the light to about 1, so that its square neither overflows nor underflows.
 float ScaleOf(float largest)
 {
   return std::ldexp(1.0f, -std::clamp(largest > 0.0f ? std::ilogb(largest) : 0, -126, 126));
@@ -183,7 +183,7 @@ cl::Kernel ConservativePasses::Kernel(const char* name, bool finest) const
   return this->Kernels.Kernel(name, kernel_source::ConservativeReconstruction, Define("FINEST", finest));
 }
 
-/// Queue a kernel that looks at level `below` for the cells of the level above it.
+/// Enqueues a kernel that reads level `below`, for the cells of the level above it.
 void ConservativePasses::RunAbove(int below, const cl::Kernel& kernel, double from, double to)
 {
   const std::array<int, 3>& cells = this->At(below + 1).light.Cells();
@@ -240,7 +240,7 @@ void ConservativePasses::Begin()
   this->Kernels.Run(errors, top.light.Cells());
 }
 
-/// How much of a level's details is kept, and the error of that.
+/// Computes the gains of a level's details, and their error.
 void ConservativePasses::FindGains(int level)
 {
   ConservativeLevel& above = this->At(level + 1);

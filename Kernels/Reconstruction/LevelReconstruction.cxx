@@ -18,9 +18,9 @@ namespace
 {
 using Estimator = ReconstructionSettings::Estimator;
 
-constexpr std::size_t FirstPart = std::size_t(1) << 18; // voxels per launch, until it is known how long that takes
+constexpr std::size_t FirstPart = std::size_t(1) << 18; // voxels in the first launch, until its run time is known
 
-/// Of light, counts and weights.
+/// How the pyramids of light, counts and weights are built.
 constexpr LightPyramid::Down Downs[] = { LightPyramid::Down::Gauss, LightPyramid::Down::Sum,
   LightPyramid::Down::MeanOfLit };
 
@@ -29,14 +29,14 @@ std::size_t CountOf(const Reconstruction& task, const float* values, int compone
   return values ? task.light.grid.VoxelCount() * Count(components) : 0;
 }
 
-/// Takes the light of each voxel from one level of its pyramid (the estimators other than the conservative one).
+/// Computes the light of each voxel from one level of its pyramid (all estimators except the conservative one).
 class LevelPasses
 {
 public:
-  /// @param task, result  must outlive this; the result's arrays are those of the box
+  /// @param task, result  must outlive this object; the result's arrays have the size of the box
   LevelPasses(const Reconstruction& task, ReconstructedLight& result);
 
-  void Build(); ///< pyramids up to the shared level
+  void Build(); ///< builds the pyramids up to the shared level
   /// Cells of a pyramid's shared level: those of this rank's box, and those of the whole grid.
   std::vector<float> Shared(std::size_t pyramid) const { return this->Pyramids[pyramid].Read(this->Part.shared); }
   void BuildAbove(std::size_t pyramid, const std::vector<float>& cells);
@@ -57,8 +57,8 @@ private:
   HostMappedBuffer<float> Light, Directions, Counts, Weights; ///< of photons; without values where not needed
 };
 
-/// The weight of photons from a level to the next: where it is not given the mean weight of lit voxels, less than
-/// marching rounds weights to, so that equal ones all reach the first step. Collective.
+/// The increment of photon weight per level. If it is not given, the mean weight of lit voxels, reduced by the rounding
+/// of weights in the march, so that equal weights all reach the first increment. Collective.
 /// @param own  weights of the block's voxels
 double WeightStepOf(const Reconstruction& task, const float* own)
 {
@@ -75,7 +75,7 @@ double WeightStepOf(const Reconstruction& task, const float* own)
   return task.settings.weightStep > 0.0 ? task.settings.weightStep : total > 0.0 ? 0.999 * total / lit : 1.0;
 }
 
-/// Fields of the pyramids that an estimator looks at: of light and its directions, of photon counts, of their weights.
+/// Number of fields of each pyramid that an estimator uses: light and directions, photon counts, photon weights.
 std::vector<int> FieldsOfPyramids(const Reconstruction& task)
 {
   std::vector<int> fields = { task.Fields() };
@@ -168,7 +168,7 @@ void LevelPasses::Choose(double weightStep)
   const WholeRows directionRows(this->Kernels, direction, this->Size, volumes, 3, true, "mean directions");
   const WholeRows chosenRows(this->Kernels, chosen, this->Size, 1, 1, true, "levels");
 
-  // What an estimator does not look at is any.
+  // Arguments that an estimator does not use may be any buffer.
   const LightPyramid& light = this->Pyramids.front();
   const LightPyramid& heavy = this->Pyramids.back();
   const LightPyramid& photons = this->Pyramids[std::min<std::size_t>(1, this->Pyramids.size() - 1)];
@@ -185,7 +185,7 @@ void LevelPasses::Choose(double weightStep)
   }
 }
 
-/// Pyramids from the shared level on.
+/// Computes the pyramids from the shared level on.
 void CompletePyramids(const Reconstruction& task, std::optional<LevelPasses>& passes)
 {
   const std::vector<int> fields = FieldsOfPyramids(task);

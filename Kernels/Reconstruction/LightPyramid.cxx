@@ -16,9 +16,9 @@ int RowWidth(const Device& device, const Grid& grid)
 
 namespace
 {
-/// As layer_of and field_of in LightRows.cl. Rows of one place in all layers and quantities are used together; with
-/// strides that are multiples of 4 kB they would all want the same few places of the cache. So a
-/// layer ends with 3 and a quantity with 41 lines of 64 bytes that are not used.
+/// Same as layer_of and field_of in LightRows.cl. Rows at the same place of all layers and quantities are used
+/// together; with strides that are multiples of 4 kB they would map to the same few cache sets. So a layer ends with 3
+/// and a quantity with 41 unused lines of 64 bytes.
 std::size_t LayerStride(const std::array<int, 3>& size, int stride)
 {
   const std::size_t layer = Count(size[1]) * Count(stride);
@@ -166,7 +166,7 @@ void WholeRows::Copy(const cl::Buffer& from, int fromRow, const cl::Buffer& to, 
 
 namespace
 {
-constexpr std::size_t Alignment = 1024; // floats at which a part of a buffer may begin, on every device
+constexpr std::size_t Alignment = 1024; // in floats: subbuffers may begin at multiples of this on every device
 }
 
 LightPyramid::LightPyramid(
@@ -234,7 +234,7 @@ void LightPyramid::BuildAbove(Down down, const std::vector<float>& cells)
   {
     this->Copy(ofAll.Parts[level], this->Parts[shared + level], ofAll.BytesOf(level));
   }
-  this->Kernels.On().Finish(); // the buffers go
+  this->Kernels.On().Finish(); // before the buffers are released
 }
 
 void LightPyramid::Fill(const WholeRows& voxels, int components, int first)

@@ -61,7 +61,7 @@ void Check(const ReconstructionSettings& settings)
     settings.weightStep, "a number of 0 (found from the photons) or more");
 }
 
-/// @throws InvalidInput where what the estimator needs is not there: says what
+/// @throws InvalidInput if an input of the estimator is missing; names it
 void CheckPresence(const NoisyLight& light, Estimator estimator)
 {
   if (light.channels != 1 && light.channels != 3)
@@ -95,7 +95,7 @@ void CheckPresence(const NoisyLight& light, Estimator estimator)
   }
 }
 
-/// What is made on the way and the result, roughly.
+/// Approximate memory for intermediate arrays and the result.
 void RequireMemory(const Device& device, const NoisyLight& light, bool conservative, std::size_t voxels)
 {
   const double direction = light.meanDirection ? 3.0 : 0.0;
@@ -106,9 +106,9 @@ void RequireMemory(const Device& device, const NoisyLight& light, bool conservat
     "Reconstructing light on " + std::to_string(voxels) + " voxels", "Use a coarser grid or fewer batches.");
 }
 
-/// Sets channels and batches on ranks without voxels to those of the others, and tells whether there are directions.
-/// Collective.
-/// @throws InvalidInput where ranks disagree
+/// Sets channels and batches on ranks without voxels to the values of the other ranks; returns whether there are mean
+/// directions. Collective.
+/// @throws InvalidInput if ranks disagree
 bool AgreeOnKind(const Domain& domain, NoisyLight& light)
 {
   const bool has = !domain.IsEmpty();
@@ -119,7 +119,7 @@ bool AgreeOnKind(const Domain& domain, NoisyLight& light)
   return domain.Any(has && light.meanDirection);
 }
 
-/// Whether light of three channels is of one colour everywhere, so that its channels share their noise. Collective.
+/// Whether light of three channels has the same colour everywhere, so that its channels share their noise. Collective.
 bool IsOneColour(const Domain& domain, const NoisyLight& light)
 {
   constexpr float part = 1e-4f;
@@ -152,8 +152,8 @@ bool IsOneColour(const Domain& domain, const NoisyLight& light)
   return !domain.Any(differs);
 }
 
-/// Each channel as grey light by itself: gains and errors of its own. Directions and levels stay those of all together.
-/// Collective.
+/// Reconstructs each channel separately as grey light, with its own gains and errors; directions and levels remain
+/// those of the sum. Collective.
 void ReconstructChannels(Device& device, const Domain& domain, const NoisyLight& light,
   const ReconstructionSettings& settings, const Monitor& monitor, ReconstructedLight& result)
 {

@@ -39,7 +39,7 @@ struct ReconstructionSettings
   };
   Estimator estimator = Estimator::Conservative;
   int levels = 5; ///< largest number of pyramid levels above the grid, 1 to 8; limited by the grid's size
-  /// Published: increment of photon weight from level to level; 0: the mean weight of lit voxels minus 1e-3.
+  /// Published: increment of photon weight from level to level; 0: 0.999 times the mean weight of lit voxels.
   double weightStep = 0.0;
   int level = 1;        ///< ConstantRadius: the level
   int nearest = 20;     ///< NearestPhotons: number of photons, at least 1

@@ -19,24 +19,25 @@ namespace
 {
 using Estimator = ReconstructionSettings::Estimator;
 
-/// Levels that each rank makes of its box.
+/// Number of pyramid levels that each rank computes from its own box.
 constexpr int LevelsOfBox = 2;
 
-/// How many voxels around its block a rank needs for them. Conservative: per level one cell of the level above for
-/// interpolation, four for gains and errors, two for details and what they are made of. The others: light lies between
-/// the cells of a level, one more to either side, and these are of two cells below and four in all.
+/// Width in voxels of the halo that these levels need. Conservative: per level one cell of the level above for
+/// interpolation, four for gains and errors, two for details and the levels they are computed from. Other estimators:
+/// light lies between cells of a level, one more on either side, each of which depends on two cells below and on four
+/// in all.
 int MarginOf(Estimator estimator)
 {
   return estimator == Estimator::Conservative ? 32 : 16;
 }
 
-/// Boxes begin at multiples of it: vectors of voxels of the others begin at multiples of eight.
+/// Boxes begin at multiples of this number of voxels; for the other estimators 8, the width of a vector.
 int EdgeOf(Estimator estimator, int shared)
 {
   return estimator == Estimator::Conservative ? 1 << shared : 8;
 }
 
-/// Levels of the pyramid above a grid, where so many are asked for.
+/// Number of levels above a grid, at most `levels`.
 int LevelsOf(const Grid& grid, int levels)
 {
   return std::max(std::min(levels, PyramidLayout(grid.size).Top()), 1); // above a single voxel: itself
@@ -55,15 +56,15 @@ void Add(std::array<double, 3>& sum, const std::array<double, 3>& more)
   }
 }
 
-/// What an array holds.
+/// Summary of an array's values.
 struct ArrayRange
 {
-  bool fit = true; ///< every value lies within what was asked for
+  bool fit = true; ///< every value lies within the required range
   float largest = 0.0f;
-  std::array<double, 3> total = {}; ///< of each component; [0] only if there is one
+  std::array<double, 3> total = {}; ///< of each component; only [0] if there is one
 };
 
-/// Several sums at a time: one alone waits for each of its additions.
+/// Accumulates several sums in parallel, because a single sum waits for each of its additions.
 ArrayRange RangeOf(const float* values, std::size_t count, std::size_t components, float low, float high)
 {
   constexpr std::size_t Lanes = 12; // a multiple of each number of components
@@ -121,8 +122,8 @@ ArrayRange RangeInThreads(const float* values, std::size_t count, int components
   return all;
 }
 
-/// @param width  values a voxel: components of one batch or of several
-/// @throws InvalidInput where a value means nothing: names the voxel of the whole grid
+/// @param width  values per voxel: the components of one batch or of several
+/// @throws InvalidInput for an invalid value; names the voxel of the whole grid
 ArrayRange CheckedRange(const Domain& domain, const float* values, int width, int components, const char* name,
   float low = 0.0f, float high = std::numeric_limits<float>::max())
 {

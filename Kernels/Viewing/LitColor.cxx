@@ -17,13 +17,13 @@ namespace tyndall
 {
 namespace
 {
-constexpr std::size_t VoxelsOfThread = 16384; ///< at least
-constexpr int ColumnsOfView = 64;             ///< along each edge of a view, at most
-constexpr double ResolvedDepth = 2.0;         ///< k sigma_t distance of the most opaque voxel, at least
-constexpr double PartOfVeil = 0.25;           ///< of the most light of a ray, where what is shown is right as well
-constexpr double AsGoodAsOpaque = 0.95;       ///< opacities above are as good as 1
+constexpr std::size_t VoxelsOfThread = 16384; ///< smallest number of voxels per thread
+constexpr int ColumnsOfView = 64;             ///< largest number of columns along each edge of a view
+constexpr double ResolvedDepth = 2.0;         ///< lower bound of k sigma_t distance of the most opaque voxel
+constexpr double PartOfVeil = 0.25;     ///< fraction of a ray's most light at which the displayed value is matched too
+constexpr double AsGoodAsOpaque = 0.95; ///< opacities above this count as 1
 
-/// What voxels send to the eye.
+/// Source function of the voxels: the light they send to the eye.
 struct SourceFunction
 {
   std::vector<float> radiance;   ///< 3 per voxel, W/(length^2 sr)
@@ -35,7 +35,8 @@ double ShortestEdge(const Grid& grid)
   return *std::min_element(grid.spacing.begin(), grid.spacing.end());
 }
 
-/// Of coloured extinction each channel is weighted by its own opacity, so that one alpha serves all three.
+/// Computes the source function of a voxel. With coloured extinction each channel is weighted by its own opacity,
+/// because one alpha serves all three.
 void FindSource(const Medium& medium, const Field& fluence, std::size_t voxel, double edge, SourceFunction& found)
 {
   std::array<double, 3> sigma_t, opacity;
@@ -71,7 +72,7 @@ SourceFunction SourceFunctionOf(const Medium& medium, const Field& fluence)
   return found;
 }
 
-/// The ranks among which a lit medium is spread; one alone has all of it.
+/// The ranks over which the domain is decomposed; a single rank holds all of it.
 struct Spread
 {
   Communicator& others;
@@ -81,7 +82,7 @@ struct Spread
   Grid OwnGrid() const { return this->partition.OwnGrid(this->others.Rank()); }
 };
 
-/// What a column of voxels, or a part of it, shows and lets through.
+/// Radiance and transmittance of a column of voxels, or of a part of it.
 struct SeenColumn
 {
   std::array<double, 3> radiance = {};
@@ -115,7 +116,7 @@ SeenColumn LookAlong(const SourceFunction& source, double edge, std::size_t firs
   return seen;
 }
 
-/// Calls act(u, v) for every few columns along an axis of a grid, those that a box has of them.
+/// Calls act(u, v) for a regular subset of the columns along an axis of the grid, restricted to those in a box.
 template <class Act>
 void ForColumnsOfView(const Grid& whole, int axis, const VoxelBox& box, const Act& act)
 {
@@ -135,7 +136,7 @@ void ForColumnsOfView(const Grid& whole, int axis, const VoxelBox& box, const Ac
   }
 }
 
-/// Of the columns along an axis that a block has of the views, from below and from above.
+/// Radiance and transmittance of the view columns in a block, along an axis; for each column from below and from above.
 std::vector<SeenColumn> SeenInBlock(const Spread& spread, int axis, const SourceFunction& source)
 {
   const Grid grid = spread.OwnGrid();
@@ -153,14 +154,14 @@ std::vector<SeenColumn> SeenInBlock(const Spread& spread, int axis, const Source
   return seen;
 }
 
-/// Pixels of views.
+/// Pixels of several views.
 struct SeenPixels
 {
   std::vector<float> radiance, alpha;
 };
 
-/// Lays the columns of all blocks behind each other.
-/// @param byRank  of each block, as SeenInBlock has them
+/// Composites the columns of all blocks.
+/// @param byRank  columns of each block, from SeenInBlock
 SeenPixels BehindEachOther(
   const BlockPartition& partition, int axis, const std::vector<std::vector<SeenColumn>>& byRank)
 {
@@ -169,7 +170,7 @@ SeenPixels BehindEachOther(
   std::sort(order.begin(), order.end(),
     [&](std::size_t a, std::size_t b) { return partition.blocks[a].first[axis] < partition.blocks[b].first[axis]; });
   const std::size_t width = static_cast<std::size_t>(partition.whole.size[AcrossAxis(axis).u]);
-  std::map<std::size_t, std::array<SeenColumn, 2>> columns; // by place
+  std::map<std::size_t, std::array<SeenColumn, 2>> columns; // by position in the plane
   for (int side = 0; side < 2; ++side)
   {
     for (const std::size_t rank : order)
@@ -194,8 +195,8 @@ SeenPixels BehindEachOther(
   return seen;
 }
 
-/// As AutomaticExposure has it of parallel views along the axes from both sides, by every few columns. The first rank
-/// lays them together.
+/// Exposure by AutomaticExposure for parallel views along the axes from both sides, with a subset of the columns. The
+/// first rank composites the views. Collective.
 double ExposureAlongAxes(const Spread& spread, const SourceFunction& source)
 {
   Communicator& others = spread.others;
@@ -219,9 +220,10 @@ double ExposureAlongAxes(const Spread& spread, const SourceFunction& source)
   return others.Sum({ others.Rank() == 0 ? AutomaticExposure(seen.radiance, seen.alpha) : 0.0 })[0];
 }
 
-/// Gives an empty voxel the mean of its neighbours' radiance, each as much as it is dense.
-/// @param place   the voxel
-/// @param around  of a grid that has it and its neighbours
+/// Sets an empty voxel's radiance to the mean of its neighbours', weighted by their extinction.
+/// @param grid    grid of `around`, which includes the voxel and its neighbours
+/// @param place   the voxel, in this grid
+/// @param around  source function on this grid
 void FillFromNeighbours(
   const Grid& grid, const std::array<int, 3>& place, const SourceFunction& around, float* radiance)
 {
@@ -240,7 +242,7 @@ void FillFromNeighbours(
       for (int i = low[0]; i <= high[0]; ++i)
       {
         const std::size_t neighbour = grid.IndexOf({ i, j, k });
-        const double weight = around.extinction[neighbour]; // 0 of other empty ones
+        const double weight = around.extinction[neighbour]; // 0 for empty neighbours
         weights += weight;
         for (std::size_t c = 0; c < 3 && weight > 0.0; ++c)
         {
@@ -255,7 +257,7 @@ void FillFromNeighbours(
   }
 }
 
-/// A block's and that of the voxels beside it. All ranks call it.
+/// Source function of a block and its ghost cells. Collective.
 SourceFunction WithNeighbours(const Spread& spread, const SourceFunction& own)
 {
   std::vector<VoxelBox> wanted;
@@ -271,7 +273,7 @@ void FillEmptyVoxels(const Spread& spread, SourceFunction& source)
 {
   const bool alone = spread.others.Ranks() == 1;
   const SourceFunction others = alone ? SourceFunction() : WithNeighbours(spread, source);
-  const SourceFunction& around = alone ? source : others; // what is read of it is not written
+  const SourceFunction& around = alone ? source : others; // the voxels read are never the ones written
   const VoxelBox& own = spread.Own();
   const VoxelBox box = alone ? own : Grown(own, 1, spread.partition.whole);
   Grid grid = spread.partition.whole;
@@ -293,7 +295,7 @@ void FillEmptyVoxels(const Spread& spread, SourceFunction& source)
   });
 }
 
-/// Optical depths of the columns of the whole grid along an axis, by the rows that they stand on.
+/// Optical depths of all columns of the whole grid along an axis, row by row in the plane across it. Collective.
 std::vector<double> ColumnDepths(const Spread& spread, int axis, const std::vector<float>& extinction)
 {
   const PlaneAxes plane = AcrossAxis(axis);
@@ -319,7 +321,8 @@ std::vector<double> ColumnDepths(const Spread& spread, int axis, const std::vect
   return spread.others.Sum(depths);
 }
 
-/// The opacity of the densest of the three columns through each voxel: about the most that rays see of the medium.
+/// Opacity of the densest of the three axis-parallel columns through each voxel: about the largest opacity that a ray
+/// through the voxel has.
 std::vector<float> LargestOpacities(const Spread& spread, const std::vector<float>& extinction)
 {
   std::array<std::vector<double>, 3> depths;
@@ -349,7 +352,7 @@ std::vector<float> LargestOpacities(const Spread& spread, const std::vector<floa
   return opacities;
 }
 
-/// Makes voxels as bright as they are seen at most.
+/// Multiplies each voxel's radiance by its largest opacity.
 void Dim(const std::vector<float>& opacities, std::vector<float>& radiance)
 {
   InThreads(opacities.size(), VoxelsOfThread, [&](std::size_t begin, std::size_t end) {
@@ -360,9 +363,9 @@ void Dim(const std::vector<float>& opacities, std::vector<float>& radiance)
   });
 }
 
-/// k of Eq. (112d) for each voxel.
-/// @param radiance  what is seen of it at most, where it covers rays as much as `most`
-/// @param colour  what the screen shows of that, 4 per voxel
+/// Computes k of Eq. (112d) for each voxel.
+/// @param radiance  largest radiance shown of the voxel, where opacity reaches `most`
+/// @param colour    tone-mapped radiance, 4 per voxel
 std::vector<float> VeilFactors(const std::vector<float>& radiance, const std::vector<std::uint8_t>& colour,
   const std::vector<float>& most, const ToneMapping& tones)
 {

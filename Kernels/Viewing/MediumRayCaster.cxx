@@ -15,7 +15,7 @@ namespace tyndall
 {
 namespace
 {
-/// Those whose light shadow rays find.
+/// The lights for which shadow rays are traced.
 const std::vector<Light>& LampsOf(const SolvedLight& light, const Illumination& illumination, const ViewSettings& asked)
 {
   return ShownDegree(light, asked) >= 0 ? light.lampsApart : illumination.lights;
@@ -26,14 +26,14 @@ bool Shine(const std::vector<Light>& lamps)
   return std::any_of(lamps.begin(), lamps.end(), [](const Light& lamp) { return !IsBlack(lamp.power); });
 }
 
-/// Without a lamp there is nothing that shadow rays could find; moments lack what they find.
+/// Switches shadow rays off without lamps, and on with moments, which exclude the first scattering of lamps.
 ViewSettings Needed(ViewSettings asked, bool showsMoments, bool lampsShine)
 {
   asked.shadowRays = (asked.shadowRays || showsMoments) && lampsShine;
   return asked;
 }
 
-/// All but the medium's own values.
+/// Checks all inputs except the medium's own values.
 /// @throws InvalidInput as the constructor
 ViewSettings Checked(const Medium& medium, const SolvedLight& light, const Illumination& illumination,
   const ViewSettings& asked, const Field& ior, const BlockOfScene* block, bool lampsShine)
@@ -76,7 +76,7 @@ MediumRayCaster::MediumRayCaster(Device& device, const Medium& medium, const Fil
 {
   if (this->Traits.PacksOnce())
   {
-    this->PrepareSources({}, {}); // while the caller's arrays are there
+    this->PrepareSources({}, {}); // now, while the caller's arrays exist
   }
 }
 
@@ -126,7 +126,8 @@ bool MediumRayCaster::Adopt(const ViewSettings& asked)
   {
     return false;
   }
-  this->SourcesReady &= !this->Traits.shadowRays || settings.stepSize == now.stepSize; // shadow rays step as well
+  // shadow rays depend on the step size
+  this->SourcesReady &= !this->Traits.shadowRays || settings.stepSize == now.stepSize;
   this->Settings = settings;
   this->AskedForShadowRays = asked.shadowRays;
   this->Omitted = this->LeftOutNow();
@@ -170,7 +171,7 @@ void MediumRayCaster::FinishSources(const Camera& camera)
     this->Sources.SeeMoments(camera, this->Scene);
   }
   this->Pack(Packing::Scattered);
-  this->Omitted = this->LeftOutNow(); // now empty bricks are known
+  this->Omitted = this->LeftOutNow(); // empty bricks are known now
   this->SourcesReady = true;
   if (this->Traits.PacksOnce())
   {
@@ -178,26 +179,26 @@ void MediumRayCaster::FinishSources(const Camera& camera)
   }
 }
 
-/// @param sharp  what comes from behind without being scattered, which alone is sharp, and how much that is: the
-///   picture's alpha and depth (numerics.md, section 14.7)
+/// @param sharp  parameters of the pass for unscattered light, which alone shows a sharp background, and which gives
+///   the picture's alpha and depth (numerics.md, section 14.7)
 MediumRayCaster::Pass MediumRayCaster::PassOf(const ViewInfo& view, bool sharp) const
 {
   Pass pass = { view, OpticsInfoOf(this->Settings, this->Traits, this->Part ? &*this->Part : nullptr) };
   if (this->Traits.ShowsMoments() && (sharp || !this->Behind.IsSky()))
   {
-    // A background that is no sky does not shine on the medium.
+    // A background colour that is not a sky does not light the medium.
     const bool seen = sharp && !this->Behind.IsSky();
     pass.view.background =
       Float4(seen ? Vector(this->Behind.Colour(this->Settings)) : glm::dvec3(0.0), view.background.s[3]);
   }
   if (sharp)
   {
-    pass.optics.table.s[0] = pass.optics.table.s[1] = pass.optics.table.s[2] = 0.0f; // it is in the picture already
+    pass.optics.table.s[0] = pass.optics.table.s[1] = pass.optics.table.s[2] = 0.0f; // already in the first pass
   }
   return pass;
 }
 
-/// @param from  fraction done that is reported
+/// @param from  progress that is reported at the begin, in [0, 1]
 Picture MediumRayCaster::Cast(
   const ViewInfo& view, const std::vector<float>& ends, const Starts& starts, double from, const Monitor& monitor)
 {
@@ -245,7 +246,7 @@ Picture MediumRayCaster::Render(
   return picture;
 }
 
-/// What was cast.
+/// Reads the picture of the last pass.
 Picture MediumRayCaster::Read(const ViewInfo& view) const
 {
   Picture picture;

@@ -17,8 +17,8 @@ namespace tyndall
 {
 namespace
 {
-constexpr std::size_t PixelsOfThread = 32768; ///< at least
-constexpr double LargestExposure = 1e30;      ///< no float overflows to where a product is no number
+constexpr std::size_t PixelsOfThread = 32768; ///< smallest number of pixels per thread
+constexpr double LargestExposure = 1e30;      ///< products with it may overflow a float, but never become NaN
 
 double EncodeSrgb(double linear)
 {
@@ -35,15 +35,15 @@ double DecodeSrgb(double encoded)
   return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
 }
 
-/// Where Filmic is y, in [0, 1]: the positive root of a quadratic equation.
+/// Inverse of the Filmic curve for y in [0, 1]: the positive root of a quadratic equation.
 double FilmicInverse(double y)
 {
   const double a = 2.51 - 2.43 * y, b = 0.03 - 0.59 * y;
   return (-b + std::sqrt(b * b + 0.56 * a * y)) / (2.0 * a);
 }
 
-/// What a screen shows for an exposed radiance, 0 to 255: a table over the leading bits of the float, which has 4096
-/// entries for every doubling between Darkest and Brightest.
+/// Table of display values, 0 to 255, for exposed radiance, indexed by the leading bits of the float: 4096 entries per
+/// factor of two between Darkest and Brightest.
 class ScreenValues
 {
 public:
@@ -99,7 +99,7 @@ void Check(const ToneMapping& settings)
 
 std::vector<int> LuminanceCounts(const std::vector<float>& radiance, const std::vector<float>& alpha)
 {
-  constexpr float Parts = 16.0f; // of a pixel
+  constexpr float Parts = 16.0f; // per pixel
   constexpr int Shift = 23 - 8;  // to the leading bits of a float
   std::vector<int> count((1u << (31 - Shift)), 0);
   std::mutex mutex;
@@ -126,11 +126,11 @@ std::vector<int> LuminanceCounts(const std::vector<float>& radiance, const std::
 double ExposureOfCounts(const std::vector<int>& count)
 {
   const double lit = std::accumulate(count.begin(), count.end(), 0.0);
-  const auto logarithm = [](std::size_t entry) { // of the class's middle
+  const auto logarithm = [](std::size_t entry) { // at the class's centre
     return static_cast<double>(entry >> 8) - 127.0 + std::log2(1.0 + ((entry & 255) + 0.5) / 256.0);
   };
 
-  // The mean of those that are not much darker than the bright ones.
+  // Mean over the classes that are not much darker than the bright ones.
   const double darkest = std::log2(1e-3);
   double sum = 0.0;
   double counted = 0.0;

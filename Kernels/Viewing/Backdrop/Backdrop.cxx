@@ -16,7 +16,8 @@ std::vector<cl_float4> LightOnTable(
     traits.bends ? ior : Field{}, settings.tableFace, fromBelow);
 }
 
-/// Whether it is known, and all light is seen plainly.
+/// Whether the surface light is known and applicable: all light is shown, without shadow rays, mean directions or a
+/// table.
 bool ShowsSurface(const SolvedLight& light, const ViewTraits& traits)
 {
   const bool plain = !traits.singleScatteringOnly && !traits.shadowRays && !traits.knowsFlow &&

@@ -100,13 +100,14 @@ std::vector<cl_float4> TableLight(
 
 namespace
 {
-constexpr double AllOfIt = 2.0;                   ///< in ThickAtSurface
-constexpr double Translucent = 1.5, Opaque = 3.0; ///< mean free paths of what is behind a cell
-constexpr double EnoughLeft = 1e-5;               ///< of a ray
+constexpr double AllOfIt = 2.0; ///< thickness of full correction, in units of ThickAtSurface
+/// optical thickness behind a cell at which the correction begins and is complete, mean free paths
+constexpr double Translucent = 1.5, Opaque = 3.0;
+constexpr double EnoughLeft = 1e-5; ///< transmittance at which a march ends
 constexpr int MostSteps = 200;
-constexpr double FinestStep = 0.1; ///< voxels; smaller ones find the same
+constexpr double FinestStep = 0.1; ///< voxels; smaller steps give the same result
 
-/// Of one channel, as the march has them.
+/// Coefficients of one channel, as in the march.
 struct Coefficients
 {
   double sigma, source;
@@ -119,20 +120,20 @@ Coefficients CoefficientsOf(const Medium& medium, const SolvedLight& light, std:
   return { sigma, scatters * light.fluence.At(voxel, channel) / (4.0 * Pi) + medium.emission.At(voxel, channel) };
 }
 
-/// From 0 to 1 between two places.
+/// Smooth step from 0 at `low` to 1 at `high`.
 double Between(double low, double high, double x)
 {
   const double part = std::clamp((x - low) / (high - low), 0.0, 1.0);
   return part * part * (3.0 - 2.0 * part);
 }
 
-/// That of the solver, mean free paths.
+/// Optical thickness with the solver's transport coefficient, mean free paths.
 double Thickness(const Medium& medium, std::size_t voxel, int channel, double length)
 {
   return length * medium.TransportSigmaT(voxel, channel);
 }
 
-/// How much is to be added: none, some, all.
+/// Fraction of the correction to apply, in [0, 1].
 double PartAt(const Medium& medium, const BoxFaceCell& cell, int channel)
 {
   const int axis = cell.face / 2;
@@ -148,14 +149,15 @@ double PartAt(const Medium& medium, const BoxFaceCell& cell, int channel)
   return thick * Between(Translucent, Opaque, all);
 }
 
-/// The voxels behind a cell, of one channel; the last one goes on.
+/// The voxels behind a face cell, for one channel; the last one is continued.
 struct Column
 {
   std::array<Coefficients, 3> voxels;
-  double edge;   ///< of a voxel along the normal
-  double across; ///< the same to its sides
+  double edge;   ///< of a voxel along the face's normal, length
+  double across; ///< mean edge of a voxel along the face, length
 
-  /// Between the centres, in voxels from the face; the outermost goes on to the face.
+  /// Interpolates between voxel centres at a depth in voxels from the face; constant between the face and the first
+  /// centre.
   Coefficients At(double depth) const
   {
     const double place = std::clamp(depth - 0.5, 0.0, 2.0);
@@ -167,7 +169,8 @@ struct Column
   }
 };
 
-/// What rays at a cosine to the normal find there, as they march, over what they lose on the way.
+/// Radiance that the march finds there along a ray at cosine mu to the normal, divided by 1 - transmittance of its
+/// path.
 double Marched(const Column& column, double mu, double step)
 {
   const double voxelsPerLength = std::hypot(mu / column.edge, std::sqrt(1.0 - mu * mu) / column.across);
@@ -200,7 +203,7 @@ Column ColumnBehind(const Medium& medium, const SolvedLight& light, const BoxFac
   return column;
 }
 
-/// Of one cell and channel.
+/// Correction of one cell and channel, for each of SurfaceCosines.
 std::array<double, 4> Missing(
   const Medium& medium, const SolvedLight& light, const BoxFaceCell& cell, int channel, double step)
 {
@@ -254,9 +257,10 @@ std::vector<cl_float4> SurfaceLight(const Medium& medium, const SolvedLight& lig
 
 namespace
 {
-constexpr int DirectionsOfPeaks = 25; ///< a face, by which the environment's peaks are told from the rest
+/// number of directions per face that separates the environment's peaks from the rest
+constexpr int DirectionsOfPeaks = 25;
 
-/// A column more on both sides.
+/// The environment with an additional column on either side.
 std::vector<cl_float4> ClosedEnvironment(const Environment& environment)
 {
   const int width = environment.width;
@@ -280,7 +284,7 @@ EnvironmentPixels PixelsOf(const Environment& environment, bool peaksApart)
   pixels.shown = ClosedEnvironment(environment);
   if (peaksApart)
   {
-    // What is small and bright is one of the lamps: what of it comes straight on without being scattered is seen apart.
+    // Small bright parts are treated as lamps: their unscattered light is shown separately.
     pixels.sharp = pixels.shown;
     pixels.shown = ClosedEnvironment(Split(environment, EquiangularDirections(DirectionsOfPeaks)).smooth);
     for (std::size_t i = 0; i < pixels.sharp.size(); ++i)

@@ -6,7 +6,7 @@ namespace tyndall
 {
 namespace
 {
-constexpr float Half = 0.5f; ///< of the light: where it is lost is the depth
+constexpr float Half = 0.5f; ///< transmittance that defines the depth
 
 /// Calls act(column, row, number) for each pixel of a rectangle.
 template <class Act>
@@ -125,7 +125,7 @@ void TakeFrom(const Picture& again, const Starts& starts, BlockPixels& pixels)
       pixels.pixels[number] = PixelOf(again, pixel);
       if (before <= Half)
       {
-        pixels.pixels[number].depth = BlockPixel::FarAway; // that is in a block before
+        pixels.pixels[number].depth = BlockPixel::FarAway; // the depth lies in a block in front
       }
     }
   });

@@ -10,9 +10,9 @@ namespace tyndall
 {
 namespace
 {
-constexpr int TileEdge = 4; ///< pixels of rays that are marched side by side
+constexpr int TileEdge = 4; ///< edge in pixels of a tile whose rays are marched together
 
-/// Nothing: what a block shows that is nowhere seen.
+/// Empty picture, for an invisible block.
 Picture Nothing(const std::array<int, 2>& size)
 {
   const std::size_t pixels = static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(size[1]);
@@ -27,8 +27,8 @@ Picture Nothing(const std::array<int, 2>& size)
   return picture;
 }
 
-/// Adds what a ray that has ended has found.
-/// @param tells  whether how much comes through, and where half is lost, are those of these rays
+/// Adds the result of a ray that has ended to the picture.
+/// @param tells  whether this ray also sets transmittance and depth
 void Add(const RayOnItsWay& ray, bool tells, Picture& picture)
 {
   const auto pixel = static_cast<std::size_t>(ray.pixel);
@@ -95,7 +95,7 @@ void PictureInBlocks::FindSources(const Camera& camera, const Monitor& monitor)
   });
 }
 
-/// Neighbouring pixels side by side.
+/// Sorts rays so that those of neighbouring pixels are adjacent.
 std::vector<RayOnItsWay> PictureInBlocks::InOrder(std::vector<RayOnItsWay> rays, int width) const
 {
   const auto place = [width](const RayOnItsWay& ray) {
@@ -106,8 +106,8 @@ std::vector<RayOnItsWay> PictureInBlocks::InOrder(std::vector<RayOnItsWay> rays,
   return rays;
 }
 
-/// Until they have ended or are in other blocks.
-/// @return the latter
+/// Marches rays until they have ended or left this rank's block.
+/// @return the rays that are now in other blocks
 std::vector<RayOnItsWay> PictureInBlocks::Follow(const MediumRayCaster::Pass& pass, std::vector<RayOnItsWay> rays,
   bool sharp, Picture& picture, const Monitor& monitor)
 {
@@ -121,7 +121,7 @@ std::vector<RayOnItsWay> PictureInBlocks::Follow(const MediumRayCaster::Pass& pa
     std::vector<RayOnItsWay> here;
     for (RayOnItsWay& ray : rays)
     {
-      for (int axis = 0; axis < 3; ++axis) // at the upper face of the whole
+      for (int axis = 0; axis < 3; ++axis) // a ray on the upper face of the domain
       {
         ray.where[axis] = std::clamp(ray.where[axis], 0, this->Partition.whole.size[axis] - 1);
       }
@@ -139,7 +139,7 @@ std::vector<RayOnItsWay> PictureInBlocks::Follow(const MediumRayCaster::Pass& pa
   return gone;
 }
 
-/// Rows of pixels at a time: the rays of these are all that is on its way.
+/// Renders rows of pixels in groups; only the rays of one group travel between ranks at a time.
 void PictureInBlocks::CastInRounds(const Camera& camera, bool sharp, Picture& picture, const Monitor& monitor)
 {
   MediumRayCaster::Pass pass = {};

@@ -14,7 +14,7 @@ namespace tyndall
 {
 namespace
 {
-/// Boxes that follow each other in a box: of some of its slices, or of some rows of one.
+/// Splits a box into consecutive portions: some of its slices each, or some rows of one slice.
 std::vector<VoxelBox> PortionsOf(const VoxelBox& box, std::size_t voxels)
 {
   std::vector<VoxelBox> portions;
@@ -46,11 +46,12 @@ double LongestEdge(const Grid& grid)
   return longest;
 }
 
-constexpr double MostApart = 1e-5; ///< by which ranks' lights may differ: each finds them for its own block
+/// relative tolerance between the ranks' lights, which each rank computes for its own block
+constexpr double MostApart = 1e-5;
 constexpr const char* OtherLights = "Ranks have other lights than each other: give all of them the same.";
 
-/// As of the ranks that have any.
-/// @param extent  of the whole grid, the longest
+/// The lights, from the ranks that have a block. Throws if they differ between ranks. Collective.
+/// @param extent  longest edge of the whole grid, length
 std::vector<SmallLight> LightsOfAll(Communicator& communicator, const std::vector<SmallLight>* own, double extent)
 {
   constexpr std::size_t numbers = 12;
@@ -103,7 +104,7 @@ bool ShadowsInBlocks::LeadsThrough(const Portion& portion, int rank) const
     this->Partition.blocks[static_cast<std::size_t>(rank)]);
 }
 
-/// Until the last portion that was sent has been received.
+/// Waits until the last portion that was sent has been acknowledged.
 void ShadowsInBlocks::AwaitReceipt()
 {
   if (const std::optional<int> receiver = std::exchange(this->Receiver, std::nullopt))
@@ -112,7 +113,7 @@ void ShadowsInBlocks::AwaitReceipt()
   }
 }
 
-/// Nothing where something has gone wrong.
+/// Sends an empty message if an error has occurred.
 void ShadowsInBlocks::SendDepths(const Portion& portion, const Monitor& monitor)
 {
   if (!this->LeadsThrough(portion, this->Comm.Rank()))
@@ -129,7 +130,7 @@ void ShadowsInBlocks::SendDepths(const Portion& portion, const Monitor& monitor)
   }
 }
 
-/// Of a portion of this rank's voxels, when all have sent what they have found.
+/// Computes the light of a portion of this rank's voxels, once all ranks have sent their optical lengths.
 void ShadowsInBlocks::SeeLight(const Portion& portion, const Camera& camera)
 {
   std::vector<float> depths(3 * portion.voxels.VoxelCount(), 0.0f);
@@ -150,7 +151,7 @@ void ShadowsInBlocks::SeeLight(const Portion& portion, const Camera& camera)
     }
     else
     {
-      this->Failure.broken = true; // there
+      this->Failure.broken = true; // the sender failed
     }
   }
   this->Failure.Attempt([&] { this->Own->SeeLight(portion.light, camera, portion.voxels, depths); });

@@ -10,8 +10,9 @@ namespace tyndall
 {
 namespace
 {
-constexpr std::size_t RowsOfThread = 16; ///< at least
-constexpr float RoundingOfByte = 1e-3f;  ///< of 255: float's, where whole numbers are divided and multiplied
+constexpr std::size_t RowsOfThread = 16; ///< smallest number of rows per thread
+/// in units of 1/255: rounding error when whole numbers are divided and multiplied in floats
+constexpr float RoundingOfByte = 1e-3f;
 
 using Shown = std::array<float, 3>; ///< [0, 255]
 
@@ -24,15 +25,15 @@ Shown ShownOf(const std::array<float, 3>& radiance, const ToneMapping& tones)
   return shown;
 }
 
-/// The screen while blocks are laid behind each other. The values of those behind are cut to whole numbers, as IceT
-/// does.
+/// State of the display picture while blocks are composited from front to back. Contributions of blocks behind are
+/// truncated to whole numbers, as IceT does.
 struct Screen
 {
   Shown shown = {};
-  float open = 1.0f; ///< what is seen of what is behind
+  float open = 1.0f; ///< transmittance for blocks behind
 
-  /// @param wanted  on the screen then
-  /// @param open    what of the scene is to be seen then
+  /// @param wanted    display value after this block
+  /// @param openThen  transmittance after this block
   std::array<std::uint8_t, 4> Lay(const Shown& wanted, float openThen)
   {
     std::array<std::uint8_t, 4> share = {};
@@ -50,7 +51,7 @@ struct Screen
 };
 }
 
-/// Of the first 0, 1, ... blocks: what they show, and after each what is seen of what is behind.
+/// Display values of the first 0, 1, ... blocks, and the transmittance after each block.
 struct ShownBlock::Column
 {
   std::vector<Shown> shown;
@@ -67,7 +68,7 @@ struct ShownBlock::Column
       this->shown.push_back(ShownOf(all.All(), tones));
       this->open.push_back(1.0f - all.Hidden());
     }
-    float brightest = 0.0f; // that is added behind
+    float brightest = 0.0f; // largest display value that a block behind adds
     for (std::size_t i = blocks.size(); i-- > 0;)
     {
       this->open[i] = std::max(this->open[i], brightest / 255.0f);
@@ -88,7 +89,7 @@ ShownBlock::ShownBlock(
 {
 }
 
-/// @param ended  what rays find of this block where they end in it; null: they go on
+/// @param ended  pixel of this block if an opaque surface ends the ray in it; else null
 std::array<std::uint8_t, 4> ShownBlock::Share(Column& blocks, int column, int row, const BlockPixel* ended) const
 {
   blocks.Find(this->Blocks, column, row, this->Tones);

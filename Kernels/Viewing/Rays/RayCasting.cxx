@@ -20,9 +20,10 @@ namespace tyndall
 namespace
 {
 constexpr std::size_t PixelsStartedAtOnce = 65536; ///< each takes 140 bytes
-constexpr std::size_t RaysMarchedFirst = 4096;     ///< how long they take says how many go next
+/// size of the first launch; its run time determines the size of the next
+constexpr std::size_t RaysMarchedFirst = 4096;
 
-/// Columns and rows of pixels in a packet, as in View.cl.
+/// Width and height of a packet in pixels, as in View.cl.
 std::array<int, 2> PacketPixels(int width)
 {
   return width == 16 ? std::array<int, 2>{ 4, 4 }
@@ -55,7 +56,7 @@ void RayCasting::Reserve(
     Buffer<float> radiance(this->TheDevice, 3 * pixels, "the picture");
     Buffer<float> alpha(this->TheDevice, pixels, "the picture's alpha");
     Buffer<float> depth(this->TheDevice, pixels, "the picture's depth");
-    this->Radiance.Swap(radiance); // all or none, where one does not fit
+    this->Radiance.Swap(radiance); // after all allocations succeeded
     this->Alpha.Swap(alpha);
     this->Depth.Swap(depth);
   }
@@ -89,8 +90,7 @@ void RayCasting::Reserve(
 std::string RayCasting::Options(const ViewSettings& settings) const
 {
   const ViewTraits& traits = this->Traits;
-  // Longest optical length of a step; the kernel has a shorter way to cross it up to 2. Bent steps can be a little
-  // longer.
+  // Largest optical length of a step; up to 2 the kernel uses a faster formula. Bent steps can be slightly longer.
   const double longest = traits.largestSigmaT * settings.stepSize *
     *std::max_element(traits.grid.spacing.begin(), traits.grid.spacing.end());
   return traits.PacketOptions() + Define("SKIP_BRICKS", traits.SkipsBricks(settings)) +
@@ -132,7 +132,7 @@ void RayCasting::Cast(
   const std::array<int, 2> packet = PacketPixels(this->Traits.packetWidth);
   cl::Kernel cast = this->Kernel(settings, view.block.whole.s[0] > 0);
   view.has = { { this->Ends.Size() > 0, this->Starts.Size() > 0, b.HasSurfaceLight(), 0 } };
-  // Batches of whole work-groups: else the last rows of one would be cast again by the next.
+  // Batches consist of whole work-groups; otherwise the next batch would render the last rows again.
   const int group = 4;
   const std::size_t across = RoundUp<std::size_t>(view.picture.s[0], group * packet[0]) / (group * packet[0]);
   const std::size_t rows = RoundUp<std::size_t>(view.picture.s[1], group * packet[1]) / (group * packet[1]);
@@ -165,7 +165,7 @@ void RayCasting::OfRounds(ViewInfo& view)
   view.size = view.block.whole;
 }
 
-/// Of each ray as long as it is in a block.
+/// Largest number of rays that are split off one ray while it is in a block.
 std::size_t RayCasting::MostSplitOff(const ViewSettings& settings) const
 {
   return (this->Traits.Reflects(settings) ? 1 : 0) + (this->Traits.hasTable ? 1 : 0);

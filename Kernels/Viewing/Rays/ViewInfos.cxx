@@ -15,11 +15,11 @@ namespace tyndall
 {
 namespace
 {
-constexpr int RoundsAtMost = 16;            ///< of a ray through the volume, in sums of its edges
-constexpr double BentStretch = 4.0;         ///< voxels, before it is asked whether rays still bend
+constexpr int RoundsAtMost = 16;            ///< longest path of a ray, in units of the sum of the box's edges
+constexpr double BentStretch = 4.0;         ///< voxels between checks whether rays still bend
 constexpr double SurfacePrecision = 1.0e-3; ///< voxels
 
-/// Beyond every point of the box, along the view axis.
+/// Largest depth of the box's corners along the view axis.
 double FarDepth(const Grid& grid, const glm::dvec3& eye, const glm::dvec3& forward)
 {
   double farDepth = 0.0;

@@ -8,8 +8,9 @@ namespace tyndall
 {
 namespace
 {
-constexpr double SamplesAtOnce = 3.2e7; ///< of the work between two reports, at most: under a second on one old core
-constexpr double ManySteps = 4096.0;    ///< of a ray, from which on rounding in each of them adds up to 1e-4
+/// largest number of samples between two progress reports: under a second on one old core
+constexpr double SamplesAtOnce = 3.2e7;
+constexpr double ManySteps = 4096.0; ///< steps per ray from which accumulated rounding errors reach 1e-4
 }
 
 double LongestSteps(const Grid& grid, double stepSize)

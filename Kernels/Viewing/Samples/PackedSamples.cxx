@@ -19,7 +19,8 @@ namespace tyndall
 {
 namespace
 {
-/// Moves from each brick to the nearest one of another kind, by sweeps that go on from moves that were found before.
+/// King's moves from each brick to the nearest brick of another kind, computed by sweeps that propagate distances from
+/// neighbours.
 class Moves
 {
 public:
@@ -35,7 +36,7 @@ public:
     }
   }
 
-  /// @param side  1: of the neighbours before it in memory; -1: of those behind it
+  /// @param side  1: use the neighbours before a brick in memory; -1: those after it
   void Relax(int i, int j, int k, int side)
   {
     const std::ptrdiff_t here = (static_cast<std::ptrdiff_t>(k) * this->Count[1] + j) * this->Count[0] + i;
@@ -58,7 +59,7 @@ public:
   int operator[](std::size_t brick) const { return this->Found[brick]; }
 
 private:
-  static constexpr int Neighbours = 13; ///< on either side
+  static constexpr int Neighbours = 13; ///< neighbours on either side
 
   bool IsThere(int i, int j, int k) const
   {
@@ -109,7 +110,8 @@ std::size_t PaddedCount(const Grid& grid)
 
 constexpr int PackedAlong = 64; ///< voxels of a row that a work-group packs
 
-/// Of each work-group in rows of one brick: whether any of its voxels, of which the first is the border's, is seen.
+/// For each work-group in the rows of a brick: whether any of its voxels is seen. The first sample of a row belongs to
+/// the border.
 std::vector<cl_uchar> SeenGroups(const SeenBricks& bricks, const Grid& grid)
 {
   const int along = PartsOf(grid.size[0] + 2, PackedAlong);
@@ -168,8 +170,8 @@ PackedSamples::PackedSamples(Device& device, const FilledBricks& filled, const S
   }
 }
 
-/// Over all voxels with their border, or all samples of records. Work-groups have fixed shapes throughout: PoCL
-/// compiles a kernel anew for every shape.
+/// Launches a packing kernel over all voxels with their border, or over all samples of the records. Work-groups have a
+/// fixed shape, because PoCL compiles a kernel anew for every shape.
 void PackedSamples::Launch(cl::Kernel& kernel, const std::array<int, 3>& size)
 {
   if (this->Traits.bricked)

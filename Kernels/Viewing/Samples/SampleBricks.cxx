@@ -8,8 +8,8 @@ namespace tyndall
 {
 namespace
 {
-/// Whether any voxel is filled whose sample is in the record of a brick of cells: its own bricks', and the last ones of
-/// the bricks before, as the border is before the first voxel.
+/// Whether a brick's record holds the sample of any filled voxel: voxels of its own brick, and the last ones of the
+/// preceding bricks, because the border shifts samples by one voxel.
 bool IsFilled(const FilledBricks& filled, const std::array<int, 3>& cells)
 {
   std::array<int, 3> low, high;

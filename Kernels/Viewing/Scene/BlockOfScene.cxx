@@ -13,8 +13,8 @@ namespace tyndall
 {
 namespace
 {
-/// Voxels that what a step does at a surface reaches behind the step's middle: the surface lies between this middle and
-/// the last one.
+/// Distance in voxels, behind the midpoint of a step, from which the splitting of a ray at a surface reads values: the
+/// surface lies between this midpoint and the previous one.
 double ReachOfSplit(const ViewSettings& settings)
 {
   return settings.surfaceReflection == SurfaceReflection::None ? 0.0 : settings.stepSize;
@@ -53,9 +53,10 @@ std::vector<float> HeldIndex(const Field& known, const BlockOfScene& block, cons
 
 VoxelBox HeldBox(const VoxelBox& own, const Grid& whole, const ViewSettings& settings, bool moments, bool surface)
 {
-  constexpr int Between = 1;                                                   // centres, from any place of the block
-  const int split = static_cast<int>(std::ceil(ReachOfSplit(settings) - 0.5)); // a layer reaches half a voxel beyond
-  // A voxel that does not scatter shows its neighbours' light.
+  constexpr int Between = 1; // voxel centres around any point of the block
+  // a layer reaches half a voxel beyond its centres
+  const int split = static_cast<int>(std::ceil(ReachOfSplit(settings) - 0.5));
+  // A voxel that does not scatter shows the light of its neighbours.
   VoxelBox held = Grown(own, Between + std::max(split, moments ? 1 : 0), whole);
   for (int axis = 0; surface && axis < 3; ++axis)
   {
@@ -71,7 +72,7 @@ VoxelBox HeldBox(const VoxelBox& own, const Grid& whole, const ViewSettings& set
 
 VoxelBox KnownBox(const VoxelBox& own, const VoxelBox& held, const Grid& whole, const ViewSettings& settings)
 {
-  constexpr int OfSpline = 3; // a centre beyond the place, its neighbours' coefficients, and theirs
+  constexpr int OfSpline = 3; // a centre beyond the point, the coefficients of its neighbours, and theirs
   const double reach = ReachOfSplit(settings);
   const int layers = OfSpline + static_cast<int>(std::ceil(reach > 0.0 ? reach + VoxelsBesideSurface : 0.0));
   return Hull(Grown(own, layers, whole), { held });

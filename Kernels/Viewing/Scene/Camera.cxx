@@ -25,7 +25,7 @@ bool Finite(const std::array<double, 3>& v)
   return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
 }
 
-/// Its direction, times what makes the largest component one: squares then are numbers, whatever the scale. 0 for 0.
+/// The vector scaled so that its largest component is 1, which keeps its square finite for any length; 0 for 0.
 glm::dvec3 Scaled(const glm::dvec3& v)
 {
   const double largest = std::max({ std::abs(v.x), std::abs(v.y), std::abs(v.z) });
@@ -54,7 +54,7 @@ std::array<std::array<double, 3>, 3> Axes(const Camera& camera)
     throw InvalidInput("The camera's parallel scale is " + Text("%g", camera.parallelScale) +
       "; it is half the picture's height and must be positive.");
   }
-  const glm::dvec3 view = Scaled(0.5 * Vector(camera.focalPoint) - 0.5 * Vector(camera.position)); // no overflow
+  const glm::dvec3 view = Scaled(0.5 * Vector(camera.focalPoint) - 0.5 * Vector(camera.position)); // avoids overflow
   if (view == glm::dvec3(0.0))
   {
     throw InvalidInput(
@@ -107,7 +107,7 @@ Camera FrameGrid(const Grid& grid, double aspect, double viewAngle, const std::a
   camera.position = Array(centre + glm::length(half) * out);
   const auto axes = Axes(camera);
 
-  // The least distance at which every corner is inside the picture.
+  // The smallest distance at which every corner is inside the picture.
   const double margin = 1.05;
   const double upperEdge = TangentOfHalf(viewAngle);
   double distance = 0.0;

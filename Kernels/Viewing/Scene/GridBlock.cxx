@@ -29,7 +29,8 @@ std::vector<float> FacesOfBlock(
 
 namespace
 {
-/// Whether a ray can come from block b into block a: every axis along which a plane is between them has to allow it.
+/// Whether a camera ray can pass from block b into block a: it must be able to cross, in this direction, the separating
+/// plane along every axis that has one.
 bool CanHide(const GridBlock& b, const GridBlock& a, const Camera& camera)
 {
   for (int axis = 0; axis < 3; ++axis)

@@ -16,12 +16,12 @@ namespace
 constexpr float LeastViewedIndex = 1e-3f;
 constexpr float LargestViewedIndex = 1e3f;
 constexpr double LeastStep = 0.01, LargestStep = 10.0; ///< voxels
-constexpr double LargestRadiance = 1e37;               ///< W / (length^2 sr); sums of it are still floats
-constexpr double FarthestCamera = 1e15;                ///< lengths, voxels: their squares are still floats
-constexpr double MostPixels = 7e8;                     ///< three numbers each: indices end at 2^31
+constexpr double LargestRadiance = 1e37;               ///< W / (length^2 sr); sums of it do not overflow a float
+constexpr double FarthestCamera = 1e15;                ///< lengths or voxels; their squares do not overflow a float
+constexpr double MostPixels = 7e8;                     ///< with three values per pixel, indices stay below 2^31
 constexpr int MostMomentDegree = 15;
 constexpr float LargestFloat = std::numeric_limits<float>::max();
-constexpr float FacesAlike = 1e-3f; ///< relative; what smoothing leaves of a border nearby
+constexpr float FacesAlike = 1e-3f; ///< relative tolerance, for smoothing of structures near the border
 
 IndexRange RangeOnFaces(const Field& ior, const Grid& grid)
 {
@@ -33,7 +33,7 @@ IndexRange RangeOnFaces(const Field& ior, const Grid& grid)
     {
       const bool wholeRow = k == 0 || k == size[2] - 1 || j == 0 || j == size[1] - 1;
       const float* row = ior.values + grid.IndexOf({ 0, j, k });
-      const int step = wholeRow ? 1 : std::max(size[0] - 1, 1); // else its two ends
+      const int step = wholeRow ? 1 : std::max(size[0] - 1, 1); // otherwise only the row's two ends
       for (int i = 0; i < size[0]; i += step)
       {
         range.least = std::min(range.least, row[i]);
@@ -205,7 +205,7 @@ void Check(const SolvedLight& light, const Grid& grid, const ViewSettings& setti
       throw InvalidInput("face_power is not finite in tuple " + std::to_string(i / light.facePower.components) + ".");
     }
   }
-  const bool separates = settings.shadowRays != settings.singleScatteringOnly; // direct light from the rest
+  const bool separates = settings.shadowRays != settings.singleScatteringOnly; // separates direct light from the rest
   const bool byMoments = light.scatteredMoments.values && !settings.singleScatteringOnly;
   if (byMoments)
   {

@@ -15,7 +15,7 @@ namespace tyndall
 {
 namespace
 {
-/// Bricks that are, or have along one axis a neighbour that is, among `bricks`.
+/// Dilates a set of bricks along one axis: includes the neighbours of the bricks in `bricks`.
 std::vector<unsigned char> Widened(const std::vector<unsigned char>& bricks, const std::array<int, 3>& count, int axis)
 {
   const std::size_t stride = axis == 0 ? 1
@@ -42,7 +42,7 @@ SeenBricks SeenBricksOf(const FilledBricks& filled, bool everywhere)
     return bricks;
   }
   bricks.seen = filled.filled;
-  for (int axis = 0; axis < 3; ++axis) // neighbours by corners too
+  for (int axis = 0; axis < 3; ++axis) // includes diagonal neighbours
   {
     bricks.seen = Widened(bricks.seen, filled.count, axis);
   }
@@ -55,9 +55,9 @@ namespace
 using Kind = PhaseFunction::Kind;
 using Functions = std::array<PhaseFunction, 3>;
 
-constexpr int MomentCount = 1024; ///< of functions of no formula; resolves 0.2 degrees
-constexpr double NoMore = 1e-7;   ///< moments times the anisotropy's power below this are left out
-constexpr double Resolved = 1e-6; ///< of the light may be missed by the rule of moments
+constexpr int MomentCount = 1024; ///< for functions without a formula; resolves 0.2 degrees
+constexpr double NoMore = 1e-7;   ///< moments times the power of the anisotropy below this are dropped
+constexpr double Resolved = 1e-6; ///< fraction of the light that the quadrature of the moments may miss
 constexpr int RowLength = CosineRows + 2;
 
 bool AllOf(const Functions& functions, std::initializer_list<Kind> kinds)
@@ -79,7 +79,7 @@ ViewedPhase::Formula FormulaOf(const Functions& functions)
                                            : ViewedPhase::Rows;
 }
 
-/// k/g of Schlick's function of mean cosine g, by sqrt(1 - g).
+/// k/g of Schlick's function with mean cosine g, tabulated over sqrt(1 - g).
 std::vector<float> RowsOfSchlick()
 {
   std::vector<float> rows;
@@ -95,15 +95,15 @@ std::vector<float> RowsOfSchlick()
   return rows;
 }
 
-/// The cosine of a row, as in PhaseFunction.cl.
+/// The cosine of a table entry, as in PhaseFunction.cl.
 double CosineOfRow(int row)
 {
   const double aside = 2.0 * std::min(row, CosineRows - row) / CosineRows;
   return 2 * row < CosineRows ? 1.0 - aside * aside : aside * aside - 1.0;
 }
 
-/// (2 l + 1) times the Legendre moments of a function, by a rule that sees all that the rows can show. What it misses,
-/// of a peak that is narrower, is added as a beam in the mean direction of that.
+/// (2 l + 1) times the Legendre moments of a function, by a quadrature that resolves all that the tables can show. The
+/// part of a narrower peak that the quadrature misses is added as a beam in the mean direction.
 std::vector<double> WeightedMoments(const PhaseFunction& function)
 {
   static const GaussLegendre rule(MomentCount);
@@ -131,8 +131,8 @@ std::vector<double> WeightedMoments(const PhaseFunction& function)
   return moments;
 }
 
-/// 4 pi times the function, averaged over light spread about its mean direction: sum of (2 l + 1) chi_l a^l P_l(c),
-/// numerics.md, Eq. (108a).
+/// 4 pi times the phase function, averaged over light spread about its mean direction: sum of (2 l + 1) chi_l a^l
+/// P_l(c), numerics.md, Eq. (108a).
 void AddSpreadRows(const PhaseFunction& function, std::vector<float>& rows)
 {
   const std::vector<double> moments = WeightedMoments(function);
@@ -204,7 +204,8 @@ std::vector<float> RowsOf(const ViewedPhase& viewed, const PhaseOfMedium& phase)
 
 namespace
 {
-constexpr double FilledAtMost = 0.25; ///< of bricks: samples at their faces are there twice, and take memory, too
+/// fraction of filled bricks; above it the duplicated samples at brick faces cost more memory than bricks save
+constexpr double FilledAtMost = 0.25;
 
 void FindMoments(const PhaseOfMedium& phase, const SolvedLight& light, ViewTraits& traits)
 {
@@ -217,7 +218,7 @@ void FindMoments(const PhaseOfMedium& phase, const SolvedLight& light, ViewTrait
   traits.aureoleChannels = traits.shadowRays && !phase.Varies() ? traits.phase.channels : 0;
 }
 
-/// What the mode does not look at stays away.
+/// Removes arrays that the mode does not show.
 std::array<int, 5> ComponentsRead(const std::array<Field, 5>& fields, const ViewTraits& traits)
 {
   const bool shadows = traits.shadowRays;
@@ -268,7 +269,7 @@ ViewTraits ViewTraitsOf(const Medium& medium, const FilledBricks& filled, const 
     anisotropic && light.meanDirection.values && light.fluence.values && !settings.shadowRays && !traits.ShowsMoments();
   traits.coloured = !settings.leaveOut || !traits.medium.greyExtinction || traits.straightOnChannels == 3 ||
     (shared && shared->coloured);
-  // Beside directions of the light it does not pay to have sources by one channel.
+  // With directions of the light, single-channel sources do not pay off.
   traits.grey = !traits.coloured && traits.medium.grey && !traits.knowsFlow && !traits.shadowRays &&
     !traits.ShowsMoments() && light.fluence.components == 1 && light.fluenceDirect.components == 1 &&
     (!traits.medium.emits || traits.medium.emission.IsGrey());
@@ -278,7 +279,7 @@ ViewTraits ViewTraitsOf(const Medium& medium, const FilledBricks& filled, const 
   }
   traits.sourcesDependOnCamera = (traits.shadowRays && anisotropic) || traits.ShowsMoments();
   traits.components = ComponentsRead(ViewedFields(medium, light), traits);
-  // Not for shadow rays, nor for moments: what is found of these has the order of voxels.
+  // Not for shadow rays or moments, whose results are stored in the order of voxels.
   traits.bricked =
     !shared && traits.OnlyStraight() && traits.PacksOnce() && !traits.bricks.all && filled.FilledPart() <= FilledAtMost;
   return traits;

@@ -12,10 +12,10 @@ namespace tyndall
 namespace
 {
 constexpr int MostMoments = 1024;
-constexpr double Negligible = 1e-5; ///< moment
+constexpr double Negligible = 1e-5; ///< Legendre moments below this are dropped
 
-/// The highest degree that was solved for: what goes straight on is the moment of the next one. `otherwise` where it is
-/// less than that, as of functions that scatter backwards.
+/// The highest degree that was solved for: straightOn is the moment of the next degree. Returns `otherwise` if
+/// straightOn equals no moment, as for functions that scatter backwards.
 int DegreeOf(const std::vector<double>& moments, double straightOn, int otherwise)
 {
   for (std::size_t l = 1; l < moments.size() && straightOn > 0.0; ++l)
@@ -28,8 +28,8 @@ int DegreeOf(const std::vector<double>& moments, double straightOn, int otherwis
   return otherwise;
 }
 
-/// Of each degree: what was scattered at least twice, over the light of the beam that comes straight on and the optical
-/// length of scattering.
+/// Legendre moments of the light that was scattered at least twice, per unit of the unscattered beam's light and per
+/// optical length of scattering.
 std::vector<double> MomentsBeyondFirst(const std::vector<double>& moments, double straightOn, int degree, double depth)
 {
   std::vector<double> beyond;

@@ -18,7 +18,8 @@ namespace tyndall
 {
 namespace
 {
-/// Of the voxels in which least goes straight on: those that matter have as much.
+/// Aureole tables of each channel, for the smallest straightOn of the scattering voxels; the voxels that matter have
+/// this value.
 std::vector<float> TablesOfAureole(const Medium& medium, const ViewTraits& traits)
 {
   std::vector<float> tables;

@@ -17,12 +17,12 @@ namespace
 {
 struct RectangleSample
 {
-  glm::dvec3 place; ///< from the grid's corner
-  double share;     ///< of the power
+  glm::dvec3 place; ///< relative to the grid's corner
+  double share;     ///< fraction of the power
 };
 
-/// Samples of a rectangle: `perEdge` along each edge, in the middles of equal parts. One that is larger than the box
-/// and than its distance from it is quartered, for as long as that is so: what is nearer has more.
+/// Appends samples of a rectangular light: `perEdge` along each edge, at the centres of equal parts. A rectangle larger
+/// than the box and than its distance from the box is quartered recursively, so that nearer parts get more samples.
 void AddSamples(const Grid& grid, const glm::dvec3& middle, const std::array<glm::dvec3, 2>& edges, int perEdge,
   double share, bool whole, std::vector<RectangleSample>& samples)
 {
