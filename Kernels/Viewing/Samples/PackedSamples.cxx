@@ -218,7 +218,7 @@ void PackedSamples::PackSources(const SceneOnDevice& scene, const Buffer<float>&
 {
   const ViewTraits& traits = this->Traits;
   const bool forShadowRays = this->For == Packing::ForShadowRays;
-  const bool bends = traits.bends && !forShadowRays; // shadow rays go straight on
+  const bool bends = traits.bends && !forShadowRays; // shadow rays are straight
   const std::string options = traits.SampleOptions() + Define("FLOW", traits.knowsFlow) +
     Define("FLOW_WITH_G", traits.knowsFlow && traits.FlowHasG()) + Define("VARIED_G", traits.PacksCosines()) +
     Define("GLOW", traits.GlowsApart()) + Define("SHADOW_RAYS", traits.shadowRays && !forShadowRays) +
