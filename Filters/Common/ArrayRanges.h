@@ -6,30 +6,32 @@
 
 class vtkDataArray;
 
-/// Smallest and largest values of arrays, found in threads where the values are made, and left where VTK and ParaView
-/// look for them before they compute: in the array's vtkInformation. ParaView asks for the range of every component
-/// and of the norm of tuples, of every array that a filter gives out; VTK finds each in a pass of its own on one core.
+/// Ranges (smallest and largest value) of arrays, computed in parallel when the values are produced and stored in the
+/// array's vtkInformation, where VTK and ParaView look for a range before they compute it. ParaView requests the range
+/// of every component and of the tuples' norm of every output array; VTK computes each of them in a separate pass on
+/// one core.
 namespace tyndall
 {
 struct ArrayRanges
 {
-  std::vector<std::array<double, 2>> components; ///< empty: there are no values
-  std::array<double, 2> norm = {};               ///< of the tuples' Euclidean norm; as vtkDataArray finds it, in double
-  std::size_t firstNotFinite = 0; ///< number of the first value that is infinite or NaN; else their count
+  std::vector<std::array<double, 2>> components; ///< range of each component; empty: there are no values
+  std::array<double, 2> norm = {};               ///< range of the tuples' Euclidean norm, in double as in vtkDataArray
+  std::size_t firstNotFinite =
+    0; ///< index of the first value that is infinite or NaN; the number of values if all are finite
 };
 
-/// @param count  of values, all components of all tuples
-/// Where a value is not finite nothing but its number is right.
+/// Computes the ranges. If a value is not finite, only firstNotFinite is valid.
+/// @param count  number of values: components times tuples
 ArrayRanges RangesOf(const float* values, std::size_t count, int components);
 
-/// Leave ranges of finite values in an array that nobody writes to any more: Modified() drops them, as it does VTK's
-/// own. Names and the number of components come before.
+/// Stores ranges in an array whose values are all finite and final: Modified() removes them, as it does VTK's own
+/// ranges. Set the array's name and number of components before.
 void LeaveRanges(const ArrayRanges& ranges, vtkDataArray* array);
 
-/// The same of an array that has the values of another one, as far as ranges were left in that.
+/// Copies the ranges that are stored in `from` to an array with the same values, as far as there are any.
 void LeaveSameRanges(vtkDataArray* from, vtkDataArray* array);
 
-/// The same, found here; nothing where a value is not finite, or for arrays other than of float, double, int and
-/// unsigned char in tuples.
+/// Computes and stores the ranges of an array. Does nothing if a value is not finite, or unless the array is an array
+/// of structures (AOS) of float, double, int or unsigned char.
 void LeaveRanges(vtkDataArray* array);
 }

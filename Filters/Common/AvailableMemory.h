@@ -2,7 +2,8 @@
 
 namespace tyndall
 {
-/// Bytes that this process could take now: the least of what the machine has free or can free, what its container
-/// (cgroup 2) still allows, and what is left of its address space (RLIMIT_AS). Infinity where nothing of that is known.
+/// Memory that this process can still allocate, bytes: the minimum of what the machine has free or can free, of what
+/// its container (cgroup 2) still allows, and of what is left of its address space (RLIMIT_AS). Infinity if none of
+/// these is known.
 double AvailableMemory();
 }

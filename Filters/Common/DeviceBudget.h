@@ -7,11 +7,11 @@
 #include <memory>
 #include <string>
 
-/// MemoryBudget of filters.
+/// The filters' property MemoryBudget.
 namespace tyndall
 {
-/// @param mebibytes  0: no limit but the device's own
-/// @param spills  what does not fit lies in host memory; false: it is an error
+/// @param mebibytes  limit, MiB; 0: only the device's own limit
+/// @param spills  true: data beyond the limit are kept in host memory; false: exceeding it is an error
 inline MemoryBudget BudgetOf(int mebibytes, bool spills)
 {
   MemoryBudget budget;
@@ -23,8 +23,8 @@ inline MemoryBudget BudgetOf(int mebibytes, bool spills)
   return budget;
 }
 
-/// The device for a filter that keeps things on it, within its budget, beyond which is an error.
-/// @param kept  the filter's own: what this gave last, given again where nothing has changed
+/// Finds the device for a filter that keeps buffers on it between updates. Exceeding the memory budget is an error.
+/// @param kept  member of the filter that caches the returned device; reused while name and budget are unchanged
 inline std::shared_ptr<Device> FindWithin(std::shared_ptr<Device>& kept, const std::string& name, int mebibytes)
 {
   struct Part

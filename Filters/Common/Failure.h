@@ -5,10 +5,10 @@
 
 class vtkDataObject;
 
-/// Outcomes of work that may fail.
+/// Outcomes of work that may fail: success, abort, empty input, error.
 namespace tyndall
 {
-/// Thrown for an input that is empty because the filter upstream failed, which has reported why.
+/// Thrown for an input that is empty because the filter upstream failed. That filter has already reported why.
 struct InputFailed
 {
 };
@@ -23,28 +23,30 @@ struct Ending
   enum Kind
   {
     Done,
-    Aborted,     ///< no error: nothing is to be shown
-    InputFailed, ///< reported by the filter upstream
-    Empty,       ///< no error: there is nothing to work on
+    Aborted,     ///< no error; the outputs are empty
+    InputFailed, ///< the filter upstream failed and has reported it
+    Empty,       ///< no error; the input has no data
     Failed,
   };
 
   Kind kind = Done;
-  std::string why; ///< of Failed: a text for users
+  std::string why; ///< for Failed: message for users
 };
 
-/// Runs `work` and catches whatever it throws.
+/// Runs `work`, catches any exception and returns it as an outcome.
 Ending EndingOf(const std::function<void()>& work);
 
-/// Throws what EndingOf turns into the same outcome; for Failed, InvalidInput.
+/// Throws the exception that EndingOf turns into this outcome; for Failed, InvalidInput.
 void Throw(const Ending& ending);
 
-/// Field data by which the empty outputs of a filter that failed or was aborted inform filters downstream.
+/// Names of field data. The empty outputs of a filter that failed or was aborted carry them to inform filters
+/// downstream.
 constexpr const char* AbortedFact = "aborted";
 constexpr const char* FailedFact = "failed";
-/// The output is empty because the file it was read from is, which is no error.
+/// The output is empty because the file that it was read from contains no data, which is no error.
 constexpr const char* EmptyFact = "nothing_in_file";
-/// Beside FailedFact: a rank did not reach the filter, so that filters downstream do not wait for it again.
+/// Set in addition to FailedFact if a rank did not reach the filter, so that filters downstream do not wait for it
+/// again.
 constexpr const char* MissingFact = "rank_missing";
 
 /// For an empty input: ends the work of Guarded (Pieces/GuardedWork.h) without an error if the filter upstream failed,

@@ -12,42 +12,48 @@ class vtkAlgorithm;
 class vtkImageData;
 class vtkInformationVector;
 
-/// Axes of images: permuted, mirrored or rotated against those of the world.
+/// Images whose axes are permuted, mirrored or rotated relative to the world axes.
 namespace tyndall
 {
-/// The axes of an image that are a signed permutation of the world's: by a direction matrix, a negative spacing, or
+/// Axes of an image that are a signed permutation of the world axes, due to a direction matrix, a negative spacing, or
 /// both.
 struct AxisWays
 {
-  std::array<int, 3> world = { 0, 1, 2 };             ///< axis of the world, of each axis of the image
-  std::array<bool, 3> down = { false, false, false }; ///< of each axis of the image
-  std::array<double, 3> spacing = { 1.0, 1.0, 1.0 };  ///< of each axis of the world
+  std::array<int, 3> world = { 0, 1, 2 }; ///< world axis of each image axis
+  std::array<bool, 3> down = { false, false,
+    false }; ///< for each image axis: whether it points in the negative direction of its world axis
+  std::array<double, 3> spacing = { 1.0, 1.0, 1.0 }; ///< along each world axis, above 0
 
-  bool AreAlike() const;                               ///< those of the world already
-  std::array<int, 6> Extent(const int* ofImage) const; ///< the same extent in numbers along the world's axes
+  bool AreAlike() const; ///< whether the image axes are the world axes
+  std::array<int, 6> Extent(
+    const int* ofImage) const; ///< the image's extent with indices that run along the world axes
 };
 
-/// @param direction  null: the unit matrix
-/// @return nothing if an axis is oblique, or a spacing is 0 or not finite
+/// Finds the signed permutation of an image's axes.
+/// @param direction  direction matrix, 9 numbers; null: the unit matrix
+/// @return nothing if an axis is oblique, or if a spacing is 0 or not finite
 std::optional<AxisWays> WaysOf(const double* spacing, const double* direction);
 
-/// The image with axes along those of the world: its cells and points permuted, at the same places. The image itself if
-/// it has them already, or cannot have them.
+/// Permutes an image's cells and points so that its axes are the world axes; every value keeps its position in the
+/// world. Returns the image itself if it is aligned already, or if its axes are oblique.
 vtkSmartPointer<vtkImageData> Aligned(vtkImageData* image);
 
-/// The image, cell for cell, with positive spacings: the direction matrix has the signs of negative ones.
+/// The same image, cell for cell, with positive spacings: signs of negative spacings move to the direction matrix.
 vtkSmartPointer<vtkImageData> WithSpacingsAbove0(vtkImageData* image);
 
-/// The axes of an image that its direction matrix rotates by other than right angles, mirrored or not. A filter works
-/// in these (WholeInputs.h): there its medium has the unit matrix and the same origin, and lights, photons, cameras and
-/// vectors of inputs are rotated into them. Outputs are in the scene's axes again.
+/// Medium axes: the axes of an image whose direction matrix is a rotation by other than right angles, mirrored or not.
+/// A filter works in these axes (WholeInputs.h): there the medium has the unit matrix as direction and the same origin,
+/// and lights, photons, cameras and vectors of the inputs are rotated into them. Outputs are rotated back to the
+/// scene's axes.
 struct OwnAxes
 {
   using Vec = std::array<double, 3>;
 
-  Vec origin = { 0.0, 0.0, 0.0 }; ///< of the image: the place that has the same coordinates in both
-  Rotation axes = { { { 1.0, 0.0, 0.0 }, { 0.0, 1.0, 0.0 }, { 0.0, 0.0, 1.0 } } };   ///< a row each, in the scene
-  std::array<double, 9> direction = { 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0 }; ///< the matrix, spacings above 0
+  Vec origin = { 0.0, 0.0, 0.0 }; ///< of the image; this position has the same coordinates in both systems
+  Rotation axes = { { { 1.0, 0.0, 0.0 }, { 0.0, 1.0, 0.0 },
+    { 0.0, 0.0, 1.0 } } }; ///< unit vectors of the medium axes in scene coordinates, one a row
+  std::array<double, 9> direction = { 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0,
+    1.0 }; ///< direction matrix for positive spacings
 
   bool AreThoseOfScene() const { return this->direction == OwnAxes().direction; }
   bool AreMirrored() const;
@@ -60,22 +66,23 @@ struct OwnAxes
   static OwnAxes From(const std::vector<double>& words);
 };
 
-/// @return the scene's for right angles, for a matrix that is no rotation (which GridOf refuses), or if the image is
-///   null or empty
+/// The medium axes of an image.
+/// @return the scene's axes for rotations by right angles, for a matrix that is no rotation (which GridOf refuses), or
+///   if the image is null or empty
 OwnAxes OwnAxesOf(vtkImageData* image);
 
-/// The axes in which a filter works; set before it does.
+/// The medium axes in which a filter works, as recorded by NoteOwnAxes before the work starts.
 OwnAxes OwnAxesOf(vtkAlgorithm* filter);
 void NoteOwnAxes(vtkAlgorithm* filter, const OwnAxes& axes);
 
-/// An image of the scene in such axes, with its vectors rotated: net_flux, mean_direction, ior_gradient, the array that
-/// the filter reads from the port as mean direction, and field data of directions.
+/// Transforms an image from the scene to the medium axes. Its vectors are rotated: net_flux, mean_direction,
+/// ior_gradient, the array that the filter reads from this port as mean direction, and directions in field data.
 vtkSmartPointer<vtkImageData> InOwnAxes(vtkImageData* image, const OwnAxes& axes, vtkAlgorithm* filter, int port);
 
-/// The inverse, for an output.
-/// @param given  the filter's input in the scene, whose arrays replace rotated copies of them; may be null
+/// Transforms an output from the medium axes back to the scene.
+/// @param given  the filter's input in scene axes, whose original arrays replace their rotated copies; may be null
 void PutIntoScene(vtkImageData* output, const OwnAxes& axes, vtkImageData* given);
 
-/// For all outputs of a filter but pictures, and photons, which are written in the scene.
+/// Transforms all outputs of a filter to the scene, except pictures, and photons, which are written in scene axes.
 void PutIntoScene(vtkAlgorithm* filter, const OwnAxes& axes, vtkInformationVector* outputs, vtkImageData* given);
 }

@@ -21,25 +21,26 @@
 #include <memory>
 #include <vector>
 
-/// Keys for what filters keep between updates: by times of change, or by content.
+/// Cache keys for results that filters keep between updates, made of modification times or of content.
 namespace tyndall
 {
-/// In a copy of an array whose vectors were rotated into other axes (ImageAxes.h): when that array was last changed.
+/// Key in the information of a copy of an array whose vectors were rotated (ImageAxes.h): modification time of the
+/// original.
 inline vtkInformationUnsignedLongKey* TimeBeforeTurning()
 {
   static auto* const key = vtkInformationUnsignedLongKey::MakeKey("TIME_BEFORE_TURNING", "Tyndall");
   return key;
 }
 
-/// When an array was last changed, or the one of which it is a rotated copy.
+/// Modification time of an array; for a rotated copy, that of the original.
 inline vtkMTimeType TimeOf(vtkAbstractArray* array)
 {
   const bool isCopy = array->HasInformation() && array->GetInformation()->Has(TimeBeforeTurning());
   return isCopy ? array->GetInformation()->Get(TimeBeforeTurning()) : array->GetMTime();
 }
 
-/// When the arrays and the points of a dataset were last changed: point, cell and field data in their order. Two
-/// datasets of the same times hold the same: no two objects have the same time.
+/// Modification times of a dataset's points and of its point, cell and field data arrays, in order. VTK never gives two
+/// objects the same time, so datasets with equal times hold the same data.
 inline std::vector<vtkMTimeType> TimesOfArrays(vtkDataObject* data)
 {
   std::vector<vtkMTimeType> times;
@@ -59,18 +60,18 @@ inline std::vector<vtkMTimeType> TimesOfArrays(vtkDataObject* data)
   return times;
 }
 
-/// A number that two datasets have in common only if all that they hold is the same, byte by byte: place, grid, points,
-/// arrays with their names. Unlike times it does not change where a filter before ran again and made the same, as
-/// ParaView's readers do, which read a file twice for two ways to ask for one time step.
-/// @param data  null: that there is none
+/// Hash of everything a dataset holds, byte by byte: position, grid, points, arrays with their names. Unlike
+/// modification times it does not change if a filter upstream runs again with the same result, as ParaView's readers
+/// do, which read a file twice if one time step is requested in two ways.
+/// @param data  may be null, which has a hash of its own
 std::uint64_t ContentKey(vtkDataObject* data);
 
-/// The same without the arrays of the field data: ranks that hold the same photons know other facts of the medium where
-/// one has no piece of it.
+/// The same without field data arrays. Ranks that hold the same photons may have different field data about the medium
+/// if one of them has no piece of it.
 std::uint64_t ContentKeyButFacts(vtkDataObject* data);
 
-/// Tells whether what was made on a device of a filter's inputs is still up to date: keys are equal as long as nothing
-/// has changed. No two objects of VTK have the same time.
+/// Key of a result computed on a device from a filter's inputs: keys are equal as long as nothing has changed, since
+/// VTK never gives two objects the same modification time.
 struct InputsKey
 {
   std::shared_ptr<Device> device;
@@ -87,17 +88,17 @@ struct InputsKey
     }
   }
 
-  /// Which cells of an image are hidden (ImageInput.h).
+  /// Adds the flags of the hidden cells of an image (ImageInput.h).
   void AddGhosts(vtkImageData* image)
   {
     this->Add(image->GetCellGhostArray());
     this->Add(image->GetPointGhostArray());
   }
 
-  /// @param array  null: that there is none
+  /// @param array  null: no such array
   void Add(vtkDataArray* array) { this->times.push_back(array ? TimeOf(array) : 0); }
 
-  /// All arrays of a dataset; null: that there is none.
+  /// Adds all arrays of a dataset; null: no dataset.
   void Add(vtkDataObject* data)
   {
     const std::vector<vtkMTimeType> ofArrays = TimesOfArrays(data);
@@ -111,9 +112,9 @@ struct InputsKey
   }
 };
 
-/// Whether filters before an input port will run again, or have, since a time. Their data do not tell: ParaView's
-/// filters between filters make them anew, with the same arrays, whenever they are looked at; and values may be changed
-/// without telling their array.
+/// Whether filters upstream of an input port have run since `time`, or will run. The modification time of their data is
+/// no substitute: ParaView's internal filters create these anew, with the same arrays, on every access, and values may
+/// change without Modified() of their array.
 inline bool RanSince(vtkAlgorithm* filter, int port, vtkMTimeType time)
 {
   bool ran = false;

@@ -24,11 +24,11 @@ class vtkDataSetAttributes;
 class vtkImageData;
 class vtkPolyData;
 
-/// Reading of the data that flow between filters: arrays, their names, shapes and units. Writing:
-/// LightTransportWriting.h.
+/// Reads the data that filters exchange: arrays with their names, shapes and units. LightTransportWriting.h writes
+/// them.
 ///
-/// These functions throw InvalidInput with a message for users; a filter does all its work within Guarded, which turns
-/// it into an error of VTK:
+/// These functions throw InvalidInput with a message for users. A filter does all its work within Guarded, which turns
+/// the exception into a VTK error:
 ///
 ///     int vtkX::RequestData(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 ///     {
@@ -43,24 +43,25 @@ class vtkPolyData;
 ///     }
 namespace tyndall
 {
-/// The three numbers of a property: a colour or a position.
+/// The three values of a property, such as a colour or a position.
 inline std::array<double, 3> Triple(const double* values)
 {
   return { values[0], values[1], values[2] };
 }
 
-/// The cells of an image, wherever its extent starts.
-/// @throws InvalidInput if there is no image or no cell, a spacing is not a positive number, or it is rotated
+/// The grid of an image's cells; the image's extent may start anywhere.
+/// @throws InvalidInput if there is no image or no cell, if a spacing is not a positive number, or if the image is
+///   rotated
 Grid GridOf(vtkImageData* image);
 
-/// The array itself if it is of floats, else a copy; null for null.
+/// The array itself if it is a vtkFloatArray, otherwise a converted copy; null for null.
 vtkSmartPointer<vtkFloatArray> AsFloats(vtkDataArray* array);
 
-/// An array as floats; keeps its memory.
+/// An array of floats together with shared ownership of its memory.
 class FloatField
 {
 public:
-  FloatField() = default; ///< of a quantity that is zero everywhere
+  FloatField() = default; ///< a quantity that is zero everywhere
   explicit FloatField(vtkSmartPointer<vtkFloatArray> array)
     : Array(std::move(array))
   {
@@ -78,162 +79,165 @@ private:
 enum class Need
 {
   Required, ///< a missing array is an error
-  Optional, ///< a missing array is a FloatField that is not there, unless it was chosen
+  Optional, ///< a missing array is an empty FloatField, unless the user chose that array
 };
 
-/// Names of arrays for messages: 'a', 'b', or none.
+/// Names of arrays, for messages: 'a', 'b', or none.
 std::string NamesOf(vtkDataSetAttributes* attributes);
 
-/// Shapes an array may have; empty: any.
+/// Numbers of components that an array may have; empty: any.
 using Components = std::initializer_list<int>;
 
-/// Values of the image's cells: the cell array of that name, or its point array averaged to cells (Guarded has turned
-/// points into cells before if there are voxels around them, ImageInput.h). Float arrays are used in place, other types
-/// are converted. Hidden cells (ImageInput.h) have 0, or refractive index 1.
-/// @throws InvalidInput naming the array, its components, or the arrays that there are
+/// Reads values of the image's cells from the cell array `name`, or from the point array `name` averaged to cells. (If
+/// voxels are around points, Guarded has already turned point arrays into cell arrays, ImageInput.h.) Float arrays are
+/// used in place, other types are converted. Hidden cells (ImageInput.h) read as 0, or as refractive index 1.
+/// @throws InvalidInput naming the array and its number of components, or the arrays that exist
 FloatField ReadCells(vtkImageData* image, const std::string& name, Need need, Components components = { 1, 3 });
 
-/// The same for the array that SetInputArrayToProcess chose as number `index`, by name or by attribute. If points were
-/// chosen, the point array is preferred to a cell array of the same name. If nothing was chosen (SCALARS for VTK, ""
-/// for ParaView before it knows the input), or the name `otherwise`, the array is read that the filter upstream took
-/// for the quantity (NoteChoices), or else `otherwise`; "" there stands for the active scalars. An array that was
-/// chosen by another name is never optional.
+/// The same for the array that SetInputArrayToProcess selected as number `index`, by name or by attribute. If a point
+/// array was selected, it takes precedence over a cell array of the same name. If nothing was selected (SCALARS in VTK,
+/// "" in ParaView before it knows the input), or the name `otherwise`, the function reads the array that the filter
+/// upstream used for this quantity (NoteChoices), or else the array `otherwise`, where "" stands for the active
+/// scalars. An array selected by another name is never optional.
 FloatField ReadChosenCells(vtkAlgorithm* filter, int index, vtkImageData* image, const std::string& otherwise,
   Need need, Components components = { 1, 3 });
 
-/// The array that ReadChosenCells would read, or null; not checked.
+/// The array that ReadChosenCells would read, or null. Its type and shape are not checked.
 vtkDataArray* ChosenArray(vtkAlgorithm* filter, int index, vtkImageData* image, const std::string& otherwise);
 
-/// Names of the arrays that a filter reads of an image, as far as it has them.
+/// Names of the arrays that a filter reads from an image, among those that the image has.
 struct ArraysRead
 {
   std::vector<std::string> ofCells, ofPoints;
 };
 ArraysRead FindArrays(vtkAlgorithm* filter, const VoxelArrays& arrays, vtkImageData* image);
 
-/// Whether arrays were chosen by SetInputArrayToProcess, or are announced as active, and all of them are of points.
-/// @param chosen  VoxelArrays
+/// Whether some arrays are selected by SetInputArrayToProcess, or announced as active, and all of these are point
+/// arrays.
+/// @param chosen  VoxelArrays::chosen
 bool ChoosesOnlyPoints(vtkAlgorithm* filter, const std::vector<std::string>& chosen, vtkInformation* input);
 
-/// Relative density of the fog that fills a level set, by the distance from its surface, which is negative inside: 1,
-/// and less in proportion within a voxel of the surface; 0 outside. What OpenVDB's sdfToFogVolume makes with that
-/// cutoff.
+/// Relative density of fog inside a level set as a function of the signed distance from its surface, negative inside: 1
+/// in the interior, falling linearly to 0 at the surface within the last voxel, 0 outside. Equals OpenVDB's
+/// sdfToFogVolume with that cutoff.
 template <typename Value>
 Value FogInside(Value distance, double voxel)
 {
   return std::min(std::max(static_cast<Value>(-distance / voxel), Value(0)), Value(1));
 }
 
-/// Numbers of SetInputArrayToProcess for the filters that take a medium at port 0.
+/// Indices for SetInputArrayToProcess in filters whose port 0 takes a medium.
 enum MediumArray
 {
   SigmaA = 0,
   SigmaS = 1,
   Emission = 2,
 };
-/// The same for the refractive index, of those that know it.
+/// The index for the refractive index, in filters that use it.
 constexpr int RefractiveIndex = 3;
 
-/// Numbers of SetInputArrayToProcess, and the names of the arrays where none is chosen.
+/// Indices for SetInputArrayToProcess with the names of the default arrays.
 using Quantities = std::vector<std::pair<int, std::string>>;
 Quantities QuantitiesOfMedium(); ///< those of MediumArray, and RefractiveIndex
 
-/// Records in an output which of its arrays the filter took for these quantities, so that filters downstream take the
-/// same: field data `sigma_a_array` and so on, a text with the array's name, and "points" if these were preferred to
-/// cells of that name. None for the default array.
-/// @param input  of the filter; the output has its arrays
+/// Records in the output's field data which of its arrays the filter used for these quantities, so that filters
+/// downstream use the same ones: `sigma_a_array` and so on, a text with the array's name, followed by "points" if the
+/// point array takes precedence over a cell array of that name. Nothing is recorded for a default array.
+/// @param input  the filter's input, whose arrays the output has
 void NoteChoices(vtkAlgorithm* filter, const Quantities& quantities, vtkImageData* input, vtkImageData* output);
 
-/// For a filter that makes a medium's arrays itself: removes what its input recorded.
+/// Removes what the input recorded, for a filter that computes a medium's arrays itself.
 void ForgetChoices(vtkImageData* output);
 
-/// Whether the array that ReadChosenCells would read exists and differs from the usual value in a cell that is not
-/// hidden: for filters that ignore the quantity. Not checked otherwise.
+/// Whether the array that ReadChosenCells would read exists and differs from the value `usual` in a cell that is not
+/// hidden. For filters that ignore the quantity; nothing else is checked.
 bool IsUnusual(vtkAlgorithm* filter, int index, vtkImageData* image, const std::string& name, float usual);
 
-/// Texts of field data `ignored` (IgnoredFact) for a filter without refraction, and for one whose photons come from
-/// lights alone; empty if nothing is ignored.
+/// Texts for field data `ignored` (IgnoredFact): for a filter that ignores refraction, and for one that ignores the
+/// medium's emission because its photons start from lights only. Empty if nothing is ignored.
 std::vector<std::string> IgnoredIndex(bool isUnusual);
 std::vector<std::string> IgnoredEmission(bool isUnusual);
-/// The same as a warning.
+/// The same texts as one warning.
 std::string WarningOf(const std::vector<std::string>& ignored);
 
-/// A medium and the arrays that it refers to.
+/// A medium together with the arrays that it refers to.
 struct MediumInput
 {
   Medium medium;
   FloatField sigma_a, sigma_s, emission, g;
 
-  bool Emits() const; ///< anywhere: an array of zeros is no light
+  bool Emits() const; ///< whether emission is above 0 anywhere
 };
 
-/// The medium of an image: cells `sigma_a`, `sigma_s` (1 or 3 components, 1/length), `emission` (optional, 1 or 3) or
-/// the arrays chosen instead by MediumArray, and the phase function: cells `g` (optional, 1 or 3 components) where the
-/// mean cosine varies by voxel, else field data `g` (1 or 3 numbers; missing: 0), and field data `phase_function` and
-/// its companions (PhaseFunctionData.h; missing: Henyey and Greenstein's). Checked.
+/// Reads the medium of an image and checks it. Cell arrays `sigma_a` and `sigma_s` (1 or 3 components, 1/length) and
+/// `emission` (optional, 1 or 3 components), or the arrays selected instead by MediumArray. Phase function: cell array
+/// `g` (optional, 1 or 3 components) if the mean cosine varies by voxel, otherwise field data `g` (1 or 3 numbers;
+/// default 0); field data `phase_function` and the parameters in PhaseFunctionData.h (default Henyey-Greenstein).
 MediumInput ReadMedium(vtkAlgorithm* filter, vtkImageData* image);
 
-/// Angular moments that WriteLight wrote; without values if the solver found none, or part of them is gone.
+/// Angular moments as WriteLight writes them; empty if the solver computed none or some of the arrays are missing.
 struct MomentsInput
 {
   FloatField moments, straightOn;
   std::vector<Light> lampsApart;
 };
 
-/// Uncollided light of another solver, and the arrays that it refers to.
+/// Uncollided light computed by another filter, together with the arrays that it refers to.
 struct UncollidedInput
 {
   UncollidedImage image;
   FloatField fluence, meanDirection;
 };
 
-/// Everything that lights a medium, and the arrays that it refers to.
+/// All light sources outside of the medium, together with the arrays that they refer to.
 struct IlluminationInput
 {
   Illumination illumination;
   UncollidedInput uncollided;
-  bool isDefaultSky = false; ///< no light is given, see vtkPropagationAlgorithm
+  bool isDefaultSky = false; ///< true if no light is given; see vtkPropagationAlgorithm
 };
 
-/// Uncollided light of PhotonMarcher or PhotonReconstruction: cells `fluence_direct` (1 or 3 components), optional
-/// cells `mean_direction` (3; missing: isotropic), optional field data `face_power_out` (missing: 0).
+/// Reads the uncollided light of PhotonMarcher or PhotonReconstruction: cell array `fluence_direct` (1 or 3
+/// components), optional cell array `mean_direction` (3 components; default isotropic), optional field data
+/// `face_power_out` (default 0).
 /// @throws InvalidInput if its voxels are not those of the medium, or an array is missing or has the wrong shape
 UncollidedInput ReadUncollided(vtkImageData* image, const Grid& medium);
 
-/// @throws InvalidInput if one has the wrong shape
+/// @throws InvalidInput if an array has the wrong shape
 MomentsInput ReadMoments(vtkImageData* image);
 
-/// Field data `name`: one number.
-/// @throws InvalidInput if it is not one number
+/// Reads one number from field data `name`; returns `missing` if there is no such field data.
+/// @throws InvalidInput if it is not exactly one number
 double ReadFact(vtkDataObject* data, const char* name, double missing);
 
-/// Lights as LightRig makes them: point data `light_type` and `power` (1 or 3 components); `direction`, `size` and
-/// `angle` where the types need them. Hidden and duplicate points are left out. No polydata or one without points: no
-/// lights. Checked.
+/// Reads lights as LightRig writes them, and checks them: point data `light_type` and `power` (1 or 3 components);
+/// `direction`, `size` and `angle` if the types need them. Hidden and duplicate points are skipped. Returns no lights
+/// without polydata or points.
 std::vector<Light> ReadLights(vtkPolyData* lights);
 
-/// Lights of the scene, and illumination with its sky, in the axes of an image.
+/// Transforms lights, or illumination with its sky, from the scene to the medium axes.
 std::vector<Light> InOwnAxes(std::vector<Light> lights, const OwnAxes& axes);
 Illumination InOwnAxes(Illumination illumination, const OwnAxes& axes);
 
-/// The environment of a latitude-longitude image: point data `radiance`, 1 (grey) or 3 components, of width x height x
-/// 1 points; hidden ones are black. No image: an empty environment. Checked.
+/// Reads the environment from a latitude-longitude image of width x height x 1 points, and checks it: point data
+/// `radiance`, 1 (grey) or 3 components; hidden points are black. Returns an empty environment without an image.
 Environment ReadEnvironment(vtkImageData* image);
 
-/// Whether there is neither a lamp nor an environment, and sky and all faces are black.
+/// Whether there is no light source: no lamp, no environment, and black sky and faces.
 bool NothingShines(const Illumination& illumination);
 
-/// Adds isotropic radiance (red, green, blue) and that through the faces -x, +x, -y, +y, -z, +z, W/(length^2 sr).
-/// Checked.
+/// Adds incident isotropic radiance `sky` (red, green, blue) and boundary sources at the faces -x, +x, -y, +y, -z, +z,
+/// W/(length^2 sr). The values are checked.
 void AddDiffuse(Illumination& illumination, const double* sky, const double* faceRadiance);
 
-/// Adds reflecting boundaries: an albedo for each face, times factors red, green, blue for each. Checked.
+/// Adds reflecting boundaries: one albedo for each face, multiplied by red, green and blue factors for each face. The
+/// values are checked.
 void AddFaceAlbedo(Illumination& illumination, const double* albedo, const double* colour);
 
-/// Whether a grid's voxels have the same corners as those of the medium, but for rounding.
+/// Whether the voxels of a grid have the same corners as those of the medium, up to rounding.
 bool AreSameVoxels(const Grid& grid, const Grid& medium);
 
-/// @param whose, remedy  for the message: "The octree", "Make the octree of the same medium."
-/// @throws InvalidInput where a grid's voxels do not have the same corners as those of the medium, but for rounding
+/// @param whose, remedy  parts of the message, e.g. "The octree", "Make the octree of the same medium."
+/// @throws InvalidInput unless the voxels of the grid have the same corners as those of the medium, up to rounding
 void CheckSameVoxels(const Grid& grid, const Grid& medium, const std::string& whose, const std::string& remedy);
 }

@@ -16,86 +16,93 @@ class vtkImageData;
 class vtkPolyData;
 class vtkTable;
 
-/// The one place where filters write what flows between them: arrays, their names, shapes and units.
+/// Writes the data that filters exchange: arrays with their names, shapes and units. No other code writes them.
 namespace tyndall
 {
-/// Add values to an image's cells, without copying them.
+/// Adds a cell array to an image without copying the values.
 /// @param values  `components` per cell, x fastest
 /// @param advice  see RequireFinite
-/// @throws InvalidInput where a value is not finite
+/// @throws InvalidInput if a value is not finite
 void AddCells(
   vtkImageData* image, const char* name, std::vector<float>&& values, int components, const char* advice = nullptr);
 
-/// The same of light: of 3 channels they are named R, G, B.
+/// The same for light. With 3 channels the components are named R, G, B.
 void AddLight(vtkImageData* image, const char* name, std::vector<float>&& values, int channels);
 
-/// Add the light that an array of the image holds under another name, without copying or looking at it: both have the
-/// same memory.
+/// Adds an array of light to the image a second time under the name `as`. The arrays share memory; values are not
+/// checked.
 void AddSameLight(vtkImageData* image, const char* name, const char* as);
 
-/// The same of light that a user gave, NaN where it is not known: not looked at.
+/// The same as AddLight for light that a user gave, which may be NaN where it is unknown; values are not checked.
 void AddGivenLight(vtkImageData* image, const char* name, std::vector<float>&& values, int channels);
 
-/// Of an image that was read: the part of its voxels that the file holds as active. Not there: nobody knows.
+/// Name of field data of an image that was read: fraction of its voxels that are active in the file. Missing: unknown.
 constexpr const char* ActivePartFact = "active_part";
-/// Add field data.
-/// @param values  tuples of `components` one after the other
-/// Field data of light of photons that were scattered: how often, all together. Not there: they were not.
+/// Name of field data of light from scattered photons: total number of scattering events. Missing: no scattering.
 constexpr const char* ScatteringsFact = "scatterings";
+/// Adds field data.
+/// @param values  tuples of `components` values, one after the other
 void AddFact(vtkDataObject* data, const char* name, const std::vector<double>& values, int components = 1);
 void AddFact(vtkDataObject* data, const char* name, const std::vector<std::string>& values);
 void AddFact(vtkDataObject* data, const char* name, const std::vector<std::array<double, 3>>& vectors);
 
-/// What leaves thick voxels at the box's faces, see LightField::surfaceRadiance: a tuple per cell of BoxFaces.h.
+/// Name of field data: radiance that leaves optically thick voxels at the domain's faces, see
+/// LightField::surfaceRadiance; one tuple for each cell of BoxFaces.h.
 constexpr const char* SurfaceRadianceFact = "surface_radiance";
-/// Field data: arrays of the medium that the light does not depend on, and which filters know them, a text each.
+/// Name of field data: arrays of the medium that the solver ignores, and which filters use them; one text each.
 constexpr const char* IgnoredFact = "ignored";
-/// Field data: LightField::facePower, and what part of it comes back, red, green, blue of each face, -x to +z.
+/// Names of field data: LightField::facePower, and the albedo by which each face reflects it; red, green, blue for each
+/// face, -x to +z.
 constexpr const char* FacePowerFact = "face_power";
 constexpr const char* FaceAlbedoFact = "face_albedo";
 
-/// Angular moments of what is scattered (LightField::scatteredMoments, straightOn), cells, and field data: the lamps
-/// whose light they leave out until it is first scattered, a tuple each: type, position, direction, power, size, angle.
+/// Names of cell arrays: angular moments of the scattered light (LightField::scatteredMoments, straightOn). Name of
+/// field data: the lamps whose light these moments exclude until its first scattering; one tuple each: type, position,
+/// direction, power, size, angle.
 constexpr const char* MomentsArray = "scattered_moments";
 constexpr const char* StraightOnArray = "straight_on";
 constexpr const char* LampsApartFact = "lamps_apart";
 constexpr int LampComponents = 13;
 
-/// Texts one per line, for the panel.
+/// Joins texts with line breaks, for ParaView's panel.
 std::string Lines(const std::vector<std::string>& texts);
 
-/// Everything a solver found but its convergence: cells `fluence` (made the active scalars), `fluence_direct`,
-/// `fluence_error`, `net_flux`, `scattered_radiance` (channels fastest, then stored directions), `scattered_moments`
-/// (channels fastest, then spherical harmonics), `straight_on`, those that are not empty; field data `energy_balance`,
-/// `face_power_out`, `face_power`, `face_albedo`, `half_range_flux`, `stored_directions`, `surface_radiance`,
-/// `lamps_apart`, `left_out`, `settings_used`, `device`. Light that the output already has is taken away.
+/// Writes everything a solver computed except its convergence. Cell arrays: `fluence` (made the active scalars),
+/// `fluence_direct`, `fluence_error`, `net_flux`, `scattered_radiance` (channels fastest, then stored directions),
+/// `scattered_moments` (channels fastest, then spherical harmonics), `straight_on`; empty ones are skipped. Field data:
+/// `energy_balance`, `face_power_out`, `face_power`, `face_albedo`, `half_range_flux`, `stored_directions`,
+/// `surface_radiance`, `lamps_apart`, `left_out`, `settings_used`, `device`. Light that the output already holds is
+/// removed.
 void WriteLight(LightField&& light, vtkImageData* output);
 
-/// Cells: LitColor::rgba, unsigned char, 4 components; field data: its distance, length, and its exposure.
+/// Names. Cell array: LitColor::rgba, unsigned char, 4 components. Field data: its distance, in units of length, and
+/// its exposure.
 constexpr const char* LitColorArray = "lit_color";
 constexpr const char* LitColorDistanceFact = "lit_color_distance";
 constexpr const char* LitColorExposureFact = "lit_color_exposure";
 void WriteLitColor(LitColor&& lit, vtkImageData* output);
 
-/// One row an iteration: `iteration`, `seconds`, `residual`, `change`, `absorbed`, `escaped`, `left_over`, and
-/// `sweeps_saved` where light is kept (LightField.h).
+/// Writes one row per iteration: `iteration`, `seconds`, `residual`, `change`, `absorbed`, `escaped`, `left_over`, and
+/// `sweeps_saved` if light is kept between solves (LightField.h).
 void WriteConvergence(const std::vector<ConvergenceRow>& rows, const std::vector<int>& sweepsSaved, vtkTable* table);
 
-/// A vertex a light, with the point arrays that vtkLightRig lists.
+/// Writes one vertex for each light, with the point arrays that vtkLightRig lists.
 void WriteLights(const std::vector<Light>& lights, vtkPolyData* output);
 
-/// Make the output the input's arrays, with field data of its own: a shallow copy alone would share that, so that what
-/// a filter adds would appear in its input, and vanish when that is made again.
+/// Gives the output the input's arrays, but field data of its own. A shallow copy alone would share the field data:
+/// what a filter adds would appear in its input, and vanish when the input is made again.
 void PassOn(vtkDataObject* input, vtkDataObject* output);
 
-/// @param place   of a tuple, as a user finds it: "voxel (1, 2, 3)", "photon 5"
-/// @param advice  what to do; null: what holds for light and coefficients of a medium
-/// @return ranges, to be left in the array
-/// @throws InvalidInput where a value is not finite: names the array, the first such place, the value, the likely cause
+/// Checks that all values are finite.
+/// @param place   describes the position of a tuple to a user: "voxel (1, 2, 3)", "photon 5"
+/// @param advice  what the user can do; null: advice for light and coefficients of a medium
+/// @return ranges of the values, to be stored in the array
+/// @throws InvalidInput if a value is not finite: names the array, the first such position, the value and the likely
+///   cause
 ArrayRanges RequireFinite(const char* array, const float* values, std::size_t count, int components,
   const std::function<std::string(std::size_t)>& place, const char* advice = nullptr);
 
-/// The same of the cells of an image.
+/// The same for cells of an image.
 ArrayRanges RequireFiniteCells(vtkImageData* image, const char* array, const float* values, std::size_t count,
   int components, const char* advice = nullptr);
 }

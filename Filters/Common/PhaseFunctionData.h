@@ -10,26 +10,27 @@
 class vtkDataObject;
 class vtkImageData;
 
-/// The one place where filters read and write how a medium scatters. Field data:
+/// Reads and writes the phase function of a medium as field data. No other code does.
 ///
 /// | name               | numbers | meaning |
 /// |--------------------|---------|---------|
 /// | `phase_function`   | a text  | one of the names below; missing: `henyey_greenstein` |
-/// | `g`                | 1 or 3  | mean cosine, of all or each channel; of two lobes that of the first. Missing: 0 |
+/// | `g`                | 1 or 3  | mean cosine, of all or each channel; with two lobes, of the first. Default 0 |
 /// | `phase_second_g`   | 1 or 3  | mean cosine of the second lobe |
-/// | `phase_first_part` | 1 or 3  | part of the light that the first lobe scatters, 0 to 1 |
-/// | `phase_cosine`     | n       | rows of a table: cosines of the scattering angle, -1 to 1, rising or falling |
+/// | `phase_first_part` | 1 or 3  | fraction of the light that the first lobe scatters, 0 to 1 |
+/// | `phase_cosine`     | n       | rows of a table: cosine of the scattering angle, -1 to 1, ascending or descending |
 /// | `phase_value`      | n       | the phase function there, in any unit |
 ///
-/// Names: `isotropic`, `henyey_greenstein`, `double_henyey_greenstein`, `schlick`, `rayleigh`, `tabulated`. Of
-/// `isotropic`, `rayleigh` and `tabulated`, whose mean cosine is known without it, `g` may be there or not, but must
-/// not contradict. Cells `g` (1 or 3 components) of `henyey_greenstein` and `schlick` count before field data `g`.
+/// Names: `isotropic`, `henyey_greenstein`, `double_henyey_greenstein`, `schlick`, `rayleigh`, `tabulated`. The
+/// functions `isotropic`, `rayleigh` and `tabulated` determine their mean cosine themselves: `g` is optional there and
+/// must not contradict it. For `henyey_greenstein` and `schlick` a cell array `g` (1 or 3 components) takes precedence
+/// over field data `g`.
 namespace tyndall
 {
 class FloatField;
 struct InputsKey;
 
-/// What field data say. A text and numbers that are not checked before Functions().
+/// The phase function as field data describe it: text and numbers, which are not checked before Functions().
 struct PhaseDescription
 {
   std::string name = "henyey_greenstein";
@@ -37,37 +38,37 @@ struct PhaseDescription
   Rgb secondG = {};
   Rgb firstPart = { 1.0, 1.0, 1.0 };
   std::vector<double> cosines, values;
-  bool gByVoxel = false; ///< cells `g` count: field data `g` is not written
+  bool gByVoxel = false; ///< the cell array `g` takes precedence: field data `g` is not written
 
-  /// Of each channel.
-  /// @throws InvalidInput naming the channel whose number, or the row of the table, that is out of range
+  /// The phase function of each channel.
+  /// @throws InvalidInput naming the channel whose number, or the row of the table, is out of range
   std::array<PhaseFunction, 3> Functions() const;
-  /// Of a medium whose mean cosine varies by voxel: the kind alone.
-  /// @throws InvalidInput where the function has no mean cosine to choose
+  /// The kind of phase function, without g, for a medium whose mean cosine varies by voxel.
+  /// @throws InvalidInput if the function has no mean cosine to choose
   PhaseFunction KindOfVaryingG() const;
 };
 
-/// @throws InvalidInput where field data have another type or shape than the table above says
+/// @throws InvalidInput if field data have another type or shape than the table above says
 PhaseDescription ReadPhaseDescription(vtkDataObject* medium);
 
-/// What field data say, for messages, and to compare: names and numbers, of tables how many there are and a number that
-/// others hardly have.
+/// A summary of the field data, for messages and comparisons: names and numbers; for a table the number of rows and a
+/// hash.
 std::string PhaseInWords(vtkDataObject* medium);
 
-/// Writes it as field data, and takes away those that it does not need. `g` of functions that need none is their mean
-/// cosine.
+/// Writes the description as field data and removes field data that it does not need. For functions that determine
+/// their mean cosine, `g` is written as that mean cosine.
 void WritePhaseDescription(vtkDataObject* medium, const PhaseDescription& description);
 
-/// Cells `g` of an image; not there where it has none. Where nothing scatters their values have no meaning: those that
-/// would be refused are 0.
+/// Reads the cell array `g` of an image; empty if there is none. Values in voxels that do not scatter have no meaning:
+/// invalid ones read as 0.
 FloatField ReadMeanCosines(vtkImageData* medium, const Field& sigma_s);
 
-/// How a medium with such field data and cells `g` scatters.
-/// @param g         without values: there are no such cells. Seen, not owned
-/// @param sigma_s   cells that do not scatter do not count for whether g varies
+/// Reads the phase function of a medium from field data and the cell array `g`.
+/// @param g        values of the cell array; empty: there is none. Referenced, not owned
+/// @param sigma_s  voxels that do not scatter are ignored when deciding whether g varies
 /// @throws InvalidInput as Functions(), and naming the first voxel whose g is outside (-1, 1)
 PhaseOfMedium ReadPhase(vtkImageData* medium, const Field& g, const Field& sigma_s);
 
-/// Adds all that ReadPhase reads to the key of something that is kept.
+/// Adds everything that ReadPhase reads to a cache key.
 void AddPhase(InputsKey& key, vtkImageData* medium);
 }

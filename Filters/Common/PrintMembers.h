@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-/// In PrintSelf: a line "Name: value" for each of these members.
+/// In PrintSelf: prints one line "Name: value" for each of these members.
 #define tyndallPrintMacro(...) tyndall::PrintMembers(os, indent, #__VA_ARGS__, __VA_ARGS__)
 
 namespace tyndall
@@ -31,7 +31,7 @@ void PrintValue(std::ostream& os, const std::vector<Value>& values)
   std::for_each(values.begin(), values.end(), [&](const Value& value) { PrintValue(os, value); });
 }
 
-/// @param names  of the values, separated by commas
+/// @param names  names of the values, separated by commas
 template <class... Values>
 void PrintMembers(std::ostream& os, vtkIndent indent, const std::string& names, const Values&... values)
 {

@@ -11,46 +11,45 @@
 
 class vtkAlgorithm;
 
-/// Properties of filters that have a range.
+/// Properties of filters with a valid range.
 ///
-/// What every filter of Tyndall does with a number out of its range, wherever it comes from (ParaView's panel, Python,
-/// C++): it refuses it. A setter never replaces what it is told by another value, and no filter works with a value it
-/// was not told. The property keeps what it was set to; the next update ends with one error of VTK that names the
-/// property, the value and the range, and empty outputs. A value in the range heals it. A number that is not finite is
-/// never in a range.
+/// Every filter of Tyndall refuses a number that is out of its range, whether it comes from ParaView's panel, Python or
+/// C++. A setter never replaces the value it is given, and no filter works with another value than the one set. The
+/// property keeps the invalid value; the next update ends with one VTK error that names property, value and range, and
+/// the outputs are empty. Setting a valid value clears the error. A number that is not finite is out of every range.
 ///
-/// Ranges that a setter can say stand in its macro, below. What only the work can say (a square number, a camera that
-/// looks along its view up, a sum of two properties) is refused there, in the same way.
+/// Ranges known to the setter are given in the macros below. Conditions that only RequestData can check (a number that
+/// must be a square, a camera that looks along its view up, a sum of two properties) are refused there in the same way.
 namespace tyndall
 {
 constexpr double AnyHigh = std::numeric_limits<double>::max();   ///< no upper bound, but finite
 constexpr double AnyLow = -AnyHigh;                              ///< no lower bound, but finite
-constexpr double AboveZero = std::numeric_limits<double>::min(); ///< lower bound of what must be positive
+constexpr double AboveZero = std::numeric_limits<double>::min(); ///< lower bound of values that must be positive
 constexpr double LargestFloat =
   std::numeric_limits<float>::max(); ///< upper bound of light and coefficients, which are floats
 
-/// Notes whether a property has a value out of its range, for CheckProperties.
+/// Records whether a property's value is out of its range, for CheckProperties.
 TYNDALL_EXPORT void NoteProperty(
   vtkAlgorithm* filter, const char* property, const double* values, int count, double low, double high);
 
-/// How a filter reads arrays of points; see tyndallPointDataMacro.
+/// How a filter reads point arrays; see tyndallPointDataMacro.
 enum PointDataKind
 {
   VoxelsAroundPoints = 0,
   AverageToCells = 1,
 };
 
-/// What the setter of that does. @return whether the property has changed
+/// Implements the setter of tyndallPointDataMacro. @return whether the property has changed
 TYNDALL_EXPORT bool SetPointData(vtkAlgorithm* filter, int& held, int kind);
 
-/// What a filter was told by it.
+/// The value of that property.
 PointDataKind PointDataOf(vtkAlgorithm* filter);
 
-/// To be asked before a filter works; Guarded does.
-/// @throws InvalidInput that names every property out of its range, its value and its range
+/// Called by Guarded before a filter works.
+/// @throws InvalidInput that names every property out of its range, with its value and range
 void CheckProperties(vtkAlgorithm* filter);
 
-/// What the setters below do.
+/// Implements the setters below.
 /// @return whether the property has changed
 template <class Type>
 bool SetInRange(vtkAlgorithm* filter, const char* property, Type* heldValues, std::initializer_list<Type> values,
@@ -62,7 +61,7 @@ bool SetInRange(vtkAlgorithm* filter, const char* property, Type* heldValues, st
   for (const Type value : values)
   {
     Type& held = heldValues[i];
-    changed = changed || !(held == value || (held != held && value != value)); // a NaN is the same as another one
+    changed = changed || !(held == value || (held != held && value != value)); // two NaNs count as equal
     held = value;
     asked[i++] = static_cast<double>(value);
   }
@@ -71,7 +70,7 @@ bool SetInRange(vtkAlgorithm* filter, const char* property, Type* heldValues, st
 }
 }
 
-/// Instead of vtkSetMacro and vtkSetClampMacro: a number in [low, high].
+/// Replaces vtkSetMacro and vtkSetClampMacro: a number in [low, high].
 #define tyndallSetRangeMacro(name, type, low, high)                                \
   virtual void Set##name(type value)                                               \
   {                                                                                \
@@ -81,14 +80,14 @@ bool SetInRange(vtkAlgorithm* filter, const char* property, Type* heldValues, st
     }                                                                              \
   }
 
-/// The same with its Get.
+/// The same with a Get method.
 #define tyndallRangeMacro(name, type, low, high)                       \
   tyndallSetRangeMacro(name, type, low, high) virtual type Get##name() \
   {                                                                    \
     return this->name;                                                 \
   }
 
-/// Instead of vtkSetMacro, vtkGetMacro and vtkBooleanMacro of a bool.
+/// Replaces vtkSetMacro, vtkGetMacro and vtkBooleanMacro for a bool.
 #define tyndallFlagMacro(name)    \
   virtual void Set##name(bool on) \
   {                               \
@@ -111,7 +110,7 @@ bool SetInRange(vtkAlgorithm* filter, const char* property, Type* heldValues, st
     this->Set##name(false);       \
   }
 
-/// Instead of vtkSetVector2Macro: two numbers, each in [low, high].
+/// Replaces vtkSetVector2Macro: two numbers, each in [low, high].
 #define tyndallSetRange2Macro(name, type, low, high)                                      \
   virtual void Set##name(type first, type second)                                         \
   {                                                                                       \
@@ -125,7 +124,7 @@ bool SetInRange(vtkAlgorithm* filter, const char* property, Type* heldValues, st
     this->Set##name(values[0], values[1]);                                                \
   }
 
-/// Instead of vtkSetVector3Macro: three numbers, each in [low, high].
+/// Replaces vtkSetVector3Macro: three numbers, each in [low, high].
 #define tyndallSetRange3Macro(name, type, low, high)                                             \
   virtual void Set##name(type first, type second, type third)                                    \
   {                                                                                              \
@@ -139,7 +138,7 @@ bool SetInRange(vtkAlgorithm* filter, const char* property, Type* heldValues, st
     this->Set##name(values[0], values[1], values[2]);                                            \
   }
 
-/// Instead of vtkSetVector6Macro: six numbers, each in [low, high].
+/// Replaces vtkSetVector6Macro: six numbers, each in [low, high].
 #define tyndallSetRange6Macro(name, type, low, high)                                                                   \
   virtual void Set##name(type first, type second, type third, type fourth, type fifth, type sixth)                     \
   {                                                                                                                    \
@@ -153,10 +152,10 @@ bool SetInRange(vtkAlgorithm* filter, const char* property, Type* heldValues, st
     this->Set##name(values[0], values[1], values[2], values[3], values[4], values[5]);                                 \
   }
 
-/// The property PointData: what arrays of points are. 0 (default): each point is in the middle of a voxel of its value,
-/// so that n points are n voxels and bounds are half a spacing wider, and arrays of points become cells of the output;
-/// 1: a voxel is between points, and has their mean, n - 1 voxels. Where an array of cells is read as well, voxels are
-/// the cells, and points are averaged.
+/// The property PointData: how point arrays are read. 0 (default): each point is the centre of a voxel with its value;
+/// n points along an axis are n voxels, bounds are half a spacing wider on each side, and point arrays become cell
+/// arrays of the output. 1: voxels are the cells between points and have the mean of their points, n - 1 voxels. If a
+/// cell array is read as well, voxels are the cells, and point arrays are averaged.
 #define tyndallPointDataMacro()                             \
   virtual void SetPointData(int kind)                       \
   {                                                         \
@@ -170,7 +169,7 @@ bool SetInRange(vtkAlgorithm* filter, const char* property, Type* heldValues, st
     return this->PointData;                                 \
   }
 
-/// An optional input by connection or as data; null: none.
+/// Methods for an optional input, set by connection or as data; null: none.
 #define tyndallInputMacro(name, port)                    \
   void Set##name##Connection(vtkAlgorithmOutput* output) \
   {                                                      \
@@ -185,8 +184,8 @@ bool SetInRange(vtkAlgorithm* filter, const char* property, Type* heldValues, st
     this->SetInputConnection(port, nullptr);             \
   }
 
-/// The property Device, of the member of that name: part of the name of the OpenCL device to use, of any case. Default
-/// empty: what the variable TYNDALL_DEVICE names, or else PoCL's CPU device.
+/// The property Device, stored in the member of that name: part of the name of the OpenCL device to use; case does not
+/// matter. Default empty: the device that the environment variable TYNDALL_DEVICE names, or else PoCL's CPU device.
 #define tyndallDeviceMacro()                     \
   virtual void SetDevice(const char* name)       \
   {                                              \

@@ -11,8 +11,8 @@
 
 namespace tyndall
 {
-/// Memory of a vtkAOSDataArrayTemplate that is a vector's, whoever holds it last: arrays that are shallow copies of
-/// each other share it.
+/// A memory buffer of a vtkAOSDataArrayTemplate that is owned by a std::vector. It is reference counted: arrays that
+/// are shallow copies of each other share it.
 template <class Value>
 class VectorBuffer : public vtkBuffer<Value>
 {
@@ -22,8 +22,8 @@ public:
   std::vector<Value> Values;
 };
 
-/// A vtkFloatArray (vtkUnsignedCharArray), to the last bit of its name, whose first values live in a vector: what
-/// kernels return becomes VTK's without a copy.
+/// A vtkFloatArray (vtkUnsignedCharArray) whose initial values are stored in a std::vector, so that results of kernels
+/// become VTK arrays without a copy. It behaves like its superclass, and has the same class name.
 template <class Array>
 class VectorArray : public Array
 {
@@ -42,7 +42,8 @@ public:
   }
 };
 
-/// @param values  tuples of `components` one after the other
+/// Makes a VTK array from a vector without a copy.
+/// @param values  tuples of `components` values, one after the other
 template <class Array, class Value = typename Array::ValueType>
 vtkSmartPointer<Array> ArrayOf(const char* name, std::vector<Value>&& values, int components)
 {

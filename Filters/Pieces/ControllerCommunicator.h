@@ -19,33 +19,36 @@ class vtkMultiProcessController;
 
 namespace tyndall
 {
-/// Seconds that a rank waits for another before it gives up: 600, or what the variable TYNDALL_RANKS_WAIT says now. A
-/// filter upstream may take that much longer on one rank than on another.
+/// Timeout for waiting on another rank, seconds: the current value of the environment variable TYNDALL_RANKS_WAIT,
+/// default 600. Filters upstream may take that much longer on one rank than on another.
 double SecondsToWait();
 
-/// At the start of WorkOnAllRanks: communicators get new tags, so that messages left from earlier work are not
-/// received.
+/// Called at the start of WorkOnAllRanks: new communicators get new tags, so that messages left over from earlier work
+/// are not received.
 void BeginConversations();
 
-/// Message passing among the ranks that work together. Collective: all ranks make the same ones, in the same order.
-/// @param ranks  must outlive it; null: this process is alone
-/// @param stopped  whether a rank that waits for another is to give up (Aborted), a second later
+/// Makes a communicator for the ranks that run a filter together. Collective: all ranks make their communicators in the
+/// same order.
+/// @param ranks    must outlive the communicator; null: this process is alone
+/// @param stopped  returns whether to stop waiting for other ranks; a pending receive then throws Aborted one second
+///   later
 std::unique_ptr<Communicator> CommunicatorOf(vtkMultiProcessController* ranks, std::function<bool()> stopped = {});
 
-/// The same for ranks that draw a frame together, outside WorkOnAllRanks: with tags of its own.
+/// The same for ranks that render a frame together, outside WorkOnAllRanks. It uses a separate range of tags.
 std::unique_ptr<Communicator> CommunicatorOfFrame(vtkMultiProcessController* ranks);
 
-/// The last one of WorkOnAllRanks, however many a rank made before an error.
+/// The communicator for the end of WorkOnAllRanks. Its tags do not depend on how many communicators a rank made before
+/// an error.
 std::unique_ptr<Communicator> CommunicatorAtEnd(vtkMultiProcessController* ranks);
 
 #ifdef TYNDALL_HAS_MPI
-/// By VTK's MPI controller; exchanges by DIY if the host has it.
+/// Communicator that uses VTK's MPI controller, and DIY for exchanges if the host application has it.
 class ControllerCommunicator : public Communicator
 {
 public:
-  /// @param controller  must outlive it
-  /// @param patience  timeout of a receive, seconds
-  /// @param conversation  the same on all ranks, from 0 on; selects the tags
+  /// @param controller    must outlive the communicator
+  /// @param patience      timeout of a receive, seconds
+  /// @param conversation  number >= 0, the same on all ranks, that selects the tags
   explicit ControllerCommunicator(vtkMPIController* controller, double patience = SecondsToWait(),
     std::function<bool()> stopped = {}, int conversation = 0);
   /// Completes pending sends, unless an error is being thrown.
@@ -62,7 +65,7 @@ protected:
 #endif
 
 private:
-  /// A message that is still being sent.
+  /// A message whose nonblocking send is not complete.
   struct Underway
   {
     std::vector<char> bytes;
@@ -79,15 +82,15 @@ private:
 #endif
 
 #ifdef TYNDALL_HAS_DIY
-/// One parcel to each of some ranks and one from each of them, by DIY with one block a rank. Collective. Of any length:
-/// DIY cuts messages into parts of 2 GiB.
+/// Sends one parcel to each rank of `with` and receives one from each, by DIY with one block per rank. Collective.
+/// Parcels may have any length: DIY splits messages into parts of 2 GiB.
 ///
-/// DIY has no timeout, so ranks agree beforehand that none fails (Communicator::Exchange). A rank that times out, or
-/// lacks memory for what it receives, ends its process, and MPI those of all ranks: none hangs.
-/// @param with  ranks that exchange with this one, which is not among them
-/// @param parcels  one for each of them
+/// DIY has no timeout, so ranks agree beforehand that none has failed (Communicator::Exchange). If a rank times out, or
+/// lacks memory for what it receives, it ends its process and MPI then ends all ranks, so that none waits forever.
+/// @param with      ranks to exchange with, other than this one
+/// @param parcels   one for each rank of `with`
 /// @param patience  timeout, seconds
-/// @return by the ranks of `with`
+/// @return the received parcels, in the order of `with`
 std::vector<std::vector<char>> ExchangeByDIY(
   vtkMPIController* controller, const std::vector<int>& with, std::vector<std::vector<char>> parcels, double patience);
 #endif

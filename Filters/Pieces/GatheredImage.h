@@ -19,15 +19,15 @@ class PieceLayout;
 class StreamedMembers;
 struct PieceValues;
 
-/// An image in pieces on several ranks, gathered on the first rank or on each: one array at a time, so that only one is
-/// in memory twice.
+/// Gathers an image that is distributed in pieces, on the first rank or on every rank. Arrays are gathered one at a
+/// time, so that only one of them is in memory twice.
 ///
-/// Pieces may overlap and may have ghost cells (vtkGhostType): PieceLayout chooses the piece that a cell or point is
-/// taken from; the values that other pieces own there must be the same. Ranks without cells take no part. Field data
-/// are those of the first piece; the phase function in them must be the same on all. On one rank nothing is copied.
+/// Pieces may overlap and may have ghost cells (vtkGhostType). PieceLayout chooses the piece from which a cell or point
+/// is taken; values owned by several pieces must be equal. Ranks without cells are ignored. Field data are taken from
+/// the first piece; the phase function in them must be the same on all pieces. With one rank nothing is copied.
 ///
-/// Construction and access to the arrays, in the same order, are collective; an error on one rank is InvalidInput on
-/// all.
+/// The constructor and the access to arrays are collective, with the arrays in the same order on all ranks; an error on
+/// one rank throws InvalidInput on all.
 class GatheredImage
 {
 public:
@@ -41,8 +41,8 @@ public:
 
   /// @param controller  null: there is one rank
   /// @param piece       may be null or without cells
-  /// @param cells, points  its arrays, each with a value for each cell or point, in any order
-  /// @param refusal     beginning of messages, e.g. "The image is not written"
+  /// @param cells, points  arrays of the piece, one tuple for each cell or point, in any order
+  /// @param refusal     beginning of error messages, e.g. "The image is not written"
   /// @throws InvalidInput if pieces leave a gap, lie on different grids or have different arrays
   GatheredImage(vtkMultiProcessController* controller, vtkImageData* piece, Arrays cells, Arrays points, On where,
     const std::string& refusal);
@@ -52,15 +52,16 @@ public:
   int NumberOfCellArrays() const { return static_cast<int>(this->Own[Cells].size()); }
   int NumberOfPointArrays() const { return static_cast<int>(this->Own[Points].size()); }
 
-  /// Extent, place and field data of the whole image, without arrays. Null if no piece has cells, and on ranks on which
-  /// the image is not gathered.
+  /// Extent, geometry and field data of the complete image, without arrays. Null if no piece has cells, and on ranks on
+  /// which the image is not gathered.
   vtkImageData* Frame() const { return this->Whole; }
 
-  /// A flag for each cell, or point, that is hidden by vtkGhostType; null: none is, or it is not gathered here.
+  /// A flag for each cell, or point: whether vtkGhostType hides it. Null if none is hidden, or the image is not
+  /// gathered here.
   const std::vector<unsigned char>* HiddenCells() const { return this->HiddenOf(Cells); }
   const std::vector<unsigned char>* HiddenPoints() const { return this->HiddenOf(Points); }
 
-  /// The whole array; null on ranks on which the image is not gathered.
+  /// The gathered array; null on ranks on which the image is not gathered.
   vtkSmartPointer<vtkDataArray> CellArray(int index) { return this->Array(Cells, index); }
   vtkSmartPointer<vtkDataArray> PointArray(int index) { return this->Array(Points, index); }
 
@@ -118,10 +119,10 @@ private:
   On Where;
   std::string Refusal;
   int Rank = 0, Ranks = 1;
-  std::array<Arrays, Kinds> Own; ///< of this rank's piece, or null
+  std::array<Arrays, Kinds> Own; ///< arrays of this rank's piece; null if it has none
   vtkSmartPointer<vtkImageData> Whole;
   std::vector<Piece> Pieces;
-  std::array<std::unique_ptr<PieceLayout>, Kinds> Layouts; ///< where the image is gathered
+  std::array<std::unique_ptr<PieceLayout>, Kinds> Layouts; ///< on ranks that gather the image
   std::array<std::vector<unsigned char>, Kinds> Hidden;
 };
 }

@@ -20,50 +20,51 @@ class vtkMultiProcessController;
 
 namespace tyndall
 {
-/// The subdomains that ranks have of an image, for filters that work on pieces of it; or all of it on one rank.
+/// The subdomains of an image that is distributed among ranks; or the complete image as one subdomain on one rank.
 ///
-/// Each rank has a piece in which the cells of its neighbours are flagged as duplicates (vtkGhostType). If the source
-/// knows no pieces and gives all of the image to each rank, a rank's subdomain is what it is asked for.
+/// Each rank has a piece in which ghost cells, owned by its neighbours, are flagged as duplicates (vtkGhostType). If
+/// the source does not know about pieces and gives every rank the complete image, a rank's subdomain is the piece of
+/// the output that is requested from it.
 class PieceBlocks
 {
 public:
-  /// Serial: the subdomain is all of the image, duplicates as well. Its grid is not checked (GridOf).
+  /// Serial: the subdomain is the complete image, duplicates included. Its grid is not checked (GridOf).
   explicit PieceBlocks(vtkImageData* whole);
   /// Collective.
-  /// @param asked  the output that is made; null: none is, and subdomains are the pieces
-  /// @param given  null or without cells: this rank has no voxels
+  /// @param asked  information of the output that is made; null: there is none, and subdomains are the pieces as given
+  /// @param given  this rank's piece; null or without cells: this rank has no voxels
   PieceBlocks(Communicator& communicator, vtkInformation* asked, vtkImageData* given);
 
-  /// Whether the subdomains belong to one grid and hold each of its voxels once. The same on all ranks; if not, nothing
-  /// else may be called.
+  /// Whether the subdomains lie on one grid and contain each of its voxels exactly once. The same on all ranks; if
+  /// false, no other member may be called.
   bool MakeUpTheWhole() const { return this->Tiled; }
-  /// Made of pieces; if not, the domain is serial.
+  /// Whether the domain is decomposed into pieces; otherwise it is serial.
   bool IsDecomposed() const { return this->Decomposed; }
 
   const Domain& GetDomain() const { return *this->OfRanks; }
   const BlockPartition& Partition() const { return this->OfRanks->Partition(); }
   const VoxelBox& Own() const { return this->OfRanks->Own(); }
   bool HasOwn() const { return this->Own().VoxelCount() > 0; }
-  /// The voxels of this rank's output: its subdomain and the ghost cells that are asked for.
+  /// The voxels of this rank's output: its subdomain and the requested ghost cells.
   const VoxelBox& Held() const { return this->OfOutputs[static_cast<std::size_t>(this->OfRanks->Rank())]; }
   const std::vector<VoxelBox>& HeldByRanks() const { return this->OfOutputs; }
 
   /// Whether an image contains this rank's subdomain.
   bool HasOwnOf(vtkImageData* image) const;
 
-  /// The part of an image that is this rank's subdomain, with its arrays; the image itself if that is all of it, or not
-  /// decomposed. Only if the rank has voxels.
+  /// The part of an image that is this rank's subdomain, with its arrays. Returns the image itself if it is the
+  /// subdomain, or if the domain is not decomposed. Only for ranks that have voxels.
   vtkSmartPointer<vtkImageData> OwnImage(vtkImageData* given) const;
 
-  /// Values of the subdomain's voxels, out of those of all voxels of an image.
+  /// Selects the values of the subdomain's voxels from the values of all voxels of an image.
   std::vector<float> OwnOf(vtkImageData* given, std::vector<float>&& values) const;
 
-  /// Crops an output that has the arrays of the given image to Held().
+  /// Crops an output, whose arrays cover the given image, to Held().
   void KeepHeld(vtkImageData* output) const;
 
-  /// Extends values of Own() to Held(), from the ranks that own the ghost cells; no values stay none if no rank has
-  /// any. Collective.
-  /// @param components  of a voxel, the same on all ranks
+  /// Extends values of the voxels Own() to the voxels Held(): ghost values come from the ranks that own these cells.
+  /// Values stay empty if they are empty on all ranks. Collective.
+  /// @param components  values per voxel, the same on all ranks
   void SpreadToHeld(Communicator& communicator, std::vector<float>& values, int components) const;
 
 private:
@@ -71,32 +72,33 @@ private:
 
   std::shared_ptr<Domain> OfRanks;
   std::vector<VoxelBox> OfOutputs; ///< by rank
-  std::array<int, 3> Base = {};    ///< first voxel of the grid, as extents count
+  std::array<int, 3> Base = {};    ///< index of the grid's first voxel in terms of VTK extents
   bool Tiled = false, GivenAll = false, Decomposed = false;
 };
 
-/// Subdomains on which ranks have agreed to work.
+/// Subdomains on which all ranks have agreed to work.
 struct AgreedBlocks
 {
   std::unique_ptr<Communicator> communicator;
   std::unique_ptr<PieceBlocks> pieces;
 };
 
-/// Collective.
+/// Decides whether to work on subdomains. Collective.
 /// @param ranks   null: this process is alone
-/// @param wanted  whether this rank would work on its piece; one is enough
-/// @return nothing, on all ranks, if none would, or if pieces do not make up one grid
+/// @param wanted  whether this rank would work on its piece; one such rank suffices
+/// @return nothing, on all ranks, if no rank wants to, or if the pieces do not make up one grid
 std::optional<AgreedBlocks> AgreeOnBlocks(
   vtkMultiProcessController* ranks, vtkAlgorithm* filter, bool wanted, vtkInformation* asked, vtkImageData* given);
 
-/// Whether an image has enough voxels to be worth decomposing: more than 64^3, or than the variable
-/// TYNDALL_PIECES_FROM; below that communication costs more than each rank's solve of all of it. True on a rank whose
-/// source announces no voxels, which leaves the decision to the other ranks.
+/// Whether an image is large enough to decompose: more than 64^3 voxels, or more than the environment variable
+/// TYNDALL_PIECES_FROM says. Below that, communication costs more than solving the complete image on each rank. True on
+/// a rank whose source announces no voxels, which leaves the decision to the other ranks.
 bool IsWorthPieces(vtkInformationVector* image);
 
-/// In RequestUpdateExtent or RequestData: whether each rank asks for its piece, and copies of all of the image for each
-/// rank of this machine do not fit its available memory (AvailableMemory.h). Ranks may differ.
-/// @param bytesOfVoxel  that a rank needs to work on all of it
+/// In RequestUpdateExtent or RequestData: whether each rank requests its own piece, and one copy of the complete image
+/// for each rank of this machine does not fit its available memory (AvailableMemory.h). The result may differ between
+/// ranks.
+/// @param bytesOfVoxel  memory that a rank needs per voxel to work on the complete image
 bool NeedsPieces(
   vtkInformation* request, vtkInformationVector* image, vtkInformationVector* outputs, double bytesOfVoxel);
 }

@@ -14,35 +14,36 @@ class vtkAlgorithm;
 class vtkInformation;
 class vtkInformationVector;
 
-/// The ranks of MPI that run a filter together, each for its piece of the output.
+/// MPI ranks that run a filter together, each for its piece of the output.
 ///
-/// This is so where ParaView distributes data (pvbatch --symmetric, pvserver), and in VTK programs whose ranks each ask
-/// for one of as many pieces as there are ranks. They then agree by collective operations of VTK's global controller,
-/// which every rank reaches even if its own part of the work failed. If fewer pieces are asked for, as by one rank that
-/// updates alone, there is no communication and nobody waits.
+/// This is the case if ParaView distributes data (pvbatch --symmetric, pvserver), and in VTK programs in which the
+/// number of requested pieces equals the number of ranks. The ranks then agree by collective operations of VTK's global
+/// controller, which every rank reaches even if its own part of the work failed. If fewer pieces are requested, as by
+/// one rank that updates alone, ranks neither communicate nor wait.
 namespace tyndall
 {
-/// In RequestUpdateExtent: tells filters upstream of a port whether all ranks ask, though each for the whole.
+/// In RequestUpdateExtent: informs filters upstream of a port whether all ranks make this request together, even though
+/// each requests the complete input.
 void AskTogether(vtkInformation* request, vtkInformationVector* outputs, vtkInformationVector* inputs);
 
 /// In RequestData.
 /// @return the controller of the ranks that run the filter together; null: this process runs it alone
 vtkMultiProcessController* RanksTogether(vtkInformation* request, vtkInformationVector* outputs);
 
-/// In RequestUpdateExtent or RequestData: whether as many pieces are asked for as there are ranks.
+/// In RequestUpdateExtent or RequestData: whether the number of requested pieces equals the number of ranks.
 bool EachAsksForItsPiece(vtkInformation* request, vtkInformationVector* outputs);
 
 /// Runs `act` on each rank. Collective.
 /// @param controller  null: there is one rank
-/// @throws on every rank what it threw on any: InvalidInput with the same message, which names the rank if it was not
-///   all of them. An abort (Aborted) and a failure upstream (InputFailed) are no errors of their own
+/// @throws on every rank what `act` threw on any rank: InvalidInput with the same message, which names the rank unless
+///   all ranks threw. An abort (Aborted) and a failure upstream (InputFailed) are not errors of this filter
 void OnAllRanks(vtkMultiProcessController* controller, const std::function<void()>& act);
 
-/// The same for long work that can be stopped: if it ends early on one rank, the filter's Monitor (MonitorOf) stops it
-/// on the other ranks. Calls may be nested.
+/// The same for long work that can be stopped: if the work ends early on one rank, the filter's Monitor (MonitorOf)
+/// stops it on the other ranks. Calls may be nested.
 void WorkOnAllRanks(vtkMultiProcessController* controller, vtkAlgorithm* filter, const std::function<void()>& work);
 
-/// Writes the members of a struct to a stream, or reads them: one function names them for both.
+/// Writes the members of a struct to a stream, or reads them. The struct lists its members once, for both directions.
 class StreamedMembers
 {
 public:
@@ -87,7 +88,7 @@ public:
       (*this)(value);
     }
   }
-  /// Any other struct has a member function Stream(StreamedMembers&).
+  /// Any other struct provides a member function Stream(StreamedMembers&).
   template <class Struct>
   void operator()(Struct& value)
   {
@@ -112,7 +113,7 @@ private:
   bool Reads;
 };
 
-/// A struct of each rank, on every rank. Collective.
+/// Gathers one struct from each rank on every rank, in the order of ranks. Collective.
 template <class Struct>
 std::vector<Struct> AllGather(vtkMultiProcessController* ranks, Struct own)
 {
@@ -128,18 +129,18 @@ std::vector<Struct> AllGather(vtkMultiProcessController* ranks, Struct own)
   return all;
 }
 
-/// Whether another rank has ended early, in a filter's WorkOnAllRanks.
+/// Whether the filter's work has ended early on another rank, within WorkOnAllRanks.
 bool IsStoppedByOthers(vtkAlgorithm* filter);
 
 /// A rank that did not reach the barrier.
 struct MissingRank
 {
-  int rank = -1;          ///< the first one; 0 on a rank that arrives after the others gave up; -1: none
-  bool elsewhere = false; ///< it reached another filter than the first rank
+  int rank = -1;          ///< the first such rank; 0 on a rank that arrives after the others gave up; -1: none
+  bool elsewhere = false; ///< that rank reached another filter than the first rank
 };
 
-/// A barrier with a timeout (SecondsToWait): a rank whose script does not update the filter, or whose pipeline stopped
-/// upstream, never arrives. Without MPI there is no barrier.
-/// @param filter  class of the filter that this rank has reached
+/// A barrier with a timeout (SecondsToWait). A rank never arrives if its script does not update the filter, or if its
+/// pipeline stopped upstream. Without MPI there is no barrier.
+/// @param filter  class name of the filter that this rank has reached
 MissingRank FindMissingRank(vtkMultiProcessController* ranks, const char* filter);
 }

@@ -15,11 +15,12 @@ class vtkInformationKey;
 class vtkInformationVector;
 class vtkUnsignedCharArray;
 
-/// Update extents of filters whose light crosses the boundaries between pieces: they ask for all of their inputs (if a
-/// source does not give it to each rank: WholeInputs.h), work on that, and keep the piece that is asked for.
+/// Update extents of filters in which light crosses the boundaries between pieces. Such a filter requests its complete
+/// inputs (WholeInputs.h gathers them if a source does not deliver everything to each rank), works on these, and keeps
+/// the requested piece of the output.
 namespace tyndall
 {
-/// A box of cells or of points, with its bounds; x fastest.
+/// A box of cells or of points with inclusive bounds; x varies fastest.
 struct ValueBox
 {
   std::array<int, 3> low = { 0, 0, 0 };
@@ -36,9 +37,9 @@ struct ValueBox
     return at[0] >= this->low[0] && at[0] <= this->high[0] && at[1] >= this->low[1] && at[1] <= this->high[1] &&
       at[2] >= this->low[2] && at[2] <= this->high[2];
   }
-  void Add(const ValueBox& other); ///< so that the other is in it, too
+  void Add(const ValueBox& other); ///< extends this box to contain `other`
 
-  /// Calls act with the index of each value and its place.
+  /// Calls act(index, position) for each value, x fastest.
   template <typename Do>
   void ForEach(const Do& act) const
   {
@@ -57,51 +58,52 @@ struct ValueBox
   }
 };
 
-/// The points of an extent.
+/// The box of an extent's points.
 ValueBox PointBoxOf(const std::array<int, 6>& extent);
-/// Its cells; a flat one has one layer of them.
+/// The box of an extent's cells; a flat extent has one layer of cells.
 ValueBox CellBoxOf(const std::array<int, 6>& extent);
 
-/// The least extent of the points of cells that are no duplicates, or of the points if these are flagged
-/// (vtkGhostType); inverted if there are none.
+/// The smallest extent that contains all cells that vtkGhostType does not flag as duplicates, or all such points if the
+/// flags belong to points. Inverted if there are none.
 std::array<int, 6> ExtentWithoutDuplicates(
   const std::array<int, 6>& extent, vtkUnsignedCharArray* flags, bool flagsPoints);
 
-/// Adds a flag to vtkGhostType of the values that are duplicates. Other flags stay, and so do the arrays of the input,
-/// which the image may share.
+/// Sets a flag in vtkGhostType for values that are duplicates. Other flags remain. The input's arrays, which the image
+/// may share, are not changed.
 void FlagDuplicates(vtkDataSetAttributes* attributes, const ValueBox& box, unsigned char flag,
   const std::function<bool(const std::array<int, 3>&)>& isDuplicate);
 
-/// In RequestUpdateExtent: asks the inputs of a port for all of their image, or all pieces of their polydata.
+/// In RequestUpdateExtent: requests the complete image, or all pieces of polydata, from the inputs of a port.
 /// @param request, outputs  those of RequestUpdateExtent
 void AskForAll(vtkInformation* request, vtkInformationVector* inputs, vtkInformationVector* outputs);
-/// The inputs of a port are asked for what is asked of the output, as the pipeline does.
+/// Requests from the inputs of a port what is requested from the output, as the pipeline does by default.
 void AskForSame(vtkInformation* request, vtkInformationVector* inputs, vtkInformationVector* outputs);
-/// AskForAll for all ports but one, for which it is AskForSame.
-/// @param ports  their number
-/// @param piece  that one; -1: none
-/// @param besides  further ones
+/// Calls AskForAll for all ports except one or a few, and AskForSame for these.
+/// @param ports    number of input ports
+/// @param piece    port for AskForSame; -1: none
+/// @param besides  further ports for AskForSame
 void AskForAllBut(int piece, vtkInformation* request, vtkInformationVector** inputs, int ports,
   vtkInformationVector* outputs, const std::vector<int>& besides = {});
 
-/// Asks for this rank's piece with one layer of ghost cells if ranks run the filter together; else AskForAll.
+/// Requests this rank's piece with one layer of ghost cells if ranks run the filter together; otherwise calls
+/// AskForAll.
 void AskForPiece(vtkInformation* request, vtkInformationVector* inputs, vtkInformationVector* outputs);
 
-/// In RequestData: the output port that asks.
+/// In RequestData: information of the output port from which the request came.
 vtkInformation* AskingPort(vtkInformation* request, vtkInformationVector* outputs);
 
-/// In RequestData: whether the first piece is asked for, which gets what is not divided. Taken from the port that asks;
-/// other ports may not know their piece yet.
+/// In RequestData: whether the first piece is requested, which receives data that cannot be divided. Determined from
+/// the port that the request came from; the requests of other ports may not be set yet.
 bool IsFirstPiece(vtkInformation* request, vtkInformationVector* outputs);
 
-/// In RequestData: records that ranks are asked for parts of an output that are not the extent translator's pieces, but
-/// those that the source of each rank announces.
-/// @param parts  an extent for each rank; none: they are pieces
-/// @param rank   this one
+/// In RequestData: records which part of an output each rank is asked for, if these are not the pieces of VTK's extent
+/// translator but those that each rank's source announces.
+/// @param parts  one extent for each rank; empty: the translator's pieces
+/// @param rank   this rank
 void NotePartsOfRanks(vtkInformation* information, const std::vector<std::array<int, 6>>& parts, int rank);
 
-/// The requested piece of an image's extent, with ghost cells and without; all of it if it is not divided. Empty if
-/// there are more pieces than cells.
+/// The requested piece of an image's extent, with and without ghost cells; the complete extent if it is not divided.
+/// Empty if there are more pieces than cells.
 struct AskedPiece
 {
   static constexpr std::array<int, 6> Nothing = { 0, -1, 0, -1, 0, -1 };
@@ -116,23 +118,23 @@ struct AskedPiece
 };
 AskedPiece AskedPieceOf(vtkInformation* information, const std::array<int, 6>& whole);
 
-/// A piece of an extent by VTK's translator; empty if there are more pieces than cells.
+/// A piece of an extent according to VTK's extent translator; empty if there are more pieces than cells.
 std::array<int, 6> PartOfExtent(const std::array<int, 6>& whole, int piece, int pieces, int ghostLevels = 0);
 
-/// Crops an image to a piece of it, and marks its ghost cells (vtkGhostType); empties it if the piece is empty.
+/// Crops an image to a piece and flags its ghost cells (vtkGhostType); makes it empty if the piece is empty.
 void KeepPiece(const AskedPiece& piece, vtkImageData* output);
 
-/// Whether one extent contains another; six numbers each.
+/// Whether the first extent contains the other one; six numbers each.
 bool Covers(const int* extent, const int* other);
 
 /// Whether the update extent of an output is all of it: the whole extent, or an earlier one of another time step. A
 /// consumer may not know the new one: VTK announces extents before it requests a time step.
 bool AsksForAll(vtkInformation* information);
-/// In RequestData; KeepWhatIsAskedFor does it.
+/// In RequestData: records the announced whole extent for AsksForAll. KeepWhatIsAskedFor calls it.
 void NoteExtentTold(vtkInformation* information);
 
-/// Restores an update request, which VTK resets when a source announces a new extent. A request for all of the old
-/// extent becomes one for all of the new.
+/// Saves and restores an update request, which VTK resets if a source announces a new extent. A request for the
+/// complete old extent becomes a request for the complete new one.
 class UpdateRequest
 {
 public:
@@ -140,25 +142,25 @@ public:
   void Restore() const;
 
 private:
-  static std::array<vtkInformationKey*, 4> Keys(); ///< the extent last
+  static std::array<vtkInformationKey*, 4> Keys(); ///< the extent is the last one
 
   vtkInformation* Information;
   vtkNew<vtkInformation> Before;
   bool All;
 };
 
-/// In RequestData: the extent that KeepWhatIsAskedFor leaves of an image; inverted if it is empty.
+/// In RequestData: the extent to which KeepWhatIsAskedFor will crop an image; inverted if it is empty.
 std::array<int, 6> ExtentAskedFor(vtkInformation* information, const std::array<int, 6>& image);
 
-/// In RequestData: crops the output to the extent, or the piece of it, that was asked for. Ghost cells are marked
-/// (vtkGhostType), so that sums over pieces count them once.
+/// In RequestData: crops the output to the requested extent or piece. Ghost cells are flagged (vtkGhostType), so that
+/// sums over pieces count each cell once.
 void KeepWhatIsAskedFor(vtkInformation* information, vtkImageData* output);
 
-/// In RequestData: announces the extent of an output that is not known before it is made. Otherwise the pipeline would
-/// run the filter again for what its guess has beyond it.
-/// @param asking  the port that asks: VTK assumes that all ports then have its piece
+/// In RequestData: announces the extent of an output that becomes known only when it is made. Otherwise the pipeline
+/// would run the filter again for the part of its guess that lies beyond this extent.
+/// @param asking  the port that the request came from: VTK assumes that all ports then have its piece
 void TellExtent(vtkInformation* asking, vtkInformation* information, const int extent[6]);
 
-/// The same for an image, which is then cropped to the piece that was asked for.
+/// The same for an image, which is then cropped to the requested piece.
 void TellExtentAndKeepWhatIsAskedFor(vtkInformation* asking, vtkInformation* information, vtkImageData* output);
 }
