@@ -6,37 +6,38 @@
 
 namespace tyndall
 {
-/// Whether what has that name, if anything, is not a pipe, a socket or a device: who opens these may wait for ever.
+/// Whether a path is not a pipe, a socket or a device, which a process may wait for forever after opening. True if
+/// nothing exists at the path.
 bool HasAnEnd(const std::string& path);
 
-/// Bytes of a file that is to be read.
-/// @throws InvalidInput where it is not there, may not be read, is a folder, or has no end, as a pipe
+/// Size of a file to be read, bytes.
+/// @throws InvalidInput if it does not exist, may not be read, is a folder, or has no end, such as a pipe
 std::uint64_t ReadableSize(const std::string& path);
 
-/// A file that takes the place of another when it is whole, or never.
+/// A file that replaces another one atomically: completely, or not at all.
 ///
-/// Symbolic links are followed, so that what they lead to is replaced. Mode and, where the system allows it, owner of a
-/// file that was there are kept; a new file has mode 0666 but what umask forbids. Where the file system knows files
-/// without a name (O_TMPFILE), even a killed process leaves nothing; else it may leave `.tyndall-<process>-<number>`, a
-/// name that is short however long the file's own is. A file that was there under several names (hard links) keeps what
-/// it was under the others.
+/// Symbolic links are followed: their target is replaced. An existing file's mode and, if the system allows it, its
+/// owner are kept; a new file has mode 0666 restricted by umask. If the file system supports unnamed files (O_TMPFILE),
+/// even a killed process leaves nothing behind; otherwise it may leave `.tyndall-<process>-<number>`, a short name
+/// however long that of the target is. If an existing file has several names (hard links), the other names keep its old
+/// content.
 ///
-/// All of it throws InvalidInput that names the file and the cause.
+/// Every member function throws InvalidInput that names the file and the cause.
 class WholeFile
 {
 public:
-  /// Begins an empty file beside the place.
-  /// @throws InvalidInput where the place has a file that may not be written, or no file but something else
+  /// Creates an empty file in the folder of the target.
+  /// @throws InvalidInput if the target exists and may not be written, or is not a regular file
   explicit WholeFile(const std::string& path);
-  ~WholeFile(); ///< forgets what was written, unless it is in its place
+  ~WholeFile(); ///< deletes what was written, unless Finish has put it in place
 
   WholeFile(const WholeFile&) = delete;
   void operator=(const WholeFile&) = delete;
 
-  /// Where to write, and to read what was written: another path to the file.
+  /// Path to the unfinished file, for writing it and reading it back.
   const std::string& WorkPath() const { return this->Work; }
 
-  /// Puts the file in its place.
+  /// Moves the file to its target.
   void Finish();
 
   [[noreturn]] void Fail(const std::string& why) const;
@@ -48,13 +49,13 @@ private:
   std::string NextName();
   void KeepOwnerAndMode();
 
-  std::string Path;   ///< as it was asked for
-  std::string Target; ///< where it leads
-  std::string Folder; ///< of Target, with a slash
+  std::string Path;   ///< the path as requested
+  std::string Target; ///< the path after following symbolic links
+  std::string Folder; ///< folder of Target, with a trailing slash
   struct stat Before = {};
   bool WasThere = false;
   int File = -1;
   std::string Work;
-  std::string Name; ///< beside Target, to remove; empty: it has none
+  std::string Name; ///< of the temporary file beside Target, to be removed; empty: unnamed
 };
 }

@@ -6,7 +6,7 @@
 /// Reads pictures of radiance that may be truncated or corrupt.
 namespace tyndall
 {
-/// A picture, rows from the bottom up.
+/// A picture, rows from bottom to top.
 struct RadiancePicture
 {
   int Width = 0;
@@ -19,17 +19,18 @@ struct PictureSize
   int Width, Height;
 };
 
-/// Radiance's RGBE and XYZE pictures (.hdr, .pic): every order of axes, flat, old and new run lengths; EXPOSURE lines
-/// are divided out, XYZE becomes linear sRGB. (vtkHDRReader trusts the file: a run may be longer than the row it is
-/// written to, a size that does not parse is used as it is, and a short file leaves its last rows unset.)
-/// @throws InvalidInput naming the file, what is wrong and where
+/// Radiance pictures, RGBE and XYZE (.hdr, .pic): all orders of axes; flat, old and new run-length encodings. Values
+/// are divided by the EXPOSURE lines, XYZE is converted to linear sRGB. (vtkHDRReader trusts the file: a run may be
+/// longer than its row, a size that does not parse is used as it is, and the last rows of a short file are
+/// uninitialised.)
+/// @throws InvalidInput naming the file, the error and its position
 PictureSize SizeOfHdr(const std::string& path);
 RadiancePicture ReadHdr(const std::string& path);
 
-/// OpenEXR (.exr), half, float or integer: R G B at the root or in the first layer that has them; or Y alone (grey); or
-/// Y, RY, BY. Scan lines or tiles (their finest level), the first part of several. The picture is the display window;
-/// where the data window does not reach it is black.
-/// @throws InvalidInput naming the file, what is wrong and where
+/// OpenEXR pictures (.exr) of half, float or integer: R G B at the root or in the first layer that has them; or Y alone
+/// (grey); or Y, RY, BY. Scan lines or tiles (finest level); the first of several parts. The picture is the display
+/// window, black outside of the data window.
+/// @throws InvalidInput naming the file, the error and its position
 PictureSize SizeOfExr(const std::string& path);
 RadiancePicture ReadExr(const std::string& path);
 }

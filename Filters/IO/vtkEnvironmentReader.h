@@ -7,7 +7,7 @@
 
 /**
  * @class vtkEnvironmentReader
- * @brief reads a picture of the light from all around: OpenEXR (.exr) or Radiance (.hdr)
+ * @brief reads an environment (light from all directions) from a picture: OpenEXR (.exr) or Radiance (.hdr)
  *
  * Output: vtkImageData of width x height x 1 points, one per pixel, with the point array `radiance` (float, RGB,
  * W / (length^2 sr)), in latitude-longitude layout with z up: the centre of pixel (i, j) looks along azimuth
@@ -15,13 +15,14 @@
  * +z, that is along (sin theta cos phi, sin theta sin phi, cos theta). Row 0 is the picture's bottom row, straight
  * down.
  *
- * Files: OpenEXR with R, G, B (at the root or in a layer), Y, or Y, RY, BY; scan lines or tiles; the display window is
- * the picture, black where the data window does not reach. Radiance with RGBE or XYZE pixels in any order of axes; the
- * header's exposure is divided out. Primaries are taken as they are.
+ * Files: OpenEXR with R, G, B (at the root or in a layer), Y, or Y, RY, BY; scan lines or tiles; the picture is the
+ * display window, black outside of the data window. Radiance with RGBE or XYZE pixels in any order of axes; values are
+ * divided by the header's exposure. Colours are not converted between primaries.
  *
- * Errors, each one message, with empty output: a file that is not there, truncated or corrupt, of another kind, a cube
- * map, a deep picture; a pixel that is not finite (named). Negative values, which filters leave in photographs, become
- * 0, with a warning that counts them. Formats without check sums do not tell a changed pixel.
+ * Errors, each with one message and an empty output: a file that does not exist, is truncated, corrupt or of another
+ * type, a cube map, a deep picture; a pixel that is not finite (named). Negative values, which image filters leave in
+ * photographs, become 0, with a warning that counts them. A changed pixel is not detected in formats without check
+ * sums.
  *
  * @sa vtkLightPropagationMaps vtkMediumRayCaster
  */
@@ -33,7 +34,7 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
-  /// The .exr or .hdr file; which it is says its content.
+  /// The .exr or .hdr file; its content, not its name, determines the format.
   vtkSetFilePathMacro(FileName);
   vtkGetFilePathMacro(FileName);
   ///@}
@@ -42,19 +43,19 @@ public:
   virtual int CanReadFile(const char* fileName);
 
   ///@{
-  /// Stops by which the light is brightened: radiance times 2^Exposure. Default 0, valid [-64, 64].
+  /// Exposure in stops: radiance is multiplied by 2^Exposure. Default 0, valid [-64, 64].
   tyndallRangeMacro(Exposure, double, -64.0, 64.0);
   ///@}
 
   ///@{
-  /// Pixels whose brightest channel is above this are scaled down to it (the hue stays), after Exposure,
-  /// W / (length^2 sr). Tames a sun that is a few pixels. Default 0: no limit. Valid [0, infinity).
+  /// Upper limit of the brightest channel of a pixel, applied after Exposure, W / (length^2 sr): brighter pixels are
+  /// scaled down to it, which keeps their hue. Limits a sun of a few pixels. Default 0: no limit. Valid [0, infinity).
   tyndallRangeMacro(MaximumRadiance, double, 0.0, tyndall::AnyHigh);
   ///@}
 
   ///@{
-  /// Most pixels around. A wider picture is averaged over the solid angle of the wider pixels, so that the power from
-  /// every part of the sky stays. Default 0: no limit.
+  /// Maximum width in pixels. A wider picture is averaged over the solid angle of the larger pixels, which conserves
+  /// the power from each part of the sky. Default 0: no limit.
   tyndallRangeMacro(Width, int, 0, VTK_INT_MAX);
   ///@}
 

@@ -24,35 +24,34 @@ class vtkDataArraySelection;
  * | bool, mask                   | uint8, 0 or 1             |
  * | vec3i, vec3s, vec3d          | int, float, double, 3 each|
  *
- * A cell is centred on its voxel's index: index i of OpenVDB is the cell that covers [i - 1/2, i + 1/2] in index space,
- * and cell i of the image, whose extent starts at the first active voxel and so need not start at 0. Units: spacing
- * and origin are the grid's world units. A rotated grid becomes an image with a direction matrix, or
- * is resampled.
+ * OpenVDB's voxel index i becomes cell i of the image, which covers [i - 1/2, i + 1/2] in index space. The image's
+ * extent starts at the first active voxel and thus need not start at 0. Spacing and origin are in the grid's world
+ * units. A rotated grid becomes an image with a direction matrix, or is resampled.
  *
- * The extent is the box of the active voxels of the chosen grids, or the extent that vtkVDBWriter noted. A cell that is
- * not active has the value that the grid gives it: the background, or inside a level set its negative.
- * Chosen grids must share one transform: at first those that share that of the first grid that needs no Resample, or
- * where all need it, of the first.
+ * The extent is the bounding box of the active voxels of the chosen grids, or the extent that vtkVDBWriter recorded. An
+ * inactive cell has the value that the grid defines there: the background, or its negative inside a level set. All
+ * chosen grids must share one transform. By default those grids are chosen that share the transform of the first grid
+ * that needs no Resample, or if all need it, of the first grid.
  *
- * Field data, from which vtkVDBWriter restores them:
+ * Field data, from which vtkVDBWriter restores the metadata:
  * `vdb::<key>` the file's metadata; `vdb:<grid>:<key>` a grid's (`class`, `name`, `creator`, ...);
  * `vdb:<grid>:type` the grid's type as in the table; `vdb:<grid>:background` its background value.
- * `g`, `phase_function` and what else says how a medium scatters are the file's metadata `medium_g`, ... Metadata of
- * types that OpenVDB does not know are left out.
+ * `g`, `phase_function` and other parameters of a medium's scattering are stored as the file's metadata `medium_g`, ...
+ * Metadata of types unknown to OpenVDB are skipped.
  *
- * `active_part` the part of the whole image's voxels that are active, of the grid that has most: by it vtkPhotonMarcher
- * knows that a medium is sparse. No mask of what is active goes with the image: it would be wrong after a filter that
- * changes an array, and solvers find what is empty from the values in one pass.
+ * `active_part`: the fraction of the image's voxels that are active, in the grid that has most; it tells
+ * vtkPhotonMarcher that a medium is sparse. The image has no mask of active voxels: the mask would be wrong after a
+ * filter that changes an array, and solvers find empty voxels from the values in one pass.
  *
- * Files of a series may have other extents, places and grids than each other: filters after the reader are told of the
- * extent of the time that is asked for. A grid that is switched on and is not in one of the files is left out there.
+ * The files of a series may differ in extent, position and grids: the reader announces the extent of the requested time
+ * step to filters downstream. A selected grid that is missing from one of the files is skipped for that file.
  *
- * The file is listed without loading a voxel value, and leaves are loaded where the requested extent needs them only.
+ * The grids are listed without loading voxel values, and leaves are loaded only if the requested extent needs them.
  *
- * Errors, each one message, with empty output: a file that is not there, truncated or corrupt (see VDBFile.h for what
- * is noticed), a grid that is not there, a transform that no image has, chosen grids on different transforms, more
- * memory than MaximumMemory; all of them before the memory is taken. Versions 222 to 224 of the format are read
- * (OpenVDB 3 to 10).
+ * Errors, each with one message and an empty output: a file that does not exist, is truncated or corrupt (VDBFile.h
+ * says what is detected), a grid that does not exist, a transform that an image cannot have, chosen grids with
+ * different transforms, more memory than MaximumMemory. All are detected before the memory is allocated. Versions 222
+ * to 224 of the format are supported (OpenVDB 3 to 10).
  *
  * @sa vtkVDBWriter
  */
@@ -64,23 +63,23 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
-  /// The .vdb file, or those of a series: the first at time 0, the next at time 1, and so on. Each time's image is what
-  /// its file alone gives, with an extent of its own; a file without active voxels is an empty image.
-  void SetFileName(VTK_FILEPATH const char* fileName); ///< instead of all others; null: none
+  /// The .vdb file, or the files of a series: the first at time 0, the next at time 1, and so on. Each time step is the
+  /// image of its file alone, with its own extent; a file without active voxels is an empty image.
+  void SetFileName(VTK_FILEPATH const char* fileName); ///< replaces all files; null: none
   void AddFileName(VTK_FILEPATH const char* fileName);
   void RemoveAllFileNames();
   int GetNumberOfFileNames() const;
   const char* GetFileName(int index = 0); ///< null: there is none
   ///@}
 
-  /// The file that was looked at last.
+  /// The file that was read or listed last.
   const char* GetCurrentFileName();
 
-  /// Whether the file begins as an OpenVDB file does.
+  /// Whether the file starts like an OpenVDB file.
   virtual int CanReadFile(const char* fileName);
 
   ///@{
-  /// The grids of the file, known after UpdateInformation, and which of them to read. A name that is switched on and is
+  /// The grids of the file, known after UpdateInformation, and the selection of grids to read. A selected name that is
   /// not in the file is an error.
   int GetNumberOfGridArrays();
   const char* GetGridArrayName(int index);
@@ -89,39 +88,40 @@ public:
   vtkDataArraySelection* GetGridSelection();
   ///@}
 
-  /// Reads this grid and no other.
+  /// Selects this grid only.
   void SetGridName(const char* name);
 
-  /// The grids, a line each: name, type, active voxels and their box, memory. After UpdateInformation.
+  /// A list of the grids, one per line: name, type, number of active voxels and their bounding box, memory. Available
+  /// after UpdateInformation.
   const char* GetGridSummary();
 
   ///@{
-  /// Whether level sets (grids of real numbers whose class says so, or whose class is not known, with a positive
-  /// background and values below 0) become fog: 1 inside of the surface, less in proportion within a voxel of it, 0
-  /// outside. Default off: the distances, as they are.
+  /// Whether level sets are converted to fog: 1 inside the surface, decreasing linearly within one voxel of it, 0
+  /// outside. A level set is a grid of real numbers whose class says so, or whose class is unknown, with a positive
+  /// background and values below 0. Default off: values are signed distances.
   tyndallFlagMacro(LevelSetsAsFog);
   ///@}
 
   ///@{
-  /// Whether grids whose axes go aslant to those of the world, or are not at right angles to each other, are resampled
-  /// to an image along the world's axes, which holds their voxels: with the shortest edge of a voxel, linear between
-  /// the middles of voxels (integers: the nearest). Default off: aslant ones have a direction matrix, and are solved in
-  /// their own axes; those that shear are an error.
+  /// Whether grids with oblique axes, relative to the world axes or to each other, are resampled to an image along the
+  /// world axes that contains their voxels. Its spacing is the shortest edge of a voxel; values are interpolated
+  /// linearly between voxel centres (integers: nearest voxel). Default off: a rotated grid becomes an image with a
+  /// direction matrix, which solvers handle in its own axes; a sheared grid is an error.
   tyndallFlagMacro(Resample);
   ///@}
 
   ///@{
-  /// Most memory that the image and the tree it is read from may take, MiB. Default 0: half of the machine's memory,
-  /// 90% of what is available, and, unless vtkVDBWriter noted that the file was an image of that size, 1 GiB or 1000
-  /// times the file's length, whichever is more: one changed bit of a small file can put a voxel thousands of voxels
-  /// away.
+  /// Upper limit of the memory for the image and the tree from which it is read, MiB. Default 0: half of the machine's
+  /// memory, 90% of the available memory, and, unless vtkVDBWriter recorded an image of that size in the file, 1 GiB or
+  /// 1000 times the file's length, whichever is more. The limit protects against corrupt files: one changed bit of a
+  /// small file can move a voxel by thousands of voxels.
   tyndallRangeMacro(MaximumMemory, vtkIdType, 0, VTK_ID_MAX >> 20);
   ///@}
 
-  /// Stays with the reader's own, which a series needs: ParaView gives every source another one.
+  /// Ignores other executives: a series needs the reader's own, but ParaView assigns a new one to every source.
   void SetExecutive(vtkExecutive* executive) override;
 
-  /// Later than the selection of grids, too.
+  /// Includes the modification time of the grid selection.
   vtkMTimeType GetMTime() override;
 
 protected:

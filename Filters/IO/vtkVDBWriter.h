@@ -19,38 +19,39 @@ class vtkMultiProcessController;
  * | the same with 3 components             | vec3s, vec3d, vec3i                                       |
  * | other numbers of components, 3 x int64 | a grid for each component, `<array>_0`, `<array>_1`, ...  |
  *
- * Of an image of points alone each is a voxel (SetPointData). Beside cell arrays those of points are averaged to cells,
- * where there is no cell array of their name.
+ * If an image has point arrays only, each point becomes a voxel (SetPointData). If it has cell arrays as well, point
+ * arrays are averaged to cells, unless a cell array has the same name.
  *
- * Cells that equal the background become inactive voxels and take no room; every other one is active. The image's
- * extent, spacing, origin and direction become the grid's index space and transform (see vtkVDBReader: a voxel's index
- * is the cell's), and what a grid cannot say becomes its metadata image_extent_min, image_extent_max, image_cells,
- * image_origin and image_spacing, so that vtkVDBReader gives the image back bit for bit: values (NaN, infinity and -0
- * too), extent, origin, spacing. Where a spacing is below 0 it is written above 0, and the direction of its axis the
- * other way: the same cells at the same places. Of a direction that is not along the axes the last bit may change, and
- * SaveAsHalf and Tolerance change values.
+ * Cells that equal the background become inactive voxels, which take no space; all other cells become active voxels.
+ * The image's extent, spacing, origin and direction become the grid's index space and transform (the index of a voxel
+ * is that of its cell, see vtkVDBReader). What a transform cannot express is stored as metadata image_extent_min,
+ * image_extent_max, image_cells, image_origin and image_spacing, from which vtkVDBReader restores the image bit for
+ * bit: values (including NaN, infinity and -0), extent, origin, spacing. A negative spacing is written as a positive
+ * one with the opposite direction of its axis, so cells keep their positions. For a direction matrix that is not along
+ * the axes the last bit may change; SaveAsHalf and Tolerance change values.
  *
- * Field data `vdb::<key>`, `vdb:<array>:<key>`, `vdb:<array>:type` and `vdb:<array>:background`, as vtkVDBReader makes
- * them, become metadata, type (bool and mask from uint8) and background; field data `g`, `phase_function`,
- * `phase_second_g`, `phase_first_part`, `phase_cosine` and `phase_value`, which belong to a medium, become the file's
- * metadata of the same name after `medium_`, and come back. Other field data are left out. Without them the background
- * is Background, and a grid of one real component with background 0 is a fog volume, any other of unknown class.
+ * Field data `vdb::<key>`, `vdb:<array>:<key>`, `vdb:<array>:type` and `vdb:<array>:background`, as written by
+ * vtkVDBReader, become metadata, type (bool and mask from uint8) and background. Field data of a medium, `g`,
+ * `phase_function`, `phase_second_g`, `phase_first_part`, `phase_cosine` and `phase_value`, become metadata of the file
+ * with the prefix `medium_`, and vtkVDBReader restores them. Other field data are not written. Without field data the
+ * background is Background; a grid of one real component with background 0 has the class fog volume, any other grid the
+ * class unknown.
  *
- * Cells that vtkGhostType hides are no part of the image: their voxels are inactive. vtkGhostType itself is not
- * written.
+ * Cells hidden by vtkGhostType become inactive voxels. vtkGhostType itself is not written.
  *
- * The file appears whole or not at all: it is written without a name where the file system can do that, else beside its
- * place, read and checked, then put in its place. Of a symbolic link the target is replaced; mode and, where the system
- * allows it, owner of a file that was there stay. Read-only files are not replaced. A hard link keeps the old file.
+ * The file is replaced completely or not at all: it is written without a name if the file system supports that,
+ * otherwise beside its target, then read back, checked, and moved to its target. If the target is a symbolic link, the
+ * file that it points to is replaced. An existing file keeps its mode and, if the system allows it, its owner.
+ * Read-only files are not replaced. Other hard links keep the old content.
  *
- * In parallel each rank's piece of the image is gathered on the first rank, array by array, so that one array and all
- * trees have to fit its memory. A cell that several ranks have is taken from the first that does not flag it as a
- * duplicate. Field data are those of the first rank that has cells.
+ * In parallel the pieces of the image are gathered on the first rank, one array at a time; its memory must hold one
+ * array and all trees. A cell that several ranks have is taken from the first rank that does not flag it as a
+ * duplicate. Field data are taken from the first rank that has cells.
  *
- * Errors, each one message (on every rank), and the file that was there stays: no file name, what is no image (blocks,
- * too: vtkResampleToImage makes one image of them), nothing to write, an unsigned 64-bit integer above 2^63 - 1, a
- * number that 16 bits do not hold where SaveAsHalf is on (names array, voxel, value), a file that cannot be written
- * (names the file and the cause), pieces that are not of one image.
+ * Errors, each with one message (on every rank), leave an existing file unchanged: no file name, an input that is not
+ * an image (composite data as well: vtkResampleToImage makes one image of them), nothing to write, an unsigned 64-bit
+ * integer above 2^63 - 1, a number that does not fit 16 bits if SaveAsHalf is on (names array, voxel, value), a file
+ * that cannot be written (names the file and the cause), pieces that do not belong to one image.
  *
  * @sa vtkVDBReader
  */
@@ -76,33 +77,34 @@ public:
   };
 
   ///@{
-  /// How blocks of values are compressed, without loss. Default BLOSC; where OpenVDB was built without it, ZIP. OpenVDB
-  /// does not apply ZIP to fog volumes and level sets.
+  /// Lossless compression of blocks of values. Default BLOSC, or ZIP if OpenVDB was built without Blosc. OpenVDB does
+  /// not apply ZIP to fog volumes and level sets.
   tyndallRangeMacro(Compression, int, NONE, BLOSC);
   ///@}
 
   ///@{
-  /// Value of voxels that take no room, in the unit of the array; every component of a vector. Default 0. Field data
-  /// `vdb:<array>:background` come first.
+  /// Value of inactive voxels, in the unit of the array; the same for every component of a vector. Default 0. Field
+  /// data `vdb:<array>:background` take precedence.
   tyndallRangeMacro(Background, double, tyndall::AnyLow, tyndall::AnyHigh);
   ///@}
 
   ///@{
-  /// Values this near to the background become background, and blocks of 8^3 voxels that are this near to their first
-  /// one become one value; in the unit of the array. Default 0: nothing is changed. Valid [0, infinity).
+  /// Values that differ from the background by no more than this become background, and a block of 8^3 voxels whose
+  /// values differ from its first value by no more than this becomes one value; in the unit of the array. Default 0: no
+  /// value changes. Valid [0, infinity).
   tyndallRangeMacro(Tolerance, double, 0.0, tyndall::AnyHigh);
   ///@}
 
   ///@{
-  /// Stores real numbers in 16 bits: 11 significant bits, at most 65504 (65520 and more are an error), and below 6.1e-5
-  /// fewer bits: a number that would lose more than 0.1% is an error, the background too. Infinity and NaN are kept.
-  /// Default off; off or on, how the file that an image was read from stored its numbers is of no account.
+  /// Stores real numbers in 16 bits: 11 significant bits, at most 65504 (65520 and more are an error), fewer bits below
+  /// 6.1e-5. A number that would lose more than 0.1% is an error, also if it is the background. Infinity and NaN are
+  /// preserved. Default off. The precision of the file from which an image was read has no influence.
   tyndallFlagMacro(SaveAsHalf);
   ///@}
 
   ///@{
-  /// What arrays of points are where there are none of cells: 0 (default): each is a voxel; 1: their mean is that of
-  /// the voxel between them.
+  /// How point arrays are written if there are no cell arrays. 0 (default): each point is a voxel; 1: voxels are the
+  /// cells between points, with the mean of their points.
   enum PointDataKinds
   {
     VOXELS_AROUND_POINTS = 0,
@@ -115,14 +117,14 @@ public:
   vtkImageData* GetImageInput();
 
   ///@{
-  /// Whose ranks have the pieces of the image. At first the global controller; null: this process has the whole image,
-  /// and no other takes part.
+  /// The controller of the ranks that hold the pieces of the image. Default: the global controller; null: this process
+  /// has the complete image and writes it alone.
   virtual void SetController(vtkMultiProcessController* controller);
   vtkGetObjectMacro(Controller, vtkMultiProcessController);
   ///@}
 
-  /// Writes the file. With several ranks all of them have to call it.
-  /// @return 1 where the file is written, or else 0: on all ranks the same
+  /// Writes the file. Collective if there are several ranks.
+  /// @return 1 if the file was written, 0 otherwise; the same on all ranks
   int Write() override;
 
 protected:
@@ -145,7 +147,7 @@ private:
   double Tolerance = 0.0;
   bool SaveAsHalf = false;
   vtkMultiProcessController* Controller = nullptr;
-  bool HasTakenPart = false; ///< in what the ranks do together
+  bool HasTakenPart = false; ///< in the collective operations of this write
 };
 
 #endif

@@ -127,8 +127,8 @@ void KeepPiece(const AskedPiece& piece, vtkImageData* output);
 /// Whether the first extent contains the other one; six numbers each.
 bool Covers(const int* extent, const int* other);
 
-/// Whether the update extent of an output is all of it: the whole extent, or an earlier one of another time step. A
-/// consumer may not know the new one: VTK announces extents before it requests a time step.
+/// Whether the update extent of an output is its whole extent, or a whole extent announced earlier for another time
+/// step. A consumer may not know the current one: VTK announces extents before it requests a time step.
 bool AsksForAll(vtkInformation* information);
 /// In RequestData: records the announced whole extent for AsksForAll. KeepWhatIsAskedFor calls it.
 void NoteExtentTold(vtkInformation* information);

@@ -8,17 +8,18 @@ class vtkPolyData;
 
 namespace tyndall
 {
-/// How large one light is drawn.
+/// A light together with the size at which it is drawn.
 struct DrawnLight
 {
-  Light light;         ///< drawn at its position, also a directional light
-  double length = 1.0; ///< of its arrow or cone; a point light's radius. Above 0
+  Light light;         ///< drawn at its position, even if directional
+  double length = 1.0; ///< length of its arrow or cone, or radius of a point light; above 0
 };
 
-/// Shapes of lights for a view: an arrow along its direction for a directional light, a ball for a point light, the
-/// outline of its cone for a spot, and for a rectangle itself with an arrow on the side that emits.
-/// @param shapes  gets lines and polygons, and point array `color` (bytes of red, green, blue, active scalars): that
-///   of the light at full brightness
-/// @throws nothing; lights are to be checked before (Check of Lights.h)
+/// Draws the shapes of lights for a view: an arrow along the direction of a directional light, a ball for a point
+/// light, the outline of its cone for a spot light, and a rectangle with an arrow on its emitting side for a rectangle
+/// light.
+/// @param shapes  receives lines and polygons, and point array `color` (red, green, blue as bytes, active scalars): the
+///   light's colour at full brightness
+/// @throws nothing; check the lights before (Check in Lights.h)
 void DrawLights(const std::vector<DrawnLight>& lights, vtkPolyData* shapes);
 }

@@ -6,7 +6,7 @@
 
 /**
  * @class vtkAimedLight
- * @brief superclass of the lights that shine from their position towards a focal point
+ * @brief superclass of lights that emit from their position towards a focal point
  *
  * @sa vtkSun vtkSpotLight
  */
@@ -17,7 +17,7 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
-  /// What the light shines at: another place than its position. Default (0, 0, 0).
+  /// Point at which the light is aimed; must differ from its position. Default (0, 0, 0).
   tyndallSetRange3Macro(FocalPoint, double, tyndall::AnyLow, tyndall::AnyHigh);
   vtkGetVector3Macro(FocalPoint, double);
   ///@}
@@ -26,8 +26,8 @@ protected:
   using vtkLightSource::vtkLightSource;
   ~vtkAimedLight() override;
 
-  /// Direction from the position to the focal point, and how far it is; its type is left.
-  /// @throws InvalidInput where both are one place
+  /// Sets the direction from the position to the focal point, and the distance between them as length; leaves the type.
+  /// @throws InvalidInput if both are the same point
   tyndall::DrawnLight MakeLight() const override;
 
   double FocalPoint[3] = { 0.0, 0.0, 0.0 };

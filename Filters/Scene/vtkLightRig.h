@@ -15,31 +15,31 @@ struct Light;
 
 /**
  * @class vtkLightRig
- * @brief makes the lights of a scene, one vertex per light
+ * @brief creates the lights of a scene, one vertex per light
  *
- * Input, optional and any number of them: further lights, as a rig or a vtkLightSource makes them.
+ * Input, optional, any number: further lights from another vtkLightRig or a vtkLightSource.
  * Output 0: vtkPolyData, one vertex at each light's position (directional lights: the origin), with the point arrays
  *
  * | array        | type       | meaning                                                                            |
  * |--------------|------------|------------------------------------------------------------------------------------|
  * | `light_type` | uint8      | 0 directional, 1 point, 2 spot, 3 rectangle                                        |
  * | `direction`  | double x 3 | unit vector in which the light travels; (0, 0, 0) for a point light                |
- * | `power`      | double x 3 | RGB: W, of a directional light W/length^2 through a plane across `direction`       |
+ * | `power`      | double x 3 | RGB: W; directional lights: irradiance W/length^2 on a plane normal to `direction`     |
  * | `size`       | double x 2 | edges of a rectangle, length; else 0                                               |
  * | `angle`      | double     | full opening angle of a spot, degrees; else 0                                      |
  *
- * The lights come in this order: the sun, directional, point, spot and rectangle lights, each kind in the order in
- * which it was added; then those of the inputs, one after the other. Untouched, the rig is one white sun of 1
- * W/length^2, halfway up.
+ * Order of the lights: the sun, then directional, point, spot and rectangle lights, each type in the order of addition;
+ * then the lights of the inputs, input after input. By default the rig has one white sun of 1 W/length^2 at an
+ * elevation of 45 degrees.
  *
- * A rectangle shines to one side, that of `direction`. Its first edge is horizontal (across z and `direction`; along x
- * where `direction` is vertical), its second one is across the first and `direction`.
+ * A rectangle emits from one side, that of `direction`. Its first edge is horizontal (normal to z and `direction`;
+ * along x if `direction` is vertical), its second edge is normal to the first and to `direction`.
  *
- * Output 1: what the rig's own lights look like in a view (those of inputs are drawn by their sources): vtkPolyData of
- * lines and polygons with point array `color` (bytes of red, green, blue).
+ * Output 1: shapes of the rig's own lights for a view (lights of inputs are drawn by their sources): vtkPolyData of
+ * lines and polygons with point array `color` (red, green, blue as bytes).
  *
- * A direction of length 0, an angle outside [1e-12, 180], a size or power that is negative, or anything that is not
- * finite, is an error that names the light; the outputs are empty then.
+ * A direction of length 0, an angle outside [1e-12, 180], a negative size or power, or a value that is not finite is an
+ * error that names the light; the outputs are empty then.
  *
  * @sa vtkSun vtkPointLight vtkSpotLight vtkRectangleLight
  */
@@ -60,17 +60,17 @@ public:
   };
 
   ///@{
-  /// Whether the rig has a sun: a directional light that is placed by its angles. Default on.
+  /// Whether the rig has a sun: a directional light given by elevation and azimuth. Default on.
   tyndallFlagMacro(Sun);
   ///@}
 
   ///@{
-  /// Height of the sun above the x-y plane, degrees. Default 45, valid [-90, 90]; 90 is overhead (+z).
+  /// Elevation of the sun above the x-y plane, degrees. Default 45, valid [-90, 90]; 90 is overhead (+z).
   tyndallRangeMacro(SunElevation, double, -90.0, 90.0);
   ///@}
 
   ///@{
-  /// Where the sun stands, degrees about +z from +x (towards +y). Default 225.
+  /// Azimuth of the sun's position, degrees about +z from +x towards +y. Default 225.
   tyndallRangeMacro(SunAzimuth, double, tyndall::AnyLow, tyndall::AnyHigh);
   ///@}
 
@@ -81,23 +81,23 @@ public:
   ///@}
 
   ///@{
-  /// Parallel light that travels in direction (dx, dy, dz), of any length, with irradiance (r, g, b), W/length^2, on a
-  /// plane across it.
+  /// Adds a parallel beam that travels in direction (dx, dy, dz), of any length, with irradiance (r, g, b), W/length^2,
+  /// on a plane normal to it.
   void AddDirectionalLight(double dx, double dy, double dz, double r, double g, double b);
   void RemoveAllDirectionalLights();
   int GetNumberOfDirectionalLights() const;
   ///@}
 
   ///@{
-  /// A point at (x, y, z) that shines evenly in all directions with power (r, g, b), W.
+  /// Adds an isotropic point source at (x, y, z) with power (r, g, b), W.
   void AddPointLight(double x, double y, double z, double r, double g, double b);
   void RemoveAllPointLights();
   int GetNumberOfPointLights() const;
   ///@}
 
   ///@{
-  /// A point at (x, y, z) that shines evenly into a cone about (dx, dy, dz), of any length, with power (r, g, b), W.
-  /// `angle` is the cone's full opening, degrees, valid [1e-12, 180].
+  /// Adds a point source at (x, y, z) that emits uniformly into a cone about (dx, dy, dz), of any length, with power
+  /// (r, g, b), W. `angle` is the full opening angle of the cone, degrees, valid [1e-12, 180].
   void AddSpotLight(
     double x, double y, double z, double dx, double dy, double dz, double r, double g, double b, double angle);
   void RemoveAllSpotLights();
@@ -105,20 +105,21 @@ public:
   ///@}
 
   ///@{
-  /// A rectangle about (x, y, z) that shines to the side of (dx, dy, dz), of any length, as a Lambertian emitter with
-  /// power (r, g, b), W. `width` and `height` are the lengths of its first and second edge.
+  /// Adds a rectangle centred at (x, y, z) that emits to the side of (dx, dy, dz), of any length, as a Lambertian
+  /// emitter with power (r, g, b), W. `width` and `height` are the lengths of its first and second edge.
   void AddRectangleLight(double x, double y, double z, double dx, double dy, double dz, double r, double g, double b,
     double width, double height);
   void RemoveAllRectangleLights();
   int GetNumberOfRectangleLights() const;
   ///@}
 
-  /// Removes every light that was added. The sun stays as it is set.
+  /// Removes all lights that were added. The sun is not affected.
   void RemoveAllLights();
 
   ///@{
-  /// The same lights number by number, in the order of the arguments above: the last number of a light adds it. A light
-  /// that lacks numbers is an error that says how many it takes. Removing the lights of a kind removes its numbers.
+  /// Adds the same lights one number at a time, in the order of the arguments above; the last number of a light adds
+  /// the light. An incomplete light is an error that says how many numbers it needs. Removing the lights of a type also
+  /// removes its pending numbers.
   void AddDirectionalLightNumber(double number);
   void AddPointLightNumber(double number);
   void AddSpotLightNumber(double number);
@@ -126,8 +127,9 @@ public:
   ///@}
 
   ///@{
-  /// How output 1 draws: arrows of directional lights, and cones of spots, have their length by ShapeSize (default 1,
-  /// valid above 0); arrows point at ShapeCenter (default (0, 0, 0)). Light does not depend on it.
+  /// Appearance of output 1: ShapeSize is the length of the arrows of directional lights and of the cones of spot
+  /// lights (default 1, valid above 0); arrows point at ShapeCenter (default (0, 0, 0)). The emitted light does not
+  /// depend on them.
   tyndallRangeMacro(ShapeSize, double, tyndall::AboveZero, tyndall::AnyHigh);
   tyndallSetRange3Macro(ShapeCenter, double, tyndall::AnyLow, tyndall::AnyHigh);
   vtkGetVector3Macro(ShapeCenter, double);

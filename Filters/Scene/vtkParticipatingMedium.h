@@ -19,11 +19,11 @@ struct VoxelBox;
 
 /**
  * @class vtkParticipatingMedium
- * @brief turns a density into a medium that absorbs, scatters and emits light
+ * @brief converts a density to a medium that absorbs, scatters and emits light
  *
- * Input: vtkImageData with an array of one component, of cells or of points (SetPointData): the active scalars, or
- * the array chosen by SetInputArrayToProcess(0, ...). An array `g` (1 or 3 components) of it is the mean cosine by
- * voxel, of a mixture for example; it is passed on and counts before MeanCosine.
+ * Input: vtkImageData with a cell or point array of one component (SetPointData): the active scalars, or the array
+ * selected by SetInputArrayToProcess(0, ...). An input array `g` (1 or 3 components), for example of a mixture, is the
+ * mean cosine by voxel; it is passed on and takes precedence over MeanCosine.
  *
  * Input 1, optional: vtkTable with the columns `cosine` and `value`, the phase function of TABULATED.
  *
@@ -31,13 +31,13 @@ struct VoxelBox;
  *
  * | array      | components           | unit              |
  * |------------|----------------------|-------------------|
- * | `sigma_a`  | 1, or 3 where it has colour | 1/length   |
- * | `sigma_s`  | 1, or 3 where it has colour | 1/length   |
- * | `emission` | 1 or 3; only where EmissionScale is not 0 | W/(length^3 sr) |
+ * | `sigma_a`  | 1, or 3 if coloured  | 1/length          |
+ * | `sigma_s`  | 1, or 3 if coloured  | 1/length          |
+ * | `emission` | 1 or 3; only if EmissionScale is not 0 | W/(length^3 sr) |
  *
- * and as field data the phase function: `phase_function` (its name), `g` (mean cosine; 3 numbers where channels
- * differ), and where they are needed `phase_second_g`, `phase_first_part`, `phase_cosine`, `phase_value`. Lengths are
- * in the dataset's own unit.
+ * and the phase function as field data: `phase_function` (its name), `g` (mean cosine; 3 numbers if channels differ),
+ * and if needed `phase_second_g`, `phase_first_part`, `phase_cosine`, `phase_value`. Lengths are in the dataset's own
+ * unit.
  *
  * With the relative density rho = (density - MinimumDensity) / (MaximumDensity - MinimumDensity), at least 0:
  *
@@ -45,16 +45,16 @@ struct VoxelBox;
  *     sigma_s  = Albedo sigma_t,   sigma_a = (1 - Albedo) sigma_t
  *     emission = rho EmissionScale EmissionColor
  *
- * With LevelSet the array is the distance from a surface, negative inside: rho is 1 inside, less in proportion within a
- * voxel of the surface, and 0 outside. A level set that is taken for a density has its fog outside of the surface, and
- * a warning says so: field data of vtkVDBReader call it one, or it is negative inside of the image and positive on its
- * border.
+ * With LevelSet the array is a signed distance from a surface, negative inside: rho is 1 inside, decreases linearly
+ * within one voxel of the surface, and is 0 outside. A level set that is used as a density would put the fog outside of
+ * the surface. A warning is given if field data of vtkVDBReader say that the array is a level set, or if it is negative
+ * inside the image and positive on its border.
  *
- * A preset gives sigma_s, sigma_a (1/mm at rho = 1) and g of a real medium instead of Albedo and MeanCosine;
- * ExtinctionScale then multiplies them, 1 being the medium as it was measured, and LengthUnit or MillimetresPerUnit
- * says how long a unit of the dataset is.
+ * A preset provides sigma_s, sigma_a (1/mm at rho = 1) and g of a real medium instead of Albedo and MeanCosine;
+ * ExtinctionScale multiplies the coefficients, 1 being the medium as measured, and LengthUnit or MillimetresPerUnit
+ * gives the length of the dataset's unit.
  *
- * Where the optical thickness is not 0, but below 0.01 or above 1e6, a warning says so: seldom is that what was meant.
+ * An optical thickness above 0 but below 0.01, or above 1e6, causes a warning, because it is seldom intended.
  *
  * Cells that are hidden by `vtkGhostType` are empty.
  *
@@ -67,14 +67,14 @@ public:
   vtkTypeMacro(vtkParticipatingMedium, vtkImageAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  /// Media for SetPreset. Sources: GetPresetSource.
+  /// Media for SetPreset. GetPresetSource names the source of each.
   enum Presets
   {
     CUSTOM = 0,
     CLOUD,     ///< rho 1: 1 g of liquid water per cubic metre, droplets of 10 um
     FOG,       ///< rho 1: 1 droplet per cubic centimetre
     SMOKE,     ///< rho 1: 1 g of soot per cubic metre
-    SKIM_MILK, ///< this and the following: rho 1 is the medium as it was measured
+    SKIM_MILK, ///< for this and the following: rho 1 is the medium as measured
     WHOLE_MILK,
     CREAM,
     ESPRESSO,
@@ -85,8 +85,8 @@ public:
   };
 
   ///@{
-  /// The medium, one of Presets. Default CUSTOM: Albedo and MeanCosine. PhaseFunction counts with presets, too: theirs
-  /// is HENYEY_GREENSTEIN, which with g 0 is isotropic.
+  /// The medium, one of Presets. Default CUSTOM: uses Albedo and MeanCosine. PhaseFunction applies to presets as well:
+  /// their own one is HENYEY_GREENSTEIN, which is isotropic for g 0.
   tyndallRangeMacro(Preset, int, CUSTOM, SKIN_2);
   ///@}
 
@@ -98,10 +98,10 @@ public:
   ///@}
 
   ///@{
-  /// What arrays of points are: 0 (default): each is in the middle of a voxel of its value, so that n points are n
-  /// voxels, the output has arrays of cells, and its bounds are half a spacing wider than the input's; 1: their mean is
-  /// that of the voxel between them, and n points are n - 1 voxels. Where an array of cells is read as well, voxels are
-  /// the cells and points are averaged; field data `settings_used` then say so.
+  /// How point arrays are read. 0 (default): each point is the centre of a voxel with its value; n points are n voxels,
+  /// the output has cell arrays, and its bounds are half a spacing wider than the input's on each side. 1: voxels are
+  /// the cells between points, with the mean of their points; n points are n - 1 voxels. If a cell array is read as
+  /// well, voxels are the cells and point arrays are averaged; field data `settings_used` then say so.
   enum PointDataKinds
   {
     VOXELS_AROUND_POINTS = 0,
@@ -111,32 +111,32 @@ public:
   ///@}
 
   ///@{
-  /// Density that is vacuum, as is what lies below it. Default 0.
+  /// Densities up to this value are vacuum. Default 0.
   tyndallRangeMacro(MinimumDensity, double, tyndall::AnyLow, tyndall::AnyHigh);
   ///@}
 
   ///@{
-  /// Density with relative density 1; what lies above it is denser in proportion. Default 1, valid from MinimumDensity
-  /// on; if equal to it, everything above it has relative density 1.
+  /// Density that has relative density 1; relative density grows linearly beyond it. Default 1, valid from
+  /// MinimumDensity on; if equal to MinimumDensity, every larger density has relative density 1.
   tyndallRangeMacro(MaximumDensity, double, tyndall::AnyLow, tyndall::AnyHigh);
   ///@}
 
   ///@{
-  /// Whether the array is a level set, the distance from a surface in the dataset's unit, negative inside. Default off.
-  /// On: fog fills the inside, with a ramp of a voxel (the shortest edge) at the surface; MinimumDensity and
-  /// MaximumDensity are not read.
+  /// Whether the array is a level set: signed distance from a surface in the dataset's unit, negative inside. Default
+  /// off. On: fog fills the inside, with a linear ramp of one voxel (its shortest edge) at the surface; MinimumDensity
+  /// and MaximumDensity are ignored.
   tyndallFlagMacro(LevelSet);
   ///@}
 
   ///@{
-  /// Extinction coefficient sigma_t at relative density 1, 1/length; with a preset the multiple of its coefficients.
+  /// Extinction coefficient sigma_t at relative density 1, 1/length; with a preset a factor for its coefficients.
   /// Default 1, valid [0, infinity).
   tyndallRangeMacro(ExtinctionScale, double, 0.0, tyndall::LargestFloat);
   ///@}
 
   ///@{
-  /// Part of the extinguished light that is scattered, not absorbed; red, green, blue. Default (0.9, 0.9, 0.9), valid
-  /// [0, 1]. Not used with a preset.
+  /// Single-scattering albedo sigma_s / sigma_t; red, green, blue. Default (0.9, 0.9, 0.9), valid [0, 1]. Ignored with
+  /// a preset.
   tyndallSetRange3Macro(Albedo, double, 0.0, 1.0);
   vtkGetVector3Macro(Albedo, double);
   ///@}
@@ -148,24 +148,24 @@ public:
     HENYEY_GREENSTEIN,
     DOUBLE_HENYEY_GREENSTEIN, ///< FirstPart of the light with MeanCosine, the rest with SecondMeanCosine
     SCHLICK,
-    RAYLEIGH, ///< of particles much smaller than the wavelength
-    TABULATED ///< PhaseTable
+    RAYLEIGH, ///< for particles much smaller than the wavelength
+    TABULATED ///< given by PhaseTable
   };
 
   ///@{
-  /// How light is scattered by angle, one of PhaseFunctions. Default HENYEY_GREENSTEIN.
+  /// The phase function, one of PhaseFunctions. Default HENYEY_GREENSTEIN.
   tyndallRangeMacro(PhaseFunction, int, ISOTROPIC, TABULATED);
   ///@}
 
   ///@{
-  /// Mean cosine g of the angle by which light is scattered (Henyey-Greenstein, Schlick; of
-  /// DOUBLE_HENYEY_GREENSTEIN that of its first lobe): 0 isotropic, near 1 forward. Default 0, valid (-1, 1). Not used
-  /// with a preset, which has its own.
+  /// Mean cosine g of the scattering angle (Henyey-Greenstein, Schlick; for DOUBLE_HENYEY_GREENSTEIN that of the first
+  /// lobe): 0 isotropic, near 1 forward. Default 0, valid (-1, 1). Ignored with a preset, which has its own.
   tyndallRangeMacro(MeanCosine, double, -1.0, 1.0);
   ///@}
 
   ///@{
-  /// Mean cosines of red, green and blue instead of MeanCosine, one call each. None (default) or three, valid (-1, 1).
+  /// Mean cosines of red, green and blue instead of MeanCosine, added one per call. None (default) or three, valid (-1,
+  /// 1).
   void SetChannelMeanCosines(double red, double green, double blue);
   void AddChannelMeanCosine(double g);
   void RemoveAllChannelMeanCosines();
@@ -178,24 +178,24 @@ public:
   ///@}
 
   ///@{
-  /// Part of the scattered light that the first lobe of DOUBLE_HENYEY_GREENSTEIN has. Default 1, valid [0, 1].
+  /// Fraction of the light that the first lobe of DOUBLE_HENYEY_GREENSTEIN scatters. Default 1, valid [0, 1].
   tyndallRangeMacro(FirstPart, double, 0.0, 1.0);
   ///@}
 
   ///@{
-  /// The phase function of TABULATED: a table with the columns `cosine` (of the scattering angle, from -1 to 1, rising
-  /// or falling) and `value` (not negative, in any unit). Linear between its rows.
+  /// The phase function TABULATED: a table with the columns `cosine` (of the scattering angle, from -1 to 1, ascending
+  /// or descending) and `value` (not negative, in any unit). Values are interpolated linearly between rows.
   tyndallInputMacro(PhaseTable, PHASE_TABLE);
   ///@}
 
   ///@{
-  /// Radiance emitted per unit length at relative density 1, W/(length^3 sr), times EmissionColor. Default 0, valid
-  /// [0, infinity).
+  /// Emitted radiance per unit length at relative density 1, W/(length^3 sr); it is multiplied by EmissionColor.
+  /// Default 0, valid [0, infinity).
   tyndallRangeMacro(EmissionScale, double, 0.0, tyndall::AnyHigh);
   ///@}
 
   ///@{
-  /// Red, green and blue part of EmissionScale. Default (1, 1, 1), valid [0, infinity).
+  /// Red, green and blue factors of EmissionScale. Default (1, 1, 1), valid [0, infinity).
   tyndallSetRange3Macro(EmissionColor, double, 0.0, tyndall::LargestFloat);
   vtkGetVector3Macro(EmissionColor, double);
   ///@}
@@ -203,7 +203,7 @@ public:
   /// Units for SetLengthUnit.
   enum LengthUnits
   {
-    AS_GIVEN = 0, ///< MillimetresPerUnit
+    AS_GIVEN = 0, ///< given by MillimetresPerUnit
     MICROMETRES,
     MILLIMETRES,
     CENTIMETRES,
@@ -212,21 +212,22 @@ public:
   };
 
   ///@{
-  /// The dataset's unit of length, for presets, one of LengthUnits. Default AS_GIVEN.
+  /// The dataset's unit of length, one of LengthUnits; needed for presets. Default AS_GIVEN.
   tyndallRangeMacro(LengthUnit, int, AS_GIVEN, KILOMETRES);
   ///@}
 
   ///@{
-  /// Length of the dataset's unit in millimetres where LengthUnit is AS_GIVEN: 1 for a scan in mm, 1000 for metres.
+  /// Length of the dataset's unit in millimetres if LengthUnit is AS_GIVEN: 1 for a scan in mm, 1000 for metres.
   /// Default 1, valid (0, infinity).
   tyndallRangeMacro(MillimetresPerUnit, double, tyndall::AboveZero, tyndall::AnyHigh);
   ///@}
 
   ///@{
-  /// Of the last update, and of the whole dataset on every rank: how large it is by its unit of length, as
-  /// "480 x 480 x 240 m"; the largest optical thickness of a row of voxels along x, y or z, no unit; and the mean free
-  /// path, 1 over the mean extinction of the voxels that are not empty, in the dataset's unit (0 where all are). Of the
-  /// colour that is extinguished most. 0 and empty before, and after an error.
+  /// Size of the complete dataset at the last update, the same on every rank: its edges with their unit of length, such
+  /// as "480 x 480 x 240 m"; the largest optical thickness of a row of voxels along x, y or z, dimensionless; and the
+  /// mean free path, 1 over the mean extinction of the voxels that are not empty, in the dataset's unit (0 if all are
+  /// empty). Both refer to the channel with the largest extinction. 0 and empty before the first update and after an
+  /// error.
   vtkGetCharFromStdStringMacro(PhysicalExtent);
   vtkGetMacro(OpticalThickness, double);
   vtkGetMacro(MeanFreePath, double);

@@ -6,9 +6,9 @@
 
 /**
  * @class vtkPointLight
- * @brief a point that shines evenly in all directions
+ * @brief an isotropic point source
  *
- * In a view it is a ball.
+ * It is drawn as a ball.
  *
  * @sa vtkLightSource vtkLightRig
  */
@@ -20,7 +20,7 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
-  /// Radius of the ball, length. The light does not depend on it. Default 0.02, valid above 0.
+  /// Radius of the drawn ball, length. The emitted light does not depend on it. Default 0.02, valid above 0.
   tyndallRangeMacro(ShapeSize, double, tyndall::AboveZero, tyndall::AnyHigh);
   ///@}
 

@@ -6,11 +6,11 @@
 
 /**
  * @class vtkRectangleLight
- * @brief a rectangle that shines to one side, as a Lambertian emitter
+ * @brief a rectangle that emits from one side, as a Lambertian emitter
  *
- * Its position is its centre. It is placed like a plane, by its normal and not by a focal point. Its first edge is
- * horizontal (across z and the direction; along x where the light shines straight up or down), its second one is across
- * the first and the direction. In a view it is itself, with an arrow to the side that it shines to.
+ * Its position is its centre. Like a plane it is placed by its normal, not by a focal point. Its first edge is
+ * horizontal (normal to z and to the direction; along x if the direction is vertical), its second edge is normal to the
+ * first and to the direction. It is drawn as a rectangle with an arrow on its emitting side.
  *
  * @sa vtkLightSource vtkLightRig
  */
@@ -22,8 +22,7 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
-  /// Normal of the rectangle, to the side that it shines to; its length does not count, but must not be 0. Default
-  /// (1, 0, -1).
+  /// Normal of the rectangle on its emitting side; any length but 0. Default (1, 0, -1).
   tyndallSetRange3Macro(Direction, double, tyndall::AnyLow, tyndall::AnyHigh);
   vtkGetVector3Macro(Direction, double);
   ///@}

@@ -6,9 +6,9 @@
 
 /**
  * @class vtkSpotLight
- * @brief a point that shines evenly into a cone about the direction to its focal point
+ * @brief a point source that emits uniformly into a cone about the direction to its focal point
  *
- * In a view it is the outline of the cone, as long as the focal point is away.
+ * It is drawn as the outline of the cone, which extends to the focal point.
  *
  * @sa vtkLightSource vtkLightRig
  */
@@ -20,7 +20,7 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
-  /// Full opening of the cone, degrees. Default 40, valid (0, 180], at least 1e-12 for a solve.
+  /// Full opening angle of the cone, degrees. Default 40, valid (0, 180]; solvers need at least 1e-12.
   tyndallRangeMacro(Angle, double, tyndall::AboveZero, 180.0);
   ///@}
 

@@ -6,10 +6,10 @@
 
 /**
  * @class vtkSun
- * @brief parallel light through all of space, in the direction from its position to its focal point
+ * @brief parallel light in all of space, in the direction from its position to its focal point
  *
- * Untouched it shines as the sun of an untouched vtkLightRig, to 1e-5. In a view it is an arrow from its position
- * halfway to the focal point.
+ * By default it equals the default sun of vtkLightRig to 1e-5. It is drawn as an arrow from its position halfway to the
+ * focal point.
  *
  * @sa vtkLightSource vtkLightRig
  */

@@ -7,10 +7,10 @@
 
 namespace tyndall
 {
-/// The bytes of a .vdb file, read through a window; nothing is ever read beyond the end.
+/// Reads the bytes of a .vdb file through a buffer; never reads beyond its end.
 ///
-/// All of it throws InvalidInput that names the file, what is wrong and the byte where it is; `what` in the parameters
-/// is what is being read, e.g. "a grid".
+/// Every member function throws InvalidInput that names the file, the error and its byte position. The parameter `what`
+/// names the item that is being read, for messages, e.g. "a grid".
 class VDBBytes
 {
 public:

@@ -9,21 +9,21 @@
 
 class vtkImageData;
 
-/// Where an image's cells and a grid's voxels are in the world, one from the other.
+/// Converts between the geometry of images and the transforms of grids.
 ///
-/// A cell is centred on its voxel's index: voxel i is the cell that covers [i - 1/2, i + 1/2] of index space. A grid
-/// that was an image notes in its metadata what it does not say itself: the extent of points (voxels may be background
-/// up to the border) with the number of cells in it, and origin and spacing to the last bit (OpenVDB computes the scale
-/// of a transform as the difference of two positions).
+/// The index of a voxel is that of its cell: voxel i is the cell that covers [i - 1/2, i + 1/2] in index space. A grid
+/// made from an image has notes in its metadata about what the grid itself does not express: the extent of points
+/// (border voxels may be background) with the number of cells, and origin and spacing to the last bit (OpenVDB computes
+/// the scale of a transform as the difference of two positions).
 namespace tyndall
 {
-/// Whether metadata of this name is such a note.
+/// Whether the metadata of this name are such a note.
 bool IsGeometry(const std::string& key);
 
-/// Where grids lie, as an image.
+/// Geometry of grids, expressed as that of an image.
 struct VDBGeometry
 {
-  std::array<std::int64_t, 6> Extent = { 0, -1, 0, -1, 0, -1 }; ///< of points; wider than VTK's, perhaps
+  std::array<std::int64_t, 6> Extent = { 0, -1, 0, -1, 0, -1 }; ///< of points; may exceed the range of VTK's extents
   std::array<double, 3> Origin = { 0, 0, 0 };
   std::array<double, 3> Spacing = { 1, 1, 1 };
   std::array<double, 9> Direction = { 1, 0, 0, 0, 1, 0, 0, 0, 1 };
@@ -31,30 +31,31 @@ struct VDBGeometry
   bool Empty() const { return this->Extent[0] > this->Extent[1]; }
 };
 
-/// Voxels for the cells of an extent of points: a flat image has one layer.
+/// The voxels for the cells of an extent of points; a flat extent has one layer of cells.
 VDBBox VoxelsOf(const std::array<std::int64_t, 6>& extent);
 
-/// Number of them, 0 in an empty extent.
+/// Number of cells; 0 for an empty extent.
 double CellsOf(const std::array<std::int64_t, 6>& extent);
 
-/// The extent of points that a grid covers: the noted one, as long as that still holds every active voxel, or else that
-/// of the active voxels.
+/// The extent of points that a grid covers: the noted extent if it still contains every active voxel, otherwise the
+/// extent of the active voxels.
 std::array<std::int64_t, 6> ExtentOf(const VDBGrid& grid);
 
-/// Whether a grid notes that it was an image of this extent, and of as many cells: then the extent is no accident of a
-/// corrupt file, however few voxels are active.
+/// Whether a grid has a note that it was an image of this extent with this number of cells. Then the extent does not
+/// result from a corrupt file, however few voxels are active.
 bool NotesExtent(const VDBGrid& grid, const std::array<std::int64_t, 6>& extent);
 
-/// Whether a grid's voxels lie where another's do, to rounding.
+/// Whether the voxels of two grids coincide, up to rounding.
 bool SharesTransform(const VDBGrid& a, const VDBGrid& b);
 
-/// All of some grids, at least one, that share a transform.
+/// The common geometry of one or more grids that share a transform.
 VDBGeometry GeometryOf(const std::vector<const VDBGrid*>& grids);
 
-/// An image with axes along those of the world that holds the voxels of some grids, of the shortest edge of theirs.
+/// An image along the world axes that contains the voxels of some grids; its spacing is the shortest edge of their
+/// voxels.
 VDBGeometry BoxAround(const std::vector<const VDBGrid*>& grids);
 
-/// Where an image lies, as a grid.
+/// Geometry of an image, expressed as that of a grid.
 struct VDBPlacement
 {
   openvdb::CoordBBox Voxels;
@@ -62,6 +63,6 @@ struct VDBPlacement
   openvdb::MetaMap Notes;
 };
 
-/// @throws InvalidInput where spacing is not positive, or spacing or origin not finite
+/// @throws InvalidInput if a spacing is not positive, or spacing or origin is not finite
 VDBPlacement PlacementOf(vtkImageData* image);
 }

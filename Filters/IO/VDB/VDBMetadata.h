@@ -7,24 +7,25 @@
 class vtkDataObject;
 class vtkFieldData;
 
-/// Metadata of .vdb files as field data of images, and back.
+/// Converts metadata of .vdb files to field data of images, and back.
 namespace tyndall
 {
-/// Name of the field data that holds metadata `key` of a grid; of the file, if the grid's name is empty.
+/// Name of the field data for metadata `key` of a grid; of the file if `grid` is empty.
 inline std::string FieldName(const std::string& grid, const std::string& key)
 {
   return "vdb:" + grid + ":" + key;
 }
 
-/// Field data `<prefix><key>` for all metadata of types that VTK has too, but what an image says itself.
+/// Adds field data `<prefix><key>` for metadata of all types that VTK has as well, except what the image itself
+/// expresses.
 void AddMetadata(vtkDataObject* image, const std::string& prefix, const openvdb::MetaMap& map);
 
-/// Metadata from field data whose names begin so, but a grid's type and background, and what
-/// describes the file that it was in.
+/// Restores metadata from field data whose names start with `prefix`, except a grid's type and background and the
+/// entries that describe the file it was read from.
 void RestoreMetadata(openvdb::MetaMap& map, vtkFieldData* field, const std::string& prefix);
 
-/// Field data that define a medium beside its cells, `g`, `phase_function` and those that go with it, and what they are
-/// in a file: metadata of the same names after `medium_`, the rows of a table as a text.
+/// Field data that define a medium in addition to its cell arrays (`g`, `phase_function` and its parameters). In a file
+/// they are metadata of the same names with the prefix `medium_`; rows of a table are stored as text.
 void AddMediumFacts(vtkDataObject* image, const openvdb::MetaMap& file);
 void NoteMediumFacts(openvdb::MetaMap& file, vtkFieldData* field);
 }

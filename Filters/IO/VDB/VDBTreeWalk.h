@@ -11,7 +11,7 @@ namespace tyndall
 {
 class VDBBytes;
 
-/// How the values of a type of grid lie in a file, and in an image.
+/// Storage of a grid type's values in a file and in an image.
 struct VDBValueType
 {
   const char* Name;
@@ -22,7 +22,7 @@ struct VDBValueType
     Numbers,
     Bool,
     Mask
-  } Leaves; ///< what a leaf holds beside its mask
+  } Leaves; ///< what a leaf stores besides its mask
 
   bool IsReal() const { return this->HalfSize < this->Size; }
   std::string GridType() const { return std::string("Tree_") + this->Name + "_5_4_3"; } ///< OpenVDB's name of it
@@ -31,7 +31,7 @@ struct VDBValueType
 /// The types that become images: float, double, int32, int64, bool, mask, vec3i, vec3s, vec3d; else null.
 const VDBValueType* FindValueType(const std::string& name);
 
-/// Checks the values of a grid's nodes as they lie in its file, without keeping them.
+/// Checks the stored values of a grid's nodes without keeping them.
 class VDBValues
 {
 public:
@@ -39,11 +39,13 @@ public:
   /// @param compression  OpenVDB's flags
   VDBValues(const VDBValueType& type, bool half, std::uint32_t compression);
 
-  /// The values of one node: a flag, up to two inactive values and the mask that selects them, then a block of numbers.
-  /// @param active      values that are active
-  /// @param all         values of the node
-  /// @param decompress  whether to try the block: OpenVDB leaks an inner node whose values do not decompress
-  /// @throws InvalidInput where the block is not what the node takes: OpenVDB would write beyond the node
+  /// Checks the values of one node: a flag, up to two inactive values and the mask that selects between them, then a
+  /// block of numbers.
+  /// @param active      number of active values
+  /// @param all         number of values of the node
+  /// @param decompress  whether to decompress the block as a test: OpenVDB leaks an inner node whose values do not
+  ///   decompress
+  /// @throws InvalidInput if the block does not match the node: OpenVDB would write beyond the node
   void Check(VDBBytes& bytes, std::uint64_t active, std::uint64_t all, bool decompress);
 
 private:
@@ -58,10 +60,10 @@ private:
 
 class VDBBytes;
 
-/// Index of a voxel; wide enough for any corner that a file can name.
+/// Index of a voxel; 64 bits hold any corner that a file can specify.
 using VoxelCorner = std::array<std::int64_t, 3>;
 
-/// Voxels of a .vdb, inclusive, of any size. Not the kernels' VoxelBox, which is a part of a grid.
+/// A box of voxels, inclusive, of any size. Not the kernels' VoxelBox, which is part of a grid.
 struct VDBBox
 {
   VoxelCorner Min = { INT64_MAX, INT64_MAX, INT64_MAX };
@@ -71,18 +73,18 @@ struct VDBBox
   void Add(const VDBBox& other);
 };
 
-/// What a tree's topology says, without voxel values.
+/// Statistics of a tree's topology, without voxel values.
 struct VDBTopology
 {
   VDBBox ActiveBox;
-  std::uint64_t ActiveVoxels = 0; ///< tiles counted by the voxels they stand for; saturates
-  std::uint64_t TreeBytes = 0;    ///< memory that the tree takes with all its leaves loaded
+  std::uint64_t ActiveVoxels = 0; ///< a tile counts as the voxels that it covers; saturates
+  std::uint64_t TreeBytes = 0;    ///< memory of the tree with all its leaves loaded
 
-  /// A cube of active voxels of one value.
+  /// Adds a cube of active voxels that share one value.
   void AddTile(const VoxelCorner& corner, std::int64_t edge);
 };
 
-/// One node's bits, x slowest, as OpenVDB's NodeMask.
+/// The bit mask of one node, x slowest, as OpenVDB's NodeMask.
 template <int Log2Dim>
 struct VDBMask
 {
@@ -103,19 +105,19 @@ struct VDBMask
 
 using VDBLeafMask = VDBMask<3>;
 
-/// Walks a tree's topology as OpenVDB will read it: a root, and under it nodes of 4096, 128 and 8 voxels per edge.
+/// Walks a tree's topology in OpenVDB's order: a root, then nodes of 4096, 128 and 8 voxels per edge.
 class VDBTreeWalk
 {
 public:
-  /// Called with each leaf's corner and mask of active voxels, in the order in which the leaves are stored.
+  /// Called with the corner and the active mask of each leaf, in the order in which leaves are stored.
   using OnLeaf = std::function<void(const VoxelCorner&, const VDBLeafMask&)>;
 
-  /// @param topology  stands where the tree begins
-  /// @param values    checks the values of the inner nodes
+  /// @param topology  positioned at the start of the tree
+  /// @param values    checks the values of inner nodes
   VDBTreeWalk(VDBBytes& topology, const VDBValueType& type, VDBValues& values, OnLeaf onLeaf = {});
 
-  /// To the tree's end.
-  /// @throws InvalidInput where the topology is none
+  /// Walks to the end of the tree.
+  /// @throws InvalidInput if the topology is invalid
   VDBTopology Walk();
 
 private:
