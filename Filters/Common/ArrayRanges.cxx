@@ -23,11 +23,12 @@ namespace tyndall
 namespace
 {
 constexpr std::size_t BlockValues =
-  8192; ///< looked at in turn for what is not finite, extremes and norms: they stay in a cache
-constexpr std::size_t ThreadValues = 65536; ///< in a thread, at least
-constexpr std::size_t Lanes = 32;           ///< extremes found at once, at least: what vector units of any width fill
+  8192; ///< values per block, which stays in the cache for the tests for finite values, extremes and norms
+constexpr std::size_t ThreadValues = 65536; ///< minimum number of values per thread
+constexpr std::size_t Lanes =
+  32; ///< minimum number of extremes computed in parallel: enough for vector units of any width
 
-/// Whether any exponent is all ones, which that of infinity and of NaN is. Loops that compilers vectorise.
+/// Whether any value has an exponent of all ones, as infinity and NaN do. The loop is written for vectorisation.
 template <class Bits>
 bool HasExponent(const void* values, std::size_t count, Bits exponent)
 {
@@ -58,7 +59,7 @@ bool HasNotFinite(const Integer*, std::size_t)
   return false;
 }
 
-/// What one thread has seen.
+/// Extremes of the values that one thread has processed.
 template <class T>
 class SeenValues
 {
@@ -72,12 +73,12 @@ public:
   {
   }
 
-  /// @param values  whole tuples, finite
+  /// @param values  complete tuples of finite values
   void Add(const T* values, std::size_t count)
   {
     const std::size_t components = this->Lowest.size();
     this->FindExtremesOfLanes(values, count);
-    double least = 0.0, most = 0.0; // that a squared norm can be: rounding keeps order
+    double least = 0.0, most = 0.0; // extremes of the squared norm; rounding preserves order
     for (std::size_t c = 0; c < components; ++c)
     {
       T low = this->LaneLowest[c], high = this->LaneHighest[c];
@@ -166,9 +167,9 @@ private:
     this->LargestSquare = largest;
   }
 
-  std::vector<T> Lowest, Highest; ///< of components
+  std::vector<T> Lowest, Highest; ///< of each component
   double LeastSquare = std::numeric_limits<double>::max(), LargestSquare = 0.0;
-  std::size_t Width; ///< lanes, a multiple of the components
+  std::size_t Width; ///< number of lanes, a multiple of the number of components
   std::vector<T> LaneLowest, LaneHighest;
 };
 
@@ -246,7 +247,7 @@ void LeaveRanges(const ArrayRanges& ranges, vtkDataArray* array)
         ->Set(vtkDataArray::COMPONENT_RANGE(), ranges.components[c].data(), 2);
     }
     information->Set(key, all);
-    all->FastDelete(); // Delete would look for cycles of references
+    all->FastDelete(); // Delete would search for reference cycles
   }
   if (ranges.components.size() > 1)
   {

@@ -13,7 +13,7 @@ namespace
 {
 constexpr double Unknown = std::numeric_limits<double>::infinity();
 
-/// The number after a word; Unknown where there is none.
+/// The number after a word in a file; Unknown if there is none.
 double NumberAfter(const char* path, const std::string& word)
 {
   std::ifstream file(path);
@@ -28,7 +28,7 @@ double NumberAfter(const char* path, const std::string& word)
   return Unknown;
 }
 
-/// The number that a file begins with; Unknown where it does not ("max").
+/// The number at the start of a file; Unknown if there is none (such as "max").
 double NumberInFile(const char* path)
 {
   double number = 0.0;
@@ -38,7 +38,8 @@ double NumberInFile(const char* path)
 double LeftInContainer()
 {
   const double most = NumberInFile("/sys/fs/cgroup/memory.max"), taken = NumberInFile("/sys/fs/cgroup/memory.current");
-  const double cache = NumberAfter("/sys/fs/cgroup/memory.stat", "inactive_file"); // is given back when needed
+  const double cache =
+    NumberAfter("/sys/fs/cgroup/memory.stat", "inactive_file"); // memory that the kernel frees on demand
   return most == Unknown || taken == Unknown ? Unknown : most - taken + (cache == Unknown ? 0.0 : cache);
 }
 

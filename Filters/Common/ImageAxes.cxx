@@ -34,21 +34,21 @@ namespace tyndall
 {
 namespace
 {
-/// Of a filter.
+/// Key in a filter's information for the medium axes.
 vtkInformationDoubleVectorKey* AxesOfFilter()
 {
   static auto* const key = vtkInformationDoubleVectorKey::MakeKey("OWN_AXES", "Tyndall");
   return key;
 }
 
-constexpr double Aslant = 1e-6; ///< a direction that is further from all axes is along none
+constexpr double Aslant = 1e-6; ///< an axis is oblique if its direction deviates from all world axes by more than this
 
-/// Numbers of the values of an image, cells or points, in the order of the aligned one.
-/// @param count  of values along the axes of the image
+/// Indices of an image's values (cells or points) in the order of the aligned image.
+/// @param count  number of values along each image axis
 vtkSmartPointer<vtkIdList> OrderOf(const AxisWays& ways, const std::array<vtkIdType, 3>& count)
 {
   const std::array<vtkIdType, 3> stride = { 1, count[0], count[0] * count[1] };
-  std::array<vtkIdType, 3> counts, first, step; // along the world's axes
+  std::array<vtkIdType, 3> counts, first, step; // per world axis
   for (int axis = 0; axis < 3; ++axis)
   {
     const int world = ways.world[axis];
@@ -173,9 +173,9 @@ vtkSmartPointer<vtkImageData> Aligned(vtkImageData* image)
 
 namespace
 {
-constexpr double AlmostRigid = 1e-4; ///< by which products of a direction matrix's columns may differ from a rotation's
+constexpr double AlmostRigid = 1e-4; ///< tolerance of M^T M = 1 for a direction matrix M to count as a rotation
 
-/// Product of the transposed first and the second.
+/// Product a^T b.
 Rotation TransposedTimes(const Rotation& a, const Rotation& b)
 {
   Rotation product = {};
@@ -200,13 +200,13 @@ double FarthestFromUnit(const Rotation& matrix)
     for (int column = 0; column < 3; ++column)
     {
       const double off = std::abs(matrix[row][column] - (row == column ? 1.0 : 0.0));
-      farthest = off <= farthest ? farthest : off; // NaN is far, too
+      farthest = off <= farthest ? farthest : off; // the comparison makes NaN count as far
     }
   }
   return farthest;
 }
 
-/// The rotation next to a matrix that is almost one: Newton's iteration for the polar decomposition.
+/// The nearest rotation to a matrix that is almost a rotation: Newton-Schulz iteration for the polar decomposition.
 Rotation NextRotation(Rotation matrix)
 {
   for (int step = 0; step < 4 && FarthestFromUnit(TransposedTimes(matrix, matrix)) > 1e-15; ++step)
@@ -226,7 +226,7 @@ Rotation NextRotation(Rotation matrix)
   return matrix;
 }
 
-/// The direction matrix where spacings are above 0.
+/// The direction matrix for positive spacings.
 Rotation DirectionOf(vtkImageData* image)
 {
   Rotation direction;
@@ -252,7 +252,7 @@ void SetDirection(vtkImageData* image, const Rotation& direction)
 
 using Turn = std::function<OwnAxes::Vec(const OwnAxes::Vec&)>;
 
-/// Of field data: a light's place, then its direction, among these of its numbers.
+/// Components of a lamp in field data: the first one of its position, and of its direction.
 constexpr int LampPlace = 1, LampDirection = 4;
 
 vtkSmartPointer<vtkDataArray> NewLike(vtkDataArray* array)
@@ -265,7 +265,7 @@ vtkSmartPointer<vtkDataArray> NewLike(vtkDataArray* array)
   return made;
 }
 
-/// Each three components as a vector, from component `first` on.
+/// Transforms each three consecutive components from `first` on as a vector.
 void TurnComponents(vtkDataArray* from, int first, int last, const Turn& turn, vtkDataArray* to)
 {
   auto* const floats = vtkArrayDownCast<vtkFloatArray>(from);
@@ -306,7 +306,7 @@ vtkSmartPointer<vtkDataArray> TurnedArray(vtkDataArray* array, const Turn& turn)
   return turned;
 }
 
-/// In the place of an array of the same name.
+/// Replaces the array of the same name, and keeps its role as active attribute.
 void Replace(vtkDataSetAttributes* arrays, int index, vtkDataArray* other)
 {
   const int attribute = arrays->IsArrayAnAttribute(index);
@@ -322,8 +322,8 @@ bool IsOfVectors(vtkDataArray* array)
   return array && array->GetName() && array->GetNumberOfComponents() % 3 == 0;
 }
 
-/// Field data that are directions, and lamps.
-/// @param note  TimeBeforeTurning
+/// Rotates directions in field data, and positions and directions of lamps.
+/// @param note  whether to set TimeBeforeTurning
 void TurnFacts(vtkImageData* image, const Turn& place, const Turn& way, bool note)
 {
   vtkNew<vtkFieldData> own;
@@ -361,7 +361,7 @@ bool IsVectorName(const std::string& name)
   return std::find(std::begin(VectorNames), std::end(VectorNames), name) != std::end(VectorNames);
 }
 
-/// The array that a filter was told to take for the mean direction; empty: the usual one.
+/// Name of the array selected as mean direction; empty: the default one.
 std::string ChosenMeanDirection(vtkAlgorithm* filter, int port, vtkImageData* image)
 {
   const std::vector<std::string> chosen = VoxelArraysOf(filter->GetInputPortInformation(port)).chosen;
@@ -372,7 +372,7 @@ std::string ChosenMeanDirection(vtkAlgorithm* filter, int port, vtkImageData* im
   return array && array->GetName() ? array->GetName() : "";
 }
 
-/// The array of which another one is the turned copy, with all of its tuples; null: none of these.
+/// The original of a rotated copy, if it has the same number of tuples; null: not found.
 vtkDataArray* BeforeTurning(vtkDataArray* turned, vtkImageData* image)
 {
   for (vtkDataSetAttributes* arrays : { static_cast<vtkDataSetAttributes*>(image ? image->GetCellData() : nullptr),

@@ -48,21 +48,21 @@ namespace tyndall
 {
 namespace
 {
-/// Of a port: that its images are pictures.
+/// Key in a port's information: its images are pictures.
 vtkInformationIntegerKey* ForPictures()
 {
   static auto* const key = vtkInformationIntegerKey::MakeKey("FOR_PICTURES", "Tyndall");
   return key;
 }
 
-/// Of a port: that it is for images, whatever it takes.
+/// Key in a port's information: it is for images, although it accepts any data.
 vtkInformationIntegerKey* ForImages()
 {
   static auto* const key = vtkInformationIntegerKey::MakeKey("FOR_IMAGES", "Tyndall");
   return key;
 }
 
-/// Of a port: names of the arrays that are read of its image.
+/// Key in a port's information: names of the arrays that the filter reads from its image.
 vtkInformationStringVectorKey* ChosenArrays()
 {
   static auto* const key = vtkInformationStringVectorKey::MakeKey("CHOSEN_ARRAYS", "Tyndall");
@@ -75,7 +75,7 @@ vtkInformationStringVectorKey* NamedArrays()
   return key;
 }
 
-/// Of a filter.
+/// Key in a filter's information: names of point arrays that it averages to cells.
 vtkInformationStringKey* AveragedArrays()
 {
   static auto* const key = vtkInformationStringKey::MakeKey("AVERAGED_ARRAYS", "Tyndall");
@@ -98,7 +98,7 @@ bool HasArrays(vtkDataSetAttributes* attributes)
   return attributes->GetNumberOfArrays() > flags;
 }
 
-/// Flags of points as those of the voxels around them.
+/// Converts flags of points to flags of the voxels around them.
 void FlagVoxels(vtkImageData* points, vtkImageData* voxels)
 {
   const char* const name = vtkDataSetAttributes::GhostArrayName();
@@ -119,7 +119,7 @@ void FlagVoxels(vtkImageData* points, vtkImageData* voxels)
   voxels->GetCellData()->AddArray(flags);
 }
 
-/// Where the outermost corner of the voxel around point 0 is.
+/// Position of the corner of the voxel around point 0 that has the lowest indices.
 std::array<double, 3> CornerBefore(const double* origin, const double* spacing, const double* direction)
 {
   std::array<double, 3> corner;
@@ -134,7 +134,7 @@ std::array<double, 3> CornerBefore(const double* origin, const double* spacing, 
   return corner;
 }
 
-/// As far as is known before the image.
+/// The same before the image is known: from announced information.
 bool MayBeAroundPoints(vtkAlgorithm* filter, int port, vtkInformation* input)
 {
   auto* const image = vtkImageData::SafeDownCast(vtkDataObject::GetData(input));
@@ -151,7 +151,7 @@ std::string NameOfInput(int port)
   return "The input" + (port > 0 ? " " + std::to_string(port) : std::string());
 }
 
-/// @return which filters of ParaView make an image of such data, as what they do
+/// @return a sentence naming filters of ParaView that convert such data to an image
 std::string HowToMakeAnImage(vtkDataObject* data)
 {
   const std::string resample = "ResampleToImage (Resample To Image)";
@@ -207,8 +207,8 @@ void TakeOneImage(vtkInformation* port)
 
 namespace
 {
-/// Whether vtkCompositeDataPipeline runs the filter for each block of this input; of several such inputs it does so for
-/// the first, and refuses the others.
+/// Whether vtkCompositeDataPipeline runs the filter for each block of this input. If there are several such inputs, it
+/// iterates over the first and refuses the others.
 bool IsTakenByBlocks(vtkAlgorithm* filter, int port, vtkDataObject* input)
 {
   vtkInformation* const information = filter->GetInputPortInformation(port);
@@ -220,7 +220,8 @@ bool IsTakenByBlocks(vtkAlgorithm* filter, int port, vtkDataObject* input)
   return taken;
 }
 
-/// @return how many blocks the port takes: of one for images no others, each of which is an error
+/// @return number of blocks that the port processes; in a port for images, blocks of other types are errors and not
+///   counted
 int CountBlocks(vtkCompositeDataSet* composite, vtkInformation* port)
 {
   int count = 0;
@@ -233,7 +234,7 @@ int CountBlocks(vtkCompositeDataSet* composite, vtkInformation* port)
   return count;
 }
 
-/// What it means that the filter runs for each block of an input, and what to do about it.
+/// Explains what it means that the filter runs for each block of an input, and what to do about it.
 std::string AboutBlocks(vtkInformation* port)
 {
   if (IsForImagesOfScene(port))
@@ -253,7 +254,7 @@ std::string AboutBlocks(vtkInformation* port)
 void WarnOfBlocks(vtkAlgorithm* filter, vtkInformation* request, vtkInformationVector** inputs)
 {
   vtkMultiProcessController* const ranks = vtkMultiProcessController::GetGlobalController();
-  // With the whole of the input, this request comes once before REQUEST_DATA of all blocks.
+  // This request comes once, with the complete input, before the REQUEST_DATA requests for the blocks.
   if (!request->Has(vtkDemandDrivenPipeline::REQUEST_DATA_NOT_GENERATED()) || (ranks && ranks->GetLocalProcessId() > 0))
   {
     return;
@@ -293,7 +294,7 @@ void RequireImages(vtkAlgorithm* filter)
 
 namespace
 {
-/// @throws InvalidInput where an array of these has not a value for each of `count` points, cells or rows
+/// @throws InvalidInput if an array does not have one tuple for each of `count` points, cells or rows
 void RequireAsLong(vtkDataSetAttributes* arrays, vtkIdType count, const std::string& elements, const std::string& input)
 {
   for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
@@ -320,7 +321,8 @@ void RequireWholeArrays(vtkAlgorithm* filter)
     {
       vtkDataObject* const input = filter->GetInputDataObject(port, i);
       auto* const image = vtkImageData::SafeDownCast(input);
-      const bool isCutToNothing = image && image->GetNumberOfPoints() == 0; // by VTK, which may leave old arrays
+      const bool isCutToNothing =
+        image && image->GetNumberOfPoints() == 0; // VTK emptied it, but may have left old arrays
       for (const auto& [kind, elements] : kinds)
       {
         if (vtkDataSetAttributes* const arrays = input && !isCutToNothing ? input->GetAttributes(kind) : nullptr)
@@ -349,7 +351,7 @@ VoxelArrays VoxelArraysOf(vtkInformation* port)
 
 namespace
 {
-/// Whether an image at another port has the points of the medium at port 0, which is read as the cells between them.
+/// Whether an image at another port has the same number of points as the medium at port 0, which is read by its cells.
 bool MediumHasCellsBetween(vtkAlgorithm* filter, vtkImageData* image)
 {
   const bool any = filter->GetNumberOfInputConnections(0) > 0;
@@ -428,9 +430,10 @@ void AddAveraged(vtkAlgorithm* filter, std::vector<std::string>& settings)
 
 namespace
 {
-/// The direction matrix of an image before there is any. VTK's filters pass on in what they tell where an image lies
-/// and its spacing, but not its directions, which only the image itself then has: those of the filter before hold, but
-/// where an image is made anew or an imaging filter (vtkImageAlgorithm) loses them.
+/// The direction matrix of an image before the image exists. VTK's filters announce origin and spacing of an image, but
+/// not its direction matrix, which only the image itself has. Therefore the direction announced further upstream is
+/// used, unless a filter on the way makes a new image or is an imaging filter (vtkImageAlgorithm), which drops
+/// directions.
 /// @return null: the unit matrix
 const double* DirectionTold(vtkInformation* input)
 {
@@ -452,7 +455,7 @@ void TellVoxels(vtkAlgorithm* filter, int port, vtkInformationVector* inputs, vt
   vtkInformation* const input = inputs->GetInformationObject(0);
   if (!input || IsTakenByBlocks(filter, port, vtkDataObject::GetData(input)))
   {
-    return; // each block has voxels of its own
+    return; // each block has its own voxels
   }
   std::array<int, 6> told = { 0, 1, 0, 1, 0, 1 };
   const bool isKnown = input->Has(Pipeline::WHOLE_EXTENT()) != 0;
@@ -476,7 +479,7 @@ void TellVoxels(vtkAlgorithm* filter, int port, vtkInformationVector* inputs, vt
     const int* const copied = output->Get(Pipeline::WHOLE_EXTENT());
     if (copied ? !isKnown || !std::equal(told.begin(), told.end(), copied) : isKnown)
     {
-      continue; // it has no voxels, or others
+      continue; // it has no voxels, or other ones
     }
     output->Set(Pipeline::WHOLE_EXTENT(), extent.data(), 6);
     if (ways && origin)
@@ -510,7 +513,7 @@ bool Any(vtkUnsignedCharArray* flags, unsigned char flag)
     std::any_of(values, values + flags->GetNumberOfTuples(), [=](unsigned char value) { return (value & flag) != 0; });
 }
 
-/// The cells that have a point.
+/// The cells that share a point.
 void HideAround(vtkImageData* image, vtkIdType point, std::vector<unsigned char>& hidden)
 {
   int points[3];
@@ -576,7 +579,7 @@ void CheckDuplicates(vtkAlgorithm* filter, vtkInformationVector* outputs)
   auto* const pieces = vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_PIECES();
   if (filter->IsA("vtkParticipatingMedium"))
   {
-    return; // cell by cell: a duplicate's medium is that of the cell
+    return; // such filters work cell by cell: a duplicate has the medium of its cell
   }
   bool divided = false;
   for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)

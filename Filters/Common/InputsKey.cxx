@@ -21,7 +21,7 @@ namespace tyndall
 {
 namespace
 {
-/// In the manner of FNV, eight bytes at once.
+/// A hash similar to FNV that processes eight bytes at a time.
 class Digest
 {
 public:
@@ -91,7 +91,7 @@ void AddCellArray(Digest& digest, vtkCellArray* cells)
   }
 }
 
-/// @param kinds  of arrays
+/// @param kinds  attribute types of the arrays to include
 std::uint64_t KeyOf(vtkDataObject* data, const std::vector<int>& kinds)
 {
   Digest digest;

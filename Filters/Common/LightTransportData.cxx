@@ -61,7 +61,7 @@ vtkSmartPointer<vtkFloatArray> AsFloats(vtkDataArray* array)
     return given;
   }
   auto floats = vtkSmartPointer<vtkFloatArray>::New();
-  // Doubles are what VTK's own filters often make, bytes are an octree's levels.
+  // VTK's own filters often produce doubles; levels of an octree are bytes.
   if (!ConvertInThreads<vtkDoubleArray>(array, floats) && !ConvertInThreads<vtkUnsignedCharArray>(array, floats))
   {
     floats->DeepCopy(array);
@@ -105,7 +105,7 @@ vtkSmartPointer<vtkFloatArray> AveragedToCells(vtkImageData* image, vtkFloatArra
 {
   vtkNew<vtkImageData> points;
   points->CopyStructure(image);
-  vtkNew<vtkFloatArray> named; // The filter loses an array without a name.
+  vtkNew<vtkFloatArray> named; // The filter drops an array without a name.
   named->ShallowCopy(ofPoints);
   named->SetName("averaged");
   points->GetPointData()->AddArray(named);
@@ -115,14 +115,14 @@ vtkSmartPointer<vtkFloatArray> AveragedToCells(vtkImageData* image, vtkFloatArra
   return vtkArrayDownCast<vtkFloatArray>(average->GetOutput()->GetCellData()->GetArray("averaged"));
 }
 
-/// An array of cells or points, found but not looked at.
+/// A cell or point array that was found; nothing is checked.
 struct Found
 {
   vtkDataArray* array = nullptr;
   bool ofPoints = false;
 };
 
-/// The same array, or a copy of it that has `empty` in hidden cells.
+/// Returns the array, or a copy in which hidden cells have the value `empty` if there are any.
 vtkSmartPointer<vtkFloatArray> WithoutHidden(
   vtkImageData* image, const vtkSmartPointer<vtkFloatArray>& ofCells, float empty)
 {
@@ -144,7 +144,7 @@ vtkSmartPointer<vtkFloatArray> WithoutHidden(
   return visible;
 }
 
-/// @param empty  of hidden cells
+/// @param empty  value of hidden cells
 FloatField ToField(vtkImageData* image, const Found& found, const std::string& name, Components components, float empty)
 {
   CheckShape(found.array, name, found.ofPoints ? image->GetNumberOfPoints() : image->GetNumberOfCells(), components);
@@ -152,19 +152,19 @@ FloatField ToField(vtkImageData* image, const Found& found, const std::string& n
   return FloatField(WithoutHidden(image, found.ofPoints ? AveragedToCells(image, floats) : floats, empty));
 }
 
-/// What SetInputArrayToProcess was told.
+/// The array selected by SetInputArrayToProcess.
 struct Choice
 {
-  std::string name;   ///< of an array
-  int attribute = -1; ///< or the attribute it is, e.g. SCALARS
+  std::string name;   ///< name of the array
+  int attribute = -1; ///< or its attribute type, e.g. SCALARS
   bool pointsFirst = false;
-  bool made = false; ///< by a user: not the default, and not the default's name
+  bool made = false; ///< selected by the user: neither VTK's default nor the name of the default array
 };
 
-/// What ParaView's panel hands on where the input has no array of the default name (none_string of the proxies).
+/// The name that ParaView's panel passes if the input has no array of the default name (none_string of the proxies).
 const char* const NothingChosen = "(by name)";
 
-/// Of field data.
+/// Value in field data `..._array`: the point array takes precedence.
 const char* const OfPoints = "points";
 
 std::string ChoiceFact(const std::string& quantity)
@@ -172,7 +172,7 @@ std::string ChoiceFact(const std::string& quantity)
   return quantity + "_array";
 }
 
-/// What the filter before took for a quantity, where that has a usual name and the array is still there.
+/// Uses the array that the filter upstream used for the quantity, if it recorded one that still exists.
 void FollowFilterBefore(vtkImageData* image, Choice& choice)
 {
   auto* const said =
@@ -186,7 +186,7 @@ void FollowFilterBefore(vtkImageData* image, Choice& choice)
   }
 }
 
-/// @param image  of the filter's input; null: what the filter before took does not matter
+/// @param image  the filter's input; null: records of the filter upstream are ignored
 Choice ChoiceOf(vtkAlgorithm* filter, int index, vtkImageData* image, const std::string& otherwise)
 {
   vtkInformation* information = filter->GetInputArrayInformation(index);
@@ -222,7 +222,7 @@ vtkDataArray* ChosenArray(vtkDataSetAttributes* attributes, const Choice& choice
   return choice.attribute >= 0 ? attributes->GetAttribute(choice.attribute) : attributes->GetArray(choice.name.c_str());
 }
 
-/// @throws InvalidInput where the array is not of numbers
+/// @throws InvalidInput if the array is not numeric
 void CheckNumeric(vtkDataSetAttributes* attributes, const Choice& choice)
 {
   vtkAbstractArray* array = attributes->GetAbstractArray(choice.name.c_str());
@@ -245,7 +245,7 @@ Found Find(vtkImageData* image, const Choice& choice)
 
 FloatField Read(vtkImageData* image, const Choice& choice, Need need, Components components, float empty = 0.0f)
 {
-  GridOf(image); // says what is wrong with an image that has no cells
+  GridOf(image); // throws the right error for an image without cells
   const Found found = Find(image, choice);
   if (found.array)
   {
@@ -333,7 +333,7 @@ FloatField ReadCells(vtkImageData* image, const std::string& name, Need need, Co
 FloatField ReadChosenCells(
   vtkAlgorithm* filter, int index, vtkImageData* image, const std::string& otherwise, Need need, Components components)
 {
-  const float empty = otherwise == "ior" ? 1.0f : 0.0f; // what a hidden cell has of it
+  const float empty = otherwise == "ior" ? 1.0f : 0.0f; // value of hidden cells
   GridOf(image);
   return Read(image, ChoiceOf(filter, index, image, otherwise), need, components, empty);
 }
@@ -520,7 +520,7 @@ double ReadFact(vtkDataObject* data, const char* name, double missing)
 
 namespace
 {
-/// W through the faces, in the order of FaceRadiance; 0 where there is no such field data.
+/// Power through each face, W, in the order of FaceRadiance; 0 if there is no such field data.
 std::array<Rgb, 6> FacePowersOf(vtkDataObject* data)
 {
   std::array<Rgb, 6> powers = {};
@@ -561,7 +561,7 @@ UncollidedInput ReadUncollided(vtkImageData* image, const Grid& medium)
 
 namespace
 {
-/// A row of an array, zeros where the array is not there; of fewer components the first one repeated.
+/// A row of an array; zeros if the array is missing. Missing components repeat the last one.
 template <std::size_t N>
 std::array<double, N> Row(vtkDataArray* array, vtkIdType row)
 {
@@ -668,7 +668,7 @@ Illumination InOwnAxes(Illumination illumination, const OwnAxes& axes)
 
 namespace
 {
-/// Hidden pixels are black.
+/// Hidden pixels are set to black.
 void DarkenHidden(vtkImageData* image, std::vector<float>& rgb)
 {
   vtkUnsignedCharArray* const flags = image->GetPointGhostArray();
@@ -776,7 +776,7 @@ std::string Described(const Grid& grid)
 
 bool AreSameVoxels(const Grid& a, const Grid& b)
 {
-  constexpr double part = 1e-3; // of a voxel
+  constexpr double part = 1e-3; // tolerance as a fraction of a voxel
   bool agree = a.size == b.size;
   for (int axis = 0; axis < 3; ++axis)
   {

@@ -29,7 +29,7 @@ namespace tyndall
 {
 namespace
 {
-/// Of colour.
+/// Names the components of colours.
 void NameChannels(vtkDataArray* array)
 {
   const char* const names[] = { "R", "G", "B" };
@@ -78,7 +78,7 @@ vtkNew<vtkDoubleArray> LightArray(const char* name, std::initializer_list<const 
   return array;
 }
 
-/// An array of an image's cells, not added to it yet.
+/// Makes a cell array for an image without adding it.
 vtkSmartPointer<vtkFloatArray> CellArray(
   vtkImageData* image, const char* name, std::vector<float>&& values, int components)
 {
@@ -177,7 +177,7 @@ std::string Lines(const std::vector<std::string>& texts)
 
 namespace
 {
-/// Whose moments are taken from it.
+/// Writes the angular moments; moves them out of `light`.
 void WriteMoments(LightField& light, vtkImageData* output)
 {
   const auto voxels = static_cast<std::size_t>(output->GetNumberOfCells());
@@ -205,7 +205,7 @@ void WriteMoments(LightField& light, vtkImageData* output)
 
 namespace
 {
-/// Removes the light of another solve that the input has been through.
+/// Removes light that an earlier solver in the pipeline added to the input.
 void RemoveLight(vtkImageData* output)
 {
   for (const char* array :
@@ -222,7 +222,7 @@ void RemoveLight(vtkImageData* output)
   }
 }
 
-/// Field data of light.
+/// Writes the field data that describe the light.
 void WriteFacts(const LightField& light, vtkImageData* output)
 {
   const int channels = light.channels;
@@ -297,7 +297,7 @@ void WriteLitColor(LitColor&& lit, vtkImageData* output)
 
 void WriteConvergence(const std::vector<ConvergenceRow>& rows, const std::vector<int>& sweepsSaved, vtkTable* table)
 {
-  table->Initialize(); // ParaView leaves what a rank without voxels had
+  table->Initialize(); // ParaView keeps old rows on a rank without voxels
   vtkNew<vtkIntArray> iteration;
   iteration->SetName("iteration");
   for (const ConvergenceRow& row : rows)

@@ -23,7 +23,7 @@ namespace tyndall
 {
 namespace
 {
-constexpr double Contradicts = 0.01; ///< by how much g may differ from the mean cosine of a function that needs none
+constexpr double Contradicts = 0.01; ///< tolerance of g for functions that determine their mean cosine
 
 constexpr const char* NameFact = "phase_function";
 constexpr const char* GFact = "g";
@@ -45,7 +45,7 @@ bool IsGrey(const Rgb& rgb)
   return rgb[0] == rgb[1] && rgb[0] == rgb[2];
 }
 
-/// All numbers of field data; empty: there are none of that name.
+/// All numbers of a field data array; empty if there is none of that name.
 std::vector<double> ReadNumbers(vtkDataObject* data, const char* name)
 {
   vtkAbstractArray* const found = data->GetFieldData()->GetAbstractArray(name);
@@ -192,7 +192,7 @@ PhaseDescription ReadPhaseDescription(vtkDataObject* medium)
 
 std::string PhaseInWords(vtkDataObject* medium)
 {
-  constexpr vtkIdType most = 9; // values that are listed
+  constexpr vtkIdType most = 9; // maximum number of values to list
   std::string words;
   for (const char* name : Facts)
   {

@@ -15,7 +15,8 @@ namespace tyndall
 {
 namespace
 {
-/// One text for each property that is out of its range; it begins with the property's name and a blank.
+/// Key in a filter's information: one text for each property out of its range, starting with the property's name and a
+/// blank.
 vtkInformationStringVectorKey* Refused()
 {
   static auto* const key = vtkInformationStringVectorKey::MakeKey("REFUSED_PROPERTIES", "Tyndall");

@@ -47,7 +47,7 @@ std::string FolderOf(const std::string& path)
   return slash == std::string::npos ? "./" : path.substr(0, slash + 1);
 }
 
-/// What umask forbids, asked without changing it where that is possible: other threads may make files meanwhile.
+/// The umask, read without changing it if possible, since other threads may create files meanwhile.
 mode_t Umask()
 {
   std::ifstream status("/proc/self/status");
@@ -95,14 +95,14 @@ void WholeFile::Fail(const std::string& why) const
 
 void WholeFile::LookAtTarget()
 {
-  constexpr int mostLinks = 40; // as the system's own
+  constexpr int mostLinks = 40; // the same limit as the system's
   char link[PATH_MAX];
   for (int links = 0;; ++links)
   {
     const ssize_t length = readlink(this->Target.c_str(), link, sizeof(link));
     if (length < 0)
     {
-      break; // no link
+      break; // not a symbolic link
     }
     if (links == mostLinks)
     {
@@ -130,7 +130,8 @@ void WholeFile::LookAtTarget()
   }
 }
 
-/// Where the file system and the process can: the file is reached through its descriptor, which ends with the process.
+/// Opens an unnamed file if file system and process allow it: it is accessible through its descriptor only, which
+/// closes when the process ends.
 bool WholeFile::OpenUnnamed()
 {
 #ifdef O_TMPFILE
@@ -179,7 +180,7 @@ void WholeFile::KeepOwnerAndMode()
     (now.st_uid != this->Before.st_uid || now.st_gid != this->Before.st_gid) &&
     fchown(this->File, this->Before.st_uid, this->Before.st_gid) != 0)
   {
-    mode &= 0777; // another's file: without rights that came with its owner
+    mode &= 0777; // another owner's file: drop the set-user and set-group bits
   }
   if (fchmod(this->File, mode) != 0)
   {
@@ -189,7 +190,7 @@ void WholeFile::KeepOwnerAndMode()
 
 void WholeFile::Finish()
 {
-  if (fsync(this->File) != 0) // some file systems tell only now that they are full
+  if (fsync(this->File) != 0) // some file systems report only now that they are full
   {
     this->Fail(std::strerror(errno));
   }

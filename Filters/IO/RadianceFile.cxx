@@ -24,7 +24,8 @@ namespace tyndall
 {
 namespace
 {
-/// Smallest share of a byte that a pixel takes in any file, by far: black ones in large compressed blocks.
+/// Upper bound of the number of pixels that one byte of a file can encode, with a wide margin: black pixels in large
+/// compressed blocks.
 constexpr std::uint64_t MostPixelsAByte = 20000;
 constexpr std::int64_t LongestEdge = 1 << 17;
 
@@ -67,19 +68,19 @@ void CheckSize(const std::string& path, std::int64_t width, std::int64_t height,
 
 struct HdrHeader
 {
-  int Width = 0, Height = 0; ///< of the picture as it is seen
-  int Rows = 0, Columns = 0; ///< as it is stored
-  bool Transposed = false;   ///< a stored row is a column
-  bool FromTop = true;       ///< Y falls along the file
-  bool FromLeft = true;      ///< X grows along the file
+  int Width = 0, Height = 0; ///< size of the displayed picture
+  int Rows = 0, Columns = 0; ///< size as stored
+  bool Transposed = false;   ///< each stored row is a column of the picture
+  bool FromTop = true;       ///< Y decreases along the file
+  bool FromLeft = true;      ///< X increases along the file
   bool Xyz = false;
-  double Exposure = 1.0;  ///< what the radiance was multiplied by
-  std::size_t Pixels = 0; ///< where they begin
+  double Exposure = 1.0;  ///< factor by which the radiance was multiplied
+  std::size_t Pixels = 0; ///< offset of the pixel data, bytes
 };
 
 constexpr std::size_t LongestHdrHeader = 1 << 16;
 
-/// The lines of a header, one after the other.
+/// Reads the lines of a header one by one.
 class HdrLines
 {
 public:
@@ -106,7 +107,7 @@ public:
     return text;
   }
 
-  std::size_t At() const { return this->Place; } ///< byte at which the next one begins
+  std::size_t At() const { return this->Place; } ///< offset of the next line, bytes
 
 private:
   const std::string& Path;
@@ -133,7 +134,7 @@ double ParseHdrExposure(const std::string& path, const std::string& text)
   return exposure;
 }
 
-/// The line that says how large the picture is and how its rows lie, e.g. "-Y 512 +X 1024".
+/// Reads the line that gives the picture's size and the order of its rows, e.g. "-Y 512 +X 1024".
 void ParseHdrSize(const std::string& path, const std::string& size, HdrHeader& header)
 {
   char signs[2] = {}, axes[2] = {};
@@ -187,7 +188,7 @@ HdrHeader ParseHdrHeader(const std::string& path, const std::vector<unsigned cha
   return header;
 }
 
-/// Decodes the rows of a picture, never beyond the bytes or the row.
+/// Decodes the rows of a picture without reading beyond the file or writing beyond the row.
 class HdrRows
 {
 public:
@@ -235,7 +236,8 @@ public:
   }
 
 private:
-  /// Pixels one by one; (1, 1, 1, n) repeats the last one n times, n shifted by 8 bits for each such pixel before it.
+  /// Decodes pixels one by one; (1, 1, 1, n) repeats the last pixel n times, and n is shifted by 8 bits for each such
+  /// code directly before it.
   void OldRow(const unsigned char* start, std::vector<unsigned char>& rgbe)
   {
     unsigned char pixel[4];
@@ -311,7 +313,7 @@ void XyzToRgb(float* pixel)
 // OpenEXR
 //
 
-/// The windows of the first part, read by OpenEXR's C interface, which can be told how large a picture may be at most.
+/// The windows of the first part, read by OpenEXR's C interface, which accepts a limit for the picture's size.
 struct ExrWindows
 {
   exr_attr_box2i_t Data, Display;
@@ -373,11 +375,11 @@ ExrWindows WindowsOfExr(const std::string& path)
   return windows;
 }
 
-/// Where a picture's colours are.
+/// The channels that hold a picture's colours.
 struct ExrChannels
 {
-  std::string Names[3]; ///< one channel three times if it is grey
-  bool Chroma = false;  ///< Y, RY, BY: OpenEXR converts them
+  std::string Names[3]; ///< the same channel three times if the picture is grey
+  bool Chroma = false;  ///< Y, RY, BY, which OpenEXR converts to RGB
 };
 
 ExrChannels FindChannels(const std::string& path, const Imf::ChannelList& list)

@@ -47,7 +47,8 @@ Kind KindOf(const std::string& path)
   return text == "\x76\x2f\x31\x01" ? Kind::OpenExr : text.compare(0, 2, "#?") == 0 ? Kind::Radiance : Kind::Unknown;
 }
 
-/// Kind by content, or by extension where the content says none: the reader of that kind then says what is wrong.
+/// The file's type by content, or by extension if the content is not recognised: the reader for that type then reports
+/// the error.
 Kind KindToRead(const char* path)
 {
   if (path == nullptr || path[0] == '\0')
@@ -69,8 +70,9 @@ PictureSize Shrunk(const PictureSize& size, int width)
   return { width, std::max(1, static_cast<int>(std::lround(double(size.Height) * width / size.Width))) };
 }
 
-/// @throws InvalidInput where a pixel is not finite
-/// @return how many values were below 0 and are 0 now
+/// Sets negative values to 0.
+/// @throws InvalidInput if a pixel is not finite
+/// @return number of negative values
 std::size_t Clean(RadiancePicture& picture, const std::string& path)
 {
   std::size_t negative = 0;
@@ -93,7 +95,7 @@ std::size_t Clean(RadiancePicture& picture, const std::string& path)
   return negative;
 }
 
-/// Brightens, and holds pixels to a brightness.
+/// Applies Exposure and MaximumRadiance.
 void Expose(RadiancePicture& picture, double exposure, double maximum)
 {
   const double scale = std::exp2(exposure);
@@ -109,13 +111,14 @@ void Expose(RadiancePicture& picture, double exposure, double maximum)
   }
 }
 
-/// Share of each old interval in each new one: new interval k takes Weights[k] from First[k] on. They sum to 1.
+/// Overlap of old and new intervals of [0, 1]: new interval k is the mean of old intervals from First[k] on with
+/// weights Weights[k], which sum to 1.
 struct Overlaps
 {
   std::vector<std::size_t> First;
   std::vector<std::vector<double>> Weights;
 
-  /// @param measure  what is averaged over, growing along the axis: a function of [0, 1]
+  /// @param measure  increasing function on [0, 1] whose differences weight the mean
   template <typename Measure>
   Overlaps(int from, int to, Measure&& measure)
   {
@@ -135,7 +138,7 @@ struct Overlaps
   }
 };
 
-/// Means over the solid angle of larger pixels.
+/// Averages a picture over the solid angle of larger pixels.
 RadiancePicture Shrink(const RadiancePicture& picture, const PictureSize& size)
 {
   const Overlaps columns(picture.Width, size.Width, [](double u) { return u; });

@@ -55,7 +55,7 @@ std::string Bytes(double bytes)
   return Text(bytes >= 999.5 ? "%.4g" : "%.3g", bytes) + " " + units[unit];
 }
 
-/// Memory of an image with a grid's voxels as cells of that extent.
+/// Memory of an image of that extent with one grid's values as a cell array, bytes.
 double BytesAsImage(const VDBGrid& grid, const std::array<std::int64_t, 6>& extent)
 {
   return tyndall::CellsOf(extent) * static_cast<double>(tyndall::FindValueType(grid.Type)->Size);
@@ -84,7 +84,7 @@ std::string Summary(const VDBFile& file)
   return lines;
 }
 
-/// The largest part of an image's voxels that is active in any of its grids.
+/// The largest fraction of an image's voxels that is active in one of its grids.
 double ActivePart(const std::vector<const VDBGrid*>& grids, const std::array<std::int64_t, 6>& extent)
 {
   double most = 0.0;
@@ -95,9 +95,9 @@ double ActivePart(const std::vector<const VDBGrid*>& grids, const std::array<std
   return most;
 }
 
-/// Without a MaximumMemory, an image takes no more than the larger of these, bytes and bytes for each of its file,
-/// unless the file notes that it was an image of that size. Clouds with a sparse outline take 10 to 300 bytes for one
-/// of their file; one changed bit of a small file can say terabytes.
+/// Default limit of an image's memory, unless the file notes that it was an image of that size: the larger of
+/// SmallImage bytes and MostOfFile bytes per byte of the file. Clouds with a sparse outline take 10 to 300 bytes per
+/// byte of their file; a single changed bit in a small file can demand terabytes.
 constexpr double SmallImage = 1073741824.0, MostOfFile = 1000.0;
 
 openvdb::CoordBBox CellsIn(const int* extent)
@@ -125,7 +125,7 @@ std::array<int, 6> WholeExtentOf(const tyndall::VDBGeometry& image)
   return extent;
 }
 
-/// One file has no time, of more each has the one of its place.
+/// Announces time steps: none for one file; for several, each file's index is its time.
 void TellTimes(vtkInformation* info, int files)
 {
   if (files < 2)
@@ -146,13 +146,13 @@ void TellTimes(vtkInformation* info, int files)
 
 struct vtkVDBReader::Internals
 {
-  /// The file as last listed.
+  /// The file that was listed last.
   std::unique_ptr<VDBFile> File;
   std::string Path;
   std::string Summary;
-  std::vector<std::string> Files; ///< of a series by time
-  int ListedFile = -1;            ///< which of them File is
-  std::set<std::string> Listed;   ///< names that came into the selection from a file
+  std::vector<std::string> Files; ///< in order of time for a series
+  int ListedFile = -1;            ///< index of the listed file
+  std::set<std::string> Listed;   ///< names added to the selection because a file has them
   std::string OnlyGrid;           ///< set by SetGridName, not applied yet
 
   std::vector<const VDBGrid*> Chosen;
@@ -160,9 +160,9 @@ struct vtkVDBReader::Internals
   bool IsBare = false;    ///< no chosen grid has an active voxel
   std::string NoImageYet; ///< why the chosen grids are no image unless Resample is on; empty: they are
 
-  bool Resample = false;    ///< where axes go aslant
-  bool Resampled = false;   ///< Image is along the world's axes, and not along the grids'
-  tyndall::VDBGeometry Own; ///< of the grids then
+  bool Resample = false;    ///< resample grids with oblique axes
+  bool Resampled = false;   ///< the grids are oblique and Image lies along the world axes
+  tyndall::VDBGeometry Own; ///< geometry of the grids if they are resampled
 
   bool IsSeries() const { return this->Files.size() > 1; }
   void Look(int file, vtkDataArraySelection* selection, vtkIdType maximumMemory);
@@ -180,7 +180,7 @@ struct vtkVDBReader::Internals
   Limit LimitOfMemory(vtkIdType maximum) const;
 };
 
-/// Lists one of the files, and finds out which image its chosen grids are.
+/// Lists one of the files, and determines the image of its chosen grids.
 void vtkVDBReader::Internals::Look(int file, vtkDataArraySelection* selection, vtkIdType maximumMemory)
 {
   this->Chosen.clear();
@@ -191,7 +191,8 @@ void vtkVDBReader::Internals::Look(int file, vtkDataArraySelection* selection, v
   this->CheckMemory(maximumMemory);
 }
 
-/// Anew each time: it takes milliseconds, and a file's time and length do not tell that it was written again.
+/// Lists the file anew each time: it takes milliseconds, and time stamp and length do not tell whether a file was
+/// rewritten.
 void vtkVDBReader::Internals::List(int file)
 {
   this->File.reset();
@@ -209,9 +210,9 @@ void vtkVDBReader::Internals::List(int file)
 
 namespace
 {
-/// The grid of whose transform grids are chosen at first: the first that needs no Resample, or else the first that can
-/// be resampled. So the choice is the same whether Resample is set before the file or after it.
-/// @return null: none can become an image
+/// The grid that determines the default selection, by its transform: the first grid that needs no Resample, otherwise
+/// the first that can be resampled. The choice is thus the same whether Resample is set before or after the file.
+/// @return null: no grid can become an image
 const VDBGrid* FirstToChoose(const std::vector<VDBGrid>& grids)
 {
   const VDBGrid* chosen = nullptr;
@@ -224,8 +225,8 @@ const VDBGrid* FirstToChoose(const std::vector<VDBGrid>& grids)
 }
 }
 
-/// Brings the file's grids into the selection. At first those are chosen that share the transform of FirstToChoose.
-/// Those of other files of a series stay.
+/// Adds the file's grids to the selection. By default those are selected that share the transform of FirstToChoose.
+/// Grids of other files of a series remain.
 void vtkVDBReader::Internals::Offer(vtkDataArraySelection* selection)
 {
   for (auto name = this->Listed.begin(); name != this->Listed.end();)
@@ -384,9 +385,10 @@ vtkVDBReader::Internals::Limit vtkVDBReader::Internals::LimitOfMemory(vtkIdType 
   return limit;
 }
 
-/// VTK asks what extent there is before it says of what time it wants data. Where that time has another file than the
-/// one that was told of, this tells of it anew; filters between here and who asks still ask for a former extent, and
-/// get all that there is. (VTK keeps a list of consumers, too, but also of those that are gone: they cannot be told.)
+/// An executive for series whose files differ in extent. VTK requests the extent before it specifies the time step. If
+/// that time step belongs to another file than the one announced, this executive announces the new extent; filters
+/// downstream may still request a part of a former extent, and then receive the complete one. (VTK's list of consumers
+/// cannot be used to inform them: it includes consumers that no longer exist.)
 class vtkVDBReader::SeriesPipeline : public vtkCompositeDataPipeline
 {
 public:
@@ -491,10 +493,10 @@ const char* vtkVDBReader::GetCurrentFileName()
   return this->Internal->Path.c_str();
 }
 
-/// The last one that begins at the time that is asked for or before.
+/// The last file whose time is not later than the requested time.
 int vtkVDBReader::FileAskedFor(vtkInformation* output) const
 {
-  constexpr double rounding = 1e-6; // of times that are computed
+  constexpr double rounding = 1e-6; // tolerance for times that are computed
   const double time = output->Has(Pipeline::UPDATE_TIME_STEP()) ? output->Get(Pipeline::UPDATE_TIME_STEP()) : 0.0;
   return time > 0.0 ? static_cast<int>(std::min(time + rounding, std::max(this->GetNumberOfFileNames() - 1.0, 0.0)))
                     : 0;
@@ -575,7 +577,8 @@ int vtkVDBReader::RequestInformation(vtkInformation*, vtkInformationVector**, vt
   return 1;
 }
 
-/// The extent to read. Filters that did not hear of another file of a series asked for a part of the one before it.
+/// The extent to read. Filters that were not informed of another file of the series have requested a part of the
+/// previous file's extent.
 std::array<int, 6> vtkVDBReader::ExtentToRead(vtkInformation* info)
 {
   tyndall::NoteExtentTold(info);
@@ -652,7 +655,7 @@ int vtkVDBReader::RequestData(vtkInformation*, vtkInformationVector**, vtkInform
     std::array<int, 6> extent = this->ExtentToRead(info);
     if (!internal.NoImageYet.empty())
     {
-      throw InvalidInput(internal.NoImageYet); // not before: Resample may be set after the file was listed
+      throw InvalidInput(internal.NoImageYet); // not earlier: Resample may be set after the file was listed
     }
     if (internal.IsSeries())
     {

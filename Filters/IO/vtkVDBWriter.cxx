@@ -36,7 +36,7 @@ using tyndall::InvalidInput;
 
 namespace
 {
-/// The grids of one array, with its metadata, where the image is.
+/// Makes the grids of one array, with its metadata and the image's transform.
 openvdb::GridPtrVec GridsOf(
   vtkDataArray* array, vtkFieldData* field, const tyndall::VDBPlacement& place, const tyndall::VoxelOptions& options)
 {
@@ -67,7 +67,7 @@ std::uint32_t CompressionFlags(int compression)
   return flags;
 }
 
-/// Writes the file, and reads it back as far as its structure goes before it takes its place.
+/// Writes the file, and checks it by reading back its structure before it replaces the target.
 void WriteWholeOrNot(const std::string& path, const openvdb::GridPtrVec& grids, const openvdb::MetaMap& metadata,
   std::uint32_t compression)
 {
@@ -96,8 +96,7 @@ void WriteWholeOrNot(const std::string& path, const openvdb::GridPtrVec& grids, 
   whole.Finish();
 }
 
-/// The arrays that become grids: those of cells, and beside them those of points averaged to cells where none of cells
-/// has the name.
+/// The arrays that become grids: cell arrays, and point arrays averaged to cells unless a cell array has the same name.
 std::vector<vtkSmartPointer<vtkDataArray>> CellArraysOf(vtkImageData* image)
 {
   std::vector<vtkSmartPointer<vtkDataArray>> arrays;
@@ -128,8 +127,8 @@ std::vector<vtkSmartPointer<vtkDataArray>> CellArraysOf(vtkImageData* image)
   return arrays;
 }
 
-/// The grids of all arrays on the first rank, on others none.
-/// @param progress  is told the part that is done
+/// Makes the grids of all arrays on the first rank, and none on other ranks.
+/// @param progress  called with the completed fraction
 openvdb::GridPtrVec GridsOf(tyndall::GatheredImage& image, vtkMultiProcessController* controller,
   const tyndall::VoxelOptions& options, const std::function<void(double)>& progress)
 {
@@ -224,7 +223,7 @@ void vtkVDBWriter::WriteData()
         throw InvalidInput("No file: set FileName.");
       }
     });
-    this->SetErrorCode(vtkErrorCode::FileFormatError); // until it is written
+    this->SetErrorCode(vtkErrorCode::FileFormatError); // until the file is written
     vtkSmartPointer<vtkImageData> voxels;
     std::vector<vtkSmartPointer<vtkDataArray>> arrays;
     tyndall::OnAllRanks(this->Controller, [&] {

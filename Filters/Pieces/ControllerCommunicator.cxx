@@ -28,7 +28,7 @@ namespace tyndall
 {
 double SecondsToWait()
 {
-  constexpr double usual = 600.0, longest = 1e8; // clocks count no longer than centuries
+  constexpr double usual = 600.0, longest = 1e8; // limit for clocks, which overflow after centuries
   const char* const said = std::getenv("TYNDALL_RANKS_WAIT");
   const double seconds = NumberIn(said ? said : "").value_or(0.0);
   return seconds > 0.0 ? std::min(seconds, longest) : usual;
@@ -38,9 +38,9 @@ double SecondsToWait()
 namespace
 {
 constexpr int FirstOfAll = 1000000; ///< first tag, above those of VTK and of Ranks.cxx
-constexpr double Grace = 1.0;       ///< seconds in which messages that were sent before a stop may still arrive
+constexpr double Grace = 1.0;       ///< seconds to wait for messages sent before a stop
 
-/// Keeps messages that were still being sent when an error occurred: MPI may read them as long as the process lives.
+/// Keeps messages whose sends are not complete when an error occurs: MPI may read their memory until the process ends.
 template <class Messages>
 void LeaveBehind(Messages& messages)
 {
@@ -48,7 +48,7 @@ void LeaveBehind(Messages& messages)
   left.splice(left.end(), messages);
 }
 
-/// Turns the failure of an MPI call into an error.
+/// Throws an error if an MPI call failed.
 void RequireSent(bool done, const char* what, int rank)
 {
   if (!done)
@@ -94,7 +94,8 @@ int ControllerCommunicator::Ranks() const
   return this->Controller->GetNumberOfProcesses();
 }
 
-/// Not blocking: rays of different octants go both ways between two blocks, so that blocking sends could deadlock.
+/// Sends without blocking: rays of different octants travel in both directions between two subdomains, so blocking
+/// sends could deadlock.
 void ControllerCommunicator::Give(int to, int tag, std::vector<char> bytes)
 {
   this->ForgetSent();
@@ -132,7 +133,7 @@ std::vector<char> ControllerCommunicator::Take(int from, int tag)
       "Asking for a message of", from);
     if (isThere)
     {
-      std::vector<char> bytes(static_cast<std::size_t>(length) + 1); // there is no array of nothing
+      std::vector<char> bytes(static_cast<std::size_t>(length) + 1); // avoids a null pointer for empty messages
       RequireSent(
         this->Controller->Receive(bytes.data(), length, from, this->FirstTag + tag) == 1, "Receiving from", from);
       bytes.resize(static_cast<std::size_t>(length));
@@ -161,7 +162,7 @@ std::vector<char> ControllerCommunicator::Take(int from, int tag)
 std::vector<std::vector<char>> ControllerCommunicator::Swap(
   const std::vector<int>& with, std::vector<std::vector<char>> parcels)
 {
-  if (this->Stopped && this->Stopped()) // a rank has left: DIY would wait for it
+  if (this->Stopped && this->Stopped()) // a rank has stopped: DIY would wait for it
   {
     throw Aborted();
   }
@@ -172,7 +173,7 @@ std::vector<std::vector<char>> ControllerCommunicator::Swap(
 
 namespace
 {
-constexpr int Conversations = 64, Works = 16; ///< until tags come again; those of frames are behind those of work
+constexpr int Conversations = 64, Works = 16; ///< numbers before tags are reused; tags of frames follow those of work
 int Work = 0, Conversation = 0, Frame = 0;
 
 std::unique_ptr<Communicator> Make(
@@ -218,14 +219,14 @@ std::unique_ptr<Communicator> CommunicatorAtEnd(vtkMultiProcessController* ranks
 #ifdef TYNDALL_HAS_DIY
 namespace
 {
-/// The last resort; MPI then ends all ranks.
+/// Ends this process as a last resort; MPI then ends all ranks.
 [[noreturn]] void EndAllRanks(int rank, const std::string& why)
 {
   std::cerr << "Tyndall, rank " << rank << ": " << why << " All ranks are ended." << std::endl;
   std::_Exit(EXIT_FAILURE);
 }
 
-/// Ends all unless it is destroyed in time.
+/// Ends all ranks unless it is destroyed before the timeout.
 class Deadline
 {
 public:
@@ -256,18 +257,18 @@ private:
   std::mutex Guard;
   std::condition_variable Changed;
   bool Kept = false;
-  std::thread Watch; // last: it uses the others
+  std::thread Watch; // last: the thread uses the other members
 };
 
-/// What a rank's block sends to other ranks, then what it has received.
+/// Content of a rank's block: the parcels to send, then the received ones.
 struct Parcels
 {
   std::vector<std::vector<char>> ofRanks;
 };
 
-/// DIY's master for the ranks of a controller, with one block a rank. Made collectively at the first exchange, with a
-/// communicator of its own because DIY's tags are small numbers. Kept as an attribute of the controller's communicator,
-/// and never deleted, for MPI may have ended before.
+/// DIY's master for the ranks of a controller, with one block per rank. It is made collectively at the first exchange,
+/// with its own communicator because DIY's tags are small numbers. It is stored as an attribute of the controller's
+/// communicator and never deleted, since MPI may be finalised first.
 diy::Master& MasterOf(vtkMPIController* controller)
 {
   static int key = MPI_KEYVAL_INVALID;
@@ -289,11 +290,11 @@ diy::Master& MasterOf(vtkMPIController* controller)
   return *static_cast<diy::Master*>(kept);
 }
 
-/// Parcels become DIY's queues without a copy.
+/// Exchanges parcels; they become DIY's queues without a copy.
 std::vector<std::vector<char>> Exchange(
   diy::Master& master, const std::vector<int>& with, std::vector<std::vector<char>> parcels)
 {
-  auto* const link = new diy::Link; // the master's
+  auto* const link = new diy::Link; // owned by the master
   for (const int rank : with)
   {
     link->add_neighbor({ rank, rank });

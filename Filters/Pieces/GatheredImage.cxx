@@ -29,32 +29,33 @@ constexpr int NoPiece = -1;
 struct PieceValues
 {
   ValueBox values;
-  std::vector<unsigned char> flags; ///< vtkGhostType of each value; empty: there is none
+  std::vector<unsigned char> flags; ///< vtkGhostType of each value; empty: no flags
 };
 
-/// Assigns each value of an image to one of its pieces, which may overlap: to the first piece that flags it
-/// (vtkGhostType) neither as a duplicate nor as hidden, else the first that has it hidden, else one that has a copy.
+/// Assigns each value of an image to one of its pieces, which may overlap: to the first piece in which vtkGhostType
+/// flags it neither as a duplicate nor as hidden, else the first in which it is hidden, else one that has a duplicate
+/// of it.
 class PieceLayout
 {
 public:
-  /// @param duplicate, hidden  what flags say so
+  /// @param duplicate, hidden  bits of vtkGhostType with this meaning
   PieceLayout(const ValueBox& whole, std::vector<PieceValues> pieces, unsigned char duplicate, unsigned char hidden);
 
-  /// The first value of the image that no piece has; the number of values if there is none.
+  /// Index of the first value that no piece has; the number of values if there is none.
   std::size_t FirstGap() const;
 
   /// The piece to which a value is assigned.
   int OwnerOf(std::size_t value) const { return this->Owners[value]; }
 
-  /// Flags of each value in that piece.
+  /// vtkGhostType of each value, from the piece to which it is assigned.
   std::vector<unsigned char> Flags() const;
 
-  /// Copies the values that are assigned to a piece into the image.
+  /// Copies the values that are assigned to a piece into the complete array.
   /// @param size  bytes of a value
   void Paste(int piece, const char* values, std::size_t size, char* whole) const;
 
-  /// Calls act with the index in the piece and in the image of each value that the piece owns, neither duplicate nor
-  /// hidden, but that is assigned to another piece.
+  /// Calls act(index in the piece, index in the image) for each value that is neither a duplicate nor hidden in the
+  /// piece, but is assigned to another piece.
   template <typename Do>
   void ForOverlap(int piece, const Do& act) const
   {
@@ -154,12 +155,12 @@ void PieceLayout::Paste(int piece, const char* values, std::size_t size, char* w
 
 namespace
 {
-constexpr int Tag = 745201;                      ///< of our messages
+constexpr int Tag = 745201;                      ///< of messages of this class
 constexpr vtkIdType LongestMessage = 1073741824; ///< bytes; MPI counts in int
 constexpr const char* KindNames[] = { "cell", "point" };
 using Flags = vtkDataSetAttributes;
 
-/// Bytes of a tuple; 0 for types of less than a byte, which no writer accepts.
+/// Bytes of a tuple; 0 for types smaller than a byte, which no writer accepts.
 vtkIdType TupleSize(vtkDataArray* array)
 {
   return static_cast<vtkIdType>(array->GetDataTypeSize()) * array->GetNumberOfComponents();
@@ -171,7 +172,7 @@ std::vector<unsigned char> FlagsOf(vtkUnsignedCharArray* ghosts)
                 : std::vector<unsigned char>();
 }
 
-/// One of the flags of each value; empty: none has it.
+/// Masks the flags of each value by `flag`; empty if no value has any of its bits.
 std::vector<unsigned char> Only(unsigned char flag, std::vector<unsigned char> flags)
 {
   bool any = false;
@@ -183,7 +184,7 @@ std::vector<unsigned char> Only(unsigned char flag, std::vector<unsigned char> f
   return any ? flags : std::vector<unsigned char>();
 }
 
-/// Whether two pieces belong to one grid, to rounding.
+/// Whether two pieces belong to one grid, up to rounding.
 bool SamePlace(const std::array<double, 15>& a, const std::array<double, 15>& b)
 {
   for (int i = 0; i < 15; ++i)
@@ -202,7 +203,7 @@ std::string RanksInWords(int first, int other)
   return "ranks " + std::to_string(first) + " and " + std::to_string(other);
 }
 
-/// Whether two values of arrays are the same, but for rounding.
+/// Whether two values of arrays are equal, up to rounding.
 bool SameValue(vtkDataArray* a, vtkIdType inA, vtkDataArray* b, vtkIdType inB)
 {
   for (int component = 0; component < a->GetNumberOfComponents(); ++component)
@@ -369,7 +370,7 @@ void GatheredImage::CheckArrays(int first, int other, Kind kind) const
   check(other, first);
 }
 
-/// Sorts arrays in the order of the first piece. Ranks without cells have none of them.
+/// Sorts this rank's arrays in the order of the first piece. Ranks without cells have none of the arrays.
 void GatheredImage::Sort(Kind kind, const Piece& first)
 {
   Arrays sorted;
@@ -382,7 +383,7 @@ void GatheredImage::Sort(Kind kind, const Piece& first)
   this->Own[kind] = std::move(sorted);
 }
 
-/// An image of the extent of all pieces, placed as the first of them.
+/// Makes an image with the extent of all pieces and the geometry of the first one.
 void GatheredImage::MakeWhole(int first)
 {
   OnAllRanks(this->Controller, [&] {
@@ -417,8 +418,8 @@ void GatheredImage::MakeWhole(int first)
   });
 }
 
-/// The boxes of all pieces and, where the image is gathered, their flags.
-/// @param own  flags of the own piece
+/// Collects the boxes of all pieces and, on ranks that gather the image, their flags.
+/// @param own  flags of this rank's piece
 std::vector<PieceValues> GatheredImage::ShareFlags(Kind kind, const std::vector<unsigned char>& own) const
 {
   std::vector<PieceValues> pieces(this->Pieces.size());
@@ -446,8 +447,8 @@ std::vector<PieceValues> GatheredImage::ShareFlags(Kind kind, const std::vector<
   return pieces;
 }
 
-/// Assigns values to pieces, and finds the hidden ones.
-/// @param own  flags of the own piece
+/// Assigns values to pieces, and finds hidden values.
+/// @param own  flags of this rank's piece
 void GatheredImage::LayOut(Kind kind, const std::vector<unsigned char>& own)
 {
   constexpr std::array<unsigned char, Kinds> duplicates = { Flags::DUPLICATECELL, Flags::DUPLICATEPOINT };
@@ -493,10 +494,10 @@ void GatheredImage::LayOut(Kind kind, const std::vector<unsigned char>& own)
   });
 }
 
-/// Field data are those of the first piece.
+/// Broadcasts the field data of the first piece.
 void GatheredImage::ShareFieldData(vtkImageData* piece, int from)
 {
-  vtkNew<vtkImageData> carrier; // of field data only
+  vtkNew<vtkImageData> carrier; // carries field data only
   carrier->SetDimensions(1, 1, 1);
   if (this->Rank == from)
   {
@@ -526,9 +527,9 @@ vtkIdType GatheredImage::CountOf(Kind kind, int rank) const
   return static_cast<vtkIdType>((kind == Cells ? CellBoxOf(extent) : PointBoxOf(extent)).Count());
 }
 
-/// Sends bytes of one rank to the ranks on which the image is gathered.
-/// @param own     on that rank: they
-/// @param values  where the image is gathered: to receive them
+/// Sends an array's bytes from one rank to the ranks that gather the image.
+/// @param own     the bytes, on the rank that sends
+/// @param values  buffer for the bytes, on ranks that gather the image
 void GatheredImage::Bring(const char* own, char* values, vtkIdType bytes, int from) const
 {
   const bool mine = this->Rank == from;
@@ -599,7 +600,7 @@ vtkSmartPointer<vtkDataArray> GatheredImage::Array(Kind kind, int index)
   return this->IsHere() ? whole : nullptr;
 }
 
-/// @throws InvalidInput if this rank's piece owns a value that differs from the assigned one
+/// @throws InvalidInput if this rank's piece owns a value that differs from the value in the gathered array
 void GatheredImage::CheckOverlap(Kind kind, vtkDataArray* own, vtkDataArray* whole) const
 {
   if (own == nullptr)

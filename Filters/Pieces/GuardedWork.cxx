@@ -1,6 +1,6 @@
 #include "Pieces/GuardedWork.h"
 
-// How filters do their work, report and fail: see LightTransportData.h.
+// LightTransportData.h shows how filters use Guarded.
 #include "Common/Failure.h"
 #include "Common/ImageInput.h"
 #include "Common/InputsKey.h"
@@ -35,9 +35,9 @@ namespace tyndall
 {
 namespace
 {
-/// When a filter's last run failed, and how. VTK runs a filter again with every update while its output does not cover
-/// the requested extent, as an empty one does not; ParaView makes several updates. This keeps them from reporting the
-/// same error each time.
+/// Records when and how a filter's last run failed, to avoid reporting the same error repeatedly: VTK runs a filter
+/// again on every update as long as its output does not cover the requested extent, which empty outputs never do, and
+/// ParaView makes several updates.
 class LastFailure
 {
 public:
@@ -45,7 +45,7 @@ public:
   {
     Error,
     Abort,
-    Information, ///< an error already of RequestInformation
+    Information, ///< an error in RequestInformation
     Missing,     ///< a rank did not arrive
   };
 
@@ -59,7 +59,7 @@ public:
   {
     auto* pipeline = vtkDemandDrivenPipeline::SafeDownCast(this->Filter->GetExecutive());
     const vtkMTimeType time = this->Facts->Has(Time()) ? this->Facts->Get(Time()) : 0;
-    // The filter's own time, too: ParaView's reader of series calls a reader past its pipeline.
+    // Includes the filter's own time: ParaView's reader for series bypasses the reader's pipeline.
     bool holds = pipeline && std::max(pipeline->GetPipelineMTime(), this->Filter->GetMTime()) < time;
     for (int port = 0; holds && port < this->Filter->GetNumberOfInputPorts(); ++port)
     {
@@ -84,8 +84,8 @@ public:
   void Forget() { this->Facts->Remove(Time()); }
 
 private:
-  /// Not that of the data: ParaView's filters between filters make it anew, with the same arrays, whenever it is looked
-  /// at.
+  /// Modification time of the arrays. That of the data object is no use: ParaView's internal filters make it anew, with
+  /// the same arrays, on every access.
   static vtkMTimeType TimeOf(vtkDataObject* data)
   {
     const std::vector<vtkMTimeType> times = TimesOfArrays(data);
@@ -108,7 +108,7 @@ private:
   vtkInformation* Facts;
 };
 
-/// Unless an abort was asked for, after which nothing more is reported.
+/// Reports progress unless an abort was requested, after which nothing more is reported.
 void ReportProgress(vtkAlgorithm* filter, const char* text, double fractionDone)
 {
   if (filter->GetAbortExecute() == 0)
@@ -148,7 +148,7 @@ void EmptyOutputs(vtkInformationVector* outputs, const char* why)
   }
 }
 
-/// Newer VTK leaves both set, and would run the filter again with every update until they are reset.
+/// Resets the abort flags: newer versions of VTK leave both set and would run the filter again on every update.
 void ForgetAbort(vtkAlgorithm* filter)
 {
   filter->AbortExecute = 0;
@@ -160,7 +160,7 @@ void ForgetAbort(vtkAlgorithm* filter)
 
 namespace
 {
-/// Once in a process, by the filter that opened the device.
+/// Issues the device layer's warnings, once per process, from the filter that opened the device.
 void WarnOfDevices(vtkAlgorithm* filter)
 {
   for (const std::string& warning : Device::TakeWarnings())
@@ -184,7 +184,7 @@ void EmptyWithout(vtkInformationVector* outputs)
   }
 }
 
-/// Whether a rank is known to be missing: at this filter, if nothing has changed since, or at one upstream.
+/// Whether a rank is known to be missing: at this filter, if nothing has changed since, or at a filter upstream.
 bool IsKnownToMiss(vtkAlgorithm* filter, const LastFailure& last)
 {
   bool known = last.Was(LastFailure::Missing) && last.StillHolds();
@@ -199,7 +199,7 @@ bool IsKnownToMiss(vtkAlgorithm* filter, const LastFailure& last)
   return known;
 }
 
-/// Reports a rank that did not arrive, or is at another filter; nobody waits for it twice.
+/// Reports a rank that did not arrive or is at another filter, and records it so that no rank waits for it again.
 void FailWithout(const MissingRank& missing, vtkAlgorithm* filter, vtkInformationVector* outputs, LastFailure& last)
 {
   EmptyWithout(outputs);
@@ -220,7 +220,7 @@ void FailWithout(const MissingRank& missing, vtkAlgorithm* filter, vtkInformatio
   last.Note(LastFailure::Missing);
 }
 
-/// Whether nothing has changed on any rank since the last run failed.
+/// Whether nothing has changed on any rank since the last run failed. Collective.
 bool StillHolds(vtkMultiProcessController* ranks, const LastFailure& last)
 {
   int own = last.StillHolds(), all = own;
@@ -252,7 +252,7 @@ int GuardedOn(vtkMultiProcessController* ranks, vtkAlgorithm* filter, vtkInforma
     return 1;
   }
   last.Forget();
-  // The compiler cannot be stopped; the filter stops when it is done.
+  // The compiler cannot be interrupted; the filter stops after compilation.
   const CompilationListener listener([filter] { ReportProgress(filter, Compiling, filter->GetProgress()); });
   const Ending ending = EndingOf([&] { WorkOnAllRanks(ranks, filter, work); });
   if (ending.kind == Ending::Aborted)
@@ -282,7 +282,7 @@ int GuardedOn(vtkMultiProcessController* ranks, vtkAlgorithm* filter, vtkInforma
 
 namespace
 {
-/// Adds averaged arrays to field data `settings_used` of filters that do not write it themselves.
+/// Adds the names of averaged arrays to field data `settings_used`, for filters that do not write them themselves.
 void TellAveraged(vtkAlgorithm* filter, vtkInformationVector* outputs)
 {
   std::vector<std::string> settings;
@@ -324,7 +324,7 @@ int GuardedInPieces(vtkAlgorithm* filter, vtkInformation* request, vtkInformatio
       RequireImages(filter);
       RequireWholeArrays(filter);
       CheckProperties(filter);
-      if (!ranks) // else WholeInputs takes each cell once
+      if (!ranks) // with several ranks WholeInputs takes each cell once
       {
         CheckDuplicates(filter, outputs);
       }

@@ -29,7 +29,7 @@ namespace
 using Extent = std::array<int, 6>;
 constexpr Extent Nothing = { 0, 0, 0, 0, 0, 0 };
 
-/// The piece of a rank.
+/// The piece of the image on one rank.
 struct Piece
 {
   Extent given = Nothing;
@@ -49,7 +49,7 @@ std::size_t CellsOf(const Extent& extent)
   return cells;
 }
 
-/// The least extent of the cells that are no duplicates.
+/// The smallest extent of the cells that are not duplicates.
 Extent OwnExtentOf(vtkImageData* image, const Extent& all)
 {
   vtkUnsignedCharArray* const ghosts = image->GetCellGhostArray();
@@ -57,7 +57,7 @@ Extent OwnExtentOf(vtkImageData* image, const Extent& all)
   return CellsOf(own) > 0 ? own : Nothing;
 }
 
-/// If each rank is asked for all, each still gets a part of the work.
+/// The requested piece. If every rank is asked for the complete image, the work is still divided among the ranks.
 AskedPiece AskedOf(vtkInformation* asked, const Extent& given, int rank, int ranks)
 {
   AskedPiece piece = AskedPieceOf(asked, given);
@@ -82,7 +82,7 @@ Piece PieceOf(vtkInformation* asked, vtkImageData* image, int rank, int ranks)
   return piece;
 }
 
-/// At the rank's place among those of all ranks.
+/// Serialises a piece at this rank's position in an array for all ranks, 0 elsewhere.
 std::vector<double> WordsOf(const Piece& piece, int rank, int ranks)
 {
   std::vector<double> words(WordsOfPiece * static_cast<std::size_t>(ranks), 0.0);
@@ -107,7 +107,7 @@ Piece PieceIn(const double* words)
   return piece;
 }
 
-/// To rounding.
+/// Whether two pieces lie on one grid, up to rounding.
 bool OfOneGrid(const Piece& a, const Piece& b)
 {
   bool same = true;
@@ -131,7 +131,7 @@ VoxelBox BoxOf(const Extent& extent, const std::array<int, 3>& base)
   return box;
 }
 
-/// Whether blocks are disjoint and have as many voxels as the grid.
+/// Whether the blocks are disjoint and have as many voxels as the grid in total.
 bool Tile(const BlockPartition& partition)
 {
   std::size_t voxels = 0;
@@ -301,7 +301,8 @@ namespace
 {
 constexpr double FewVoxels = 64.0 * 64.0 * 64.0;
 
-/// Processes of this MPI run on this machine, by its launcher's variables; else those of VTK's global controller.
+/// Number of MPI processes on this machine according to the launcher's environment variables; otherwise the number of
+/// processes of VTK's global controller.
 int RanksOnThisMachine()
 {
   for (const char* said : { "OMPI_COMM_WORLD_LOCAL_SIZE", "MPI_LOCALNRANKS", "PMI_LOCAL_SIZE" }) // Open MPI, MPICH, PMI
@@ -315,7 +316,7 @@ int RanksOnThisMachine()
   return all ? all->GetNumberOfProcesses() : 1;
 }
 
-/// As announced by the source.
+/// Number of voxels that the source announces.
 double VoxelsOf(vtkInformationVector* image)
 {
   vtkInformation* const input = image->GetInformationObject(0);

@@ -32,9 +32,9 @@ namespace
 {
 using Pipeline = vtkStreamingDemandDrivenPipeline;
 
-constexpr int StopTag = 745202; ///< of a message: stop the work
+constexpr int StopTag = 745202; ///< tag of the message that requests a stop
 
-/// Number of ranks that ask together; a request carries it upstream through all filters.
+/// Number of ranks that make a request together; the request carries it upstream through all filters.
 class TogetherKey : public vtkInformationIntegerKey
 {
 public:
@@ -60,7 +60,7 @@ vtkInformationIntegerKey* Collective()
   return key;
 }
 
-/// In a filter's information while it works: the controller of the ranks that work together.
+/// Key in a filter's information during its work: the controller of the ranks that work together.
 vtkInformationObjectBaseKey* WorkingRanks()
 {
   static auto* const key = vtkInformationObjectBaseKey::MakeKey("WORKING_RANKS", "Tyndall");
@@ -73,14 +73,14 @@ int PiecesAsked(vtkInformation* request, vtkInformationVector* outputs)
   return asking ? std::max(1, asking->Get(Pipeline::UPDATE_NUMBER_OF_PIECES())) : 1;
 }
 
-/// Number of pieces that are asked for, or of ranks that ask together; 1: neither.
+/// Number of requested pieces, or of ranks that make the request together; 1: neither.
 int Asking(vtkInformation* request, vtkInformationVector* outputs)
 {
   vtkInformation* const asking = AskingPort(request, outputs);
   return asking ? std::max(PiecesAsked(request, outputs), asking->Get(Collective())) : 1;
 }
 
-/// Makes the outcome of one rank the outcome of all.
+/// Collective error: makes the outcome of one rank the outcome of all.
 void EndTogether(Communicator& communicator, const Ending& own)
 {
   try
@@ -95,7 +95,7 @@ void EndTogether(Communicator& communicator, const Ending& own)
   {
     if (own.kind == Ending::InputFailed || own.kind == Ending::Empty)
     {
-      Throw(own); // which is no error of this filter here
+      Throw(own); // not an error of this filter on this rank
     }
     throw;
   }
@@ -106,7 +106,7 @@ bool IsOne(vtkMultiProcessController* controller)
   return controller == nullptr || controller->GetNumberOfProcesses() == 1;
 }
 
-/// Messages that ask other ranks to stop. All are received before the ranks finish.
+/// Messages that ask other ranks to stop. All of them are received before the ranks continue.
 class StopMessages
 {
 public:
@@ -118,7 +118,7 @@ public:
     (void)controller;
   }
 
-  /// Whether one is waiting for this rank.
+  /// Whether such a message is waiting for this rank.
   bool Waits() const
   {
     int waits = 0;
@@ -132,7 +132,7 @@ public:
     return waits != 0;
   }
 
-  /// @return whether they were sent: without MPI nobody could look for them
+  /// @return whether messages were sent; without MPI no rank could probe for them
   bool Send()
   {
 #ifdef TYNDALL_HAS_MPI
@@ -148,8 +148,8 @@ public:
     return false;
   }
 
-  /// Receives those that other ranks sent.
-  /// @param senders  by rank, greater than 0 where it did
+  /// Receives the messages that other ranks sent.
+  /// @param senders  by rank: above 0 if it sent messages
   void Receive(const std::vector<double>& senders)
   {
 #ifdef TYNDALL_HAS_MPI
@@ -198,7 +198,7 @@ void AskTogether(vtkInformation* request, vtkInformationVector* outputs, vtkInfo
   {
     vtkInformation* const input = inputs->GetInformationObject(i);
     input->Set(Collective(), asking);
-    // An output with voxels around points, or with axes in another order, is asked for more than its input has.
+    // If voxels are around points or axes are permuted, the requested output extent may exceed the input's extent.
     const int* const whole = input->Get(Pipeline::WHOLE_EXTENT());
     const int* const asked = input->Get(Pipeline::UPDATE_EXTENT());
     if (whole && asked && !Covers(whole, asked))
@@ -237,7 +237,7 @@ void WorkOnAllRanks(vtkMultiProcessController* controller, vtkAlgorithm* filter,
   }
   StopMessages messages(controller);
   BeginConversations();
-  vtkObjectBase* const before = filter->GetInformation()->Get(WorkingRanks()); // of work of which this is a part
+  vtkObjectBase* const before = filter->GetInformation()->Get(WorkingRanks()); // of enclosing work
   filter->GetInformation()->Set(WorkingRanks(), controller);
   const Ending own = EndingOf(work);
   filter->GetInformation()->Set(WorkingRanks(), before);
@@ -259,8 +259,8 @@ namespace
 {
 #ifdef TYNDALL_HAS_MPI
 constexpr int Nobody = -1;
-constexpr int ArriveTag = 745203, AnswerTag = 745204; ///< of messages to the first rank, and from it
-constexpr double Slack = 5.0; ///< seconds that other ranks wait longer than the first, which decides
+constexpr int ArriveTag = 745203, AnswerTag = 745204; ///< tags of messages to the first rank, and from it
+constexpr double Slack = 5.0; ///< seconds that other ranks wait longer than the first rank, which decides
 
 bool IsPast(const std::chrono::steady_clock::time_point& start, double seconds)
 {
@@ -272,15 +272,15 @@ void Rest()
   std::this_thread::sleep_for(std::chrono::milliseconds(1));
 }
 
-/// Sent on arrival: the number of the barrier as this rank counts them, 0 to withdraw, and a hash of the class of its
-/// filter.
+/// Message of a rank on arrival: the number of this barrier in the rank's own count, or 0 to withdraw, and a hash of
+/// the filter's class name.
 using Arrival = std::array<int, 2>;
-/// The first rank's answer: that number, and MissingRank.
+/// The first rank's answer: the number of the barrier, then the members of MissingRank.
 using Decision = std::array<int, 3>;
 
 int NumberOf(const char* filter)
 {
-  unsigned int number = 2166136261u; // FNV-1a: the same in all processes
+  unsigned int number = 2166136261u; // FNV-1a: equal in all processes
   for (; *filter; ++filter)
   {
     number = (number ^ static_cast<unsigned char>(*filter)) * 16777619u;
@@ -288,8 +288,8 @@ int NumberOf(const char* filter)
   return static_cast<int>(number >> 1);
 }
 
-/// Receives arrivals until all ranks have arrived or time is up, and whatever has been sent by then: a rank that was
-/// too late for the last barrier has withdrawn from it.
+/// Receives arrivals until all ranks have arrived or time is up, then every message sent so far: a rank that was too
+/// late for the last barrier has withdrawn its arrival.
 void Collect(vtkMPIController* ranks, double wait, std::vector<Arrival>& arrived)
 {
   const std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
@@ -311,7 +311,7 @@ void Collect(vtkMPIController* ranks, double wait, std::vector<Arrival>& arrived
   }
 }
 
-/// The first rank collects arrivals and answers them.
+/// First rank: collects arrivals and answers them.
 MissingRank Decide(vtkMPIController* ranks, double wait, int filter)
 {
   std::vector<Arrival> arrived(static_cast<std::size_t>(ranks->GetNumberOfProcesses()), Arrival{ 0, 0 });
@@ -338,7 +338,8 @@ MissingRank Decide(vtkMPIController* ranks, double wait, int filter)
   return missingRank;
 }
 
-/// Other ranks arrive and wait for the answer. One that gives up withdraws; an answer that was on its way still counts.
+/// Other ranks: announce their arrival and wait for the answer. A rank that times out withdraws; an answer already
+/// under way still counts.
 MissingRank Arrive(vtkMPIController* ranks, double wait, int filter)
 {
   static int barriers = 0;
@@ -353,7 +354,7 @@ MissingRank Arrive(vtkMPIController* ranks, double wait, int filter)
     {
       Decision decision = {};
       ranks->Receive(decision.data(), 3, 0, AnswerTag);
-      if (decision[0] == own[0]) // else of a barrier for which this rank did not wait
+      if (decision[0] == own[0]) // otherwise it answers a barrier at which this rank no longer waits
       {
         return { decision[1], decision[2] != 0 };
       }

@@ -93,14 +93,14 @@ namespace
 using Pipeline = vtkStreamingDemandDrivenPipeline;
 using Extent = std::array<int, 6>;
 
-/// Of an output: the number of this rank, then an extent for each rank.
+/// Key in an output's information: the number of this rank, then an extent for each rank.
 vtkInformationIntegerVectorKey* PartsOfRanks()
 {
   static auto* const key = vtkInformationIntegerVectorKey::MakeKey("PARTS_OF_RANKS", "Tyndall");
   return key;
 }
 
-/// Of an output: the whole extents that were announced when its data were made.
+/// Key in an output's information: the whole extents announced when its data were made.
 vtkInformationIntegerVectorKey* ExtentsTold()
 {
   static auto* const key = vtkInformationIntegerVectorKey::MakeKey("EXTENTS_TOLD", "Tyndall");
@@ -124,7 +124,7 @@ void MarkDuplicates(vtkImageData* image, const Extent& own)
     [&](const auto& point) { return !PointBoxOf(own).Holds(point); });
 }
 
-/// Of parts that ranks are asked for.
+/// The part that a rank is asked for.
 Extent PartOfRank(vtkInformation* information, int rank)
 {
   Extent extent;
@@ -132,7 +132,7 @@ Extent PartOfRank(vtkInformation* information, int rank)
   return extent;
 }
 
-/// Flags cells that are asked of lower ranks, too, as duplicates.
+/// Flags cells as duplicates if lower ranks are asked for them, too.
 void MarkThoseBefore(vtkInformation* information, vtkImageData* output)
 {
   const int rank = information->Get(PartsOfRanks())[0];
@@ -157,13 +157,14 @@ struct Part
 {
   bool isOfRank = false; ///< see NotePartsOfRanks
   bool divided = false;
-  AskedPiece piece; ///< empty: nothing, or if it is not divided all of it
+  AskedPiece piece; ///< empty: nothing; if not divided, the complete output
 };
 
-/// @param image  its extent. A request for all of an announced extent is one for all of this: it may be a file of
-/// another
-///   time step, or have voxels around points that was not known. So is a request for pieces of all if this is more (if
-///   not, only the piece may have been made).
+/// Determines the requested part. A request for a complete announced extent means the complete `image`, which may
+/// differ from it because its file belongs to another time step, or because it was not known that voxels are around
+/// points. The same holds for pieces of such an extent if `image` contains it (if not, perhaps only the piece was
+/// made).
+/// @param image  the extent of the output as it was made
 Part PartAskedFor(vtkInformation* information, const Extent& image)
 {
   Part part;
@@ -182,7 +183,7 @@ Part PartAskedFor(vtkInformation* information, const Extent& image)
   return part;
 }
 
-/// Updates the information of inputs to the time step that is asked for. VTK does not pass a series' new extent on to
+/// Updates the information of inputs to the requested time step. VTK does not pass the new extent of a time series to
 /// filters downstream of its source. Not collective.
 /// @return whether the extent of an input depends on time
 bool HearOfTime(vtkInformationVector* inputs)
@@ -203,7 +204,7 @@ bool HearOfTime(vtkInformationVector* inputs)
   return any;
 }
 
-/// Repeats REQUEST_INFORMATION of the outputs, from the first input's extent, origin and spacing.
+/// Repeats REQUEST_INFORMATION for the outputs with extent, origin and spacing of the first input.
 void TellAgain(vtkExecutive* own, vtkInformationVector* outputs)
 {
   vtkInformation* const first = own->GetInputInformation()[0]->GetInformationObject(0);
@@ -219,8 +220,8 @@ void TellAgain(vtkExecutive* own, vtkInformationVector* outputs)
   own->GetAlgorithm()->ProcessRequest(request, own->GetInputInformation(), outputs);
 }
 
-/// In RequestUpdateExtent: gives inputs and outputs the extent of the time step that is asked for. Filters downstream
-/// do not learn of it, and may ask for former extents, outside the current one.
+/// In RequestUpdateExtent: sets the extent of inputs and outputs for the requested time step. Filters downstream are
+/// not informed and may request earlier extents that lie outside of the current one.
 void FollowTime(vtkInformationVector* inputs, vtkInformationVector* outputs)
 {
   vtkExecutive* const own = vtkExecutive::PRODUCER()->GetExecutive(outputs->GetInformationObject(0));
@@ -246,7 +247,7 @@ UpdateRequest::UpdateRequest(vtkInformation* information)
   : Information(information)
   , All(!information->Has(Pipeline::UPDATE_EXTENT()) || AsksForAll(information))
 {
-  NoteExtentTold(information); // consumers that are not informed ask for this one again
+  NoteExtentTold(information); // consumers that are not informed will request this extent again
   for (vtkInformationKey* key : Keys())
   {
     this->Before->CopyEntry(information, key);
@@ -331,7 +332,8 @@ void AskForAllBut(int piece, vtkInformation* request, vtkInformationVector** inp
 
 vtkInformation* AskingPort(vtkInformation* request, vtkInformationVector* outputs)
 {
-  const int port = std::max(request->Get(vtkExecutive::FROM_OUTPUT_PORT()), 0); // -1: no port, but the filter itself
+  const int port =
+    std::max(request->Get(vtkExecutive::FROM_OUTPUT_PORT()), 0); // -1: the request came from the filter itself
   return outputs->GetInformationObject(port);
 }
 
@@ -457,7 +459,7 @@ void KeepWhatIsAskedFor(vtkInformation* information, vtkImageData* output)
   NoteExtentTold(information);
   const Extent image = ExtentOf(output);
   const Part part = PartAskedFor(information, image);
-  if (!part.divided && part.piece.own == image) // which may be more than was announced
+  if (!part.divided && part.piece.own == image) // it may be larger than was announced
   {
     information->Set(Pipeline::WHOLE_EXTENT(), image.data(), 6);
     information->Set(Pipeline::UPDATE_EXTENT(), image.data(), 6);

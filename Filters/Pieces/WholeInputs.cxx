@@ -42,18 +42,18 @@ using Extent = std::array<int, 6>;
 constexpr Extent NoExtent = { 0, -1, 0, -1, 0, -1 };
 }
 
-/// What one connection provides on a rank.
+/// Summary of what one connection provides on one rank.
 struct InputSummary
 {
-  bool isThere = false; ///< with any value
+  bool isThere = false; ///< it has data with any values
   bool isImage = false;
   Extent extent = NoExtent;
-  Extent whole = NoExtent;           ///< that its source announces
-  bool changes = false;              ///< `whole` does with time, and may be that of another time step
-  std::uint64_t key = 0;             ///< of its content
-  std::array<std::string, 2> active; ///< names of active scalars, of cells and points
-  bool aroundPoints = false;         ///< its voxels are
-  Extent points = NoExtent;          ///< those that are no duplicates
+  Extent whole = NoExtent;           ///< whole extent that its source announces
+  bool changes = false;              ///< the whole extent depends on time, and `whole` may belong to another time step
+  std::uint64_t key = 0;             ///< hash of its content
+  std::array<std::string, 2> active; ///< names of active scalars, of cells and of points
+  bool aroundPoints = false;         ///< its voxels are around points
+  Extent points = NoExtent;          ///< extent of the points that are not duplicates
 
   void Stream(StreamedMembers& members)
   {
@@ -69,12 +69,12 @@ struct InputSummary
   }
 };
 
-/// All connections of a rank, and what is asked of it.
+/// Summaries of all connections on one rank, and the extents requested from it.
 struct RankSummary
 {
-  std::vector<int> connections; ///< of each port
+  std::vector<int> connections; ///< number of connections at each port
   std::vector<InputSummary> inputs;
-  std::vector<Extent> asked; ///< of each output
+  std::vector<Extent> asked; ///< for each output
 
   void Stream(StreamedMembers& members)
   {
@@ -109,7 +109,7 @@ std::string ActiveName(vtkDataSetAttributes* attributes)
   return active && active->GetName() ? active->GetName() : "";
 }
 
-/// All but the key.
+/// Fills all members except the key.
 InputSummary Summarize(vtkInformation* connection)
 {
   InputSummary summary;
@@ -132,7 +132,7 @@ InputSummary Summarize(vtkInformation* connection)
   return summary;
 }
 
-/// One connection on all ranks.
+/// Summaries of one connection on all ranks.
 using OnRanks = std::vector<InputSummary>;
 
 bool Alike(const OnRanks& summaries)
@@ -148,7 +148,7 @@ std::string Named(int port)
   return "The input" + (port > 0 ? " " + std::to_string(port) : std::string());
 }
 
-/// The arrays that can be gathered: numbers, one tuple for each cell or point.
+/// The arrays that can be gathered: numeric, one tuple for each cell or point.
 GatheredImage::Arrays ArraysOf(vtkDataSetAttributes* attributes, vtkIdType values)
 {
   GatheredImage::Arrays arrays;
@@ -177,7 +177,7 @@ void AddHidden(vtkDataSetAttributes* attributes, const std::vector<unsigned char
   }
 }
 
-/// Gathers an image on each rank.
+/// Gathers an image on every rank.
 vtkSmartPointer<vtkDataObject> WholeImageOf(
   vtkMultiProcessController* ranks, vtkImageData* piece, const OnRanks& summaries, const std::string& named)
 {
@@ -218,8 +218,8 @@ std::string Words(const Extent& extent)
   return text;
 }
 
-/// Everything that the source announces must be on some rank if all pieces have the same whole extent: a file that only
-/// one rank can read gives it the piece that it is asked for, and nobody the other ones.
+/// Checks that the pieces cover the announced extent, if all of them announce the same one. If only one rank can read a
+/// file, that rank receives just its requested piece, and no rank receives the others.
 void CheckExtent(const OnRanks& summaries, const std::string& named)
 {
   const auto isPiece = [](const InputSummary& summary) { return summary.isThere && summary.isImage; };
@@ -252,7 +252,7 @@ void CheckExtent(const OnRanks& summaries, const std::string& named)
             "whole on each rank."));
 }
 
-/// Broadcasts data that are no image from the one rank that has any.
+/// Broadcasts data other than images from the one rank that has any.
 vtkSmartPointer<vtkDataObject> FromOneRank(
   vtkMultiProcessController* ranks, vtkDataObject* own, const OnRanks& summaries, const std::string& named)
 {
@@ -278,7 +278,7 @@ vtkSmartPointer<vtkDataObject> FromOneRank(
   return all;
 }
 
-/// Points of all ranks, one rank's after the other's; those that all have alike once.
+/// Appends the points of all ranks in the order of ranks; points that are identical on all ranks are taken once.
 vtkSmartPointer<vtkDataObject> AllShares(vtkMultiProcessController* ranks, vtkDataObject* own, const OnRanks& summaries)
 {
   if (!own || Alike(summaries))
@@ -325,7 +325,7 @@ vtkSmartPointer<vtkDataObject> WholeOf(
   return WholeImageOf(ranks, vtkImageData::SafeDownCast(own), summaries, named);
 }
 
-/// If one of several ranks updates alone, there is no rank to gather from what its source does not give it.
+/// Requires complete images if only one of several ranks updates: there are no ranks to gather the missing pieces from.
 void RequireAll(vtkAlgorithm* filter, vtkInformationVector** given)
 {
   vtkMultiProcessController* const all = vtkMultiProcessController::GetGlobalController();
@@ -345,7 +345,7 @@ void RequireAll(vtkAlgorithm* filter, vtkInformationVector** given)
   }
 }
 
-/// The least extent of the points that are no duplicates, by flags of points or else of cells.
+/// The smallest extent of the points that are not duplicates, according to point flags or else cell flags.
 Extent OwnPointsOf(vtkImageData* image)
 {
   Extent extent;
@@ -355,14 +355,14 @@ Extent OwnPointsOf(vtkImageData* image)
   return flags ? ExtentWithoutDuplicates(extent, flags, ofPoints != nullptr) : extent;
 }
 
-/// The voxels around the points of a rank's piece. Those of points that this rank does not own, or lower ranks own too,
-/// are duplicates.
+/// Makes voxels around the points of a rank's piece. Voxels are duplicates if this rank does not own their point, or if
+/// a lower rank owns it as well.
 vtkSmartPointer<vtkImageData> VoxelsOfPiece(vtkImageData* piece, const OnRanks& summaries, int rank)
 {
   const vtkSmartPointer<vtkImageData> voxels = PointsAsVoxels(piece);
   if (Alike(summaries) || std::all_of(summaries.begin(), summaries.end(), [&](const InputSummary& summary) {
         return !summary.isThere || summary.points == summaries[static_cast<std::size_t>(rank)].extent;
-      })) // each has all
+      })) // each rank has the complete image
   {
     return voxels;
   }
@@ -424,7 +424,7 @@ std::vector<RankSummary> Share(vtkMultiProcessController* ranks, const RankSumma
   return all;
 }
 
-/// One of a port's connections on all ranks.
+/// Summaries of one connection of a port on all ranks.
 OnRanks SummariesOf(const std::vector<RankSummary>& all, int port, int connection)
 {
   const std::vector<int>& connections = all[0].connections;
@@ -447,7 +447,8 @@ Extent Around(Extent points)
   return points;
 }
 
-/// Records the parts of outputs that are asked of ranks if these differ, as for sources that know only their own.
+/// Records the parts of outputs that the ranks are asked for, if they differ, as with sources that know only their own
+/// piece.
 void NoteParts(const std::vector<RankSummary>& all, int rank, vtkInformationVector* outputs)
 {
   for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
@@ -479,8 +480,8 @@ struct WholeInputs::Seen
 
 namespace
 {
-/// Replaces data of a port's connections.
-/// @return null if none changes
+/// Applies `change` to the data of a port's connections.
+/// @return null if no data change
 vtkSmartPointer<vtkInformationVector> Changed(
   vtkInformationVector* given, const std::function<vtkSmartPointer<vtkDataObject>(int, vtkDataObject*)>& change)
 {
@@ -555,7 +556,7 @@ WholeInputs::WholeInputs(vtkMultiProcessController* ranks, vtkAlgorithm* filter,
   }
 }
 
-/// Aligns images that are read as voxels with the world's axes, and their announced extents.
+/// Aligns images that are read as voxels, and their announced extents, with the world axes.
 void WholeInputs::AlignGiven(vtkInformationVector** given)
 {
   const int ports = this->Filter->GetNumberOfInputPorts();
@@ -592,7 +593,7 @@ void WholeInputs::AlignGiven(vtkInformationVector** given)
   }
 }
 
-/// The axes of the first port's image, on whichever rank it has points.
+/// Determines the medium axes from the first port's image, on any rank where it has points.
 void WholeInputs::AgreeOnAxes(vtkMultiProcessController* ranks)
 {
   const bool reads =
@@ -625,7 +626,7 @@ void WholeInputs::AgreeOnAxes(vtkMultiProcessController* ranks)
   NoteOwnAxes(this->Filter, this->Axes);
 }
 
-/// Rotates images into the axes of the first one.
+/// Rotates images into the axes of the first port's image.
 void WholeInputs::TurnGiven()
 {
   for (int port = 0; port < this->Filter->GetNumberOfInputPorts() && !this->Axes.AreThoseOfScene(); ++port)
@@ -653,7 +654,7 @@ void WholeInputs::PutIntoScene(vtkInformationVector* outputs)
   tyndall::PutIntoScene(this->Filter, this->Axes, outputs, vtkImageData::SafeDownCast(this->Medium));
 }
 
-/// Names of point arrays that are read beside cell arrays, and so averaged.
+/// Records the names of point arrays that are averaged because cell arrays are read as well.
 void WholeInputs::NoteAveragedArrays()
 {
   std::vector<std::string> averaged;

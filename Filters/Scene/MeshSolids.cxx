@@ -37,7 +37,8 @@ vtkSmartPointer<vtkPolyData> Triangulated(vtkPolyData* mesh)
   {
     return mesh;
   }
-  vtkNew<vtkPolyData> input; // A filter must not be put between the mesh and its own pipeline.
+  vtkNew<vtkPolyData>
+    input; // A shallow copy, since a filter must not be connected to a mesh that has a pipeline of its own.
   input->ShallowCopy(mesh);
   vtkNew<vtkTriangleFilter> filter;
   filter->PassVertsOff();
@@ -47,7 +48,7 @@ vtkSmartPointer<vtkPolyData> Triangulated(vtkPolyData* mesh)
   return filter->GetOutput();
 }
 
-/// Collects the triangles of a solid, and of the points those that they have.
+/// Collects the triangles of a solid, and the points that they use.
 class SolidBuilder
 {
 public:
@@ -82,8 +83,8 @@ private:
   std::vector<int> NewNumbers;
 };
 
-/// Says what is wrong with an array of numbers of materials, in the mesh's own cells. Those of vertices and lines do
-/// not count.
+/// Checks an array of material numbers with the cell numbers of the mesh, for messages. Vertices and lines are ignored.
+/// @throws InvalidInput that names the array and the error
 void CheckNumbers(vtkPolyData* mesh, const std::string& name, const std::string& array)
 {
   vtkAbstractArray* const found = mesh->GetCellData()->GetAbstractArray(array.c_str());
@@ -157,7 +158,7 @@ std::vector<Solid> SolidsOf(vtkPolyData* given, const std::string& name, const s
   }
   if (solids.empty())
   {
-    solids.push_back({ name, {}, materialOf(otherwise) }); // the kernels say that it is empty
+    solids.push_back({ name, {}, materialOf(otherwise) }); // the kernels report that it is empty
   }
   return solids;
 }

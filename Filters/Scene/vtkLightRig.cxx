@@ -23,9 +23,9 @@ namespace
 using tyndall::Light;
 using tyndall::LightType;
 
-constexpr double BallSize = 0.02; ///< of a point light, in ShapeSize
+constexpr double BallSize = 0.02; ///< radius of a point light's ball, relative to ShapeSize
 
-/// So that `direction` can be compared; a vector without length stays what it is.
+/// Normalises a vector, so that values of `direction` can be compared; a vector of length 0 is left as it is.
 std::array<double, 3> Normalized(const std::array<double, 3>& direction)
 {
   Light along;
@@ -44,7 +44,7 @@ Light SunLight(double elevation, double azimuth, const double power[3])
   return sun;
 }
 
-/// What defines a light, in the order of AddDirectionalLight, AddPointLight, ...
+/// The numbers that define a light, in the order of the arguments of AddDirectionalLight, AddPointLight, ...
 struct NumbersOfLight
 {
   const char* Kind;
@@ -59,7 +59,7 @@ constexpr NumbersOfLight NumbersOfLights[] = {
   { "rectangle", 11, "x, y, z, dx, dy, dz, red, green, blue, width, height" },
 };
 
-/// @param numbers  as NumbersOfLights lists them
+/// @param numbers  in the order of NumbersOfLights
 Light LightOf(int type, const double* numbers)
 {
   const auto next = [&numbers] {
@@ -89,9 +89,9 @@ Light LightOf(int type, const double* numbers)
 struct vtkLightRig::AddedLights
 {
   std::array<std::vector<Light>, 4> Lights;   ///< by type
-  std::array<std::vector<double>, 4> Numbers; ///< of a light of each type that is not complete yet
+  std::array<std::vector<double>, 4> Numbers; ///< numbers of an incomplete light, by type
 
-  /// Adds a light when all of its numbers are there.
+  /// Adds a number, and the light once all of its numbers are present.
   void Add(int type, double number)
   {
     std::vector<double>& numbers = this->Numbers[type];

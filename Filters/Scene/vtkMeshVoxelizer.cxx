@@ -40,9 +40,8 @@ using tyndall::Triple;
 const char* const DefaultNumbers = "material_id";
 constexpr std::size_t NumbersOfMaterial = 9;
 
-/// Name of the cell array with the numbers of materials; "(by name)" is what ParaView's panel sends for the default
-/// one.
-/// @throws InvalidInput where another one was chosen that no mesh has
+/// Name of the cell array of material numbers. ParaView's panel sends "(by name)" for the default array.
+/// @throws InvalidInput if another array was selected that no mesh has
 std::string NumbersArray(vtkMeshVoxelizer* filter, const std::vector<vtkPolyData*>& meshes)
 {
   vtkInformation* chosen = filter->GetInputArrayInformation(0);
@@ -110,7 +109,8 @@ double LongestEdge(const tyndall::Grid& grid)
   return std::max({ grid.Length(0), grid.Length(1), grid.Length(2) });
 }
 
-/// The scattering that is set, or one by which light that crosses the box is visible without being lost.
+/// The outside scattering that is set; or, by default, one that makes light visible on its way through the box at small
+/// loss.
 Rgb OutsideScattering(const double asked[3], const tyndall::Grid& grid)
 {
   const bool automatic = std::all_of(asked, asked + 3, [](double value) { return value < 0.0; });
@@ -136,15 +136,15 @@ tyndall::RefractiveMediumSettings SettingsOf(vtkMeshVoxelizer* filter, const std
   return settings;
 }
 
-/// The voxels that are asked for.
+/// The requested voxels.
 struct AskedVoxels
 {
-  tyndall::VoxelBox made; ///< with ghost cells; none if there are more ranks than voxels
+  tyndall::VoxelBox made; ///< with ghost cells; empty if there are more ranks than voxels
   tyndall::VoxelBox own;
-  bool ofWhole = false; ///< all ranks together are asked for all of the grid
+  bool ofWhole = false; ///< all ranks together request the complete grid
 };
 
-/// The voxels of an extent of points; a flat one has one layer of them.
+/// The voxels of an extent of points; a flat extent has one layer of voxels.
 tyndall::VoxelBox VoxelsOf(const std::array<int, 6>& extent, const tyndall::Grid& grid)
 {
   tyndall::VoxelBox box;
@@ -157,7 +157,7 @@ tyndall::VoxelBox VoxelsOf(const std::array<int, 6>& extent, const tyndall::Grid
   return box;
 }
 
-/// @param divided  whether each rank is asked for a piece of its own
+/// @param divided  whether each rank requests its own piece
 AskedVoxels VoxelsAskedFor(vtkInformation* output, const tyndall::Grid& grid, bool divided)
 {
   using Pipeline = vtkStreamingDemandDrivenPipeline;
@@ -213,9 +213,9 @@ void Pack(const tyndall::RefractiveMediumSettings& settings, const tyndall::Voxe
 struct vtkMeshVoxelizer::AddedMaterials
 {
   std::vector<std::pair<double, Material>> InOrder; ///< with their numbers
-  std::vector<double> Numbers;                      ///< of a material that is not whole yet
+  std::vector<double> Numbers;                      ///< numbers of an incomplete material
 
-  /// @throws InvalidInput where a material lacks numbers, or is none
+  /// @throws InvalidInput if a material is incomplete or invalid
   void Check() const
   {
     if (!this->Numbers.empty())
@@ -288,7 +288,7 @@ int vtkMeshVoxelizer::FillInputPortInformation(int, vtkInformation* information)
 
 int vtkMeshVoxelizer::RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
 {
-  tyndall::Grid grid; // without ModelBounds the box is known when the meshes are
+  tyndall::Grid grid; // without ModelBounds the box depends on the meshes
   tyndall::GuardedInformation(this, [&] {
     if (IsOn(this->ModelBounds))
     {
@@ -315,7 +315,7 @@ int vtkMeshVoxelizer::RequestUpdateExtent(
   return 1;
 }
 
-/// The solids of all meshes.
+/// Reads the solids of all meshes.
 std::vector<Solid> vtkMeshVoxelizer::ReadSolids(vtkInformationVector** inputs)
 {
   this->Added->Check();

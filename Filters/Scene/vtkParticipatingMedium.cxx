@@ -38,9 +38,9 @@ using tyndall::Rgb;
 using tyndall::Text;
 using tyndall::Times;
 
-constexpr std::size_t VoxelsOfThread = 16384; ///< at least
+constexpr std::size_t VoxelsOfThread = 16384; ///< minimum number of voxels per thread
 
-/// The medium at relative density 1, in the dataset's unit.
+/// Parameters of the medium at relative density 1, in the dataset's unit.
 struct Recipe
 {
   Rgb sigma_s;
@@ -59,7 +59,7 @@ void RequireMeanCosine(const char* property, double g)
   Require(std::abs(g) < 1.0, std::string(property) + " is " + Text("%g", g) + "; it must lie between -1 and 1.");
 }
 
-/// Numbers of a column of the phase function's table.
+/// The numbers in a column of the phase function's table.
 std::vector<double> ColumnOf(vtkTable* table, const char* name)
 {
   vtkAbstractArray* const column = table->GetColumnByName(name);
@@ -119,9 +119,9 @@ struct Unit
   double millimetres;
 };
 constexpr std::array<Unit, 5> Units = { { { "um", 1e-3 }, { "mm", 1.0 }, { "cm", 10.0 }, { "m", 1e3 },
-  { "km", 1e6 } } }; ///< as LengthUnits from MICROMETRES on
+  { "km", 1e6 } } }; ///< in the order of LengthUnits from MICROMETRES on
 
-/// Length of the dataset's unit.
+/// Length of the dataset's unit, millimetres.
 double MillimetresOf(vtkParticipatingMedium* filter)
 {
   const int unit = filter->GetLengthUnit();
@@ -129,7 +129,7 @@ double MillimetresOf(vtkParticipatingMedium* filter)
                                                   : Units[unit - vtkParticipatingMedium::MICROMETRES].millimetres;
 }
 
-/// The edges of the grid in words, in the largest unit of which the longest has at least one.
+/// The grid's edge lengths as text, in the largest unit in which the longest edge is at least 1.
 std::string ExtentInWords(const tyndall::Grid& grid, double millimetres)
 {
   const double longest = std::max({ grid.Length(0), grid.Length(1), grid.Length(2) }) * millimetres;
@@ -163,7 +163,7 @@ double LargestExtinction(const Recipe& recipe)
   return largest;
 }
 
-/// @param ofChannels  none, or those of red, green and blue
+/// @param ofChannels  empty, or the mean cosines of red, green and blue
 Rgb MeanCosines(vtkParticipatingMedium* filter, const std::vector<double>& ofChannels)
 {
   Require(ofChannels.empty() || ofChannels.size() == 3,
@@ -185,7 +185,7 @@ Recipe RecipeOf(vtkParticipatingMedium* filter, const std::vector<double>& chann
 {
   Require(NotNegative(filter->GetExtinctionScale()),
     "ExtinctionScale is " + Text("%g", filter->GetExtinctionScale()) + "; it must be finite and not negative.");
-  const Rgb g = MeanCosines(filter, channelMeanCosines); // looked at with a preset as well
+  const Rgb g = MeanCosines(filter, channelMeanCosines); // validated with a preset as well
   Recipe recipe = filter->GetPreset() == vtkParticipatingMedium::CUSTOM ? CustomMedium(filter) : RealMedium(filter);
   recipe.g = filter->GetPreset() == vtkParticipatingMedium::CUSTOM ? g : recipe.g;
   for (int c = 0; c < 3; ++c)
@@ -198,7 +198,7 @@ Recipe RecipeOf(vtkParticipatingMedium* filter, const std::vector<double>& chann
   return recipe;
 }
 
-/// Relative density of each voxel: 0 at `minimum`, 1 at `maximum`, and on in the same way.
+/// Relative density of each voxel: 0 at `minimum`, 1 at `maximum`, linear beyond.
 std::vector<float> RelativeDensity(
   const tyndall::FloatField& density, const tyndall::Grid& grid, double minimum, double maximum)
 {
@@ -241,14 +241,14 @@ std::vector<float> FogOfLevelSet(const tyndall::FloatField& distance, const tynd
   return relative;
 }
 
-/// Values by which an array is recognised as a level set.
+/// Extreme values by which an array is recognised as a level set.
 struct Signs
 {
   double lowest = AnyValue, highest = -AnyValue, lowestOnBorder = AnyValue;
   static constexpr double AnyValue = std::numeric_limits<double>::max();
 };
 
-/// @param box  voxels of the array in the whole grid
+/// @param box  voxels of the array, relative to the complete grid
 Signs SignsOf(const float* values, const tyndall::VoxelBox& box, const tyndall::Grid& whole)
 {
   Signs signs;
@@ -276,7 +276,7 @@ Signs SignsOf(const float* values, const tyndall::VoxelBox& box, const tyndall::
   return signs;
 }
 
-/// Whether vtkVDBReader says that an array was a level set.
+/// Whether field data of vtkVDBReader say that an array was a level set.
 bool WasLevelSet(vtkImageData* image, const std::string& array)
 {
   auto* const kind =
@@ -284,7 +284,7 @@ bool WasLevelSet(vtkImageData* image, const std::string& array)
   return kind && kind->GetNumberOfValues() == 1 && kind->GetValue(0) == "level set";
 }
 
-/// Hidden cells have nothing of the medium, wherever MinimumDensity is.
+/// Sets the relative density of hidden cells to 0, whatever MinimumDensity is.
 void EmptyHidden(vtkImageData* image, std::vector<float>& relative)
 {
   const std::vector<unsigned char> hidden = tyndall::HiddenCells(image);
@@ -318,7 +318,7 @@ const tyndall::MediumPreset* PresetOf(int preset)
   return isThere ? &tyndall::MediumPresets()[preset - 1] : nullptr;
 }
 
-/// Makes an output of an input.
+/// Computes the output from the input.
 /// @return the relative density of each voxel
 std::vector<float> FillMedium(vtkParticipatingMedium* filter, const Recipe& recipe, vtkImageData* input,
   vtkInformationVector* phaseTable, vtkImageData* output)
@@ -344,7 +344,7 @@ std::vector<float> FillMedium(vtkParticipatingMedium* filter, const Recipe& reci
   const tyndall::FloatField scattering = tyndall::ReadCells(output, "sigma_s", tyndall::Need::Required);
   if (const tyndall::FloatField g = tyndall::ReadMeanCosines(output, scattering); g.IsThere())
   {
-    tyndall::ReadPhase(output, g, scattering); // throws if the input's is invalid
+    tyndall::ReadPhase(output, g, scattering); // throws if the input's phase function is invalid
   }
   return relative;
 }
@@ -420,7 +420,8 @@ int vtkParticipatingMedium::RequestInformation(
   return done;
 }
 
-/// If ranks each ask for their piece, that of the density; else all of it, whose size is reported.
+/// Requests the matching piece of the density if each rank requests its own piece; otherwise the complete density,
+/// whose size is reported.
 int vtkParticipatingMedium::RequestUpdateExtent(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
@@ -457,11 +458,11 @@ void vtkParticipatingMedium::NoteSize(const tyndall::Grid& grid, const tyndall::
 }
 
 /// Warns if the density looks like a level set. Collective.
-/// @param box  voxels of the image in the whole grid
+/// @param box  voxels of the image, relative to the complete grid
 void vtkParticipatingMedium::DoubtLevelSet(
   const tyndall::Domain& domain, vtkImageData* image, const tyndall::VoxelBox& box)
 {
-  constexpr double small = 0.01; // of the largest value: noise about 0
+  constexpr double small = 0.01; // threshold relative to the largest value: smaller negative values are noise about 0
   if (this->LevelSet)
   {
     return;
@@ -508,7 +509,7 @@ int vtkParticipatingMedium::RequestData(
   return tyndall::Guarded(this, request, given, outputs, work);
 }
 
-/// The medium of this rank's piece of the density; its size is that of the whole grid. Collective.
+/// Makes the medium of this rank's piece of the density; the reported size is that of the complete grid. Collective.
 void vtkParticipatingMedium::MakeMedium(
   const tyndall::PieceBlocks& pieces, vtkInformationVector** inputs, vtkImageData* output)
 {

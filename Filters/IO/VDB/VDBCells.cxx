@@ -28,11 +28,12 @@
 
 namespace tyndall
 {
-/// Most that a number may change in 16 bits, relative to itself: twice what 11 significant bits round, so it is
-/// exceeded only below 2^-14, where fewer bits are left.
+/// Largest accepted relative error from storing a number in 16 bits: twice the rounding error of 11 significant bits,
+/// so only numbers below 2^-14, which have fewer bits, can exceed it.
 constexpr double LargestHalfLoss = 1e-3;
 
-/// Whether a real number survives 16 bits, as OpenVDB rounds it: not as infinity, nor with a loss. Infinity and NaN do.
+/// Whether a real number can be stored in 16 bits, as OpenVDB rounds it, without overflow or loss. True for infinity
+/// and NaN.
 template <typename Real>
 bool FitsHalf(Real number)
 {
@@ -40,9 +41,9 @@ bool FitsHalf(Real number)
   return !std::isfinite(exact) || (std::isfinite(kept) && std::abs(kept - exact) <= LargestHalfLoss * std::abs(exact));
 }
 
-/// Does nothing for values whose type is not stored in 16 bits.
-/// @param where  names the value, e.g. "in voxel (1, 2, 3)"
-/// @throws InvalidInput with a half sentence about the array, where a number of the value does not fit
+/// Does nothing for values of a type that is not stored in 16 bits.
+/// @param where  describes the position of the value, e.g. "in voxel (1, 2, 3)"
+/// @throws InvalidInput with part of a sentence about the array, if a number of the value does not fit
 template <typename Value, typename Where>
 void RequireHalf(const Value& value, const Where& where)
 {
@@ -68,7 +69,7 @@ void RequireHalf(const Value& value, const Where& where)
 
 namespace
 {
-/// A type of grid: OpenVDB's, and the array of cells with its numbers, N a voxel.
+/// A type of grid: OpenVDB's type, and the type of the cell array, with N numbers per voxel.
 template <typename G, typename A, int N = 1>
 struct GridKind
 {
@@ -78,7 +79,7 @@ struct GridKind
   static constexpr int Count = N;
 };
 
-/// Calls act with the GridKind of a type of FindValueType.
+/// Calls act with the GridKind for a type of FindValueType.
 template <typename Do>
 void WithKind(const std::string& type, const Do& act)
 {
@@ -118,12 +119,12 @@ void AddCellsOf(
   image->GetFieldData()->AddArray(background);
 }
 
-/// Numbers of an array of any type, as a grid's.
+/// Converts numbers of an array of any type to those of a grid.
 template <typename Number>
 class Numbers
 {
 public:
-  /// @param first  component of the voxel's first number
+  /// @param first  component of the array that is the voxel's first number
   Numbers(vtkDataArray* array, int first)
     : Values(array->GetVoidPointer(0))
     , Components(array->GetNumberOfComponents())
@@ -163,7 +164,7 @@ private:
   Number (*ReadOne)(const void*, vtkIdType, vtkIdType) = nullptr;
 };
 
-/// One value of a grid from numbers that number(component) gives.
+/// Makes one value of a grid from the numbers number(component).
 template <typename Value, typename Get>
 Value VoxelFrom(const Get& number)
 {
@@ -197,7 +198,7 @@ bool Near(const T& a, const T& b, double tolerance)
   }
   else
   {
-    return std::abs(static_cast<double>(a) - static_cast<double>(b)) <= tolerance; // never for NaN
+    return std::abs(static_cast<double>(a) - static_cast<double>(b)) <= tolerance; // false for NaN
   }
 }
 
@@ -206,8 +207,8 @@ std::string ToString(const openvdb::Coord& voxel)
   return "(" + std::to_string(voxel[0]) + ", " + std::to_string(voxel[1]) + ", " + std::to_string(voxel[2]) + ")";
 }
 
-/// Fills one block of a tree, a leaf at most: left out where it is background, a tile where all of it is one value.
-/// @param valueAt  of a voxel
+/// Fills one block of a tree, at most a leaf: background is skipped, a block of one value becomes a tile.
+/// @param valueAt  returns the value of a voxel
 template <typename TreeT, typename ValueAt>
 void FillBlock(TreeT& tree, openvdb::CoordBBox block, const openvdb::CoordBBox& voxels, const VoxelOptions& options,
   const ValueAt& valueAt)
@@ -248,7 +249,7 @@ void FillBlock(TreeT& tree, openvdb::CoordBBox block, const openvdb::CoordBBox& 
   }
 }
 
-/// Fills a tree block by block, so that only blocks that are not background are made.
+/// Fills a tree block by block; no leaves are made for blocks of background.
 template <typename TreeT, typename Number>
 void FillTree(
   TreeT& tree, const Numbers<Number>& numbers, const openvdb::CoordBBox& voxels, const VoxelOptions& options)
@@ -279,14 +280,14 @@ void FillTree(
   }
 }
 
-/// Field data about an array, if it is there and of that type.
+/// Field data `key` about an array; null if missing or of another type.
 template <typename ArrayT>
 ArrayT* FactOf(vtkFieldData* field, const std::string& array, const char* key)
 {
   return ArrayT::SafeDownCast(field->GetAbstractArray(FieldName(array, key).c_str()));
 }
 
-/// The background that was noted for an array, or else the same number for each component.
+/// The background in an array's field data, otherwise the value `otherwise` for each component.
 template <typename K>
 typename K::Grid::ValueType BackgroundOf(K, const std::string& array, vtkFieldData* field, double otherwise)
 {
@@ -300,7 +301,7 @@ typename K::Grid::ValueType BackgroundOf(K, const std::string& array, vtkFieldDa
   return VoxelFrom<Value>([&](int component) { return numbers.At(0, component); });
 }
 
-/// Type of the grids of an array, and how many of its components each takes.
+/// The type of an array's grids, and the number of components in each grid.
 struct GridsOfArray
 {
   std::string Type;
@@ -360,7 +361,7 @@ void AddGridCells(const openvdb::GridBase& grid, const std::string& type, const 
 
 namespace
 {
-/// Values of a box of voxels between their middles.
+/// Interpolates the values of a box of voxels between their centres.
 template <typename K>
 class BoxSampler
 {
@@ -375,7 +376,7 @@ public:
   {
   }
 
-  /// @param at  index, whole numbers in the middle of voxels
+  /// @param at  position in index space; whole numbers are voxel centres
   void Sample(const openvdb::Vec3d& at, Number* value) const
   {
     if constexpr (std::is_integral<Number>::value)

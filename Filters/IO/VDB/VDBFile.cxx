@@ -20,7 +20,7 @@ bool EndsWith(const std::string& text, const std::string& end)
   return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
-/// Sets type and storage of a grid from what its file calls its type.
+/// Sets type and storage format of a grid from the type name in its file.
 void SetType(VDBGrid& grid, std::string type)
 {
   const std::string half = "_HalfFloat", prefix = "Tree_", suffix = "_5_4_3";
@@ -107,7 +107,7 @@ void VDBFile::ReadDescriptors()
     grid.Name = openvdb::io::GridDescriptor::nameAsString(uniqueName);
     SetType(grid, bytes.LengthAndText("the type of a grid"));
     const std::string sharedWith = bytes.LengthAndText("the parent of a grid");
-    const bool hasTree = sharedWith.empty(); // without a tree, a grid has no leaves to have a place
+    const bool hasTree = sharedWith.empty(); // a grid that shares a tree has no leaves of its own
 
     VDBPlace& place = grid.Place;
     const auto afterNames = static_cast<std::int64_t>(bytes.Position() + 3 * sizeof(std::int64_t));
@@ -145,7 +145,7 @@ void VDBFile::ReadDescriptors()
   }
 }
 
-/// A grid with metadata and transform of its own, and the tree of a grid before it.
+/// Reads a grid that has its own metadata and transform, but shares the tree of an earlier grid.
 void VDBFile::ShareTree(VDBGrid& grid, const VDBGrid& with)
 {
   VDBBytes bytes(this->FilePath, this->FileSize);
@@ -234,7 +234,7 @@ openvdb::GridBase::Ptr VDBFile::Read(const VDBGrid& grid, const openvdb::CoordBB
   this->CheckLeaves(grid);
 
   const auto metadata = std::make_shared<openvdb::io::StreamMetadata>();
-  metadata->setSeekable(true); // so that leaves outside the box are passed over
+  metadata->setSeekable(true); // so that leaves outside the box are skipped
   metadata->setFileVersion(this->FormatVersion);
   metadata->setLibraryVersion(this->LibraryVersion);
   metadata->setCompression(grid.Place.Compression);

@@ -37,8 +37,8 @@ double LengthOf(const std::array<double, 3>& vector)
   return std::sqrt(vector[0] * vector[0] + vector[1] * vector[1] + vector[2] * vector[2]);
 }
 
-/// World position of the centre of voxel 0, along one world axis, in an image with that origin.
-/// @param half  -0.5 to go from the centre to the origin
+/// One coordinate of the centre of voxel 0 in world space, for an image with that origin.
+/// @param half  -0.5 to compute the origin from the centre
 double CentreOfFirstVoxel(double origin, const Steps& steps, int axis, double half = 0.5)
 {
   return origin + half * (steps[0][axis] + steps[1][axis] + steps[2][axis]);
@@ -66,7 +66,7 @@ std::array<std::int64_t, 6> ExtentOfAll(const std::vector<const VDBGrid*>& grids
   return all.Extent;
 }
 
-/// Origin and spacing to the last bit as they were noted, as long as the transform is still the same.
+/// Restores the noted origin and spacing to the last bit, if the transform has not changed since.
 void ApplyNotes(VDBGeometry& geometry, const VDBGrid& grid, bool aligned)
 {
   const auto* origin = NoteOf<openvdb::Vec3d>(grid, OriginKey);

@@ -17,7 +17,7 @@ bool DescribesTheFile(const std::string& key)
 
 namespace
 {
-/// The linear maps of OpenVDB.
+/// Reads one of OpenVDB's linear maps.
 /// @return whether the type is one of them
 bool ReadLinearMap(VDBBytes& bytes, const std::string& type, VDBGrid& grid)
 {
@@ -36,7 +36,7 @@ bool ReadLinearMap(VDBBytes& bytes, const std::string& type, VDBGrid& grid)
       bytes.Skip(sizeof(double), "the transform");
     }
   }
-  else if (type == "ScaleMap" || type == "UniformScaleMap") // followed by numbers that are computed from it
+  else if (type == "ScaleMap" || type == "UniformScaleMap") // followed by numbers derived from the scale
   {
     diagonal(vector());
     bytes.Skip(4 * 3 * sizeof(double), "the transform");
@@ -65,7 +65,7 @@ double TripleProduct(const std::array<std::array<double, 3>, 3>& v)
     v[0][2] * (v[1][0] * v[2][1] - v[1][1] * v[2][0]);
 }
 
-/// Why an image cannot have the grid's map; empty: it can. Notes whether it shears.
+/// Why an image cannot have the grid's map; empty if it can. Also sets Shears.
 std::string FaultOfMap(VDBGrid& grid)
 {
   const auto dot = [&](int i, int j) {

@@ -27,7 +27,7 @@ namespace tyndall
 {
 namespace
 {
-/// Metadata of OpenVDB's type V, N numbers, and the array of VTK that holds them as one tuple.
+/// Correspondence between metadata of OpenVDB's type V, with N numbers, and the VTK array that holds them as one tuple.
 template <typename V, typename A, int N = 1>
 struct ValueKind
 {
@@ -45,7 +45,7 @@ constexpr std::tuple<ValueKind<bool, vtkUnsignedCharArray>, ValueKind<Int32, vtk
   ValueKind<Mat4s, vtkFloatArray, 16>, ValueKind<Mat4d, vtkDoubleArray, 16>>
   Kinds;
 
-/// Does something for each kind until it says that it is done.
+/// Calls act for each kind until it returns true.
 template <typename Do>
 void ForKinds(const Do& act)
 {
@@ -95,7 +95,7 @@ bool InsertIfOfKind(K, MetaMap& map, const std::string& key, vtkAbstractArray* f
   return true;
 }
 
-/// Any array of one 64-bit integer, whatever VTK calls its type.
+/// Inserts an array of one 64-bit integer, whatever VTK calls its type.
 bool InsertIfLong(MetaMap& map, const std::string& key, vtkAbstractArray* found)
 {
   auto* array = vtkDataArray::SafeDownCast(found);
@@ -141,11 +141,11 @@ struct MediumFact
 };
 constexpr MediumFact MediumFacts[] = { { "g", "medium_g" }, { "phase_function", "medium_phase_function" },
   { "phase_second_g", "medium_phase_second_g" }, { "phase_first_part", "medium_phase_first_part" } };
-/// Of any number of rows, for which OpenVDB has no type.
+/// Tables with any number of rows, for which OpenVDB has no type.
 constexpr MediumFact MediumTables[] = { { "phase_cosine", "medium_phase_cosine" },
   { "phase_value", "medium_phase_value" } };
 
-/// Numbers with all of their digits, a space between.
+/// Writes numbers with all of their digits, separated by blanks.
 std::string TextOf(vtkDataArray* array)
 {
   std::string text;
@@ -163,7 +163,7 @@ std::vector<double> NumbersOf(const std::string& text)
   std::istringstream words(text);
   for (std::string word; words >> word;)
   {
-    numbers.push_back(NumberIn(word).value_or(0.0)); // 0 makes a bad table of what is no number
+    numbers.push_back(NumberIn(word).value_or(0.0)); // 0 in place of an invalid number makes the table invalid
   }
   return numbers;
 }

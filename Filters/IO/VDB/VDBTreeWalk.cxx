@@ -77,7 +77,7 @@ void VDBValues::CheckBlock(VDBBytes& bytes, std::uint64_t count, bool decompress
   }
   const std::uint64_t start = bytes.Position();
   const auto length = bytes.Value<std::int64_t>(NodesValues);
-  if (length <= 0) // stored as they are
+  if (length <= 0) // stored uncompressed
   {
     if (length != -static_cast<std::int64_t>(expected))
     {
@@ -135,7 +135,7 @@ void VDBValues::Decompress(VDBBytes& bytes, std::uint64_t compressed, std::uint6
 
 namespace
 {
-constexpr int LeafEdge = 8, UpperEdge = 4096; ///< voxels: 2^3, 2^(3+4+5)
+constexpr int LeafEdge = 8, UpperEdge = 4096; ///< voxels per edge: 2^3, 2^(3+4+5)
 
 VDBBox BoxOf(const VoxelCorner& corner, std::int64_t edge)
 {
@@ -159,7 +159,7 @@ VoxelCorner ChildCorner(const VoxelCorner& corner, int bit, int childEdge)
     corner[2] + (bit & last) * childEdge };
 }
 
-/// The smallest box of a leaf's active voxels; at least one of them is.
+/// The bounding box of a leaf's active voxels; at least one voxel must be active.
 VDBBox ActiveBoxOf(const VDBLeafMask& mask, const VoxelCorner& corner)
 {
   // Bit 64 x + 8 y + z: a word is one x, its byte one y.
