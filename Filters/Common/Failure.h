@@ -13,7 +13,7 @@ struct InputFailed
 {
 };
 
-/// Thrown for an input that is empty on purpose.
+/// Thrown for an input that is empty without an error, such as one read from an empty file.
 struct InputIsEmpty
 {
 };

@@ -29,8 +29,7 @@ void AddCells(
 /// The same for light. With 3 channels the components are named R, G, B.
 void AddLight(vtkImageData* image, const char* name, std::vector<float>&& values, int channels);
 
-/// Adds an array of light to the image a second time under the name `as`. The arrays share memory; values are not
-/// checked.
+/// Adds the image's array `as` a second time, under the name `name`. The arrays share memory; values are not checked.
 void AddSameLight(vtkImageData* image, const char* name, const char* as);
 
 /// The same as AddLight for light that a user gave, which may be NaN where it is unknown; values are not checked.

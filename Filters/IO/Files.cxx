@@ -31,7 +31,7 @@ std::uint64_t ReadableSize(const std::string& path)
   std::ifstream stream(path, std::ios::binary | std::ios::ate);
   const std::streamoff size = stream ? static_cast<std::streamoff>(stream.tellg()) : -1;
   stream.seekg(0);
-  // A folder opens, and has a size, but nothing can be read from it.
+  // A folder can be opened and has a size, but cannot be read.
   if (size < 0 || (size > 0 && stream.peek() == std::ifstream::traits_type::eof()))
   {
     throw InvalidInput("\"" + path + "\" cannot be read. Check that it is a file, is there and may be read.");
@@ -121,7 +121,8 @@ void WholeFile::LookAtTarget()
   {
     this->Fail(S_ISDIR(this->Before.st_mode) ? "there is a folder of that name" : "what has that name is not a file");
   }
-  // To replace a file needs a right to its folder only, and root has every right; but who made it read-only meant it.
+  // Replacing a file requires write permission for its folder only, and root has every permission; a read-only file is
+  // respected all the same.
   const bool readOnly = this->WasThere &&
     ((this->Before.st_mode & 0222) == 0 || faccessat(AT_FDCWD, this->Target.c_str(), W_OK, AT_EACCESS) != 0);
   if (readOnly)

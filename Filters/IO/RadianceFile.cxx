@@ -458,7 +458,7 @@ std::vector<float> ReadExrPixels(const std::string& path, const ExrWindows& wind
     return pixels;
   }
 
-  // OpenEXR takes the address that pixel (0, 0) would have.
+  // OpenEXR expects the address of pixel (0, 0), which may lie outside of the data window.
   const std::size_t pixel = 3 * sizeof(float), row = pixel * static_cast<std::size_t>(width);
   const bool grey = channels.Names[0] == channels.Names[1];
   Imf::FrameBuffer buffer;
@@ -504,7 +504,7 @@ RadiancePicture ReadHdr(const std::string& path)
       const int j = header.FromTop ? header.Height - 1 - y : y;
       float* pixel = &picture.Rgb[3 * (static_cast<std::size_t>(j) * static_cast<std::size_t>(header.Width) + i)];
       const unsigned char* stored = &rgbe[4 * static_cast<std::size_t>(column)];
-      // A mantissa of 8 bits stands for the middle of its step, as in Radiance's own colr_color.
+      // An 8-bit mantissa represents the middle of its interval, as in Radiance's own colr_color.
       const double scale = stored[3] == 0 ? 0.0 : std::ldexp(1.0, stored[3] - (128 + 8)) / header.Exposure;
       for (int channel = 0; channel < 3; ++channel)
       {

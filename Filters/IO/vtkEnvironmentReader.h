@@ -39,7 +39,7 @@ public:
   vtkGetFilePathMacro(FileName);
   ///@}
 
-  /// Whether the file begins as an OpenEXR or Radiance file does.
+  /// Whether the file starts like an OpenEXR or Radiance file.
   virtual int CanReadFile(const char* fileName);
 
   ///@{

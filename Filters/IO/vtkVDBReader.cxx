@@ -322,7 +322,7 @@ void vtkVDBReader::Internals::Choose(vtkDataArraySelection* selection)
     this->Chosen.clear();
     return;
   }
-  // In the order of the file, whatever the order in which they were chosen.
+  // Use the order of the file, not that of the selection.
   std::sort(this->Chosen.begin(), this->Chosen.end());
   if (!this->Chosen.empty())
   {

@@ -24,7 +24,7 @@ struct Light;
  * |--------------|------------|------------------------------------------------------------------------------------|
  * | `light_type` | uint8      | 0 directional, 1 point, 2 spot, 3 rectangle                                        |
  * | `direction`  | double x 3 | unit vector in which the light travels; (0, 0, 0) for a point light                |
- * | `power`      | double x 3 | RGB: W; directional lights: irradiance W/length^2 on a plane normal to `direction`     |
+ * | `power`      | double x 3 | RGB: W; directional lights: W/length^2 on a plane normal to `direction`               |
  * | `size`       | double x 2 | edges of a rectangle, length; else 0                                               |
  * | `angle`      | double     | full opening angle of a spot, degrees; else 0                                      |
  *

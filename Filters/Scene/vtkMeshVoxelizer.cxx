@@ -241,7 +241,7 @@ vtkMeshVoxelizer::vtkMeshVoxelizer()
   const tyndall::RefractiveMediumSettings defaults;
   this->SupersamplingFactor = defaults.voxelization.samples;
   this->FilterSize = defaults.filterSize;
-  // vtkImageAlgorithm chooses the active scalars.
+  // Overrides the default selection of vtkImageAlgorithm, the active scalars.
   this->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, DefaultNumbers);
 }
 

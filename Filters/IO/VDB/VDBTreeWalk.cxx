@@ -93,7 +93,7 @@ void VDBValues::CheckBlock(VDBBytes& bytes, std::uint64_t count, bool decompress
   }
   if (this->Compression & COMPRESS_BLOSC)
   {
-    // Blosc believes the sizes in its header.
+    // Blosc trusts the sizes in its header.
     std::array<std::uint32_t, 4> header = {};
     if (length >= static_cast<std::int64_t>(sizeof(header)))
     {
@@ -150,7 +150,7 @@ VDBMask<Log2Dim> ReadMask(VDBBytes& bytes, const char* what)
   return mask;
 }
 
-/// Corner of a node's child.
+/// Corner (lowest voxel index) of a node's child.
 template <int Log2Dim>
 VoxelCorner ChildCorner(const VoxelCorner& corner, int bit, int childEdge)
 {
@@ -162,7 +162,7 @@ VoxelCorner ChildCorner(const VoxelCorner& corner, int bit, int childEdge)
 /// The bounding box of a leaf's active voxels; at least one voxel must be active.
 VDBBox ActiveBoxOf(const VDBLeafMask& mask, const VoxelCorner& corner)
 {
-  // Bit 64 x + 8 y + z: a word is one x, its byte one y.
+  // Voxel (x, y, z) is bit 64 x + 8 y + z: each word has one x, each of its bytes one y.
   std::uint64_t yz = 0;
   int first = -1, last = -1;
   for (int x = 0; x < LeafEdge; ++x)

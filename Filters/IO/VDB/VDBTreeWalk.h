@@ -28,7 +28,7 @@ struct VDBValueType
   std::string GridType() const { return std::string("Tree_") + this->Name + "_5_4_3"; } ///< OpenVDB's name of it
 };
 
-/// The types that become images: float, double, int32, int64, bool, mask, vec3i, vec3s, vec3d; else null.
+/// Finds a type that can become an image: float, double, int32, int64, bool, mask, vec3i, vec3s, vec3d. Else null.
 const VDBValueType* FindValueType(const std::string& name);
 
 /// Checks the stored values of a grid's nodes without keeping them.
