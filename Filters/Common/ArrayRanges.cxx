@@ -22,11 +22,11 @@ namespace tyndall
 {
 namespace
 {
-constexpr std::size_t BlockValues =
-  8192; ///< values per block, which stays in the cache for the tests for finite values, extremes and norms
+/// Values per block, which stays in the cache for the tests for finite values, extremes and norms.
+constexpr std::size_t BlockValues = 8192;
 constexpr std::size_t ThreadValues = 65536; ///< minimum number of values per thread
-constexpr std::size_t Lanes =
-  32; ///< minimum number of extremes computed in parallel: enough for vector units of any width
+/// Minimum number of extremes computed in parallel: enough for vector units of any width.
+constexpr std::size_t Lanes = 32;
 
 /// Whether any value has an exponent of all ones, as infinity and NaN do. The loop is written for vectorisation.
 template <class Bits>

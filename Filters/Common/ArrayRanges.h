@@ -16,8 +16,8 @@ struct ArrayRanges
 {
   std::vector<std::array<double, 2>> components; ///< range of each component; empty: there are no values
   std::array<double, 2> norm = {};               ///< range of the tuples' Euclidean norm, in double as in vtkDataArray
-  std::size_t firstNotFinite =
-    0; ///< index of the first value that is infinite or NaN; the number of values if all are finite
+  /// Index of the first value that is infinite or NaN; the number of values if all are finite.
+  std::size_t firstNotFinite = 0;
 };
 
 /// Computes the ranges. If a value is not finite, only firstNotFinite is valid.

@@ -38,8 +38,8 @@ double NumberInFile(const char* path)
 double LeftInContainer()
 {
   const double most = NumberInFile("/sys/fs/cgroup/memory.max"), taken = NumberInFile("/sys/fs/cgroup/memory.current");
-  const double cache =
-    NumberAfter("/sys/fs/cgroup/memory.stat", "inactive_file"); // memory that the kernel frees on demand
+  // Memory that the kernel frees on demand.
+  const double cache = NumberAfter("/sys/fs/cgroup/memory.stat", "inactive_file");
   return most == Unknown || taken == Unknown ? Unknown : most - taken + (cache == Unknown ? 0.0 : cache);
 }
 

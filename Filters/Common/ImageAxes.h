@@ -20,13 +20,13 @@ namespace tyndall
 struct AxisWays
 {
   std::array<int, 3> world = { 0, 1, 2 }; ///< world axis of each image axis
-  std::array<bool, 3> down = { false, false,
-    false }; ///< for each image axis: whether it points in the negative direction of its world axis
+  /// For each image axis: whether it points in the negative direction of its world axis.
+  std::array<bool, 3> down = { false, false, false };
   std::array<double, 3> spacing = { 1.0, 1.0, 1.0 }; ///< along each world axis, above 0
 
   bool AreAlike() const; ///< whether the image axes are the world axes
-  std::array<int, 6> Extent(
-    const int* ofImage) const; ///< the image's extent with indices that run along the world axes
+  /// The image's extent with indices that run along the world axes.
+  std::array<int, 6> Extent(const int* ofImage) const;
 };
 
 /// Finds the signed permutation of an image's axes.
@@ -50,10 +50,10 @@ struct OwnAxes
   using Vec = std::array<double, 3>;
 
   Vec origin = { 0.0, 0.0, 0.0 }; ///< of the image; this position has the same coordinates in both systems
-  Rotation axes = { { { 1.0, 0.0, 0.0 }, { 0.0, 1.0, 0.0 },
-    { 0.0, 0.0, 1.0 } } }; ///< unit vectors of the medium axes in scene coordinates, one a row
-  std::array<double, 9> direction = { 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0,
-    1.0 }; ///< direction matrix for positive spacings
+  /// Unit vectors of the medium axes in scene coordinates, one a row.
+  Rotation axes = { { { 1.0, 0.0, 0.0 }, { 0.0, 1.0, 0.0 }, { 0.0, 0.0, 1.0 } } };
+  /// Direction matrix for positive spacings.
+  std::array<double, 9> direction = { 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0 };
 
   bool AreThoseOfScene() const { return this->direction == OwnAxes().direction; }
   bool AreMirrored() const;

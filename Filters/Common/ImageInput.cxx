@@ -321,8 +321,8 @@ void RequireWholeArrays(vtkAlgorithm* filter)
     {
       vtkDataObject* const input = filter->GetInputDataObject(port, i);
       auto* const image = vtkImageData::SafeDownCast(input);
-      const bool isCutToNothing =
-        image && image->GetNumberOfPoints() == 0; // VTK emptied it, but may have left old arrays
+      // VTK emptied it, but may have left old arrays.
+      const bool isCutToNothing = image && image->GetNumberOfPoints() == 0;
       for (const auto& [kind, elements] : kinds)
       {
         if (vtkDataSetAttributes* const arrays = input && !isCutToNothing ? input->GetAttributes(kind) : nullptr)

@@ -332,8 +332,8 @@ void AskForAllBut(int piece, vtkInformation* request, vtkInformationVector** inp
 
 vtkInformation* AskingPort(vtkInformation* request, vtkInformationVector* outputs)
 {
-  const int port =
-    std::max(request->Get(vtkExecutive::FROM_OUTPUT_PORT()), 0); // -1: the request came from the filter itself
+  // -1: the request came from the filter itself.
+  const int port = std::max(request->Get(vtkExecutive::FROM_OUTPUT_PORT()), 0);
   return outputs->GetInformationObject(port);
 }
 

@@ -37,8 +37,8 @@ vtkSmartPointer<vtkPolyData> Triangulated(vtkPolyData* mesh)
   {
     return mesh;
   }
-  vtkNew<vtkPolyData>
-    input; // A shallow copy, since a filter must not be connected to a mesh that has a pipeline of its own.
+  // A shallow copy, since a filter must not be connected to a mesh that has a pipeline of its own.
+  vtkNew<vtkPolyData> input;
   input->ShallowCopy(mesh);
   vtkNew<vtkTriangleFilter> filter;
   filter->PassVertsOff();

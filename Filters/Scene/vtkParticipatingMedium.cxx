@@ -118,8 +118,9 @@ struct Unit
   const char* name;
   double millimetres;
 };
+/// In the order of LengthUnits from MICROMETRES on.
 constexpr std::array<Unit, 5> Units = { { { "um", 1e-3 }, { "mm", 1.0 }, { "cm", 10.0 }, { "m", 1e3 },
-  { "km", 1e6 } } }; ///< in the order of LengthUnits from MICROMETRES on
+  { "km", 1e6 } } };
 
 /// Length of the dataset's unit, millimetres.
 double MillimetresOf(vtkParticipatingMedium* filter)

@@ -43,8 +43,8 @@ struct VoxelOptions
   /// Numbers that differ from the background, or from each other within a block, by no more than this count as equal.
   double Tolerance = 0.0;
   bool Half = false; ///< store real numbers in 16 bits; numbers that do not fit are an error
-  const std::vector<unsigned char>* Hidden =
-    nullptr; ///< a flag for each cell: it becomes background, whatever its value
+  /// A flag for each cell: it becomes background, whatever its value.
+  const std::vector<unsigned char>* Hidden = nullptr;
 };
 
 /// Makes the grids of one array: one grid, or one for each component, named after the array. Cells that equal the
