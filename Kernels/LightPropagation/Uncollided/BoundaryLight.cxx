@@ -134,7 +134,7 @@ std::array<Rgb, 6> BoundaryLight::IncomingPower() const
   return power;
 }
 
-/// By exact shares of rays, and by whole ones.
+/// @return total entering power with exact fractional ray counts, and with whole rays
 std::pair<Rgb, Rgb> BoundaryLight::EnteringPower() const
 {
   EnteringRays entering;
@@ -145,7 +145,7 @@ std::pair<Rgb, Rgb> BoundaryLight::EnteringPower() const
     const double planes = PlanesOfPattern(n[axis], this->Periodic[axis]);
     if (planes <= 2.0)
     {
-      continue; // so few that it hardly matters in which
+      continue; // with so few planes the rounding to whole rays hardly matters
     }
     for (const Bundle& bundle : BundlesAlong(
            axis, this->TheGrid, this->Periodic, this->Directions.Set(), this->MapResolution, this->Directions.Starts()))

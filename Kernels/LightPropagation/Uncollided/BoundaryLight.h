@@ -10,30 +10,33 @@
 
 namespace tyndall
 {
-/// Light that comes from outside: of shining faces, of the sky and of the environment (but its peaks, which are lamps),
-/// along a set of directions (numerics.md, Eq. (31)).
+/// Incident radiance on the box's faces along a set of directions (numerics.md, Eq. (31)): the sum of the emission of
+/// the faces, the sky and the environment. The peaks of the environment are excluded; they are treated as lamps
+/// (EnvironmentPeaks.h).
 class BoundaryLight
 {
 public:
-  /// @param directions  must stay
-  /// @param farAway  the illumination's environment without peaks
+  /// @param directions  the quadrature; must outlive this object
+  /// @param farAway  the illumination's environment without its peaks
   BoundaryLight(const Grid& grid, const PropagationSettings& settings, const SweptDirections& directions,
     const Illumination& illumination, const Environment& farAway);
 
   bool Shines() const { return this->AnyLight; }
-  bool IsEven() const { return this->AllAlike; } ///< the same comes in along every direction through every open face
-  bool IsLit(int direction) const;               ///< light comes in along it through one of the open faces
-  /// Radiance, in the mean over the directions that this one stands for. W / (length^2 sr)
+  /// the incident radiance is the same for all directions and all non-periodic faces
+  bool IsEven() const { return this->AllAlike; }
+  bool IsLit(int direction) const; ///< whether the direction has incident radiance on a non-periodic face
+  /// Incident radiance through `face`, W / (length^2 sr), averaged over the directions that this one represents.
   Rgb Incoming(int direction, int face) const;
-  SweepBoundary Boundary() const; ///< the same, for a sweep; this must stay
-  /// W / length^2 through each of the box's faces; 0 where the axis is periodic.
+  SweepBoundary Boundary() const; ///< Incoming() as a function for a sweep; this object must outlive it
+  /// Incident power per area through each of the box's faces, W / length^2; 0 where the axis is periodic.
   std::array<Rgb, 6> IncomingPower() const;
 
-  /// Rays that enter a face aside of their marching axis are few where the box has few of that axis' planes.
-  /// @param channels  that are looked at
-  /// @throws InvalidInput where so few of them meet the faces that shine that whole rays would miss 30% of the power
+  /// Checks that whole rays carry enough of the incident power. Through the faces parallel to their marching axis few
+  /// rays enter if the box has few planes of voxels across that axis.
+  /// @param channels  number of channels to check
+  /// @throws InvalidInput if whole rays would miss more than 30% of the power that enters through the emitting faces
   void CheckRays(int channels) const;
-  /// CheckRays would not throw, whichever of the box's open faces shines.
+  /// Whether CheckRays() would pass whichever of the non-periodic faces emits.
   static bool HasEnoughRays(const Grid& grid, const PropagationSettings& settings, const SweptDirections& directions);
 
   const SweptDirections& Along() const { return this->Directions; }
@@ -47,7 +50,8 @@ private:
   int MapResolution;
   const SweptDirections& Directions;
   std::array<Rgb, 6> Faces;
-  std::vector<Rgb> FromFarAway; ///< by direction, in the mean over those that it stands for
+  /// sky and environment: by direction, averaged over the directions that it represents
+  std::vector<Rgb> FromFarAway;
   bool AnyLight = false;
   bool AllAlike = true;
 };

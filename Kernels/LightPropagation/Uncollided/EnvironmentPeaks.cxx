@@ -10,12 +10,12 @@ namespace tyndall
 {
 namespace
 {
-constexpr double BrightPart = 0.05; ///< of a cell's solid angle
-constexpr double Outshines = 4.0;   ///< times the mean of the rest
+constexpr double BrightPart = 0.05; ///< fraction of a cell's solid angle in which peaks are sought
+constexpr double Outshines = 4.0;   ///< peaks exceed this multiple of the mean radiance of the rest of the cell
 constexpr double LeastPower = 1.0 / 500.0;
 constexpr std::size_t MostPeaks = 64;
 
-/// A pixel as it is sorted into its cell.
+/// A pixel, to be sorted by brightness within its cell.
 struct Pixel
 {
   std::size_t index;
@@ -25,8 +25,9 @@ struct Pixel
 
 struct Peak
 {
-  std::vector<std::pair<std::size_t, double>> kept; ///< pixel, part of it that stays in the environment
-  std::array<double, 3> towards = {};               ///< power-weighted
+  /// pixel, and the fraction of its radiance that stays in the environment
+  std::vector<std::pair<std::size_t, double>> kept;
+  std::array<double, 3> towards = {}; ///< power-weighted
   Rgb irradiance = {};
   double brightness = 0.0;
 };
@@ -49,7 +50,7 @@ double SolidAngle(const Environment& environment, std::size_t pixel)
   return (std::cos(top) - std::cos(bottom)) * 2.0 * Pi / environment.width;
 }
 
-/// What is above the limit in the brightest part of a cell.
+/// The radiance above the limit in the brightest part of a cell.
 Peak FindPeak(const Environment& environment, std::vector<Pixel>& cell)
 {
   std::sort(cell.begin(), cell.end(), [](const Pixel& a, const Pixel& b) {

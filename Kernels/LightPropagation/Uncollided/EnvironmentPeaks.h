@@ -4,16 +4,17 @@
 
 namespace tyndall
 {
-/// An environment as two parts that add up to it: one that varies slowly enough for a coarse set of directions, and
-/// directional lights for the small bright things in it (the sun's disc, lamps).
+/// An environment split into two parts that add up to it: a smooth one that a coarse quadrature resolves, and
+/// directional lights for small bright features (the sun's disc, lamps).
 struct SplitEnvironment
 {
   Environment smooth;
   std::vector<Light> peaks; ///< directional, at most 64; power is irradiance, W / length^2
 };
 
-/// Looks for peaks in the cells of a direction set. Where the brightest twentieth of a cell's solid angle outshines the
-/// rest of it more than fourfold, what is above that becomes one light from its centre of power (numerics.md, Eq.
-/// (32)), if it carries at least a five-hundredth of what the environment shines. Colour and power are kept exactly.
+/// Finds peaks in each direction's cell of `set`. If radiance in the brightest twentieth of a cell's solid angle
+/// exceeds four times the mean of the rest of the cell, the excess becomes one directional light from its centre of
+/// power (numerics.md, Eq. (32)), provided that it carries at least 1/500 of the environment's power. Colour and power
+/// are conserved exactly.
 SplitEnvironment Split(const Environment& environment, const DirectionSet& set);
 }

@@ -20,7 +20,7 @@ void AddFirst(Device& device, const std::vector<float>& values, const Buffer<flo
   device.Queue().enqueueWriteBuffer(to.Handle(), CL_TRUE, 0, sum.size() * sizeof(float), sum.data());
 }
 
-/// Values of a scalar times the mean direction, [channel][x, y, z][stride].
+/// The scalar times the mean direction in each voxel, [channel][x, y, z][stride].
 std::vector<float> Along(const VolumeLayout& layout, const std::vector<float>& scalar, const Field& direction)
 {
   std::vector<float> flux(layout.Floats(3), 0.0f);

@@ -7,21 +7,23 @@
 
 namespace tyndall
 {
-/// Uncollided light that another solver found by voxel (UncollidedImage.h, numerics.md, section 5.7).
+/// Uncollided flux that another solver computed for each voxel (UncollidedImage.h, numerics.md, section 5.7).
 ///
-/// The image is of light as the medium extinguishes it, while sweeps take the forward peak of what is scattered as
-/// light that goes straight on: what of the image's light goes on so is a source of its own.
+/// The image is attenuated by the untruncated extinction of the medium, whereas sweeps treat the forward peak of
+/// scattering as unscattered light. The part of the image's light that scatters into the forward peak is therefore a
+/// separate source, AddStraightOn().
 class GivenLight : public UncollidedSource
 {
 public:
-  /// @param image, medium, scattering  must stay; in the solver's units and channels
+  /// @param image, medium, scattering  must outlive this object; in the solver's units and channels
   GivenLight(const UncollidedImage& image, const Medium& medium, const TruncatedScattering& scattering);
 
   SweepTally AddTo(const UncollidedVolume& volume, const Monitor& monitor) const override;
   bool TalliesOwnVoxels() const override { return true; }
 
-  /// Adds what goes straight on to a source, with its angular moments where there is a basis.
-  /// @return whether anything does
+  /// Adds the light scattered into the forward peak to `source`, W / (length^3 sr), with its angular moments if `basis`
+  /// is not null.
+  /// @return whether there is any
   bool AddStraightOn(
     Device& device, const VolumeLayout& layout, const AngularBasis* basis, const Buffer<float>& source) const;
 
@@ -31,11 +33,11 @@ private:
   const TruncatedScattering& Scattering;
 };
 
-/// What of an image's light the medium takes and what leaves, of some channels; all is counted as coming in through the
-/// first face, which is not known.
+/// Power of the image's light that the medium removes and that escapes, for `channels` channels from `first` on. The
+/// faces through which the light entered are unknown: all of it is counted as incident on the first face.
 SweepTally TallyOf(const UncollidedImage& image, const Medium& medium, int first, int channels);
 
-/// exp(-2 s) with the least s for which a peak whose moments up to a degree fall as exp(-s l (l + 1)) is nowhere
-/// negative: what AddNarrowMoments takes.
+/// exp(-2 s) for the smallest s at which a peak with moments exp(-s l (l + 1)) up to `degree` is nowhere negative: the
+/// argument `peak` of AddNarrowMoments().
 double SmoothPeak(int degree);
 }

@@ -1,7 +1,7 @@
-// Angular moments of light that goes one way in each voxel, as that of lamps does, or nearly so. The host gives
-//   DEGREE  of the moments
-//   RAYS    1: by voxel as its net flux tells; 0: the same everywhere
-// A work-item a voxel of a row, by row and channel.
+// Angular moments of light that has a single direction, or nearly one, in each voxel, such as that of lamps. Options:
+//   DEGREE  highest degree of the moments
+//   RAYS    1: the direction in each voxel is that of the net flux; 0: it is the same everywhere
+// One work-item per voxel of a row, row, and channel.
 
 #include "LightPropagation/Sweep/MomentPlacesShared.h"
 
@@ -11,11 +11,11 @@
 
 #if RAYS
 // basis    [function][harmonic], AngularBasis.h
-// path     W length, of the light, [channel][stride]
-// flux     W length, its net flux, [channel][x, y, z][stride]
-// moments  W length, with its angular moments (MomentPlacesShared.h), added to
-// peak     1: of light that goes one way, moments as they are; less: those of degree l are smaller, by
-//          peak^(l (l + 1) / 2 - 1)
+// path     W length, [channel][stride]
+// flux     net flux of the same light, W length, [channel][x, y, z][stride]
+// moments  W length, with angular moments (MomentPlacesShared.h), added to
+// peak     1: moments of a single direction, or of the spread that the net flux implies; below 1: those of degree l are
+//          multiplied by peak^(l (l + 1) / 2 - 1)
 __kernel void add_narrow_moments(MomentPlaces places, const __global float* basis, const __global float* path,
   const __global float* flux, __global float* moments, ulong stride, float peak)
 {
@@ -35,7 +35,7 @@ __kernel void add_narrow_moments(MomentPlaces places, const __global float* basi
   }
   float harmonics[MOMENTS];
   find_harmonics(flow / size, harmonics);
-  // Directions that spread about their mean as heat does: the moment of degree l is spread^(l (l + 1) / 2).
+  // Diffusive spread of directions about their mean: the moment of degree l is spread^(l (l + 1) / 2).
   const float spread = fmin(size / power, 1.0f) * peak;
   float whole = 1.0f / peak, step = spread;
   for (int l = 1; l <= DEGREE; ++l)
@@ -55,7 +55,7 @@ __kernel void add_narrow_moments(MomentPlaces places, const __global float* basi
 }
 #else
 
-// values   of the angular functions in the light's direction
+// values   of the angular functions in the light's direction, [function]
 __kernel void add_beam_moments(
   MomentPlaces places, const __global float* values, const __global float* path, __global float* moments, ulong stride)
 {

@@ -4,20 +4,20 @@
 
 namespace tyndall
 {
-/// Path integrals, and net flux, of light that goes one way in each voxel, or nearly so, gathered apart from that of
-/// other sources, to be added to a deposit with angular moments.
+/// Collects path integrals, and optionally net flux, of light that has one direction, or nearly one, in each voxel,
+/// separately from the light of other sources. Afterwards it is added to a deposit with angular moments.
 class NarrowLight
 {
 public:
-  /// @param volume  must stay; its deposit has angular moments
-  /// @param withFlux  the light's direction varies by voxel
+  /// @param volume  must outlive this object; its deposit has angular moments
+  /// @param withFlux  also collect net flux, for light whose direction varies from voxel to voxel
   NarrowLight(const UncollidedVolume& volume, bool withFlux);
 
-  /// Where the light is to be put down; first moments go where the volume has them.
+  /// The deposit to write this light to; first moments go to those of the volume, if it has them.
   Deposit To() const;
-  /// Adds what was put down to the volume's deposit: of light that goes the same way everywhere;
+  /// Adds the collected light to the volume's deposit, for light of direction `omega` everywhere.
   void AddAlong(const std::array<double, 3>& omega) const;
-  /// of light whose net flux tells which way it goes.
+  /// Adds the collected light to the volume's deposit, with the direction of its net flux in each voxel.
   void AddAlongFlux() const;
 
 private:
@@ -25,10 +25,10 @@ private:
   Buffer<float> OwnPath, Flux;
 };
 
-/// Adds light whose net flux tells which way it goes to an array with angular moments.
+/// Adds light to an array with angular moments; its direction in each voxel is that of its net flux.
 /// @param path, flux  W length, or another unit: [channel][stride], [channel][x, y, z][stride]
-/// @param peak  1: moments of light that goes one way, or spreads about it as heat does; less: those above the first
-///   smaller, as SmoothPeak has it
+/// @param peak  1: moments of a single direction, or of one that spreads diffusively about its mean; below 1: moments
+///   above degree 1 are reduced, see SmoothPeak()
 void AddNarrowMoments(Device& device, const VolumeLayout& layout, const AngularBasis& basis, const Buffer<float>& path,
   const Buffer<float>& flux, const Buffer<float>& moments, float peak = 1.0f);
 }

@@ -1,19 +1,20 @@
-// A beam of parallel light, after it was followed: its path is added to a deposit, and its first moments.
+// After the sweep of a parallel beam: adds its path to a deposit, and computes its first moments.
 
 #include "LightPropagation/Sweep/BeyondFaces.cl"
 #include "LightPropagation/Uncollided/ParallelBeamShared.h"
 
-// Distance from the middle of a voxel, in voxels, of the mean place where light is lost that comes in through a face
-// and falls off over tau.
+// Mean distance, in voxels, from a voxel's centre towards the entry face at which light that enters through one face is
+// lost, with exponential attenuation over the optical length tau.
 static float distance_to_face(float tau)
 {
   return tau < 0.05f ? tau / 12.0f : 0.5f - 1.0f / tau + (tau < 80.0f ? 1.0f / expm1(tau) : 0.0f);
 }
 
-// First moments of the deposit from the powers through the faces (numerics.md, Eq. (39)): exact where as much goes in
-// as comes out through the faces beside; never more than if all light came in through the face.
+// Adds the beam's path, and first moments computed from the powers through the faces (numerics.md, Eq. (39)). These are
+// exact if as much power enters as leaves through the lateral faces, and never exceed those of light that all enters
+// through one face.
 // path, currents           of the beam, as in Sweep/Deposit.h
-// beyond                   as currents, of the voxels beyond a block's faces, from this channel on
+// beyond                   power that enters voxels beyond a block's faces, from this channel on
 // all_path, first_moments  of the deposit, added to
 __kernel void add_beam(BeamInfo beam, const __global float* sigma, ulong sigma_first, const __global float* path,
   const __global float* currents, const __global float* beyond, ulong channel, __global float* all_path,

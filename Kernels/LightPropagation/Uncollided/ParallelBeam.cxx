@@ -11,9 +11,9 @@ namespace tyndall
 {
 namespace
 {
-constexpr int RaysPerEdge = 2; ///< of a voxel
-/// The same where first moments are asked for: with few rays a slanting beam comes into some voxels through one face
-/// and into those beside through another, and each seems to be lit from its own side.
+constexpr int RaysPerEdge = 2; ///< rays per edge of a voxel
+/// Rays per edge if first moments are wanted: with few rays an oblique beam enters some voxels through one face and
+/// their neighbours through another, and each voxel seems to be lit from one side only.
 constexpr int RaysPerThickEdge = 8;
 
 }
@@ -24,7 +24,7 @@ SweepTally SweepBeam(
   const Grid& grid = volume.Whole();
   const std::array<double, 3> omega = DirectionOf(light);
   const std::vector<int> axes = MarchingAxes(grid, omega);
-  Rgb power = light.power; // each of the axes carries its part of the beam
+  Rgb power = light.power; // each marching axis carries an equal part of the beam
   for (double& ofChannel : power)
   {
     ofChannel /= static_cast<double>(axes.size());
@@ -70,7 +70,7 @@ void AddWithFirstMoments(
     volume.device.Queue().enqueueNDRangeKernel(
       add, cl::NullRange, cl::NDRange(grid.VoxelCount(), to.channels), cl::NullRange);
   }
-  volume.device.Finish(); // the beam's arrays go
+  volume.device.Finish(); // the beam's arrays are released
 }
 
 SweepTally DepositBeam(const UncollidedVolume& volume, const Light& light, const Monitor& monitor)

@@ -5,24 +5,24 @@
 
 namespace tyndall
 {
-/// Follows the parallel rays of a directional light, 2 x 2 a voxel, to where they first meet the medium (numerics.md,
-/// section 5.3), by sweeps of that one direction.
+/// Computes the uncollided flux of a directional light by sweeps along its one direction, with 2 x 2 parallel rays a
+/// voxel (numerics.md, section 5.3); with 8 x 8 if the deposit has first moments.
 ///
-/// @return what came in, what left, what still goes round a periodic axis
+/// @return incident power, escaped power, and the power still in flight around periodic axes
 SweepTally DepositBeam(const UncollidedVolume& volume, const Light& light, const Monitor& monitor);
 
-// The same in two steps, where the grid that rays go through is not the one that the arrays are over.
+// DepositBeam() in two steps, for arrays that cover only a block of the grid that the rays cross.
 
-/// @param volume  the grid of its layout is the one that rays go through; its deposit is not looked at
-/// @param firstMoments  are to be found: along more rays
-/// @param deposit  of the beam
+/// @param volume  its deposit is not used
+/// @param firstMoments  whether AddWithFirstMoments() follows, which needs more rays
+/// @param deposit  receives the light of the beam
 SweepTally SweepBeam(const UncollidedVolume& volume, const Light& light, bool firstMoments, const Deposit& deposit,
   const Monitor& monitor);
 
-/// Adds what a beam deposited to path and first moments of the volume's deposit. These are found from the powers
-/// through the voxels' faces, so those that enter the voxels beside are looked at.
-/// @param ofBeam  path and partial currents
-/// @param beyond  of these, where the layout's grid is a block
+/// Adds a beam's deposit to the path and first moments of the volume's deposit. First moments are computed from the
+/// powers through each voxel's faces, including those that enter the neighbouring voxels.
+/// @param ofBeam  path and partial currents of the beam
+/// @param beyond  partial currents of the beam beyond the block's faces, if the layout's grid is a block
 void AddWithFirstMoments(
   const UncollidedVolume& volume, const Light& light, const Deposit& ofBeam, const BeyondFaces& beyond = {});
 }

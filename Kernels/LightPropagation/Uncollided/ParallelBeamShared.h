@@ -5,15 +5,15 @@
 #include "LightPropagation/Sweep/BeyondFacesShared.h"
 
 SHARED_BEGIN
-/// A beam of parallel light through the box.
+/// A parallel beam through the box, or through a block of it.
 typedef struct
 {
   int size[3];
   int periodic[3];
-  int up[3]; ///< the way it goes along each axis
+  int up[3]; ///< 1: it propagates towards +, by axis; 0: towards -
   float spacing[3];
-  float lengths[3]; ///< of a ray from face to face
-  float thin;       ///< optical length of voxels below which light is taken as lost evenly
+  float lengths[3]; ///< of a ray between opposite faces of a voxel, by axis
+  float thin;       ///< optical length of a voxel below which its loss is taken as uniform in the voxel
   BeyondFacesInfo beyond;
 } BeamInfo;
 SHARED_END

@@ -8,10 +8,11 @@ namespace tyndall
 {
 namespace
 {
-constexpr std::size_t MostRays = std::size_t(1) << 25; ///< in the maps of a sweep, one way: 128 MiB of floats
+/// rays in the maps of a sweep for one marching direction: 128 MiB of floats
+constexpr std::size_t MostRays = std::size_t(1) << 25;
 
-/// Rays that move by whole voxels, as straight lines do: moves by parts are there to let in what directions carry, and
-/// make paths in the outermost voxels of what shines within another length.
+/// Makes rays cross whole voxels, as straight lines do. Fractional moves serve to let in the power of boundary sources;
+/// in an emitting medium they would change path lengths in the outermost emitting voxels.
 void MoveAsLines(std::vector<Bundle>& bundles)
 {
   for (Bundle& bundle : bundles)
@@ -26,9 +27,10 @@ SweepTally SweepAlong(const UncollidedVolume& volume, const SweptDirections& alo
   const std::function<bool(int)>& isLit, const Buffer<float>* source, const SweepBoundary& incoming,
   const Monitor& monitor)
 {
-  const SweepBoundary dark = [](int, int) { return Rgb{}; }; // not none: the maps of the other way are to be empty, too
+  // a function rather than none: the maps of the opposite marching direction must be cleared, too
+  const SweepBoundary dark = [](int, int) { return Rgb{}; };
   const Grid& grid = volume.Whole();
-  const int channels = volume.layout.Groups().front().count; // that are swept at once
+  const int channels = volume.layout.Groups().front().count; // number of channels that are swept together
   AngularValues values;
   volume.Collective([&] { values = volume.basis ? along.Values(*volume.basis) : AngularValues(); });
   SweepTally tally;

@@ -41,7 +41,7 @@ SweepTally UncollidedLamp::AddTo(const UncollidedVolume& volume, const Monitor& 
   return tally;
 }
 
-/// Path integrals, flux and first moments, no angular moments.
+/// Deposits path integrals, flux and first moments, but no angular moments.
 SweepTally UncollidedLamp::Put(const UncollidedVolume& volume, const Monitor& monitor) const
 {
   if (this->Lamp.type == LightType::Directional)

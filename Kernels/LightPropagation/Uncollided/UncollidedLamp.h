@@ -5,11 +5,12 @@
 
 namespace tyndall
 {
-/// The uncollided flux of one lamp, along exact rays: parallel ones (ParallelBeam.h) or those of a point (LampBeams.h).
+/// The uncollided flux of one lamp along exact rays: parallel ones (ParallelBeam.h) or those from a point
+/// (LampBeams.h).
 class UncollidedLamp : public UncollidedSource
 {
 public:
-  explicit UncollidedLamp(const Light& lamp); ///< must stay
+  explicit UncollidedLamp(const Light& lamp); ///< must outlive this object
   const Light& TheLight() const { return this->Lamp; }
 
   SweepTally AddTo(const UncollidedVolume& volume, const Monitor& monitor) const override;

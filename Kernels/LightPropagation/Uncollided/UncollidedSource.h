@@ -12,54 +12,56 @@
 
 namespace tyndall
 {
-/// The medium that uncollided light goes through, and where it is put down.
+/// The medium that uncollided light crosses, and the arrays that receive it.
 struct UncollidedVolume
 {
   Device& device;
   const VolumeLayout& layout;
   const Buffer<float>& sigma_t; ///< 1/length
   const std::array<bool, 3>& periodic;
-  SweepMaker makeSweep; ///< for light that goes along sets of parallel rays
+  SweepMaker makeSweep; ///< makes sweeps along sets of parallel rays
   Deposit deposit;
-  /// Of the angular moments that the deposit's path has; null: it has none. Sources then leave net flux to the moments.
+  /// Basis of the angular moments in the deposit's path; null: it has none. If there is one, sources do not deposit net
+  /// flux, which the moments contain.
   const AngularBasis* basis = nullptr;
-  /// Of a parallel beam whose own path integrals, W length, [channel][stride], are asked for too; else null.
+  /// Receives the path integrals of a parallel beam alone, W length, [channel][stride]; null: not wanted.
   const Buffer<float>* beamPath = nullptr;
-  /// Follows the light of a point, spot or rectangle lamp; empty: DepositLamp (LampBeams.h).
+  /// Traces the light of a point, spot or rectangle lamp; empty: DepositLamp() (LampBeams.h).
   std::function<SweepTally(const SweepVolume& ofChannels, const Light& lamp, const Monitor& monitor)> followLamp = {};
-  /// The grid that rays go through, where the medium here is a block of it (`makeSweep` knows of the others); null: the
-  /// layout's.
+  /// The grid that rays cross, if the medium here is a block of it (`makeSweep` then sweeps all blocks); null: the
+  /// layout's grid.
   const Grid* whole = nullptr;
-  /// Of such a block, of what goes in through voxels' faces; empty: the layout's grid is the whole.
+  /// For a block: fetches the power that enters voxels beyond the block's faces; empty: the layout's grid is the whole
+  /// grid.
   FetchBeyondFaces fetchBeyond = {};
-  /// Of such a block, Communicator::Collective of all ranks that share the grid; empty: the medium is in one memory.
+  /// For a block: Communicator::Collective of all ranks that share the grid; empty: the grid is serial.
   std::function<void(const std::function<void()>& work)> together = {};
 
-  /// What may fail on one rank before light is swept by all together. All ranks call it.
+  /// Runs work that may fail on one rank before a collective sweep: an error on one rank becomes an error on all.
+  /// Collective.
   void Collective(const std::function<void()>& work) const { this->together ? this->together(work) : work(); }
   const Grid& Whole() const { return this->whole ? *this->whole : this->layout.grid; }
 };
 
-/// Light up to where it first meets the medium: the uncollided flux of one lamp, of all that shines through the box's
-/// faces, of a small bright part of the medium (numerics.md, section 5). Found once a solve; what of it is scattered is
-/// the first source.
+/// A source of uncollided flux: one lamp, the light through the box's faces, or a localised emission in the medium
+/// (numerics.md, section 5). It is computed once per solve; the light that it scatters is the first-collision source.
 class UncollidedSource
 {
 public:
   virtual ~UncollidedSource() = default;
 
-  /// Adds its path integrals, and flux and first moments where the deposit has arrays for them, to the deposit. By
-  /// blocks all ranks call it: arrays that do not fit on one fail on all of them (UncollidedVolume::Collective) before
-  /// their last step together; what goes wrong after it perhaps does on one alone.
-  /// @return what came in, what left, what still goes round a periodic axis
+  /// Adds path integrals, and net flux and first moments if the deposit has arrays for them, to the deposit. Collective
+  /// if the grid is divided into blocks: allocation failures on one rank become errors on all
+  /// (UncollidedVolume::Collective) before the last collective step; errors after it may occur on one rank alone.
+  /// @return incident power, escaped power, and the power still in flight around periodic axes
   virtual SweepTally AddTo(const UncollidedVolume& volume, const Monitor& monitor) const = 0;
 
-  /// AddTo returns what a rank's own voxels take, not the tally of all ranks.
+  /// Whether AddTo() returns the tally of a rank's own voxels rather than of all ranks.
   virtual bool TalliesOwnVoxels() const { return false; }
 };
 
-/// Follows light through the channels of each sigma_t in turn.
-/// @param add  from a volume of some channels, the first of them and a monitor to their tally
+/// Calls `add` for each group of channels that share one sigma_t, and sums the tallies.
+/// @param add  (volume of the group's channels, first channel, monitor) -> tally
 template <class AddGroup>
 SweepTally AddByGroups(const UncollidedVolume& volume, const Monitor& monitor, const AddGroup& add)
 {

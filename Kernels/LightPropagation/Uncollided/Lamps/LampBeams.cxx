@@ -16,7 +16,7 @@ namespace tyndall
 namespace
 {
 constexpr int RowsPerLaunch = 256; ///< keeps a launch well below a tenth of a second for rows of a thousand voxels
-constexpr int BeamsOfRow = 64;     ///< of shorter rows there are more in a launch
+constexpr int BeamsOfRow = 64;     ///< rows with fewer beams are launched in larger numbers
 
 /// The beams of one lamp, from all points that stand for it.
 class LampBeams
@@ -47,7 +47,7 @@ public:
     }
     if (even > 0.0 && !this->Sums.SpreadEvenly(this->Volume, this->Lamp, factors.out * even, Extinction(this->Volume)))
     {
-      this->Shares.onTheWay = even; // nothing ever takes it
+      this->Shares.onTheWay = even; // no voxel absorbs it
     }
     return this->Shares.Times(this->Lamp.TheLight().power, this->Volume.channels, factors);
   }
@@ -97,7 +97,7 @@ private:
     }
   }
 
-  /// Rows of a launch. Round a periodic axis it may be far.
+  /// Number of rows per launch, fewer where beams travel far around a periodic axis.
   std::size_t RowsTogether(const BeamRow& row) const
   {
     const double layers = this->Periodic[row.axis] ? static_cast<double>(row.count) * row.layers : 1.0;

@@ -6,76 +6,81 @@
 SHARED_BEGIN
 enum
 {
-  LampRowSums = 9 ///< tallies of a row of beams: entered, escaped through each face, stranded, ...
+  /// tallies per row of beams: entered, escaped through each of 6 faces, stranded (in flight at the end), emitted
+  LampRowSums = 9
 };
 
-/// Fixed point units of all of a lamp's power: 2^56, beside which 64 rounds of it fit.
+/// Fixed-point units that represent a lamp's full power: 2^56; a sum of 64 times that power still fits.
 #define LampPowerUnits 72057594037927936.0f
 
-/// A lamp in its box. Lengths along axis a are in voxels of `spacing[a]`.
+/// A lamp and the box. Lengths along axis a are in units of `spacing[a]`, unless said otherwise.
 typedef struct
 {
   int size[3];
-  int first[3], stored[3];         ///< the voxels that arrays hold: all, or those of a block and some beside it
-  int followed[3], followedEnd[3]; ///< and those in which beams are followed (LampInBlock.cl)
+  int first[3], stored[3];         ///< voxels that the arrays cover: all, or a block and its halo
+  int followed[3], followedEnd[3]; ///< voxels in which beams are traced (LampInBlock.cl)
   int periodic[3];
-  int images[3]; ///< of a rectangle in a periodic box, to either side, that count as it does
+  int images[3]; ///< periodic images to either side whose light is corrected together with the rectangle's, by axis
   float spacing[3];
-  float direction[3];               ///< unit, in space
-  float cosine, sineSquare;         ///< of the cone's half angle
-  float intensity;                  ///< part of the lamp's share, per steradian; at normal emission where LAMBERT
-  float scale;                      ///< fixed point units per length
-  float diagonal;                   ///< of a voxel
-  int faceFirst[6], faceStep[3][3]; ///< as BoxFaceLayout has them: of each face; of an axis' faces, along each axis
+  float direction[3];       ///< unit, in space
+  float cosine, sineSquare; ///< of the cone's half angle
+  float intensity; ///< fraction of the traced power (LampOnGrid::Share) per steradian; at normal emission if LAMBERT
+  float scale;     ///< fixed-point units per length
+  float diagonal;  ///< of a voxel
+  /// as in BoxFaceLayout: first cell by face; step by axis of the face, along each axis
+  int faceFirst[6], faceStep[3][3];
 } LampInfo;
 
 /// The beams of one pyramid at one tangent v.
 typedef struct
 {
-  int axis, up;             ///< marches along the axis, up or down
-  float baseU, baseV;       ///< tangents of the pyramid that others are relative to: a narrow cone's axis
-  float crossing[3];        ///< base's direction x the cone's axis, along axis, u, v
-  float tangentU, tangentV; ///< of the first beam's middle, from the base; v's for all
+  int axis, up; ///< marching axis, and 1: towards +, 0: towards -
+  /// reference tangents of the pyramid, to which the others are relative: the axis of a narrow cone
+  float baseU, baseV;
+  float crossing[3]; ///< cross product of the reference direction and the cone's axis: along the marching axis, u, v
+  float tangentU, tangentV; ///< of the first beam's centre, relative to the base; tangentV is that of all beams
   float widthU, widthV;     ///< of a beam, in tangents
   int count;                ///< of beams along u
-  int outside;              ///< the lamp is outside the box's layers
-  float from;               ///< where beams begin: the lamp's place along the axis, or the box's face
-  float startU, startV;     ///< there the first beam's middle, voxels
-  float openU, openV;       ///< and there the width of a beam
-  int skipped;              ///< layers that they go before anything is counted and put down
-  int layers;               ///< that they go in all, at most
-  int beside;               ///< 1, 2: the lamp is beside the box along u, v; beams may enter through faces there
-  float share;              ///< of the lamp's power, that the point has from which they come
-  float part[3];            ///< of a rectangle's part: its middle,
-  float partFrom, partSeen; ///< the square of the distance from which on voxels have its light, and where beams may
-  float whole[3];           ///< come to them; the same of the part that was halved for it, from where on they have not
+  int outside;              ///< 1: the lamp is outside the box along the marching axis
+  float from;               ///< start of the beams: the lamp's position along the axis, or the box's face, voxels
+  float startU, startV;     ///< centre of the first beam at the start, voxels
+  float openU, openV;       ///< width of a beam at the start, voxels
+  int skipped;              ///< layers that beams cross before anything is counted and deposited
+  int layers;               ///< layers that beams cross in all, at most
+  int beside;    ///< bits 1, 2: the lamp is beside the box along u, v, so that beams may enter through the faces there
+  float share;   ///< fraction of the lamp's power that the beams' origin emits
+  float part[3]; ///< centre of the part of a rectangle that the beams come from
+  /// squared distances from it beyond which voxels receive its light, and beyond which beams may reach such voxels
+  float partFrom, partSeen;
+  float whole[3]; ///< the same for the larger part that was divided into this one; there its light ends
   float wholeFrom, wholeSeen;
 } BeamRow;
 
-/// A beam between two of its steps, on its way from one block of a grid to another.
+/// A beam between two of its steps, as it is sent from one block to another.
 typedef struct
 {
-  int row, beam;   ///< which it is
-  int layer, step; ///< that comes next, counted from its first layer
-  int begun;       ///< 0: it has not set off
-  float left;      ///< of its power
-  float rest;      ///< too small to be seen in it
-  float stays[2];  ///< of its cross-section, along u and v, what has not left the box
-  float free;      ///< what would be left of it in vacuum
-  int voxel[3];    ///< that its middle is in then, or the nearest of the grid
+  int row, beam;   ///< its row, and its number in the row
+  int layer, step; ///< the next layer, counted from the beam's first one, and the next step in it
+  int begun;       ///< 0: it has not started
+  float left;      ///< remaining power, fraction of the traced power of the lamp
+  float rest;      ///< compensation of rounding errors in `left`
+  float stays[2];  ///< fraction of its cross-section that has not left the box, along u and v
+  float free;      ///< power that would remain in vacuum
+  int voxel[3];    ///< voxel that contains its centre, or the nearest one of the grid
   int ended;       ///< 1: it has left the grid
 } BeamOnItsWay;
 
-/// A rectangular lamp and the voxels of a grid, or a block of it, in its light. Lengths.
+/// A rectangular lamp, and the voxels of a grid, or of a block of it, that it illuminates. In lengths.
 typedef struct
 {
-  float corner[3];          ///< of the block, from the rectangle's middle: along its two edges and its normal
-  float edges[3][3];        ///< unit vectors along these
-  float reach[2];           ///< half of the edges' lengths
-  int size[3];              ///< of the block
-  int period[3], images[3]; ///< voxels of the whole grid, and how many images to either side shine, too
+  float corner[3];   ///< corner of the block relative to the rectangle's centre, along its two edges and its normal
+  float edges[3][3]; ///< unit vectors along the two edges and the normal
+  float reach[2];    ///< half the edge lengths
+  int size[3];       ///< of the block
+  /// size of the whole grid, voxels, and number of periodic images to either side that also emit
+  int period[3], images[3];
   float spacing[3];
-  float path;  ///< of a lamp of 1 W, W length in a voxel and steradian
-  float scale; ///< fixed point units per length
+  float path;  ///< path per voxel and per steradian of the visible rectangle, W length, for a lamp of 1 W
+  float scale; ///< fixed-point units per length
 } RectangleInfo;
 SHARED_END

@@ -1,5 +1,5 @@
-// Beams of a lamp through one block of a grid: those that set off in it, and those that come from other blocks. The
-// host gives what LampBeams.cl asks for.
+// Traces a lamp's beams through one block of a grid: those that start in it, and those that arrive from other blocks.
+// Options as for LampBeams.cl.
 
 #define IN_BLOCK 1
 #include "LightPropagation/Uncollided/Lamps/LampBeams.cl"
@@ -22,7 +22,7 @@ static void follow_in_block(const LampInfo* lamp, const BeamRow* row, BeamOnItsW
     tally.entered = row->skipped > 0 ? 0.0f : shone;
     state = beam_of(shone);
   }
-  // What is left of one that has come so far may be less than 0 by rounding.
+  // The remaining power of a beam that has already travelled may be negative by rounding.
   const bool is_there = beam->begun || shone > 0.0f;
   beam->begun = true;
   beam->ended = !is_there ||
@@ -42,9 +42,9 @@ static void follow_in_block(const LampInfo* lamp, const BeamRow* row, BeamOnItsW
   write_sums(&tally, shone, sums);
 }
 
-// sigma, path, stride, cells, rows  as in follow_lamp, of the voxels that LampInfo has as stored
-// beams  what they are when they have left the block
-// sums   [beam], as write_sums has them
+// sigma, path, stride, cells, rows  as in follow_lamp, for the stored voxels of LampInfo
+// beams  replaced by their state when they have left the block, or ended
+// sums   [beam], see write_sums()
 __kernel void follow_lamp_in_block(LampInfo lamp, const __global float* sigma, ulong sigma_first, __global long* path,
   ulong stride, __global long* cells, const __global BeamRow* rows, __global BeamOnItsWay* beams, int count,
   __global float* sums)

@@ -18,69 +18,72 @@
 
 namespace tyndall
 {
-/// A point that stands for a lamp, or for a part of it.
+/// A point source that represents a lamp, or a part of it.
 struct LampPoint
 {
-  struct Sphere ///< lengths from the grid's corner
+  struct Sphere ///< in lengths from the grid's corner
   {
     glm::dvec3 middle = glm::dvec3(0.0);
     double radius = 0.0;
   };
 
-  glm::dvec3 place;   ///< voxels from the grid's corner
+  glm::dvec3 place;   ///< position, voxels from the grid's corner
   double share = 1.0; ///< of the lamp's power
 
-  /// Voxels outside the first have its light, but for those outside the second, that of the part which was halved.
+  /// The point illuminates voxels outside the first sphere and inside the second, beyond which the larger part of the
+  /// lamp that was divided into this one takes over.
   Sphere part, whole = { glm::dvec3(0.0), std::numeric_limits<double>::infinity() };
-  double reach = std::numeric_limits<double>::infinity(); ///< how far its beams go
+  double reach = std::numeric_limits<double>::infinity(); ///< length to which its beams are traced
 };
 
-/// A point, spot or rectangle lamp beside or in a grid, as the kernels of its beams see it (numerics.md, sections 5.4
-/// and 5.5).
+/// A point, spot or rectangle lamp inside or outside a grid, prepared for the kernels that trace its beams
+/// (numerics.md, sections 5.4 and 5.5).
 class LampOnGrid
 {
 public:
-  static constexpr double LayersPerLaunch = 4e6; ///< of beams that go far, for less than a tenth of a second
+  /// layers that all beams of a launch cross together; keeps it below a tenth of a second
+  static constexpr double LayersPerLaunch = 4e6;
 
-  /// @param grid  the whole; must stay
+  /// @param grid  the whole grid; must outlive this object
   LampOnGrid(const Light& light, const Grid& grid, const std::array<bool, 3>& periodic);
 
   const Light& TheLight() const { return this->Lamp; }
 
-  /// What stands for the lamp in a pass: a point, or those of a rectangle's parts; in later passes a rectangle is a
-  /// point.
+  /// The points that represent the lamp in a pass: several for a rectangle in the first pass, else one.
   const std::vector<LampPoint>& PointsOf(const Pass& pass) const
   {
     return pass.begin == 0 ? this->Points : this->Centre;
   }
 
-  /// The beams from some of its points.
-  /// @param factor  of the power
-  /// @param first  of these points; next: where the following call goes on, for beams are many
+  /// The beams from a batch of the pass's points.
+  /// @param factor  multiplies the power of the beams
+  /// @param first  index of the batch's first point
+  /// @param next  set to the index at which the next batch begins
   std::vector<BeamRow> Rows(const Pass& pass, double factor, std::size_t first, std::size_t& next) const;
 
-  /// Where it is known which part of the lamp's power is followed (all light of a lamp in the box and of a cone that
-  /// leads into it) or enters, the factors make it that.
-  /// @param taken  share that the medium takes, of a rectangle
-  /// @param even  share that is to be spread evenly
+  /// Factors that normalise the lamp's shares. If the power that is traced (a lamp inside the box, a cone that lies
+  /// within the box's solid angle) or that enters the box is known exactly, the factors enforce it.
+  /// @param taken  share that the medium removes, for a rectangle
+  /// @param even  share that is to be spread uniformly
   LampFactors Factors(const LampShares& shares, double taken, double even) const;
 
-  /// Of the lamp's power, at least what comes to the box: what is counted in parts of it keeps its digits however far
-  /// away the lamp is.
+  /// Upper bound, in (0, 1], of the fraction of the lamp's power that reaches the box. Sums are kept as fractions of
+  /// this power, so that they retain their precision however far away the lamp is.
   double Share() const;
 
-  /// @param stored  the voxels that arrays hold; and of them those in which beams are followed
+  /// @param stored  voxels that the arrays cover
+  /// @param followed  voxels, among these, in which beams are traced
   LampInfo Describe(const VoxelBox& stored, const VoxelBox& followed) const;
 
-  /// Sums that a voxel has beside the others, of a rectangle.
+  /// Number of additional sums per voxel for the correction in vacuum; 0 unless the lamp is a rectangle.
   int SumsOfVacuum() const;
   RectangleInfo DescribeRectangle(const VoxelBox& own) const;
 
-  /// Fixed point units per length (numerics.md, Eq. (36)).
+  /// Fixed-point units per length (numerics.md, Eq. (36)).
   double UnitsPerLength() const;
   double Diagonal() const; ///< of a voxel
 
-  /// @param source  of LampBeams.cl, or of what includes it
+  /// @param source  of LampBeams.cl, or of a file that uses the same options
   cl::Kernel Kernel(Device& device, const char* name, std::string_view source, const Deposit& deposit) const;
   static bool HasAtomics(Device& device) { return device.HasExtension("cl_khr_int64_base_atomics"); }
 
@@ -91,8 +94,9 @@ private:
   Light Lamp;
   const Grid& TheGrid;
   std::array<bool, 3> Periodic;
-  std::array<int, 3> Images = {}; ///< of a rectangle, beside it along a periodic axis, whose light is exact in vacuum
-  double Entering = 0.0;          ///< part of the power that enters the box; 0 where it is not known
+  /// periodic images to either side of a rectangle whose light is exact in vacuum, by axis
+  std::array<int, 3> Images = {};
+  double Entering = 0.0; ///< fraction of the power that enters the box; 0: unknown
   std::vector<LampPoint> Points, Centre;
 };
 }

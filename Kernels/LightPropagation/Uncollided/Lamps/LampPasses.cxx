@@ -7,9 +7,10 @@ namespace tyndall
 {
 namespace
 {
-constexpr int PassesAtMost = 9;     ///< in all
-constexpr int EvenFrom = 3;         ///< passes, after which the light of a box without faces is spread evenly
-constexpr double LeftAtMost = 5e-5; ///< of the power: then no further pass
+constexpr int PassesAtMost = 9; ///< number of passes
+/// number of passes after which the remaining light of a box without faces is spread uniformly
+constexpr int EvenFrom = 3;
+constexpr double LeftAtMost = 5e-5; ///< no further pass once this fraction of the power, or less, is still in flight
 }
 
 double FollowInPasses(const Grid& grid, const std::array<bool, 3>& periodic, LampShares& shares,
@@ -24,7 +25,7 @@ double FollowInPasses(const Grid& grid, const std::array<bool, 3>& periodic, Lam
     const Monitor ofPass = OfPart(monitor, 1.0 - std::exp2(-done), 1.0 - std::exp2(-done - 1));
     const double wanted = std::exchange(shares.onTheWay, 0.0);
     pass = pass.Next();
-    follow({ pass.begin, pass.end, true }, 1.0, {}); // what the same beams have left where the pass begins
+    follow({ pass.begin, pass.end, true }, 1.0, {}); // power that the new beams have left where the pass begins
     const double found = std::exchange(shares.onTheWay, 0.0);
     if (!(found > 0.0))
     {

@@ -10,14 +10,14 @@
 
 namespace tyndall
 {
-/// Follows beams of a pass, and counts in the shares what becomes of them.
-/// @param factor  of the power that they set off with
+/// Traces the beams of a pass and adds the result to the shares.
+/// @param factor  multiplies the power that the beams start with
 using FollowPass = std::function<void(const Pass& pass, double factor, const Monitor& monitor)>;
 
-/// A lamp's light round periodic axes in passes (numerics.md, section 5.3): beams that are still in the box where one
-/// pass ends go on as others, fewer, that share its power.
-/// @param shares  of the whole lamp, as `follow` leaves them
-/// @return of its power, what is to be spread evenly over a box without faces
+/// Traces a lamp's light around periodic axes in passes (numerics.md, section 5.3): beams that are still in the box at
+/// the end of a pass are replaced by fewer beams, which share their power.
+/// @param shares  of the lamp over all passes so far, updated by `follow`
+/// @return fraction of the lamp's power to be spread uniformly over a box that is periodic along all axes; else 0
 double FollowInPasses(const Grid& grid, const std::array<bool, 3>& periodic, LampShares& shares,
   const FollowPass& follow, const Monitor& monitor);
 }

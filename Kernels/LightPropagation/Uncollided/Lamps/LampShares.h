@@ -8,35 +8,38 @@
 
 namespace tyndall
 {
-/// By what shares are multiplied to be parts of a lamp's power.
+/// Factors that convert LampShares to fractions of the lamp's power.
 struct LampFactors
 {
-  double in, taken, out; ///< what enters, what the medium takes, what leaves or is still on its way
+  /// for the power that enters, that the medium removes, and that escapes or is still in flight
+  double in, taken, out;
 };
 
-/// What became of the light of a lamp's beams, parts of its power.
+/// Power balance of a lamp's beams, as fractions of its power.
 struct LampShares
 {
   std::array<double, 6> in = {}, out = {}; ///< by face
-  double onTheWay = 0.0;                   ///< round a periodic axis
-  double shone = 0.0;                      ///< in the directions that were followed
+  double onTheWay = 0.0;                   ///< still in flight around a periodic axis
+  double shone = 0.0;                      ///< emitted into the directions that were traced
 
   double In() const { return std::accumulate(this->in.begin(), this->in.end(), 0.0); }
   double Out() const { return std::accumulate(this->out.begin(), this->out.end(), this->onTheWay); }
 
-  /// @param sums  LampRowSums of beams of one row
+  /// @param sums  tallies of one row of beams, [LampRowSums]
   void Count(const BeamRow& row, const float* sums)
   {
-    this->in[2 * row.axis + row.up] += sums[0]; // by the way it shines: lamps inside pass no face
+    // by the marching direction, for light of a lamp inside the box crosses no face on its way in
+    this->in[2 * row.axis + row.up] += sums[0];
     for (int face = 0; face < 6; ++face)
     {
       this->out[face] += sums[1 + face];
     }
     this->onTheWay += sums[7];
-    this->shone += row.skipped > 0 || row.partFrom > 0.0f ? 0.0 : sums[8]; // the smallest parts make up the lamp
+    // counts each part of the lamp once: parts of the finest level only
+    this->shone += row.skipped > 0 || row.partFrom > 0.0f ? 0.0 : sums[8];
   }
 
-  /// @param power  of the lamp, W; `channels` of it
+  /// @param power  of the lamp, W, by channel; `channels` of these are used
   SweepTally Times(const Rgb& power, int channels, const LampFactors& factors) const
   {
     SweepTally tally;

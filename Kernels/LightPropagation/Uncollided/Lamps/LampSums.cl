@@ -1,13 +1,15 @@
-// What beams of a lamp put down in fixed point, added to a deposit. The host gives what LampBeams.cl asks for.
+// Adds the deposits of a lamp's beams, which are in fixed point, to the arrays of a deposit. Options as for
+// LampBeams.cl.
 
 #include "LightPropagation/Uncollided/Lamps/LampBeamsShared.h"
 #include "LightPropagation/Uncollided/Lamps/LampUnits.cl"
 #include "Numerics/Numerics.cl"
 
 #if VACUUM
-#define DEEPEST 7 // halvings of a voxel beside a rectangle
+#define DEEPEST 7 // maximum number of halvings of a voxel close to a rectangle
 
-// Solid angle of the rectangle seen from a point, lengths along its edges and its normal; 0 from behind.
+// Solid angle of the rectangle as seen from a point, whose coordinates are along its edges and its normal; 0 from
+// behind.
 static float angle_seen(const RectangleInfo* rectangle, float3 from)
 {
   return from.z > 0.0f
@@ -15,14 +17,14 @@ static float angle_seen(const RectangleInfo* rectangle, float3 from)
     : 0.0f;
 }
 
-// A cell of a voxel: its middle from the rectangle's, along the rectangle's edges and normal, and its edges along x, y,
-// z.
+// A subcell of a voxel: its centre, relative to the rectangle's, along the rectangle's edges and normal; and its edges
+// along x, y, z.
 typedef struct
 {
   float3 middle;
   float edge[3];
-  float radius; // of the ball around it
-  float deep;   // half of its extent along the normal
+  float radius; // of the circumscribed sphere
+  float deep;   // half its extent along the normal
 } voxel_cell;
 
 static float distance_to_border(const RectangleInfo* rectangle, float3 from)
@@ -43,8 +45,8 @@ static float3 to_rectangle(const RectangleInfo* rectangle, float x, float y, flo
   return (float3)(along[0], along[1], along[2]);
 }
 
-// Integral of the solid angle over a cell, as part of its volume: columns along the axis nearest to the normal, each as
-// far as it is before the rectangle's plane, by Gauss's rule of two points along each axis.
+// Integral of the solid angle over a cell, divided by the cell's volume. The cell is divided into columns along the
+// axis nearest to the normal, each cut off at the rectangle's plane, with two Gauss points along each axis.
 static float mean_over_cell(const RectangleInfo* rectangle, const voxel_cell* cell)
 {
   const float gauss = 0.288675135f;
@@ -62,7 +64,7 @@ static float mean_over_cell(const RectangleInfo* rectangle, const voxel_cell* ce
     offset[(axis + 2) % 3] = (column & 2 ? gauss : -gauss) * cell->edge[(axis + 2) % 3];
     const float middle = cell->middle.z + rectangle->edges[2][0] * offset[0] + rectangle->edges[2][1] * offset[1] +
       rectangle->edges[2][2] * offset[2];
-    // The plane goes through the column at this part of its length from its middle.
+    // Where the plane intersects the column, as a fraction of its length, from its centre.
     const float plane = clamp(-middle / slope, -0.5f, 0.5f);
     const float from = slope > 0.0f ? plane : -0.5f, to = slope > 0.0f ? 0.5f : plane;
     for (int i = 0; i < 2; ++i)
@@ -79,9 +81,9 @@ static float mean_over_cell(const RectangleInfo* rectangle, const voxel_cell* ce
   return sum;
 }
 
-// Whether a cell is to be halved: near to the rectangle's border the solid angle varies fast, near to a small
-// rectangle as with the inverse square.
-//   before  how far the voxel reaches before the rectangle's plane
+// Whether a cell must be halved: the solid angle varies fast near the rectangle's border, and with the inverse square
+// of the distance near a small rectangle.
+//   before  how far the voxel extends in front of the rectangle's plane
 static bool is_coarse(const RectangleInfo* rectangle, const voxel_cell* cell, int level, float before)
 {
   const float3 normal =
@@ -95,8 +97,8 @@ static bool is_coarse(const RectangleInfo* rectangle, const voxel_cell* cell, in
   return level < levels && distance_to_border(rectangle, cell->middle) < 2.5f * cell->radius;
 }
 
-// Mean over a voxel of the solid angle of the part of the rectangle before which it lies: over cells of the voxel, in
-// their order along a curve, each as large as it may be.
+// Mean over a voxel of the rectangle's solid angle, over the part of the voxel in front of it. The voxel is divided
+// adaptively into cells, which are visited in Morton order.
 static float mean_solid_angle(const RectangleInfo* rectangle, const int* voxel)
 {
   float sum = 0.0f, before = 0.0f;
@@ -144,7 +146,7 @@ static float mean_solid_angle(const RectangleInfo* rectangle, const int* voxel)
   return sum;
 }
 
-// The same of the rectangle and of its images in a periodic box.
+// Sum of mean_solid_angle() over the rectangle and its periodic images.
 static float mean_of_images(const RectangleInfo* rectangle, const int* voxel)
 {
   const int* images = rectangle->images;
@@ -164,8 +166,8 @@ static float mean_of_images(const RectangleInfo* rectangle, const int* voxel)
   return sum;
 }
 
-// By what the path that a rectangle's beams put down in each voxel is multiplied, so that it is right in vacuum. Where
-// no beam comes, path as in vacuum is put down.
+// Finds the factor by which each voxel's path from a rectangle's beams is multiplied to be exact in vacuum. Voxels that
+// no beam reaches get the path of vacuum, attenuated within the voxel.
 // fixed_path  as in follow_lamp (LampBeams.cl)
 __kernel void find_gains(RectangleInfo rectangle, __global long* fixed_path, ulong stride, __global float* gains,
   ulong first, const __global float* sigma, ulong sigma_first, float diagonal)
@@ -177,7 +179,7 @@ __kernel void find_gains(RectangleInfo rectangle, __global long* fixed_path, ulo
   const float beams = (float)fixed_path[FIRST_OF_VACUUM * stride + i] / rectangle.scale;
   float gain = beams > 0.0f ? right / beams : 1.0f;
 #if AROUND
-  // Light that has gone farther around an axis keeps what beams brought.
+  // Light that has wrapped around an axis more often than the images is not corrected.
   const float all = (float)fixed_path[i], direct = (float)fixed_path[(FIRST_OF_VACUUM + 1) * stride + i];
   gain = all > 0.0f ? 1.0f + (gain - 1.0f) * fmin(direct / all, 1.0f) : 1.0f;
 #endif
@@ -195,9 +197,9 @@ __kernel void find_gains(RectangleInfo rectangle, __global long* fixed_path, ulo
 #define GAIN(i) 1.0f
 #endif
 
-// gains  of each voxel, where VACUUM
+// gains  factor of each voxel, if VACUUM
 // path   W length, [channel][stride], added to
-// units  [channel] W length of a fixed point unit
+// units  [channel] W length of a fixed-point unit
 // sigma  1/length, shared by the channels
 __kernel void add_fixed(const __global long* fixed_path, __global float* path, ulong first, ulong stride, float4 units,
   const __global float* sigma, ulong sigma_first, float diagonal, const __global float* gains)
@@ -261,7 +263,7 @@ __kernel void add_fixed_moments(const __global long* fixed_path, __global float*
 }
 #endif
 
-// The same path, W length, in every voxel.
+// Adds the same path, W length, to every voxel.
 __kernel void add_evenly(__global float* path, ulong first, float each)
 {
   path[first + get_global_id(0)] += each;

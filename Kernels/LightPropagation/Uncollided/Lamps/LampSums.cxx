@@ -13,7 +13,7 @@ namespace
 {
 constexpr std::size_t GainsPerLaunch = 1 << 16; ///< keeps a launch below a tenth of a second
 
-/// What voxels with these sums of path take, as they are multiplied.
+/// Power that voxels with these path sums, times their gains, remove; as a fraction of the traced power.
 double Taken(
   const SweepVolume& volume, const LampOnGrid& lamp, const std::vector<cl_long>& sums, const std::vector<float>& gains)
 {
@@ -95,7 +95,7 @@ void LampSums::AddCellsTo(const SweepVolume& volume, std::size_t faceFirst, cons
   cl::Kernel add = lamp.Kernel(this->TheDevice, "add_fixed_cells", kernel_source::LampSums, volume.deposit);
   With(add, this->OfCells, *volume.deposit.faceOut, cl_ulong(faceFirst), cl_ulong(cells), watts);
   this->TheDevice.Queue().enqueueNDRangeKernel(add, cl::NullRange, cl::NDRange(cells, volume.channels), cl::NullRange);
-  this->TheDevice.Finish(); // the cells may go
+  this->TheDevice.Finish(); // the cells may be released
 }
 
 bool LampSums::SpreadEvenly(const SweepVolume& volume, const LampOnGrid& lamp, double share, double extinction) const

@@ -5,15 +5,15 @@
 
 namespace tyndall
 {
-/// What a lamp's beams put down, parts of its power in 64-bit fixed point, so that sums do not depend on the order of
-/// their terms (numerics.md, Eq. (35)): path times length, and behind it first moments and net flux where a deposit
-/// asks for them, [path, 3 first moments, 3 of flux][stride], and of a rectangle what vacuum would have;
-/// and what leaves by cells of the grid's faces, where it does.
+/// Sums of a lamp's deposits in 64-bit fixed point, as fractions of its power, so that they do not depend on the order
+/// of their terms (numerics.md, Eq. (35)): path times length, followed by first moments and net flux if the deposit has
+/// them, and for a rectangle the deposit in vacuum, [path, 3 first moments, 3 of flux, ...][stride]; and the power that
+/// escapes through each cell of the grid's faces, if the deposit has it.
 class LampSums
 {
 public:
-  /// @param stride  voxels of an array
-  /// @param grid  the whole, whose faces have the cells that a deposit asks for
+  /// @param stride  number of voxels in each array
+  /// @param grid  the whole grid, not a block
   LampSums(Device& device, const LampOnGrid& lamp, const Deposit& deposit, std::size_t stride, const Grid& grid);
 
   static int Parts(const LampOnGrid& lamp, const Deposit& deposit)
@@ -22,35 +22,37 @@ public:
   }
 
   Buffer<cl_long>& Sums() { return this->Fixed; }
-  Buffer<cl_long>& Cells() { return this->OfCells; } ///< BoxFaces.h, in units of LampPowerUnits; or one value
+  /// escaped power by cell (BoxFaces.h), in LampPowerUnits; a single value if not wanted
+  Buffer<cl_long>& Cells() { return this->OfCells; }
   std::size_t Stride() const { return this->TheStride; }
 
-  /// Of a rectangle: finds by what each voxel's path is to be multiplied to be the exact one in vacuum
-  /// (numerics.md, section 5.3), which AddTo does then.
+  /// For a rectangle: finds the factors by which each voxel's path must be multiplied to be exact in vacuum
+  /// (numerics.md, section 5.3). AddTo() applies them.
   /// @param own  the voxels of the sums
-  /// @return what these then take of the lamp's power, 0 of other lamps
+  /// @return fraction of the lamp's power that these voxels then remove; 0 for other lamps
   double FitToVacuum(const SweepVolume& volume, const LampOnGrid& lamp, const VoxelBox& own);
 
-  /// Adds what is there, times the lamp's power, to the deposit's arrays.
+  /// Adds the sums, times the lamp's power, to the deposit's arrays.
   /// @param volume  its stride is that of the sums
-  /// @param factor  of the lamp's power
+  /// @param factor  multiplies the lamp's power
   void AddTo(const SweepVolume& volume, const LampOnGrid& lamp, double factor) const;
-  /// The same of the cells, to the deposit's that begin at `faceFirst`.
+  /// AddTo() for the cells of the faces; the deposit's begin at `faceFirst`.
   void AddCellsTo(const SweepVolume& volume, std::size_t faceFirst, const LampOnGrid& lamp, double factor) const;
 
-  /// In a box without faces thin light crosses all places alike in the end: so it goes to the deposit's path.
-  /// @param share  of the lamp's power
-  /// @param extinction  Extinction of the whole box
-  /// @return false: nothing there takes any
+  /// Adds light uniformly to the deposit's path: its limit after many wraps around a box that is periodic along all
+  /// axes.
+  /// @param share  fraction of the lamp's power
+  /// @param extinction  Extinction() of the whole box
+  /// @return false if the box has no extinction, so that nothing was added
   bool SpreadEvenly(const SweepVolume& volume, const LampOnGrid& lamp, double share, double extinction) const;
 
 private:
   Device& TheDevice;
   Buffer<cl_long> Fixed, OfCells;
-  Buffer<float> Gains; ///< by voxel; one value where there are none
+  Buffer<float> Gains; ///< factor by voxel; a single value if there are none
   std::size_t TheStride;
 };
 
-/// sigma_t of all voxels of a volume, added up, 1/length.
+/// Sum of sigma_t over all voxels of a volume, 1/length.
 double Extinction(const SweepVolume& volume);
 }

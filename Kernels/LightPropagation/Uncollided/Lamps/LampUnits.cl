@@ -1,14 +1,15 @@
-// The sums of a lamp's beams in fixed point; solid angles.
+// Fixed-point units of a lamp's sums, and solid angles of rectangles.
 
 #pragma once
 
-// Factor of a path in a voxel in fixed point (numerics.md, Eq. (35)): light goes little path through what is thick.
+// Factor by which a path in a voxel is multiplied in fixed point (numerics.md, Eq. (35)): path lengths in optically
+// thick voxels are small.
 static float units_of(float sigma, float diagonal)
 {
   return fmax(sigma * diagonal, 1.0f);
 }
 
-#define FIRST_OF_FLUX (1 + 3 * MOMENTS) // of the sums
+#define FIRST_OF_FLUX (1 + 3 * MOMENTS) // index of the first of these sums
 #define FIRST_OF_VACUUM (FIRST_OF_FLUX + 3 * NET_FLUX)
 
 static float corner_angle(float a, float b, float d)
@@ -22,7 +23,7 @@ static float solid_angle_nearby(float a, float b, float width, float height, flo
   return corner_angle(a1, b1, d) - corner_angle(a0, b1, d) - corner_angle(a1, b0, d) + corner_angle(a0, b0, d);
 }
 
-// By Gauss's rule of 2 x 2 points.
+// By a Gauss rule of 2 x 2 points.
 static float solid_angle_far_away(float a, float b, float width, float height, float d)
 {
   float sum = 0.0f;
@@ -36,9 +37,9 @@ static float solid_angle_far_away(float a, float b, float width, float height, f
   return 0.25f * sum * width * height * d;
 }
 
-// Solid angle of the rectangle of this width and height about (a, b) at distance d: in closed form where it is near;
-// far away that is a small difference of large angles.
-//   far  square of a distance, in its longer edges
+// Solid angle of a rectangle of this width and height, centred at (a, b), at distance d: in closed form nearby, by
+// quadrature far away, where the closed form is a small difference of large angles.
+//   far  square of the distance between the two, in units of the longer edge
 static float solid_angle(float a, float b, float width, float height, float d, float far)
 {
   return a * a + b * b + d * d < far * fmax(width * width, height * height)

@@ -23,10 +23,11 @@ static const int* WhereIs(const BeamOnItsWay& beam)
 
 namespace
 {
-constexpr int Reach = 2; ///< voxels beside a block that beams in it may lie over, and one for rounding
+constexpr int Reach = 2; ///< halo in voxels: a beam may extend one voxel beyond the block, and one more by rounding
 constexpr std::size_t BeamsPerLaunch = 1 << 14; ///< keeps a launch well below a tenth of a second
 
-/// Where a beam sets off, the nearest voxel of the grid; about: whoever has it takes its first step.
+/// The voxel of the grid nearest to a beam's start. An approximation suffices: the rank that owns it takes the first
+/// step.
 std::array<int, 3> FirstVoxel(const BeamRow& row, int beam, const Grid& grid, const std::array<bool, 3>& periodic)
 {
   const double begins[] = { row.startU + static_cast<double>(beam) * row.openU, row.startV };
@@ -76,7 +77,7 @@ LampsInBlocks::LampsInBlocks(Device& device, Communicator& communicator, const B
   });
 }
 
-/// The beams of one lamp that a rank follows.
+/// The beams of one lamp that a rank traces.
 class LampsInBlocks::Beams
 {
 public:
@@ -126,13 +127,13 @@ private:
   LampOnGrid Lamp;
   const VoxelBox& Box;
   std::size_t SigmaFirst;
-  std::unique_ptr<LampSums> Sums; ///< of the stored voxels; null without any
+  std::unique_ptr<LampSums> Sums; ///< of the block and its halo; null on a rank without voxels
   cl::Kernel Kernel;
-  LampShares Shares; ///< of all ranks
-  LampShares Found;  ///< of this one, of what is being followed
+  LampShares Shares; ///< of all ranks, over all passes
+  LampShares Found;  ///< of this rank, since the last AddToShares()
 };
 
-/// As LampBeams does, of all ranks together.
+/// As LampBeams::FollowPoints(). Collective.
 void LampsInBlocks::Beams::FollowPoints(const Pass& pass, double factor, const Monitor& monitor)
 {
   const std::vector<LampPoint>& points = this->Lamp.PointsOf(pass);
@@ -145,7 +146,7 @@ void LampsInBlocks::Beams::FollowPoints(const Pass& pass, double factor, const M
   this->AddToShares();
 }
 
-/// Until no beam of these rows is left anywhere.
+/// Traces these rows until no rank has any of their beams left. Collective.
 void LampsInBlocks::Beams::Follow(const std::vector<BeamRow>& rows, const Monitor& monitor)
 {
   Buffer<BeamRow> rowBuffer;
@@ -179,7 +180,7 @@ std::vector<BeamOnItsWay> LampsInBlocks::Beams::SettingOff(const std::vector<Bea
   return own;
 }
 
-/// @return those that have left the block for another
+/// @return beams that have left the block for another
 std::vector<BeamOnItsWay> LampsInBlocks::Beams::FollowInBlock(const std::vector<BeamRow>& rows, const LampInfo& info,
   const Buffer<BeamRow>& rowBuffer, const std::vector<BeamOnItsWay>& beams, const Monitor& monitor)
 {
@@ -212,7 +213,7 @@ std::vector<BeamOnItsWay> LampsInBlocks::Beams::FollowInBlock(const std::vector<
   return gone;
 }
 
-/// Of a launch. Round a periodic axis that is all in one block it may be far.
+/// Number of beams per launch, fewer where beams travel far around a periodic axis within the block.
 std::size_t LampsInBlocks::Beams::BeamsTogether(const BeamRow& row) const
 {
   const bool all = this->All.Own.size[row.axis] == this->All.Partition.whole.size[row.axis];
@@ -221,7 +222,7 @@ std::size_t LampsInBlocks::Beams::BeamsTogether(const BeamRow& row) const
   return static_cast<std::size_t>(std::clamp(LampOnGrid::LayersPerLaunch / layers, 1.0, most));
 }
 
-/// What became of the beams of this rank and of the others.
+/// Adds the tallies of all ranks' beams to the shares. Collective.
 void LampsInBlocks::Beams::AddToShares()
 {
   std::vector<double> values = { this->Found.shone, this->Found.onTheWay };
@@ -238,14 +239,14 @@ void LampsInBlocks::Beams::AddToShares()
   this->Found = {};
 }
 
-/// Sums of the block's voxels, from all ranks whose beams lay over them, into the deposit.
-/// @param even  of the power, to be spread evenly
+/// Adds the sums of the block's voxels, gathered from all ranks whose beams crossed them, to the deposit. Collective.
+/// @param even  fraction of the power to be spread uniformly
 LampFactors LampsInBlocks::Beams::PutDown(double even)
 {
   const LampsInBlocks& all = this->All;
   std::vector<cl_long> found, own;
   all.Comm.Collective([&] { found = this->Sums ? this->Sums->Sums().Read() : found; });
-  // A rank without voxels may not know what the others want.
+  // A rank without voxels may not know which arrays the other ranks' deposits have.
   const int parts =
     static_cast<int>(all.Comm.Largest({ static_cast<double>(LampSums::Parts(this->Lamp, this->Volume.deposit)) })[0]);
   for (int part = 0; part < parts; ++part)
@@ -284,9 +285,9 @@ LampFactors LampsInBlocks::Beams::PutDown(double even)
       sums->Cells().Write(cells.data());
       sums->AddCellsTo(this->Volume, faceFirst, this->Lamp, factors.out);
     }
-    all.TheDevice.Finish(); // the sums go
+    all.TheDevice.Finish(); // the sums are released
   });
-  this->Shares.onTheWay += extinction > 0.0 ? 0.0 : even; // nothing ever takes it
+  this->Shares.onTheWay += extinction > 0.0 ? 0.0 : even; // no voxel absorbs it
   return factors;
 }
 
@@ -297,7 +298,7 @@ double LampsInBlocks::Beams::ExtinctionOfAll()
   return this->All.Comm.Sum({ own })[0];
 }
 
-/// What leaves by cells of the whole grid's faces, which each rank knows; empty where nobody asks.
+/// Escaped power by cell of the whole grid's faces, summed over ranks; empty if not wanted. Collective.
 std::vector<cl_long> LampsInBlocks::Beams::CellsOfAll()
 {
   if (!this->Volume.deposit.faceOut)

@@ -14,24 +14,27 @@
 
 namespace tyndall
 {
-/// Follows the light of point, spot and rectangle lamps through a grid that is spread over ranks, as DepositLamp
-/// (LampBeams.h) does in one memory, with the same beams: those that leave a block are handed to the rank whose block
-/// they come to (numerics.md, section 4.9). A beam lies over up to four voxels, some of which may be another rank's:
-/// each rank knows sigma_t of two voxels round its block, and gives what its beams put down there to their owners, in
-/// fixed point, so that deposits are those of DepositLamp bit for bit but for the last correction of the power, whose
-/// sum has another order; round periodic axes but for what is below 1e-7 of a beam, which ends there.
+/// The uncollided flux of point, spot and rectangle lamps on a grid that is divided among ranks, with the same beams as
+/// DepositLamp() (LampBeams.h). A beam that leaves a block is sent to the rank of the block that it enters
+/// (numerics.md, section 4.9). A beam covers up to four voxels, some of which may belong to another rank: each rank
+/// holds sigma_t of its block and a halo of two voxels, and sends its beams' deposits in the halo to their owners, in
+/// fixed point.
+///
+/// Deposits agree with those of DepositLamp() bit for bit, except for the final correction of the power, which is a sum
+/// in another order, and, around periodic axes, except for beams with less than 1e-7 of their initial power, which are
+/// dropped.
 class LampsInBlocks
 {
 public:
-  /// All ranks make one together.
-  /// @param communicator, partition  must stay
+  /// Collective.
+  /// @param communicator, partition  must outlive this object
   /// @param layout  of the rank's block
   LampsInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition,
     const std::array<bool, 3>& periodic, const VolumeLayout& layout, const Buffer<float>& sigma_t);
 
-  /// As DepositLamp. All ranks call it.
-  /// @param volume  the rank's block; of its deposit cells of faces are those of the whole grid
-  /// @return of all ranks together
+  /// As DepositLamp(). Collective.
+  /// @param volume  the rank's block; the face cells of its deposit are those of the whole grid
+  /// @return tally of all ranks
   SweepTally Deposit(const SweepVolume& volume, const Light& light, const Monitor& monitor);
 
 private:
@@ -42,9 +45,9 @@ private:
   Communicator& Comm;
   const BlockPartition& Partition;
   VoxelBox Own;
-  Halo Stored; ///< the block and what its beams may reach beside it
+  Halo Stored; ///< the block and its halo of two voxels
   tyndall::Rounds Rounds;
-  std::size_t OwnStride; ///< of an extinction of the block in its layout, and
-  Buffer<float> SigmaT;  ///< 1/length, of the stored voxels, one extinction after the other
+  std::size_t OwnStride; ///< stride of one sigma_t of the block in its layout
+  Buffer<float> SigmaT;  ///< 1/length, of the stored voxels, one sigma_t array after the other
 };
 }
