@@ -1,30 +1,30 @@
-// A line through the box of what shines, in a scene whose axes may be turned. The host gives
-//   CHANNELS  1 or 3 that share sigma_t
+// The intersection of a ray with the emitting box, in a scene whose axes may be permuted and reflected. Options:
+//   CHANNELS  1, or 3 that share sigma_t
 
 #pragma once
 
 #include "LightPropagation/Emission/EmissionRaysShared.h"
 #include "Numerics/Numerics.cl"
 
-// What gathers light.
+// A receiver: a voxel, or a face of a voxel.
 typedef struct
 {
   int at[3];
-  int across;  // axis of the face that is lit, 3: it is the voxel itself
-  int up;      // which of its two faces
-  bool inside; // of the box of what shines
+  int across;  // axis of the receiving face; 3: the voxel itself
+  int up;      // 1: the upper face along that axis
+  bool inside; // it lies in the emitting box
 } lit_voxel;
 
-// The scene with its axes in another order, some of them turned round, so that the peak lies one way from every voxel:
-// the light then has the symmetries of the scene.
+// The scene with its axes permuted and some of them reflected, so that the peak lies in the same direction from every
+// voxel: the light then has the symmetries of the scene.
 typedef struct
 {
   float spacing[3];
   int sourceFirst[3], sourceSize[3];
-  int strides[3], base;             // of sigma: voxel (0, 0, 0) is at `base`
+  int strides[3], base;             // of sigma: voxel (0, 0, 0) is at index `base`
   int sourceStrides[3], sourceBase; // of emission
-  int last, sourceLast;             // the highest index of each
-  int axis[3];                      // of the scene, that each axis here is
+  int last, sourceLast;             // the highest index of sigma and of emission
+  int axis[3];                      // the scene's axis that corresponds to each axis here
   float sign[3];
 } turned_scene;
 
@@ -82,7 +82,7 @@ static inline real take(const __global float* from, integer i)
 }
 #endif
 
-// Values at `i` and those behind them: half the loads of two that are taken apart.
+// Loads the values at `i` and the ones behind them: one load per pair instead of two.
 static inline void take_pairs(const __global float* from, integer i, real* first, real* second)
 {
 #if REAL_WIDTH == 1
@@ -122,25 +122,25 @@ static inline void take_pairs(const __global float* from, integer i, real* first
 #endif
 }
 
-// Part that is left in the mean over an optical length.
+// Mean of the transmittance over an optical length tau; `left` is the transmittance at its end.
 static real mean_left(real tau, real* left)
 {
   const real lost = extinguished(tau, left);
   return select((real)1.0f, lost / fmax(tau, (real)1e-6f), tau > (real)1e-6f);
 }
 
-// A line from a point in a voxel to the box of what shines. Places on it are lengths from that point.
+// A ray from a point in a voxel to the emitting box. Positions on it are lengths from that point.
 typedef struct
 {
   real rate[3];       // voxels per length along each axis
   real step[3];       // length from one plane across each axis to the next
-  real next[3];       // place of the plane that it crosses next; moves on as the line is followed
-  integer up[3];      // it goes up that axis
-  real enter, leave;  // places where it comes into the box and out of it
-  real ahead, behind; // how far the point's voxel reaches, along the line and against it
+  real next[3];       // position of the plane that it crosses next; advances with the ray
+  integer up[3];      // it propagates towards + along that axis
+  real enter, leave;  // positions at which it enters and leaves the box
+  real ahead, behind; // extent of the point's voxel along the ray, forward and backward
 } box_ray;
 
-// Which planes are crossed at `end`, before the way ends there; the next ones are then those behind them.
+// Finds the planes crossed at `end`, if the ray does not end there, and advances `next` to the planes behind them.
 static void cross_planes(box_ray* ray, real end, real way_ends, integer* crossed)
 {
   for (int a = 0; a < 3; ++a)
@@ -160,7 +160,7 @@ static integer index_step(const box_ray* ray, const integer* crossed, const int*
   return step;
 }
 
-// Goes on where the ray comes into the box: the voxel's index in the grid, and in the box.
+// Positions the ray at its entry into the box: the voxel's index in the grid, and in the box.
 static void enter_box(const turned_scene* s, const real* point, box_ray* ray, integer* index, integer* shining)
 {
   *shining = s->sourceBase;
@@ -177,9 +177,9 @@ static void enter_box(const turned_scene* s, const real* point, box_ray* ray, in
   }
 }
 
-// Adds up what shines along the ray through the box.
-//   received  part of that light that gets to the point
-//   clear     null, or what would be seen if nothing were in the way
+// Integrates emission along the ray through the box.
+//   received  transmittance from the box to the point
+//   clear     null, or receives the integral without extinction
 static void see_box(const turned_scene* s, const real* point, box_ray* ray, real received, const __global float* sigma,
   const __global float* emission, real* radiance, real* clear)
 {
@@ -214,7 +214,7 @@ static void see_box(const turned_scene* s, const real* point, box_ray* ray, real
     cross_planes(ray, end, ray->leave, crossed);
     index += index_step(ray, crossed, s->strides);
     shining += index_step(ray, crossed, s->sourceStrides);
-    index = clamp(index, (integer)0, (integer)s->last); // rounding, as above
+    index = clamp(index, (integer)0, (integer)s->last); // rounding may step past the box
     shining = clamp(shining, (integer)0, (integer)s->sourceLast);
     now = end;
     under_way = now < ray->leave && (clear ? (integer)-1 : received > (real)1e-35f);

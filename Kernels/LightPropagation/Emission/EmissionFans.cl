@@ -1,16 +1,17 @@
-// The light of a small bright part of the medium far from it, along fans of rays that many voxels share. The host gives
+// The light of a localised emission far from it, along fans of rays that many voxels share. Options:
 //   CHANNELS  1
-//   NET_FLUX  1 where net flux is wanted
+//   NET_FLUX  1: compute net flux
 //
-// A fan is all rays from one point of the box of what shines into one 24th of space, on a grid of tangents that has a
-// ray in every voxel even of the last layer. Each ray keeps what it brings to every layer; each voxel takes the mean of
-// the rays that come through it (numerics.md, Eqs. (40a), (40b)). A packet of rays lies in one row: they cross planes
-// between rows together, and between the voxels of a row at most one each in a step.
+// A fan consists of all rays from one point of the emitting box into one 24th of space, on a grid of tangents fine
+// enough that every voxel of the last layer contains a ray. Each ray stores the light it carries to every layer; each
+// voxel takes the mean of the rays that cross it (numerics.md, Eqs. (40a), (40b)). The rays of a SIMD packet lie in one
+// row: they cross planes between rows together, and at most one plane each between voxels of a row per step.
 
 #include "LightPropagation/Emission/EmissionBox.cl"
 
-#define OF_HALVES 3.0f // two halves of the fans may differ by that many times the error asked for: their mean is better
-#define DIM 1e-6f      // part of what is not extinguished, below which halves of the fans need not agree
+// accepted difference of the two halves of the fans, in units of the requested error: their mean is more accurate
+#define OF_HALVES 3.0f
+#define DIM 1e-6f // transmittance below which the halves of the fans need not agree
 
 static void turn_fan(const EmissionInfo* s, const FanInfo* fan, turned_scene* turned)
 {
@@ -19,8 +20,8 @@ static void turn_fan(const EmissionInfo* s, const FanInfo* fan, turned_scene* tu
   turn_scene(s, &nowhere, fan->order, fan->turned, turned, &turned_nowhere);
 }
 
-// sigma_t, but none in the box: what rays lose after they have left it. Voxels along a fan's second axis lie beside
-// each other, then those along its third.
+// Copies sigma_t, with 0 in the emitting box: the extinction that rays undergo after leaving it. Voxels along a fan's
+// second axis are contiguous, then those along its third.
 __kernel void lay_out(
   EmissionInfo s, FanInfo fan, const __global float* sigma, ulong sigma_first, __global float* outside)
 {
@@ -38,7 +39,7 @@ __kernel void lay_out(
   outside[FanMargin + to] = inside ? 0.0f : sigma[from];
 }
 
-// A line from a point of the box, both ways through the box.
+// Sets up a line through a point of the emitting box, in both directions through the box.
 static void begin_line(const turned_scene* s, const float* point, const real* way, box_ray* ray)
 {
   ray->enter = -1e30f;
@@ -56,8 +57,8 @@ static void begin_line(const turned_scene* s, const float* point, const real* wa
   }
 }
 
-// Radiance at the end of the line in the box, over the density of points along it: points are as dense as what shines,
-// so that in a clear box this is the same for all lines. W / sr
+// Radiance at the end of the line in the box, divided by the density of points along it, W / sr. Points are distributed
+// in proportion to emission, so that this is the same for all lines if the box does not attenuate.
 static real weigh_line(const turned_scene* s, const float* point, const real* way, float emitted,
   const __global float* sigma, const __global float* emission)
 {
@@ -73,19 +74,20 @@ static real weigh_line(const turned_scene* s, const float* point, const real* wa
   return seen[0] * emitted / fmax(clear[0], (real)1e-30f);
 }
 
-// Lines of a fan beside each other.
+// A packet of adjacent rays of a fan.
 typedef struct
 {
-  float point[3];        // where they begin, voxels
-  float low[2], high[2]; // least and largest tangent along the second and the third axis
+  float point[3];        // origin, voxels
+  float low[2], high[2]; // smallest and largest tangent along the second and the third axis
 } line_packet;
 
-// Whether a packet may come to voxels of its part of space in a layer or behind it.
+// Whether a packet may still reach voxels of its part of space in this layer or beyond.
 static bool is_wanted(
   const EmissionInfo* s, const turned_scene* turned, const FanInfo* fan, const line_packet* packet, int layer)
 {
   const float near = layer - packet->point[0], far = near + 1.0f;
-  const float away = layer + 1.0f - turned->sourceFirst[0] - 0.5f * turned->sourceSize[0]; // no voxel is farther aside
+  // no voxel of this part of space is farther aside
+  const float away = layer + 1.0f - turned->sourceFirst[0] - 0.5f * turned->sourceSize[0];
   bool wanted = true;
   for (int a = 1; a < 3; ++a)
   {
@@ -99,18 +101,19 @@ static bool is_wanted(
   return wanted;
 }
 
-// Lines of a packet, and how far they have come.
+// The rays of a packet and their current state.
 typedef struct
 {
-  float point[2], row_tangent; // along the second and the third axis
-  real tangent, inverse;       // along the second; 1 over it
-  real per_layer;              // length
-  real tau;                    // up to here
-  real kept;                   // part of the light that is left, mean over the voxel that the line is in at `sample`
-  float sample;                // layers from the point
+  float point[2], row_tangent; // position of the origin, tangent of the row: second and third axis
+  real tangent, inverse;       // tangents along the second axis, and their inverses
+  real per_layer;              // path length per layer
+  real tau;                    // optical length so far
+  real kept;                   // transmittance, averaged over the voxel that the ray is in at `sample`
+  float sample;                // layers from the origin
 } fan_lines;
 
-// On from `from` to `to`, layers from the point, within one row of voxels; no line crosses more than one plane.
+// Advances the rays from `from` to `to`, in layers from the origin, within one row of voxels. No ray may cross more
+// than one plane.
 static void cross_row(const turned_scene* s, const FanInfo* fan, const __global float* row, int last, float from,
   float to, fan_lines* lines)
 {
@@ -119,7 +122,7 @@ static void cross_row(const turned_scene* s, const FanInfo* fan, const __global 
   const real plane = clamp((fmax(begin, end) - lines->point[0]) * lines->inverse, (real)from, (real)to);
   const real middle = select((real)to, plane, begin != end);
   const integer low = clamp(to_integer(fmin(begin, end)), (integer)0, (integer)last);
-  const bool turned = fan->strides[1] < 0; // then voxels lie in memory the other way
+  const bool turned = fan->strides[1] < 0; // then voxels are in reverse order in memory
   real one, other;
   take_pairs(row, turned ? -1 - low : low, &one, &other);
   const integer as_they_lie = turned ? begin > end : begin <= end;
@@ -135,7 +138,8 @@ static void cross_row(const turned_scene* s, const FanInfo* fan, const __global 
   lines->tau += first + second;
 }
 
-// On from `from` to `to` in one layer, in steps in which no line crosses more than one plane across either axis.
+// Advances the rays from `from` to `to` in one layer, in steps in which no ray crosses more than one plane across
+// either axis.
 static void cross_layer(const turned_scene* s, const EmissionInfo* info, const FanInfo* fan,
   const __global float* of_layer, int steps, float from, float to, fan_lines* lines)
 {
@@ -154,7 +158,7 @@ static void cross_layer(const turned_scene* s, const EmissionInfo* info, const F
   }
 }
 
-// What a line brings per solid angle becomes what it brings to a voxel's volume: 1 / r^2, mean over the layer.
+// Converts light per solid angle to the mean over a voxel: the average of 1 / r^2 over the layer.
 static real spread(const turned_scene* s, const fan_lines* lines, float layers)
 {
   const float forward = layers * s->spacing[0], up = lines->row_tangent * lines->sample * s->spacing[2];
@@ -164,11 +168,12 @@ static real spread(const turned_scene* s, const fan_lines* lines, float layers)
   return inverse * (1.0f + deep * (8.0f * forward * forward * inverse - 2.0f));
 }
 
-// points    of the scene turned for this fan: [point][FanPointFloats]
-// tangents  of the lines, before what the point adds
-// outside   as lay_out makes it
-// light     W / length^2 that the line brings to the voxel that it is in, and last what goes through the face, W /
-//           length^2: [point][layer][row][line]
+// Traces the rays of a fan.
+// points    origins in the permuted scene, [point][FanPointFloats]
+// tangents  of the rays, without the offset of the point
+// outside   see lay_out()
+// light     W / length^2 that the ray carries to the voxel it is in, and last the flux density through the face:
+//           [point][layer][row][line]
 __kernel void follow_fan(EmissionInfo s, FanInfo fan, const __global float* sigma, ulong sigma_first,
   const __global float* outside, const __global float* points, const __global float* tangents,
   const __global float* emission, __global float* light)
@@ -220,16 +225,18 @@ __kernel void follow_fan(EmissionInfo s, FanInfo fan, const __global float* sigm
   store_real(weight * left * inverse * inverse * (along[0] / lines.per_layer), fan.layers * all, to);
 }
 
-// The lines of a fan from a place to the next voxel, as indices: those that come through at a depth.
-//   before  lines before the first one
+// Number of a fan's rays along one axis that lie below a position at a depth. Two such numbers bound the rays that
+// cross a voxel there.
+//   before  index of the ray with tangent 0, negated
 static integer lines_up_to(real place, float per_voxel, float before, int count)
 {
   return clamp(to_integer(ceil(place * per_voxel - before)), (integer)0, (integer)count);
 }
 
-// Adds what lines of one row bring to voxels beside each other.
-//   tangents  of the lines and the row, times the voxel's edge
-//   sums      [fluence, net flux along the turned axes]
+// Adds the light of rays of one row to adjacent voxels.
+//   got        light of one ray for each voxel
+//   aside, up  tangents of the ray and of the row, times the voxel's edge
+//   sums       [fluence, net flux along the permuted axes]
 static void add_lines(const turned_scene* s, real got, real aside, float up, real* sums)
 {
   sums[0] += got;
@@ -241,10 +248,9 @@ static void add_lines(const turned_scene* s, real got, real aside, float up, rea
 #endif
 }
 
-// Adds the mean of the lines of fan p that come through voxels beside each other (numerics.md, Eqs. (40a), (40b)), or
-// through cells of the face.
-//   layer  0 is the first, fan->layers the face
-//   at     along the second and the third axis
+// Adds the mean of the rays of fan p that cross adjacent voxels (numerics.md, Eqs. (40a), (40b)), or cells of the face.
+//   layer  from 0; fan->layers is the face
+//   at     position along the second and the third axis
 static void add_fan(const turned_scene* s, const FanInfo* fan, int p, int layer, real at, int row_at,
   const __global float* points, const __global float* light, real* sums)
 {
@@ -275,9 +281,9 @@ static void add_fan(const turned_scene* s, const FanInfo* fan, int p, int layer,
   }
 }
 
-// How many of the 24 parts of space a voxel lies in, if it is in one that leads up along all axes, the first of them
-// the farthest; else 0.
-//   distance  half voxels from the middle of the box along each axis
+// Number of the 24 parts of space that share a voxel (its border may lie in several), if it lies in a part whose axes
+// all point away from the box and whose first axis is that of the largest distance; else 0.
+//   distance  half voxels from the centre of the box along each axis
 static int parts_of_space(const int* distance)
 {
   int parts = 1;
@@ -292,7 +298,7 @@ static int parts_of_space(const int* distance)
   return parts * (1 + (distance[1] == distance[0]) + (distance[2] == distance[0]));
 }
 
-// Half voxels from the middle of the box along each axis, of a voxel or a cell of the face.
+// Distance of a voxel, or of a cell of the face, from the centre of the box along each axis, in half voxels.
 static void find_distance(const turned_scene* s, const int* at, bool is_face, int* distance)
 {
   for (int a = 0; a < 3; ++a)
@@ -301,13 +307,13 @@ static void find_distance(const turned_scene* s, const int* at, bool is_face, in
   }
 }
 
-// Index of a voxel of the turned scene.
+// Index of a voxel of the permuted scene.
 static ulong voxel_index(const turned_scene* s, const int* at)
 {
   return s->base + (long)at[0] * s->strides[0] + (long)at[1] * s->strides[1] + (long)at[2] * s->strides[2];
 }
 
-// Index of a cell of the face that a fan leads to.
+// Index of a cell of the face at the end of a fan.
 static ulong cell_index(const EmissionInfo* s, const FanInfo* fan, const turned_scene* turned, const int* at)
 {
   const int sizes[2] = { s->size[fan->order[1]], s->size[fan->order[2]] };
@@ -316,9 +322,9 @@ static ulong cell_index(const EmissionInfo* s, const FanInfo* fan, const turned_
   return fan->faceFirst + (ulong)v * sizes[0] + u;
 }
 
-// Sums over all fans so far, added to:
-//   path    W / length^2, [voxel];  flux  the same, [x, y, z][stride];  halves  path of half of the fans
-//   faces   W / length^2 that goes out through the box's faces, [cell];  face_halves  the same of half of the fans
+// Adds the fans in memory to the sums over all fans:
+//   path    W / length^2, [voxel];  flux  the same, [x, y, z][stride];  halves  path of the first half of the fans
+//   faces   outgoing flux density through the box's faces, W / length^2, [cell];  face_halves  that of the first half
 __kernel void collect_fans(EmissionInfo s, FanInfo fan, const __global float* points, const __global float* light,
   __global float* path, __global float* flux, ulong stride, __global float* halves, __global float* faces,
   __global float* face_halves)
@@ -335,7 +341,7 @@ __kernel void collect_fans(EmissionInfo s, FanInfo fan, const __global float* po
   {
     return;
   }
-  real sums[4], early = 0.0f, beside; // all, those of the first half of the fans; places along the second axis
+  real sums[4], early = 0.0f, beside; // sums over all fans and over their first half; positions along the second axis
   for (int lane = 0; lane < REAL_WIDTH; ++lane)
   {
     ((float*)&beside)[lane] = at[1] + lane;
@@ -377,14 +383,15 @@ __kernel void collect_fans(EmissionInfo s, FanInfo fan, const __global float* po
   }
 }
 
-// Whether two halves of the fans agree, beside what would come if nothing were in the way.
+// Whether the two halves of the fans agree, relative to their sum or to a small fraction of the light without
+// extinction, `clear`.
 static bool agree(const EmissionInfo* s, float all, float first_half, float clear)
 {
   return fabs(all - 2.0f * first_half) <= OF_HALVES * s->uneven * fmax(all, DIM * clear);
 }
 
-// found    1 where two halves of the fans agree, -1 where a voxel is too near for them, else 0
-// emitted  of the box, times the number of fans
+// found    1: the two halves of the fans agree; -1: the voxel is too close for fans; else 0
+// emitted  integral of emission over the box, times the number of fans
 __kernel void judge_voxels(
   EmissionInfo s, float emitted, const __global float* path, const __global float* halves, __global float* found)
 {
@@ -402,7 +409,7 @@ __kernel void judge_voxels(
   found[i] = farthest < s.near ? -1.0f : agree(&s, path[i], halves[i], emitted / squared) ? 1.0f : 0.0f;
 }
 
-// The same of the cells of a face, up or down an axis; -1 where they lie farther aside than ahead.
+// judge_voxels() for the cells of a face; -1 also where the face's cells are farther aside than ahead.
 __kernel void judge_cells(EmissionInfo s, int axis, int up, ulong first, float emitted, const __global float* faces,
   const __global float* halves, __global float* found)
 {

@@ -13,13 +13,15 @@ namespace tyndall
 {
 namespace
 {
-constexpr int FewestPoints = 8;        ///< fans into each part of space; two halves, each of two mirrored pairs
-constexpr int MostPoints = 1024;       ///< the same
-constexpr double FewLeft = 0.001;      ///< of all voxels, may be left to rays of their own rather than to one more fan
-constexpr double LinesPerVoxel = 1.02; ///< along an edge in the last layer: none is without a line
-constexpr int LineStep = 16;           ///< lines are a multiple of that: the widest packet
-constexpr std::size_t KeptFloats = 1 << 24; ///< of the fans that are kept at a time, about: 64 MiB
-constexpr int NearGap = 3; ///< voxels between what shines and the nearest voxel that a fan is asked for
+/// initial number of fans into each part of space: two halves, each of two mirrored pairs
+constexpr int FewestPoints = 8;
+constexpr int MostPoints = 1024; ///< maximum number of fans into each part of space
+/// fraction of the voxels, per fan, that is left to rays of their own rather than doubling the fans
+constexpr double FewLeft = 0.001;
+constexpr double LinesPerVoxel = 1.02;      ///< rays per voxel edge in the last layer: every voxel contains a ray
+constexpr int LineStep = 16;                ///< the number of lines is a multiple of this: the widest packet
+constexpr std::size_t KeptFloats = 1 << 24; ///< approximate size of the fans in memory at a time: 64 MiB
+constexpr int NearGap = 3;                  ///< voxels between the emitting box and the nearest voxel that uses fans
 
 /// Sobol's sequence in six dimensions (Joe and Kuo 2008).
 class Sobol
@@ -46,9 +48,9 @@ public:
     }
   }
 
-  /// 0 to 1. The sequence is shifted and folded: the mean of any first 2^n points is 1/2, where that of the sequence
-  /// itself is lower by half a cell of so many, an eighth with four. Fractions of a cell that the shift is of are never
-  /// near 0 or 1/2, where the fold would lay points on each other.
+  /// Point n, 0 to 1. The sequence is shifted and folded (baker's transform): the mean of the first 2^n points is 1/2
+  /// for every n, whereas that of the original sequence is lower by half a cell (an eighth for four points). The shift,
+  /// as a fraction of a cell, is never near 0 or 1/2, where the fold would make points coincide.
   double At(int n, int dimension) const
   {
     int place = 0;
@@ -61,10 +63,10 @@ public:
   }
 
 private:
-  static constexpr int Bits = 9; ///< MostPoints in pairs
+  static constexpr int Bits = 9; ///< enough for MostPoints in pairs
   static constexpr double Shift = 1.0 / 12.0;
 
-  /// Over the field of two elements: of what degree, its inner coefficients, the numbers to begin with.
+  /// Primitive polynomial over GF(2): its degree, inner coefficients, and initial direction numbers.
   struct Polynomial
   {
     int degree, inner;
@@ -75,7 +77,7 @@ private:
   std::array<std::array<int, Bits>, Dimensions> Numbers = {};
 };
 
-/// The box of what shines, its axes in another order and some of them turned round.
+/// The emitting box with its axes permuted and some of them reflected.
 class TurnedBox
 {
 public:
@@ -93,7 +95,8 @@ public:
 
   std::array<int, 3> First, Size;
 
-  /// The point at parts of what shines: of all along the first axis, and of what is left along the two others in turn.
+  /// The point at given quantiles of the emission: along the first axis over the whole box, then along the other two
+  /// within the layer and row found so far.
   /// @param swapped  the third axis comes before the second
   std::array<float, 3> PointAt(const std::array<double, 3>& parts, bool swapped) const
   {
@@ -185,7 +188,7 @@ public:
     this->FollowAll(0, this->Points, OfPart(monitor, 0.0, 0.5));
     while (this->AreManyLeft() && this->Points < MostPoints)
     {
-      // What is there is a half, before the other one comes.
+      // The fans so far become the first half.
       this->Halves.CopyFrom(this->Light.path, 0, this->Halves.Size());
       this->FaceHalves.CopyFrom(this->Light.faces, 0, this->FaceHalves.Size());
       this->FollowAll(this->Points, 2 * this->Points, OfPart(monitor, 0.5, 1.0));
@@ -213,7 +216,8 @@ private:
     return values;
   }
 
-  /// Judges all voxels. @return whether more than a few of the far ones need more fans
+  /// Compares the two halves of the fans in all voxels. @return whether more than a few of the far voxels need more
+  /// fans
   bool AreManyLeft()
   {
     const std::size_t voxels = this->Scene.volume.grid.VoxelCount();
@@ -239,7 +243,7 @@ private:
     }
   }
 
-  /// @param from, end  points of each part of space
+  /// @param from, end  range of origins, for each part of space
   void FollowAll(int from, int end, const Monitor& monitor)
   {
     for (int part = 0; part < 24; ++part)
@@ -255,7 +259,7 @@ private:
         Define("NET_FLUX", this->Scene.volume.deposit.flux != nullptr));
   }
 
-  /// sigma_t for the fans whose first axis is that of `fan`.
+  /// Copies sigma_t for the fans whose first axis is that of `fan`.
   void LayOut(const FanInfo& fan)
   {
     const SweepVolume& volume = this->Scene.volume;
@@ -266,7 +270,7 @@ private:
       layOut, cl::NullRange, cl::NDRange(size[fan.order[1]], size[fan.order[2]], size[fan.order[0]]));
   }
 
-  /// The fans into one part of space. @return no layers: it has no far voxels
+  /// Describes the fans into one part of space. @return fan.layers is 0 if that part has no far voxels
   FanInfo Describe(int part) const
   {
     const EmissionInfo& info = this->Scene.info;
@@ -301,12 +305,12 @@ private:
     }
     const double nearest = fan.first[0] - box.First[0] - box.Size[0];
     const double farthest = ends[0] - box.First[0];
-    const double away = fan.first[0] + 1.0 - box.First[0] - 0.5 * box.Size[0]; // how far aside voxels are, at most
+    const double away = fan.first[0] + 1.0 - box.First[0] - 0.5 * box.Size[0]; // largest lateral distance of voxels
     fan.spacing = static_cast<float>(1.0 / (LinesPerVoxel * farthest));
     const auto cover = [&](int k, float& first, int& count) {
       const double low = std::min(0.0, (fan.first[k] - box.First[k] - box.Size[k]) / nearest);
       const double high = std::min(away + 0.5 * box.Size[k] + 0.5, ends[k] - box.First[k] + 0.0) / nearest;
-      first = static_cast<float>(low) - fan.spacing; // a point adds up to one spacing
+      first = static_cast<float>(low) - fan.spacing; // the offset of a point is at most one spacing
       count = static_cast<int>(std::ceil((high - low) / fan.spacing)) + 3;
     };
     cover(1, fan.firstLine, fan.lines);
@@ -316,7 +320,8 @@ private:
     return fan;
   }
 
-  /// Whether all that a fan lights are mirror images: not where it shares voxels in the middle with its own image.
+  /// Whether all voxels of a fan's part of space are mirror images. Not if the number of voxels is odd: then the fan
+  /// shares the voxels in the middle with its own image.
   bool IsImage(const FanInfo& fan) const
   {
     int even = 0;
@@ -324,10 +329,10 @@ private:
     {
       even |= this->Scene.info.size[a] % 2 == 0 ? 1 << a : 0;
     }
-    return (~fan.turned & this->Scene.info.mirrored & even) != 0; // it leads to the high side
+    return (~fan.turned & this->Scene.info.mirrored & even) != 0; // it propagates towards the high side
   }
 
-  /// [point][FanPointFloats]; any two are mirror images of each other, second and third axis.
+  /// Origins, [point][FanPointFloats]; each pair are mirror images of each other in the second and third axis.
   std::vector<float> FindPoints(const FanInfo& fan, int from, int end) const
   {
     const TurnedBox box(this->Scene, fan);
@@ -390,7 +395,7 @@ private:
     }
   }
 
-  /// As in EmissionFans.cl.
+  /// Buffers of the fans in memory, see EmissionFans.cl.
   struct KeptFans
   {
     Buffer<float> points, tangents, light;
@@ -420,10 +425,10 @@ private:
   const FanScene& Scene;
   const Buffer<float> Emission;
   Buffer<float> Outside, Halves, FaceHalves; ///< as in EmissionFans.cl
-  int LaidOut = -1;                          ///< first axis of the fans that Outside is laid out for
+  int LaidOut = -1;                          ///< first axis of the fans for which Outside was copied; -1: none
   FanLight Light;
-  double Emitted = 0.0;      ///< as FanInfo has it
-  int Points = FewestPoints; ///< fans into each part of space
+  double Emitted = 0.0;      ///< integral of emission over the box, as in FanInfo
+  int Points = FewestPoints; ///< fans into each part of space, so far
 };
 }
 

@@ -10,30 +10,34 @@
 
 namespace tyndall
 {
-/// What fans of rays need: a medium and what shines in it, of one channel.
+/// The medium and its localised emission in one channel, as the fans of rays need them.
 struct FanScene
 {
   const SweepVolume& volume;
   EmissionInfo info;
-  std::vector<float> emission; ///< W / (length^3 sr), of the box of what shines, x fastest
+  std::vector<float> emission; ///< W / (length^3 sr), over the emitting box, x fastest
 };
 
-/// What fans bring: to each voxel and through each cell of the box's faces. Only `found` ones count.
+/// The light that fans carry to each voxel and through each cell of the box's faces. Values are valid only where
+/// `found` is 1.
 struct FanLight
 {
-  Buffer<float> path, flux; ///< W / length^2: mean over the voxel; flux [x, y, z][stride], may be empty
-  Buffer<float> found;      ///< 1: the voxel has its light; less: it is too near, or two halves of the fans differ
-  Buffer<float> faces, cellsFound; ///< the same of what leaves through the faces, W / length^2, [cell] (FanFaceFirst)
+  Buffer<float> path, flux; ///< W / length^2: mean over the voxel; flux is [x, y, z][stride], may be empty
+  /// 1: the voxel's value is accurate; less: it is too close to the emission, or the two halves of the fans differ
+  Buffer<float> found;
+  /// outgoing flux density through the faces, W / length^2, and whether it is accurate; [cell] (FanFaceFirst)
+  Buffer<float> faces, cellsFound;
 };
 
-/// The light of a small bright part of the medium in voxels far from it (numerics.md, Eqs. (40a), (40b)): rays from
-/// points in it go out through all of the box, and every voxel that they cross takes its share of each, so that the
-/// work is that of a few rays a voxel, where rays of its own would cost each voxel all the way to what shines.
+/// The light of a localised emission in voxels far from it (numerics.md, Eqs. (40a), (40b)). Rays from points in the
+/// emitting box cross the whole grid, and every voxel on their way uses each of them. The cost is that of a few rays a
+/// voxel, whereas rays traced for each voxel separately would all have to cross the grid to the emission.
 FanLight GatherByFans(Device& device, const FanScene& scene, const Monitor& monitor);
 
-/// Half voxels from the middle of the box of what shines, the least for a voxel to be far.
+/// Minimum distance, in half voxels, from the centre of the emitting box along an axis for a voxel to count as far.
 int FarFrom(const std::array<int, 3>& sourceSize);
 
-/// First cell of a face -x, +x, -y, +y, -z, +z; 6: all. Of a face along an axis, cells go first along the one after it.
+/// Index of the first cell of a face in the order -x, +x, -y, +y, -z, +z; for 6 the number of all cells. Within a face
+/// along axis a the cells along axis a + 1 are contiguous.
 std::size_t FanFaceFirst(const Grid& grid, int face);
 }

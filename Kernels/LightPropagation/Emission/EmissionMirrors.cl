@@ -1,20 +1,21 @@
-// Light that has mirror images, see EmissionMirrors.h. `mirrored` are bits of axes.
+// Copies light to its mirror images, see EmissionMirrors.h. `mirrored` is a bit mask of axes.
 
 #include "LightPropagation/Emission/EmissionRaysShared.h"
 
-// Whether a place along an axis is the image of one below it.
+// Whether a position along an axis is the mirror image of a lower one.
 static bool is_image(const EmissionInfo* s, int mirrored, int axis, int at)
 {
   return (mirrored >> axis & 1) != 0 && 2 * at >= s->size[axis] + (s->size[axis] & 1);
 }
 
-// What a place is the image of: that of the low side.
+// The position on the low side of which this one is the mirror image; or itself.
 static int imaged(const EmissionInfo* s, int mirrored, int axis, int at)
 {
   return is_image(s, mirrored, axis, at) ? s->size[axis] - 1 - at : at;
 }
 
-// differs  1 where a voxel's extinction is not that of its image across the axis; a row of voxels
+// One work-item per row of voxels.
+// differs  [axis], set to 1 if some voxel's extinction differs from that of its mirror image
 __kernel void find_mirrors(
   EmissionInfo s, int mirrored, const __global float* sigma, ulong sigma_first, __global float* differs)
 {
@@ -54,7 +55,8 @@ __kernel void mark_images(EmissionInfo s, int mirrored, __global float* found)
   }
 }
 
-// found  of a face's cells, from `first` on
+// Marks the cells of a face that are mirror images.
+// found  the face's cells start at `first`
 __kernel void mark_image_cells(EmissionInfo s, int mirrored, int face, ulong first, __global float* found)
 {
   const int axis = face / 2, u = (axis + 1) % 3, v = (axis + 2) % 3;
@@ -65,7 +67,8 @@ __kernel void mark_image_cells(EmissionInfo s, int mirrored, int face, ulong fir
   }
 }
 
-// path  [channel][stride];  flux  [channel][x, y, z][stride], where has_flux is 1
+// Copies light to the voxels that are mirror images.
+// path  [channel][stride];  flux  [channel][x, y, z][stride], if has_flux is 1
 __kernel void copy_images(
   EmissionInfo s, int mirrored, int channels, ulong stride, __global float* path, __global float* flux, int has_flux)
 {
@@ -91,7 +94,8 @@ __kernel void copy_images(
   }
 }
 
-// faces  [cell][channel]: the face's from `first` on, as those from `from_first` on
+// Copies light to the cells of a face that are mirror images.
+// faces  [cell][channel]: to the face's cells, from `first` on, from those that start at `from_first`
 __kernel void copy_image_cells(
   EmissionInfo s, int mirrored, int face, ulong from_first, ulong first, int channels, __global float* faces)
 {

@@ -10,7 +10,7 @@ namespace tyndall
 {
 namespace
 {
-/// Of a box of `size` voxels, x fastest; one channel.
+/// Whether the emission of a box of `size` voxels, x fastest, is symmetric across an axis; one channel.
 bool IsMirrored(const float* emission, const int* size, int axis)
 {
   const std::array<std::ptrdiff_t, 3> strides = { 1, size[0], static_cast<std::ptrdiff_t>(size[0]) * size[1] };
@@ -112,7 +112,7 @@ void EmissionMirrors::CopyCells(const Buffer<float>& faces) const
 {
   for (int face = 0; face < 6 && this->Mirrored != 0; ++face)
   {
-    // The high face of an axis that is mirrored is the low one's image, whose cells come first.
+    // The high face of a mirrored axis is the image of the low one, whose cells come first.
     const int axis = face / 2, from = (this->Mirrored >> axis & 1) != 0 ? face & ~1 : face;
     const int* n = this->Info.size;
     cl::Kernel copy = this->TheDevice.Kernel("copy_image_cells", kernel_source::EmissionMirrors);

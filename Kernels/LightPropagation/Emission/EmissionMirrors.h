@@ -7,19 +7,21 @@
 
 namespace tyndall
 {
-/// Planes through the middle of the grid and of what shines, of which one side is the mirror image of the other:
-/// extinction and emission are the same there, and so is the light. It is found on the low side alone and copied.
+/// Mirror symmetries of the scene: planes through the centres of the grid and of the emitting box across which
+/// extinction and emission are symmetric. The light is then symmetric, too: it is computed on the low side and copied
+/// to the high side.
 class EmissionMirrors
 {
 public:
-  /// @param info  the grid and the box of what shines
+  /// @param info  the grid and the emitting box
   /// @param emission  of that box, [channel][voxel], x fastest
   EmissionMirrors(
     Device& device, const SweepVolume& volume, const EmissionInfo& info, const std::vector<float>& emission);
 
-  /// Bits of the axes across which such planes lie.
+  /// Bit mask of the axes that have such a plane across them.
   int Axes() const { return this->Mirrored; }
-  /// Sets those to 1 that are images: of voxels, and of cells of the faces (FanFaceFirst).
+  /// Sets the entries of mirror images to 1, of voxels and of cells of the faces (FanFaceFirst), so that they are not
+  /// computed.
   void MarkImages(const Buffer<float>& voxels, const Buffer<float>& cells) const;
   /// @param path  [channel][stride]
   /// @param flux  [channel][x, y, z][stride], or empty

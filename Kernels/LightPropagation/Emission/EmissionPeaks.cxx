@@ -8,13 +8,14 @@ namespace tyndall
 {
 namespace
 {
-constexpr double Hides = 2.0;      ///< emission over what is absorbed of the light that comes in
-constexpr double PartOfOne = 0.01; ///< that each carries, at least
+/// a voxel counts as self-absorbing below this ratio of emission to absorbed incident light
+constexpr double Hides = 2.0;
+constexpr double PartOfOne = 0.01; ///< minimum fraction of the emitted power for each peak
 constexpr std::size_t MostPeaks = 16;
-constexpr double Widest = 0.125; ///< of the box's longest edge
-constexpr double Hidden = 4.6;   ///< mean free paths beyond which a peak is not seen: 1% is left
-constexpr double Opaque = 3e4;   ///< mean free paths a voxel from which on a peak is left to the sweeps
-constexpr double Clear = 1.5;    ///< times a peak's width that light must go to be followed
+constexpr double Widest = 0.125; ///< maximum width of a peak, in the box's longest edge
+constexpr double Hidden = 4.6;   ///< optical length beyond which a peak is not seen: 1% is left
+constexpr double Opaque = 3e4;   ///< optical thickness of a voxel above which a peak is left to the sweeps
+constexpr double Clear = 1.5;    ///< distance, in widths of the peak, over which its surroundings must be clear
 
 using Voxel = std::array<int, 3>;
 
@@ -30,11 +31,11 @@ std::size_t IndexOf(const Grid& grid, const Voxel& v)
   return (static_cast<std::size_t>(v[2]) * grid.size[1] + v[1]) * grid.size[0] + v[0];
 }
 
-/// Voxels far brighter than the mean of the others.
+/// The voxels far brighter than the mean of the others.
 struct BrightVoxels
 {
-  std::vector<std::size_t> voxels; ///< in order
-  double limit = 0.0;              ///< what is above it stands out
+  std::vector<std::size_t> voxels; ///< in ascending order
+  double limit = 0.0;              ///< brightness above which emission belongs to a peak
   double all = 0.0;                ///< sum of all voxels' brightness
   double Above(const Field& emission, std::size_t voxel) const
   {
@@ -58,7 +59,8 @@ BrightVoxels FindBright(const Medium& medium)
     bright.all += sorted[i];
   }
   std::nth_element(sorted.begin(), sorted.begin() + most, sorted.end(), std::greater<double>());
-  const double next = sorted[most]; // as bright as that is not small any more
+  // the first voxel beyond the bright 64th: brightness up to this is too common for a peak
+  const double next = sorted[most];
   double rest = 0.0;
   for (std::size_t i = most; i < voxels; ++i)
   {
@@ -84,7 +86,7 @@ BrightVoxels FindBright(const Medium& medium)
   return bright;
 }
 
-/// Groups of voxels that touch each other, at corners too.
+/// Connected groups of voxels, including neighbours at edges and corners.
 std::vector<std::vector<std::size_t>> Groups(const Grid& grid, const std::vector<std::size_t>& voxels)
 {
   std::vector<std::vector<std::size_t>> groups;
@@ -123,7 +125,7 @@ std::vector<std::vector<std::size_t>> Groups(const Grid& grid, const std::vector
   return groups;
 }
 
-/// The box around a group.
+/// The bounding box of a group of voxels.
 EmissionPeak BoxAround(const Grid& grid, const std::vector<std::size_t>& group)
 {
   EmissionPeak peak;
@@ -145,13 +147,13 @@ EmissionPeak BoxAround(const Grid& grid, const std::vector<std::size_t>& group)
   return peak;
 }
 
-/// Compared with the box.
+/// Whether a peak is small compared with the grid.
 bool IsSmall(const Grid& grid, const EmissionPeak& peak)
 {
   return peak.Width(grid) <= Widest * std::max({ grid.Length(0), grid.Length(1), grid.Length(2) });
 }
 
-/// Optical lengths of a medium, in the clearest channel or the least clear one.
+/// Optical lengths along straight lines through a medium.
 class OpticalLength
 {
 public:
@@ -160,7 +162,8 @@ public:
   {
   }
 
-  /// Of the straight way from a point (in voxels) on, `reach` lengths far or out of the box; in each channel.
+  /// @return optical length in each channel along `way` from a point (in voxels), over the length `reach` or until the
+  ///   line leaves the box
   std::array<double, 3> Along(const std::array<double, 3>& from, const std::array<double, 3>& way, double reach) const
   {
     const Grid& grid = this->TheMedium.grid;
@@ -190,7 +193,7 @@ private:
   const Medium& TheMedium;
 };
 
-/// In clear surroundings.
+/// Whether a peak has clear surroundings in at least one direction and channel.
 bool IsSeen(const Medium& medium, const EmissionPeak& peak)
 {
   const Grid& grid = medium.grid;
@@ -209,7 +212,7 @@ bool IsSeen(const Medium& medium, const EmissionPeak& peak)
     {
       continue;
     }
-    double half = std::numeric_limits<double>::max(); // from the middle to the border of the peak
+    double half = std::numeric_limits<double>::max(); // distance from the centre to the border of the peak
     for (int a = 0; a < 3; ++a)
     {
       way[a] /= length;
@@ -225,7 +228,7 @@ bool IsSeen(const Medium& medium, const EmissionPeak& peak)
   return clearest <= Hidden;
 }
 
-/// Floats do not know what gets out of a voxel that takes nearly all of its own light.
+/// Whether a voxel is so thick that the light escaping from it cannot be resolved in single precision.
 bool IsOpaque(const Medium& medium, const std::vector<std::size_t>& group)
 {
   const std::array<double, 3>& h = medium.grid.spacing;
@@ -240,7 +243,7 @@ bool IsOpaque(const Medium& medium, const std::vector<std::size_t>& group)
   });
 }
 
-/// It absorbs about as much of the light that comes in as it emits, in every voxel and channel.
+/// Whether every voxel absorbs about as much of the incident light as it emits, in every channel.
 bool IsSelfAbsorbing(const Medium& medium, const std::vector<std::size_t>& group, const Rgb& comesIn)
 {
   return std::all_of(group.begin(), group.end(), [&](std::size_t voxel) {
@@ -254,7 +257,7 @@ bool IsSelfAbsorbing(const Medium& medium, const std::vector<std::size_t>& group
   });
 }
 
-/// Fills in the emission; the rest stays in `smooth`.
+/// Moves the emission above the limit to `peak`; the remainder stays in `smooth`.
 void Take(const Medium& medium, const BrightVoxels& bright, const std::vector<std::size_t>& group, EmissionPeak& peak,
   std::vector<float>& smooth)
 {

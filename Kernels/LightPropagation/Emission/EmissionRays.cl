@@ -1,11 +1,11 @@
-// The light of a small bright part of the medium, gathered along straight rays. The host gives
-//   CHANNELS  1 or 3 that share sigma_t
-//   NET_FLUX  1 where net flux is wanted
-//   MOST      rays of a voxel to the box around what shines, at most
+// The light of a localised emission, gathered by each voxel along straight rays. Options:
+//   CHANNELS  1, or 3 that share sigma_t
+//   NET_FLUX  1: compute net flux
+//   MOST      maximum number of rays from a voxel to the emitting box
 
 #include "LightPropagation/Emission/EmissionBox.cl"
 
-#define OPAQUE 80.0f // mean free paths beyond which nothing is left
+#define OPAQUE 80.0f // optical length beyond which the transmittance is taken as 0
 
 static void begin_ray(const turned_scene* s, const lit_voxel* voxel, const real* point, const real* way, box_ray* ray)
 {
@@ -27,10 +27,10 @@ static void begin_ray(const turned_scene* s, const lit_voxel* voxel, const real*
   }
   ray->ahead = fmin(ray->next[0], fmin(ray->next[1], ray->next[2]));
   ray->leave = fmax(ray->leave, (real)0.0f);
-  ray->enter = fmin(ray->enter, ray->leave); // rounding: past its edge
+  ray->enter = fmin(ray->enter, ray->leave); // rounding may put the entry behind the exit
 }
 
-// Follows the ray from voxel `begin` of the grid to the box: optical length.
+// Traces the ray from voxel `begin` of the grid to the box. @return its optical length
 static real follow_to_box(const turned_scene* s, box_ray* ray, int begin, const __global float* sigma)
 {
   integer index = begin, crossed[3];
@@ -42,7 +42,7 @@ static real follow_to_box(const turned_scene* s, box_ray* ray, int begin, const 
     tau += take(sigma, index) * (end - now);
     cross_planes(ray, end, ray->enter, crossed);
     index += index_step(ray, crossed, s->strides);
-    // Rounding: along a face of the grid, a step of no length past it.
+    // Rounding: a ray along a face of the grid may take a step of zero length past it.
     index = clamp(index, (integer)0, (integer)s->last);
     now = end;
     under_way = now < ray->enter && tau < (real)OPAQUE;
@@ -50,13 +50,13 @@ static real follow_to_box(const turned_scene* s, box_ray* ray, int begin, const 
   return tau;
 }
 
-// Rays from points to the box of what shines and through it: radiance at their beginnings, W / (length^2 sr),
-// [CHANNELS] (numerics.md, Eq. (40)).
+// Traces rays from points to the emitting box and through it. Computes the radiance at the points, W / (length^2 sr),
+// [CHANNELS] (numerics.md, Eq. (40)). The extinction in the receiving voxel itself is averaged over the whole line
+// through that voxel.
 //   point      in voxels, along x, y, z
-//   way        unit vectors, towards the box
+//   way        unit vectors towards the box
 //   sigma      of the grid
 //   emission   of the box, W / (length^3 sr), [CHANNELS][voxel]
-// What the voxel itself extinguishes is the mean over all that the line has of it.
 static void trace(const turned_scene* s, const lit_voxel* voxel, const real* point, const real* way,
   const __global float* sigma, const __global float* emission, real* radiance)
 {
@@ -76,8 +76,8 @@ static void trace(const turned_scene* s, const lit_voxel* voxel, const real* poi
   see_box(s, point, &ray, received * left, sigma, emission, radiance, 0);
 }
 
-// Solid angle of each side of the box that light comes through, from the voxel's middle, but no less than an eighth of
-// the largest: from other points they are larger; 0 where no light comes through.
+// Solid angle of each side of the box through which light arrives, as seen from the voxel's centre; 0 for the other
+// sides. At least an eighth of the largest one, since it is larger as seen from other points of the voxel.
 static void find_sides(const turned_scene* s, const lit_voxel* voxel, float* solid_angles)
 {
   float largest = 0.0f;
@@ -105,17 +105,18 @@ static void find_sides(const turned_scene* s, const lit_voxel* voxel, float* sol
   }
 }
 
-// values[axis + shift], lane by lane.
+// values[axis + shift], for each SIMD lane.
 static inline real along(const real* values, integer axis, int shift)
 {
   const real other = select(values[(2 + shift) % 3], values[(1 + shift) % 3], axis == (integer)1);
   return select(other, values[shift % 3], axis == (integer)0);
 }
 
-// Rays to the box, along directions from a lattice of points in the voxel that are spread evenly over the solid angles
-// of the box's sides: the first coordinate chooses the side, in proportion to its solid angle; what is left of it and
-// the second, (u, v) from 0 to 1, stand for the angles' tan(x / 2) and sin (numerics.md, Eq. (41)).
-//   from, end  the rays, a multiple of REAL_WIDTH
+// Traces rays to the box. A lattice provides points in the voxel and directions that are uniform over the solid angles
+// of the box's sides: its first coordinate selects the side, in proportion to its solid angle; the remainder of that
+// coordinate and the second one, (u, v) from 0 to 1, parametrise the angles by tan(x / 2) and sin (numerics.md, Eq.
+// (41)).
+//   from, end  range of rays, a multiple of REAL_WIDTH
 //   points     [u, v, x, y, z][MOST]
 //   sums       their mean, [channel][fluence, net flux along x, y, z]
 static void gather_rays(const turned_scene* s, const lit_voxel* voxel, const float* solid_angles, int from, int end,
@@ -161,14 +162,15 @@ static void gather_rays(const turned_scene* s, const lit_voxel* voxel, const flo
       fmax(fabs(select(along(low, axis, 0), along(high, axis, 0), high_side)), 1e-4f * along(edge, axis, 0));
     const real half_low = low_u / (away + sqrt(away * away + low_u * low_u));
     const real half_range = high_u / (away + sqrt(away * away + high_u * high_u)) - half_low;
-    const real tangent = half_low + half_range * part; // of half the angle
+    const real tangent = half_low + half_range * part; // tangent of half the angle
     const real squared = tangent * tangent;
-    const real across_u = away * (1.0f + squared) / (1.0f - squared); // from the point to the line that v runs along
+    // distance from the point to the line along which v runs
+    const real across_u = away * (1.0f + squared) / (1.0f - squared);
     const real sin_low = low_v * rsqrt(across_u * across_u + low_v * low_v);
     const real sin_range = high_v * rsqrt(across_u * across_u + high_v * high_v) - sin_low;
     const real sine = sin_low + sin_range * load_real(i, points + MOST);
     const real solid_angle = half_range * 2.0f / (1.0f + squared) * sin_range / share;
-    const real cosine = sqrt(fmax(1.0f - sine * sine, (real)1e-12f)); // 0 would be a way past the side
+    const real cosine = sqrt(fmax(1.0f - sine * sine, (real)1e-12f)); // 0 would be a direction that misses the side
     const integer ahead = voxel->inside ? high_side : ~high_side;
     const real forward = cosine * (1.0f - squared) / (1.0f + squared);
     const real turned[3] = { select(-forward, forward, ahead), cosine * 2.0f * tangent / (1.0f + squared), sine };
@@ -191,17 +193,17 @@ static void gather_rays(const turned_scene* s, const lit_voxel* voxel, const flo
   }
 }
 
-// The ways to turn the scene by which voxels and faces that are alike get the same light: one, but for voxels that lie
-// evenly to what shines.
+// The transformations of the scene (permutations and reflections of its axes) that make equivalent voxels and faces
+// receive equal light: one only, unless a voxel lies symmetrically with respect to the emission.
 typedef struct
 {
-  int permutations[6][3]; // axes of the scene in their new order
+  int permutations[6][3]; // permutations of the scene's axes
   int count;
-  int turned, either; // bits of axes that are turned round, and that are both ways
+  int turned, either; // bit masks of axes that are reflected, and of those that are used both ways
 } ways_to_turn;
 
-// Order of the axes: that across a lit face first, then by distance from the middle of what shines, its size, the
-// voxel's size.
+// Order of the axes: first the normal of a receiving face, then by distance from the centre of the emission, by its
+// size, and by the voxel's size.
 static bool goes_before(const EmissionInfo* s, const lit_voxel* voxel, const int* distance, int a, int b)
 {
   if ((a == voxel->across) != (b == voxel->across))
@@ -240,7 +242,7 @@ static void find_ways(const EmissionInfo* s, const lit_voxel* voxel, ways_to_tur
   }
 }
 
-// Rays [from, end) of the lattice in every way to turn the scene: their mean.
+// Mean over all these transformations of the rays [from, end) of the lattice.
 static void gather_ways(const EmissionInfo* s, const lit_voxel* voxel, const ways_to_turn* ways, int from, int end,
   const __global float* points, const __global float* sigma, const __global float* emission, float* sums)
 {
@@ -280,7 +282,7 @@ static void gather_ways(const EmissionInfo* s, const lit_voxel* voxel, const way
   }
 }
 
-// Whether a voxel is in the box or next to it.
+// Whether a voxel is in the emitting box or next to it.
 static bool is_close(const EmissionInfo* s, const lit_voxel* voxel)
 {
   bool close = true;
@@ -292,8 +294,8 @@ static bool is_close(const EmissionInfo* s, const lit_voxel* voxel)
   return close;
 }
 
-// With as many rays as it takes, in each way to turn the scene: half of a lattice in two ways is not as good as all of
-// it in one.
+// Gathers light with as many rays as the error requires, in each transformation of the scene: half of a lattice in two
+// transformations is less accurate than the whole lattice in one.
 static void gather(const EmissionInfo* s, lit_voxel* voxel, const __global float* points, const __global float* sigma,
   const __global float* emission, float* sums)
 {
@@ -325,8 +327,8 @@ static void gather(const EmissionInfo* s, lit_voxel* voxel, const __global float
 
 // path      W length, [channel][stride]
 // flux      W length, [channel][x, y, z][stride]
-// emission  of the box of what shines, [channel][voxel]
-// found     above 0: of voxels that have their light from fans (EmissionFans.cl)
+// emission  of the emitting box, [channel][voxel]
+// found     above 0: voxels that have their light from fans (EmissionFans.cl), which are skipped
 __kernel void gather_voxels(EmissionInfo s, const __global float* sigma, ulong sigma_first,
   const __global float* points, const __global float* emission, __global float* path, __global float* flux,
   ulong stride, const __global float* found, ulong first, ulong count)
@@ -354,8 +356,8 @@ __kernel void gather_voxels(EmissionInfo s, const __global float* sigma, ulong s
   }
 }
 
-// What goes out through cell i of a face of the grid, [cell][CHANNELS], W / length^2.
-// found  above 0: of cells that have their light from fans (EmissionFans.cl)
+// Outgoing flux density through cell i of a face of the grid, [cell][CHANNELS], W / length^2.
+// found  above 0: cells that have their light from fans (EmissionFans.cl), which are skipped
 // face_first  the face's first cell in both
 __kernel void gather_face(EmissionInfo s, int axis, int up, const __global float* sigma, ulong sigma_first,
   const __global float* points, const __global float* emission, __global float* out, const __global float* found,
@@ -380,7 +382,7 @@ __kernel void gather_face(EmissionInfo s, int axis, int up, const __global float
   }
 }
 
-// W that a row of voxels takes from the light gathered in it.
+// Power that a row of voxels removes from the light gathered in it, W.
 __kernel void take_rows(int row, const __global float* sigma, ulong sigma_first, const __global float* path,
   ulong path_first, __global float* taken)
 {
@@ -401,14 +403,14 @@ __kernel void add_gathered(
   values[first + i] += gathered[from + i] * factor;
 }
 
-// Light of fans: values[first + i * stride] = factor * brought[i]
+// Copies the light of fans: values[first + i * stride] = factor * brought[i]
 __kernel void take_fans(const __global float* brought, __global float* values, ulong first, ulong stride, float factor)
 {
   const ulong i = get_global_id(0);
   values[first + i * stride] = factor * brought[i];
 }
 
-// The least of both: what all sets of fans have found.
+// The minimum of both: a voxel is done if all sets of fans have found its light.
 __kernel void take_least(const __global float* found, __global float* values, ulong first, ulong stride, float factor)
 {
   const ulong i = get_global_id(0);

@@ -23,18 +23,19 @@ namespace tyndall
 {
 namespace
 {
-constexpr int FewestRays = 32;       ///< of a voxel to the peak's box, at first
-constexpr int MostRays = 4096;       ///< the same, at last
-constexpr double AllRays = 0x1p22;   ///< at first, about, for the usual error: a second
-constexpr double CloseRays = 0x1p20; ///< the same, of voxels in what shines and next to it
+constexpr int FewestRays = 32; ///< initial number of rays per voxel, at least
+constexpr int MostRays = 4096; ///< rays per voxel, at most
+/// approximate initial number of rays in all voxels, for the default error: about a second of work
+constexpr double AllRays = 0x1p22;
+constexpr double CloseRays = 0x1p20; ///< the same for voxels in the emitting box and next to it
 const double UsualError = PropagationSettings().emissionError;
 
-/// Of a lattice of points in five dimensions, found component by component for 32 to 2048 points; with 4096 the worst
-/// error of Kobayashi's points at 20^3 fell from 0.5% to 0.3%. Every 2^n first points, in the order of their reversed
-/// bits, are a lattice of their own.
+/// Generating vector of a lattice in five dimensions, found component by component for 32 to 2048 points; with 4096 the
+/// largest error of Kobayashi's points at 20^3 fell from 0.5% to 0.3%. For each n the first 2^n points, in bit-reversed
+/// order, are a lattice of their own.
 constexpr std::array<std::uint32_t, 5> LatticeVector = { 1, 807, 303, 119, 445 };
 
-/// [dimension][MostRays], 0 to 1.
+/// Lattice points, [dimension][MostRays], in 0 to 1.
 std::vector<float> LatticePoints()
 {
   std::vector<float> points;
@@ -47,14 +48,15 @@ std::vector<float> LatticePoints()
       {
         reversed |= (i >> bit & 1u) << (31 - bit);
       }
-      const std::uint32_t place = reversed * component + (1u << 22); // the whole part overflows; not at 0 itself
+      // the integer part overflows; the shift avoids 0 itself
+      const std::uint32_t place = reversed * component + (1u << 22);
       points.push_back(static_cast<float>(place >> 8) * 0x1p-24f);
     }
   }
   return points;
 }
 
-/// Rays of each voxel at first, no more than `all` together but where each has `least`.
+/// Initial number of rays per voxel: at most `all` in total, unless that would be fewer than `least` per voxel.
 int FewestFor(double voxels, double all, int least)
 {
   int rays = MostRays;
@@ -65,7 +67,7 @@ int FewestFor(double voxels, double all, int least)
   return rays;
 }
 
-/// The light of one peak in channels that share sigma_t.
+/// The light of one peak in the channels that share sigma_t.
 class PeakLight
 {
 public:
@@ -97,7 +99,7 @@ private:
         Define("NET_FLUX", this->Volume.deposit.flux != nullptr) + Define("MOST", MostRays));
   }
 
-  /// Lanes of a packet of rays.
+  /// Number of SIMD lanes in a packet of rays.
   int Width() const { return this->TheDevice.KernelWidth(); }
 
   void Load()
@@ -112,8 +114,8 @@ private:
     }
     const double all = AllRays * (UsualError / this->Error) * (UsualError / this->Error);
     this->Scene.fewest = FewestFor(static_cast<double>(grid.VoxelCount()), all, FewestRays);
-    // What shines may lose most of its power through the faces beside it, and what is missed there, all the rest is
-    // brightened by, so that powers add up.
+    // Most of the emitted power may be lost through the nearest faces. An error there would be compensated by all other
+    // light, because powers are normalised to add up.
     const std::array<int, 3>& size = this->Peak.size;
     const double close = (size[0] + 2.0) * (size[1] + 2.0) * (size[2] + 2.0); // voxels
     this->Scene.fewestClose = FewestFor(close, CloseRays, this->Scene.fewest);
@@ -130,7 +132,8 @@ private:
     this->Points = Buffer<float>(this->TheDevice, LatticePoints(), "rays");
   }
 
-  /// Whether all channels shine from the same places, up to a factor: fans begin where their sum shines.
+  /// Whether the emission has the same distribution in all channels, up to a factor: fans originate in proportion to
+  /// one distribution.
   bool ShineAlike() const
   {
     const std::size_t voxels = this->OfChannels.size() / this->Volume.channels;
@@ -157,7 +160,7 @@ private:
     this->Found = Buffer<float>(device, volume.stride, "voxels that fans light");
     this->FaceLight = Buffer<float>(device, FanFaceFirst(volume.grid, 6) * volume.channels, "light that leaves");
     this->CellsFound = Buffer<float>(device, FanFaceFirst(volume.grid, 6), "cells that fans light");
-    // Where voxels are so many that each would have few rays, fans have as many for less.
+    // In grids so large that each voxel would have few rays, fans give as many rays at lower cost.
     const bool fans = this->Scene.fewest == FewestRays;
     this->Found.Fill(fans ? 1.0f : 0.0f);
     this->CellsFound.Fill(fans ? 1.0f : 0.0f);
@@ -188,7 +191,7 @@ private:
     }
   }
 
-  /// Channels that shine alike have one set of fans, others one each.
+  /// Channels with the same distribution of emission share one set of fans; otherwise each has its own.
   void GatherByFansFor(const Monitor& monitor)
   {
     const SweepVolume& volume = this->Volume;
@@ -223,7 +226,7 @@ private:
       }
       keep("take_least", light.found, this->Found, 0, 1, 1.0f);
       keep("take_least", light.cellsFound, this->CellsFound, 0, 1, 1.0f);
-      this->TheDevice.Finish(); // the fans' light goes
+      this->TheDevice.Finish(); // the fans' light is released
     }
   }
 
@@ -262,7 +265,8 @@ private:
     }
   }
 
-  /// By cell, as BoxFaces.h numbers them: here rows go along the axis that follows the face's.
+  /// Stores the escaped power by cell in the order of BoxFaces.h; in `power` the cells along the axis after the face's
+  /// are contiguous.
   void KeepCells(int face, const std::vector<float>& power)
   {
     const Grid& grid = this->Volume.grid;
@@ -299,11 +303,11 @@ private:
       With(add, escaped, cl_ulong(channel * cells), *this->Volume.deposit.faceOut,
         cl_ulong(this->Volume.faceFirst + channel * cells), static_cast<float>(factor));
       this->TheDevice.Queue().enqueueNDRangeKernel(add, cl::NullRange, cl::NDRange(cells));
-      this->TheDevice.Finish(); // what escaped goes
+      this->TheDevice.Finish(); // the array is released
     }
   }
 
-  /// With the power that was emitted.
+  /// Adds the gathered light to the deposit, normalised to the emitted power.
   void AddGathered()
   {
     const SweepVolume& volume = this->Volume;
@@ -344,16 +348,16 @@ private:
   double Error;
   EmissionInfo Scene = {};
 
-  std::vector<float> OfChannels;  ///< emission of the box, W / (length^3 sr), [channel][voxel]
+  std::vector<float> OfChannels;  ///< emission of the bounding box, W / (length^3 sr), [channel][voxel]
   Buffer<float> Points, Emission; ///< as in EmissionRays.cl
   Rgb Emitted = {};               ///< W
   Buffer<float> Path, Flux;
-  Buffer<float> Found;      ///< 1: by fans, of voxels; less: they need rays of their own
-  Buffer<float> CellsFound; ///< the same of cells of the faces
-  Buffer<float> FaceLight;  ///< W / length^2 that leaves there, [cell][channel]
-  Rgb Taken = {};           ///< W, by the medium
+  Buffer<float> Found;      ///< 1: the voxel's light was found by fans; less: it needs rays of its own
+  Buffer<float> CellsFound; ///< the same for cells of the faces
+  Buffer<float> FaceLight;  ///< outgoing flux density through the faces, W / length^2, [cell][channel]
+  Rgb Taken = {};           ///< W, removed by the medium
   std::array<Rgb, 6> Escaped = {};
-  std::vector<float> EscapedByCell; ///< W, [channel][cell]; where it is wanted
+  std::vector<float> EscapedByCell; ///< W, [channel][cell]; empty if not wanted
   SweepTally Tally;
 };
 }

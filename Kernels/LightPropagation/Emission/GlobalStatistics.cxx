@@ -11,7 +11,7 @@ namespace tyndall
 {
 namespace
 {
-/// Of voxels by brightness: how many, and the sum of theirs.
+/// Histogram of the voxels' brightness over all ranks: number of voxels and sum of brightness in each bin.
 class BrightnessBins
 {
 public:
@@ -37,12 +37,12 @@ public:
     this->Sums = domain.Sum(this->Sums);
   }
 
-  /// Whether what the brightest `most` voxels have beyond all others may be half of all power: a voxel is taken to be
-  /// among them with all others of its bin.
+  /// Whether the excess of the brightest `most` voxels over all others may be half of the power. Conservative: if a
+  /// voxel of a bin is among the brightest, all voxels of that bin count.
   bool IsDominatedByFewVoxels(double most) const
   {
     double all = 0.0, bright = 0.0, counted = 0.0, voxels = 0.0;
-    std::size_t end = 0; // past the bin that has the last of them
+    std::size_t end = 0; // one past the bin that contains the last of them
     for (std::size_t bin = 0; bin < Bins; ++bin)
     {
       all += this->Sums[bin];
@@ -64,7 +64,7 @@ public:
   }
 
 private:
-  static constexpr std::size_t Bins = 512; ///< of an eighth of an octave; the last one is of all that is darker
+  static constexpr std::size_t Bins = 512; ///< each an eighth of an octave wide; the last one holds all darker voxels
   static constexpr double PerOctave = 8.0;
 
   std::size_t BinOf(double brightness) const

@@ -4,8 +4,8 @@
 
 namespace tyndall
 {
-/// Whether a few bright voxels emit so much that a serial solve may follow their light along exact rays
-/// (EmissionPeaks.h), which several ranks do not; where the voxels do not lie close to each other, or absorb what they
-/// emit, it does not all the same. Collective.
+/// Whether a few bright voxels dominate the emission, so that a serial solve might trace their light along exact rays
+/// (EmissionPeaks.h), which a solve on several ranks does not. Necessary, not sufficient: a serial solve also requires
+/// that the voxels lie close together and do not absorb their own emission. Collective.
 bool MayHaveEmissionPeaks(const PropagationProblem& problem);
 }

@@ -12,11 +12,11 @@ namespace tyndall
 {
 namespace
 {
-constexpr double Empty = 1e-4;                           ///< mean free paths a voxel, at most
-constexpr std::size_t MostVoxels = std::size_t(1) << 21; ///< of a grid
-constexpr int FewestPerEdge = 12;                        ///< directions along the edge of a cube's face
-constexpr double RaysOfVoxel = 2304.0;                   ///< along the directions of a face
-constexpr double RaysOfGrid = 64e6;                      ///< the same of all voxels, but one a direction at least
+constexpr double Empty = 1e-4;                           ///< maximum optical thickness of an empty voxel
+constexpr std::size_t MostVoxels = std::size_t(1) << 21; ///< of a grid that gets a sweep of its own
+constexpr int FewestPerEdge = 12;      ///< minimum number of directions along the edge of a cube's face
+constexpr double RaysOfVoxel = 2304.0; ///< rays per voxel along all directions of a cube's face
+constexpr double RaysOfGrid = 64e6;    ///< maximum of rays over all voxels, but at least one per direction and voxel
 }
 
 UncollidedEmission::UncollidedEmission(EmissionPeak peak, double error)
@@ -57,13 +57,14 @@ bool VacuumEmission::IsEmpty(double sigma_t, const Grid& grid)
   return sigma_t * *std::max_element(grid.spacing.begin(), grid.spacing.end()) <= Empty;
 }
 
-/// An even number along an edge: none goes along an axis, which may be periodic.
+/// Uses an even number of directions along an edge: then none is parallel to an axis, which may be periodic.
 std::unique_ptr<const SweptDirections> VacuumEmission::DirectionsFor(
   const Grid& whole, const PropagationSettings& settings)
 {
   const int asked = static_cast<int>(std::lround(std::sqrt(static_cast<double>(settings.directionsPerFace))));
   const int edge = std::max(FewestPerEdge, asked + asked % 2), perFace = edge * edge;
-  const bool around = settings.periodic[0] || settings.periodic[1] || settings.periodic[2]; // many times
+  const bool around =
+    settings.periodic[0] || settings.periodic[1] || settings.periodic[2]; // rays cross the grid many times
   const double rays = around ? perFace : std::min(RaysOfVoxel, RaysOfGrid / static_cast<double>(whole.VoxelCount()));
   PropagationSettings finer = settings;
   finer.mapResolution = std::max(settings.mapResolution, static_cast<int>(std::sqrt(rays / perFace)));

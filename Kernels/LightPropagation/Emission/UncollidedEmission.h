@@ -9,11 +9,11 @@
 
 namespace tyndall
 {
-/// The uncollided flux of a small bright part of the medium, along exact rays (EmissionRays.h).
+/// The uncollided flux of a localised emission, along exact rays (EmissionRays.h).
 class UncollidedEmission : public UncollidedSource
 {
 public:
-  /// @param error  as DepositEmission takes it
+  /// @param error  as for DepositEmission()
   UncollidedEmission(EmissionPeak peak, double error);
 
   SweepTally AddTo(const UncollidedVolume& volume, const Monitor& monitor) const override;
@@ -25,21 +25,22 @@ private:
   double Error;
 };
 
-/// The uncollided flux of what empty voxels emit, swept along more directions and rays than scattered light. Nothing
-/// there takes light, so that the length of every path shows, and few rays make those in the outermost voxels of what
-/// emits too short (numerics.md, section 5.6).
+/// The uncollided flux of emission from empty voxels, swept along more directions and rays than scattered light. Since
+/// nothing attenuates this light, errors in path length are visible, and few rays make paths in the outermost emitting
+/// voxels too short (numerics.md, section 5.6).
 class VacuumEmission : public UncollidedSource
 {
 public:
-  /// Whether it is swept apart: not in grids so large that more rays would cost more than they gain, nor where
-  /// emissionError is 0.
+  /// Whether this source gets a sweep of its own: not in grids so large that the additional rays cost more than they
+  /// gain, nor if emissionError is 0.
   static bool IsApart(const Grid& whole, const PropagationSettings& settings);
-  /// Whether a voxel lets all of its own light through. @param sigma_t  1/length
+  /// Whether a voxel is transparent to its own emission.
+  /// @param sigma_t  extinction, 1/length
   static bool IsEmpty(double sigma_t, const Grid& grid);
   static std::unique_ptr<const SweptDirections> DirectionsFor(const Grid& whole, const PropagationSettings& settings);
 
-  /// @param along  must stay
-  /// @param emission  of empty voxels, W / (length^3 sr), in the layout that Planar makes
+  /// @param along  must outlive this object
+  /// @param emission  of empty voxels, W / (length^3 sr), in the layout of Planar()
   VacuumEmission(const SweptDirections& along, std::vector<float> emission);
 
   SweepTally AddTo(const UncollidedVolume& volume, const Monitor& monitor) const override;

@@ -1,31 +1,33 @@
-// Beams from a point lamp through the box. The host gives
-//   ATOMICS      1 where the device has 64-bit atomics, else one work-item does all
+// Traces beams from a point lamp through the box. Options:
+//   ATOMICS        1: the device has 64-bit atomics; else one work-item does everything
 //   LAMBERT, CONE  1 for a rectangle, a spot
-//   MOMENTS     1: first moments of the deposit are wanted
-//   NET_FLUX    1: net flux is wanted
-//   FACE_OUT    1: the power that leaves through each cell of the box's faces is wanted
-//   VACUUM      1: a rectangle, in parts, each for some voxels; what its beams deposit in vacuum is summed, too, and
-//               where an axis is periodic (AROUND 1) what they deposit before they go around it
-//   THIN        optical length below which light counts as lost evenly
-//   IN_BLOCK    1: beams are followed in a block of the grid, and wait where they leave it; may be left out
+//   MOMENTS        1: first moments of the deposit are wanted
+//   NET_FLUX       1: net flux is wanted
+//   FACE_OUT       1: the power that leaves through each cell of the box's faces is wanted
+//   VACUUM         1: a rectangle in parts, each for some voxels; also sums the deposit that vacuum would have and, if an
+//                  axis is periodic (AROUND 1), the deposit of beams before they wrap around it
+//   THIN           optical length of a voxel below which loss is taken as uniform
+//   IN_BLOCK       1: beams are traced in a block of the grid, and stop where they leave it; optional
 //
-// Space around the lamp is six pyramids, one for each way along an axis; in a pyramid beams lie on a grid of tangents,
-// so fine that a beam is at most a voxel wide where it leaves the box. It is followed layer by layer; where its square
-// cross-section lies over up to four voxels, each takes its part (numerics.md, Eqs. (33), (34)). All values are
-// parts of the share of the lamp's power that may come to the box (LampOnGrid.h): its colours share sigma_t.
+// Space around the lamp is divided into six pyramids, one for each direction along an axis. In a pyramid beams lie on a
+// grid of tangents, fine enough that a beam is at most a voxel wide where it leaves the box. A beam advances layer by
+// layer; its square cross-section overlaps up to four voxels, each of which takes its part (numerics.md, Eqs. (33),
+// (34)). All values are fractions of the share of the lamp's power that may reach the box (LampOnGrid.h): the channels
+// share sigma_t.
 
 #include "LightPropagation/Uncollided/Lamps/LampBeamsShared.h"
 #include "LightPropagation/Uncollided/Lamps/LampUnits.cl"
 #include "Numerics/FixedPoint.cl"
 #include "Numerics/Numerics.cl"
 
-#define STEPS 2 // a layer: a beam moves aside by half a voxel at most
+#define STEPS 2 // steps per layer: a beam moves laterally by at most half a voxel per step
 
 #define INSIDE 0
-#define BEFORE 1 // outside, and coming nearer
+#define BEFORE 1 // outside, and approaching
 #define AFTER 2
 
-// Where voxel i of an axis is for a beam that moves by `tangent` along it; wraps it on a periodic axis.
+// Position of voxel i of an axis relative to the box, for a beam with this tangent along it; wraps i around on a
+// periodic axis.
 static int place(const LampInfo* lamp, int axis, float tangent, int* i)
 {
   const int n = lamp->size[axis];
@@ -41,7 +43,7 @@ static int place(const LampInfo* lamp, int axis, float tangent, int* i)
   return (*i < 0) == (tangent < 0.0f) ? AFTER : BEFORE;
 }
 
-// Round a periodic axis arrays may hold voxels of the grid's other side.
+// Index of a voxel in the arrays, which on a periodic axis may hold voxels of the opposite side of the grid.
 static ulong place_in_arrays(const LampInfo* lamp, const int* voxel)
 {
   ulong place = 0;
@@ -57,10 +59,10 @@ static ulong place_in_arrays(const LampInfo* lamp, const int* voxel)
 typedef struct
 {
   float entered, escaped[6], stranded;
-  bool counts; // the beam has come where it is to be counted and put down
-  int along;   // layer that it is in, periodic axes unrolled
+  bool counts; // the beam has reached the layers in which it is counted and deposited
+  int along;   // current layer, without wrapping around periodic axes
 #if FACE_OUT
-  __global long* cells; // W in fixed point, parts of the lamp's power, [cell] (BoxFaces.h)
+  __global long* cells; // escaped power in fixed point, as a fraction of the traced power, [cell] (BoxFaces.h)
 #endif
 } lamp_tally;
 
@@ -78,15 +80,15 @@ static float square_distance(const LampInfo* lamp, const int* voxel, const float
 #endif
 
 #if VACUUM
-// Whether light so many voxels around an axis counts as that of the rectangle or of its nearest images.
+// Whether light that has wrapped around an axis by this many voxels belongs to the rectangle or to its nearest images.
 static bool is_image(const LampInfo* lamp, int axis, int around)
 {
   return abs(around) <= (uint)(lamp->images[axis] * lamp->size[axis]);
 }
 #endif
 
-// Whether a voxel, periodic axes unrolled, has the light of a beam's part of a rectangle: not that of the whole which
-// this is a part of, nor that of its own parts.
+// Whether a part of a rectangle illuminates a voxel (coordinates not wrapped): neither the larger part, which was
+// divided into this one, nor the smaller parts of this one do.
 static bool is_lit(const LampInfo* lamp, const BeamRow* row, const int* voxel)
 {
 #if VACUUM
@@ -97,7 +99,7 @@ static bool is_lit(const LampInfo* lamp, const BeamRow* row, const int* voxel)
 #endif
 }
 
-// Power that leaves through one face of the box at a voxel.
+// Counts power that leaves through one face of the box at a voxel.
 static void leave_box(const LampInfo* lamp, int face, const int* voxel, float power, lamp_tally* tally)
 {
   if (!tally->counts)
@@ -115,17 +117,17 @@ static void leave_box(const LampInfo* lamp, int face, const int* voxel, float po
 #endif
 }
 
-// The first voxel under a cross-section from low to high, and the part of it that lies there.
+// The first voxel that the interval `edges` overlaps, and the fraction of the interval that lies in it.
 static void overlap(float2 edges, int* voxel, float* part)
 {
   *voxel = (int)floor(edges.x);
   *part = edges.y > edges.x ? clamp((*voxel + 1 - edges.x) / (edges.y - edges.x), 0.0f, 1.0f) : 1.0f;
 }
 
-// The edges of a cross-section along u (k 0) or v (1), without the part beyond a face of the box: the face that the
-// beam moves towards and, unless the lamp is beside the box along this axis, the opposite one, too.
-// @param up  whether light leaves through the upper face
-// @return the part of the cross-section that is between them
+// Clips the cross-section along u (k 0) or v (1) at the faces of the box: at the face that the beam approaches and,
+// unless the lamp is beside the box along this axis, also at the opposite one.
+// @param up  set to whether light leaves through the upper face
+// @return the fraction of the cross-section between the faces
 static float cut_at_face(const LampInfo* lamp, const BeamRow* row, int k, float tangent, float2* edges, int* up)
 {
   const int axis = (row->axis + 1 + k) % 3;
@@ -147,15 +149,15 @@ static float cut_at_face(const LampInfo* lamp, const BeamRow* row, int k, float 
     edges->x = fmin(edges->x, edges->y);
   }
   const float inside = edges->y - edges->x;
-  *edges = inside > 0.0f ? *edges : (float2)(*up ? n - 0.5f : 0.5f); // floats know no voxel that ends at n
+  *edges = inside > 0.0f ? *edges : (float2)(*up ? n - 0.5f : 0.5f); // floats cannot represent a voxel that ends at n
   return all > 0.0f ? clamp(inside / all, 0.0f, 1.0f) : 0.0f;
 }
 
 #if MOMENTS
-// Path that light has in a voxel, times the distance from its middle of the mean place where it is lost: along the
-// beam's axis and aside (numerics.md, Eqs. (37), (38)).
-//   way   of the step, from begin to end, layers from where beams begin
-//   mean  middle of the part of the cross-section in the voxel, half way through the step
+// Adds first moments: the path in a voxel times the mean position of the loss relative to the voxel's centre, along the
+// beam's axis and laterally (numerics.md, Eqs. (37), (38)).
+//   way   start and end of the step, in layers from the beam's start
+//   mean  centre of the cross-section's part in the voxel, half way through the step
 static void add_moments(const LampInfo* lamp, const BeamRow* row, const int* voxel, float2 way, float2 mean,
   float2 tangent, float tau, float lost, float path, __global long* first_moments, ulong stride)
 {
@@ -164,7 +166,7 @@ static void add_moments(const LampInfo* lamp, const BeamRow* row, const int* vox
   const float aside = at - 0.5f * (way.x + way.y);
   float from_middle[3];
   const float along = row->from + (row->up ? at : -at);
-  from_middle[0] = along - floor(along) - 0.5f; // laps of a periodic axis
+  from_middle[0] = along - floor(along) - 0.5f; // removes laps around a periodic axis
   from_middle[1] = mean.x + aside * tangent.x - 0.5f;
   from_middle[2] = mean.y + aside * tangent.y - 0.5f;
   for (int a = 0; a < 3; ++a)
@@ -176,7 +178,7 @@ static void add_moments(const LampInfo* lamp, const BeamRow* row, const int* vox
 #endif
 
 #if NET_FLUX
-// Path times direction, along x, y, z, of a step from way.x to way.y layers from where beams begin.
+// Adds path times direction, along x, y, z, for a step from way.x to way.y layers from the beam's start.
 static void add_flux(const LampInfo* lamp, const BeamRow* row, float2 tangent, float2 way, float length, float path,
   __global long* flux, ulong stride)
 {
@@ -189,10 +191,10 @@ static void add_flux(const LampInfo* lamp, const BeamRow* row, float2 tangent, f
 }
 #endif
 
-// Power that left through a face beside the beam's axis since the middle of the step before: a step at most ago, in two
+// Counts power that left through a lateral face since the middle of the previous step, at most one step ago, in two
 // halves.
-//   at    where it is now, along the axes aside, voxels
-//   here  the middle of the step, layers from where beams begin
+//   at    current lateral position, voxels
+//   here  the middle of the step, in layers from the beam's start
 static void leave_aside(const LampInfo* lamp, const BeamRow* row, int face, float2 tangent, float2 at, float here,
   float step, float power, lamp_tally* tally)
 {
@@ -218,21 +220,21 @@ static void leave_aside(const LampInfo* lamp, const BeamRow* row, int face, floa
 #endif
 }
 
-// Where a beam is between two steps.
+// State of a beam between two steps.
 typedef struct
 {
   int layer, step;
   float left, rest;
-  float stays[2]; // of its cross-section, along u and v, what has not left the box
-  float free;     // what would be left of it in vacuum
+  float stays[2]; // fraction of its cross-section that has not left the box, along u and v
+  float free;     // power that would remain in vacuum
 #if IN_BLOCK
   int voxel[3];
 #endif
 } beam_state;
 
-// What of a beam has left through the faces beside its axis since the last step: only that, for what is left is spread
-// over the rest of its cross-section. Changes the edges to those of that rest.
-//   first  the beam reaches the box here: the part beside the box has not entered
+// Removes the power of a beam that has left through the lateral faces since the last step. The rest is spread over the
+// rest of the cross-section, to which the edges are clipped.
+//   first  the beam reaches the box here: the part outside the box has not entered
 static void leave_sides(const LampInfo* lamp, const BeamRow* row, bool first, float2 tangent, float2 way,
   float2* edges_u, float2* edges_v, beam_state* beam, lamp_tally* tally)
 {
@@ -258,7 +260,7 @@ static void leave_sides(const LampInfo* lamp, const BeamRow* row, bool first, fl
     {
       continue;
     }
-    // Past an edge of the box: half through either side.
+    // At an edge of the box: half through either face.
     const float power = beam->left * goes[k] * (1.0f - 0.5f * goes[1 - k]);
     const int axis = (row->axis + 1 + k) % 3, other = (row->axis + 2 - k) % 3;
     const float moved = tangents[1 - k] * ago;
@@ -293,8 +295,8 @@ static void leave_sides(const LampInfo* lamp, const BeamRow* row, bool first, fl
   beam->free *= (1.0f - goes[0]) * (1.0f - goes[1]);
 }
 
-// One step of a beam: every part of it through its voxel. Changes what is left of it, and what is too small to be seen
-// in that.
+// Advances a beam by one step: each part of it crosses its voxel. Updates its remaining power and the rounding
+// compensation.
 // @return power that has not reached the box yet
 static float step_beam(const LampInfo* lamp, const BeamRow* row, int layer, float2 tangent, float2 middle, float2 width,
   float2 way, float length, const __global float* sigma, __global long* path, ulong stride, beam_state* beam,
@@ -317,7 +319,7 @@ static float step_beam(const LampInfo* lamp, const BeamRow* row, int layer, floa
     const float part = (q & 1 ? 1.0f - part_u : part_u) * (q & 2 ? 1.0f - part_v : part_v);
     const float power = beam->left * part;
 #if VACUUM
-    const bool is_dark = part <= 0.0f; // in vacuum there would be light
+    const bool is_dark = part <= 0.0f; // vacuum would have light here
 #else
     const bool is_dark = power <= 0.0f;
 #endif
@@ -334,7 +336,7 @@ static float step_beam(const LampInfo* lamp, const BeamRow* row, int layer, floa
     const int at_v = place(lamp, v, tangent.y, &voxel[v]);
     if (at_u != INSIDE || at_v != INSIDE)
     {
-      after += power; // it comes in later, or never
+      after += power; // it enters later, or never
       waiting += power;
       continue;
     }
@@ -376,22 +378,23 @@ static float step_beam(const LampInfo* lamp, const BeamRow* row, int layer, floa
     after += thick ? power * through : power;
     taken += thick ? 0.0f : power * lost;
   }
-  // What rounding took from thin losses is made up for: over thousands of steps it would add up.
+  // Compensates rounding of small losses, which would accumulate over thousands of steps.
   const float change = beam->rest - taken;
   beam->left = after + change;
   beam->rest = change - (beam->left - after);
   return waiting;
 }
 
-// The edges of a beam's cross-section t layers from where it begins, along u or v.
+// Edges of a beam's cross-section along u or v, t layers from its start.
 static float2 edges_at(float start, float tangent, float open, float width, float t)
 {
   const float middle = start + tangent * t, half_width = 0.5f * fmin(open + width * t, 1.0f);
   return (float2)(middle - half_width, middle + half_width);
 }
 
-// A beam from before the box's first layer, at that layer's face: the part that passes beside the box has not entered.
-//   start  its middle there
+// Handles a beam that starts outside the box, at the face of the box's first layer: the part that passes beside the box
+// does not enter.
+//   start  its centre there
 static void enter_box(
   const LampInfo* lamp, const BeamRow* row, float2 start, float2 tangent, beam_state* beam, lamp_tally* tally)
 {
@@ -400,7 +403,7 @@ static void enter_box(
   leave_sides(lamp, row, true, tangent, (float2)(0.0f), &edges_u, &edges_v, beam, tally);
 }
 
-// Part of a cross-section along u (k 0) or v (1), of what has not left the box, that is inside.
+// Fraction of the cross-section along u (k 0) or v (1) that is inside the box; of the part that has not left it.
 static float part_inside(const LampInfo* lamp, const BeamRow* row, int k, float tangent, float2 edges)
 {
   int up, first;
@@ -413,7 +416,7 @@ static float part_inside(const LampInfo* lamp, const BeamRow* row, int k, float 
     (place(lamp, axis, tangent, &second) == INSIDE ? 1.0f - part : 0.0f);
 }
 
-// Part of a cross-section, of what has not left the box, that has not reached it yet.
+// Fraction of the cross-section that has not reached the box yet; of the part that has not left it.
 static float part_to_come(const LampInfo* lamp, const BeamRow* row, float2 start, float2 tangent, float t)
 {
   const float2 edges_u = edges_at(start.x, tangent.x, row->openU, row->widthU, t);
@@ -421,8 +424,8 @@ static float part_to_come(const LampInfo* lamp, const BeamRow* row, float2 start
   return 1.0f - part_inside(lamp, row, 0, tangent.x, edges_u) * part_inside(lamp, row, 1, tangent.y, edges_v);
 }
 
-// A beam at the end of the box that has come in sideways: in the last half step more of it reaches the box, and the
-// rest has not entered.
+// Handles a beam that entered sideways, at the end of the box: in the last half step more of it reaches the box, and
+// the remainder never enters.
 //   waiting  power that had not reached the box in the middle of the last step, at `here`
 static void miss_box(const LampInfo* lamp, const BeamRow* row, float2 start, float2 tangent, float here, float end,
   float waiting, beam_state* beam, lamp_tally* tally)
@@ -434,11 +437,11 @@ static void miss_box(const LampInfo* lamp, const BeamRow* row, float2 start, flo
 }
 
 #if VACUUM
-#define BEYOND 1 // voxels with its part's light
+#define BEYOND 1 // beyond the voxels that its part illuminates
 #define SHORT_OF 2
 #define AMID 0
 
-// Where the cross-section of a beam is beside the voxels with its part's light.
+// Position of a beam's centre relative to the voxels that its part of the rectangle illuminates.
 static int stretch_of(const LampInfo* lamp, const BeamRow* row, int along, float2 middle)
 {
   int voxel[3];
@@ -450,7 +453,7 @@ static int stretch_of(const LampInfo* lamp, const BeamRow* row, int along, float
                                                                  : AMID;
 }
 
-// A step along the middle of a beam where it gives no voxel light.
+// Advances a beam by one step, along its centre, where it illuminates no voxel.
 // @return whether all of its cross-section is in the box
 static bool pass_through(const LampInfo* lamp, const BeamRow* row, int layer, float2 middle, float2 width, float length,
   const __global float* sigma, beam_state* beam)
@@ -475,8 +478,8 @@ static bool pass_through(const LampInfo* lamp, const BeamRow* row, int layer, fl
 }
 #endif
 
-// What is left of a beam at the far end of its axis, through up to four cells there.
-//   start  its middle where it begins
+// Counts the power of a beam that leaves at the far end of its axis, through up to four cells.
+//   start  its centre at its start
 static void leave_end(
   const LampInfo* lamp, const BeamRow* row, float2 start, float2 tangent, float t, float left, lamp_tally* tally)
 {
@@ -509,7 +512,8 @@ static void leave_end(
 }
 
 #if IN_BLOCK
-// The voxel that the middle of a beam is in, or the nearest of the grid; whether beams are followed there.
+// Finds the voxel that contains the beam's centre, or the nearest one of the grid. @return whether beams are traced
+// there
 static bool is_followed(const LampInfo* lamp, const BeamRow* row, int layer, float2 middle, int* voxel)
 {
   voxel[row->axis] = layer;
@@ -526,10 +530,10 @@ static bool is_followed(const LampInfo* lamp, const BeamRow* row, int layer, flo
 }
 #endif
 
-// One beam from where it comes into the box's layers, or from where it was, to where it leaves them.
-// @param begin  its middle where it begins
-// @param power  that it set off with
-// @return whether it has; else, where IN_BLOCK, it has come to where beams are not followed, as `beam` says
+// Traces one beam from its entry into the box, or from its saved state, until it leaves.
+// @param begin  its centre at its start
+// @param power  its initial power
+// @return whether it has ended; otherwise, if IN_BLOCK, it has left the block, with its state in `beam`
 static bool follow_beam(const LampInfo* lamp, const BeamRow* row, float2 begin, float2 tangent, float power,
   const __global float* sigma, __global long* path, ulong stride, beam_state* beam, lamp_tally* tally)
 {
@@ -548,7 +552,7 @@ static bool follow_beam(const LampInfo* lamp, const BeamRow* row, float2 begin, 
 #else
   const int nearby = 0;
 #endif
-  // Where an axis is periodic beams go on until next to nothing is left; others leave.
+  // On a periodic axis beams continue until their power is negligible; on others they leave.
   const float least = lamp->periodic[row->axis] ? 1e-7f * power : 0.0f;
   const int before = beam->layer;
   float now = before == 0 ? 0.0f : row->up ? first + before - start : start - (first - (before - 1));
@@ -574,7 +578,8 @@ static bool follow_beam(const LampInfo* lamp, const BeamRow* row, float2 begin, 
       here = 0.5f * (t0 + t1);
       const float2 middle = begin + tangent * here;
 #if IN_BLOCK
-      // Whoever was given it takes its first step: it gets on wherever rounding sees it.
+      // The rank that received the beam always takes its first step, so that it advances whatever rounding says about
+      // its voxel.
       if (!is_followed(lamp, row, layer, middle, beam->voxel) && !follows)
       {
         beam->layer = k;
@@ -625,7 +630,7 @@ static bool follow_beam(const LampInfo* lamp, const BeamRow* row, float2 begin, 
 }
 
 #if LAMBERT
-// Of the angle between a ray and the lamp's direction.
+// Cosine of the angle between a ray and the lamp's direction.
 static float cosine_at(const LampInfo* lamp, const BeamRow* row, float2 tangent)
 {
   const int u = (row->axis + 1) % 3;
@@ -640,10 +645,10 @@ static float cosine_at(const LampInfo* lamp, const BeamRow* row, float2 tangent)
 #endif
 
 #if CONE
-#define SLICES 512 // of a beam that the border of the cone crosses
+#define SLICES 512 // slices of a beam that the border of the cone crosses
 
-// Rays d = (ahead, u + x, v) of a pyramid, v fixed; in the cone are those with a x^2 + 2 b x + c <= 0 and
-// along + x slope >= 0 (numerics.md, Eq. (33a)).
+// Rays d = (ahead, u + x, v) of a pyramid at fixed v. Those in the cone satisfy a x^2 + 2 b x + c <= 0 and along + x
+// slope >= 0 (numerics.md, Eq. (33a)).
 typedef struct
 {
   float ahead, u, v;
@@ -651,7 +656,7 @@ typedef struct
   float along, slope;
 } cone_slice;
 
-// @param v  from the base of the pyramid, length
+// @param v  relative to the base of the pyramid, length
 static cone_slice slice_at(const LampInfo* lamp, const BeamRow* row, float v)
 {
   const int i = row->axis, j = (i + 1) % 3, k = (i + 2) % 3;
@@ -686,7 +691,7 @@ static bool is_in_cone(const cone_slice* slice, float x)
   return (slice->a * x + 2.0f * slice->b) * x + slice->c <= 0.0f && slice->along + slice->slope * x >= 0.0f;
 }
 
-// What of the slice from edges.x to edges.y is in the cone.
+// The part of the slice from edges.x to edges.y that is in the cone.
 static float2 part_of_slice(const cone_slice* slice, float2 edges)
 {
   const bool low = is_in_cone(slice, edges.x), high = is_in_cone(slice, edges.y);
@@ -708,7 +713,7 @@ static float2 part_of_slice(const cone_slice* slice, float2 edges)
   return within ? (float2)(first, second) : edges.xx;
 }
 
-// Solid angle of a part of a slice, over its height.
+// Solid angle of a part of a slice, divided by the slice's height.
 static float angle_of_slice(const cone_slice* slice, float2 part)
 {
   const float x = slice->u + 0.5f * (part.x + part.y);
@@ -716,8 +721,8 @@ static float angle_of_slice(const cone_slice* slice, float2 part)
   return (part.y - part.x) * inverse * inverse * inverse;
 }
 
-// Part of a beam's solid angle that is in the cone.
-//   middle  from the base of the pyramid
+// Fraction of a beam's solid angle that is in the cone.
+//   middle  its centre, relative to the base of the pyramid
 static float part_in_cone(const LampInfo* lamp, const BeamRow* row, float2 middle)
 {
   const float2 spacing = (float2)(lamp->spacing[(row->axis + 1) % 3], lamp->spacing[(row->axis + 2) % 3]);
@@ -725,7 +730,7 @@ static float part_in_cone(const LampInfo* lamp, const BeamRow* row, float2 middl
   const float2 width = (float2)(row->widthU, row->widthV) * spacing, edges = (float2)(low.x, low.x + width.x);
   const cone_slice bottom = slice_at(lamp, row, low.y), top = slice_at(lamp, row, low.y + width.y);
   if (is_in_cone(&bottom, edges.x) && is_in_cone(&bottom, edges.y) && is_in_cone(&top, edges.x) &&
-    is_in_cone(&top, edges.y)) // which is convex
+    is_in_cone(&top, edges.y)) // the cone is convex
   {
     return 1.0f;
   }
@@ -740,7 +745,8 @@ static float part_in_cone(const LampInfo* lamp, const BeamRow* row, float2 middl
 }
 #endif
 
-// Of a beam of a row, from the base of its pyramid; of the pyramid's axis; and its middle where it begins.
+// Tangents of a beam's centre, relative to the base of its pyramid; below, relative to the pyramid's axis; and the
+// beam's centre at its start.
 static float2 tangent_from_base(const BeamRow* row, int beam)
 {
   return (float2)(row->tangentU + beam * row->widthU, row->tangentV);
@@ -756,7 +762,7 @@ static float2 begin_of(const BeamRow* row, int beam)
   return (float2)(row->startU + beam * row->openU, row->startV);
 }
 
-// Of the lamp's share, that a beam sets off with.
+// Initial power of a beam, as a fraction of the traced power.
 static float power_of_beam(const LampInfo* lamp, const BeamRow* row, int beam)
 {
   const float2 spacing = (float2)(lamp->spacing[(row->axis + 1) % 3], lamp->spacing[(row->axis + 2) % 3]);
@@ -792,7 +798,7 @@ static void clear_tally(lamp_tally* tally, __global long* cells)
 #endif
 }
 
-// [entered, escaped through -x to +z, stranded, shone in the beams' directions], parts of the power
+// [entered, escaped through -x to +z, stranded, emitted in the beams' directions], fractions of the power
 static void write_sums(const lamp_tally* tally, float shone, __global float* sums)
 {
   sums[0] = tally->entered;
@@ -824,11 +830,12 @@ static void follow_row(const LampInfo* lamp, const BeamRow* row, const __global 
   write_sums(&tally, shone, sums);
 }
 
-// path  part of the power times length, in fixed point, [voxel], added to; MOMENTS: [path, times distance along x, y,
-//       z][stride]; NET_FLUX: behind that times direction, [x, y, z][stride]; VACUUM: behind that path in vacuum,
-//       [stride], of light before it goes around an axis, and where AROUND the path of that light, [stride]
-// cells power that leaves through the box's faces, in fixed point, [cell]; where FACE_OUT
-// sums  [row], as write_sums has them
+// Traces rows of beams.
+// path  fraction of the power times length, in fixed point, [voxel], added to; MOMENTS: [path, times distance along x, y,
+//       z][stride]; NET_FLUX: then path times direction, [x, y, z][stride]; VACUUM: then the path in vacuum of light
+//       before it wraps around an axis, [stride], and if AROUND the actual path of that light, [stride]
+// cells power that leaves through the box's faces, in fixed point, [cell]; if FACE_OUT
+// sums  [row], see write_sums()
 __kernel void follow_lamp(LampInfo lamp, const __global float* sigma, ulong sigma_first, __global long* path,
   ulong stride, __global long* cells, const __global BeamRow* rows, int row_count, int first_row, __global float* sums)
 {
