@@ -9,11 +9,13 @@ namespace tyndall
 namespace
 {
 constexpr int MostIterations = 300;
-constexpr int Patience = 12;         ///< iterations in which a residual has to halve, or is left as it is
-constexpr double Looser = 10.0;      ///< root mean square of a residual, than its norm in that of the preconditioner
-constexpr double Negligible = 1e-12; ///< residual, of the first one
+/// number of iterations within which the residual must halve; otherwise the iteration stops
+constexpr int Patience = 12;
+/// factor by which the bound on the root mean square is looser than that in the preconditioner's norm
+constexpr double Looser = 10.0;
+constexpr double Negligible = 1e-12; ///< residual relative to the first one that is negligible
 
-/// Whether a residual is above a bound and has not stopped falling. Asked once an iteration.
+/// Whether a residual is above its bound and still falling. To be called once per iteration.
 class StagnationTest
 {
 public:
@@ -22,7 +24,7 @@ public:
   {
   }
 
-  /// @param square  of the residual
+  /// @param square  squared norm of the residual
   bool operator()(double square)
   {
     this->SinceHalved = square < 0.25 * this->Smallest ? 0 : this->SinceHalved + 1;

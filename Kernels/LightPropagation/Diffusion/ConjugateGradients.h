@@ -4,26 +4,30 @@
 
 namespace tyndall
 {
-/// The steps of conjugate gradients on a residual (Hestenes and Stiefel 1952), whoever holds it.
+/// The operations of preconditioned conjugate gradients (Hestenes and Stiefel 1952), on whatever storage the solver
+/// uses.
 struct GradientSteps
 {
-  std::function<double()> precondition;      ///< @return the residual's norm in that of the preconditioner, squared
-  std::function<void(double part)> turn;     ///< the next direction: what that found, and `part` of the last one
-  std::function<double()> curvature;         ///< of the direction p: p A p
-  std::function<double(double length)> goOn; ///< so far along it. @return the square of what is left
+  std::function<double()> precondition;  ///< z = M^-1 r. @return r z, the squared residual norm of the preconditioner
+  std::function<void(double part)> turn; ///< p = z + part p
+  std::function<double()> curvature;     ///< @return p A p
+  std::function<double(double length)> goOn; ///< x += length p, r -= length A p. @return r r
 };
 
-/// When to end.
+/// Stopping criteria.
 struct GradientBounds
 {
-  double reduction;  ///< of the residual, in the norm of the preconditioner; its root mean square by ten times that
-  double leftAtMost; ///< root mean square, besides; infinity: any
-  double count;      ///< unknowns
+  /// factor by which the residual's norm in that of the preconditioner must fall; its root mean square may be ten times
+  /// this
+  double reduction;
+  double leftAtMost; ///< additional bound on the residual's root mean square; infinity: none
+  double count;      ///< number of unknowns
 };
 
-/// Goes down until the bounds are met, or nothing is gained any more.
-/// @param left  square of the residual
-/// @param firstResidual  of the first solve, in the norm of the preconditioner, squared: kept here
-/// @return iterations
+/// Iterates until the bounds are met or the residual stagnates.
+/// @param left  r r of the initial residual
+/// @param firstResidual  r z of the first solve, updated here: later solves do not reduce the residual below rounding
+///   relative to it
+/// @return number of iterations
 int SolveCg(const GradientSteps& steps, double left, const GradientBounds& bounds, double& firstResidual);
 }

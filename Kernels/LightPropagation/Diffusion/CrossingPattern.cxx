@@ -17,8 +17,8 @@ double FaceArea(const Grid& grid, int axis)
   return grid.spacing[(axis + 1) % 3] * grid.spacing[(axis + 2) % 3];
 }
 
-/// Power at radiance 1 that crosses faces across `axis` upwards in each plane, per area, of rays that march along
-/// `marching`.
+/// Power per area, at radiance 1, that crosses faces across `axis` upwards in each plane, carried by rays that march
+/// along `marching`.
 std::vector<double> CrossingsIn(
   const Grid& grid, const DirectionSet& set, int mapResolution, RayStarts starts, int axis, int marching)
 {
@@ -76,7 +76,8 @@ CrossingPattern FindCrossingPattern(
     for (int which = 0; which < 2; ++which)
     {
       const int marching = OtherAxis(axis, which);
-      const std::vector<double> power = periodic[marching] // rays go round and round: the mean is what counts
+      // rays wrap around many times, so that only the mean matters
+      const std::vector<double> power = periodic[marching]
         ? std::vector<double>(grid.size[marching], HalfRange(grid, set, axis, marching))
         : CrossingsIn(grid, set, mapResolution, starts, axis, marching);
       pattern.first[2 * axis + which] = static_cast<int>(pattern.values.size());

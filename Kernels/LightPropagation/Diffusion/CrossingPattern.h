@@ -9,17 +9,18 @@
 
 namespace tyndall
 {
-/// Power of rays that cross the voxels' faces in the sweeps' repeated pattern, over its mean (numerics.md, Eq. (65)):
-/// by axis of the face and plane along each other axis, two parts of one sum. About 1; 1 in the mean over planes.
+/// Power of the rays that cross each face of the voxels in the sweeps' repeating ray pattern, divided by its mean
+/// (numerics.md, Eq. (65)). It is the sum of two parts: for each axis of the face, one part for the plane of voxels
+/// along each of the other two axes. About 1; the mean over planes is 1.
 struct CrossingPattern
 {
   std::vector<float> values;
-  std::array<int, 6> first = {}; ///< [axis][other axes in order]
+  std::array<int, 6> first = {}; ///< offset of each table in `values`, [axis][other axes in order]
 };
 CrossingPattern FindCrossingPattern(const Grid& grid, const DirectionSet& directions, int mapResolution,
   RayStarts starts, const std::array<bool, 3>& periodic);
 
-/// Sum of w mu over the directions of positive cosine mu to `axis` that march along `marching`; those that march along
-/// several axes count in parts.
+/// Sum of w mu over the directions with positive cosine mu to `axis` that march along `marching`; a direction that
+/// marches along several axes counts in part for each.
 double HalfRange(const Grid& grid, const DirectionSet& set, int axis, int marching);
 }

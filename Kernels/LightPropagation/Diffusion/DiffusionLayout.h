@@ -9,7 +9,7 @@
 
 namespace tyndall
 {
-/// Of `Arrays`, where a channel begins.
+/// @param arrays  has the offsets of a channel and the stride (DiffusionSystem::Arrays, LampLight)
 template <class Arrays>
 DiffusionLayout LayoutOf(const Grid& grid, const std::array<bool, 3>& periodic, const Arrays& arrays)
 {
@@ -26,7 +26,7 @@ DiffusionLayout LayoutOf(const Grid& grid, const std::array<bool, 3>& periodic, 
   return layout;
 }
 
-/// Runs a kernel whose work-items are voxels (VOXEL in DiffusionLayout.cl).
+/// Runs a kernel with one work-item per voxel (VOXEL in DiffusionLayout.cl).
 inline void RunVoxels(Device& device, cl::Kernel& kernel, const DiffusionLayout& layout)
 {
   const cl::NDRange range(RoundUp<std::size_t>(layout.size[0], 32), RoundUp<std::size_t>(layout.size[1], 8),

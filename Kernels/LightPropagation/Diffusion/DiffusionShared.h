@@ -6,61 +6,63 @@
 SHARED_BEGIN
 enum
 {
-  DiffusionChunk = 4096, ///< values that a work-group sums up before the host adds the chunks in double
-  AndersonSums = 8,      ///< of a chunk
-  RowVector = 8,         ///< the widest vector that walks along rows of a level, floats
-  RowsLead = 16          ///< floats before a level's first row
+  DiffusionChunk = 4096, ///< number of values that one work-group sums; the host adds the chunks in double
+  AndersonSums = 8,      ///< number of sums per chunk
+  RowVector = 8,         ///< widest SIMD vector used along rows of a level, floats
+  RowsLead = 16          ///< padding before a level's first row, floats
 };
 
-/// A level of multigrid, and how its arrays lie in memory: rows along x, each behind its left ghost (the last float of
-/// what is before it) and followed by its right one, so that vectors may be loaded one voxel aside; planes are a little
-/// further apart, for rows of neighbouring planes not to fall on the same lines of the caches.
+/// A multigrid level and the memory layout of its arrays. Voxels form rows along x. Each row has a ghost on its left
+/// (the last float before it) and on its right, so that vectors may be loaded with an offset of one voxel. Planes are
+/// padded so that rows of neighbouring planes do not map to the same cache lines.
 typedef struct
 {
   int size[3];
-  int halved[3]; ///< to the next coarser level
-  int pitch;     ///< floats from row to row
-  int plane;     ///< from plane to plane
-  int floats;    ///< of an array
-  int together;  ///< rows that a work-item of a CPU walks along
+  int halved[3]; ///< 1: halved to the next coarser level, by axis
+  int pitch;     ///< distance of rows, floats
+  int plane;     ///< distance of planes, floats
+  int floats;    ///< size of an array, floats
+  int together;  ///< number of rows per work-item on a CPU
 } MultigridLevel;
 
-/// The grid and arrays of one channel.
+/// The grid, and the offsets of one channel in the arrays.
 typedef struct
 {
   int size[3];
   int periodic[3];
-  int linear;        ///< 1: the light between voxels' centres is linear; 0: each voxel is as one
-  int stride;        ///< of channels in the solver's arrays
-  int flatStride;    ///< from axis to axis of flat_source: 0 where voxels' edges are equal, for it is the same
-  int firstT, first; ///< where this channel begins: of sigma_t, of all others (currents: six times that, flux: three)
-  int pattern[6];    ///< where the tables of crossings begin: [axis][other axes in order]
+  int linear;     ///< 1: light varies linearly between voxel centres; 0: it is constant in each voxel
+  int stride;     ///< stride of channels in the solver's arrays
+  int flatStride; ///< stride of axes in flat_source; 0 if all voxel edges are equal, so that axes share it
+  /// offset of this channel: in sigma_t, in all others (currents: six times that, flux: three times)
+  int firstT, first;
+  int pattern[6]; ///< offset of the crossing tables: [axis][other axes in order]
   float spacing[3];
-  float halfRange;     ///< sum over directions of w mu / 4 pi, mu > 0: 1/4 but for the direction set
-  float floor;         ///< optical length between voxels' centres below which they pass no more
-  float incoming[6];   ///< W / length^2 through each face of the box
-  float albedo[6];     ///< part that each face gives back of what leaves through it
-  MultigridLevel rows; ///< how conductances lie in memory
+  /// sum over directions of w mu / 4 pi, mu > 0: exactly 1/4, except for the error of the quadrature
+  float halfRange;
+  float floor;         ///< minimum optical length between voxel centres: conductance does not grow below it
+  float incoming[6];   ///< incident power through each face of the box, W / length^2
+  float albedo[6];     ///< albedo of each face of the box
+  MultigridLevel rows; ///< memory layout of the conductances
 } DiffusionLayout;
 
-/// What is known of each cell of the box's faces (Medium/BoxFaces.h), by the solution and by the sweep, W.
+/// Values for each cell of the box's faces (Medium/BoxFaces.h), from the solution and from the sweep, W.
 enum
 {
-  BorderNet = 0,        ///< out less in, without the transport correction: right from voxel to voxel
-  BorderShare = 1,      ///< the transport correction of that: right for a face of the box as a whole
-  BorderSeeming = 2,    ///< out in the sweep, an estimate
-  BorderWeight = 3,     ///< of the transport correction, where the voxel has several such faces, else -1; no power
-  BorderCame = 4,       ///< came in in the sweep
-  BorderWholeShare = 5, ///< the correction before the face gives back its part
+  BorderNet = 0,     ///< outgoing minus incoming power, without the transport correction; accurate for each voxel
+  BorderShare = 1,   ///< transport correction of BorderNet; accurate only summed over a face of the box
+  BorderSeeming = 2, ///< outgoing power in the sweep; an estimate
+  BorderWeight = 3,  ///< weight of the transport correction if the voxel has several such faces, else -1; not a power
+  BorderCame = 4,    ///< incoming power in the sweep
+  BorderWholeShare = 5, ///< transport correction before reflection at the face
   BorderValues = 6
 };
 
-/// Light by cells of the box's faces, W: rows of the array `faces`.
+/// Power by cell of the box's faces, W: rows of the array `faces`.
 enum
 {
-  FaceCame = 0,  ///< came back in the sweep
-  FaceGiven = 1, ///< of it, what comes back of light that was not swept
-  FaceLeft = 2,  ///< left in the sweep
-  FaceLeaves = 3 ///< leaves by the solution
+  FaceCame = 0,  ///< reflected power in the sweep
+  FaceGiven = 1, ///< part of the reflected power whose light was not swept
+  FaceLeft = 2,  ///< outgoing power in the sweep
+  FaceLeaves = 3 ///< outgoing power of the solution
 };
 SHARED_END

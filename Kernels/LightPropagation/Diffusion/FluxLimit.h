@@ -7,8 +7,8 @@
 
 namespace tyndall
 {
-/// Where light is absorbed within a voxel, the mean of the powers through its faces is more than its net flux, which is
-/// cut to the fluence.
+/// Limits the net flux to the fluence. In absorbing voxels the mean of the powers through opposite faces overestimates
+/// the net flux.
 /// @param fluence  W / length^2, [channel][stride]
 /// @param flux  net flux times the voxel's volume, [channel][x, y, z][stride]
 void LimitFlux(const VolumeLayout& layout, const std::vector<float>& fluence, Buffer<float>& flux);

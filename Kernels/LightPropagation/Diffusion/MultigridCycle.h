@@ -4,13 +4,15 @@
 
 namespace tyndall
 {
-// A cycle of multigrid that preconditions conjugate gradients, in one memory (MultigridSolver.h) and over ranks
-// (Distributed/Balance/MultigridOverRanks.h).
+// Parameters of the multigrid cycle that preconditions conjugate gradients, serial (MultigridSolver.h) and over ranks
+// (MultigridOverRanks.h).
 
-constexpr int FinishRounds = 12; ///< on the coarsest level
-constexpr float Damping = 0.87f; ///< of Jacobi's method, about the best: 0.8 takes 8% more iterations, 0.95 as many
-constexpr std::size_t VisitedTwice = 2; ///< coarser levels, the finest of them: more visits save no iterations
-/// Of what each of two visits finds that is taken: so that two of them stay positive where one overshoots up to 2.5
-/// times, which joined voxels of unequal ones make it do.
+constexpr int FinishRounds = 12; ///< symmetric Gauss-Seidel iterations on the coarsest level
+/// damping of Jacobi's method, about the optimum: 0.8 takes 8% more iterations, 0.95 as many
+constexpr float Damping = 0.87f;
+/// number of coarse levels, from the finest of them, that are visited twice per cycle; more do not save iterations
+constexpr std::size_t VisitedTwice = 2;
+/// Fraction of each of two visits' correction that is applied. With it the preconditioner stays positive even if one
+/// visit overshoots by up to a factor of 2.5, as it does where voxels of unequal coefficients are joined.
 constexpr float PartOfVisit = 0.8f;
 }

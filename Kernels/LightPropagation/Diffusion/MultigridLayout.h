@@ -7,12 +7,12 @@
 
 namespace tyndall
 {
-/// The levels of multigrid on a box of voxels, the finest first: each joins voxels two by two along the axes whose
-/// edges are below 1.9 times the shortest, until few are left.
+/// The multigrid levels on a box of voxels, the finest first. Each level joins voxels in pairs along the axes whose
+/// edges are below 1.9 times the shortest one, until few voxels are left.
 /// @param spacing  of voxels: an axis along which they are far shorter is coarsened first
 std::vector<MultigridLevel> MultigridLevels(const std::array<int, 3>& size, const std::array<double, 3>& spacing);
 
-/// Values by voxel, x fastest, as a level's rows, of several arrays one after the other; 0 elsewhere.
+/// Copies one or several arrays of values by voxel, x fastest, to the rows of a level; padding is 0.
 template <class Value>
 std::vector<float> InRows(const MultigridLevel& level, const std::vector<Value>& values, int arrays = 1)
 {
@@ -28,13 +28,13 @@ std::vector<float> InRows(const MultigridLevel& level, const std::vector<Value>&
       {
         row[x] = static_cast<float>(values[i]);
       }
-      row[n[0]] = row[0]; // a periodic axis goes on there
+      row[n[0]] = row[0]; // right ghost, for a periodic axis
     }
   }
   return rows;
 }
 
-/// Values by voxel, x fastest, of a level's rows.
+/// Copies a level's rows to values by voxel, x fastest.
 inline std::vector<float> OfRows(const MultigridLevel& level, const std::vector<float>& rows)
 {
   const int* const n = level.size;

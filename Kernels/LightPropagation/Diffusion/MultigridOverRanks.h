@@ -11,36 +11,36 @@
 
 namespace tyndall
 {
-/// The system of MultigridSolver.h on a grid that is spread over ranks by blocks: conjugate gradients with sums over
-/// all ranks, preconditioned by the same cycle of multigrid, in double on the host. Cells of coarser levels are those
-/// of the whole grid, whatever the blocks: the rank that has a cell's first voxel owns it, others add what they have of
-/// it. Where few are left the first rank has them all. What it finds therefore does not depend on the blocks, but for
-/// rounding (numerics.md, section 7.14).
+/// The linear system of MultigridSolver.h on a grid distributed over ranks by blocks: conjugate gradients with sums
+/// over all ranks, preconditioned by the same multigrid cycle, in double on the host. Cells of coarser levels are those
+/// of the whole grid, independent of the blocks: the rank that owns a cell's first voxel owns the cell, and other ranks
+/// send it their contributions. Levels with few cells are gathered on the first rank. The result therefore does not
+/// depend on the partition, except for rounding (numerics.md, section 7.14).
 ///
-/// All ranks make one and call it together.
+/// Constructor and functions are collective.
 class MultigridOverRanks
 {
 public:
-  /// @param communicator  must stay
-  /// @param gatherAtMost  cells of a level that the first rank has alone; of the finest none is gathered
+  /// @param communicator  must outlive this object
+  /// @param gatherAtMost  levels with at most this many cells are gathered on the first rank; never the finest
   MultigridOverRanks(Communicator& communicator, const BlockPartition& partition,
     const std::array<bool, 3>& periodic = {}, std::size_t gatherAtMost = FewCells);
 
-  /// As BlockWithGhosts: the rank's block and the layer of voxels beside it, what arrays are over, x fastest. Of none
-  /// where the block is.
+  /// The rank's block and its halo of one voxel, see BlockWithGhosts: the box of the arrays, x fastest. Empty if the
+  /// block is.
   const VoxelBox& Held() const { return this->Levels.front().held; }
 
-  /// @param conductance  by axis, of low faces of the block's voxels and of those above it; 0 at the end of an axis
-  ///   that is not periodic
+  /// @param conductance  by axis, of the low faces of the block's voxels and of the voxels above the block; 0 at the
+  ///   ends of an axis that is not periodic
   /// @param loss  of the block's voxels
   void SetMatrix(const std::array<std::vector<float>, 3>& conductance, const std::vector<float>& loss);
 
-  /// As MultigridSolver::Solve, of the residual of all ranks.
-  /// @param values  of the block the first guess; the solution, and that of the voxels beside it
-  /// @return iterations
+  /// As MultigridSolver::Solve(), with the residual of all ranks.
+  /// @param values  initial guess for the block's voxels; replaced by the solution, also in the halo
+  /// @return number of iterations
   int Solve(std::vector<double>& values, const std::vector<float>& right, double unit, double reduction,
     double leftAtMost = std::numeric_limits<double>::infinity());
-  /// The same of what the last Solve left.
+  /// Continues the last Solve().
   int GoOn(std::vector<double>& values, double unit, double reduction, double leftAtMost);
 
 private:
@@ -48,13 +48,14 @@ private:
   struct Level
   {
     std::array<int, 3> size = {};   ///< of the whole
-    std::array<int, 3> halved = {}; ///< to the next coarser level
+    std::array<int, 3> halved = {}; ///< 1: halved to the next coarser level
     std::array<bool, 3> periodic = {};
-    std::array<bool, 3> alone = {};             ///< axes round which this rank's own cells go on with themselves
-    VoxelBox own, held;                         ///< of this rank
-    std::unique_ptr<GhostCells> beside, shared; ///< cells beside own ones; others' that have finer cells of this rank
+    std::array<bool, 3> alone = {}; ///< periodic axes on which this rank's own cells are their own neighbours
+    VoxelBox own, held;             ///< of this rank
+    /// exchange of the halo; exchange of other ranks' cells that contain finer cells of this rank
+    std::unique_ptr<GhostCells> beside, shared;
     std::array<std::vector<double>, 3> conductance;
-    /// As MultigridSolver has them, over `held`.
+    /// As in MultigridSolver, over `held`.
     std::vector<double> loss, inverse, right, guess, better, kept;
 
     std::size_t Stride(int axis) const
@@ -92,7 +93,7 @@ private:
   Communicator& Comm;
   const std::array<bool, 3> Periodic;
   std::vector<Level> Levels;
-  std::vector<double> Direction, Applied; ///< over the finest level's box
+  std::vector<double> Direction, Applied; ///< over the box of the finest level
   double FirstResidual = 0.0;
 };
 }

@@ -25,43 +25,44 @@ public:
   /// @param spacing  of voxels: an axis along which they are far shorter is coarsened first
   MultigridSolver(Device& device, const std::array<int, 3>& size, const std::array<double, 3>& spacing);
 
-  const MultigridLevel& Rows() const { return this->Levels.front().layout; } ///< of the arrays below
+  const MultigridLevel& Rows() const { return this->Levels.front().layout; } ///< layout of the arrays below
 
-  /// [axis][rows] of low faces, 0 at the box's end, with ghosts.
+  /// Conductances of low faces, [axis][rows], 0 at the box's end, with ghosts.
   Buffer<float>& Conductance() { return this->Levels.front().conductance; }
   Buffer<float>& Loss() { return this->Levels.front().loss; }
-  /// After the two were written.
+  /// Computes the matrices of the coarser levels. To be called after conductances and losses were written.
   void Coarsen();
 
-  /// b, 0 beyond rows' voxels. To be written before each Solve, which spends it.
+  /// The right-hand side b, 0 in the padding of rows. To be written before each Solve(), which overwrites it.
   Buffer<float>& Right() { return this->Levels.front().right; }
-  /// Three arrays of rows whose contents are undefined, for others between solves.
+  /// Three scratch arrays of rows, free for other use between solves; their contents are undefined.
   std::array<const Buffer<float>*, 3> Scratch() const;
 
-  /// Make the residual of `values`, in the norm of the preconditioner, smaller by `reduction`, and its root mean
-  /// square by ten times that at most, for that norm hardly counts thin voxels beside thick ones.
-  /// @param unit  about as large as the entries of b
-  /// @param leftAtMost  and the root mean square at most this, in units
-  /// @return iterations
+  /// Reduces the residual of `values` by the factor `reduction` in the norm of the preconditioner, and its root mean
+  /// square by at least a tenth of that factor, since that norm hardly weighs thin voxels next to thick ones.
+  /// @param values  initial guess, replaced by the solution
+  /// @param unit  typical magnitude of the entries of b
+  /// @param leftAtMost  additional bound on the residual's root mean square, in units
+  /// @return number of iterations
   int Solve(const ExactValues& values, double unit, double reduction,
     double leftAtMost = std::numeric_limits<double>::infinity());
 
-  /// The same of what the last Solve left, where neither matrix nor right-hand side nor values were written since.
+  /// Continues the last Solve(); matrix, right-hand side and values must not have been written since.
   int GoOn(const ExactValues& values, double unit, double reduction, double leftAtMost);
 
-  /// Options of kernels that walk along rows (MultigridRows.cl).
+  /// Options of kernels that process rows (MultigridRows.cl).
   static std::string RowOptions(const Device& device);
-  /// Runs one.
+  /// Runs such a kernel.
   static void RunRows(Device& device, cl::Kernel& kernel, const MultigridLevel& level);
-  /// Groups that it runs in: sums that it leaves.
+  /// Number of work-groups of such a kernel, and thus of the partial sums that it writes.
   static std::size_t GroupsOf(const Device& device, const MultigridLevel& level);
 
 private:
   struct Level
   {
     MultigridLevel layout;
-    /// `inverse`: damping over diagonal. `guess` and `better`: before and after a step of Jacobi's method.
-    /// `kept`: of the first of two visits; empty where there is one.
+    /// `inverse`: damping / diagonal. `guess`, `better`: before and after a Jacobi step. `kept`: correction of the
+    /// first of two visits; empty if the level is visited once.
     Buffer<float> conductance, loss, inverse, right, guess, better, kept;
   };
 
@@ -85,8 +86,9 @@ private:
   Device& TheDevice;
   std::vector<Level> Levels;
   Buffer<float> Direction;
-  Buffer<float> Answers; ///< of the coarsest level, where that is quicker (level_answers); else empty
+  /// inverse of the coarsest level as a matrix, where that is faster (level_answers); else empty
+  Buffer<float> Answers;
   ExactValues Sums;
-  double FirstResidual = 0.0; ///< of the first solve, in units
+  double FirstResidual = 0.0; ///< r z of the first solve, in units
 };
 }

@@ -8,10 +8,11 @@ namespace tyndall
 /// Power of one channel through the cells of the box's faces, W / length^2, without uncollided light of lamps.
 struct SurfacePowers
 {
-  std::vector<double> net;       ///< out less in, by cell (BoxFaces.h)
-  std::array<double, 6> in = {}; ///< through each face, in the mean over its cells
-  std::vector<double> back;      ///< that comes back through each cell of a face that reflects; empty: none does
-  const float* lamps = nullptr;  ///< fluence that came straight from lamps, by voxel; null: there are none
-  double halfRange = 0.25; ///< of the directions that bring it: `in` of even light is its radiance times 4 pi of this
+  std::vector<double> net;       ///< outgoing minus incoming, by cell (BoxFaces.h)
+  std::array<double, 6> in = {}; ///< incident through each face, averaged over its cells
+  std::vector<double> back;      ///< reflected power by cell; empty: no face reflects
+  const float* lamps = nullptr;  ///< uncollided fluence of lamps by voxel; null: there are none
+  /// of the quadrature of the incident light: isotropic radiance L gives `in` = 4 pi halfRange L
+  double halfRange = 0.25;
 };
 }

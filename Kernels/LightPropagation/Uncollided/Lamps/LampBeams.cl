@@ -4,8 +4,8 @@
 //   MOMENTS        1: first moments of the deposit are wanted
 //   NET_FLUX       1: net flux is wanted
 //   FACE_OUT       1: the power that leaves through each cell of the box's faces is wanted
-//   VACUUM         1: a rectangle in parts, each for some voxels; also sums the deposit that vacuum would have and, if an
-//                  axis is periodic (AROUND 1), the deposit of beams before they wrap around it
+//   VACUUM         1: a rectangle in parts, each for some voxels; also sums the deposit that vacuum would have and, if
+//                  an axis is periodic (AROUND 1), the deposit of beams before they wrap around it
 //   THIN           optical length of a voxel below which loss is taken as uniform
 //   IN_BLOCK       1: beams are traced in a block of the grid, and stop where they leave it; optional
 //
@@ -831,9 +831,9 @@ static void follow_row(const LampInfo* lamp, const BeamRow* row, const __global 
 }
 
 // Traces rows of beams.
-// path  fraction of the power times length, in fixed point, [voxel], added to; MOMENTS: [path, times distance along x, y,
-//       z][stride]; NET_FLUX: then path times direction, [x, y, z][stride]; VACUUM: then the path in vacuum of light
-//       before it wraps around an axis, [stride], and if AROUND the actual path of that light, [stride]
+// path  fraction of the power times length, in fixed point, [voxel], added to. MOMENTS: [path, path times distance
+//       along x, y, z][stride]. NET_FLUX: then path times direction, [x, y, z][stride]. VACUUM: then the path in
+//       vacuum of light before it wraps around an axis, [stride], and if AROUND the actual path of that light, [stride]
 // cells power that leaves through the box's faces, in fixed point, [cell]; if FACE_OUT
 // sums  [row], see write_sums()
 __kernel void follow_lamp(LampInfo lamp, const __global float* sigma, ulong sigma_first, __global long* path,
