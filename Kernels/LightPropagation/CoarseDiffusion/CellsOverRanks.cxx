@@ -14,9 +14,10 @@ namespace tyndall
 {
 namespace
 {
-constexpr double ReductionOverRanks = 0.02; ///< of the residual: sweeps take away less than that
+/// reduction of the residual per order: sweeps reduce the error by less than that
+constexpr double ReductionOverRanks = 0.02;
 
-/// A channel of an array.
+/// One channel of an array.
 std::vector<float> ChannelOf(const Buffer<float>& values, std::size_t first, std::size_t count)
 {
   const std::vector<float> all = values.Read();
@@ -24,7 +25,7 @@ std::vector<float> ChannelOf(const Buffer<float>& values, std::size_t first, std
   return { begin, begin + static_cast<std::ptrdiff_t>(count) };
 }
 
-/// As part_of_first_term, sharpen and sharpen_at_face of CoarseDiffusion.cl.
+/// As part_of_first_term, sharpen and sharpen_at_face in CoarseDiffusion.cl.
 double PartOfFirstTerm(double tau)
 {
   return 1.0 / (1.0 + tau * (0.183 + 0.0163 * tau));
@@ -93,7 +94,7 @@ CellsOverRanks::CellsOverRanks(Device& device, Communicator& communicator, const
 
 namespace
 {
-/// Of the whole grid, the one that is so many in a box.
+/// Coordinates in the whole grid of voxel `number` of a box.
 std::array<int, 3> VoxelIn(const VoxelBox& box, std::size_t number)
 {
   Grid grid;
@@ -107,7 +108,7 @@ std::array<int, 3> VoxelIn(const VoxelBox& box, std::size_t number)
 }
 }
 
-/// Of a voxel of the whole grid, in arrays with neighbours.
+/// Index, in arrays with a halo, of a voxel of the whole grid.
 std::size_t CellsOverRanks::PlaceOf(const std::array<int, 3>& voxel) const
 {
   Grid grid;
@@ -116,7 +117,7 @@ std::size_t CellsOverRanks::PlaceOf(const std::array<int, 3>& voxel) const
     { voxel[0] - this->Held.first[0], voxel[1] - this->Held.first[1], voxel[2] - this->Held.first[2] });
 }
 
-/// Of all ranks.
+/// Sum over the voxels of each cell, over all ranks. Collective.
 std::vector<double> CellsOverRanks::SumByCells(const Values& ofVoxels)
 {
   std::vector<double> sums(this->Cells.VoxelCount(), 0.0);
@@ -133,8 +134,9 @@ std::vector<double> CellsOverRanks::SumByCells(const Values& ofVoxels)
   return this->Comm.Sum(sums);
 }
 
-/// Of what the last sweep scattered, W by voxel, all orders to come; none where they are guessed.
-/// @return W of all ranks that it scattered
+/// Solves for all later orders, from the power that the last sweep scattered, W by voxel; no solve if they are guessed.
+/// Collective.
+/// @return power that it scattered, over all ranks, W
 double CellsOverRanks::Solve(const Values& scattered, bool guessed)
 {
   const std::vector<double> byCells = this->SumByCells(scattered);
@@ -150,11 +152,11 @@ double CellsOverRanks::Solve(const Values& scattered, bool guessed)
       found = this->FoundOnDevice.Read();
     }
   });
-  this->Found = this->Comm.Sum(found); // the other ranks have zeros
+  this->Found = this->Comm.Sum(found); // the other ranks contribute zeros
   return std::accumulate(byCells.begin(), byCells.end(), 0.0);
 }
 
-/// Linear between the cells' middles, and beyond the last ones as between the last two.
+/// The solution at a voxel: interpolated linearly between the cells' centres, and extrapolated beyond the last ones.
 double CellsOverRanks::FoundAt(const std::array<int, 3>& voxel) const
 {
   std::array<int, 3> from = {}, to = {};
@@ -183,7 +185,7 @@ double CellsOverRanks::FoundAt(const std::array<int, 3>& voxel) const
   return found;
 }
 
-/// Values of the block and, where light is linear across voxels, of those beside it. All ranks call it.
+/// Values of the block and, if light is linear across voxels, of its halo. Collective.
 CellsOverRanks::Values CellsOverRanks::WithNeighbours(const Values& own)
 {
   if (!this->Linear)
@@ -200,9 +202,10 @@ CellsOverRanks::Values CellsOverRanks::WithNeighbours(const Values& own)
   return ValuesInBox(this->Comm, this->Partition, wanted, own, 1);
 }
 
-/// W that a voxel scatters of light, W length, that its neighbours have too; as scatter_row of CoarseDiffusion.cl.
+/// Power that a voxel scatters, W; as scatter_row in CoarseDiffusion.cl.
 /// @param voxel  of the whole grid
-/// @param kept  W that are not let out through each face of the box, added to
+/// @param light  W length, with a halo
+/// @param kept  retained power at each face of the box, W, added to
 double CellsOverRanks::ScatteredIn(
   const std::array<int, 3>& voxel, const Values& light, std::array<double, 6>& kept) const
 {
@@ -231,7 +234,7 @@ double CellsOverRanks::ScatteredIn(
   return scattered;
 }
 
-/// All orders to come, W length, to the light of the block and of the voxels beside it. All ranks call it.
+/// Adds the path of all later orders, W length, to the light of the block and its halo. Collective.
 void CellsOverRanks::AddComing(Values& light, const Buffer<float>* guess)
 {
   if (guess)
@@ -264,7 +267,7 @@ CellsOverRanks::Powers CellsOverRanks::ScatterOrder(
   }
   const double swept = this->Solve(shines, guess != nullptr);
   this->AddComing(all, guess);
-  std::vector<double> sums(16, 0.0); // absorbed, of the solution, scattered, the same without signs; then by face
+  std::vector<double> sums(16, 0.0); // absorbed; absorbed of the solution; scattered; its magnitude; then by face
   for (std::size_t i = 0; i < count; ++i)
   {
     const std::array<int, 3> voxel = VoxelIn(block, i);

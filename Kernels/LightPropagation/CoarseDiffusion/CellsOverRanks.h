@@ -14,27 +14,28 @@
 
 namespace tyndall
 {
-/// Diffusion of one channel on cells of voxels, as CoarseDiffusion.h has it (numerics.md, section 7.13), of a grid that
-/// is spread over ranks, in an open box: cells are those of the whole grid, whichever ranks have their voxels. The
-/// first rank solves the system; all hold values by cells, an eighth of the voxels at most.
+/// Coarse-mesh DSA of one channel, as CoarseDiffusion (numerics.md, section 7.13), on a grid that is distributed over
+/// ranks and has no periodic axis. Cells are those of the whole grid, whichever ranks own their voxels. The first rank
+/// solves the system; all ranks store the values of all cells, at most an eighth of the number of voxels.
 class CellsOverRanks
 {
 public:
-  /// @param communicator, partition, medium  must stay
+  /// @param communicator, partition, medium  must outlive this object
   /// @param layout  of the rank's block
   /// @param halvings  along each axis; cells have 2^halvings voxels
-  /// @param linear  light is taken as linear across voxels, not as constant in each
+  /// @param linear  light varies linearly across voxels rather than being constant in each
   CellsOverRanks(Device& device, Communicator& communicator, const BlockPartition& partition,
     const VolumeLayout& layout, int channel, const MediumOnDevice& medium, const std::array<int, 3>& halvings,
     bool linear);
 
   using Powers = CoarseDiffusion::Powers; ///< of all ranks
 
-  /// From the path integrals of a sweep to the next source, as CoarseDiffusion::ScatterOrder. All ranks call it.
-  /// @param path  W length, [channel][stride]; replaced by what the next sweep is to have less
+  /// Computes the next source from the path integrals of a sweep, as CoarseDiffusion::ScatterOrder(). Collective.
+  /// @param path  W length, [channel][stride]; replaced by the (negative) path to subtract from the next sweep's
   /// @param fluence  W / length^2, added to
   /// @param source  W / (length^3 sr), replaced
-  /// @param guess  W length, of all orders to come, in the place of the cells' solution; null, on all ranks: that
+  /// @param guess  path of all later orders, W length, to use instead of the cells' solution; null, on all ranks: use
+  ///   the solution
   Powers ScatterOrder(
     Buffer<float>& path, Buffer<float>& fluence, Buffer<float>& source, const Buffer<float>* guess = nullptr);
 
@@ -52,15 +53,15 @@ private:
   Communicator& Comm;
   const BlockPartition& Partition;
   VolumeLayout Layout;
-  Grid Cells;           ///< their number alone
-  CoarseCells Box = {}; ///< of the whole grid
+  Grid Cells;           ///< only its size is used
+  CoarseCells Box = {}; ///< cells of the whole grid
   std::size_t First;    ///< of the channel
   bool Linear;
-  VoxelBox Held;                           ///< the block and, where light is linear, the voxels beside it
+  VoxelBox Held;                           ///< the block and, if light is linear across voxels, its halo
   Values SigmaT, SigmaS;                   ///< of these
-  std::unique_ptr<MultigridSolver> Solver; ///< of the first rank, else null
+  std::unique_ptr<MultigridSolver> Solver; ///< on the first rank; else null
   ExactValues FoundOnDevice;
-  std::vector<double> Borders; ///< as CoarseMatrix has them
+  std::vector<double> Borders; ///< as in CoarseMatrix
   std::vector<double> Found;   ///< W / length^2, by cells
 };
 }

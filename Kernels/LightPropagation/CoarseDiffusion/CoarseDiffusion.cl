@@ -1,8 +1,8 @@
-// From voxels to cells of them and back, between two sweeps (CoarseDiffusion.h). The host gives
-//   REAL_WIDTH  4 or 8 floats of a vector; 1: cells one by one, on a GPU
+// Transfers light between voxels and cells between two sweeps (CoarseDiffusion.h). Options:
+//   REAL_WIDTH  4 or 8 floats of a vector; 1: cell by cell, on a GPU
 //   GROUP       GroupSum.cl
-//   DOUBLES     1 where the device has double precision
-//   LINEAR      1: light is taken as linear across voxels; 0: as constant in each
+//   DOUBLES     1: the device has double precision
+//   LINEAR      1: light varies linearly across voxels; 0: it is constant in each
 
 #include "LightPropagation/CoarseDiffusion/CoarseShared.h"
 #include "LightPropagation/Diffusion/MultigridRows.cl"
@@ -10,7 +10,7 @@
 
 #define CELLS_AT_ONCE 64
 
-// Sums over the voxels of each cell, times `scale`, each with `more`. Work-items walk along rows of cells.
+// Sums values over the voxels of each cell, times `scale`, plus `more` per voxel. Work-items process rows of cells.
 __kernel void sum_cells(
   CoarseCells box, const __global float* values, float scale, float more, __global float* sums, ulong first)
 {
@@ -42,19 +42,19 @@ __kernel void sum_cells(
   }
 }
 
-// The current of a constant source (numerics.md, Eq. (51)) beyond that of a linear one, over the first term of that,
-// to 1e-4 for voxels up to 1.5 mean free paths.
+// Excess of the current of a constant source (numerics.md, Eq. (51)) over that of a linear one, divided by the first
+// term of its expansion; to 1e-4 for voxels up to 1.5 mean free paths.
 inline float part_of_first_term(float tau)
 {
   return 1.0f / (1.0f + tau * (0.183f + 0.0163f * tau));
 }
 
-// What a voxel scatters more of its light because light is not as smeared as constant voxels have it, once where it is
-// gathered and once where it shines (Eq. (76f)); what one voxel gains the one beside it loses. Right for light that
-// changes evenly.
-//   own, other  light of the voxel, and of the one beside it
+// Additional light that a voxel scatters because light is less smeared than in voxels of constant light, once where it
+// is gathered and once where it is emitted (Eq. (76f)). What one voxel gains its neighbour loses. Exact for light that
+// varies linearly.
+//   own, other  light of the voxel, and of its neighbour
 //   t, s        their sigma_t and sigma_s
-//   spacing     from one to the other
+//   spacing     distance of the two
 inline float sharpen(float own, float other, float t, float s, float other_t, float other_s, float spacing)
 {
   const float both = t + other_t;
@@ -62,18 +62,18 @@ inline float sharpen(float own, float other, float t, float s, float other_t, fl
   return scattered * (own - other) * part_of_first_term(0.5f * spacing * both) / 12.0f;
 }
 
-// At a face of the box (Eq. (76g)) constant voxels let out more than light that falls off towards it does: as much is
-// given to the outermost voxels, and counted as not let out.
+// At a face of the box (Eq. (76g)) voxels of constant light let out more than light that decreases towards the face
+// does. The difference is added to the outermost voxels and counted as retained.
 inline float sharpen_at_face(float own, float inner, float t, float s, float spacing)
 {
   return s * (inner - own) * part_of_first_term(spacing * t) / 24.0f;
 }
 
-// What is scattered of light that was gathered. A work-item a row of voxels.
+// Computes the source scattered from gathered light. One work-item per row of voxels.
 //   path        W length; may be negative
-//   source      W / (length^3 sr), added to
-//   per_volume  over 4 pi times the volume of a voxel
-//   tally       [row] of the source, of its magnitude, and of what is not let out through each face of the box
+//   source      W / (length^3 sr), added to if `adds`
+//   per_volume  sign / (4 pi times the volume of a voxel)
+//   tally       [row] sums of the source, of its magnitude, and of the retained power at each face of the box
 __kernel void scatter_row(CoarseCells box, const __global float* restrict path, const __global float* restrict sigma_t,
   const __global float* restrict sigma_s, __global float* restrict source, float per_volume, int adds,
   __global float8* tally)
@@ -155,8 +155,8 @@ __kernel void scatter_row(CoarseCells box, const __global float* restrict path, 
   tally[r] = (float8)(sum, magnitude, kept[0], kept[1], kept[2], kept[3], kept[4], kept[5]);
 }
 
-// Between the middles of which two cells a voxel lies along an axis, and how far from the first one; beyond the last
-// middle light goes on as between the last two.
+// The two cells between whose centres a voxel lies along an axis, and its distance from the first one, in cells. Beyond
+// the last centre light is extrapolated from the last two cells.
 typedef struct
 {
   int from, to;
@@ -180,12 +180,12 @@ inline between find_between(const CoarseCells* box, int axis, int voxel)
   return found;
 }
 
-// Adds what a sweep gathered and what the cells' solution has beyond it. Of the latter as much is taken from what the
-// next sweep will gather, for that carries all that is scattered of it. A work-item a row of voxels.
+// Adds a sweep's path and the cells' solution to the fluence. The path of the solution is subtracted from that of the
+// next sweep, which carries all light scattered from it. One work-item per row of voxels.
 //   found    W / length^2, by cells
 //   path     W length, replaced
 //   fluence  W / length^2, added to
-//   tally    [row] absorbed: of all that is added, of what the solution has
+//   tally    [row] absorbed power: of all added light, of the solution
 __kernel void add_found(CoarseCells box, const __global exact* found, __global float* restrict path,
   __global float* restrict fluence, const __global float* restrict sigma_t, const __global float* restrict sigma_s,
   float volume, __global float8* tally)
@@ -201,7 +201,7 @@ __kernel void add_found(CoarseCells box, const __global exact* found, __global f
   const __global exact* low = found + y.from * cells + z.from * plane;
   const int aside = (y.to - y.from) * cells, above = (z.to - z.from) * plane;
   float absorbed = 0.0f, of_found = 0.0f;
-  float line[CELLS_AT_ONCE + 2]; // of the row of voxels, with a cell on either side
+  float line[CELLS_AT_ONCE + 2]; // solution along the row of voxels, with one cell on either side
   for (int first = 0; first < cells; first += CELLS_AT_ONCE)
   {
     const int count = min(CELLS_AT_ONCE, cells - first);
@@ -242,7 +242,7 @@ __kernel void add_found(CoarseCells box, const __global exact* found, __global f
   tally[r] = (float8)(absorbed, of_found, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f);
 }
 
-// The same of a guess by voxels.
+// add_found() for a guess by voxel.
 //   guess  W length
 __kernel void add_guess(CoarseCells box, const __global float* restrict guess, __global float* restrict path,
   __global float* restrict fluence, const __global float* restrict sigma_t, const __global float* restrict sigma_s,

@@ -16,7 +16,7 @@ namespace tyndall
 {
 namespace
 {
-constexpr double Reduction = 0.02; ///< of the residual: sweeps take away less than that
+constexpr double Reduction = 0.02; ///< reduction of the residual per order: sweeps reduce the error by less than that
 
 std::array<int, 3> CellsOf(const std::array<int, 3>& voxels, const std::array<int, 3>& halvings)
 {
@@ -63,7 +63,7 @@ cl::Kernel CoarseDiffusion::Kernel(const char* name) const
     MultigridSolver::RowOptions(this->TheDevice) + Define("LINEAR", this->Linear) + ExactOption(this->TheDevice));
 }
 
-/// Of each cell, x fastest.
+/// Sum over the voxels of each cell, x fastest.
 std::vector<float> CoarseDiffusion::SumOfVoxels(const Buffer<float>& values, int first)
 {
   cl::Kernel kernel = this->Kernel("sum_cells");
@@ -109,7 +109,7 @@ CoarseDiffusion::Powers CoarseDiffusion::ScatterOrder(const Buffer<float>& path,
   return powers;
 }
 
-/// Of what the last sweep scattered, and of what is on the way, W, all light to come.
+/// Solves for all later orders, from the power that the last sweep scattered and the power still in flight, W.
 void CoarseDiffusion::Solve(const Buffer<float>& source, double magnitude, double onTheWay)
 {
   const double all = magnitude + std::abs(onTheWay);
@@ -125,7 +125,7 @@ void CoarseDiffusion::Solve(const Buffer<float>& source, double magnitude, doubl
   this->Solver.Solve(this->Found, all / static_cast<double>(this->CellGrid().VoxelCount()), Reduction);
 }
 
-/// What is scattered of path integrals, times a sign, into the source. @return its sums
+/// Adds the light scattered from path integrals, times a sign, to the source. @return sums of the kernel's tally
 CoarseDiffusion::Sums CoarseDiffusion::Scatter(
   const Buffer<float>& path, const Buffer<float>& source, double sign, bool adds)
 {
@@ -178,7 +178,7 @@ std::array<double, 6> CoarseDiffusion::OutThroughFaces() const
   return out;
 }
 
-/// Their size alone.
+/// A grid of the cells; only its size is meaningful.
 Grid CoarseDiffusion::CellGrid() const
 {
   const int* const n = this->Box.cells.size;

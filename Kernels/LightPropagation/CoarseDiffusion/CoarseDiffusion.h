@@ -9,46 +9,48 @@
 
 namespace tyndall
 {
-/// Diffusion of one channel on cells of 2, 4 or 8 voxels along each axis (numerics.md, section 7.13): what the orders
-/// to come will add, about, to the light that a sweep found. Cells are at most about a mean free path wide, so that
-/// what they do not see falls off fast in sweeps. A guess only: it is taken away again from what the next sweep finds
-/// of it, so that it changes how fast the light converges and not what it converges to.
+/// Coarse-mesh DSA: diffusion of one channel on cells of 2, 4 or 8 voxels along each axis (numerics.md, section 7.13),
+/// which estimates the contribution of all later scattering orders from the light that a sweep found. Cells are at most
+/// about a mean free path wide, so that sweeps damp errors below cell size quickly. The correction is subtracted from
+/// the next source, so it changes the rate of convergence, not the limit.
 ///
 /// Related: diffusion synthetic acceleration (Adams and Larsen 2002), here on a coarser grid than the sweeps'.
 class CoarseDiffusion
 {
 public:
   /// @param halvings  along each axis; cells have 2^halvings voxels
-  /// @param linear  light is taken as linear across voxels, not as constant in each
+  /// @param linear  light varies linearly across voxels rather than being constant in each
   CoarseDiffusion(Device& device, const VolumeLayout& layout, int channel, const MediumOnDevice& medium,
     const std::array<bool, 3>& periodic, const std::array<int, 3>& halvings, bool linear);
 
-  /// W, of one order.
+  /// Powers of one scattering order, W.
   struct Powers
   {
-    double absorbed = 0.0;  ///< of all light that is added
-    double scattered = 0.0; ///< of it, the next source
-    double magnitude = 0.0; ///< the same without signs
-    double left = 0.0;      ///< neither absorbed nor out, by the solution
-    /// Of the next source, what is to be let out less through each face of the box than the next sweep will.
+    double absorbed = 0.0;  ///< absorbed from all light added in this order
+    double scattered = 0.0; ///< power of the next source
+    double magnitude = 0.0; ///< sum of the absolute values of the next source
+    double left = 0.0;      ///< neither absorbed nor escaped, according to the solution
+    /// Power by which the next sweep would overestimate the escaped power through each face of the box; included in the
+    /// next source.
     std::array<double, 6> kept = {};
-    std::array<double, 6> out = {}; ///< leaves through each face of the box, by the solution
+    std::array<double, 6> out = {}; ///< escaped power through each face of the box, according to the solution
   };
 
-  /// From what a sweep gathered to the next source: adds it to `fluence`, with what the cells' solution says of all
-  /// orders to come, and leaves in `path` what the next sweep is to have less. All arrays [channel][stride].
+  /// Computes the next source from a sweep's path integrals. Adds these and the cells' solution for all later orders to
+  /// `fluence`, and leaves in `path` the (negative) path to subtract from the next sweep's. All arrays are
+  /// [channel][stride].
   /// @param path  W length
   /// @param source  W / (length^3 sr), replaced
-  /// @param onTheWay  W, that rays round periodic axes still carry; it is added to the right-hand side, evenly over the
-  ///   box
-  /// @param guess  W length, of all orders to come, in the place of the cells' solution; null: that
+  /// @param onTheWay  power that rays around periodic axes still carry, W; it is added to the right-hand side,
+  ///   uniformly over the box
+  /// @param guess  path of all later orders, W length, to use instead of the cells' solution; null: use the solution
   Powers ScatterOrder(const Buffer<float>& path, const Buffer<float>& fluence, const Buffer<float>& source,
     double onTheWay = 0.0, const Buffer<float>* guess = nullptr);
 
 private:
   struct Sums
   {
-    double first = 0.0, second = 0.0; ///< what a kernel says of its tally
+    double first = 0.0, second = 0.0; ///< meaning as in the kernel's tally
     std::array<double, 6> byFace = {};
   };
   cl::Kernel Kernel(const char* name) const;
@@ -70,6 +72,6 @@ private:
   MultigridSolver Solver;
   ExactValues Found; ///< W / length^2, by cells
   Buffer<cl_float8> Tally;
-  std::vector<double> Borders; ///< as CoarseMatrix has them
+  std::vector<double> Borders; ///< as in CoarseMatrix
 };
 }

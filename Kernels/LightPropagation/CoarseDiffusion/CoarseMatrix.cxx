@@ -10,10 +10,10 @@ namespace tyndall
 {
 namespace
 {
-constexpr double Floor = 0.05;  ///< optical length between cells that pass light as if it were that long
+constexpr double Floor = 0.05;  ///< minimum optical length between cells: conductance does not grow below it
 constexpr double Marshak = 2.0; ///< resistance of a face of the box, over its area
 
-/// Cells of a coarser and coarser grid: mean extinctions and edges.
+/// One of a hierarchy of coarser and coarser grids: mean extinctions and edges of its cells.
 struct Level
 {
   std::array<int, 3> size;
@@ -81,7 +81,8 @@ Level Coarser(const Level& fine)
   return level;
 }
 
-/// Edge of the box around a place that is one mean free path thick, of one that is thinner and one that is not.
+/// Edge of the surrounding box that is one mean free path thick, interpolated between a box that is thinner and one
+/// that is not.
 /// @param thin, thick  optical width over edge
 double EdgeOfMeanFreePath(double edge, double thin, double wide, double thick)
 {
@@ -90,9 +91,9 @@ double EdgeOfMeanFreePath(double edge, double thin, double wide, double thick)
   return edge * std::pow(wide / edge, -std::log(tau) / std::log(wide * thick / tau));
 }
 
-/// With which light diffuses, 1/length: a cell thinner than a mean free path sends it on into those around, as far as
-/// light gets there, which is about the edge of the box around it that is as thick as one. 1 / (3 sigma_t) of thin
-/// cells alone would let light pass as it never does over so short a way (numerics.md, Eq. (76h)).
+/// Extinction for diffusion, 1/length. A cell thinner than a mean free path sends light into its surroundings as far as
+/// light travels, which is about the edge of the surrounding box of unit optical thickness. With 1 / (3 sigma_t) of
+/// thin cells alone light would diffuse far too fast over such short distances (numerics.md, Eq. (76h)).
 std::vector<double> Diffusing(const Level& level)
 {
   if (level.sigmaT.size() == 1)
@@ -100,7 +101,7 @@ std::vector<double> Diffusing(const Level& level)
     return level.sigmaT;
   }
   std::vector<double> sigma = level.sigmaT;
-  std::vector<double> around; // made where it is needed
+  std::vector<double> around; // computed on demand
   Level coarser;
   ForCells(level.size, [&](int x, int y, int z) {
     double& here = sigma[level.At(x, y, z)];

@@ -7,14 +7,14 @@
 
 namespace tyndall
 {
-/// The matrix of diffusion on cells (MultigridSolver.h), by rows of them.
+/// The diffusion matrix on cells (MultigridSolver.h), in rows.
 struct CoarseMatrix
 {
-  std::vector<float> conductance, loss; ///< as the solver takes them
-  std::vector<double> borders;          ///< what leaves the box through each cell (BoxFaces.h) over its fluence
+  std::vector<float> conductance, loss; ///< in the solver's layout
+  std::vector<double> borders; ///< escaped power through each cell of the box's faces (BoxFaces.h), per fluence
 };
 
-/// @param cells  of `box`, their size alone
+/// @param cells  grid of the cells of `box`; only its size is used
 /// @param sigmaT, sigmaS  1/length, summed over the voxels of each cell, x fastest
 CoarseMatrix FindCoarseMatrix(const Grid& grid, const CoarseCells& box, const Grid& cells,
   const std::vector<float>& sigmaT, const std::vector<float>& sigmaS);

@@ -37,7 +37,8 @@ double AndersonMixing::Mix(const ExactValues& given, const ExactValues& found, c
   cl::Kernel step = this->Kernel("anderson_step");
   std::swap(this->FoundBefore[0], this->FoundBefore[1]);
   std::swap(this->ChangeBefore[0], this->ChangeBefore[1]);
-  // What was the last is now the second before, and its place is taken: the kernel reads before it writes.
+  // The previous result becomes the second to last one, whose buffer receives the new one: the kernel reads before it
+  // writes.
   With(step, given.Handle(), found.Handle(), this->FoundBefore[1], this->FoundBefore[0], this->ChangeBefore[0],
     static_cast<float>(weights[0]), static_cast<float>(weights[1]));
   this->TheDevice.Queue().enqueueNDRangeKernel(step, cl::NullRange, cl::NDRange(this->Count), cl::NullRange);
@@ -66,7 +67,7 @@ AndersonMixing::Sums AndersonMixing::SumsOf(
   return sums;
 }
 
-/// Weights of the two iterations before in the mix: least squares of the change (numerics.md, Eq. (71)).
+/// Weights of the two previous iterations: least squares of the change (numerics.md, Eq. (71)).
 std::array<double, 2> AndersonMixing::WeightsBy(const Sums& sums) const
 {
   const auto& [ff, all, aa, ab, bb, af, bf, unused] = sums;

@@ -1,4 +1,4 @@
-// Voxels one by one at the box's faces, in the diffusion system.
+// Access to the voxels at the box's faces, one work-item each, in the diffusion system.
 
 #pragma once
 #include "LightPropagation/Diffusion/Conductance.cl"
@@ -10,8 +10,8 @@ static bool is_border(const DiffusionLayout* layout, const int* at, int d)
   return !layout->periodic[axis] && at[axis] == (d & 1 ? layout->size[axis] - 1 : 0);
 }
 
-// Of a cell of the box's faces, counted as in Medium/BoxFaces.h, the voxel; false where the voxel has an earlier
-// cell, or the axis goes round.
+// Finds the voxel of a cell of the box's faces (numbered as in Medium/BoxFaces.h). @return false if the voxel has an
+// earlier cell, or the axis is periodic
 static bool find_border_voxel(const DiffusionLayout* layout, int cell, int* at)
 {
   const int* n = layout->size;
@@ -36,7 +36,7 @@ static bool find_border_voxel(const DiffusionLayout* layout, int cell, int* at)
   return false;
 }
 
-// The voxel of a work-item, one of those at the box's faces: x, y, z and i.
+// Defines x, y, z and index i of the work-item's voxel, one of those at the box's faces.
 #define BORDER_VOXEL(layout)                                        \
   int border[3];                                                    \
   if (!find_border_voxel(&(layout), (int)get_global_id(0), border)) \
@@ -46,8 +46,8 @@ static bool find_border_voxel(const DiffusionLayout* layout, int cell, int* at)
   const int x = border[0], y = border[1], z = border[2];            \
   const int i = (z * (layout).size[1] + y) * (layout).size[0] + x;
 
-// Power through a face of the box that gives back a part, out less in (numerics.md, Eqs. (76b), (76c)):
-//   ofMedium times what it would be without light from outside, less ofLight times the light that comes in from there.
+// Factors of the net outgoing power through a reflecting face of the box (numerics.md, Eqs. (76b), (76c)):
+//   ofMedium times the power without incident light, minus ofLight times the incident power
 typedef struct
 {
   float ofMedium, ofLight;

@@ -1,12 +1,12 @@
-// How easily light passes the faces of voxels in the diffusion system, see DiffusionSystem.h. tau is the optical length
-// of a voxel along an axis. On `real` (Numerics.cl): one voxel, or a vector of them.
+// Conductances of the voxels' faces in the diffusion system, see DiffusionSystem.h. tau is the optical length of a
+// voxel along an axis. All functions operate on `real` (Numerics.cl): one voxel, or a vector of them.
 
 #pragma once
 #include "LightPropagation/Diffusion/DiffusionShared.h"
 #include "Numerics/Numerics.cl"
 
-// Part of the partial current of a source that is constant in each voxel and falls by one from mean free path to mean
-// free path (numerics.md, Eq. (51); 4 Gauss points): 1/6 for thin voxels, tau / 8 for thick ones.
+// Coefficient of the partial current of a source that is constant in each voxel and falls by one per mean free path
+// (numerics.md, Eq. (51); 4 Gauss points): 1/6 for thin voxels, tau / 8 for optically thick ones.
 inline real flat_source_current(real tau)
 {
   const float mu[4] = { 0.0694318442f, 0.3300094782f, 0.6699905218f, 0.9305681558f };
@@ -24,15 +24,15 @@ inline real flat_source_current(real tau)
   return sum;
 }
 
-// Half of a voxel in units of the diffusion length, y = tau sqrt(3 (1 - albedo)) / 2.
+// Half a voxel's optical length in diffusion lengths, y = tau sqrt(3 (1 - albedo)) / 2.
 inline real half_diffusion_length(real tau, real sigma_t, real sigma_a)
 {
   const real absorbed = fmin(sigma_a / fmax(sigma_t, (real)1e-37f), (real)1.0f);
   return select((real)0.0f, 0.5f * tau * sqrt(3.0f * absorbed), sigma_t > (real)0.0f);
 }
 
-// Conductance of an absorbing half voxel over that of tau / 2 (numerics.md, Eq. (57)): of light that falls off
-// exponentially from a border...
+// Conductance of an absorbing half voxel relative to that of tau / 2 (numerics.md, Eq. (57)): for light that decays
+// exponentially from a boundary...
 inline real at_border(real y)
 {
   real left;
@@ -40,7 +40,7 @@ inline real at_border(real y)
   const real whole = y * (2.0f * y / (2.0f * fmax(y, (real)0.02f) - 1.0f + left));
   return select(whole, 1.0f + y * (2.0f / 3.0f), y < (real)0.02f);
 }
-// ...and between voxels of the same kind.
+// ...and between equal voxels.
 inline real among_equals(real y)
 {
   const real bounded = clamp(y, (real)1e-3f, (real)40.0f);
@@ -50,7 +50,7 @@ inline real among_equals(real y)
   return select(fmax(select(x * x, (real)0.0f, y >= (real)40.0f), (real)1e-20f), (real)1.0f, y < (real)0.01f);
 }
 
-// Conductance of an inner face per area (numerics.md, Eq. (57)).
+// Conductance per area of an inner face (numerics.md, Eq. (57)).
 inline real pass_face(const DiffusionLayout* layout, real tau0, real tau1, real y0, real y1, real flat_source)
 {
   if (!layout->linear)
@@ -74,8 +74,8 @@ inline float volume_of(const DiffusionLayout* layout)
   return layout->spacing[0] * layout->spacing[1] * layout->spacing[2];
 }
 
-// Twice the optical length from the voxel's middle to a face of the box, shorter where the voxel absorbs (numerics.md,
-// Eq. (58)).
+// Twice the optical length from the voxel's centre to a face of the box; shorter if the voxel absorbs (numerics.md, Eq.
+// (58)).
 inline real way_to_boundary(const DiffusionLayout* layout, real tau, real sigma_t, real sigma_a)
 {
   return layout->linear ? tau / at_border(half_diffusion_length(tau, sigma_t, sigma_a)) : tau;

@@ -1,10 +1,10 @@
-// What the kernels of the diffusion system share.
+// Definitions shared by the kernels of the diffusion system.
 
 #pragma once
 #include "LightPropagation/Diffusion/DiffusionShared.h"
 #include "Numerics/Exact.cl"
 
-// The voxel of a work-item: x, y, z and i.
+// Defines x, y, z and index i of the work-item's voxel.
 #define VOXEL(count)                                                          \
   const int x = get_global_id(0), y = get_global_id(1), z = get_global_id(2); \
   if (x >= (count)[0] || y >= (count)[1] || z >= (count)[2])                  \
@@ -18,7 +18,7 @@
     (!(layout).periodic[1] && ((at)[1] == 0 || (at)[1] == (layout).size[1] - 1)) || \
     (!(layout).periodic[2] && ((at)[2] == 0 || (at)[2] == (layout).size[2] - 1)))
 
-// Round the axes; where the box ends conductances are zero.
+// Neighbours across all faces, wrapped around every axis; at the box's boundary the conductance is zero.
 static void find_neighbours(const int* size, int x, int y, int z, int i, int* next)
 {
   const int row = size[0];

@@ -1,34 +1,35 @@
-// The diffusion system of a channel along rows of voxels, in vectors: its matrix, and what a sweep found as its
-// right-hand side, but for the box's faces (DiffusionSystem.cl). The host gives
-//   REAL_WIDTH  4 or 8 floats of a vector; 1: by voxels, on a GPU
+// The diffusion system of a channel along rows of voxels, in vectors: its matrix, and its right-hand side from the
+// results of a sweep, except for the box's faces (DiffusionSystem.cl). Options:
+//   REAL_WIDTH  4 or 8 floats of a vector; 1: voxel by voxel, on a GPU
 //   GROUP       GroupSum.cl
-//   DOUBLES     1 where the device has double precision
-//   PASSING     1: lamps' light passes faces at once where it is scattered
-//   MOMENTS     1: sweeps carry light that goes straight on where it is scattered forwards, or has angular moments
-//   SKIN        1: thick voxels lie beside thinner ones
+//   DOUBLES     1: the device has double precision
+//   PASSING     1: lamps' light crosses faces directly after its first scattering (LampPassing.h)
+//   MOMENTS     1: sweeps treat forward scattering as unscattered light, or have angular moments
+//   SKIN        1: there are thick voxels next to thinner ones
 //
-// Arrays of the solver are [voxel], and may be read a vector beyond a row's end; arrays of rows are as MultigridRows.cl
-// has them. Of a row the face at x = 0 is apart: what is before it in memory is no neighbour.
+// The solver's arrays are [voxel]; reads may extend one vector beyond a row's end. Arrays in rows are laid out as in
+// MultigridRows.cl. The face at x = 0 of a row needs separate treatment: the voxel before it in memory is not its
+// neighbour.
 
 #include "LightPropagation/Diffusion/FaceRemainder.cl"
 #include "LightPropagation/Diffusion/MultigridRows.cl"
 #include "Numerics/Exact.cl"
 
-// Voxels before a row.
+// Index of a row's first voxel.
 inline int voxel_at(const DiffusionLayout* layout, int y, int z)
 {
   return (z * layout->size[1] + y) * layout->size[0];
 }
 
-// Low faces of a row across an axis that light passes from voxel to voxel, in one piece.
+// A contiguous range of low faces of a row, across an axis, through which light passes from voxel to voxel.
 typedef struct
 {
   int begin, end; // along x
-  int before;     // where the row begins in memory on whose far side the faces are
+  int before;     // index of the first voxel of the row on the other side of the faces
 } face_span;
 
-// All of them: none at the box's border; across x the first face, round the axis, and then the others. A span's last
-// vector writes beyond its end, so they are to be gone through in turn.
+// All such ranges of a row: none at the box's boundary; across x first the face that wraps around, then the others. The
+// last vector of a range writes beyond its end, so they must be processed in order.
 inline int find_spans(const DiffusionLayout* layout, int axis, int y, int z, face_span* spans)
 {
   const int n = layout->size[0], here = voxel_at(layout, y, z);
@@ -48,7 +49,7 @@ inline int find_spans(const DiffusionLayout* layout, int axis, int y, int z, fac
   return 1;
 }
 
-// Into a row by voxels, the last of which are no whole vector.
+// Stores a vector in a row of [voxel], where the last vector may be incomplete.
 inline void store_in_row(real values, int x, int size, __global float* row)
 {
   if (x + REAL_WIDTH <= size)
@@ -64,6 +65,7 @@ inline void store_in_row(real values, int x, int size, __global float* row)
   }
 }
 
+// Computes the current of a constant source (Conductance.cl) for each voxel.
 // flat_source  [axis][flatStride]
 // swept        sigma_t of the sweeps
 __kernel void diffusion_flat_source(
@@ -81,7 +83,8 @@ __kernel void diffusion_flat_source(
       {
         real current = flat_source_current(sweeps * layout.spacing[axis]);
 #if MOMENTS
-        // Of the current, what the source's first moment is carries itself: the rest has the excess of a flat source.
+        // The first moment of the source carries part of the current exactly; only the rest has the excess of a
+        // constant source.
         const real rest = fmin(load_real(x, sigma_t + here) / fmax(sweeps, (real)1e-37f), (real)1.0f);
         const real part = select((real)1.0f, rest, sweeps > (real)0.0f);
         current = 1.0f / 6.0f + part * (current - 1.0f / 6.0f);
@@ -92,7 +95,7 @@ __kernel void diffusion_flat_source(
   }
 }
 
-// Of faces between voxels 0 and 1 across an axis, length^2.
+// Conductance of faces between voxels 0 and 1 across an axis, length^2.
 static real conductance_of(
   const DiffusionLayout* layout, int axis, real sigma_t0, real sigma_a0, real sigma_t1, real sigma_a1, real flat_source)
 {
@@ -103,8 +106,8 @@ static real conductance_of(
   return face_area(layout, axis) * pass_face(layout, tau0, tau1, y0, y1, flat_source);
 }
 
-// conductance  [axis][rows] of the voxel's low face, length^2; 0 on the box's border
-// loss         [rows] what absorption takes per fluence
+// conductance  [axis][rows] of the voxel's low face, length^2; 0 on the box's boundary
+// loss         [rows] absorbed power per fluence
 __kernel void diffusion_conductance(DiffusionLayout layout, const __global float* sigma_t,
   const __global float* sigma_a, const __global float* flat_source, __global float* conductance, __global float* loss)
 {
@@ -140,7 +143,7 @@ __kernel void diffusion_conductance(DiffusionLayout layout, const __global float
   }
 }
 
-// sigma_t in rows. Beside the box's border as much as within, so that there is no contrast.
+// Copies sigma_t to rows. Beyond the box's boundary it is the same as inside, so that there is no contrast.
 __kernel void diffusion_extinction(DiffusionLayout layout, const __global float* sigma_t, __global float* extinction)
 {
   sigma_t += layout.firstT;
@@ -161,7 +164,7 @@ __kernel void diffusion_extinction(DiffusionLayout layout, const __global float*
   }
 }
 
-// Extinction of the voxels at x of a row, [0], and of their neighbours, [1 + d].
+// Extinction of the voxels at x of a row, [0], and of their neighbours across face d, [1 + d].
 static void find_extinctions(
   const DiffusionLayout* layout, int y, int z, int x, const __global float* extinction, real* sigma_t)
 {
@@ -181,7 +184,7 @@ static void find_extinctions(
   sigma_t[6] = load_real(row_at(rows, y, high_z) + x, extinction);
 }
 
-// Of voxels beside thinner ones: the largest contrast of their faces, 0 below 0.01.
+// The largest contrast() of the voxels' faces, 0 below 0.01. Nonzero only next to thinner voxels.
 static real skin_of(const DiffusionLayout* layout, const real* sigma_t)
 {
   real most = (real)0.0f;
@@ -194,8 +197,8 @@ static real skin_of(const DiffusionLayout* layout, const real* sigma_t)
   return layout->linear ? select((real)0.0f, most, most > (real)0.01f) : (real)0.0f;
 }
 
-// Which rows have voxels with a skin.
-// skins  [z][y], 0 before
+// Marks rows that contain voxels with a nonzero skin_of().
+// skins  [z][y], initially 0
 __kernel void diffusion_skins(DiffusionLayout layout, const __global float* extinction, __global int* skins)
 {
   FOR_ROWS(layout.rows)
@@ -215,7 +218,7 @@ __kernel void diffusion_skins(DiffusionLayout layout, const __global float* exti
   }
 }
 
-// Exact values of a row by voxels from x on, as floats; what is beyond its end repeats the last.
+// Loads exact values of a row of [voxel] from x on as floats; lanes beyond its end repeat the last voxel.
 static real load_rounded(const __global exact* row, int x, int size)
 {
   float values[REAL_WIDTH];
@@ -226,10 +229,10 @@ static real load_rounded(const __global exact* row, int x, int size)
   return *(real*)values;
 }
 
-// The fluence at which the sweep's power is compared with diffusion (numerics.md, Eq. (56)): in thin voxels what
-// the sweep found, in thick ones what it was given.
-// extinction  sigma_t in rows, see diffusion_extinction; where SKIN is 0 as the solver has it
-// of_lamps    W / (length^3 sr), see DiffusionSystem::Arrays; where PASSING
+// Computes the model's fluence, at which the sweep's powers are compared with diffusion (numerics.md, Eq. (56)): in
+// thin voxels the sweep's result, in optically thick ones the fluence from which its source was computed.
+// extinction  sigma_t in rows, see diffusion_extinction; if SKIN is 0, in the solver's layout
+// of_lamps    W / (length^3 sr), see DiffusionSystem::Arrays; if PASSING
 __kernel void diffusion_model(DiffusionLayout layout, const __global float* extinction, const __global float* path,
   const __global exact* fluence, const __global float* source, const __global float* of_lamps, __global float* model)
 {
@@ -250,7 +253,7 @@ __kernel void diffusion_model(DiffusionLayout layout, const __global float* exti
       const real skin = skin_of(&layout, sigma_t);
       real source_of_fluence = load_real(here + x, source);
 #if PASSING
-      source_of_fluence -= load_real(here + x, of_lamps); // the fluence that is solved for has none of it either
+      source_of_fluence -= load_real(here + x, of_lamps); // the solved fluence does not include it either
 #endif
       const real shining = 4.0f * M_PI_F * source_of_fluence / fmax(sigma_t[0], (real)1e-37f);
       const real given = select(solved, mix(solved, shining, skin), skin > (real)0.0f);
@@ -267,17 +270,17 @@ __kernel void diffusion_model(DiffusionLayout layout, const __global float* exti
   }
 }
 
-// Of a channel and an axis, what is found at the faces across it, [voxel].
+// Data of a channel at the faces across one axis, [voxel].
 typedef struct
 {
   const __global float *sigma_t, *sigma_a, *flatSource, *model;
-  const __global float *low, *high;             // W that entered through low faces, and through high ones
-  const __global float *passedLow, *passedHigh; // lamps' light that passed them at once
+  const __global float *low, *high; // power that entered in the sweep through low faces, and through high ones, W
+  const __global float *passedLow, *passedHigh; // lamps' first-scattered light that crossed these faces directly
   const __global float* givenFlux;
 } face_arrays;
 
-// Power through the faces between voxels j and those after them along the axis, i, towards i, but what their fluence
-// drives (numerics.md, Eqs. (53a), (54)).
+// Power from voxels j to the next ones along the axis, i, through the faces between them, except for the part that
+// their fluence drives (numerics.md, Eqs. (53a), (54)).
 static real power_of_faces(
   const DiffusionLayout* layout, const face_arrays* of, int axis, int j, int i, real passes, real crossing)
 {
@@ -297,10 +300,10 @@ static real power_of_faces(
   return power;
 }
 
-// Power through the voxels' low faces, in rows; 0 at the box's border.
-// currents  W, [-x, +x, -y, +y, -z, +z][stride], that entered in the sweep
-// passed    as currents; where PASSING
-// pattern   tables of crossings (DiffusionLayout)
+// Computes the power through the voxels' low faces, in rows; 0 at the box's boundary.
+// currents  power that entered in the sweep, W, [-x, +x, -y, +y, -z, +z][stride]
+// passed    laid out as currents; if PASSING
+// pattern   crossing tables (DiffusionLayout)
 __kernel void diffusion_face_powers(DiffusionLayout layout, const __global float* sigma_t,
   const __global float* sigma_a, const __global float* flat_source, const __global float* conductance,
   const __global float* currents, const __global float* passed, const __global float* model,
@@ -348,9 +351,9 @@ __kernel void diffusion_face_powers(DiffusionLayout layout, const __global float
   }
 }
 
-// The right-hand side of numerics.md, Eq. (53), W, in rows, but for what passes the box's faces.
-// given    emitted and first scattered light of lights, W / (length^3 sr)
-// powers_  of low faces, see diffusion_face_powers
+// Computes the right-hand side of numerics.md, Eq. (53), W, in rows, except for the power through the box's faces.
+// given    emission and first-collision source, W / (length^3 sr)
+// powers_  through low faces, see diffusion_face_powers
 __kernel void diffusion_balance(DiffusionLayout layout, const __global float* given, const __global float* powers_x,
   const __global float* powers_y, const __global float* powers_z, __global float* right)
 {
@@ -373,7 +376,7 @@ __kernel void diffusion_balance(DiffusionLayout layout, const __global float* gi
   }
 }
 
-// What absorption takes of the fluence, W.
+// Absorbed power of the fluence, W.
 // sums  [work-group]
 __kernel void diffusion_absorbed(
   DiffusionLayout layout, const __global float* sigma_a, const __global exact* fluence, __global exact* sums)

@@ -11,7 +11,7 @@ namespace tyndall
 {
 namespace
 {
-/// The tables of the planes that a box has.
+/// The part of the crossing pattern for the planes of a box.
 CrossingPattern PatternOf(const CrossingPattern& whole, const VoxelBox& box, const std::array<int, 3>& size)
 {
   CrossingPattern pattern;
@@ -22,14 +22,14 @@ CrossingPattern PatternOf(const CrossingPattern& whole, const VoxelBox& box, con
     pattern.first[table] = static_cast<int>(pattern.values.size());
     for (int k = 0; k < box.size[along]; ++k)
     {
-      const int plane = (box.first[along] + k + size[along]) % size[along]; // round a periodic axis
+      const int plane = (box.first[along] + k + size[along]) % size[along]; // wraps around a periodic axis
       pattern.values.push_back(whole.values[whole.first[table] + plane]);
     }
   }
   return pattern;
 }
 
-/// One of several arrays of a level, without what lies between rows.
+/// One of several arrays of a level, without the padding between rows.
 std::vector<float> ArrayOf(const MultigridLevel& rows, const std::vector<float>& arrays, int which)
 {
   const auto begin = arrays.begin() + static_cast<std::ptrdiff_t>(which) * rows.floats;
@@ -172,7 +172,7 @@ void DiffusionSolver::BeginBeyond(const std::vector<double>& guessed)
       return;
     }
     std::vector<double> state = this->System->State();
-    std::copy(this->Fluence.begin(), this->Fluence.end(), state.begin()); // which has no rounding
+    std::copy(this->Fluence.begin(), this->Fluence.end(), state.begin()); // the host's copy is not rounded
     std::transform(state.begin(), state.end(), guessed.begin(), state.begin(), std::plus<>());
     std::copy_n(state.begin(), this->Fluence.size(), this->Fluence.begin());
     this->System->Begin(state);
@@ -238,7 +238,7 @@ std::array<double, 6> DiffusionSolver::Outflow(double entered, const std::array<
         voxel[axes.axis] = face % 2 ? size[axes.axis] - 1 : 0;
         voxel[axes.u] = u;
         voxel[axes.v] = v;
-        return this->Block.IsOwn(voxel); // whose faces at the end of the box are the grid's
+        return this->Block.IsOwn(voxel); // the faces of own voxels at the end of the box are the grid's
       });
     }
   });
@@ -249,7 +249,7 @@ std::array<double, 6> DiffusionSolver::Outflow(double entered, const std::array<
   }
   values = this->TheDomain.Sum(values);
   sums.transportWeight = values[0];
-  sums.shared = this->ByCells ? 0.0 : values[1]; // else known by cell
+  sums.shared = this->ByCells ? 0.0 : values[1]; // otherwise the power is known by cell
   auto next = values.begin() + 2;
   for (std::array<double, 6>* ofFaces : { &sums.out, &sums.seeming, &sums.came })
   {

@@ -1,17 +1,17 @@
-// The diffusion system of a channel at the box's faces, and what comes of its solution, voxel by voxel; what runs
-// over all voxels each time is in DiffusionRows.cl. The host gives
-//   DOUBLES  1 where the device has double precision
-//   PASSING  1: lamps' light passes faces at once where it is scattered
-//   FACES    1: light leaves and comes back by cells of the box's faces
-//   MOMENTS  1: sweeps carry light that goes straight on where it is scattered forwards, or has angular moments
+// The diffusion system of a channel at the box's faces, and quantities derived from its solution, voxel by voxel.
+// Kernels that process all voxels in every iteration are in DiffusionRows.cl. Options:
+//   DOUBLES  1: the device has double precision
+//   PASSING  1: lamps' light crosses faces directly after its first scattering (LampPassing.h)
+//   FACES    1: outgoing and reflected power is known by cell of the box's faces
+//   MOMENTS  1: sweeps treat forward scattering as unscattered light, or have angular moments
 //
-// Face d of a voxel is -x, +x, -y, +y, -z, +z. tau is the optical length of a voxel along an axis.
+// Faces d of a voxel are -x, +x, -y, +y, -z, +z. tau is the optical length of a voxel along an axis.
 
 #include "LightPropagation/Diffusion/BoxBorders.cl"
 #include "LightPropagation/Diffusion/FaceRemainder.cl"
 #include "LightPropagation/Sweep/MomentPlacesShared.h"
 
-// Conductance of face d of a voxel: of low faces, in rows (MultigridLevel).
+// Conductance of face d of a voxel. The array holds low faces, in rows (MultigridLevel).
 static float conductance_at(const DiffusionLayout* layout, const __global float* conductance, int d, const int* at)
 {
   int of[3] = { at[0], at[1], at[2] };
@@ -23,7 +23,7 @@ static float conductance_at(const DiffusionLayout* layout, const __global float*
   return conductance[d / 2 * rows->floats + RowsLead + of[2] * rows->plane + of[1] * rows->pitch + of[0]];
 }
 
-// What leaves through the box's border, per fluence, added to the loss.
+// Adds to the loss the power that leaves through the box's faces per fluence.
 __kernel void diffusion_border_loss(
   DiffusionLayout layout, const __global float* sigma_t, const __global float* sigma_a, __global float* loss)
 {
@@ -47,7 +47,8 @@ __kernel void diffusion_border_loss(
   loss[RowsLead + z * layout.rows.plane + y * layout.rows.pitch + x] += taken;
 }
 
-// Of a voxel beside thinner ones: the largest contrast of its inner faces, 0 below 0.01, and that of each.
+// The largest contrast() of a voxel's inner faces, 0 below 0.01; `open` receives that of each face. Nonzero only next
+// to thinner voxels.
 static float openness(
   const DiffusionLayout* layout, const __global float* sigma_t, int i, const int* next, const int* at, float* open)
 {
@@ -76,10 +77,10 @@ typedef struct
   const __global float* pattern;
   const __global float* givenFlux; // [axis][stride]
   ulong stride;
-  const __global float* faces; // where FACES
+  const __global float* faces; // if FACES
 } diffusion_arrays;
 
-// Cell of the box's faces (Medium/BoxFaces.h).
+// Index of a voxel's cell on face d of the box (Medium/BoxFaces.h).
 static int cell_of_face(const DiffusionLayout* layout, const int* at, int d)
 {
   const int* n = layout->size;
@@ -99,7 +100,8 @@ static int face_cells(const DiffusionLayout* layout)
   return 2 * (n[1] * n[2] + n[0] * n[2] + n[0] * n[1]);
 }
 
-// W / length^2 through a cell of face d: in the sweep that was made, or what is given beside what the face gives back.
+// Incident power per area through a cell of face d, W / length^2: boundary source and, if FACES, that of a row of
+// `faces`.
 static float coming_in(const DiffusionLayout* layout, const diffusion_arrays* arrays, int row, int d, const int* at)
 {
 #if FACES
@@ -110,8 +112,8 @@ static float coming_in(const DiffusionLayout* layout, const diffusion_arrays* ar
 #endif
 }
 
-// What the given source's own net flux adds, for a voxel's half along an axis, to the fluence that drives light along
-// it (numerics.md, Eq. (53a)).
+// Contribution of the given source's own net flux, over half a voxel along an axis, to the fluence that drives the
+// current along the axis (numerics.md, Eq. (53a)).
 static float drive(const DiffusionLayout* layout, const diffusion_arrays* arrays, int axis, int i)
 {
 #if MOMENTS
@@ -121,7 +123,7 @@ static float drive(const DiffusionLayout* layout, const diffusion_arrays* arrays
 #endif
 }
 
-// The same out of a voxel through its face d to voxel j, or to the border of the box.
+// drive() out of a voxel through its face d to voxel j, or, below, to the boundary of the box.
 static float drive_through(const DiffusionLayout* layout, const diffusion_arrays* arrays, int d, int i, int j)
 {
   return (d & 1 ? 1.0f : -1.0f) * (drive(layout, arrays, d / 2, i) + drive(layout, arrays, d / 2, j));
@@ -131,7 +133,7 @@ static float drive_out(const DiffusionLayout* layout, const diffusion_arrays* ar
   return (d & 1 ? 1.0f : -1.0f) * drive(layout, arrays, d / 2, i);
 }
 
-// Of the pattern of rays that cross faces across an axis, at a voxel.
+// Value of the crossing pattern (CrossingPattern.h) of faces across an axis, at a voxel.
 static float crossing_at(const DiffusionLayout* layout, const diffusion_arrays* arrays, int axis, const int* at)
 {
   const int b = axis == 0 ? 1 : 0;
@@ -139,7 +141,7 @@ static float crossing_at(const DiffusionLayout* layout, const diffusion_arrays* 
   return arrays->pattern[layout->pattern[2 * axis] + at[b]] + arrays->pattern[layout->pattern[2 * axis + 1] + at[c]];
 }
 
-// Power through inner face d out of voxel i to j, that of the sweep less that of the model (numerics.md, Eq. (54)).
+// Power through inner face d from voxel i to j: that of the sweep minus that of the model (numerics.md, Eq. (54)).
 static float remainder_of_face(
   const DiffusionLayout* layout, const diffusion_arrays* arrays, int d, int i, int j, const int* at)
 {
@@ -154,8 +156,8 @@ static float remainder_of_face(
   return remainder_of(layout, axis, &face);
 }
 
-// Power through a face of the box, out less in, that a sweep finds by the model (numerics.md, Eq. (59));
-// `dark`: what diffusion has there without any light in the voxel.
+// Net outgoing power through a face of the box that a sweep finds according to the model (numerics.md, Eq. (59));
+// `dark` receives that of diffusion without any light in the voxel.
 static float model_of_boundary(
   const DiffusionLayout* layout, const diffusion_arrays* arrays, int d, int i, const int* at, float* dark)
 {
@@ -187,7 +189,7 @@ static float model_of_boundary(
   return pattern_of(crossing_at(layout, arrays, axis, at), tau) * spread * area;
 }
 
-// Lamps' light that is scattered near face d of voxel i and passes it at once, less what comes the other way, W.
+// Lamps' first-scattered light that crosses face d of voxel i directly, minus that in the opposite direction, W.
 static float passing(
   const DiffusionLayout* layout, const diffusion_arrays* arrays, int d, int i, const int* next, bool border)
 {
@@ -198,7 +200,7 @@ static float passing(
 #endif
 }
 
-// Part of what the medium sends through face d that leaves for good.
+// Fraction of the power that the medium sends through face d and that is not reflected back.
 static float part_that_leaves(const DiffusionLayout* layout, const diffusion_arrays* arrays, int d, int i)
 {
 #if FACES
@@ -210,15 +212,16 @@ static float part_that_leaves(const DiffusionLayout* layout, const diffusion_arr
 #endif
 }
 
-// Of all faces of the box at voxel i, W out less in: that of the sweep less that of the model (numerics.md, Eq. (60)).
-//   power    what the medium shines there, in the sweep, less what it takes of the light
-//   share    [face] its part for each face, in proportion to `seeming`
-//   seeming  [face] power out, of the sweep: an estimate, for its tally is not by voxel (numerics.md, Eq. (61))
-//   transport_weight  how much of it counts
+// Net outgoing power through all of the box's faces at voxel i: that of the sweep minus that of the model (numerics.md,
+// Eq. (60)), W.
+//   power    power that the voxel emits and scatters in the sweep, minus what it absorbs and scatters of the light
+//   share    [face] part of the result for each face, in proportion to `seeming`
+//   seeming  [face] outgoing power of the sweep; estimated, since its tally is not by voxel (numerics.md, Eq. (61))
+//   transport_weight  weight of the result
 static float remainder_of_borders(const DiffusionLayout* layout, const diffusion_arrays* arrays, int i, const int* next,
   const int* at, float power, float* share, float* seeming, float* transport_weight)
 {
-  float left = power; // through the box's faces, out less in
+  float left = power; // net outgoing power through the box's faces
   float in = 0.0f, expected = 0.0f, longest = 0.0f, sum = 0.0f, borders = 0.0f;
   float model[6];
   for (int d = 0; d < 6; ++d)
@@ -250,12 +253,12 @@ static float remainder_of_borders(const DiffusionLayout* layout, const diffusion
   }
   *transport_weight = weight_of_transport(layout, longest * arrays->sigma_t[i], longest * arrays->sigma_a[i]);
   *transport_weight = *transport_weight > 1e-12f ? *transport_weight : 0.0f;
-  // Of a thick voxel what is left is a small difference of what it shines and takes.
+  // In an optically thick voxel the net power is a small difference of the emitted and the removed power.
   const float rounding = 1e-6f * arrays->sigma_t[i] * volume_of(layout) * fmax(arrays->model[i], 0.0f);
   const float whole = rounding < 0.01f * sum || sum <= 0.0f ? left + in : sum;
   for (int d = 0; d < 6; ++d)
   {
-    // Where nothing goes straight through, what comes in through faces beside leaves all the same.
+    // If nothing crosses the voxel unscattered, light that entered through its lateral faces leaves all the same.
     const float part = sum > 0.0f ? seeming[d] / sum : is_border(layout, at, d) ? 1.0f / borders : 0.0f;
     seeming[d] = whole * part;
     const float net = seeming[d] - arrays->currents[d * arrays->stride + i] - model[d];
@@ -273,8 +276,8 @@ static float remainder_of_borders(const DiffusionLayout* layout, const diffusion
 #endif
 }
 
-// Power through face d out of voxel i, less what comes in, by the solution; `share` of its remainder where it is the
-// box's.
+// Net outgoing power through face d of voxel i by the solution; `share` is the voxel's remainder_of_borders() for each
+// face of the box.
 static exact power_of_face(const DiffusionLayout* layout, const diffusion_arrays* arrays, const __global exact* fluence,
   int d, int i, const int* next, const int* at, const float* share)
 {
@@ -303,8 +306,7 @@ static exact power_of_face(const DiffusionLayout* layout, const diffusion_arrays
 }
 
 #if FACES
-// Power that leaves through face d of the box by the solution, before the face gives back its part (numerics.md,
-// Eq. (76c)).
+// Outgoing power through face d of the box by the solution, before reflection at the face (numerics.md, Eq. (76c)).
 static exact power_leaving(const DiffusionLayout* layout, const diffusion_arrays* arrays, const __global exact* fluence,
   int d, int i, const int* next, const int* at, float share)
 {
@@ -338,10 +340,10 @@ static exact power_leaving(const DiffusionLayout* layout, const diffusion_arrays
   const float per_radiance = 4.0f * M_PI_F * volume_of(&layout);                                                  \
   float share[6], seeming[6], transport_weight;
 
-// What passes the box's faces, added to the right-hand side of numerics.md, Eq. (53), W, in rows.
-// borders  of each cell of the box's faces what DiffusionShared.h names, but BorderNet
+// Adds the power through the box's faces to the right-hand side of numerics.md, Eq. (53), W, in rows.
+// borders  for each cell of the box's faces the values of DiffusionShared.h, except BorderNet
 // source   of the sweep, W / (length^3 sr)
-// given_flux  of the given source, its net flux over 4 pi, in angular moments, [channel][x, y, z][stride]
+// given_flux  net flux of the given source over 4 pi, if there are angular moments, [channel][x, y, z][stride]
 __kernel void diffusion_border_balance(DiffusionLayout layout, const __global float* sigma_t,
   const __global float* sigma_a, const __global float* swept, const __global float* flat_source,
   const __global float* conductance, const __global float* currents, const __global float* passed,
@@ -382,7 +384,7 @@ __kernel void diffusion_border_balance(DiffusionLayout layout, const __global fl
   }
 }
 
-// Power through the box's faces by the solution, into what diffusion_border_balance found there.
+// Computes the power through the box's faces by the solution; completes the values of diffusion_border_balance.
 __kernel void diffusion_outflow(DiffusionLayout layout, const __global float* sigma_t, const __global float* sigma_a,
   const __global float* swept, const __global float* flat_source, const __global float* conductance,
   const __global float* currents, const __global float* passed, const __global float* model,
@@ -406,7 +408,7 @@ __kernel void diffusion_outflow(DiffusionLayout layout, const __global float* si
   }
 }
 
-// Net flux, W / length^2 times volume, [x, y, z][stride], added to (numerics.md, Eq. (75)).
+// Adds the net flux, W / length^2, times the volume, [x, y, z][stride] (numerics.md, Eq. (75)).
 __kernel void diffusion_flux(DiffusionLayout layout, const __global float* sigma_t, const __global float* sigma_a,
   const __global float* swept, const __global float* flat_source, const __global float* conductance,
   const __global float* currents, const __global float* passed, const __global float* model,
@@ -430,8 +432,8 @@ __kernel void diffusion_flux(DiffusionLayout layout, const __global float* sigma
 }
 
 #if MOMENTS
-// The moments of degree 1, behind the fluence that was solved for, [x, y, z][voxel]: of what the sweep found, and by
-// how much that fluence's net flux differs from it.
+// Computes the moments of degree 1 and stores them behind the fluence, [x, y, z][voxel]: those of the sweep, plus the
+// difference of the solution's net flux from the model's.
 __kernel void diffusion_found_flux(DiffusionLayout layout, const __global float* sigma_t, const __global float* sigma_a,
   const __global float* swept, const __global float* flat_source, const __global float* conductance,
   const __global float* currents, const __global float* passed, const __global float* model,
@@ -463,7 +465,7 @@ __kernel void diffusion_found_flux(DiffusionLayout layout, const __global float*
   }
 }
 
-// And into the path.
+// Copies the moments of degree 1 to the path.
 __kernel void diffusion_put_flux(
   DiffusionLayout layout, const __global exact* fluence, MomentPlaces places, int channel, __global float* path)
 {
@@ -479,9 +481,9 @@ __kernel void diffusion_put_flux(
 }
 #endif
 
-// The next sweep's source where thick voxels lie beside thinner ones: what gives their surface the outward partial
-// current of diffusion, instead of what is emitted and scattered (numerics.md, Eqs. (63), (64)).
-// skins  of rows, see diffusion_skins
+// Changes the next sweep's source in optically thick voxels next to thinner ones: instead of emission and scattering,
+// to the source that gives their surface the outward partial current of diffusion (numerics.md, Eqs. (63), (64)).
+// skins  by row, see diffusion_skins
 __kernel void diffusion_surface_source(DiffusionLayout layout, const __global exact* fluence,
   const __global float* sigma_t, const __global float* sigma_a, const __global float* conductance,
   const __global float* passed, const __global int* skins, __global float* source)
@@ -521,6 +523,6 @@ __kernel void diffusion_surface_source(DiffusionLayout layout, const __global ex
     }
   }
   const float there = sum > 0.0f ? fmax(shining / sum, 0.0f) * sigma_t[i] * (0.25f * M_1_PI_F) : 0.0f;
-  // Where the skin is all, what is scattered of the fluence does not count, and may be more than floats hold.
+  // With skin 1 the scattering source has no weight; it may exceed the range of floats.
   source[begin + i] = skin < 1.0f ? mix(source[begin + i], there, skin) : there;
 }

@@ -15,14 +15,15 @@ namespace tyndall
 {
 namespace
 {
-constexpr double Floor = 0.05;     ///< optical length between centres of voxels that pass light as if it were that long
-constexpr double Reduction = 3e-3; ///< of the residual in one correction: sweeps gain little more than that
-/// And where the iteration is slow, after several corrections: what they leave of the residual adds up.
+constexpr double Floor = 0.05;     ///< minimum optical length between voxel centres: conductance does not grow below it
+constexpr double Reduction = 3e-3; ///< reduction of the residual in one correction: more would hardly save sweeps
+/// The same for slow iterations, after several corrections: the residuals that these leave add up.
 constexpr double SlowReduction = 1e-4;
 constexpr int Several = 12;
-constexpr std::size_t BorderGroup = 256; ///< cells of the box's faces in a work-group
+constexpr std::size_t BorderGroup = 256; ///< cells of the box's faces per work-group
 
-/// Rounding can leave dark faces a little below 0: they become 0, and the others are scaled so that the sum stays.
+/// Rounding can make the power of dark faces slightly negative: it is set to 0, and the others are scaled to conserve
+/// the sum.
 std::array<double, 6> NotNegative(std::array<double, 6> powers)
 {
   const double sum = std::accumulate(powers.begin(), powers.end(), 0.0);
@@ -75,7 +76,7 @@ DiffusionSystem::DiffusionSystem(Device& device, const Grid& grid, const std::ar
   this->Model = Buffer<float>(device, this->Count + RowVector, what);
   this->Next = ExactValues(device, this->Values(), what);
   this->Solution = ExactValues(device, this->Values(), what);
-  this->Solution.Fill(0.0); // a dark channel is never solved for
+  this->Solution.Fill(0.0); // a channel without light is never solved for
   this->Borders = ExactValues(device, BorderValues * this->BorderCells, what);
 
   cl::Kernel flat_source = this->RowsKernel("diffusion_flat_source");
@@ -137,7 +138,7 @@ cl::Kernel DiffusionSystem::OnArrays(const char* name, const More&... more)
   return kernel;
 }
 
-/// Which rows have thick voxels beside thinner ones.
+/// Finds the rows that have thick voxels next to thinner ones.
 void DiffusionSystem::FindSkins()
 {
   this->Skins =
@@ -151,7 +152,7 @@ void DiffusionSystem::FindSkins()
   this->AnySkin = std::any_of(rows.begin(), rows.end(), [](cl_int any) { return any != 0; });
 }
 
-/// In an array that the solver takes back when it solves.
+/// Uses an array of the solver that the next solve overwrites.
 const Buffer<float>& DiffusionSystem::ExtinctionInRows()
 {
   const Buffer<float>& extinction = *this->Solver.Scratch().front();
@@ -173,7 +174,7 @@ void DiffusionSystem::ShapeSource()
   this->Run(kernel);
 }
 
-/// The fluence at which the sweep's power is compared with diffusion.
+/// Computes the fluence at which the sweep's powers are compared with diffusion.
 void DiffusionSystem::FindModel()
 {
   const Arrays& the = this->The;
@@ -184,7 +185,7 @@ void DiffusionSystem::FindModel()
   this->RunRows(model);
 }
 
-/// The system's right-hand side.
+/// Computes the system's right-hand side.
 void DiffusionSystem::Balance()
 {
   const Arrays& the = this->The;
@@ -230,7 +231,7 @@ double DiffusionSystem::ReductionAfter(int corrections)
 AndersonMixing::Weighting DiffusionSystem::WeightingOfChange() const
 {
   const auto& h = this->Layout.spacing;
-  const float edge = std::cbrt(h[0] * h[1] * h[2]); // the same whichever axis is which
+  const float edge = std::cbrt(h[0] * h[1] * h[2]); // invariant under permutation of the axes
   return { this->The.sigma_s, this->The.first, edge };
 }
 
@@ -303,8 +304,8 @@ std::array<double, 6> DiffusionSystem::OutflowBy(
   const BorderSums& sums, double entered, const std::array<double, 6>& ofSweep, const std::array<bool, 3>& periodic)
 {
   std::array<double, 6> outflow = sums.out;
-  std::array<double, 6> missing = ofSweep; // of what seems to leave
-  // Thousands of rays through one cell, added in floats, are off by 1e-5.
+  std::array<double, 6> missing = ofSweep; // outgoing power minus its estimate
+  // Summing thousands of rays through one cell in floats gives errors of 1e-5.
   const double allCame = std::accumulate(sums.came.begin(), sums.came.end(), 0.0);
   for (int face = 0; face < 6; ++face)
   {

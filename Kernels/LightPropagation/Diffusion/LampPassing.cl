@@ -1,12 +1,12 @@
-// Lamps' light in thick voxels, see LampPassing.h: it is scattered first near the faces that it comes in through,
-// and part of it passes those at once.
+// Lamps' light in optically thick voxels, see LampPassing.h: it is first scattered near the faces through which it
+// enters, and part of the scattered light crosses these directly.
 
 #include "LightPropagation/Diffusion/BoxBorders.cl"
 #include "LightPropagation/Sweep/FallOfLight.cl"
 
-// Part that returns to the face of light that is lost as exp(-b t) over tau and absorbed at k a mean free path on its
-// way back (numerics.md, Eq. (69)). r, 0 to 1, is how near to the face it is scattered: 1 - 2 t / tau for a mean
-// depth t.
+// Fraction of light that returns to the entry face, if it collides with density exp(-b t) over tau and is absorbed at
+// the rate k per mean free path on the way back (numerics.md, Eq. (69)). r, 0 to 1, is the proximity of first
+// scattering to the face: 1 - 2 t / tau for mean depth t.
 static float comes_back(float tau, float r, float k)
 {
   const float x = fall_of(fmin(r, 0.999999f)), y = x + k * tau;
@@ -15,8 +15,8 @@ static float comes_back(float tau, float r, float k)
   return back / shone;
 }
 
-// Part of a voxel's scattered light that passes an inner face besides what it would if it were scattered at the centre
-// (numerics.md, Eqs. (66), (69)), but for the ratio of the ways.
+// Fraction of a voxel's scattered light that crosses an inner face in addition to what would if it were scattered at
+// the centre (numerics.md, Eqs. (66), (69)), without the ratio of path lengths.
 static float passes_inside(float tau, float r, float k)
 {
   if (k * tau < 0.02f)
@@ -27,21 +27,21 @@ static float passes_inside(float tau, float r, float k)
   return fmax((comes_back(tau, r, k) - even) / (1.0f - even), 0.0f);
 }
 
-// Mean of Hopf's function over exp(-t / depth): H(depth) / sqrt(3) - depth, to 0.5% (numerics.md, Eq. (67)).
+// Mean of Hopf's function weighted by exp(-t / depth): H(depth) / sqrt(3) - depth, to 0.5% (numerics.md, Eq. (67)).
 static float hopf(float depth)
 {
   const float c = 0.34f - 0.17f / (1.0f + 4.0f * depth);
   return 0.57735f + 0.13310f * depth / (depth + c);
 }
 
-// Correction of what passes in voxels that are neither thin nor thick, fitted to slabs (numerics.md, Eq. (68)).
+// Correction factor for voxels that are neither thin nor thick, fitted to slabs (numerics.md, Eq. (68)).
 static float beside_sweeps(float tau)
 {
   const float transport_weight = 1.0f / (1.0f + 0.25f * tau * tau);
   return 1.0f + transport_weight * (0.02f + 0.17f * transport_weight);
 }
 
-// The same at a face of the box (numerics.md, Eqs. (66), (69)).
+// passes_inside() for a face of the box (numerics.md, Eqs. (66), (69)).
 static float passes_border(float tau, float r, float k)
 {
   const float depth = 0.5f * (1.0f - r) * tau;
@@ -55,12 +55,12 @@ static float passes_border(float tau, float r, float k)
   return fmax(1.0f - kept / (1.0f - even), 0.0f);
 }
 
-// Of one lamp: the light that passes faces at once where it is scattered (numerics.md, Eqs. (66) to (69)).
-// path           W length, of the lamp
-// swept          sigma_t of the sweeps: more where scattering is not taken as isotropic
-// first_moments  of it, as in Sweep/Deposit.h, [channel][face][stride]
+// Adds the light of one lamp that crosses faces directly after first scattering (numerics.md, Eqs. (66) to (69)).
+// path           of the lamp, W length
+// swept          sigma_t of the sweeps: larger than sigma_t if scattering is not taken as isotropic
+// first_moments  of the lamp's deposit, as in Sweep/Deposit.h, [channel][face][stride]
 // passed         [channel][face][stride] W, added to
-// all_path       W length, of all lamps, added to
+// all_path       of all lamps, W length, added to
 __kernel void pass_lamp_light(DiffusionLayout layout, const __global float* sigma_t, const __global float* sigma_a,
   const __global float* sigma_s, const __global float* swept, const __global float* path,
   const __global float* first_moments, __global float* passed, __global float* all_path)
@@ -85,7 +85,7 @@ __kernel void pass_lamp_light(DiffusionLayout layout, const __global float* sigm
     const float tau = sigma_t[i] * h;
     const float r = length > 0.0f ? fmin(2.0f * first_moments[d * stride + i] / length, 1.0f) : 0.0f;
     part[d] = 0.0f;
-    // Light that is scattered forwards does not turn back at once.
+    // Forward-scattered light does not return directly.
     if (tau <= 0.0f || r <= 0.0f || swept[i] > sigma_t[i])
     {
       continue;
@@ -103,7 +103,8 @@ __kernel void pass_lamp_light(DiffusionLayout layout, const __global float* sigm
     }
     sum += part[d];
   }
-  const float power = sigma_s[layout.first + i] * length / fmax(sum, 1.0f); // a corner cannot pass more than there is
+  // limits the sum over a corner's faces to the scattered power
+  const float power = sigma_s[layout.first + i] * length / fmax(sum, 1.0f);
   for (int d = 0; d < 6; ++d)
   {
     passed[d * stride + i] += part[d] * power;

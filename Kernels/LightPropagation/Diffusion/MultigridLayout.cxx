@@ -9,11 +9,11 @@ namespace tyndall
 {
 namespace
 {
-constexpr std::size_t FewVoxels = 64;        ///< of the coarsest level
-constexpr int VoxelsOfItem = 4096;           ///< that a work-item walks along, about
-constexpr int BetweenPlanes = 2 * RowVector; ///< floats, beyond the rows
+constexpr std::size_t FewVoxels = 64;        ///< number of voxels below which a level is not coarsened further
+constexpr int VoxelsOfItem = 4096;           ///< approximate number of voxels per work-item
+constexpr int BetweenPlanes = 2 * RowVector; ///< padding of planes, floats
 
-/// How the arrays of a level of this size lie in memory.
+/// Sets the memory layout of a level of this size.
 void LayOut(MultigridLevel& level)
 {
   level.pitch = RoundUp(level.size[0], int(RowVector)) + RowVector;

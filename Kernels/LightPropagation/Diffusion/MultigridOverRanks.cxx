@@ -12,7 +12,7 @@ namespace tyndall
 {
 namespace
 {
-/// Of the cells that join a box's cells, those whose first cell is in it (owned), or any (touched).
+/// The coarse cells whose first fine cell is in the box (owned), or that contain any cell of it (touched).
 VoxelBox Joined(const VoxelBox& box, const std::array<int, 3>& halved, bool owned)
 {
   VoxelBox joined = box;
@@ -28,7 +28,7 @@ VoxelBox Joined(const VoxelBox& box, const std::array<int, 3>& halved, bool owne
   return joined;
 }
 
-/// Of the cells that have some of a rank's finer ones, those that others own: below its own, if it has any.
+/// The coarse cells that contain finer cells of this rank but belong to others: they lie below its own, if it has any.
 std::vector<VoxelBox> TouchedOfOthers(const VoxelBox& own, const VoxelBox& touched)
 {
   if (own.VoxelCount() == 0)
@@ -36,7 +36,7 @@ std::vector<VoxelBox> TouchedOfOthers(const VoxelBox& own, const VoxelBox& touch
     return { touched };
   }
   std::vector<VoxelBox> boxes;
-  for (int below = 1; below < 8; ++below) // along which axes
+  for (int below = 1; below < 8; ++below) // bit mask of the axes along which they lie below
   {
     VoxelBox box = own;
     for (int axis = 0; axis < 3; ++axis)
@@ -61,8 +61,8 @@ std::size_t CellsOf(const std::array<int, 3>& size)
 }
 }
 
-/// A row of a level's own cells, and how far its neighbours are, along x those of its first cell and its last; 0 at the
-/// grid's end, where nothing passes.
+/// A row of a level's own cells, and the offsets of its neighbours; along x those of its first and last cell. An offset
+/// is 0 at the grid's end, where the conductance is 0.
 struct MultigridOverRanks::Row
 {
   std::size_t first;
@@ -78,7 +78,7 @@ MultigridOverRanks::MultigridOverRanks(Communicator& communicator, const BlockPa
   std::vector<MultigridLevel> layouts = MultigridLevels(partition.whole.size, partition.whole.spacing);
   if (layouts.size() == 1)
   {
-    std::fill_n(layouts[0].halved, 3, 0); // a level of the same cells, all on one rank
+    std::fill_n(layouts[0].halved, 3, 0); // adds a level of the same cells, all on one rank
     layouts.push_back(layouts[0]);
   }
   std::vector<VoxelBox> own = partition.blocks, touched = own;
@@ -159,7 +159,7 @@ MultigridOverRanks::Row MultigridOverRanks::RowOf(const Level& level, int y, int
   return row;
 }
 
-/// act(row) for the rows of own cells, on all cores.
+/// Calls act(row) for the rows of own cells, on all cores.
 template <class Act>
 void MultigridOverRanks::ForRows(const Level& level, const Act& act)
 {
@@ -216,8 +216,7 @@ double MultigridOverRanks::Diagonal(const Level& level, const Row& row, int x)
   return sum;
 }
 
-/// act(cell, the coarser one that it is part of, is it the first of that along each axis) for own cells, in their
-/// order.
+/// Calls act(cell, its coarse cell, whether it is the first of that along each axis) for own cells, in order.
 template <class Act>
 void MultigridOverRanks::ForParents(const Level& fine, const Level& coarse, const Act& act)
 {
@@ -369,7 +368,7 @@ void MultigridOverRanks::VisitTwice(std::size_t l)
   });
 }
 
-/// A few cells, all on one rank: Gauss and Seidel there and back.
+/// Solves a level of few cells, all on one rank, approximately by symmetric Gauss-Seidel iterations.
 void MultigridOverRanks::Finish(Level& level)
 {
   std::fill(level.better.begin(), level.better.end(), 0.0);
@@ -389,7 +388,7 @@ void MultigridOverRanks::Finish(Level& level)
   }
 }
 
-/// A cycle on the residual, which is the finest level's right-hand side.
+/// Applies a multigrid cycle to the residual, which is the finest level's right-hand side.
 double MultigridOverRanks::Precondition()
 {
   Level& finest = this->Levels.front();
@@ -410,7 +409,7 @@ double MultigridOverRanks::Precondition()
   }));
 }
 
-/// The residual. @return its square, in units
+/// Computes the residual. @return r r, in units
 double MultigridOverRanks::Begin(std::vector<double>& values, const std::vector<float>& right, double unit)
 {
   Level& finest = this->Levels.front();

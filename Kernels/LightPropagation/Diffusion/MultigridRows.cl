@@ -2,21 +2,21 @@
 //   (A x)_i = sum over faces of conductance (x_i - x_j) + loss_i x_i
 // with the conductances of low faces, [axis][floats of an array]; 0 at the box's end.
 //
-// Kernels are written once, for CPUs and GPUs. On a CPU a work-item walks along rows in vectors. On a GPU
-// (REAL_WIDTH 1) it takes single voxels, and its neighbours in the work-group those beside. The host gives GROUP
-// (GroupSum.cl) with it.
+// Kernels are written once, for CPUs and GPUs. On a CPU a work-item processes rows in vectors. On a GPU (REAL_WIDTH 1)
+// it processes single voxels, and neighbouring work-items of the group process neighbouring voxels. Also needs the
+// option GROUP (GroupSum.cl).
 
 #pragma once
 #include "LightPropagation/Diffusion/DiffusionShared.h"
 #include "Numerics/GroupSum.cl"
 #include "Numerics/Numerics.cl"
 
-// FOR_ROWS     rows, r, of which this work-item has something to do, one after the other
-// FOR_VECTORS  in a row, what it has to do of begin <= x < end, by vectors
+// FOR_ROWS     loops over the rows r that this work-item contributes to
+// FOR_VECTORS  loops over its part of begin <= x < end in a row, by vectors
 // FOR_VOXELS   the same by single voxels
-// FILL_GHOSTS  within FOR_ROWS, behind the last write to the row: beside a row's ends lie those of the other side. A
-//              periodic axis goes on there, and where the box ends nothing passes
-// ENDS_ROW     true once a row
+// FILL_GHOSTS  sets a row's ghosts to the values of the opposite end; within FOR_ROWS, after the last write to the row.
+//              A periodic axis continues there; at the box's end the conductance is 0
+// ENDS_ROW     true for exactly one iteration per row
 #if REAL_WIDTH == 1
 #define LANES 0
 #define FOR_ROWS(level)                                                                            \
@@ -48,7 +48,7 @@ inline int row_at(const MultigridLevel* level, int y, int z)
   return RowsLead + z * level->plane + y * level->pitch;
 }
 
-// 0 in lanes from `left` on: beyond a row's last voxel.
+// Sets lanes from `left` on to 0: those beyond a row's last voxel.
 inline real in_row(real values, int left)
 {
   return left >= REAL_WIDTH ? values : select(values, (real)0.0f, LANES >= left);
@@ -60,7 +60,7 @@ inline void fill_ghosts(__global float* row, int size)
   row[size] = row[0];
 }
 
-// By the work-item that wrote x.
+// fill_ghosts() by the work-item that wrote x.
 inline void fill_ghosts_of(__global float* row, int size, int x)
 {
   if (x == 0)
@@ -101,7 +101,7 @@ inline real diagonal_of(const matrix_row* row, int x)
     ((load_real(x, row->passes_z) + load_real(x, row->passes_high_z)) + load_real(x, row->loss));
 }
 
-// A x.
+// (A x) of the voxels at x.
 inline real apply_row(const matrix_row* row, int x)
 {
   const real own = load_real(x, row->own);
@@ -115,7 +115,7 @@ inline real apply_row(const matrix_row* row, int x)
   return sum + aside;
 }
 
-// Of two vectors side by side: sums of two neighbours, and of each two the first.
+// For two adjacent vectors: sums of pairs of neighbours; below, the first of each pair.
 inline real pair_sums(real a, real b)
 {
 #if REAL_WIDTH == 1

@@ -1,11 +1,11 @@
-// Conjugate gradients, preconditioned by multigrid, for the diffusion system (MultigridSolver.h). The host gives
-//   REAL_WIDTH  4 or 8 floats of a vector; 1: by voxels, on a GPU
-//   GROUP       GroupSum.cl; on a GPU at least as many as the coarsest level has voxels
-//   DOUBLES     1 where the device has double precision
+// Conjugate gradients, preconditioned by multigrid, for the diffusion system (MultigridSolver.h). Options:
+//   REAL_WIDTH  4 or 8 floats of a vector; 1: voxel by voxel, on a GPU
+//   GROUP       GroupSum.cl; on a GPU at least the number of voxels of the coarsest level
+//   DOUBLES     1: the device has double precision
 //
-// Each kernel walks along rows (MultigridRows.cl). Vectors are float: multigrid only has to point in about the right
-// direction, and conjugate gradients begin from a residual that was found in double. What is beyond a row's last voxel
-// is 0 in right-hand sides and residuals, and never counts elsewhere.
+// Each kernel processes rows (MultigridRows.cl). Vectors are float: multigrid only needs an approximate direction, and
+// conjugate gradients start from a residual computed in double. Entries beyond a row's last voxel are 0 in right-hand
+// sides and residuals, and are not used elsewhere.
 
 #include "LightPropagation/Diffusion/MultigridRows.cl"
 #include "Numerics/Exact.cl"
@@ -39,7 +39,7 @@ inline exact sum_of_exact(exact_real values)
 #endif
 }
 
-// damping / diagonal, 0 where the diagonal is: Jacobi's method.
+// Computes damping / diagonal for Jacobi's method; 0 where the diagonal is 0.
 __kernel void level_invert(MultigridLevel level, const __global float* conductance, const __global float* loss,
   __global float* inverse, float damping)
 {
@@ -56,14 +56,14 @@ __kernel void level_invert(MultigridLevel level, const __global float* conductan
   }
 }
 
-// The coarser level's matrix (numerics.md, Eq. (70)): faces side by side add up; along a halved axis centres are twice
-// as far apart.
+// The coarser level's matrix (numerics.md, Eq. (70)): conductances of adjacent faces add up; along a halved axis they
+// are halved, since centres are twice as far apart.
 typedef struct
 {
   real loss, passes[3];
 } coarse_entries;
 
-// Of the fine row (v, w) behind coarse voxels from x on; b, c: whether it is the second row, or plane, of theirs.
+// Adds the fine row (v, w) to the coarse voxels from x on; b, c: whether it is the second row, or plane, of these.
 static void add_fine_row(const MultigridLevel* fine, int v, int w, int b, int c, int x,
   const __global float* conductance, const __global float* loss, coarse_entries* sum)
 {
@@ -121,7 +121,7 @@ __kernel void level_coarsen(MultigridLevel fine, MultigridLevel coarse, const __
   }
 }
 
-// (b - A x) per unit in one voxel, in exact numbers; x by voxels without ghosts.
+// b - A x of one voxel, in exact numbers; x is [voxel], without ghosts.
 static float residual_at(
   const MultigridLevel* level, const matrix_row* row, const __global exact* values, int x, int y, int z, float right)
 {
@@ -139,7 +139,7 @@ static float residual_at(
   return (float)(right - sum);
 }
 
-// The residual of `values`, per unit, in the place of the right-hand side, and Jacobi's first guess for it.
+// Replaces the right-hand side by the residual of `values`, in units, and computes Jacobi's initial guess for it.
 // sums  [work-group] of its square
 __kernel void begin_residual(MultigridLevel level, const __global float* conductance, const __global float* loss,
   const __global float* inverse, const __global exact* values, float per_unit, __global float* right,
@@ -159,15 +159,15 @@ __kernel void begin_residual(MultigridLevel level, const __global float* conduct
     }
     for (int x = level.size[0]; x % REAL_WIDTH != 0; ++x)
     {
-      right[here + x] = 0.0f; // a ghost, perhaps
+      right[here + x] = 0.0f; // may be the ghost of the next row
     }
     FILL_GHOSTS(guess + here, level.size[0]);
   }
   PUT_SUM_OF_GROUP(exact, sum, sums[get_group_id(0)])
 }
 
-// What is left of a level's right-hand side, summed over the fine voxels of each coarse one, and Jacobi's first guess
-// there.
+// Residual of a level along a row; below, level_restrict sums it over the fine voxels of each coarse one and computes
+// Jacobi's initial guess there.
 static real left_of_row(const MultigridLevel* fine, const matrix_row* row, const __global float* right, int x)
 {
   return in_row(load_real(x, right) - apply_row(row, x), fine->size[0] - x);
@@ -212,7 +212,7 @@ __kernel void level_restrict(MultigridLevel fine, MultigridLevel coarse, const _
   }
 }
 
-// Adds the coarser level's values.
+// Adds the coarser level's correction.
 __kernel void level_prolong(
   MultigridLevel fine, MultigridLevel coarse, const __global float* correction, __global float* values)
 {
@@ -280,8 +280,8 @@ __kernel void level_smooth(MultigridLevel level, const __global float* conductan
   PUT_SUM_OF_GROUP(exact, sum, sums[get_group_id(0)])
 }
 
-// Between two visits of a level: a part of what the first one found is kept, and what is left of the right-hand side
-// takes its place, with Jacobi's first guess for it.
+// Between two visits of a level: stores a fraction of the first visit's correction, replaces the right-hand side by the
+// remaining residual, and computes Jacobi's initial guess for it.
 __kernel void level_revisit(MultigridLevel level, const __global float* conductance, const __global float* loss,
   const __global float* inverse, const __global float* found, float part, __global float* kept, __global float* right,
   __global float* guess)
@@ -302,7 +302,7 @@ __kernel void level_revisit(MultigridLevel level, const __global float* conducta
   }
 }
 
-// The same part of what the second visit found, and what was kept.
+// Adds the same fraction of the second visit's correction to the stored one.
 __kernel void level_join(MultigridLevel level, const __global float* kept, float part, __global float* found)
 {
   FOR_ROWS(level)
@@ -316,7 +316,8 @@ __kernel void level_join(MultigridLevel level, const __global float* kept, float
   }
 }
 
-// A few voxels: Gauss and Seidel there and back. @return the sum of right times values
+// Solves a level of few voxels approximately by symmetric Gauss-Seidel iterations. @return the sum of right times
+// values
 static exact finish(const MultigridLevel* level, const __global float* conductance, const __global float* loss,
   const __global float* right, __global float* values, int rounds)
 {
@@ -352,7 +353,7 @@ static exact finish(const MultigridLevel* level, const __global float* conductan
   return sum;
 }
 
-// By one work-item.
+// finish() by one work-item.
 // sums  of right times values
 __kernel void level_finish(MultigridLevel level, const __global float* conductance, const __global float* loss,
   const __global float* right, __global float* values, __global exact* sums, int rounds)
@@ -360,8 +361,8 @@ __kernel void level_finish(MultigridLevel level, const __global float* conductan
   sums[0] = finish(&level, conductance, loss, right, values, rounds);
 }
 
-// What level_finish makes of it is linear in the right-hand side. On a GPU, where one work-item takes half a
-// millisecond, it is kept as a matrix. A work-item a voxel, whose right-hand side is 1.
+// Computes the matrix of level_finish, which is linear in the right-hand side, for GPUs, where a single work-item takes
+// half a millisecond. One work-item per voxel, whose right-hand side is 1.
 // rights, values  [voxel] an array of the level; rights are 0
 // answers         [voxel][voxel]
 __kernel void level_answers(MultigridLevel level, const __global float* conductance, const __global float* loss,
@@ -379,7 +380,7 @@ __kernel void level_answers(MultigridLevel level, const __global float* conducta
   }
 }
 
-// level_finish by that matrix and one work-group.
+// Applies that matrix instead of level_finish, with one work-group.
 // sums  of right times values
 __kernel void level_answer(MultigridLevel level, const __global float* answers, const __global float* right,
   __global float* values, __global exact* sums)
@@ -440,8 +441,8 @@ __kernel void apply_matrix(MultigridLevel level, const __global float* conductan
   PUT_SUM_OF_GROUP(exact, sum, sums[get_group_id(0)])
 }
 
-// x += step p, r -= step q, and Jacobi's first guess for what is left.
-// values  by voxels, without ghosts; in units of the solver times `step_of_values` over `step`
+// x += step p, r -= step q, and Jacobi's initial guess for the new residual.
+// values  x by voxel, without ghosts; scaled by `step_of_values` / `step` relative to the solver's units
 // sums    [work-group] of r r
 __kernel void go_along(MultigridLevel level, const __global float* direction, const __global float* applied,
   const __global float* inverse, float step, exact step_of_values, __global float* left, __global float* guess,

@@ -16,8 +16,8 @@ namespace tyndall
 {
 namespace
 {
-/// On a GPU: as many keep the largest of them busy. Each work-item then takes several voxels, and the host adds up no
-/// more sums.
+/// On a GPU: enough to keep the largest ones busy. With more voxels each work-item processes several, and the host need
+/// not add more sums.
 constexpr std::size_t GroupsAtMost = 4096;
 }
 
@@ -126,7 +126,7 @@ void MultigridSolver::FindAnswers()
   this->TheDevice.Finish();
 }
 
-/// Of the coarsest level, from its right-hand side to `better`.
+/// Solves the coarsest level approximately: from its right-hand side to `better`.
 void MultigridSolver::Finish(Level& level)
 {
   if (this->Answers.Size() == 0)
@@ -142,7 +142,7 @@ void MultigridSolver::Finish(Level& level)
   RunSummingGroups(this->TheDevice, answer, 1);
 }
 
-/// From a level's right-hand side and first guess to those of the next one.
+/// Computes the next level's right-hand side and initial guess from a level's residual.
 void MultigridSolver::Restrict(Level& fine, Level& coarse)
 {
   cl::Kernel kernel = this->Kernel("level_restrict");
@@ -151,7 +151,7 @@ void MultigridSolver::Restrict(Level& fine, Level& coarse)
   this->Run(kernel, coarse);
 }
 
-/// Adds what the coarser level found, and smoothes.
+/// Adds the coarser level's correction, and smoothes.
 void MultigridSolver::Correct(Level& fine, const Level& coarse)
 {
   cl::Kernel prolong = this->Kernel("level_prolong");
@@ -163,16 +163,16 @@ void MultigridSolver::Correct(Level& fine, const Level& coarse)
   this->Run(smooth, fine);
 }
 
-/// A cycle on the residual: the finest level's `better` is what comes of it.
-/// @return the residual's norm in that of the preconditioner, squared, in units
+/// Applies a multigrid cycle to the residual; the result is in the finest level's `better`.
+/// @return the residual's squared norm in that of the preconditioner, in units
 double MultigridSolver::Precondition()
 {
   this->Visit(0);
   return this->SumOfGroups();
 }
 
-/// From a level's right-hand side and first guess to `better`. Jacobi's first guess on the way down and a step of his
-/// on the way up keep it symmetric.
+/// Solves a level approximately: from its right-hand side and initial guess to `better`. The cycle is symmetric:
+/// Jacobi's initial guess on the way down, a Jacobi step on the way up.
 void MultigridSolver::Visit(std::size_t l)
 {
   Level& level = this->Levels[l];
@@ -193,7 +193,8 @@ void MultigridSolver::Visit(std::size_t l)
   this->Correct(level, this->Levels[l + 1]);
 }
 
-/// A part of what comes of it, and of what comes of another visit for what that leaves: as symmetric as one visit.
+/// Applies a fraction of each of two visits' corrections, the second for the residual of the first: symmetric, as one
+/// visit is.
 void MultigridSolver::VisitTwice(std::size_t l)
 {
   Level& level = this->Levels[l];
@@ -208,7 +209,7 @@ void MultigridSolver::VisitTwice(std::size_t l)
   this->Run(join, level);
 }
 
-/// Of what the finest level's work-groups have summed up.
+/// Sum of the partial sums of the finest level's work-groups.
 double MultigridSolver::SumOfGroups() const
 {
   const std::vector<double> values = this->Sums.Read();
@@ -221,7 +222,7 @@ double MultigridSolver::SumOfGroups() const
   return sum;
 }
 
-/// The residual, in the place of the right-hand side. @return its square, in units
+/// Replaces the right-hand side by the residual. @return r r, in units
 double MultigridSolver::Begin(const ExactValues& values, double unit)
 {
   const Level& finest = this->Levels.front();
@@ -233,7 +234,7 @@ double MultigridSolver::Begin(const ExactValues& values, double unit)
   return this->SumOfGroups();
 }
 
-/// The next direction: the preconditioned residual and `part` of the last direction.
+/// p = z + part p
 void MultigridSolver::Turn(double part)
 {
   const Level& finest = this->Levels.front();
@@ -242,7 +243,7 @@ void MultigridSolver::Turn(double part)
   this->Run(kernel, finest);
 }
 
-/// Of the direction p: p A p. Leaves A p in the finest level's `better`.
+/// @return p A p. Leaves A p in the finest level's `better`.
 double MultigridSolver::Curvature()
 {
   const Level& finest = this->Levels.front();
@@ -252,7 +253,7 @@ double MultigridSolver::Curvature()
   return this->SumOfGroups();
 }
 
-/// Goes so far along the direction. @return the square of what is left, in units
+/// x += length p, r -= length A p. @return r r, in units
 double MultigridSolver::Step(const ExactValues& values, double length, double unit)
 {
   const Level& finest = this->Levels.front();
@@ -274,7 +275,7 @@ int MultigridSolver::GoOn(const ExactValues& values, double unit, double reducti
   return this->Iterate(values, this->Step(values, 0.0, unit), unit, reduction, leftAtMost);
 }
 
-/// @param left  square of the residual, in units
+/// @param left  r r of the initial residual, in units
 int MultigridSolver::Iterate(const ExactValues& values, double left, double unit, double reduction, double leftAtMost)
 {
   const GradientSteps steps = { [&] { return this->Precondition(); }, [&](double part) { this->Turn(part); },

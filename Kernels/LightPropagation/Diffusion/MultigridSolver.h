@@ -10,15 +10,15 @@
 
 namespace tyndall
 {
-/// Solves the system of a diffusion matrix on a box of voxels,
+/// Solves the linear system of a diffusion matrix on a box of voxels,
 ///   sum over faces of conductance (x_i - x_j) + loss_i x_i = b_i,
-/// symmetric, with positive conductances and losses: conjugate gradients (Hestenes and Stiefel 1952) from a residual
-/// that is found in double, preconditioned by a cycle of multigrid in float (voxels 2 x 2 x 2 together, damped Jacobi,
-/// two visits of the first coarser levels), so that its cost hardly grows with the number of voxels (numerics.md,
-/// section 7.8).
+/// which is symmetric, with positive conductances and losses, by conjugate gradients (Hestenes and Stiefel 1952) from a
+/// residual computed in double, preconditioned by a multigrid cycle in float (2 x 2 x 2 voxels joined, damped Jacobi,
+/// two visits of the first coarse levels), so that the cost per voxel hardly grows with the number of voxels
+/// (numerics.md, section 7.8).
 ///
-/// Its arrays are rows as MultigridLayout.h has them, which kernels walk along in vectors, or, on a GPU, by voxels: an
-/// iteration takes about as long as its bytes take (some 150 a voxel, counted).
+/// Arrays are stored in rows (MultigridLayout.h), which kernels process in vectors or, on a GPU, voxel by voxel. The
+/// time of an iteration is about that of its memory traffic (some 150 bytes a voxel, counted).
 class MultigridSolver
 {
 public:

@@ -1,5 +1,5 @@
-// How thick voxels shine into each octant beside what shines evenly in all of a voxel, see OctantSources.h. Face d of a
-// voxel is -x, +x, -y, +y, -z, +z.
+// Emission of optically thick voxels into each octant, in addition to the uniform source, see OctantSources.h. Faces d
+// of a voxel are -x, +x, -y, +y, -z, +z.
 
 #include "LightPropagation/Sweep/BeyondFaces.cl"
 #include "LightPropagation/Sweep/FallOfLight.cl"
@@ -7,11 +7,11 @@
 
 typedef struct
 {
-  float differs, alike; // see VoxelResponse.h
+  float differs, alike; // alpha (antisymmetric) and beta (symmetric) of VoxelResponse.h
   float lost;
 } layer_response;
 
-// Of a layer as VoxelResponse.h has them, between its values. Of thin layers they are proportional to the thickness.
+// Interpolates a table of VoxelResponse.h. For thin layers the values are proportional to the thickness.
 static layer_response response_of(const __global float* values, float albedo, float tau)
 {
   const float depth = clamp(2.0f * (log2(fmax(tau, 1e-30f)) - FirstDepth), 0.0f, ResponseDepths - 1.001f);
@@ -31,10 +31,11 @@ static layer_response response_of(const __global float* values, float albedo, fl
   const int at[3] = { get_global_id(0), get_global_id(1), get_global_id(2) }; \
   const ulong i = ((ulong)at[2] * info.size[1] + at[1]) * info.size[0] + at[0];
 
-// From the power that came in through voxels' faces to the mean radiance there; a row of voxels and one face each.
+// Converts the power that entered through voxels' faces to mean incident radiance. One work-item per row of voxels and
+// face.
 // currents  W, [face][stride] from 6 `first` on; cleared
 // pattern   of the rays that cross faces, see CrossingPattern.h
-// incoming  W / (length^2 sr), laid out as currents, added to; where `fresh` is 1, replaced
+// incoming  W / (length^2 sr), laid out as currents, added to; replaced if `fresh` is 1
 __kernel void take_incoming(OctantSourceInfo info, __global float* restrict currents,
   const __global float* restrict pattern, __global float* restrict incoming, int fresh)
 {
@@ -42,7 +43,8 @@ __kernel void take_incoming(OctantSourceInfo info, __global float* restrict curr
   const int axis = d / 2;
   const int u = axis == 0 ? 1 : 0, v = axis == 2 ? 1 : 2;
   const float area = info.perRadiance * info.spacing[u] * info.spacing[v];
-  const __global float* along = pattern + info.pattern[2 * axis]; // u: across x it is the same in all of the row
+  // along u; across x it is the same for the whole row
+  const __global float* along = pattern + info.pattern[2 * axis];
   const float ofRow = pattern[info.pattern[2 * axis + 1] + (v == 1 ? y : z)];
   const ulong row = 6 * info.first + d * info.stride + ((ulong)z * info.size[1] + y) * info.size[0];
   for (int x = 0; x < info.size[0]; ++x)
@@ -54,7 +56,7 @@ __kernel void take_incoming(OctantSourceInfo info, __global float* restrict curr
   }
 }
 
-// Of a voxel's neighbour across face d; -1 beyond the box or block.
+// Index of a voxel's neighbour across face d; -1 beyond the box or block.
 static long next_voxel(const OctantSourceInfo* info, const int* at, ulong i, int d)
 {
   const int axis = d / 2, size = info->size[axis];
@@ -64,7 +66,7 @@ static long next_voxel(const OctantSourceInfo* info, const int* at, ulong i, int
   return !last ? (long)i + ahead : info->periodic[axis] ? (long)i - ahead * (size - 1) : -1;
 }
 
-// One voxel of find_octant_sources.
+// find_octant_sources() for one voxel.
 // responses  of layers as thick as the voxel along each axis
 static void find_of_voxel(const OctantSourceInfo* info, const int* at, ulong i, float t, float s,
   const layer_response* responses, const __global float* source, const __global float* incoming,
@@ -94,7 +96,7 @@ static void find_of_voxel(const OctantSourceInfo* info, const int* at, ulong i, 
       }
       else if (t > 0.0f)
       {
-        // Through the box's faces it is not told by voxel: as of a layer.
+        // Outgoing light through the box's faces is not known by voxel: estimated from the layer's response.
         float shines = source[i];
         for (int octant = 0; octant < 8; ++octant)
         {
@@ -128,13 +130,14 @@ static void find_of_voxel(const OctantSourceInfo* info, const int* at, ulong i, 
   }
 }
 
-// Of what is scattered of the light that came in (numerics.md, Eqs. (46e), (46f)), by octant; a row of voxels.
+// Computes the sources by octant of light scattered from incident light (numerics.md, Eqs. (46e), (46f)). One work-item
+// per row of voxels.
 // incoming  W / (length^2 sr), of the sweep
-// source    W / (length^3 sr), of the sweep, and `sources` with it
+// source    W / (length^3 sr), of the sweep, like the previous contents of `sources`
 // beyond    as incoming, of the voxels beyond a block's faces
-// of_lamps  W / (length^3 sr) by face, where lamps is 1; cleared
-// sources   W / (length^3 sr), [octant][stride] from 8 `first` on, replaced: beside what shines evenly. Where there is
-//           less than that the first orders may be below 0, for what later ones shine there out of the voxel.
+// of_lamps  W / (length^3 sr) by face, if `lamps` is 1; cleared
+// sources   W / (length^3 sr), [octant][stride] from 8 `first` on, replaced: in addition to the uniform source. May be
+//           negative for the first orders, where later orders emit that light out of the voxel
 __kernel void find_octant_sources(OctantSourceInfo info, const __global float* sigma_t, const __global float* sigma_s,
   const __global float* source, const __global float* values, const __global float* incoming,
   const __global float* beyond, __global float* of_lamps, int lamps, __global float* sources, ulong channel)
@@ -162,8 +165,8 @@ __kernel void find_octant_sources(OctantSourceInfo info, const __global float* s
   }
 }
 
-// The same of the light of one lamp (numerics.md, Eq. (46h)).
-// path, first_moments  of it, as in Sweep/Deposit.h; cleared
+// Adds the sources by face of light first scattered from one lamp (numerics.md, Eq. (46h)).
+// path, first_moments  of the lamp, as in Sweep/Deposit.h; cleared
 // of_lamps  W / (length^3 sr), laid out as first_moments, added to
 // all_path  W length, added to
 __kernel void add_lamp(OctantSourceInfo info, const __global float* sigma_t, const __global float* sigma_s,
@@ -176,7 +179,7 @@ __kernel void add_lamp(OctantSourceInfo info, const __global float* sigma_t, con
   {
     const ulong low = 6 * info.first + 2 * axis * info.stride + i, high = low + info.stride;
     const float h = info.spacing[axis], tau = t * h;
-    // How near to a face it is scattered: 1 - 2 t / tau for a mean depth t.
+    // Proximity of first scattering to a face: 1 - 2 t / tau for mean depth t.
     const float towards = length > 0.0f ? 2.0f * (first_moments[low] - first_moments[high]) / length : 0.0f;
     const float r = clamp(fabs(towards), 0.0f, 0.9999f);
     first_moments[low] = first_moments[high] = 0.0f;
@@ -190,11 +193,12 @@ __kernel void add_lamp(OctantSourceInfo info, const __global float* sigma_t, con
     const __global float* nearest = falling + (int)place * ResponseValues;
     const layer_response slow = response_of(nearest, s / t, tau);
     const layer_response fast = response_of(nearest + ResponseValues, s / t, tau);
-    const float falls = fmin(fall * exp2((float)-FirstProfile), 1.0f); // light that hardly falls off shines evenly
+    // light that hardly decays gives a uniform source
+    const float falls = fmin(fall * exp2((float)-FirstProfile), 1.0f);
     const float differs = falls * mix(slow.differs, fast.differs, v);
     const float alike = falls * mix(slow.alike, fast.alike, v);
     const float side = towards > 0.0f ? differs : -differs;
-    // Over what the voxel's faces across the axis let out of an even source.
+    // Relative to the power of a uniform source through the voxel's faces across the axis.
     const float per_face = 0.5f * M_1_PI_F * s * t * length * h / (info.spacing[0] * info.spacing[1] * info.spacing[2]);
     of_lamps[low] += per_face * (alike + side);
     of_lamps[high] += per_face * (alike - side);

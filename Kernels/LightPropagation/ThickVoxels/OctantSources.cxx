@@ -12,22 +12,24 @@ namespace tyndall
 {
 namespace
 {
-constexpr double Thick = 0.2; ///< mean free paths a voxel: thinner ones send back up to 1% too little
-/// The same, from which on nobody has to ask for it: 2% too little, for two to three times the time of an order.
+constexpr double Thick = 0.2; ///< optical thickness of a voxel: thinner ones return at most 1% too little
+/// The same for automatic sources: thinner ones return up to 2% too little, and sources by octant take two to three
+/// times the time of an order.
 constexpr double ThickUnasked = 0.25;
-constexpr double Many = 0.25; ///< of the voxels that scatter: few are walls, and all the others would pay for them
+/// minimum fraction of the scattering voxels: fewer thick ones are walls, for which all others would have to pay
+constexpr double Many = 0.25;
 /// Mean free paths a voxel: what does not get out of thicker ones is so little beside what is scattered in them that
 /// floats do not tell it.
 constexpr double Opaque = 1e4;
 
-/// What of a medium's voxels decides it; of all channels.
+/// Statistics of a medium's voxels that decide, over all channels.
 struct ThickVoxels
 {
-  double scattering = 0.0, thick = 0.0; ///< how many scatter, and of these are thick
-  double thickest = 0.0;                ///< mean free paths of transport along a voxel's longest edge
+  double scattering = 0.0, thick = 0.0; ///< number of scattering voxels, and of thick ones among these
+  double thickest = 0.0;                ///< largest transport optical thickness along a voxel's longest edge
 };
 
-/// Of all ranks. Collective.
+/// Statistics over all ranks. Collective.
 ThickVoxels Count(const PropagationProblem& problem)
 {
   const Grid& grid = problem.TheGrid();
@@ -177,7 +179,7 @@ void OctantSources::Find(const Buffer<float>& source, const BeyondFaces& beyond)
     info.beyond = beyond.info;
     for (cl_int& periodic : info.periodic)
     {
-      periodic = periodic && !beyond.values; // which has what is round an axis
+      periodic = periodic && !beyond.values; // `beyond` also holds the values across periodic axes
     }
     With(find, info, this->The.medium.SigmaT(), this->The.medium.SigmaS(), source, this->Diffuse, this->Incoming,
       beyond.values ? *beyond.values : this->Incoming, lamps, cl_int(this->LampsShine), this->Found, cl_ulong(c));
@@ -197,7 +199,7 @@ OctantSourceInfo OctantSources::InfoOf(int channel) const
     info.size[axis] = grid.size[axis];
     info.periodic[axis] = this->The.settings.periodic[axis];
     info.spacing[axis] = static_cast<float>(grid.spacing[axis]);
-    // One of a direction and its mirror image may stand for both.
+    // A direction may represent its mirror image, too.
     info.leftOut[axis] = this->The.whole.size[axis] == 1 && this->The.settings.periodic[axis];
   }
   info.firstT = this->The.layout.ExtinctionFirst(channel);

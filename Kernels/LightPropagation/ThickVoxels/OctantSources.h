@@ -12,23 +12,24 @@
 
 namespace tyndall
 {
-/// Light of thick voxels, one order after the other: it is scattered near the faces that it came in through, and shines
-/// back through these more than through those beyond. Sweeps take what a voxel scatters as even in it, but for what
-/// shines out of it into each octant of directions; what does not get out stays, so that power is kept. That is found
-/// of the light that came in through both faces across each axis, by the exact response of a layer as thick as the
-/// voxel (numerics.md, section 6.5).
+/// Scattered light of optically thick voxels, order by order. Such light is scattered near the faces through which it
+/// enters, and returns through these more than through the opposite ones. Sweeps treat the scattering source as uniform
+/// in a voxel, except for the emission into each octant of directions; light that does not get out stays in the voxel,
+/// so that power is conserved. The sources by octant follow from the light that entered through both faces across each
+/// axis, by the exact response of a layer as thick as the voxel (numerics.md, section 6.5).
 class OctantSources
 {
 public:
-  /// Whether any voxel is so thick that it matters. Collective.
+  /// Whether any voxel is so thick that sources by octant make a difference. Collective.
   static bool AreThick(const PropagationProblem& problem);
-  /// Whether the source is to be by octant, some voxels are thick, none is opaque, and scattering is isotropic. Of an
-  /// automatic source: where a quarter of the voxels that scatter are thick or more, and the orders are as many as the
-  /// tolerance asks for. Whatever shines: lights add up. What of exact rays of bright emission or of given light is
-  /// first scattered shines evenly out of a voxel, and all later orders by octant. Collective.
+  /// Whether to use sources by octant: if the settings ask for them, some voxels are thick, none is opaque, and
+  /// scattering is isotropic. If the settings leave the choice open: if also at least a quarter of the scattering
+  /// voxels are thick, and the number of orders follows from the tolerance. Independent of the light sources, since
+  /// light is additive. First-scattered light of localised emission and of given light is uniform in a voxel; later
+  /// orders are by octant. Collective.
   static bool Matter(const PropagationProblem& problem);
 
-  /// Voxels on a device, of a whole medium or of a rank's block of it; all must stay.
+  /// The voxels of a serial domain, or of a rank's block, on a device; all members must outlive the OctantSources.
   struct Scene
   {
     Device& device;
@@ -37,7 +38,7 @@ public:
     const MediumOnDevice& medium;
     const Grid& whole;
     VoxelBox block; ///< of the whole
-    bool lamps;     ///< there are some
+    bool lamps;     ///< whether there are lamps
   };
   explicit OctantSources(const Scene& scene);
 
@@ -46,21 +47,24 @@ public:
   /// For SweepRequest::octantSource.
   const Buffer<float>& Sources() const { return this->Found; }
 
-  /// Takes over what came in through voxels' faces along some directions, which must stay.
+  /// Takes over the light that entered through voxels' faces along some directions, which must outlive this object, and
+  /// clears Currents().
   void TakeIncoming(const SweptDirections& along);
-  /// The arrays that one lamp adds to, and takes over what it did: first scattered light near the faces.
+  /// The arrays to which one lamp adds its deposit; TakeLamp() takes over its first-scattered light near the faces and
+  /// adds its path to `allPath`.
   const Buffer<float>& LampPath() const { return this->PathOfLamp; }
   const Buffer<float>& LampMoments() const { return this->MomentsOfLamp; }
   void TakeLamp(const Buffer<float>& allPath);
-  /// Of what was taken, W / (length^2 sr), [channel][face][stride]: what Find() looks at across a block's faces.
+  /// Incident radiance of the light taken over, W / (length^2 sr), [channel][face][stride]; Find() needs it across a
+  /// block's faces.
   const Buffer<float>& CameInThroughFaces() const { return this->Incoming; }
-  /// The sources of what is scattered of all light that was taken since the last time.
-  /// @param source  W / (length^3 sr), of the sweep that the last of it came in with
-  /// @param beyond  of CameInThroughFaces(), of a block
+  /// Computes the sources of the light scattered from all light taken over since the last call.
+  /// @param source  of the sweep in which the last of that light entered, W / (length^3 sr)
+  /// @param beyond  CameInThroughFaces() beyond a block's faces
   void Find(const Buffer<float>& source, const BeyondFaces& beyond = {});
 
 private:
-  /// Of rays along some directions (CrossingPattern.h).
+  /// Crossing pattern of the rays along some directions (CrossingPattern.h).
   struct Crossings
   {
     Buffer<float> values;
@@ -70,15 +74,15 @@ private:
   const Crossings& CrossingsOf(const SweptDirections& along);
   OctantSourceInfo InfoOf(int channel) const;
 
-  bool IsEmpty() const { return this->The.layout.grid.VoxelCount() == 0; } ///< of a block without voxels
+  bool IsEmpty() const { return this->The.layout.grid.VoxelCount() == 0; } ///< for a block without voxels
 
   Scene The;
   Buffer<float> OfSweep, Incoming;                  ///< [channel][face][stride]
   Buffer<float> Found;                              ///< [channel][octant][stride]
-  Buffer<float> PathOfLamp, MomentsOfLamp, OfLamps; ///< as Deposit has them; [channel][face][stride]
+  Buffer<float> PathOfLamp, MomentsOfLamp, OfLamps; ///< as in Deposit; OfLamps: [channel][face][stride]
   Buffer<float> Diffuse, Falling;                   ///< VoxelResponse
   std::map<const SweptDirections*, Crossings> Patterns;
-  bool CameIn = false;     ///< light was taken since the last time
-  bool LampsShine = false; ///< in what is found next
+  bool CameIn = false;     ///< whether light was taken over since the last Find()
+  bool LampsShine = false; ///< whether the next Find() includes lamps
 };
 }

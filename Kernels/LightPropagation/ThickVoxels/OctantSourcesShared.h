@@ -1,4 +1,4 @@
-// Shared by C++ and the kernels of light at the faces of thick voxels: how their table lies.
+// Shared by C++ and the kernels for light at the faces of optically thick voxels: layout of the response tables.
 #pragma once
 
 #include "Device/SharedTypes.h"
@@ -7,25 +7,26 @@
 SHARED_BEGIN
 enum
 {
-  ResponseAlbedos = 11,  ///< sqrt(1 - albedo) from 0 to 1 in equal steps
-  ResponseDepths = 23,   ///< base 2 logarithms of the optical thickness, two a unit
-  FirstDepth = -4,       ///< the first of them
-  ResponseProfiles = 17, ///< base 2 logarithms of a lamp's fall per mean free path, two a unit
-  FirstProfile = -3,     ///< the first of them
-  ResponseParts = 3,     ///< of a value: what differs between both faces, what is alike, what is lost of even light
-  ResponseValues = ResponseParts * ResponseAlbedos * ResponseDepths ///< of one kind of light
+  ResponseAlbedos = 11,  ///< number of values of sqrt(1 - albedo), from 0 to 1 in equal steps
+  ResponseDepths = 23,   ///< number of values of log2(optical thickness), two per unit
+  FirstDepth = -4,       ///< the first of these values
+  ResponseProfiles = 17, ///< number of values of log2(attenuation of a lamp's light per mean free path), two per unit
+  FirstProfile = -3,     ///< the first of these values
+  /// parts of an entry: antisymmetric in the two faces, symmetric, lost fraction of isotropic light
+  ResponseParts = 3,
+  ResponseValues = ResponseParts * ResponseAlbedos * ResponseDepths ///< size of the table of one kind of light
 };
 
-/// Voxels whose light at their faces is found.
+/// Voxels for which light at the faces is computed.
 typedef struct
 {
   int size[3];
   int periodic[3];
-  int leftOut[3];              ///< axes along which nothing changes
-  int pattern[6];              ///< where the tables of crossings begin: [axis][other axes in order]
-  ulong firstT, first, stride; ///< where this channel begins: of sigma_t, of all others (by face: six times that)
+  int leftOut[3];              ///< axes along which the scene is constant (one periodic voxel)
+  int pattern[6];              ///< offset of the crossing tables: [axis][other axes in order]
+  ulong firstT, first, stride; ///< offset of this channel: in sigma_t, in all others (by face: six times that)
   float spacing[3];
-  float perRadiance; ///< power per area through a face of an even radiance of 1
+  float perRadiance; ///< power per area through a face at isotropic radiance 1
   BeyondFacesInfo beyond;
 } OctantSourceInfo;
 SHARED_END

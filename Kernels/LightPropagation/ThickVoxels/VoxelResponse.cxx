@@ -12,12 +12,12 @@ namespace tyndall
 {
 namespace
 {
-constexpr int Nodes = 10;              ///< of half of all cosines
-constexpr double LeastAlbedo = 1e-3;   ///< in place of 0, of which nothing is left to divide by
+constexpr int Nodes = 10;              ///< number of quadrature nodes per hemisphere
+constexpr double LeastAlbedo = 1e-3;   ///< used instead of albedo 0, by which the response would be divided
 constexpr double LeastAbsorbed = 1e-5; ///< of white layers
-constexpr double MostAlike = 1.0;      ///< of white layers, of which as much leaves whatever it is
+constexpr double MostAlike = 1.0;      ///< maximum for white layers, from which the same power leaves whatever it is
 
-/// Of light of which the power 1 comes in at the top: what leaves of it, and how often it is lost.
+/// Response to incident power 1 at the top: outgoing powers, and number of collisions.
 struct Response
 {
   double reflected, transmitted, straight, collisions;
@@ -49,7 +49,7 @@ public:
       this->Collisions(LayerSource(Nodes), in, up, down) };
   }
 
-  /// Of light that is lost as exp(-fall z), 1 in all.
+  /// Response to first collisions of total power 1 with density exp(-fall z).
   Response OfFalling(double albedo, double fall) const
   {
     const double lost = -std::expm1(-fall * this->Depth);
@@ -77,7 +77,7 @@ private:
   Eigen::VectorXd Roots, Powers;
 };
 
-/// Less where voxels are thin: not all that comes in between them is even (fitted to slabs of equal voxels).
+/// Reduction for thin voxels: light entering between these is not entirely isotropic (fitted to slabs of equal voxels).
 double AmongOthers(double depth)
 {
   return 1.0 - 0.45 * std::exp(-2.0 * depth);

@@ -4,15 +4,16 @@
 
 namespace tyndall
 {
-/// How a uniform layer sends back light that comes in at one side, over what it does where all that it scatters in one
-/// order shines evenly from its whole depth (numerics.md, Eqs. (46g), (46h)): from the exact solution of the layer.
-/// Laid out as OctantSourcesShared.h says, [albedo][depth][part].
+/// Response of a uniform layer to light incident on one side: reflected and transmitted light, relative to that of a
+/// layer in which each order's scattering source is uniform over the depth (numerics.md, Eqs. (46g), (46h)), from the
+/// exact solution of the layer. Layout as in OctantSourcesShared.h, [albedo][depth][part].
 struct VoxelResponse
 {
   VoxelResponse();
 
-  std::vector<float> diffuse; ///< alpha, beta of light that comes in evenly from all directions
-  /// The same of light that falls off exponentially, for each fall, over what of even light is lost in the layer.
+  std::vector<float> diffuse; ///< alpha, beta for isotropic incident light
+  /// The same for light that decays exponentially, for each rate; relative to the fraction of isotropic light that the
+  /// layer removes.
   std::vector<float> falling;
 };
 }
