@@ -14,7 +14,7 @@ namespace tyndall
 {
 namespace
 {
-/// reduction of the residual per order: sweeps reduce the error by less than that
+/// Reduction of the residual per order: sweeps reduce the error by less than that.
 constexpr double ReductionOverRanks = 0.02;
 
 /// One channel of an array.

@@ -28,7 +28,7 @@ public:
     const VolumeLayout& layout, int channel, const MediumOnDevice& medium, const std::array<int, 3>& halvings,
     bool linear);
 
-  using Powers = CoarseDiffusion::Powers; ///< of all ranks
+  using Powers = CoarseDiffusion::Powers; ///< summed over all ranks
 
   /// Computes the next source from the path integrals of a sweep, as CoarseDiffusion::ScatterOrder(). Collective.
   /// @param path  W length, [channel][stride]; replaced by the (negative) path to subtract from the next sweep's
@@ -55,10 +55,10 @@ private:
   VolumeLayout Layout;
   Grid Cells;           ///< only its size is used
   CoarseCells Box = {}; ///< cells of the whole grid
-  std::size_t First;    ///< of the channel
+  std::size_t First;    ///< offset of the channel
   bool Linear;
   VoxelBox Held;                           ///< the block and, if light is linear across voxels, its halo
-  Values SigmaT, SigmaS;                   ///< of these
+  Values SigmaT, SigmaS;                   ///< 1/length, of the voxels in `Held`
   std::unique_ptr<MultigridSolver> Solver; ///< on the first rank; else null
   ExactValues FoundOnDevice;
   std::vector<double> Borders; ///< as in CoarseMatrix

@@ -17,8 +17,8 @@ constexpr double Marshak = 2.0; ///< resistance of a face of the box, over its a
 struct Level
 {
   std::array<int, 3> size;
-  std::array<std::vector<double>, 3> widths; ///< of cells, along each axis
-  std::vector<double> sigmaT;                ///< means
+  std::array<std::vector<double>, 3> widths; ///< edges of cells along each axis, length
+  std::vector<double> sigmaT;                ///< mean over each cell, 1/length
 
   std::size_t At(int x, int y, int z) const { return (std::size_t(z) * size[1] + y) * size[0] + x; }
   double Volume(int x, int y, int z) const { return this->widths[0][x] * this->widths[1][y] * this->widths[2][z]; }

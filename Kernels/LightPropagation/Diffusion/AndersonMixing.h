@@ -47,7 +47,7 @@ private:
   Device& TheDevice;
   std::size_t Voxels, Count;
   ExactValues OfChunks;
-  /// result and change of the last mix and of the one before it
+  /// Result and change of the last mix and of the one before it.
   std::array<Buffer<float>, 2> FoundBefore, ChangeBefore;
   int Mixes = 0;
 };

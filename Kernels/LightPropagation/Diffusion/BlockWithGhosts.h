@@ -35,9 +35,9 @@ public:
   void FillGhosts(Buffer<float>& ofVoxels) const; ///< of one array without channels; collective
 
   std::size_t PlaceOf(std::size_t ownVoxel) const; ///< index in arrays with ghosts of a voxel of the block
-  /// whether a voxel, counted from the first one of the box with ghosts, belongs to the block
+  /// Whether a voxel, counted from the first one of the box with ghosts, belongs to the block.
   bool IsOwn(const std::array<int, 3>& voxel) const;
-  /// index in the block of a voxel, counted likewise, that belongs to it
+  /// Index in the block of a voxel, counted likewise, that belongs to it.
   std::size_t OwnAt(const std::array<int, 3>& voxel) const;
 
 private:

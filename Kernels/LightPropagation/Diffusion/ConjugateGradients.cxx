@@ -9,9 +9,9 @@ namespace tyndall
 namespace
 {
 constexpr int MostIterations = 300;
-/// number of iterations within which the residual must halve; otherwise the iteration stops
+/// Number of iterations within which the residual must halve; otherwise the iteration stops.
 constexpr int Patience = 12;
-/// factor by which the bound on the root mean square is looser than that in the preconditioner's norm
+/// Factor by which the bound on the root mean square is looser than that in the preconditioner's norm.
 constexpr double Looser = 10.0;
 constexpr double Negligible = 1e-12; ///< residual relative to the first one that is negligible
 

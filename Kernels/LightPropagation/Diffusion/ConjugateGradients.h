@@ -17,8 +17,8 @@ struct GradientSteps
 /// Stopping criteria.
 struct GradientBounds
 {
-  /// factor by which the residual's norm in that of the preconditioner must fall; its root mean square may be ten times
-  /// this
+  /// Factor by which the residual's norm in that of the preconditioner must fall; its root mean square may be ten times
+  /// this.
   double reduction;
   double leftAtMost; ///< additional bound on the residual's root mean square; infinity: none
   double count;      ///< number of unknowns

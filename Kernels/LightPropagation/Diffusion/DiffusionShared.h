@@ -33,11 +33,11 @@ typedef struct
   int linear;     ///< 1: light varies linearly between voxel centres; 0: it is constant in each voxel
   int stride;     ///< stride of channels in the solver's arrays
   int flatStride; ///< stride of axes in flat_source; 0 if all voxel edges are equal, so that axes share it
-  /// offset of this channel: in sigma_t, in all others (currents: six times that, flux: three times)
+  /// Offset of this channel: in sigma_t, in all others (currents: six times that, flux: three times).
   int firstT, first;
   int pattern[6]; ///< offset of the crossing tables: [axis][other axes in order]
   float spacing[3];
-  /// sum over directions of w mu / 4 pi, mu > 0: exactly 1/4, except for the error of the quadrature
+  /// Sum over directions of w mu / 4 pi, mu > 0: exactly 1/4, except for the error of the quadrature.
   float halfRange;
   float floor;         ///< minimum optical length between voxel centres: conductance does not grow below it
   float incoming[6];   ///< incident power through each face of the box, W / length^2

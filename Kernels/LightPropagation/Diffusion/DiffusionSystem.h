@@ -45,11 +45,11 @@ public:
     MomentPlaces moments;              ///< places of the angular moments in `path`
     int channel;                       ///< channel of this system
     const Buffer<float>*
-      /// net flux of `given` over 4 pi, if there are angular moments, [channel][x, y, z][stride]; null: isotropic
+      /// Net flux of `given` over 4 pi, if there are angular moments, [channel][x, y, z][stride]; null: isotropic.
       givenFlux;
     const Buffer<float>* source; ///< source of the sweep, W / (length^3 sr)
     const Buffer<float>* path;   ///< path integrals of the sweep, W length
-    /// partial currents of the sweep, W, [channel][-x, +x, -y, +y, -z, +z][stride]
+    /// Partial currents of the sweep, W, [channel][-x, +x, -y, +y, -z, +z][stride]
     const Buffer<float>* partialCurrents;
     /// Power of lamps' first-scattered light that crosses a face directly (LampPassing.h), W, [channel][-x, +x, -y, +y,
     /// -z, +z][stride]; null: voxels are thin, or there are no lamps.
@@ -94,7 +94,7 @@ public:
   static double ReductionAfter(int corrections);     ///< reduction of the residual for the next solve
   void SetFound(const std::vector<double>& fluence); ///< sets a solution computed on the host
   void FindFlux(); ///< computes the moments of degree 1 that belong to the solution, if there are angular moments
-  /// targets of Refine(): reduction of the residual, and its root mean square in units
+  /// Targets of Refine(): reduction of the residual, and its root mean square in units.
   static constexpr double RefinedBy = 0.1, RefinedTo = 1e-6;
   AndersonMixing::Sums SumsOfChange() const; ///< for the mixing of the solution; call after it was found
   void MixBy(const AndersonMixing::Sums& sums);
@@ -103,7 +103,7 @@ public:
   struct BorderSums
   {
     std::array<double, 6> out = {}, seeming = {}, came = {}; ///< by face
-    /// sum over the cells of voxels with several faces, and number of such cells
+    /// Sum over the cells of voxels with several faces, and number of such cells.
     double transportWeight = 0.0, shared = 0.0;
   };
   /// @param counts  whether to count a cell of a face (face; position along the other two axes in order)

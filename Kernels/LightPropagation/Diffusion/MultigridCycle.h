@@ -8,9 +8,9 @@ namespace tyndall
 // (MultigridOverRanks.h).
 
 constexpr int FinishRounds = 12; ///< symmetric Gauss-Seidel iterations on the coarsest level
-/// damping of Jacobi's method, about the optimum: 0.8 takes 8% more iterations, 0.95 as many
+/// Damping of Jacobi's method, about the optimum: 0.8 takes 8% more iterations, 0.95 as many.
 constexpr float Damping = 0.87f;
-/// number of coarse levels, from the finest of them, that are visited twice per cycle; more do not save iterations
+/// Number of coarse levels, from the finest of them, that are visited twice per cycle; more do not save iterations.
 constexpr std::size_t VisitedTwice = 2;
 /// Fraction of each of two visits' correction that is applied. With it the preconditioner stays positive even if one
 /// visit overshoots by up to a factor of 2.5, as it does where voxels of unequal coefficients are joined.

@@ -47,12 +47,12 @@ private:
   static constexpr std::size_t FewCells = 32768;
   struct Level
   {
-    std::array<int, 3> size = {};   ///< of the whole
+    std::array<int, 3> size = {};   ///< of the whole grid, cells
     std::array<int, 3> halved = {}; ///< 1: halved to the next coarser level
     std::array<bool, 3> periodic = {};
     std::array<bool, 3> alone = {}; ///< periodic axes on which this rank's own cells are their own neighbours
-    VoxelBox own, held;             ///< of this rank
-    /// exchange of the halo; exchange of other ranks' cells that contain finer cells of this rank
+    VoxelBox own, held;             ///< cells that this rank owns, and these with their halo
+    /// Exchange of the halo; exchange of other ranks' cells that contain finer cells of this rank.
     std::unique_ptr<GhostCells> beside, shared;
     std::array<std::vector<double>, 3> conductance;
     /// As in MultigridSolver, over `held`.

@@ -86,7 +86,7 @@ private:
   Device& TheDevice;
   std::vector<Level> Levels;
   Buffer<float> Direction;
-  /// inverse of the coarsest level as a matrix, where that is faster (level_answers); else empty
+  /// Inverse of the coarsest level as a matrix, where that is faster (level_answers); else empty.
   Buffer<float> Answers;
   ExactValues Sums;
   double FirstResidual = 0.0; ///< r z of the first solve, in units

@@ -12,7 +12,7 @@ struct SurfacePowers
   std::array<double, 6> in = {}; ///< incident through each face, averaged over its cells
   std::vector<double> back;      ///< reflected power by cell; empty: no face reflects
   const float* lamps = nullptr;  ///< uncollided fluence of lamps by voxel; null: there are none
-  /// of the quadrature of the incident light: isotropic radiance L gives `in` = 4 pi halfRange L
+  /// halfRange of the quadrature of the incident light: isotropic radiance L gives `in` = 4 pi halfRange L
   double halfRange = 0.25;
 };
 }

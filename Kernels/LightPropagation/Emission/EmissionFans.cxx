@@ -13,10 +13,10 @@ namespace tyndall
 {
 namespace
 {
-/// initial number of fans into each part of space: two halves, each of two mirrored pairs
+/// Initial number of fans into each part of space: two halves, each of two mirrored pairs.
 constexpr int FewestPoints = 8;
 constexpr int MostPoints = 1024; ///< maximum number of fans into each part of space
-/// fraction of the voxels, per fan, that is left to rays of their own rather than doubling the fans
+/// Fraction of the voxels, per fan, that is left to rays of their own rather than doubling the fans.
 constexpr double FewLeft = 0.001;
 constexpr double LinesPerVoxel = 1.02;      ///< rays per voxel edge in the last layer: every voxel contains a ray
 constexpr int LineStep = 16;                ///< the number of lines is a multiple of this: the widest packet

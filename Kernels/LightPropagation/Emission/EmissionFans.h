@@ -25,7 +25,7 @@ struct FanLight
   Buffer<float> path, flux; ///< W / length^2: mean over the voxel; flux is [x, y, z][stride], may be empty
   /// 1: the voxel's value is accurate; less: it is too close to the emission, or the two halves of the fans differ
   Buffer<float> found;
-  /// outgoing flux density through the faces, W / length^2, and whether it is accurate; [cell] (FanFaceFirst)
+  /// Outgoing flux density through the faces, W / length^2, and whether it is accurate; [cell] (FanFaceFirst).
   Buffer<float> faces, cellsFound;
 };
 

@@ -8,7 +8,7 @@ namespace tyndall
 {
 namespace
 {
-/// a voxel counts as self-absorbing below this ratio of emission to absorbed incident light
+/// A voxel counts as self-absorbing below this ratio of emission to absorbed incident light.
 constexpr double Hides = 2.0;
 constexpr double PartOfOne = 0.01; ///< minimum fraction of the emitted power for each peak
 constexpr std::size_t MostPeaks = 16;

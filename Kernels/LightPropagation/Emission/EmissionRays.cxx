@@ -25,7 +25,7 @@ namespace
 {
 constexpr int FewestRays = 32; ///< initial number of rays per voxel, at least
 constexpr int MostRays = 4096; ///< rays per voxel, at most
-/// approximate initial number of rays in all voxels, for the default error: about a second of work
+/// Approximate initial number of rays in all voxels, for the default error: about a second of work.
 constexpr double AllRays = 0x1p22;
 constexpr double CloseRays = 0x1p20; ///< the same for voxels in the emitting box and next to it
 const double UsualError = PropagationSettings().emissionError;

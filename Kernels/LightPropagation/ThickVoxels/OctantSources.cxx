@@ -16,10 +16,10 @@ constexpr double Thick = 0.2; ///< optical thickness of a voxel: thinner ones re
 /// The same for automatic sources: thinner ones return up to 2% too little, and sources by octant take two to three
 /// times the time of an order.
 constexpr double ThickUnasked = 0.25;
-/// minimum fraction of the scattering voxels: fewer thick ones are walls, for which all others would have to pay
+/// Minimum fraction of the scattering voxels: fewer thick ones are walls, for which all others would have to pay.
 constexpr double Many = 0.25;
-/// Mean free paths a voxel: what does not get out of thicker ones is so little beside what is scattered in them that
-/// floats do not tell it.
+/// Optical thickness of a voxel: in thicker ones the light that escapes is too small, compared with the light scattered
+/// in them, for floats.
 constexpr double Opaque = 1e4;
 
 /// Statistics of a medium's voxels that decide, over all channels.

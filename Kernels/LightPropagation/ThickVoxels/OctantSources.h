@@ -37,7 +37,7 @@ public:
     const VolumeLayout& layout;
     const MediumOnDevice& medium;
     const Grid& whole;
-    VoxelBox block; ///< of the whole
+    VoxelBox block; ///< in the whole grid
     bool lamps;     ///< whether there are lamps
   };
   explicit OctantSources(const Scene& scene);

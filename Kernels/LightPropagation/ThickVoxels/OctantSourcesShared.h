@@ -12,7 +12,7 @@ enum
   FirstDepth = -4,       ///< the first of these values
   ResponseProfiles = 17, ///< number of values of log2(attenuation of a lamp's light per mean free path), two per unit
   FirstProfile = -3,     ///< the first of these values
-  /// parts of an entry: antisymmetric in the two faces, symmetric, lost fraction of isotropic light
+  /// Parts of an entry: antisymmetric in the two faces, symmetric, lost fraction of isotropic light.
   ResponseParts = 3,
   ResponseValues = ResponseParts * ResponseAlbedos * ResponseDepths ///< size of the table of one kind of light
 };

@@ -14,7 +14,7 @@ namespace
 {
 constexpr int Nodes = 10;              ///< number of quadrature nodes per hemisphere
 constexpr double LeastAlbedo = 1e-3;   ///< used instead of albedo 0, by which the response would be divided
-constexpr double LeastAbsorbed = 1e-5; ///< of white layers
+constexpr double LeastAbsorbed = 1e-5; ///< lower limit of 1 - albedo, used for white layers
 constexpr double MostAlike = 1.0;      ///< maximum for white layers, from which the same power leaves whatever it is
 
 /// Response to incident power 1 at the top: outgoing powers, and number of collisions.

@@ -13,7 +13,7 @@ namespace tyndall
 {
 namespace
 {
-constexpr double Rounding = 1e-6;    ///< of radiance that is meant to be even
+constexpr double Rounding = 1e-6;    ///< relative rounding error of radiance that counts as uniform
 constexpr double MissedAtMost = 0.3; ///< by whole rays; a box of one voxel misses up to a fifth of one face's
 
 int FaceOf(const Direction& direction, int axis)

@@ -22,7 +22,7 @@ public:
     const Illumination& illumination, const Environment& farAway);
 
   bool Shines() const { return this->AnyLight; }
-  /// the incident radiance is the same for all directions and all non-periodic faces
+  /// The incident radiance is the same for all directions and all non-periodic faces.
   bool IsEven() const { return this->AllAlike; }
   bool IsLit(int direction) const; ///< whether the direction has incident radiance on a non-periodic face
   /// Incident radiance through `face`, W / (length^2 sr), averaged over the directions that this one represents.
@@ -50,7 +50,7 @@ private:
   int MapResolution;
   const SweptDirections& Directions;
   std::array<Rgb, 6> Faces;
-  /// sky and environment: by direction, averaged over the directions that it represents
+  /// Sky and environment: by direction, averaged over the directions that it represents.
   std::vector<Rgb> FromFarAway;
   bool AnyLight = false;
   bool AllAlike = true;

@@ -25,7 +25,7 @@ struct Pixel
 
 struct Peak
 {
-  /// pixel, and the fraction of its radiance that stays in the environment
+  /// Pixel, and the fraction of its radiance that stays in the environment.
   std::vector<std::pair<std::size_t, double>> kept;
   std::array<double, 3> towards = {}; ///< power-weighted
   Rgb irradiance = {};

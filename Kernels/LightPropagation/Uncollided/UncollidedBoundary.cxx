@@ -8,7 +8,7 @@ namespace tyndall
 {
 namespace
 {
-/// rays in the maps of a sweep for one marching direction: 128 MiB of floats
+/// Rays in the maps of a sweep for one marching direction: 128 MiB of floats.
 constexpr std::size_t MostRays = std::size_t(1) << 25;
 
 /// Makes rays cross whole voxels, as straight lines do. Fractional moves serve to let in the power of boundary sources;

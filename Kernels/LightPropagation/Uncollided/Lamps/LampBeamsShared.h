@@ -6,7 +6,7 @@
 SHARED_BEGIN
 enum
 {
-  /// tallies per row of beams: entered, escaped through each of 6 faces, stranded (in flight at the end), emitted
+  /// Tallies per row of beams: entered, escaped through each of 6 faces, stranded (in flight at the end), emitted.
   LampRowSums = 9
 };
 
@@ -23,11 +23,11 @@ typedef struct
   int images[3]; ///< periodic images to either side whose light is corrected together with the rectangle's, by axis
   float spacing[3];
   float direction[3];       ///< unit, in space
-  float cosine, sineSquare; ///< of the cone's half angle
+  float cosine, sineSquare; ///< cosine and squared sine of the cone's half angle
   float intensity; ///< fraction of the traced power (LampOnGrid::Share) per steradian; at normal emission if LAMBERT
   float scale;     ///< fixed-point units per length
-  float diagonal;  ///< of a voxel
-  /// as in BoxFaceLayout: first cell by face; step by axis of the face, along each axis
+  float diagonal;  ///< diagonal of a voxel, length
+  /// As in BoxFaceLayout: first cell by face; step by axis of the face, along each axis.
   int faceFirst[6], faceStep[3][3];
 } LampInfo;
 
@@ -35,12 +35,12 @@ typedef struct
 typedef struct
 {
   int axis, up; ///< marching axis, and 1: towards +, 0: towards -
-  /// reference tangents of the pyramid, to which the others are relative: the axis of a narrow cone
+  /// Reference tangents of the pyramid, to which the others are relative: the axis of a narrow cone.
   float baseU, baseV;
   float crossing[3]; ///< cross product of the reference direction and the cone's axis: along the marching axis, u, v
   float tangentU, tangentV; ///< of the first beam's centre, relative to the base; tangentV is that of all beams
-  float widthU, widthV;     ///< of a beam, in tangents
-  int count;                ///< of beams along u
+  float widthU, widthV;     ///< width of a beam, in tangents
+  int count;                ///< number of beams along u
   int outside;              ///< 1: the lamp is outside the box along the marching axis
   float from;               ///< start of the beams: the lamp's position along the axis, or the box's face, voxels
   float startU, startV;     ///< centre of the first beam at the start, voxels
@@ -50,7 +50,7 @@ typedef struct
   int beside;    ///< bits 1, 2: the lamp is beside the box along u, v, so that beams may enter through the faces there
   float share;   ///< fraction of the lamp's power that the beams' origin emits
   float part[3]; ///< centre of the part of a rectangle that the beams come from
-  /// squared distances from it beyond which voxels receive its light, and beyond which beams may reach such voxels
+  /// Squared distances from it beyond which voxels receive its light, and beyond which beams may reach such voxels.
   float partFrom, partSeen;
   float whole[3]; ///< the same for the larger part that was divided into this one; there its light ends
   float wholeFrom, wholeSeen;
@@ -76,8 +76,8 @@ typedef struct
   float corner[3];   ///< corner of the block relative to the rectangle's centre, along its two edges and its normal
   float edges[3][3]; ///< unit vectors along the two edges and the normal
   float reach[2];    ///< half the edge lengths
-  int size[3];       ///< of the block
-  /// size of the whole grid, voxels, and number of periodic images to either side that also emit
+  int size[3];       ///< size of the block, voxels
+  /// Size of the whole grid, voxels, and number of periodic images to either side that also emit.
   int period[3], images[3];
   float spacing[3];
   float path;  ///< path per voxel and per steradian of the visible rectangle, W length, for a lamp of 1 W

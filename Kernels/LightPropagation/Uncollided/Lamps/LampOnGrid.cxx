@@ -17,24 +17,31 @@ namespace tyndall
 {
 namespace
 {
-constexpr double PartDistance = 2.0; ///< of voxels from the middle of a part that is not halved for them, in its radii
-constexpr int PointsOfPart = 2, PointsOfAll = 3; ///< along an edge of a square
-constexpr double FinestPart = 2.0;               ///< its longer edge, voxels
-constexpr double PartsAcross = 64.0;             ///< of one that lies along the box, at most
-constexpr double Faint = 0.1;                    ///< error of a point, of all light, for a part to be a point
+/// A part lights voxels at least this far from its centre, in its radii; for nearer ones it is divided.
+constexpr double PartDistance = 2.0;
+/// Gauss points along an edge of a square: of a part, and of a rectangle that is not divided
+constexpr int PointsOfPart = 2, PointsOfAll = 3;
+constexpr double FinestPart = 2.0;   ///< longer edge of the smallest parts, voxels
+constexpr double PartsAcross = 64.0; ///< maximum number of smallest parts along the box's longest edge
+constexpr double Faint = 0.1;        ///< relative error below which one point represents a part
 constexpr std::size_t BeamsTogether = 1 << 18;
-/// To either side of a rectangle in a periodic box, whose light in vacuum is exact; without faces light has no end.
+/// Periodic images to either side of a rectangle whose light in vacuum is exact; fewer in a box without faces, where
+/// light never escapes.
 constexpr int ImagesAside = 5, ImagesAsideWithoutFaces = 1;
 
-/// Of beams where they leave the box, voxels: of a lamp, of a rectangle, of one of many points.
+/// Width of beams where they leave the box, voxels: of a lamp, of a rectangle, of one with many points.
 constexpr double BeamWidth = 0.5, BeamWidthOfRectangle = 1.0, BeamWidthOfMany = 1.4;
 constexpr std::size_t ManyPoints = 64;
 constexpr double Farthest =
-  1e4; ///< of a rectangle, mean edges of it and the box, for the integral around both in doubles
-constexpr int RoundsAtMost = 64;  ///< that all power may go through one voxel, in fixed point
-constexpr double OnBorder = 1e-6; ///< of the box's edges: so near to a face a lamp is on it, as for photons
+  /// Largest distance of a rectangle, in geometric means of its edge and the box's, at which the contour integral is
+  /// accurate in doubles.
+  1e4;
+/// Number of times that the full power may cross one voxel without overflow in fixed point.
+constexpr int RoundsAtMost = 64;
+/// Fraction of the box's edges: a lamp this near to a face counts as on it, as for photons.
+constexpr double OnBorder = 1e-6;
 
-/// Voxels from the grid's corner; on a face where it is next to it.
+/// Position in voxels from the grid's corner; snapped to a face if next to it.
 glm::dvec3 PlaceOf(const Grid& grid, const glm::dvec3& point)
 {
   glm::dvec3 place = (point - Vector(grid.origin)) / Vector(grid.spacing);
@@ -46,8 +53,8 @@ glm::dvec3 PlaceOf(const Grid& grid, const glm::dvec3& point)
   return place;
 }
 
-/// Part of a point's light that enters the box: all of it inside, by the solid angles of the faces that it sees
-/// outside, and what shines inwards on the border.
+/// Fraction of a point's light that enters the box: 1 inside; from outside, by the solid angles of the faces that the
+/// point sees; on the boundary, the inward part.
 double EnteringPart(const Grid& grid, const glm::dvec3& place, const std::array<bool, 3>& periodic)
 {
   double angle = 0.0, onFaces = 1.0;
@@ -73,7 +80,7 @@ double EnteringPart(const Grid& grid, const glm::dvec3& place, const std::array<
   return outside ? angle / (4.0 * Pi) : onFaces;
 }
 
-/// Corners of a face of the box, lengths from `from`.
+/// Corners of a face of the box, relative to `from`, lengths.
 std::array<glm::dvec3, 4> CornersOfFace(const Grid& grid, int face, const glm::dvec3& from)
 {
   std::array<glm::dvec3, 4> corners;
@@ -88,7 +95,8 @@ std::array<glm::dvec3, 4> CornersOfFace(const Grid& grid, int face, const glm::d
   return corners;
 }
 
-/// Signed solid angle of what is between a cone's axis and the arc from a to b, and in the cone. Unit vectors.
+/// Signed solid angle of the region between a cone's axis and the arc from a to b, inside the cone. All vectors are
+/// unit vectors.
 double AngleInCone(const glm::dvec3& axis, double half, const glm::dvec3& a, const glm::dvec3& b)
 {
   const glm::dvec3 across = glm::cross(glm::cross(a, b), a);
@@ -99,7 +107,7 @@ double AngleInCone(const glm::dvec3& axis, double half, const glm::dvec3& a, con
   }
   const glm::dvec3 t = across / aside;
   const double most = std::hypot(glm::dot(axis, a), glm::dot(axis, t)), cosine = std::cos(half);
-  const double middle = std::atan2(glm::dot(axis, t), glm::dot(axis, a)); // where the arc is nearest to the axis
+  const double middle = std::atan2(glm::dot(axis, t), glm::dot(axis, a)); // where the arc is closest to the axis
   const double reach = std::acos(std::clamp(most > 0.0 ? cosine / most : cosine * 1e300, -1.0, 1.0));
   std::vector<double> cuts = { 0.0, end };
   for (const double cut : { middle - reach, middle + reach, middle - reach + 2.0 * Pi, middle + reach - 2.0 * Pi })
@@ -120,8 +128,8 @@ double AngleInCone(const glm::dvec3& axis, double half, const glm::dvec3& a, con
   return sum;
 }
 
-/// Part of a spot's light that enters the box from outside; 0 where that is not known: of a lamp that is not outside,
-/// of a cone that is too narrow for doubles.
+/// Fraction of a spot's light that enters the box from outside; 0 if unknown: for a lamp that is not outside, or a cone
+/// too narrow for doubles.
 double EnteringPart(const Grid& grid, const Light& spot, const glm::dvec3& place)
 {
   constexpr double narrow = 1e-6;
@@ -142,14 +150,14 @@ double EnteringPart(const Grid& grid, const Light& spot, const glm::dvec3& place
         AngleInCone(Vector(DirectionOf(spot)), half, glm::normalize(corners[i]), glm::normalize(corners[(i + 1) % 4]));
     }
     seen = face % 2 ? -seen : seen;                  // seen from outside
-    angle += seen < -1e-9 * all ? seen + all : seen; // the face is around what is opposite to the axis
+    angle += seen < -1e-9 * all ? seen + all : seen; // the face encloses the direction opposite to the axis
   }
   return angle / all;
 }
 
-using Polygon = std::vector<glm::dvec3>; ///< plane and convex
+using Polygon = std::vector<glm::dvec3>; ///< planar and convex
 
-/// What of it is where normal . x >= least.
+/// The part of the polygon where normal . x >= least.
 Polygon Clip(const Polygon& polygon, const glm::dvec3& normal, double least)
 {
   return Clipped(polygon, [&](const glm::dvec3& x) { return glm::dot(x, normal) - least; });
@@ -188,8 +196,8 @@ double LogarithmAlong(const Edge& edge, const glm::dvec3& point)
   return upTo(length - along) - upTo(-along);
 }
 
-/// Integral of ln |x - y| dx . dy over two edges: over the second by the tanh-sinh rule, in pieces that end where the
-/// first one is near.
+/// Integral of ln |x - y| dx . dy over two edges: over the second by the tanh-sinh rule, split where the first one is
+/// near.
 double LogarithmOver(const Edge& first, const Edge& second)
 {
   constexpr double step = 0.18;
@@ -224,7 +232,8 @@ double LogarithmOver(const Edge& first, const Edge& second)
   return sum * dot / length;
 }
 
-/// Integral of cos cos / (pi r^2) over two polygons that lie before each other: by Stokes's theorem around both.
+/// Integral of cos cos / (pi r^2) over two polygons that face each other, by Stokes's theorem: contour integrals around
+/// both.
 double FormFactor(const Polygon& first, const Polygon& second)
 {
   double sum = 0.0;
@@ -252,7 +261,7 @@ double SolidAngle(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c)
 struct Area
 {
   glm::dvec3 middle;
-  std::array<glm::dvec3, 2> half; ///< of its edges
+  std::array<glm::dvec3, 2> half; ///< half edge vectors
 
   Area(const Light& light, const Grid& grid)
     : middle(Vector(light.position) - Vector(grid.origin))
@@ -267,7 +276,7 @@ struct Area
 
   glm::dvec3 At(double a, double b) const { return this->middle + a * this->half[0] + b * this->half[1]; }
 
-  /// Its halves, across the longer edge; quarters where that is not much longer, so that turned scenes have the same.
+  /// Its halves, across the longer edge; quarters if the edges are similar, so that rotated scenes are divided alike.
   std::vector<Area> Parts() const
   {
     constexpr double muchLonger = 1.5;
@@ -289,8 +298,8 @@ struct Area
 
   Polygon Corners() const { return { this->At(-1, -1), this->At(1, -1), this->At(1, 1), this->At(-1, 1) }; }
 
-  /// Gauss's points, as many along each edge of a square, with their shares of it: of what is longer than wide as many,
-  /// but more along it and fewer across.
+  /// Gauss points and their weights, `perEdge` along each edge of a square; for an elongated rectangle about as many in
+  /// total, more along it and fewer across.
   std::vector<std::pair<glm::dvec3, double>> Points(int perEdge) const
   {
     constexpr int most = 4;
@@ -300,7 +309,7 @@ struct Area
     constexpr double shares[][most] = { { 1.0 }, { 0.5, 0.5 }, { 5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0 },
       { 0.173927422568727, 0.326072577431273, 0.326072577431273, 0.173927422568727 } };
     const double longer = std::sqrt(glm::length(this->half[0]) / glm::length(this->half[1]));
-    const auto along = [=](double stretch) { // the same in a turned scene, whatever rounding does
+    const auto along = [=](double stretch) { // rounding must not make rotated scenes differ
       return perEdge == 1 ? 1 : static_cast<int>(std::clamp(perEdge * stretch + 0.5 + 1e-9, 1.0, most + 0.5));
     };
     const int counts[] = { along(longer), along(1.0 / longer) };
@@ -320,7 +329,8 @@ glm::dvec3 EndOf(const Grid& grid)
   return { grid.Length(0), grid.Length(1), grid.Length(2) };
 }
 
-/// Part of a rectangle's light that enters the box: all of what is inside, through each face that of what is beyond.
+/// Fraction of a rectangle's light that enters the box: all light of the part inside, and for each face the light
+/// through it of the part beyond.
 double EnteringPart(const Grid& grid, const Area& area, const glm::dvec3& normal)
 {
   const glm::dvec3 end = EndOf(grid);
@@ -352,8 +362,8 @@ double EnteringPart(const Grid& grid, const Area& area, const glm::dvec3& normal
   return (SizeOf(inside) + through) / area.Size();
 }
 
-/// A rectangle in parts: each voxel has the light of parts that are small beside their distance from it, which
-/// together are all of the rectangle.
+/// Divides a rectangle into parts: each voxel is lit by parts that are small compared with their distance from it, and
+/// that together make up the whole rectangle.
 class RectangleParts
 {
 public:
@@ -375,7 +385,7 @@ public:
   std::vector<LampPoint> Points;
 
 private:
-  /// Distances of the box's voxels from a point, at least and at most.
+  /// Smallest and largest distance of the box's voxels from a point.
   std::array<double, 2> Distances(const glm::dvec3& point) const
   {
     const glm::dvec3 end = EndOf(this->TheGrid);
@@ -392,7 +402,7 @@ private:
     return { least, most };
   }
 
-  /// Whether a part adds so little to the light of the box that one point stands for it.
+  /// Whether a part contributes so little to the light in the box that one point represents it.
   bool IsFaint(const Area& part) const
   {
     const glm::dvec3 eye = glm::clamp(part.middle, glm::dvec3(0.0), EndOf(this->TheGrid)), way = eye - part.middle;
@@ -443,13 +453,13 @@ private:
   const std::array<bool, 3>& Periodic;
   Area Whole;
   glm::dvec3 Normal;
-  double Finest; ///< edge of a part
-  double Away;   ///< PartDistance, and the others, by the light's fineness
+  double Finest; ///< longer edge of the smallest parts
+  double Away;   ///< PartDistance; like PerEdge and LeastError adapted to the light's fineness
   int PerEdge;
   double LeastError;
 };
 
-/// Distance between a rectangle and the box, by the nearest point of each in turn.
+/// Distance between a rectangle and the box, by alternating projection.
 double DistanceToBox(const Area& area, const Grid& grid)
 {
   glm::dvec3 at = area.middle, inBox = at;
@@ -465,8 +475,8 @@ double DistanceToBox(const Area& area, const Grid& grid)
   return glm::distance(at, inBox);
 }
 
-/// A rectangle that lies on an end of a periodic axis and shines out there is the same at the other end, where it
-/// shines in.
+/// A rectangle on one end of a periodic axis that emits out of the box is moved to the other end, where it emits into
+/// the box.
 Light ShiningIn(Light light, const Grid& grid, const std::array<bool, 3>& periodic)
 {
   if (light.type != LightType::Rectangle)
@@ -535,7 +545,7 @@ void LampOnGrid::DivideRectangle()
   this->Points = RectangleParts(this->TheGrid, this->Periodic, this->Lamp).Points;
 }
 
-/// Whether its beams take all light: it is in the box, or a cone that leads into it.
+/// Whether its beams carry all of its light: it is in the box, or its cone lies within the box's solid angle.
 bool LampOnGrid::FollowsAll() const
 {
   const glm::dvec3 place = this->Centre[0].place;
@@ -559,8 +569,8 @@ LampFactors LampOnGrid::Factors(const LampShares& shares, double taken, double e
   {
     return { in, in, in };
   }
-  // The parts of a rectangle do not add up exactly: the larger of what the medium takes and what leaves makes up for
-  // it (numerics.md, Eq. (34b)).
+  // The light of a rectangle's parts does not add up exactly: the power that the medium removes and the power that
+  // leaves are corrected, mostly the larger of the two (numerics.md, Eq. (34b)).
   const double share = this->Share(), left = share * (shares.Out() + even), kept = share * taken;
   const double square = kept * kept + left * left;
   if (!(square > 0.0))
@@ -571,14 +581,15 @@ LampFactors LampOnGrid::Factors(const LampShares& shares, double taken, double e
   return { in, share * (1.0 + rest * kept), share * (1.0 + rest * left) };
 }
 
-/// By the ball around the box; a power of two.
+/// From the solid angle of the sphere around the box; a power of two.
 double LampOnGrid::Share() const
 {
   if (this->Lamp.type == LightType::Rectangle && this->Entering > 0.0)
   {
     return std::exp2(std::ceil(std::log2(this->Entering)));
   }
-  constexpr double ofNearBall = 1.1; // solid angle of a ball over pi (radius / distance)^2, from twice its radius on
+  // solid angle of a sphere over pi (radius / distance)^2, at most, from twice its radius on
+  constexpr double ofNearBall = 1.1;
   const Grid& grid = this->TheGrid;
   const double radius = 0.5 * std::hypot(grid.Length(0), grid.Length(1), grid.Length(2));
   glm::dvec3 way = Vector(grid.origin) - Vector(this->Lamp.position);
@@ -602,7 +613,7 @@ std::vector<BeamRow> LampOnGrid::Rows(const Pass& pass, double factor, std::size
 {
   const double ofRectangle = this->Points.size() < ManyPoints ? BeamWidthOfRectangle : BeamWidthOfMany;
   const double width = this->Lamp.type == LightType::Rectangle ? ofRectangle / this->Lamp.fineness : BeamWidth;
-  const double margin = 2.0 * this->Diagonal(); // of a beam's cross-section and of a step
+  const double margin = 2.0 * this->Diagonal(); // allows for a beam's cross-section and a step
   const std::vector<LampPoint>& points = this->PointsOf(pass);
   std::vector<BeamRow> rows;
   std::size_t beams = 0;
@@ -697,7 +708,7 @@ LampInfo LampOnGrid::Describe(const VoxelBox& stored, const VoxelBox& followed) 
   return info;
 }
 
-/// No voxel can gather more than all power along its diagonal, once a round.
+/// No voxel can gather more than the full power along its diagonal, once per round.
 double LampOnGrid::UnitsPerLength() const
 {
   return std::exp2(std::floor(std::log2(0x1p60 / (this->Diagonal() * RoundsAtMost))));

@@ -28,7 +28,7 @@ struct LampPoint
   };
 
   glm::dvec3 place;   ///< position, voxels from the grid's corner
-  double share = 1.0; ///< of the lamp's power
+  double share = 1.0; ///< fraction of the lamp's power
 
   /// The point illuminates voxels outside the first sphere and inside the second, beyond which the larger part of the
   /// lamp that was divided into this one takes over.
@@ -41,7 +41,7 @@ struct LampPoint
 class LampOnGrid
 {
 public:
-  /// layers that all beams of a launch cross together; keeps it below a tenth of a second
+  /// Layers that all beams of a launch cross together; keeps it below a tenth of a second.
   static constexpr double LayersPerLaunch = 4e6;
 
   /// @param grid  the whole grid; must outlive this object
@@ -81,7 +81,7 @@ public:
 
   /// Fixed-point units per length (numerics.md, Eq. (36)).
   double UnitsPerLength() const;
-  double Diagonal() const; ///< of a voxel
+  double Diagonal() const; ///< diagonal of a voxel, length
 
   /// @param source  of LampBeams.cl, or of a file that uses the same options
   cl::Kernel Kernel(Device& device, const char* name, std::string_view source, const Deposit& deposit) const;
@@ -94,7 +94,7 @@ private:
   Light Lamp;
   const Grid& TheGrid;
   std::array<bool, 3> Periodic;
-  /// periodic images to either side of a rectangle whose light is exact in vacuum, by axis
+  /// Periodic images to either side of a rectangle whose light is exact in vacuum, by axis.
   std::array<int, 3> Images = {};
   double Entering = 0.0; ///< fraction of the power that enters the box; 0: unknown
   std::vector<LampPoint> Points, Centre;

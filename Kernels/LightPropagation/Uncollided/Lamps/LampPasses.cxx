@@ -8,7 +8,7 @@ namespace tyndall
 namespace
 {
 constexpr int PassesAtMost = 9; ///< number of passes
-/// number of passes after which the remaining light of a box without faces is spread uniformly
+/// Number of passes after which the remaining light of a box without faces is spread uniformly.
 constexpr int EvenFrom = 3;
 constexpr double LeftAtMost = 5e-5; ///< no further pass once this fraction of the power, or less, is still in flight
 }

@@ -11,17 +11,18 @@ namespace tyndall
 namespace
 {
 constexpr double RightAngle = 0.5 * Pi;
-constexpr int BeamsAcrossCone = 16; ///< of a spot, at least
-constexpr int FirstReach = 2;    ///< longest edges of the box, in voxels, that beams go along a periodic axis at first
-constexpr int Farther = 4;       ///< times as far in each pass after that
-constexpr int BeamsAtLeast = 16; ///< along an edge of a pyramid that goes round a periodic axis
-constexpr double BeamsPerVoxel = 64.0; ///< that cross it in a pass, about
+constexpr int BeamsAcrossCone = 16; ///< minimum number of beams across a spot's cone
+constexpr int FirstReach = 2;    ///< length of the first pass along a periodic axis, in the box's longest edge, voxels
+constexpr int Farther = 4;       ///< factor by which each further pass reaches farther
+constexpr int BeamsAtLeast = 16; ///< minimum number of beams along an edge of a pyramid on a periodic axis
+constexpr double BeamsPerVoxel = 64.0; ///< approximate number of beams that cross each voxel in a pass
 
-/// How many beams lie beside each other between two tangents.
+/// Number of adjacent beams between two tangents.
 /// @param far  layers to where they are to be `width` voxels wide
 int BeamsBetween(const std::array<double, 2>& tangents, double far, double width)
 {
-  return static_cast<int>(std::ceil((tangents[1] - tangents[0]) * far / width - 1e-6)); // rounding decides on no more
+  // rounding must not add a beam
+  return static_cast<int>(std::ceil((tangents[1] - tangents[0]) * far / width - 1e-6));
 }
 
 bool IsEmpty(const std::array<double, 2>& range)
@@ -29,15 +30,16 @@ bool IsEmpty(const std::array<double, 2>& range)
   return range[0] >= range[1];
 }
 
-/// Beams beside each other: between which tangents, and how many.
+/// A grid of adjacent beams: ranges of tangents, and numbers of beams.
 struct BeamGrid
 {
   std::array<double, 2> u, v;
   int countU, countV;
 };
 
-/// A spot's cone as the plane of a pyramid's axis and one aside has it: the planes that touch the cone and hold the
-/// third axis are turned by asin(sin(half angle) / R) from its middle, R the length of that in the plane.
+/// A spot's cone in the plane of a pyramid's axis and one lateral axis. The planes that touch the cone and contain the
+/// third axis are rotated by asin(sin(half angle) / R) from the cone's axis, where R is the length of that axis'
+/// projection onto the plane.
 struct ConeInPlane
 {
   ConeInPlane(double forward, double aside, double sine)
@@ -47,15 +49,16 @@ struct ConeInPlane
   {
   }
 
-  bool hasSides; ///< it is not seen all around
+  bool hasSides; ///< false: the cone covers all angles in the plane
   double turn, reach;
 };
 
-/// Where pyramids border on each other: a ray belongs to the axis along which it goes furthest, in voxels times these
-/// weights. From far the box is all in one pyramid: where two of them meet, beams' steps leave uneven gaps.
+/// Weights that define the borders of pyramids: a ray belongs to the axis along which its weighted component, in
+/// voxels, is largest. For a distant lamp the whole box lies in one pyramid, since the beams' steps leave uneven gaps
+/// where two pyramids meet.
 std::array<double, 3> WeightsOfAxes(const Grid& grid, const glm::dvec3& position)
 {
-  constexpr double widest = 1.5; // tangent, at which beams still move aside by less than a voxel a step
+  constexpr double widest = 1.5; // tangent at which beams still move laterally by less than a voxel per step
   double least = widest;
   std::array<double, 3> weights = { 1.0, 1.0, 1.0 };
   for (int axis = 0; axis < 3; ++axis)
@@ -77,8 +80,9 @@ std::array<double, 3> WeightsOfAxes(const Grid& grid, const glm::dvec3& position
   return weights;
 }
 
-/// The pyramid of beams along one axis. Tangents along the k-th axis after it are voxels aside per layer, and counted
-/// from `Base`: that of a narrow cone's axis, so that they keep their digits however narrow it is, else 0.
+/// The pyramid of beams along one direction of an axis. Tangents along the k-th axis after it are lateral voxels per
+/// layer, relative to `Base`: the tangent of a narrow cone's axis, so that they keep their precision however narrow the
+/// cone is, else 0.
 class Pyramid
 {
 public:
@@ -113,7 +117,7 @@ public:
     return (this->Far > 0.0 || (around && this->Far == 0.0)) && (pass.begin == 0 || around) && this->Near < this->Reach;
   }
 
-  /// Of beams that are still in the box in a pass.
+  /// Range of tangents of the beams that are still in the box in a pass.
   std::array<double, 2> Seen(int k, const Light& light, const Pass& pass) const
   {
     const int aside = (this->Axis + k) % 3;
@@ -127,13 +131,13 @@ public:
     if (light.type == LightType::Spot)
     {
       const std::array<double, 2> cone = this->Cone(k, light);
-      const double aroundIt = 0.01 * (cone[1] - cone[0]); // beams' edges do not fall on the cone's
+      const double aroundIt = 0.01 * (cone[1] - cone[0]); // keeps beams' edges off the cone's
       seen = { std::max(seen[0], cone[0] - aroundIt), std::min(seen[1], cone[1] + aroundIt) };
     }
     return seen;
   }
 
-  /// Whether all of a spot's cone that is in the pyramid is seen.
+  /// Whether the part of a spot's cone in this pyramid is covered completely.
   bool SeesAllOfCone(const Light& spot) const
   {
     bool isThere = true, seesAll = this->Far > 0.0;
@@ -152,7 +156,7 @@ public:
   {
     const double width[] = { (beams.u[1] - beams.u[0]) / beams.countU, (beams.v[1] - beams.v[0]) / beams.countV };
     const double middle[] = { beams.u[0] + 0.5 * width[0], beams.v[0] + (number + 0.5) * width[1] };
-    const auto start = [&](int k) { // in doubles: from far both parts are large
+    const auto start = [&](int k) { // in doubles: for a distant lamp both terms are large
       return static_cast<float>(this->Position[(this->Axis + 1 + k) % 3] + (this->Base[k] + middle[k]) * this->Near);
     };
     const bool outside = this->Near > 0.0;
@@ -188,8 +192,8 @@ public:
     return row;
   }
 
-  /// Beams along the k-th axis after this one. They are at most `width` voxels wide where they leave the box, or where
-  /// a pass begins.
+  /// Number of beams along the k-th axis after this one. They are at most `width` voxels wide where they leave the box,
+  /// or where a pass begins.
   int Count(int k, const std::array<double, 2>& seen, const Light& light, const Pass& pass, double width) const
   {
     const int aside = (this->Axis + k) % 3, other = (this->Axis + 3 - k) % 3;
@@ -224,7 +228,8 @@ private:
     return this->Position[aside] < 0.0 || this->Position[aside] > this->TheGrid.size[aside];
   }
 
-  /// The cone is so narrow, and so far from the planes across the axis, that its border is near its axis' tangent.
+  /// Whether the cone is so narrow, and so far from the planes across the axis, that its border is near its axis'
+  /// tangent.
   static bool IsNarrow(const ConeInPlane& cone)
   {
     constexpr double narrow = 0.1;
@@ -243,7 +248,7 @@ private:
       std::sin(HalfAngle(spot)) };
   }
 
-  /// Between which the box is seen, within the pyramid: from one of its faces all tangents that lead inwards.
+  /// Range of tangents to the box within the pyramid; for a lamp on one of its faces all inward tangents.
   std::array<double, 2> Box(int k) const
   {
     const int aside = (this->Axis + k) % 3;
@@ -260,7 +265,7 @@ private:
       std::min(widest, std::max(high / depth, high / this->Far)) - this->Base[k - 1] };
   }
 
-  /// Between which a spot's cone is; the first is larger than the second where it is not in the pyramid.
+  /// Range of tangents of a spot's cone; the first exceeds the second if the cone is not in the pyramid.
   std::array<double, 2> Cone(int k, const Light& spot) const
   {
     const ConeInPlane cone = this->ConeAlong(k, spot);
@@ -287,9 +292,9 @@ private:
   const Grid& TheGrid;
   const std::array<bool, 3>& Periodic;
   const glm::dvec3& Position;
-  const double Near, Far;                      ///< layers from the light to the box and to where it ends
-  const double Reach;                          ///< layers from the light to where its beams end at the latest
-  std::array<double, 2> Widest = { 1.0, 1.0 }; ///< tangents, from 0, where other pyramids begin
+  const double Near, Far;                      ///< layers from the lamp to the box's near face and to its far face
+  const double Reach;                          ///< layers from the lamp to where its beams end at the latest
+  std::array<double, 2> Widest = { 1.0, 1.0 }; ///< absolute tangents at which other pyramids begin
   bool HasBase = false;
   std::array<double, 2> Base = {};
 };

@@ -11,7 +11,7 @@ namespace tyndall
 /// Factors that convert LampShares to fractions of the lamp's power.
 struct LampFactors
 {
-  /// for the power that enters, that the medium removes, and that escapes or is still in flight
+  /// For the power that enters, that the medium removes, and that escapes or is still in flight.
   double in, taken, out;
 };
 

@@ -22,7 +22,7 @@ public:
   }
 
   Buffer<cl_long>& Sums() { return this->Fixed; }
-  /// escaped power by cell (BoxFaces.h), in LampPowerUnits; a single value if not wanted
+  /// Escaped power by cell (BoxFaces.h), in LampPowerUnits; a single value if not wanted.
   Buffer<cl_long>& Cells() { return this->OfCells; }
   std::size_t Stride() const { return this->TheStride; }
 
