@@ -22,7 +22,7 @@ public:
   BlockWithGhosts(const Domain& domain, const std::array<bool, 3>& periodic, int channels, bool sharedExtinction);
 
   const Domain& TheDomain() const { return this->Of; }
-  bool Has() const { return !this->Of.IsEmpty(); } ///< voxels
+  bool Has() const { return !this->Of.IsEmpty(); } ///< whether it has any voxels
   bool HasGhosts() const { return this->Box.size != this->Of.Own().size; }
   /// The block with its ghosts, in voxels of the whole grid; on periodic axes it may extend beyond the grid's ends.
   const VoxelBox& Held() const { return this->Box; }
@@ -32,7 +32,8 @@ public:
   const VolumeLayout& Own() const { return this->OfBlock; }
   const VolumeLayout& WithGhosts() const { return this->OfBox; }
 
-  void FillGhosts(Buffer<float>& ofVoxels) const; ///< of one array without channels; collective
+  void FillGhosts(
+    Buffer<float>& ofVoxels) const; ///< fetches them from their owners, for one array without channels; collective
 
   std::size_t PlaceOf(std::size_t ownVoxel) const; ///< index in arrays with ghosts of a voxel of the block
   /// Whether a voxel, counted from the first one of the box with ghosts, belongs to the block.

@@ -44,9 +44,8 @@ public:
     const Buffer<float>* given;        ///< emission and first-collision source, W / (length^3 sr)
     MomentPlaces moments;              ///< places of the angular moments in `path`
     int channel;                       ///< channel of this system
-    const Buffer<float>*
-      /// Net flux of `given` over 4 pi, if there are angular moments, [channel][x, y, z][stride]; null: isotropic.
-      givenFlux;
+    /// Net flux of `given` over 4 pi, if there are angular moments, [channel][x, y, z][stride]; null: isotropic.
+    const Buffer<float>* givenFlux;
     const Buffer<float>* source; ///< source of the sweep, W / (length^3 sr)
     const Buffer<float>* path;   ///< path integrals of the sweep, W length
     /// Partial currents of the sweep, W, [channel][-x, +x, -y, +y, -z, +z][stride]
@@ -102,7 +101,8 @@ public:
   /// Sums over cells of the box's faces, from which the escaped power of the last correction follows, W.
   struct BorderSums
   {
-    std::array<double, 6> out = {}, seeming = {}, came = {}; ///< by face
+    std::array<double, 6> out = {}, seeming = {},
+                          came = {}; ///< by face: outgoing power, estimate of it from the sweep, incoming power
     /// Sum over the cells of voxels with several faces, and number of such cells.
     double transportWeight = 0.0, shared = 0.0;
   };

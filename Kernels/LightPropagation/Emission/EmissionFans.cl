@@ -9,7 +9,7 @@
 
 #include "LightPropagation/Emission/EmissionBox.cl"
 
-// accepted difference of the two halves of the fans, in units of the requested error: their mean is more accurate
+// Accepted difference of the two halves of the fans, in units of the requested error: their mean is more accurate.
 #define OF_HALVES 3.0f
 #define DIM 1e-6f // transmittance below which the halves of the fans need not agree
 

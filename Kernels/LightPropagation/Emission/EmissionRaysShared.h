@@ -39,9 +39,8 @@ typedef struct
 enum
 {
   FanMargin = 16, ///< padding before and behind the voxels in the copy of sigma_t: it is loaded, but never used
-  FanPointFloats =
-    /// Floats per origin of a fan: position along the permuted axes, voxels; sample depth in a layer; offsets added to
+  /// Floats per origin of a fan: position along the permuted axes, voxels; sample depth in a layer; offsets added to
   /// the tangents, in spacings.
-  6
+  FanPointFloats = 6
 };
 SHARED_END

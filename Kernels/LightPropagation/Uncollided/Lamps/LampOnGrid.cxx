@@ -32,10 +32,9 @@ constexpr int ImagesAside = 5, ImagesAsideWithoutFaces = 1;
 /// Width of beams where they leave the box, voxels: of a lamp, of a rectangle, of one with many points.
 constexpr double BeamWidth = 0.5, BeamWidthOfRectangle = 1.0, BeamWidthOfMany = 1.4;
 constexpr std::size_t ManyPoints = 64;
-constexpr double Farthest =
-  /// Largest distance of a rectangle, in geometric means of its edge and the box's, at which the contour integral is
-  /// accurate in doubles.
-  1e4;
+/// Largest distance of a rectangle, in geometric means of its edge and the box's, at which the contour integral is
+/// accurate in doubles.
+constexpr double Farthest = 1e4;
 /// Number of times that the full power may cross one voxel without overflow in fixed point.
 constexpr int RoundsAtMost = 64;
 /// Fraction of the box's edges: a lamp this near to a face counts as on it, as for photons.
