@@ -19,7 +19,7 @@ namespace tyndall
 {
 namespace
 {
-/// The time step stays that of the input that is asked for now.
+/// Copies all but the time step: that stays the one of the current request.
 void CopyButTime(vtkDataObject* from, vtkDataObject* to)
 {
   vtkInformation* const facts = to->GetInformation();

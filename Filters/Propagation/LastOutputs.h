@@ -17,14 +17,14 @@ class vtkInformationVector;
 
 namespace tyndall
 {
-/// In `left_out` if outputs are those of before.
+/// Entry of `left_out` if the outputs are those of the previous complete run.
 constexpr const char* LightOfBefore = "light: that of before, for the solve was stopped";
 
-/// The light that a solver keeps from one update to the next if WarmStart is on.
+/// Solution that a solver keeps as the first guess of the next update if WarmStart is on.
 class LastLight
 {
 public:
-  /// The argument of a solver. Null if nothing is to be kept; what was kept is then dropped.
+  /// Storage to pass to the solver. If `warmStart` is false, frees the storage and returns null.
   KeptLight* Where(bool warmStart)
   {
     if (!warmStart)
@@ -42,36 +42,38 @@ private:
   std::unique_ptr<KeptLight> Kept;
 };
 
-/// The last outputs of a filter, returned again for the same inputs: the pipeline may run a filter twice for one time
-/// step (ContentKey). Arrays are shared, not copied. Outputs are kept before they are cropped to what is asked for.
+/// Cache of a filter's last outputs, returned again for the same inputs: the pipeline may run a filter twice for one
+/// time step (ContentKey). Arrays are shared, not copied. The cached outputs are not yet cropped to the requested
+/// extent.
 class LastOutputs
 {
 public:
-  /// What outputs depend on: content of the inputs, when a property last changed, the axes of the filter.
+  /// What the outputs depend on: the inputs' content, the time of the last property change, the filter's own axes.
   using Key = std::vector<std::uint64_t>;
   static Key KeyOf(vtkMTimeType settings, const OwnAxes& axes, vtkInformationVector** inputs, int ports);
 
-  /// @return whether the outputs are those of the key; if not, what was kept serves GiveBefore alone
+  /// Copies the cached outputs to `outputs` if they were computed for this key.
+  /// @return whether they were; if not, the cache is from then on available to GiveBefore only
   bool GiveBack(const Key& key, vtkInformationVector* outputs);
 
-  /// @param axes  in which the outputs lie
+  /// @param axes  axes of the outputs' grids
   void Keep(Key key, const OwnAxes& axes, vtkInformationVector* outputs);
 
-  /// After a run that was stopped, whose outputs are empty: those of the last complete run, if the same extent is
-  /// announced for them. They stay marked as aborted, and `left_out` says so.
-  /// @param axes  set to those in which they lie
-  /// @return whether there are any
+  /// After an aborted run, whose outputs are empty: copies the outputs of the last complete run to `outputs`, if their
+  /// whole extent is the same. They stay marked as aborted, and `left_out` reports it.
+  /// @param axes  set to the axes of these outputs' grids
+  /// @return whether there were such outputs
   bool GiveBefore(vtkInformationVector* outputs, OwnAxes& axes) const;
 
-  void LetGo(); ///< keeps them for GiveBefore alone
+  void LetGo(); ///< makes the cached outputs available to GiveBefore only
   void Forget();
 
 private:
   Key MadeOf;
-  std::array<int, 6> Told = {};                        ///< whole extent of output 0 when they were made
-  OwnAxes Axes, AxesBefore;                            ///< of Outputs and of Before
-  std::vector<vtkSmartPointer<vtkDataObject>> Outputs; ///< by port
-  std::vector<vtkSmartPointer<vtkDataObject>> Before;  ///< the same, until there are others
+  std::array<int, 6> Told = {};                        ///< whole extent of output 0 when the outputs were computed
+  OwnAxes Axes, AxesBefore;                            ///< axes of Outputs and of Before
+  std::vector<vtkSmartPointer<vtkDataObject>> Outputs; ///< outputs of the last key, by port
+  std::vector<vtkSmartPointer<vtkDataObject>> Before;  ///< outputs of the last complete run, for GiveBefore, by port
 };
 }
 

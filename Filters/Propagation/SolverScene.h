@@ -13,25 +13,25 @@ class vtkPolyData;
 
 namespace tyndall
 {
-/// The medium of this rank's subdomain and what lights it, as a solver takes them.
+/// Input of a solver: the medium of this rank's subdomain and its light sources.
 struct SolverScene
 {
-  /// Reads the medium; what lights it is added later. Collective.
-  /// @param given  the filter's medium
-  /// @throws InvalidInput  on each rank what ReadMedium throws on one
+  /// Reads the medium; the caller adds the light sources later. Collective.
+  /// @param given  the filter's input image, on this rank
+  /// @throws InvalidInput if ReadMedium throws on any rank: the same error on all ranks
   SolverScene(const PieceBlocks& pieces, vtkAlgorithm* filter, vtkImageData* given);
 
   const PieceBlocks& pieces;
   const Domain& domain;
   bool
-    decomposed; ///< into pieces, which may be on one rank: by the kernels for blocks, until these are the serial ones
+    decomposed; ///< whether the domain is divided into pieces; on one rank the domain is serial
 
-  vtkSmartPointer<vtkImageData> image;      ///< whose arrays the medium has; null if the subdomain is empty
-  vtkSmartPointer<vtkImageData> uncollided; ///< the same of UncollidedLight; null: none, or not read
-  vtkPolyData* share = nullptr;             ///< points of which this rank has some, of a solver with an input of such
+  vtkSmartPointer<vtkImageData> image;      ///< owns the arrays that `medium` points to; null if the subdomain is empty
+  vtkSmartPointer<vtkImageData> uncollided; ///< owns UncollidedLight's arrays; null if that is not read
+  vtkPolyData* share = nullptr;             ///< this rank's points (photons), if the solver has such an input
   MediumInput input;
-  Medium medium;      ///< empty if the subdomain is
-  bool emits = false; ///< the medium, on any rank
+  Medium medium;      ///< empty if the subdomain is empty
+  bool emits = false; ///< whether the medium emits on any rank
   IlluminationInput shining;
 };
 }

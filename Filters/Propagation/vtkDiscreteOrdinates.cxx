@@ -23,7 +23,7 @@
 
 namespace
 {
-/// As the properties stand.
+/// The settings as the filter's properties say, before Quality.
 tyndall::OrdinatesSettings GivenSettings(vtkDiscreteOrdinates* filter)
 {
   tyndall::OrdinatesSettings settings;

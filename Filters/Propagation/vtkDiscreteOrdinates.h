@@ -15,12 +15,14 @@ class LastLight;
 
 /**
  * @class vtkDiscreteOrdinates
- * @brief light that is scattered many times and unevenly, by its radiance along many directions in every voxel
+ * @brief multiply and anisotropically scattered light, by discrete ordinates: radiance in many directions in every
+ * voxel
  *
- * Solves for the radiance along DirectionsPerFace directions of each face of a cube, order by order of scattering. What
- * arrives in a voxel is scattered by a separable phase function of Terms terms (vtkSeparablePhaseFunction), so that a
- * direction costs Terms, not all other directions. By default the energy is kept, and voxels may be as thick as they
- * are; as published steps are explicit, and a warning says where they are not stable.
+ * Solves for the radiance along DirectionsPerFace directions for each face of a cube, by source iteration: scattering
+ * order after scattering order. The incident radiance in a voxel is scattered by a separable phase function of Terms
+ * terms (vtkSeparablePhaseFunction), so that the cost per direction is proportional to Terms, not to the number of
+ * directions. By default the scheme conserves energy and works for voxels of any optical thickness; the published
+ * scheme takes explicit steps, and a warning says where they are unstable.
  *
  * Input 0, the medium: vtkImageData with cell arrays (point arrays: see SetPointData)
  *
@@ -40,22 +42,23 @@ class LastLight;
  * | array | components | unit | meaning |
  * |---|---|---|---|
  * | `fluence` | 1 or 3 | W/length^2 | radiance integrated over all directions |
- * | `fluence_direct` | 1 or 3 | W/length^2 | its unscattered part; as published that of lamps alone |
+ * | `fluence_direct` | 1 or 3 | W/length^2 | its uncollided part; in the published scheme that of lamps only |
  * | `net_flux` | 3 or 9 | W/length^2 | radiance times direction, integrated (if NetFlux) |
- * | `scattered_radiance` | 1 or 3 | W/(length^2 sr) | radiance scattered, in the mean over directions |
+ * | `scattered_radiance` | 1 or 3 | W/(length^2 sr) | scattered radiance, averaged over directions |
  *
  * and field data `energy_balance` (W: entered, emitted, absorbed, escaped, left over), `face_power_out` (W through -x,
  * +x, -y, +y, -z, +z), `half_range_flux`, `left_out` (what the scene did not need), `device`, `stored_directions`.
  * Output 1: vtkTable, one row a scattering order (as published: a step): `iteration`, `seconds`, `residual`, `change`,
- * `absorbed`, `escaped`, `left_over`, and with WarmStart `sweeps_saved`: by how many rows a row comes to its residual
- * earlier than the last solve from darkness on did.
+ * `absorbed`, `escaped`, `left_over`, and with WarmStart `sweeps_saved`: how many rows later the last cold solve (with
+ * zero initial guess) reached the same residual.
  *
- * Orders are not accelerated: for thick media that absorb little, vtkLightPropagationMaps is faster. The radiance of
- * all directions has to fit the device: what it takes is said before any is taken. EstimateError is not used.
+ * Source iteration is not accelerated: in optically thick media that absorb little, vtkLightPropagationMaps is faster.
+ * The radiance in all directions has to fit in device memory: if it does not, an error states the required memory
+ * before any is allocated. EstimateError is not used.
  *
- * With Decomposition BLOCKS radiance goes from rank to rank (numerics.md, section 10 b): the same light, order by
- * order. A Quality has no more directions than half the smallest memory of all ranks would hold of the whole. Blocks
- * cannot do Scheme PUBLISHED.
+ * With Decomposition BLOCKS ranks exchange radiance at the boundaries of their pieces (numerics.md, section 10 b);
+ * every scattering order is the same as in a serial solve. Quality chooses no more directions than half the memory of
+ * the smallest rank would hold for the whole domain. Scheme PUBLISHED cannot be used with BLOCKS.
  *
  * @sa vtkSeparablePhaseFunction vtkLightPropagationMaps vtkParticipatingMedium vtkLightRig
  * @par Thanks
@@ -72,24 +75,23 @@ public:
   enum Schemes
   {
     PUBLISHED = 0,   ///< explicit steps, as Gong et al. describe them
-    CONSERVATIVE = 1 ///< steps by exponentials that keep the energy, lights followed exactly
+    CONSERVATIVE = 1 ///< exponential steps that conserve energy; lights are followed exactly
   };
 
   enum Scatterings
   {
-    MATRIX = 0,             ///< every pair of directions
+    MATRIX = 0,             ///< full matrix of all pairs of directions
     SINGULAR_VALUES = 1,    ///< Terms singular values, as published
     SPHERICAL_HARMONICS = 2 ///< Terms spherical harmonics
   };
 
   ///@{
-  /// How to compute: PUBLISHED, or CONSERVATIVE (default). PUBLISHED refuses a FaceAlbedo other than 0.
+  /// Numerical scheme: PUBLISHED, or CONSERVATIVE (default). With PUBLISHED a FaceAlbedo other than 0 is an error.
   tyndallRangeMacro(Scheme, int, PUBLISHED, CONSERVATIVE);
   ///@}
 
   ///@{
-  /// How what arrives along each direction is scattered into each: MATRIX, SINGULAR_VALUES or SPHERICAL_HARMONICS
-  /// (default).
+  /// Representation of scattering between directions: MATRIX, SINGULAR_VALUES or SPHERICAL_HARMONICS (default).
   tyndallRangeMacro(Scattering, int, MATRIX, SPHERICAL_HARMONICS);
   ///@}
 
@@ -99,45 +101,46 @@ public:
   ///@}
 
   ///@{
-  /// Directions on a spiral instead, any number from 16 on. Default 0: those of the cube, whose light turns with its
-  /// scene.
+  /// Number of directions on a spiral, from 16 on, instead of the cube's directions. Default 0: the cube's, whose
+  /// symmetry makes the light of a scene that is turned by 90 degrees the turned light.
   tyndallRangeMacro(SpiralDirections, int, 0, VTK_INT_MAX);
   ///@}
 
   ///@{
-  /// Terms of the separable phase function. Default 25, at most as many as there are directions; of spherical
-  /// harmonics square numbers: 1, 4, 9, 16, ...
+  /// Terms of the separable phase function. Default 25, at most as many as there are directions; for spherical
+  /// harmonics a square number: 1, 4, 9, 16, ...
   tyndallRangeMacro(Terms, int, 1, VTK_INT_MAX);
   ///@}
 
   ///@{
-  /// Scattering orders (as published: steps) at most. Default 0: as many as Tolerance takes.
+  /// Largest number of scattering orders (published scheme: steps). Default 0: as many as Tolerance requires.
   tyndallRangeMacro(MaximumOrders, int, 0, VTK_INT_MAX);
   ///@}
 
   ///@{
-  /// Whether the light of the last update is the first guess of the next one: fewer sweeps where medium or lights
-  /// changed a little, the same light within the tolerance. It is kept in memory until an update with WarmStart off: a
-  /// float a voxel and channel. It is used where scattering is isotropic, and not as published. By blocks each rank
-  /// keeps that of its own, and all begin in the dark where blocks have changed. Default off.
+  /// Whether the solution of the last update is the initial guess of the next one: fewer sweeps if medium or lights
+  /// changed a little, and the same light within the tolerance. The solution stays in memory until an update with
+  /// WarmStart off: one float per voxel and channel. Used if scattering is isotropic, not by the published scheme. With
+  /// Decomposition BLOCKS each rank keeps its own piece; if pieces have changed, all ranks start from zero. Default
+  /// off.
   tyndallFlagMacro(WarmStart);
   ///@}
 
   ///@{
-  /// Whether to compute `net_flux` too. Default off.
+  /// Whether to compute `net_flux` as well. Default off.
   tyndallFlagMacro(NetFlux);
   ///@}
 
   ///@{
-  /// Whether to leave out what the scene does not need. Default on.
+  /// Whether to skip computations that the scene does not need. Default on.
   tyndallFlagMacro(LeaveOut);
   ///@}
 
   ///@{
-  /// What came of the last update: scattering orders done, how many more the last update from darkness on took to the
-  /// same residual (0 where this was one), estimated relative error of fluence left by those that were
-  /// not done, relative error of the energy balance, what the directions carry of the power that even light brings
-  /// through a face, over the exact value, seconds, the device's name, and what the scene did not need, one per line.
+  /// Results of the last update: number of scattering orders; how many more orders the last cold update took to the
+  /// same residual (0 if this update was cold); estimated relative error of fluence due to the omitted orders; relative
+  /// error of the energy balance; half-range flux of the quadrature for isotropic radiance through a face, over the
+  /// exact value; seconds; the device's name; what the scene did not need, one per line.
   vtkGetMacro(Orders, int);
   vtkGetMacro(SweepsSaved, int);
   vtkGetMacro(Residual, double);

@@ -54,7 +54,7 @@ int ReadCount(vtkImageData* image, const char* name)
   return static_cast<int>(value);
 }
 
-/// What LPMPropagate was told, and the number of channels it worked with.
+/// The settings of vtkLPMPropagate, read from its output, and the number of channels.
 struct Told
 {
   tyndall::PropagationSettings settings;
@@ -105,7 +105,7 @@ void CollectAll(tyndall::ParallelPropagation& propagation, const Buffers& buffer
   propagation.FinishOrder();
 }
 
-/// Add what the orders before left in an array of the image.
+/// Adds the previous orders' values from an array of the image.
 void AddBefore(std::vector<float>& values, vtkImageData* image, const char* name, std::size_t voxels)
 {
   const int components = static_cast<int>(values.size() / voxels);

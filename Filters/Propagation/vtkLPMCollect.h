@@ -9,28 +9,30 @@
 
 /**
  * @class vtkLPMCollect
- * @brief the second half of one scattering order of light propagation maps, as published: what rays left becomes light
+ * @brief the second half of one scattering order of light propagation maps, as published: collection of the rays'
+ * deposits
  *
- * Each voxel reads the temporary buffers T of all directions and updates the light in it and the source of the next
- * order (Gruson et al. 2012, Algorithm 2, Eq. 4).
+ * Each voxel reads the temporary buffers T of all directions and updates its light and the source of the next order
+ * (Gruson et al. 2012, Algorithm 2, Eq. 4).
  *
- * Input: what vtkLPMPropagate makes: the medium's image with cell arrays `T_xmin`, `T_xmax`, ..., `T_zmax` and field
- * data `map_resolution`, `stored_directions_count`, `scattering_order`. Where there are `fluence`, `fluence_direct` and
- * `scattered_radiance` of the orders before (behind the first order), they are added to.
+ * Input: the output of vtkLPMPropagate, that is the medium's image with cell arrays `T_xmin`, `T_xmax`, ..., `T_zmax`
+ * and field data `map_resolution`, `stored_directions_count`, `scattering_order`. If the input also has `fluence`,
+ * `fluence_direct` and `scattered_radiance` of the previous orders, this order is added to them.
  *
  * Output: the input without the arrays T, with the cell arrays
  *
  * | array | components | unit | meaning |
  * |---|---|---|---|
- * | `unscattered` | 6, or stored directions, x 1 or 3 | W/(length^3 sr) | U: what the next order propagates |
+ * | `unscattered` | 6, or stored directions, x 1 or 3 | W/(length^3 sr) | U: scattered, to be propagated by the next
+ * order |
  * | `scattered_radiance` | stored directions x 1 or 3 | W/(length^2 sr) | I of all orders so far, over sigma_s |
- * | `fluence` | 1 or 3 | W/length^2 | of all orders so far |
- * | `fluence_direct` | 1 or 3 | W/length^2 | of order 0 |
+ * | `fluence` | 1 or 3 | W/length^2 | sum of all orders so far |
+ * | `fluence_direct` | 1 or 3 | W/length^2 | order 0 only |
  *
- * channels fastest, then directions, and field data `left_over` (W a channel: power that U holds). Give it to
- * vtkLPMPropagate for the next order.
+ * with channels varying fastest, then directions; and field data `left_over` (W per channel: the power in U). The
+ * output is vtkLPMPropagate's input for the next order.
  *
- * Cells that are hidden by `vtkGhostType` are empty.
+ * Cells that `vtkGhostType` marks as hidden are empty.
  *
  * @sa vtkLPMPropagate vtkLightPropagationMaps
  * @par Thanks

@@ -32,7 +32,7 @@ tyndall::PropagationSettings SettingsOf(vtkLPMPropagate* filter)
   return settings;
 }
 
-/// Channels of U: its components over the directions it is kept for.
+/// Number of channels of U: its components divided by the number of stored directions.
 int ChannelsOf(const tyndall::FloatField& unscattered, int storedDirections)
 {
   const int sources = storedDirections == 1 ? 6 : storedDirections;
@@ -46,7 +46,7 @@ int ChannelsOf(const tyndall::FloatField& unscattered, int storedDirections)
   return components / sources;
 }
 
-/// One propagation, the deposits sorted by face: directions interleaved voxel by voxel, channels fastest.
+/// Propagates one order. The deposits are sorted by face; within a voxel, channels vary fastest, then directions.
 std::array<std::vector<float>, 6> PropagateAll(
   tyndall::ParallelPropagation& propagation, std::size_t voxels, const tyndall::Monitor& monitor)
 {

@@ -9,37 +9,37 @@
  * @class vtkLPMPropagate
  * @brief the first half of one scattering order of light propagation maps, as published: all rays through the medium
  *
- * Rays carry light through the medium along all directions; what they deposit in the voxels is kept apart by direction,
- * in the temporary buffers T of Gruson et al. 2012 (Algorithm 2, Eq. 6). vtkLPMCollect makes the next order's source of
- * them. Chained by hand the two equal vtkLightPropagationMaps with Scheme PUBLISHED, order by order; they are there to
- * look into the method, not to be fast.
+ * Rays carry light through the medium along all directions; their deposits in the voxels are stored separately for each
+ * direction, in the temporary buffers T of Gruson et al. 2012 (Algorithm 2, Eq. 6). vtkLPMCollect computes the next
+ * order's source from T. A chain of the two filters gives the same orders as vtkLightPropagationMaps with Scheme
+ * PUBLISHED; they serve to inspect the method and are not fast.
  *
- * Input 0, the medium: vtkImageData with cell arrays `sigma_a`, `sigma_s` and perhaps `emission`, as for
- * vtkLightPropagationMaps. Where there is also
+ * Input 0, the medium: vtkImageData with cell arrays `sigma_a`, `sigma_s` and optionally `emission`, as for
+ * vtkLightPropagationMaps. If it also has
  *
  * | array | components | unit | meaning |
  * |---|---|---|---|
  * | `unscattered` | 6 x 1 or 3, or StoredDirections x 1 or 3 | W/(length^3 sr) | U: scattered but not propagated yet |
  *
- * as vtkLPMCollect makes it, that is what the rays take up, and nothing comes in from outside: a later order. Without
- * it this is order 0: rays bring the light of the boundary and take up `emission`.
- * Input 1, optional: lights as vtkLightRig makes them; only directional ones shine, along the nearest direction.
+ * as vtkLPMCollect writes it, this is a later order: U is the rays' source, and there is no incident light. Without it
+ * this is order 0: `emission` is the source, and the boundary source is incident.
+ * Input 1, optional: lights as vtkLightRig makes them; only directional lights are used, along the nearest of the
+ * directions.
  * Input 2, optional: the environment, as vtkEnvironmentReader makes it.
  *
- * Output: the input with six cell arrays, one for each cube face that light travels towards,
+ * Output: the input with six more cell arrays, one for each cube face that light travels towards,
  *
  * | array | components | unit | meaning |
  * |---|---|---|---|
  * | `T_xmin`, `T_xmax`, ..., `T_zmax` | DirectionsPerFace x 1 or 3 | W/(length sr) | T over sigma_s |
  *
- * channels fastest: component k of grey light is direction k of the face, components 3 k to 3 k + 2 are its red, green
- * and blue. T as in Eq. (6) is sigma_s times that; without the factor it is there in voxels that do not scatter, too.
- * Memory: 6 DirectionsPerFace x 4 bytes per voxel and channel; 64^3 voxels in RGB with 25 directions take 472 MB
- * (GetBytes).
- * Field data: `directions` (6 DirectionsPerFace x 3: where light travels), `map_resolution`, `stored_directions_count`,
- * `scattering_order`.
+ * with channels varying fastest: component k of grey light belongs to direction k of the face; of coloured light,
+ * components 3 k to 3 k + 2 are its red, green and blue. T of Eq. (6) is sigma_s times this; without that factor the
+ * arrays are defined in voxels that do not scatter, too. Memory: 6 DirectionsPerFace x 4 bytes per voxel and channel;
+ * 64^3 voxels in RGB with 25 directions take 472 MB (GetBytes). Field data: `directions` (6 DirectionsPerFace x 3:
+ * where light travels), `map_resolution`, `stored_directions_count`, `scattering_order`.
  *
- * The box is open: maps that start again on the other side of a periodic axis are more than T and U can hold.
+ * Periodic axes are not supported: T and U do not hold the maps of rays that wrap around.
  *
  * @sa vtkLPMCollect vtkLightPropagationMaps
  * @par Thanks
@@ -61,7 +61,7 @@ public:
   ///@}
 
   ///@{
-  /// Rays of a direction per voxel edge. Default 1, valid from 1 on.
+  /// Rays of each direction per voxel edge. Default 1, valid from 1 on.
   tyndallRangeMacro(MapResolution, int, 1, 16);
   ///@}
 
@@ -79,14 +79,14 @@ public:
   ///@}
 
   ///@{
-  /// Radiance from every direction alike in order 0, red, green, blue, added to the environment, W/(length^2 sr).
-  /// Default 0, valid [0, infinity).
+  /// Isotropic incident radiance of order 0, red, green, blue, added to the environment, W/(length^2 sr). Default 0,
+  /// valid [0, infinity).
   tyndallSetRange3Macro(SkyColor, double, 0.0, tyndall::LargestFloat);
   vtkGetVector3Macro(SkyColor, double);
   ///@}
 
   ///@{
-  /// What came of the last update: which scattering order it was, memory of the arrays T in bytes.
+  /// Results of the last update: number of the scattering order, memory of the arrays T in bytes.
   vtkGetMacro(Order, int);
   vtkGetMacro(Bytes, double);
   ///@}

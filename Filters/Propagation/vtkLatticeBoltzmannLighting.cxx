@@ -29,7 +29,8 @@ namespace
 {
 using Solver = std::function<tyndall::LightField(const tyndall::Domain&, const tyndall::PreviewScene&)>;
 
-/// On fewer voxels where these can be halved to cubes; those of few voxels on the first rank. Collective.
+/// Solves a preview, on a coarser grid if voxels can be merged to cubes; a small coarse grid is solved on the first
+/// rank. Collective.
 tyndall::LightField SolvePreviewOf(const tyndall::Domain& domain, const tyndall::PreviewScene& scene,
   const tyndall::LatticeSettings& settings, const Solver& solve)
 {
@@ -57,7 +58,7 @@ tyndall::LightField SolvePreviewOf(const tyndall::Domain& domain, const tyndall:
     });
 }
 
-/// The part of all power that was neither absorbed nor escaped, in the worst channel.
+/// Fraction of the power that was neither absorbed nor escaped, in the worst channel.
 double UnaccountedPart(const tyndall::LightField& light)
 {
   tyndall::EnergyBalance balance = light.balance;
@@ -120,7 +121,7 @@ tyndall::LatticeSettings vtkLatticeBoltzmannLighting::Settings() const
   return tyndall::AtQuality(static_cast<tyndall::Quality>(this->Quality), settings);
 }
 
-/// Collective. @param photons  null: none are connected
+/// Solves for the light. Collective. @param photons null if none are connected
 tyndall::LightField vtkLatticeBoltzmannLighting::LightOf(
   const tyndall::Domain& domain, const tyndall::PreviewScene& scene, const std::vector<tyndall::Photon>* photons)
 {

@@ -21,12 +21,13 @@ struct PreviewScene;
 
 /**
  * @class vtkLatticeBoltzmannLighting
- * @brief light that is scattered very often, as it diffuses on a lattice of 18 or 6 directions
+ * @brief diffusion of multiply scattered light, by the lattice Boltzmann method with 18 or 6 directions
  *
- * Every voxel holds photon density along its links to neighbours, which collides there and moves on, until it is
- * steady. It is diffusion: for media in which light is scattered many times, also where the refractive index varies,
- * which bends what diffuses, too. By default power is kept and light positive whatever voxels are, and the steady state
- * is solved for; as published light goes in explicit steps, and a warning says where they are too long.
+ * Every voxel holds a photon density for each link to a neighbour. Densities collide in the voxel and stream to the
+ * neighbours, until they are steady. The limit is a diffusion equation: it suits media in which light is scattered many
+ * times, also with a varying refractive index, which refracts the diffuse light. By default the scheme conserves power,
+ * keeps light positive for voxels of any optical thickness, and solves for the steady state directly; the published
+ * scheme takes explicit steps, and a warning says where they are too long.
  *
  * Input 0, the medium: vtkImageData of cubic voxels (to 0.1%) with cell arrays (point arrays: see SetPointData)
  *
@@ -37,32 +38,34 @@ struct PreviewScene;
  * | `emission` | 1 or 3     | W/(length^3 sr)  | emitted radiance per unit length; optional       |
  * | `ior`      | 1          | 1                | refractive index; optional, default 1            |
  *
- * or those chosen by SetInputArrayToProcess 0, 1, 2 and 3, and field data `g` (default 0): diffusion takes it by the
+ * or those chosen by SetInputArrayToProcess 0, 1, 2 and 3, and field data `g` (default 0), which enters by the
  * similarity relation.
  * Input 1, optional: lights as vtkLightRig makes them.
  * Input 2, optional: the environment, as vtkEnvironmentReader makes it.
- * Input 3, optional: uncollided light of another filter instead of all these (vtkScatteringSolver); that of lights and
- * environment goes straight, whatever the index. In voxels thicker than a mean free path its `mean_direction` tells
- * where it is first scattered.
- * Input 4, optional: photons as vtkPhotonEmitter makes them, instead of all these: they march along bent rays to where
- * they are first scattered, to their ends first, or (Interleaved) while their light diffuses. Not together with 3, nor
- * with periodic axes.
+ * Input 3, optional: uncollided light of another filter instead of all these (vtkScatteringSolver). The filter's own
+ * uncollided light of lights and environment travels in straight lines, whatever the index. In optically thick voxels
+ * (thicker than a mean free path) `mean_direction` of this input determines where within the voxel light is first
+ * scattered.
+ * Input 4, optional: photons as vtkPhotonEmitter makes them, instead of all these: photons march along bent rays to
+ * their first scattering, either all the way before diffusion starts, or (Interleaved) alternating with diffusion
+ * steps. Not together with input 3, nor with periodic axes.
  *
  * Output 0: the medium's image with cell arrays of 1 component, or 3 where medium or light has colour
  *
  * | array | components | unit | meaning |
  * |---|---|---|---|
  * | `fluence` | 1 or 3 | W/length^2 | radiance integrated over all directions |
- * | `fluence_direct` | 1 or 3 | W/length^2 | its unscattered part, without that of sky and faces |
+ * | `fluence_direct` | 1 or 3 | W/length^2 | its uncollided part, without that of sky and faces |
  * | `net_flux` | 3 or 9 | W/length^2 | radiance times direction, integrated (if NetFlux) |
- * | `scattered_radiance` | 1 or 3 | W/(length^2 sr) | radiance scattered, in the mean over directions |
+ * | `scattered_radiance` | 1 or 3 | W/(length^2 sr) | scattered radiance, averaged over directions |
  *
  * and field data `energy_balance` (W: entered, emitted, absorbed, escaped, left over), `face_power_out` (W through -x,
  * +x, -y, +y, -z, +z), `left_out` (what the scene did not need), `device`, `stored_directions`.
- * Output 1: vtkTable, one row an iteration (of steps: every 16 or so): `iteration`, `seconds`, `residual`, `change`.
+ * Output 1: vtkTable, one row per iteration (if the scheme takes steps: every 16 or so): `iteration`, `seconds`,
+ * `residual`, `change`.
  *
  * With Decomposition BLOCKS lines of links continue from rank to rank (numerics.md, section 10 c). Only the steady
- * state is solved so: PUBLISHED, BlockSize, Interleaved and MaximumOrders, which take steps, are an error then.
+ * state can be solved with BLOCKS: PUBLISHED, BlockSize, Interleaved and MaximumOrders, which take steps, are errors.
  *
  * EstimateError is not used.
  *
@@ -82,7 +85,7 @@ public:
   enum Schemes
   {
     PUBLISHED = 0,   ///< explicit collisions, as Bernabei et al. print them, without refraction
-    CONSERVATIVE = 1 ///< collisions that keep power and are positive for voxels of any thickness
+    CONSERVATIVE = 1 ///< collisions that conserve power and stay positive for voxels of any optical thickness
   };
 
   static constexpr int PHOTONS = UNCOLLIDED + 1; ///< number of the input port
@@ -98,55 +101,56 @@ public:
   ///@}
 
   ///@{
-  /// How light collides: PUBLISHED, or CONSERVATIVE (default).
+  /// Collision scheme: PUBLISHED, or CONSERVATIVE (default).
   tyndallRangeMacro(Scheme, int, PUBLISHED, CONSERVATIVE);
   ///@}
 
   ///@{
-  /// Edge of blocks, voxels, 2 to 8, that step by themselves, as published with 4. Default 0: all voxels together.
+  /// Edge, in voxels, of blocks that take steps independently between exchanges, 2 to 8; 4 in the publication. Default
+  /// 0: no blocks, all voxels step together.
   tyndallRangeMacro(BlockSize, int, 0, 8);
   ///@}
 
   ///@{
-  /// Whether photons, where there are any, march while what they have left so far diffuses, by StepsPerExchange steps
-  /// to VoxelsPerTurn voxels of their ways, as published (Bernabei et al.); steps go on until Tolerance is met.
-  /// Default off: they march to their ends first.
+  /// Whether photons, if there are any, march while the light that they have deposited diffuses, as published (Bernabei
+  /// et al.): StepsPerExchange diffusion steps alternate with VoxelsPerTurn voxels of each photon's path; steps
+  /// continue until Tolerance is met. Default off: photons march to their ends first.
   tyndallFlagMacro(Interleaved);
   ///@}
 
   ///@{
-  /// Voxels that photons cross in a turn, where Interleaved. Default 16, valid [0, 1000000]; 0: to the end of their
-  /// ways.
+  /// With Interleaved: voxels that each photon crosses in a turn. Default 16, valid [0, 1000000]; 0: all voxels of its
+  /// path.
   tyndallRangeMacro(VoxelsPerTurn, int, 0, 1000000);
   ///@}
 
   ///@{
-  /// Voxels, spread evenly, at which it is looked how much light changes by steps. Default 4096, valid [0, infinity);
-  /// 0: all.
+  /// Number of evenly spread voxels at which the change of light between steps is measured. Default 4096, valid [0,
+  /// infinity); 0: all voxels.
   tyndallRangeMacro(Probes, int, 0, VTK_INT_MAX);
   ///@}
 
   ///@{
-  /// Steps of a block before it exchanges light with its neighbours, and steps of the lattice to a turn of photons.
+  /// Steps that a block takes before it exchanges light with its neighbours, and lattice steps per turn of the photons.
   /// Default 8, valid [1, 1000].
   tyndallRangeMacro(StepsPerExchange, int, 1, 1000);
   ///@}
 
   ///@{
-  /// Steps to do. Default 0: until Tolerance is met; of the conservative scheme without blocks the steady state is then
-  /// solved for.
+  /// Number of steps. Default 0: until Tolerance is met; the conservative scheme without blocks (BlockSize 0) then
+  /// solves for the steady state.
   tyndallRangeMacro(MaximumOrders, int, 0, VTK_INT_MAX);
   ///@}
 
   ///@{
-  /// Whether to compute `net_flux` too. Default off.
+  /// Whether to compute `net_flux` as well. Default off.
   tyndallFlagMacro(NetFlux);
   ///@}
 
   ///@{
-  /// What came of the last update: steps, or iterations of the steady state's equations, estimated relative error of
-  /// fluence, relative error of the energy balance, what is left over included, seconds of all
-  /// solving (uncollided light, too), the device's name, and what the scene did not need, one per line.
+  /// Results of the last update: number of steps, or of iterations of the steady-state solve; estimated relative error
+  /// of fluence; relative error of the energy balance, left-over power included; seconds of the solve (uncollided light
+  /// included); the device's name; what the scene did not need, one per line.
   vtkGetMacro(Steps, int);
   vtkGetMacro(Residual, double);
   vtkGetMacro(BalanceError, double);

@@ -84,7 +84,7 @@ tyndall::LightField LightOf(tyndall::TargetLight&& found)
   return std::move(found.light);
 }
 
-/// As published there is none.
+/// @throws InvalidInput if the published scheme has a TargetError
 void CheckTarget(vtkLightPropagationMaps* filter)
 {
   tyndall::Require(filter->GetScheme() != vtkLightPropagationMaps::PUBLISHED || filter->GetTargetError() == 0.0,
@@ -92,7 +92,7 @@ void CheckTarget(vtkLightPropagationMaps* filter)
     "TargetError to 0, or Scheme to conservative.");
 }
 
-/// By directions, tolerance and voxels that the target needs, whatever Quality has.
+/// Solves with the directions, tolerance and voxels that TargetError needs; Quality is not read.
 tyndall::LightField SolveToTarget(vtkLightPropagationMaps* filter, const tyndall::Medium& medium,
   const tyndall::Illumination& illumination, const tyndall::Monitor& monitor, const tyndall::PropagationSolver& solve)
 {
@@ -115,7 +115,7 @@ tyndall::PropagationSettings OfPreview(tyndall::PropagationSettings settings)
   return settings;
 }
 
-/// A medium that does not fit the budget is an error: this scheme stores a volume a direction.
+/// A medium that does not fit in the memory budget is an error: this scheme stores one volume per direction.
 tyndall::LightField SolvePublished(vtkLightPropagationMaps* filter, tyndall::Device& device,
   const tyndall::Medium& medium, const tyndall::Illumination& illumination,
   const tyndall::PropagationSettings& settings, const tyndall::Monitor& monitor)
@@ -124,8 +124,8 @@ tyndall::LightField SolvePublished(vtkLightPropagationMaps* filter, tyndall::Dev
   return tyndall::SolveParallel(within, medium, illumination, settings, monitor);
 }
 
-/// By the scheme that is asked for, the whole.
-/// @param ofGrid  whose light is kept: not that of coarser or divided grids
+/// A serial solver of the filter's Scheme.
+/// @param ofGrid  the medium whose solution `last` keeps; solutions on coarser or divided grids are not kept
 tyndall::PropagationSolver SolverOf(
   vtkLightPropagationMaps* filter, const tyndall::Medium* ofGrid, tyndall::KeptLight* last)
 {
@@ -176,7 +176,7 @@ std::shared_ptr<tyndall::Device> DeviceOnAll(vtkLightPropagationMaps* filter, ty
   return device;
 }
 
-/// The first rank solves the coarse grid as a whole, so that nothing is what blocks cannot do.
+/// Solves a preview on the coarse grid, serially on the first rank, so the limits of decomposed solves do not apply.
 tyndall::LightField SolvePreviewOfPiece(vtkLightPropagationMaps* filter, const tyndall::SceneInBlocks& scene)
 {
   tyndall::PropagationSolver solve;
@@ -190,7 +190,7 @@ tyndall::LightField SolvePreviewOfPiece(vtkLightPropagationMaps* filter, const t
   return light;
 }
 
-/// As Quality has them for the medium of all ranks; a target chooses by itself.
+/// Settings as Quality chooses them for the medium of all ranks; with TargetError, as the properties say.
 tyndall::PropagationSettings SettingsOn(vtkLightPropagationMaps* filter, const tyndall::SolverScene& scene)
 {
   tyndall::RequireSame(scene.domain.Comm(), "TargetError or EstimateError", true,

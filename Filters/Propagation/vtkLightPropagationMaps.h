@@ -15,11 +15,12 @@ class LastLight;
 
 /**
  * @class vtkLightPropagationMaps
- * @brief light that is scattered many times in a medium, by light propagation maps
+ * @brief multiply scattered light in a medium, by light propagation maps
  *
- * Rays march through the grid in DirectionsPerFace directions of each face of a cube, one per MapResolution-th part of
- * a voxel's edge. What they lose to a voxel becomes its scattered light, which the next scattering order propagates,
- * until the light that is left does not matter any more.
+ * Rays sweep the grid along DirectionsPerFace directions for each face of a cube, with MapResolution rays per voxel
+ * edge. The power that rays lose to scattering in a voxel becomes the voxel's source for the next scattering order.
+ * Source iteration ends when the power left is below Tolerance; it can be accelerated by diffusion synthetic
+ * acceleration (DSA).
  *
  * Input 0, the medium: vtkImageData with cell arrays (point arrays: see SetPointData)
  *
@@ -29,8 +30,8 @@ class LastLight;
  * | `sigma_s`  | 1 or 3     | 1/length         | scattering coefficient                           |
  * | `emission` | 1 or 3     | W/(length^3 sr)  | emitted radiance per unit length; optional       |
  *
- * or those chosen by SetInputArrayToProcess 0, 1 and 2, and field data `phase_function` and `g`, or
- * cells `g` (default: isotropic). As published there has to be one phase function for all.
+ * or those chosen by SetInputArrayToProcess 0, 1 and 2, and field data `phase_function` and `g`, or cells `g` (default:
+ * isotropic). The published scheme needs the same phase function in all voxels.
  * Input 1, optional: lights as vtkLightRig makes them.
  * Input 2, optional: the environment, vtkImageData in latitude-longitude layout, point array `radiance` (1 or 3
  * components, W/(length^2 sr)), as vtkEnvironmentReader makes it.
@@ -41,30 +42,31 @@ class LastLight;
  * | array | components | unit | meaning |
  * |---|---|---|---|
  * | `fluence` | 1 or 3 | W/length^2 | radiance integrated over all directions |
- * | `fluence_direct` | 1 or 3 | W/length^2 | its unscattered part |
+ * | `fluence_direct` | 1 or 3 | W/length^2 | its uncollided part |
  * | `fluence_error` | 1 or 3 | W/length^2 | its standard error (if EstimateError or TargetError) |
  * | `net_flux` | 3 or 9 | W/length^2 | radiance times direction, integrated (if NetFlux) |
- * | `scattered_radiance` | StoredDirections x 1 or 3 | W/(length^2 sr) | radiance scattered into each direction |
+ * | `scattered_radiance` | StoredDirections x 1 or 3 | W/(length^2 sr) | radiance scattered into each stored direction
+ * |
  *
  * and field data `energy_balance` (W: entered, emitted, absorbed, escaped, left over), `face_power_out` (W through -x,
  * +x, -y, +y, -z, +z), `half_range_flux` (see HalfRangeFlux), `left_out` (what the scene did not need), `device`,
- * `stored_directions`; where orders are accelerated and a voxel at a face of the box is thicker than half a mean free
- * path, `surface_radiance`, W/(length^2 sr): what leaves each voxel's face there, tuples face by face (-x to +z), row
- * by row, components at the cosines 0.05,
- * 0.25, 0.6, 1 to the normal (times red, green, blue).
+ * `stored_directions`; if source iteration is accelerated and a voxel at a face of the box is thicker than half a mean
+ * free path, `surface_radiance`, W/(length^2 sr): the radiance that leaves each voxel face on the boundary, tuples face
+ * by face (-x to +z), row by row, components at the cosines 0.05, 0.25, 0.6, 1 to the normal (times red, green, blue).
  * Output 1: vtkTable, one row a scattering order: `iteration`, `seconds`, `residual`, `change`, `absorbed`, `escaped`,
- * `left_over`, and with WarmStart `sweeps_saved`: by how many rows a row comes to its residual earlier than the last
- * solve from darkness on did.
+ * `left_over`, and with WarmStart `sweeps_saved`: how many rows later the last cold solve (with zero initial guess)
+ * reached the same residual.
  *
  * Without lights, environment, SkyColor, FaceRadiance and emission the result is dark, with a warning.
  *
- * With Decomposition BLOCKS rays go from rank to rank (numerics.md, section 4.9). Orders are accelerated as in the
- * whole, but not in thin voxels of isotropic scattering round periodic axes and not in thick ones with
- * UncollidedDirections: there, and where the whole does so, they are added up one by one, by octant where the whole
- * would be. Blocks cannot do: Scheme PUBLISHED, and Source LINEAR with UncollidedDirections. Errors are estimated, and
- * targets met, as of the whole (numerics.md, section 9.2). AUTOMATIC_DECOMPOSITION leaves to the whole, beside that:
- * those many orders, which it accelerates; small bright emission, which it follows along exact rays; finer
- * UncollidedDirections beside accelerated sweeps; and layers.
+ * With Decomposition BLOCKS rays continue from rank to rank (numerics.md, section 4.9). Source iteration is accelerated
+ * as in a serial solve, with two exceptions: thin voxels with isotropic scattering and periodic axes, and optically
+ * thick voxels with UncollidedDirections. In these cases, and where a serial solve does so, scattering orders are
+ * summed one by one, with the source by octant if the serial solve has it. BLOCKS cannot be used with Scheme PUBLISHED,
+ * nor with Source LINEAR and UncollidedDirections. Errors are estimated and targets met as in a serial solve
+ * (numerics.md, section 9.2). AUTOMATIC_DECOMPOSITION chooses a serial solve also for these scenes: the two exceptions
+ * above if they need many orders, which the serial solver accelerates; localised emission, which it follows along exact
+ * rays; finer UncollidedDirections together with accelerated sweeps; and plane-parallel layers.
  *
  * @sa vtkParticipatingMedium vtkLightRig vtkEnvironmentReader vtkMediumRayCaster
  * @par Thanks
@@ -88,15 +90,15 @@ public:
   enum Sources
   {
     CONSTANT = 0,         ///< in each voxel, as published
-    LINEAR = 1,           ///< from voxel centre to voxel centre: right however thick voxels are
-    AUTOMATIC_SOURCE = 2, ///< linear where orders are accelerated, by octant where many voxels are thick, else constant
-    OCTANTS = 3           ///< of thick voxels by octant: right where they absorb much; linear where accelerated
+    LINEAR = 1,           ///< linear between voxel centres: accurate for voxels of any optical thickness
+    AUTOMATIC_SOURCE = 2, ///< LINEAR if iteration is accelerated, OCTANTS if many voxels are thick, else CONSTANT
+    OCTANTS = 3           ///< thick voxels: by octant, accurate if they absorb much; LINEAR if accelerated
   };
 
   enum Accelerations
   {
-    NONE = 0,                  ///< scattering orders one after the other, as published
-    AUTOMATIC_ACCELERATION = 1 ///< a diffusion system between sweeps where orders would be many
+    NONE = 0,                  ///< source iteration, as published
+    AUTOMATIC_ACCELERATION = 1 ///< DSA: a diffusion solve between sweeps, if many orders would be needed
   };
 
   enum Algorithms
@@ -106,25 +108,25 @@ public:
   };
 
   ///@{
-  /// How to compute: PUBLISHED, or CONSERVATIVE (default). PUBLISHED refuses a FaceAlbedo other than 0, and begins in
-  /// the dark whatever WarmStart is.
+  /// Numerical scheme: PUBLISHED, or CONSERVATIVE (default). With PUBLISHED a FaceAlbedo other than 0 is an error, and
+  /// the initial guess is zero, whatever WarmStart is.
   tyndallRangeMacro(Scheme, int, PUBLISHED, CONSERVATIVE);
   ///@}
 
   ///@{
-  /// Which algorithm of the published scheme: SEQUENTIAL, or PARALLEL (default). The conservative scheme has one only.
+  /// Algorithm of the published scheme: SEQUENTIAL, or PARALLEL (default). The conservative scheme has only one.
   tyndallRangeMacro(Algorithm, int, SEQUENTIAL, PARALLEL);
   ///@}
 
   ///@{
-  /// How the light that a voxel sends out is spread over it (conservative scheme): CONSTANT, LINEAR,
-  /// AUTOMATIC_SOURCE (default), or OCTANTS.
+  /// Spatial shape of the source within a voxel (conservative scheme): CONSTANT, LINEAR, AUTOMATIC_SOURCE (default), or
+  /// OCTANTS.
   tyndallRangeMacro(Source, int, CONSTANT, OCTANTS);
   ///@}
 
   ///@{
-  /// How scattering orders are added up (conservative scheme, where MaximumOrders is 0): NONE, or
-  /// AUTOMATIC_ACCELERATION (default). LINEAR needs it.
+  /// Acceleration of source iteration (conservative scheme, if MaximumOrders is 0): NONE, or AUTOMATIC_ACCELERATION
+  /// (default). Source LINEAR needs acceleration.
   tyndallRangeMacro(Acceleration, int, NONE, AUTOMATIC_ACCELERATION);
   ///@}
 
@@ -135,92 +137,95 @@ public:
   ///@}
 
   ///@{
-  /// Directions per face of a cube for unscattered light of shining faces, sky and environment (conservative scheme).
-  /// It has shadows with edges and is swept once: it may have many while scattered light does with few. Default -1: as
-  /// many as cost a quarter more time, for light of faces alone (UncollidedDirections.h); 0: as DirectionsPerFace;
-  /// else square numbers up to 4096.
+  /// Directions per face of a cube for the uncollided flux of boundary sources: faces, sky and environment
+  /// (conservative scheme). This flux has shadows with sharp edges and is swept only once, so it can have many
+  /// directions while few suffice for scattered light. Default -1: as many as cost a quarter more time, for boundary
+  /// sources on faces only (UncollidedDirections.h); 0: as DirectionsPerFace; else square numbers up to 4096.
   tyndallRangeMacro(UncollidedDirections, int, -1, VTK_INT_MAX);
   ///@}
 
   ///@{
-  /// Relative error, voxel by voxel, of the unscattered light of small bright parts of the medium, which is followed
-  /// along exact rays (conservative scheme, no periodic axis). Default 0.02; 0.005 costs five to ten times as much,
-  /// less gains nothing; 0: they are swept like all else, as they are where other light has more power.
+  /// Relative error, in each voxel, of the uncollided flux of localised emission, which is followed along exact rays
+  /// (conservative scheme, no periodic axis). Default 0.02; 0.005 costs five to ten times as much, smaller values gain
+  /// nothing. With 0, and whenever other light has more power, localised emission is swept like other sources.
   tyndallRangeMacro(EmissionError, double, 0.0, tyndall::AnyHigh);
   ///@}
 
   ///@{
-  /// Degree of the angular moments in which light is scattered (conservative scheme): higher ones show a forward peak
-  /// in finer detail, and take longer. -1 (default): 3, in thin media 6, in slabs 9, or less, as the phase function,
-  /// Tolerance and memory ask for; 0: scattering is taken as isotropic with sigma_s (1 - g), the similarity relation.
-  /// Valid [-1, 15]; DirectionsPerFace of n x n tell 2 n - 1 degrees apart, no more are used.
+  /// Degree of the angular moments (spherical harmonics) of the scattering source (conservative scheme): higher degrees
+  /// resolve a forward peak better, and take longer. -1 (default): 3, in thin media 6, in slabs 9, or fewer if phase
+  /// function, Tolerance and memory require no more or allow no more; 0: scattering is isotropic with sigma_s (1 - g),
+  /// the similarity relation. Valid [-1, 15]; a quadrature of n x n DirectionsPerFace resolves degrees up to 2 n - 1,
+  /// higher ones are not used.
   tyndallRangeMacro(AngularDegree, int, -1, 15);
   ///@}
 
   ///@{
-  /// Whether to keep the angular moments of what is scattered (cells `scattered_moments`, `straight_on`, field data
-  /// `lamps_apart`), where light is scattered in moments: vtkMediumRayCaster shows them. Four bytes times (degree +
-  /// 1)^2 a voxel and channel, a gigabyte at most. Default on.
+  /// Whether to write the angular moments of the scattering source (cells `scattered_moments`, `straight_on`, field
+  /// data `lamps_apart`), if the solve uses moments: vtkMediumRayCaster renders from them. They take four bytes times
+  /// (degree + 1)^2 per voxel and channel, a gigabyte at most. Default on.
   tyndallFlagMacro(StoreMoments);
   ///@}
 
   ///@{
-  /// Whether rays of each direction start in a place of their own within a voxel (conservative scheme), those of
-  /// more than 100 UncollidedDirections always. From 144 directions per face on up to half the error, with fewer up to
-  /// twice. Default off.
+  /// Whether the rays of each direction have an offset of their own within the voxels (conservative scheme); more than
+  /// 100 UncollidedDirections always have. From 144 directions per face on this can halve the error; with fewer it can
+  /// double it. Default off.
   tyndallFlagMacro(StaggeredRays);
   ///@}
 
   ///@{
-  /// Rays of a direction per voxel edge. Default 1, valid [1, 16].
+  /// Rays of each direction per voxel edge. Default 1, valid [1, 16].
   tyndallRangeMacro(MapResolution, int, 1, 16);
   ///@}
 
   ///@{
-  /// Scattering orders at most. Default 0: as many as Tolerance takes.
+  /// Largest number of scattering orders. Default 0: as many as Tolerance requires.
   tyndallRangeMacro(MaximumOrders, int, 0, VTK_INT_MAX);
   ///@}
 
   ///@{
-  /// Relative error of fluence (root mean square over that of fluence) to solve to, by the solver's own estimate
-  /// (conservative scheme): it chooses directions and tolerance where they have their default values, divides voxels
-  /// where these are too coarse, and warns where the estimate stays above. Quality is not read then. Default 0: not
-  /// asked for; valid [0, 0.5].
+  /// Target for the relative error of fluence (root mean square of the error over that of the fluence), by the solver's
+  /// own estimate (conservative scheme). To meet it the solver chooses directions and tolerance if they have their
+  /// default values, and divides voxels if these are too coarse; it warns if the estimate stays above the target.
+  /// Quality is then not read. Default 0: no target; valid [0, 0.5].
   tyndallRangeMacro(TargetError, double, 0.0, 0.5);
   ///@}
 
   ///@{
-  /// Whether the light of the last update is the first guess of the next one: fewer sweeps where medium or lights
-  /// changed a little, the same light within the tolerance. It is kept in memory until an update with WarmStart off: a
-  /// float a voxel and channel, times (degree + 1)^2 with AngularDegree; not as published. By blocks each rank keeps
-  /// that of its own, and all begin in the dark where blocks have changed. Default off.
+  /// Whether the solution of the last update is the initial guess of the next one: fewer sweeps if medium or lights
+  /// changed a little, and the same light within the tolerance. The solution stays in memory until an update with
+  /// WarmStart off: one float per voxel and channel, times (degree + 1)^2 with AngularDegree. Not used by the published
+  /// scheme. With Decomposition BLOCKS each rank keeps its own piece; if pieces have changed, all ranks start from
+  /// zero. Default off.
   tyndallFlagMacro(WarmStart);
   ///@}
 
   ///@{
-  /// Whether to compute `net_flux` too; it costs time and memory. Default off.
+  /// Whether to compute `net_flux` as well, which costs time and memory. Default off.
   tyndallFlagMacro(NetFlux);
   ///@}
 
   ///@{
-  /// Whether to leave out what the scene does not need. Default on; off computes everything, for comparison: the same
-  /// light, later.
+  /// Whether to skip computations that the scene does not need. Default on; off computes everything, for comparison:
+  /// the same light in more time.
   tyndallFlagMacro(LeaveOut);
   ///@}
 
   ///@{
-  /// Directions for which `scattered_radiance` is kept. Default 1 (enough for isotropic scattering), valid from 1 on.
+  /// Directions for which `scattered_radiance` is written. Default 1 (enough for isotropic scattering), valid from 1
+  /// on.
   tyndallRangeMacro(StoredDirections, int, 1, VTK_INT_MAX);
   ///@}
 
   ///@{
-  /// What came of the last update: solves (more than one with TargetError), scattering orders done, how many more the
-  /// last update from darkness on took to the same residual (0 where this was one), estimated relative error of
-  /// fluence left by those that were not done, estimated relative error of fluence altogether (0 without
-  /// EstimateError or TargetError; NaN, not known, after one order), relative error of the energy balance, what the
-  /// directions carry of the power that even light brings through a face, over the exact value (0.99992 with 25
-  /// directions per face: light that enters from faces and sky is off by as much), seconds, the device's name, and
-  /// what the scene did not need, one per line.
+  /// Results of the last update: number of solves (more than one with TargetError); number of scattering orders; how
+  /// many more orders the last cold update took to the same residual (0 if this update was cold); estimated relative
+  /// error of fluence due to the omitted orders; estimated total relative error of fluence (0 without EstimateError or
+  /// TargetError; NaN, not known, after one order); relative error of the energy balance; half-range flux of the
+  /// quadrature for isotropic radiance through a face, over the exact value (0.99992 with 25 directions per face: the
+  /// power that enters from faces and sky has the same relative error); seconds; the device's name; what the scene did
+  /// not need, one per line.
   vtkGetMacro(Solves, int);
   vtkGetMacro(Orders, int);
   vtkGetMacro(SweepsSaved, int);

@@ -46,7 +46,7 @@ int vtkLitMediumAlgorithm::FillInputPortInformation(int port, vtkInformation* in
   }
   else
   {
-    if (port > ENVIRONMENT) // light of another filter in the same voxels, where a filter has such a port
+    if (port > ENVIRONMENT) // a subclass's port for another filter's light in the same voxels
     {
       tyndall::ReadsVoxels(information, {}, { "fluence", "fluence_direct", "mean_direction" });
     }

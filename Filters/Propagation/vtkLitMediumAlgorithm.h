@@ -16,7 +16,7 @@ struct Illumination;
  * @class vtkLitMediumAlgorithm
  * @brief superclass of the filters that take a medium and its illumination
  *
- * It has their input ports and the orientation of the environment. Outputs are vtkImageData unless a subclass says
+ * It defines their input ports and the orientation of the environment. Outputs are vtkImageData unless a subclass says
  * otherwise.
  *
  * Input 0, the medium: vtkImageData; see the subclass for its arrays.
@@ -24,12 +24,12 @@ struct Illumination;
  * Input 2, optional: the environment, vtkImageData in latitude-longitude layout, point array `radiance` (1 or 3
  * components, W/(length^2 sr)), as vtkEnvironmentReader makes it.
  *
- * Cells of the medium that are hidden by `vtkGhostType` are empty, hidden pixels of the environment black.
+ * Cells of the medium that `vtkGhostType` marks as hidden are empty; hidden pixels of the environment are black.
  *
  * Light crosses the boundaries between pieces. In a parallel pipeline every rank therefore asks for all of each input,
- * and RequestData of a subclass returns the piece that was asked for. Exceptions are subclasses whose ranks exchange
- * light (vtkScatteringSolver, vtkMediumRayCaster, vtkPhotonImportance), or that need only the medium's box
- * (vtkPhotonEmitter): their ranks ask for their pieces of the medium.
+ * and RequestData of a subclass returns the requested piece. Exceptions are subclasses whose ranks exchange light
+ * (vtkScatteringSolver, vtkMediumRayCaster, vtkPhotonImportance), or that need only the medium's box
+ * (vtkPhotonEmitter): each of their ranks asks for its own piece of the medium.
  *
  * A subclass implements RequestData, and reads there the lights and the environment by ReadIllumination.
  *
@@ -60,10 +60,10 @@ public:
   ///@}
 
   ///@{
-  /// How point arrays are read. 0 (default): each point is the centre of a voxel of its value, so that n points are n
-  /// voxels, the output has cell arrays, and its bounds are half a spacing wider than the input's; 1: points are
-  /// averaged to the voxels between them, n points to n - 1 voxels. If a cell array is read as well, voxels are the
-  /// cells and points are averaged; field data `settings_used` then say so.
+  /// How point arrays are read. 0 (default): each point is the centre of a voxel with its value: n points make n
+  /// voxels, the output has cell arrays, and its bounds are half a spacing wider than the input's. 1: points are
+  /// averaged to the voxels between them: n points make n - 1 voxels. If a cell array is read as well, the cells are
+  /// the voxels and points are averaged; field data `settings_used` then report it.
   enum PointDataKinds
   {
     VOXELS_AROUND_POINTS = 0,
@@ -73,12 +73,12 @@ public:
   ///@}
 
   ///@{
-  /// Axis of the scene along which the environment's up points: 0, 1, 2 for x, y, z. Default 2.
+  /// Axis of the scene along which the environment's up direction points: 0, 1, 2 for x, y, z. Default 2.
   tyndallRangeMacro(EnvironmentUp, int, 0, 2);
   ///@}
 
   ///@{
-  /// Rotation of the environment about its up, degrees. Default 0.
+  /// Rotation of the environment about its up direction, degrees. Default 0.
   tyndallRangeMacro(EnvironmentAzimuth, double, tyndall::AnyLow, tyndall::AnyHigh);
   ///@}
 
@@ -94,7 +94,7 @@ protected:
     vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
   int RequestData(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override = 0;
 
-  /// The lights, and the environment as it is oriented in the scene. Checked.
+  /// Reads and checks the lights, and the environment oriented in the scene.
   tyndall::Illumination ReadIllumination(vtkInformationVector** inputs);
 
   int EnvironmentUp = 2;

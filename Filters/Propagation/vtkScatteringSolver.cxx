@@ -54,7 +54,7 @@ SolverScene::SolverScene(const PieceBlocks& ofRanks, vtkAlgorithm* filter, vtkIm
 
 namespace
 {
-/// Extends what was found for a subdomain to the voxels of the output. Collective.
+/// Extends a subdomain's solution to all voxels of the output, ghost cells included. Collective.
 void SpreadToHeld(const tyndall::PieceBlocks& pieces, tyndall::LightField& light)
 {
   tyndall::Communicator& communicator = pieces.GetDomain().Comm();
@@ -70,7 +70,7 @@ void SpreadToHeld(const tyndall::PieceBlocks& pieces, tyndall::LightField& light
   spread(light.scatteredRadiance, light.channels * stored);
   const std::vector<double> ofMoments =
     communicator.Largest({ static_cast<double>(light.scatteredMoments.size() / voxels),
-      static_cast<double>(light.straightOn.size() / voxels) }); // a rank without voxels does not know
+      static_cast<double>(light.straightOn.size() / voxels) }); // a rank without voxels does not know these numbers
   spread(light.scatteredMoments, static_cast<int>(ofMoments[0]));
   spread(light.straightOn, static_cast<int>(ofMoments[1]));
 }
@@ -185,7 +185,8 @@ int vtkScatteringSolver::RequestData(
   return done;
 }
 
-/// After a solve that failed or was stopped: nothing, or the light of before, which stays in views.
+/// After a solve that failed or was aborted: restores the previous solution, if there is one, so that views keep
+/// showing it.
 void vtkScatteringSolver::RestoreLightBefore(vtkInformationVector* outputs)
 {
   tyndall::LightField nothing;
@@ -203,7 +204,7 @@ void vtkScatteringSolver::RestoreLightBefore(vtkInformationVector* outputs)
   this->Note(nothing);
 }
 
-/// Whether this rank would solve on its piece; ranks may differ.
+/// Whether this rank can solve on its piece; the answer may differ between ranks.
 bool vtkScatteringSolver::WantsPieces(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) const
 {
@@ -212,7 +213,7 @@ bool vtkScatteringSolver::WantsPieces(
                                                         : this->Decomposition == BLOCKS;
 }
 
-/// Why ranks that may choose did not agree on a decomposition.
+/// Why ranks with automatic decomposition did not agree on one.
 std::string vtkScatteringSolver::ReasonNotToAgree(vtkInformationVector** inputs) const
 {
   const std::string refused = this->NotByBlocks(inputs);
@@ -252,7 +253,7 @@ bool vtkScatteringSolver::IgnoresIndexOf(vtkImageData* medium)
     tyndall::IsUnusual(this, tyndall::RefractiveIndex, medium, "ior", 1.0f);
 }
 
-/// Reads what lights the subdomain, or returns what rules out a decomposition.
+/// Reads the light sources of the subdomain, or returns what rules out a decomposition.
 std::string vtkScatteringSolver::ReadShiningOrRefuse(tyndall::SolverScene& scene, vtkInformationVector** inputs)
 {
   std::string refused = scene.decomposed ? this->NotByBlocks(inputs) : "";
@@ -269,7 +270,7 @@ std::string vtkScatteringSolver::ReadShiningOrRefuse(tyndall::SolverScene& scene
   return refused;
 }
 
-/// Reads what lights the subdomain. Collective.
+/// Reads the light sources of the subdomain. Collective.
 /// @return false, on all ranks, if each is to solve serially
 bool vtkScatteringSolver::ReadOrRefuse(tyndall::SolverScene& scene, vtkInformationVector** inputs)
 {
@@ -298,7 +299,7 @@ bool vtkScatteringSolver::ReadOrRefuse(tyndall::SolverScene& scene, vtkInformati
   return this->WholeFor.empty();
 }
 
-/// The last light of this subdomain if nothing has changed on any rank, or a new one. Collective.
+/// Returns this subdomain's cached solution if nothing has changed on any rank, or solves. Collective.
 /// @return false, on all ranks, if each is to solve serially
 bool vtkScatteringSolver::UpdateCachedOrSolve(
   const tyndall::PieceBlocks& pieces, vtkInformationVector** inputs, vtkInformationVector* outputs)
@@ -339,8 +340,8 @@ bool vtkScatteringSolver::UpdateCachedOrSolve(
   return true;
 }
 
-/// Solved light on output 0 beside the arrays of the medium, its convergence on output 1; reports it, and warns of each
-/// doubt on the first rank. Collective.
+/// Writes the solution to output 0 beside the medium's arrays, its convergence history to output 1; reports it, and
+/// issues the solve's warnings on the first rank. Collective.
 void vtkScatteringSolver::Write(const tyndall::PieceBlocks& pieces, tyndall::LightField&& light,
   vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
@@ -368,7 +369,7 @@ void vtkScatteringSolver::Write(const tyndall::PieceBlocks& pieces, tyndall::Lig
     pieces.KeepHeld(output);
     if (pieces.Held().VoxelCount() > 0)
     {
-      tyndall::WriteLight(std::move(light), output); // light that is not finite is an error, with no warnings before
+      tyndall::WriteLight(std::move(light), output); // throws if the light is not finite, before any warning is issued
       tyndall::NoteChoices(this, tyndall::QuantitiesOfMedium(), medium, output);
       if (!this->Ignored.empty())
       {
@@ -382,7 +383,7 @@ void vtkScatteringSolver::Write(const tyndall::PieceBlocks& pieces, tyndall::Lig
   }
 }
 
-/// Adds `lit_color` to the light of a subdomain, if asked for. Collective.
+/// Adds `lit_color` to the output of a subdomain, if LitColor is on. Collective.
 void vtkScatteringSolver::Color(
   const tyndall::PieceBlocks& pieces, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
@@ -395,7 +396,7 @@ void vtkScatteringSolver::Color(
   }
   vtkImageData* const output = vtkImageData::GetData(outputs, 0);
   const tyndall::SolverScene scene(pieces, this, vtkImageData::GetData(inputs[MEDIUM]));
-  vtkSmartPointer<vtkImageData> own; // whose array the fluence may be
+  vtkSmartPointer<vtkImageData> own; // may own the array of the fluence
   tyndall::FloatField fluence;
   communicator.Collective([&] {
     if (pieces.HasOwn())

@@ -23,34 +23,36 @@ struct SolverScene;
 
 /**
  * @class vtkScatteringSolver
- * @brief superclass of the filters that solve for scattered light, from their own uncollided light or another filter's
+ * @brief superclass of the filters that solve for multiply scattered light
  *
- * Input 3, optional: uncollided light of another filter, vtkImageData of the medium's voxels, as vtkPhotonMarcher and
- * vtkPhotonReconstruction make it: cell arrays `fluence_direct` (1 or 3 components, W/length^2) and `mean_direction` (3
- * components, power-weighted mean direction; missing: isotropic), field data `face_power_out` (W that left unscattered
- * through -x, +x, -y, +y, -z, +z; missing: 0). It replaces the uncollided light of lights, environment, SkyColor and
- * FaceRadiance, which are then not read; emission of the medium is added as always. What it lost and what left count as
- * incident power, to 1e-5.
+ * Input 3, optional: uncollided flux computed by another filter, vtkImageData of the medium's voxels, as
+ * vtkPhotonMarcher and vtkPhotonReconstruction write it: cell arrays `fluence_direct` (1 or 3 components, W/length^2)
+ * and `mean_direction` (3 components, power-weighted mean direction; missing: isotropic), field data `face_power_out`
+ * (W that left unscattered through -x, +x, -y, +y, -z, +z; missing: 0). It replaces the uncollided flux due to lights,
+ * environment, SkyColor and FaceRadiance, which are then not read; the medium's emission is added as always. The
+ * incident power of the energy balance is the power that this flux lost in the medium plus the power that left, to
+ * 1e-5.
  *
- * Output 1 is the table of convergence, vtkTable.
+ * Output 1 is the convergence history, vtkTable.
  *
- * The last light is returned again for the same inputs, even if filters upstream have made them anew, for another
- * piece, and if only LitColor, Exposure or ToneCurve has changed. Each rank keeps the light of the whole image for
- * that, or of its piece.
+ * The last solution is cached and returned again for inputs with the same content, even if filters upstream have
+ * recomputed them, if another piece is requested, and if only LitColor, Exposure or ToneCurve has changed. Each rank
+ * caches the solution of the whole image, or of its piece if the domain is decomposed.
  *
- * In a parallel pipeline light crosses the boundaries between pieces: each rank solves its piece, and ranks exchange
- * light; or, by Decomposition or if that is better, every rank solves the whole domain and returns the piece that it
- * was asked for.
+ * In a parallel pipeline light crosses the boundaries between pieces: each rank solves on its piece, and ranks exchange
+ * light; or, if Decomposition says so or that is better, every rank solves on the whole domain and returns the
+ * requested piece.
  *
- * With LitColor output 0 has the cell array `lit_color` too, unsigned char, 4 components: the colour that each voxel
- * shows on a screen, red, green, blue, not multiplied by alpha, and an opacity. A volume mapper that uses them directly
- * (vtkVolumeProperty with IndependentComponents off, an opacity function from 0 to 1 over 0 to 255, and
- * SetScalarOpacityUnitDistance(3, d)) shows the lit medium without OpenCL, about as vtkMediumRayCaster does over black
- * (numerics.md, section 14.8). d is field data `lit_color_distance`, length; field data `lit_color_exposure` is the
- * factor of radiance.
+ * With LitColor output 0 also has the cell array `lit_color`, unsigned char, 4 components: the display colour of each
+ * voxel, red, green, blue, not multiplied by alpha, and its opacity. A volume mapper that uses these components
+ * directly (vtkVolumeProperty with IndependentComponents off, an opacity function from 0 to 1 over 0 to 255, and
+ * SetScalarOpacityUnitDistance(3, d)) shows the lit medium without OpenCL, approximately as vtkMediumRayCaster does
+ * over black (numerics.md, section 14.8). d is field data `lit_color_distance`, a length; field data
+ * `lit_color_exposure` is the factor by which radiance was multiplied.
  *
- * Field data `settings_used` of output 0: "Name = value" of each property that Quality chooses, as it was used, and on
- * several ranks of Decomposition. If that was automatic and each rank solved the whole domain, `left_out` says why.
+ * Field data `settings_used` of output 0 lists "Name = value" for each property that Quality chooses, and on several
+ * ranks for Decomposition, with the value used. If Decomposition was automatic and each rank solved the whole domain,
+ * `left_out` says why.
  *
  * @sa vtkLightPropagationMaps vtkDiscreteOrdinates vtkPhotonMarcher
  */
@@ -60,13 +62,13 @@ public:
   vtkTypeMacro(vtkScatteringSolver, vtkPropagationAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  /// Number of the input port, behind those of vtkLitMediumAlgorithm.
+  /// Input port of the uncollided light, after those of vtkLitMediumAlgorithm.
   static constexpr int UNCOLLIDED = 3;
 
   enum Qualities
   {
-    DRAFT = 0, ///< while settings are chosen
-    USUAL = 1, ///< every property as it is
+    DRAFT = 0, ///< fast, to choose settings
+    USUAL = 1, ///< every property as set
     FINE = 2,
     REFERENCE = 3 ///< for comparisons
   };
@@ -79,70 +81,70 @@ public:
   };
 
   ///@{
-  /// What each of several MPI ranks solves. WHOLE: the whole domain, which each then holds. BLOCKS: its piece; ranks
-  /// exchange light, and hold a halo of one or two voxels. One rank alone solves the same way then, so that light does
-  /// not depend on their number, but for rounding. An error names what blocks cannot do; see the subclass.
-  /// AUTOMATIC_DECOMPOSITION (default): BLOCKS if each of several ranks is asked for its piece of more than 64^3
-  /// voxels, the scene can be decomposed, and WHOLE would not be more accurate or much faster; else WHOLE.
+  /// Domain decomposition over MPI ranks. WHOLE: each rank holds the whole domain and solves on it. BLOCKS: each rank
+  /// solves on its piece; ranks exchange light, and hold a halo of one or two voxels. On one rank the solve is the
+  /// serial one. An error names the settings that cannot be used with BLOCKS; see the subclass. AUTOMATIC_DECOMPOSITION
+  /// (default): BLOCKS if each of several ranks is asked for its own piece, the image has more than 64^3 voxels, the
+  /// scene can be decomposed, and WHOLE would not be more accurate or much faster; else WHOLE.
   tyndallRangeMacro(Decomposition, int, AUTOMATIC_DECOMPOSITION, BLOCKS);
   ///@}
 
   ///@{
-  /// Accuracy: chooses, from the scene, those of the properties below that have their default value, and leaves the
-  /// other ones. DRAFT, USUAL (default), FINE or REFERENCE; USUAL changes none. FINE and REFERENCE also divide
-  /// rectangle lights more finely.
+  /// Accuracy: DRAFT, USUAL (default), FINE or REFERENCE. Chooses values for those properties below that have their
+  /// default value, depending on the scene; the other properties are left alone. USUAL changes none. FINE and REFERENCE
+  /// also divide rectangle lights more finely.
   tyndallRangeMacro(Quality, int, DRAFT, REFERENCE);
   ///@}
 
   ///@{
-  /// Whether to find the light on half as many voxels along each axis (and half of those where many are left; LeftOut
-  /// says how many), along few directions and to some percent, as a preview while lights are moved: `fluence` and
-  /// `fluence_direct` alone, linear between the coarse voxels' middles. Quality, TargetError and WarmStart are not read
-  /// then. By blocks (Decomposition) each rank averages its piece, and the first that has voxels solves the coarse grid
-  /// for all. Default off.
+  /// Whether to solve for a preview, while lights are moved: on a grid with half as many voxels along each axis (halved
+  /// again if it is still large; LeftOut reports its size), with few directions and to a few percent. Outputs are
+  /// `fluence` and `fluence_direct` only, interpolated linearly between the centres of the coarse voxels. Quality,
+  /// TargetError and WarmStart are then not read. With Decomposition BLOCKS each rank averages its piece, and the first
+  /// rank with voxels solves on the coarse grid for all ranks. Default off.
   tyndallFlagMacro(Preview);
   ///@}
 
   ///@{
-  /// MiB of the device's memory that a solve may take. Default 0: what the device has. vtkLightPropagationMaps keeps
-  /// arrays over all voxels that do not fit in host memory then, and streams them through the device slice by slice:
-  /// the same light, bit for bit, later; with 0 beyond nine tenths of the device. vtkLatticeBoltzmannLighting leaves
-  /// what does not fit in host memory, and of vtkDiscreteOrdinates it is an error. Where the device is a processor,
-  /// which works on host memory in place, it bounds what a solve takes beside these arrays. By blocks (Decomposition)
-  /// it is of each rank, and vtkLightPropagationMaps reads what does not fit from host memory. DeviceName and field
-  /// data `device` say how much lay where. Valid [0, 2^31).
+  /// Device memory that a solve may use, MiB. Default 0: all that the device has. vtkLightPropagationMaps keeps voxel
+  /// arrays that do not fit in host memory and streams them through the device slice by slice: this takes longer, with
+  /// bitwise the same result; with 0 it does so beyond nine tenths of the device's memory. vtkLatticeBoltzmannLighting
+  /// leaves arrays that do not fit in host memory; in vtkDiscreteOrdinates they are an error. If the device is a CPU,
+  /// which works on host memory in place, the budget bounds the memory used beside these arrays. With Decomposition
+  /// BLOCKS the budget applies to each rank, and vtkLightPropagationMaps reads arrays that do not fit from host memory.
+  /// DeviceName and field data `device` report how much memory was used on device and host. Valid [0, 2^31).
   tyndallRangeMacro(MemoryBudget, int, 0, VTK_INT_MAX);
   ///@}
 
   ///@{
-  /// Whether to make `lit_color`. Default off. What is on is seen from every side alike: light is scattered evenly in
-  /// it, whatever the phase function.
+  /// Whether to compute `lit_color`. Default off. The colour is the same from every direction: scattering towards the
+  /// viewer is taken as isotropic, whatever the phase function.
   void SetLitColor(bool make);
   vtkGetMacro(LitColor, bool);
   vtkBooleanMacro(LitColor, bool);
   ///@}
 
   ///@{
-  /// What radiance is multiplied by for `lit_color`. Default 0: so that the mean of the lit part, seen along the axes,
-  /// becomes a medium grey. Valid [0, 1e30].
+  /// Factor by which radiance is multiplied for `lit_color`. Default 0: chosen such that the mean of the lit part, seen
+  /// along the axes, becomes a medium grey. Valid [0, 1e30].
   void SetExposure(double exposure);
   vtkGetMacro(Exposure, double);
   ///@}
 
   ///@{
-  /// How `lit_color` follows radiance, as vtkMediumRayCaster::ToneCurve: 0 linear, 1 filmic (default).
+  /// Tone curve from radiance to `lit_color`, as vtkMediumRayCaster::ToneCurve: 0 linear, 1 filmic (default).
   void SetToneCurve(int curve);
   vtkGetMacro(ToneCurve, int);
   ///@}
 
-  /// Includes the properties of `lit_color`.
+  /// Latest modification, the properties of `lit_color` included.
   vtkMTimeType GetMTime() override;
 
   /// "Name = value" of each property that Quality chooses, as the last update used it, one per line.
   vtkGetCharFromStdStringMacro(SettingsUsed);
 
   ///@{
-  /// Uncollided light (vtkImageData) by connection or as data; null: the solver's own.
+  /// Uncollided light (vtkImageData) by connection or as data; null: the solver computes its own.
   tyndallInputMacro(UncollidedLight, UNCOLLIDED);
   ///@}
 
@@ -154,35 +156,37 @@ protected:
   int RequestUpdateExtent(
     vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
 
-  /// Returns the light of the last solve if that is asked for again, or solves on subdomains of ranks (Decomposition)
-  /// or serially. An error is reported once (Pieces/GuardedWork.h).
+  /// Returns the cached solution if it is still valid, or solves: on one subdomain per rank (Decomposition) or
+  /// serially. An error is reported once (Pieces/GuardedWork.h).
   int RequestData(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
 
   /// Solves on this rank's subdomain. Collective.
-  /// @return the light of its voxels; settingsUsed is set
+  /// @return the light in this subdomain's voxels, with settingsUsed set
   virtual tyndall::LightField Solve(const tyndall::SolverScene& scene) = 0;
 
-  /// Sets the properties that report a solve; with an empty one before solving, and if it failed.
+  /// Sets the read-only properties that report on a solve. Called with an empty `light` before a solve, so these stay
+  /// empty if it fails.
   virtual void Note(const tyndall::LightField& light) = 0;
 
-  /// Whether the light depends on the medium's cells `ior`. Default: no, and a warning if they are not 1.
+  /// Whether the solver takes the medium's cell array `ior` into account. Default: no, with a warning if `ior` is not
+  /// 1.
   virtual bool KnowsIndex() const { return false; }
 
-  /// Which properties and inputs rule out a decomposition, in words for an error; empty: none.
+  /// The properties and inputs that rule out a decomposition, as text for an error message; empty if there are none.
   virtual std::string NotByBlocks(vtkInformationVector** inputs) const;
-  /// The same for the scene of a rank.
+  /// What in this rank's scene rules out a decomposition, as NotByBlocks.
   virtual std::string NotInBlocks(const tyndall::SolverScene& scene);
   /// Why the serial solver would be more accurate or much faster for a scene that can be decomposed, in words that
   /// follow "better for"; empty if it would not. Not for previews. Collective, the same on all ranks.
   virtual std::string ReasonNotToDecompose(const tyndall::SolverScene& scene);
 
-  /// An input of points (photons) that are distributed among ranks: SolverScene::share; -1: there is none.
+  /// Input port of points (photons) that are distributed among ranks, see SolverScene::share; -1 if there is none.
   virtual int PortOfShares() const { return -1; }
-  /// What lights a subdomain: by default UncollidedLight, or else lights, environment, sky and faces, or the default
-  /// sky. Checked.
+  /// Reads and checks the light sources of a subdomain: by default UncollidedLight, or else lights, environment, sky
+  /// and boundary radiance, or the default sky.
   virtual tyndall::IlluminationInput ReadShining(tyndall::SolverScene& scene, vtkInformationVector** inputs);
 
-  /// Whether Quality chooses anything.
+  /// Whether Quality is read.
   virtual bool ReadsQuality() const { return !this->Preview; }
 
   int Decomposition = AUTOMATIC_DECOMPOSITION;
@@ -212,13 +216,13 @@ private:
   void RestoreLightBefore(vtkInformationVector* outputs);
 
   std::unique_ptr<tyndall::LastOutputs> Solved;
-  bool SolvedInPieces = false; ///< that is of this rank's piece
+  bool SolvedInPieces = false; ///< whether Solved holds the outputs of this rank's piece only
   // Of the current update:
-  bool OverRanks = false;           ///< several ranks run it together
+  bool OverRanks = false;           ///< several ranks take part in it
   bool IsFirstRank = true;          ///< the rank that warns for all of them
-  std::vector<std::string> Ignored; ///< arrays of the medium that the light does not depend on
+  std::vector<std::string> Ignored; ///< arrays of the medium that the solver does not use
   std::string WholeFor;             ///< why each rank solves serially although Decomposition was automatic
-  vtkTimeStamp ColorsTime;          ///< of LitColor, Exposure, ToneCurve, which do not change the light
+  vtkTimeStamp ColorsTime;          ///< last change of LitColor, Exposure, ToneCurve, which need no new solve
 };
 
 #endif

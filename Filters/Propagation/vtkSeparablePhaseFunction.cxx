@@ -19,7 +19,7 @@
 
 namespace
 {
-constexpr int MomentsDegree = 300; ///< to which theory looks
+constexpr int MomentsDegree = 300; ///< highest Legendre degree used for `error_theory`
 
 tyndall::PhaseFunction FunctionOf(vtkSeparablePhaseFunction* filter)
 {
@@ -45,7 +45,7 @@ std::vector<tyndall::Direction> DirectionsOf(vtkSeparablePhaseFunction* filter)
   }
 }
 
-/// A column of so many rows.
+/// Adds a column with `rows` values.
 void AddColumn(vtkTable* table, const std::string& name, int rows, const std::function<double(int row)>& value)
 {
   vtkNew<vtkDoubleArray> column;
@@ -76,7 +76,7 @@ void WriteFactors(const tyndall::SeparablePhaseFunction& phase, vtkTable* table)
   }
 }
 
-/// @param other  by the other kind of terms
+/// @param other  the same phase function, factorised into the other kind of terms
 void WriteErrors(const tyndall::SeparablePhaseFunction& phase, const tyndall::SeparablePhaseFunction& other,
   bool bySingularValues, const std::vector<double>& moments, int terms, vtkTable* table)
 {

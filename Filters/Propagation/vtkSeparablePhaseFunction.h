@@ -7,12 +7,13 @@
 
 /**
  * @class vtkSeparablePhaseFunction
- * @brief a phase function on a set of directions as a sum of products, and how good so many of them are
+ * @brief a phase function on a quadrature as a sum of products of factors, and the error of such sums
  *
  * The matrix of the phase function between all pairs of directions becomes p(i, j) = sum_k lambda_k u_k(i) u_k(j), by
- * its singular values or by spherical harmonics. vtkDiscreteOrdinates scatters by such terms; this shows them.
+ * singular value decomposition or by spherical harmonics. vtkDiscreteOrdinates scatters by such terms; this filter
+ * tabulates them.
  *
- * Output 0: vtkTable, one row a direction
+ * Output 0: vtkTable, one row per direction
  *
  * | column | type | unit | meaning |
  * |---|---|---|---|
@@ -25,17 +26,17 @@
  * | column | type | unit | meaning |
  * |---|---|---|---|
  * | `terms` | int | 1 | N |
- * | `eigenvalue` | double | 1 | of the Nth term |
+ * | `eigenvalue` | double | 1 | lambda of the Nth term |
  * | `singular_value` | double | 1 | Nth largest of the matrix |
- * | `error` | double | 1 | relative error of N of these terms: root of squares weighted by solid angle |
- * | `error_singular_values`, `error_spherical_harmonics` | double | 1 | the same of N terms of either kind |
- * | `error_theory` | double | 1 | what the Legendre moments of the phase function say of it |
- * | `error_max` | double | 1 | largest difference, over the matrix' peak |
- * | `row_sum_error` | double | 1 | largest difference from 1 of the power that is scattered |
- * | `mean_cosine_error` | double | 1 | largest difference of the mean cosine |
- * | `least_value` | double | 1 | smallest value over the peak; negative where terms are too few |
+ * | `error` | double | 1 | relative error of the sum of N terms: root of the sum of squares, weighted by solid angle |
+ * | `error_singular_values`, `error_spherical_harmonics` | double | 1 | the same, for N terms of either kind |
+ * | `error_theory` | double | 1 | the error predicted from the phase function's Legendre moments |
+ * | `error_max` | double | 1 | largest difference, over the matrix's largest value |
+ * | `row_sum_error` | double | 1 | largest difference from 1 of the total scattered power |
+ * | `mean_cosine_error` | double | 1 | largest error of the mean cosine |
+ * | `least_value` | double | 1 | smallest value over the largest; negative if there are too few terms |
  *
- * NaN where fewer terms than N are not zero.
+ * A number is NaN if fewer than N terms are nonzero.
  *
  * @sa vtkDiscreteOrdinates
  * @par Thanks
@@ -59,9 +60,9 @@ public:
 
   enum DirectionSets
   {
-    CUBE = 0,            ///< through the cells of a cube's faces, by solid angle: DirectionsPerFace
-    SPIRAL = 1,          ///< SpiralDirections on a spiral, weights such that moments are right
-    PUBLISHED_SPIRAL = 2 ///< the same, all weights alike
+    CUBE = 0,            ///< through the cells of a cube's faces, weighted by solid angle: DirectionsPerFace
+    SPIRAL = 1,          ///< SpiralDirections on a spiral, weights such that moments are exact
+    PUBLISHED_SPIRAL = 2 ///< the same directions, all with the same weight
   };
 
   enum Factorisations
@@ -82,22 +83,23 @@ public:
   ///@}
 
   ///@{
-  /// Mean cosine; of a double one of its first part. Default 0.5, as the paper's clouds, valid (-1, 1).
+  /// Mean cosine; of a double Henyey-Greenstein function, that of its first part. Default 0.5, as the paper's clouds,
+  /// valid (-1, 1).
   tyndallRangeMacro(G, double, -0.999, 0.999);
   ///@}
 
   ///@{
-  /// Mean cosine of the second part of a double one. Default -0.3.
+  /// Mean cosine of the second part of a double Henyey-Greenstein function. Default -0.3.
   tyndallRangeMacro(SecondG, double, -0.999, 0.999);
   ///@}
 
   ///@{
-  /// Of a double one, the part that the first is. Default 0.9, valid [0, 1].
+  /// Weight of the first part of a double Henyey-Greenstein function. Default 0.9, valid [0, 1].
   tyndallRangeMacro(FirstPart, double, 0.0, 1.0);
   ///@}
 
   ///@{
-  /// Which directions: CUBE, SPIRAL (default) or PUBLISHED_SPIRAL.
+  /// Quadrature: CUBE, SPIRAL (default) or PUBLISHED_SPIRAL.
   tyndallRangeMacro(DirectionSet, int, CUBE, PUBLISHED_SPIRAL);
   ///@}
 
@@ -112,22 +114,23 @@ public:
   ///@}
 
   ///@{
-  /// Terms that are kept. Default 24, as published; at most as many as there are directions.
+  /// Number of terms. Default 24, as published; at most as many as there are directions.
   tyndallRangeMacro(Terms, int, 1, 1024);
   ///@}
 
   ///@{
-  /// Of what terms are made: SINGULAR_VALUES (default) or SPHERICAL_HARMONICS.
+  /// Factorisation that the terms come from: SINGULAR_VALUES (default) or SPHERICAL_HARMONICS.
   tyndallRangeMacro(Factorisation, int, SINGULAR_VALUES, SPHERICAL_HARMONICS);
   ///@}
 
   ///@{
-  /// What the matrix holds: POINT_VALUES (default) or CELL_MEANS.
+  /// Matrix entries: the phase function's POINT_VALUES (default) or CELL_MEANS.
   tyndallRangeMacro(Sampling, int, POINT_VALUES, CELL_MEANS);
   ///@}
 
   ///@{
-  /// Whether terms scatter exactly the power there is, with exactly the mean cosine. Default on; off: as published.
+  /// Whether terms are corrected such that they conserve power and have the exact mean cosine. Default on; off: as
+  /// published.
   tyndallFlagMacro(Repaired);
   ///@}
 
