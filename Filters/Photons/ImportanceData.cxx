@@ -31,7 +31,7 @@ void SetGrid(vtkImageData* image, const Grid& grid)
   image->SetDirectionMatrix(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0);
 }
 
-/// Numbers of the lights whose squares are layers.
+/// Number of the light that each layer belongs to.
 std::vector<int> LightsOf(vtkImageData* image, int layers)
 {
   std::vector<int> lights(static_cast<std::size_t>(layers));
@@ -63,7 +63,7 @@ bool Shines(const Illumination& illumination, int light)
   return light == -1 ? sky : light == -2 ? faces : light < static_cast<int>(illumination.lights.size());
 }
 
-/// @throws InvalidInput where a map is of another scene, or has two squares for a light
+/// @throws InvalidInput if the map has a layer of a light that the scene does not have, or two layers of one light
 void CheckLights(const std::vector<int>& lights, const Illumination& illumination)
 {
   std::set<int> seen;
@@ -132,7 +132,7 @@ ImportanceMap ReadImportanceMap(vtkImageData* image, const Illumination& illumin
   if (image->GetNumberOfPoints() == 0)
   {
     StopIfUpstreamFailed(image);
-    return {}; // of lights that do not reach the volume
+    return {}; // a map of lights that do not reach the volume
   }
   const std::array<int, 3> size = GridOf(image).size;
   if (size[0] != size[1])

@@ -25,7 +25,7 @@ namespace
 {
 using Voxel = std::array<int, 3>;
 
-/// Borders of the roots along an axis.
+/// Coordinates of the borders between roots along an axis.
 vtkSmartPointer<vtkDoubleArray> Borders(const Grid& grid, int axis, int rootLevel)
 {
   auto borders = vtkSmartPointer<vtkDoubleArray>::New();
@@ -38,12 +38,12 @@ vtkSmartPointer<vtkDoubleArray> Borders(const Grid& grid, int axis, int rootLeve
   return borders;
 }
 
-/// A tree, breadth first, as vtkHyperTree wants it.
+/// A tree in breadth-first order, as vtkHyperTree needs it.
 struct Tree
 {
   std::vector<unsigned char> levels;  ///< of vertices
-  std::vector<unsigned char> outside; ///< of the box: of vertices
-  std::vector<unsigned char> refined; ///< of all but the last depth: no vertex of that is refined
+  std::vector<unsigned char> outside; ///< whether each vertex is outside the grid
+  std::vector<unsigned char> refined; ///< whether each vertex is refined, without the deepest level, where none is
   vtkIdType nodes = 0;
 };
 
@@ -56,7 +56,7 @@ public:
   {
   }
 
-  /// @param root  its lowest voxel
+  /// @param root  the root's lowest voxel
   Tree Describe(const Voxel& root, int rootLevel) const
   {
     Tree tree;
@@ -69,7 +69,8 @@ public:
   }
 
 private:
-  /// @return the children
+  /// Appends the vertices of one depth to the tree.
+  /// @return their children
   std::vector<Voxel> DescribeDepth(const std::vector<Voxel>& vertices, int level, Tree& tree) const
   {
     std::vector<Voxel> children;
@@ -108,7 +109,7 @@ private:
   const BrickedBytes& TheLevels;
 };
 
-/// Trees of some roots. They are apart from each other: each is described and built on some core.
+/// Builds the trees of some roots. They are independent of each other and are built in parallel.
 std::vector<Tree> Build(
   const Grid& grid, const BrickedBytes& all, int rootLevel, const VoxelBox& roots, vtkHyperTreeGrid* nodes)
 {

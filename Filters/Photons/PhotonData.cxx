@@ -70,9 +70,9 @@ vtkSmartPointer<vtkFloatArray> NewFloats(const char* name, int components, std::
   return array;
 }
 
-constexpr std::size_t PhotonsOfThread = 8192; ///< at least
+constexpr std::size_t PhotonsOfThread = 8192; ///< smallest number of photons per thread
 constexpr const char* BoxName = "photon_box";
-constexpr double SameBox = 1e-6; ///< of its longest edge
+constexpr double SameBox = 1e-6; ///< relative to the box's longest edge
 
 using Box = std::array<double, 6>;
 
@@ -104,13 +104,13 @@ std::array<float, 3> Turned(const std::array<float, 3>& direction, const Turn& t
   return { static_cast<float>(way[0]), static_cast<float>(way[1]), static_cast<float>(way[2]) };
 }
 
-/// Points that know their bounds: VTK would look for them on one core, without regard to ranges that were left.
+/// Points with precomputed bounds: VTK would compute them on one core, and ignore the arrays' cached ranges.
 class BoundedPoints : public vtkPoints
 {
 public:
   static BoundedPoints* New() { VTK_STANDARD_NEW_BODY(BoundedPoints); }
 
-  /// When nobody writes to them any more.
+  /// To be called when all points have been written.
   void FindBounds()
   {
     LeaveRanges(this->Data);
@@ -160,7 +160,7 @@ void WritePhotons(const EmittedPhotons& emitted, const Grid& box, const OwnAxes&
   vtkNew<vtkIntArray> batch;
   batch->SetName("batch");
   batch->SetNumberOfTuples(static_cast<vtkIdType>(count));
-  vtkNew<vtkIdTypeArray> starts, numbers; // of the cells, a photon each
+  vtkNew<vtkIdTypeArray> starts, numbers; // cells: one vertex per photon
   starts->SetNumberOfValues(static_cast<vtkIdType>(count) + 1);
   numbers->SetNumberOfValues(static_cast<vtkIdType>(count));
   starts->SetValue(static_cast<vtkIdType>(count), static_cast<vtkIdType>(count));

@@ -9,38 +9,40 @@
 class vtkImageData;
 class vtkPolyData;
 
-/// How photons flow between filters.
+/// Photons as VTK data, for exchange between filters.
 namespace tyndall
 {
 class Communicator;
 
-/// Photons as polydata: points (double), a vertex each, point data `direction` (3, unit), `power` (3, RGB, W), `weight`
-/// (1: its power over what it had if its light's photons were spread evenly), `light` (1: number of its light, -1 the
-/// environment or sky) and `batch` (1: of which of the independent sets it is). `direction` is the active vectors, so
-/// that glyphs point along it. Field data `photon_box`: bounds of the box that they were made for, in its own axes.
-/// @param axes  of the box, and of the photons as they are emitted: they are written in the scene
+/// Writes photons as polydata: points (double), with one vertex each, point data `direction` (3, unit), `power` (3,
+/// RGB, W), `weight` (1: its power over the power it would have if its light's photons were spread evenly), `light` (1:
+/// number of its light, -1 the environment or sky) and `batch` (1: number of the independent set that it belongs to).
+/// `direction` is the active vectors, so that glyphs point along it. Field data `photon_box`: bounds of the box that
+/// the photons were made for, in the box's own axes.
+/// @param axes  axes of the box and of the emitted photons, which are written in the scene's coordinates
 void WritePhotons(const EmittedPhotons& emitted, const Grid& box, const OwnAxes& axes, vtkPolyData* output);
 
-/// Where photons were made for another box than that of a medium: both boxes and what to do, as a warning; else empty.
-/// Photons that do not say their box are taken as they are.
+/// A warning, with both boxes and advice, if photons were made for another box than the medium's; else empty. Photons
+/// without `photon_box` are accepted.
 std::string DoubtOfBox(vtkPolyData* photons, const Grid& medium);
 
-/// Photons of polydata: points, and point data `direction` (3), `power` (1 or 3 components, W), `weight` (missing: 1)
-/// and `batch` (missing: 0). Hidden and duplicate points are left out.
-/// @param axes  into which they are turned
-/// @throws InvalidInput where an array is missing or has another shape, or a batch is not a whole number of 0 to 63
+/// Reads photons from polydata: points, and point data `direction` (3), `power` (1 or 3 components, W), `weight`
+/// (missing: 1) and `batch` (missing: 0). Hidden and duplicate points are skipped.
+/// @param axes  axes to whose coordinates the photons are transformed
+/// @throws InvalidInput if an array is missing or has another shape, or a batch is not a whole number from 0 to 63
 std::vector<Photon> ReadPhotons(vtkPolyData* photons, const OwnAxes& axes);
 
-/// Photons of which each rank has some. Where all have all of them, each takes a part. All ranks call it.
-/// @throws InvalidInput as ReadPhotons, on all ranks
+/// Reads this rank's share of photons that are distributed over ranks. If all ranks have the same photons, each takes a
+/// part. Collective.
+/// @throws InvalidInput as ReadPhotons, on all ranks if on one
 std::vector<Photon> ShareOfPhotons(Communicator& communicator, vtkPolyData* given, const OwnAxes& axes);
 
-/// Polylines with point data `power_left` (part of the photon's power that is left there) and cell data `photon` (its
-/// number).
-/// @param axes  those of the paths, which are written in the scene
+/// Writes paths as polylines with point data `power_left` (fraction of the photon's power that is left at the point)
+/// and cell data `photon` (its number).
+/// @param axes  axes of the paths, which are written in the scene's coordinates
 void WritePaths(const std::vector<PhotonPath>& paths, const OwnAxes& axes, vtkPolyData* output);
 
-/// Cells `octree_level` of an image as whole numbers; empty where it has none.
-/// @throws InvalidInput where a level is not a whole number of 0 to 30
+/// Reads cells `octree_level` of an image as whole numbers; empty if there is no such array.
+/// @throws InvalidInput if a level is not a whole number from 0 to 30
 std::vector<std::uint8_t> ReadLevels(vtkImageData* image);
 }

@@ -21,7 +21,7 @@ namespace
 {
 constexpr const char* LevelsName = "octree_level";
 
-/// The octree's levels, of its own image or of the medium's.
+/// Reads the octree's levels, from its own image or from the medium's.
 std::vector<std::uint8_t> LevelsOf(vtkImageData* octree, vtkImageData* medium)
 {
   if (!octree)
@@ -81,7 +81,7 @@ KeptMarcher::Found KeptMarcher::Find(vtkAlgorithm* filter, const std::shared_ptr
   found.kept = found.marcher && found.key == this->Key;
   if (!found.kept)
   {
-    found.marcher.reset(); // before the next one needs the memory
+    found.marcher.reset(); // free its memory before the next one is prepared
     this->Made.Modified();
     const RefractiveInput read = ReadRefractiveMedium(filter, medium, octree);
     found.marcher = std::make_unique<PhotonMarcher>(*device, read.input.medium, read.ior, settings, read.Levels());

@@ -10,26 +10,26 @@
 #include <memory>
 #include <vector>
 
-/// The medium of photons, as filters read it and keep it prepared.
+/// The medium that photons march through, as filters read it and cache it on the device.
 namespace tyndall
 {
-/// A medium through which photons march, and the arrays that it sees.
+/// A medium with its refractive index and octree, and the arrays that own their values.
 struct RefractiveInput
 {
   MediumInput input;
-  FloatField ior;                   ///< not there: 1 everywhere
-  std::vector<std::uint8_t> levels; ///< of the octree; empty: there is none
+  FloatField ior;                   ///< refractive index; if there is none, 1 everywhere
+  std::vector<std::uint8_t> levels; ///< octree level of each voxel; empty if there is no octree
 
   const std::uint8_t* Levels() const { return this->levels.empty() ? nullptr : this->levels.data(); }
 };
 
-/// The medium of an image (see ReadMedium) with its cells `ior` (1 component, optional) or those chosen as number
-/// RefractiveIndex, and cells `octree_level` of `octree` or, where that is null, of the medium, if it has them.
-/// @throws InvalidInput as ReadMedium, and where the octree is of other voxels or has no levels
+/// Reads the medium of an image (see ReadMedium) with its cells `ior` (1 component, optional) or those chosen as number
+/// RefractiveIndex, and cells `octree_level`, if there are any, of `octree` or, if that is null, of the medium.
+/// @throws InvalidInput as ReadMedium, and if the octree's voxels differ from the medium's or it has no levels
 RefractiveInput ReadRefractiveMedium(vtkAlgorithm* filter, vtkImageData* medium, vtkImageData* octree = nullptr);
 
-/// A PhotonMarcher of a filter's medium, which is prepared once, and again only when something that it was made of has
-/// changed: what ReadRefractiveMedium reads, the settings or the device. It does not depend on light and photons.
+/// Cache of the PhotonMarcher of a filter's medium. It is prepared again only if something that it depends on has
+/// changed: what ReadRefractiveMedium reads, the settings or the device. It does not depend on lights and photons.
 class KeptMarcher
 {
 public:
@@ -37,16 +37,19 @@ public:
   {
     InputsKey key; ///< holds the device
     std::unique_ptr<PhotonMarcher> marcher;
-    bool kept = false; ///< whether nothing had to be prepared
+    bool kept = false; ///< whether the cached marcher was still valid
   };
 
-  /// The marcher of the settings, given away until Keep: after an error there is none to keep.
-  /// @throws InvalidInput as ReadRefractiveMedium and PhotonMarcher; DeviceError
+  /// Returns the marcher for these settings, cached or newly prepared. The cache is empty until Keep, so that nothing
+  /// invalid remains after an error.
+  /// @throws InvalidInput as ReadRefractiveMedium and PhotonMarcher
+  /// @throws DeviceError
   Found Find(vtkAlgorithm* filter, const std::shared_ptr<Device>& device, vtkImageData* medium, vtkImageData* octree,
     const MarchSettings& settings);
   void Keep(Found&& found);
 
-  /// To be asked in RequestUpdateExtent, too: memory is given back before the filters before run, which may need it.
+  /// Frees the marcher if a filter upstream of these ports has run. To be called in RequestUpdateExtent, too, so that
+  /// device memory is free before upstream filters run, which may need it.
   void ForgetIfRan(vtkAlgorithm* filter, std::initializer_list<int> ports);
   void Forget() { this->Marcher.reset(); }
 

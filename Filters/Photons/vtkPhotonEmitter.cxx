@@ -41,7 +41,7 @@ vtkPolyData* vtkPhotonEmitter::GetOutput()
   return vtkPolyData::SafeDownCast(this->GetOutputDataObject(0));
 }
 
-/// Of the medium no array is read, but its box is that of the filter that reads them.
+/// No array of the medium is read, but they are declared so that the box is the same as in the filters that read them.
 int vtkPhotonEmitter::FillInputPortInformation(int port, vtkInformation* information)
 {
   const int done = this->Superclass::FillInputPortInformation(port, information);
@@ -63,7 +63,7 @@ int vtkPhotonEmitter::FillOutputPortInformation(int, vtkInformation* information
   return 1;
 }
 
-/// Of the medium only the box counts, which pieces tell.
+/// Each rank asks for its piece of the medium, if any: only the box is used, which follows from the pieces.
 int vtkPhotonEmitter::RequestUpdateExtent(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
@@ -74,7 +74,7 @@ int vtkPhotonEmitter::RequestUpdateExtent(
 
 namespace
 {
-/// All ranks call it.
+/// Grid of the whole medium. Collective.
 tyndall::Grid WholeGrid(vtkAlgorithm* filter, vtkMultiProcessController* ranks, tyndall::WholeInputs& inputs)
 {
   const int port = vtkPhotonEmitter::MEDIUM;
@@ -91,8 +91,9 @@ tyndall::Grid WholeGrid(vtkAlgorithm* filter, vtkMultiProcessController* ranks, 
   return tyndall::GridOf(vtkImageData::GetData(inputs.Vectors()[port]));
 }
 
-/// Each piece has its part of the photons. Where ranks work together and one of them is asked for all photons, which a
-/// rank without voxels may not know of, each has all: parts beside the whole would be more light than there is.
+/// Sets the part of the photons that the requested piece has. If one of the ranks that work together is asked for all
+/// photons, which a rank without voxels may not know, each rank makes all: parts beside a whole would be too much
+/// light.
 void TellPart(vtkInformation* asking, tyndall::Communicator* others, tyndall::EmissionSettings& settings)
 {
   using Pipeline = vtkStreamingDemandDrivenPipeline;

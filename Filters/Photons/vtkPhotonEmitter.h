@@ -9,36 +9,39 @@ class vtkPolyData;
 
 /**
  * @class vtkPhotonEmitter
- * @brief photons of lights and of the sky, where they enter a volume
+ * @brief photons of lights and sky at the points where they enter a volume
  *
- * Photons are spread over what each light sees of the volume: over the photon plane across a directional light that the
- * volume's outline is, over the solid angle of the faces that a lamp sees, over the directions and the outline for an
- * environment. What would miss the volume is not made; the power of all photons is what reaches it. Photons of a lamp
- * in the volume begin at the lamp.
+ * Photons are distributed over what each light sees of the volume: for a directional light over the volume's outline on
+ * the photon plane, which is perpendicular to the light; for a lamp over the solid angle of the faces that it sees; for
+ * an environment over the directions and the outline. Photons that would miss the volume are not emitted; the total
+ * power of the photons is the power that reaches the volume. Photons of a lamp inside the volume start at the lamp.
  *
- * Input 0, the medium: vtkImageData, of which only the box counts. Input 1, optional: lights as vtkLightRig makes them.
- * Input 2, optional: the environment, as vtkEnvironmentReader makes it. The index outside is taken as constant.
- * Input 3, optional: where photons are to be dense, as vtkPhotonImportance makes it: vtkImageData of n x n x lights
- * cells, cell array `importance` (1 component, >= 0, of any scale), field data `light` (number of the light of each
- * layer; missing: 0, 1, ...). A light without a layer is spread evenly, and so are all where field data `even` is 1.
- * Where photons are denser each has less power, so that what they add up to is the same.
+ * Input 0, the medium: vtkImageData, of which only the box is used. Input 1, optional: lights as vtkLightRig makes
+ * them.
+ * Input 2, optional: the environment, as vtkEnvironmentReader makes it. The refractive index outside the box is taken
+ * as constant.
+ * Input 3, optional: an importance map, which says where photons are to be dense, as vtkPhotonImportance makes it:
+ * vtkImageData of n x n x lights cells, cell array `importance` (1 component, >= 0, of any scale), field data `light`
+ * (number of the light of each layer; missing: 0, 1, ...). The photons of a light without a layer are spread evenly,
+ * and so are all photons if field data `even` is 1. Where photons are denser each has less power, so that the power
+ * density is unchanged.
  *
- * Output: vtkPolyData, a vertex per photon, point data
+ * Output: vtkPolyData, one vertex per photon, point data
  *
  * | array       | components | unit | meaning                                                           |
  * |-------------|------------|------|-------------------------------------------------------------------|
- * | `direction` | 3          | 1    | in which it travels; the active vectors                           |
+ * | `direction` | 3 | 1 | direction of travel; the active vectors |
  * | `power`     | 3          | W    | red, green, blue                                                  |
- * | `weight`    | 1          | 1    | its power over what it had if photons were spread evenly          |
+ * | `weight` | 1 | 1 | its power over its power if photons were spread evenly |
  * | `light`     | 1          | 1    | number of its light; -1: the environment or SkyColor              |
- * | `batch`     | 1          | 1    | of which of the independent sets it is, from 0                    |
+ * | `batch` | 1 | 1 | number of the independent set that it belongs to, from 0 |
  *
- * and field data `photon_box`, the bounds of the box that they were made for (6 numbers): vtkPhotonMarcher warns where
- * its medium fills another one.
+ * and field data `photon_box`, the bounds of the box that the photons were made for (6 numbers): vtkPhotonMarcher warns
+ * if its medium fills another box.
  *
  * Without lights, environment and SkyColor there are no photons, with a warning. In a parallel pipeline each piece has
- * its part of the photons: one after the other, pieces have all of them in their order. Of the medium each rank then
- * needs a piece only.
+ * its part of the photons: concatenated in order, the pieces are the serial output. Each rank then needs only its piece
+ * of the medium.
  *
  * @sa vtkLightRig vtkEnvironmentReader vtkPhotonImportance vtkPhotonMarcher
  * @par Thanks
@@ -60,7 +63,7 @@ public:
     RANDOM = 4
   };
 
-  /// Number of the input port after those of vtkLitMediumAlgorithm.
+  /// Input port of the importance map, after those of vtkLitMediumAlgorithm.
   static constexpr int IMPORTANCE_MAP = 3;
 
   vtkPolyData* GetOutput();
@@ -71,14 +74,14 @@ public:
   ///@}
 
   ///@{
-  /// Photons that reach the volume, of all lights together, which share them in proportion to the power with which they
-  /// reach it. Default 100000, valid [1, infinity). Spots and rectangles of which a part misses the volume meet it
-  /// within a percent.
+  /// Number of photons that reach the volume, summed over all lights; each light has a share in proportion to its power
+  /// that reaches the volume. Default 100000, valid [1, infinity). If part of a spot's or rectangle's light misses the
+  /// volume, the number is met within a percent.
   tyndallRangeMacro(PhotonCount, vtkIdType, 1, VTK_ID_MAX);
   ///@}
 
   ///@{
-  /// How photons are spread: HAMMERSLEY (default), HALTON, JITTERED, GRID or RANDOM.
+  /// Sampler of the photons: HAMMERSLEY (default), HALTON, JITTERED, GRID or RANDOM.
   tyndallRangeMacro(Sampler, int, HAMMERSLEY, RANDOM);
   ///@}
 
@@ -88,28 +91,28 @@ public:
   ///@}
 
   ///@{
-  /// Independent sets that the photons are made of, each with its part of all the power: their differences tell
-  /// vtkPhotonReconstruction the error of the light. Default 0: two with an importance map (even if that is even), one
-  /// without; valid [0, 16].
+  /// Number of independent sets of photons, each with its share of the power: from their differences
+  /// vtkPhotonReconstruction estimates the error of the light. Default 0: two with an importance map (even if that is
+  /// even), one without; valid [0, 16].
   tyndallRangeMacro(Batches, int, 0, 16);
   ///@}
 
   ///@{
-  /// How dense photons may become by the importance map, in those spread evenly: what it asks for above that goes to
-  /// other places. Default 8, valid [1, infinity).
+  /// Largest density of photons with an importance map, relative to evenly spread photons; the photons that the map
+  /// asks for beyond this limit are distributed elsewhere. Default 8, valid [1, infinity).
   tyndallRangeMacro(MaximumDensity, double, 1.0, tyndall::AnyHigh);
   ///@}
 
   ///@{
-  /// Radiance from every direction alike, red, green, blue, added to the environment, W/(length^2 sr). Default 0, valid
-  /// [0, infinity).
+  /// Isotropic incident radiance, red, green, blue, added to the environment, W/(length^2 sr). Default 0, valid [0,
+  /// infinity).
   tyndallSetRange3Macro(SkyColor, double, 0.0, tyndall::LargestFloat);
   vtkGetVector3Macro(SkyColor, double);
   ///@}
 
   ///@{
-  /// What came of the last update: photons made, their power (W, red, green, blue, as the energy balance of light is by
-  /// channel), seconds. Of all ranks where they run it together.
+  /// Results of the last update: number of photons, their power (W; red, green, blue, because energy balances are per
+  /// channel), seconds. Photons and power are summed over the ranks that run the update together.
   vtkGetMacro(Photons, vtkIdType);
   vtkGetVector3Macro(Power, double);
   vtkGetMacro(Seconds, double);

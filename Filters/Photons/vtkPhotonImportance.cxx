@@ -49,7 +49,7 @@ void SetGrid(vtkInformation* information, const tyndall::Grid& grid)
   information->Set(vtkDataObject::SPACING(), grid.spacing.data(), 3);
 }
 
-/// The map as far as it is known before there are lights: of one.
+/// Grid of the map as announced before the lights are known: for one light.
 tyndall::Grid MapGrid(int pilotCount)
 {
   const int edge = static_cast<int>(std::sqrt(std::max(pilotCount, 1)));
@@ -59,7 +59,7 @@ tyndall::Grid MapGrid(int pilotCount)
   return grid;
 }
 
-/// The coarse cells that fill a medium's box.
+/// Grid of the coarse cells, over the medium's box.
 tyndall::Grid PilotGrid(vtkInformation* medium, const int* dimensions)
 {
   int extent[6] = { 0, 1, 0, 1, 0, 1 };
@@ -129,17 +129,18 @@ int vtkPhotonImportance::RequestInformation(
   return 1;
 }
 
-/// The memory of an old medium is given back before the filters before run, which may need it.
+/// Frees the device memory of an old medium before upstream filters run, which may need it.
 int vtkPhotonImportance::RequestUpdateExtent(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   this->Kept->ForgetIfRan(this, { MEDIUM });
   const int done = this->Superclass::RequestUpdateExtent(request, inputs, outputs);
-  tyndall::AskForPiece(request, inputs[MEDIUM], outputs); // whatever of the map is asked for: a map is of all ranks
+  tyndall::AskForPiece(request, inputs[MEDIUM], outputs); // whichever piece of the map is requested: all ranks contribute to it
   return done;
 }
 
-/// @return nothing where nothing shines, with a warning
+/// Reads the light sources.
+/// @return nothing, after a warning, if there are none
 std::optional<tyndall::Illumination> vtkPhotonImportance::ReadLight(vtkInformationVector** inputs)
 {
   tyndall::Illumination illumination = this->ReadIllumination(inputs);
@@ -153,8 +154,9 @@ std::optional<tyndall::Illumination> vtkPhotonImportance::ReadLight(vtkInformati
   return illumination;
 }
 
-/// By pilot photons that go from rank to rank, each of which has its piece of the medium.
-/// @return nothing, on all ranks, where each is to have the whole
+/// Computes the map with pilot photons that continue from rank to rank, each of which has its piece of the medium.
+/// Collective.
+/// @return nothing, on all ranks, if each rank is to work on the whole medium
 std::optional<tyndall::Importance> vtkPhotonImportance::FindInPieces(
   vtkMultiProcessController* ranks, vtkInformationVector** inputs)
 {
@@ -256,7 +258,7 @@ void vtkPhotonImportance::Write(
     vtkImageData* const output = vtkImageData::GetData(outputs, port);
     tyndall::AddFact(output, "left_out", leftOut);
     tyndall::AddFact(output, "device", std::vector<std::string>{ this->DeviceName });
-    if (output->GetNumberOfCells() > 0) // else what was told before stands, and the next update asks for that
+    if (output->GetNumberOfCells() > 0) // else the announced extent stays, and the next update requests it
     {
       tyndall::TellExtentAndKeepWhatIsAskedFor(asking, outputs->GetInformationObject(port), output);
     }

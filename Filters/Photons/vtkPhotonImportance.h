@@ -21,19 +21,19 @@ class vtkMultiProcessController;
 
 /**
  * @class vtkPhotonImportance
- * @brief where photons are needed: an importance map, found by few pilot photons
+ * @brief importance map for photon emission, computed with a few pilot photons
  *
- * Pilot photons on a jittered grid of each light's photon plane are marched through the medium and gathered in coarse
- * cells. Cells where the light changes steeply from one to the next, and dark ones, are chosen; each is splatted into
- * the map as a circle about the mean origin of its photons, as wide as they deviate from it; a 5x5 Gauss filter smooths
- * the map, and a background is added. vtkPhotonEmitter makes photons as dense as it says.
+ * Pilot photons on a jittered grid of each light's photon plane are marched through the medium and accumulated in
+ * coarse cells. Dark cells, and cells with a steep gradient of light, are chosen. Each chosen cell is splatted into the
+ * map as a circle about the mean origin of its photons, with their standard deviation as radius; a 5x5 Gauss filter
+ * smooths the map, and a background is added. vtkPhotonEmitter emits photons with this density.
  *
- * Where the light is even nothing is gained: `even` is 1, and vtkPhotonEmitter spreads its photons evenly.
+ * If the light is even a map gains nothing: `even` is then 1, and vtkPhotonEmitter spreads its photons evenly.
  *
  * Input 0, the medium: vtkImageData with cell arrays `sigma_a`, `sigma_s` (1 or 3 components, 1/length) and optionally
  * `ior` (1 component; missing: constant), or those chosen by SetInputArrayToProcess 0, 1 and 3, and optionally
  * `octree_level`, as vtkPhotonMarcher reads them. Input 1, optional: lights as vtkLightRig makes them. Input 2,
- * optional: the environment, as vtkEnvironmentReader makes it. Give vtkPhotonEmitter the same.
+ * optional: the environment, as vtkEnvironmentReader makes it. vtkPhotonEmitter needs the same inputs.
  *
  * Output 0, the map: vtkImageData of n x n x lights cells over the unit square, n the root of PilotCount, cell array
  *
@@ -48,14 +48,14 @@ class vtkMultiProcessController;
  * |--------------------|------------|------------|--------------------------------------------------------------|
  * | `fluence`          | 1 or 3     | W/length^2 | mean over the cell                                           |
  * | `photon_count`     | 1          | 1          | pilot photons that crossed the cell                          |
- * | `origin_mean`      | 2          | map cells  | mean column and row that they set out from                   |
- * | `origin_deviation` | 2          | map cells  | standard deviation of those                                  |
+ * | `origin_mean` | 2 | map cells | mean column and row of these photons' origins |
+ * | `origin_deviation` | 2 | map cells | standard deviation of the origins |
  * | `gradient`         | 1          | W/length^2 | steepness of the light, from a cell to the next              |
- * | `chosen`           | 1          | 1          | 1 where photons are to be dense                              |
+ * | `chosen` | 1 | 1 | 1 if photons are to be dense here |
  *
  * Both have field data `left_out` (what the scene did not need) and `device`. Without lights, environment and SkyColor
- * both are empty, with a warning. In a parallel pipeline pilot photons go from rank to rank, each of
- * which has its piece of the medium, finds the whole map and hands on its piece of that.
+ * both are empty, with a warning. In a parallel pipeline each rank has its piece of the medium, and pilot photons
+ * continue from rank to rank; each rank computes the whole map and returns the requested piece.
  *
  * @sa vtkPhotonEmitter vtkPhotonMarcher vtkPhotonReconstruction
  * @par Thanks
@@ -77,31 +77,31 @@ public:
   };
 
   ///@{
-  /// Pilot photons of each light; the largest square number that is not above it is made. Default 1024, valid [1,
-  /// 2^20]; below it is an error.
+  /// Number of pilot photons per light, rounded down to a square number. Default 1024, valid [1, 2^20]; smaller values
+  /// are an error.
   tyndallRangeMacro(PilotCount, int, 1, VTK_INT_MAX);
   ///@}
 
   ///@{
-  /// Coarse cells along each axis. Default 16 each, valid from 1 on; more than the medium has voxels are cut to those.
+  /// Coarse cells along each axis. Default 16 each, valid from 1 on; cut to the medium's number of voxels.
   tyndallSetRange3Macro(PilotDimensions, int, 1, VTK_INT_MAX);
   vtkGetVector3Macro(PilotDimensions, int);
   ///@}
 
   ///@{
-  /// Where the thresholds come from: OWN or AUTOMATIC (default).
+  /// Source of the thresholds: OWN or AUTOMATIC (default).
   tyndallRangeMacro(Thresholds, int, OWN, AUTOMATIC);
   ///@}
 
   ///@{
-  /// With own thresholds: cells whose light changes by this or more to the next are chosen, and lit cells of this light
-  /// or less. W/length^2, default 0, valid [0, infinity).
+  /// With Thresholds OWN: cells are chosen if `gradient` is at least GradientThreshold, or if they are lit and
+  /// `fluence` is at most LuminanceThreshold. W/length^2, default 0, valid [0, infinity).
   tyndallRangeMacro(GradientThreshold, double, 0.0, tyndall::AnyHigh);
   tyndallRangeMacro(LuminanceThreshold, double, 0.0, tyndall::AnyHigh);
   ///@}
 
   ///@{
-  /// Part of the photons that are spread evenly all the same. Default 0.3, valid (0, 1].
+  /// Fraction of the photons that is spread evenly in any case. Default 0.3, valid (0, 1].
   tyndallRangeMacro(Background, double, tyndall::AboveZero, 1.0);
   ///@}
 
@@ -111,21 +111,21 @@ public:
   ///@}
 
   ///@{
-  /// Radiance from every direction alike, red, green, blue, added to the environment, W/(length^2 sr). Default 0, valid
-  /// [0, infinity).
+  /// Isotropic incident radiance, red, green, blue, added to the environment, W/(length^2 sr). Default 0, valid [0,
+  /// infinity).
   tyndallSetRange3Macro(SkyColor, double, 0.0, tyndall::LargestFloat);
   vtkGetVector3Macro(SkyColor, double);
   ///@}
 
   ///@{
-  /// MiB of the device's memory that the filter may take, with what it keeps from update to update; what is needed
-  /// beyond is one error that says how much. Default 0: what the device has. Valid [0, 2^31).
+  /// Device memory that the filter may use, MiB, including what it keeps between updates; if it needs more, an error
+  /// states how much. Default 0: all that the device has. Valid [0, 2^31).
   tyndallRangeMacro(MemoryBudget, int, 0, VTK_INT_MAX);
   ///@}
 
   ///@{
-  /// What came of the last update: whether the light is even, the thresholds that were used (W/length^2), seconds, the
-  /// device's name, and what the scene did not need, one per line.
+  /// Results of the last update: whether the light is even, the thresholds used (W/length^2), seconds, the device's
+  /// name, and what the scene did not need, one per line.
   vtkGetMacro(Even, bool);
   vtkGetMacro(UsedGradientThreshold, double);
   vtkGetMacro(UsedLuminanceThreshold, double);
@@ -135,7 +135,7 @@ public:
   ///@}
 
   using Superclass::SetInputConnection;
-  /// Another medium: what was kept of the one before is given back.
+  /// Also frees what was cached for the previous medium.
   void SetInputConnection(int port, vtkAlgorithmOutput* input) override;
 
 protected:
@@ -153,8 +153,8 @@ private:
   vtkPhotonImportance(const vtkPhotonImportance&) = delete;
   void operator=(const vtkPhotonImportance&) = delete;
 
-  /// Reads the inputs and does the work.
-  /// @return device and result; nothing where nothing shines
+  /// Reads the inputs and computes the map on this rank alone.
+  /// @return the map, with the device's name; empty if there is no light
   tyndall::Importance Find(vtkInformationVector** inputs);
   std::optional<tyndall::Importance> FindInPieces(vtkMultiProcessController* ranks, vtkInformationVector** inputs);
   std::optional<tyndall::Illumination> ReadLight(vtkInformationVector** inputs);
@@ -173,7 +173,7 @@ private:
 
   int MemoryBudget = 0;
 
-  std::shared_ptr<tyndall::Device> Within; ///< MemoryBudget, where there is one; stays longer than what is kept on it
+  std::shared_ptr<tyndall::Device> Within; ///< the device limited by MemoryBudget, if there is one; outlives what is cached on it
   std::unique_ptr<tyndall::KeptMarcher> Kept;
 
   bool Even = false;

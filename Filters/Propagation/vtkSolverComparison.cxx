@@ -61,7 +61,7 @@ void AddNumbers(
   table->AddColumn(column);
 }
 
-/// For charts: a column for each method that has rows, NaN in those of the others.
+/// Adds a column of errors for each method that has rows, NaN in other methods' rows, for charts.
 void AddErrorsByMethod(vtkTable* table, const std::vector<Row>& rows)
 {
   std::set<tyndall::ComparedMethod> methods;
@@ -124,7 +124,7 @@ void Write(const tyndall::Comparison& comparison, vtkTable* table)
   tyndall::AddFact(table, "device", std::vector<std::string>{ comparison.device });
 }
 
-/// @param given  by the user: it may be NaN where it is not known
+/// @param given  whether the user gave the reference, which may then have NaN where it is not known
 void Write(tyndall::ReferenceLight&& reference, bool given, vtkImageData* image)
 {
   const std::array<int, 3>& size = reference.grid.size;
@@ -145,7 +145,7 @@ void Write(tyndall::ReferenceLight&& reference, bool given, vtkImageData* image)
   tyndall::AddFact(image, "reference", std::vector<std::string>{ reference.text });
 }
 
-/// NaN, which is not compared, where cells are hidden.
+/// Copies a field, with NaN, which is not compared, in hidden cells.
 std::vector<float> Copied(const tyndall::FloatField& field, vtkImageData* image)
 {
   if (!field.IsThere())
@@ -163,7 +163,7 @@ std::vector<float> Copied(const tyndall::FloatField& field, vtkImageData* image)
   return values;
 }
 
-/// The reference of an image; nothing where there is no image.
+/// Reads the reference from an image; empty if there is no image.
 std::optional<tyndall::ReferenceLight> ReadReference(vtkImageData* image)
 {
   if (!image)
@@ -304,7 +304,7 @@ int vtkSolverComparison::RequestData(
     const std::optional<tyndall::ReferenceLight> reference = ReadReference(vtkImageData::GetData(inputs[REFERENCE]));
     if (!tyndall::IsFirstPiece(request, outputs))
     {
-      return; // times that ranks take from each other mean nothing
+      return; // ranks that run at the same time would distort each other's timings
     }
     tyndall::Comparison comparison = tyndall::CompareSolvers(*tyndall::Device::Find(this->Device), scene,
       this->Settings(), reference ? &*reference : nullptr, tyndall::MonitorOf(this));
@@ -323,11 +323,11 @@ int vtkSolverComparison::RequestData(
   });
 }
 
-/// Of the index, of which only some of the compared methods know.
+/// Warns if the medium's refractive index varies, because some of the compared methods ignore it.
 void vtkSolverComparison::TellOfIgnored(const tyndall::Comparison& comparison, vtkImageData* medium)
 {
   const bool ofMaps = std::any_of(comparison.rows.begin(), comparison.rows.end(),
-    [](const auto& row) { return row.method <= tyndall::ComparedMethod::DiscreteOrdinates; }); // and maps of all kinds
+    [](const auto& row) { return row.method <= tyndall::ComparedMethod::DiscreteOrdinates; }); // maps included
   const std::vector<std::string> ignored =
     tyndall::IgnoredIndex(ofMaps && tyndall::IsUnusual(this, tyndall::RefractiveIndex, medium, "ior", 1.0f));
   if (!ignored.empty())

@@ -19,10 +19,10 @@ struct ComparisonSettings;
 
 /**
  * @class vtkSolverComparison
- * @brief error against run time: which solver at which setting is best for a scene
+ * @brief error against run time: shows which solver with which settings is best for a scene
  *
- * Runs the chosen methods at several settings each on one scene, and compares their light with a reference: that of
- * input 3, or that of photons or a converged run of the best method (MonteCarloReference).
+ * Runs the chosen methods, each with several settings, on one scene, and compares their light with a reference: input
+ * 3, or a Monte Carlo run, or a converged run of the best method (MonteCarloReference).
  *
  * Input 0, the medium: vtkImageData as vtkLightPropagationMaps and vtkPhotonMarcher read it: cell arrays `sigma_a`,
  * `sigma_s` (1 or 3 components, 1/length), optionally `emission` (W/(length^3 sr)), `ior` and `octree_level` (photons
@@ -32,44 +32,44 @@ struct ComparisonSettings;
  * makes it.
  * Input 3, optional: the reference, vtkImageData of the same box, its voxels as large as the medium's or a whole number
  * of times smaller or larger, with cell array `fluence`, or `fluence_direct` for photons, or both (W/length^2; as many
- * components as the light has). Where it is NaN nothing is compared. Light and reference are compared on the coarser
- * grid of both, by voxel means; light of a coarsened medium is taken to be constant in its voxels.
+ * components as the light has). Voxels where it is NaN are not compared. Light and reference are compared on the
+ * coarser of their two grids, by voxel means; light of a coarsened medium is taken as constant in each voxel.
  *
- * Output 0: vtkTable `error_against_time`, a row a method and setting:
+ * Output 0: vtkTable `error_against_time`, one row per method and setting:
  *
  * | column | unit | meaning |
  * |---|---|---|
  * | `method` |  | its name |
  * | `setting` |  | in words |
  * | `quantity` |  | what is compared: `fluence`, or `fluence_direct` for photons, which do not follow scattered light |
- * | `grid` |  | voxels, as 64x64x64 |
- * | `seconds` | s | median of Repeats, from arrays to arrays, kernels compiled |
- * | `peak_bytes` | byte | most memory that was taken on the device at one time; NaN of a method on the host |
+ * | `grid` | | size in voxels, for example 64x64x64 |
+ * | `seconds` | s | median of Repeats runs, from input arrays to output arrays, without compilation of kernels |
+ * | `peak_bytes` | byte | peak device memory; NaN for a method on the host |
  * | `error_l2` | 1 | root of the sum of squared differences over voxels and channels, over that of the reference |
  * | `error_max` | 1 | largest difference in a voxel, over the largest fluence of the reference |
- * | `error_relative` | 1 | root of the mean square of voxels' own relative errors, where the reference is above 0 |
+ * | `error_relative` | 1 | root mean square of the voxels' relative errors, where the reference is above 0 |
  * | `balance` | 1 | relative error of the energy balance |
  * | `iterations` | 1 | scattering orders or sweeps; 1 for photons |
- * | `estimated_error` | 1 | of `error_l2`, by the solver itself (if EstimateError); NaN where it is not known |
+ * | `estimated_error` | 1 | the solver's own estimate of `error_l2` (if EstimateError); NaN if it is not known |
  * | `face_power_out` | W | 6 components: through -x, +x, -y, +y, -z, +z, channels summed |
- * | `power_in` | W | entered and emitted, channels summed |
+ * | `power_in` | W | incident and emitted power, channels summed |
  * | `pareto` | 1 | 1 where no other row of the same quantity is both faster and better |
- * | `error of METHOD` | 1 | `error_l2` of one method, NaN in rows of others: for charts |
+ * | `error of METHOD` | 1 | `error_l2` of METHOD, NaN in other methods' rows: for charts |
  *
- * and field data `reference` (what it is), `left_out` (what was not compared, and why) and `device`.
+ * and field data `reference` (a description), `left_out` (what was not compared, and why) and `device`.
  *
- * Output 1: the reference, vtkImageData with cell arrays `fluence` and `fluence_direct`, those that are known: to look
- * at, or to connect as input 3 of the next comparison of the same scene.
+ * Output 1: the reference, vtkImageData with those of the cell arrays `fluence` and `fluence_direct` that are known:
+ * for viewing, or as input 3 of the next comparison of the same scene.
  *
- * The settings that are tried: of propagation, all Directions on all Coarsenings of the grid (those that do not divide
- * it are left out); MapResolutions above 1 where directions are 25 or more; limited Orders with the number of
- * Directions nearest to 25. Of photons, all PhotonCounts by Hammersley's sampler, and with AllSamplers the largest but
- * one by the others. Both lattices on all Coarsenings.
+ * The settings that are tried are, for propagation: all Directions on all Coarsenings of the grid (those that do not
+ * divide its size are skipped); MapResolutions above 1 with 25 or more directions; limited Orders with the number of
+ * Directions nearest to 25. For photons: all PhotonCounts with the Hammersley sampler, and with AllSamplers the second
+ * largest count with the other samplers. Both lattices are tried on all Coarsenings.
  *
- * With EstimateError (default on here) solvers estimate their own errors, by a run more whose time does not count.
- * Photons do not go round periodic axes; they are left out then.
+ * With EstimateError (default on here) solvers estimate their own errors, by an extra run that is not timed. Photons do
+ * not support periodic axes and are skipped if there are any.
  *
- * In a parallel pipeline every rank asks for all; the outputs are on the first.
+ * In a parallel pipeline every rank asks for the whole inputs; the first rank has the outputs.
  *
  * @sa vtkLightPropagationMaps vtkPhotonMarcher vtkPhotonReconstruction
  */
@@ -80,9 +80,9 @@ public:
   vtkTypeMacro(vtkSolverComparison, vtkPropagationAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  /// Number of the input port after those of vtkPropagationAlgorithm.
+  /// Input port of the reference, after those of vtkPropagationAlgorithm.
   static constexpr int REFERENCE = 3;
-  /// Number of the output port of the reference.
+  /// Output port of the reference.
   static constexpr int REFERENCE_OUTPUT = 1;
 
   vtkTable* GetOutput();
@@ -93,9 +93,9 @@ public:
   ///@}
 
   ///@{
-  /// Methods: light propagation maps as they are by default (default on); with a constant source and no acceleration
-  /// (on); as published, on the device (on), and one ray after the other (off: slow); photons with reconstruction (on),
-  /// with an importance map (off), and as published (off).
+  /// Methods that are compared: light propagation maps with their default settings (default on); with a constant source
+  /// and no acceleration (on); as published, on the device (on), and one ray after the other (off: slow); discrete
+  /// ordinates (off); photons with reconstruction (on), with an importance map (off), and as published (off).
   tyndallFlagMacro(LightPropagationMaps);
   tyndallFlagMacro(ConstantSource);
   tyndallFlagMacro(AsPublished);
@@ -107,28 +107,28 @@ public:
   ///@}
 
   ///@{
-  /// Whether photons that are scattered until they end are compared, by all light and without a filter: Monte Carlo,
-  /// without bias, by the medium's own phase function and along bent rays. Default off. Where light is bent and there
-  /// is no input 3, such photons make the reference then. Left out where the medium emits, axes are periodic or faces
-  /// give back light.
+  /// Whether Monte Carlo is compared: photons that are scattered until they are absorbed or leave, by the medium's own
+  /// phase function and along bent rays, an unbiased and unfiltered estimate of the whole fluence. Default off. If
+  /// light is refracted and there is no input 3, such photons are then also the reference. Skipped if the medium emits,
+  /// axes are periodic or faces reflect light.
   tyndallFlagMacro(MonteCarlo);
   ///@}
 
   ///@{
   /// Whether lattices of 18 and of 6 directions are compared, as vtkLatticeBoltzmannLighting solves them by default:
-  /// diffusion. Default off. Left out where voxels are not cubes. Where light is bent the lattice is given the
-  /// uncollided light of photons, of each of the numbers that are tried, and left out where Monte Carlo is.
+  /// diffusion. Default off. Skipped if voxels are not cubes. If light is refracted the lattice takes its uncollided
+  /// light from photons, for each PhotonCount, and is skipped if Monte Carlo is.
   tyndallFlagMacro(LatticeBoltzmann);
   ///@}
 
   ///@{
-  /// Whether, without input 3, photons that are scattered until they end make the reference also where light goes
-  /// straight: sixteen sets of them or more. It shares no solver with the methods then, but has noise, of which field
-  /// data `reference` gives the standard error. 0: never, but light propagation maps; 1: always, and an error where the
-  /// medium emits, axes are periodic or faces give back light; 2, the default: where they can beat the methods
-  /// compared, that is where within half of TimeBudget their standard error is forecast to be at most a third of what
-  /// the finest maps that are tried are off by, or where maps take too long or do not fit; never where photons alone
-  /// are compared. `reference` says what was chosen, and why.
+  /// Whether, without input 3, the reference is a Monte Carlo run (sixteen or more sets of photons) also if light
+  /// travels in straight lines. Such a reference shares no solver with the compared methods, but has noise; field data
+  /// `reference` reports its standard error. 0: never, the reference is light propagation maps. 1: always; it is an
+  /// error if the medium emits, axes are periodic or faces reflect light. 2 (default): if Monte Carlo can be more
+  /// accurate than the compared methods, that is if its forecast standard error within half of TimeBudget is at most a
+  /// third of the error of the finest maps that are tried, or if maps take too long or do not fit in memory; never if
+  /// only photons are compared. `reference` says what was chosen, and why.
   enum MonteCarloReferences
   {
     NEVER = 0,
@@ -151,12 +151,12 @@ public:
   void RemoveAllMapResolutions();
   ///@}
   ///@{
-  /// Edges of the voxels that are tried, in the medium's. Default 1, 2, 4; valid from 1 on.
+  /// Voxel edges that are tried, as multiples of the medium's. Default 1, 2, 4; valid from 1 on.
   void AddCoarsening(int factor);
   void RemoveAllCoarsenings();
   ///@}
   ///@{
-  /// Largest scattering orders that are tried besides all. Default 1, 3, 10; valid from 1 on.
+  /// Limits on the number of scattering orders that are tried, besides no limit. Default 1, 3, 10; valid from 1 on.
   void AddOrders(int orders);
   void RemoveAllOrders();
   ///@}
@@ -167,26 +167,26 @@ public:
   ///@}
 
   ///@{
-  /// Whether photons are tried by all samplers. Default off.
+  /// Whether photons are tried with all samplers. Default off.
   tyndallFlagMacro(AllSamplers);
   ///@}
 
   ///@{
-  /// Runs whose median is the time, after one that does not count; fewer where TimeBudget does not allow them. Default
-  /// 3, valid [1, 100].
+  /// Number of timed runs, whose median is reported, after one run that is not timed; fewer if TimeBudget does not
+  /// allow them. Default 3, valid [1, 100].
   tyndallRangeMacro(Repeats, int, 1, 100);
   ///@}
 
   ///@{
-  /// Seconds that all may take, without those in which kernels are compiled: half of it for a converged run, the rest
-  /// shared by the methods. Runs that do not fit are not begun, or stopped; field data `left_out` names them. Default
+  /// Time limit of an update in seconds, without compilation of kernels: half of it is for a converged run, the methods
+  /// share the rest. Runs that do not fit are not started, or are stopped; field data `left_out` names them. Default
   /// 300, valid above 0.
   tyndallRangeMacro(TimeBudget, double, tyndall::AboveZero, tyndall::AnyHigh);
   ///@}
 
   ///@{
-  /// What came of the last update: what the reference is, seconds, the device's name, and what was not compared, one a
-  /// line.
+  /// Results of the last update: description of the reference, seconds, the device's name, and what was not compared,
+  /// one per line.
   vtkGetCharFromStdStringMacro(ReferenceText);
   vtkGetMacro(Seconds, double);
   vtkGetCharFromStdStringMacro(DeviceName);
