@@ -135,7 +135,7 @@ int vtkPhotonImportance::RequestUpdateExtent(
 {
   this->Kept->ForgetIfRan(this, { MEDIUM });
   const int done = this->Superclass::RequestUpdateExtent(request, inputs, outputs);
-  tyndall::AskForPiece(request, inputs[MEDIUM], outputs); // whichever piece of the map is requested: all ranks contribute to it
+  tyndall::AskForPiece(request, inputs[MEDIUM], outputs); // whichever piece of the map is requested
   return done;
 }
 

@@ -173,7 +173,7 @@ private:
 
   int MemoryBudget = 0;
 
-  std::shared_ptr<tyndall::Device> Within; ///< the device limited by MemoryBudget, if there is one; outlives what is cached on it
+  std::shared_ptr<tyndall::Device> Within; ///< device limited by MemoryBudget, or null; outlives Kept
   std::unique_ptr<tyndall::KeptMarcher> Kept;
 
   bool Even = false;

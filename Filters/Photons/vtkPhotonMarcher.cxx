@@ -42,8 +42,8 @@ enum InputPort
   InputPortCount
 };
 
-/// Whether light in empty space is to be kept by bricks. That is a way to keep light, not the medium: where what was
-/// read has been changed since, the light is right all the same.
+/// Whether light in empty space is to be stored by bricks. The light is correct even if a filter has changed the medium
+/// since it was read: the file's `active_part` only selects the storage of light.
 bool ByBricks(vtkPhotonMarcher* filter, vtkImageData* medium)
 {
   constexpr double mostActive = 0.25;
@@ -52,7 +52,8 @@ bool ByBricks(vtkPhotonMarcher* filter, vtkImageData* medium)
     (filter->GetEmptySpace() == vtkPhotonMarcher::AS_READ && sparse);
 }
 
-/// Of a rank that marches through the whole: the medium's arrays, its spline of the index, sums and light.
+/// Memory per voxel of a rank that marches through the whole medium: the medium's arrays, spline of the index, sums and
+/// light.
 constexpr double BytesOfVoxel = 96.0;
 
 bool IsOfLaterBatch(const tyndall::Photon& photon)
@@ -60,8 +61,8 @@ bool IsOfLaterBatch(const tyndall::Photon& photon)
   return photon.batch > 0;
 }
 
-/// @param medium  null: this rank has nothing of it
-/// @param batches  photons are of several
+/// @param medium  null if this rank has no piece of it
+/// @param batches  whether there are several batches of photons
 tyndall::MarchSettings SettingsOf(vtkPhotonMarcher* filter, vtkImageData* medium, bool batches)
 {
   const bool published = filter->GetScheme() == vtkPhotonMarcher::PUBLISHED;
@@ -100,7 +101,7 @@ tyndall::PublishedSettings PublishedSettingsOf(vtkPhotonMarcher* filter)
   return settings;
 }
 
-/// The light of a rank's block as that of the voxels that the output is to have. All ranks call it.
+/// Extends the light of a rank's block to all voxels of the output, ghost cells included. Collective.
 void SpreadToHeld(
   tyndall::Communicator& communicator, const tyndall::PieceBlocks& pieces, tyndall::PhotonLight& photons)
 {
@@ -143,18 +144,18 @@ void WriteLightOf(tyndall::PhotonLight&& photons, vtkImageData* output)
 }
 }
 
-/// What a rank marches photons through, and which.
+/// Input of a rank's march: its piece of the medium and its photons.
 struct vtkPhotonMarcher::PieceOfMarch
 {
-  vtkSmartPointer<vtkImageData> image; ///< whose arrays the medium has; null: this rank has nothing of it
+  vtkSmartPointer<vtkImageData> image; ///< owns the medium's arrays; null if this rank has no piece of it
   tyndall::RefractiveInput read;
-  bool octreeElsewhere = false; ///< the octree given does not have these voxels
+  bool octreeElsewhere = false; ///< the octree's piece has other voxels than the medium's
   tyndall::MarchSettings settings;
-  bool emits = false;                   ///< this rank's piece of the medium
-  std::vector<tyndall::Photon> photons; ///< this rank's share
+  bool emits = false;                   ///< whether this rank's piece of the medium emits
+  std::vector<tyndall::Photon> photons; ///< this rank's share of the photons
 };
 
-/// Light, of the published scheme what its packing lost, and, of the conservative scheme's integrator, paths.
+/// Result of a march: light, the published scheme's packing loss, and paths by the conservative scheme's integrator.
 struct vtkPhotonMarcher::Marched
 {
   tyndall::PhotonLight light;
@@ -254,7 +255,7 @@ int vtkPhotonMarcher::RequestInformation(vtkInformation*, vtkInformationVector**
   return 1;
 }
 
-/// Whether this rank would have each march through its piece, as far as that is known without the medium.
+/// Whether this rank can use a decomposition, as far as is known without reading the medium.
 bool vtkPhotonMarcher::WantsBlocks(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) const
 {
@@ -263,7 +264,7 @@ bool vtkPhotonMarcher::WantsBlocks(
     : this->Decomposition == BLOCKS;
 }
 
-/// The memory of an old medium is given back before the filters before run, which may need it.
+/// Frees the device memory of an old medium before upstream filters run, which may need it.
 int vtkPhotonMarcher::RequestUpdateExtent(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
@@ -279,7 +280,7 @@ int vtkPhotonMarcher::RequestUpdateExtent(
 
 namespace
 {
-/// The part of an octree's image that has the voxels of a piece of the medium; null where it has not.
+/// The part of an octree's image with exactly the voxels of a piece of the medium; null if there is none.
 vtkSmartPointer<vtkImageData> OctreeOf(const tyndall::PieceBlocks& pieces, vtkImageData* octree, vtkImageData* medium)
 {
   if (octree->GetNumberOfCells() == 0)
@@ -290,7 +291,7 @@ vtkSmartPointer<vtkImageData> OctreeOf(const tyndall::PieceBlocks& pieces, vtkIm
   return tyndall::AreSameVoxels(tyndall::GridOf(own), tyndall::GridOf(medium)) ? own : nullptr;
 }
 
-/// Whether photons of any rank are of several batches.
+/// Whether any rank has photons of several batches. Collective.
 bool HaveBatches(tyndall::Communicator& communicator, const std::vector<tyndall::Photon>& photons)
 {
   const bool own = std::any_of(photons.begin(), photons.end(), IsOfLaterBatch);
@@ -298,11 +299,12 @@ bool HaveBatches(tyndall::Communicator& communicator, const std::vector<tyndall:
 }
 }
 
-/// @return false, on all ranks, where photons cannot be marched through pieces, and need not
+/// Reads this rank's piece of the medium and share of the photons. Collective.
+/// @return false, on all ranks, if photons cannot be marched through pieces, or a march through the whole is preferred
 bool vtkPhotonMarcher::ReadPiece(tyndall::Communicator& communicator, const tyndall::PieceBlocks& pieces,
   vtkInformationVector** inputs, bool needsPieces, PieceOfMarch& piece)
 {
-  bool rather = false; // whole, though it can be marched through so
+  bool rather = false; // march through the whole is preferred, though pieces are possible
   std::vector<tyndall::Photon> photons =
     tyndall::ShareOfPhotons(communicator, vtkPolyData::GetData(inputs[PhotonsPort]), tyndall::OwnAxesOf(this));
   const bool batches = HaveBatches(communicator, photons);
@@ -328,7 +330,7 @@ bool vtkPhotonMarcher::ReadPiece(tyndall::Communicator& communicator, const tynd
   return !tyndall::OnAnyRank(communicator, piece.octreeElsewhere || rather);
 }
 
-/// As published. Collective.
+/// Marches photons by the published scheme. Collective.
 void vtkPhotonMarcher::MarchAsPublished(tyndall::Device& device, const tyndall::Domain& domain,
   const tyndall::RefractiveInput& read, const std::vector<tyndall::Photon>& photons, Marched& marched)
 {
@@ -338,7 +340,7 @@ void vtkPhotonMarcher::MarchAsPublished(tyndall::Device& device, const tyndall::
   marched.packingLoss = loss.Relative();
 }
 
-/// Light by the conservative scheme, and paths. Collective.
+/// Marches photons by the conservative scheme, if it is chosen, and computes paths. Collective.
 void vtkPhotonMarcher::MarchThrough(tyndall::PhotonMarcher& marcher, tyndall::Communicator& communicator,
   const std::vector<tyndall::Photon>& photons, Marched& marched)
 {
@@ -353,7 +355,8 @@ void vtkPhotonMarcher::MarchThrough(tyndall::PhotonMarcher& marcher, tyndall::Co
   }
 }
 
-/// @return false, on all ranks, where each is to march through the whole
+/// Marches photons with one piece of the medium per rank. Collective.
+/// @return false, on all ranks, if each rank is to march through the whole medium
 bool vtkPhotonMarcher::MarchPiece(vtkInformation* request, vtkMultiProcessController* ranks,
   vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
@@ -505,7 +508,7 @@ void vtkPhotonMarcher::Note(const Marched& marched)
   this->LeftOut = tyndall::Lines(light.light.leftOut);
 }
 
-/// On the first rank alone: the light is that of all.
+/// Issues warnings, on the first rank only, because all ranks share the result.
 void vtkPhotonMarcher::Warn(const tyndall::PhotonLight& light, std::size_t photons)
 {
   if (!this->IsFirstRank)
@@ -529,7 +532,7 @@ void vtkPhotonMarcher::Warn(const tyndall::PhotonLight& light, std::size_t photo
   const tyndall::EnergyBalance& balance = light.light.balance;
   const double trapped =
     tyndall::Sum(balance.entered) > 0.0 ? tyndall::Sum(balance.leftOver) / tyndall::Sum(balance.entered) : 0.0;
-  if (trapped > 0.01 && this->MaximumOrders < 2) // else it is what would be scattered once more
+  if (trapped > 0.01 && this->MaximumOrders < 2) // else left over is the power of omitted scattering orders
   {
     vtkWarningMacro(
       << std::lround(100.0 * trapped)

@@ -60,7 +60,8 @@ tyndall::ReconstructionSettings SettingsOf(vtkPhotonReconstruction* filter)
   return settings;
 }
 
-/// Light of no photons, which have no batches: as many as are needed are as dark as it is.
+/// Batches of zeros for light that is zero everywhere, because no photons means no batches. Empty if the light is not
+/// zero.
 std::vector<float> DarkBatches(const FloatField& light, std::size_t voxels, int batches)
 {
   const std::size_t count = voxels * static_cast<std::size_t>(light.Components());
@@ -68,7 +69,7 @@ std::vector<float> DarkBatches(const FloatField& light, std::size_t voxels, int 
   return std::vector<float>(dark ? count * static_cast<std::size_t>(batches) : 0, 0.0f);
 }
 
-/// How many batches an array has.
+/// Number of batches in an array.
 int BatchesOf(const FloatField& light, int channels)
 {
   const int components = light.Components();
@@ -80,7 +81,7 @@ int BatchesOf(const FloatField& light, int channels)
   return components / channels;
 }
 
-/// Light, with the arrays that it is of.
+/// The noisy light, with the arrays that own its values.
 struct LightOfImage
 {
   FloatField fluence, direction, count, weight, batches;
@@ -129,7 +130,7 @@ tyndall::ReconstructedLight Reconstruct(vtkPhotonReconstruction* filter, vtkImag
     SettingsOf(filter), tyndall::MonitorOf(filter));
 }
 
-/// What was left out before, and here.
+/// The image's `left_out` with further entries appended.
 std::vector<std::string> Joined(vtkImageData* image, const std::vector<std::string>& more)
 {
   std::vector<std::string> all;
@@ -143,7 +144,7 @@ std::vector<std::string> Joined(vtkImageData* image, const std::vector<std::stri
   return all;
 }
 
-/// Several sums at a time: one alone waits for each of its additions.
+/// Uses several independent sums, so that additions need not wait for each other.
 double SumOfSquares(const float* values, std::size_t count)
 {
   constexpr std::size_t Lanes = 16;
@@ -179,7 +180,7 @@ void Write(tyndall::ReconstructedLight&& light, vtkImageData* output)
     cells->RemoveArray(earlier);
   }
   tyndall::AddLight(output, "fluence", std::move(light.fluence), channels);
-  if (tyndall::ReadFact(output, tyndall::ScatteringsFact, 0.0) == 0.0) // else the marcher's own is there already
+  if (tyndall::ReadFact(output, tyndall::ScatteringsFact, 0.0) == 0.0) // else the marcher wrote fluence_direct
   {
     tyndall::AddSameLight(output, "fluence_direct", "fluence");
   }
@@ -208,7 +209,7 @@ vtkPhotonReconstruction::vtkPhotonReconstruction()
   this->WeightStep = defaults.weightStep;
   this->Level = defaults.level;
   this->NearestPhotons = defaults.nearest;
-  // vtkImageAlgorithm chooses the active scalars.
+  // vtkImageAlgorithm's default would be the active scalars.
   this->SetInputArrayToProcess(Fluence, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "fluence");
 }
 
@@ -236,8 +237,8 @@ int vtkPhotonReconstruction::RequestUpdateExtent(
   return 1;
 }
 
-/// Each rank the light of its piece.
-/// @return false, on all ranks, where each is to have the whole
+/// Each rank smooths the light of its piece. Collective.
+/// @return false, on all ranks, if each rank is to work on the whole image
 bool vtkPhotonReconstruction::ReconstructPiece(vtkInformation* request, vtkMultiProcessController* ranks,
   vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
@@ -299,7 +300,7 @@ int vtkPhotonReconstruction::RequestData(
   });
 }
 
-/// @param squares, ofErrors  sums over the voxels of all ranks, of fluence and of its error
+/// @param squares, ofErrors sums of squares of fluence and of its error over the voxels of all ranks
 void vtkPhotonReconstruction::Note(const tyndall::ReconstructedLight& light, double squares, double ofErrors)
 {
   this->Bias = light.bias;

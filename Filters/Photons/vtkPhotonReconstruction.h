@@ -16,20 +16,21 @@ class vtkMultiProcessController;
 
 /**
  * @class vtkPhotonReconstruction
- * @brief smooth light of the noisy light that photons left, voxel by voxel as coarse as the noise asks for
+ * @brief smooths the noisy light of photons, with a resolution adapted to the noise in each voxel
  *
- * Pyramids of the light, each level of half the resolution of the one below it. Every voxel takes its light from the
- * level that Scheme chooses; a level without photons is never chosen while a coarser one has some.
+ * Builds a resolution pyramid of the light: each level has half the resolution of the one below. Every voxel takes its
+ * light from the level that Scheme chooses; a level without photons is never chosen if a coarser one has some.
  *
  * Input: vtkImageData as vtkPhotonMarcher makes it, with cell arrays (point arrays: see SetPointData)
  *
  * | array | components | unit | meaning | needed by Scheme |
  * |---|---|---|---|---|
- * | `fluence` | 1 or 3 | W/length^2 | noisy light that was not scattered | all |
+ * | `fluence` | 1 or 3 | W/length^2 | noisy uncollided light | all |
  * | `mean_direction` | 3 | 1 | power-weighted mean direction; optional |  |
  * | `photon_count` | 1 | 1 | photons in the voxel (PhotonCounts of the marcher) | 0, 3 |
  * | `photon_weight` | 1 | 1 | their mean weight (PhotonCounts) | 0 |
- * | `fluence_batches` | (1 or 3) x batches | W/length^2 | light by each batch alone (Batches: at least 2) | 1 |
+ * | `fluence_batches` | (1 or 3) x batches | W/length^2 | light of each batch (Batches of vtkPhotonEmitter: at least 2)
+ * | 1 |
  *
  * or those chosen by SetInputArrayToProcess 0 to 4.
  *
@@ -38,14 +39,15 @@ class vtkMultiProcessController;
  *
  * | array | components | unit | meaning |
  * |---|---|---|---|
- * | `mip_level` | 1 | 1 | level that the light was taken from, 0 the voxels themselves; between two where blended |
- * | `fluence_error` | 1 or 3 | W/length^2 | standard error of fluence, of the conservative scheme |
+ * | `mip_level` | 1 | 1 | pyramid level of the light, 0 for the voxels themselves; fractional if two levels are blended
+ * |
+ * | `fluence_error` | 1 or 3 | W/length^2 | standard error of fluence, by the conservative scheme |
  *
- * and field data `fluence_bias` (by which part the light of all voxels together was off before it was conserved);
- * `left_out` gains what was not needed here, `device` is the one that computed. In a parallel pipeline every rank
- * smooths its piece, and the light is that of the whole, to rounding.
+ * and field data `fluence_bias` (relative change of the sum of fluence over all voxels, before conservation restores
+ * it); the filter appends to `left_out` what it did not need, and sets `device` to its own. In a parallel pipeline
+ * every rank smooths its piece, and the result is that of a serial run, to rounding.
  *
- * Cells that are hidden by `vtkGhostType` are empty.
+ * Cells that `vtkGhostType` marks as hidden are empty.
  *
  * @sa vtkPhotonMarcher vtkPhotonEmitter vtkPhotonImportance vtkMediumRayCaster
  * @par Thanks
@@ -61,7 +63,7 @@ public:
   enum Schemes
   {
     PUBLISHED = 0,       ///< the lower of the levels by centre-surround differences and by photon weight
-    CONSERVATIVE = 1,    ///< each level's detail is kept as far as independent batches agree on it; tells its error
+    CONSERVATIVE = 1,    ///< keeps each level's detail as far as independent batches agree on it; estimates the error
     CONSTANT_RADIUS = 2, ///< Level everywhere
     NEAREST_PHOTONS = 3  ///< the lowest level that holds NearestPhotons
   };
@@ -70,22 +72,22 @@ public:
   {
     NEVER = 0,
     ALWAYS = 1,
-    BY_SCHEME = 2 ///< of the conservative scheme, not of the others: they are there to compare with what was published
+    BY_SCHEME = 2 ///< by the conservative scheme only; the others are for comparison with publications
   };
 
   ///@{
-  /// How the level is chosen: PUBLISHED, CONSERVATIVE (default), CONSTANT_RADIUS or NEAREST_PHOTONS.
+  /// Choice of the level: PUBLISHED, CONSERVATIVE (default), CONSTANT_RADIUS or NEAREST_PHOTONS.
   tyndallRangeMacro(Scheme, int, PUBLISHED, NEAREST_PHOTONS);
   ///@}
 
   ///@{
-  /// Levels of the pyramid above the voxels, at most; no more than the grid has are made. Default 5, valid [1, 8].
+  /// Largest number of pyramid levels above the voxels, cut to what the grid allows. Default 5, valid [1, 8].
   tyndallRangeMacro(Levels, int, 1, 8);
   ///@}
 
   ///@{
-  /// Published scheme: weight of photons from a level to the next. Default 0: the mean weight of lit voxels; valid
-  /// [0, infinity).
+  /// Published scheme: step of the photon weight from one level to the next. Default 0: the mean weight of lit voxels;
+  /// valid [0, infinity).
   tyndallRangeMacro(WeightStep, double, 0.0, tyndall::AnyHigh);
   ///@}
 
@@ -100,16 +102,15 @@ public:
   ///@}
 
   ///@{
-  /// Whether the light is scaled such that that of all voxels together is what it was: NEVER, ALWAYS, or BY_SCHEME
-  /// (default).
+  /// Whether the light is scaled such that the sum over all voxels is conserved: NEVER, ALWAYS, or BY_SCHEME (default).
   tyndallRangeMacro(ConserveFluence, int, NEVER, BY_SCHEME);
   ///@}
 
   ///@{
-  /// What arrays of points are: 0 (default): each is in the middle of a voxel of its value, so that n points are n
-  /// voxels, the output has arrays of cells, and its bounds are half a spacing wider than the input's; 1: their mean is
-  /// that of the voxel between them, and n points are n - 1 voxels. Where an array of cells is read as well, voxels are
-  /// the cells and points are averaged; field data `settings_used` then say so.
+  /// How point arrays are read. 0 (default): each point is the centre of a voxel with its value: n points make n
+  /// voxels, the output has cell arrays, and its bounds are half a spacing wider than the input's. 1: points are
+  /// averaged to the voxels between them: n points make n - 1 voxels. If a cell array is read as well, the cells are
+  /// the voxels and points are averaged; field data `settings_used` then report it.
   enum PointDataKinds
   {
     VOXELS_AROUND_POINTS = 0,
@@ -121,9 +122,8 @@ public:
   tyndallDeviceMacro();
 
   ///@{
-  /// What came of the last update: `fluence_bias`; of the conservative scheme the root of the mean square of
-  /// `fluence_error` over that of `fluence` (0 of the others); seconds, the device's name, and what was not needed
-  /// here, one per line.
+  /// Results of the last update: `fluence_bias`; for the conservative scheme the root mean square of `fluence_error`
+  /// over that of `fluence` (0 for the others); seconds, the device's name, and what was not needed, one per line.
   vtkGetMacro(Bias, double);
   vtkGetMacro(MeanError, double);
   vtkGetMacro(Seconds, double);

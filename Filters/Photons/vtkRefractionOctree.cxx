@@ -53,7 +53,7 @@ tyndall::OctreeSettings SettingsOf(vtkRefractionOctree* filter)
   return settings;
 }
 
-/// What the octree is made of.
+/// Fields that determine the octree.
 struct Quantities
 {
   FloatField index, sigma_a, sigma_s;
@@ -81,7 +81,7 @@ tyndall::Octree Build(vtkRefractionOctree* filter, const tyndall::Domain& domain
     domain, read.medium, read.index, SettingsOf(filter), filter->GetDevice(), tyndall::MonitorOf(filter));
 }
 
-/// Levels of a rank's block as those of the voxels that its output is to have. All ranks call it.
+/// Extends the levels of a rank's block to all voxels of its output, ghost cells included. Collective.
 std::vector<std::uint8_t> SpreadToHeld(
   tyndall::Communicator& communicator, const tyndall::PieceBlocks& pieces, const std::vector<std::uint8_t>& levels)
 {
@@ -90,7 +90,7 @@ std::vector<std::uint8_t> SpreadToHeld(
   return std::vector<std::uint8_t>(values.begin(), values.end());
 }
 
-/// Makes the trees whose roots begin in this rank's block. Collective. @return the nodes of all ranks
+/// Makes the trees whose roots begin in this rank's block. Collective. @return the number of nodes of all ranks
 vtkIdType FillWithTrees(const tyndall::Domain& domain, const tyndall::Octree& octree, vtkHyperTreeGrid* nodes)
 {
   const auto largest = std::max_element(octree.levels.begin(), octree.levels.end());
@@ -112,7 +112,7 @@ void AddLevels(vtkImageData* output, std::vector<std::uint8_t>&& levels)
 {
   const auto array = tyndall::ArrayOf<vtkUnsignedCharArray>("octree_level", std::move(levels), 1);
   tyndall::LeaveRanges(array);
-  output->GetCellData()->AddArray(array); // not SetScalars, which takes away what was active before
+  output->GetCellData()->AddArray(array); // not SetScalars, which removes the previously active array
   output->GetCellData()->SetActiveScalars("octree_level");
 }
 }
@@ -174,8 +174,8 @@ void vtkRefractionOctree::Write(vtkImageData* input, vtkInformationVector* outpu
   this->LeftOut = tyndall::Lines(octree.leftOut);
 }
 
-/// Each rank the levels of its piece.
-/// @return false, on all ranks, where each is to have the whole
+/// Each rank computes the levels of its piece. Collective.
+/// @return false, on all ranks, if each rank is to work on the whole image
 bool vtkRefractionOctree::BuildPiece(vtkInformation* request, vtkMultiProcessController* ranks,
   vtkInformationVector** inputs, vtkInformationVector* outputs)
 {

@@ -21,30 +21,30 @@ class vtkMultiProcessController;
  *
  * Input: vtkImageData with cell array `ior` (refractive index, 1 component, above 0), or that chosen by
  * SetInputArrayToProcess 0; with IncludeExtinction also `sigma_a` and `sigma_s` (1 or 3 components, 1/length), or those
- * chosen as 1 and 2. Of point arrays see SetPointData.
+ * chosen as 1 and 2. For point arrays see SetPointData.
  *
  * Output 0: the input with cell array `octree_level` (uint8: 0 a single voxel, k a node of 2^k voxels per edge) and
  * field data `left_out` (what the scene did not need) and `device`.
- * Output 1: the same octree as vtkHyperTreeGrid, to look at. Its leaves are the nodes, with cell array `octree_level`.
+ * Output 1: the same octree as vtkHyperTreeGrid, for viewing. Its leaves are the nodes, with cell array `octree_level`.
  *
  * A node of level k > 0 is the cube of 2^k voxels per edge whose lowest voxel has indices, counted from the image's
- * lower corner, that are multiples of 2^k. It is kept whole where
+ * lower corner, that are multiples of 2^k. It is a node if
  *
  *     max(ior) - min(ior) <= Tolerance
  *     (max(sigma_t) - min(sigma_t)) diagonal of the node <= ExtinctionTolerance       with IncludeExtinction
  *
- * over its voxels (the latter in each channel of sigma_t = sigma_a + sigma_s), and no larger node is. A quantity that
- * is the same everywhere restricts nothing: where ior is constant the octree is one node and nothing runs on the
- * device.
+ * over its voxels (the latter in each channel of sigma_t = sigma_a + sigma_s), and no larger node contains it. A
+ * constant quantity imposes no restriction: if ior is constant the octree is one node and nothing runs on the device.
  *
  * A grid whose size is not a power of two is treated as if its last voxel were repeated: nodes at its upper faces may
- * stick out of it. In output 1 nodes wholly outside are masked.
+ * extend beyond it. In output 1 nodes wholly outside are masked.
  *
- * In a parallel pipeline every rank has its piece, and ranks tell each other of nodes that lie in several of them: the
- * levels are those of the whole. Of output 1 each has the trees that begin in its piece. Where pieces make up no whole
- * each rank has all of it, and hands on the piece of output 0 that it was asked for; output 1 is on the first one then.
+ * In a parallel pipeline every rank works on its piece, and ranks exchange data on nodes that span several pieces: the
+ * levels are those of a serial run. Each rank's output 1 has the trees that begin in its piece. If the pieces do not
+ * tile one grid, each rank works on the whole image and returns the requested piece of output 0; output 1 is then on
+ * the first rank.
  *
- * Cells that are hidden by `vtkGhostType` are empty.
+ * Cells that `vtkGhostType` marks as hidden are empty.
  *
  * @sa vtkMeshVoxelizer vtkPhotonMarcher
  * @par Thanks
@@ -64,21 +64,21 @@ public:
   ///@}
 
   ///@{
-  /// Whether extinction, too, has to be nearly equal within a node. Default off.
+  /// Whether extinction must also be nearly equal within a node. Default off.
   tyndallFlagMacro(IncludeExtinction);
   ///@}
 
   ///@{
-  /// With IncludeExtinction: by how much the optical thickness of a straight way through a node may be off where
-  /// extinction is taken as constant in it. Default 0.1, valid [0, infinity).
+  /// With IncludeExtinction: largest error of the optical thickness along a straight path through a node, if extinction
+  /// is taken as constant in it. Default 0.1, valid [0, infinity).
   tyndallRangeMacro(ExtinctionTolerance, double, 0.0, tyndall::AnyHigh);
   ///@}
 
   ///@{
-  /// What arrays of points are: 0 (default): each is in the middle of a voxel of its value, so that n points are n
-  /// voxels, the output has arrays of cells, and its bounds are half a spacing wider than the input's; 1: their mean is
-  /// that of the voxel between them, and n points are n - 1 voxels. Where an array of cells is read as well, voxels are
-  /// the cells and points are averaged; field data `settings_used` then say so.
+  /// How point arrays are read. 0 (default): each point is the centre of a voxel with its value: n points make n
+  /// voxels, the output has cell arrays, and its bounds are half a spacing wider than the input's. 1: points are
+  /// averaged to the voxels between them: n points make n - 1 voxels. If a cell array is read as well, the cells are
+  /// the voxels and points are averaged; field data `settings_used` then report it.
   enum PointDataKinds
   {
     VOXELS_AROUND_POINTS = 0,
@@ -90,9 +90,8 @@ public:
   tyndallDeviceMacro();
 
   ///@{
-  /// What came of the last update: the number of nodes, the seconds that their levels took, the name of the device
-  /// (empty:
-  /// none was needed), and what the scene did not need, one per line.
+  /// Results of the last update: number of nodes, seconds for computing their levels, the device's name (empty if none
+  /// was needed), and what the scene did not need, one per line.
   vtkGetMacro(NodeCount, vtkIdType);
   vtkGetMacro(Seconds, double);
   vtkGetCharFromStdStringMacro(DeviceName);

@@ -23,8 +23,7 @@ struct SolverScene
 
   const PieceBlocks& pieces;
   const Domain& domain;
-  bool
-    decomposed; ///< whether the domain is divided into pieces; on one rank the domain is serial
+  bool decomposed; ///< whether the domain is divided into pieces; on one rank the domain is serial
 
   vtkSmartPointer<vtkImageData> image;      ///< owns the arrays that `medium` points to; null if the subdomain is empty
   vtkSmartPointer<vtkImageData> uncollided; ///< owns UncollidedLight's arrays; null if that is not read

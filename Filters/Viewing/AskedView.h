@@ -9,13 +9,13 @@
 
 namespace tyndall
 {
-/// A picture that vtkLitVolumeMapper asks its ray caster for.
+/// Request of vtkLitVolumeMapper to its ray caster for one picture.
 struct AskedView
 {
-  Camera camera;                ///< instead of the filter's own
-  std::array<int, 2> size = {}; ///< pixels, instead of ImageSize
-  std::vector<float> ends;      ///< of rays, see MediumRayCaster::Render
-  double exposure = 0.0; ///< with which the picture will be shown, for BackgroundColor's radiance; 0: none is known
-  std::optional<GridBlock> block; ///< of which the medium is a part, see MediumRayCaster::Render
+  Camera camera;                  ///< replaces the filter's own camera
+  std::array<int, 2> size = {};   ///< pixels, replaces ImageSize
+  std::vector<float> ends;        ///< length at which each ray ends, see MediumRayCaster::Render
+  double exposure = 0.0;          ///< of the display, to convert BackgroundColor to radiance; 0: not known yet
+  std::optional<GridBlock> block; ///< the block of a larger grid that the medium is, see MediumRayCaster::Render
 };
 }

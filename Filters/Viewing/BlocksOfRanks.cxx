@@ -21,7 +21,7 @@ std::vector<double> SaidByAll(Communicator& communicator, const std::vector<doub
 
 namespace
 {
-/// Of the first rank that has any of the image.
+/// Axes of the first rank that has a part of the image. Collective.
 OwnAxes AxesOfFirst(Communicator& communicator, vtkImageData* image)
 {
   std::vector<double> words = OwnAxesOf(image).Words();
@@ -49,8 +49,8 @@ BlocksOfRanks::BlocksOfRanks(Communicator& communicator, vtkImageData* image)
   this->Tiled = pieces.MakeUpTheWhole();
   this->Parts = pieces.Partition();
   this->OfPieces = pieces.HeldByRanks();
-  bool isFirst = true;                                                        // of those that have a block
-  for (std::size_t rank = 0; rank < pieces.Partition().blocks.size(); ++rank) // of none where no rank has cells
+  bool isFirst = true;                                                        // first of the ranks with a block
+  for (std::size_t rank = 0; rank < pieces.Partition().blocks.size(); ++rank) // no ranks are listed if none has cells
   {
     GridBlock& block = this->Blocks[rank];
     const VoxelBox& own = pieces.Partition().blocks[rank];
@@ -87,7 +87,8 @@ std::vector<VoxelBox> BlocksOfRanks::HeldFor(const ViewSettings& settings, bool 
   return enough ? this->OfPieces : needed;
 }
 
-/// @param ranks  whose pixels these are
+/// Sorts blocks front to back.
+/// @param ranks  the rank of each element of `pixels`
 BlocksOfRanks::Seen BlocksOfRanks::InOrder(
   const std::vector<std::size_t>& ranks, std::vector<BlockPixels> pixels, const Camera& camera) const
 {

@@ -16,47 +16,50 @@ class vtkImageData;
 
 namespace tyndall
 {
-/// What every rank says, one after the other. All ranks have to call it, with as many numbers.
-/// @throws InvalidInput  on all ranks, where one says more than another
+/// Gathers numbers from all ranks, in the order of ranks (allgather). Collective, with the same count of numbers on all
+/// ranks.
+/// @throws InvalidInput on all ranks, if the counts differ
 std::vector<double> SaidByAll(Communicator& communicator, const std::vector<double>& own);
 
-/// An image that is spread over ranks, each of which has a block of its voxels, and may have some of its neighbours',
-/// flagged as duplicates. All ranks have to construct it and to call Exchange, also those that have no block.
+/// An image that is distributed over ranks. Each rank has a block of its voxels, and may have ghost cells, flagged as
+/// duplicates. Constructor and Exchange are collective, also for ranks without a block.
 class BlocksOfRanks
 {
 public:
-  /// What is seen of blocks.
+  /// Pixels of the blocks that are in view.
   struct Seen
   {
     std::vector<BlockPixels> frontToBack;
-    std::size_t own = 0; ///< which of them is this rank's, where it has one
+    std::size_t own = 0; ///< index of this rank's block, if it has one
   };
 
-  /// @param communicator  must stay
-  /// @param image  null or without cells: this rank has no block
+  /// @param communicator  must outlive this object
+  /// @param image  this rank's piece; null or without cells if it has no block
   BlocksOfRanks(Communicator& communicator, vtkImageData* image);
 
-  /// Whether the blocks are parts of one grid, and together each of its voxels once: the same on all ranks.
+  /// Whether the blocks tile one grid: each of its voxels is in exactly one block. The same on all ranks.
   bool MakeUpTheWhole() const { return this->Tiled; }
   bool HasOwn() const { return this->Blocks[this->Rank].OwnVoxels() > 0; }
   const GridBlock& Own() const { return this->Blocks[this->Rank]; }
-  const Grid& Whole() const { return this->Own().whole; } ///< where MakeUpTheWhole, in its axes
+  const Grid& Whole() const { return this->Own().whole; } ///< only if MakeUpTheWhole; in Axes
   const OwnAxes& Axes() const { return this->AxesOfAll; }
 
-  // Where MakeUpTheWhole, in voxels of the whole.
+  // Only if MakeUpTheWhole; in voxels of the whole grid.
   const BlockPartition& Partition() const { return this->Parts; }
-  /// What ranks have been given, by rank: their blocks are in these.
+  /// Voxels of each rank's input image, by rank: block and ghost cells.
   const std::vector<VoxelBox>& Given() const { return this->OfPieces; }
-  /// What ranks need to see their blocks (HeldBox): what they have been given, where that is enough for all.
+  /// Whether `held` equals Given.
   bool AreGiven(const std::vector<VoxelBox>& held) const;
+  /// Voxels that each rank needs to render its block (HeldBox), by rank; Given, if that is enough on all ranks.
   std::vector<VoxelBox> HeldFor(const ViewSettings& settings, bool moments, bool surface) const;
 
-  /// What other blocks show where this rank wants it: each rank sends to each only what that one wants of it.
-  /// @param own     this block's pixels; none where it is not seen, or there is none
-  /// @param wanted  pixels
-  /// @param failed  this rank has no picture, though it should
-  /// @param camera  in the scene
-  /// @return nothing, on all ranks, where one of them failed
+  /// Exchanges pixels: this rank receives the other blocks' pixels within `wanted`. Each rank sends to each only the
+  /// pixels that it wants. Collective.
+  /// @param own     this block's pixels; empty if it is out of view, or this rank has no block
+  /// @param wanted  the pixels that this rank needs
+  /// @param failed  this rank failed to render its block
+  /// @param camera  in the scene's coordinates
+  /// @return nothing, on all ranks, if one of them failed
   std::optional<Seen> Exchange(
     const BlockPixels& own, const PixelRect& wanted, bool failed, const Camera& camera) const;
 

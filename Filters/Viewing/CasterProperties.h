@@ -10,23 +10,23 @@
 
 class vtkMediumRayCaster;
 
-/// What the properties of a ray caster mean to the kernels.
+/// Conversion of a ray caster's properties to the kernels' settings.
 namespace tyndall
 {
-/// What is behind the medium in a picture that is shown with this exposure, radiance.
-/// @param exposure  0: it is not known yet
+/// Radiance behind the medium in a picture that is displayed with this exposure.
+/// @param exposure  0 if not known yet
 Rgb BackgroundOf(vtkMediumRayCaster* filter, double exposure);
 
 ViewSettings SettingsOf(vtkMediumRayCaster* filter, double exposure);
 
-/// The same view of a medium that lies in axes of its own, and the other way round.
+/// Transforms a camera from the scene's coordinates to a medium's own axes, and back.
 Camera InOwnAxes(const Camera& inScene, const OwnAxes& axes);
 Camera InScene(const Camera& camera, const OwnAxes& axes);
 
-/// In the axes in which the filter works.
-/// @param grid  of the whole medium, which is looked at where the filter has no camera of its own
+/// The filter's camera, in the axes in which the filter works.
+/// @param grid  the whole medium's grid, which the camera frames if none is set
 Camera CameraOf(vtkMediumRayCaster* filter, const Grid& grid);
 
-/// What has to be the same on all ranks that make a picture together.
+/// The properties that must be equal on all ranks that render a picture together.
 std::vector<double> PropertiesAsNumbers(vtkMediumRayCaster* filter);
 }

@@ -18,41 +18,41 @@ class vtkMediumRayCaster;
 
 namespace tyndall
 {
-/// Medium, light and illumination as they are on the device, ready for pictures.
+/// Medium, light and illumination on the device, ready for rendering.
 struct CasterScene
 {
   InputsKey key;
   vtkTimeStamp made;
   Grid grid;
   bool lightsAlone = false;        ///< there is no fluence, so shadow rays are needed
-  std::vector<std::string> doubts; ///< not said yet
-  std::vector<VoxelBox> held;      ///< by rank, the voxels of casters of blocks
+  std::vector<std::string> doubts; ///< warnings not issued yet
+  std::vector<VoxelBox> held;      ///< by rank, the voxels that the rank's ray caster holds
   std::unique_ptr<MediumRayCaster> caster;
 };
 
-/// @param ior      refractive index of each voxel; of a block of those that it says
-/// @param ofScene  where the medium is a block whose pictures are those of the whole: that block
+/// @param ior  refractive index of each voxel; of a block, in the voxels that `ofScene` says
+/// @param ofScene  the block of the scene that the medium is, rendered as part of the whole; null if it is no block
 std::unique_ptr<CasterScene> MakeScene(const ViewedInputs& viewed, const Field& ior, const Illumination& illumination,
   const InputsKey& key, ViewSettings settings, const BlockOfScene* ofScene);
 
-/// What ranks with a piece of the medium each know when they make their scenes.
+/// What each rank knows when ranks with one piece of the medium each prepare their scenes.
 struct RankPieces
 {
   vtkMediumRayCaster* filter;
   Communicator& communicator;
   const BlocksOfRanks& blocks;
-  vtkImageData* image; ///< the piece
+  vtkImageData* image; ///< this rank's piece
   const Illumination& illumination;
   ViewSettings settings;
 
   bool HasOwn() const { return this->blocks.HasOwn(); }
 };
 
-/// What this rank's block is seen by: its voxels and layers of its neighbours', from them, where it has not been given
-/// these. All ranks call it.
-/// @param held  becomes, by rank, the voxels of the casters
-/// @return null where it has no block
-/// @throws  on all ranks what one of them throws
+/// Prepares the scene of this rank's block: its voxels and a halo, which is fetched from the neighbours if the input
+/// has none. Collective.
+/// @param held  set to the voxels that each rank's ray caster holds, by rank
+/// @return null if this rank has no block
+/// @throws on all ranks, if on one
 std::unique_ptr<CasterScene> MakeSceneOfBlock(
   const RankPieces& pieces, const InputsKey& key, std::vector<VoxelBox>& held);
 }
