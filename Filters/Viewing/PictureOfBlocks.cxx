@@ -23,7 +23,7 @@ std::string JoinedLines(const std::vector<std::string>& lines)
   return joined;
 }
 
-/// The other way round.
+/// Splits a text into its lines.
 template <class Text>
 std::vector<std::string> LinesOf(const Text& text)
 {
@@ -40,7 +40,7 @@ std::vector<std::string> LinesOf(const Text& text)
 
 bool CanCast(Communicator& communicator, const BlocksOfRanks& blocks, const BlockToCast& own)
 {
-  constexpr std::size_t flags = 2; // able, has a block
+  constexpr std::size_t flags = 2; // whether it is able, whether it has a block
   std::vector<double> words = { own.able ? 1.0 : 0.0, blocks.HasOwn() ? 1.0 : 0.0 };
   words.insert(words.end(), own.ofFilter.begin(), own.ofFilter.end());
   words.push_back(own.ofArrays);
@@ -48,7 +48,7 @@ bool CanCast(Communicator& communicator, const BlocksOfRanks& blocks, const Bloc
   const auto count = static_cast<std::ptrdiff_t>(words.size());
   const auto ofBlock = static_cast<std::ptrdiff_t>(flags + own.ofFilter.size());
   const std::vector<double> said = SaidByAll(communicator, words);
-  const double* first = nullptr; // of those that have a block
+  const double* first = nullptr; // first rank with a block
   bool can = blocks.MakeUpTheWhole();
   for (const double* rank = said.data(); rank < said.data() + said.size(); rank += count)
   {
@@ -81,7 +81,8 @@ BlockPixels PictureOfBlocks::CastOwn(double& farDepth) const
   return own;
 }
 
-/// What other blocks before this one change of it, which nobody knew when it was cast.
+/// Casts again those rays whose start depends on the blocks in front of this one, which was not known in the first
+/// pass.
 void PictureOfBlocks::LookAgain(BlockPixels& own) const
 {
   MediumRayCaster* const caster = this->Seen.caster;
@@ -138,7 +139,7 @@ PixelRect RectOf(const std::array<int, 6>& extent)
 PixelRect OwnPixels(const Communicator& communicator, const std::array<int, 6>& all)
 {
   std::array<int, 6> own = PartOfExtent(all, communicator.Rank(), communicator.Ranks());
-  for (int last : { 1, 3 }) // pieces have their borders in common
+  for (int last : { 1, 3 }) // pieces share their border pixels
   {
     own[last] -= own[last] < all[last] ? 1 : 0;
   }

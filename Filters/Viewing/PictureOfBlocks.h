@@ -17,46 +17,46 @@ class vtkAlgorithm;
 
 namespace tyndall
 {
-/// What a rank says of its block before ranks cast theirs one by one.
+/// What ranks compare before each casts rays through its block.
 struct BlockToCast
 {
-  bool able = false;                            ///< it is known how; also where there is no block
+  bool able = false;                            ///< whether this rank can cast its block; true if it has no block
   std::vector<double> ofFilter;                 ///< its properties
-  double ofArrays = 0.0;                        ///< a number for which arrays there are, and what of field data is used
+  double ofArrays = 0.0;                        ///< hash of which arrays there are, and of the field data used
   MediumRayCaster::SharedNumbers ofBlocks = {}; ///< MediumRayCaster::SharedByBlocks
 };
 
-/// Whether all ranks are able to, and say the same: the same on all ranks, which all have to ask.
+/// Whether all ranks are able to cast, with equal properties and arrays. Collective, the same on all ranks.
 bool CanCast(Communicator& communicator, const BlocksOfRanks& blocks, const BlockToCast& own);
 
-/// Ranks that see a medium together.
+/// Ranks that render a medium together.
 struct SeeingRanks
 {
   Communicator& communicator;
-  vtkAlgorithm* filter; ///< says how far it is
+  vtkAlgorithm* filter; ///< reports progress
   const BlocksOfRanks& blocks;
   PictureInBlocks& ofBlock;
-  MediumRayCaster* caster; ///< of this rank's block; null: it has none
+  MediumRayCaster* caster; ///< of this rank's block; null if it has none
 };
 
-/// A picture of a medium that is spread over ranks, of which each casts its block and gets a part: that of one rank
-/// with the whole, to rounding (numerics.md, section 14.9). All ranks have to construct it and to call its functions in
-/// the same order; what fails on one throws on all, and so does an abort.
+/// A picture of a medium that is distributed over ranks: each rank casts rays through its block and receives a part of
+/// the picture, equal to a serial one to rounding (numerics.md, section 14.9). Constructor and functions are
+/// collective; an error or an abort on one rank throws on all.
 class PictureOfBlocks
 {
 public:
-  /// @param seen    must stay
-  /// @param part    pixels that this rank gets
-  /// @param counted those of them that no other rank counts (Exposure)
+  /// @param seen    must outlive this object
+  /// @param part    pixels that this rank receives
+  /// @param counted the part's pixels that this rank alone counts for Exposure
   PictureOfBlocks(const SeeingRanks& seen, const Camera& camera, const std::array<int, 2>& size, const PixelRect& part,
     const PixelRect& counted);
 
-  /// @return the part
+  /// @return this rank's part of the picture
   Picture Take() const;
 
   /// AutomaticExposure of the whole picture.
-  /// @param part        as Take made it
-  /// @param background  whether it is seen behind the medium
+  /// @param part        as Take returned it
+  /// @param background  whether the background is visible behind the medium
   double Exposure(const Picture& part, bool background) const;
 
 private:
@@ -72,13 +72,13 @@ private:
 /// The pixels of a picture's extent.
 PixelRect RectOf(const std::array<int, 6>& extent);
 
-/// Pixels that are this rank's alone, of a picture that is divided among all.
+/// This rank's share of the pixels of a picture; the ranks' shares are disjoint.
 PixelRect OwnPixels(const Communicator& communicator, const std::array<int, 6>& all);
 
-/// The least rectangle around both.
+/// The smallest rectangle that contains both.
 PixelRect Around(const PixelRect& a, const PixelRect& b);
 
-/// What is on all lists that say anything, in the order of the first: ranks without a block say nothing. All ranks call
-/// it.
+/// Entries that are on the lists of all ranks with `says`, in the order of the first list. Ranks without a block have
+/// no list. Collective.
 std::vector<std::string> OnAllLists(Communicator& communicator, const std::vector<std::string>& own, bool says);
 }

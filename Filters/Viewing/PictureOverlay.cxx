@@ -92,7 +92,7 @@ void PictureOverlay::Draw(
   {
     state->vtkglDisable(GlDepthTest);
   }
-  else // by sample, of which an edge covers some in a pixel
+  else // tested per sample: an edge covers some samples of a pixel
   {
     state->vtkglEnable(GlDepthTest);
     state->vtkglDepthFunc(over == Over::Background ? GlLessOrEqual : GlGreater);
@@ -105,7 +105,7 @@ void PictureOverlay::Draw(
   quad.Program->SetUniformi("picture", texture->GetTextureUnit());
   quad.Render();
   texture->Deactivate();
-  state->vtkglDepthFunc(GlLessOrEqual); // VTK's default, which it expects after us
+  state->vtkglDepthFunc(GlLessOrEqual); // restores VTK's default
 }
 
 void PictureOverlay::Release(vtkWindow* window)

@@ -10,33 +10,33 @@ class vtkWindow;
 
 namespace tyndall
 {
-/// Columns and rows of what a renderer is drawing, pixels.
+/// Size of a renderer's viewport, columns and rows of pixels.
 std::array<int, 2> DrawnSize(vtkRenderer* renderer);
 
-/// Depths of what it has drawn so far, in [0, 1], row by row from below; 1 where there is nothing.
+/// The renderer's depth buffer, in [0, 1], row by row from below; 1 where nothing has been drawn.
 std::vector<float> DrawnDepths(vtkRenderer* renderer);
 
-/// Lays pictures over what a renderer has drawn.
+/// Blends pictures over what a renderer has drawn.
 class PictureOverlay
 {
 public:
-  /// What of the screen, sample by sample where a pixel has several.
+  /// Which part of the viewport to draw over, tested per sample if multisampling is on.
   enum class Over
   {
     All,
-    Background, ///< where nothing is drawn
-    Objects,    ///< where something is
+    Background, ///< where nothing has been drawn
+    Objects,    ///< where something has been drawn
   };
 
   PictureOverlay();
   ~PictureOverlay();
 
-  /// @param pixels  red, green, blue, which are multiplied by alpha already, and alpha, row by row from below
-  /// @param size    columns and rows; stretched to all that the renderer draws
+  /// @param pixels  red, green, blue, premultiplied by alpha, and alpha, row by row from below
+  /// @param size    columns and rows of the picture, which is stretched to the renderer's viewport
   void Draw(vtkRenderer* renderer, const std::vector<std::uint8_t>& pixels, const std::array<int, 2>& size,
     Over over = Over::All);
 
-  /// Before the window goes, or another one is drawn in.
+  /// Frees graphics resources: to be called before the window is deleted or another one is drawn in.
   void Release(vtkWindow* window);
 
 private:

@@ -10,9 +10,9 @@ class vtkImageData;
 
 namespace tyndall
 {
-/// Makes an image of a picture: point data `color` (red, green, blue, alpha), `radiance`, `alpha`, `depth`.
+/// Writes a picture as an image: point data `color` (red, green, blue, alpha), `radiance`, `alpha`, `depth`.
 /// @param first  column and row of the picture's first pixel
-/// @throws InvalidInput naming a pixel that is not finite
+/// @throws InvalidInput if a pixel is not finite; the message names it
 void WritePicture(
   Picture&& picture, const std::array<int, 2>& first, std::vector<std::uint8_t>&& color, vtkImageData* output);
 }

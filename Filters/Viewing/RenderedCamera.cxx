@@ -16,8 +16,8 @@ namespace tyndall
 {
 namespace
 {
-constexpr double AlikeScales = 1e-6;       ///< relative
-constexpr double SmallestDistance = 1e-15; ///< from camera to focal point, of the camera's from the origin
+constexpr double AlikeScales = 1e-6;       ///< relative tolerance for uniform scaling
+constexpr double SmallestDistance = 1e-15; ///< of camera and focal point, relative to the camera's from the origin
 
 using Vec = std::array<double, 3>;
 
@@ -26,7 +26,8 @@ Vec Column(vtkMatrix4x4* matrix, int column)
   return { matrix->GetElement(0, column), matrix->GetElement(1, column), matrix->GetElement(2, column) };
 }
 
-/// @throws InvalidInput where lengths or angles change with direction, or left becomes right
+/// Scale factor of a transformation.
+/// @throws InvalidInput if it does not scale uniformly, shears or mirrors
 double ScaleOf(vtkMatrix4x4* matrix)
 {
   const Vec columns[3] = { Column(matrix, 0), Column(matrix, 1), Column(matrix, 2) };
@@ -51,7 +52,7 @@ double ScaleOf(vtkMatrix4x4* matrix)
 
 namespace
 {
-/// @throws InvalidInput where the camera does not say where it stands and looks
+/// @throws InvalidInput if position, focal point or view up are not finite, or position and focal point coincide
 void CheckCamera(vtkCamera* camera)
 {
   Vec position, focalPoint, viewUp;
@@ -63,7 +64,7 @@ void CheckCamera(vtkCamera* camera)
     Require(std::isfinite(place[0]) && std::isfinite(place[1]) && std::isfinite(place[2]),
       "The camera's position, focal point or view up is not finite.");
   }
-  // VTK puts the focal point a little away, by less than numbers of this size can tell.
+  // VTK separates coinciding points by a distance that is lost in rounding for numbers of this size.
   const double distance = std::sqrt(vtkMath::Distance2BetweenPoints(position.data(), focalPoint.data()));
   Require(distance > SmallestDistance * vtkMath::Norm(position.data()) && distance > 1e-19,
     "The camera's position and focal point are the same; move one, so that it is clear where it looks.");
@@ -80,11 +81,11 @@ RenderedCamera::RenderedCamera(vtkRenderer* renderer, vtkMatrix4x4* place)
   vtkNew<vtkMatrix4x4> fromEye;
   vtkMatrix4x4::Invert(toEye, fromEye);
   vtkMatrix4x4* const projection =
-    camera->GetProjectionTransformMatrix(renderer->GetTiledAspectRatio(), -1.0, 1.0); // of what OpenGL is told
+    camera->GetProjectionTransformMatrix(renderer->GetTiledAspectRatio(), -1.0, 1.0); // the matrix that OpenGL gets
   const auto element = [projection](int row, int column) { return projection->GetElement(row, column); };
   this->Depth = { element(2, 2), element(2, 3), element(3, 2), element(3, 3) };
 
-  // Where rays begin and where they go up to, in the eye's axes; fromEye's columns are as long as the world's unit.
+  // Origin and direction of the central ray, in eye coordinates; fromEye's columns have the length of the world's unit.
   Vec origin = { 0.0, 0.0, 0.0 }, forward = { 0.0, 0.0, -1.0 };
   this->Seen.parallelProjection = camera->GetParallelProjection() != 0;
   this->Seen.aspect = element(1, 1) / element(0, 0);
@@ -92,7 +93,8 @@ RenderedCamera::RenderedCamera(vtkRenderer* renderer, vtkMatrix4x4* place)
   {
     this->Seen.parallelScale = 1.0 / (element(1, 1) * this->Scale);
     this->Seen.shift = { -element(0, 3), -element(1, 3) };
-    // For one of two eyes VTK shears the picture: rays are oblique to it. Here its plane is turned along, by a degree.
+    // In stereo VTK shears the picture of each eye, so that rays are oblique to its plane. Here the plane is rotated
+    // with the rays, by about a degree.
     forward[0] = element(0, 2) / element(0, 0);
     forward[1] = element(1, 2) / element(1, 1);
   }
@@ -100,7 +102,7 @@ RenderedCamera::RenderedCamera(vtkRenderer* renderer, vtkMatrix4x4* place)
   {
     this->Seen.viewAngle = std::atan(1.0 / element(1, 1)) * 360.0 / Pi;
     this->Seen.shift = { element(0, 2), element(1, 2) };
-    // Each of two eyes stands beside the camera, and sees what is as far off as the focal point in the same place.
+    // In stereo each eye is beside the camera; both see points at the focal distance in the same place.
     origin[0] = -element(0, 3) / element(0, 0);
     origin[1] = -element(1, 3) / element(1, 1);
   }

@@ -10,28 +10,29 @@ class vtkRenderer;
 
 namespace tyndall
 {
-constexpr float Endless = 1e30f; ///< of a ray that no surface ends, see MediumRayCaster::Render
+constexpr float Endless = 1e30f; ///< end of a ray that meets no surface, see MediumRayCaster::Render
 
-/// A renderer's camera, its part for the tile or the eye that is being drawn, in the coordinates of what it looks at.
+/// A renderer's camera, for the tile or eye that is being drawn, in the coordinates of the volume that it looks at.
 class RenderedCamera
 {
 public:
-  /// @param place  of what it looks at in the world: turned, moved and scaled alike along all axes
-  /// @throws InvalidInput for another place
+  /// @param place  transformation from the volume's coordinates to the world's: rotation, translation and uniform
+  ///   scaling
+  /// @throws InvalidInput for any other transformation
   RenderedCamera(vtkRenderer* renderer, vtkMatrix4x4* place);
 
   const Camera& AsSeen() const { return this->Seen; }
 
-  /// Where opaque surfaces end rays (MediumRayCaster::Render); empty where there is no surface.
-  /// @param depths    of the renderer's depth buffer, in [0, 1], row by row from below
-  /// @param buffer    its columns and rows
-  /// @param size      of the picture: each ray takes the depth at its middle
+  /// Lengths at which opaque surfaces end the rays (MediumRayCaster::Render); empty if there is no surface.
+  /// @param depths    the renderer's depth buffer, in [0, 1], row by row from below
+  /// @param buffer    columns and rows of the depth buffer
+  /// @param size      columns and rows of the picture; each ray takes the depth at its pixel's centre
   std::vector<float> EndsOf(
     const std::vector<float>& depths, const std::array<int, 2>& buffer, const std::array<int, 2>& size) const;
 
 private:
   Camera Seen;
-  std::array<double, 4> Depth = {}; ///< of the projection: rows 2 and 3, columns 2 and 3
-  double Scale = 1.0;               ///< of the place: world lengths by its own
+  std::array<double, 4> Depth = {}; ///< elements of the projection matrix: rows 2 and 3, columns 2 and 3
+  double Scale = 1.0;               ///< scale factor of the transformation: world length over the volume's
 };
 }

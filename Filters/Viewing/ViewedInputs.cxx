@@ -27,9 +27,8 @@ namespace tyndall
 {
 namespace
 {
-/// What the solver said of the light at the box's faces; nothing where it did not, or what it said is not of these
-/// voxels.
-/// @param parts  components of a channel
+/// Reads the solver's field data on light at the box's faces; empty if there are none, or they do not fit these voxels.
+/// @param parts  components per channel
 FaceValues ReadFaces(vtkImageData* image, const char* name, std::size_t tuples, int parts)
 {
   FaceValues faces;
@@ -48,7 +47,7 @@ FaceValues ReadFaces(vtkImageData* image, const char* name, std::size_t tuples, 
   return faces;
 }
 
-/// Fields with values by voxel, by a number that is the same on all ranks.
+/// All fields with a value per voxel, in an order that is the same on all ranks.
 std::vector<FloatField*> FieldsOf(ViewedInputs& inputs)
 {
   return { &inputs.medium.sigma_a, &inputs.medium.sigma_s, &inputs.medium.emission, &inputs.medium.g, &inputs.fluence,
@@ -82,7 +81,7 @@ ViewedInputs ReadViewed(vtkMediumRayCaster* filter, vtkImageData* image, const G
   inputs.direct = read(ViewedFluenceDirect, { 1, 3 });
   inputs.ior = read(ViewedIndex, { 1 });
   inputs.meanDirection = read(ViewedMeanDirection, { 3 });
-  // The rest belongs to the array that the solver wrote.
+  // Moments and light at faces belong to the array `fluence` that the solver wrote.
   if (inputs.fluence.IsThere() &&
     ChosenArray(filter, ViewedFluence, image, ViewedNames[ViewedFluence]) == image->GetCellData()->GetArray("fluence"))
   {
@@ -118,7 +117,7 @@ double ArraysInANumber(vtkMediumRayCaster* filter, vtkImageData* image)
     }
   }
   const std::uint64_t number = ContentKey(facts) ^ std::hash<std::string>()(words);
-  return static_cast<double>(number >> 11); // a double's digits
+  return static_cast<double>(number >> 11); // the 53 bits that a double represents exactly
 }
 
 void KeepFacesOf(const GridBlock& block, const std::array<int, 3>& size, ViewedInputs& inputs)
@@ -174,7 +173,7 @@ ViewedInputs SpreadTo(const std::vector<VoxelBox>& wanted, const VoxelBox& given
       medium.medium.sigma_a = medium.sigma_a;
       medium.medium.sigma_s = medium.sigma_s;
       medium.medium.emission = medium.emission;
-      vtkNew<vtkImageData> asLarge; // as these arrays
+      vtkNew<vtkImageData> asLarge; // an image of these arrays' size
       asLarge->SetDimensions(box.size[0] + 1, box.size[1] + 1, box.size[2] + 1);
       asLarge->SetFieldData(image->GetFieldData());
       medium.medium.phase = ReadPhase(asLarge, medium.g, medium.sigma_s);

@@ -14,7 +14,7 @@ class vtkMediumRayCaster;
 
 namespace tyndall
 {
-/// Arrays that a ray caster reads beside those of MediumArray, by the numbers of SetInputArrayToProcess.
+/// Indices, for SetInputArrayToProcess, of the arrays that a ray caster reads beside those of MediumArray.
 enum ViewedArrays
 {
   ViewedFluence = 3,
@@ -24,11 +24,11 @@ enum ViewedArrays
   ViewedArrayCount = 7
 };
 
-/// Their names where none was chosen.
+/// Default names of the arrays, by index.
 constexpr const char* ViewedNames[ViewedArrayCount] = { "sigma_a", "sigma_s", "emission", "fluence", "fluence_direct",
   "ior", "mean_direction" };
 
-/// Values of the faces of the whole image, cell by cell (BoxFaces.h); none where they are not known.
+/// Values on the boundary faces of the whole image, cell by cell (BoxFaces.h); empty if not known.
 struct FaceValues
 {
   std::vector<float> values;
@@ -37,7 +37,7 @@ struct FaceValues
   Field Seen() const { return { this->values.empty() ? nullptr : this->values.data(), this->components }; }
 };
 
-/// A medium and its light as a picture shows them: what its arrays say, and the memory they are in.
+/// A medium and its light as input of the ray caster, with the arrays that own the values.
 struct ViewedInputs
 {
   MediumInput medium;
@@ -48,26 +48,27 @@ struct ViewedInputs
   SolvedLight Light() const;
 };
 
-/// @param whole  the grid of which the image is a part; light at faces is known of all of that
-/// @throws InvalidInput  as ReadChosenCells and Check
+/// @param whole  the grid of which the image is a part; field data on light at faces covers all of it
+/// @throws InvalidInput as ReadChosenCells and Check
 ViewedInputs ReadViewed(vtkMediumRayCaster* filter, vtkImageData* image, const Grid& whole);
 
-/// A number for which arrays an image has that pictures read, and for what of its field data is used: what the pieces
-/// of ranks have to have alike.
+/// Hash of which of the arrays read an image has, and of the field data used: these must be the same in all ranks'
+/// pieces.
 double ArraysInANumber(vtkMediumRayCaster* filter, vtkImageData* image);
 
-/// What light at the faces of the whole belongs to those of a block's arrays.
+/// Crops the values on the faces of the whole grid to the faces of a block's arrays.
+/// @param size  voxels of the block's arrays
 void KeepFacesOf(const GridBlock& block, const std::array<int, 3>& size, ViewedInputs& inputs);
 
-/// The inputs of the voxels of a box, of all ranks, each of which knows those of its block. All ranks call it.
-/// @param wanted  by rank, in voxels of the whole; of no voxels where a rank has no block
-/// @param given   what the arrays of `inputs` are of; with the block in it
-/// @param image   whose field data say how the medium scatters
-/// @param inputs  of a rank without a block: nothing
+/// Gathers the inputs of the voxels in this rank's wanted box from the ranks' blocks. Collective.
+/// @param wanted  boxes by rank, in voxels of the whole; empty if a rank has no block
+/// @param given   box of the arrays of `inputs`, which contains this rank's block
+/// @param image   its field data describe the phase function
+/// @param inputs  empty on a rank without a block
 ViewedInputs SpreadTo(const std::vector<VoxelBox>& wanted, const VoxelBox& given, Communicator& communicator,
   const BlockPartition& partition, vtkImageData* image, const ViewedInputs& inputs);
 
-/// One array of the same, as numbers.
+/// As above, for one array.
 std::vector<float> SpreadTo(const std::vector<VoxelBox>& wanted, const VoxelBox& given, Communicator& communicator,
   const BlockPartition& partition, const Field& field);
 }

@@ -35,17 +35,17 @@
 
 namespace
 {
-constexpr double StillTime = 1.0;         ///< seconds that a renderer has for a frame where nothing moves
-constexpr double CoarsestRays = 8.0;      ///< pixels from ray to ray
-constexpr double StepsOfCoarseness = 4.0; ///< in a pixel, so that a picture's size does not change with every frame
-constexpr double FarAway = 1e4;           ///< diagonals of a piece
+constexpr double StillTime = 1.0;         ///< allowed seconds per frame from which on the view counts as still
+constexpr double CoarsestRays = 8.0;      ///< largest distance between rays, pixels
+constexpr double StepsOfCoarseness = 4.0; ///< per pixel of ray distance, so the size rarely changes
+constexpr double FarAway = 1e4;           ///< in diagonals of a piece
 constexpr int ExposedSize[2] = { 64, 48 };
 
-/// The corners of a tetrahedron: from these sides the scene is looked at for its exposure.
+/// Viewing directions for the automatic exposure: the corners of a tetrahedron.
 constexpr double ExposedFrom[4][3] = { { 1, 1, 1 }, { -1, -1, 1 }, { -1, 1, -1 }, { 1, -1, -1 } };
 
-/// What lies over the scene: radiance as the screen shows it, and how much of the scene it hides. Where a background is
-/// seen that is all.
+/// Pixels to blend over the scene: tone-mapped radiance, and alpha. Where the background is visible the pixel is
+/// opaque.
 std::vector<std::uint8_t> PixelsOf(
   const tyndall::Picture& picture, const std::vector<float>& ends, bool background, const tyndall::ToneMapping& tones)
 {
@@ -58,9 +58,9 @@ std::vector<std::uint8_t> PixelsOf(
   return pixels;
 }
 
-/// The same where an object is drawn in a pixel whose ray went by it, as by a line that is thinner than a pixel: it is
-/// seen through the medium, and hides the background.
-/// @param pixels  where a background is seen
+/// Pixels to blend over objects that cover part of a pixel while its ray missed them, as a line thinner than a pixel:
+/// the object is seen through the medium, and hides the background.
+/// @param pixels  from PixelsOf, with background
 std::vector<std::uint8_t> PixelsBeforeObjects(
   std::vector<std::uint8_t> pixels, const tyndall::Picture& picture, const std::vector<float>& ends)
 {
@@ -72,7 +72,7 @@ std::vector<std::uint8_t> PixelsBeforeObjects(
   return pixels;
 }
 
-/// The same of a piece alone, which is laid over others or under them: see SetPiece.
+/// Pixels of a piece that is rendered alone and composited with other pieces: see SetPiece.
 std::vector<std::uint8_t> PixelsOfPiece(
   tyndall::Picture picture, const std::vector<float>& ends, bool background, const tyndall::ToneMapping& tones)
 {
@@ -101,7 +101,7 @@ std::vector<double> Words(const tyndall::Camera& camera)
   return words;
 }
 
-/// Where the renderer looks from; none where the volume is stretched, which drawing says.
+/// The renderer's camera; none if the volume is not scaled uniformly, which Render reports as an error.
 std::optional<tyndall::Camera> CameraOf(vtkRenderer* renderer, vtkVolume* volume)
 {
   try
@@ -114,9 +114,10 @@ std::optional<tyndall::Camera> CameraOf(vtkRenderer* renderer, vtkVolume* volume
   }
 }
 
-/// The largest distance of rays that any rank asks for.
-/// @param alike  what has to be the same on all ranks
-/// @param apart  0: this rank cannot
+/// The largest distance between rays that any rank asks for, pixels. Collective.
+/// @param alike  numbers that must be the same on all ranks
+/// @param apart  this rank's distance; 0 if it cannot render
+/// @return nothing, on all ranks, if ranks differ or one cannot render
 std::optional<double> AgreedRaysApart(tyndall::Communicator& others, std::vector<double> alike, double apart)
 {
   alike.push_back(apart);
@@ -134,7 +135,7 @@ std::optional<double> AgreedRaysApart(tyndall::Communicator& others, std::vector
   return most;
 }
 
-/// One of the small pictures that the exposure is found from.
+/// Request for one of the small pictures for the automatic exposure.
 tyndall::AskedView ExposedView(const tyndall::Grid& grid, const tyndall::OwnAxes& axes, const double from[3])
 {
   tyndall::AskedView view;
@@ -145,16 +146,16 @@ tyndall::AskedView ExposedView(const tyndall::Grid& grid, const tyndall::OwnAxes
 }
 }
 
-/// One of several pieces, and what was seen of them for the next frame.
+/// State of a mapper of one of several pieces, and the pixels that SeePieces prepared for the next frame.
 struct vtkLitVolumeMapper::Pieces
 {
   vtkMultiProcessController* ranks = nullptr;
   vtkNew<vtkTrivialProducer> surrounded;
-  std::optional<tyndall::AskedView> view; ///< none: each shows its piece alone
+  std::optional<tyndall::AskedView> view; ///< none if each rank renders its piece alone
   std::array<int, 2> drawn = {};          ///< the size of the frame
-  bool together = false;                  ///< the last frame was of all pieces
+  bool together = false;                  ///< whether the last frame showed all pieces together
   tyndall::ShownBlock shown;
-  double seconds = 0.0; ///< that took
+  double seconds = 0.0; ///< time that SeePieces took
 };
 
 vtkStandardNewMacro(vtkLitVolumeMapper);
@@ -204,7 +205,7 @@ bool vtkLitVolumeMapper::IsPiece() const
   return this->Spread && this->Spread->ranks;
 }
 
-/// @return whether there is a medium
+/// @return whether the medium has cells
 bool vtkLitVolumeMapper::UpdateInputs(vtkAlgorithmOutput* asked)
 {
   using Port = vtkMediumRayCaster::InputPorts;
@@ -217,10 +218,10 @@ bool vtkLitVolumeMapper::UpdateInputs(vtkAlgorithmOutput* asked)
     }
   }
   auto* const medium = vtkImageData::SafeDownCast(this->RayCaster->GetInputDataObject(Port::MEDIUM, 0));
-  return medium && medium->GetNumberOfCells() > 0; // other ranks may have all of it
+  return medium && medium->GetNumberOfCells() > 0; // empty if other ranks have all of the medium
 }
 
-/// @return this rank's piece with its neighbours' cells, where it has one
+/// @return this rank's piece with ghost cells; null if it has none
 vtkImageData* vtkLitVolumeMapper::UpdateSurrounded()
 {
   vtkTrivialProducer* const surrounded = this->Spread->surrounded;
@@ -252,14 +253,14 @@ double vtkLitVolumeMapper::EstimateExposure()
       this->AddSeen(picture, radiance, alpha);
     }
   }
-  catch (const std::exception&) // an image that is no medium: the ray caster says so when it is drawn
+  catch (const std::exception&) // the image is no medium: Render will report the error
   {
     return 0.0;
   }
   return tyndall::AutomaticExposure(radiance, alpha);
 }
 
-/// One more picture that the exposure is found from.
+/// Appends a picture to the samples for the automatic exposure.
 void vtkLitVolumeMapper::AddSeen(
   const tyndall::Picture& picture, std::vector<float>& radiance, std::vector<float>& alpha)
 {
@@ -270,8 +271,8 @@ void vtkLitVolumeMapper::AddSeen(
   }
 }
 
-/// The same for all pieces together, from pictures of the whole. On all ranks.
-/// @return 0 where they cannot be seen together
+/// Exposure from pictures of all pieces together. Collective.
+/// @return 0 if the pieces cannot be rendered together
 double vtkLitVolumeMapper::ExposureOfPieces(tyndall::Communicator& others)
 {
   const tyndall::BlocksOfRanks blocks(others, this->UpdateSurrounded());
@@ -304,14 +305,15 @@ void vtkLitVolumeMapper::SetPiece(vtkMultiProcessController* ranks, vtkImageData
   this->Spread->surrounded->SetOutput(surrounded);
 }
 
-/// On any rank: how light is seen has changed. On all ranks.
+/// Whether on any rank properties of rendering have changed since the exposure was chosen. Collective.
 bool vtkLitVolumeMapper::IsExposureOld(tyndall::Communicator& others)
 {
   const bool old = this->RayCaster->GetExposure() == 0.0 && this->RayCaster->GetMTime() > this->ExposureTime;
   return tyndall::OnAnyRank(others, old);
 }
 
-/// What goes wrong, as a rank that is gone, is said on this rank: the frame then shows each piece alone.
+/// Calls `act` with the ranks' communicator. Errors, for example a lost rank, are reported on this rank: each piece is
+/// then rendered alone.
 void vtkLitVolumeMapper::WithOthers(const std::function<void(tyndall::Communicator&)>& act)
 {
   try
@@ -332,7 +334,7 @@ void vtkLitVolumeMapper::AgreeOnExposure()
 void vtkLitVolumeMapper::AgreeOnExposure(tyndall::Communicator& others)
 {
   this->CommonExposure = this->ExposureOfPieces(others);
-  if (this->CommonExposure == 0.0) // the logarithmic mean of what the ranks would choose for their pieces
+  if (this->CommonExposure == 0.0) // geometric mean of the exposures of the ranks' pieces
   {
     const double own = this->EstimateExposure();
     const std::vector<double> all = others.Sum({ own > 0.0 ? std::log(own) : 0.0, own > 0.0 ? 1.0 : 0.0 });
@@ -341,8 +343,8 @@ void vtkLitVolumeMapper::AgreeOnExposure(tyndall::Communicator& others)
   this->ExposureTime.Modified();
 }
 
-/// Once for a scene, where it is to be chosen.
-/// @return false where that failed
+/// Sets UsedExposure; an automatic one is chosen once per scene.
+/// @return false if that failed
 bool vtkLitVolumeMapper::FindExposure()
 {
   const double given = this->RayCaster->GetExposure();
@@ -361,8 +363,8 @@ bool vtkLitVolumeMapper::FindExposure()
   return this->UsedExposure > 0.0;
 }
 
-/// Pixels from ray to ray.
-/// @param allowed  seconds that the renderer has for it
+/// Distance between rays, pixels.
+/// @param allowed  seconds that the renderer has for the frame
 double vtkLitVolumeMapper::RaysApart(const int drawn[2], double allowed) const
 {
   if (allowed >= StillTime || this->SecondsOfRay == 0.0)
@@ -407,8 +409,8 @@ bool vtkLitVolumeMapper::ShowsBackgroundColor()
   return this->RayCaster->GetShowBackground() && std::any_of(color, color + 3, [](double c) { return c > 0.0; });
 }
 
-/// What a piece adds to a frame follows from what is before it, on other ranks: they are asked before the frame, in
-/// which not all of them may draw.
+/// Exchanges the pieces' pixels before a frame: a piece's contribution depends on the pieces in front of it, on other
+/// ranks, and not all ranks may draw in the frame itself. Collective.
 void vtkLitVolumeMapper::SeePieces(vtkRenderer* renderer, vtkVolume* volume)
 {
   if (this->IsPiece())
@@ -421,7 +423,7 @@ void vtkLitVolumeMapper::SeePieces(tyndall::Communicator& others, vtkRenderer* r
 {
   const double start = tyndall::ClockSeconds();
   this->Spread->view.reset();
-  // A frame that fails on one rank alone is not remembered by the others as seen together.
+  // Reset first, so that a frame that fails on one rank does not count as rendered together on the others.
   const bool together = std::exchange(this->Spread->together, false);
   if (together && this->IsExposureOld(others))
   {
@@ -460,7 +462,7 @@ void vtkLitVolumeMapper::SeePieces(tyndall::Communicator& others, vtkRenderer* r
   this->Spread->seconds = tyndall::ClockSeconds() - start;
 }
 
-/// @return false where pieces are not seen together, so that this one is to be shown alone
+/// @return false if the pieces are not rendered together, so that this one is to be rendered alone
 bool vtkLitVolumeMapper::DrawPiece(vtkRenderer* renderer, vtkVolume* volume)
 {
   const auto camera = CameraOf(renderer, volume);
@@ -499,7 +501,7 @@ void vtkLitVolumeMapper::Render(vtkRenderer* renderer, vtkVolume* volume)
   const auto size = tyndall::DrawnSize(renderer);
   if (renderer->GetSelector() || size[0] <= 0 || size[1] <= 0)
   {
-    return; // a medium is not picked: it is everywhere
+    return; // a medium cannot be picked: it fills its whole box
   }
   if (this->DrawPiece(renderer, volume))
   {
@@ -532,7 +534,7 @@ void vtkLitVolumeMapper::Render(vtkRenderer* renderer, vtkVolume* volume)
   }
   if (this->ShowsBackgroundColor() && view.exposure != this->UsedExposure)
   {
-    // The radiance of what is behind follows from the exposure, which was not known before.
+    // The radiance of BackgroundColor depends on the exposure, which was not known in the first pass.
     view.exposure = this->UsedExposure;
     this->Cast(view, picture);
   }

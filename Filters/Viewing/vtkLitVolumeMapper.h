@@ -27,22 +27,22 @@ struct ToneMapping;
 
 /**
  * @class vtkLitVolumeMapper
- * @brief a medium whose light is known, in a scene of VTK
+ * @brief volume mapper that renders a medium with its solved light in a VTK scene
  *
- * A volume's mapper whose pixels are those of vtkMediumRayCaster, cast with the camera of the renderer. Rays end at the
- * opaque surfaces that the renderer has drawn before, and what they gathered until there lies over these: a surface is
- * dimmed by the medium before it, and lit by none of it. The volume may be turned, moved and scaled alike along all
- * axes; its property (transfer functions) is not used.
+ * Renders by vtkMediumRayCaster with the renderer's camera. Rays end at the opaque surfaces that the renderer has
+ * already drawn, and their radiance is blended over these: the medium attenuates surfaces behind it, but does not
+ * illuminate them. The volume may be rotated, translated and scaled uniformly; its property (transfer functions) is not
+ * used.
  *
- * Input: vtkImageData with the arrays of vtkMediumRayCaster. How light is seen is what the properties of RayCaster say,
- * and lights and environment are connected there; its ImageSize, camera and first input are not used. Its
- * ShowBackground is off here unless it is switched on; the environment then hides what the renderer has as background.
+ * Input: vtkImageData with the arrays of vtkMediumRayCaster. The properties of RayCaster control rendering, and lights
+ * and environment are connected to it; its ImageSize, camera and first input are not used. Its ShowBackground is off by
+ * default here; if it is on, the environment hides the renderer's background.
  *
- * With Exposure 0, as it is at first, the exposure is chosen once for a scene, from four small pictures around it, so
- * that it stays the same while the camera moves; UsedExposure tells it.
+ * With Exposure 0 (default) the exposure is chosen once per scene, from four small pictures around it, so that it stays
+ * the same while the camera moves; UsedExposure reports it.
  *
- * While the renderer has little time for a frame (vtkRenderWindow::SetDesiredUpdateRate, as interactors set it), fewer
- * rays are cast, so that a frame takes FrameTime. When it has more than a second, there is one for each pixel.
+ * If the renderer has little time for a frame (vtkRenderWindow::SetDesiredUpdateRate, as interactors set it), fewer
+ * rays are cast, so that a frame takes FrameTime. If it has a second or more, one ray is cast per pixel.
  *
  * @sa vtkMediumRayCaster
  */
@@ -53,43 +53,44 @@ public:
   vtkTypeMacro(vtkLitVolumeMapper, vtkVolumeMapper);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  /// What casts the rays: light and environment go in here, and its properties say how light is seen.
+  /// The filter that casts the rays: lights and environment are connected to it, and its properties control rendering.
   vtkMediumRayCaster* GetRayCaster();
 
   ///@{
-  /// Seconds that the rays of a frame are to take while the camera moves. Default 0.025, valid [0.001, 10].
+  /// Target time for the rays of a frame while the camera moves, seconds. Default 0.025, valid [0.001, 10].
   tyndallRangeMacro(FrameTime, double, 0.001, 10.0);
   ///@}
 
   ///@{
-  /// Where the medium is spread over ranks, each of which has a mapper for its piece, and lays what that draws over or
-  /// under what the others draw, in the order in which the pieces are seen: the ranks, and this rank's piece with a
-  /// layer of its neighbours' cells, flagged as duplicates; the input is the piece without that. Then all ranks have to
-  /// call AgreeOnExposure when the medium has changed, and SeePieces before each frame, also those that have no piece.
-  /// Collective they show what one mapper would show of the whole.
+  /// For a medium that is distributed over ranks, each with a mapper for its piece, whose pictures are composited in
+  /// depth order. SetPiece sets the ranks, and this rank's piece with one layer of ghost cells, flagged as duplicates;
+  /// the mapper's input is the piece without ghost cells. All ranks, also those without a piece, must then call
+  /// AgreeOnExposure when the medium has changed, and SeePieces before each frame; both are collective. The composited
+  /// picture is that of one mapper with the whole medium.
   ///
-  /// Where rays bend or meet a table, or pieces are no parts of one grid, they cannot: each mapper then shows its piece
-  /// alone, radiance divided by alpha, and multiplies the screen's value by alpha, so that there is no seam.
+  /// This is not possible if rays bend or meet a table, or if the pieces do not tile one grid: each mapper then renders
+  /// its piece alone. It divides radiance by alpha before tone mapping and multiplies the pixel value by alpha, so that
+  /// no seam is visible.
   void SetPiece(vtkMultiProcessController* ranks, vtkImageData* surrounded);
   void AgreeOnExposure();
   void SeePieces(vtkRenderer* renderer, vtkVolume* volume);
   ///@}
 
   ///@{
-  /// Of the last frame: what radiance was multiplied by, columns and rows of rays, and seconds in all.
+  /// Results of the last frame: factor by which radiance was multiplied, columns and rows of rays, and total seconds.
   vtkGetMacro(UsedExposure, double);
   vtkGetVector2Macro(CastSize, int);
   vtkGetMacro(Seconds, double);
   ///@}
 
   ///@{
-  /// The input's. Of the piece that shows the background beside the medium those of all that may be seen: IceT takes
-  /// nothing of a rank from outside of its bounds.
+  /// Bounds of the input. For the piece that draws the background beside the medium, bounds of all that may be visible,
+  /// because IceT discards a rank's pixels outside its bounds.
   double* GetBounds() override;
   using Superclass::GetBounds;
   ///@}
 
-  /// That of this and of RayCaster.
+  /// Latest modification of this object and of RayCaster.
   vtkMTimeType GetMTime() override;
 
   void Render(vtkRenderer* renderer, vtkVolume* volume) override;
@@ -127,13 +128,13 @@ private:
 
   vtkNew<vtkMediumRayCaster> RayCaster;
   double FrameTime = 0.025;
-  double CommonExposure = 0.0; ///< of all pieces, for Exposure 0; 0: it is to be chosen
+  double CommonExposure = 0.0; ///< exposure of all pieces, for Exposure 0; 0: not chosen yet
   std::unique_ptr<Pieces> Spread;
 
   std::unique_ptr<tyndall::PictureOverlay> Overlay;
   double AutomaticExposure = 0.0;
-  vtkTimeStamp ExposureTime; ///< when it was chosen
-  double SecondsOfRay = 0.0; ///< in the last frame; 0: not known yet
+  vtkTimeStamp ExposureTime; ///< when AutomaticExposure or CommonExposure was chosen
+  double SecondsOfRay = 0.0; ///< seconds per ray in the last frame; 0: not known yet
 
   double UsedExposure = 0.0;
   int CastSize[2] = { 0, 0 };

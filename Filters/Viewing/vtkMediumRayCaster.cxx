@@ -130,8 +130,8 @@ void vtkMediumRayCaster::ForgetOldScene()
   }
 }
 
-/// The memory of an old scene is given back before the filters before run, which may need it. Ranks together ask for
-/// their pieces of the medium.
+/// Frees the device memory of an old scene before upstream filters run, which may need it. In a parallel pipeline each
+/// rank asks for its piece of the medium.
 int vtkMediumRayCaster::RequestUpdateExtent(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
@@ -181,7 +181,8 @@ tyndall::InputsKey vtkMediumRayCaster::KeyOf(vtkInformationVector** inputs, Use 
   return key;
 }
 
-/// @return the scene of the last picture, where it is still that of the inputs; it is kept again after a good picture
+/// @return the cached scene of the last picture if it is still valid for the inputs, else null. The cache is then empty
+///   until the next picture succeeds.
 std::unique_ptr<tyndall::CasterScene> vtkMediumRayCaster::TakeKept(
   const tyndall::InputsKey& key, const tyndall::ViewSettings& settings)
 {
@@ -224,7 +225,7 @@ bool vtkMediumRayCaster::SeesRadianceBehind()
     (this->GetNumberOfInputConnections(ENVIRONMENT) > 0 || behind[0] > 0.0 || behind[1] > 0.0 || behind[2] > 0.0);
 }
 
-/// Once for a scene.
+/// Issues a scene's warnings, once.
 void vtkMediumRayCaster::SayDoubts(tyndall::CasterScene& scene)
 {
   for (const std::string& doubt : std::exchange(scene.doubts, {}))
@@ -233,18 +234,18 @@ void vtkMediumRayCaster::SayDoubts(tyndall::CasterScene& scene)
   }
 }
 
-/// What comes of an update.
+/// Result of an update.
 struct vtkMediumRayCaster::Shot
 {
-  std::unique_ptr<tyndall::CasterScene> scene; ///< null where ranks have a block each, and this one has none
-  tyndall::Picture picture;                    ///< or the part that is asked for
+  std::unique_ptr<tyndall::CasterScene> scene; ///< null if ranks have one block each, and this rank has none
+  tyndall::Picture picture;                    ///< the whole picture, or the part for this rank
   std::array<int, 2> first = {};               ///< column and row of its first pixel
   double exposure = 0.0;
   double seconds = 0.0;
   std::vector<std::string> leftOut;
 };
 
-/// How pictures of the filter's own camera are made, on one rank or on several together.
+/// Functions that render with the filter's own camera, serially or on several ranks together.
 struct vtkMediumRayCaster::Taking
 {
   std::function<tyndall::Picture()> take;
@@ -252,8 +253,8 @@ struct vtkMediumRayCaster::Taking
   std::function<bool(bool)> onAnyRank;
 };
 
-/// @param shot  its exposure is what the picture will be shown with; where that is 0 it is chosen, from a picture
-///   without BackgroundColor
+/// Renders the picture of a shot, and chooses its exposure if that is 0, from a picture without BackgroundColor.
+/// @param shot  its exposure is that of the display; 0: automatic
 void vtkMediumRayCaster::Expose(const Taking& taking, Shot& shot)
 {
   const double start = tyndall::ClockSeconds();
@@ -277,6 +278,7 @@ void vtkMediumRayCaster::Expose(const Taking& taking, Shot& shot)
   shot.seconds = tyndall::ClockSeconds() - start;
 }
 
+/// Renders the whole medium on this rank.
 /// @param exposure  0: automatic
 vtkMediumRayCaster::Shot vtkMediumRayCaster::SeeWhole(vtkInformationVector** inputs, double exposure)
 {
@@ -297,7 +299,7 @@ vtkMediumRayCaster::Shot vtkMediumRayCaster::SeeWhole(vtkInformationVector** inp
   return shot;
 }
 
-/// Of all ranks, or of none, the scene of the last picture is kept.
+/// Finds or prepares the scene of this rank's block. The cached scenes are reused on all ranks or on none. Collective.
 std::unique_ptr<tyndall::CasterScene> vtkMediumRayCaster::FindSceneOfBlock(
   const tyndall::RankPieces& pieces, vtkInformationVector** inputs, std::vector<tyndall::VoxelBox>& held)
 {
@@ -309,7 +311,7 @@ std::unique_ptr<tyndall::CasterScene> vtkMediumRayCaster::FindSceneOfBlock(
     if (pieces.HasOwn())
     {
       key = this->KeyOf(inputs, Use::Block, &pieces.blocks.Own());
-      // How much of its neighbours a block needs follows from these.
+      // The width of the halo that a block needs depends on these settings.
       const bool reflects = pieces.settings.surfaceReflection != tyndall::SurfaceReflection::None;
       key.Add({ reflects ? pieces.settings.stepSize : 0.0 });
       scene = this->TakeKept(key, pieces.settings);
@@ -317,7 +319,7 @@ std::unique_ptr<tyndall::CasterScene> vtkMediumRayCaster::FindSceneOfBlock(
   });
   if (tyndall::OnAnyRank(pieces.communicator, pieces.HasOwn() && !scene))
   {
-    scene.reset(); // before the next one needs the memory
+    scene.reset(); // free its memory before the next one is prepared
     return tyndall::MakeSceneOfBlock(pieces, key, held);
   }
   this->SceneKept = true;
@@ -325,10 +327,11 @@ std::unique_ptr<tyndall::CasterScene> vtkMediumRayCaster::FindSceneOfBlock(
   return scene;
 }
 
-/// The picture of ranks that have a piece of the medium each.
-/// @param inputs  the others are whole
-/// @param asked   pixels of the picture that are asked for of this rank
-/// @return the part with them; none, on all ranks, where pieces do not fit together: of the whole it is said why
+/// Renders with one piece of the medium per rank. Collective.
+/// @param inputs  the medium's piece; the other inputs are whole
+/// @param asked   extent of the picture that is requested from this rank
+/// @return the part of the picture with that extent; nothing, on all ranks, if the pieces do not fit together:
+///   rendering the whole then reports why
 std::optional<vtkMediumRayCaster::Shot> vtkMediumRayCaster::SeeBlocks(
   vtkMultiProcessController* ranks, tyndall::WholeInputs& inputs, double exposure, const std::array<int, 6>& asked)
 {
@@ -393,7 +396,7 @@ void vtkMediumRayCaster::CropToRequest(Shot&& shot, vtkInformationVector* output
   const std::vector<float> opaque;
   auto color = tyndall::ToneMap(shot.picture.radiance, this->ShowBackground ? opaque : shot.picture.alpha, toneMapping);
   vtkImageData* const output = vtkImageData::GetData(outputs);
-  if (shot.picture.width > 0) // else nothing is asked for of this rank
+  if (shot.picture.width > 0) // else no pixels are requested from this rank
   {
     tyndall::WritePicture(std::move(shot.picture), shot.first, std::move(color), output);
   }

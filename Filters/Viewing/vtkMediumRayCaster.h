@@ -29,13 +29,13 @@ class WholeInputs;
 
 /**
  * @class vtkMediumRayCaster
- * @brief a picture of a medium whose light is known
+ * @brief renders a picture of a medium with its solved light, by ray casting
  *
- * Marches a ray through every pixel of the picture, and gathers along it the light that the medium scatters towards the
- * camera and the light it emits, each dimmed by the medium before it; behind the medium the background is seen through
- * it. The source is interpolated linearly between voxel centres. Where the refractive index varies, rays bend as
- * d/ds(n dx/ds) = grad n says, surfaces of refractive objects may mirror, and the background is looked up along the
- * direction in which a ray leaves. Where it is constant none of that is computed.
+ * Marches a ray through every pixel of the picture and integrates scattered and emitted radiance along it, attenuated
+ * by the medium in front; the background is attenuated by the whole medium. The source is interpolated linearly between
+ * voxel centres. Where the refractive index varies, rays bend as d/ds(n dx/ds) = grad n says, surfaces of refractive
+ * objects may reflect, and the background is looked up along the direction in which a ray leaves. If the index is
+ * constant none of that is computed.
  *
  * Input 0, the medium with its light: vtkImageData with cell arrays (point arrays: see SetPointData)
  *
@@ -45,65 +45,66 @@ class WholeInputs;
  * | `sigma_s` | 1 or 3 | 1/length | scattering coefficient |
  * | `emission` | 1 or 3 | W/(length^3 sr) | emitted radiance per unit length; optional |
  * | `fluence` | 1 or 3 | W/length^2 | light, as every solver writes it; optional |
- * | `fluence_direct` | 1 or 3 | W/length^2 | its unscattered part; needed only to separate it |
+ * | `fluence_direct` | 1 or 3 | W/length^2 | its uncollided part; needed only to separate it |
  * | `ior` | 1 | 1 | refractive index n, above 0; optional |
  * | `mean_direction` | 3 | 1 | power-weighted mean direction, its length the anisotropy; optional |
  *
  * or those chosen by SetInputArrayToProcess 0 to 6, how the medium scatters, and, optional, `surface_radiance`,
- * as vtkLightPropagationMaps writes it where voxels at the faces of the box are thick: rays that come in there show it,
- * instead of the light at the voxels' centres (not with ShadowRays and lights, SingleScatteringOnly, `mean_direction`,
- * a table, or where rays bend). It belongs to the array `fluence` beside it; where another is chosen it is not used.
+ * as vtkLightPropagationMaps writes it if voxels at the faces of the box are optically thick: rays that enter there
+ * show it instead of the light at the voxels' centres (not with ShadowRays and lights, SingleScatteringOnly,
+ * `mean_direction`, a table, or bent rays). It belongs to the array `fluence` of the same image and is not used if
+ * another array is chosen as fluence.
  * Input 1, optional: lights as vtkLightRig makes them, for shadow rays.
  * Input 2, optional: the environment behind the medium, vtkImageData in latitude-longitude layout, point array
  * `radiance`.
  *
- * What is scattered towards the camera, of the light in a voxel:
+ * The light in a voxel that is scattered towards the camera:
  *
  * |  | SingleScatteringOnly | else |
  * |---|---|---|
  * | without ShadowRays | `fluence_direct` / 4 pi | `fluence` / 4 pi |
  * | with ShadowRays | the lights behind the medium, with its phase function | that, and the rest of `fluence` / 4 pi |
  *
- * The phase function is the medium's own, of every channel and voxel: field data `phase_function` and `g`, or cells
- * `g`. Where there is `mean_direction` m, what is divided by 4 pi is multiplied by f: 4 pi times the phase function,
- * averaged over light that is spread about m. So light that all travels one way (|m| = 1) is scattered by the phase
- * function, light from everywhere alike (|m| = 0) evenly, and as much on the whole. Without `mean_direction`, with
- * ShadowRays, or where the medium is isotropic, f is 1.
+ * The phase function is the medium's own, per channel and voxel: field data `phase_function` and `g`, or cells `g`.
+ * If there is `mean_direction` m, the terms that are divided by 4 pi are multiplied by f: 4 pi times the phase
+ * function, averaged over a distribution of directions about m. So collimated light (|m| = 1) is scattered by the phase
+ * function, isotropic light (|m| = 0) isotropically, and the total scattered power is the same. Without
+ * `mean_direction`, with ShadowRays, or if scattering is isotropic, f is 1.
  *
  * Where the input has `scattered_moments`, `straight_on` and field data `lamps_apart`, as vtkLightPropagationMaps
- * writes them of media that it solves in angular moments, and SingleScatteringOnly is off, the picture is made of these
- * instead: light that was scattered often by its moments, the lamps' first scattering by shadow rays and the whole
- * phase function, with no property and no Lights needed. They belong to the array `fluence` beside them; where another
- * is chosen they are not used.
+ * writes them if it solves in angular moments, and SingleScatteringOnly is off, the picture is computed from these
+ * instead: multiply scattered light by its moments, the lamps' first scattering by shadow rays and the full phase
+ * function; no property and no Lights are needed. They belong to the array `fluence` of the same image and are not used
+ * if another array is chosen as fluence.
  *
- * The rest of `fluence` is what the shadow rays do not show already, so that no light counts twice. Where there is no
- * `fluence` but there are lights, shadow rays are used without being asked for.
+ * The rest of `fluence` excludes the light that shadow rays already show, so that no light counts twice. If there are
+ * lights but no `fluence`, shadow rays are used even if ShadowRays is off.
  *
  * Output: vtkImageData of ImageSize pixels (x to the right, y upwards), point arrays
  *
  * | array | type | unit | meaning |
  * |---|---|---|---|
- * | `color` | uint8 x 4 | sRGB | the picture for a screen, active scalars; see ShowBackground |
- * | `radiance` | float x 3 | W/(length^2 sr) | what arrives at the camera |
+ * | `color` | uint8 x 4 | sRGB | the picture for display, active scalars; see ShowBackground |
+ * | `radiance` | float x 3 | W/(length^2 sr) | radiance that arrives at the camera |
  * | `alpha` | float | 1 | 1 - transmittance (mean of the channels) |
- * | `depth` | float | length | along the view, to where the channels' mean transmittance falls to 1/2 |
+ * | `depth` | float | length | along the view direction, to where the channels' mean transmittance falls to 1/2 |
  *
- * and field data `exposure` (what radiance was multiplied by), `left_out` (what the scene did not need),
- * `settings_used` ("Name = value" of what Quality chooses), `device`.
+ * and field data `exposure` (the factor by which radiance was multiplied), `left_out` (what the scene did not need),
+ * `settings_used` ("Name = value" of the properties that Quality chooses), `device`.
  *
- * Medium, light and illumination stay on the device, so that a picture from another camera, of another size, or of
- * other colours on the screen only casts its rays: until an input changes, another one is connected, a setting needs
- * it, the device is another one, or the filter goes. Then their memory is given back.
+ * Medium, light and illumination stay on the device, so that a picture from another camera, of another size, or with
+ * another display mapping needs only its rays. Their memory is freed when an input changes, another one is connected, a
+ * changed setting requires it, another device is chosen, or the filter is deleted.
  *
- * While CameraPosition and CameraFocalPoint are equal, as they are untouched, the camera frames the whole medium, from
- * above, z upwards.
+ * As long as CameraPosition and CameraFocalPoint are equal, which is the default, the camera frames the whole medium,
+ * from above, z upwards.
  *
- * Where ranks of a parallel pipeline run it together each asks for its piece of the medium with a layer of its
- * neighbours' cells, casts that, and hands on the part of the picture that it was asked for: that of the whole, to
- * rounding. Rays that bend, are reflected or meet a table go from rank to rank, and lamps throw shadows from piece to
- * piece; what a piece lacks beside it (for the index, angular moments, light at the surface of thick voxels) comes from
- * the other ranks. The whole is put together on every rank where ranks have other properties than each other, pieces
- * overlap without flags, or cells `g` are the same in all voxels of one piece and not in all of another.
+ * If ranks of a parallel pipeline run the filter together, each requests its piece of the medium with one layer of
+ * ghost cells, casts rays through it, and returns the requested part of the picture, which equals that of a serial run,
+ * to rounding. Rays that bend, are reflected or meet a table continue from rank to rank, and lamps cast shadows across
+ * pieces; data that a piece needs beyond its ghost cells (for the index, angular moments, light at the surface of thick
+ * voxels) are fetched from the other ranks. Every rank instead gathers the whole medium if properties differ between
+ * ranks, pieces overlap without ghost flags, or cells `g` are uniform in one piece and not in another.
  *
  * @sa vtkLightPropagationMaps vtkPhotonMarcher vtkLightRig vtkEnvironmentReader
  * @par Thanks
@@ -123,29 +124,28 @@ public:
 
   enum ToneCurves
   {
-    LINEAR = 0, ///< radiance times exposure, cut at white
-    FILMIC = 1  ///< bright parts are compressed as film does it
+    LINEAR = 0, ///< radiance times exposure, clipped at white
+    FILMIC = 1  ///< bright parts are compressed as by film
   };
 
   enum SurfaceReflections
   {
     NONE = 0,
-    FRESNEL = 1, ///< of unpolarised light
+    FRESNEL = 1, ///< Fresnel reflectance of unpolarised light
     FIXED = 2    ///< SurfaceReflectance
   };
 
   enum Qualities
   {
-    DRAFT = 0, ///< to look at while the camera moves
-    USUAL = 1, ///< every property as it stands
+    DRAFT = 0, ///< fast, while the camera moves
+    USUAL = 1, ///< every property as set
     FINE = 2,
-    REFERENCE = 3 ///< to compare others with
+    REFERENCE = 3 ///< for comparisons
   };
 
   ///@{
-  /// How exact the picture is to be: chooses StepSize and RectangleSamples where they have their default value, and
-  /// leaves those that have another one. DRAFT, USUAL (default), FINE or REFERENCE; with USUAL both are taken as they
-  /// stand.
+  /// Accuracy of the picture: DRAFT, USUAL (default), FINE or REFERENCE. Chooses StepSize and RectangleSamples if they
+  /// have their default values; USUAL changes neither.
   tyndallRangeMacro(Quality, int, DRAFT, REFERENCE);
   ///@}
 
@@ -156,7 +156,7 @@ public:
   ///@}
 
   ///@{
-  /// Where the camera is and what it looks at, as vtkCamera has it. Default (0, 0, 0) both: while they are equal, the
+  /// Position and focal point of the camera, as in vtkCamera. Default (0, 0, 0) both: as long as they are equal, the
   /// camera frames the medium. Valid up to 1e15 voxels from it.
   tyndallSetRange3Macro(CameraPosition, double, tyndall::AnyLow, tyndall::AnyHigh);
   vtkGetVector3Macro(CameraPosition, double);
@@ -165,7 +165,7 @@ public:
   ///@}
 
   ///@{
-  /// What is upwards in the picture. Default (0, 0, 1), valid what is not along the view.
+  /// Direction that is upwards in the picture. Default (0, 0, 1), valid if not parallel to the view direction.
   tyndallSetRange3Macro(CameraViewUp, double, tyndall::AnyLow, tyndall::AnyHigh);
   vtkGetVector3Macro(CameraViewUp, double);
   ///@}
@@ -176,26 +176,27 @@ public:
   ///@}
 
   ///@{
-  /// Whether rays are parallel, and then half the picture's height, length. Default off; 1, valid (0, infinity). A
-  /// camera that frames the medium finds the height itself.
+  /// Whether rays are parallel (default off), and half the picture's height, a length, for parallel rays (default 1,
+  /// valid (0, infinity)). A camera that frames the medium chooses the height itself.
   tyndallFlagMacro(CameraParallelProjection);
   tyndallRangeMacro(CameraParallelScale, double, 0.0, tyndall::AnyHigh);
   ///@}
 
   ///@{
-  /// Voxels that a ray advances between two samples. Default 0.5, valid [0.01, 10]. The error falls with its square.
+  /// Distance between two samples on a ray, in voxels. Default 0.5, valid [0.01, 10]. The error is proportional to its
+  /// square.
   tyndallRangeMacro(StepSize, double, 0.01, 10.0);
   ///@}
 
   ///@{
-  /// Whether to show only light that was scattered once. Default off.
+  /// Whether to show only singly scattered light. Default off.
   tyndallFlagMacro(SingleScatteringOnly);
   ///@}
 
   ///@{
-  /// Whether to follow the lights' direct light by shadow rays, scattered by the medium's phase function. Default off:
-  /// it is in `fluence`, scattered evenly or as `mean_direction` says. Where no lamp and no sun shines the picture is
-  /// the same and no time goes into it; `left_out` says so.
+  /// Whether to compute the uncollided light of lights by shadow rays and scatter it by the medium's phase function.
+  /// Default off: this light is then part of `fluence`, scattered isotropically or according to `mean_direction`.
+  /// Without lamp and sun the option has no effect and takes no time; `left_out` reports it.
   tyndallFlagMacro(ShadowRays);
   ///@}
 
@@ -205,75 +206,77 @@ public:
   ///@}
 
   ///@{
-  /// Whether the environment, or else BackgroundRadiance or BackgroundColor, is seen behind the medium. Default on:
-  /// `color` is opaque. Off: laid over black it looks as before black; its own alpha is that of the array `alpha`, and
-  /// larger where bright thin smoke would be more than white.
+  /// Whether the environment, or else BackgroundRadiance or BackgroundColor, is visible behind the medium. Default on:
+  /// `color` is opaque. Off: `color` blended over black looks like the picture with a black background; its alpha is
+  /// the array `alpha`, or larger where bright thin smoke would exceed white.
   tyndallFlagMacro(ShowBackground);
   ///@}
 
   ///@{
-  /// Colour behind the medium where there is no environment, red, green, blue, as the array color is to have it (sRGB),
-  /// at any exposure and tone curve: radiance is what shows it so. The exposure is chosen as if it were black. Default
-  /// (0, 0, 0), valid [0, 1].
+  /// Display colour behind the medium if there is no environment, red, green, blue, sRGB as in the array `color`,
+  /// independent of exposure and tone curve: the background's radiance is computed from it. Automatic exposure treats
+  /// the background as black. Default (0, 0, 0), valid [0, 1].
   tyndallSetRange3Macro(BackgroundColor, double, 0.0, 1.0);
   vtkGetVector3Macro(BackgroundColor, double);
   ///@}
 
   ///@{
-  /// Radiance behind the medium where there is no environment, red, green, blue, W/(length^2 sr): instead of
-  /// BackgroundColor where it is not 0, the default. Valid [0, 1e37].
+  /// Radiance behind the medium if there is no environment, red, green, blue, W/(length^2 sr). Used instead of
+  /// BackgroundColor if it is not 0. Default 0, valid [0, 1e37].
   tyndallSetRange3Macro(BackgroundRadiance, double, 0.0, 1e37);
   vtkGetVector3Macro(BackgroundRadiance, double);
   ///@}
 
   ///@{
-  /// What the surface of refractive objects mirrors of a ray that meets it from the side of the smaller index: NONE
-  /// (default), FRESNEL or FIXED. Without an `ior` that varies there is no surface.
+  /// Reflection at the surface of refractive objects, for rays that meet it from the side of the smaller index: NONE
+  /// (default), FRESNEL or FIXED. Without a varying `ior` there is no surface.
   tyndallRangeMacro(SurfaceReflection, int, NONE, FIXED);
   ///@}
 
   ///@{
-  /// The surface is where n has this value. Default 0: midway between the least and the largest n. Valid [0, infinity).
+  /// Refractive index at the surface, which is an isosurface of n. Default 0: midway between the smallest and the
+  /// largest n. Valid [0, infinity).
   tyndallRangeMacro(SurfaceIndex, double, 0.0, tyndall::AnyHigh);
   ///@}
 
   ///@{
-  /// Part that the surface mirrors if SurfaceReflection is FIXED. Default 0.1, valid [0, 1].
+  /// Reflectance of the surface if SurfaceReflection is FIXED. Default 0.1, valid [0, 1].
   tyndallRangeMacro(SurfaceReflectance, double, 0.0, 1.0);
   ///@}
 
   ///@{
-  /// Face of the box that is a table, seen from within: 0 to 5 for -x, +x, -y, +y, -z, +z. Default -1: none.
+  /// Face of the box that is a table, a reflecting surface seen from within: 0 to 5 for -x, +x, -y, +y, -z, +z. Default
+  /// -1: none.
   tyndallRangeMacro(TableFace, int, -1, 5);
   ///@}
 
   ///@{
-  /// Diffuse reflectance of the table, red, green, blue, lit by the light in the voxels on it. Default (0.6, 0.6, 0.6),
-  /// valid [0, 1].
+  /// Diffuse reflectance of the table, red, green, blue; the light in the adjacent voxels illuminates it. Default (0.6,
+  /// 0.6, 0.6), valid [0, 1].
   tyndallSetRange3Macro(TableColor, double, 0.0, 1.0);
   vtkGetVector3Macro(TableColor, double);
   ///@}
 
   ///@{
-  /// Part that the table mirrors. Default 0.1, valid from 0 to 1 less TableColor.
+  /// Specular reflectance of the table. Default 0.1, valid from 0 to 1 minus TableColor.
   tyndallRangeMacro(TableReflectance, double, 0.0, 1.0);
   ///@}
 
   ///@{
-  /// MiB of the device's memory that the filter may take, with what it keeps from update to update; what is needed
-  /// beyond is one error that says how much. Default 0: what the device has. Valid [0, 2^31).
+  /// Device memory that the filter may use, MiB, including what it keeps between updates; if it needs more, an error
+  /// states how much. Default 0: all that the device has. Valid [0, 2^31).
   tyndallRangeMacro(MemoryBudget, int, 0, VTK_INT_MAX);
   ///@}
 
   ///@{
-  /// Whether to leave out what the scene does not need. Default on; off computes everything, for comparison: the same
-  /// picture, later.
+  /// Whether to skip computations that the scene does not need. Default on; off computes everything, for comparison:
+  /// the same picture in more time.
   tyndallFlagMacro(LeaveOut);
   ///@}
 
   ///@{
-  /// What radiance is multiplied by for `color`. Default 0: so that the mean of the picture's lit part becomes a medium
-  /// grey. Valid [0, 1e30].
+  /// Factor by which radiance is multiplied for `color`. Default 0: chosen such that the mean of the picture's lit part
+  /// becomes a medium grey. Valid [0, 1e30].
   tyndallRangeMacro(Exposure, double, 0.0, 1e30);
   ///@}
 
@@ -284,26 +287,26 @@ public:
   };
 
   ///@{
-  /// What an Exposure of 0 is found from: EACH_PICTURE (default), or the FIRST_PICTURE after this was chosen, whose
-  /// exposure all later ones have, so that an animation does not flicker.
+  /// Pictures from which an Exposure of 0 is computed: EACH_PICTURE (default), or the FIRST_PICTURE after this was set,
+  /// whose exposure is used for all later ones, so that an animation does not flicker.
   tyndallRangeMacro(AutoExposure, int, EACH_PICTURE, FIRST_PICTURE);
   ///@}
 
   ///@{
-  /// How `color` follows radiance: LINEAR, or FILMIC (default).
+  /// Tone curve from radiance to `color`: LINEAR, or FILMIC (default).
   tyndallRangeMacro(ToneCurve, int, LINEAR, FILMIC);
   ///@}
 
   ///@{
-  /// What came of the last update: seconds in which rays were cast and the picture was read, the exposure used, whether
-  /// medium and light were on the device from an earlier picture, the device's name, and what the scene did not need,
+  /// Results of the last update: seconds for casting rays and reading the picture, the exposure used, whether medium
+  /// and light were still on the device from an earlier picture, the device's name, and what the scene did not need,
   /// one per line.
   vtkGetMacro(Seconds, double);
   vtkGetMacro(UsedExposure, double);
   vtkGetMacro(SceneKept, bool);
   vtkGetCharFromStdStringMacro(DeviceName);
   vtkGetCharFromStdStringMacro(LeftOut);
-  vtkGetCharFromStdStringMacro(SettingsUsed); ///< "Name = value" of what Quality chooses, one per line
+  vtkGetCharFromStdStringMacro(SettingsUsed); ///< "Name = value" of the properties that Quality chooses, one per line
   ///@}
 
   using Superclass::SetInputConnection;
@@ -326,22 +329,23 @@ private:
   void operator=(const vtkMediumRayCaster&) = delete;
 
   friend class vtkLitVolumeMapper;
-  /// A picture of another camera and size, of the inputs as they are: for the mapper, which has updated them.
-  /// @return false where it failed: there was an error, and there is none again until something has changed
+  /// Renders a picture with another camera and size, without updating the inputs: for the mapper, which has updated
+  /// them.
+  /// @return false if it failed: the error is reported once, not again until something has changed
   bool See(const tyndall::AskedView& view, tyndall::Picture& picture);
 
-  /// Whether a background is in a picture that was made for its exposure: BackgroundColor is not, which is as bright on
-  /// the screen whatever the exposure.
+  /// Whether the background counts for automatic exposure: the environment and BackgroundRadiance do, BackgroundColor
+  /// does not, because it looks the same at any exposure.
   bool SeesRadianceBehind();
 
   enum class Use
   {
     Whole,
-    Piece, ///< seen alone, or with others but for what goes from one to another
-    Block  ///< of ranks that see the whole together
+    Piece, ///< one piece, rendered alone or composited with others, without exchange of rays
+    Block  ///< a block of ranks that render the whole together, with exchange of rays
   };
   void ForgetOldScene();
-  /// @param block  of the larger image of which the medium is a block; null: of none
+  /// @param block  the block of a larger image that the medium is; null if it is none
   tyndall::InputsKey KeyOf(vtkInformationVector** inputs, Use use, const tyndall::GridBlock* block);
   std::unique_ptr<tyndall::CasterScene> TakeKept(const tyndall::InputsKey& key, const tyndall::ViewSettings& settings);
   std::unique_ptr<tyndall::CasterScene> FindScene(
@@ -352,7 +356,7 @@ private:
   struct Taking;
   void Expose(const Taking& taking, Shot& shot);
   Shot SeeWhole(vtkInformationVector** inputs, double exposure);
-  /// @param held  becomes, by rank, the voxels of the casters
+  /// @param held  set to the voxels that each rank's ray caster holds, by rank
   std::unique_ptr<tyndall::CasterScene> FindSceneOfBlock(
     const tyndall::RankPieces& pieces, vtkInformationVector** inputs, std::vector<tyndall::VoxelBox>& held);
   std::optional<Shot> SeeBlocks(
@@ -377,7 +381,7 @@ private:
   double BackgroundRadiance[3];
   double Exposure = 0.0;
   int AutoExposure = EACH_PICTURE;
-  double FirstExposure = 0.0; ///< found from the first picture; 0: not yet
+  double FirstExposure = 0.0; ///< automatic exposure of the first picture; 0: not known yet
   int ToneCurve = FILMIC;
   int SurfaceReflection = NONE;
   double SurfaceIndex;
@@ -388,8 +392,8 @@ private:
   bool LeaveOut;
   int MemoryBudget = 0;
 
-  std::shared_ptr<tyndall::Device> Within;    ///< MemoryBudget, where there is one
-  std::unique_ptr<tyndall::CasterScene> Kept; ///< of the last picture, if it succeeded
+  std::shared_ptr<tyndall::Device> Within;    ///< device limited by MemoryBudget, or null
+  std::unique_ptr<tyndall::CasterScene> Kept; ///< scene of the last picture, if it succeeded
 
   double Seconds = 0.0;
   double UsedExposure = 0.0;
