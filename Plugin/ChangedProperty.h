@@ -3,8 +3,8 @@
 
 #include <cstring>
 
-/// Is it the property of that name that has changed?
-/// @param data  of a vtkCommand::PropertyModifiedEvent: a name, or null where the property is a subproxy's
+/// Whether the property `name` is the one that has changed.
+/// @param data  call data of a vtkCommand::PropertyModifiedEvent: the property's name, or null if it is a subproxy's
 inline bool IsChangeOf(const void* data, const char* name)
 {
   return data && std::strcmp(static_cast<const char*>(data), name) == 0;

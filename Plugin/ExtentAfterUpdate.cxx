@@ -20,7 +20,8 @@ namespace
 {
 using Pipeline = vtkStreamingDemandDrivenPipeline;
 
-/// The update extent, too: VTK crops the data to it (EXACT_EXTENT, which representations ask for).
+/// Copies the whole extent, and the update extent, to which VTK crops the data (EXACT_EXTENT, which representations
+/// request).
 void PassExtentOn(vtkObject* caller, unsigned long, void*, void*)
 {
   auto* const filter = vtkAlgorithm::SafeDownCast(caller);
@@ -42,7 +43,7 @@ public:
   static vtkSIExtentAfterUpdateProxy* New();
   vtkTypeMacro(vtkSIExtentAfterUpdateProxy, vtkSISourceProxy);
 
-  /// Of the post filter, which is made when this is first called.
+  /// Output port of the post filter, which the superclass creates in the first call; this starts observing it.
   vtkAlgorithmOutput* GetOutputPort(int port) override
   {
     vtkAlgorithmOutput* const output = this->Superclass::GetOutputPort(port);
@@ -65,7 +66,8 @@ vtkStandardNewMacro(vtkSIExtentAfterUpdateProxy);
 
 namespace
 {
-/// It has the commands of its superclass, which an interpreter looks up by the name of the class.
+/// Registers the class with an interpreter, with its superclass's commands, which the interpreter looks up by class
+/// name.
 void Teach(vtkClientServerInterpreter* interpreter)
 {
   const char* const name = "vtkSIExtentAfterUpdateProxy";
@@ -77,7 +79,7 @@ void Teach(vtkClientServerInterpreter* interpreter)
 }
 }
 
-/// Each session has an interpreter of its own.
+/// Registers with the interpreters of all sessions: each session has its own.
 void TeachExtentAfterUpdate()
 {
   vtkClientServerInterpreterInitializer::GetInitializer()->RegisterCallback(&Teach);

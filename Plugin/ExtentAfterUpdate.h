@@ -1,10 +1,10 @@
 #pragma once
 
-/// Teaches a server sources and filters of si_class vtkSIExtentAfterUpdateProxy, whose images may have another extent
-/// than was known before they were made: another time's file of a series has another box.
+/// Registers si_class vtkSIExtentAfterUpdateProxy with a server, for sources and filters whose whole extent may change
+/// during an update: for example the files of a time series may have different boxes.
 ///
-/// ParaView puts a vtkPVPostFilter behind each output, which converts arrays for the filters behind it. It copies the
-/// whole extent when information is asked for, before VTK says of what time data are wanted, and not again.
-/// Representations would cut the image to that extent, or look for its faces there. So the filter's whole extent is
-/// passed on whenever the post filter has passed on its data.
+/// ParaView appends a vtkPVPostFilter to each output, which converts arrays for downstream filters. It copies the whole
+/// extent only in RequestInformation, before VTK requests a time step. Representations would crop the image to that
+/// outdated extent, or look for its faces there. So this class copies the filter's whole extent downstream each time
+/// the post filter has run.
 void TeachExtentAfterUpdate();

@@ -52,7 +52,7 @@ void ReadResults(vtkObject* caller, unsigned long, void*, void*)
   }
 }
 
-/// What a frame was drawn with.
+/// Reads the exposures with which a frame was rendered.
 void ReadExposures(vtkObject* view, unsigned long, void*, void* isInteractive)
 {
   const vtkSMPropertyHelper representations(vtkSMProxy::SafeDownCast(view), "Representations", true);
@@ -100,7 +100,7 @@ void Notice(vtkObject*, unsigned long, void*, void* data)
   {
     Observe(proxy, vtkCommand::UpdateDataEvent, read);
   }
-  vtkNew<vtkCollection> views; // some are older than the plugin
+  vtkNew<vtkCollection> views; // some views exist before the plugin is loaded
   proxy->GetSessionProxyManager()->GetProxies("views", views);
   for (int i = 0; i < views->GetNumberOfItems(); ++i)
   {

@@ -1,9 +1,9 @@
 #ifndef FreshResults_h
 #define FreshResults_h
 
-/// Has sources and filters with the hint <FreshResults/> read the properties that only tell of results
-/// (information_only) again whenever their data have been updated, and representations theirs whenever a view has been
-/// drawn, so that panels and scripts show those of the last update, those of a server, too, until it ends.
+/// Keeps result properties (information_only) current: those of sources and filters with the hint <FreshResults/> are
+/// read again after each update of their data, those of representations after each rendering of a view. Panels and
+/// scripts then show the results of the last update, also with a server, as long as it runs.
 ///
 /// To be called when the plugin is loaded; serves windows and scripts.
 void FollowResults();

@@ -5,9 +5,9 @@
 #include "vtkNew.h"
 #include "vtkSMProxyManager.h"
 
-/// Has `notice` called, from now on, with each proxy that is registered (its call data is a
-/// vtkSMProxyManager::RegisteredProxyInformation).
-/// @param listening  false before the first call; further calls change nothing
+/// Registers `notice` as observer of vtkCommand::RegisterEvent: it is called for each proxy that is registered from now
+/// on, with a vtkSMProxyManager::RegisteredProxyInformation as call data.
+/// @param listening  false before the first call, then set to true; further calls have no effect
 inline void FollowRegisteredProxies(bool& listening, void (*notice)(vtkObject*, unsigned long, void*, void*))
 {
   vtkSMProxyManager* const manager = vtkSMProxyManager::GetProxyManager();

@@ -23,8 +23,8 @@
 
 namespace
 {
-constexpr double LogarithmicFrom = 100.0; ///< largest over smallest value
-constexpr double Decades = 1e-4;          ///< shown below the largest value where the smallest is 0
+constexpr double LogarithmicFrom = 100.0; ///< ratio of largest to smallest value from which on a map is logarithmic
+constexpr double Decades = 1e-4;          ///< lower end over upper end of such a map, if the smallest value is 0
 
 void ShowDirectColors(vtkSMProxy* representation)
 {
@@ -32,7 +32,7 @@ void ShowDirectColors(vtkSMProxy* representation)
   representation->UpdateVTKObjects();
 }
 
-/// Whether there is a representation with that map of colours, and none of them looks colours up in it.
+/// Whether there are representations with that colour map, but none of them maps scalars through it.
 bool IsLookedUpByNone(vtkSMProxy* map)
 {
   vtkNew<vtkCollection> representations;
@@ -54,7 +54,7 @@ bool IsLookedUpByNone(vtkSMProxy* map)
   return isThere;
 }
 
-/// ParaView shows a bar beside whatever has scalars, of colours that are not there where they are not looked up.
+/// Hides the colour bar of a map that no representation uses: ParaView shows one for every representation with scalars.
 void HideUnusedBar(vtkSMProxy* bar)
 {
   vtkSMPropertyHelper isVisible(bar, "Visibility", true);
@@ -82,11 +82,12 @@ void WatchBar(vtkSMProxy* bar)
   HideUnusedBar(bar);
 }
 
-/// @param colors  a map of colours that nobody has seen
+/// Rescales a colour map to the array's range, logarithmically if that spans decades.
+/// @param colors  a new colour map, not shown yet
 void FitColors(vtkSMProxy* colors, vtkPVArrayInformation* array)
 {
   double range[2];
-  array->GetComponentRange(array->GetNumberOfComponents() > 1 ? -1 : 0, range); // -1: of the magnitude
+  array->GetComponentRange(array->GetNumberOfComponents() > 1 ? -1 : 0, range); // -1: range of the magnitude
   const bool spansDecades = range[1] > 0.0 && range[1] >= LogarithmicFrom * range[0];
   if (spansDecades && range[0] <= 0.0)
   {
@@ -125,8 +126,8 @@ vtkCallbackCommand* FirstChange()
   return command;
 }
 
-/// Lit Volume does not use the map of colours, and its bar beside it would mislead: what opens as that is coloured when
-/// its type is changed.
+/// Colours a representation that opened as Lit Volume when its type is first changed: Lit Volume does not use the color
+/// map, whose colour bar would mislead.
 void ColorAtFirstChange(vtkObject* caller, unsigned long, void*, void* property)
 {
   auto* const representation = vtkSMProxy::SafeDownCast(caller);
@@ -144,7 +145,7 @@ void ColorAtFirstChange(vtkObject* caller, unsigned long, void*, void* property)
   }
 }
 
-/// Charts that show nothing yet: the new representation goes to one of them.
+/// Makes axes logarithmic in charts that are still empty: the new representation will be in one of them.
 void MakeEmptyChartsLogarithmic(vtkSMSessionProxyManager* manager, const std::vector<const char*>& axes)
 {
   vtkNew<vtkCollection> views;
@@ -164,7 +165,7 @@ void MakeEmptyChartsLogarithmic(vtkSMSessionProxyManager* manager, const std::ve
   }
 }
 
-/// Sets the value of series, in a property that has name, value, name, ...
+/// Sets the value of series, in a property whose elements are name, value, name, value, ...
 void SetSeries(
   vtkSMProxy* representation, const char* property, const std::vector<std::string>& series, const char* value)
 {
@@ -209,7 +210,7 @@ void Plot(vtkSMProxy* representation, vtkPVXMLElement* hint)
   MakeEmptyChartsLogarithmic(representation->GetSessionProxyManager(), axes);
 }
 
-/// A representation is registered when it knows its input, and before anybody sees it.
+/// Called when a representation is registered: its input is then known, and it has not been shown yet.
 void Notice(vtkObject*, unsigned long, void*, void* data)
 {
   const auto* registered = static_cast<vtkSMProxyManager::RegisteredProxyInformation*>(data);
@@ -242,7 +243,7 @@ void Notice(vtkObject*, unsigned long, void*, void* data)
   {
     ColorBy(representation, array);
   }
-  FollowVolumeColors(representation); // after the others: its colours replace theirs
+  FollowVolumeColors(representation); // after the other hints: its colours override theirs
   const bool isLineChart = representation->GetProperty("UseIndexForXAxis") && representation->GetProperty("XArrayName");
   if (vtkPVXMLElement* const plotted = isLineChart ? HintFor(shown, "Plotted") : nullptr)
   {

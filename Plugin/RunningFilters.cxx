@@ -118,7 +118,7 @@ private:
     if (this->Running)
     {
       vtkLogF(TRACE, "%s is aborted", this->Running->GetClassName());
-      this->Running->AbortExecute = 1; // SetAbortExecute would have it run again, later
+      this->Running->AbortExecute = 1; // SetAbortExecute would mark the filter modified, so that it runs again
       this->Button->setDown(true);
       this->IsAborted = true;
     }
@@ -135,7 +135,7 @@ private:
     }
   }
 
-  /// Later, when ParaView is not in the middle of an update any more.
+  /// Shows results once ParaView has finished the current update.
   void ShowResults(vtkAlgorithm* algorithm)
   {
     const vtkWeakPointer<vtkSMProxy> proxy = this->Proxies[algorithm];
@@ -146,7 +146,7 @@ private:
   void ShowLater(const vtkWeakPointer<vtkSMProxy>& proxy, bool isAborted, int milliseconds)
   {
     QTimer::singleShot(milliseconds, this, [this, proxy, isAborted] {
-      if (this->Running) // the same update runs filters on, and timers come between their reports
+      if (this->Running) // the update is still running other filters, and timers fire between their progress events
       {
         this->ShowLater(proxy, isAborted, 50);
         return;
@@ -166,8 +166,9 @@ private:
     });
   }
 
-  /// The window is blocked while an algorithm runs in it, so this is called on its progress. Timers do not run, and
-  /// what the user does is dropped, apart from pressing the button: nothing may begin a second update within the first.
+  /// Processes pending window events; called on progress events, because the window is blocked while an algorithm runs
+  /// in its process. Timers do not fire, and user input other than pressing the button is discarded: nothing may start
+  /// a second update within the first.
   void HandleWaitingEvents()
   {
     const bool soonAfterTheLast = this->SinceLast.isValid() && this->SinceLast.elapsed() < 50;
@@ -188,7 +189,7 @@ private:
     switch (event->type())
     {
       case QEvent::MouseButtonPress:
-        // It comes to the window before it comes to the button, and ParaView's own filter would stop it there.
+        // The window receives the event before the button, and ParaView's own event filter would stop it there.
         if (receiver->isWindowType() && IsOver(this->Button, static_cast<QMouseEvent*>(event)->globalPos()))
         {
           this->Abort();
@@ -223,7 +224,7 @@ private:
   QElapsedTimer SinceLast;
   StoppedFilters Stopped;
   bool HandlesEvents = false;
-  bool IsAborted = false; ///< the one that runs
+  bool IsAborted = false; ///< whether the running filter has been aborted
 };
 }
 
@@ -231,6 +232,6 @@ void FollowRunningFilters()
 {
   if (qobject_cast<QApplication*>(QCoreApplication::instance()))
   {
-    new RunningFilters(qApp); // which deletes it
+    new RunningFilters(qApp); // owned by qApp
   }
 }

@@ -1,15 +1,15 @@
 #ifndef RunningFilters_h
 #define RunningFilters_h
 
-/// Gives ParaView's window what version 5.11 lacks while a filter runs, for proxies with the hint <StopsOnAbort/>:
+/// Adds to ParaView's window what version 5.11 lacks while a filter runs, for proxies with the hint <StopsOnAbort/>:
 ///
-/// - The abort button in the status bar works. ParaView has one, but never enables it, and does not listen to it.
-///   Pressed, it makes the filter's CheckAbort true. Filters on a server are out of its reach. Then the status bar says
+/// - The abort button in the status bar works. ParaView has this button, but never enables it and ignores its signals.
+///   Pressing it makes the filter's CheckAbort true; it has no effect on filters on a server. The status bar then says
 ///   that the filter was stopped, and Apply runs it again (StoppedFilters.h).
-/// - The results on the panel (information_only) are those of the last run. ParaView reads them before the run that an
-///   Apply leads to.
+/// - The results on the panel (information_only) are those of the last run. ParaView alone reads them before the run
+///   that Apply starts.
 ///
-/// To be called when the plugin is loaded. Where there is no window (pvpython, pvbatch, pvserver) it does nothing.
+/// To be called when the plugin is loaded. Without a window (pvpython, pvbatch, pvserver) it does nothing.
 void FollowRunningFilters();
 
 #endif

@@ -25,7 +25,8 @@
 
 namespace
 {
-/// Of what the source has given, without asking it for more; pictures and skies are flat.
+/// Adds the bounds of a source's volumes to the box, without updating the source. Flat images are pictures and skies,
+/// and are skipped.
 void AddVolumesOf(vtkSMSourceProxy* source, vtkBoundingBox& box)
 {
   for (unsigned int port = 0; port < source->GetNumberOfOutputPorts(); ++port)
@@ -59,8 +60,8 @@ vtkBoundingBox BoxOfScene(vtkSMSessionProxyManager* manager)
   return box;
 }
 
-/// Numbers to read on a panel.
-/// @param digits  behind the first one of `size` that are kept
+/// Rounds a number for display on a panel.
+/// @param digits  number of digits to keep after the first digit of `size`
 double Rounded(double value, double size, int digits)
 {
   const double unit = std::pow(10.0, digits - std::floor(std::log10(size)));
@@ -83,7 +84,7 @@ void Place(vtkSMProperty* property, vtkPVXMLElement* hint, const vtkBoundingBox&
   }
 }
 
-/// Properties of a proxy that ask for it and are as they were made, with their hints.
+/// Properties of a proxy that have the hint and still have their default value, with their hints.
 std::vector<std::pair<vtkSMProperty*, vtkPVXMLElement*>> PropertiesToPlace(vtkSMProxy* proxy)
 {
   std::vector<std::pair<vtkSMProperty*, vtkPVXMLElement*>> found;

@@ -1,17 +1,17 @@
 #ifndef ScenePlacement_h
 #define ScenePlacement_h
 
-/// Has new sources begin at a place and with a size that fit what is in the pipeline already: the box around all images
-/// with more than one voxel along each axis, of length L from corner to corner. Hints of properties ask for it:
+/// Initialises position and size of new sources to fit the scene: the bounding box, with diagonal L, of all images with
+/// more than one voxel along each axis. Properties request it by hints:
 ///
-/// - <ScenePlacement offset="X Y Z"/>: a place, this many L away from the box's centre, to L / 100.
-/// - <ScenePlacement factor="F" exponent="E"/>: numbers that all are F L^E, to two digits; exponent is 1 unless it is
-///   given.
+/// - <ScenePlacement offset="X Y Z"/>: a position at the box's centre + L (X, Y, Z), rounded to about L / 100.
+/// - <ScenePlacement factor="F" exponent="E"/>: all numbers are F L^E, rounded to two digits; E is 1 by default.
 ///
-/// A property that has another value than default_values when the source is registered keeps it, as do those of states.
+/// A property whose value differs from default_values when the source is registered keeps it, for example in loaded
+/// states.
 ///
-/// To be called when the plugin is loaded; serves windows and scripts. A hint, not a domain: a script's client may know
-/// the proxies of a server without having the plugin's library, and would miss a domain of it.
+/// To be called when the plugin is loaded; serves windows and scripts. This is a hint, not a domain, because a script's
+/// client may know a server's proxies without having loaded the plugin's library, which would define the domain.
 void FollowScenePlacement();
 
 #endif

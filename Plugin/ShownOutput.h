@@ -9,7 +9,7 @@
 #include "vtkSMProxy.h"
 #include "vtkSMSourceProxy.h"
 
-/// What is shown: an output of a source.
+/// The output of a source that a representation shows.
 struct Shown
 {
   vtkSMSourceProxy* source;
@@ -22,7 +22,7 @@ inline Shown ShownBy(vtkSMProxy* representation)
   return { vtkSMSourceProxy::SafeDownCast(input.GetAsProxy()), static_cast<int>(input.GetOutputPort()) };
 }
 
-/// The hint of that name for what is shown, or null.
+/// The source's hint of that name for the shown output, or null.
 inline vtkPVXMLElement* HintFor(const Shown& shown, const char* name)
 {
   vtkPVXMLElement* const hints = shown.source ? shown.source->GetHints() : nullptr;

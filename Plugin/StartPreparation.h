@@ -1,13 +1,13 @@
 #ifndef StartPreparation_h
 #define StartPreparation_h
 
-/// Starts TyndallPreparation, the program beside the plugin, which has OpenCL's kernels of the default chain compiled
-/// while the user loads data. In ParaView's window and in pvserver's first process; scripts (pvpython, pvbatch) begin
-/// with their own work at once. It runs behind all other work, ends with this process, and does nothing where all was
-/// compiled before. TYNDALL_PREPARE=0 in the environment keeps it from starting.
+/// Starts TyndallPreparation, the program beside the plugin, which compiles the OpenCL kernels of the default pipeline
+/// while the user loads data. It is started by ParaView's window and by pvserver's first process, not by scripts
+/// (pvpython, pvbatch), which start their own work at once. It runs at the lowest priority, ends with this process, and
+/// does nothing if all kernels are already compiled. TYNDALL_PREPARE=0 in the environment disables it.
 ///
-/// A process of its own, not a thread: a compiler cannot be stopped halfway, and ParaView could not quit before it is
-/// done.
+/// It is a process, not a thread, because a running compilation cannot be stopped and would keep ParaView from
+/// quitting.
 ///
 /// To be called when the plugin is loaded.
 void StartPreparation();

@@ -18,8 +18,8 @@
 
 namespace
 {
-/// A widget of ParaView's. Its libraries are not linked, so that the plugin loads in servers without them: widgets are
-/// found, and their signals sent, by name.
+/// Finds one of ParaView's widgets. ParaView's GUI libraries are not linked, so that the plugin loads in servers
+/// without them: widgets and signals are accessed by name.
 QWidget* FindWidget(const char* type, const QString& name = {})
 {
   for (QWidget* window : QApplication::topLevelWidgets())
@@ -57,14 +57,14 @@ vtkDataObject* OutputOf(vtkSMProxy* proxy)
   return vtkAlgorithm::SafeDownCast(proxy->GetClientSideObject())->GetOutputDataObject(0);
 }
 
-/// Whether the filter shows the light of before.
+/// Whether the stopped filter shows the light of its previous run.
 bool ShowsLight(vtkSMProxy* proxy)
 {
   vtkDataObject* const output = OutputOf(proxy);
   return output && output->GetNumberOfElements(vtkDataObject::CELL) > 0;
 }
 
-/// Whether what the filter has is that of a run that was stopped, although it may have been asked for it again.
+/// Whether the filter's output is still that of an aborted run, even if it has been updated again.
 bool IsStillStopped(vtkSMProxy* proxy)
 {
   vtkDataObject* const output = OutputOf(proxy);
@@ -149,7 +149,7 @@ void StoppedFilters::FollowPanel()
   QObject::connect(panel, SIGNAL(applyEnableStateChanged()), &this->PanelChanged, SLOT(start()));
 }
 
-/// Apply is for changes to ParaView; here it is for the stopped filter that is on the panel, too.
+/// Enables Apply for a stopped filter on the panel; ParaView enables it only for changed properties.
 void StoppedFilters::OfferApply()
 {
   const auto isOffered = [](const vtkWeakPointer<vtkSMProxy>& proxy) {

@@ -11,15 +11,14 @@
 
 class vtkSMProxy;
 
-/// What becomes of filters that the user stopped, in ParaView's window: the status bar says so, Apply is there to be
-/// pressed while such a filter is on the panel, and pressed runs it again although nothing was changed. Until it has
-/// run to its end.
+/// Filters that the user stopped, in ParaView's window. Until such a filter has run to its end, the status bar says
+/// that it was stopped; while it is on the panel, Apply is enabled and runs it again, although no property has changed.
 class StoppedFilters
 {
 public:
-  /// To be called when ParaView is not in the middle of an update.
+  /// Adds a stopped filter. Not to be called during an update.
   void Add(vtkSMProxy* proxy);
-  /// The same for a filter that has run to its end.
+  /// Removes a filter that has run to its end. Not to be called during an update.
   void Remove(vtkSMProxy* proxy);
 
 private:
@@ -29,6 +28,6 @@ private:
 
   std::vector<vtkWeakPointer<vtkSMProxy>> Stopped;
   QPointer<QAbstractButton> Apply;
-  QTimer PanelChanged; ///< when the panel has decided whether Apply is there to be pressed
-  QString Said;        ///< last in the status bar
+  QTimer PanelChanged; ///< fires after the panel has enabled or disabled Apply
+  QString Said;        ///< last message in the status bar
 };

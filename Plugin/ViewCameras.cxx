@@ -100,14 +100,15 @@ void SetNumbers(vtkSMProxy* proxy, const std::string& property, const std::vecto
   }
 }
 
-/// Numbers of the view's camera as it is, however the mouse has moved it; what that does not move has no "Info".
+/// Current values of a camera property of the view, mouse interaction included; properties that the mouse does not
+/// change have no "Info" property.
 std::vector<double> OfView(vtkSMProxy* view, const std::string& property)
 {
   const bool moves = view->GetProperty((property + "Info").c_str());
   return Numbers(view, moves ? property + "Info" : property);
 }
 
-/// What a Property of the hint is to be.
+/// The values that a Property of the hint gets.
 std::vector<double> Asked(vtkSMProxy* view, vtkPVXMLElement* property)
 {
   std::vector<double> numbers = OfView(view, property->GetAttributeOrEmpty("of"));
@@ -119,6 +120,7 @@ std::vector<double> Asked(vtkSMProxy* view, vtkPVXMLElement* property)
   return numbers;
 }
 
+/// Copies the view's camera to the source.
 /// @return whether anything changed
 bool Take(vtkSMProxy* view, vtkSMProxy* source)
 {
@@ -209,7 +211,7 @@ void Notice(vtkObject*, unsigned long, void*, void* data)
   {
     proxy->AddObserver(vtkCommand::UpdatePropertyEvent, press);
   }
-  for (vtkSMViewProxy* const view : Views(proxy->GetSessionProxyManager())) // some are older than the plugin
+  for (vtkSMViewProxy* const view : Views(proxy->GetSessionProxyManager())) // views older than the plugin, too
   {
     if (!view->HasObserver(vtkCommand::EndEvent, follow))
     {

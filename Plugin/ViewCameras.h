@@ -1,17 +1,17 @@
 #ifndef ViewCameras_h
 #define ViewCameras_h
 
-/// Has sources take the camera of a 3D view, where their hints ask for it:
+/// Copies the camera of a 3D view to sources whose hints request it:
 ///
 ///     <ViewCamera button="NAME" follow="NAME" elsewhere="1">
 ///       <Property name="NAME" of="NAME" from="NAME"/>
 ///     </ViewCamera>
 ///
-/// Each Property is set to what the property `of` of the view is (CameraPosition, ...), or, with `from`, to the vector
-/// from that property of the view to it, when the source's command `button` is called (its button on the panel, or
-/// InvokeCommand in Python), and, while its property `follow` is not 0, whenever the view has been drawn with another
-/// camera. The view is the active one, or else the first one, that has a camera; with `elsewhere` one that does not
-/// show the source itself. Views that show it are drawn again.
+/// Each Property is set to the value of the view's property `of` (CameraPosition, ...), or, with `from`, to the vector
+/// from the view's property `from` to `of`. This happens when the source's command `button` is called (its button on
+/// the panel, or InvokeCommand in Python), and, while the source's property `follow` is not 0, whenever the view has
+/// been rendered with another camera. The view is the active one, or else the first one, that has a camera; with
+/// `elsewhere`, one that does not show the source itself. Views that show the source are rendered again.
 ///
 /// To be called when the plugin is loaded; serves windows and scripts.
 void FollowViewCameras();

@@ -40,7 +40,8 @@ bool IsColoredByThem(vtkSMProxy* representation)
   return name && std::strcmp(name, HintOf(representation)->GetAttributeOrEmpty("array")) == 0;
 }
 
-/// @return 0 where it is not known
+/// Unit distance from the field data.
+/// @return 0 if it is not known
 double DistanceOf(vtkSMProxy* representation)
 {
   const Shown shown = ShownBy(representation);
@@ -50,7 +51,7 @@ double DistanceOf(vtkSMProxy* representation)
   return fact ? fact->GetComponentRange(0)[0] : 0.0;
 }
 
-/// That of alpha, which is no property of ParaView's: see vtkVolumeUnitDistance.
+/// Sets the unit distance of alpha, for which ParaView has no property: see vtkVolumeUnitDistance.
 void GiveDistance(vtkSMProxy* representation)
 {
   const double distance = DistanceOf(representation);
@@ -66,7 +67,7 @@ void GiveDistance(vtkSMProxy* representation)
   }
 }
 
-/// From the least to the largest byte: whatever is between is the user's.
+/// Sets the end points of the opacity function to 0 and 255, if they are not; points between are left to the user.
 void GiveRange(vtkSMProxy* function)
 {
   vtkSMPropertyHelper points(function, "Points");
@@ -80,7 +81,7 @@ void GiveRange(vtkSMProxy* function)
   }
 }
 
-/// ParaView rescales it, to the range of the colours' norm.
+/// Restores the range after ParaView has rescaled it to the range of the colours' norm.
 void GiveRangeAtChange(vtkObject* caller, unsigned long, void*, void* property)
 {
   if (IsChangeOf(property, "Points"))
@@ -109,7 +110,7 @@ void FitOpacity(vtkSMProxy* representation)
   }
 }
 
-/// What is right for the array that it is coloured by.
+/// Sets Map Scalars, opacity and unit distance for the array that the representation is coloured by.
 void Fit(vtkSMProxy* representation)
 {
   const bool own = IsColoredByThem(representation);
@@ -143,7 +144,7 @@ void FollowProperty(vtkObject* caller, unsigned long, void*, void* data)
   }
   if (IsChangeOf(data, "Representation") && IsVolume(representation) && HasColors(representation))
   {
-    representation->UpdateVTKObjects(); // so that the volume is what is shown
+    representation->UpdateVTKObjects(); // so that the representation already shows the volume
     ShowColors(representation);
   }
   else if (IsChangeOf(data, "ColorArrayName") || IsChangeOf(data, "ScalarOpacityFunction"))
@@ -152,7 +153,7 @@ void FollowProperty(vtkObject* caller, unsigned long, void*, void* data)
   }
 }
 
-/// The distance may be another one, at another time or in a state that is being loaded.
+/// Sets the unit distance again after an update: it may change with time, or when a state is loaded.
 void FollowData(vtkObject* caller, unsigned long, void*, void*)
 {
   auto* const representation = vtkSMProxy::SafeDownCast(caller);
@@ -182,7 +183,7 @@ void FollowVolumeColors(vtkSMProxy* representation)
   Follow(representation);
   if (HasColors(representation))
   {
-    vtkSMPropertyHelper(representation, "Representation").Set("Volume"); // what follows is done by FollowProperty
+    vtkSMPropertyHelper(representation, "Representation").Set("Volume"); // FollowProperty then does the rest
     representation->UpdateVTKObjects();
   }
 }

@@ -14,16 +14,18 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-// Solves and looks at small scenes, so that OpenCL's compiler keeps what the first solve in ParaView will need:
+// Solves and renders small scenes, so that OpenCL's compiler cache has the kernels that the first solve in ParaView
+// needs:
 //
 //     TyndallPreparation [COUNT [PARENT]]
 //
-// COUNT scenes, the likeliest first; without it all. With PARENT it ends when that process does. Where all was done
-// before, with the same library and cache, it does nothing. Exit status 1 if a filter reports an error.
+// COUNT: number of scenes, most likely first; default: all. PARENT: a process id; the program ends when that process
+// does. If all scenes were prepared before with the same library and cache, the program does nothing. Exit status 1 if
+// a filter reports an error.
 
 namespace
 {
-/// What is prepared, and where that is noted: beside what the compiler keeps, so that both go together.
+/// Record of what has been prepared. Its file lies in the compiler's cache, so that both are deleted together.
 struct Note
 {
   std::string file, content;
@@ -42,12 +44,12 @@ Note NoteOfAll()
   return { tyndall::ChoosePoclCache().folder + "/tyndall-prepared", LibraryVersion() + (device ? device : "") + "\n" };
 }
 
-/// Behind all that somebody waits for, and not longer than the one for whom it is done.
+/// Runs at the lowest priority, and ends with the parent process.
 void ServeParent(pid_t parent)
 {
   setpriority(PRIO_PROCESS, 0, 19);
   prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (getppid() != parent) // it has gone already
+  if (getppid() != parent) // the parent has already ended
   {
     std::exit(0);
   }

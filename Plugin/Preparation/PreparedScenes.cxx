@@ -33,10 +33,10 @@ const Scene Scenes[] = {
   { 128, vtkParticipatingMedium::CLOUD, 0.0 },
 };
 
-/// Voxels along y and z: few, for it is the compiler that is to work, but so many that kernels are those of cubes.
+/// Voxels along y and z: few, because only compilation matters, but enough that kernels are those of cubes.
 constexpr int Across = 40;
 
-/// An ellipsoid that is densest in its middle, density 1.
+/// Density of an ellipsoid that decreases from 1 at its centre.
 vtkSmartPointer<vtkImageData> Density(int length, double around)
 {
   auto image = vtkSmartPointer<vtkImageData>::New();
@@ -65,7 +65,7 @@ bool PrepareScene(int number)
 {
   const Scene& scene = Scenes[number];
   int errors = 0;
-  vtkNew<vtkCallbackCommand> count; // and not print: whoever solves will be told
+  vtkNew<vtkCallbackCommand> count; // of errors and warnings, which are not printed
   count->SetClientData(&errors);
   count->SetCallback([](vtkObject*, unsigned long event, void* all, void*) {
     *static_cast<int*>(all) += event == vtkCommand::ErrorEvent ? 1 : 0;
@@ -80,7 +80,7 @@ bool PrepareScene(int number)
   }
   medium->SetInputDataObject(Density(scene.length, scene.around));
   medium->SetPreset(scene.preset);
-  medium->SetMillimetresPerUnit(1e4); // of presets: a cloud that light is scattered in many times
+  medium->SetMillimetresPerUnit(1e4); // length unit of the presets, with which a cloud is optically thick
   light->SetInputConnection(medium->GetOutputPort());
   picture->SetInputConnection(light->GetOutputPort());
   picture->Update();

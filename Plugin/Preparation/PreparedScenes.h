@@ -2,14 +2,15 @@
 
 #include <string>
 
-/// Scenes that have in common with those of users what kernels are compiled for: the classes of grid sizes, and what
-/// untouched filters make of a density.
+/// Number of prepared scenes. Kernels are compiled for the same variants as in typical user scenes: classes of grid
+/// sizes, and a density field with default filter settings.
 int PreparedSceneCount();
 
-/// Density to medium, light and picture, by filters with nothing set but the medium's preset.
-/// @param number  from 0, the likeliest first
+/// Runs the default pipeline, from density to medium, light and picture; only the medium's preset and unit of length
+/// are set.
+/// @param number  number of the scene, from 0, most likely scenes first
 /// @return whether no filter reported an error
 bool PrepareScene(int number);
 
-/// Another one whenever the library of filters is.
+/// Identifies the build of the filters' library.
 std::string LibraryVersion();

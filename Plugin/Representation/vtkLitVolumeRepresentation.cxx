@@ -20,7 +20,8 @@ vtkStandardNewMacro(vtkLitVolumeRepresentation);
 
 namespace
 {
-/// What does not change when the filter behind it runs again for another asker.
+/// A shallow copy of an input, which does not change if the upstream filter runs again for another consumer; null if
+/// there is no input.
 vtkSmartPointer<vtkDataObject> CopyOf(vtkInformationVector* inputs)
 {
   vtkSmartPointer<vtkDataObject> copy;
@@ -51,7 +52,7 @@ int vtkLitVolumeRepresentation::FillInputPortInformation(int port, vtkInformatio
 {
   information->Set(
     vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), port == vtkMediumRayCaster::LIGHTS ? "vtkPolyData" : "vtkImageData");
-  information->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1); // other processes have none
+  information->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1); // other processes have no inputs
   return 1;
 }
 
@@ -66,7 +67,7 @@ int vtkLitVolumeRepresentation::RequestData(
   return done;
 }
 
-/// The superclass has given the mapper the piece without its neighbours' cells.
+/// Gives the mapper this rank's piece with ghost cells; the superclass has given it the piece without. Collective.
 void vtkLitVolumeRepresentation::SharePieces(vtkDataObject* surrounded)
 {
   vtkMultiProcessController* const ranks = vtkMultiProcessController::GetGlobalController();
@@ -78,7 +79,7 @@ void vtkLitVolumeRepresentation::SharePieces(vtkDataObject* surrounded)
   }
 }
 
-/// One layer of the neighbours' cells: light is interpolated between pieces.
+/// Requests one layer of ghost cells, because light is interpolated across pieces.
 int vtkLitVolumeRepresentation::RequestUpdateExtent(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
@@ -94,7 +95,7 @@ int vtkLitVolumeRepresentation::RequestUpdateExtent(
   return done;
 }
 
-/// Before a frame, when all ranks know its camera: vtkSynchronizedRenderers has heard of the same event before.
+/// Called before a frame, when all ranks have its camera: vtkSynchronizedRenderers has handled the same event before.
 void vtkLitVolumeRepresentation::BeforeFrame(vtkObject* renderer, unsigned long, void*)
 {
   if (this->GetVisibility())
@@ -126,7 +127,7 @@ bool vtkLitVolumeRepresentation::RemoveFromView(vtkView* view)
   return this->Superclass::RemoveFromView(view);
 }
 
-/// The mapper asks for no array and no transfer function.
+/// Sets mapper and visibility only: the mapper uses neither an active array nor transfer functions.
 void vtkLitVolumeRepresentation::UpdateMapperParameters()
 {
   this->Actor->SetMapper(this->VolumeMapper);

@@ -8,16 +8,16 @@ class vtkMediumRayCaster;
 
 /**
  * @class vtkLitVolumeRepresentation
- * @brief a medium with its light in ParaView's 3D view
+ * @brief ParaView representation of a medium with its light in a 3D view
  *
- * Shows vtkImageData by vtkLitVolumeMapper. Like the volumes of its superclass it is drawn where the data are: with a
- * server by the server, in pieces by several ranks. Input 1: lights, input 2: environment, both optional, as
- * vtkMediumRayCaster has them. The setters are those of vtkMediumRayCaster.
+ * Shows vtkImageData by vtkLitVolumeMapper. Like the superclass it renders where the data are: on the server if there
+ * is one, with one piece per rank on several ranks. Input 1: lights, input 2: environment, both optional, as in
+ * vtkMediumRayCaster. The setters are those of vtkMediumRayCaster.
  *
- * Several ranks show what one would show of the whole (vtkLitVolumeMapper::SetPiece): before each frame they tell each
- * other what is seen of their pieces. With Exposure 0 they agree on one when their data change.
+ * Several ranks show the same picture as a single one (vtkLitVolumeMapper::SetPiece): before each frame they exchange
+ * the pixels of their pieces. With Exposure 0 they choose a common exposure when their data change.
  *
- * Transfer functions and the other properties of the superclass that colour a volume are not used.
+ * The superclass's transfer functions and other properties for colouring a volume are not used.
  */
 class TYNDALLREPRESENTATION_EXPORT vtkLitVolumeRepresentation : public vtkImageVolumeRepresentation
 {
@@ -49,7 +49,7 @@ public:
   void SetDevice(const char* name);
   ///@}
 
-  /// What radiance was multiplied by in the last frame; 0 before.
+  /// Factor by which radiance was multiplied in the last frame; 0 before the first.
   double GetUsedExposure();
 
   ///@{

@@ -8,7 +8,7 @@
 
 namespace
 {
-constexpr int Alpha = 3; ///< the component
+constexpr int Alpha = 3; ///< component of alpha
 }
 
 vtkStandardNewMacro(vtkVolumeUnitDistance);

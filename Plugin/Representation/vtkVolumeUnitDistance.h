@@ -7,11 +7,11 @@
 
 /**
  * @class vtkVolumeUnitDistance
- * @brief across which distance the alpha of a volume shown in its own colours is its opacity
+ * @brief sets the unit distance of opacity for a volume that is shown in its own colours
  *
- * ParaView's property Scalar Opacity Unit Distance is that of a volume's first component. Where a volume has its own
- * red, green, blue and alpha, VTK takes the fourth's (vtkVolumeProperty::SetScalarOpacityUnitDistance(3, d)), which
- * nothing in ParaView sets. This does, for the volume that a composite representation shows at the moment.
+ * ParaView's property Scalar Opacity Unit Distance sets that of a volume's first component. If a volume has its own
+ * red, green, blue and alpha, VTK uses the fourth component's (vtkVolumeProperty::SetScalarOpacityUnitDistance(3, d)),
+ * which ParaView cannot set. This class sets it, for the volume that a composite representation currently shows.
  */
 class TYNDALLREPRESENTATION_EXPORT vtkVolumeUnitDistance : public vtkObject
 {
@@ -20,10 +20,11 @@ public:
   vtkTypeMacro(vtkVolumeUnitDistance, vtkObject);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  /// The representation, a vtkCompositeRepresentation. To come before SetDistance.
+  /// Sets the representation, a vtkCompositeRepresentation. To be called before SetDistance.
   void SetRepresentation(vtkObject* representation);
 
-  /// Length, above 0. Nothing happens where it is not, or something else than a volume is shown.
+  /// Sets the unit distance, a length above 0. No effect for other values, or if the representation does not show a
+  /// volume.
   void SetDistance(double distance);
 
 protected:
