@@ -4,7 +4,7 @@
 /// Initialises new representations in views according to hints of the proxy that they show, for which ParaView has no
 /// hints of its own:
 ///
-/// - <DirectColors port="P"/>: output P (without `port`, every output) is shown in its own colours, without a color
+/// - <DirectColors port="P"/>: output P (without `port`, every output) is shown in its own colours, without a colour
 ///   bar. ParaView would map bytes of red, green and blue through a colour map.
 /// - <ColoredBy port="P" array="NAME"/>: output P is coloured by cell array NAME, if there is one, whatever the input
 ///   was coloured by. If the array's colour map is new and the array's largest value is at least a hundred times its

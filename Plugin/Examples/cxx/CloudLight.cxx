@@ -17,7 +17,7 @@
 
 namespace
 {
-/// A ball whose density decreases outwards, in grams of water per cubic metre, on 32^3 voxels of 10 m.
+/// A ball of 32^3 voxels of 10 m that gets thinner outwards, in grams of water per cubic metre.
 vtkSmartPointer<vtkImageData> Cloud()
 {
   constexpr int n = 32;
@@ -43,7 +43,7 @@ int main(int argc, char* argv[])
   medium->SetPreset(vtkParticipatingMedium::CLOUD);
   medium->SetMillimetresPerUnit(1000.0);
 
-  vtkNew<vtkLightRig> sun; // default: one sun, 45 degrees above the horizon
+  vtkNew<vtkLightRig> sun; // untouched: one sun, 45 degrees high
 
   vtkNew<vtkLightPropagationMaps> light;
   light->SetInputConnection(medium->GetOutputPort());
@@ -55,7 +55,7 @@ int main(int argc, char* argv[])
   vtkDataArray* balance = result->GetFieldData()->GetArray("energy_balance");
   if (!balance)
   {
-    return 1; // VTK has printed the error
+    return 1; // what went wrong is on the error stream
   }
   std::cout << "entered " << balance->GetTuple1(0) << " W, absorbed " << balance->GetTuple1(2) << " W, escaped "
             << balance->GetTuple1(3) << " W, left over " << balance->GetTuple1(4) << " W after " << light->GetOrders()
