@@ -10,7 +10,7 @@
 #include "vtkNew.h"
 #include "vtkSMProxy.h"
 #include "vtkSMProxyManager.h"
-#include "vtkSMPVRepresentationProxy.h" // RemotingViews wants GLEW; of it only inline and virtual functions are called
+#include "vtkSMPVRepresentationProxy.h" // RemotingViews needs GLEW; only its inline and virtual functions are called
 #include "vtkSMSessionProxyManager.h"
 #include "vtkSMTransferFunctionProxy.h"
 

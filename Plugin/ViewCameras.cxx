@@ -14,7 +14,7 @@
 #include "vtkSMProxyManager.h"
 #include "vtkSMProxySelectionModel.h"
 #include "vtkSMSessionProxyManager.h"
-#include "vtkSMViewProxy.h" // RemotingViews wants GLEW; of it only inline and virtual functions are called
+#include "vtkSMViewProxy.h" // RemotingViews needs GLEW; only its inline and virtual functions are called
 
 #include <algorithm>
 #include <functional>

@@ -6,7 +6,7 @@
 #include "vtkCallbackCommand.h"
 #include "vtkNew.h"
 #include "vtkSmartPointer.h"
-#include "vtkSMPVRepresentationProxy.h" // RemotingViews wants GLEW; of it only inline and virtual functions are called
+#include "vtkSMPVRepresentationProxy.h" // RemotingViews needs GLEW; only its inline and virtual functions are called
 #include "vtkSMSessionProxyManager.h"
 
 #include <cstring>
@@ -67,7 +67,7 @@ void GiveDistance(vtkSMProxy* representation)
   }
 }
 
-/// Sets the end points of the opacity function to 0 and 255, if they are not; points between are left to the user.
+/// Resets the opacity function if its range is not 0 to 255; otherwise leaves the user's points alone.
 void GiveRange(vtkSMProxy* function)
 {
   vtkSMPropertyHelper points(function, "Points");

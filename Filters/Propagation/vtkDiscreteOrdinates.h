@@ -48,9 +48,9 @@ class LastLight;
  *
  * and field data `energy_balance` (W: entered, emitted, absorbed, escaped, left over), `face_power_out` (W through -x,
  * +x, -y, +y, -z, +z), `half_range_flux`, `left_out` (what the scene did not need), `device`, `stored_directions`.
- * Output 1: vtkTable, one row a scattering order (as published: a step): `iteration`, `seconds`, `residual`, `change`,
- * `absorbed`, `escaped`, `left_over`, and with WarmStart `sweeps_saved`: how many rows later the last cold solve (with
- * zero initial guess) reached the same residual.
+ * Output 1: vtkTable, one row per scattering order (as published: a step): `iteration`, `seconds`, `residual`,
+ * `change`, `absorbed`, `escaped`, `left_over`, and with WarmStart `sweeps_saved`: how many rows later the last cold
+ * solve (with zero initial guess) reached the same residual.
  *
  * Source iteration is not accelerated: in optically thick media that absorb little, vtkLightPropagationMaps is faster.
  * The radiance in all directions has to fit in device memory: if it does not, an error states the required memory

@@ -53,9 +53,9 @@ class LastLight;
  * `stored_directions`; if source iteration is accelerated and a voxel at a face of the box is thicker than half a mean
  * free path, `surface_radiance`, W/(length^2 sr): the radiance that leaves each voxel face on the boundary, tuples face
  * by face (-x to +z), row by row, components at the cosines 0.05, 0.25, 0.6, 1 to the normal (times red, green, blue).
- * Output 1: vtkTable, one row a scattering order: `iteration`, `seconds`, `residual`, `change`, `absorbed`, `escaped`,
- * `left_over`, and with WarmStart `sweeps_saved`: how many rows later the last cold solve (with zero initial guess)
- * reached the same residual.
+ * Output 1: vtkTable, one row per scattering order: `iteration`, `seconds`, `residual`, `change`, `absorbed`,
+ * `escaped`, `left_over`, and with WarmStart `sweeps_saved`: how many rows later the last cold solve (with zero initial
+ * guess) reached the same residual.
  *
  * Without lights, environment, SkyColor, FaceRadiance and emission the result is dark, with a warning.
  *

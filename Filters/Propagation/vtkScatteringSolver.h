@@ -40,8 +40,7 @@ struct SolverScene;
  * caches the solution of the whole image, or of its piece if the domain is decomposed.
  *
  * In a parallel pipeline light crosses the boundaries between pieces: each rank solves on its piece, and ranks exchange
- * light; or, if Decomposition says so or that is better, every rank solves on the whole domain and returns the
- * requested piece.
+ * light; or, depending on Decomposition, every rank solves on the whole domain and returns the requested piece.
  *
  * With LitColor output 0 also has the cell array `lit_color`, unsigned char, 4 components: the display colour of each
  * voxel, red, green, blue, not multiplied by alpha, and its opacity. A volume mapper that uses these components

@@ -18,7 +18,7 @@
  * | column | type | unit | meaning |
  * |---|---|---|---|
  * | `direction` | double x 3 | 1 | unit vector |
- * | `weight` | double | sr | solid angle it stands for |
+ * | `weight` | double | sr | solid angle of the quadrature point |
  * | `u_1`, `u_2`, ... | double | 1/sqrt(sr) | factors, orthonormal by the weights |
  *
  * Output 1: vtkTable, one row for each number of terms

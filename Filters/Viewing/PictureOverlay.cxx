@@ -13,7 +13,7 @@ namespace tyndall
 {
 namespace
 {
-// Of OpenGL's headers, which those of VTK do not need.
+// Constants of OpenGL's headers, which VTK's headers do not include.
 constexpr unsigned int GlOne = 1;
 constexpr unsigned int GlOneMinusSourceAlpha = 0x0303;
 constexpr unsigned int GlBlend = 0x0BE2;
