@@ -9,21 +9,24 @@
 
 namespace tyndall
 {
-/// What faces of the box give back of the light that leaves through their cells: the reflectance of a face
-/// (Illumination::faceAlbedo) times the power that left through a cell comes in through the same cell, the same
-/// radiance along all directions (Lambert; numerics.md, section 7.12). Of power nothing is lost or made, whatever the
-/// directions.
+/// Lambertian reflection by the faces of the box (numerics.md, section 7.12). The power that leaves through a cell of a
+/// face, times the albedo of the face (Illumination::faceAlbedo), comes back through the same cell as radiance that is
+/// the same in all directions. Power is conserved for every quadrature.
 ///
-/// Rays bring and take light through cells in a pattern of their own: what they took is given back over what radiance 1
-/// brings through the same cell, so that even light stays even. What comes along other rays (lamps) does not have that
-/// pattern: it is given back over the mean of the face.
+/// The rays of a sweep do not cross all cells evenly. The radiance that comes back through a cell is therefore the
+/// reflected power divided by the power that radiance 1 carries into the same cell, so that uniform light stays
+/// uniform. Light that leaves along other rays (lamps) does not have that uneven pattern: its reflected power is
+/// divided by the mean over the face.
 class FaceReflection
 {
 public:
-  /// @param powerIn  W that radiance 1 brings through each cell along the rays
+  /// @param grid  voxels of the box
+  /// @param channels  1 or 3
+  /// @param powerIn  by cell: W that radiance 1 carries into the box along the rays of a sweep
+  /// @param albedo  by face
   FaceReflection(const Grid& grid, int channels, std::vector<double> powerIn, const std::array<Rgb, 6>& albedo);
 
-  /// From now on rays come in through other parts of the cells.
+  /// Replaces powerIn, for rays that cross the cells elsewhere.
   void SetPowerIn(std::vector<double> powerIn);
 
   const Grid& Box() const { return this->TheGrid; }
@@ -32,23 +35,25 @@ public:
   std::size_t Cells() const { return this->FaceOfCell.size(); }
   int Channels() const { return this->ChannelCount; }
   int FaceOf(std::size_t cell) const { return this->FaceOfCell[cell]; }
-  /// Of [channel][cell] what comes back.
+  /// Albedo at index i of an array [channel][cell].
   double AlbedoOf(std::size_t i) const
   {
     return this->AlbedoOfFaces[this->FaceOf(i % this->Cells())][i / this->Cells()];
   }
 
-  /// Radiance that brings W in through each cell, [channel][cell] of all.
+  /// Incident radiance that carries the given powers into the box, [channel][cell].
+  /// @param swept  W that left along the rays of sweeps, [channel][cell]
+  /// @param uncollided  W that left along other rays, likewise
   std::vector<float> RadianceOf(const std::vector<double>& swept, const std::vector<double>& uncollided) const;
 
-  /// The sums over the cells of each face, of [channel][cell].
+  /// Sums of an array [channel][cell] over the cells of each face.
   std::array<Rgb, 6> PowerOfFaces(const std::vector<double>& power) const;
-  /// What radiance 1 brings through a cell along the rays, over the mean of its face.
+  /// Power that radiance 1 carries through a cell along the rays of sweeps, over the mean of its face.
   double Pattern(std::size_t cell) const;
-  /// Scaled such that the sums over faces are those of `sums`.
+  /// `power` scaled by face and channel such that each face has the total power that it has in `sums`, [channel][cell].
   std::vector<double> ScaledTo(std::vector<double> power, const std::vector<double>& sums) const;
-  std::vector<double> ScaledTo(std::vector<double> power, const std::array<Rgb, 6>& shouldBe) const; ///< W of faces
-  /// W / length^2 of W, [channel][cell]; [cell][channel] as LightField::facePower has it.
+  std::vector<double> ScaledTo(std::vector<double> power, const std::array<Rgb, 6>& shouldBe) const; ///< W, by face
+  /// Converts W, [channel][cell], to W / length^2, [cell][channel] (the layout of LightField::facePower).
   std::vector<float> PerArea(const std::vector<double>& power) const;
 
 private:
@@ -57,7 +62,7 @@ private:
   std::array<Rgb, 6> AlbedoOfFaces;
   bool AnyAlbedo;
   std::vector<int> FaceOfCell;
-  std::vector<double> PowerIn; ///< W that radiance 1 brings through each cell
-  std::vector<double> MeanIn;  ///< the same in the mean over its face
+  std::vector<double> PowerIn; ///< by cell: W that radiance 1 carries into the box
+  std::vector<double> MeanIn;  ///< by cell: mean of PowerIn over the face
 };
 }

@@ -8,7 +8,7 @@
 
 namespace tyndall
 {
-/// The rows of the `convergence` table, with the time since this was made.
+/// The rows of the `convergence` table, with the time since construction.
 class ConvergenceRecord
 {
 public:

@@ -7,8 +7,8 @@
 
 namespace tyndall
 {
-/// Counts where the power of one light goes, W by channel: the only place that does (numerics.md, Eq. (80)). A value: a
-/// sweep can be counted on a copy, which replaces this or is dropped.
+/// Counts the power of one solve by its fate, W by channel. No other class does this (numerics.md, Eq. (80)). A value
+/// type: a sweep can be counted on a copy that is then kept or discarded.
 class EnergyLedger
 {
 public:
@@ -20,16 +20,16 @@ public:
     this->Sums.escaped[channel] += watts;
     this->Faces[face][channel] += watts;
   }
-  /// Through a face that is not known yet.
+  /// Escaped power whose face is not known yet.
   void Escape(int channel, double watts) { this->Sums.escaped[channel] += watts; }
-  /// Says through which face W left that were counted by Escape(channel, watts).
+  /// Assigns to a face power that Escape(channel, watts) has counted.
   void AssignFace(int channel, int face, double watts) { this->Faces[face][channel] += watts; }
-  /// Shares W that escaped through unknown faces among the faces, in proportion to what is known of each.
+  /// Distributes power that escaped through unknown faces, in proportion to the known escaped power of each face.
   void ShareEscaped(const Rgb& watts);
-  /// Sets the W left over, and does not add to them.
+  /// Sets the power left over, instead of adding to it.
   void SetUnaccounted(int channel, double watts) { this->Sums.leftOver[channel] = watts; }
 
-  /// What came in and went out, of the channels of a volume.
+  /// Adds the incident and escaped powers of a sweep.
   void Count(const SweepTally& tally);
 
   const EnergyBalance& Balance() const { return this->Sums; }

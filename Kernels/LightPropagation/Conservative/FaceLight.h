@@ -11,31 +11,33 @@
 
 namespace tyndall
 {
-/// Light that leaves through the cells of the box's faces on the device, and what comes back of it.
+/// Outgoing power and reflected radiance by cell of the box faces, on the device.
 class FaceLight : public FaceReflection
 {
 public:
-  /// @param powerIn  W that radiance 1 brings through each cell along the directions of sweeps
+  /// @param powerIn  by cell: W that radiance 1 carries into the box along the directions of sweeps
   FaceLight(
     Device& device, const Grid& grid, int channels, std::vector<double> powerIn, const std::array<Rgb, 6>& albedo);
 
   const Buffer<float>& Out() const { return this->Leaving; } ///< for Deposit::faceOut
   const Buffer<float>& In() const { return this->Entering; } ///< for SweepRequest::faceIn
 
-  /// What left since the last call came along rays that are not those of sweeps.
+  /// Takes the power that left since the last call as uncollided light, which did not leave along the rays of sweeps.
   void TakeUncollided() { this->Uncollided = this->TakeOut(); }
-  /// What left since the last call, and the uncollided light before it: lets the part come in that is reflected.
-  /// @return W that come back through each face
+  /// Reflects the power that left since the last call, together with the uncollided light taken before: In() becomes
+  /// the reflected radiance.
+  /// @return reflected power by face, W
   std::array<Rgb, 6> Reflect();
-  /// Of what the last call of Reflect let in, which may be negative (WarmStart), the magnitudes by cell added up; W.
+  /// Sum over cells of the magnitude of the power that the last Reflect() let in, W. Power by cell may be negative
+  /// after a warm start.
   const Rgb& Magnitude() const { return this->LastMagnitude; }
-  /// W that left through each cell since the last call of anything here, [channel][cell].
+  /// Power that left through each cell since the last call of any method here, W, [channel][cell].
   std::vector<float> TakeOut();
-  /// Lets W come in through each cell, [channel][cell].
+  /// Sets In() such that these powers enter through each cell, W, [channel][cell].
   void LetIn(const std::vector<double>& swept, const std::vector<double>& uncollided);
 
-  /// W that left through each cell in all calls of Reflect, [channel][cell]. Of what sweeps took out the pattern of
-  /// their rays is taken away; the sums over faces are as they were.
+  /// Power that left through each cell, summed over all calls of Reflect, W, [channel][cell]. The uneven pattern of the
+  /// rays is removed from the swept part; sums over faces are unchanged.
   std::vector<double> LeftInAll() const;
 
 private:
@@ -45,9 +47,9 @@ private:
   Buffer<float> Leaving, Entering; ///< [channel][cell]
 };
 
-/// W that radiance 1 brings through each cell of the box's faces along the rays of sweeps, which come in through some
-/// planes of voxels more than through others.
-/// @param spreads  each through all cells that it stands for (Deposit::spreadsAside)
+/// By cell: W that radiance 1 carries into the box along the rays of sweeps. The rays cross some planes of voxels more
+/// often than others.
+/// @param spreads  each ray spreads its power over all cells that it represents (Deposit::spreadsAside)
 std::vector<double> SweptPowerIn(
   const Grid& grid, const std::array<bool, 3>& periodic, const SweptDirections& directions, bool spreads);
 }

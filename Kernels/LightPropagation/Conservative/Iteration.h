@@ -12,29 +12,29 @@
 
 namespace tyndall
 {
-/// What an iteration has found when it ends; the light itself is in the parts' Fluence and Flux.
+/// Result of an iteration. Fluence and flux themselves are in TransportParts::Fluence and Flux.
 struct IterationResult
 {
   EnergyLedger ledger;
   ConvergenceRecord convergence;
-  std::vector<float> fluenceDirect, surfaceRadiance; ///< as LightField has them
-  std::vector<float> firstMoments;                   ///< the same, where it asks for them
-  std::vector<double> leftByCell;                    ///< W through the faces' cells, [channel][cell], where it is kept
-  /// Angular moments of what is scattered of all light but uncollided light of lamps, as ScatteringOperator writes a
-  /// source; only where TransportParts::StoresMoments().
+  std::vector<float> fluenceDirect, surfaceRadiance; ///< as in LightField
+  std::vector<float> firstMoments;                   ///< likewise; empty: not requested
+  std::vector<double> leftByCell; ///< W that left through each face cell, [channel][cell], if requested
+  /// Angular moments of the scattered radiance of all light except uncollided light of lamps, in the layout of a source
+  /// (ScatteringOperator); only if TransportParts::StoresMoments().
   Buffer<float> shown;
-  std::vector<std::string> leftOut; ///< by the iteration
-  KeptLight kept;                   ///< for the next solve; empty: not wanted
-  bool warm = false;                ///< begun from kept light
+  std::vector<std::string> leftOut; ///< simplifications the iteration made
+  KeptLight kept;                   ///< first guess for the next solve; empty: not requested
+  bool warm = false;                ///< this solve began from kept light
 };
 
-/// How scattering orders are added up: a strategy over the same sweep and scattering. When it ends, and what its last
-/// residual means: numerics.md, section 7.9.
+/// Strategy that sums the scattering orders, over the same sweep and scattering operators. Stopping criterion and
+/// meaning of the last residual: numerics.md, section 7.9.
 class Iteration
 {
 public:
   virtual ~Iteration() = default;
-  /// @throws Aborted when the monitor says so
+  /// @throws Aborted if the monitor aborts the solve
   virtual IterationResult Run(const Monitor& monitor) = 0;
 };
 }

@@ -8,22 +8,24 @@
 
 namespace tyndall
 {
-/// What a camera needs to show scattered light along any direction, LightField::scatteredMoments and straightOn, in the
-/// solver's units and channels (numerics.md, section 14.7). Of blocks of one medium all have the same form.
+/// Data from which a camera renders scattered light along any direction: LightField::scatteredMoments and straightOn,
+/// in the solver's units and channels (numerics.md, section 14.7). All blocks of a medium store it in the same form.
 class ShownLight
 {
 public:
-  /// @param medium, scattering, basis, layout  must stay
-  /// @param values  of one angular moment, of the largest block: of degrees so many are kept as fit a gigabyte
+  /// @param medium, scattering, basis, layout  must outlive this
+  /// @param values  number of values of one angular moment in the largest block; degrees are kept as long as they fit
+  ///   one gigabyte
   ShownLight(const Medium& medium, const TruncatedScattering& scattering, const AngularBasis& basis,
     const VolumeLayout& layout, std::size_t values);
 
-  /// What goes straight on differs between the channels of a voxel.
+  /// Whether the unscattered forward part (straightOn) differs between the channels of a voxel.
   bool HasColour() const { return this->Coloured; }
-  void TakeColour(bool ofAll) { this->Coloured = ofAll; } ///< where that of another block has
+  void TakeColour(bool ofAll) { this->Coloured = ofAll; } ///< set if any block HasColour
 
+  /// Adds the data to `light`.
   /// @param shown    IterationResult::shown
-  /// @param scratch  as large, written over
+  /// @param scratch  of the same size, overwritten
   void AddTo(LightField& light, Device& device, const Buffer<float>& shown, const Buffer<float>& scratch) const;
 
 private:

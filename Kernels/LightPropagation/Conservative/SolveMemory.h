@@ -10,30 +10,30 @@
 
 namespace tyndall
 {
-/// What the memory that a solve takes depends on.
+/// Parameters that determine the memory of a solve.
 struct SolveExtent
 {
-  std::array<int, 3> size; ///< voxels, of the whole or of a rank's block
+  std::array<int, 3> size; ///< voxels of the domain or of a rank's block
   const PropagationSettings& settings;
   int channels = 1;
   int degree = 0; ///< of angular moments
   IterationScheme how = IterationScheme::SourceIteration;
-  bool byOctant = false; ///< voxels shine otherwise into each octant
-  bool byCells = false;  ///< light comes or goes by cells of the faces
-  bool ofBlock = false;  ///< a rank's block is swept, by one set of rays after the other
+  bool byOctant = false; ///< the source of a voxel differs between octants
+  bool byCells = false;  ///< light is stored by cell of the box faces
+  bool ofBlock = false;  ///< of a rank's block, swept one bundle of rays at a time
 };
 /// Collective.
 SolveExtent ExtentOf(const PropagationProblem& problem, IterationScheme how);
 
-/// Bytes that a solve takes of a device where nothing is streamed: at most, and about a quarter more than most solves.
-/// GPUs take more where there is room: arrays of their own of all ways at once (SweepOnGpu.h).
+/// Upper bound on the device memory of a solve without streaming, in bytes; about a quarter above the typical need.
+/// GPUs take more if available: separate arrays for all marching directions (SweepOnGpu.h).
 std::size_t BytesOfSolve(const Device& device, const SolveExtent& solve);
 
-/// What a solve may take of a device: what was asked for, or (0) nine tenths of what is left there; what does not fit
-/// lies in host memory. A device that works on host memory has no bound of its own.
+/// Device memory that a solve may use: `asked` bytes or, if 0, nine tenths of what is free. Arrays beyond that stay in
+/// host memory. A device that shares host memory has no limit of its own.
 MemoryBudget BudgetAskedFor(const Device& device, std::size_t asked);
 
-/// The same of the settings' budget. Where a whole solve is more than that, all arrays over voxels lie in host memory
-/// and are streamed.
+/// The same with the budget of solve.settings. If the solve needs more, all arrays over voxels stay in host memory and
+/// are streamed.
 MemoryBudget BudgetOfSolve(const Device& device, const SolveExtent& solve);
 }

@@ -13,13 +13,14 @@
 
 namespace tyndall
 {
-/// Source iteration: one scattering order after the other. Each sweep carries what the one before scattered; the
-/// fluence is their sum (numerics.md, section 6). Made and run collectively.
+/// Source iteration, one scattering order per sweep. Each sweep transports the light scattered in the one before; the
+/// fluence is the sum over orders (numerics.md, section 6). Construct and run collectively.
 class SourceIteration : public Iteration
 {
 public:
-  /// @param parts  must stay
-  /// @param kept  light of the last solve (WarmStart.h), must stay; null, on all ranks: none, and none is to be kept
+  /// @param parts  must outlive this
+  /// @param kept  light of the previous solve (WarmStart.h), must outlive this; null, on all ranks: no first guess,
+  ///   nothing is kept
   explicit SourceIteration(TransportParts& parts, const KeptLight* kept = nullptr);
   IterationResult Run(const Monitor& monitor) override;
 
@@ -55,28 +56,28 @@ private:
   const Domain& TheDomain;
   const PropagationSettings& Settings;
   std::unique_ptr<SweepOperator> Whole;
-  /// Of the first order, where much of the outside is dark and the medium too; else null.
+  /// Sweep of the first order if much of the boundary and the medium do not emit; else null.
   std::unique_ptr<SweepOperator> Lit;
-  /// Of the orders after it, where the medium leaves much of the volume empty; else null.
+  /// Sweep of the later orders if the medium leaves much of the volume empty; else null.
   std::unique_ptr<SweepOperator> Filled;
   std::optional<EscapeCorrection> Escaping;
-  std::optional<OrdersByCells> Cells;   ///< none: orders are added up one by one
-  std::optional<OctantSources> AtFaces; ///< where voxels are thick
+  std::optional<OrdersByCells> Cells;   ///< coarse-mesh DSA; none: plain source iteration
+  std::optional<OctantSources> AtFaces; ///< sources by octant of optically thick voxels
   WarmStart Warm;
-  std::vector<float> Direct; ///< W / length^2, [channel][stride], where light is to be kept
-  Buffer<float> Moments;     ///< of scattered light of all orders, W length, where they are to be kept
-  double LitPart = 1.0;      ///< of all rays, in the first order
+  std::vector<float> Direct; ///< W / length^2, [channel][stride], if light is kept for the next solve
+  Buffer<float> Moments;     ///< of scattered light, summed over orders, W length, if kept
+  double LitPart = 1.0;      ///< fraction of the rays that the first order sweeps
 
   IterationResult Result;
-  int Order = 0;         ///< that is under way
+  int Order = 0;         ///< current scattering order
   bool Shining = false;  ///< the source is not zero
-  Rgb Scattered = {};    ///< W, by the order just done
-  Rgb OnTheWay = {};     ///< W, rays that go round a periodic axis in the next sweep
+  Rgb Scattered = {};    ///< W, scattered in the last order
+  Rgb OnTheWay = {};     ///< W that wraps around periodic axes in the next sweep
   Rgb WasOnTheWay = {};  ///< W, the same before the last sweep
-  Rgb Reflected = {};    ///< W, by faces, that come in with the next sweep
-  Rgb Stranded = {};     ///< W, of uncollided light whose rays go round a periodic axis without end
-  Rgb Escaped = {};      ///< W, by the correction
-  Rgb AllScattered = {}; ///< W, by all orders so far
+  Rgb Reflected = {};    ///< W reflected by faces, incident in the next sweep
+  Rgb Stranded = {};     ///< W of uncollided light that wraps around without end
+  Rgb Escaped = {};      ///< W, by EscapeCorrection
+  Rgb AllScattered = {}; ///< W, scattered in all orders so far
   std::array<RestOfOrders, 3> Rest;
   double Residual = 1.0;
 };
