@@ -1,6 +1,7 @@
-// Light in the voxels outside a box becomes fluence. A work-item a value of a channel.
-// path     W length
-// fluence  W / length^2, added to
+// Adds path integrals to the fluence of all voxels outside a box. One work-item per voxel and channel.
+//   path     W length
+//   fluence  W / length^2, added to
+//   first, filled  first voxel and size of the box
 __kernel void add_outside(const __global float* path, __global float* fluence, ulong stride, float per_volume,
   int3 size, int3 first, int3 filled)
 {

@@ -30,20 +30,21 @@
 
 namespace tyndall
 {
-/// A rank's block of a problem on its device, with the quadratures it is solved with and the sources of its light: what
-/// the iterations are made of. Holds no state of a solve but the arrays that they work in. Directions, boundary sources
-/// and the cells of the box's faces are those of the whole domain; arrays over voxels are of the block.
+/// Building blocks of the iterations: a rank's block of a problem on its device, the quadratures of the solve and the
+/// light sources. Holds no state of a solve except the arrays that the iterations work in. Directions, boundary sources
+/// and cells of the box faces are those of the whole domain; arrays over voxels are of the block.
 class TransportParts
 {
 public:
-  /// Not collective: what may fail here fails on one rank alone.
-  /// @param problem  must stay
-  /// @param usual  directions of scattered light
-  /// @param finer  of light from outside until it meets the medium
-  /// @throws DeviceError if the arrays do not fit; InvalidInput where rays are too few (BoundaryLight.h)
+  /// Not collective: may throw on one rank alone.
+  /// @param problem  must outlive this
+  /// @param usual  quadrature of scattered light
+  /// @param finer  quadrature of boundary light until its first collision
+  /// @throws DeviceError if the arrays do not fit
+  /// @throws InvalidInput if there are too few rays (BoundaryLight.h)
   TransportParts(Device& device, const PropagationProblem& problem, IterationScheme how, DirectionSet usual,
     const UncollidedDirections& finer);
-  TransportParts(const TransportParts&) = delete; // lights see directions that this owns
+  TransportParts(const TransportParts&) = delete; // light sources refer to directions that this owns
   TransportParts& operator=(const TransportParts&) = delete;
 
   Device& TheDevice;
@@ -53,103 +54,108 @@ public:
   const MediumOnDevice OnDevice;
   const std::unique_ptr<const ScatteringOperator> Scattering;
 
-  /// Along the directions of scattered light.
+  /// Quadrature of scattered light.
   const SweptDirections Usual;
-  /// Of the moments in which light is scattered; null: all is isotropic, or the block has no voxels.
+  /// Basis of the angular moments of scattering; null: scattering is isotropic, or the block has no voxels.
   const AngularBasis* Basis = nullptr;
-  const UncollidedDirections Finer;            ///< of light from outside until it meets the medium
-  std::unique_ptr<const SweptDirections> Fine; ///< those directions; null: the usual ones
-  /// FineBoundary: along the finer directions; null where nothing comes along them. UsualBoundary: what sweeps carry,
-  /// all the rest; where orders are accelerated by the whole balance all that comes in.
+  const UncollidedDirections Finer;            ///< quadrature of boundary light until its first collision
+  std::unique_ptr<const SweptDirections> Fine; ///< sweeps along Finer; null: along Usual
+  /// Boundary sources. FineBoundary: those along the finer quadrature; null if there are none. UsualBoundary: those
+  /// that sweeps carry along the usual quadrature, which are all others; with DSA, all boundary light.
   std::unique_ptr<const BoundaryLight> UsualBoundary, FineBoundary;
-  /// By cells of the box's faces: where they reflect, or face power is asked for; else null.
+  /// Light by cell of the box faces, if faces reflect or face power is requested; else null.
   std::unique_ptr<FaceLight> Faces;
-  std::vector<Light> Lamps; ///< those of the scene and the peaks of the environment
+  std::vector<Light> Lamps; ///< lamps of the scene, and peaks of the environment
   Environment FarAway;      ///< the environment without its peaks
   SplitEmission Emission;   ///< of the medium
-  /// What empty voxels emit goes along these until it meets the medium; null: none emits, or it goes with the rest.
+  /// Quadrature for the emission of empty voxels, until its first collision; null: no empty voxel emits, or its
+  /// emission is swept with the rest.
   std::unique_ptr<const SweptDirections> OfVacuum;
-  std::unique_ptr<const GivenLight> Given; ///< that another solver found; null: none
+  std::unique_ptr<const GivenLight> Given; ///< uncollided light from another solver; null: none
 
-  /// [channel][stride]; flux [channel][x, y, z][stride], empty where net flux is not asked for. Where light has angular
-  /// moments, Source and Path have them [function][channel][stride], and Source those of beams behind them.
+  /// Arrays over voxels, [channel][stride]; Flux [channel][x, y, z][stride], empty if net flux is not requested. With
+  /// angular moments, Source and Path are [function][channel][stride], and the sources of beams follow in Source.
   Buffer<float> Source, Path, Flux, Fluence;
 
   const Domain& TheDomain() const { return this->Problem.TheDomain(); }
   bool IsEmpty() const { return this->TheDomain().IsEmpty(); } ///< the block has no voxels
-  /// Writes what the medium emits, and what of given light goes straight on, to Source. Collective; to be called first.
+  /// Writes the emission of the medium, and the unscattered forward part of given light, to Source. Collective; call
+  /// before any other method.
   void LoadSource();
-  /// Sweeps read Source from the first on: it shines, or nothing is left out.
+  /// Whether Source is non-zero in the first sweep, or optimisations are off (settings.leaveOut).
   bool HasSource() const { return this->MediumShines; }
-  /// What sweeps along the usual directions carry of the light from outside; empty: nothing.
+  /// Boundary source of sweeps along the usual directions; empty: none.
   SweepBoundary BoundaryOfSweeps() const;
   bool SweepCarriesBoundarySource() const { return this->UsualBoundary->Shines(); }
-  /// The light of FineBoundary along the usual directions.
+  /// The boundary source of FineBoundary, represented in the usual quadrature.
   BoundaryLight FinePartAlongUsual() const;
 
-  /// The light of one source, added to where `deposit` says. Collective, as all that adds or finds uncollided light.
-  /// @return all channels, of all ranks
+  /// Adds the uncollided light of one source to `deposit`. Collective, as are all methods that add or find uncollided
+  /// light.
+  /// @return tally of all channels, summed over ranks
   SweepTally AddUncollided(const UncollidedSource& source, const Deposit& deposit, const Monitor& monitor);
-  /// The same into arrays of its own, read back.
+  /// Result of AddUncollided in separate arrays on the host.
   struct UncollidedPath
   {
-    std::vector<float> path; ///< as the deposit has it
+    std::vector<float> path; ///< W length, in the layout of a deposit
     SweepTally tally;
   };
   struct UncollidedFlux : UncollidedPath
   {
-    std::vector<float> flux; ///< the same; empty where it is not asked for
+    std::vector<float> flux; ///< likewise; empty: not requested
   };
   UncollidedPath FindUncollidedPath(const UncollidedSource& source, const Monitor& monitor);
   UncollidedFlux FindUncollided(const UncollidedSource& source, const Monitor& monitor);
-  /// Uncollided light of a sky of radiance 1, along the finer directions and along the usual ones. By reciprocity it is
-  /// also what leaves the box of a source of 1 in each voxel (numerics.md, Eq. (45)).
+  /// Uncollided light of a uniform sky of radiance 1, along the finer and the usual quadrature. By reciprocity this is
+  /// also the power that escapes from a source of 1 in each voxel (numerics.md, Eq. (45)).
   struct EvenSky
   {
     UncollidedPath fine, usual;
   };
   EvenSky FindEvenSky(const Monitor& monitor);
 
-  /// The lamps of a scene and those that stand for the peaks of its environment along these directions, in its units.
+  /// Lamps of a scene, and lamps that represent the peaks of its environment along these directions, in its units.
   std::vector<Light> LampsOf(const Illumination& illumination) const;
   using Sources = std::vector<std::unique_ptr<UncollidedSource>>;
   bool FacesReflect() const { return this->Faces && this->Faces->Reflects(); }
-  /// Deposit::spreadsAside: but for light that comes back, through the cells that it comes in through.
+  /// Deposit::spreadsAside: true if face light is stored and no face reflects. Reflected light enters through the cells
+  /// it left through, so it must not be spread.
   bool SpreadsAside() const { return this->Faces && !this->Faces->Reflects(); }
-  /// What comes in by cells, for SweepRequest::faceIn; null: nothing.
+  /// Incident radiance by cell, for SweepRequest::faceIn; null: none.
   const Buffer<float>* LightByCells() const { return this->FacesReflect() ? &this->Faces->In() : nullptr; }
 
   Sources LampSources() const;
   Sources BrightEmissionSources() const;
-  /// Small bright emission and given light: what is not of lamps, and not swept.
+  /// Localised emission and given light: all uncollided light that neither comes from lamps nor is swept.
   Sources OtherSources() const;
-  /// What empty voxels emit, where it goes along directions of its own.
+  /// Emission of empty voxels, if it has a quadrature of its own (OfVacuum).
   Sources VacuumSources() const;
-  /// What the usual directions carry of what the medium emits, into a source; nothing where it does not.
-  /// @return whether any of it shines
+  /// Writes the emission that sweeps along the usual directions carry to `source`; writes nothing if there is none.
+  /// @return whether any of it is non-zero
   bool LoadEmission(Buffer<float>& source) const;
-  void CountEmission(EnergyLedger& ledger) const; ///< all that the medium emits, however it is carried; collective
+  void CountEmission(EnergyLedger& ledger) const; ///< counts all emission of the medium; collective
 
-  Deposit WholeDeposit() const;             ///< path, and flux where it is asked for
-  std::vector<AxisBundles> AllRays() const; ///< of the usual directions
-  /// Of the usual directions, for SweepRequest::angular; null: all is isotropic.
+  Deposit WholeDeposit() const;             ///< path, and flux if requested
+  std::vector<AxisBundles> AllRays() const; ///< along the usual directions
+  /// Angular moments along the usual directions, for SweepRequest::angular; null: scattering is isotropic.
   const AngularValues* UsualValues() const { return this->Angular ? &this->Angular->Values() : nullptr; }
-  void DarkenBeams();                                ///< in Source
-  BeamsInSource BeamsOfSource();                     ///< where orders are added up one by one
-  void LightBeams(const Buffer<float>& given) const; ///< in Source, as they are in another one
+  void DarkenBeams();                                ///< sets the sources of beams in Source to 0
+  BeamsInSource BeamsOfSource();                     ///< for source iteration
+  void LightBeams(const Buffer<float>& given) const; ///< copies the sources of beams from `given` to Source
   std::size_t BeamValues() const { return this->Angular ? this->Angular->Beams() * this->Layout.Values() : 0; }
-  /// What is scattered is handed out in angular moments.
+  /// Whether the angular moments of scattered light are part of the result.
   bool StoresMoments() const
   {
     return this->Problem.Scattering().Degree() > 0 && this->Problem.Settings().storeMoments;
   }
-  int Functions() const;                                              ///< of the basis; 1: none
-  const SweptMoments* Moments() const { return this->Angular.get(); } ///< null where Basis is
-  /// The one place where an implementation of the sweep is chosen. Collective.
+  int Functions() const;                                              ///< in the basis; 1: isotropic
+  const SweptMoments* Moments() const { return this->Angular.get(); } ///< null if Basis is null
+  /// Chooses and makes an implementation of the sweep; no other function does. Collective.
   std::unique_ptr<SweepOperator> MakeSweep(const SweepRequest& request);
-  /// Whether MakeSweep sweeps a part of the grid (SweepRequest::box).
+  /// Whether MakeSweep can sweep a part of the grid (SweepRequest::box).
   bool SweepsParts() const { return this->TheDomain().IsSerial(); }
-  /// Of values by voxels' faces, [channel][face][stride], those beyond the block's faces. Collective.
+  /// Fetches the values beyond the faces of this block from its neighbours. Collective.
+  /// @param byFaces  values by face of each voxel, [channel][face][stride]
   BeyondFaces FetchBeyond(const Buffer<float>& byFaces);
 
 private:
@@ -165,11 +171,11 @@ private:
   SweepTally SumOfVoxels(const SweepTally& own) const;
 
   bool MediumShines = false;
-  std::unique_ptr<const SweptMoments> Angular; ///< null: all is isotropic, or the block has no voxels
+  std::unique_ptr<const SweptMoments> Angular; ///< null: isotropic, or the block has no voxels
   SweepWorkspace Workspace;
   BlockWorkspace PipelineWorkspace;
-  std::unique_ptr<AcrossFaces> Across;      ///< null: the block is the whole grid
-  std::unique_ptr<LampsInBlocks> NearLamps; ///< null until there is one
+  std::unique_ptr<AcrossFaces> Across;      ///< null: the block is the domain
+  std::unique_ptr<LampsInBlocks> NearLamps; ///< null until first used
 };
 
 /// A problem's parts, with the quadratures that suit it. Collective.

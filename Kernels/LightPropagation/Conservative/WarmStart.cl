@@ -1,7 +1,7 @@
 #include "LightPropagation/Sweep/MomentPlacesShared.h"
 
-// Of a source that can be negative, the root mean square over all directions, summed over the voxels of a row: at least
-// the power that it adds or takes. A work-item a row of a channel.
+// Magnitude of a source that may be negative: its root mean square over directions, summed over the voxels of a row.
+// This is an upper bound on the power it adds or removes. One work-item per row and channel.
 //   source  W / (length^3 sr), with its angular moments (MomentPlacesShared.h)
 //   tally   [channel][row]
 __kernel void sum_magnitudes(MomentPlaces places, const __global float* source, __global float* tally, ulong stride)

@@ -8,44 +8,45 @@
 
 namespace tyndall
 {
-/// Where a solve begins: in the dark, or at the scattered light of the last one (numerics.md, section 6.4). Unscattered
-/// light is found anew in any case. A guess changes how many sweeps there are, not what they lead to: iterations go on
-/// from its error, which is measured as anywhere else.
-/// Made and called collectively; a rank keeps the light of its block.
+/// First guess of a solve: zero, or the scattered light of the previous solve (numerics.md, section 6.4). Uncollided
+/// light is always computed anew. A guess changes the number of sweeps, not the limit: the iteration continues from the
+/// measured error of the guess.
+/// Construct and call collectively; each rank keeps the light of its block.
 class WarmStart
 {
 public:
-  /// @param parts  must stay
-  /// @param kept  null, on all ranks: nothing is begun from or kept; must stay
-  /// @param method  in words, how orders are added up
+  /// @param parts  must outlive this
+  /// @param kept  must outlive this; null, on all ranks: start from zero and keep nothing
+  /// @param method  name of the iteration scheme
   WarmStart(const TransportParts& parts, const KeptLight* kept, const char* method);
 
-  bool Keeps() const { return this->Kept != nullptr; } ///< this solve's light is wanted
-  /// Whether this solve begins from kept light; all ranks or none.
+  bool Keeps() const { return this->Kept != nullptr; } ///< keep the light of this solve
+  /// Whether this solve begins from kept light; the same on all ranks.
   bool Begins() const { return this->Keeps() && this->WhyNot.empty(); }
   std::vector<std::string> LeftOut() const;
 
-  /// To be told where light is kept. Scales kept light by how what is scattered first has changed.
-  /// @param direct  unscattered fluence, W / length^2, [channel][stride]
+  /// Scales the kept light by the change in first-scattered power since the previous solve. Required if Keeps().
+  /// @param direct  uncollided fluence, W / length^2, [channel][stride]
   void Prepare(const std::vector<float>& direct);
-  /// Kept light as it is guessed, W length, [function][channel][stride].
+  /// The first guess, W length, [function][channel][stride].
   const Buffer<float>& Guess() const { return this->Path; }
   const std::vector<float>& Guessed() const { return this->Scaled; } ///< the same on the host
-  /// W that are scattered of it, on all ranks.
+  /// Power that the guess scatters, W, summed over ranks.
   const Rgb& GuessedPower() const { return this->Power; }
-  /// By which the last iterations of the last solves fell, each over the one before; 0: not known, it was dark.
+  /// Ratio of the last two iterations of the previous solve; 0: not known, because the channel was dark.
   double Rate(int channel) const { return this->Kept->rate[channel]; }
 
-  /// Adds what is scattered of the guess to a source, and takes that away again.
+  /// Adds the scattering source of the guess to `source`; TakeGuessFrom subtracts it again.
   void AddGuessTo(const Buffer<float>& source) const;
   void TakeGuessFrom(const Buffer<float>& source);
-  /// Of a source that can be negative, W by channel: its root mean square over all directions, summed over voxels.
+  /// Magnitude of a source that may be negative, W by channel: root mean square over directions, summed over voxels.
   Rgb MagnitudeOf(const Buffer<float>& source) const;
 
-  /// What is left for the next solve.
-  /// @param base  fluence that the next solve finds without a guess; its guess is what all fluence has beyond that
-  /// @param moments  what the others have beyond it, as Guess() is; the first function is not read. Empty: none
-  /// @param rate  of the last iteration over the one before
+  /// Light to keep for the next solve.
+  /// @param base  fluence that the next solve finds without a guess; the guess is the total fluence minus this
+  /// @param moments  higher angular moments minus theirs, in the layout of Guess(); the first function is not read.
+  ///   Empty: none
+  /// @param rate  ratio of the last two iterations
   KeptLight Leave(const std::vector<float>& base, const std::vector<float>& moments, const Rgb& rate) const;
 
 private:

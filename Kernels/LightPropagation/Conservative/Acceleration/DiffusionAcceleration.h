@@ -16,14 +16,15 @@
 
 namespace tyndall
 {
-/// Iteration with diffusion acceleration (numerics.md, section 7): each sweep carries all scattered light once; a
-/// diffusion system (DiffusionSystem.h), corrected by the power that the sweep found to pass each voxel's faces, then
-/// gives the fluence of all orders, which is the next sweep's source. Made and run collectively.
+/// Diffusion synthetic acceleration (numerics.md, section 7). Each sweep transports all scattered light once. A
+/// diffusion system (DiffusionSystem.h), corrected by the power that the sweep carried through each voxel face, then
+/// gives the fluence of all orders, from which the next source is computed. Construct and run collectively.
 class DiffusionAcceleration : public Iteration
 {
 public:
-  /// @param parts  must stay; made for acceleration
-  /// @param kept  light of the last solve (WarmStart.h), must stay; null, on all ranks: none, and none is to be kept
+  /// @param parts  must outlive this; made for DSA
+  /// @param kept  light of the previous solve (WarmStart.h), must outlive this; null, on all ranks: no first guess,
+  ///   nothing is kept
   explicit DiffusionAcceleration(TransportParts& parts, const KeptLight* kept = nullptr);
   IterationResult Run(const Monitor& monitor) override;
 
@@ -58,7 +59,7 @@ private:
   const Medium& TheMedium;
   bool LinearSource;
 
-  // What the diffusion systems read, with ghosts
+  // Input of the diffusion systems, with ghost cells
   const BlockWithGhosts Block;
   const GhostedMedium Coefficients;
   MomentsWithGhosts Moments; ///< of the sweeps' path integrals
@@ -68,18 +69,18 @@ private:
   std::optional<UncollidedLight> Uncollided;
   std::vector<float> UncollidedFluence; ///< W / length^2, [channel][stride]
 
-  // Scattered light, and what comes in along the usual directions; of the block
-  Buffer<float> Given, GivenFlux, PartialCurrents; ///< as DiffusionSystem::Arrays has them
+  // Scattered light and boundary light along the usual directions; of the block, without ghost cells
+  Buffer<float> Given, GivenFlux, PartialCurrents; ///< as in DiffusionSystem::Arrays
   std::unique_ptr<SweepOperator> Swept;
   std::vector<std::unique_ptr<DiffusionSolver>> Systems; ///< by channel
-  std::optional<FaceBalanceOfBlock> Box;                 ///< where light by cells of the box's faces is wanted
+  std::optional<FaceBalanceOfBlock> Box;                 ///< if light by cell of the box faces is needed
   SweepTally Tally;                                      ///< of the last sweep
-  Rgb GivenPower = {}, PowerIn = {};                     ///< W, emitted or first scattered; through faces
+  Rgb GivenPower = {}, PowerIn = {};                     ///< W: emitted or first scattered; incident through faces
   RestOfChanges Rest;
   double Residual = 1.0;
 
   WarmStart Warm;
-  std::vector<float> First, FirstMoments; ///< of the first iteration, as WarmStart has them, where light is to be kept
+  std::vector<float> First, FirstMoments; ///< of the first iteration, as in WarmStart, if light is kept
 
   IterationResult Result;
 };

@@ -1,11 +1,11 @@
-// The host gives GROUP, work-items that take a chunk together (GroupSum.cl).
+// The host defines GROUP: work-items that sum a chunk together (GroupSum.cl).
 
 #include "LightPropagation/Scattering/CollectShared.h"
 #include "Numerics/GroupSum.cl"
 
-// What leaves the box of each voxel's light besides what left in the sweep (numerics.md, Eq. (46)).
-// extra  of a source of 1, W length
-// tally  [channel][chunk] W
+// Adds the escaped power of each voxel beyond that of the sweep (numerics.md, Eq. (46)).
+//   extra  additional escape of a source of 1, W length
+//   tally  [channel][chunk], W
 __kernel void let_escape(__global float* path, const __global float* source, const __global float* extra,
   const __global float* sigma_t, __global float* tally, ulong stride, int one_sigma_t)
 {

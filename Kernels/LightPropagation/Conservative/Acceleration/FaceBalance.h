@@ -10,40 +10,41 @@
 
 namespace tyndall
 {
-/// Light by cells of the box's faces where scattering orders are added up by the balance of voxels (numerics.md,
-/// section 7.12): what left in a sweep, what leaves by the diffusion systems' solution, and what the faces therefore
-/// give back in the next sweep. On the host, of the whole box, [channel][cell], W: where the box is spread over ranks
-/// all have the same, as long as each is told the same.
+/// Light by cell of the box faces in a DSA solve (numerics.md, section 7.12): the power that left in the sweep, the
+/// power that leaves in the diffusion solution, and the reflected power that therefore enters the next sweep. Held on
+/// the host for the whole box, W, [channel][cell]. On several ranks all hold the same values, provided that they pass
+/// the same arguments.
 class FaceBalance
 {
 public:
-  /// What has left so far is not swept: what comes back of it comes back in every sweep.
-  /// @param faces  must stay
+  /// Takes the power that has left so far as uncollided. It is not swept again; its reflected part enters every sweep.
+  /// @param faces  must outlive this
   explicit FaceBalance(FaceLight& faces);
 
-  const Rgb& GivenBack() const { return this->PowerGivenBack; } ///< of what is not swept, by channel
+  const Rgb& GivenBack() const { return this->PowerGivenBack; } ///< W of uncollided light reflected, by channel
 
-  /// What left since the last call, in a sweep.
+  /// Takes the power that left in the last sweep.
   void TakeSwept();
-  /// Of a channel what its diffusion system needs, as DiffusionSystem::Arrays has it; nothing leaves by its solution.
+  /// Input of the diffusion system of a channel, in the layout of DiffusionSystem::Arrays; its FaceLeaves row is 0.
   std::vector<float> RowsOf(int channel) const;
-  /// What leaves through each cell by a channel's solution; until then nothing does.
+  /// Sets the power that leaves through each cell in the diffusion solution of a channel; initially 0.
   void SetLeaving(int channel, const std::vector<float>& leaves);
 
-  /// Lets come in with the next sweep what the faces give back by the systems' solution.
-  /// @param given  W of each channel that are emitted, first scattered, given back of what is not swept, or come in
-  ///   from outside
-  /// @return by how much it differs from what came in with the last one, over all light that is given
+  /// Sets the incident light of the next sweep to the reflected power of the diffusion solution.
+  /// @param given  by channel, W: emitted, first scattered, reflected uncollided and incident boundary power
+  /// @return change of the reflected power since the last call, relative to `given` plus the reflected power; largest
+  ///   over channels
   double Reflect(int iteration, const Rgb& given);
 
-  /// Counts what leaves for good; uncollided light that left is in the ledger already.
+  /// Adds the escaped power after reflection to the ledger, which already contains uncollided light that left.
   void Count(EnergyLedger& ledger) const;
 
-  /// What leaves through each cell, without the pattern in which the last sweep's rays go in and out through cells: in
-  /// thin voxels the systems have it of the sweep. The sums over faces stay.
-  /// @param incoming  W / length^2 through each face from outside
-  /// @param tau  optical length of each cell's voxel along its longest edge, [channel][cell]
-  /// @param spreads  sweeps spread what leaves aside (Deposit::spreadsAside)
+  /// Power that leaves through each cell, W, without the uneven pattern in which the rays of the last sweep cross the
+  /// cells. In optically thin voxels the diffusion systems inherit this pattern from the sweep. Sums over faces are
+  /// unchanged.
+  /// @param incoming  boundary irradiance of each face, W / length^2
+  /// @param tau  optical length of the voxel at each cell along its longest edge, [channel][cell]
+  /// @param spreads  sweeps spread outgoing power over neighbouring cells (Deposit::spreadsAside)
   std::vector<double> LeftWithoutPattern(
     const std::array<Rgb, 6>& incoming, const std::vector<double>& tau, bool spreads) const;
 
@@ -54,9 +55,9 @@ private:
   const std::size_t Cells;
   Rgb PowerGivenBack = {};
   std::vector<double> CameBack, GivenBackByCell, LeftUncollided;
-  std::vector<float> LeftSwept;        ///< in the last sweep
-  std::vector<double> Leaves;          ///< by the solution
-  std::vector<double> CameBackInSweep; ///< in the last sweep
-  std::vector<HostMixing> BackMixing;  ///< of CameBack, by channel
+  std::vector<float> LeftSwept;        ///< W that left in the last sweep
+  std::vector<double> Leaves;          ///< W that leaves in the diffusion solution
+  std::vector<double> CameBackInSweep; ///< W reflected into the last sweep
+  std::vector<HostMixing> BackMixing;  ///< mixes CameBack, by channel
 };
 }

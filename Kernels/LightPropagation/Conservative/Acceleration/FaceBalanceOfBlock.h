@@ -11,31 +11,34 @@
 
 namespace tyndall
 {
-/// FaceBalance.h on a domain: each rank has the light of all cells of the box's faces on the host, and that of its own
-/// voxels' cells on the device, where its diffusion system reads it. Made and called collectively.
+/// FaceBalance on a decomposed domain. Each rank holds the light of all cells of the box faces on the host, and the
+/// light of the cells at its own voxels on the device, where its diffusion system reads it. Construct and call
+/// collectively.
 class FaceBalanceOfBlock
 {
 public:
-  /// @param device, faces, block  must stay
+  /// @param device, faces, block  must outlive this
   FaceBalanceOfBlock(Device& device, FaceLight& faces, const BlockWithGhosts& block);
 
   FaceBalance& OfBox() { return *this->Box; }
-  void TakeSwept(); ///< as FaceBalance, and writes Rows.
-  /// As DiffusionSystem::Arrays has it, by cells of the faces of the block with ghosts; those of ghosts are dark.
+  void TakeSwept(); ///< as FaceBalance::TakeSwept; also writes Rows
+  /// Rows in the layout of DiffusionSystem::Arrays, by cell of the faces of the block with ghost cells; 0 at ghost
+  /// cells.
   const Buffer<float>& Rows(int channel) const { return this->OfBlock[channel]; }
-  /// From rows that the systems wrote.
-  /// @param lit  channels that were solved for, the same on all
+  /// Reads the leaving power from the rows that the diffusion systems wrote.
+  /// @param lit  channels that were solved, the same on all ranks
   void TakeLeaving(const std::vector<bool>& lit);
   /// As FaceBalance::LeftWithoutPattern.
-  /// @param medium  of the block
+  /// @param medium  of this rank's block
   std::vector<double> LeftByCell(const std::array<Rgb, 6>& incoming, const Medium& medium) const;
 
 private:
-  /// A cell of the box's faces at a voxel of this rank, among those of the faces of its block with ghosts.
+  /// A cell of the box faces at a voxel of this rank: its index among the face cells of the block with ghost cells
+  /// (held) and of the whole box (whole).
   struct Cell
   {
     std::size_t held, whole;
-    std::size_t voxel; ///< of the block
+    std::size_t voxel; ///< index in the block
   };
 
   const Domain& TheDomain;

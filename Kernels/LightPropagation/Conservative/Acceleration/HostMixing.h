@@ -7,13 +7,15 @@
 
 namespace tyndall
 {
-/// Anderson's mixing (numerics.md, Eq. (71)) of short vectors on the host: the light that faces give back. The next x
-/// is the combination of the last results whose change is least in the least squares; nowhere negative.
+/// Anderson mixing (numerics.md, Eq. (71)) of short vectors on the host; used for reflected light. The next iterate is
+/// the combination of the last results whose change is smallest in the least-squares sense, with negative entries set
+/// to 0.
 class HostMixing
 {
 public:
-  /// @param given  what `found` was found with
-  /// @return what to go on with
+  /// @param given  the iterate
+  /// @param found  result of one iteration from `given`
+  /// @return the next iterate
   std::vector<double> Next(const std::vector<double>& given, const std::vector<double>& found)
   {
     const auto size = static_cast<Eigen::Index>(found.size());

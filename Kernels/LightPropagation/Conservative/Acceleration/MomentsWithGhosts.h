@@ -8,38 +8,39 @@
 
 namespace tyndall
 {
-/// Path integrals of a block with their angular moments, and what the diffusion systems of the block with ghosts know
-/// of these: those of degrees 0 and 1 of the block's own voxels.
+/// Angular moments of the path integrals of a block, and the copy with ghost cells that the diffusion systems read. The
+/// copy has degrees 0 and 1 only, and is 0 in ghost cells.
 class MomentsWithGhosts
 {
 public:
-  /// @param block  must stay
-  /// @param functions  of the block's angular moments, the same on all ranks; 1: all is isotropic
+  /// @param block  must outlive this
+  /// @param functions  number of angular moments of the block, the same on all ranks; 1: isotropic
   MomentsWithGhosts(const BlockWithGhosts& block, int functions);
 
   bool Any() const { return this->Own.functions > 1; }
-  /// Where moments are in arrays with ghosts.
+  /// Layout of the moments in arrays with ghost cells.
   const MomentPlaces& Places() const { return this->Held; }
 
-  /// Makes the array with ghosts, where the block has any: else the systems read the block's own. Collective, as all.
+  /// Allocates the array with ghost cells if the block has any; otherwise the systems read the array of the block.
+  /// Collective, as are all methods that write.
   void Allocate(Device& device, const char* what);
   const Buffer<float>& Values(const Buffer<float>& own) const { return this->Array.Size() > 0 ? this->Array : own; }
-  /// Writes what the block has to the array with ghosts, which are dark.
+  /// Copies the moments of the block to the array with ghost cells, and sets ghost cells to 0.
   void Spread(const Buffer<float>& own);
-  /// The moments of degree 1 the other way.
+  /// Copies the moments of degree 1 back to the array of the block.
   void TakeFirstDegree(Buffer<float>& own) const;
 
-  /// Of values as path integrals have them those of a channel as DiffusionSystem::State has them, in ghosts 0 but for
-  /// degree 0.
-  /// @param values  of the block
-  /// @param fluence  degree 0 with ghosts, the same unit
+  /// One channel of `values` in the layout of DiffusionSystem::State. Ghost cells have degree 0 only; their other
+  /// moments are 0.
+  /// @param values  of the block, in the layout of path integrals
+  /// @param fluence  degree 0 with ghost cells, in the same unit
   std::vector<double> StateOf(int channel, const std::vector<float>& values, std::vector<double> fluence) const;
 
 private:
-  static int FunctionAlong(int axis) { return axis == 0 ? 3 : axis; } ///< y, z, x, as AngularBasis has them
+  static int FunctionAlong(int axis) { return axis == 0 ? 3 : axis; } ///< AngularBasis orders degree 1 as y, z, x
 
   const BlockWithGhosts& Block;
   MomentPlaces Own, Held;
-  Buffer<float> Array; ///< empty: there are no ghosts
+  Buffer<float> Array; ///< empty: the block has no ghost cells
 };
 }

@@ -11,41 +11,43 @@
 
 namespace tyndall
 {
-/// The correction of coarse-mesh DSA (CoarseDiffusion.h; over ranks CellsOverRanks.h): what diffusion on cells of
-/// voxels finds of all orders to come, for each channel of a solve, and how its power is counted. Made and called
-/// collectively.
+/// Correction step of coarse-mesh DSA (CoarseDiffusion.h; on several ranks CellsOverRanks.h). For each channel,
+/// diffusion on coarse cells of several voxels predicts the sum of all orders to come; this class also accounts for its
+/// power. Construct and call collectively.
 class OrdersByCells
 {
 public:
-  /// @param parts  must stay
+  /// @param parts  must outlive this
   explicit OrdersByCells(TransportParts& parts);
 
-  /// W.
+  /// Powers by channel, W.
   struct Powers
   {
-    Rgb scattered = {}; ///< the next source
-    Rgb magnitude = {}; ///< the same without signs
-    Rgb left = {};      ///< that the cells' solution accounts for nowhere
+    Rgb scattered = {}; ///< power of the next source
+    Rgb magnitude = {}; ///< the same with absolute values
+    Rgb left = {};      ///< not accounted for by the coarse solution
   };
 
-  /// From the path integrals of a sweep to fluence and the next source, with all orders to come.
-  /// @param ledger  what is absorbed is counted here, and that the sweep let out too much
-  /// @param onTheWay  W, round periodic axes when the sweep ended, or that no sweep goes on with
-  /// @param guess  of all orders to come, in the place of the cells' solution; null: that
+  /// Converts the path integrals of a sweep to fluence and to the next source, including the predicted sum of all
+  /// orders to come.
+  /// @param ledger  receives the absorbed power, and minus the power that the last sweep let escape in excess
+  /// @param onTheWay  W that wrapped around periodic axes at the end of the sweep, or that no sweep carries on
+  /// @param guess  replaces the coarse solution; null: solve
   Powers ScatterOrder(EnergyLedger& ledger, const Rgb& onTheWay, const Buffer<float>* guess);
 
-  /// Whether all axes are periodic: power on the way can only be absorbed, so the cells' solution includes it.
+  /// Whether all axes are periodic. Power that wraps around can then only be absorbed, so the coarse solution includes
+  /// it.
   bool ForeseeWay() const { return this->Closed; }
 
-  /// A ledger with what leaves of the orders to come.
+  /// Copy of the ledger plus the escaped power of all orders to come.
   EnergyLedger WithOut(const EnergyLedger& ledger) const;
 
 private:
   TransportParts& Parts;
   bool Closed;                                               ///< all axes are periodic
-  std::vector<std::unique_ptr<CoarseDiffusion>> Cells;       ///< by channel, of a serial domain
-  std::vector<std::unique_ptr<CellsOverRanks>> CellsOfRanks; ///< the same of several ranks
-  std::array<Rgb, 6> Kept = {}; ///< W, through faces, that the next sweep is to let out less
-  std::array<Rgb, 6> Out = {};  ///< W, through faces, of all orders to come
+  std::vector<std::unique_ptr<CoarseDiffusion>> Cells;       ///< by channel, on a serial domain
+  std::vector<std::unique_ptr<CellsOverRanks>> CellsOfRanks; ///< the same on several ranks
+  std::array<Rgb, 6> Kept = {};                              ///< W by face that the next sweep lets escape in excess
+  std::array<Rgb, 6> Out = {};                               ///< W by face that escapes in all orders to come
 };
 }
