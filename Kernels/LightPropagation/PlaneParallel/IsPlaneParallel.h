@@ -11,9 +11,9 @@ namespace tyndall
 /// The axis that is not periodic; -1 unless it is the only one.
 int AxisOfLayers(const std::array<bool, 3>& periodic);
 
-/// Whether nothing varies along two axes: both are periodic, all columns of voxels are equal, there are 8192 layers at
-/// most, and all that shines are directional lights, sky and faces; and nothing is asked for that only rays through a
-/// box have: a constant source, orders one by one, a number of directions or moments, where light is first lost,
-/// all that is not needed.
+/// Whether a scene is plane-parallel, and can be solved as such: two axes are periodic, all columns of voxels are
+/// equal, there are at most 8192 layers, and the only external sources are directional lights, sky and faces. Also, no
+/// setting may request what only the voxel solver has: a constant source, plain source iteration, a number of
+/// directions or moments, first moments (firstMoments), or leaveOut off.
 bool IsPlaneParallel(const Medium& medium, const Illumination& illumination, const PropagationSettings& settings);
 }

@@ -6,8 +6,8 @@
 
 namespace tyndall
 {
-/// What a uniform layer sends back of the light that comes in at either side, and lets through. Vectors are over the
-/// nodes, radiance times the square root of the weight.
+/// Reflection and transmission operators of a uniform layer, the same from both sides. Vectors are over the nodes:
+/// radiance times the square root of the weight.
 struct LayerOperator
 {
   /// @param depth  optical thickness
@@ -16,22 +16,23 @@ struct LayerOperator
   Eigen::MatrixXd reflect, transmit;
 };
 
-/// What sources inside a layer bring about when nothing comes in from outside.
+/// Response of a layer to internal sources, without incident light.
 struct LayerSource
 {
-  Eigen::VectorXd up, down;     ///< what leaves at the top and at the bottom
-  Eigen::VectorXd meanA, meanB; ///< means over depth of the modes' amplitudes (LayerModes), of the part of them that is
-                                ///< dark, as a sum of both directions, at top and bottom
+  Eigen::VectorXd up, down;     ///< outgoing at the top and at the bottom
+  Eigen::VectorXd meanA, meanB; ///< means over depth of the mode amplitudes (LayerModes), for the
+                                ///< solution with a = 0 at top and bottom
 
   explicit LayerSource(Eigen::Index nodes);
 
-  /// Light that is sent out evenly in depth.
-  /// @param emitted  radiance that the layer's whole height sends out at each node, both ways alike
+  /// Adds emission that is uniform in depth.
+  /// @param emitted  radiance that the whole layer emits at each node, the same up and down
   void AddEmission(const LayerModes& modes, const LayerOperator& layer, double depth, const Eigen::VectorXd& emitted);
 
-  /// What a beam is first scattered into, per mean free path.
-  /// @param cosine  of the beam, above 0; it comes in at the top, or else at the bottom
-  /// @param sum, difference  of what is scattered on along its way, and back, where the beam comes in
+  /// Adds the first-collision source of a beam, per mean free path.
+  /// @param cosine  of the beam, > 0
+  /// @param fromTop  the beam enters at the top; false: at the bottom
+  /// @param sum, difference  sum and difference of forward and backward first-scattered light, where the beam enters
   void AddBeam(const LayerModes& modes, const LayerOperator& layer, double depth, double cosine, bool fromTop,
     const Eigen::VectorXd& sum, const Eigen::VectorXd& difference);
 
@@ -40,14 +41,14 @@ private:
     const Eigen::VectorXd& bAtExit, bool fromTop);
 };
 
-/// Means over a layer.
+/// Means over the depth of a layer.
 struct LayerMeans
 {
-  Eigen::VectorXd sum;  ///< of radiance down and up
-  Eigen::VectorXd flux; ///< of radiance down less radiance up
+  Eigen::VectorXd sum;  ///< of downward plus upward radiance
+  Eigen::VectorXd flux; ///< of downward minus upward radiance
 };
 
-/// @param downAtTop, ...  radiance at its two sides
+/// @param downAtTop, ...  radiance at both boundaries of the layer
 LayerMeans MeansOf(const LayerModes& modes, const LayerSource& source, double depth, const Eigen::VectorXd& downAtTop,
   const Eigen::VectorXd& upAtTop, const Eigen::VectorXd& downAtBottom, const Eigen::VectorXd& upAtBottom);
 }

@@ -7,13 +7,13 @@
 
 namespace tyndall
 {
-/// Light of a scene for which IsPlaneParallel (IsPlaneParallel.h) holds, in the cosine to the axis of the layers alone:
-/// discrete ordinates, exact within each layer (numerics.md, section 10 d). What is scattered forwards beyond the
-/// moments that the nodes carry goes straight on (delta-M). The host does it, in a few milliseconds for 64 layers;
-/// leftOut says so. One iteration, without a residual.
+/// Plane-parallel solver, for scenes for which IsPlaneParallel (IsPlaneParallel.h) holds: discrete ordinates in the
+/// cosine to the axis of the layers, exact within each layer (numerics.md, section 10 d). Forward scattering beyond the
+/// moments that the nodes resolve is treated as unscattered (delta-M). Runs on the host, in a few milliseconds for 64
+/// layers; leftOut says so. Reports one iteration, without a residual.
 ///
-/// settings: netFlux, facePower, storeMoments and polarNodes are read, and nothing of the others but `periodic`.
-/// @throws InvalidInput what Check(medium, illumination, settings) throws
+/// @param settings  only netFlux, facePower, storeMoments, polarNodes and periodic are used
+/// @throws InvalidInput  from Check(medium, illumination, settings)
 LightField SolvePlaneParallel(const Medium& medium, const Illumination& illumination,
   const PropagationSettings& settings, const Monitor& monitor = {});
 }

@@ -7,12 +7,12 @@
 
 namespace tyndall
 {
-/// A plane-parallel scene. Its layers lie along one axis, top to bottom by rising coordinate; azimuths are about it,
-/// from the next axis on in cyclic order.
+/// A plane-parallel scene. Layers are stacked along one axis; "top" is the side of the lowest coordinate. Azimuth is
+/// measured about this axis, from the next axis in cyclic order.
 class SlabScene
 {
 public:
-  /// @param medium, illumination  for which IsPlaneParallel holds; must stay
+  /// @param medium, illumination  IsPlaneParallel must hold; must outlive this
   SlabScene(const Medium& medium, const Illumination& illumination, const PropagationSettings& settings);
 
   int Along() const { return this->Axis; }
@@ -24,15 +24,15 @@ public:
   bool IsIsotropic() const { return this->Isotropic; }
   bool HasSlantingBeams() const;
 
-  /// @param degree  of the moments in which light is scattered; what is beyond goes straight on
+  /// @param degree  of the moments of scattering; scattering beyond it is treated as unscattered
   LayerStack StackOf(int channel, int degree) const;
-  /// The same without scattering: the whole extinction.
+  /// The same without scattering, with the full extinction.
   LayerStack UnscatteredStackOf(int channel) const;
   StackLight LightOf(int channel) const;
-  /// Only the beams, each by cos or sin of `order` times its azimuth.
+  /// The beams only, each multiplied by cos or sin of `order` times its azimuth.
   StackLight BeamsOf(int channel, int order, bool sine) const;
-  double Absorbing(std::size_t layer, int channel) const; ///< sigma_a times its height
-  /// Net flux of irradiance 1 along both axes of the layers.
+  double Absorbing(std::size_t layer, int channel) const; ///< sigma_a times the height of the layer
+  /// Net flux along the two axes parallel to the layers, for irradiance 1 of a beam.
   std::array<double, 2> Sideways(std::size_t beam) const;
 
 private:
@@ -43,7 +43,7 @@ private:
   int Axis = 0;
   bool Isotropic = true;
   std::vector<std::array<double, 3>>
-    Directions;                      ///< of the lights that enter: along the axis, and the two next, length 1
-  std::vector<std::size_t> Entering; ///< which lights
+    Directions;                      ///< unit vectors of the incident lights: along the axis and the next two axes
+  std::vector<std::size_t> Entering; ///< indices of the incident lights
 };
 }

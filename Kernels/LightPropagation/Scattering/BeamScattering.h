@@ -7,18 +7,19 @@
 
 namespace tyndall
 {
-/// What is first scattered of a parallel beam along each direction of a set, beyond the angular moments of a basis, of
-/// light that is scattered with a mean of 1 over all directions (numerics.md, Eqs. (42b), (42c)). The truncated moments
-/// of a forward peak are negative sideways; the phase function without its peak is not. The peak is what of it lies
-/// above a level forwards, as much as goes straight on.
+/// First-collision source of a parallel beam along each direction of a quadrature, minus its truncated angular moments
+/// in `basis`, normalised to scattered light with a mean of 1 over all directions (numerics.md, Eqs. (42b), (42c)).
+/// Truncated moments of a forward peak are negative sideways; the phase function without its peak is not. The peak
+/// removed is the part of the phase function above some level around the forward direction, with as much power as
+/// delta-M treats as unscattered.
 ///
-/// All moments of the basis are zero, to rounding: those of what is scattered stay as they are.
+/// All moments of the result in `basis` are zero to rounding, so the moments of the scattered light do not change.
 std::vector<double> BeyondMoments(const PhaseFunction& function, const DeltaM& truncated, const DirectionSet& set,
   const AngularBasis& basis, const std::array<double, 3>& beam);
 
-/// The same where moments are smoothed such that nothing is negative (WithoutNegatives): all that is scattered of the
-/// beam, less what its moments are. So the source along each direction is that of the phase function, with the mean
-/// cosine of the moments; higher ones are its own.
+/// The same if the moments are smoothed so that the source is nowhere negative (WithoutNegatives): the complete
+/// first-collision source of the beam minus its smoothed moments. The source along each direction then follows the
+/// phase function, with the mean cosine of the moments; its higher moments differ from theirs.
 std::vector<double> BeyondSmoothMoments(const PhaseFunction& function, const DeltaM& truncated, const DirectionSet& set,
   const AngularBasis& basis, const std::array<double, 3>& beam);
 }

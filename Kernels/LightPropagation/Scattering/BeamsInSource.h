@@ -6,13 +6,13 @@
 
 namespace tyndall
 {
-/// What is first scattered of beams, in a source behind its angular moments. It shines once: not in the sweep beside
-/// which the beams were found, but in the next one.
+/// First-collision sources of beams, stored in a source array after its angular moments. They are emitted once: not in
+/// the sweep during which the beams were traced, but in the next one.
 class BeamsInSource
 {
 public:
-  /// @param source  must stay
-  /// @param first, count  its values that are those of all beams
+  /// @param source  must outlive this
+  /// @param first, count  index range of the beams in the source array
   BeamsInSource(Device& device, Buffer<float>& source, std::size_t first, std::size_t count)
     : TheDevice(device)
     , Source(source)
@@ -21,9 +21,9 @@ public:
   {
   }
 
-  /// Before the sweep beside which they were found.
+  /// Moves the sources of the beams out of the array. Call before the sweep of the same order.
   void Hold();
-  /// After a sweep: what was held is to shine in the next one, what was not has shone.
+  /// Restores them for the next sweep; if already restored, sets them to 0. Call after each sweep.
   void GoOn();
 
 private:

@@ -1,4 +1,4 @@
-// Shared by C++ and the kernels that sum up over voxels.
+// Shared by C++ and the kernels that sum over voxels.
 #pragma once
 
 #include "Device/SharedTypes.h"
@@ -6,6 +6,6 @@
 SHARED_BEGIN
 enum
 {
-  CollectChunk = 4096 ///< voxels that a work-group sums up in float before the host adds the sums in double
+  CollectChunk = 4096 ///< voxels that a work-group sums in float; the host adds these sums in double
 };
 SHARED_END

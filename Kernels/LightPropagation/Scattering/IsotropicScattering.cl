@@ -1,9 +1,9 @@
-// From light that was found to what is scattered of it (Gruson et al., Eq. 4, conservative). The host gives
-//   REAL_WIDTH  4 or 8 floats of a vector
-//   GROUP       work-items that take a chunk together (GroupSum.cl)
-//   DOUBLES     1 where the device has double precision
-//   SCATTERS    0: sigma_s is zero; `scatter_order` does not read it and writes no source. The other kernels are for
-//               media that scatter.
+// Scattering source of isotropic scattering (Gruson et al., Eq. 4, conservative). The host defines
+//   REAL_WIDTH  4 or 8, floats per vector
+//   GROUP       work-items that process a chunk together (GroupSum.cl)
+//   DOUBLES     1 if the device has double precision
+//   SCATTERS    0: sigma_s is zero; `scatter_order` does not read it and writes no source. The other kernels are used
+//               only for media that scatter.
 
 #include "LightPropagation/Scattering/CollectShared.h"
 #include "Numerics/Exact.cl"
@@ -12,13 +12,13 @@
 
 #define ADDED_UP 32 // vectors
 
-// One order: what the sweep gathered becomes light and the next source. A work-group a chunk of a channel; a channel's
-// arrays begin at a vector's border and are filled up with zeros to a whole number of vectors.
-// path     W length; cleared
-// fluence  W / length^2, added to
-// source   W / (length^3 sr), replaced by what was scattered
-// tally    [channel][chunk] absorbed and scattered W
-// first, last  values of a channel, whole vectors: the others have gathered nothing
+// One scattering order: converts the path integrals of a sweep to fluence and to the next source. One work-group per
+// chunk of a channel; the arrays of a channel start at a vector boundary and are padded with zeros to whole vectors.
+//   path         W length; cleared
+//   fluence      W / length^2, added to
+//   source       W / (length^3 sr), overwritten
+//   tally        [channel][chunk], absorbed and scattered power, W
+//   first, last  index range of a channel, in whole vectors; the path integrals outside it are 0
 __kernel void scatter_order(__global float* path, __global float* fluence, __global float* source,
   const __global float* sigma_t, const __global float* sigma_s, __global float2* tally, ulong stride, ulong first,
   ulong last, int one_sigma_t, float per_volume)
@@ -32,7 +32,7 @@ __kernel void scatter_order(__global float* path, __global float* fluence, __glo
   sigma_s += channel * stride;
   sigma_t += one_sigma_t ? 0 : channel * stride;
   real absorbed = (real)0.0f, scattered = (real)0.0f;
-  // In two steps: floats lose digits where as many are added up one by one as a chunk has.
+  // Sum in two steps: adding all values of a chunk one by one would lose digits in float.
   for (ulong part = begin + FIRST_IN_CHUNK(REAL_WIDTH); part < end; part += ADDED_UP * step)
   {
     real absorbed_of_part = (real)0.0f, scattered_of_part = (real)0.0f;
@@ -61,8 +61,8 @@ __kernel void scatter_order(__global float* path, __global float* fluence, __glo
   PUT_SUM_OF_GROUP(float2, sum, tally[channel * get_num_groups(0) + get_group_id(0)])
 }
 
-// All that was scattered but what the last order left over: from that, in `source`, and the fluence of all orders. A
-// work-item a value of a channel.
+// Source of all orders, minus the source that the last order left unswept, from that (in `source`) and the fluence of
+// all orders. One work-item per value of a channel.
 __kernel void scatter_all_orders(
   const __global float* fluence, __global float* source, const __global float* sigma_s, ulong stride)
 {
@@ -70,9 +70,9 @@ __kernel void scatter_all_orders(
   source[i] = fmax(sigma_s[i] * fluence[i] * (M_1_PI_F * 0.25f) - source[i], 0.0f);
 }
 
-// What is scattered of light that has met nothing yet. A work-item a value of a channel.
-// path    W length
-// volume  4 pi times that of a voxel
+// Adds the first-collision source of uncollided light. One work-item per value of a channel.
+//   path    W length
+//   volume  4 pi times the volume of a voxel
 __kernel void add_first_scattered(
   const __global float* path, __global float* source, const __global float* sigma_s, ulong stride, exact volume)
 {
@@ -80,8 +80,8 @@ __kernel void add_first_scattered(
   source[i] += (float)((exact)sigma_s[i] * path[i] / volume);
 }
 
-// The source of a channel, which begins at `first` in all arrays but `fluence`: what is given and what is scattered. A
-// work-item a voxel. A diffusion system's fluence can be negative.
+// Given source plus scattering source of a channel, which starts at `first` in all arrays except `fluence`. One
+// work-item per voxel. The fluence of a diffusion system can be negative.
 __kernel void scatter_fluence(const __global exact* fluence, const __global float* given, __global float* source,
   const __global float* sigma_s, ulong first)
 {

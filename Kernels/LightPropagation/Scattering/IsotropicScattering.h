@@ -7,13 +7,13 @@
 
 namespace tyndall
 {
-/// Scattering alike into all directions: sigma_s fluence / 4 pi (numerics.md, Eq. (42); Gruson et al. 2012, equation 4,
-/// conservative). A mean cosine g is in sigma_s already (MediumOnDevice.h).
+/// Isotropic scattering: source = sigma_s fluence / 4 pi (numerics.md, Eq. (42); Gruson et al. 2012, equation 4, in
+/// conservative form). sigma_s already includes the factor for a mean cosine g (MediumOnDevice.h).
 class IsotropicScattering : public ScatteringOperator
 {
 public:
-  /// @param medium  must stay
-  /// @param scatters  false: sigma_s is zero everywhere, and there is no source to write
+  /// @param medium  must outlive this
+  /// @param scatters  false: sigma_s is zero everywhere, and no source is written
   IsotropicScattering(Device& device, const VolumeLayout& layout, const MediumOnDevice& medium, bool scatters);
 
   Powers ScatterOrder(const Deposit& swept, const Buffer<float>& fluence, const Buffer<float>& source,
@@ -21,7 +21,7 @@ public:
   bool CanScatterAllOrders() const override { return true; }
   void ScatterAllOrders(const Buffer<float>& fluence, const Buffer<float>& source) const override;
   void AddFirstScattered(const Deposit& uncollided, const Buffer<float>& source) const override;
-  void AddBeam(const Buffer<float>&, const Buffer<float>&, int) const override {} ///< the same as other light
+  void AddBeam(const Buffer<float>&, const Buffer<float>&, int) const override {} ///< beams scatter isotropically too
   void ScatterFluence(int channel, const Deposit& swept, const ExactValues& fluence, const Buffer<float>& given,
     const Buffer<float>& source) const override;
 

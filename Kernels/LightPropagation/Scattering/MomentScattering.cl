@@ -1,9 +1,8 @@
-// From angular moments of the light that was found to those of what is scattered of it, but for the first, which is
-// fluence: IsotropicScattering.cl. A work-item a row of voxels: it takes a group's functions one after the other, as
-// they lie in memory.
+// Scattering source in angular moments, except the first moment (fluence), which IsotropicScattering.cl handles. One
+// work-item per row of voxels; it processes the functions of a group one after the other, as they lie in memory.
 //   sigma_s  1/length, [degree][channel][stride]
 //   path     W length, with its moments (MomentPlacesShared.h)
-//   source   W / (length^3 sr), the same
+//   source   W / (length^3 sr), likewise
 
 #include "LightPropagation/Sweep/MomentPlacesShared.h"
 
@@ -22,7 +21,8 @@ static float16 load_group(const __global float* values, int voxels)
   return vload16(0, some);
 }
 
-// ACTION for each function of each group of a row, which lies at `at`; of its path comes `scale` times as much source.
+// Runs ACTION for each function of each group of a row; the group is stored at `at`, and its source is `scale` times
+// its path integral.
 #define FOR_MOMENTS(ACTION)                                                                                      \
   const ulong line = get_global_id(0);                                                                           \
   for (int x = 0; x < places.sizeX; x += MomentGroup)                                                            \
@@ -39,7 +39,7 @@ static float16 load_group(const __global float* values, int voxels)
     }                                                                                                            \
   }
 
-// One order: replaces the source, clears the path.
+// One scattering order: overwrites the source, clears the path integrals.
 __kernel void scatter_moments(MomentPlaces places, int channel, __global float* path, __global float* source,
   const __global float* sigma_s, ulong stride, float per_path)
 {
@@ -58,7 +58,7 @@ __kernel void add_scattered_moments(MomentPlaces places, int channel, const __gl
 #undef ADD
 }
 
-// What is given and what is scattered.
+// Given source plus scattering source.
 __kernel void scatter_given_moments(MomentPlaces places, int channel, const __global float* path,
   const __global float* given, __global float* source, const __global float* sigma_s, ulong stride, float per_path)
 {
@@ -74,19 +74,19 @@ __kernel void add_moments(MomentPlaces places, const __global float* path, __glo
   to[at] += path[at];
 }
 
-// All moments: what one order shines, and `part` of what others did.
+// All moments: source of one order plus `part` times the stored source.
 __kernel void add_to_shown(const __global float* source, __global float* shown, float part)
 {
   const ulong at = get_global_id(0);
   shown[at] = source[at] + part * shown[at];
 }
 
-// Moments in functions of an AngularBasis as those in spherical harmonics, of voxels side by side. A work-item a voxel
-// of a row, by row, and a harmonic.
-//   basis      [function][harmonic]
-//   moments    with their places; harmonics are as many as functions, or fewer
-//   scale      [channel][stride]
-//   out        [voxel][harmonic][channel]
+// Converts moments in the functions of an AngularBasis to spherical harmonics, for consecutive voxels. One work-item
+// per voxel of a row, row, and harmonic.
+//   basis    [function][harmonic]
+//   moments  with their layout; there are at most as many harmonics as functions
+//   scale    [channel][stride]
+//   out      [voxel][harmonic][channel]
 __kernel void to_harmonics(MomentPlaces places, int channel, const __global float* basis, const __global float* moments,
   const __global float* scale, ulong stride, __global float* out)
 {
@@ -103,8 +103,8 @@ __kernel void to_harmonics(MomentPlaces places, int channel, const __global floa
   out[(voxel * get_global_size(2) + j) * places.channels + channel] = scale[channel * stride + voxel] * sum;
 }
 
-// A beam's own source, in voxels of the highest degree: the others scatter it in moments alone. A work-item a value.
-// values  of all channels
+// Source of a beam, in voxels of the highest degree; other voxels scatter it in moments only. One work-item per value.
+//   values  number of values of all channels
 __kernel void scatter_beam(MomentPlaces places, const __global float* path, __global float* source,
   const __global float* sigma_s, ulong values, int beam, int degree, float per_path)
 {
@@ -113,8 +113,8 @@ __kernel void scatter_beam(MomentPlaces places, const __global float* path, __gl
     sigma_s[degree * values + i] != 0.0f ? sigma_s[i] * path[i] * per_path : 0.0f;
 }
 
-// Net flux, W length, [channel][x, y, z][stride], added to, from the moments of degree 1, which are sqrt(3) times y, z,
-// x. A work-item a voxel of a row, by row.
+// Adds the net flux, W length, [channel][x, y, z][stride], from the moments of degree 1, which are sqrt(3) times the y,
+// z and x components. One work-item per voxel of a row, and row.
 __kernel void add_flux_of_moments(
   MomentPlaces places, int channel, const __global float* path, __global float* flux, ulong stride)
 {

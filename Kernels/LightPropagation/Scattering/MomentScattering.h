@@ -6,13 +6,13 @@
 
 namespace tyndall
 {
-/// Scattering in angular moments (AngularBasis.h): of each moment of degree l its part of sigma_s goes on (numerics.md,
-/// Eq. (42a)). Arrays are as MomentPlacesShared.h has them; the first moment is fluence, and scattered as
-/// IsotropicScattering has it.
+/// Anisotropic scattering in angular moments (AngularBasis.h): each moment of degree l is multiplied by the scattering
+/// coefficient of that degree (numerics.md, Eq. (42a)). Array layout: MomentPlacesShared.h. The first moment is the
+/// fluence and is scattered by IsotropicScattering.
 class MomentScattering : public ScatteringOperator
 {
 public:
-  /// @param medium  must stay; it has scattering coefficients of degrees 0 to `degree`
+  /// @param medium  must outlive this; has scattering coefficients of degrees 0 to `degree`
   MomentScattering(Device& device, const VolumeLayout& layout, const MediumOnDevice& medium, int degree);
 
   Powers ScatterOrder(const Deposit& swept, const Buffer<float>& fluence, const Buffer<float>& source,
@@ -37,21 +37,21 @@ private:
   int Functions;
 };
 
-/// In moments of a degree, or where that is 0 alike into all directions.
-/// @param scatters  as IsotropicScattering has it
+/// Makes MomentScattering of a degree above 0, else IsotropicScattering.
+/// @param scatters  false: sigma_s is zero everywhere (IsotropicScattering)
 std::unique_ptr<const ScatteringOperator> MakeScattering(
   Device& device, const VolumeLayout& layout, const MediumOnDevice& medium, int degree, bool scatters);
 
-/// Adds the moments of one path to those of another, but for the first, which is the path itself.
+/// Adds the angular moments of `path` to those of `to`, except the first, which is the path integral itself.
 void AddMoments(
   Device& device, const VolumeLayout& layout, int functions, const Buffer<float>& path, const Buffer<float>& to);
 
-/// Takes all moments of a source to those that are shown: shown = source + part * shown.
-/// @param values  that a source has in all
+/// shown = source + part * shown, for all moments.
+/// @param values  number of values of a source
 void AddToShown(
   Device& device, std::size_t values, const Buffer<float>& source, const Buffer<float>& shown, float part);
 
-/// Adds the net flux that angular moments of a path hold to [channel][x, y, z][stride].
+/// Adds the net flux from the angular moments of `path` to `flux`, [channel][x, y, z][stride].
 void AddFluxOfMoments(
   Device& device, const VolumeLayout& layout, int functions, const Buffer<float>& path, const Buffer<float>& flux);
 }

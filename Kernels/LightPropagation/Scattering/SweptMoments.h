@@ -10,22 +10,22 @@
 
 namespace tyndall
 {
-/// The angular moments in which light is scattered, along the directions of sweeps; beside them what is first scattered
-/// of the brightest beams, each of which has a distribution of its own (BeamScattering.h).
+/// Angular moments of scattered light along the directions of sweeps, and the separate angular distributions of
+/// first-scattered light of the brightest beams (BeamScattering.h).
 class SweptMoments
 {
 public:
   /// @param phase  of the medium
   /// @param scattering  of a degree above 0
-  /// @param lamps  that shine; of these the beams are the brightest that are directional, where all voxels and channels
-  ///   scatter alike
+  /// @param lamps  lamps of the scene; the brightest directional ones become beams, if the phase function is the same
+  ///   in all voxels and channels
   SweptMoments(const SweptDirections& directions, const PhaseOfMedium& phase, const TruncatedScattering& scattering,
     const std::vector<Light>& lamps);
 
   const AngularBasis& Basis() const { return this->TheBasis; }
   const AngularValues& Values() const { return this->OfDirections; } ///< for SweepRequest::angular
   int Beams() const { return static_cast<int>(this->LampOfBeam.size()); }
-  int BeamOf(std::size_t lamp) const; ///< -1: it has none
+  int BeamOf(std::size_t lamp) const; ///< -1: this lamp is no beam
 
 private:
   AngularBasis TheBasis;
