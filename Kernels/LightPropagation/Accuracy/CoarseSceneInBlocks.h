@@ -10,13 +10,13 @@
 
 namespace tyndall
 {
-/// A scene that is spread over ranks by blocks, on the coarse grid of these: of each rank the part of CoarseScene that
-/// is its coarse voxels'. One rank has the whole.
+/// A decomposed scene averaged to the coarse grid of its blocks: on each rank the part of CoarseScene for its coarse
+/// voxels. A single rank has the whole scene.
 class CoarseSceneInBlocks
 {
 public:
-  /// All ranks make one together.
-  /// @param medium, illumination  of this rank's block, alike on all ranks in what they have; must stay
+  /// Collective.
+  /// @param medium, illumination  of this rank's block, with the same kinds of fields on all ranks; must outlive this
   CoarseSceneInBlocks(const CoarseBlocks& blocks, const Medium& medium, const Illumination& illumination);
   CoarseSceneInBlocks(const CoarseSceneInBlocks&) = delete;
   CoarseSceneInBlocks& operator=(const CoarseSceneInBlocks&) = delete;
@@ -27,9 +27,9 @@ public:
 private:
   Field Around(const CoarseBlocks& blocks, const Field& field);
 
-  Medium Nothing; ///< of a rank without coarse voxels
+  Medium Nothing; ///< medium of a rank without coarse voxels
   Illumination Light;
-  std::vector<std::vector<float>> Arrays; ///< of fine voxels of several ranks, while they are averaged
+  std::vector<std::vector<float>> Arrays; ///< fine voxels gathered from several ranks for averaging
   std::optional<CoarseScene> Coarse;
 };
 }

@@ -6,41 +6,42 @@
 
 namespace tyndall
 {
-/// Forecast of the error that directions leave, and of the work of a solve, from two solves of one grid along few and
-/// along more directions. How errors fall with the number of directions was measured (measurements.md), those of
-/// light that is not scattered yet and of scattered light each by their own number; of two solves they have nothing
-/// to do with each other. Light is that of a rank's block, what is made of it of all ranks.
+/// Predicts the discretisation error in angle, and the work of a solve, as functions of the number of directions, from
+/// two solves on the same grid with few and with more directions. The decrease of the error with the number of
+/// directions was measured (measurements.md), separately for uncollided and for scattered light; the two errors are
+/// treated as uncorrelated. Each rank passes the light of its block; results are global.
 class DirectionForecast
 {
 public:
-  /// All ranks make one together.
-  /// @param few, more  along `fewDirections` and `moreDirections` a face, unscattered light along the same
+  /// Collective.
+  /// @param few, more  solutions with `fewDirections` and `moreDirections` directions per cube face, for scattered and
+  ///   uncollided light alike
   DirectionForecast(
     Communicator& communicator, const LightField& few, int fewDirections, const LightField& more, int moreDirections);
 
-  /// The part of unscattered light of the difference, over all of it.
+  /// Contribution of uncollided light to the difference between the two solutions, relative to the whole.
   double UncollidedPart() const;
-  /// Where unscattered light is off, so is what is scattered of it: tells the two apart.
-  /// All ranks call it.
-  /// @param between  scattered light along the few, unscattered light along the more
+  /// Separates the errors caused by the directions of uncollided light, including what it scatters, from those of
+  /// scattered light. Collective.
+  /// @param between  scattered light with the few directions, uncollided light with the more
   void Separate(Communicator& communicator, const LightField& few, const LightField& between, const LightField& more);
 
-  /// Relative, root mean square, of fluence, on a grid of twice the voxels an axis.
+  /// Predicted relative root-mean-square error of fluence, on a grid with twice the voxels per axis.
   double Error(const PropagationSettings& settings) const;
-  /// That error over the difference to the light along others, both on the coarse grid.
+  /// That error over the difference between the solutions with `settings` and with `others` on the coarse grid.
   double PartOfDifference(const PropagationSettings& settings, const PropagationSettings& others) const;
-  /// In sweeps along one direction a face.
+  /// Predicted work, in units of a sweep along one direction per cube face.
   double Work(const PropagationSettings& settings) const;
-  /// The settings with the least work whose error is at most `error`, or else those of the least error. Only numbers
-  /// that `settings` has at their default values are chosen; unscattered light goes along the same directions where
-  /// nothing told its errors apart (Separate).
+  /// The cheapest settings with an error of at most `error`; if there are none, those with the least error. Only
+  /// numbers that have their default values in `settings` are changed. Uncollided light uses the same directions as
+  /// scattered light unless Separate() was called.
   PropagationSettings Cheapest(const PropagationSettings& settings, double error) const;
-  /// Errors turned out to be so many times those of the forecast.
+  /// Multiplies predicted errors by the ratio of observed to predicted error.
   void Correct(double factor);
 
 private:
-  double Fallen; ///< the difference of the two solves over the error along 9 on the finer grid
-  double OfUncollided = 0.0, OfScattered = 0.0; ///< errors of 9 directions a face
+  double Fallen; ///< difference of the two solves over the error of 9 directions on the finer grid
+  double OfUncollided = 0.0, OfScattered = 0.0; ///< errors with 9 directions per face
   bool Separated = false;
   double Sweeps = 1.0;
 };

@@ -13,11 +13,11 @@
 
 namespace tyndall
 {
-/// Solves a medium of the same box, with the same light on its grid, with settings.
+/// Solves a medium in the same box, with illumination given on its grid.
 using PropagationSolver =
   std::function<LightField(const Medium&, const Illumination&, const PropagationSettings&, const Monitor&)>;
 
-/// A medium that is spread over ranks by blocks, and what shines on it, of this rank's block.
+/// A decomposed scene: medium and illumination of this rank's block.
 struct SceneInBlocks
 {
   Communicator& others;
@@ -26,10 +26,10 @@ struct SceneInBlocks
   const Illumination& illumination;
 };
 
-/// The same of such a scene. All ranks call it together.
+/// Solver of a decomposed scene. Collective.
 using SolverInBlocks = std::function<LightField(const SceneInBlocks&, const PropagationSettings&, const Monitor&)>;
 
-/// A scene that one rank has whole, and its solver.
+/// A scene held by a single rank, and its solver.
 class SceneOnOneRank
 {
 public:
@@ -48,41 +48,41 @@ private:
   const PropagationSolver& Solve;
 };
 
-/// Errors of light by the two parts of Eq. (84) that are looked at apart, each a root mean square over that of fluence.
+/// The two error components of Eq. (84) that are estimated separately, as root mean squares relative to that of
+/// fluence, and the residual.
 struct ErrorParts
 {
   double inSpace = 0.0, inDirections = 0.0, residual = 0.0;
 };
 
-/// Fills in fluenceError and relativeError of light (Eqs. (82) to (84)). All ranks call it; what it returns, and
-/// relativeError, are of all.
+/// Sets fluenceError and relativeError of `light` (Eqs. (82) to (84)). Collective; the return value and relativeError
+/// are global.
 /// @param light  of this rank's block
-/// @param same, other  fluence of this rank's coarse voxels, along the same directions and along others
-/// @param partOfDifference  error of the light's directions over its difference to that of the others
-/// @param orderInSpace  that the error falls with in voxel size
+/// @param same, other  fluence of this rank's coarse voxels, with the same quadrature and with another one
+/// @param partOfDifference  ratio of the angular error of `light` to the difference between the two coarse solutions
+/// @param orderInSpace  order of convergence in the voxel size
 ErrorParts WriteErrorEstimate(LightField& light, const CoarseBlocks& blocks, const std::vector<float>& same,
   const std::vector<float>& other, double partOfDifference, double orderInSpace);
 
-/// Solve, and estimate the error of fluence without a reference, from two more solves on a grid of half the voxels an
-/// axis (numerics.md, section 9.2):
+/// Solves, and estimates the error of fluence without a reference, from two more solves on a grid of half the voxels
+/// per axis (numerics.md, section 9.2):
 ///  - in voxel size, of order 2 (Richardson), Eq. (82);
-///  - in directions, by 0.6 times as many along a face's edge, Eq. (83);
-///  - of scattering orders that were not computed: the residual.
-/// fluenceError is a standard error, Eq. (84); relativeError that of all voxels. Too large where the medium has edges
-/// as sharp as a voxel (coarsening blurs them), and next to a lamp too large or too small by up to a factor of two.
-/// What was measured: measurements.md.
+///  - in angle, from a solve with 0.6 times as many directions along the edge of a cube face, Eq. (83);
+///  - of scattering orders not computed: the residual.
+/// fluenceError is a standard error, Eq. (84); relativeError is that of all voxels. The estimate is too large if the
+/// medium has edges as sharp as a voxel (coarsening blurs them), and wrong by up to a factor of two either way next to
+/// a lamp. Measured accuracy: measurements.md.
 ///
-/// Not known of a solve that was stopped after its first order while light was left: one order does not tell how fast
-/// orders shrink. relativeError is NaN then, and fluenceError empty.
+/// A solve that stopped after its first order with light left has no estimate, because one order does not show the rate
+/// of decrease: relativeError is NaN, and fluenceError empty.
 ///
-/// Takes 1 / 8 + 1 / 20 of the sweeps' time, more where the grid is small. An axis of a single voxel is not coarsened,
-/// and its error in voxel size not seen.
+/// Takes 1 / 8 + 1 / 20 of the time of the sweeps, more on small grids. An axis of a single voxel is not coarsened, and
+/// its error in voxel size is not estimated.
 LightField SolveWithErrorEstimate(const Medium& medium, const Illumination& illumination,
   const PropagationSettings& settings, const Monitor& monitor, const PropagationSolver& solve);
 
-/// The same of a scene that is spread over ranks; the coarse grid is that of the whole (CoarseBlocks.h), so that errors
-/// do not depend on the blocks, but for rounding. All ranks call it together, with a scene that is alike on all in what
-/// it has.
+/// The same for a decomposed scene. The coarse grid is that of the domain (CoarseBlocks.h), so that errors do not
+/// depend on the blocks, except by rounding. Collective; all ranks must have the same kinds of fields.
 LightField SolveWithErrorEstimate(
   const SceneInBlocks& scene, const PropagationSettings& settings, const Monitor& monitor, const SolverInBlocks& solve);
 }

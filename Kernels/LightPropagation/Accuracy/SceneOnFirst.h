@@ -8,24 +8,24 @@
 
 namespace tyndall
 {
-/// A scene on the coarse grid of blocks, whole on the first rank that has fine voxels. All ranks make one together, and
-/// call Spread.
+/// A decomposed scene on the coarse grid, gathered on the first rank that has fine voxels. Constructor and Spread are
+/// collective.
 class SceneOnFirst
 {
 public:
-  /// @param own  of this rank's coarse voxels, alike on all ranks in what it has; its medium is not looked at where
-  ///   there are none
-  /// @param fine  of this rank's block, whose phase function that of the whole is
+  /// @param own  scene of this rank's coarse voxels, with the same kinds of fields on all ranks; not read on a rank
+  ///   without coarse voxels
+  /// @param fine  medium of this rank's block, which provides the phase function of the domain
   SceneOnFirst(const CoarseBlocks& blocks, const PreviewScene& own, const Medium& fine);
   SceneOnFirst(const SceneOnFirst&) = delete;
   SceneOnFirst& operator=(const SceneOnFirst&) = delete;
 
   bool IsHere() const { return this->Here; }
-  /// On that rank.
+  /// The gathered scene; valid on that rank only.
   PreviewScene Whole() const { return { this->TheMedium, this->Light, this->Index }; }
 
-  /// Light that the first rank found, to all: fluence and its direct part of their own coarse voxels, and what is told
-  /// of all of it (balance, powers, convergence, words).
+  /// Distributes the light that the first rank computed: fluence and its uncollided part to the owners of the coarse
+  /// voxels, and global data (balance, powers, convergence, messages) to all ranks.
   void Spread(LightField& light) const;
 
 private:
@@ -33,7 +33,7 @@ private:
 
   const CoarseBlocks& Blocks;
   const bool Here;
-  std::vector<VoxelBox> Boxes; ///< by rank: all coarse voxels, or none
+  std::vector<VoxelBox> Boxes; ///< by rank: all coarse voxels on one rank, none on the rest
   Medium TheMedium;
   Illumination Light;
   Field Index;

@@ -17,24 +17,27 @@
 
 namespace tyndall
 {
-/// A medium for a rank whose block has no voxels: what is found there counts nowhere.
+/// One voxel of vacuum: placeholder medium of a rank whose block has no voxels. Its results are not counted.
 Medium VoxelOfVacuum(const Grid& whole);
 
-/// A block's scene in the units and channels of all.
+/// Scene of a block, in units and channels that are the same on all ranks.
 struct BlockScene
 {
-  /// All ranks make one together.
-  /// @param has  voxels; without any the medium is not looked at
-  /// @param medium, illumination  their arrays must stay
-  /// @param memory  of this rank, for angular moments, where the settings leave open how many
+  /// Collective.
+  /// @param has  the block has voxels; if not, the medium is not read
+  /// @param medium, illumination  their arrays must outlive this
+  /// @param memory  of this rank's device, which limits the degree of angular moments if the settings leave it open
   BlockScene(Communicator& communicator, bool has, const BlockPartition& partition, const Medium& medium,
     const Illumination& illumination, const PropagationSettings& settings, const DeviceMemory& memory);
   BlockScene(const BlockScene&) = delete;
   BlockScene& operator=(const BlockScene&) = delete;
 
-  Grid WholeOf(Grid grid) const;                                             ///< the grid of all, in the unit of length
-  void Undo(LightField& light) const;                                        ///< to W and the unit that it was given in
-  const TruncatedScattering& Scattering() const { return *this->Truncated; } ///< as sweeps carry it
+  Grid WholeOf(Grid grid) const;      ///< `grid` in the scene's unit of length
+  void Undo(LightField& light) const; ///< converts light back to W and the original unit of length
+  const TruncatedScattering& Scattering() const
+  {
+    return *this->Truncated;
+  } ///< delta-M-truncated scattering that the sweeps use
 
   Medium medium;
   Illumination illumination;
@@ -42,7 +45,7 @@ struct BlockScene
   double lengthUnit, powerUnit = 1.0;
   int channels = 1;
   bool sharedExtinction = true;
-  bool given = false; ///< uncollided light is, on any rank, by illumination.uncollided
+  bool given = false; ///< any rank has illumination.uncollided
 
 private:
   void Truncate(Communicator& communicator, const BlockPartition& partition, const PropagationSettings& settings,

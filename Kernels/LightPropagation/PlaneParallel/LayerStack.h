@@ -45,7 +45,7 @@ struct StackSolution
   double beamsAtTop = 0.0, beamsAtBottom = 0.0; ///< escaped power of the beams, W / length^2
 };
 
-/// Fraction of a beam that remains where it enters each layer.
+/// Irradiance of a beam, perpendicular to it, where it enters each layer.
 std::vector<double> BeamAtLayers(const LayerStack& stack, const StackBeam& beam);
 
 /// Solves all layers by the adding method, from the bottom up (van de Hulst; numerics.md, Eqs. (P7), (P8)).

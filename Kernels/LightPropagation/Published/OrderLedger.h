@@ -10,21 +10,22 @@
 
 namespace tyndall
 {
-/// Powers and convergence of the scattering orders of a solve as published, and when to stop.
+/// Powers and convergence of the scattering orders of a solve with the published scheme, and the stopping criterion.
 class OrderLedger
 {
 public:
-  /// @param medium  must stay
+  /// @param medium  must outlive this
   OrderLedger(const Medium& medium, int channels, const PropagationSettings& settings);
 
-  /// Boundary powers of the current order, and the power carried round periodic axes; in any number of parts.
+  /// Adds boundary powers of the current order, and the power that wraps around periodic axes. May be called several
+  /// times per order.
   void Count(const SweepTally& tally);
   /// @param fluence  of this order alone, channels interleaved
   void CloseOrder(const std::vector<float>& fluence);
 
   bool Done() const { return this->Finished; }
   int Orders() const { return static_cast<int>(this->Rows.size()); }
-  /// Part of the solve that is done, when a fraction of the current order is.
+  /// Fraction of the solve that is done, given the fraction of the current order that is done.
   double Progress(double fractionOfOrder) const;
 
   void WriteTo(LightField& field) const; ///< balance, facePowerOut, convergence
@@ -37,7 +38,7 @@ private:
   int Channels;
   bool Finished = false;
   EnergyLedger Powers;
-  Rgb Carried = {};       ///< W carried round periodic axes in this order
+  Rgb Carried = {};       ///< W that wraps around periodic axes in this order
   Rgb CarriedBefore = {}; ///< the same of the order before
   Rgb TotalSum = {}, LastSum = {};
   std::vector<ConvergenceRow> Rows;

@@ -13,24 +13,25 @@
 
 namespace tyndall
 {
-/// Light propagation maps as published, Algorithm 2 of Gruson et al. 2012: propagation into one temporary buffer T a
-/// direction (Eq. 6), then collection into U and I (Eq. 4); numerics.md, section 3, says how they are read.
+/// Light propagation maps as published, Algorithm 2 of Gruson et al. 2012: propagation into one temporary buffer T per
+/// direction (Eq. 6), then collection into U and I (Eq. 4). For how these equations are read see numerics.md, section
+/// 3.
 ///
-/// The buffers are filled and collected in batches of directions. The largest batch is one LPM, the p directions of a
-/// face, so that T takes p n^3 floats a channel as in the paper's section 5. Where that does not fit the device, or the
-/// caller allows less, batches are smaller. The paper streams slices of the volume instead (section 4.2), which needs a
-/// pass over all slices a face; batches of directions bound the same memory, and give the same bits, because collection
-/// adds directions one by one in either case. The medium, U, I and one map a direction stay on the device.
+/// Directions are propagated and collected in batches. The largest batch is one LPM, the p directions of a face, so
+/// that T needs p n^3 floats per channel as in the paper's section 5. If that does not fit the device, or the caller
+/// allows less, batches are smaller. The paper instead streams slices of the volume (section 4.2), which needs one pass
+/// over all slices per face. Batches of directions bound memory equally, and the result is bit-identical, because
+/// collection adds directions one by one in either case. The medium, U, I and one map per direction stay on the device.
 ///
-/// Per order: for each batch Propagate() and Collect(), then FinishOrder(). RunOrder() does just that.
+/// Per order, call Propagate() and Collect() for each batch, then FinishOrder(); RunOrder() does all of this.
 class ParallelPropagation
 {
 public:
-  /// @param medium  its arrays must stay
-  /// @param temporaryBytes  most that T may take; 0: what is left on the device
-  /// @param channels  3: as if something had colour; 1: as the scene needs
-  /// @throws InvalidInput for a medium, illumination or settings without meaning; DeviceError if it does not fit even
-  ///   with one direction a batch
+  /// @param medium  its arrays must outlive this
+  /// @param temporaryBytes  limit on the memory of T; 0: the memory left on the device
+  /// @param channels  3: solve three channels even if all is grey; 1: as many as the scene needs
+  /// @throws InvalidInput if medium, illumination or settings are invalid
+  /// @throws DeviceError if a batch of one direction does not fit
   ParallelPropagation(Device& device, const Medium& medium, const Illumination& illumination,
     const PropagationSettings& settings, std::size_t temporaryBytes = 0, int channels = 1);
   ParallelPropagation(const ParallelPropagation&) = delete; // its parts refer to each other
@@ -40,28 +41,28 @@ public:
   int BatchCount() const { return static_cast<int>(this->Plan.batches.size()); }
   int FirstDirection(int batch) const; ///< BatchCount() gives the number of directions
 
-  /// All rays of the batch's directions once through the volume, T filled.
-  /// @param monitor  given fractions of the order
+  /// Traces all rays of the directions of a batch through the volume once, which fills T.
+  /// @param monitor  receives fractions of the order
   void Propagate(int batch, const Monitor& monitor = {});
   void Collect(int batch);
-  /// U of the next order, I and fluence of all orders so far, powers and convergence.
+  /// Computes U of the next order, I and fluence of all orders so far, powers and convergence.
   void FinishOrder();
   void RunOrder(const Monitor& monitor = {});
-  /// The orders or the tolerance of the settings are reached.
+  /// Whether the maximum order or the tolerance of the settings is reached.
   bool Done() const { return this->Ledger.Done(); }
 
-  /// T of a batch, each direction x fastest with channels interleaved: a deposit divided by sigma_s (so that vacuum has
-  /// one too), length W / (length^2 sr). T of Eq. (6) is sigma_s times that.
+  /// T of a batch divided by sigma_s, so that it exists in vacuum as well: length W / (length^2 sr), one vector per
+  /// direction, x fastest, channels interleaved. T of Eq. (6) is sigma_s times this.
   std::vector<std::vector<float>> Contributions(int batch) const;
   void SetContributions(int batch, const std::vector<std::vector<float>>& contributions);
 
-  /// U that the next order propagates, W / (length^3 sr): channels * SourceDirections() a voxel, channels fastest. At
-  /// first the medium's emission. Setting it makes the next order one without light from outside, as all but the first
-  /// are.
+  /// U that the next order propagates, W / (length^3 sr): channels * SourceDirections() values per voxel, channels
+  /// fastest. Initially the emission of the medium. After U has been set, the next order has no boundary light, as any
+  /// order after the first.
   std::vector<float> Source() const { return this->Volumes.ReadSource(); }
   void SetSource(const std::vector<float>& source);
 
-  LightField Result() const; ///< of all orders so far
+  LightField Result() const; ///< sum of all orders so far
 
 private:
   using Batch = PublishedPlan::Batch;
@@ -78,14 +79,14 @@ private:
   PublishedPlan Plan;
   PublishedSweep Sweep;
   cl::Kernel UpdateSources;
-  SweepTally Tally; ///< of the current order
+  SweepTally Tally; ///< boundary powers of the current order
   bool Emits;       ///< U is not zero
   bool SourceGiven = false;
   std::vector<float> FluenceDirect;
 };
 
-/// All orders on the device.
-/// @param temporaryBytes  as above
+/// Solves all orders on the device.
+/// @param temporaryBytes  as in the constructor of ParallelPropagation
 LightField SolveParallel(Device& device, const Medium& medium, const Illumination& illumination,
   const PropagationSettings& settings, const Monitor& monitor = {}, std::size_t temporaryBytes = 0);
 }

@@ -1,11 +1,11 @@
 // Collection as published (Gruson et al. 2012, Algorithm 2, second half): each voxel reads the temporary buffers of all
-// directions and updates U and I. The host gives
+// directions and updates U and I. The host defines
 //   CHANNELS  1 or 3
-//   MOMENTS   sums over directions that are kept: the fluence, and more where scattering depends on direction
-//   COLOURED  1 where sigma has CHANNELS channels, 0 where all share one
+//   MOMENTS   number of moments: the fluence, and more if scattering is anisotropic
+//   COLOURED  1 if sigma has CHANNELS channels, 0 if all share one
 //
 // A moment is the sum over directions of a coefficient times T. Directions are added one by one in their order, so that
-// the result does not depend on how they are cut into batches.
+// the result does not depend on the batches.
 
 #include "LightPropagation/Published/PublishedShared.h"
 #include "Numerics/Numerics.cl"

@@ -9,14 +9,14 @@
 
 namespace tyndall
 {
-/// Floats of the buffers that all batches share.
+/// Sizes, in floats, of the buffers that all batches share.
 struct PublishedSizes
 {
   std::size_t rays = 0, escaped = 0, carried = 0, contributions = 0, boundary = 0;
 };
 
-/// The order of the published algorithm's work: directions in batches, their paths through the grid as tables of voxel
-/// crossings, and the memory that takes.
+/// Schedule of the published algorithm: batches of directions, their paths through the grid as tables of voxel
+/// crossings, and the memory they need.
 class PublishedPlan
 {
 public:
@@ -27,16 +27,16 @@ public:
     bool add; ///< to the deposits of earlier launches in the plane
   };
 
-  /// A batch's path through the volume on one of the N x N sub-maps ("divide the LPM into N smaller sub-LPM", section
+  /// Path of a batch through the volume on one of the N x N sub-maps ("divide the LPM into N smaller sub-LPM", section
   /// 5).
   struct Pass
   {
     std::vector<Launch> launches;
-    int end = 0; ///< its crossings for end_rays
+    int end = 0; ///< index of its crossings for end_rays
     std::size_t carriedFirst = 0;
   };
 
-  /// Directions of one face whose rays go together, and their rows in T.
+  /// Directions of one cube face whose rays are propagated together, and their rows in T.
   struct Batch
   {
     int first = 0, count = 0; ///< directions
@@ -46,11 +46,11 @@ public:
     std::vector<Pass> passes;
     Buffer<PublishedCrossing> crossings; ///< of all passes
     int Layout() const { return this->maps[0].axis == 0 ? 1 : 0; }
-    const MapGeometry& Map() const { return this->maps[0]; } ///< all have its axes and sizes
+    const MapGeometry& Map() const { return this->maps[0]; } ///< first map; all have the same axes and sizes
   };
 
-  /// @param model, volumes  must stay
-  /// @param temporaryBytes  most that T may take; 0: what is left on the device
+  /// @param model, volumes  must outlive this
+  /// @param temporaryBytes  limit on the memory of T; 0: the memory left on the device
   PublishedPlan(Device& device, const Grid& grid, const PublishedModel& model, const PropagationSettings& settings,
     const PublishedVolumes& volumes, std::size_t temporaryBytes);
 

@@ -1,21 +1,21 @@
 // Propagation as published (Gruson et al. 2012, Algorithm 2, first half): all rays of a direction cross the grid plane
-// by plane, one ray a voxel, and leave their deposits in the direction's own buffer T. The host defines
+// by plane, one ray per voxel, and write their deposits to the buffer T of that direction. The host defines
 //   CHANNELS  1 or 3
-//   COLOURED  1 where sigma has CHANNELS channels, 0 where all share one
-//   SOURCE    1 where U is not zero
+//   COLOURED  1 if sigma has CHANNELS channels, 0 if all share one
+//   SOURCE    1 if U is not zero
 //
-// The paper synchronises the rays of a work-group by __syncthreads; here a launch is one voxel crossing of all rays of
-// all directions, and the order of launches synchronises them. Rays are stored by the voxel they are in: a ray map is
-// [row -1 .. size_v][PAD | column 0 .. size_u - 1 | PAD], with a border for the light incident through the sides.
-// REAL_WIDTH > 1 (CPU): a work-item crosses a row. REAL_WIDTH 1 (GPU): a work-item crosses a voxel.
+// The paper synchronises the rays of a work-group by __syncthreads. Here a launch is one voxel crossing of all rays of
+// all directions, and the sequence of launches synchronises them. Rays are stored by the voxel they are in: a ray map
+// is [row -1 .. size_v][PAD | column 0 .. size_u - 1 | PAD], with a border for light incident through the sides.
+// REAL_WIDTH > 1 (CPU): a work-item processes a row. REAL_WIDTH 1 (GPU): a work-item processes a voxel.
 
 #include "LightPropagation/Published/PublishedShared.h"
 #include "Numerics/Numerics.cl"
 
 #define PAD REAL_WIDTH
 
-// Outgoing radiance of a direction's map, W / (length^2 sr) summed over rays: [through u by row][through v][behind the
-// last plane by row].
+// Outgoing radiance of the map of a direction, W / (length^2 sr), summed over rays: [through u by row][through
+// v][beyond the last plane by row].
 #define ESCAPED(map) (2 * (map).sizeV + 1)
 
 static __global float* ray_row(__global float* rays, const PublishedMap* map, int parity, int slot, int v)
@@ -30,9 +30,9 @@ inline real depth(real gone, real tau, float length)
   return length * (max(gone, (real)1e-37f) / max(tau, (real)1e-37f));
 }
 
-// Initial radiance of the rays, written to both maps, so that the border is in both.
-//   boundary  incident radiance across w, u, v: [direction][3][CHANNELS]
-//   carried   across a periodic axis: radiance by voxel, [direction][carried_stride], from carried_first on
+// Initial radiance of the rays. Written to both maps, so that both contain the border.
+//   boundary  incident radiance perpendicular to w, u, v: [direction][3][CHANNELS]
+//   carried   radiance by voxel across a periodic axis, [direction][carried_stride], from carried_first on
 __kernel void start_rays(const PublishedMap map, __global float* rays, __global const float* boundary,
   __global const float* carried, const ulong carried_first, const ulong carried_stride)
 {
@@ -67,7 +67,7 @@ __kernel void start_rays(const PublishedMap map, __global float* rays, __global 
   ray_row(rays, &map, 1, slot, v)[u] = radiance;
 }
 
-// Radiance that leaves through the sides as rays move into the next voxel; through an edge, half through either side.
+// Outgoing radiance through the sides as rays move into the next voxel; through an edge, half on each side.
 static void leave_sides(
   const PublishedMap* map, const PublishedCrossing* crossing, __global const float* row, int v, __global float* escaped)
 {
@@ -105,10 +105,10 @@ inline real deposit(real radiance, real sigma_s, float length)
   return radiance * depth(gone, tau, length);
 }
 
-// All rays of all directions of a launch into their next voxel and through it.
-//   first, crossings  the launch's part of the table, a direction each
-//   plane             where the plane begins in a volume
-//   add               0: the first ray in these voxels, T is set; 1: T is added to
+// Moves all rays of all directions of a launch into their next voxel and through it.
+//   first, crossings  range of the launch in the table, one entry per direction
+//   plane             offset of the plane in a volume
+//   add               0: first ray in these voxels, T is overwritten; 1: added to T
 __kernel void cross_voxels(const PublishedMap map, const int plane, const int add, const int first,
   __global const PublishedCrossing* crossings, __global const float* sigma_t, __global const float* sigma_s,
   __global const float* sources, __global float* rays, __global float* contributions, __global float* escaped)
@@ -187,9 +187,9 @@ __kernel void cross_voxels(const PublishedMap map, const int plane, const int ad
 #endif
 }
 
-// Behind the last plane: sums what leaves, and stores the rays that wrap around a periodic axis for the next order,
-// [direction][carried_stride].
-//   crossings  one a direction: parity says which map
+// After the last plane: sums the outgoing radiance, and stores rays that wrap around a periodic axis for the next
+// order, [direction][carried_stride].
+//   crossings  one per direction; parity selects the map
 __kernel void end_rays(const PublishedMap map, const int first, __global const PublishedCrossing* crossings,
   __global float* rays, __global float* escaped, __global float* carried, const ulong carried_first,
   const ulong carried_stride)

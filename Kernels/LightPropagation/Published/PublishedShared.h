@@ -4,14 +4,14 @@
 #include "Device/SharedTypes.h"
 
 SHARED_BEGIN
-/// The volumes: layout 0 is [z][y][x]; layout 1, for maps that march along x, is [x][z][y].
+/// Memory layouts of volumes: layout 0 is [z][y][x]; layout 1, for maps that march along x, is [x][z][y].
 typedef struct
 {
   int size[3];
-  int row[2], plane[2], volume[2]; ///< floats from row to row, plane to plane and channel to channel, by layout
+  int row[2], plane[2], volume[2]; ///< strides of rows, planes and channels in floats, by layout
 } PublishedLayouts;
 
-/// A source U as a multiple of a moment, and its place.
+/// A source U as a multiple of a moment, and where it is stored.
 typedef struct
 {
   int moment;
@@ -20,7 +20,7 @@ typedef struct
   int slot;
 } PublishedPart;
 
-/// A map of rays.
+/// A ray map.
 typedef struct
 {
   int sizeU, sizeV;
@@ -28,7 +28,7 @@ typedef struct
   int volume;    ///< floats of a volume of one channel
   int rayRow;    ///< floats of a row of a ray map
   int periodicU, periodicV;
-  int periodicW;  ///< rays start with the radiance they had behind the last plane in the order before
+  int periodicW;  ///< rays start with their radiance beyond the last plane in the previous order
   int directions; ///< in the batch
 } PublishedMap;
 
@@ -36,9 +36,9 @@ typedef struct
 typedef struct
 {
   int direction; ///< within the batch
-  int parity;    ///< which of the two ray maps they are in
+  int parity;    ///< index of the ray map that holds them
   int moveU, moveV;
-  int source;   ///< which U
-  float length; ///< in the voxel
+  int source;   ///< index of U
+  float length; ///< of the segment in the voxel
 } PublishedCrossing;
 SHARED_END

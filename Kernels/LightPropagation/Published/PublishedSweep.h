@@ -12,30 +12,30 @@
 
 namespace tyndall
 {
-/// Rays of the published algorithm on the device: a batch of directions crosses the grid and leaves its deposits in the
-/// temporary buffers T, which are then collected into the moments of the order.
+/// Ray propagation of the published algorithm on the device: the rays of a batch of directions cross the grid and write
+/// their deposits to the temporary buffers T, which are then collected into the moments of the order.
 class PublishedSweep
 {
 public:
   using Batch = PublishedPlan::Batch;
   using Pass = PublishedPlan::Pass;
 
-  /// @param volumes, plan, model  must stay
+  /// @param volumes, plan, model  must outlive this
   PublishedSweep(Device& device, const PublishedVolumes& volumes, const PublishedPlan& plan,
     const PublishedModel& model, const PropagationSettings& settings);
 
   /// Prepares a batch.
-  /// @param incident  light is incident on the boundary: in the first order alone, which is counted
+  /// @param incident  boundary light is incident (first order only), and counted in `tally`
   void Begin(const Batch& batch, bool incident, SweepTally& tally);
 
-  /// One ray a voxel of the map and direction, from the first plane to behind the last.
+  /// Traces one ray per map voxel and direction, from the first plane to beyond the last.
   /// @param emits   U is not zero
-  /// @param report  is given the part of the pass that is done
+  /// @param report  receives the fraction of the pass that is done
   void Send(
     const Batch& batch, const Pass& pass, bool emits, SweepTally& tally, const std::function<void(double)>& report);
 
-  /// Adds the batch's T to the moments of the order.
-  /// @param begins  the first batch of a layout: sets them
+  /// Adds T of the batch to the moments of the order.
+  /// @param begins  first batch of a layout: overwrites the moments
   void Collect(const Batch& batch, bool begins);
 
   Buffer<float> Contributions; ///< T
@@ -57,7 +57,7 @@ private:
   std::array<bool, 3> Periodic;
   int Channels;
   Buffer<float> Rays, Escaped, Boundary;
-  Buffer<float> Carried; ///< round periodic axes, from one order to the next
+  Buffer<float> Carried; ///< radiance that wraps around periodic axes into the next order
   cl::Kernel StartRays, CrossVoxels[2], EndRays, AddDirections;
 };
 }

@@ -9,46 +9,46 @@
 
 namespace tyndall
 {
-/// Where a voxel is in the volumes: rows always run along the maps' u.
+/// Memory layouts of volumes. Rows always run along u of the maps.
 struct VolumeLayouts : PublishedLayouts
 {
-  /// @param width  floats to whose multiple rows are padded
+  /// @param width  rows are padded to a multiple of this many floats
   VolumeLayouts(const Grid& grid, int width);
 
   std::size_t Index(int layout, int x, int y, int z) const;
 };
 
-/// Arrays that stay on the device from one scattering order to the next: the medium, U, and the moments of I and
-/// fluence. All in both layouts, [...][channel][volume], the padding zero.
+/// Arrays that stay on the device between scattering orders: the medium, U, and the moments of I and fluence. Each in
+/// both layouts, [...][channel][volume], with zero padding.
 struct PublishedVolumes
 {
   /// @param medium  copied
-  /// @param model  must stay
-  /// @param width  floats a work-item handles at once
-  /// @throws DeviceError if they do not fit or have more voxels than the kernels can address
+  /// @param model  must outlive this
+  /// @param width  floats that a work-item processes at once
+  /// @throws DeviceError if they do not fit, or have more voxels than the kernels can address
   PublishedVolumes(Device& device, const Medium& medium, const PublishedModel& model, int width);
 
   int Channels() const { return this->Model.Channels(); }
   std::size_t LayoutSize(int layout) const; ///< floats of a quantity, all channels
 
-  /// U of a direction is at this place in Sources, in quantities; -1 where no map reads it in this layout.
+  /// Index, in quantities, of U of a direction in Sources; -1 if no map reads it in this layout.
   int SourceSlot(int layout, int sourceDirection) const { return this->Slots[layout][sourceDirection]; }
 
   /// From x fastest with channels interleaved, U with source directions between voxel and channel, and back.
   std::vector<float> Arrange(int layout, const float* interleaved) const;
   std::vector<float> Interleave(int layout, const float* arranged) const;
   void WriteSource(const std::vector<float>& source);
-  /// Adds light that another solver found to the moments of the order that was propagated.
+  /// Adds light from another solver to the moments of the order just propagated.
   void AddGiven(const UncollidedImage& image);
   std::vector<float> ReadSource() const;
   std::vector<float> ReadMoment(const Buffer<float>& moments, int moment) const; ///< in layout 0
 
-  /// Some floats of a buffer; waits for the device.
+  /// Reads a range of floats of a buffer; waits for the device.
   std::vector<float> ReadPart(const Buffer<float>& buffer, std::size_t first, std::size_t count) const;
 
   int Width;
   VolumeLayouts Layouts;
-  bool Coloured; ///< sigma has all channels
+  bool Coloured; ///< sigma_t and sigma_s differ between channels
 
   Buffer<float> Extinction[2], Scattering[2], Sources[2], OrderMoments[2]; ///< by layout
   Buffer<float> Totals;                                                    ///< moments of all orders, layout 0
