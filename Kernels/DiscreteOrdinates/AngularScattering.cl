@@ -1,15 +1,15 @@
-// Scattering between the directions in a voxel: by N terms or by the full matrix (numerics.md,
-// Eqs. (D7), (D8)). Radiance is [group][stride][8 directions].
+// Scattering between the directions in a voxel, by N terms or by the full matrix (numerics.md, Eqs. (D7), (D8)).
+// Radiance is [group][stride][8 directions]. The host defines
 //
-//   REAL_WIDTH  moments handled at once
-//   GROUPS      of eight directions
+//   REAL_WIDTH  moments processed at once
+//   GROUPS      number of groups of eight directions
 //   TERMS       of the phase function
 //   ROWS        moments of a voxel, in vectors of REAL_WIDTH: fluence, the terms, net flux
-//   FLUX        1 where net flux is wanted; it is behind the terms
-//   POSITIVE    1: no source is negative, and together they have exactly the power that is scattered
+//   FLUX        1 if net flux is requested; it follows the terms
+//   POSITIVE    1: negative sources are set to 0, and the rest scaled to conserve the scattered power
 #include "Numerics/Numerics.cl"
 
-#define BLOCK 8 // voxels of a work-item
+#define BLOCK 8 // voxels per work-item
 #define MOMENTS (ROWS * REAL_WIDTH)
 
 typedef float8 float8_anywhere __attribute__((aligned(4)));
@@ -53,7 +53,7 @@ inline void find_moments(
   }
 }
 
-// Adds moments of eight voxels to the light that was found before.
+// Adds the moments of eight voxels to fluence and flux.
 inline void add_light(const __global float* moments, ulong voxels, ulong first, __global float* order,
   __global float* fluence, __global float* flux)
 {
@@ -74,8 +74,8 @@ inline void add_light(const __global float* moments, ulong voxels, ulong first, 
   }
 }
 
-// Eight voxels by eight directions of sources are done together; POSITIVE takes what is negative away, and notes what
-// the rest is to be multiplied by so that its power is right.
+// Processes eight voxels by eight directions at once. With POSITIVE, sets negative sources to 0 and records the factor
+// by which the rest must be multiplied to conserve power.
 #if POSITIVE
 #define POSITIVE_PART(b)                     \
   source##b = fmax(source##b, (float8)0.0f); \
@@ -102,12 +102,12 @@ inline void add_light(const __global float* moments, ulong voxels, ulong first, 
   if (first + b < voxels) \
     STORE8(source##b* sigma_s[first + b], (group * stride + first + b) * 8, source);
 
-// radiance  has room for BLOCK voxels more
-// source    W / (length^3 sr), may be radiance; written but for a factor `scale` a voxel where POSITIVE
-// moments   scratch, [voxel][MOMENTS], room for BLOCK voxels more
-// spread    [group][term][8]: the factors of the directions
+// radiance  padded by BLOCK voxels
+// source    W / (length^3 sr), may be radiance; with POSITIVE to be multiplied by `scale` of the voxel
+// moments   scratch, [voxel][MOMENTS], padded by BLOCK voxels
+// spread    [group][term][8]: factors of the directions
 // angles    [group][8], sr
-// order     W / length^2, fluence of this light alone; fluence and flux are added to
+// order     W / length^2, fluence of this order alone; fluence and flux are added to
 __kernel void scatter_terms(const __global float* radiance, __global float* source, __global float* moments,
   const __global float* weights, const __global float* spread, const __global float* angles,
   const __global float* sigma_s, __global float* order, __global float* fluence, __global float* flux,
@@ -134,8 +134,8 @@ __kernel void scatter_terms(const __global float* radiance, __global float* sour
   EACH_VOXEL(NOTE_SCALE)
 }
 
-// The same by the full matrix; source is not radiance.
-//   matrix  [group][direction][8], 1/sr times the solid angle of the direction that light comes along
+// The same by the full matrix; source and radiance must be different arrays.
+//   matrix  [group][direction][8], 1/sr times the solid angle of the incident direction
 __kernel void scatter_matrix(const __global float* radiance, __global float* source, __global float* moments,
   const __global float* weights, const __global float* matrix, const __global float* angles,
   const __global float* sigma_s, __global float* order, __global float* fluence, __global float* flux,
@@ -165,9 +165,9 @@ __kernel void scatter_matrix(const __global float* radiance, __global float* sou
   EACH_VOXEL(NOTE_SCALE)
 }
 
-// As published without factorisation: one pass for each direction, which reads the radiance along all (Gong et al.,
-// Eq. (13)).
-//   row  [direction]: of the matrix, times the solid angle that light comes along
+// As published without factorisation: one pass per outgoing direction, which reads the radiance along all directions
+// (Gong et al., Eq. (13)).
+//   row  [direction]: row of the matrix, times the solid angle of the incident direction
 __kernel void scatter_along(const __global float* radiance, __global float* source, const __global float* row,
   const __global float* sigma_s, int group, int lane, ulong stride)
 {

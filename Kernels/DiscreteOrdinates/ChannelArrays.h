@@ -23,38 +23,38 @@ namespace tyndall
 class ChannelArrays
 {
 public:
-  /// Asks no other rank: it may fail on one alone.
-  /// @param scene, angles  must stay
+  /// Not collective: may throw on one rank alone.
+  /// @param scene, angles  must outlive this
   ChannelArrays(Device& device, const OrdinatesScene& scene, const OrdinatesAngles& angles, bool netFlux);
 
   /// Moves the emission of empty voxels from EmitEvenly to AddLamps: uncollided light along rays of its own
   /// (UncollidedEmission.h). Collective.
   void TakeVacuumApart(PropagationSettings settings);
-  /// Finds whether voxels of any rank emit or scatter; first. Collective, as most of the following.
+  /// Finds whether voxels of any rank emit or scatter; call first. Collective, as are most of the following methods.
   void LookAtAllRanks();
 
-  /// Bytes that these arrays take on the device.
+  /// Bytes of device memory that these arrays need.
   static std::size_t Bytes(const Grid& grid, bool netFlux);
 
-  /// Uncollided light of all lamps, of empty voxels and of another solver: counts it, and adds its first-collision
-  /// source.
-  /// @param source  of all directions, over Scale
+  /// Adds uncollided light of all lamps, of empty voxels and of another solver to fluence and powers, and adds its
+  /// first-collision source.
+  /// @param source  of all directions, relative to Scale
   void AddLamps(
     const Buffer<float>& source, const std::array<bool, 3>& periodic, OrdinatesResult& result, const Monitor& monitor);
-  /// W of lamps whose rays wrap around periodic axes without end.
+  /// Power of lamps whose rays wrap around periodic axes without end, W.
   double Stranded() const { return this->GoingRound; }
 
-  /// Absorbed and scattered power of a fluence, W.
+  /// Power that the medium absorbs and scatters of a fluence, W.
   struct Powers
   {
     double absorbed = 0.0, scattered = 0.0;
   };
-  /// @param lamps  whether it is uncollided light of lamps
+  /// @param lamps  the fluence is uncollided light of lamps
   Powers PowersOf(const std::vector<float>& values, bool lamps) const;
   /// Scattered power of the magnitude of the difference of two fluences, W. Collective.
   double MagnitudeOf(const std::vector<float>& values, const std::vector<float>& others) const;
-  /// Emission of the voxels into every direction. W / (length^3 sr). Collective, where any voxel emits.
-  /// @param ledger  all emission is counted
+  /// Writes the isotropic emission of the voxels, W / (length^3 sr). Collective if any voxel emits.
+  /// @param ledger  receives all emission
   void EmitEvenly(const Buffer<float>& source, EnergyLedger& ledger) const;
   /// Adds the isotropic scattering source of a fluence, which may be negative.
   void ScatterEvenly(const std::vector<float>& values, double factor, const Buffer<float>& source) const;
@@ -66,10 +66,10 @@ public:
   const std::size_t Voxels;
   const VolumeLayout Layout;
   Buffer<float> SigmaT, SigmaS; ///< 1/length
-  Buffer<float> Scale;          ///< of the sources of a voxel, 1 at first
-  Buffer<float> Direct;         ///< W / length^2, of lamps
+  Buffer<float> Scale;          ///< factor of the sources of each voxel, initially 1
+  Buffer<float> Direct;         ///< W / length^2, uncollided
   OrdinatesLight Light;
-  const std::unique_ptr<FaceLight> Faces; ///< null: none reflects
+  const std::unique_ptr<FaceLight> Faces; ///< null: no face reflects
 
 private:
   Buffer<float> Load(const char* what, double absorbed, double scattered) const;
@@ -86,10 +86,10 @@ private:
   Device& TheDevice;
   const OrdinatesScene& Scene;
   const OrdinatesAngles& Angles;
-  double ScatteredAway; ///< 1 less the forward peak
+  double ScatteredAway; ///< 1 minus the forward peak
   std::vector<float> Absorption, Scattering;
   bool AnyEmission = false, AnyScattering = false;
-  std::unique_ptr<const SweptDirections> OfVacuum; ///< along which empty voxels emit; null: none does, or not apart
+  std::unique_ptr<const SweptDirections> OfVacuum; ///< quadrature of emission of empty voxels; null: none, or swept
   double GoingRound = 0.0;
   SweepWorkspace Workspace;
   BlockWorkspace BlocksWorkspace;

@@ -1,9 +1,9 @@
-// Uncollided light of a lamp, scattered for the first time: by the phase function between its ray and each direction
-// (numerics.md, Eq. (D12)). Radiance is [group][stride][8 directions].
+// First-collision source of the uncollided light of a lamp, by the phase function between its ray and each direction
+// (numerics.md, Eq. (D12)). Radiance is [group][stride][8 directions]. The host defines
 //
-//   GROUPS  of eight directions
-//   TABLE   values of the phase function over the angle, evenly from 0 to pi
-//   WAYS    1: each voxel has a mean direction of its own, whose length is the part of the light along it;
+//   GROUPS  number of groups of eight directions
+//   TABLE   values of the phase function at equidistant angles from 0 to pi
+//   WAYS    1: each voxel has a mean direction, whose length is the fraction of the light along it;
 //           0: rays of a lamp
 #include "DiscreteOrdinates/LampScatteringShared.h"
 
@@ -17,7 +17,7 @@
 #define ALONG from_lamp(&lamp, i)
 #endif
 
-// Direction of the lamp's light in a voxel; 0 in the voxel of the lamp, where light is isotropic.
+// Direction of the light of the lamp in a voxel; 0 in the voxel that contains the lamp, where light is isotropic.
 inline float3 from_lamp(const LampInRays* lamp, ulong i)
 {
   const float3 place = (float3)(lamp->place[0], lamp->place[1], lamp->place[2]);
@@ -58,7 +58,7 @@ inline float sum8(float8 values)
   return (four.x + four.y) + (four.z + four.w);
 }
 
-//   path     W length, of the lamp
+//   path     path integrals of the lamp, W length
 //   direct   W / length^2, added to, as are fluence and flux, [x, y, z][voxel], if has_flux
 __kernel void add_lamp(const __global float* path, __global float* fluence, __global float* direct,
   __global float* flux, int has_flux, LampInRays lamp WAYS_ARGUMENT)
@@ -77,7 +77,7 @@ __kernel void add_lamp(const __global float* path, __global float* fluence, __gl
 }
 
 // Parallel light scatters into each direction by the same factor in every voxel.
-//   source  W / (length^3 sr), over scale; afterwards over 1
+//   source  W / (length^3 sr); relative to scale on entry, absolute on return
 //   parts   [group][8], 1/sr
 __kernel void scatter_parallel(__global float* source, const __global float* scale, const __global float* path,
   const __global float* sigma_s, const __global float* parts, ulong stride, float per_volume)
@@ -87,11 +87,11 @@ __kernel void scatter_parallel(__global float* source, const __global float* sca
   *to = *to * scale[i] + ((const __global float8*)parts)[group] * (path[i] * per_volume * sigma_s[i]);
 }
 
-// The same of a lamp at a place.
+// The same for a lamp with a position.
 //   omegas  [group][x, y, z, solid angle][8]
 //
-// The directions' sums of 1, the cosine and its square make what is scattered have its power and, as far as no
-// direction gets less than nothing, its mean cosine.
+// The sums over directions of 1, the cosine and its square are used to correct the source so that it has the right
+// power and, as far as no direction becomes negative, the right mean cosine.
 __kernel void scatter_from_place(__global float* source, const __global float* scale, const __global float* path,
   const __global float* sigma_s, const __global float* omegas, const __global float* table, ulong stride,
   LampInRays lamp WAYS_ARGUMENT)
@@ -118,8 +118,8 @@ __kernel void scatter_from_place(__global float* source, const __global float* s
   const float sum = sum8(sums);
   const float mean = sum8(firsts) / sum, square = sum8(seconds) / sum;
   const float lacking = lamp.meanCosine - mean, slope = square - lamp.meanCosine * mean;
-  // A peak so narrow that it is in one direction alone cannot be turned: less than 1, so that its power is not a
-  // difference that cancels.
+  // A peak so narrow that it lies in a single direction cannot be corrected. Limiting the correction to less than 1
+  // avoids computing its power as a difference that cancels.
   const float tilt = slope > 1e-6f ? clamp(lacking / slope, -MOST_TILT, MOST_TILT) : copysign(MOST_TILT, lacking);
   float power = path[i] * lamp.perVolume * sigma_s[i] / (sum * (1.0f + tilt * mean));
 #if WAYS

@@ -12,31 +12,32 @@
 
 namespace tyndall
 {
-/// Destination of the first-collision source of a lamp.
+/// Arrays that receive the first-collision source of a lamp.
 struct LampTarget
 {
-  const Buffer<float>& source; ///< of all directions, over `scale`; added to
+  const Buffer<float>& source; ///< of all directions, relative to `scale`; added to
   Buffer<float>& scale;        ///< becomes 1
   const Buffer<float>& direct; ///< W / length^2, uncollided fluence, added to
   const OrdinatesLight& light; ///< its fluence and flux are added to
 };
 
-/// The first scattering of uncollided light, by the phase function itself between a ray and each direction, averaged
-/// over the direction's cell (numerics.md, Eq. (D12)). Power and mean cosine are right, and no source is negative,
-/// whatever the terms of later scatterings are.
+/// First-collision source of uncollided light: the phase function between a ray and each direction, averaged over the
+/// cell of the direction (numerics.md, Eq. (D12)). Power and mean cosine are exact, and no source is negative,
+/// regardless of the terms used for later scatterings.
 ///
-/// Rays come from the lamp's place; of a rectangle from its middle, which is off near it. In the voxel that the lamp is
-/// in, light is scattered evenly.
+/// Rays start at the position of the lamp; for a rectangle at its centre, which is inaccurate close to it. In the voxel
+/// that contains the lamp, first scattering is isotropic.
 class LampScattering
 {
 public:
-  /// @param groups  must stay
+  /// @param groups  must outlive this
   LampScattering(Device& device, const Grid& grid, const OrdinateGroups& groups, const PhaseFunction& function);
 
-  /// @param path  W length, of the lamp's light in each voxel
+  /// @param path  path integrals of the light of the lamp, W length
   void Add(const Light& lamp, const Buffer<float>& path, const Buffer<float>& sigma_s, const LampTarget& target) const;
-  /// The same for light along a mean direction of each voxel, to the part of its length; the rest is isotropic.
-  /// @param ways  mean directions, 3 a voxel
+  /// The same for light that has a mean direction in each voxel. The length of that vector is the fraction of the light
+  /// along it; the rest is isotropic.
+  /// @param ways  mean directions, 3 values per voxel
   void AddAlong(
     const Buffer<float>& ways, const Buffer<float>& path, const Buffer<float>& sigma_s, const LampTarget& target) const;
 

@@ -4,14 +4,14 @@
 #include "Device/SharedTypes.h"
 
 SHARED_BEGIN
-/// A lamp whose uncollided light is known, and the box.
+/// Geometry of a lamp and of the box.
 typedef struct
 {
   int size[3];
-  int parallel; ///< else it is at a place
+  int parallel; ///< 0: the lamp has a position
   float spacing[3];
-  float place[3];   ///< of the lamp, from the box's corner; of parallel rays their direction, a unit vector
-  float meanCosine; ///< that scattering is to have
+  float place[3];   ///< position from the corner of the box; of parallel rays the unit direction
+  float meanCosine; ///< mean cosine of scattering to reproduce
   float perVolume;  ///< 1 / length^3
 } LampInRays;
 SHARED_END

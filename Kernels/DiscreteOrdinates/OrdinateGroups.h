@@ -9,25 +9,25 @@
 
 namespace tyndall
 {
-constexpr int OrdinateLanes = 8; ///< directions that kernels handle at once
+constexpr int OrdinateLanes = 8; ///< directions that kernels process at once
 
-/// Voxels from a group's radiance to the next group's: more than there are, and such that the same voxel of different
-/// groups does not fall on the same few lines of a cache (a power of two is ten times slower).
+/// Stride between the radiance arrays of successive groups, in voxels: at least the number of voxels, and such that the
+/// same voxel of different groups does not map to the same few cache lines (a power of two is ten times slower).
 constexpr std::size_t OrdinateStride(std::size_t voxels)
 {
   return (voxels + 127) / 128 * 128 + 8;
 }
 
-/// Eight directions of one octant: they meet the voxels in the same order.
+/// Eight directions of one octant, which visit the voxels in the same order.
 struct OrdinateGroup
 {
-  std::array<bool, 3> up = {};                   ///< the way along each axis
-  std::array<int, OrdinateLanes> direction = {}; ///< indices; a last one may stand in several lanes
-  int count = 0;                                 ///< of them that are not repeated
+  std::array<bool, 3> up = {};                   ///< whether they go up each axis
+  std::array<int, OrdinateLanes> direction = {}; ///< indices; the last may be repeated to fill lanes
+  int count = 0;                                 ///< number of distinct directions
 };
 
-/// Directions as kernels see them: radiance is [group][OrdinateStride][lane], voxels x fastest, so that a voxel and a
-/// group are one vector, and a row of voxels is one stream.
+/// Memory layout of directions in kernels. Radiance is [group][OrdinateStride][lane], voxels x fastest, so that a voxel
+/// and a group form one vector, and a row of voxels is contiguous.
 class OrdinateGroups
 {
 public:
@@ -38,12 +38,12 @@ public:
   int Count() const { return static_cast<int>(this->Groups.size()); }
   std::size_t Lanes() const { return this->Groups.size() * OrdinateLanes; }
   const Direction& Of(int group, int lane) const { return this->Directions[this->Groups[group].direction[lane]]; }
-  /// Solid angle of a lane, sr; 0 of one that repeats another.
+  /// Solid angle of a lane, sr; 0 for a repeated direction.
   double Weight(int group, int lane) const
   {
     return lane < this->Groups[group].count ? this->Of(group, lane).weight : 0.0;
   }
-  /// [group][lane] of a value that group and lane have.
+  /// Table [group][lane] of a function of group and lane.
   std::vector<float> Table(const std::function<double(int group, int lane)>& value) const;
 
 private:

@@ -14,25 +14,25 @@
 
 namespace tyndall
 {
-/// Directions of one solve, and the incident radiance from far away.
+/// Boundary light from far away, along the directions of a solve.
 struct FarLight
 {
   std::vector<Direction> directions;
   std::vector<Rgb> radiance; ///< by direction, W / (length^2 sr)
-  std::vector<Light> peaks;  ///< of the environment
+  std::vector<Light> peaks;  ///< peaks of the environment
 };
 
 /// @param perFace  directions per face of a cube, as they are solved with
 FarLight FarLightOf(const Illumination& shining, int perFace, const OrdinatesSettings& settings);
 
-/// The phase function; of a mean cosine that varies by voxel, with the mean weighted by sigma_s. Collective.
+/// Phase function of a channel. If its mean cosine varies by voxel, the mean weighted by sigma_s is used. Collective.
 PhaseFunction FunctionOf(const Domain& domain, const Medium& medium, int channel);
 
-/// Properties of a medium that make the light doubtful.
-/// @param thickestStep  ThickestStep of all channels
+/// Warnings about properties of the medium that make the light inaccurate.
+/// @param thickestStep  largest ThickestStep of all channels
 std::vector<std::string> DoubtsOf(const OrdinatesSettings& settings, double thickestStep, bool cosineVaries);
 
-/// One channel's values in all three.
+/// Face albedo with the value of one channel in all three.
 std::array<Rgb, 6> FaceAlbedoOf(const Illumination& shining, int channel);
 UncollidedImage UncollidedOf(const Illumination& shining, int channel);
 
@@ -42,21 +42,21 @@ SeparablePhaseFunction SeparableOf(
 /// @throws DeviceError that says how much memory is needed
 void CheckMemory(Device& device, const Grid& grid, const OrdinatesAngles& angles, const OrdinatesSettings& settings);
 
-/// `far` and `shining` must stay. Empty: no light is incident.
+/// Boundary radiance of a channel; empty if there is none. `far` and `shining` must outlive the result.
 IncomingRadiance IncomingOf(const FarLight& far, const Illumination& shining, int channel);
 
-/// Of the scene and of the environment, power of the channel in all three.
+/// Lamps of the scene and peaks of the environment, with the power of one channel in all three.
 std::vector<Light> LampsOf(const FarLight& far, const Illumination& shining, int channel);
 
-/// Stores the light of a channel among all channels.
+/// Stores the light of one channel in `light`.
 void TakeChannel(LightField& light, const OrdinatesResult& found, int channel);
 
-/// Sets the derived quantities of light, before it is in the user's units.
+/// Sets the derived quantities of `light`, in the units of the solver.
 void DescribeLight(LightField& light, const Device& device, const FarLight& far);
 
-/// Whether it has converged, and, but as published, whether it balances (Convergence.h). Collective.
-/// @param medium  solved, of this rank
-/// @throws InvalidInput where it does not balance
+/// Checks convergence and, except for the published scheme, the energy balance (Convergence.h). Collective.
+/// @param medium  of this rank, as solved
+/// @throws InvalidInput if the energy balance is off
 void Judge(
   const OrdinatesSettings& settings, bool diverged, const Domain& domain, const Medium& medium, LightField& light);
 }

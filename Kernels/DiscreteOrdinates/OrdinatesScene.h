@@ -21,25 +21,25 @@
 
 namespace tyndall
 {
-/// Light of the last solve of one channel, the first guess of this one (KeptLight.h).
+/// Light of the previous solve of one channel, the first guess of this one (KeptLight.h).
 struct OrdinatesGuess
 {
-  bool keeps = false;        ///< this solve's light is wanted
-  std::vector<float> values; ///< as OrdinatesResult::left has them; empty: begin in the dark
+  bool keeps = false;        ///< keep the light of this solve
+  std::vector<float> values; ///< as OrdinatesResult::left; empty: no first guess
   double firstScattered = 0.0;
   double rate = 0.0;
 };
 
-/// One channel of a scene, as it is solved.
+/// One channel of a scene, in the units of the solver.
 struct OrdinatesScene
 {
   const Domain& domain;
-  const Medium& medium; ///< of this rank's block; one voxel of vacuum where that is empty
+  const Medium& medium; ///< of this rank's block; one voxel of vacuum if that is empty
   int channel = 0;
   std::vector<Light> lamps;  ///< of the scene, and the peaks of the environment; power of the channel in all three
   IncomingRadiance incoming; ///< empty: no light is incident
   std::array<Rgb, 6> faceAlbedo = {}; ///< of the channel in all three
-  UncollidedImage uncollided;         ///< the channel's alone
+  UncollidedImage uncollided;         ///< of this channel
   OrdinatesGuess guess;
 };
 
@@ -58,30 +58,31 @@ struct OrdinatesAngles
 struct OrdinatesResult
 {
   std::vector<float> fluence, direct; ///< W / length^2
-  std::vector<float> flux;            ///< [x, y, z][voxel]; empty: not wanted
+  std::vector<float> flux;            ///< [x, y, z][voxel]; empty: not requested
   EnergyLedger ledger;                ///< all in channel 0
   std::vector<float> facePower;       ///< W / length^2, by cell of the box's faces; empty: none reflects
   std::vector<ConvergenceRow> convergence;
   bool diverged = false;
-  std::vector<float> left;     ///< scattered fluence, for the next solve; empty: not wanted
-  double firstScattered = 0.0; ///< W, that the guess is scaled by
-  double rate = 0.0;           ///< of the last order to the one before
+  std::vector<float> left;     ///< scattered fluence, for the next solve; empty: not requested
+  double firstScattered = 0.0; ///< W first scattered, by which the next guess is scaled
+  double rate = 0.0;           ///< ratio of the last two orders
 };
 
-/// Reflection by the box's faces along the directions of a solve: the albedo times the outgoing power of a cell comes
-/// back as the same radiance along all incident directions (numerics.md, Eq. (D14)). Null: no face reflects.
+/// Reflection by the box faces along the directions of a solve: the albedo times the outgoing power of a cell re-enters
+/// as equal radiance along all incident directions (numerics.md, Eq. (D14)). Null if no face reflects.
 std::unique_ptr<FaceLight> FaceLightOf(Device& device, const OrdinatesScene& scene, const OrdinateGroups& groups);
 
-/// The arrays of that for a sweep; none where no face reflects.
+/// Arrays of FaceLight for a sweep; none if no face reflects.
 std::optional<LightOfCells> CellsOf(const FaceLight* faces);
 
-/// Rows of the convergence table, with an estimate of the remainder from the ratio of orders.
+/// Rows of the convergence table, with an estimate of the remainder from the ratio of successive orders.
 class OrdinatesRecord
 {
 public:
-  /// The next order is the first to show the error of a first guess (RestOfOrders).
+  /// Tells that the next order is the first correction to a first guess (RestOfOrders).
   void BeginWarm(double rate) { this->Rest.BeginWarm(rate); }
-  /// @param goesOn  W (as published: change of fluence); from a first guess a magnitude, as orders may be negative
+  /// @param goesOn  power that the next order carries, W (published scheme: change of fluence); after a first guess its
+  ///   magnitude, because orders may be negative
   void Add(double goesOn, const EnergyLedger& ledger) { this->Add(goesOn, goesOn, ledger); }
   /// @param more  the increment of the sum of all orders
   void Add(double goesOn, double more, const EnergyLedger& ledger);

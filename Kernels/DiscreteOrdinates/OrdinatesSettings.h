@@ -6,19 +6,19 @@
 
 namespace tyndall
 {
-/// The spatial scheme.
+/// Spatial discretisation.
 enum class OrdinatesScheme
 {
-  Published = 0,   ///< one explicit step along each direction in an iteration (Gong et al., Eqs. (7) and (9))
-  Conservative = 1 ///< a sweep along each direction by exponentials, which keeps the power (numerics.md, Eq. (D10))
+  Published = 0,   ///< one explicit step along each direction per iteration (Gong et al., Eqs. (7) and (9))
+  Conservative = 1 ///< exponential, energy-conserving sweep along each direction (numerics.md, Eq. (D10))
 };
 
 /// How radiance is scattered between directions.
 enum class OrdinatesScattering
 {
-  Matrix = 0,            ///< every pair of directions: D x D multiplications a voxel
-  SingularValues = 1,    ///< N + N for each direction, as published
-  SphericalHarmonics = 2 ///< the same by degrees: exact moments, made without a factorisation
+  Matrix = 0,            ///< every pair of directions: D x D multiplications per voxel
+  SingularValues = 1,    ///< N + N multiplications per direction, as published
+  SphericalHarmonics = 2 ///< same cost, by degrees: exact moments, no factorisation needed
 };
 
 /// Settings of SolveDiscreteOrdinates; the names are those of the filter's properties.
@@ -26,22 +26,22 @@ struct OrdinatesSettings
 {
   OrdinatesScheme scheme = OrdinatesScheme::Conservative;
   OrdinatesScattering scattering = OrdinatesScattering::SphericalHarmonics;
-  int directionsPerFace = 25; ///< directions per cube face, a square number; more of them for slabs
-  int spiralDirections = 0;   ///< any number from 16 on, on a spiral instead; 0: those of the cube
+  int directionsPerFace = 25; ///< directions per cube face, a square number; more are used for slabs
+  int spiralDirections = 0;   ///< directions on a spiral instead, at least 16; 0: those of the cube
   int terms = 25;             ///< of the phase function; at most as many as there are directions
-  int maximumOrders = 0;      ///< scattering orders (as published: steps) at most; 0: until the tolerance is met
-  double tolerance = 1e-4;    ///< relative error of fluence at which to stop, > 0
-  int seriesAfter = 0;        ///< orders after so many (conservative) go on as the last one fell; 0: all are swept
-  std::array<bool, 3> periodic = { false, false, false }; ///< light leaving an axis returns on the other side
-  bool netFlux = false;                                   ///< compute net_flux too
-  bool leaveOut = true;                                   ///< what the scene does not need
+  int maximumOrders = 0;      ///< limit on scattering orders (published: steps); 0: iterate to the tolerance
+  double tolerance = 1e-4;    ///< relative error of fluence at which iterations stop, > 0
+  int seriesAfter = 0;        ///< sweep so many orders, extrapolate the rest geometrically (conservative); 0: off
+  std::array<bool, 3> periodic = { false, false, false }; ///< light wraps around these axes
+  bool netFlux = false;                                   ///< also compute net_flux
+  bool leaveOut = true;                                   ///< skip work the scene does not need
 };
 
-/// @throws InvalidInput where a number is out of its range (numbers of directions are looked at by the direction sets)
+/// @throws InvalidInput if a number is out of range (numbers of directions are checked by the direction sets)
 void Check(const OrdinatesSettings& settings);
 
 bool IsPublished(const OrdinatesSettings& settings);
 
-/// The settings of light propagation maps for the same scene: units, channels and axes are found alike.
+/// Equivalent settings of light propagation maps, to determine units, channels and axes in the same way.
 PropagationSettings AsPropagation(const OrdinatesSettings& settings);
 }

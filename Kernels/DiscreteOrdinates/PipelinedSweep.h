@@ -13,12 +13,12 @@
 
 namespace tyndall
 {
-/// Light by cells of the faces of this rank's block, and of the whole grid, which all ranks know.
+/// Light by cell of the faces of this rank's block, and of the whole grid, which all ranks hold.
 class CellsOfBlock
 {
 public:
-  /// @param own  the block's grid, or one voxel where it has none
-  /// @param ofWhole  must stay
+  /// @param own  grid of the block, or one voxel if it is empty
+  /// @param ofWhole  must outlive this
   CellsOfBlock(Device& device, const Domain& domain, const Grid& own, const std::array<bool, 3>& periodic,
     const LightOfCells& ofWhole);
   CellsOfBlock(const CellsOfBlock&) = delete;
@@ -28,7 +28,7 @@ public:
   /// Copies incident radiance from the cells of the whole grid to those of the block.
   void LetIn();
   /// Adds outgoing power of the blocks of all ranks to the cells of the whole grid. Collective.
-  /// @param leave  adds to Seen().out, which is empty
+  /// @param leave  adds outgoing power to Seen().out, which is zero before
   void LetOut(const std::function<void()>& leave);
 
 private:
@@ -47,10 +47,10 @@ private:
 class PipelinedSweep : public OrdinateSweep
 {
 public:
-  /// Collective. All that is given must stay.
-  /// @param grid  of this rank's block, or of one voxel where that is empty: that is swept alone
+  /// Collective. All arguments must outlive this.
+  /// @param grid  of this rank's block; of one voxel if that is empty, which is then swept alone
   /// @param faces  of the whole grid
-  /// @throws InvalidInput on each rank where blocks wait for each other in a cycle
+  /// @throws InvalidInput on every rank if the blocks have a cyclic sweep order
   PipelinedSweep(
     Device& device, const Domain& domain, const Grid& grid, const OrdinateGroups& groups, const SweptFaces& faces);
 
@@ -63,11 +63,11 @@ public:
 private:
   struct Octant
   {
-    ParallelBundles way; ///< without rays
+    ParallelBundles way; ///< direction only, without rays
     int first = 0, groups = 0;
     std::vector<BlockContact> senders, receivers;
     std::vector<BlockContact> aroundFrom, aroundTo; ///< across the ends of periodic axes
-    std::vector<std::vector<float>> waiting;        ///< from these, incident in the next sweep; empty: nothing
+    std::vector<std::vector<float>> waiting;        ///< received from aroundFrom, incident in the next sweep
   };
   using Faces = std::array<std::vector<float>, 3>;
 
@@ -83,10 +83,10 @@ private:
   Device& TheDevice;
   const Domain& TheDomain;
   const Grid TheGrid;
-  std::optional<CellsOfBlock> Cells; ///< where faces reflect
+  std::optional<CellsOfBlock> Cells; ///< if faces reflect
   std::vector<Octant> Octants;
-  std::vector<int> Order; ///< of this rank
+  std::vector<int> Order; ///< of the octants on this rank
   UpwindSweep Sweep;
-  HeldFailure Failure; ///< of a sweep
+  HeldFailure Failure; ///< of the current sweep
 };
 }

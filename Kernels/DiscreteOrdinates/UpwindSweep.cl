@@ -1,16 +1,16 @@
-// One sweep along all directions: from source and incident radiance to mean radiance and what leaves
-// (numerics.md, Eqs. (D9) to (D11)). Radiance is [group][stride][8 directions].
+// One sweep along all directions: from source and incident radiance to mean and outgoing radiance (numerics.md, Eqs.
+// (D9) to (D11)). Radiance is [group][stride][8 directions]. The host defines
 //
-//   REAL_WIDTH  8: a work-item handles the directions of a group; 1: one of them
+//   REAL_WIDTH  8: a work-item processes the directions of a group; 1: one of them
 #include "Numerics/Numerics.cl"
 
-#define THIN 0.3f // optical length below which series are as good as rounding
+#define THIN 0.3f // optical length below which the series are accurate to rounding
 
-// A voxel that light crosses along its mean chord.
+// Crosses a voxel along the mean chord.
 //   tau   optical length, >= 0
-//   in    incident radiance, the mean over the faces
+//   in    incident radiance, averaged over the faces
 //   gain  source times length of the chord
-//   mean  of the radiance in the voxel
+//   mean  receives the mean radiance in the voxel
 // Returns the outgoing radiance: incident radiance plus gain - tau mean.
 inline real cross_voxel(real tau, real in, real gain, real* mean)
 {
@@ -95,7 +95,7 @@ __kernel void sweep_upwind(__global float* radiance, const __global float* sigma
   }
 }
 
-// Sums of a row of a face, [group][row][8].
+// Sums each row of a face: [group][row][8].
 //   face  [group][row][count][8]
 __kernel void sum_rows(const __global float* face, __global float* sums, int count)
 {
@@ -109,7 +109,7 @@ __kernel void sum_rows(const __global float* face, __global float* sums, int cou
   ((__global float8*)sums)[row] = sum;
 }
 
-// Incident radiance along each direction for every voxel of a face.
+// Sets the incident radiance along each direction for every voxel of a face.
 //   values  [group][8]
 //   count   voxels of the face
 __kernel void fill_face(__global float* face, const __global float* values, int count)
@@ -118,9 +118,9 @@ __kernel void fill_face(__global float* face, const __global float* values, int 
   ((__global float8*)face)[i] = ((const __global float8*)values)[i / count];
 }
 
-// Adds the radiance reflected by the cells of the two faces of an axis, along every incident direction.
-//   face       [group][cell][8], as in fill_face
-//   in         radiance, by cell of the box's faces, of which the axis's begin at `low` and `high`
+// Adds the radiance reflected by the cells of the two faces perpendicular to an axis, along every incident direction.
+//   face  [group][cell][8], as in fill_face
+//   in    radiance by cell of the box faces; those of the axis begin at `low` and `high`
 __kernel void enter_by_cells(
   __global float* face, const __global float* in, const __global int* up, int axis, ulong low, ulong high)
 {
@@ -128,9 +128,9 @@ __kernel void enter_by_cells(
   ((__global float8*)face)[group * cells + cell] += (float8)in[(up[3 * group + axis] ? low : high) + cell];
 }
 
-// Adds the outgoing power of each cell of the two faces of an axis.
-//   out     W, by cell of the box's faces
-//   across  [group][3][8]: W that radiance 1 carries through a cell across each axis
+// Adds the outgoing power of each cell of the two faces perpendicular to an axis.
+//   out     W, by cell of the box faces
+//   across  [group][3][8]: W that radiance 1 carries through a cell perpendicular to each axis
 __kernel void leave_by_cells(const __global float* face, __global float* out, const __global float* across,
   const __global int* up, int axis, int groups, ulong low, ulong high)
 {
@@ -148,14 +148,14 @@ __kernel void leave_by_cells(const __global float* face, __global float* out, co
   out[high + cell] += (of_high.x + of_high.y) + (of_high.z + of_high.w);
 }
 
-// Adds the same source in all directions.
+// Adds an isotropic source.
 __kernel void add_even_source(__global float* radiance, const __global float* source, ulong stride)
 {
   const ulong i = get_global_id(0), group = get_global_id(1);
   ((__global float8*)radiance)[group * stride + i] += (float8)source[i];
 }
 
-// The same source in all directions.
+// Sets an isotropic source.
 __kernel void even_source(__global float* radiance, const __global float* emission, ulong stride)
 {
   const ulong i = get_global_id(0), group = get_global_id(1);

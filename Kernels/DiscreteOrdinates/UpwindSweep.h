@@ -21,53 +21,54 @@ struct FacePowers
   double onTheWay = 0.0; ///< left through a periodic face, wraps around in the next sweep
 };
 
-/// Carries light once along all directions through the grid.
+/// Transports light along all directions through the grid, once.
 class OrdinateSweep
 {
 public:
   virtual ~OrdinateSweep() = default;
 
-  /// @param radiance  source over `scale`, W / (length^3 sr); becomes the mean radiance, W / (length^2 sr)
-  /// @param incoming  empty: none but reflected light
+  /// @param radiance  on entry the source relative to `scale`, W / (length^3 sr); on return the mean radiance, W /
+  ///   (length^2 sr)
+  /// @param incoming  empty: no incident light except reflected light
   /// @return outgoing power before reflection, and incident power without reflection
   virtual FacePowers Apply(const Buffer<float>& radiance, const Buffer<float>& sigma_t, const Buffer<float>& scale,
     const IncomingRadiance& incoming, const Monitor& monitor) = 0;
 };
 
-/// Light by cells of a box's faces, as FaceLight has it of one channel.
+/// One channel of light by cell of the box faces, as in FaceLight.
 struct LightOfCells
 {
-  const Buffer<float>& out; ///< W that leave are added to
+  const Buffer<float>& out; ///< W; outgoing power is added
   const Buffer<float>& in;  ///< incident radiance
 };
 
-/// Boundary conditions of a box that is swept.
+/// Boundary conditions of a sweep.
 struct SweptFaces
 {
   /// Periodic axes: light wraps around in the next sweep.
   std::array<bool, 3> periodic = {};
   /// Axes of one voxel in the whole grid: nothing varies along them, and no light is transported.
   std::array<bool, 3> unvarying = {};
-  const LightOfCells* reflecting = nullptr; ///< null: no face gives back light
-  /// Bits of the faces -x, +x, ... +z that are no faces of the whole grid: their power is not counted.
+  const LightOfCells* reflecting = nullptr; ///< null: no face reflects
+  /// Bits of the faces -x, +x, ... +z that are interior to the whole grid: their power is not counted.
   int inner = 0;
 
-  /// Of a box that is the whole grid. Must stay: `reflecting`.
+  /// Boundary conditions of the whole grid. `reflecting` must outlive the result.
   static SweptFaces Of(const Grid& grid, const std::array<bool, 3>& periodic, const LightOfCells* reflecting);
 };
 
-/// Carries light once along all directions through a box of voxels, upwind (numerics.md, Eqs. (D9) to (D11)).
+/// Upwind sweep along all directions through a box of voxels (numerics.md, Eqs. (D9) to (D11)).
 ///
-/// Each voxel is crossed by the direction's mean chord, and light is attenuated along it by an exponential: it is
-/// stable and positive for every optical thickness, and exact along an axis. Light that leaves a voxel enters the next
-/// ones in equal radiance, so the power is kept to rounding; light spreads aside, so it is of first order in the
-/// voxels' edges in oblique directions.
+/// Each voxel is crossed along the mean chord of the direction, with exponential attenuation: stable and positive for
+/// every optical thickness, and exact along an axis. Light that leaves a voxel enters the downwind voxels with equal
+/// radiance, so power is conserved to rounding. The scheme is diffusive sideways: first order in the voxel edges for
+/// oblique directions.
 class UpwindSweep : public OrdinateSweep
 {
 public:
   UpwindSweep(Device& device, const Grid& grid, const OrdinateGroups& groups, const SweptFaces& faces);
 
-  /// Bytes that the faces take on the device.
+  /// Bytes of device memory for the faces.
   static std::size_t Bytes(const Grid& grid, const OrdinateGroups& groups);
 
   FacePowers Apply(const Buffer<float>& radiance, const Buffer<float>& sigma_t, const Buffer<float>& scale,
@@ -78,10 +79,10 @@ public:
   void SweepGroups(int first, int count, const Buffer<float>& radiance, const Buffer<float>& sigma_t,
     const Buffer<float>& scale, const Monitor& monitor);
   void Count(FacePowers& powers) const;
-  void LeaveByCells() const; ///< nothing where no face reflects
+  void LeaveByCells() const; ///< does nothing if no face reflects
 
-  /// Radiance through the faces across an axis, [group][row][voxel of the row][8]: incident until the group is swept,
-  /// outgoing after that. Across z rows are along y, else along z.
+  /// Radiance through the faces perpendicular to an axis, [group][row][voxel of the row][8]: incident before the group
+  /// is swept, outgoing afterwards. Perpendicular to z rows run along y, else along z.
   std::vector<float> ReadFace(int axis, int firstGroup, int groups) const;
   void WriteFace(int axis, int firstGroup, const std::vector<float>& values);
 

@@ -13,10 +13,10 @@ __kernel void change_radiance(__global float* radiance, const __global float* sc
   *light += step * (gain - sigma_t[i] * *light);
 }
 
-// Each voxel takes the radiance one step upwind, linear between the eight nearest voxels.
+// Advects the radiance by one step: each voxel reads it one step upwind, with trilinear interpolation between voxels.
 //   parts     [group][3][8]: the step along each axis in voxels, 0 to 1
 //   up        [group][3]: whether the group goes up an axis
-//   incoming  [group][3][8]: radiance outside the box, by the axis across which it is incident
+//   incoming  [group][3][8]: radiance outside the box, by the axis through whose face it enters
 //   size      voxels along the axes; groups are `stride` apart
 //   periodic  bits of the periodic axes
 __kernel void move_on(const __global float* before, __global float* after, const __global float* parts,
@@ -34,7 +34,7 @@ __kernel void move_on(const __global float* before, __global float* after, const
   {
     float8 weight = (float8)1.0f;
     int from[3];
-    int left = -1; // the axis across which the corner is outside
+    int left = -1; // axis along which the corner is outside the box
     for (int a = 0; a < 3; ++a)
     {
       const int upwind = corner >> a & 1;
@@ -50,8 +50,8 @@ __kernel void move_on(const __global float* before, __global float* after, const
   ((__global float8*)after)[group * stride + i] = sum;
 }
 
-// Radiance in the voxels at the face that each group leaves through, summed along the rows of it.
-//   sums  [group][row][8]; rows of `count` voxels `along` apart begin `between` apart
+// Sums the radiance in the voxels at the exit face of each group along the rows of the face.
+//   sums  [group][row][8]; successive voxels of a row are `along` apart, rows of `count` voxels `between` apart
 __kernel void sum_leaving(const __global float* radiance, __global float* sums, const __global int* up, ulong stride,
   int axis, ulong last, ulong between, ulong along, int count)
 {

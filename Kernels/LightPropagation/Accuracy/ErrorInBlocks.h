@@ -7,10 +7,10 @@
 
 namespace tyndall
 {
-// SolveInBlocks (PropagationInBlocks.h) with the error that its light has, as the whole has it: the coarse grid is that
-// of the whole grid, in blocks of its own. All ranks call these together. Light from outside goes along the directions
-// of scattered light where coarse voxels are balanced and UncollidedDirections was left open: the estimate is larger
-// then, by what these leave, where those of the grid itself were finer.
+// SolveInBlocks (PropagationInBlocks.h) with error estimates that equal those of a serial solve: the coarse grid is
+// that of the domain, decomposed anew. Collective. If the coarse solves use DSA and UncollidedDirections is left open,
+// boundary light uses the directions of scattered light on the coarse grid. If it had finer directions on the grid
+// itself, the estimate is then too large by the error of the coarser ones.
 
 /// SolveWithErrorEstimate (ErrorEstimate.h).
 /// @param kept  as SolveInBlocks has it, of solves on the grid itself

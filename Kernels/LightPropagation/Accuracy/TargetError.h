@@ -19,13 +19,13 @@ struct TargetLight
 /// Solves to a relative error of fluence (root mean square relative to that of fluence) below a target, by the solver's
 /// own estimate, as cheaply as predicted:
 ///  1. solve with few and with more directions on the grid of half the voxels per axis, to estimate the angular error
-///  (DirectionForecast.h);
+///     (DirectionForecast.h);
 ///  2. solve on the grid itself with the cheapest sufficient numbers of directions for scattered and for uncollided
-///  light, and the tolerance that the target allows;
+///     light, and the tolerance that the target allows;
 ///  3. solve the same on the coarse grid, to estimate the error in voxel size and correct the prediction; repeat with
-///  more directions if there were too few;
+///     more directions if there were too few;
 ///  4. if voxels are too coarse, and voxels of half the edge length promise to suffice, solve with those (eight times
-///  the work and memory) and average the result.
+///     the work and memory) and average the result.
 /// Settings that differ from their default values are not changed. Directions are chosen for an estimate a quarter
 /// below the target, because the estimate itself has an error; `met` refers to the estimate.
 /// @param target  relative error, > 0
