@@ -180,7 +180,7 @@ __kernel void scatter_along(const __global float* radiance, __global float* sour
   source[(group * stride + i) * 8 + lane] = sigma_s[i] * sum8(sum);
 }
 
-// The light along all directions, where nothing is scattered.
+// Only adds moments to fluence and flux, for a medium that does not scatter.
 __kernel void gather_light(const __global float* radiance, __global float* moments, const __global float* weights,
   __global float* order, __global float* fluence, __global float* flux, ulong voxels, ulong stride, ulong begin)
 {

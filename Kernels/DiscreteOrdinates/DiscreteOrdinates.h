@@ -12,7 +12,7 @@
 
 namespace tyndall
 {
-///  Radiance along D directions in every voxel, by discrete ordinates on the grid with anisotropic scattering (Z. Gong
+/// Radiance along D directions in every voxel, by discrete ordinates on the grid with anisotropic scattering (Z. Gong
 ///  et al., Interactive rendering of multiple scattering in participating media using separable phase functions).
 ///
 /// The default scheme is conservative (numerics.md, Eqs. (D7) to (D12)): an exponential step, stable and positive for

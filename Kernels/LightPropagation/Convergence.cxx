@@ -11,24 +11,25 @@ namespace tyndall
 {
 namespace
 {
-constexpr double WarmMargin = 1.5;      ///< the error of a guess does not fall evenly
-constexpr double MarginOfChanges = 1.5; ///< of the estimated error: changes do not fall off evenly
-constexpr double MuchLeftOver = 0.01;   ///< of the power, with the usual tolerance
-constexpr double SlowestFall = 1e-4;    ///< from order to order, of light that is waited for round periodic axes
-constexpr double NextToAll = 1e-3;      ///< what else there is beside it, at most
+constexpr double WarmMargin = 1.5;      ///< safety factor: the error of a guess does not fall evenly
+constexpr double MarginOfChanges = 1.5; ///< safety factor: changes do not fall evenly
+constexpr double MuchLeftOver = 0.01;   ///< fraction of the power, at the default tolerance
+constexpr double SlowestFall = 1e-4;    ///< relative decrease per order below which wrapped light is endless
+constexpr double NextToAll = 1e-3;      ///< largest other power relative to endless light
 
-constexpr double ImbalanceAtMost = 1e-2; ///< of the power, beyond any rounding
-constexpr double ImbalanceUnsaid = 1e-4; ///< the same, of rounding
-constexpr double FaintChannel = 1e-3;    ///< of the brightest one: photons' channels share their units of power
-constexpr double OpaqueVoxel = 100.0;    ///< mean free paths, about, beyond which floats lose light in a voxel
+constexpr double ImbalanceAtMost = 1e-2; ///< fraction of the power: an error, too large for rounding
+constexpr double ImbalanceUnsaid = 1e-4; ///< fraction of the power: rounding, no warning
+constexpr double FaintChannel = 1e-3;    ///< relative to the brightest: channels of photons share power units
+constexpr double OpaqueVoxel = 100.0;    ///< approximate optical thickness beyond which floats lose light in a voxel
 
 struct ThickestVoxel
 {
-  double thickness = 0.0; ///< mean free paths of transport along its longest edge, of all channels
+  double thickness = 0.0; ///< transport mean free paths along its longest edge, largest of all channels
   std::string name;       ///< empty: not known
 };
 
-/// @param named, first  the grid that the voxel is named in, and where the medium begins in it
+/// @param named  grid in whose indices the voxel is named
+/// @param first  first voxel of the medium in that grid
 ThickestVoxel ThickestOf(const Medium& medium, const Grid& named, const std::array<int, 3>& first = {})
 {
   const Grid& grid = medium.grid;
@@ -53,7 +54,7 @@ ThickestVoxel ThickestOf(const Medium& medium, const Grid& named, const std::arr
     VoxelName(named, named.IndexOf({ first[0] + at[0], first[1] + at[1], first[2] + at[2] })) };
 }
 
-/// Of the media of all ranks. Collective.
+/// Thickest voxel of all ranks. Collective.
 ThickestVoxel ThickestOf(const Domain& domain, const Medium& medium)
 {
   const ThickestVoxel own = domain.IsEmpty() ? ThickestVoxel() : ThickestOf(medium, domain.Whole(), domain.Own().first);
@@ -69,9 +70,10 @@ enum class Balancing
   Not
 };
 
-/// The largest part of the power, of all channels; grey light has nothing in the other ones. A faint channel is
-/// compared with a thousandth of the brightest one.
-/// @param powerOf  by channel, and what came into it, W
+/// Largest value over channels of powerOf(channel, incoming power), relative to the incoming power (entered plus
+/// emitted). A faint channel is compared with a thousandth of the brightest one; for grey light the other channels are
+/// empty.
+/// @param powerOf  function of channel and incoming power in W, returns W
 template <class PowerOf>
 double LargestPart(const EnergyBalance& balance, const PowerOf& powerOf)
 {
@@ -91,7 +93,7 @@ double LargestPart(const EnergyBalance& balance, const PowerOf& powerOf)
   return worst;
 }
 
-/// Part of the power that is lost or made.
+/// Fraction of the power that is lost or created.
 double ImbalanceOf(const EnergyBalance& balance)
 {
   return LargestPart(balance, [&](std::size_t c, double in) {
@@ -99,8 +101,8 @@ double ImbalanceOf(const EnergyBalance& balance)
   });
 }
 
-/// By how much powers are what none can be, though their sum may be right: absorbed or gone less than nothing, or left
-/// over more than there was.
+/// Fraction of the power that is impossible, even if the balance sums up: absorbed or escaped power below 0, or more
+/// left over than came in.
 double ImpossiblePart(const EnergyBalance& balance)
 {
   return LargestPart(balance, [&](std::size_t c, double in) {
@@ -118,8 +120,8 @@ Balancing BalancingOf(const EnergyBalance& balance)
   return error <= ImbalanceUnsaid ? Balancing::Well : error <= ImbalanceAtMost ? Balancing::Poorly : Balancing::Not;
 }
 
-/// What may be wrong, and what to do.
-/// @param enters  light comes from elsewhere than the medium
+/// Possible causes of an energy imbalance, and remedies.
+/// @param enters  power enters from outside the medium
 std::string WordsOfImbalance(const ThickestVoxel& thickest, bool enters)
 {
   const std::string thickness = Text("%.3g", thickest.thickness);
@@ -140,7 +142,7 @@ std::string WordsOfImbalance(const ThickestVoxel& thickest, bool enters)
         : " at the emission, for nothing else shines, and " + others);
 }
 
-/// Throws: what is wrong is the way in which the light was found.
+/// Throws, because the iteration has failed.
 [[noreturn]] void RefuseImpossible(const EnergyBalance& balance)
 {
   const double in = Sum(balance.entered) + Sum(balance.emitted);
@@ -168,7 +170,7 @@ void Judge(LightField& light, Balancing balancing, const ThickestVoxel& thickest
   throw InvalidInput((std::isnan(error) ? "The light is not a number, " : "The light does not balance: " + part) + why);
 }
 
-/// Of all power, what the solver gave up.
+/// Fraction of the power that the solver left over.
 double LeftOver(const EnergyBalance& balance)
 {
   const double all = Sum(balance.entered) + Sum(balance.emitted);

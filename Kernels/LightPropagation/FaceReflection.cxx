@@ -37,7 +37,7 @@ void FaceReflection::SetPowerIn(std::vector<double> powerIn)
 std::vector<float> FaceReflection::RadianceOf(
   const std::vector<double>& swept, const std::vector<double>& uncollided) const
 {
-  std::vector<double> brought(swept.size()); // by uncollided light's radiance, in the pattern
+  std::vector<double> brought(swept.size()); // W of uncollided light, in the pattern of the rays
   for (std::size_t i = 0; i < swept.size(); ++i)
   {
     const std::size_t cell = i % this->Cells();

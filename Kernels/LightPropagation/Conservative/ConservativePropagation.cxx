@@ -27,7 +27,7 @@ namespace tyndall
 {
 namespace
 {
-/// What the scene did not need, of its traits, but that one channel does for three.
+/// Entries of leftOut that follow from the traits of the scene, except the use of one channel for three.
 std::vector<std::string> LeftOutOf(const TransportParts& parts, const IterationResult& found)
 {
   std::vector<std::string> words;
@@ -96,14 +96,14 @@ std::vector<std::string> Words(const TransportParts& parts, const IterationResul
   return words;
 }
 
-/// What cameras show of scattered light, in the same form on all ranks.
+/// Adds the data for rendering scattered light, in the same form on all ranks.
 void AddShown(const TransportParts& parts, const Buffer<float>& ofOrders, LightField& light)
 {
   const Domain& domain = parts.TheDomain();
   std::unique_ptr<ShownLight> shown;
   if (parts.Basis)
   {
-    std::size_t most = 0; // of one function in the largest block
+    std::size_t most = 0; // values of one function in the largest block
     for (const VoxelBox& block : domain.Partition().blocks)
     {
       most = std::max(most, parts.Layout.channels * block.VoxelCount());
@@ -121,7 +121,7 @@ void AddShown(const TransportParts& parts, const Buffer<float>& ofOrders, LightF
   });
 }
 
-/// By voxel.
+/// Copies the arrays over voxels.
 void TakeVoxels(const TransportParts& parts, LightField& light)
 {
   light.fluence = Interleaved(parts.Layout, parts.Fluence, 1.0);
@@ -175,7 +175,7 @@ std::unique_ptr<Iteration> MakeIteration(TransportParts& parts, const KeptLight*
   return std::make_unique<DiffusionAcceleration>(parts, kept);
 }
 
-/// Of a scene whose axes are in the order that sweeps take best.
+/// Solves a scene whose axes are already permuted for fast sweeps.
 LightField Solve(Device& device, const Domain& domain, const Medium& medium, const Illumination& illumination,
   const PropagationSettings& settings, const Monitor& monitor, KeptLight* kept)
 {
@@ -223,7 +223,7 @@ LightField SolveConservative(Device& device, const Domain& domain, const Medium&
   {
     return Solve(device, domain, medium, illumination, settings, monitor, kept);
   }
-  Check(medium, illumination, settings); // before axes have other names
+  Check(medium, illumination, settings); // before axes are permuted, so that messages name the user's axes
   const Medium turned = turn.Of(medium);
   LightField light =
     Solve(device, Domain(turned.grid), turned, turn.Of(illumination), turn.Of(settings), monitor, kept);
@@ -236,7 +236,7 @@ std::string ReasonNotToDecompose(Device& device, const Domain& domain, const Med
 {
   const PropagationProblem problem(domain, medium, illumination, settings, MemoryOf(device));
   const IterationScheme how = ChooseIterationScheme(problem);
-  // Blocks in which nothing varies along two axes may differ from each other: then a solve goes along all rays.
+  // Plane-parallel blocks may still differ from each other; then the voxel solver is used.
   const bool varies = !domain.IsEmpty() && !IsPlaneParallel(medium, illumination, settings);
   if (problem.IsSlab() || !domain.Any(varies))
   {

@@ -12,17 +12,18 @@ namespace tyndall
 {
 namespace
 {
-/// W that radiance 1 brings through the cells of one row of a face: all cells of a plane alike.
+/// W that radiance 1 carries through a row of cells of each face, by plane; all cells of a plane have the same value.
 using ByPlane = std::array<std::vector<double>, 6>;
 
-/// Along which axis rays march, and what they stand for.
+/// Marching axis of the rays, and the planes that they cross.
 struct Aside
 {
   PlaneAxes axes;
   AsidePlanes planes;
 };
 
-/// The moves aside of a bundle's rays, as SweepBorder has them; of a short periodic axis in laps (SweepPlan::LayLaps).
+/// Adds the transverse moves of the rays of a bundle, as SweepBorder counts them; on a short periodic axis by laps
+/// (SweepPlan::LayLaps).
 void AddAside(const Bundle& bundle, const Aside& aside, ByPlane& power)
 {
   const PlaneAxes& axes = aside.axes;
@@ -83,7 +84,7 @@ std::vector<double> SweptPowerIn(
     const Aside aside = { AcrossAxis(axis), { grid.size[axis], periodic[axis], spreads } };
     ByPlane byPlane;
     byPlane.fill(std::vector<double>(aside.planes.size, 0.0));
-    std::array<double, 2> ahead = {}; // through the low face, and the high one
+    std::array<double, 2> ahead = {}; // W through the low face and the high face
     for (const Bundle& bundle : directions.Along(axis))
     {
       for (const Member& member : bundle.members)

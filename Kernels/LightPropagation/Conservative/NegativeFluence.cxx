@@ -8,13 +8,13 @@ namespace tyndall
 {
 namespace
 {
-constexpr int MostTurns = 50; ///< each takes from voxels one farther away, where those beside do not have enough
+constexpr int MostTurns = 50; ///< iterations; each reaches one voxel farther if nearer neighbours do not absorb enough
 
-/// One channel's fluence on this rank, and what voxels owe that had less than none.
+/// One channel of fluence on this rank, and the power owed by voxels whose negative fluence was raised.
 class OwedPower
 {
 public:
-  /// @param instead  of what is negative at first; null: 0
+  /// @param instead  initial replacement of negative values; null: 0
   OwedPower(const Halo& around, const std::function<double(std::size_t)>& sigma_a, float* fluence, const float* instead)
     : Around(around)
     , Sigma(sigma_a)
@@ -34,7 +34,7 @@ public:
     return std::any_of(this->Owed.begin(), this->Owed.end(), [](double owed) { return owed > 0.0; });
   }
 
-  /// From the voxels beside, which may then owe some themselves.
+  /// Takes owed power from neighbouring voxels, which may then owe power themselves.
   void Collect()
   {
     std::vector<float> own(this->Owed.size());
@@ -68,7 +68,7 @@ private:
     }
   }
 
-  /// Calls act(voxel, its place among the known ones, that place along each axis).
+  /// Calls act(voxel, its index in the box with halo, that index along each axis).
   template <class Act>
   void ForOwn(const Act& act) const
   {
@@ -98,7 +98,7 @@ private:
     return axis == 0 ? 1 : axis == 1 ? row : row * this->Known.size[1];
   }
 
-  /// Of the known voxels beside one of them.
+  /// Sum of `values` over the neighbours of a voxel in the box with halo.
   double SumBeside(const std::vector<float>& values, std::size_t known, const std::array<int, 3>& at) const
   {
     double sum = 0.0;

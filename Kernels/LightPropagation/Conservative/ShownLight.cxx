@@ -11,7 +11,7 @@ namespace
 {
 constexpr double MostBytes = 1024.0 * 1024.0 * 1024.0;
 
-/// Spherical harmonics that are kept, of all degrees up to one.
+/// Number of spherical harmonics kept: all those of a degree limited by memory.
 int HarmonicsKept(int degree, std::size_t values)
 {
   const auto count = [](int l) { return (l + 1) * (l + 1); };
@@ -22,7 +22,7 @@ int HarmonicsKept(int degree, std::size_t values)
   return count(degree);
 }
 
-constexpr float LeastScattering = 1e-30f; ///< 1/length, in the solver's unit: of less nothing is ever seen
+constexpr float LeastScattering = 1e-30f; ///< 1/length, in the solver's unit: weaker scattering is invisible
 
 /// Radiance that is scattered of a source of 1.
 Buffer<float> PerScattering(Device& device, const VolumeLayout& layout, const Field& sigma_s)
@@ -51,7 +51,7 @@ ShownLight::ShownLight(const Medium& medium, const TruncatedScattering& scatteri
   }
 }
 
-/// [voxel], or [voxel][channel] where channels differ.
+/// [voxel], or [voxel][channel] if channels differ.
 std::vector<float> ShownLight::StraightOn() const
 {
   const int channels = this->Coloured ? this->Layout.channels : 1;

@@ -10,7 +10,7 @@ namespace tyndall
 {
 namespace
 {
-/// Values a voxel and channel of the medium and of the light that sweeps carry.
+/// Values per voxel and channel for the medium and the light in sweeps.
 std::size_t ArraysOfLight(const SolveExtent& solve)
 {
   const std::size_t degree = Count(solve.degree);
@@ -24,7 +24,7 @@ std::size_t ArraysOfLight(const SolveExtent& solve)
   return medium + 2 * moments + lost + 1 + flux + shown + beams + (solve.settings.firstMoments ? 6 : 0);
 }
 
-/// The same of what adds up scattering orders.
+/// Values per voxel and channel for the iteration.
 std::size_t ArraysOfOrders(const SolveExtent& solve)
 {
   const std::size_t degree = Count(solve.degree);
@@ -38,14 +38,14 @@ std::size_t ArraysOfOrders(const SolveExtent& solve)
   }
 }
 
-/// Voxels of the largest plane across an axis.
+/// Voxels of the largest plane perpendicular to an axis.
 std::size_t LargestPlane(const SolveExtent& solve)
 {
   const std::array<int, 3>& n = solve.size;
   return std::max({ Count(n[0]) * Count(n[1]), Count(n[1]) * Count(n[2]), Count(n[0]) * Count(n[2]) });
 }
 
-/// Places of a ray beside all planes along an axis, the most of any.
+/// Ray positions beside all planes along an axis; largest over axes.
 std::size_t MostBesidePlanes(const SolveExtent& solve)
 {
   std::size_t most = 0;
@@ -57,8 +57,9 @@ std::size_t MostBesidePlanes(const SolveExtent& solve)
   return most;
 }
 
-/// Rays of all bundles along an axis, both ways, and planes that are being crossed; on a GPU rays of all axes, or of
-/// one set of a block's, before and behind a plane, what shines along them, and what they bring and take beside planes.
+/// Bytes of ray state. CPU: rays of all bundles along an axis, in both directions, and the planes being crossed. GPU:
+/// rays of all axes (of a block: of one set) before and behind a plane, their sources, and what enters and leaves
+/// beside planes.
 std::size_t BytesOfSweep(const Device& device, const SolveExtent& solve)
 {
   const std::size_t directions = Count(std::max(solve.settings.directionsPerFace, 1));
@@ -94,7 +95,7 @@ std::size_t BytesOfSolve(const Device& device, const SolveExtent& solve)
 MemoryBudget BudgetAskedFor(const Device& device, std::size_t asked)
 {
   MemoryBudget budget;
-  if (asked > 0 || !device.SharesHostMemory()) // else host memory is all that there is
+  if (asked > 0 || !device.SharesHostMemory()) // otherwise there is no memory other than that of the host
   {
     const std::size_t left = device.MemoryLimit() - std::min(device.BytesInUse(), device.MemoryLimit());
     budget.bytes = asked > 0 ? asked : left / 10 * 9;
@@ -106,7 +107,7 @@ MemoryBudget BudgetAskedFor(const Device& device, std::size_t asked)
 MemoryBudget BudgetOfSolve(const Device& device, const SolveExtent& solve)
 {
   MemoryBudget budget = BudgetAskedFor(device, solve.settings.memoryBudget);
-  const bool streams = !(solve.ofBlock && device.IsCpu()); // else kernels work on host memory where it is
+  const bool streams = !(solve.ofBlock && device.IsCpu()); // otherwise kernels work on host memory in place
   if (streams && budget.spills && BytesOfSolve(device, solve) > budget.bytes)
   {
     budget.hostFrom = sizeof(float) * Grid{ solve.size }.VoxelCount();

@@ -20,11 +20,11 @@ namespace tyndall
 namespace
 {
 constexpr int MostOrders = 100000;
-constexpr int FewPlanes = 256;        ///< round a periodic axis, where there will be more orders as long as it matters
-constexpr double MostlyLit = 0.75;    ///< part of the rays from which on sweeps of their own do not pay
-constexpr double MostlyFilled = 0.75; ///< the same of voxels
-constexpr double FallByCells = 0.3;   ///< of what is left over from order to order, at least so much in the forecast
-constexpr int OrdersExpected = 6;     ///< to tell whether it pays to sweep empty slabs at the end only
+constexpr int FewPlanes = 256;        ///< that a ray crosses around a periodic axis per order, if more orders follow
+constexpr double MostlyLit = 0.75;    ///< fraction of rays above which a separate sweep does not pay
+constexpr double MostlyFilled = 0.75; ///< the same for voxels
+constexpr double FallByCells = 0.3;   ///< smallest assumed ratio of successive remainders
+constexpr int OrdersExpected = 6;     ///< assumed when deciding whether to sweep empty slabs only at the end
 }
 
 SourceIteration::SourceIteration(TransportParts& parts, const KeptLight* kept)
@@ -100,8 +100,8 @@ IterationResult SourceIteration::Run(const Monitor& monitor)
   {
     this->Result.ledger = this->Cells->WithOut(this->Result.ledger);
   }
-  // Rounding, and what the last sweeps would have taken away, can leave dark voxels a little below 0; and what shines
-  // out of thick voxels, behind them.
+  // Dark voxels can be slightly negative, by rounding and because later sweeps would have corrected them; so can voxels
+  // behind sources of thick voxels.
   if (this->AtFaces || this->Warm.Begins() || this->Cells)
   {
     Communicator& comm = this->TheDomain.Comm();
@@ -118,13 +118,14 @@ IterationResult SourceIteration::Run(const Monitor& monitor)
   {
     const FaceLight& faces = *this->Parts.Faces;
     this->Result.leftByCell = this->Cells
-      ? faces.ScaledTo(faces.LeftInAll(), this->Result.ledger.FacePowerOut()) // cells change faces as a whole
+      ? faces.ScaledTo(
+          faces.LeftInAll(), this->Result.ledger.FacePowerOut()) // coarse-mesh DSA changes the totals of faces
       : faces.LeftInAll();
   }
   return std::move(this->Result);
 }
 
-/// Of what was scattered and just swept.
+/// Applies the escape correction to the light that was just swept.
 void SourceIteration::LetEscape()
 {
   Rgb escaped = {};
@@ -140,7 +141,7 @@ void SourceIteration::LetEscape()
 
 void SourceIteration::MakeSweeps()
 {
-  // What waits for the next sweep is light that the cells know nothing of.
+  // Coarse-mesh DSA does not know of rays that wait for the next sweep, so they go all the way.
   const bool wholeWay = this->Settings.maximumOrders > 0 || this->Cells;
   const int mostPlanes = wholeWay ? MostPlanesAround : FewPlanes;
   SweepRequest request = { this->DepositOfSweep(), this->Parts.AllRays(), {}, mostPlanes };
@@ -155,10 +156,10 @@ void SourceIteration::MakeSweeps()
   }
 }
 
-/// Orders after the first go through the box that the medium fills alone: what leaves it does not come back. Their
-/// light in the other voxels is found at the end, for all of them in one sweep. Not with periodic axes, whose rays
-/// would be on the way in both; nor where the light that leaves through the faces' cells is wanted, or voxels shine
-/// otherwise through each face, of which the sweep at the end knows nothing.
+/// Makes the sweep of later orders, which covers only the box that the medium fills: light that leaves this box does
+/// not come back. Fluence in the other voxels is computed at the end, for all orders in one sweep. Not used with
+/// periodic axes, whose rays would be under way in both sweeps; nor if face light by cell is requested, or sources
+/// differ by octant, which the final sweep does not know.
 void SourceIteration::MakeFilledSweep()
 {
   const std::array<bool, 3>& periodic = this->Settings.periodic;
@@ -174,14 +175,14 @@ void SourceIteration::MakeFilledSweep()
   const int later = (this->Settings.maximumOrders > 0 ? this->Settings.maximumOrders : OrdersExpected) - 1;
   if (filled < MostlyFilled && later * (1.0 - filled) > 1.0)
   {
-    // No flux: it comes from the sweep at the end.
+    // No flux: the final sweep computes it.
     this->Filled =
       this->Parts.MakeSweep({ { &this->Parts.Path, nullptr, nullptr, nullptr }, this->Parts.AllRays(), traits.filled });
   }
 }
 
-/// Of the directions alone from which light comes. Those of a periodic axis stay as they are: rays wait in them for the
-/// next order.
+/// Makes the first sweep, restricted to directions with incident light. All directions along periodic axes are kept,
+/// because their rays wait for the next order.
 void SourceIteration::MakeLitSweep()
 {
   const std::array<bool, 3>& periodic = this->Settings.periodic;
@@ -217,7 +218,7 @@ void SourceIteration::AddUncollided(const Monitor& monitor)
     std::move(more.begin(), more.end(), std::back_inserter(sources));
   };
   append(this->Parts.OtherSources());
-  const std::size_t alongRays = sources.size(); // each by itself; the others are swept
+  const std::size_t alongRays = sources.size(); // sources that are traced; the others are swept
   if (this->Parts.FineBoundary)
   {
     sources.push_back(std::make_unique<UncollidedBoundary>(this->Settings, *this->Parts.FineBoundary));
@@ -236,7 +237,7 @@ void SourceIteration::AddUncollided(const Monitor& monitor)
   {
     const Monitor ofSource = OfPart(monitor, i / all, (i + 1) / all);
     const bool isLamp = i < this->Parts.Lamps.size();
-    if (this->AtFaces && isLamp) // never with moments to show
+    if (this->AtFaces && isLamp) // never if moments are stored
     {
       Add(tally, this->AddLamp(*sources[i], ofSource));
       continue;
@@ -280,7 +281,7 @@ void SourceIteration::AddUncollided(const Monitor& monitor)
   }
 }
 
-/// What lamps' uncollided light, the only light so far, is first scattered.
+/// Stores the first-scattered light of lamps, before any other light is added.
 void SourceIteration::ShowLamps()
 {
   this->TheDomain.Collective([&] {
@@ -291,7 +292,7 @@ void SourceIteration::ShowLamps()
   });
 }
 
-/// Beside it, where in thick voxels its light is first scattered.
+/// Adds the uncollided light of a lamp, and the first moments of its deposit in thick voxels.
 SweepTally SourceIteration::AddLamp(const UncollidedSource& lamp, const Monitor& monitor)
 {
   const Deposit whole = this->Parts.WholeDeposit();
@@ -335,7 +336,7 @@ void SourceIteration::SweepOrder(const Monitor& monitor)
     this->Result.ledger.Count(tally);
     return;
   }
-  for (int c = 0; c < 3; ++c) // through which of the box's faces is not known yet
+  for (int c = 0; c < 3; ++c) // the face is not known yet
   {
     for (const Rgb& face : tally.out)
     {
@@ -344,7 +345,7 @@ void SourceIteration::SweepOrder(const Monitor& monitor)
   }
 }
 
-/// What faces give back of the light that left in this order has not left.
+/// Reflects the outgoing light of this order, which has then not escaped.
 void SourceIteration::ReflectOrder()
 {
   this->Reflected = {};
@@ -364,7 +365,7 @@ void SourceIteration::ReflectOrder()
   }
 }
 
-/// The values of a channel that a sweep may have changed: whole vectors.
+/// Index range of a channel that a sweep may have changed, in whole vectors.
 std::array<std::size_t, 2> SourceIteration::SweptValues() const
 {
   if (!this->InFilledPart())
@@ -378,7 +379,8 @@ std::array<std::size_t, 2> SourceIteration::SweptValues() const
     RoundUp(layer * (filled.first[2] + filled.size[2]), SweepPadding) };
 }
 
-/// As ScatterOrder, with what the cells say of all orders to come, which the next sweep is to have less.
+/// As ScatterOrder, plus the predicted sum of all orders to come (coarse-mesh DSA), which is subtracted from the next
+/// source.
 void SourceIteration::ScatterByCells()
 {
   const TransportParts& parts = this->Parts;
@@ -412,7 +414,7 @@ void SourceIteration::ScatterByCells()
     this->Residual, all > 0.0 ? std::abs(Sum(this->Scattered)) / all : 0.0, this->Cells->WithOut(this->Result.ledger));
 }
 
-/// @param scale  to W / length^2
+/// @param scale  converts `fluence` to W / length^2
 void SourceIteration::LookAtDirect(const Buffer<float>& fluence, double scale)
 {
   this->TheDomain.Collective([&] {
@@ -467,7 +469,7 @@ void SourceIteration::ScatterOrder()
   this->Result.convergence.Add(this->Residual, all > 0.0 ? Sum(this->Scattered) / all : 0.0, this->Result.ledger);
 }
 
-/// Of all incident light, with that in the voxels beyond the block's faces.
+/// Computes the sources by octant from all light incident on voxels, including that beyond the faces of the block.
 void SourceIteration::FindOctantSources()
 {
   if (!this->AtFaces)
@@ -479,8 +481,8 @@ void SourceIteration::FindOctantSources()
   this->TheDomain.Collective([&] { this->AtFaces->Find(this->Parts.Source, beyond); });
 }
 
-/// From path integrals to fluence and the next source.
-/// @return W of all ranks
+/// Converts path integrals to fluence and the next source.
+/// @return powers summed over ranks, W
 ScatteringOperator::Powers SourceIteration::ScatterSwept()
 {
   const TransportParts& parts = this->Parts;
@@ -494,7 +496,7 @@ ScatteringOperator::Powers SourceIteration::ScatterSwept()
     powers = parts.Scattering->ScatterOrder(parts.WholeDeposit(), parts.Fluence, parts.Source, this->SweptValues());
     if (parts.StoresMoments())
     {
-      // What is shown holds lamps' light alone before the first order.
+      // Before the first order, `shown` holds only light of lamps.
       AddToShown(parts.TheDevice, parts.Layout.Places(parts.Functions()).beams, parts.Source, this->Result.shown,
         this->Order == 0 ? -1.0f : 1.0f);
       if (this->Order == 0 && parts.Given)
@@ -506,7 +508,8 @@ ScatteringOperator::Powers SourceIteration::ScatterSwept()
   return { this->TheDomain.Sum(powers.absorbed), this->TheDomain.Sum(powers.scattered) };
 }
 
-/// What the orders to come will add to the light that is scattered, over what there is. The worst channel counts.
+/// Estimates the power that the orders to come will add to the scattered light, relative to the sum so far. Uses the
+/// largest of all channels.
 void SourceIteration::EstimateResidual()
 {
   this->Residual = 0.0;
@@ -523,7 +526,7 @@ void SourceIteration::EstimateResidual()
   }
 }
 
-/// Beside what is first scattered, the next sweep carries what is scattered of the guess.
+/// Adds the scattering source of the first guess to the source of the next sweep.
 void SourceIteration::BeginWarm()
 {
   this->Warm.AddGuessTo(this->Parts.Source);
@@ -534,9 +537,9 @@ void SourceIteration::BeginWarm()
   }
 }
 
-/// After the first sweep what is scattered of the guess is taken away from what was scattered: what is left is its
-/// error, which the sweeps to come carry. It can be negative, so that its magnitude, not its power, tells how far the
-/// light is from that of an endless iteration (numerics.md, Eqs. (46a) to (46c)).
+/// After the first sweep, subtracts the scattering source of the guess from the new source. The difference is the error
+/// of the guess, which later sweeps transport. It can be negative, so its magnitude, not its power, measures the
+/// distance from the limit of the iteration (numerics.md, Eqs. (46a) to (46c)).
 void SourceIteration::GoOnWarm()
 {
   const Rgb guessed = this->Order == 1 ? this->Warm.GuessedPower() : Rgb{};
@@ -561,7 +564,7 @@ void SourceIteration::GoOnWarm()
   }
 }
 
-/// Of the orders that were scattered before.
+/// Adds the angular moments of all orders scattered so far.
 void SourceIteration::GatherMoments()
 {
   if (this->Moments.Size() > 0 && this->Order > 0)
@@ -585,13 +588,13 @@ bool SourceIteration::Done() const
   {
     return true;
   }
-  const int least = this->Warm.Begins() ? 2 : 3; // a guess has shown already how fast orders fall
+  const int least = this->Warm.Begins() ? 2 : 3; // after a guess the rate of decrease is known earlier
   return this->Settings.maximumOrders > 0 ? this->Order >= this->Settings.maximumOrders
                                           : this->Order >= least && MeetsTolerance(this->Settings, this->Residual);
 }
 
-/// Light of the orders after the first in the voxels around the medium, and the faces that it leaves through: one sweep
-/// of all that was scattered but what the last order left over (numerics.md, Eq. (44)).
+/// Computes the light of all orders after the first in the voxels around the medium, and through the box faces: one
+/// sweep of the source of all orders minus the unswept source of the last one (numerics.md, Eq. (44)).
 void SourceIteration::SweepEmptySlabs(const Monitor& monitor)
 {
   TransportParts& parts = this->Parts;
@@ -607,7 +610,7 @@ void SourceIteration::SweepEmptySlabs(const Monitor& monitor)
   this->AddOutside(parts.Problem.Traits().filled);
 }
 
-/// To fluence what a sweep left in the voxels outside a box.
+/// Adds the path integrals of a sweep to the fluence of the voxels outside a box.
 void SourceIteration::AddOutside(const VoxelBox& box)
 {
   const TransportParts& parts = this->Parts;

@@ -10,37 +10,37 @@ namespace tyndall
 {
 namespace
 {
-/// Error of the diffusion system's power through a cell, as part of sqrt(1 - albedo) times the light that comes in.
+/// Error of the diffusion power through a cell, relative to sqrt(1 - albedo) times the incident light.
 constexpr double Uncertainty = 0.1;
-/// The same, as part of the scattered light that lamps' rays bring to a voxel beyond or below the average.
+/// The same, relative to the deviation from average of the scattered light that lamp rays bring to a voxel.
 constexpr double UncertainPart = 0.5;
-constexpr double MostUneven = 4.0; ///< times the average that lamps' rays are taken to bring to a voxel
-/// Largest rate, per mean free path, at which light from deep within is taken to fall off: at 1 it has no end.
+constexpr double MostUneven = 4.0; ///< largest ratio of lamp light in a voxel to its average
+/// Largest decay rate, per mean free path, assumed for light from deep inside; at 1 it diverges.
 constexpr double LargestExponent = 0.9;
 
-/// Gauss's nodes and weights on [0, 1].
+/// Gauss-Legendre nodes and weights on [0, 1].
 constexpr std::array<double, 4> Nodes = { 0.0694318442029737, 0.3300094782075719, 0.6699905217924281,
   0.9305681557970263 };
 constexpr std::array<double, 4> Weights = { 0.1739274225687269, 0.3260725774312731, 0.3260725774312731,
   0.1739274225687269 };
 
-/// Light that falls on a cell from one direction.
+/// Irradiance of a cell from one direction.
 struct Beam
 {
-  double irradiance; ///< of the face, W / length^2
+  double irradiance; ///< W per area of the face, W / length^2
   double cosine;     ///< to the inward normal
 };
 
-/// One channel at a cell.
+/// State of one channel at a cell.
 struct Surface
 {
   double albedo, emitted; ///< emission / sigma_a; 0 without sigma_a
-  double out, in;         ///< radiance of even light with the same power
+  double out, in;         ///< isotropic radiance of the same power
   std::vector<Beam> beams;
-  double brought = 1.0; ///< of the beams' light to this voxel, over what they bring on the average
+  double brought = 1.0; ///< light of the beams in this voxel, relative to the average
 };
 
-/// Of light that a lamp in vacuum sends to the middle of a cell; none where it comes from within.
+/// Light of a lamp at the centre of a cell, attenuated by nothing; none if it arrives from inside.
 Beam BeamOf(const Light& lamp, const Grid& grid, const BoxFaceCell& cell, int channel)
 {
   const int axis = cell.face / 2;
@@ -71,11 +71,11 @@ Beam BeamOf(const Light& lamp, const Grid& grid, const BoxFaceCell& cell, int ch
     : lamp.type == LightType::Spot                  ? (AngleFromAxis(lamp, way) <= HalfAngle(lamp) ? 1.0 : 0.0)
                                                     : std::max(std::cos(AngleFromAxis(lamp, way)), 0.0);
   const double ofAll = AxialIntensity(lamp) * part * cosine / (distance * distance);
-  // A narrow cone lights a part of the cell: no more than all of its power falls on it.
+  // A narrow cone lights part of the cell; the cell receives at most its whole power.
   return { lamp.power[channel] * std::min(ofAll, 1.0 / (grid.spacing[u] * grid.spacing[v])), cosine };
 }
 
-/// Radiance at cosine mu of what comes in and what the medium shines, in a half-space.
+/// Outgoing radiance of a half-space at cosine mu: reflected incident light, and emission.
 double OfHalfSpace(const Surface& s, double mu, double ofBeams = 1.0)
 {
   const double h = HalfSpaceH(s.albedo, mu);
@@ -95,16 +95,16 @@ double DiffuseExitance(double albedo, double mu)
   return HalfSpaceH(albedo, mu) / (1.0 - k * mu);
 }
 
-/// The radiances at SurfaceCosines.
+/// Outgoing radiance at SurfaceCosines.
 std::array<double, 4> Leaving(const Surface& s)
 {
-  double halfSpace = 0.0, deep = 0.0; // even radiance of the same power
+  double halfSpace = 0.0, deep = 0.0; // isotropic radiance of the same power
   for (std::size_t n = 0; n < Nodes.size(); ++n)
   {
     halfSpace += 2.0 * Nodes[n] * Weights[n] * OfHalfSpace(s, Nodes[n], s.brought);
     deep += 2.0 * Nodes[n] * Weights[n] * DiffuseExitance(s.albedo, Nodes[n]);
   }
-  // The same as diffusion with Marshak's condition has it (numerics.md, Eq. (79)).
+  // The same in diffusion with Marshak's boundary condition (numerics.md, Eq. (79)).
   double exact = 0.0;
   for (std::size_t n = 0; n < Nodes.size(); ++n)
   {
@@ -133,7 +133,8 @@ std::array<double, 4> Leaving(const Surface& s)
   return radiance;
 }
 
-/// What a voxel takes of lamps' light, over what the beams through its faces at the box's should leave there.
+/// Light of lamps absorbed and scattered in a voxel, relative to the expected deposit of the beams through its faces at
+/// the box.
 double Brought(const Medium& medium, const std::array<bool, 6>& faces, const std::vector<Light>& lamps,
   const BoxFaceCell& cell, int channel, double fluence)
 {
@@ -142,7 +143,7 @@ double Brought(const Medium& medium, const std::array<bool, 6>& faces, const std
   const std::array<int, 3> at = { static_cast<int>(cell.voxel % grid.size[0]),
     static_cast<int>(cell.voxel / grid.size[0] % grid.size[1]),
     static_cast<int>(cell.voxel / grid.size[0] / grid.size[1]) };
-  double expected = 0.0; // per volume
+  double expected = 0.0; // power per volume
   for (int face = 0; face < 6; ++face)
   {
     const int axis = face / 2;
@@ -234,7 +235,7 @@ std::vector<float> SurfaceRadiance(const Medium& medium, const std::array<bool, 
 
 namespace
 {
-/// Which faces of a block lie on the box's.
+/// Which faces of a block lie on faces of the box.
 std::array<bool, 6> FacesAtBox(const VoxelBox& block, const Grid& whole, const std::array<bool, 3>& periodic)
 {
   std::array<bool, 6> faces;
@@ -246,7 +247,7 @@ std::array<bool, 6> FacesAtBox(const VoxelBox& block, const Grid& whole, const s
   return faces;
 }
 
-/// Values of the cells of a block's faces, as many each, to those of the box's.
+/// Copies values of the face cells of a block, a fixed number per cell, to the face cells of the box.
 void PutCells(const std::vector<float>& ofBlock, const VoxelBox& block, const std::array<bool, 6>& faces,
   const Grid& grid, const Grid& whole, std::vector<double>& all)
 {

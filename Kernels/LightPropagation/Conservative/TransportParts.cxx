@@ -28,7 +28,7 @@ VolumeLayout LayoutOf(const PropagationProblem& problem)
   return { problem.TheGrid(), problem.Channels(), shared };
 }
 
-/// Without absorption sigma_s is sigma_t; without scattering it is not read.
+/// Arrays needed on the device. Without absorption sigma_s equals sigma_t; without scattering it is not read.
 MediumOnDevice::Needs NeedsOf(const PropagationProblem& problem, const VolumeLayout& layout, bool byBalance)
 {
   const MediumTraits& traits = problem.Traits();
@@ -37,7 +37,7 @@ MediumOnDevice::Needs NeedsOf(const PropagationProblem& problem, const VolumeLay
   return { !(problem.Settings().leaveOut && (alike || unused)), byBalance };
 }
 
-/// Adds the mean radiance that comes in through the faces.
+/// Adds the mean boundary radiance.
 void AddMeanRadiance(const BoundaryLight* boundary, Rgb& mean)
 {
   for (const Rgb& power : boundary ? boundary->IncomingPower() : std::array<Rgb, 6>())
@@ -49,8 +49,8 @@ void AddMeanRadiance(const BoundaryLight* boundary, Rgb& mean)
   }
 }
 
-/// Peaks go along exact rays, but do not wrap around periodic axes, for then their images have no end, nor from block
-/// to block.
+/// Separates localised emission, which is traced along exact rays. These neither wrap around periodic axes, because
+/// there would be infinitely many images, nor cross between blocks.
 SplitEmission SplitEmissionOf(const PropagationProblem& problem, const Rgb& comesIn)
 {
   const std::array<bool, 3>& periodic = problem.Settings().periodic;
@@ -145,8 +145,8 @@ bool TransportParts::LoadEmission(Buffer<float>& source) const
   return shines;
 }
 
-/// Without small bright emission. W / (length^3 sr)
-/// @param emptyVoxels  of those that are swept apart, else of the others
+/// Emission without localised emission, W / (length^3 sr).
+/// @param emptyVoxels  of empty voxels that are swept separately; false: of all other voxels
 std::vector<float> TransportParts::EmissionOf(bool emptyVoxels) const
 {
   const PropagationProblem& problem = this->Problem;
@@ -177,7 +177,7 @@ void TransportParts::FindVacuum()
   }
 }
 
-/// Along the directions that the environment's smooth part comes along.
+/// Separates the environment into peaks and a smooth part, for the directions of that smooth part.
 SplitEnvironment TransportParts::SplitFar(const Environment& environment) const
 {
   return Split(environment, (this->Fine && !this->Finer.ofFacesAlone ? *this->Fine : this->Usual).Set());
@@ -225,7 +225,7 @@ void TransportParts::FindFineBoundary()
   {
     return;
   }
-  // Directions that nobody asked for are left where few of their rays would meet the faces.
+  // Automatically chosen finer directions are dropped if few of their rays would hit the faces.
   if (ofAll)
   {
     fine->CheckRays(this->Layout.channels);
@@ -399,7 +399,7 @@ SweepTally TransportParts::AddUncollided(const UncollidedSource& source, const D
       volume.beamPath = &path;
     }
   });
-  // A source that needs several ranks agrees on its failures but after its last collective.
+  // A collective source reports failures on all ranks, except those after its last collective call.
   SweepTally tally;
   std::exception_ptr error;
   try
@@ -456,7 +456,7 @@ SweepTally TransportParts::SumOfVoxels(const SweepTally& own) const
   return all;
 }
 
-/// Of a beam with an angular distribution of its own, which one; -1: it has none.
+/// Index of the beam that has its own angular distribution; -1: none.
 int TransportParts::SlotOf(const UncollidedSource& source) const
 {
   const auto* lamp = dynamic_cast<const UncollidedLamp*>(&source);

@@ -50,7 +50,7 @@ UncollidedLight::UncollidedLight(
   , Coefficients(medium)
 {
   parts.CountEmission(this->Counted);
-  const double sources = parts.FineBoundary ? 0.5 : 1.0; // of the time
+  const double sources = parts.FineBoundary ? 0.5 : 1.0; // fraction of the time
   this->AddSources(OfPart(monitor, 0.0, sources));
   this->TheDomain.Collective([&] {
     if (parts.Basis && parts.Problem.Settings().netFlux)
@@ -67,7 +67,7 @@ UncollidedLight::UncollidedLight(
   this->CountAbsorbed();
 }
 
-/// In thick voxels it matters where lamps' light is first scattered.
+/// In optically thick voxels the position of first collisions of lamp light matters.
 bool UncollidedLight::NeedsFirstMoments() const
 {
   return this->LinearSource && !this->Parts.Lamps.empty() &&
@@ -92,7 +92,7 @@ void UncollidedLight::MakePassing()
   this->PassedWithGhosts = { device, this->Block, this->ThroughFaces, 6 * channels, what };
 }
 
-/// Lamps and bright emission, into the arrays of all sources.
+/// Adds lamps, localised emission, given light and emission of empty voxels.
 void UncollidedLight::AddSources(const Monitor& monitor)
 {
   TransportParts& parts = this->Parts;
@@ -163,7 +163,7 @@ SweepTally UncollidedLight::AddLampThroughFaces(const UncollidedSource& lamp, co
   return tally;
 }
 
-/// Adds the part of a lamp's light that passes voxels' faces at once where it is first scattered.
+/// Adds the power of first-scattered light of a lamp that leaves its voxel straight away through the faces.
 void UncollidedLight::PassFaces()
 {
   const VolumeLayout& held = this->Block.WithGhosts();
@@ -177,7 +177,7 @@ void UncollidedLight::PassFaces()
   }
 }
 
-/// What lamps' light is first scattered, less what passes faces at once.
+/// First-collision source of lamps minus the power that leaves its voxel straight away.
 void UncollidedLight::FindScatteredInVoxels()
 {
   const VolumeLayout& layout = this->Parts.Layout;
@@ -207,23 +207,24 @@ void UncollidedLight::FindScatteredInVoxels()
   this->MomentsOfLamp = {};
 }
 
-/// Weight of the difference of finer and usual directions (numerics.md, Eqs. (55), (76)): little in thick voxels, where
-/// it matters at which depth light is scattered, which the diffusion system has for the light in sweeps alone.
+/// Weight of the difference between the finer and the usual quadrature (numerics.md, Eqs. (55), (76)). Small in
+/// optically thick voxels, where the depth of first collisions matters, which the diffusion system knows only for light
+/// in sweeps.
 double UncollidedLight::PartOfDifference(std::size_t voxel, int channel) const
 {
   const std::array<double, 3>& h = this->TheMedium.grid.spacing;
   const double longest = *std::max_element(h.begin(), h.end());
   const double tau = longest * this->TheMedium.TransportSigmaT(voxel, channel);
   const double absorbing = longest * this->TheMedium.sigma_a.At(voxel, channel);
-  // As the system weighs what sweeps find.
+  // The same weight as the diffusion system gives to results of sweeps.
   return this->LinearSource ? 1.0 / (1.0 + tau * (0.25 * tau + 3.0 * absorbing)) : 1.0;
 }
 
-/// Sweeps carry all light from outside along the usual directions, as the diffusion system needs it. The difference
-/// that finer ones make to it before it is scattered is added like the light of lamps (numerics.md, Eq. (76)): where
-/// light is scattered many times, and along directions that nobody asked for, scaled in each voxel so that power is
-/// as in the sweeps and an even sky stays even, else scaled by the power that enters. Power that this adds to voxels
-/// or takes from them is made up for by what leaves the box.
+/// Sweeps carry all boundary light along the usual quadrature, because the diffusion system needs it. The difference
+/// that the finer quadrature makes to uncollided light is added like the light of lamps (numerics.md, Eq. (76)). In
+/// media with many scatterings, and for automatically chosen directions, it is scaled by voxel so that the power equals
+/// that of the sweeps and a uniform sky stays uniform; otherwise it is scaled by the entering power. Power added to or
+/// removed from voxels is compensated in the escaped power.
 void UncollidedLight::AddBoundaryDifference(const Monitor& monitor)
 {
   TransportParts& parts = this->Parts;

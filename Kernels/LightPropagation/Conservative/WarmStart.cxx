@@ -11,7 +11,7 @@ namespace tyndall
 {
 namespace
 {
-constexpr double SlowestRate = 1.0 - 1e-6; ///< that is told the next solve
+constexpr double SlowestRate = 1.0 - 1e-6; ///< largest rate that is passed to the next solve
 }
 
 WarmStart::WarmStart(const TransportParts& parts, const KeptLight* kept, const char* method)
@@ -44,7 +44,8 @@ std::vector<std::string> WarmStart::LeftOut() const
   return this->Keeps() ? std::vector<std::string>{ WordsOfWarmStart(this->WhyNot) } : std::vector<std::string>();
 }
 
-/// W by channel: sigma_s times values, summed over the voxels of all ranks; [channel][stride].
+/// Sum over the voxels of all ranks of sigma_s times values, by channel.
+/// @param values  [channel][stride]
 Rgb WarmStart::ScatteredOf(const std::vector<float>& values) const
 {
   Rgb sums = {};
@@ -142,7 +143,7 @@ KeptLight WarmStart::Leave(const std::vector<float>& base, const std::vector<flo
   left.kind = this->TheKind;
   for (int c = 0; c < layout.channels && this->Parts.Problem.Settings().maximumOrders == 0; ++c)
   {
-    // The error of a good guess falls faster at first than that of darkness does at last.
+    // The error of a good guess decreases faster at first than the orders of a cold start do at the end.
     left.rate[c] = std::max(std::min(rate[c], SlowestRate), this->Begins() ? this->Rate(c) : 0.0);
   }
   left.firstScattered = this->First;

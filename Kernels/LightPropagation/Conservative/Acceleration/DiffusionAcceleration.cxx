@@ -80,7 +80,7 @@ IterationResult DiffusionAcceleration::Run(const Monitor& monitor)
   return std::move(this->Result);
 }
 
-/// The source of a next sweep, less what the medium emits and what lamps' light is scattered first.
+/// Computes the scattered light to render: the next source minus emission and first-scattered light of lamps.
 void DiffusionAcceleration::FindShown()
 {
   TransportParts& parts = this->Parts;
@@ -102,7 +102,7 @@ void DiffusionAcceleration::FindShown()
   });
 }
 
-/// What of uncollided light is scattered is a given source, like what the medium emits.
+/// Adds the first-collision source to the given source, like emission.
 void DiffusionAcceleration::GiveFirstScattered()
 {
   TransportParts& parts = this->Parts;
@@ -111,7 +111,7 @@ void DiffusionAcceleration::GiveFirstScattered()
   Rgb scattered = {};
   this->TheDomain.Collective([&] {
     this->Given = Buffer<float>(parts.TheDevice, parts.Source.Read(), "the light given");
-    parts.DarkenBeams(); // until what is first scattered shines
+    parts.DarkenBeams(); // until the first-collision source is emitted
     parts.Path.Write(path.data());
     if (!parts.IsEmpty())
     {
@@ -165,15 +165,14 @@ void DiffusionAcceleration::MakeSweep()
   this->Swept = parts.MakeSweep(request);
 }
 
-/// No flux: it comes from the system.
+/// No flux: the diffusion system provides it.
 Deposit DiffusionAcceleration::DepositOfSweep() const
 {
   const Deposit whole = this->Parts.WholeDeposit();
   return { whole.path, nullptr, &this->PartialCurrents, nullptr, whole.faceOut, whole.spreadsAside };
 }
 
-/// From the source that is there to path integrals and partial currents. The light that comes in from outside comes in
-/// every time.
+/// Sweeps the current source into path integrals and partial currents. Boundary light enters in every sweep.
 void DiffusionAcceleration::Sweep(int iteration, const Monitor& monitor)
 {
   this->TheDomain.Collective([&] {
@@ -199,7 +198,7 @@ void DiffusionAcceleration::Sweep(int iteration, const Monitor& monitor)
   this->Currents.Fill();
 }
 
-/// At the surfaces of thick voxels.
+/// Adjusts the source at the surfaces of optically thick voxels.
 void DiffusionAcceleration::ShapeSource()
 {
   this->SourceInSystems.FillOwn();
@@ -219,7 +218,7 @@ void DiffusionAcceleration::ShapeSource()
   this->SourceInSystems.TakeOwn();
 }
 
-/// What of uncollided light comes back comes back every time.
+/// Reflects uncollided light; its reflected part enters in every sweep.
 void DiffusionAcceleration::ReflectUncollided()
 {
   TransportParts& parts = this->Parts;
@@ -234,7 +233,7 @@ void DiffusionAcceleration::ReflectUncollided()
   }
 }
 
-/// The source of the next sweep, of what the last one and the systems found.
+/// Computes the source of the next sweep from the last sweep and the diffusion solution.
 void DiffusionAcceleration::ScatterFound()
 {
   this->TheDomain.Collective([&] {
@@ -249,7 +248,7 @@ void DiffusionAcceleration::ScatterFound()
   });
 }
 
-/// Of the last sweep, with uncollided light; [channel][stride].
+/// Fluence of the last sweep plus uncollided light, [channel][stride].
 std::vector<float> DiffusionAcceleration::SweptFluence() const
 {
   const double perVolume = 1.0 / this->Parts.Layout.grid.VoxelVolume();
@@ -293,14 +292,14 @@ void DiffusionAcceleration::MakeSystems()
   }
 }
 
-/// W of a voxel, about: the unit that the system's solver works in.
+/// Approximate power of a voxel, W: the unit of the diffusion solver.
 double DiffusionAcceleration::VoxelPower(int c) const
 {
   return (this->GivenPower[c] + this->PowerIn[c]) / static_cast<double>(this->TheDomain.Whole().VoxelCount());
 }
 
-/// Solve for the light of each channel and estimate how far it is from that of an endless iteration (numerics.md,
-/// Eq. (73)). The worst channel counts.
+/// Solves the diffusion system of each channel and estimates the distance from the limit of the iteration (numerics.md,
+/// Eq. (73)), the largest of all channels.
 void DiffusionAcceleration::Correct(int iteration)
 {
   double change = 0.0;
@@ -331,15 +330,15 @@ void DiffusionAcceleration::Correct(int iteration)
     std::transform(given.begin(), given.end(), this->PowerIn.begin(), given.begin(), std::plus<>());
     double ofFaces = 0.0;
     this->TheDomain.Collective([&] { ofFaces = this->Box->OfBox().Reflect(iteration, given); });
-    change = std::max(change, this->TheDomain.Max(ofFaces)); // ranks' devices may round differently
+    change = std::max(change, this->TheDomain.Max(ofFaces)); // devices of different ranks may round differently
   }
   const bool guessed = iteration == 1 && this->Warm.Begins() && this->Warm.Rate(0) > 0.0;
   this->Residual = this->Rest.After(change, guessed ? this->Warm.Rate(0) : 0.0);
   this->Result.convergence.Add(this->Residual, change, this->Result.ledger);
 }
 
-/// Where the power went, by the diffusion system, which conserves it. What left in the sweep is used only to share it
-/// among the faces.
+/// Counts the power according to the diffusion solution, which conserves it. The escaped power of the sweep serves only
+/// to distribute it among the faces.
 void DiffusionAcceleration::CountLight()
 {
   this->Result.ledger = this->Uncollided->Ledger();
@@ -356,7 +355,7 @@ void DiffusionAcceleration::CountLight()
     }
     if (!(this->VoxelPower(c) > 0.0))
     {
-      continue; // dark: never solved for
+      continue; // dark channel: not solved
     }
     lit[c] = true;
     this->Result.ledger.Absorb(c, this->Systems[c]->Absorbed());
@@ -376,13 +375,14 @@ void DiffusionAcceleration::CountLight()
 bool DiffusionAcceleration::Done(int iterations) const
 {
   const int most = this->Settings.maximumOrders > 0 ? this->Settings.maximumOrders : MostSweeps;
-  // A guess has shown already how fast changes fall, but angular moments are not among them.
+  // After a guess the rate of decrease is known earlier, unless there are angular moments, which the guess does not
+  // cover.
   const int least = this->Warm.Begins() && !this->HasMoments() ? 2 : 3;
   return iterations >= most || this->Residual == 0.0 ||
     (iterations >= least && MeetsTolerance(this->Settings, this->Residual));
 }
 
-/// Unscattered fluence.
+/// Computes the uncollided fluence.
 void DiffusionAcceleration::LookAtDirect()
 {
   std::vector<float> direct;
@@ -397,8 +397,8 @@ void DiffusionAcceleration::LookAtDirect()
   }
 }
 
-/// What the first sweep and its system find is found anew each time; what later ones add to it is kept, and given to
-/// the second sweep (numerics.md, Eq. (46d)).
+/// The result of the first sweep and its diffusion solution is computed anew in each solve. The part that later
+/// iterations add is kept, and added before the second sweep (numerics.md, Eq. (46d)).
 void DiffusionAcceleration::BeginWarm()
 {
   TransportParts& parts = this->Parts;
@@ -436,8 +436,8 @@ void DiffusionAcceleration::BeginWarm()
   });
 }
 
-/// What is guessed beyond what a channel's system has solved for, as its state.
-/// @param fluence  with ghosts, W length
+/// Guess minus the current solution of a channel, as state of its diffusion system.
+/// @param fluence  with ghost cells, W length
 std::vector<double> DiffusionAcceleration::GuessOf(int c, const std::vector<float>& fluence) const
 {
   const VolumeLayout& held = this->Block.WithGhosts();
@@ -481,7 +481,7 @@ void DiffusionAcceleration::WriteFluence()
   }
 }
 
-/// With uncollided light, [channel][stride].
+/// Fluence of the diffusion systems plus uncollided light, [channel][stride].
 std::vector<float> DiffusionAcceleration::FluenceOfSystems()
 {
   const VolumeLayout& layout = this->Parts.Layout;
@@ -502,7 +502,8 @@ std::vector<float> DiffusionAcceleration::FluenceOfSystems()
   return fluence;
 }
 
-/// Adds that of the systems; with angular moments, whose degree 1 has less of the pattern of rays, that of the sweep.
+/// Adds the net flux of the diffusion systems; with angular moments that of the sweep, whose degree 1 has less of the
+/// pattern of rays.
 void DiffusionAcceleration::WriteFlux(const std::vector<float>& fluence)
 {
   TransportParts& parts = this->Parts;
@@ -530,7 +531,7 @@ void DiffusionAcceleration::WriteFlux(const std::vector<float>& fluence)
   });
 }
 
-/// Of thick voxels, from the powers of the system.
+/// Computes the surface radiance of optically thick voxels from the powers of the diffusion system.
 void DiffusionAcceleration::FindSurfaceRadiance()
 {
   if (!this->LinearSource)

@@ -71,11 +71,11 @@ double FaceBalance::Reflect(int iteration, const Rgb& given)
       all += found[cell];
     }
     change = std::max(change, all > 0.0 ? differs / all : 0.0);
-    // In thin media the systems do not know how what comes back goes through them.
+    // Mixing helps in thin media, where the diffusion systems do not predict the path of reflected light.
     const std::vector<double> next = iteration > 0 ? this->BackMixing[c].Next(came, found) : found;
     std::copy(next.begin(), next.end(), begin);
   }
-  // The systems' power does not have the pattern of rays.
+  // Powers of the diffusion systems do not have the pattern of rays.
   this->Faces.LetIn(std::vector<double>(this->CameBack.size(), 0.0), this->CameBack);
   return change;
 }

@@ -17,7 +17,7 @@ FaceBalanceOfBlock::FaceBalanceOfBlock(Device& device, FaceLight& faces, const B
   {
     ForBoxFaceCells(held, [&](const BoxFaceCell& cell) {
       const std::array<int, 3> voxel = held.VoxelAt(cell.voxel);
-      if (block.IsOwn(voxel)) // so that the grid with ghosts ends there where the box does
+      if (block.IsOwn(voxel)) // at its face the grid with ghost cells then ends at the box
       {
         const BoxFaceLayout layout = LayoutOfFace(faces.Box(), cell.face);
         std::size_t place = layout.first;

@@ -4,7 +4,7 @@ namespace tyndall
 {
 namespace
 {
-constexpr int OfDegreesToOne = 4; ///< functions
+constexpr int OfDegreesToOne = 4; ///< number of functions of degrees 0 and 1
 }
 
 MomentsWithGhosts::MomentsWithGhosts(const BlockWithGhosts& block, int functions)

@@ -41,7 +41,7 @@ OrdersByCells::Powers OrdersByCells::ScatterOrder(EnergyLedger& ledger, const Rg
     all.left[c] = powers.left;
     for (int face = 0; face < 6; ++face)
     {
-      ledger.Escape(c, face, -this->Kept[face][c]); // that the sweep just done let out
+      ledger.Escape(c, face, -this->Kept[face][c]); // excess of the sweep just done
       this->Kept[face][c] = powers.kept[face];
       this->Out[face][c] = powers.out[face];
     }
