@@ -11,9 +11,9 @@ namespace tyndall
 {
 namespace
 {
-constexpr std::size_t Block = 8;        ///< voxels of a work-item
-constexpr std::size_t GroupSize = 64;   ///< work-items of a work-group
-constexpr std::size_t FirstBatch = 512; ///< work-items, before it is known how long they take
+constexpr std::size_t Block = 8;        ///< voxels per work-item
+constexpr std::size_t GroupSize = 64;   ///< work-items per work-group
+constexpr std::size_t FirstBatch = 512; ///< work-items, until their run time has been measured
 
 int RowsOf(int terms, bool netFlux, int width)
 {
@@ -82,7 +82,8 @@ void AngularScattering::LoadTables(const OrdinateGroups& groups, const Separable
   this->LoadPhase(groups, phase);
 }
 
-/// Factors into each direction: of terms, or the matrix [group][direction][lane], or its rows for passes.
+/// Factors into each outgoing direction: of the terms, or the matrix [group][direction][lane], or its rows for
+/// PairSums::Passes.
 void AngularScattering::LoadPhase(const OrdinateGroups& groups, const SeparablePhaseFunction& phase)
 {
   const auto ofMatrix = [&](int to, std::size_t from) {

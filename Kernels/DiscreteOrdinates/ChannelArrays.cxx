@@ -47,7 +47,8 @@ ChannelArrays::ChannelArrays(Device& device, const OrdinatesScene& scene, const 
   }
 }
 
-/// @param emptyVoxels  emission that is swept apart, else the rest; W / (length^3 sr)
+/// @param emptyVoxels  emission of empty voxels that is swept separately; false: the rest
+/// @return W / (length^3 sr)
 float ChannelArrays::EmissionOf(std::size_t voxel, bool emptyVoxels) const
 {
   const double sigma_t = static_cast<double>(this->Absorption[voxel]) + this->Scattering[voxel];
@@ -62,7 +63,7 @@ void ChannelArrays::TakeVacuumApart(PropagationSettings settings)
   {
     return;
   }
-  settings.netFlux = true; // the direction of the light before it scatters
+  settings.netFlux = true; // gives the mean direction of uncollided light
   bool any = false;
   this->Scene.domain.Collective([&] {
     this->OfVacuum = VacuumEmission::DirectionsFor(whole, settings);
@@ -93,7 +94,7 @@ Buffer<float> ChannelArrays::Load(const char* what, double absorbed, double scat
 
 std::size_t ChannelArrays::Bytes(const Grid& grid, bool netFlux)
 {
-  const std::size_t ofVoxels = grid.VoxelCount() * (9 + (netFlux ? 3 : 0)); // three of them for lamps
+  const std::size_t ofVoxels = grid.VoxelCount() * (9 + (netFlux ? 3 : 0)); // three of these for lamps
   return sizeof(float) * (ofVoxels + 2 * BoxFaceCellCount(grid));
 }
 
@@ -144,8 +145,8 @@ void ChannelArrays::AddLamps(
   }
 }
 
-/// Light that empty voxels emit. It scatters by its mean direction.
-/// @param volume  its deposit has a path alone, which is 0
+/// Adds the emission of empty voxels, first scattered by its mean direction.
+/// @param volume  its deposit has only a path, which is 0 on entry
 SweepTally ChannelArrays::AddVacuum(UncollidedVolume volume, const LampScattering& scattering,
   const Buffer<float>& sigma_s, const LampTarget& target, const Monitor& monitor) const
 {
@@ -187,8 +188,8 @@ std::unique_ptr<SweepOperator> ChannelArrays::SweepOf(
   return sweep;
 }
 
-/// Rays are those of the whole grid, and beams of lamps pass from rank to rank.
-/// @param nearLamps  of the volume's sigma_t: made where a lamp asks for them
+/// Adds the light of lamps. Rays are those of the whole grid; beams of lamps cross from rank to rank.
+/// @param nearLamps  for sigma_t of the volume; made on first use
 void ChannelArrays::SpreadOverRanks(UncollidedVolume& volume, std::unique_ptr<LampsInBlocks>& nearLamps) const
 {
   const Domain& domain = this->Scene.domain;
@@ -202,12 +203,12 @@ void ChannelArrays::SpreadOverRanks(UncollidedVolume& volume, std::unique_ptr<La
         this->TheDevice, domain.Comm(), domain.Partition(), periodic, this->Layout, sigma_t);
     }
     const SweepTally tally = nearLamps->Deposit(ofChannels, lamp, monitor);
-    // The tally is that of all ranks already, but an empty block may not know the channel's power.
+    // The tally already is a sum over ranks, but an empty block may not know the power of the channel.
     return SumOf(domain, IsFirstThatHas(domain.Comm(), domain.Partition()) ? tally : SweepTally());
   };
 }
 
-/// Light that another solver found.
+/// Adds light from another solver.
 void ChannelArrays::AddGiven(
   const LampScattering& scattering, const Buffer<float>& sigma_s, const Buffer<float>& source, OrdinatesResult& result)
 {
@@ -229,7 +230,7 @@ void ChannelArrays::AddGiven(
   const Domain& domain = this->Scene.domain;
   if (!IsFirstThatHas(domain.Comm(), domain.Partition()))
   {
-    image.escaped = {}; // every rank has the sum over all
+    image.escaped = {}; // every rank holds the sum over ranks
   }
   const SweepTally tally = TallyOf(image, this->TheMedium, this->Scene.channel, 1);
   this->CountLamp(SumOf(domain, tally), result.ledger);

@@ -23,26 +23,26 @@ namespace tyndall
 {
 namespace
 {
-constexpr double SlowestRate = 1.0 - 1e-6; ///< of orders, that is passed to the next solve
+constexpr double SlowestRate = 1.0 - 1e-6; ///< largest ratio of orders that is passed to the next solve
 
-/// The light of the last solve as the first guess of this one, channel by channel (numerics.md, section 6.4). Each rank
-/// keeps that of its block; all ranks begin from theirs, or none does.
+/// First guess of each channel from the light of the previous solve (numerics.md, section 6.4). Each rank keeps the
+/// light of its block; either all ranks use theirs, or none does.
 class OrdinatesWarmStart
 {
 public:
-  /// @param kept  null: begin in the dark and keep nothing; must stay, as settings
+  /// @param kept  null: no first guess, nothing is kept; must outlive this, as settings
   OrdinatesWarmStart(const KeptLight* kept, const OrdinatesSettings& settings)
     : Kept(kept)
     , Settings(settings)
   {
   }
 
-  /// The first guess of a channel. Collective.
-  /// @param channels  of the solve
+  /// First guess of a channel. Collective.
+  /// @param channels  number of channels of the solve
   OrdinatesGuess Begin(int channel, int channels, const Domain& domain, const OrdinatesAngles& angles);
-  /// Takes the light for the next solve, channel by channel.
+  /// Stores the light of a channel for the next solve.
   void Take(const OrdinatesResult& found, int channel);
-  /// Replaces the kept light, and writes to left_out how the solve began. Does nothing where no light is kept.
+  /// Replaces the kept light, and writes to left_out how the solve began. Does nothing if no light is kept.
   void Finish(LightField& light, KeptLight* kept);
 
 private:
@@ -52,7 +52,7 @@ private:
   const KeptLight* Kept;
   const OrdinatesSettings& Settings;
   KeptLight Left;
-  std::string WhyNot; ///< of the first channel that has a reason
+  std::string WhyNot; ///< reason of the first channel that cannot use the guess
 };
 
 OrdinatesGuess OrdinatesWarmStart::Begin(int channel, int channels, const Domain& domain, const OrdinatesAngles& angles)
@@ -86,7 +86,7 @@ std::string OrdinatesWarmStart::WhyNotOf(const OrdinatesAngles& angles) const
   return WhyNotBegun(*this->Kept, this->Left.kind, this->Settings.maximumOrders);
 }
 
-/// One channel's part of kept light.
+/// One channel of kept light.
 OrdinatesGuess OrdinatesWarmStart::GuessOf(int channel, bool begins) const
 {
   OrdinatesGuess guess;
@@ -120,11 +120,11 @@ void OrdinatesWarmStart::Finish(LightField& light, KeptLight* kept)
   Keep(std::move(this->Left), this->WhyNot.empty(), light, *kept);
 }
 
-/// A scene as it is solved: in its units and channels.
+/// A scene in the units and channels of the solver.
 struct SolvedScene
 {
   const Domain& domain;
-  const Medium& medium; ///< one voxel of vacuum in an empty block
+  const Medium& medium; ///< one voxel of vacuum if the block is empty
   const MediumTraits& traits;
   const Illumination& shining;
   int channels;
@@ -158,7 +158,7 @@ std::vector<std::string> Words(
   return words;
 }
 
-/// One channel after the other, in the units of the scene. Collective.
+/// Solves one channel after the other, in the units of the scene. Collective.
 LightField SolveChannels(
   Device& device, const SolvedScene& scene, const OrdinatesSettings& settings, const Monitor& monitor, KeptLight* kept)
 {
@@ -208,7 +208,7 @@ LightField SolveChannels(
   return light;
 }
 
-/// What PropagationProblem does not check. Collective.
+/// Checks beyond those of PropagationProblem. Collective.
 void CheckOrdinates(const Domain& domain, const Medium& medium, const Illumination& illumination,
   const OrdinatesSettings& settings, bool warm)
 {
@@ -228,7 +228,7 @@ void CheckOrdinates(const Domain& domain, const Medium& medium, const Illuminati
     { 1.0 * static_cast<int>(settings.scattering), 1.0 * settings.spiralDirections, 1.0 * settings.terms });
 }
 
-/// Uncollided light as given on any rank, for an empty block as well.
+/// Given uncollided light; on an empty block a placeholder if any rank has it.
 UncollidedImage UncollidedKnown(const Domain& domain, const UncollidedImage& own)
 {
   static const float nothing = 0.0f;

@@ -19,13 +19,13 @@ namespace tyndall
 {
 namespace
 {
-constexpr double MostTilt = 0.98; ///< as LampScattering.cl has it
-constexpr double Least = 1e-9;    ///< of the phase function, 1/sr
+constexpr double MostTilt = 0.98; ///< as in LampScattering.cl
+constexpr double Least = 1e-9;    ///< smallest value of the phase function, 1/sr
 constexpr int TableSize = 1024;
-constexpr int MeansDegree = 256; ///< of moments; higher ones vanish in a cell's mean
+constexpr int MeansDegree = 256; ///< degree of moments; higher ones vanish in the mean over a cell
 
-/// The phase function averaged over a cell, over the angle from 0 to pi; nowhere negative, and nowhere 0: parts of what
-/// is all in one place can still be taken. 1/sr
+/// Phase function averaged over the cell of a direction, 1/sr, at equidistant angles from 0 to pi. All values are
+/// positive, so that ratios of them exist even if all light is in one direction.
 std::vector<float> MeansByAngle(const PhaseFunction& function, double solidAngle)
 {
   const std::vector<double> moments = function.Moments(MeansDegree), cap = CapMoments(solidAngle, MeansDegree);
@@ -69,8 +69,9 @@ LampScattering::LampScattering(
   this->Table = Buffer<float>(device, this->ByAngle, "the phase function");
 }
 
-/// Scattering from a ray into each direction, 1/sr, [group][lane]: the directions' sums of 1, the cosine and
-/// its square make it have its power and, as far as no direction gets less than nothing, its mean cosine.
+/// Scattering from a ray into each direction, 1/sr, [group][lane], corrected by the sums over directions of 1, the
+/// cosine and its square so that it has the right power and, as far as no direction becomes negative, the right mean
+/// cosine.
 std::vector<float> LampScattering::PartsAlong(const std::array<double, 3>& ray) const
 {
   const auto cosine = [&](int g, int lane) {

@@ -17,7 +17,7 @@ namespace tyndall
 {
 namespace
 {
-constexpr int FacesPeaksAreSoughtFor = 25; ///< directions per face, where directions are on a spiral
+constexpr int FacesPeaksAreSoughtFor = 25; ///< directions per face used to find peaks if directions are on a spiral
 
 void TakePowers(LightField& light, const EnergyLedger& ledger, int channel)
 {
@@ -33,7 +33,7 @@ void TakePowers(LightField& light, const EnergyLedger& ledger, int channel)
   }
 }
 
-/// A row of all channels: one that is done stays as it is.
+/// Adds the rows of a channel to the sum over channels; the last row of a finished channel is repeated.
 void AddRows(std::vector<ConvergenceRow>& sum, const std::vector<ConvergenceRow>& rows, bool first)
 {
   const ConvergenceRow last = sum.empty() ? ConvergenceRow() : sum.back();

@@ -6,17 +6,17 @@ namespace tyndall
 {
 namespace
 {
-/// Numbers of one level.
+/// Settings of one quality level.
 struct Level
 {
-  int rows; ///< of directions along a face's edge
+  int rows; ///< directions along the edge of a cube face
   int terms;
   double tolerance;
 };
 
 constexpr Level Draft = { 3, 9, 1e-2 }, Fine = { 8, 49, 1e-4 }, Reference = { 12, 100, 1e-5 };
 
-/// Rows of directions whose radiance, one channel of every voxel, takes at most half of the memory.
+/// Largest number of rows of directions for which one channel of radiance takes at most half of the memory.
 int RowsThatFit(int rows, int atLeast, std::size_t voxels, double memory)
 {
   constexpr std::size_t Faces = 6;

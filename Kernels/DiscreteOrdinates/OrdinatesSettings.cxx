@@ -45,7 +45,7 @@ PropagationSettings AsPropagation(const OrdinatesSettings& settings)
   as.periodic = settings.periodic;
   as.netFlux = settings.netFlux;
   as.leaveOut = settings.leaveOut;
-  as.angularDegree = 0; // scatters by direction, not in moments
+  as.angularDegree = 0; // scattering is by direction, not in moments
   return as;
 }
 }

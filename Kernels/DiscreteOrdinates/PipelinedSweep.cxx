@@ -12,7 +12,7 @@ namespace
 {
 constexpr int AllFaces = 0x3f; ///< bits of the faces -x, +x, ... +z
 
-/// Bits of the faces of this rank's block that are no faces of the grid; all of an empty block.
+/// Bits of the faces of this rank's block that are interior to the grid; all faces for an empty block.
 int InnerFacesOf(const Domain& domain)
 {
   const VoxelBox& block = domain.Own();
@@ -25,7 +25,7 @@ int InnerFacesOf(const Domain& domain)
   return inner;
 }
 
-/// Axis across which light goes from one block to another. Rays march along z.
+/// Axis along which light crosses between two blocks. Rays march along z.
 int AxisOf(BlockContact::Kind kind)
 {
   return kind == BlockContact::AsideU ? 0 : kind == BlockContact::AsideV ? 1 : 2;
@@ -137,7 +137,7 @@ void PipelinedSweep::FindContacts(Octant& octant, const SweptFaces& faces) const
   octant.waiting.resize(octant.aroundFrom.size());
 }
 
-/// With its own cells, where faces of the whole grid reflect.
+/// Boundary conditions of the block, with its own face cells if faces of the whole grid reflect.
 SweptFaces PipelinedSweep::FacesOfBlock(const SweptFaces& ofWhole)
 {
   SweptFaces faces = ofWhole;
@@ -150,14 +150,14 @@ SweptFaces PipelinedSweep::FacesOfBlock(const SweptFaces& ofWhole)
   return faces;
 }
 
-/// visit(place in the octant's values of the face) for each group and cell of a contact, in an order that both ranks
-/// know.
-/// @param cells  of this block's layer at the face
+/// Calls visit(index in the octant's values of the face) for each group and cell of a contact, in an order that both
+/// ranks share.
+/// @param cells  layer of this block at the face
 template <class Visit>
 void PipelinedSweep::ForFace(
   const Octant& octant, const BlockContact& contact, const VoxelBox& cells, const Visit& visit) const
 {
-  const int axis = AxisOf(contact.kind), u = axis == 0 ? 1 : 0, v = axis == 2 ? 1 : 2; // u along rows
+  const int axis = AxisOf(contact.kind), u = axis == 0 ? 1 : 0, v = axis == 2 ? 1 : 2; // u runs along rows
   const VoxelBox& block = this->TheDomain.Own();
   const std::size_t rows = block.size[v], row = block.size[u];
   for (std::size_t g = 0; g < static_cast<std::size_t>(octant.groups); ++g)
@@ -174,7 +174,7 @@ void PipelinedSweep::ForFace(
   }
 }
 
-/// Writes received radiance to the block's faces, which are read on first use.
+/// Writes received radiance to the faces of the block, which are read from the device on first use.
 void PipelinedSweep::Enter(
   const Octant& octant, const BlockContact& contact, const std::vector<float>& message, Faces& faces) const
 {
@@ -215,7 +215,7 @@ void PipelinedSweep::TakeFrom(const Octant& octant, int number)
   });
 }
 
-/// Receives the radiance that wraps around periodic axes, when all octants are done.
+/// Receives radiance that wraps around periodic axes, after all octants are done.
 void PipelinedSweep::TakeFromAround()
 {
   for (const int number : this->Order)

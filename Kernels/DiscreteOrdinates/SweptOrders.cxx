@@ -14,14 +14,14 @@ namespace tyndall
 namespace
 {
 constexpr int MostOrders = 10000;
-constexpr double FastestSeries = 0.99; ///< ratio of orders that are not swept: a guess must not make light without end
+constexpr double FastestSeries = 0.99; ///< largest ratio for extrapolated orders, to keep their sum bounded
 
 PairSums SumsOf(const OrdinatesSettings& settings)
 {
   return settings.scattering == OrdinatesScattering::Matrix ? PairSums::Matrix : PairSums::Terms;
 }
 
-/// Whether some term can make a source negative: not where light is scattered evenly.
+/// Whether the terms can make a source negative; not for isotropic scattering.
 bool CanBeNegative(const OrdinatesAngles& angles, const OrdinatesSettings& settings)
 {
   return SumsOf(settings) == PairSums::Matrix || angles.phase.Terms() > 1;
@@ -181,7 +181,7 @@ private:
     return this->Settings.seriesAfter > 0 && static_cast<int>(this->Record.All().size()) >= this->Settings.seriesAfter;
   }
 
-  /// The orders that are not swept: each as bright, compared with the one before it, as the last one was.
+  /// Extrapolates the unswept orders: each relative to the one before as the last swept one was.
   void AddSeries()
   {
     if (this->GoesOnAsSeries() && this->GoesOn > 0.0)
@@ -227,12 +227,12 @@ private:
     }
     this->Scene.domain.Collective([&] {
       this->Scattering.Gather(this->Radiance, this->Arrays.Light, monitor);
-      this->Radiance.Fill(0.0f); // only light that wraps around periodic axes is left
+      this->Radiance.Fill(0.0f); // only light that wraps around periodic axes remains
       this->Source.Fill(0.0f);
     });
   }
 
-  /// Reflects this order's outgoing light, and that of lamps before; reflected power has not escaped.
+  /// Reflects the outgoing light of this order, and earlier that of lamps; reflected power has not escaped.
   void Reflect()
   {
     if (!this->Arrays.Faces)
@@ -266,7 +266,7 @@ private:
     {
       return true;
     }
-    const int least = this->IsWarm() ? 2 : 3; // a guess has shown already how fast orders fall
+    const int least = this->IsWarm() ? 2 : 3; // after a guess the rate of decrease is known earlier
     return this->Settings.maximumOrders > 0 ? orders >= this->Settings.maximumOrders
                                             : orders >= least && this->Record.Residual() <= this->Settings.tolerance;
   }
@@ -280,7 +280,7 @@ private:
   Buffer<float> Radiance, Source; ///< Source: empty where scattering works in place
   OrdinatesRecord Record;
   OrdinatesResult Result;
-  std::vector<float> Guess;                             ///< W / length^2, until it is taken away again
+  std::vector<float> Guess;                             ///< W / length^2, until subtracted again
   double GoesOn = 0.0, OnTheWay = 0.0, Reflected = 0.0; ///< W
   double WasOnTheWay = 0.0;                             ///< W, before the last sweep
 };

@@ -13,7 +13,7 @@ namespace tyndall
 {
 namespace
 {
-constexpr double LongestChord = 1e6; ///< in edges, of directions along which nothing varies
+constexpr double LongestChord = 1e6; ///< in voxel edges, for directions along which nothing varies
 
 std::size_t FaceVoxels(const Grid& grid, int axis)
 {
@@ -77,7 +77,7 @@ void UpwindSweep::LoadDirections()
     std::array<std::array<float, OrdinateLanes>, 3> powers;
     for (int lane = 0; lane < OrdinateLanes; ++lane)
     {
-      std::array<double, 3> crossed = {}; // faces along each axis, a unit length
+      std::array<double, 3> crossed = {}; // faces crossed along each axis per unit length
       for (int a = 0; a < 3; ++a)
       {
         crossed[a] = this->IsCarried(a) ? std::abs(this->Groups.Of(g, lane).omega[a]) / h[a] : 0.0;
@@ -180,7 +180,7 @@ void UpwindSweep::LeaveByCells() const
   }
 }
 
-/// Periodic faces hold the radiance that left at the other end already.
+/// Sets incident radiance. Periodic faces already hold the radiance that left at the other end.
 void UpwindSweep::LetIn(const IncomingRadiance& incoming, FacePowers& powers)
 {
   for (int axis = 0; axis < 3; ++axis)

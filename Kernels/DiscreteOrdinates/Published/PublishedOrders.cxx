@@ -16,11 +16,11 @@ namespace tyndall
 namespace
 {
 constexpr int MostSteps = 10000;
-constexpr double WithoutEnd = 1e4; ///< a step's change over the first one's
+constexpr double WithoutEnd = 1e4; ///< ratio of a step's change to that of the first step that counts as divergence
 
-/// One explicit step along every direction, as long as the shortest edge of a voxel (Gong et al., Eqs. (7) and (9)).
-/// The paper leaves open how a grid is read between its voxels; here linearly, as its textures are. Where sigma_t times
-/// the step is above 1, radiance becomes negative; above 2 it grows without end (numerics.md, Eq. (D13)).
+/// One explicit step along every direction, as long as the shortest voxel edge (Gong et al., Eqs. (7) and (9)). The
+/// paper does not specify interpolation between voxels; here it is linear, as for textures. If sigma_t times the step
+/// is above 1, radiance becomes negative; above 2 it diverges (numerics.md, Eq. (D13)).
 class ExplicitStep
 {
 public:
@@ -54,7 +54,7 @@ public:
     this->Up = Buffer<cl_int>(device, up, "the directions");
   }
 
-  /// @param radiance  becomes scratch
+  /// @param radiance  overwritten with scratch values
   /// @param scattered, steady  sources, W / (length^3 sr)
   void Apply(const Buffer<float>& radiance, const Buffer<float>& scattered, const Buffer<float>& steady,
     const Buffer<float>& sigma_t, const Buffer<float>& after) const
@@ -71,7 +71,7 @@ public:
     this->TheDevice.Finish();
   }
 
-  /// W through each face.
+  /// Power through each face, W.
   FacePowers Powers(const Buffer<float>& radiance) const
   {
     FacePowers powers;
@@ -92,14 +92,14 @@ public:
 private:
   cl::Kernel Kernel(const char* name) const { return this->TheDevice.Kernel(name, kernel_source::PublishedOrders, ""); }
 
-  /// W that radiance 1 carries across a voxel's face.
+  /// Power that radiance 1 carries through a voxel face, W.
   double Across(int group, int lane, int axis) const
   {
     return this->Groups.Weight(group, lane) * std::abs(this->Groups.Of(group, lane).omega[axis]) *
       this->TheGrid.VoxelVolume() / this->TheGrid.spacing[axis];
   }
 
-  /// Radiance in the voxels at the faces across an axis through which each group leaves, summed along rows.
+  /// Radiance in the voxels at the exit faces of each group perpendicular to an axis, summed along rows.
   std::vector<float> SumsLeaving(const Buffer<float>& radiance, int axis) const
   {
     const std::array<std::size_t, 3> strides = this->TheGrid.Strides();
@@ -179,7 +179,7 @@ private:
     this->LampFlux = this->Arrays.Light.flux.Read();
   }
 
-  /// After a step: the scattering source of the next, and the powers.
+  /// After a step: computes the scattering source of the next step, and the powers.
   void Scatter(const Monitor& monitor)
   {
     this->Scattering.Scatter(
@@ -226,7 +226,7 @@ private:
   {
     if (this->Settings.netFlux)
     {
-      this->Arrays.Light.flux.Fill(0.0f); // of all steps
+      this->Arrays.Light.flux.Fill(0.0f); // holds the sum over all steps
       this->Scattering.Gather(this->Radiance, this->Arrays.Light, {});
     }
     this->Arrays.Read(this->Result);

@@ -32,7 +32,7 @@ CoarseSceneInBlocks::CoarseSceneInBlocks(
   this->Light.uncollided.fluence = this->Light.uncollided.meanDirection = {};
 }
 
-/// A quantity of this rank's block, of all the fine voxels that its coarse ones are in part.
+/// Values of a field in all fine voxels that overlap the coarse voxels of this rank.
 Field CoarseSceneInBlocks::Around(const CoarseBlocks& blocks, const Field& field)
 {
   if (!field.values)

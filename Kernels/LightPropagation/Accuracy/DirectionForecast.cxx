@@ -11,14 +11,14 @@ namespace tyndall
 {
 namespace
 {
-constexpr int LargestUnstaggered = 100; ///< directions are fitted up to these
-constexpr double UncollidedWork = 5.0;  ///< of a direction of unscattered light, over one of a sweep: measured
+constexpr int LargestUnstaggered = 100; ///< quadratures are fitted up to this number
+constexpr double UncollidedWork = 5.0;  ///< measured cost of an uncollided direction relative to one of a sweep
 constexpr double LeastSweeps = 3.0;
 constexpr double OnFinerGrid = 1.3; ///< error on the grid itself over that on the coarse one: measured 0.97 to 1.3
 constexpr int Directions[] = { 9, 16, 25, 36, 49, 64, 100, 196, 256, 400 };
 constexpr int UncollidedCounts[] = { 0, 49, 64, 81, 100, 256, 400, 576, 900, 1600 };
 
-/// Error along so many directions a face, over that along 9; those of more than 100 staggered.
+/// Measured error with so many directions per cube face, relative to that with 9; above 100, with staggered rays.
 struct Fall
 {
   double directions, error;
@@ -26,7 +26,7 @@ struct Fall
 constexpr Fall Falls[] = { { 1, 8.0 }, { 4, 2.6 }, { 9, 1.0 }, { 16, 0.8 }, { 25, 0.5 }, { 36, 0.38 }, { 49, 0.34 },
   { 64, 0.28 }, { 100, 0.22 }, { 256, 0.14 }, { 400, 0.12 }, { 900, 0.06 }, { 1600, 0.035 }, { 4096, 0.02 } };
 
-/// Between these, straight in logarithms.
+/// Interpolates Falls, linearly in logarithms.
 double FallenTo(int directions)
 {
   const Fall* above = std::begin(Falls) + 1;
@@ -39,7 +39,7 @@ double FallenTo(int directions)
   return below.error * std::pow(above->error / below.error, part);
 }
 
-/// Root mean square of the difference of two parts of light, over that of `whole`.
+/// Root mean square of the difference of one component of two solutions, relative to the total fluence of `other`.
 template <class Part>
 double Difference(Communicator& communicator, const LightField& one, const LightField& other, const Part& part)
 {

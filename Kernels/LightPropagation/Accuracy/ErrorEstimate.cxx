@@ -14,12 +14,12 @@ namespace tyndall
 {
 namespace
 {
-constexpr double OrderInDirections = 0.9; ///< error as number of directions to the power of minus this
+constexpr double OrderInDirections = 0.9; ///< error ~ (number of directions)^-OrderInDirections
 constexpr double OrderInSpace = 2.0;
-constexpr double FinePart = 0.8; ///< of the whole time, for the monitor
+constexpr double FinePart = 0.8; ///< fraction of the time spent on the fine grid, for progress
 
-/// Another number of directions a face: fewer, but for a single one; rows are even in number where `directionsPerFace`
-/// has such.
+/// Number of directions per cube face for comparison: fewer, unless there is a single one; an even number of rows if
+/// `directionsPerFace` has one.
 int OtherDirections(int directionsPerFace)
 {
   const int edge = static_cast<int>(std::lround(std::sqrt(static_cast<double>(directionsPerFace))));
@@ -28,14 +28,14 @@ int OtherDirections(int directionsPerFace)
   return other * other;
 }
 
-/// The error of `directions` over the difference to the light of `others`.
+/// Error with `directions` relative to the difference from the solution with `others`.
 double PartOfDifference(int directions, int others)
 {
   const double ratio = std::pow(static_cast<double>(others) / directions, OrderInDirections);
   return ratio < 1.0 ? ratio / (1.0 - ratio) : ratio / (ratio - 1.0);
 }
 
-/// Means of three neighbours along one axis of [outer][count][inner] values, two at its ends.
+/// Replaces values, [outer][count][inner], by the mean of three neighbours along the middle axis, of two at its ends.
 void SmoothAlong(std::vector<double>& values, std::size_t count, std::size_t inner)
 {
   const std::vector<double> rough = values;
@@ -68,14 +68,15 @@ void Smooth(std::vector<double>& values, const Grid& grid, int channels)
   }
 }
 
-/// Whether the solve was stopped after its first order, which does not tell how much light is still to come.
+/// Whether the solve stopped after its first order, from which the remainder cannot be estimated.
 bool IsStoppedTooSoonToTell(const LightField& light)
 {
   return light.convergence.size() == 1 && light.convergence.front().residual > 0.0;
 }
 
-/// What a variance of coarse voxels' fluence is in each voxel of theirs: the brighter are off by more, as beside lamps.
-/// @param averages, variance  of the coarse voxels that are seen
+/// Distributes the variance of coarse voxels to their fine voxels, in proportion to squared fluence: brighter voxels
+/// have larger errors, as next to lamps.
+/// @param averages, variance  of the coarse voxels that overlap this rank's block
 std::vector<double> InVoxels(const LightField& light, const std::vector<float>& averages,
   const std::vector<double>& variance, const Coarsening& seen)
 {
@@ -101,10 +102,10 @@ double SumOf(const std::vector<double>& values)
   return std::accumulate(values.begin(), values.end(), 0.0);
 }
 
-/// Squares of the two parts of the error of coarse voxels' fluence.
+/// Computes the two error components of coarse fluence, and their variance.
 struct ErrorOfAverages
 {
-  double inSpace, partOfDifference; ///< over the differences of solves
+  double inSpace, partOfDifference; ///< factors of the differences between solves
 
   double InSpace(float fine, float same) const { return this->inSpace * (static_cast<double>(fine) - same); }
   double InDirections(float same, float other) const
@@ -124,15 +125,16 @@ struct ErrorOfAverages
   }
 };
 
-/// Of coarse voxels, those of a rank or all that it sees.
+/// Fluence and variance of the coarse voxels of a rank, or of all that overlap its block.
 struct VarianceOfAverages
 {
   const std::vector<float>& averages; ///< fluence
-  std::vector<double> variance;       ///< of it
+  std::vector<double> variance;       ///< of the fluence
 };
 
-/// Fills in fluenceError and relativeError: errors of voxels smoothly, all together as large as they were, and not
-/// smaller, relative to all light, than in the averages, which beside lamps do not see how it falls off within voxels.
+/// Sets fluenceError and relativeError. Errors by voxel are smoothed with their total preserved. They are at least as
+/// large, relative to the light, as in the averages, which do not resolve the decrease of light within voxels next to
+/// lamps.
 void WriteError(LightField& light, const CoarseBlocks& blocks, const VarianceOfAverages& own, VarianceOfAverages seen)
 {
   const Coarsening& toSeen = blocks.Seen();
@@ -161,7 +163,7 @@ void WriteError(LightField& light, const CoarseBlocks& blocks, const VarianceOfA
 
 namespace
 {
-/// Of a plane-parallel solve: what fewer cosines change. It has no other error.
+/// Error of a plane-parallel solve: the change caused by fewer cosines. It has no other error.
 void WriteErrorOfCosines(LightField& light, const LightField& few)
 {
   double errors = 0.0, fluences = 0.0;
@@ -246,7 +248,7 @@ LightField SolveWithErrorEstimate(
   const int directions = light.directionsPerFace > 0 ? light.directionsPerFace : settings.directionsPerFace;
   plain.directionsPerFace = directions;
   plain.adaptDirections = false;
-  plain.uncollidedDirections = light.uncollidedDirections; // as they were chosen for the grid itself
+  plain.uncollidedDirections = light.uncollidedDirections; // the number chosen for the fine grid
   const std::vector<float> many = solve(coarse, plain, OfPart(monitor, FinePart, 0.95)).fluence;
   plain.directionsPerFace = OtherDirections(directions);
   if (light.uncollidedDirections > 0)

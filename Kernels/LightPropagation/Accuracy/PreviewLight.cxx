@@ -14,8 +14,8 @@ namespace tyndall
 {
 namespace
 {
-/// Half as many voxels along each axis, and half of those while more than PreviewVoxels are left.
-/// @param may  whether a grid is one to be halved
+/// Halves the number of voxels along each axis until at most PreviewVoxels are left.
+/// @param may  whether a grid may be halved
 template <class May>
 Grid Halved(Grid grid, const May& may)
 {
@@ -39,7 +39,7 @@ void RequireSame(const SceneInBlocks& own, const Field& index, const Propagation
   RequireSame(own.others, "whether there is a refractive index", has, { index.values ? 1.0 : 0.0 });
 }
 
-/// A scene in blocks on the coarse grid of these, each rank's part.
+/// A decomposed scene on its coarse grid, this rank's part.
 class CoarseOfPreview
 {
 public:
@@ -64,7 +64,7 @@ private:
   std::vector<float> Index;
 };
 
-/// What is shown of light that was found on the coarse grid, of this rank's voxels.
+/// Interpolates light from the coarse grid to this rank's voxels.
 LightField Shown(LightField&& found, const CoarseBlocks& blocks)
 {
   LightField light;

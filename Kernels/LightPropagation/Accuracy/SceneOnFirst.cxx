@@ -43,7 +43,7 @@ SceneOnFirst::SceneOnFirst(const CoarseBlocks& blocks, const PreviewScene& own, 
   }
 }
 
-/// Of a quantity of this rank's coarse voxels that of all, on the first rank.
+/// Gathers a field of coarse voxels from all ranks on the first rank.
 Field SceneOnFirst::Gathered(const Field& own, int components, std::vector<float>& values) const
 {
   if (components == 0)

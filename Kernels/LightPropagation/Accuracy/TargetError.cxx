@@ -18,18 +18,18 @@ namespace tyndall
 {
 namespace
 {
-constexpr double Aim = 0.95;          ///< of the target, for the forecast
-constexpr double DirectionPart = 0.9; ///< of that, for directions
-constexpr double LeastRoom = 0.3;     ///< for directions, of what is aimed at, beside the error of voxels
-constexpr double MuchTooCoarse = 1.5; ///< voxels, whose error is so many times what is aimed at
+constexpr double Aim = 0.95;          ///< error to aim for, relative to the target
+constexpr double DirectionPart = 0.9; ///< share of it for the angular error
+constexpr double LeastRoom = 0.3;     ///< smallest angular share, besides the error in voxel size
+constexpr double MuchTooCoarse = 1.5; ///< error in voxel size, relative to the aim, beyond repair by directions
 constexpr double TolerancePart = 0.3;
 constexpr double LooseTolerance = 1e-2;
 constexpr double OrderOfClouds = 1.7, OrderBesideLamps = 1.4; ///< measured: clouds 1.7, lamps in fog 1.4 to 1.7
-constexpr double MuchUncollided = 0.3; ///< of the error, from which on a solve more tells how much it is
+constexpr double MuchUncollided = 0.3; ///< share of the error above which one more solve measures it
 constexpr int Few = 9, More = 25;
 constexpr double LeastEmissionError = 0.005;
 
-/// Fluence of coarse voxels, and the settings it was found with.
+/// Fluence of coarse voxels, and its settings.
 struct CoarseLight
 {
   PropagationSettings settings;
@@ -42,14 +42,14 @@ struct CoarseLight
   }
 };
 
-/// Light falls off steeply beside lamps, which have a place.
+/// Whether there are lamps with a position, next to which light decreases steeply.
 bool HasLampsNearby(const Illumination& illumination)
 {
   return std::any_of(illumination.lights.begin(), illumination.lights.end(),
     [](const Light& light) { return light.type != LightType::Directional; });
 }
 
-/// The search, step by step; all ranks take the same.
+/// The search; all ranks take the same steps.
 class TargetSearch
 {
 public:
@@ -111,7 +111,7 @@ private:
       OfPart(this->TheMonitor, from, to));
   }
 
-  /// The coarse grid along few and along more directions.
+  /// Solves the coarse grid with few and with more directions.
   void LookAtDirections()
   {
     PropagationSettings settings = this->Asked;
@@ -140,15 +140,15 @@ private:
     }
   }
 
-  /// Whether it pays to ask how much is off by unscattered light alone: much is, it comes in from outside, and the
-  /// target takes more than a few directions.
+  /// Whether to measure the error of uncollided light separately: it is large, comes from boundary sources, and the
+  /// target needs more than a few directions.
   bool MayHaveFinerUncollided() const
   {
     return this->Forecast->UncollidedPart() > MuchUncollided && ShinesThroughFaces(this->TheScene.illumination) &&
       this->Forecast->Cheapest(this->Asked, DirectionPart * this->Goal).directionsPerFace > More;
   }
 
-  /// On the grid itself, and on the coarse one for the estimate.
+  /// Solves the grid itself, and the coarse grid for the estimate.
   void SolveAlong(const PropagationSettings& settings, double from, double to)
   {
     this->Used = settings;
@@ -169,7 +169,7 @@ private:
       this->Forecast->PartOfDifference(settings, other.settings), order);
   }
 
-  /// What the errors of voxels and orders leave for directions; 0: next to nothing.
+  /// Angular error that the target allows besides errors in voxel size and of missing orders; 0 if next to nothing.
   double RoomBeside(double inSpace) const
   {
     const double others = std::hypot(inSpace, this->Parts.residual);
@@ -177,7 +177,7 @@ private:
     return room < LeastRoom * this->Goal ? 0.0 : room;
   }
 
-  /// The cheapest along which directions leave at most that; nothing where those used do, or no others are better.
+  /// Cheapest settings with at most that angular error; none if the settings in use suffice, or no others are better.
   std::optional<PropagationSettings> BetterWithin(double room)
   {
     if (this->Parts.inDirections <= room)
@@ -189,8 +189,8 @@ private:
     return this->Forecast->Error(better) < this->Forecast->Error(this->Used) ? std::optional(better) : std::nullopt;
   }
 
-  /// Once more on the grid itself, if directions are off by more than there is room for, or by much: voxels of half
-  /// the edge would take far longer, and errors of directions make those of voxels look larger than they are.
+  /// Solves the grid itself again if the angular error is larger than allowed, or large: halving voxels would take far
+  /// longer, and angular errors make those in voxel size look larger than they are.
   void TryBetterDirections()
   {
     const double room = std::max(this->RoomBeside(this->Parts.inSpace), LeastRoom * this->Goal);
@@ -204,8 +204,8 @@ private:
     }
   }
 
-  /// Whether the target is met even if all of the difference to the coarse light along other directions were one in
-  /// voxel size. Then nobody has to tell the two apart.
+  /// Whether the target is met even if the whole difference to the coarse solution with other directions were an error
+  /// in voxel size. If so, the two need not be separated.
   bool IsMetAtMost(const std::vector<float>& other, double error, double order)
   {
     ErrorParts parts = WriteErrorEstimate(this->Light, this->Blocks, other, other, 0.0, order);
@@ -221,7 +221,7 @@ private:
     return all <= this->Goal;
   }
 
-  /// Voxels of half the edge leave a quarter of the error in voxel size.
+  /// Tries voxels of half the edge, which leave a quarter of the error in voxel size.
   void TryHalves()
   {
     const double room = this->RoomBeside(this->Parts.inSpace / 4.0);
@@ -254,7 +254,7 @@ private:
       light = this->Count({ this->TheScene.others, blocks, divided->TheMedium(), divided->Shining() }, this->Used,
         OfPart(this->TheMonitor, 0.6, 1.0));
     }
-    catch (const DeviceError& error) // which all ranks throw
+    catch (const DeviceError& error) // thrown on all ranks
     {
       this->WhyNot = std::string(" Voxels of half the edge were tried: ") + error.what();
       return;
@@ -265,7 +265,8 @@ private:
     this->Light = std::move(light);
   }
 
-  /// From the difference to whole voxels, which is three times the error that is left, and what else is left as before.
+  /// Estimates the error with halved voxels: a third of the difference from the solution with whole voxels, and the
+  /// other errors as before.
   void EstimateOfDivided(LightField& light)
   {
     double errors = 0.0, all = 0.0;
@@ -287,7 +288,7 @@ private:
   {
     TargetLight found;
     found.settings = this->Layers ? this->Asked : this->Used;
-    found.met = light.relativeError <= this->Target; // NaN: not known, so not met
+    found.met = light.relativeError <= this->Target; // false if NaN (not known)
     found.divided = this->InHalves;
     found.solves = this->Solves;
     const std::chrono::duration<double> own = std::chrono::steady_clock::now() - this->Start;

@@ -40,7 +40,7 @@ struct Surface
   double brought = 1.0; ///< light of the beams in this voxel, relative to the average
 };
 
-/// Light of a lamp at the centre of a cell, attenuated by nothing; none if it arrives from inside.
+/// Irradiance from a lamp at the centre of a cell, through vacuum; none if the light arrives from inside the box.
 Beam BeamOf(const Light& lamp, const Grid& grid, const BoxFaceCell& cell, int channel)
 {
   const int axis = cell.face / 2;

@@ -206,8 +206,9 @@ void TransportParts::FindBoundaryLight()
   }
 }
 
-/// What faces send in evenly from everywhere goes along the usual directions, as scattered light does, so a furnace
-/// is even. Nor do the sweeps' faces give back a part of light that accelerated solves have along finer directions.
+/// Makes the boundary source along the finer quadrature. A uniform boundary source keeps the usual quadrature, as
+/// scattered light has, so that a furnace stays uniform. DSA with reflecting faces also keeps it, because faces cannot
+/// reflect part of the light along other directions than those of sweeps.
 void TransportParts::FindFineBoundary()
 {
   const PropagationSettings& settings = this->Problem.Settings();
@@ -423,7 +424,8 @@ SweepTally TransportParts::AddUncollided(const UncollidedSource& source, const D
   return source.TalliesOwnVoxels() ? this->SumOfVoxels(tally) : tally;
 }
 
-/// Of all ranks, what came in being what their voxels take and what left, which each knows.
+/// Tally of all ranks. Each rank knows the total escaped power and the net power into its own voxels; incident power is
+/// the sum of the latter over ranks plus the escaped power.
 SweepTally TransportParts::SumOfVoxels(const SweepTally& own) const
 {
   if (this->TheDomain().IsSerial())

@@ -35,7 +35,7 @@ BlockScene::BlockScene(Communicator& communicator, bool has, const BlockPartitio
     this->illumination.lights = SeenFrom(partition.whole, shining.lights);
     if (this->lengthUnit != 1.0)
     {
-      // Lamps have places on every rank: all follow their light.
+      // All ranks scale the lamps, since all trace their light.
       this->InLengths.emplace(
         has ? this->medium : VoxelOfVacuum(partition.whole), this->illumination, this->lengthUnit);
       this->medium = has ? this->InLengths->medium : this->medium;
@@ -62,12 +62,12 @@ BlockScene::BlockScene(Communicator& communicator, bool has, const BlockPartitio
   }
   this->given = OnAnyRank(communicator, has && shining.uncollided.IsThere());
   this->Truncate(communicator, partition, settings, memory);
-  // The traits know of extinction by the similarity relation alone.
+  // The traits describe extinction with the similarity relation only.
   this->traits.greyExtinction = this->traits.grey || (this->traits.greyExtinction && this->Truncated->Degree() == 0);
   this->sharedExtinction = this->channels == 1 || (settings.leaveOut && this->traits.greyExtinction);
 }
 
-/// As PropagationProblem does, by what all ranks have together.
+/// As in PropagationProblem, with data of all ranks.
 void BlockScene::Truncate(Communicator& communicator, const BlockPartition& partition,
   const PropagationSettings& settings, const DeviceMemory& memory)
 {
@@ -85,7 +85,7 @@ void BlockScene::Truncate(Communicator& communicator, const BlockPartition& part
   int degree = 0;
   communicator.Collective(
     [&] { degree = this->traits.scatters ? AngularDegreeFor(detail, whole, settings, false, most, memory) : 0; });
-  degree = -static_cast<int>(communicator.Largest({ -1.0 * degree })[0]); // that fits all
+  degree = -static_cast<int>(communicator.Largest({ -1.0 * degree })[0]); // smallest over ranks, which fits all devices
   communicator.Collective([&] {
     std::optional<DirectionKernel> kernel;
     if (degree > 0 && IsMuchThinnerAlongOneAxis(detail, whole, this->channels, settings.periodic))

@@ -6,7 +6,7 @@ namespace tyndall
 {
 namespace
 {
-constexpr int MostLayers = 8192; ///< some 200 MB where all differ
+constexpr int MostLayers = 8192; ///< about 200 MB if all differ
 
 /// Whether a field is the same in all columns along an axis.
 bool IsLayered(const Field& field, const Grid& grid, int axis)

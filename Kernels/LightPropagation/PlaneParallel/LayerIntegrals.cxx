@@ -15,7 +15,7 @@ double MeanOfExponential(double r)
   return r < 1e-8 ? 1.0 - 0.5 * r : -std::expm1(-r) / r;
 }
 
-/// The integral of exp(-x (1 - s) - r s) over [0, 1].
+/// Integral of exp(-x (1 - s) - r s) over [0, 1].
 double MeanOfBoth(double x, double r)
 {
   const double half = 0.5 * (x - r);
@@ -27,7 +27,7 @@ double MeanOfBoth(double x, double r)
   return std::exp(-0.5 * (x + r)) * sinhOver;
 }
 
-/// The integral of s^power exp(-r s) over [0, 1] for r below 1, by its series.
+/// Integral of s^power exp(-r s) over [0, 1] for r < 1, by its series.
 double SeriesOfMoment(int power, double r)
 {
   double term = 1.0, sum = 0.0;

@@ -25,7 +25,7 @@ Eigen::MatrixXd LegendreAtNodes(const HalfRangeQuadrature& nodes, int degree, in
 
 namespace
 {
-/// 1 less what is scattered, of the moments whose Legendre functions are even in the cosine, or odd.
+/// Identity minus the scattering matrix, restricted to moments whose Legendre functions are even in the cosine, or odd.
 Eigen::MatrixXd OneLessScattered(
   const LayerScattering& scattering, const Eigen::MatrixXd& legendre, int order, bool even)
 {
@@ -43,8 +43,8 @@ Eigen::MatrixXd OneLessScattered(
   return matrix;
 }
 
-/// The square of the smallest k, of the mode that is nearly the same in all directions. Its rounding error would stand
-/// for absorption: the part that is even in all directions is taken from what is absorbed.
+/// Square of the smallest k, whose mode is nearly isotropic. Its rounding error would act as absorption, so the
+/// contribution of the isotropic part is computed from the absorption instead.
 double SmallestSquare(const LayerScattering& scattering, const Eigen::MatrixXd& even, const Eigen::MatrixXd& legendre,
   const Eigen::VectorXd& mode)
 {

@@ -13,7 +13,7 @@ namespace
 /// (x a - y b) (x a + y b)^-1 for diagonal a, b.
 Eigen::MatrixXd Ratio(const LayerModes& modes, const Eigen::ArrayXd& a, const Eigen::ArrayXd& b)
 {
-  const Eigen::ArrayXd scale = 1.0 / (a + b); // a mode counts by the ratio of both
+  const Eigen::ArrayXd scale = 1.0 / (a + b); // only the ratio of a and b of a mode matters
   const Eigen::MatrixXd one = modes.x * (a * scale).matrix().asDiagonal();
   const Eigen::MatrixXd other = modes.y * (b * scale).matrix().asDiagonal();
   return (one + other).transpose().partialPivLu().solve((one - other).transpose()).transpose();
@@ -38,8 +38,8 @@ LayerSource::LayerSource(Eigen::Index nodes)
 {
 }
 
-/// Amplitudes with a = 0 at both ends are light that comes in as well as goes out there: that which comes in is taken
-/// away again.
+/// Solutions with a = 0 at both ends have incident as well as outgoing light there. This adds the response that cancels
+/// the incident part.
 void LayerSource::AddEnds(const LayerModes& modes, const LayerOperator& layer, const Eigen::VectorXd& bAtEntry,
   const Eigen::VectorXd& bAtExit, bool fromTop)
 {

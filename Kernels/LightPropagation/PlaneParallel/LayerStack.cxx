@@ -14,7 +14,7 @@ namespace tyndall
 {
 namespace
 {
-/// Modes of kinds of layers, and operators of layers, each found once.
+/// Modes by kind of layer and operators of layers, each computed once.
 class Library
 {
 public:
@@ -53,7 +53,7 @@ private:
   std::map<std::pair<std::size_t, double>, LayerOperator> Operators;
 };
 
-/// What lies below an interface: of light that comes down, and of sources, so much comes up.
+/// Reflection operator of everything below an interface, and its upward radiance from sources.
 struct Below
 {
   Eigen::MatrixXd reflect;
@@ -138,7 +138,8 @@ private:
     return source;
   }
 
-  /// What irradiance 1 is scattered into at the nodes, both ways added (parity 0) or subtracted (1).
+  /// First-collision source at the nodes for irradiance 1 of a beam: upward plus downward (parity 0) or their
+  /// difference (parity 1).
   Eigen::VectorXd FirstScattered(const LayerScattering& kind, const std::vector<double>& ofBeam, int parity) const
   {
     Eigen::VectorXd sum = Eigen::VectorXd::Zero(this->Roots.size());
@@ -151,7 +152,8 @@ private:
     return sum;
   }
 
-  /// Of Lambert's law: what radiance comes back at each node of that at each, and of irradiance by beams.
+  /// Lambertian reflection: operator from incoming to reflected radiance at the nodes. ComesIn is the radiance incident
+  /// from outside and by reflected beams.
   Eigen::MatrixXd Lambert(double albedo) const
   {
     return this->Order == 0
@@ -225,9 +227,9 @@ private:
   Eigen::VectorXd Roots, Cosines;
   Eigen::MatrixXd Legendre;
   std::vector<std::vector<double>> BeamsAt, OfBeams;
-  double BeamsAtTop = 0.0, BeamsAtBottom = 0.0; ///< irradiance of what leaves
+  double BeamsAtTop = 0.0, BeamsAtBottom = 0.0; ///< escaped power of the beams, W / length^2
   std::vector<LayerSource> Sources;
-  std::vector<Below> Under;              ///< each interface, from the top
+  std::vector<Below> Under;              ///< by interface, from the top
   std::vector<Eigen::MatrixXd> UpOfDown; ///< below each layer, of what comes down above it
   std::vector<Eigen::VectorXd> UpOfSources;
 };

@@ -16,8 +16,8 @@ namespace tyndall
 {
 namespace
 {
-constexpr int NodesIfIsotropic = 16, NodesElse = 20; ///< a half of all directions
-constexpr int DegreeForPictures = 9;                 ///< of the moments that are kept
+constexpr int NodesIfIsotropic = 16, NodesElse = 20; ///< cosines per hemisphere
+constexpr int DegreeForPictures = 9;                 ///< degree of the stored moments
 
 int NodesFor(const SlabScene& scene, const PropagationSettings& settings)
 {
@@ -38,7 +38,8 @@ int OrdersFor(const SlabScene& scene, const PropagationSettings& settings, int d
                                                           : 0;
 }
 
-/// Radiance that leaves at SurfaceCosines: the polynomial in the root of the cosine through that at the nodes.
+/// Outgoing radiance at SurfaceCosines: polynomial interpolation in the square root of the cosine through the values at
+/// the nodes.
 std::array<double, SurfaceCosines.size()> AtSurfaceCosines(
   const HalfRangeQuadrature& nodes, const Eigen::VectorXd& radiance)
 {
@@ -60,7 +61,7 @@ std::array<double, SurfaceCosines.size()> AtSurfaceCosines(
   return at;
 }
 
-/// The columns of a scene as the light of its voxels.
+/// Converts the columns of a scene to light by voxel.
 class SlabLight
 {
 public:
@@ -112,7 +113,7 @@ private:
       const std::size_t layer = this->Scene.LayerOf(i / all);
       light.fluence[i] = static_cast<float>(std::max(column.fluence[layer], 0.0));
       light.fluenceDirect[i] = static_cast<float>(column.direct[layer]);
-      // Of what is 1e-16 of the light that comes in, differences of larger numbers may be below 0.
+      // Values around 1e-16 of the incident light are differences of larger numbers and can be negative.
       light.scatteredRadiance[i] = light.fluence[i] / (4.0f * static_cast<float>(Pi));
       for (int a = 0; a < 3 && this->Settings.netFlux; ++a)
       {
@@ -247,7 +248,7 @@ LightField SolvePlaneParallel(
   const Medium& medium, const Illumination& illumination, const PropagationSettings& settings, const Monitor& monitor)
 {
   Check(medium, illumination, settings);
-  EquiangularDirections(settings.directionsPerFace); // not read, but to be a number of directions all the same
+  EquiangularDirections(settings.directionsPerFace); // not used, but must be a valid number
   const double start = ClockSeconds();
   const MediumTraits traits = TraitsOf(medium, true);
   LightField light = SolveChannels(settings.leaveOut, SceneChannels(medium, traits, illumination), medium, illumination,

@@ -8,7 +8,7 @@ namespace tyndall
 {
 namespace
 {
-/// Mean over a layer of what is 1 where it comes in and falls off as exp(-depth), and what is left where it leaves.
+/// Transmittance of a layer, and the mean of exp(-depth) over it.
 struct FallOff
 {
   explicit FallOff(double depth)
@@ -20,7 +20,8 @@ struct FallOff
   double mean, left;
 };
 
-/// sum over nodes of weight, a power of the cosine and of the sine, and values that have the weight's root in them.
+/// Sum over nodes of weight, powers of the cosine and of the sine, and values that already contain the square root of
+/// the weight.
 double Integral(const HalfRangeQuadrature& nodes, const Eigen::VectorXd& values, bool cosine, bool sine)
 {
   double sum = 0.0;
@@ -32,7 +33,7 @@ double Integral(const HalfRangeQuadrature& nodes, const Eigen::VectorXd& values,
   return sum;
 }
 
-/// Calls act(layer, mean) with the mean irradiance across a beam in each layer.
+/// Calls act(layer, mean irradiance perpendicular to the beam) for each layer.
 template <class Act>
 void ForLayersOf(const LayerStack& stack, const StackBeam& beam, const Act& act)
 {
@@ -71,7 +72,8 @@ SlabColumn::SlabColumn(const SlabScene& scene, int channel, const HalfRangeQuadr
   this->SumUp(scene, light, nodes, channel);
 }
 
-/// The beams: what goes straight on is part of them in `fluence`, and was scattered in `direct`.
+/// Adds the beams. In `fluence`, light scattered into the unscattered forward part belongs to the beam; in `direct` it
+/// does not.
 void SlabColumn::AddBeams(const SlabScene& scene, const StackLight& light, int channel)
 {
   const LayerStack unscattered = scene.UnscatteredStackOf(channel);
@@ -90,7 +92,7 @@ void SlabColumn::AddBeams(const SlabScene& scene, const StackLight& light, int c
   }
 }
 
-/// Unscattered light of the faces and of what the medium sends out, along the nodes.
+/// Adds uncollided light of faces and emission, along the nodes.
 void SlabColumn::AddDiffuse(const StackLight& light, const LayerStack& unscattered, const HalfRangeQuadrature& nodes)
 {
   const std::size_t count = unscattered.layers.size();

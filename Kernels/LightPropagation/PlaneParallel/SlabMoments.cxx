@@ -9,8 +9,8 @@ namespace tyndall
 {
 namespace
 {
-/// Of radiance at the nodes, as amplitudes of its Fourier series in azimuth, the integral over all directions with each
-/// harmonic of the scene's axes: a column a node, down and up, and order; cos, then sin.
+/// Matrix that projects radiance at the nodes, given as amplitudes of its Fourier series in azimuth, onto each
+/// spherical harmonic of the scene axes. Columns: node, down and up, order (cos, then sin).
 Eigen::MatrixXd Projection(const SlabScene& scene, const HalfRangeQuadrature& nodes, int degree, int orders)
 {
   const auto count = static_cast<int>(nodes.cosines.size());
@@ -40,7 +40,7 @@ Eigen::MatrixXd Projection(const SlabScene& scene, const HalfRangeQuadrature& no
   return matrix;
 }
 
-/// Amplitudes of one layer in the order of the columns above.
+/// Amplitudes of one layer, in the order of the columns of Projection.
 Eigen::VectorXd Amplitudes(const SlabColumn& column, std::size_t layer, int series)
 {
   const Eigen::Index count = column.even.means[layer].sum.size();

@@ -51,7 +51,7 @@ LayerStack SlabScene::StackOf(int channel, int degree) const
   const Medium& medium = this->TheMedium;
   LayerStack stack;
   std::map<double, DeltaM> phases;                        // by mean cosine
-  std::map<std::pair<double, double>, std::size_t> kinds; // by that and what is absorbed
+  std::map<std::pair<double, double>, std::size_t> kinds; // by mean cosine and absorption
   for (std::size_t i = 0; i < this->Count(); ++i)
   {
     const std::size_t voxel = this->VoxelOf(i);

@@ -10,11 +10,11 @@ namespace tyndall
 {
 namespace
 {
-/// No problem that converges at all needs more; those that do not must end.
+/// Limit on the number of orders; no convergent problem needs more.
 constexpr int MostOrders = 10000;
 
-constexpr double Negligible = 1e-3;     ///< of the power left over, beside light that wraps around without end
-constexpr double LargestRatio = 0.9999; ///< of an order to the one before, of a series that converges
+constexpr double Negligible = 1e-3;     ///< fraction of the power left over, besides endlessly wrapped light
+constexpr double LargestRatio = 0.9999; ///< largest ratio of successive orders of a convergent series
 }
 
 OrderLedger::OrderLedger(const Medium& medium, int channels, const PropagationSettings& settings)
@@ -77,7 +77,7 @@ void OrderLedger::CloseOrder(const std::vector<float>& fluence)
                                       : MeetsTolerance(this->Settings, residual) || this->Orders() >= MostOrders);
 }
 
-/// Orders fall like a geometric series in the end: estimates its remainder.
+/// Estimates the remainder of the orders, which decrease like a geometric series in the end.
 double OrderLedger::EstimateResidual(const Rgb& orderSum) const
 {
   double residual = this->Rows.empty() ? 1.0 : 0.0;

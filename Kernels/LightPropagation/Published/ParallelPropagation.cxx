@@ -32,14 +32,14 @@ ParallelPropagation::ParallelPropagation(Device& device, const Medium& medium, c
 {
 }
 
-/// Light is incident on the boundary in the first order.
+/// Whether boundary light is incident: in the first order only.
 void ParallelPropagation::Propagate(int number, const Monitor& monitor)
 {
   Batch& batch = this->Plan.batches[number];
   const double batches = static_cast<double>(this->Plan.batches.size());
   if (this->Ledger.Orders() > 0 && this->Settings.periodic[batch.Map().axis])
   {
-    this->Plan.MakePasses(batch, this->Ledger.Orders()); // rays continue from their last place
+    this->Plan.MakePasses(batch, this->Ledger.Orders()); // rays continue from their last position
   }
   const bool first = this->Ledger.Orders() == 0 && !this->SourceGiven;
   this->Sweep.Begin(batch, first, this->Tally);
@@ -156,7 +156,7 @@ LightField SolveParallel(Device& device, const Medium& medium, const Illuminatio
 {
   Check(medium);
   Check(illumination);
-  CheckPublished(medium, illumination); // before channels become one
+  CheckPublished(medium, illumination); // before channels are merged
   const SceneChannels channels(medium, TraitsOf(medium), illumination);
   return SolveChannels(settings.leaveOut, channels, medium, illumination,
     [&](const Medium& ofChannels, const Illumination& light, int count) {

@@ -39,8 +39,8 @@ int NearestOf(const std::vector<std::array<double, 3>>& directions, const std::a
   return best;
 }
 
-/// The directions nearest to a unit vector, by their index: each once for every tiny push that leads to it, of the 48
-/// that the cube's symmetries make of one. All are the same, unless omega lies between cells.
+/// Indices of the directions nearest to a unit vector, one for each of 48 tiny displacements, the images of one under
+/// the symmetries of the cube. All are equal unless omega lies on a border between cells.
 std::vector<int> NearestAround(const DirectionSet& set, const std::array<double, 3>& omega)
 {
   std::array<double, 3> push = { 1e-9, 2e-9, 3e-9 };
@@ -93,7 +93,7 @@ std::vector<std::array<Rgb, 3>> BoundaryOf(
   return boundary;
 }
 
-/// A patch of the sphere, a small part of a stored direction's cell.
+/// A small patch of the sphere, part of the cell of a stored direction.
 struct Patch
 {
   glm::dvec3 omega;
@@ -111,9 +111,9 @@ std::vector<Patch> Patches(const std::vector<std::array<double, 3>>& stored)
   return patches;
 }
 
-/// Means of a phase function over patches of the sphere, by the angle between the light's direction and the patch:
-/// exact for what a ring about that direction holds, as wide as a round patch of the same size. So a peak that is
-/// narrower than a patch has its power.
+/// Means of a phase function over patches of the sphere, by angle between light and patch. Exact for rings around the
+/// direction of the light that are as wide as a round patch of the same area, so a peak narrower than a patch keeps its
+/// power.
 class PatchMeans
 {
 public:
@@ -163,7 +163,7 @@ std::vector<std::vector<double>> ScatteringFactors(
     }
     for (std::size_t d = 0; d < stored.size(); ++d)
     {
-      factors[d][i] += from.weight * scattered[d] / all; // rings are not quite patches
+      factors[d][i] += from.weight * scattered[d] / all; // correct for the difference between rings and patches
     }
     cellSize[i] += from.weight;
   };
@@ -186,8 +186,8 @@ std::vector<std::vector<double>> ScatteringFactors(
   return factors;
 }
 
-/// `count` directions spread evenly over the sphere: the cells of a cube's faces where count is 6 n^2, else Fibonacci
-/// points.
+/// `count` directions distributed evenly over the sphere: cell centres of the cube faces if count is 6 n^2, else
+/// Fibonacci points.
 std::vector<std::array<double, 3>> EvenDirections(int count)
 {
   std::vector<std::array<double, 3>> directions;
@@ -473,7 +473,7 @@ double MapGeometry::StartOfOrder(double start, double slope, int order) const
   }
   const double position = start + slope * this->planes * order;
   const double place = position - std::floor(position);
-  const bool onBorder = std::min(place, 1.0 - place) < 1e-9; // the crossing into the next voxel is still to come
+  const bool onBorder = std::min(place, 1.0 - place) < 1e-9; // has not yet crossed into the next voxel
   return !onBorder ? place : slope > 0.0 ? 1.0 : slope < 0.0 ? 0.0 : start;
 }
 

@@ -19,12 +19,12 @@ PublishedPlan::PublishedPlan(Device& device, const Grid& grid, const PublishedMo
   this->MeasureBuffers(perBatch);
 }
 
-/// All of a face where they fit into the memory left; at least one.
+/// Directions per batch: all of a cube face if they fit into the remaining memory; at least one.
 int PublishedPlan::DirectionsPerBatch(std::size_t temporaryBytes) const
 {
   const int perFace = this->Model.Directions().PerFace();
   const std::size_t one = this->LargestLayout() * sizeof(float);
-  const double maps = 4.0; // two ray maps; as much again for tables
+  const double maps = 4.0; // two ray maps, and the same again for tables
   const std::size_t map =
     static_cast<std::size_t>(maps * this->Volumes.Channels() * sizeof(float) * this->LargestRayMap());
   const std::size_t taken = this->TheDevice.BytesInUse() + map * perFace;
@@ -117,7 +117,7 @@ void PublishedPlan::AppendCoefficients(Batch& batch, std::vector<float>& to) con
   }
 }
 
-/// The crossings of all directions, by sub-map, plane and launch.
+/// Crossings of all directions, by sub-map, plane and launch.
 void PublishedPlan::MakePasses(Batch& batch, int order) const
 {
   std::vector<PublishedCrossing> crossings;
@@ -154,7 +154,7 @@ GridWalk PublishedPlan::Walk(const MapGeometry& map, int subMap, int order) cons
   return map.Walk(this->Settings.mapResolution, subMap, order);
 }
 
-/// Adds the crossings of the batch's direction i, and its end.
+/// Adds the crossings of direction i of the batch, and its end.
 void PublishedPlan::WalkThrough(const Batch& batch, int i, int subMap, int order, CrossingsByPlane& byPlane,
   std::vector<PublishedCrossing>& ends) const
 {

@@ -10,7 +10,7 @@ namespace tyndall
 {
 namespace
 {
-/// Voxel crossings between two reports; about 50 ms on two cores.
+/// Voxel crossings between progress reports; about 50 ms on two cores.
 constexpr double CrossingsPerReport = 3e7;
 }
 
@@ -70,7 +70,7 @@ void PublishedSweep::Begin(const Batch& batch, bool incident, SweepTally& tally)
   this->TallyIncident(batch, tally);
 }
 
-/// Across w, u, v: [direction][3][channel].
+/// Boundary radiance perpendicular to w, u, v: [direction][3][channel].
 std::vector<float> PublishedSweep::IncidentRadiance(const Batch& batch) const
 {
   std::vector<float> radiance;
@@ -86,7 +86,7 @@ std::vector<float> PublishedSweep::IncidentRadiance(const Batch& batch) const
   return radiance;
 }
 
-/// Rays that start on the map, and those that start anew at a side.
+/// Counts incident power: of rays that start on the map, and of those that enter through a side.
 void PublishedSweep::TallyIncident(const Batch& batch, SweepTally& tally) const
 {
   for (int i = 0; i < batch.count; ++i)
@@ -107,7 +107,7 @@ void PublishedSweep::TallyIncident(const Batch& batch, SweepTally& tally) const
       {
         const bool entersU = walk.moveU != 0 && !this->Periodic[map.axisU];
         const bool entersV = walk.moveV != 0 && !this->Periodic[map.axisV];
-        const double edge = entersU && entersV ? 0.5 : 0.0; // one ray enters half through either side
+        const double edge = entersU && entersV ? 0.5 : 0.0; // the ray enters half through each side
         enter(map.axisU, entersU ? map.sizeV - edge : 0.0);
         enter(map.axisV, entersV ? map.sizeU - edge : 0.0);
       }
@@ -115,7 +115,7 @@ void PublishedSweep::TallyIncident(const Batch& batch, SweepTally& tally) const
   }
 }
 
-/// Reads what a pass left at the borders, laid out as PublishedPropagate.cl says.
+/// Reads the outgoing radiance of a pass, in the layout of PublishedPropagate.cl.
 void PublishedSweep::TallyEscaped(const Batch& batch, SweepTally& tally) const
 {
   const std::vector<float> escaped = this->Escaped.Read();
@@ -167,7 +167,7 @@ void PublishedSweep::CrossPlanes(
   cl::Kernel& kernel = this->CrossVoxels[emits ? 1 : 0];
   With(kernel, info, cl_int(0), cl_int(0), cl_int(0), batch.crossings, this->Volumes.Extinction[layout],
     this->Volumes.Scattering[layout], this->Volumes.Sources[layout], this->Rays, this->Contributions, this->Escaped);
-  const bool rows = this->Volumes.Width > 1; // a work-item a row, else a voxel
+  const bool rows = this->Volumes.Width > 1; // one work-item per row, else per voxel
   double sinceReport = 0.0;
   for (std::size_t l = 0; l < pass.launches.size(); ++l)
   {

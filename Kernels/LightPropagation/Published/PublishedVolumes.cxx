@@ -9,7 +9,7 @@ namespace tyndall
 {
 namespace
 {
-/// The grid, if kernels can count its voxels with ints.
+/// Returns the grid if kernels can count its voxels with ints.
 const Grid& Addressable(const Device& device, const Grid& grid, int width)
 {
   for (int axis = 0; axis < 3; ++axis)
@@ -70,7 +70,7 @@ std::size_t PublishedVolumes::LayoutSize(int layout) const
   return static_cast<std::size_t>(this->Layouts.volume[layout]) * this->Channels();
 }
 
-/// visit(index in the layout, voxel x fastest, channel)
+/// Calls visit(index in the layout, voxel x fastest, channel).
 template <class Visit>
 void PublishedVolumes::ForEach(int layout, int channels, Visit visit) const
 {
@@ -91,7 +91,7 @@ void PublishedVolumes::ForEach(int layout, int channels, Visit visit) const
   }
 }
 
-/// value(voxel x fastest, channel) in one layout.
+/// Arranges value(voxel x fastest, channel) in one layout.
 template <class Value>
 std::vector<float> PublishedVolumes::ArrangeValues(int layout, int channels, Value value) const
 {
@@ -148,7 +148,7 @@ void PublishedVolumes::FindSlots()
   }
 }
 
-/// U in the layouts in which the maps read it, initially the medium's emission.
+/// Makes U in the layouts in which the maps read it, initially the emission of the medium.
 void PublishedVolumes::MakeSources(const Medium& medium)
 {
   std::vector<PublishedPart> parts;
@@ -175,7 +175,7 @@ void PublishedVolumes::MakeSources(const Medium& medium)
   }
 }
 
-/// value(voxel, source direction, channel)
+/// @param value  function of voxel, source direction, channel
 template <class Value>
 void PublishedVolumes::WriteSources(Value value)
 {

@@ -14,14 +14,14 @@ namespace tyndall
 {
 namespace
 {
-/// (1 - exp(-sigma length)) / sigma; its series where the difference would cancel.
+/// (1 - exp(-sigma length)) / sigma; by its series where the difference would cancel.
 double Depth(double sigma, double left, double length)
 {
   return sigma * length > 1e-6 ? (1.0 - left) / sigma : length * (1.0 - 0.5 * sigma * length);
 }
 
-/// Moves one voxel across a map of `size`, whose ends are joined.
-/// @return whether it has crossed the end
+/// Moves by one voxel on a map of `size` with periodic wrap-around.
+/// @return whether it has wrapped around
 bool Step(int& position, int move, int size)
 {
   position += move;
@@ -97,7 +97,7 @@ private:
     std::array<float, 3> radiance;
   };
 
-  /// All rays of all maps, once.
+  /// Traces all rays of all maps once.
   void Propagate(const Monitor& monitor)
   {
     for (std::vector<double>& moment : this->OrderMoments)
@@ -114,7 +114,7 @@ private:
     }
   }
 
-  /// All rays of one direction's map.
+  /// Traces all rays of the map of one direction.
   void SendMap(int direction, const Monitor& monitor)
   {
     const DirectionSet& set = this->Model.Directions();
@@ -159,7 +159,7 @@ private:
     carried = std::move(behind);
   }
 
-  /// Through all voxels of its path.
+  /// Traces a ray through all voxels of its path.
   void Follow(Ray& ray, double startU, double startV, const MapGeometry& map)
   {
     const std::array<int, 3>& size = this->TheMedium.grid.size;
@@ -179,7 +179,7 @@ private:
     }
   }
 
-  /// Into the next voxel; a ray that leaves through a side enters anew on the other (Fig. 2).
+  /// Moves a ray into the next voxel; a ray that leaves through a side re-enters on the opposite side (Fig. 2).
   void Move(Ray& ray, int moveU, int moveV, const MapGeometry& map)
   {
     const bool leavesU = Step(ray.u, moveU, map.sizeU) && !this->Settings.periodic[map.axisU];
@@ -218,7 +218,7 @@ private:
     }
   }
 
-  /// Eq. (3), then the ray's part of Eq. (4).
+  /// Applies Eq. (3), then the contribution of the ray to Eq. (4).
   void CrossVoxel(Ray& ray, const float* source, std::size_t first, double length, double density)
   {
     for (int c = 0; c < this->Channels; ++c)
@@ -237,7 +237,7 @@ private:
     }
   }
 
-  /// Adds light that another solver found to the moments of the first order.
+  /// Adds light from another solver to the moments of the first order.
   void AddGiven()
   {
     const UncollidedImage& image = this->Outside.uncollided;
@@ -277,7 +277,7 @@ private:
   std::size_t Values; ///< voxels times channels
   std::vector<float> Extinction, Scattering;
   std::vector<std::vector<float>> Sources; ///< U by direction, channels interleaved; empty: no map reads it
-  /// Of this order. Where voxels are flat thousands of rays cross one: sums in float were off by 6e-4.
+  /// Moments of this order, in double: thousands of rays cross a flat voxel, and sums in float were off by 6e-4.
   std::vector<std::vector<double>> OrderMoments;
   std::vector<std::vector<float>> Totals;  ///< moments of all orders
   std::vector<std::vector<float>> Carried; ///< by direction: radiance that wraps around a periodic axis
@@ -290,7 +290,7 @@ LightField SolveSequential(
 {
   Check(medium);
   Check(illumination);
-  CheckPublished(medium, illumination); // before channels become one
+  CheckPublished(medium, illumination); // before channels are merged
   const SceneChannels channels(medium, TraitsOf(medium), illumination);
   return SolveChannels(settings.leaveOut, channels, medium, illumination,
     [&](const Medium& ofChannels, const Illumination& light, int count) {

@@ -15,12 +15,12 @@ namespace tyndall
 {
 namespace
 {
-/// Part of the light that a phase function scatters forwards above a level.
+/// Integral over the forward hemisphere of the part of a phase function above a level.
 double PartAbove(const PhaseFunction& function, double level)
 {
   static const GaussLegendre rule(24);
   double sum = 0.0, far = 1.0;
-  for (int stretch = 0; stretch < 40; ++stretch, far *= 0.5) // towards the peak in stretches that halve
+  for (int stretch = 0; stretch < 40; ++stretch, far *= 0.5) // intervals that halve towards the peak
   {
     const double near = stretch == 39 ? 0.0 : 0.5 * far;
     for (std::size_t i = 0; i < rule.points.size(); ++i)
@@ -32,7 +32,7 @@ double PartAbove(const PhaseFunction& function, double level)
   return sum;
 }
 
-/// Level above which a phase function's forward part holds `part` of the light.
+/// Level for which PartAbove is `part`.
 double LevelOf(const PhaseFunction& function, double part)
 {
   double low = 0.0, high = std::max(function.Value(1.0), 1e-30);
@@ -49,8 +49,8 @@ double Dot(const std::array<double, 3>& a, const std::array<double, 3>& b)
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/// What a phase function scatters of a beam without the part of its forward peak that goes straight on, along each
-/// direction of a set: the mean is 1.
+/// First-scattered light of a beam along each direction of a set, without the top of the forward peak that is treated
+/// as unscattered; normalised to a mean of 1.
 std::vector<double> WithoutPeak(
   const PhaseFunction& function, double peak, const DirectionSet& set, const std::array<double, 3>& beam)
 {
@@ -71,8 +71,8 @@ std::vector<double> WithoutPeak(
   return scattered;
 }
 
-/// Multiplies values by 1 + t omega, so that their mean stays and the mean of their product with omega becomes
-/// `flux`, as far as nothing becomes negative.
+/// Multiplies values by 1 + t omega such that their mean is unchanged and the mean of value times omega becomes `flux`,
+/// as far as no value becomes negative.
 void Tilt(std::vector<double>& values, const DirectionSet& set, const glm::dvec3& flux)
 {
   constexpr double MostTilt = 0.98;

@@ -18,7 +18,8 @@ MomentScattering::MomentScattering(Device& device, const VolumeLayout& layout, c
 {
 }
 
-/// Of a channel's moments from the second on; the kernel's arguments are where they are, the channel, and `arguments`.
+/// Runs a kernel on the moments of a channel except the first. Kernel arguments: layout of the moments, channel, then
+/// `arguments`.
 template <class... Arguments>
 void MomentScattering::RunOnMoments(const char* name, int channel, const Arguments&... arguments) const
 {
@@ -29,7 +30,7 @@ void MomentScattering::RunOnMoments(const char* name, int channel, const Argumen
     cl::NDRange(static_cast<std::size_t>(size[1]) * size[2]), GroupOfLargeItems(this->TheDevice));
 }
 
-/// From a path integral, W length, to the source of what is scattered of it with a coefficient of 1.
+/// Factor from path integral, W length, to source, for a scattering coefficient of 1.
 float MomentScattering::PerPath() const
 {
   return static_cast<float>(1.0 / (4.0 * Pi * this->Layout.grid.VoxelVolume()));

@@ -8,9 +8,9 @@ namespace tyndall
 {
 namespace
 {
-constexpr std::size_t MostBeams = 4; ///< whose first scattering is exact in angle
+constexpr std::size_t MostBeams = 4; ///< largest number of beams with exact first scattering
 
-/// Which lamps; none where the phase function varies.
+/// Indices of the lamps that become beams; none if the phase function varies.
 std::vector<int> BrightestBeams(const PhaseOfMedium& phase, const std::vector<Light>& lamps)
 {
   std::vector<int> beams;
