@@ -24,8 +24,9 @@ inline float sum8(float8 values)
   return (four.x + four.y) + (four.z + four.w);
 }
 
-// Moments of eight voxels, [voxel][MOMENTS]. Sums of sums, for in even light rounding goes the same way in each.
-//   weights  [direction][MOMENTS]: of a direction in each moment
+// Computes the moments of eight voxels, [voxel][MOMENTS]. Partial sums are summed pairwise, so that in uniform light
+// all moments round in the same way.
+//   weights  [direction][MOMENTS]: weight of each direction in each moment
 inline void find_moments(
   const __global float* radiance, const __global float* weights, ulong stride, ulong first, __global float* moments)
 {

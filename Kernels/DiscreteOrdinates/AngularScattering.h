@@ -15,7 +15,7 @@ enum class PairSums
 {
   Terms,  ///< by the terms of the separable phase function: N + N operations per direction
   Matrix, ///< by the full matrix, eight directions and eight voxels at once
-  Passes  ///< by the full matrix, one pass over the volume a direction, as published without factorisation
+  Passes  ///< by the full matrix, one pass over the volume per direction, as published without factorisation
 };
 
 /// Fluence of one order, and fluence and flux of all orders so far.
@@ -26,7 +26,7 @@ struct OrdinatesLight
   Buffer<float> flux;    ///< W / length^2, [x, y, z][voxel], added to; empty: not requested
 };
 
-/// Scatters the radiance along each direction in each voxel into all directions.
+/// Scatters the radiance of each voxel from each direction into all directions.
 class AngularScattering
 {
 public:

@@ -51,7 +51,7 @@ public:
   };
   /// @param lamps  the fluence is uncollided light of lamps
   Powers PowersOf(const std::vector<float>& values, bool lamps) const;
-  /// Scattered power of the magnitude of the difference of two fluences, W. Collective.
+  /// Scattered power of the absolute difference of two fluences, W. Collective.
   double MagnitudeOf(const std::vector<float>& values, const std::vector<float>& others) const;
   /// Writes the isotropic emission of the voxels, W / (length^3 sr). Collective if any voxel emits.
   /// @param ledger  receives all emission

@@ -39,7 +39,7 @@ std::vector<float> MeansByAngle(const PhaseFunction& function, double solidAngle
     {
       mean += (2.0 * l + 1.0) / (4.0 * Pi) * moments[l] * cap[l] * p[l];
     }
-    table.push_back(static_cast<float>(std::max(mean, Least))); // series have ripples
+    table.push_back(static_cast<float>(std::max(mean, Least))); // truncated series oscillate
   }
   return table;
 }

@@ -16,7 +16,7 @@ namespace tyndall
 struct LampTarget
 {
   const Buffer<float>& source; ///< of all directions, relative to `scale`; added to
-  Buffer<float>& scale;        ///< becomes 1
+  Buffer<float>& scale;        ///< set to 1
   const Buffer<float>& direct; ///< W / length^2, uncollided fluence, added to
   const OrdinatesLight& light; ///< its fluence and flux are added to
 };

@@ -22,7 +22,7 @@ struct FarLight
   std::vector<Light> peaks;  ///< peaks of the environment
 };
 
-/// @param perFace  directions per face of a cube, as they are solved with
+/// @param perFace  directions per cube face used in the solve
 FarLight FarLightOf(const Illumination& shining, int perFace, const OrdinatesSettings& settings);
 
 /// Phase function of a channel. If its mean cosine varies by voxel, the mean weighted by sigma_s is used. Collective.
@@ -39,7 +39,7 @@ UncollidedImage UncollidedOf(const Illumination& shining, int channel);
 SeparablePhaseFunction SeparableOf(
   const PhaseFunction& function, const std::vector<Direction>& directions, const OrdinatesSettings& settings);
 
-/// @throws DeviceError that says how much memory is needed
+/// @throws DeviceError if the solve does not fit the device; the message states the memory needed
 void CheckMemory(Device& device, const Grid& grid, const OrdinatesAngles& angles, const OrdinatesSettings& settings);
 
 /// Boundary radiance of a channel; empty if there is none. `far` and `shining` must outlive the result.

@@ -13,17 +13,17 @@
 
 namespace tyndall
 {
-/// Settings of a quality for a medium: directions, terms of its phase function where it has one, and tolerance, as far
-/// as `settings` has them at their default values. No more directions than half the smallest memory of all ranks would
-/// hold of the whole grid. Collective.
+/// Settings for a quality level: directions, tolerance and, if scattering is anisotropic, terms of the phase function.
+/// Only settings that have their default values are changed. The number of directions is limited so that one channel of
+/// their radiance on the whole grid takes at most half of the smallest memory of all ranks. Collective.
 /// @param medium  of this rank's block
 /// @param memory  of this rank's device
 OrdinatesSettings AtQuality(
   const Domain& domain, Quality quality, OrdinatesSettings settings, const Medium& medium, const DeviceMemory& memory);
 
-/// "Name = value" of each setting that a quality may choose and that plays a part: spiralDirections in place of those
-/// of a cube, no terms where every pair of directions is multiplied.
+/// "Name = value" of each setting that a quality level may choose and that has an effect: spiralDirections instead of
+/// directionsPerFace if set, no terms with the full matrix.
 std::vector<std::string> Words(const OrdinatesSettings& settings);
-/// The same as the light was solved with: more directions, where a slab needs them (UnvaryingAxes.h).
+/// The same with the settings actually used: slabs are solved with more directions (UnvaryingAxes.h).
 std::vector<std::string> Words(OrdinatesSettings settings, const LightField& light);
 }

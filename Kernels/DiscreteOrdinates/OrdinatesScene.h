@@ -46,7 +46,7 @@ struct OrdinatesScene
 /// Sum over all ranks. Collective.
 SweepTally SumOf(const Domain& domain, const SweepTally& own);
 
-/// Directions and how light is scattered between them.
+/// Directions, and the phase function between them.
 struct OrdinatesAngles
 {
   OrdinateGroups groups;

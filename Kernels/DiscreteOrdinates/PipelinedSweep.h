@@ -40,10 +40,10 @@ private:
   std::vector<std::array<std::size_t, 2>> Places; ///< cell of the block, cell of the whole grid
 };
 
-/// The upwind sweep of a decomposed grid, pipelined over ranks: each octant of directions passes the blocks in the
-/// order of its light, several octants at once. Radiance that leaves a block enters the next one as it would in one
-/// memory, bit for bit. Radiance that leaves through the end of a periodic axis is sent to the block at the other end,
-/// for the next sweep. Every rank knows the cells of all reflecting faces.
+/// Upwind sweep of a decomposed grid, pipelined over ranks. Each octant of directions visits the blocks in downwind
+/// order, several octants at a time. Radiance between blocks is passed on bit for bit, as in a serial sweep. Radiance
+/// that leaves at the end of a periodic axis is sent to the block at the other end, for the next sweep. Every rank
+/// holds the cells of all reflecting faces.
 class PipelinedSweep : public OrdinateSweep
 {
 public:
@@ -55,8 +55,8 @@ public:
     Device& device, const Domain& domain, const Grid& grid, const OrdinateGroups& groups, const SweptFaces& faces);
 
   /// Collective.
-  /// @return powers of all ranks
-  /// @throws on every rank what any of them throws
+  /// @return powers summed over ranks
+  /// @throws on every rank if any rank throws
   FacePowers Apply(const Buffer<float>& radiance, const Buffer<float>& sigma_t, const Buffer<float>& scale,
     const IncomingRadiance& incoming, const Monitor& monitor) override;
 

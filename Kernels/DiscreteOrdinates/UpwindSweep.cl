@@ -22,7 +22,7 @@ inline real cross_voxel(real tau, real in, real gain, real* mean)
   p = multiply_add(p, t, (real)-1.66666667e-1f);
   const real thin2 = multiply_add(p, t, (real)0.5f);
   const real thin1 = multiply_add(-t, thin2, (real)1.0f);
-  // and where they are not thin
+  // exact, for larger tau
   const real thick = fmax(tau, (real)THIN);
   real left;
   const real gone = extinguished(thick, &left);
@@ -44,13 +44,13 @@ inline real cross_voxel(real tau, real in, real gain, real* mean)
   return multiply_add(in, transmitted, gain * p1);
 }
 
-// Layers `begin` to `end` along z, counted in the direction of each group.
-//   radiance  source in, W / (length^3 sr) over scale; mean radiance out
-//   scale     a factor of all sources of a voxel
-//   shares    [group][x, y, z, chord][8]: of each axis in the incident radiance; length of the mean chord
+// Sweeps layers `begin` to `end` along z, counted in the direction of each group.
+//   radiance  on entry source relative to scale, W / (length^3 sr); on return mean radiance
+//   scale     factor by voxel for all sources
+//   shares    [group][x, y, z, chord][8]: share of each axis in the incident radiance; length of the mean chord
 //   up        [group][3]: whether the group goes up an axis
-//   x, y, z   radiance through the faces, [group][z][y][8], [group][z][x][8], [group][y][x][8]: incident before
-//             the sweep, outgoing after it
+//   x, y, z   radiance through the faces, [group][z][y][8], [group][z][x][8], [group][y][x][8]: incident before the
+//             sweep, outgoing after it
 __kernel void sweep_upwind(__global float* radiance, const __global float* sigma_t, const __global float* scale,
   const __global float* shares, const __global int* up, __global float* x, __global float* y, __global float* z, int nx,
   int ny, int nz, ulong stride, int begin, int end)

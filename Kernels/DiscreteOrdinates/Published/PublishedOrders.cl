@@ -1,9 +1,9 @@
 // One explicit step of the radiance along all directions, as published (Gong et al., Eqs. (7) and (9)). Radiance is
 // [group][stride][8 directions].
 
-// The radiance before it moves: L + h (Q - sigma_t L + S).
+// Radiance before advection: L + h (Q - sigma_t L + S).
 //   scattered  S, W / (length^3 sr)
-//   steady     Q, of emission and of lamps
+//   steady     Q, emission and first-collision source of lamps, likewise
 __kernel void change_radiance(__global float* radiance, const __global float* scattered, const __global float* steady,
   const __global float* sigma_t, float step, ulong stride)
 {

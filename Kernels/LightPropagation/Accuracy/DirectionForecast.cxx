@@ -14,7 +14,7 @@ namespace
 constexpr int LargestUnstaggered = 100; ///< quadratures are fitted up to this number
 constexpr double UncollidedWork = 5.0;  ///< measured cost of an uncollided direction relative to one of a sweep
 constexpr double LeastSweeps = 3.0;
-constexpr double OnFinerGrid = 1.3; ///< error on the grid itself over that on the coarse one: measured 0.97 to 1.3
+constexpr double OnFinerGrid = 1.3; ///< error on the grid itself relative to the coarse grid: measured 0.97 to 1.3
 constexpr int Directions[] = { 9, 16, 25, 36, 49, 64, 100, 196, 256, 400 };
 constexpr int UncollidedCounts[] = { 0, 49, 64, 81, 100, 256, 400, 576, 900, 1600 };
 

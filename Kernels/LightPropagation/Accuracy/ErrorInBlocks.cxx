@@ -8,7 +8,7 @@ namespace
 {
 SolverInBlocks SolverOf(Device& device, const SceneInBlocks& given, KeptLight* kept)
 {
-  const Medium* const ofGrid = &given.medium; // not coarser, or divided
+  const Medium* const ofGrid = &given.medium; // not for coarser or refined grids
   return [=, &device](const SceneInBlocks& scene, const PropagationSettings& settings, const Monitor& monitor) {
     return SolveInBlocks(device, scene.others, scene.partition, scene.medium, scene.illumination, settings, monitor,
       &scene.medium == ofGrid ? kept : nullptr);
@@ -25,7 +25,8 @@ LightField SolveInBlocksWithErrorEstimate(Device& device, const SceneInBlocks& s
 TargetLight SolveInBlocksToTargetError(Device& device, const SceneInBlocks& scene, const PropagationSettings& settings,
   double target, const Monitor& monitor, KeptLight* kept)
 {
-  Check(Domain(scene.others, scene.partition), scene.medium, scene.illumination, settings); // which goes to coarse ones
+  Check(Domain(scene.others, scene.partition), scene.medium, scene.illumination,
+    settings); // before coarse grids are solved
   return SolveToTargetError(scene, settings, target, monitor, SolverOf(device, scene, kept));
 }
 }

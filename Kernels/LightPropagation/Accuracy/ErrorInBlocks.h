@@ -12,14 +12,14 @@ namespace tyndall
 // boundary light uses the directions of scattered light on the coarse grid. If it had finer directions on the grid
 // itself, the estimate is then too large by the error of the coarser ones.
 
-/// SolveWithErrorEstimate (ErrorEstimate.h).
-/// @param kept  as SolveInBlocks has it, of solves on the grid itself
+/// SolveWithErrorEstimate (ErrorEstimate.h) on a decomposed domain.
+/// @param kept  light of the previous solve on the grid itself, as in SolveInBlocks
 /// @throws as SolveInBlocks
 LightField SolveInBlocksWithErrorEstimate(Device& device, const SceneInBlocks& scene,
   const PropagationSettings& settings, const Monitor& monitor = {}, KeptLight* kept = nullptr);
 
-/// SolveToTargetError (TargetError.h).
-/// @param kept  as SolveInBlocks has it, of solves on the grid itself
+/// SolveToTargetError (TargetError.h) on a decomposed domain.
+/// @param kept  light of the previous solve on the grid itself, as in SolveInBlocks
 /// @throws as SolveInBlocks
 TargetLight SolveInBlocksToTargetError(Device& device, const SceneInBlocks& scene, const PropagationSettings& settings,
   double target, const Monitor& monitor = {}, KeptLight* kept = nullptr);

@@ -272,7 +272,7 @@ void SourceIteration::AddUncollided(const Monitor& monitor)
   this->Stranded = tally.onTheWay;
   if (escapes)
   {
-    // Whatever shines: lights add up.
+    // Needed for any light source, because contributions of sources add up.
     const TransportParts::EvenSky sky = this->Parts.FindEvenSky(OfPart(monitor, sources.size() / all, 1.0));
     this->TheDomain.Collective([&] {
       this->Escaping.emplace(this->Parts.TheDevice, this->Parts.Layout, this->Parts.Problem.Scattering(),

@@ -35,7 +35,7 @@ std::vector<float> SurfaceRadiance(const Domain& domain, const std::array<bool, 
 /// then is SurfaceRadiance more accurate than radiance computed from the light of the voxels.
 bool IsThickAtFaces(const Medium& medium, const std::array<bool, 6>& faces, int channels);
 
-/// Chandrasekhar's H(mu) for isotropic scattering, to 1% (B. Hapke, Icarus 157 (2002), equation 13; numerics.md,
-/// Eq. (78)).
+/// Chandrasekhar's H function H(mu) for isotropic scattering, accurate to 1% (B. Hapke, Icarus 157 (2002), equation 13;
+/// numerics.md, Eq. (78)).
 double HalfSpaceH(double albedo, double mu);
 }

@@ -178,6 +178,6 @@ private:
   std::unique_ptr<LampsInBlocks> NearLamps; ///< null until first used
 };
 
-/// A problem's parts, with the quadratures that suit it. Collective.
+/// Makes the parts of a problem, with quadratures chosen for it. Collective.
 std::unique_ptr<TransportParts> MakeParts(Device& device, const PropagationProblem& problem, IterationScheme how);
 }

@@ -8,7 +8,7 @@ namespace
 {
 constexpr int MostLayers = 8192; ///< about 200 MB if all differ
 
-/// Whether a field is the same in all columns along an axis.
+/// Whether a field is constant within each layer perpendicular to an axis.
 bool IsLayered(const Field& field, const Grid& grid, int axis)
 {
   const std::size_t stride = grid.Strides()[axis], count = static_cast<std::size_t>(grid.size[axis]);

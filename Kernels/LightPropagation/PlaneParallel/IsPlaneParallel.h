@@ -8,7 +8,7 @@
 
 namespace tyndall
 {
-/// The axis that is not periodic; -1 unless it is the only one.
+/// Axis along which layers are stacked: the only axis that is not periodic; -1 if the other two are not both periodic.
 int AxisOfLayers(const std::array<bool, 3>& periodic);
 
 /// Whether a scene is plane-parallel, and can be solved as such: two axes are periodic, all columns of voxels are

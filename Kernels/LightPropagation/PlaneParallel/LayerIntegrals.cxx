@@ -7,7 +7,7 @@ namespace tyndall
 namespace
 {
 constexpr double Thin =
-  1e-3; ///< below it (x^2 beside 1) is left out of a beam's integrals, above it differences are taken
+  1e-3; ///< below it x^2 is neglected beside 1 in integrals of a beam, above it differences are used
 
 /// (1 - exp(-r)) / r
 double MeanOfExponential(double r)

@@ -29,7 +29,7 @@ bool KeepsMoments(const SlabScene& scene, const PropagationSettings& settings)
   return settings.storeMoments && !scene.IsIsotropic();
 }
 
-/// Orders of the Fourier series in azimuth that are asked for; evenly scattered light has none but the first.
+/// Orders of the Fourier series in azimuth that are needed; isotropic scattering needs order 0 only.
 int OrdersFor(const SlabScene& scene, const PropagationSettings& settings, int degree)
 {
   return scene.IsIsotropic() || !scene.HasSlantingBeams() ? 0

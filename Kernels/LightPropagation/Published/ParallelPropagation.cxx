@@ -73,7 +73,7 @@ void ParallelPropagation::FinishOrder()
   this->Ledger.Count(std::exchange(this->Tally, {}));
   this->Ledger.CloseOrder(fluence);
   this->FluenceDirect = first ? std::move(fluence) : this->FluenceDirect;
-  this->Emits = true; // from now on U is not zero
+  this->Emits = true; // U is not zero from now on
 }
 
 void ParallelPropagation::UpdateSourcesOfOrder()

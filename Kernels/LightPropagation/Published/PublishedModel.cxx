@@ -30,7 +30,7 @@ int NearestOf(const std::vector<std::array<double, 3>>& directions, const std::a
   for (std::size_t d = 0; d < directions.size(); ++d)
   {
     const double cosine = glm::dot(Vector(directions[d]), Vector(omega));
-    if (cosine > largest + 1e-12) // ties go to the first
+    if (cosine > largest + 1e-12) // the first one wins ties
     {
       largest = cosine;
       best = static_cast<int>(d);

@@ -46,9 +46,9 @@ public:
   /// d(i) of Eq. (3), an index into SourceDirections.
   int SourceOf(int direction) const { return this->NearestSource[direction]; }
 
-  /// A moment is a sum over directions of a coefficient times a voxel's mean radiance in that direction. Moment 0 is
-  /// the fluence; the scattered radiance per source direction and the net flux follow where they are not multiples of
-  /// it.
+  /// Number of moments. A moment is the sum over directions of a coefficient times the mean radiance of a voxel in that
+  /// direction. Moment 0 is the fluence. Scattered radiance by source direction and net flux have moments of their own
+  /// if they are not multiples of moment 0.
   int MomentCount() const { return static_cast<int>(this->Coefficients.size()); }
   double Coefficient(int moment, int direction) const { return this->Coefficients[moment][direction]; }
 

@@ -20,7 +20,7 @@ struct PublishedSizes
 class PublishedPlan
 {
 public:
-  /// One launch: some of the crossings in one plane.
+  /// A launch: some of the crossings in one plane.
   struct Launch
   {
     int plane, first, count;
@@ -62,9 +62,10 @@ public:
   int RayRow(const Batch& batch) const;                ///< floats of a row of a ray map
   std::size_t CarriedStride(const Batch& batch) const; ///< floats stored of one direction's map, all channels
 
-  /// Rays that wrap around a periodic axis start elsewhere in their voxels in each order.
+  /// Makes the passes of an order. Rays that wrap around a periodic axis start at another position in their voxels in
+  /// each order.
   void MakePasses(Batch& batch, int order) const;
-  /// The path of a ray of a map.
+  /// Path of a ray of a map.
   GridWalk Walk(const MapGeometry& map, int subMap, int order) const;
 
 private:

@@ -24,7 +24,7 @@ static __global float* ray_row(__global float* rays, const PublishedMap* map, in
   return rays + row * map->rayRow + PAD;
 }
 
-// Length times mean transmittance, (1 - exp(-tau)) / sigma: the length itself in vacuum.
+// Length times mean transmittance, (1 - exp(-tau)) / sigma; the length itself in vacuum.
 inline real depth(real gone, real tau, float length)
 {
   return length * (max(gone, (real)1e-37f) / max(tau, (real)1e-37f));
@@ -51,7 +51,7 @@ __kernel void start_rays(const PublishedMap map, __global float* rays, __global 
   const int side_v = outside_v && !map.periodicV;
   boundary += direction * 3 * CHANNELS + channel;
   float radiance = boundary[0];
-  if (side_u || side_v) // at an edge the mean of both
+  if (side_u || side_v) // at an edge, the mean of both sides
   {
     radiance = (side_u ? boundary[CHANNELS] : 0.0f) + (side_v ? boundary[2 * CHANNELS] : 0.0f);
     radiance *= side_u && side_v ? 0.5f : 1.0f;
@@ -89,7 +89,7 @@ static void leave_sides(
   }
 }
 
-// One voxel: Eq. (3), and Eq. (6) divided by sigma_s (numerics.md, Eqs. (9), (10)).
+// Crosses one voxel: Eq. (3), and Eq. (6) divided by sigma_s (numerics.md, Eqs. (9), (10)).
 inline real cross_voxel(real radiance, real sigma_t, real source, float length)
 {
   const real tau = sigma_t * length;
@@ -133,7 +133,7 @@ __kernel void cross_voxels(const PublishedMap map, const int plane, const int ad
 
 #if REAL_WIDTH > 1
   leave_sides(&map, &crossing, ray_row(rays, &map, crossing.parity, slot, v), v, escaped);
-  const float right_border = to[map.sizeU]; // the last vector of the row may run over it
+  const float right_border = to[map.sizeU]; // the last vector of the row may overwrite it
   for (int u = 0; u < map.sizeU; u += REAL_WIDTH)
   {
     const real source = SOURCE ? load_real(u, sources) : (real)0.0f;

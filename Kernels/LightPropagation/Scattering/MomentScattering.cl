@@ -6,7 +6,7 @@
 
 #include "LightPropagation/Sweep/MomentPlacesShared.h"
 
-// The first voxels of a group, 0 behind the row's end.
+// First voxels of a group; 0 beyond the end of the row.
 static float16 load_group(const __global float* values, int voxels)
 {
   if (voxels >= MomentGroup)
@@ -67,7 +67,7 @@ __kernel void scatter_given_moments(MomentPlaces places, int channel, const __gl
 #undef ADD_TO_GIVEN
 }
 
-// Moments from the second function on. A work-item a value.
+// Adds moments from the second function on. One work-item per value.
 __kernel void add_moments(MomentPlaces places, const __global float* path, __global float* to)
 {
   const ulong at = places.second + get_global_id(0);

@@ -17,7 +17,7 @@ public:
 
   Powers ScatterOrder(const Deposit& swept, const Buffer<float>& fluence, const Buffer<float>& source,
     const std::array<std::size_t, 2>& range) const override;
-  bool CanScatterAllOrders() const override { return false; } ///< the moments of all orders are not kept
+  bool CanScatterAllOrders() const override { return false; } ///< moments of all orders are not stored
   void ScatterAllOrders(const Buffer<float>& fluence, const Buffer<float>& source) const override;
   void AddFirstScattered(const Deposit& uncollided, const Buffer<float>& source) const override;
   void AddBeam(const Buffer<float>& path, const Buffer<float>& source, int beam) const override;
