@@ -41,7 +41,7 @@ inline float8 angle_of(float8 cosine)
   return select((float8)1.0f - p, p, cosine >= (float8)0.0f);
 }
 
-// Not negative: the phase function as a set of directions can have it.
+// Phase function interpolated in the table; not negative.
 inline float8 phase_at(const __global float* table, float8 cosine)
 {
   const float8 position = angle_of(cosine) * (float8)(TABLE - 1);

@@ -14,7 +14,7 @@ namespace tyndall
 {
 namespace
 {
-/// Halves the number of voxels along each axis until at most PreviewVoxels are left.
+/// Halves the number of voxels along each axis once, and again while more than PreviewVoxels are left.
 /// @param may  whether a grid may be halved
 template <class May>
 Grid Halved(Grid grid, const May& may)

@@ -26,7 +26,8 @@ using PreviewSolver = std::function<LightField(const PreviewScene&)>;
 /// Solves this rank's block of a decomposed scene. Collective.
 using PreviewSolverInBlocks = std::function<LightField(const PreviewScene&, const BlockPartition&)>;
 
-/// Grid of a preview: the number of voxels along each axis is halved until at most PreviewVoxels are left.
+/// Grid of a preview: the number of voxels along each axis is halved once, and again while more than PreviewVoxels are
+/// left.
 Grid PreviewGrid(const Grid& grid);
 
 /// The same in whole steps, so that cubic voxels stay cubic; returns the grid unchanged if some axis cannot be halved.

@@ -24,7 +24,8 @@ int HarmonicsKept(int degree, std::size_t values)
 
 constexpr float LeastScattering = 1e-30f; ///< 1/length, in the solver's unit: weaker scattering is invisible
 
-/// Radiance that is scattered of a source of 1.
+/// Factor from source to scattered radiance per mean free path of scattering: 1 / sigma_s, or 0 where sigma_s is
+/// negligible.
 Buffer<float> PerScattering(Device& device, const VolumeLayout& layout, const Field& sigma_s)
 {
   const auto inverse = [&](std::size_t i, int c) {

@@ -34,7 +34,8 @@ struct PublishedVolumes
   /// Index, in quantities, of U of a direction in Sources; -1 if no map reads it in this layout.
   int SourceSlot(int layout, int sourceDirection) const { return this->Slots[layout][sourceDirection]; }
 
-  /// From x fastest with channels interleaved, U with source directions between voxel and channel, and back.
+  /// Conversions between a layout and arrays that are x fastest with channels interleaved; in arrays of U source
+  /// directions lie between voxel and channel.
   std::vector<float> Arrange(int layout, const float* interleaved) const;
   std::vector<float> Interleave(int layout, const float* arranged) const;
   void WriteSource(const std::vector<float>& source);

@@ -32,8 +32,8 @@ public:
 
   /// Sets the incident light of the next sweep to the reflected power of the diffusion solution.
   /// @param given  by channel, W: emitted, first scattered, reflected uncollided and incident boundary power
-  /// @return change of the reflected power since the last call, relative to `given` plus the reflected power; largest
-  ///   over channels
+  /// @return difference between this reflected power and that incident in the last sweep, relative to `given` plus the
+  ///   reflected power; largest over channels
   double Reflect(int iteration, const Rgb& given);
 
   /// Adds the escaped power after reflection to the ledger, which already contains uncollided light that left.
