@@ -181,8 +181,8 @@ void SourceIteration::MakeFilledSweep()
   }
 }
 
-/// Makes the first sweep, restricted to directions with incident light. All directions along periodic axes are kept,
-/// because their rays wait for the next order.
+/// Makes the first sweep, restricted to directions with incident light, if these are few. Not used with periodic axes,
+/// where rays wait in the other directions for the next order.
 void SourceIteration::MakeLitSweep()
 {
   const std::array<bool, 3>& periodic = this->Settings.periodic;

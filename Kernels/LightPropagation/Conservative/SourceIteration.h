@@ -56,7 +56,8 @@ private:
   const Domain& TheDomain;
   const PropagationSettings& Settings;
   std::unique_ptr<SweepOperator> Whole;
-  /// Sweep of the first order if much of the boundary and the medium do not emit; else null.
+  /// Sweep of the first order along directions with incident light only, if these are few and the medium does not emit;
+  /// else null.
   std::unique_ptr<SweepOperator> Lit;
   /// Sweep of the later orders if the medium leaves much of the volume empty; else null.
   std::unique_ptr<SweepOperator> Filled;
