@@ -5,7 +5,7 @@
 
 namespace tyndall
 {
-/// PhotonMarcher, for callers that do not have a Domain yet.
+/// PhotonMarcher, constructed from a communicator and a partition in place of a Domain.
 class PhotonMarcherInBlocks : public PhotonMarcher
 {
 public:

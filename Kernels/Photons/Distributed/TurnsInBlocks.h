@@ -13,28 +13,30 @@
 
 namespace tyndall
 {
-/// How photons over ranks march a few voxels at a time, so that the light that they leave is used in between, where
-/// MarchTurns has it used beside them. All ranks call each of these together.
+/// Callbacks for photons that march on several ranks a few voxels per turn. The light deposited so far is used between
+/// turns, whereas MarchTurns has it used while photons march. Each callback is called on all ranks together.
 struct TurnsInBlocks
 {
-  int stretches = 16; ///< of a photon's way in a turn, from voxel wall to voxel wall; 0: to its end
-  /// Called first. @param channels  of the light that `take` will be given
+  /// Path segments of a photon per turn, from voxel wall to voxel wall; 0: one turn to its end.
+  int stretches = 16;
+  /// Called once, first. @param channels  number of channels of the fluence that `take` receives
   std::function<void(const PackedPhotons& photons, int channels)> begin;
-  std::function<void()> meanwhile; ///< after each turn but the first: what is done with the light of the turns before
-  /// Takes over the light that photons have left since they began.
-  /// @param fluence  W / length^2 of the rank's voxels, [voxel][channel]; empty where it has none
+  /// Called after each turn but the first; processes the light of earlier turns.
+  std::function<void()> meanwhile;
+  /// Receives the light accumulated since the first turn.
+  /// @param fluence  W / length^2 in the rank's voxels, [voxel][channel]; empty if it has no voxels
   std::function<void(const Buffer<float>& fluence)> take;
 };
 
-/// One rank's photons, which march by turns and wait between them.
+/// The photons of one rank, marched in turns; between turns they wait on the host.
 class WaitingPhotons
 {
 public:
   using Ended = std::function<void(const std::vector<cl_int>& ends)>;
 
-  /// What is given must stay.
-  /// @param march  null: the rank has no voxels
-  /// @param ended  takes the ends of photons that have come to them, and of those that wait or have left the block
+  /// Keeps references to all arguments.
+  /// @param march  null if the rank has no voxels
+  /// @param ended  receives the PhotonEnd records of photons that have ended, wait, or have left the block
   WaitingPhotons(Communicator& communicator, Rounds& rounds, const VoxelBox& own, MarchRun* march,
     const StartingPhotons& starting, const Ended& ended)
     : Comm(communicator)
@@ -46,10 +48,10 @@ public:
   {
   }
 
-  /// March photons to their ends in turns, those of all ranks as far as each other. All ranks call it.
-  /// @param limit  walls and turns of a photon at most
-  /// @param show  makes fluence of the sums so far
-  /// @throws  on every rank what one of them throws; Aborted: the sums are of a part of the ways then
+  /// Marches the photons of all ranks to their ends, turn by turn in step. Collective.
+  /// @param limit  maximum number of path segments of a photon
+  /// @param show  computes the fluence from the sums so far
+  /// @throws  on every rank what one of them throws; Aborted: the sums then hold only a part of the paths
   void ToTheirEnds(
     const TurnsInBlocks& turns, int limit, const std::function<const Buffer<float>&()>& show, const Monitor& monitor);
 

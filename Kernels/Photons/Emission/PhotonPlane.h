@@ -10,8 +10,7 @@
 
 namespace tyndall
 {
-/// A convex polygon, onto which the unit square is mapped continuously and keeping areas in proportion: what is spread
-/// evenly stays so.
+/// A convex polygon with a continuous, area-preserving map from the unit square: uniform samples stay uniform.
 class ConvexPolygon
 {
 public:
@@ -22,73 +21,75 @@ public:
   glm::dvec2 At(double u, double v) const;
 
 private:
-  struct Slice ///< between two corners: from its left to its right edge
+  /// Between two consecutive corners in x: lower and upper bounds at its left (0) and right (1) edges.
+  struct Slice
   {
     double x0, x1, low0, low1, high0, high1;
   };
   std::vector<Slice> Slices;
-  std::vector<double> Below; ///< area up to the end of each slice
+  std::vector<double> Below; ///< cumulative area up to the end of each slice
 };
 
-/// The plane across a direction that photons of parallel light set out from: the outline of the volume, no more.
+/// The photon plane of parallel light: perpendicular to its direction, bounded by the outline of the volume.
 class PhotonPlane
 {
 public:
   PhotonPlane(const Grid& grid, const glm::dvec3& direction);
 
   double Area() const { return this->Outline.Area(); }
-  glm::dvec3 At(double u, double v) const; ///< a point of it, before the volume
+  glm::dvec3 At(double u, double v) const; ///< a point on the plane, upstream of the volume
 
 private:
   glm::dvec3 Across, Along, Origin;
   ConvexPolygon Outline;
 };
 
-/// A rectangle as it is seen from a point; the unit square is mapped onto it so that solid angles keep in proportion.
-/// Urena, Fajardo, King: An Area-Preserving Parametrization for Spherical Rectangles, EGSR 2013.
+/// A rectangle seen from a point, with a map from the unit square that preserves solid angle. Urena, Fajardo, King: An
+/// Area-Preserving Parametrization for Spherical Rectangles, EGSR 2013.
 class SphericalRectangle
 {
 public:
-  /// @param corner                of the rectangle
-  /// @param firstEdge,secondEdge  from the corner, at a right angle
-  /// @param smallBelow            solid angle below which the square is mapped onto it in proportion to area
+  /// @param corner                one corner of the rectangle
+  /// @param firstEdge,secondEdge  edge vectors from that corner, at right angles
+  /// @param smallBelow            solid angle below which the map preserves area instead
   SphericalRectangle(const glm::dvec3& eye, const glm::dvec3& corner, const glm::dvec3& firstEdge,
     const glm::dvec3& secondEdge, double smallBelow = 1e-6);
 
   double SolidAngle() const { return this->Angle; }
   glm::dvec3 At(double u, double v) const; ///< a point on the rectangle
 
-  /// Weight of a point of At, sr: its mean over the unit square is the solid angle. It is the same for all points where
-  /// the square is not mapped by area.
+  /// Weight of a point returned by At, sr; its mean over the unit square is the solid angle. Constant unless the map
+  /// preserves area.
   double SolidAngleBy(const glm::dvec3& point) const;
 
 private:
-  double AngleByArea(double distance) const; ///< of all of it, as if it were as far away as one of its points
+  /// Of the whole rectangle, computed from its area as if all of it were at this distance.
+  double AngleByArea(double distance) const;
 
   glm::dvec3 Eye, X, Y, Z; ///< axes of the rectangle, Z towards the eye
   double X0, X1, Y0, Y1, Z0;
   double B0, B1, K;
   double Angle = 0.0;
-  bool Small = false; ///< so far away that all of it is seen under the same angle, or nearly from the side
+  bool Small = false; ///< so distant that the solid angle per area is constant, or seen nearly edge-on
 };
 
-/// What is seen of the volume from a point outside of it: up to three of its faces.
+/// The faces of the volume visible from a point outside: up to three.
 class VisibleFaces
 {
 public:
   VisibleFaces(const Grid& grid, const glm::dvec3& eye);
 
   double SolidAngle() const { return this->Below.empty() ? 0.0 : this->Below.back(); }
-  glm::dvec3 At(double u, double v) const; ///< a point on them, by solid angle
+  glm::dvec3 At(double u, double v) const; ///< a point on these faces, uniform in solid angle
 
 private:
   std::vector<SphericalRectangle> Faces;
-  std::vector<double> Below; ///< solid angle up to each
+  std::vector<double> Below; ///< cumulative solid angle up to each face
 };
 
-/// What a lamp sees of the volume: all around it inside, half of that on a face, a quarter on an edge, an eighth at a
-/// corner, the faces from outside. A lamp counts as on a face that it is off by no more than rounding of its position
-/// may cause, a millionth of the volume's edge.
+/// The directions from a lamp into the volume: the whole sphere inside it, half of that on a face, a quarter on an
+/// edge, an eighth at a corner; from outside, the solid angle of the visible faces. A lamp counts as on a face within
+/// the rounding of its position, a millionth of the volume's edge.
 class LampView
 {
 public:
@@ -96,17 +97,18 @@ public:
 
   LampView(const Grid& grid, const glm::dvec3& lamp);
 
-  const glm::dvec3& Lamp() const { return this->Place; } ///< where it is; put onto the face that it is on
+  const glm::dvec3& Lamp() const { return this->Place; } ///< position, moved onto the face that the lamp is on
   bool Outside() const { return this->Faces.has_value(); }
   double SolidAngle() const;
-  glm::dvec3 Direction(double u, double v) const; ///< into the volume, unit length, by solid angle
+  glm::dvec3 Direction(double u, double v) const; ///< into the volume, unit length, uniform in solid angle
 
-  /// Whether a direction does not lead away from a face that the lamp is on.
+  /// Whether a direction does not point outwards through a face that the lamp is on.
   bool Enters(const glm::dvec3& direction) const;
 
 private:
   glm::dvec3 Place;
-  std::array<int, 3> Inwards = { 0, 0, 0 }; ///< -1 or 1 along an axis where it is on a face, else 0
+  /// Inward direction, -1 or 1, along axes where the lamp is on a face, else 0.
+  std::array<int, 3> Inwards = { 0, 0, 0 };
   std::optional<VisibleFaces> Faces;
 };
 }

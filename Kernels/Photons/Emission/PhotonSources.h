@@ -12,27 +12,28 @@
 
 namespace tyndall
 {
-/// Four coordinates in [0, 1) that a photon is made of.
+/// Four coordinates in [0, 1) from which one photon is computed.
 using PhotonSample = std::array<double, 4>;
 
-/// A photon as it leaves its light.
+/// A photon as its light emits it.
 struct Shot
 {
   glm::dvec3 from, direction;
-  Rgb power; ///< W, if it was the only one of its light
+  Rgb power; ///< W, as if it were the only photon of its light
 };
 
-/// What makes the photons of a light out of samples; of some samples none, where it gives nothing.
+/// Maps sample points to photons of one light; rejects samples where the light emits nothing.
 struct PhotonSource
 {
-  int light = 0; ///< number, as EmittedPhotons has it
+  int light = 0; ///< number of the light, see EmittedPhotons
   std::function<std::optional<Shot>(const PhotonSample&)> shoot;
-  bool alike = false; ///< all of its photons reach the volume, with the same power
+  bool alike = false; ///< all of its photons reach the volume, with equal power
 };
 
-/// Sources of all that shines, as EmitPhotons says. Faces come last.
+/// Sources for all lights of the illumination, sampled as documented at EmitPhotons. Boundary sources (faces) come
+/// last.
 std::vector<PhotonSource> PhotonSourcesOf(const Grid& grid, const Illumination& illumination);
 
-/// The photon where the shot enters the volume; nothing where it misses.
+/// Moves a photon to where it enters the volume; empty if it misses.
 std::optional<Photon> Land(const Grid& grid, const Shot& shot);
 }

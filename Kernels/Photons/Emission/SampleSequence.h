@@ -6,7 +6,7 @@
 
 namespace tyndall
 {
-/// How photons are spread (Pfeuti 2009, section 4.1).
+/// How the samples of photons are distributed (Pfeuti 2009, section 4.1).
 enum class Sampler
 {
   Hammersley = 0, ///< (i + 1/2) / count and radical inverses to the bases 2, 3, 5
@@ -16,13 +16,13 @@ enum class Sampler
   Random = 4,
 };
 
-/// `count` points of the unit hypercube [0, 1)^4, the same for the same seed.
+/// `count` points in the unit hypercube [0, 1)^4, reproducible for a given seed.
 ///
-/// Cells of Grid and Jittered have equal areas whatever the count is; in dimensions 2 and 3 they are a second grid, in
-/// another order. A seed other than 0 shifts Hammersley, Halton and Grid as a whole, round the edges.
+/// The cells of Grid and Jittered have equal areas for any count; dimensions 2 and 3 form a second grid, in another
+/// order. A nonzero seed shifts all points of Hammersley, Halton and Grid by the same vector, modulo 1.
 ///
-/// Batches of one seed are independent sets: each above 0 has a shift of its own; in odd ones dimensions 0 and 1 change
-/// places, and so do Hammersley's bases 2 and 3, so that errors of an even and an odd one are unrelated.
+/// Batches of one seed are independent sets: each batch above 0 has its own shift; odd batches exchange dimensions 0
+/// and 1, and Hammersley's bases 2 and 3, so that the errors of an even and an odd batch are unrelated.
 class SampleSequence
 {
 public:
@@ -37,9 +37,9 @@ private:
   Sampler Kind;
   std::size_t Count;
   std::uint64_t Seed;
-  bool Turned; ///< dimensions 0 and 1 change places
+  bool Turned; ///< dimensions 0 and 1 are exchanged
   std::size_t Rows;
-  std::size_t Stride; ///< from cell to cell of the second grid
+  std::size_t Stride; ///< step through the cells of the second grid
   std::array<double, 4> Shift = {};
 };
 }

@@ -6,47 +6,47 @@
 
 namespace tyndall
 {
-/// Number of the environment and the sky among lights; lights of their own are numbered from 0.
+/// Number that stands for the environment and the sky among lights; the illumination's own lights are numbered from 0.
 constexpr int EnvironmentLight = -1;
 
-/// How densely photons are to start: a square picture for each light, of its photon plane or of what stands for it
-/// (the first two coordinates of the samples that its photons are made of).
+/// Relative density of photon origins: for each light a square image over its photon plane or its equivalent (the first
+/// two coordinates of the samples from which its photons are computed).
 struct ImportanceMap
 {
   int size = 0;               ///< cells along an edge of each square
-  std::vector<int> lights;    ///< number of the light of each square, as EmittedPhotons has it
-  std::vector<float> density; ///< size*size of each light, columns fastest; > 0, any scale
+  std::vector<int> lights;    ///< number of the light of each square, see EmittedPhotons
+  std::vector<float> density; ///< size*size per light, columns fastest; > 0, in any unit
 
-  int SquareOf(int light) const; ///< which square is a light's; -1: it has none
+  int SquareOf(int light) const; ///< index of a light's square; -1: it has none
   std::size_t Cells() const { return static_cast<std::size_t>(this->size) * static_cast<std::size_t>(this->size); }
 };
 
-/// @throws InvalidInput where a density is negative, 0 (then the light that starts there would be missing) or not
-///   finite (names light, column and row), or their number is not that of the cells
+/// @throws InvalidInput if a density is negative, 0 (the light that starts there would be missing) or not finite (names
+///   light, column and row), or if there is not one density per cell
 void Check(const ImportanceMap& map);
 
-/// One light's square of a map: the unit square is mapped onto itself such that what is spread evenly over it becomes
-/// as dense as the map (Pfeuti 2009, section 3.2.3): rows by their marginal distribution, then columns by that of the
-/// row.
+/// Importance sampling for one light's square of the map: warps the unit square onto itself so that uniform points get
+/// the map's density (Pfeuti 2009, section 3.2.3), rows by their marginal distribution, then columns by the row's
+/// conditional distribution.
 class ImportanceSampler
 {
 public:
   /// @param density  size*size, not all zero
-  /// @param most     density at most, in those of photons spread evenly, at least 1: what a cell has above it is shared
-  ///                 by the others in proportion
+  /// @param most     upper limit of the density relative to uniform sampling, at least 1: the excess of a cell is
+  ///   shared by the other cells in proportion
   ImportanceSampler(const float* density, int size, double most);
 
-  /// A place of the unit square, and its probability density there.
+  /// A point in the unit square, and the probability density there.
   struct Place
   {
     double u, v, density;
   };
   Place At(double u, double v) const;
 
-  double DensityOf(int column, int row) const; ///< probability density in a cell: 1 on the mean
+  double DensityOf(int column, int row) const; ///< probability density in a cell; its mean is 1
 
 private:
   int Size;
-  std::vector<double> Rows, Columns; ///< cumulative, each with a zero before
+  std::vector<double> Rows, Columns; ///< cumulative distributions, each with a leading zero
 };
 }

@@ -10,15 +10,15 @@
 
 namespace tyndall
 {
-/// Gathers pilot photons in coarse cells (PhotonMarcher::Gather). Each rank starts those that set off in its block;
-/// what they leave in cells, whole numbers, is summed over ranks. Keeps between calls which voxels belong to which
-/// cell.
+/// Gathers the light of pilot photons in coarse cells (PhotonMarcher::Gather). Each rank starts the photons whose
+/// origins lie in its block; their deposits, integers, are summed over ranks. The map from voxels to cells is kept
+/// between calls.
 class PilotGathering
 {
 public:
-  /// What is given must outlive this.
-  /// @param through  this rank's block; null: it has no voxels
-  /// @param traits   of all blocks
+  /// Keeps references to all arguments.
+  /// @param through  this rank's block; null if it has no voxels
+  /// @param traits   traits of all blocks together
   PilotGathering(
     const Domain& domain, const MarchMedium* through, const MarchTraits& traits, const MarchSettings& settings)
     : TheDomain(domain)
@@ -28,7 +28,7 @@ public:
   {
   }
 
-  /// Collective. @param photons, origins  the same on all ranks @return the light of the whole grid, on each rank
+  /// Collective. @param photons, origins  the same on all ranks @return the light of the whole grid, on every rank
   PilotLight Gather(const std::vector<Photon>& photons, const std::vector<std::array<int, 2>>& origins,
     const std::array<int, 3>& cells, const Monitor& monitor);
 
@@ -37,7 +37,7 @@ private:
   const MarchMedium* Through;
   const MarchTraits& Traits;
   const MarchSettings& Settings;
-  std::array<int, 3> Cells = {}; ///< along each axis, that CellOfVoxel is of
+  std::array<int, 3> Cells = {}; ///< number of cells along each axis in CellOfVoxel
   Buffer<cl_int> CellOfVoxel;
 };
 }
