@@ -9,21 +9,21 @@
 
 namespace tyndall
 {
-// What photons are marched through, of which each rank has a block.
+// Checks of the medium through which photons are marched; each rank has one block of it.
 
-/// Checks the medium of a rank's block, which a rank without voxels does not have.
-/// @param levels  null: there is no octree
-/// @param octree  whether any rank has levels
-/// @return the medium's bricks
-/// @throws InvalidInput where the block's input is not valid
+/// Checks the medium of this rank's block; a rank without voxels has none to check.
+/// @param levels  null if there is no octree
+/// @param octree  whether any rank has octree levels
+/// @return which of the medium's bricks are filled
+/// @throws InvalidInput if the block's input is not valid
 FilledBricks CheckMarchedMedium(
   const Domain& domain, const Medium& medium, const Field& ior, const std::uint8_t* levels, bool octree);
 
-/// Compares what blocks must have alike: the partition, whether they have a refractive index, and the components of
-/// their coefficients. Collective.
-/// @throws InvalidInput  on each rank, where they differ
+/// Checks that all blocks agree on the partition, on whether there is a refractive index, and on the number of
+/// components of their coefficients. Collective.
+/// @throws InvalidInput  on every rank, if they differ
 void RequireSameMedium(const Domain& domain, const Medium& medium, const Field& ior);
 
-/// The range of the index in all blocks. Collective.
+/// The range of the refractive index over all blocks. Collective.
 IndexRange IndexRangeOfAll(const Domain& domain, const IndexRange& own);
 }

@@ -10,67 +10,70 @@
 
 namespace tyndall
 {
-/// How many copies of the sums there are, and who adds to which. Work-item w serves copies w, w + workers, ...; copy c
-/// is for batch c % batches.
+/// How many copies of the sums there are, and which work-item adds to which copy. Work-item w serves copies w, w +
+/// workers, ...; copy c belongs to batch c % batches.
 struct MarchShares
 {
   bool atomics = false;
-  int workers = 0; ///< work-items that take photons as they come; 0: one per packet, and all of a batch add to its copy
+  /// Work-items that fetch photons from a common counter; 0: one work-item per packet, all of a batch add to one copy.
+  int workers = 0;
   int copies = 1;
   int batches = 1;
 };
 
-/// As the settings ask for.
-/// @param records  of a copy of the sums
-/// @param numbers  of 64 bits, in a record
-/// @param held     bytes in use that new sums will take over
-/// @throws DeviceError where the device has no atomics and they are asked for, or the sums of all batches do not fit
+/// Chooses the number of copies of the sums from the settings and the device's memory.
+/// @param records  records in one copy of the sums
+/// @param numbers  64-bit numbers in a record
+/// @param held     bytes already allocated that the new sums will reuse
+/// @throws DeviceError if the settings ask for atomics that the device lacks, or the sums of all batches do not fit
 MarchShares ShareSums(const MarchMedium& medium, std::size_t records, int numbers, int batches, std::size_t held);
 
-/// Photons on a device, and their ends.
+/// Packed photons on a device, and buffers for their end records.
 struct PhotonsOnDevice
 {
-  /// @param marks  of each photon as packed, by which it counts; empty where none are counted
+  /// @param marks  counting mark of each packed photon (PhotonMarch.cl); empty if photons are not counted
   PhotonsOnDevice(Device& device, const PackedPhotons& packed, const std::vector<cl_ulong>& marks = {});
 
   Buffer<float> values;
   Buffer<cl_ulong> marks;
   Buffer<cl_int> batchBegin;
-  Buffer<cl_int> ends; ///< PhotonEnd and the power of each
+  Buffer<cl_int> ends; ///< PhotonEnd and remaining power of each photon
 };
 
-/// What photons deposit, and where.
+/// The buffer to which photons deposit, and its layout.
 struct MarchSums
 {
   MarchShares shares;
-  std::size_t records = 0;               ///< of a copy: voxels of the padded grid, records of bricks, or cells
-  int numbers = 1;                       ///< of a record
-  bool directions = false;               ///< are among them
-  bool counts = false;                   ///< and photons that crossed voxels
-  const Buffer<cl_int>* cells = nullptr; ///< of voxels: cells are deposited, and count; null: voxels are deposited
+  std::size_t records = 0; ///< records in a copy: voxels of the padded grid, records of bricks, or coarse cells
+  int numbers = 1;         ///< numbers in a record
+  bool directions = false; ///< whether a record holds sums of power times direction
+  bool counts = false;     ///< whether a record counts the photons that crossed its voxel
+  /// Coarse cell of each voxel, for deposits to cells, which count photons; null: deposits to voxels.
+  const Buffer<cl_int>* cells = nullptr;
   const Buffer<cl_long>* sums = nullptr; ///< [copies][records][numbers]
 };
 
-/// A kernel of PhotonMarch.cl that adds to such sums, march_photons but with TURNS.
+/// Creates a kernel of PhotonMarch.cl that adds to such sums: march_photons unless `options` select another.
 cl::Kernel MarchKernelFor(
   const MarchMedium& medium, const MarchSums& target, int channels, const char* name, const std::string& options = {});
 
-constexpr int MarchBlock = 512; ///< neighbouring photons that one work-item takes one after the other
+constexpr int MarchBlock = 512; ///< number of neighbouring photons that one work-item takes at a time
 
-/// March photons to their ends.
-/// @throws Aborted: the sums are of a part of the photons then
+/// Marches photons to their ends.
+/// @throws Aborted: the sums then hold only a part of the photons
 void MarchPhotons(const MarchMedium& medium, const PackedPhotons& packed, const PhotonsOnDevice& photons,
   const MarchSums& target, const Monitor& monitor);
 
-constexpr double SecondsPerLaunch = 0.1;             ///< of a kernel that follows photons
-constexpr std::size_t MarchedBetweenBlocks = 262144; ///< photons of a launch: 30 MiB of those that go on
+constexpr double SecondsPerLaunch = 0.1; ///< target duration of one launch of a kernel that follows photons
+/// Photons per launch: 30 MiB for those that leave the block.
+constexpr std::size_t MarchedBetweenBlocks = 262144;
 
-/// Room on a device for photons that a launch of a kernel puts, in any order, where they go on in other blocks.
+/// Device buffer for the photons that leave the block during a kernel launch, in any order.
 template <class OnItsWay>
 class GonePhotons
 {
 public:
-  /// @param marched  photons of a launch at most
+  /// @param marched  maximum number of photons in a launch
   GonePhotons(Device& device, std::size_t marched)
     : Photons(device, marched, "photons into other blocks")
     , Count(device, 1, "number of photons into other blocks")
@@ -79,8 +82,8 @@ public:
 
   const Buffer<OnItsWay>& Room() const { return this->Photons; }
   const Buffer<cl_int>& Number() const { return this->Count; }
-  void Empty() { this->Count.Fill(0); } ///< before a launch
-  /// After it.
+  void Empty() { this->Count.Fill(0); } ///< call before each launch
+  /// Appends the photons of the last launch to `all`.
   void AppendTo(std::vector<OnItsWay>& all) const
   {
     const std::size_t before = all.size(), more = static_cast<std::size_t>(this->Count.Read().front());

@@ -20,87 +20,91 @@ namespace tyndall
 {
 struct MarchShares;
 
-/// What decides how photons are marched through a medium, all of it: blocks of one grid have it alike.
+/// The properties of the whole medium that decide how photons are marched; all blocks of a grid must share them.
 struct MarchTraits : MediumTraits
 {
-  bool coloured = false; ///< coefficients have three components, as data
+  bool coloured = false; ///< whether coefficients are given with three components
   IndexRange index;
 
-  int Channels(const MarchSettings& settings) const; ///< of extinction, 1 or 3
-  /// Channels of the light that so many photons leave.
+  int Channels(const MarchSettings& settings) const; ///< number of extinction channels, 1 or 3
+  /// Number of channels of the light that these photons deposit.
   int ColoursOf(const PackedPhotons& packed) const { return packed.grey && !this->coloured ? 1 : 3; }
 };
 MarchTraits MarchTraitsOf(const Medium& medium, const Field& ior, const FilledBricks& filled);
 
-/// The part of a grid that photons are marched through in one go.
+/// The part of a grid through which one rank marches photons.
 struct MarchedPart
 {
   Grid whole;
-  VoxelBox own;   ///< of the medium
-  VoxelBox known; ///< of the refractive index: own, and the voxels round it that photons in it are bent by
+  VoxelBox own;   ///< voxels of the medium
+  VoxelBox known; ///< voxels of the refractive index: own and a halo, by which photons in own are bent
 };
 
-/// Walls and turns of a photon at most.
+/// Maximum number of path segments of a photon; a segment ends at a voxel wall or where the velocity changes.
 int MarchEventLimit(const Grid& whole, const MarchSettings& settings);
 
-/// A refractive medium on its device, as photons are marched through it, and what kernels need to know of it.
+/// A refractive medium on its device in the layout of the marching kernels, with the parameters that they need.
 class MarchMedium
 {
 public:
-  /// A rank's block of a grid, or all of it.
-  /// @param medium  of block.own, and checked
-  /// @param ior     of block.known
-  /// @param traits  of all blocks
-  /// @param filled  the medium's bricks: without them light is kept voxel by voxel, as in a block of a larger grid
-  /// @param levels  of the octree in block.own; null: there is none. Of a larger grid: SetNodes is to follow
+  /// Constructs the medium of a rank's block of a grid, or of the whole grid.
+  /// @param medium  coefficients in block.own, already checked
+  /// @param ior     refractive index in block.known
+  /// @param traits  traits of all blocks together
+  /// @param filled  the medium's bricks; null: light is stored voxel by voxel, as it must be in a block of a larger
+  ///   grid
+  /// @param levels  octree levels in block.own; null: no octree. In a block of a larger grid, call SetNodes afterwards
   MarchMedium(Device& device, const Medium& medium, const Field& ior, const MarchSettings& settings,
     const MarchTraits& traits, const MarchedPart& block, const FilledBricks* filled = nullptr,
     const std::uint8_t* levels = nullptr);
 
-  /// Of a block: whether n varies in each of its voxels, and then in which node of the octree it is (PhotonSteps.cl).
-  /// @param levels  of the block's voxels
+  /// For each voxel of the block, whether n varies in it, and the octree node that contains it (encoding:
+  /// PhotonSteps.cl).
+  /// @param levels  octree levels of the block's voxels
   std::vector<std::uint8_t> OwnNodes(const std::uint8_t* levels) const;
-  /// @param all  OwnNodes of all blocks: steps look into nodes beyond the block
+  /// @param all  OwnNodes of all blocks: steps look at nodes beyond the block
   void SetNodes(const BrickedBytes& all);
 
   MarchInfo Describe() const;
   IndexGrid DescribeGrid() const;
-  /// How the sums of these photons become light.
-  /// @param weightUnit  weight of one of the units that voxels sum up, where photons count
+  /// Parameters of the conversion of these photons' sums to light.
+  /// @param weightUnit  photon weight per unit of the voxels' sums, if photons are counted
   LightSumsInfo DescribeSums(const PackedPhotons& packed, const MarchShares& shares, float weightUnit = 0.0f) const;
   int EventLimit() const { return MarchEventLimit(this->block.whole, this->settings); }
-  double Diagonal() const;                                                        ///< of a voxel
-  bool IsBlock() const { return this->block.own.size != this->block.whole.size; } ///< of a larger grid
-  /// Voxels, with one more at either end of each axis.
+  double Diagonal() const; ///< length of a voxel's diagonal
+  /// Whether this is a block of a larger grid.
+  bool IsBlock() const { return this->block.own.size != this->block.whole.size; }
+  /// Number of voxels including a padding of one voxel on every side.
   std::size_t PaddedCount() const { return Count(this->Padded(2)); }
-  /// Of extinction and of sums: those of bricks, or the voxels of the padded grid.
+  /// Number of records of extinction and of sums: those of bricks, or the voxels of the padded grid.
   std::size_t Records() const { return this->bricks.AreThere() ? this->bricks.Records() : this->PaddedCount(); }
 
-  /// A kernel of PhotonMarch.cl for so many channels of light; `options` are those that do not follow from the medium.
+  /// Creates a kernel of PhotonMarch.cl for `channels` of light. `options`: those that do not follow from the medium.
   cl::Kernel MarchKernel(const char* name, int channels, bool directions, const std::string& options) const;
-  std::string Options() const; ///< of all kernels of this medium
-  /// A kernel of PhotonSums.cl.
+  std::string Options() const; ///< options of all kernels of this medium
+  /// Creates a kernel of PhotonSums.cl.
   cl::Kernel SumsKernel(const char* name, int channels, const std::string& options) const;
 
-  /// The coarse cell of each voxel of the padded grid. @param cells  of the whole along each axis, no more than voxels
+  /// The coarse cell of each voxel of the padded grid. @param cells  cells along each axis of the whole grid, at most
+  /// its voxels
   Buffer<cl_int> Cells(const std::array<int, 3>& cells) const;
 
   void Launch(const cl::Kernel& kernel, const cl::NDRange& range, const cl::NDRange& local = cl::NullRange) const;
 
   Device& device;
   Grid grid;
-  MarchedPart block; ///< of the grid
+  MarchedPart block; ///< position of `grid` in the whole grid
   MarchSettings settings;
   MarchTraits traits;
   int channels; ///< of extinction, 1 or 3
   bool bends, hasLevels;
-  bool nodesOfWhole = false; ///< SetNodes
-  PhotonBricks bricks;       ///< where all arrays stand by bricks
+  bool nodesOfWhole = false; ///< whether SetNodes was called
+  PhotonBricks bricks;       ///< layout by bricks, if all arrays use it
 
   Buffer<float> sigmaA, sigmaS;
-  Buffer<float> sigma;        ///< PhotonMedium.cl, pack_extinction; or PhotonBricks.h
-  Buffer<float> coefficients; ///< SquaredIndex.cl
-  Buffer<cl_uchar> nodes;     ///< PhotonMedium.cl, pack_extinction
+  Buffer<float> sigma;        ///< layout: pack_extinction in PhotonMedium.cl, or PhotonBricks.h
+  Buffer<float> coefficients; ///< spline of n^2, SquaredIndex.cl
+  Buffer<cl_uchar> nodes;     ///< layout: pack_extinction in PhotonMedium.cl
 
 private:
   using Size = std::array<std::size_t, 3>;

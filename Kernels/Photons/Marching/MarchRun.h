@@ -14,28 +14,29 @@ inline const int* WhereIs(const PhotonOnItsWay& photon)
   return photon.way.voxel;
 }
 
-/// Marches photons through what a rank has of a grid: to their ends or, in a block of it, as far as that goes.
+/// Marches photons through a rank's part of a grid: to their ends or, in a block, until they leave it.
 class MarchRun
 {
 public:
-  /// @param medium, target  must stay
-  /// @param packed  its channels are those of all photons
+  /// @param medium, target  must outlive this
+  /// @param packed  gives the number of channels, the same for all photons
   MarchRun(const MarchMedium& medium, const MarchSums& target, const PackedPhotons& packed);
 
-  /// What became of photons.
+  /// Result of a march.
   struct Outcome
   {
-    std::vector<cl_int> ends;         ///< PhotonEnd and powers of each (Tally)
-    std::vector<PhotonOnItsWay> gone; ///< into other blocks, or waiting in this one, in any order
+    std::vector<cl_int> ends;         ///< PhotonEnd and powers of each photon (Tally)
+    std::vector<PhotonOnItsWay> gone; ///< photons that left for other blocks, or wait in this one, in any order
   };
-  /// From now on photons in a block wait after so many stretches of their ways, or in the last turn are given up.
+  /// In later marches, photons in a block wait after turn.gone path segments in all; in the last turn they are given up
+  /// there.
   void GoAsFarAs(const TurnSchedule& turn);
 
-  /// Of photons that set off in the block.
-  /// @param marks  by which they count, or none
-  /// @throws Aborted: the sums are of a part of the photons then
+  /// Marches photons that start in the block.
+  /// @param marks  counting marks of the photons, or none
+  /// @throws Aborted: the sums then hold only a part of the photons
   Outcome Start(const PackedPhotons& photons, const std::vector<cl_ulong>& marks, const Monitor& monitor);
-  /// Of photons that have come from other blocks, or waited. @throws Aborted
+  /// Marches photons that arrived from other blocks, or waited. @throws Aborted
   Outcome Resume(std::vector<PhotonOnItsWay> arrived, const Monitor& monitor);
 
 private:

@@ -7,80 +7,81 @@
 SHARED_BEGIN
 enum
 {
-  EndWords = 3,   ///< integers of a PhotonEnd, before its powers
-  StillGoing = 6, ///< face of a photon that has not come to its end; this and above: not a face of the volume
-  Dark = 7,       ///< of one of which nothing is left
-  Elsewhere = 8   ///< of one that goes on in another block of the grid
+  EndWords = 3, ///< integers of a PhotonEnd, which precede its powers
+  /// Face of a photon that has not ended; from this value on, `face` is not a face of the volume.
+  StillGoing = 6,
+  Dark = 7,     ///< the photon has no power left
+  Elsewhere = 8 ///< the photon continues in another block of the grid
 };
 
-/// Halves of steps, along each axis, that the integrator looks ahead at most: more than twice what it does where n is
+/// Maximum look-ahead of the integrator along each axis, in half steps: more than twice what it needs where n is
 /// smooth.
 enum
 {
-  LeapfrogLooksAhead = 3, ///< which looks half a step ahead there
-  YoshidaLooksAhead = 6   ///< 1.35 steps
+  LeapfrogLooksAhead = 3, ///< the leapfrog looks half a step ahead where n is smooth
+  YoshidaLooksAhead = 6   ///< Yoshida's integrator looks 1.35 steps ahead there
 };
 
-/// Level of the largest cube of an octree that a step of order 4 crosses; no way that it looks ahead along an axis is
-/// longer than its edge, of 2^4 voxels, or than the halves of steps above, whichever is more.
+/// Level of the largest octree cube that a step of order 4 crosses. The integrator's look-ahead along an axis is at
+/// most the edge of that cube, 2^4 voxels, or the half steps above, whichever is longer.
 enum
 {
   YoshidaLevel = 4
 };
 
-/// The medium, and how photons are marched through it. Places are those of the whole grid; arrays have a block of it.
+/// The medium, and the parameters of marching. Positions are in the whole grid; arrays cover one block of it.
 typedef struct
 {
-  IndexGrid grid;    ///< the block: of extinction and sums
-  IndexGrid whole;   ///< all voxels
-  IndexGrid known;   ///< of the refractive index: the block and what photons in it are bent by
-  int first[3];      ///< voxel of the block, in the whole
-  int knownFirst[3]; ///< voxel of `known`
-  float spacing[3];  ///< over the voxel's diagonal
-  float stepSize;    ///< voxels, of a step where the octree has single voxels
-  float slowest;  ///< voxels per time that a photon keeps to wherever n is its least; steps are no longer than for it
-  float darkness; ///< power below which nothing is left of a photon
-  int eventLimit; ///< walls and turns of a photon at most
-  int pause;      ///< stretches of its way after which a photon in a block waits; eventLimit or more: none does
-  ulong copy;     ///< voxels of the padded grid
+  IndexGrid grid;    ///< size of the block: extinction and sums
+  IndexGrid whole;   ///< size of the whole grid
+  IndexGrid known;   ///< size of the region with a refractive index: the block and its halo
+  int first[3];      ///< first voxel of the block in the whole grid
+  int knownFirst[3]; ///< first voxel of `known` in the whole grid
+  float spacing[3];  ///< edges of a voxel over its diagonal
+  float stepSize;    ///< length of a step in voxels, where the octree has single voxels
+  float slowest;     ///< lower bound of the speed, voxels per time, from which the duration of a step is computed
+  float darkness;    ///< power below which a photon counts as extinguished
+  int eventLimit;    ///< maximum number of path segments (walls and velocity changes) of a photon
+  int pause;         ///< number of path segments after which a photon in a block waits; eventLimit or more: never
+  ulong copy;        ///< voxels of the padded grid
 } MarchInfo;
 
-/// What became of a photon. In kernels the power of each channel that is left of it follows.
+/// What became of a photon. In kernels, the remaining power of each channel follows.
 typedef struct
 {
-  int face;      ///< it left through, -x, +x, ... +z; or StillGoing, Dark
-  int crossings; ///< stretches of it that were deposited
-  int steps;     ///< of the integrator
+  int face;      ///< face through which it left, -x, +x, ... +z; or StillGoing, Dark, Elsewhere
+  int crossings; ///< path segments that were deposited
+  int steps;     ///< steps of the integrator
 #ifdef __OPENCL_C_VERSION__
   float power[CHANNELS];
 #endif
 } PhotonEnd;
 
-/// The way of a photon that goes from one block of a grid into another: all that it depends on from there on, so that
-/// it is the same, bit for bit, as in one block. Units are those of the kernels.
+/// State of a photon's path as it passes into another block: everything that the rest of the path depends on, so that
+/// it is the same, bit for bit, as on an undivided grid. In the kernels' units.
 typedef struct
 {
-  int voxel[3];   ///< of the whole grid, that it comes to
-  float wall[3];  ///< time of the next one along each axis
+  int voxel[3];   ///< the voxel of the whole grid that it enters
+  float wall[3];  ///< time at which it reaches the next wall along each axis
   float now;      ///< time since the step began
-  float turn;     ///< time when it ends
-  float settled;  ///< time until which the last turn holds
-  float step;     ///< time of the step under way
-  float start[3]; ///< of the step
+  float turn;     ///< time when the step ends
+  float settled;  ///< time before which a varying index does not start a new step
+  float step;     ///< duration of the current step
+  float start[3]; ///< position at which the step began
   float velocity[3];
   float momentum[3];
 } WayOnward;
 
-/// A photon that goes from one block of a grid into another. Only channels that there are count.
+/// A photon that passes from one block of a grid into another. Only the channels in use are valid.
 typedef struct
 {
-  ulong mark; ///< by which it counts
+  ulong mark; ///< its mark, see PhotonMarch.cl
   WayOnward way;
-  int batch;     ///< that it is of; the host knows
+  int batch;     ///< its batch, used by the host only
   int counted;   ///< coarse cell that counted it last
-  int crossings; ///< stretches that were deposited
-  int steps;     ///< of the integrator
+  int crossings; ///< path segments that were deposited
+  int steps;     ///< steps of the integrator
   float power[3];
-  float owed[3]; ///< what rounding has left of what voxels were to take
+  float owed[3]; ///< compensation of rounding errors in `power` (Kahan)
 } PhotonOnItsWay;
 SHARED_END

@@ -10,30 +10,30 @@
 
 namespace tyndall
 {
-/// How photons march a few voxels at a time, so that the light that they leave is used while they march on (Bernabei et
-/// al., section III-A).
+/// Callbacks for photons that march a few voxels per turn, so that the light deposited so far is used while they march
+/// on (Bernabei et al., section III-A).
 struct MarchTurns
 {
-  int stretches = 16; ///< of a photon's way in a turn, from voxel wall to voxel wall; 0: to its end
-  /// Photons march on a queue of their own, beside what is done meanwhile; false: both take turns on one queue.
+  /// Path segments of a photon per turn, from voxel wall to voxel wall; 0: one turn to its end.
+  int stretches = 16;
+  /// Whether photons march on a command queue of their own, concurrently with `meanwhile`; false: one queue for both.
   bool sideBySide = true;
-  /// Called first. @param channels  of the light that `take` will be given
+  /// Called once, first. @param channels  number of channels of the fluence that `take` receives
   std::function<void(const PackedPhotons& photons, int channels)> begin;
-  /// Queues what is done with the light of the turns before, and does not wait for it. Returns the first event and the
-  /// last one.
+  /// Queues the processing of the light of earlier turns, without waiting for it. Returns its first and last events.
   std::function<std::array<cl::Event, 2>(const cl::CommandQueue& queue)> meanwhile;
-  /// Queues what takes over the light that photons have left since they began.
+  /// Queues the transfer of the light accumulated since the first turn.
   /// @param fluence  W / length^2, [voxel][channel]
   std::function<void(const cl::CommandQueue& queue, const Buffer<float>& fluence)> take;
 };
 
-/// How far photons go in each turn: the last one takes them to their ends.
+/// The length of each turn; the last one takes photons to their ends.
 class TurnSchedule
 {
 public:
-  /// @param each  stretches of a turn, as MarchTurns has them
-  /// @param limit  walls and turns of a photon at most
-  /// @param all  photons
+  /// @param each  path segments per turn, as MarchTurns has them
+  /// @param limit  maximum number of path segments of a photon
+  /// @param all  number of photons
   TurnSchedule(int each, int limit, std::size_t all)
     : Each(each)
     , Limit(limit)
@@ -41,12 +41,12 @@ public:
   {
   }
 
-  /// The next turn. @param left  photons that are on their way still; where these are fewer than a hundredth it is the
-  ///   last one
+  /// Begins the next turn. @param left  photons that have not ended; if they are fewer than a hundredth of all, this
+  /// turn is the last one
   void Next(std::size_t left);
 
-  int stretches = 0;     ///< in this turn
-  std::int64_t gone = 0; ///< stretches up to its end
+  int stretches = 0;     ///< path segments in this turn
+  std::int64_t gone = 0; ///< path segments up to the end of this turn
   bool last = false;
 
 private:
@@ -54,18 +54,18 @@ private:
   std::size_t All;
 };
 
-/// How long that took, on the device.
+/// Device times of a march in turns.
 struct TurnTimes
 {
   int turns = 0;
   double marching = 0.0;  ///< s
-  double meanwhile = 0.0; ///< s, of what was done beside photons that marched
-  double together = 0.0;  ///< s, in which both were under way
+  double meanwhile = 0.0; ///< s, of the work queued by `meanwhile`
+  double together = 0.0;  ///< s, in which both were running
 };
 
-/// March photons to their ends in turns.
-/// @param show  queues what makes fluence of the sums so far
-/// @throws DeviceError where packets of photons do not fit; Aborted: the sums are of a part of the ways then
+/// Marches photons to their ends in turns.
+/// @param show  queues the conversion of the sums so far to fluence
+/// @throws DeviceError if packets of photons do not fit; Aborted: the sums then hold only a part of the paths
 TurnTimes MarchInTurns(const MarchMedium& medium, const PackedPhotons& packed, const PhotonsOnDevice& photons,
   const MarchSums& target, const MarchTurns& turns,
   const std::function<const Buffer<float>&(const cl::CommandQueue& queue)>& show, const Monitor& monitor);

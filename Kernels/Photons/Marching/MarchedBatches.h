@@ -7,17 +7,17 @@
 
 namespace tyndall
 {
-/// Numbers of the photons of one of the batches by which a standard error is found: of each row of so many photons one,
-/// by chance, and the same on every machine.
+/// Indices of the photons in one of the batches from which the standard error is estimated: one random photon out of
+/// each group of `batches`, the same on every machine.
 PhotonNumbers NumbersOfBatch(std::size_t photons, std::size_t batch, std::size_t batches);
 
-/// Light of several independent batches of photons, each a part of all the power, added up as they come, with the
-/// standard error of their sum (numerics.md, Eq. (99e)).
+/// Sums the light of several independent batches of photons, each a part of all the power, and estimates the standard
+/// error of the sum (numerics.md, Eq. (99e)).
 class MarchedBatches
 {
 public:
   void Add(PhotonLight&& part);
-  /// All light, and fluenceError. Of one batch or none as it is, without an error.
+  /// The light of all batches, with fluenceError. With one batch or none, the light as it is, without an error.
   PhotonLight Sum() &&;
 
 private:

@@ -10,27 +10,27 @@
 
 namespace tyndall
 {
-/// Sums that photons add to as they march through a medium, and the light that they become.
+/// The sums of photons' deposits in a medium, and their conversion to light.
 class MarchedLight
 {
 public:
-  /// @param medium  must stay
+  /// @param medium  must outlive this
   explicit MarchedLight(const MarchMedium& medium);
 
-  /// Sums for such photons, all zero.
-  /// @throws DeviceError where they do not fit
+  /// Zeroed sums for these photons.
+  /// @throws DeviceError if they do not fit
   MarchSums Prepare(const PackedPhotons& packed);
-  /// As ShareSums, whose memory is taken for those that there are.
+  /// As ShareSums; the memory of existing sums counts as available.
   MarchShares Share(int numbers, int batches) const;
-  /// After a march that was broken off: they are not zero.
+  /// Discards the sums after an aborted march, which leaves them nonzero.
   void Forget() { this->Sums = Buffer<cl_long>(); }
 
-  /// Queued: the fluence so far, [voxel][channel]. The sums stay.
+  /// Queues the conversion of the sums so far to fluence, [voxel][channel]. Does not change the sums.
   cl::Kernel Show(
     const PackedPhotons& packed, const MarchSums& target, const LightField& light, const Buffer<float>& fluence) const;
-  /// Arrays of `result`, and what is absorbed and scattered, from the sums, which are zero afterwards. Its light says
-  /// how many channels it is to have.
-  /// @param weightUnit  of photons that count (CountedPhotons)
+  /// Converts the sums to the arrays of `result`, and to absorbed and scattered power, then zeroes them. result.light
+  /// states how many channels it is to have.
+  /// @param weightUnit  CountedPhotons::weightUnit, if photons are counted
   void Finish(const PackedPhotons& packed, const MarchSums& target, float weightUnit, PhotonLight& result) const;
 
 private:
@@ -45,32 +45,32 @@ private:
   Buffer<cl_long> Sums; ///< zero between two runs
 };
 
-/// Photons that count in the voxels that they cross.
+/// Marks by which photons are counted in the voxels that they cross.
 struct CountedPhotons
 {
   CountedPhotons() = default;
-  /// @param packed  those of `some` that marks are wanted of
-  /// @param largestWeight, count  of the photons of all ranks
-  /// @throws InvalidInput where there are more than voxels can count
+  /// @param packed  the photons out of `some` that need marks
+  /// @param largestWeight, count  largest weight and number of the photons of all ranks
+  /// @throws InvalidInput if there are more photons than voxels can count
   CountedPhotons(const std::vector<Photon>& some, const PackedPhotons& packed, float largestWeight, std::size_t count);
   static float LargestWeight(const std::vector<Photon>& photons);
 
-  std::vector<cl_ulong> marks; ///< of each as packed: one photon, and its weight
-  float weightUnit = 0.0f;     ///< weight of one of the units that voxels sum up
+  std::vector<cl_ulong> marks; ///< one per packed photon: a count of one, and its weight
+  float weightUnit = 0.0f;     ///< photon weight per unit of the voxels' sums
 };
 
-/// Add what became of photons to the light's tallies: what left through the grid's faces, and what is left over. Whole
-/// units, whose sums do not depend on the order of the photons. Those that go on elsewhere do not count.
-/// @param ends  PhotonEnd and powers of each
+/// Adds the fates of photons to the light's energy balance: the power that escaped through each face of the grid, and
+/// what is left over. Powers are rounded to whole units, whose sums do not depend on the order of the photons. Photons
+/// that continue in another block are ignored.
+/// @param ends  PhotonEnd and powers of each photon
 void Tally(const PackedPhotons& packed, const std::vector<cl_int>& ends, PhotonLight& result);
 
-/// Sums over all ranks of what this rank's photons became: up to where they were first scattered, and beyond.
-/// Collective.
+/// Sum the tallies of this rank's photons over all ranks: AddUpTallies those of uncollided light, AddUpScattered those
+/// of scattered light. Collective.
 void AddUpTallies(const Domain& domain, PhotonLight& result);
 void AddUpScattered(const Domain& domain, PhotonLight& result);
 
-/// Arrays and tallies of photons of `packed.channels` as those of the channels that the light has, or of one where
-/// `colours` is 1.
+/// Expands arrays and tallies of packed.channels channels to the channels of the light, or to one if `colours` is 1.
 void PutIntoColours(const PackedPhotons& packed, int colours, PhotonLight& result);
 
 void SayWhatIsLeftOut(const MarchMedium& medium, const PackedPhotons& packed, LightField& light);

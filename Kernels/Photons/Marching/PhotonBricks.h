@@ -7,30 +7,31 @@
 
 namespace tyndall
 {
-/// Where a medium, and what photons leave in it, stand in memory by bricks: a filled brick has a record for each of its
-/// voxels, x fastest, an empty one a single record. Record 0 is all that is outside of the grid.
+/// Memory layout by bricks, for the medium and for the sums of deposits: a filled brick has a record for each of its
+/// voxels, x fastest; an empty brick has a single record. Record 0 stands for everything outside the grid.
 class PhotonBricks
 {
 public:
-  PhotonBricks() = default; ///< none: everything stands voxel by voxel
+  PhotonBricks() = default; ///< no bricks: arrays are stored voxel by voxel
   PhotonBricks(Device& device, const FilledBricks& bricks, const Grid& grid);
 
   bool AreThere() const { return this->RecordCount > 0; }
   std::size_t Records() const { return this->RecordCount; }
   std::size_t Count() const { return this->Begin.size(); }
-  /// [brick] the first record of a filled one; of an empty one less than 0: the number of its record, negated.
+  /// First record of each filled brick; for an empty brick, its record number, negated (less than 0).
   const Buffer<cl_int>& First() const { return this->OnDevice; }
 
   struct Coefficients
   {
-    std::vector<float> extinction;     ///< [channels][records], over `diagonal`, as PhotonMedium.cl has it by voxels
+    /// [channels][records], times the voxel diagonal, as pack_extinction in PhotonMedium.cl computes it by voxels.
+    std::vector<float> extinction;
     std::vector<float> sigmaA, sigmaS; ///< [records][components]
   };
-  /// @param aComponents, sComponents  the medium's own, or 0: not wanted
+  /// @param aComponents, sComponents  components of sigma_a and sigma_s in the medium, or 0 to leave them out
   Coefficients Pack(const Medium& medium, double diagonal, int channels, int aComponents, int sComponents) const;
 
 private:
-  /// Calls act(first record, first voxel, count) for rows of voxels along x of filled bricks, on all cores.
+  /// Calls act(first record, first voxel, count) for each row of voxels along x in filled bricks, on all cores.
   template <class Act>
   void ForFilled(const Act& act) const;
 

@@ -7,19 +7,19 @@
 SHARED_BEGIN
 enum
 {
-  CountShift = 40 ///< of the bits of counts, above those of weights
+  CountShift = 40 ///< bit position of photon counts, above the bits of weights
 };
 
-/// How sums become light.
+/// Parameters of the conversion of sums to light.
 typedef struct
 {
   IndexGrid grid;
-  float diagonal;  ///< of a voxel
+  float diagonal;  ///< length of a voxel's diagonal
   float fluence;   ///< W / length^2 of a unit of power that goes along a voxel's diagonal, over 2 to the power of
   int exponent;    ///< this one: it may be less than a float holds
-  float colour[3]; ///< of what CHANNELS 1 stands for
-  float weight;    ///< of a photon, one unit
-  int absorption, scattering; ///< components of sigma_a and sigma_s, 0: there is none
-  int copies, batches;        ///< of the sums: copy c is for batch c modulo batches
+  float colour[3]; ///< colour of the single channel, if CHANNELS is 1
+  float weight;    ///< photon weight per unit of the sums
+  int absorption, scattering; ///< components of sigma_a and sigma_s; 0: absent
+  int copies, batches;        ///< of the sums: copy c belongs to batch c modulo batches
 } LightSumsInfo;
 SHARED_END

@@ -17,34 +17,34 @@ inline const int* WhereIs(const PublishedPhoton& photon)
   return photon.voxel;
 }
 
-/// A block of a medium on its device, and the light of the photons that were marched through it as published.
+/// A block of a medium on its device, and the light of photons marched through it by the published scheme.
 class PublishedMarch
 {
 public:
-  /// Voxels round a block whose index bends photons in it: one for interpolation, and one for differences.
+  /// Halo of the refractive index in voxels: one for interpolation, and one for differences.
   static constexpr int Reach = 2;
 
-  /// @param medium  of the block's voxels; must stay
-  /// @param ior     of `part.known`, as far as Reach goes; null: rays are straight
-  /// @param levels  of the block's voxels, of the whole grid's octree; null: there is none
-  /// @param stepLimit  of a photon
-  /// @param tries   of compare-and-swap before a deposit is given up
+  /// @param medium  coefficients in the block's voxels; must outlive this
+  /// @param ior     refractive index in `part.known`, the block and a halo of Reach voxels; null: rays are straight
+  /// @param levels  levels of the whole grid's octree in the block's voxels; null: no octree
+  /// @param stepLimit  maximum number of steps of a photon
+  /// @param tries   compare-and-swap attempts before a deposit is given up
   PublishedMarch(Device& device, const Medium& medium, const float* ior, const std::uint8_t* levels,
     const MarchedPart& part, int stepLimit, int tries);
 
-  /// As far as the block goes: of each photon its place, face and counts are what became of it.
-  /// @param photons  that set off in the block or come to it. @throws Aborted
+  /// Marches photons as far as the block goes, and updates the position, face and counts of each.
+  /// @param photons  those that start in the block or enter it. @throws Aborted
   void March(std::vector<PublishedPhoton>& photons, const Monitor& monitor);
 
-  /// 3 per voxel.
+  /// Three values per voxel.
   struct Light
   {
     std::vector<float> fluence, direction;
   };
   /// @param unit  W of one unit of power
   Light Unpack(double unit);
-  /// Values of a box, 3 a voxel, after the 3x3x3 Gauss filter of the published scheme; beyond the box, the
-  /// values of its faces again.
+  /// Applies the 3x3x3 Gaussian filter of the published scheme to values in a box, 3 per voxel; beyond the box, values
+  /// of the nearest voxel are used.
   std::vector<float> Smoothed(const VoxelBox& box, const std::vector<float>& values);
 
 private:
@@ -59,9 +59,9 @@ private:
   const std::size_t Voxels;
   const std::string Options;
   const PublishedMarchInfo Info;
-  Buffer<cl_float4> Index; ///< and its gradient; empty where rays are straight
+  Buffer<cl_float4> Index; ///< n and its gradient; empty if rays are straight
   Buffer<float> SigmaA, SigmaS;
   Buffer<cl_uchar> Nodes;
-  Buffer<cl_ulong> Packed; ///< light
+  Buffer<cl_ulong> Packed; ///< packed light
 };
 }

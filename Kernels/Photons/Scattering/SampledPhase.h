@@ -7,16 +7,16 @@
 
 namespace tyndall
 {
-/// How photons draw the cosine by which they are scattered (numerics.md, Eqs. (99b), (99c)): in closed form for
-/// isotropic scattering and for Henyey and Greenstein's and Schlick's functions, whose parameter may vary by voxel;
-/// else by a table of the distribution's inverse, in 65536 even parts of the light.
+/// Samples the cosine of the scattering angle (numerics.md, Eqs. (99b), (99c)): in closed form for isotropic scattering
+/// and for the Henyey-Greenstein and Schlick phase functions, whose parameter may vary by voxel; otherwise from a table
+/// of the inverse cumulative distribution at 65536 equal steps of probability.
 class SampledPhase
 {
 public:
-  /// @param medium  of one channel
+  /// @param medium  a medium of one channel
   SampledPhase(Device& device, const Medium& medium);
 
-  std::string Options() const; ///< as ScatterPhotons.cl has them
+  std::string Options() const; ///< options of ScatterPhotons.cl
   const Buffer<float>& Values() const { return this->Numbers; }
 
 private:

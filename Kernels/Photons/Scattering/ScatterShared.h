@@ -5,35 +5,36 @@
 #include "Photons/Marching/MarchShared.h"
 
 SHARED_BEGIN
-/// How photons are followed beyond their first scattering.
+/// Parameters of photons followed beyond their first scattering.
 typedef struct
 {
   ulong seed;
-  int mostScatterings; ///< that a photon goes through; where it would be scattered once more it is given up
+  /// Maximum number of scatterings of a photon; it is given up where it would be scattered once more.
+  int mostScatterings;
 } ScatterInfo;
 
-/// What became of a photon; powers in units.
+/// What became of a photon; powers are in units.
 typedef struct
 {
-  int face;              ///< as of PhotonEnd
-  int scatterings;       ///< that it went through
-  float power;           ///< that is left of it
-  float absorbedAtFirst; ///< before it was scattered
-  float exchanged;       ///< that Russian roulette gave it, less what that took
+  int face;              ///< as PhotonEnd::face
+  int scatterings;       ///< number of its scatterings
+  float power;           ///< power left when it ended
+  float absorbedAtFirst; ///< power absorbed before its first scattering
+  float exchanged;       ///< net power added to it by Russian roulette
 } ScatterEnd;
 
-/// A photon that goes from one block of a grid into another: all that its way and its scatterings from there on depend
+/// A photon that passes from one block of a grid into another, with all that its further path and scatterings depend
 /// on.
 typedef struct
 {
-  ulong number; ///< which its random numbers belong to
+  ulong number; ///< key of its random numbers
   WayOnward way;
-  uint blocks; ///< of random numbers that it has drawn from
-  int drawn;   ///< numbers of the last one that are left
-  int events;  ///< walls and turns since it was scattered last; 0: it sets off anew, in the direction `way.velocity`
+  uint blocks; ///< number of blocks of random numbers it has drawn
+  int drawn;   ///< unused numbers of the last block
+  int events;  ///< path segments since its last scattering; 0: it starts anew, in the direction `way.velocity`
   int scatterings;
-  float depth;                             ///< optical, to the next scattering
+  float depth;                             ///< optical depth to the next scattering
   float dim;                               ///< power below which Russian roulette is played
-  float power, absorbedAtFirst, exchanged; ///< as of ScatterEnd
+  float power, absorbedAtFirst, exchanged; ///< as in ScatterEnd
 } ScatteredOnItsWay;
 SHARED_END
