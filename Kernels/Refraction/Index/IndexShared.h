@@ -4,7 +4,7 @@
 #include "Device/SharedTypes.h"
 
 SHARED_BEGIN
-/// Voxels of a grid along x, y, z.
+/// Number of voxels of a grid along x, y, z.
 typedef struct
 {
   int size[3];

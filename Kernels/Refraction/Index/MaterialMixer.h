@@ -11,14 +11,14 @@ namespace tyndall
 class MaterialMixer
 {
 public:
-  /// All must stay.
-  /// @param variedG  whether materials that scatter have different mean cosines
-  /// @param index    of the box's voxels: filled with n, not smoothed
-  /// @param result   whose occupancy, coefficients and g get those of the box
+  /// Keeps references to all arguments.
+  /// @param variedG  whether the scattering materials differ in their mean cosines
+  /// @param index    output: n in the box's voxels, not smoothed
+  /// @param result   output: occupancy, coefficients and g of the box's voxels
   MaterialMixer(Device& device, const std::vector<Solid>& solids, const RefractiveMediumSettings& settings,
     const VoxelBox& box, bool variedG, Buffer<float>& index, RefractiveMedium& result);
 
-  /// What CountSamplesInside hands out.
+  /// Adds the samples inside one mesh in one slab; a callback for CountSamplesInside.
   void Take(const SamplesInside& inside);
 
 private:
@@ -37,7 +37,7 @@ private:
   const bool VariedG;
   Buffer<float>& Index;
   RefractiveMedium& Result;
-  Buffer<float> Covered, SigmaA, SigmaS, G; ///< of a slab
+  Buffer<float> Covered, SigmaA, SigmaS, G; ///< buffers of one slab
   cl::Kernel AddObject, AddOutside;
 };
 }

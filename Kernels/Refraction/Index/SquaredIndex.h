@@ -5,9 +5,9 @@
 
 namespace tyndall
 {
-/// Coefficients of the spline of n^2 through voxel centres, as SquaredIndex.cl has them: two more at either end of each
-/// axis.
-/// @param ior  of each voxel
+/// Coefficients of the B-spline of n^2 through voxel centres, in the layout of SquaredIndex.cl: the grid with two more
+/// at either end of each axis.
+/// @param ior  refractive index, one per voxel
 /// @throws DeviceError if they do not fit
 Buffer<float> SquaredIndexCoefficients(Device& device, const Grid& grid, const Buffer<float>& ior);
 }

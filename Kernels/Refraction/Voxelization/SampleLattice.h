@@ -9,22 +9,22 @@
 
 namespace tyndall
 {
-/// The lattice of whole numbers on which meshes are voxelised exactly.
+/// The integer lattice on which meshes are voxelised exactly.
 ///
 /// Its origin is the grid's lower corner. An edge of a fine voxel, of which there are `samples` in an edge of a voxel,
-/// is 2^k units, with k as large as products of three coordinates allow: grid and meshes together are at most 2^20
-/// units long. A point of a mesh moves by at most half a unit an axis, a millionth of that length or less, and points
-/// at the same place stay together.
+/// is 2^k units long, with k as large as exact products of three coordinates allow: grid and meshes together are at
+/// most 2^20 units long. Rounding to the lattice moves a point of a mesh by at most half a unit per axis, a millionth
+/// of that length or less; coincident points stay coincident.
 class SampleLattice
 {
 public:
   using Point = std::array<cl_int, 3>;
 
-  /// @throws InvalidInput where a mesh is so large beside the grid that the samples would not fit between the units
+  /// @throws InvalidInput if a mesh is so large relative to the grid that the samples would be closer than the units
   SampleLattice(const Grid& grid, int samples, const std::vector<const TriangleMesh*>& meshes);
 
-  /// The same lattice, its origin moved to the lower corner of a voxel: what is found of a box of the grid is, to the
-  /// last bit, what is found of the whole.
+  /// The same lattice with its origin at the lower corner of a voxel: results for a box of the grid are bitwise equal
+  /// to those for the whole.
   SampleLattice From(const std::array<int, 3>& voxel) const;
 
   int Samples() const { return this->SamplesOfVoxel; } ///< fine voxels per edge of a voxel
@@ -32,7 +32,8 @@ public:
 
   std::vector<Point> Rounded(const std::vector<std::array<double, 3>>& points) const;
 
-  /// Whether a mesh is closed as it lies on the lattice. A closed mesh stays so; seams narrower than a unit may close.
+  /// Whether a mesh is closed after rounding to the lattice. A closed mesh stays closed; seams narrower than a unit may
+  /// close.
   bool Closes(const TriangleMesh& mesh) const;
 
 private:
@@ -43,8 +44,8 @@ private:
   std::array<int, 3> FirstVoxel = { 0, 0, 0 };
 };
 
-/// Columns of samples along an axis, side by side in a grid: `count[0]` of them along the lower of the other two axes,
-/// in rows, and `count[1]` rows along the higher one.
+/// Columns of samples along an axis, arranged in a 2D grid: `count[0]` columns per row, along the lower of the other
+/// two axes, and `count[1]` rows along the higher one.
 struct SampleColumns
 {
   SampleColumns(const Grid& grid, int axis, int samplesOfVoxel, int pitch);
@@ -52,18 +53,18 @@ struct SampleColumns
   int axis;
   int across, up; ///< the other axes: the lower one, the higher one
   int samplesOfVoxel;
-  int samples; ///< of a column
+  int samples; ///< number of samples in a column
   std::array<int, 2> count;
-  int pitch; ///< units from sample to sample; the first one is half of that inside the grid
+  int pitch; ///< units from sample to sample; the first sample lies half a pitch inside the grid
 };
 
-/// Samples of a box of fine voxels: from `first` on to before `end`.
+/// A box of fine voxels: samples with indices from `first` to before `end`.
 struct SampleBox
 {
   std::array<int, 3> first, end;
 };
 
-/// A mesh on a lattice, and how its triangles are dealt out to work-items.
+/// A mesh rounded to a lattice, and the division of its triangles among work-items.
 class LatticeMesh
 {
 public:
@@ -72,8 +73,8 @@ public:
   const Buffer<cl_int>& Points() const { return this->DevicePoints; }
   const Buffer<cl_int>& Triangles() const { return this->DeviceTriangles; }
 
-  /// Pieces of triangles to look for crossings in, as mark_crossings of Voxelization.cl takes them: few enough columns
-  /// each that a large triangle does not hold up a work-item while the others wait.
+  /// Tiles of triangles in which to look for crossings, the input of mark_crossings in Voxelization.cl. Each covers few
+  /// enough columns that a large triangle does not keep one work-item busy while the others wait.
   std::vector<cl_uint4> Tiles(const SampleColumns& columns, int firstRow, int endRow) const;
 
   /// The same for crossings in a box.

@@ -6,36 +6,38 @@
 
 namespace tyndall
 {
-/// Triangles by the numbers of their corners, which run counterclockwise where seen from outside.
+/// Triangles as indices of their corners, counterclockwise as seen from outside.
 struct TriangleMesh
 {
   std::vector<std::array<double, 3>> points;
   std::vector<std::array<int, 3>> triangles;
 
-  /// Of each point in the mesh that it was taken from, for messages; empty: their own.
+  /// Index of each point in the mesh that it was taken from, for messages; empty: the points' own indices.
   std::vector<std::size_t> pointNumbers;
 };
 
-/// @throws InvalidInput where a point is not finite: names the first
+/// @throws InvalidInput if a point is not finite; names the first
 void CheckPoints(const TriangleMesh& mesh);
 
-/// What can be wrong with the surface of a solid.
+/// Defects of the surface of a solid.
 ///
-/// Points at the same place count as one, so that a box whose faces have corners of their own is closed all the same.
+/// Coincident points count as one, so that a box whose faces have corners of their own still counts as closed.
 struct MeshTopology
 {
   using Edge = std::array<std::array<double, 3>, 2>; ///< its ends
 
-  std::size_t boundaryEdges = 0; ///< edges of an odd number of triangles: where there are any, the mesh has no inside
-  Edge firstBoundaryEdge = {};   ///< of those, the one whose corners have the lowest numbers
-  std::size_t disagreeingEdges = 0; ///< edges on two sides of which different sides of the mesh are the outer one
+  /// Edges with an odd number of triangles: if there are any, the mesh has no inside.
+  std::size_t boundaryEdges = 0;
+  Edge firstBoundaryEdge = {}; ///< the boundary edge whose corners have the lowest indices
+  /// Edges whose two triangles disagree about which side of the mesh is outside.
+  std::size_t disagreeingEdges = 0;
   Edge firstDisagreeingEdge = {};
   std::size_t degenerateTriangles = 0; ///< triangles without area
   std::size_t firstDegenerateTriangle = 0;
-  /// Length^3, negative where the corners run clockwise; has no meaning where edges disagree.
+  /// Length^3, negative if the corners run clockwise; meaningless if edges disagree.
   double enclosedVolume = 0.0;
 };
 
-/// @throws InvalidInput where the mesh has no triangle, a triangle a corner that is not there, or a point is not finite
+/// @throws InvalidInput if the mesh has no triangle, a triangle has an invalid corner index, or a point is not finite
 MeshTopology Examine(const TriangleMesh& mesh);
 }

@@ -15,36 +15,37 @@
 
 namespace tyndall
 {
-/// Rows of voxels along an axis, and the samples of a mesh about them.
+/// Rows of voxels along an axis, and the rows of a mesh's samples that they need.
 struct SampleSlab
 {
   int firstVoxel, endVoxel; ///< along columns.up
-  int firstRow, endRow;     ///< of samples: those of the voxels, and one on either side where the grid has it
+  /// Rows of samples: those of the voxels, and one more on either side where the grid has it.
+  int firstRow, endRow;
 };
 
-/// Counts samples of voxels to a fraction of a sample, from where exactly the surface lies between two of them
-/// (numerics.md, section 11.1). Occupancy by samples alone has terraces where a surface is nearly parallel to layers of
-/// voxels, wider than the index's smoothing: they bend light.
+/// Refines counts of samples in voxels to a fraction of a sample, from the exact position of the surface between two
+/// samples (numerics.md, section 11.1). Occupancy from samples alone has terraces where a surface is nearly parallel to
+/// layers of voxels; these are wider than the smoothing of the index, and bend light.
 class SurfaceFraction
 {
 public:
-  /// @param columns  of the samples' bits, `words` of 32 per column
-  /// @param voxels   of a slab, at most: takes 4 bytes each, and 4 more where there are several meshes
+  /// @param columns  columns of the samples' bits, `words` words of 32 bits per column
+  /// @param voxels   maximum number of voxels in a slab: takes 4 bytes each, and 4 more if there are several meshes
   SurfaceFraction(
     Device& device, const Grid& grid, const SampleColumns& columns, int words, std::size_t voxels, bool several);
 
-  /// Before the last mesh of a slab.
+  /// Call before the last mesh of a slab.
   void Begin();
 
-  /// Queues the measurement of what counting samples leaves out of a mesh.
+  /// Queues the measurement of the difference between a mesh's volume and its count of samples.
   /// @param orientation  see OrientedMesh
-  /// @param bits         samples in the mesh, of the slab's rows
-  /// @param claimed      samples in later meshes, of the same rows; empty where there is but one mesh
+  /// @param bits         samples inside the mesh, in the slab's rows
+  /// @param claimed      samples inside later meshes, in the same rows; empty if there is only one mesh
   void Measure(const LatticeMesh& mesh, int orientation, const SampleSlab& slab, const Buffer<cl_uint>& bits,
     const Buffer<cl_uint>& claimed);
 
-  /// Queues the conversion of the slab's counts from whole samples to units of 1 / UnitsOfSample, with what was
-  /// measured of the last mesh. Claims the samples of the slab's rows that are not of its voxels.
+  /// Queues the conversion of the slab's counts from whole samples to units of 1 / UnitsOfSample, including the
+  /// measurement for the last mesh. Also marks as claimed the samples in the slab's rows that lie outside its voxels.
   void Refine(const SampleSlab& slab, const Buffer<cl_uint>& bits, Buffer<cl_uint>& claimed, Buffer<cl_ushort>& counts);
 
 private:
@@ -52,7 +53,7 @@ private:
   cl_int4 VoxelsOf(const SampleSlab& slab) const;
 
   Device& TheDevice;
-  std::array<int, 3> Size; ///< of the grid
+  std::array<int, 3> Size; ///< size of the grid
   SampleColumns Bits;
   int Words;
   bool Several;
@@ -68,20 +69,20 @@ struct VoxelizationSettings
 {
   int samples = 4; ///< fine voxels per edge of a voxel, 1 to 16
 
-  /// Whether counts tell of fractions of samples, from where the surface lies between them. Else occupancy comes in
-  /// steps of 1 / samples^3, as published.
+  /// Whether counts include fractions of samples, from the position of the surface between samples. Otherwise occupancy
+  /// comes in steps of 1 / samples^3, as published.
   bool fractions = true;
 
-  /// Which way the columns run: along axis 0, 1 or 2, toggling what lies before a crossing or, from above, what lies
-  /// after it. It makes no difference to the result, to the last bit.
+  /// Axis of the columns, 0, 1 or 2; a crossing toggles the samples before it or, with fromAbove, those after it. The
+  /// result is the same to the last bit.
   int columnAxis = 0;
   bool fromAbove = false;
 
-  /// Bytes of the fine grid, a bit a sample, that are there at a time: a slab of voxels, of one layer at least.
+  /// Maximum memory of the fine grid, one bit per sample, held at a time: a slab of voxels, of at least one layer.
   std::size_t slabBytes = std::size_t(16) << 20;
 };
 
-/// Counts are in parts of a sample: so many of them are one.
+/// Number of units of a count per sample.
 constexpr int UnitsOfSample(int samples)
 {
   return 65535 / (samples * samples * samples);
@@ -90,62 +91,62 @@ constexpr int UnitsOfSample(int samples)
 /// @throws InvalidInput
 void Check(const VoxelizationSettings& settings);
 
-/// A closed mesh, and how its corners run.
+/// A closed mesh and the orientation of its triangles.
 struct OrientedMesh
 {
-  /// Closed, or closed when rounded; see Examine. A triangle without area does nothing.
+  /// Closed, if necessary after rounding to the lattice; see Examine. Triangles without area have no effect.
   const TriangleMesh* mesh = nullptr;
   int orientation = 1; ///< 1: counterclockwise seen from outside; -1: clockwise; 0: its triangles disagree
 };
 
-/// Samples of the voxels of a slab that lie in one of several meshes.
+/// Samples inside one of several meshes, in the voxels of a slab.
 struct SamplesInside
 {
-  std::size_t mesh; ///< number of the mesh
-  /// A voxel 0 to samples^3 UnitsOfSample(samples), x fastest. Written again for the next mesh.
+  std::size_t mesh; ///< index of the mesh
+  /// One per voxel, 0 to samples^3 UnitsOfSample(samples), x fastest. Overwritten for the next mesh.
   const Buffer<cl_ushort>& counts;
 
-  /// The slab's voxels are `runs` runs of `length` of the box's: the first begins at voxel `first`, the next `stride`
-  /// later.
+  /// The slab consists of `runs` runs of `length` consecutive voxels of the box: the first run begins at voxel `first`,
+  /// each next one `stride` voxels later.
   std::size_t first, length, stride, runs;
   std::size_t VoxelCount() const { return this->length * this->runs; }
 };
 
-/// The part of a grid that is voxelised.
+/// The voxels of a grid that are voxelised.
 struct CountedVoxels
 {
-  VoxelBox box; ///< whose samples are counted
-  VoxelBox own; ///< in it, those that winding numbers are of
+  VoxelBox box; ///< voxels whose samples are counted
+  VoxelBox own; ///< voxels in `box` that winding numbers refer to
 
   static CountedVoxels All(const Grid& grid) { return { { {}, grid.size }, { {}, grid.size } }; }
 };
 
-/// Number of samples of each voxel that lie in each of several closed meshes. Where meshes overlap, the last of them
-/// has the samples.
+/// Counts the samples of each voxel that lie inside each of several closed meshes. Where meshes overlap, samples belong
+/// to the last of them.
 ///
-/// The bit-slice voxelisation of Eisemann and Decoret (Single-pass GPU solid voxelization for real-time applications,
+/// Bit-slice voxelisation of Eisemann and Decoret (Single-pass GPU solid voxelization for real-time applications,
 /// Graphics Interface 2008; Pfeuti 2009, section 3.1.2): a column of samples is a row of bits, and every triangle
-/// toggles those that lie before it. Samples are the centres of fine voxels. Points of the mesh are rounded to a
-/// lattice a millionth of the box wide (SampleLattice), and from there on everything is exact: a column through an edge
-/// or a corner is counted once, a closed mesh never leaks, and a sample is inside or not whichever way its column runs.
-/// Then fractions of samples are added or taken away by where the surface crosses columns along x, y and z
-/// (SurfaceFraction); a voxel through which no surface goes is all inside or all outside.
+/// toggles the bits before it. Samples are the centres of fine voxels. Points of the mesh are rounded to a lattice of a
+/// millionth of the box (SampleLattice); from there on everything is exact: a crossing of a column with an edge or a
+/// corner is counted once, a closed mesh never leaks, and whether a sample is inside does not depend on the direction
+/// of its column. Then fractions of samples are added or subtracted, from where the surface crosses columns along x, y
+/// and z (SurfaceFraction); a voxel that the surface does not touch is all inside or all outside.
 ///
-/// What is found of a voxel does not depend on which box of the grid is asked for, to the last bit, but for the
-/// outermost voxels of a box that ends within the grid: of what is thinner than a sample there, the sample beyond it
-/// would have told on which side it lies.
+/// Results for a voxel do not depend on which box of the grid is requested, to the last bit, with one exception: in the
+/// outermost voxels of a box that ends within the grid, the side of features thinner than a sample is decided without
+/// the sample beyond the box.
 ///
-/// @param take  handed what is found slab by slab, and of each slab mesh by mesh from the last to the first, so that
-///   what is on the device at a time does not grow with the grid or the number of meshes
-/// @return a mesh: whether it winds about all samples 0 times or once. Where it does not the samples inside are those
-///   about which it winds an odd number of times. Not known where the orientation is 0: the numbers are those of a
-///   closed mesh that is well oriented
-/// @throws InvalidInput   where a setting or a mesh's size has no meaning
+/// @param take  receives the results slab by slab, and within a slab mesh by mesh from the last to the first, so that
+///   device memory does not grow with the size of the grid or the number of meshes
+/// @return for each mesh, whether its winding number is 0 or 1 at all samples. Where it is not, the samples inside are
+///   those with an odd winding number. Unknown if the orientation is 0: the numbers are then those of a closed, well
+///   oriented mesh
+/// @throws InvalidInput   if a setting or a mesh's size is invalid
 /// @throws DeviceError    if the meshes and a slab do not fit the device
 std::vector<WindingNumbers> CountSamplesInside(Device& device, const Grid& grid, const CountedVoxels& counted,
   const std::vector<OrientedMesh>& meshes, const VoxelizationSettings& settings,
   const std::function<void(const SamplesInside&)>& take, const Monitor& monitor = {});
-/// The same of all of the grid.
+/// The same for the whole grid.
 std::vector<WindingNumbers> CountSamplesInside(Device& device, const Grid& grid,
   const std::vector<OrientedMesh>& meshes, const VoxelizationSettings& settings,
   const std::function<void(const SamplesInside&)>& take, const Monitor& monitor = {});

@@ -11,20 +11,20 @@
 
 namespace tyndall
 {
-/// Options of Voxelization.cl.
+/// Compiler options of Voxelization.cl.
 std::string CrossingOptions(int samplesOfVoxel, bool winding);
 
-/// Puts the crossings of meshes with some rows of columns into a buffer (mark_crossings of Voxelization.cl).
+/// Marks the crossings of meshes with some rows of columns in a buffer (mark_crossings of Voxelization.cl).
 class CrossingMarker
 {
 public:
-  /// @param words      of 32 bits in a column
-  /// @param fromAbove  what lies after a crossing is marked, in place of what lies before
+  /// @param words      32-bit words per column
+  /// @param fromAbove  mark the samples after a crossing instead of those before it
   CrossingMarker(Device& device, const SampleColumns& columns, int words, bool fromAbove, const std::string& options);
 
   /// Queues the kernel.
-  /// @param marks  cleared before; `words` for each column of the rows
-  /// @param sums   cleared before; one for each column of the rows; empty where windings are asked for
+  /// @param marks  cleared by the caller; `words` for each column of the rows
+  /// @param sums   cleared by the caller; one for each column of the rows; empty if winding numbers are computed
   void Mark(const LatticeMesh& mesh, int firstRow, int endRow, Buffer<cl_uint>& marks, Buffer<cl_uint>& sums);
 
 private:
@@ -36,30 +36,31 @@ private:
   Buffer<cl_uint4> Tiles;
 };
 
-/// How the kernels of Voxelization.cl run: a work-item per tile or column.
+/// Work-group size of the kernels of Voxelization.cl, which have one work-item per tile or column.
 inline cl::NDRange CrossingGroup()
 {
   return cl::NDRange(64);
 }
 cl::NDRange CrossingRange(std::size_t items);
 
-/// Where a mesh winds about samples neither 0 times nor once: it intersects itself, or has parts inside out or within
-/// each other.
+/// Samples at which the winding number of a mesh is neither 0 nor 1: the mesh intersects itself, or has parts inside
+/// out or within each other.
 struct WindingNumbers
 {
-  std::size_t oddSamples = 0;                         ///< samples about which it does so
-  int lowest = 0, highest = 1;                        ///< how often it winds about them and others
-  std::array<double, 3> firstOddSample = { 0, 0, 0 }; ///< where the first is, in the order z, y, x for columns along x
-  std::array<int, 3> firstOddNumber = { 0, 0, 0 };    ///< its number along each axis of the whole grid
+  std::size_t oddSamples = 0;  ///< number of such samples
+  int lowest = 0, highest = 1; ///< range of their winding numbers, and of 0 and 1
+  /// Position of the first such sample, in the order z, y, x for columns along x.
+  std::array<double, 3> firstOddSample = { 0, 0, 0 };
+  std::array<int, 3> firstOddNumber = { 0, 0, 0 }; ///< its index along each axis of the whole grid
 
-  /// Of samples apart from these, too, for columns along x.
+  /// Adds the results for other samples, with columns along x.
   void Add(const WindingNumbers& others);
 };
 
-/// Winding numbers about the samples of some rows of voxels of a box of the grid.
-/// @param mesh      on the lattice from the box's first voxel on, as columns are
-/// @param rows      of voxels along columns.up: not 0 where they are looked at
-/// @param inverted  whether the corners run clockwise seen from outside
+/// Computes winding numbers at the samples in some rows of voxels of a box of the grid.
+/// @param mesh      on the lattice that starts at the box's first voxel, as do the columns
+/// @param rows      one per row of voxels along columns.up: nonzero to examine the row
+/// @param inverted  whether the corners run clockwise as seen from outside
 WindingNumbers FindWindings(Device& device, const Grid& grid, const VoxelBox& box, const LatticeMesh& mesh,
   const SampleColumns& columns, const std::vector<cl_int>& rows, bool inverted, const Monitor& monitor = {});
 }
