@@ -1,14 +1,15 @@
-// Photons by bricks of voxels, where most of these are empty. In an empty brick a photon goes to the brick's wall in
-// one stretch, and what it leaves there goes to the brick's one record; in a filled one it goes from voxel to voxel. A
-// voxel's place is the number of its record (PhotonBricks.h). The index is constant.
+// Photons in a medium stored by bricks of voxels, most of which are empty. A photon crosses an empty brick to its wall
+// in one segment, and deposits to the brick's single record; it crosses a filled brick voxel by voxel. Voxels are
+// addressed by the indices of their records (PhotonBricks.h). The index is constant.
 
 #pragma once
 #include "Medium/BrickShared.h"
 #include "Photons/Marching/PhotonLanes.cl"
 
-#define NO_SLOPE 1e37f // time across a voxel where a photon does not move along an axis
+#define NO_SLOPE 1e37f // time across a voxel along an axis with zero velocity
 
-// The records of voxels, and `last`: of their step, the last of the voxels along an edge, 0 where it is a single one.
+// The records of voxels. `last`: BrickEdge - 1 in an empty brick, which a photon crosses as a whole; 0 in a single
+// voxel.
 static void find_records(const march_arrays* arrays, const integer* voxel, integer* record, integer* last)
 {
   const IndexGrid* grid = &arrays->info->grid;
@@ -27,7 +28,7 @@ static void find_records(const march_arrays* arrays, const integer* voxel, integ
   *last = empty & ~outside & within;
 }
 
-// The voxels between which a photon's step is.
+// First voxel and end along an axis of the region, voxel or brick, that a photon crosses in one segment.
 static integer lower_end(integer voxel, integer last)
 {
   return voxel & ~last;
@@ -37,7 +38,7 @@ static integer upper_end(integer voxel, integer last, int size)
   return min((voxel & ~last) + last + 1, (integer)size);
 }
 
-// Times of the walls ahead.
+// Times at which the photons reach the walls ahead.
 static void find_walls(
   const march_arrays* arrays, const photon_lanes* lanes, const integer* voxel, integer last, real* wall)
 {
@@ -50,14 +51,14 @@ static void find_walls(
   }
 }
 
-// All photons set off from p in `voxel`, with velocity u.
+// Starts all photons at p in `voxel`, with velocity u.
 static void set_off_in_bricks(
   const march_arrays* arrays, photon_lanes* lanes, const integer* voxel, const real* p, const real* u)
 {
   FOR_AXES(a)
   {
     const integer still = truth(u[a] == (real)0.0f);
-    // One that goes along the grid's upper face is not to leave through it.
+    // A photon that moves along the grid's upper face must not leave through it.
     PUT(lanes->start[a], still ? lesser(p[a], to_real(voxel[a]) + (real)0.999f) : p[a]);
     PUT(lanes->inverse[a], still ? (real)NO_SLOPE : (real)1.0f / u[a]);
     PUT_INTEGERS(lanes->voxel[a], voxel[a]);
@@ -74,8 +75,8 @@ static void set_off_in_bricks(
   }
 }
 
-// Through the walls that are reached at time `next`. What is known of the other axes is the time alone: a voxel that
-// rounding puts into a neighbouring step is the last one of this step.
+// Moves photons through the walls that they reach at time `next`. Along the other axes, the voxel is computed from the
+// time; if rounding puts it outside the current region, the region's nearest voxel is used.
 static void cross_in_bricks(const march_arrays* arrays, const photon_lanes* lanes, real next, integer* voxel,
   integer* last, real* wall, integer* record)
 {

@@ -1,7 +1,7 @@
-// Photons side by side: REAL_WIDTH of them, a lane each.
+// Packets of photons: REAL_WIDTH of them, one per vector lane.
 //
-// What is known of them stands in arrays, which are read and written for all at once, or one by one where a photon goes
-// its own way. A mask is -1 in the lanes that are meant and 0 in the others; `mask ? a : b` chooses by lane.
+// Their state is in arrays, read and written for all lanes at once, or one by one if a photon needs separate treatment.
+// A mask is -1 in selected lanes and 0 in the others; `mask ? a : b` selects by lane.
 
 #pragma once
 #include "Numerics/Numerics.cl"
@@ -15,11 +15,11 @@
 #define PUT_WHERE(mask, array, value) (*(real*)(array) = (mask) ? (value) : VECTOR(array))
 #define PUT_INTEGERS_WHERE(mask, array, value) (*(integer*)(array) = (mask) ? (value) : INTEGERS(array))
 
-// PoCL does not unroll these by itself, and arrays with a changing index are not kept in registers.
+// PoCL does not unroll these loops by itself, and arrays with a variable index are not kept in registers.
 #define FOR_AXES(a) _Pragma("unroll") for (int a = 0; a < 3; ++a)
 #define FOR_CHANNELS(c) _Pragma("unroll") for (int c = 0; c < CHANNELS; ++c)
 
-// Not fmin and fmax, which look for values that are no numbers.
+// Instead of fmin and fmax, which check for NaN.
 #define lesser(a, b) ((a) < (b) ? (a) : (b))
 #define greater(a, b) ((a) > (b) ? (a) : (b))
 

@@ -1,25 +1,25 @@
-// Photons through a medium (Pfeuti 2009, section 3.1.5, but for the accumulation). The host gives what the
-// included files ask for, and
-//   CHANNELS         of light; MEDIUM_CHANNELS of sigma_t, 1 or CHANNELS
-//   WORKERS          0: a work-item per packet, all add to the same sums; else so many take blocks as they come, each
-//                    to its sums
-//   COUNTS           1: voxels also count photons and their weights, by photons' marks: 1 << CountShift and units of
-//                    weight
-//   CELLS            1: what is deposited are coarse cells, which also count photons, and sum up the columns and rows
-//                    that these set out from, by their marks: column and row << 16
-//   PATHS            1: nothing is summed, vertices are written
-//   BRICKS           1: the medium, and the sums, stand by bricks (PhotonBricks.cl), without COUNTS and CELLS
-//   TURNS            1: photons march in turns, and are kept between them; one batch, without PATHS
-//   BLOCKS           1: photons march as far as their block of the grid goes (PhotonsOnward.cl), without BRICKS and
+// Marches photons through a medium and deposits their light (Pfeuti 2009, section 3.1.5, but for the accumulation). The
+// host defines the macros of the included files, and
+//   CHANNELS         channels of light; MEDIUM_CHANNELS of sigma_t, 1 or CHANNELS
+//   WORKERS          0: one work-item per packet, all add to the same sums; else the number of work-items, which fetch
+//                    blocks of photons from a counter and add each to its own sums
+//   COUNTS           1: voxels also count photons and sum their weights; a photon's mark is 1 << CountShift plus its
+//                    weight in units
+//   CELLS            1: deposits go to coarse cells, which also count photons and sum the columns and rows of their
+//                    origins; a photon's mark is column and row << 16
+//   PATHS            1: vertices of paths are written, and nothing is deposited
+//   BRICKS           1: medium and sums are stored by bricks (PhotonBricks.cl), without COUNTS and CELLS
+//   TURNS            1: photons march in turns, and are stored between them; one batch, without PATHS
+//   BLOCKS           1: photons march to the end of their block of the grid (PhotonsOnward.cl), without BRICKS and
 //                    TURNS
 //
-// A step is followed from voxel wall to voxel wall (Amanatides and Woo 1987). In a voxel whose extinction over a
-// diagonal is s, with b = max(s, 1), the sums gain (numerics.md, Eqs. (35), (97))
+// A step is followed from voxel wall to voxel wall (Amanatides and Woo 1987). In a voxel with optical thickness s along
+// a diagonal, and b = max(s, 1), the sums gain (numerics.md, Eqs. (35), (97))
 //   a = power b (path integral of transmittance, in diagonals),   0 <= a <= power
 // Cells, whose voxels differ, gain power times path in diagonals.
 //
-// A photon counts where it enters a voxel (a cell), however many stretches it crosses it in; once more where it comes
-// back.
+// A photon is counted when it enters a voxel (a cell), once for any number of segments in it, and again when it
+// re-enters.
 
 #define MARKS (COUNTS || CELLS || (BLOCKS && PATHS))
 
@@ -38,29 +38,29 @@
 #endif
 #define TINY 1e-20f
 
-// The part of the state that changes between two turns, in registers.
+// The part of the state that changes between two velocity changes, in registers.
 typedef struct
 {
   integer at, alive, crossings;
   real wall[3], now;
   real sigma;
   real power[CHANNELS];
-  real owed[CHANNELS]; // what rounding has left of what the voxels were to take (Kahan): the power is `power + owed`
+  real owed[CHANNELS]; // Kahan compensation: the power is `power + owed`
 #if COUNTS || CELLS
-  integer counted; // place where the photon was counted last
+  integer counted; // voxel or cell that counted the photon last
 #endif
 #if BRICKS
   integer voxel[3], last;
 #endif
 } photon_flight;
 
-// What a stretch leaves where.
+// The deposit of one path segment.
 typedef struct
 {
   integer at; // record of the sums
   real amount[CHANNELS];
 #if COUNTS || CELLS
-  integer entered; // a mask: those that were not there before
+  integer entered; // mask of the photons that entered this voxel or cell
 #endif
 } photon_gain;
 
@@ -103,7 +103,7 @@ static void take_off(const march_arrays* arrays, const photon_lanes* lanes, phot
   flight->sigma = gather(float, arrays->sigma, flight->at);
 }
 
-// What the voxels take of the photons over `length`, and gain.
+// Attenuates the photons over `length` (diagonals), and computes the deposit of each, `gained`.
 static void attenuate(const march_arrays* arrays, photon_flight* flight, real length, real* gained)
 {
   real left, lost, factor;
@@ -115,7 +115,7 @@ static void attenuate(const march_arrays* arrays, photon_flight* flight, real le
       const real s = fabs(c == 0 ? flight->sigma : gather(float, arrays->sigma + c * arrays->info->copy, flight->at));
       const real tau = s * length;
       lost = extinguished(tau, &left);
-      const real mean = tau > (real)TINY ? lost / tau : (real)1.0f; // transmittance, over the length
+      const real mean = tau > (real)TINY ? lost / tau : (real)1.0f; // mean transmittance over the length
       factor = mean * length;
 #if !CELLS
       factor *= greater(s, (real)1.0f);
@@ -123,7 +123,7 @@ static void attenuate(const march_arrays* arrays, photon_flight* flight, real le
       thick = truth(tau > (real)0.5f);
     }
     gained[c] = flight->power[c] * factor;
-    // Through many thin voxels, rounding goes the same way in each (Kahan's sum).
+    // Through many optically thin voxels, rounding errors have the same sign in each: compensated summation (Kahan).
     const real taken = flight->power[c] * lost - flight->owed[c];
     const real rest = thick ? flight->power[c] * left : flight->power[c] - taken;
     flight->owed[c] = thick ? (real)0.0f : (flight->power[c] - rest) - taken;
@@ -133,7 +133,7 @@ static void attenuate(const march_arrays* arrays, photon_flight* flight, real le
 
 typedef long4 __attribute__((aligned(8))) long4_anywhere;
 
-// Add what one photon left in one voxel, `a` of each channel.
+// Adds the deposit of one photon, a[channel], to a voxel's record.
 static void deposit(__global long* record, const float* a, float4 direction)
 {
 #if CHANNELS == 1 && DIRECTIONS && !ATOMICS
@@ -154,7 +154,7 @@ static void deposit(__global long* record, const float* a, float4 direction)
 }
 
 #if COUNTS || CELLS
-// One photon more in a voxel or a cell, where it entered (-1, else 0).
+// Counts one photon in a voxel or cell if it entered it (entered: -1, else 0).
 static void count_photon(__global long* record, ulong mark, int entered)
 {
 #if COUNTS
@@ -198,13 +198,13 @@ static void deposit_all(const march_arrays* arrays, const photon_lanes* lanes, c
 #undef DEPOSIT
 }
 
-// Most of the time of a march across a large grid is spent on memory. It is prefetched a few voxels ahead of the
-// photons, as far as they go straight on. Bricks are small enough without.
+// Memory access dominates the time of a march through a large grid. Prefetches records a few voxels ahead of the
+// photons on a straight line. Grids stored by bricks are small enough without.
 static void ask_ahead(const march_arrays* arrays, const photon_lanes* lanes, integer at)
 {
 #if REAL_WIDTH > 1 && !BRICKS
   const integer there = at + INTEGERS(lanes->ahead);
-#if CELLS // few, whose sums are near already
+#if CELLS // cells are few, and their sums are already in caches
 #define ASK_FOR_RECORD(lane) PREFETCH(arrays->cells + (long)there lane, 0, 3);
 #else
 #define ASK_FOR_RECORD(lane) PREFETCH(arrays->sums + (long)there lane * RECORD, 1, 3);
@@ -221,7 +221,7 @@ static void ask_ahead(const march_arrays* arrays, const photon_lanes* lanes, int
 #include "Photons/Marching/PhotonsOnward.cl"
 #endif
 
-// What the photons leave over `length` in the voxels where they are.
+// Computes the deposits of the photons over `length` in their voxels.
 static void leave_light(const march_arrays* arrays, photon_flight* flight, real length, photon_gain* gain)
 {
   attenuate(arrays, flight, length, gain->amount);
@@ -231,13 +231,13 @@ static void leave_light(const march_arrays* arrays, photon_flight* flight, real 
   gain->at = flight->at;
 #endif
 #if COUNTS || CELLS
-  // Of no length are stretches of photons that set out from a wall, and of those that have ended.
+  // Segments of photons that start on a wall, or have ended, have zero length.
   gain->entered = truth(gain->at != flight->counted) & truth(length > (real)0.0f);
   flight->counted = gain->entered ? gain->at : flight->counted;
 #endif
 }
 
-// Through the walls that are reached at time `next`.
+// Moves photons through the walls that they reach at time `next`.
 static void cross_walls(const march_arrays* arrays, const photon_lanes* lanes, photon_flight* flight, real next)
 {
 #if BRICKS
@@ -266,7 +266,7 @@ static real brightest(const photon_flight* flight)
 }
 
 #if BENDS
-// The photons that have come to a turn.
+// The photons that start a new step here: their step has ended, or they have entered a region of varying index.
 static integer to_turn(const photon_lanes* lanes, const photon_flight* flight)
 {
   const real turn = VECTOR(lanes->turn);
@@ -275,7 +275,7 @@ static integer to_turn(const photon_lanes* lanes, const photon_flight* flight)
 }
 #endif
 
-// The photons that have come to an end or to a turn.
+// The photons that have ended, or start a new step.
 static integer to_attend(const march_arrays* arrays, const photon_lanes* lanes, const photon_flight* flight)
 {
   integer special = truth(flight->sigma == (real)OUTSIDE) | truth(brightest(flight) < (real)arrays->info->darkness);
@@ -285,8 +285,8 @@ static integer to_attend(const march_arrays* arrays, const photon_lanes* lanes, 
   return special & flight->alive;
 }
 
-// Those that have been at as many walls and turns as photons may, or as they may before they wait: in a block they have
-// not come as far as each other.
+// In a block: the photons that have reached the limit of path segments, or the number after which they wait. There,
+// unlike in a serial march, photons of a packet may have different numbers of segments behind them.
 static integer halted(const march_arrays* arrays, const photon_flight* flight)
 {
 #if BLOCKS
@@ -309,7 +309,7 @@ static void end_photon(const photon_lanes* lanes, int k, int face, __global Phot
 }
 
 #if BENDS
-// Gives up the photons of a mask whose velocity is out of range after a turn.
+// Gives up the photons of a mask whose velocity is out of range after a change.
 static void give_up_lost(const march_arrays* arrays, photon_lanes* lanes, integer mask, int first)
 {
   const real pace = VECTOR(lanes->pace);
@@ -325,7 +325,7 @@ static void give_up_lost(const march_arrays* arrays, photon_lanes* lanes, intege
 }
 #endif
 
-// The photons of a mask end or turn.
+// Ends the photons of a mask, or starts their next steps.
 static void attend(
   const march_arrays* arrays, photon_lanes* lanes, const photon_flight* flight, integer mask, int first)
 {
@@ -346,7 +346,7 @@ static void attend(
 #endif
     FOR_LANES(k, ended)
     {
-#if BLOCKS // one that waits goes on from where it is
+#if BLOCKS // a waiting photon continues from where it is
       const int face = beyond >> k & 1 ? face_left(arrays->info, lanes, k) : nothing >> k & 1 ? Dark : Elsewhere;
 #else
       const int face = beyond >> k & 1 ? face_left(arrays->info, lanes, k) : Dark;
@@ -439,7 +439,7 @@ static float total_power(const photon_flight* flight)
   return sum;
 }
 
-// The way goes on straight into another block, whose path has no corner there.
+// Whether the path continues straight into another block, so that it has no corner here.
 static bool goes_on_elsewhere(const march_arrays* arrays, const photon_lanes* lanes, const photon_flight* flight)
 {
 #if BLOCKS
@@ -449,7 +449,7 @@ static bool goes_on_elsewhere(const march_arrays* arrays, const photon_lanes* la
 #endif
 }
 
-// Where the photon has landed.
+// Adds the photon's position to its path.
 static void add_vertex(const march_arrays* arrays, const photon_lanes* lanes, const photon_flight* flight, int* count)
 {
   if (arrays->vertices)
@@ -462,12 +462,12 @@ static void add_vertex(const march_arrays* arrays, const photon_lanes* lanes, co
 }
 #endif
 
-// Follow a packet of photons, of which some are still on their way, over `events` walls and turns at most, or to their
-// ends. True where some are on their way still. With PATHS, `vertices` of the path are counted.
+// Follows a packet, some photons of which have not ended, over at most `events` path segments, or to their ends.
+// Returns whether some have not ended. With PATHS, `vertices` counts the vertices of the path.
 static bool follow(
   const march_arrays* arrays, photon_lanes* lanes, photon_flight* flight, int first, int events, int* vertices)
 {
-  // What voxels gain is deposited a stretch later, while that one's extinction is on its way from memory.
+  // A deposit is added one segment later, while the extinction of the next one is fetched from memory.
   photon_gain gain;
   bool owed = false;
   for (int event = 0; event < events; ++event)
@@ -519,7 +519,7 @@ static bool follow(
   return true;
 }
 
-// Photons that are on their way still are given up.
+// Gives up the photons that have not ended.
 static void give_up_all(const march_arrays* arrays, photon_lanes* lanes, const photon_flight* flight, int first)
 {
   land(flight, lanes);
@@ -532,8 +532,8 @@ static void give_up_all(const march_arrays* arrays, photon_lanes* lanes, const p
   }
 }
 
-// Follow photons `first` to `first + REAL_WIDTH`, but before `end`, to their ends. Returns the vertices of the path,
-// with PATHS.
+// Follows photons `first` to `first + REAL_WIDTH`, but only those before `end`, to their ends. Returns the number of
+// vertices of the path, with PATHS.
 static int march_packet(const march_arrays* arrays, const __global float* photons, int first, int end)
 {
   photon_lanes lanes;
@@ -551,7 +551,7 @@ static int march_packet(const march_arrays* arrays, const __global float* photon
 }
 
 #if BLOCKS
-// Photons that have come from other blocks, as load_packet those that set off. With PATHS their corners are counted.
+// Loads photons that arrived from other blocks, as load_packet does those that start. With PATHS, counts their corners.
 static void resume_packet(const march_arrays* arrays, const __global PhotonOnItsWay* arrived, int first, int end,
   photon_lanes* lanes, photon_flight* flight, int* vertices)
 {
@@ -573,7 +573,8 @@ static void resume_packet(const march_arrays* arrays, const __global PhotonOnIts
   }
 }
 
-// Returns the vertices of the path, with PATHS: from where the photon set off, but without where it came to the block.
+// Returns the number of vertices of the path, with PATHS, including the photon's start but not its entry into the
+// block.
 static int march_packet_in_block(const march_arrays* arrays, const __global float* photons,
   const __global PhotonOnItsWay* arrived, int resumes, int first, int end)
 {
@@ -599,8 +600,8 @@ static int march_packet_in_block(const march_arrays* arrays, const __global floa
 }
 
 #if PATHS
-// Parts of paths, a work-item each: of `photons`, which set off, or with `resumes` of `arrived`. Its `counts[i]`
-// vertices go to vertices + offsets[i]; with `counting` they are only counted. Photons are told by their marks.
+// Traces parts of paths, one per work-item, of the starting `photons` or, with `resumes`, of the photons in `arrived`.
+// Writes counts[i] vertices to vertices + offsets[i]; with `counting`, only counts them. Marks identify photons.
 __kernel void trace_in_block(MarchInfo info, const __global float* sigma, const __global float* coefficients,
   const __global uchar* nodes, const __global float* photons, const __global ulong* marks,
   const __global PhotonOnItsWay* arrived, __global PhotonOnItsWay* gone, volatile __global int* gone_count,
@@ -613,9 +614,9 @@ __kernel void trace_in_block(MarchInfo info, const __global float* sigma, const 
   counts[i] = march_packet_in_block(&arrays, photons, arrived, resumes, i, i + 1);
 }
 #else
-// Photons `first` to `first + count`, of one batch, to their ends or into another block: of `photons`, which set off,
-// or with `resumes` of `arrived`. Those that go on elsewhere are put into `gone`, whose number gone_count is, in any
-// order. Copies of the batch's sums begin at `copyBegin` and are `copyStride` apart.
+// Marches photons `first` to `first + count`, of one batch, to their ends or into another block: the starting `photons`
+// or, with `resumes`, those in `arrived`. Photons that continue elsewhere are appended to `gone` in any order;
+// gone_count is their number. Copies of the batch's sums begin at `copyBegin` and are `copyStride` apart.
 __kernel void march_block(MarchInfo info, const __global float* sigma, const __global float* coefficients,
   const __global uchar* nodes, const __global float* photons, const __global ulong* marks,
   const __global PhotonOnItsWay* arrived, __global PhotonOnItsWay* gone, volatile __global int* gone_count,
@@ -642,8 +643,8 @@ __kernel void march_block(MarchInfo info, const __global float* sigma, const __g
 #endif
 
 #elif PATHS
-// The path of photon i, a work-item each. Its `counts[i]` vertices go to vertices + offsets[i]; with `counting` they
-// are only counted.
+// Traces the path of photon i, one per work-item. Writes counts[i] vertices to vertices + offsets[i]; with `counting`,
+// only counts them.
 __kernel void trace_paths(MarchInfo info, const __global float* sigma, const __global float* coefficients,
   const __global uchar* nodes, const __global float* photons, const __global int* cells, __global PhotonEnd* ends,
   int counting, const __global int* offsets, __global float4* vertices, __global int* counts)
@@ -654,14 +655,14 @@ __kernel void trace_paths(MarchInfo info, const __global float* sigma, const __g
   counts[i] = march_packet(&arrays, photons, i, i + 1);
 }
 #elif TURNS
-// A packet between two turns.
+// State of a packet between two turns.
 typedef struct
 {
   photon_lanes lanes;
   photon_flight flight;
 } photon_packet;
 
-// Photons of a packet that are on their way.
+// Number of photons in a packet that have not ended.
 static int number_of(const photon_packet* packet)
 {
   int number = 0;
@@ -672,13 +673,13 @@ static int number_of(const photon_packet* packet)
   return number;
 }
 
-// Bytes of a photon_packet, for the host.
+// Size of a photon_packet in bytes, for the host.
 __kernel void size_packet(__global int* bytes)
 {
   bytes[0] = sizeof(photon_packet);
 }
 
-// A packet's part of a turn: over `events` walls and turns, from where it is.
+// Marches a packet for one turn: over `events` path segments from its current state.
 static void take_turn(const march_arrays* arrays, const __global float* photons, __global photon_packet* packet,
   __global int* going, int first, int end, int turn, int events, int last)
 {
@@ -705,10 +706,10 @@ static void take_turn(const march_arrays* arrays, const __global float* photons,
   }
 }
 
-// A turn of all `count` photons, which are of one batch (march_photons).
-//   packets  of photons on their way; going: how many of each are
-//   left     gains their number
-//   turn     its number; last: photons on their way are given up after it
+// One turn of all `count` photons, which are of one batch (march_photons).
+//   packets  state of the packets; going: number of photons in each that have not ended
+//   left     their total is added to it
+//   turn     number of the turn; last: photons that have not ended are given up after it
 __kernel void march_turn(MarchInfo info, const __global float* sigma, const __global float* coefficients,
   const __global uchar* nodes, const __global float* photons, const __global ulong* marks, const __global int* cells,
   __global PhotonEnd* ends, __global long* sums, ulong copyStride, __global photon_packet* packets, __global int* going,
@@ -741,8 +742,9 @@ __kernel void march_turn(MarchInfo info, const __global float* sigma, const __gl
   }
 }
 #else
-// Of each batch, photons `first` to `first + count`: those of batch b begin at batch_begin[b], and end where the next
-// ones begin. There are `copies` of the sums, at least as many as batches; copy c is for batch c modulo their number.
+// Marches photons `first` to `first + count` within each batch. Batch b begins at batch_begin[b] and ends where the
+// next one begins. There are `copies` of the sums, at least as many as batches; copy c belongs to batch c modulo their
+// number.
 __kernel void march_photons(MarchInfo info, const __global float* sigma, const __global float* coefficients,
   const __global uchar* nodes, const __global float* photons, const __global ulong* marks, const __global int* cells,
   __global PhotonEnd* ends, __global long* sums, ulong copyStride, int copies, int batches,
@@ -754,7 +756,8 @@ __kernel void march_photons(MarchInfo info, const __global float* sigma, const _
     const int batch = copy % batches;
     const int begin = batch_begin[batch] + first, left = min(count, batch_begin[batch + 1] - begin);
     const march_arrays arrays = { &info, sigma, coefficients, nodes, sums + copy * copyStride, ends, 0, marks, cells };
-    // Blocks of neighbours stay together: they share cache lines. Who takes which makes no difference to the sums.
+    // Blocks keep neighbouring photons together, as these share cache lines. Which work-item takes a block does not
+    // affect the sums.
     for (int block = atomic_add(next + batch, BLOCK); block < left; block = atomic_add(next + batch, BLOCK))
     {
       for (int i = block; i < min(block + BLOCK, left); i += REAL_WIDTH)

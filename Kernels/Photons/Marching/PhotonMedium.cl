@@ -1,17 +1,17 @@
-// The medium as photons need it. The host gives
-//   MEDIUM_CHANNELS, BENDS, LEVELS  as PhotonMarch.cl wants them
-//   A_CHANNELS, S_CHANNELS          components of sigma_a and sigma_s, 0: there is none
+// Packs the medium for the marching kernels. The host defines
+//   MEDIUM_CHANNELS, BENDS, LEVELS  as in PhotonMarch.cl
+//   A_CHANNELS, S_CHANNELS          components of sigma_a and sigma_s, 0: absent
 
 #include "Numerics/Numerics.cl"
 #include "Refraction/Index/SquaredIndex.cl"
 
 #define OUTSIDE -3e38f
-#define FLAT 2e-6f // of n^2: what rounding makes of a constant
+#define FLAT 2e-6f // relative variation of n^2 that counts as rounding of a constant
 #define component(values, count, voxel, c) \
   ((count) == 0 ? 0.0f : (values)[(voxel) * (count) + ((count) == 3 ? (c) : 0)])
 
-// Whether n^2 varies within the reach of interpolation in a voxel (low, high: the range of coefficients, in their
-// padding).
+// Whether n^2 varies within the reach of interpolation in a voxel. low, high: least and largest nearby coefficient of
+// each, in the padded layout of the coefficients.
 static bool index_varies(
   const IndexGrid* known, const __global float* low, const __global float* high, int x, int y, int z)
 {
@@ -19,8 +19,8 @@ static bool index_varies(
   return high[i] - low[i] > FLAT * high[i];
 }
 
-// sigma  [MEDIUM_CHANNELS][padded] extinction over `diagonal`, OUTSIDE in the padding; its sign bit says that n^2
-//        varies. x0, y0, z0: the first voxel, among those whose index is known
+// sigma  [MEDIUM_CHANNELS][padded] optical thickness of a voxel diagonal, OUTSIDE in the padding; sign bit set where
+// n^2 varies. x0, y0, z0: the grid's first voxel, in the region whose index is known
 __kernel void pack_extinction(IndexGrid grid, IndexGrid known, int x0, int y0, int z0, float diagonal,
   const __global float* sigma_a, const __global float* sigma_s, const __global float* low, const __global float* high,
   __global float* sigma)
@@ -37,7 +37,7 @@ __kernel void pack_extinction(IndexGrid grid, IndexGrid known, int x0, int y0, i
     if (inside)
     {
       const float extinction = component(sigma_a, A_CHANNELS, voxel, c) + component(sigma_s, S_CHANNELS, voxel, c);
-      s = fmin(diagonal * extinction, 1e30f); // endless, and times no length, it would be no number
+      s = fmin(diagonal * extinction, 1e30f); // infinity times zero length would be NaN
       s = varies ? -s : s;
     }
     sigma[c * copy + at] = s;
@@ -56,8 +56,8 @@ __kernel void pack_nodes(IndexGrid known, const __global float* low, const __glo
   nodes[((size_t)z * (ny + 2) + y) * (nx + 2) + x] = varies ? 1 + (LEVELS ? levels[voxel] : 0) : 0;
 }
 
-// [padded] the coarse cell of each voxel, of cells[0] times cells[1] times cells[2]; 0 in the padding.
-// x0, y0, z0: the first voxel, of the whole grid.
+// Writes the coarse cell of each voxel, [padded], out of cells[0] times cells[1] times cells[2]; 0 in the padding.
+// x0, y0, z0: first voxel of the block in the whole grid.
 __kernel void assign_cells(IndexGrid grid, IndexGrid whole, int x0, int y0, int z0, IndexGrid cells, __global int* cell)
 {
   const int x = get_global_id(0), y = get_global_id(1), z = get_global_id(2);

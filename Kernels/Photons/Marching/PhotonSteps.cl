@@ -1,30 +1,31 @@
-// The paths of photons, step by step. The host gives
-//   REAL_WIDTH  photons side by side: 1 on a GPU, 4 to 16 on a CPU
-//   BENDS       1: the index varies; ORDER of the integrator then: 1, 2 or 4
+// Path integrator of photons. The host defines
+//   REAL_WIDTH  photons per packet: 1 on a GPU, 4 to 16 on a CPU
+//   BENDS       1: the index varies; ORDER of the integrator is then 1, 2 or 4
 //   LEVELS      1: there are octree levels
-//   NODE_BRICKS 1: nodes are those of the whole grid, as BrickedBytes has them
-//   DIRECTIONS  1: directions are asked for
-//   MARKS       1: photons bear marks (PhotonMarch.cl)
-//   BRICKS      1: the medium stands by bricks (PhotonBricks.cl); places are records, and [copy] of them
-//   BLOCKS      1: photons may go into other blocks of the grid (WaysOnward.cl)
+//   NODE_BRICKS 1: `nodes` covers the whole grid, in the layout of BrickedBytes
+//   DIRECTIONS  1: directions are recorded
+//   MARKS       1: photons carry marks (PhotonMarch.cl)
+//   BRICKS      1: the medium is stored by bricks (PhotonBricks.cl); indices are those of records, and there are [copy]
+//               of them
+//   BLOCKS      1: photons may enter other blocks of the grid (WaysOnward.cl)
 //
-// A path obeys dr/dt = T, dT/dt = grad(n^2) / 2 with dt = ds / n (numerics.md, Eq. (90)). It becomes steps, straight
-// lines of constant velocity:
-//   order 2  from kick to kick of the leapfrog, Eq. (91): its polygon is the path itself
-//   order 4  from step end to step end, each step of Yoshida's three leapfrogs
+// A path obeys dr/dt = T, dT/dt = grad(n^2) / 2 with dt = ds / n (numerics.md, Eq. (90)). It is a sequence of steps,
+// straight lines of constant velocity; where the velocity changes, code and comments say that the photon turns:
+//   order 2  from kick to kick of the leapfrog, Eq. (91): this polygon is the path
+//   order 4  from end to end of steps, each of Yoshida's three leapfrogs
 //   order 1  explicit Euler, Eq. (92), as in Pfeuti 2009, Eq. 2.10 and 2.11: dx/ds = v / n, dv/ds = grad n
 //
-// The integrator looks at places before a photon gets there, but no farther ahead than by so many steps
-// (MarchShared.h): a jump of n that makes a photon many times as fast as its step was meant for would have it look
-// anywhere, and a block of a grid knows the index no farther than that (numerics.md, Eq. (99f)). An octree's steps are
-// longer: those of order 2 look at no index before they get there, and those of order 4 end in larger nodes, too, where
-// they leave one of 2^YoshidaLevel voxels an edge.
+// The integrator evaluates n^2 ahead of the photon, but no farther than the look-ahead limits in MarchShared.h: where a
+// jump of n makes a photon many times as fast as its step was meant for, it could otherwise look arbitrarily far, and a
+// block of a grid stores the index no farther than that (numerics.md, Eq. (99f)). Steps in an octree are longer: those
+// of order 2 do not evaluate the index ahead, and those of order 4 end where they leave a cube of 2^YoshidaLevel voxels
+// per edge, even in larger nodes.
 //
-// Where n does not vary within the reach of interpolation nothing is evaluated, and a step is as long as that is so.
+// Where n is constant within the reach of interpolation nothing is evaluated, and one step lasts until n varies again.
 //
 // Positions and velocities are in voxels, lengths in voxel diagonals.
 //
-// A photon whose velocity is no number, none at all or endless (n^2 beyond float) is given up.
+// A photon whose velocity is NaN, zero or infinite (n^2 beyond float) is given up.
 
 #pragma once
 #include "Numerics/Numerics.cl"
@@ -33,16 +34,17 @@
 #include "Refraction/Index/SquaredIndex.cl"
 
 #define NEVER 3e38f
-#define AHEAD 4             // voxels along the axis of fastest change, by which memory is asked for early
-#define OUTSIDE -3e38f      // sigma of the padding round the grid
-#define SLOWEST_PACE 1e-12f // diagonals per time, which is n but for rounding and steps across jumps of n
+#define AHEAD 4             // prefetch distance, in voxels along the axis of fastest change
+#define OUTSIDE -3e38f      // sigma of the padding around the grid
+#define SLOWEST_PACE 1e-12f // diagonals per time; equals n, but for rounding and steps across jumps of n
 #define FASTEST_PACE 1e12f
 
-// Everything that is read and written.
+// All arrays that the kernel reads and writes.
 typedef struct
 {
   const MarchInfo* info;
-  const __global float* sigma; // [MEDIUM_CHANNELS][copy] extinction over a diagonal; its sign bit: the index varies
+  // [MEDIUM_CHANNELS][copy] optical thickness of a voxel diagonal; sign bit set: the index varies.
+  const __global float* sigma;
   const __global float* coefficients; // of n^2
   const __global uchar* nodes; // [padded known] 0: the index does not vary, 1: it does, in a single voxel, 1 + k: in
                                // an octree's node of 2^k; with NODE_BRICKS a table of bricks, then bricks
@@ -50,48 +52,50 @@ typedef struct
   __global PhotonEnd* ends;
   __global float4*
     vertices; // of a path: position in voxels, part of the power that is left; null: they are only counted
-  const __global ulong* marks; // of photons, with MARKS
-  const __global int* cells;   // [copy] of voxels, with CELLS; with BRICKS of bricks: PhotonBricks.h
+  const __global ulong* marks; // marks of photons, with MARKS
+  // With CELLS: [copy] coarse cell of each voxel; with BRICKS: first records, PhotonBricks.h.
+  const __global int* cells;
 #if BLOCKS
-  __global PhotonOnItsWay* gone; // into other blocks
+  __global PhotonOnItsWay* gone; // photons that enter other blocks
   volatile __global int* gone_count;
 #endif
 } march_arrays;
 
-// The state of REAL_WIDTH photons.
+// The state of a packet of REAL_WIDTH photons.
 typedef struct
 {
-  LANES(int, at);         // voxel, in the padded grid
+  LANES(int, at);         // current voxel, index into the padded grid
   LANES(int, alive);      // -1 or 0
-  LANES_3(int, stride);   // of `at` to the next voxel
-  LANES(int, ahead);      // of `at` to where the photon will be a few voxels on
-  LANES_3(float, wall);   // time of the next wall
-  LANES_3(float, across); // time from wall to wall
+  LANES_3(int, stride);   // change of `at` to the next voxel along each axis
+  LANES(int, ahead);      // change of `at` to the prefetched voxel
+  LANES_3(float, wall);   // time of the next wall along each axis
+  LANES_3(float, across); // time from wall to wall along each axis
   LANES(float, now);      // time since the step began
-  LANES(float, turn);     // time when it ends; NEVER: when the index varies again
-  LANES(float, settled);  // time until which the last turn holds
-  LANES(float, pace);     // diagonals per time
-  LANES(float, step);     // time of the step under way
-  LANES(int, steps);      // taken
-  LANES(int, crossings);  // stretches that were deposited
+  LANES(float, turn);     // time when the step ends; NEVER: constant n, until the index varies
+  LANES(float, settled);  // time before which a varying index does not start a new step
+  LANES(float, pace);     // speed, diagonals per time
+  LANES(float, step);     // duration of the current step
+  LANES(int, steps);      // steps taken
+  LANES(int, crossings);  // path segments that were deposited
   float power[CHANNELS][REAL_WIDTH] __attribute__((aligned(64)));
-  LANES_3(float, start);        // of the step
-  LANES_3(float, velocity);     // along it
-  LANES_3(float, momentum);     // T; v of Euler; order 2 has it as the velocity
-  float4 direction[REAL_WIDTH]; // 1, and the direction in space
+  LANES_3(float, start);        // position where the step began
+  LANES_3(float, velocity);     // velocity in the step
+  LANES_3(float, momentum);     // T; v for Euler; with order 2 equal to the velocity
+  float4 direction[REAL_WIDTH]; // (1, unit direction in space)
 #if MARKS
   LANES(ulong, mark);
 #endif
 #if BLOCKS
-  float owed[CHANNELS][REAL_WIDTH] __attribute__((aligned(64))); // of those that land to go on elsewhere
+  // Kahan compensation of photons that continue elsewhere.
+  float owed[CHANNELS][REAL_WIDTH] __attribute__((aligned(64)));
 #if CELLS
-  LANES(int, counted); // likewise: the cell that counted them last
+  LANES(int, counted); // the coarse cell that counted such photons last
 #endif
 #endif
 #if BRICKS
   LANES_3(int, voxel);
-  LANES(int, last);        // of the voxels that a step crosses, along an edge: PhotonBricks.cl
-  LANES_3(float, inverse); // time across a voxel, with the sign of the velocity
+  LANES(int, last);        // voxels per edge of the region crossed in one segment, less one; PhotonBricks.cl
+  LANES_3(float, inverse); // time to cross a voxel, with the sign of the velocity
 #endif
 } photon_lanes;
 
@@ -107,7 +111,7 @@ static int3 voxel_of(const MarchInfo* info, int at)
   return (int3)(at - z * layer - y * row - 1, y - 1, z - 1) + vload3(0, info->first);
 }
 
-// The face of the whole grid through which photon k came to where it is, beyond the block.
+// The face of the whole grid through which photon k left, or Elsewhere if it only left the block.
 static int face_left(const MarchInfo* info, const photon_lanes* lanes, int k)
 {
 #if BRICKS
@@ -125,7 +129,7 @@ static int face_left(const MarchInfo* info, const photon_lanes* lanes, int k)
                         : Elsewhere;
 }
 
-// The place of a voxel in an array of a part of the grid that is `by` longer at either end of each axis.
+// Index of a voxel in an array over a part of the grid, padded by `by` at either end of each axis.
 static integer place_in(const IndexGrid* part, const int* first, int by, const integer* voxel)
 {
   const int row = part->size[0] + 2 * by, layer = row * (part->size[1] + 2 * by);
@@ -137,7 +141,8 @@ static integer padded(const MarchInfo* info, const integer* voxel)
   return place_in(&info->grid, info->first, 1, voxel);
 }
 
-// The voxels of the photons of a mask: of their place p, but on a wall, where rounding would decide, that of `at`.
+// The voxels that contain positions p, for photons in the mask; for a photon on a wall, where rounding would decide,
+// the voxel of `at`.
 static void voxels_at(const MarchInfo* info, integer mask, const real* p, integer at, integer* voxel)
 {
   FOR_AXES(a)
@@ -168,14 +173,14 @@ static void voxels_at(const MarchInfo* info, integer mask, const real* p, intege
   }
 }
 
-// Time until a photon at p passes the wall `low` or `high`.
+// Time until a photon at p passes the wall `low` or `high`, whichever is ahead.
 static real time_to_wall(real p, real low, real high, real u, real inverse)
 {
   const real time = ((u > (real)0.0f ? high : low) - p) * inverse;
   return u == (real)0.0f ? (real)NEVER : greater(time, (real)0.0f);
 }
 
-// The photons of a mask have velocity u from now on; 1 / u is known.
+// Sets the velocity of the photons in a mask to u; `inverse` is 1 / u.
 static void aim(const MarchInfo* info, photon_lanes* lanes, integer mask, const real* u, const real* inverse)
 {
   const int strides[3] = { 1, info->grid.size[0] + 2, (info->grid.size[0] + 2) * (info->grid.size[1] + 2) };
@@ -209,7 +214,7 @@ static void aim(const MarchInfo* info, photon_lanes* lanes, integer mask, const 
 #endif
 }
 
-// Steps of the photons of a mask from p in `voxel`, with velocity u; 1 / u is known.
+// Begins steps of the photons in a mask at p in `voxel`, with velocity u; `inverse` is 1 / u.
 static void begin_steps(const MarchInfo* info, photon_lanes* lanes, integer mask, const integer* voxel, const real* p,
   const real* u, const real* inverse)
 {
@@ -224,19 +229,19 @@ static void begin_steps(const MarchInfo* info, photon_lanes* lanes, integer mask
 }
 
 #if BENDS
-// Of a voxel.
+// Index of a voxel's coefficient.
 static integer coefficient_of(const MarchInfo* info, const integer* voxel)
 {
   return place_in(&info->known, info->knownFirst, 2, voxel);
 }
 
-// n^2 and its gradient where the photons of a mask are.
+// n^2 and its gradient at positions p of the photons in a mask.
 static void squared_index_at(const march_arrays* arrays, integer mask, const real* p, real* squared, real* gradient)
 {
   const IndexGrid* known = &arrays->info->known;
   const int row = known->size[0] + 4, layer = row * (known->size[1] + 4);
   const int strides[3] = { 1, row, layer };
-  LANES(int, first); // of the coefficients
+  LANES(int, first); // index of the first coefficient
   LANES_3(float, fraction);
   LANES(float, values);
   LANES_3(float, slopes);
@@ -268,11 +273,11 @@ static void squared_index_at(const march_arrays* arrays, integer mask, const rea
   }
 }
 
-// A way from where a photon is, in voxels, as far as the integrator looks.
+// Limits a displacement, in voxels, to the integrator's look-ahead.
 static real looked_ahead(const MarchInfo* info, real way)
 {
 #if LEVELS && ORDER == 2
-  return way; // to a node, all of which are known
+  return way; // up to a node's wall; all nodes are known
 #else
   const float steps = 0.5f * (ORDER == 4 ? YoshidaLooksAhead : LeapfrogLooksAhead) * info->stepSize;
   const float most = LEVELS ? greater(steps, (float)(1 << YoshidaLevel)) : steps;
@@ -280,7 +285,7 @@ static real looked_ahead(const MarchInfo* info, real way)
 #endif
 }
 
-// The voxels of places anywhere; beyond those whose index is known, those of the padding.
+// The voxels of arbitrary positions; beyond the region with a known index, those of the padding.
 static void voxels_of_places(const MarchInfo* info, const real* p, integer* voxel)
 {
   FOR_AXES(a)
@@ -312,7 +317,7 @@ static int node_of_whole(const march_arrays* arrays, int3 voxel)
 }
 #endif
 
-// Of the voxels of the photons of a mask; 0 of the others.
+// Nodes (encoding: march_arrays) of the voxels of the photons in a mask; 0 outside the mask.
 static integer nodes_of(const march_arrays* arrays, integer mask, const integer* voxel)
 {
 #if NODE_BRICKS
@@ -330,25 +335,25 @@ static integer nodes_of(const march_arrays* arrays, integer mask, const integer*
   return INTEGERS(node);
 #else
   const MarchInfo* info = arrays->info;
-  const integer at = mask & place_in(&info->known, info->knownFirst, 1, voxel); // the others are in the padding
+  const integer at = mask & place_in(&info->known, info->knownFirst, 1, voxel); // outside the mask: the padding
   return to_integer(gather(uchar, arrays->nodes, at));
 #endif
 }
 
-// Times of steps of the photons of a mask from p in `voxel`, where the index varies; 0 where it does not.
+// Duration of the next steps of the photons in a mask, from p in `voxel`; 0 where the index does not vary.
 static real times_of_steps(
   const march_arrays* arrays, integer mask, const integer* voxel, const real* p, const real* u, const real* inverse)
 {
   const MarchInfo* info = arrays->info;
   const integer node = nodes_of(arrays, mask, voxel);
-  // Where n jumps within a step a kick may leave a photon almost without velocity.
+  // A kick at a jump of n within the step may leave a photon almost without velocity.
   const real shortest =
     (real)info->stepSize / greater(sqrt(u[0] * u[0] + u[1] * u[1] + u[2] * u[2]), (real)info->slowest);
   real time = shortest;
 #if LEVELS
   if (anywhere(truth(node > 1)))
   {
-    // To where it leaves the octree's node, or a cube of it, and a little into the next one.
+    // Until the photon leaves the octree's node, or a cube within it, and slightly enters the next one.
 #if ORDER == 4
     const integer level = min(max(node, 1) - 1, YoshidaLevel);
 #else
@@ -368,7 +373,7 @@ static real times_of_steps(
   return node == 0 ? (real)0.0f : time;
 }
 
-// dT/dt at p: half the gradient of n^2, which is by voxels, as a change of velocity in voxels.
+// dT/dt at p: half the gradient of n^2, both in units of voxels.
 static void pull(const march_arrays* arrays, integer mask, const real* p, real* change)
 {
   real squared;
@@ -380,7 +385,8 @@ static void pull(const march_arrays* arrays, integer mask, const real* p, real* 
 }
 
 #if ORDER == 1
-// The step of explicit Euler from p, and its time, which is the length of path in diagonals: velocities u.
+// Takes a step of explicit Euler from p: sets velocities u, returns the duration, which equals path length in
+// diagonals.
 static real take_step(
   const march_arrays* arrays, photon_lanes* lanes, integer mask, const integer* voxel, const real* p, real* u)
 {
@@ -401,7 +407,7 @@ static real take_step(
   return step;
 }
 #elif ORDER == 4
-// Yoshida's step from p: the velocity u with which it gets to its end on a straight line, and its time.
+// Takes a step of Yoshida's integrator from p: sets the mean velocity u of the step, returns its duration.
 static real take_step(
   const march_arrays* arrays, photon_lanes* lanes, integer mask, const integer* voxel, const real* p, real* u)
 {
@@ -439,7 +445,7 @@ static real take_step(
 }
 #endif
 
-// The photons of a mask come to where the index varies, or to the end of their step.
+// Starts new steps for the photons in a mask, which have entered a region of varying index or ended their step.
 static void take_turns(const march_arrays* arrays, photon_lanes* lanes, integer mask)
 {
   const MarchInfo* info = arrays->info;
@@ -453,7 +459,8 @@ static void take_turns(const march_arrays* arrays, photon_lanes* lanes, integer 
   }
   voxels_at(info, mask, p, INTEGERS(lanes->at), voxel);
 #if ORDER == 2
-  // Those that enter drift for half a step; the others are kicked, and drift for halves of two steps.
+  // Photons that enter a region of varying index drift for half a step; the others are kicked, then drift for the
+  // halves of two steps.
   const integer kicked = mask & truth(VECTOR(lanes->turn) <= now);
   const real step = VECTOR(lanes->step);
   real change[3], end[3], seen[3];
@@ -492,7 +499,7 @@ static void take_turns(const march_arrays* arrays, photon_lanes* lanes, integer 
 }
 #endif
 
-// A photon that has ended stands still in the padding, and deposits nothing.
+// Parks an ended photon in the padding, where it deposits nothing.
 static void rest(photon_lanes* lanes, int k)
 {
   lanes->alive[k] = 0;
@@ -515,7 +522,7 @@ static void rest(photon_lanes* lanes, int k)
   lanes->turn[k] = NEVER;
 }
 
-// The voxels that photons set off in from p (voxels).
+// The voxels in which photons start from p (voxels).
 static void voxels_of_starts(const MarchInfo* info, const real* p, integer* voxel)
 {
   FOR_AXES(a)
@@ -524,7 +531,7 @@ static void voxels_of_starts(const MarchInfo* info, const real* p, integer* voxe
   }
 }
 
-// Photons set off from p (voxels) in unit directions u.
+// Starts photons at p (voxels) in unit directions u.
 static void set_off(const march_arrays* arrays, photon_lanes* lanes, real* p, real* u)
 {
   const MarchInfo* info = arrays->info;
@@ -543,7 +550,7 @@ static void set_off(const march_arrays* arrays, photon_lanes* lanes, real* p, re
   PUT(lanes->settled, (real)0.0f);
   PUT(lanes->step, (real)0.0f);
 #if BENDS
-  // Where the index does not vary every coefficient is n^2.
+  // Where the index does not vary, every coefficient equals n^2.
   const integer varies = truth(as_integer(gather(float, arrays->sigma, INTEGERS(lanes->at))) < 0);
   real squared, gradient[3];
   squared_index_at(arrays, varies, p, &squared, gradient);

@@ -1,9 +1,9 @@
-// The light that photons left. The host gives
-//   CHANNELS, DIRECTIONS, COUNTS  as PhotonMarch.cl wants them
-//   CARRIES                 where it is defined: what is less than a unit of a voxel's power counts in the next one
-//                           of its row. Sums in large units need it: half a unit of each voxel would be lost
-//   BRICKS                  1: the sums stand by bricks (PhotonBricks.h)
-//   COLOURS                 channels of what comes out: 3 also where one channel stands for three (CHANNELS 1)
+// Converts the sums of photons' deposits to light. The host defines
+//   CHANNELS, DIRECTIONS, COUNTS  as in PhotonMarch.cl
+//   CARRIES                 if defined, fractions of a unit of a voxel's absorbed power are carried to the next voxel
+//                           of the row. Needed if units are large: half a unit per voxel would be lost otherwise
+//   BRICKS                  1: the sums are stored by bricks (PhotonBricks.h)
+//   COLOURS                 channels of the output: 3 also if one channel stands for three (CHANNELS 1)
 
 #include "Medium/BrickShared.h"
 #include "Numerics/Numerics.cl"
@@ -13,7 +13,7 @@
 #define component(values, count, voxel, c) \
   ((count) == 0 ? 0.0f : (values)[(voxel) * (count) + ((count) == 3 ? (c) : 0)])
 
-// Light of one channel's power times diagonals, in what stands for it.
+// Writes the fluence of one channel, from its power times path in diagonals, to the output channels that it stands for.
 static void put_fluence(const LightSumsInfo* info, __global float* voxel, int c, float path)
 {
 #if CHANNELS == COLOURS
@@ -26,8 +26,8 @@ static void put_fluence(const LightSumsInfo* info, __global float* voxel, int c,
 #endif
 }
 
-// Units of power that a coefficient, which is part of the extinction, took of a voxel's sum. Of a thick voxel that is
-// what the photons lost.
+// Units of power in a voxel's sum that are due to one coefficient, sigma_a or sigma_s, as a part of extinction. In an
+// optically thick voxel, the sum is the power that the photons lost.
 static long taken_by(const LightSumsInfo* info, float sum, float coefficient, float extinction, float* carried)
 {
   const float thickness = info->diagonal * extinction;
@@ -41,7 +41,7 @@ static long taken_by(const LightSumsInfo* info, float sum, float coefficient, fl
 #endif
 }
 
-// The sum over a batch's copies of a voxel's record, which is zero afterwards. False where it was all along.
+// Adds up a batch's copies of a voxel's record, and zeroes them. Returns false if all were zero.
 static bool take_batch(const LightSumsInfo* info, __global long* record, ulong copyStride, int batch, long* sum)
 {
   for (int c = 0; c < RECORD; ++c)
@@ -58,7 +58,7 @@ static bool take_batch(const LightSumsInfo* info, __global long* record, ulong c
       sum[c] += here[c];
       bits |= here[c];
     }
-    if (bits != 0) // half of the memory need not be written
+    if (bits != 0) // typically half of the memory need not be written
     {
       any = true;
       for (int c = 0; c < RECORD; ++c)
@@ -71,7 +71,7 @@ static bool take_batch(const LightSumsInfo* info, __global long* record, ulong c
 }
 
 #if DIRECTIONS
-// Of a few units of power, whose fractions are lost, directions are coarse, and could be longer than the power.
+// Directions from a few units of power are coarse, as fractions are lost, and could be longer than the power.
 static void put_direction(__global float* mean_direction, const long* sum, float total)
 {
   const float3 flow = (float3)(sum[CHANNELS], sum[CHANNELS + 1], sum[CHANNELS + 2]);
@@ -84,11 +84,11 @@ static void put_direction(__global float* mean_direction, const long* sum, float
 }
 #endif
 
-// Row by row: the copies of the sums are added up, and are zero afterwards.
-//   fluence         COLOURS a voxel
-//   mean_direction  3 per voxel: sum of power times direction over sum of power, no longer than 1; 0 where it is dark
-//   photon_count    of a voxel; photon_weight: their mean weight, 0 where there is none
-//   batch_fluence   [voxel][batch][COLOURS] of each batch as if it was all the light
+// Adds up and zeroes the copies of the sums, one row of voxels per work-item, and converts them to light.
+//   fluence         COLOURS per voxel
+//   mean_direction  3 per voxel: sum of power times direction over sum of power, no longer than 1; 0 in dark voxels
+//   photon_count    one per voxel; photon_weight: mean weight, 0 if there are no photons
+//   batch_fluence   [voxel][batch][COLOURS] of each batch, as if it carried all the power
 //   taken           [row][absorbed, scattered][CHANNELS] units of power
 __kernel void finish_light(LightSumsInfo info, const __global float* sigma_a, const __global float* sigma_s,
   __global long* sums, ulong copyStride, __global float* fluence, __global float* mean_direction,
@@ -109,7 +109,8 @@ __kernel void finish_light(LightSumsInfo info, const __global float* sigma_a, co
   {
     const size_t voxel = (size_t)r * nx + x;
     __global long* record = sums + (first + x) * RECORD;
-    float extinction[CHANNELS], thickness[CHANNELS]; // the medium's own: photons met one cut to what they can follow
+    // Of the medium itself: the photons' copy is limited to a finite range.
+    float extinction[CHANNELS], thickness[CHANNELS];
     for (int c = 0; c < CHANNELS; ++c)
     {
       extinction[c] = component(sigma_a, info.absorption, voxel, c) + component(sigma_s, info.scattering, voxel, c);
@@ -167,7 +168,7 @@ __kernel void finish_light(LightSumsInfo info, const __global float* sigma_a, co
 }
 
 #if BRICKS
-// Bricks along x and y.
+// Number of bricks along x and y.
 static int2 bricks_across(const LightSumsInfo* info)
 {
   return (int2)((info->grid.size[0] + BrickEdge - 1) / BrickEdge, (info->grid.size[1] + BrickEdge - 1) / BrickEdge);
@@ -184,9 +185,10 @@ static void leave_dark(__global float* fluence, __global float* mean_direction, 
 #endif
 }
 
-// Brick by brick: as finish_light, of records (PhotonBricks.h). One batch, and no counts.
-//   sigma_a, sigma_s  by records
-//   fluence, mean_direction  by voxels; of an empty brick the lowest voxel has the mean over it, until fill_empty
+// As finish_light, one brick per work-item, for sums stored by bricks (PhotonBricks.h). One batch, and no counts.
+//   sigma_a, sigma_s  one per record
+//   fluence, mean_direction  one per voxel; in an empty brick only the lowest voxel is written, with the mean over the
+//                            brick, until fill_empty
 //   taken             [brick][absorbed, scattered][CHANNELS] units of power
 __kernel void finish_bricks(LightSumsInfo info, const __global int* bricks, const __global float* sigma_a,
   const __global float* sigma_s, __global long* sums, ulong copyStride, __global float* fluence,
@@ -217,7 +219,7 @@ __kernel void finish_bricks(LightSumsInfo info, const __global int* bricks, cons
         const size_t voxel = low + z * strideZ + y * strideY + x;
         const size_t record = first < 0 ? -first : first + (z * BrickEdge + y) * BrickEdge + x;
         long sum[RECORD];
-        if (!take_batch(&info, sums + record * RECORD, copyStride, 0, sum)) // most of them: photons are few
+        if (!take_batch(&info, sums + record * RECORD, copyStride, 0, sum)) // most voxels: photons are few
         {
           leave_dark(fluence, mean_direction, voxel);
           continue;
@@ -252,7 +254,8 @@ __kernel void finish_bricks(LightSumsInfo info, const __global int* bricks, cons
 #endif
 #endif
 
-// To an aligned place, where the array is far more than caches hold: memory need not come there before it is written.
+// Stores to an aligned address, bypassing the caches: the array is far larger, and need not be read before it is
+// written.
 static void store_past_caches(float4 values, __global float* to)
 {
 #ifdef STORE_PAST_CACHES
@@ -296,8 +299,8 @@ static void fill_voxels(__global float* values, size_t begin, size_t end, float3
   }
 }
 
-// Row by row along x, so that memory is written from end to end: all voxels of empty bricks have the light of the
-// lowest one.
+// Copies the light of the lowest voxel in each empty brick to the brick's other voxels, row by row along x, so that
+// memory is written sequentially.
 __kernel void fill_empty(
   LightSumsInfo info, const __global int* bricks, __global float* fluence, __global float* mean_direction)
 {
@@ -321,7 +324,8 @@ __kernel void fill_empty(
 }
 #endif
 
-// Row by row: what voxels have gained so far, as finish_light gives it. The sums stay.
+// Converts the sums so far to fluence, as finish_light does, but without changing them. One row of voxels per
+// work-item.
 __kernel void show_light(LightSumsInfo info, const __global float* sigma_a, const __global float* sigma_s,
   const __global long* sums, ulong copyStride, __global float* fluence)
 {

@@ -1,4 +1,4 @@
-// Photons that go from one block of a grid into another: part of PhotonMarch.cl, with BLOCKS.
+// Photons that pass from one block of a grid into another: part of PhotonMarch.cl, with BLOCKS.
 
 #pragma once
 #include "Photons/Marching/WaysOnward.cl"
@@ -14,7 +14,7 @@ static void keep_owed(photon_lanes* lanes, const photon_flight* flight)
 #endif
 }
 
-// Photon k has landed in another block's voxel.
+// Appends photon k, which has entered a voxel of another block, to `gone`.
 static void hand_on(const march_arrays* arrays, const photon_lanes* lanes, int k)
 {
   __global PhotonOnItsWay* photon = arrays->gone + atomic_add(arrays->gone_count, 1);
@@ -52,7 +52,7 @@ static void take_one_over(photon_lanes* lanes, int k, const __global PhotonOnIts
 #endif
 }
 
-// Photons `first` to `first + REAL_WIDTH`, but before `end`, of those that have arrived.
+// Loads photons `first` to `first + REAL_WIDTH`, but only those before `end`, of those that have arrived.
 static void take_over(const march_arrays* arrays, const __global PhotonOnItsWay* arrived, int first, int end,
   photon_lanes* lanes, photon_flight* flight)
 {
@@ -82,7 +82,7 @@ static void take_over(const march_arrays* arrays, const __global PhotonOnItsWay*
     flight->power[c] = VECTOR(lanes->power[c]);
     flight->owed[c] = VECTOR(lanes->owed[c]);
   }
-#if CELLS // which may lie in several blocks
+#if CELLS // a cell may extend over several blocks
   flight->counted = INTEGERS(lanes->counted);
 #elif COUNTS
   flight->counted = -1;

@@ -1,13 +1,13 @@
-// The ways of photons that go from one block of a grid into another: part of PhotonMarch.cl and ScatterPhotons.cl, with
-// BLOCKS.
+// Path state of photons that pass from one block of a grid into another: part of PhotonMarch.cl and ScatterPhotons.cl,
+// with BLOCKS.
 //
-// All is in coordinates of the whole grid: a way goes on as it would in one block. A photon arrives with a voxel's wall
-// behind it, and has not been attended to there yet.
+// All coordinates are those of the whole grid, so a path continues as it would on an undivided grid. An arriving photon
+// is on the entry wall of its new voxel, and has not yet been processed there (end, or change of velocity).
 
 #pragma once
 #include "Photons/Marching/PhotonSteps.cl"
 
-// That of photon k, which has landed in another block's voxel.
+// Stores the path state of photon k, which has entered a voxel of another block.
 static void hand_way_on(const march_arrays* arrays, const photon_lanes* lanes, int k, __global WayOnward* way)
 {
   vstore3(voxel_of(arrays->info, lanes->at[k]), 0, way->voxel);
@@ -43,7 +43,7 @@ static void take_way_over(photon_lanes* lanes, int k, const __global WayOnward* 
   lanes->step[k] = way->step;
 }
 
-// The photons of all lanes, whose ways have been taken over, are in these voxels.
+// Resumes the paths of all photons in the packet, whose states have been loaded, in these voxels.
 static void go_on_in(const march_arrays* arrays, photon_lanes* lanes, const integer* voxel)
 {
   real u[3], inverse[3];

@@ -1,12 +1,12 @@
 // Photon marching as published: Pfeuti 2009, section 3.1.5, after Sun et al. 2008. One work-item per photon; explicit
-// Euler (Eq. 2.10, 2.11); the line of each step is rasterised and every voxel of it gets the photon's power, however
-// long the path in it is; colour (RGBe, Ward 1991) and mean direction (10 bits per component) share 64 bits, which
-// compare-and-swap replaces, with ten tries. A photon marches as far as its block of the grid goes: a line that goes on
-// in another block is rasterised on there. The host gives
+// Euler (Eq. 2.10, 2.11). The line of each step is rasterised, and every voxel on it gains the photon's power,
+// regardless of the path length in it. Colour (RGBe, Ward 1991) and mean direction (10 bits per component) share 64
+// bits, replaced by compare-and-swap with ten tries. A photon marches to the end of its block of the grid: a line that
+// continues in another block is rasterised further there. The host defines
 //   BENDS   1: the index varies
 //   LEVELS  1: there are octree levels
-//   A_CHANNELS, S_CHANNELS  components of sigma_a and sigma_s, 0: there is none
-//   TRIES   of compare-and-swap
+//   A_CHANNELS, S_CHANNELS  components of sigma_a and sigma_s, 0: absent
+//   TRIES   attempts of compare-and-swap
 
 #include "Numerics/Numerics.cl"
 #include "Photons/Published/PublishedPhotonsShared.h"
@@ -29,7 +29,7 @@ static uint to_rgbe(float3 colour)
   }
   int exponent;
   const float scale = frexp(most, &exponent) * 256.0f / most;
-  const uint3 mantissa = convert_uint3(min(colour * scale, 255.0f)); // cut off, as Ward does
+  const uint3 mantissa = convert_uint3(min(colour * scale, 255.0f)); // truncated, as in Ward's scheme
   return mantissa.x | mantissa.y << 8 | mantissa.z << 16 | (uint)(exponent + 128) << 24;
 }
 
@@ -50,7 +50,8 @@ static float luminance(float3 colour)
   return dot(colour, (float3)(0.2126f, 0.7152f, 0.0722f));
 }
 
-// Read, unpack, change, pack, and write if no other work-item has written meanwhile. Returns whether it succeeded.
+// Reads, unpacks, changes, packs and writes a voxel, unless another work-item has written meanwhile. Returns whether it
+// succeeded.
 static bool deposit_packed(__global ulong* voxel, float3 power, float3 direction)
 {
   for (int i = 0; i < TRIES; ++i)
@@ -79,7 +80,7 @@ static bool is_within(int3 voxel, int3 size)
   return all(voxel >= 0) && all(voxel < size);
 }
 
-// Place in an array over a box, of the voxel of it that is nearest.
+// Index into an array over a box, of the box's voxel that is nearest to `voxel`.
 static int index_in(const IndexGrid* box, int3 voxel)
 {
   const int3 inside = clamp(voxel, (int3)(0), voxels_of(box->size) - 1);
@@ -92,7 +93,7 @@ static int index_of(const PublishedMarchInfo* info, int3 voxel)
 }
 
 #if BENDS
-// Linear between voxel centres: gradient of n (x, y, z; by voxels) and n (w).
+// Gradient of n (x, y, z; per voxel) and n (w), interpolated linearly between voxel centres.
 static float4 index_at(const PublishedMarchInfo* info, const __global float4* index, float3 p)
 {
   const float3 q = p - 0.5f, base = floor(q), f = q - base;
@@ -108,8 +109,8 @@ static float4 index_at(const PublishedMarchInfo* info, const __global float4* in
 }
 #endif
 
-// Index and its central differences, by one voxel where the whole grid ends. At the border of `known` within the grid
-// they are not right, and not read: photons of the block read those of one voxel round it.
+// Computes the index and its central differences, one-sided where the whole grid ends. At the border of `known` within
+// the grid they are wrong, but not read: photons of the block read only one voxel around it.
 __kernel void published_index(PublishedMarchInfo info, const __global float* ior, __global float4* index)
 {
   const int3 v = (int3)(get_global_id(0), get_global_id(1), get_global_id(2));
@@ -136,8 +137,8 @@ static float3 extinction(const __global float* sigma_a, const __global float* si
     component(sigma_a, A_CHANNELS, v, 2) + component(sigma_s, S_CHANNELS, v, 2));
 }
 
-// Length of path, in the dataset's unit, from p along `u` (voxels a length): a voxel, or to the border of the octree's
-// node and a little beyond.
+// Length of a step, in the dataset's unit, from p along `u` (voxels per length): one voxel, or to the border of the
+// octree's node and slightly beyond.
 static float step_length(const PublishedMarchInfo* info, const __global uchar* levels, float3 p, float3 u)
 {
   const float voxel = rsqrt(dot(u, u));
@@ -181,9 +182,10 @@ static void deposit(const PublishedMarchInfo* info, int3 voxel, float3 power, fl
   vstore3(vload3(0, photon->deposited) + power, 0, photon->deposited);
 }
 
-// Deposit the voxels whose middles, along the axis of largest change, lie between the two ends, in the order of the
-// way, from the one that is due: `next`, if the photon has just come for it, whatever another device's rounding took it
-// to be. Returns false where one of another block is due, which `next` becomes.
+// Deposits to the voxels whose centres, along the axis of largest change, lie between the two ends of a step, in the
+// order of the path, starting with voxel number `done`. For a photon that has just arrived, that first voxel is `next`,
+// even if this device rounds differently from the one that sent it. Returns false if the next voxel belongs to another
+// block; `next` is then that voxel.
 static bool rasterize(const PublishedMarchInfo* info, const published_photon* a, const published_photon* b,
   __global ulong* packed, __global PublishedPhoton* photon, bool arrives, int3* next)
 {
@@ -258,7 +260,7 @@ static published_photon step_from(const published_medium* medium, const publishe
   return next;
 }
 
-// Photons that set off in the block, or go on in it, to their ends or into another block.
+// Marches photons that start in the block, or have entered it, to their ends or into another block.
 __kernel void march_published(PublishedMarchInfo info, const __global float4* index, const __global float* sigma_a,
   const __global float* sigma_s, const __global uchar* levels, __global PublishedPhoton* photons,
   __global ulong* packed)

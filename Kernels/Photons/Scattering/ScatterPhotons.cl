@@ -1,16 +1,16 @@
-// Photons that are scattered, one by one along bent rays (numerics.md, section 12.5). Of one channel. The host gives
-// what PhotonSteps.cl asks for, with REAL_WIDTH 1, DIRECTIONS 1, CHANNELS 1, and
-//   WORKERS   as PhotonMarch.cl has it; ATOMICS: those of shared sums
-//   BLOCK     neighbouring photons that a work-item takes one after the other
-//   GATHERS   1: sums have the light's flow beside its power
-//   PHASE     how light is scattered: 0 isotropic, 1 Henyey and Greenstein's, 2 Schlick's, 3 by a table of cosines
-//   VARIES    1: the parameter of these two is by voxel
-//   COSINES   of the table, less one
-//   BLOCKS    1: photons go as far as their block of the grid
+// Follows photons through scattering along curved rays (numerics.md, section 12.5), one at a time, in one channel. The
+// host defines the macros of PhotonSteps.cl, with REAL_WIDTH 1, DIRECTIONS 1, CHANNELS 1, and
+//   WORKERS   as in PhotonMarch.cl; ATOMICS: whether sums are shared
+//   BLOCK     number of neighbouring photons that a work-item takes at a time
+//   GATHERS   1: sums include the light's flow (net flux) besides its power
+//   PHASE     phase function: 0 isotropic, 1 Henyey-Greenstein, 2 Schlick, 3 table of cosines
+//   VARIES    1: the parameter of 1 and 2 is given by voxel
+//   COSINES   number of cosines in the table, less one
+//   BLOCKS    1: photons are followed to the end of their block of the grid
 //
-// The optical depth of the next scattering is drawn, and spent along the path; what is absorbed on the way is taken
-// from the photon's power, and what is left of that is deposited times its path, from the first scattering on: a mean
-// over photons of the fluence of scattered light, whatever the voxels are.
+// The optical depth to the next scattering is sampled and consumed along the path. Absorption is subtracted from the
+// photon's power; from the first scattering on, the remaining power times path length is deposited: an unbiased
+// estimate of the fluence of scattered light, for voxels of any optical thickness.
 
 #include "Numerics/FixedPoint.cl"
 #include "Numerics/Philox.cl"
@@ -20,13 +20,15 @@
 #define RECORD (1 + 3 * GATHERS)
 #define PHOTON_FLOATS 7
 #define TINY 1e-20f
-#define DIM 0.05f // of a photon's power at first: Russian roulette makes twice as much of less, or nothing
+// Fraction of the initial power below which Russian roulette doubles this threshold or ends the photon.
+#define DIM 0.05f
 
-// How a voxel scatters.
+// Scattering properties of the medium.
 typedef struct
 {
-  const __global float2* optical; // [padded] scattering, absorption over a diagonal
-  const __global float* phase;    // parameter, of the medium or [voxel]; or cosines of even parts of the light
+  const __global float2* optical; // [padded] sigma_s and sigma_a times a voxel diagonal
+  // Phase function parameter, one or [voxel]; or cosines at equal steps of probability.
+  const __global float* phase;
 } scattering;
 
 static float cosine_of(const scattering* medium, ulong voxel, float u)
@@ -42,14 +44,15 @@ static float cosine_of(const scattering* medium, ulong voxel, float u)
   const float g = medium->phase[VARIES ? voxel : 0], above = 1.0f + g * s;
 #if PHASE == 2
   return (s + g) / above;
-#else // the inverse of the distribution without differences that cancel
+#else // inverse cumulative distribution, in a form without cancellation
   const float sum = s + 0.5f * g * (s * s + 3.0f) + g * g * (s + 0.5f * g * (s * s - 1.0f));
   return sum / (above * above);
 #endif
 #endif
 }
 
-// A direction at an angle of that cosine to another (Duff et al. 2017: a frame without a branch).
+// Rotates a direction by an angle with the given cosine, around a random azimuth, turn in [0, 1) (Duff et al. 2017: a
+// frame without a branch).
 static float3 turned(float3 way, float cosine, float turn)
 {
   const float sine = sqrt(fmax(0.0f, 1.0f - cosine * cosine));
@@ -61,7 +64,7 @@ static float3 turned(float3 way, float cosine, float turn)
   return normalize(sine * (around * first + along * second) + cosine * way);
 }
 
-// The voxel of a place in the padded grid, among those of the medium.
+// Index of a voxel in the medium's arrays, from its index in the padded grid.
 static ulong voxel_number(const MarchInfo* info, int at)
 {
   const int3 voxel = voxel_of(info, at) - vload3(0, info->first);
@@ -84,27 +87,27 @@ static void begin(const march_arrays* arrays, photon_lanes* lanes, float3 place,
   set_off(arrays, lanes, p, u);
 }
 
-// Whether a photon's velocity is a number that can be followed.
+// Whether a photon's speed is within the range that can be followed.
 static bool moves(const photon_lanes* lanes)
 {
   return lanes->pace[0] > SLOWEST_PACE && lanes->pace[0] < FASTEST_PACE;
 }
 
-// A photon between two scatterings, besides its way.
+// State of a photon between two scatterings, besides its path.
 typedef struct
 {
-  ScatterEnd end; // so far
+  ScatterEnd end; // record of its end, so far
   random_numbers random;
   float dim;   // power below which Russian roulette is played
-  float depth; // optical, to the next scattering
-  int events;  // walls and turns since it was scattered last
+  float depth; // optical depth to the next scattering
+  int events;  // path segments since its last scattering
 } scattered_flight;
 
 #if BLOCKS
 #include "Photons/Marching/WaysOnward.cl"
 
-// Whether a photon that sets off from a place does so in another block, to which rounding may have put it. It then has
-// place and direction as its way; it sets off there.
+// Whether a scattered photon is, by rounding, in another block's voxel. If so, stores position and direction as its
+// path state; it starts there.
 static bool sets_off_elsewhere(const march_arrays* arrays, photon_lanes* lanes, float3 place, float3 direction)
 {
   const MarchInfo* info = arrays->info;
@@ -162,7 +165,7 @@ static void take_over(const march_arrays* arrays, const ScatterInfo* how, const 
 }
 #endif
 
-// The photon, `way` diagonals on, is scattered.
+// Scatters the photon after a further `way` diagonals.
 static void scatter(
   const march_arrays* arrays, const scattering* medium, photon_lanes* lanes, float way, scattered_flight* flight)
 {
@@ -183,7 +186,7 @@ static void scatter(
   begin(arrays, lanes, place, direction);
 }
 
-// Russian roulette: what is dim becomes brighter or nothing; the mean stays.
+// Russian roulette: a photon of low power gains power or ends; its expected power is unchanged.
 static void roulette(scattered_flight* flight)
 {
   ScatterEnd* end = &flight->end;
@@ -196,7 +199,7 @@ static void roulette(scattered_flight* flight)
   }
 }
 
-// To the next wall or turn.
+// Moves the photon to its next wall or change of velocity.
 static void move_on(const march_arrays* arrays, photon_lanes* lanes, float next)
 {
   FOR_AXES(a)
@@ -208,7 +211,7 @@ static void move_on(const march_arrays* arrays, photon_lanes* lanes, float next)
   lanes->now[0] = next;
 }
 
-// The photon has come to where it is now: beyond its grid, or to a turn.
+// Handles the photon's arrival at the present position: it has left the grid or block, or starts a new step.
 static void arrive(const march_arrays* arrays, photon_lanes* lanes, ScatterEnd* end)
 {
   const float there = arrays->sigma[lanes->at[0]], now = lanes->now[0];
@@ -224,8 +227,8 @@ static void arrive(const march_arrays* arrays, photon_lanes* lanes, ScatterEnd* 
 #endif
 }
 
-// What a stretch of the photon, of `way` diagonals, leaves where it is.
-//   sigma  scattering and absorption there
+// Deposits and attenuates over a path segment of `way` diagonals.
+//   sigma  scattering and absorption there, times a diagonal
 static void leave_stretch(
   const march_arrays* arrays, const photon_lanes* lanes, float2 sigma, float way, ScatterEnd* end)
 {
@@ -244,7 +247,7 @@ static void leave_stretch(
   end->power = tau > 0.5f ? end->power * remains : end->power - end->power * lost;
 }
 
-// The photon comes to its next wall or turn, or is scattered before.
+// Follows the photon to its next wall or change of velocity, or to a scattering before that.
 static void go_on(const march_arrays* arrays, const scattering* medium, const ScatterInfo* how, photon_lanes* lanes,
   scattered_flight* flight)
 {
@@ -279,7 +282,7 @@ static void go_on(const march_arrays* arrays, const scattering* medium, const Sc
   }
 }
 
-// A photon of a number, which its random numbers belong to.
+// Starts a photon; `number` is the key of its random numbers.
 static void set_out(const march_arrays* arrays, const ScatterInfo* how, const __global float* photon, ulong number,
   photon_lanes* lanes, scattered_flight* flight)
 {
@@ -292,7 +295,7 @@ static void set_out(const march_arrays* arrays, const ScatterInfo* how, const __
   flight->depth = -log(draw(&flight->random));
 }
 
-// To its end, or into another block.
+// Follows a photon to its end, or into another block.
 static void follow(const march_arrays* arrays, const scattering* medium, const ScatterInfo* how, photon_lanes* lanes,
   scattered_flight* flight)
 {
@@ -310,14 +313,14 @@ static void follow(const march_arrays* arrays, const scattering* medium, const S
 #if BLOCKS
 typedef struct
 {
-  const __global float* photons;             // that set out, as of scatter_photons
-  const __global ulong* numbers;             // of these
-  const __global ScatteredOnItsWay* arrived; // others, that have come from other blocks
-  __global ScatteredOnItsWay* gone;          // into other blocks, in any order
+  const __global float* photons;             // photons that start here, in the format of scatter_photons
+  const __global ulong* numbers;             // keys of their random numbers
+  const __global ScatteredOnItsWay* arrived; // photons that arrived from other blocks
+  __global ScatteredOnItsWay* gone;          // photons that enter other blocks, in any order
   volatile __global int* gone_count;
 } photons_of_block;
 
-// Photon i of those that set out or, with `resumes`, of those that have arrived.
+// Follows photon i of those that start here or, with `resumes`, of those that have arrived.
 static ScatterEnd end_in_block(const march_arrays* arrays, const scattering* medium, const ScatterInfo* how,
   const photons_of_block* photons, int resumes, int i)
 {
@@ -382,10 +385,10 @@ static ScatterEnd end_of(const march_arrays* arrays, const scattering* medium, c
   return flight.end;
 }
 
-// Photons `first` to `first + count`.
-//   optical, phase  of the medium (scattering)
+// Follows photons `first` to `first + count`.
+//   optical, phase  properties of the medium (struct scattering)
 //   photons         position (voxels), unit direction, power (units)
-//   numbers         of each, which its random numbers belong to
+//   numbers         keys of the photons' random numbers
 __kernel void scatter_photons(MarchInfo info, ScatterInfo how, const __global float* sigma,
   const __global float* coefficients, const __global uchar* nodes, const __global float2* optical,
   const __global float* phase, const __global float* photons, const __global ulong* numbers, __global ScatterEnd* ends,
@@ -394,7 +397,7 @@ __kernel void scatter_photons(MarchInfo info, ScatterInfo how, const __global fl
   const scattering medium = { optical, phase };
 #if WORKERS > 0
   march_arrays arrays = { &info, sigma, coefficients, nodes, sums + get_global_id(0) * copyStride, 0, 0, 0, 0 };
-  // Who takes which makes no difference to the sums.
+  // Which work-item takes a block does not affect the sums.
   for (int block = atomic_add(next, BLOCK); block < count; block = atomic_add(next, BLOCK))
   {
     for (int i = first + block; i < first + min(block + BLOCK, count); ++i)
