@@ -13,7 +13,7 @@ inline uint scrambled(uint bits)
   return bits;
 }
 
-// Component along `away` of one of the twelve directions to the middles of a cube's edges.
+// Dot product of `away` with one of the twelve directions to the midpoints of a cube's edges, chosen by a hash.
 inline float gradient_at(int3 corner, uint seed, float3 away)
 {
   const uint hash = scrambled((uint)corner.x + scrambled((uint)corner.y + scrambled((uint)corner.z + seed)));
@@ -23,7 +23,8 @@ inline float gradient_at(int3 corner, uint seed, float3 away)
   return ((kind & 1) ? -first : first) + ((kind & 2) ? -second : second);
 }
 
-// In [-1, 1], twice continuously differentiable, 0 at whole numbers; features are about 1 in size.
+// Gradient noise in [-1, 1], twice continuously differentiable, 0 at integer coordinates; features have a size of about
+// 1.
 inline float gradient_noise(float3 position, uint seed)
 {
   const float3 low = floor(position);

@@ -1,10 +1,10 @@
-// Smoothing and gradient of the refractive index. Define RADIUS, of the filter in voxels.
+// Smoothing and gradient of the refractive index. The host defines RADIUS, of the filter in voxels.
 
 #include "Numerics/Numerics.cl"
 
-// Weighted mean over the 2 RADIUS + 1 voxels along an axis; beyond the grid its last voxel goes on.
-//   weights   of the voxels 1, 2, ..., RADIUS away
-// Written with differences, so that where n is even it stays what it is to the last bit.
+// Weighted mean over the 2 RADIUS + 1 voxels along an axis; beyond the grid its last voxel is repeated.
+//   weights   of the voxels at distances 1, 2, ..., RADIUS
+// Written with differences, so that a constant n is reproduced to the last bit.
 inline float smoothed(__global const float* n, int place, int length, long stride, __constant const float* weights)
 {
   const float here = n[0];
@@ -19,8 +19,7 @@ inline float smoothed(__global const float* n, int place, int length, long strid
   return here + sum;
 }
 
-// The same for a whole vector of voxels along x, none of which has the grid's end along x in reach, unless the axis is
-// another one.
+// The same for a vector of neighbouring voxels along x; if `axis` is x, the filter must not reach beyond the grid.
 inline real smoothed_together(
   __global const float* n, int place, int length, long stride, __constant const float* weights)
 {
@@ -36,7 +35,7 @@ inline real smoothed_together(
   return here + sum;
 }
 
-// A work-item REAL_WIDTH voxels along x.
+// Each work-item smooths REAL_WIDTH voxels along x.
 __kernel void smooth_index(
   int4 size, int axis, __constant const float* weights, __global const float* n, __global float* result)
 {
@@ -64,7 +63,7 @@ __kernel void smooth_index(
 }
 
 // Central differences, 1/length; one-sided in the grid's outermost voxels.
-//   firstLayer   of the layers along z whose gradient is written to the beginning of `gradient`
+// |  firstLayer   first of the layers along z whose gradient is computed, and written from the beginning of `gradient`
 __kernel void index_gradient(
   int4 size, int firstLayer, int layers, float4 spacing, __global const float* n, __global float* gradient)
 {

@@ -16,9 +16,10 @@ namespace tyndall
 namespace
 {
 constexpr int LargestFilter = 65;
-constexpr std::size_t LayerBytes = std::size_t(32) << 20; ///< of the gradient on the device at a time
+/// Bytes of the gradient that the device holds at a time.
+constexpr std::size_t LayerBytes = std::size_t(32) << 20;
 
-/// Weights of the voxels 1, 2, ... away; with twice their sum that of the middle adds up to 1.
+/// Weights of the voxels at distances 1, 2, ...; twice their sum plus the weight of the central voxel is 1.
 std::vector<float> GaussianWeights(int filterSize)
 {
   const double deviation = filterSize / 6.0;

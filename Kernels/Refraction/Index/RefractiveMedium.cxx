@@ -19,7 +19,7 @@ namespace tyndall
 {
 namespace
 {
-constexpr double ShortestEdge = 1e-18; ///< of a voxel, length
+constexpr double ShortestEdge = 1e-18; ///< minimum edge of a voxel, length
 }
 
 void Check(const Material& material, const std::string& name)
@@ -57,7 +57,7 @@ void CheckPerturbation(const Perturbation& perturbation, const std::vector<Solid
   }
 }
 
-/// Quantities of an area or a volume of voxels are in single precision: 1/edge^2 has to be.
+/// Checks that 1/edge^2 is representable: areas and volumes of voxels are in single precision.
 void CheckSpacing(const Grid& grid)
 {
   for (int axis = 0; axis < 3; ++axis)
@@ -87,9 +87,9 @@ void CheckSettings(const RefractiveMediumSettings& settings, const std::vector<S
   CheckPerturbation(settings.perturbation, solids);
 }
 
-/// @param size          of the box that is voxelised
-/// @param coefficients  of a voxel: sigma_a, sigma_s and, where it varies, g
-/// @param indexVaries   whether there is an index to smooth and take the gradient of
+/// @param size          size of the box that is voxelised
+/// @param coefficients  numbers per voxel: sigma_a, sigma_s and, if it varies, g
+/// @param indexVaries   whether there is an index to smooth and differentiate
 void CheckMemory(const Device& device, const RefractiveMediumSettings& settings, const std::array<int, 3>& size,
   int coefficients, bool indexVaries)
 {
@@ -117,8 +117,8 @@ bool IsGrey(const Material& material)
   return grey(material.sigma_a) && grey(material.sigma_s);
 }
 
-/// Whether materials that scatter have different mean cosines.
-/// @param g  where they have not, the one they have; unchanged where none scatters
+/// Whether scattering materials differ in their mean cosines.
+/// @param g  output: their common mean cosine, if they do not differ; unchanged if nothing scatters
 bool MeanCosineVaries(const std::vector<const Material*>& materials, double& g)
 {
   const Material* first = nullptr;
@@ -135,7 +135,7 @@ bool MeanCosineVaries(const std::vector<const Material*>& materials, double& g)
   return false;
 }
 
-/// Whether nothing inside differs in n from the outside.
+/// Whether n is the same in all solids and outside.
 bool IndexIsEven(const std::vector<Solid>& solids, const RefractiveMediumSettings& settings)
 {
   return settings.perturbation.index == 0.0 && std::all_of(solids.begin(), solids.end(), [&](const Solid& solid) {
@@ -177,7 +177,7 @@ void CheckPointsOf(const Solid& solid)
   }
 }
 
-/// What there is of meshes that have no extent, for a message.
+/// Describes meshes without extent, for a message.
 std::string WithoutExtent(const std::vector<Solid>& solids)
 {
   std::string text;
@@ -191,13 +191,13 @@ std::string WithoutExtent(const std::vector<Solid>& solids)
   return text;
 }
 
-/// What the materials alone say of a medium.
+/// Properties of a medium that follow from its materials alone.
 struct Composition
 {
   bool grey = true;
-  bool variedG = false; ///< those that scatter have different mean cosines
+  bool variedG = false; ///< whether scattering materials differ in their mean cosines
   bool evenIndex = true;
-  double g = 0.0; ///< where they have not
+  double g = 0.0; ///< common mean cosine, if they do not
 };
 
 Composition CompositionOf(const std::vector<Solid>& solids, const RefractiveMediumSettings& settings)
@@ -214,8 +214,8 @@ Composition CompositionOf(const std::vector<Solid>& solids, const RefractiveMedi
   return composition;
 }
 
-/// Voxels round a part of the grid that its own depend on: those that the filter reaches, one that the gradient does,
-/// and one whose own counts are not exact where the box ends.
+/// A part of the grid with the halo that its values depend on: the reach of the filter, one voxel for the gradient, and
+/// one because counts in the outermost voxels of a box are not exact.
 VoxelBox BoxAround(const VoxelBox& part, const RefractiveMediumSettings& settings, bool evenIndex)
 {
   return Grown(part, evenIndex ? 1 : settings.filterSize / 2 + 2, settings.grid);

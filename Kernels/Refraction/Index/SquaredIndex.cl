@@ -1,15 +1,15 @@
-// The squared refractive index n^2 between voxel centres, and its gradient. Lengths are in voxels here.
+// The squared refractive index n^2 between voxel centres, and its gradient. Lengths are in voxels.
 //
-// n^2 is a tricubic B-spline of the coefficients of numerics.md, Eq. (88): its gradient is continuous and that of one
-// function, as a symplectic integrator needs. A coefficient is held within an eighth of the least and the largest of
-// its voxels, so that the spline is positive wherever n^2 is. Beyond the grid n^2 goes on linearly, but never below a
-// quarter of the border's. The coefficient of voxel (i, j, k) stands at (i + 2, j + 2, k + 2) of an array that is four
-// longer along each axis.
+// n^2 is a tricubic B-spline with the coefficients of numerics.md, Eq. (88): its gradient is continuous and exactly
+// that of the spline, as a symplectic integrator needs. A coefficient may exceed the range of its voxels by at most an
+// eighth, so that the spline is positive wherever n^2 is. Beyond the grid n^2 is extrapolated linearly, but never below
+// a quarter of its border value. The coefficient of voxel (i, j, k) is at index (i + 2, j + 2, k + 2) of an array that
+// is four longer along each axis.
 
 #pragma once
 #include "Refraction/Index/IndexShared.h"
 
-// A voxel on the grid's border or beyond it goes on as the two last ones of its row do.
+// n^2 of a voxel on the grid or beyond, where it is extrapolated from the two last voxels of the row.
 static float squared_index_of(const IndexGrid* grid, const __global float* ior, int i, int j, int k)
 {
   const bool inside = i >= 0 && i < grid->size[0] && j >= 0 && j < grid->size[1] && k >= 0 && k < grid->size[2];
@@ -39,9 +39,9 @@ static float squared_index_of(const IndexGrid* grid, const __global float* ior, 
   return fmax(value, least);
 }
 
-#define OVERSHOOT 0.125f // of a coefficient beyond its voxels' range, relative
+#define OVERSHOOT 0.125f // largest overshoot of a coefficient beyond the range of its voxels, relative
 
-// Not fmin and fmax, which look for values that are no numbers.
+// Instead of fmin and fmax, which check for NaN.
 static float lesser_of(float a, float b)
 {
   return a < b ? a : b;
@@ -52,7 +52,7 @@ static float greater_of(float a, float b)
   return a > b ? a : b;
 }
 
-// squares  f of each voxel and of three more at either end of each axis
+// squares  output: n^2 of each voxel and of three more at either end of each axis
 __kernel void extend_squared_index(IndexGrid grid, const __global float* ior, __global float* squares)
 {
   const int x = get_global_id(0), y = get_global_id(1), z = get_global_id(2);
@@ -64,7 +64,7 @@ __kernel void squared_index_coefficients(IndexGrid grid, const __global float* s
   const int x = get_global_id(0), y = get_global_id(1), z = get_global_id(2);
   const int row = grid.size[0] + 6, layer = row * (grid.size[1] + 6);
   const __global float* here = squares + ((z + 1) * layer + (y + 1) * row + x + 1);
-  // Not in arrays, which PoCL does not keep in registers.
+  // Scalars rather than arrays, which PoCL does not keep in registers.
   const float f = here[0], x0 = here[-1], x1 = here[1], y0 = here[-row], y1 = here[row], z0 = here[-layer],
               z1 = here[layer];
   const float low = lesser_of(f, lesser_of(lesser_of(lesser_of(x0, x1), lesser_of(y0, y1)), lesser_of(z0, z1)));
@@ -74,7 +74,7 @@ __kernel void squared_index_coefficients(IndexGrid grid, const __global float* s
   coefficients[(z * (grid.size[1] + 4) + y) * (grid.size[0] + 4) + x] = held;
 }
 
-// Least and largest coefficient within two of each along one axis; what is beyond the array's ends is not asked for.
+// Least and largest coefficient within two of each along one axis; ignores what is beyond the array's ends.
 __kernel void widen_range(
   int stride, const __global float* low, const __global float* high, __global float* low_out, __global float* high_out)
 {
@@ -86,8 +86,8 @@ __kernel void widen_range(
     greater_of(greater_of(greater_of(h[-2 * stride], h[-stride]), greater_of(h[stride], h[2 * stride])), h[0]);
 }
 
-// The four basis functions at a place f beyond the second coefficient, from the first coefficient's to the last one's,
-// and their slopes.
+// The four B-spline basis functions, for the first to the fourth coefficient, and their slopes, at distance f from the
+// second coefficient.
 static float4 spline_values(float f)
 {
   const float4 squares = (float4)(0.5f, -1.0f, 0.5f, 0.0f) + f * (float4)(-1.0f / 6.0f, 0.5f, -0.5f, 1.0f / 6.0f);
@@ -102,7 +102,7 @@ static float4 spline_slopes(float f)
 
 typedef float4 __attribute__((aligned(4))) float4_anywhere;
 
-// The sums of a, of b, of c and of d.
+// The four component sums of a, b, c and d.
 static float4 four_sums(float4 a, float4 b, float4 c, float4 d)
 {
   const float4 ab = (float4)(a.x, b.x, a.y, b.y) + (float4)(a.z, b.z, a.w, b.w);
@@ -110,8 +110,9 @@ static float4 four_sums(float4 a, float4 b, float4 c, float4 d)
   return (float4)(ab.lo, cd.lo) + (float4)(ab.hi, cd.hi);
 }
 
-// n^2 (w) and its gradient (x, y, z) in the middle of 4^3 coefficients from `first` on, at f in [0, 1] between the
-// second and the third of each axis. Summed over layers first, then over rows: most of it is done for sixteen at once.
+// n^2 (w) and its gradient (x, y, z) in the central cell of the 4^3 coefficients that start at `first`, at position f
+// in [0, 1] between the second and the third along each axis. Sums over layers first, then over rows, so that most
+// operations have sixteen components.
 static float4 squared_index_among(const __global float* first, int row, int layer, float3 f)
 {
   const float4 z = spline_values(f.z), z_slope = spline_slopes(f.z);

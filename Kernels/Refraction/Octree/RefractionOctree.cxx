@@ -24,7 +24,7 @@ namespace tyndall
 {
 namespace
 {
-/// Levels that a rank makes of its own block, which is widened to whole nodes of the last of them: 8 voxels an edge.
+/// Number of levels that a rank builds in its own block, widened to whole nodes of the last of them, 8 voxels per edge.
 constexpr int LevelsOfBlock = 3;
 
 std::array<int, 3> Plus(const std::array<int, 3>& a, const std::array<int, 3>& b)
@@ -32,14 +32,14 @@ std::array<int, 3> Plus(const std::array<int, 3>& a, const std::array<int, 3>& b
   return { a[0] + b[0], a[1] + b[1], a[2] + b[2] };
 }
 
-/// The float for which float <= AsBound(bound) says the same as float <= bound.
+/// The float for which float <= AsBound(bound) is equivalent to float <= bound.
 float AsBound(double bound)
 {
   const float nearest = static_cast<float>(bound);
   return nearest > bound ? std::nextafter(nearest, -std::numeric_limits<float>::infinity()) : nearest;
 }
 
-/// @throws InvalidInput where a setting is out of its range
+/// @throws InvalidInput if a setting is out of range
 void Check(const OctreeSettings& settings)
 {
   if (!(settings.tolerance >= 0.0 && settings.tolerance <= 1.0))
@@ -53,7 +53,7 @@ void Check(const OctreeSettings& settings)
   }
 }
 
-/// @throws InvalidInput where the index is not there, or not finite and above 0 in a voxel: names the first
+/// @throws InvalidInput if the index is missing, or not finite and above 0 in a voxel; names the first
 void CheckIndex(const Field& index, const Domain& domain)
 {
   if (!index.values || index.components != 1)
@@ -87,7 +87,7 @@ void CheckIndex(const Field& index, const Domain& domain)
   }
 }
 
-/// Largest differences of the index, and of sigma_t, in the nodes of each level: as floats, for which <= says the same.
+/// Largest differences of the index, and of sigma_t, in the nodes of each level, as floats by AsBound.
 std::vector<float> IndexTolerances(int levels, double tolerance)
 {
   return std::vector<float>(static_cast<std::size_t>(levels), AsBound(tolerance));
@@ -104,14 +104,14 @@ std::vector<float> ExtinctionTolerances(const Grid& grid, int levels, double tol
   return tolerances;
 }
 
-/// How many channels of extinction restrict nodes: 0 where it is not included.
+/// Number of channels of extinction that restrict nodes: 0 if extinction is not included.
 int ExtinctionChannels(const Medium& medium, const OctreeSettings& settings)
 {
   const bool coloured = medium.sigma_a.components == 3 || medium.sigma_s.components == 3;
   return !settings.includeExtinction ? 0 : coloured ? 3 : 1;
 }
 
-/// sigma_t = sigma_a + sigma_s of a channel.
+/// sigma_t = sigma_a + sigma_s in one channel.
 std::vector<float> Extinction(const Medium& medium, int channel, std::size_t voxels)
 {
   std::vector<float> extinction(voxels);
@@ -133,15 +133,15 @@ bool IsConstant(const Domain& domain, const float* values)
   return domain.Max(largest) == -domain.Max(-least);
 }
 
-/// Min-max pyramids over a domain, and the levels found from the top of them down (Pfeuti 2009, section 3.1.3).
+/// Min-max pyramids over a domain, and the levels computed from their top down (Pfeuti 2009, section 3.1.3).
 ///
 /// A voxel's level is the largest k for which its node, the cube of 2^k voxels per edge that begins at multiples of
-/// 2^k, has max - min <= tolerance in every pyramid; 0, a single voxel, where there is none. A grid whose size is not a
+/// 2^k, has max - min <= tolerance in every pyramid; 0, a single voxel, if there is none. A grid whose size is not a
 /// power of two is treated as if its last voxel were repeated, so that a node's range is that of its voxels.
 class OctreePyramid
 {
 public:
-  /// @param domain  of more than one voxel
+  /// @param domain  must have more than one voxel
   OctreePyramid(Device& device, const Domain& domain)
     : TheDevice(device)
     , TheDomain(domain)
@@ -165,9 +165,9 @@ public:
     });
   }
 
-  /// Keeps nodes whole only where the range of one more quantity allows it, too. Collective.
-  /// @param values      of the block's voxels
-  /// @param tolerances  [level] of the quantity; must not grow with the level. [0] is not used
+  /// Divides nodes in which one more quantity varies by more than its tolerance. Collective.
+  /// @param values      one per voxel of the block
+  /// @param tolerances  tolerance for each level; must not grow with the level. [0] is not used
   void Restrict(const float* values, const char* what, const std::vector<float>& tolerances)
   {
     std::vector<float> storage, cells;
@@ -185,7 +185,7 @@ public:
     this->Restricted = true;
   }
 
-  /// Levels of the block's voxels; after Restrict. Collective.
+  /// Levels of the block's voxels; call after Restrict. Collective.
   std::vector<std::uint8_t> Result() const
   {
     std::vector<std::uint8_t> levels;
@@ -195,12 +195,13 @@ public:
   }
 
 private:
-  /// Nodes of one level: of this rank's box up to the shared level, then, from the shared level on, of the whole grid.
+  /// The nodes of one level: up to the shared level those of this rank's box, then, from the shared level on, of the
+  /// whole grid.
   struct NodesOfLevel
   {
     int level;
     std::array<int, 3> size;
-    std::size_t first; ///< in the buffers; the voxels of level 0 are not in them
+    std::size_t first; ///< index of the first node in the buffers, which do not hold the voxels of level 0
   };
 
   void Add(int level, const std::array<int, 3>& size)
@@ -208,7 +209,7 @@ private:
     this->Pyramid.push_back({ level, size, this->NodeCount });
     this->NodeCount += level > 0 ? Count(size[0]) * Count(size[1]) * Count(size[2]) : 0;
   }
-  /// The shared level, of this rank's box and of the whole grid.
+  /// The shared level: in this rank's box, and in the whole grid.
   const NodesOfLevel& OwnShared() const { return this->Pyramid[static_cast<std::size_t>(this->Blocks.Shared())]; }
   const NodesOfLevel& AllShared() const { return (&this->OwnShared())[1]; }
 
@@ -320,9 +321,9 @@ Octree BuildOctree(const Domain& domain, const Medium& medium, const Field& inde
   const int levels = PyramidLayout(domain.Whole().size).LevelCount();
   Octree octree;
   octree.topLevel = levels - 1;
-  std::shared_ptr<Device> found; // when the first quantity comes that is not constant
+  std::shared_ptr<Device> found; // opened for the first quantity that is not constant
   std::optional<OctreePyramid> pyramid;
-  /// @return whether the quantity restricts nodes: not where it is constant, or the grid is one voxel
+  /// @return whether the quantity restricts nodes; false if it is constant, or the grid is one voxel
   const auto restrict = [&](const float* values, const char* what, const std::vector<float>& tolerances) {
     if (IsConstant(domain, values))
     {

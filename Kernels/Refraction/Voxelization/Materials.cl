@@ -1,17 +1,17 @@
-// From samples inside to the quantities of a medium: each voxel is the mean of the materials in it.
+// From counts of samples to the properties of a medium: each voxel gets the mean of the materials in it.
 //
-// The host gives
-//   CHANNELS  1 or 3, of sigma_a and sigma_s
-//   NOISE     1 where materials are perturbed
-//   VARIED_G  1 where materials scatter with different mean cosines
+// The host defines
+//   CHANNELS  1 or 3, components of sigma_a and sigma_s
+//   NOISE     1 if materials are perturbed
+//   VARIED_G  1 if scattering materials differ in their mean cosines
 
 #include "Refraction/Index/GradientNoise.cl"
 #include "Refraction/Voxelization/MaterialsShared.h"
 
-// A work-item per voxel (i of the slab), a row of work-items per run of the slab.
+// One work-item per voxel (index i in the slab), one row of work-items per run of the slab.
 
-// The mean cosine is a mean weighted by sigma_s (numerics.md, Eq. (3e)), kept up to date with every material, so that a
-// voxel of one has its very g.
+// Adds a material with a given volume fraction to a voxel. The mean cosine is weighted by sigma_s (numerics.md, Eq.
+// (3e)) and updated with every material, so that a voxel of a single material gets exactly its g.
 inline void add_material(float part, const MaterialInfo* material, ulong i, ulong voxel, __global float* ior,
   __global float* sigma_a, __global float* sigma_s, __global float* g)
 {
@@ -30,10 +30,10 @@ inline void add_material(float part, const MaterialInfo* material, ulong i, ulon
   }
 }
 
-// Adds one material to a slab's voxels. A voxel of one material alone has its very values.
-//   inside    samples of a voxel in the material, in parts of a sample: 0 to `samples`
-//   covered   samples in any material so far
-//   ior       of the whole box; the other arrays are the slab's
+// Adds one material to a slab's voxels. A voxel of a single material gets exactly its values.
+//   inside    samples of each voxel inside the material, including fractions: 0 to `samples`
+//   covered   samples inside any material so far
+//   ior       n in the whole box; the other arrays cover the slab
 __kernel void add_object(MaterialSlab slab, MaterialInfo given, __global const ushort* inside, __global float* covered,
   __global float* ior, __global float* sigma_a, __global float* sigma_s, __global float* g)
 {
@@ -61,7 +61,7 @@ __kernel void add_object(MaterialSlab slab, MaterialInfo given, __global const u
   add_material(number / slab.samples, &material, i, voxel, ior, sigma_a, sigma_s, g);
 }
 
-// The same for what no mesh covers; `covered` becomes the part that is.
+// Adds the outside material to what no mesh covers; `covered` becomes the covered fraction of the voxel.
 __kernel void add_outside(MaterialSlab slab, MaterialInfo material, __global float* covered, __global float* ior,
   __global float* sigma_a, __global float* sigma_s, __global float* g)
 {

@@ -23,7 +23,7 @@ std::string Counted(std::size_t count, const char* thing)
   return std::to_string(count) + " " + thing + (count == 1 ? "" : "s");
 }
 
-/// The sentence for a mesh that intersects itself.
+/// The warning for a mesh that intersects itself.
 std::string OfWindings(const WindingNumbers& windings, const Grid& grid, int samples)
 {
   const int ofVoxel = samples * samples * samples;

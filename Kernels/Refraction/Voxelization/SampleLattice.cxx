@@ -16,7 +16,7 @@ constexpr double Longest =
 constexpr int TileColumns = 64;
 constexpr int TileRows = 16;
 
-/// Number of the first sample that is not below a coordinate, whatever its sign; samples are at (number + 1/2) pitch.
+/// Index of the first sample at or above a coordinate, whatever its sign; samples are at (index + 1/2) pitch.
 int FirstSampleFrom(int coordinate, int pitch)
 {
   const int above = coordinate - pitch / 2 + pitch - 1;
@@ -28,7 +28,7 @@ struct Interval
   double low, high;
 };
 
-/// The interval of `across` that a triangle takes up between two values of `up`; a little wider for rounding.
+/// The interval of `across` that a triangle covers between two values of `up`, slightly widened for rounding.
 Interval AcrossBetween(
   const std::array<const SampleLattice::Point*, 3>& corners, const SampleColumns& columns, double low, double high)
 {
@@ -64,7 +64,7 @@ SampleLattice::SampleLattice(const Grid& grid, int samples, const std::vector<co
   : Origin(grid.origin)
   , SamplesOfVoxel(samples)
 {
-  double longest = 0.0; // of grid and meshes, fine voxels
+  double longest = 0.0; // longest edge of grid and meshes together, in fine voxels
   for (int axis = 0; axis < 3; ++axis)
   {
     double low = grid.origin[axis];
@@ -153,7 +153,7 @@ LatticeMesh::LatticeMesh(Device& device, const SampleLattice& lattice, const Tri
 std::vector<cl_uint4> LatticeMesh::Tiles(const SampleColumns& columns, int firstRow, int endRow) const
 {
   SampleBox rows;
-  rows.first[columns.axis] = 0; // whatever lies beyond the columns' ends counts as there
+  rows.first[columns.axis] = 0; // crossings beyond the columns' ends count as at the ends
   rows.end[columns.axis] = 0;
   rows.first[columns.across] = 0;
   rows.end[columns.across] = columns.count[0];
@@ -178,7 +178,7 @@ std::vector<cl_uint4> LatticeMesh::Tiles(const SampleColumns& columns, const Sam
     {
       continue;
     }
-    // A sample at the upper end is decided as if it were a little further up: outside.
+    // A sample at the upper end is decided as if it were slightly further up: outside.
     const auto range = [&](int axis, int limitLow, int limitHigh) {
       const auto [low, high] = std::minmax({ (*corners[0])[axis], (*corners[1])[axis], (*corners[2])[axis] });
       return std::array<int, 2>{ std::max(FirstSampleFrom(low, pitch), limitLow),
@@ -193,7 +193,7 @@ std::vector<cl_uint4> LatticeMesh::Tiles(const SampleColumns& columns, const Sam
     };
     if (row[0] >= row[1] || column[0] >= column[1])
     {
-      continue; // between columns, or outside
+      continue; // lies between columns, or outside
     }
     if (small)
     {

@@ -1,29 +1,30 @@
-// Where between two samples the surface lies: a voxel's occupancy to a fraction of a sample.
+// Position of the surface between two samples: a voxel's occupancy to a fraction of a sample.
 //
-// Along columns of samples, where a surface crosses is known exactly; the samples say which is the last one before it.
-// What lies between the crossing and the border of that sample's fine voxel is added to the voxel it is in, or taken
-// away. Of a plane across the columns this leaves no terraces, along them it does: it is done for columns along x, y
-// and z, each crossing weighed by how much the surface faces that way, all weights of a surface adding up to 1.
+// Along columns of samples, the crossing of a surface is known exactly; the samples show which of them is the last one
+// before it. The interval between the crossing and the border of that sample's fine voxel is added to the voxel that
+// contains it, or subtracted. This removes the terraces of a plane across the columns, but not of one along them. So it
+// is done for columns along x, y and z, with each crossing weighted by how much the surface faces the columns; the
+// three weights of a surface add up to 1.
 //
-// Numbers are added up as whole ones, each with its sign changed where the mesh is mirrored: a turned or mirrored mesh
-// has the turned or mirrored voxels.
+// Sums are in integers, and each term changes its sign if the mesh is mirrored: a rotated or mirrored mesh gives
+// exactly the rotated or mirrored voxels.
 //
-// Defined before, but for what Voxelization.cl takes: AXIS, along which columns run, and BIT_AXIS, along which those of
-// `bits` do. As arguments they take 15% more time.
+// The host defines, besides the macros of Voxelization.cl, AXIS, along which columns run, and BIT_AXIS, along which
+// those of `bits` run. As arguments these would cost 15% more time.
 
 #include "Refraction/Voxelization/Voxelization.cl"
 
 #define SAMPLES_OF_VOXEL (SAMPLES * SAMPLES * SAMPLES)
 // Units of corrections in a sample; 80 surfaces through a voxel fit an int at 16 samples per edge, more at fewer.
 #define UNITS 65536
-// Of what is handed out: see UnitsOfSample.
+// Units of the output counts in a sample: see UnitsOfSample.
 #define UNITS_OF_COUNT (65535 / SAMPLES_OF_VOXEL)
 #define LEAST_WEIGHT (1.0f / 1024.0f)
 
-// Rows of samples that are there, a bit a sample.
+// Layout of the rows of samples in a buffer, one bit per sample.
 typedef struct
 {
-  int words, columns; // of a column; of a row
+  int words, columns; // words per column; columns per row
   int firstRow;
 } bit_rows;
 
@@ -40,9 +41,9 @@ inline int3 place(int along, int across, int up, int axis)
   return FROM_COLUMNS(by_columns, axis);
 }
 
-// How much a surface faces along the columns: the fourth power of its normal's component, as a part of the sum of all
-// three (numerics.md, Eq. (87)). The order of the sum is that of their sizes, so that turning the surface does not
-// change a bit.
+// Weight of a surface for columns along `along`: the fourth power of its normal's component, relative to the sum of all
+// three fourth powers (numerics.md, Eq. (87)). Terms are summed in the order of their size, so that rotating the
+// surface does not change a bit.
 inline float weight_along(long3 normal)
 {
   float3 n = fabs(convert_float3(normal));
@@ -54,16 +55,16 @@ inline float weight_along(long3 normal)
   return ALONG(n) / ((least + middle) + 1.0f);
 }
 
-// Whether a crossing is hidden: next to a sample that a later mesh has.
+// Whether a crossing is hidden: an adjacent sample belongs to a later mesh.
 inline int is_hidden(__global const uint* claimed, bit_rows rows, int3 before, int3 after, int first, int last)
 {
   return (!first && is_set(claimed, rows, before)) || (!last && is_set(claimed, rows, after));
 }
 
-// 1 where a line along the column leaves the mesh, -1 where it enters. Parity
-// says so where the samples before and after differ; where they do not, two crossings or more are between them, a
-// sliver too thin for samples, and it is left to how the triangle's corners run.
-//   turned   `leaving` of the triangle, -1 or 1, times the mesh's orientation, 0 where that is not known
+// Returns 1 if a line along the column leaves the mesh at a crossing, -1 if it enters. The parity of samples decides if
+// the samples before and after differ. If they are equal, two or more crossings lie between them, a sliver too thin for
+// samples, and the orientation of the triangle decides.
+//   turned   `leaving` of the triangle, -1 or 1, times the mesh's orientation; 0 if that is unknown
 //   first, last  whether the column begins after the crossing, or ends before it
 inline int side_of(__global const uint* bits, bit_rows rows, int3 before, int3 after, int first, int last, int turned)
 {
@@ -72,14 +73,14 @@ inline int side_of(__global const uint* bits, bit_rows rows, int3 before, int3 a
   return inBefore == inAfter ? turned : inBefore ? 1 : -1;
 }
 
-// Adds up the corrections of a slab's voxels.
+// Sums the corrections of a slab's voxels.
 //   tiles          as in mark_crossings
-//   samples        of a column
-//   bits, claimed  samples in this mesh, and in later ones; claimed and taken are not looked at where several is 0
-//   taken          see refine_counts: in voxels that later meshes have wholly, crossings count though they are hidden
-//   firstVoxel     of the slab, up those columns; voxels: of the slab
-//   orientation    of the mesh: 1, -1 or 0, see OrientedMesh
-//   corrections    of the slab's voxels, x fastest: UNITS a sample
+//   samples        samples in a column
+//   bits, claimed  samples inside this mesh, and inside later ones; claimed and taken are not read if several is 0
+//   taken          see refine_counts: hidden crossings still count in voxels that later meshes fill completely
+//   firstVoxel     first row of the slab's voxels, along the `up` axis of `bits`; voxels: size of the slab
+//   orientation    1, -1 or 0, see OrientedMesh
+//   corrections    output, one per voxel of the slab, x fastest, in UNITS per sample
 __kernel void measure_crossings(int tileCount, __global const uint4* tiles, __global const int* points,
   __global const int* triangles, int pitch, int samples, __global const uint* bits, int several,
   __global const uint* claimed, __global const ushort2* taken, int words, int columns, int firstRow, int firstVoxel,
@@ -104,10 +105,10 @@ __kernel void measure_crossings(int tileCount, __global const uint4* tiles, __gl
   const float scale = weight * (0.5f * UNITS) / (float)s.step;
   const int turned = s.leaving * orientation;
   const bit_rows rows = { words, columns, firstRow };
-  const int3 begin = place(0, 0, firstVoxel, BIT_AXIS); // of the slab
+  const int3 begin = place(0, 0, firstVoxel, BIT_AXIS); // first voxel of the slab
   const int tileColumns = tile.w >> 16;
   const int tileRows = tile.w & 0xffff;
-  int target = -1; // the voxel of the last crossing, and what is to be added to it
+  int target = -1; // voxel of the last crossing; `sum` is its pending correction
   int sum = 0;
   for (int j = 0; j < tileRows; ++j)
   {
@@ -117,8 +118,9 @@ __kernel void measure_crossings(int tileCount, __global const uint4* tiles, __gl
       if ((v0 | v1 | v2) >= 0)
       {
         const int number = samples_before(excess, s.step, samples);
-        const long rest = excess - s.tie - number * s.step; // from the sample after the crossing back to the crossing
-        const long twice = 2 * rest + s.step;               // from the border between both samples, twice
+        // From the sample after the crossing back to the crossing.
+        const long rest = excess - s.tie - number * s.step;
+        const long twice = 2 * rest + s.step; // twice the distance from the border between both samples
         const int cell = number - (twice < 0 ? 1 : 0);
         if (rest >= -s.step && rest <= 0 && cell >= 0 && cell < samples)
         {
@@ -163,7 +165,7 @@ __kernel void measure_crossings(int tileCount, __global const uint4* tiles, __gl
   }
 }
 
-// Samples of a voxel that lie in the mesh, whatever lies over it there.
+// Number of a voxel's samples inside the mesh, including those claimed by later meshes.
 inline int samples_in_voxel(__global const uint* bits, bit_rows rows, int3 voxel)
 {
   int number = 0;
@@ -175,21 +177,20 @@ inline int samples_in_voxel(__global const uint* bits, bit_rows rows, int3 voxel
   return number;
 }
 
-// Rounded to the nearest, halves away from 0.
+// Quotient rounded to the nearest integer, halves away from 0.
 inline long divided(long number, long by)
 {
   return (number + (number < 0 ? -by : by) / 2) / by;
 }
 
-// From counts of samples to the same in units of 1 / UNITS_OF_COUNT, with the corrections.
+// Converts counts of samples to units of 1 / UNITS_OF_COUNT, including the corrections.
 //
-// Where there are several meshes, what the borders of later ones take of the rest of the voxel or leave to it is shared
-// out:
-// a mesh gets the part of it that it has of the samples which are left. Where none are left, what later ones have is
-// taken from it as far as their samples are its own: one that they lie in gets the rest, and so does one that touches
-// them.
-//   taken    of the later meshes: samples and units. Not looked at where several is 0
-//   counts   of the slab's voxels
+// With several meshes, fractions that the borders of later meshes take from the rest of the voxel, or leave to it, are
+// distributed: a mesh gets a share in proportion to its part of the samples that are left. If none are left, the space
+// of later meshes is taken from this mesh as far as their samples are its own: a mesh that contains them gets the rest,
+// and so does one that touches them.
+//   taken    samples and units of later meshes; not read if several is 0
+//   counts   counts of the slab's voxels, updated
 __kernel void refine_counts(int4 voxels, __global const int* corrections, int several, __global ushort2* taken,
   __global const uint* bits, int words, int columns, int firstRow, int firstVoxel, __global ushort* counts)
 {

@@ -52,7 +52,7 @@ std::uint64_t Hash(const Point& point)
   std::uint64_t hash = 0;
   for (double coordinate : point)
   {
-    const double positiveZero = coordinate + 0.0; // -0.0 is at the same place
+    const double positiveZero = coordinate + 0.0; // -0.0 and 0.0 are the same place
     std::uint64_t bits;
     std::memcpy(&bits, &positiveZero, sizeof(bits));
     hash = (hash ^ bits) * 0x9e3779b97f4a7c15u;
@@ -61,7 +61,7 @@ std::uint64_t Hash(const Point& point)
   return hash;
 }
 
-/// For each point the lowest number of a point at the same place.
+/// For each point, the lowest index of a coincident point.
 std::vector<int> MergedPoints(const std::vector<Point>& points)
 {
   std::size_t slots = 16;
@@ -90,14 +90,14 @@ std::vector<int> MergedPoints(const std::vector<Point>& points)
 /// One use of an edge by a triangle.
 struct EdgeUse
 {
-  int higher;   ///< number of the edge's other end
-  bool upwards; ///< whether the triangle runs from the end of lower number to the other
+  int higher;   ///< index of the edge's other end
+  bool upwards; ///< whether the triangle runs from the end with the lower index to the other
 };
 
-/// The uses of edges, sorted by the lower number of their ends.
+/// The uses of edges, sorted by the lower index of their ends.
 struct EdgeUses
 {
-  std::vector<std::size_t> begin; ///< a point, and one more
+  std::vector<std::size_t> begin; ///< start of each point's uses, and the end of the last
   std::vector<EdgeUse> uses;
 };
 
@@ -169,7 +169,8 @@ void CountEdges(const TriangleMesh& mesh, EdgeUses& edges, MeshTopology& topolog
   }
 }
 
-/// Areas and the volume, about one of the mesh's own points so that a mesh far from the origin loses nothing.
+/// Computes areas and the enclosed volume, relative to one of the mesh's own points, so that a mesh far from the origin
+/// loses no digits.
 void MeasureTriangles(const TriangleMesh& mesh, MeshTopology& topology)
 {
   const Point centre = mesh.points[static_cast<std::size_t>(mesh.triangles[0][0])];

@@ -1,20 +1,20 @@
-// Which samples of a fine grid lie inside a closed mesh (Eisemann and Decoret 2008; Pfeuti 2009, section 3.1.2): a
-// column of samples is a row of words, a bit a sample, and every triangle toggles all samples of its columns that lie
-// before it.
+// Finds the samples of a fine grid that lie inside a closed mesh (Eisemann and Decoret 2008; Pfeuti 2009, section
+// 3.1.2): a column of samples is a row of words, one bit per sample, and every triangle toggles all samples of its
+// columns that lie before it.
 //
-// Toggling the samples before a crossing is left to the end: a triangle toggles only the last of them, and one scan of
-// the column then does the rest, for all triangles at once.
+// In practice a triangle toggles only the last sample before its crossing; a final scan of each column then toggles all
+// samples before each crossing, for all triangles at once.
 //
-// All is whole numbers. Points lie on a lattice (see SampleLattice.h), samples at odd multiples of half a pitch, and a
-// sample that touches a plane or an edge is decided as if it were moved by (e, e^2, e^3) with e infinitely small. A
-// column so never meets an edge or a corner, and which samples are inside is the same whichever axis the columns run
-// along.
+// All arithmetic is in integers. Points lie on a lattice (SampleLattice.h), and samples at odd multiples of half a
+// pitch. A sample that touches a plane or an edge is treated as if moved by (e, e^2, e^3), with e infinitely small. A
+// column therefore never meets an edge or a corner, and the set of samples inside does not depend on the axis of the
+// columns.
 //
-// Defined before: SAMPLES, samples per edge of a voxel; WINDING, 1 where crossings are counted with their sign instead.
+// The host defines SAMPLES, samples per edge of a voxel; WINDING, 1 to count crossings with their sign instead.
 
 #pragma once
 
-// Points as columns along an axis, 0 to 2, have them: along, across and up; and back.
+// Reorder a point to the axes of columns along axis 0 to 2, (along, across, up), and back.
 #define BY_COLUMNS(p, axis) ((axis) == 0 ? (p) : (axis) == 1 ? (p).yxz : (p).zxy)
 #define FROM_COLUMNS(p, axis) ((axis) == 0 ? (p) : (axis) == 1 ? (p).yxz : (p).yzx)
 #define ALONG(p) ((p).x)
@@ -22,22 +22,22 @@
 #define UP(p) ((p).z)
 
 #if WINDING
-// The winding number of the mesh about each sample: a byte counts the crossings between it and the next one, +1
-// for each at which a line along the column leaves the mesh, -1 where it enters.
+// Winding number of the mesh at each sample: a byte sums the crossings between it and the next sample, +1 if a line
+// along the column leaves the mesh there, -1 if it enters.
 #define CELLS 4
 #define BITS 4
 #else
-// Voxels of a word, and bits used of it: a voxel's samples are never in two words.
+// Voxels per word, and bits used in it: a voxel's samples are never split between two words.
 #define CELLS (32 / SAMPLES)
 #define BITS (CELLS * SAMPLES)
 #endif
 #define ALL_BITS ((uint)((1UL << BITS) - 1UL))
 #define ONE_CELL ((uint)((1UL << SAMPLES) - 1UL))
 
-// An edge of a triangle, seen along the columns, in a column: >= 0 on the inner side.
+// An edge of a triangle, projected along the columns: its edge function, >= 0 on the inner side.
 typedef struct
 {
-  long value, across, up; // and what a step to the next column and to the next row adds
+  long value, across, up; // edge function, and its increments to the next column and to the next row
 } edge;
 
 inline edge edge_in_column(int3 from, int3 to, long across, long up, int pitch)
@@ -46,14 +46,15 @@ inline edge edge_in_column(int3 from, int3 to, long across, long up, int pitch)
   const long above = (long)ACROSS(to) - ACROSS(from);
   edge e;
   e.value = above * (up - UP(from)) + right * (across - ACROSS(from));
-  e.value -= right > 0 || (right == 0 && above > 0) ? 0 : 1; // on the edge: where the sample was moved to
+  // A column on the edge: decided by where its sample was moved to.
+  e.value -= right > 0 || (right == 0 && above > 0) ? 0 : 1;
   e.across = right * pitch;
   e.up = above * pitch;
   return e;
 }
 
-// Of samples 0, 1, ..., each `step` above the one before, those that lie before a plane: those with
-// number * step < excess. What lies beyond the column counts as its end.
+// Number of samples before a plane, of samples 0, 1, ..., each `step` above the one before: those with number * step <
+// excess. Limited to the column.
 inline int samples_before(long excess, long step, int samples)
 {
   if (excess <= 0)
@@ -64,7 +65,7 @@ inline int samples_before(long excess, long step, int samples)
   {
     return samples;
   }
-  // Rounding in float is by less than one, as there are less than 2^20 samples.
+  // Rounding in float has an error below one, as there are fewer than 2^20 samples.
   const long wanted = excess - 1;
   long number = (long)((float)wanted / (float)step);
   const long rest = wanted - number * step;
@@ -73,7 +74,7 @@ inline int samples_before(long excess, long step, int samples)
 }
 
 #if !WINDING
-// A random number a sample, by which crossings are summed.
+// A random number per sample, the weight with which its crossing is summed.
 inline uint weight_of(int sample)
 {
   uint h = (uint)sample * 0x9e3779b1u + 0x7f4a7c15u;
@@ -102,20 +103,20 @@ inline void mark_crossing(
 #endif
 }
 
-// A triangle over the columns of a tile: which of them its edges enclose, and where its plane crosses them. All is as
-// the columns have it.
+// A triangle over the columns of a tile: the columns inside its edges, and where its plane crosses them. Coordinates
+// are (along, across, up).
 typedef struct
 {
-  edge e0, e1, e2;             // in the first column of a row
-  long3 normal;                // of the plane, made to point along the columns
-  int leaving;                 // 1 where it did before: a line along a column leaves the mesh; -1 where it enters
-  long step;                   // from sample to sample, as `excess` measures
-  long excess;                 // how far the column's first sample is before the plane, and `tie`
-  int tie;                     // 1 where a sample on the plane counts as before it
-  long excessAcross, excessUp; // what is taken off in the next column and in the next row
+  edge e0, e1, e2;             // edge functions in the first column of a row
+  long3 normal;                // normal of the plane, made to point along the columns
+  int leaving;                 // 1 if it did originally: a line along a column leaves the mesh; -1 if the line enters
+  long step;                   // increment of `excess` from sample to sample
+  long excess;                 // distance of the column's first sample before the plane, plus `tie`
+  int tie;                     // 1 if a sample on the plane counts as before it
+  long excessAcross, excessUp; // decrements of `excess` to the next column and to the next row
 } sheet;
 
-// Returns 0 where the triangle crosses no column.
+// Prepares a triangle for the columns of a tile. Returns 0 if it crosses none.
 inline int start_sheet(
   sheet* s, uint4 tile, __global const int* points, __global const int* triangles, int axis, int pitch)
 {
@@ -129,17 +130,17 @@ inline int start_sheet(
   long3 normal = (long3)(ab.y * ac.z - ab.z * ac.y, ab.z * ac.x - ab.x * ac.z, ab.x * ac.y - ab.y * ac.x);
   if (ALONG(normal) == 0)
   {
-    return 0; // no column, moved as they are, crosses it
+    return 0; // no column crosses it, after the infinitesimal move of the samples
   }
   const int turned = ALONG(normal) > 0 ? 1 : -1;
-  s->leaving = axis == 1 ? -turned : turned; // across and along are exchanged
+  s->leaving = axis == 1 ? -turned : turned; // for this axis, `across` and `along` are exchanged
   normal *= turned;
   s->normal = normal;
   const long3 facing = FROM_COLUMNS(normal, axis);
   const int towards = facing.x != 0 ? facing.x > 0 : facing.y != 0 ? facing.y > 0 : facing.z > 0;
   s->tie = towards ? 0 : 1;
 
-  // The edges, run counterclockwise in (across, up).
+  // The edges, ordered counterclockwise in (across, up).
   if (ACROSS(ab) * UP(ac) - UP(ab) * ACROSS(ac) < 0)
   {
     const int3 other = b;
@@ -168,14 +169,14 @@ inline void next_row(sheet* s)
   s->excess -= s->excessUp;
 }
 
-// Marks where a triangle crosses the columns of a tile.
-//   tiles          a work-item each: triangle, first column and row, (columns << 16) | rows
-//   axis           along which the columns run
-//   from_above     1: what lies after a crossing is toggled instead; not used with WINDING
-//   pitch          of the samples, in units of the lattice
-//   samples        of a column; columns: of a row; words: of a column
-//   firstRow       the first row of columns in `marks`
-//   sums           of the weights of a column's crossings, each with its sign, see fill_columns; not used with WINDING
+// Marks the crossings of triangles with the columns of their tiles.
+//   tiles          one per work-item: triangle, first column and row, (columns << 16) | rows
+//   axis           axis of the columns
+//   from_above     1: samples after a crossing are toggled instead; not used with WINDING
+//   pitch          distance of samples, in units of the lattice
+//   samples        samples per column; columns: per row; words: per column
+//   firstRow       first row of columns in `marks`
+//   sums           signed sum of the weights of each column's crossings, see fill_columns; not used with WINDING
 __kernel void mark_crossings(int tileCount, __global const uint4* tiles, __global const int* points,
   __global const int* triangles, int axis, int pitch, int samples, int from_above, int columns, int words, int firstRow,
   __global uint* marks, __global uint* sums)
@@ -225,8 +226,8 @@ __kernel void mark_crossings(int tileCount, __global const uint4* tiles, __globa
 
 #if WINDING
 
-// Winding numbers of one column's samples: the smallest, the largest, how many are neither 0 nor 1 when multiplied by
-// `sign`, and the first such sample.
+// Winding numbers of one column's samples: output is the smallest, the largest, the number of samples whose winding
+// number times `sign` is neither 0 nor 1, and the first such sample.
 __kernel void find_windings(
   int columnCount, int words, int samples, int sign, __global const uint* marks, __global int4* found)
 {
@@ -239,7 +240,7 @@ __kernel void find_windings(
   int4 of_column = (int4)(0, 0, 0, samples);
   for (int w = words - 1; w >= 0; --w)
   {
-    // The bytes were added up as one number: a negative byte has borrowed from the next one.
+    // The bytes were summed as one integer: a negative byte has borrowed from the next one.
     int rest = (int)marks[(ulong)id * words + w];
     int counts[4];
     for (int k = 0; k < 4; ++k)
@@ -265,18 +266,18 @@ __kernel void find_windings(
 
 #else
 
-// Turns the marks of each column into bits that say inside or outside, and finds the columns with a sample about which
-// the mesh winds neither 0 times nor once.
+// Converts the marks of each column to bits, 1 inside the mesh, and finds the columns with a sample whose winding
+// number is neither 0 nor 1.
 //
-// Where it winds about all samples of a column 0 times or once, lines along the column leave and enter the mesh by
-// turns, and the crossings' weights with their signs add up to those of the marks that are left, with signs by turns.
-// Weights are random: other crossings have another sum, but for one in 2^32.
-//   columns   of a row
+// If all winding numbers in a column are 0 or 1, lines along the column alternately leave and enter the mesh; the
+// signed weights of the crossings then add up to the weights of the remaining marks with alternating signs. Weights are
+// random: otherwise the sums differ, with an exception of one in 2^32.
+//   columns   columns per row
 //   from_above  as in mark_crossings
-//   sums      of mark_crossings
-//   sign      1, -1 where the mesh is inside out, 0 where nothing is to be found
-//   odd       from firstOdd on a number for each row of voxels of the grid: set where it has such a column
-//   firstRow  of the columns
+//   sums      from mark_crossings
+//   sign      1; -1 if the mesh is inside out; 0 to skip the search
+//   odd       from firstOdd on, a flag for each row of voxels of the grid: set if it has such a column
+//   firstRow  first row of the columns
 __kernel void fill_columns(int columnCount, int columns, int words, int from_above, __global uint* marks,
   __global const uint* sums, int sign, __global int* odd, int firstOdd, int firstRow)
 {
@@ -331,12 +332,12 @@ __kernel void fill_columns(int columnCount, int columns, int words, int from_abo
   }
 }
 
-// Counts the samples of each voxel that are inside, and not claimed by an object that comes later. A work-item per
-// column of voxels.
-//   voxels    of a column of voxels; columns, rows: of the columns of voxels that `bits` holds
+// Counts the samples of each voxel that are inside, and not claimed by a later mesh. One work-item per column of
+// voxels.
+//   voxels    voxels per column; columns, rows: columns of voxels in `bits`
 //   skipped   rows of samples in `bits` before those of the first voxels
-//   claimed   as `bits`: samples of later objects; those of this one are added. Not looked at where claims is 0
-//   counts    of the slab's voxels, times `units`; strides: from voxel to voxel along, across and up
+//   claimed   in the layout of `bits`: samples of later meshes; those of this one are added. Not read if claims is 0
+//   counts    counts of the slab's voxels, times `units`; strides: from voxel to voxel along, across and up
 __kernel void count_samples(int voxels, int columns, int rows, int words, int skipped, __global const uint* bits,
   __global uint* claimed, int claims, __global ushort* counts, int units, int strideAlong, int strideAcross,
   int strideUp)

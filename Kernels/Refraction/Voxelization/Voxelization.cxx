@@ -128,9 +128,10 @@ cl_int4 SurfaceFraction::VoxelsOf(const SampleSlab& slab) const
 namespace
 {
 constexpr int LargestSampleCount = 16;
-constexpr std::size_t SlabVoxels = std::size_t(4) << 20; ///< at most, where a row has fewer
+/// Maximum number of voxels in a slab, unless one row has more.
+constexpr std::size_t SlabVoxels = std::size_t(4) << 20;
 
-/// Words of 32 bits in a column.
+/// Number of 32-bit words in a column.
 int WordsOf(const Grid& grid, int axis, int voxelsOfWord)
 {
   return PartsOf(grid.size[axis], voxelsOfWord);
@@ -151,7 +152,7 @@ std::size_t VoxelsOfRow(const SampleColumns& columns, const Grid& grid)
   return grid.VoxelCount() / grid.size[columns.up];
 }
 
-/// Rows of voxels whose columns of samples take about `bytes`.
+/// Number of rows of voxels whose columns of samples take about `bytes`.
 int RowsOfSlab(const SampleColumns& columns, const Grid& grid, int words, std::size_t bytes)
 {
   const std::size_t row = static_cast<std::size_t>(columns.count[0]) * columns.samplesOfVoxel * words * sizeof(cl_uint);
@@ -159,7 +160,7 @@ int RowsOfSlab(const SampleColumns& columns, const Grid& grid, int words, std::s
   return static_cast<int>(std::clamp<std::size_t>(rows, 1, static_cast<std::size_t>(grid.size[columns.up])));
 }
 
-/// How many samples of each voxel are in each mesh, slab by slab.
+/// Counts the samples of each voxel inside each mesh, slab by slab.
 class Voxelization
 {
 public:
@@ -191,7 +192,7 @@ public:
       static_cast<std::size_t>(this->Columns.count[0]) * (this->Rows * this->Samples + 2 * RowsAround(settings));
     this->Bits = Buffer<cl_uint>(device, columns * this->Words, "a slab of the fine grid");
     this->Sums = Buffer<cl_uint>(device, columns, "sums of crossings");
-    // Without a second mesh nothing is ever claimed, and the kernel is handed an empty buffer.
+    // With a single mesh nothing is ever claimed, and the kernel receives an empty buffer.
     this->Claimed = Buffer<cl_uint>(device, meshes.size() > 1 ? columns * this->Words : 0, "samples of later meshes");
     this->Counts = Buffer<cl_ushort>(device, voxels, "a slab of the voxels' samples inside");
     if (settings.fractions)
@@ -227,10 +228,10 @@ public:
   }
 
 private:
-  /// Of samples, on either side of a slab.
+  /// Rows of samples needed on either side of a slab.
   static int RowsAround(const VoxelizationSettings& settings) { return settings.fractions ? 1 : 0; }
 
-  /// @param rows  of the own voxels: not 0 where some may be odd
+  /// @param rows  one per row of the own voxels: nonzero if it may have odd samples
   WindingNumbers WindingsOf(const OrientedMesh& mesh, const std::vector<cl_int>& rows, const Monitor& monitor) const
   {
     const VoxelBox& own = this->Counted.own;
@@ -312,12 +313,12 @@ private:
   Device& TheDevice;
   const Grid& Whole;
   const CountedVoxels Counted;
-  const Grid TheGrid; ///< the box that is counted
+  const Grid TheGrid; ///< the box whose samples are counted
   int Samples;
   SampleLattice Lattice;
   SampleColumns Columns;
   int Words;
-  int Rows; ///< of voxels in a slab
+  int Rows; ///< rows of voxels in a slab
   cl_int FromAbove;
   CrossingMarker Marker;
   cl::Kernel Fill, Count;
@@ -325,8 +326,8 @@ private:
   std::vector<LatticeMesh> Meshes;
   Buffer<cl_uint> Bits, Sums, Claimed;
   Buffer<cl_ushort> Counts;
-  std::optional<SurfaceFraction> Fractions; ///< where the settings ask for them
-  Buffer<cl_int> Odd;                       ///< not 0 for each mesh's rows of voxels that FindWindings is to look at
+  std::optional<SurfaceFraction> Fractions; ///< present if the settings ask for fractions
+  Buffer<cl_int> Odd;                       ///< for each mesh's rows of voxels: nonzero where FindWindings is to look
 };
 }
 

@@ -53,10 +53,10 @@ void CrossingMarker::Mark(
 
 namespace
 {
-constexpr int SamplesOfWord = 4; ///< a byte each
+constexpr int SamplesOfWord = 4; ///< one byte per sample
 constexpr std::size_t SlabBytes = std::size_t(16) << 20;
 
-/// Adds up what find_windings of Voxelization.cl says of columns.
+/// Combines the results of find_windings (Voxelization.cl) for all columns.
 class WindingSum
 {
 public:
