@@ -6,7 +6,7 @@
 
 namespace tyndall
 {
-/// Those that have gone as far as this turn goes, and are in the block.
+/// Moves photons that have reached the end of the turn inside the block from `photons` to those that wait.
 void WaitingPhotons::KeepThoseThatWait(const TurnSchedule& turn, std::vector<PhotonOnItsWay>& photons)
 {
   const auto waiting = std::partition(photons.begin(), photons.end(), [&](const PhotonOnItsWay& photon) {
@@ -24,7 +24,7 @@ std::vector<PhotonOnItsWay> WaitingPhotons::Follow(
     return {};
   }
   std::vector<PhotonOnItsWay> going = round == 0 ? std::exchange(this->Waiting, {}) : std::move(arrived);
-  this->KeepThoseThatWait(turn, going); // who has come into this block with the last stretch of the turn
+  this->KeepThoseThatWait(turn, going); // photons that entered this block with the last segment of the turn
   this->March->GoAsFarAs(turn);
   MarchRun::Outcome outcome = std::exchange(this->Started, true)
     ? this->March->Resume(std::move(going), monitor)
@@ -37,7 +37,7 @@ std::vector<PhotonOnItsWay> WaitingPhotons::Follow(
 void WaitingPhotons::ToTheirEnds(
   const TurnsInBlocks& turns, int limit, const std::function<const Buffer<float>&()>& show, const Monitor& monitor)
 {
-  constexpr double part = 0.1; // of what is left to do, as far as is known
+  constexpr double part = 0.1; // of the remaining work, as far as known
   const std::size_t all = PlaceAmong(this->Comm, this->Starting.packed.Count()).all;
   TurnSchedule turn(turns.stretches, limit, all);
   double done = 0.0;

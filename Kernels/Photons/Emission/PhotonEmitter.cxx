@@ -16,16 +16,17 @@ namespace tyndall
 {
 namespace
 {
-constexpr std::size_t TrySamples = 4096; ///< to learn what part of a light's photons meets the volume
+/// Samples that estimate the fraction of a light's photons that reaches the volume.
+constexpr std::size_t TrySamples = 4096;
 constexpr std::size_t ReportEvery = 100000;
 
-/// A light, and where its photons are dense.
+/// A light's source, with the importance map of its photon density.
 struct SpreadSource
 {
   PhotonSource source;
   std::optional<ImportanceSampler> sampler;
 
-  /// @param weight  of the photon: its power over what it had if all were spread evenly
+  /// @param weight  output: ratio of the photon's power to its power in uniform sampling
   std::optional<Shot> Shoot(PhotonSample sample, double& weight) const
   {
     weight = 1.0;
@@ -56,11 +57,11 @@ std::vector<SpreadSource> SpreadSources(std::vector<PhotonSource> sources, const
   return spread;
 }
 
-/// What a few photons of a light tell of it.
+/// Estimates of a light's properties from a few of its photons.
 struct Tried
 {
-  double power = 0.0; ///< that reaches the volume, channels summed
-  double hits = 0.0;  ///< part of its photons that do
+  double power = 0.0; ///< W reaching the volume, channels summed
+  double hits = 0.0;  ///< fraction of its photons that reach the volume
 };
 
 Tried Try(const Grid& grid, const SpreadSource& light)
@@ -85,7 +86,7 @@ Tried Try(const Grid& grid, const SpreadSource& light)
   return tried;
 }
 
-/// Shares of `count` in proportion to power, at least one of each light that reaches the volume.
+/// Divides `count` photons among lights in proportion to power, at least one for each light that reaches the volume.
 std::vector<std::size_t> Shares(const std::vector<Tried>& tried, std::size_t count)
 {
   double left = 0.0;
@@ -105,9 +106,9 @@ std::vector<std::size_t> Shares(const std::vector<Tried>& tried, std::size_t cou
   return shares;
 }
 
-/// The photon of a sample; nothing where there is none.
-/// @param weight  as it is spread
-/// @param part    of its light's power that it carries, where all are spread evenly
+/// The photon of a sample; empty if there is none.
+/// @param weight  importance weight
+/// @param part    fraction of its light's power that it carries in uniform sampling
 std::optional<Photon> PhotonOf(const Grid& grid, const std::optional<Shot>& shot, double weight, double part)
 {
   std::optional<Photon> photon = shot && Sum(shot->power) > 0.0 ? Land(grid, *shot) : std::optional<Photon>();
@@ -122,8 +123,9 @@ std::optional<Photon> PhotonOf(const Grid& grid, const std::optional<Shot>& shot
   return photon;
 }
 
-/// Photons are floats: their power must be one that is not 0, nor endless, nor so small that digits are lost.
-/// @param parts  of a part of so many only too much is: the others may be brighter
+/// Checks that the photons' power is in the range of float: not 0, not infinite, and not so small that digits are lost.
+/// @param parts  number of parts; if there are several, only too large a power is an error: photons of other parts may
+///   be brighter
 void CheckPowers(const EmittedPhotons& emitted, int parts)
 {
   float largest = 0.0f;
@@ -185,14 +187,14 @@ void Check(const EmissionSettings& settings)
     "Ask for fewer photons (PhotonCount).");
 }
 
-/// Samples of a light.
+/// The range of samples of one light.
 struct Tries
 {
-  std::size_t all = 0;            ///< of the light
-  std::size_t begin = 0, end = 0; ///< of these the part's
+  std::size_t all = 0;            ///< all samples of the light
+  std::size_t begin = 0, end = 0; ///< those in this part
 };
 
-/// Of each light.
+/// The samples of each light.
 std::vector<Tries> TriesOf(const std::vector<Tried>& tried, const EmissionSettings& settings)
 {
   const std::vector<std::size_t> shares = Shares(tried, settings.photonCount);
@@ -202,7 +204,7 @@ std::vector<Tries> TriesOf(const std::vector<Tried>& tried, const EmissionSettin
   {
     if (shares[s] > 0)
     {
-      // Every batch has a photon of every light, or it would not be all the light.
+      // Every batch needs photons of every light, or it would not represent all the light.
       tries[s].all = std::max(
         static_cast<std::size_t>(std::lround(shares[s] / tried[s].hits)), static_cast<std::size_t>(settings.batches));
     }
@@ -220,7 +222,7 @@ std::vector<Tries> TriesOf(const std::vector<Tried>& tried, const EmissionSettin
   return tries;
 }
 
-/// Makes the photons of one light, batch by batch.
+/// Emits the photons of one light, batch by batch.
 void EmitFrom(const Grid& grid, const SpreadSource& light, const Tries& tries, std::uint64_t seed,
   const EmissionSettings& settings, const Monitor& monitor, EmittedPhotons& emitted)
 {

@@ -38,8 +38,8 @@ bool IsBefore(const glm::dvec2& a, const glm::dvec2& b)
   return a.x < b.x || (a.x == b.x && a.y < b.y);
 }
 
-/// Sorted, those one above the other at the very same x: rounding parts the corners of a box that is seen squarely, and
-/// the hull would take the sliver between them for a side of its own.
+/// Sorts points, and aligns those with nearly equal x exactly: rounding separates the corners of a box seen face-on,
+/// and the hull would take the sliver between them for a side.
 std::vector<glm::dvec2> Sorted(std::vector<glm::dvec2> points)
 {
   std::sort(points.begin(), points.end(), IsBefore);
@@ -69,7 +69,7 @@ double HeightAt(const std::vector<glm::dvec2>& chain, double x, bool fromLeft)
   return chain.back().y;
 }
 
-/// The slice in which u of the whole, whose parts add up to `below`, is reached, and at which part of that slice.
+/// Finds the slice that contains the fraction u of the total, from cumulative sums `below`, and the position within it.
 std::size_t Choose(const std::vector<double>& below, double u, double& part)
 {
   const double wanted = u * below.back();
@@ -93,7 +93,8 @@ glm::dvec3 Corner(const Grid& grid, int which)
   return corner;
 }
 
-/// Across the direction; along a projected axis of the volume, so that a face seen squarely is mapped squarely.
+/// A unit vector perpendicular to the direction, along a projected axis of the volume, so that a face seen face-on is
+/// mapped to a square grid.
 glm::dvec3 AxisAcross(const glm::dvec3& direction)
 {
   const glm::dvec3 axis = std::abs(direction.x) < 0.9 ? glm::dvec3(1.0, 0.0, 0.0) : glm::dvec3(0.0, 1.0, 0.0);
@@ -140,7 +141,7 @@ glm::dvec2 ConvexPolygon::At(double u, double v) const
   const Slice& slice = this->Slices[Choose(this->Below, u, part)];
   const double w0 = slice.high0 - slice.low0;
   const double w1 = slice.high1 - slice.low1;
-  // The area up to t of the way: w0 t + (w1 - w0) t^2 / 2 = part (w0 + w1) / 2, solved without cancellation.
+  // Area up to fraction t: w0 t + (w1 - w0) t^2 / 2 = part (w0 + w1) / 2, solved for t without cancellation.
   const double wanted = part * (w0 + w1);
   const double root = std::sqrt(std::max(w0 * w0 + (w1 - w0) * wanted, 0.0));
   const double t = w0 + root > 0.0 ? std::min(wanted / (w0 + root), 1.0) : part;
@@ -196,7 +197,7 @@ SphericalRectangle::SphericalRectangle(const glm::dvec3& eye, const glm::dvec3& 
   this->B1 = n2.z;
   this->K = 2.0 * Pi - g2 - g3;
   this->Angle = g0 + g1 - this->K;
-  if (this->Angle < smallBelow) // a small difference of large angles
+  if (this->Angle < smallBelow) // would be a small difference of large angles
   {
     const glm::dvec3 middle(0.5 * (this->X0 + this->X1), 0.5 * (this->Y0 + this->Y1), this->Z0);
     const double distance = glm::length(middle);
@@ -296,7 +297,7 @@ glm::dvec3 LampView::Direction(double u, double v) const
   {
     return glm::normalize(this->Faces->At(u, v) - this->Place);
   }
-  // Around the axis of a face that it is on, turned from another one.
+  // Azimuth around the normal of a face that the lamp is on, from another such normal.
   std::array<int, 3> axes = { 2, 0, 1 };
   std::stable_partition(axes.begin(), axes.end(), [this](int axis) { return this->Inwards[axis] != 0; });
   const auto& [pole, first, second] = axes;

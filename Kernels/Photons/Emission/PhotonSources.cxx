@@ -20,7 +20,7 @@ namespace tyndall
 {
 namespace
 {
-/// Two axes across a unit vector (Duff et al. 2017).
+/// Two unit vectors perpendicular to a unit vector and to each other (Duff et al. 2017).
 std::array<glm::dvec3, 2> Across(const glm::dvec3& n)
 {
   const double sign = std::copysign(1.0, n.z);
@@ -29,7 +29,7 @@ std::array<glm::dvec3, 2> Across(const glm::dvec3& n)
   return { glm::dvec3(1.0 + sign * n.x * n.x * a, sign * b, -sign * n.x), glm::dvec3(b, sign + n.y * n.y * a, -n.y) };
 }
 
-/// @param versine  1 - cosine of the angle to the axis; of small angles a cosine tells little
+/// @param versine  1 - cosine of the angle to the axis, as the cosine of a small angle loses its digits
 glm::dvec3 Around(const glm::dvec3& axis, double versine, double turn)
 {
   const std::array<glm::dvec3, 2> across = Across(axis);
@@ -76,13 +76,13 @@ PhotonSource Spot(const Grid& grid, const Light& light)
           } };
 }
 
-/// Means of a photon's power, in parts of its light's, and of its square.
+/// Means of a photon's power, relative to its light's, and of its square.
 struct Moments
 {
   double mean = 0.0, square = 0.0;
 };
 
-/// @param shoot  from a sample to a photon, or none
+/// @param shoot  maps a sample to a photon, or none
 template <class Shoot>
 Moments MomentsOf(int samples, const Rgb& power, const Shoot& shoot)
 {
@@ -98,7 +98,7 @@ Moments MomentsOf(int samples, const Rgb& power, const Shoot& shoot)
   return moments;
 }
 
-/// A face of the volume, and a point of it.
+/// A face of the volume, and a point on it.
 struct FaceOfGrid
 {
   const Grid& grid;
@@ -122,7 +122,7 @@ struct FaceOfGrid
   }
 };
 
-/// From places of the rectangle over the faces that each sees.
+/// Samples points on the rectangle, then directions to the faces that each sees.
 PhotonSource RectangleByPlaces(const Grid& grid, const Light& light)
 {
   const glm::dvec3 middle = Vector(light.position);
@@ -142,8 +142,9 @@ PhotonSource RectangleByPlaces(const Grid& grid, const Light& light)
           } };
 }
 
-/// Photons of a rectangle that is large as seen from the volume, where most places light next to nothing: from points
-/// of the faces, over the solid angle that the rectangle has there, and from what of it is in the volume.
+/// Photons of a rectangle that is large as seen from the volume, so that most of its points contribute next to nothing:
+/// samples points on the faces, then the solid angle of the rectangle as seen from there; and the part of the rectangle
+/// inside the volume.
 class RectangleByFaces
 {
 public:
@@ -182,7 +183,7 @@ public:
   }
 
 private:
-  static constexpr int Parts = 7; ///< faces, and what of the rectangle is in the volume
+  static constexpr int Parts = 7; ///< six faces, and the part of the rectangle inside the volume
 
   std::optional<Shot> ShootFrom(int part, const PhotonSample& u) const
   {
@@ -223,7 +224,8 @@ private:
     return Shot{ view.Lamp(), direction, Times(this->Power, this->Within->Area()) };
   }
 
-  /// Corners of what of the rectangle LampView takes as in the volume, in parts of its edges from its middle.
+  /// Corners of the part of the rectangle that LampView counts as inside the volume, relative to its centre, in
+  /// fractions of its edges.
   std::vector<glm::dvec2> InVolume() const
   {
     std::vector<glm::dvec2> corners = { { -0.5, -0.5 }, { 0.5, -0.5 }, { 0.5, 0.5 }, { -0.5, 0.5 } };
@@ -241,11 +243,11 @@ private:
     return corners;
   }
 
-  /// In proportion to each part's root mean square power, which makes the variance of the sum least.
+  /// Divides samples in proportion to each part's root mean square power, which minimises the variance of the sum.
   void SetShares()
   {
     constexpr int samples = 512;
-    constexpr double least = 0.01; // what may shine in, but was not found to
+    constexpr double least = 0.01; // for parts that may contribute, although no sample did
     std::array<double, Parts> shares = {};
     double sum = 0.0;
     for (int part = 0; part < Parts; ++part)
@@ -261,7 +263,7 @@ private:
     }
   }
 
-  /// Whether a face reaches to before the rectangle, and the rectangle to before the face.
+  /// Whether the face extends in front of the rectangle, and the rectangle in front of the face.
   bool SeesFace(int face) const
   {
     const FaceOfGrid at = { this->TheGrid, face / 2, face % 2 == 1 };
@@ -280,12 +282,12 @@ private:
   Rgb Power;
   glm::dvec3 Middle, Normal, First, Second;
   double Area;
-  std::optional<ConvexPolygon> Within;       ///< what of it is in the volume, in parts of its edges
-  std::array<double, Parts + 1> Shares = {}; ///< cumulative, with a zero before
+  std::optional<ConvexPolygon> Within;       ///< part inside the volume, in fractions of the rectangle's edges
+  std::array<double, Parts + 1> Shares = {}; ///< cumulative, with a leading zero
 };
 
-/// Mean square of the powers of photons over their mean squared: 1 where all reach the volume with the same power,
-/// infinite where none does.
+/// Mean square of the photons' powers over their squared mean: 1 if all reach the volume with the same power, infinite
+/// if none does.
 double Unevenness(const Grid& grid, const PhotonSource& source, const Rgb& power)
 {
   constexpr int samples = 1024;
@@ -328,7 +330,7 @@ PhotonSource DiffuseFace(const Grid& grid, int face, const Rgb& radiance)
           } };
 }
 
-/// Directions of an environment, by what comes from them onto the volume.
+/// Samples directions of an environment by the power that each sends onto the volume.
 class Sky
 {
 public:
@@ -394,7 +396,7 @@ private:
     return this->FaceOutline(0, seen) + this->FaceOutline(1, seen) + this->FaceOutline(2, seen);
   }
 
-  /// A point on one of the three faces that look that way.
+  /// A point on one of the three faces that are lit from this direction.
   glm::dvec3 OnOutline(const glm::dvec3& seen, const PhotonSample& u) const
   {
     double wanted = u[0] * this->Outline(seen);
@@ -408,7 +410,7 @@ private:
     return FaceOfGrid{ this->TheGrid, axis, seen[axis] > 0.0 }.At(part, u[1]);
   }
 
-  /// Of pixels: what a bilinear picture has in them, by solid angle and outline.
+  /// Weights of the pixels: radiance of the bilinear image times solid angle and projected area of the volume.
   std::vector<double> Weights() const
   {
     std::vector<double> weights(static_cast<std::size_t>(this->Width) * this->Height);
@@ -446,7 +448,7 @@ private:
   Environment Picture;
   Rgb Constant;
   int Width, Height;
-  std::vector<double> Rows, Pixels; ///< cumulative, each with a zero before
+  std::vector<double> Rows, Pixels; ///< cumulative, each with a leading zero
 };
 }
 

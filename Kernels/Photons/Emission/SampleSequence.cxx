@@ -33,7 +33,7 @@ double RadicalInverse(std::size_t i, std::size_t base)
   return std::min(inverse, 1.0 - 0x1p-53);
 }
 
-/// A stride with which all of 0 ... count - 1 are met, and neighbours are far apart.
+/// A stride that visits all of 0 ... count - 1, modulo count, with successive values far apart.
 std::size_t Scatter(std::size_t count)
 {
   std::size_t stride = std::max<std::size_t>(static_cast<std::size_t>(0.6180339887498949 * count), 1);
@@ -64,7 +64,7 @@ double SampleSequence::Random(std::size_t i, int dimension) const
   return Unit(Mix(Mix(this->Seed + 1) ^ Mix(4 * static_cast<std::uint64_t>(i) + dimension)));
 }
 
-/// A point in cell i: rows that are as high as they have cells of the count.
+/// A point in cell i; rows have heights in proportion to their number of cells.
 std::array<double, 2> SampleSequence::Cell(std::size_t i, double across, double along) const
 {
   const std::size_t row = ((i + 1) * this->Rows - 1) / this->Count;

@@ -13,7 +13,8 @@ namespace tyndall
 {
 namespace
 {
-constexpr int RoundsOfSharing = 64; ///< of what is above the cap; each leaves fewer cells above it
+/// Iterations that redistribute the excess above the cap; each leaves fewer cells above it.
+constexpr int RoundsOfSharing = 64;
 
 std::string LightName(int light)
 {
@@ -51,13 +52,13 @@ void CheckSquare(const ImportanceMap& map, std::size_t square)
   }
 }
 
-/// Densities of mean 1, none above `most`.
+/// Densities with mean 1, none above `most`.
 std::vector<double> Capped(const float* density, std::size_t cells, double most)
 {
   std::vector<double> capped(density, density + cells);
   const double largest = *std::max_element(capped.begin(), capped.end());
   const auto total = [&] { return std::accumulate(capped.begin(), capped.end(), 0.0); };
-  std::for_each(capped.begin(), capped.end(), [&](double& d) { d /= largest; }); // no sum of them overflows
+  std::for_each(capped.begin(), capped.end(), [&](double& d) { d /= largest; }); // so that no sum overflows
   const double scale = cells / total();
   std::for_each(capped.begin(), capped.end(), [&](double& d) { d *= scale; });
   for (int round = 0; round < RoundsOfSharing; ++round)

@@ -15,18 +15,18 @@ namespace tyndall
 namespace
 {
 // Thresholds from the pilot's own statistics, all in proportion to the light (numerics.md, Eq. (96)).
-constexpr double SteepPart = 0.2; ///< of the lit cells: as many are steep ones
+constexpr double SteepPart = 0.2; ///< fraction of lit cells that count as steep
 constexpr double SteepAtLeast =
-  0.25; ///< of the median luminance from a cell to the next: below, noise and fog's own falling off
-constexpr double DimBelow = 0.5;  ///< of the median luminance
-constexpr double FewCells = 0.01; ///< of the lit cells: fewer chosen ones are not worth a map
-/// Deviation of the chosen cells' map, mean 1, times the fourth root of their part of the lit ones: below, it gains
-/// nothing. Fog alone, under a sun from any side, a lamp above or in it, thin or thick, has 0.2 to 0.46; glass in fog
-/// 0.53 to 1.
+  0.25; ///< difference between cells over the median luminance; smaller ones are noise, or extinction in fog
+constexpr double DimBelow = 0.5;  ///< relative to the median luminance
+constexpr double FewCells = 0.01; ///< fraction of lit cells; fewer chosen cells do not justify a map
+/// Standard deviation of the map of chosen cells, of mean 1, times the fourth root of their fraction of the lit cells:
+/// below this value, a map gains nothing. Fog alone, under a sun from any side, a lamp above or in it, thin or thick,
+/// has 0.2 to 0.46; glass in fog 0.53 to 1.
 constexpr double EvenMap = 0.5;
 
-constexpr int LargestEdge = 1024; ///< of the map
-constexpr int FilterReach = 2;    ///< of the Gauss filter: 5x5
+constexpr int LargestEdge = 1024; ///< maximum edge of the map, in cells
+constexpr int FilterReach = 2;    ///< half width of the Gaussian filter: 5x5
 constexpr double FilterVariance = 2.0;
 
 void Check(const ImportanceSettings& settings)
@@ -55,7 +55,7 @@ void Check(const ImportanceSettings& settings)
   }
 }
 
-/// Mean of the channels.
+/// Luminance of each cell: mean of the channels.
 std::vector<double> LuminanceOf(const PilotLight& light)
 {
   const std::size_t channels = static_cast<std::size_t>(light.channels);
@@ -67,7 +67,7 @@ std::vector<double> LuminanceOf(const PilotLight& light)
   return luminance;
 }
 
-/// Light of one more lamp. Origins are those of the first that reaches a cell.
+/// Adds the light of one more lamp. Origins stay those of the first lamp that reaches a cell.
 void Add(const PilotLight& more, PilotLight& light)
 {
   if (light.count.empty())
@@ -99,7 +99,7 @@ void Add(const PilotLight& more, PilotLight& light)
   light.seconds += more.seconds;
 }
 
-/// Length of the difference from a cell to the next: central, at the faces to the one neighbour.
+/// Absolute difference between neighbouring cells, as a vector norm: central differences, one-sided at the faces.
 std::vector<float> GradientOf(const std::vector<double>& luminance, const Grid& grid)
 {
   const std::array<std::size_t, 3> stride = grid.Strides();
@@ -120,7 +120,7 @@ std::vector<float> GradientOf(const std::vector<double>& luminance, const Grid& 
   return gradient;
 }
 
-/// The value below which `part` of the values are.
+/// The value below which the fraction `part` of the values lies.
 double Quantile(std::vector<double> values, double part)
 {
   if (values.empty())
@@ -145,14 +145,14 @@ void ChooseThresholds(const std::vector<double>& luminance, Importance& importan
     }
   }
   const double median = Quantile(lit, 0.5);
-  // Cells of few photons differ by chance: by a photon in each row that crosses a cell.
+  // Cells with few photons differ by chance: by one photon for each row that crosses a cell.
   const double chance = 1.0 / std::sqrt(std::max(Quantile(counts, 0.5), 1.0));
   importance.gradientThreshold =
     std::max(Quantile(steepness, 1.0 - SteepPart), std::max(SteepAtLeast, chance) * median);
   importance.luminanceThreshold = DimBelow * median;
 }
 
-/// Listing B.1's choice. Returns the part of the lit cells that it is.
+/// Chooses cells as in Listing B.1. Returns the fraction of lit cells that are chosen.
 double ChooseCells(const std::vector<double>& luminance, Importance& importance)
 {
   std::size_t lit = 0, chosen = 0;
@@ -172,7 +172,7 @@ double ChooseCells(const std::vector<double>& luminance, Importance& importance)
   return lit > 0 ? static_cast<double>(chosen) / static_cast<double>(lit) : 0.0;
 }
 
-/// Adds 1 to the cells of a map whose middles are in a circle; at least to the one that it is about.
+/// Adds 1 to the cells of a map whose centres are in a circle, at least to the cell that contains its centre.
 void Splat(double x, double y, double diameter, int size, std::vector<double>& map)
 {
   const double radius = 0.5 * diameter;
@@ -195,9 +195,9 @@ void Splat(double x, double y, double diameter, int size, std::vector<double>& m
   }
 }
 
-/// Diameter of a cell's circle. As published it is the origins' deviations along both axes together (Listing B.1),
-/// which leaves gaps between the circles of neighbours; else it spans the square that has these deviations, what a
-/// place is within its cell included.
+/// Diameter of a cell's circle. As published, it is the sum of the origins' standard deviations along both axes
+/// (Listing B.1), which leaves gaps between the circles of neighbours. Otherwise the circle spans the square with these
+/// deviations, including the spread of origins within their cells.
 double DiameterOf(const float* deviation, bool asPublished)
 {
   if (asPublished)
@@ -208,8 +208,8 @@ double DiameterOf(const float* deviation, bool asPublished)
   return 2.0 * (whole(deviation[0]) + whole(deviation[1]));
 }
 
-/// A circle about the mean origin of each chosen cell's photons, mean 1. Empty where no chosen cell has photons of this
-/// light.
+/// Draws a circle around the mean origin of each chosen cell's photons; the map has mean 1. Empty if no chosen cell has
+/// photons of this light.
 std::vector<double> CirclesOf(const std::vector<float>& chosen, const PilotLight& light, int size, bool asPublished)
 {
   std::vector<double> map(static_cast<std::size_t>(size) * static_cast<std::size_t>(size), 0.0);
@@ -230,7 +230,7 @@ std::vector<double> CirclesOf(const std::vector<float>& chosen, const PilotLight
   return map;
 }
 
-/// 5x5 Gauss filter of variance 2; beyond the edges the map goes on as it is there.
+/// 5x5 Gaussian filter of variance 2; beyond the edges the map's border values are repeated.
 std::vector<double> Smooth(const std::vector<double>& map, int size)
 {
   double weights[2 * FilterReach + 1], sum = 0.0;
@@ -257,8 +257,8 @@ std::vector<double> Smooth(const std::vector<double>& map, int size)
   return pass(pass(map, 1, row), row, 1);
 }
 
-/// Deviation from 1 of means over blocks, eight along an edge: circles of cells next to each other leave gaps, which
-/// tell nothing.
+/// Standard deviation from 1 of means over blocks, eight along an edge: at a finer scale, the gaps between the circles
+/// of neighbouring cells would dominate.
 double DeviationOf(const std::vector<double>& map, int size)
 {
   const int blocks = std::min(size, 8);
@@ -277,8 +277,8 @@ double DeviationOf(const std::vector<double>& map, int size)
   return std::sqrt(squares / static_cast<double>(sums.size()));
 }
 
-/// The map of one light, mean 1. Empty: nothing is gained by it.
-/// @param part  of the lit cells that are chosen
+/// The map of one light, mean 1; empty if a map gains nothing.
+/// @param part  fraction of lit cells that are chosen
 std::vector<double> MapOf(
   const Importance& importance, const PilotLight& light, double part, const ImportanceSettings& settings)
 {
@@ -309,7 +309,7 @@ void MakeMaps(const std::vector<PilotPhotons>& pilots, const std::vector<PilotLi
   {
     std::vector<double> map = worthIt ? MapOf(importance, lights[l], part, settings) : std::vector<double>();
     importance.even = importance.even && map.empty();
-    map.resize(importance.map.Cells(), 1.0); // an empty one: even
+    map.resize(importance.map.Cells(), 1.0); // an empty map stands for uniform density
     importance.map.lights.push_back(pilots[l].light);
     importance.map.density.insert(importance.map.density.end(), map.begin(), map.end());
   }

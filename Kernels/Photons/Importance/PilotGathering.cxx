@@ -17,7 +17,8 @@ namespace tyndall
 namespace
 {
 constexpr int LargestOrigin = 65535;
-constexpr int OriginNumbers = 5; ///< of a cell's record: photons, sums of columns, rows, and squares of each
+/// In a cell's record: photons, sums of columns and rows, and sums of their squares.
+constexpr int OriginNumbers = 5;
 
 std::array<int, 3> CellsOf(const std::array<int, 3>& asked, const Grid& grid)
 {
@@ -34,14 +35,14 @@ std::array<int, 3> CellsOf(const std::array<int, 3>& asked, const Grid& grid)
   return cells;
 }
 
-/// How many of `size` voxels are in cell `i`: voxel v is in cell v * cells / size.
+/// Number of voxels in cell `i` along an axis of `size` voxels: voxel v is in cell v * cells / size.
 double VoxelsIn(int i, int cells, int size)
 {
   const auto first = [&](std::int64_t cell) { return (cell * size + cells - 1) / cells; };
   return static_cast<double>(first(i + 1) - first(i));
 }
 
-/// Mean and deviation of what a count, a sum and a sum of squares are of.
+/// Mean and standard deviation from a count, a sum and a sum of squares.
 void PutMoments(std::int64_t count, std::int64_t sum, std::int64_t squares, float& mean, float& deviation)
 {
   const double n = static_cast<double>(std::max<std::int64_t>(count, 1)), s = static_cast<double>(sum);
@@ -49,7 +50,7 @@ void PutMoments(std::int64_t count, std::int64_t sum, std::int64_t squares, floa
   deviation = static_cast<float>(std::sqrt(std::max((static_cast<double>(squares) - s * s / n) / n, 0.0)));
 }
 
-/// @throws InvalidInput where there are not as many origins as photons, or one is out of its range
+/// @throws InvalidInput if the numbers of origins and photons differ, or an origin is out of range
 void CheckOrigins(const std::vector<Photon>& photons, const std::vector<std::array<int, 2>>& origins)
 {
   if (origins.size() != photons.size())
@@ -70,7 +71,7 @@ void CheckOrigins(const std::vector<Photon>& photons, const std::vector<std::arr
   }
 }
 
-/// Column and row that each photon set out from, as kernels sum them up.
+/// Marks of photons for CELLS (PhotonMarch.cl): column and row of their origins.
 std::vector<cl_ulong> MarksOfOrigins(const std::vector<std::array<int, 2>>& origins, const PackedPhotons& packed)
 {
   std::vector<cl_ulong> marks;
@@ -82,9 +83,9 @@ std::vector<cl_ulong> MarksOfOrigins(const std::vector<std::array<int, 2>>& orig
   return marks;
 }
 
-/// Cells without light.
-/// @param cells  asked for, along each axis; more than voxels are cut to them
-/// @throws InvalidInput where there are none
+/// A PilotLight of zeros.
+/// @param cells  requested cells along each axis; reduced to the number of voxels if larger
+/// @throws InvalidInput if there are none
 PilotLight DarkPilotLight(const Grid& voxels, const std::array<int, 3>& cells, int channels)
 {
   PilotLight light;
@@ -103,18 +104,18 @@ PilotLight DarkPilotLight(const Grid& voxels, const std::array<int, 3>& cells, i
   return light;
 }
 
-/// What pilot photons leave in cells.
+/// Sums of the pilot photons' deposits in cells.
 class PilotSums
 {
 public:
-  /// @param cellOfVoxel  MarchMedium::Cells; must stay
+  /// @param cellOfVoxel  MarchMedium::Cells; must outlive this
   PilotSums(
     const MarchMedium& medium, const PackedPhotons& packed, const Buffer<cl_int>& cellOfVoxel, std::size_t cells);
   PilotSums(const PilotSums&) = delete;
   PilotSums& operator=(const PilotSums&) = delete;
 
   const MarchSums& Target() const { return this->Into; }
-  std::vector<std::int64_t> AddUp() const; ///< NumbersOfCell of each cell
+  std::vector<std::int64_t> AddUp() const; ///< NumbersOfCell numbers for each cell
 
 private:
   MarchSums Into;
@@ -154,8 +155,8 @@ std::size_t NumbersOfCell(const PackedPhotons& packed)
   return static_cast<std::size_t>(packed.channels + OriginNumbers);
 }
 
-/// The light that such sums are.
-/// @param unit  W length, of one unit of power times path
+/// Converts such sums to light.
+/// @param unit  W length of one unit of power times path
 void PutCells(const std::vector<std::int64_t>& sums, const Grid& voxels, const PackedPhotons& packed, double unit,
   PilotLight& light)
 {
@@ -187,7 +188,7 @@ void PutCells(const std::vector<std::int64_t>& sums, const Grid& voxels, const P
   }
 }
 
-/// What one rank's photons leave, on their ways through its block.
+/// March of one rank's photons through its block.
 struct PilotMarch
 {
   PilotMarch(

@@ -12,9 +12,11 @@ namespace tyndall
 {
 namespace
 {
-constexpr int PrivateSumsAtMost = 8;    ///< beyond, adding up the copies costs more than atomics do
-constexpr double EventsPerLaunch = 4e7; ///< of straight ways, which two cores follow in less
-constexpr double FirstBent = 16384;     ///< photons on bent ways in the first launch
+/// Maximum number of compute units for private sums: with more, adding up the copies costs more than atomics.
+constexpr int PrivateSumsAtMost = 8;
+/// With straight rays, which two cores follow in less time than that of a launch.
+constexpr double EventsPerLaunch = 4e7;
+constexpr double FirstBent = 16384; ///< photons in the first launch with curved rays
 
 bool HasAtomics(const Device& device)
 {
@@ -33,15 +35,15 @@ bool NeedAtomics(const Device& device, MarchSettings::Sums sums)
   return sums == MarchSettings::Sums::Shared || (sums == MarchSettings::Sums::Fitting && atomics && !few);
 }
 
-/// Straight ways cost what their voxels do; of bent ones the first tell. Few launches: at the end of each, work-items
-/// wait.
+/// With straight rays, the cost of a launch follows from the number of voxels; with curved rays, it is measured in the
+/// first launch. Few launches are best: at the end of each, work-items idle.
 Batches LaunchesOf(const MarchMedium& medium, const PackedPhotons& packed, const MarchShares& shares)
 {
   const double edges = (medium.grid.size[0] + medium.grid.size[1] + medium.grid.size[2]) / 3.0;
   const double straight = EventsPerLaunch / edges;
   const double first =
     medium.bends ? std::min(straight, FirstBent * std::min(medium.settings.stepSize, 1.0)) : straight;
-  const int sharing = (shares.workers + shares.batches - 1) / shares.batches; // workers at a batch
+  const int sharing = (shares.workers + shares.batches - 1) / shares.batches; // workers that share a batch
   Batches launches;
   launches.count = packed.LargestBatch();
   launches.whole = static_cast<std::size_t>(MarchBlock) * static_cast<std::size_t>(std::max(sharing, 1));
@@ -54,7 +56,7 @@ Batches LaunchesOf(const MarchMedium& medium, const PackedPhotons& packed, const
 
 void Check(const MarchSettings& settings)
 {
-  constexpr double ShortestStep = 0.05; // voxels; below, rounding of positions counts
+  constexpr double ShortestStep = 0.05; // voxels; for shorter steps, rounding of positions matters
   constexpr double LongestStep = 1e4;
   if (settings.order != 1 && settings.order != 2 && settings.order != 4)
   {
@@ -110,7 +112,7 @@ MarchShares ShareSums(const MarchMedium& medium, std::size_t records, int number
   const bool mayShare = medium.settings.sums == MarchSettings::Sums::Fitting && HasAtomics(device);
   if (mayShare && fitting() < static_cast<std::size_t>(std::max(device.ComputeUnits(), batches)))
   {
-    shares.atomics = true; // slower additions, but of all cores
+    shares.atomics = true; // slower additions, but on all cores
   }
   const std::size_t fit = fitting();
   if (batches > 1 && fit < static_cast<std::size_t>(batches))
@@ -153,7 +155,7 @@ void MarchPhotons(const MarchMedium& medium, const PackedPhotons& packed, const 
   const MarchShares& shares = target.shares;
   const int width = device.KernelWidth();
   const std::size_t stride = shares.copies > 1 ? target.records * static_cast<std::size_t>(target.numbers) : 0;
-  // Unsafe: all workers on one copy, as if each had its own.
+  // With Unsafe sums, all workers use one copy, as if each had its own.
   const int copies = std::max(shares.copies, shares.workers);
   cl::Kernel march = MarchKernelFor(medium, target, packed.channels, "march_photons");
   const Buffer<cl_int> none(device, 0, "cells of the voxels");
@@ -171,7 +173,7 @@ void MarchPhotons(const MarchMedium& medium, const PackedPhotons& packed, const 
     }
     else if (device.IsCpu())
     {
-      // One by one: PoCL would keep the packets of a whole work-group on one stack.
+      // Work-groups of one: PoCL would keep the packets of a whole work-group on one stack.
       medium.Launch(march, cl::NDRange(packets, static_cast<std::size_t>(shares.batches)), cl::NDRange(1, 1));
     }
     else

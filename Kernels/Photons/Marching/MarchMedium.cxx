@@ -14,11 +14,12 @@ namespace tyndall
 namespace
 {
 constexpr const char* MultiplyAdds = " -cl-mad-enable";
-constexpr int RoundsAtMost = 64;      ///< of a photon through the volume, in sums of its edges
-constexpr float DarkUnits = 1e-3f;    ///< power that no sum would show
-constexpr double FilledAtMost = 0.25; ///< of bricks: where more are filled, to go by bricks saves little
+constexpr int RoundsAtMost = 64;   ///< maximum path length of a photon, in sums of the volume's edges
+constexpr float DarkUnits = 1e-3f; ///< power too small to show in any sum
+/// Fraction of bricks; if more are filled, a layout by bricks saves little.
+constexpr double FilledAtMost = 0.25;
 
-/// Components to upload: 0 where a coefficient is zero everywhere.
+/// Number of components to upload: 0 if a coefficient is zero everywhere.
 int ComponentsOf(const Field& field, bool needed)
 {
   return field.values && needed ? field.components : 0;
@@ -29,7 +30,7 @@ IndexGrid SizeOf(const std::array<int, 3>& size)
   return { { size[0], size[1], size[2] } };
 }
 
-/// None where light is to be kept voxel by voxel.
+/// The layout by bricks; empty if light is stored voxel by voxel.
 PhotonBricks BricksOf(Device& device, const Grid& grid, const FilledBricks& filled, const MarchSettings& settings,
   bool bends, bool scatters)
 {
@@ -89,7 +90,7 @@ MarchMedium::MarchMedium(Device& onDevice, const Medium& medium, const Field& io
   }
   else if (this->IsBlock() && this->hasLevels)
   {
-    const std::vector<std::uint8_t> single(this->block.known.VoxelCount(), 0); // until SetNodes
+    const std::vector<std::uint8_t> single(this->block.known.VoxelCount(), 0); // replaced by SetNodes
     this->PackVoxels(medium, ior, single.data());
   }
   else
@@ -166,7 +167,7 @@ void MarchMedium::PackVoxels(const Medium& medium, const Field& ior, const std::
   With(pack, this->DescribeGrid(), SizeOf(this->block.known.size), before(0), before(1), before(2),
     static_cast<float>(this->Diagonal()), this->sigmaA, this->sigmaS, low, high, this->sigma);
   this->Launch(pack, Range(this->Padded(2)));
-  this->device.Finish(); // before what is local goes
+  this->device.Finish(); // before local buffers are released
 }
 
 void MarchMedium::PackNodes(const Buffer<float>& low, const Buffer<float>& high, const std::uint8_t* levels)
@@ -179,7 +180,7 @@ void MarchMedium::PackNodes(const Buffer<float>& low, const Buffer<float>& high,
   cl::Kernel pack = this->MediumKernel("pack_nodes");
   With(pack, SizeOf(this->block.known.size), low, high, given, this->nodes);
   this->Launch(pack, Range(padded));
-  this->device.Finish(); // before the levels go
+  this->device.Finish(); // before the levels are released
 }
 
 void MarchMedium::FindRanges(Buffer<float>& low, Buffer<float>& high) const

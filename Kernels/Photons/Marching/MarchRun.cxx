@@ -13,9 +13,9 @@ namespace tyndall
 {
 namespace
 {
-constexpr std::size_t FirstLaunch = 16384; ///< photons; how long they take says how many go next
+constexpr std::size_t FirstLaunch = 16384; ///< photons; its duration determines the size of the next launch
 
-/// Places of the first of each batch, and beyond the last one, of photons in the order of their batches.
+/// Indices of the first photon of each batch, and one past the last, for photons ordered by batch.
 std::vector<int> BeginsOf(const std::vector<PhotonOnItsWay>& photons, int batches)
 {
   std::vector<int> begins(static_cast<std::size_t>(batches) + 1, 0);
@@ -33,7 +33,7 @@ struct MarchRun::Marched
 {
   PhotonsOnDevice starting;
   Buffer<PhotonOnItsWay> arrived;
-  bool resumes; ///< those that arrived march, else those that start
+  bool resumes; ///< march the arrived photons, not the starting ones
 };
 
 MarchRun::MarchRun(const MarchMedium& medium, const MarchSums& target, const PackedPhotons& packed)
@@ -74,7 +74,7 @@ MarchRun::Outcome MarchRun::Resume(std::vector<PhotonOnItsWay> arrived, const Mo
   PackedPhotons none;
   none.channels = this->Channels;
   none.batchBegin = { 0, 0 };
-  none.numbers.resize(arrived.size()); // for as many ends
+  none.numbers.resize(arrived.size()); // as many as there will be end records
   Device& device = this->Medium.device;
   return this->March(
     { PhotonsOnDevice(device, none), Buffer<PhotonOnItsWay>(device, arrived, "photons from other blocks"), true },
@@ -97,14 +97,14 @@ MarchRun::Outcome MarchRun::March(const Marched& photons, const std::vector<int>
   return outcome;
 }
 
-/// Photons `begin` to `end`, which are of one batch.
+/// Marches photons `begin` to `end`, which belong to one batch.
 void MarchRun::MarchBatch(const Marched& photons, int batch, std::size_t begin, std::size_t end, const Monitor& monitor,
   std::vector<PhotonOnItsWay>& gone)
 {
   Device& device = this->Medium.device;
   const MarchShares& shares = this->Target.shares;
   const std::size_t width = Count(device.KernelWidth());
-  // Copies of a batch are so many apart; each has a worker of its own.
+  // Stride between copies of a batch; each copy has a worker of its own.
   const std::size_t stride = shares.copies > 1 ? this->Target.records * Count(this->Target.numbers) : 0;
   const auto workers =
     static_cast<std::size_t>(shares.workers > 0 ? (shares.copies - batch + shares.batches - 1) / shares.batches : 0);

@@ -22,7 +22,7 @@ Span SpanOf(const cl::Event& first, const cl::Event& last)
     1e-9 * static_cast<double>(last.getProfilingInfo<CL_PROFILING_COMMAND_END>()) };
 }
 
-/// Photons between turns, and what their kernel needs.
+/// State of the photons between turns, and the arguments of their kernel.
 class TurnsOfPhotons
 {
 public:
@@ -42,9 +42,9 @@ public:
   {
   }
 
-  /// Queued. @param stretches  at most the medium's limit
+  /// Queues a turn. @param stretches  path segments, at most the medium's limit
   cl::Event Turn(const cl::CommandQueue& queue, int turn, int stretches, bool last);
-  /// Waits.
+  /// Waits for the queue, then returns the number of photons that have not ended.
   std::size_t StillGoing(const cl::CommandQueue& queue) const
   {
     cl_int left = 0;
@@ -116,14 +116,14 @@ TurnTimes MarchInTurns(const MarchMedium& medium, const PackedPhotons& packed, c
   const cl::CommandQueue mine = medium.device.AnotherQueue();
   const cl::CommandQueue theirs = turns.sideBySide ? medium.device.AnotherQueue() : mine;
   TurnsOfPhotons all(medium, packed, photons, target);
-  medium.device.Finish(); // what is on the device's own queue
+  medium.device.Finish(); // work on the device's own queue
   TurnSchedule turn(turns.stretches, medium.EventLimit(), packed.Count());
   std::size_t left = packed.Count();
   for (; left > 0; ++times.turns)
   {
     turn.Next(left);
     const std::vector<cl::Event> marched = { all.Turn(mine, times.turns, turn.stretches, turn.last) };
-    const bool besides = times.turns > 0; // before, there is no light to do something with
+    const bool besides = times.turns > 0; // the first turn has no light to process
     const std::array<cl::Event, 2> meanwhile = besides ? turns.meanwhile(theirs) : std::array<cl::Event, 2>();
     theirs.enqueueBarrierWithWaitList(&marched);
     turns.take(theirs, show(theirs));

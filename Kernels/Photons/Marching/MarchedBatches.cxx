@@ -55,7 +55,7 @@ std::vector<float> Floats(const std::vector<double>& values)
   return { values.begin(), values.end() };
 }
 
-/// Each value three times.
+/// Repeats each value three times.
 void Widen(std::vector<double>& values)
 {
   std::vector<double> three;
@@ -67,11 +67,12 @@ void Widen(std::vector<double>& values)
 }
 }
 
-// Not every so manieth: samplers spread photons by the digits of their numbers (every sixteenth has the same four last
-// binary ones, which are Hammersley's first), and all of a batch would be of one part of the light.
+// Random choice rather than a fixed stride: low-discrepancy samples depend on the digits of their indices (every
+// sixteenth index has the same last four binary digits, which are Hammersley's leading ones), and all photons of a
+// batch would come from one part of the light.
 PhotonNumbers NumbersOfBatch(std::size_t photons, std::size_t batch, std::size_t batches)
 {
-  std::mt19937 random; // the same whatever the batch
+  std::mt19937 random; // the same sequence for every batch
   PhotonNumbers numbers;
   for (std::size_t row = 0; row < photons; row += batches)
   {
@@ -87,7 +88,8 @@ PhotonNumbers NumbersOfBatch(std::size_t photons, std::size_t batch, std::size_t
 void MarchedBatches::Add(PhotonLight&& part)
 {
   ++this->Count;
-  if (this->Count > 1 && part.light.channels < this->All.light.channels) // by chance its photons have one colour
+  // By chance all photons of this batch have one colour.
+  if (this->Count > 1 && part.light.channels < this->All.light.channels)
   {
     Spread(part.light, White);
     part.scattered = part.exchanged = {};
@@ -149,7 +151,7 @@ PhotonLight MarchedBatches::Sum() &&
   const double count = this->Count;
   for (std::size_t i = 0; i < this->Fluence.size(); ++i)
   {
-    // Each batch is a part of the light: the sum varies as much as so many of them.
+    // Each batch is a part of the light: the variance of the sum is that of `count` such parts.
     const double scatter = this->Squares[i] - this->Fluence[i] * this->Fluence[i] / count;
     light.fluenceError.push_back(static_cast<float>(std::sqrt(std::max(scatter, 0.0) * count / (count - 1.0))));
   }

@@ -17,11 +17,11 @@ namespace tyndall
 {
 namespace
 {
-// A voxel's count of photons stands above the sum of their weights, in the same 64 bits.
+// A voxel's count of photons is stored in the bits above the sum of their weights, in the same 64 bits.
 constexpr std::size_t CountedAtMost = (std::size_t(1) << (64 - CountShift)) - 1;
-constexpr double WeightUnits = 65536.0; ///< of the largest weight
+constexpr double WeightUnits = 65536.0; ///< units in the largest weight
 
-/// Tallies of the one channel, for the three that it stands for.
+/// Expands the tallies of a single channel to the three that it stands for.
 void Colour(const Rgb& colour, PhotonLight& result)
 {
   EnergyBalance& balance = result.light.balance;
@@ -33,7 +33,7 @@ void Colour(const Rgb& colour, PhotonLight& result)
   std::for_each(result.light.facePowerOut.begin(), result.light.facePowerOut.end(), spread);
 }
 
-/// One photon and its weight, of each.
+/// Counting mark of each photon: a count of one, and its weight.
 std::vector<cl_ulong> Marks(const std::vector<Photon>& photons, const PackedPhotons& packed, float unit)
 {
   std::vector<cl_ulong> marks;
@@ -46,7 +46,7 @@ std::vector<cl_ulong> Marks(const std::vector<Photon>& photons, const PackedPhot
   return marks;
 }
 
-/// Replaces this rank's powers and numbers by their sums over all ranks.
+/// Replaces this rank's powers and numbers by their sums over all ranks. Collective.
 void SumUp(const Domain& domain, const std::vector<Rgb*>& powers, const std::vector<double*>& numbers)
 {
   std::vector<double> values;
@@ -247,7 +247,8 @@ void Tally(const PackedPhotons& packed, const std::vector<cl_int>& ends, PhotonL
     {
       cl_float units;
       std::memcpy(&units, ends.data() + i * words + EndWords + c, sizeof(units));
-      out[std::min<int>(end.face, StillGoing)][c] += WholeUnits(units); // almost nothing of those that are dark
+      // Dark photons have almost no power left.
+      out[std::min<int>(end.face, StillGoing)][c] += WholeUnits(units);
     }
   }
   for (int c = 0; c < 3; ++c)

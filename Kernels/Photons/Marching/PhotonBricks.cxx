@@ -10,7 +10,7 @@ namespace tyndall
 {
 namespace
 {
-// As PhotonMedium.cl has them.
+// As in PhotonMedium.cl.
 constexpr float OutsideOfGrid = -3e38f;
 constexpr float ThickestVoxel = 1e30f;
 }
@@ -73,7 +73,7 @@ PhotonBricks::Coefficients PhotonBricks::Pack(
     packed.extinction[c * this->RecordCount] = OutsideOfGrid;
   }
   const auto over = static_cast<float>(diagonal);
-  // All of a row at a time: rows of a brick are far from each other in memory.
+  // Copies a whole row at a time: rows of a brick are far apart in memory.
   this->ForFilled([&](std::size_t record, std::size_t voxel, std::size_t count) {
     std::copy_n(medium.sigma_a.values + voxel * ofA, count * ofA, packed.sigmaA.data() + record * ofA);
     std::copy_n(medium.sigma_s.values + voxel * ofS, count * ofS, packed.sigmaS.data() + record * ofS);

@@ -28,9 +28,8 @@ namespace tyndall
 {
 namespace
 {
-/// Voxels round a block whose index has a part in the ways of photons in it (numerics.md, Eq. (99f)): three of each
-/// spline's, and those of the places that the integrator looks at before it goes there. Beyond, the index counts as
-/// constant.
+/// Halo of the refractive index that the paths of photons in a block depend on, in voxels (numerics.md, Eq. (99f)):
+/// three for the support of the spline, and the integrator's look-ahead. Beyond the halo, the index counts as constant.
 /// @param octree  whether steps are those of an octree
 int ReachOfIndex(const MarchSettings& settings, bool octree)
 {
@@ -41,7 +40,7 @@ int ReachOfIndex(const MarchSettings& settings, bool octree)
   }
   const double steps = 0.5 * (settings.order == 2 ? LeapfrogLooksAhead : YoshidaLooksAhead) * settings.stepSize;
   const double ahead = octree && settings.order == 4 ? std::max(steps, 1.0 * (1 << YoshidaLevel)) : steps;
-  return OfSpline + 1 + static_cast<int>(ahead); // also from a voxel's upper wall
+  return OfSpline + 1 + static_cast<int>(ahead); // one more for positions on a voxel's upper wall
 }
 
 void RequireSame(const Domain& domain, const MarchSettings& settings)
@@ -52,7 +51,7 @@ void RequireSame(const Domain& domain, const MarchSettings& settings)
       1.0 * settings.errorBatches, 1.0 * settings.batches });
 }
 
-/// Whether some rank has a part of the grid only: then photons go from block to block. The same on all ranks.
+/// Whether some rank has only a part of the grid, so that photons pass from block to block. The same on all ranks.
 bool IsDivided(const Domain& domain)
 {
   const std::vector<VoxelBox>& blocks = domain.Partition().blocks;
@@ -67,7 +66,7 @@ public:
   Implementation(Device& device, const Domain& domain, const Medium& medium, const Field& ior,
     const MarchSettings& settings, const std::uint8_t* levels);
 
-  /// How photons get to where they are first scattered, and what became of them there.
+  /// Follows photons to their first collision, and tallies what became of them.
   using Way = std::function<void(
     const StartingPhotons& starting, const MarchSums& target, PhotonLight& result, const Monitor& monitor)>;
   PhotonLight March(const std::vector<Photon>& share, const Way& way, const Monitor& monitor);
@@ -78,13 +77,13 @@ public:
   void ByTurns(const StartingPhotons& starting, const MarchSums& target, PhotonLight& result,
     const TurnsInBlocks& turns, const Monitor& monitor) const;
   std::vector<PhotonPath> Paths(const std::vector<Photon>& share, const std::vector<std::size_t>& chosen) const;
-  /// @throws InvalidInput where turns are not possible, or light is kept by bricks
+  /// @throws InvalidInput if turns are not possible, or light is stored by bricks
   void RequireTurns() const;
   void RequireVoxels(const char* what) const;
 
   const Domain TheDomain;
   const MarchSettings Settings;
-  RoundsTraffic Handed; ///< of the last march
+  RoundsTraffic Handed; ///< messages of the last march
   std::unique_ptr<PilotGathering> Pilots;
 
 private:
@@ -105,13 +104,13 @@ private:
     const StartingPhotons& starting, const MarchSums& target, const PhotonLight& result, Buffer<float>& fluence) const;
 
   Device& TheDevice;
-  const bool Divided;                            ///< the grid, among ranks
-  MarchTraits Traits;                            ///< of all ranks
-  std::unique_ptr<BrickedBytes> Nodes;           ///< of the octree of a divided grid; null: there is none
-  std::unique_ptr<MarchMedium> Through;          ///< null without voxels
-  std::unique_ptr<MarchedLight> Light;           ///< likewise
-  std::unique_ptr<ScatteredChannels> Scattering; ///< null: photons are followed to where they are first scattered
-  std::unique_ptr<Rounds> TheRounds;             ///< of a march
+  const bool Divided;                            ///< whether the grid is divided among ranks
+  MarchTraits Traits;                            ///< of all ranks together
+  std::unique_ptr<BrickedBytes> Nodes;           ///< octree nodes of a divided grid; null: no octree
+  std::unique_ptr<MarchMedium> Through;          ///< null if the rank has no voxels
+  std::unique_ptr<MarchedLight> Light;           ///< null if the rank has no voxels
+  std::unique_ptr<ScatteredChannels> Scattering; ///< null if photons are followed to their first collision only
+  std::unique_ptr<Rounds> TheRounds;             ///< present during a march
 };
 
 PhotonMarcher::Implementation::Implementation(Device& device, const Domain& domain, const Medium& medium,
@@ -152,7 +151,7 @@ PhotonMarcher::Implementation::Implementation(Device& device, const Domain& doma
     if (this->Through)
     {
       this->Light = std::make_unique<MarchedLight>(*this->Through);
-      this->Light->Share(1, 1); // throws where the device lacks something
+      this->Light->Share(1, 1); // throws if the device lacks something
     }
   });
   if (settings.maximumOrders != 1 && this->Traits.scatters)
@@ -173,15 +172,15 @@ MarchTraits PhotonMarcher::Implementation::TraitsOfAllRanks(
   return traits;
 }
 
-/// The voxels whose index a rank needs.
+/// The voxels in which a rank needs the index.
 VoxelBox PhotonMarcher::Implementation::KnownOf(const VoxelBox& block, int reach) const
 {
   return block.VoxelCount() > 0 ? Grown(block, reach, this->TheDomain.Whole()) : block;
 }
 
-/// Their index, from all ranks; null values where nothing depends on it.
-/// @param reach  0: nothing does
-/// @param values  holds it, where the grid is divided
+/// The index in these voxels, gathered from all ranks; null values if nothing depends on it.
+/// @param reach  halo in voxels; 0: nothing depends on the index
+/// @param values  storage for it, if the grid is divided
 Field PhotonMarcher::Implementation::IndexAround(const Field& ior, int reach, std::vector<float>& values) const
 {
   const Domain& domain = this->TheDomain;
@@ -207,7 +206,7 @@ Field PhotonMarcher::Implementation::IndexAround(const Field& ior, int reach, st
   return { values.empty() ? nullptr : values.data(), 1 };
 }
 
-/// The nodes of all ranks' octree levels, on each.
+/// Distributes the nodes of all ranks' octree levels to every rank.
 void PhotonMarcher::Implementation::ShareNodes(const std::uint8_t* levels)
 {
   const Domain& domain = this->TheDomain;
@@ -272,7 +271,7 @@ void PhotonMarcher::Implementation::AtOnce(
     monitor);
 }
 
-/// A kernel that makes fluence of the sums so far.
+/// Creates a kernel that converts the sums so far to fluence.
 cl::Kernel PhotonMarcher::Implementation::Show(
   const StartingPhotons& starting, const MarchSums& target, const PhotonLight& result, Buffer<float>& fluence) const
 {
@@ -329,7 +328,7 @@ void PhotonMarcher::Implementation::ByTurns(const StartingPhotons& starting, con
     monitor);
 }
 
-/// Up to where they are first scattered.
+/// Follows photons to their first collision.
 void PhotonMarcher::Implementation::FollowUncollided(
   const StartingPhotons& starting, const Way& way, PhotonLight& result, const Monitor& monitor)
 {
@@ -357,7 +356,7 @@ void PhotonMarcher::Implementation::FollowUncollided(
   AddUpTallies(this->TheDomain, result);
 }
 
-/// This rank's share of one channel's scattered light and tallies.
+/// This rank's part of one channel's scattered light and tallies.
 ScatteredPhotons PhotonMarcher::Implementation::FollowScattered(const PhotonScattering* in, PackedPhotons photons,
   const PhotonScattering::Settings& settings, const Monitor& monitor) const
 {
@@ -377,7 +376,7 @@ ScatteredPhotons PhotonMarcher::Implementation::FollowScattered(const PhotonScat
   return found;
 }
 
-/// What more orders than one ask for.
+/// Adds the light of orders above the first.
 void PhotonMarcher::Implementation::AddScattered(
   const PackedPhotons& packed, PhotonLight& result, const Monitor& monitor) const
 {
@@ -390,11 +389,11 @@ void PhotonMarcher::Implementation::AddScattered(
   }
   else if (this->Settings.maximumOrders != 1)
   {
-    result.light.fluenceDirect = result.light.fluence; // nothing scatters
+    result.light.fluenceDirect = result.light.fluence; // as nothing scatters
   }
 }
 
-/// @param numbers  of the photons among all
+/// @param numbers  indices of the photons among all
 PhotonLight PhotonMarcher::Implementation::MarchThese(
   const std::vector<Photon>& share, const PhotonNumbers& numbers, const Way& way, const Monitor& monitor)
 {
@@ -458,7 +457,7 @@ PhotonLight PhotonMarcher::Implementation::March(
     result = this->MarchThese(share, numbers, way, monitor);
   }
   this->Handed = this->TheRounds->Traffic();
-  JudgeBalance(result.light, Medium()); // the same on all ranks
+  JudgeBalance(result.light, Medium()); // gives the same result on all ranks
   return result;
 }
 

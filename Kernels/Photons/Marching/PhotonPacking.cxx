@@ -15,7 +15,8 @@ namespace tyndall
 {
 namespace
 {
-constexpr int TileBits = 8; ///< tiles along an axis, by which photons are ordered: a voxel or two of a grid of 128^3
+/// Log2 of the tiles along an axis, by which photons are sorted: a voxel or two of a grid of 128^3.
+constexpr int TileBits = 8;
 constexpr double SameColour = 1e-6;
 
 void CheckPhoton(const Photon& photon, std::size_t number)
@@ -45,14 +46,14 @@ void CheckPhoton(const Photon& photon, std::size_t number)
   }
 }
 
-/// Positions and directions in voxels, of those that meet the grid.
+/// Positions and directions, in voxels, of photons that meet the grid.
 struct Ray
 {
   std::array<float, 3> position, direction;
-  std::uint32_t tile; ///< its place on a curve through space that keeps neighbours together (Morton)
+  std::uint32_t tile; ///< index on a space-filling curve that keeps neighbours together (Morton)
 };
 
-/// The bits of x, each followed by two zeros.
+/// Inserts two zero bits after each bit of x.
 std::uint32_t Spread(std::uint32_t x)
 {
   std::uint32_t spread = 0;
@@ -73,7 +74,7 @@ Ray RayOf(const Grid& grid, const Photon& photon, const std::array<double, 3>& p
     const double omega = photon.direction[a] / length;
     ray.position[a] = static_cast<float>(position[a]);
     ray.direction[a] = static_cast<float>(omega);
-    // Photons are neighbours when they are so halfway through: those of a lamp in the volume all begin at one place.
+    // Photons are sorted by the midpoints of their paths: those of a lamp in the volume all start at one point.
     const double middle = (position[a] + omega * reach + reach) / (grid.size[a] + 2.0 * reach);
     const int tiles = 1 << TileBits;
     ray.tile |= Spread(std::min(std::max(static_cast<int>(middle * tiles), 0), tiles - 1)) << a;
@@ -81,7 +82,7 @@ Ray RayOf(const Grid& grid, const Photon& photon, const std::array<double, 3>& p
   return ray;
 }
 
-/// Numbers of the rays in the order of their tiles; those of one tile as they are. Radix sort, by halves of the bits.
+/// Indices of the rays sorted by tile, stable within a tile. Radix sort, by halves of the bits.
 std::vector<std::uint32_t> Order(const std::vector<Ray>& rays)
 {
   constexpr int Bits = 3 * TileBits / 2;
@@ -105,7 +106,8 @@ std::vector<std::uint32_t> Order(const std::vector<Ray>& rays)
   return order;
 }
 
-/// Those of a batch together, in the order that they have; `begin` becomes the place of each batch's first, and beyond.
+/// Groups photons by batch, in their present order; `begin` receives the index of each batch's first photon, and the
+/// end.
 std::vector<std::uint32_t> ByBatch(const std::vector<std::uint32_t>& order, const std::vector<Photon>& photons,
   const std::vector<std::size_t>& numbers, int batches, std::vector<int>& begin)
 {
@@ -139,7 +141,8 @@ Rgb PowerOf(const Photon& photon)
   return { photon.power[0], photon.power[1], photon.power[2] };
 }
 
-/// In units of which there are 2^31 in the brightest one: whole ones, whose sum does not depend on who adds up what.
+/// The unit of power, of which the brightest photon has at most 2^31: sums of whole units do not depend on the order of
+/// addition.
 double UnitOfPower(double brightest)
 {
   return brightest > 0.0 ? std::exp2(std::ceil(std::log2(brightest)) - 31.0) : 1.0;
@@ -149,7 +152,7 @@ double UnitOfPower(double brightest)
 struct IncomingPhotons
 {
   std::vector<Ray> rays;
-  std::vector<std::size_t> numbers; ///< which of the photons given each is
+  std::vector<std::size_t> numbers; ///< index of each among the photons given
 };
 
 IncomingPhotons ClipToVolume(const Grid& grid, const std::vector<Photon>& photons)
@@ -174,7 +177,7 @@ IncomingPhotons ClipToVolume(const Grid& grid, const std::vector<Photon>& photon
   return met;
 }
 
-/// Put the photons into `packed`, in this order, and add up what enters.
+/// Writes the photons to `packed` in this order, and sums the entered power.
 void FillInOrder(PackedPhotons& packed, const std::vector<Photon>& photons, const IncomingPhotons& met,
   const std::vector<std::uint32_t>& order)
 {
@@ -366,7 +369,7 @@ PackedPhotons OneChannel(const PackedPhotons& packed, int channel, double colour
   {
     one.values.insert(one.values.end(), from, from + 6);
     one.values.push_back(static_cast<float>(from[6 + channel] * (colour / larger)));
-    // Not rounded to units: photons of one power would all round alike.
+    // Not rounded to units: photons of equal power would all be rounded in the same direction.
     one.entered[0] += one.unit * one.values.back();
   }
   return one;

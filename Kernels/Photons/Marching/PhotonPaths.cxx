@@ -19,12 +19,12 @@ namespace tyndall
 {
 namespace
 {
-/// Corners of ways: place in voxels, power that is left there.
+/// Corners of paths: position in voxels, remaining power.
 using CornersOfWays = std::vector<std::vector<cl_float4>>;
 
-/// Those that a kernel with PATHS finds.
-/// @param ways   a work-item each
-/// @param queue  queues it, twice: first it only counts corners
+/// Runs a kernel with PATHS and reads the corners.
+/// @param ways   number of paths, one work-item each
+/// @param queue  queues the kernel; called twice, first to count corners only
 CornersOfWays TraceCorners(const MarchMedium& medium, std::size_t ways,
   const std::function<void(bool counting, const Buffer<cl_int>& offsets, const Buffer<cl_float4>& corners,
     const Buffer<cl_int>& counts)>& queue)
@@ -48,14 +48,14 @@ CornersOfWays TraceCorners(const MarchMedium& medium, std::size_t ways,
   return ofWays;
 }
 
-/// Options of such a kernel.
+/// Compiler options of such a kernel.
 std::string PathOptions()
 {
   return Define("REAL_WIDTH", 1) + Define("ATOMICS", 0) + Define("WORKERS", 0) + Define("PATHS", 1) +
     Define("COUNTS", 0) + Define("CELLS", 0);
 }
 
-/// A packed photon's path.
+/// The path of a packed photon.
 PhotonPath PathOf(const Grid& grid, const PackedPhotons& packed, std::size_t i, const std::vector<cl_float4>& corners)
 {
   const float* const power = packed.values.data() + i * static_cast<std::size_t>(packed.FloatsEach()) + 6;
@@ -75,14 +75,14 @@ PhotonPath PathOf(const Grid& grid, const PackedPhotons& packed, std::size_t i, 
   return path;
 }
 
-/// Corners of a photon's way through a rank's block: where it sets off, turns and ends.
+/// Corners of a photon's path in a rank's block: where it starts, changes direction and ends.
 struct PathPart
 {
-  cl_ulong photon = 0; ///< its mark
+  cl_ulong photon = 0; ///< mark that identifies the photon
   std::vector<cl_float4> corners;
 };
 
-/// Follows the ways of photons through what a rank has of a grid, as far as that goes.
+/// Traces the paths of photons through a rank's block of a grid.
 class PathRun
 {
 public:
@@ -95,7 +95,7 @@ public:
   {
   }
 
-  /// Follows photons that set off here, or have arrived from other blocks. @return those that go on in others
+  /// Traces photons that start here, or have arrived from other blocks. @return those that continue in other blocks
   std::vector<PhotonOnItsWay> Start(
     const PackedPhotons& photons, const std::vector<cl_ulong>& marks, std::vector<PathPart>& parts);
   std::vector<PhotonOnItsWay> Resume(const std::vector<PhotonOnItsWay>& arrived, std::vector<PathPart>& parts);
@@ -120,7 +120,7 @@ std::vector<PhotonOnItsWay> PathRun::Resume(const std::vector<PhotonOnItsWay>& a
   PackedPhotons none;
   none.channels = this->Channels;
   none.batchBegin = { 0, 0 };
-  none.numbers.resize(arrived.size()); // for as many ends
+  none.numbers.resize(arrived.size()); // as many as there will be end records
   std::vector<cl_ulong> marks;
   for (const PhotonOnItsWay& photon : arrived)
   {
@@ -167,10 +167,10 @@ std::vector<PhotonOnItsWay> PathRun::Trace(const PackedPhotons& photons, const s
   return into;
 }
 
-/// Which part of a way: its photon's mark and the round in which it was gone.
+/// Identifies a part of a path: its photon's mark, and the round in which it was traced.
 using PartKey = std::pair<cl_ulong, cl_ulong>;
 
-/// Those that one rank has.
+/// The parts on one rank.
 struct PathParts
 {
   std::vector<cl_ulong> keys; ///< photon, round and number of corners of each
@@ -197,7 +197,7 @@ struct PathParts
   }
 };
 
-/// The parts of all ways in this rank's block. Collective.
+/// Traces the parts of all paths in this rank's block. Collective.
 /// @param packed  the same on all ranks
 PathParts TraceParts(const Domain& domain, const MarchMedium* through, const PackedPhotons& packed)
 {

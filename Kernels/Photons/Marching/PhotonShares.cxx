@@ -12,7 +12,7 @@ namespace tyndall
 {
 namespace
 {
-/// Whole numbers as doubles, whose sums are whole: a high and a low half.
+/// Integers are sent as two doubles, a high and a low half, whose sums are exact.
 constexpr double Half = 0x1p31;
 }
 
@@ -41,7 +41,7 @@ std::vector<std::int64_t> SumExactly(Communicator& communicator, const std::vect
 
 namespace
 {
-/// Of the first rank that has any.
+/// The colour on the first rank that has one.
 Rgb FirstOfAll(Communicator& communicator, const Rgb& own)
 {
   std::vector<double> colours(3 * static_cast<std::size_t>(communicator.Ranks()), 0.0);
@@ -56,7 +56,7 @@ Rgb FirstOfAll(Communicator& communicator, const Rgb& own)
   return colour;
 }
 
-/// Checked photons of each rank.
+/// Checks the photons of each rank, and computes the totals of all.
 PhotonTotals TotalsOf(Communicator& communicator, const std::vector<Photon>& share, bool batches)
 {
   PhotonTotals all;
@@ -83,14 +83,14 @@ void AddUpEntered(Communicator& communicator, PackedPhotons& packed)
   }
 }
 
-/// One of a packing's photons.
+/// One photon of a packing.
 struct PlacedPhoton
 {
   std::size_t place = 0;
   int batch = 0;
 };
 
-/// Where each photon sets off.
+/// Sorts photons by the block in which each starts.
 std::vector<std::vector<PlacedPhoton>> ByBlocks(const BlockPartition& partition, const PackedPhotons& packed)
 {
   std::vector<std::vector<PlacedPhoton>> byRank(partition.blocks.size());
@@ -114,7 +114,7 @@ std::vector<std::vector<PlacedPhoton>> ByBlocks(const BlockPartition& partition,
   return byRank;
 }
 
-/// Adds how many there are, and they.
+/// Appends the number of values, then the values.
 template <class T>
 void Append(const std::vector<T>& values, std::vector<char>& bytes)
 {
@@ -127,7 +127,7 @@ void Append(const std::vector<T>& values, std::vector<char>& bytes)
   add(values.data(), count * sizeof(T));
 }
 
-/// What Append has added, from `begin` on, which goes on behind it.
+/// Reads values written by Append from position `begin`, which advances to their end.
 template <class T>
 std::vector<T> TakeFrom(const std::vector<char>& bytes, std::size_t& begin)
 {
@@ -143,7 +143,7 @@ std::vector<T> TakeFrom(const std::vector<char>& bytes, std::size_t& begin)
   return values;
 }
 
-/// Photons for one rank, as they are sent.
+/// Photons for one rank, in the format in which they are sent.
 struct Parcel
 {
   std::vector<float> values;
@@ -191,7 +191,7 @@ std::vector<int> EveryRank(const Communicator& communicator)
   return ranks;
 }
 
-/// What has come, batch by batch.
+/// Joins the received photons, batch by batch.
 void Join(const std::vector<Parcel>& parcels, StartingPhotons& starting)
 {
   PackedPhotons& packed = starting.packed;
@@ -264,7 +264,7 @@ StartingPhotons SendToTheirBlocks(const Domain& domain, const std::vector<Photon
   });
   if (domain.IsSerial())
   {
-    return starting; // they are where they set off
+    return starting; // photons are already where they start
   }
   std::vector<std::vector<char>> arrived = communicator.Exchange<char>(EveryRank(communicator), [&] {
     std::vector<std::vector<char>> parcels;
@@ -277,7 +277,7 @@ StartingPhotons SendToTheirBlocks(const Domain& domain, const std::vector<Photon
   std::vector<Parcel> parcels;
   for (std::vector<char>& bytes : arrived)
   {
-    parcels.emplace_back(std::exchange(bytes, {})); // may be all photons there are: not held twice
+    parcels.emplace_back(std::exchange(bytes, {})); // possibly all photons: avoids holding them twice
   }
   Join(parcels, starting);
   return starting;

@@ -115,7 +115,7 @@ Buffer<cl_float4> PublishedMarch::FindIndex(const float* ior, const MarchedPart&
     cl::Kernel kernel = this->Kernel("published_index");
     With(kernel, this->Info, n, index);
     this->Launch(kernel, RangeOf(part.known.size));
-    this->TheDevice.Finish(); // before n goes
+    this->TheDevice.Finish(); // before n is released
   }
   return index;
 }

@@ -21,10 +21,11 @@ namespace tyndall
 {
 namespace
 {
-/// The line of a step goes from voxel to voxel, or, where it runs along an edge, by rounding past one.
+/// Maximum distance in voxels between successive deposits of a step: its line goes from voxel to voxel or, if it runs
+/// along an edge, by rounding past one.
 constexpr int VoxelsPassed = 2;
 
-/// By which photons are packed: three channels, and as many steps as there are stretches with steps of a voxel.
+/// Settings for packing the photons: three channels, and a step limit as for steps of one voxel.
 MarchSettings PackingSettings()
 {
   MarchSettings settings;
@@ -32,15 +33,15 @@ MarchSettings PackingSettings()
   return settings;
 }
 
-/// A typical photon's power, W, as a power of two: colours in units of it are far from the ends of what RGBe holds.
+/// Power of a typical photon, W, rounded to a power of two: in this unit, colours are far from the limits of RGBe.
 double TypicalPower(const Rgb& entered, std::size_t photons)
 {
   const double mean = Sum(entered) / (3.0 * static_cast<double>(std::max<std::size_t>(photons, 1)));
   return mean > 0.0 ? std::exp2(std::round(std::log2(mean))) : 1.0;
 }
 
-/// Photons as they set off.
-/// @param larger  the unit that their power is to have over the one that it has
+/// Photons at their start.
+/// @param larger  ratio of the new unit of power to the present one
 std::vector<PublishedPhoton> PhotonsOf(const PackedPhotons& packed, double larger)
 {
   std::vector<PublishedPhoton> photons(packed.Count());
@@ -68,7 +69,7 @@ void RequireAtomics(const Device& device)
   }
 }
 
-/// Adds what became of a photon that has come to its end.
+/// Adds the fate of an ended photon to the tallies.
 void Tally(const PublishedPhoton& photon, double unit, PhotonLight& result, PackingLoss& loss)
 {
   result.deposits += static_cast<std::size_t>(photon.deposits);
@@ -88,7 +89,7 @@ void Tally(const PublishedPhoton& photon, double unit, PhotonLight& result, Pack
   }
 }
 
-/// Sums over all ranks.
+/// Sums the losses over all ranks.
 void AddUp(const Domain& domain, PackingLoss& loss)
 {
   std::vector<double> values(loss.deposited.begin(), loss.deposited.end());
@@ -185,7 +186,7 @@ private:
     return SendToTheirBlocks(this->TheDomain, share, numbers, {}, PackingSettings());
   }
 
-  /// Photons to their ends. @param unit  W of one unit of the power that they have on their way
+  /// Follows photons to their ends. @param unit  W of one unit of power during the march
   RoundsTraffic Follow(
     const PackedPhotons& packed, double unit, PhotonLight& result, PackingLoss& loss, const Monitor& monitor)
   {
@@ -207,7 +208,7 @@ private:
     return rounds.Traffic();
   }
 
-  /// The light of the block, not smoothed.
+  /// Reads the light of the block, not smoothed, into `result`.
   void Gain(double unit, PhotonLight& result, PackingLoss& loss)
   {
     this->TheDomain.Collective([&] {
@@ -248,7 +249,7 @@ private:
     });
   }
 
-  /// Of the block's fluence, each time so much. @param weight  of a voxel and channel
+  /// Weighted sum of the block's fluence. @param weight  weight of a voxel and channel
   template <class Weight>
   static Rgb Total(const PhotonLight& result, const Weight& weight)
   {
@@ -265,7 +266,7 @@ private:
   const Domain& TheDomain;
   const Medium& TheMedium;
   const PublishedSettings& Settings;
-  std::unique_ptr<PublishedMarch> Through; ///< null without voxels
+  std::unique_ptr<PublishedMarch> Through; ///< null if the rank has no voxels
 };
 }
 

@@ -15,7 +15,7 @@ namespace tyndall
 {
 namespace
 {
-/// Scattering and absorption over a diagonal, of the padded grid; 0 in the padding.
+/// sigma_s and sigma_a times the voxel diagonal in the padded grid; 0 in the padding.
 std::vector<float> OpticalOf(const MarchMedium& through, const Medium& medium)
 {
   const std::array<int, 3>& size = medium.grid.size;
@@ -69,9 +69,9 @@ PhotonScattering::PhotonScattering(const MarchMedium& through, const Medium& med
 
 namespace
 {
-constexpr int Block = 16; ///< photons that a work-item takes one after the other
+constexpr int Block = 16; ///< number of photons that a work-item takes at a time
 
-/// Numbers of the photons, which random numbers belong to.
+/// Indices of the photons, the keys of their random numbers.
 std::vector<cl_ulong> StreamsOf(const PackedPhotons& packed)
 {
   return { packed.numbers.begin(), packed.numbers.end() };
@@ -184,7 +184,7 @@ ScatteredPhotons ScatteringRun::Finish()
   return std::move(this->Found);
 }
 
-/// From the sums.
+/// Converts the sums to light.
 void ScatteringRun::TakeLight()
 {
   const MarchMedium& through = this->In.Through;
@@ -217,7 +217,7 @@ void ScatteringRun::TakeLight()
   }
 }
 
-/// Those that go on elsewhere do not count yet.
+/// Photons that continue elsewhere are not counted yet.
 void ScatteringRun::TakeEnds(const std::vector<ScatterEnd>& ends)
 {
   const double unit = this->Packed.unit;

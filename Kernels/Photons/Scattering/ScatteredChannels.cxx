@@ -8,7 +8,7 @@ namespace tyndall
 {
 namespace
 {
-/// One channel of a medium, with its arrays.
+/// One channel of a medium, with its own arrays.
 struct OneChannelMedium
 {
   OneChannelMedium(const Medium& medium, int channel)
@@ -33,7 +33,7 @@ struct OneChannelMedium
   Medium seen;
 };
 
-/// Adds one run's light, times a colour, to all channels or to one.
+/// Adds the light of one run, times a colour, to all channels or to the only one.
 void AddRun(const ScatteredPhotons& found, const Rgb& colour, PhotonLight& light)
 {
   const auto channels = static_cast<std::size_t>(light.light.channels);
@@ -87,7 +87,7 @@ ScatteredChannels::ScatteredChannels(Device& device, const Block& block)
   }
 }
 
-/// What one unit of a run's light is in each channel.
+/// Contribution of one unit of a run's light to each channel.
 Rgb ScatteredChannels::ColourOfRun(const PackedPhotons& packed, bool oneRun, int run)
 {
   Rgb colour = {};
