@@ -14,7 +14,7 @@ namespace
 {
 /// Maximum number of compute units for private sums: with more, adding up the copies costs more than atomics.
 constexpr int PrivateSumsAtMost = 8;
-/// With straight rays, which two cores follow in less time than that of a launch.
+/// Path segments in the first launch with straight rays; two cores follow them in less than SecondsPerLaunch.
 constexpr double EventsPerLaunch = 4e7;
 constexpr double FirstBent = 16384; ///< photons in the first launch with curved rays
 

@@ -69,7 +69,7 @@ static int bits_of(integer mask)
   return pair.x | pair.y;
 }
 
-// PoCL's any is a branch a lane.
+// Instead of any, which PoCL compiles to one branch per lane.
 static bool anywhere(integer mask)
 {
 #if REAL_WIDTH == 4
@@ -84,7 +84,7 @@ static bool anywhere(integer mask)
 #endif
 #define masked(mask, value) as_real((mask)&as_integer(value))
 
-// For every lane k of a mask.
+// Loops over the lanes k that a mask selects.
 #define FOR_LANES(k, mask)                                               \
   for (int k##_left = bits_of(mask), k = first_lane(k##_left); k##_left; \
        k##_left &= k##_left - 1, k = first_lane(k##_left))

@@ -46,12 +46,11 @@ typedef struct
   // [MEDIUM_CHANNELS][copy] optical thickness of a voxel diagonal; sign bit set: the index varies.
   const __global float* sigma;
   const __global float* coefficients; // of n^2
-  const __global uchar* nodes; // [padded known] 0: the index does not vary, 1: it does, in a single voxel, 1 + k: in
-                               // an octree's node of 2^k; with NODE_BRICKS a table of bricks, then bricks
-  __global long* sums;         // [copy][RECORD] fixed point
+  const __global uchar* nodes;        // [padded known] 0: the index is constant; 1: it varies, single voxel; 1 + k: it
+    // varies, octree node of 2^k voxels per edge; NODE_BRICKS: table of bricks, bricks
+  __global long* sums; // [copy][RECORD] fixed point
   __global PhotonEnd* ends;
-  __global float4*
-    vertices; // of a path: position in voxels, part of the power that is left; null: they are only counted
+  __global float4* vertices;   // of a path: position in voxels, remaining power; null: vertices are only counted
   const __global ulong* marks; // marks of photons, with MARKS
   // With CELLS: [copy] coarse cell of each voxel; with BRICKS: first records, PhotonBricks.h.
   const __global int* cells;
@@ -412,7 +411,8 @@ static real take_step(
   const march_arrays* arrays, photon_lanes* lanes, integer mask, const integer* voxel, const real* p, real* u)
 {
   const float outer = 1.35120719195965763f, inner = -1.70241438391931526f;
-  real inverse[3], moved[3], place[3], change[3]; // moved since p, which is too large to gain small steps without loss
+  real inverse[3], moved[3], place[3],
+    change[3]; // `moved` is relative to p, to which small steps cannot be added without loss
   FOR_AXES(a)
   {
     u[a] = VECTOR(lanes->momentum[a]);

@@ -14,11 +14,11 @@ enum
 typedef struct
 {
   IndexGrid grid;
-  float diagonal;  ///< length of a voxel's diagonal
-  float fluence;   ///< W / length^2 of a unit of power that goes along a voxel's diagonal, over 2 to the power of
-  int exponent;    ///< this one: it may be less than a float holds
-  float colour[3]; ///< colour of the single channel, if CHANNELS is 1
-  float weight;    ///< photon weight per unit of the sums
+  float diagonal;             ///< length of a voxel's diagonal
+  float fluence;              ///< W / length^2 per unit of power along a voxel's diagonal, divided by 2^exponent
+  int exponent;               ///< kept apart, as the product may be below the range of float
+  float colour[3];            ///< colour of the single channel, if CHANNELS is 1
+  float weight;               ///< photon weight per unit of the sums
   int absorption, scattering; ///< components of sigma_a and sigma_s; 0: absent
   int copies, batches;        ///< of the sums: copy c belongs to batch c modulo batches
 } LightSumsInfo;

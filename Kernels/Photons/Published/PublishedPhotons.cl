@@ -320,7 +320,7 @@ __kernel void unpack_light(
   vstore3(mean, v, direction);
 }
 
-// The 3x3x3 Gauss filter, one axis of it: 1/4, 1/2, 1/4.
+// Applies the 3x3x3 Gaussian filter along one axis, with weights 1/4, 1/2, 1/4.
 __kernel void smooth_along(int axis, IndexGrid box, const __global float* from, __global float* to)
 {
   const int3 v = (int3)(get_global_id(0), get_global_id(1), get_global_id(2));

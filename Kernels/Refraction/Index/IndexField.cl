@@ -63,7 +63,7 @@ __kernel void smooth_index(
 }
 
 // Central differences, 1/length; one-sided in the grid's outermost voxels.
-// |  firstLayer   first of the layers along z whose gradient is computed, and written from the beginning of `gradient`
+//   firstLayer   first of the layers along z whose gradient is computed, and written from the beginning of `gradient`
 __kernel void index_gradient(
   int4 size, int firstLayer, int layers, float4 spacing, __global const float* n, __global float* gradient)
 {

@@ -60,7 +60,7 @@ void CheckLevels(const std::uint8_t* levels, const Grid& grid, const Grid& whole
 {
   const int top = PyramidLayout(whole.size).Top();
   const std::size_t count = levels ? grid.VoxelCount() : 0;
-  int highest = 0; // first of all: a loop that compilers vectorise
+  int highest = 0; // separate from the search for the voxel: compilers vectorise this loop
   for (std::size_t i = 0; i < count; ++i)
   {
     highest = std::max<int>(highest, levels[i]);

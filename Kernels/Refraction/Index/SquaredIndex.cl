@@ -117,7 +117,7 @@ static float4 squared_index_among(const __global float* first, int row, int laye
 {
   const float4 z = spline_values(f.z), z_slope = spline_slopes(f.z);
   const float middle =
-    first[layer + row + 1]; // only differences from it are summed, so that rounding makes no gradient of it
+    first[layer + row + 1]; // only differences from it are summed, so that its rounding does not cause a gradient
   float16 value = 0.0f, along_z = 0.0f;
 #define ROW(k, j) (*(const __global float4_anywhere*)(first + (k)*layer + (j)*row))
 #define ADD_LAYER(k, s)                                                               \

@@ -69,7 +69,7 @@ __kernel void min_max_of_voxels(
   nodes[first + index_of(node, size)] = range;
 }
 
-// |  below  index of the first node of the level below
+//   below  index of the first node of the level below
 __kernel void min_max_of_nodes(__global float2* nodes, ulong below, int4 children_size, ulong first, int4 size)
 {
   const int4 node = (int4)(get_global_id(0), get_global_id(1), get_global_id(2), 0);

@@ -11,8 +11,7 @@ namespace tyndall
 {
 namespace
 {
-constexpr double Longest =
-  1 << 20; ///< units: three coordinates' products then fit 63 bits, with a sum of three of them
+constexpr double Longest = 1 << 20; ///< units: a sum of three products of three coordinates then fits 63 bits
 constexpr int TileColumns = 64;
 constexpr int TileRows = 16;
 

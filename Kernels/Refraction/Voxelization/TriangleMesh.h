@@ -24,7 +24,7 @@ void CheckPoints(const TriangleMesh& mesh);
 /// Coincident points count as one, so that a box whose faces have corners of their own still counts as closed.
 struct MeshTopology
 {
-  using Edge = std::array<std::array<double, 3>, 2>; ///< its ends
+  using Edge = std::array<std::array<double, 3>, 2>; ///< the ends of the edge
 
   /// Edges with an odd number of triangles: if there are any, the mesh has no inside.
   std::size_t boundaryEdges = 0;
