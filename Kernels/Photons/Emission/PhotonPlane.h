@@ -63,7 +63,7 @@ public:
   double SolidAngleBy(const glm::dvec3& point) const;
 
 private:
-  /// Of the whole rectangle, computed from its area as if all of it were at this distance.
+  /// Solid angle of the whole rectangle, computed from its area as if all of it were at this distance.
   double AngleByArea(double distance) const;
 
   glm::dvec3 Eye, X, Y, Z; ///< axes of the rectangle, Z towards the eye

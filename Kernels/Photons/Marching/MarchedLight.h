@@ -20,7 +20,7 @@ public:
   /// Zeroed sums for these photons.
   /// @throws DeviceError if they do not fit
   MarchSums Prepare(const PackedPhotons& packed);
-  /// As ShareSums; the memory of existing sums counts as available.
+  /// Like ShareSums, but the memory of existing sums counts as available.
   MarchShares Share(int numbers, int batches) const;
   /// Discards the sums after an aborted march, which leaves them nonzero.
   void Forget() { this->Sums = Buffer<cl_long>(); }

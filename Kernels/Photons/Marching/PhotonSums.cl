@@ -109,7 +109,7 @@ __kernel void finish_light(LightSumsInfo info, const __global float* sigma_a, co
   {
     const size_t voxel = (size_t)r * nx + x;
     __global long* record = sums + (first + x) * RECORD;
-    // Of the medium itself: the photons' copy is limited to a finite range.
+    // Extinction of the medium itself: the photons' copy is limited to a finite range.
     float extinction[CHANNELS], thickness[CHANNELS];
     for (int c = 0; c < CHANNELS; ++c)
     {
