@@ -7,14 +7,15 @@
 
 namespace tyndall
 {
-/// Of an array by faces of voxels, as Deposit::partialCurrents, of a block of a grid: what the voxels beyond the
-/// block's faces have at their faces that touch it.
+/// Values of the neighbouring voxels just outside a block, at their faces that touch the block; taken from an array by
+/// voxel face such as Deposit::partialCurrents.
 struct BeyondFaces
 {
-  const Buffer<float>* values = nullptr; ///< [channel][face][cell, x before y before z]; null: the block is the whole
+  const Buffer<float>* values =
+    nullptr; ///< [channel][face][cell, x before y before z]; null: the block is the whole domain
   BeyondFacesInfo info = { { -1, -1, -1, -1, -1, -1 }, 0 };
 };
 
-/// Fetches that from the ranks that have it. All ranks call it; what it found lasts until the next time.
+/// Fetches these values from the ranks that own them. Collective. The result is valid until the next call.
 using FetchBeyondFaces = std::function<BeyondFaces(const Buffer<float>& byFaces)>;
 }

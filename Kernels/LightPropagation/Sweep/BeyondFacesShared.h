@@ -1,4 +1,4 @@
-// Shared by C++ and the kernels that look across the faces of a block: where what is beyond them lies.
+// Shared by C++ and the kernels that read values from beyond the faces of a block: memory layout of these values.
 #pragma once
 
 #include "Device/SharedTypes.h"
@@ -7,7 +7,7 @@ SHARED_BEGIN
 /// See BeyondFaces.h.
 typedef struct
 {
-  int first[6]; ///< where the cells of each face of the block begin, -x to +z; -1: it is a face of the whole
-  ulong stride; ///< cells of all faces
+  int first[6]; ///< index of the first cell of each face of the block, -x to +z; -1: a face of the domain
+  ulong stride; ///< number of cells of all faces
 } BeyondFacesInfo;
 SHARED_END

@@ -1,4 +1,4 @@
-// Shared by C++ and kernels: where angular moments lie in an array.
+// Shared by C++ and kernels: memory layout of angular moments.
 #pragma once
 
 #include "Device/SharedTypes.h"
@@ -6,22 +6,22 @@
 SHARED_BEGIN
 enum
 {
-  MomentGroup = 16 ///< voxels of a row whose moments lie together
+  MomentGroup = 16 ///< voxels of a row whose moments are stored together
 };
 
-/// Arrays with angular moments begin with the first function, which is fluence, as all others do: [channel][stride].
-/// The other functions follow by groups of voxels, [z][y][channel][group][function][MomentGroup], so that what a sweep
-/// needs of them is read in one go along every axis, then beams, [beam][channel][stride].
+/// An array with angular moments begins with the first function, the fluence, stored like any other array:
+/// [channel][stride]. The other functions follow in groups of voxels, [z][y][channel][group][function][MomentGroup], so
+/// that a sweep along any axis reads contiguous memory. Beams come last, [beam][channel][stride].
 typedef struct
 {
-  ulong second; ///< where the second function begins
+  ulong second; ///< index of the second function's first value
   ulong beams;
-  int sizeX, groups; ///< of a row
+  int sizeX, groups; ///< voxels and groups of a row
   int channels;
-  int functions; ///< with the first
+  int functions; ///< number of angular functions, including the first
 } MomentPlaces;
 
-/// Of a voxel (line: z size y + y, as ulong) in a function from the second on.
+/// Index of a voxel's value of a function from the second on. `line` is z * sizeY + y, as ulong.
 #define MOMENT_PLACE(places, function, channel, line, x)                                                           \
   ((places).second +                                                                                               \
     ((((line) * (places).channels + (channel)) * (places).groups + (x) / MomentGroup) * ((places).functions - 1) + \

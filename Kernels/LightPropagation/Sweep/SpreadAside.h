@@ -5,18 +5,19 @@
 
 namespace tyndall
 {
-/// Planes of voxels that rays march through, where they move aside through a face of the box: of those that run nearly
-/// along it each stands for what passes the cells of several planes (Deposit::spreadsAside).
+/// Planes of voxels along the marching axis, for rays that leave sideways through a face of the box. A ray nearly
+/// parallel to the face represents the power that leaves through cells of several planes (Deposit::spreadsAside).
 struct AsidePlanes
 {
   int size;
   bool periodic;
-  bool spreads; ///< false: a ray passes the cell of its own plane alone
+  bool spreads; ///< false: a ray leaves through the cell of its own plane only
 };
 
-/// Calls act(plane, part) for each plane whose cells a ray passes, as SweepFaces.cl has it.
-/// @param tangent  moves aside, voxels a plane
-/// @param plane    in which it moves
+/// Calls act(plane, part) for each plane through whose cells a ray leaves, with the part of its power that leaves
+/// there; same as in SweepFaces.cl.
+/// @param tangent  sideways moves of the ray, voxels per plane
+/// @param plane    plane in which the ray moves sideways
 template <class Act>
 void ForPlanesPassed(const AsidePlanes& aside, double tangent, int plane, const Act& act)
 {

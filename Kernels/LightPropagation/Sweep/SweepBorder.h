@@ -7,33 +7,33 @@
 
 namespace tyndall
 {
-/// The light that comes in through the box's faces in a sweep, as the sweep's buffers take it: each holds both ways,
-/// forward first.
+/// Incident light of a sweep, in the layout of the sweep's buffers. Each buffer holds both ways, forward first.
 class SweepBorder
 {
 public:
-  /// What it is made for.
+  /// Which members are filled.
   enum class Holds
   {
-    Maps,     ///< all but `rays`
-    RaysAlone ///< `rays` and `powerIn`
+    Maps,     ///< all except `rays`
+    RaysAlone ///< only `rays` and `powerIn`
   };
 
-  /// @param plan  must stay
+  /// @param plan  must outlive this object
   /// @param boundary  not empty
   SweepBorder(const SweepPlan& plan, const SweepBoundary& boundary, Holds holds = Holds::Maps);
 
-  /// W of each ray, [way][bundle][member][channel]: that comes in through u's face, through v's, and where it starts.
+  /// Incident power of each ray, W, [way][bundle][member][channel]; components: through u's face, through v's face, at
+  /// the ray's start.
   std::vector<cl_float4> rays;
 
-  /// Power that rays start with; in the columns beside, that of those that come in through u's faces.
+  /// Initial power of the rays, W; the columns beside the plane hold the power of rays that enter through u's faces.
   std::vector<float> maps;
-  std::vector<float> outside;      ///< of those that come in through v's faces: [bundle][member][channel][row]
-  std::vector<float> radiance;     ///< of those that come in through u's faces: [bundle][member][channel]
-  std::array<Rgb, 6> powerIn = {}; ///< W by face
+  std::vector<float> outside;      ///< power of rays that enter through v's faces, [bundle][member][channel][row]
+  std::vector<float> radiance;     ///< power of rays that enter through u's faces, [bundle][member][channel]
+  std::array<Rgb, 6> powerIn = {}; ///< incident power by face, W
 
 private:
-  /// Voxels that a bundle's rays move aside over all planes, in its own frame.
+  /// Sideways moves of a bundle's rays over all planes, voxels, in the bundle's own frame.
   struct Moves
   {
     double u = 0.0, v = 0.0;

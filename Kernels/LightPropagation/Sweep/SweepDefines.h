@@ -6,6 +6,7 @@
 
 namespace tyndall
 {
-/// What the kernels of a plan are compiled for, as SweepLayout.cl asks for it, whatever a sweep wants of them besides.
+/// Preprocessor definitions that SweepLayout.cl requires, for the kernels of `plan`. Options of a single sweep are
+/// added by the caller.
 std::string DefinesOf(const SweepPlan& plan);
 }

@@ -9,8 +9,8 @@
 
 namespace tyndall
 {
-/// The sweep that suits a device: SweepOnGpu on GPUs, for what it can; else SweepInMemory.
-/// @param sigma_t, workspace  must stay
+/// Creates the sweep that suits the device: SweepOnGpu on a GPU if it supports the request, else SweepInMemory.
+/// @param sigma_t, workspace  must outlive the sweep
 std::unique_ptr<SweepOperator> SweepOfDevice(Device& device, const VolumeLayout& layout, const Buffer<float>& sigma_t,
   const std::array<bool, 3>& periodic, const SweepRequest& request, SweepWorkspace& workspace);
 }

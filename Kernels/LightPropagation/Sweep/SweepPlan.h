@@ -12,17 +12,18 @@
 
 namespace tyndall
 {
-/// How a sweep goes: its bundles' place in memory, the units of work that march at the same time, and which planes each
-/// crosses in which launch. Worked out once on the host.
+/// Plan of a sweep along one axis: memory layout of the bundles, the units of work that run concurrently, and the
+/// planes that each unit crosses in each launch. Computed once, on the host.
 struct SweepPlan
 {
-  /// @param box  the part of the grid that is swept; all of it, or no axis is periodic
-  /// @param netFlux  the net flux is wanted too
-  /// @param partialCurrents  and the power that enters voxels by face
-  /// @param angular  of the bundles' directions, must stay; null: light has no angular moments
-  /// @param moments  where they are
-  /// @param faceIn  light comes in by cells of the box's faces
-  /// @param octantSource  voxels shine otherwise into each octant
+  /// @param box  the part of the grid that is swept; must be the whole grid if any axis is periodic
+  /// @param netFlux  the sweep also computes the net flux
+  /// @param partialCurrents  the sweep also computes the power that enters each voxel through each of its faces
+  /// @param angular  angular functions in the bundles' directions, must outlive the plan; null: no angular moments,
+  /// fluence only
+  /// @param moments  memory layout of the angular moments
+  /// @param faceIn  incident radiance is given for each cell of the box's faces
+  /// @param octantSource  the source of a voxel differs between octants of directions
   SweepPlan(const Device& device, const Grid& grid, const VoxelBox& box, int axis, const std::vector<Bundle>& bundles,
     int channels, const std::array<bool, 3>& periodic, bool netFlux, bool partialCurrents, const AngularValues* angular,
     const MomentPlaces& moments, bool faceIn, bool octantSource);
@@ -39,47 +40,53 @@ struct SweepPlan
   bool faceIn;
   bool octantSource;
   MomentPlaces moments;
-  bool forward = false; ///< some rays march that way
+  bool forward = false; ///< whether any rays march forward
   bool backward = false;
 
   int vector = 8;   ///< floats of a work-item's vector
   int row = 0;      ///< floats of a padded row
-  int rowsKept = 0; ///< of planes in scratch, where each is packed just before it is crossed; 0: all
+  int rowsKept = 0; ///< rows of a plane held in scratch, if rows are packed just before they are crossed; 0: all rows
   PlaneInfo plane = {};
   std::vector<BundleInfo> bundleRows;
-  std::size_t mapsEachWay = 0; ///< floats of the maps, the rows outside and the radiances at the faces, one way
+  std::size_t mapsEachWay =
+    /// Floats of the maps for one way (forward or backward); likewise below for the rows outside and the radiances at
+    /// the faces
+    0;
   std::size_t outsideEachWay = 0;
   std::size_t radianceEachWay = 0;
-  std::vector<float> coefficients; ///< as BundleInfo has them, forward first
+  std::vector<float> coefficients; ///< see BundleInfo::coefficients; forward first
   std::size_t coefficientsEachWay = 0;
-  FunctionOrder order;         ///< of the angular functions, along this axis
-  bool momentsInPlace = false; ///< rows of planes are rows of the moments' array: nothing needs to be packed
-  int momentRow = 0;           ///< floats of a packed row, of all functions from the second on and channels
+  FunctionOrder order;         ///< order of the angular functions for this axis
+  bool momentsInPlace = false; ///< rows of a plane are rows of the moments' array, so no packing is needed
+  int momentRow = 0;           ///< floats of a packed row: all channels and all functions from the second on
 
   std::vector<UnitInfo> units;
-  std::vector<cl_int2> schedule; ///< [launch][unit]: planes from, to
+  std::vector<cl_int2> schedule; ///< [launch][unit], planes from, to
   int launches = 0;
-  double secondsPerLaunch = 0.0; ///< at most, on a slow core
-  int laps = 1; ///< times that a sweep's rays start anew on a short periodic axis, so that their pattern has room
-  std::vector<cl_int2> roundSchedule; ///< for going round a periodic axis, one unit at a time
+  double secondsPerLaunch = 0.0; ///< upper estimate, for a slow core
+  int laps = 1; ///< laps round a short periodic axis in which rays start, so that the ray pattern fits; else 1
+  std::vector<cl_int2> roundSchedule; ///< launches that wrap around a periodic axis, one unit at a time
 
   int Planes() const { return this->box.size[this->axes.axis]; }
-  int PatternPlanes() const { return this->Planes() * this->laps; } ///< that the rays of a sweep start in
-  /// Planes of the grid that rays of a way (0 forward) have crossed before they come to the box.
+  int PatternPlanes() const { return this->Planes() * this->laps; } ///< planes in which the rays of a sweep start
+  /// Planes of the grid that rays cross before they reach the box. @param way  0 forward, 1 backward
   int PlanesBefore(int way) const;
-  int CrossingPlanes() const; ///< that rays cross to the box's end, either way: of the pattern, from its beginning
-  std::size_t ScratchFloats() const; ///< of one unit
+  int CrossingPlanes()
+    /// Planes of the ray pattern, from its start, that rays cross up to the end of the box; the larger of both ways
+    const;
+  std::size_t ScratchFloats() const; ///< scratch of one unit
 
-  /// [plane][bundle], planes counted on from `firstPlane`.
+  /// How rays cross each plane, [plane][bundle]. @param firstPlane  first plane of the ray pattern
   std::vector<CrossingInfo> Crossings(int firstPlane, int planes) const;
-  /// [unit][plane] how the medium's own light gets out of the voxel where it starts.
-  /// @param lapPlanes  that rays had crossed when they began this lap
+  /// Path of emitted and scattered light within its voxel of origin, [unit][plane].
+  /// @param lapPlanes  planes that the rays had crossed when this lap began
   std::vector<OwnLightInfo> OwnLight(int lapPlanes = 0) const;
-  /// Where each angular function is in a group of moments (MomentPlacesShared.h), in the order of this axis; of the
-  /// first, which is not in one, and where light has no moments, 0.
+  /// Position of each angular function in a group of moments (MomentPlacesShared.h), in this axis's order. 0 for the
+  /// first function, which is stored elsewhere, and if there are no angular moments.
   std::vector<cl_int> FunctionPlaces() const;
   void DescribeMoments(SweepInfo& info) const;
-  /// Rays go on from the end of the grid in planes of the pattern beyond those of its own; before OwnLight().
+  /// Lowers the limit for thin voxels (PlaneInfo::thin) so that it also holds on the longer segments of rays that
+  /// continue beyond the planes of their pattern. Call before OwnLight().
   void LetRaysGoOn();
 
 private:

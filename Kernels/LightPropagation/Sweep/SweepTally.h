@@ -7,15 +7,15 @@
 
 namespace tyndall
 {
-/// Power that came in and went out in a sweep, W per channel and face -x, +x, -y, +y, -z, +z.
+/// Incident and escaped power of a sweep, W, by face (-x, +x, -y, +y, -z, +z) and channel.
 struct SweepTally
 {
   std::array<Rgb, 6> in = {};
   std::array<Rgb, 6> out = {};
-  Rgb onTheWay = {}; ///< left in the maps of a periodic axis
+  Rgb onTheWay = {}; ///< power of rays still under way round a periodic axis, in its maps
 };
 
-/// @param first  channel of the sum, that is the tally's first
+/// @param first  channel of `sum` that corresponds to channel 0 of `tally`
 inline void Add(SweepTally& sum, const SweepTally& tally, int first = 0)
 {
   for (int c = 0; first + c < 3; ++c)
@@ -29,16 +29,17 @@ inline void Add(SweepTally& sum, const SweepTally& tally, int first = 0)
   }
 }
 
-/// Radiance, W / (length^2 sr), of `direction` (an index into the direction set) that comes in through `face`; of
-/// parallel beams their irradiance, and `direction` is 0.
+/// Incident radiance, W / (length^2 sr), in `direction` (an index into the direction set) at `face`. For parallel
+/// beams: their irradiance, W / length^2, and `direction` is 0.
 using SweepBoundary = std::function<Rgb(int direction, int face)>;
 
-/// Of three channels those of a group (VolumeLayout.h) that begins at `first`: all three, or that one alone.
+/// Channels of the group (VolumeLayout.h) that begins at `first`: all three if `first` is 0, else channel `first` moved
+/// to 0.
 inline Rgb OfGroup(const Rgb& rgb, int first)
 {
   return first == 0 ? rgb : Rgb{ rgb[first], 0.0, 0.0 };
 }
-/// @param boundary  must stay; may be none
+/// @param boundary  must outlive the result; may be empty
 inline SweepBoundary OfGroup(const SweepBoundary& boundary, int first)
 {
   return boundary && first > 0

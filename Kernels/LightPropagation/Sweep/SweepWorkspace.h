@@ -6,7 +6,7 @@
 
 namespace tyndall
 {
-/// The arrays of a volume that is streamed.
+/// Arrays of a streamed volume.
 enum class SlotArray
 {
   SigmaT,
@@ -20,19 +20,19 @@ enum class SlotArray
 };
 using SlotSizes = std::array<std::size_t, static_cast<std::size_t>(SlotArray::Count)>;
 
-/// Room for so many floats, on the device as long as there is some. What is too small is given back first: nothing that
-/// uses it may be under way.
+/// Makes `buffer` hold at least `floats` floats, in device memory while any is left. A buffer that is too small is
+/// freed first, so no work that uses it may be in progress.
 void ReserveOnDevice(Device& device, Buffer<float>& buffer, std::size_t floats, const char* what);
 
-/// Scratch that sweeps along different axes share: contents are undefined between sweeps.
+/// Scratch memory shared by sweeps along different axes. Contents are undefined between sweeps.
 struct SweepWorkspace
 {
-  Buffer<float> maps;    ///< the rays of an open axis
+  Buffer<float> maps;    ///< rays of an open (not periodic) axis
   Buffer<float> scratch; ///< planes being crossed
-  Buffer<float> lost;    ///< what rounding takes from `path` in a sweep round a periodic axis
-  std::array<Buffer<float>, SlotSizes().size()> slots; ///< of volumes that are streamed (SliceStream.h)
+  Buffer<float> lost;    ///< rounding errors of `path` (compensated summation), in sweeps round a periodic axis
+  std::array<Buffer<float>, SlotSizes().size()> slots; ///< slots of streamed volumes (SliceStream.h)
 
-  /// Have room for so many floats. No sweep may be under way: what is too small is given back first.
+  /// Ensures these sizes. No sweep may be in progress: buffers that are too small are freed first.
   void Reserve(Device& device, std::size_t mapFloats, std::size_t scratchFloats);
   void ReserveLost(Device& device, std::size_t floats);
   void ReserveSlots(Device& device, const SlotSizes& floats);

@@ -8,21 +8,22 @@
 
 namespace tyndall
 {
-/// What lanes find that go side by side or round an axis, each in arrays of its own, [lane], else as the deposit's; and
-/// its adding up, in the order of the lanes, as those do that add to the deposit themselves: the same bits.
+/// Results of lanes that run concurrently or wrap around an axis, each in its own arrays: [lane], then as in the
+/// deposit. AddUp() adds them to the deposit in the order of the lanes, so that results are identical, bit for bit, to
+/// those of lanes that add to the deposit directly.
 class LaneArrays
 {
 public:
-  /// @param lanes  must stay
-  /// @param to  the deposit, without a flux that is among angular moments
+  /// @param lanes  must outlive this object
+  /// @param to  the deposit; without flux if the flux is among the angular moments
   LaneArrays(Device& device, const GpuLanes& lanes, const VolumeLayout& layout, const Deposit& to);
 
   void Clear(const LaneBatch& batch);
-  /// @param launch  of the batch
+  /// @param launch  a launch of the batch
   void AddUp(const LaneBatch& batch, const PlaneLaunch& launch, const SweepVolume& volume);
 
   Buffer<float> path, flux, currents;
-  Buffer<float> lost; ///< by rounding from path, of lanes that go round
+  Buffer<float> lost; ///< rounding errors of `path` (compensated summation), for lanes that wrap around
 
 private:
   void AddUpMoments(const LaneBatch& batch, const PlaneLaunch& launch, const SweepVolume& volume);

@@ -7,37 +7,37 @@
 
 namespace tyndall
 {
-/// Light that comes and goes by cells of the box's faces (SweepRequest::faceIn, Deposit::faceOut) in a sweep for GPUs:
-/// LaneFaces.cl. What is beside the planes of a batch's lanes lies on the device, a float a ray, plane and cell of its
-/// edges, in and out.
+/// Light given or counted by cells of the box's faces (SweepRequest::faceIn, Deposit::faceOut) in a sweep on GPUs;
+/// kernels in LaneFaces.cl. The sides of the planes of a batch's lanes are stored on the device: one float per ray,
+/// plane and cell of the plane's edges, for entering and for leaving rays.
 class LaneFaces
 {
 public:
-  /// How rays cross planes: what a launch of `cross_plane` has of it.
+  /// Arguments of `cross_plane` that describe how rays cross planes.
   struct Rays
   {
     const Buffer<SweepLane>& lanes;
     const Buffer<BundleInfo>& bundles;
     const Buffer<CrossingInfo>& crossings;
-    bool ofRound = false;              ///< PlaneLaunch::ofRound: nothing comes in any more
-    const Buffer<cl_float4>& entering; ///< light that is the same for a whole face
+    bool ofRound = false;              ///< PlaneLaunch::ofRound; no light enters any more
+    const Buffer<cl_float4>& entering; ///< incident light that is uniform over each face
   };
 
-  /// @param lanes    must stay
-  /// @param request  with faceIn or faceOut
+  /// @param lanes  must outlive this object
+  /// @param request  has faceIn or faceOut
   LaneFaces(Device& device, const GpuLanes& lanes, const Grid& grid, const SweepRequest& request);
 
-  bool Shine() const { return this->In != nullptr; } ///< light comes in by cells
-  void SetSides(PlaneKernels& planes) const;         ///< theirs, that are beside planes
+  bool Shine() const { return this->In != nullptr; } ///< incident light is given by cells
+  void SetSides(PlaneKernels& planes) const;         ///< passes the buffers of the sides to the plane kernels
 
-  /// Into the maps where rays of an open axis start.
-  /// @param first  where the first channel begins, of faceIn and faceOut
+  /// Adds incident light to the maps where rays of an open axis start.
+  /// @param first  index of the first channel's first value in faceIn and faceOut
   void EnterStart(const LaneBatch& batch, const Rays& rays, std::size_t first, const Buffer<float>& maps) const;
-  /// Beside planes that are then crossed.
+  /// Writes the incident light to the sides of the planes, before they are crossed.
   void EnterSides(const LaneBatch& batch, const Rays& rays, std::size_t first);
-  /// From beside planes that were crossed, and from the maps at the ends of open axes: lane by lane, so that sums have
-  /// one order whichever lanes go at once.
-  /// @param maps  before planes of even numbers, counted from where rays start, and of odd ones
+  /// Adds the power that left, from the sides of the planes that were crossed and from the maps at the ends of open
+  /// axes, to faceOut. Lane by lane, so the order of summation does not depend on which lanes run concurrently.
+  /// @param maps  rays before planes with even index, counted from where rays start, and with odd index
   void Leave(
     const LaneBatch& batch, const Rays& rays, std::size_t first, const std::array<const Buffer<float>*, 2>& maps) const;
 
@@ -52,9 +52,9 @@ private:
   const GpuLanes& The;
   const Buffer<float>*In, *Out;
   bool Spreads;
-  std::size_t Cells; ///< of a channel
+  std::size_t Cells; ///< cells of all faces, per channel
   Buffer<LaneFaceInfo> Faces;
-  Buffer<cl_int2> RayPlaces; ///< of all lanes: the bundle, and which of its members it is
+  Buffer<cl_int2> RayPlaces; ///< by ray of all lanes: the index of its bundle, and of the member in the bundle
   Buffer<float> SidesIn, SidesOut;
 };
 }

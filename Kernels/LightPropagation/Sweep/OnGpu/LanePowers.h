@@ -7,25 +7,28 @@
 
 namespace tyndall
 {
-/// Power that leaves a sweep for GPUs sideways, and what is in its maps behind the last plane: counted on the device
-/// row by row, on the host in double.
+/// Power that leaves a sweep on GPUs: sideways, and in its maps behind the last plane. Rows are summed on the device,
+/// the sums of rows on the host in double precision.
 class LanePowers
 {
 public:
-  /// @param lanes  must stay
+  /// @param lanes  must outlive this object
   LanePowers(Device& device, const GpuLanes& lanes);
 
-  const Buffer<float>& Escaped() const { return this->OfPlanes; } ///< where planes put it, see SweepLane
+  const Buffer<float>& Escaped() const
+  {
+    return this->OfPlanes;
+  } ///< written by the plane kernels, see SweepLane::escaped
 
   using MapsOfLane = std::function<const Buffer<float>&(const SweepLane&)>;
 
-  /// Of the planes that were crossed last.
+  /// Sums the rows of the planes that were crossed last.
   void AddUp(const LaneBatch& batch, const MapsOfLane& maps);
-  /// Adds what left through the sides of the box, as was added up.
+  /// Adds the power that left through the sides of the box, from the sums of AddUp().
   void CountSides(const LaneBatch& batch, SweepTally& tally) const;
-  /// Adds what left through the far ends of the batch's axes.
+  /// Adds the power that left through the far ends of the batch's axes.
   void CountEnds(const LaneBatch& batch, SweepTally& tally) const;
-  Rgb OfEnds(const LaneBatch& batch) const; ///< there, of all lanes
+  Rgb OfEnds(const LaneBatch& batch) const; ///< power in the maps behind the last plane, all lanes
 
 private:
   Rgb OfEnds(int lane, const std::vector<float>& sums) const;

@@ -11,29 +11,30 @@
 
 namespace tyndall
 {
-/// The slices of a volume in host memory that one lane of a sweep for GPUs crosses one after the other, through two
-/// slots on the device (numerics.md, section 4.10).
+/// Streams a volume in host memory for one lane of a sweep on GPUs: the lane crosses slices one after the other,
+/// through two slots on the device (numerics.md, section 4.10).
 class LaneSlices
 {
 public:
-  /// Null where the volume is swept where it lies, see SliceStream::Make; else the lane is described as slots lie.
-  /// @param plan  of the lane's axis
+  /// Returns null if the volume is swept in place, see SliceStream::Make. Otherwise changes the layout in `lane` to
+  /// that of the slots.
+  /// @param plan  the plan of the lane's axis
   static std::unique_ptr<LaneSlices> Make(
     Device& device, const SweepPlan& plan, SweepLane& lane, SweepWorkspace& workspace);
 
   PlaneArrays Arrays() const; ///< the slots
 
-  /// The lane's planes from, to, whose slice lies in a slot that the launch tells; they wait for some events, and the
-  /// last one tells one that it is done.
+  /// Queues the lane's planes [from, to), whose slice lies in the slot given by `launch`. They wait for the events
+  /// `after`; the last one signals `done`.
   using Planes =
     std::function<void(PlaneLaunch launch, int from, int to, const std::vector<cl::Event>* after, cl::Event* done)>;
-  /// All planes. @param launch  what else is told
+  /// Crosses all planes. @param launch  values of the launch other than plane and slot
   void Cross(const SweepVolume& volume, const PlaneLaunch& launch, const Planes& cross);
 
 private:
   LaneSlices(const SweepPlan& plan, const SweepLane& lane);
 
-  SweepPlan Plan; ///< with one unit: the lane
+  SweepPlan Plan; ///< has one unit, the lane
   std::unique_ptr<SliceStream> Stream;
   SliceStream::Schedule Schedule;
 };

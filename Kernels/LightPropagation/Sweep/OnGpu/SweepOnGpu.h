@@ -9,31 +9,35 @@
 
 namespace tyndall
 {
-/// The sweep of a volume by one device, organised for GPUs: a work-item a voxel of a plane, all rays of one way along
-/// an axis, and all ways along open axes at once where there is memory for it, both along a periodic one. Its light is
-/// that of SweepInMemory to 1e-5, and the same bit for bit each time (numerics.md, section 4.8). A volume in host
-/// memory goes through the device in slices, one way after the other (LaneSlices.h): the same light bit for bit along
-/// open axes.
+/// Sweep of a volume by one device, organised for GPUs: one work-item per voxel of a plane, for all rays of one way
+/// along an axis. All ways along open axes run concurrently if memory allows, as do both ways along a periodic axis.
+/// Agrees with SweepInMemory to 1e-5 and is reproducible bit for bit (numerics.md, section 4.8). A volume in host
+/// memory is streamed through the device in slices, one way after the other (LaneSlices.h), with bitwise identical
+/// results along open axes.
 ///
-/// Memory: two floats a voxel of a plane, ray and channel; where ways go at once, each has its own path, flux and
-/// partial currents, in at most a quarter of the memory that is left. Else they follow one another. With angular
-/// moments a float more a voxel of a plane, ray and channel, what shines along it; a path is one of each function then.
-/// Along a periodic axis a path is two floats, and maps stay from sweep to sweep. Where light comes or goes by cells of
-/// the faces two floats more a ray, channel, plane and cell of the plane's edges. Of a volume in host memory all these,
-/// and slots lie on the device.
+/// Device memory:
+///  - maps: two floats per voxel of a plane, ray and channel; with angular moments one more, for the source along the
+///    ray;
+///  - if ways run concurrently, path, flux and partial currents of each way, in at most a quarter of the free memory
+///    (if they do not fit, ways follow one another); with angular moments there is one path per function;
+///  - along a periodic axis, paths take two floats and the maps are kept from sweep to sweep;
+///  - if light is given or counted by cells of the faces, two floats per ray, channel, plane and cell of the plane's
+///    edges.
+///
+/// For a volume in host memory all these and the slots are on the device.
 class SweepOnGpu : public SweepOperator
 {
 public:
-  /// Along the axes, there and back.
+  /// How the ways (forward and backward along each axis) are scheduled.
   enum class Ways
   {
-    Automatic, ///< all at once where there is memory
+    Automatic, ///< concurrently if memory allows
     OneByOne
   };
 
-  /// @param sigma_t  must stay
-  /// @param request  no box of a grid with periodic axes
-  /// @param workspace  must stay; shared by sweeps that never run at the same time
+  /// @param sigma_t  must outlive the sweep
+  /// @param request  must not restrict the sweep to a box if the grid has periodic axes
+  /// @param workspace  must outlive the sweep; may be shared by sweeps that never run concurrently
   SweepOnGpu(Device& device, const VolumeLayout& layout, const Buffer<float>& sigma_t,
     const std::array<bool, 3>& periodic, const SweepRequest& request, SweepWorkspace& workspace,
     Ways ways = Ways::Automatic);

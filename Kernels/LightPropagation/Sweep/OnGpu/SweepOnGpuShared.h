@@ -1,33 +1,43 @@
-// Shared by C++ and the kernels of the sweep on GPUs: their arguments.
+// Shared by C++ and the kernels of the sweep on GPUs: kernel arguments.
 #pragma once
 
 #include "Device/SharedTypes.h"
 #include "LightPropagation/Sweep/SweepShared.h"
 
 SHARED_BEGIN
-/// All rays that march one way along an axis: they cross a plane of it in one launch, a work-item a voxel of the plane.
-/// Its maps and arrays are those of its batch (GpuLanes.h).
+/// A lane: all rays that march one way along an axis. They cross one of its planes per launch, one work-item per voxel
+/// of the plane. Maps and arrays belong to the lane's batch (GpuLanes.h).
 typedef struct
 {
   PlaneInfo planes;
   int axis;
-  int backward;             ///< 0 marches from the lower end of the axis, 1 from the upper
-  int patternPlanes;        ///< that rays of a sweep start in: those of the axis, or of several laps round it
-  int periodicU, periodicV; ///< across it
+  int backward; ///< 0 marches from the lower end of the axis, 1 from the upper
+  int
+    /// Planes in which the rays of a sweep start: those of the axis, or of several laps round a periodic axis
+    patternPlanes;
+  int periodicU, periodicV; ///< whether the axes across the marching axis are periodic
   int firstBundle, bundles;
-  int crossings; ///< where those of its first plane begin, [plane][bundle]
-  int firstRay;  ///< of all lanes' rays, each a float4 [channel] in `entering`; its maps begin there, too
-  ulong map;     ///< floats before its maps, [ray][channel][v][u]
-  ulong path;    ///< floats before its path, or, with angular moments, [function][channel][stride]
-  ulong deposit; ///< the same of currents over six, and of flux over three
-  ulong escaped; ///< where its tally begins, [plane][-u, +u, -v, +v][channel][position along the face]
-  int positions; ///< of that
+  int crossings; ///< index of the first crossing of its first plane, [plane][bundle]
+  int
+    /// Index of its first ray among the rays of all lanes: in `entering` (a float4 per ray and channel), `functions`
+    /// and maps
+    firstRay;
+  ulong map;     ///< index of the first float of its maps, [ray][channel][v][u]
+  ulong path;    ///< index of the first float of its path integrals; with angular moments [function][channel][stride]
+  ulong deposit; ///< index of its first float in the currents, divided by 6, and in the flux, divided by 3
+  ulong
+    /// Index of the first float of its escaped power, [plane][-u, +u, -v, +v][channel][position along the face]
+    escaped;
+  int positions; ///< number of positions along a face in `escaped`
   int rays;
-  ulong sides; ///< floats before its sides, [plane][ray][channel] (VoxelSides.cl), where light comes or goes by cells
+  ulong
+    /// Index of the first float of its sides, [plane][ray][channel] (VoxelSides.cl), if light is given or counted by
+    /// cells
+    sides;
 } SweepLane;
 
-/// Where the cells of the box's faces are for a lane (BoxFaces.h), of a channel: those of the faces -u, +u, -v, +v as
-/// FaceInfo has them, and those of the faces where its rays start and end, [v][u].
+/// Memory layout of the cells of the box's faces (BoxFaces.h) for a lane, within one channel: the faces -u, +u, -v, +v
+/// as in FaceInfo, and the faces where the lane's rays start and end, [v][u].
 typedef struct
 {
   int first[4], plane[4], along[4];
@@ -37,16 +47,19 @@ typedef struct
 /// A launch of the kernel `cross_plane`.
 typedef struct
 {
-  ulong sigmaFirst, sourceFirst; ///< where the first channel begins
-  ulong putFirst;                ///< the same in `path` (flux: three times, currents: six times that)
-  ulong stride;                  ///< from one channel to the next
-  ulong slotSource, slotPath;    ///< of slots that slices of the volume lie in: floats before that of source, of path
-  ulong slotValues;              ///< and before that of one value a voxel and channel; 0, where the volume lies whole
-  int slotPlane;                 ///< of the box's planes, that the slot begins with; 0, where the volume lies whole
-  int plane;                     ///< from where rays start
-  int firstLane;                 ///< that of the first work-items
-  int ofRound;                   ///< 1: the crossings begin with this launch's lanes, and planes; 0: see SweepLane
+  ulong sigmaFirst, sourceFirst; ///< index of the first channel's first value
+  ulong putFirst;                ///< the same in `path` (in the flux three times, in the currents six times this index)
+  ulong stride;                  ///< floats from one channel to the next
+  ulong slotSource, slotPath;    ///< for a streamed volume: index of the first float of the slot of source, of path
+  ulong slotValues; ///< the same for arrays with one value per voxel and channel; 0 if the volume is not streamed
+  int slotPlane;    ///< index in the box of the slot's first plane; 0 if the volume is not streamed
+  int plane;        ///< plane that is crossed, counted from where rays start
+  int firstLane;    ///< lane of the first work-items
+  int
+    /// 1: the array of crossings starts with those of this launch's lanes, for a lap round a periodic axis; 0: see
+    /// SweepLane::crossings
+    ofRound;
   int firstChannel;
-  MomentPlaces moments; ///< of source and path, where light has angular moments
+  MomentPlaces moments; ///< layout of the moments of source and path
 } PlaneLaunch;
 SHARED_END

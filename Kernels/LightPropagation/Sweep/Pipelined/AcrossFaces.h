@@ -11,18 +11,18 @@
 
 namespace tyndall
 {
-/// Gives each rank what the others, or round a periodic axis its own block, have beyond the faces of its block: a value
-/// of each voxel that touches one, and channel.
+/// Halo exchange of face values: gives each rank, for every voxel that touches a face of its block from outside and
+/// every channel, a value from the rank that owns the voxel (around a periodic axis possibly the rank itself).
 class AcrossFaces
 {
 public:
-  /// @param layout  of this rank's block; must stay, as do device, communicator and partition
+  /// @param layout  layout of this rank's block; must outlive this object, as must device, communicator and partition
   AcrossFaces(Device& device, Communicator& communicator, const BlockPartition& partition, const VolumeLayout& layout,
     const std::array<bool, 3>& periodic);
 
-  /// All ranks call it together.
-  /// @param byFaces  [channel][face][stride] of the block
-  /// @return of which the values are this object's, until the next time
+  /// Collective.
+  /// @param byFaces  [channel][face][stride] values of the block
+  /// @return values owned by this object, valid until the next call
   BeyondFaces Fetch(const Buffer<float>& byFaces);
 
 private:
@@ -33,7 +33,7 @@ private:
   const BlockPartition& Partition;
   const VolumeLayout& Layout;
   const std::array<bool, 3> Periodic;
-  std::array<std::vector<VoxelBox>, 6> Wanted; ///< by face and rank
+  std::array<std::vector<VoxelBox>, 6> Wanted; ///< voxels needed from each rank, by face and rank
   BeyondFacesInfo Info;
   Buffer<float> Values;
 };

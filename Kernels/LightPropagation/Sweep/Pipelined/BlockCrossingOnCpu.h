@@ -4,11 +4,11 @@
 
 namespace tyndall
 {
-/// By the kernels of Sweep/OnCpu with SIDES (SweepSides.cl); maps are padded as SweepPlan has them.
+/// Carries a block's rays with the kernels of Sweep/OnCpu and SIDES (SweepSides.cl). Maps are padded as in SweepPlan.
 class BlockCrossingOnCpu final : public BlockCrossing
 {
 public:
-  /// @param sizeY  of the block
+  /// @param sizeY  extent of the block along y, voxels
   BlockCrossingOnCpu(Device& device, const RaysOfBlock& rays, int sizeY, BlockWorkspace& workspace);
 
   std::size_t MapFloats() const override;
@@ -25,7 +25,7 @@ private:
 
   Device& TheDevice;
   RaysOfBlock Rays;
-  const SweepPlan& Plan; ///< theirs
+  const SweepPlan& Plan; ///< plan of the rays
   int SizeY;
   BlockWorkspace& Workspace;
 

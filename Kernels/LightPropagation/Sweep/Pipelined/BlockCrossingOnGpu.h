@@ -10,8 +10,8 @@
 
 namespace tyndall
 {
-/// By the kernels of Sweep/OnGpu with SIDES (VoxelSides.cl): a lane, which adds to what is there. A map is
-/// [ray][channel][v][u]. What of the block is in host memory goes through the device in slices.
+/// Carries a block's rays with the kernels of Sweep/OnGpu and SIDES (VoxelSides.cl), as one lane that adds to the
+/// deposit. Maps are [ray][channel][v][u]. Arrays in host memory are streamed through the device in slices.
 class BlockCrossingOnGpu final : public BlockCrossing
 {
 public:
@@ -29,21 +29,21 @@ private:
   PlaneLaunch LaunchOf(const SweepVolume& volume) const;
   void Launch(const SweepVolume& volume, int outerSides, const Monitor& monitor);
   std::vector<float> SumsOfSides();
-  /// That rays are in before plane k, counted from the block's first one.
+  /// Maps that hold the rays before plane k, counted from the block's first plane.
   const Buffer<float>& Maps(int k) const;
 
   Device& TheDevice;
   RaysOfBlock Rays;
-  const SweepPlan& Plan; ///< theirs
+  const SweepPlan& Plan; ///< plan of the rays
   BlockWorkspace& Workspace;
   SweepLane Lane;
-  std::unique_ptr<LaneSlices> Slices; ///< null: the block lies on the device, or is swept where it lies
+  std::unique_ptr<LaneSlices> Slices; ///< null: the block lies on the device or is swept in place
 
-  Buffer<SweepLane> Lanes; ///< the one
+  Buffer<SweepLane> Lanes; ///< one element: Lane
   Buffer<BundleInfo> Bundles;
   Buffer<CrossingInfo> Crossings;
-  Buffer<float> Functions;   ///< along the rays, where light has angular moments
+  Buffer<float> Functions;   ///< angular functions in the rays' directions, if there are angular moments
   Buffer<cl_float4> Beyond;  ///< see Cross
-  Buffer<float> Left, Sides; ///< W that leaves sideways, see SweepLane::escaped, and the sums of its rows
+  Buffer<float> Left, Sides; ///< power that leaves sideways, W, see SweepLane::escaped; sums of its rows
 };
 }

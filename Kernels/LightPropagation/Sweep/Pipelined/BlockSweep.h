@@ -15,61 +15,66 @@
 
 namespace tyndall
 {
-/// Light by cells of the faces of the whole grid, of a sweep's channels, [channel][cell] (BoxFaces.h).
+/// Light by cells of the domain's faces, for the channels of a sweep, [channel][cell] (BoxFaces.h).
 struct LightByCells
 {
-  const float* in = nullptr; ///< W / (length^2 sr) that comes in, the same from all directions; null: nothing
-  double* left = nullptr;    ///< W that leaves, added to; null: not wanted
+  const float* in = nullptr; ///< isotropic incident radiance, W / (length^2 sr); null: none
+  double* left = nullptr;    ///< escaped power, W, added to; null: not computed
   bool spreads = false;      ///< Deposit::spreadsAside
 };
 
-/// Sweeps one block of a grid along one set of parallel bundles: the rays that come in from other blocks and from
-/// outside the grid in, those that go out. Every ray crosses every voxel as it would in the whole grid.
+/// Sweeps one block of a grid along one set of parallel bundles. Input: the rays that enter the block from other blocks
+/// and from outside the domain; output: the rays that leave it. Every ray crosses every voxel exactly as in a sweep of
+/// the whole grid.
 class BlockSweep
 {
 public:
-  /// @param rank  whose block it is, of one voxel at least
-  /// @param periodic  axes: rays do not leave the grid at their ends, nor come in
-  /// @param volume  the block's: its grid, channels and what it takes light down in
-  /// @param workspace  must stay
+  /// @param rank  rank that owns the block; the block has at least one voxel
+  /// @param periodic  periodic axes: at their ends rays neither leave nor enter the domain
+  /// @param volume  the block's volume: its grid, channels and deposit
+  /// @param workspace  must outlive this object
   BlockSweep(Device& device, const BlockPartition& partition, int rank, const ParallelBundles& rays,
     const std::array<bool, 3>& periodic, const SweepVolume& volume, BlockWorkspace& workspace);
   BlockSweep(const BlockSweep&) = delete;
   BlockSweep& operator=(const BlockSweep&) = delete;
 
-  /// Round a periodic axis: rays have gone through so many planes of the whole grid when they come in at its end.
+  /// Begins a lap round a periodic axis. @param planes  planes of the whole grid that rays have crossed when they enter
+  /// at its end
   void BeginLap(int planes);
 
-  /// What comes in from outside the grid; the others' places are dark.
-  /// @param boundary  empty: nothing
+  /// Rays that enter from outside the domain; rays from other blocks are zero.
+  /// @param boundary  empty: no incident light
   RaysAtFaces FromOutside(const SweepBoundary& boundary, const LightByCells& cells) const;
-  /// Of the whole grid, W by face, by this set of bundles.
+  /// Incident power of the whole domain carried by this set of bundles, W, by face.
   std::array<Rgb, 6> PowerIn(const SweepBoundary& boundary) const;
 
-  /// @param in  is used up
-  /// @param tally  what leaves the grid from this block is added to, or goes round the axis
+  /// Carries the rays `in` through the block.
+  /// @param in  consumed
+  /// @param tally  power is added that leaves the domain from this block, or wraps around the axis
   RaysAtFaces Cross(const SweepVolume& volume, RaysAtFaces in, const SweepBoundary& boundary, const LightByCells& cells,
     SweepTally& tally, const Monitor& monitor);
 
-  /// What goes through a contact with another block, in an order that both ranks know, behind what `message` holds; and
-  /// the other way round.
-  /// @param at  where it begins; moved behind it
+  /// Appends to `message` the rays that cross a contact with another block, in an order that both ranks know. Unpack()
+  /// is the inverse.
+  /// @param at  position of the contact's first value in `message`; on return, the position after its last
   void Pack(const BlockContact& contact, const RaysAtFaces& out, std::vector<float>& message) const;
   void Unpack(const BlockContact& contact, const std::vector<float>& message, std::size_t& at, RaysAtFaces& in) const;
 
-  std::size_t Values(const std::vector<BlockContact>& contacts) const; ///< that messages have for rays that come in
+  std::size_t Values(
+    const std::vector<BlockContact>& contacts) const; ///< number of values in the messages of incoming rays
   int Axis() const { return this->Bundles.axis; }
-  std::size_t Bytes() const; ///< of rays at faces, in and out, on the host
+  std::size_t Bytes() const; ///< host memory of the rays at faces, in and out
 
 private:
   struct Light
   {
-    Rgb u, v, along; ///< W that a ray brings through each kind of face
+    Rgb u, v, along; ///< W, power that a ray carries in through each kind of face
   };
   Light LightOf(const SweepBoundary& boundary, std::size_t bundle, const Member& member) const;
   int DirectionOf(const Member& member) const;
   void LayPattern();
-  bool IsAtEnd(int axis, bool entry) const; ///< the block's face where rays come in, or leave, is the grid's
+  bool IsAtEnd(
+    int axis, bool entry) const; ///< whether the block's face where rays enter, or leave, is a face of the domain
   bool IsOuter(int axis, bool entry) const { return !this->Periodic[axis] && this->IsAtEnd(axis, entry); }
   template <class Act>
   void ForRaysFrom(const SweepBoundary& boundary, const Act& act) const;
@@ -89,9 +94,9 @@ private:
   RaysOfBlock Rays;
   std::unique_ptr<BlockCrossing> Carrier;
   std::vector<CrossingInfo> Crossings;      ///< [plane of the block][bundle]
-  std::vector<std::array<double, 2>> Moves; ///< of a bundle along its own u and v through the whole grid, voxels
-  int LapPlanes = 0;                        ///< that rays have gone through already
-  std::size_t SideFloats = 0;               ///< of one ray and plane
+  std::vector<std::array<double, 2>> Moves; ///< moves of a bundle along its own u and v through the whole grid, voxels
+  int LapPlanes = 0;                        ///< planes that rays have already crossed in earlier laps
+  std::size_t SideFloats = 0;               ///< floats of the sides per ray and plane
   std::size_t RayCount = 0;                 ///< members of all bundles, times channels
 };
 }

@@ -8,30 +8,31 @@
 
 namespace tyndall
 {
-/// Of a member that moves as the bundle's crossing has it in a stage: voxels along u and v.
+/// Move of a bundle's member in one stage of a crossing, voxels along u and v.
 std::array<int, 2> MoveOf(const BundleInfo& bundle, int member, const CrossingInfo& crossing, int stage);
 
-/// The cells of the whole grid's faces in a block's sweep: what comes in through each, and what leaves. As
-/// SweepFaces.cl and SweepMaps.cl have it of a whole grid, on the host, where a block's rays at faces are.
+/// Light by cells of the domain's faces in the sweep of a block: adds incident light and counts what leaves. Same
+/// computation as SweepFaces.cl and SweepMaps.cl, but on the host, where the block's rays at faces are.
 class BlockSweep::ByCells
 {
 public:
-  /// @param sweep  must stay
+  /// @param sweep  must outlive this object
   ByCells(const BlockSweep& sweep, const LightByCells& cells);
 
-  void Enter(RaysAtFaces& in) const; ///< adds to rays that come in
-  /// @param out       rays that go out
-  /// @param boundary  what comes in besides: some of it goes through an edge of the grid, without a voxel
-  /// @param tally     only what of `cells.in` goes so is added to
+  void Enter(RaysAtFaces& in) const; ///< adds incident light to the incoming rays
+  /// Counts escaped power by cell.
+  /// @param out       outgoing rays
+  /// @param boundary  further incident light; some of it passes an edge of the domain without crossing a voxel
+  /// @param tally     only light of `cells.in` that passes such an edge is added
   void Leave(const RaysAtFaces& out, const SweepBoundary& boundary, SweepTally& tally) const;
 
 private:
-  using Voxel = std::array<int, 3>; ///< of the whole grid
-  /// A ray of a bundle and channel that moves aside in a plane.
+  using Voxel = std::array<int, 3>; ///< indexed in the whole grid
+  /// A ray, of one bundle and channel, that moves sideways in a plane.
   struct Aside
   {
     std::size_t bundle = 0;
-    int member = 0, channel = 0, plane = 0; ///< plane: of the march
+    int member = 0, channel = 0, plane = 0; ///< plane: in the order of the march
     int du = 0, dv = 0;
     double part = 1.0; ///< of its power that moves
     std::size_t ray = 0;

@@ -14,68 +14,70 @@
 
 namespace tyndall
 {
-/// Adds what left through each cell of the whole grid's faces on any rank, W, to an array that all ranks have. All call
-/// it.
+/// Adds the power that left through each cell of the domain's faces on any rank, W, to an array that every rank has.
+/// Collective.
 void AddOverRanks(Device& device, Communicator& communicator, const std::vector<double>& left, const Buffer<float>& to);
 
-/// The sweep of a grid whose blocks lie on several ranks, each in one device's memory: no rank holds more than its own.
-/// Rays go from block to block in the order that light does, along some bundles while others are under way elsewhere
-/// (numerics.md, section 4.9; Koch, Baker and Alcouffe 1992). The same light as that of SweepInMemory in the whole
-/// grid, but for the order of sums.
+/// Sweep of a distributed grid: each block lies on one rank, in its device's memory, and no rank holds more than its
+/// own block. Rays pass from block to block downwind, along several sets of bundles concurrently (numerics.md, section
+/// 4.9; Koch, Baker and Alcouffe 1992). The result is that of SweepInMemory on the whole grid, up to the order of
+/// summation.
 ///
-/// Round a periodic axis rays that leave the grid come in at its other end when all blocks have been swept: sideways in
-/// the same planes, in another pass of such rays alone, until there are none; ahead in the next lap, as AxisSweep has
-/// it.
+/// Rays that leave the domain at the end of a periodic axis enter at its other end after all blocks have been swept.
+/// Rays that wrap around sideways enter the same planes in another pass of only these rays, repeated until none are
+/// left. Rays that wrap around along the marching axis enter in the next lap, as in AxisSweep.
 ///
-/// All ranks make one, of the same rays, and apply it together. Light by cells of faces
-/// (SweepRequest::faceIn, Deposit::faceOut) is that of the whole grid's, and the same on all ranks.
+/// Construction and Apply() are collective, with the same rays on all ranks. Light by cells of faces
+/// (SweepRequest::faceIn, Deposit::faceOut) refers to the whole domain and is identical on all ranks.
 class SweepInBlocks : public SweepOperator
 {
 public:
-  /// @param communicator, partition, sigma_t  must stay
-  /// @param layout  of the rank's own block
-  /// @param request  its box is not looked at: all is swept. Ranks without voxels need no angular values
-  /// @param workspace  must stay; shared by sweeps that never run at the same time
-  /// @param mostRays  that go through a block at once; 0: as many as end the sweep soonest (FastestParts)
-  /// @throws InvalidInput where the request has what this cannot do, or blocks wait for each other
+  /// @param communicator, partition, sigma_t  must outlive this object
+  /// @param layout  layout of this rank's block
+  /// @param request  its box is ignored, the whole domain is swept. Ranks without voxels need no angular values
+  /// @param workspace  must outlive this object; may be shared by sweeps that never run concurrently
+  /// @param mostRays  most rays that cross a block together; 0: the number that minimises the time of the sweep
+  /// (FastestParts)
+  /// @throws InvalidInput if the request contains something unsupported, or blocks wait for each other in a cycle
   SweepInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition, const VolumeLayout& layout,
     const Buffer<float>& sigma_t, const std::array<bool, 3>& periodic, const SweepRequest& request,
     BlockWorkspace& workspace, int mostRays = 0);
 
-  /// @return of all ranks together, the same on each
-  /// @throws on every rank what any of them throws
+  /// Collective.
+  /// @return the tally summed over all ranks, identical on each
+  /// @throws on every rank, if any rank throws
   SweepTally Apply(const Buffer<float>* source, const SweepBoundary& boundary, const Monitor& monitor) override;
   void Forget() override;
 
   const SweepSchedule& Schedule() const { return this->TheSchedule; }
-  std::size_t FaceBytes() const; ///< on the host, of the rays at faces of one set of bundles
+  std::size_t FaceBytes() const; ///< host memory of the rays at faces, for one set of bundles
 
 private:
   using Contacts = std::vector<BlockContact>;
-  /// Rays of a set of bundles that go round a periodic axis from one rank, which may be this one, to this one.
+  /// Rays of a set of bundles that wrap around a periodic axis from one rank (possibly this one) to this rank.
   struct Around
   {
     Contacts aside, ahead;
-    std::vector<float> rays;                 ///< aside, that come in with the next pass
-    std::vector<std::vector<float>> waiting; ///< ahead, that come in with the next lap, by group of channels
+    std::vector<float> rays;                 ///< sideways: enter in the next pass
+    std::vector<std::vector<float>> waiting; ///< along the marching axis: enter in the next lap; by group of channels
   };
   struct Task
   {
     std::unique_ptr<BlockSweep> sweep;
-    std::vector<Contacts> senders, receivers;      ///< one list for each rank there is contact with
-    std::vector<Around> aroundFrom;                ///< the same, round periodic axes
-    std::vector<std::array<Contacts, 2>> aroundTo; ///< aside and ahead
+    std::vector<Contacts> senders, receivers;      ///< one list for each rank in contact
+    std::vector<Around> aroundFrom;                ///< the same around periodic axes
+    std::vector<std::array<Contacts, 2>> aroundTo; ///< sideways, and along the marching axis
   };
   enum class State
   {
     Lit,
-    Dark,  ///< no ray carries anything
-    Failed ///< the rank that should send them has thrown
+    Dark,  ///< no ray carries any power
+    Failed ///< the sending rank has thrown
   };
   Task MakeTask(const ParallelBundles& rays, BlockWorkspace& workspace) const;
   SweepVolume VolumeOf(const ChannelGroup& group, const Buffer<float>* source) const;
   bool CountsPowerIn() const;
-  /// What goes into a sweep of some channels, and what is counted.
+  /// Inputs and counters of the sweep of one group of channels.
   struct Sweeping
   {
     SweepVolume volume;
@@ -83,10 +85,10 @@ private:
     LightByCells cells;
     std::size_t group = 0;
     int lap = 0;
-    std::array<bool, 3> goesOn = {}; ///< axes whose rays are in this lap
-    bool again = false;              ///< a pass of rays that go round sideways
+    std::array<bool, 3> goesOn = {}; ///< axes whose rays take part in this lap
+    bool again = false;              ///< a pass of rays that have wrapped around sideways
     SweepTally tally;
-    std::array<Rgb, 3> ahead = {}; ///< W that this lap left at the ends of periodic axes
+    std::array<Rgb, 3> ahead = {}; ///< W, power that left through the ends of periodic axes in this lap
   };
   void SweepGroup(Sweeping& sweeping, std::exception_ptr& error, const Monitor& monitor);
   bool SweepLap(Sweeping& sweeping, std::exception_ptr& error, const Monitor& monitor);
@@ -98,7 +100,7 @@ private:
   void SendOn(int number, State state, const RaysAtFaces& rays);
   bool TakeFromAround(const Sweeping& sweeping, std::exception_ptr& error);
   bool IsAnyPeriodic() const { return this->Periodic[0] || this->Periodic[1] || this->Periodic[2]; }
-  int Laps(int axis) const; ///< in which rays start
+  int Laps(int axis) const; ///< laps in which rays start
   void AddToFaces(const std::vector<double>& left) const;
 
   Device& TheDevice;
@@ -115,6 +117,6 @@ private:
   const Buffer<float>* FaceIn;
   std::vector<ParallelBundles> Parts;
   SweepSchedule TheSchedule;
-  std::vector<Task> Tasks; ///< of this rank, as the parts
+  std::vector<Task> Tasks; ///< of this rank, in the order of Parts
 };
 }

@@ -8,32 +8,33 @@
 
 namespace tyndall
 {
-/// What the parts of a distributed sweep take, in any unit of time.
+/// Cost model of a distributed sweep, in any unit of time.
 struct SweepCosts
 {
-  double ofRay = 1.0;     ///< a ray through a voxel
-  double ofTask = 0.0;    ///< each block and each set of parallel bundles besides
-  double ofMessage = 0.0; ///< from one rank to another
-  double ofValue = 0.0;   ///< each ray in it
+  double ofRay = 1.0;     ///< per ray and voxel
+  double ofTask = 0.0;    ///< overhead per block and set of parallel bundles
+  double ofMessage = 0.0; ///< per message between ranks
+  double ofValue = 0.0;   ///< per ray in a message
 };
 
-/// In which order each rank sweeps its block along the sets of parallel bundles: those of all octants start at once
-/// from their corners, and where several could be swept the one goes first behind which most blocks wait. Found by
-/// playing the sweep through; the same on all ranks, whatever they then take.
+/// Order in which each rank sweeps its block along the sets of parallel bundles. The sets of all octants start
+/// concurrently from their corners; if a rank has a choice, it first sweeps the set for which most blocks are waiting
+/// downwind. Computed by simulating the sweep; identical on all ranks, whatever the actual run times.
 class SweepSchedule
 {
 public:
-  /// @throws InvalidInput where blocks wait for each other: no planes cut them apart one after the other
+  /// @throws InvalidInput if blocks wait for each other in a cycle, i.e. the partition cannot be made by successive
+  /// cuts along planes
   SweepSchedule(const BlockPartition& partition, const std::vector<ParallelBundles>& tasks, const SweepCosts& costs);
 
-  /// Tasks in the order of a rank; none of an empty block.
+  /// Tasks in the order in which `rank` runs them; empty if its block is empty.
   const std::vector<int>& OrderOf(int rank) const { return this->Orders[rank]; }
 
-  double Time() const { return this->Makespan; }        ///< until the last rank is through
-  double BusyTime() const { return this->Work; }        ///< of all ranks together
-  std::size_t Messages() const { return this->Sent; }   ///< of all
-  std::size_t Values() const { return this->SentRays; } ///< at most: rays in them, of one channel
-  /// That light comes through one after the other, at most.
+  double Time() const { return this->Makespan; }        ///< until the last rank has finished
+  double BusyTime() const { return this->Work; }        ///< sum over all ranks
+  std::size_t Messages() const { return this->Sent; }   ///< sent by all ranks
+  std::size_t Values() const { return this->SentRays; } ///< upper bound of the rays in all messages, for one channel
+  /// Length of the longest chain of blocks that light crosses one after the other.
   int BlocksInALine() const { return this->InALine; }
 
 private:
@@ -43,7 +44,7 @@ private:
   std::size_t Sent = 0, SentRays = 0;
 };
 
-/// The rays of a sweep as sets of parallel bundles, of as many rays each as bring it to its end soonest: fewer keep
-/// more ranks busy, and cost each of them and the network more often. The same on all ranks.
+/// Divides the rays of a sweep into sets of parallel bundles, with the number of rays per set that minimises the time
+/// of the sweep: smaller sets keep more ranks busy, but add overhead and messages. Identical on all ranks.
 std::vector<ParallelBundles> FastestParts(const BlockPartition& partition, const std::vector<AxisBundles>& rays);
 }

@@ -13,26 +13,26 @@
 
 namespace tyndall
 {
-/// A volume in host memory that is swept through slots on the device (Gruson et al., section 4.2; numerics.md, section
-/// 4.10): while the units cross the slices in their slots, those that they crossed before go back and those that they
-/// come to next are fetched, by a second queue. The rays stay on the device.
+/// Streams a volume in host memory through slots on the device during a sweep (Gruson et al., section 4.2; numerics.md,
+/// section 4.10). While the units cross the slices in their slots, a second queue copies the previous slices back to
+/// the host and fetches the next ones. The rays stay on the device.
 ///
-/// Each unit has two slots. A slot holds a few planes of all arrays, each array [slot][part][z][y][x] with a slot's
-/// extents, in buffers of the workspace.
+/// Each unit has two slots. A slot holds a few planes of every array, [slot][part][z][y][x] with the slot's extents, in
+/// buffers of the workspace.
 class SliceStream
 {
 public:
-  /// Null where the volume is not to be streamed: it lies on the device, or kernels work on host memory in place; or
-  /// its planes along the axis cannot be told apart in memory (moments along x of boxes that are cut, or whose slabs
-  /// do not end between groups of voxels). Then a sweep reads and adds to the arrays where they are.
-  /// @param plan, workspace  must stay; the workspace has its maps and scratch
+  /// Returns null if the volume is not streamed: because it lies on the device, because the kernels work on host memory
+  /// in place, or because its planes along the axis are not separate in memory (moments along x, if the volume is swept
+  /// in part or its slabs do not end between groups of voxels). The sweep then accesses the arrays in place.
+  /// @param plan, workspace  must outlive this object; maps and scratch of the workspace are already allocated
   static std::unique_ptr<SliceStream> Make(Device& device, const SweepPlan& plan, SweepWorkspace& workspace);
 
   SliceStream(Device& device, const SweepPlan& plan, SweepWorkspace& workspace, int thickness);
 
-  int Thickness() const { return this->Extent[this->Plan.axes.axis]; } ///< planes of a slot
+  int Thickness() const { return this->Extent[this->Plan.axes.axis]; } ///< planes that a slot holds
 
-  /// Launches, cut into pieces, and as the kernel has them: [launch][ranges, slots][unit].
+  /// The sweep's launches cut into pieces. `rows` is the same as the kernel reads it: [launch][ranges, slots][unit].
   struct Schedule
   {
     std::vector<std::vector<SlicePiece>> pieces;
@@ -40,28 +40,28 @@ public:
   };
   Schedule Cut(const std::vector<cl_int2>& schedule) const;
 
-  /// Where a unit's piece of a launch lies.
+  /// The slot that holds a unit's piece of a launch.
   struct SlotPlace
   {
     std::size_t slot;
-    int firstPlane; ///< of the box, that the slot begins with
+    int firstPlane; ///< index in the box of the slot's first plane
   };
   SlotPlace PlaceOf(const SlicePiece& piece, std::size_t launch, std::size_t unit) const;
 
-  /// The launch's layout as that of slots.
+  /// Replaces the volume's memory layout in `info` by the slots' layout.
   void Describe(SweepInfo& info) const;
   const Buffer<float>& Slots(SlotArray array) const;
 
-  /// Queues a launch, which is to wait for some events, and to tell one when it is done.
+  /// Queues a launch that waits for the events `after` (null: for none) and signals `done`.
   using Launch = std::function<void(int launch, const std::vector<cl::Event>* after, cl::Event* done)>;
-  /// Runs all launches, with what they need around them. The device's queue goes on when all has come back.
+  /// Runs all launches with their transfers. The device's queue continues when all results are back on the host.
   void Cross(const Schedule& schedule, const SweepVolume& volume, const Launch& launch);
 
 private:
-  /// A box of floats in two arrays, by rows.
+  /// A box of floats to be copied between host array and slot array, row by row.
   struct Rows
   {
-    std::array<std::size_t, 3> count; ///< floats of a row, rows, layers
+    std::array<std::size_t, 3> count; ///< floats per row, rows per layer, layers
     std::size_t hostFirst, hostRow, hostLayer;
     std::size_t slotFirst, slotRow, slotLayer;
   };
@@ -71,9 +71,9 @@ private:
     const Buffer<float>* host;
     SlotArray slots;
     int parts;         ///< [part][stride]
-    std::size_t first; ///< of part 0, and of the angular moments of light
-    bool comesBack;    ///< it is added to
-    int beams = -1;    ///< of arrays with angular moments: how many; -1: of others
+    std::size_t first; ///< index of the first float of part 0, and of the angular moments
+    bool comesBack;    ///< the sweep adds to it: copied back to the host
+    int beams = -1;    ///< number of beams, for arrays with angular moments; -1: an array without moments
   };
   std::vector<Streamed> ArraysOf(const SweepVolume& volume) const;
   void LaySlots();
@@ -90,10 +90,10 @@ private:
   const SweepPlan& Plan;
   SweepWorkspace& Workspace;
   cl::CommandQueue Transfers;
-  std::array<int, 3> Extent;      ///< of a slot, voxels
-  std::size_t Stride = 0;         ///< of a part of a slot
-  MomentPlaces Places = {};       ///< in a slot
-  std::vector<cl::Event> Waiting; ///< for which the next transfer has to wait
+  std::array<int, 3> Extent;      ///< of a slot, in voxels
+  std::size_t Stride = 0;         ///< floats from one part of a slot to the next
+  MomentPlaces Places = {};       ///< layout of the moments in a slot
+  std::vector<cl::Event> Waiting; ///< that the next transfer waits for
   cl::Event Last;                 ///< of the last transfer
 };
 }
