@@ -56,10 +56,10 @@ struct GpuLanes
   int channels;            ///< channels swept together
   int functionCount;       ///< number of angular functions; 1: fluence only
   int floatsOfDeposit;     ///< floats that a lane writes per voxel and channel
-  std::size_t mostMapsOpen = 0,
-              mostMapsAround = 0; ///< largest size of a batch's maps, floats: open axes, periodic axes
-  int mostWithArrays = 0,
-      mostAround = 0; ///< most lanes of a batch with its own arrays, and of a batch on a periodic axis
+  /// Largest size of a batch's maps, floats: batches of open axes, batches on a periodic axis
+  std::size_t mostMapsOpen = 0, mostMapsAround = 0;
+  /// Most lanes of a batch with its own arrays, and of a batch on a periodic axis
+  int mostWithArrays = 0, mostAround = 0;
 
   /// Floats of the lanes' own arrays. @param stride  floats per channel
   std::size_t ArrayFloats(std::size_t stride) const;

@@ -15,10 +15,8 @@ public:
   /// @param lanes  must outlive this object
   LanePowers(Device& device, const GpuLanes& lanes);
 
-  const Buffer<float>& Escaped() const
-  {
-    return this->OfPlanes;
-  } ///< written by the plane kernels, see SweepLane::escaped
+  /// Power that leaves sideways, W, written by the plane kernels; see SweepLane::escaped.
+  const Buffer<float>& Escaped() const { return this->OfPlanes; }
 
   using MapsOfLane = std::function<const Buffer<float>&(const SweepLane&)>;
 

@@ -44,8 +44,8 @@ public:
   /// @param directs  the source in each ray's direction is computed from angular moments before each plane
   PlaneKernels(Device& device, const std::string& options, bool directs, const Size& size);
 
-  /// Sets the buffers of rays that enter and leave through the sides of the planes; for options with SIDES. @param
-  /// outerSides  see VoxelSides.cl and `cross_plane`
+  /// Sets the buffers of rays that enter and leave through the sides of the planes; for options with SIDES.
+  /// @param outerSides  see VoxelSides.cl and `cross_plane`
   void SetSides(const Buffer<float>& in, const Buffer<float>& out, int outerSides);
 
   /// Queues the planes [from, to), counted from where rays start.

@@ -12,28 +12,24 @@ typedef struct
   PlaneInfo planes;
   int axis;
   int backward; ///< 0 marches from the lower end of the axis, 1 from the upper
-  int
-    /// Planes in which the rays of a sweep start: those of the axis, or of several laps round a periodic axis
-    patternPlanes;
+  /// Planes in which the rays of a sweep start: those of the axis, or of several laps round a periodic axis
+  int patternPlanes;
   int periodicU, periodicV; ///< whether the axes across the marching axis are periodic
   int firstBundle, bundles;
   int crossings; ///< index of the first crossing of its first plane, [plane][bundle]
-  int
-    /// Index of its first ray among the rays of all lanes: in `entering` (a float4 per ray and channel), `functions`
-    /// and maps
-    firstRay;
+  /// Index of its first ray among the rays of all lanes: in `entering` (a float4 per ray and channel), `functions`
+  /// and maps
+  int firstRay;
   ulong map;     ///< index of the first float of its maps, [ray][channel][v][u]
   ulong path;    ///< index of the first float of its path integrals; with angular moments [function][channel][stride]
   ulong deposit; ///< index of its first float in the currents, divided by 6, and in the flux, divided by 3
-  ulong
-    /// Index of the first float of its escaped power, [plane][-u, +u, -v, +v][channel][position along the face]
-    escaped;
+  /// Index of the first float of its escaped power, [plane][-u, +u, -v, +v][channel][position along the face]
+  ulong escaped;
   int positions; ///< number of positions along a face in `escaped`
   int rays;
-  ulong
-    /// Index of the first float of its sides, [plane][ray][channel] (VoxelSides.cl), if light is given or counted by
-    /// cells
-    sides;
+  /// Index of the first float of its sides, [plane][ray][channel] (VoxelSides.cl), if light is given or counted by
+  /// cells
+  ulong sides;
 } SweepLane;
 
 /// Memory layout of the cells of the box's faces (BoxFaces.h) for a lane, within one channel: the faces -u, +u, -v, +v
@@ -55,10 +51,9 @@ typedef struct
   int slotPlane;    ///< index in the box of the slot's first plane; 0 if the volume is not streamed
   int plane;        ///< plane that is crossed, counted from where rays start
   int firstLane;    ///< lane of the first work-items
-  int
-    /// 1: the array of crossings starts with those of this launch's lanes, for a lap round a periodic axis; 0: see
-    /// SweepLane::crossings
-    ofRound;
+  /// 1: the array of crossings starts with those of this launch's lanes, for a lap round a periodic axis; 0: see
+  /// SweepLane::crossings
+  int ofRound;
   int firstChannel;
   MomentPlaces moments; ///< layout of the moments of source and path
 } PlaneLaunch;
