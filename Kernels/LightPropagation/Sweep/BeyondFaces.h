@@ -11,8 +11,8 @@ namespace tyndall
 /// voxel face such as Deposit::partialCurrents.
 struct BeyondFaces
 {
-  const Buffer<float>* values =
-    nullptr; ///< [channel][face][cell, x before y before z]; null: the block is the whole domain
+  /// [channel][face][cell, x before y before z]; null: the block is the whole domain
+  const Buffer<float>* values = nullptr;
   BeyondFacesInfo info = { { -1, -1, -1, -1, -1, -1 }, 0 };
 };
 

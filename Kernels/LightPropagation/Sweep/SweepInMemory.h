@@ -11,12 +11,12 @@
 
 namespace tyndall
 {
-/// The sweep of a volume that lies in one device's memory.
+/// Sweep of a volume in the memory of one device.
 class SweepInMemory : public SweepOperator
 {
 public:
-  /// @param sigma_t  must stay
-  /// @param workspace  must stay; shared by sweeps that never run at the same time
+  /// @param sigma_t  must outlive the sweep
+  /// @param workspace  must outlive the sweep; may be shared by sweeps that never run concurrently
   SweepInMemory(Device& device, const VolumeLayout& layout, const Buffer<float>& sigma_t,
     const std::array<bool, 3>& periodic, const SweepRequest& request, SweepWorkspace& workspace);
 
@@ -34,8 +34,8 @@ private:
   const AngularValues* Angular;
   const Buffer<float>* FaceIn;
   const Buffer<float>* OctantSource;
-  /// Along one axis: one sweep for all groups of channels in turn; where the axis is periodic one a group, for it keeps
-  /// rays that are on their way from one sweep to the next.
+  /// Sweeps along one axis. An open axis has one AxisSweep, used for all groups of channels in turn; a periodic axis
+  /// has one per group, because it keeps the rays under way from one sweep to the next.
   struct Axis
   {
     std::vector<std::unique_ptr<AxisSweep>> ofGroups;

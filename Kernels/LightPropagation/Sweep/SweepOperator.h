@@ -14,9 +14,9 @@
 
 namespace tyndall
 {
-/// Planes that a ray goes round a periodic axis at most, unless the sweep is told another number.
+/// Most planes that a ray crosses round a periodic axis in one sweep, by default.
 constexpr int MostPlanesAround = 8192;
-/// Of what was on the way round a periodic axis after the first time: not worth going round again.
+/// Rays stop wrapping around a periodic axis when their power has fallen to this fraction of that after the first lap.
 constexpr double NothingLeft = 1e-7;
 
 /// The bundles of rays that march along one axis.
@@ -26,50 +26,52 @@ struct AxisBundles
   std::vector<Bundle> bundles;
 };
 
-/// What a sweep is made for.
+/// Everything that a sweep is constructed for.
 struct SweepRequest
 {
-  Deposit deposit; ///< its buffers must stay
+  Deposit deposit; ///< its buffers must outlive the sweep
   std::vector<AxisBundles> rays;
-  VoxelBox box = {};                 ///< the part of the grid that is swept; empty: all
-  int mostPlanes = MostPlanesAround; ///< that rays go round a periodic axis before they wait for the next sweep
-  bool sameBoundary = false;         ///< every sweep is given the same boundary: what it makes of it is kept
-  /// Along the directions of the rays, must stay: sources and path integrals are angular moments, and net flux is among
-  /// them. Null: they are those of fluence alone.
+  VoxelBox box = {}; ///< the part of the grid that is swept; empty: the whole grid
+  /// Most planes that rays cross round a periodic axis before they wait for the next sweep
+  int mostPlanes = MostPlanesAround;
+  bool sameBoundary = false; ///< the boundary is the same in every sweep, so its processed form is cached
+  /// Angular functions in the rays' directions; must outlive the sweep. Sources and path integrals are then angular
+  /// moments, which include the net flux. Null: no angular moments, fluence only.
   const AngularValues* angular = nullptr;
-  /// W / (length^2 sr) that comes in through each cell of the box's faces, the same from all directions,
-  /// [channel][cell] (BoxFaces.h), beside what each sweep is given as boundary; not among the powers that came in. Must
-  /// stay; null: nothing.
+  /// Isotropic incident radiance by cell of the box's faces, W / (length^2 sr), [channel][cell] (BoxFaces.h), in
+  /// addition to the boundary that each sweep is given; not counted as incident power in the tally. Must outlive the
+  /// sweep; null: none.
   const Buffer<float>* faceIn = nullptr;
-  /// W / (length^3 sr), [channel][octant][stride]: by how much more than the source voxels shine out of themselves into
-  /// the octant of directions that are positive along x where bit 0 is set, along y, z bits 1 and 2. What so gets out
-  /// more, or less, is missing from their own path, or left in it: power is that of the source. Not with angular
-  /// moments. Must stay; null: voxels shine alike into all octants.
+  /// Additional source by octant of directions, W / (length^3 sr), [channel][octant][stride], relative to the source;
+  /// it applies to light that leaves the voxel. An octant's bits 0, 1, 2 are set if its directions are positive along
+  /// x, y, z. The extra power that leaves (or stays) is subtracted from (or added to) the voxel's own path, so the
+  /// total power is that of the source. Not with angular moments. Must outlive the sweep; null: the source is the same
+  /// in all octants.
   const Buffer<float>* octantSource = nullptr;
 };
 
-/// Carries light once through the medium: from what shines in its voxels and what comes in through the box's faces to
-/// path integrals, net flux, partial currents and the power that left (numerics.md, section 4). Power is conserved,
-/// Eq. (27). Independent of scattering orders and of acceleration. SweepInMemory.h does it in one device's memory;
-/// other implementations may do it slice by slice, over several machines or in another order.
+/// One sweep: carries light once through the medium, from the sources in its voxels and the light incident on the box's
+/// faces to path integrals, net flux, partial currents and escaped power (numerics.md, section 4). Power is conserved,
+/// Eq. (27). Independent of source iteration and its acceleration. SweepInMemory.h sweeps in the memory of one device;
+/// other implementations may sweep slice by slice, over several machines or in another order.
 class SweepOperator
 {
 public:
   virtual ~SweepOperator() = default;
 
-  /// Adds to the deposit that the operator was made with.
+  /// Sweeps once and adds to the request's deposit.
   /// @param source  W / (length^3 sr), [channel][stride], with angular moments [function, then beam][channel][stride];
-  /// null: the medium is dark
-  /// @param boundary  what comes in, three channels; empty: nothing
-  /// @param monitor  given fractions of this sweep
-  /// @return of all channels: what came in, what left, what still goes round a periodic axis, as it will in the next
-  /// sweep
+  /// null: no source
+  /// @param boundary  incident light, three channels; empty: none
+  /// @param monitor  receives the fraction of this sweep that is done
+  /// @return for all channels: incident power, escaped power, and the power still under way round periodic axes, which
+  /// continues in the next sweep
   virtual SweepTally Apply(const Buffer<float>* source, const SweepBoundary& boundary, const Monitor& monitor) = 0;
 
-  /// Discards the rays that are under way round periodic axes; their power was told as SweepTally::onTheWay.
+  /// Discards the rays under way round periodic axes; their power was reported as SweepTally::onTheWay.
   virtual void Forget() = 0;
 };
 
-/// Makes sweeps of one medium: who sweeps asks for one here, and does not know how it is done.
+/// Factory of sweeps of one medium; hides the implementation from solvers.
 using SweepMaker = std::function<std::unique_ptr<SweepOperator>(const SweepRequest&)>;
 }

@@ -48,10 +48,8 @@ struct SweepPlan
   int rowsKept = 0; ///< rows of a plane held in scratch, if rows are packed just before they are crossed; 0: all rows
   PlaneInfo plane = {};
   std::vector<BundleInfo> bundleRows;
-  std::size_t mapsEachWay =
-    /// Floats of the maps for one way (forward or backward); likewise below for the rows outside and the radiances at
-    /// the faces
-    0;
+  /// Floats for one way (forward or backward): of the maps; of the rows outside; of the radiances at the faces
+  std::size_t mapsEachWay = 0;
   std::size_t outsideEachWay = 0;
   std::size_t radianceEachWay = 0;
   std::vector<float> coefficients; ///< see BundleInfo::coefficients; forward first
@@ -71,9 +69,8 @@ struct SweepPlan
   int PatternPlanes() const { return this->Planes() * this->laps; } ///< planes in which the rays of a sweep start
   /// Planes of the grid that rays cross before they reach the box. @param way  0 forward, 1 backward
   int PlanesBefore(int way) const;
-  int CrossingPlanes()
-    /// Planes of the ray pattern, from its start, that rays cross up to the end of the box; the larger of both ways
-    const;
+  /// Planes of the ray pattern, from its start, that rays cross up to the end of the box; the larger of both ways.
+  int CrossingPlanes() const;
   std::size_t ScratchFloats() const; ///< scratch of one unit
 
   /// How rays cross each plane, [plane][bundle]. @param firstPlane  first plane of the ray pattern

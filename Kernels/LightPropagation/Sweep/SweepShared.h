@@ -1,4 +1,4 @@
-// Shared by C++ and the sweep's kernels: their arguments.
+// Shared by C++ and the sweep's kernels: kernel arguments.
 #pragma once
 
 #include "Device/SharedTypes.h"
@@ -7,31 +7,34 @@
 SHARED_BEGIN
 enum
 {
-  MaxMembers = 8,       ///< of a bundle
-  MaxFrames = 2,        ///< of a bundle: u and v as they are, and exchanged
-  RingRows = 4,         ///< a stage reads rows y - 1 to y + 1 while the stage before writes row y + 2
-  MeanLengthTerms = 5,  ///< of (1 - exp(-t)) / t = 1 + t (m0 + t (m1 + ...)) for thin voxels, see SweepPlan.cxx
-  BundlesTogether = 16, ///< that cross planes in turns: where light has angular moments, or planes are chained
-  MomentRows = 8,       ///< of which a bundle's sources are kept: of the rows that its stages are at
-  MostChained = 2,      ///< planes that a bundle crosses row by row one behind the other
-  RowsTogether = 8,     ///< of a plane with many moments: they stay in the cache for all bundles
-  RowsOfChain = 32,     ///< of a chain, that bundles cross in turns: the planes' rows stay in the cache for all of them
-  RowsOfChainKept = 64, ///< a power of two: of a turn, and those that its last stage is behind
-  RowsAhead = 2,        ///< from where a chain begins a row to the row of its map that is asked for
-  FloatsOfLine = 16,    ///< of a cache
-  FirstRow = -2         ///< of a plane, that a first stage may begin at
+  MaxMembers = 8,      ///< of a bundle
+  MaxFrames = 2,       ///< of a bundle: u and v in order, and exchanged
+  RingRows = 4,        ///< a stage reads rows y - 1 to y + 1 while the stage before writes row y + 2
+  MeanLengthTerms = 5, ///< of (1 - exp(-t)) / t = 1 + t (m0 + t (m1 + ...)) for thin voxels, see SweepPlan.cxx
+  /// Bundles that cross the same planes in turn, if there are angular moments or planes are chained
+  BundlesTogether = 16,
+  MomentRows = 8,   ///< rows for which a bundle's sources are stored: those that its stages are working on
+  MostChained = 2,  ///< most planes in a chain: planes that a bundle crosses together, row by row
+  RowsTogether = 8, ///< rows in a tile of a plane with many moments; a tile stays in the cache for all bundles
+  /// Rows in a tile of a chain, which bundles cross in turn; a tile stays in the cache for all bundles
+  RowsOfChain = 32,
+  RowsOfChainKept = 64, ///< rows of a tile, and those by which its last stage lags behind; a power of two
+  RowsAhead = 2,        ///< rows by which the prefetch of a chain's map is ahead
+  FloatsOfLine = 16,    ///< floats in a cache line
+  FirstRow = -2         ///< lowest row of a plane at which a first stage may begin
 };
 
-/// The first quantities of a plane that is being crossed; behind them path, flux and partial currents (SweepLayout.cl).
+/// The first quantities of a plane that is being crossed; path, flux and partial currents follow (SweepLayout.cl).
 enum
 {
   PlaneSigma = 0,
   PlaneInverse = 1,
-  PlaneTaken = 2, ///< sum over rays of power times mean transmitted length: what is missing of the source's own light
+  /// Sum over rays of power times mean transmitted length: subtracted to obtain the path of a voxel's own source
+  PlaneTaken = 2,
   PlaneSource = 3
 };
 
-/// Through which face of its voxel a ray comes: the one across the axis it marches along, or a low or high one aside.
+/// Face through which a ray enters a voxel: across the marching axis, or the lower or upper face across u or v.
 enum
 {
   CurrentAxis = 0,
@@ -42,43 +45,43 @@ enum
   CurrentFaces = 5
 };
 
-/// Ways that rays go along u and v: 1 for u upwards, 2 for v upwards.
+/// Number of combinations of a ray's ways along u and v; index: bit 0 for u upwards, bit 1 for v upwards.
 enum
 {
   WaysAside = 4
 };
 
-/// Quantities of a plane: each channel has its source and its path, beams, and a flux and currents where they are
-/// wanted, and what shines besides by octant.
+/// Number of quantities of a plane. Each channel has a source, a path and beams; a flux, currents and a source by
+/// octant if used.
 #define PLANE_COUNT(channels, beams, netFlux, currents, octants) \
   (PlaneSource +                                                 \
     (2 + (beams) + ((netFlux) ? 3 : 0) + ((currents) ? CurrentFaces : 0) + ((octants) ? WaysAside : 0)) * (channels))
 
-/// Rings of rows between the stages of so many planes that are crossed one behind the other: three stages at most each.
+/// Number of rings of rows between the stages of `planes` chained planes, with at most three stages per plane.
 #define RINGS_OF(planes) (3 * (planes)-1)
 
-/// Floats that a bundle keeps from one tile of rows to the next: two rings, and of MomentRows rows the members' sources
-/// and paths, and the path of a source of 1 in its own voxel.
+/// Floats that a bundle keeps from one tile of rows to the next: two rings; for MomentRows rows the members' sources
+/// and paths, and the path of a unit source in its own voxel.
 #define BUNDLE_FLOATS(channels, row) \
   ((RINGS_OF(1) * RingRows + 2 * MomentRows) * MaxMembers * (channels) * (row) + MomentRows * (row))
 
 typedef struct
 {
   int members;
-  int map;      ///< where its maps begin, in floats
-  int border;   ///< where its radiances at the faces begin, in floats: [member][channel]
-  int outside;  ///< where its rows outside begin, in floats: [member][channel][ROW]
-  float power;  ///< that a ray carries at radiance 1
-  float cosine; ///< of its directions with the axis it marches along, for the net flux
+  int map;      ///< index of the first float of its maps
+  int border;   ///< index of the first of its radiances at the faces, [member][channel]
+  int outside;  ///< index of the first float of its rows outside, [member][channel][ROW]
+  float power;  ///< power of a ray at radiance 1, length^2 sr
+  float cosine; ///< cosine between its directions and the marching axis, for the net flux
   float sineU, sineV;
-  float planesU, planesV;  ///< from one move along u, v to the next; at most those of the axis
+  float planesU, planesV;  ///< planes from one move along u, v to the next; at most those of the axis
   int move[MaxMembers][4]; ///< u from u, u from v, v from u, v from v: a signed permutation
-  /// Members whose directions differ by signs alone, at most four, are a frame; where its members begin, and where the
-  /// last one's end.
+  /// A frame is a set of at most four members whose directions differ only in signs. firstOfFrame: index of each
+  /// frame's first member, then the end of the last frame.
   int frames, firstOfFrame[MaxFrames + 1];
-  int parities; ///< bit i: of the functions, those of parity i are not all zero (SweepLayout.cl)
-  /// Where its coefficients begin, in floats, of each way: of the angular functions by [frame][function], in the order
-  /// of the axis, for positive u and v; of beams by [member][beam].
+  int parities; ///< bit i: the functions of parity i are not all zero (SweepLayout.cl)
+  /// Index of its first coefficient, for each way: values of the angular functions for positive u and v,
+  /// [frame][function] in the order of the axis; then those of beams, [member][beam].
   int coefficients;
 } BundleInfo;
 
@@ -87,20 +90,20 @@ typedef struct
 {
   int stages;
   int moveU[3], moveV[3];
-  float part[3]; ///< of each ray's power that moves; the rest stays
+  float part[3]; ///< part of each ray's power that moves; the rest stays
   float length[3];
 } CrossingInfo;
 
-/// What a work-item marches.
+/// Unit of work: the rays that one work-item carries.
 typedef struct
 {
   int backward; ///< 0 marches from the lower end of the axis, 1 from the upper
   int firstBundle, bundles;
-  int scratch;      ///< where its scratch begins, in floats
-  int planesBefore; ///< of the ray pattern, that its rays have crossed before their first plane here
+  int scratch;      ///< index of its scratch's first float
+  int planesBefore; ///< planes of the ray pattern that its rays have crossed before the first plane of this unit
 } UnitInfo;
 
-/// How planes lie in the volume: voxel (u, v) of plane p is
+/// Memory layout of planes in the volume. The index of voxel (u, v) of plane p is
 /// (firstU + u) * stepU + (firstV + v) * stepV + (firstP + p) * stepP.
 typedef struct
 {
@@ -108,62 +111,63 @@ typedef struct
   int firstU, firstV, firstP;
   int stepU, stepV, stepP;
   int width;
-  int block;    ///< planes packed at once: 1 where rows are contiguous in memory, else a vector's worth
-  int together; ///< planes packed before any of them is crossed: a multiple of those
-  int chained;  ///< of them, that a bundle crosses row by row one behind the other
-  int tile;     ///< rows of those that bundles cross in turns; 0: each crosses all of them
-  float vacuum; ///< 1/length, least sigma_t, in place of 0: exp(-tau) is 1 in float
-  float thin;   ///< 1/length, below which meanLength holds on all segments
+  int block;    ///< planes packed at once: 1 if rows are contiguous in memory, else the vector width
+  int together; ///< planes packed before any of them is crossed: a multiple of `block`
+  int chained;  ///< planes of `together` that form a chain, which a bundle crosses row by row
+  int tile;     ///< rows in a tile, which bundles cross in turn; 0: each bundle crosses all rows
+  float vacuum; ///< 1/length, smallest sigma_t, used instead of 0: exp(-tau) is 1 in float
+  float thin;   ///< 1/length, extinction below which the polynomial `meanLength` holds on all segments
   float meanLength[MeanLengthTerms];
 } PlaneInfo;
 
-/// Path of the medium's own light in the voxel where it starts, per unit of source: the sum over segments of
-/// power (l - p1) / sigma (numerics.md, Eq. (26)).
+/// Path of emitted and scattered light within its voxel of origin, per unit of source: the sum over segments of power
+/// (l - p1) / sigma (numerics.md, Eq. (26)).
 typedef struct
 {
-  float length;                 ///< sum of power l
-  float terms[MeanLengthTerms]; ///< where the voxel is thin, the whole sum as a polynomial of sigma / PlaneInfo::thin
+  float length;                 ///< sum over segments of power l
+  float terms[MeanLengthTerms]; ///< for a thin voxel, the whole sum as a polynomial in sigma / PlaneInfo::thin
 } OwnLightInfo;
 
-/// Where the cells of the box's faces are (BoxFaces.h): of the faces -u, +u, -v, +v cell `i` of a row of plane p, along
-/// the other of u and v, is first + p * plane + i * along.
+/// Memory layout of the cells of the box's faces (BoxFaces.h). For the faces -u, +u, -v, +v: cell `i` of a row of plane
+/// p, along the other of u and v, has the index first + p * plane + i * along.
 typedef struct
 {
   int first[4], plane[4], along[4];
-  ulong firstChannel, stride; ///< where the first channel begins, and the way to the next
-  ulong unit;                 ///< values of one unit's own cells, where it spreads: units cross planes side by side
-  int out;                    ///< 1: the power that leaves through each cell is wanted
-  int spread;                 ///< 1: of each ray, in all cells that it stands for; where out
-  int in;                     ///< 1: light comes in by cells, besides that which is the same for a whole face
+  ulong firstChannel, stride; ///< index of the first channel's first cell; cells from one channel to the next
+  ulong unit;                 ///< values in one unit's own copy of the cells, if `spread`: units run concurrently
+  int out;                    ///< 1: the power that leaves through each cell is counted
+  int spread;                 ///< 1: that power is spread over all cells that the ray represents; used if `out`
+  /// 1: incident light is given by cells, in addition to that which is uniform over each face
+  int in;
 } FaceInfo;
 
 /// A launch of the kernel `sweep`.
 typedef struct
 {
-  ulong sigmaFirst; ///< where the channel begins in sigma
-  /// Where it begins in the other volumes (flux: three times, currents: six times that), and the way from one channel
-  /// to the next.
+  ulong sigmaFirst; ///< index of the channel's first value in sigma
+  /// Index of its first value in the other volumes (in the flux three times, in the currents six times this index), and
+  /// floats from one channel to the next.
   ulong first, stride;
-  ulong mapsEachWay; ///< floats of the maps of one way along the axis
+  ulong mapsEachWay; ///< floats of the maps for one way along the axis
   uint outsideEachWay, radianceEachWay, coefficientsEachWay;
-  int empty;     ///< 1: the maps hold nothing yet, and are cleared where rays start
-  int shines;    ///< 1: the medium does (emission or scattered light)
-  int border;    ///< 1: light comes in through the faces that rays pass sideways
-  int roundAxis; ///< 1: rays go round the axis: planes are added to many times, and what rounding loses is kept
+  int empty;     ///< 1: the maps are uninitialised and are cleared where rays start
+  int shines;    ///< 1: the medium has a source (emission or scattered light)
+  int border;    ///< 1: light is incident on the faces that rays pass sideways
+  int roundAxis; ///< 1: rays wrap around the axis: planes are added to many times, with compensated summation
   int periodicU, periodicV; ///< 1: the box is periodic along u, along v
   int bundles;
-  int patternPlanes; ///< planes of the ray pattern
+  int patternPlanes; ///< number of planes of the ray pattern
   int launch;        ///< row of the schedule
   int axis;
   PlaneInfo planes;
   FaceInfo faces;
   MomentPlaces moments;
-  int sizeY;          ///< voxels of the grid along y, or of a slot
-  int momentsInPlace; ///< 1: they are read and added to where they are; 0: they are packed like the rest of a plane
+  int sizeY;          ///< extent along y of the grid or, if streamed, of a slot, voxels
+  int momentsInPlace; ///< 1: moments are read and added to in place; 0: they are packed like the rest of a plane
   int packedMoments;  ///< floats of a packed row of moments
-  int parityEnds[4];  ///< where those of each parity end among the angular functions (SweepLayout.cl)
+  int parityEnds[4];  ///< end of each parity's range of angular functions (SweepLayout.cl)
   int firstChannel;
-  int streamed;               ///< 1: slices of the volumes are in slots (SliceStream.h)
-  ulong sourceSlot, pathSlot; ///< floats of a slot of source and of path, where streamed
+  int streamed;               ///< 1: the volumes are streamed in slices through slots (SliceStream.h)
+  ulong sourceSlot, pathSlot; ///< floats of a slot of source and of path, if streamed
 } SweepInfo;
 SHARED_END

@@ -8,30 +8,31 @@
 
 namespace tyndall
 {
-/// Channels that share one sigma_t, with the light that is found in them, on the device while a solver runs. Every
-/// array is laid out as VolumeLayout says.
+/// The channels that share one sigma_t, with the arrays of their light, on the device during a solve. Every array has
+/// the layout of VolumeLayout.
 struct SweepVolume
 {
   Grid grid;
-  VoxelBox box;     ///< the part that is swept: rays start at its faces, where they would have come in; empty: all
+  /// The part that is swept; rays start at its faces, where they would have entered; empty: the whole grid
+  VoxelBox box;
   int channels = 1; ///< 1 or 3 that share one sigma_t
   std::size_t stride = 0;
   const AngularValues* angular = nullptr; ///< as in SweepRequest
   const Buffer<float>* sigma_t = nullptr; ///< 1/length
-  std::size_t sigma_t_first = 0;          ///< where its channel begins
-  const Buffer<float>* source = nullptr;  ///< W / (length^3 sr); null: the medium is dark
+  std::size_t sigma_t_first = 0;          ///< index of the channel's first value
+  const Buffer<float>* source = nullptr;  ///< W / (length^3 sr); null: no source
   Deposit deposit;
-  /// Where the first channel of source and path begins (flux: three times that, partialCurrents and firstMoments: six
-  /// times).
+  /// Index of the first channel's first value in source and path (in flux three times this index, in partialCurrents
+  /// and firstMoments six times).
   std::size_t first = 0;
   const Buffer<float>* faceIn = nullptr;       ///< as in SweepRequest
-  const Buffer<float>* octantSource = nullptr; ///< the same
-  std::size_t faceFirst = 0;                   ///< where the first channel of faceIn and faceOut begins
+  const Buffer<float>* octantSource = nullptr; ///< as in SweepRequest
+  std::size_t faceFirst = 0;                   ///< index of the first channel's first value in faceIn and faceOut
   int firstChannel = 0;
-  MomentPlaces moments = {}; ///< of source and path, where light has angular moments
+  MomentPlaces moments = {}; ///< layout of the moments of source and path, if there are angular moments
 };
 
-/// The channels of a group as a sweep sees them, without source.
+/// The volume of a group of channels, without source.
 inline SweepVolume GroupVolume(
   const VolumeLayout& layout, const ChannelGroup& group, const Buffer<float>& sigma_t, const Deposit& deposit)
 {

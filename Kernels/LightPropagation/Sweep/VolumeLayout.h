@@ -11,32 +11,34 @@
 
 namespace tyndall
 {
-/// The widest vector of any kernel, floats.
+/// Width of the widest vector in any kernel, floats.
 constexpr std::size_t SweepPadding = 16;
 
-/// Channels that share one sigma_t: they are swept together.
+/// Channels that share one sigma_t and are swept together.
 struct ChannelGroup
 {
   int first = 0;
   int count = 1;
 };
 
-/// How arrays over voxels lie in the device's memory: [channel][stride] with voxels x fastest; the stride is the voxel
-/// count rounded up to whole vectors, what is beyond the voxels is zero. Buffers are SweepPadding floats longer: a
-/// vector that begins in them may be read whole.
+/// Memory layout of arrays over voxels on the device: [channel][stride], voxels x fastest. The stride is the voxel
+/// count rounded up to whole vectors; the padding is zero. Buffers are SweepPadding floats longer, so that a full
+/// vector may be read from any position in them.
 struct VolumeLayout
 {
   Grid grid;
   int channels = 1;
-  bool sharedExtinction = true; ///< of all channels; else each has its own, and there are three
+  /// One extinction for all channels; false: three channels, each with its own extinction
+  bool sharedExtinction = true;
 
   std::size_t Stride() const { return (this->grid.VoxelCount() + SweepPadding - 1) / SweepPadding * SweepPadding; }
-  std::size_t Values() const { return this->channels * this->Stride(); } ///< of one quantity
-  /// Floats of an array of `parts` values a voxel and channel, with what vectors may read beyond it.
+  /// Floats of one quantity, without padding at the end
+  std::size_t Values() const { return this->channels * this->Stride(); }
+  /// Floats of an array with `parts` values per voxel and channel, including the padding that vectors may read.
   std::size_t Floats(int parts = 1) const { return this->FloatsOf(parts * this->channels); }
-  /// The same of so many channels.
+  /// The same for `channelCount` channels.
   std::size_t FloatsOf(int channelCount) const { return channelCount * this->Stride() + SweepPadding; }
-  /// Where angular moments lie, of arrays that have some.
+  /// Layout of an array with angular moments.
   MomentPlaces Places(int functions) const
   {
     const std::size_t groups = (this->grid.size[0] + MomentGroup - 1) / MomentGroup;
@@ -54,13 +56,13 @@ struct VolumeLayout
   {
     return MOMENT_PLACE(places, function, channel, voxel / places.sizeX, voxel % places.sizeX);
   }
-  /// Channel of a value of such an array, but of beams.
+  /// Channel of the value at index `at` of such an array; not for beams.
   int ChannelOf(const MomentPlaces& places, std::size_t at) const
   {
     const std::size_t ofRow = static_cast<std::size_t>(places.groups) * (places.functions - 1) * MomentGroup;
     return static_cast<int>(at < places.second ? at / this->Stride() : (at - places.second) / ofRow % this->channels);
   }
-  /// Floats of an array with angular moments and beams.
+  /// Floats of an array with angular moments and beams, including padding.
   std::size_t MomentFloats(int functions, int beams = 0) const
   {
     return this->Places(functions).beams + this->Floats(beams);
@@ -74,8 +76,8 @@ struct VolumeLayout
   }
 };
 
-/// A quantity of voxel and channel, value(voxel, channel), to `values` in that layout with `channels` channels; zero
-/// beyond the voxels. `value` is called from several threads.
+/// Writes value(voxel, channel) to `values` in this layout with `channels` channels, zero in the padding. `value` is
+/// called from several threads.
 template <class Value>
 void WritePlanar(const VolumeLayout& layout, int channels, const Value& value, float* values)
 {
@@ -93,7 +95,7 @@ void WritePlanar(const VolumeLayout& layout, int channels, const Value& value, f
   std::fill_n(values + channels * stride, SweepPadding, 0.0f);
 }
 
-/// The same as a new array.
+/// Like WritePlanar, into a new array.
 template <class Value>
 std::vector<float> Planar(const VolumeLayout& layout, int channels, const Value& value)
 {
@@ -102,8 +104,8 @@ std::vector<float> Planar(const VolumeLayout& layout, int channels, const Value&
   return values;
 }
 
-/// The same on a device, without a copy on a CPU.
-/// @param what  it is, as Buffer has it
+/// Like WritePlanar, into a new device buffer; on a CPU device without a copy.
+/// @param what  name of the quantity, see Buffer
 template <class Value>
 Buffer<float> PlanarOnDevice(
   Device& device, const VolumeLayout& layout, int channels, const Value& value, const char* what)
@@ -113,7 +115,7 @@ Buffer<float> PlanarOnDevice(
   return values;
 }
 
-/// The voxels' values of such an array, times `scale`, the `parts` values of a voxel (channels, times components) side
-/// by side.
+/// The voxels' values of a planar array times `scale`, interleaved: the `parts` values of a voxel (channels times
+/// components) are adjacent.
 std::vector<float> Interleaved(const VolumeLayout& layout, const Buffer<float>& planar, double scale);
 }

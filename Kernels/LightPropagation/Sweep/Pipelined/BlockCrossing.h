@@ -15,8 +15,8 @@ namespace tyndall
 struct RaysAtFaces
 {
   std::vector<float> maps; ///< rays at the end of the marching axis, in the layout of BlockCrossing
-  std::vector<float>
-    sides; ///< rays at the other faces, [plane in the order of the march][ray][cell], see SweepSides.cl
+  /// Rays at the other faces, [plane in the order of the march][ray][cell], see SweepSides.cl
+  std::vector<float> sides;
 };
 
 /// Scratch memory shared by the sweeps of one rank. Contents are undefined between sweeps.

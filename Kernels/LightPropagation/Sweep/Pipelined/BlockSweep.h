@@ -60,8 +60,8 @@ public:
   void Pack(const BlockContact& contact, const RaysAtFaces& out, std::vector<float>& message) const;
   void Unpack(const BlockContact& contact, const std::vector<float>& message, std::size_t& at, RaysAtFaces& in) const;
 
-  std::size_t Values(
-    const std::vector<BlockContact>& contacts) const; ///< number of values in the messages of incoming rays
+  /// Number of values in the messages of incoming rays.
+  std::size_t Values(const std::vector<BlockContact>& contacts) const;
   int Axis() const { return this->Bundles.axis; }
   std::size_t Bytes() const; ///< host memory of the rays at faces, in and out
 
@@ -73,8 +73,8 @@ private:
   Light LightOf(const SweepBoundary& boundary, std::size_t bundle, const Member& member) const;
   int DirectionOf(const Member& member) const;
   void LayPattern();
-  bool IsAtEnd(
-    int axis, bool entry) const; ///< whether the block's face where rays enter, or leave, is a face of the domain
+  /// Whether the block's face where rays enter, or leave, is a face of the domain.
+  bool IsAtEnd(int axis, bool entry) const;
   bool IsOuter(int axis, bool entry) const { return !this->Periodic[axis] && this->IsAtEnd(axis, entry); }
   template <class Act>
   void ForRaysFrom(const SweepBoundary& boundary, const Act& act) const;
