@@ -7,37 +7,39 @@
 
 namespace tyndall
 {
-/// Functions of direction in which the light of a voxel is gathered and scattered: real spherical harmonics up to a
-/// degree, made orthonormal on a set of directions (numerics.md, section 4.7). So the sums over the set that stand for
-/// integrals are exact where it matters: what is scattered adds up to what there was, and its mean direction is the
-/// mean cosine times that of what came, to rounding, on every set.
+/// Angular basis in which the light of a voxel is expanded and scattered: real spherical harmonics up to a degree,
+/// orthonormalised on a quadrature (numerics.md, section 4.7). Quadrature sums therefore conserve exactly, to rounding
+/// and on every quadrature, the power that is scattered, and the mean direction of scattered light is the mean cosine
+/// times that of the incident light.
 ///
-/// Function i of degree l has i from l^2 to (l + 1)^2 - 1; function 0 is 1, functions 1, 2, 3 are sqrt(3) times y, z,
-/// x. Their squares average to 1 over all directions. Each is even or odd along each axis.
+/// Functions of degree l have indices from l^2 to (l + 1)^2 - 1. Function 0 is 1; functions 1, 2, 3 are sqrt(3) times
+/// y, z, x. The square of each averages to 1 over all directions. Each is even or odd along each axis.
 class AngularBasis
 {
 public:
-  /// @param degree  L, at most MostDegree of the set
+  /// @param degree  L; at most MostDegree(set)
   AngularBasis(const DirectionSet& set, int degree);
 
   int Degree() const { return this->L; }
   int Count() const { return (this->L + 1) * (this->L + 1); }
   static int DegreeOf(int function); ///< l
   static int OrderOf(int function);  ///< m, from -l to l
-  /// Whether a function changes its sign where x, y, z does.
+  /// Whether a function is odd in x, y, z.
   static std::array<bool, 3> IsOdd(int function);
 
-  /// [function][harmonic]: the functions as sums of spherical harmonics whose squares average to 1.
+  /// [function][harmonic]: coefficients of the functions in spherical harmonics, normalised so that their squares
+  /// average to 1.
   std::vector<double> Matrix() const;
-  /// All functions in a direction, that of the set or any other. @param omega  a unit vector
+  /// Values of all functions in any direction, of the set or not. @param omega  unit vector
   std::vector<double> At(const std::array<double, 3>& omega) const;
 
 private:
   int L;
-  /// Row i: function i as a sum of the spherical harmonics of its own parity, 0 to i.
+  /// Row i: coefficients of function i in the spherical harmonics 0 to i of the same parity.
   std::vector<std::vector<double>> Rows;
 };
 
-/// The largest degree, at most `wanted`, whose functions a set of directions tells apart well.
+/// Largest degree, at most `wanted`, up to which the functions are well-conditioned (linearly independent) on the
+/// quadrature.
 int MostDegree(const DirectionSet& set, int wanted);
 }

@@ -12,8 +12,8 @@
 
 namespace tyndall
 {
-/// A set of directions as the bundles of rays that sweep a box along each axis. Where mirror images carry the same
-/// light, one direction stands for all of them.
+/// A quadrature with its rays, as bundles that sweep a box along each axis. If mirror images of a direction carry the
+/// same light, only one direction of each class is swept.
 class SweptDirections
 {
 public:
@@ -21,18 +21,19 @@ public:
 
   const DirectionSet& Set() const { return this->Directions; }
   RayStarts Starts() const { return this->WhereRaysStart; }
-  int RaysPerEdge() const { return this->MapResolution; } ///< of a voxel
+  int RaysPerEdge() const { return this->MapResolution; } ///< rays per edge of a voxel
   const DirectionSymmetry& Symmetry() const { return this->Mirrors; }
-  bool MergesMirrors() const { return this->Merges; } ///< not where net flux is asked for, which differs
-  /// Functions along the directions; of those that stand for others the mean over all of them.
+  /// Whether equivalent directions are merged; not if the net flux is requested, which differs between mirror images
+  bool MergesMirrors() const { return this->Merges; }
+  /// Angular functions in the directions; for a representative direction, the mean over its class.
   AngularValues Values(const AngularBasis& basis) const;
-  /// The mean, over all that a direction stands for, of values of directions.
+  /// Mean of `values` ([direction]) over the class that `direction` represents.
   double Mean(int direction, const std::vector<double>& values) const;
-  /// Those that `direction` stands for, itself among them.
+  /// The directions that `direction` represents, including itself.
   std::vector<int> AllOf(int direction) const;
 
   std::vector<Bundle> Along(int axis) const;
-  /// One way (0 forward, 1 backward), the lit ones alone.
+  /// Bundles along `axis` that march one way (0 forward, 1 backward), restricted to directions for which isLit is true.
   std::vector<Bundle> LitAlong(int axis, int way, const std::function<bool(int)>& isLit) const;
 
 private:

@@ -8,22 +8,24 @@
 
 namespace tyndall
 {
-/// A plane-parallel slab with its layers along x: rows of voxels are then as long as the slab, where rows of one voxel
-/// fill a tenth of a vector, and a slab of 1024 layers along z takes twenty times as long. Axes are renamed in their
-/// cyclic order, so arrays over the voxels, and over the cells of one face, stay as they are.
+/// Permutes the axes of a plane-parallel slab so that its layers are along x. Rows of voxels are then as long as the
+/// slab; rows of one voxel would fill only a tenth of a vector, and a slab of 1024 layers along z takes twenty times as
+/// long. Axes are permuted cyclically, so arrays over the voxels, and over the cells of one face, stay unchanged in
+/// memory.
 class AxisPermutation
 {
 public:
-  /// Of slabs along y and z (UnvaryingAxes.h) that no environment shines on: its pixels know only one up.
+  /// Permutes only slabs along y or z (UnvaryingAxes.h) without an environment, whose pixels have a fixed up direction;
+  /// otherwise converts to false.
   AxisPermutation(const Grid& grid, const Illumination& illumination, const PropagationSettings& settings);
 
   explicit operator bool() const { return this->Along != 0; }
 
-  Medium Of(const Medium& medium) const; ///< sees the same arrays
+  Medium Of(const Medium& medium) const; ///< the permuted medium; it refers to the same arrays
   Illumination Of(const Illumination& illumination) const;
   PropagationSettings Of(const PropagationSettings& settings) const;
 
-  /// The light of the turned scene as that of the scene as it stands.
+  /// Converts the light of the permuted scene back to the original axes. @param grid  of the original scene
   void Undo(LightField& light, const Grid& grid) const;
 
 private:
@@ -35,6 +37,6 @@ private:
   void TurnBackCells(std::vector<float>& values, const Grid& grid) const;
   void TurnBackMoments(LightField& light, const Grid& grid) const;
 
-  int Along = 0; ///< axis of the layers
+  int Along = 0; ///< axis of the layers in the original scene; 0: no permutation
 };
 }

@@ -9,8 +9,9 @@
 
 namespace tyndall
 {
-/// A scene on a coarser grid over the same box, with arrays of its own: coefficients are means over the coarse voxels,
-/// g weighted by sigma_s; of light that is given by voxel the power that the medium takes is kept.
+/// A scene averaged to a coarser grid over the same box, with its own arrays. Coefficients are means over the coarse
+/// voxels, g weighted by sigma_s. Uncollided light that is given by voxel is averaged so that the power the medium
+/// takes from it is conserved.
 class CoarseScene
 {
 public:

@@ -7,25 +7,26 @@
 
 namespace tyndall
 {
-/// What angular moments scatter from one direction into another, as sweeps along a set of directions have it
-/// (numerics.md, section 2.3): the moments of a forward peak make it negative here and there.
+/// Discrete phase function: the scattering between the directions of a quadrature that a series of angular moments
+/// gives (numerics.md, section 2.3). For a truncated forward peak it is negative for some pairs of directions.
 class DirectionKernel
 {
 public:
-  /// @param degree  of the moments, at most MostDegree of the set
+  /// @param degree  degree of the moments, at most MostDegree(set)
   DirectionKernel(const DirectionSet& set, int degree);
 
-  /// The least that is scattered into any direction of the set, from any of it or from between them, the mean over all
-  /// being 1.
-  /// @param moments  0 to the degree, or fewer
+  /// Minimum of the phase function (mean 1) for scattering into any direction of the set, from any direction of the set
+  /// or between them.
+  /// @param moments  moments 0 to the degree, or fewer
   double Least(const std::vector<double>& moments) const;
 
 private:
   int Degrees;
-  std::vector<float> Parts; ///< [pair of directions][degree]: what a moment of 1 adds
+  std::vector<float> Parts; ///< [pair of directions][degree]: contribution of a moment of 1
 };
 
-/// The same truncation where nothing is negative, else one whose moments of degree l are smaller by exp(-s l (l + 1)),
-/// with the least s of which nothing is. What goes straight on becomes such that the mean cosine stays.
+/// Returns `truncated` unchanged if its phase function is nowhere negative on the quadrature. Otherwise multiplies
+/// moments of degree l by exp(-s l (l + 1)), with the smallest s that removes negative values; the unscattered part is
+/// adjusted so that the mean cosine is unchanged.
 DeltaM WithoutNegatives(const DeltaM& truncated, const DirectionKernel& kernel);
 }

@@ -10,14 +10,14 @@
 
 namespace tyndall
 {
-/// A scene in voxels of half the edge, with arrays of its own: the same medium, solved more exactly. An axis of a
-/// single voxel that is periodic stays one: nothing varies along it.
+/// A scene refined to voxels of half the edge, with its own arrays: the same medium, for a more accurate solve. A
+/// periodic axis of a single voxel is not refined, because nothing varies along it.
 class DividedScene
 {
 public:
   DividedScene(const Medium& medium, const Illumination& illumination, const std::array<bool, 3>& periodic);
-  /// Of a part of a scene.
-  /// @param whole  the grid of all
+  /// Refines one part (block) of a scene.
+  /// @param whole  grid of the whole scene
   DividedScene(
     const Medium& part, const Illumination& illumination, const std::array<bool, 3>& periodic, const Grid& whole);
   DividedScene(const DividedScene&) = delete;
@@ -25,12 +25,12 @@ public:
 
   const Medium& TheMedium() const { return this->Divided; }
   const Illumination& Shining() const { return this->Light; }
-  double Parts() const; ///< voxels that each is divided into
-  /// The same blocks in divided voxels.
-  /// @param given  of the whole
+  double Parts() const; ///< number of refined voxels per voxel
+  /// The same partition, in refined voxels.
+  /// @param given  partition of the whole scene
   BlockPartition BlocksOf(const BlockPartition& given) const;
 
-  /// Light of the divided scene as that of the scene: means over its voxels, and over the cells of all of the box's
+  /// Averages the light of the refined scene to the voxels of the original scene, and to the cells of all of the box's
   /// faces.
   void Undo(LightField& light) const;
 
@@ -38,10 +38,10 @@ private:
   Field Repeated(const Field& field);
   void UndoCells(std::vector<float>& values) const;
 
-  Grid Whole, Given; ///< of all, and of the part
+  Grid Whole, Given; ///< grids of the whole scene and of the part, not refined
   std::array<int, 3> Along;
   Medium Divided;
   Illumination Light;
-  std::vector<std::vector<float>> Arrays; ///< that the scene sees
+  std::vector<std::vector<float>> Arrays; ///< owned by this object; the refined scene refers to them
 };
 }

@@ -7,15 +7,15 @@
 
 namespace tyndall
 {
-/// A medium's coefficients as kernels read them, 1/length, laid out as VolumeLayout says: sigma_t and sigma_s without
-/// what is scattered straight on (TruncatedScattering.h).
+/// A medium's coefficients on the device, 1/length, in the layout of VolumeLayout. sigma_t and sigma_s exclude light
+/// that is treated as unscattered (TruncatedScattering.h).
 class MediumOnDevice
 {
 public:
   /// Which coefficients get arrays of their own.
   struct Needs
   {
-    bool sigma_s; ///< false where it is never read, or equals sigma_t
+    bool sigma_s; ///< false if it is never read or equals sigma_t
     bool sigma_a;
   };
   MediumOnDevice(Device& device, const Medium& medium, const TruncatedScattering& scattering,
@@ -23,10 +23,11 @@ public:
 
   const Buffer<float>& SigmaT() const { return this->Extinction; }
   const Buffer<float>& SigmaS() const { return this->Scattering.Size() > 0 ? this->Scattering : this->Extinction; }
-  const Buffer<float>& SigmaA() const { return this->Absorption; } ///< empty where it was not asked for
-  /// sigma_s of each degree (TruncatedScattering.h), [degree][channel][stride]; empty where all is isotropic.
+  const Buffer<float>& SigmaA() const { return this->Absorption; } ///< empty if not requested
+  /// sigma_s of each degree (TruncatedScattering.h), [degree][channel][stride]; empty if all scattering is isotropic.
   const Buffer<float>& SigmaOfDegrees() const { return this->OfDegrees; }
-  /// sigma_a and sigma_s (1 - g): what light diffuses with. As SigmaT() where all is isotropic.
+  /// Transport extinction sigma_a + sigma_s (1 - g), used by the diffusion correction. The same as SigmaT() if all
+  /// scattering is isotropic.
   const Buffer<float>& TransportSigmaT() const
   {
     return this->Transport.Size() > 0 ? this->Transport : this->Extinction;

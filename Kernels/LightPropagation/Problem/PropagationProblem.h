@@ -19,22 +19,23 @@
 
 namespace tyndall
 {
-/// A scene as it is solved: in units of length and of power that floats hold well, wide along axes on which nothing
-/// changes, with as many channels as it needs. Each rank has the medium of its block; all that a solve decides by
-/// (traits, channels, degree of the moments) is of the whole domain. Made once from what the user gave; Undo() turns
-/// the light that was found back into what the user asked for.
+/// The scene as it is solved: in units of length and power that floats represent well, widened along axes on which
+/// nothing varies, and with as few channels as needed. Each rank has the medium of its block; everything that decisions
+/// are based on (traits, channels, degree of the moments) refers to the whole domain. Made once from the user's input;
+/// Undo() converts the resulting light back.
 class PropagationProblem
 {
 public:
   /// Collective.
-  /// @param domain  of the grid as it is given
-  /// @param medium  of this rank's block, with its grid; of a block without voxels nothing else is read
-  /// @param medium, illumination  their arrays must stay
-  /// @throws InvalidInput what Check() above throws
-  /// @param memory  of this rank, for angular moments, where the settings leave open how many
+  /// @param domain  domain of the grid as given by the user
+  /// @param medium  medium of this rank's block, with its grid; of a block without voxels only the grid is read
+  /// @param medium, illumination  their arrays must outlive this object
+  /// @throws InvalidInput  as Check() in SceneChecks.h
+  /// @param memory  memory of this rank's device, which limits the degree of angular moments if the settings leave it
+  /// open
   PropagationProblem(const Domain& domain, const Medium& medium, const Illumination& illumination,
     const PropagationSettings& settings, const DeviceMemory& memory = {});
-  /// Of a serial domain.
+  /// Problem on a serial domain.
   PropagationProblem(const Medium& medium, const Illumination& illumination, const PropagationSettings& settings,
     const DeviceMemory& memory = {})
     : PropagationProblem(Domain(medium.grid), medium, illumination, settings, memory)
@@ -44,23 +45,24 @@ public:
   PropagationProblem& operator=(const PropagationProblem&) = delete;
 
   const Domain& TheDomain() const { return this->Solving; }
-  const Grid& Whole() const { return this->Solving.Whole(); } ///< the domain's grid
+  const Grid& Whole() const { return this->Solving.Whole(); } ///< grid of the domain
   const Medium& TheMedium() const { return this->Solved; }
-  const Grid& TheGrid() const { return this->Solved.grid; }                  ///< of this rank's block
-  const MediumTraits& Traits() const { return this->TheTraits; }             ///< `filled` alone is of this rank's block
-  const TruncatedScattering& Scattering() const { return *this->Truncated; } ///< as sweeps carry it
+  const Grid& TheGrid() const { return this->Solved.grid; } ///< grid of this rank's block
+  /// Of the whole domain, except `filled`, which is of this rank's block
+  const MediumTraits& Traits() const { return this->TheTraits; }
+  const TruncatedScattering& Scattering() const { return *this->Truncated; } ///< scattering as the sweeps treat it
   const Illumination& Shining() const { return this->SolvedLight; }
   const PropagationSettings& Settings() const { return this->TheSettings; }
   int Channels() const { return this->ChannelCount; } ///< 1 or 3
-  /// Uncollided light is given by voxel.
+  /// Whether uncollided light is an input, given by voxel.
   bool HasGivenLight() const { return this->Given; }
-  /// The scattered light of a voxel is taken as linear across it, not as constant as published.
+  /// Whether the source is linear within a voxel; false: constant, as in the published scheme.
   bool HasLinearSource() const { return this->TheSettings.source != PropagationSource::Constant; }
-  /// The medium scatters, or nothing is to be left out.
+  /// Whether scattering is computed: the medium scatters, or the settings forbid leaving out computations.
   bool ComputesScattering() const { return !this->TheSettings.leaveOut || this->TheTraits.scatters; }
   bool IsSlab() const { return this->Unvarying.IsSlab(); }
 
-  /// To the user's units, channels and voxels; says in leftOut what was left out.
+  /// Converts light to the user's units, channels and voxels, and reports simplifications in light.leftOut.
   void Undo(LightField& light) const;
 
 private:
@@ -69,10 +71,10 @@ private:
   void Truncate(const DeviceMemory& memory);
 
   UnvaryingAxes Unvarying;
-  Domain Solving; ///< in the unit of length
+  Domain Solving; ///< domain in the solver's unit of length
   PropagationSettings TheSettings;
   int DirectionsAskedFor;
-  double Narrowing = 1.0; ///< volume of a voxel over that which is solved
+  double Narrowing = 1.0; ///< volume of a voxel divided by that of the widened voxel
   double LengthUnit = 1.0, PowerUnit = 1.0;
   std::optional<SceneInLengths> InLengths;
   std::optional<SceneInUnits> InUnits;

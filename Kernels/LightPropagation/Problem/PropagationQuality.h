@@ -11,32 +11,32 @@
 
 namespace tyndall
 {
-/// Settings of a quality for a scene: directions, those of unscattered light, where rays start, tolerance and the error
-/// of bright emission, as far as `settings` has them at their default values. What the levels cost and how exact they
-/// are was measured (measurements.md).
+/// Settings for a quality level and a scene: number of directions, also for uncollided light, where rays start,
+/// tolerance, and the error of bright emission. Only settings at their default values are changed. Cost and accuracy of
+/// the levels were measured (measurements.md).
 ///
-/// Of the scene it matters whether light comes in through faces, sky or environment (only then has unscattered light
-/// finer directions), whether anything is scattered (else the directions are those of unscattered light), and whether
-/// the box is so thick that scattered light hardly depends on directions.
+/// The result depends on whether light is incident through faces, from a sky or an environment (only then uncollided
+/// light has finer directions), whether anything scatters (else the directions are those of uncollided light), and
+/// whether the box is so thick that scattered light is nearly isotropic.
 PropagationSettings AtQuality(
   Quality quality, PropagationSettings settings, const Medium& medium, const Illumination& illumination);
 
-/// What of a scene that matters for.
+/// Properties of a scene that a quality level depends on.
 struct SceneOfQuality
 {
-  bool isLit = false;     ///< through the box's faces
-  bool scatters = false;  ///< the medium does
-  double thickness = 0.0; ///< mean free paths across the box, in the mean
+  bool isLit = false;     ///< light is incident through the box's faces
+  bool scatters = false;  ///< the medium scatters
+  double thickness = 0.0; ///< mean optical thickness of the box
 };
 PropagationSettings AtQuality(Quality quality, PropagationSettings settings, const SceneOfQuality& scene);
-bool Scatters(const Medium& medium); ///< in any voxel
+bool Scatters(const Medium& medium); ///< whether any voxel scatters
 
-/// "Name = value" of each setting that a quality may choose.
+/// "Name = value" for each setting that a quality level may choose.
 std::vector<std::string> Words(const PropagationSettings& settings);
-/// The same as SolveConservative used them for the light: more directions, where a slab needs them (UnvaryingAxes.h),
-/// and the uncollidedDirections that were chosen, 0 where no light came along them. Layers that were solved in the
-/// cosine alone used none of these settings, but "PolarNodes = value".
+/// The same with the values that SolveConservative used for `light`: more directions if a slab needs them
+/// (UnvaryingAxes.h), and the chosen uncollidedDirections, 0 if no light used them. Layers solved in the polar cosine
+/// only used none of these settings; the result is then "PolarNodes = value".
 std::vector<std::string> Words(PropagationSettings settings, const LightField& light);
-/// Those that the published scheme uses.
+/// The settings that the published scheme uses.
 std::vector<std::string> WordsAsPublished(const PropagationSettings& settings);
 }

@@ -8,15 +8,15 @@
 
 namespace tyndall
 {
-/// What tells how often the light of one channel is scattered.
+/// Properties of one channel from which the number of scattering orders is estimated.
 struct ScatteringOfChannel
 {
-  ThickLines diffusing; ///< as light diffuses
-  ThickLines swept;     ///< as sweeps carry it; not looked at without angular moments
-  double albedo = 0.0;  ///< of what is scattered as sweeps carry it, in the mean
+  ThickLines diffusing; ///< thickness for diffusing light (transport extinction)
+  ThickLines swept;     ///< thickness in the extinction that the sweeps use; unused without angular moments
+  double albedo = 0.0;  ///< mean albedo, in the coefficients that the sweeps use
 };
 
-/// The same of a whole scene.
+/// Properties of a scene from which the number of scattering orders is estimated.
 struct ScatteringOfScene
 {
   Grid grid;
@@ -24,41 +24,42 @@ struct ScatteringOfScene
   std::array<Rgb, 6> faceAlbedo = {};
   int degree = 0; ///< of angular moments
   bool isSlab = false;
-  double thickest = 0.0; ///< extinction of a voxel as sweeps carry light, 1/length, of all channels
+  double thickest = 0.0; ///< largest extinction of any voxel and channel that the sweeps use, 1/length
   std::vector<ScatteringOfChannel> channels;
 };
-/// Collective, as all that is asked of a problem here.
+/// Collective, as are all functions here that take a problem.
 ScatteringOfScene ScatteringOf(const PropagationProblem& problem);
 
-/// Scattering orders, as sweeps carry them, until 1e-4 is left, about: those of diffusion in a slab with extrapolated
-/// borders (numerics.md, Eq. (86)); thick lines of voxels stand for the slab.
+/// Estimated number of scattering orders (source iterations) until about 1e-4 of the light is left: the rate of
+/// diffusion in a slab with extrapolated boundaries (numerics.md, Eq. (86)), applied to thick lines of voxels.
 double OrdersNeeded(const ScatteringOfScene& scene);
 double OrdersNeeded(const PropagationProblem& problem);
 
-/// So many that adding them up one by one is forecast to take longer than acceleration: both in orders, by what set-up,
-/// sweeps and corrections were measured to take (`./run bench thick`).
+/// Whether source iteration is predicted to take longer than an accelerated solve. Costs of set-up, sweeps and
+/// corrections were measured (`./run bench thick`).
 bool ScatteredManyTimes(const ScatteringOfScene& scene);
 bool ScatteredManyTimes(const PropagationProblem& problem);
 
-/// How the fluence of all scattering orders is found.
+/// Iteration scheme for the fluence of all scattering orders.
 enum class IterationScheme
 {
-  SourceIteration, ///< one sweep a scattering order; Conservative/SourceIteration.h
-  CoarseMeshDsa,   ///< the same with a diffusion correction on cells of several voxels, for optically thin voxels
+  SourceIteration, ///< one sweep per scattering order; Conservative/SourceIteration.h
+  /// Source iteration with a diffusion correction on cells of several voxels, for optically thin voxels
+  CoarseMeshDsa,
   Dsa, ///< diffusion synthetic acceleration on the voxels; Conservative/Acceleration/DiffusionAcceleration.h
 };
-/// That a serial solve takes. Collective.
+/// Fastest scheme for a serial solve. Collective.
 IterationScheme FastestScheme(const PropagationProblem& problem);
-/// That a solve on the problem's domain takes: the fastest that it has. Collective.
+/// Fastest scheme available on the problem's domain. Collective.
 IterationScheme ChooseIterationScheme(const PropagationProblem& problem);
-/// Whether settings let it depend on the scene, or ask for acceleration.
+/// Whether the settings request acceleration, or let it depend on the scene.
 bool MayBeAccelerated(const PropagationSettings& settings, bool scatters);
 
-/// Of how many voxels cells are to be along each axis, 2^this, for these to be about a mean free path wide at most
-/// where the medium is thickest; all 0: voxels are too thick for cells of several.
+/// Base-2 logarithm of the number of voxels per cell of coarse-mesh DSA along each axis, such that a cell is at most
+/// about one mean free path wide where the medium is thickest. All 0: voxels are too thick for cells of several voxels.
 std::array<int, 3> CellHalvings(const PropagationProblem& problem);
 /// @param thickest  the largest extinction, 1/length
 std::array<int, 3> CellHalvings(const Grid& grid, double thickest);
-/// Whether cells have several voxels along each axis that the grid has several along.
+/// Whether cells consist of several voxels along each axis on which the grid has more than one voxel.
 bool AreThinEnough(const Grid& grid, const std::array<int, 3>& halvings);
 }

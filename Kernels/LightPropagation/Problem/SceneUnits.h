@@ -7,59 +7,62 @@
 
 namespace tyndall
 {
-/// Units of power and length that the solver chooses (numerics.md, Eq. (85)). Light is linear in its power, but floats
-/// end at 3e38: rays carry W, path integrals W length. And they round: a scene is solved in a unit of power that has
-/// the digits of what shines in it, so that so many times the power is rounded alike, and solved by the same steps.
+/// Units of power and length chosen by the solver (numerics.md, Eq. (85)). Light is linear in its power, but floats
+/// overflow at 3e38 (rays carry W, path integrals W length) and round. The unit of power is proportional to the power
+/// of the sources, so that a scene with scaled power is rounded alike and solved by the same steps.
 
-/// What the unit of power is made of. Ranks take the largest of each: only what emits, or is given, differs on them.
+/// Quantities from which the unit of power is computed. Ranks take the maximum of each, since only emission and given
+/// uncollided light differ between them.
 struct AllThatShines
 {
-  double power = 0.0; ///< W, at most
-  double first = 0.0; ///< a light's power, else a radiance, else emission. 0: nothing shines, or light is given
+  double power = 0.0; ///< upper bound of the total power, W
+  /// A light's power; if there is none a radiance, then emission. 0: no source, or uncollided light is given
+  double first = 0.0;
 };
 
-/// @param medium  in all of the grid, or in a block of it
+/// @param medium  medium of the whole grid, or of a block
 AllThatShines ShiningOn(const Grid& grid, const Medium& medium, const Illumination& illumination);
 
-/// W to solve a scene in: from 1 to 2 where the power of all that shines is not far from that.
+/// Unit of power to solve a scene in, W; between 1 and 2 if the power of the sources is not far from that.
 double PowerUnitFor(const AllThatShines& all);
 
-/// A scene in another unit of power.
+/// A scene converted to another unit of power.
 struct SceneInUnits
 {
   SceneInUnits(const Medium& medium, const Illumination& illumination, double unit);
 
   std::vector<float> emission, uncollided;
-  Medium medium;             ///< sees `emission`
-  Illumination illumination; ///< sees `uncollided`
+  Medium medium;             ///< refers to `emission`
+  Illumination illumination; ///< refers to `uncollided`
 
 private:
   void TakeUncollided(double unit);
 };
 
-/// Light in units back to W.
-/// @throws InvalidInput where it is more than a float holds
+/// Converts light from the unit of power back to W.
+/// @throws InvalidInput  if a value overflows a float
 void ToWatts(LightField& light, double unit);
 
-/// Areas and volumes of voxels have to be floats, too: boxes of voxels far from 1 are solved in a unit of length of
-/// their own, a power of two. Radiance and fluence are the same in every unit.
+/// Areas and volumes of voxels must fit in floats, too. Boxes whose voxels are far from size 1 are solved in their own
+/// unit of length, a power of two. Radiance and fluence do not depend on the unit.
 
-/// Unit of length to solve a box in: 1 where its longest spacing is not far from that.
+/// Unit of length to solve a box in; 1 if its longest spacing is not far from 1.
 double LengthUnitOf(const Grid& grid);
 
-/// A grid in such a unit.
+/// The grid in this unit of length.
 Grid InUnit(Grid grid, double unit);
 
-/// A scene in another unit of length: what is counted in W comes out over the unit's square (MultiplyPowers).
+/// A scene converted to another unit of length. Powers in W result divided by the square of the unit (see
+/// MultiplyPowers).
 struct SceneInLengths
 {
   SceneInLengths(const Medium& medium, const Illumination& illumination, double unit);
 
   std::vector<float> sigma_a, sigma_s, emission;
-  Medium medium; ///< sees them
+  Medium medium; ///< refers to these arrays
   Illumination illumination;
 };
 
-/// What is counted in W, times `factor`: the same light in a box so many times as large.
+/// Multiplies all quantities in W by `factor`: the same light in a box whose faces are larger by this factor.
 void MultiplyPowers(LightField& light, double factor);
 }

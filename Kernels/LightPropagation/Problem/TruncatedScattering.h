@@ -11,23 +11,24 @@
 
 namespace tyndall
 {
-/// A medium's scattering as sweeps carry it: of each voxel the forward peak is taken as light that goes straight on
-/// (DeltaM.h), and the rest has moments up to a degree. A voxel that is optically thick has a lower degree than the
-/// others, down to 0: within it light forgets where it came from (numerics.md, section 2.2). Coefficients in 1/length.
+/// A medium's scattering as the sweeps treat it (delta-M, DeltaM.h): in each voxel the forward peak is treated as
+/// unscattered light, and the remainder has moments up to a degree. Optically thick voxels have a lower degree, down to
+/// 0, since light loses its directional information within them (numerics.md, section 2.2). Coefficients in 1/length.
 class TruncatedScattering
 {
 public:
-  /// @param medium  must stay
-  /// @param degree  of the voxels that are thin; 0: all are isotropic, by the similarity relation
-  /// @param nowhereNegative  directions between which nothing negative is scattered (WithoutNegatives); null: moments
-  ///   are as delta-M has them
+  /// @param medium  must outlive this object
+  /// @param degree  degree in optically thin voxels; 0: all scattering is isotropic, by the similarity relation
+  /// @param nowhereNegative  quadrature on which the phase function is kept nonnegative (WithoutNegatives); null:
+  /// moments of delta-M, which may be negative in places
   TruncatedScattering(const Medium& medium, int degree, int channels, const DirectionKernel* nowhereNegative = nullptr);
 
-  int Degree() const { return this->MostDegree; } ///< the highest of any voxel
-  /// Of a block of a larger medium, whose highest degree is this one: at least its own, at most that which it was made
-  /// with.
+  int Degree() const { return this->MostDegree; } ///< highest degree of any voxel
+  /// For a block of a larger medium: sets the highest degree of the whole medium, at least that of the block, at most
+  /// the degree given to the constructor.
   void RaiseDegree(int degree) { this->MostDegree = degree; }
-  std::vector<std::string> LeftOut() const; ///< of the medium's scattering, in words, where it does
+  /// Descriptions of what was left out of the medium's scattering; empty if nothing
+  std::vector<std::string> LeftOut() const;
   bool IsNowhereNegative() const { return this->NowhereNegative && this->MostDegree > 0; }
 
   float SigmaS(std::size_t voxel, int channel) const;
@@ -35,11 +36,11 @@ public:
   {
     return this->TheMedium.sigma_a.At(voxel, channel) + this->SigmaS(voxel, channel);
   }
-  /// sigma_s of degree l: that, times the moment of what is scattered. 0 beyond the voxel's degree.
+  /// sigma_s of degree l: SigmaS(voxel, channel) times the phase function's moment l. 0 above the voxel's degree.
   float SigmaS(std::size_t voxel, int channel, int l) const;
-  /// Part of what is scattered that goes straight on; 0 where nothing is.
+  /// Part of the scattered light that is treated as unscattered; 0 where nothing scatters.
   float StraightOn(std::size_t voxel, int channel) const;
-  /// Of voxels whose degree is the highest, in the first channel; where g does not vary.
+  /// Truncation in the voxels of highest degree, first channel; only if g does not vary.
   const DeltaM& OfThinVoxels() const { return this->OfChannel[0][this->MostDegree]; }
   int DegreeOf(std::size_t voxel, int channel) const
   {
@@ -56,8 +57,8 @@ private:
   int MostDegree;
   int Channels;
   bool NowhereNegative;
-  std::array<std::vector<DeltaM>, 3> OfChannel; ///< by degree; where g does not vary by voxel
-  std::vector<std::vector<DeltaM>> OfG;         ///< where it varies: by g, evenly from -1 to 1, then by degree
+  std::array<std::vector<DeltaM>, 3> OfChannel; ///< by degree; used if g does not vary by voxel
+  std::vector<std::vector<DeltaM>> OfG;         ///< used if g varies: by g, evenly spaced from -1 to 1, then by degree
   std::vector<std::uint8_t> Degrees;            ///< [voxel][channel]; empty: all 0
 };
 }
