@@ -1,8 +1,8 @@
-// What the voxels beyond the faces of a block have (BeyondFaces.h).
+// Values of the neighbouring voxels outside a block (BeyondFaces.h).
 
 #include "LightPropagation/Sweep/BeyondFacesShared.h"
 
-// Where the value of the one beyond face d of a voxel is; -1: it is in the block, or beyond the whole.
+// Index of the value of a voxel's neighbour across face d; -1: the neighbour is in the block, or outside the domain.
 static long place_beyond(const BeyondFacesInfo* beyond, const int* size, const int* at, int d)
 {
   const int axis = d / 2, u = axis == 0 ? 1 : 0, v = axis == 2 ? 1 : 2;

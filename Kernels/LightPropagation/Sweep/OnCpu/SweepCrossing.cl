@@ -1,12 +1,12 @@
-// What a segment of a ray does to its light, for a vector of voxels.
+// Effect of a segment on the power of a ray, for a vector of voxels.
 
 #pragma once
 #include "LightPropagation/Sweep/OnCpu/SweepLayout.cl"
 #include "Numerics/Prefetch.cl"
 
-// Of rays with power P and a source of q: path += p1 P, P' = P - sigma p1 P + power q p1, p1 = (1 - exp(-tau)) / sigma
-// (numerics.md, Eqs. (23), (24)). For small tau P' is P less what it loses, for large tau it is P times what is left:
-// neither loses digits. P' = P keep + P change + ...
+// For rays with power P and a source q: path += p1 P, P' = P - sigma p1 P + power q p1, p1 = (1 - exp(-tau)) / sigma
+// (numerics.md, Eqs. (23), (24)). For small tau, P' is computed as P minus the loss; for large tau, as P times the
+// transmittance. Both avoid cancellation. P' = P keep + P change + ...
 typedef struct
 {
   real tau;
@@ -15,7 +15,8 @@ typedef struct
   real change;
 } real_crossing;
 
-// Where all of the row is thin, p1 is a polynomial: half the work. `thin` is a constant where this is called.
+// Computes a segment's effect. If the whole row is thin, p1 is evaluated as a polynomial, which halves the work. `thin`
+// must be a compile-time constant.
 static inline __attribute__((always_inline)) real_crossing cross_length(const sweep_state* state, int x,
   const __global float* sigma_row, const __global float* inverse_row, float length, bool thin)
 {
@@ -47,7 +48,7 @@ static inline __attribute__((always_inline)) real_crossing cross_length(const sw
   return crossing;
 }
 
-// Path of the light that a source of 1 per unit of a ray's power adds in its own voxel, (length - p1) / sigma.
+// Path, within its own voxel, of the light of a unit source, per unit of a ray's power: (length - p1) / sigma.
 static inline __attribute__((always_inline)) real own_path_of(
   int x, const real_crossing* crossing, const __global float* inverse_row, float length)
 {
@@ -63,8 +64,8 @@ static inline float2 signs_of(const __global BundleInfo* bundle, int m)
 }
 
 #if CHAINED
-// Maps that are chained come from memory. Their rows are asked for before they are needed, into the second cache and a
-// few lines at each vector of voxels: all at once they would be waited for.
+// Maps of chained planes come from memory. Their rows are prefetched into the second-level cache, a few cache lines at
+// each vector of voxels; prefetching a whole row at once would stall.
 static inline __attribute__((always_inline)) void ask_for_lines(sweep_state* state)
 {
   for (int i = 0; i < state->asks; ++i)
@@ -74,7 +75,7 @@ static inline __attribute__((always_inline)) void ask_for_lines(sweep_state* sta
   state->asked += state->asks * FloatsOfLine;
 }
 
-// What stage g of `stages` asks for of row y of `floats` floats; y < 0: nothing.
+// Selects the part of row y (of `floats` floats) that stage g of `stages` prefetches; y < 0: none.
 static inline void ask_ahead(sweep_state* state, const __global float* map, int y, int floats, int g, int stages)
 {
   state->asks = 0;

@@ -1,7 +1,7 @@
-// The cells of the box's faces, in a sweep: what leaves through each, and what comes in through each. The host gives
-//   FACES  1 where either may be wanted; FaceInfo says which is
+// Light by cells of the box's faces, in a sweep: escaped power and incident light of each cell. The host defines
+//   FACES  1 if either may be needed; FaceInfo selects which
 //
-// Side 0 to 3 is the face -u, +u, -v, +v; cell i of a side is row i or column i of the plane that is crossed.
+// Sides 0 to 3 are the faces -u, +u, -v, +v. Cell i of a side is at row i or column i of the plane that is crossed.
 
 #pragma once
 #include "LightPropagation/Sweep/OnCpu/SweepLayout.cl"
@@ -10,7 +10,7 @@
 #define FACE_CELL(state, side, i, c) \
   ((state)->faceFirst[side] + (i) * (state)->faces->along[side] + (c) * (state)->faces->stride)
 
-// To the cells of plane `plane` of the grid.
+// Selects the cells of plane `plane` of the grid.
 static BY_ROW void go_to_faces(sweep_state* state, int plane)
 {
   for (int side = 0; side < 4; ++side)
@@ -20,14 +20,14 @@ static BY_ROW void go_to_faces(sweep_state* state, int plane)
   }
 }
 
-// The planes whose cells a ray leaves through. Rays that run nearly along a face reach it only every so many planes;
-// where they spread each leaves through all cells that lie between it and the next.
+// Range of planes through whose cells a ray leaves. Rays nearly parallel to a face meet it only every few planes; if
+// `spread`, a ray leaves through all cells between it and the next ray.
 typedef struct
 {
   float begin, end;
 } face_planes;
 
-// @param planes  from one ray to the next
+// @param planes  number of planes from one ray to the next
 static face_planes planes_of_ray(const sweep_state* state, float planes)
 {
   const float middle = state->facePlane + 0.5f, reach = state->faces->spread ? 0.5f * planes : 0.5f;
@@ -40,7 +40,7 @@ static face_planes planes_of_ray(const sweep_state* state, float planes)
   return found;
 }
 
-// Where the cells of plane p of a side begin.
+// First cell of plane p of a side.
 static __global exact* cells_of_plane(const sweep_state* state, int side, int p, int c)
 {
   p = (p + state->facePlanes) % state->facePlanes; // beyond an axis that rays go round
@@ -48,7 +48,7 @@ static __global exact* cells_of_plane(const sweep_state* state, int side, int p,
   return state->faceOut + FACE_CELL(state, side, 0, c) + planes * state->faces->plane[side];
 }
 
-// Part of a ray that leaves through plane p.
+// Part of a ray's power that leaves through plane p.
 static float part_of_plane(face_planes of, int p)
 {
   return (fmin(of.end, p + 1.0f) - fmax(of.begin, (float)p)) / (of.end - of.begin);
@@ -62,7 +62,7 @@ static BY_ROW void leave_through(const sweep_state* state, int side, int i, int 
   }
 }
 
-// A row of rays, through the cells of one side.
+// Counts the power of a row of rays that leaves through the cells of one side.
 static BY_ROW void leave_all_through(
   const sweep_state* state, int side, int c, face_planes of, const __global float* rays, float part)
 {
@@ -83,8 +83,8 @@ static float light_of_cell(const sweep_state* state, int side, int i, int c)
   return state->faceIn[FACE_CELL(state, side, i, c)];
 }
 
-// In the mean over cell i and the one at i + move, where it is on the face: of rays that move both ways at once half
-// pass either.
+// Mean incident radiance of cell i and, if it is on the face, cell i + move: half of the rays that move along u and v
+// at once pass each.
 static BY_ROW float light_of_cells(const sweep_state* state, int side, int i, int move, int c)
 {
   const int size = side < 2 ? state->sizeV : state->sizeU;

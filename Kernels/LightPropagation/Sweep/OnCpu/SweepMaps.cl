@@ -1,8 +1,9 @@
-// The ends of sweeps: the power in the maps of rays. The host gives what Exact.cl asks for.
+// Start and end of a sweep: power in the maps of rays. The host defines what Exact.cl requires.
 
 #include "Numerics/Exact.cl"
 
-// Power of the rays in the maps, a work-item a row of a bundle and way: what leaves at the far end of an axis.
+// Sums the power of the rays in the maps, which leaves at the far end of an axis. One work-item per row of a bundle and
+// way.
 // maps     [way][bundle][row][member][channel][row_floats], rays in the first `size_u` floats after `border`
 // bundles  [bundle] members, first float of its maps
 // sums     [way][bundle][row][channel]
@@ -36,8 +37,8 @@ __kernel void map_power(const __global float* maps, ulong maps_each_way, const _
   }
 }
 
-// The columns beside a row's voxels hold what comes in through u's face: nothing, once rays go round a periodic axis. A
-// work-item a row of a bundle and way; arguments as of map_power.
+// Clears the columns beside a row's voxels, which hold light incident on u's face; there is none once rays wrap around
+// a periodic axis. One work-item per row of a bundle and way; arguments as for map_power.
 __kernel void darken_beside(__global float* maps, ulong maps_each_way, const __global int2* bundles, int channels,
   int row_floats, int border, int size_u, int width)
 {
@@ -53,10 +54,10 @@ __kernel void darken_beside(__global float* maps, ulong maps_each_way, const __g
   }
 }
 
-// Of open axes: rays that leave at the far end, by cells of its faces. A work-item a row of the face and way; arguments
-// as of map_power, but
-// face_out  W, [channel][cell], the sweep's own, added to
-// first     [way] of the face's cells, in the first channel
+// For open axes: adds the power of rays that leave at the far end to the cells of that face. One work-item per row of
+// the face and way; arguments as for map_power, and
+// face_out  the sweep's own escaped power, W, [channel][cell], added to
+// first     index of the face's first cell in the first channel, for each way
 __kernel void leave_by_cells(const __global float* maps, ulong maps_each_way, const __global int2* bundles,
   int bundle_count, int channels, int row_floats, int border, int size_u, __global exact* face_out, ulong first_forward,
   ulong first_backward, ulong face_stride)
@@ -80,7 +81,8 @@ __kernel void leave_by_cells(const __global float* maps, ulong maps_each_way, co
   }
 }
 
-// What left through cells of faces: the units' own are added up in their order, and cleared. A work-item a value.
+// Sums the units' own escaped power by cells, in the order of the units, adds it to face_out and clears it. One
+// work-item per value.
 __kernel void take_face_cells(__global exact* units, int count, ulong values, __global float* face_out)
 {
   const ulong i = get_global_id(0);
@@ -93,8 +95,8 @@ __kernel void take_face_cells(__global exact* units, int count, ulong values, __
   face_out[i] = (float)(face_out[i] + sum);
 }
 
-// The same the other way round: adds to the maps what comes in by cells of the faces where rays start.
-// power    [bundle] of a ray at radiance 1
+// The inverse of leave_by_cells: adds incident light by cells of the faces where rays start to the maps.
+// power    [bundle] power of a ray at radiance 1, length^2 sr
 // face_in  W / (length^2 sr), [channel][cell]
 __kernel void enter_by_cells(__global float* maps, ulong maps_each_way, const __global int2* bundles,
   const __global float* power, int channels, int row_floats, int border, int size_u, const __global float* face_in,

@@ -1,5 +1,5 @@
-// Planes out of the volume and back into it: the rows that rays cross lie one after the other, filled up to whole
-// vectors, however the axis lies in the volume.
+// Copies planes from the volume to scratch and back. In scratch, the rows that rays cross are contiguous and padded to
+// whole vectors, whatever the orientation of the axis in the volume.
 
 #pragma once
 #include "LightPropagation/Sweep/OnCpu/SweepLayout.cl"
@@ -12,7 +12,7 @@
 #define ROUNDS 2
 #endif
 
-// Exchange rows and columns: interleave the halves as often as rows halve.
+// Transposes a square of vectors, by interleaving its halves log2(REAL_WIDTH) times.
 static void transpose(real* rows)
 {
 #pragma unroll
@@ -35,20 +35,20 @@ static void transpose(real* rows)
   }
 }
 
-// Where voxel (u, v) of a plane is.
+// Index in the volume of voxel (u, v) of a plane.
 static ulong place_of(const PlaneInfo* layout, int u, int v, int plane)
 {
   return (ulong)(layout->firstU + u) * layout->stepU + (ulong)(layout->firstV + v) * layout->stepV +
     (ulong)(layout->firstP + plane) * layout->stepP;
 }
 
-// Of all quantities of a plane.
+// Floats of all quantities of a plane.
 static int plane_floats(const PlaneInfo* layout)
 {
   return PLANES * (ROWS_KEPT ? ROWS_KEPT : layout->sizeV) * ROW;
 }
 
-// Set floats, a multiple of a vector, to zero.
+// Sets `count` floats, a multiple of the vector width, to zero.
 static BY_ROW void clear(__global float* floats, int count)
 {
   for (int i = 0; i < count; i += REAL_WIDTH)
@@ -57,10 +57,10 @@ static BY_ROW void clear(__global float* floats, int count)
   }
 }
 
-// A vector of rows, `step` floats apart, of a vector of planes: becomes as many vectors along the rows, `plane` floats
-// apart.
-// @param last  row that there is
-// @param count  planes that are wanted
+// Transposes a block: reads REAL_WIDTH rows, `step` floats apart, of REAL_WIDTH planes; writes as many vectors along
+// the rows, `plane` floats apart.
+// @param last  last row that exists
+// @param count  number of planes to write
 static inline __attribute__((always_inline)) void pack_block(
   const __global float* from, ulong step, int last, integer beyond, __global float* to, int plane, int count)
 {
@@ -81,8 +81,8 @@ static inline __attribute__((always_inline)) void pack_block(
   }
 }
 
-// Copy one quantity of rows [rows.x, rows.y) of planes [first, first + count) into scratch, filled up with zeros. May
-// read, not use, a vector beyond the last voxel.
+// Copies one quantity, for rows [rows.x, rows.y) of planes [first, first + count), to scratch, padded with zeros. May
+// read, but does not use, up to a vector beyond the last voxel.
 static BY_ROW void pack(
   const PlaneInfo* layout, __global float* to, int first, int count, int2 rows, const __global float* volume)
 {
@@ -107,7 +107,7 @@ static BY_ROW void pack(
   }
 }
 
-// Add to sums; what rounding loses of them is kept in `lost` (Kahan) where there is one.
+// Adds a vector to sums, with compensated (Kahan) summation if `lost` is not null.
 static void add_real(real value, __global float* sum, __global float* lost)
 {
   const real before = load_real(0, sum);
@@ -133,8 +133,8 @@ static void add_one(float value, __global float* sum, __global float* lost)
   }
 }
 
-// What pack_block did, undone: added to the volume with a sign.
-// @param used  rows that are there
+// The inverse of pack_block: adds a block to the volume, multiplied by `sign`.
+// @param used  number of rows that exist
 static inline __attribute__((always_inline)) void unpack_block(
   const __global float* from, int plane, float sign, __global float* volume, __global float* lost, ulong step, int used)
 {
@@ -155,8 +155,8 @@ static inline __attribute__((always_inline)) void unpack_block(
   }
 }
 
-// Add one quantity of rows of the planes, with a sign, to the volume; exactly their voxels are touched, as others may
-// be in work elsewhere.
+// Adds one quantity of rows of the planes to the volume, multiplied by `sign`. Touches exactly their voxels, since
+// other units may be working on neighbouring ones.
 static BY_ROW void unpack(const PlaneInfo* layout, const __global float* from, int first, int count, int2 rows,
   float sign, __global float* volume, __global float* lost)
 {

@@ -1,10 +1,11 @@
-// SweepPacking.cl of a source's angular moments and of sources by octant.
+// Packing and unpacking (see SweepPacking.cl) of angular moments and of sources by octant.
 
 #pragma once
 #include "LightPropagation/Sweep/OnCpu/SweepPacking.cl"
 
 #if ANGULAR
-// Of the functions from the second on, where planes from `first` on, all of one group, have row (u, v) of a channel.
+// Index in the volume of the moments (from the second function on) of position (u, v) and a channel, for planes from
+// `first` on, which must lie in one group.
 static ulong moments_of(const SweepInfo* info, int channel, int u, int v, int first)
 {
   const PlaneInfo* layout = &info->planes;
@@ -14,13 +15,13 @@ static ulong moments_of(const SweepInfo* info, int channel, int u, int v, int fi
     IN_ROW(layout->firstP + first, higher);
 }
 
-// And where packed planes have it.
+// The same index in packed planes.
 static int packed_moments_of(const SweepInfo* info, int channel, int u, int v)
 {
   return v * info->packedMoments + channel * (info->packedMoments / CHANNELS) + IN_ROW(u, info->moments.functions - 1);
 }
 
-// How many planes, from the one that rays come to next, are of one group.
+// Number of planes in the same group, from the next plane that rays cross.
 static int of_one_group(const PlaneInfo* layout, int next, int backward)
 {
   const int plane = layout->firstP + (backward ? layout->sizeP - 1 - next : next);
@@ -90,7 +91,7 @@ static BY_ROW void unpack_moments(
 #endif
 
 #if OCTANT_SOURCE
-// What shines besides, into the octants of one way along the axis.
+// Packs the additional source for the octants of one way along the axis.
 static void pack_octants(const SweepInfo* info, __global float* planes, int first, int count, int2 rows,
   const __global float* octants, int backward)
 {

@@ -1,10 +1,11 @@
-// Power that enters voxels through their faces: what goes from one to the next, for the balance of a diffusion system.
+// Partial currents: power that enters voxels through their faces from their neighbours, for the balance of a diffusion
+// system.
 
 #pragma once
 #include "LightPropagation/Sweep/OnCpu/SweepLayout.cl"
 
 #if CURRENTS
-// Part of some rays of row y that come through one kind of face. To be called with a constant count.
+// Adds a part of several rays of row y that enter through one kind of face. `count` must be a compile-time constant.
 inline __attribute__((always_inline)) void add_currents(
   sweep_state* state, int y, int face, const __global float** rays, int count, float part)
 {
@@ -28,8 +29,8 @@ static BY_ROW void add_current(sweep_state* state, int y, int face, const __glob
   add_currents(state, y, face, &rays, 1, part);
 }
 
-// Part of the rays on their way to column x through column x - du of row y, which they enter through v; they enter x
-// itself through u after that, or leave the box.
+// Adds a part of the rays that go to column x via column x - du of row y, which they enter through v. They then enter x
+// itself through u, or leave the box.
 static BY_ROW void add_beside(sweep_state* state, int y, int du, int face, const __global float* rays, float part)
 {
   const int size = state->sizeU;
@@ -39,7 +40,7 @@ static BY_ROW void add_beside(sweep_state* state, int y, int du, int face, const
     __global float* sum = ROW_OF(state->planes, PLANE_CURRENTS + CurrentFaces * c + face, y);
     for (int x = 0; x < state->width; x += REAL_WIDTH)
     {
-      // A row's last floats and what is before its first are never read.
+      // Floats beyond either end of a row are written but never read.
       const real ray = select(load_real(x, from), (real)0.0f, LANES >= size - x);
       store_real(multiply_add(ray, (real)part, load_real(x - du, sum)), x - du, sum);
     }
@@ -48,10 +49,10 @@ static BY_ROW void add_beside(sweep_state* state, int y, int du, int face, const
   }
 }
 
-// Part of the rays that go through the edge between four voxels: half of it passes the voxel beside, half the one
-// before.
-//   rays  by where they come to
-//   own   row y, by where they come from
+// Adds a part of the rays that cross the edge between four voxels: half passes through the neighbour along u, half
+// through the neighbour along v.
+//   rays  by the voxel they enter
+//   own   row y, by the voxel they come from
 static BY_ROW void add_through_edge(
   sweep_state* state, int y, int du, int dv, const __global float* rays, const __global float* own, float part)
 {

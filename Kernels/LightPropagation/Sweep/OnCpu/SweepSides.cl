@@ -1,12 +1,12 @@
-// A box that is a block of a larger one: what rays bring in through its sides from the blocks beside it, and what they
-// take out to those. The host gives
-//   SIDES  1 where the box is such a block; not set: 0. PERIODIC and FACES are 0 then, as is
-//          SweepInfo's border
+// Rays that enter through the sides of a block from its neighbours, and leave to them, if the box is a block of a
+// larger domain. The host defines
+//   SIDES  1: the box is such a block; default 0. Requires that PERIODIC, FACES and
+//          SweepInfo's border are 0
 //
-// Of each ray of a bundle and each plane, [plane][ray][SIDE_FLOATS]: rays by where they come from, or are, before they
-// move; across v one for each column, then across u one for each row, then the one across both, of moves both ways at
-// once. They are taken in from beyond the box, and given out from its last columns and rows. Rays are counted as
-// bundles' radiances are, [bundle][member][channel].
+// Layout: [plane][ray][SIDE_FLOATS], with rays by the voxel they come from, or are in, before they move. First the rays
+// that move across v, one for each column; then those that move across u, one for each row; then the one that moves
+// across both at once. Incoming rays come from beyond the box, outgoing ones from its last columns and rows. Rays are
+// numbered as the bundles' radiances are, [bundle][member][channel].
 
 #pragma once
 #include "LightPropagation/Sweep/OnCpu/SweepLayout.cl"
@@ -15,7 +15,7 @@
 #define SIDE_FLOATS(state) ((state)->sizeU + (state)->sizeV + 1)
 #define SIDE_OF_RAY(state, sides, bundle, ray) ((sides) + ((bundle)->border + (ray)) * SIDE_FLOATS(state))
 
-// The row of rays that come in across v, of all members, as `outside` is laid out.
+// Reads the row of rays of all members that enter across v, into `outside`.
 static BY_ROW void take_across_v(sweep_state* state, const __global BundleInfo* bundle, int rays)
 {
   for (int ray = 0; ray < rays; ++ray)
@@ -31,7 +31,7 @@ static BY_ROW void take_across_v(sweep_state* state, const __global BundleInfo* 
   }
 }
 
-// A member's rays that come in across u at a move of `du`, into the column beside row y.
+// Writes a member's rays that enter across u in a move of `du` to the column beside row y.
 static BY_ROW void take_across_u(
   sweep_state* state, const __global BundleInfo* bundle, int member, int y, int du, __global float* out)
 {
@@ -42,7 +42,7 @@ static BY_ROW void take_across_u(
   }
 }
 
-// What a member's row y holds of rays that go out at a move of (du, dv).
+// Writes the rays of a member's row y that leave in a move of (du, dv).
 static BY_ROW void give_sides(
   sweep_state* state, const __global BundleInfo* bundle, int member, const __global float* row, int y, int du, int dv)
 {
@@ -63,7 +63,7 @@ static BY_ROW void give_sides(
 }
 
 #define SIDES_ARGUMENTS , const __global float *sides_in, __global float *sides_out, int outer_sides
-// Side 0 to 3 is the face -u, +u, -v, +v: light that goes through leaves the whole grid.
+// Sides 0 to 3 are the faces -u, +u, -v, +v. True if light that crosses the side leaves the domain.
 #define LEAVES_GRID(state, side) (((state)->outerSides >> (side)) & 1)
 #else
 #define SIDES_ARGUMENTS

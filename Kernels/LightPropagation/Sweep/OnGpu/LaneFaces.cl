@@ -1,9 +1,10 @@
-// Light by cells of the box's faces, in a sweep for GPUs: what comes in through each is laid down beside the rays
-// before planes are crossed (VoxelSides.cl), and what leaves through each is added up afterwards, a work-item a cell:
-// one order, no atomics. Physics and numbers are those of SweepFaces.cl and SweepMaps.cl. The host gives
-//   CHANNELS  that are swept together
-//   AROUND    as SweepOnGpu.cl has it
-//   FACE_IN   1: light comes in by cells, besides that which is the same for a whole face
+// Light by cells of the box's faces, in a sweep on GPUs. Incident light of each cell is written to the sides
+// (VoxelSides.cl) before planes are crossed; what leaves through each cell is summed afterwards, one work-item per
+// cell, so the order is fixed and no atomics are needed. Physics and numerics are those of SweepFaces.cl and
+// SweepMaps.cl. The host defines
+//   CHANNELS  channels swept together
+//   AROUND    see SweepOnGpu.cl
+//   FACE_IN   1: incident light is given by cells, in addition to that which is uniform over each face
 //   SPREAD    1: Deposit::spreadsAside
 
 #include "LightPropagation/Sweep/OnGpu/LanePlane.cl"
@@ -11,7 +12,7 @@
 
 #define SIDE_FLOATS(lane) ((lane)->planes.sizeU + (lane)->planes.sizeV + 1)
 
-// The cells of one channel that a lane passes in a plane.
+// The cells of one channel beside a lane's plane.
 typedef struct
 {
   const __global SweepLane* lane;
@@ -28,7 +29,7 @@ typedef struct
   int member;
 } ray_in_plane;
 
-// @param rays  of all lanes: its bundle, and which member it is
+// @param rays  by ray of all lanes: the index of its bundle, and of the member in the bundle
 static ray_in_plane ray_of(const __global SweepLane* lane, const __global int2* rays,
   const __global BundleInfo* bundles, const __global CrossingInfo* crossings, int ray, int k)
 {
@@ -52,7 +53,7 @@ static float light_of_cell(const cells_beside* cells, int side, int i)
 }
 #endif
 
-// In the mean over cell i and the one at i + move, where it is on the face, times the power of a ray.
+// Incident power of a ray: the mean over cell i and, if it is on the face, cell i + move, times `power`.
 static float light_of_cells(const cells_beside* cells, float power, int side, int i, int move)
 {
 #if FACE_IN
@@ -68,7 +69,7 @@ static float light_of_cells(const cells_beside* cells, float power, int side, in
 #endif
 }
 
-// Rays that come in through the sides of a lane's planes. A work-item a place of VoxelSides.cl.
+// Writes the rays that enter through the sides of a lane's planes. One work-item per position of VoxelSides.cl.
 // crossings  of the lane's planes
 __kernel void enter_sides(int number, const __global SweepLane* lanes, const __global LaneFaceInfo* faces,
   const __global int2* rays, const __global BundleInfo* bundles, const __global CrossingInfo* crossings,
@@ -104,8 +105,8 @@ __kernel void enter_sides(int number, const __global SweepLane* lanes, const __g
   sides_in[lane->sides + ((ulong)k * lane->rays * CHANNELS + slot) * SIDE_FLOATS(lane) + place] = light;
 }
 
-// What part of a ray that moves aside in a plane leaves through the cells of plane p.
-// @param planes  from one of its moves to the next
+// Part of a ray, which moves sideways in `plane`, that leaves through the cells of plane p.
+// @param planes  number of planes from one of its moves to the next
 static float part_through(const __global SweepLane* lane, int plane, int p, float planes)
 {
 #if SPREAD
@@ -124,8 +125,9 @@ static float part_through(const __global SweepLane* lane, int plane, int p, floa
 #endif
 }
 
-// Power of a ray that leaves through cell `i` of a side in a plane, of rays that move both ways at an edge half.
-// @param in, out  of the ray and plane (VoxelSides.cl)
+// Power of a ray that leaves through cell `i` of a side in a plane; half of it for rays that move along u and v at an
+// edge.
+// @param in, out  sides of the ray and plane (VoxelSides.cl)
 static float power_through(const __global SweepLane* lane, const ray_in_plane* ray, int side, int i,
   const __global float* in, const __global float* out)
 {
@@ -155,7 +157,8 @@ static float power_through(const __global SweepLane* lane, const ray_in_plane* r
   return power;
 }
 
-// Adds to the cells of the faces beside a lane what leaves through them. A work-item a cell, of a side and channel.
+// Adds the power that leaves through the cells of the faces beside a lane. One work-item per cell of a side and
+// channel.
 __kernel void leave_sides(int number, const __global SweepLane* lanes, const __global LaneFaceInfo* faces,
   const __global int2* rays, const __global BundleInfo* bundles, const __global CrossingInfo* crossings, int of_round,
   const __global float* sides_in, const __global float* sides_out, __global float* face_out, ulong first, ulong stride)
@@ -175,7 +178,7 @@ __kernel void leave_sides(int number, const __global SweepLane* lanes, const __g
     const __global BundleInfo* bundle = bundles + of.x;
     const bool ofU = bundle->move[of.y][side < 2 ? 0 : 2] != 0; // it moves there as its bundle does along u
     const float planes = ofU ? bundle->planesU : bundle->planesV;
-    // Planes in which it may move so that it passes these cells.
+    // Planes in which a move may make it pass these cells.
     const int reach = AROUND ? lane->patternPlanes : SPREAD ? (int)ceil(0.5f * planes) : 0;
     for (int k = max(at - reach, 0); k < min(at + reach + 1, lane->patternPlanes); ++k)
     {
@@ -192,7 +195,7 @@ __kernel void leave_sides(int number, const __global SweepLane* lanes, const __g
   face_out[first + c * stride + of->first[side] + p * of->plane[side] + i * of->along[side]] += left;
 }
 
-// Adds to a lane's rays, where they start, what comes in by cells. A work-item a float of its maps.
+// Adds incident light by cells to a lane's rays where they start. One work-item per float of its maps.
 __kernel void enter_start(int number, const __global SweepLane* lanes, const __global LaneFaceInfo* faces,
   const __global int2* rays, const __global BundleInfo* bundles, const __global float* face_in, ulong first,
   ulong stride, __global float* maps)
@@ -204,7 +207,7 @@ __kernel void enter_start(int number, const __global SweepLane* lanes, const __g
   maps[lane->map + i] += power * face_in[first + slot % CHANNELS * stride + faces[number].start + i % plane];
 }
 
-// Adds to the cells where a lane ends what its rays bring there. A work-item a cell, of a channel.
+// Adds the power of a lane's rays to the cells where the lane ends. One work-item per cell and channel.
 __kernel void leave_end(int number, const __global SweepLane* lanes, const __global LaneFaceInfo* faces,
   const __global float* maps, __global float* face_out, ulong first, ulong stride)
 {

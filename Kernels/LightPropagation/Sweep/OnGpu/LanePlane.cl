@@ -1,9 +1,9 @@
-// Where a lane of a sweep for GPUs is. The host gives AROUND, as SweepOnGpu.cl has it.
+// Position of a lane of a sweep on GPUs. The host defines AROUND as in SweepOnGpu.cl.
 
 #pragma once
 #include "LightPropagation/Sweep/OnGpu/SweepOnGpuShared.h"
 
-// The plane of the box that a lane crosses as its k-th.
+// Index in the box of the k-th plane that a lane crosses.
 static int plane_of(const __global SweepLane* lane, int k)
 {
   const int of_axis = AROUND ? k % lane->planes.sizeP : k;

@@ -1,10 +1,10 @@
-// Where a sweep for GPUs begins and ends: rays that start, and what its lanes have found, added up. The host gives
-//   CHANNELS   that are swept together
-//   FUNCTIONS  angular moments of the light; 1: fluence alone
+// Start and end of a sweep on GPUs: initialises rays, and sums the results of the lanes. The host defines
+//   CHANNELS   channels swept together
+//   FUNCTIONS  number of angular functions; 1: fluence only
 
 #include "LightPropagation/Sweep/OnGpu/SweepOnGpuShared.h"
 
-// The rays of a lane where they start. A work-item a float of its maps.
+// Initialises the rays of a lane where they start. One work-item per float of its maps.
 __kernel void start_rays(
   int first_lane, const __global SweepLane* lanes, const __global float4* entering, __global float* maps)
 {
@@ -17,7 +17,7 @@ __kernel void start_rays(
   }
 }
 
-// Sums of rows of floats, a work-item each, in their order and with what rounding takes.
+// Sums rows of floats, in order and with compensated (Kahan) summation. One work-item per row.
 __kernel void sum_rows(const __global float* rows, ulong first, int length, __global float* sums, ulong first_sum)
 {
   const __global float* row = rows + first + (ulong)get_global_id(0) * length;
@@ -32,8 +32,8 @@ __kernel void sum_rows(const __global float* rows, ulong first, int length, __gl
   sums[first_sum + get_global_id(0)] = sum;
 }
 
-// What the lanes found, each in an array of its own, added in their order, as lanes do that add to what is there: the
-// same bits. A work-item a value.
+// Adds the lanes' own arrays to the sum, in the order of the lanes, so that the result is identical, bit for bit, to
+// that of lanes that add directly. One work-item per value.
 __kernel void add_lanes(const __global float* of_lanes, int lanes, ulong values, __global float* sum, ulong first)
 {
   const ulong i = get_global_id(0);
@@ -45,7 +45,7 @@ __kernel void add_lanes(const __global float* of_lanes, int lanes, ulong values,
   sum[first + i] = all;
 }
 
-// The same of angular moments. A work-item a voxel, of a function and channel.
+// The same for angular moments. One work-item per voxel, function and channel.
 __kernel void add_moments_of_lanes(
   PlaneLaunch launch, const __global float* of_lanes, int lanes, __global float* sum, ulong first)
 {

@@ -1,15 +1,16 @@
-// Rays through one plane, on a GPU: a work-item a voxel of the plane and way along the axis (numerics.md, section 4.8).
-// It reads the rays that come into its voxel in each of the up to three segments of the plane, from the maps of the
-// plane before, and computes what its neighbours did to them anew: arithmetic is what a GPU has to spare, and rays are
-// read and written once a plane without anything between work-items but the launch. Each voxel is added to by its own
-// work-item alone, bundle by bundle, so sums have one order. Physics and numbers are those of SweepBundle.cl.
+// Carries rays through one plane, on a GPU: one work-item per voxel of the plane and way along the axis (numerics.md,
+// section 4.8). In each of the up to three segments of the plane, a work-item reads the rays that enter its voxel from
+// the maps of the previous plane and recomputes what its neighbours did to them: arithmetic is cheap on a GPU, and so
+// rays are read and written once per plane, without synchronisation other than the launch. Each voxel is added to only
+// by its own work-item, bundle by bundle, so the order of summation is fixed. Physics and numerics are those of
+// SweepBundle.cl.
 //
-// The host gives CHANNELS, SOURCE, NET_FLUX, CURRENTS, OCTANT_SOURCE as SweepLayout.cl has them, and
-//   ADDS    1: lanes follow one another and add to what is there; 0: each writes arrays of its own
-//   AROUND  1: the axis is periodic, and rays come to a voxel again and again: their lane adds to what it has put there
-//   DEGREE  of the angular moments in which light is gathered, and shines; 0: fluence alone
+// The host defines CHANNELS, SOURCE, NET_FLUX, CURRENTS, OCTANT_SOURCE as in SweepLayout.cl, and
+//   ADDS    1: lanes run one after the other and add to the arrays; 0: each lane writes its own arrays
+//   AROUND  1: the axis is periodic, so rays cross a voxel repeatedly and their lane adds to its own arrays
+//   DEGREE  degree of the angular moments of light and source; 0: fluence only
 //   SIDES   see VoxelSides.cl
-//   BEAMS   sources with an angular distribution of their own; where DEGREE is not 0
+//   BEAMS   number of sources with their own angular distribution; only if DEGREE is not 0
 
 #define MOMENTS ((DEGREE + 1) * (DEGREE + 1))
 
@@ -23,7 +24,7 @@
 #define PUT(where, value) ((where) = (value))
 #endif
 
-// A path, with what rounding takes of it where rays come again and again.
+// Adds to a path; with compensated (Kahan) summation if rays cross a voxel repeatedly.
 static void put_path(__global float* path, __global float* lost, float value)
 {
 #if AROUND
@@ -37,8 +38,8 @@ static void put_path(__global float* path, __global float* lost, float value)
 }
 
 #if DEGREE
-// Of the ray that was just crossed, and the next one's sums begin.
-// @param functions  along it
+// Adds the path of the ray that was just computed to the moments, and resets it for the next ray.
+// @param functions  angular functions in the ray's direction
 static void gather_moments(
   voxel_sums* sums, const member_state* member, const __global float* functions, ulong plane, ulong here)
 {
@@ -57,8 +58,8 @@ static void gather_moments(
 }
 #endif
 
-// All of the lane's bundles through voxel (u, v).
-// directed, functions  of the lane's rays, where DEGREE
+// Carries all bundles of the lane through voxel (u, v).
+// directed, functions  of the lane's rays, if DEGREE
 static void cross_bundles(const plane_state* state, voxel_sums* sums, const __global BundleInfo* bundles,
   const __global CrossingInfo* crossings, const __global float* before, __global float* after,
   const __global float4* entering, const __global float* directed, const __global float* functions, int u, int v)
@@ -107,7 +108,7 @@ static void cross_bundles(const plane_state* state, voxel_sums* sums, const __gl
 }
 
 #if DEGREE
-// @param places  of the path with ADDS, else they lie [function][channel][stride]
+// @param places  layout of the moments in `path`, with ADDS; otherwise it is [function][channel][stride]
 static void put_moments(const plane_state* state, const PlaneLaunch* places, const float* moments, int c, ulong voxel,
   __global float* path, __global float* lost)
 {
@@ -125,7 +126,7 @@ static void put_moments(const plane_state* state, const PlaneLaunch* places, con
 }
 #endif
 
-// What the voxel has found, to where the lane puts it.
+// Writes the voxel's sums to the lane's arrays.
 static void put_sums(const plane_state* state, const PlaneLaunch* places, const voxel_sums* sums, ulong voxel, int u,
   int v, __global float* path, __global float* lost, __global float* flux, __global float* currents)
 {
@@ -167,7 +168,8 @@ static void put_sums(const plane_state* state, const PlaneLaunch* places, const 
   }
 }
 
-// Power that left from voxel (u, v) sideways: each place beside the box has one voxel, those of the box's edges two.
+// Writes the power that leaves sideways from voxel (u, v). A position along a side has one voxel; a voxel at the box's
+// edge has two positions.
 static void put_escaped(
   const plane_state* state, const voxel_sums* sums, int plane, int u, int v, __global float* escaped)
 {
@@ -187,15 +189,15 @@ static void put_escaped(
 // source    W / (length^3 sr), [channel][stride]
 // octants   see SweepRequest::octantSource
 // path, flux, currents  as of the kernel `sweep`
-// lost      as path, where AROUND
-// before    the lanes' maps: rays by the voxel that they enter in this plane, W
-// after     and in the next
-// entering  [ray][channel] W of the rays that come in through u's, v's face, and where they start
-// directed  as before: what shines along each ray, W / (length^3 sr); where DEGREE, as is
-// functions [ray][function, then beam] along them
-// escaped   W, see SweepLane
-// sides_in, sides_out  [plane from where rays start], see VoxelSides.cl; outer_sides: bit i, of light through its side
-//           i, that it leaves the whole grid; where SIDES
+// lost      as path, if AROUND
+// before    the lanes' maps: power of the rays, by the voxel that they enter in this plane, W
+// after     the same for the next plane
+// entering  incident power, W, [ray][channel]: through u's face, through v's face, and where rays start
+// directed  laid out as `before`: source in the direction of each ray, W / (length^3 sr); if DEGREE
+// functions angular functions in the rays' directions, [ray][function, then beam]; if DEGREE
+// escaped   power that leaves sideways, W, see SweepLane
+// sides_in, sides_out  [plane, counted from where rays start], see VoxelSides.cl; if SIDES
+// outer_sides  bit i: light that crosses side i leaves the domain; if SIDES
 __kernel void cross_plane(PlaneLaunch launch, const __global SweepLane* lanes, const __global float* sigma,
   const __global float* source, const __global float* octants, __global float* path, __global float* lost,
   __global float* flux, __global float* currents, const __global float* before, __global float* after,
@@ -244,8 +246,8 @@ __kernel void cross_plane(PlaneLaunch launch, const __global SweepLane* lanes, c
 }
 
 #if DEGREE
-// What the plane's voxels shine along each ray, from a source of angular moments and beams. A work-item a voxel of the
-// plane and lane.
+// Evaluates the source in the direction of each ray, for the voxels of a plane, from its angular moments and beams. One
+// work-item per voxel of the plane and lane.
 __kernel void find_directed(PlaneLaunch launch, const __global SweepLane* lanes, const __global float* source,
   const __global float* functions, __global float* directed)
 {

@@ -1,12 +1,13 @@
-// Rays of one bundle through a voxel of a plane, for SweepOnGpu.cl, which says what the host gives. A voxel's work-item
-// computes what its neighbours do to the rays that they send it (numerics.md, Eq. (30a)).
+// Carries the rays of one bundle through a voxel of a plane; for SweepOnGpu.cl, which lists the host's definitions. A
+// voxel's work-item recomputes what the neighbours do to the rays that enter from them (numerics.md, Eq. (30a)).
 
 #pragma once
 #include "LightPropagation/Sweep/OnGpu/SweepOnGpuShared.h"
 #include "LightPropagation/Sweep/OnGpu/VoxelSides.cl"
 #include "Numerics/Numerics.cl"
 
-// What a segment does to rays, see SweepCrossing.cl; `own`: path of the light that a source of 1 adds in its own voxel.
+// Effect of a segment on rays, see SweepCrossing.cl. own: path, within the voxel, of the light that a unit source in it
+// emits.
 typedef struct
 {
   float meanLength, keep, change, own;
@@ -17,7 +18,7 @@ typedef struct
   float power[CHANNELS];
 } colours;
 
-// Where a work-item is.
+// The plane that a work-item is in.
 typedef struct
 {
   const __global SweepLane* lane;
@@ -35,7 +36,7 @@ typedef struct
 #endif
 } plane_state;
 
-// A bundle in the plane, and one of its members.
+// A member of a bundle, with the bundle's crossing of the plane.
 typedef struct
 {
   const __global float* rays;      // of the member, [channel][v][u]
@@ -94,7 +95,7 @@ static segment_effect effect_at(const plane_state* state, int u, int v, float le
   return effect_of(state, fmax(state->sigma[voxel_of(state, u, v)], state->vacuum), length);
 }
 
-// By how much more than the source a voxel shines into a member's octant.
+// Additional source of a voxel in a member's octant.
 static float shines_more(const plane_state* state, const member_state* member, int c, long voxel)
 {
 #if OCTANT_SOURCE
@@ -105,7 +106,7 @@ static float shines_more(const plane_state* state, const member_state* member, i
 #endif
 }
 
-// Rays behind a segment in voxel (u, v).
+// Power of the rays after a segment in voxel (u, v).
 static colours behind(
   const plane_state* state, const member_state* member, int u, int v, colours before, segment_effect effect)
 {
@@ -137,7 +138,7 @@ static colours rays_at(const plane_state* state, const member_state* member, int
   return rays;
 }
 
-// Rays that come in through the sides of the box, to go on from (u, v) outside of it.
+// Power of the rays that enter through the sides of the box, from (u, v) outside it.
 static colours coming_in(const plane_state* state, const member_state* member, int u, int v)
 {
   const bool beyondU = u < 0 || u >= state->sizeU, beyondV = v < 0 || v >= state->sizeV;
@@ -158,7 +159,7 @@ static colours coming_in(const plane_state* state, const member_state* member, i
 }
 
 #if SIDES
-// What voxel (u, v) holds of rays that go out of the block by the move before segment s.
+// Writes the rays of voxel (u, v) that leave the block in the move before segment s.
 static void give_sides(const plane_state* state, const member_state* member, int s, int u, int v, colours rays)
 {
   const int du = member->du[s], dv = member->dv[s];
@@ -179,7 +180,7 @@ static void give_sides(const plane_state* state, const member_state* member, int
 }
 #endif
 
-// Round the periodic axes, to a voxel of the plane or still outside it.
+// Wraps (u, v) around the periodic axes; the result may still be outside the plane.
 static int2 go_round(const plane_state* state, int u, int v)
 {
   const int size_u = state->sizeU, size_v = state->sizeV;
@@ -188,7 +189,7 @@ static int2 go_round(const plane_state* state, int u, int v)
   return (int2)(state->lane->periodicU ? u + past_u : u, state->lane->periodicV ? v + past_v : v);
 }
 
-// Behind the plane's first segment.
+// Power of the rays after the plane's first segment.
 static colours behind_first(const plane_state* state, const member_state* member, int of_u, int of_v)
 {
   const int2 at = go_round(state, of_u, of_v);
@@ -209,7 +210,7 @@ static colours mixed(colours stay, colours come, float part)
   return stay;
 }
 
-// Behind the second one.
+// Power of the rays after the plane's second segment.
 static colours behind_second(const plane_state* state, const member_state* member, int of_u, int of_v)
 {
   const int2 at = go_round(state, of_u, of_v);
@@ -226,7 +227,7 @@ static colours behind_second(const plane_state* state, const member_state* membe
   return behind(state, member, u, v, rays, effect_at(state, u, v, member->length[1]));
 }
 
-// What a voxel's work-item adds up over all bundles.
+// Sums that a voxel's work-item accumulates over all bundles.
 typedef struct
 {
   float path[CHANNELS]; // where DEGREE of one ray
@@ -240,7 +241,8 @@ typedef struct
   float escaped[4][CHANNELS]; // through -u, +u, -v, +v
 } voxel_sums;
 
-// @param not_lost  of what shines besides in the voxel itself: that is not lost there
+// Adds a segment's path, and flux, to the sums.
+// @param not_lost  power of the voxel's additional octant source, which is not lost in the voxel itself
 static void put_down(voxel_sums* sums, colours rays, colours not_lost, float meanLength, float3 along)
 {
   for (int c = 0; c < CHANNELS; ++c)
@@ -255,7 +257,7 @@ static void put_down(voxel_sums* sums, colours rays, colours not_lost, float mea
   }
 }
 
-// Power of the rays that leave the box from voxel (u, v) by the move before segment s, see COUNT_ESCAPED.
+// Counts the power of the rays that leave the box from voxel (u, v) in the move before segment s, see COUNT_ESCAPED.
 static void count_escaped(
   const plane_state* state, voxel_sums* sums, const member_state* member, int s, int u, int v, colours rays)
 {
@@ -300,9 +302,9 @@ static void add_current(voxel_sums* sums, int face, colours rays, float part)
   }
 }
 
-// Power that enters voxel (u, v) by the move before segment s: see SweepPartialCurrents.cl. Of rays through the edge
-// between four voxels those on their way to the voxels beside pass this one, too.
-// @param come  the rays that come from where the move began
+// Counts the power that enters voxel (u, v) in the move before segment s, see SweepPartialCurrents.cl. Rays that cross
+// the edge between four voxels on their way to the neighbours also pass through this voxel.
+// @param come  rays that arrive from the move's starting voxel
 static void count_currents(
   const plane_state* state, voxel_sums* sums, const member_state* member, int s, int u, int v, colours come)
 {

@@ -1,10 +1,10 @@
-// The slot a launch works in, where volumes are streamed (SliceStream.h).
+// Moves pointers to the slot that a launch works in, for streamed volumes (SliceStream.h).
 
 #pragma once
 #include "LightPropagation/Sweep/OnCpu/SweepLayout.cl"
 
-// Of volumes that are streamed there are slices in slots: the steps of PlaneInfo are a slot's, and
-// plane `slot.y` of the box is the first one there.
+// For streamed volumes, slots hold slices: the steps in PlaneInfo are those of a slot, slot.x is the slot's number, and
+// slot.y is the index in the box of the slot's first plane.
 static void go_to_slot(SweepInfo* info, int2 slot, const __global float** sigma, const __global float** source,
   __global float** path, __global float** lost, __global float** flux, __global float** currents,
   const __global float** octants)
