@@ -1,6 +1,6 @@
-// Rays through a range of planes, on a CPU: a work-item carries all the rays of its unit (one way along the axis, some
-// or all bundles) and deposits into the volume itself. Units of one launch never share a plane, so nothing is lost and
-// sums have one order. The host gives what SweepLayout.cl asks for.
+// Carries rays through a range of planes, on a CPU. A work-item carries all rays of its unit (one way along the axis,
+// some or all bundles) and deposits into the volume directly. Units of one launch never share a plane, so there are no
+// races and the order of summation is fixed. The host defines what SweepLayout.cl requires.
 
 #include "LightPropagation/Sweep/OnCpu/SweepCrossing.cl"
 #include "LightPropagation/Sweep/OnCpu/SweepFaces.cl"
@@ -10,7 +10,7 @@
 #include "LightPropagation/Sweep/OnCpu/SweepSides.cl"
 #include "LightPropagation/Sweep/Slices/SliceSlot.cl"
 
-// To one of the planes that are crossed one behind the other.
+// Selects plane k of a chain.
 static void go_to_plane(sweep_state* state, int k)
 {
   const struct plane_place* place = state->places + k;
@@ -24,7 +24,7 @@ static void go_to_plane(sweep_state* state, int k)
 #endif
 }
 
-// One bundle through planes, once for each number of members.
+// Functions for one bundle, compiled once for each number of members.
 #define MEMBERS 1
 #include "LightPropagation/Sweep/OnCpu/SweepBundle.cl"
 #undef MEMBERS
@@ -47,16 +47,16 @@ typedef struct
   int backward;
 } swept_volume;
 
-// Planes [first, first + count) of it in scratch.
+// Its planes [first, first + count), packed in scratch.
 typedef struct
 {
   __global float* planes;
   __global int* thin; // [plane][row]
   int first, count;
-  const __global OwnLightInfo* own; // [plane from where rays start] of the first plane crossed
+  const __global OwnLightInfo* own; // of the first plane crossed; [plane, counted from where rays start]
 } packed_planes;
 
-// Which of the rows are thin throughout.
+// Finds the rows in which all voxels are optically thin.
 static BY_ROW void find_thin_rows(const PlaneInfo* layout, const __global float* plane, int2 rows, __global int* thin)
 {
   for (int v = rows.x; v < rows.y; ++v)
@@ -71,7 +71,7 @@ static BY_ROW void find_thin_rows(const PlaneInfo* layout, const __global float*
   }
 }
 
-// Make rows [rows.x, rows.y) of planes ready to be crossed.
+// Prepares rows [rows.x, rows.y) of planes for crossing.
 static BY_ROW void begin_rows(const swept_volume* volume, const packed_planes* packed, int2 rows)
 {
   const SweepInfo* info = volume->info;
@@ -96,7 +96,7 @@ static BY_ROW void begin_rows(const swept_volume* volume, const packed_planes* p
       __global float* row = ROW_OF(plane, 0, v);
       for (int at = 0; at < ROW; at += REAL_WIDTH)
       {
-        // Vacuum is a very thin medium: 0 / 0 never happens.
+        // Vacuum is treated as a very thin medium, which avoids 0 / 0.
         const real s = fmax(load_real(at, row + PlaneSigma * ROW), (real)layout->vacuum);
         store_real(s, at, row + PlaneSigma * ROW);
         store_real((real)1.0f / s, at, row + PlaneInverse * ROW);
@@ -119,8 +119,8 @@ static BY_ROW void begin_rows(const swept_volume* volume, const packed_planes* p
 }
 
 #if !ANGULAR
-// Adds to a row the path of the medium's own light in the voxel where it starts (numerics.md, Eq. (26)):
-// (length - taken) / sigma, or a polynomial where that would cancel or `taken` was not kept.
+// Adds to a row the path of emitted and scattered light within its voxel of origin (numerics.md, Eq. (26)): (length -
+// taken) / sigma, or a polynomial if that would cancel or `taken` was not stored.
 static BY_ROW void add_own_light(const PlaneInfo* layout, __global float* row, const __global OwnLightInfo* light)
 {
   for (int at = 0; at < ROW; at += REAL_WIDTH)
@@ -145,7 +145,7 @@ static BY_ROW void add_own_light(const PlaneInfo* layout, __global float* row, c
 }
 #endif
 
-// Add what rows of the planes gathered to the volume.
+// Adds the sums of rows of the planes to the volume.
 static BY_ROW void end_rows(const swept_volume* volume, const packed_planes* packed, int2 rows)
 {
   const SweepInfo* info = volume->info;
@@ -207,12 +207,12 @@ static void cross_planes(sweep_state* state, int planes, __global float* maps, c
 #undef CROSS
 }
 
-// Rays of some bundles through planes one behind the other. Where the planes are many (their moments, or large ones
-// that are chained) tile by tile of rows, so that those of a tile stay in the cache for all bundles.
-// @param planes  1 where CHAINED is 0
-// @param crossings, coefficients  of the first of the bundles
-// @param packed  the planes, whose rows are packed tile by tile where ROWS_KEPT: then the bundles are all that there
-//                are
+// Carries rays of several bundles through a chain of planes. If the planes hold much data (moments, or large chained
+// planes), works tile by tile of rows, so that a tile stays in the cache for all bundles.
+// @param planes  number of planes; 1 if CHAINED is 0
+// @param crossings, coefficients  those of the first bundle
+// @param packed  the planes, whose rows are packed tile by tile if ROWS_KEPT; the bundles are then all
+//                there are
 static void cross_bundles(sweep_state* state, const swept_volume* volume, const packed_planes* packed, int planes,
   __global float* maps, const __global float* outside, const __global float* radiance,
   const __global BundleInfo* bundles, int count, const __global CrossingInfo* crossings, int all_bundles,
@@ -280,23 +280,23 @@ static void clear_tallies(float (*escaped)[4][CHANNELS], float (*rounding)[4][CH
 // sigma     1/length, [voxel]
 // source    W / (length^3 sr), with its angular moments and beams (MomentPlacesShared.h)
 // path      W length, with its angular moments, added to
-// lost      as path: what rounding took from it in this sweep, where rays go round the axis
+// lost      rounding errors of path in this sweep (compensated summation), if rays wrap around the axis
 // flux      W length, [channel][x, y, z][stride], added to
-// currents  W, [channel][-x, +x, -y, +y, -z, +z][stride], added to: through that face into the voxel
+// currents  W, [channel][-x, +x, -y, +y, -z, +z][stride], added to: power that enters the voxel through that face
 // maps      rays of both ways
-// outside, radiance   rays that come in, both ways as maps
+// outside, radiance   incident rays, both ways, as maps
 // coefficients  see BundleInfo, both ways as maps
 // crossings [plane of the ray pattern][bundle]
 // own       [unit][plane from where rays start], see add_own_light
-// schedule  [launch][unit] first plane and end, counted from where rays start; beyond the last plane the axis begins
-//           anew; where streamed [launch][planes, slots][unit], see go_to_slot
-// tally     [plane from where rays start][unit][-u, +u, -v, +v][channel] W that left
+// schedule  [launch][unit] first plane and end, counted from where rays start; planes beyond the last
+//           wrap around; if streamed [launch][planes, slots][unit], see go_to_slot
+// tally     escaped power, W, [plane, counted from where rays start][unit][-u, +u, -v, +v][channel]
 // octants   see SweepRequest::octantSource
-// face_out, face_in  see Deposit.h, SweepOperator.h; where FaceInfo has out, in; face_out is the sweep's own, and
-//           [unit][channel][cell] where rays spread
+// face_out, face_in  see Deposit.h, SweepOperator.h; used if FaceInfo has out, in; face_out is the sweep's own array,
+//           [unit][channel][cell] if rays spread
 // function_places  see SweepPlan::FunctionPlaces
-// sides_in, sides_out  [plane from the box's first on][ray], see SweepSides.cl; outer_sides: bit i, of light through
-//           its side i, that it leaves the whole grid; where SIDES
+// sides_in, sides_out  [plane, counted from the box's first][ray], see SweepSides.cl; if SIDES
+// outer_sides  bit i: light that crosses side i leaves the domain; if SIDES
 __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo info, const __global float* sigma,
   const __global float* source, __global float* path, __global float* lost, __global float* flux,
   __global float* currents, __global float* maps, const __global float* outside, const __global float* radiance,
@@ -309,7 +309,7 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
   const int unit_count = get_global_size(0);
   const UnitInfo unit = units[u];
   const int2 range = schedule[(info.streamed ? 2 : 1) * info.launch * unit_count + u];
-  const int first_plane = info.planes.firstP; // of the box, in the grid
+  const int first_plane = info.planes.firstP; // index in the grid of the box's first plane
   if (info.streamed)
   {
     const int2 slot = schedule[(2 * info.launch + 1) * unit_count + u];
@@ -405,7 +405,7 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
   const int2 all_rows = (int2)(0, layout.sizeV);
   for (int begin = range.x, count; begin < range.y; begin += count)
   {
-    const int lap = begin / layout.sizeP * layout.sizeP; // planes already marched when the axis began anew
+    const int lap = begin / layout.sizeP * layout.sizeP; // planes marched in earlier laps
     count = min(min(layout.together, range.y - begin), lap + layout.sizeP - begin);
 #if ANGULAR
     count = info.momentsInPlace ? count : min(count, of_one_group(&layout, begin - lap, unit.backward));
@@ -440,7 +440,7 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
     for (int k = begin, chained; k < begin + count; k += chained)
     {
 #if CHAINED
-      // Chains begin at the same planes wherever a range does: so rows, and sums, are crossed in the same order.
+      // Chains begin at the same planes wherever a range begins, so that rows and sums are processed in the same order.
       state.chained_before = (unit.planesBefore + k) % layout.chained;
       chained = min(layout.chained - state.chained_before, begin + count - k);
 #else

@@ -1,9 +1,9 @@
-// One bundle through one plane. Compiled once for each number of MEMBERS.
+// Carries one bundle through one plane. Compiled once for each number of MEMBERS.
 //
-// A plane is crossed in up to three stages, one a segment. A stage takes every ray from where the stage before left it:
-// the whole map moves by one voxel or none, which costs nothing but an offset in the load. Stages follow each other row
-// by row at a distance of LAG rows, so that what passes between them stays in the cache; the last one writes the map in
-// place.
+// A plane is crossed in up to three stages, one per segment. A stage reads every ray where the previous stage left it:
+// the whole map moves by one voxel or none, which costs only an offset in the load. The stages process rows one after
+// the other, each LAG rows behind the previous one, so that intermediate rows stay in the cache; the last stage writes
+// the map in place.
 
 #define NAME_OF(a, b) TYNDALL_JOIN(a, b)
 #define CROSS_VOXELS NAME_OF(cross_voxels_, MEMBERS)
@@ -25,7 +25,7 @@
 
 #if ANGULAR
 #include "LightPropagation/Sweep/OnCpu/SweepMoments.cl"
-// A function for as many frames as the bundle has: one of one member, two of all eight.
+// Calls FUNCTION with the bundle's number of frames as a constant: one for a single member, two for eight.
 #define FOR_FRAMES(FUNCTION, y, slot)                       \
   if (MEMBERS == 8 || (MEMBERS > 1 && bundle->frames == 2)) \
   {                                                         \
@@ -37,10 +37,11 @@
   }
 #else
 
-// All rays of a row through one segment each (numerics.md, Eqs. (23), (24); Gruson et al., Eq. 3, conservative):
+// Carries all rays of a row through one segment each (numerics.md, Eqs. (23), (24); Gruson et al., Eq. 3, in
+// conservative form):
 //   path += p1 P,  P' = P - sigma p1 P + power q p1
-// The path of the source's own light in the voxel does not depend on P: Sweep.cl, add_own_light.
-// @param entered  rows of the power that comes into the plane, where it is wanted, [channel][CurrentFaces]; else null
+// The path of the source's light within its own voxel does not depend on P and is added by add_own_light in Sweep.cl.
+// @param entered  rows of the power that enters the plane's voxels, [channel][CurrentFaces]; null if not needed
 static inline __attribute__((always_inline)) void CROSS_VOXELS(sweep_state* state, int y, bool deposit, bool thin,
   const __global float** in, __global float* out, float length, const __global BundleInfo* bundle,
   __global float* entered)
@@ -52,7 +53,7 @@ static inline __attribute__((always_inline)) void CROSS_VOXELS(sweep_state* stat
   __global float* path_row = ROW_OF(state->planes, PLANE_PATH, y);
   const float power = bundle->power;
 #if OCTANT_SOURCE
-  int way[MEMBERS], other[MEMBERS]; // as WaysAside: rays that go neither way along u or v are between two of them
+  int way[MEMBERS], other[MEMBERS]; // as WaysAside; they differ if the direction has no component along u or v
 #pragma unroll
   for (int m = 0; m < MEMBERS; ++m)
   {
@@ -87,8 +88,9 @@ static inline __attribute__((always_inline)) void CROSS_VOXELS(sweep_state* stat
     }
     const real shine = mean_length * power;
 #if NET_FLUX
-    // Path of the light that the voxel's own source adds, (length - mean_length) / sigma. Across the axis that of
-    // mirror images cancels, but along it a ray and its opposite may cross the voxel in different parts.
+    // Path, within the voxel, of the light of its own source, (length - mean_length) / sigma, for the net flux. Across
+    // the axis the contributions of mirror images cancel; along it they do not, as a ray and its opposite may cross the
+    // voxel in different segments.
     const real own_path = own_path_of(x, &crossing, inverse_row, length) * (power * MEMBERS * bundle->cosine);
 #endif
 #pragma unroll
@@ -133,7 +135,8 @@ static inline __attribute__((always_inline)) void CROSS_VOXELS(sweep_state* stat
       if (deposit)
       {
 #if OCTANT_SOURCE
-        sum -= all_more * load_real(x, inverse_row) * power; // what shines besides is not lost in its own voxel
+        // the additional octant source is not lost in its own voxel
+        sum -= all_more * load_real(x, inverse_row) * power;
 #endif
         store_real(multiply_add(mean_length, sum, load_real(x, path_row + c * ROW)), x, path_row + c * ROW);
 #if NET_FLUX
@@ -151,8 +154,9 @@ static inline __attribute__((always_inline)) void CROSS_VOXELS(sweep_state* stat
 
 #endif
 
-// @param slot  of the row among those that a bundle keeps sources of
-// @param first  its first segment in the plane
+// Carries the rays of a row through one segment, with or without angular moments.
+// @param slot  index of the row among those for which a bundle keeps sources
+// @param first  whether this is the row's first segment in the plane
 static void STAGE_ROW(sweep_state* state, int y, int slot, bool first, bool deposit, const __global float** in,
   __global float* out, float length, const __global BundleInfo* bundle)
 {
@@ -182,11 +186,11 @@ static void STAGE_ROW(sweep_state* state, int y, int slot, bool first, bool depo
   }
 }
 
-// Power of the rays that leave row y of `row` by a move of (du, dv), of which `part` moves. Rays that move both ways at
-// once go through u first and through v first in equal parts: half of those in the box's edge leave through each of its
-// faces, and half of what comes in beside it goes straight through.
-// across_u, across_v  rays that come in through the faces across u and v, at [FIRST(m, c)] of the row and at [m][c],
-//                     but those that come in by cells
+// Counts the power of the rays that leave row y of `row` in a move of (du, dv), of which `part` moves. Rays that move
+// along u and v at once are taken to cross u first and v first in equal parts. Of those at the box's edge, half leave
+// through each of its faces, and half of the light that enters next to the edge passes straight through.
+// across_u, across_v  power that enters through the faces across u and v, at [FIRST(m, c)] of the row and at [m][c],
+//                     without light given by cells
 static BY_ROW void COUNT_ESCAPED(sweep_state* state, const __global float* row, int y, int m, int du, int dv,
   float part, const __global BundleInfo* bundle, const __global float* across_u, const __global float* across_v)
 {
@@ -244,7 +248,7 @@ static BY_ROW void COUNT_ESCAPED(sweep_state* state, const __global float* row, 
   }
 }
 
-// Rays of a row of which a part moves: `in` is where they come from, `own` the row itself.
+// Mixes rays of a row of which only a part moves: `in` are the rays that arrive, `own` the row itself.
 static BY_ROW void MOVE_PART(sweep_state* state, float part, const __global float* own, const __global float** in)
 {
   for (int m = 0; m < MEMBERS; ++m)
@@ -264,7 +268,7 @@ static BY_ROW void MOVE_PART(sweep_state* state, float part, const __global floa
   }
 }
 
-// Rays that come in from the side within a row: the column beside it, on both ends of every row in the rings.
+// Writes the rays that enter from the side within a row to the columns at both ends of every row in the rings.
 static BY_ROW void FILL_BORDER(sweep_state* state, const __global float* radiance)
 {
   for (int i = 0; i < MEMBERS * CHANNELS; ++i)
@@ -279,7 +283,7 @@ static BY_ROW void FILL_BORDER(sweep_state* state, const __global float* radianc
 }
 
 #if FACES
-// Rays that come in through the faces across u by cells, into the columns beside row y.
+// Adds light given by cells of the faces across u to the columns beside row y.
 static BY_ROW void ENTER_ASIDE(sweep_state* state, int y, const __global float* radiance,
   const __global BundleInfo* bundle, int moveU, int moveV, __global float* out)
 {
@@ -295,7 +299,7 @@ static BY_ROW void ENTER_ASIDE(sweep_state* state, int y, const __global float* 
   }
 }
 
-// The row of rays that come in through the faces across v, with those that come in by cells.
+// Computes the row of rays that enter through the faces across v, including light given by cells.
 static BY_ROW void FILL_OUTSIDE(sweep_state* state, const __global float* outside, const __global float* radiance,
   const __global BundleInfo* bundle, const __global CrossingInfo* crossing)
 {
@@ -324,7 +328,7 @@ static BY_ROW void FILL_OUTSIDE(sweep_state* state, const __global float* outsid
           row[size] = row[0];
           continue;
         }
-        // Past the edge half comes in through either face.
+        // Beyond the edge, half enters through each face.
         const int corner = dv > 0 ? 0 : state->sizeV - 1;
         const int column = du > 0 ? 0 : size - 1;
         const float half_light = du == 0
@@ -339,8 +343,8 @@ static BY_ROW void FILL_OUTSIDE(sweep_state* state, const __global float* outsid
 #endif
 
 #if CURRENTS
-// The rays of row y by the face they come through, see SweepPartialCurrents.cl: those of one face together. `own` is
-// the row itself, where rays come from.
+// Counts the power that enters row y by face, see SweepPartialCurrents.cl; the rays of one face are added together.
+// `own` is the row itself, before the move.
 static BY_ROW void COUNT_CURRENTS(sweep_state* state, int y, bool first, const __global float** in,
   const __global float* own, const __global BundleInfo* bundle, int moveU, int moveV, float part)
 {
@@ -383,8 +387,8 @@ static BY_ROW void COUNT_CURRENTS(sweep_state* state, int y, bool first, const _
 }
 #endif
 
-// A row of rays where a stage of a plane takes them from, for each member: `in`. Rays that leave the box are counted.
-// @param own     the row itself as the stage before left it; null: rays come from the map, and do not move
+// Finds the row from which a stage reads its rays, for each member: `in`. Counts the rays that leave the box.
+// @param own     the row itself as the previous stage left it; null: rays are read from the map and do not move
 static void TAKE_ROW(sweep_state* state, int y, bool inside, int s, const __global float* map,
   const __global float* ring, const __global float* own, const __global float* beside, const __global float* outside,
   const __global float* radiance, const __global BundleInfo* bundle, const __global CrossingInfo* crossing,
@@ -421,7 +425,7 @@ static void TAKE_ROW(sweep_state* state, int y, bool inside, int s, const __glob
   }
 }
 
-// What comes in beside a row within a plane, before stage s.
+// Writes the rays that enter beside a row within a plane, before stage s.
 static void ENTER_ROW(sweep_state* state, int y, int s, const __global float* radiance,
   const __global BundleInfo* bundle, const __global CrossingInfo* crossing, __global float* out)
 {
@@ -442,16 +446,16 @@ static void ENTER_ROW(sweep_state* state, int y, int s, const __global float* ra
 #endif
 }
 
-// A bundle through planes one behind the other, all stages of all of them row by row: rays leave the cache for the
-// map, and come from it, once.
+// Carries a bundle through a chain of planes, with all stages of all planes row by row, so that rays are read from the
+// map and written to it only once.
 //
-// @param planes   how many; 1 where CHAINED is 0
-// @param map      rays of the bundle, [row][member][channel][ROW], two rows more than the plane has
-// @param outside  a row of rays that come in through the faces across v, [member][channel][ROW]
-// @param radiance of rays that come in through the faces across u, [member][channel]
-// @param crossings  of the first plane, and of each next one `bundles` further
-// @param coefficients  of the bundle's angular functions
-// @param first_row, end_row  of the first stage, that are crossed in this call: in turn, from FirstRow on
+// @param planes   number of planes; 1 if CHAINED is 0
+// @param map      rays of the bundle, [row][member][channel][ROW], with two rows more than the plane
+// @param outside  a row of rays that enter through the faces across v, [member][channel][ROW]
+// @param radiance power of rays that enter through the faces across u, [member][channel]
+// @param crossings  crossing of the first plane; those of the following planes are `bundles` apart
+// @param coefficients  values of the bundle's angular functions
+// @param first_row, end_row  rows of the first stage that are crossed in this call; successive calls start at FirstRow
 static void CROSS_PLANES(sweep_state* state, int planes, __global float* map, const __global float* outside,
   const __global float* radiance, const __global BundleInfo* bundle, const __global CrossingInfo* crossings,
   int bundles, const __global float* coefficients, int first_row, int end_row)
@@ -462,7 +466,7 @@ static void CROSS_PLANES(sweep_state* state, int planes, __global float* map, co
     FILL_BORDER(state, radiance);
   }
   stage_of_chain chain[STAGES];
-  int stages = 0, before = 0; // of planes that the chain has without these, as if it was crossed from its first one on
+  int stages = 0, before = 0; // stages of the chain's earlier planes, as if it had been crossed from its first one on
   for (int k = 1; k <= state->chained_before; ++k)
   {
     before += crossings[-k * bundles].stages;
@@ -492,8 +496,8 @@ static void CROSS_PLANES(sweep_state* state, int planes, __global float* map, co
 #else
   const __global float* const beside = outside;
 #endif
-  // Rows beyond the plane are rows of the other side, and computed again there; the first ones are needed after they
-  // are overwritten.
+  // With periodicity, rows beyond the plane are rows of the other side and are recomputed there. The first rows are
+  // needed after they have been overwritten.
   const int beyond = PERIODIC_V ? stages - 1 : 0;
   for (int i = 0; begins && i < beyond * BLOCK; ++i)
   {
@@ -517,14 +521,14 @@ static void CROSS_PLANES(sweep_state* state, int planes, __global float* map, co
 #if CHAINED
       go_to_plane(state, chain[g].plane);
 #endif
-      const __global float* ring = state->ring + (g - 1) * (RingRows * RAYS_OF_ROW); // of the stage before
+      const __global float* ring = state->ring + (g - 1) * (RingRows * RAYS_OF_ROW); // of the previous stage
       const __global float* own = g > 0 ? ring + (y & (RingRows - 1)) * RAYS_OF_ROW : 0;
       const __global float* in[MEMBERS];
       TAKE_ROW(state, y, inside, s, map, ring, own, beside, outside, radiance, bundle, crossing, in);
       __global float* out =
         g == stages - 1 ? map + y * BLOCK : state->ring + (g * RingRows + (y & (RingRows - 1))) * RAYS_OF_ROW;
 #if CURRENTS
-      if (inside && (ANGULAR || s > 0)) // else where voxels are crossed
+      if (inside && (ANGULAR || s > 0)) // otherwise done where voxels are crossed
       {
         COUNT_CURRENTS(state, y, s == 0, in, own, bundle, crossing->moveU[s], crossing->moveV[s], crossing->part[s]);
       }

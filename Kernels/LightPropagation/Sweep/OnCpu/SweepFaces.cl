@@ -43,7 +43,7 @@ static face_planes planes_of_ray(const sweep_state* state, float planes)
 // First cell of plane p of a side.
 static __global exact* cells_of_plane(const sweep_state* state, int side, int p, int c)
 {
-  p = (p + state->facePlanes) % state->facePlanes; // beyond an axis that rays go round
+  p = (p + state->facePlanes) % state->facePlanes; // wraps around a periodic axis
   const long planes = p - state->facePlane;
   return state->faceOut + FACE_CELL(state, side, 0, c) + planes * state->faces->plane[side];
 }

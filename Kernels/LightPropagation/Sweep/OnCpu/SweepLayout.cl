@@ -1,21 +1,21 @@
-// The layout of a sweep, shared by the files that include it. The host gives
+// Memory layout of a sweep, shared by the files that include this one. The host defines
 //   REAL_WIDTH  4, 8 or 16 floats of a vector
 //   CHANNELS  1 or 3 colours that share sigma_t
 //   ROW       floats in a padded row; the floats after a row's voxels and before the next row's are its border
-//   ANGULAR   1 where light is gathered and scattered in angular moments, 0: fluence alone
-//   BEAMS     sources with an angular distribution of their own, besides the moments; where ANGULAR
-//   NET_FLUX  1 where the net flux is wanted
-//   CURRENTS  1 where the power that enters each voxel through each face is wanted
-//   OCTANT_SOURCE  1 where voxels may shine otherwise into each octant; where ANGULAR is 0
-//   PERIODIC  1 where the box may be periodic along u or v; SweepInfo says along which it is
-//   FACES     1 where light may leave and come in by cells of the box's faces (SweepFaces.cl); FaceInfo says which
-//   CHAIN_KEEPS  rows of planes that scratch has room for, a power of two; 0: all; may be left out
-//   SIDES     1 where the box is a block of a larger one (SweepSides.cl); may be left out
-// What costs next to nothing to ask is not among them but in SweepInfo: a sweep of the light that comes in and those of
-// what it scatters are one program, which takes seconds to compile.
+//   ANGULAR   1 if light is represented by angular moments; 0: fluence only
+//   BEAMS     number of sources with their own angular distribution, besides the moments; if ANGULAR
+//   NET_FLUX  1 if the net flux is computed
+//   CURRENTS  1 if the power that enters each voxel through each face is computed
+//   OCTANT_SOURCE  1 if voxels may have an additional source by octant; only if ANGULAR is 0
+//   PERIODIC  1 if the box may be periodic along u or v; SweepInfo says along which
+//   FACES     1 if light may be counted or given by cells of the box's faces (SweepFaces.cl); FaceInfo says which
+//   CHAIN_KEEPS  rows of planes that fit in scratch, a power of two; 0 (default): all
+//   SIDES     1 if the box is a block of a larger domain (SweepSides.cl); default 0
+// Options whose run-time test is nearly free are in SweepInfo instead: sweeps of incident light and of scattered light
+// thus share one program, which takes seconds to compile.
 //
-// Rays carry power (W), so that leaving through any face needs no further factor. A map row holds the rays by the voxel
-// they enter, for all members of a bundle and all channels: float [member][channel][ROW].
+// Rays carry power (W), so escaped power needs no further factor at any face. A row of a map holds the rays by the
+// voxel they enter, for all members of a bundle and all channels: float [member][channel][ROW].
 
 #pragma once
 #include "LightPropagation/Sweep/SweepShared.h"
@@ -29,11 +29,11 @@
 #define CHAIN_KEEPS 0
 #endif
 #define PAD REAL_WIDTH
-#define LAG 2 // rows a stage stays behind the one before
+#define LAG 2 // rows by which a stage lags behind the previous one
 #define PLANES_TOGETHER (REAL_WIDTH > MostChained ? REAL_WIDTH : MostChained) // at most
 #define FLUX (NET_FLUX ? 3 : 0)
 
-// The quantities of one plane, behind those of SweepShared.h.
+// The quantities of one plane that follow those of SweepShared.h.
 #define PLANE_BEAMS (PlaneSource + CHANNELS)
 #define PLANE_PATH (PLANE_BEAMS + BEAMS * CHANNELS) // the path integral of power, W length
 #define PLANE_FLUX (PLANE_PATH + CHANNELS)
@@ -42,11 +42,11 @@
 #define PLANES PLANE_COUNT(CHANNELS, BEAMS, NET_FLUX, CURRENTS, OCTANT_SOURCE)
 #define RAYS_OF_ROW (MaxMembers * CHANNELS * ROW)
 
-// Whether planes may be crossed row by row one behind the other, up to PLANES_CHAINED: not where what comes in or goes
-// out beside rows is kept by plane, or rows come from the other side.
+// Whether up to PLANES_CHAINED planes may be crossed as a chain, row by row. Not if rays that enter or leave beside
+// rows are stored by plane, or rows wrap around.
 #define CHAINED (!ANGULAR && !FACES && !SIDES && !PERIODIC)
-// Of functions that are called once a row, or less often: with copies of them in unrolled loops compiling took a third
-// longer. Where planes may be chained calls cost 10% of a sweep of 64 voxels a row.
+// For functions that are called at most once per row. Inlining them in unrolled loops makes compilation a third slower;
+// where planes may be chained, however, calls cost 10% of a sweep with 64 voxels per row.
 #if CHAINED
 #define BY_ROW
 #else
@@ -56,8 +56,8 @@
 #define PERIODIC_V (PERIODIC && state->periodicV)
 #define ROWS_KEPT (CHAINED ? CHAIN_KEEPS : 0)
 
-// A plane is [row][quantity][ROW]: what is needed at once lies together, and no stride is a power of two. Where
-// ROWS_KEPT, it is those of its rows that bundles in turns are at, in as many places, used again and again.
+// A plane is [row][quantity][ROW]: data used together is contiguous, and no stride is a power of two. If ROWS_KEPT,
+// only the rows that bundles are working on are stored, in a ring of that many rows.
 #if ROWS_KEPT
 #define PLACE_OF_ROW(row) ((row) & (ROWS_KEPT - 1))
 #else
@@ -66,14 +66,14 @@
 #define ROW_OF(planes, quantity, row) ((planes) + (PLACE_OF_ROW(row) * PLANES + (quantity)) * ROW)
 
 #if ANGULAR
-// Where voxel x is among so many functions from the second on, as MomentPlacesShared.h has them.
+// Offset of voxel x in a row of moments with `higher` functions from the second on, see MomentPlacesShared.h.
 #define IN_ROW(x, higher) ((x) / MomentGroup * ((higher)*MomentGroup) + (x) % MomentGroup)
 #endif
 
-// Planes of a chain, their stages, and how far the last one stays behind.
+// Planes of a chain, their stages, and the lag of the last stage.
 #define PLANES_CHAINED (CHAINED ? MostChained : 1)
 #define STAGES (3 * PLANES_CHAINED)
-#define ROWS_BEHIND(planes) (LAG * (3 * (planes)-1) + 2) // a plane, that a stage may end at at most
+#define ROWS_BEHIND(planes) (LAG * (3 * (planes)-1) + 2) // most rows by which the last stage lags behind the first
 typedef struct
 {
   int plane, stage; // of the plane
@@ -83,7 +83,7 @@ typedef struct
 typedef char kept_rows_suffice[ROWS_KEPT >= RowsOfChain + ROWS_BEHIND(MostChained) ? 1 : -1];
 #endif
 
-// A plane that is crossed.
+// A plane that is being crossed.
 struct plane_place
 {
   __global float* planes;
@@ -93,55 +93,55 @@ struct plane_place
   int plane; // of the box
 };
 
-// Where a work-item is: its planes, its rows, its buffers.
+// State of a work-item: its planes, rows and buffers.
 typedef struct
 {
   int sizeU, sizeV;                 // voxels of the plane
   int width;                        // sizeU rounded up to whole vectors
-  int shines, border, roundAxis;    // as SweepInfo has them
+  int shines, border, roundAxis;    // see SweepInfo
   int periodicU, periodicV;         // likewise
-  const struct plane_place* places; // of planes that are crossed one behind the other
+  const struct plane_place* places; // the planes of a chain
   __global float* planes;           // of the plane that is being crossed
-  __global int* thin;               // [row] of it, 1 where all voxels are thin
+  __global int* thin;               // [row] of it: 1 if all voxels are thin
   float meanLength[MeanLengthTerms];
-  int chained_before; // planes of a chain that were crossed before those of `places`
+  int chained_before; // planes of the chain that were crossed before those of `places`
 #if CHAINED
-  const __global float* asked; // floats that are needed soon, and how many lines of them to ask for by vector
+  const __global float* asked; // prefetch: next address, and number of cache lines per vector of voxels
   int asks;
 #endif
-  int tile;             // rows that bundles cross in turns; 0: each crosses all of them
-  int rings;            // one behind each stage but the last
-  __global float* ring; // so many of RingRows rows of RAYS_OF_ROW floats
+  int tile;             // rows in a tile, which bundles cross in turn; 0: each bundle crosses all rows
+  int rings;            // number of rings: one after each stage except the last
+  __global float* ring; // [rings][RingRows][RAYS_OF_ROW]
 #if ANGULAR
   __global float* sources; // MomentRows rows of RAYS_OF_ROW floats: W / (length^3 sr) in the members' directions
-  __global float* paths;   // the same: W length, of the members
-  __global float* ownPath; // MomentRows rows: of a source of 1 in its own voxel
-  // Of the plane, from the second function on: source and path, and the way from one row or channel to the next.
+  __global float* paths;   // the members' paths, W length, laid out as sources
+  __global float* ownPath; // MomentRows rows: path of a unit source within its own voxel
+  // Moments of the plane from the second function on: source and path, and the distance between rows and channels.
   const __global float* momentSource;
   __global float* momentPath;
   ulong momentStep, momentChannel;
-  // The angular functions, and where each is in a group of moments, by parity along u and v: even and even, odd and
-  // even, even and odd, odd and odd; and where those of each parity end.
+  // Number of angular functions; position of each in a group of moments, sorted by parity along u and v: even-even,
+  // odd-even, even-odd, odd-odd; and the end of each parity's range.
   int functions;
   const __global int* functionPlaces;
   int parityEnds[4];
 #endif
-  __global float* moving;     // the rays of a row of which a part moves
-  float (*escaped)[CHANNELS]; // of the plane, through -u, +u, -v, +v, W; with the rounding errors
+  __global float* moving;     // rays of a row of which only a part moves
+  float (*escaped)[CHANNELS]; // escaped power of the plane through -u, +u, -v, +v, W, and its rounding errors
   float (*rounding)[CHANNELS];
 #if FACES
   const FaceInfo* faces;
-  ulong faceFirst[4];        // of the plane that is being crossed, first channel
+  ulong faceFirst[4];        // first cells of the plane that is being crossed, first channel
   int firstPlane;            // of the box, in the grid
-  __global exact* faceOut;   // the unit's own
-  int facePlane, facePlanes; // that is being crossed; all of them
+  __global exact* faceOut;   // the unit's own escaped power by cell
+  int facePlane, facePlanes; // plane that is being crossed; number of planes
   const __global float* faceIn;
 #endif
 #if FACES || SIDES
-  __global float* outside; // the row of rays that come in through the faces across v, of the bundle in this plane
+  __global float* outside; // the row of the bundle's rays that enter this plane through the faces across v
 #endif
 #if SIDES
-  const __global float* sidesIn; // of the plane that is being crossed (SweepSides.cl)
+  const __global float* sidesIn; // sides of the plane that is being crossed (SweepSides.cl)
   __global float* sidesOut;
   int outerSides;
 #endif

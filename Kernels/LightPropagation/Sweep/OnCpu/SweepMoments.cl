@@ -6,7 +6,7 @@
 // members, instead of one per member. A bundle has one frame or two; each value of a moment is read once for both.
 
 #define MOST_OF_FRAME (MEMBERS < 4 ? MEMBERS : 4)
-#define BEGIN_OF_FRAME(f) (MEMBERS == 8 ? 4 * (f) : bundle->firstOfFrame[f]) // eight are two full frames
+#define BEGIN_OF_FRAME(f) (MEMBERS == 8 ? 4 * (f) : bundle->firstOfFrame[f]) // eight members are two full frames
 
 // Loops over the functions k, from the second on, parity by parity, and skips parities whose functions are zero in all
 // of the bundle's directions. BEGIN_PARITIES loads the values needed into registers.

@@ -95,7 +95,7 @@ __kernel void enter_sides(int number, const __global SweepLane* lanes, const __g
     {
       light = alike.x + light_of_cells(&cells, power, faceU, place - sizeU, move.y);
     }
-    if (place == sizeU + sizeV && move.x != 0 && move.y != 0) // half comes in through either face
+    if (place == sizeU + sizeV && move.x != 0 && move.y != 0) // half enters through each face
     {
       light = 0.5f *
         (alike.x + alike.y + light_of_cells(&cells, power, faceV, move.x > 0 ? 0 : sizeU - 1, 0) +
@@ -147,7 +147,7 @@ static float power_through(const __global SweepLane* lane, const ray_in_plane* r
     const bool turns = edges && along != 0;
     const float stays = turns && i == (along > 0 ? size - 1 : 0) ? 0.5f : 1.0f;
     float leaves = stays * out[of_u ? sizeU + i : i];
-    if (turns && i == (along > 0 ? 0 : size - 1)) // came in beside, and goes straight through
+    if (turns && i == (along > 0 ? 0 : size - 1)) // entered beside it and passes straight through
     {
       const int last = side % 2 ? (of_u ? sizeU : sizeV) - 1 : 0;
       leaves += 0.5f * in[of_u ? last : sizeU + last];
@@ -176,7 +176,8 @@ __kernel void leave_sides(int number, const __global SweepLane* lanes, const __g
   {
     const int2 of = rays[lane->firstRay + r];
     const __global BundleInfo* bundle = bundles + of.x;
-    const bool ofU = bundle->move[of.y][side < 2 ? 0 : 2] != 0; // it moves there as its bundle does along u
+    // its move across this side is the bundle's move along u
+    const bool ofU = bundle->move[of.y][side < 2 ? 0 : 2] != 0;
     const float planes = ofU ? bundle->planesU : bundle->planesV;
     // Planes in which a move may make it pass these cells.
     const int reach = AROUND ? lane->patternPlanes : SPREAD ? (int)ceil(0.5f * planes) : 0;

@@ -22,15 +22,15 @@ typedef struct
 typedef struct
 {
   const __global SweepLane* lane;
-  const __global float* sigma;   // of the plane's voxel (0, 0)
+  const __global float* sigma;   // at the plane's voxel (0, 0)
   const __global float* source;  // the same
-  const __global float* octants; // the same, where OCTANT_SOURCE
+  const __global float* octants; // the same, if OCTANT_SOURCE
   ulong stride;
   int sizeU, sizeV;
   float meanLength[MeanLengthTerms];
   float thin, vacuum;
 #if SIDES
-  const __global float* sidesIn; // of the plane, [ray][channel][SIDE_FLOATS]
+  const __global float* sidesIn; // incoming rays at the plane's sides, [ray][channel][SIDE_FLOATS]
   __global float* sidesOut;
   int outerSides;
 #endif
@@ -39,9 +39,9 @@ typedef struct
 // A member of a bundle, with the bundle's crossing of the plane.
 typedef struct
 {
-  const __global float* rays;      // of the member, [channel][v][u]
-  const __global float4* entering; // [channel] through u's, v's face
-  const __global float* directed;  // where DEGREE, as rays: what shines along it, W / (length^3 sr)
+  const __global float* rays;      // power of the member's rays, [channel][v][u]
+  const __global float4* entering; // [channel] incident power through u's, v's face
+  const __global float* directed;  // source in its direction, W / (length^3 sr), laid out as rays; if DEGREE
 #if SIDES
   const __global float* sidesIn; // of the member, [channel][SIDE_FLOATS]
   __global float* sidesOut;
@@ -49,8 +49,8 @@ typedef struct
   float power;
   float length[3], part[3];
   int du[3], dv[3];
-  bool bothAtOnce; // moves along u and v
-  int octants[2];  // it goes between: the same but for rays that go neither way along u or v
+  bool bothAtOnce; // moves along u and v in one segment
+  int octants[2];  // octants of its direction; they differ if it has no component along u or v
 } member_state;
 
 static segment_effect effect_of(const plane_state* state, float sigma, float length)
@@ -230,8 +230,8 @@ static colours behind_second(const plane_state* state, const member_state* membe
 // Sums that a voxel's work-item accumulates over all bundles.
 typedef struct
 {
-  float path[CHANNELS]; // where DEGREE of one ray
-  float own;            // path of a source of 1 in its own voxel, the same
+  float path[CHANNELS]; // if DEGREE, of one ray
+  float own;            // path of a unit source within its own voxel; if DEGREE, of one ray
 #if DEGREE
   float moments[CHANNELS][MOMENTS];
 #endif
@@ -337,7 +337,7 @@ static colours not_lost_of(const plane_state* state, const member_state* member,
   return more;
 }
 
-// One member of a bundle through voxel (u, v), and on to the next plane.
+// Carries one member of a bundle through voxel (u, v). Returns the power of its rays at the next plane.
 static colours cross_voxel(const plane_state* state, voxel_sums* sums, const member_state* member, int stages,
   const segment_effect* effects, float3 along, int u, int v)
 {
@@ -370,7 +370,7 @@ static colours cross_voxel(const plane_state* state, voxel_sums* sums, const mem
   return rays;
 }
 
-// The octants that rays go into that are so turned, see SweepBundle.cl.
+// Finds the octants of a member's direction, see SweepBundle.cl.
 static void find_octants(const __global SweepLane* lane, const __global BundleInfo* bundle, int m, int* octants)
 {
   const int u = lane->axis == 0 ? 1 : 0, v = lane->axis == 2 ? 1 : 2;
