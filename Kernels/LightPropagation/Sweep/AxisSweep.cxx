@@ -50,23 +50,23 @@ struct AxisSweep::Implementation
   void Enter(const SweepBoundary& boundary, std::size_t firstChannel);
   void DarkenSides();
   void DarkenBeside();
-  /// How rays start and what they meet.
+  /// Which sources and boundary light a launch has.
   struct Entry
   {
-    bool source = false;    ///< the medium shines
-    bool border = false;    ///< light comes in through the faces that rays pass sideways
-    bool byCells = false;   ///< and by cells
-    bool mapsEmpty = false; ///< whatever is in the maps' memory is not light
+    bool source = false;    ///< the medium has a source
+    bool border = false;    ///< light is incident on the faces that rays pass sideways
+    bool byCells = false;   ///< that light is given by cells
+    bool mapsEmpty = false; ///< the maps' memory is uninitialised
   };
   void CrossOnce(const SweepVolume& volume, const Entry& entry, const Monitor& monitor);
   void GoRound(const SweepVolume& volume, int mostPlanes, const Monitor& monitor);
 
-  /// Which planes the units cross in which launch.
+  /// The planes that each unit crosses in each launch.
   struct Schedule
   {
     const Buffer<cl_int2>& planes;
     int launches;
-    const SliceStream::Schedule& streamed; ///< the same, where there is a stream
+    const SliceStream::Schedule& streamed; ///< the same for a streamed volume
   };
   Schedule Rounds() const
   {
@@ -82,7 +82,7 @@ struct AxisSweep::Implementation
   void TakeFaceCells(const Deposit& to);
   void LeaveByCells(const SweepVolume& volume);
 
-  /// As SweepBorder has them.
+  /// Ray maps, laid out as in SweepBorder.
   Buffer<float>& Maps() { return this->IsPeriodic() ? this->OwnMaps : this->Workspace.maps; }
   bool IsPeriodic() const { return this->Plan.periodic[this->Plan.axes.axis]; }
   void CountSideways();
@@ -96,10 +96,10 @@ struct AxisSweep::Implementation
   SweepWorkspace& Workspace;
   bool SameBoundary;
 
-  Buffer<float> OwnMaps;           ///< of a periodic axis
+  Buffer<float> OwnMaps;           ///< maps of a periodic axis
   Buffer<float> Outside, Radiance; ///< as SweepBorder has them
-  Buffer<float> Sideways;          ///< power that left: [plane][unit][-u, +u, -v, +v][channel]
-  ExactValues FaceCells;           ///< power that left through cells, as Deposit::faceOut: [unit][channel][cell]
+  Buffer<float> Sideways;          ///< power that left sideways, W: [plane][unit][-u, +u, -v, +v][channel]
+  ExactValues FaceCells;           ///< escaped power by cell, as Deposit::faceOut: [unit][channel][cell]
   bool HasFaceCells = false;
   Buffer<float> Sums; ///< power in the maps: [way][bundle][row][channel]
   Buffer<BundleInfo> Bundles;
@@ -110,13 +110,13 @@ struct AxisSweep::Implementation
   Buffer<CrossingInfo> FirstCrossings;
   Buffer<OwnLightInfo> FirstOwnLight;
   Buffer<cl_int> FunctionPlaces;
-  std::unique_ptr<SliceStream> Stream; ///< of a volume in host memory; null: it is swept where it is
+  std::unique_ptr<SliceStream> Stream; ///< for a volume in host memory; null: it is swept in place
   SliceStream::Schedule StreamedFirst, StreamedRounds;
 
-  std::map<std::size_t, std::unique_ptr<SweepBorder>> Borders; ///< by a volume's first value
+  std::map<std::size_t, std::unique_ptr<SweepBorder>> Borders; ///< by SweepVolume::first
   bool SidesDark = false;                                      ///< Outside and Radiance are zero
-  bool Dark = false;                                           ///< the sweep that goes on has nothing to carry
-  SweepTally Tally;                                            ///< of the sweep that goes on
+  bool Dark = false;                                           ///< the current sweep has no light to carry
+  SweepTally Tally;                                            ///< of the current sweep
 };
 
 void AxisSweep::Implementation::MakeBuffers()
@@ -155,7 +155,7 @@ void AxisSweep::Implementation::MakeBuffers()
   this->FunctionPlaces = Buffer<cl_int>(device, plan.FunctionPlaces(), "the angular functions");
 }
 
-/// Light that comes in, into the maps. Where it is the same each time, its border is kept.
+/// Writes the incident light to the maps. If it is the same in each sweep, its border is cached.
 void AxisSweep::Implementation::Enter(const SweepBoundary& boundary, std::size_t firstChannel)
 {
   std::unique_ptr<SweepBorder>& kept = this->Borders[firstChannel];
@@ -175,7 +175,7 @@ void AxisSweep::Implementation::Enter(const SweepBoundary& boundary, std::size_t
   }
 }
 
-/// Nothing comes in sideways.
+/// Clears the light that is incident sideways.
 void AxisSweep::Implementation::DarkenSides()
 {
   if (!this->SidesDark)
@@ -186,7 +186,8 @@ void AxisSweep::Implementation::DarkenSides()
   }
 }
 
-/// In the maps of a periodic axis: the light beside the rows has come in, and does not again when rays go round.
+/// Clears the incident light beside the rows in the maps of a periodic axis: it has entered, and must not enter again
+/// when rays wrap around.
 void AxisSweep::Implementation::DarkenBeside()
 {
   const SweepPlan& plan = this->Plan;
@@ -197,7 +198,8 @@ void AxisSweep::Implementation::DarkenBeside()
     cl::NDRange(plan.plane.sizeV, plan.bundles.size(), 2), GroupOfLargeItems(this->TheDevice, 3));
 }
 
-/// From where rays start to where they leave the axis for the first time, or the last lap ends.
+/// Carries rays from where they start to the end of the axis or, on a periodic axis, of the last lap in which rays
+/// start.
 void AxisSweep::Implementation::CrossOnce(const SweepVolume& volume, const Entry& entry, const Monitor& monitor)
 {
   const Schedule schedule =
@@ -205,7 +207,7 @@ void AxisSweep::Implementation::CrossOnce(const SweepVolume& volume, const Entry
   this->Launch(volume, entry, this->FirstCrossings, schedule, monitor);
 }
 
-/// Rays that left a periodic axis come back on the other side, until next to nothing is on the way.
+/// Carries rays on round a periodic axis until almost no power is under way.
 void AxisSweep::Implementation::GoRound(const SweepVolume& volume, int mostPlanes, const Monitor& monitor)
 {
   const int planes = this->Plan.PatternPlanes();
@@ -235,7 +237,8 @@ void AxisSweep::Implementation::Launch(const SweepVolume& volume, const Entry& e
   const Buffer<float>& flux = volume.deposit.flux ? *volume.deposit.flux : *volume.deposit.path;
   const Buffer<float>& partialCurrents =
     volume.deposit.partialCurrents ? *volume.deposit.partialCurrents : *volume.deposit.path;
-  const Buffer<float>& source = volume.source ? *volume.source : *volume.deposit.path; // never read where there is none
+  // never read if there is no source
+  const Buffer<float>& source = volume.source ? *volume.source : *volume.deposit.path;
   const Buffer<float>& lost = this->IsPeriodic() ? this->Workspace.lost : *volume.deposit.path;
   SweepInfo info = {};
   info.sigmaFirst = volume.sigma_t_first;
@@ -295,7 +298,7 @@ void AxisSweep::Implementation::Launch(const SweepVolume& volume, const Entry& e
   }
 }
 
-/// Where the cells are of the faces that rays of this axis pass sideways.
+/// Memory layout of the cells of the faces that rays of this axis pass sideways.
 FaceInfo AxisSweep::Implementation::Faces(std::size_t firstChannel, const Deposit& to) const
 {
   const PlaneAxes& axes = this->Plan.axes;
@@ -316,7 +319,7 @@ FaceInfo AxisSweep::Implementation::Faces(std::size_t firstChannel, const Deposi
   return faces;
 }
 
-/// Into the maps, where the axis is open: through the faces that rays start at.
+/// On an open axis, adds light given by cells of the faces where rays start to the maps.
 void AxisSweep::Implementation::EnterByCells(const SweepVolume& volume)
 {
   const SweepPlan& plan = this->Plan;
@@ -334,11 +337,11 @@ void AxisSweep::Implementation::EnterByCells(const SweepVolume& volume)
     cl_ulong(volume.faceFirst + LayoutOfFace(plan.grid, low + 1).first), cl_ulong(BoxFaceCellCount(plan.grid)));
   this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange,
     cl::NDRange(plan.plane.sizeV, plan.bundles.size(), 2), GroupOfLargeItems(this->TheDevice, 3));
-  this->TheDevice.Finish(); // the powers go
+  this->TheDevice.Finish(); // before the buffer of powers is destroyed
 }
 
-/// Where rays leave light: ten thousands in a cell, too many for a sum in floats. Units that go side by side would meet
-/// in cells that rays share.
+/// The buffer in which escaped power is summed by cell. Tens of thousands of rays end in a cell, too many for a sum in
+/// floats; and units that run concurrently need their own copies, as rays may share cells.
 const cl::Buffer& AxisSweep::Implementation::CellsOf(const Deposit& to)
 {
   if (!to.faceOut)
@@ -354,7 +357,7 @@ const cl::Buffer& AxisSweep::Implementation::CellsOf(const Deposit& to)
   return this->FaceCells.Handle();
 }
 
-/// From the sweep's own cells.
+/// Adds the sweep's own sums by cell to faceOut.
 void AxisSweep::Implementation::TakeFaceCells(const Deposit& to)
 {
   cl::Kernel kernel = this->MapsKernel("take_face_cells");
@@ -363,7 +366,7 @@ void AxisSweep::Implementation::TakeFaceCells(const Deposit& to)
   this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(to.faceOut->Size()));
 }
 
-/// Out of the maps, where the axis is open: through the faces at the far ends.
+/// On an open axis, counts the power in the maps that leaves through the cells of the far faces.
 void AxisSweep::Implementation::LeaveByCells(const SweepVolume& volume)
 {
   const SweepPlan& plan = this->Plan;
@@ -385,7 +388,7 @@ cl::Kernel AxisSweep::Implementation::MapsKernel(const char* name)
 cl::Kernel AxisSweep::Implementation::SweepKernel(const Deposit& to, bool byCells)
 {
   const SweepPlan& plan = this->Plan;
-  // Where planes are not chained anyway one program serves periodic boxes, too.
+  // If planes are not chained anyway, one program serves periodic boxes as well.
   const bool alone = plan.angular || to.faceOut || byCells;
   const std::string options = DefinesOf(plan) + ExactOption(this->TheDevice) + Define("NET_FLUX", to.flux != nullptr) +
     Define("FACES", to.faceOut || byCells) +
@@ -404,7 +407,7 @@ void AxisSweep::Implementation::CountSideways()
   }
 }
 
-/// What is in the maps behind the last plane of an open axis has left.
+/// Counts the power in the maps behind the last plane of an open axis as escaped.
 void AxisSweep::Implementation::CountEnds()
 {
   const std::array<Rgb, 2> power = this->PowerInMaps();
@@ -434,7 +437,7 @@ void AxisSweep::Implementation::SumMaps()
     cl::NDRange(plan.plane.sizeV, plan.bundles.size(), 2), GroupOfLargeItems(this->TheDevice, 3));
 }
 
-/// By way, as SumMaps found it.
+/// Power by way, from the sums of SumMaps.
 std::array<Rgb, 2> AxisSweep::Implementation::PowerInMaps() const
 {
   std::array<Rgb, 2> power = {};
@@ -487,7 +490,7 @@ void AxisSweep::Start(const SweepVolume& volume, const SweepBoundary& boundary, 
   {
     return;
   }
-  // The maps of a periodic axis hold what is on the way from the sweep before.
+  // The maps of a periodic axis hold the rays under way from the previous sweep.
   const bool mapsEmpty = !lit && !self.IsPeriodic() && !byCells;
   self.CrossOnce(volume, { volume.source != nullptr, lit, volume.faceIn != nullptr, mapsEmpty }, monitor);
   if (self.IsPeriodic())

@@ -42,9 +42,9 @@ SweepBorder::Moves SweepBorder::MovesOf(const Bundle& bundle) const
   return moves;
 }
 
-/// Rays come in where they start, and where others left: one a row for each move along u, one a column for each move
-/// along v. Of those that move both ways at once half come in through u's face where the plane has its corner, half
-/// through v's.
+/// Rays enter where they start, and in place of rays that left sideways: one per row for each move along u, one per
+/// column for each move along v. Of the rays that move along u and v at once and enter at the plane's corner, half
+/// enter through u's face and half through v's.
 void SweepBorder::EnterMember(const SweepBoundary& boundary, std::size_t b, int way, int m, const Moves& moves)
 {
   const Bundle& bundle = this->Plan.bundles[b];
@@ -76,7 +76,7 @@ void SweepBorder::EnterMember(const SweepBoundary& boundary, std::size_t b, int 
   }
 }
 
-/// W per channel.
+/// Incident power of a ray, W per channel.
 Rgb SweepBorder::PowerOfRay(const SweepBoundary& boundary, const Bundle& bundle, int direction, int face) const
 {
   Rgb values = boundary(direction, face);
@@ -87,7 +87,7 @@ Rgb SweepBorder::PowerOfRay(const SweepBoundary& boundary, const Bundle& bundle,
   return values;
 }
 
-/// @param slot  which member and channel of the bundle
+/// @param slot  index within the bundle, [member][channel]
 void SweepBorder::Write(std::size_t b, int way, int slot, float fromU, float fromV, float fromP)
 {
   const BundleInfo& bundle = this->Plan.bundleRows[b];
@@ -105,8 +105,8 @@ void SweepBorder::Write(std::size_t b, int way, int slot, float fromU, float fro
     std::fill(map, map + this->Plan.plane.sizeU, fromP);
     std::fill(map + this->Plan.plane.sizeU, map + width, fromU);
   }
-  // The columns beside it hold rays that come in at the next move along u, as those of the map do. Rays that move both
-  // ways at once come from the next ones.
+  // The columns beside it hold rays that enter at the next move along u, as in the map. Rays that move along u and v at
+  // once come from these columns.
   const bool periodicU = this->Plan.periodic[this->Plan.axes.u];
   const float beside = periodicU ? fromV : fromU;
   float* beyond = this->outside.data() + way * this->Plan.outsideEachWay + bundle.outside + inBlock;

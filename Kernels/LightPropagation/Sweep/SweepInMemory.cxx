@@ -41,7 +41,7 @@ SweepVolume SweepInMemory::VolumeOf(const ChannelGroup& group, const Buffer<floa
   volume.faceIn = this->FaceIn;
   volume.octantSource = this->OctantSource;
   volume.moments = this->Layout.Places(this->Angular ? this->Angular->Functions() : 1);
-  volume.deposit.flux = this->Angular ? nullptr : volume.deposit.flux; // it is among the moments
+  volume.deposit.flux = this->Angular ? nullptr : volume.deposit.flux; // the flux is among the moments
   return volume;
 }
 

@@ -12,9 +12,9 @@ namespace tyndall
 namespace
 {
 constexpr double SecondsPerLaunch = 0.08;
-constexpr double SecondsPerRay = 1e-9; ///< a ray through a plane of voxels on a slow core: only sizes the launches
-constexpr double ZeroFunction = 1e-6;  ///< of angular functions, whose squares have a mean of 1
-constexpr int MostGroups = 4;          ///< of bundles that march one behind the other
+constexpr double SecondsPerRay = 1e-9; ///< per ray and voxel, on a slow core; only determines the size of launches
+constexpr double ZeroFunction = 1e-6;  ///< magnitude below which an angular function (mean square 1) counts as zero
+constexpr int MostGroups = 4;          ///< groups of bundles that march one behind the other
 
 /// (1 - exp(-t)) / t = 1 + t (MeanLength[0] + t (MeanLength[1] + ...)), to 2e-8 for 0 <= t < Thin: a minimax
 /// polynomial.
@@ -28,8 +28,8 @@ cl_int Int(T value)
   return static_cast<cl_int>(value);
 }
 
-/// Floats of a padded row: an odd number of vectors, so that rows do not fall on the same cache lines, and one of few
-/// numbers, since kernels are compiled for each.
+/// Floats of a padded row: an odd number of vectors, so that rows do not map to the same cache sets, and one of a few
+/// sizes, since kernels are compiled for each size.
 int RowFloats(int width, int vector)
 {
   int vectors = 2;
@@ -40,7 +40,7 @@ int RowFloats(int width, int vector)
   return (vectors + 1) * vector;
 }
 
-/// The same rays in bundles of 1, 2, 4 or 8 members.
+/// Splits bundles into bundles of 1, 2, 4 or 8 members.
 std::vector<Bundle> InPowersOfTwo(const std::vector<Bundle>& bundles)
 {
   std::vector<Bundle> parts;
@@ -68,7 +68,7 @@ bool IsSwapped(const Member& member)
   return member.uFromU == 0;
 }
 
-/// Members whose directions differ by signs alone side by side.
+/// Sorts members so that those whose directions differ only in signs are adjacent.
 void SortIntoFrames(std::vector<Bundle>& bundles)
 {
   for (Bundle& bundle : bundles)
@@ -78,7 +78,7 @@ void SortIntoFrames(std::vector<Bundle>& bundles)
   }
 }
 
-/// Through a plane.
+/// Longest path of a ray through one plane.
 double LongestWay(const std::vector<Bundle>& bundles)
 {
   double longest = 0.0;
@@ -133,8 +133,8 @@ SweepPlan::SweepPlan(const Device& device, const Grid& ofGrid, const VoxelBox& o
   this->LayRounds();
 }
 
-/// On a periodic axis of few planes the rays that start in them would all cross in the same pattern. They start in
-/// several laps instead, each with its part of the power (numerics.md, section 4.6).
+/// Rays that start in the few planes of a short periodic axis would all have the same pattern. They start in several
+/// laps instead, each with part of the power (numerics.md, section 4.6).
 void SweepPlan::LayLaps()
 {
   this->laps = PlanesOfPattern(this->Planes(), this->periodic[this->axes.axis]) / this->Planes();
@@ -166,7 +166,7 @@ void SweepPlan::LayPlane(const Device& device)
   this->plane.chained = this->PlanesChained(device);
   this->plane.tile = this->plane.chained > 1 ? RowsOfChain : 0;
   this->plane.together = std::max(this->plane.block, this->plane.chained);
-  // Planes packed as they are crossed stay in the cache, where one call has all bundles.
+  // Planes that are packed just before they are crossed stay in the cache if one call processes all bundles.
   const bool inOneTurn = this->plane.tile > 0 && this->bundles.size() <= BundlesTogether;
   this->rowsKept = inOneTurn && this->plane.block == 1 && this->plane.sizeV > RowsOfChainKept ? RowsOfChainKept : 0;
   this->plane.vacuum = static_cast<float>(std::max(1e-30 / LongestWay(this->bundles), 1e-37));
@@ -174,8 +174,8 @@ void SweepPlan::LayPlane(const Device& device)
   std::copy(MeanLength, MeanLength + MeanLengthTerms, this->plane.meanLength);
 }
 
-/// Bundles whose rays in a plane are more than a core's cache holds cross some planes together, row by row, so that
-/// rays come from memory and go there once for all of these.
+/// Number of planes in a chain. If a bundle's rays in a plane exceed a core's cache, it crosses several planes
+/// together, row by row, so that rays are read from memory and written to it only once for all of them.
 int SweepPlan::PlanesChained(const Device& device) const
 {
   const std::size_t rays = static_cast<std::size_t>(MaxMembers) * this->channels * this->row * this->plane.sizeV;
@@ -194,7 +194,7 @@ void SweepPlan::LayMoments()
   this->momentRow = this->channels * groups * (this->moments.functions - 1) * MomentGroup;
 }
 
-/// Through a voxel. Of rays that go round a periodic axis their way through a plane stands for it.
+/// Longest segment of a ray in a voxel; on a periodic axis, the longest path through a plane is used as a bound.
 double SweepPlan::LongestSegment() const
 {
   if (this->periodic[this->axes.axis])
@@ -223,7 +223,7 @@ void SweepPlan::LayBundles()
   this->outsideEachWay += this->vector;
 }
 
-/// The bundle after those that have their place.
+/// Description of a bundle that is placed after those laid out so far.
 BundleInfo SweepPlan::Describe(const Bundle& bundle) const
 {
   const std::array<double, 3>& spacing = this->grid.spacing;
@@ -248,7 +248,7 @@ BundleInfo SweepPlan::Describe(const Bundle& bundle) const
   return description;
 }
 
-/// Where each bundle's frames are and its coefficients begin, and the coefficients of both ways.
+/// Finds the frames of each bundle and the positions of its coefficients, and computes the coefficients of both ways.
 void SweepPlan::LayFrames()
 {
   for (std::size_t b = 0; b < this->bundles.size(); ++b)
@@ -276,7 +276,8 @@ void SweepPlan::LayFrames()
   }
 }
 
-/// Bit i: functions of parity i, in the order of FunctionOrder, are not zero in all of the bundle's directions.
+/// Bit i is set if the functions of parity i, in the order of FunctionOrder, are not all zero in the bundle's
+/// directions.
 int SweepPlan::ParitiesOf(const Bundle& bundle) const
 {
   int parities = 0;
@@ -296,7 +297,8 @@ int SweepPlan::ParitiesOf(const Bundle& bundle) const
   return parities;
 }
 
-/// Angular functions of each frame, for positive u and v, from any of its members; beams of each member.
+/// Computes the angular functions of each frame, for positive u and v, from any of its members, and the beams of each
+/// member.
 void SweepPlan::LayCoefficients(std::size_t b, int way)
 {
   const auto directionOf = [way](const Member& member) { return way == 0 ? member.direction : member.opposite; };
@@ -330,7 +332,7 @@ void SweepPlan::LayCoefficients(std::size_t b, int way)
   }
 }
 
-/// Units that march at the same time: both ways, each in as many groups of bundles as keep the cores busy.
+/// Creates the units that run concurrently: for each way, as many groups of bundles as keep the cores busy.
 void SweepPlan::LayUnits(int computeUnits)
 {
   const int ways = (this->forward ? 1 : 0) + (this->backward ? 1 : 0);
@@ -376,26 +378,26 @@ int SweepPlan::CrossingPlanes() const
 
 std::size_t SweepPlan::ScratchFloats() const
 {
-  // Two rings, or what each bundle keeps, and the rays of a row of which a part moves.
+  // Two rings, or the data that each bundle keeps, and the rays of a row of which only a part moves.
   const std::size_t raysOfRow = static_cast<std::size_t>(MaxMembers) * this->channels * this->row;
   const std::size_t together = std::min<std::size_t>(this->bundles.size(), BundlesTogether);
   const std::size_t kept = this->angular
     ? together * BUNDLE_FLOATS(this->channels, this->row)
     : together * RINGS_OF(static_cast<std::size_t>(this->plane.chained)) * RingRows * raysOfRow;
-  // Behind those the row of rays that come in by cells of the box's faces.
+  // They are followed by the row of rays that enter by cells of the box's faces.
   const std::size_t ring = kept + (this->faceIn ? 2 : 1) * (raysOfRow + this->vector);
   const int beams = this->angular ? this->angular->Beams() : 0;
   const std::size_t quantities =
     PLANE_COUNT(this->channels, beams, this->netFlux, this->partialCurrents, this->octantSource);
   const std::size_t rows = static_cast<std::size_t>(this->plane.together) * this->plane.sizeV;
-  const std::size_t planes = quantities * rows * this->row; // where rows are kept, too: cells of faces need them all
+  const std::size_t planes = quantities * rows * this->row; // also with rowsKept, since cells of faces need all rows
   const std::size_t packed = this->momentsInPlace ? 0 : 2 * rows * this->momentRow; // source and path
   return ring + planes + rows + packed + 3 * this->vector;
 }
 
-/// Where slabs of planes begin and end: an even number, as many as keep launches short, at least eight for each of
-/// several groups, cut between blocks and chains but in the middle; alike from both ends, as units that come towards
-/// each other wait for each other.
+/// Borders of slabs of planes. The number of slabs is even, large enough to keep launches short, and at least eight per
+/// group if there are several. Borders lie between blocks and chains, except in the middle, and are symmetric about it,
+/// as units of opposite ways wait for each other.
 std::vector<int> SweepPlan::SlabBorders(int groups)
 {
   const int planes = this->Planes();
@@ -415,8 +417,8 @@ std::vector<int> SweepPlan::SlabBorders(int groups)
   return borders;
 }
 
-/// Cut the axis into slabs such that units never meet: a group enters two slabs behind the one before it, and forward
-/// and backward units, which come towards each other, are in slabs of different parity.
+/// Schedules slabs such that units never share planes: a group follows two slabs behind the previous one, and forward
+/// and backward units, which move towards each other, are in slabs of different parity.
 void SweepPlan::LaySchedule()
 {
   const int planes = this->Planes();
@@ -456,7 +458,7 @@ void SweepPlan::LayRounds()
   }
 }
 
-/// Of the unit that has most.
+/// Rays per voxel of the unit that has most.
 int SweepPlan::RaysPerUnit() const
 {
   std::size_t most = 0;
@@ -532,7 +534,8 @@ std::vector<OwnLightInfo> SweepPlan::OwnLight(int lapPlanes) const
   return rows;
 }
 
-/// numerics.md, Eq. (26), where voxels are thin: (l - p1) / sigma = -l^2 (MeanLength[0] + sigma l (MeanLength[1] +
+/// Path of light within its voxel of origin, numerics.md, Eq. (26). For thin voxels: (l - p1) / sigma = -l^2
+/// (MeanLength[0] + sigma l (MeanLength[1] +
 /// ...)), summed over segments; sigma in units of `thin`.
 OwnLightInfo SweepPlan::OwnLightOf(const UnitInfo& unit, int ofPlane) const
 {

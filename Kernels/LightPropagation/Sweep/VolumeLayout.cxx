@@ -8,7 +8,8 @@ namespace tyndall
 {
 namespace
 {
-constexpr std::size_t AtOnce = 512; ///< voxels, of which all parts stay in a cache until lines of it are whole
+/// Voxels per pass, few enough that cache lines of all parts stay in the cache until they are full
+constexpr std::size_t AtOnce = 512;
 }
 
 std::vector<float> Interleaved(const VolumeLayout& layout, const Buffer<float>& planar, double scale)

@@ -78,7 +78,7 @@ GpuLanes::GpuLanes(const Device& device, const VolumeLayout& layout, const Sweep
   }
 }
 
-/// Its bundles and crossings behind those that have their place, and a lane for each way.
+/// Appends a plan's bundles and crossings to those laid out so far, and adds a lane for each way.
 void GpuLanes::LayPlan(const SweepPlan& plan, const AngularValues* angular)
 {
   const int firstBundle = static_cast<int>(this->bundles.size());
@@ -100,7 +100,7 @@ void GpuLanes::LayPlan(const SweepPlan& plan, const AngularValues* angular)
   }
 }
 
-/// One more lane, but for where its maps and deposits are.
+/// Adds a lane; the positions of its maps and deposits are set later.
 void GpuLanes::LayLane(const SweepPlan& plan, int way, int firstBundle, int firstCrossing)
 {
   SweepLane lane = LaneOf(plan, way);
@@ -138,7 +138,7 @@ void GpuLanes::LayBatches(bool atOnce)
   }
 }
 
-/// Where the maps and arrays of a batch's lanes are, and how large those of any batch are.
+/// Sets the positions of the maps and arrays of a batch's lanes, and updates the largest sizes of any batch.
 void GpuLanes::Place(LaneBatch& batch, std::size_t stride)
 {
   for (int i = 0; i < batch.count; ++i)
@@ -162,7 +162,7 @@ void GpuLanes::Place(LaneBatch& batch, std::size_t stride)
 
 std::size_t GpuLanes::ArrayFloats(std::size_t stride) const
 {
-  const std::size_t lost = Count(this->mostAround) * this->functionCount; // by rounding
+  const std::size_t lost = Count(this->mostAround) * this->functionCount; // rounding errors
   return (Count(this->mostWithArrays) * this->floatsOfDeposit + lost) * this->channels * stride;
 }
 

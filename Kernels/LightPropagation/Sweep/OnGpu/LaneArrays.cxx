@@ -15,7 +15,7 @@ LaneArrays::LaneArrays(Device& device, const GpuLanes& lanes, const VolumeLayout
     if (count * parts > 0)
     {
       array = Buffer<float>(device, count * parts * values, what);
-      array.Fill(0.0f); // beyond the voxels it stays
+      array.Fill(0.0f); // padding stays zero
     }
   };
   make(this->path, lanes.mostWithArrays, lanes.functionCount, "the light of each way");

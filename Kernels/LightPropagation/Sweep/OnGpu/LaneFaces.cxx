@@ -11,7 +11,7 @@ namespace tyndall
 {
 namespace
 {
-constexpr int AllSides = 15; ///< of the box are those of the grid
+constexpr int AllSides = 15; ///< all sides of the box are faces of the domain
 }
 
 LaneFaces::LaneFaces(Device& device, const GpuLanes& lanes, const Grid& grid, const SweepRequest& request)

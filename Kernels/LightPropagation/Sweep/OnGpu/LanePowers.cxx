@@ -16,7 +16,7 @@ LanePowers::LanePowers(Device& device, const GpuLanes& lanes)
 {
   if (lanes.escaped > 0)
   {
-    this->OfPlanes.Fill(0.0f); // rows of the shorter faces stay so at their ends
+    this->OfPlanes.Fill(0.0f); // the ends of rows of shorter faces stay zero
   }
 }
 

@@ -7,9 +7,9 @@ namespace tyndall
 {
 namespace
 {
-/// Work-items of a group: along u, whose voxels mostly lie together, and along v.
+/// Work-items per group along u, whose voxels are mostly contiguous, and along v.
 constexpr std::size_t GroupU = 32, GroupV = 4;
-constexpr double GpuSecondsPerRay = 1e-10; ///< through a voxel: only says how often to wait
+constexpr double GpuSecondsPerRay = 1e-10; ///< per ray and voxel; only determines how often to wait
 }
 
 PlaneKernels::PlaneKernels(Device& device, const std::string& options, bool directs, const Size& size)
@@ -26,7 +26,7 @@ PlaneKernels::PlaneKernels(Device& device, const std::string& options, bool dire
 
 void PlaneKernels::SetSides(const Buffer<float>& in, const Buffer<float>& out, int outerSides)
 {
-  constexpr cl_uint BehindTheOthers = 17; // of the arguments that Launch sets
+  constexpr cl_uint BehindTheOthers = 17; // index of the first argument after those that Launch sets
   SetFrom(this->Cross, BehindTheOthers, in, out, cl_int(outerSides));
 }
 
@@ -46,7 +46,7 @@ void PlaneKernels::Launch(PlaneLaunch launch, const PlaneArrays& in, const Plane
       rays.directed, rays.functions, rays.escaped);
     this->TheDevice.Queue().enqueueNDRangeKernel(
       this->Cross, cl::NullRange, this->All, group, after, launch.plane + 1 == to ? done : nullptr);
-    after = nullptr; // the queue keeps the order
+    after = nullptr; // later launches are ordered by the queue
     this->TheDevice.Queued(this->Seconds);
     crossed(launch.plane + 1);
   }

@@ -23,10 +23,10 @@ namespace tyndall
 {
 namespace
 {
-constexpr int MostAtOnce = 4; ///< part of the memory that ways at once may take: a quarter
+constexpr int MostAtOnce = 4; ///< concurrent ways may use 1 / this of the memory
 
-/// All ways at once, where their arrays have room beside each other. Of a part of the grid they go one by one: what is
-/// not swept would have to be cleared. So do they where the volume is in host memory, a slice of one after the other.
+/// Lanes with all ways concurrently, if their arrays fit in memory together. Ways run one by one if only a part of the
+/// grid is swept, since the remainder would have to be cleared, and if the volume is in host memory.
 GpuLanes ChooseLanes(const Device& device, const VolumeLayout& layout, const std::array<bool, 3>& periodic,
   const SweepRequest& request, SweepOnGpu::Ways ways)
 {
@@ -48,15 +48,15 @@ public:
   void Forget(std::optional<int> group = {});
 
 private:
-  /// How planes are crossed by the lanes of a batch.
+  /// How the lanes of a batch cross planes.
   struct Crossing
   {
-    bool shines;                                 ///< the medium does
-    const Buffer<cl_float4>* entering;           ///< light that comes in through the sides
-    const Buffer<CrossingInfo>* round = nullptr; ///< of rays that go round again; null: of those that start
+    bool shines;                                 ///< the medium has a source
+    const Buffer<cl_float4>* entering;           ///< light incident on the sides
+    const Buffer<CrossingInfo>* round = nullptr; ///< crossings of rays that wrap around; null: rays that start
   };
 
-  /// Rays on their way round a periodic axis, between sweeps, of a batch and a group of channels.
+  /// Rays under way round a periodic axis between sweeps, for a batch and a group of channels.
   struct OnTheWay
   {
     Buffer<float> maps[2];
@@ -97,20 +97,22 @@ private:
   SweepWorkspace& Workspace;
   GpuLanes The;
 
-  std::vector<std::unique_ptr<LaneSlices>> Slices; ///< by lane, of a volume in host memory; null: swept where it lies
+  std::vector<std::unique_ptr<LaneSlices>> Slices; ///< by lane, for a volume in host memory; null: swept in place
   Buffer<SweepLane> Lanes;
   Buffer<BundleInfo> Bundles;
   Buffer<CrossingInfo> Crossings;
   Buffer<float> Along;                            ///< GpuLanes::functions
-  Buffer<float> Directed;                         ///< as maps: what shines along the rays
-  Buffer<float> Maps[2];                          ///< of open axes
+  Buffer<float> Directed;                         ///< source in the rays' directions, laid out as maps
+  Buffer<float> Maps[2];                          ///< maps of open axes
   std::map<std::pair<int, int>, OnTheWay> Rounds; ///< by a batch's first lane, and group
-  Buffer<cl_float4> Entering;                     ///< [ray][channel] W through u's, v's face, and where rays start
-  Buffer<cl_float4> Nothing;                      ///< that comes in
+  /// [ray][channel] incident power, W: through u's, v's face, and where rays start
+  Buffer<cl_float4> Entering;
+  Buffer<cl_float4> Nothing; ///< zero incident power
   LaneArrays OfLanes;
   LanePowers Powers;
-  std::optional<LaneFaces> Faces; ///< where light comes or goes by cells
-  std::map<int, std::pair<std::vector<cl_float4>, std::array<Rgb, 6>>> KeptEntering; ///< by group, with power
+  std::optional<LaneFaces> Faces; ///< if light is given or counted by cells
+  /// Cached incident light and its power by face, by group
+  std::map<int, std::pair<std::vector<cl_float4>, std::array<Rgb, 6>>> KeptEntering;
 };
 
 SweepOnGpu::Implementation::Implementation(Device& device, const VolumeLayout& layout, const Buffer<float>& sigma_t,
@@ -163,7 +165,7 @@ void SweepOnGpu::Implementation::MakeBuffers()
   }
 }
 
-/// Of a volume in host memory, once all that has to be on the device is.
+/// Creates the slices of a volume in host memory. Call after everything that must be on the device has been allocated.
 void SweepOnGpu::Implementation::MakeSlices()
 {
   if (!this->TheDevice.Streams())
@@ -210,7 +212,7 @@ SweepTally SweepOnGpu::Implementation::ApplyGroup(
 {
   SweepTally tally;
   const bool lit = this->Enter(boundary, volume.firstChannel, tally);
-  if (boundary) // the sweep begins anew, as SweepInMemory has it
+  if (boundary) // rays under way are discarded, as in SweepInMemory
   {
     this->Forget(volume.firstChannel);
   }
@@ -223,7 +225,7 @@ SweepTally SweepOnGpu::Implementation::ApplyGroup(
     {
       this->GoRound(batch, volume, tally, ofBatch);
     }
-    else if (lit || volume.source || this->ShineByCells()) // else there is nothing to carry
+    else if (lit || volume.source || this->ShineByCells()) // otherwise there is no light to carry
     {
       this->CrossOnce(batch, volume, tally, ofBatch);
     }
@@ -231,7 +233,7 @@ SweepTally SweepOnGpu::Implementation::ApplyGroup(
   return tally;
 }
 
-/// @return whether any light comes in
+/// @return whether any light is incident
 bool SweepOnGpu::Implementation::Enter(const SweepBoundary& boundary, int group, SweepTally& tally)
 {
   if (!boundary)
@@ -272,7 +274,7 @@ bool SweepOnGpu::Implementation::Enter(const SweepBoundary& boundary, int group,
   return lit;
 }
 
-/// From where rays start to where they leave their axis.
+/// Carries rays from where they start to the end of their axis.
 void SweepOnGpu::Implementation::CrossOnce(
   const LaneBatch& batch, const SweepVolume& volume, SweepTally& tally, const Monitor& monitor)
 {
@@ -290,8 +292,8 @@ void SweepOnGpu::Implementation::CrossOnce(
   this->Powers.CountEnds(batch, tally);
 }
 
-/// From where rays start, all laps, and round the axis with those of the sweep before, until next to nothing is on the
-/// way (numerics.md, section 4.6).
+/// Carries rays through all laps in which they start and, with those of the previous sweep, on round the axis until
+/// almost no power is under way (numerics.md, section 4.6).
 void SweepOnGpu::Implementation::GoRound(
   const LaneBatch& batch, const SweepVolume& volume, SweepTally& tally, const Monitor& monitor)
 {
@@ -322,7 +324,7 @@ void SweepOnGpu::Implementation::GoRound(
   }
 }
 
-/// What rounding takes from the path of lanes that go round, and their own path, begin anew.
+/// Clears the rounding errors and the own paths of lanes that wrap around.
 void SweepOnGpu::Implementation::BeginLost(const LaneBatch& batch)
 {
   if (batch.hasArrays)
@@ -349,7 +351,7 @@ SweepOnGpu::Implementation::OnTheWay& SweepOnGpu::Implementation::RaysOnTheWay(c
   return rays;
 }
 
-/// @param group  of channels; none: all
+/// @param group  group of channels; none: all
 void SweepOnGpu::Implementation::Forget(std::optional<int> group)
 {
   for (auto& [key, rays] : this->Rounds)
@@ -396,9 +398,9 @@ void SweepOnGpu::Implementation::StartRays(const LaneBatch& batch)
   this->TheDevice.Queue().enqueueNDRangeKernel(start, cl::NullRange, cl::NDRange(floats, batch.count));
 }
 
-/// All planes, once.
-/// @param maps  that rays are in, and that they come to, in turn
-/// @return planes
+/// Crosses all planes once.
+/// @param maps  maps that rays are read from and written to, alternately
+/// @return number of planes
 int SweepOnGpu::Implementation::Cross(const LaneBatch& batch, const SweepVolume& volume, const Crossing& how,
   const std::array<const Buffer<float>*, 2>& maps, const Monitor& monitor)
 {
@@ -468,7 +470,7 @@ PlaneKernels SweepOnGpu::Implementation::KernelsOf(const LaneBatch& batch, bool 
   return kernels;
 }
 
-/// What there is none of is not looked at.
+/// The volume's arrays as kernel arguments. Arrays that do not exist are not accessed.
 PlaneArrays SweepOnGpu::Implementation::Whole(const LaneBatch& batch, const SweepVolume& volume) const
 {
   const bool own = batch.hasArrays;

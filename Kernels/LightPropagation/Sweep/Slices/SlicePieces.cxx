@@ -8,11 +8,11 @@ namespace tyndall
 {
 namespace
 {
-/// What a unit crosses in one go of what is left of its range.
+/// The piece that a unit crosses next, from the remaining range `left`.
 SlicePiece NextPiece(const SweepPlan& plan, bool backward, const cl_int2& left, int thickness, int aligned)
 {
   const int planes = plan.Planes();
-  const int lap = left.s[0] / planes * planes; // where the axis began anew
+  const int lap = left.s[0] / planes * planes; // first plane of the current lap
   const int from = left.s[0] - lap;
   const int to = std::min(left.s[1] - lap, planes);
   SlicePiece piece;

@@ -8,12 +8,12 @@ namespace tyndall
 {
 namespace
 {
-/// Planes of a slot, if there is room: as many as Gruson et al. take; of GPUs more, since slices along x go over the
-/// bus in rows of so many voxels.
+/// Planes per slot, if memory allows: as many as in Gruson et al.; more for GPUs, since slices along x are transferred
+/// in rows of this many voxels.
 constexpr int SliceThickness = 16, SliceThicknessOnGpu = 64;
-constexpr std::size_t SlotsPerUnit = 2; ///< one that is crossed, and one whose slice comes or goes
+constexpr std::size_t SlotsPerUnit = 2; ///< one being crossed, and one being transferred
 
-/// Floats of one voxel in all arrays.
+/// Floats per voxel in all streamed arrays.
 std::size_t FloatsOfVoxel(const SweepPlan& plan)
 {
   const int light = plan.angular ? plan.moments.functions : 1;
@@ -25,11 +25,11 @@ std::size_t FloatsOfVoxel(const SweepPlan& plan)
         (plan.octantSource ? 8 : 0)));
 }
 
-/// Planes of a slot, such that all slots fit what rays and scratch leave; one at the least.
+/// Planes per slot such that all slots fit in the memory that rays and scratch leave; at least one.
 int ThicknessFor(const Device& device, const SweepPlan& plan, const SweepWorkspace& workspace)
 {
   std::size_t left = device.MemoryLimit() - std::min(device.BytesInUse(), device.MemoryLimit());
-  for (const Buffer<float>& slot : workspace.slots) // of other axes: they are shared
+  for (const Buffer<float>& slot : workspace.slots) // slots of other axes are reused
   {
     left += slot.Size() * sizeof(float);
   }
@@ -39,7 +39,7 @@ int ThicknessFor(const Device& device, const SweepPlan& plan, const SweepWorkspa
   return static_cast<int>(std::clamp<std::size_t>(fit, 1, most));
 }
 
-/// Whether units that are in work side by side never have to do with the same planes.
+/// Whether units that run concurrently never access the same planes.
 bool IsApart(const std::vector<std::vector<SlicePiece>>& launches, int aligned)
 {
   for (const std::vector<SlicePiece>& launch : launches)
@@ -58,7 +58,7 @@ bool IsApart(const std::vector<std::vector<SlicePiece>>& launches, int aligned)
   return true;
 }
 
-/// Whether a unit comes next to planes that one is at now.
+/// Whether a unit of the next launch accesses planes that some unit is crossing now.
 bool Follows(const std::vector<SlicePiece>& now, const std::vector<SlicePiece>& next, int aligned)
 {
   return std::any_of(now.begin(), now.end(), [&](const SlicePiece& before) {
@@ -144,10 +144,10 @@ std::size_t SliceStream::SlotFloats(SlotArray array) const
 const Buffer<float>& SliceStream::Slots(SlotArray array) const
 {
   const Buffer<float>& slots = this->Workspace.slots[static_cast<std::size_t>(array)];
-  return slots.Size() > 0 ? slots : this->Workspace.slots[static_cast<std::size_t>(SlotArray::Path)]; // not looked at
+  return slots.Size() > 0 ? slots : this->Workspace.slots[static_cast<std::size_t>(SlotArray::Path)]; // not accessed
 }
 
-/// Planes of which the angular moments lie together.
+/// Number of planes whose angular moments are stored together.
 int SliceStream::Aligned() const
 {
   return this->HasMoments() && this->Plan.axes.axis == 0 ? MomentGroup : 1;
@@ -212,7 +212,7 @@ std::vector<SliceStream::Streamed> SliceStream::ArraysOf(const SweepVolume& volu
   }
   if (this->Plan.periodic[this->Plan.axes.axis])
   {
-    // Kernels for CPUs keep what is lost of fluence alone, those for GPUs of all functions.
+    // CPU kernels store rounding errors for the fluence only, GPU kernels for all functions.
     arrays.push_back(
       { &this->Workspace.lost, SlotArray::Lost, channels, volume.first, true, this->HasMoments() ? 0 : -1 });
   }
@@ -231,7 +231,7 @@ std::vector<SliceStream::Streamed> SliceStream::ArraysOf(const SweepVolume& volu
   return arrays;
 }
 
-/// Of one part of an array.
+/// Rows of one part of an array.
 SliceStream::Rows SliceStream::PlanarRows(const SlicePiece& piece) const
 {
   const int axis = this->Plan.axes.axis;
@@ -247,7 +247,7 @@ SliceStream::Rows SliceStream::PlanarRows(const SlicePiece& piece) const
     place(inSlot, this->Extent), Count(this->Extent[0]), Count(this->Extent[0]) * Count(this->Extent[1]) };
 }
 
-/// Of all angular functions but the first.
+/// Rows of all angular functions except the first.
 SliceStream::Rows SliceStream::MomentRows(const SlicePiece& piece) const
 {
   const MomentPlaces& host = this->Plan.moments;
@@ -291,10 +291,10 @@ void SliceStream::CopyRows(const Streamed& array, const Rows& rows, std::size_t 
     this->Transfers.enqueueCopyBufferRect(array.host->Handle(), slots, inHost, inSlot, region, rows.hostRow * Float,
       rows.hostLayer * Float, rows.slotRow * Float, rows.slotLayer * Float, after, &this->Last);
   }
-  this->Waiting.clear(); // what follows in the queue waits for this one
+  this->Waiting.clear(); // later commands in the queue wait for this one
 }
 
-/// Slices of a launch into its slots, or what was added to them back.
+/// Copies the slices of a launch to its slots, or copies slots back to the host.
 void SliceStream::Copy(
   const std::vector<Streamed>& arrays, const std::vector<SlicePiece>& launch, int parity, bool back)
 {
@@ -311,7 +311,7 @@ void SliceStream::Copy(
   }
 }
 
-/// @param slot  where it begins
+/// @param slot  index of the slot's first float
 void SliceStream::CopyArray(const Streamed& array, const SlicePiece& piece, std::size_t slot, bool back)
 {
   const MomentPlaces& host = this->Plan.moments;
@@ -351,7 +351,7 @@ void SliceStream::Cross(const Schedule& schedule, const SweepVolume& volume, con
     const std::vector<cl::Event> after = { fetched };
     const bool isLast = l + 1 == schedule.pieces.size();
     const bool ahead = !isLast && !Follows(schedule.pieces[l], schedule.pieces[l + 1], this->Aligned());
-    if (ahead) // first: a launch may wait for its own beginning
+    if (ahead) // comes first: a launch may wait for its own beginning
     {
       fetch(l + 1);
       fetched = this->Last;
