@@ -9,7 +9,7 @@ namespace tyndall
 {
 namespace
 {
-/// Those of Numerics, so scaled that their squares average to 1.
+/// Spherical harmonics of Numerics, scaled so that their squares average to 1.
 std::vector<double> Harmonics(int degree, const std::array<double, 3>& omega)
 {
   std::vector<double> values = SphericalHarmonics(degree, omega);
@@ -20,11 +20,11 @@ std::vector<double> Harmonics(int degree, const std::array<double, 3>& omega)
   return values;
 }
 
-/// Of a function's square, the part that functions before it must leave on a set of directions.
+/// Smallest part of a function's square norm that must remain after projecting out the previous functions.
 constexpr double LeastLeft = 0.3;
 
-/// Rows that make the harmonics orthonormal on a set, function by function (Gram and Schmidt).
-/// @return as many as the set tells apart
+/// Rows that orthonormalise the harmonics on a quadrature, function by function (Gram-Schmidt).
+/// @return as many rows as are well-conditioned on the quadrature
 std::vector<std::vector<double>> Orthonormal(const DirectionSet& set, int degree)
 {
   const int count = (degree + 1) * (degree + 1);
@@ -51,7 +51,7 @@ std::vector<std::vector<double>> Orthonormal(const DirectionSet& set, int degree
     row[i] = 1.0;
     for (int j = 0; j < i; ++j)
     {
-      // Twice: what the first pass leaves by rounding. Functions of another parity are left alone, exactly.
+      // Two passes, to remove the rounding errors of the first. Functions of different parity are exactly orthogonal.
       for (int pass = 0; pass < 2 && AngularBasis::IsOdd(i) == AngularBasis::IsOdd(j); ++pass)
       {
         const double part = product(values[i], values[j]);

@@ -14,9 +14,10 @@ namespace tyndall
 namespace
 {
 
-constexpr int FewestParts = 48;          ///< of a face's edge, of cells that are no grid
-constexpr double BorderTolerance = 1e-9; ///< relative, of what lies on a border
-constexpr double LeastMode = 1e-3;       ///< of fluxes, beside the largest: what less light can make up for
+constexpr int FewestParts = 48;          ///< parts of a face's edge, if cells are not a grid
+constexpr double BorderTolerance = 1e-9; ///< relative tolerance for points on a border
+/// Smallest eigenvalue that is inverted, relative to the largest
+constexpr double LeastMode = 1e-3;
 
 int CellsPerEdge(int perFace, const std::string& name)
 {
@@ -29,7 +30,7 @@ int CellsPerEdge(int perFace, const std::string& name)
   return n;
 }
 
-/// Tangent at position `i + offset` of n along a face's edge, from integers, exactly odd about the middle.
+/// Tangent at half of `twicePosition`, of n cells along a face's edge; exactly odd about the middle.
 double Tangent(bool equiangular, int n, double twicePosition)
 {
   const double fromMiddle = (twicePosition - n) / n; // in [-1, 1]
@@ -49,8 +50,8 @@ double SolidAngle(double s0, double s1, double t0, double t1)
   return CornerSolidAngle(s1, t1) - CornerSolidAngle(s0, t1) - CornerSolidAngle(s1, t0) + CornerSolidAngle(s0, t0);
 }
 
-/// The direction of a face whose cell holds these tangents, where cells are no grid. The set has the face's symmetry,
-/// so that of each orbit the direction of the same eighth of the face is nearest.
+/// Index within a face of the direction whose cell contains these tangents, if cells are not a grid. The set has the
+/// face's symmetry, so in each orbit the nearest direction is the one in the same eighth of the face.
 int NearestOnFace(const DirectionSet& set, double s, double t)
 {
   const bool exchanged = std::abs(s) > std::abs(t);
@@ -75,7 +76,7 @@ int NearestOnFace(const DirectionSet& set, double s, double t)
 
 using Faces = Eigen::Matrix<double, 6, 1>;
 
-/// The cosines with which a direction goes through the cube's six faces, 0 where it does not.
+/// Cosines of a direction with the outward normals of the cube's six faces; 0 where negative.
 Faces Cosines(const std::array<double, 3>& omega)
 {
   Faces cosines = Faces::Zero();
@@ -86,13 +87,13 @@ Faces Cosines(const std::array<double, 3>& omega)
   return cosines;
 }
 
-/// An environment as a set of directions sees it.
+/// An environment integrated over the cells of a quadrature.
 struct Seen
 {
   std::vector<Rgb> sum;               ///< radiance times solid angle, by direction
-  std::vector<double> solidAngle;     ///< of cells
-  std::array<Rgb, 6> flux = {};       ///< through the cube's faces, the way the light travels
-  std::array<double, 6> cosines = {}; ///< the same of radiance 1
+  std::vector<double> solidAngle;     ///< solid angle of cells, by direction
+  std::array<Rgb, 6> flux = {};       ///< flux through the cube's faces, in the direction of travel
+  std::array<double, 6> cosines = {}; ///< the same for radiance 1
 
   explicit Seen(const DirectionSet& set)
     : sum(set.directions.size(), Rgb{})
@@ -100,7 +101,7 @@ struct Seen
   {
   }
 
-  /// @param omega  the way the light travels
+  /// @param omega  direction of travel of the light
   void Add(int direction, const std::array<double, 3>& omega, double weight, const Rgb& radiance)
   {
     this->solidAngle[direction] += weight;
@@ -120,13 +121,14 @@ struct Seen
   }
 };
 
-/// Looks along the middles of parts of about half a pixel of all cells: a pixel spans pi / height, a cell about
-/// pi / (2 n). An even number of parts, so that none is a pole, where the azimuth is not defined.
+/// Samples the environment at the centres of parts of all cells, each part about half a pixel wide: a pixel spans pi /
+/// height, a cell about pi / (2 n). The number of parts is even, so that no centre is a pole, where the azimuth is
+/// undefined.
 Seen LookAround(const DirectionSet& set, const Environment& environment)
 {
   const int n = set.cellsPerEdge;
   const bool grid = set.orbits.empty();
-  const int fewest = grid ? 2 : 2 * ((FewestParts + n) / (2 * n)); // cells that are no grid cut parts
+  const int fewest = grid ? 2 : 2 * ((FewestParts + n) / (2 * n)); // cells that are not a grid cut through parts
   const int parts = std::max(2 * std::clamp((environment.height / n + 1) / 2, 1, 128), fewest);
   const bool equiangular = set.equiangular || !grid;
   const auto tangent = [&](double part) { return Tangent(equiangular, n * parts, 2.0 * part); };
@@ -146,7 +148,7 @@ Seen LookAround(const DirectionSet& set, const Environment& environment)
         {
           seen.Add(first + b / parts * n + a / parts, omega, weight, radiance);
         }
-        else if (a == b || a + b == n * parts - 1) // a border of the face's eighths
+        else if (a == b || a + b == n * parts - 1) // on a border between the face's eighths
         {
           seen.Add(first + NearestOnFace(set, s * (1.0 + BorderTolerance), t), omega, 0.5 * weight, radiance);
           seen.Add(first + NearestOnFace(set, s, t * (1.0 + BorderTolerance)), omega, 0.5 * weight, radiance);
@@ -161,9 +163,9 @@ Seen LookAround(const DirectionSet& set, const Environment& environment)
   return seen;
 }
 
-/// Radiance such that the flux through each face is the environment's own, as far as the set has the half-range flux:
-/// by factors 1 + sum of (factor of a face) (cosine), of all that do it those that are nearest to 1 (numerics.md, Eq.
-/// (31a)).
+/// Scales radiance so that the flux through each face equals the environment's, up to the quadrature's half-range
+/// error. The factors are 1 + sum of (factor of a face) (cosine); of all solutions, the one nearest to 1 (numerics.md,
+/// Eq. (31a)).
 void KeepFlux(const DirectionSet& set, const Seen& seen, std::vector<Rgb>& radiance)
 {
   for (int c = 0; c < 3; ++c)
@@ -240,7 +242,8 @@ DirectionSet EquiangularDirections(int perFace, const std::string& name)
   const int n = set.cellsPerEdge;
   for (std::size_t d = 0; d < set.directions.size(); ++d)
   {
-    // By the cell's mirror image in the first octant of the face, sorted, so that equals are equal to the last bit.
+    // Computed for the cell's mirror image in the first octant of the face, sorted, so that equivalent cells agree to
+    // the last bit.
     const int i = static_cast<int>(d) % n;
     const int j = static_cast<int>(d) / n % n;
     const int u = std::min(std::max(i, n - 1 - i), std::max(j, n - 1 - j));

@@ -10,7 +10,7 @@ namespace tyndall
 {
 namespace
 {
-/// Orbits of the sets that are fitted, their weights in those of equal ones (numerics.md, Eq. (16a)).
+/// Orbits of a fitted quadrature; weights are relative to equal weights (numerics.md, Eq. (16a)).
 struct FittedSet
 {
   int perFace;
@@ -89,7 +89,7 @@ const std::vector<FittedSet>& FittedSets()
   return sets;
 }
 
-/// A face's tangents that an orbit stands for: 1, 4 or 8.
+/// The tangents of an orbit on one face: 1, 4 or 8.
 std::vector<std::array<double, 2>> TangentsOf(const DirectionOrbit& orbit)
 {
   std::vector<std::array<double, 2>> all;

@@ -7,9 +7,9 @@ namespace tyndall
 {
 namespace
 {
-/// Positions closer than this to a voxel's border lie on it: rounding must not decide which way a tie goes.
+/// Positions closer than this to a voxel's border count as on it, so that rounding does not decide ties.
 constexpr double OnBorder = 1e-9;
-/// Fewer planes of a periodic axis are crossed several times before its pattern begins anew.
+/// A periodic axis with fewer planes is crossed several times before its ray pattern repeats.
 constexpr int FewestPlanes = 128;
 
 bool Same(double a, double b)
@@ -32,7 +32,8 @@ Bundle EmptyBundle(const PlaneAxes& axes, const Grid& grid, const std::array<dou
   return bundle;
 }
 
-/// The index of omega's mirror image at the plane across `axis`. The set holds it: direction sets are symmetric.
+/// Index of the direction's mirror image in the plane across `axis`. The set contains it, since quadratures are
+/// symmetric.
 int MirrorImage(const DirectionSet& set, int direction, int axis)
 {
   std::array<double, 3> omega = set.directions[direction].omega;
@@ -45,8 +46,8 @@ int Sign(double x)
   return x < 0.0 ? -1 : 1;
 }
 
-/// Add a direction to the bundle it belongs to, or to a new one.
-/// @param part  of its power that marches along this axis
+/// Adds a direction to the bundle it belongs to, or to a new one.
+/// @param part  part of its power that marches along this axis
 void Sort(
   std::vector<Bundle>& bundles, const PlaneAxes& axes, const Grid& grid, const DirectionSet& set, int d, double part)
 {
@@ -78,9 +79,9 @@ void Sort(
   bundles.push_back(fresh);
 }
 
-/// Rays that all start in the middle come through the box's sides in the same pattern, however many directions there
-/// are. Steps of two irrational numbers, those of the plastic number, fill a square evenly (Roberts 2018). Bundles take
-/// them in the order of their tangents, the same along every axis.
+/// Staggers the starts of bundles. If all rays start in the middle, they cross the box's sides in the same pattern,
+/// however many directions there are. The starts follow the low-discrepancy sequence of the plastic number, which fills
+/// a square evenly (Roberts 2018), in the order of the bundles' tangents, the same along every axis.
 void Stagger(std::vector<Bundle>& bundles)
 {
   std::vector<Bundle*> inOrder;
@@ -95,7 +96,7 @@ void Stagger(std::vector<Bundle>& bundles)
   double first = 0.5, second = 0.5;
   for (Bundle* bundle : inOrder)
   {
-    const bool diagonal = Same(bundle->tangentU, bundle->tangentV); // neither axis comes first
+    const bool diagonal = Same(bundle->tangentU, bundle->tangentV); // no axis has precedence
     bundle->startU = diagonal || bundle->tangentU < bundle->tangentV ? first : second;
     bundle->startV = diagonal || bundle->tangentU > bundle->tangentV ? first : second;
     first = std::fmod(first + 0.7548776662466927, 1.0);
@@ -108,7 +109,7 @@ bool IsMove(const Move& move)
   return move.depth <= 1.0;
 }
 
-/// A coordinate as whole voxels and the rest in [0, 1).
+/// A coordinate, as whole voxels and remainder in [0, 1).
 struct Position
 {
   double voxel, rest;
@@ -127,13 +128,13 @@ Move WholeMove(double start, double tangent, int plane)
   return next.voxel > now.voxel ? Move{ std::min(1.0, (1.0 - now.rest) / tangent), 1.0 } : Move();
 }
 
-/// The plane in which a ray is at `depth` planes; just at a plane's end it is still in it.
+/// The plane in which a ray is at `depth` planes; a plane includes its end.
 int PlaneAt(double depth)
 {
   return std::max(static_cast<int>(std::ceil(depth - OnBorder)) - 1, 0);
 }
 
-/// Add a move; others in its plane are shifted to the end of the plane before.
+/// Adds a move; another one in the same plane is shifted to the end of the previous plane.
 void Insert(std::vector<Move>& moves, double depth, double part)
 {
   int plane = std::min(PlaneAt(depth), static_cast<int>(moves.size()) - 1);
@@ -149,7 +150,7 @@ void Insert(std::vector<Move>& moves, double depth, double part)
     moves[plane] = move;
     return;
   }
-  // All planes before have one: they are shifted to the next plane that has none.
+  // If all previous planes have a move, moves are shifted to the next plane without one.
   const auto free = std::find_if_not(moves.begin(), moves.end(), IsMove);
   if (free != moves.end())
   {
@@ -158,8 +159,8 @@ void Insert(std::vector<Move>& moves, double depth, double part)
   }
 }
 
-/// The moves of rays that start at `start` in their voxel and move by `tangent` voxels a plane, tangent x planes in
-/// all: whole ones, and one by the part that is then missing (numerics.md, Eq. (21)).
+/// The moves of rays that start at `start` in their voxel and move by `tangent` voxels per plane, tangent x planes in
+/// total: whole moves, and one partial move by the remainder (numerics.md, Eq. (21)).
 std::vector<Move> Moves(double start, double tangent, int planes)
 {
   std::vector<Move> moves(planes);
@@ -172,7 +173,7 @@ std::vector<Move> Moves(double start, double tangent, int planes)
   const double part = std::min(all - whole, 1.0);
   const auto wholeAt = [&](int k, double more) { return (k + more - start) / tangent; };
   const auto partAt = [&](int before) { return (before + part * (1.0 - start)) / tangent; };
-  // No plane has two: as late as there is room.
+  // No plane has two moves; the move is placed as late as there is room.
   const auto hasRoom = [&](int before) {
     const int plane = PlaneAt(partAt(before));
     return (before == 0 || PlaneAt(wholeAt(before, 0.0)) < plane) &&
@@ -192,8 +193,8 @@ std::vector<Move> Moves(double start, double tangent, int planes)
   return moves;
 }
 
-/// In the bundle's own frame, whose members may exchange the axes: where one is periodic and the other is not, both
-/// have moves.
+/// Adds moves in the bundle's own frame. Members may exchange the axes, so both have moves if only one axis is
+/// periodic.
 void AddMoves(Bundle& bundle, const PlaneAxes& axes, const std::array<bool, 3>& periodic, int planes)
 {
   if (!periodic[axes.u] || !periodic[axes.v])
@@ -203,7 +204,7 @@ void AddMoves(Bundle& bundle, const PlaneAxes& axes, const std::array<bool, 3>& 
   }
 }
 
-/// Each bundle once for every point of the map's finer lattice, with its moves.
+/// Copies of each bundle, with moves, for every point of the map's finer lattice.
 std::vector<Bundle> OnLattice(const std::vector<Bundle>& bundles, const PlaneAxes& axes, const Grid& grid,
   const std::array<bool, 3>& periodic, int mapResolution)
 {
@@ -233,8 +234,8 @@ bool Bundle::MovesBothWaysAtOnce() const
   return Same(this->tangentU, this->tangentV) && Same(this->startU, this->startV);
 }
 
-/// Moves at the same depth are one move where tangents and starts are equal, else that of the larger tangent comes
-/// first: whatever way the bundle lies.
+/// Moves at the same depth are combined if tangents and starts are equal; otherwise that of the larger tangent comes
+/// first, independently of the bundle's orientation.
 PlaneCrossing Bundle::Crossing(int plane) const
 {
   const auto moveAt = [plane](const std::vector<Move>& moves, double start, double tangent) {
@@ -276,7 +277,7 @@ int PlanesOfPattern(int size, bool periodic)
 
 std::vector<int> MarchingAxes(const Grid& grid, const std::array<double, 3>& omega)
 {
-  std::array<double, 3> crossings; // of planes, per length
+  std::array<double, 3> crossings; // planes crossed per unit length
   for (int axis = 0; axis < 3; ++axis)
   {
     crossings[axis] = std::abs(omega[axis]) / grid.spacing[axis];

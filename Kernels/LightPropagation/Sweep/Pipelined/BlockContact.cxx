@@ -14,7 +14,7 @@ std::vector<BlockContact> ContactsBetween(
     return {};
   }
   const PlaneAxes axes = AcrossAxis(rays.axis);
-  // The layers of cells before the target, along any of the axes.
+  // Layers of cells upwind of the target block, along each of the axes.
   const auto contact = [&](BlockContact::Kind kind, std::initializer_list<int> along) {
     BlockContact found = { from, to, kind, target, false };
     for (const int axis : along)

@@ -94,7 +94,7 @@ SweepInfo BlockCrossingOnCpu::InfoOf(const SweepVolume& volume) const
   info.sigmaFirst = volume.sigma_t_first;
   info.first = volume.first;
   info.stride = volume.stride;
-  info.radianceEachWay = static_cast<uint>(plan.radianceEachWay); // the other buffers hold one way alone
+  info.radianceEachWay = static_cast<uint>(plan.radianceEachWay); // the other buffers hold one way only
   info.coefficientsEachWay = static_cast<uint>(plan.coefficientsEachWay);
   info.bundles = static_cast<int>(plan.bundles.size());
   info.patternPlanes = plan.PatternPlanes();

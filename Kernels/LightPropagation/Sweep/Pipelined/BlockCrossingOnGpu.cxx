@@ -27,7 +27,7 @@ BlockCrossingOnGpu::BlockCrossingOnGpu(Device& device, const RaysOfBlock& rays, 
   this->Beyond = Buffer<cl_float4>(device, plan.radianceEachWay, "the light that comes in sideways");
   const std::size_t rows = std::size_t{ 4 } * plan.Planes() * plan.channels;
   ReserveOnDevice(device, this->Left, rows * this->Lane.positions, "the power that leaves sideways");
-  this->Left.Fill(0.0f); // rows of the shorter faces stay so at their ends
+  this->Left.Fill(0.0f); // the ends of rows of shorter faces stay zero
   this->Sides = Buffer<float>(device, rows, "sums");
   this->Slices = this->MakeSlices();
   this->Lanes = Buffer<SweepLane>(device, std::vector<SweepLane>{ this->Lane }, "the rays' way");
@@ -77,7 +77,7 @@ std::string BlockCrossingOnGpu::Options(bool shines, bool octants) const
     Define("AROUND", this->Rays.around) + Define("SIDES", 1);
 }
 
-/// As SliceStream takes a grid of its own: the block's arrays hold no other voxels.
+/// Creates slices with the block as the grid, since the block's arrays hold no other voxels.
 std::unique_ptr<LaneSlices> BlockCrossingOnGpu::MakeSlices()
 {
   if (!this->TheDevice.Streams())
@@ -87,7 +87,7 @@ std::unique_ptr<LaneSlices> BlockCrossingOnGpu::MakeSlices()
   SweepPlan plan = this->Plan;
   plan.grid.size = plan.box.size;
   plan.box.first = {};
-  plan.periodic[plan.axes.axis] = this->Rays.around; // then there is `lost` beside the path
+  plan.periodic[plan.axes.axis] = this->Rays.around; // a periodic axis needs the array `lost`
   return LaneSlices::Make(this->TheDevice, plan, this->Lane, this->Workspace.sweep);
 }
 
@@ -103,12 +103,13 @@ PlaneLaunch BlockCrossingOnGpu::LaunchOf(const SweepVolume& volume) const
   return launch;
 }
 
-/// All planes, one after the other.
+/// Crosses all planes, one after the other.
 void BlockCrossingOnGpu::Launch(const SweepVolume& volume, int outerSides, const Monitor& monitor)
 {
   const SweepPlan& plan = this->Plan;
   const BlockArrays of(this->Rays, volume, this->Workspace);
-  const Buffer<float>& directed = plan.angular ? this->Workspace.directed : of.path; // never read where there is none
+  // never read without angular moments
+  const Buffer<float>& directed = plan.angular ? this->Workspace.directed : of.path;
   const Buffer<float>& functions = plan.angular ? this->Functions : of.path;
   const bool shines = volume.source != nullptr;
   const std::string options = this->Options(shines, volume.octantSource != nullptr);

@@ -9,7 +9,7 @@ namespace tyndall
 {
 namespace
 {
-/// The ray pattern is that of the whole grid, arrays are the block's own.
+/// Plan of a block: the ray pattern is that of the whole grid, the arrays are those of the block.
 SweepPlan PlanOf(
   Device& device, const BlockPartition& partition, int rank, const ParallelBundles& rays, const SweepVolume& volume)
 {
@@ -55,7 +55,7 @@ void BlockSweep::BeginLap(int planes)
   }
 }
 
-/// How rays cross planes in this lap.
+/// Sets how rays cross planes in this lap.
 void BlockSweep::LayPattern()
 {
   const SweepPlan& plan = this->Plan;
@@ -106,7 +106,7 @@ BlockSweep::Light BlockSweep::LightOf(const SweepBoundary& boundary, std::size_t
   return { through(axes.u), through(axes.v), through(axes.axis) };
 }
 
-/// Calls act(light, the bundle's row, ray of the bundle, channel) for each ray of a voxel and each channel.
+/// Calls act(light, the bundle's row, ray of the bundle, channel) for each ray per voxel and each channel.
 template <class Act>
 void BlockSweep::ForRaysFrom(const SweepBoundary& boundary, const Act& act) const
 {
@@ -147,7 +147,7 @@ RaysAtFaces BlockSweep::FromOutside(const SweepBoundary& boundary, const LightBy
   return rays;
 }
 
-/// Beyond an edge of the grid half comes in through either face.
+/// Writes incident light to the block's sides. Beyond an edge of the domain, half enters through each face.
 void BlockSweep::FillSides(const Light& light, std::size_t ray, int c, RaysAtFaces& rays) const
 {
   const bool outerU = this->IsOuter(this->Plan.axes.u, true), outerV = this->IsOuter(this->Plan.axes.v, true);
@@ -210,7 +210,7 @@ std::vector<cl_float4> BlockSweep::LightBeyond(const SweepBoundary& boundary) co
   return beyond;
 }
 
-/// Of -u, +u, -v, +v those where rays leave the whole grid, as BlockCrossing takes them.
+/// Bits of the sides -u, +u, -v, +v through which rays leave the domain, see BlockCrossing::Cross.
 int BlockSweep::OuterSides() const
 {
   int outer = 0;
@@ -223,7 +223,8 @@ int BlockSweep::OuterSides() const
   return outer;
 }
 
-/// @param aside  W that left sideways, see BlockCrossing::Cross
+/// Adds the power that leaves the domain to the tally.
+/// @param aside  power that left sideways, W, see BlockCrossing::Cross
 void BlockSweep::CountLeft(const std::vector<float>& aside, const RaysAtFaces& out, SweepTally& tally) const
 {
   const SweepPlan& plan = this->Plan;
@@ -253,9 +254,9 @@ void BlockSweep::CountLeft(const std::vector<float>& aside, const RaysAtFaces& o
   }
 }
 
-/// visit(whether it is in sides, else in maps, place) for each ray that goes through a contact, in the order of the
-/// whole grid's cells, so that sender and receiver agree.
-/// @param out  places are those of rays that go out, else of those that come in
+/// Calls visit(inSides, place) for each ray that crosses a contact: place is an index into the sides if inSides, else
+/// into the maps. In the order of the whole grid's cells, so that sender and receiver agree.
+/// @param out  true: places of outgoing rays; false: of incoming rays
 template <class Visit>
 void BlockSweep::ForEachPlace(const BlockContact& contact, bool out, const Visit& visit) const
 {

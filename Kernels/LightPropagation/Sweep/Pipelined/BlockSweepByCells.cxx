@@ -22,8 +22,8 @@ BlockSweep::ByCells::ByCells(const BlockSweep& sweep, const LightByCells& cells)
   }
 }
 
-/// Calls act for every ray of a voxel, channel and plane that moves aside in it; where the block has faces aside of the
-/// grid's.
+/// Calls act for every ray per voxel, channel and plane that moves sideways in the plane; only if the block has lateral
+/// faces that are faces of the domain.
 template <class Act>
 void BlockSweep::ByCells::ForAside(const Act& act) const
 {
@@ -50,7 +50,7 @@ void BlockSweep::ByCells::ForAside(const Act& act) const
   }
 }
 
-/// Calls act(bundle, channel, place in a map, u, v) for every ray of a map, at either end of the axis.
+/// Calls act(bundle, channel, index in a map, u, v) for every ray of a map; used for both ends of the axis.
 template <class Act>
 void BlockSweep::ByCells::ForEnds(const Act& act) const
 {
@@ -72,7 +72,7 @@ void BlockSweep::ByCells::ForEnds(const Act& act) const
   }
 }
 
-/// In the plane of the ray's march.
+/// The voxel (u, v) in the ray's plane, indexed in the whole grid.
 BlockSweep::ByCells::Voxel BlockSweep::ByCells::VoxelAt(const Aside& ray, int u, int v) const
 {
   const SweepPlan& plan = this->Sweep.Plan;
@@ -83,7 +83,7 @@ BlockSweep::ByCells::Voxel BlockSweep::ByCells::VoxelAt(const Aside& ray, int u,
   return voxel;
 }
 
-/// The block's first or last voxel along an axis, where rays enter or leave.
+/// Index of the block's first or last voxel along an axis, where rays enter (`entry`) or leave.
 int BlockSweep::ByCells::Edge(int axis, bool entry) const
 {
   return (this->Sweep.Bundles.signs[axis] > 0) == entry ? 0 : this->Sweep.Block.size[axis] - 1;
@@ -110,7 +110,7 @@ double BlockSweep::ByCells::LightOf(int face, const Voxel& voxel, int channel) c
   return this->Cells.in ? this->Cells.in[this->CellOf(face, voxel, channel)] : 0.0;
 }
 
-/// Over a cell and the one a move further, where that is on the face.
+/// Mean incident light of a cell and, if it is on the face, the cell one move further.
 double BlockSweep::ByCells::MeanLight(int face, const Voxel& voxel, int aside, int move, int channel) const
 {
   const int size = this->Sweep.Whole.size[aside];
@@ -161,7 +161,8 @@ void BlockSweep::ByCells::EnterAside(const Aside& ray, RaysAtFaces& in) const
   {
     return;
   }
-  // Past an edge of the grid half comes in through either face; else what comes past the block's through one.
+  // Beyond an edge of the domain, half enters through each face; beyond another edge of the block, all enters through
+  // one.
   const double beyond = outerU && outerV
     ? 0.5 * (this->LightOf(faceV, this->VoxelAt(ray, u0, v0), c) + this->LightOf(faceU, this->VoxelAt(ray, u0, v0), c))
     : outerV ? this->MeanLight(faceV, this->VoxelAt(ray, u0 - ray.du, v0), axes.u, ray.du, c)
@@ -190,7 +191,8 @@ void BlockSweep::ByCells::Leave(const RaysAtFaces& out, const SweepBoundary& bou
   });
 }
 
-/// Of those at an edge of the grid that move both ways at once half leave through either face.
+/// Counts power that leaves sideways. Of the rays at an edge of the domain that move along u and v at once, half leave
+/// through each face.
 void BlockSweep::ByCells::LeaveAside(const Aside& ray, const RaysAtFaces& out) const
 {
   const SweepPlan& plan = this->Sweep.Plan;
@@ -212,7 +214,7 @@ void BlockSweep::ByCells::LeaveAside(const Aside& ray, const RaysAtFaces& out) c
   }
 }
 
-/// Light that comes in at an edge of the grid and goes out without a voxel.
+/// Counts light that enters and leaves at an edge of the domain without crossing a voxel.
 void BlockSweep::ByCells::PassEdges(const Aside& ray, const SweepBoundary& boundary, SweepTally& tally) const
 {
   if (ray.du == 0 || ray.dv == 0)
@@ -237,8 +239,8 @@ void BlockSweep::ByCells::PassEdges(const Aside& ray, const SweepBoundary& bound
   }
 }
 
-/// Out through the face across `through`, in through that across `from`.
-/// @param alike  W of what comes in alike through the whole face, which is counted elsewhere
+/// Counts light that leaves through the face across axis `through` and entered through that across axis `from`.
+/// @param alike  power of incident light that is uniform over the face, W; it is counted elsewhere
 void BlockSweep::ByCells::PassEdge(const Aside& ray, int through, int from, double alike, SweepTally& tally) const
 {
   const PlaneAxes& axes = this->Sweep.Plan.axes;
@@ -252,7 +254,7 @@ void BlockSweep::ByCells::PassEdge(const Aside& ray, int through, int from, doub
   }
 }
 
-/// Through the face across an axis where rays leave, by the cells of all planes that the ray stands for.
+/// Adds power that leaves through the face across `axis` to the cells of all planes that the ray represents.
 void BlockSweep::ByCells::LeaveThrough(const Aside& ray, int axis, const Voxel& voxel, double power) const
 {
   const SweepPlan& plan = this->Sweep.Plan;

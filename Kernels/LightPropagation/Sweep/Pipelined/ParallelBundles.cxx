@@ -4,7 +4,7 @@ namespace tyndall
 {
 namespace
 {
-/// The members of a bundle that go one way along its axis and have these signs across it.
+/// The members of a bundle that march one way along its axis with these signs of direction across it.
 Bundle MembersThatGo(const Bundle& bundle, int way, int signU, int signV)
 {
   Bundle part = bundle;
@@ -22,7 +22,7 @@ Bundle MembersThatGo(const Bundle& bundle, int way, int signU, int signV)
   return part;
 }
 
-/// Into parts of at most so many rays, or of one bundle.
+/// Divides a set of bundles into parts of at most mostRays rays, or of one bundle if that has more.
 void AddParts(const ParallelBundles& whole, int mostRays, std::vector<ParallelBundles>& parts)
 {
   ParallelBundles part = whole;

@@ -14,7 +14,7 @@ namespace tyndall
 namespace
 {
 
-/// Sums of all ranks, of what each counted.
+/// Replaces each rank's power by the sum over all ranks. Collective.
 void AddUp(Communicator& communicator, std::array<Rgb, 6>& power)
 {
   std::vector<double> values;
@@ -92,7 +92,7 @@ SweepInBlocks::Task SweepInBlocks::MakeTask(const ParallelBundles& rays, BlockWo
   const SweepVolume volume = this->VolumeOf(this->Layout.Groups()[0], nullptr);
   task.sweep =
     std::make_unique<BlockSweep>(this->TheDevice, this->Partition, own, rays, this->Periodic, volume, workspace);
-  /// Those that go straight, and of those that go round sideways and ahead.
+  /// Contacts that do not wrap around, and those that wrap around sideways and along the marching axis.
   const auto sorted = [&](int from, int to) {
     std::array<Contacts, 3> found;
     for (const BlockContact& contact : ContactsBetween(this->Partition, rays, from, to, this->Periodic))
@@ -147,11 +147,11 @@ SweepVolume SweepInBlocks::VolumeOf(const ChannelGroup& group, const Buffer<floa
   volume.octantSource = this->OctantSource;
   volume.angular = this->Angular;
   volume.moments = this->Layout.Places(this->Angular ? this->Angular->Functions() : 1);
-  volume.deposit.flux = this->Angular ? nullptr : volume.deposit.flux; // it is among the moments
+  volume.deposit.flux = this->Angular ? nullptr : volume.deposit.flux; // the flux is among the moments
   return volume;
 }
 
-/// Rays that this rank waits for come although something has gone wrong, here or on the rank that sends them: told so.
+/// Collective. After an error, ranks continue to exchange messages, marked as failed, so that no rank waits forever.
 SweepTally SweepInBlocks::Apply(const Buffer<float>* source, const SweepBoundary& boundary, const Monitor& monitor)
 {
   SweepTally tally;
@@ -186,7 +186,8 @@ SweepTally SweepInBlocks::Apply(const Buffer<float>* source, const SweepBoundary
   return tally;
 }
 
-/// Axes that are open in one lap; others until next to nothing is on the way, as AxisSweep does.
+/// Sweeps one group of channels: open axes in one lap, periodic axes until almost no power is under way, as in
+/// AxisSweep.
 void SweepInBlocks::SweepGroup(Sweeping& sweeping, std::exception_ptr& error, const Monitor& monitor)
 {
   if (this->IsAnyPeriodic() && !this->Tasks.empty())
@@ -220,8 +221,9 @@ void SweepInBlocks::SweepGroup(Sweeping& sweeping, std::exception_ptr& error, co
   }
 }
 
-/// What comes in and shines, where rays still start; then what goes round sideways alone, until nothing does.
-/// @return false: something has gone wrong on any rank
+/// Sweeps one lap: first with sources and incident light if rays still start, then repeatedly with only the rays that
+/// wrap around sideways, until there are none.
+/// @return false if an error occurred on any rank
 bool SweepInBlocks::SweepLap(Sweeping& sweeping, std::exception_ptr& error, const Monitor& monitor)
 {
   sweeping.ahead = {};
@@ -255,8 +257,8 @@ bool SweepInBlocks::SweepLap(Sweeping& sweeping, std::exception_ptr& error, cons
   return true;
 }
 
-/// All blocks, along all rays of the lap.
-/// @return any rays have come round sideways to this rank
+/// Sweeps all blocks along all rays of the lap.
+/// @return whether any rays have wrapped around sideways to this rank
 bool SweepInBlocks::SweepPass(Sweeping& sweeping, std::exception_ptr& error, const Monitor& monitor)
 {
   const std::vector<int>& order = this->TheSchedule.OrderOf(this->Comm.Rank());
@@ -278,10 +280,10 @@ void AddOverRanks(Device& device, Communicator& communicator, const std::vector<
   std::transform(out.begin(), out.end(), ofAll.begin(), out.begin(),
     [](float before, double more) { return static_cast<float>(before + more); });
   to.CopyFrom(Buffer<float>(device, out, "the light that leaves by cells"), 0, out.size());
-  device.Finish(); // the buffer goes
+  device.Finish(); // before the buffer is destroyed
 }
 
-/// What left by cells on any rank.
+/// Adds the power that left by cells on any rank to faceOut. Collective.
 void SweepInBlocks::AddToFaces(const std::vector<double>& left) const
 {
   if (!this->To.faceOut)
@@ -291,7 +293,7 @@ void SweepInBlocks::AddToFaces(const std::vector<double>& left) const
   AddOverRanks(this->TheDevice, this->Comm, left, *this->To.faceOut);
 }
 
-/// Whether this rank says what comes in: all know it, but those without voxels.
+/// Whether this rank reports the incident power, which all ranks with voxels know.
 bool SweepInBlocks::CountsPowerIn() const
 {
   return IsFirstThatHas(this->Comm, this->Partition);
@@ -344,7 +346,7 @@ void SweepInBlocks::SweepTask(int number, Sweeping& sweeping, std::exception_ptr
   this->SendOn(number, state, rays);
 }
 
-/// To ranks downwind, and round periodic axes.
+/// Sends rays to ranks downwind and around periodic axes.
 void SweepInBlocks::SendOn(int number, State state, const RaysAtFaces& rays)
 {
   const Task& task = this->Tasks[number];
@@ -372,8 +374,8 @@ void SweepInBlocks::SendOn(int number, State state, const RaysAtFaces& rays)
   }
 }
 
-/// What this pass of all ranks has sent round, once it is through here.
-/// @return any of it goes on in another pass
+/// Receives the rays that wrapped around in this pass, from all ranks, after this rank has finished it.
+/// @return whether any of them continue in another pass
 bool SweepInBlocks::TakeFromAround(const Sweeping& sweeping, std::exception_ptr& error)
 {
   const auto isLit = [](float value) { return value != 0.0f; };
@@ -406,7 +408,7 @@ bool SweepInBlocks::TakeFromAround(const Sweeping& sweeping, std::exception_ptr&
   return any;
 }
 
-/// The rays that come in, from outside and from other ranks.
+/// Collects the incoming rays, from outside the domain and from other ranks.
 SweepInBlocks::State SweepInBlocks::Enter(
   Task& task, const std::vector<std::vector<float>>& messages, const Sweeping& sweeping, RaysAtFaces& rays) const
 {
@@ -439,7 +441,8 @@ SweepInBlocks::State SweepInBlocks::Enter(
   return this->EnterFromAround(task, sweeping, rays) == State::Lit ? State::Lit : state;
 }
 
-/// Those that wait: aside for each pass but the first of a lap, ahead for that one.
+/// Adds waiting rays that wrapped around: those along the marching axis in a lap's first pass, those sideways in later
+/// passes.
 SweepInBlocks::State SweepInBlocks::EnterFromAround(Task& task, const Sweeping& sweeping, RaysAtFaces& rays) const
 {
   State state = State::Dark;

@@ -15,22 +15,22 @@ namespace tyndall
 {
 namespace
 {
-/// Whom a block sends to when it is swept along a set of bundles.
+/// Rank that a block sends rays to after it is swept along a set of bundles.
 struct Receiver
 {
   int rank = 0;
   std::size_t rays = 0;
 };
 
-/// One set of bundles: who sends to whom, and how many blocks wait in a line behind each.
+/// Dependency graph of one set of bundles: senders and receivers, and the longest chain of blocks downwind of each.
 struct TaskGraph
 {
   std::vector<std::vector<Receiver>> receivers; ///< by rank
-  std::vector<int> waitsFor;                    ///< senders, by rank
+  std::vector<int> waitsFor;                    ///< number of senders, by rank
   std::vector<int> behind;
 };
 
-/// Of rays through one layer of cells; `bundles` tell how often they move.
+/// Number of rays through one layer of cells; `bundles` determine how often they move.
 std::size_t RaysThrough(const ParallelBundles& bundles, const BlockContact& contact)
 {
   const double cells = static_cast<double>(contact.cells.VoxelCount());
@@ -48,14 +48,14 @@ std::size_t RaysThrough(const ParallelBundles& bundles, const BlockContact& cont
   return static_cast<std::size_t>(rays);
 }
 
-/// Blocks on the longest way from a block to the end, found from the end on.
+/// Number of blocks on the longest downwind path from a block; recursive.
 int FindBehind(TaskGraph& graph, int rank)
 {
   int& behind = graph.behind[rank];
   Require(behind != -2, "Blocks lie such that each waits for another: cut the grid by planes, one after the other.");
   if (behind == -1)
   {
-    behind = -2; // being looked at
+    behind = -2; // being visited
     int most = 0;
     for (const Receiver& receiver : graph.receivers[rank])
     {
@@ -67,7 +67,7 @@ int FindBehind(TaskGraph& graph, int rank)
   return behind;
 }
 
-/// Or share a face, an edge or a corner: only then is there anything to look at.
+/// Whether two blocks share a face, an edge or a corner; only then can they be in contact.
 bool Touch(const VoxelBox& a, const VoxelBox& b)
 {
   for (int axis = 0; axis < 3; ++axis)
@@ -113,7 +113,7 @@ TaskGraph GraphOf(const BlockPartition& partition, const ParallelBundles& bundle
   return graph;
 }
 
-/// The sweep as it is played through.
+/// Simulation of a sweep.
 class Play
 {
 public:
@@ -159,7 +159,7 @@ public:
       {
         this->Ready[rank].insert({ -this->Graphs[task].behind[rank], task });
       }
-      // Whatever else comes at the same time may go first.
+      // Other events at the same time may have priority.
       if (this->Events.empty() || std::get<0>(this->Events.top()) > now)
       {
         this->StartAll(now);
@@ -214,9 +214,9 @@ private:
   const std::vector<ParallelBundles>& Tasks;
   const SweepCosts& Costs;
   std::vector<TaskGraph> Graphs;
-  std::vector<std::set<std::pair<int, int>>> Ready; ///< by rank: the most urgent first
+  std::vector<std::set<std::pair<int, int>>> Ready; ///< by rank: tasks ready to run, the most urgent first
   std::vector<bool> Busy;
-  std::set<int> Touched;                             ///< ranks to which something has happened at this time
+  std::set<int> Touched;                             ///< ranks with an event at the current time
   std::map<std::pair<int, int>, double> LastArrival; ///< by rank and task
   using Event = std::tuple<double, int, int, int>;   ///< time; 0 ready, 1 finished; rank; task
   std::priority_queue<Event, std::vector<Event>, std::greater<Event>> Events;
@@ -238,7 +238,8 @@ SweepSchedule::SweepSchedule(
 
 std::vector<ParallelBundles> FastestParts(const BlockPartition& partition, const std::vector<AxisBundles>& rays)
 {
-  // In rays through a voxel, some 2 to 3 ns: queueing a block's launches was measured to take about 1 ms.
+  // In units of one ray through one voxel, about 2 to 3 ns. Queueing a block's launches was measured to take about 1
+  // ms.
   const SweepCosts costs = { 1.0, 4e5, 2e3, 1.0 };
   std::vector<ParallelBundles> fastest = SortByOctant(rays, 0);
   double least = SweepSchedule(partition, fastest, costs).Time();
